@@ -1,0 +1,116 @@
+# Gopura: one entry. `make help` lists the targets.
+#
+# The folders are the architecture, so the build is read off them: every C file of a folder goes
+# into one archive, each program is its main file plus what it pulls from that archive, and each
+# tests/FOLDER/test_*.c is a program of its own.
+
+BUILD   ?= build
+SAN     ?=
+JOBS    ?= $(shell nproc)
+MAKEFLAGS += --no-builtin-rules
+
+FOLDERS := base format board render ui input storage net app pipeline
+LIBS    := egl glesv2 gbm libdrm libevdev libudev sqlite3 libjpeg libpng libcurl libzstd libsodium \
+           pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd
+# METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
+EXTRA   := -lmetis -lmeshoptimizer -linih -lm -pthread
+
+# Asked for lazily and once: the packages may only arrive with the `deps` target.
+PKG_CFLAGS = $(eval PKG_CFLAGS := $(shell pkg-config --cflags $(LIBS)))$(PKG_CFLAGS)
+PKG_LIBS   = $(eval PKG_LIBS := $(shell pkg-config --libs $(LIBS)))$(PKG_LIBS)
+
+VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+CC      := $(if $(shell command -v ccache),ccache )gcc
+CXX     := $(if $(shell command -v ccache),ccache )g++
+WARN    := -Wall -Wextra -Werror -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wpointer-arith
+OPT     := -O2 -g
+CFLAGS   = -std=c11 -D_GNU_SOURCE -I. $(WARN) $(OPT) -ffp-contract=off -MMD -MP $(PKG_CFLAGS)
+LDFLAGS  = -Wl,--as-needed
+ifneq ($(SAN),)
+OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+endif
+
+MAINS    := app/main.c net/main.c pipeline/main.c
+SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
+OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
+ARCHIVE  := $(BUILD)/libgopura.a
+PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch
+TEST_SOURCES := $(wildcard tests/*/test_*.c)
+TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
+FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
+BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
+
+.DEFAULT_GOAL := all
+.PHONY: all help deps demo test check unit unit-san check-style format bench clean
+.SECONDARY:
+
+all: deps $(PROGRAMS) ## build the three programs into build/
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 20
+
+deps: $(BUILD)/.deps
+
+# Re-checked only when the list changes; asks apt for nothing that is there.
+$(BUILD)/.deps: packages.txt
+	@mkdir -p $(@D)
+	@./deps.sh
+	@touch $@
+
+demo: all ## build and show the demo temple (Ctrl-C ends it)
+	@demo/run.sh
+
+test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU
+	@tests/run.sh all
+
+check: all ## the quick loop: format, include rules, unit tests under sanitizers
+	@tests/run.sh quick
+
+bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
+	@tests/bench/run.sh $(BENCH)
+
+check-style: deps ## clang-format, the include table, house rules
+	@tests/style/check.sh
+
+format: ## let clang-format settle the white space
+	@git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
+
+clean: ## remove build/ (the demo content and its caches too)
+	rm -rf $(BUILD)
+
+# ---- build rules
+
+$(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
+	@mkdir -p $(@D)
+	@echo '  cc    $<'
+	@$(CC) $(CFLAGS) -c $< -o $@
+
+# Only the mains carry the version, so that a commit does not rebuild the tree.
+$(MAINS:%.c=$(BUILD)/obj/%.o): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
+
+$(ARCHIVE): $(OBJECTS)
+	@rm -f $@
+	@ar rcs $@ $^
+
+LINK = @echo '  link  $@' && $(CC) $(OPT) $(LDFLAGS) -o $@ $(filter %.o,$^) $(ARCHIVE) $(PKG_LIBS) $(EXTRA)
+
+$(BUILD)/gopura-content: $(BUILD)/obj/pipeline/main.o $(ARCHIVE)
+	$(LINK)
+$(BUILD)/gopura-kiosk: $(BUILD)/obj/app/main.o $(ARCHIVE)
+	$(LINK)
+$(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
+	$(LINK)
+
+# A test may define a function of the archive itself: its own object wins.
+$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(BUILD)/obj/tests/fuzz/main.o $(ARCHIVE)
+	@mkdir -p $(@D)
+	$(LINK)
+$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
+	@mkdir -p $(@D)
+	$(LINK) -lcmocka
+
+tests: $(TESTS) $(FUZZ)
+benches: $(BENCHES)
+.PHONY: tests benches
+
+-include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

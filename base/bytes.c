@@ -1,0 +1,288 @@
+#include "base/bytes.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void buffer_init(struct buffer *buffer, size_t ceiling_bytes)
+{
+	*buffer = (struct buffer){ .ceiling = ceiling_bytes };
+}
+
+void buffer_finish(struct buffer *buffer)
+{
+	if (!buffer)
+		return;
+	free(buffer->data);
+	*buffer = (struct buffer){ .ceiling = buffer->ceiling };
+}
+
+void buffer_clear(struct buffer *buffer)
+{
+	buffer->size = 0;
+	buffer->error = 0;
+}
+
+uint8_t *buffer_extend(struct buffer *buffer, size_t size)
+{
+	size_t capacity = buffer->capacity ? buffer->capacity : 256;
+	uint8_t *grown;
+
+	if (buffer->error)
+		return NULL;
+	if (size > buffer->ceiling - buffer->size) {
+		buffer->error = -EFBIG;
+		return NULL;
+	}
+	while (capacity - buffer->size < size && capacity < buffer->ceiling)
+		capacity = capacity > buffer->ceiling / 2 ? buffer->ceiling : capacity * 2;
+	if (capacity != buffer->capacity) {
+		grown = realloc(buffer->data, capacity);
+		if (!grown) {
+			buffer->error = -ENOMEM;
+			return NULL;
+		}
+		buffer->data = grown;
+		buffer->capacity = capacity;
+	}
+	buffer->size += size;
+	return buffer->data + buffer->size - size;
+}
+
+void buffer_put(struct buffer *buffer, const void *data, size_t size)
+{
+	uint8_t *to = buffer_extend(buffer, size);
+
+	if (to && size)
+		memcpy(to, data, size);
+}
+
+static void put_le(struct buffer *buffer, uint64_t value, size_t size)
+{
+	uint8_t *to = buffer_extend(buffer, size);
+
+	for (size_t i = 0; to && i < size; i++)
+		to[i] = (uint8_t)(value >> (8 * i));
+}
+
+void buffer_put_u8(struct buffer *buffer, uint8_t value)
+{
+	put_le(buffer, value, 1);
+}
+
+void buffer_put_u16(struct buffer *buffer, uint16_t value)
+{
+	put_le(buffer, value, 2);
+}
+
+void buffer_put_u32(struct buffer *buffer, uint32_t value)
+{
+	put_le(buffer, value, 4);
+}
+
+void buffer_put_u64(struct buffer *buffer, uint64_t value)
+{
+	put_le(buffer, value, 8);
+}
+
+void buffer_put_f32(struct buffer *buffer, float value)
+{
+	uint32_t bits;
+
+	memcpy(&bits, &value, sizeof(bits));
+	buffer_put_u32(buffer, bits);
+}
+
+void buffer_put_f64(struct buffer *buffer, double value)
+{
+	uint64_t bits;
+
+	memcpy(&bits, &value, sizeof(bits));
+	buffer_put_u64(buffer, bits);
+}
+
+void buffer_put_string(struct buffer *buffer, const char *text)
+{
+	size_t size = strlen(text);
+
+	if (size > UINT16_MAX) {
+		buffer->error = buffer->error ? buffer->error : -EFBIG;
+		return;
+	}
+	buffer_put_u16(buffer, (uint16_t)size);
+	buffer_put(buffer, text, size);
+}
+
+struct bytes buffer_bytes(const struct buffer *buffer)
+{
+	return (struct bytes){ buffer->data, buffer->size };
+}
+
+void reader_init(struct reader *reader, struct bytes bytes)
+{
+	*reader = (struct reader){ .data = bytes.data, .size = bytes.size };
+}
+
+size_t reader_left(const struct reader *reader)
+{
+	return reader->failed ? 0 : reader->size - reader->at;
+}
+
+struct bytes reader_bytes(struct reader *reader, size_t size)
+{
+	struct bytes view;
+
+	if (reader->failed || size > reader->size - reader->at) {
+		reader->failed = true;
+		return (struct bytes){ NULL, 0 };
+	}
+	view = (struct bytes){ size ? reader->data + reader->at : NULL, size };
+	reader->at += size;
+	return view;
+}
+
+static uint64_t get_le(struct reader *reader, size_t size)
+{
+	struct bytes view = reader_bytes(reader, size);
+	uint64_t value = 0;
+
+	for (size_t i = 0; i < view.size; i++)
+		value |= (uint64_t)view.data[i] << (8 * i);
+	return value;
+}
+
+uint8_t reader_u8(struct reader *reader)
+{
+	return (uint8_t)get_le(reader, 1);
+}
+
+uint16_t reader_u16(struct reader *reader)
+{
+	return (uint16_t)get_le(reader, 2);
+}
+
+uint32_t reader_u32(struct reader *reader)
+{
+	return (uint32_t)get_le(reader, 4);
+}
+
+uint64_t reader_u64(struct reader *reader)
+{
+	return get_le(reader, 8);
+}
+
+float reader_f32(struct reader *reader)
+{
+	uint32_t bits = reader_u32(reader);
+	float value;
+
+	memcpy(&value, &bits, sizeof(value));
+	return value;
+}
+
+double reader_f64(struct reader *reader)
+{
+	uint64_t bits = reader_u64(reader);
+	double value;
+
+	memcpy(&value, &bits, sizeof(value));
+	return value;
+}
+
+void reader_string(struct reader *reader, char *out, size_t out_bytes)
+{
+	struct bytes text = reader_bytes(reader, reader_u16(reader));
+
+	out[0] = '\0';
+	if (reader->failed)
+		return;
+	if (text.size >= out_bytes || (text.size && memchr(text.data, '\0', text.size))) {
+		reader->failed = true;
+		return;
+	}
+	if (text.size)
+		memcpy(out, text.data, text.size);
+	out[text.size] = '\0';
+}
+
+int buffer_read_file(struct buffer *out, const char *path)
+{
+	int fd = open(path, O_RDONLY | O_CLOEXEC);
+	uint8_t chunk[65536];
+	ssize_t got;
+	int rc;
+
+	if (fd < 0)
+		return -errno;
+	buffer_clear(out);
+	while ((got = read(fd, chunk, sizeof(chunk))) != 0) {
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got < 0)
+			break;
+		buffer_put(out, chunk, (size_t)got);
+		if (out->error)
+			break;
+	}
+	rc = got < 0 ? -errno : out->error;
+	close(fd);
+	return rc;
+}
+
+static int write_all(int fd, struct bytes bytes)
+{
+	size_t done = 0;
+
+	while (done < bytes.size) {
+		ssize_t put = write(fd, bytes.data + done, bytes.size - done);
+		if (put < 0 && errno != EINTR)
+			return -errno;
+		if (put > 0)
+			done += (size_t)put;
+	}
+	return fsync(fd) < 0 ? -errno : 0;
+}
+
+static int sync_folder_of(const char *path)
+{
+	char copy[PATH_MAX];
+	int fd, rc;
+
+	snprintf(copy, sizeof(copy), "%s", path);
+	fd = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0)
+		return -errno;
+	rc = fsync(fd) < 0 ? -errno : 0;
+	close(fd);
+	return rc;
+}
+
+int bytes_write_file(struct bytes bytes, const char *path)
+{
+	char temporary[PATH_MAX];
+	int fd, rc;
+
+	if (snprintf(temporary, sizeof(temporary), "%s.XXXXXX", path) >= (int)sizeof(temporary))
+		return -ENAMETOOLONG;
+	fd = mkostemp(temporary, O_CLOEXEC);
+	if (fd < 0)
+		return -errno;
+	rc = write_all(fd, bytes);
+	if (fchmod(fd, 0644) < 0 && rc == 0)
+		rc = -errno;
+	if (close(fd) < 0 && rc == 0)
+		rc = -errno;
+	if (rc == 0 && rename(temporary, path) < 0)
+		rc = -errno;
+	if (rc < 0) {
+		unlink(temporary);
+		return rc;
+	}
+	return sync_folder_of(path);
+}

@@ -1,0 +1,71 @@
+/* Byte strings: a borrowed view, a growing buffer with a ceiling, and a bounds-checked reader.
+ * Buffer and reader are sticky: after the first failure further calls do nothing and the failure
+ * is judged once at the end. Integers are little endian on disk and wire. */
+#ifndef GOPURA_BASE_BYTES_H
+#define GOPURA_BASE_BYTES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/compiler.h"
+
+/* Borrowed. */
+struct bytes {
+	const uint8_t *data;
+	size_t size;
+};
+
+/* Owned by whoever holds it; buffer_finish releases it. */
+struct buffer {
+	uint8_t *data;
+	size_t size;
+	size_t capacity;
+	size_t ceiling; /* bytes; growing past it fails */
+	int error;      /* 0, or -ENOMEM, or -EFBIG, sticky */
+};
+
+void buffer_init(struct buffer *buffer, size_t ceiling_bytes);
+void buffer_finish(struct buffer *buffer); /* NULL and zeroed are fine */
+void buffer_clear(struct buffer *buffer);  /* keeps the memory, forgets the error */
+
+/* Room for size more bytes, counted as written, contents undefined. NULL on failure. */
+uint8_t *buffer_extend(struct buffer *buffer, size_t size);
+void buffer_put(struct buffer *buffer, const void *data, size_t size);
+void buffer_put_u8(struct buffer *buffer, uint8_t value);
+void buffer_put_u16(struct buffer *buffer, uint16_t value);
+void buffer_put_u32(struct buffer *buffer, uint32_t value);
+void buffer_put_u64(struct buffer *buffer, uint64_t value);
+void buffer_put_f32(struct buffer *buffer, float value);
+void buffer_put_f64(struct buffer *buffer, double value);
+/* u16 length, then the bytes, no terminator. Longer than 65535 bytes sets -EFBIG. */
+void buffer_put_string(struct buffer *buffer, const char *text);
+/* A view of what was written; borrowed until the next call on the buffer. */
+struct bytes buffer_bytes(const struct buffer *buffer);
+
+struct reader {
+	const uint8_t *data;
+	size_t size;
+	size_t at;
+	bool failed; /* read past the end; every later read gives zero */
+};
+
+void reader_init(struct reader *reader, struct bytes bytes);
+size_t reader_left(const struct reader *reader);
+uint8_t reader_u8(struct reader *reader);
+uint16_t reader_u16(struct reader *reader);
+uint32_t reader_u32(struct reader *reader);
+uint64_t reader_u64(struct reader *reader);
+float reader_f32(struct reader *reader);
+double reader_f64(struct reader *reader);
+/* Borrowed from what the reader reads; empty on failure. */
+struct bytes reader_bytes(struct reader *reader, size_t size);
+/* Into out, terminated; fails where the text does not fit in out_bytes or holds a zero byte. */
+void reader_string(struct reader *reader, char *out, size_t out_bytes);
+
+/* Whole file into *out (cleared first). Negative errno, -EFBIG past the buffer's ceiling. */
+must_check int buffer_read_file(struct buffer *out, const char *path);
+/* Atomically: a temporary file beside it, fsync, rename, fsync of the folder. */
+must_check int bytes_write_file(struct bytes bytes, const char *path);
+
+#endif

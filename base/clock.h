@@ -1,0 +1,17 @@
+/* The one source of time. Tests replace these functions at link time; pass no old "now" down. */
+#ifndef GOPURA_BASE_CLOCK_H
+#define GOPURA_BASE_CLOCK_H
+
+#include <stdint.h>
+
+/* Monotonic; the zero is arbitrary. */
+int64_t clock_now_ms(void);
+int64_t clock_now_us(void);
+
+/* CPU time of the calling thread. */
+int64_t clock_thread_us(void);
+
+/* Seconds since 1970 by the wall clock, which may be wrong: see storage/state.h for the floor. */
+int64_t clock_wall_s(void);
+
+#endif

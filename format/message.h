@@ -1,0 +1,96 @@
+/* What kiosk and fetcher say to each other over a Unix SOCK_SEQPACKET socket, one message a packet.
+ *
+ * Kiosk to fetcher
+ *   MESSAGE_RELEASE  use this release: where its locator lies, and its root
+ *   MESSAGE_WANT     bring an object (again with another priority: only the priority changes)
+ *   MESSAGE_DROP     no longer wanted
+ *   MESSAGE_KEEP     an object that must not leave the cache while its release is in use
+ *   MESSAGE_ASK_META fetch the signed metadata now (the fetcher also polls by itself)
+ * Fetcher to kiosk
+ *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MOST, else a sealed memfd
+ *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
+ *                    fetcher goes on trying while it is wanted
+ *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
+ *   MESSAGE_STATUS   figures, once a second while they change
+ *
+ * The kiosk hashes every object it receives. A message that does not decode closes the socket. */
+#ifndef GOPURA_FORMAT_MESSAGE_H
+#define GOPURA_FORMAT_MESSAGE_H
+
+#include "format/hash.h"
+
+enum message_kind {
+	MESSAGE_RELEASE = 1,
+	MESSAGE_WANT,
+	MESSAGE_DROP,
+	MESSAGE_KEEP,
+	MESSAGE_ASK_META,
+	MESSAGE_OBJECT = 64,
+	MESSAGE_MISSING,
+	MESSAGE_META,
+	MESSAGE_STATUS,
+};
+
+enum {
+	MESSAGE_INLINE_MOST = 96 * 1024,
+	MESSAGE_BYTES_MOST = MESSAGE_INLINE_MOST + 1024,
+	MESSAGE_META_BYTES_MOST = 64 * 1024
+};
+
+enum meta_role { META_ROOT, META_RELEASE, META_TIMESTAMP };
+enum missing_reason { MISSING_OFFLINE, MISSING_NOT_FOUND, MISSING_DAMAGED };
+
+struct message_want {
+	struct hash hash;
+	struct hash page;  /* whose child it is; zero for a root page */
+	uint32_t offset;   /* in the page's block, bytes */
+	uint32_t size;     /* bytes */
+	uint32_t priority; /* higher first; MESSAGE_PRIORITY_* are anchors */
+};
+
+enum {
+	MESSAGE_PRIORITY_PREFETCH = 0,
+	MESSAGE_PRIORITY_PICTURE = 1000,  /* tiles and patches: 1000 .. 999999 by gain */
+	MESSAGE_PRIORITY_INDEX = 1000000, /* pages: without them nothing can be judged */
+};
+
+struct message_status {
+	uint8_t online;          /* the last request was answered */
+	uint32_t wanted;         /* objects not yet brought */
+	uint64_t received_bytes; /* from the network since start: headers and all */
+	uint64_t cache_bytes, cache_budget_bytes;
+	uint64_t offline_since_s; /* wall clock, 0 while online */
+};
+
+struct message {
+	enum message_kind kind;
+	union {
+		struct {
+			struct hash root;
+			uint32_t root_bytes;
+		} release;
+		struct message_want want;
+		struct hash drop;
+		struct hash keep;
+		struct {
+			struct hash hash;
+			struct bytes bytes; /* borrowed; empty: in the descriptor that came along */
+			uint32_t size;
+		} object;
+		struct {
+			struct hash hash;
+			enum missing_reason reason;
+		} missing;
+		struct {
+			enum meta_role role;
+			uint32_t version;   /* of META_ROOT: N of root/N.json */
+			struct bytes bytes; /* borrowed */
+		} meta;
+		struct message_status status;
+	};
+};
+
+void message_encode(struct buffer *out, const struct message *message);
+must_check int message_decode(struct message *out, struct bytes packet);
+
+#endif

@@ -1,0 +1,58 @@
+/* A page: an object that names others. All pages share one outer form, so that whoever walks a
+ * release (fetcher, verifier, packer) needs to know nothing of what is in it:
+ *
+ *   "GPag"  u16 kind  u16 version(1)  u32 child_count  u32 payload_bytes
+ *   child_count x { u32 size_and_flag, 16 bytes hash }     bit 31 of the size: the child is a page
+ *   payload (its form depends on the kind; see the header named after it)
+ *
+ * All integers little endian. Nothing may follow the payload.
+ *
+ * The children of a page lie in a pack side by side, in the page's order ("the block of the
+ * page"). So the place of child i is (the page's block, the sum of the sizes before i), and the
+ * unsigned locator needs one entry a page, not one an object. */
+#ifndef GOPURA_FORMAT_PAGE_H
+#define GOPURA_FORMAT_PAGE_H
+
+#include "format/hash.h"
+
+enum page_kind {
+	PAGE_ROOT = 1,  /* format/root_page.h: one a release */
+	PAGE_HIERARCHY, /* format/hierarchy.h: children are patch groups */
+	PAGE_SAMPLES,   /* format/samples.h: children are brick pages */
+	PAGE_BRICK,     /* 4 x 4 x 4 sampling points: children are face pages */
+	PAGE_FACE,      /* one face of one sampling point: children are tiles */
+	PAGE_INFO,      /* children: the information database (SQLite), then its pictures */
+};
+
+enum {
+	PAGE_HEADER_BYTES = 16,
+	PAGE_CHILD_BYTES = 4 + HASH_BYTES,
+	PAGE_BYTES_MOST = 4 << 20,   /* an encoded page; larger ones are refused */
+	OBJECT_BYTES_MOST = 16 << 20 /* any object */
+};
+
+struct page_child {
+	struct hash hash;
+	uint32_t size; /* bytes of the object */
+	bool is_page;
+};
+
+struct page {
+	enum page_kind kind;
+	uint32_t child_count;
+	struct page_child *children; /* owned */
+	struct bytes payload;        /* borrowed from the bytes that were decoded */
+};
+
+/* Appends the encoded page. */
+void page_encode(struct buffer *out, const struct page *page);
+/* *out is finished by the caller; on failure it is zeroed. -EBADMSG: not a page, truncated, has
+ * trailing bytes, an unknown kind or version, a child larger than OBJECT_BYTES_MOST or empty.
+ * -ENOMEM. */
+must_check int page_decode(struct page *out, struct bytes object);
+void page_finish(struct page *page);
+
+/* Where the page's child lies in the page's block, in bytes. */
+uint64_t page_child_offset(const struct page *page, uint32_t child);
+
+#endif

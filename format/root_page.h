@@ -1,0 +1,32 @@
+/* Payload of PAGE_ROOT: what a release shows, before anything of it is fetched.
+ * Children, in this order: the hierarchy page, the samples page, the info page. */
+#ifndef GOPURA_FORMAT_ROOT_PAGE_H
+#define GOPURA_FORMAT_ROOT_PAGE_H
+
+#include "format/page.h"
+
+enum { ROOT_CHILD_HIERARCHY, ROOT_CHILD_SAMPLES, ROOT_CHILD_INFO, ROOT_CHILD_COUNT };
+
+/* The one quantisation lattice of a model: metres = origin + step * lattice, lattice in 0..65535
+ * on each axis, so that a border shared by two patches is equal bit for bit at every level. */
+struct lattice {
+	double origin_m[3];
+	double step_m;
+};
+
+struct root_page {
+	char name[128]; /* UTF-8, of the model */
+	struct lattice lattice;
+	float box_min_m[3], box_max_m[3]; /* of the model; z is up */
+	float start_eye_m[3], start_target_m[3];
+	float sun[3]; /* unit vector towards the light */
+	uint8_t lit;  /* 1: colour times light (format/light.h); 0: the scan's own colours */
+	uint8_t background[3];     /* sRGB behind the model */
+	uint64_t source_triangles; /* of the scan, at home */
+	uint64_t published_triangles;
+};
+
+void root_page_encode(struct buffer *out, const struct root_page *root);
+must_check int root_page_decode(struct root_page *out, struct bytes payload);
+
+#endif

@@ -1,0 +1,72 @@
+/* The sampling repository (paper P0 5.2) as pages and tiles.
+ *
+ * Points lie on a regular grid: point (x, y, z) is at origin + spacing * (x, y, z). At each point
+ * six faces (format/cube.h) were rendered from the full hierarchy, at finest_px pixels a side and
+ * at every half of that down to one tile. A level is cut into tiles of SAMPLE_TILE_PX pixels, each
+ * stored with an apron of SAMPLE_APRON_PX on every side (what lies there on the neighbouring tile
+ * or, outside the face, on the 90 degree face's own plane continued), so that bilinear filtering
+ * never needs a neighbour. A tile that shows nothing of the model is absent.
+ *
+ * Three kinds of page: PAGE_SAMPLES (one; the grid, the JPEG tables that all tiles share; children:
+ * bricks that hold anything) -> PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything)
+ * -> PAGE_FACE (children: tiles that are there, level by level from the coarsest, row by row). */
+#ifndef GOPURA_FORMAT_SAMPLES_H
+#define GOPURA_FORMAT_SAMPLES_H
+
+#include "format/cube.h"
+#include "format/page.h"
+
+enum {
+	SAMPLE_TILE_PX = 128,
+	SAMPLE_APRON_PX = 4,
+	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile's JPEG holds */
+	SAMPLE_LEVELS_MOST = 5, /* 128, 256, 512, 1024, 2048 pixels a side */
+	SAMPLE_GRID_MOST = 64,  /* points a side */
+	BRICK_SIDE = 4,         /* points */
+	BRICK_POINTS = BRICK_SIDE * BRICK_SIDE * BRICK_SIDE,
+	FACE_TILES_MOST = 1 + 4 + 16 + 64 + 256
+};
+
+struct samples_page {
+	float origin_m[3], spacing_m[3];
+	uint8_t count[3];         /* points a side */
+	uint8_t level_count;      /* level l has SAMPLE_TILE_PX << l pixels a side */
+	struct bytes jpeg_tables; /* abbreviated JPEG stream, tables only; borrowed */
+	/* Child of the page that is brick (bx, by, bz), or HIERARCHY_NONE's twin SAMPLE_NONE:
+	 * nothing was sampled there. Index: (bz * bricks[1] + by) * bricks[0] + bx. Owned. */
+	uint32_t bricks[3];
+	uint32_t *brick_child;
+};
+
+#define SAMPLE_NONE UINT32_MAX
+
+void samples_page_encode(struct buffer *out, const struct samples_page *samples);
+must_check int samples_page_decode(struct samples_page *out, struct bytes payload);
+void samples_page_finish(struct samples_page *samples);
+
+/* A brick, per point p = (z * 4 + y) * 4 + x within it, and face f. */
+struct brick_page {
+	/* Child that is the face's page, or SAMPLE_NONE. */
+	uint32_t face_child[BRICK_POINTS][CUBE_FACES];
+	/* Which of the 4 x 4 sixteenths of the face show the model: bit row * 4 + column. */
+	uint16_t coverage[BRICK_POINTS][CUBE_FACES];
+	/* Distance along the face's axis, of what it shows, metres. */
+	float near_m[BRICK_POINTS][CUBE_FACES], far_m[BRICK_POINTS][CUBE_FACES];
+};
+
+void brick_page_encode(struct buffer *out, const struct brick_page *brick);
+must_check int brick_page_decode(struct brick_page *out, struct bytes payload);
+
+struct face_page {
+	uint8_t level_count;
+	/* Child that is the tile, or SAMPLE_NONE; index face_tile_index(). */
+	uint32_t tile_child[FACE_TILES_MOST];
+};
+
+void face_page_encode(struct buffer *out, const struct face_page *face);
+must_check int face_page_decode(struct face_page *out, struct bytes payload);
+
+/* Index of a tile among all of a face: coarsest level first, row by row. */
+uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column);
+
+#endif

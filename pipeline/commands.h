@@ -1,0 +1,12 @@
+/* The commands of gopura-content, one source file each. argv[0] is the command's own name; each
+ * returns an exit status, prints its own errors, and answers --help. */
+#ifndef GOPURA_PIPELINE_COMMANDS_H
+#define GOPURA_PIPELINE_COMMANDS_H
+
+struct command {
+	const char *name;
+	const char *summary; /* one line */
+	int (*run)(int argc, char **argv);
+};
+
+#endif

@@ -1,0 +1,40 @@
+/* gopura-content: scans into signed releases. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/compiler.h"
+#include "pipeline/commands.h"
+
+static const struct command commands[] = {
+	{ NULL, NULL, NULL },
+};
+
+static void print_help(void)
+{
+	puts("gopura-content: from scans to a signed release of static files\n"
+	     "\n"
+	     "usage: gopura-content COMMAND [OPTIONS]\n");
+	for (const struct command *c = commands; c->name; c++)
+		printf("  %-10s %s\n", c->name, c->summary);
+	puts("\ngopura-content COMMAND --help says more, with examples.");
+}
+
+int main(int argc, char **argv)
+{
+	const char *name = argc > 1 ? argv[1] : "";
+
+	for (const struct command *c = commands; c->name; c++)
+		if (strcmp(name, c->name) == 0)
+			return c->run(argc - 1, argv + 1);
+	if (strcmp(name, "--version") == 0) {
+		puts("gopura-content " GOPURA_VERSION);
+		return 0;
+	}
+	if (strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
+		print_help();
+		return 0;
+	}
+	fprintf(stderr, "gopura-content: %s'%s'; see gopura-content --help\n",
+		*name ? "no such command: " : "a command is needed: ", name);
+	return 2;
+}

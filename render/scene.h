@@ -1,0 +1,86 @@
+/* What the kiosk draws: view-dependent sparse patches, coloured by the Grid-Lumigraph.
+ *
+ * The scene knows pages, patch groups and tiles; it knows no network. It says what it wants, with
+ * priorities (scene_wants), is given objects (scene_give), and draws what it has. Decoding runs on
+ * its own worker threads, which answer through scene_fd. Every call is from the thread that owns
+ * the GL context. GLES2 only. */
+#ifndef GOPURA_RENDER_SCENE_H
+#define GOPURA_RENDER_SCENE_H
+
+#include "format/message.h"
+#include "format/root_page.h"
+#include "render/camera.h"
+
+enum scene_mode {
+	SCENE_POLYGONS,  /* patches with their own colours */
+	SCENE_CORNERS,   /* the paper's form: the eight sampling points around the eye */
+	SCENE_LUMIGRAPH, /* lazy reuse, best three samples, occlusion (docs/lumigraph.md) */
+};
+
+struct scene_options {
+	enum scene_mode mode;
+	uint64_t texture_budget_bytes; /* tiles and disparity together */
+	uint64_t geometry_budget_bytes;
+	uint32_t triangle_budget;  /* drawn in a frame */
+	float patch_error_px;      /* refine while a group's error is larger on the screen */
+	uint32_t upload_budget_us; /* of a frame */
+	uint32_t worker_count;
+};
+
+struct scene;
+
+must_check int scene_create(struct scene **out, const struct scene_options *options);
+void scene_destroy(struct scene *scene);
+
+/* Shows another release, at once and whole: everything of the one before is forgotten. */
+must_check int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes);
+/* The release's root page once it arrived, else NULL. Borrowed until scene_open. */
+const struct root_page *scene_root(const struct scene *scene);
+
+/* A verified object that was wanted. Unknown ones are ignored; one that does not decode is logged
+ * as a content bug and not wanted again. */
+void scene_give(struct scene *scene, struct hash hash, struct bytes object);
+/* Readable when scene_dispatch has something to do: a worker finished. */
+int scene_fd(const struct scene *scene);
+must_check int scene_dispatch(struct scene *scene);
+
+/* Most wanted first, at most `most`; those not listed any more are no longer wanted. Valid for the
+ * camera of the last scene_draw. */
+size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most);
+
+struct scene_frame {
+	bool moving;  /* a fade runs or an upload waits: draw again soon */
+	bool settled; /* nothing wanted, nothing decoding, no fade running */
+	uint32_t triangles, patches, tiles_uploaded, depth_faces_drawn;
+	float image_share; /* of the model's pixels, settled frames only; else -1 */
+};
+
+/* A part's region to mark with a bold border (ui does the words). */
+enum region_kind { REGION_NONE, REGION_SPHERE, REGION_BOX, REGION_PRISM };
+enum { REGION_CORNERS_MOST = 16 };
+struct region {
+	enum region_kind kind;
+	float centre_m[3];
+	float radius_m;        /* sphere */
+	float half_m[3];       /* box, before turning */
+	float turn_deg;        /* box: about the vertical */
+	float floor_m, roof_m; /* prism */
+	uint32_t corner_count;
+	float corners_m[REGION_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
+};
+bool region_contains(const struct region *region, const float point_m[3]);
+
+/* Draws into the framebuffer that is bound; alpha is coverage. highlight may be NULL. */
+void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
+		struct scene_frame *out);
+
+/* The surface point under a pixel (x right, y down, panel pixels) of the camera given, by the
+ * patches shown. false: nothing there. */
+bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
+		float point_m[3]);
+/* Distance from a point to the nearest surface along a direction, metres; INFINITY: free. Used to
+ * keep the eye out of solid matter. */
+float scene_clearance(struct scene *scene, const float from_m[3], const float direction[3],
+		      float most_m);
+
+#endif

@@ -1,0 +1,96 @@
+#include "base/bytes.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+static void gives_back_what_was_put(void **state)
+{
+	struct buffer buffer;
+	struct reader reader;
+	char text[8];
+
+	(void)state;
+	buffer_init(&buffer, 1024);
+	buffer_put_u8(&buffer, 7);
+	buffer_put_u16(&buffer, 0x1234);
+	buffer_put_u32(&buffer, 0xdeadbeef);
+	buffer_put_u64(&buffer, UINT64_MAX - 1);
+	buffer_put_f32(&buffer, -1.5f);
+	buffer_put_f64(&buffer, 3.25);
+	buffer_put_string(&buffer, "stone");
+	CHECK(buffer.error == 0);
+	CHECK(buffer.data[1] == 0x34); /* little endian */
+	reader_init(&reader, buffer_bytes(&buffer));
+	CHECK(reader_u8(&reader) == 7);
+	CHECK(reader_u16(&reader) == 0x1234);
+	CHECK(reader_u32(&reader) == 0xdeadbeef);
+	CHECK(reader_u64(&reader) == UINT64_MAX - 1);
+	CHECK(reader_f32(&reader) == -1.5f);
+	CHECK(reader_f64(&reader) == 3.25);
+	reader_string(&reader, text, sizeof(text));
+	CHECK(strcmp(text, "stone") == 0);
+	CHECK(!reader.failed && reader_left(&reader) == 0);
+	buffer_finish(&buffer);
+}
+
+static void stays_failed_past_the_end(void **state)
+{
+	const uint8_t three[3] = { 1, 2, 3 };
+	struct reader reader;
+
+	(void)state;
+	reader_init(&reader, (struct bytes){ three, sizeof(three) });
+	CHECK(reader_u32(&reader) == 0);
+	CHECK(reader.failed);
+	CHECK(reader_u8(&reader) == 0); /* though one byte would fit */
+}
+
+static void refuses_to_pass_its_ceiling(void **state)
+{
+	struct buffer buffer;
+
+	(void)state;
+	buffer_init(&buffer, 10);
+	buffer_put(&buffer, "12345678", 8);
+	buffer_put_u32(&buffer, 1);
+	CHECK(buffer.error == -EFBIG);
+	buffer_put_u8(&buffer, 1); /* would fit; the failure stays */
+	CHECK(buffer.size == 8);
+	buffer_finish(&buffer);
+	buffer_finish(NULL);
+}
+
+static void writes_a_file_whole_or_not_at_all(void **state)
+{
+	char path[] = "/tmp/gopura-bytes-XXXXXX";
+	struct buffer back;
+	int fd = mkstemp(path);
+
+	(void)state;
+	CHECK(fd >= 0);
+	close(fd);
+	buffer_init(&back, 100);
+	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)"temple", 6 }, path) == 0);
+	CHECK(buffer_read_file(&back, path) == 0);
+	CHECK(back.size == 6 && memcmp(back.data, "temple", 6) == 0);
+	CHECK(bytes_write_file((struct bytes){ NULL, 0 }, "/nonexistent/x") == -ENOENT);
+	unlink(path);
+	CHECK(buffer_read_file(&back, path) == -ENOENT);
+	buffer_finish(&back);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(gives_back_what_was_put),
+		cmocka_unit_test(stays_failed_past_the_end),
+		cmocka_unit_test(refuses_to_pass_its_ceiling),
+		cmocka_unit_test(writes_a_file_whole_or_not_at_all),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
