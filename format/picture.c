@@ -1,0 +1,191 @@
+#include "format/picture.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jpeglib.h>
+#include <png.h>
+
+/* Room for width x height pixels. */
+static int allocate(struct picture *out, uint32_t width, uint32_t height)
+{
+	if (width == 0 || height == 0)
+		return -EBADMSG;
+	if (width > PICTURE_SIDE_MOST_PX || height > PICTURE_SIDE_MOST_PX ||
+	    (uint64_t)width * height > PICTURE_PIXELS_MOST)
+		return -EFBIG;
+	out->rgba = malloc((size_t)width * height * 4);
+	if (!out->rgba)
+		return -ENOMEM;
+	out->width = width;
+	out->height = height;
+	return 0;
+}
+
+void picture_finish(struct picture *picture)
+{
+	if (!picture)
+		return;
+	free(picture->rgba);
+	*picture = (struct picture){ 0 };
+}
+
+/* ---- PNG, by libpng's simplified interface, which holds its own error handling */
+
+static int decode_png(struct picture *out, struct bytes file)
+{
+	png_image image = { .version = PNG_IMAGE_VERSION };
+	int rc;
+
+	if (!png_image_begin_read_from_memory(&image, file.data, file.size))
+		return -EBADMSG;
+	image.format = PNG_FORMAT_RGBA;
+	rc = allocate(out, image.width, image.height);
+	if (rc == 0 && !png_image_finish_read(&image, NULL, out->rgba, 0, NULL))
+		rc = -EBADMSG;
+	png_image_free(&image);
+	return rc;
+}
+
+int picture_encode_png(struct buffer *out, const struct picture *picture)
+{
+	png_image image = {
+		.version = PNG_IMAGE_VERSION,
+		.width = picture->width,
+		.height = picture->height,
+		.format = PNG_FORMAT_RGBA,
+		.flags = PNG_IMAGE_FLAG_FAST,
+	};
+	png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+	size_t before = out->size;
+	uint8_t *to = buffer_extend(out, size);
+
+	if (!to)
+		return out->error;
+	if (!png_image_write_to_memory(&image, to, &size, 0, picture->rgba, 0, NULL)) {
+		out->size = before;
+		return -ENOMEM;
+	}
+	out->size = before + size;
+	return 0;
+}
+
+/* ---- JPEG */
+
+struct jpeg_failure {
+	struct jpeg_error_mgr manager;
+	jmp_buf jump;
+};
+
+static void jpeg_fail(j_common_ptr codec)
+{
+	struct jpeg_failure *failure = (struct jpeg_failure *)codec->err;
+
+	longjmp(failure->jump, 1);
+}
+
+/* Warnings are counted by libjpeg; a format module prints nothing. */
+static void jpeg_quiet(j_common_ptr codec, int level)
+{
+	if (level < 0)
+		codec->err->num_warnings++;
+}
+
+static struct jpeg_error_mgr *jpeg_errors(struct jpeg_failure *failure)
+{
+	jpeg_std_error(&failure->manager);
+	failure->manager.error_exit = jpeg_fail;
+	failure->manager.emit_message = jpeg_quiet;
+	return &failure->manager;
+}
+
+static void read_rgba_rows(struct jpeg_decompress_struct *codec, struct picture *out)
+{
+	while (codec->output_scanline < codec->output_height) {
+		JSAMPROW row = out->rgba + (size_t)codec->output_scanline * out->width * 4;
+
+		jpeg_read_scanlines(codec, &row, 1);
+	}
+}
+
+static int decode_jpeg(struct picture *out, struct bytes file)
+{
+	struct jpeg_decompress_struct codec;
+	struct jpeg_failure failure;
+	int rc;
+
+	codec.err = jpeg_errors(&failure);
+	jpeg_create_decompress(&codec);
+	if (setjmp(failure.jump)) {
+		jpeg_destroy_decompress(&codec);
+		return -EBADMSG;
+	}
+	jpeg_mem_src(&codec, file.data, file.size);
+	jpeg_read_header(&codec, TRUE);
+	codec.out_color_space = JCS_EXT_RGBA;
+	jpeg_start_decompress(&codec);
+	rc = allocate(out, codec.output_width, codec.output_height);
+	if (rc == 0) {
+		read_rgba_rows(&codec, out);
+		/* A file that ends early is padded with grey by libjpeg, and a warning. */
+		if (failure.manager.num_warnings > 0)
+			rc = -EBADMSG;
+		else
+			jpeg_finish_decompress(&codec);
+	}
+	jpeg_destroy_decompress(&codec);
+	return rc;
+}
+
+int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality)
+{
+	struct jpeg_compress_struct codec;
+	struct jpeg_failure failure;
+	unsigned char *encoded = NULL;
+	unsigned long encoded_bytes = 0;
+
+	codec.err = jpeg_errors(&failure);
+	jpeg_create_compress(&codec);
+	if (setjmp(failure.jump)) {
+		jpeg_destroy_compress(&codec);
+		free(encoded);
+		return -ENOMEM;
+	}
+	jpeg_mem_dest(&codec, &encoded, &encoded_bytes);
+	codec.image_width = picture->width;
+	codec.image_height = picture->height;
+	codec.input_components = 4;
+	codec.in_color_space = JCS_EXT_RGBA;
+	jpeg_set_defaults(&codec);
+	jpeg_set_quality(&codec, quality, TRUE);
+	codec.optimize_coding = TRUE;
+	jpeg_start_compress(&codec, TRUE);
+	while (codec.next_scanline < codec.image_height) {
+		JSAMPROW row = picture->rgba + (size_t)codec.next_scanline * picture->width * 4;
+
+		jpeg_write_scanlines(&codec, &row, 1);
+	}
+	jpeg_finish_compress(&codec);
+	jpeg_destroy_compress(&codec);
+	buffer_put(out, encoded, encoded_bytes);
+	free(encoded);
+	return out->error;
+}
+
+int picture_decode(struct picture *out, struct bytes file)
+{
+	static const uint8_t png_start[] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' };
+	int rc = -EBADMSG;
+
+	*out = (struct picture){ 0 };
+	if (file.size >= sizeof(png_start) && memcmp(file.data, png_start, sizeof(png_start)) == 0)
+		rc = decode_png(out, file);
+	else if (file.size >= 2 && file.data[0] == 0xff && file.data[1] == 0xd8)
+		rc = decode_jpeg(out, file);
+	if (rc < 0)
+		picture_finish(out);
+	return rc;
+}

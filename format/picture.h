@@ -1,0 +1,24 @@
+/* Whole pictures (PNG, JPEG) to and from pixels in memory: page pictures, scan textures, captures.
+ * Tiles are not pictures: format/tile.h. */
+#ifndef GOPURA_FORMAT_PICTURE_H
+#define GOPURA_FORMAT_PICTURE_H
+
+#include "base/bytes.h"
+
+enum { PICTURE_SIDE_MOST_PX = 16384, PICTURE_PIXELS_MOST = 1 << 28 };
+
+/* sRGB with straight alpha, 4 bytes a pixel, row 0 on top, rows side by side. */
+struct picture {
+	uint32_t width, height;
+	uint8_t *rgba; /* owned */
+};
+
+/* Told apart by their first bytes. -EBADMSG: damaged, truncated, or neither; -EFBIG: past the
+ * limits above; -ENOMEM. *out is zeroed on failure. */
+must_check int picture_decode(struct picture *out, struct bytes file);
+must_check int picture_encode_png(struct buffer *out, const struct picture *picture);
+/* quality 1..100; alpha is dropped. */
+must_check int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality);
+void picture_finish(struct picture *picture); /* NULL and zeroed are fine */
+
+#endif

@@ -1,0 +1,97 @@
+#include "format/picture.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+enum { SIDE = 24 };
+
+static struct picture gradient(void)
+{
+	struct picture picture = { .width = SIDE, .height = SIDE, .rgba = malloc(SIDE * SIDE * 4) };
+
+	for (int i = 0; i < SIDE * SIDE; i++) {
+		picture.rgba[4 * i] = (uint8_t)(i % SIDE * 10);
+		picture.rgba[4 * i + 1] = (uint8_t)(i / SIDE * 10);
+		picture.rgba[4 * i + 2] = 90;
+		picture.rgba[4 * i + 3] = i % 7 ? 255 : 40;
+	}
+	return picture;
+}
+
+static void png_gives_every_pixel_back(void **state)
+{
+	struct picture picture = gradient(), back;
+	struct buffer file;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(picture_encode_png(&file, &picture) == 0);
+	CHECK(picture_decode(&back, buffer_bytes(&file)) == 0);
+	CHECK(back.width == SIDE && back.height == SIDE);
+	CHECK(memcmp(back.rgba, picture.rgba, SIDE * SIDE * 4) == 0);
+	picture_finish(&back);
+	picture_finish(&picture);
+	buffer_finish(&file);
+}
+
+static void jpeg_is_near_and_opaque(void **state)
+{
+	struct picture picture = gradient(), back;
+	struct buffer file;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(picture_encode_jpeg(&file, &picture, 95) == 0);
+	CHECK(picture_decode(&back, buffer_bytes(&file)) == 0);
+	for (int i = 0; i < SIDE * SIDE; i++) {
+		CHECK(abs(back.rgba[4 * i] - picture.rgba[4 * i]) < 16);
+		CHECK(back.rgba[4 * i + 3] == 255);
+	}
+	picture_finish(&back);
+	picture_finish(&picture);
+	buffer_finish(&file);
+}
+
+/* Every truncation, in memory of its exact size. */
+static void check_truncations(const struct buffer *file, size_t may_miss)
+{
+	for (size_t n = 0; n + may_miss < file->size; n++) {
+		uint8_t *exact = malloc(n ? n : 1);
+		struct picture back;
+
+		memcpy(exact, file->data, n);
+		CHECK(picture_decode(&back, (struct bytes){ exact, n }) == -EBADMSG);
+		CHECK(back.rgba == NULL);
+		free(exact);
+	}
+}
+
+static void refuses_every_truncated_file(void **state)
+{
+	struct picture picture = gradient();
+	struct buffer file;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(picture_encode_png(&file, &picture) == 0);
+	check_truncations(&file, 12); /* the IEND chunk says nothing more */
+	buffer_clear(&file);
+	CHECK(picture_encode_jpeg(&file, &picture, 90) == 0);
+	check_truncations(&file, 2); /* the end-of-image marker */
+	picture_finish(&picture);
+	buffer_finish(&file);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(png_gives_every_pixel_back),
+		cmocka_unit_test(jpeg_is_near_and_opaque),
+		cmocka_unit_test(refuses_every_truncated_file),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
