@@ -1,0 +1,122 @@
+/* The information database of a release: which parts of the model are identified, what is known
+ * about each, in which languages. docs/information.md has the tables, which are the three of
+ * Okamoto et al. ("identified part", "assigned information", "information contents").
+ *
+ * Two sides. info_build reads a content folder and writes one SQLite image, the same bytes for the
+ * same folder. info_open reads such an image from memory, in the kiosk. Pictures are not inside:
+ * the database names them by the hash of their file's bytes, and they travel as objects of their
+ * own, so that changing a caption does not send them again. */
+#ifndef GOPURA_STORAGE_INFO_H
+#define GOPURA_STORAGE_INFO_H
+
+#include "format/hash.h"
+
+enum {
+	INFO_CORNERS_MOST = 16,
+	INFO_LANGUAGES_MOST = 8,
+	INFO_PARTS_MOST = 1000,
+	INFO_PAGE_BYTES_MOST = 1 << 20, /* one HTML page */
+	INFO_PAGE_PICTURES_MOST = 64,
+};
+
+enum info_region_kind { INFO_REGION_POINT, INFO_REGION_SPHERE, INFO_REGION_BOX, INFO_REGION_PRISM };
+
+/* The place of a part on the model; metres, z up. A point has only its centre. */
+struct info_region {
+	enum info_region_kind kind;
+	float centre_m[3];
+	float radius_m;        /* sphere */
+	float half_m[3];       /* box, before turning */
+	float turn_deg;        /* box: about the vertical */
+	float floor_m, roof_m; /* prism */
+	uint32_t corner_count;
+	float corners_m[INFO_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
+};
+
+/* ---- the publisher's side ---- */
+
+/* One thing found in the content folder. file is relative to the folder, line is 0 where none
+ * applies, text says what is wrong and what cures it. All borrowed for the call. */
+typedef void info_complaint(void *data, bool is_error, const char *file, unsigned line,
+			    const char *text);
+
+struct info_build_options {
+	const char *folder;           /* the content folder: parts.json, pages/, pictures/ */
+	const char *const *languages; /* such as "en"; the first must have every title */
+	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MOST */
+	info_complaint *complaint;    /* NULL: they are logged */
+	void *complaint_data;
+};
+
+struct info_picture_file {
+	struct hash hash; /* of the file's bytes: the object's name */
+	uint32_t size;    /* bytes */
+	char *name;       /* owned; such as "pictures/gate.jpg", relative to the content folder */
+};
+
+struct info_built {
+	struct buffer database; /* the SQLite image */
+	uint32_t part_count, page_count, picture_count;
+	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
+};
+
+/* A folder without parts.json gives a database without parts. *out is finished by the caller; on
+ * failure it is zeroed. -EINVAL: the content is at fault and every fault was complained about;
+ * -ENOMEM, -EIO. */
+must_check int info_build(struct info_built *out, const struct info_build_options *options);
+void info_built_finish(struct info_built *built); /* NULL and zeroed are fine */
+
+/* ---- the kiosk's side; one thread ---- */
+
+struct info;
+
+struct info_part {
+	const char *id;
+	struct info_region region;
+	float anchor_m[3]; /* where the leader line ends */
+	bool has_page;     /* in some language */
+};
+
+/* Texts in the language asked for; in the release's first language where that has none. All
+ * UTF-8 and borrowed until info_close. caption and thumbnail may be "". */
+struct info_text {
+	const char *language; /* that was found */
+	const char *title, *caption;
+	const char *thumbnail; /* a picture's name */
+};
+
+struct info_picture {
+	const char *name; /* as pages write it: "pictures/gate.jpg" */
+	struct hash hash;
+	uint32_t width_px, height_px;
+};
+
+/* image is copied. *out is owned by the caller; on failure it is NULL. -EBADMSG: not such a
+ * database, damaged, or of another version of the schema. */
+must_check int info_open(struct info **out, struct bytes image);
+void info_close(struct info *info); /* NULL is fine */
+
+/* In the order of parts.json, which is the order of importance. Borrowed until info_close. */
+uint32_t info_part_count(const struct info *info);
+const struct info_part *info_part(const struct info *info, uint32_t part);
+/* The part's index, or -ENOENT. */
+int info_find(const struct info *info, const char *id);
+
+/* The release's languages, the default first. */
+uint32_t info_language_count(const struct info *info);
+const char *info_language(const struct info *info, uint32_t index);
+
+struct info_text info_text(const struct info *info, uint32_t part, const char *language);
+
+/* The part's page: *html is borrowed until the next info_page or info_close, *language (may be
+ * NULL) says which language was found. -ENOENT: the part has no page. -EBADMSG: damaged. */
+must_check int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
+			 const char **language_found);
+
+/* Every picture of the database, sorted by name. Borrowed until info_close. */
+uint32_t info_picture_count(const struct info *info);
+const struct info_picture *info_picture(const struct info *info, uint32_t index);
+/* NULL: no such picture. */
+const struct info_picture *info_find_picture(const struct info *info, const char *name);
+
+#endif

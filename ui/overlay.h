@@ -1,0 +1,152 @@
+/* Everything that is written over the model: callouts, the card, the page beside the model, the
+ * language switch, home and help. The overlay owns what is shown, draws it with Pango and Cairo
+ * into bitmaps, and gives the app a list of textured quads. It knows no GL, no network and no
+ * database: texts, pictures and the pixels of anchors are given to it, and a tap is answered by an
+ * action that the app carries out.
+ *
+ * A frame:  overlay_anchors (if the camera moved)  ->  overlay_update  ->  overlay_layers.
+ * One thread. Pixels are of the picture as the visitor sees it: x right, y down. */
+#ifndef GOPURA_UI_OVERLAY_H
+#define GOPURA_UI_OVERLAY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/bytes.h"
+#include "format/picture.h"
+#include "ui/bitmap.h"
+
+enum {
+	OVERLAY_PARTS_MOST = 1000,
+	OVERLAY_LANGUAGES_MOST = 8,
+	OVERLAY_LAYERS_MOST = 256,  /* in a frame */
+	OVERLAY_BITMAPS_MOST = 128, /* bitmap ids are below this */
+};
+
+struct overlay_rect {
+	int x_px, y_px, width_px, height_px;
+};
+
+struct overlay_picture {
+	const struct picture
+		*picture; /* borrowed until the callback is called again; NULL: not yet */
+	uint32_t width_px, height_px; /* when known before it arrives, so that text does not jump */
+};
+
+struct overlay_options {
+	int width_px, height_px;      /* of the panel; 320 .. 8192 */
+	float px_per_mm;              /* of the panel; 0: guessed from its size */
+	const char *const *languages; /* of the release, copied; the first is the default */
+	uint32_t language_count;
+	/* A picture by the name that a page or thumbnail gives ("pictures/gate.jpg"). false: there
+	 * is none of that name. Asking is wanting: the app fetches it and calls
+	 * overlay_picture_arrived. */
+	bool (*picture)(void *data, const char *name, struct overlay_picture *out);
+	void *data;
+};
+
+struct overlay;
+
+/* *out is owned by the caller; on failure it is NULL. -EINVAL, -ENOMEM. */
+must_check int overlay_create(struct overlay **out, const struct overlay_options *options);
+void overlay_destroy(struct overlay *overlay); /* NULL is fine */
+
+/* ---- what it shows ---- */
+
+struct overlay_part {
+	const char *title, *caption; /* UTF-8; caption may be "" */
+	const char *thumbnail;       /* a picture's name, or "" */
+	bool has_page;
+};
+
+/* The parts, in order of importance, in the language that is set; copied. Card and page are
+ * closed where the count changes. */
+must_check int overlay_parts(struct overlay *overlay, const struct overlay_part *parts,
+			     uint32_t count);
+/* Its texts and marks; give the parts (and the page, if one is open) again in that language. */
+void overlay_language(struct overlay *overlay, const char *language);
+
+/* Where each part's anchor is on the panel now; visible is false for hidden parts, for those
+ * behind the eye and for those off the scene's rectangle. As many as there are parts. */
+struct overlay_anchor {
+	float x_px, y_px;
+	bool visible;
+};
+void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count);
+/* Callouts fade out (during an idle show, say) and in. They are on at first. */
+void overlay_show_callouts(struct overlay *overlay, bool on);
+
+/* The card of a part; -1 closes it. */
+void overlay_show_card(struct overlay *overlay, int part);
+int overlay_card(const struct overlay *overlay); /* the part whose card is open, or -1 */
+
+/* Opens the page beside the model, or replaces the one that is open. html is parsed now and not
+ * kept. -EBADMSG: nothing in it can be shown; -ENOMEM. */
+must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes html);
+void overlay_close_page(struct overlay *overlay);
+int overlay_page(const struct overlay *overlay); /* the part whose page is open, or -1 */
+
+/* How to touch the model, in pictures and words; on at first, off at the first touch. */
+void overlay_show_help(struct overlay *overlay, bool on);
+
+/* A picture that was asked for is there now. */
+void overlay_picture_arrived(struct overlay *overlay, const char *name);
+
+/* The part of the panel that is left for the model: all of it, or what a page leaves. Jumps when a
+ * page opens; the app moves its camera there at its own pace. */
+struct overlay_rect overlay_scene_rect(const struct overlay *overlay);
+
+/* ---- touch ---- */
+
+enum overlay_action_kind {
+	OVERLAY_NONE,      /* nothing of ours is there: the tap is the model's */
+	OVERLAY_SWALLOWED, /* ours, but nothing happens */
+	OVERLAY_OPEN_CARD, /* part: a callout was tapped */
+	OVERLAY_OPEN_PAGE, /* part: its card was tapped */
+	OVERLAY_CLOSE_CARD,
+	OVERLAY_CLOSE_PAGE,
+	OVERLAY_LANGUAGE, /* language */
+	OVERLAY_LINK,     /* link: the id of the part that a page's link names */
+	OVERLAY_HOME,     /* back to the first view */
+	OVERLAY_HELP,     /* show or hide the help */
+};
+
+struct overlay_action {
+	enum overlay_action_kind kind;
+	int part;             /* else -1 */
+	const char *language; /* borrowed until the overlay is destroyed; else NULL */
+	const char *link;     /* borrowed until the page changes; else NULL */
+};
+
+/* What a tap there means. Changes nothing. */
+struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px);
+/* A gesture that begins there is ours (it scrolls the page or is swallowed), not the model's. */
+bool overlay_covers(const struct overlay *overlay, float x_px, float y_px);
+/* Scrolls the page by a finger's movement; a fling goes on by itself. */
+void overlay_scroll(struct overlay *overlay, float dy_px);
+void overlay_fling(struct overlay *overlay, float vy_px_per_s);
+
+/* ---- a frame ---- */
+
+/* Advances fades and scrolling, lays out and draws what changed. true: something still moves, draw
+ * again soon. */
+bool overlay_update(struct overlay *overlay, int64_t now_ms);
+
+/* A quad of a bitmap. The app keeps one texture per bitmap id and uploads the pixels when revision
+ * is not the one it has. Draw in order, blending GL_ONE, GL_ONE_MINUS_SRC_ALPHA. */
+struct overlay_layer {
+	uint32_t bitmap;             /* id, below OVERLAY_BITMAPS_MOST */
+	uint32_t revision;           /* never 0 */
+	const struct bitmap *pixels; /* borrowed until the next overlay_update */
+	float corners_px[4][2];      /* top left, top right, bottom right, bottom left */
+	float source[4];             /* left, top, right, bottom of the bitmap, 0..1 */
+	float alpha;                 /* multiplies all four channels */
+};
+
+/* At most `most` layers, bottom first; how many were written. */
+uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most);
+
+/* For headless pictures and tests: every layer drawn by Cairo over what context shows. */
+void overlay_paint(const struct overlay *overlay, cairo_t *context);
+
+#endif
