@@ -1,0 +1,544 @@
+#include "format/metadata.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/page.h"
+
+/* "format" in every payload: raised when an old reader could misunderstand a new file. */
+#define PAYLOAD_FORMAT 1
+/* Integers must survive a double, which is what JSON numbers are to most readers. */
+#define WHOLE_MOST 9007199254740992.0
+
+static const char *const role_names[] = { "root", "release", "timestamp" };
+
+struct signature {
+	struct hash key;
+	uint8_t bytes[crypto_sign_BYTES];
+};
+
+/* At most a signature of every old and every new key; more is nobody's honest file. */
+enum { SIGNATURES_MOST = 2 * KEYS_MOST };
+
+struct envelope {
+	struct buffer payload; /* owned */
+	struct signature signatures[SIGNATURES_MOST];
+	int signature_count;
+};
+
+static int refuse(const char **why, int code, const char *text)
+{
+	if (why)
+		*why = text;
+	return code;
+}
+
+/* ---- JSON, strictly ---- */
+
+static bool only_space_after(const char *at, const char *end)
+{
+	while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t'))
+		at++;
+	return at == end;
+}
+
+/* NULL unless text is one JSON object and nothing else. */
+static cJSON *parse_object(struct bytes text)
+{
+	const char *start = (const char *)text.data, *end = NULL;
+	cJSON *json;
+
+	if (text.size == 0 || text.size > METADATA_FILE_BYTES_MOST)
+		return NULL;
+	json = cJSON_ParseWithLengthOpts(start, text.size, &end, 0);
+	if (json && cJSON_IsObject(json) && only_space_after(end, start + text.size))
+		return json;
+	cJSON_Delete(json);
+	return NULL;
+}
+
+/* The member of that name if there is exactly one; a second would be another reader's first. */
+static const cJSON *member(const cJSON *object, const char *name)
+{
+	const cJSON *item, *found = NULL;
+
+	cJSON_ArrayForEach(item, object)
+	{
+		if (!item->string || strcmp(item->string, name) != 0)
+			continue;
+		if (found)
+			return NULL;
+		found = item;
+	}
+	return found;
+}
+
+static const char *text_member(const cJSON *object, const char *name)
+{
+	const cJSON *item = member(object, name);
+
+	return cJSON_IsString(item) ? item->valuestring : NULL;
+}
+
+static bool whole_member(const cJSON *object, const char *name, uint64_t least, uint64_t most,
+			 uint64_t *out)
+{
+	const cJSON *item = member(object, name);
+	double value;
+
+	if (!cJSON_IsNumber(item))
+		return false;
+	value = item->valuedouble;
+	if (!(value >= 0 && value <= WHOLE_MOST) || floor(value) != value)
+		return false;
+	*out = (uint64_t)value;
+	return *out >= least && *out <= most;
+}
+
+static bool time_member(const cJSON *object, int64_t *out)
+{
+	uint64_t seconds;
+
+	if (!whole_member(object, "expires_s", 1, (uint64_t)WHOLE_MOST, &seconds))
+		return false;
+	*out = (int64_t)seconds;
+	return true;
+}
+
+/* *size: room in, length out. One text only for each string of bytes: libsodium takes some
+ * characters above 127 for others. */
+static bool base64_decode(const char *text, uint8_t *out, size_t *size)
+{
+	size_t length = text ? strlen(text) : 0, room = *size;
+
+	for (size_t i = 0; i < length; i++)
+		if ((unsigned char)text[i] > 127)
+			return false;
+	return length > 0 && sodium_base642bin(out, room, text, length, NULL, size, NULL,
+					       sodium_base64_VARIANT_ORIGINAL) == 0;
+}
+
+static bool base64_exact(const char *text, uint8_t *out, size_t size)
+{
+	size_t got = size;
+
+	return base64_decode(text, out, &got) && got == size;
+}
+
+/* ---- the envelope ---- */
+
+static int read_signatures(struct envelope *envelope, const cJSON *list)
+{
+	const cJSON *item;
+
+	if (!cJSON_IsArray(list))
+		return -EBADMSG;
+	cJSON_ArrayForEach(item, list)
+	{
+		struct signature *signature = &envelope->signatures[envelope->signature_count];
+		const char *key = text_member(item, "key");
+
+		if (envelope->signature_count == SIGNATURES_MOST || !cJSON_IsObject(item) || !key ||
+		    hash_from_hex(&signature->key, key) < 0 ||
+		    !base64_exact(text_member(item, "signature"), signature->bytes,
+				  sizeof(signature->bytes)))
+			return -EBADMSG;
+		envelope->signature_count++;
+	}
+	return 0;
+}
+
+static int read_payload(struct envelope *envelope, const char *text)
+{
+	size_t size = text ? strlen(text) : 0;
+	uint8_t *to = buffer_extend(&envelope->payload, size);
+
+	if (!to)
+		return envelope->payload.error;
+	if (!base64_decode(text, to, &size) || size == 0)
+		return -EBADMSG;
+	envelope->payload.size = size;
+	return 0;
+}
+
+static int envelope_open(struct envelope *envelope, struct bytes file)
+{
+	cJSON *json = parse_object(file);
+	int rc;
+
+	envelope->signature_count = 0;
+	buffer_init(&envelope->payload, METADATA_FILE_BYTES_MOST);
+	if (!json)
+		return -EBADMSG;
+	rc = cJSON_GetArraySize(json) == 2 ? read_payload(envelope, text_member(json, "payload"))
+					   : -EBADMSG;
+	if (rc == 0)
+		rc = read_signatures(envelope, member(json, "signatures"));
+	cJSON_Delete(json);
+	return rc;
+}
+
+/* What is signed: the role's name too, so that no file can pass for another role's. */
+static int message_of(struct buffer *out, enum meta_role role, struct bytes payload)
+{
+	buffer_init(out, METADATA_FILE_BYTES_MOST + 64);
+	buffer_put(out, "gopura-", 7);
+	buffer_put(out, role_names[role], strlen(role_names[role]));
+	buffer_put(out, "-v1\n", 4);
+	buffer_put(out, payload.data, payload.size);
+	return out->error;
+}
+
+static bool key_signed(const struct envelope *envelope, const uint8_t key[KEY_BYTES],
+		       struct bytes message)
+{
+	struct hash name = hash_of((struct bytes){ key, KEY_BYTES });
+
+	for (int i = 0; i < envelope->signature_count; i++)
+		if (hash_equal(envelope->signatures[i].key, name) &&
+		    crypto_sign_verify_detached(envelope->signatures[i].bytes, message.data,
+						message.size, key) == 0)
+			return true;
+	return false;
+}
+
+static int check_signatures(const struct envelope *envelope, enum meta_role role,
+			    const struct role_keys *keys, const char **why)
+{
+	struct buffer message;
+	uint32_t good = 0;
+	int rc = message_of(&message, role, buffer_bytes(&envelope->payload));
+
+	for (uint32_t i = 0; rc == 0 && i < keys->key_count; i++)
+		good += key_signed(envelope, keys->keys[i], buffer_bytes(&message));
+	buffer_finish(&message);
+	if (rc == 0 && (keys->threshold == 0 || good < keys->threshold))
+		rc = refuse(why, -EKEYREJECTED, "fewer good signatures than the threshold");
+	return rc;
+}
+
+/* The payload as JSON, of the role asked for. NULL otherwise. */
+static cJSON *open_payload(const struct envelope *envelope, enum meta_role role)
+{
+	cJSON *json = parse_object(buffer_bytes(&envelope->payload));
+	const char *type = json ? text_member(json, "type") : NULL;
+	uint64_t format;
+
+	if (type && strcmp(type, role_names[role]) == 0 &&
+	    whole_member(json, "format", PAYLOAD_FORMAT, PAYLOAD_FORMAT, &format))
+		return json;
+	cJSON_Delete(json);
+	return NULL;
+}
+
+/* ---- root ---- */
+
+static int read_role(struct role_keys *role, const cJSON *json)
+{
+	const cJSON *list = member(json, "keys"), *item;
+	uint64_t threshold;
+
+	if (!cJSON_IsArray(list))
+		return -EBADMSG;
+	cJSON_ArrayForEach(item, list)
+	{
+		uint8_t *key = role->keys[role->key_count];
+
+		if (role->key_count == KEYS_MOST || !cJSON_IsString(item) ||
+		    !base64_exact(item->valuestring, key, KEY_BYTES))
+			return -EBADMSG;
+		/* A key named twice would count twice towards the threshold. */
+		for (uint32_t i = 0; i < role->key_count; i++)
+			if (memcmp(role->keys[i], key, KEY_BYTES) == 0)
+				return -EBADMSG;
+		role->key_count++;
+	}
+	if (!whole_member(json, "threshold", 1, role->key_count, &threshold))
+		return -EBADMSG;
+	role->threshold = (uint32_t)threshold;
+	return 0;
+}
+
+static int read_root(struct trust_root *root, const cJSON *json)
+{
+	const cJSON *roles = member(json, "roles");
+	uint64_t version;
+
+	*root = (struct trust_root){ 0 };
+	if (!whole_member(json, "version", 1, UINT32_MAX, &version) ||
+	    !time_member(json, &root->expires_s))
+		return -EBADMSG;
+	root->version = (uint32_t)version;
+	for (int role = META_ROOT; role <= META_TIMESTAMP; role++)
+		if (read_role(&root->roles[role], member(roles, role_names[role])) < 0)
+			return -EBADMSG;
+	return 0;
+}
+
+static int open_root(struct trust_root *root, struct envelope *envelope, struct bytes file,
+		     const char **why)
+{
+	cJSON *json;
+	int rc = envelope_open(envelope, file);
+
+	if (rc < 0)
+		return refuse(why, rc, "the root file is not a signed metadata file");
+	json = open_payload(envelope, META_ROOT);
+	rc = json ? read_root(root, json) : -EBADMSG;
+	cJSON_Delete(json);
+	if (rc < 0)
+		return refuse(why, rc, "the root file's payload is not that of a root");
+	return check_signatures(envelope, META_ROOT, &root->roles[META_ROOT], why);
+}
+
+int trust_root_first(struct trust_root *out, struct bytes file, const char **why)
+{
+	struct envelope envelope;
+	struct trust_root root;
+	int rc = open_root(&root, &envelope, file, why);
+
+	buffer_finish(&envelope.payload);
+	*out = rc == 0 ? root : (struct trust_root){ 0 };
+	return rc;
+}
+
+int trust_root_next(struct trust_root *trust, struct bytes file, const char **why)
+{
+	struct envelope envelope;
+	struct trust_root root;
+	int rc = open_root(&root, &envelope, file, why);
+
+	if (rc == 0)
+		rc = check_signatures(&envelope, META_ROOT, &trust->roles[META_ROOT], why);
+	if (rc == 0 && root.version != trust->version + 1)
+		rc = refuse(why, -EBADMSG, "the root file's version does not follow");
+	buffer_finish(&envelope.payload);
+	if (rc == 0)
+		*trust = root;
+	return rc;
+}
+
+/* ---- release and timestamp ---- */
+
+/* Signatures first: the JSON parser of the payload only meets what a key holder wrote. */
+static int open_signed(cJSON **out, enum meta_role role, const struct trust_root *trust,
+		       struct bytes file, const char **why)
+{
+	struct envelope envelope;
+	int rc = envelope_open(&envelope, file);
+
+	*out = NULL;
+	if (rc < 0)
+		rc = refuse(why, rc, "not a signed metadata file");
+	else
+		rc = check_signatures(&envelope, role, &trust->roles[role], why);
+	if (rc == 0) {
+		*out = open_payload(&envelope, role);
+		if (!*out)
+			rc = refuse(why, -EBADMSG, "the payload is not of this role");
+	}
+	buffer_finish(&envelope.payload);
+	return rc;
+}
+
+static int read_release(struct release *release, const cJSON *json)
+{
+	const char *root = text_member(json, "root"), *comment = text_member(json, "comment");
+	uint64_t root_bytes;
+
+	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &release->sequence) ||
+	    !time_member(json, &release->expires_s) || !root ||
+	    hash_from_hex(&release->root, root) < 0 || hash_is_zero(release->root) ||
+	    !whole_member(json, "root_bytes", 1, PAGE_BYTES_MOST, &root_bytes) || !comment ||
+	    strlen(comment) >= sizeof(release->comment))
+		return -EBADMSG;
+	release->root_bytes = (uint32_t)root_bytes;
+	memcpy(release->comment, comment, strlen(comment) + 1);
+	return 0;
+}
+
+int release_decode(struct release *out, const struct trust_root *trust, struct bytes file,
+		   const char **why)
+{
+	struct release release = { 0 };
+	cJSON *json;
+	int rc = open_signed(&json, META_RELEASE, trust, file, why);
+
+	*out = release;
+	if (rc < 0)
+		return rc;
+	rc = read_release(&release, json);
+	cJSON_Delete(json);
+	if (rc < 0)
+		return refuse(why, rc, "the release file lacks a member or has a bad one");
+	*out = release;
+	return 0;
+}
+
+int timestamp_decode(struct timestamp *out, const struct trust_root *trust, struct bytes file,
+		     const char **why)
+{
+	struct timestamp timestamp = { 0 };
+	const char *name;
+	cJSON *json;
+	int rc = open_signed(&json, META_TIMESTAMP, trust, file, why);
+
+	*out = timestamp;
+	if (rc < 0)
+		return rc;
+	name = text_member(json, "release");
+	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &timestamp.sequence) ||
+	    !time_member(json, &timestamp.expires_s) || !name ||
+	    hash_from_hex(&timestamp.release, name) < 0)
+		rc = -EBADMSG;
+	cJSON_Delete(json);
+	if (rc < 0)
+		return refuse(why, rc, "the timestamp file lacks a member or has a bad one");
+	*out = timestamp;
+	return 0;
+}
+
+/* ---- the publisher's side ---- */
+
+static bool add_base64(cJSON *object, const char *name, struct bytes bytes)
+{
+	size_t room = sodium_base64_ENCODED_LEN(bytes.size, sodium_base64_VARIANT_ORIGINAL);
+	char *text = malloc(room);
+	bool added;
+
+	if (!text)
+		return false;
+	sodium_bin2base64(text, room, bytes.data, bytes.size, sodium_base64_VARIANT_ORIGINAL);
+	added = name ? cJSON_AddStringToObject(object, name, text) != NULL
+		     : cJSON_AddItemToArray(object, cJSON_CreateString(text));
+	free(text);
+	return added;
+}
+
+static bool add_signature(cJSON *list, const struct signing_key *key, struct bytes message)
+{
+	cJSON *item = cJSON_CreateObject();
+	uint8_t signature[crypto_sign_BYTES];
+	char name[HASH_HEX_BYTES];
+
+	crypto_sign_detached(signature, NULL, message.data, message.size, key->secret);
+	hash_to_hex(hash_of((struct bytes){ key->public_key, KEY_BYTES }), name);
+	if (!item || !cJSON_AddItemToArray(list, item))
+		return false;
+	return cJSON_AddStringToObject(item, "key", name) &&
+	       add_base64(item, "signature", (struct bytes){ signature, sizeof(signature) });
+}
+
+static int put_envelope(struct buffer *out, enum meta_role role, struct bytes payload,
+			const struct signing_key *keys, uint32_t key_count)
+{
+	cJSON *json = cJSON_CreateObject();
+	cJSON *list = NULL;
+	struct buffer message;
+	char *text = NULL;
+	int rc = message_of(&message, role, payload);
+	bool good = rc == 0 && json && add_base64(json, "payload", payload);
+
+	if (good)
+		list = cJSON_AddArrayToObject(json, "signatures");
+	good = good && list;
+	for (uint32_t i = 0; good && i < key_count; i++)
+		good = add_signature(list, &keys[i], buffer_bytes(&message));
+	if (good)
+		text = cJSON_PrintUnformatted(json);
+	if (text) {
+		buffer_put(out, text, strlen(text));
+		buffer_put_u8(out, '\n');
+	}
+	rc = rc < 0 ? rc : text ? out->error : -ENOMEM;
+	cJSON_free(text);
+	cJSON_Delete(json);
+	buffer_finish(&message);
+	return rc;
+}
+
+/* Takes json, which may be NULL or lack what there was no memory for (complete tells). */
+static int sign_payload(struct buffer *out, enum meta_role role, cJSON *json, bool complete,
+			const struct signing_key *keys, uint32_t key_count)
+{
+	char *text = complete ? cJSON_PrintUnformatted(json) : NULL;
+	int rc = -ENOMEM;
+
+	if (text)
+		rc = put_envelope(out, role, (struct bytes){ (uint8_t *)text, strlen(text) }, keys,
+				  key_count);
+	cJSON_free(text);
+	cJSON_Delete(json);
+	return rc;
+}
+
+static cJSON *payload_create(enum meta_role role, int64_t expires_s)
+{
+	cJSON *json = cJSON_CreateObject();
+
+	if (json && cJSON_AddStringToObject(json, "type", role_names[role]) &&
+	    cJSON_AddNumberToObject(json, "format", PAYLOAD_FORMAT) &&
+	    cJSON_AddNumberToObject(json, "expires_s", (double)expires_s))
+		return json;
+	cJSON_Delete(json);
+	return NULL;
+}
+
+static bool add_role(cJSON *roles, const char *name, const struct role_keys *role)
+{
+	cJSON *json = cJSON_AddObjectToObject(roles, name), *list;
+
+	if (!json || !cJSON_AddNumberToObject(json, "threshold", role->threshold))
+		return false;
+	list = cJSON_AddArrayToObject(json, "keys");
+	for (uint32_t i = 0; list && i < role->key_count; i++)
+		if (!add_base64(list, NULL, (struct bytes){ role->keys[i], KEY_BYTES }))
+			return false;
+	return list != NULL;
+}
+
+int trust_root_encode(struct buffer *out, const struct trust_root *root,
+		      const struct signing_key *keys, uint32_t key_count)
+{
+	cJSON *json = payload_create(META_ROOT, root->expires_s), *roles = NULL;
+	bool complete = json && cJSON_AddNumberToObject(json, "version", root->version);
+
+	if (complete)
+		roles = cJSON_AddObjectToObject(json, "roles");
+	complete = complete && roles;
+	for (int role = META_ROOT; complete && role <= META_TIMESTAMP; role++)
+		complete = add_role(roles, role_names[role], &root->roles[role]);
+	return sign_payload(out, META_ROOT, json, complete, keys, key_count);
+}
+
+int release_encode(struct buffer *out, const struct release *release,
+		   const struct signing_key *keys, uint32_t key_count)
+{
+	cJSON *json = payload_create(META_RELEASE, release->expires_s);
+	char root[HASH_HEX_BYTES];
+	bool complete;
+
+	hash_to_hex(release->root, root);
+	complete = json && cJSON_AddNumberToObject(json, "sequence", (double)release->sequence) &&
+		   cJSON_AddStringToObject(json, "root", root) &&
+		   cJSON_AddNumberToObject(json, "root_bytes", release->root_bytes) &&
+		   cJSON_AddStringToObject(json, "comment", release->comment);
+	return sign_payload(out, META_RELEASE, json, complete, keys, key_count);
+}
+
+int timestamp_encode(struct buffer *out, const struct timestamp *timestamp,
+		     const struct signing_key *keys, uint32_t key_count)
+{
+	cJSON *json = payload_create(META_TIMESTAMP, timestamp->expires_s);
+	char name[HASH_HEX_BYTES];
+	bool complete;
+
+	hash_to_hex(timestamp->release, name);
+	complete = json && cJSON_AddNumberToObject(json, "sequence", (double)timestamp->sequence) &&
+		   cJSON_AddStringToObject(json, "release", name);
+	return sign_payload(out, META_TIMESTAMP, json, complete, keys, key_count);
+}
