@@ -38,6 +38,10 @@ struct samples_page {
 	uint32_t *brick_child;
 };
 
+/* In all three pages children are numbered in the order of their index here, without gaps: the
+ * bytes hold only which are there (docs/samples.md). The decoders number them so; whoever follows
+ * a number first holds it against the page's child_count. */
+
 #define SAMPLE_NONE UINT32_MAX
 
 void samples_page_encode(struct buffer *out, const struct samples_page *samples);
@@ -50,7 +54,8 @@ struct brick_page {
 	uint32_t face_child[BRICK_POINTS][CUBE_FACES];
 	/* Which of the 4 x 4 sixteenths of the face show the model: bit row * 4 + column. */
 	uint16_t coverage[BRICK_POINTS][CUBE_FACES];
-	/* Distance along the face's axis, of what it shows, metres. */
+	/* Distance along the face's axis, of what it shows, metres. On the wire 16 bits each: near
+	 * comes back up to 1/128 nearer, far up to 1/128 farther. */
 	float near_m[BRICK_POINTS][CUBE_FACES], far_m[BRICK_POINTS][CUBE_FACES];
 };
 

@@ -1,0 +1,196 @@
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/samples.h"
+#include "tests/check.h"
+
+static uint32_t children[8];
+
+static struct samples_page a_page(void)
+{
+	struct samples_page page = { .origin_m = { -1, -2, 0 },
+				     .spacing_m = { 0.5f, 0.5f, 0.25f },
+				     .count = { 8, 5, 3 },
+				     .level_count = 3,
+				     .jpeg_tables = { (const uint8_t *)"tables", 6 },
+				     .bricks = { 2, 2, 1 },
+				     .brick_child = children };
+
+	children[0] = 0;
+	children[1] = SAMPLE_NONE;
+	children[2] = 1;
+	children[3] = 2;
+	return page;
+}
+
+/* Decodes every proper prefix of wire in an allocation of its exact size. */
+static void refuses_prefixes(struct bytes wire, int (*decode)(struct bytes))
+{
+	for (size_t n = 0; n < wire.size; n++) {
+		uint8_t *exact = malloc(n ? n : 1);
+
+		memcpy(exact, wire.data, n);
+		CHECK(decode((struct bytes){ exact, n }) == -EBADMSG);
+		free(exact);
+	}
+}
+
+static int decode_samples(struct bytes payload)
+{
+	struct samples_page page;
+	int rc = samples_page_decode(&page, payload);
+
+	samples_page_finish(&page);
+	return rc;
+}
+
+static int decode_brick(struct bytes payload)
+{
+	static struct brick_page brick;
+
+	return brick_page_decode(&brick, payload);
+}
+
+static int decode_face(struct bytes payload)
+{
+	static struct face_page face;
+
+	return face_page_decode(&face, payload);
+}
+
+static void keeps_the_samples_page(void **state)
+{
+	struct samples_page page = a_page(), back;
+	struct buffer wire;
+
+	(void)state;
+	buffer_init(&wire, 1000);
+	samples_page_encode(&wire, &page);
+	CHECK(wire.error == 0);
+	CHECK(samples_page_decode(&back, buffer_bytes(&wire)) == 0);
+	CHECK(memcmp(back.origin_m, page.origin_m, sizeof(page.origin_m)) == 0);
+	CHECK(memcmp(back.spacing_m, page.spacing_m, sizeof(page.spacing_m)) == 0);
+	CHECK(memcmp(back.count, page.count, 3) == 0 && back.level_count == 3);
+	CHECK(back.jpeg_tables.size == 6 && memcmp(back.jpeg_tables.data, "tables", 6) == 0);
+	CHECK(memcmp(back.bricks, page.bricks, sizeof(page.bricks)) == 0);
+	CHECK(memcmp(back.brick_child, children, 4 * sizeof(*children)) == 0);
+	samples_page_finish(&back);
+	refuses_prefixes(buffer_bytes(&wire), decode_samples);
+	buffer_put_u8(&wire, 0);
+	CHECK(decode_samples(buffer_bytes(&wire)) == -EBADMSG);
+	buffer_finish(&wire);
+}
+
+static void refuses_impossible_grids(void **state)
+{
+	static const struct {
+		size_t at;
+		uint8_t byte;
+	} faults[] = {
+		{ 15, 0xbf }, /* spacing below nought */
+		{ 3, 0x7f },  /* origin beyond what is finite, with the next byte */
+		{ 24, 0 },    /* no points */
+		{ 25, 65 },   /* too many */
+		{ 27, 0 },    /* no level */
+		{ 27, 6 },    /* too many levels */
+		{ 31, 1 },    /* tables longer than the page */
+		{ 38, 0x1d }, /* a fifth brick of four */
+	};
+	struct samples_page page = a_page();
+	struct buffer wire;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(faults); i++) {
+		buffer_init(&wire, 1000);
+		samples_page_encode(&wire, &page);
+		CHECK(decode_samples(buffer_bytes(&wire)) == 0);
+		wire.data[faults[i].at] = faults[i].byte;
+		if (faults[i].at == 3)
+			wire.data[2] = 0xff;
+		CHECK(decode_samples(buffer_bytes(&wire)) == -EBADMSG);
+		buffer_finish(&wire);
+	}
+}
+
+static void keeps_a_brick_and_errs_on_the_safe_side(void **state)
+{
+	static struct brick_page brick, back;
+	struct buffer wire;
+	uint32_t next = 0;
+
+	(void)state;
+	for (uint32_t i = 0; i < BRICK_POINTS * CUBE_FACES; i++) {
+		uint32_t p = i / CUBE_FACES, f = i % CUBE_FACES;
+		bool there = i % 5 != 0;
+
+		brick.face_child[p][f] = there ? next++ : SAMPLE_NONE;
+		brick.coverage[p][f] = there ? (uint16_t)(i + 1) : 0;
+		brick.near_m[p][f] = there ? 0.1f + (float)i * 0.0371f : 0;
+		brick.far_m[p][f] = there ? brick.near_m[p][f] * 3.3f : 0;
+	}
+	buffer_init(&wire, 10000);
+	brick_page_encode(&wire, &brick);
+	CHECK(brick_page_decode(&back, buffer_bytes(&wire)) == 0);
+	CHECK(memcmp(back.face_child, brick.face_child, sizeof(back.face_child)) == 0);
+	CHECK(memcmp(back.coverage, brick.coverage, sizeof(back.coverage)) == 0);
+	for (uint32_t i = 0; i < BRICK_POINTS * CUBE_FACES; i++) {
+		float near = (&brick.near_m[0][0])[i], far = (&brick.far_m[0][0])[i];
+
+		CHECK((&back.near_m[0][0])[i] <= near);
+		CHECK((&back.near_m[0][0])[i] >= near * 127 / 128);
+		CHECK((&back.far_m[0][0])[i] >= far && (&back.far_m[0][0])[i] <= far * 129 / 128);
+	}
+	refuses_prefixes(buffer_bytes(&wire), decode_brick);
+	wire.data[48] = wire.data[49] = 0; /* the first face there, showing nothing */
+	CHECK(decode_brick(buffer_bytes(&wire)) == -EBADMSG);
+	buffer_finish(&wire);
+}
+
+static void keeps_a_face(void **state)
+{
+	static struct face_page face, back;
+	struct buffer wire;
+	uint32_t next = 0;
+
+	(void)state;
+	face.level_count = 3;
+	for (uint32_t i = 0; i < FACE_TILES_MOST; i++)
+		face.tile_child[i] = i < 21 && i % 3 ? next++ : SAMPLE_NONE;
+	buffer_init(&wire, 1000);
+	face_page_encode(&wire, &face);
+	CHECK(wire.size == 4);
+	CHECK(face_page_decode(&back, buffer_bytes(&wire)) == 0);
+	CHECK(back.level_count == 3);
+	CHECK(memcmp(back.tile_child, face.tile_child, sizeof(back.tile_child)) == 0);
+	refuses_prefixes(buffer_bytes(&wire), decode_face);
+	wire.data[3] |= 0x80; /* a tile past the last */
+	CHECK(decode_face(buffer_bytes(&wire)) == -EBADMSG);
+	buffer_finish(&wire);
+}
+
+static void numbers_tiles_from_the_coarsest(void **state)
+{
+	uint32_t expected = 0;
+
+	(void)state;
+	for (uint32_t level = 0; level < SAMPLE_LEVELS_MOST; level++)
+		for (uint32_t row = 0; row < 1u << level; row++)
+			for (uint32_t column = 0; column < 1u << level; column++)
+				CHECK(face_tile_index(level, row, column) == expected++);
+	CHECK(expected == FACE_TILES_MOST);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(keeps_the_samples_page),
+		cmocka_unit_test(refuses_impossible_grids),
+		cmocka_unit_test(keeps_a_brick_and_errs_on_the_safe_side),
+		cmocka_unit_test(keeps_a_face),
+		cmocka_unit_test(numbers_tiles_from_the_coarsest),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
