@@ -1,0 +1,41 @@
+#!/bin/bash
+# Serve a release folder with nginx over TLS and HTTP/2, in the foreground; a signal ends it.
+#
+#   server/serve.sh RELEASE PORT RUN [NAME ...]
+#
+# See server/setup.sh, which this calls. PORT 0 takes a free one. When it listens, RUN/url holds the
+# address and RUN/ca.pem is the certificate authority to trust:
+#
+#   curl --cacert RUN/ca.pem "$(cat RUN/url)release.json"
+set -eu
+[ "${1:-}" != --help ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; exit 0; }
+[ $# -ge 3 ] || { "$0" --help >&2; exit 2; }
+here=$(cd "$(dirname "$0")" && pwd)
+command -v nginx >/dev/null || { echo "serve.sh: nginx is missing (Debian: nginx-light)" >&2; exit 1; }
+release=$1 port=$2 run=$3
+shift 3
+taken() { (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
+if [ "$port" = 0 ]; then
+	port=$((20000 + RANDOM % 12000))
+	while taken "$port"; do port=$((20000 + RANDOM % 12000)); done
+elif taken "$port"; then
+	echo "serve.sh: something listens on port $port already; give another, or 0 for a free one" >&2
+	exit 1
+fi
+mkdir -p "$run"
+rm -f "$run/url"
+"$here/setup.sh" "$release" "$port" "$run" "$@"
+run=$(cd "$run" && pwd)
+echo "serving $release"
+echo "url https://localhost:$port/"
+echo "ca $run/ca.pem"
+# Written by a child once the port answers, so that whoever waits for the file waits long enough.
+(for _ in $(seq 100); do
+	if taken "$port"; then
+		echo "https://localhost:$port/" >"$run/url.new"
+		mv "$run/url.new" "$run/url"
+		break
+	fi
+	sleep 0.1
+done) &
+exec nginx -p "$run" -e logs/error.log -c nginx.conf

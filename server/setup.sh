@@ -1,0 +1,65 @@
+#!/bin/bash
+# Prepare a run folder for nginx: certificate authority, certificate, configuration.
+#
+#   server/setup.sh RELEASE PORT RUN [NAME ...]
+#
+# RELEASE  the release folder to serve (it may still be empty)
+# PORT     to listen on
+# RUN      where certificate, configuration, logs and pid go; kept between runs
+# NAME     further host names or addresses for the certificate (localhost and 127.0.0.1 are in it)
+#
+# GOPURA_LISTEN  address to listen on, default 127.0.0.1 (0.0.0.0 for all)
+#
+# Terminals are given RUN/ca.pem. Its key stays in RUN/tls (mode 0600): keep that folder to yourself.
+set -eu
+usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; }
+[ "${1:-}" != --help ] || { usage; exit 0; }
+[ $# -ge 3 ] || { usage >&2; exit 2; }
+here=$(cd "$(dirname "$0")" && pwd)
+release=$1 port=$2 run=$3
+shift 3
+[ -d "$release" ] || { echo "setup.sh: no such folder: $release" >&2; exit 1; }
+case $release in *[\"\$\;]*) echo "setup.sh: the folder's path may hold no \" \$ ;" >&2; exit 1 ;; esac
+case $port in '' | *[!0-9]*) echo "setup.sh: not a port: $port" >&2; exit 2 ;; esac
+release=$(cd "$release" && pwd)
+mkdir -p "$run/logs" "$run/temp" "$run/tls"
+chmod 0700 "$run/tls"
+run=$(cd "$run" && pwd)
+
+# ---- certificate: ten years, for a terminal that nobody looks after; remade when names change
+names="DNS:localhost,IP:127.0.0.1"
+for name in "$@"; do
+	case $name in
+	*[!0-9.]*) names="$names,DNS:$name" ;;
+	*) names="$names,IP:$name" ;;
+	esac
+done
+ec() { openssl ecparam -name prime256v1 -genkey -noout -out "$1" && chmod 0600 "$1"; }
+cd "$run/tls"
+if [ ! -f ca.key ] || [ ! -f ../ca.pem ]; then
+	rm -f names server.pem
+	ec ca.key
+	openssl req -x509 -new -key ca.key -sha256 -days 3650 -subj "/CN=Gopura museum server" \
+		-addext basicConstraints=critical,CA:TRUE,pathlen:0 \
+		-addext keyUsage=critical,keyCertSign,cRLSign -out ../ca.pem
+fi
+if [ ! -f server.pem ] || [ "$(cat names 2>/dev/null)" != "$names" ] ||
+	! openssl x509 -in server.pem -noout -checkend $((30 * 86400)) >/dev/null; then
+	ec server.key
+	printf '%s\n' "subjectAltName=$names" basicConstraints=critical,CA:FALSE \
+		keyUsage=critical,digitalSignature extendedKeyUsage=serverAuth >extensions
+	openssl req -new -key server.key -subj "/CN=localhost" -out request.pem
+	openssl x509 -req -in request.pem -CA ../ca.pem -CAkey ca.key -CAcreateserial -sha256 \
+		-days 3650 -extfile extensions -out server.pem 2>openssl.log || { cat openssl.log >&2; exit 1; }
+	printf '%s' "$names" >names
+fi
+cd "$run"
+
+# ---- configuration. Started by root, the workers would be somebody who may not read the release.
+user=
+[ "$(id -u)" != 0 ] || user="user $(stat -c %U "$release") $(stat -c %G "$release");"
+sed_text() { printf '%s' "$1" | sed 's/[\\&|]/\\&/g'; }
+sed -e "s|@FOLDER@|$(sed_text "$release")|" -e "s|@PORT@|$port|" -e "s|@USER@|$user|" \
+	-e "s|@LISTEN@|$(sed_text "${GOPURA_LISTEN:-127.0.0.1}")|" "$here/nginx.conf.in" >nginx.conf
+cp "$here/headers.conf" headers.conf
+nginx -t -q -p "$run" -e logs/error.log -c nginx.conf

@@ -1,0 +1,69 @@
+#!/bin/bash
+# The museum server as set up by server/: what it serves, how, and what it refuses.
+set -eu
+cd "$(dirname "$0")/../.."
+command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }
+. tests/e2e/lib-server.sh
+folder=$(mktemp -d)
+trap 'stop_server; rm -rf "$folder"' EXIT
+release="$folder/a release" run=$folder/run
+mkdir -p "$release/packs" "$release/locator" "$release/root" "$release/secret"
+pack=packs/0123456789abcdef0123456789abcdef
+head -c 300000 /dev/urandom >"$release/$pack"
+echo locator >"$release/locator/0123456789abcdef0123456789abcdef"
+for file in release.json timestamp.json root/1.json; do echo '{}' >"$release/$file"; done
+echo hidden >"$release/secret/file"
+start_server "$release" "$run"
+
+fail() { echo "FAIL: $*" >&2; exit 1; }
+get() { curl -sS --max-time 20 --cacert "$server_ca" "$@"; }
+
+# has NAME PATTERN PATH: a response header.
+has() { get -I "$server_url$3" | tr -d '\r' | grep -qiE "^$1: $2\$" || fail "$3: $1 is not $2"; }
+
+[ "$(get -o "$folder/got" -w '%{http_version} %{http_code}' "$server_url$pack")" = "2 200" ] || fail "no HTTP/2"
+cmp "$folder/got" "$release/$pack"
+[ "$(get -o "$folder/got" -w '%{http_code}' -r 1000-1999 "$server_url$pack")" = 206 ] || fail "no ranges"
+cmp "$folder/got" <(tail -c +1001 "$release/$pack" | head -c 1000)
+has cache-control '.*immutable' "$pack"
+has cache-control '.*immutable' locator/0123456789abcdef0123456789abcdef
+has content-type application/octet-stream "$pack"
+for file in release.json timestamp.json root/1.json; do
+	has cache-control no-cache "$file"
+	has content-type application/json "$file"
+	has x-content-type-options nosniff "$file"
+	has etag '.*' "$file"
+done
+
+# An atomic switch is seen by the very next request.
+echo '{"new":1}' >"$release/new" && mv "$release/new" "$release/release.json"
+[ "$(get "${server_url}release.json")" = '{"new":1}' ] || fail "an old release.json is served"
+
+# refused STATUS CURL_ARGUMENTS...
+refused() {
+	local want=$1 got
+	shift
+	got=$(get -o /dev/null -w '%{http_code}' "$@")
+	[ "$got" = "$want" ] || fail "$* answered $got, not $want"
+}
+refused 404 "${server_url}secret/file"
+refused 404 "${server_url}"
+refused 404 "${server_url}packs/"
+refused 404 "${server_url}packs/ffffffffffffffffffffffffffffffff"
+refused 404 --path-as-is "${server_url}packs/../secret/file"
+refused 403 -X POST -d x "${server_url}release.json"
+refused 403 -X DELETE "$server_url$pack"
+get -I "${server_url}packs/ffffffffffffffffffffffffffffffff" | grep -qi immutable && fail "a 404 may be kept for ever"
+curl -sS --max-time 20 "${server_url}release.json" >/dev/null 2>&1 && fail "trusted without the CA"
+[ "$(stat -c %a "$run/tls")" = 700 ] || fail "the CA's key is readable"
+
+# The same certificate after a restart; a signal ends all of it.
+before=$(sha256sum <"$run/tls/server.pem") port=${server_url%/} port=${port##*:}
+stop_server
+curl -s --max-time 5 --cacert "$server_ca" "${server_url}release.json" >/dev/null && fail "still listening"
+start_server "$release" "$run" "$port"
+[ "$(sha256sum <"$run/tls/server.pem")" = "$before" ] || fail "another certificate"
+get "${server_url}release.json" >/dev/null
+server/serve.sh "$release" "$port" "$folder/run2" >"$folder/second.log" 2>&1 && fail "two on one port"
+grep -q "port $port" "$folder/second.log" || fail "the message does not name the port"
+echo "the server serves releases and nothing else"
