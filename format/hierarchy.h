@@ -10,7 +10,8 @@
  *
  * Rules, checked by the decoder: a group comes after all groups whose patches it replaces; its
  * error is not above theirs and its sphere lies within theirs (saturated), but for group 0 whose
- * error is infinite.
+ * error is infinite. A group holds 1 to 64 patches, and every group but 0 replaces at least one;
+ * counts are within patch.h's limits; every number is finite but the one infinity.
  *
  * A valid cut is a set R of refined groups with 0 in R such that every group in R other than 0
  * has all groups it depends on in R; shown is each patch whose group is in R and whose finer is
@@ -44,9 +45,14 @@ struct hierarchy {
 	struct hierarchy_patch *patches; /* owned; sorted by group */
 };
 
-/* Appends the payload (zstd inside). -ENOMEM. */
+enum { HIERARCHY_GROUPS_MOST = 1 << 20 };
+
+/* 0, or -EINVAL where a rule above is broken. Spheres are compared with a tolerance of 1e-5 of the
+ * outer one, which is what single precision loses. */
+must_check int hierarchy_check(const struct hierarchy *hierarchy);
+/* Appends the payload (docs/hierarchy.md; zstd inside). -ENOMEM; -EINVAL as hierarchy_check. */
 must_check int hierarchy_encode(struct buffer *out, const struct hierarchy *hierarchy);
-/* -EBADMSG where a rule above is broken. *out is zeroed on failure. */
+/* -EBADMSG where a rule above is broken, -ENOMEM. *out is zeroed on failure. */
 must_check int hierarchy_decode(struct hierarchy *out, struct bytes payload);
 void hierarchy_finish(struct hierarchy *hierarchy);
 

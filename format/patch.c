@@ -1,0 +1,379 @@
+#include "format/patch.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <meshoptimizer.h>
+#include <zstd.h>
+
+#include "format/predict.h"
+
+/* docs/patch.md has the bytes. Each stream holds one kind of number of all patches together, so
+ * that each gets its own statistics in zstd and a small patch pays no header. */
+enum stream {
+	STREAM_INDICES, /* meshoptimizer's index codec, patch after patch */
+	STREAM_POSITION_LOW,
+	STREAM_POSITION_HIGH,
+	STREAM_NORMAL,
+	STREAM_GREEN,
+	STREAM_TINT, /* red - green, blue - green */
+	STREAM_OPEN,
+	STREAM_COUNT
+};
+
+enum { VERSION = 1, ZSTD_LEVEL = 12, INDEX_BYTES_MOST = 8 * PATCH_TRIANGLES_MOST };
+
+static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
+static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1 };
+
+struct streams {
+	uint8_t *data[STREAM_COUNT]; /* owned */
+	size_t size[STREAM_COUNT];
+	size_t at[STREAM_COUNT];
+};
+
+static int streams_init(struct streams *streams, size_t index_bytes, size_t vertex_count)
+{
+	*streams = (struct streams){ 0 };
+	for (int i = 0; i < STREAM_COUNT; i++) {
+		streams->size[i] =
+			i == STREAM_INDICES ? index_bytes : bytes_a_vertex[i] * vertex_count;
+		streams->data[i] = malloc(streams->size[i]);
+		if (!streams->data[i])
+			return -ENOMEM;
+	}
+	return 0;
+}
+
+static void streams_finish(struct streams *streams)
+{
+	for (int i = 0; i < STREAM_COUNT; i++)
+		free(streams->data[i]);
+}
+
+static void put(struct streams *streams, enum stream stream, uint8_t value)
+{
+	streams->data[stream][streams->at[stream]++] = value;
+}
+
+static uint8_t get(struct streams *streams, enum stream stream)
+{
+	return streams->data[stream][streams->at[stream]++];
+}
+
+/* Small differences of either sign become small numbers; differences wrap. */
+static uint16_t fold16(uint16_t difference)
+{
+	return (uint16_t)(difference << 1 ^ (difference & 0x8000 ? 0xffff : 0));
+}
+
+static uint16_t unfold16(uint16_t folded)
+{
+	return (uint16_t)(folded >> 1 ^ (folded & 1 ? 0xffff : 0));
+}
+
+static uint8_t fold8(uint8_t difference)
+{
+	return (uint8_t)(difference << 1 ^ (difference & 0x80 ? 0xff : 0));
+}
+
+static uint8_t unfold8(uint8_t folded)
+{
+	return (uint8_t)(folded >> 1 ^ (folded & 1 ? 0xff : 0));
+}
+
+static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
+		       const struct predict_step *step, const int8_t normal[2])
+{
+	const struct patch_vertex *vertex = &mesh->vertices[step->vertex];
+	uint16_t position[3];
+	uint8_t colour[4], difference[4];
+
+	predict_position(position, step, mesh->vertices);
+	predict_colour(colour, step, mesh->vertices);
+	for (int i = 0; i < 3; i++) {
+		uint16_t folded = fold16((uint16_t)(vertex->position[i] - position[i]));
+
+		put(streams, STREAM_POSITION_LOW, (uint8_t)folded);
+		put(streams, STREAM_POSITION_HIGH, (uint8_t)(folded >> 8));
+	}
+	for (int i = 0; i < 2; i++)
+		put(streams, STREAM_NORMAL, fold8((uint8_t)(vertex->normal[i] - normal[i])));
+	for (int i = 0; i < 4; i++)
+		difference[i] = (uint8_t)(vertex->colour[i] - colour[i]);
+	put(streams, STREAM_GREEN, fold8(difference[1]));
+	put(streams, STREAM_TINT, fold8((uint8_t)(difference[0] - difference[1])));
+	put(streams, STREAM_TINT, fold8((uint8_t)(difference[2] - difference[1])));
+	put(streams, STREAM_OPEN, fold8(difference[3]));
+}
+
+static void get_position(struct streams *streams, struct patch_mesh *mesh,
+			 const struct predict_step *step)
+{
+	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
+	uint16_t position[3];
+
+	predict_position(position, step, mesh->vertices);
+	for (int i = 0; i < 3; i++) {
+		uint16_t folded = get(streams, STREAM_POSITION_LOW);
+
+		folded |= (uint16_t)(get(streams, STREAM_POSITION_HIGH) << 8);
+		vertex->position[i] = (uint16_t)(position[i] + unfold16(folded));
+	}
+}
+
+static void get_rest(struct streams *streams, struct patch_mesh *mesh,
+		     const struct predict_step *step, const int8_t normal[2])
+{
+	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
+	uint8_t colour[4], green, red, blue;
+
+	predict_colour(colour, step, mesh->vertices);
+	for (int i = 0; i < 2; i++)
+		vertex->normal[i] = (int8_t)(uint8_t)((uint8_t)normal[i] +
+						      unfold8(get(streams, STREAM_NORMAL)));
+	green = unfold8(get(streams, STREAM_GREEN));
+	red = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
+	blue = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
+	vertex->colour[0] = (uint8_t)(colour[0] + red);
+	vertex->colour[1] = (uint8_t)(colour[1] + green);
+	vertex->colour[2] = (uint8_t)(colour[2] + blue);
+	vertex->colour[3] = (uint8_t)(colour[3] + unfold8(get(streams, STREAM_OPEN)));
+}
+
+/* The vertices of one patch, to or from the streams. The mesh's indices are in range. */
+static int code_vertices(struct streams *streams, struct patch_mesh *mesh, bool encoding)
+{
+	struct predict_step *steps = malloc(mesh->vertex_count * sizeof(*steps));
+	int8_t(*normals)[2] = malloc(mesh->vertex_count * sizeof(*normals));
+	int rc = steps && normals ? predict_steps(steps, mesh) : -ENOMEM;
+
+	for (uint32_t i = 0; rc == 0 && !encoding && i < mesh->vertex_count; i++)
+		get_position(streams, mesh, &steps[i]);
+	if (rc == 0)
+		rc = predict_normals(normals, mesh);
+	for (uint32_t i = 0; rc == 0 && i < mesh->vertex_count; i++) {
+		if (encoding)
+			put_vertex(streams, mesh, &steps[i], normals[steps[i].vertex]);
+		else
+			get_rest(streams, mesh, &steps[i], normals[steps[i].vertex]);
+	}
+	free(steps);
+	free(normals);
+	return rc;
+}
+
+static bool counts_fit(uint32_t vertex_count, uint32_t triangle_count)
+{
+	return vertex_count >= 1 && vertex_count <= PATCH_VERTICES_MOST && triangle_count >= 1 &&
+	       triangle_count <= PATCH_TRIANGLES_MOST;
+}
+
+static bool indices_fit(const struct patch_mesh *mesh)
+{
+	for (uint32_t i = 0; i < 3 * mesh->triangle_count; i++)
+		if (mesh->indices[i] >= mesh->vertex_count)
+			return false;
+	return true;
+}
+
+/* The index codec may turn a triangle about; the vertices must be predicted over what the decoder
+ * will see, so decoded is the patch with the indices as they come back. */
+static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
+			  const struct patch_mesh *mesh)
+{
+	size_t count = 3 * (size_t)mesh->triangle_count, size;
+	uint32_t wide[3 * PATCH_TRIANGLES_MOST];
+	uint8_t *packed;
+
+	for (size_t i = 0; i < count; i++)
+		wide[i] = mesh->indices[i];
+	size = meshopt_encodeIndexBufferBound(count, mesh->vertex_count);
+	packed = malloc(size);
+	if (!packed)
+		return -ENOMEM;
+	size = meshopt_encodeIndexBuffer(packed, size, wide, count);
+	buffer_put(out, packed, size);
+	*decoded = *mesh;
+	decoded->indices = malloc(count * sizeof(*decoded->indices));
+	if (!decoded->indices ||
+	    meshopt_decodeIndexBuffer(decoded->indices, count, 2, packed, size) != 0) {
+		free(decoded->indices);
+		decoded->indices = NULL;
+		free(packed);
+		return -ENOMEM;
+	}
+	free(packed);
+	return out->error;
+}
+
+static int put_streams(struct buffer *out, const struct streams *streams)
+{
+	for (int i = 0; i < STREAM_COUNT; i++) {
+		size_t bound = ZSTD_compressBound(streams->size[i]);
+		uint8_t *packed = malloc(bound);
+		size_t size = packed ? ZSTD_compress(packed, bound, streams->data[i],
+						     streams->size[i], ZSTD_LEVEL)
+				     : 0;
+
+		if (!packed || ZSTD_isError(size)) {
+			free(packed);
+			return -ENOMEM;
+		}
+		buffer_put_u32(out, (uint32_t)size);
+		buffer_put(out, packed, size);
+		free(packed);
+	}
+	return out->error;
+}
+
+/* Header and streams of patches whose indices are packed already. */
+static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t patch_count,
+		     const uint32_t *index_bytes, struct bytes indices)
+{
+	struct streams streams;
+	size_t vertex_count = 0;
+	int rc;
+
+	buffer_put(out, magic, sizeof(magic));
+	buffer_put_u8(out, VERSION);
+	buffer_put_u8(out, (uint8_t)patch_count);
+	for (uint32_t p = 0; p < patch_count; p++) {
+		buffer_put_u16(out, (uint16_t)decoded[p].vertex_count);
+		buffer_put_u16(out, (uint16_t)decoded[p].triangle_count);
+		buffer_put_u16(out, (uint16_t)index_bytes[p]);
+		vertex_count += decoded[p].vertex_count;
+	}
+	rc = streams_init(&streams, indices.size, vertex_count);
+	if (rc == 0)
+		memcpy(streams.data[STREAM_INDICES], indices.data, indices.size);
+	for (uint32_t p = 0; rc == 0 && p < patch_count; p++)
+		rc = code_vertices(&streams, &decoded[p], true);
+	if (rc == 0)
+		rc = put_streams(out, &streams);
+	streams_finish(&streams);
+	return rc;
+}
+
+int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count)
+{
+	struct patch_mesh decoded[GROUP_PATCHES_MOST] = { 0 };
+	uint32_t index_bytes[GROUP_PATCHES_MOST];
+	struct buffer indices;
+	int rc = 0;
+
+	if (patch_count < 1 || patch_count > GROUP_PATCHES_MOST)
+		return -EINVAL;
+	for (uint32_t p = 0; p < patch_count; p++)
+		if (!counts_fit(patches[p].vertex_count, patches[p].triangle_count) ||
+		    !indices_fit(&patches[p]))
+			return -EINVAL;
+	buffer_init(&indices, GROUP_PATCHES_MOST * INDEX_BYTES_MOST);
+	for (uint32_t p = 0; rc == 0 && p < patch_count; p++) {
+		size_t before = indices.size;
+
+		rc = encode_indices(&indices, &decoded[p], &patches[p]);
+		index_bytes[p] = (uint32_t)(indices.size - before);
+		if (rc == 0 && index_bytes[p] > UINT16_MAX)
+			rc = -EINVAL;
+	}
+	if (rc == 0)
+		rc = put_group(out, decoded, patch_count, index_bytes, buffer_bytes(&indices));
+	for (uint32_t p = 0; p < patch_count; p++)
+		free(decoded[p].indices);
+	buffer_finish(&indices);
+	return rc;
+}
+
+static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_t *patch_count,
+		      uint32_t *index_bytes)
+{
+	struct bytes start = reader_bytes(reader, sizeof(magic));
+
+	if (reader->failed || memcmp(start.data, magic, sizeof(magic)) != 0 ||
+	    reader_u8(reader) != VERSION)
+		return -EBADMSG;
+	*patch_count = reader_u8(reader);
+	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MOST)
+		return -EBADMSG;
+	for (uint32_t p = 0; p < *patch_count; p++) {
+		patches[p].vertex_count = reader_u16(reader);
+		patches[p].triangle_count = reader_u16(reader);
+		index_bytes[p] = reader_u16(reader);
+		if (!counts_fit(patches[p].vertex_count, patches[p].triangle_count))
+			return -EBADMSG;
+	}
+	return reader->failed ? -EBADMSG : 0;
+}
+
+static int get_streams(struct reader *reader, struct streams *streams)
+{
+	for (int i = 0; i < STREAM_COUNT; i++) {
+		struct bytes packed = reader_bytes(reader, reader_u32(reader));
+
+		if (reader->failed ||
+		    ZSTD_getFrameContentSize(packed.data, packed.size) != streams->size[i])
+			return -EBADMSG;
+		if (ZSTD_decompress(streams->data[i], streams->size[i], packed.data, packed.size) !=
+		    streams->size[i])
+			return -EBADMSG;
+	}
+	return reader_left(reader) == 0 ? 0 : -EBADMSG;
+}
+
+static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32_t index_bytes)
+{
+	const uint8_t *packed = streams->data[STREAM_INDICES] + streams->at[STREAM_INDICES];
+
+	mesh->vertices = calloc(mesh->vertex_count, sizeof(*mesh->vertices));
+	mesh->indices = calloc(3 * (size_t)mesh->triangle_count, sizeof(*mesh->indices));
+	if (!mesh->vertices || !mesh->indices)
+		return -ENOMEM;
+	streams->at[STREAM_INDICES] += index_bytes;
+	if (meshopt_decodeIndexBuffer(mesh->indices, 3 * (size_t)mesh->triangle_count, 2, packed,
+				      index_bytes) != 0 ||
+	    !indices_fit(mesh))
+		return -EBADMSG;
+	return code_vertices(streams, mesh, false);
+}
+
+int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *patch_count,
+		       struct bytes object)
+{
+	uint32_t index_bytes[GROUP_PATCHES_MOST];
+	size_t index_total = 0, vertex_total = 0;
+	struct streams streams = { 0 };
+	struct reader reader;
+	int rc;
+
+	memset(patches, 0, GROUP_PATCHES_MOST * sizeof(*patches));
+	reader_init(&reader, object);
+	rc = get_header(&reader, patches, patch_count, index_bytes);
+	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++) {
+		index_total += index_bytes[p];
+		vertex_total += patches[p].vertex_count;
+	}
+	if (rc == 0)
+		rc = streams_init(&streams, index_total, vertex_total);
+	if (rc == 0)
+		rc = get_streams(&reader, &streams);
+	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++)
+		rc = decode_patch(&patches[p], &streams, index_bytes[p]);
+	streams_finish(&streams);
+	if (rc < 0) {
+		for (uint32_t p = 0; p < GROUP_PATCHES_MOST; p++)
+			patch_mesh_finish(&patches[p]);
+		*patch_count = 0;
+	}
+	return rc;
+}
+
+void patch_mesh_finish(struct patch_mesh *mesh)
+{
+	if (!mesh)
+		return;
+	free(mesh->vertices);
+	free(mesh->indices);
+	*mesh = (struct patch_mesh){ 0 };
+}
