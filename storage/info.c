@@ -1,0 +1,547 @@
+/* Everything but the pages is loaded when the database is opened: a thousand parts in eight
+ * languages are a few hundred KB, and no frame ever waits for SQLite. The image may come from a
+ * damaged cache or a stranger, so the schema is not trusted (it cannot run functions), the pages
+ * of the file are checked, and work is bounded. */
+#include "storage/info.h"
+
+#include <errno.h>
+#include <math.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "storage/info_schema.h"
+
+enum {
+	STEPS_PER_CALL = 1000,
+	CALLS_MOST = 100000, /* 10^8 steps of SQLite's machine while opening */
+	PICTURES_MOST = 100000,
+};
+
+struct text {
+	char *title, *caption; /* owned or NULL */
+	bool has_page;
+};
+
+struct part {
+	struct info_part public; /* id owned */
+	uint32_t thumbnail;      /* picture index + 1; 0: none */
+	struct text texts[INFO_LANGUAGES_MOST];
+};
+
+struct info {
+	sqlite3 *db;
+	sqlite3_stmt *page; /* steps on the row that the last info_page gave */
+	uint32_t calls;
+	char *languages[INFO_LANGUAGES_MOST];
+	uint32_t language_count;
+	struct part *parts;
+	uint32_t part_count;
+	struct info_picture *pictures; /* names owned */
+	uint32_t picture_count;
+};
+
+static int from_sqlite(sqlite3 *db, int code, const char *doing)
+{
+	switch (code) {
+	case SQLITE_OK:
+	case SQLITE_ROW:
+	case SQLITE_DONE:
+		return 0;
+	case SQLITE_NOMEM:
+		return -ENOMEM;
+	default:
+		log_error("storage", "information database: %s: %s", doing, sqlite3_errmsg(db));
+		return -EBADMSG;
+	}
+}
+
+static int bound_work(void *data)
+{
+	struct info *info = data;
+
+	return ++info->calls > CALLS_MOST;
+}
+
+/* ---- rows ---- */
+
+typedef int row_reader(struct info *info, sqlite3_stmt *row);
+
+static int each_row(struct info *info, const char *sql, row_reader *read)
+{
+	sqlite3_stmt *statement = NULL;
+	int code = sqlite3_prepare_v2(info->db, sql, -1, &statement, NULL);
+	int rc = from_sqlite(info->db, code, sql);
+
+	while (rc == 0 && (code = sqlite3_step(statement)) == SQLITE_ROW)
+		rc = read(info, statement);
+	if (rc == 0)
+		rc = from_sqlite(info->db, code, sql);
+	sqlite3_finalize(statement);
+	return rc;
+}
+
+/* A copy of a text column; NULL stays NULL. Zero bytes inside are refused. */
+static int copy_text(sqlite3_stmt *row, int column, char **out)
+{
+	const char *text = (const char *)sqlite3_column_text(row, column);
+	int size = sqlite3_column_bytes(row, column);
+
+	if (!text)
+		return sqlite3_column_type(row, column) == SQLITE_NULL ? 0 : -ENOMEM;
+	if (strlen(text) != (size_t)size)
+		return -EBADMSG;
+	*out = strdup(text);
+	return *out ? 0 : -ENOMEM;
+}
+
+static int read_float(sqlite3_stmt *row, int column, float *out)
+{
+	*out = (float)sqlite3_column_double(row, column);
+	return isfinite(*out) ? 0 : -EBADMSG;
+}
+
+static int read_floats(sqlite3_stmt *row, int column, float *out, int count)
+{
+	int rc = 0;
+
+	for (int i = 0; i < count && rc == 0; i++)
+		rc = read_float(row, column + i, &out[i]);
+	return rc;
+}
+
+static int read_language(struct info *info, sqlite3_stmt *row)
+{
+	int rc;
+
+	if (info->language_count == INFO_LANGUAGES_MOST ||
+	    sqlite3_column_int64(row, 0) != info->language_count)
+		return -EBADMSG;
+	rc = copy_text(row, 1, &info->languages[info->language_count]);
+	if (rc == 0 && !info->languages[info->language_count])
+		rc = -EBADMSG;
+	if (rc == 0)
+		info->language_count++;
+	return rc;
+}
+
+/* Room for one more; arrays grow by doubling. NULL: no memory. */
+static void *grow(void *array, uint32_t count, size_t item_bytes)
+{
+	if (count & (count - 1))
+		return array;
+	return realloc(array, (count ? 2 * (size_t)count : 1) * item_bytes);
+}
+
+static int read_picture(struct info *info, sqlite3_stmt *row)
+{
+	struct info_picture *grown, *picture;
+	char *name = NULL;
+	int rc;
+
+	if (info->picture_count == PICTURES_MOST || sqlite3_column_bytes(row, 1) != HASH_BYTES)
+		return -EBADMSG;
+	rc = copy_text(row, 0, &name);
+	if (rc < 0 || !name)
+		return rc < 0 ? rc : -EBADMSG;
+	grown = grow(info->pictures, info->picture_count, sizeof(*grown));
+	if (!grown) {
+		free(name);
+		return -ENOMEM;
+	}
+	info->pictures = grown;
+	picture = &grown[info->picture_count++];
+	*picture = (struct info_picture){ .name = name,
+					  .width_px = (uint32_t)sqlite3_column_int(row, 2),
+					  .height_px = (uint32_t)sqlite3_column_int(row, 3) };
+	memcpy(picture->hash.bytes, sqlite3_column_blob(row, 1), HASH_BYTES);
+	return 0;
+}
+
+static int read_region(sqlite3_stmt *row, struct info_region *region)
+{
+	static const char *const kinds[] = { "point", "sphere", "box", "prism" };
+	const char *kind = (const char *)sqlite3_column_text(row, 2);
+	size_t i = 0;
+	int rc;
+
+	while (i < ARRAY_COUNT(kinds) && (!kind || strcmp(kind, kinds[i]) != 0))
+		i++;
+	if (i == ARRAY_COUNT(kinds))
+		return -EBADMSG;
+	region->kind = (enum info_region_kind)i;
+	rc = read_floats(row, 3, region->centre_m, 3);
+	if (rc == 0)
+		rc = read_float(row, 9, &region->radius_m);
+	if (rc == 0)
+		rc = read_floats(row, 10, region->half_m, 3);
+	if (rc == 0)
+		rc = read_float(row, 13, &region->turn_deg);
+	if (rc == 0)
+		rc = read_float(row, 14, &region->floor_m);
+	if (rc == 0)
+		rc = read_float(row, 15, &region->roof_m);
+	return rc;
+}
+
+static int read_part(struct info *info, sqlite3_stmt *row)
+{
+	struct part *grown, *part;
+	char *id = NULL;
+	int rc;
+
+	if (info->part_count == INFO_PARTS_MOST || sqlite3_column_int64(row, 0) != info->part_count)
+		return -EBADMSG;
+	rc = copy_text(row, 1, &id);
+	if (rc < 0 || !id)
+		return rc < 0 ? rc : -EBADMSG;
+	grown = grow(info->parts, info->part_count, sizeof(*grown));
+	if (!grown) {
+		free(id);
+		return -ENOMEM;
+	}
+	info->parts = grown;
+	part = &grown[info->part_count++];
+	memset(part, 0, sizeof(*part));
+	part->public.id = id;
+	rc = read_region(row, &part->public.region);
+	if (rc == 0)
+		rc = read_floats(row, 6, part->public.anchor_m, 3);
+	return rc;
+}
+
+static int read_corner(struct info *info, sqlite3_stmt *row)
+{
+	sqlite3_int64 id = sqlite3_column_int64(row, 0);
+	struct info_region *region;
+
+	if (id < 0 || id >= info->part_count)
+		return -EBADMSG;
+	region = &info->parts[id].public.region;
+	if (region->corner_count == INFO_CORNERS_MOST)
+		return -EBADMSG;
+	return read_floats(row, 1, region->corners_m[region->corner_count++], 2);
+}
+
+static int read_thumbnail(struct info *info, sqlite3_stmt *row)
+{
+	sqlite3_int64 id = sqlite3_column_int64(row, 0);
+	const char *name = (const char *)sqlite3_column_text(row, 1);
+
+	if (id < 0 || id >= info->part_count || !name)
+		return -EBADMSG;
+	for (uint32_t i = 0; i < info->picture_count; i++)
+		if (strcmp(info->pictures[i].name, name) == 0)
+			info->parts[id].thumbnail = i + 1;
+	return info->parts[id].thumbnail ? 0 : -EBADMSG;
+}
+
+static int read_content(struct info *info, sqlite3_stmt *row)
+{
+	sqlite3_int64 id = sqlite3_column_int64(row, 0);
+	sqlite3_int64 language = sqlite3_column_int64(row, 1);
+	struct text *text;
+	int rc;
+
+	if (id < 0 || id >= info->part_count || language < 0 || language >= info->language_count)
+		return -EBADMSG;
+	text = &info->parts[id].texts[language];
+	if (text->title || text->caption || text->has_page)
+		return 0; /* a second information of the part: the kiosk shows the first */
+	text->has_page = sqlite3_column_int(row, 4) != 0;
+	info->parts[id].public.has_page |= text->has_page;
+	rc = copy_text(row, 2, &text->title);
+	return rc == 0 ? copy_text(row, 3, &text->caption) : rc;
+}
+
+/* ---- open ---- */
+
+static int read_one_number(struct info *info, const char *sql, sqlite3_int64 *out)
+{
+	sqlite3_stmt *statement = NULL;
+	int code = sqlite3_prepare_v2(info->db, sql, -1, &statement, NULL);
+
+	if (code == SQLITE_OK)
+		code = sqlite3_step(statement);
+	*out = code == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : -1;
+	sqlite3_finalize(statement);
+	return from_sqlite(info->db, code, sql);
+}
+
+static int attach_image(struct info *info, struct bytes image)
+{
+	unsigned char *copy;
+	int code = sqlite3_open(":memory:", &info->db);
+
+	if (code != SQLITE_OK)
+		return from_sqlite(info->db, code, "open");
+	copy = sqlite3_malloc64(image.size ? image.size : 1);
+	if (!copy)
+		return -ENOMEM;
+	memcpy(copy, image.data, image.size);
+	/* Frees the copy, on failure too. */
+	code = sqlite3_deserialize(info->db, "main", copy, (sqlite3_int64)image.size,
+				   (sqlite3_int64)image.size,
+				   SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY);
+	if (code != SQLITE_OK)
+		return from_sqlite(info->db, code, "open");
+	sqlite3_db_config(info->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+	sqlite3_db_config(info->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
+	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
+	sqlite3_limit(info->db, SQLITE_LIMIT_LENGTH, 16 << 20);
+	sqlite3_progress_handler(info->db, STEPS_PER_CALL, bound_work, info);
+	return 0;
+}
+
+/* What the file says it is, and whether its b-trees are whole. */
+static int check_image(struct info *info)
+{
+	sqlite3_int64 application = 0, version = 0;
+	sqlite3_stmt *statement = NULL;
+	const char *verdict = NULL;
+	int code, rc;
+
+	rc = read_one_number(info, "PRAGMA application_id", &application);
+	if (rc == 0)
+		rc = read_one_number(info, "PRAGMA user_version", &version);
+	if (rc < 0)
+		return rc;
+	if (application != INFO_APPLICATION_ID || version != INFO_SCHEMA_VERSION) {
+		log_error("storage",
+			  "content bug: information database of kind %llx version %lld; this "
+			  "program reads version %d",
+			  (unsigned long long)application, (long long)version, INFO_SCHEMA_VERSION);
+		return -EBADMSG;
+	}
+	code = sqlite3_prepare_v2(info->db, "PRAGMA quick_check(1)", -1, &statement, NULL);
+	if (code == SQLITE_OK)
+		code = sqlite3_step(statement);
+	if (code == SQLITE_ROW)
+		verdict = (const char *)sqlite3_column_text(statement, 0);
+	rc = verdict && strcmp(verdict, "ok") == 0 ? 0 : -EBADMSG;
+	sqlite3_finalize(statement);
+	return rc;
+}
+
+static int load(struct info *info)
+{
+	static const struct {
+		const char *sql;
+		row_reader *read;
+	} steps[] = {
+		{ "SELECT position, code FROM language ORDER BY position", read_language },
+		{ "SELECT name, hash, width_px, height_px FROM picture ORDER BY name",
+		  read_picture },
+		{ "SELECT part_id, name, region_kind, centre_x, centre_y, centre_z, anchor_x,"
+		  " anchor_y, anchor_z, radius, half_x, half_y, half_z, turn_deg, floor, roof"
+		  " FROM identified_part ORDER BY part_id",
+		  read_part },
+		{ "SELECT part_id, x, y FROM part_corner ORDER BY part_id, position", read_corner },
+		{ "SELECT a.part_id, p.name FROM assigned_information a JOIN information i"
+		  " USING(information_id) JOIN picture p ON p.picture_id = i.thumbnail"
+		  " ORDER BY a.part_id, a.position DESC",
+		  read_thumbnail },
+		{ "SELECT a.part_id, c.language, c.title, c.caption, c.body IS NOT NULL"
+		  " FROM assigned_information a JOIN information_contents c USING(information_id)"
+		  " ORDER BY a.part_id, a.position",
+		  read_content },
+	};
+	int rc = 0;
+
+	for (size_t i = 0; i < ARRAY_COUNT(steps) && rc == 0; i++)
+		rc = each_row(info, steps[i].sql, steps[i].read);
+	if (rc == 0 && info->language_count == 0)
+		rc = -EBADMSG;
+	for (uint32_t i = 0; i < info->part_count && rc == 0; i++) {
+		const struct info_region *region = &info->parts[i].public.region;
+
+		if (!info->parts[i].texts[0].title)
+			rc = -EBADMSG;
+		if (region->kind == INFO_REGION_PRISM && region->corner_count < 3)
+			rc = -EBADMSG;
+	}
+	return rc;
+}
+
+static int open_image(struct info *info, struct bytes image)
+{
+	static const char page_sql[] =
+		"SELECT c.body FROM assigned_information a JOIN information_contents c"
+		" USING(information_id) WHERE a.part_id = ?1 AND c.language = ?2"
+		" AND c.body IS NOT NULL ORDER BY a.position LIMIT 1";
+	int rc = attach_image(info, image);
+
+	if (rc == 0)
+		rc = check_image(info);
+	if (rc == 0)
+		rc = load(info);
+	if (rc == 0)
+		rc = from_sqlite(info->db,
+				 sqlite3_prepare_v2(info->db, page_sql, -1, &info->page, NULL),
+				 "page");
+	return rc;
+}
+
+int info_open(struct info **out, struct bytes image)
+{
+	struct info *info = calloc(1, sizeof(*info));
+	int rc;
+
+	*out = NULL;
+	if (!info)
+		return -ENOMEM;
+	rc = open_image(info, image);
+	if (rc < 0) {
+		info_close(info);
+		return rc;
+	}
+	*out = info;
+	return 0;
+}
+
+void info_close(struct info *info)
+{
+	if (!info)
+		return;
+	sqlite3_finalize(info->page);
+	sqlite3_close(info->db);
+	for (uint32_t i = 0; i < info->part_count; i++) {
+		free((char *)info->parts[i].public.id);
+		for (size_t k = 0; k < INFO_LANGUAGES_MOST; k++) {
+			free(info->parts[i].texts[k].title);
+			free(info->parts[i].texts[k].caption);
+		}
+	}
+	for (uint32_t i = 0; i < info->picture_count; i++)
+		free((char *)info->pictures[i].name);
+	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++)
+		free(info->languages[i]);
+	free(info->parts);
+	free(info->pictures);
+	free(info);
+}
+
+/* ---- what is asked ---- */
+
+uint32_t info_part_count(const struct info *info)
+{
+	return info->part_count;
+}
+
+const struct info_part *info_part(const struct info *info, uint32_t part)
+{
+	return &info->parts[part].public;
+}
+
+int info_find(const struct info *info, const char *id)
+{
+	for (uint32_t i = 0; i < info->part_count; i++)
+		if (strcmp(info->parts[i].public.id, id) == 0)
+			return (int)i;
+	return -ENOENT;
+}
+
+uint32_t info_language_count(const struct info *info)
+{
+	return info->language_count;
+}
+
+const char *info_language(const struct info *info, uint32_t index)
+{
+	return info->languages[index];
+}
+
+/* An unknown language is the default. */
+static uint32_t language_index(const struct info *info, const char *language)
+{
+	for (uint32_t i = 0; i < info->language_count; i++)
+		if (language && strcmp(info->languages[i], language) == 0)
+			return i;
+	return 0;
+}
+
+struct info_text info_text(const struct info *info, uint32_t part, const char *language)
+{
+	const struct part *p = &info->parts[part];
+	uint32_t found = language_index(info, language);
+	struct info_text text;
+
+	if (!p->texts[found].title)
+		found = 0;
+	text.language = info->languages[found];
+	text.title = p->texts[found].title;
+	text.caption = p->texts[found].caption ? p->texts[found].caption : "";
+	text.thumbnail = p->thumbnail ? info->pictures[p->thumbnail - 1].name : "";
+	return text;
+}
+
+/* The language asked for, else the default, else whichever has a page; or language_count. */
+static uint32_t page_language(const struct info *info, const struct part *part,
+			      const char *language)
+{
+	uint32_t asked = language_index(info, language);
+	uint32_t found = 0;
+
+	if (part->texts[asked].has_page)
+		return asked;
+	while (found < info->language_count && !part->texts[found].has_page)
+		found++;
+	return found;
+}
+
+int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
+	      const char **language_found)
+{
+	uint32_t found = page_language(info, &info->parts[part], language);
+	const void *body;
+	int code;
+
+	*html = (struct bytes){ 0 };
+	if (found == info->language_count)
+		return -ENOENT;
+	info->calls = 0;
+	sqlite3_reset(info->page);
+	sqlite3_bind_int64(info->page, 1, part);
+	sqlite3_bind_int64(info->page, 2, found);
+	code = sqlite3_step(info->page);
+	if (code != SQLITE_ROW)
+		return code == SQLITE_DONE ? -EBADMSG : from_sqlite(info->db, code, "page");
+	body = sqlite3_column_text(info->page, 0);
+	if (!body)
+		return -ENOMEM;
+	*html = (struct bytes){ body, (size_t)sqlite3_column_bytes(info->page, 0) };
+	if (language_found)
+		*language_found = info->languages[found];
+	return 0;
+}
+
+uint32_t info_picture_count(const struct info *info)
+{
+	return info->picture_count;
+}
+
+const struct info_picture *info_picture(const struct info *info, uint32_t index)
+{
+	return &info->pictures[index];
+}
+
+const struct info_picture *info_find_picture(const struct info *info, const char *name)
+{
+	uint32_t low = 0, high = info->picture_count;
+
+	while (low < high) {
+		uint32_t middle = low + (high - low) / 2;
+		int order = strcmp(name, info->pictures[middle].name);
+
+		if (order == 0)
+			return &info->pictures[middle];
+		if (order < 0)
+			high = middle;
+		else
+			low = middle + 1;
+	}
+	return NULL;
+}
