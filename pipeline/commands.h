@@ -9,4 +9,6 @@ struct command {
 	int (*run)(int argc, char **argv);
 };
 
+int command_import(int argc, char **argv);
+
 #endif

@@ -6,6 +6,7 @@
 #include "pipeline/commands.h"
 
 static const struct command commands[] = {
+	{ "import", "read scans, say what was found and repaired", command_import },
 	{ NULL, NULL, NULL },
 };
 

@@ -2,11 +2,14 @@
 #ifndef GOPURA_PIPELINE_MESH_H
 #define GOPURA_PIPELINE_MESH_H
 
-#include "base/compiler.h"
-
+#include <stddef.h>
 #include <stdint.h>
 
-/* sRGB, row 0 on top, 3 bytes a pixel. */
+#include "base/compiler.h"
+
+enum { MESH_TEXTURES_MOST = UINT16_MAX };
+
+/* sRGB, row 0 on top, 3 bytes a pixel. A material without a picture is a texture of one pixel. */
 struct mesh_texture {
 	uint32_t width, height;
 	uint8_t *rgb; /* owned */
@@ -25,5 +28,20 @@ struct mesh {
 };
 
 void mesh_finish(struct mesh *mesh); /* frees what it owns, zeroes; NULL is fine */
+
+/* Of all vertices; zeros for an empty mesh. */
+void mesh_box(const struct mesh *mesh, float low[3], float high[3]);
+
+/* Behind what mesh holds; other is unchanged. What one of the two lacks is filled in: colours
+ * white, uvs 0 on a white texture. -ENOMEM; -EFBIG past 32-bit counts or MESH_TEXTURES_MOST. On
+ * failure mesh is as it was. */
+must_check int mesh_append(struct mesh *mesh, const struct mesh *other);
+
+/* Colour of the texture at uv: nearest pixel, repeating. */
+void mesh_texel(const struct mesh_texture *texture, const float uv[2], uint8_t rgb[3]);
+
+/* Vertex colours from the textures (the coarse patches have no room for a picture); keeps the
+ * open share where there are colours. -ENOMEM. A mesh without texture stays as it is. */
+must_check int mesh_colours_from_textures(struct mesh *mesh);
 
 #endif

@@ -1,0 +1,116 @@
+#include "pipeline/commands.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/import.h"
+#include "pipeline/mesh_file.h"
+
+static const char help[] =
+	"gopura-content import: read scans, say what was found and what was repaired\n"
+	"\n"
+	"usage: gopura-content import [OPTIONS] FILE...\n"
+	"\n"
+	"  --up AXIS       the axis that points up in the files: z (default), y or x\n"
+	"  --unit UNIT     m (default), cm, mm, in, or metres in one unit (0.0254)\n"
+	"  --out FILE      save the mesh of all files together as a cache file\n"
+	"\n"
+	"Reads PLY, OBJ with MTL and JPEG or PNG pictures, STL, OFF, glTF and GLB.\n"
+	"Exit status: 0 all were read, 1 at least one was refused, 2 the command line is wrong.\n"
+	"\n"
+	"  gopura-content import statue.ply\n"
+	"  gopura-content import --up y --unit mm tower.obj gallery.obj --out temple.mesh\n";
+
+struct settings {
+	struct import_options import;
+	const char *out; /* borrowed from argv */
+};
+
+static int read_one(struct mesh *all, const char *path, const struct settings *settings)
+{
+	struct import_report report;
+	struct fault fault = { "" };
+	struct mesh mesh;
+	int rc = import_scan(&mesh, path, &settings->import, &report, &fault);
+
+	if (rc < 0) {
+		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+		return rc;
+	}
+	import_report_print(stdout, path, &report);
+	if (settings->out)
+		rc = mesh_append(all, &mesh);
+	mesh_finish(&mesh);
+	if (rc < 0)
+		fprintf(stderr, "%s: cannot be joined to the others: %s\n", path, strerror(-rc));
+	return rc;
+}
+
+static int read_all(char **paths, int count, const struct settings *settings)
+{
+	const struct hash no_key = { { 0 } };
+	struct mesh all = { 0 };
+	int status = EXIT_SUCCESS;
+
+	for (int i = 0; i < count; i++)
+		if (read_one(&all, paths[i], settings) < 0)
+			status = EXIT_FAILURE;
+	if (settings->out && status == EXIT_SUCCESS) {
+		int rc = mesh_file_save(&all, no_key, settings->out);
+
+		if (rc < 0) {
+			fprintf(stderr, "%s: %s\n", settings->out, strerror(-rc));
+			status = EXIT_FAILURE;
+		}
+	}
+	mesh_finish(&all);
+	return status;
+}
+
+static int wrong(const char *what, const char *value)
+{
+	fprintf(stderr, "gopura-content import: %s%s; see gopura-content import --help\n", what,
+		value);
+	return 2;
+}
+
+int command_import(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "up", required_argument, NULL, 'a' },
+		{ "unit", required_argument, NULL, 'u' },
+		{ "out", required_argument, NULL, 'o' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	struct settings settings = { 0 };
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'a':
+			if (!import_axis_named(optarg, &settings.import.up))
+				return wrong("--up must be x, y or z, not ", optarg);
+			break;
+		case 'u':
+			if (!import_unit_named(optarg, &settings.import.metres_per_unit))
+				return wrong("--unit must be m, cm, mm, in or a number, not ",
+					     optarg);
+			break;
+		case 'o':
+			settings.out = optarg;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return 0;
+		default:
+			return 2;
+		}
+	}
+	if (optind == argc)
+		return wrong("name at least one file", "");
+	return read_all(argv + optind, argc - optind, &settings);
+}

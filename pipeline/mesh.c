@@ -1,0 +1,188 @@
+#include "pipeline/mesh.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_finish(struct mesh *mesh)
+{
+	if (!mesh)
+		return;
+	free(mesh->positions);
+	free(mesh->colours);
+	free(mesh->uvs);
+	free(mesh->triangles);
+	free(mesh->materials);
+	for (uint32_t i = 0; mesh->textures && i < mesh->texture_count; i++)
+		free(mesh->textures[i].rgb);
+	free(mesh->textures);
+	*mesh = (struct mesh){ 0 };
+}
+
+void mesh_box(const struct mesh *mesh, float low[3], float high[3])
+{
+	for (int k = 0; k < 3; k++)
+		low[k] = high[k] = mesh->vertex_count ? mesh->positions[0][k] : 0;
+	for (uint32_t i = 1; i < mesh->vertex_count; i++)
+		for (int k = 0; k < 3; k++) {
+			low[k] = fminf(low[k], mesh->positions[i][k]);
+			high[k] = fmaxf(high[k], mesh->positions[i][k]);
+		}
+}
+
+/* ---- appending */
+
+/* A new array: the first, then the second; where one is NULL its part is of fill bytes. */
+static void *join(const void *first, size_t first_count, const void *second, size_t second_count,
+		  size_t item_bytes, int fill)
+{
+	uint8_t *joined = malloc((first_count + second_count) * item_bytes + 1);
+
+	if (!joined)
+		return NULL;
+	memset(joined, fill, (first_count + second_count) * item_bytes);
+	if (first)
+		memcpy(joined, first, first_count * item_bytes);
+	if (second)
+		memcpy(joined + first_count * item_bytes, second, second_count * item_bytes);
+	return joined;
+}
+
+static int copy_texture(struct mesh_texture *to, const struct mesh_texture *from)
+{
+	size_t bytes = (size_t)from->width * from->height * 3;
+
+	*to = *from;
+	to->rgb = malloc(bytes + 1);
+	if (!to->rgb)
+		return -ENOMEM;
+	memcpy(to->rgb, from->rgb, bytes);
+	return 0;
+}
+
+/* Copies of both meshes' textures; a side without any gets a white one, for it needs a material.
+ * base is where the second's begin. */
+static int join_textures(struct mesh *joined, const struct mesh *a, const struct mesh *b,
+			 uint32_t *base)
+{
+	const struct mesh_texture white = { 1, 1, (uint8_t[]){ 255, 255, 255 } };
+	uint32_t a_count = a->textures ? a->texture_count : 1;
+	uint32_t b_count = b->textures ? b->texture_count : 1;
+	int rc = 0;
+
+	*base = a_count;
+	joined->textures = calloc((size_t)a_count + b_count, sizeof(*joined->textures));
+	if (!joined->textures)
+		return -ENOMEM;
+	joined->texture_count = a_count + b_count;
+	for (uint32_t i = 0; i < a_count && rc == 0; i++)
+		rc = copy_texture(&joined->textures[i], a->textures ? &a->textures[i] : &white);
+	for (uint32_t i = 0; i < b_count && rc == 0; i++)
+		rc = copy_texture(&joined->textures[a_count + i],
+				  b->textures ? &b->textures[i] : &white);
+	return rc;
+}
+
+static int join_materials(struct mesh *joined, const struct mesh *a, const struct mesh *b)
+{
+	uint32_t base;
+	int rc;
+
+	if (!a->textures && !b->textures)
+		return 0;
+	if ((uint64_t)a->texture_count + b->texture_count + 2 > MESH_TEXTURES_MOST)
+		return -EFBIG;
+	rc = join_textures(joined, a, b, &base);
+	if (rc < 0)
+		return rc;
+	joined->uvs = join(a->uvs, a->vertex_count, b->uvs, b->vertex_count, sizeof(*a->uvs), 0);
+	joined->materials = join(a->materials, a->triangle_count, b->materials, b->triangle_count,
+				 sizeof(*a->materials), 0);
+	if (!joined->uvs || !joined->materials)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < b->triangle_count; i++)
+		joined->materials[a->triangle_count + i] += (uint16_t)base;
+	return 0;
+}
+
+static int join_meshes(struct mesh *joined, const struct mesh *a, const struct mesh *b)
+{
+	joined->vertex_count = a->vertex_count + b->vertex_count;
+	joined->triangle_count = a->triangle_count + b->triangle_count;
+	joined->positions = join(a->positions, a->vertex_count, b->positions, b->vertex_count,
+				 sizeof(*a->positions), 0);
+	joined->triangles = join(a->triangles, a->triangle_count, b->triangles, b->triangle_count,
+				 sizeof(*a->triangles), 0);
+	if (!joined->positions || !joined->triangles)
+		return -ENOMEM;
+	for (uint32_t i = a->triangle_count; i < joined->triangle_count; i++)
+		for (int k = 0; k < 3; k++)
+			joined->triangles[i][k] += a->vertex_count;
+	if (a->colours || b->colours) {
+		joined->colours = join(a->colours, a->vertex_count, b->colours, b->vertex_count,
+				       sizeof(*a->colours), 255);
+		if (!joined->colours)
+			return -ENOMEM;
+	}
+	return join_materials(joined, a, b);
+}
+
+int mesh_append(struct mesh *mesh, const struct mesh *other)
+{
+	struct mesh joined = { 0 };
+	int rc;
+
+	if ((uint64_t)mesh->vertex_count + other->vertex_count >= UINT32_MAX ||
+	    (uint64_t)mesh->triangle_count + other->triangle_count >= UINT32_MAX)
+		return -EFBIG;
+	rc = join_meshes(&joined, mesh, other);
+	if (rc < 0) {
+		mesh_finish(&joined);
+		return rc;
+	}
+	mesh_finish(mesh);
+	*mesh = joined;
+	return 0;
+}
+
+/* ---- textures */
+
+/* 0..size-1, repeating. */
+static uint32_t wrap(float at, uint32_t size)
+{
+	float within = at - floorf(at);
+	uint32_t pixel = (uint32_t)(within * (float)size);
+
+	return pixel < size ? pixel : size - 1;
+}
+
+void mesh_texel(const struct mesh_texture *texture, const float uv[2], uint8_t rgb[3])
+{
+	bool finite = isfinite(uv[0]) && isfinite(uv[1]);
+	uint32_t x = finite ? wrap(uv[0], texture->width) : 0;
+	uint32_t y = finite ? texture->height - 1 - wrap(uv[1], texture->height) : 0;
+
+	memcpy(rgb, texture->rgb + ((size_t)y * texture->width + x) * 3, 3);
+}
+
+int mesh_colours_from_textures(struct mesh *mesh)
+{
+	if (!mesh->textures || !mesh->uvs || !mesh->materials)
+		return 0;
+	if (!mesh->colours) {
+		mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
+		if (!mesh->colours)
+			return -ENOMEM;
+		memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
+	}
+	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+		for (int k = 0; k < 3; k++) {
+			uint32_t vertex = mesh->triangles[i][k];
+
+			mesh_texel(&mesh->textures[mesh->materials[i]], mesh->uvs[vertex],
+				   mesh->colours[vertex]);
+		}
+	return 0;
+}
