@@ -1,7 +1,9 @@
 /* What kiosk and fetcher say to each other over a Unix SOCK_SEQPACKET socket, one message a packet.
  *
  * Kiosk to fetcher
- *   MESSAGE_RELEASE  use this release: where its locator lies, and its root
+ *   MESSAGE_RELEASE  use this release (its locator lies under its root's hash): alone, which drops
+ *                    every want and forgets other releases, or also, beside those in use, so that
+ *                    the next one can be brought while this one is shown
  *   MESSAGE_WANT     bring an object (again with another priority: only the priority changes)
  *   MESSAGE_DROP     no longer wanted
  *   MESSAGE_KEEP     an object that must not leave the cache while its release is in use
@@ -34,7 +36,8 @@ enum message_kind {
 enum {
 	MESSAGE_INLINE_MOST = 96 * 1024,
 	MESSAGE_BYTES_MOST = MESSAGE_INLINE_MOST + 1024,
-	MESSAGE_META_BYTES_MOST = 64 * 1024
+	MESSAGE_META_BYTES_MOST = 64 * 1024,
+	MESSAGE_RELEASES_MOST = 4 /* in use at once */
 };
 
 enum meta_role { META_ROOT, META_RELEASE, META_TIMESTAMP };
@@ -68,6 +71,7 @@ struct message {
 		struct {
 			struct hash root;
 			uint32_t root_bytes;
+			bool also; /* beside those in use */
 		} release;
 		struct message_want want;
 		struct hash drop;
@@ -90,7 +94,12 @@ struct message {
 	};
 };
 
+/* Appends one packet. Encodes what it is given: what does not keep to the limits above (an inline
+ * object larger than MESSAGE_INLINE_MOST) sets out's error to -EFBIG. */
 void message_encode(struct buffer *out, const struct message *message);
+/* Bytes in *out are borrowed from packet. -EBADMSG: truncated, trailing bytes, an unknown kind, or
+ * a size, role or reason out of range. Whether a descriptor came along is the caller's to check
+ * (MESSAGE_OBJECT with empty bytes needs exactly one, everything else none). */
 must_check int message_decode(struct message *out, struct bytes packet);
 
 #endif

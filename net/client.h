@@ -23,6 +23,7 @@ struct net_client_options {
 	const char *release_url; /* copied; https://..., http://... or a folder */
 	const char *cache_path;  /* copied; the fetcher's cache.db */
 	uint64_t cache_budget_bytes;
+	uint32_t poll_s;     /* between looks for a new release; 0: the fetcher's default */
 	const char *ca_file; /* copied; certificate authority for https; NULL: the system's */
 	struct net_client_events events;
 	void *data;
@@ -35,11 +36,18 @@ void net_client_destroy(struct net_client *client); /* ends a fetcher it started
 int net_client_fd(const struct net_client *client);
 must_check int net_client_dispatch(struct net_client *client);
 
-/* Wants of another release are dropped. */
+/* From now on this release alone: every want is dropped, every keep forgotten; say anew what is
+ * wanted of it. The release that is in use already: nothing happens. */
 void net_client_use_release(struct net_client *client, struct hash root, uint32_t root_bytes);
+/* Also this release, beside the one in use, so that the next one comes while this one is shown:
+ * wants and keeps of both are served. net_client_use_release ends it. At most
+ * MESSAGE_RELEASES_MOST in use; the oldest added goes. */
+void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes);
 /* Said again with another priority, only that changes. Forgotten once the object event came. */
 void net_client_want(struct net_client *client, const struct message_want *want);
 void net_client_drop(struct net_client *client, struct hash hash);
+/* Remembered until net_client_use_release, and said again when the fetcher was restarted. The cache
+ * keeps up to three quarters of its budget this way. */
 void net_client_keep(struct net_client *client, struct hash hash);
 void net_client_ask_meta(struct net_client *client);
 

@@ -1,0 +1,182 @@
+#include "format/message.h"
+
+#include <errno.h>
+
+#include "format/page.h"
+
+/* A packet is a byte of kind and then the fields in the order of the struct. The last field of
+ * MESSAGE_OBJECT and MESSAGE_META is the rest of the packet. */
+
+static void put_hash(struct buffer *out, struct hash hash)
+{
+	buffer_put(out, hash.bytes, HASH_BYTES);
+}
+
+static struct hash get_hash(struct reader *reader)
+{
+	struct bytes view = reader_bytes(reader, HASH_BYTES);
+	struct hash hash = { { 0 } };
+
+	for (size_t i = 0; i < view.size; i++)
+		hash.bytes[i] = view.data[i];
+	return hash;
+}
+
+static void put_want(struct buffer *out, const struct message_want *want)
+{
+	put_hash(out, want->hash);
+	put_hash(out, want->page);
+	buffer_put_u32(out, want->offset);
+	buffer_put_u32(out, want->size);
+	buffer_put_u32(out, want->priority);
+}
+
+static void get_want(struct message_want *out, struct reader *reader)
+{
+	out->hash = get_hash(reader);
+	out->page = get_hash(reader);
+	out->offset = reader_u32(reader);
+	out->size = reader_u32(reader);
+	out->priority = reader_u32(reader);
+}
+
+static void put_status(struct buffer *out, const struct message_status *status)
+{
+	buffer_put_u8(out, status->online);
+	buffer_put_u32(out, status->wanted);
+	buffer_put_u64(out, status->received_bytes);
+	buffer_put_u64(out, status->cache_bytes);
+	buffer_put_u64(out, status->cache_budget_bytes);
+	buffer_put_u64(out, status->offline_since_s);
+}
+
+static void get_status(struct message_status *out, struct reader *reader)
+{
+	out->online = reader_u8(reader);
+	out->wanted = reader_u32(reader);
+	out->received_bytes = reader_u64(reader);
+	out->cache_bytes = reader_u64(reader);
+	out->cache_budget_bytes = reader_u64(reader);
+	out->offline_since_s = reader_u64(reader);
+}
+
+/* The rest of the packet, whose size must not pass the ceiling of its kind. */
+static void put_rest(struct buffer *out, struct bytes rest, size_t most)
+{
+	if (rest.size > most && !out->error)
+		out->error = -EFBIG;
+	buffer_put(out, rest.data, rest.size);
+}
+
+void message_encode(struct buffer *out, const struct message *message)
+{
+	buffer_put_u8(out, (uint8_t)message->kind);
+	switch (message->kind) {
+	case MESSAGE_RELEASE:
+		put_hash(out, message->release.root);
+		buffer_put_u32(out, message->release.root_bytes);
+		buffer_put_u8(out, message->release.also);
+		break;
+	case MESSAGE_WANT:
+		put_want(out, &message->want);
+		break;
+	case MESSAGE_DROP:
+		put_hash(out, message->drop);
+		break;
+	case MESSAGE_KEEP:
+		put_hash(out, message->keep);
+		break;
+	case MESSAGE_ASK_META:
+		break;
+	case MESSAGE_OBJECT:
+		put_hash(out, message->object.hash);
+		buffer_put_u32(out, message->object.size);
+		put_rest(out, message->object.bytes, MESSAGE_INLINE_MOST);
+		break;
+	case MESSAGE_MISSING:
+		put_hash(out, message->missing.hash);
+		buffer_put_u8(out, (uint8_t)message->missing.reason);
+		break;
+	case MESSAGE_META:
+		buffer_put_u8(out, (uint8_t)message->meta.role);
+		buffer_put_u32(out, message->meta.version);
+		put_rest(out, message->meta.bytes, MESSAGE_META_BYTES_MOST);
+		break;
+	case MESSAGE_STATUS:
+		put_status(out, &message->status);
+		break;
+	}
+}
+
+static bool size_in_range(uint32_t size)
+{
+	return size > 0 && size <= OBJECT_BYTES_MOST;
+}
+
+static bool object_in_range(const struct message *message)
+{
+	size_t inlined = message->object.bytes.size;
+
+	if (inlined > MESSAGE_INLINE_MOST || !size_in_range(message->object.size))
+		return false;
+	return inlined == 0 || inlined == message->object.size;
+}
+
+/* Reads the fields of *out's kind; true when each is in its range. */
+static bool get_fields(struct message *out, struct reader *reader)
+{
+	uint8_t small;
+
+	switch (out->kind) {
+	case MESSAGE_RELEASE:
+		out->release.root = get_hash(reader);
+		out->release.root_bytes = reader_u32(reader);
+		small = reader_u8(reader);
+		out->release.also = small == 1;
+		return small <= 1 && size_in_range(out->release.root_bytes) &&
+		       !hash_is_zero(out->release.root);
+	case MESSAGE_WANT:
+		get_want(&out->want, reader);
+		return size_in_range(out->want.size) && !hash_is_zero(out->want.hash);
+	case MESSAGE_DROP:
+		out->drop = get_hash(reader);
+		return true;
+	case MESSAGE_KEEP:
+		out->keep = get_hash(reader);
+		return !hash_is_zero(out->keep);
+	case MESSAGE_ASK_META:
+		return true;
+	case MESSAGE_OBJECT:
+		out->object.hash = get_hash(reader);
+		out->object.size = reader_u32(reader);
+		out->object.bytes = reader_bytes(reader, reader_left(reader));
+		return object_in_range(out);
+	case MESSAGE_MISSING:
+		out->missing.hash = get_hash(reader);
+		small = reader_u8(reader);
+		out->missing.reason = (enum missing_reason)small;
+		return small <= MISSING_DAMAGED;
+	case MESSAGE_META:
+		small = reader_u8(reader);
+		out->meta.role = (enum meta_role)small;
+		out->meta.version = reader_u32(reader);
+		out->meta.bytes = reader_bytes(reader, reader_left(reader));
+		return small <= META_TIMESTAMP && out->meta.bytes.size > 0 &&
+		       out->meta.bytes.size <= MESSAGE_META_BYTES_MOST;
+	case MESSAGE_STATUS:
+		get_status(&out->status, reader);
+		return out->status.online <= 1;
+	}
+	return false; /* an unknown kind */
+}
+
+int message_decode(struct message *out, struct bytes packet)
+{
+	struct reader reader;
+
+	reader_init(&reader, packet);
+	*out = (struct message){ .kind = (enum message_kind)reader_u8(&reader) };
+	if (!get_fields(out, &reader) || reader.failed || reader_left(&reader) > 0)
+		return -EBADMSG;
+	return 0;
+}
