@@ -1,0 +1,340 @@
+#include "storage/cache.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/log.h"
+#include "storage/cache_private.h"
+
+enum {
+	LOG_BYTES_MOST = 64 << 20,
+	TOUCH_S = 600, /* a want moves an object up at most this often: it costs a write */
+	EVICT_TRIES = 8,
+};
+
+static int64_t pages_of(size_t bytes)
+{
+	return (int64_t)(bytes / (CACHE_PAGE_BYTES - 4)) + 1;
+}
+
+/* What a priority is worth, in seconds of use. */
+static int64_t worth_s(uint32_t priority)
+{
+	int64_t hours = 0;
+
+	if (priority >= 1000000)
+		return 7 * 24 * 3600;
+	for (uint32_t gain = priority / 1000; gain > 0; gain /= 2)
+		hours++;
+	return hours * 3600;
+}
+
+static sqlite3_stmt *bound_to_hash(struct cache *cache, enum statement which,
+				   const struct hash *hash)
+{
+	sqlite3_stmt *statement = cache->statements[which];
+
+	sqlite3_reset(statement);
+	sqlite3_bind_blob(statement, 1, hash->bytes, HASH_BYTES, SQLITE_STATIC);
+	return statement;
+}
+
+int cache_create(struct cache **out, const struct cache_options *options)
+{
+	struct cache *cache = calloc(1, sizeof(*cache));
+
+	*out = NULL;
+	if (!cache)
+		return -ENOMEM;
+	cache->path = strdup(options->path);
+	if (!cache->path) {
+		free(cache);
+		return -ENOMEM;
+	}
+	cache->budget_bytes = options->budget_bytes < CACHE_BUDGET_LEAST ? CACHE_BUDGET_LEAST
+									 : options->budget_bytes;
+	cache->log_bytes = cache->budget_bytes / 8;
+	if (cache->log_bytes > LOG_BYTES_MOST)
+		cache->log_bytes = LOG_BYTES_MOST;
+	if (cache_ready(cache))
+		cache_shrink(cache);
+	*out = cache;
+	return 0;
+}
+
+void cache_destroy(struct cache *cache)
+{
+	if (!cache)
+		return;
+	if (cache_flush(cache) < 0)
+		log_warn("storage", "%s: the last objects were not written", cache->path);
+	cache_close(cache);
+	free(cache->path);
+	free(cache);
+}
+
+/* The blob of a column into out. */
+static int take_blob(struct buffer *out, sqlite3_stmt *statement, int column)
+{
+	const void *bytes = sqlite3_column_blob(statement, column);
+	int size = sqlite3_column_bytes(statement, column);
+
+	if (size > 0 && !bytes)
+		return db_code(sqlite3_errcode(sqlite3_db_handle(statement)));
+	buffer_put(out, bytes, (size_t)size);
+	return 0;
+}
+
+/* Wanted again: it will go later. A failure costs only that. */
+static void touch(struct cache *cache, sqlite3_int64 id, sqlite3_int64 rank, uint32_t priority)
+{
+	sqlite3_stmt *statement = cache->statements[STATEMENT_TOUCH];
+	int64_t now = cache_tick(cache) + worth_s(priority);
+
+	if (now < rank + TOUCH_S || cache_begin(cache) < 0)
+		return;
+	sqlite3_bind_int64(statement, 1, id);
+	sqlite3_bind_int64(statement, 2, now);
+	if (cache_judge(cache, db_run(statement), "noting a want") < 0 ||
+	    cache_count_pages(cache, CACHE_EXTRA_PAGES) < 0)
+		return; /* complained of already */
+}
+
+static int drop_damaged(struct cache *cache, sqlite3_int64 id)
+{
+	sqlite3_stmt *drop;
+
+	cache->figures.damaged++;
+	if (cache_begin(cache) < 0)
+		return -EBADMSG;
+	drop = cache->statements[STATEMENT_DROP];
+	sqlite3_bind_int64(drop, 1, id);
+	if (cache_judge(cache, db_run(drop), "dropping") == 0)
+		cache->batch_pages += CACHE_EXTRA_PAGES;
+	return -EBADMSG;
+}
+
+int cache_get(struct cache *cache, struct hash hash, uint32_t priority, struct buffer *out)
+{
+	sqlite3_int64 id = 0, rank = 0;
+	sqlite3_stmt *get;
+	int code, rc;
+
+	buffer_clear(out);
+	if (!cache_ready(cache))
+		return -ENOENT;
+	get = bound_to_hash(cache, STATEMENT_GET, &hash);
+	code = sqlite3_step(get);
+	rc = db_code(code);
+	if (code == SQLITE_ROW) {
+		id = sqlite3_column_int64(get, 0);
+		rank = sqlite3_column_int64(get, 1);
+		rc = take_blob(out, get, 2);
+	}
+	sqlite3_reset(get);
+	rc = cache_judge(cache, rc, "reading");
+	if (rc < 0 || code == SQLITE_DONE) {
+		cache->figures.misses++;
+		return rc < 0 ? rc : -ENOENT;
+	}
+	if (out->error)
+		return out->error;
+	if (!hash_equal(hash_of(buffer_bytes(out)), hash))
+		return drop_damaged(cache, id);
+	cache->figures.hits++;
+	touch(cache, id, rank, priority);
+	return 0;
+}
+
+static bool is_kept(struct cache *cache, const struct hash *hash)
+{
+	sqlite3_stmt *statement = bound_to_hash(cache, STATEMENT_IS_KEPT, hash);
+	bool kept = sqlite3_step(statement) == SQLITE_ROW;
+
+	sqlite3_reset(statement);
+	return kept;
+}
+
+static bool may_keep_more(struct cache *cache)
+{
+	int64_t kept = cache_integer(cache, STATEMENT_KEPT_BYTES);
+
+	return kept >= 0 && (uint64_t)kept < cache->budget_bytes / 4 * 3;
+}
+
+/* SQLite may still find no room, for instance where a free list is damaged or the disk is full:
+ * evicting more is worth a few tries. */
+static int put_with_room(struct cache *cache, sqlite3_stmt *put, int64_t pages)
+{
+	int rc = cache_make_room(cache, pages);
+
+	for (int i = 0; rc == 0; i++) {
+		rc = db_run(put);
+		if (rc != -ENOSPC || i == EVICT_TRIES || sqlite3_get_autocommit(cache->db))
+			return cache_judge(cache, rc, "writing");
+		rc = cache_make_room(cache, cache_free_pages(cache) + pages);
+	}
+	return rc;
+}
+
+static int put_row(struct cache *cache, sqlite3_stmt *put, size_t bytes)
+{
+	int64_t pages = pages_of(bytes) + CACHE_EXTRA_PAGES;
+	int rc;
+
+	if ((uint64_t)pages * CACHE_PAGE_BYTES > cache->log_bytes / 4 + 8 * CACHE_PAGE_BYTES)
+		return -EFBIG;
+	/* Beforehand: a large row begins a transaction of its own, or the log would outgrow its
+	 * share. */
+	rc = cache_reserve_pages(cache, pages);
+	if (rc == 0)
+		rc = put_with_room(cache, put, pages);
+	if (rc < 0) {
+		cache->figures.refused_writes++;
+		return rc;
+	}
+	return cache_count_pages(cache, pages);
+}
+
+int cache_put(struct cache *cache, struct hash hash, struct bytes object, uint32_t priority)
+{
+	sqlite3_stmt *put;
+	bool kept;
+	int rc;
+
+	if (!cache_ready(cache))
+		return -EIO;
+	kept = is_kept(cache, &hash) && may_keep_more(cache);
+	put = bound_to_hash(cache, STATEMENT_PUT, &hash);
+	sqlite3_bind_int64(put, 2, cache_tick(cache) + worth_s(priority));
+	sqlite3_bind_int(put, 3, kept);
+	sqlite3_bind_int64(put, 4, (sqlite3_int64)object.size);
+	sqlite3_bind_blob64(put, 5, object.data ? (const void *)object.data : "", object.size,
+			    SQLITE_STATIC);
+	rc = put_row(cache, put, object.size);
+	if (cache->db)
+		sqlite3_clear_bindings(cache->statements[STATEMENT_PUT]);
+	return rc;
+}
+
+int cache_keep(struct cache *cache, struct hash hash)
+{
+	int rc;
+
+	if (!cache_ready(cache))
+		return -EIO;
+	if (is_kept(cache, &hash))
+		return 0;
+	if (!may_keep_more(cache))
+		return -ENOSPC;
+	rc = cache_begin(cache);
+	if (rc == 0)
+		rc = cache_judge(cache, db_run(bound_to_hash(cache, STATEMENT_KEEP, &hash)),
+				 "keeping");
+	if (rc == 0)
+		rc = cache_judge(cache, db_run(bound_to_hash(cache, STATEMENT_MARK_KEPT, &hash)),
+				 "keeping");
+	return rc < 0 ? rc : cache_count_pages(cache, CACHE_EXTRA_PAGES);
+}
+
+int cache_use_release(struct cache *cache, struct hash root)
+{
+	char hex[HASH_HEX_BYTES], sql[512];
+	int rc;
+
+	if (!cache_ready(cache))
+		return -EIO;
+	hash_to_hex(root, hex);
+	snprintf(sql, sizeof(sql),
+		 "SELECT count(*) FROM facts WHERE name = 'release'"
+		 " AND value = '%s'",
+		 hex);
+	if (db_integer(cache->db, sql) == 1)
+		return 0;
+	rc = cache_begin(cache);
+	if (rc < 0)
+		return rc;
+	snprintf(sql, sizeof(sql),
+		 "DELETE FROM keeps; UPDATE objects SET kept = 0 WHERE kept = 1;"
+		 "DELETE FROM files WHERE name <> x'%s';"
+		 "INSERT OR REPLACE INTO facts (name, value) VALUES ('release', '%s')",
+		 hex, hex);
+	rc = cache_judge(cache, db_exec(cache->db, sql), "changing the release");
+	return rc < 0 ? rc : cache_flush(cache);
+}
+
+int cache_get_file(struct cache *cache, struct hash name, struct buffer *out)
+{
+	struct hash check = { { 0 } };
+	sqlite3_stmt *get;
+	int code, rc;
+
+	buffer_clear(out);
+	if (!cache_ready(cache))
+		return -ENOENT;
+	get = bound_to_hash(cache, STATEMENT_GET_FILE, &name);
+	code = sqlite3_step(get);
+	rc = db_code(code);
+	if (code == SQLITE_ROW && sqlite3_column_bytes(get, 0) == HASH_BYTES)
+		memcpy(check.bytes, sqlite3_column_blob(get, 0), HASH_BYTES);
+	if (code == SQLITE_ROW)
+		rc = take_blob(out, get, 1);
+	sqlite3_reset(get);
+	rc = cache_judge(cache, rc, "reading a file");
+	if (rc < 0 || code == SQLITE_DONE)
+		return rc < 0 ? rc : -ENOENT;
+	if (out->error)
+		return out->error;
+	return hash_equal(hash_of(buffer_bytes(out)), check) ? 0 : -EBADMSG;
+}
+
+int cache_put_file(struct cache *cache, struct hash name, struct bytes file)
+{
+	struct hash check = hash_of(file);
+	sqlite3_stmt *put;
+	int rc;
+
+	if (!cache_ready(cache))
+		return -EIO;
+	put = bound_to_hash(cache, STATEMENT_PUT_FILE, &name);
+	sqlite3_bind_blob(put, 2, check.bytes, HASH_BYTES, SQLITE_STATIC);
+	sqlite3_bind_blob64(put, 3, file.data ? (const void *)file.data : "", file.size,
+			    SQLITE_STATIC);
+	rc = put_row(cache, put, file.size);
+	if (cache->db)
+		sqlite3_clear_bindings(cache->statements[STATEMENT_PUT_FILE]);
+	return rc < 0 ? rc : cache_flush(cache);
+}
+
+static uint64_t size_of_file(const char *path, const char *suffix)
+{
+	char name[4096];
+	struct stat info;
+
+	snprintf(name, sizeof(name), "%s%s", path, suffix);
+	return stat(name, &info) == 0 ? (uint64_t)info.st_size : 0;
+}
+
+uint64_t cache_file_bytes(const struct cache *cache)
+{
+	return size_of_file(cache->path, "") + size_of_file(cache->path, "-wal");
+}
+
+void cache_figures(struct cache *cache, struct cache_figures *out)
+{
+	int64_t kept;
+
+	*out = cache->figures;
+	out->budget_bytes = cache->budget_bytes;
+	out->file_bytes = cache_file_bytes(cache);
+	if (!cache->db)
+		return;
+	kept = cache_integer(cache, STATEMENT_KEPT_BYTES);
+	out->kept_bytes = kept > 0 ? (uint64_t)kept : 0;
+	out->objects = (uint64_t)db_integer(cache->db, "SELECT count(*) FROM objects");
+	out->object_bytes =
+		(uint64_t)db_integer(cache->db, "SELECT ifnull(sum(size), 0) FROM objects");
+}
