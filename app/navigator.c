@@ -1,0 +1,235 @@
+#include "app/navigator.h"
+
+#include <math.h>
+
+#include <cglm/cglm.h>
+
+#define PITCH_MOST     1.45f /* radians; past it "up" on the panel would jump */
+#define FLING_DECAY_MS 325.0f
+#define FLING_LEAST    8.0f  /* px/s; slower is rest */
+#define GROUND_LEAST_M 0.25f /* eye above the bottom of the box */
+#define KEEP_OFF_M     0.35f /* eye to a wall */
+#define FAR_SHARE      2.5f  /* eye to the model's middle, in half diagonals */
+
+static void view_direction(const struct navigator *nav, float out[3])
+{
+	out[0] = cosf(nav->pitch) * cosf(nav->yaw);
+	out[1] = cosf(nav->pitch) * sinf(nav->yaw);
+	out[2] = sinf(nav->pitch);
+}
+
+static void view_right(const struct navigator *nav, float out[3])
+{
+	out[0] = sinf(nav->yaw);
+	out[1] = -cosf(nav->yaw);
+	out[2] = 0;
+}
+
+static float diagonal_m(const struct navigator *nav)
+{
+	return glm_vec3_distance((float *)nav->options.box_min_m,
+				 (float *)nav->options.box_max_m);
+}
+
+/* Where the eye may be, whatever asked for it. */
+static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
+{
+	const float most = FAR_SHARE * diagonal_m(nav) / 2;
+	float middle[3], from_middle[3], distance;
+
+	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
+		      middle);
+	glm_vec3_sub(eye_m, middle, from_middle);
+	distance = glm_vec3_norm(from_middle);
+	if (distance > most) {
+		glm_vec3_scale(from_middle, most / distance, from_middle);
+		glm_vec3_add(middle, from_middle, eye_m);
+	}
+	if (eye_m[2] < nav->options.box_min_m[2] + GROUND_LEAST_M)
+		eye_m[2] = nav->options.box_min_m[2] + GROUND_LEAST_M;
+}
+
+/* Moves the eye towards a place, as far as there is nothing in the way. true: all of it. */
+static bool move_eye(struct navigator *nav, float to_m[3])
+{
+	const struct navigator_options *o = &nav->options;
+	float way[3], length, free_m;
+
+	keep_in_bounds(nav, to_m);
+	glm_vec3_sub(to_m, nav->eye_m, way);
+	length = glm_vec3_norm(way);
+	if (length < 1e-6f)
+		return true;
+	glm_vec3_scale(way, 1 / length, way);
+	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + KEEP_OFF_M) :
+				INFINITY;
+	if (free_m >= length + KEEP_OFF_M) {
+		glm_vec3_copy(to_m, nav->eye_m);
+		return true;
+	}
+	free_m = fmaxf(0, free_m - KEEP_OFF_M);
+	glm_vec3_muladds(way, fminf(free_m, length), nav->eye_m);
+	return false;
+}
+
+static void stop(struct navigator *nav)
+{
+	nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+	nav->flight_left_ms = 0;
+}
+
+static void angles_of(const float from[3], const float to[3], float *yaw, float *pitch)
+{
+	const float dx = to[0] - from[0], dy = to[1] - from[1], dz = to[2] - from[2];
+
+	*yaw = atan2f(dy, dx);
+	*pitch = glm_clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MOST, PITCH_MOST);
+}
+
+void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3])
+{
+	stop(nav);
+	glm_vec3_copy((float *)eye_m, nav->eye_m);
+	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	angles_of(eye_m, target_m, &nav->yaw, &nav->pitch);
+}
+
+void navigator_init(struct navigator *nav, const struct navigator_options *options)
+{
+	*nav = (struct navigator){ .options = *options };
+	navigator_look(nav, options->home_eye_m, options->home_target_m);
+}
+
+void navigator_grab(struct navigator *nav, const float pivot_m[3])
+{
+	stop(nav);
+	glm_vec3_copy((float *)pivot_m, nav->pivot_m);
+}
+
+/* Turns eye and view rigidly about the pivot, so that the pivot stays where it is on the panel.
+ * Where a wall or the ground holds the eye, the view does not turn either. */
+static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
+{
+	const float pitch = glm_clamp(nav->pitch + pitch_by, -PITCH_MOST, PITCH_MOST);
+	const struct navigator before = *nav;
+	float arm[3], right[3], eye[3];
+	float up[3] = { 0, 0, 1 };
+
+	glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
+	view_right(nav, right);
+	glm_vec3_rotate(arm, pitch - nav->pitch, right);
+	glm_vec3_rotate(arm, yaw_by, up);
+	glm_vec3_add(nav->pivot_m, arm, eye);
+	nav->pitch = pitch;
+	nav->yaw += yaw_by;
+	if (eye[2] < nav->options.box_min_m[2] + GROUND_LEAST_M || !move_eye(nav, eye)) {
+		*nav = before;
+		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+		if (yaw_by != 0 && pitch != nav->pitch)
+			turn_about_pivot(nav, yaw_by, 0); /* slide along what holds it */
+	}
+}
+
+void navigator_turn(struct navigator *nav, float dx_px, float dy_px, float height_px)
+{
+	const float radians_per_px = (float)M_PI / height_px;
+
+	turn_about_pivot(nav, -dx_px * radians_per_px, dy_px * -radians_per_px);
+}
+
+void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_px, float twist,
+		     float height_px)
+{
+	const float focal_px = height_px / 2 / tanf(glm_rad(nav->options.fov_deg) / 2);
+	float direction[3], right[3], up[3], arm[3], eye[3], depth;
+
+	if (scale > 0 && isfinite(scale)) {
+		glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
+		glm_vec3_scale(arm, 1 / glm_clamp(scale, 0.2f, 5), arm);
+		glm_vec3_add(nav->pivot_m, arm, eye);
+		move_eye(nav, eye);
+	}
+	view_direction(nav, direction);
+	view_right(nav, right);
+	glm_vec3_cross(right, direction, up);
+	glm_vec3_sub(nav->pivot_m, nav->eye_m, arm);
+	depth = fmaxf(glm_vec3_dot(arm, direction), 0.1f);
+	glm_vec3_copy(nav->eye_m, eye);
+	glm_vec3_muladds(right, -dx_px * depth / focal_px, eye);
+	glm_vec3_muladds(up, dy_px * depth / focal_px, eye);
+	move_eye(nav, eye);
+	if (twist != 0)
+		turn_about_pivot(nav, twist, 0);
+}
+
+void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s)
+{
+	nav->fling_px_s[0] = vx_px_s;
+	nav->fling_px_s[1] = vy_px_s;
+}
+
+void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
+		   float duration_ms)
+{
+	float turn;
+
+	stop(nav);
+	glm_vec3_copy(nav->eye_m, nav->from_eye_m);
+	glm_vec3_copy((float *)eye_m, nav->to_eye_m);
+	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	nav->from_yaw = nav->yaw;
+	nav->from_pitch = nav->pitch;
+	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
+	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the short way round */
+	nav->to_yaw = nav->from_yaw + turn;
+	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms, 1);
+}
+
+static void step_flight(struct navigator *nav, float dt_ms)
+{
+	float t, eye[3];
+
+	nav->flight_left_ms = fmaxf(0, nav->flight_left_ms - dt_ms);
+	t = 1 - nav->flight_left_ms / nav->flight_ms;
+	t = t * t * (3 - 2 * t);
+	glm_vec3_lerp(nav->from_eye_m, nav->to_eye_m, t, eye);
+	keep_in_bounds(nav, eye);
+	glm_vec3_copy(eye, nav->eye_m); /* a flight may cross a wall; it never ends in one */
+	nav->yaw = glm_lerp(nav->from_yaw, nav->to_yaw, t);
+	nav->pitch = glm_lerp(nav->from_pitch, nav->to_pitch, t);
+}
+
+bool navigator_step(struct navigator *nav, float dt_ms, float height_px)
+{
+	float decay;
+
+	if (nav->flight_left_ms > 0) {
+		step_flight(nav, dt_ms);
+		return true;
+	}
+	if (hypotf(nav->fling_px_s[0], nav->fling_px_s[1]) < FLING_LEAST) {
+		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+		return false;
+	}
+	navigator_turn(nav, nav->fling_px_s[0] * dt_ms / 1000, nav->fling_px_s[1] * dt_ms / 1000,
+		       height_px);
+	decay = expf(-dt_ms / FLING_DECAY_MS);
+	nav->fling_px_s[0] *= decay;
+	nav->fling_px_s[1] *= decay;
+	return true;
+}
+
+void navigator_camera(const struct navigator *nav, struct camera *camera)
+{
+	float direction[3];
+	const float reach = FAR_SHARE * diagonal_m(nav) + diagonal_m(nav);
+
+	view_direction(nav, direction);
+	glm_vec3_copy((float *)nav->eye_m, camera->eye_m);
+	glm_vec3_add((float *)nav->eye_m, direction, camera->target_m);
+	camera->up[0] = camera->up[1] = 0;
+	camera->up[2] = 1;
+	camera->fov_deg = nav->options.fov_deg;
+	camera->near_m = KEEP_OFF_M / 3;
+	camera->far_m = reach;
+}

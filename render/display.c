@@ -1,0 +1,132 @@
+#include "render/display.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "render/display_backend.h"
+
+enum { FLIP_TIMEOUT_MS = 1000 };
+
+static int try_backend(struct display *display, const struct display_backend *backend,
+		       const struct display_options *options)
+{
+	int rc;
+
+	*display = (struct display){ .backend = backend, .fd = -1 };
+	rc = backend->create(display, options);
+	if (rc < 0) {
+		backend->destroy(display);
+		display->backend = NULL;
+		return rc;
+	}
+	log_info("render", "%s display, %d x %d", backend->name, display->width_px,
+		 display->height_px);
+	return 0;
+}
+
+static int try_any(struct display *display, const struct display_options *options)
+{
+	const bool desktop = getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
+	int rc;
+
+	/* In a desktop session the card is taken: a window, without asking for it. */
+	if (desktop && try_backend(display, &display_window, options) == 0)
+		return 0;
+	rc = try_backend(display, &display_drm, options);
+	if (rc < 0)
+		rc = try_backend(display, &display_headless, options);
+	return rc;
+}
+
+int display_create(struct display **out, const struct display_options *options)
+{
+	struct display *display = calloc(1, sizeof(*display));
+	int rc = -EINVAL;
+
+	*out = NULL;
+	if (!display)
+		return -ENOMEM;
+	switch (options->kind) {
+	case DISPLAY_AUTO:
+		rc = try_any(display, options);
+		break;
+	case DISPLAY_DRM:
+		rc = try_backend(display, &display_drm, options);
+		break;
+	case DISPLAY_WINDOW:
+		rc = try_backend(display, &display_window, options);
+		break;
+	case DISPLAY_HEADLESS:
+		rc = try_backend(display, &display_headless, options);
+		break;
+	}
+	if (rc < 0) {
+		free(display);
+		return rc;
+	}
+	*out = display;
+	return 0;
+}
+
+void display_destroy(struct display *display)
+{
+	if (!display)
+		return;
+	if (display->backend)
+		display->backend->destroy(display);
+	free(display);
+}
+
+enum display_kind display_kind(const struct display *display)
+{
+	return display->backend->kind;
+}
+
+int display_width_px(const struct display *display)
+{
+	return display->width_px;
+}
+
+int display_height_px(const struct display *display)
+{
+	return display->height_px;
+}
+
+int display_width_mm(const struct display *display)
+{
+	return display->width_mm;
+}
+
+int display_fd(const struct display *display)
+{
+	return display->fd;
+}
+
+int display_dispatch(struct display *display)
+{
+	int rc = display->backend->dispatch ? display->backend->dispatch(display) : 0;
+
+	if (rc == 0 && display->flip_pending &&
+	    clock_now_ms() - display->flip_asked_ms > FLIP_TIMEOUT_MS) {
+		log_error("render", "board bug: a page flip did not complete within a second");
+		return -ETIMEDOUT;
+	}
+	return rc;
+}
+
+bool display_ready(const struct display *display)
+{
+	return !display->flip_pending;
+}
+
+void display_begin(struct display *display)
+{
+	display->backend->begin(display);
+}
+
+int display_present(struct display *display)
+{
+	return display->backend->present(display);
+}

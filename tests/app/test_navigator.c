@@ -1,0 +1,197 @@
+#include "app/navigator.h"
+
+#include <math.h>
+
+#include <cglm/cglm.h>
+
+#include "tests/check.h"
+
+enum { HEIGHT_PX = 720 };
+
+static const struct navigator_options hall = {
+	.box_min_m = { -20, -20, 0 },
+	.box_max_m = { 20, 20, 24 },
+	.home_eye_m = { -50, 3, 12 },
+	.home_target_m = { 0, 0, 8 },
+	.fov_deg = 45,
+};
+
+/* Where a point is on the panel, in tangents of the view. */
+static void on_panel(const struct navigator *nav, const float point_m[3], float out[2])
+{
+	struct camera camera;
+	mat4 view;
+	vec4 at = { point_m[0], point_m[1], point_m[2], 1 };
+
+	navigator_camera(nav, &camera);
+	glm_lookat(camera.eye_m, camera.target_m, camera.up, view);
+	glm_mat4_mulv(view, at, at);
+	out[0] = at[0] / -at[2];
+	out[1] = at[1] / -at[2];
+}
+
+static void check_pivot_stays(const struct navigator *before, const struct navigator *after,
+			      const float pivot_m[3], float dx, float dy)
+{
+	float a[2], b[2];
+
+	on_panel(before, pivot_m, a);
+	on_panel(after, pivot_m, b);
+	CHECK(fabsf(b[0] - a[0] - dx) < 2e-3f);
+	CHECK(fabsf(b[1] - a[1] - dy) < 2e-3f);
+}
+
+static const float pivot[3] = { -12, 5, 6 };
+
+static void turning_keeps_the_touched_point_under_the_finger(void **state)
+{
+	struct navigator nav, before;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	navigator_turn(&nav, 120, 40, HEIGHT_PX);
+	CHECK(glm_vec3_distance(nav.eye_m, before.eye_m) > 5);
+	check_pivot_stays(&before, &nav, pivot, 0, 0);
+	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) -
+		    glm_vec3_distance(before.eye_m, (float *)pivot)) < 1e-2f);
+}
+
+static void a_finger_to_the_right_turns_the_model_to_the_right(void **state)
+{
+	struct navigator nav;
+	const float beside[3] = { -20, 0, 8 }; /* nearer to the eye than the pivot */
+	const float middle[3] = { 0, 0, 8 };
+	float a[2], b[2];
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, middle);
+	on_panel(&nav, beside, a);
+	navigator_turn(&nav, 50, 0, HEIGHT_PX);
+	on_panel(&nav, beside, b);
+	CHECK(b[0] > a[0]);
+	on_panel(&nav, beside, a);
+	navigator_turn(&nav, 0, 50, HEIGHT_PX); /* down: what is near comes down */
+	on_panel(&nav, beside, b);
+	CHECK(b[1] < a[1]);
+}
+
+static void parting_fingers_come_nearer_and_keep_the_point(void **state)
+{
+	struct navigator nav, before;
+	float was;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	was = glm_vec3_distance(nav.eye_m, (float *)pivot);
+	navigator_pinch(&nav, 2, 0, 0, 0, HEIGHT_PX);
+	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) - was / 2) < 0.05f);
+	check_pivot_stays(&before, &nav, pivot, 0, 0);
+}
+
+static void panning_moves_the_point_with_the_fingers(void **state)
+{
+	const float focal_px = HEIGHT_PX / 2 / tanf(glm_rad(45) / 2);
+	struct navigator nav, before;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	navigator_pinch(&nav, 1, 30, -20, 0, HEIGHT_PX);
+	check_pivot_stays(&before, &nav, pivot, 30 / focal_px, 20 / focal_px);
+}
+
+static float wall_at_minus_21(void *data, const float from[3], const float direction[3], float most)
+{
+	float d = direction[0] > 0 ? (-21 - from[0]) / direction[0] : INFINITY;
+
+	(void)data;
+	return d >= 0 && d < most ? d : INFINITY;
+}
+
+static void never_passes_a_wall(void **state)
+{
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = wall_at_minus_21;
+	navigator_init(&nav, &options);
+	navigator_grab(&nav, pivot); /* behind the wall */
+	for (int i = 0; i < 200; i++) {
+		navigator_pinch(&nav, 1.2f, 5, 3, 0.01f, HEIGHT_PX);
+		navigator_turn(&nav, 11, 7, HEIGHT_PX);
+		CHECK(nav.eye_m[0] < -21);
+	}
+}
+
+static void stays_above_ground_and_near(void **state)
+{
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	for (int i = 0; i < 300; i++) {
+		navigator_turn(&nav, 13, i < 150 ? -40 : 40, HEIGHT_PX);
+		navigator_pinch(&nav, 0.9f, 0, i % 50, 0, HEIGHT_PX);
+		CHECK(nav.eye_m[2] >= 0.24f);
+		CHECK(glm_vec3_norm(nav.eye_m) < 100);
+		CHECK(isfinite(nav.yaw) && isfinite(nav.pitch));
+	}
+}
+
+static void a_fling_slows_down_and_ends(void **state)
+{
+	struct navigator nav;
+	int steps = 0;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	navigator_fling(&nav, 900, 0);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(++steps < 400);
+	CHECK(steps > 20);
+	navigator_fling(&nav, 900, 0);
+	navigator_grab(&nav, pivot);
+	CHECK(!navigator_step(&nav, 16, HEIGHT_PX));
+}
+
+static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
+{
+	const float eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator nav;
+	struct camera camera;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	nav.yaw += 2 * (float)M_PI; /* turned once around before */
+	navigator_fly(&nav, eye, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(fabsf(nav.yaw - 2 * (float)M_PI) < 0.2f);
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+	navigator_camera(&nav, &camera);
+	CHECK(camera.near_m > 0 && camera.far_m > 100);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(turning_keeps_the_touched_point_under_the_finger),
+		cmocka_unit_test(a_finger_to_the_right_turns_the_model_to_the_right),
+		cmocka_unit_test(parting_fingers_come_nearer_and_keep_the_point),
+		cmocka_unit_test(panning_moves_the_point_with_the_fingers),
+		cmocka_unit_test(never_passes_a_wall),
+		cmocka_unit_test(stays_above_ground_and_near),
+		cmocka_unit_test(a_fling_slows_down_and_ends),
+		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
