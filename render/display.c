@@ -2,10 +2,12 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "base/log.h"
 #include "render/display_backend.h"
+#include "render/gl.h"
 
 enum { FLIP_TIMEOUT_MS = 1000 };
 
@@ -129,4 +131,23 @@ void display_begin(struct display *display)
 int display_present(struct display *display)
 {
 	return display->backend->present(display);
+}
+
+int display_read(struct display *display, uint8_t *rgba)
+{
+	const size_t row = (size_t)display->width_px * 4;
+	uint8_t *spare = malloc(row);
+
+	if (!spare)
+		return -ENOMEM;
+	display_begin(display);
+	glPixelStorei(GL_PACK_ALIGNMENT, 1);
+	glReadPixels(0, 0, display->width_px, display->height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+	for (int low = 0, high = display->height_px - 1; low < high; low++, high--) {
+		memcpy(spare, rgba + low * row, row);
+		memcpy(rgba + low * row, rgba + high * row, row);
+		memcpy(rgba + high * row, spare, row);
+	}
+	free(spare);
+	return gl_check("reading a frame");
 }

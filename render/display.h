@@ -7,6 +7,7 @@
 #define GOPURA_RENDER_DISPLAY_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/compiler.h"
 
@@ -57,5 +58,9 @@ bool display_ready(const struct display *display);
 void display_begin(struct display *display);
 /* Shows what was drawn, without waiting: display_ready is false until it is on the panel. */
 must_check int display_present(struct display *display);
+
+/* What display_begin bound, as it is now: 4 bytes a pixel, row 0 on top. Waits for the GPU, so not
+ * for the frame path. Alpha is what was drawn on a headless display, undefined elsewhere. */
+must_check int display_read(struct display *display, uint8_t *rgba);
 
 #endif
