@@ -85,8 +85,8 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 	@echo '  cc    $<'
 	@$(CC) $(CFLAGS) -c $< -o $@
 
-# Only the mains carry the version, so that a commit does not rebuild the tree.
-$(MAINS:%.c=$(BUILD)/obj/%.o): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
+# Only what prints it carries the version, so that a commit does not rebuild the tree.
+$(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 
 $(ARCHIVE): $(OBJECTS)
 	@rm -f $@

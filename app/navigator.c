@@ -27,8 +27,7 @@ static void view_right(const struct navigator *nav, float out[3])
 
 static float diagonal_m(const struct navigator *nav)
 {
-	return glm_vec3_distance((float *)nav->options.box_min_m,
-				 (float *)nav->options.box_max_m);
+	return glm_vec3_distance((float *)nav->options.box_min_m, (float *)nav->options.box_max_m);
 }
 
 /* Where the eye may be, whatever asked for it. */
@@ -61,8 +60,8 @@ static bool move_eye(struct navigator *nav, float to_m[3])
 	if (length < 1e-6f)
 		return true;
 	glm_vec3_scale(way, 1 / length, way);
-	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + KEEP_OFF_M) :
-				INFINITY;
+	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + KEEP_OFF_M)
+			      : INFINITY;
 	if (free_m >= length + KEEP_OFF_M) {
 		glm_vec3_copy(to_m, nav->eye_m);
 		return true;

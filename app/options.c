@@ -137,18 +137,12 @@ static bool set_text(struct options *o, int option, const char *text)
 		int option;
 		const char **to;
 	} texts[] = {
-		{ OPTION_RELEASE, &o->release_url },
-		{ OPTION_TRUST, &o->trust_path },
-		{ OPTION_CA, &o->ca_path },
-		{ OPTION_STATE, &o->state_dir },
-		{ OPTION_DEVICE, &o->device },
-		{ OPTION_BOARD, &o->board_path },
-		{ OPTION_LANGUAGE, &o->language },
-		{ OPTION_TOUCH_REPLAY, &o->touch_replay_path },
-		{ OPTION_VIEWS, &o->views_path },
-		{ OPTION_CAPTURE, &o->capture_dir },
-		{ OPTION_SHOTS, &o->shots_path },
-		{ OPTION_FETCH, &o->fetch_program },
+		{ OPTION_RELEASE, &o->release_url }, { OPTION_TRUST, &o->trust_path },
+		{ OPTION_CA, &o->ca_path },          { OPTION_STATE, &o->state_dir },
+		{ OPTION_DEVICE, &o->device },       { OPTION_BOARD, &o->board_path },
+		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
+		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
+		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
 		{ OPTION_SOCKET, &o->socket_path },
 	};
 

@@ -11,9 +11,9 @@
 /* Strings are borrowed from argv or static. */
 struct options {
 	const char *release_url; /* NULL: whatever the state remembers, from the cache */
-	const char *trust_path;	 /* root/1.json pinned at the first start; NULL: the state's */
+	const char *trust_path;  /* root/1.json pinned at the first start; NULL: the state's */
 	const char *ca_path;
-	const char *state_dir;	 /* state.db and cache.db */
+	const char *state_dir;   /* state.db and cache.db */
 	const char *socket_path; /* of a fetcher that runs; NULL: one is started */
 	const char *fetch_program;
 	enum display_kind display;
@@ -21,10 +21,10 @@ struct options {
 	int width_px, height_px;
 	const char *board_path;
 	const char *touch_replay_path;
-	const char *views_path;	  /* with capture_dir */
+	const char *views_path; /* with capture_dir */
 	const char *capture_dir;
-	const char *shots_path;	  /* with capture_dir: "MS NAME" a line */
-	bool capture_overlay;	  /* pictures of views with callouts and all */
+	const char *shots_path; /* with capture_dir: "MS NAME" a line */
+	bool capture_overlay;   /* pictures of views with callouts and all */
 	enum scene_mode mode;
 	const char *language;
 	uint32_t poll_s; /* for updates; 0: the fetcher's default */

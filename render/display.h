@@ -23,9 +23,9 @@ enum pointer_kind { POINTER_MOVE, POINTER_DOWN, POINTER_UP, POINTER_WHEEL };
 struct display_options {
 	enum display_kind kind;
 	int width_px, height_px; /* DRM: the mode asked for, 0: what the panel prefers */
-	const char *device;	 /* DRM: borrowed for the call; NULL: the first card with a panel */
-	const char *connector;	 /* DRM: such as "HDMI-A-1"; NULL: the first that is connected */
-	const char *title;	 /* window: borrowed for the call */
+	const char *device;      /* DRM: borrowed for the call; NULL: the first card with a panel */
+	const char *connector;   /* DRM: such as "HDMI-A-1"; NULL: the first that is connected */
+	const char *title;       /* window: borrowed for the call */
 
 	/* Window: mouse as one finger; wheel_steps is above zero away from the user. */
 	void (*pointer)(void *data, enum pointer_kind kind, float x_px, float y_px,

@@ -36,8 +36,8 @@ static int create_surface(struct drm_display *drm)
 			drm->gbm, width, height, GBM_FORMAT_XRGB8888, drm->card.modifiers,
 			drm->card.modifier_count);
 	if (!drm->surface)
-		drm->surface = gbm_surface_create_with_modifiers(
-			drm->gbm, width, height, GBM_FORMAT_XRGB8888, &linear, 1);
+		drm->surface = gbm_surface_create_with_modifiers(drm->gbm, width, height,
+								 GBM_FORMAT_XRGB8888, &linear, 1);
 	if (!drm->surface)
 		drm->surface = gbm_surface_create(drm->gbm, width, height, GBM_FORMAT_XRGB8888,
 						  GBM_BO_USE_SCANOUT | GBM_BO_USE_RENDERING);

@@ -93,8 +93,8 @@ static void choose_mode(struct drm_card *card, const drmModeConnector *connector
 	for (int i = connector->count_modes - 1; i >= 0; i--) {
 		const drmModeModeInfo *mode = &connector->modes[i];
 
-		if (width_px ? mode->hdisplay == width_px && mode->vdisplay == height_px :
-			       (mode->type & DRM_MODE_TYPE_PREFERRED) != 0)
+		if (width_px ? mode->hdisplay == width_px && mode->vdisplay == height_px
+			     : (mode->type & DRM_MODE_TYPE_PREFERRED) != 0)
 			card->mode = *mode;
 	}
 	if (width_px && (card->mode.hdisplay != width_px || card->mode.vdisplay != height_px))
@@ -194,8 +194,8 @@ static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint3
 	return -ENODEV;
 }
 
-static int open_card(struct drm_card *card, const char *device, const char *connector,
-		     int width_px, int height_px)
+static int open_card(struct drm_card *card, const char *device, const char *connector, int width_px,
+		     int height_px)
 {
 	drmModeRes *resources;
 	uint32_t crtc_bits = 0;

@@ -21,14 +21,15 @@ struct quads {
 	size_t rows_bytes;
 };
 
-static const char vertex_source[] = "attribute vec2 position;\n"
-				    "attribute vec2 source;\n"
-				    "uniform mat3 to_clip;\n"
-				    "varying vec2 at;\n"
-				    "void main() {\n"
-				    "	at = source;\n"
-				    "	gl_Position = vec4((to_clip * vec3(position, 1.0)).xy, 0.0, 1.0);\n"
-				    "}\n";
+static const char vertex_source[] =
+	"attribute vec2 position;\n"
+	"attribute vec2 source;\n"
+	"uniform mat3 to_clip;\n"
+	"varying vec2 at;\n"
+	"void main() {\n"
+	"	at = source;\n"
+	"	gl_Position = vec4((to_clip * vec3(position, 1.0)).xy, 0.0, 1.0);\n"
+	"}\n";
 
 /* Cairo's bytes are B, G, R, A. */
 static const char fragment_source[] = "precision mediump float;\n"
@@ -111,8 +112,8 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 	if (texture->name && texture->width_px == pixels->width_px &&
 	    texture->height_px == pixels->height_px) {
 		gl_bind_texture(0, texture->name);
-		glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, pixels->width_px, pixels->height_px, GL_RGBA,
-				GL_UNSIGNED_BYTE, rows);
+		glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, pixels->width_px, pixels->height_px,
+				GL_RGBA, GL_UNSIGNED_BYTE, rows);
 	} else {
 		const struct gl_texture_options options = {
 			.width_px = pixels->width_px,
@@ -199,4 +200,3 @@ void quads_end(struct quads *quads)
 	glDisableVertexAttribArray(1);
 	glDisable(GL_BLEND);
 }
-
