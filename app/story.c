@@ -15,7 +15,7 @@ enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16 };
 struct story_picture {
 	bool wanted;
 	struct picture decoded; /* rgba NULL: not here */
-	uint32_t used;		/* turn of its last use, for letting the oldest go */
+	uint32_t used;          /* turn of its last use, for letting the oldest go */
 };
 
 struct story {
@@ -24,11 +24,12 @@ struct story {
 	struct overlay *overlay;
 	struct info *info;
 
-	struct hash root;	  /* zero: no release */
+	struct hash root;          /* zero: no release */
 	struct page_child page_at; /* the info page in the root page */
 	uint32_t page_offset;
-	struct page page;	   /* the info page; children zero until it is here */
-	struct buffer page_bytes; /* what page.payload borrows from */
+	bool page_here, database_here; /* or found damaged: either way wanted no more */
+	struct page page;              /* the info page; children zero until it is here */
+	struct buffer page_bytes;      /* what page.payload borrows from */
 
 	struct story_picture pictures[PICTURES_MOST]; /* as info_picture numbers them */
 	uint32_t turn;
@@ -363,8 +364,9 @@ static float region_size_m(const struct info_region *region)
 		return cbrtf(region->half_m[0] * region->half_m[1] * region->half_m[2]);
 	case INFO_REGION_PRISM:
 		for (uint32_t i = 0; i < region->corner_count; i++)
-			most = fmaxf(most, hypotf(region->corners_m[i][0] - region->corners_m[0][0],
-						  region->corners_m[i][1] - region->corners_m[0][1]));
+			most = fmaxf(most,
+				     hypotf(region->corners_m[i][0] - region->corners_m[0][0],
+					    region->corners_m[i][1] - region->corners_m[0][1]));
 		return cbrtf(most * most * (region->roof_m - region->floor_m)) / 2;
 	}
 	return 0;

@@ -13,8 +13,8 @@ struct story;
 
 struct story_options {
 	int width_px, height_px; /* as the visitor sees it */
-	float px_per_mm;	 /* 0: guessed */
-	const char *language;	 /* copied; NULL: the release's first */
+	float px_per_mm;         /* 0: guessed */
+	const char *language;    /* copied; NULL: the release's first */
 };
 
 must_check int story_create(struct story **out, const struct story_options *options);

@@ -55,9 +55,9 @@ void wants_say(struct wants *wants, struct net_client *client)
 	tidy(wants);
 	while (a < wants->said_count || b < wants->next_count) {
 		struct message_want *said = &wants->said[a], *next = &wants->next[b];
-		int order = a == wants->said_count ? 1 :
-			    b == wants->next_count ? -1 :
-						       by_hash(said, next);
+		int order = a == wants->said_count   ? 1
+			    : b == wants->next_count ? -1
+						     : by_hash(said, next);
 
 		if (order < 0) {
 			net_client_drop(client, said->hash);
