@@ -32,7 +32,9 @@ struct profile_key {
 };
 
 #define KEY(section, name, type, field, least, most)                                               \
-	{ section, name, type, offsetof(struct profile, field), least, most }
+	{                                                                                          \
+		section, name, type, offsetof(struct profile, field), least, most                  \
+	}
 
 static const struct profile_key keys[] = {
 	KEY("panel", "rotation", TYPE_INT, rotation_deg, 0, 270),

@@ -10,16 +10,16 @@
 struct profile {
 	/* [panel] */
 	int rotation_deg; /* 0, 90, 180, 270, clockwise; of panel and touch together */
-	int width_mm;	  /* of the glass as KMS counts its width; 0: by EDID */
+	int width_mm;     /* of the glass as KMS counts its width; 0: by EDID */
 	/* [touch] */
 	float matrix[6]; /* calibration, as LIBINPUT_CALIBRATION_MATRIX; all zero: none */
-	float edge_mm;	 /* touches nearer to the edge are ignored */
-	float palm_mm;	 /* contacts wider than this are palms; 0: no limit */
+	float edge_mm;   /* touches nearer to the edge are ignored */
+	float palm_mm;   /* contacts wider than this are palms; 0: no limit */
 	/* [render] */
 	uint32_t triangles;    /* drawn in a frame */
 	uint32_t texture_mib;  /* tiles and disparity */
 	uint32_t geometry_mib; /* patches in memory */
-	float error_px;	       /* of a patch on the screen before a finer one is wanted */
+	float error_px;        /* of a patch on the screen before a finer one is wanted */
 	uint32_t upload_us;    /* of a frame, for uploads */
 	uint32_t workers;      /* threads that decode */
 	/* [cache] */

@@ -47,11 +47,16 @@ static void reads_what_a_board_says_and_keeps_the_rest(void **state)
 static void refuses_what_does_not_do(void **state)
 {
 	static const char *const bad[] = {
-		"[panel]\nrotation = 45\n",	"[panel]\nrotation = upright\n",
-		"[panel]\ncolour = 3\n",	"[render]\ntexture_mib = 1\n",
-		"[render]\ntriangles = 1e99\n", "[touch]\nmatrix = 1 0 0 0 1\n",
-		"[touch]\nmatrix = 1 0 0 0 1 0 0\n", "nonsense\n",
-		"[render]\nworkers = 1.5\n",	"[render]\nerror_px = nan\n",
+		"[panel]\nrotation = 45\n",
+		"[panel]\nrotation = upright\n",
+		"[panel]\ncolour = 3\n",
+		"[render]\ntexture_mib = 1\n",
+		"[render]\ntriangles = 1e99\n",
+		"[touch]\nmatrix = 1 0 0 0 1\n",
+		"[touch]\nmatrix = 1 0 0 0 1 0 0\n",
+		"nonsense\n",
+		"[render]\nworkers = 1.5\n",
+		"[render]\nerror_px = nan\n",
 	};
 
 	(void)state;

@@ -1,0 +1,267 @@
+/* What fingers mean: on the model they move the eye, on the words they open and close. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include <cglm/cglm.h>
+
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+#define FLIGHT_MS       900
+#define SLOP_MM         3
+#define NEAR_MM         10
+#define PX_PER_MM_GUESS 3.8f /* 96 dots an inch */
+#define WHEEL_STEP      1.12f
+
+static float px_per_mm(const struct kiosk *kiosk)
+{
+	const int mm = kiosk->profile.width_mm ? kiosk->profile.width_mm :
+						 display_width_mm(kiosk->display);
+
+	return mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : PX_PER_MM_GUESS;
+}
+
+/* The surface point under a finger; where there is none, the model's middle's distance counts. */
+static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
+{
+	const struct navigator_options *o = &kiosk->navigator.options;
+	float direction[3], middle[3];
+
+	frame_to_panel(kiosk, &x_px, &y_px);
+	if (scene_pick(kiosk->scene, &kiosk->camera, x_px, y_px, point_m))
+		return true;
+	camera_ray(&kiosk->camera, x_px, y_px, direction);
+	glm_vec3_lerp((float *)o->box_min_m, (float *)o->box_max_m, 0.5f, middle);
+	glm_vec3_copy(kiosk->camera.eye_m, point_m);
+	glm_vec3_muladds(direction, fmaxf(1, glm_vec3_distance(middle, point_m)), point_m);
+	return false;
+}
+
+static void grab(struct kiosk *kiosk, float x_px, float y_px)
+{
+	float pivot[3];
+
+	pick(kiosk, x_px, y_px, pivot);
+	navigator_grab(&kiosk->navigator, pivot);
+}
+
+/* ---- flights */
+
+/* Flies to where the part stands in the middle of what the words leave of the panel. */
+static void fly_to_part(struct kiosk *kiosk, uint32_t part)
+{
+	const struct overlay_rect rect = overlay_scene_rect(story_overlay(kiosk->story));
+	const float w = (float)kiosk_width_px(kiosk), h = (float)kiosk_height_px(kiosk);
+	const float tangent = tanf(glm_rad(kiosk->navigator.options.fov_deg) / 2);
+	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;
+	const float height = 1 - ((float)rect.y_px + (float)rect.height_px / 2) / h * 2;
+	float eye[3], target[3], forward[3], right[3], up[3], distance;
+
+	story_viewpoint(kiosk->story, part, kiosk->navigator.eye_m, eye, target);
+	glm_vec3_sub(target, eye, forward);
+	distance = glm_vec3_norm(forward);
+	glm_vec3_cross(forward, (vec3){ 0, 0, 1 }, right);
+	glm_vec3_normalize(right);
+	glm_vec3_cross(right, forward, up);
+	glm_vec3_normalize(up);
+	glm_vec3_muladds(right, -side * tangent * w / h * distance, target);
+	glm_vec3_muladds(up, -height * tangent * distance, target);
+	navigator_fly(&kiosk->navigator, eye, target, FLIGHT_MS);
+}
+
+void fingers_go_home(struct kiosk *kiosk)
+{
+	const struct navigator_options *o = &kiosk->navigator.options;
+
+	navigator_fly(&kiosk->navigator, o->home_eye_m, o->home_target_m, FLIGHT_MS);
+}
+
+static void open_page(struct kiosk *kiosk, int part)
+{
+	if (part >= 0 && story_open_page(kiosk->story, (uint32_t)part)) {
+		overlay_show_card(story_overlay(kiosk->story), -1);
+		fly_to_part(kiosk, (uint32_t)part);
+	}
+}
+
+/* ---- taps */
+
+static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
+{
+	float point[3];
+	int part = -1;
+
+	if (pick(kiosk, x_px, y_px, point))
+		part = story_part_at(kiosk->story, point);
+	if (part >= 0)
+		log_debug("app", "tapped part %s",
+			  info_part(story_info(kiosk->story), (uint32_t)part)->id);
+	overlay_show_card(story_overlay(kiosk->story), part);
+}
+
+static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
+{
+	struct overlay *overlay = story_overlay(kiosk->story);
+
+	switch (action->kind) {
+	case OVERLAY_NONE:
+	case OVERLAY_SWALLOWED:
+		break;
+	case OVERLAY_OPEN_CARD:
+		overlay_show_card(overlay, action->part);
+		break;
+	case OVERLAY_OPEN_PAGE:
+		open_page(kiosk, action->part);
+		break;
+	case OVERLAY_CLOSE_CARD:
+		overlay_show_card(overlay, -1);
+		break;
+	case OVERLAY_CLOSE_PAGE:
+		overlay_close_page(overlay);
+		break;
+	case OVERLAY_LANGUAGE:
+		story_set_language(kiosk->story, action->language);
+		break;
+	case OVERLAY_LINK:
+		open_page(kiosk, info_find(story_info(kiosk->story), action->link));
+		break;
+	case OVERLAY_HOME:
+		overlay_close_page(overlay);
+		overlay_show_card(overlay, -1);
+		fingers_go_home(kiosk);
+		break;
+	case OVERLAY_HELP:
+		overlay_show_help(overlay, true);
+		break;
+	}
+}
+
+static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
+{
+	const struct overlay_action action =
+		overlay_tap(story_overlay(kiosk->story), gesture->x_px, gesture->y_px);
+	float point[3];
+
+	if (action.kind != OVERLAY_NONE)
+		carry_out(kiosk, &action);
+	else if (gesture->kind == GESTURE_TAP)
+		tap_model(kiosk, gesture->x_px, gesture->y_px);
+	else if (pick(kiosk, gesture->x_px, gesture->y_px, point))
+		open_page(kiosk, story_part_at(kiosk->story, point));
+}
+
+/* ---- gestures */
+
+static void on_press(struct kiosk *kiosk, const struct gesture *gesture)
+{
+	struct overlay *overlay = story_overlay(kiosk->story);
+
+	kiosk->finger_on_words = overlay && overlay_covers(overlay, gesture->x_px, gesture->y_px);
+	if (!kiosk->finger_on_words)
+		grab(kiosk, gesture->x_px, gesture->y_px);
+}
+
+static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
+{
+	struct overlay *overlay = story_overlay(kiosk->story);
+
+	if (gesture->kind == GESTURE_DRAG)
+		overlay_scroll(overlay, gesture->dy_px);
+	else if (gesture->kind == GESTURE_DRAG_END)
+		overlay_fling(overlay, gesture->vy_px_per_s);
+}
+
+static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
+{
+	const float height = (float)kiosk_height_px(kiosk);
+	struct overlay *overlay = story_overlay(kiosk->story);
+
+	switch (gesture->kind) {
+	case GESTURE_DRAG_BEGIN:
+	case GESTURE_PINCH_BEGIN:
+		grab(kiosk, gesture->x_px, gesture->y_px);
+		if (overlay)
+			overlay_show_help(overlay, false);
+		break;
+	case GESTURE_DRAG:
+		navigator_turn(&kiosk->navigator, gesture->dx_px, gesture->dy_px, height);
+		break;
+	case GESTURE_DRAG_END:
+		navigator_fling(&kiosk->navigator, gesture->vx_px_per_s, gesture->vy_px_per_s);
+		break;
+	case GESTURE_PINCH:
+		navigator_pinch(&kiosk->navigator, gesture->scale, gesture->dx_px, gesture->dy_px,
+				gesture->turn_rad, height);
+		break;
+	default:
+		break;
+	}
+}
+
+static void on_gesture(void *data, const struct gesture *gesture)
+{
+	struct kiosk *kiosk = data;
+
+	if (!kiosk->navigator_ready)
+		return; /* nothing is there to touch */
+	kiosk_redraw(kiosk);
+	if (gesture->kind == GESTURE_PRESS)
+		on_press(kiosk, gesture);
+	else if (gesture->kind == GESTURE_TAP || gesture->kind == GESTURE_DOUBLE_TAP) {
+		if (story_overlay(kiosk->story))
+			on_tap(kiosk, gesture);
+	} else if (kiosk->finger_on_words)
+		on_words(kiosk, gesture);
+	else
+		on_model(kiosk, gesture);
+}
+
+void fingers_init(struct kiosk *kiosk)
+{
+	const struct gesture_options options = {
+		.slop_px = SLOP_MM * px_per_mm(kiosk),
+		.near_px = NEAR_MM * px_per_mm(kiosk),
+		.gesture = on_gesture,
+		.data = kiosk,
+	};
+
+	gesture_init(&kiosk->gestures, &options);
+}
+
+void fingers_on_touch(void *data, const struct touch_event *event)
+{
+	struct kiosk *kiosk = data;
+
+	gesture_feed(&kiosk->gestures, event);
+}
+
+void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps)
+{
+	static const enum touch_phase phases[] = {
+		[POINTER_MOVE] = TOUCH_MOVE,
+		[POINTER_DOWN] = TOUCH_DOWN,
+		[POINTER_UP] = TOUCH_UP,
+	};
+	struct kiosk *kiosk = data;
+
+	frame_from_panel(kiosk, &x_px, &y_px);
+	if (kind == POINTER_WHEEL) {
+		if (!kiosk->navigator_ready)
+			return;
+		grab(kiosk, x_px, y_px);
+		navigator_pinch(&kiosk->navigator, powf(WHEEL_STEP, steps), 0, 0, 0,
+				(float)kiosk_height_px(kiosk));
+		kiosk_redraw(kiosk);
+		return;
+	}
+	if (kind == POINTER_MOVE && !kiosk->gestures.fingers[0].down)
+		return;
+	gesture_feed(&kiosk->gestures, &(struct touch_event){
+					       .phase = phases[kind],
+					       .x_px = x_px,
+					       .y_px = y_px,
+					       .time_us = clock_now_us(),
+				       });
+}

@@ -1,0 +1,240 @@
+/* A frame: the eye moves, the scene is drawn, the words go over it, and what is missing is asked
+ * for. Nothing here waits for disk, network or a decoder. */
+#include <errno.h>
+#include <math.h>
+
+#include <cglm/cglm.h>
+
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "render/gl.h"
+
+enum {
+	STEP_MOST_MS = 50, /* of the navigator: a hiccup is not a jump */
+	ANCHORS_A_FRAME = 3,
+};
+
+static bool is_sideways(const struct kiosk *kiosk)
+{
+	return kiosk->profile.rotation_deg == 90 || kiosk->profile.rotation_deg == 270;
+}
+
+int kiosk_width_px(const struct kiosk *kiosk)
+{
+	return is_sideways(kiosk) ? display_height_px(kiosk->display) :
+				    display_width_px(kiosk->display);
+}
+
+int kiosk_height_px(const struct kiosk *kiosk)
+{
+	return is_sideways(kiosk) ? display_width_px(kiosk->display) :
+				    display_height_px(kiosk->display);
+}
+
+void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
+{
+	const float width = (float)display_width_px(kiosk->display);
+	const float height = (float)display_height_px(kiosk->display);
+	const float x = *x_px, y = *y_px;
+
+	switch (kiosk->profile.rotation_deg) {
+	case 90:
+		*x_px = y;
+		*y_px = height - x;
+		break;
+	case 180:
+		*x_px = width - x;
+		*y_px = height - y;
+		break;
+	case 270:
+		*x_px = width - y;
+		*y_px = x;
+		break;
+	}
+}
+
+void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
+{
+	const float width = (float)display_width_px(kiosk->display);
+	const float height = (float)display_height_px(kiosk->display);
+	const float x = *x_px, y = *y_px;
+
+	switch (kiosk->profile.rotation_deg) {
+	case 90:
+		*x_px = height - y;
+		*y_px = x;
+		break;
+	case 180:
+		*x_px = width - x;
+		*y_px = height - y;
+		break;
+	case 270:
+		*x_px = y;
+		*y_px = width - x;
+		break;
+	}
+}
+
+void frame_camera(const struct kiosk *kiosk, struct camera *out)
+{
+	navigator_camera(&kiosk->navigator, out);
+	out->width_px = display_width_px(kiosk->display);
+	out->height_px = display_height_px(kiosk->display);
+	out->rotation_deg = kiosk->profile.rotation_deg;
+}
+
+/* ---- words over the model */
+
+static bool anchor_is_hidden(struct kiosk *kiosk, const float anchor_m[3])
+{
+	float direction[3], distance, free_m;
+
+	glm_vec3_sub((float *)anchor_m, kiosk->camera.eye_m, direction);
+	distance = glm_vec3_norm(direction);
+	if (distance < 0.01f)
+		return false;
+	glm_vec3_scale(direction, 1 / distance, direction);
+	free_m = scene_clearance(kiosk->scene, kiosk->camera.eye_m, direction, distance);
+	return free_m < distance - fmaxf(0.4f, 0.03f * distance);
+}
+
+/* A few rays a frame: stone in front of an anchor changes slowly. */
+static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
+{
+	const struct info *info = story_info(kiosk->story);
+
+	if (kiosk->eye_moves || kiosk->frame.tiles_uploaded || !kiosk->frame.settled)
+		kiosk->anchors_to_look = count;
+	for (int i = 0; i < ANCHORS_A_FRAME && kiosk->anchors_to_look > 0; i++) {
+		kiosk->next_anchor = (kiosk->next_anchor + 1) % count;
+		kiosk->hidden[kiosk->next_anchor] =
+			anchor_is_hidden(kiosk, info_part(info, kiosk->next_anchor)->anchor_m);
+		kiosk->anchors_to_look--;
+	}
+}
+
+static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
+{
+	static struct overlay_anchor anchors[OVERLAY_PARTS_MOST];
+	const struct info *info = story_info(kiosk->story);
+	const struct overlay_rect rect = overlay_scene_rect(overlay);
+	const uint32_t count = info_part_count(info);
+
+	if (count == 0 || count > OVERLAY_PARTS_MOST)
+		return;
+	look_at_anchors(kiosk, count);
+	for (uint32_t i = 0; i < count; i++) {
+		struct overlay_anchor *a = &anchors[i];
+		const bool before_eye = camera_pixel(&kiosk->camera, info_part(info, i)->anchor_m,
+						     &a->x_px, &a->y_px);
+
+		if (before_eye)
+			frame_from_panel(kiosk, &a->x_px, &a->y_px);
+		a->visible = before_eye && !kiosk->hidden[i] && a->x_px >= rect.x_px &&
+			     a->y_px >= rect.y_px && a->x_px < rect.x_px + rect.width_px &&
+			     a->y_px < rect.y_px + rect.height_px;
+	}
+	overlay_anchors(overlay, anchors, count);
+}
+
+static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_ms)
+{
+	static struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	uint32_t count;
+	int rc = 0;
+
+	place_anchors(kiosk, overlay);
+	kiosk->words_move = overlay_update(overlay, now_ms);
+	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	quads_begin(kiosk->quads, display_width_px(kiosk->display),
+		    display_height_px(kiosk->display), kiosk->profile.rotation_deg);
+	for (uint32_t i = 0; i < count && rc == 0; i++) {
+		const struct overlay_layer *layer = &layers[i];
+		const struct quads_pixels pixels = {
+			.id = layer->bitmap,
+			.revision = layer->revision,
+			.width_px = layer->pixels->width_px,
+			.height_px = layer->pixels->height_px,
+			.stride_bytes = layer->pixels->stride_bytes,
+			.bgra = layer->pixels->pixels,
+		};
+
+		rc = quads_upload(kiosk->quads, &pixels);
+		quads_draw(kiosk->quads, layer->bitmap, layer->corners_px, layer->source,
+			   layer->alpha);
+	}
+	quads_end(kiosk->quads);
+	return rc;
+}
+
+/* ---- the scene */
+
+static const struct region *marked_region(struct kiosk *kiosk, struct region *out)
+{
+	struct overlay *overlay = story_overlay(kiosk->story);
+	int part = -1;
+
+	if (overlay)
+		part = overlay_page(overlay) >= 0 ? overlay_page(overlay) : overlay_card(overlay);
+	return part >= 0 && story_region(kiosk->story, (uint32_t)part, out) ? out : NULL;
+}
+
+static void draw_scene(struct kiosk *kiosk, bool words)
+{
+	const struct root_page *root = scene_root(kiosk->scene);
+	struct region region;
+
+	glDisable(GL_SCISSOR_TEST);
+	glViewport(0, 0, kiosk->camera.width_px, kiosk->camera.height_px);
+	glClearColor((float)(root ? root->background[0] : 24) / 255,
+		     (float)(root ? root->background[1] : 22) / 255,
+		     (float)(root ? root->background[2] : 20) / 255, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	scene_draw(kiosk->scene, &kiosk->camera, words ? marked_region(kiosk, &region) : NULL,
+		   &kiosk->frame);
+}
+
+static void say_wants(struct kiosk *kiosk)
+{
+	struct message_want list[WANTS_MOST];
+	size_t count;
+
+	wants_begin(&kiosk->wants);
+	story_wants(kiosk->story, &kiosk->wants);
+	count = scene_wants(kiosk->scene, list, WANTS_MOST / 2);
+	for (size_t i = 0; i < count; i++)
+		wants_add(&kiosk->wants, &list[i]);
+	wants_say(&kiosk->wants, kiosk->net);
+}
+
+int frame_draw(struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms(), began_us = clock_thread_us();
+	const float dt_ms = fminf((float)(now_ms - kiosk->last_frame_ms), STEP_MOST_MS);
+	const bool words = !kiosk->capture || kiosk->options.capture_overlay ||
+			   !kiosk->options.views_path;
+	struct overlay *overlay = story_overlay(kiosk->story);
+	int rc = 0;
+
+	kiosk->last_frame_ms = now_ms;
+	kiosk->frame_wanted = false;
+	if (kiosk->navigator_ready && !kiosk->options.views_path) {
+		kiosk->eye_moves = navigator_step(&kiosk->navigator, dt_ms,
+						  (float)kiosk_height_px(kiosk));
+		frame_camera(kiosk, &kiosk->camera);
+	}
+	display_begin(kiosk->display);
+	draw_scene(kiosk, words);
+	if (overlay && words)
+		rc = draw_words(kiosk, overlay, now_ms);
+	if (rc == 0)
+		rc = gl_check("drawing a frame");
+	kiosk->frame_us = (uint32_t)(clock_thread_us() - began_us);
+	if (rc == 0)
+		rc = display_present(kiosk->display);
+	say_wants(kiosk);
+	if (kiosk->frame.moving || kiosk->words_move || kiosk->eye_moves ||
+	    kiosk->anchors_to_look > 0)
+		kiosk->frame_wanted = true;
+	return rc;
+}
