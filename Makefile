@@ -38,6 +38,7 @@ PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
+TOOLS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/tools/*.c))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
@@ -73,7 +74,7 @@ check-style: deps ## clang-format, the include table, house rules
 	@tests/style/check.sh
 
 format: ## let clang-format settle the white space
-	@git ls-files '*.c' '*.h' '*.cpp' | xargs clang-format -i
+	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
 clean: ## remove build/ (the demo content and its caches too)
 	rm -rf $(BUILD)
@@ -109,7 +110,7 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 
-tests: $(TESTS) $(FUZZ)
+tests: $(TESTS) $(FUZZ) $(TOOLS)
 benches: $(BENCHES)
 .PHONY: tests benches
 

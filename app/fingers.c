@@ -17,8 +17,8 @@
 
 static float px_per_mm(const struct kiosk *kiosk)
 {
-	const int mm = kiosk->profile.width_mm ? kiosk->profile.width_mm :
-						 display_width_mm(kiosk->display);
+	const int mm = kiosk->profile.width_mm ? kiosk->profile.width_mm
+					       : display_width_mm(kiosk->display);
 
 	return mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : PX_PER_MM_GUESS;
 }

@@ -21,14 +21,14 @@ static bool is_sideways(const struct kiosk *kiosk)
 
 int kiosk_width_px(const struct kiosk *kiosk)
 {
-	return is_sideways(kiosk) ? display_height_px(kiosk->display) :
-				    display_width_px(kiosk->display);
+	return is_sideways(kiosk) ? display_height_px(kiosk->display)
+				  : display_width_px(kiosk->display);
 }
 
 int kiosk_height_px(const struct kiosk *kiosk)
 {
-	return is_sideways(kiosk) ? display_width_px(kiosk->display) :
-				    display_height_px(kiosk->display);
+	return is_sideways(kiosk) ? display_width_px(kiosk->display)
+				  : display_height_px(kiosk->display);
 }
 
 void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
@@ -211,16 +211,16 @@ int frame_draw(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms(), began_us = clock_thread_us();
 	const float dt_ms = fminf((float)(now_ms - kiosk->last_frame_ms), STEP_MOST_MS);
-	const bool words = !kiosk->capture || kiosk->options.capture_overlay ||
-			   !kiosk->options.views_path;
+	const bool words =
+		!kiosk->capture || kiosk->options.capture_overlay || !kiosk->options.views_path;
 	struct overlay *overlay = story_overlay(kiosk->story);
 	int rc = 0;
 
 	kiosk->last_frame_ms = now_ms;
 	kiosk->frame_wanted = false;
 	if (kiosk->navigator_ready && !kiosk->options.views_path) {
-		kiosk->eye_moves = navigator_step(&kiosk->navigator, dt_ms,
-						  (float)kiosk_height_px(kiosk));
+		kiosk->eye_moves =
+			navigator_step(&kiosk->navigator, dt_ms, (float)kiosk_height_px(kiosk));
 		frame_camera(kiosk, &kiosk->camera);
 	}
 	display_begin(kiosk->display);

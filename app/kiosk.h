@@ -29,7 +29,7 @@ struct kiosk {
 	struct touch *touch;
 	struct net_client *net;
 	struct story *story;
-	struct follow *follow;	 /* of releases */
+	struct follow *follow;   /* of releases */
 	struct capture *capture; /* NULL: a kiosk, not a measurement */
 
 	struct wants wants;
@@ -43,11 +43,11 @@ struct kiosk {
 	struct message_status status;
 	int64_t last_frame_ms;
 	bool frame_wanted, words_move, eye_moves;
-	uint32_t frame_us; /* work of the last frame, this thread */
-	uint64_t object_count; /* given to the scene since start */
+	uint32_t frame_us;               /* work of the last frame, this thread */
+	uint64_t object_count;           /* given to the scene since start */
 	bool hidden[OVERLAY_PARTS_MOST]; /* anchors behind stone, as last looked at */
-	uint32_t next_anchor;		 /* to look at */
-	uint32_t anchors_to_look;	 /* at, before a picture at rest is right */
+	uint32_t next_anchor;            /* to look at */
+	uint32_t anchors_to_look;        /* at, before a picture at rest is right */
 	bool quit;
 };
 
@@ -65,7 +65,8 @@ int kiosk_height_px(const struct kiosk *kiosk);
 must_check int frame_draw(struct kiosk *kiosk);
 /* Where the eye is now, with the panel's fields filled in. */
 void frame_camera(const struct kiosk *kiosk, struct camera *out);
-/* From the visitor's pixels to the framebuffer's, and back: they differ where the panel is turned. */
+/* From the visitor's pixels to the framebuffer's, and back: they differ where the panel is turned.
+ */
 void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
 void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
 

@@ -1,0 +1,34 @@
+/* Follows the releases of the museum server: remembers which one is shown (state.db), checks the
+ * signed metadata, has the next release brought in the background, and switches to it at once and
+ * whole. */
+#ifndef GOPURA_APP_FOLLOW_H
+#define GOPURA_APP_FOLLOW_H
+
+#include "app/wants.h"
+
+struct follow;
+
+struct follow_options {
+	const char *state_path; /* state.db; copied */
+	const char *trust_path; /* root/1.json to pin where the state has none; NULL: none */
+	struct net_client *net; /* borrowed */
+	/* Show this release; called at the start for the remembered one, and at each switch. */
+	void (*show)(void *data, struct hash root, uint32_t root_bytes);
+	void *data;
+};
+
+must_check int follow_create(struct follow **out, const struct follow_options *options);
+void follow_destroy(struct follow *follow); /* NULL is fine */
+
+/* Begins: shows the remembered release, if there is one. */
+void follow_start(struct follow *follow);
+void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes);
+/* true: the object was wanted for the next release (others may want it too). */
+bool follow_give(struct follow *follow, struct hash hash, struct bytes object);
+void follow_wants(struct follow *follow, struct wants *wants);
+/* The release shown; zero: none yet. */
+struct hash follow_shown(const struct follow *follow);
+/* Why the last metadata was refused, for the health page; "" where it was not. */
+const char *follow_refusal(const struct follow *follow);
+
+#endif

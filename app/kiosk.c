@@ -1,0 +1,411 @@
+#include "app/kiosk.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/signalfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/capture.h"
+#include "app/follow.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+enum {
+	FRAME_MS = 16, /* where no panel sets the pace */
+	FLIP_WATCH_MS = 1000,
+	FOV_DEG = 45,
+};
+
+void kiosk_redraw(struct kiosk *kiosk)
+{
+	kiosk->frame_wanted = true;
+}
+
+/* ---- what comes from the fetcher */
+
+static float free_ahead(void *data, const float from_m[3], const float direction[3], float most_m)
+{
+	struct kiosk *kiosk = data;
+
+	return scene_clearance(kiosk->scene, from_m, direction, most_m);
+}
+
+static void take_root(struct kiosk *kiosk, struct hash hash, struct bytes object)
+{
+	const struct root_page *root = scene_root(kiosk->scene);
+	struct navigator_options options = { .fov_deg = FOV_DEG };
+	struct page page;
+
+	if (!root || page_decode(&page, object) < 0)
+		return; /* the scene said why */
+	if (page.child_count == ROOT_CHILD_COUNT)
+		story_open(kiosk->story, hash, &page);
+	page_finish(&page);
+	memcpy(options.box_min_m, root->box_min_m, sizeof(options.box_min_m));
+	memcpy(options.box_max_m, root->box_max_m, sizeof(options.box_max_m));
+	memcpy(options.home_eye_m, root->start_eye_m, sizeof(options.home_eye_m));
+	memcpy(options.home_target_m, root->start_target_m, sizeof(options.home_target_m));
+	options.clearance = free_ahead;
+	options.data = kiosk;
+	if (!kiosk->navigator_ready)
+		navigator_init(&kiosk->navigator, &options);
+	else
+		kiosk->navigator.options = options; /* an update leaves the eye where it is */
+	kiosk->navigator_ready = true;
+	log_info("app", "showing %s: %llu of %llu triangles published", root->name,
+		 (unsigned long long)root->published_triangles,
+		 (unsigned long long)root->source_triangles);
+}
+
+static void on_object(void *data, struct hash hash, struct bytes bytes)
+{
+	struct kiosk *kiosk = data;
+
+	wants_arrived(&kiosk->wants, hash);
+	follow_give(kiosk->follow, hash, bytes);
+	if (!story_give(kiosk->story, hash, bytes)) {
+		scene_give(kiosk->scene, hash, bytes);
+		kiosk->object_count++;
+		if (kiosk->capture)
+			capture_object(kiosk->capture, bytes.size);
+		if (hash_equal(hash, follow_shown(kiosk->follow)))
+			take_root(kiosk, hash, bytes);
+	}
+	kiosk_redraw(kiosk);
+}
+
+static void on_missing(void *data, struct hash hash, enum missing_reason reason)
+{
+	static const char *const why[] = { "offline", "not on the server", "damaged" };
+	char hex[HASH_HEX_BYTES];
+
+	(void)data;
+	hash_to_hex(hash, hex);
+	log_debug("app", "object %s is missing: %s", hex, why[reason]);
+}
+
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	struct kiosk *kiosk = data;
+
+	follow_meta(kiosk->follow, role, version, bytes);
+	kiosk_redraw(kiosk);
+}
+
+static void on_status(void *data, const struct message_status *status)
+{
+	struct kiosk *kiosk = data;
+
+	if (status->online != kiosk->status.online)
+		log_info("app", status->online ? "the museum server answers"
+					       : "the museum server does not answer: offline");
+	kiosk->status = *status;
+	if (kiosk->capture)
+		kiosk_redraw(kiosk);
+}
+
+static void show_release(void *data, struct hash root, uint32_t root_bytes)
+{
+	struct kiosk *kiosk = data;
+	int rc;
+
+	net_client_use_release(kiosk->net, root, root_bytes);
+	wants_clear(&kiosk->wants);
+	rc = scene_open(kiosk->scene, root, root_bytes);
+	if (rc < 0)
+		log_error("app", "cannot open the release: %s", strerror(-rc));
+	kiosk_redraw(kiosk);
+}
+
+/* ---- start */
+
+static void on_closed(void *data)
+{
+	struct kiosk *kiosk = data;
+
+	kiosk->quit = true;
+}
+
+static int start_display(struct kiosk *kiosk)
+{
+	const struct display_options display = {
+		.kind = kiosk->options.display,
+		.width_px = kiosk->options.width_px,
+		.height_px = kiosk->options.height_px,
+		.device = kiosk->options.device,
+		.title = "Gopura",
+		.pointer = fingers_on_pointer,
+		.closed = on_closed,
+		.data = kiosk,
+	};
+	const struct scene_options scene = {
+		.mode = kiosk->options.mode,
+		.texture_budget_bytes = (uint64_t)kiosk->profile.texture_mib << 20,
+		.geometry_budget_bytes = (uint64_t)kiosk->profile.geometry_mib << 20,
+		.triangle_budget = kiosk->profile.triangles,
+		.patch_error_px = kiosk->profile.error_px,
+		.upload_budget_us = kiosk->profile.upload_us,
+		.worker_count = kiosk->profile.workers,
+	};
+	int rc = display_create(&kiosk->display, &display);
+
+	if (rc == 0)
+		rc = scene_create(&kiosk->scene, &scene);
+	if (rc == 0)
+		rc = quads_create(&kiosk->quads);
+	return rc;
+}
+
+static int start_input(struct kiosk *kiosk)
+{
+	const struct profile *profile = &kiosk->profile;
+	const int mm = profile->width_mm ? profile->width_mm : display_width_mm(kiosk->display);
+	const float px_per_mm = mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : 0;
+	struct touch_options touch = {
+		.width_px = kiosk_width_px(kiosk),
+		.height_px = kiosk_height_px(kiosk),
+		.rotation_deg = profile->rotation_deg,
+		.edge_px = profile->edge_mm * px_per_mm,
+		.palm_px = profile->palm_mm * px_per_mm,
+		.replay_path = kiosk->options.touch_replay_path,
+		.event = fingers_on_touch,
+		.data = kiosk,
+	};
+	const struct story_options story = {
+		.width_px = kiosk_width_px(kiosk),
+		.height_px = kiosk_height_px(kiosk),
+		.px_per_mm = px_per_mm,
+		.language = kiosk->options.language,
+	};
+	int rc;
+
+	memcpy(touch.matrix, profile->matrix, sizeof(touch.matrix));
+	fingers_init(kiosk);
+	rc = story_create(&kiosk->story, &story);
+	/* In a window the mouse is the finger, and the desktop owns the touchscreen. */
+	if (rc == 0 && (display_kind(kiosk->display) != DISPLAY_WINDOW || touch.replay_path))
+		rc = touch_create(&kiosk->touch, &touch);
+	return rc;
+}
+
+/* The folder of state.db and cache.db, made where it is not there. */
+static int state_folder(const struct kiosk *kiosk, char out[PATH_MAX])
+{
+	const char *home = getenv("HOME"), *state = getenv("XDG_STATE_HOME");
+
+	if (kiosk->options.state_dir)
+		snprintf(out, PATH_MAX, "%s", kiosk->options.state_dir);
+	else if (state && *state)
+		snprintf(out, PATH_MAX, "%s/gopura", state);
+	else
+		snprintf(out, PATH_MAX, "%s/.local/state/gopura", home ? home : "/var/lib");
+	for (char *slash = out + 1; *slash; slash++) {
+		if (*slash != '/')
+			continue;
+		*slash = '\0';
+		mkdir(out, 0700); /* what cannot be made is found out at the end */
+		*slash = '/';
+	}
+	if (mkdir(out, 0700) < 0 && errno != EEXIST) {
+		const int rc = -errno;
+
+		log_error("app", "%s: %s (choose another with --state)", out, strerror(-rc));
+		return rc;
+	}
+	return 0;
+}
+
+/* gopura-fetch beside this program. */
+static void fetch_beside(char out[PATH_MAX])
+{
+	ssize_t length = readlink("/proc/self/exe", out, PATH_MAX - sizeof("gopura-fetch"));
+	char *slash;
+
+	out[length > 0 ? length : 0] = '\0';
+	slash = strrchr(out, '/');
+	memcpy(slash ? slash + 1 : out, "gopura-fetch", sizeof("gopura-fetch"));
+}
+
+static int start_net(struct kiosk *kiosk)
+{
+	char folder[PATH_MAX], cache[PATH_MAX + 16], state[PATH_MAX + 16], program[PATH_MAX];
+	struct net_client_options net = {
+		.socket_path = kiosk->options.socket_path,
+		.program = kiosk->options.fetch_program,
+		.release_url = kiosk->options.release_url,
+		.cache_path = cache,
+		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
+		.ca_file = kiosk->options.ca_path,
+		.events = { on_object, on_missing, on_meta, on_status },
+		.data = kiosk,
+	};
+	struct follow_options follow = {
+		.state_path = state,
+		.trust_path = kiosk->options.trust_path,
+		.show = show_release,
+		.data = kiosk,
+	};
+	int rc = state_folder(kiosk, folder);
+
+	if (rc < 0)
+		return rc;
+	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
+	snprintf(state, sizeof(state), "%s/state.db", folder);
+	if (!net.program) {
+		fetch_beside(program);
+		net.program = program;
+	}
+	rc = net_client_create(&kiosk->net, &net);
+	if (rc < 0)
+		return rc;
+	follow.net = kiosk->net;
+	return follow_create(&kiosk->follow, &follow);
+}
+
+static int watch(struct kiosk *kiosk, int fd)
+{
+	struct epoll_event event = { .events = EPOLLIN, .data.fd = fd };
+
+	if (fd < 0)
+		return 0;
+	return epoll_ctl(kiosk->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
+}
+
+static int start_loop(struct kiosk *kiosk)
+{
+	sigset_t signals;
+	int rc;
+
+	sigemptyset(&signals);
+	sigaddset(&signals, SIGINT);
+	sigaddset(&signals, SIGTERM);
+	sigprocmask(SIG_BLOCK, &signals, NULL);
+	kiosk->signal_fd = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+	kiosk->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+	if (kiosk->signal_fd < 0 || kiosk->epoll_fd < 0)
+		return -errno;
+	rc = watch(kiosk, kiosk->signal_fd);
+	if (rc == 0)
+		rc = watch(kiosk, display_fd(kiosk->display));
+	if (rc == 0)
+		rc = watch(kiosk, net_client_fd(kiosk->net));
+	if (rc == 0)
+		rc = watch(kiosk, scene_fd(kiosk->scene));
+	if (rc == 0 && kiosk->touch)
+		rc = watch(kiosk, touch_fd(kiosk->touch));
+	return rc;
+}
+
+int kiosk_start(struct kiosk *kiosk)
+{
+	int rc = profile_read(&kiosk->profile, kiosk->options.board_path);
+
+	if (rc == 0)
+		rc = start_display(kiosk);
+	if (rc == 0)
+		rc = start_input(kiosk);
+	if (rc == 0)
+		rc = start_net(kiosk);
+	if (rc == 0)
+		rc = start_loop(kiosk);
+	if (rc == 0)
+		rc = capture_create(&kiosk->capture, kiosk);
+	if (rc == 0)
+		follow_start(kiosk->follow);
+	kiosk->frame_wanted = true;
+	return rc;
+}
+
+void kiosk_stop(struct kiosk *kiosk)
+{
+	capture_destroy(kiosk->capture);
+	if (kiosk->epoll_fd >= 0)
+		close(kiosk->epoll_fd);
+	if (kiosk->signal_fd >= 0)
+		close(kiosk->signal_fd);
+	follow_destroy(kiosk->follow);
+	net_client_destroy(kiosk->net);
+	touch_destroy(kiosk->touch);
+	story_destroy(kiosk->story);
+	quads_destroy(kiosk->quads);
+	scene_destroy(kiosk->scene);
+	display_destroy(kiosk->display);
+}
+
+/* ---- run */
+
+static int dispatch(struct kiosk *kiosk, int fd)
+{
+	if (fd == kiosk->signal_fd) {
+		kiosk->quit = true;
+		return 0;
+	}
+	if (fd == display_fd(kiosk->display))
+		return display_dispatch(kiosk->display);
+	if (fd == net_client_fd(kiosk->net))
+		return net_client_dispatch(kiosk->net);
+	if (fd == scene_fd(kiosk->scene)) {
+		kiosk_redraw(kiosk);
+		return scene_dispatch(kiosk->scene);
+	}
+	return touch_dispatch(kiosk->touch);
+}
+
+/* How long nothing needs to be done, milliseconds; -1: until something happens. */
+static int wait_ms(const struct kiosk *kiosk)
+{
+	const int64_t since = clock_now_ms() - kiosk->last_frame_ms;
+	const bool paced = display_kind(kiosk->display) == DISPLAY_DRM;
+
+	if (!display_ready(kiosk->display))
+		return FLIP_WATCH_MS;
+	if (kiosk->frame_wanted)
+		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
+	return kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
+}
+
+static int turn(struct kiosk *kiosk)
+{
+	struct epoll_event ready[8];
+	int count = epoll_wait(kiosk->epoll_fd, ready, ARRAY_COUNT(ready), wait_ms(kiosk));
+	int rc = 0;
+
+	if (count < 0)
+		return errno == EINTR ? 0 : -errno;
+	for (int i = 0; i < count && rc == 0; i++)
+		rc = dispatch(kiosk, ready[i].data.fd);
+	if (rc == 0 && count == 0 && !display_ready(kiosk->display))
+		rc = display_dispatch(kiosk->display); /* a flip that never completes */
+	if (count == 0 && kiosk->capture)
+		kiosk_redraw(kiosk); /* the wait for quiet is counted in frames */
+	if (rc < 0 || kiosk->quit)
+		return rc;
+	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
+	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
+		kiosk->quit = true;
+	if (kiosk->frame_wanted && display_ready(kiosk->display) && wait_ms(kiosk) == 0) {
+		if (kiosk->capture)
+			capture_aim(kiosk->capture, kiosk);
+		rc = frame_draw(kiosk);
+		if (rc == 0 && kiosk->capture)
+			rc = capture_after(kiosk->capture, kiosk);
+	}
+	return rc;
+}
+
+int kiosk_run(struct kiosk *kiosk)
+{
+	int rc = 0;
+
+	while (rc == 0 && !kiosk->quit)
+		rc = turn(kiosk);
+	if (rc < 0)
+		log_error("app", "stopping: %s", strerror(-rc));
+	return rc;
+}
