@@ -1,0 +1,24 @@
+/* A framebuffer whose depth can be asked: how near and how far is what it shows? */
+#ifndef GOPURA_PIPELINE_FRAME_H
+#define GOPURA_PIPELINE_FRAME_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/compiler.h"
+
+struct frame;
+
+/* side_px is a multiple of 8. The pipeline's machines must have OES_depth_texture (llvmpipe has);
+ * -ENOTSUP, logged, where they have not. */
+must_check int frame_create(struct frame **out, int width_px, int height_px);
+void frame_destroy(struct frame *frame); /* NULL is fine */
+void frame_bind(const struct frame *frame);
+/* 4 bytes a pixel, the lowest row first, as GL has it; borrowed until the next read. */
+must_check int frame_read(struct frame *frame, const uint8_t **rgba);
+/* Distance along the view's axis of what a perspective picture with these planes shows, each to
+ * one part in 1000, near rounded down and far up. found: false where it shows nothing. */
+must_check int frame_range(struct frame *frame, float plane_near_m, float plane_far_m, bool *found,
+			   float *near_m, float *far_m);
+
+#endif
