@@ -10,5 +10,6 @@ struct command {
 };
 
 int command_import(int argc, char **argv);
+int command_temple(int argc, char **argv);
 
 #endif

@@ -7,6 +7,7 @@
 
 static const struct command commands[] = {
 	{ "import", "read scans, say what was found and repaired", command_import },
+	{ "temple", "write the demo temple, any number of triangles", command_temple },
 	{ NULL, NULL, NULL },
 };
 
