@@ -29,6 +29,8 @@ struct samples_store {
 	uint32_t states[SAMPLE_STATES];
 	uint16_t tiles[FACE_TILES_MOST];
 	struct bytes objects[FACE_TILES_MOST];
+	uint64_t offsets[FACE_TILES_MOST];
+	char path[PATH_MAX]; /* of point_file */
 };
 
 static int samples_dir(char *out, size_t size, const char *content_dir)
@@ -128,12 +130,11 @@ static bool point_exists(const struct sample_grid *grid, const uint32_t point[3]
 /* Into point_file; the reader stands before the first face. -ENOENT: of another key. */
 static int load_point(struct samples_store *store, const uint32_t point[3])
 {
-	char path[PATH_MAX];
 	struct hash key;
 	int rc;
 
-	point_path(path, store->dir, point);
-	rc = buffer_read_file(&store->point_file, path);
+	point_path(store->path, store->dir, point);
+	rc = buffer_read_file(&store->point_file, store->path);
 	if (rc < 0)
 		return rc;
 	if (!read_head(&store->reader, buffer_bytes(&store->point_file), point_magic, &key))
@@ -251,7 +252,10 @@ static int read_face(struct samples_store *store, struct sample_face *out)
 {
 	struct reader *reader = &store->reader;
 
-	*out = (struct sample_face){ .tiles = store->tiles, .objects = store->objects };
+	*out = (struct sample_face){ .tiles = store->tiles,
+				     .objects = store->objects,
+				     .path = store->path,
+				     .offsets = store->offsets };
 	memcpy(out->point, store->point, sizeof(out->point));
 	out->face = reader_u8(reader);
 	out->level_count = reader_u8(reader);
@@ -266,6 +270,7 @@ static int read_face(struct samples_store *store, struct sample_face *out)
 	for (uint32_t i = 0; i < out->tile_count; i++) {
 		store->tiles[i] = reader_u16(reader);
 		store->objects[i] = reader_bytes(reader, reader_u32(reader));
+		store->offsets[i] = reader->at - store->objects[i].size;
 		if (store->tiles[i] >= face_tile_index(out->level_count, 0, 0) ||
 		    (i > 0 && store->tiles[i] <= store->tiles[i - 1]))
 			return -EBADMSG;

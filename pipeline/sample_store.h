@@ -36,6 +36,9 @@ struct sample_face {
 	uint32_t tile_count;         /* at least 1 */
 	const uint16_t *tiles;       /* face_tile_index of each, rising; borrowed */
 	const struct bytes *objects; /* encoded tiles; borrowed */
+	/* From samples_store_next: the file the tiles lie in, and where; both borrowed. */
+	const char *path;
+	const uint64_t *offsets;
 };
 
 struct samples_store;
