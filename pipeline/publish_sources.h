@@ -1,0 +1,19 @@
+/* What a release is made of, each part into a page and its objects: the samples that were rendered,
+ * the information of the content folder, the coarse part of the master hierarchy. */
+#ifndef GOPURA_PIPELINE_PUBLISH_SOURCES_H
+#define GOPURA_PIPELINE_PUBLISH_SOURCES_H
+
+#include "pipeline/object_store.h"
+#include "storage/info.h"
+
+/* The samples page, its bricks and faces; tiles stay where the sampler left them. -ENOENT: nothing
+ * was sampled, or not all. Errors are logged. */
+must_check int publish_samples(struct object_store *objects, const char *content,
+			       struct page_child *out);
+
+/* The information page: the database, then the pictures by hash. -EINVAL: parts.json or a page is
+ * at fault (every fault is logged). */
+must_check int publish_info(struct object_store *objects, const struct info_build_options *options,
+			    struct page_child *out);
+
+#endif
