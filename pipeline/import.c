@@ -169,8 +169,9 @@ static void judge_box(struct mesh *mesh, const char *path, struct import_report 
 			  path, far_m, size_m, 1000 * far_m * 6e-8);
 }
 
-static int finish(struct mesh *mesh, const char *path, const struct import_options *options,
-		  struct import_report *report, struct fault *fault)
+static int finish(struct mesh *mesh, const char *path, bool is_indexed,
+		  const struct import_options *options, struct import_report *report,
+		  struct fault *fault)
 {
 	int rc;
 
@@ -186,6 +187,10 @@ static int finish(struct mesh *mesh, const char *path, const struct import_optio
 				 " with a corner that is no number); export it again",
 				 path, report->repairs.degenerate_faces,
 				 report->repairs.lost_faces);
+	/* Those of assimp's corners are no fault of the scan: it parts every face from the others.
+	 */
+	if (!is_indexed)
+		report->repairs.merged_vertices = 0;
 	report->vertices = mesh->vertex_count;
 	report->triangles = mesh->triangle_count;
 	judge_box(mesh, path, report);
@@ -238,12 +243,13 @@ int import_scan(struct mesh *out, const char *path, const struct import_options 
 		report = &unwanted;
 	*report = (struct import_report){ 0 };
 	rc = look(path, &format, report, fault);
-	if (rc == 0 && format != SCAN_PLY)
-		rc = fault_set(fault, -ENOTSUP, "%s: only PLY is read so far; convert it", path);
 	if (rc == 0)
-		rc = import_ply(out, path, report, fault);
+		rc = format == SCAN_PLY
+			     ? import_ply(out, path, report, fault)
+			     : import_foreign(out, path, format == SCAN_GLTF || format == SCAN_GLB,
+					      options, report, fault);
 	if (rc == 0)
-		rc = finish(out, path, options, report, fault);
+		rc = finish(out, path, format == SCAN_PLY, options, report, fault);
 	if (rc < 0)
 		mesh_finish(out);
 	report->duration_ms = clock_now_ms() - began_ms;

@@ -9,6 +9,11 @@
 must_check int import_ply(struct mesh *out, const char *path, struct import_report *report,
 			  struct fault *fault);
 
+/* is_linear: the format's colours are linear light. */
+must_check int import_foreign(struct mesh *out, const char *path, bool is_linear,
+			      const struct import_options *options, struct import_report *report,
+			      struct fault *fault);
+
 /* The picture that a scan names. Looked for beside the scan: as named where that stays within the
  * scan's folder, else by its last component (exporters like to write C:\Users\...). A picture that
  * is missing or damaged is tolerated: a warning, and one pixel of the plain colour. -ENOMEM. */
