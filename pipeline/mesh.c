@@ -62,26 +62,37 @@ static int copy_texture(struct mesh_texture *to, const struct mesh_texture *from
 	return 0;
 }
 
-/* Copies of both meshes' textures; a side without any gets a white one, for it needs a material.
+/* Of a mesh without textures: its vertices' one colour. */
+static void plain_colour(const struct mesh *mesh, uint8_t rgb[3])
+{
+	memset(rgb, 255, 3);
+	if (mesh->colours && mesh->vertex_count > 0)
+		memcpy(rgb, mesh->colours[0], 3);
+}
+
+/* Copies of both meshes' textures; a side without any gets a plain one, for it needs a material.
  * base is where the second's begin. */
 static int join_textures(struct mesh *joined, const struct mesh *a, const struct mesh *b,
 			 uint32_t *base)
 {
-	const struct mesh_texture white = { 1, 1, (uint8_t[]){ 255, 255, 255 } };
+	uint8_t a_colour[3], b_colour[3];
+	const struct mesh_texture a_plain = { 1, 1, a_colour }, b_plain = { 1, 1, b_colour };
 	uint32_t a_count = a->textures ? a->texture_count : 1;
 	uint32_t b_count = b->textures ? b->texture_count : 1;
 	int rc = 0;
 
 	*base = a_count;
+	plain_colour(a, a_colour);
+	plain_colour(b, b_colour);
 	joined->textures = calloc((size_t)a_count + b_count, sizeof(*joined->textures));
 	if (!joined->textures)
 		return -ENOMEM;
 	joined->texture_count = a_count + b_count;
 	for (uint32_t i = 0; i < a_count && rc == 0; i++)
-		rc = copy_texture(&joined->textures[i], a->textures ? &a->textures[i] : &white);
+		rc = copy_texture(&joined->textures[i], a->textures ? &a->textures[i] : &a_plain);
 	for (uint32_t i = 0; i < b_count && rc == 0; i++)
 		rc = copy_texture(&joined->textures[a_count + i],
-				  b->textures ? &b->textures[i] : &white);
+				  b->textures ? &b->textures[i] : &b_plain);
 	return rc;
 }
 

@@ -33,8 +33,8 @@ void mesh_finish(struct mesh *mesh); /* frees what it owns, zeroes; NULL is fine
 void mesh_box(const struct mesh *mesh, float low[3], float high[3]);
 
 /* Behind what mesh holds; other is unchanged. What one of the two lacks is filled in: colours
- * white, uvs 0 on a white texture. -ENOMEM; -EFBIG past 32-bit counts or MESH_TEXTURES_MOST. On
- * failure mesh is as it was. */
+ * white, uvs 0 on a texture of one pixel, in the colour of its first vertex. -ENOMEM; -EFBIG past
+ * 32-bit counts or MESH_TEXTURES_MOST. On failure mesh is as it was. */
 must_check int mesh_append(struct mesh *mesh, const struct mesh *other);
 
 /* Colour of the texture at uv: nearest pixel, repeating. */
