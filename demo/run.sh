@@ -1,0 +1,60 @@
+#!/bin/bash
+# make demo: the demo temple from nothing to a panel. Ctrl-C ends everything this started.
+#
+#   demo/run.sh [--triangles N] [KIOSK OPTIONS]
+#
+# Everything lands in build/demo/: content/ (the scan and what is known about it), release/ (what a
+# museum server holds), server/ (nginx's own folder), state/ (the kiosk's). A second run finds all
+# of it done and starts at once.
+set -eu
+cd "$(dirname "$0")/.."
+[ "${1:-}" != --help ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; exit 0; }
+
+triangles=1500000
+if [ "${1:-}" = --triangles ]; then
+	triangles=$2
+	shift 2
+fi
+demo=$PWD/build/demo content=$PWD/build/demo/content release=$PWD/build/demo/release
+server=''
+end() {
+	trap - EXIT INT TERM
+	[ -z "$server" ] || kill "$server" 2>/dev/null || true
+	wait 2>/dev/null || true
+}
+trap end EXIT
+trap 'exit 130' INT TERM
+
+mkdir -p "$content"
+cp -ru demo/content/. "$content/"
+scan=$content/temple.ply
+if [ ! -f "$scan" ] || [ "$(cat "$demo/triangles" 2>/dev/null)" != "$triangles" ]; then
+	echo "Making the temple: $triangles triangles ..."
+	build/gopura-content temple --triangles "$triangles" --seed 1 --out "$scan.part"
+	mv "$scan.part" "$scan"
+	echo "$triangles" >"$demo/triangles"
+fi
+build/gopura-content build "$content" --out "$release"
+
+server/serve.sh "$release" 0 "$demo/server" >"$demo/server.log" 2>&1 &
+server=$!
+for _ in $(seq 100); do
+	[ ! -f "$demo/server/url" ] || break
+	kill -0 "$server" 2>/dev/null || { cat "$demo/server.log" >&2; exit 1; }
+	sleep 0.1
+done
+echo "Museum server: $(cat "$demo/server/url")"
+
+kiosk=(build/gopura-kiosk --release "$(cat "$demo/server/url")" --ca "$demo/server/ca.pem"
+	--trust "$release/root/1.json" --state "$demo/state")
+# A panel that is free, or a desktop: the kiosk takes it. Else a visit is played and photographed.
+if [ $# -gt 0 ] || [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || compgen -G '/dev/dri/card*' >/dev/null; then
+	echo "Starting the kiosk; Ctrl-C ends it. With a mouse: drag to turn, wheel to come nearer."
+	"${kiosk[@]}" "$@"
+else
+	echo "No panel and no desktop here: playing a visit without them (about half a minute) ..."
+	"${kiosk[@]}" --display headless --size 1280x720 --touch-replay demo/visit.touch \
+		--quit-after-replay --shots demo/visit.shots --capture "$demo"
+	echo "Pictures of the visit:"
+	ls "$demo"/*.png
+fi

@@ -1,0 +1,34 @@
+#!/bin/bash
+# The kiosk on a real KMS card, inside QEMU without KVM: virtio-gpu, virtio-tablet, an initramfs
+# with nothing but the kiosk and a small release. A tap through QMP opens a card, which the
+# screendump shows. Pictures: build/qemu/*.png.
+set -eu
+cd "$(dirname "$0")/../.."
+skip() { echo "$*"; exit 77; }
+command -v qemu-system-x86_64 >/dev/null || skip "qemu-system-x86 is not installed"
+[ -f /bin/busybox ] || skip "busybox-static is not installed"
+here=tests/qemu work=build/qemu
+mkdir -p "$work"
+
+# ---- a kernel: Debian's generic one, unpacked and not installed (the cloud kernel has no GPU)
+if ! ls "$work"/kernel/boot/vmlinuz-* >/dev/null 2>&1; then
+	package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends: linux-image/{print $2; exit}')
+	[ -n "$package" ] || skip "no kernel package to be had (apt-cache knows no linux-image-amd64)"
+	(cd "$work" && apt-get download "$package" >/dev/null 2>&1) || skip "the kernel package cannot be fetched"
+	dpkg-deb -x "$work"/linux-image-*.deb "$work/kernel"
+	rm -f "$work"/linux-image-*.deb
+fi
+kernel=$(ls "$work"/kernel/boot/vmlinuz-*)
+
+# ---- a small release
+content=$work/content release=$work/release
+mkdir -p "$content"
+cp -ru demo/content/. "$content/"
+sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
+	-e 's/^publish_share *=.*/publish_share = 0.5/' "$content/temple.ini"
+[ -f "$content/temple.ply" ] ||
+	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/temple.ply"
+build/gopura-content build "$content" --out "$release"
+
+"$here/initramfs.sh" "$work/kernel" "$release" "$work/initramfs.cpio"
+exec python3 "$here/visit.py" "$kernel" "$work/initramfs.cpio" "$work"
