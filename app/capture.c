@@ -222,8 +222,8 @@ static void write_line(struct capture *capture, const struct kiosk *kiosk, bool 
 		(unsigned long long)(kiosk->status.received_bytes - capture->bytes_before),
 		capture->objects, (long long)(capture->first_ms - capture->began_ms),
 		(long long)((settled ? capture->quiet_since_ms : now_ms) - capture->began_ms),
-		settled ? "true" : "false", median_ms(capture), kiosk->frame.triangles,
-		(double)kiosk->frame.image_share);
+		settled ? "true" : "false", median_ms(capture), kiosk->shown.frame.triangles,
+		(double)kiosk->shown.frame.image_share);
 	fflush(capture->lines);
 }
 
@@ -243,7 +243,7 @@ void capture_aim(struct capture *capture, struct kiosk *kiosk)
 	const struct view *view = &capture->views[capture->at];
 	struct camera *camera = &kiosk->camera;
 
-	if (!capture->views || capture->at >= capture->count || !scene_root(kiosk->scene))
+	if (!capture->views || capture->at >= capture->count || !kiosk->navigator_ready)
 		return;
 	if (!capture->began_ms)
 		begin_view(capture, kiosk);
@@ -256,7 +256,7 @@ void capture_aim(struct capture *capture, struct kiosk *kiosk)
 /* Nothing wanted, drawing or arriving for long enough that the status counts every byte. */
 static bool is_quiet(struct capture *capture, const struct kiosk *kiosk, int64_t now_ms)
 {
-	if (!kiosk->frame.settled || kiosk->words_move ||
+	if (!kiosk->shown.frame.settled || kiosk->words_move ||
 	    kiosk->status.received_bytes != capture->bytes_seen) {
 		capture->quiet_since_ms = 0;
 		capture->bytes_seen = kiosk->status.received_bytes;
@@ -276,7 +276,7 @@ static int after_view(struct capture *capture, struct kiosk *kiosk)
 
 	if (!capture->began_ms)
 		return 0;
-	if (kiosk->frame.patches > 0 && !capture->first_ms)
+	if (kiosk->shown.frame.patches > 0 && !capture->first_ms)
 		capture->first_ms = now_ms;
 	if (capture->frames < FRAMES_MOST)
 		capture->frame_us[capture->frames++] = kiosk->frame_us;
@@ -318,9 +318,8 @@ int capture_after(struct capture *capture, struct kiosk *kiosk)
 	return capture->views ? after_view(capture, kiosk) : after_replay_frame(capture, kiosk);
 }
 
-void capture_object(struct capture *capture, size_t bytes)
+void capture_object(struct capture *capture)
 {
-	(void)bytes;
 	capture->objects++;
 }
 

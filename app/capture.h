@@ -14,8 +14,8 @@ void capture_destroy(struct capture *capture); /* NULL is fine */
 void capture_aim(struct capture *capture, struct kiosk *kiosk);
 /* After each frame: writes what is due, moves on, sets kiosk->quit after the last. */
 must_check int capture_after(struct capture *capture, struct kiosk *kiosk);
-/* An object came for the scene. */
-void capture_object(struct capture *capture, size_t bytes);
+/* An object came. */
+void capture_object(struct capture *capture);
 /* Milliseconds until it has something to do without a frame; -1: not by time. */
 int capture_wait_ms(const struct capture *capture);
 

@@ -30,7 +30,7 @@ static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
 	float direction[3], middle[3];
 
 	frame_to_panel(kiosk, &x_px, &y_px);
-	if (scene_pick(kiosk->scene, &kiosk->camera, x_px, y_px, point_m))
+	if (scene_pick(kiosk->shown.scene, &kiosk->camera, x_px, y_px, point_m))
 		return true;
 	camera_ray(&kiosk->camera, x_px, y_px, direction);
 	glm_vec3_lerp((float *)o->box_min_m, (float *)o->box_max_m, 0.5f, middle);
@@ -52,14 +52,14 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 /* Flies to where the part stands in the middle of what the words leave of the panel. */
 static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 {
-	const struct overlay_rect rect = overlay_scene_rect(story_overlay(kiosk->story));
+	const struct overlay_rect rect = overlay_scene_rect(story_overlay(kiosk->shown.story));
 	const float w = (float)kiosk_width_px(kiosk), h = (float)kiosk_height_px(kiosk);
 	const float tangent = tanf(glm_rad(kiosk->navigator.options.fov_deg) / 2);
 	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;
 	const float height = 1 - ((float)rect.y_px + (float)rect.height_px / 2) / h * 2;
 	float eye[3], target[3], forward[3], right[3], up[3], distance;
 
-	story_viewpoint(kiosk->story, part, kiosk->navigator.eye_m, eye, target);
+	story_viewpoint(kiosk->shown.story, part, kiosk->navigator.eye_m, eye, target);
 	glm_vec3_sub(target, eye, forward);
 	distance = glm_vec3_norm(forward);
 	glm_vec3_cross(forward, (vec3){ 0, 0, 1 }, right);
@@ -80,8 +80,8 @@ void fingers_go_home(struct kiosk *kiosk)
 
 static void open_page(struct kiosk *kiosk, int part)
 {
-	if (part >= 0 && story_open_page(kiosk->story, (uint32_t)part)) {
-		overlay_show_card(story_overlay(kiosk->story), -1);
+	if (part >= 0 && story_open_page(kiosk->shown.story, (uint32_t)part)) {
+		overlay_show_card(story_overlay(kiosk->shown.story), -1);
 		fly_to_part(kiosk, (uint32_t)part);
 	}
 }
@@ -94,16 +94,16 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 	int part = -1;
 
 	if (pick(kiosk, x_px, y_px, point))
-		part = story_part_at(kiosk->story, point);
+		part = story_part_at(kiosk->shown.story, point);
 	if (part >= 0)
 		log_debug("app", "tapped part %s",
-			  info_part(story_info(kiosk->story), (uint32_t)part)->id);
-	overlay_show_card(story_overlay(kiosk->story), part);
+			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
+	overlay_show_card(story_overlay(kiosk->shown.story), part);
 }
 
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
 	switch (action->kind) {
 	case OVERLAY_NONE:
@@ -122,10 +122,10 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		overlay_close_page(overlay);
 		break;
 	case OVERLAY_LANGUAGE:
-		story_set_language(kiosk->story, action->language);
+		story_set_language(kiosk->shown.story, action->language);
 		break;
 	case OVERLAY_LINK:
-		open_page(kiosk, info_find(story_info(kiosk->story), action->link));
+		open_page(kiosk, info_find(story_info(kiosk->shown.story), action->link));
 		break;
 	case OVERLAY_HOME:
 		overlay_close_page(overlay);
@@ -141,7 +141,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	const struct overlay_action action =
-		overlay_tap(story_overlay(kiosk->story), gesture->x_px, gesture->y_px);
+		overlay_tap(story_overlay(kiosk->shown.story), gesture->x_px, gesture->y_px);
 	float point[3];
 
 	if (action.kind != OVERLAY_NONE)
@@ -149,14 +149,14 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 	else if (gesture->kind == GESTURE_TAP)
 		tap_model(kiosk, gesture->x_px, gesture->y_px);
 	else if (pick(kiosk, gesture->x_px, gesture->y_px, point))
-		open_page(kiosk, story_part_at(kiosk->story, point));
+		open_page(kiosk, story_part_at(kiosk->shown.story, point));
 }
 
 /* ---- gestures */
 
 static void on_press(struct kiosk *kiosk, const struct gesture *gesture)
 {
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
 	kiosk->finger_on_words = overlay && overlay_covers(overlay, gesture->x_px, gesture->y_px);
 	if (!kiosk->finger_on_words)
@@ -165,7 +165,7 @@ static void on_press(struct kiosk *kiosk, const struct gesture *gesture)
 
 static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 {
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
 	if (gesture->kind == GESTURE_DRAG)
 		overlay_scroll(overlay, gesture->dy_px);
@@ -176,7 +176,7 @@ static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	const float height = (float)kiosk_height_px(kiosk);
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
 	switch (gesture->kind) {
 	case GESTURE_DRAG_BEGIN:
@@ -210,7 +210,7 @@ static void on_gesture(void *data, const struct gesture *gesture)
 	if (gesture->kind == GESTURE_PRESS)
 		on_press(kiosk, gesture);
 	else if (gesture->kind == GESTURE_TAP || gesture->kind == GESTURE_DOUBLE_TAP) {
-		if (story_overlay(kiosk->story))
+		if (story_overlay(kiosk->shown.story))
 			on_tap(kiosk, gesture);
 	} else if (kiosk->finger_on_words)
 		on_words(kiosk, gesture);

@@ -4,7 +4,7 @@
 #ifndef GOPURA_APP_FOLLOW_H
 #define GOPURA_APP_FOLLOW_H
 
-#include "app/wants.h"
+#include "net/client.h"
 
 struct follow;
 
@@ -12,8 +12,9 @@ struct follow_options {
 	const char *state_path; /* state.db; copied */
 	const char *trust_path; /* root/1.json to pin where the state has none; NULL: none */
 	struct net_client *net; /* borrowed */
-	/* Show this release; called at the start for the remembered one, and at each switch. */
-	void (*show)(void *data, struct hash root, uint32_t root_bytes);
+	/* Bring this release: at the start the remembered one, later each new one. follow_switched
+	 * answers when it is shown. */
+	void (*begin)(void *data, struct hash root, uint32_t root_bytes);
 	void *data;
 };
 
@@ -23,11 +24,9 @@ void follow_destroy(struct follow *follow); /* NULL is fine */
 /* Begins: shows the remembered release, if there is one. */
 void follow_start(struct follow *follow);
 void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes);
-/* true: the object was wanted for the next release (others may want it too). */
-bool follow_give(struct follow *follow, struct hash hash, struct bytes object);
-void follow_wants(struct follow *follow, struct wants *wants);
-/* The release shown; zero: none yet. */
-struct hash follow_shown(const struct follow *follow);
+/* The release that began last can be shown whole: remembers it, durably. On failure the one before
+ * stays the one that is shown. */
+must_check int follow_switched(struct follow *follow);
 /* Why the last metadata was refused, for the health page; "" where it was not. */
 const char *follow_refusal(const struct follow *follow);
 

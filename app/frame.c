@@ -94,16 +94,16 @@ static bool anchor_is_hidden(struct kiosk *kiosk, const float anchor_m[3])
 	if (distance < 0.01f)
 		return false;
 	glm_vec3_scale(direction, 1 / distance, direction);
-	free_m = scene_clearance(kiosk->scene, kiosk->camera.eye_m, direction, distance);
+	free_m = scene_clearance(kiosk->shown.scene, kiosk->camera.eye_m, direction, distance);
 	return free_m < distance - fmaxf(0.4f, 0.03f * distance);
 }
 
 /* A few rays a frame: stone in front of an anchor changes slowly. */
 static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 {
-	const struct info *info = story_info(kiosk->story);
+	const struct info *info = story_info(kiosk->shown.story);
 
-	if (kiosk->eye_moves || kiosk->frame.tiles_uploaded || !kiosk->frame.settled)
+	if (kiosk->eye_moves || kiosk->shown.frame.tiles_uploaded || !kiosk->shown.frame.settled)
 		kiosk->anchors_to_look = count;
 	for (int i = 0; i < ANCHORS_A_FRAME && kiosk->anchors_to_look > 0; i++) {
 		kiosk->next_anchor = (kiosk->next_anchor + 1) % count;
@@ -116,7 +116,7 @@ static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 {
 	static struct overlay_anchor anchors[OVERLAY_PARTS_MOST];
-	const struct info *info = story_info(kiosk->story);
+	const struct info *info = story_info(kiosk->shown.story);
 	const struct overlay_rect rect = overlay_scene_rect(overlay);
 	const uint32_t count = info_part_count(info);
 
@@ -171,17 +171,18 @@ static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_
 
 static const struct region *marked_region(struct kiosk *kiosk, struct region *out)
 {
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
 	int part = -1;
 
 	if (overlay)
 		part = overlay_page(overlay) >= 0 ? overlay_page(overlay) : overlay_card(overlay);
-	return part >= 0 && story_region(kiosk->story, (uint32_t)part, out) ? out : NULL;
+	return part >= 0 && story_region(kiosk->shown.story, (uint32_t)part, out) ? out : NULL;
 }
 
 static void draw_scene(struct kiosk *kiosk, bool words)
 {
-	const struct root_page *root = scene_root(kiosk->scene);
+	struct scene *scene = kiosk->shown.scene;
+	const struct root_page *root = scene ? scene_root(scene) : NULL;
 	struct region region;
 
 	glDisable(GL_SCISSOR_TEST);
@@ -190,20 +191,32 @@ static void draw_scene(struct kiosk *kiosk, bool words)
 		     (float)(root ? root->background[1] : 22) / 255,
 		     (float)(root ? root->background[2] : 20) / 255, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-	scene_draw(kiosk->scene, &kiosk->camera, words ? marked_region(kiosk, &region) : NULL,
-		   &kiosk->frame);
+	if (scene && kiosk->navigator_ready)
+		scene_draw(scene, &kiosk->camera, words ? marked_region(kiosk, &region) : NULL,
+			   &kiosk->shown.frame);
 }
 
-static void say_wants(struct kiosk *kiosk)
+static void add_wants(struct kiosk *kiosk, struct exhibit *exhibit, uint32_t share)
 {
-	struct message_want list[WANTS_MOST];
+	static struct message_want list[WANTS_MOST];
 	size_t count;
 
-	wants_begin(&kiosk->wants);
-	story_wants(kiosk->story, &kiosk->wants);
-	count = scene_wants(kiosk->scene, list, WANTS_MOST / 2);
-	for (size_t i = 0; i < count; i++)
+	if (!exhibit->scene)
+		return;
+	story_wants(exhibit->story, &kiosk->wants);
+	count = scene_wants(exhibit->scene, list, WANTS_MOST / 2);
+	for (size_t i = 0; i < count; i++) {
+		list[i].priority /= share;
 		wants_add(&kiosk->wants, &list[i]);
+	}
+}
+
+/* What is shown comes first; what is coming has what is left of the line. */
+static void say_wants(struct kiosk *kiosk)
+{
+	wants_begin(&kiosk->wants);
+	add_wants(kiosk, &kiosk->shown, 1);
+	add_wants(kiosk, &kiosk->coming, 1000);
 	wants_say(&kiosk->wants, kiosk->net);
 }
 
@@ -213,7 +226,7 @@ int frame_draw(struct kiosk *kiosk)
 	const float dt_ms = fminf((float)(now_ms - kiosk->last_frame_ms), STEP_MOST_MS);
 	const bool words =
 		!kiosk->capture || kiosk->options.capture_overlay || !kiosk->options.views_path;
-	struct overlay *overlay = story_overlay(kiosk->story);
+	struct overlay *overlay;
 	int rc = 0;
 
 	kiosk->last_frame_ms = now_ms;
@@ -223,8 +236,10 @@ int frame_draw(struct kiosk *kiosk)
 			navigator_step(&kiosk->navigator, dt_ms, (float)kiosk_height_px(kiosk));
 		frame_camera(kiosk, &kiosk->camera);
 	}
+	exhibit_warm(kiosk);
 	display_begin(kiosk->display);
 	draw_scene(kiosk, words);
+	overlay = story_overlay(kiosk->shown.story); /* another one after a change of release */
 	if (overlay && words)
 		rc = draw_words(kiosk, overlay, now_ms);
 	if (rc == 0)
@@ -233,8 +248,8 @@ int frame_draw(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = display_present(kiosk->display);
 	say_wants(kiosk);
-	if (kiosk->frame.moving || kiosk->words_move || kiosk->eye_moves ||
-	    kiosk->anchors_to_look > 0)
+	if (kiosk->shown.frame.moving || kiosk->coming.root_here || kiosk->words_move ||
+	    kiosk->eye_moves || kiosk->anchors_to_look > 0)
 		kiosk->frame_wanted = true;
 	return rc;
 }

@@ -29,54 +29,15 @@ void kiosk_redraw(struct kiosk *kiosk)
 
 /* ---- what comes from the fetcher */
 
-static float free_ahead(void *data, const float from_m[3], const float direction[3], float most_m)
-{
-	struct kiosk *kiosk = data;
-
-	return scene_clearance(kiosk->scene, from_m, direction, most_m);
-}
-
-static void take_root(struct kiosk *kiosk, struct hash hash, struct bytes object)
-{
-	const struct root_page *root = scene_root(kiosk->scene);
-	struct navigator_options options = { .fov_deg = FOV_DEG };
-	struct page page;
-
-	if (!root || page_decode(&page, object) < 0)
-		return; /* the scene said why */
-	if (page.child_count == ROOT_CHILD_COUNT)
-		story_open(kiosk->story, hash, &page);
-	page_finish(&page);
-	memcpy(options.box_min_m, root->box_min_m, sizeof(options.box_min_m));
-	memcpy(options.box_max_m, root->box_max_m, sizeof(options.box_max_m));
-	memcpy(options.home_eye_m, root->start_eye_m, sizeof(options.home_eye_m));
-	memcpy(options.home_target_m, root->start_target_m, sizeof(options.home_target_m));
-	options.clearance = free_ahead;
-	options.data = kiosk;
-	if (!kiosk->navigator_ready)
-		navigator_init(&kiosk->navigator, &options);
-	else
-		kiosk->navigator.options = options; /* an update leaves the eye where it is */
-	kiosk->navigator_ready = true;
-	log_info("app", "showing %s: %llu of %llu triangles published", root->name,
-		 (unsigned long long)root->published_triangles,
-		 (unsigned long long)root->source_triangles);
-}
-
 static void on_object(void *data, struct hash hash, struct bytes bytes)
 {
 	struct kiosk *kiosk = data;
 
 	wants_arrived(&kiosk->wants, hash);
-	follow_give(kiosk->follow, hash, bytes);
-	if (!story_give(kiosk->story, hash, bytes)) {
-		scene_give(kiosk->scene, hash, bytes);
-		kiosk->object_count++;
-		if (kiosk->capture)
-			capture_object(kiosk->capture, bytes.size);
-		if (hash_equal(hash, follow_shown(kiosk->follow)))
-			take_root(kiosk, hash, bytes);
-	}
+	exhibit_give(&kiosk->shown, hash, bytes);
+	exhibit_give(&kiosk->coming, hash, bytes);
+	if (kiosk->capture)
+		capture_object(kiosk->capture);
 	kiosk_redraw(kiosk);
 }
 
@@ -110,17 +71,9 @@ static void on_status(void *data, const struct message_status *status)
 		kiosk_redraw(kiosk);
 }
 
-static void show_release(void *data, struct hash root, uint32_t root_bytes)
+static void begin_release(void *data, struct hash root, uint32_t root_bytes)
 {
-	struct kiosk *kiosk = data;
-	int rc;
-
-	net_client_use_release(kiosk->net, root, root_bytes);
-	wants_clear(&kiosk->wants);
-	rc = scene_open(kiosk->scene, root, root_bytes);
-	if (rc < 0)
-		log_error("app", "cannot open the release: %s", strerror(-rc));
-	kiosk_redraw(kiosk);
+	exhibit_begin(data, root, root_bytes);
 }
 
 /* ---- start */
@@ -144,19 +97,8 @@ static int start_display(struct kiosk *kiosk)
 		.closed = on_closed,
 		.data = kiosk,
 	};
-	const struct scene_options scene = {
-		.mode = kiosk->options.mode,
-		.texture_budget_bytes = (uint64_t)kiosk->profile.texture_mib << 20,
-		.geometry_budget_bytes = (uint64_t)kiosk->profile.geometry_mib << 20,
-		.triangle_budget = kiosk->profile.triangles,
-		.patch_error_px = kiosk->profile.error_px,
-		.upload_budget_us = kiosk->profile.upload_us,
-		.worker_count = kiosk->profile.workers,
-	};
 	int rc = display_create(&kiosk->display, &display);
 
-	if (rc == 0)
-		rc = scene_create(&kiosk->scene, &scene);
 	if (rc == 0)
 		rc = quads_create(&kiosk->quads);
 	return rc;
@@ -166,32 +108,26 @@ static int start_input(struct kiosk *kiosk)
 {
 	const struct profile *profile = &kiosk->profile;
 	const int mm = profile->width_mm ? profile->width_mm : display_width_mm(kiosk->display);
-	const float px_per_mm = mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : 0;
-	struct touch_options touch = {
+	struct touch_options touch;
+
+	kiosk->px_per_mm = mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : 0;
+	touch = (struct touch_options){
 		.width_px = kiosk_width_px(kiosk),
 		.height_px = kiosk_height_px(kiosk),
 		.rotation_deg = profile->rotation_deg,
-		.edge_px = profile->edge_mm * px_per_mm,
-		.palm_px = profile->palm_mm * px_per_mm,
+		.edge_px = profile->edge_mm * kiosk->px_per_mm,
+		.palm_px = profile->palm_mm * kiosk->px_per_mm,
 		.replay_path = kiosk->options.touch_replay_path,
 		.event = fingers_on_touch,
 		.data = kiosk,
 	};
-	const struct story_options story = {
-		.width_px = kiosk_width_px(kiosk),
-		.height_px = kiosk_height_px(kiosk),
-		.px_per_mm = px_per_mm,
-		.language = kiosk->options.language,
-	};
-	int rc;
 
 	memcpy(touch.matrix, profile->matrix, sizeof(touch.matrix));
 	fingers_init(kiosk);
-	rc = story_create(&kiosk->story, &story);
 	/* In a window the mouse is the finger, and the desktop owns the touchscreen. */
-	if (rc == 0 && (display_kind(kiosk->display) != DISPLAY_WINDOW || touch.replay_path))
-		rc = touch_create(&kiosk->touch, &touch);
-	return rc;
+	if (display_kind(kiosk->display) == DISPLAY_WINDOW && !touch.replay_path)
+		return 0;
+	return touch_create(&kiosk->touch, &touch);
 }
 
 /* The folder of state.db and cache.db, made where it is not there. */
@@ -248,7 +184,7 @@ static int start_net(struct kiosk *kiosk)
 	struct follow_options follow = {
 		.state_path = state,
 		.trust_path = kiosk->options.trust_path,
-		.show = show_release,
+		.begin = begin_release,
 		.data = kiosk,
 	};
 	int rc = state_folder(kiosk, folder);
@@ -268,7 +204,7 @@ static int start_net(struct kiosk *kiosk)
 	return follow_create(&kiosk->follow, &follow);
 }
 
-static int watch(struct kiosk *kiosk, int fd)
+int kiosk_watch(struct kiosk *kiosk, int fd)
 {
 	struct epoll_event event = { .events = EPOLLIN, .data.fd = fd };
 
@@ -290,15 +226,13 @@ static int start_loop(struct kiosk *kiosk)
 	kiosk->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
 	if (kiosk->signal_fd < 0 || kiosk->epoll_fd < 0)
 		return -errno;
-	rc = watch(kiosk, kiosk->signal_fd);
+	rc = kiosk_watch(kiosk, kiosk->signal_fd);
 	if (rc == 0)
-		rc = watch(kiosk, display_fd(kiosk->display));
+		rc = kiosk_watch(kiosk, display_fd(kiosk->display));
 	if (rc == 0)
-		rc = watch(kiosk, net_client_fd(kiosk->net));
-	if (rc == 0)
-		rc = watch(kiosk, scene_fd(kiosk->scene));
+		rc = kiosk_watch(kiosk, net_client_fd(kiosk->net));
 	if (rc == 0 && kiosk->touch)
-		rc = watch(kiosk, touch_fd(kiosk->touch));
+		rc = kiosk_watch(kiosk, touch_fd(kiosk->touch));
 	return rc;
 }
 
@@ -332,9 +266,11 @@ void kiosk_stop(struct kiosk *kiosk)
 	follow_destroy(kiosk->follow);
 	net_client_destroy(kiosk->net);
 	touch_destroy(kiosk->touch);
-	story_destroy(kiosk->story);
+	exhibit_close(&kiosk->coming);
+	exhibit_close(&kiosk->shown);
+	if (kiosk->warm_target.framebuffer)
+		gl_target_destroy(&kiosk->warm_target);
 	quads_destroy(kiosk->quads);
-	scene_destroy(kiosk->scene);
 	display_destroy(kiosk->display);
 }
 
@@ -350,11 +286,17 @@ static int dispatch(struct kiosk *kiosk, int fd)
 		return display_dispatch(kiosk->display);
 	if (fd == net_client_fd(kiosk->net))
 		return net_client_dispatch(kiosk->net);
-	if (fd == scene_fd(kiosk->scene)) {
+	if (kiosk->touch && fd == touch_fd(kiosk->touch))
+		return touch_dispatch(kiosk->touch);
+	if (kiosk->shown.scene && fd == scene_fd(kiosk->shown.scene)) {
 		kiosk_redraw(kiosk);
-		return scene_dispatch(kiosk->scene);
+		return scene_dispatch(kiosk->shown.scene);
 	}
-	return touch_dispatch(kiosk->touch);
+	if (kiosk->coming.scene && fd == scene_fd(kiosk->coming.scene)) {
+		kiosk_redraw(kiosk);
+		return scene_dispatch(kiosk->coming.scene);
+	}
+	return 0; /* of a scene that was closed a moment ago */
 }
 
 /* How long nothing needs to be done, milliseconds; -1: until something happens. */

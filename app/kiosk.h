@@ -12,11 +12,22 @@
 #include "input/touch.h"
 #include "net/client.h"
 #include "render/display.h"
+#include "render/gl.h"
 #include "render/quads.h"
 #include "render/scene.h"
 
 struct capture;
 struct follow;
+
+/* One release as it is shown: its pictures and its words. */
+struct exhibit {
+	struct scene *scene;
+	struct story *story;
+	struct hash root;
+	uint32_t root_bytes;
+	bool root_here;
+	struct scene_frame frame; /* of the last time it was drawn */
+};
 
 struct kiosk {
 	struct options options;
@@ -24,11 +35,13 @@ struct kiosk {
 
 	int epoll_fd, signal_fd;
 	struct display *display;
-	struct scene *scene;
+	struct exhibit shown;  /* its scene and story are NULL before the first release */
+	struct exhibit coming; /* the next release, warming up unseen; NULL: none */
+	int64_t coming_since_ms, coming_drawn_ms;
+	struct gl_target warm_target; /* where it is drawn */
 	struct quads *quads;
 	struct touch *touch;
 	struct net_client *net;
-	struct story *story;
 	struct follow *follow;   /* of releases */
 	struct capture *capture; /* NULL: a kiosk, not a measurement */
 
@@ -38,8 +51,8 @@ struct kiosk {
 	struct gesture_recogniser gestures;
 	bool finger_on_words; /* the gesture began on a page or card */
 
+	float px_per_mm;      /* of the panel; 0: not known */
 	struct camera camera; /* of the last frame */
-	struct scene_frame frame;
 	struct message_status status;
 	int64_t last_frame_ms;
 	bool frame_wanted, words_move, eye_moves;
@@ -55,11 +68,24 @@ struct kiosk {
 must_check int kiosk_start(struct kiosk *kiosk);
 must_check int kiosk_run(struct kiosk *kiosk);
 void kiosk_stop(struct kiosk *kiosk);
+/* Has the loop wait for this descriptor too, until it is closed; -1: nothing. */
+must_check int kiosk_watch(struct kiosk *kiosk, int fd);
 /* The picture changes: draw soon. */
 void kiosk_redraw(struct kiosk *kiosk);
 /* Of the picture as the visitor sees it. */
 int kiosk_width_px(const struct kiosk *kiosk);
 int kiosk_height_px(const struct kiosk *kiosk);
+
+/* exhibit.c: what is shown, and what comes next. */
+must_check int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+			    uint32_t root_bytes);
+void exhibit_close(struct exhibit *exhibit);
+/* An object came; true: it was the exhibit's root page. */
+bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
+/* Begins with the release, in the background where another one is shown. */
+void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
+/* Draws a little of what is coming, and makes the change once it can be shown whole. */
+void exhibit_warm(struct kiosk *kiosk);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);

@@ -81,12 +81,12 @@ void story_open(struct story *story, struct hash root, const struct page *root_p
 
 struct overlay *story_overlay(struct story *story)
 {
-	return story->overlay;
+	return story ? story->overlay : NULL;
 }
 
 const struct info *story_info(const struct story *story)
 {
-	return story->info;
+	return story ? story->info : NULL;
 }
 
 /* ---- pictures */
@@ -295,6 +295,11 @@ void story_wants(struct story *story, struct wants *wants)
 			if (hash_equal(story->page.children[c].hash, hash))
 				want_child(story, wants, c, MESSAGE_PRIORITY_INDEX / 2);
 	}
+}
+
+const char *story_language(const struct story *story)
+{
+	return story->language[0] ? story->language : NULL;
 }
 
 void story_set_language(struct story *story, const char *language)

@@ -27,9 +27,12 @@ void story_open(struct story *story, struct hash root, const struct page *root_p
 bool story_give(struct story *story, struct hash hash, struct bytes object);
 void story_wants(struct story *story, struct wants *wants);
 
-/* NULL until the database is there. Borrowed until the next story_give. */
+/* NULL until the database is there, and for a story that is NULL. Borrowed until the next
+ * story_give. */
 struct overlay *story_overlay(struct story *story);
 const struct info *story_info(const struct story *story);
+/* NULL: not chosen yet. Borrowed. */
+const char *story_language(const struct story *story);
 void story_set_language(struct story *story, const char *language);
 
 /* The part that a point of the surface belongs to: of those that contain it the smallest, or -1. */

@@ -1,5 +1,6 @@
 #include "base/clock.h"
 
+#include <sys/timex.h>
 #include <time.h>
 
 static int64_t read_us(clockid_t id)
@@ -28,4 +29,11 @@ int64_t clock_thread_us(void)
 int64_t clock_wall_s(void)
 {
 	return read_us(CLOCK_REALTIME) / 1000000;
+}
+
+bool clock_wall_is_set(void)
+{
+	struct timex state = { .modes = 0 };
+
+	return adjtimex(&state) >= 0 && !(state.status & STA_UNSYNC);
 }

@@ -2,6 +2,7 @@
 #ifndef GOPURA_BASE_CLOCK_H
 #define GOPURA_BASE_CLOCK_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Monotonic; the zero is arbitrary. */
@@ -13,5 +14,7 @@ int64_t clock_thread_us(void);
 
 /* Seconds since 1970 by the wall clock, which may be wrong: see storage/state.h for the floor. */
 int64_t clock_wall_s(void);
+/* The kernel was told the time by somebody who knows it (NTP): expiry may be judged. */
+bool clock_wall_is_set(void);
 
 #endif

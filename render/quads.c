@@ -137,6 +137,12 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 	return 0;
 }
 
+void quads_forget(struct quads *quads)
+{
+	for (size_t i = 0; i < QUADS_TEXTURES_MOST; i++)
+		quads->textures[i].revision = 0;
+}
+
 /* Visitor's pixels to clip space, column-major: the panel shows the framebuffer turned by
  * rotation_deg clockwise, so what is drawn is turned back. */
 static void clip_matrix(float out[9], int width_px, int height_px, int rotation_deg)

@@ -24,6 +24,9 @@ struct quads_pixels {
 };
 must_check int quads_upload(struct quads *quads, const struct quads_pixels *pixels);
 
+/* Every texture is uploaded again when it is next given: its id means something else now. */
+void quads_forget(struct quads *quads);
+
 /* Sets the state for drawing; width and height are of the framebuffer, rotation of the panel. */
 void quads_begin(struct quads *quads, int width_px, int height_px, int rotation_deg);
 /* corners: top left, top right, bottom right, bottom left; source: left, top, right, bottom in

@@ -1,0 +1,174 @@
+/* What is shown, and what comes next. A new release is drawn small and unseen, with the visitor's
+ * own camera, until nothing of it is missing; then the two change places between two frames. */
+#include <errno.h>
+#include <string.h>
+
+#include "app/follow.h"
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+enum {
+	WARM_PERIOD_MS = 100,
+	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
+	WARM_WIDTH_PX = 320,
+	FOV_DEG = 45,
+};
+
+static float free_ahead(void *data, const float from_m[3], const float direction[3], float most_m)
+{
+	struct kiosk *kiosk = data;
+
+	return scene_clearance(kiosk->shown.scene, from_m, direction, most_m);
+}
+
+int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+		 uint32_t root_bytes)
+{
+	const struct profile *profile = &kiosk->profile;
+	const struct scene_options scene = {
+		.mode = kiosk->options.mode,
+		.texture_budget_bytes = (uint64_t)profile->texture_mib << 20,
+		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
+		.triangle_budget = profile->triangles,
+		.patch_error_px = profile->error_px,
+		.upload_budget_us = profile->upload_us,
+		.worker_count = profile->workers,
+	};
+	const struct story_options story = {
+		.width_px = kiosk_width_px(kiosk),
+		.height_px = kiosk_height_px(kiosk),
+		.px_per_mm = kiosk->px_per_mm,
+		.language = kiosk->options.language,
+	};
+	int rc;
+
+	*exhibit = (struct exhibit){ .root = root, .root_bytes = root_bytes };
+	rc = scene_create(&exhibit->scene, &scene);
+	if (rc == 0)
+		rc = story_create(&exhibit->story, &story);
+	if (rc == 0)
+		rc = scene_open(exhibit->scene, root, root_bytes);
+	if (rc == 0)
+		rc = kiosk_watch(kiosk, scene_fd(exhibit->scene));
+	if (rc < 0)
+		exhibit_close(exhibit);
+	return rc;
+}
+
+void exhibit_close(struct exhibit *exhibit)
+{
+	story_destroy(exhibit->story);
+	scene_destroy(exhibit->scene);
+	*exhibit = (struct exhibit){ 0 };
+}
+
+bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+{
+	struct page page;
+
+	if (!exhibit->scene)
+		return false;
+	if (!story_give(exhibit->story, hash, object))
+		scene_give(exhibit->scene, hash, object);
+	if (!hash_equal(hash, exhibit->root) || !scene_root(exhibit->scene))
+		return false;
+	if (!exhibit->root_here && page_decode(&page, object) == 0) {
+		story_open(exhibit->story, hash, &page);
+		page_finish(&page);
+		exhibit->root_here = true;
+	}
+	return true;
+}
+
+/* The eye's bounds are the release's. At the first release it goes to its start; at an update it
+ * stays where the visitor has it. */
+static void set_bounds(struct kiosk *kiosk)
+{
+	const struct root_page *root = scene_root(kiosk->shown.scene);
+	struct navigator_options options = {
+		.fov_deg = FOV_DEG,
+		.clearance = free_ahead,
+		.data = kiosk,
+	};
+
+	memcpy(options.box_min_m, root->box_min_m, sizeof(options.box_min_m));
+	memcpy(options.box_max_m, root->box_max_m, sizeof(options.box_max_m));
+	memcpy(options.home_eye_m, root->start_eye_m, sizeof(options.home_eye_m));
+	memcpy(options.home_target_m, root->start_target_m, sizeof(options.home_target_m));
+	if (kiosk->navigator_ready)
+		kiosk->navigator.options = options;
+	else
+		navigator_init(&kiosk->navigator, &options);
+	kiosk->navigator_ready = true;
+	log_info("app", "showing %s: %llu of %llu triangles published", root->name,
+		 (unsigned long long)root->published_triangles,
+		 (unsigned long long)root->source_triangles);
+}
+
+void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
+{
+	struct exhibit *exhibit = kiosk->shown.scene ? &kiosk->coming : &kiosk->shown;
+	int rc;
+
+	exhibit_close(&kiosk->coming);
+	net_client_use_release(kiosk->net, root, root_bytes);
+	wants_clear(&kiosk->wants);
+	rc = exhibit_open(kiosk, exhibit, root, root_bytes);
+	if (rc < 0)
+		log_error("app", "cannot open the release: %s", strerror(-rc));
+	kiosk->coming_since_ms = clock_now_ms();
+	kiosk_redraw(kiosk);
+}
+
+static bool can_take_over(const struct kiosk *kiosk)
+{
+	const struct exhibit *coming = &kiosk->coming;
+	const bool waited = clock_now_ms() - kiosk->coming_since_ms > WARM_MOST_MS;
+
+	return coming->frame.patches > 0 && story_info(coming->story) &&
+	       (coming->frame.settled || waited);
+}
+
+static void take_over(struct kiosk *kiosk)
+{
+	struct exhibit before = kiosk->shown;
+	struct overlay *overlay = story_overlay(kiosk->coming.story);
+
+	if (follow_switched(kiosk->follow) < 0)
+		return; /* it could not be remembered: what is remembered stays on the panel */
+	kiosk->shown = kiosk->coming;
+	kiosk->coming = (struct exhibit){ 0 };
+	if (story_language(before.story))
+		story_set_language(kiosk->shown.story, story_language(before.story));
+	overlay_show_help(overlay, false);
+	quads_forget(kiosk->quads);
+	exhibit_close(&before);
+	set_bounds(kiosk);
+	kiosk_redraw(kiosk);
+}
+
+void exhibit_warm(struct kiosk *kiosk)
+{
+	struct camera camera = kiosk->camera;
+	const int64_t now_ms = clock_now_ms();
+
+	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
+		set_bounds(kiosk);
+		if (follow_switched(kiosk->follow) < 0)
+			log_warn("app", "at the next start the release is asked for again");
+	}
+	if (!kiosk->coming.root_here || now_ms - kiosk->coming_drawn_ms < WARM_PERIOD_MS)
+		return;
+	kiosk->coming_drawn_ms = now_ms;
+	camera.height_px = camera.height_px * WARM_WIDTH_PX / camera.width_px;
+	camera.width_px = WARM_WIDTH_PX;
+	if (!kiosk->warm_target.framebuffer &&
+	    gl_target_create(&kiosk->warm_target, camera.width_px, camera.height_px) < 0)
+		return;
+	gl_target_bind(&kiosk->warm_target);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	scene_draw(kiosk->coming.scene, &camera, NULL, &kiosk->coming.frame);
+	if (can_take_over(kiosk))
+		take_over(kiosk);
+}

@@ -1,0 +1,235 @@
+#include "app/update.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include <sodium.h>
+
+#include "tests/check.h"
+
+enum { NOW_S = 1700000000, DAY_S = 86400 };
+
+static struct signing_key root_key, root_key_2, release_key, timestamp_key, stranger;
+static const struct update_time now = { NOW_S }, no_clock = { 0 };
+
+static void make_key(struct signing_key *key)
+{
+	CHECK(crypto_sign_keypair(key->public_key, key->secret) == 0);
+}
+
+static void give_role(struct trust_root *root, enum meta_role role, const struct signing_key *key)
+{
+	struct role_keys *keys = &root->roles[role];
+
+	memcpy(keys->keys[keys->key_count++], key->public_key, KEY_BYTES);
+	keys->threshold = 1;
+}
+
+static struct trust_root root_of(uint32_t version, const struct signing_key *key)
+{
+	struct trust_root root = { .version = version, .expires_s = NOW_S + 365 * DAY_S };
+
+	give_role(&root, META_ROOT, key);
+	give_role(&root, META_RELEASE, &release_key);
+	give_role(&root, META_TIMESTAMP, &timestamp_key);
+	return root;
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	CHECK(sodium_init() >= 0);
+	make_key(&root_key);
+	make_key(&root_key_2);
+	make_key(&release_key);
+	make_key(&timestamp_key);
+	make_key(&stranger);
+	return 0;
+}
+
+static void pin(struct update *update)
+{
+	const struct trust_root root = root_of(1, &root_key);
+	struct buffer file;
+	const char *why;
+
+	*update = (struct update){ 0 };
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
+	CHECK(update_pin(update, buffer_bytes(&file), &why) == 0);
+	buffer_finish(&file);
+}
+
+/* A release of this sequence as a server would offer it, timestamp first; what the kiosk says. */
+struct offer {
+	uint64_t sequence, timestamp_sequence;                 /* the second 0: the same */
+	int64_t expires_s, timestamp_expires_s;                /* 0: in a day */
+	const struct signing_key *release_key, *timestamp_key; /* NULL: the right ones */
+	bool other_file; /* the timestamp names another release.json */
+	struct update_time time;
+};
+
+static int take(struct update *update, const struct offer *offer, const char **why)
+{
+	struct release release = { .sequence = offer->sequence, .root_bytes = 100 };
+	struct timestamp timestamp = { 0 };
+	struct buffer file, stamp;
+	struct release got;
+	int rc;
+
+	memset(release.root.bytes, (int)offer->sequence, HASH_BYTES);
+	release.expires_s = offer->expires_s ? offer->expires_s : NOW_S + DAY_S;
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	CHECK(release_encode(&file, &release,
+			     offer->release_key ? offer->release_key : &release_key, 1) == 0);
+	timestamp.sequence =
+		offer->timestamp_sequence ? offer->timestamp_sequence : offer->sequence;
+	timestamp.expires_s =
+		offer->timestamp_expires_s ? offer->timestamp_expires_s : NOW_S + DAY_S;
+	timestamp.release = hash_of(buffer_bytes(&file));
+	timestamp.release.bytes[0] ^= offer->other_file;
+	CHECK(timestamp_encode(&stamp, &timestamp,
+			       offer->timestamp_key ? offer->timestamp_key : &timestamp_key,
+			       1) == 0);
+	*why = NULL;
+	rc = update_timestamp(update, buffer_bytes(&stamp), offer->time, why);
+	if (rc == 0)
+		rc = update_release(update, buffer_bytes(&file), offer->time, &got, why);
+	if (rc == 1) {
+		CHECK(got.sequence == offer->sequence);
+		update_accept(update, got.sequence);
+	}
+	CHECK(rc >= 0 || (*why && **why));
+	buffer_finish(&file);
+	buffer_finish(&stamp);
+	return rc;
+}
+
+static void takes_a_newer_release_once(void **state)
+{
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	CHECK(take(&update, &(struct offer){ .sequence = 1, .time = now }, &why) == 1);
+	CHECK(take(&update, &(struct offer){ .sequence = 1, .time = now }, &why) == 0);
+	CHECK(take(&update, &(struct offer){ .sequence = 7, .time = now }, &why) == 1);
+}
+
+static void refuses_to_go_back(void **state)
+{
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	CHECK(take(&update, &(struct offer){ .sequence = 5, .time = now }, &why) == 1);
+	CHECK(take(&update, &(struct offer){ .sequence = 4, .time = now }, &why) == -ESTALE);
+	/* A fresh timestamp over an old release. */
+	CHECK(take(&update, &(struct offer){ .sequence = 4, .timestamp_sequence = 6, .time = now },
+		   &why) == -ESTALE);
+}
+
+static void refuses_files_that_do_not_belong_together(void **state)
+{
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	CHECK(take(&update, &(struct offer){ .sequence = 2, .other_file = true, .time = now },
+		   &why) == -ESTALE);
+}
+
+static void judges_expiry_only_by_a_clock_that_is_set(void **state)
+{
+	struct offer late = { .sequence = 3, .expires_s = NOW_S - DAY_S };
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	late.time = now;
+	CHECK(take(&update, &late, &why) == -EKEYEXPIRED);
+	late.expires_s = 0;
+	late.timestamp_expires_s = NOW_S - 1;
+	CHECK(take(&update, &late, &why) == -EKEYEXPIRED);
+	late.time = no_clock;
+	CHECK(take(&update, &late, &why) == 1);
+}
+
+static void refuses_strangers(void **state)
+{
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	CHECK(take(&update, &(struct offer){ .sequence = 2, .release_key = &stranger, .time = now },
+		   &why) == -EKEYREJECTED);
+	CHECK(take(&update,
+		   &(struct offer){ .sequence = 2, .timestamp_key = &stranger, .time = now },
+		   &why) == -EKEYREJECTED);
+	/* One role's key does not sign for another. */
+	CHECK(take(&update,
+		   &(struct offer){ .sequence = 2, .release_key = &timestamp_key, .time = now },
+		   &why) == -EKEYREJECTED);
+}
+
+static int offer_root(struct update *update, uint32_t version, const struct signing_key *own,
+		      const struct signing_key *signers, uint32_t signer_count)
+{
+	const struct trust_root root = root_of(version, own);
+	struct buffer file;
+	const char *why;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(&file, &root, signers, signer_count) == 0);
+	rc = update_root(update, buffer_bytes(&file), &why);
+	buffer_finish(&file);
+	return rc;
+}
+
+static void changes_keys_only_by_the_old_ones(void **state)
+{
+	const struct signing_key both[2] = { root_key, root_key_2 };
+	struct update update;
+
+	(void)state;
+	pin(&update);
+	CHECK(offer_root(&update, 2, &root_key_2, &root_key_2, 1) < 0);
+	CHECK(offer_root(&update, 2, &root_key_2, &root_key, 1) < 0);
+	CHECK(offer_root(&update, 3, &root_key_2, both, 2) < 0); /* one was left out */
+	CHECK(update.trust.version == 1);
+	CHECK(offer_root(&update, 2, &root_key_2, both, 2) == 0);
+	CHECK(update.trust.version == 2);
+	CHECK(offer_root(&update, 2, &root_key_2, both, 2) < 0); /* again */
+	CHECK(offer_root(&update, 3, &root_key_2, &root_key_2, 1) == 0);
+}
+
+static void takes_nothing_without_a_trust_root(void **state)
+{
+	struct update update = { 0 };
+	const char *why;
+
+	(void)state;
+	CHECK(take(&update, &(struct offer){ .sequence = 2, .time = now }, &why) == -ENOKEY);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(takes_a_newer_release_once),
+		cmocka_unit_test(refuses_to_go_back),
+		cmocka_unit_test(refuses_files_that_do_not_belong_together),
+		cmocka_unit_test(judges_expiry_only_by_a_clock_that_is_set),
+		cmocka_unit_test(refuses_strangers),
+		cmocka_unit_test(changes_keys_only_by_the_old_ones),
+		cmocka_unit_test(takes_nothing_without_a_trust_root),
+	};
+
+	return cmocka_run_group_tests(tests, set_up, NULL);
+}
