@@ -8,6 +8,8 @@
 static const struct command commands[] = {
 	{ "import", "read scans, say what was found and repaired", command_import },
 	{ "temple", "write the demo temple, any number of triangles", command_temple },
+	{ "verify", "walk a whole release and check everything in it", command_verify },
+	{ "keys", "make the signing keys of a content folder", command_keys },
 	{ NULL, NULL, NULL },
 };
 
