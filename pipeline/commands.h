@@ -10,6 +10,7 @@ struct command {
 };
 
 int command_import(int argc, char **argv);
+int command_inspect(int argc, char **argv);
 int command_keys(int argc, char **argv);
 int command_verify(int argc, char **argv);
 int command_temple(int argc, char **argv);
