@@ -10,12 +10,12 @@ set -eu
 cd "$(dirname "$0")/.."
 [ "${1:-}" != --help ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; exit 0; }
 
-triangles=1500000
+triangles=''
 if [ "${1:-}" = --triangles ]; then
 	triangles=$2
 	shift 2
 fi
-demo=$PWD/build/demo content=$PWD/build/demo/content release=$PWD/build/demo/release
+demo=$PWD/build/demo release=$PWD/build/demo/release
 server=''
 end() {
 	trap - EXIT INT TERM
@@ -25,16 +25,7 @@ end() {
 trap end EXIT
 trap 'exit 130' INT TERM
 
-mkdir -p "$content"
-cp -ru demo/content/. "$content/"
-scan=$content/temple.ply
-if [ ! -f "$scan" ] || [ "$(cat "$demo/triangles" 2>/dev/null)" != "$triangles" ]; then
-	echo "Making the temple: $triangles triangles ..."
-	build/gopura-content temple --triangles "$triangles" --seed 1 --out "$scan.part"
-	mv "$scan.part" "$scan"
-	echo "$triangles" >"$demo/triangles"
-fi
-build/gopura-content build "$content" --out "$release"
+demo/prepare.sh ${triangles:+"$triangles"}
 
 server/serve.sh "$release" 0 "$demo/server" >"$demo/server.log" 2>&1 &
 server=$!

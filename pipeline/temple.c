@@ -202,6 +202,7 @@ static int write_all(struct writer *w)
 
 	fprintf(w->file,
 		"ply\nformat binary_little_endian 1.0\ncomment demo temple, seed %u, metres, z up\n"
+		"comment gopura open\n"
 		"element vertex %llu\nproperty float x\nproperty float y\nproperty float z\n"
 		"property uchar red\nproperty uchar green\nproperty uchar blue\n"
 		"property uchar alpha\nelement face %llu\n"
