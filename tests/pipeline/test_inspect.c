@@ -72,7 +72,7 @@ static void an_object_is_found_by_its_name(void **state)
 
 	(void)state;
 	CHECK(inspect_release(to, reader) == 0);
-	hash = hash_before(" page"); /* a brick of the samples page, or the like */
+	hash = hash_before("bytes  page"); /* the last page that is a child */
 	CHECK(inspect_object(to, reader, hash) == 0);
 	CHECK(says("in packs/"));
 	CHECK(inspect_object(to, reader, (struct hash){ { 1, 2 } }) == -ENOENT);
