@@ -1,0 +1,59 @@
+/* Which patches are shown, and which groups would improve the picture most (pure; no GL).
+ *
+ * A cut is a set of refined groups (format/hierarchy.h). It grows greedily: of all groups whose
+ * dependencies are refined, the one with the largest error on the screen is refined next, until
+ * every error is below error_px or the triangles are spent. Errors and spheres are saturated, so
+ * the order never has to be undone. It is grown twice: over the groups that are loaded (shown),
+ * and over all groups in sight (desired); what is desired and not loaded is wanted. */
+#ifndef GOPURA_RENDER_CUT_H
+#define GOPURA_RENDER_CUT_H
+
+#include "format/hierarchy.h"
+#include "render/view.h"
+
+struct cut_want {
+	uint32_t group;
+	float error_px; /* of the picture while it is not there */
+	float area_px;  /* of the picture that it mends */
+};
+
+struct cut {
+	const struct hierarchy *hierarchy; /* borrowed */
+	uint8_t *shown, *desired;          /* per group: refined. Owned, like all below. */
+	uint32_t *patches;                 /* shown, front to back is not promised */
+	uint32_t patch_count;
+	uint32_t triangle_count; /* of those in sight */
+	struct cut_want *wants;  /* parents first */
+	uint32_t want_count;
+	/* Private: dependencies and replaced patches by group, and the heap. */
+	uint32_t *replaced_first, *replaced, *waiting, *heap_group;
+	float *heap_error;
+	uint32_t heap_count;
+};
+
+struct cut_options {
+	float error_px;
+	uint32_t triangle_budget;
+};
+
+/* The hierarchy must outlive the cut. -ENOMEM. */
+must_check int cut_init(struct cut *cut, const struct hierarchy *hierarchy);
+void cut_finish(struct cut *cut);
+
+/* loaded[group] is not zero where the group's geometry is there. Patches outside the view are in
+ * the list too (they cast occlusion); they do not count as triangles and are never wanted. */
+void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,
+		const struct cut_options *options);
+/* Only the shown patches, as seen from a point in every direction: error in texels of a picture
+ * with focal_px pixels a unit of tangent. Nothing is wanted. */
+void cut_update_around(struct cut *cut, const float eye_m[3], float focal_px, const uint8_t *loaded,
+		       const struct cut_options *options);
+
+/* Whether a patch can show a front side to the eye. */
+bool cut_patch_faces(const struct hierarchy_patch *patch, const float eye_m[3]);
+/* Error on the screen while the group is not refined, pixels; INFINITY inside its sphere. */
+float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[3], float focal_px);
+/* Groups whose patches this one replaces; *count of them. Borrowed until the next call. */
+bool cut_depends(const struct cut *cut, uint32_t group, uint32_t on_group);
+
+#endif

@@ -1,0 +1,197 @@
+#include "render/depth.h"
+
+#include <string.h>
+
+enum { ROWS = TILES_FACES_MOST / TILES_FACES_ACROSS };
+
+static const char draw_vertex[] =
+	"attribute vec3 a_position;\n"
+	"uniform vec4 u_lattice;\n" /* of the lattice's origin from the point, metres; step */
+	"uniform mat3 u_axes;\n"
+	"uniform float u_far;\n"
+	"varying float v_depth;\n"
+	"void main() {\n"
+	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
+	"	float n = 0.1;\n"
+	/* Row 0 of a face is its top and row 0 of a texture its bottom: y is turned over. */
+	"	gl_Position = vec4(q.x, -q.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
+	"			   q.z);\n"
+	"	v_depth = q.z / u_far;\n"
+	"}\n";
+
+static const char draw_fragment[] =
+	"precision highp float;\n"
+	"varying float v_depth;\n"
+	"void main() {\n"
+	"	float value = clamp(v_depth, 0.0, 1.0) * 65535.0;\n"
+	"	float high = floor(value / 256.0);\n"
+	"	gl_FragColor = vec4(high, floor(value - high * 256.0), 0.0, 255.0) / 255.0;\n"
+	"}\n";
+
+static const char grow_vertex[] = "attribute vec2 a_position;\n"
+				  "varying vec2 v_at;\n"
+				  "void main() {\n"
+				  "	v_at = a_position * 0.5 + 0.5;\n"
+				  "	gl_Position = vec4(a_position, 0.0, 1.0);\n"
+				  "}\n";
+
+static const char grow_fragment[] =
+	"precision highp float;\n"
+	"uniform sampler2D u_raw;\n"
+	"uniform float u_texel;\n"
+	"varying vec2 v_at;\n"
+	"float depth_at(vec2 at) {\n"
+	"	vec4 t = texture2D(u_raw, at);\n"
+	"	return t.a < 0.5 ? 1.0 : (t.r * 256.0 + t.g) * 255.0 / 65535.0;\n"
+	"}\n"
+	"void main() {\n"
+	"	float own = depth_at(v_at), nearest = own, farthest = own;\n"
+	"	for (int y = -1; y <= 1; y++) {\n"
+	"		for (int x = -1; x <= 1; x++) {\n"
+	"			float z = depth_at(v_at + u_texel * vec2(float(x), float(y)));\n"
+	"			nearest = min(nearest, z);\n"
+	"			if (z < 1.0) farthest = max(farthest, z);\n"
+	"		}\n"
+	"	}\n"
+	/* A step: more than a surface seen at a grazing angle climbs in a texel. */
+	"	float jump = 0.06 * own;\n"
+	"	float z = own - nearest > jump ? nearest : own;\n"
+	"	float rim = own < 1.0 && farthest - own > jump ? 0.0 : 1.0;\n"
+	"	float value = z * 65535.0, high = floor(value / 256.0);\n"
+	"	gl_FragColor = vec4(high / 255.0, floor(value - high * 256.0) / 255.0, rim, 1.0);\n"
+	"}\n";
+
+static int build_programs(struct depth *depth)
+{
+	const struct gl_program_source draw = {
+		.name = "face depth",
+		.vertex = (const char *const[]){ draw_vertex, NULL },
+		.fragment = (const char *const[]){ draw_fragment, NULL },
+		.attributes = (const char *const[]){ "a_position", NULL },
+	};
+	const struct gl_program_source grow = {
+		.name = "face depth, grown",
+		.vertex = (const char *const[]){ grow_vertex, NULL },
+		.fragment = (const char *const[]){ grow_fragment, NULL },
+		.attributes = (const char *const[]){ "a_position", NULL },
+	};
+	int rc = gl_program_build(&depth->draw_program, &draw);
+	if (rc == 0)
+		rc = gl_program_build(&depth->grow_program, &grow);
+	if (rc < 0)
+		return rc;
+	depth->lattice = glGetUniformLocation(depth->draw_program, "u_lattice");
+	depth->axes = glGetUniformLocation(depth->draw_program, "u_axes");
+	depth->far_m = glGetUniformLocation(depth->draw_program, "u_far");
+	glUseProgram(depth->grow_program);
+	glUniform1i(glGetUniformLocation(depth->grow_program, "u_raw"), 0);
+	glUniform1f(glGetUniformLocation(depth->grow_program, "u_texel"),
+		    1.0f / (float)depth->face_px);
+	return 0;
+}
+
+static int make_atlas(struct depth *depth)
+{
+	const struct gl_texture_options atlas = { .width_px = depth->atlas_width_px,
+						  .height_px = depth->atlas_height_px,
+						  .format = GL_RGBA,
+						  .filter = GL_NEAREST };
+	int rc = gl_texture_create(&depth->atlas, &atlas);
+	if (rc < 0)
+		return rc;
+	glGenFramebuffers(1, &depth->framebuffer);
+	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, depth->atlas,
+			       0);
+	static const float corners[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
+	glGenBuffers(1, &depth->square);
+	glBindBuffer(GL_ARRAY_BUFFER, depth->square);
+	glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners, GL_STATIC_DRAW);
+	return gl_check("making the depth atlas");
+}
+
+int depth_init(struct depth *depth, int face_px)
+{
+	memset(depth, 0, sizeof(*depth));
+	depth->face_px = face_px;
+	depth->atlas_width_px = TILES_FACES_ACROSS * face_px;
+	depth->atlas_height_px = ROWS * face_px;
+	depth->far_limit_m = 1;
+	int rc = build_programs(depth);
+	if (rc == 0)
+		rc = gl_target_create(&depth->raw, face_px, face_px);
+	if (rc == 0)
+		rc = make_atlas(depth);
+	if (rc < 0)
+		depth_finish(depth);
+	return rc;
+}
+
+void depth_finish(struct depth *depth)
+{
+	gl_target_destroy(&depth->raw);
+	if (depth->framebuffer)
+		glDeleteFramebuffers(1, &depth->framebuffer);
+	if (depth->atlas)
+		glDeleteTextures(1, &depth->atlas);
+	if (depth->square)
+		glDeleteBuffers(1, &depth->square);
+	if (depth->draw_program)
+		glDeleteProgram(depth->draw_program);
+	if (depth->grow_program)
+		glDeleteProgram(depth->grow_program);
+	memset(depth, 0, sizeof(*depth));
+}
+
+void depth_clear(struct depth *depth, float far_m)
+{
+	memset(depth->face, 0, sizeof(depth->face));
+	depth->far_limit_m = far_m;
+}
+
+void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
+		 const struct lattice *lattice)
+{
+	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
+	float columns[9];
+	for (int i = 0; i < 3; i++) {
+		columns[3 * i + 0] = axes->right[i];
+		columns[3 * i + 1] = axes->up[i];
+		columns[3 * i + 2] = axes->forward[i];
+	}
+	gl_target_bind(&depth->raw);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	glUseProgram(depth->draw_program);
+	glUniform4f(depth->lattice, (float)(lattice->origin_m[0] - sample_m[0]),
+		    (float)(lattice->origin_m[1] - sample_m[1]),
+		    (float)(lattice->origin_m[2] - sample_m[2]), (float)lattice->step_m);
+	glUniformMatrix3fv(depth->axes, 1, GL_FALSE, columns);
+	glUniform1f(depth->far_m, depth->far_limit_m);
+}
+
+void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer);
+	glViewport(slot % TILES_FACES_ACROSS * depth->face_px,
+		   slot / TILES_FACES_ACROSS * depth->face_px, depth->face_px, depth->face_px);
+	glDisable(GL_DEPTH_TEST);
+	glUseProgram(depth->grow_program);
+	gl_bind_texture(0, depth->raw.colour);
+	glBindBuffer(GL_ARRAY_BUFFER, depth->square);
+	glEnableVertexAttribArray(0);
+	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, NULL);
+	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	glEnable(GL_DEPTH_TEST);
+	depth->face[slot] = (struct depth_face){ .ready = true, .key = face, .cut = cut };
+}
+
+bool depth_ready(const struct depth *depth, int slot, face_key face)
+{
+	return depth->face[slot].ready && depth->face[slot].key == face;
+}

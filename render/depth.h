@@ -1,0 +1,40 @@
+/* What each resident face of a sampling point can see, as depth: rendered by the kiosk from its own
+ * patches, so that it costs no bytes and fits the mesh it is tested against.
+ *
+ * One texel: r, g: depth along the face's axis over far_m, 16 bits; b: 1 where no depth step is
+ * near, 0 on a foreground's rim (its pixels may be the background's); a: 1 once rendered.
+ * Nearer surfaces are grown by one texel over a step, so that nothing behind a silhouette takes
+ * the silhouette's colour. */
+#ifndef GOPURA_RENDER_DEPTH_H
+#define GOPURA_RENDER_DEPTH_H
+
+#include "format/root_page.h"
+#include "render/gl.h"
+#include "render/tiles.h"
+
+struct depth {
+	struct gl_target raw; /* the face that is being drawn */
+	GLuint atlas, framebuffer, draw_program, grow_program, square;
+	GLint lattice, axes, far_m, texel;
+	int face_px, atlas_width_px, atlas_height_px;
+	float far_limit_m;
+	struct depth_face {
+		bool ready;
+		face_key key;
+		uint64_t cut; /* what it was rendered from */
+	} face[TILES_FACES_MOST];
+};
+
+must_check int depth_init(struct depth *depth, int face_px);
+void depth_finish(struct depth *depth);
+void depth_clear(struct depth *depth, float far_m);
+
+/* Begins a face: afterwards the caller draws patches (attribute 0: lattice position), then calls
+ * depth_end. lattice_origin_m: of the model's lattice. */
+void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
+		 const struct lattice *lattice);
+/* Into the square of the face's slot. Leaves the depth framebuffer bound. */
+void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut);
+bool depth_ready(const struct depth *depth, int slot, face_key face);
+
+#endif

@@ -1,0 +1,63 @@
+/* The patches that are loaded: on the GPU for drawing, in memory for rays, and what each piece of
+ * them is coloured by. Counted in bytes of both; past the budget the groups that were of no use
+ * for longest go, finest first, never one that a shown or wanted cut stands on. */
+#ifndef GOPURA_RENDER_GEOMETRY_H
+#define GOPURA_RENDER_GEOMETRY_H
+
+#include "format/hierarchy.h"
+#include "render/cut.h"
+#include "render/gl.h"
+#include "render/plan.h"
+#include "render/pool.h"
+
+/* One of the faces blended on a piece, fading in and out. */
+struct blend {
+	face_key face;
+	float half_px;
+	float weight, target; /* 0..1 */
+	bool held;
+};
+
+struct piece_state {
+	struct plan_choice choice;
+	struct blend blend[PLAN_ENTRIES];
+	bool planned, orphan;   /* orphan: a face it was blended from is gone */
+	uint32_t planned_epoch; /* of the world, when it was */
+	float planned_eye_m[3];
+};
+
+struct geometry_patch {
+	GLuint vertices, indices;
+	struct pool_patch content;
+	struct piece_state *pieces; /* owned; one per content.solid.pieces */
+};
+
+struct geometry {
+	const struct hierarchy *hierarchy; /* borrowed */
+	struct geometry_patch *patches;    /* per patch of the hierarchy; owned, as all below */
+	uint8_t *loaded;                   /* per group */
+	uint64_t *group_bytes;
+	uint32_t *group_stamp; /* last frame it was of use */
+	uint64_t bytes;
+	uint32_t stamp, loaded_count;
+};
+
+must_check int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy);
+void geometry_finish(struct geometry *geometry);
+
+/* Takes the answer's patches. -EBADMSG: they are not what the hierarchy says; -ENOMEM. On failure
+ * nothing is taken. */
+must_check int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *answer);
+/* Marks what a cut stands on, then drops groups until the budget holds. */
+void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t budget_bytes);
+
+/* Binds buffers; attribute 0 position, 1 normal (raw octahedral), 2 colour. */
+void geometry_bind(const struct geometry *geometry, uint32_t patch);
+/* A run of a bound patch's triangles. */
+void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
+
+/* Nearest hit among the listed patches between least_m and *distance_m, which becomes it. */
+bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
+		  const float direction[3], float least_m, float *distance_m);
+
+#endif

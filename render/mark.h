@@ -1,0 +1,27 @@
+/* A part's region on the surface: a bold line of constant width where the surface crosses the
+ * region's boundary, a slight tint inside. Drawn over the patches at equal depth. */
+#ifndef GOPURA_RENDER_MARK_H
+#define GOPURA_RENDER_MARK_H
+
+#include "format/root_page.h"
+#include "render/gl.h"
+#include "render/scene.h"
+#include "render/view.h"
+
+struct mark {
+	GLuint program;
+	GLint clip, lattice, region, corners, focal;
+};
+
+must_check int mark_init(struct mark *mark);
+void mark_finish(struct mark *mark);
+/* geometry_bind and draws of patches that region_meets_sphere follow, then mark_end. */
+void mark_begin(const struct mark *mark, const struct view *view, const struct root_page *root,
+		const struct region *region);
+void mark_end(void);
+
+/* Metres to the region's boundary, negative inside; exact on faces, a bound elsewhere. */
+float region_distance(const struct region *region, const float point_m[3]);
+bool region_meets_sphere(const struct region *region, const float centre_m[3], float radius_m);
+
+#endif

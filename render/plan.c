@@ -1,0 +1,466 @@
+#include "render/plan.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "render/vec.h"
+
+enum {
+	POINTS_BEST = 12,    /* considered for a piece, of all */
+	POINTS_RESIDENT = 8, /* besides, of those with tiles */
+	CANDIDATES_MOST = 2 * (POINTS_BEST + POINTS_RESIDENT),
+};
+
+/* Below these a further face or fetch is not worth its cost. */
+static const float entry_gain_least = 0.02f, want_gain_least = 0.06f;
+/* What is shown stays unless another is better by this. */
+static const float loyalty = 1.1f;
+/* A level is sharp enough with this share of the pixels needed. */
+static const float sharp_enough = 0.75f;
+
+const struct plan_tuning plan_tuning = {
+	.blur = 0.5f,
+	.parallax = 0.25f,
+	.angle = 0.6f,
+	.facing_low = 0.06f,
+	.facing_high = 0.25f,
+};
+
+/* ---- quality */
+
+struct geometry {
+	float eye_distance, sample_distance, depth; /* depth: along the face's axis */
+	float eye_cosine, sample_cosine;            /* at the surface */
+	float angle_cosine;                         /* between the lines of sight */
+};
+
+static struct geometry look(const struct plan_eye *eye, const float point[3], const float normal[3],
+			    const float sample[3])
+{
+	struct geometry g;
+	float to_eye[3], to_sample[3];
+	vec_sub(to_eye, eye->eye_m, point);
+	vec_sub(to_sample, sample, point);
+	g.depth = fmaxf(fabsf(to_sample[0]), fmaxf(fabsf(to_sample[1]), fabsf(to_sample[2])));
+	g.eye_distance = fmaxf(vec_normalise(to_eye), 1e-3f);
+	g.sample_distance = fmaxf(vec_normalise(to_sample), 1e-3f);
+	g.depth = fmaxf(g.depth, 1e-3f);
+	g.eye_cosine = fabsf(vec_dot(to_eye, normal));
+	g.sample_cosine = vec_dot(to_sample, normal);
+	g.angle_cosine = vec_dot(to_eye, to_sample);
+	return g;
+}
+
+/* Foreshortening acts on one of two directions: its root is the mean. */
+static float needed(const struct plan_eye *eye, const struct geometry *g)
+{
+	return eye->focal_px * g->depth / g->eye_distance *
+	       sqrtf(fmaxf(g->eye_cosine, 0.05f) / fmaxf(g->sample_cosine, 0.05f));
+}
+
+float plan_needed_half_px(const struct plan_eye *eye, const float point_m[3], const float normal[3],
+			  const float sample_m[3])
+{
+	struct geometry g = look(eye, point_m, normal, sample_m);
+	return needed(eye, &g);
+}
+
+float plan_quality(const struct plan_eye *eye, const float point_m[3], const float normal[3],
+		   const float sample_m[3], float half_px, float error_m)
+{
+	struct geometry g = look(eye, point_m, normal, sample_m);
+	float facing = (g.sample_cosine - plan_tuning.facing_low) /
+		       (plan_tuning.facing_high - plan_tuning.facing_low);
+	if (facing <= 0)
+		return 0;
+	float blur = fmaxf(needed(eye, &g) / half_px - 1, 0);
+	float sine = sqrtf(fmaxf(1 - g.angle_cosine * g.angle_cosine, 0));
+	if (g.angle_cosine < 0)
+		sine = 2 - sine;
+	float shift = error_m * eye->focal_px / g.eye_distance * sine;
+	float penalty = plan_tuning.blur * blur + plan_tuning.parallax * shift +
+			plan_tuning.angle * (1 - g.angle_cosine);
+	return fminf(facing, 1) / ((1 + penalty) * (1 + penalty));
+}
+
+float plan_level_half_px(uint32_t level)
+{
+	return (float)(SAMPLE_TILE_PX << level) / 2;
+}
+
+uint32_t plan_level(float needed_half_px, uint32_t level_count)
+{
+	uint32_t level = 0;
+	while (level + 1 < level_count && plan_level_half_px(level) < sharp_enough * needed_half_px)
+		level++;
+	return level;
+}
+
+uint32_t plan_priority(float gain, uint32_t bytes)
+{
+	/* From a hundredth of a pixel in a megabyte to the whole picture in a byte: 60 octaves. */
+	float per_byte = gain / (float)(bytes > 0 ? bytes : 1);
+	float octaves = log2f(fmaxf(per_byte, 1e-9f)) + 30;
+	float scaled = fminf(fmaxf(octaves / 64, 0), 1);
+	return MESSAGE_PRIORITY_PICTURE +
+	       (uint32_t)(scaled * (MESSAGE_PRIORITY_INDEX - MESSAGE_PRIORITY_PICTURE - 2));
+}
+
+/* ---- candidates */
+
+struct candidate {
+	face_key face;
+	float sample_m[3];
+	uint8_t level;
+	bool resident;
+	float u0, v0, u1, v1;
+	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* quality, 0 where it does not see */
+	float resident_half_px;
+};
+
+struct ranked {
+	uint32_t point[POINTS_BEST + POINTS_RESIDENT];
+	float quality[POINTS_BEST + POINTS_RESIDENT];
+	uint32_t count;
+};
+
+static void rank(struct ranked *ranked, uint32_t from, uint32_t most, uint32_t point, float quality)
+{
+	uint32_t at = ranked->count;
+	if (quality <= 0)
+		return;
+	if (at == from + most) {
+		if (ranked->quality[at - 1] >= quality)
+			return;
+		at--;
+	} else {
+		ranked->count++;
+	}
+	while (at > from && ranked->quality[at - 1] < quality) {
+		ranked->point[at] = ranked->point[at - 1];
+		ranked->quality[at] = ranked->quality[at - 1];
+		at--;
+	}
+	ranked->point[at] = point;
+	ranked->quality[at] = quality;
+}
+
+static bool is_ranked(const struct ranked *ranked, uint32_t point)
+{
+	for (uint32_t i = 0; i < ranked->count; i++)
+		if (ranked->point[i] == point)
+			return true;
+	return false;
+}
+
+static bool faces_eye(const struct plan_eye *eye, const struct piece *piece, int probe)
+{
+	float to_eye[3];
+	vec_sub(to_eye, eye->eye_m, piece->probe_m[probe]);
+	return vec_dot(to_eye, piece->probe_normal[probe]) > 0;
+}
+
+static float point_quality(const struct plan_world *world, const struct plan_eye *eye,
+			   const struct piece *piece, float error_m, uint32_t point)
+{
+	float sample[3], to[3], u, v;
+	repository_point_m(world->repository, point, sample);
+	vec_sub(to, piece->centre_m, sample);
+	if (vec_dot(to, to) < 1e-6f)
+		return 0;
+	float half_px = plan_level_half_px(repository_levels(world->repository) - 1);
+	float quality = 0;
+	if (piece->flatness > 0.8f)
+		quality =
+			plan_quality(eye, piece->centre_m, piece->normal, sample, half_px, error_m);
+	for (int k = 0; k < PIECE_PROBES && piece->flatness <= 0.8f; k += 2)
+		if (faces_eye(eye, piece, k))
+			quality = fmaxf(quality,
+					plan_quality(eye, piece->probe_m[k], piece->probe_normal[k],
+						     sample, half_px, error_m));
+	if (quality <= 0)
+		return 0;
+	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &u, &v);
+	if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY)
+		return 0;
+	return quality;
+}
+
+static void rank_points(struct ranked *ranked, const struct plan_world *world,
+			const struct plan_eye *eye, const struct piece *piece, float error_m)
+{
+	ranked->count = 0;
+	for (uint32_t point = 0; point < world->repository->point_count; point++)
+		rank(ranked, 0, POINTS_BEST, point,
+		     point_quality(world, eye, piece, error_m, point));
+	uint32_t from = ranked->count;
+	for (uint32_t i = 0; i < world->resident_count; i++) {
+		uint32_t point = world->resident[i] / CUBE_FACES;
+		if (!is_ranked(ranked, point))
+			rank(ranked, from, POINTS_RESIDENT, point,
+			     point_quality(world, eye, piece, error_m, point));
+	}
+}
+
+/* Bit per probe: whether nothing is between. Remembered with the piece: neither moves. */
+static uint8_t sight_of(struct plan_choice *choice, const struct plan_world *world,
+			const struct piece *piece, uint32_t point, const float sample[3])
+{
+	struct plan_sight *sight = &choice->sight[point % PLAN_SIGHTS];
+	if (sight->point == point + 1)
+		return sight->seen;
+	*sight = (struct plan_sight){ .point = point + 1 };
+	for (int k = 0; k < PIECE_PROBES; k++)
+		if (world->sees(world->data, sample, piece->probe_m[k]))
+			sight->seen |= (uint8_t)(1 << k);
+	return sight->seen;
+}
+
+static bool is_resident(const struct plan_world *world, face_key face)
+{
+	for (uint32_t i = 0; i < world->resident_count; i++)
+		if (world->resident[i] == face)
+			return true;
+	return false;
+}
+
+static struct candidate *candidate_of(struct candidate *list, uint32_t *count, face_key face)
+{
+	for (uint32_t i = *count; i > 0 && list[i - 1].face / CUBE_FACES == face / CUBE_FACES; i--)
+		if (list[i - 1].face == face)
+			return &list[i - 1];
+	if (*count == CANDIDATES_MOST)
+		return NULL;
+	struct candidate *candidate = &list[(*count)++];
+	memset(candidate, 0, sizeof(*candidate));
+	candidate->face = face;
+	candidate->u0 = candidate->v0 = 1;
+	candidate->u1 = candidate->v1 = -1;
+	return candidate;
+}
+
+static uint16_t sixteenth_of(float u, float v)
+{
+	int column = (int)((u + 1) * 2), row = (int)((1 - v) * 2);
+	column = column < 0 ? 0 : column > 3 ? 3 : column;
+	row = row < 0 ? 0 : row > 3 ? 3 : row;
+	return (uint16_t)(1u << (row * 4 + column));
+}
+
+static void judge_probe(struct candidate *candidate, const struct plan_world *world,
+			const struct plan_eye *eye, const struct piece *piece, int probe,
+			const float uv[2], float error_m)
+{
+	const float *at = piece->probe_m[probe], *normal = piece->probe_normal[probe];
+	candidate->u0 = fminf(candidate->u0, uv[0]);
+	candidate->u1 = fmaxf(candidate->u1, uv[0]);
+	candidate->v0 = fminf(candidate->v0, uv[1]);
+	candidate->v1 = fmaxf(candidate->v1, uv[1]);
+	candidate->ideal[probe] = plan_quality(eye, at, normal, candidate->sample_m,
+					       plan_level_half_px(candidate->level), error_m);
+	if (!candidate->resident)
+		return;
+	int level = world->level_at(world->data, candidate->face, uv[0], uv[1]);
+	if (level < 0)
+		return;
+	float half_px = plan_level_half_px((uint32_t)level);
+	candidate->resident_half_px = fmaxf(candidate->resident_half_px, half_px);
+	candidate->now[probe] =
+		plan_quality(eye, at, normal, candidate->sample_m, half_px, error_m);
+	candidate->ideal[probe] = fmaxf(candidate->ideal[probe], candidate->now[probe]);
+}
+
+static void add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
+		      const struct plan_world *world, const struct plan_eye *eye,
+		      const struct piece *piece, uint32_t point, float error_m)
+{
+	float sample[3];
+	repository_point_m(world->repository, point, sample);
+	uint8_t seen = sight_of(choice, world, piece, point, sample);
+	uint32_t level =
+		plan_level(plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
+			   repository_levels(world->repository));
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		float to[3], uv[2];
+		vec_sub(to, piece->probe_m[k], sample);
+		if (!(seen & 1 << k) || vec_dot(to, to) < 1e-6f || !faces_eye(eye, piece, k))
+			continue;
+		face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
+		if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY ||
+		    !repository_covers(world->repository, face, sixteenth_of(uv[0], uv[1])))
+			continue;
+		struct candidate *candidate = candidate_of(list, count, face);
+		if (!candidate)
+			return;
+		memcpy(candidate->sample_m, sample, sizeof(sample));
+		candidate->level = (uint8_t)level;
+		candidate->resident = is_resident(world, face);
+		judge_probe(candidate, world, eye, piece, k, uv, error_m);
+	}
+}
+
+/* ---- choosing */
+
+static bool is_chosen(const struct plan_entry *entries, uint32_t count, face_key face)
+{
+	for (uint32_t i = 0; i < count; i++)
+		if (entries[i].face == face)
+			return true;
+	return false;
+}
+
+/* Greedy: what is left undone of a probe is the product of what each face leaves undone. */
+static void choose_entries(struct plan_choice *choice, const struct candidate *list, uint32_t count)
+{
+	struct plan_entry was[PLAN_ENTRIES];
+	uint32_t was_count = choice->entry_count;
+	memcpy(was, choice->entry, sizeof(was));
+	float undone[PIECE_PROBES];
+	for (int k = 0; k < PIECE_PROBES; k++)
+		undone[k] = 1;
+	choice->entry_count = 0;
+	while (choice->entry_count < PLAN_ENTRIES) {
+		const struct candidate *best = NULL;
+		float best_gain = entry_gain_least;
+		for (uint32_t i = 0; i < count; i++) {
+			float gain = 0;
+			for (int k = 0; k < PIECE_PROBES; k++)
+				gain += undone[k] * list[i].now[k] / PIECE_PROBES;
+			if (is_chosen(was, was_count, list[i].face))
+				gain *= loyalty;
+			if (gain > best_gain &&
+			    !is_chosen(choice->entry, choice->entry_count, list[i].face)) {
+				best = &list[i];
+				best_gain = gain;
+			}
+		}
+		if (!best)
+			return;
+		for (int k = 0; k < PIECE_PROBES; k++)
+			undone[k] *= 1 - best->now[k];
+		choice->entry[choice->entry_count++] = (struct plan_entry){
+			.face = best->face, .half_px = best->resident_half_px, .share = 1
+		};
+	}
+}
+
+/* A piece is coloured well by one good image; so each probe counts its best alone, and a fetch is
+ * worth what it adds to that. */
+static void choose_wants(struct plan_choice *choice, const struct candidate *list, uint32_t count)
+{
+	float best_now[PIECE_PROBES] = { 0 };
+	for (uint32_t i = 0; i < count; i++)
+		for (int k = 0; k < PIECE_PROBES; k++)
+			best_now[k] = fmaxf(best_now[k], list[i].now[k]);
+	choice->want_count = 0;
+	while (choice->want_count < PLAN_WANTS) {
+		const struct candidate *best = NULL;
+		float best_gain = want_gain_least;
+		for (uint32_t i = 0; i < count; i++) {
+			float gain = 0;
+			for (int k = 0; k < PIECE_PROBES; k++)
+				gain += fmaxf(list[i].ideal[k] - best_now[k], 0) / PIECE_PROBES;
+			if (gain > best_gain) {
+				best = &list[i];
+				best_gain = gain;
+			}
+		}
+		if (!best)
+			return;
+		for (int k = 0; k < PIECE_PROBES; k++)
+			best_now[k] = fmaxf(best_now[k], best->ideal[k]);
+		choice->want[choice->want_count++] = (struct plan_want){ .face = best->face,
+									 .level = best->level,
+									 .u0 = best->u0,
+									 .v0 = best->v0,
+									 .u1 = best->u1,
+									 .v1 = best->v1,
+									 .gain = best_gain };
+	}
+}
+
+void plan_piece(struct plan_choice *choice, const struct plan_world *world,
+		const struct plan_eye *eye, const struct piece *piece, float error_m)
+{
+	struct candidate list[CANDIDATES_MOST];
+	struct ranked ranked;
+	uint32_t count = 0;
+	rank_points(&ranked, world, eye, piece, error_m);
+	for (uint32_t i = 0; i < ranked.count; i++)
+		add_point(list, &count, choice, world, eye, piece, ranked.point[i], error_m);
+	choose_entries(choice, list, count);
+	choose_wants(choice, list, count);
+}
+
+/* ---- the paper's eight corners */
+
+static void add_corner(struct plan_choice *choice, const struct plan_world *world,
+		       const struct plan_eye *eye, const struct piece *piece, uint32_t point,
+		       float weight)
+{
+	float sample[3], to[3], uv[2];
+	repository_point_m(world->repository, point, sample);
+	vec_sub(to, piece->centre_m, sample);
+	if (weight <= 0 || vec_dot(to, to) < 1e-6f)
+		return;
+	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
+	if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY)
+		return;
+	struct candidate one = { .face = face, .u0 = 1, .v0 = 1, .u1 = -1, .v1 = -1 };
+	memcpy(one.sample_m, sample, sizeof(sample));
+	one.level = (uint8_t)plan_level(
+		plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
+		repository_levels(world->repository));
+	one.resident = is_resident(world, face);
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		vec_sub(to, piece->probe_m[k], sample);
+		if (face % CUBE_FACES == (uint32_t)cube_project(to, &uv[0], &uv[1]))
+			judge_probe(&one, world, eye, piece, k, uv, 0);
+	}
+	if (one.resident_half_px > 0)
+		choice->entry[choice->entry_count++] = (struct plan_entry){
+			.face = face, .half_px = one.resident_half_px, .share = weight
+		};
+	if (one.resident_half_px < plan_level_half_px(one.level) &&
+	    choice->want_count < PLAN_WANTS && one.u0 <= one.u1)
+		choice->want[choice->want_count++] = (struct plan_want){ .face = face,
+									 .level = one.level,
+									 .u0 = one.u0,
+									 .v0 = one.v0,
+									 .u1 = one.u1,
+									 .v1 = one.v1,
+									 .gain = weight };
+}
+
+void plan_piece_corners(struct plan_choice *choice, const struct plan_world *world,
+			const struct plan_eye *eye, const struct piece *piece)
+{
+	const struct samples_page *grid = &world->repository->grid;
+	uint32_t low[3], order[8];
+	float share[3], weight[8];
+	choice->entry_count = choice->want_count = 0;
+	for (int i = 0; i < 3; i++) {
+		float at = (eye->eye_m[i] - grid->origin_m[i]) / grid->spacing_m[i];
+		float most = (float)grid->count[i] - 1;
+		at = fminf(fmaxf(at, 0), most);
+		low[i] = (uint32_t)fminf(floorf(at), fmaxf(most - 1, 0));
+		share[i] = at - (float)low[i];
+	}
+	for (uint32_t c = 0; c < 8; c++) {
+		weight[c] = 1;
+		for (int i = 0; i < 3; i++)
+			weight[c] *= c >> i & 1 ? share[i] : 1 - share[i];
+		uint32_t at = c;
+		for (; at > 0 && weight[order[at - 1]] < weight[c]; at--)
+			order[at] = order[at - 1];
+		order[at] = c;
+	}
+	for (uint32_t i = 0; i < 8 && choice->entry_count < PLAN_ENTRIES; i++) {
+		uint32_t c = order[i], x = low[0] + (c & 1), y = low[1] + (c >> 1 & 1);
+		uint32_t z = low[2] + (c >> 2 & 1);
+		if (x < grid->count[0] && y < grid->count[1] && z < grid->count[2])
+			add_corner(choice, world, eye, piece,
+				   (z * grid->count[1] + y) * grid->count[0] + x, weight[c]);
+	}
+}

@@ -1,0 +1,127 @@
+#include "render/rest.h"
+
+#include <string.h>
+
+/* A changing picture is the mean of about so many frames. */
+enum { CHANGING_FRAMES = 3 };
+
+static const char square_vertex[] = "attribute vec2 a_position;\n"
+				    "varying vec2 v_at;\n"
+				    "void main() {\n"
+				    "	v_at = a_position * 0.5 + 0.5;\n"
+				    "	gl_Position = vec4(a_position, 0.0, 1.0);\n"
+				    "}\n";
+
+static const char square_fragment[] = "precision mediump float;\n"
+				      "uniform sampler2D u_picture;\n"
+				      "varying vec2 v_at;\n"
+				      "void main() {\n"
+				      "	gl_FragColor = texture2D(u_picture, v_at);\n"
+				      "}\n";
+
+static int build(struct rest *rest)
+{
+	const struct gl_program_source source = {
+		.name = "rest",
+		.vertex = (const char *const[]){ square_vertex, NULL },
+		.fragment = (const char *const[]){ square_fragment, NULL },
+		.attributes = (const char *const[]){ "a_position", NULL },
+	};
+	int rc = gl_program_build(&rest->program, &source);
+	if (rc < 0)
+		return rc;
+	glUseProgram(rest->program);
+	glUniform1i(glGetUniformLocation(rest->program, "u_picture"), 0);
+	static const float corners[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
+	glGenBuffers(1, &rest->square);
+	glBindBuffer(GL_ARRAY_BUFFER, rest->square);
+	glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners, GL_STATIC_DRAW);
+	return 0;
+}
+
+int rest_prepare(struct rest *rest, int width_px, int height_px)
+{
+	if (rest->sum.framebuffer && rest->sum.width_px == width_px &&
+	    rest->sum.height_px == height_px)
+		return 0;
+	rest_finish(rest);
+	int rc = build(rest);
+	if (rc == 0)
+		rc = gl_target_create(&rest->frame, width_px, height_px);
+	if (rc == 0)
+		rc = gl_target_create(&rest->sum, width_px, height_px);
+	if (rc < 0)
+		rest_finish(rest);
+	return rc;
+}
+
+void rest_finish(struct rest *rest)
+{
+	gl_target_destroy(&rest->frame);
+	gl_target_destroy(&rest->sum);
+	if (rest->program)
+		glDeleteProgram(rest->program);
+	if (rest->square)
+		glDeleteBuffers(1, &rest->square);
+	memset(rest, 0, sizeof(*rest));
+}
+
+void rest_break(struct rest *rest)
+{
+	rest->count = 0;
+}
+
+/* Halton's sequence in bases 2 and 3. */
+static float halton(uint32_t index, uint32_t base)
+{
+	float value = 0, digit = 1;
+	for (; index > 0; index /= base) {
+		digit /= (float)base;
+		value += digit * (float)(index % base);
+	}
+	return value;
+}
+
+void rest_offset(const struct rest *rest, float *x_px, float *y_px)
+{
+	uint32_t index = rest->count % REST_FRAMES + 1;
+	*x_px = halton(index, 2) - 0.5f;
+	*y_px = halton(index, 3) - 0.5f;
+}
+
+static void draw_square(const struct rest *rest, GLuint texture)
+{
+	glUseProgram(rest->program);
+	gl_bind_texture(0, texture);
+	glBindBuffer(GL_ARRAY_BUFFER, rest->square);
+	glEnableVertexAttribArray(0);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, NULL);
+	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
+{
+	if (changed && rest->count > CHANGING_FRAMES - 1)
+		rest->count = CHANGING_FRAMES - 1;
+	if (rest->count < REST_FRAMES) {
+		rest->count++;
+		gl_target_bind(&rest->sum);
+		glDisable(GL_DEPTH_TEST);
+		glEnable(GL_BLEND);
+		glBlendColor(0, 0, 0, 1.0f / (float)rest->count);
+		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+		draw_square(rest, rest->frame.colour);
+		glDisable(GL_BLEND);
+	}
+	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+	glViewport(0, 0, rest->sum.width_px, rest->sum.height_px);
+	glDisable(GL_DEPTH_TEST);
+	draw_square(rest, rest->sum.colour);
+}
+
+bool rest_is_done(const struct rest *rest)
+{
+	return rest->count >= REST_FRAMES;
+}

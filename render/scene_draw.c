@@ -1,0 +1,311 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "render/scene_parts.h"
+#include "render/vec.h"
+
+enum {
+	DEPTH_TRIANGLES_MOST = 60000, /* of a face's picture */
+	PLAN_BUDGET_US = 5000,
+	SHARE_PX_MOST = 320, /* the picture from which image_share is counted */
+};
+
+/* ---- depth of faces */
+
+/* Whether a sphere can be in a face's quarter of space. */
+static bool face_sees(const struct cube_axes *axes, const float sample[3], const float centre[3],
+		      float radius)
+{
+	float to[3];
+	vec_sub(to, centre, sample);
+	float depth = vec_dot(to, axes->forward), reach = radius * 1.4143f;
+	return depth > -radius && fabsf(vec_dot(to, axes->right)) < depth + reach &&
+	       fabsf(vec_dot(to, axes->up)) < depth + reach;
+}
+
+static void draw_depth_face(struct scene *scene, int slot, face_key face)
+{
+	const struct cut_options options = { .error_px = 1,
+					     .triangle_budget = DEPTH_TRIANGLES_MOST };
+	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
+	float sample[3];
+	repository_point_m(&scene->repository, face / CUBE_FACES, sample);
+	cut_update_around(&scene->around, sample, (float)scene->depth.face_px / 2,
+			  scene->geometry.loaded, &options);
+	depth_begin(&scene->depth, face, sample, &scene->root.lattice);
+	glEnableVertexAttribArray(0);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	for (uint32_t i = 0; i < scene->around.patch_count; i++) {
+		uint32_t p = scene->around.patches[i];
+		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
+		if (!face_sees(axes, sample, patch->centre_m, patch->radius_m))
+			continue;
+		geometry_bind(&scene->geometry, p);
+		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
+	}
+	depth_end(&scene->depth, slot, face, scene->cut_signature);
+}
+
+/* Faces without depth first, within the time; then one that knew a coarser mesh. */
+void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
+{
+	int outdated = -1;
+	scene->depth_is_stale = false;
+	for (int i = 0; i < TILES_FACES_MOST; i++) {
+		const struct tiles_face *face = &scene->tiles.faces[i];
+		if (!face->used || face->stamp != scene->tiles.stamp)
+			continue;
+		if (depth_ready(&scene->depth, i, face->key)) {
+			if (scene->depth.face[i].cut != scene->cut_signature)
+				outdated = i;
+			continue;
+		}
+		if (out->depth_faces_drawn > 0 && clock_now_us() >= until_us) {
+			scene->depth_is_stale = true;
+			return;
+		}
+		draw_depth_face(scene, i, face->key);
+		out->depth_faces_drawn++;
+	}
+	if (outdated < 0)
+		return;
+	scene->depth_is_stale = true;
+	if (out->depth_faces_drawn > 0)
+		return;
+	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key);
+	out->depth_faces_drawn++;
+}
+
+/* ---- pictures */
+
+static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
+{
+	uint32_t bound = HIERARCHY_NONE, first = 0, count = 0;
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		const struct piece *piece = &patch->content.solid.pieces[v->piece];
+		/* Pieces of the patches' own colours need no uniforms: runs are drawn at once. */
+		bool joins = !frame->tiles && v->patch == bound &&
+			     piece->first_triangle == first + count;
+		if (!joins && count > 0)
+			geometry_draw(first, count);
+		if (!joins)
+			count = 0;
+		if (v->patch != bound)
+			geometry_bind(&scene->geometry, v->patch);
+		bound = v->patch;
+		if (frame->tiles)
+			surface_blend(&scene->surface, frame, &scene->repository,
+				      patch->pieces[v->piece].blend,
+				      scene_patch_error_m(scene, v->patch));
+		if (count == 0)
+			first = piece->first_triangle;
+		count += piece->triangle_count;
+		if (frame->tiles) {
+			geometry_draw(first, count);
+			count = 0;
+		}
+	}
+	if (count > 0)
+		geometry_draw(first, count);
+}
+
+static void draw_mark(struct scene *scene, const struct view *view, const struct region *region)
+{
+	uint32_t bound = HIERARCHY_NONE;
+	mark_begin(&scene->mark, view, &scene->root, region);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		const struct piece *piece = &patch->content.solid.pieces[v->piece];
+		if (!region_meets_sphere(region, piece->centre_m, piece->radius_m))
+			continue;
+		if (v->patch != bound)
+			geometry_bind(&scene->geometry, v->patch);
+		bound = v->patch;
+		geometry_draw(piece->first_triangle, piece->triangle_count);
+	}
+	mark_end();
+}
+
+static void begin_picture(const struct scene *scene, int width_px, int height_px)
+{
+	const uint8_t *sky = scene->root.background;
+	glViewport(0, 0, width_px, height_px);
+	glDisable(GL_BLEND);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	glEnable(GL_CULL_FACE);
+	glCullFace(GL_BACK);
+	glFrontFace(GL_CCW);
+	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+static void draw_picture(struct scene *scene, const struct view *view, const struct region *region,
+			 bool shares)
+{
+	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
+	const struct surface_frame frame = {
+		.view = view,
+		.root = &scene->root,
+		.tiles = images ? &scene->tiles : NULL,
+		.depth = &scene->depth,
+		.even = scene->options.mode == SCENE_CORNERS,
+		.shares = shares,
+	};
+	surface_begin(&scene->surface, &frame);
+	draw_pieces(scene, &frame);
+	if (region && region->kind != REGION_NONE)
+		draw_mark(scene, view, region);
+	glDisable(GL_CULL_FACE);
+}
+
+/* How much of the model's pixels images colour, from a small picture. */
+static float count_share(struct scene *scene)
+{
+	struct gl_target small;
+	int width = scene->view.width_px, height = scene->view.height_px;
+	while (width > SHARE_PX_MOST) {
+		width /= 2;
+		height /= 2;
+	}
+	if (gl_target_create(&small, width, height > 0 ? height : 1) < 0)
+		return -1;
+	begin_picture(scene, small.width_px, small.height_px);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT);
+	draw_picture(scene, &scene->view, NULL, true);
+	size_t pixels = (size_t)small.width_px * (size_t)small.height_px;
+	uint8_t *rgba = malloc(4 * pixels);
+	double shares = 0, covered = 0;
+	if (rgba && gl_target_read(&small, rgba) == 0) {
+		for (size_t i = 0; i < pixels; i++) {
+			covered += rgba[4 * i + 3] > 127;
+			shares += rgba[4 * i + 3] > 127 ? rgba[4 * i] / 255.0 : 0;
+		}
+	}
+	free(rgba);
+	gl_target_destroy(&small);
+	return covered > 0 ? (float)(shares / covered) : 0;
+}
+
+/* ---- the frame */
+
+static bool is_busy(const struct scene *scene)
+{
+	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
+	       scene->depth_is_stale || pool_busy(scene->pool) > 0;
+}
+
+static bool view_changed(const struct scene *scene, const struct view *view)
+{
+	const struct view *was = &scene->view;
+	return !scene->has_view || memcmp(was->eye_m, view->eye_m, sizeof(was->eye_m)) != 0 ||
+	       memcmp(was->clip, view->clip, sizeof(was->clip)) != 0 ||
+	       was->width_px != view->width_px || was->height_px != view->height_px;
+}
+
+static void prepare(struct scene *scene, struct scene_frame *out)
+{
+	int64_t now_us = clock_now_us();
+	float passed_ms = scene->frame_us ? (float)(now_us - scene->frame_us) / 1000 : 0;
+	scene->frame_us = now_us;
+	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
+	scene_update_cut(scene);
+	scene_list_pieces(scene);
+	if (scene->options.mode == SCENE_POLYGONS) {
+		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
+		return;
+	}
+	scene_plan_pieces(scene, PLAN_BUDGET_US);
+	scene_fade_blends(scene, fminf(passed_ms, 100));
+	scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
+}
+
+/* Draws into the framebuffer given: at rest by way of the sum, moving at once. */
+static void show(struct scene *scene, GLuint framebuffer, const struct region *region, bool moved,
+		 bool changed)
+{
+	const struct view *view = &scene->view;
+	if (moved)
+		rest_break(&scene->rest);
+	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px) < 0) {
+		glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+		begin_picture(scene, view->width_px, view->height_px);
+		draw_picture(scene, view, region, false);
+		return;
+	}
+	if (!rest_is_done(&scene->rest) || changed) {
+		struct view jittered = *view;
+		float x, y;
+		rest_offset(&scene->rest, &x, &y);
+		view_jitter(&jittered, x, y);
+		gl_target_bind(&scene->rest.frame);
+		begin_picture(scene, view->width_px, view->height_px);
+		draw_picture(scene, &jittered, region, false);
+	}
+	rest_add(&scene->rest, framebuffer, changed);
+}
+
+static void draw_nothing(const struct camera *camera)
+{
+	glViewport(0, 0, camera->width_px, camera->height_px);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+static bool mark_changed(struct scene *scene, const struct region *region)
+{
+	struct region now = { 0 };
+	if (region)
+		now = *region;
+	bool changed = memcmp(&now, &scene->marked, sizeof(now)) != 0;
+	scene->marked = now;
+	return changed;
+}
+
+void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
+		struct scene_frame *out)
+{
+	GLint framebuffer = 0;
+	*out = (struct scene_frame){ .image_share = -1 };
+	if (!scene->has_hierarchy) {
+		draw_nothing(camera);
+		scene->frame_us = clock_now_us();
+		return;
+	}
+	glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
+	struct view view;
+	view_from_camera(&view, camera);
+	bool moved = view_changed(scene, &view);
+	scene->view = view;
+	scene->has_view = true;
+	prepare(scene, out);
+	bool changed = mark_changed(scene, highlight) || is_busy(scene);
+	show(scene, (GLuint)framebuffer, highlight, moved, changed);
+	out->triangles = scene->cut.triangle_count;
+	out->patches = scene->cut.patch_count;
+	scene_list_wants(scene);
+	bool idle = !moved && !changed && scene->want_count == 0;
+	out->settled = idle && rest_is_done(&scene->rest);
+	out->moving = is_busy(scene) || moved || !rest_is_done(&scene->rest);
+	if (!out->settled) {
+		scene->image_share = -1;
+		return;
+	}
+	if (scene->image_share < 0) {
+		scene->image_share = count_share(scene);
+		glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)framebuffer);
+		glViewport(0, 0, camera->width_px, camera->height_px);
+	}
+	out->image_share = scene->image_share;
+}

@@ -1,0 +1,113 @@
+/* What the sources of the scene share; private to them.
+ *   scene.c        life, objects in
+ *   scene_wants.c  objects wanted
+ *   scene_plan.c   what is shown: cut, pieces, blends, depth faces
+ *   scene_draw.c   the frame */
+#ifndef GOPURA_RENDER_SCENE_PARTS_H
+#define GOPURA_RENDER_SCENE_PARTS_H
+
+#include "format/hierarchy.h"
+#include "render/cut.h"
+#include "render/depth.h"
+#include "render/geometry.h"
+#include "render/map.h"
+#include "render/mark.h"
+#include "render/plan.h"
+#include "render/pool.h"
+#include "render/rest.h"
+#include "render/scene.h"
+#include "render/surface.h"
+#include "render/tiles.h"
+
+enum object_kind {
+	OBJECT_ROOT,
+	OBJECT_HIERARCHY,
+	OBJECT_SAMPLES,
+	OBJECT_GROUP, /* id: group */
+	OBJECT_BRICK, /* id: child of the samples page */
+	OBJECT_FACE,  /* id: face_key */
+	OBJECT_TILE,  /* id: packed tile name */
+};
+
+enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
+
+/* An object that was wanted once: what it is for when it comes. */
+struct object {
+	struct hash hash;
+	uint64_t id;
+	enum object_kind kind;
+	enum object_state state;
+};
+
+/* A piece in sight. */
+struct visible_piece {
+	uint32_t patch, piece;
+	float pixels; /* of the screen, about */
+};
+
+struct scene {
+	struct scene_options options;
+	struct pool *pool;
+	struct tiles tiles;
+	struct depth depth;
+	struct surface surface;
+	struct mark mark;
+	struct rest rest;
+
+	struct object *objects; /* owned */
+	uint32_t object_count, object_capacity;
+	struct map object_of; /* first 8 bytes of a hash -> index of objects */
+	struct map decoding;  /* object_id_key -> index of objects: with the workers */
+
+	struct hash root_hash;
+	uint32_t root_bytes;
+	bool has_root, has_hierarchy;
+	struct root_page root;
+	struct page_child root_child[ROOT_CHILD_COUNT];
+	struct hierarchy hierarchy;
+	struct hash hierarchy_hash;
+	struct page_child *groups; /* children of the hierarchy's page; owned */
+	uint32_t *group_offset;    /* owned */
+	struct geometry geometry;
+	struct cut cut, around;
+	struct repository repository;
+
+	/* The frame at hand. */
+	struct view view;
+	bool has_view;
+	int64_t frame_us;
+	struct visible_piece *visible; /* owned */
+	uint32_t visible_count, visible_capacity;
+	uint32_t epoch;       /* of what planning looks at: tiles, pages */
+	bool cut_is_stale;    /* geometry came or went */
+	bool plans_are_stale; /* some piece in sight waits to be planned */
+	bool fading, depth_is_stale, uploads_wait;
+	uint64_t cut_signature;
+	float image_share;
+	struct message_want *wants; /* owned */
+	uint32_t want_count, want_capacity;
+	uint32_t plan_cursor;
+	struct region marked; /* by the last frame */
+};
+
+/* scene.c */
+struct object *scene_object(struct scene *scene, struct hash hash);
+/* Remembers what an object is for; NULL without memory. */
+struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,
+			    uint64_t id);
+/* Logs a content bug; the object is not wanted again. */
+void scene_refuse(struct object *object, int error);
+
+/* scene_wants.c: rebuilds scene->wants, most wanted first. */
+void scene_list_wants(struct scene *scene);
+
+/* scene_plan.c */
+void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);
+void scene_update_cut(struct scene *scene);
+void scene_list_pieces(struct scene *scene);
+void scene_plan_pieces(struct scene *scene, int64_t budget_us);
+void scene_fade_blends(struct scene *scene, float passed_ms);
+void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out);
+float scene_patch_error_m(const struct scene *scene, uint32_t patch);
+
+#endif

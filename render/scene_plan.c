@@ -1,0 +1,308 @@
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "render/scene_parts.h"
+#include "render/vec.h"
+
+/* An eye that moved by this share of the distance to a piece sees it anew. */
+static const float eye_moved = 0.02f;
+
+/* ---- what workers decoded */
+
+static void upload_one(struct scene *scene, struct pool_answer *answer, struct scene_frame *out)
+{
+	uint32_t at = map_get(&scene->decoding, answer->id);
+	map_remove(&scene->decoding, answer->id);
+	if (at == MAP_NONE || at >= scene->object_count)
+		return;
+	struct object *object = &scene->objects[at];
+	int rc = answer->error;
+	object->state = OBJECT_WANTED; /* again, should it be dropped */
+	if (rc == 0 && object->kind == OBJECT_GROUP) {
+		rc = geometry_put(&scene->geometry, (uint32_t)object->id, answer);
+		scene->cut_is_stale = true;
+	} else if (rc == 0) {
+		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
+		out->tiles_uploaded += rc == 0;
+		if (rc == -ENOSPC)
+			rc = 0; /* all that is there is in use */
+	}
+	if (rc == -EBADMSG)
+		scene_refuse(object, rc);
+	else if (rc < 0)
+		log_warn("render", "an object was not taken up: %s", strerror(-rc));
+	scene->epoch++;
+}
+
+void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out)
+{
+	struct pool_answer answer;
+	scene->uploads_wait = false;
+	while (pool_busy(scene->pool) > 0 && pool_take(scene->pool, &answer)) {
+		upload_one(scene, &answer, out);
+		pool_answer_finish(&answer);
+		if (clock_now_us() >= until_us) {
+			scene->uploads_wait = true;
+			return;
+		}
+	}
+}
+
+/* ---- what is in sight */
+
+void scene_update_cut(struct scene *scene)
+{
+	const struct cut_options options = { .error_px = scene->options.patch_error_px,
+					     .triangle_budget = scene->options.triangle_budget };
+	struct geometry *geometry = &scene->geometry;
+	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
+	uint32_t loaded = geometry->loaded_count;
+	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
+	if (geometry->loaded_count != loaded)
+		cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
+	scene->cut_signature = geometry->loaded_count;
+	scene->cut_is_stale = false;
+}
+
+float scene_patch_error_m(const struct scene *scene, uint32_t patch)
+{
+	uint32_t finer = scene->hierarchy.patches[patch].finer;
+	if (finer != HIERARCHY_NONE)
+		return scene->hierarchy.groups[finer].error_m;
+	/* The finest published: its own error against the scan is not told; half of that of the
+	 * group it came with is a fair guess. */
+	float error = scene->hierarchy.groups[scene->hierarchy.patches[patch].group].error_m;
+	return isfinite(error) ? error / 2 : 0;
+}
+
+static bool add_visible(struct scene *scene, uint32_t patch, uint32_t piece, float pixels)
+{
+	if (scene->visible_count == scene->visible_capacity) {
+		uint32_t capacity = scene->visible_capacity ? 2 * scene->visible_capacity : 512;
+		struct visible_piece *larger =
+			realloc(scene->visible, capacity * sizeof(*scene->visible));
+		if (!larger)
+			return false;
+		scene->visible = larger;
+		scene->visible_capacity = capacity;
+	}
+	scene->visible[scene->visible_count++] = (struct visible_piece){ patch, piece, pixels };
+	return true;
+}
+
+void scene_list_pieces(struct scene *scene)
+{
+	const struct view *view = &scene->view;
+	scene->visible_count = 0;
+	for (uint32_t i = 0; i < scene->cut.patch_count; i++) {
+		uint32_t p = scene->cut.patches[i];
+		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
+		if (!view_sees_sphere(view, patch->centre_m, patch->radius_m) ||
+		    !cut_patch_faces(patch, view->eye_m))
+			continue;
+		const struct solid *solid = &scene->geometry.patches[p].content.solid;
+		for (uint32_t k = 0; k < solid->piece_count; k++) {
+			const struct piece *piece = &solid->pieces[k];
+			if (view_sees_sphere(view, piece->centre_m, piece->radius_m) &&
+			    !add_visible(scene, p, k,
+					 view_sphere_px(view, piece->centre_m, piece->radius_m)))
+				return;
+		}
+	}
+}
+
+/* ---- which faces colour them */
+
+static int level_at(void *data, face_key face, float u, float v)
+{
+	const struct scene *scene = data;
+	return tiles_level_at(&scene->tiles, face, u, v);
+}
+
+static bool sees(void *data, const float sample_m[3], const float point_m[3])
+{
+	const struct scene *scene = data;
+	float to[3];
+	vec_sub(to, point_m, sample_m);
+	float distance = vec_normalise(to);
+	/* Short of the surface itself, by more than a mesh is usually wrong. */
+	float most = distance * 0.985f - 0.05f;
+	if (most <= 0)
+		return true;
+	return !geometry_ray(&scene->geometry, &scene->cut, sample_m, to, 0, &most);
+}
+
+static bool is_stale(const struct scene *scene, const struct piece *piece,
+		     const struct piece_state *state)
+{
+	if (!state->planned || state->orphan)
+		return true;
+	const struct plan_choice *choice = &state->choice;
+	if (state->planned_epoch != scene->epoch &&
+	    (choice->want_count > 0 || choice->entry_count < 2))
+		return true;
+	float moved = vec_distance(state->planned_eye_m, scene->view.eye_m);
+	float distance = view_sphere_distance(&scene->view, piece->centre_m, piece->radius_m);
+	return moved > eye_moved * (distance + piece->radius_m);
+}
+
+static void plan_one(struct scene *scene, const struct plan_world *world,
+		     const struct visible_piece *visible, struct piece_state *state)
+{
+	const struct piece *piece =
+		&scene->geometry.patches[visible->patch].content.solid.pieces[visible->piece];
+	struct plan_eye eye = { .focal_px = scene->view.focal_px };
+	memcpy(eye.eye_m, scene->view.eye_m, sizeof(eye.eye_m));
+	if (scene->options.mode == SCENE_CORNERS)
+		plan_piece_corners(&state->choice, world, &eye, piece);
+	else
+		plan_piece(&state->choice, world, &eye, piece,
+			   scene_patch_error_m(scene, visible->patch));
+	state->planned = true;
+	state->orphan = false;
+	state->planned_epoch = scene->epoch;
+	memcpy(state->planned_eye_m, eye.eye_m, sizeof(eye.eye_m));
+}
+
+void scene_plan_pieces(struct scene *scene, int64_t budget_us)
+{
+	int64_t until_us = clock_now_us() + budget_us;
+	const struct plan_world world = {
+		.repository = &scene->repository,
+		.resident = scene->tiles.keys,
+		.resident_count = scene->tiles.key_count,
+		.level_at = level_at,
+		.sees = sees,
+		.data = scene,
+	};
+	scene->plans_are_stale = false;
+	if (!scene->repository.ready)
+		return;
+	/* Each frame goes on where the last one ran out of time. */
+	uint32_t count = scene->visible_count;
+	uint32_t start = count ? scene->plan_cursor % count : 0;
+	for (uint32_t i = 0; i < count; i++) {
+		uint32_t at = (start + i) % count;
+		const struct visible_piece *v = &scene->visible[at];
+		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		struct piece_state *state = &patch->pieces[v->piece];
+		if (!is_stale(scene, &patch->content.solid.pieces[v->piece], state))
+			continue;
+		if (clock_now_us() >= until_us) {
+			scene->plan_cursor = at;
+			scene->plans_are_stale = true;
+			return;
+		}
+		plan_one(scene, &world, v, state);
+	}
+}
+
+/* ---- fades */
+
+static bool blend_is_chosen(const struct plan_choice *choice, struct blend *blend)
+{
+	for (uint32_t i = 0; i < choice->entry_count; i++) {
+		if (choice->entry[i].face != blend->face)
+			continue;
+		blend->half_px = choice->entry[i].half_px;
+		blend->target = choice->entry[i].share;
+		return true;
+	}
+	blend->target = 0;
+	return false;
+}
+
+static bool is_blended(const struct piece_state *state, face_key face)
+{
+	for (int i = 0; i < PLAN_ENTRIES; i++)
+		if (state->blend[i].held && state->blend[i].face == face)
+			return true;
+	return false;
+}
+
+static void take_up(struct piece_state *state, const struct plan_entry *entry)
+{
+	for (int i = 0; i < PLAN_ENTRIES; i++) {
+		if (state->blend[i].held)
+			continue;
+		state->blend[i] = (struct blend){ .face = entry->face,
+						  .half_px = entry->half_px,
+						  .held = true,
+						  .target = entry->share };
+		return;
+	}
+}
+
+/* Returns whether anything still moves. */
+static bool fade_piece(struct scene *scene, struct piece_state *state, float step)
+{
+	bool moving = false;
+	for (int i = 0; i < PLAN_ENTRIES; i++) {
+		struct blend *blend = &state->blend[i];
+		if (!blend->held)
+			continue;
+		int slot = tiles_face_slot(&scene->tiles, blend->face);
+		if (slot < 0) {
+			*blend = (struct blend){ 0 };
+			state->orphan = true;
+			moving = true;
+			continue;
+		}
+		bool chosen = blend_is_chosen(&state->choice, blend);
+		if (chosen && !depth_ready(&scene->depth, slot, blend->face))
+			continue; /* the depth pass will come to it */
+		float rest = blend->target - blend->weight;
+		blend->weight += rest > step ? step : rest < -step ? -step : rest;
+		moving |= fabsf(rest) > 0;
+		if (!chosen && blend->weight <= 0)
+			*blend = (struct blend){ 0 };
+	}
+	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
+		if (is_blended(state, state->choice.entry[i].face))
+			continue;
+		take_up(state, &state->choice.entry[i]);
+		moving = true;
+	}
+	return moving;
+}
+
+static void touch_piece(struct scene *scene, const struct piece *piece,
+			const struct piece_state *state)
+{
+	for (int i = 0; i < PLAN_ENTRIES; i++) {
+		if (!state->blend[i].held)
+			continue;
+		float u0 = 1, v0 = 1, u1 = -1, v1 = -1, sample[3], to[3], u, v;
+		face_key face = state->blend[i].face;
+		repository_point_m(&scene->repository, face / CUBE_FACES, sample);
+		for (int k = 0; k < PIECE_PROBES; k++) {
+			vec_sub(to, piece->probe_m[k], sample);
+			if ((uint32_t)cube_project(to, &u, &v) != face % CUBE_FACES)
+				continue;
+			u0 = fminf(u0, u);
+			u1 = fmaxf(u1, u);
+			v0 = fminf(v0, v);
+			v1 = fmaxf(v1, v);
+		}
+		tiles_touch(&scene->tiles, face, u0, v0, u1, v1);
+	}
+}
+
+void scene_fade_blends(struct scene *scene, float passed_ms)
+{
+	float step = passed_ms / TILES_FADE_MS;
+	tiles_begin(&scene->tiles);
+	scene->fading = false;
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		struct piece_state *state = &patch->pieces[v->piece];
+		scene->fading |= fade_piece(scene, state, step);
+		touch_piece(scene, &patch->content.solid.pieces[v->piece], state);
+	}
+	scene->fading |= tiles_tick(&scene->tiles);
+}

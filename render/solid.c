@@ -1,0 +1,333 @@
+#include "render/solid.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/vec.h"
+
+enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
+
+static const float flat_enough = 0.9f;
+
+static void vertex_m(const struct solid *solid, uint32_t vertex, float out[3])
+{
+	const uint16_t *at = solid->vertices[vertex].position;
+	for (int i = 0; i < 3; i++)
+		out[i] = (float)(solid->lattice.origin_m[i] + solid->lattice.step_m * at[i]);
+}
+
+/* ---- building */
+
+struct builder {
+	struct solid *solid;
+	uint16_t *indices; /* of the mesh, being sorted */
+	/* Per triangle, sorted along: three times the centre, and the unit normal. */
+	float (*key)[6];
+};
+
+static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
+{
+	for (int k = 0; k < 3; k++) {
+		uint16_t index = b->indices[3 * i + k];
+		b->indices[3 * i + k] = b->indices[3 * j + k];
+		b->indices[3 * j + k] = index;
+	}
+	for (int k = 0; k < 6; k++) {
+		float key = b->key[i][k];
+		b->key[i][k] = b->key[j][k];
+		b->key[j][k] = key;
+	}
+}
+
+/* Wirth's selection: the middle triangle along an axis comes to the middle of the run. */
+static void split_at_median(struct builder *b, uint32_t first, uint32_t count, int axis)
+{
+	int64_t low = first, high = first + count - 1, middle = first + count / 2;
+	while (low < high) {
+		float pivot = b->key[middle][axis];
+		int64_t i = low, j = high;
+		while (i <= j) {
+			while (b->key[i][axis] < pivot)
+				i++;
+			while (b->key[j][axis] > pivot)
+				j--;
+			if (i <= j)
+				swap_triangles(b, (uint32_t)i++, (uint32_t)j--);
+		}
+		if (j < middle)
+			low = i;
+		if (middle < i)
+			high = j;
+	}
+}
+
+static void bound(const struct builder *b, struct solid_node *node)
+{
+	for (int i = 0; i < 3; i++) {
+		node->min_m[i] = INFINITY;
+		node->max_m[i] = -INFINITY;
+	}
+	for (uint32_t k = 3 * node->first; k < 3 * (node->first + node->count); k++) {
+		float at[3];
+		vertex_m(b->solid, b->indices[k], at);
+		for (int i = 0; i < 3; i++) {
+			node->min_m[i] = fminf(node->min_m[i], at[i]);
+			node->max_m[i] = fmaxf(node->max_m[i], at[i]);
+		}
+	}
+}
+
+/* Length of the mean normal of a run: 1 flat, 0 all around. */
+static float flatness_of(const struct builder *b, uint32_t first, uint32_t count)
+{
+	float sum[3] = { 0 };
+	for (uint32_t t = first; t < first + count; t++)
+		for (int i = 0; i < 3; i++)
+			sum[i] += b->key[t][3 + i];
+	return vec_length(sum) / (float)count;
+}
+
+/* The axis along which a run is longest; where it is larger than a piece, bends count too, so that
+ * the sides of a pillar come into different pieces. */
+static int longest_axis(const struct builder *b, const struct solid_node *node)
+{
+	float least[6], most[6], longest = 0;
+	int axis = 0;
+	bool bends = node->count > PIECE_TRIANGLES_BENT &&
+		     flatness_of(b, node->first, node->count) < flat_enough;
+	for (int k = 0; k < 6; k++) {
+		least[k] = INFINITY;
+		most[k] = -INFINITY;
+		for (uint32_t t = node->first; t < node->first + node->count; t++) {
+			least[k] = fminf(least[k], b->key[t][k]);
+			most[k] = fmaxf(most[k], b->key[t][k]);
+		}
+		if (k < 3 && most[k] - least[k] > longest) {
+			longest = most[k] - least[k];
+			axis = k;
+		}
+	}
+	/* A bend of a right angle counts for as much as the run is long. */
+	float scale = longest / 1.4f;
+	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MOST; k++) {
+		if ((most[k] - least[k]) * scale > longest) {
+			longest = (most[k] - least[k]) * scale;
+			axis = k;
+		}
+	}
+	return axis;
+}
+
+static uint32_t build_node(struct builder *b, uint32_t first, uint32_t count)
+{
+	uint32_t self = b->solid->node_count++;
+	struct solid_node *node = &b->solid->nodes[self];
+	*node = (struct solid_node){ .first = first, .count = count };
+	bound(b, node);
+	node->flatness = flatness_of(b, first, count);
+	if (count <= LEAF_TRIANGLES)
+		return self;
+	split_at_median(b, first, count, longest_axis(b, node));
+	build_node(b, first, count / 2);
+	uint32_t right = build_node(b, first + count / 2, count - count / 2);
+	b->solid->nodes[self].right = right;
+	return self;
+}
+
+/* ---- pieces */
+
+static void measure_piece(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+{
+	float area2 = 0;
+	for (uint32_t t = piece->first_triangle; t < piece->first_triangle + piece->triangle_count;
+	     t++) {
+		float a[3], b[3], c[3], n[3];
+		vertex_m(solid, indices[3 * t], a);
+		vertex_m(solid, indices[3 * t + 1], b);
+		vertex_m(solid, indices[3 * t + 2], c);
+		vec_sub(b, b, a);
+		vec_sub(c, c, a);
+		vec_cross(n, b, c);
+		for (int i = 0; i < 3; i++)
+			piece->normal[i] += n[i];
+		area2 += vec_length(n);
+	}
+	/* Two triangles a vertex, each vertex a cell of spacing squared. */
+	piece->spacing_m = sqrtf(area2 / (float)piece->triangle_count);
+	vec_normalise(piece->normal);
+}
+
+static void set_probes(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+{
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		/* Triangles of a piece are sorted in space: even steps are spread well. */
+		uint32_t t = piece->first_triangle +
+			     (uint32_t)((2 * k + 1) * piece->triangle_count / (2 * PIECE_PROBES));
+		float corner[3][3], ab[3], ac[3];
+		for (int c = 0; c < 3; c++)
+			vertex_m(solid, indices[3 * t + c], corner[c]);
+		for (int i = 0; i < 3; i++)
+			piece->probe_m[k][i] = (corner[0][i] + corner[1][i] + corner[2][i]) / 3;
+		vec_sub(ab, corner[1], corner[0]);
+		vec_sub(ac, corner[2], corner[0]);
+		vec_cross(piece->probe_normal[k], ab, ac);
+		if (vec_normalise(piece->probe_normal[k]) <= 0)
+			memcpy(piece->probe_normal[k], piece->normal, sizeof(piece->normal));
+	}
+}
+
+static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_t at)
+{
+	const struct solid_node *node = &solid->nodes[at];
+	bool bent = node->flatness < flat_enough && node->count > PIECE_TRIANGLES_BENT;
+	if (node->right && (node->count > PIECE_TRIANGLES_MOST || bent)) {
+		collect_pieces(solid, indices, at + 1);
+		collect_pieces(solid, indices, node->right);
+		return;
+	}
+	struct piece *piece = &solid->pieces[solid->piece_count++];
+	*piece = (struct piece){ .first_triangle = node->first,
+				 .triangle_count = node->count,
+				 .flatness = node->flatness };
+	for (int i = 0; i < 3; i++)
+		piece->centre_m[i] = (node->min_m[i] + node->max_m[i]) / 2;
+	piece->radius_m = vec_distance(node->max_m, piece->centre_m);
+	measure_piece(solid, indices, piece);
+	set_probes(solid, indices, piece);
+}
+
+static void set_key(const struct solid *solid, const uint16_t index[3], float key[6])
+{
+	float corner[3][3], ab[3], ac[3];
+	for (int c = 0; c < 3; c++)
+		vertex_m(solid, index[c], corner[c]);
+	for (int i = 0; i < 3; i++)
+		key[i] = corner[0][i] + corner[1][i] + corner[2][i];
+	vec_sub(ab, corner[1], corner[0]);
+	vec_sub(ac, corner[2], corner[0]);
+	vec_cross(&key[3], ab, ac);
+	vec_normalise(&key[3]);
+}
+
+int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice *lattice)
+{
+	*out = (struct solid){ .vertices = mesh->vertices,
+			       .indices = mesh->indices,
+			       .lattice = *lattice };
+	uint32_t count = mesh->triangle_count;
+	if (count == 0)
+		return 0;
+	struct builder builder = { .solid = out, .indices = mesh->indices };
+	builder.key = malloc(count * sizeof(*builder.key));
+	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
+	out->pieces = calloc(count / (PIECE_TRIANGLES_BENT / 2) + 1, sizeof(*out->pieces));
+	if (!builder.key || !out->nodes || !out->pieces) {
+		free(builder.key);
+		solid_finish(out);
+		return -ENOMEM;
+	}
+	for (uint32_t t = 0; t < count; t++)
+		set_key(out, &mesh->indices[3 * t], builder.key[t]);
+	build_node(&builder, 0, count);
+	collect_pieces(out, mesh->indices, 0);
+	free(builder.key);
+	return 0;
+}
+
+void solid_finish(struct solid *solid)
+{
+	free(solid->nodes);
+	free(solid->pieces);
+	memset(solid, 0, sizeof(*solid));
+}
+
+size_t solid_bytes(const struct solid *solid)
+{
+	return solid->node_count * sizeof(*solid->nodes) +
+	       solid->piece_count * sizeof(*solid->pieces);
+}
+
+/* ---- rays */
+
+bool ray_meets_sphere(const float from_m[3], const float direction[3], float most_m,
+		      const float centre_m[3], float radius_m)
+{
+	float to[3];
+	vec_sub(to, centre_m, from_m);
+	float along = vec_dot(to, direction);
+	float nearest = fminf(fmaxf(along, 0), most_m);
+	float off[3];
+	vec_add_scaled(off, to, -nearest, direction);
+	return vec_dot(off, off) <= radius_m * radius_m;
+}
+
+static bool meets_box(const struct solid_node *node, const float from[3], const float inverse[3],
+		      float most)
+{
+	float low = 0, high = most;
+	for (int i = 0; i < 3; i++) {
+		float a = (node->min_m[i] - from[i]) * inverse[i];
+		float b = (node->max_m[i] - from[i]) * inverse[i];
+		low = fmaxf(low, fminf(a, b));
+		high = fminf(high, fmaxf(a, b));
+	}
+	return low <= high;
+}
+
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
+static bool meets_triangle(const struct solid *solid, uint32_t triangle, const float from[3],
+			   const float direction[3], float least, float *distance)
+{
+	float a[3], ab[3], ac[3], p[3], t[3], q[3];
+	vertex_m(solid, solid->indices[3 * triangle], a);
+	vertex_m(solid, solid->indices[3 * triangle + 1], ab);
+	vertex_m(solid, solid->indices[3 * triangle + 2], ac);
+	vec_sub(ab, ab, a);
+	vec_sub(ac, ac, a);
+	vec_cross(p, direction, ac);
+	float determinant = vec_dot(ab, p);
+	if (fabsf(determinant) < 1e-12f)
+		return false;
+	vec_sub(t, from, a);
+	float u = vec_dot(t, p) / determinant;
+	if (u < 0 || u > 1)
+		return false;
+	vec_cross(q, t, ab);
+	float v = vec_dot(direction, q) / determinant;
+	if (v < 0 || u + v > 1)
+		return false;
+	float at = vec_dot(ac, q) / determinant;
+	if (at < least || at >= *distance)
+		return false;
+	*distance = at;
+	return true;
+}
+
+bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
+	       float least_m, float *distance_m)
+{
+	uint32_t stack[DEPTH_MOST], depth = 0;
+	float inverse[3];
+	bool hit = false;
+	for (int i = 0; i < 3; i++)
+		inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
+	if (solid->node_count > 0)
+		stack[depth++] = 0;
+	while (depth > 0) {
+		uint32_t at = stack[--depth];
+		const struct solid_node *node = &solid->nodes[at];
+		if (!meets_box(node, from_m, inverse, *distance_m))
+			continue;
+		if (!node->right) {
+			for (uint32_t t = node->first; t < node->first + node->count; t++)
+				hit |= meets_triangle(solid, t, from_m, direction, least_m,
+						      distance_m);
+			continue;
+		}
+		stack[depth++] = node->right;
+		stack[depth++] = at + 1;
+	}
+	return hit;
+}

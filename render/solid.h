@@ -1,0 +1,64 @@
+/* A patch as solid matter: a tree of boxes over its triangles, for rays (picking, collision, which
+ * sampling point sees what), and the pieces it is drawn in. Pure; built on a worker.
+ *
+ * Building sorts the triangles so that every node, and so every piece, is a run of the index
+ * buffer: one buffer serves GPU and rays. */
+#ifndef GOPURA_RENDER_SOLID_H
+#define GOPURA_RENDER_SOLID_H
+
+#include <stdbool.h>
+
+#include "format/patch.h"
+#include "format/root_page.h"
+
+enum {
+	/* Small enough that one choice of samples suits all of it; a piece that bends is split
+	 * further, down to the second. */
+	PIECE_TRIANGLES_MOST = 256,
+	PIECE_TRIANGLES_BENT = 48,
+	PIECE_PROBES = 8
+};
+
+/* A run of a patch's triangles that is drawn with one choice of samples. */
+struct piece {
+	uint32_t first_triangle, triangle_count;
+	float centre_m[3], radius_m;
+	float normal[3]; /* mean, unit */
+	float flatness;  /* length of the mean of its unit normals: 1 flat, 0 all around */
+	float spacing_m; /* mean distance of neighbouring vertices */
+	float probe_m[PIECE_PROBES][3], probe_normal[PIECE_PROBES][3]; /* on its surface */
+};
+
+struct solid_node {
+	float min_m[3], max_m[3];
+	uint32_t first, count; /* triangles; an inner node's children are node + 1 and right */
+	uint32_t right;        /* 0: a leaf */
+	float flatness;        /* as a piece's */
+};
+
+struct solid {
+	struct solid_node *nodes; /* owned */
+	uint32_t node_count;
+	struct piece *pieces; /* owned */
+	uint32_t piece_count;
+	/* Borrowed from the mesh, which must outlive this. */
+	const struct patch_vertex *vertices;
+	const uint16_t *indices;
+	struct lattice lattice;
+};
+
+/* Reorders the mesh's triangles. *out is finished by the caller. -ENOMEM. */
+must_check int solid_init(struct solid *out, struct patch_mesh *mesh,
+			  const struct lattice *lattice);
+void solid_finish(struct solid *solid);
+size_t solid_bytes(const struct solid *solid);
+
+/* Nearest hit between *distance_m and least_m along the (unit) direction, either side of a
+ * triangle; then *distance_m becomes it. */
+bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
+	       float least_m, float *distance_m);
+/* Whether a ray meets the sphere before most_m. */
+bool ray_meets_sphere(const float from_m[3], const float direction[3], float most_m,
+		      const float centre_m[3], float radius_m);
+
+#endif

@@ -1,0 +1,279 @@
+#include "render/surface.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "format/light.h"
+
+#define ENTRIES 4
+_Static_assert(ENTRIES == PLAN_ENTRIES, "the shader is written for so many");
+
+/* Positions are metres relative to the eye, so that floats suffice anywhere in the model. */
+static const char vertex_common[] =
+	"invariant gl_Position;\n" /* the mark is drawn over it at equal depth */
+	"attribute vec3 a_position;\n"
+	"attribute vec2 a_normal;\n"
+	"attribute vec4 a_colour;\n"
+	"uniform mat4 u_clip;\n"
+	"uniform vec4 u_lattice;\n" /* origin from the eye, step */
+	"uniform vec4 u_sun;\n"     /* direction, 1 where the model is lit */
+	"varying vec3 v_colour;\n"
+	"vec3 unit_normal() {\n"
+	"	vec2 e = a_normal / 127.0;\n"
+	"	vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));\n"
+	"	if (n.z < 0.0)\n"
+	"		n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0,\n"
+	"						n.y < 0.0 ? -1.0 : 1.0);\n"
+	"	return normalize(n);\n"
+	"}\n"
+	"vec3 own_colour(vec3 n) {\n"
+	"	float l = u_sun.w > 0.5 ? light(n, a_colour.a, u_sun.xyz) : 1.0;\n"
+	"	return min(a_colour.rgb * l, 1.0);\n"
+	"}\n";
+
+static const char plain_vertex[] = "void main() {\n"
+				   "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+				   "	v_colour = own_colour(unit_normal());\n"
+				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
+				   "}\n";
+
+static const char plain_fragment[] = "precision mediump float;\n"
+				     "varying vec3 v_colour;\n"
+				     "uniform float u_share;\n"
+				     "void main() {\n"
+				     "	gl_FragColor = vec4(v_colour * (1.0 - u_share), 1.0);\n"
+				     "}\n";
+
+/* Per face five rows: right, up, forward (xyz, and minus their product with the point), the point
+ * and the blend's weight, and (half_px, 0, 0, 0). The quality is plan_quality's twin. */
+static const char blended_vertex[] =
+	"uniform vec4 u_face[20];\n"
+	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, 0 */
+	"uniform vec4 u_tune[2];\n" /* blur, parallax, angle, 0; facing low, 1 / (high - low) */
+	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
+	"float quality(vec3 p, vec3 n, vec3 s, float depth, float half_px) {\n"
+	"	float d = length(p);\n"
+	"	vec3 to_eye = -p / d, to_sample = normalize(s - p);\n"
+	"	float cs = dot(to_sample, n), ce = abs(dot(to_eye, n)), ca = dot(to_eye, to_sample);\n"
+	"	float facing = clamp((cs - u_tune[1].x) * u_tune[1].y, 0.0, 1.0);\n"
+	"	float needed = u_eye.x * depth / d * sqrt(max(ce, 0.05) / max(cs, 0.05));\n"
+	"	float blur = max(needed / half_px - 1.0, 0.0);\n"
+	"	float sine = sqrt(max(1.0 - ca * ca, 0.0));\n"
+	"	if (ca < 0.0) sine = 2.0 - sine;\n"
+	"	float shift = u_eye.y * u_eye.x / d * sine;\n"
+	"	float penalty = 1.0 + u_tune[0].x * blur + u_tune[0].y * shift\n"
+	"			+ u_tune[0].z * (1.0 - ca);\n"
+	"	return facing / (penalty * penalty);\n"
+	"}\n"
+	"vec4 seen(vec3 p, vec3 n, vec4 r, vec4 u, vec4 f, vec4 s, vec4 size) {\n"
+	"	if (s.w <= 0.0)\n"
+	"		return vec4(0.0, 0.0, 1.0, 0.0);\n"
+	"	vec3 q = vec3(dot(r.xyz, p) + r.w, dot(u.xyz, p) + u.w, dot(f.xyz, p) + f.w);\n"
+	"	float w = s.w;\n"
+	"	if (u_eye.z < 0.5) {\n"
+	"		float k = quality(p, n, s.xyz, max(q.z, 0.01), size.x);\n"
+	"		w *= k * k * k;\n"
+	"	}\n"
+	"	return vec4(q, w);\n"
+	"}\n"
+	"void main() {\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	vec3 n = unit_normal();\n"
+	"	v_colour = own_colour(n);\n"
+	"	v_face0 = seen(p, n, u_face[0], u_face[1], u_face[2], u_face[3], u_face[4]);\n"
+	"	v_face1 = seen(p, n, u_face[5], u_face[6], u_face[7], u_face[8], u_face[9]);\n"
+	"	v_face2 = seen(p, n, u_face[10], u_face[11], u_face[12], u_face[13], u_face[14]);\n"
+	"	v_face3 = seen(p, n, u_face[15], u_face[16], u_face[17], u_face[18], u_face[19]);\n"
+	"	gl_Position = u_clip * vec4(p, 1.0);\n"
+	"}\n";
+
+/* Constants that C and GLSL share come first, made by set_constants. */
+static const char blended_fragment[] =
+	"uniform sampler2D u_tiles, u_cells, u_depths;\n"
+	"uniform vec4 u_slot[4];\n" /* face slot's column and row, 0, 0 */
+	"uniform float u_share, u_far, u_slack;\n"
+	"varying vec3 v_colour;\n"
+	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
+	"vec4 from_face(vec4 face, vec2 slot) {\n"
+	"	if (face.w < 0.0005 || face.z < 0.05)\n"
+	"		return vec4(0.0);\n"
+	"	vec2 at = vec2(face.x, -face.y) / face.z * 0.5 + 0.5;\n"
+	"	if (at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0)\n"
+	"		return vec4(0.0);\n"
+	"	at = clamp(at, 0.0001, 0.9999);\n"
+	"	vec4 d = texture2D(u_depths, (slot + at) / DEPTH_GRID);\n"
+	"	float depth = (d.r * 256.0 + d.g) * 255.0 / 65535.0 * u_far;\n"
+	"	float slack = u_slack + 0.012 * face.z;\n"
+	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
+	"	w *= 0.25 + 0.75 * d.b;\n"
+	"	if (w < 0.0002)\n"
+	"		return vec4(0.0);\n"
+	"	vec4 cell = texture2D(u_cells, (slot + at) / CELL_GRID) * 255.0;\n"
+	"	vec2 local = fract(at * floor(cell.b + 0.5));\n"
+	"	vec2 pixel = floor(cell.rg + 0.5) * IMAGE_PX + APRON_PX + local * TILE_PX;\n"
+	"	w *= cell.a / 255.0;\n"
+	"	return vec4(texture2D(u_tiles, pixel / ATLAS_PX).rgb * w, w);\n"
+	"}\n"
+	"void main() {\n"
+	"	vec4 sum = from_face(v_face0, u_slot[0].xy);\n"
+	"	sum += from_face(v_face1, u_slot[1].xy);\n"
+	"	sum += from_face(v_face2, u_slot[2].xy);\n"
+	"	sum += from_face(v_face3, u_slot[3].xy);\n"
+	"	float own = OWN_WEIGHT;\n"
+	"	vec3 colour = (sum.rgb + own * v_colour) / (sum.a + own);\n"
+	"	float share = sum.a / (sum.a + own);\n"
+	"	gl_FragColor = vec4(mix(colour, vec3(share), u_share), 1.0);\n"
+	"}\n";
+
+static void find_uniforms(struct surface_program *p)
+{
+	p->clip = glGetUniformLocation(p->program, "u_clip");
+	p->lattice = glGetUniformLocation(p->program, "u_lattice");
+	p->sun = glGetUniformLocation(p->program, "u_sun");
+	p->eye = glGetUniformLocation(p->program, "u_eye");
+	p->face = glGetUniformLocation(p->program, "u_face");
+	p->slot = glGetUniformLocation(p->program, "u_slot");
+	p->tune = glGetUniformLocation(p->program, "u_tune");
+	p->share = glGetUniformLocation(p->program, "u_share");
+}
+
+static void set_constants(char *out, size_t bytes, int atlas_px)
+{
+	snprintf(out, bytes,
+		 "precision highp float;\n"
+		 "#define DEPTH_GRID vec2(%d.0, %d.0)\n"
+		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
+		 "#define IMAGE_PX %d.0\n"
+		 "#define APRON_PX %d.0\n"
+		 "#define TILE_PX %d.0\n"
+		 "#define ATLAS_PX %d.0\n"
+		 "#define OWN_WEIGHT 0.004\n",
+		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, TILES_FACES_ACROSS,
+		 TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX,
+		 SAMPLE_TILE_PX, atlas_px);
+}
+
+int surface_init(struct surface *surface, int atlas_px)
+{
+	memset(surface, 0, sizeof(*surface));
+	char constants[512];
+	set_constants(constants, sizeof(constants), atlas_px);
+	const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
+	const struct gl_program_source plain = {
+		.name = "patches",
+		.vertex = (const char *const[]){ light_glsl, vertex_common, plain_vertex, NULL },
+		.fragment = (const char *const[]){ plain_fragment, NULL },
+		.attributes = attributes,
+	};
+	const struct gl_program_source blended = {
+		.name = "lumigraph",
+		.vertex = (const char *const[]){ light_glsl, vertex_common, blended_vertex, NULL },
+		.fragment = (const char *const[]){ constants, blended_fragment, NULL },
+		.attributes = attributes,
+	};
+	int rc = gl_program_build(&surface->plain.program, &plain);
+	if (rc == 0)
+		rc = gl_program_build(&surface->blended.program, &blended);
+	if (rc < 0) {
+		surface_finish(surface);
+		return rc;
+	}
+	find_uniforms(&surface->plain);
+	find_uniforms(&surface->blended);
+	glUseProgram(surface->blended.program);
+	glUniform1i(glGetUniformLocation(surface->blended.program, "u_tiles"), 0);
+	glUniform1i(glGetUniformLocation(surface->blended.program, "u_cells"), 1);
+	glUniform1i(glGetUniformLocation(surface->blended.program, "u_depths"), 2);
+	surface->far_m = glGetUniformLocation(surface->blended.program, "u_far");
+	surface->slack = glGetUniformLocation(surface->blended.program, "u_slack");
+	return 0;
+}
+
+void surface_finish(struct surface *surface)
+{
+	if (surface->plain.program)
+		glDeleteProgram(surface->plain.program);
+	if (surface->blended.program)
+		glDeleteProgram(surface->blended.program);
+	memset(surface, 0, sizeof(*surface));
+}
+
+static const struct surface_program *program_of(const struct surface *surface,
+						const struct surface_frame *frame)
+{
+	return frame->tiles ? &surface->blended : &surface->plain;
+}
+
+void surface_begin(const struct surface *surface, const struct surface_frame *frame)
+{
+	const struct surface_program *p = program_of(surface, frame);
+	const struct lattice *lattice = &frame->root->lattice;
+	const float *eye = frame->view->eye_m, *sun = frame->root->sun;
+	glUseProgram(p->program);
+	glUniformMatrix4fv(p->clip, 1, GL_FALSE, frame->view->clip);
+	glUniform4f(p->lattice, (float)(lattice->origin_m[0] - eye[0]),
+		    (float)(lattice->origin_m[1] - eye[1]), (float)(lattice->origin_m[2] - eye[2]),
+		    (float)lattice->step_m);
+	glUniform4f(p->sun, sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
+	glUniform1f(p->share, frame->shares ? 1 : 0);
+	for (GLuint i = 0; i < 3; i++)
+		glEnableVertexAttribArray(i);
+	if (!frame->tiles)
+		return;
+	const struct plan_tuning *t = &plan_tuning;
+	const float tune[8] = { t->blur,
+				t->parallax,
+				t->angle,
+				0,
+				t->facing_low,
+				1 / (t->facing_high - t->facing_low),
+				0,
+				0 };
+	glUniform4fv(p->tune, 2, tune);
+	glUniform1f(surface->far_m, frame->depth->far_limit_m);
+	gl_bind_texture(0, frame->tiles->atlas);
+	gl_bind_texture(1, frame->tiles->indirection);
+	gl_bind_texture(2, frame->depth->atlas);
+}
+
+static void set_face(float rows[20], const struct repository *repository, const struct blend *blend,
+		     const float eye_m[3])
+{
+	const struct cube_axes *axes = &cube_axes[blend->face % CUBE_FACES];
+	const float *axis[3] = { axes->right, axes->up, axes->forward };
+	float sample[3];
+	repository_point_m(repository, blend->face / CUBE_FACES, sample);
+	for (int i = 0; i < 3; i++)
+		sample[i] -= eye_m[i];
+	for (int r = 0; r < 3; r++) {
+		for (int i = 0; i < 3; i++) {
+			rows[4 * r + i] = axis[r][i];
+			rows[4 * r + 3] -= axis[r][i] * sample[i];
+		}
+	}
+	for (int i = 0; i < 3; i++)
+		rows[12 + i] = sample[i];
+	rows[15] = blend->weight;
+	rows[16] = blend->half_px;
+}
+
+void surface_blend(const struct surface *surface, const struct surface_frame *frame,
+		   const struct repository *repository, const struct blend *blend, float error_m)
+{
+	const struct surface_program *p = &surface->blended;
+	if (!frame->tiles)
+		return;
+	float rows[20 * PLAN_ENTRIES] = { 0 }, slots[4 * PLAN_ENTRIES] = { 0 };
+	for (int i = 0; i < PLAN_ENTRIES; i++) {
+		int slot = blend[i].weight > 0 ? tiles_face_slot(frame->tiles, blend[i].face) : -1;
+		if (slot < 0 || !depth_ready(frame->depth, slot, blend[i].face))
+			continue;
+		set_face(&rows[20 * i], repository, &blend[i], frame->view->eye_m);
+		slots[4 * i] = (float)(slot % TILES_FACES_ACROSS);
+		slots[4 * i + 1] = (float)(slot / TILES_FACES_ACROSS);
+	}
+	glUniform4fv(p->face, 5 * PLAN_ENTRIES, rows);
+	glUniform4fv(p->slot, PLAN_ENTRIES, slots);
+	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0, 0);
+	glUniform1f(surface->slack, 0.02f + 2 * error_m);
+}
