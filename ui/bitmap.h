@@ -7,6 +7,7 @@
 #include <cairo.h>
 
 #include "base/compiler.h"
+#include "format/picture.h"
 
 struct bitmap {
 	int width_px, height_px, stride_bytes;
@@ -22,5 +23,10 @@ void bitmap_finish(struct bitmap *bitmap); /* NULL and zeroed are fine */
 /* A context on it that starts transparent; destroy it with bitmap_end before reading pixels. */
 cairo_t *bitmap_begin(struct bitmap *bitmap);
 void bitmap_end(struct bitmap *bitmap, cairo_t *context);
+
+/* The picture scaled to exactly that size; where the proportions differ, its middle is kept and
+ * the rest cut off. As bitmap_init. */
+must_check int bitmap_from_picture(struct bitmap *out, const struct picture *picture, int width_px,
+				   int height_px);
 
 #endif

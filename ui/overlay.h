@@ -13,8 +13,8 @@
 #include <stdint.h>
 
 #include "base/bytes.h"
-#include "format/picture.h"
 #include "ui/bitmap.h"
+#include "ui/source.h"
 
 enum {
 	OVERLAY_PARTS_MOST = 1000,
@@ -27,12 +27,6 @@ struct overlay_rect {
 	int x_px, y_px, width_px, height_px;
 };
 
-struct overlay_picture {
-	const struct picture
-		*picture; /* borrowed until the callback is called again; NULL: not yet */
-	uint32_t width_px, height_px; /* when known before it arrives, so that text does not jump */
-};
-
 struct overlay_options {
 	int width_px, height_px;      /* of the panel; 320 .. 8192 */
 	float px_per_mm;              /* of the panel; 0: guessed from its size */
@@ -40,7 +34,7 @@ struct overlay_options {
 	uint32_t language_count;
 	/* A picture by the name that a page or thumbnail gives ("pictures/gate.jpg"). false: there
 	 * is none of that name. Asking is wanting: the app fetches it and calls
-	 * overlay_picture_arrived. */
+	 * overlay_picture_arrived. NULL: no pictures. */
 	bool (*picture)(void *data, const char *name, struct overlay_picture *out);
 	void *data;
 };

@@ -1,0 +1,497 @@
+#include "ui/article.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ui/bitmap.h"
+
+/* Millimetres. */
+#define SIDE_MARGIN_MM    8.0f
+#define TOP_MARGIN_MM     3.0f
+#define BOTTOM_MARGIN_MM  14.0f
+#define MEASURE_EMS       34 /* the longest line, in sizes of the body's type */
+#define INDENT_MM         6.0f
+#define QUOTE_MM          6.0f
+#define CELL_PADDING_MM   1.6f
+#define LINK_TOLERANCE_MM 3.5f
+
+struct item {
+	const struct html_block *block;
+	int x_px, y_px, width_px, height_px;
+	PangoLayout *layout, *marker; /* owned or NULL */
+	struct bitmap picture;        /* scaled; empty: not here yet */
+};
+
+struct link_area {
+	float x_px, y_px, width_px, height_px;
+	int link;
+};
+
+struct article {
+	struct article_options options;
+	struct html html;
+	struct item *items; /* as many as blocks */
+	struct link_area *links;
+	uint32_t link_count;
+	int left_px, column_px; /* of the text */
+	int height_px;
+};
+
+/* ---- text with its looks ---- */
+
+static void add_attribute(PangoAttrList *list, PangoAttribute *attribute,
+			  const struct html_span *span)
+{
+	attribute->start_index = span->start;
+	attribute->end_index = span->end;
+	pango_attr_list_insert(list, attribute);
+}
+
+static void add_span(PangoAttrList *list, const struct html_span *span, bool italics)
+{
+	if (span->flags & HTML_EMPHASIS)
+		add_attribute(list,
+			      italics ? pango_attr_style_new(PANGO_STYLE_ITALIC)
+				      : pango_attr_weight_new(PANGO_WEIGHT_MEDIUM),
+			      span);
+	if (span->flags & HTML_STRONG)
+		add_attribute(list, pango_attr_weight_new(PANGO_WEIGHT_BOLD), span);
+	if (span->flags & (HTML_SMALL | HTML_SUBSCRIPT | HTML_SUPERSCRIPT))
+		add_attribute(list, pango_attr_scale_new(PANGO_SCALE_SMALL), span);
+	if (span->flags & HTML_SUBSCRIPT)
+		add_attribute(list, pango_attr_baseline_shift_new(PANGO_BASELINE_SHIFT_SUBSCRIPT),
+			      span);
+	if (span->flags & HTML_SUPERSCRIPT)
+		add_attribute(list, pango_attr_baseline_shift_new(PANGO_BASELINE_SHIFT_SUPERSCRIPT),
+			      span);
+	if (span->link >= 0) {
+		add_attribute(list,
+			      pango_attr_foreground_new((guint16)(theme_accent.red * 65535),
+							(guint16)(theme_accent.green * 65535),
+							(guint16)(theme_accent.blue * 65535)),
+			      span);
+		add_attribute(list, pango_attr_underline_new(PANGO_UNDERLINE_SINGLE), span);
+	}
+}
+
+static PangoLayout *make_layout(const struct article *article, const struct html_block *block,
+				int width_px)
+{
+	PangoLayout *layout =
+		theme_layout(article->options.theme, block->style, block->text, width_px);
+	PangoAttrList *list = pango_attr_list_new();
+
+	for (uint32_t i = 0; i < block->span_count; i++)
+		add_span(list, &block->spans[i], theme_has_italics(article->options.theme));
+	pango_layout_set_attributes(layout, list);
+	pango_attr_list_unref(list);
+	return layout;
+}
+
+/* ---- layout ---- */
+
+static int px(const struct article *article, float mm)
+{
+	return theme_px(article->options.theme, mm);
+}
+
+static float space_before_mm(const struct html_block *block, const struct html_block *above)
+{
+	if (!above)
+		return TOP_MARGIN_MM;
+	if (block->kind != HTML_TEXT)
+		return 4.0f;
+	switch (block->style) {
+	case TEXT_HEADING_1:
+		return 7.0f;
+	case TEXT_HEADING_2:
+		return 7.0f;
+	case TEXT_HEADING_3:
+		return 5.5f;
+	case TEXT_FIGURE:
+		return above->kind == HTML_IMAGE ? 1.4f : 3.0f;
+	default:
+		return block->marker && above->indent ? 1.6f : 3.2f;
+	}
+}
+
+/* Its proportions from the picture, from what is known of it, or a guess. */
+static void measure_picture(struct article *article, struct item *item)
+{
+	struct overlay_picture found = { 0 };
+	double width = 4, height = 3;
+	int most_px = article->options.view_px * 3 / 4;
+
+	if (!article->options.pictures.get ||
+	    !article->options.pictures.get(article->options.pictures.data, item->block->text,
+					   &found))
+		found = (struct overlay_picture){ 0 };
+	if (found.picture) {
+		width = found.picture->width;
+		height = found.picture->height;
+	} else if (found.width_px > 0 && found.height_px > 0) {
+		width = found.width_px;
+		height = found.height_px;
+	}
+	item->height_px = (int)lround(item->width_px * height / width);
+	if (item->height_px > most_px) {
+		int narrower = (int)lround(most_px * width / height);
+
+		item->height_px = most_px;
+		item->x_px += (item->width_px - narrower) / 2;
+		item->width_px = narrower;
+	}
+	if (item->height_px < 1)
+		item->height_px = 1;
+	if (item->width_px < 1)
+		item->width_px = 1;
+	if (item->picture.surface && item->picture.width_px == item->width_px &&
+	    item->picture.height_px == item->height_px)
+		return; /* scaled already */
+	bitmap_finish(&item->picture);
+	/* Without memory for it the place stays empty; the text can be read all the same. */
+	if (found.picture &&
+	    bitmap_from_picture(&item->picture, found.picture, item->width_px, item->height_px) < 0)
+		bitmap_finish(&item->picture);
+}
+
+static void place_item(struct article *article, struct item *item, int x_px, int y_px, int width_px)
+{
+	const struct html_block *block = item->block;
+	int indent_px = (int)block->indent * px(article, INDENT_MM) +
+			(block->quote ? px(article, QUOTE_MM) : 0);
+
+	if (indent_px > width_px / 2) /* however deep the lists: half the line stays */
+		indent_px = width_px / 2;
+	item->x_px = x_px + indent_px;
+	item->y_px = y_px;
+	item->width_px = width_px - indent_px > 1 ? width_px - indent_px : 1;
+	switch (block->kind) {
+	case HTML_RULE:
+		item->height_px = px(article, 0.4f);
+		break;
+	case HTML_IMAGE:
+		measure_picture(article, item);
+		break;
+	case HTML_TEXT:
+		if (!item->layout)
+			item->layout = make_layout(article, block, item->width_px);
+		pango_layout_get_pixel_size(item->layout, NULL, &item->height_px);
+		if (block->marker && !item->marker)
+			item->marker = theme_layout(article->options.theme, block->style,
+						    block->marker, -1);
+	}
+}
+
+/* The blocks of one row of a table, from first on; returns how many. *y_px moves below it. */
+static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
+{
+	const struct html_block *blocks = article->html.blocks;
+	uint32_t count = 0, columns = blocks[first].column_count ? blocks[first].column_count : 1;
+	int padding_px = px(article, CELL_PADDING_MM), lowest_px = *y_px, below_px = 0;
+
+	while (first + count < article->html.block_count &&
+	       blocks[first + count].row == blocks[first].row) {
+		struct item *item = &article->items[first + count];
+		uint32_t column = item->block->column < columns ? item->block->column : columns - 1;
+		int left_px = article->column_px * (int)column / (int)columns;
+		int right_px = article->column_px * (int)(column + 1) / (int)columns;
+
+		if (count == 0 || blocks[first + count - 1].column != item->block->column)
+			below_px = *y_px;
+		place_item(article, item, article->left_px + left_px, below_px + padding_px,
+			   right_px - left_px - 2 * padding_px > 1
+				   ? right_px - left_px - 2 * padding_px
+				   : 1);
+		below_px = item->y_px + item->height_px;
+		if (below_px + padding_px > lowest_px)
+			lowest_px = below_px + padding_px;
+		count++;
+	}
+	*y_px = lowest_px;
+	return count;
+}
+
+static int add_link_area(struct article *article, struct link_area area)
+{
+	struct link_area *grown = article->links;
+
+	if ((article->link_count & (article->link_count - 1)) == 0)
+		grown = realloc(grown, (article->link_count ? 2 * (size_t)article->link_count : 1) *
+					       sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	article->links = grown;
+	grown[article->link_count++] = area;
+	return 0;
+}
+
+/* A rectangle for each line that the link touches. */
+static int find_link_areas(struct article *article, const struct item *item,
+			   const struct html_span *span)
+{
+	PangoLayoutIter *iter = pango_layout_get_iter(item->layout);
+	int rc = 0;
+
+	do {
+		PangoLayoutLine *line = pango_layout_iter_get_line_readonly(iter);
+		int top, bottom, count = 0, *ranges = NULL;
+
+		if ((int)span->end <= line->start_index ||
+		    (int)span->start >= line->start_index + line->length)
+			continue;
+		pango_layout_iter_get_line_yrange(iter, &top, &bottom);
+		pango_layout_line_get_x_ranges(line, (int)span->start, (int)span->end, &ranges,
+					       &count);
+		for (int i = 0; i < count && rc == 0; i++)
+			rc = add_link_area(
+				article,
+				(struct link_area){
+					(float)item->x_px + (float)ranges[2 * i] / PANGO_SCALE,
+					(float)item->y_px + (float)top / PANGO_SCALE,
+					(float)(ranges[2 * i + 1] - ranges[2 * i]) / PANGO_SCALE,
+					(float)(bottom - top) / PANGO_SCALE, span->link });
+		g_free(ranges);
+	} while (rc == 0 && pango_layout_iter_next_line(iter));
+	pango_layout_iter_free(iter);
+	return rc;
+}
+
+static int find_links(struct article *article)
+{
+	int rc = 0;
+
+	article->link_count = 0;
+	for (uint32_t i = 0; i < article->html.block_count; i++) {
+		const struct item *item = &article->items[i];
+
+		for (uint32_t k = 0; item->layout && k < item->block->span_count && rc == 0; k++)
+			if (item->block->spans[k].link >= 0)
+				rc = find_link_areas(article, item, &item->block->spans[k]);
+	}
+	return rc;
+}
+
+static int lay_out(struct article *article)
+{
+	const struct html *html = &article->html;
+	uint32_t i = 0;
+	int y_px = 0;
+
+	while (i < html->block_count) {
+		const struct html_block *block = &html->blocks[i];
+		const struct html_block *above = i > 0 ? &html->blocks[i - 1] : NULL;
+		struct item *item = &article->items[i];
+
+		/* Rows of one table stand close. */
+		if (!block->row || !above || !above->row)
+			y_px += px(article, space_before_mm(block, above));
+		if (block->row) {
+			i += place_row(article, i, &y_px);
+			continue;
+		}
+		place_item(article, item, article->left_px, y_px, article->column_px);
+		y_px += item->height_px;
+		i++;
+	}
+	article->height_px = y_px + px(article, BOTTOM_MARGIN_MM);
+	return find_links(article);
+}
+
+int article_create(struct article **out, const struct article_options *options, struct bytes html)
+{
+	struct article *article = calloc(1, sizeof(*article));
+	int measure_px, rc;
+
+	*out = NULL;
+	if (!article)
+		return -ENOMEM;
+	article->options = *options;
+	measure_px = MEASURE_EMS * theme_style_px(options->theme, TEXT_BODY);
+	article->column_px = options->width_px - 2 * px(article, SIDE_MARGIN_MM);
+	if (article->column_px > measure_px)
+		article->column_px = measure_px;
+	if (article->column_px < 1)
+		article->column_px = 1;
+	article->left_px = (options->width_px - article->column_px) / 2;
+	rc = html_parse(&article->html, html);
+	if (rc == 0) {
+		article->items = calloc(article->html.block_count, sizeof(*article->items));
+		rc = article->items ? 0 : -ENOMEM;
+	}
+	for (uint32_t i = 0; rc == 0 && i < article->html.block_count; i++)
+		article->items[i].block = &article->html.blocks[i];
+	if (rc == 0)
+		rc = lay_out(article);
+	if (rc < 0) {
+		article_destroy(article);
+		return rc;
+	}
+	*out = article;
+	return 0;
+}
+
+void article_destroy(struct article *article)
+{
+	if (!article)
+		return;
+	for (uint32_t i = 0; article->items && i < article->html.block_count; i++) {
+		if (article->items[i].layout)
+			g_object_unref(article->items[i].layout);
+		if (article->items[i].marker)
+			g_object_unref(article->items[i].marker);
+		bitmap_finish(&article->items[i].picture);
+	}
+	free(article->items);
+	free(article->links);
+	html_finish(&article->html);
+	free(article);
+}
+
+/* ---- what is asked ---- */
+
+int article_height_px(const struct article *article)
+{
+	return article->height_px;
+}
+
+static void draw_picture(const struct item *item, cairo_t *context)
+{
+	if (item->picture.surface) {
+		cairo_set_source_surface(context, item->picture.surface, item->x_px, item->y_px);
+		cairo_paint(context);
+		return;
+	}
+	cairo_rectangle(context, item->x_px, item->y_px, item->width_px, item->height_px);
+	theme_set_source(context, theme_paper_shade, 1);
+	cairo_fill(context);
+}
+
+static struct colour colour_of(enum text_style style)
+{
+	return style == TEXT_FIGURE || style == TEXT_QUOTE ? theme_ink_soft : theme_ink;
+}
+
+static void draw_quote_bar(const struct article *article, const struct item *item, cairo_t *context)
+{
+	int x_px = item->x_px - px(article, QUOTE_MM) + px(article, 1.0f);
+
+	cairo_rectangle(context, x_px, item->y_px, px(article, 0.8f), item->height_px);
+	theme_set_source(context, theme_accent, 0.55);
+	cairo_fill(context);
+}
+
+static void draw_item(const struct article *article, const struct item *item, cairo_t *context)
+{
+	if (item->block->kind == HTML_RULE) {
+		cairo_rectangle(context, item->x_px, item->y_px, item->width_px, item->height_px);
+		theme_set_source(context, theme_line, 1);
+		cairo_fill(context);
+		return;
+	}
+	if (item->block->kind == HTML_IMAGE) {
+		draw_picture(item, context);
+		return;
+	}
+	if (item->block->quote)
+		draw_quote_bar(article, item, context);
+	theme_set_source(context, colour_of(item->block->style), 1);
+	cairo_move_to(context, item->x_px, item->y_px);
+	pango_cairo_show_layout(context, item->layout);
+	if (item->marker) {
+		int width_px;
+
+		pango_layout_get_pixel_size(item->marker, &width_px, NULL);
+		theme_set_source(context, theme_accent, 1);
+		cairo_move_to(context, item->x_px - width_px - px(article, 1.8f), item->y_px);
+		pango_cairo_show_layout(context, item->marker);
+	}
+}
+
+/* A hairline below each row of a table. */
+static void draw_row_line(const struct article *article, uint32_t i, cairo_t *context)
+{
+	const struct html *html = &article->html;
+	uint32_t row = html->blocks[i].row;
+	int lowest_px = 0;
+
+	if (!row || (i + 1 < html->block_count && html->blocks[i + 1].row == row))
+		return;
+	for (uint32_t k = i + 1; k-- > 0 && html->blocks[k].row == row;)
+		if (article->items[k].y_px + article->items[k].height_px > lowest_px)
+			lowest_px = article->items[k].y_px + article->items[k].height_px;
+	cairo_rectangle(context, article->left_px, lowest_px + px(article, CELL_PADDING_MM) - 1,
+			article->column_px, 1);
+	theme_set_source(context, theme_line, 1);
+	cairo_fill(context);
+}
+
+void article_draw(const struct article *article, cairo_t *context, int top_px, int height_px)
+{
+	int slack_px = px(article, 4.0f); /* swashes and marks reach out of their boxes */
+
+	cairo_save(context);
+	theme_set_source(context, theme_paper, 1);
+	cairo_paint(context);
+	cairo_translate(context, 0, -top_px);
+	for (uint32_t i = 0; i < article->html.block_count; i++) {
+		const struct item *item = &article->items[i];
+
+		if (item->y_px - slack_px >= top_px + height_px ||
+		    item->y_px + item->height_px + slack_px <= top_px)
+			continue;
+		draw_item(article, item, context);
+		draw_row_line(article, i, context);
+	}
+	cairo_restore(context);
+}
+
+static float outside(float at, float low, float size)
+{
+	return at < low ? low - at : at > low + size ? at - low - size : 0;
+}
+
+const char *article_link_at(const struct article *article, float x_px, float y_px)
+{
+	float nearest_px = LINK_TOLERANCE_MM * article->options.theme->px_per_mm;
+	const char *found = NULL;
+
+	for (uint32_t i = 0; i < article->link_count; i++) {
+		const struct link_area *area = &article->links[i];
+		float distance_px = hypotf(outside(x_px, area->x_px, area->width_px),
+					   outside(y_px, area->y_px, area->height_px));
+
+		if (distance_px <= nearest_px) {
+			found = article->html.links[area->link];
+			nearest_px = distance_px;
+		}
+	}
+	return found;
+}
+
+int article_picture_arrived(struct article *article, const char *name)
+{
+	for (uint32_t i = 0; i < article->html.block_count; i++) {
+		const struct item *item = &article->items[i];
+
+		if (item->block->kind != HTML_IMAGE || strcmp(item->block->text, name) != 0)
+			continue;
+		/* Fails for memory only, and then without links; the text stays. */
+		if (lay_out(article) < 0)
+			article->link_count = 0;
+		return item->y_px;
+	}
+	return -1;
+}
+
+int article_unknown_glyphs(const struct article *article)
+{
+	int count = 0;
+
+	for (uint32_t i = 0; i < article->html.block_count; i++)
+		if (article->items[i].layout)
+			count += pango_layout_get_unknown_glyphs_count(article->items[i].layout);
+	return count;
+}

@@ -1,0 +1,302 @@
+#include "ui/callout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct candidate {
+	uint32_t part;
+	int64_t rank; /* smaller stays */
+	int order;    /* place in the column of the frame before, or -1 */
+	float x_px, y_px;
+	int label_px;
+};
+
+struct column {
+	struct candidate list[CALLOUTS_A_SIDE];
+	uint32_t count;
+	int centre_px[CALLOUTS_A_SIDE]; /* of the labels */
+	bool left;
+};
+
+struct layout {
+	const struct callout_area *area;
+	const struct callout_anchor *anchors;
+	uint32_t anchor_count;
+	const struct callouts *before;
+	float left_port_px, right_port_px;
+	bool strict; /* sides by the middle alone */
+};
+
+static double side_of(double ax, double ay, double bx, double by, double cx, double cy)
+{
+	return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+}
+
+bool callouts_cross(const struct callout *a, const struct callout *b)
+{
+	double c = side_of(a->port_x_px, a->port_y_px, a->anchor_x_px, a->anchor_y_px, b->port_x_px,
+			   b->port_y_px);
+	double d = side_of(a->port_x_px, a->port_y_px, a->anchor_x_px, a->anchor_y_px,
+			   b->anchor_x_px, b->anchor_y_px);
+	double e = side_of(b->port_x_px, b->port_y_px, b->anchor_x_px, b->anchor_y_px, a->port_x_px,
+			   a->port_y_px);
+	double f = side_of(b->port_x_px, b->port_y_px, b->anchor_x_px, b->anchor_y_px,
+			   a->anchor_x_px, a->anchor_y_px);
+
+	return c * d < 0 && e * f < 0;
+}
+
+/* ---- who stands where ---- */
+
+static const struct callout *find_before(const struct layout *layout, uint32_t part, int *order)
+{
+	for (uint32_t i = 0; i < layout->before->count; i++) {
+		if (layout->before->list[i].part == part) {
+			*order = (int)i;
+			return &layout->before->list[i];
+		}
+	}
+	*order = -1;
+	return NULL;
+}
+
+static bool is_eligible(const struct layout *layout, const struct callout_anchor *anchor)
+{
+	const struct callout_area *area = layout->area;
+
+	return anchor->visible && anchor->label_px > 0 && anchor->label_px <= area->column_px &&
+	       anchor->x_px >= layout->left_port_px + (float)area->lead_px &&
+	       anchor->x_px <= layout->right_port_px - (float)area->lead_px &&
+	       anchor->y_px >= (float)area->y_px &&
+	       anchor->y_px <= (float)(area->y_px + area->height_px);
+}
+
+/* A label that is there keeps its side while its anchor wanders a little past the middle. */
+static bool goes_left(const struct layout *layout, const struct callout *before, float x_px)
+{
+	float middle = (layout->left_port_px + layout->right_port_px) / 2;
+	float band = 0.05f * (layout->right_port_px - layout->left_port_px);
+
+	if (before && !layout->strict)
+		return before->left ? x_px < middle + band : x_px < middle - band;
+	return x_px < middle;
+}
+
+static uint32_t capacity(const struct callout_area *area)
+{
+	int rows = (area->height_px + area->gap_px) / (area->row_px + area->gap_px);
+
+	if (rows < 0)
+		rows = 0;
+	return rows < CALLOUTS_A_SIDE ? (uint32_t)rows : CALLOUTS_A_SIDE;
+}
+
+/* Keeps the `most` best ranked, unordered. */
+static void offer(struct column *column, uint32_t most, struct candidate candidate)
+{
+	uint32_t worst = 0;
+
+	if (column->count < most) {
+		column->list[column->count++] = candidate;
+		return;
+	}
+	for (uint32_t i = 1; i < column->count; i++)
+		if (column->list[i].rank > column->list[worst].rank)
+			worst = i;
+	if (most > 0 && candidate.rank < column->list[worst].rank)
+		column->list[worst] = candidate;
+}
+
+static void choose(const struct layout *layout, struct column *left, struct column *right)
+{
+	uint32_t most = capacity(layout->area);
+
+	for (uint32_t i = 0; i < layout->anchor_count; i++) {
+		const struct callout_anchor *anchor = &layout->anchors[i];
+		const struct callout *before;
+		struct candidate candidate = { .part = i,
+					       .x_px = anchor->x_px,
+					       .y_px = anchor->y_px,
+					       .label_px = anchor->label_px };
+
+		if (!is_eligible(layout, anchor))
+			continue;
+		before = find_before(layout, i, &candidate.order);
+		/* Whoever is shown stays, unless someone much more important comes. */
+		candidate.rank = 4 * (int64_t)i - (before ? layout->anchor_count : 0);
+		offer(goes_left(layout, before, anchor->x_px) ? left : right, most, candidate);
+	}
+}
+
+static void swap(struct column *column, uint32_t a, uint32_t b)
+{
+	struct candidate candidate = column->list[a];
+
+	column->list[a] = column->list[b];
+	column->list[b] = candidate;
+}
+
+static int by_height(const void *a, const void *b)
+{
+	const struct candidate *left = a, *right = b;
+
+	if (left->y_px != right->y_px)
+		return left->y_px < right->y_px ? -1 : 1;
+	return left->part < right->part ? -1 : 1;
+}
+
+/* By height, except that those of the frame before keep their order among themselves. */
+static void sort(struct column *column)
+{
+	qsort(column->list, column->count, sizeof(column->list[0]), by_height);
+	for (uint32_t i = 1; i < column->count; i++) {
+		if (column->list[i].order < 0)
+			continue;
+		/* Insertion sort on the old ones only; new ones stay where their height is. */
+		for (uint32_t at = i; at > 0;) {
+			uint32_t above = at - 1;
+
+			while (above > 0 && column->list[above].order < 0)
+				above--;
+			if (column->list[above].order < 0 ||
+			    column->list[above].order < column->list[at].order)
+				break;
+			swap(column, above, at);
+			at = above;
+		}
+	}
+}
+
+/* ---- heights ---- */
+
+/* Pooling adjacent violators: pools of labels that touch, each at the mean of what they want. */
+static void settle(const struct layout *layout, struct column *column)
+{
+	const struct callout_area *area = layout->area;
+	int pitch = area->row_px + area->gap_px;
+	float low = (float)area->y_px + (float)area->row_px / 2;
+	float high = (float)(area->y_px + area->height_px) - (float)area->row_px / 2 -
+		     (float)(((int)column->count - 1) * pitch);
+	float mean[CALLOUTS_A_SIDE];
+	uint32_t size[CALLOUTS_A_SIDE], pools = 0, at = 0;
+
+	for (uint32_t i = 0; i < column->count; i++) {
+		mean[pools] = column->list[i].y_px - (float)((int)i * pitch);
+		size[pools++] = 1;
+		while (pools > 1 && mean[pools - 2] > mean[pools - 1]) {
+			uint32_t both = size[pools - 2] + size[pools - 1];
+
+			mean[pools - 2] = (mean[pools - 2] * (float)size[pools - 2] +
+					   mean[pools - 1] * (float)size[pools - 1]) /
+					  (float)both;
+			size[--pools - 1] = both;
+		}
+	}
+	for (uint32_t p = 0; p < pools; p++) {
+		float base = fminf(fmaxf(mean[p], low), fmaxf(high, low));
+
+		for (uint32_t k = 0; k < size[p]; k++, at++)
+			column->centre_px[at] = (int)floorf(base) + (int)at * pitch;
+	}
+}
+
+static struct callout place(const struct layout *layout, const struct column *column, uint32_t i)
+{
+	const struct candidate *candidate = &column->list[i];
+	struct callout out = { .part = candidate->part,
+			       .left = column->left,
+			       .width_px = candidate->label_px,
+			       .anchor_x_px = candidate->x_px,
+			       .anchor_y_px = candidate->y_px };
+
+	out.y_px = column->centre_px[i] - layout->area->row_px / 2;
+	out.port_x_px = column->left ? layout->left_port_px : layout->right_port_px;
+	out.port_y_px = (float)out.y_px + (float)layout->area->row_px / 2;
+	out.x_px = (int)out.port_x_px - (column->left ? candidate->label_px : 0);
+	return out;
+}
+
+static bool find_crossing(const struct layout *layout, const struct column *column, uint32_t *a,
+			  uint32_t *b)
+{
+	for (uint32_t i = 0; i < column->count; i++) {
+		struct callout upper = place(layout, column, i);
+
+		for (uint32_t k = i + 1; k < column->count; k++) {
+			struct callout lower = place(layout, column, k);
+
+			if (callouts_cross(&upper, &lower)) {
+				*a = i;
+				*b = k;
+				return true;
+			}
+		}
+	}
+	return false;
+}
+
+/* Heights move with the order, so that the proof of termination for given places does not hold to
+ * the letter; the bound does, and past it the less important of two goes. */
+static void uncross(const struct layout *layout, struct column *column)
+{
+	uint32_t tries = column->count * column->count, a, b;
+
+	settle(layout, column);
+	while (find_crossing(layout, column, &a, &b)) {
+		if (tries > 0) {
+			tries--;
+			swap(column, a, b);
+		} else {
+			uint32_t gone = column->list[a].rank > column->list[b].rank ? a : b;
+
+			column->count--;
+			memmove(&column->list[gone], &column->list[gone + 1],
+				(column->count - gone) * sizeof(column->list[0]));
+		}
+		settle(layout, column);
+	}
+}
+
+static void lay_out(const struct layout *layout, struct callouts *out)
+{
+	struct column columns[2] = { { .left = true }, { .left = false } };
+
+	choose(layout, &columns[0], &columns[1]);
+	out->count = 0;
+	for (int side = 0; side < 2; side++) {
+		sort(&columns[side]);
+		uncross(layout, &columns[side]);
+		for (uint32_t i = 0; i < columns[side].count; i++)
+			out->list[out->count++] = place(layout, &columns[side], i);
+	}
+}
+
+static bool sides_cross(const struct callouts *callouts)
+{
+	for (uint32_t i = 0; i < callouts->count; i++)
+		for (uint32_t k = i + 1; k < callouts->count; k++)
+			if (callouts->list[i].left != callouts->list[k].left &&
+			    callouts_cross(&callouts->list[i], &callouts->list[k]))
+				return true;
+	return false;
+}
+
+void callouts_layout(struct callouts *callouts, const struct callout_area *area,
+		     const struct callout_anchor *anchors, uint32_t count)
+{
+	struct layout layout = {
+		.area = area, .anchors = anchors, .anchor_count = count, .before = callouts
+	};
+	struct callouts out;
+
+	layout.left_port_px = (float)(area->x_px + area->column_px);
+	layout.right_port_px = (float)(area->x_px + area->width_px - area->column_px);
+	lay_out(&layout, &out);
+	if (sides_cross(&out)) {
+		/* Each side of the middle keeps to itself: nothing can cross. */
+		layout.strict = true;
+		lay_out(&layout, &out);
+	}
+	*callouts = out;
+}

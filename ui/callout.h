@@ -1,0 +1,55 @@
+/* Where callouts go: pure geometry, no text, no drawing.
+ *
+ * Labels stand in two columns, left and right of the model, with all leader ends of a column on
+ * one vertical line; anchors between the two lines only. So no leader can run over a label. A
+ * column's labels are ordered; their heights are the least-squares answer to "as near to your
+ * anchor as you can without touching a neighbour" (isotonic regression by pooling adjacent
+ * violators), which never moves further than the anchors moved. Where two leaders of a column
+ * cross, the two labels change places (for given places that shortens the leaders, so it ends);
+ * side and order of the frame before are kept as long as nothing crosses.
+ *
+ * Boundary labelling after Bekos et al. 2007, one-sided straight leaders, twice. */
+#ifndef GOPURA_UI_CALLOUT_H
+#define GOPURA_UI_CALLOUT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { CALLOUTS_A_SIDE = 14, CALLOUTS_MOST = 2 * CALLOUTS_A_SIDE };
+
+struct callout_area {
+	int x_px, y_px, width_px, height_px; /* labels stay inside */
+	int column_px;                       /* width of a column; no label is wider */
+	int row_px, gap_px;                  /* height of every label; between two */
+	int lead_px;                         /* shortest horizontal run of a leader */
+};
+
+struct callout_anchor {
+	float x_px, y_px;
+	bool visible;
+	int label_px; /* width of its label */
+};
+
+struct callout {
+	uint32_t part; /* index into the anchors */
+	bool left;
+	int x_px, y_px, width_px;       /* of the label; its height is the area's row */
+	float port_x_px, port_y_px;     /* where the leader leaves the label */
+	float anchor_x_px, anchor_y_px; /* where it ends */
+};
+
+/* Left column from top to bottom, then the right one. The state that makes the next layout stable
+ * is this list itself: zero it once, then pass it again. */
+struct callouts {
+	struct callout list[CALLOUTS_MOST];
+	uint32_t count;
+};
+
+/* Earlier anchors are more important: they stay when there are more than fit. */
+void callouts_layout(struct callouts *callouts, const struct callout_area *area,
+		     const struct callout_anchor *anchors, uint32_t count);
+
+/* The two leaders cross strictly (a shared end does not count). */
+bool callouts_cross(const struct callout *a, const struct callout *b);
+
+#endif

@@ -1,0 +1,190 @@
+#include "ui/chrome.h"
+
+#include <ctype.h>
+#include <stdio.h>
+
+#include "ui/icon.h"
+#include "ui/strings.h"
+
+#define BAR_MM     11.0f
+#define PADDING_MM 3.0f
+
+static const char *label_of(const struct chrome *chrome, const char *language, char *code,
+			    size_t code_bytes)
+{
+	if (!chrome->codes)
+		return ui_endonym(language);
+	snprintf(code, code_bytes, "%s", language);
+	for (char *c = code; *c; c++)
+		*c = (char)toupper((unsigned char)*c);
+	return code;
+}
+
+static void add(struct chrome *chrome, enum chrome_button_kind kind, int language, int width_px)
+{
+	chrome->buttons[chrome->button_count++] =
+		(struct chrome_button){ kind, language, chrome->width_px, width_px };
+	chrome->width_px += width_px;
+}
+
+static void try_layout(struct chrome *chrome, const struct theme *theme,
+		       const char *const *languages, uint32_t language_count)
+{
+	int target_px = theme_px(theme, BAR_MM);
+
+	chrome->button_count = 0;
+	chrome->width_px = 0;
+	add(chrome, CHROME_HOME, -1, target_px);
+	add(chrome, CHROME_HELP, -1, target_px);
+	for (uint32_t i = 0; language_count > 1 && i < language_count; i++) {
+		char code[20];
+		const char *label = label_of(chrome, languages[i], code, sizeof(code));
+		PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, label, -1);
+		int width_px;
+
+		pango_layout_get_pixel_size(layout, &width_px, NULL);
+		g_object_unref(layout);
+		width_px += 2 * theme_px(theme, chrome->codes ? 1.5f : PADDING_MM);
+		add(chrome, CHROME_LANGUAGE, (int)i, width_px > target_px ? width_px : target_px);
+	}
+}
+
+void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
+		   uint32_t language_count, int most_width_px)
+{
+	if (language_count > CHROME_LANGUAGES_MOST)
+		language_count = CHROME_LANGUAGES_MOST;
+	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM) };
+	try_layout(out, theme, languages, language_count);
+	if (out->width_px <= most_width_px)
+		return;
+	out->codes = true;
+	try_layout(out, theme, languages, language_count);
+}
+
+static void draw_label(cairo_t *context, const struct theme *theme, const char *text,
+		       double centre_x, double centre_y)
+{
+	PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, text, -1);
+	int width_px, height_px;
+
+	pango_layout_get_pixel_size(layout, &width_px, &height_px);
+	cairo_move_to(context, centre_x - width_px / 2.0, centre_y - height_px / 2.0);
+	pango_cairo_show_layout(context, layout);
+	g_object_unref(layout);
+}
+
+static void draw_button(cairo_t *context, const struct chrome *chrome,
+			const struct chrome_button *button, const struct theme *theme,
+			const char *const *languages, bool on)
+{
+	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
+	int inset_px = theme_px(theme, 1.2f);
+	char code[20];
+
+	if (on) {
+		theme_rounded(context, button->x_px + inset_px, inset_px,
+			      button->width_px - 2 * inset_px, chrome->height_px - 2 * inset_px,
+			      theme_px(theme, THEME_RADIUS_MM));
+		theme_set_source(context, theme_night_text, 1);
+		cairo_fill(context);
+	}
+	theme_set_source(context, on ? theme_night : theme_night_text, 1);
+	if (button->kind == CHROME_LANGUAGE)
+		draw_label(context, theme,
+			   label_of(chrome, languages[button->language], code, sizeof(code)), x, y);
+	else
+		icon_draw(context, button->kind == CHROME_HOME ? ICON_HOME : ICON_HELP, x, y,
+			  theme_px(theme, 5.0f));
+}
+
+int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct theme *theme,
+		const char *const *languages, int current, bool help_is_on)
+{
+	cairo_t *context;
+	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);
+
+	if (rc < 0)
+		return rc;
+	context = bitmap_begin(out);
+	theme_rounded(context, 0, 0, chrome->width_px, chrome->height_px,
+		      theme_px(theme, THEME_RADIUS_MM));
+	theme_set_source(context, theme_night, 0.82);
+	cairo_fill(context);
+	for (uint32_t i = 0; i < chrome->button_count; i++) {
+		const struct chrome_button *button = &chrome->buttons[i];
+		bool on = button->kind == CHROME_LANGUAGE
+				  ? button->language == current
+				  : button->kind == CHROME_HELP && help_is_on;
+
+		draw_button(context, chrome, button, theme, languages, on);
+	}
+	bitmap_end(out, context);
+	return 0;
+}
+
+const struct chrome_button *chrome_button_at(const struct chrome *chrome, float x_px)
+{
+	for (uint32_t i = 0; i < chrome->button_count; i++) {
+		const struct chrome_button *button = &chrome->buttons[i];
+
+		if (x_px >= (float)button->x_px && x_px < (float)(button->x_px + button->width_px))
+			return button;
+	}
+	return NULL;
+}
+
+/* Three columns, each a pictogram over its words. */
+int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_width_px)
+{
+	static const struct {
+		enum icon icon;
+		enum ui_string string;
+	} lines[] = {
+		{ ICON_TURN, UI_HELP_TURN },
+		{ ICON_ZOOM, UI_HELP_ZOOM },
+		{ ICON_TAP, UI_HELP_TAP },
+	};
+	const int count = (int)ARRAY_COUNT(lines);
+	int padding = theme_px(theme, PADDING_MM), icon_px = theme_px(theme, 11.0f);
+	int cell_px = theme_px(theme, 38.0f), text_px = 0;
+	PangoLayout *layouts[ARRAY_COUNT(lines)];
+	cairo_t *context;
+	int rc;
+
+	if (cell_px * count + 2 * padding > most_width_px)
+		cell_px = (most_width_px - 2 * padding) / count;
+	for (int i = 0; i < count; i++) {
+		int height_px;
+
+		layouts[i] = theme_layout(theme, TEXT_CAPTION,
+					  ui_string(lines[i].string, theme->language),
+					  cell_px - padding > 1 ? cell_px - padding : 1);
+		pango_layout_set_alignment(layouts[i], PANGO_ALIGN_CENTER);
+		pango_layout_get_pixel_size(layouts[i], NULL, &height_px);
+		if (height_px > text_px)
+			text_px = height_px;
+	}
+	rc = bitmap_init(out, cell_px * count + 2 * padding, icon_px + text_px + 4 * padding);
+	if (rc == 0) {
+		context = bitmap_begin(out);
+		theme_rounded(context, 0, 0, out->width_px, out->height_px,
+			      theme_px(theme, THEME_RADIUS_MM));
+		theme_set_source(context, theme_night, 0.82);
+		cairo_fill(context);
+		theme_set_source(context, theme_night_text, 1);
+		for (int i = 0; i < count; i++) {
+			double x = padding + cell_px * (i + 0.5);
+
+			icon_draw(context, lines[i].icon, x, padding * 1.5 + icon_px / 2.0,
+				  icon_px);
+			cairo_move_to(context, x - (cell_px - padding) / 2.0,
+				      2.5 * padding + icon_px);
+			pango_cairo_show_layout(context, layouts[i]);
+		}
+		bitmap_end(out, context);
+	}
+	for (int i = 0; i < count; i++)
+		g_object_unref(layouts[i]);
+	return rc;
+}

@@ -1,0 +1,39 @@
+/* What is always there, always in the same place: home, help and the languages, on one bar at the
+ * lower left, where a seated visitor reaches it too; and the help it shows. */
+#ifndef GOPURA_UI_CHROME_H
+#define GOPURA_UI_CHROME_H
+
+#include "ui/bitmap.h"
+#include "ui/theme.h"
+
+enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 2 };
+
+enum chrome_button_kind { CHROME_HOME, CHROME_HELP, CHROME_LANGUAGE };
+
+struct chrome_button {
+	enum chrome_button_kind kind;
+	int language;       /* index, else -1 */
+	int x_px, width_px; /* on the bar; as high as the bar */
+};
+
+struct chrome {
+	struct chrome_button buttons[CHROME_BUTTONS_MOST];
+	uint32_t button_count;
+	int width_px, height_px;
+	bool codes; /* no room for the languages' names: their codes */
+};
+
+/* languages are borrowed for the call. One language alone needs no switch. */
+void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
+		   uint32_t language_count, int most_width_px);
+/* A fresh bitmap of the bar. current is the index of the language that is set. */
+must_check int chrome_draw(struct bitmap *out, const struct chrome *chrome,
+			   const struct theme *theme, const char *const *languages, int current,
+			   bool help_is_on);
+/* NULL: between the buttons. x relative to the bar. */
+const struct chrome_button *chrome_button_at(const struct chrome *chrome, float x_px);
+
+/* The help in the theme's language; a fresh bitmap as large as it needs, at most that wide. */
+must_check int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_width_px);
+
+#endif

@@ -1,0 +1,122 @@
+#include "ui/icon.h"
+
+#include <math.h>
+
+/* All in a box from -1 to 1. */
+
+static void line(cairo_t *c, double x0, double y0, double x1, double y1)
+{
+	cairo_move_to(c, x0, y0);
+	cairo_line_to(c, x1, y1);
+}
+
+static void ring(cairo_t *c, double x, double y, double radius)
+{
+	cairo_new_sub_path(c);
+	cairo_arc(c, x, y, radius, 0, 4 * acos(0.0));
+}
+
+static void dot(cairo_t *c, double x, double y, double radius)
+{
+	cairo_stroke(c);
+	ring(c, x, y, radius);
+	cairo_fill(c);
+}
+
+/* Head at x, y, pointing along dx, dy (unit length). */
+static void arrow_head(cairo_t *c, double x, double y, double dx, double dy)
+{
+	double size = 0.38;
+
+	cairo_move_to(c, x - size * (dx + dy), y - size * (dy - dx));
+	cairo_line_to(c, x, y);
+	cairo_line_to(c, x - size * (dx - dy), y - size * (dy + dx));
+}
+
+static void draw_home(cairo_t *c)
+{
+	/* Three stepped terraces and a tower: the first view of the temple. */
+	cairo_move_to(c, -1, 0.85);
+	cairo_line_to(c, 1, 0.85);
+	cairo_move_to(c, -0.75, 0.85);
+	cairo_line_to(c, -0.75, 0.4);
+	cairo_line_to(c, -0.45, 0.4);
+	cairo_line_to(c, -0.45, 0);
+	cairo_curve_to(c, -0.42, -0.45, -0.2, -0.7, 0, -0.95);
+	cairo_curve_to(c, 0.2, -0.7, 0.42, -0.45, 0.45, 0);
+	cairo_line_to(c, 0.45, 0.4);
+	cairo_line_to(c, 0.75, 0.4);
+	cairo_line_to(c, 0.75, 0.85);
+}
+
+static void draw_help(cairo_t *c)
+{
+	cairo_arc(c, 0, -0.38, 0.46, -2 * acos(0.0), 0.55);
+	cairo_curve_to(c, 0.2, 0.12, 0, 0.15, 0, 0.42);
+	dot(c, 0, 0.86, 0.15);
+}
+
+static void draw_turn(cairo_t *c)
+{
+	/* Once around the finger, seen from above, open where the arrow ends. */
+	const double end = 0.9, radius = 0.85;
+
+	cairo_arc_negative(c, 0, 0, radius, end - 0.75, end - 4 * acos(0.0));
+	arrow_head(c, radius * cos(end), radius * sin(end), sin(end), -cos(end));
+	dot(c, 0, 0, 0.36);
+}
+
+static void draw_zoom(cairo_t *c)
+{
+	line(c, -0.15, 0.15, -0.95, 0.95);
+	arrow_head(c, -0.95, 0.95, -0.707, 0.707);
+	line(c, 0.15, -0.15, 0.95, -0.95);
+	arrow_head(c, 0.95, -0.95, 0.707, -0.707);
+	dot(c, -0.3, 0.3, 0.25);
+	dot(c, 0.3, -0.3, 0.25);
+}
+
+static void draw_tap(cairo_t *c)
+{
+	ring(c, 0, 0, 0.92);
+	dot(c, 0, 0, 0.36);
+}
+
+void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
+{
+	cairo_save(context);
+	cairo_translate(context, x, y);
+	cairo_scale(context, size / 2, size / 2);
+	cairo_set_line_width(context, 0.24);
+	cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
+	cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+	cairo_new_path(context);
+	switch (icon) {
+	case ICON_CLOSE:
+		line(context, -0.85, -0.85, 0.85, 0.85);
+		line(context, -0.85, 0.85, 0.85, -0.85);
+		break;
+	case ICON_FORWARD:
+		cairo_move_to(context, -0.4, -0.8);
+		cairo_line_to(context, 0.4, 0);
+		cairo_line_to(context, -0.4, 0.8);
+		break;
+	case ICON_HOME:
+		draw_home(context);
+		break;
+	case ICON_HELP:
+		draw_help(context);
+		break;
+	case ICON_TURN:
+		draw_turn(context);
+		break;
+	case ICON_ZOOM:
+		draw_zoom(context);
+		break;
+	case ICON_TAP:
+		draw_tap(context);
+		break;
+	}
+	cairo_stroke(context);
+	cairo_restore(context);
+}

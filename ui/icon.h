@@ -1,0 +1,20 @@
+/* A few pictograms as strokes, in the source colour of the context. */
+#ifndef GOPURA_UI_ICON_H
+#define GOPURA_UI_ICON_H
+
+#include <cairo.h>
+
+enum icon {
+	ICON_CLOSE,
+	ICON_FORWARD,
+	ICON_HOME,
+	ICON_HELP,
+	ICON_TURN, /* one finger goes sideways */
+	ICON_ZOOM, /* two fingers part */
+	ICON_TAP,
+};
+
+/* About size across, centred on x, y. */
+void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size);
+
+#endif

@@ -1,0 +1,548 @@
+#include "ui/overlay.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ui/overlay_state.h"
+
+_Static_assert((int)BITMAP_COUNT <= (int)OVERLAY_BITMAPS_MOST, "ids of bitmaps");
+_Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MOST, "labels that come and labels that go");
+
+enum {
+	FADE_MS = 180,
+	STEP_MOST_MS = 100, /* a longer pause counts as this */
+	LABELS_A_FRAME = 4, /* drawn in one update */
+	STRIPS_A_FRAME = 1, /* so that opening a page costs no frame */
+	FLING_SLOWDOWN_MS = 350,
+	FLING_LEAST_PX_PER_S = 20,
+};
+
+/* ---- life ---- */
+
+static int copy_languages(struct overlay *overlay, const struct overlay_options *options)
+{
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		overlay->languages[i] = strdup(options->languages[i]);
+		if (!overlay->languages[i])
+			return -ENOMEM;
+		overlay->language_count++;
+	}
+	return 0;
+}
+
+static void lay_out_chrome(struct overlay *overlay)
+{
+	int gaps_px = 2 * theme_px(&overlay->theme, THEME_GAP_MM);
+	/* It must fit beside an open page. */
+	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
+
+	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
+		      overlay->language_count, most_px - gaps_px);
+	overlay->chrome_dirty = true;
+}
+
+static int start(struct overlay *overlay, const struct overlay_options *options)
+{
+	int shorter_px =
+		options->width_px < options->height_px ? options->width_px : options->height_px;
+	float px_per_mm = options->px_per_mm;
+	int rc;
+
+	if (px_per_mm <= 0)
+		px_per_mm = theme_guess_px_per_mm(options->width_px, options->height_px);
+	/* On a panel smaller than a hand everything shrinks rather than being cut off. */
+	px_per_mm = fminf(px_per_mm, (float)shorter_px / 85.0f);
+	rc = theme_init(&overlay->theme, px_per_mm, options->languages[0]);
+	if (rc == 0)
+		rc = copy_languages(overlay, options);
+	if (rc < 0)
+		return rc;
+	lay_out_chrome(overlay);
+	overlay_draw_fixed(overlay);
+	overlay->strip_px = options->height_px / (STRIPS - 4) > STRIP_PX
+				    ? options->height_px / (STRIPS - 4)
+				    : STRIP_PX;
+	overlay_draw_help(overlay); /* its size is asked for */
+	return 0;
+}
+
+int overlay_create(struct overlay **out, const struct overlay_options *options)
+{
+	struct overlay *overlay;
+	int rc;
+
+	*out = NULL;
+	if (options->width_px < 320 || options->height_px < 320 || options->width_px > 8192 ||
+	    options->height_px > 8192 || options->language_count < 1 ||
+	    options->language_count > OVERLAY_LANGUAGES_MOST)
+		return -EINVAL;
+	overlay = calloc(1, sizeof(*overlay));
+	if (!overlay)
+		return -ENOMEM;
+	overlay->width_px = options->width_px;
+	overlay->height_px = options->height_px;
+	overlay->pictures = (struct picture_source){ options->picture, options->data };
+	overlay->callouts_on = true;
+	overlay->help.on = true;
+	overlay->card_part = overlay->page_part = -1;
+	for (uint32_t i = 0; i < LABELS; i++)
+		overlay->labels[i].part = -1;
+	for (uint32_t i = 0; i < STRIPS; i++)
+		overlay->strips[i].index = -1;
+	rc = start(overlay, options);
+	if (rc < 0) {
+		overlay_destroy(overlay);
+		return rc;
+	}
+	*out = overlay;
+	return 0;
+}
+
+static void drop_parts(struct part *parts, uint32_t count)
+{
+	for (uint32_t i = 0; parts && i < count; i++) {
+		free(parts[i].title);
+		free(parts[i].caption);
+		free(parts[i].thumbnail);
+	}
+	free(parts);
+}
+
+void overlay_destroy(struct overlay *overlay)
+{
+	if (!overlay)
+		return;
+	article_destroy(overlay->article);
+	drop_parts(overlay->parts, overlay->part_count);
+	free(overlay->anchors);
+	for (uint32_t i = 0; i < BITMAP_COUNT; i++)
+		bitmap_finish(&overlay->drawings[i].bitmap);
+	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MOST; i++)
+		free(overlay->languages[i]);
+	theme_finish(&overlay->theme);
+	free(overlay);
+}
+
+/* ---- what it shows ---- */
+
+static int copy_part(struct part *to, const struct overlay_part *from)
+{
+	to->title = strdup(from->title);
+	to->caption = strdup(from->caption);
+	to->thumbnail = strdup(from->thumbnail);
+	to->has_page = from->has_page;
+	return to->title && to->caption && to->thumbnail ? 0 : -ENOMEM;
+}
+
+static void forget_labels(struct overlay *overlay)
+{
+	for (uint32_t i = 0; i < LABELS; i++)
+		overlay->labels[i] = (struct label){ .part = -1 };
+	overlay->callouts.count = 0;
+	overlay->callouts_dirty = true;
+}
+
+static void drop_page(struct overlay *overlay)
+{
+	article_destroy(overlay->article);
+	overlay->article = NULL;
+	overlay->page = (struct fade){ 0 };
+	overlay->page_part = -1;
+}
+
+int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uint32_t count)
+{
+	struct part *copies = calloc((size_t)count + 1, sizeof(*copies));
+	struct callout_anchor *anchors = calloc((size_t)count + 1, sizeof(*anchors));
+	int rc = copies && anchors ? 0 : -ENOMEM;
+
+	if (count > OVERLAY_PARTS_MOST)
+		rc = -EINVAL;
+	for (uint32_t i = 0; rc == 0 && i < count; i++)
+		rc = copy_part(&copies[i], &parts[i]);
+	if (rc < 0) {
+		drop_parts(copies, count > OVERLAY_PARTS_MOST ? 0 : count);
+		free(anchors);
+		return rc;
+	}
+	if (count != overlay->part_count) {
+		drop_page(overlay);
+		overlay->card = (struct fade){ 0 };
+		overlay->card_part = -1;
+	} else if (overlay->part_count > 0) {
+		memcpy(anchors, overlay->anchors, count * sizeof(*anchors));
+	}
+	drop_parts(overlay->parts, overlay->part_count);
+	free(overlay->anchors);
+	overlay->parts = copies;
+	overlay->anchors = anchors;
+	overlay->part_count = count;
+	overlay->column_px = 0;
+	for (uint32_t i = 0; i < count; i++) {
+		copies[i].label_px = overlay_measure_label(overlay, copies[i].title);
+		if (copies[i].label_px > overlay->column_px)
+			overlay->column_px = copies[i].label_px;
+	}
+	forget_labels(overlay);
+	overlay->card_dirty = overlay->head_dirty = true;
+	return 0;
+}
+
+void overlay_language(struct overlay *overlay, const char *language)
+{
+	for (uint32_t i = 0; i < overlay->language_count; i++) {
+		if (strcmp(overlay->languages[i], language) != 0)
+			continue;
+		overlay->language = (int)i;
+		theme_set_language(&overlay->theme, language);
+		overlay->chrome_dirty = overlay->help_dirty = true;
+		overlay->card_dirty = overlay->head_dirty = true;
+		forget_labels(overlay);
+	}
+}
+
+void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count)
+{
+	for (uint32_t i = 0; i < count && i < overlay->part_count; i++) {
+		overlay->anchors[i].x_px = anchors[i].x_px;
+		overlay->anchors[i].y_px = anchors[i].y_px;
+		overlay->anchors[i].visible = anchors[i].visible;
+	}
+	overlay->callouts_dirty = true;
+}
+
+void overlay_show_callouts(struct overlay *overlay, bool on)
+{
+	overlay->callouts_on = on;
+	overlay->callouts_dirty = true;
+}
+
+void overlay_show_card(struct overlay *overlay, int part)
+{
+	if (part >= (int)overlay->part_count)
+		part = -1;
+	if (part == overlay->card_part)
+		return;
+	overlay->card_part = part;
+	overlay->card.on = part >= 0;
+	overlay->callouts_dirty = true;
+	if (part < 0)
+		return;
+	if (overlay->card_shown != part)
+		overlay->card.alpha = 0;
+	overlay->card_shown = part;
+	overlay->card_dirty = true;
+	overlay_show_help(overlay, false); /* they share their place */
+}
+
+int overlay_card(const struct overlay *overlay)
+{
+	return overlay->card_part;
+}
+
+int overlay_show_page(struct overlay *overlay, int part, struct bytes html)
+{
+	struct overlay_rect view = overlay_view_rect(overlay);
+	const struct article_options options = { .theme = &overlay->theme,
+						 .width_px = view.width_px,
+						 .view_px = view.height_px,
+						 .pictures = overlay->pictures };
+	struct article *article;
+	int rc;
+
+	if (part < 0 || part >= (int)overlay->part_count)
+		return -EINVAL;
+	rc = article_create(&article, &options, html);
+	if (rc < 0)
+		return rc;
+	article_destroy(overlay->article);
+	overlay->article = article;
+	overlay->page_part = overlay->page_titled = part;
+	overlay->page.on = true;
+	overlay->scroll_px = 0;
+	overlay->scroll_px_per_s = 0;
+	for (uint32_t i = 0; i < STRIPS; i++)
+		overlay->strips[i] = (struct strip){ .index = -1 };
+	overlay->head_dirty = true;
+	overlay_show_card(overlay, -1); /* the page says it all */
+	overlay_show_help(overlay, false);
+	overlay->callouts_dirty = true;
+	return 0;
+}
+
+void overlay_close_page(struct overlay *overlay)
+{
+	overlay->page_part = -1;
+	overlay->page.on = false;
+	overlay->callouts_dirty = true;
+}
+
+int overlay_page(const struct overlay *overlay)
+{
+	return overlay->page_part;
+}
+
+void overlay_show_help(struct overlay *overlay, bool on)
+{
+	if (overlay->help.on == on)
+		return;
+	overlay->help.on = on;
+	overlay->help_dirty |= on;
+	overlay->chrome_dirty = overlay->callouts_dirty = true;
+	if (on)
+		overlay_show_card(overlay, -1);
+}
+
+void overlay_picture_arrived(struct overlay *overlay, const char *name)
+{
+	int from_px = overlay->article ? article_picture_arrived(overlay->article, name) : -1;
+
+	for (uint32_t i = 0; from_px >= 0 && i < STRIPS; i++)
+		if ((overlay->strips[i].index + 1) * overlay->strip_px > from_px)
+			overlay->strips[i].stale = true;
+	if (overlay->card_part >= 0 &&
+	    strcmp(overlay->parts[overlay->card_part].thumbnail, name) == 0)
+		overlay->card_dirty = true;
+}
+
+/* ---- touch ---- */
+
+static int label_at(const struct overlay *overlay, float x_px, float y_px)
+{
+	for (uint32_t i = 0; i < LABELS; i++) {
+		const struct label *label = &overlay->labels[i];
+		struct overlay_rect rect = { label->place.x_px, label->place.y_px,
+					     label->place.width_px, overlay_row_px(overlay) };
+
+		if (label->part >= 0 && label->fade.on && overlay_rect_holds(rect, x_px, y_px))
+			return label->part;
+	}
+	return -1;
+}
+
+static struct overlay_action tap_page(const struct overlay *overlay, float x_px, float y_px)
+{
+	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->page_part };
+	struct overlay_rect view = overlay_view_rect(overlay);
+
+	if (y_px < (float)view.y_px) {
+		/* The head's whole right end, so that a near miss closes too. */
+		if (x_px >= (float)overlay_close_rect(overlay).x_px)
+			action.kind = OVERLAY_CLOSE_PAGE;
+		return action;
+	}
+	if (!overlay_rect_holds(view, x_px, y_px))
+		return action;
+	action.link = article_link_at(overlay->article, x_px - (float)view.x_px,
+				      y_px - (float)view.y_px + overlay->scroll_px);
+	if (action.link)
+		action.kind = OVERLAY_LINK;
+	return action;
+}
+
+static struct overlay_action tap_chrome(const struct overlay *overlay, float x_px)
+{
+	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
+	const struct chrome_button *button = chrome_button_at(&overlay->chrome, x_px);
+
+	if (!button)
+		return action;
+	if (button->kind == CHROME_HOME) {
+		action.kind = OVERLAY_HOME;
+	} else if (button->kind == CHROME_HELP) {
+		action.kind = OVERLAY_HELP;
+	} else if (button->language != overlay->language) {
+		action.kind = OVERLAY_LANGUAGE;
+		action.language = overlay->languages[button->language];
+	}
+	return action;
+}
+
+static struct overlay_action tap_card(const struct overlay *overlay, float x_px, float y_px)
+{
+	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->card_part };
+	struct overlay_rect card = overlay_card_rect(overlay);
+
+	if (card_closes(&overlay->theme, card.width_px, x_px - (float)card.x_px,
+			y_px - (float)card.y_px))
+		action.kind = OVERLAY_CLOSE_CARD;
+	else if (overlay->parts[overlay->card_part].has_page)
+		action.kind = OVERLAY_OPEN_PAGE;
+	return action;
+}
+
+struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px)
+{
+	struct overlay_action action = { .kind = OVERLAY_NONE, .part = -1 };
+	struct overlay_rect chrome = overlay_chrome_rect(overlay);
+
+	if (overlay_rect_holds(chrome, x_px, y_px))
+		return tap_chrome(overlay, x_px - (float)chrome.x_px);
+	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
+		return tap_page(overlay, x_px, y_px);
+	if (overlay->card_part >= 0 && overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px))
+		return tap_card(overlay, x_px, y_px);
+	if (overlay->help.on && overlay_rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
+		action.kind = OVERLAY_HELP;
+		return action;
+	}
+	action.part = label_at(overlay, x_px, y_px);
+	if (action.part >= 0)
+		action.kind = OVERLAY_OPEN_CARD;
+	return action;
+}
+
+bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
+{
+	if (overlay_rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
+		return true;
+	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
+		return true;
+	return overlay->card_part >= 0 &&
+	       overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px);
+}
+
+static void scroll_by(struct overlay *overlay, float by_px)
+{
+	float most_px = (float)overlay_scroll_most(overlay), to_px = overlay->scroll_px + by_px;
+
+	overlay->scroll_px = fminf(fmaxf(to_px, 0), most_px);
+	if (overlay->scroll_px != to_px)
+		overlay->scroll_px_per_s = 0;
+}
+
+void overlay_scroll(struct overlay *overlay, float dy_px)
+{
+	overlay->scroll_px_per_s = 0;
+	scroll_by(overlay, -dy_px);
+}
+
+void overlay_fling(struct overlay *overlay, float vy_px_per_s)
+{
+	overlay->scroll_px_per_s = -vy_px_per_s;
+}
+
+/* ---- a frame ---- */
+
+/* true: still on its way. */
+static bool advance(struct fade *fade, int64_t step_ms)
+{
+	float target = fade->on ? 1 : 0, step = (float)step_ms / FADE_MS;
+
+	if (fade->alpha == target)
+		return false;
+	fade->alpha = fade->on ? fminf(fade->alpha + step, 1) : fmaxf(fade->alpha - step, 0);
+	return fade->alpha != target;
+}
+
+static bool advance_scroll(struct overlay *overlay, int64_t step_ms)
+{
+	float seconds = (float)step_ms / 1000;
+
+	if (overlay->scroll_px_per_s == 0)
+		return false;
+	scroll_by(overlay, overlay->scroll_px_per_s * seconds);
+	overlay->scroll_px_per_s *= expf(-(float)step_ms / FLING_SLOWDOWN_MS);
+	if (fabsf(overlay->scroll_px_per_s) < FLING_LEAST_PX_PER_S)
+		overlay->scroll_px_per_s = 0;
+	return overlay->scroll_px_per_s != 0;
+}
+
+static bool update_labels(struct overlay *overlay, int64_t step_ms)
+{
+	uint32_t budget = LABELS_A_FRAME;
+	bool moving = false;
+
+	for (uint32_t i = 0; i < LABELS; i++) {
+		struct label *label = &overlay->labels[i];
+		bool selected;
+
+		if (label->part < 0)
+			continue;
+		selected = label->part == overlay->card_part || label->part == overlay->page_part;
+		if (label->fade.on && (!label->drawn || label->drawn_selected != selected ||
+				       overlay->drawings[BITMAP_LABEL + i].bitmap.width_px !=
+					       label->place.width_px)) {
+			if (budget == 0) {
+				moving = true;
+				continue;
+			}
+			overlay_draw_label(overlay, i);
+			budget--;
+		}
+		moving |= advance(&label->fade, step_ms);
+		if (!label->fade.on && label->fade.alpha == 0)
+			*label = (struct label){ .part = -1 };
+	}
+	return moving;
+}
+
+static bool update_strips(struct overlay *overlay, int64_t step_ms)
+{
+	struct overlay_rect view = overlay_view_rect(overlay);
+	int first = (int)overlay->scroll_px / overlay->strip_px;
+	/* One more than is seen, so that a finger finds it drawn. */
+	int last = ((int)overlay->scroll_px + view.height_px) / overlay->strip_px + 1;
+	int end = article_height_px(overlay->article) / overlay->strip_px;
+	uint32_t budget = STRIPS_A_FRAME;
+	bool moving = false;
+
+	for (int index = first; index <= last && index <= end; index++) {
+		uint32_t slot = (uint32_t)index % STRIPS;
+		struct strip *strip = &overlay->strips[slot];
+
+		if (strip->index != index || strip->stale) {
+			if (budget == 0) {
+				moving = true;
+				continue;
+			}
+			strip->index = index;
+			strip->stale = false;
+			strip->fade.on = true;
+			overlay_draw_strip(overlay, slot);
+			budget--;
+		}
+		moving |= advance(&strip->fade, step_ms);
+	}
+	return moving;
+}
+
+static void draw_what_changed(struct overlay *overlay)
+{
+	if (overlay->help_dirty)
+		overlay_draw_help(overlay);
+	if (overlay->chrome_dirty)
+		overlay_draw_chrome(overlay);
+	if (overlay->card_dirty && overlay->card_part >= 0)
+		overlay_draw_card(overlay);
+	if (overlay->head_dirty && overlay->page_part >= 0)
+		overlay_draw_page_head(overlay);
+	overlay->help_dirty = overlay->chrome_dirty = false;
+	overlay->card_dirty = overlay->head_dirty = false;
+}
+
+bool overlay_update(struct overlay *overlay, int64_t now_ms)
+{
+	int64_t step_ms = overlay->then_ms ? now_ms - overlay->then_ms : 0;
+	bool moving;
+
+	if (step_ms < 0 || step_ms > STEP_MOST_MS)
+		step_ms = step_ms < 0 ? 0 : STEP_MOST_MS;
+	overlay->then_ms = now_ms;
+	draw_what_changed(overlay);
+	if (overlay->callouts_dirty)
+		overlay_lay_out_callouts(overlay);
+	overlay->callouts_dirty = false;
+	moving = advance(&overlay->help, step_ms);
+	moving |= advance(&overlay->card, step_ms);
+	moving |= advance(&overlay->page, step_ms);
+	moving |= advance_scroll(overlay, step_ms);
+	moving |= update_labels(overlay, step_ms);
+	if (!overlay->page.on && overlay->page.alpha == 0)
+		drop_page(overlay);
+	else if (overlay->article)
+		moving |= update_strips(overlay, step_ms);
+	return moving;
+}

@@ -1,0 +1,257 @@
+/* The overlay's bitmaps. One that cannot be drawn for want of memory is left out of the layers. */
+#include <math.h>
+#include <string.h>
+
+#include "ui/icon.h"
+#include "ui/overlay_state.h"
+#include "ui/strings.h"
+
+static int px(const struct overlay *overlay, float mm)
+{
+	return theme_px(&overlay->theme, mm);
+}
+
+/* Makes room for a new picture of that size; NULL where there is no memory. */
+static cairo_t *begin(struct overlay *overlay, enum bitmap_id id, int width_px, int height_px)
+{
+	struct drawing *drawing = &overlay->drawings[id];
+
+	drawing->revision++;
+	if (drawing->bitmap.width_px != width_px || drawing->bitmap.height_px != height_px) {
+		bitmap_finish(&drawing->bitmap);
+		if (bitmap_init(&drawing->bitmap, width_px, height_px) < 0)
+			return NULL;
+	}
+	return bitmap_begin(&drawing->bitmap);
+}
+
+static void end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
+{
+	bitmap_end(&overlay->drawings[id].bitmap, context);
+}
+
+/* Across a leader: a light core between dark edges, so that it shows on any stone. */
+static void draw_leader(struct overlay *overlay)
+{
+	int across_px = px(overlay, 1.2f) + 2;
+	cairo_t *context = begin(overlay, BITMAP_LEADER, 4, across_px);
+
+	if (!context)
+		return;
+	cairo_rectangle(context, 0, 1, 4, across_px - 2);
+	theme_set_source(context, theme_night, 0.45);
+	cairo_fill(context);
+	cairo_rectangle(context, 0, across_px * 0.34, 4, across_px * 0.32);
+	theme_set_source(context, theme_night_text, 1);
+	cairo_fill(context);
+	end(overlay, BITMAP_LEADER, context);
+}
+
+static void draw_dot(struct overlay *overlay)
+{
+	int side_px = px(overlay, 3.2f);
+	double middle = side_px / 2.0, turn = 4 * acos(0.0);
+	cairo_t *context = begin(overlay, BITMAP_DOT, side_px, side_px);
+
+	if (!context)
+		return;
+	cairo_arc(context, middle, middle, middle * 0.95, 0, turn);
+	theme_set_source(context, theme_night, 0.5);
+	cairo_fill(context);
+	cairo_arc(context, middle, middle, middle * 0.72, 0, turn);
+	theme_set_source(context, theme_night_text, 1);
+	cairo_fill(context);
+	cairo_arc(context, middle, middle, middle * 0.42, 0, turn);
+	theme_set_source(context, theme_accent, 1);
+	cairo_fill(context);
+	end(overlay, BITMAP_DOT, context);
+}
+
+static void draw_foot(struct overlay *overlay)
+{
+	int height_px = px(overlay, 8.0f);
+	cairo_t *context = begin(overlay, BITMAP_PAGE_FOOT, 4, height_px);
+	cairo_pattern_t *gradient;
+
+	if (!context)
+		return;
+	gradient = cairo_pattern_create_linear(0, 0, 0, height_px);
+	cairo_pattern_add_color_stop_rgba(gradient, 0, theme_paper.red, theme_paper.green,
+					  theme_paper.blue, 0);
+	cairo_pattern_add_color_stop_rgba(gradient, 1, theme_paper.red, theme_paper.green,
+					  theme_paper.blue, 1);
+	cairo_set_source(context, gradient);
+	cairo_paint(context);
+	cairo_pattern_destroy(gradient);
+	end(overlay, BITMAP_PAGE_FOOT, context);
+}
+
+void overlay_draw_fixed(struct overlay *overlay)
+{
+	cairo_t *context;
+	int width_px = px(overlay, 1.0f);
+
+	draw_leader(overlay);
+	draw_dot(overlay);
+	draw_foot(overlay);
+	context = begin(overlay, BITMAP_PAPER, 4, 4);
+	if (context) {
+		theme_set_source(context, theme_paper, 1);
+		cairo_paint(context);
+		end(overlay, BITMAP_PAPER, context);
+	}
+	context = begin(overlay, BITMAP_SCROLL, width_px, 4 * width_px);
+	if (context) {
+		theme_rounded(context, 0, 0, width_px, 4 * width_px, width_px / 2.0);
+		theme_set_source(context, theme_ink_soft, 0.6);
+		cairo_fill(context);
+		end(overlay, BITMAP_SCROLL, context);
+	}
+}
+
+/* Modules that make their own bitmap hand it over here. */
+static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh, int rc)
+{
+	struct drawing *drawing = &overlay->drawings[id];
+
+	bitmap_finish(&drawing->bitmap);
+	drawing->revision++;
+	if (rc == 0)
+		drawing->bitmap = *fresh;
+}
+
+void overlay_draw_chrome(struct overlay *overlay)
+{
+	struct bitmap fresh;
+	int rc = chrome_draw(&fresh, &overlay->chrome, &overlay->theme,
+			     (const char *const *)overlay->languages, overlay->language,
+			     overlay->help.on);
+
+	put(overlay, BITMAP_CHROME, &fresh, rc);
+}
+
+void overlay_draw_help(struct overlay *overlay)
+{
+	struct bitmap fresh;
+	int most_px = overlay_scene_rect(overlay).width_px - 2 * px(overlay, THEME_GAP_MM);
+
+	put(overlay, BITMAP_HELP, &fresh, chrome_draw_help(&fresh, &overlay->theme, most_px));
+}
+
+void overlay_draw_card(struct overlay *overlay)
+{
+	const struct part *part = &overlay->parts[overlay->card_shown];
+	struct overlay_rect rect = overlay_card_rect(overlay);
+	struct overlay_picture found = { 0 };
+	struct card card = { .title = part->title,
+			     .caption = part->caption,
+			     .has_page = part->has_page };
+	struct bitmap fresh;
+
+	card.has_thumbnail = *part->thumbnail && overlay->pictures.get &&
+			     overlay->pictures.get(overlay->pictures.data, part->thumbnail, &found);
+	card.thumbnail = card.has_thumbnail ? found.picture : NULL;
+	put(overlay, BITMAP_CARD, &fresh,
+	    card_draw(&fresh, &overlay->theme, &card, rect.width_px, rect.height_px));
+}
+
+/* The part's name in small, a line below, and the one control that closes. */
+void overlay_draw_page_head(struct overlay *overlay)
+{
+	struct overlay_rect page = overlay_page_rect(overlay), close = overlay_close_rect(overlay);
+	int height_px = overlay_view_rect(overlay).y_px - page.y_px, text_px, label_px;
+	int left_px = px(overlay, 8.0f), cross_px = px(overlay, 3.0f);
+	int room_px = close.x_px - page.x_px - left_px - px(overlay, THEME_GAP_MM);
+	cairo_t *context = begin(overlay, BITMAP_PAGE_HEAD, page.width_px, height_px);
+	PangoLayout *layout;
+	double x, y;
+
+	if (!context)
+		return;
+	theme_set_source(context, theme_paper, 1);
+	cairo_paint(context);
+	cairo_rectangle(context, 0, height_px - 1, page.width_px, 1);
+	theme_set_source(context, theme_line, 1);
+	cairo_fill(context);
+
+	layout = theme_layout(&overlay->theme, TEXT_BUTTON,
+			      overlay->parts[overlay->page_titled].title, -1);
+	theme_limit_lines(layout, room_px > 1 ? room_px : 1, 1);
+	pango_layout_get_pixel_size(layout, NULL, &text_px);
+	theme_set_source(context, theme_ink_soft, 1);
+	cairo_move_to(context, left_px, (height_px - text_px) / 2.0);
+	pango_cairo_show_layout(context, layout);
+	g_object_unref(layout);
+
+	x = close.x_px - page.x_px;
+	y = close.y_px - page.y_px;
+	theme_rounded(context, x, y, close.width_px, close.height_px, close.height_px / 2.0);
+	theme_set_source(context, theme_accent, 1);
+	cairo_fill(context);
+	layout = theme_layout(&overlay->theme, TEXT_BUTTON,
+			      ui_string(UI_CLOSE, overlay->theme.language), -1);
+	pango_layout_get_pixel_size(layout, &label_px, &text_px);
+	theme_set_source(context, theme_paper, 1);
+	x += (close.width_px - label_px - 2 * cross_px) / 2.0;
+	cairo_move_to(context, x, y + (close.height_px - text_px) / 2.0);
+	pango_cairo_show_layout(context, layout);
+	icon_draw(context, ICON_CLOSE, x + label_px + 1.5 * cross_px, y + close.height_px / 2.0,
+		  cross_px);
+	g_object_unref(layout);
+	end(overlay, BITMAP_PAGE_HEAD, context);
+}
+
+int overlay_measure_label(const struct overlay *overlay, const char *title)
+{
+	PangoLayout *layout = theme_layout(&overlay->theme, TEXT_LABEL, title, -1);
+	int width_px;
+
+	pango_layout_get_pixel_size(layout, &width_px, NULL);
+	g_object_unref(layout);
+	return width_px + 2 * px(overlay, 2.2f);
+}
+
+void overlay_draw_label(struct overlay *overlay, uint32_t index)
+{
+	struct label *label = &overlay->labels[index];
+	bool selected = label->part == overlay->card_part || label->part == overlay->page_part;
+	int width_px = label->place.width_px, height_px = overlay_row_px(overlay), text_px;
+	int padding_px = px(overlay, 2.2f), inset_px = px(overlay, 0.6f);
+	enum bitmap_id id = (enum bitmap_id)(BITMAP_LABEL + index);
+	cairo_t *context = begin(overlay, id, width_px, height_px);
+	PangoLayout *layout;
+
+	label->drawn = true;
+	label->drawn_selected = selected;
+	if (!context)
+		return;
+	theme_rounded(context, 0, inset_px, width_px, height_px - 2 * inset_px,
+		      px(overlay, THEME_RADIUS_MM));
+	if (selected)
+		theme_set_source(context, theme_accent, 0.95);
+	else
+		theme_set_source(context, theme_night, 0.78);
+	cairo_fill(context);
+	layout = theme_layout(&overlay->theme, TEXT_LABEL, overlay->parts[label->part].title, -1);
+	/* A pixel more: rounding must not cut a text that fits. */
+	theme_limit_lines(layout, width_px - 2 * padding_px + 1, 1);
+	pango_layout_get_pixel_size(layout, NULL, &text_px);
+	theme_set_source(context, theme_night_text, 1);
+	cairo_move_to(context, padding_px, (height_px - text_px) / 2.0);
+	pango_cairo_show_layout(context, layout);
+	g_object_unref(layout);
+	end(overlay, id, context);
+}
+
+void overlay_draw_strip(struct overlay *overlay, uint32_t slot)
+{
+	enum bitmap_id id = (enum bitmap_id)(BITMAP_STRIP + slot);
+	int width_px = overlay_page_rect(overlay).width_px;
+	cairo_t *context = begin(overlay, id, width_px, overlay->strip_px);
+
+	if (!context)
+		return;
+	article_draw(overlay->article, context, overlay->strips[slot].index * overlay->strip_px,
+		     overlay->strip_px);
+	end(overlay, id, context);
+}

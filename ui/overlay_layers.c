@@ -1,0 +1,224 @@
+/* What is shown as textured quads. */
+#include <math.h>
+#include <string.h>
+
+#include "ui/overlay_state.h"
+
+struct list {
+	const struct overlay *overlay;
+	struct overlay_layer *layers;
+	uint32_t count, most;
+};
+
+/* Slow at the end, so that nothing stops with a jerk. */
+static float ease(float alpha)
+{
+	return alpha * (2 - alpha);
+}
+
+static struct overlay_layer *add(struct list *list, int id, float alpha)
+{
+	const struct drawing *drawing = &list->overlay->drawings[id];
+	struct overlay_layer *layer;
+
+	if (alpha <= 0 || !drawing->bitmap.surface || list->count == list->most)
+		return NULL;
+	layer = &list->layers[list->count++];
+	*layer = (struct overlay_layer){ .bitmap = (uint32_t)id,
+					 .revision = drawing->revision,
+					 .pixels = &drawing->bitmap,
+					 .source = { 0, 0, 1, 1 },
+					 .alpha = alpha };
+	return layer;
+}
+
+static void add_rect(struct list *list, int id, float alpha, float x, float y, float width,
+		     float height)
+{
+	struct overlay_layer *layer = add(list, id, alpha);
+	const float corners[4][2] = {
+		{ x, y }, { x + width, y }, { x + width, y + height }, { x, y + height }
+	};
+
+	if (layer)
+		memcpy(layer->corners_px, corners, sizeof(corners));
+}
+
+/* At its own size, its upper left corner there. */
+static void add_bitmap(struct list *list, int id, float alpha, float x, float y)
+{
+	const struct bitmap *bitmap = &list->overlay->drawings[id].bitmap;
+
+	add_rect(list, id, alpha, x, y, (float)bitmap->width_px, (float)bitmap->height_px);
+}
+
+static void add_leader(struct list *list, const struct label *label)
+{
+	const struct callout *c = &label->place;
+	float dx = c->anchor_x_px - c->port_x_px, dy = c->anchor_y_px - c->port_y_px;
+	float length = hypotf(dx, dy);
+	float half = (float)list->overlay->drawings[BITMAP_LEADER].bitmap.height_px / 2;
+	struct overlay_layer *layer;
+	float nx, ny;
+
+	if (length < 1)
+		return;
+	layer = add(list, BITMAP_LEADER, ease(label->fade.alpha));
+	if (!layer)
+		return;
+	nx = dy / length * half;
+	ny = -dx / length * half;
+	layer->corners_px[0][0] = c->port_x_px + nx;
+	layer->corners_px[0][1] = c->port_y_px + ny;
+	layer->corners_px[1][0] = c->anchor_x_px + nx;
+	layer->corners_px[1][1] = c->anchor_y_px + ny;
+	layer->corners_px[2][0] = c->anchor_x_px - nx;
+	layer->corners_px[2][1] = c->anchor_y_px - ny;
+	layer->corners_px[3][0] = c->port_x_px - nx;
+	layer->corners_px[3][1] = c->port_y_px - ny;
+}
+
+static void add_callouts(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	float half = (float)overlay->drawings[BITMAP_DOT].bitmap.width_px / 2;
+
+	for (uint32_t i = 0; i < LABELS; i++)
+		if (overlay->labels[i].drawn)
+			add_leader(list, &overlay->labels[i]);
+	for (uint32_t i = 0; i < LABELS; i++) {
+		const struct label *label = &overlay->labels[i];
+
+		if (label->drawn)
+			add_bitmap(list, BITMAP_DOT, ease(label->fade.alpha),
+				   label->place.anchor_x_px - half,
+				   label->place.anchor_y_px - half);
+	}
+	for (uint32_t i = 0; i < LABELS; i++) {
+		const struct label *label = &overlay->labels[i];
+
+		if (label->drawn)
+			add_bitmap(list, BITMAP_LABEL + (int)i, ease(label->fade.alpha),
+				   (float)label->place.x_px, (float)label->place.y_px);
+	}
+}
+
+/* The piece of a strip that the view shows. */
+static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view, float dx,
+		      float dy)
+{
+	const struct overlay *overlay = list->overlay;
+	const struct strip *strip = &overlay->strips[slot];
+	float height = (float)overlay->strip_px, top_in, bottom_in;
+	float top = (float)view.y_px - roundf(overlay->scroll_px) + (float)strip->index * height;
+	struct overlay_layer *layer;
+
+	top_in = fmaxf(top, (float)view.y_px);
+	bottom_in = fminf(top + height, (float)(view.y_px + view.height_px));
+	if (strip->index < 0 || bottom_in <= top_in)
+		return;
+	layer = add(list, BITMAP_STRIP + (int)slot,
+		    ease(overlay->page.alpha) * ease(strip->fade.alpha));
+	if (!layer)
+		return;
+	layer->source[1] = (top_in - top) / height;
+	layer->source[3] = (bottom_in - top) / height;
+	for (int corner = 0; corner < 4; corner++) {
+		bool right = corner == 1 || corner == 2;
+
+		layer->corners_px[corner][0] =
+			(float)view.x_px + (right ? (float)view.width_px : 0) + dx;
+		layer->corners_px[corner][1] = (corner < 2 ? top_in : bottom_in) + dy;
+	}
+}
+
+static void add_scroll_mark(struct list *list, struct overlay_rect view, float alpha, float dx,
+			    float dy)
+{
+	const struct overlay *overlay = list->overlay;
+	float most = (float)overlay_scroll_most(overlay), height;
+	float width = (float)overlay->drawings[BITMAP_SCROLL].bitmap.width_px;
+
+	if (most <= 0)
+		return;
+	height = (float)view.height_px * (float)view.height_px / ((float)view.height_px + most);
+	add_rect(list, BITMAP_SCROLL, alpha, (float)(view.x_px + view.width_px) - 2 * width + dx,
+		 (float)view.y_px + overlay->scroll_px / most * ((float)view.height_px - height) +
+			 dy,
+		 width, height);
+}
+
+static void add_page(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	struct overlay_rect page = overlay_page_rect(overlay), view = overlay_view_rect(overlay);
+	float alpha = ease(overlay->page.alpha),
+	      slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
+	float dx = overlay_is_portrait(overlay) ? 0 : slide, dy = slide - dx;
+	float foot_px = (float)overlay->drawings[BITMAP_PAGE_FOOT].bitmap.height_px;
+
+	if (!overlay->article)
+		return;
+	add_rect(list, BITMAP_PAPER, alpha, (float)page.x_px + dx, (float)page.y_px + dy,
+		 (float)page.width_px, (float)page.height_px);
+	for (uint32_t slot = 0; slot < STRIPS; slot++)
+		add_strip(list, slot, view, dx, dy);
+	if (overlay->scroll_px < (float)overlay_scroll_most(overlay) - 1)
+		add_rect(list, BITMAP_PAGE_FOOT, alpha, (float)view.x_px + dx,
+			 (float)(view.y_px + view.height_px) - foot_px + dy, (float)view.width_px,
+			 foot_px);
+	add_scroll_mark(list, view, alpha, dx, dy);
+	add_bitmap(list, BITMAP_PAGE_HEAD, alpha, (float)page.x_px + dx, (float)page.y_px + dy);
+}
+
+uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
+{
+	struct list list = { .overlay = overlay, .layers = layers, .most = most };
+	struct overlay_rect card = overlay_card_rect(overlay), help = overlay_help_rect(overlay);
+	struct overlay_rect chrome = overlay_chrome_rect(overlay);
+
+	add_callouts(&list);
+	add_bitmap(&list, BITMAP_HELP, ease(overlay->help.alpha), (float)help.x_px,
+		   (float)help.y_px);
+	add_bitmap(&list, BITMAP_CARD, ease(overlay->card.alpha), (float)card.x_px,
+		   (float)card.y_px);
+	add_page(&list);
+	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
+	return list.count;
+}
+
+/* ---- by Cairo ---- */
+
+static void paint_layer(cairo_t *context, const struct overlay_layer *layer)
+{
+	float(*c)[2] = (float(*)[2])layer->corners_px;
+	double width = (layer->source[2] - layer->source[0]) * layer->pixels->width_px;
+	double height = (layer->source[3] - layer->source[1]) * layer->pixels->height_px;
+	cairo_matrix_t matrix;
+
+	cairo_save(context);
+	cairo_move_to(context, c[0][0], c[0][1]);
+	for (int i = 1; i < 4; i++)
+		cairo_line_to(context, c[i][0], c[i][1]);
+	cairo_close_path(context);
+	cairo_clip(context);
+	cairo_matrix_init(&matrix, (c[1][0] - c[0][0]) / width, (c[1][1] - c[0][1]) / width,
+			  (c[3][0] - c[0][0]) / height, (c[3][1] - c[0][1]) / height, c[0][0],
+			  c[0][1]);
+	cairo_transform(context, &matrix);
+	cairo_set_source_surface(context, layer->pixels->surface,
+				 -layer->source[0] * layer->pixels->width_px,
+				 -layer->source[1] * layer->pixels->height_px);
+	cairo_pattern_set_extend(cairo_get_source(context), CAIRO_EXTEND_PAD);
+	cairo_paint_with_alpha(context, layer->alpha);
+	cairo_restore(context);
+}
+
+void overlay_paint(const struct overlay *overlay, cairo_t *context)
+{
+	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+
+	for (uint32_t i = 0; i < count; i++)
+		paint_layer(context, &layers[i]);
+}

@@ -1,0 +1,218 @@
+/* Where everything is on the panel. */
+#include <stdlib.h>
+
+#include "ui/overlay_state.h"
+
+#define HEAD_MM  13.0f
+#define CLOSE_MM 34.0f /* the close control is as wide as this at most */
+
+static int px(const struct overlay *overlay, float mm)
+{
+	return theme_px(&overlay->theme, mm);
+}
+
+bool overlay_is_portrait(const struct overlay *overlay)
+{
+	return overlay->height_px > overlay->width_px;
+}
+
+bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px)
+{
+	return x_px >= (float)rect.x_px && x_px < (float)(rect.x_px + rect.width_px) &&
+	       y_px >= (float)rect.y_px && y_px < (float)(rect.y_px + rect.height_px);
+}
+
+struct overlay_rect overlay_page_rect(const struct overlay *overlay)
+{
+	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
+
+	if (overlay_is_portrait(overlay)) {
+		rect.y_px = overlay->height_px / 2;
+		rect.height_px -= rect.y_px;
+	} else {
+		rect.x_px = overlay->width_px / 2;
+		rect.width_px -= rect.x_px;
+	}
+	return rect;
+}
+
+struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
+{
+	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
+
+	if (overlay->page_part >= 0 && overlay_is_portrait(overlay))
+		rect.height_px = overlay->height_px / 2;
+	else if (overlay->page_part >= 0)
+		rect.width_px = overlay->width_px / 2;
+	return rect;
+}
+
+/* Below the head; in portrait also above the bar, which stays where it always is. */
+struct overlay_rect overlay_view_rect(const struct overlay *overlay)
+{
+	struct overlay_rect rect = overlay_page_rect(overlay);
+	int head_px = px(overlay, HEAD_MM);
+
+	rect.y_px += head_px;
+	rect.height_px -= head_px;
+	if (overlay_is_portrait(overlay))
+		rect.height_px -= overlay->chrome.height_px + 2 * px(overlay, THEME_GAP_MM);
+	if (rect.height_px < 1)
+		rect.height_px = 1;
+	return rect;
+}
+
+struct overlay_rect overlay_close_rect(const struct overlay *overlay)
+{
+	struct overlay_rect page = overlay_page_rect(overlay);
+	int width_px = px(overlay, CLOSE_MM), gap_px = px(overlay, THEME_GAP_MM);
+
+	return (struct overlay_rect){ page.x_px + page.width_px - width_px - gap_px,
+				      page.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
+}
+
+struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)
+{
+	int margin_px = px(overlay, THEME_GAP_MM);
+
+	return (struct overlay_rect){ margin_px,
+				      overlay->height_px - overlay->chrome.height_px - margin_px,
+				      overlay->chrome.width_px, overlay->chrome.height_px };
+}
+
+/* The lowest line that the scene may use: above the bar where that is in the scene. */
+static int floor_of(const struct overlay *overlay)
+{
+	struct overlay_rect scene = overlay_scene_rect(overlay);
+	int bottom_px = scene.y_px + scene.height_px;
+	int bar_px = overlay_chrome_rect(overlay).y_px;
+
+	return (bottom_px < bar_px ? bottom_px : bar_px) - px(overlay, THEME_GAP_MM);
+}
+
+static struct overlay_rect above_floor(const struct overlay *overlay, int width_px, int height_px)
+{
+	struct overlay_rect scene = overlay_scene_rect(overlay);
+
+	return (struct overlay_rect){ scene.x_px + (scene.width_px - width_px) / 2,
+				      floor_of(overlay) - height_px, width_px, height_px };
+}
+
+struct overlay_rect overlay_card_rect(const struct overlay *overlay)
+{
+	int most_px = overlay_scene_rect(overlay).width_px - 2 * px(overlay, THEME_GAP_MM);
+	int width_px, height_px;
+
+	card_size(&overlay->theme, most_px, &width_px, &height_px);
+	return above_floor(overlay, width_px, height_px);
+}
+
+struct overlay_rect overlay_help_rect(const struct overlay *overlay)
+{
+	const struct bitmap *bitmap = &overlay->drawings[BITMAP_HELP].bitmap;
+
+	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
+}
+
+int overlay_scroll_most(const struct overlay *overlay)
+{
+	int most_px = overlay->article ? article_height_px(overlay->article) -
+						 overlay_view_rect(overlay).height_px
+				       : 0;
+
+	return most_px > 0 ? most_px : 0;
+}
+
+int overlay_row_px(const struct overlay *overlay)
+{
+	return px(overlay, THEME_TARGET_MM);
+}
+
+/* ---- callouts ---- */
+
+static struct callout_area callout_area(const struct overlay *overlay)
+{
+	struct overlay_rect scene = overlay_scene_rect(overlay);
+	int margin_px = px(overlay, THEME_MARGIN_MM), floor_px = floor_of(overlay);
+	struct callout_area area = { .x_px = scene.x_px + margin_px,
+				     .y_px = scene.y_px + margin_px,
+				     .width_px = scene.width_px - 2 * margin_px,
+				     .row_px = overlay_row_px(overlay),
+				     .gap_px = px(overlay, THEME_GAP_MM),
+				     .lead_px = px(overlay, THEME_MARGIN_MM) };
+
+	if (overlay->card_part >= 0)
+		floor_px = overlay_card_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	else if (overlay->help.on)
+		floor_px = overlay_help_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	area.height_px = floor_px - area.y_px;
+	area.column_px = overlay->column_px;
+	/* Half of the width is the model's own. */
+	if (area.column_px > area.width_px * 27 / 100)
+		area.column_px = area.width_px * 27 / 100;
+	return area;
+}
+
+static struct label *find_label(struct overlay *overlay, int part)
+{
+	for (uint32_t i = 0; i < LABELS; i++)
+		if (overlay->labels[i].part == part)
+			return &overlay->labels[i];
+	return NULL;
+}
+
+/* A free one, or the faintest of those that fade out. There are more than can be shown at once. */
+static struct label *take_label(struct overlay *overlay)
+{
+	struct label *best = NULL;
+
+	for (uint32_t i = 0; i < LABELS; i++) {
+		struct label *label = &overlay->labels[i];
+
+		if (label->part >= 0 && label->fade.on)
+			continue;
+		if (!best || label->part < 0 ||
+		    (best->part >= 0 && label->fade.alpha < best->fade.alpha))
+			best = label;
+		if (best->part < 0)
+			break;
+	}
+	return best;
+}
+
+static void show_label(struct overlay *overlay, const struct callout *place)
+{
+	struct label *label = find_label(overlay, (int)place->part);
+
+	if (!label) {
+		label = take_label(overlay);
+		if (!label)
+			return;
+		*label = (struct label){ .part = (int)place->part };
+	} else if (label->place.left != place->left ||
+		   abs(label->place.y_px - place->y_px) > overlay_row_px(overlay)) {
+		label->fade.alpha = 0; /* it changed places: come in anew rather than jump */
+	}
+	label->place = *place;
+	label->fade.on = true;
+}
+
+void overlay_lay_out_callouts(struct overlay *overlay)
+{
+	struct callout_area area = callout_area(overlay);
+
+	for (uint32_t i = 0; i < overlay->part_count; i++) {
+		int label_px = overlay->parts[i].label_px;
+
+		overlay->anchors[i].label_px =
+			label_px < area.column_px ? label_px : area.column_px;
+	}
+	if (overlay->callouts_on)
+		callouts_layout(&overlay->callouts, &area, overlay->anchors, overlay->part_count);
+	else
+		overlay->callouts.count = 0;
+	for (uint32_t i = 0; i < LABELS; i++)
+		overlay->labels[i].fade.on = false;
+	for (uint32_t i = 0; i < overlay->callouts.count; i++)
+		show_label(overlay, &overlay->callouts.list[i]);
+}

@@ -1,0 +1,114 @@
+/* Private to ui: what the overlay's sources share. */
+#ifndef GOPURA_UI_OVERLAY_STATE_H
+#define GOPURA_UI_OVERLAY_STATE_H
+
+#include "ui/article.h"
+#include "ui/callout.h"
+#include "ui/card.h"
+#include "ui/chrome.h"
+#include "ui/overlay.h"
+#include "ui/theme.h"
+
+enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
+
+enum bitmap_id {
+	BITMAP_LEADER,
+	BITMAP_DOT,
+	BITMAP_CHROME,
+	BITMAP_HELP,
+	BITMAP_CARD,
+	BITMAP_PAPER,
+	BITMAP_PAGE_HEAD,
+	BITMAP_PAGE_FOOT, /* text fades out where there is more below */
+	BITMAP_SCROLL,
+	BITMAP_STRIP,
+	BITMAP_LABEL = BITMAP_STRIP + STRIPS,
+	BITMAP_COUNT = BITMAP_LABEL + LABELS,
+};
+
+struct drawing {
+	struct bitmap bitmap; /* empty: could not be drawn, left out */
+	uint32_t revision;
+};
+
+struct fade {
+	float alpha;
+	bool on;
+};
+
+struct part {
+	char *title, *caption, *thumbnail; /* owned */
+	bool has_page;
+	int label_px; /* width of its label */
+};
+
+struct label {
+	int part; /* -1: free */
+	bool drawn, drawn_selected;
+	struct fade fade;
+	struct callout place;
+};
+
+struct strip {
+	int index;  /* which piece of the article, or -1 */
+	bool stale; /* the article changed there: draw it again, show the old until then */
+	struct fade fade;
+};
+
+struct overlay {
+	int width_px, height_px;
+	struct picture_source pictures;
+	struct theme theme;
+	char *languages[OVERLAY_LANGUAGES_MOST];
+	uint32_t language_count;
+	int language; /* index of the one that is set */
+
+	struct part *parts;
+	uint32_t part_count;
+	struct callout_anchor *anchors; /* as many as parts */
+	bool callouts_on, callouts_dirty;
+	int column_px; /* of the widest label */
+	struct callouts callouts;
+	struct label labels[LABELS];
+
+	struct chrome chrome;
+	bool chrome_dirty, help_dirty, card_dirty, head_dirty;
+	struct fade help, card, page;
+	int card_part, card_shown;  /* shown: on its bitmap, also while fading out */
+	int page_part, page_titled; /* titled: in its head, also while fading out */
+	struct article *article;    /* NULL when no page is open or fading out */
+	struct strip strips[STRIPS];
+	int strip_px;
+	float scroll_px, scroll_px_per_s;
+
+	struct drawing drawings[BITMAP_COUNT];
+	int64_t then_ms; /* of the last update; 0: none yet */
+};
+
+/* Where things are; pixels of the panel. */
+bool overlay_is_portrait(const struct overlay *overlay);
+struct overlay_rect overlay_page_rect(const struct overlay *overlay); /* all of its paper */
+struct overlay_rect overlay_view_rect(const struct overlay *overlay); /* window on the article */
+struct overlay_rect overlay_card_rect(const struct overlay *overlay);
+struct overlay_rect overlay_chrome_rect(const struct overlay *overlay);
+struct overlay_rect overlay_help_rect(const struct overlay *overlay);
+struct overlay_rect overlay_close_rect(const struct overlay *overlay); /* of the page */
+bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px);
+int overlay_scroll_most(const struct overlay *overlay);
+
+/* Bitmaps; each replaces what was there and raises the revision. */
+void overlay_draw_fixed(struct overlay *overlay); /* leader, dot, paper, foot, scroll mark */
+void overlay_draw_chrome(struct overlay *overlay);
+void overlay_draw_help(struct overlay *overlay);
+void overlay_draw_card(struct overlay *overlay);
+void overlay_draw_page_head(struct overlay *overlay);
+void overlay_draw_label(struct overlay *overlay, uint32_t label);
+void overlay_draw_strip(struct overlay *overlay, uint32_t slot);
+/* Width of a part's label. */
+int overlay_measure_label(const struct overlay *overlay, const char *title);
+int overlay_row_px(const struct overlay *overlay);
+
+/* Callouts into labels. true: some wait to be drawn. */
+void overlay_lay_out_callouts(struct overlay *overlay);
+
+#endif

@@ -1,0 +1,44 @@
+#include "ui/strings.h"
+
+#include <string.h>
+
+#include "base/compiler.h"
+
+static const struct {
+	const char *language, *strings[UI_STRING_COUNT];
+} tables[] = {
+	{ "en",
+	  { "Read more", "Close", "Drag to turn", "Pinch to come nearer", "Tap a name to read" } },
+	{ "fr",
+	  { "Lire la suite", "Fermer", "Glissez pour tourner", "Écartez pour approcher",
+	    "Touchez un nom pour lire" } },
+	{ "km", { "អានបន្ថែម", "បិទ", "អូសដើម្បីបង្វិល", "ច្បិចដើម្បីពង្រីក", "ប៉ះឈ្មោះដើម្បីអាន" } },
+	{ "ja",
+	  { "詳しく読む", "閉じる", "なぞって回す", "つまんで拡大・縮小", "名前にふれて読む" } },
+};
+
+static const struct {
+	const char *language, *name;
+} endonyms[] = {
+	{ "en", "English" },    { "fr", "Français" }, { "km", "ខ្មែរ" },       { "ja", "日本語" },
+	{ "de", "Deutsch" },    { "es", "Español" },  { "it", "Italiano" },   { "pt", "Português" },
+	{ "nl", "Nederlands" }, { "th", "ไทย" },      { "vi", "Tiếng Việt" }, { "lo", "ລາວ" },
+	{ "my", "မြန်မာ" },      { "zh", "中文" },     { "ko", "한국어" },     { "ru", "Русский" },
+	{ "ar", "العربية" },    { "hi", "हिन्दी" },
+};
+
+const char *ui_string(enum ui_string string, const char *language)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(tables); i++)
+		if (strcmp(tables[i].language, language) == 0)
+			return tables[i].strings[string];
+	return tables[0].strings[string];
+}
+
+const char *ui_endonym(const char *language)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(endonyms); i++)
+		if (strcmp(endonyms[i].language, language) == 0)
+			return endonyms[i].name;
+	return language;
+}

@@ -1,0 +1,156 @@
+#include "ui/theme.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define RGB(r, g, b)                                                                               \
+	{                                                                                          \
+		(r) / 255.0, (g) / 255.0, (b) / 255.0                                              \
+	}
+
+const struct colour theme_paper = RGB(248, 244, 236);
+const struct colour theme_paper_shade = RGB(236, 229, 217);
+const struct colour theme_ink = RGB(43, 37, 32);
+const struct colour theme_ink_soft = RGB(106, 95, 84);
+const struct colour theme_line = RGB(214, 204, 189);
+const struct colour theme_accent = RGB(158, 72, 38); /* laterite */
+const struct colour theme_night = RGB(28, 25, 22);
+const struct colour theme_night_text = RGB(246, 240, 230);
+
+static const char serif[] = "Noto Serif, Noto Serif Khmer, Noto Serif CJK JP";
+static const char sans[] = "Noto Sans, Noto Sans Khmer, Noto Sans CJK JP";
+
+static const struct {
+	const char *families;
+	float size_mm; /* of the em */
+	PangoWeight weight;
+	bool italic;
+	float line_spacing;
+} styles[TEXT_STYLE_COUNT] = {
+	[TEXT_LABEL] = { sans, 4.0f, PANGO_WEIGHT_MEDIUM, false, 1.0f },
+	[TEXT_TITLE] = { serif, 5.6f, PANGO_WEIGHT_SEMIBOLD, false, 1.05f },
+	[TEXT_CAPTION] = { sans, 4.0f, PANGO_WEIGHT_NORMAL, false, 1.1f },
+	[TEXT_BUTTON] = { sans, 3.9f, PANGO_WEIGHT_MEDIUM, false, 1.0f },
+	[TEXT_BODY] = { sans, 4.5f, PANGO_WEIGHT_NORMAL, false, 1.2f },
+	[TEXT_HEADING_1] = { serif, 8.4f, PANGO_WEIGHT_SEMIBOLD, false, 1.05f },
+	[TEXT_HEADING_2] = { serif, 6.2f, PANGO_WEIGHT_SEMIBOLD, false, 1.05f },
+	[TEXT_HEADING_3] = { sans, 4.9f, PANGO_WEIGHT_SEMIBOLD, false, 1.05f },
+	[TEXT_QUOTE] = { serif, 4.8f, PANGO_WEIGHT_NORMAL, true, 1.2f },
+	[TEXT_FIGURE] = { sans, 3.7f, PANGO_WEIGHT_NORMAL, false, 1.1f },
+	[TEXT_CELL] = { sans, 4.1f, PANGO_WEIGHT_NORMAL, false, 1.1f },
+};
+
+int theme_init(struct theme *theme, float px_per_mm, const char *language)
+{
+	cairo_font_options_t *options;
+
+	memset(theme, 0, sizeof(*theme));
+	theme->px_per_mm = px_per_mm;
+	theme->context = pango_font_map_create_context(pango_cairo_font_map_get_default());
+	if (!theme->context)
+		return -ENOMEM;
+	/* Textures move by fractions of a pixel: grey antialiasing, no sub-pixel colours. */
+	options = cairo_font_options_create();
+	cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+	cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_SLIGHT);
+	cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+	pango_cairo_context_set_font_options(theme->context, options);
+	cairo_font_options_destroy(options);
+	pango_context_set_round_glyph_positions(theme->context, FALSE);
+	theme_set_language(theme, language);
+	return 0;
+}
+
+void theme_finish(struct theme *theme)
+{
+	if (!theme)
+		return;
+	if (theme->context)
+		g_object_unref(theme->context);
+	memset(theme, 0, sizeof(*theme));
+}
+
+void theme_set_language(struct theme *theme, const char *language)
+{
+	snprintf(theme->language, sizeof(theme->language), "%s", language);
+	pango_context_set_language(theme->context, pango_language_from_string(theme->language));
+}
+
+bool theme_has_italics(const struct theme *theme)
+{
+	static const char *const without[] = { "km", "ja", "zh", "ko", "th", "lo",
+					       "my", "hi", "ar", "he", "fa" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(without); i++)
+		if (strncmp(theme->language, without[i], 2) == 0)
+			return false;
+	return true;
+}
+
+int theme_px(const struct theme *theme, float mm)
+{
+	int px = (int)lroundf(mm * theme->px_per_mm);
+
+	return px > 0 ? px : 1;
+}
+
+float theme_guess_px_per_mm(int width_px, int height_px)
+{
+	int shorter = width_px < height_px ? width_px : height_px;
+
+	return fmaxf(3.2f, (float)shorter / 210.0f);
+}
+
+void theme_set_source(cairo_t *context, struct colour colour, double alpha)
+{
+	cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, alpha);
+}
+
+void theme_rounded(cairo_t *context, double x, double y, double width, double height, double radius)
+{
+	const double quarter = acos(0.0);
+
+	cairo_new_sub_path(context);
+	cairo_arc(context, x + width - radius, y + radius, radius, -quarter, 0);
+	cairo_arc(context, x + width - radius, y + height - radius, radius, 0, quarter);
+	cairo_arc(context, x + radius, y + height - radius, radius, quarter, 2 * quarter);
+	cairo_arc(context, x + radius, y + radius, radius, 2 * quarter, 3 * quarter);
+	cairo_close_path(context);
+}
+
+int theme_style_px(const struct theme *theme, enum text_style style)
+{
+	return theme_px(theme, styles[style].size_mm);
+}
+
+PangoLayout *theme_layout(const struct theme *theme, enum text_style style, const char *text,
+			  int width_px)
+{
+	PangoLayout *layout = pango_layout_new(theme->context);
+	PangoFontDescription *font = pango_font_description_new();
+
+	pango_font_description_set_family_static(font, styles[style].families);
+	pango_font_description_set_weight(font, styles[style].weight);
+	if (styles[style].italic && theme_has_italics(theme))
+		pango_font_description_set_style(font, PANGO_STYLE_ITALIC);
+	pango_font_description_set_absolute_size(font, theme_style_px(theme, style) *
+							       (double)PANGO_SCALE);
+	pango_layout_set_font_description(layout, font);
+	pango_font_description_free(font);
+	pango_layout_set_line_spacing(layout, styles[style].line_spacing);
+	/* Words first; a word longer than the line (Khmer is written without spaces) is broken
+	 * between clusters, never inside one. */
+	pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
+	pango_layout_set_width(layout, width_px < 0 ? -1 : width_px * PANGO_SCALE);
+	pango_layout_set_text(layout, text, -1);
+	return layout;
+}
+
+void theme_limit_lines(PangoLayout *layout, int width_px, int lines)
+{
+	pango_layout_set_width(layout, width_px * PANGO_SCALE);
+	pango_layout_set_height(layout, -lines);
+	pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_END);
+}

@@ -1,0 +1,72 @@
+/* One look for everything: sizes in millimetres of glass, so that a target is as large for a finger
+ * on a 10-inch panel as on a 55-inch one; few type sizes; stone, ink and one accent. docs/ui.md
+ * says why. */
+#ifndef GOPURA_UI_THEME_H
+#define GOPURA_UI_THEME_H
+
+#include <pango/pangocairo.h>
+#include <stdbool.h>
+
+#include "base/compiler.h"
+
+/* Millimetres. A touch target is never smaller than THEME_TARGET_MM. */
+#define THEME_TARGET_MM 9.0f
+#define THEME_MARGIN_MM 4.0f
+#define THEME_GAP_MM    2.0f
+#define THEME_RADIUS_MM 1.2f
+
+enum text_style {
+	TEXT_LABEL,   /* on a callout */
+	TEXT_TITLE,   /* of a card, and in the page's header */
+	TEXT_CAPTION, /* of a card */
+	TEXT_BUTTON,
+	TEXT_BODY, /* of a page, and below */
+	TEXT_HEADING_1,
+	TEXT_HEADING_2,
+	TEXT_HEADING_3,
+	TEXT_QUOTE,
+	TEXT_FIGURE, /* under a picture */
+	TEXT_CELL,   /* of a table */
+	TEXT_STYLE_COUNT,
+};
+
+struct colour {
+	double red, green, blue;
+};
+
+extern const struct colour theme_paper, theme_paper_shade, theme_ink, theme_ink_soft, theme_line,
+	theme_accent, theme_night, theme_night_text;
+
+struct theme {
+	float px_per_mm;
+	char language[17];
+	PangoContext *context; /* owned */
+};
+
+/* px_per_mm > 0. -ENOMEM. */
+must_check int theme_init(struct theme *theme, float px_per_mm, const char *language);
+void theme_finish(struct theme *theme); /* NULL and zeroed are fine */
+/* Chooses the glyph variants and line breaks of a language ("ja", "km"). */
+void theme_set_language(struct theme *theme, const char *language);
+
+/* Scripts that know no italics are not slanted: their emphasis is weight. */
+bool theme_has_italics(const struct theme *theme);
+
+int theme_px(const struct theme *theme, float mm); /* at least 1 */
+/* Of a panel of which nothing else is known: as a 20 cm tall one, never under 3.2. */
+float theme_guess_px_per_mm(int width_px, int height_px);
+
+void theme_set_source(cairo_t *context, struct colour colour, double alpha);
+/* A path. */
+void theme_rounded(cairo_t *context, double x, double y, double width, double height,
+		   double radius);
+
+/* A layout that wraps at width_px (-1: one line, never wrapped), for any script. Released by
+ * g_object_unref; aborts where memory ran out, as all of Pango does. */
+PangoLayout *theme_layout(const struct theme *theme, enum text_style style, const char *text,
+			  int width_px);
+/* At most `lines` lines; what does not fit ends in an ellipsis. */
+void theme_limit_lines(PangoLayout *layout, int width_px, int lines);
+int theme_style_px(const struct theme *theme, enum text_style style); /* the size of its type */
+
+#endif
