@@ -11,6 +11,8 @@ static const struct command commands[] = {
 	{ "verify", "walk a whole release and check everything in it", command_verify },
 	{ "inspect", "say what an object, a file or a release holds", command_inspect },
 	{ "keys", "make the signing keys of a content folder", command_keys },
+	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
+	  command_hierarchy },
 	{ NULL, NULL, NULL },
 };
 

@@ -1,0 +1,214 @@
+#include "pipeline/commands.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/content.h"
+#include "pipeline/master.h"
+
+static const char help[] =
+	"gopura-content hierarchy: make the multiresolution hierarchy of a content folder\n"
+	"\n"
+	"usage: gopura-content hierarchy DIR [OPTIONS]\n"
+	"\n"
+	"  --hierarchy KIND   groups or tree; by default as temple.ini says ([hierarchy] kind)\n"
+	"  --jobs N           threads; by default one a processor. The result is the same.\n"
+	"  --force            make it anew though nothing changed\n"
+	"\n"
+	"Reads the scans named in DIR/temple.ini and writes DIR/.work/master. Does nothing where\n"
+	"scans and options are as they were. Exit status: 0 done, 1 failed (the reason is\n"
+	"printed), 2 the command line is wrong.\n"
+	"\n"
+	"  gopura-content hierarchy temple\n"
+	"  gopura-content hierarchy temple --hierarchy tree --jobs 8\n";
+
+struct settings {
+	const char *folder; /* borrowed from argv */
+	const char *kind;   /* NULL: as temple.ini says */
+	uint32_t jobs;
+	bool force;
+};
+
+static struct master_options options_of(const struct content *content,
+					const struct settings *settings)
+{
+	bool tree = settings->kind ? strcmp(settings->kind, "tree") == 0 : content->binary_tree;
+
+	return (struct master_options){
+		.multires = {
+			.kind = tree ? MULTIRES_TREE : MULTIRES_GROUPS,
+			.patch_triangles = content->patch_triangles,
+			.jobs = settings->jobs,
+		},
+		.stone_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
+	};
+}
+
+static void print_master(const struct master *master, double share)
+{
+	const struct hierarchy *hierarchy = &master->hierarchy;
+	struct master_cut cut;
+	uint64_t triangles = 0;
+
+	for (uint32_t p = 0; p < hierarchy->groups[0].patch_count; p++)
+		triangles += hierarchy->patches[p].triangle_count;
+	printf("coarsest cut: %" PRIu64 " triangles, %" PRIu32 " bytes\n", triangles,
+	       master->sizes[0]);
+	if (master_cut_create(&cut, master, share) < 0) {
+		printf("published: nothing fits in %.3g %% of the scan's triangles\n",
+		       100.0 * share);
+		return;
+	}
+	printf("published: %" PRIu32 " of %" PRIu32 " groups, %" PRIu64 " triangles (%.2f %%)\n",
+	       cut.hierarchy.group_count, hierarchy->group_count, cut.triangle_count,
+	       100.0 * (double)cut.triangle_count / (double)master->source_triangles);
+	master_cut_finish(&cut);
+}
+
+static void print_report(const struct master_report *report, uint64_t source_triangles)
+{
+	const struct multires_stats *stats = &report->stats;
+	double seconds = (double)report->duration_ms / 1000.0;
+
+	for (uint32_t i = 0; i < stats->level_count; i++)
+		printf("level %2" PRIu32 ": %9" PRIu64 " triangles, %6" PRIu32 " patches, %5" PRIu32
+		       " groups\n",
+		       i, stats->levels[i].triangle_count, stats->levels[i].patch_count,
+		       stats->levels[i].group_count);
+	printf("merged %" PRIu32 " vertices, dropped %" PRIu32 " degenerate and %" PRIu32
+	       " duplicate triangles; %" PRIu32 " open edges, %" PRIu32 " crowded edges\n",
+	       report->counts.merged_vertices, report->counts.degenerate_triangles,
+	       report->counts.duplicate_triangles, report->counts.border_edges,
+	       report->counts.crowded_edges);
+	printf("%" PRIu64 " bytes, %.1f bits a vertex; %.1f s, %.2f million triangles a second\n",
+	       stats->object_bytes, 8.0 * (double)stats->object_bytes / (double)stats->vertex_count,
+	       seconds, (double)source_triangles / 1e6 / (seconds > 0.0 ? seconds : 1e-3));
+}
+
+static int complain(const char *what, int rc, const struct fault *fault)
+{
+	if (fault && fault->text[0])
+		fprintf(stderr, "gopura-content hierarchy: %s\n", fault->text);
+	else if (rc == -E2BIG)
+		fprintf(stderr,
+			"gopura-content hierarchy: %s: the coarsest patches do not fit in one "
+			"group; use --hierarchy groups\n",
+			what);
+	else
+		fprintf(stderr, "gopura-content hierarchy: %s: %s\n", what, strerror(-rc));
+	return rc;
+}
+
+static int build(const char *folder, const struct content *content, struct hash stamp,
+		 const struct master_options *options)
+{
+	struct master_report report;
+	struct fault fault = { "" };
+	struct mesh mesh;
+	int rc = content_import(&mesh, content, NULL, &fault);
+
+	if (rc < 0)
+		return complain(content->folder, rc, &fault);
+	rc = master_build(folder, &mesh, stamp, options, &report);
+	if (rc < 0)
+		complain(folder, rc, NULL);
+	else
+		print_report(&report, mesh.triangle_count);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+static int make(const struct settings *settings, const struct content *content)
+{
+	const struct master_options options = options_of(content, settings);
+	struct fault fault = { "" };
+	struct master *master = NULL;
+	char folder[CONTENT_PATH_BYTES];
+	struct hash key, stamp;
+	int rc = content_work_path(content, "master", folder);
+
+	if (rc == 0)
+		rc = content_scans_key(content, &key, &fault);
+	if (rc < 0)
+		return complain(content->folder, rc, &fault);
+	stamp = master_stamp(key, &options);
+	rc = settings->force ? -ENOENT : master_open(&master, folder, &stamp);
+	if (rc == 0) {
+		puts("nothing changed");
+	} else {
+		rc = build(folder, content, stamp, &options);
+		if (rc == 0)
+			rc = master_open(&master, folder, &stamp);
+	}
+	if (rc == 0)
+		print_master(master, content->publish_share);
+	master_destroy(master);
+	return rc;
+}
+
+static int wrong(const char *what, const char *value)
+{
+	fprintf(stderr, "gopura-content hierarchy: %s%s; see gopura-content hierarchy --help\n",
+		what, value);
+	return 2;
+}
+
+static int run(const struct settings *settings)
+{
+	struct fault fault = { "" };
+	struct content content;
+	int rc = content_read(&content, settings->folder, &fault);
+
+	if (rc < 0) {
+		complain(settings->folder, rc, &fault);
+		return EXIT_FAILURE;
+	}
+	rc = make(settings, &content);
+	content_release(&content);
+	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+int command_hierarchy(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "hierarchy", required_argument, NULL, 'k' },
+		{ "jobs", required_argument, NULL, 'j' },
+		{ "force", no_argument, NULL, 'f' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	struct settings settings = { 0 };
+	int option;
+	char *end;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'k':
+			if (strcmp(optarg, "groups") != 0 && strcmp(optarg, "tree") != 0)
+				return wrong("--hierarchy must be groups or tree, not ", optarg);
+			settings.kind = optarg;
+			break;
+		case 'j':
+			settings.jobs = (uint32_t)strtoul(optarg, &end, 10);
+			if (*end || settings.jobs < 1 || settings.jobs > 64)
+				return wrong("--jobs must be 1 to 64, not ", optarg);
+			break;
+		case 'f':
+			settings.force = true;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return 0;
+		default:
+			return 2;
+		}
+	}
+	if (optind + 1 != argc)
+		return wrong("name one content folder", "");
+	settings.folder = argv[optind];
+	return run(&settings);
+}
