@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "format/light.h"
+#include "format/stone.h"
 #include "render/gl.h"
 
 enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
@@ -15,7 +16,7 @@ enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
 struct drawing {
 	const struct chunks *chunks; /* borrowed */
 	GLuint program, vertices, uvs, indices;
-	GLint matrix_at;
+	GLint matrix_at, eye_at, px_at;
 	uint32_t texture_count;
 	GLuint *textures; /* owned */
 };
@@ -33,13 +34,17 @@ static const char vertex_text[] =
 
 static const char fragment_head[] =
 	"precision highp float;\n"
-	"uniform vec3 sun; uniform sampler2D image;\n"
+	"uniform vec3 sun; uniform vec3 eye; uniform float px_radians; uniform sampler2D image;\n"
 	"varying vec3 v_at; varying vec3 v_normal; varying vec4 v_colour; varying vec2 v_uv;\n";
 
 static const char scan_colour[] = "vec3 base() { return v_colour.rgb; }\n";
 /* Row 0 of a picture is its top, where v is 1. */
 static const char image_colour[] =
 	"vec3 base() { return texture2D(image, vec2(v_uv.x, 1.0 - v_uv.y)).rgb; }\n";
+static const char stone[] =
+	"vec3 base() {\n"
+	"	return stone_colour(v_at, normalize(v_normal), distance(v_at, eye) * px_radians);\n"
+	"}\n";
 static const char no_light[] = "float shade() { return 1.0; }\n";
 static const char sun_light[] =
 	"float shade() { return light(normalize(v_normal), v_colour.a, sun); }\n";
@@ -52,17 +57,25 @@ static const char fragment_main[] =
 
 static int build_program(struct drawing *drawing, const struct drawing_options *options)
 {
-	const char *colour = drawing->texture_count ? image_colour : scan_colour;
+	const char *colour = options->procedural      ? stone
+			     : drawing->texture_count ? image_colour
+						      : scan_colour;
 	const char *const vertex[] = { vertex_text, NULL };
-	const char *const fragment[] = { fragment_head, options->lit ? light_glsl : "",
-					 colour,        options->lit ? sun_light : no_light,
-					 fragment_main, NULL };
+	const char *const fragment[] = { fragment_head,
+					 options->procedural ? stone_glsl : "",
+					 options->lit ? light_glsl : "",
+					 colour,
+					 options->lit ? sun_light : no_light,
+					 fragment_main,
+					 NULL };
 	const struct gl_program_source source = { "drawing", vertex, fragment, attributes };
 	int rc = gl_program_build(&drawing->program, &source);
 
 	if (rc < 0)
 		return rc;
 	drawing->matrix_at = glGetUniformLocation(drawing->program, "matrix");
+	drawing->eye_at = glGetUniformLocation(drawing->program, "eye");
+	drawing->px_at = glGetUniformLocation(drawing->program, "px_radians");
 	glUseProgram(drawing->program);
 	glUniform3fv(glGetUniformLocation(drawing->program, "sun"), 1, options->sun);
 	glUniform1i(glGetUniformLocation(drawing->program, "image"), 0);
@@ -282,7 +295,8 @@ static void point_at(const struct drawing *drawing, const struct chunk *chunk)
 	glBindTexture(GL_TEXTURE_2D, drawing->textures[chunk->texture]);
 }
 
-uint64_t drawing_draw(struct drawing *drawing, const float matrix[16])
+uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
+		      float px_radians)
 {
 	uint64_t triangles = 0;
 
@@ -298,6 +312,8 @@ uint64_t drawing_draw(struct drawing *drawing, const float matrix[16])
 	glDisable(GL_DITHER);
 	glUseProgram(drawing->program);
 	glUniformMatrix4fv(drawing->matrix_at, 1, GL_FALSE, matrix);
+	glUniform3fv(drawing->eye_at, 1, eye_m);
+	glUniform1f(drawing->px_at, px_radians);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
 	glActiveTexture(GL_TEXTURE0);
 	for (GLuint i = AT_POSITION; i <= (drawing->texture_count ? AT_UV : AT_COLOUR); i++)

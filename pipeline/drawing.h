@@ -33,8 +33,10 @@ bool drawing_range(const struct drawing *drawing, const float eye_m[3], const fl
 		   float *near_m, float *far_m);
 /* Chunks that may show in that clip space. */
 uint32_t drawing_visible(const struct drawing *drawing, const float matrix[16]);
-/* Clears the bound framebuffer and draws. matrix: world to clip space, as camera_matrix. Returns
- * the triangles drawn. */
-uint64_t drawing_draw(struct drawing *drawing, const float matrix[16]);
+/* Clears the bound framebuffer and draws. matrix: world to clip space, as camera_matrix.
+ * px_radians: what a pixel covers at distance one; procedural detail finer than a pixel is left
+ * out. Returns the triangles drawn. */
+uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
+		      float px_radians);
 
 #endif

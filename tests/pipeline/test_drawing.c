@@ -51,7 +51,7 @@ static void shoot(struct shot *shot, struct mesh *mesh, const struct drawing_opt
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
 	frame_bind(shot->frame);
-	drawing_draw(drawing, matrix);
+	drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera));
 	CHECK(frame_range(shot->frame, camera.near_m, camera.far_m, &shot->found, &shot->near_m,
 			  &shot->far_m) == 0);
 	CHECK(frame_read(shot->frame, &shot->rgba) == 0);

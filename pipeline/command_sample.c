@@ -1,0 +1,101 @@
+#include "pipeline/commands.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/sampler.h"
+
+static const char help[] =
+	"gopura-content sample: render the sampling images of a content folder\n"
+	"\n"
+	"usage: gopura-content sample [OPTIONS] DIR\n"
+	"\n"
+	"  --jobs N      processes (default: one a core)\n"
+	"  --shard I/N   only the I-th of N equal parts, I from 0; the parts may run on as many\n"
+	"                machines as share DIR, in any order\n"
+	"  --below-ground  also points below the lowest point of the model\n"
+	"\n"
+	"Grid and resolution stand in DIR/temple.ini, [grid]. What was rendered stays in\n"
+	"DIR/.work/samples; a second run makes only what is missing or has changed.\n"
+	"Exit status: 0 all is there, 1 it failed, 2 the command line is wrong.\n"
+	"\n"
+	"  gopura-content sample temple\n"
+	"  parallel gopura-content sample --shard {}/8 temple ::: 0 1 2 3 4 5 6 7\n";
+
+static bool read_options(int argc, char **argv, struct sampler_options *options, const char **dir)
+{
+	static const struct option names[] = { { "jobs", required_argument, NULL, 'j' },
+					       { "shard", required_argument, NULL, 's' },
+					       { "below-ground", no_argument, NULL, 'b' },
+					       { "help", no_argument, NULL, 'h' },
+					       { NULL, 0, NULL, 0 } };
+	int option;
+	char rest;
+
+	optind = 1;
+	while ((option = getopt_long(argc, argv, "h", names, NULL)) != -1) {
+		switch (option) {
+		case 'j':
+			if (sscanf(optarg, "%u%c", &options->jobs, &rest) != 1 || !options->jobs)
+				return false;
+			break;
+		case 's':
+			if (sscanf(optarg, "%u/%u%c", &options->shard, &options->shard_count,
+				   &rest) != 2 ||
+			    options->shard >= options->shard_count)
+				return false;
+			break;
+		case 'b':
+			options->below_ground = true;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			exit(EXIT_SUCCESS);
+		default:
+			return false;
+		}
+	}
+	*dir = argv[optind];
+	return argc == optind + 1;
+}
+
+static void report(const char *dir)
+{
+	struct samples_store *store;
+	uint32_t counts[SAMPLE_STATES];
+
+	if (samples_store_open(&store, dir) < 0)
+		return;
+	samples_store_states(store, counts);
+	printf("%s: %u points rendered, %u see nothing, %u in solid matter, %u below the ground\n",
+	       dir, counts[SAMPLE_RENDERED], counts[SAMPLE_EMPTY], counts[SAMPLE_INSIDE],
+	       counts[SAMPLE_GROUND]);
+	samples_store_close(store);
+}
+
+int command_sample(int argc, char **argv)
+{
+	struct sampler_options options = { .shard_count = 1 };
+	struct fault fault = { "" };
+	struct content content;
+	const char *dir;
+	int rc;
+
+	if (!read_options(argc, argv, &options, &dir)) {
+		fputs("gopura-content sample: give one content folder; see --help\n", stderr);
+		return 2;
+	}
+	rc = content_read(&content, dir, &fault);
+	if (rc == 0)
+		rc = sampler_run(&content, &options, &fault);
+	content_release(&content);
+	if (rc < 0) {
+		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+		return EXIT_FAILURE;
+	}
+	if (options.shard_count <= 1)
+		report(dir);
+	return EXIT_SUCCESS;
+}
