@@ -13,12 +13,18 @@
 
 enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
 
+struct order {
+	float distance;
+	uint32_t chunk;
+};
+
 struct drawing {
 	const struct chunks *chunks; /* borrowed */
 	GLuint program, vertices, uvs, indices;
 	GLint matrix_at, eye_at, px_at;
 	uint32_t texture_count;
-	GLuint *textures; /* owned */
+	GLuint *textures;    /* owned */
+	struct order *order; /* room for every chunk; owned */
 };
 
 static const char *const attributes[] = { "position", "normal", "colour", "uv", NULL };
@@ -175,9 +181,15 @@ int drawing_create(struct drawing **out, const struct chunks *chunks, const stru
 	if (!drawing)
 		return -ENOMEM;
 	drawing->chunks = chunks;
+	drawing->order = malloc(chunks->count * sizeof(*drawing->order));
+	if (!drawing->order) {
+		free(drawing);
+		return -ENOMEM;
+	}
 	if (chunks->uvs && mesh->texture_count) {
 		drawing->textures = calloc(mesh->texture_count, sizeof(*drawing->textures));
 		if (!drawing->textures) {
+			free(drawing->order);
 			free(drawing);
 			return -ENOMEM;
 		}
@@ -204,6 +216,7 @@ void drawing_destroy(struct drawing *drawing)
 	glDeleteBuffers(1, &drawing->indices);
 	glDeleteTextures((GLsizei)drawing->texture_count, drawing->textures);
 	free(drawing->textures);
+	free(drawing->order);
 	free(drawing);
 }
 
@@ -295,11 +308,40 @@ static void point_at(const struct drawing *drawing, const struct chunk *chunk)
 	glBindTexture(GL_TEXTURE_2D, drawing->textures[chunk->texture]);
 }
 
-uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
-		      float px_radians)
+static int compare_order(const void *a, const void *b)
 {
-	uint64_t triangles = 0;
+	const struct order *x = a, *y = b;
 
+	if (x->distance != y->distance)
+		return x->distance < y->distance ? -1 : 1;
+	return x->chunk < y->chunk ? -1 : x->chunk > y->chunk;
+}
+
+/* Nearest first, so that the depth test spares the shading of what is hidden. */
+static uint32_t sort_visible(struct drawing *drawing, const float matrix[16], const float eye_m[3])
+{
+	uint32_t count = 0;
+
+	for (uint32_t n = 0; n < drawing->chunks->count; n++) {
+		const struct chunk *chunk = &drawing->chunks->items[n];
+		float square = 0;
+
+		if (is_outside(chunk, matrix))
+			continue;
+		for (int i = 0; i < 3; i++) {
+			float away = fmaxf(
+				fmaxf(chunk->low_m[i] - eye_m[i], eye_m[i] - chunk->high_m[i]), 0);
+
+			square += away * away;
+		}
+		drawing->order[count++] = (struct order){ square, n };
+	}
+	qsort(drawing->order, count, sizeof(*drawing->order), compare_order);
+	return count;
+}
+
+static void set_up(struct drawing *drawing)
+{
 	glClearColor(0, 0, 0, 0);
 	glClearDepthf(1);
 	glDepthMask(GL_TRUE);
@@ -311,18 +353,25 @@ uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const flo
 	glDisable(GL_BLEND);
 	glDisable(GL_DITHER);
 	glUseProgram(drawing->program);
-	glUniformMatrix4fv(drawing->matrix_at, 1, GL_FALSE, matrix);
-	glUniform3fv(drawing->eye_at, 1, eye_m);
-	glUniform1f(drawing->px_at, px_radians);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
 	glActiveTexture(GL_TEXTURE0);
 	for (GLuint i = AT_POSITION; i <= (drawing->texture_count ? AT_UV : AT_COLOUR); i++)
 		glEnableVertexAttribArray(i);
-	for (uint32_t n = 0; n < drawing->chunks->count; n++) {
-		const struct chunk *chunk = &drawing->chunks->items[n];
+}
 
-		if (is_outside(chunk, matrix))
-			continue;
+uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
+		      float px_radians)
+{
+	uint32_t count = sort_visible(drawing, matrix, eye_m);
+	uint64_t triangles = 0;
+
+	set_up(drawing);
+	glUniformMatrix4fv(drawing->matrix_at, 1, GL_FALSE, matrix);
+	glUniform3fv(drawing->eye_at, 1, eye_m);
+	glUniform1f(drawing->px_at, px_radians);
+	for (uint32_t n = 0; n < count; n++) {
+		const struct chunk *chunk = &drawing->chunks->items[drawing->order[n].chunk];
+
 		point_at(drawing, chunk);
 		glDrawElements(GL_TRIANGLES, (GLsizei)chunk->index_count, GL_UNSIGNED_SHORT,
 			       (const char *)0 + (size_t)chunk->first_index * sizeof(uint16_t));
