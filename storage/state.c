@@ -1,0 +1,538 @@
+#include "storage/state.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "storage/db.h"
+
+/* The record, in memory all the time, stands twice on disk: as the row of a table whose columns a
+ * person can read, with a hash over the encoded record; and encoded, with that hash behind it, in
+ * PATH.second. The encoded form:
+ *
+ *   "GSta"  u32 version(1)  u64 sequence floor  u64 time floor
+ *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json */
+
+enum {
+	RECORD_BYTES_MOST = 2 * STATE_FILE_BYTES_MOST + 256,
+	BROKEN_BYTES_MOST = 1 << 20,
+	TIME_STEP_S = 3600,
+	COUNTERS_MOST = 32,
+	COUNTER_NAME_BYTES = 32,
+};
+
+struct record {
+	uint64_t sequence_floor;
+	int64_t time_floor_s;
+	struct hash root; /* zero: no release yet */
+	uint32_t root_bytes;
+	uint64_t sequence;
+	struct buffer release, trust; /* empty: none yet */
+};
+
+struct counter {
+	char name[COUNTER_NAME_BYTES];
+	uint64_t value;
+};
+
+struct state {
+	char path[PATH_MAX];
+	sqlite3 *db; /* NULL: could not be opened; nothing is written */
+	struct record record;
+	int64_t written_time_floor_s;
+	struct counter counters[COUNTERS_MOST];
+	size_t counter_count;
+	bool counters_changed;
+};
+
+static const char schema[] =
+	"BEGIN IMMEDIATE;"
+	"CREATE TABLE IF NOT EXISTS record (id INTEGER PRIMARY KEY CHECK (id = 1),"
+	" sequence_floor INTEGER, time_floor_s INTEGER, root BLOB, root_bytes INTEGER,"
+	" sequence INTEGER, release BLOB, trust BLOB, check_hash BLOB);"
+	"CREATE TABLE IF NOT EXISTS counters (name TEXT PRIMARY KEY, value INTEGER) WITHOUT ROWID;"
+	"COMMIT";
+
+static void record_init(struct record *record)
+{
+	*record = (struct record){ 0 };
+	buffer_init(&record->release, STATE_FILE_BYTES_MOST);
+	buffer_init(&record->trust, STATE_FILE_BYTES_MOST);
+}
+
+static void record_finish(struct record *record)
+{
+	buffer_finish(&record->release);
+	buffer_finish(&record->trust);
+}
+
+static void record_encode(struct buffer *out, const struct record *record)
+{
+	buffer_put(out, "GSta", 4);
+	buffer_put_u32(out, 1);
+	buffer_put_u64(out, record->sequence_floor);
+	buffer_put_u64(out, (uint64_t)record->time_floor_s);
+	buffer_put(out, record->root.bytes, HASH_BYTES);
+	buffer_put_u32(out, record->root_bytes);
+	buffer_put_u64(out, record->sequence);
+	buffer_put_u32(out, (uint32_t)record->release.size);
+	buffer_put(out, record->release.data, record->release.size);
+	buffer_put_u32(out, (uint32_t)record->trust.size);
+	buffer_put(out, record->trust.data, record->trust.size);
+}
+
+static void get_sized(struct buffer *out, struct reader *reader)
+{
+	struct bytes bytes = reader_bytes(reader, reader_u32(reader));
+
+	buffer_clear(out);
+	buffer_put(out, bytes.data, bytes.size);
+}
+
+/* -EBADMSG: not such a record, or changed since it was written. */
+static int record_decode(struct record *out, struct bytes file)
+{
+	struct bytes body = { file.data, file.size - HASH_BYTES };
+	struct bytes magic, root;
+	struct reader reader;
+	struct hash check;
+
+	if (file.size < HASH_BYTES)
+		return -EBADMSG;
+	check = hash_of(body);
+	if (memcmp(check.bytes, file.data + body.size, HASH_BYTES) != 0)
+		return -EBADMSG;
+	reader_init(&reader, body);
+	magic = reader_bytes(&reader, 4);
+	if (magic.size != 4 || memcmp(magic.data, "GSta", 4) != 0 || reader_u32(&reader) != 1)
+		return -EBADMSG;
+	out->sequence_floor = reader_u64(&reader);
+	out->time_floor_s = (int64_t)reader_u64(&reader);
+	root = reader_bytes(&reader, HASH_BYTES);
+	if (root.size)
+		memcpy(out->root.bytes, root.data, HASH_BYTES);
+	out->root_bytes = reader_u32(&reader);
+	out->sequence = reader_u64(&reader);
+	get_sized(&out->release, &reader);
+	get_sized(&out->trust, &reader);
+	if (reader.failed || reader_left(&reader) || out->release.error || out->trust.error)
+		return -EBADMSG;
+	return 0;
+}
+
+static int hash_record(struct hash *out, const struct record *record)
+{
+	struct buffer encoded;
+	int rc;
+
+	buffer_init(&encoded, RECORD_BYTES_MOST);
+	record_encode(&encoded, record);
+	rc = encoded.error;
+	*out = hash_of(buffer_bytes(&encoded));
+	buffer_finish(&encoded);
+	return rc;
+}
+
+/* ---- PATH.second */
+
+static int read_second(struct record *out, const char *path)
+{
+	char name[PATH_MAX + 8];
+	struct buffer file;
+	int rc;
+
+	snprintf(name, sizeof(name), "%s.second", path);
+	buffer_init(&file, RECORD_BYTES_MOST);
+	rc = buffer_read_file(&file, name);
+	if (rc == 0)
+		rc = record_decode(out, buffer_bytes(&file));
+	buffer_finish(&file);
+	return rc;
+}
+
+static int write_second(const struct record *record, const char *path)
+{
+	char name[PATH_MAX + 8];
+	struct buffer file;
+	struct hash check;
+	int rc;
+
+	snprintf(name, sizeof(name), "%s.second", path);
+	buffer_init(&file, RECORD_BYTES_MOST);
+	record_encode(&file, record);
+	check = hash_of(buffer_bytes(&file));
+	buffer_put(&file, check.bytes, HASH_BYTES);
+	rc = file.error;
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&file), name);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* ---- the database */
+
+static void take_column(struct buffer *out, sqlite3_stmt *row, int column)
+{
+	const void *bytes = sqlite3_column_blob(row, column);
+	int size = sqlite3_column_bytes(row, column);
+
+	buffer_clear(out);
+	if (bytes)
+		buffer_put(out, bytes, (size_t)size);
+}
+
+static int take_row(struct record *out, sqlite3_stmt *row)
+{
+	struct hash check;
+
+	out->sequence_floor = (uint64_t)sqlite3_column_int64(row, 0);
+	out->time_floor_s = sqlite3_column_int64(row, 1);
+	if (sqlite3_column_bytes(row, 2) != HASH_BYTES ||
+	    sqlite3_column_bytes(row, 7) != HASH_BYTES)
+		return -EBADMSG;
+	memcpy(out->root.bytes, sqlite3_column_blob(row, 2), HASH_BYTES);
+	out->root_bytes = (uint32_t)sqlite3_column_int64(row, 3);
+	out->sequence = (uint64_t)sqlite3_column_int64(row, 4);
+	take_column(&out->release, row, 5);
+	take_column(&out->trust, row, 6);
+	if (out->release.error || out->trust.error || hash_record(&check, out) < 0)
+		return -EBADMSG;
+	return memcmp(check.bytes, sqlite3_column_blob(row, 7), HASH_BYTES) == 0 ? 0 : -EBADMSG;
+}
+
+/* -ENOENT: a fresh database. */
+static int read_record(struct record *out, sqlite3 *db)
+{
+	sqlite3_stmt *select = NULL;
+	int code = sqlite3_prepare_v2(
+		db,
+		"SELECT sequence_floor, time_floor_s, root, root_bytes, sequence, release, trust,"
+		" check_hash FROM record WHERE id = 1",
+		-1, &select, NULL);
+	int rc;
+
+	if (code == SQLITE_ERROR) /* no such column: not our table */
+		return -EBADMSG;
+	if (code == SQLITE_OK)
+		code = sqlite3_step(select);
+	rc = db_code(code);
+	if (code == SQLITE_ROW)
+		rc = take_row(out, select);
+	else if (code == SQLITE_DONE)
+		rc = -ENOENT;
+	sqlite3_finalize(select);
+	return rc;
+}
+
+static int write_record(sqlite3 *db, const struct record *record)
+{
+	sqlite3_stmt *insert = NULL;
+	struct hash check;
+	int rc = hash_record(&check, record);
+
+	if (rc == 0)
+		rc = db_code(sqlite3_prepare_v2(
+			db, "INSERT OR REPLACE INTO record VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", -1,
+			&insert, NULL));
+	if (rc < 0)
+		return rc;
+	sqlite3_bind_int64(insert, 1, (sqlite3_int64)record->sequence_floor);
+	sqlite3_bind_int64(insert, 2, record->time_floor_s);
+	sqlite3_bind_blob(insert, 3, record->root.bytes, HASH_BYTES, SQLITE_STATIC);
+	sqlite3_bind_int64(insert, 4, record->root_bytes);
+	sqlite3_bind_int64(insert, 5, (sqlite3_int64)record->sequence);
+	sqlite3_bind_blob(insert, 6, record->release.data, (int)record->release.size,
+			  SQLITE_STATIC);
+	sqlite3_bind_blob(insert, 7, record->trust.data, (int)record->trust.size, SQLITE_STATIC);
+	sqlite3_bind_blob(insert, 8, check.bytes, HASH_BYTES, SQLITE_STATIC);
+	rc = db_run(insert);
+	if (rc < 0)
+		rc = db_error(db, sqlite3_extended_errcode(db), "writing the kiosk's state");
+	sqlite3_finalize(insert);
+	return rc;
+}
+
+static int read_counters(struct state *state)
+{
+	sqlite3_stmt *select = NULL;
+	int code = sqlite3_prepare_v2(state->db, "SELECT name, value FROM counters", -1, &select,
+				      NULL);
+
+	while (code == SQLITE_OK || code == SQLITE_ROW) {
+		code = sqlite3_step(select);
+		if (code == SQLITE_ROW && sqlite3_column_text(select, 0))
+			state_count(state, (const char *)sqlite3_column_text(select, 0),
+				    (uint64_t)sqlite3_column_int64(select, 1));
+	}
+	sqlite3_finalize(select);
+	state->counters_changed = false;
+	return code == SQLITE_ERROR ? -EBADMSG : db_code(code);
+}
+
+static void close_db(struct state *state)
+{
+	sqlite3_close_v2(state->db);
+	state->db = NULL;
+}
+
+/* Opens the file and reads it. -ENOENT: fresh. -EBADMSG: damaged. */
+static int open_db(struct state *state)
+{
+	int rc = db_open(&state->db, state->path);
+
+	if (rc == 0)
+		rc = db_exec(state->db, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL");
+	if (rc == 0)
+		rc = db_exec(state->db, schema);
+	if (rc == 0)
+		rc = read_counters(state);
+	if (rc == 0)
+		rc = read_record(&state->record, state->db);
+	/* Read-only though the file is not: its header claims a format of the future. */
+	return rc == -EROFS && access(state->path, W_OK) == 0 ? -EBADMSG : rc;
+}
+
+/* ---- accidents */
+
+static void raise_floors(struct record *record, const struct record *other)
+{
+	if (other->sequence_floor > record->sequence_floor)
+		record->sequence_floor = other->sequence_floor;
+	if (other->time_floor_s > record->time_floor_s)
+		record->time_floor_s = other->time_floor_s;
+}
+
+/* The database told nothing (rc says why): take the second copy, if that is whole. */
+static void recover(struct state *state, int rc)
+{
+	bool damaged = rc == -EBADMSG;
+
+	record_finish(&state->record);
+	record_init(&state->record);
+	if (damaged) {
+		close_db(state);
+		state->counter_count = 0;
+		log_error("storage", "%s is damaged: set aside as %s.broken", state->path,
+			  state->path);
+		rc = db_set_aside(state->path, BROKEN_BYTES_MOST);
+		if (rc == 0)
+			rc = open_db(state);
+	}
+	if (rc < 0 && rc != -ENOENT) {
+		log_error("storage", "%s: %s; nothing can be remembered", state->path,
+			  state->db ? sqlite3_errmsg(state->db) : strerror(-rc));
+		close_db(state);
+	}
+	if (read_second(&state->record, state->path) < 0) {
+		record_finish(&state->record);
+		record_init(&state->record);
+		if (damaged)
+			log_error("storage", "%s.second does not help: beginning anew",
+				  state->path);
+	} else {
+		log_warn("storage", "state taken from %s.second", state->path);
+	}
+	if (state->db && write_record(state->db, &state->record) < 0)
+		close_db(state);
+}
+
+int state_create(struct state **out, const char *path)
+{
+	struct state *state = calloc(1, sizeof(*state));
+	struct record second;
+	int rc;
+
+	*out = NULL;
+	if (!state)
+		return -ENOMEM;
+	snprintf(state->path, sizeof(state->path), "%s", path);
+	record_init(&state->record);
+	rc = open_db(state);
+	if (rc < 0) {
+		recover(state, rc);
+	} else {
+		/* An older database put back in place must not lower the floors. */
+		record_init(&second);
+		if (read_second(&second, path) == 0)
+			raise_floors(&state->record, &second);
+		record_finish(&second);
+	}
+	state->written_time_floor_s = state->record.time_floor_s;
+	*out = state;
+	return 0;
+}
+
+void state_destroy(struct state *state)
+{
+	if (!state)
+		return;
+	if (state_flush(state) < 0)
+		log_warn("storage", "%s: counters were not written", state->path);
+	close_db(state);
+	record_finish(&state->record);
+	free(state);
+}
+
+/* ---- the calls */
+
+int state_release(const struct state *state, struct state_release *out)
+{
+	const struct record *record = &state->record;
+
+	if (hash_is_zero(record->root))
+		return -ENOENT;
+	*out = (struct state_release){ record->root, record->root_bytes, record->sequence,
+				       buffer_bytes(&record->release) };
+	return 0;
+}
+
+int state_trust(const struct state *state, struct bytes *out)
+{
+	*out = buffer_bytes(&state->record.trust);
+	return out->size ? 0 : -ENOENT;
+}
+
+uint64_t state_sequence_floor(const struct state *state)
+{
+	return state->record.sequence_floor;
+}
+
+int64_t state_time_floor_s(const struct state *state)
+{
+	return state->record.time_floor_s;
+}
+
+/* Writes next, which is taken: it becomes the record, or is finished on failure. */
+static int change(struct state *state, struct record *next)
+{
+	int rc = next->release.error ? next->release.error : next->trust.error;
+
+	if (rc == 0)
+		rc = state->db ? write_record(state->db, next) : -EIO;
+	if (rc < 0) {
+		record_finish(next);
+		return rc;
+	}
+	record_finish(&state->record);
+	state->record = *next;
+	state->written_time_floor_s = next->time_floor_s;
+	/* The database has it: a failure here costs only the second copy. */
+	if (write_second(&state->record, state->path) < 0)
+		log_warn("storage", "%s.second could not be written", state->path);
+	return 0;
+}
+
+static void copy_record(struct record *out, const struct record *from)
+{
+	*out = *from;
+	buffer_init(&out->release, STATE_FILE_BYTES_MOST);
+	buffer_init(&out->trust, STATE_FILE_BYTES_MOST);
+	buffer_put(&out->release, from->release.data, from->release.size);
+	buffer_put(&out->trust, from->trust.data, from->trust.size);
+}
+
+int state_activate(struct state *state, const struct state_release *release)
+{
+	struct record next;
+
+	if (release->sequence < state->record.sequence_floor)
+		return -ESTALE;
+	copy_record(&next, &state->record);
+	next.root = release->root;
+	next.root_bytes = release->root_bytes;
+	next.sequence = next.sequence_floor = release->sequence;
+	buffer_clear(&next.release);
+	buffer_put(&next.release, release->file.data, release->file.size);
+	return change(state, &next);
+}
+
+int state_set_trust(struct state *state, struct bytes file)
+{
+	struct record next;
+
+	copy_record(&next, &state->record);
+	buffer_clear(&next.trust);
+	buffer_put(&next.trust, file.data, file.size);
+	return change(state, &next);
+}
+
+int state_raise_time_floor(struct state *state, int64_t at_least_s)
+{
+	struct record next;
+
+	if (at_least_s <= state->record.time_floor_s)
+		return 0;
+	state->record.time_floor_s = at_least_s;
+	if (at_least_s - state->written_time_floor_s < TIME_STEP_S)
+		return 0;
+	copy_record(&next, &state->record);
+	return change(state, &next);
+}
+
+static struct counter *find_counter(const struct state *state, const char *name)
+{
+	for (size_t i = 0; i < state->counter_count; i++)
+		if (strcmp(state->counters[i].name, name) == 0)
+			return (struct counter *)&state->counters[i];
+	return NULL;
+}
+
+void state_count(struct state *state, const char *name, uint64_t more)
+{
+	struct counter *counter = find_counter(state, name);
+
+	if (!counter && state->counter_count < COUNTERS_MOST) {
+		counter = &state->counters[state->counter_count++];
+		*counter = (struct counter){ .value = 0 };
+		snprintf(counter->name, sizeof(counter->name), "%s", name);
+	}
+	if (counter)
+		counter->value += more;
+	state->counters_changed = true;
+}
+
+uint64_t state_counted(const struct state *state, const char *name)
+{
+	const struct counter *counter = find_counter(state, name);
+
+	return counter ? counter->value : 0;
+}
+
+static int write_counters(struct state *state)
+{
+	sqlite3_stmt *insert = NULL;
+	int rc = db_code(sqlite3_prepare_v2(
+		state->db, "INSERT OR REPLACE INTO counters VALUES (?, ?)", -1, &insert, NULL));
+
+	for (size_t i = 0; rc == 0 && i < state->counter_count; i++) {
+		sqlite3_bind_text(insert, 1, state->counters[i].name, -1, SQLITE_STATIC);
+		sqlite3_bind_int64(insert, 2, (sqlite3_int64)state->counters[i].value);
+		rc = db_run(insert);
+	}
+	sqlite3_finalize(insert);
+	return rc;
+}
+
+int state_flush(struct state *state)
+{
+	int rc;
+
+	if (!state->counters_changed)
+		return 0;
+	if (!state->db)
+		return -EIO;
+	rc = db_exec(state->db, "BEGIN IMMEDIATE");
+	if (rc == 0)
+		rc = write_counters(state);
+	if (rc == 0)
+		rc = db_exec(state->db, "COMMIT");
+	if (rc < 0)
+		sqlite3_exec(state->db, "ROLLBACK", NULL, NULL, NULL);
+	else
+		state->counters_changed = false;
+	return rc;
+}

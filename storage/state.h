@@ -1,0 +1,52 @@
+/* What the kiosk must not forget when the power goes: the release it shows, the trust root, the
+ * floors that never fall, a few counters. docs/cache.md tells what happens to it in an accident.
+ *
+ * SQLite with synchronous=FULL at PATH; each change is one transaction, so after a power cut it is
+ * wholly there or wholly not. A damaged file is set aside as PATH.broken and what matters comes
+ * back from PATH.second, a self-checked copy written after each change. One thread. A call that
+ * writes waits for the disk: not for the frame path. */
+#ifndef GOPURA_STORAGE_STATE_H
+#define GOPURA_STORAGE_STATE_H
+
+#include "format/hash.h"
+
+struct state; /* private to state.c */
+
+enum { STATE_FILE_BYTES_MOST = 64 * 1024 /* a metadata file */ };
+
+struct state_release {
+	struct hash root;
+	uint32_t root_bytes;
+	uint64_t sequence;
+	struct bytes file; /* release.json as received; borrowed */
+};
+
+/* *out is owned by the caller. Fails with -ENOMEM alone: where the disk fails, the state is what
+ * could be read (or empty) and changes are refused. */
+must_check int state_create(struct state **out, const char *path);
+void state_destroy(struct state *state); /* writes the counters; NULL is fine */
+
+/* The release in use; *out is borrowed until the next change. -ENOENT: none yet. */
+must_check int state_release(const struct state *state, struct state_release *out);
+/* The file of the trust root in use (root/N.json as received), borrowed. -ENOENT: none yet. */
+must_check int state_trust(const struct state *state, struct bytes *out);
+/* No release below it may be activated; 0 at first. */
+uint64_t state_sequence_floor(const struct state *state);
+/* It is at least this late, seconds since 1970; 0 at first. */
+int64_t state_time_floor_s(const struct state *state);
+
+/* Copies what release says and raises the sequence floor to it. -ESTALE: below the floor.
+ * -EFBIG: file past STATE_FILE_BYTES_MOST. -EIO, -ENOSPC: the old one stays in use. */
+must_check int state_activate(struct state *state, const struct state_release *release);
+/* Copies. Errors as state_activate. */
+must_check int state_set_trust(struct state *state, struct bytes file);
+/* Lower than the floor: nothing happens. Writes only when it rises by an hour or more, so that a
+ * card does not wear; until then the higher floor holds in memory. */
+must_check int state_raise_time_floor(struct state *state, int64_t at_least_s);
+
+/* Counters gather in memory; state_flush writes them. name: a literal. */
+void state_count(struct state *state, const char *name, uint64_t more);
+uint64_t state_counted(const struct state *state, const char *name);
+must_check int state_flush(struct state *state);
+
+#endif
