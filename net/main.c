@@ -1,13 +1,160 @@
 /* gopura-fetch: brings objects; network and cache, no devices. */
+#include <errno.h>
+#include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/log.h"
+#include "net/fetch.h"
+
+static const char help[] =
+	"gopura-fetch: brings the objects of a release to the kiosk, and keeps them in a cache\n"
+	"\n"
+	"  gopura-fetch --release URL --cache FILE (--socket PATH | --fd N) [options]\n"
+	"\n"
+	"  --release URL       https://..., http://..., or a folder (a USB stick)\n"
+	"  --cache FILE        the cache's database; made when missing, set aside when damaged\n"
+	"  --socket PATH       listen for the kiosk here\n"
+	"  --fd N              or talk to the kiosk over this connected descriptor, and end with it\n"
+	"  --cache-budget MIB  of the database and its log together (1024; at least 4)\n"
+	"  --ca FILE           certificate authority for https (the system's)\n"
+	"  --poll-s SECONDS    between looks for a new release (60)\n"
+	"  --rate-limit KIB    a second, of each request (none)\n"
+	"  --stall-s SECONDS   without a byte: a request has failed (15)\n"
+	"  --verbose           say more\n"
+	"  --version, --help\n"
+	"\n"
+	"Examples\n"
+	"  gopura-fetch --release https://museum.example/temple --cache /var/lib/gopura/cache.db \\\n"
+	"               --socket /run/gopura/fetch\n"
+	"  gopura-fetch --release /media/stick/release --cache /tmp/cache.db --socket /tmp/fetch\n";
+
+enum {
+	OPTION_RELEASE = 256,
+	OPTION_CACHE,
+	OPTION_SOCKET,
+	OPTION_FD,
+	OPTION_CACHE_BUDGET,
+	OPTION_CA,
+	OPTION_POLL,
+	OPTION_RATE_LIMIT,
+	OPTION_STALL,
+	OPTION_VERBOSE,
+	OPTION_VERSION,
+	OPTION_HELP,
+};
+
+static const struct option long_options[] = {
+	{ "release", required_argument, NULL, OPTION_RELEASE },
+	{ "cache", required_argument, NULL, OPTION_CACHE },
+	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "fd", required_argument, NULL, OPTION_FD },
+	{ "cache-budget", required_argument, NULL, OPTION_CACHE_BUDGET },
+	{ "ca", required_argument, NULL, OPTION_CA },
+	{ "poll-s", required_argument, NULL, OPTION_POLL },
+	{ "rate-limit", required_argument, NULL, OPTION_RATE_LIMIT },
+	{ "stall-s", required_argument, NULL, OPTION_STALL },
+	{ "verbose", no_argument, NULL, OPTION_VERBOSE },
+	{ "version", no_argument, NULL, OPTION_VERSION },
+	{ "help", no_argument, NULL, OPTION_HELP },
+	{ 0 },
+};
+
+/* A whole number in least..most, or the end. */
+static uint64_t number(const char *name, const char *text, uint64_t least, uint64_t most)
+{
+	char *end;
+	unsigned long long value;
+
+	errno = 0;
+	value = strtoull(text, &end, 10);
+	if (errno || *end || end == text || text[0] == '-' || value < least || value > most) {
+		fprintf(stderr, "gopura-fetch: --%s: %s is not a number from %llu to %llu\n", name,
+			text, (unsigned long long)least, (unsigned long long)most);
+		exit(2);
+	}
+	return value;
+}
+
+static void take_option(struct fetch_options *options, int option)
+{
+	switch (option) {
+	case OPTION_RELEASE:
+		options->release_url = optarg;
+		break;
+	case OPTION_CACHE:
+		options->cache_path = optarg;
+		break;
+	case OPTION_SOCKET:
+		options->socket_path = optarg;
+		break;
+	case OPTION_FD:
+		options->fd = (int)number("fd", optarg, 0, 65535);
+		break;
+	case OPTION_CACHE_BUDGET:
+		options->cache_budget_bytes = number("cache-budget", optarg, 4, 1 << 24) << 20;
+		break;
+	case OPTION_CA:
+		options->ca_file = optarg;
+		break;
+	case OPTION_POLL:
+		options->poll_s = (uint32_t)number("poll-s", optarg, 1, 86400);
+		break;
+	case OPTION_RATE_LIMIT:
+		options->rate_limit = number("rate-limit", optarg, 1, 1 << 24) << 10;
+		break;
+	case OPTION_STALL:
+		options->stall_s = (uint32_t)number("stall-s", optarg, 1, 3600);
+		break;
+	case OPTION_VERBOSE:
+		log_set_level(LOG_LEVEL_DEBUG);
+		break;
+	case OPTION_VERSION:
+		puts("gopura-fetch " GOPURA_VERSION);
+		exit(0);
+	case OPTION_HELP:
+		fputs(help, stdout);
+		exit(0);
+	default: /* getopt has said what is wrong */
+		fprintf(stderr, "gopura-fetch: see gopura-fetch --help\n");
+		exit(2);
+	}
+}
+
+static void parse(struct fetch_options *options, int argc, char **argv)
+{
+	const char *wrong = NULL;
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
+		take_option(options, option);
+	if (optind < argc)
+		wrong = argv[optind];
+	else if (!options->release_url)
+		wrong = "--release is missing";
+	else if (!options->cache_path)
+		wrong = "--cache is missing";
+	else if (!options->socket_path == (options->fd < 0))
+		wrong = "either --socket or --fd";
+	if (!wrong)
+		return;
+	fprintf(stderr, "gopura-fetch: %s; see gopura-fetch --help\n", wrong);
+	exit(2);
+}
 
 int main(int argc, char **argv)
 {
-	if (argc > 1 && strcmp(argv[1], "--version") == 0) {
-		puts("gopura-fetch " GOPURA_VERSION);
-		return 0;
-	}
-	fprintf(stderr, "gopura-fetch: see gopura-fetch --help\n");
-	return 2;
+	struct fetch_options options = { .cache_budget_bytes = 1024ull << 20,
+					 .fd = -1,
+					 .poll_s = 60 };
+	int rc;
+
+	parse(&options, argc, argv);
+	rc = fetch_run(&options);
+	if (rc < 0)
+		fprintf(stderr, "gopura-fetch: %s\n",
+			rc == -EINVAL ? "--release: neither https://, http:// nor a folder"
+				      : strerror(-rc));
+	return rc < 0 ? 1 : 0;
 }

@@ -1,0 +1,418 @@
+#include "net/bring.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "format/page.h"
+#include "net/bring_private.h"
+
+enum {
+	WANTS_MOST = 1 << 18,
+	RANGES_MOST = 8,
+	RANGES_FOR_PAGES = 2, /* beside those: nothing can be judged without pages */
+	GAP_BYTES = 4096,
+	RANGE_BYTES_LEAST = 64 << 10,
+	RANGE_BYTES_MOST = 1 << 20,
+	RANGE_MS = 250, /* of the line: what comes later in it should not wait longer */
+	BYTES_PER_S_FIRST = 1 << 20,
+	CACHE_READS_MOST = 64, /* in one go: the loop has other guests */
+};
+
+/* ---- create, destroy */
+
+int bring_create(struct bring **out, const struct bring_options *options)
+{
+	struct bring *bring = calloc(1, sizeof(*bring));
+
+	*out = bring;
+	if (!bring)
+		return -ENOMEM;
+	bring->options = *options;
+	bring->bytes_per_s = BYTES_PER_S_FIRST;
+	bring->plan_due_ms = INT64_MAX;
+	buffer_init(&bring->scratch, OBJECT_BYTES_MOST);
+	return 0;
+}
+
+void bring_destroy(struct bring *bring)
+{
+	if (!bring)
+		return;
+	bring_forget_all(bring);
+	by_hash_finish(&bring->wants);
+	buffer_finish(&bring->scratch);
+	free(bring->fresh);
+	free(bring->items);
+	free(bring);
+}
+
+/* ---- wants come and go */
+
+static int add_fresh(struct bring *bring, struct want *want)
+{
+	if (bring->fresh_count == bring->fresh_capacity) {
+		size_t capacity = bring->fresh_capacity ? bring->fresh_capacity * 2 : 256;
+		struct want **larger = realloc(bring->fresh, capacity * sizeof(*larger));
+
+		if (!larger)
+			return -ENOMEM;
+		bring->fresh = larger;
+		bring->fresh_capacity = capacity;
+	}
+	want->state = WANT_FRESH;
+	bring->fresh[bring->fresh_count++] = want;
+	bring->fresh_changed = true;
+	return 0;
+}
+
+static void report(struct bring *bring, struct want *want, enum missing_reason reason)
+{
+	if (want->reported == (int)reason)
+		return;
+	want->reported = (int)reason;
+	bring->options.events.missing(bring->options.data, want->entry.key, reason);
+}
+
+void bring_want(struct bring *bring, const struct message_want *asked)
+{
+	struct want *want = by_hash_find(&bring->wants, asked->hash);
+
+	if (want) {
+		want->asked.priority = asked->priority;
+		bring->fresh_changed = true;
+		return;
+	}
+	want = calloc(1, sizeof(*want));
+	if (want && bring->wants.count < WANTS_MOST) {
+		want->entry.key = asked->hash;
+		want->asked = *asked;
+		want->order = bring->orders++;
+		want->reported = -1;
+		if (add_fresh(bring, want) == 0) {
+			if (by_hash_add(&bring->wants, &want->entry) == 0)
+				return;
+			bring->fresh_count--;
+		}
+	}
+	free(want);
+	bring->options.events.missing(bring->options.data, asked->hash, MISSING_OFFLINE);
+}
+
+/* Out of the map; freed unless it still stands among the fresh. */
+static void forget(struct bring *bring, struct want *want)
+{
+	by_hash_remove(&bring->wants, want->entry.key);
+	if (want->state == WANT_FRESH)
+		want->dropped = true;
+	else
+		free(want);
+}
+
+void bring_drop(struct bring *bring, struct hash hash)
+{
+	struct want *want = by_hash_find(&bring->wants, hash);
+
+	if (!want)
+		return;
+	bring_leave_range(bring, want);
+	forget(bring, want);
+}
+
+void bring_keep(struct bring *bring, struct hash hash)
+{
+	int rc = cache_keep(bring->options.cache, hash);
+
+	if (rc == -ENOSPC)
+		log_debug("net", "the cache keeps as much as it may");
+}
+
+void bring_forget_all(struct bring *bring)
+{
+	struct want *want;
+	size_t at = 0;
+
+	bring_cancel_ranges(bring);
+	while ((want = by_hash_next(&bring->wants, &at)))
+		if (want->state != WANT_FRESH)
+			free(want);
+	for (size_t i = 0; i < bring->fresh_count; i++)
+		free(bring->fresh[i]);
+	bring->fresh_count = 0;
+	by_hash_finish(&bring->wants);
+	bring_forget_releases(bring);
+}
+
+/* ---- what comes */
+
+static void pass_on(struct bring *bring, struct want *want, struct bytes bytes)
+{
+	struct hash hash = want->entry.key;
+
+	want->state = WANT_WAITING; /* among the fresh no longer: forget frees it */
+	forget(bring, want);
+	bring->options.events.object(bring->options.data, hash, bytes);
+}
+
+/* Wrong bytes: once more at once (a flipped bit on the way), then it is damage and told. */
+static void note_damage(struct bring *bring, struct want *want)
+{
+	char hex[HASH_HEX_BYTES];
+
+	bring->figures.damaged++;
+	want->state = WANT_WAITING;
+	want->damages++;
+	want->failures++;
+	want->retry_at_ms = clock_now_ms();
+	bring->plan_changed = true;
+	if (want->damages < 2)
+		return;
+	hash_to_hex(want->entry.key, hex);
+	if (want->reported != MISSING_DAMAGED)
+		log_warn("net", "content bug: the server's bytes of object %s are damaged", hex);
+	want->retry_at_ms += link_pause_ms(want->failures);
+	report(bring, want, MISSING_DAMAGED);
+	bring_suspect_locators(bring);
+}
+
+void bring_arrived(struct bring *bring, struct want *want, struct bytes bytes)
+{
+	int rc;
+
+	if (!hash_equal(hash_of(bytes), want->entry.key)) {
+		note_damage(bring, want);
+		return;
+	}
+	bring->figures.from_server++;
+	rc = cache_put(bring->options.cache, want->entry.key, bytes, want->asked.priority);
+	if (rc < 0)
+		log_debug("net", "an object did not get into the cache (%d)", rc);
+	pass_on(bring, want, bytes);
+}
+
+void bring_failed(struct bring *bring, struct want *want, int rc)
+{
+	want->state = WANT_WAITING;
+	want->retry_at_ms = 0; /* the line's pause is pause enough */
+	bring->plan_changed = true;
+	if (rc == -EHOSTUNREACH)
+		return;
+	want->failures++;
+	want->retry_at_ms = clock_now_ms() + link_pause_ms(want->failures);
+	report(bring, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
+	bring_suspect_locators(bring);
+}
+
+/* ---- the cache */
+
+static int by_priority(const void *a, const void *b)
+{
+	const struct want *left = *(struct want *const *)a, *right = *(struct want *const *)b;
+
+	if (left->asked.priority != right->asked.priority)
+		return left->asked.priority < right->asked.priority ? -1 : 1;
+	return left->order > right->order ? -1 : 1; /* the earlier one last: it is served first */
+}
+
+static void ask_cache(struct bring *bring, struct want *want)
+{
+	int rc = cache_get(bring->options.cache, want->entry.key, want->asked.priority,
+			   &bring->scratch);
+
+	want->state = WANT_WAITING;
+	if (rc == 0) {
+		bring->figures.from_cache++;
+		pass_on(bring, want, buffer_bytes(&bring->scratch));
+		return;
+	}
+	bring->plan_changed = true;
+	if (link_is_down(bring->options.link))
+		report(bring, want, MISSING_OFFLINE);
+}
+
+static void work_fresh(struct bring *bring)
+{
+	const struct bring_events *events = &bring->options.events;
+
+	if (bring->fresh_changed)
+		qsort(bring->fresh, bring->fresh_count, sizeof(bring->fresh[0]), by_priority);
+	bring->fresh_changed = false;
+	for (int i = 0; i < CACHE_READS_MOST && bring->fresh_count > 0 &&
+			events->has_room(bring->options.data);
+	     i++) {
+		struct want *want = bring->fresh[--bring->fresh_count];
+
+		if (want->dropped)
+			free(want);
+		else
+			ask_cache(bring, want);
+	}
+}
+
+/* ---- the server */
+
+static bool reserve_items(struct bring *bring)
+{
+	size_t needed = bring->wants.count;
+	struct range_item *larger;
+
+	if (needed <= bring->item_capacity)
+		return true;
+	needed += needed / 2;
+	larger = realloc(bring->items, needed * sizeof(*larger));
+	if (!larger)
+		return false;
+	bring->items = larger;
+	bring->item_capacity = needed;
+	return true;
+}
+
+/* All wants that could be asked for now, sorted by place. */
+static size_t gather(struct bring *bring)
+{
+	int64_t now_ms = clock_now_ms();
+	struct want *want;
+	size_t at = 0, count = 0;
+
+	bring->plan_due_ms = INT64_MAX;
+	if (!reserve_items(bring))
+		return 0;
+	while ((want = by_hash_next(&bring->wants, &at))) {
+		struct range_item *item = &bring->items[count];
+		int rc;
+
+		if (want->state != WANT_WAITING)
+			continue;
+		rc = want->retry_at_ms > now_ms ? -EBUSY : bring_locate(bring, want, item);
+		if (rc == -ENOENT)
+			bring_failed(bring, want, rc);
+		if (want->retry_at_ms > now_ms && want->retry_at_ms < bring->plan_due_ms)
+			bring->plan_due_ms = want->retry_at_ms;
+		if (rc < 0)
+			continue;
+		item->priority = want->asked.priority;
+		item->order = want->order;
+		item->want = want;
+		count++;
+	}
+	range_sort(bring->items, count);
+	return count;
+}
+
+static bool may_ask_for(const struct bring *bring, const struct range_item *item)
+{
+	uint32_t most = RANGES_MOST;
+
+	if (item->priority >= MESSAGE_PRIORITY_INDEX)
+		most += RANGES_FOR_PAGES;
+	return bring->range_count < most && link_may_ask(bring->options.link);
+}
+
+static struct range_limits limits_now(const struct bring *bring)
+{
+	uint64_t most = bring->bytes_per_s * RANGE_MS / 1000;
+
+	if (most < RANGE_BYTES_LEAST)
+		most = RANGE_BYTES_LEAST;
+	if (most > RANGE_BYTES_MOST)
+		most = RANGE_BYTES_MOST;
+	return (struct range_limits){ .gap_bytes = GAP_BYTES, .most_bytes = (uint32_t)most };
+}
+
+/* The best one of a range decides whether there is a place for it. */
+static bool any_may_be_asked(const struct bring *bring, const struct range_item *items,
+			     size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		if (may_ask_for(bring, &items[i]))
+			return true;
+	return false;
+}
+
+static void work_ranges(struct bring *bring)
+{
+	size_t count, first, taken;
+
+	if (!bring->plan_changed || bring->range_count >= RANGES_MOST + RANGES_FOR_PAGES ||
+	    !link_may_ask(bring->options.link) ||
+	    !bring->options.events.has_room(bring->options.data))
+		return;
+	count = gather(bring);
+	bring->plan_changed = false;
+	while ((taken = range_plan(bring->items, count, limits_now(bring), &first)) > 0) {
+		if (!any_may_be_asked(bring, &bring->items[first], taken)) {
+			bring->plan_changed = true;
+			return;
+		}
+		bring_ask_range(bring, &bring->items[first], taken);
+	}
+}
+
+/* The line is down: who waits is told, once. */
+static void tell_of_the_line(struct bring *bring)
+{
+	bool is_down = link_is_down(bring->options.link);
+	struct want *want;
+	size_t at = 0;
+
+	if (is_down == bring->was_down)
+		return;
+	bring->was_down = is_down;
+	bring->plan_changed = true;
+	while ((want = by_hash_next(&bring->wants, &at))) {
+		if (want->state == WANT_FRESH)
+			continue;
+		if (is_down)
+			report(bring, want, MISSING_OFFLINE);
+		else if (want->reported == MISSING_OFFLINE)
+			want->reported = -1;
+	}
+}
+
+void bring_work(struct bring *bring)
+{
+	work_fresh(bring);
+	bring_work_releases(bring);
+	tell_of_the_line(bring);
+	if (bring->plan_due_ms <= clock_now_ms())
+		bring->plan_changed = true; /* a want's pause is over */
+	work_ranges(bring);
+}
+
+/* When what is due may go out, the line considered: an answer wakes us anyhow. */
+static int64_t line_due_ms(const struct link *link, int64_t due_ms)
+{
+	if (link->failures == 0 || due_ms == INT64_MAX)
+		return due_ms;
+	if (link->in_flight > 0)
+		return INT64_MAX;
+	return due_ms > link->retry_at_ms ? due_ms : link->retry_at_ms;
+}
+
+int64_t bring_due_ms(const struct bring *bring)
+{
+	const struct link *link = bring->options.link;
+	int64_t due_ms = bring_releases_due_ms(bring);
+
+	if (!bring->options.events.has_room(bring->options.data))
+		return line_due_ms(link, due_ms); /* the kiosk will wake us */
+	if (bring->fresh_count > 0)
+		return 0;
+	if (bring->range_count < RANGES_MOST) {
+		int64_t plan_ms = bring->plan_changed ? 0 : bring->plan_due_ms;
+
+		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
+	}
+	return line_due_ms(link, due_ms);
+}
+
+uint32_t bring_wanted(const struct bring *bring)
+{
+	return (uint32_t)bring->wants.count;
+}
+
+void bring_figures(const struct bring *bring, struct bring_figures *out)
+{
+	*out = bring->figures;
+}

@@ -1,0 +1,606 @@
+#include "net/client.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <sys/pidfd.h>
+#include <sys/socket.h>
+#include <sys/timerfd.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "net/by_hash.h"
+#include "net/packets.h"
+
+extern char **environ;
+
+enum {
+	MESSAGES_MOST = 64, /* in one dispatch: the frame path has other guests */
+	DISPATCH_US = 3000,
+	PAUSE_MS = 100, /* before the first restart, then doubling */
+	PAUSE_MOST_MS = 10000,
+	STEADY_MS = 10000, /* a connection that lasted so long was a good one */
+	END_MS = 2000,     /* for the fetcher to end by itself */
+	FETCHER_FD = 3,    /* of the socket, in the fetcher */
+};
+
+enum source { SOURCE_SOCKET, SOURCE_CHILD, SOURCE_TIMER };
+
+struct wanted {
+	struct hash_entry entry;
+	struct message_want want;
+};
+
+struct in_use {
+	struct hash root;
+	uint32_t root_bytes;
+};
+
+struct net_client {
+	struct net_client_options options;
+	int epoll_fd, timer_fd;
+	struct packets packets; /* fd -1: not connected */
+	bool waits_to_send;
+	pid_t pid; /* of the fetcher we started; 0: none */
+	int pid_fd;
+	uint32_t failures; /* connections that did not last, in a row */
+	int64_t connected_ms;
+	struct by_hash wants; /* struct wanted, owned */
+	struct by_hash keeps; /* struct hash_entry, owned */
+	struct in_use releases[MESSAGE_RELEASES_MOST];
+	size_t release_count;
+};
+
+/* ---- small change */
+
+static int watch(struct net_client *client, int fd, enum source source, uint32_t events, int how)
+{
+	struct epoll_event event = { .events = events, .data.u32 = source };
+
+	return epoll_ctl(client->epoll_fd, how, fd, &event) < 0 ? -errno : 0;
+}
+
+static void set_timer(struct net_client *client, int64_t after_ms)
+{
+	struct itimerspec when = { .it_value = { after_ms / 1000, after_ms % 1000 * 1000000 } };
+
+	timerfd_settime(client->timer_fd, 0, &when, NULL);
+}
+
+/* The socket is asked for room only while something waits. */
+static void watch_socket(struct net_client *client)
+{
+	bool waits = packets_wait(&client->packets);
+
+	if (client->packets.fd < 0 || waits == client->waits_to_send)
+		return;
+	if (watch(client, client->packets.fd, SOURCE_SOCKET, EPOLLIN | (waits ? EPOLLOUT : 0u),
+		  EPOLL_CTL_MOD) == 0)
+		client->waits_to_send = waits;
+}
+
+/* Not connected: it will be said on connecting. A socket that broke is noticed on receiving. */
+static void say(struct net_client *client, const struct message *message)
+{
+	int rc;
+
+	if (client->packets.fd < 0)
+		return;
+	rc = packets_send(&client->packets, message, -1);
+	if (rc < 0 && rc != -EPIPE && rc != -ECONNRESET)
+		log_error("net", "a message to the fetcher did not go out: %s", strerror(-rc));
+	watch_socket(client);
+}
+
+/* ---- connecting */
+
+static void say_releases(struct net_client *client)
+{
+	for (size_t i = 0; i < client->release_count; i++) {
+		const struct in_use *release = &client->releases[i];
+		struct message message = { .kind = MESSAGE_RELEASE,
+					   .release = { release->root, release->root_bytes,
+							i > 0 } };
+
+		say(client, &message);
+	}
+}
+
+static void say_everything(struct net_client *client)
+{
+	struct message message = { .kind = MESSAGE_ASK_META };
+	struct hash_entry *keep;
+	struct wanted *wanted;
+	size_t at = 0;
+
+	say_releases(client);
+	say(client, &message);
+	message.kind = MESSAGE_KEEP;
+	while ((keep = by_hash_next(&client->keeps, &at))) {
+		message.keep = keep->key;
+		say(client, &message);
+	}
+	at = 0;
+	message.kind = MESSAGE_WANT;
+	while ((wanted = by_hash_next(&client->wants, &at))) {
+		message.want = wanted->want;
+		say(client, &message);
+	}
+}
+
+static int adopt_socket(struct net_client *client, int fd)
+{
+	packets_init(&client->packets, fd);
+	client->waits_to_send = false;
+	client->connected_ms = clock_now_ms();
+	return watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
+}
+
+static int connect_to(struct net_client *client, const char *path)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+	int fd;
+
+	if (strlen(path) >= sizeof(address.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(address.sun_path, path, strlen(path) + 1);
+	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	if (connect(fd, (struct sockaddr *)&address, sizeof(address)) < 0) {
+		int rc = -errno;
+
+		close(fd);
+		return rc;
+	}
+	return adopt_socket(client, fd);
+}
+
+/* With our end of the socket as its descriptor FETCHER_FD, and the signals as a program expects. */
+static int spawn_with(struct net_client *client, char *const *arguments, int fd)
+{
+	posix_spawn_file_actions_t actions;
+	posix_spawnattr_t attributes;
+	sigset_t none, all;
+	int rc;
+
+	sigemptyset(&none);
+	sigfillset(&all);
+	posix_spawn_file_actions_init(&actions);
+	posix_spawnattr_init(&attributes);
+	posix_spawn_file_actions_adddup2(&actions, fd, FETCHER_FD);
+	posix_spawnattr_setsigmask(&attributes, &none);
+	posix_spawnattr_setsigdefault(&attributes, &all);
+	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+	rc = posix_spawn(&client->pid, client->options.program, &actions, &attributes, arguments,
+			 environ);
+	posix_spawnattr_destroy(&attributes);
+	posix_spawn_file_actions_destroy(&actions);
+	if (rc != 0) {
+		client->pid = 0;
+		return -rc;
+	}
+	client->pid_fd = pidfd_open(client->pid, 0);
+	if (client->pid_fd < 0)
+		return -errno;
+	return watch(client, client->pid_fd, SOURCE_CHILD, EPOLLIN, EPOLL_CTL_ADD);
+}
+
+static int start_fetcher(struct net_client *client)
+{
+	const struct net_client_options *options = &client->options;
+	char budget[32], poll_s[32], fd[8];
+	const char *arguments[16] = {
+		options->program, "--release", options->release_url, "--cache", options->cache_path,
+		"--fd",           fd,          "--cache-budget",     budget
+	};
+	size_t count = 9;
+	int pair[2], rc;
+
+	snprintf(fd, sizeof(fd), "%d", FETCHER_FD);
+	snprintf(budget, sizeof(budget), "%llu",
+		 (unsigned long long)(options->cache_budget_bytes >> 20));
+	snprintf(poll_s, sizeof(poll_s), "%u", options->poll_s);
+	if (options->poll_s) {
+		arguments[count++] = "--poll-s";
+		arguments[count++] = poll_s;
+	}
+	if (options->ca_file) {
+		arguments[count++] = "--ca";
+		arguments[count++] = options->ca_file;
+	}
+	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) < 0)
+		return -errno;
+	rc = spawn_with(client, (char *const *)arguments, pair[1]);
+	close(pair[1]);
+	if (rc < 0) {
+		close(pair[0]);
+		return rc;
+	}
+	return adopt_socket(client, pair[0]);
+}
+
+static void retry_later(struct net_client *client)
+{
+	int64_t pause_ms = PAUSE_MS;
+
+	if (client->connected_ms && clock_now_ms() - client->connected_ms > STEADY_MS)
+		client->failures = 0;
+	for (uint32_t i = 0; i < client->failures && pause_ms < PAUSE_MOST_MS; i++)
+		pause_ms *= 2;
+	client->failures++;
+	client->connected_ms = 0;
+	set_timer(client, pause_ms < PAUSE_MOST_MS ? pause_ms : PAUSE_MOST_MS);
+}
+
+static void connect_now(struct net_client *client)
+{
+	const char *what =
+		client->options.socket_path ? client->options.socket_path : client->options.program;
+	int rc = client->options.socket_path ? connect_to(client, client->options.socket_path)
+					     : start_fetcher(client);
+
+	if (rc == 0) {
+		say_everything(client);
+		return;
+	}
+	if (client->failures == 0)
+		log_error("net", "no fetcher at %s: %s", what, strerror(-rc));
+	retry_later(client);
+}
+
+static void disconnect(struct net_client *client, const char *why)
+{
+	if (client->packets.fd < 0)
+		return;
+	log_warn("net", "the fetcher is gone: %s", why);
+	packets_finish(&client->packets);
+	if (client->pid)
+		kill(client->pid, SIGTERM); /* it ends anyhow, its socket being closed */
+	retry_later(client);
+}
+
+static bool reap(struct net_client *client)
+{
+	if (client->pid && waitpid(client->pid, NULL, WNOHANG) == 0)
+		return false;
+	if (client->pid && client->pid_fd >= 0)
+		close(client->pid_fd);
+	client->pid = 0;
+	client->pid_fd = -1;
+	return true;
+}
+
+/* The pause is over. The cache has one owner: the old fetcher must be gone first. */
+static void on_timer(struct net_client *client)
+{
+	uint64_t expirations;
+
+	if (read(client->timer_fd, &expirations, sizeof(expirations)) < 0)
+		return;
+	if (client->packets.fd >= 0)
+		return;
+	if (!reap(client)) {
+		kill(client->pid, SIGKILL);
+		set_timer(client, PAUSE_MS);
+		return;
+	}
+	connect_now(client);
+}
+
+/* ---- what the fetcher brings */
+
+/* -EBADMSG: not the bytes of that hash. */
+static int pass_on(struct net_client *client, struct hash hash, struct bytes bytes)
+{
+	struct wanted *wanted = by_hash_find(&client->wants, hash);
+
+	if (!hash_equal(hash_of(bytes), hash))
+		return -EBADMSG;
+	if (!wanted) /* dropped meanwhile */
+		return 0;
+	by_hash_remove(&client->wants, hash);
+	free(wanted);
+	client->options.events.object(client->options.data, hash, bytes);
+	return 0;
+}
+
+/* passed is taken. */
+static int take_object(struct net_client *client, const struct message *message, int passed)
+{
+	struct bytes mapped;
+	int rc;
+
+	if (passed < 0)
+		return pass_on(client, message->object.hash, message->object.bytes);
+	rc = packets_map_sealed(&mapped, passed, message->object.size);
+	close(passed);
+	if (rc < 0)
+		return rc;
+	rc = pass_on(client, message->object.hash, mapped);
+	munmap((void *)mapped.data, mapped.size);
+	return rc;
+}
+
+static int obey(struct net_client *client, const struct message *message, int passed)
+{
+	const struct net_client_events *events = &client->options.events;
+	void *data = client->options.data;
+
+	switch (message->kind) {
+	case MESSAGE_OBJECT:
+		return take_object(client, message, passed);
+	case MESSAGE_MISSING:
+		if (events->missing && by_hash_find(&client->wants, message->missing.hash))
+			events->missing(data, message->missing.hash, message->missing.reason);
+		return 0;
+	case MESSAGE_META:
+		if (events->meta)
+			events->meta(data, message->meta.role, message->meta.version,
+				     message->meta.bytes);
+		return 0;
+	case MESSAGE_STATUS:
+		if (events->status)
+			events->status(data, &message->status);
+		return 0;
+	default:
+		return -EBADMSG; /* that is ours to say */
+	}
+}
+
+static void hear_fetcher(struct net_client *client)
+{
+	int64_t until_us = clock_now_us() + DISPATCH_US;
+	int rc = packets_flush(&client->packets);
+
+	for (int i = 0; rc == 0 && i < MESSAGES_MOST && clock_now_us() < until_us; i++) {
+		struct message message;
+		int passed;
+
+		rc = packets_receive(&client->packets, &message, &passed);
+		if (rc == 0)
+			rc = obey(client, &message, passed);
+	}
+	watch_socket(client);
+	if (rc == -EBADMSG)
+		disconnect(client, "fetcher bug: it sent what is no message, or wrong bytes");
+	else if (rc < 0 && rc != -EAGAIN)
+		disconnect(client, rc == -EPIPE ? "it closed the socket" : strerror(-rc));
+}
+
+int net_client_fd(const struct net_client *client)
+{
+	return client->epoll_fd;
+}
+
+int net_client_dispatch(struct net_client *client)
+{
+	struct epoll_event events[4];
+	int count = epoll_wait(client->epoll_fd, events, 4, 0);
+
+	if (count < 0 && errno != EINTR)
+		return -errno;
+	for (int i = 0; i < count; i++) {
+		switch ((enum source)events[i].data.u32) {
+		case SOURCE_SOCKET:
+			if (client->packets.fd >= 0)
+				hear_fetcher(client);
+			break;
+		case SOURCE_CHILD:
+			/* What it sent before it died is read first: the socket tells of the end.
+			 */
+			if (client->packets.fd < 0)
+				reap(client);
+			else
+				hear_fetcher(client);
+			break;
+		case SOURCE_TIMER:
+			on_timer(client);
+			break;
+		}
+	}
+	return 0;
+}
+
+/* ---- create, destroy */
+
+/* Empty text stays what it is; NULL stays NULL. */
+static int copy_text(const char **text)
+{
+	if (!*text)
+		return 0;
+	*text = strdup(*text);
+	return *text ? 0 : -ENOMEM;
+}
+
+static int copy_options(struct net_client *client, const struct net_client_options *options)
+{
+	const char **const texts[] = { &client->options.socket_path, &client->options.program,
+				       &client->options.release_url, &client->options.cache_path,
+				       &client->options.ca_file };
+	int rc = 0;
+
+	client->options = *options;
+	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
+		if (rc < 0)
+			*texts[i] = NULL; /* not ours to free */
+		else
+			rc = copy_text(texts[i]);
+	}
+	if (client->options.cache_budget_bytes < 4 << 20)
+		client->options.cache_budget_bytes = 4 << 20;
+	return rc;
+}
+
+int net_client_create(struct net_client **out, const struct net_client_options *options)
+{
+	struct net_client *client = calloc(1, sizeof(*client));
+	int rc;
+
+	*out = NULL;
+	if (!client)
+		return -ENOMEM;
+	client->packets.fd = client->pid_fd = -1;
+	rc = copy_options(client, options);
+	client->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+	client->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
+	if (rc == 0 && (client->epoll_fd < 0 || client->timer_fd < 0))
+		rc = -errno;
+	if (rc == 0 && !options->socket_path &&
+	    (!options->program || !options->release_url || !options->cache_path))
+		rc = -EINVAL;
+	if (rc == 0)
+		rc = watch(client, client->timer_fd, SOURCE_TIMER, EPOLLIN, EPOLL_CTL_ADD);
+	if (rc < 0) {
+		net_client_destroy(client);
+		return rc;
+	}
+	connect_now(client);
+	*out = client;
+	return 0;
+}
+
+static void end_fetcher(struct net_client *client)
+{
+	struct pollfd child = { .fd = client->pid_fd, .events = POLLIN };
+
+	if (!client->pid)
+		return;
+	kill(client->pid, SIGTERM);
+	if (client->pid_fd < 0 || poll(&child, 1, END_MS) <= 0)
+		kill(client->pid, SIGKILL);
+	waitpid(client->pid, NULL, 0);
+	if (client->pid_fd >= 0)
+		close(client->pid_fd);
+}
+
+static void forget_entries(struct by_hash *map)
+{
+	struct hash_entry *entry;
+	size_t at = 0;
+
+	while ((entry = by_hash_next(map, &at)))
+		free(entry);
+	by_hash_finish(map);
+}
+
+void net_client_destroy(struct net_client *client)
+{
+	if (!client)
+		return;
+	packets_finish(&client->packets);
+	end_fetcher(client);
+	if (client->timer_fd >= 0)
+		close(client->timer_fd);
+	if (client->epoll_fd >= 0)
+		close(client->epoll_fd);
+	forget_entries(&client->wants);
+	forget_entries(&client->keeps);
+	free((char *)client->options.socket_path);
+	free((char *)client->options.program);
+	free((char *)client->options.release_url);
+	free((char *)client->options.cache_path);
+	free((char *)client->options.ca_file);
+	free(client);
+}
+
+/* ---- what the kiosk asks */
+
+static void use(struct net_client *client, struct hash root, uint32_t root_bytes, bool also)
+{
+	struct message message = { .kind = MESSAGE_RELEASE, .release = { root, root_bytes, also } };
+
+	/* The one in use stays first; of the others the oldest goes. */
+	if (client->release_count == MESSAGE_RELEASES_MOST) {
+		memmove(&client->releases[1], &client->releases[2],
+			(MESSAGE_RELEASES_MOST - 2) * sizeof(client->releases[0]));
+		client->release_count--;
+	}
+	client->releases[client->release_count++] = (struct in_use){ root, root_bytes };
+	say(client, &message);
+}
+
+void net_client_use_release(struct net_client *client, struct hash root, uint32_t root_bytes)
+{
+	if (client->release_count == 1 && hash_equal(client->releases[0].root, root))
+		return;
+	forget_entries(&client->wants);
+	forget_entries(&client->keeps);
+	client->release_count = 0;
+	use(client, root, root_bytes, false);
+}
+
+void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes)
+{
+	for (size_t i = 0; i < client->release_count; i++)
+		if (hash_equal(client->releases[i].root, root))
+			return;
+	use(client, root, root_bytes, client->release_count > 0);
+}
+
+void net_client_want(struct net_client *client, const struct message_want *want)
+{
+	struct message message = { .kind = MESSAGE_WANT, .want = *want };
+	struct wanted *wanted = by_hash_find(&client->wants, want->hash);
+
+	if (wanted && wanted->want.priority == want->priority)
+		return;
+	if (!wanted) {
+		wanted = calloc(1, sizeof(*wanted));
+		if (!wanted)
+			return; /* the kiosk will want it again */
+		wanted->entry.key = want->hash;
+		if (by_hash_add(&client->wants, &wanted->entry) < 0) {
+			free(wanted);
+			return;
+		}
+	}
+	wanted->want = *want;
+	say(client, &message);
+}
+
+void net_client_drop(struct net_client *client, struct hash hash)
+{
+	struct message message = { .kind = MESSAGE_DROP, .drop = hash };
+	struct wanted *wanted = by_hash_find(&client->wants, hash);
+
+	if (!wanted)
+		return;
+	by_hash_remove(&client->wants, hash);
+	free(wanted);
+	say(client, &message);
+}
+
+void net_client_keep(struct net_client *client, struct hash hash)
+{
+	struct message message = { .kind = MESSAGE_KEEP, .keep = hash };
+	struct hash_entry *keep;
+
+	if (by_hash_find(&client->keeps, hash))
+		return;
+	keep = calloc(1, sizeof(*keep));
+	if (!keep)
+		return;
+	keep->key = hash;
+	if (by_hash_add(&client->keeps, keep) < 0) {
+		free(keep);
+		return;
+	}
+	say(client, &message);
+}
+
+void net_client_ask_meta(struct net_client *client)
+{
+	struct message message = { .kind = MESSAGE_ASK_META };
+
+	say(client, &message);
+}

@@ -1,0 +1,415 @@
+#include "net/fetch.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "net/bring.h"
+#include "net/packets.h"
+#include "net/poll.h"
+
+enum {
+	QUEUE_BYTES_MOST = 8 << 20, /* to the kiosk; past it nothing more is brought */
+	PACKETS_MOST = 512,         /* read in one go */
+	FLUSH_MS = 500,             /* what is in the cache's transaction is at most that old */
+	STATUS_MS = 1000,
+};
+
+enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL };
+
+struct fetch {
+	const struct fetch_options *options;
+	int epoll_fd, listen_fd, signal_fd;
+	bool has_kiosk, kiosk_waits; /* for its socket to take more */
+	bool ends;
+	struct packets kiosk;
+	struct http *http;
+	struct cache *cache;
+	struct link link;
+	struct bring *bring;
+	struct poll *poll;
+	struct message_status said;
+	int64_t flush_ms, status_ms; /* when due */
+};
+
+/* ---- the kiosk comes and goes */
+
+static int watch(struct fetch *fetch, int fd, enum source source, uint32_t events, int how)
+{
+	struct epoll_event event = { .events = events, .data.u32 = source };
+
+	return epoll_ctl(fetch->epoll_fd, how, fd, &event) < 0 ? -errno : 0;
+}
+
+static void lose_kiosk(struct fetch *fetch, const char *why)
+{
+	if (!fetch->has_kiosk)
+		return;
+	log_info("net", "the kiosk is gone: %s", why);
+	fetch->has_kiosk = fetch->kiosk_waits = false;
+	packets_finish(&fetch->kiosk);
+	bring_forget_all(fetch->bring);
+	poll_stop(fetch->poll);
+	if (fetch->listen_fd < 0)
+		fetch->ends = true;
+}
+
+static int meet_kiosk(struct fetch *fetch, int fd)
+{
+	packets_init(&fetch->kiosk, fd);
+	fetch->has_kiosk = true;
+	fetch->kiosk_waits = false;
+	fetch->said = (struct message_status){ 0 };
+	fetch->status_ms = 0;
+	return watch(fetch, fd, SOURCE_KIOSK, EPOLLIN, EPOLL_CTL_ADD);
+}
+
+/* One at a time: a newcomer replaces who was there, for a kiosk that started anew comes back before
+ * its old socket was noticed to be dead. */
+static int accept_kiosk(struct fetch *fetch)
+{
+	int fd = accept4(fetch->listen_fd, NULL, NULL, SOCK_CLOEXEC);
+
+	if (fd < 0)
+		return errno == EAGAIN || errno == ECONNABORTED || errno == EINTR ? 0 : -errno;
+	lose_kiosk(fetch, "another one came");
+	log_info("net", "a kiosk came");
+	return meet_kiosk(fetch, fd);
+}
+
+static void send_to_kiosk(struct fetch *fetch, const struct message *message, int passed)
+{
+	int rc = packets_send(&fetch->kiosk, message, passed);
+
+	if (rc == -EPIPE || rc == -ECONNRESET)
+		return; /* receiving will notice */
+	if (rc < 0)
+		log_error("net", "a message did not go out: %s", strerror(-rc));
+}
+
+/* ---- what the others report */
+
+static void on_object(void *data, struct hash hash, struct bytes bytes)
+{
+	struct fetch *fetch = data;
+	struct message message = { .kind = MESSAGE_OBJECT,
+				   .object = { hash, bytes, (uint32_t)bytes.size } };
+	int passed = -1;
+
+	if (bytes.size > MESSAGE_INLINE_MOST) {
+		passed = packets_seal(bytes);
+		if (passed < 0) {
+			log_error("net", "no memory for an object: %s", strerror(-passed));
+			return;
+		}
+		message.object.bytes = (struct bytes){ NULL, 0 };
+	}
+	send_to_kiosk(fetch, &message, passed);
+}
+
+static void on_missing(void *data, struct hash hash, enum missing_reason reason)
+{
+	struct message message = { .kind = MESSAGE_MISSING, .missing = { hash, reason } };
+
+	send_to_kiosk(data, &message, -1);
+}
+
+static bool has_room(void *data)
+{
+	const struct fetch *fetch = data;
+
+	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+}
+
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	struct message message = { .kind = MESSAGE_META, .meta = { role, version, bytes } };
+
+	send_to_kiosk(data, &message, -1);
+}
+
+/* ---- what the kiosk says */
+
+static int obey(struct fetch *fetch, const struct message *message)
+{
+	switch (message->kind) {
+	case MESSAGE_RELEASE:
+		bring_use_release(fetch->bring, message->release.root, message->release.root_bytes,
+				  message->release.also);
+		return 0;
+	case MESSAGE_WANT:
+		bring_want(fetch->bring, &message->want);
+		return 0;
+	case MESSAGE_DROP:
+		bring_drop(fetch->bring, message->drop);
+		return 0;
+	case MESSAGE_KEEP:
+		bring_keep(fetch->bring, message->keep);
+		return 0;
+	case MESSAGE_ASK_META:
+		poll_ask(fetch->poll);
+		return 0;
+	default:
+		return -EBADMSG; /* that is ours to say */
+	}
+}
+
+static void hear_kiosk(struct fetch *fetch)
+{
+	int rc = packets_flush(&fetch->kiosk);
+
+	for (int i = 0; rc == 0 && i < PACKETS_MOST; i++) {
+		struct message message;
+		int passed;
+
+		rc = packets_receive(&fetch->kiosk, &message, &passed);
+		if (rc == 0)
+			rc = obey(fetch, &message);
+	}
+	if (rc == -EBADMSG)
+		lose_kiosk(fetch, "kiosk bug: it sent what is no message");
+	else if (rc < 0 && rc != -EAGAIN)
+		lose_kiosk(fetch, strerror(-rc));
+}
+
+static void tell_status(struct fetch *fetch)
+{
+	struct message message = { .kind = MESSAGE_STATUS };
+	struct message_status *status = &message.status;
+
+	if (!fetch->has_kiosk || clock_now_ms() < fetch->status_ms)
+		return;
+	status->online = fetch->link.online;
+	status->wanted = bring_wanted(fetch->bring);
+	status->received_bytes = http_received_bytes(fetch->http);
+	status->cache_bytes = cache_file_bytes(fetch->cache);
+	status->cache_budget_bytes = fetch->options->cache_budget_bytes;
+	status->offline_since_s = fetch->link.offline_since_s;
+	fetch->status_ms = clock_now_ms() + STATUS_MS;
+	if (memcmp(status, &fetch->said, sizeof(*status)) == 0) {
+		fetch->status_ms = INT64_MAX; /* until something happens */
+		return;
+	}
+	fetch->said = *status;
+	send_to_kiosk(fetch, &message, -1);
+}
+
+/* ---- the loop */
+
+static void flush_cache(struct fetch *fetch)
+{
+	if (!cache_needs_flush(fetch->cache)) {
+		fetch->flush_ms = INT64_MAX;
+		return;
+	}
+	if (fetch->flush_ms == INT64_MAX)
+		fetch->flush_ms = clock_now_ms() + FLUSH_MS;
+	if (clock_now_ms() < fetch->flush_ms)
+		return;
+	fetch->flush_ms = INT64_MAX;
+	if (cache_flush(fetch->cache) < 0)
+		log_debug("net", "the last objects are not in the cache");
+}
+
+static void work(struct fetch *fetch)
+{
+	bool waits;
+
+	if (fetch->has_kiosk) {
+		bring_work(fetch->bring);
+		poll_work(fetch->poll);
+		tell_status(fetch);
+	}
+	flush_cache(fetch);
+	waits = fetch->has_kiosk && packets_wait(&fetch->kiosk);
+	if (waits != fetch->kiosk_waits &&
+	    watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, EPOLLIN | (waits ? EPOLLOUT : 0u),
+		  EPOLL_CTL_MOD) == 0)
+		fetch->kiosk_waits = waits;
+}
+
+static int timeout_ms(const struct fetch *fetch)
+{
+	int64_t now_ms = clock_now_ms(), due_ms = fetch->flush_ms;
+
+	if (fetch->has_kiosk) {
+		int64_t bring_ms = bring_due_ms(fetch->bring), poll_ms = poll_due_ms(fetch->poll);
+
+		due_ms = bring_ms < due_ms ? bring_ms : due_ms;
+		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
+		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
+	}
+	if (due_ms == INT64_MAX)
+		return -1;
+	if (due_ms <= now_ms)
+		return 0;
+	return due_ms - now_ms > 60000 ? 60000 : (int)(due_ms - now_ms);
+}
+
+static int dispatch(struct fetch *fetch, enum source source)
+{
+	switch (source) {
+	case SOURCE_LISTENER:
+		return accept_kiosk(fetch);
+	case SOURCE_KIOSK:
+		if (fetch->has_kiosk)
+			hear_kiosk(fetch);
+		return 0;
+	case SOURCE_HTTP:
+		return http_dispatch(fetch->http);
+	case SOURCE_SIGNAL:
+		fetch->ends = true;
+		return 0;
+	}
+	return 0;
+}
+
+static int loop(struct fetch *fetch)
+{
+	while (!fetch->ends) {
+		struct epoll_event events[8];
+		int count, rc;
+
+		work(fetch);
+		if (fetch->ends)
+			break;
+		count = epoll_wait(fetch->epoll_fd, events, 8, timeout_ms(fetch));
+		if (count < 0 && errno != EINTR)
+			return -errno;
+		for (int i = 0; i < count; i++) {
+			rc = dispatch(fetch, (enum source)events[i].data.u32);
+			if (rc < 0)
+				return rc;
+		}
+		if (count > 0 && fetch->status_ms == INT64_MAX)
+			fetch->status_ms = clock_now_ms() + STATUS_MS;
+	}
+	return 0;
+}
+
+/* ---- start and stop */
+
+static int listen_on(struct fetch *fetch, const char *path)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+	int fd;
+
+	if (strlen(path) >= sizeof(address.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(address.sun_path, path, strlen(path) + 1);
+	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	fetch->listen_fd = fd;
+	unlink(path); /* of a fetcher before us */
+	if (bind(fd, (struct sockaddr *)&address, sizeof(address)) < 0 || chmod(path, 0660) < 0 ||
+	    listen(fd, 4) < 0)
+		return -errno;
+	return watch(fetch, fd, SOURCE_LISTENER, EPOLLIN, EPOLL_CTL_ADD);
+}
+
+static int watch_signals(struct fetch *fetch)
+{
+	sigset_t set;
+
+	sigemptyset(&set);
+	sigaddset(&set, SIGTERM);
+	sigaddset(&set, SIGINT);
+	sigprocmask(SIG_BLOCK, &set, NULL);
+	signal(SIGPIPE, SIG_IGN);
+	fetch->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+	if (fetch->signal_fd < 0)
+		return -errno;
+	return watch(fetch, fetch->signal_fd, SOURCE_SIGNAL, EPOLLIN, EPOLL_CTL_ADD);
+}
+
+static int create_parts(struct fetch *fetch)
+{
+	const struct fetch_options *options = fetch->options;
+	struct http_options http = { .url = options->release_url,
+				     .ca_file = options->ca_file,
+				     .rate_limit = options->rate_limit,
+				     .stall_s = options->stall_s };
+	struct cache_options cache = { .path = options->cache_path,
+				       .budget_bytes = options->cache_budget_bytes };
+	struct bring_options bring = { .link = &fetch->link,
+				       .events = { on_object, on_missing, has_room },
+				       .data = fetch };
+	struct poll_options poll = {
+		.link = &fetch->link, .period_s = options->poll_s, .meta = on_meta, .data = fetch
+	};
+	int rc = http_create(&fetch->http, &http);
+
+	if (rc == 0)
+		rc = cache_create(&fetch->cache, &cache);
+	bring.http = poll.http = fetch->http;
+	bring.cache = fetch->cache;
+	link_init(&fetch->link);
+	if (rc == 0)
+		rc = bring_create(&fetch->bring, &bring);
+	if (rc == 0)
+		rc = poll_create(&fetch->poll, &poll);
+	if (rc == 0)
+		rc = watch(fetch, http_fd(fetch->http), SOURCE_HTTP, EPOLLIN, EPOLL_CTL_ADD);
+	return rc;
+}
+
+static int start(struct fetch *fetch)
+{
+	int rc;
+
+	fetch->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+	if (fetch->epoll_fd < 0)
+		return -errno;
+	srandom((unsigned)clock_now_us() ^ (unsigned)getpid());
+	rc = watch_signals(fetch);
+	if (rc == 0)
+		rc = create_parts(fetch);
+	if (rc < 0)
+		return rc;
+	if (fetch->options->socket_path)
+		return listen_on(fetch, fetch->options->socket_path);
+	return meet_kiosk(fetch, fetch->options->fd);
+}
+
+static void stop(struct fetch *fetch)
+{
+	poll_destroy(fetch->poll);
+	bring_destroy(fetch->bring);
+	packets_finish(&fetch->kiosk);
+	cache_destroy(fetch->cache);
+	http_destroy(fetch->http);
+	if (fetch->listen_fd >= 0) {
+		close(fetch->listen_fd);
+		unlink(fetch->options->socket_path);
+	}
+	if (fetch->signal_fd >= 0)
+		close(fetch->signal_fd);
+	if (fetch->epoll_fd >= 0)
+		close(fetch->epoll_fd);
+}
+
+int fetch_run(const struct fetch_options *options)
+{
+	struct fetch fetch = { .options = options,
+			       .epoll_fd = -1,
+			       .listen_fd = -1,
+			       .signal_fd = -1,
+			       .flush_ms = INT64_MAX };
+	int rc = start(&fetch);
+
+	if (rc == 0)
+		rc = loop(&fetch);
+	stop(&fetch);
+	return rc;
+}

@@ -1,0 +1,25 @@
+/* The fetcher as a whole: one loop over the kiosk's socket and the server's answers. docs/fetch.md
+ * tells how it works. */
+#ifndef GOPURA_NET_FETCH_H
+#define GOPURA_NET_FETCH_H
+
+#include <stdint.h>
+
+#include "base/compiler.h"
+
+struct fetch_options {
+	const char *release_url; /* https://..., http://..., a folder */
+	const char *cache_path;
+	uint64_t cache_budget_bytes;
+	const char *ca_file;     /* NULL: the system's */
+	const char *socket_path; /* to listen on; NULL: fd */
+	int fd;                  /* connected already; the fetcher ends with it */
+	uint32_t poll_s;
+	uint64_t rate_limit; /* bytes a second of each request; 0: none */
+	uint32_t stall_s;    /* 0: the default */
+};
+
+/* Until SIGTERM or SIGINT, or until the kiosk closes fd: 0. Negative errno when it cannot begin. */
+must_check int fetch_run(const struct fetch_options *options);
+
+#endif

@@ -1,0 +1,576 @@
+#include "net/http.h"
+
+#include <curl/curl.h>
+#include <errno.h>
+#include <limits.h>
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include "base/log.h"
+
+enum {
+	URL_BYTES_MOST = 4096,
+	ETAG_BYTES_MOST = 128,
+	CONNECT_MS = 8000,
+	STALL_S = 15,
+	STALL_BYTES_PER_S = 64,
+	ERROR_BODY_BYTES_MOST = 64 * 1024, /* read to its end, so that the connection can stay */
+	CONNECTIONS_MOST = 8,              /* with HTTP/1.1; HTTP/2 needs one */
+	SOCKETS_MOST = 64,
+	EVENTS = 16,
+};
+
+struct http {
+	CURLM *multi;
+	int epoll_fd, timer_fd;
+	char url[URL_BYTES_MOST];
+	char folder[PATH_MAX]; /* as given, when local */
+	char *ca_file;
+	uint64_t rate_limit;
+	long stall_s;
+	bool is_local;
+	int sockets[SOCKETS_MOST]; /* open ones, for what they received */
+	size_t socket_count;
+	uint64_t received_bytes; /* by sockets that were closed, and from a local folder */
+};
+
+struct http_request {
+	struct http *http;
+	CURL *easy;
+	struct curl_slist *headers;
+	struct http_ask ask;
+	char etag[ETAG_BYTES_MOST]; /* of the answer */
+	char error[CURL_ERROR_SIZE];
+	long status; /* known once the body begins; 0 before, and of a local folder */
+	bool body_began;
+	bool range_is_right;  /* the answer's Content-Range begins where we asked */
+	bool enough, refused; /* why the body was cut short */
+	uint64_t skip;        /* bytes of a whole file before those we asked for */
+	uint64_t given;       /* bytes given to the receiver */
+	uint64_t ignored;     /* bytes of an error's page */
+};
+
+/* ---- sockets: what they received, by the kernel's own count */
+
+static uint64_t received_by(int fd)
+{
+	struct tcp_info info = { 0 };
+	socklen_t size = sizeof(info);
+
+	if (getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) < 0)
+		return 0;
+	return info.tcpi_bytes_received;
+}
+
+static curl_socket_t on_open(void *data, curlsocktype purpose, struct curl_sockaddr *address)
+{
+	struct http *http = data;
+	int fd = socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
+
+	(void)purpose;
+	if (fd >= 0 && http->socket_count < SOCKETS_MOST)
+		http->sockets[http->socket_count++] = fd;
+	return fd < 0 ? CURL_SOCKET_BAD : fd;
+}
+
+static int on_close(void *data, curl_socket_t fd)
+{
+	struct http *http = data;
+
+	for (size_t i = 0; i < http->socket_count; i++) {
+		if (http->sockets[i] != fd)
+			continue;
+		http->received_bytes += received_by(fd);
+		http->sockets[i] = http->sockets[--http->socket_count];
+		break;
+	}
+	return close(fd);
+}
+
+uint64_t http_received_bytes(const struct http *http)
+{
+	uint64_t sum = http->received_bytes;
+
+	for (size_t i = 0; i < http->socket_count; i++)
+		sum += received_by(http->sockets[i]);
+	return sum;
+}
+
+/* ---- the loop's side */
+
+static int on_socket(CURL *easy, curl_socket_t fd, int what, void *data, void *known)
+{
+	struct http *http = data;
+	struct epoll_event event = { .data.fd = fd };
+
+	(void)easy;
+	if (what == CURL_POLL_REMOVE) {
+		epoll_ctl(http->epoll_fd, EPOLL_CTL_DEL, fd, NULL);
+		return 0;
+	}
+	if (what & CURL_POLL_IN)
+		event.events |= EPOLLIN;
+	if (what & CURL_POLL_OUT)
+		event.events |= EPOLLOUT;
+	if (epoll_ctl(http->epoll_fd, known ? EPOLL_CTL_MOD : EPOLL_CTL_ADD, fd, &event) < 0)
+		epoll_ctl(http->epoll_fd, errno == EEXIST ? EPOLL_CTL_MOD : EPOLL_CTL_ADD, fd,
+			  &event);
+	curl_multi_assign(http->multi, fd, http); /* known from now on */
+	return 0;
+}
+
+static int on_timer(CURLM *multi, long timeout_ms, void *data)
+{
+	struct http *http = data;
+	struct itimerspec when = { 0 };
+
+	(void)multi;
+	if (timeout_ms == 0)
+		when.it_value.tv_nsec = 1; /* at once: zero would disarm */
+	if (timeout_ms > 0) {
+		when.it_value.tv_sec = timeout_ms / 1000;
+		when.it_value.tv_nsec = timeout_ms % 1000 * 1000000;
+	}
+	timerfd_settime(http->timer_fd, 0, &when, NULL);
+	return 0;
+}
+
+/* ---- an answer's headers */
+
+static bool header_is(const char *line, size_t size, const char *name)
+{
+	size_t length = strlen(name);
+
+	return size > length && strncasecmp(line, name, length) == 0;
+}
+
+/* "content-range: bytes 100-199/5000" */
+static bool range_begins_at(const char *line, size_t size, uint64_t first)
+{
+	char copy[128], *end;
+	const char *at;
+
+	snprintf(copy, sizeof(copy), "%.*s", (int)size, line);
+	at = strstr(copy, "bytes");
+	if (!at)
+		return false;
+	return strtoull(at + 5, &end, 10) == first && *end == '-';
+}
+
+static size_t on_header(char *line, size_t one, size_t size, void *data)
+{
+	struct http_request *request = data;
+
+	(void)one;
+	if (header_is(line, size, "HTTP/")) { /* also of the answer after a redirection */
+		request->range_is_right = false;
+		request->etag[0] = '\0';
+	} else if (header_is(line, size, "content-range:")) {
+		request->range_is_right = range_begins_at(line, size, request->ask.first);
+	} else if (header_is(line, size, "etag:")) {
+		while (size > 5 && (line[size - 1] == '\n' || line[size - 1] == '\r'))
+			size--;
+		snprintf(request->etag, sizeof(request->etag), "%.*s",
+			 (int)(size - 5 - strspn(line + 5, " ")), line + 5 + strspn(line + 5, " "));
+	}
+	return size;
+}
+
+/* ---- an answer's body */
+
+/* Once the status is known. False: not what we asked for. */
+static bool judge_answer(struct http_request *request)
+{
+	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
+	if (request->status == 206)
+		return request->ask.size > 0 && request->range_is_right;
+	/* A server that knows no ranges sends the whole file: read on to our part. */
+	if (request->status == 200 && request->ask.size > 0)
+		request->skip = request->ask.first;
+	return true;
+}
+
+static bool has_body_for_us(const struct http_request *request)
+{
+	return request->status == 0 || request->status == 200 || request->status == 206;
+}
+
+/* False: enough. */
+static bool give(struct http_request *request, struct bytes piece)
+{
+	uint64_t most = request->ask.size ? request->ask.size : request->ask.ceiling;
+	uint64_t room = most - request->given;
+	bool more;
+
+	if (piece.size > room) {
+		request->refused = request->ask.size == 0; /* a whole file past its ceiling */
+		piece.size = (size_t)room;
+		if (request->refused)
+			return false;
+	}
+	if (piece.size == 0)
+		return request->ask.size == 0; /* the rest of the file is not ours */
+	more = request->ask.receive(request->ask.data, piece);
+	request->given += piece.size;
+	return more && (request->ask.size == 0 || request->given < request->ask.size ||
+			request->status != 200);
+}
+
+static size_t on_body(char *data, size_t one, size_t size, void *user)
+{
+	struct http_request *request = user;
+	struct bytes piece = { (const uint8_t *)data, size };
+
+	(void)one;
+	if (request->http->is_local)
+		request->http->received_bytes += size;
+	if (!request->body_began) {
+		request->body_began = true;
+		if (!judge_answer(request)) {
+			request->refused = true;
+			return 0;
+		}
+	}
+	if (!has_body_for_us(request)) {
+		request->ignored += size;
+		return request->ignored > ERROR_BODY_BYTES_MOST ? 0 : size;
+	}
+	if (request->skip >= piece.size) {
+		request->skip -= piece.size;
+		return size;
+	}
+	piece.data += request->skip;
+	piece.size -= (size_t)request->skip;
+	request->skip = 0;
+	if (give(request, piece))
+		return size;
+	request->enough = !request->refused;
+	return 0; /* curl then ends the request */
+}
+
+/* ---- the end of a request */
+
+static int judge_status(long status)
+{
+	switch (status) {
+	case 200:
+	case 206:
+	case 304:
+		return 0;
+	case 401:
+	case 403:
+	case 404:
+	case 410:
+	case 416:
+		return -ENOENT;
+	default:
+		return -EHOSTUNREACH;
+	}
+}
+
+static int judge_code(struct http_request *request, CURLcode code)
+{
+	if (request->enough)
+		return 0;
+	if (request->refused)
+		return -EBADMSG;
+	if (code == CURLE_FILE_COULDNT_READ_FILE || code == CURLE_BAD_DOWNLOAD_RESUME ||
+	    (request->http->is_local && code == CURLE_RANGE_ERROR)) {
+		/* A stick that was pulled out is a network that is gone. */
+		return access(request->http->folder, F_OK) == 0 ? -ENOENT : -EHOSTUNREACH;
+	}
+	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
+	if (code == CURLE_WRITE_ERROR) /* an endless error page */
+		return judge_status(request->status) < 0 ? judge_status(request->status) : -EBADMSG;
+	if (code != CURLE_OK)
+		return -EHOSTUNREACH;
+	return request->http->is_local ? 0 : judge_status(request->status);
+}
+
+static void release_request(struct http_request *request)
+{
+	curl_multi_remove_handle(request->http->multi, request->easy);
+	curl_easy_cleanup(request->easy);
+	curl_slist_free_all(request->headers);
+	free(request);
+}
+
+static void finish_request(CURL *easy, CURLcode code)
+{
+	struct http_request *request = NULL;
+	struct http_result result = { 0 };
+	char why[CURL_ERROR_SIZE + 32];
+
+	curl_easy_getinfo(easy, CURLINFO_PRIVATE, &request);
+	result.rc = judge_code(request, code);
+	result.not_modified = result.rc == 0 && request->status == 304;
+	result.etag = request->etag;
+	result.why = why;
+	if (request->status >= 400)
+		snprintf(why, sizeof(why), "HTTP status %ld", request->status);
+	else if (code == CURLE_OK || request->enough)
+		snprintf(why, sizeof(why), "fine");
+	else
+		snprintf(why, sizeof(why), "%s",
+			 request->error[0] ? request->error : curl_easy_strerror(code));
+	curl_multi_remove_handle(request->http->multi, easy);
+	request->ask.done(request->ask.data, &result);
+	release_request(request);
+}
+
+static void finish_requests(struct http *http)
+{
+	CURLMsg *message;
+	int left;
+
+	while ((message = curl_multi_info_read(http->multi, &left)))
+		if (message->msg == CURLMSG_DONE)
+			finish_request(message->easy_handle, message->data.result);
+}
+
+int http_dispatch(struct http *http)
+{
+	struct epoll_event events[EVENTS];
+	int count = epoll_wait(http->epoll_fd, events, EVENTS, 0);
+	int running;
+
+	for (int i = 0; i < count; i++) {
+		uint64_t expirations;
+		int bits = 0;
+
+		if (events[i].data.fd == http->timer_fd) {
+			if (read(http->timer_fd, &expirations, sizeof(expirations)) > 0)
+				curl_multi_socket_action(http->multi, CURL_SOCKET_TIMEOUT, 0,
+							 &running);
+			continue;
+		}
+		if (events[i].events & EPOLLIN)
+			bits |= CURL_CSELECT_IN;
+		if (events[i].events & EPOLLOUT)
+			bits |= CURL_CSELECT_OUT;
+		if (events[i].events & (EPOLLERR | EPOLLHUP))
+			bits |= CURL_CSELECT_ERR;
+		curl_multi_socket_action(http->multi, events[i].data.fd, bits, &running);
+	}
+	finish_requests(http);
+	return count < 0 && errno != EINTR ? -errno : 0;
+}
+
+int http_fd(const struct http *http)
+{
+	return http->epoll_fd;
+}
+
+const char *http_url(const struct http *http)
+{
+	return http->url;
+}
+
+/* ---- asking */
+
+static void set_options(struct http_request *request)
+{
+	struct http *http = request->http;
+	CURL *easy = request->easy;
+
+	curl_easy_setopt(easy, CURLOPT_PRIVATE, request);
+	curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, request->error);
+	curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*"); /* the museum's server is reached directly */
+	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");
+	curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, http->is_local ? "file" : "http,https");
+	curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
+	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, http->is_local ? 0L : 1L);
+	curl_easy_setopt(easy, CURLOPT_MAXREDIRS, 4L);
+	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);
+	curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L); /* rather share a connection than open one */
+	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
+	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)STALL_BYTES_PER_S);
+	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, http->stall_s);
+	curl_easy_setopt(easy, CURLOPT_MAX_RECV_SPEED_LARGE, (curl_off_t)http->rate_limit);
+	curl_easy_setopt(easy, CURLOPT_OPENSOCKETFUNCTION, on_open);
+	curl_easy_setopt(easy, CURLOPT_OPENSOCKETDATA, http);
+	curl_easy_setopt(easy, CURLOPT_CLOSESOCKETFUNCTION, on_close);
+	curl_easy_setopt(easy, CURLOPT_CLOSESOCKETDATA, http);
+	curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, on_header);
+	curl_easy_setopt(easy, CURLOPT_HEADERDATA, request);
+	curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, on_body);
+	curl_easy_setopt(easy, CURLOPT_WRITEDATA, request);
+	if (http->ca_file)
+		curl_easy_setopt(easy, CURLOPT_CAINFO, http->ca_file);
+}
+
+static void set_ask(struct http_request *request)
+{
+	const struct http_ask *ask = &request->ask;
+	char text[URL_BYTES_MOST + 256];
+
+	snprintf(text, sizeof(text), "%s/%s", request->http->url, ask->path);
+	curl_easy_setopt(request->easy, CURLOPT_URL, text);
+	if (ask->size > 0) {
+		snprintf(text, sizeof(text), "%llu-%llu", (unsigned long long)ask->first,
+			 (unsigned long long)(ask->first + ask->size - 1));
+		curl_easy_setopt(request->easy, CURLOPT_RANGE, text);
+	}
+	if (ask->etag && ask->etag[0]) {
+		snprintf(text, sizeof(text), "If-None-Match: %s", ask->etag);
+		request->headers = curl_slist_append(NULL, text);
+		curl_easy_setopt(request->easy, CURLOPT_HTTPHEADER, request->headers);
+	}
+	request->ask.path = NULL; /* curl copied what it needs */
+	request->ask.etag = NULL;
+}
+
+int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out)
+{
+	struct http_request *request = calloc(1, sizeof(*request));
+
+	*out = NULL;
+	if (!request)
+		return -ENOMEM;
+	request->http = http;
+	request->ask = *ask;
+	request->easy = curl_easy_init();
+	if (!request->easy) {
+		free(request);
+		return -ENOMEM;
+	}
+	set_options(request);
+	set_ask(request);
+	if (curl_multi_add_handle(http->multi, request->easy) != CURLM_OK) {
+		curl_easy_cleanup(request->easy);
+		curl_slist_free_all(request->headers);
+		free(request);
+		return -ENOMEM;
+	}
+	*out = request;
+	return 0;
+}
+
+void http_cancel(struct http_request *request)
+{
+	if (request)
+		release_request(request);
+}
+
+/* ---- create and destroy */
+
+/* A folder's path as a url, what a url cannot hold percent-encoded. */
+static int url_of_folder(char *out, size_t size, const char *path)
+{
+	char whole[PATH_MAX], folder[PATH_MAX / 2];
+	size_t used;
+
+	if (path[0] != '/' && getcwd(folder, sizeof(folder)))
+		snprintf(whole, sizeof(whole), "%s/%s", folder, path);
+	else
+		snprintf(whole, sizeof(whole), "%s", path);
+	used = (size_t)snprintf(out, size, "file://");
+	for (const char *at = whole; *at; at++) {
+		bool plain = strchr("/-_.~", *at) || (*at >= '0' && *at <= '9') ||
+			     (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z');
+
+		if (used + 4 > size)
+			return -EINVAL;
+		used += (size_t)snprintf(out + used, size - used, plain ? "%c" : "%%%02X",
+					 (unsigned char)*at);
+	}
+	return 0;
+}
+
+static int take_url(struct http *http, const char *url)
+{
+	size_t length;
+	int rc = 0;
+
+	if (strncmp(url, "https://", 8) == 0 || strncmp(url, "http://", 7) == 0)
+		snprintf(http->url, sizeof(http->url), "%s", url);
+	else if (strncmp(url, "file://", 7) == 0)
+		rc = url_of_folder(http->url, sizeof(http->url), url + 7);
+	else if (strstr(url, "://") || url[0] == '\0')
+		rc = -EINVAL;
+	else
+		rc = url_of_folder(http->url, sizeof(http->url), url);
+	http->is_local = strncmp(http->url, "file://", 7) == 0;
+	if (http->is_local)
+		snprintf(http->folder, sizeof(http->folder), "%s",
+			 strncmp(url, "file://", 7) == 0 ? url + 7 : url);
+	length = strlen(http->url);
+	while (length > 8 && http->url[length - 1] == '/')
+		http->url[--length] = '\0';
+	if (strlen(url) >= sizeof(http->url))
+		rc = -EINVAL;
+	return rc;
+}
+
+static int open_loop(struct http *http)
+{
+	struct epoll_event event = { .events = EPOLLIN };
+
+	http->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+	http->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
+	if (http->epoll_fd < 0 || http->timer_fd < 0)
+		return -errno;
+	event.data.fd = http->timer_fd;
+	if (epoll_ctl(http->epoll_fd, EPOLL_CTL_ADD, http->timer_fd, &event) < 0)
+		return -errno;
+	http->multi = curl_multi_init();
+	if (!http->multi)
+		return -ENOMEM;
+	curl_multi_setopt(http->multi, CURLMOPT_SOCKETFUNCTION, on_socket);
+	curl_multi_setopt(http->multi, CURLMOPT_SOCKETDATA, http);
+	curl_multi_setopt(http->multi, CURLMOPT_TIMERFUNCTION, on_timer);
+	curl_multi_setopt(http->multi, CURLMOPT_TIMERDATA, http);
+	curl_multi_setopt(http->multi, CURLMOPT_PIPELINING, (long)CURLPIPE_MULTIPLEX);
+	curl_multi_setopt(http->multi, CURLMOPT_MAX_HOST_CONNECTIONS, (long)CONNECTIONS_MOST);
+	return 0;
+}
+
+int http_create(struct http **out, const struct http_options *options)
+{
+	struct http *http = calloc(1, sizeof(*http));
+	int rc;
+
+	*out = NULL;
+	if (!http)
+		return -ENOMEM;
+	http->epoll_fd = http->timer_fd = -1;
+	http->rate_limit = options->rate_limit;
+	http->stall_s = options->stall_s ? (long)options->stall_s : STALL_S;
+	rc = take_url(http, options->url);
+	if (rc == 0 && options->ca_file) {
+		http->ca_file = strdup(options->ca_file);
+		rc = http->ca_file ? 0 : -ENOMEM;
+	}
+	if (rc == 0 && curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK)
+		rc = -ENOMEM;
+	if (rc == 0)
+		rc = open_loop(http);
+	if (rc < 0) {
+		http_destroy(http);
+		return rc;
+	}
+	*out = http;
+	return 0;
+}
+
+void http_destroy(struct http *http)
+{
+	if (!http)
+		return;
+	curl_multi_cleanup(http->multi); /* NULL is fine; closes sockets through on_close */
+	if (http->timer_fd >= 0)
+		close(http->timer_fd);
+	if (http->epoll_fd >= 0)
+		close(http->epoll_fd);
+	free(http->ca_file);
+	free(http);
+}

@@ -1,0 +1,61 @@
+#include "net/link.h"
+
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+
+enum { PAUSE_MS = 500, PAUSE_MOST_MS = 60000 };
+
+int64_t link_pause_ms(uint32_t failures)
+{
+	int64_t pause_ms = PAUSE_MS;
+
+	for (uint32_t i = 1; i < failures && pause_ms < PAUSE_MOST_MS; i++)
+		pause_ms *= 2;
+	if (pause_ms > PAUSE_MOST_MS)
+		pause_ms = PAUSE_MOST_MS;
+	return pause_ms / 2 + random() % (pause_ms + 1);
+}
+
+void link_init(struct link *link)
+{
+	*link = (struct link){ .online = false };
+	link->offline_since_s = (uint64_t)clock_wall_s();
+}
+
+void link_answered(struct link *link)
+{
+	if (!link->online)
+		log_info("net", "online");
+	link->online = true;
+	link->offline_since_s = 0;
+	link->failures = 0;
+	link->retry_at_ms = 0;
+}
+
+void link_failed(struct link *link, const char *url, const char *why)
+{
+	/* Requests that were under way when it broke tell nothing new. */
+	if (link->failures > 0 && clock_now_ms() < link->retry_at_ms)
+		return;
+	if (link->online || link->failures == 0)
+		log_warn("net", "offline: %s: %s", url, why);
+	if (link->online)
+		link->offline_since_s = (uint64_t)clock_wall_s();
+	link->online = false;
+	link->failures++;
+	link->retry_at_ms = clock_now_ms() + link_pause_ms(link->failures);
+}
+
+bool link_may_ask(const struct link *link)
+{
+	if (link->failures == 0)
+		return true;
+	return link->in_flight == 0 && clock_now_ms() >= link->retry_at_ms;
+}
+
+bool link_is_down(const struct link *link)
+{
+	return link->failures >= 2;
+}

@@ -1,0 +1,228 @@
+#include "net/poll.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+
+enum { ROOTS_MOST = 64, ETAG_BYTES_MOST = 128 };
+
+enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_TIMESTAMP, STAGE_RELEASE };
+
+struct known {
+	struct buffer file; /* empty: none yet */
+	char etag[ETAG_BYTES_MOST];
+};
+
+struct poll {
+	struct poll_options options;
+	bool running;
+	int64_t next_ms;
+	uint32_t failures;
+	enum stage stage;
+	struct http_request *request;
+	struct buffer body;
+	struct known roots[ROOTS_MOST]; /* [n - 1]: root/n.json */
+	uint32_t root_count;
+	struct known timestamp, release;
+};
+
+int poll_create(struct poll **out, const struct poll_options *options)
+{
+	struct poll *poll = calloc(1, sizeof(*poll));
+
+	*out = poll;
+	if (!poll)
+		return -ENOMEM;
+	poll->options = *options;
+	buffer_init(&poll->body, MESSAGE_META_BYTES_MOST);
+	for (uint32_t i = 0; i < ROOTS_MOST; i++)
+		buffer_init(&poll->roots[i].file, MESSAGE_META_BYTES_MOST);
+	buffer_init(&poll->timestamp.file, MESSAGE_META_BYTES_MOST);
+	buffer_init(&poll->release.file, MESSAGE_META_BYTES_MOST);
+	return 0;
+}
+
+static void forget(struct known *known)
+{
+	buffer_finish(&known->file);
+	known->etag[0] = '\0';
+}
+
+void poll_stop(struct poll *poll)
+{
+	if (poll->request) {
+		http_cancel(poll->request);
+		poll->options.link->in_flight--;
+	}
+	poll->request = NULL;
+	poll->stage = STAGE_IDLE;
+	poll->running = false;
+	for (uint32_t i = 0; i < ROOTS_MOST; i++)
+		forget(&poll->roots[i]);
+	poll->root_count = 0;
+	forget(&poll->timestamp);
+	forget(&poll->release);
+}
+
+void poll_destroy(struct poll *poll)
+{
+	if (!poll)
+		return;
+	poll_stop(poll);
+	buffer_finish(&poll->body);
+	free(poll);
+}
+
+static void say(struct poll *poll, enum meta_role role, uint32_t version, const struct known *known)
+{
+	if (known->file.size)
+		poll->options.meta(poll->options.data, role, version, buffer_bytes(&known->file));
+}
+
+void poll_ask(struct poll *poll)
+{
+	for (uint32_t i = 0; i < poll->root_count; i++)
+		say(poll, META_ROOT, i + 1, &poll->roots[i]);
+	say(poll, META_TIMESTAMP, 0, &poll->timestamp);
+	say(poll, META_RELEASE, 0, &poll->release);
+	poll->running = true;
+	if (poll->stage == STAGE_IDLE)
+		poll->next_ms = 0;
+}
+
+static struct known *known_of_stage(struct poll *poll)
+{
+	switch (poll->stage) {
+	case STAGE_ROOT:
+		return &poll->roots[poll->root_count];
+	case STAGE_TIMESTAMP:
+		return &poll->timestamp;
+	default:
+		return &poll->release;
+	}
+}
+
+/* ---- answers */
+
+static bool on_piece(void *data, struct bytes piece)
+{
+	struct poll *poll = data;
+
+	buffer_put(&poll->body, piece.data, piece.size);
+	return !poll->body.error;
+}
+
+/* The body is a file we did not know: keep it and pass it on. */
+static void take_body(struct poll *poll, const char *etag)
+{
+	struct known *known = known_of_stage(poll);
+	bool same = known->file.size == poll->body.size && poll->body.size > 0 &&
+		    memcmp(known->file.data, poll->body.data, poll->body.size) == 0;
+
+	snprintf(known->etag, sizeof(known->etag), "%s", etag);
+	if (same || poll->body.size == 0)
+		return;
+	buffer_clear(&known->file);
+	buffer_put(&known->file, poll->body.data, poll->body.size);
+	if (poll->stage == STAGE_ROOT) {
+		poll->root_count++;
+		say(poll, META_ROOT, poll->root_count, known);
+	} else {
+		say(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0, known);
+	}
+}
+
+static void rest(struct poll *poll, int64_t pause_ms)
+{
+	poll->stage = STAGE_IDLE;
+	poll->next_ms = clock_now_ms() + pause_ms;
+}
+
+static int64_t period_ms(const struct poll *poll)
+{
+	int64_t period = (int64_t)poll->options.period_s * 1000;
+
+	return period - period / 10 + random() % (period / 5 + 1);
+}
+
+static void ask(struct poll *poll);
+
+static void on_done(void *data, const struct http_result *result)
+{
+	struct poll *poll = data;
+	int rc = result->rc ? result->rc : poll->body.error;
+
+	poll->request = NULL;
+	poll->options.link->in_flight--;
+	if (rc == -EHOSTUNREACH) {
+		link_failed(poll->options.link, http_url(poll->options.http), result->why);
+		poll->failures++;
+		rest(poll, link_pause_ms(poll->failures));
+		return;
+	}
+	link_answered(poll->options.link);
+	poll->failures = 0;
+	if (rc == 0 && !result->not_modified)
+		take_body(poll, result->etag);
+	else if (rc < 0 && poll->stage != STAGE_ROOT)
+		log_warn("net", "content bug: no %s.json to be had: %s",
+			 poll->stage == STAGE_TIMESTAMP ? "timestamp" : "release", result->why);
+	if (poll->stage == STAGE_RELEASE) {
+		rest(poll, period_ms(poll));
+		return;
+	}
+	/* After a root, its successor; after the last one, the others. */
+	if (poll->stage == STAGE_TIMESTAMP)
+		poll->stage = STAGE_RELEASE;
+	else if (rc < 0 || poll->root_count == ROOTS_MOST || poll->body.size == 0)
+		poll->stage = STAGE_TIMESTAMP;
+	ask(poll);
+}
+
+/* ---- questions */
+
+static void ask(struct poll *poll)
+{
+	const struct known *known = known_of_stage(poll);
+	char path[32] = "timestamp.json";
+	struct http_ask question = { .path = path,
+				     .ceiling = MESSAGE_META_BYTES_MOST,
+				     .etag = known->file.size ? known->etag : NULL,
+				     .receive = on_piece,
+				     .done = on_done,
+				     .data = poll };
+
+	if (poll->stage == STAGE_ROOT)
+		snprintf(path, sizeof(path), "root/%u.json", poll->root_count + 1);
+	else if (poll->stage == STAGE_RELEASE)
+		snprintf(path, sizeof(path), "release.json");
+	buffer_clear(&poll->body);
+	if (http_ask(poll->options.http, &question, &poll->request) < 0)
+		rest(poll, 1000);
+	else
+		poll->options.link->in_flight++;
+}
+
+void poll_work(struct poll *poll)
+{
+	if (!poll->running || poll->stage != STAGE_IDLE || clock_now_ms() < poll->next_ms ||
+	    !link_may_ask(poll->options.link))
+		return;
+	poll->stage = poll->root_count < ROOTS_MOST ? STAGE_ROOT : STAGE_TIMESTAMP;
+	ask(poll);
+}
+
+int64_t poll_due_ms(const struct poll *poll)
+{
+	const struct link *link = poll->options.link;
+
+	if (!poll->running || poll->stage != STAGE_IDLE)
+		return INT64_MAX;
+	if (link->failures > 0 && link->in_flight > 0)
+		return INT64_MAX;
+	return poll->next_ms > link->retry_at_ms ? poll->next_ms : link->retry_at_ms;
+}

@@ -1,0 +1,30 @@
+/* Looks for signed metadata (format/metadata.h) now and then: the next root, timestamp.json,
+ * release.json, in this order. What is new goes on as received; signatures are the kiosk's to
+ * check. One thread. */
+#ifndef GOPURA_NET_POLL_H
+#define GOPURA_NET_POLL_H
+
+#include "format/message.h"
+#include "net/http.h"
+#include "net/link.h"
+
+struct poll; /* private to poll.c */
+
+struct poll_options {
+	struct http *http; /* borrowed, as link */
+	struct link *link;
+	uint32_t period_s; /* between looks; a tenth more or less, so that terminals spread */
+	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
+	void *data;
+};
+
+must_check int poll_create(struct poll **out, const struct poll_options *options);
+void poll_destroy(struct poll *poll);
+
+/* Says again all that is known, and looks now. */
+void poll_ask(struct poll *poll);
+void poll_stop(struct poll *poll); /* until poll_ask; what is known is forgotten */
+void poll_work(struct poll *poll);
+int64_t poll_due_ms(const struct poll *poll); /* as bring_due_ms */
+
+#endif
