@@ -50,7 +50,7 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
 		if (has_extension(path, names[i].extension))
 			return names[i].format;
-	return SCAN_UNKNOWN;
+	return size >= 6 && memcmp(head, "solid ", 6) == 0 ? SCAN_STL : SCAN_UNKNOWN;
 }
 
 static int look(const char *path, enum scan_format *format, struct import_report *report,
@@ -230,6 +230,20 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
+static int read_scan(struct mesh *out, const char *path, enum scan_format format,
+		     const struct import_options *options, struct import_report *report,
+		     struct fault *fault)
+{
+	const struct import_foreign_format foreign = {
+		.is_linear = format == SCAN_GLTF || format == SCAN_GLB,
+		.has_materials = format != SCAN_STL && format != SCAN_OFF,
+	};
+
+	if (format == SCAN_PLY)
+		return import_ply(out, path, report, fault);
+	return import_foreign(out, path, foreign, options, report, fault);
+}
+
 int import_scan(struct mesh *out, const char *path, const struct import_options *options,
 		struct import_report *report, struct fault *fault)
 {
@@ -244,10 +258,7 @@ int import_scan(struct mesh *out, const char *path, const struct import_options 
 	*report = (struct import_report){ 0 };
 	rc = look(path, &format, report, fault);
 	if (rc == 0)
-		rc = format == SCAN_PLY
-			     ? import_ply(out, path, report, fault)
-			     : import_foreign(out, path, format == SCAN_GLTF || format == SCAN_GLB,
-					      options, report, fault);
+		rc = read_scan(out, path, format, options, report, fault);
 	if (rc == 0)
 		rc = finish(out, path, format == SCAN_PLY, options, report, fault);
 	if (rc < 0)

@@ -25,8 +25,8 @@ static const struct hash no_key;
 /* In shared memory; the child reads the first part and fills the second. */
 struct job {
 	char path[4096];
-	bool is_linear; /* colours are linear light (glTF) */
-	int result_fd;  /* the mesh, as a mesh file */
+	struct import_foreign_format format;
+	int result_fd; /* the mesh, as a mesh file */
 	struct import_report report;
 };
 
@@ -72,21 +72,24 @@ static bool picture_of(const struct aiMaterial *material, char name[MAXLEN])
 }
 
 /* False: it has none worth the name (assimp's own default, or the formats' default, white). */
-static bool plain_colour_of(const struct aiMaterial *material, bool is_linear, uint8_t rgb[3])
+static bool plain_colour_of(const struct aiMaterial *material, struct import_foreign_format format,
+			    uint8_t rgb[3])
 {
 	struct aiColor4D colour;
 	struct aiString name;
 
 	memset(rgb, 255, 3);
+	if (!format.has_materials)
+		return false;
 	if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS &&
 	    strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0)
 		return false;
 	if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) != aiReturn_SUCCESS &&
 	    aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &colour) != aiReturn_SUCCESS)
 		return false;
-	rgb[0] = colour_byte(colour.r, is_linear);
-	rgb[1] = colour_byte(colour.g, is_linear);
-	rgb[2] = colour_byte(colour.b, is_linear);
+	rgb[0] = colour_byte(colour.r, format.is_linear);
+	rgb[1] = colour_byte(colour.g, format.is_linear);
+	rgb[2] = colour_byte(colour.b, format.is_linear);
 	return rgb[0] != 255 || rgb[1] != 255 || rgb[2] != 255;
 }
 
@@ -107,7 +110,7 @@ static int count_mesh(struct builder *builder, uint32_t index)
 		return -EFBIG;
 	builder->has_colours |= mesh->mColors[0] ||
 				plain_colour_of(builder->scene->mMaterials[mesh->mMaterialIndex],
-						builder->job->is_linear, rgb);
+						builder->job->format, rgb);
 	builder->has_textures |= mesh->mTextureCoords[0] &&
 				 picture_of(builder->scene->mMaterials[mesh->mMaterialIndex], name);
 	return 0;
@@ -161,7 +164,7 @@ static int load_texture(struct builder *builder, const struct aiMaterial *materi
 	char name[MAXLEN];
 	uint8_t plain[3];
 
-	plain_colour_of(material, builder->job->is_linear, plain);
+	plain_colour_of(material, builder->job->format, plain);
 	if (!picture_of(material, name))
 		return import_texture_plain(out, plain);
 	embedded = embedded_texture(builder->scene, name);
@@ -212,10 +215,11 @@ static void add_vertices(struct builder *builder, const struct aiMesh *from,
 			 const struct aiMatrix4x4 *place)
 {
 	struct mesh *mesh = &builder->mesh;
-	bool is_linear = builder->job->is_linear;
+	bool is_linear = builder->job->format.is_linear;
 	uint8_t plain[3];
 
-	plain_colour_of(builder->scene->mMaterials[from->mMaterialIndex], is_linear, plain);
+	plain_colour_of(builder->scene->mMaterials[from->mMaterialIndex], builder->job->format,
+			plain);
 	for (uint32_t i = 0; i < from->mNumVertices; i++) {
 		uint32_t at = mesh->vertex_count++;
 		struct aiVector3D v = from->mVertices[i];
@@ -370,7 +374,7 @@ static int run_job(struct mesh *out, struct job *job, const struct import_option
 	return 0;
 }
 
-int import_foreign(struct mesh *out, const char *path, bool is_linear,
+int import_foreign(struct mesh *out, const char *path, struct import_foreign_format format,
 		   const struct import_options *options, struct import_report *report,
 		   struct fault *fault)
 {
@@ -382,7 +386,7 @@ int import_foreign(struct mesh *out, const char *path, bool is_linear,
 		return fault_set(fault, -ENAMETOOLONG, "%s: its path is too long", path);
 	}
 	snprintf(job->path, sizeof(job->path), "%s", path);
-	job->is_linear = is_linear;
+	job->format = format;
 	job->report = *report;
 	job->result_fd = memfd_create("gopura-import", MFD_CLOEXEC);
 	rc = job->result_fd < 0 ? fault_set(fault, -errno, "%s: %s", path, strerror(errno))

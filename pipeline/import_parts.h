@@ -9,8 +9,13 @@
 must_check int import_ply(struct mesh *out, const char *path, struct import_report *report,
 			  struct fault *fault);
 
-/* is_linear: the format's colours are linear light. */
-must_check int import_foreign(struct mesh *out, const char *path, bool is_linear,
+struct import_foreign_format {
+	bool is_linear;     /* its colours are linear light, not sRGB */
+	bool has_materials; /* assimp makes up a grey one for the others */
+};
+
+must_check int import_foreign(struct mesh *out, const char *path,
+			      struct import_foreign_format format,
 			      const struct import_options *options, struct import_report *report,
 			      struct fault *fault);
 
