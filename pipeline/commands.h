@@ -13,6 +13,7 @@ int command_hierarchy(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_inspect(int argc, char **argv);
 int command_keys(int argc, char **argv);
+int command_publish(int argc, char **argv);
 int command_verify(int argc, char **argv);
 int command_sample(int argc, char **argv);
 int command_temple(int argc, char **argv);

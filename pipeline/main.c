@@ -8,6 +8,7 @@
 static const struct command commands[] = {
 	{ "import", "read scans, say what was found and repaired", command_import },
 	{ "temple", "write the demo temple, any number of triangles", command_temple },
+	{ "publish", "make a signed release of what is built, or undo one", command_publish },
 	{ "verify", "walk a whole release and check everything in it", command_verify },
 	{ "inspect", "say what an object, a file or a release holds", command_inspect },
 	{ "keys", "make the signing keys of a content folder", command_keys },

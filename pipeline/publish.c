@@ -69,7 +69,7 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 	return rc;
 }
 
-static int renew(const struct publish_target *target)
+int publish_renew(const struct publish_target *target)
 {
 	return release_files_renew(target->release, target->keys,
 				   life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
@@ -163,7 +163,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 	if (rc < 0)
 		return rc;
 	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
-		return renew(target);
+		return publish_renew(target);
 	return sign(report, target, &page, before.sequence + 1);
 }
 

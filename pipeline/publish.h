@@ -38,6 +38,9 @@ must_check int publish_parts(struct publish_report *report, const struct publish
 must_check int publish_again(struct publish_report *report, const struct publish_target *target,
 			     uint64_t sequence);
 
+/* A new timestamp for what is current. */
+must_check int publish_renew(const struct publish_target *target);
+
 /* "a/b/c" with all folders above it. */
 must_check int publish_make_folder(const char *path);
 

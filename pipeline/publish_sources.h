@@ -3,6 +3,7 @@
 #ifndef GOPURA_PIPELINE_PUBLISH_SOURCES_H
 #define GOPURA_PIPELINE_PUBLISH_SOURCES_H
 
+#include "pipeline/master.h"
 #include "pipeline/object_store.h"
 #include "storage/info.h"
 
@@ -15,5 +16,12 @@ must_check int publish_samples(struct object_store *objects, const char *content
  * at fault (every fault is logged). */
 must_check int publish_info(struct object_store *objects, const struct info_build_options *options,
 			    struct page_child *out);
+
+/* The hierarchy page and its groups: the part of the master within the share. Where not even the
+ * top of it is, the top alone, with a warning: a picture needs something. *published_triangles
+ * counts all patches. Errors are logged. */
+must_check int publish_hierarchy(struct object_store *objects, const struct master *master,
+				 double share, struct page_child *out,
+				 uint64_t *published_triangles);
 
 #endif

@@ -1,0 +1,132 @@
+#include "pipeline/commands.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/publish_content.h"
+
+static const char help[] =
+	"gopura-content publish: make a signed release of a content folder\n"
+	"\n"
+	"usage: gopura-content publish DIR [OPTIONS]\n"
+	"\n"
+	"  --out RELEASE    the release folder; by default DIR/../release\n"
+	"  --comment TEXT   what is new, for people; at most 255 bytes\n"
+	"  --expires DAYS   how long terminals may take up this release; 1825 by default\n"
+	"  --undo           show the release before the current one again, under a new number\n"
+	"  --sequence N     show release N again, under a new number\n"
+	"  --renew          sign a new timestamp (it holds for 30 days) and nothing else\n"
+	"\n"
+	"Hierarchy and samples must be made (see build, which does all). Objects are written first and\n"
+	"the signed files last, so terminals see the old release or the new one, whole. Nothing old is\n"
+	"rewritten or removed. Keys are in DIR/keys (see keys).\n"
+	"\n"
+	"examples: gopura-content publish temple --comment 'new pages of the east gate'\n"
+	"          gopura-content publish temple --undo\n";
+
+struct settings {
+	struct publish_content_options publish;
+	uint64_t sequence;
+	bool undo, renew;
+};
+
+static int wrong(const char *what, const char *value)
+{
+	fprintf(stderr, "gopura-content publish: %s%s; see gopura-content publish --help\n", what,
+		value);
+	return 2;
+}
+
+static bool positive(const char *text, uint64_t most, uint64_t *out)
+{
+	char *end;
+
+	errno = 0;
+	*out = strtoull(text, &end, 10);
+	return errno == 0 && *end == '\0' && text[0] >= '0' && text[0] <= '9' && *out >= 1 &&
+	       *out <= most;
+}
+
+static int run(struct settings *settings, const char *folder)
+{
+	struct publish_content_report report;
+	struct fault fault = { "" };
+	struct content content;
+	int rc = content_read(&content, folder, &fault);
+
+	if (rc < 0) {
+		fprintf(stderr, "gopura-content publish: %s\n",
+			fault.text[0] ? fault.text : strerror(-rc));
+		return EXIT_FAILURE;
+	}
+	settings->publish.content = &content;
+	if (settings->renew)
+		rc = publish_content_renew(&report, &settings->publish);
+	else if (settings->undo || settings->sequence)
+		rc = publish_content_again(&report, &settings->publish, settings->sequence);
+	else
+		rc = publish_content(&report, &settings->publish);
+	if (rc == 0)
+		publish_content_print(stdout, &report);
+	else
+		fprintf(stderr, "gopura-content publish: nothing was published (%s)\n",
+			strerror(-rc));
+	content_release(&content);
+	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+int command_publish(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "out", required_argument, NULL, 'o' },
+		{ "comment", required_argument, NULL, 'c' },
+		{ "expires", required_argument, NULL, 'e' },
+		{ "undo", no_argument, NULL, 'u' },
+		{ "sequence", required_argument, NULL, 's' },
+		{ "renew", no_argument, NULL, 'r' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	struct settings settings = { 0 };
+	uint64_t days;
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'o':
+			settings.publish.out = optarg;
+			break;
+		case 'c':
+			settings.publish.comment = optarg;
+			break;
+		case 'e':
+			if (!positive(optarg, 36500, &days))
+				return wrong("--expires must be 1 to 36500 days, not ", optarg);
+			settings.publish.release_life_s = (int64_t)days * 86400;
+			break;
+		case 'u':
+			settings.undo = true;
+			break;
+		case 's':
+			if (!positive(optarg, UINT32_MAX, &settings.sequence))
+				return wrong("--sequence must be a release's number, not ", optarg);
+			break;
+		case 'r':
+			settings.renew = true;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return 0;
+		default:
+			return 2;
+		}
+	}
+	if (optind + 1 != argc)
+		return wrong("name one content folder", "");
+	if (settings.undo + settings.renew + (settings.sequence > 0) > 1)
+		return wrong("only one of --undo, --sequence and --renew", "");
+	return run(&settings, argv[optind]);
+}

@@ -1,0 +1,259 @@
+#include "pipeline/publish_content.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "pipeline/master.h"
+#include "pipeline/publish_sources.h"
+
+/* Where the release goes and who signs it. */
+struct setting {
+	char keys_folder[PATH_MAX];
+	struct publisher_keys keys;
+	struct publish_target target;
+};
+
+static int open_keys(struct setting *setting, const char *content_folder)
+{
+	int rc;
+
+	if (snprintf(setting->keys_folder, PATH_MAX, "%s/keys", content_folder) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	rc = keys_load(&setting->keys, setting->keys_folder);
+	if (rc != -ENOENT)
+		return rc;
+	rc = keys_make(setting->keys_folder);
+	if (rc == 0)
+		rc = keys_load(&setting->keys, setting->keys_folder);
+	if (rc == 0)
+		log_info(
+			"pipeline",
+			"made signing keys in %s: keep a copy of root.key in a safe place, and give "
+			"terminals root/1.json",
+			setting->keys_folder);
+	return rc;
+}
+
+static int setting_init(struct setting *setting, char release[PATH_MAX],
+			const struct publish_content_options *options)
+{
+	const char *folder = options->content->folder;
+	int size = options->out ? snprintf(release, PATH_MAX, "%s", options->out)
+				: snprintf(release, PATH_MAX, "%s/../release", folder);
+
+	if (size >= PATH_MAX)
+		return -ENAMETOOLONG;
+	setting->target = (struct publish_target){ .release = release,
+						   .keys_folder = setting->keys_folder,
+						   .keys = &setting->keys,
+						   .comment = options->comment,
+						   .release_life_s = options->release_life_s };
+	return open_keys(setting, folder);
+}
+
+/* How much the current release is, by its locator. -ENOENT: a pack is gone. */
+static int measure(struct publish_content_report *report)
+{
+	struct locator locator;
+	int rc = pack_read_locator(&locator, report->release, report->publish.release.root);
+
+	for (uint32_t i = 0; rc == 0 && i < locator.pack_count; i++) {
+		char path[PATH_MAX + 64], hex[HASH_HEX_BYTES];
+
+		hash_to_hex(locator.packs[i], hex);
+		snprintf(path, sizeof(path), "%s/packs/%s", report->release, hex);
+		if (access(path, R_OK) < 0)
+			rc = -ENOENT;
+	}
+	for (uint32_t i = 0; rc == 0 && i < locator.block_count; i++)
+		report->release_bytes += locator.blocks[i].size;
+	report->release_packs = locator.pack_count;
+	locator_finish(&locator);
+	return rc;
+}
+
+/* ---- the root page */
+
+/* From a corner in front, a little above, far enough that all of the model is in the picture. */
+static void look_from_afar(struct root_page *root)
+{
+	static const double from[3] = { 0.62, -0.74, 0.27 };
+	double radius = 0;
+
+	for (int axis = 0; axis < 3; axis++) {
+		double size = (double)root->box_max_m[axis] - root->box_min_m[axis];
+
+		radius += size * size / 4;
+	}
+	radius = sqrt(radius);
+	for (int axis = 0; axis < 3; axis++) {
+		double middle = ((double)root->box_max_m[axis] + root->box_min_m[axis]) / 2;
+
+		root->start_target_m[axis] = (float)middle;
+		root->start_eye_m[axis] = (float)(middle + 1.9 * radius * from[axis]);
+	}
+}
+
+/* Only "auto" needs the mesh, to see whether it has pictures. */
+static int judge_light(bool *lit, const struct content *content)
+{
+	struct fault fault = { "" };
+	struct mesh mesh = { 0 };
+	int rc = 0;
+
+	if (content->lit == CONTENT_LIT_AUTO)
+		rc = content_import(&mesh, content, NULL, &fault);
+	if (rc < 0)
+		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
+	else
+		*lit = content_is_lit(content, &mesh);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+static int fill_root(struct root_page *root, const struct content *content,
+		     const struct master *master)
+{
+	bool lit = false;
+	int rc = judge_light(&lit, content);
+
+	snprintf(root->name, sizeof(root->name), "%s", content->name);
+	root->lattice = master->lattice;
+	memcpy(root->box_min_m, master->box_min_m, sizeof(root->box_min_m));
+	memcpy(root->box_max_m, master->box_max_m, sizeof(root->box_max_m));
+	memcpy(root->sun, content->sun, sizeof(root->sun));
+	memcpy(root->background, content->background, sizeof(root->background));
+	root->source_triangles = master->source_triangles;
+	root->lit = lit;
+	look_from_afar(root);
+	if (content->has_start) {
+		memcpy(root->start_eye_m, content->start_eye_m, sizeof(root->start_eye_m));
+		memcpy(root->start_target_m, content->start_target_m, sizeof(root->start_target_m));
+	}
+	return rc;
+}
+
+/* ---- the parts */
+
+static int add_info(struct object_store *objects, const struct content *content,
+		    struct page_child *out)
+{
+	const char *languages[CONTENT_LANGUAGES_MOST];
+	const struct info_build_options options = { .folder = content->folder,
+						    .languages = languages,
+						    .language_count = content->language_count };
+
+	for (uint32_t i = 0; i < content->language_count; i++)
+		languages[i] = content->languages[i];
+	return publish_info(objects, &options, out);
+}
+
+static int open_master(struct master **master, const struct content *content)
+{
+	char folder[CONTENT_PATH_BYTES];
+	int rc = content_work_path(content, "master", folder);
+
+	*master = NULL;
+	if (rc == 0)
+		rc = master_open(master, folder, NULL);
+	if (rc < 0)
+		log_error("pipeline", "%s: %s; run 'gopura-content build' or 'hierarchy' first",
+			  folder, strerror(-rc));
+	return rc;
+}
+
+static int publish_objects(struct publish_content_report *report,
+			   const struct publish_target *target, struct object_store *objects,
+			   const struct content *content)
+{
+	struct page_child children[ROOT_CHILD_COUNT];
+	struct root_page root = { 0 };
+	struct master *master;
+	int rc = open_master(&master, content);
+
+	if (rc == 0)
+		rc = fill_root(&root, content, master);
+	if (rc == 0)
+		rc = publish_hierarchy(objects, master, content->publish_share,
+				       &children[ROOT_CHILD_HIERARCHY], &root.published_triangles);
+	master_destroy(master);
+	if (rc == 0)
+		rc = publish_samples(objects, content->folder, &children[ROOT_CHILD_SAMPLES]);
+	if (rc == 0)
+		rc = add_info(objects, content, &children[ROOT_CHILD_INFO]);
+	if (rc == 0)
+		rc = publish_parts(&report->publish, target, objects, &root, children);
+	report->published_triangles = root.published_triangles;
+	return rc;
+}
+
+int publish_content(struct publish_content_report *report,
+		    const struct publish_content_options *options)
+{
+	struct object_store *objects = NULL;
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = object_store_create(&objects);
+	if (rc == 0)
+		rc = publish_objects(report, &setting.target, objects, options->content);
+	object_store_destroy(objects);
+	keys_finish(&setting.keys);
+	return rc < 0 ? rc : measure(report);
+}
+
+int publish_content_again(struct publish_content_report *report,
+			  const struct publish_content_options *options, uint64_t sequence)
+{
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = publish_again(&report->publish, &setting.target, sequence);
+	keys_finish(&setting.keys);
+	return rc < 0 ? rc : measure(report);
+}
+
+int publish_content_renew(struct publish_content_report *report,
+			  const struct publish_content_options *options)
+{
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = release_files_current(&report->publish.release, report->release,
+					   &setting.keys);
+	if (rc == 0)
+		rc = measure(report);
+	if (rc == 0)
+		rc = publish_renew(&setting.target);
+	keys_finish(&setting.keys);
+	return rc;
+}
+
+void publish_content_print(FILE *to, const struct publish_content_report *report)
+{
+	const struct publish_report *publish = &report->publish;
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(publish->release.root, hex);
+	fprintf(to, "release %" PRIu64 "%s in %s: %.1f MB in %u packs, root %s\n",
+		publish->release.sequence, publish->changed ? "" : " (nothing changed)",
+		report->release, (double)report->release_bytes / 1e6, report->release_packs, hex);
+	if (publish->packs.blocks_written > 0)
+		fprintf(to, "written %.1f MB in %u new packs, reused %.1f MB\n",
+			(double)publish->packs.written_bytes / 1e6, publish->packs.packs_written,
+			(double)publish->packs.reused_bytes / 1e6);
+}

@@ -1,0 +1,170 @@
+/* The page and the objects that the published part of a master becomes. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "format/page.h"
+#include "pipeline/publish_sources.h"
+#include "tests/check.h"
+
+enum { GROUPS = 6, PATCHES = 12 };
+
+static struct hierarchy_group groups[GROUPS];
+static struct hierarchy_patch patches[PATCHES];
+static uint64_t places[GROUPS];
+static uint32_t sizes[GROUPS];
+static struct master master;
+static struct object_store *objects;
+
+/* Two patches a group, 100 triangles each. 1 and 2 refine one patch of group 0 each; 3 refines one
+ * of 1 and one of 2; 4 the other of 1; 5 the other of 2. The object of group g is the byte g. */
+static int set_up(void **state)
+{
+	static const uint32_t finer[PATCHES] = { 1,
+						 2,
+						 3,
+						 4,
+						 3,
+						 5,
+						 HIERARCHY_NONE,
+						 HIERARCHY_NONE,
+						 HIERARCHY_NONE,
+						 HIERARCHY_NONE,
+						 HIERARCHY_NONE,
+						 HIERARCHY_NONE };
+	static const float errors[GROUPS] = { INFINITY, 4, 3, 2, 1, 0.5f };
+	static const uint8_t bytes[GROUPS] = { 0, 1, 2, 3, 4, 5 };
+	char path[] = "/tmp/gopura-master-XXXXXX";
+
+	(void)state;
+	for (uint32_t i = 0; i < PATCHES; i++)
+		patches[i] = (struct hierarchy_patch){ .group = i / 2,
+						       .finer = finer[i],
+						       .triangle_count = 100,
+						       .vertex_count = 60,
+						       .radius_m = 1,
+						       .cone_axis = { 0, 0, 1 },
+						       .cone_cos = 0.5f };
+	for (uint32_t i = 0; i < GROUPS; i++) {
+		groups[i] = (struct hierarchy_group){ .first_patch = 2 * i,
+						      .patch_count = 2,
+						      .error_m = errors[i],
+						      .radius_m = 20 - (float)i };
+		places[i] = i;
+		sizes[i] = 1;
+	}
+	master = (struct master){ .source_triangles = 10000,
+				  .hierarchy = { GROUPS, PATCHES, groups, patches },
+				  .places = places,
+				  .sizes = sizes,
+				  .fd = mkstemp(path) };
+	unlink(path);
+	return write(master.fd, bytes, GROUPS) == GROUPS ? object_store_create(&objects) : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	object_store_destroy(objects);
+	return close(master.fd);
+}
+
+/* Publishes, and decodes what came of it. */
+static uint64_t publish(double share, struct page *page, struct hierarchy *back)
+{
+	static struct buffer object;
+	struct page_child child;
+	uint64_t triangles;
+
+	buffer_finish(&object);
+	buffer_init(&object, PAGE_BYTES_MOST);
+	CHECK(publish_hierarchy(objects, &master, share, &child, &triangles) == 0);
+	CHECK(child.is_page);
+	CHECK(object_store_read(objects, child.hash, &object) == 0);
+	CHECK(page_decode(page, buffer_bytes(&object)) == 0);
+	CHECK(page->kind == PAGE_HIERARCHY);
+	CHECK(hierarchy_decode(back, page->payload) == 0); /* checks every rule */
+	CHECK(page->child_count == back->group_count);
+	for (uint32_t i = 0; i < page->child_count; i++)
+		CHECK(object_store_has(objects, page->children[i].hash));
+	return triangles;
+}
+
+static void what_is_published_is_a_hierarchy_within_the_share(void **state)
+{
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	for (int percent = 2; percent <= 12; percent++) {
+		uint64_t triangles = publish(percent / 100.0, &page, &back), counted = 0;
+
+		CHECK(triangles <= (uint64_t)percent * 100);
+		CHECK(triangles >= (uint64_t)percent * 100 - 199 || triangles == 1200);
+		for (uint32_t i = 0; i < back.patch_count; i++)
+			counted += back.patches[i].triangle_count;
+		CHECK(counted == triangles);
+		hierarchy_finish(&back);
+		page_finish(&page);
+	}
+}
+
+static void objects_go_with_their_groups(void **state)
+{
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	CHECK(publish(1.0, &page, &back) == 1200);
+	CHECK(back.group_count == GROUPS);
+	for (uint32_t i = 0; i < GROUPS; i++) {
+		uint8_t byte = 0;
+
+		for (uint8_t g = 0; g < GROUPS; g++)
+			if (groups[g].error_m == back.groups[i].error_m)
+				byte = g;
+		CHECK(hash_equal(page.children[i].hash, hash_of((struct bytes){ &byte, 1 })));
+	}
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
+static void the_top_is_published_whatever_the_share(void **state)
+{
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	CHECK(publish(0.001, &page, &back) == 200);
+	CHECK(back.group_count == 1 && back.patches[0].finer == HIERARCHY_NONE);
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
+static void a_master_that_was_cut_off_is_found(void **state)
+{
+	struct page_child child;
+	uint64_t triangles;
+
+	(void)state;
+	CHECK(ftruncate(master.fd, 0) == 0);
+	CHECK(publish_hierarchy(objects, &master, 0.1, &child, &triangles) == -EBADMSG);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(what_is_published_is_a_hierarchy_within_the_share,
+						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(objects_go_with_their_groups, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(the_top_is_published_whatever_the_share, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(a_master_that_was_cut_off_is_found, set_up,
+						tear_down),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
