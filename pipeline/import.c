@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "pipeline/mesh_colour.h"
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };
 
@@ -128,14 +129,23 @@ static void default_colour_of(const struct import_options *options, uint8_t rgb[
 	memcpy(rgb, given ? options->default_colour : sandstone, 3);
 }
 
+/* Before vertices are merged: colours that will not be shown must not part them. */
+static void drop_colours(struct mesh *mesh, const struct import_options *options)
+{
+	if (options->override_colour)
+		drop_textures(mesh);
+	else if (!mesh->textures)
+		return;
+	for (uint32_t i = 0; mesh->colours && i < mesh->vertex_count; i++)
+		memset(mesh->colours[i], 255, 3);
+}
+
 /* Afterwards every vertex has a colour. */
 static int settle_colours(struct mesh *mesh, const struct import_options *options,
 			  const struct import_report *report)
 {
 	uint8_t rgb[3];
 
-	if (options->override_colour)
-		drop_textures(mesh);
 	if (mesh->textures)
 		return mesh_colours_from_textures(mesh);
 	if (report->had_colours && !options->override_colour)
@@ -176,9 +186,10 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	int rc;
 
 	to_metres(mesh, options);
-	rc = settle_colours(mesh, options, report);
+	drop_colours(mesh, options);
+	rc = mesh_repair(mesh, &report->repairs);
 	if (rc == 0)
-		rc = mesh_repair(mesh, &report->repairs);
+		rc = settle_colours(mesh, options, report);
 	if (rc < 0)
 		return fault_set(fault, rc, "%s: too large for this machine's memory", path);
 	if (mesh->triangle_count == 0)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/progress.h"
 #include "pipeline/ply.h"
 
 /* Collects what the reader gives. */
@@ -13,7 +14,23 @@ struct collector {
 	struct mesh mesh;
 	float (*corner_uvs)[3][2]; /* of each triangle, where the file has them; owned */
 	size_t triangle_capacity;
+	const struct ply *ply;
+	struct progress *progress; /* in KiB of the file */
+	uint64_t shown_kib;
 };
+
+enum { ITEMS_PER_LOOK = 1 << 14 };
+
+static void show_progress(struct collector *collector, uint32_t items)
+{
+	uint64_t kib;
+
+	if (items % ITEMS_PER_LOOK != 0)
+		return;
+	kib = ply_bytes_read(collector->ply) >> 10;
+	progress_add(collector->progress, kib - collector->shown_kib);
+	collector->shown_kib = kib;
+}
 
 static int take_vertex(void *data, const struct ply_vertex *vertex)
 {
@@ -27,6 +44,7 @@ static int take_vertex(void *data, const struct ply_vertex *vertex)
 		memcpy(mesh->colours[i], vertex->colour, sizeof(mesh->colours[i]));
 	if (mesh->uvs)
 		memcpy(mesh->uvs[i], vertex->uv, sizeof(mesh->uvs[i]));
+	show_progress(collector, i);
 	return 0;
 }
 
@@ -80,6 +98,7 @@ static int take_triangle(void *data, const struct ply_triangle *triangle)
 	if (collector->corner_uvs)
 		memcpy(collector->corner_uvs[i], triangle->uv, sizeof(triangle->uv));
 	mesh->triangle_count++;
+	show_progress(collector, i);
 	return 0;
 }
 
@@ -169,8 +188,11 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
 	int rc = allocate(collector);
 
+	collector->ply = ply;
+	collector->progress = progress_start("reading the scan", "KiB", ply_bytes_total(ply) >> 10);
 	if (rc == 0)
 		rc = ply_read(ply, &visitor, fault);
+	progress_end(collector->progress);
 	if (rc == 0 && collector->corner_uvs)
 		rc = split_corners(collector);
 	if (rc == 0)

@@ -50,8 +50,8 @@ int import_texture_bytes(struct mesh_texture *out, const char *scan_path, const 
 	if (rc == -EFBIG)
 		return tolerate(out, scan_path, name, "is over 16384 pixels a side", plain, report);
 	if (rc == -EBADMSG)
-		return tolerate(out, scan_path, name, "is damaged, or neither JPEG nor PNG", plain,
-				report);
+		return tolerate(out, scan_path, name,
+				"is damaged, or no JPEG or PNG that can be read", plain, report);
 	if (rc == 0)
 		rc = from_picture(out, &picture);
 	picture_finish(&picture);

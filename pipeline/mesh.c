@@ -177,23 +177,3 @@ void mesh_texel(const struct mesh_texture *texture, const float uv[2], uint8_t r
 
 	memcpy(rgb, texture->rgb + ((size_t)y * texture->width + x) * 3, 3);
 }
-
-int mesh_colours_from_textures(struct mesh *mesh)
-{
-	if (!mesh->textures || !mesh->uvs || !mesh->materials)
-		return 0;
-	if (!mesh->colours) {
-		mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
-		if (!mesh->colours)
-			return -ENOMEM;
-		memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
-	}
-	for (uint32_t i = 0; i < mesh->triangle_count; i++)
-		for (int k = 0; k < 3; k++) {
-			uint32_t vertex = mesh->triangles[i][k];
-
-			mesh_texel(&mesh->textures[mesh->materials[i]], mesh->uvs[vertex],
-				   mesh->colours[vertex]);
-		}
-	return 0;
-}

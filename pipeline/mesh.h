@@ -40,8 +40,4 @@ must_check int mesh_append(struct mesh *mesh, const struct mesh *other);
 /* Colour of the texture at uv: nearest pixel, repeating. */
 void mesh_texel(const struct mesh_texture *texture, const float uv[2], uint8_t rgb[3]);
 
-/* Vertex colours from the textures (the coarse patches have no room for a picture); keeps the
- * open share where there are colours. -ENOMEM. A mesh without texture stays as it is. */
-must_check int mesh_colours_from_textures(struct mesh *mesh);
-
 #endif

@@ -229,6 +229,11 @@ static int count_edges(const struct mesh *mesh, struct mesh_repairs *repairs)
 	return rc;
 }
 
+uint32_t *mesh_places(const struct mesh *mesh)
+{
+	return find_first_equals(mesh, true);
+}
+
 int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
 {
 	uint32_t *first;

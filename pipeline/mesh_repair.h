@@ -17,4 +17,7 @@ struct mesh_repairs {
  * that a seam of the texture is no border. Indices must be below vertex_count. -ENOMEM. */
 must_check int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs);
 
+/* Of each vertex the first one at the same place. Owned by the caller; NULL: no memory. */
+uint32_t *mesh_places(const struct mesh *mesh);
+
 #endif

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "pipeline/mesh_colour.h"
 #include "pipeline/mesh_file.h"
 #include "tests/check.h"
 #include "tests/pipeline/scan_text.h"
@@ -66,13 +67,47 @@ static void vertex_colours_come_from_the_texture_and_keep_the_sky(void **state)
 	struct mesh mesh = make_mesh(true);
 	(void)state;
 
+	memset(mesh.textures[0].rgb, 40, 12);
 	CHECK(mesh_colours_from_textures(&mesh) == 0);
-	CHECK(memcmp(mesh.colours[0], "ghi", 3) == 0 && mesh.colours[0][3] == 77);
-	CHECK(memcmp(mesh.colours[2], "def", 3) == 0);
+	for (int i = 0; i < 4; i++)
+		CHECK(mesh.colours[i][1] == 40 && mesh.colours[i][3] == 77);
 	mesh_finish(&mesh);
 	CHECK(mesh.positions == NULL && mesh.vertex_count == 0);
 	mesh_finish(&mesh);
 	mesh_finish(NULL);
+}
+
+/* A chart that fills the lower left of its picture, everything beyond black: the vertices lie on
+ * the border, their colours come from within. And the same place on another chart takes part. */
+static void no_vertex_takes_the_colour_between_charts(void **state)
+{
+	enum { SIDE = 64 };
+	static uint8_t rgb[SIDE * SIDE * 3];
+	struct mesh mesh = make_mesh(true);
+	(void)state;
+
+	for (int y = 0; y < SIDE; y++)
+		for (int x = 0; x < SIDE; x++)
+			memset(rgb + (y * SIDE + x) * 3, x < SIDE / 2 && y >= SIDE / 2 ? 200 : 0,
+			       3);
+	free(mesh.textures[0].rgb);
+	mesh.textures[0] = (struct mesh_texture){ SIDE, SIDE, malloc(sizeof(rgb)) };
+	CHECK(mesh.textures[0].rgb);
+	memcpy(mesh.textures[0].rgb, rgb, sizeof(rgb));
+	for (int i = 0; i < 4; i++)
+		for (int axis = 0; axis < 2; axis++)
+			mesh.uvs[i][axis] = mesh.uvs[i][axis] > 0 ? 0.5f : 0;
+	CHECK(mesh_colours_from_textures(&mesh) == 0);
+	for (int i = 0; i < 4; i++)
+		CHECK(mesh.colours[i][0] == 200);
+
+	memcpy(mesh.positions[3], mesh.positions[1], sizeof(mesh.positions[1]));
+	for (int axis = 0; axis < 2; axis++)
+		mesh.uvs[3][axis] = 0.9f; /* into the black */
+	CHECK(mesh_colours_from_textures(&mesh) == 0);
+	CHECK(memcmp(mesh.colours[3], mesh.colours[1], 3) == 0);
+	CHECK(mesh.colours[1][0] > 20 && mesh.colours[1][0] < 180);
+	mesh_finish(&mesh);
 }
 
 static void appending_shifts_indices_and_fills_what_is_missing(void **state)
@@ -178,6 +213,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_texel_repeats_and_counts_from_the_bottom),
 		cmocka_unit_test(vertex_colours_come_from_the_texture_and_keep_the_sky),
+		cmocka_unit_test(no_vertex_takes_the_colour_between_charts),
 		cmocka_unit_test(appending_shifts_indices_and_fills_what_is_missing),
 		cmocka_unit_test(a_saved_mesh_loads_equal_under_its_key_only),
 		cmocka_unit_test(every_truncation_and_every_flipped_byte_is_noticed),
