@@ -130,7 +130,7 @@ void stone_colour(float rgb[3], const float p[3], const float n[3], float footpr
 	float grass = ramp(0.46f, 0.60f, wide * 0.5f + metre * 0.35f + hand * 0.15f);
 	mix3(rgb, 0.37f + 0.1f * inch, 0.41f + 0.1f * inch, 0.19f, earth * grass * 0.8f);
 
-	float dark = 1.0f - 0.62f * joint;
+	float dark = 1.0f - (0.12f + 0.5f * metre * tone) * joint;
 	rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;
 }
 
@@ -228,7 +228,7 @@ const char stone_glsl[] =
 	"stone_mix3(rgb, 0.60, 0.49, 0.34, earth * (0.35 + 0.45 * metre));\n"
 	"float grass = stone_ramp(0.46, 0.60, wide * 0.5 + metre * 0.35 + hand * 0.15);\n"
 	"stone_mix3(rgb, 0.37 + 0.1 * inch, 0.41 + 0.1 * inch, 0.19, earth * grass * 0.8);\n"
-	"float dark = 1.0 - 0.62 * joint;\n"
+	"float dark = 1.0 - (0.12 + 0.5 * metre * tone) * joint;\n"
 	"rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;\n"
 	"return rgb;\n"
 	"}\n";

@@ -30,6 +30,14 @@ static const struct profile_point vault_points[] = {
 };
 static const struct profile vault = { ARRAY_COUNT(vault_points), vault_points };
 
+/* Its inside, seen from below. */
+static const struct profile_point ceiling_points[] = {
+	{ -0.80f, -0.1f, RELIEF_PLAIN, 0, 0 }, { -0.72f, 0.35f, RELIEF_PLAIN, 0, 0 },
+	{ 0.0f, 0.88f, RELIEF_PLAIN, 0, 0 },   { 0.72f, 0.35f, RELIEF_PLAIN, 0, 0 },
+	{ 0.80f, -0.1f, RELIEF_PLAIN, 0, 0 },
+};
+static const struct profile ceiling = { ARRAY_COUNT(ceiling_points), ceiling_points };
+
 static const struct profile_point pillar_points[] = {
 	{ 1.0f, 0, RELIEF_PLAIN, 0, 0 },
 	{ 1.0f, 0.05f, RELIEF_PETALS, 0.025f, 0.12f },
@@ -69,7 +77,7 @@ static void plan_crest(struct plan *plan, const struct frame *middle, float leng
 				plan_panel(plan, &foot, 0.36f, 0.5f, RELIEF_FLAME, 0.05f, 0);
 			leaf->shape = SHAPE_LEAF;
 			leaf->rim_m = 0.05f;
-			leaf->interest = 1.4f;
+			leaf->interest = 1.0f;
 		}
 	}
 }
@@ -125,6 +133,8 @@ static void plan_vault(struct plan *plan, const struct frame *frame, const struc
 					gallery->length_m + 0.2f, gallery->half_m + 0.32f, rise);
 
 	roof->interest = 0.8f;
+	plan_sheet(plan, &eave, &outline_line, &ceiling, gallery->length_m, gallery->half_m + 0.3f,
+		   rise);
 	plan_crest(plan, &eave, gallery->length_m, rise * 0.97f);
 }
 

@@ -201,9 +201,20 @@ static float carving(const struct relief_style *s, const struct relief_place *p)
 	return 0;
 }
 
+/* Motifs that the vertices cannot follow would only be noise. */
+static float resolved(const struct relief_style *s, const struct relief_place *p)
+{
+	float motif_m = s->kind == RELIEF_BEADS ? fmaxf(s->period_m, p->height_m) : s->period_m;
+
+	if (s->period_m <= 0 || s->kind == RELIEF_BLOCKS)
+		return 1;
+	return carve_step(1.4f, 3.2f, motif_m / p->step_m);
+}
+
 float relief_height(const struct relief_style *style, const struct relief_place *place)
 {
 	if (style->kind == RELIEF_PLAIN || place->height_m <= 0 || place->width_m <= 0)
 		return 0;
-	return style->depth_m * carving(style, place);
+	float share = resolved(style, place);
+	return share > 0 ? share * style->depth_m * carving(style, place) : 0;
 }

@@ -44,6 +44,7 @@ struct relief_place {
 	float x_m, y_m;          /* from the lower left corner of the field */
 	float width_m, height_m; /* of the field */
 	float shape;             /* share of the width that is left at this height */
+	float step_m;            /* between vertices: finer motifs fade away */
 	uint32_t segment;        /* of the outline, so that neighbours differ */
 };
 

@@ -67,13 +67,14 @@ static uint32_t divisions(float length_m, float density, bool carved, bool curve
 struct list {
 	struct station *stations; /* NULL: only count */
 	uint32_t count, most;
+	float step_m;
 };
 
 static void list_add(struct list *list, uint32_t segment, float at, int rim)
 {
 	if (list->stations && list->count < list->most)
 		list->stations[list->count] =
-			(struct station){ (uint16_t)segment, (int8_t)rim, at };
+			(struct station){ (uint16_t)segment, (int8_t)rim, at, list->step_m };
 	list->count++;
 }
 
@@ -118,6 +119,8 @@ static void list_across(const struct sheet *sheet, float density, struct list *l
 static void list_up(const struct sheet *sheet, float density, struct list *list)
 {
 	uint32_t segments = sheet->profile->count - 1;
+	const struct profile_point *first = sheet->profile->points, *last = first + segments;
+	bool returns = first->out == last->out && first->z == last->z; /* keep it a solid */
 	bool rim = !sheet_wraps(sheet) && sheet->rim_m > 0;
 
 	if (rim)
@@ -128,7 +131,7 @@ static void list_up(const struct sheet *sheet, float density, struct list *list)
 		bool carved = relief_varies_across(kind);
 		uint32_t parts =
 			divisions(up_length_m(sheet, s), density, carved, kind != RELIEF_PLAIN);
-		if (s + 1 == segments && parts == 0)
+		if (parts == 0 && (s + 1 == segments || returns))
 			parts = 1;
 		list_segment(list, s, parts);
 	}
@@ -139,9 +142,11 @@ static void list_up(const struct sheet *sheet, float density, struct list *list)
 void sheet_stations(const struct sheet *sheet, float density, struct station *across,
 		    uint32_t *columns, struct station *up, uint32_t *rows, uint32_t most)
 {
-	struct list u = { across, 0, most }, v = { up, 0, most };
+	struct list u = { across, 0, most, 0 }, v = { up, 0, most, 0 };
 	float width = 0, height = 0;
 	float fine = density * sheet->interest;
+
+	u.step_m = v.step_m = 1 / fine;
 
 	for (uint32_t s = 0; s < outline_segments(sheet->outline); s++)
 		width += across_length_m(sheet, s);
@@ -179,7 +184,8 @@ static float shape_width(enum sheet_shape shape, float t)
 	case SHAPE_PEDIMENT: /* a pointed arch with small lobes */
 		return fmaxf(0.03f, powf(1.0f - t, 0.62f) * (1.0f + 0.05f * sinf(t * 22.0f)));
 	case SHAPE_LEAF:
-		return fmaxf(0.05f, t < 0.35f ? 0.8f + 0.57f * t : powf((1.0f - t) / 0.65f, 0.8f));
+		return t < 0.3f ? 0.8f + 0.2f * sinf(t * 5.236f)
+				: fmaxf(0.05f, powf(fmaxf(0.0f, cosf((t - 0.3f) * 2.244f)), 0.85f));
 	case SHAPE_HOOD:
 		return t < 0.7f ? 0.36f + 0.64f * sinf(t / 0.7f * 1.5708f)
 				: fmaxf(0.12f, sqrtf(1.0f - (t - 0.7f) * (t - 0.7f) / 0.0905f));
@@ -251,6 +257,7 @@ static float relief_of(const struct sheet *sheet, const struct station *across,
 		.width_m = across_length_m(sheet, across->segment),
 		.height_m = up_length_m(sheet, up->segment),
 		.shape = width,
+		.step_m = across->step_m,
 		.segment = across->segment,
 	};
 	return relief_height(style, &place);

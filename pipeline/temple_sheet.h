@@ -63,8 +63,9 @@ struct sheet {
 /* One line of the grid, across or along. */
 struct station {
 	uint16_t segment;
-	int8_t rim; /* -1, 1: bent back at the low or high end */
-	float at;   /* 0..1 in the segment */
+	int8_t rim;   /* -1, 1: bent back at the low or high end */
+	float at;     /* 0..1 in the segment */
+	float step_m; /* to the next one: carving finer than that is left away */
 };
 
 /* Stations of a sheet at a density (divisions per metre at interest 1): *columns along the outline,

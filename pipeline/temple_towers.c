@@ -91,7 +91,7 @@ static void plan_pediment(struct plan *plan, const struct frame *foot, float wid
 						 side ? 0.04f : 0.17f, 0);
 		stone->shape = SHAPE_PEDIMENT;
 		stone->rim_m = 0.13f;
-		stone->interest = side ? 0.8f : 2.2f;
+		stone->interest = side ? 0.8f : 3.0f;
 	}
 }
 
@@ -138,11 +138,16 @@ static void plan_porch_roof(struct plan *plan, const struct frame *frame, float 
 		{ -0.98f, 0.15f, RELIEF_DROPS, 0.04f, 0.2f },
 		{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },
 	};
+	static const struct profile_point inside[] = { { -0.8f, 0, RELIEF_PLAIN, 0, 0 },
+						       { 0, 0.85f, RELIEF_PLAIN, 0, 0 },
+						       { 0.8f, 0, RELIEF_PLAIN, 0, 0 } };
 	static const struct profile roof = { ARRAY_COUNT(points), points };
+	static const struct profile ceiling = { ARRAY_COUNT(inside), inside };
 	struct frame across = frame_within(frame, 0, -depth_m * 0.5f + 0.1f, height_m, 1);
 
 	plan_sheet(plan, &across, &outline_line, &roof, depth_m + 0.1f, half_m + 0.15f,
 		   half_m * 1.2f);
+	plan_sheet(plan, &across, &outline_line, &ceiling, depth_m, half_m + 0.1f, half_m * 1.2f);
 }
 
 void plan_porch(struct plan *plan, const struct frame *frame, float half_m, float depth_m,
@@ -192,7 +197,7 @@ static void plan_antefixes(struct plan *plan, const struct frame *deck, float ha
 			leaf->shape = SHAPE_LEAF;
 			leaf->rim_m = 0.12f;
 			leaf->lean = -0.18f;
-			leaf->interest = 2;
+			leaf->interest = i ? 1.3f : 1.6f;
 		}
 	}
 }
@@ -267,7 +272,7 @@ void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m)
 		face = frame_within(&face, 0, -half_m * 0.62f, 0, 0);
 		struct sheet *stone = plan_panel(plan, &face, head_m * 0.86f, head_m, RELIEF_FACE,
 						 head_m * 0.42f, 0);
-		stone->interest = 2.6f;
+		stone->interest = 3.4f;
 		stone->rim_m = 0.2f;
 	}
 	plan_bud(plan, &bud, half_m * 0.8f, 3.6f, 3);
