@@ -6,6 +6,7 @@
 #include "pipeline/commands.h"
 
 static const struct command commands[] = {
+	{ "build", "from a content folder to a signed release, all that is needed", command_build },
 	{ "import", "read scans, say what was found and repaired", command_import },
 	{ "temple", "write the demo temple, any number of triangles", command_temple },
 	{ "publish", "make a signed release of what is built, or undo one", command_publish },

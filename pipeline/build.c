@@ -1,0 +1,261 @@
+#include "pipeline/build.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "pipeline/master.h"
+#include "pipeline/sampler.h"
+
+enum { STAMP_TEXT_BYTES_MOST = 4 << 20, PROGRAM_BYTES_MOST = 256 << 20 };
+
+/* ---- has anything changed since the last build? */
+
+static int fail(const struct fault *fault, int rc, const char *what)
+{
+	log_error("pipeline", "%s", fault && fault->text[0] ? fault->text : what);
+	return rc;
+}
+
+static void put_file(struct buffer *text, const char *path)
+{
+	struct stat info = { 0 };
+
+	if (stat(path, &info) < 0)
+		info = (struct stat){ 0 };
+	buffer_put_string(text, path);
+	buffer_put_u64(text, (uint64_t)info.st_size);
+	buffer_put_u64(text, (uint64_t)info.st_mtim.tv_sec);
+	buffer_put_u32(text, (uint32_t)info.st_mtim.tv_nsec);
+}
+
+static int is_shown(const struct dirent *entry)
+{
+	return entry->d_name[0] != '.';
+}
+
+static void put_folder(struct buffer *text, const struct content *content, const char *name)
+{
+	char folder[CONTENT_PATH_BYTES + 16], path[CONTENT_PATH_BYTES + 300];
+	struct dirent **entries = NULL;
+	int count;
+
+	snprintf(folder, sizeof(folder), "%s/%s", content->folder, name);
+	count = scandir(folder, &entries, is_shown, alphasort);
+	for (int i = 0; i < count; i++) {
+		snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name);
+		put_file(text, path);
+		free(entries[i]);
+	}
+	free(entries);
+}
+
+/* Another program may make another release of the same content. */
+static int put_program(struct buffer *text)
+{
+	struct buffer program;
+	struct hash hash;
+	int rc;
+
+	buffer_init(&program, PROGRAM_BYTES_MOST);
+	rc = buffer_read_file(&program, "/proc/self/exe");
+	hash = hash_of(buffer_bytes(&program));
+	buffer_put(text, hash.bytes, HASH_BYTES);
+	buffer_finish(&program);
+	return rc;
+}
+
+/* Of everything that a release is made from. */
+static int make_stamp(struct hash *out, const struct content *content,
+		      const struct build_options *options)
+{
+	static const char *const names[] = { "temple.ini", "parts.json" };
+	struct fault fault = { "" };
+	struct hash scans;
+	struct buffer text;
+	int rc = content_scans_key(content, &scans, &fault);
+
+	if (rc < 0)
+		return fail(&fault, rc, strerror(-rc));
+	buffer_init(&text, STAMP_TEXT_BYTES_MOST);
+	rc = put_program(&text);
+	buffer_put(&text, scans.bytes, HASH_BYTES);
+	buffer_put_u8(&text, content->binary_tree);
+	buffer_put_string(&text, options->out ? options->out : "");
+	buffer_put_string(&text, options->comment ? options->comment : "");
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		char path[CONTENT_PATH_BYTES + 16];
+
+		snprintf(path, sizeof(path), "%s/%s", content->folder, names[i]);
+		put_file(&text, path);
+	}
+	put_folder(&text, content, "pages");
+	put_folder(&text, content, "pictures");
+	*out = hash_of(buffer_bytes(&text));
+	if (rc == 0)
+		rc = text.error;
+	buffer_finish(&text);
+	return rc;
+}
+
+/* What the stamp file holds once a release was made: the stamp, and the root that came of it. */
+struct stamp_file {
+	char text[2 * HASH_HEX_BYTES + 1];
+};
+
+static struct stamp_file stamp_text(struct hash stamp, struct hash root)
+{
+	struct stamp_file file;
+	char first[HASH_HEX_BYTES], second[HASH_HEX_BYTES];
+
+	hash_to_hex(stamp, first);
+	hash_to_hex(root, second);
+	snprintf(file.text, sizeof(file.text), "%s %s\n", first, second);
+	return file;
+}
+
+/* True where the last build of all this is what is current, and whole; its timestamp is renewed. */
+static bool is_built(struct build_report *report, const char *stamp_path, struct hash stamp,
+		     const struct publish_content_options *publish)
+{
+	struct stamp_file expected;
+	struct buffer file;
+	bool same;
+
+	if (access(stamp_path, R_OK) < 0 || publish_content_renew(&report->publish, publish) < 0)
+		return false;
+	expected = stamp_text(stamp, report->publish.publish.release.root);
+	buffer_init(&file, sizeof(expected.text));
+	same = buffer_read_file(&file, stamp_path) == 0 && file.size == strlen(expected.text) &&
+	       memcmp(file.data, expected.text, file.size) == 0;
+	buffer_finish(&file);
+	return same;
+}
+
+/* ---- the stages */
+
+void build_master_options(struct master_options *out, const struct content *content, uint32_t jobs)
+{
+	*out = (struct master_options){
+		.multires = { .kind = content->binary_tree ? MULTIRES_TREE : MULTIRES_GROUPS,
+			      .patch_triangles = content->patch_triangles,
+			      .jobs = jobs },
+		.stone_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
+	};
+}
+
+static int make_master(const char *folder, const struct content *content, struct hash stamp,
+		       const struct master_options *options)
+{
+	struct master_report report;
+	struct fault fault = { "" };
+	struct mesh mesh;
+	int rc = content_import(&mesh, content, NULL, &fault);
+
+	if (rc < 0)
+		return fail(&fault, rc, strerror(-rc));
+	rc = master_build(folder, &mesh, stamp, options, &report);
+	if (rc < 0)
+		log_error("pipeline", "%s: %s%s", folder, strerror(-rc),
+			  rc == -E2BIG ? "; the coarsest patches do not fit in one group, use "
+					 "--hierarchy groups"
+				       : "");
+	mesh_finish(&mesh);
+	return rc;
+}
+
+static int build_hierarchy(struct build_report *report, const struct content *content,
+			   uint32_t jobs)
+{
+	struct master_options options;
+	struct fault fault = { "" };
+	struct master *master = NULL;
+	char folder[CONTENT_PATH_BYTES];
+	struct hash key, stamp;
+	int rc = content_work_path(content, "master", folder);
+
+	build_master_options(&options, content, jobs);
+	if (rc == 0)
+		rc = content_scans_key(content, &key, &fault);
+	if (rc < 0)
+		return fail(&fault, rc, strerror(-rc));
+	stamp = master_stamp(key, &options);
+	rc = master_open(&master, folder, &stamp);
+	if (rc < 0) {
+		report->hierarchy_made = true;
+		rc = make_master(folder, content, stamp, &options);
+		if (rc == 0)
+			rc = master_open(&master, folder, &stamp);
+	}
+	if (rc == 0)
+		report->source_triangles = master->source_triangles;
+	master_destroy(master);
+	return rc;
+}
+
+static int build_samples(const struct content *content, uint32_t jobs)
+{
+	const struct sampler_options options = { .jobs = jobs };
+	struct fault fault = { "" };
+	int rc = sampler_run(content, &options, &fault);
+
+	return rc < 0 ? fail(&fault, rc, strerror(-rc)) : 0;
+}
+
+static int run_stages(struct build_report *report, const struct content *content,
+		      const struct build_options *options,
+		      const struct publish_content_options *publish)
+{
+	int64_t start = clock_now_ms(), at;
+	int rc = build_hierarchy(report, content, options->jobs);
+
+	at = clock_now_ms();
+	report->hierarchy_ms = at - start;
+	if (rc == 0)
+		rc = build_samples(content, options->jobs);
+	start = clock_now_ms();
+	report->samples_ms = start - at;
+	if (rc == 0)
+		rc = publish_content(&report->publish, publish);
+	report->publish_ms = clock_now_ms() - start;
+	return rc;
+}
+
+int build_content(struct build_report *report, const struct content *content,
+		  const struct build_options *options)
+{
+	const struct publish_content_options publish = { .content = content,
+							 .out = options->out,
+							 .comment = options->comment };
+	int64_t start = clock_now_ms();
+	char stamp_path[CONTENT_PATH_BYTES];
+	struct hash stamp;
+	int rc = content_work_path(content, "built", stamp_path);
+
+	*report = (struct build_report){ 0 };
+	if (rc == 0)
+		rc = make_stamp(&stamp, content, options);
+	if (rc < 0)
+		return rc;
+	if (is_built(report, stamp_path, stamp, &publish)) {
+		report->nothing_changed = true;
+	} else {
+		rc = run_stages(report, content, options, &publish);
+		if (rc == 0) {
+			struct stamp_file file =
+				stamp_text(stamp, report->publish.publish.release.root);
+
+			rc = bytes_write_file(
+				(struct bytes){ (uint8_t *)file.text, strlen(file.text) },
+				stamp_path);
+		}
+	}
+	report->all_ms = clock_now_ms() - start;
+	return rc;
+}

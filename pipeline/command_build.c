@@ -1,0 +1,123 @@
+#include "pipeline/commands.h"
+
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/build.h"
+
+static const char help[] =
+	"gopura-content build: from a content folder to a signed release, all that is needed\n"
+	"\n"
+	"usage: gopura-content build DIR [OPTIONS]\n"
+	"\n"
+	"  --out RELEASE     the release folder; by default DIR/../release\n"
+	"  --jobs N          threads and processes; by default one a core. The result is the same.\n"
+	"  --hierarchy KIND  groups or tree; by default as temple.ini says\n"
+	"  --comment TEXT    what is new, for people\n"
+	"\n"
+	"Reads DIR/temple.ini, the scans it names, parts.json, pages/ and pictures/. What is made on the\n"
+	"way stays in DIR/.work, so that an interrupted build goes on where it stopped, and the next\n"
+	"one does only what changed. Signing keys are made in DIR/keys at the first build.\n"
+	"Exit status: 0 done, 1 failed (the reason is printed), 2 the command line is wrong.\n"
+	"\n"
+	"examples: gopura-content build temple\n"
+	"          gopura-content build temple --out /srv/museum --jobs 8\n";
+
+static int wrong(const char *what, const char *value)
+{
+	fprintf(stderr, "gopura-content build: %s%s; see gopura-content build --help\n", what,
+		value);
+	return 2;
+}
+
+static void print_report(const struct build_report *report)
+{
+	publish_content_print(stdout, &report->publish);
+	if (report->nothing_changed) {
+		printf("nothing changed since the last build; %.1f s\n",
+		       (double)report->all_ms / 1000.0);
+		return;
+	}
+	printf("published %" PRIu64 " of the scan's %" PRIu64 " triangles, %.2f %%\n",
+	       report->publish.published_triangles, report->source_triangles,
+	       100.0 * (double)report->publish.published_triangles /
+		       (double)report->source_triangles);
+	printf("hierarchy %.1f s%s, samples %.1f s, publishing %.1f s; all %.1f s\n",
+	       (double)report->hierarchy_ms / 1000.0, report->hierarchy_made ? "" : " (was there)",
+	       (double)report->samples_ms / 1000.0, (double)report->publish_ms / 1000.0,
+	       (double)report->all_ms / 1000.0);
+}
+
+static int run(const char *folder, const struct build_options *options, const char *kind)
+{
+	struct build_report report;
+	struct fault fault = { "" };
+	struct content content;
+	int rc = content_read(&content, folder, &fault);
+
+	if (rc < 0) {
+		fprintf(stderr, "gopura-content build: %s\n",
+			fault.text[0] ? fault.text : strerror(-rc));
+		return EXIT_FAILURE;
+	}
+	if (kind)
+		content.binary_tree = strcmp(kind, "tree") == 0;
+	rc = build_content(&report, &content, options);
+	if (rc == 0)
+		print_report(&report);
+	else
+		fprintf(stderr,
+			"gopura-content build: %s: %s; run it again once that is mended, it "
+			"goes on where it stopped\n",
+			folder, strerror(-rc));
+	content_release(&content);
+	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+int command_build(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "out", required_argument, NULL, 'o' },
+		{ "jobs", required_argument, NULL, 'j' },
+		{ "hierarchy", required_argument, NULL, 'k' },
+		{ "comment", required_argument, NULL, 'c' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	struct build_options build = { 0 };
+	const char *kind = NULL;
+	int option;
+	char *end;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'o':
+			build.out = optarg;
+			break;
+		case 'j':
+			build.jobs = (uint32_t)strtoul(optarg, &end, 10);
+			if (*end || build.jobs < 1 || build.jobs > 64)
+				return wrong("--jobs must be 1 to 64, not ", optarg);
+			break;
+		case 'k':
+			if (strcmp(optarg, "groups") != 0 && strcmp(optarg, "tree") != 0)
+				return wrong("--hierarchy must be groups or tree, not ", optarg);
+			kind = optarg;
+			break;
+		case 'c':
+			build.comment = optarg;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return 0;
+		default:
+			return 2;
+		}
+	}
+	if (optind + 1 != argc)
+		return wrong("name one content folder", "");
+	return run(argv[optind], &build, kind);
+}
