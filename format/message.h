@@ -60,7 +60,7 @@ enum {
 struct message_status {
 	uint8_t online;          /* the last request was answered */
 	uint32_t wanted;         /* objects not yet brought */
-	uint64_t received_bytes; /* from the network since start: headers and all */
+	uint64_t received_bytes; /* from the network since start: TLS, headers and all */
 	uint64_t cache_bytes, cache_budget_bytes;
 	uint64_t offline_since_s; /* wall clock, 0 while online */
 };

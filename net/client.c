@@ -54,6 +54,8 @@ struct net_client {
 	int pid_fd;
 	uint32_t failures; /* connections that did not last, in a row */
 	int64_t connected_ms;
+	uint64_t received_before,
+		received_now; /* bytes, of the fetchers that died and of this one */
 	struct by_hash wants; /* struct wanted, owned */
 	struct by_hash keeps; /* struct hash_entry, owned */
 	struct in_use releases[MESSAGE_RELEASES_MOST];
@@ -263,6 +265,8 @@ static void disconnect(struct net_client *client, const char *why)
 	if (client->packets.fd < 0)
 		return;
 	log_warn("net", "the fetcher is gone: %s", why);
+	client->received_before += client->received_now;
+	client->received_now = 0;
 	packets_finish(&client->packets);
 	if (client->pid)
 		kill(client->pid, SIGTERM); /* it ends anyhow, its socket being closed */
@@ -331,6 +335,15 @@ static int take_object(struct net_client *client, const struct message *message,
 	return rc;
 }
 
+/* A fetcher counts from its own start; the kiosk from its. */
+static void pass_status_on(struct net_client *client, struct message_status status)
+{
+	client->received_now = status.received_bytes;
+	status.received_bytes += client->received_before;
+	if (client->options.events.status)
+		client->options.events.status(client->options.data, &status);
+}
+
 static int obey(struct net_client *client, const struct message *message, int passed)
 {
 	const struct net_client_events *events = &client->options.events;
@@ -349,8 +362,7 @@ static int obey(struct net_client *client, const struct message *message, int pa
 				     message->meta.bytes);
 		return 0;
 	case MESSAGE_STATUS:
-		if (events->status)
-			events->status(data, &message->status);
+		pass_status_on(client, message->status);
 		return 0;
 	default:
 		return -EBADMSG; /* that is ours to say */

@@ -165,6 +165,18 @@ static bool range_begins_at(const char *line, size_t size, uint64_t first)
 	return strtoull(at + 5, &end, 10) == first && *end == '-';
 }
 
+static void take_etag(struct http_request *request, const char *text, size_t size)
+{
+	while (size > 0 && (text[size - 1] == '\n' || text[size - 1] == '\r'))
+		size--;
+	while (size > 0 && *text == ' ') {
+		text++;
+		size--;
+	}
+	if (size < sizeof(request->etag)) /* a longer one would be another one when cut */
+		snprintf(request->etag, sizeof(request->etag), "%.*s", (int)size, text);
+}
+
 static size_t on_header(char *line, size_t one, size_t size, void *data)
 {
 	struct http_request *request = data;
@@ -176,10 +188,7 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 	} else if (header_is(line, size, "content-range:")) {
 		request->range_is_right = range_begins_at(line, size, request->ask.first);
 	} else if (header_is(line, size, "etag:")) {
-		while (size > 5 && (line[size - 1] == '\n' || line[size - 1] == '\r'))
-			size--;
-		snprintf(request->etag, sizeof(request->etag), "%.*s",
-			 (int)(size - 5 - strspn(line + 5, " ")), line + 5 + strspn(line + 5, " "));
+		take_etag(request, line + 5, size - 5);
 	}
 	return size;
 }

@@ -22,6 +22,7 @@ struct poll {
 	bool running;
 	int64_t next_ms;
 	uint32_t failures;
+	bool complained; /* of a file the server has not */
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
@@ -149,6 +150,15 @@ static int64_t period_ms(const struct poll *poll)
 	return period - period / 10 + random() % (period / 5 + 1);
 }
 
+/* Once: it will be the same in a minute. */
+static void complain(struct poll *poll, const char *why)
+{
+	if (!poll->complained)
+		log_warn("net", "content bug: no %s.json to be had: %s",
+			 poll->stage == STAGE_TIMESTAMP ? "timestamp" : "release", why);
+	poll->complained = true;
+}
+
 static void ask(struct poll *poll);
 
 static void on_done(void *data, const struct http_result *result)
@@ -169,8 +179,7 @@ static void on_done(void *data, const struct http_result *result)
 	if (rc == 0 && !result->not_modified)
 		take_body(poll, result->etag);
 	else if (rc < 0 && poll->stage != STAGE_ROOT)
-		log_warn("net", "content bug: no %s.json to be had: %s",
-			 poll->stage == STAGE_TIMESTAMP ? "timestamp" : "release", result->why);
+		complain(poll, result->why);
 	if (poll->stage == STAGE_RELEASE) {
 		rest(poll, period_ms(poll));
 		return;
