@@ -11,7 +11,7 @@ for name in sh mount insmod mkdir sleep poweroff cat ls; do ln -s busybox "$root
 cp -r "$release/." "$root/release/"
 
 # Modules, in the order they need each other.
-for name in virtio virtio_ring virtio_pci_legacy_dev virtio_pci_modern_dev virtio_pci virtio_dma_buf \
+for name in virtio_ring virtio virtio_pci_legacy_dev virtio_pci_modern_dev virtio_pci virtio_dma_buf \
 	drm drm_kms_helper drm_shmem_helper virtio-gpu evdev virtio_input; do
 	module=$(find "$kernel/lib/modules" -name "$name.ko*" | head -1)
 	[ -n "$module" ] || continue # built in
