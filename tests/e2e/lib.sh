@@ -1,0 +1,59 @@
+# What the end-to-end tests share. Source it from the top of the tree's tests/e2e.
+# Everything a test writes is below build/e2e/.
+
+skip() {
+	echo "$*"
+	exit 77
+}
+
+fail() {
+	echo "FAILED: $*" >&2
+	exit 1
+}
+
+# A small temple and its release, built once for all tests: build/e2e/small/{content,release}.
+small=build/e2e/small
+small_release() {
+	mkdir -p "$small/content"
+	cp -ru demo/content/. "$small/content/"
+	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' \
+		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
+	[ -f "$small/content/temple.ply" ] ||
+		build/gopura-content temple --triangles 200000 --seed 1 --out "$small/content/temple.ply"
+	build/gopura-content build "$small/content" --out "$small/release"
+}
+
+servers=''
+# serve RELEASE RUN [PORT]: nginx in the background; $url and $ca afterwards.
+serve() {
+	local release=$1 run=$2 port=${3:-0}
+	command -v nginx >/dev/null || skip "nginx is not installed"
+	mkdir -p "$run"
+	rm -f "$run/url"
+	server/serve.sh "$release" "$port" "$run" >"$run/serve.log" 2>&1 &
+	server=$!
+	servers="$servers $server"
+	for _ in $(seq 150); do
+		[ ! -f "$run/url" ] || break
+		kill -0 "$server" 2>/dev/null || { cat "$run/serve.log"; fail "nginx did not start"; }
+		sleep 0.1
+	done
+	url=$(cat "$run/url") ca=$run/ca.pem
+	port=${url##*:} port=${port%/}
+}
+
+end_servers() {
+	for pid in $servers; do kill "$pid" 2>/dev/null || true; done
+	wait 2>/dev/null || true
+}
+trap end_servers EXIT
+
+# wait_for SECONDS WHAT COMMAND...: until the command succeeds.
+wait_for() {
+	local until=$((SECONDS + $1)) what=$2
+	shift 2
+	until "$@" >/dev/null 2>&1; do
+		[ "$SECONDS" -lt "$until" ] || fail "no $what"
+		sleep 0.2
+	done
+}

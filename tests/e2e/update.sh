@@ -1,0 +1,53 @@
+#!/bin/bash
+# A content update while the kiosk runs: version 2 arrives in the background and is switched to at
+# once; a bad signature, an older sequence and a server that dies half-way leave what is shown.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/update
+rm -rf "$work"
+mkdir -p "$work"
+small_release
+cp -r "$small/content" "$work/content"
+cp -r "$small/release" "$work/release"
+cp -r "$work/release" "$work/release1"
+serve "$work/release" "$work/server"
+build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
+	--trust "$work/release/root/1.json" --state "$work/state" 2>"$work/kiosk.log" &
+pid=$!
+trap 'kill $pid 2>/dev/null || true; end_servers' EXIT
+shown() { [ "$(grep -c 'is shown' "$work/kiosk.log")" -ge "$1" ]; }
+wait_for 60 "first release" shown 1
+sleep 3
+
+# ---- a release.json whose signature is not the publisher's
+cp "$work/release/release.json" "$work/good.json"
+python3 - "$work/release/release.json" <<'P'
+import base64, json, sys
+envelope = json.load(open(sys.argv[1]))
+signature = bytearray(base64.b64decode(envelope["signatures"][0]["signature"]))
+signature[5] ^= 1
+envelope["signatures"][0]["signature"] = base64.b64encode(signature).decode()
+json.dump(envelope, open(sys.argv[1], "w"))
+P
+wait_for 20 "refusal of a bad signature" grep -q 'refused release.json' "$work/kiosk.log"
+cp "$work/good.json" "$work/release/release.json"
+
+# ---- version 2: a page says something else
+sed -i 's/<h1>/<h1>New: /' "$work"/content/pages/*.en.html
+build/gopura-content build "$work/content" --out "$work/release"
+wait_for 90 "version 2" shown 2
+[ "$(grep -c 'app: showing' "$work/kiosk.log")" = 2 ] || fail "two releases were to be shown"
+
+# ---- an older one comes back
+cp "$work/release1/release.json" "$work/release1/timestamp.json" "$work/release/"
+wait_for 20 "refusal of an older release" grep -q 'refused timestamp.json: .*older' "$work/kiosk.log"
+kill -0 "$pid" || fail "the kiosk ended"
+
+# ---- version 3 is announced and the server dies before it arrives
+kill "$server"
+sleep 2
+kill -0 "$pid" || fail "the kiosk ended with the server"
+kill "$pid"
+wait "$pid" || fail "the kiosk did not end well"
+[ "$(grep -c 'is shown' "$work/kiosk.log")" = 2 ] || fail "something else was shown"
