@@ -78,10 +78,20 @@ void fingers_go_home(struct kiosk *kiosk)
 	navigator_fly(&kiosk->navigator, o->home_eye_m, o->home_target_m, FLIGHT_MS);
 }
 
+static void show_card(struct kiosk *kiosk, int part)
+{
+	if (part >= 0)
+		log_debug("app", "card of %s",
+			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
+	overlay_show_card(story_overlay(kiosk->shown.story), part);
+}
+
 static void open_page(struct kiosk *kiosk, int part)
 {
 	if (part >= 0 && story_open_page(kiosk->shown.story, (uint32_t)part)) {
-		overlay_show_card(story_overlay(kiosk->shown.story), -1);
+		log_debug("app", "page of %s",
+			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
+		show_card(kiosk, -1);
 		fly_to_part(kiosk, (uint32_t)part);
 	}
 }
@@ -95,10 +105,7 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 
 	if (pick(kiosk, x_px, y_px, point))
 		part = story_part_at(kiosk->shown.story, point);
-	if (part >= 0)
-		log_debug("app", "tapped part %s",
-			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
-	overlay_show_card(story_overlay(kiosk->shown.story), part);
+	show_card(kiosk, part);
 }
 
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
@@ -110,13 +117,13 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_SWALLOWED:
 		break;
 	case OVERLAY_OPEN_CARD:
-		overlay_show_card(overlay, action->part);
+		show_card(kiosk, action->part);
 		break;
 	case OVERLAY_OPEN_PAGE:
 		open_page(kiosk, action->part);
 		break;
 	case OVERLAY_CLOSE_CARD:
-		overlay_show_card(overlay, -1);
+		show_card(kiosk, -1);
 		break;
 	case OVERLAY_CLOSE_PAGE:
 		overlay_close_page(overlay);
@@ -129,7 +136,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		break;
 	case OVERLAY_HOME:
 		overlay_close_page(overlay);
-		overlay_show_card(overlay, -1);
+		show_card(kiosk, -1);
 		fingers_go_home(kiosk);
 		break;
 	case OVERLAY_HELP:

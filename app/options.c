@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
+
 static const char help_text[] =
 	"gopura-kiosk: shows a temple on a panel and answers the fingers that touch it\n"
 	"\n"
@@ -29,6 +31,7 @@ static const char help_text[] =
 	"  --shots FILE         pictures during a replay: milliseconds and a name, a shot a line\n"
 	"  --overlay            callouts and all on the pictures of --views too\n"
 	"  --poll-s SECONDS     how often to look for a new release\n"
+	"  --log LEVEL          error, warn, info (default) or debug\n"
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
 	"  --help, --version\n"
@@ -60,6 +63,7 @@ enum {
 	OPTION_POLL,
 	OPTION_FETCH,
 	OPTION_SOCKET,
+	OPTION_LOG,
 	OPTION_HELP,
 	OPTION_VERSION
 };
@@ -84,6 +88,7 @@ static const struct option long_options[] = {
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "log", required_argument, NULL, OPTION_LOG },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ "version", no_argument, NULL, OPTION_VERSION },
 	{ NULL, 0, NULL, 0 },
@@ -103,6 +108,12 @@ static const struct choice modes[] = { { "lumigraph", SCENE_LUMIGRAPH },
 				       { "polygons", SCENE_POLYGONS },
 				       { "corners", SCENE_CORNERS },
 				       { NULL, 0 } };
+
+static const struct choice levels[] = { { "error", LOG_LEVEL_ERROR },
+					{ "warn", LOG_LEVEL_WARN },
+					{ "info", LOG_LEVEL_INFO },
+					{ "debug", LOG_LEVEL_DEBUG },
+					{ NULL, 0 } };
 
 static bool choose(const struct choice *choices, const char *name, int *value)
 {
@@ -167,6 +178,11 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_MODE:
 		good = choose(modes, text, &value);
 		o->mode = (enum scene_mode)value;
+		return good;
+	case OPTION_LOG:
+		good = choose(levels, text, &value);
+		if (good)
+			log_set_level((enum log_level)value);
 		return good;
 	case OPTION_SIZE:
 		return parse_size(text, &o->width_px, &o->height_px);

@@ -23,30 +23,16 @@ small_release() {
 	build/gopura-content build "$small/content" --out "$small/release"
 }
 
-servers=''
-# serve RELEASE RUN [PORT]: nginx in the background; $url and $ca afterwards.
+. tests/e2e/lib-server.sh
+trap stop_server EXIT
+
+# serve RELEASE RUN [PORT]: start_server, or skip where there is no nginx; sets url, port and ca.
 serve() {
-	local release=$1 run=$2 port=${3:-0}
 	command -v nginx >/dev/null || skip "nginx is not installed"
-	mkdir -p "$run"
-	rm -f "$run/url"
-	server/serve.sh "$release" "$port" "$run" >"$run/serve.log" 2>&1 &
-	server=$!
-	servers="$servers $server"
-	for _ in $(seq 150); do
-		[ ! -f "$run/url" ] || break
-		kill -0 "$server" 2>/dev/null || { cat "$run/serve.log"; fail "nginx did not start"; }
-		sleep 0.1
-	done
-	url=$(cat "$run/url") ca=$run/ca.pem
+	start_server "$@" || fail "nginx did not start"
+	url=$server_url ca=$server_ca
 	port=${url##*:} port=${port%/}
 }
-
-end_servers() {
-	for pid in $servers; do kill "$pid" 2>/dev/null || true; done
-	wait 2>/dev/null || true
-}
-trap end_servers EXIT
 
 # wait_for SECONDS WHAT COMMAND...: until the command succeeds.
 wait_for() {

@@ -15,7 +15,7 @@ serve "$work/release" "$work/server"
 build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
 	--trust "$work/release/root/1.json" --state "$work/state" 2>"$work/kiosk.log" &
 pid=$!
-trap 'kill $pid 2>/dev/null || true; end_servers' EXIT
+trap 'kill $pid 2>/dev/null || true; stop_server' EXIT
 shown() { [ "$(grep -c 'is shown' "$work/kiosk.log")" -ge "$1" ]; }
 wait_for 60 "first release" shown 1
 sleep 3
@@ -45,7 +45,7 @@ wait_for 20 "refusal of an older release" grep -q 'refused timestamp.json: .*old
 kill -0 "$pid" || fail "the kiosk ended"
 
 # ---- version 3 is announced and the server dies before it arrives
-kill "$server"
+stop_server
 sleep 2
 kill -0 "$pid" || fail "the kiosk ended with the server"
 kill "$pid"

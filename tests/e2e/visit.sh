@@ -18,18 +18,18 @@ kiosk=(build/gopura-kiosk --display headless --size 1280x720 --release "$url" --
 pid=$!
 wait_for 60 "first picture" grep -q 'app: showing' "$work/kiosk.log"
 sleep 8
-kill "$server"; echo "server killed"
+stop_server; echo "server killed"
 sleep 3
 pkill -9 -P "$pid" gopura-fetch && echo "fetcher killed"
 sleep 4
 serve "$small/release" "$work/server" "$port"; echo "server back"
 wait "$pid" || { tail -30 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
-grep -q 'app: card' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no card was opened"; }
-grep -q 'app: page' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no page was opened"; }
+grep -q 'app: card of' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no card was opened"; }
+grep -q 'app: page of' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no page was opened"; }
 [ "$(ls "$work/shots"/*.png | wc -l)" = "$(grep -vc '^#' demo/visit.shots)" ] || fail "shots are missing"
 
 # ---- no network at all, and no server's name even
-end_servers
+stop_server
 echo '7000 offline' >"$work/offline.shots"
 timeout 60 build/gopura-kiosk --display headless --size 1280x720 --release https://localhost:9/ --ca "$ca" \
 	--state "$work/state" --touch-replay tests/e2e/nothing.touch --quit-after-replay \

@@ -60,7 +60,7 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do [ -e /dev/dri/card0 ] && break; sleep 0.2; don
 # Under TCG with -cpu max, wide vectors are emulated and slow.
 export LP_NATIVE_VECTOR_WIDTH=128 HOME=/tmp MESA_SHADER_CACHE_DIR=/tmp
 echo "init: starting the kiosk" >/dev/console
-/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state >/dev/console 2>&1
+/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug >/dev/console 2>&1
 echo "init: the kiosk ended with status $?" >/dev/console
 sleep 1
 poweroff -f

@@ -120,7 +120,7 @@ def main():
         print(f"first temple {time.monotonic() - began:.0f} s after QEMU's start")
         before = machine.resting_picture("temple")
         machine.qmp.tap(0.5, 0.45)
-        machine.wait_for("card in the log", ANSWER_S, lambda: "app: card" in machine.log())
+        machine.wait_for("card in the log", ANSWER_S, lambda: "app: card of" in machine.log())
         time.sleep(2)
         after = machine.resting_picture("card")
         share = share_that_differs(before, after)
