@@ -2,64 +2,68 @@
 # The test runner: runs every part, prints a line each, ends with "N passed, N failed, N skipped".
 #
 #   tests/run.sh quick   style, and the unit tests and fuzz corpora under sanitizers
-#   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e/*.sh
+#   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
 #
-# A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise.
+# A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
+# tests run as many at a time as there are cores; what is timed or serves runs alone.
 set -u
 cd "$(dirname "$0")/.."
-mode=${1:-all}
-passed=0 failed=0 skipped=0
-logs=build/test-logs
-mkdir -p "$logs"
+logs=$PWD/build/test-logs
 jobs=$(nproc)
 export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
 # Third-party libraries keep small one-time allocations; ours are never listed there.
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 
-# run_one NAME SECONDS COMMAND...
+# run_one NAME SECONDS COMMAND...: a line on the terminal, a log and a verdict beside it.
 run_one() {
-	local name=$1 limit=$2 status start=$SECONDS
+	local name=$1 limit=$2 log=$logs/${1//\//-}.log start=$SECONDS status
 	shift 2
-	timeout --kill-after=10 "$limit" "$@" >"$logs/${name//\//-}.log" 2>&1 </dev/null
+	timeout --kill-after=10 "$limit" "$@" >"$log" 2>&1 </dev/null
 	status=$?
 	case $status in
-	0) passed=$((passed + 1)); printf '  pass  %-44s %3d s\n' "$name" $((SECONDS - start)) ;;
-	77) skipped=$((skipped + 1)); printf '  skip  %-44s %s\n' "$name" "$(tail -n 1 "$logs/${name//\//-}.log")" ;;
-	*) failed=$((failed + 1)); printf '  FAIL  %-44s exit %s\n' "$name" "$status"
-		tail -n 30 "$logs/${name//\//-}.log" | sed 's/^/        /' ;;
+	0) echo passed >"$log.verdict"; printf '  pass  %-44s %3d s\n' "$name" $((SECONDS - start)) ;;
+	77) echo skipped >"$log.verdict"; printf '  skip  %-44s %s\n' "$name" "$(tail -n 1 "$log")" ;;
+	*) echo failed >"$log.verdict"
+		printf '  FAIL  %-44s exit %s, %d s\n%s\n' "$name" "$status" $((SECONDS - start)) \
+			"$(tail -n 30 "$log" | sed 's/^/        /')" ;;
 	esac
 }
-
-# build VARIANT MAKE_ARGUMENTS...
-build() {
-	local name=$1
+if [ "${1:-}" = one ]; then
 	shift
-	run_one "build-$name" 1500 make --no-print-directory -j"$jobs" "$@"
-}
+	run_one "$@"
+	exit 0
+fi
 
 unit() { # FOLDER_OF_THE_BUILD LABEL
 	local program
-	for program in $(find tests -name 'test_*.c' | sort); do
-		program=${program%.c}
-		run_one "$2/${program#tests/}" 300 "$1/$program"
-	done
-	for program in $(find tests/fuzz -name 'fuzz_*.c' | sort); do
-		program=${program%.c}
-		run_one "$2/${program#tests/}" 300 "$1/$program" "tests/fuzz/corpus/${program#tests/fuzz/fuzz_}"
-	done
+	{
+		find tests -name 'test_*.c' | sort | while read -r program; do
+			program=${program%.c}
+			echo "$2/${program#tests/} 600 $1/$program"
+		done
+		find tests/fuzz -name 'fuzz_*.c' | sort | while read -r program; do
+			program=${program%.c}
+			echo "$2/${program#tests/} 600 $1/$program tests/fuzz/corpus/${program#tests/fuzz/fuzz_}"
+		done
+	} | xargs -P "$jobs" -L 1 tests/run.sh one
 }
 
+mode=${1:-all}
+began=$SECONDS
+rm -rf "$logs"
+mkdir -p "$logs"
 run_one check-style 120 tests/style/check.sh
-build sanitized SAN=1 BUILD=build/asan tests
+run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan tests
 unit build/asan san
 if [ "$mode" = all ]; then
-	build field tests
+	run_one build-field 1500 make --no-print-directory -j"$jobs" tests
 	unit build unit
-	for script in $(find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' 2>/dev/null | sort); do
+	for script in $(find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name initramfs.sh | sort); do
 		run_one "${script#tests/}" 1200 bash "$script"
 	done
 fi
 
-echo
-echo "$passed passed, $failed failed, $skipped skipped"
-[ "$failed" -eq 0 ]
+count() { cat "$logs"/*.verdict | grep -c "$1"; }
+printf '\n%d minutes %d seconds\n' $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60))
+echo "$(count passed) passed, $(count failed) failed, $(count skipped) skipped"
+[ "$(count failed)" -eq 0 ]
