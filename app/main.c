@@ -1,13 +1,25 @@
-/* gopura-kiosk: panel and touch, no network. */
-#include <stdio.h>
-#include <string.h>
+/* gopura-kiosk: owns panel and touch, and has no network. */
+#include <stdlib.h>
+
+#include "app/kiosk.h"
+#include "app/options.h"
 
 int main(int argc, char **argv)
 {
-	if (argc > 1 && strcmp(argv[1], "--version") == 0) {
-		puts("gopura-kiosk " GOPURA_VERSION);
-		return 0;
+	static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
+	int rc;
+
+	switch (options_parse(&kiosk.options, argc, argv)) {
+	case OPTIONS_DONE:
+		return EXIT_SUCCESS;
+	case OPTIONS_BAD:
+		return 2;
+	case OPTIONS_RUN:
+		break;
 	}
-	fprintf(stderr, "gopura-kiosk: see gopura-kiosk --help\n");
-	return 2;
+	rc = kiosk_start(&kiosk); /* display, scene, input, fetcher */
+	if (rc == 0)
+		rc = kiosk_run(&kiosk);
+	kiosk_stop(&kiosk); /* the reverse; any part may be missing */
+	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,0 +1,186 @@
+#include "app/follow.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/update.h"
+#include "base/clock.h"
+#include "base/log.h"
+#include "storage/state.h"
+
+struct follow {
+	struct follow_options options;
+	struct state *state;
+	struct update update;
+	const char *refusal;     /* static */
+	struct release next;     /* brought now; sequence 0: none */
+	struct buffer next_file; /* its release.json */
+};
+
+/* The trust root in use: what the state remembers, or the pinned file at the first start. */
+static int find_trust(struct follow *follow)
+{
+	struct buffer pinned;
+	struct bytes file;
+	const char *why = "";
+	int rc = state_trust(follow->state, &file);
+
+	if (rc == 0) {
+		rc = update_pin(&follow->update, file, &why);
+		if (rc == 0)
+			return 0;
+		log_error("app", "the remembered trust root: %s", why);
+	}
+	if (!follow->options.trust_path) {
+		log_warn("app", "no trust root yet: updates need --trust root/1.json once");
+		return 0;
+	}
+	buffer_init(&pinned, METADATA_FILE_BYTES_MOST);
+	rc = buffer_read_file(&pinned, follow->options.trust_path);
+	if (rc < 0)
+		why = strerror(-rc);
+	else
+		rc = update_pin(&follow->update, buffer_bytes(&pinned), &why);
+	if (rc == 0 && state_set_trust(follow->state, buffer_bytes(&pinned)) < 0)
+		log_warn("app", "the trust root could not be remembered");
+	if (rc < 0)
+		log_error("app", "%s: %s", follow->options.trust_path, why);
+	buffer_finish(&pinned);
+	return rc;
+}
+
+int follow_create(struct follow **out, const struct follow_options *options)
+{
+	struct follow *follow = calloc(1, sizeof(*follow));
+	int rc;
+
+	*out = NULL;
+	if (!follow)
+		return -ENOMEM;
+	follow->options = *options;
+	follow->refusal = "";
+	buffer_init(&follow->next_file, METADATA_FILE_BYTES_MOST);
+	rc = state_create(&follow->state, options->state_path);
+	if (rc == 0)
+		rc = find_trust(follow);
+	follow->options.state_path = follow->options.trust_path = NULL; /* borrowed */
+	if (rc < 0) {
+		follow_destroy(follow);
+		return rc;
+	}
+	follow->update.sequence_floor = state_sequence_floor(follow->state);
+	*out = follow;
+	return 0;
+}
+
+void follow_destroy(struct follow *follow)
+{
+	if (!follow)
+		return;
+	state_destroy(follow->state);
+	buffer_finish(&follow->next_file);
+	free(follow);
+}
+
+void follow_start(struct follow *follow)
+{
+	struct state_release release;
+
+	if (state_release(follow->state, &release) == 0)
+		follow->options.begin(follow->options.data, release.root, release.root_bytes);
+}
+
+/* The later of clock and floor; 0 where the clock is not known to be set. */
+static struct update_time time_now(const struct follow *follow)
+{
+	const int64_t now_s = clock_wall_s(), floor_s = state_time_floor_s(follow->state);
+
+	if (!clock_wall_is_set())
+		return (struct update_time){ 0 };
+	return (struct update_time){ now_s > floor_s ? now_s : floor_s };
+}
+
+static void begin_next(struct follow *follow, const struct release *release, struct bytes file)
+{
+	struct state_release shown;
+
+	if (follow->next.sequence == release->sequence)
+		return; /* it is on its way */
+	buffer_clear(&follow->next_file);
+	buffer_put(&follow->next_file, file.data, file.size);
+	if (follow->next_file.error)
+		return;
+	follow->next = *release;
+	log_info("app", "release %llu: %s", (unsigned long long)release->sequence,
+		 release->comment);
+	/* The same pictures under a new signature: nothing to bring. */
+	if (state_release(follow->state, &shown) == 0 && hash_equal(shown.root, release->root)) {
+		if (follow_switched(follow) < 0)
+			log_warn("app", "the new sequence could not be remembered");
+		return;
+	}
+	follow->options.begin(follow->options.data, release->root, release->root_bytes);
+}
+
+void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	static const char *const names[] = { "root", "release.json", "timestamp.json" };
+	const struct update_time time = time_now(follow);
+	struct release release;
+	const char *why = "";
+	int rc = 0;
+
+	switch (role) {
+	case META_ROOT:
+		if (version != follow->update.trust.version + 1)
+			return; /* known already, or not to be judged yet */
+		rc = update_root(&follow->update, bytes, &why);
+		if (rc == 0 && state_set_trust(follow->state, bytes) < 0)
+			log_warn("app", "the new trust root could not be remembered");
+		break;
+	case META_TIMESTAMP:
+		rc = update_timestamp(&follow->update, bytes, time, &why);
+		break;
+	case META_RELEASE:
+		rc = update_release(&follow->update, bytes, time, &release, &why);
+		if (rc > 0)
+			begin_next(follow, &release, bytes);
+		break;
+	}
+	if (rc < 0 && why != follow->refusal)
+		log_warn("app", "refused %s: %s", names[role], why);
+	if (rc < 0 || role == META_RELEASE)
+		follow->refusal = rc < 0 ? why : "";
+	if (rc >= 0 && time.now_s && state_raise_time_floor(follow->state, time.now_s) < 0)
+		log_debug("app", "the time floor could not be written");
+}
+
+int follow_switched(struct follow *follow)
+{
+	const struct state_release release = {
+		.root = follow->next.root,
+		.root_bytes = follow->next.root_bytes,
+		.sequence = follow->next.sequence,
+		.file = buffer_bytes(&follow->next_file),
+	};
+	int rc;
+
+	if (follow->next.sequence == 0)
+		return 0; /* the remembered one */
+	rc = state_activate(follow->state, &release);
+	if (rc < 0) {
+		log_error("app", "release %llu could not be remembered: %s",
+			  (unsigned long long)release.sequence, strerror(-rc));
+		return rc;
+	}
+	update_accept(&follow->update, release.sequence);
+	log_info("app", "release %llu is shown", (unsigned long long)release.sequence);
+	follow->next = (struct release){ 0 };
+	return 0;
+}
+
+const char *follow_refusal(const struct follow *follow)
+{
+	return follow->refusal;
+}
