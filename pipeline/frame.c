@@ -24,10 +24,11 @@ static const char vertex_text[] = "attribute vec2 corner;\n"
 				  "void main() { gl_Position = vec4(corner, 0.0, 1.0); }\n";
 
 /* 16 bits each for the logarithm of the nearest and of the farthest distance, as a share of the
- * way from near to far plane; 65535 in both: nothing. */
+ * way from near to far plane; 65535 in both: nothing. The sampler is highp in so many words: its
+ * default is lowp whatever floats are, and Mesa then reads it in 16 bits. */
 static const char fragment_text[] =
 	"precision highp float;\n"
-	"uniform sampler2D depth; uniform vec2 size; uniform vec2 planes;\n"
+	"uniform highp sampler2D depth; uniform vec2 size; uniform vec2 planes;\n"
 	"float share(float d) {\n"
 	"	float z = planes.x * planes.y / (planes.y - d * (planes.y - planes.x));\n"
 	"	return clamp(log(z / planes.x) / log(planes.y / planes.x), 0.0, 1.0) * 65534.0;\n"

@@ -207,21 +207,25 @@ static void knows_near_and_far(void **state)
 	CHECK(samples_store_open(&store, dir[0]) == 0);
 	while (samples_store_next(store, &face) == 1) {
 		float near = INFINITY, far = 0, place[3];
+		int hits = 0;
 
 		sampler_point(place, samples_store_grid(store), face.point);
 		for (int i = 0; i < 101 * 101; i++) {
 			float direction[3], distance;
 
-			cube_direction(direction, face.face, (float)(i % 101) / 50 - 1,
-				       (float)(i / 101) / 50 - 1);
+			cube_direction(direction, face.face, 0.985f * ((float)(i % 101) / 50 - 1),
+				       0.985f * ((float)(i / 101) / 50 - 1));
 			if (cast(place, direction, &distance) < 0)
 				continue;
+			hits++;
 			near = fminf(near, distance);
 			far = fmaxf(far, distance);
 		}
-		/* Pixels' middles stop short of corners. */
-		CHECK(face.near_m <= 1.02f * near && face.far_m >= 0.98f * far);
-		if (far == 0 || far > 1.5f * near)
+		if (hits == 0)
+			continue;
+		/* Far ends are seen at a grazing angle, between pixels. */
+		CHECK(face.near_m <= 1.001f * near && face.far_m >= 0.98f * far);
+		if (far > 1.5f * near)
 			continue;
 		CHECK(face.near_m > 0.9f * near && face.far_m < 1.1f * far); /* aprons see more */
 		seen++;
