@@ -14,7 +14,11 @@
 #include "format/stone.h"
 
 /* Raised whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 1, INDEX_VERSION = 1, INDEX_BYTES_MOST = 256 << 20 };
+enum { BUILD_VERSION = 2, INDEX_VERSION = 1, INDEX_BYTES_MOST = 256 << 20 };
+
+/* The coarsest cut of a small scan: far below the share of it that is published, so that finer
+ * patches have room in that too. Large scans are bounded by what a first picture may cost. */
+enum { TOP_SHARE_INVERSE = 40, TOP_TRIANGLES_LEAST = 200, TOP_TRIANGLES_MOST = 6000 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -178,6 +182,15 @@ static void remove_other_files(const char *folder, const char *keep)
 		closedir(entries);
 }
 
+static uint32_t top_triangles(uint32_t scan)
+{
+	uint32_t top = scan / TOP_SHARE_INVERSE;
+
+	if (top < TOP_TRIANGLES_LEAST)
+		return TOP_TRIANGLES_LEAST;
+	return top < TOP_TRIANGLES_MOST ? top : TOP_TRIANGLES_MOST;
+}
+
 static int build_into(struct writer *writer, const char *folder, const struct mesh *mesh,
 		      struct hash stamp, const struct master_options *options,
 		      struct master_report *report)
@@ -192,6 +205,8 @@ static int build_into(struct writer *writer, const char *folder, const struct me
 
 	if (rc < 0)
 		return rc;
+	if (multires.top_triangles == 0)
+		multires.top_triangles = top_triangles(mesh->triangle_count);
 	if (options->stone_colours)
 		colour_as_stone(&lattice_mesh);
 	head.lattice = lattice_mesh.lattice;
