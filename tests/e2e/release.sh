@@ -1,0 +1,106 @@
+#!/bin/bash
+# From a scan to a release on a museum server: build (cut off and resumed), verify over TLS, change,
+# undo, and what was tampered with is found.
+set -eu
+cd "$(dirname "$0")/../.."
+command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }
+. tests/e2e/lib-server.sh
+make --no-print-directory -s all
+content=$PWD/build/gopura-content
+folder=$(mktemp -d)
+trap 'stop_server; rm -rf "$folder"' EXIT
+dir=$folder/content release=$folder/release run=$folder/run
+fail() { echo "FAIL: $*" >&2; exit 1; }
+
+mkdir -p "$dir/pages"
+"$content" temple --triangles 20000 --seed 1 --out "$dir/temple.ply" >/dev/null
+cat >"$dir/temple.ini" <<'INI'
+[model]
+name = Small temple
+scans = temple.ply
+colours = procedural
+[grid]
+points = 8
+face_px = 128
+INI
+parts() { # TITLE
+	cat >"$dir/parts.json" <<-JSON
+	{"parts": [{"id": "tower", "region": {"kind": "sphere", "centre": [0, 0, 20], "radius": 4},
+	  "anchor": [0, 0, 22], "title": {"en": "$1", "fr": "Tour", "km": "ប្រាង្គ", "ja": "塔"}}]}
+	JSON
+}
+parts Tower
+echo '<h1>Tower</h1><p>The mountain in the middle.</p>' >"$dir/pages/tower.en.html"
+
+root_of() { sed -nE 's/.*root ([0-9a-f]{32})$/\1/p' "$1"; }
+files() { (cd "$release" && find packs locator -type f | sort); }
+
+# ---- a build that is killed goes on where it stopped, and makes what an undisturbed one makes
+for seconds in 1 3; do
+	timeout -s KILL "$seconds" "$content" build "$dir" --out "$release" >"$folder/log" 2>&1 || true
+	[ ! -f "$release/timestamp.json" ] || "$content" verify "$release" >/dev/null || fail "a cut-off build left a bad release"
+done
+"$content" build "$dir" --out "$release" >"$folder/first" 2>&1 || { cat "$folder/first"; fail "build"; }
+first=$(root_of "$folder/first")
+[ -n "$first" ] || fail "build does not say its root"
+cp -r "$dir" "$folder/again" && rm -rf "$folder/again/.work"
+"$content" build "$folder/again" --jobs 1 --out "$folder/release-again" >"$folder/log" 2>&1
+[ "$(root_of "$folder/log")" = "$first" ] || fail "the same content gave another root"
+diff <(files) <(cd "$folder/release-again" && find packs locator -type f | sort) || fail "other packs"
+
+# ---- over TLS
+start_server "$release" "$run"
+"$content" verify "$server_url" --ca "$server_ca" --trust "$dir/keys/root/1.json" >"$folder/verified" ||
+	fail "verify over TLS"
+cat "$folder/verified"
+share=$(sed -nE 's/.*published share: ([0-9]+) of ([0-9]+) .*/\1 \2/p' "$folder/verified")
+[ -n "$share" ] && [ $((10 * ${share% *})) -le "${share#* }" ] || fail "the published share passes a tenth: $share"
+"$content" verify "$server_url" >/dev/null 2>&1 && fail "an unknown authority was trusted"
+"$content" verify "$server_url" --ca "$server_ca" --trust "$folder/again/keys/root/1.json" >/dev/null ||
+	fail "copied keys are the same keys"
+mkdir "$folder/others"
+"$content" keys "$folder/others" >/dev/null
+"$content" verify "$server_url" --ca "$server_ca" --trust "$folder/others/keys/root/1.json" >/dev/null 2>"$folder/log" &&
+	fail "another publisher's root was enough"
+grep -q 'signatures' "$folder/log" || fail "the message does not speak of signatures: $(cat "$folder/log")"
+
+# ---- nothing changed: nothing is written but the timestamp
+files >"$folder/before"
+"$content" build "$dir" --out "$release" | grep -q 'nothing changed' || fail "something was made anew"
+files | diff "$folder/before" - || fail "files were written for nothing"
+
+# ---- a new title: a few small blocks, samples untouched
+parts 'High tower'
+"$content" build "$dir" --out "$release" --comment 'a better title' >"$folder/second"
+grep -q '^release 2 ' "$folder/second" || fail "no second release"
+files >"$folder/after"
+[ -z "$(comm -23 "$folder/before" "$folder/after")" ] || fail "an old file is gone"
+new=$(comm -13 "$folder/before" "$folder/after" | (cd "$release" && xargs cat | wc -c))
+[ "$new" -lt 150000 ] || fail "a title cost $new bytes"
+"$content" verify "$server_url" --ca "$server_ca" >"$folder/verified"
+grep -q 'a better title' "$folder/verified" || fail "the comment is not there"
+
+# ---- undo
+"$content" publish "$dir" --out "$release" --undo >"$folder/undone"
+grep -q '^release 3 ' "$folder/undone" || fail "undo has no higher number"
+[ "$(root_of "$folder/undone")" = "$first" ] || fail "undo shows another root"
+"$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "undone, but not whole"
+
+# ---- inspect finds what verify walks
+"$content" inspect "$server_url" --ca "$server_ca" "$first" | grep -q 'root page' || fail "inspect: root"
+"$content" inspect "$release" >"$folder/log"
+hash=$(sed -nE 's/^  child +[0-9]+ +([0-9a-f]{32}) .*/\1/p' "$folder/log" | tail -n 1)
+"$content" inspect "$release" "$hash" | grep -q 'in packs/' || fail "inspect: $hash"
+
+# ---- a byte that is not what it was, at rest or on the way
+pack=$(find "$release/packs" -type f -size +100k | head -n 1)
+cp "$pack" "$folder/pack"
+printf 'x' | dd of="$pack" bs=1 seek=50000 conv=notrunc status=none
+"$content" verify "$server_url" --ca "$server_ca" >/dev/null 2>"$folder/log" && fail "tampering was not found"
+grep -q "$(basename "$pack")" "$folder/log" || fail "the message does not name the pack: $(cat "$folder/log")"
+cp "$folder/pack" "$pack"
+sed -i 's/payload":"e/payload":"f/' "$release/release.json"
+"$content" verify "$server_url" --ca "$server_ca" >/dev/null 2>"$folder/log" && fail "a changed release.json was not found"
+grep -q 'release.json' "$folder/log" || fail "the message does not name release.json"
+"$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log" && fail "published over a damaged release.json"
+echo "built, served, verified, changed, undone"
