@@ -8,10 +8,10 @@ demo=build/demo content=build/demo/content
 triangles=${1:-$(cat "$demo/triangles" 2>/dev/null || echo 1500000)}
 mkdir -p "$content"
 cp -ru demo/content/. "$content/"
-if [ ! -f "$content/temple.ply" ] || [ "$(cat "$demo/triangles" 2>/dev/null)" != "$triangles" ]; then
+if [ ! -f "$content/scan.ply" ] || [ "$(cat "$demo/triangles" 2>/dev/null)" != "$triangles" ]; then
 	echo "Making the temple: $triangles triangles ..."
-	build/gopura-content temple --triangles "$triangles" --seed 1 --out "$content/temple.ply.part"
-	mv "$content/temple.ply.part" "$content/temple.ply"
+	build/gopura-content temple --triangles "$triangles" --seed 1 --out "$content/scan.ply.part"
+	mv "$content/scan.ply.part" "$content/scan.ply"
 	echo "$triangles" >"$demo/triangles"
 fi
 build/gopura-content build "$content" --out "$demo/release"

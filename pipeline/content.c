@@ -137,7 +137,7 @@ static bool set_whole(const char *value, long least, long most, uint32_t *out)
 
 static bool set_points(void *target, const char *value)
 {
-	return set_whole(value, 8, 32, &((struct content *)target)->grid_points);
+	return set_whole(value, 4, 32, &((struct content *)target)->grid_points);
 }
 
 static bool set_face_px(void *target, const char *value)
@@ -215,7 +215,7 @@ static const struct ini_key keys[] = {
 	{ "model", "sun", "three numbers x y z, pointing to the sun", set_sun },
 	{ "model", "background", "a colour as #rrggbb", set_background },
 	{ "view", "start", "eye X Y Z target X Y Z in metres, two different places", set_start },
-	{ "grid", "points", "a whole number from 8 to 32", set_points },
+	{ "grid", "points", "a whole number from 4 to 32", set_points },
 	{ "grid", "face_px", "128, 256, 512, 1024 or 2048", set_face_px },
 	{ "grid", "quality", "a whole number from 1 to 100", set_quality },
 	{ "hierarchy", "kind", "groups or tree", set_kind },

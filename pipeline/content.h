@@ -41,7 +41,7 @@ struct content {
 	uint8_t background[3];
 	bool has_start;
 	float start_eye_m[3], start_target_m[3]; /* where has_start */
-	uint32_t grid_points;                    /* 8..32, along the longest side of the box */
+	uint32_t grid_points;                    /* 4..32, along the longest side of the box */
 	uint32_t face_px;         /* of a sampling face at its finest: 128, 256 ... 2048 */
 	uint32_t jpeg_quality;    /* 1..100 */
 	bool binary_tree;         /* the paper's hierarchy, not groups */

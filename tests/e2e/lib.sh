@@ -18,8 +18,8 @@ small_release() {
 	cp -ru demo/content/. "$small/content/"
 	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' \
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
-	[ -f "$small/content/temple.ply" ] ||
-		build/gopura-content temple --triangles 200000 --seed 1 --out "$small/content/temple.ply"
+	[ -f "$small/content/scan.ply" ] ||
+		build/gopura-content temple --triangles 200000 --seed 1 --out "$small/content/scan.ply"
 	build/gopura-content build "$small/content" --out "$small/release"
 }
 

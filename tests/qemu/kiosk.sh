@@ -26,8 +26,8 @@ mkdir -p "$content"
 cp -ru demo/content/. "$content/"
 sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
 	-e 's/^publish_share *=.*/publish_share = 0.5/' "$content/temple.ini"
-[ -f "$content/temple.ply" ] ||
-	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/temple.ply"
+[ -f "$content/scan.ply" ] ||
+	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/scan.ply"
 build/gopura-content build "$content" --out "$release"
 
 "$here/initramfs.sh" "$work/kernel" "$release" "$work/initramfs.cpio"
