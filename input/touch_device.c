@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <libevdev/libevdev.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -75,6 +77,23 @@ static int recognise(struct touch_device *device)
 	return 0;
 }
 
+/* libevdev speaks up when a kernel driver breaks the protocol; it then does what is safest. */
+static void hear_libevdev(const struct libevdev *evdev, enum libevdev_log_priority priority,
+			  void *data, const char *file, int line, const char *function,
+			  const char *format, va_list args)
+{
+	char text[200];
+
+	(void)data;
+	(void)file;
+	(void)line;
+	(void)function;
+	vsnprintf(text, sizeof(text), format, args);
+	text[strcspn(text, "\n")] = 0;
+	if (priority == LIBEVDEV_LOG_ERROR)
+		log_warn("input", "kernel bug: %s: %s", libevdev_get_name(evdev), text);
+}
+
 int touch_device_open(struct touch_device **out, const char *path)
 {
 	struct touch_device *device = calloc(1, sizeof(*device));
@@ -100,6 +119,7 @@ int touch_device_open(struct touch_device **out, const char *path)
 	/* Where the kernel cannot, its wall clock does: only differences count. */
 	if (libevdev_set_clock_id(device->evdev, CLOCK_MONOTONIC) < 0)
 		log_debug("input", "%s: keeps the wall clock", path);
+	libevdev_set_device_log_function(device->evdev, hear_libevdev, LIBEVDEV_LOG_ERROR, NULL);
 	*out = device;
 	return 0;
 }
