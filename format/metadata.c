@@ -7,14 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/metadata_parts.h"
 #include "format/page.h"
 
-/* "format" in every payload: raised when an old reader could misunderstand a new file. */
-#define PAYLOAD_FORMAT 1
 /* Integers must survive a double, which is what JSON numbers are to most readers. */
 #define WHOLE_MOST 9007199254740992.0
-
-static const char *const role_names[] = { "root", "release", "timestamp" };
 
 struct signature {
 	struct hash key;
@@ -182,17 +179,6 @@ static int envelope_open(struct envelope *envelope, struct bytes file)
 	return rc;
 }
 
-/* What is signed: the role's name too, so that no file can pass for another role's. */
-static int message_of(struct buffer *out, enum meta_role role, struct bytes payload)
-{
-	buffer_init(out, METADATA_FILE_BYTES_MOST + 64);
-	buffer_put(out, "gopura-", 7);
-	buffer_put(out, role_names[role], strlen(role_names[role]));
-	buffer_put(out, "-v1\n", 4);
-	buffer_put(out, payload.data, payload.size);
-	return out->error;
-}
-
 static bool key_signed(const struct envelope *envelope, const uint8_t key[KEY_BYTES],
 		       struct bytes message)
 {
@@ -211,7 +197,7 @@ static int check_signatures(const struct envelope *envelope, enum meta_role role
 {
 	struct buffer message;
 	uint32_t good = 0;
-	int rc = message_of(&message, role, buffer_bytes(&envelope->payload));
+	int rc = metadata_message(&message, role, buffer_bytes(&envelope->payload));
 
 	for (uint32_t i = 0; rc == 0 && i < keys->key_count; i++)
 		good += key_signed(envelope, keys->keys[i], buffer_bytes(&message));
@@ -228,7 +214,7 @@ static cJSON *open_payload(const struct envelope *envelope, enum meta_role role)
 	const char *type = json ? text_member(json, "type") : NULL;
 	uint64_t format;
 
-	if (type && strcmp(type, role_names[role]) == 0 &&
+	if (type && strcmp(type, metadata_role_names[role]) == 0 &&
 	    whole_member(json, "format", PAYLOAD_FORMAT, PAYLOAD_FORMAT, &format))
 		return json;
 	cJSON_Delete(json);
@@ -274,7 +260,7 @@ static int read_root(struct trust_root *root, const cJSON *json)
 		return -EBADMSG;
 	root->version = (uint32_t)version;
 	for (int role = META_ROOT; role <= META_TIMESTAMP; role++)
-		if (read_role(&root->roles[role], member(roles, role_names[role])) < 0)
+		if (read_role(&root->roles[role], member(roles, metadata_role_names[role])) < 0)
 			return -EBADMSG;
 	return 0;
 }
@@ -400,145 +386,4 @@ int timestamp_decode(struct timestamp *out, const struct trust_root *trust, stru
 		return refuse(why, rc, "the timestamp file lacks a member or has a bad one");
 	*out = timestamp;
 	return 0;
-}
-
-/* ---- the publisher's side ---- */
-
-static bool add_base64(cJSON *object, const char *name, struct bytes bytes)
-{
-	size_t room = sodium_base64_ENCODED_LEN(bytes.size, sodium_base64_VARIANT_ORIGINAL);
-	char *text = malloc(room);
-	bool added;
-
-	if (!text)
-		return false;
-	sodium_bin2base64(text, room, bytes.data, bytes.size, sodium_base64_VARIANT_ORIGINAL);
-	added = name ? cJSON_AddStringToObject(object, name, text) != NULL
-		     : cJSON_AddItemToArray(object, cJSON_CreateString(text));
-	free(text);
-	return added;
-}
-
-static bool add_signature(cJSON *list, const struct signing_key *key, struct bytes message)
-{
-	cJSON *item = cJSON_CreateObject();
-	uint8_t signature[crypto_sign_BYTES];
-	char name[HASH_HEX_BYTES];
-
-	crypto_sign_detached(signature, NULL, message.data, message.size, key->secret);
-	hash_to_hex(hash_of((struct bytes){ key->public_key, KEY_BYTES }), name);
-	if (!item || !cJSON_AddItemToArray(list, item))
-		return false;
-	return cJSON_AddStringToObject(item, "key", name) &&
-	       add_base64(item, "signature", (struct bytes){ signature, sizeof(signature) });
-}
-
-static int put_envelope(struct buffer *out, enum meta_role role, struct bytes payload,
-			const struct signing_key *keys, uint32_t key_count)
-{
-	cJSON *json = cJSON_CreateObject();
-	cJSON *list = NULL;
-	struct buffer message;
-	char *text = NULL;
-	int rc = message_of(&message, role, payload);
-	bool good = rc == 0 && json && add_base64(json, "payload", payload);
-
-	if (good)
-		list = cJSON_AddArrayToObject(json, "signatures");
-	good = good && list;
-	for (uint32_t i = 0; good && i < key_count; i++)
-		good = add_signature(list, &keys[i], buffer_bytes(&message));
-	if (good)
-		text = cJSON_PrintUnformatted(json);
-	if (text) {
-		buffer_put(out, text, strlen(text));
-		buffer_put_u8(out, '\n');
-	}
-	rc = rc < 0 ? rc : text ? out->error : -ENOMEM;
-	cJSON_free(text);
-	cJSON_Delete(json);
-	buffer_finish(&message);
-	return rc;
-}
-
-/* Takes json, which may be NULL or lack what there was no memory for (complete tells). */
-static int sign_payload(struct buffer *out, enum meta_role role, cJSON *json, bool complete,
-			const struct signing_key *keys, uint32_t key_count)
-{
-	char *text = complete ? cJSON_PrintUnformatted(json) : NULL;
-	int rc = -ENOMEM;
-
-	if (text)
-		rc = put_envelope(out, role, (struct bytes){ (uint8_t *)text, strlen(text) }, keys,
-				  key_count);
-	cJSON_free(text);
-	cJSON_Delete(json);
-	return rc;
-}
-
-static cJSON *payload_create(enum meta_role role, int64_t expires_s)
-{
-	cJSON *json = cJSON_CreateObject();
-
-	if (json && cJSON_AddStringToObject(json, "type", role_names[role]) &&
-	    cJSON_AddNumberToObject(json, "format", PAYLOAD_FORMAT) &&
-	    cJSON_AddNumberToObject(json, "expires_s", (double)expires_s))
-		return json;
-	cJSON_Delete(json);
-	return NULL;
-}
-
-static bool add_role(cJSON *roles, const char *name, const struct role_keys *role)
-{
-	cJSON *json = cJSON_AddObjectToObject(roles, name), *list;
-
-	if (!json || !cJSON_AddNumberToObject(json, "threshold", role->threshold))
-		return false;
-	list = cJSON_AddArrayToObject(json, "keys");
-	for (uint32_t i = 0; list && i < role->key_count; i++)
-		if (!add_base64(list, NULL, (struct bytes){ role->keys[i], KEY_BYTES }))
-			return false;
-	return list != NULL;
-}
-
-int trust_root_encode(struct buffer *out, const struct trust_root *root,
-		      const struct signing_key *keys, uint32_t key_count)
-{
-	cJSON *json = payload_create(META_ROOT, root->expires_s), *roles = NULL;
-	bool complete = json && cJSON_AddNumberToObject(json, "version", root->version);
-
-	if (complete)
-		roles = cJSON_AddObjectToObject(json, "roles");
-	complete = complete && roles;
-	for (int role = META_ROOT; complete && role <= META_TIMESTAMP; role++)
-		complete = add_role(roles, role_names[role], &root->roles[role]);
-	return sign_payload(out, META_ROOT, json, complete, keys, key_count);
-}
-
-int release_encode(struct buffer *out, const struct release *release,
-		   const struct signing_key *keys, uint32_t key_count)
-{
-	cJSON *json = payload_create(META_RELEASE, release->expires_s);
-	char root[HASH_HEX_BYTES];
-	bool complete;
-
-	hash_to_hex(release->root, root);
-	complete = json && cJSON_AddNumberToObject(json, "sequence", (double)release->sequence) &&
-		   cJSON_AddStringToObject(json, "root", root) &&
-		   cJSON_AddNumberToObject(json, "root_bytes", release->root_bytes) &&
-		   cJSON_AddStringToObject(json, "comment", release->comment);
-	return sign_payload(out, META_RELEASE, json, complete, keys, key_count);
-}
-
-int timestamp_encode(struct buffer *out, const struct timestamp *timestamp,
-		     const struct signing_key *keys, uint32_t key_count)
-{
-	cJSON *json = payload_create(META_TIMESTAMP, timestamp->expires_s);
-	char name[HASH_HEX_BYTES];
-	bool complete;
-
-	hash_to_hex(timestamp->release, name);
-	complete = json && cJSON_AddNumberToObject(json, "sequence", (double)timestamp->sequence) &&
-		   cJSON_AddStringToObject(json, "release", name);
-	return sign_payload(out, META_TIMESTAMP, json, complete, keys, key_count);
 }
