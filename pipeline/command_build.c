@@ -5,8 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "pipeline/build.h"
+#include "pipeline/work_lock.h"
 
 static const char help[] =
 	"gopura-content build: from a content folder to a signed release, all that is needed\n"
@@ -56,6 +58,7 @@ static int run(const char *folder, const struct build_options *options, const ch
 	struct build_report report;
 	struct fault fault = { "" };
 	struct content content;
+	int lock = -1;
 	int rc = content_read(&content, folder, &fault);
 
 	if (rc < 0) {
@@ -65,7 +68,9 @@ static int run(const char *folder, const struct build_options *options, const ch
 	}
 	if (kind)
 		content.binary_tree = strcmp(kind, "tree") == 0;
-	rc = build_content(&report, &content, options);
+	rc = work_lock(&lock, &content);
+	if (rc == 0)
+		rc = build_content(&report, &content, options);
 	if (rc == 0)
 		print_report(&report);
 	else
@@ -73,6 +78,8 @@ static int run(const char *folder, const struct build_options *options, const ch
 			"gopura-content build: %s: %s; run it again once that is mended, it "
 			"goes on where it stopped\n",
 			folder, strerror(-rc));
+	if (lock >= 0)
+		close(lock);
 	content_release(&content);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

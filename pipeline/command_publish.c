@@ -5,8 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "pipeline/publish_content.h"
+#include "pipeline/work_lock.h"
 
 static const char help[] =
 	"gopura-content publish: make a signed release of a content folder\n"
@@ -50,11 +52,21 @@ static bool positive(const char *text, uint64_t most, uint64_t *out)
 	       *out <= most;
 }
 
+static int publish(struct publish_content_report *report, const struct settings *settings)
+{
+	if (settings->renew)
+		return publish_content_renew(report, &settings->publish);
+	if (settings->undo || settings->sequence)
+		return publish_content_again(report, &settings->publish, settings->sequence);
+	return publish_content(report, &settings->publish);
+}
+
 static int run(struct settings *settings, const char *folder)
 {
 	struct publish_content_report report;
 	struct fault fault = { "" };
 	struct content content;
+	int lock = -1;
 	int rc = content_read(&content, folder, &fault);
 
 	if (rc < 0) {
@@ -63,17 +75,16 @@ static int run(struct settings *settings, const char *folder)
 		return EXIT_FAILURE;
 	}
 	settings->publish.content = &content;
-	if (settings->renew)
-		rc = publish_content_renew(&report, &settings->publish);
-	else if (settings->undo || settings->sequence)
-		rc = publish_content_again(&report, &settings->publish, settings->sequence);
-	else
-		rc = publish_content(&report, &settings->publish);
+	rc = work_lock(&lock, &content);
+	if (rc == 0)
+		rc = publish(&report, settings);
 	if (rc == 0)
 		publish_content_print(stdout, &report);
 	else
 		fprintf(stderr, "gopura-content publish: nothing was published (%s)\n",
 			strerror(-rc));
+	if (lock >= 0)
+		close(lock);
 	content_release(&content);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }
