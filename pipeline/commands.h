@@ -16,6 +16,7 @@ int command_inspect(int argc, char **argv);
 int command_keys(int argc, char **argv);
 int command_publish(int argc, char **argv);
 int command_verify(int argc, char **argv);
+int command_render(int argc, char **argv);
 int command_sample(int argc, char **argv);
 int command_temple(int argc, char **argv);
 

@@ -15,6 +15,7 @@ static const struct command commands[] = {
 	{ "keys", "make the signing keys of a content folder", command_keys },
 	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
 	  command_hierarchy },
+	{ "render", "draw reference pictures of the scan at its finest", command_render },
 	{ "sample", "render the sampling images of a content folder", command_sample },
 	{ NULL, NULL, NULL },
 };

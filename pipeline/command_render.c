@@ -1,0 +1,130 @@
+#include "pipeline/commands.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/reference.h"
+
+static const char help[] =
+	"gopura-content render: reference pictures of a content folder's scan at its finest\n"
+	"\n"
+	"usage: gopura-content render DIR --views FILE --size WxH --out DIR [OPTIONS]\n"
+	"\n"
+	"  --views FILE      a view a line: eye x y z  target x y z  vertical field of view in\n"
+	"                    degrees; metres, z up; # starts a comment\n"
+	"  --size WxH        pixels, at most 4096 a side\n"
+	"  --out DIR         view-0000.png and so on; alpha is coverage\n"
+	"  --supersample N   N x N samples a pixel (default 1, at most 16)\n"
+	"\n"
+	"A picture that is there already, of the same scan, view and options, is kept.\n"
+	"Exit status: 0 all pictures are there, 1 it failed, 2 the command line is wrong.\n"
+	"\n"
+	"  gopura-content render temple --views path.txt --size 1280x720 --supersample 4 --out truth\n";
+
+struct settings {
+	struct reference_options reference;
+	const char *dir, *views; /* borrowed from argv */
+};
+
+static bool read_size(const char *text, struct reference_options *out)
+{
+	char rest;
+
+	return sscanf(text, "%dx%d%c", &out->width_px, &out->height_px, &rest) == 2 &&
+	       out->width_px > 0 && out->width_px <= REFERENCE_SIDE_PX_MOST && out->height_px > 0 &&
+	       out->height_px <= REFERENCE_SIDE_PX_MOST;
+}
+
+static bool read_supersample(const char *text, struct reference_options *out)
+{
+	char rest;
+
+	return sscanf(text, "%u%c", &out->supersample, &rest) == 1 && out->supersample >= 1 &&
+	       out->supersample <= REFERENCE_SUPERSAMPLE_MOST;
+}
+
+static bool read_options(int argc, char **argv, struct settings *settings)
+{
+	static const struct option names[] = { { "views", required_argument, NULL, 'v' },
+					       { "size", required_argument, NULL, 's' },
+					       { "out", required_argument, NULL, 'o' },
+					       { "supersample", required_argument, NULL, 'n' },
+					       { "help", no_argument, NULL, 'h' },
+					       { NULL, 0, NULL, 0 } };
+	bool good = true;
+	int option;
+
+	optind = 1;
+	while ((option = getopt_long(argc, argv, "h", names, NULL)) != -1) {
+		switch (option) {
+		case 'v':
+			settings->views = optarg;
+			break;
+		case 's':
+			good = good && read_size(optarg, &settings->reference);
+			break;
+		case 'o':
+			settings->reference.out_dir = optarg;
+			break;
+		case 'n':
+			good = good && read_supersample(optarg, &settings->reference);
+			break;
+		case 'h':
+			fputs(help, stdout);
+			exit(EXIT_SUCCESS);
+		default:
+			good = false;
+		}
+	}
+	settings->dir = argv[optind];
+	return good && argc == optind + 1 && settings->views && settings->reference.out_dir &&
+	       settings->reference.width_px;
+}
+
+static int read_views(const char *path, struct camera **views, uint32_t *count, struct fault *fault)
+{
+	struct buffer text;
+	int rc;
+
+	buffer_init(&text, 16 << 20);
+	rc = buffer_read_file(&text, path);
+	if (rc < 0)
+		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+	else
+		rc = reference_views(views, count, buffer_bytes(&text), path, fault);
+	buffer_finish(&text);
+	return rc;
+}
+
+int command_render(int argc, char **argv)
+{
+	struct settings settings = { .reference = { .supersample = 1 } };
+	struct reference_report report;
+	struct content content = { 0 };
+	struct camera *views = NULL;
+	struct fault fault = { "" };
+	uint32_t count;
+	int rc;
+
+	if (!read_options(argc, argv, &settings)) {
+		fputs("gopura-content render: give a content folder, --views, --size and --out; "
+		      "see --help\n",
+		      stderr);
+		return 2;
+	}
+	rc = read_views(settings.views, &views, &count, &fault);
+	if (rc == 0)
+		rc = content_read(&content, settings.dir, &fault);
+	if (rc == 0)
+		rc = reference_draw(&content, views, count, &settings.reference, &report, &fault);
+	if (rc == 0)
+		printf("%s: %u pictures drawn, %u kept\n", settings.reference.out_dir, report.drawn,
+		       report.kept);
+	else
+		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+	content_release(&content);
+	free(views);
+	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
