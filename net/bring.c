@@ -235,7 +235,7 @@ static void work_fresh(struct bring *bring)
 {
 	const struct bring_events *events = &bring->options.events;
 
-	if (bring->fresh_changed)
+	if (bring->fresh_changed && bring->fresh_count > 1)
 		qsort(bring->fresh, bring->fresh_count, sizeof(bring->fresh[0]), by_priority);
 	bring->fresh_changed = false;
 	for (int i = 0; i < CACHE_READS_MOST && bring->fresh_count > 0 &&

@@ -14,7 +14,8 @@ static int by_place(const void *a, const void *b)
 
 void range_sort(struct range_item *items, size_t count)
 {
-	qsort(items, count, sizeof(items[0]), by_place);
+	if (count > 1)
+		qsort(items, count, sizeof(items[0]), by_place);
 }
 
 static bool goes_before(const struct range_item *a, const struct range_item *b)

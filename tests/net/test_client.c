@@ -1,0 +1,400 @@
+/* The client against a fetcher played by the test, at the other end of a socket path. */
+#include "net/client.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "net/packets.h"
+#include "tests/check.h"
+
+struct stage {
+	char folder[64], path[96];
+	int listener;
+	struct packets fetcher;
+	struct net_client *client;
+	int objects, missing, metas, statuses;
+	struct hash last;
+	enum missing_reason reason;
+	uint64_t received_bytes;
+};
+
+static const uint8_t stone[] = "sandstone", brick[] = "laterite";
+
+static struct bytes of(const uint8_t *text)
+{
+	return (struct bytes){ text, strlen((const char *)text) };
+}
+
+static void on_object(void *data, struct hash hash, struct bytes bytes)
+{
+	struct stage *stage = data;
+
+	CHECK(hash_equal(hash_of(bytes), hash));
+	stage->objects++;
+	stage->last = hash;
+}
+
+static void on_missing(void *data, struct hash hash, enum missing_reason reason)
+{
+	struct stage *stage = data;
+
+	stage->missing++;
+	stage->last = hash;
+	stage->reason = reason;
+}
+
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	struct stage *stage = data;
+
+	CHECK(role == META_ROOT && version == 4 && bytes.size == 9);
+	stage->metas++;
+}
+
+static void on_status(void *data, const struct message_status *status)
+{
+	struct stage *stage = data;
+
+	stage->statuses++;
+	stage->received_bytes = status->received_bytes;
+}
+
+static void accept_client(struct stage *stage)
+{
+	struct pollfd ready = { .fd = stage->listener, .events = POLLIN };
+
+	for (int i = 0; i < 100 && poll(&ready, 1, 0) == 0; i++) {
+		struct pollfd client = { .fd = net_client_fd(stage->client), .events = POLLIN };
+
+		if (poll(&client, 1, 100) > 0)
+			CHECK(net_client_dispatch(stage->client) == 0);
+	}
+	packets_finish(&stage->fetcher);
+	packets_init(&stage->fetcher, accept(stage->listener, NULL, NULL));
+	CHECK(stage->fetcher.fd >= 0);
+}
+
+static void listen_at(struct stage *stage)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+
+	stage->listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+	snprintf(address.sun_path, sizeof(address.sun_path), "%s", stage->path);
+	CHECK(bind(stage->listener, (struct sockaddr *)&address, sizeof(address)) == 0);
+	CHECK(listen(stage->listener, 4) == 0);
+}
+
+static int set_up(void **state)
+{
+	struct stage *stage = calloc(1, sizeof(*stage));
+	struct net_client_options options = {
+		.events = { on_object, on_missing, on_meta, on_status },
+		.data = stage,
+	};
+
+	*state = stage;
+	snprintf(stage->folder, sizeof(stage->folder), "/tmp/gopura-client-XXXXXX");
+	CHECK(mkdtemp(stage->folder));
+	snprintf(stage->path, sizeof(stage->path), "%s/socket", stage->folder);
+	listen_at(stage);
+	options.socket_path = stage->path;
+	CHECK(net_client_create(&stage->client, &options) == 0);
+	accept_client(stage);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	struct stage *stage = *state;
+
+	net_client_destroy(stage->client);
+	packets_finish(&stage->fetcher);
+	close(stage->listener);
+	unlink(stage->path);
+	rmdir(stage->folder);
+	free(stage);
+	return 0;
+}
+
+static void dispatch(struct stage *stage)
+{
+	struct pollfd ready = { .fd = net_client_fd(stage->client), .events = POLLIN };
+
+	for (int i = 0; i < 50 && poll(&ready, 1, 0) > 0; i++)
+		CHECK(net_client_dispatch(stage->client) == 0);
+}
+
+/* The next message that the fetcher gets; MESSAGE_ASK_META of a connection's begin left out. */
+static struct message heard(struct stage *stage)
+{
+	struct message message;
+	int passed, rc;
+
+	do
+		rc = packets_receive(&stage->fetcher, &message, &passed);
+	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	CHECK(rc == 0);
+	return message;
+}
+
+static bool hears_nothing(struct stage *stage)
+{
+	struct message message;
+	int passed, rc;
+
+	do
+		rc = packets_receive(&stage->fetcher, &message, &passed);
+	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	return rc == -EAGAIN;
+}
+
+static void tell(struct stage *stage, struct message message, int passed)
+{
+	CHECK(packets_send(&stage->fetcher, &message, passed) == 0);
+	dispatch(stage);
+}
+
+static struct message_want want_of(const uint8_t *text, uint32_t priority)
+{
+	return (struct message_want){ .hash = hash_of(of(text)), .size = 9, .priority = priority };
+}
+
+static struct message object_of(const uint8_t *text)
+{
+	return (struct message){ .kind = MESSAGE_OBJECT,
+				 .object = { hash_of(of(text)), of(text),
+					     (uint32_t)of(text).size } };
+}
+
+static void brings_what_is_wanted_once(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	net_client_want(stage->client, &want);
+	CHECK(heard(stage).want.priority == 7);
+	net_client_want(stage->client, &want); /* the same again: nothing new */
+	CHECK(hears_nothing(stage));
+	want.priority = 9;
+	net_client_want(stage->client, &want);
+	CHECK(heard(stage).want.priority == 9);
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 1 && hash_equal(stage->last, want.hash));
+	tell(stage, object_of(stone), -1); /* nobody waits for it any more */
+	CHECK(stage->objects == 1);
+}
+
+static void passes_on_what_is_missing_and_meta_and_status(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message missing = { .kind = MESSAGE_MISSING,
+				   .missing = { want.hash, MISSING_NOT_FOUND } };
+	struct message meta = { .kind = MESSAGE_META, .meta = { META_ROOT, 4, of(stone) } };
+	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 500 };
+
+	tell(stage, missing, -1);
+	CHECK(stage->missing == 0); /* it was not wanted */
+	net_client_want(stage->client, &want);
+	tell(stage, missing, -1);
+	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
+	tell(stage, object_of(stone), -1); /* it came after all */
+	CHECK(stage->objects == 1);
+	tell(stage, meta, -1);
+	CHECK(stage->metas == 1);
+	tell(stage, status, -1);
+	CHECK(stage->statuses == 1 && stage->received_bytes == 500);
+}
+
+static void drops_and_forgets(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	net_client_drop(stage->client, want.hash); /* was not wanted: not a word */
+	CHECK(hears_nothing(stage));
+	net_client_want(stage->client, &want);
+	net_client_drop(stage->client, want.hash);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(heard(stage).kind == MESSAGE_DROP);
+	tell(stage, object_of(stone), -1); /* was under way */
+	CHECK(stage->objects == 0);
+}
+
+static void takes_large_objects_sealed(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message message = object_of(stone);
+
+	net_client_want(stage->client, &want);
+	message.object.bytes = (struct bytes){ NULL, 0 };
+	tell(stage, message, packets_seal(of(stone)));
+	CHECK(stage->objects == 1);
+}
+
+/* Everything is said again; returns having seen the new connection. */
+static void reconnects(struct stage *stage)
+{
+	packets_finish(&stage->fetcher);
+	dispatch(stage);
+	accept_client(stage);
+	dispatch(stage);
+}
+
+static void says_everything_again_after_the_fetcher_died(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct hash root = { { 1 } }, next = { { 2 } }, keep = { { 3 } };
+	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 500 };
+	struct message message;
+
+	net_client_use_release(stage->client, root, 100);
+	net_client_add_release(stage->client, next, 200);
+	net_client_want(stage->client, &want);
+	net_client_keep(stage->client, keep);
+	tell(stage, status, -1);
+	reconnects(stage);
+	message = heard(stage);
+	CHECK(message.kind == MESSAGE_RELEASE && hash_equal(message.release.root, root));
+	CHECK(!message.release.also && message.release.root_bytes == 100);
+	message = heard(stage);
+	CHECK(message.kind == MESSAGE_RELEASE && hash_equal(message.release.root, next));
+	CHECK(message.release.also);
+	message = heard(stage);
+	CHECK(message.kind == MESSAGE_KEEP && hash_equal(message.keep, keep));
+	message = heard(stage);
+	CHECK(message.kind == MESSAGE_WANT && hash_equal(message.want.hash, want.hash));
+	status.status.received_bytes = 70; /* the new one counts from zero */
+	tell(stage, status, -1);
+	CHECK(stage->received_bytes == 570);
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 1);
+}
+
+static void begins_anew_with_another_release(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct hash root = { { 1 } }, next = { { 2 } };
+
+	net_client_use_release(stage->client, root, 100);
+	net_client_want(stage->client, &want);
+	net_client_use_release(stage->client, root, 100); /* in use already */
+	CHECK(heard(stage).kind == MESSAGE_RELEASE);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(hears_nothing(stage));
+	net_client_use_release(stage->client, next, 100);
+	CHECK(heard(stage).kind == MESSAGE_RELEASE);
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 0); /* wants of the old one are dropped */
+	reconnects(stage);
+	CHECK(hash_equal(heard(stage).release.root, next));
+	CHECK(hears_nothing(stage));
+}
+
+static void leaves_a_fetcher_that_lies(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message lie = object_of(brick);
+
+	net_client_want(stage->client, &want);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	lie.object.hash = want.hash; /* these are not its bytes */
+	tell(stage, lie, -1);
+	CHECK(stage->objects == 0);
+	accept_client(stage); /* it hung up and came again */
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(send(stage->fetcher.fd, "no message", 10, 0) == 10);
+	dispatch(stage);
+	accept_client(stage);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+}
+
+static void does_not_block_on_a_fetcher_that_hangs(void **state)
+{
+	struct stage *stage = *state;
+	uint32_t count = 0;
+
+	for (uint32_t n = 0; n < 20000; n++) {
+		struct message_want want = { .size = 1, .priority = n };
+
+		memcpy(want.hash.bytes, &n, sizeof(n));
+		want.hash.bytes[15] = 1;
+		net_client_want(stage->client, &want);
+	}
+	while (count < 20000) {
+		struct message message;
+		int passed, rc = packets_receive(&stage->fetcher, &message, &passed);
+
+		if (rc == -EAGAIN) {
+			dispatch(stage);
+			continue;
+		}
+		CHECK(rc == 0);
+		count += message.kind == MESSAGE_WANT;
+	}
+}
+
+static void says_what_is_wrong_with_its_options(void **state)
+{
+	struct net_client_options options = { .program = "/bin/true" };
+	struct net_client *client;
+
+	(void)state;
+	CHECK(net_client_create(&client, &options) == -EINVAL && client == NULL);
+	net_client_destroy(NULL);
+}
+
+/* A program that ends at once, or is not there: tried again with pauses, never a failure. */
+static void survives_a_fetcher_that_cannot_start(void **state)
+{
+	static const char *const programs[] = { "/bin/true", "/nonexistent/fetch" };
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(programs); i++) {
+		struct net_client_options options = { .program = programs[i],
+						      .release_url = "/nowhere",
+						      .cache_path = "/nowhere" };
+		struct message_want want = want_of(stone, 7);
+		struct net_client *client;
+
+		CHECK(net_client_create(&client, &options) == 0);
+		net_client_want(client, &want);
+		for (int n = 0; n < 12; n++) {
+			struct pollfd ready = { .fd = net_client_fd(client), .events = POLLIN };
+
+			if (poll(&ready, 1, 100) > 0)
+				CHECK(net_client_dispatch(client) == 0);
+		}
+		net_client_destroy(client);
+	}
+}
+
+#define STAGED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		STAGED(brings_what_is_wanted_once),
+		STAGED(passes_on_what_is_missing_and_meta_and_status),
+		STAGED(drops_and_forgets),
+		STAGED(takes_large_objects_sealed),
+		STAGED(says_everything_again_after_the_fetcher_died),
+		STAGED(begins_anew_with_another_release),
+		STAGED(leaves_a_fetcher_that_lies),
+		STAGED(does_not_block_on_a_fetcher_that_hangs),
+		cmocka_unit_test(says_what_is_wrong_with_its_options),
+		cmocka_unit_test(survives_a_fetcher_that_cannot_start),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

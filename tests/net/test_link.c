@@ -1,0 +1,59 @@
+#include "net/link.h"
+
+#include "tests/net/fake_http.h"
+
+static void pauses_longer_each_time_and_never_the_same(void **state)
+{
+	int64_t different = 0;
+
+	(void)state;
+	for (uint32_t n = 1; n < 40; n++) {
+		int64_t middle = n < 8 ? 500ll << (n - 1) : 60000;
+
+		middle = middle > 60000 ? 60000 : middle;
+		for (int i = 0; i < 50; i++) {
+			int64_t pause = link_pause_ms(n);
+
+			CHECK(pause >= middle / 2 && pause <= middle / 2 + middle);
+			different += pause != link_pause_ms(n);
+		}
+	}
+	CHECK(different > 1000);
+}
+
+static void sends_one_request_to_look_after_a_failure(void **state)
+{
+	struct link link;
+
+	(void)state;
+	memset(&server, 0, sizeof(server));
+	server.now_ms = 1000;
+	link_init(&link);
+	CHECK(!link.online && link.offline_since_s > 0 && link_may_ask(&link));
+	link_answered(&link);
+	CHECK(link.online && link.offline_since_s == 0);
+	link_failed(&link, "fake:", "cut");
+	CHECK(!link.online && link.offline_since_s == 1700000001 && !link_may_ask(&link));
+	link_failed(&link, "fake:", "cut"); /* others that were under way */
+	CHECK(link.failures == 1 && !link_is_down(&link));
+	server.now_ms = link.retry_at_ms;
+	CHECK(link_may_ask(&link));
+	link.in_flight = 1;
+	CHECK(!link_may_ask(&link));
+	link.in_flight = 0;
+	server.now_ms += 3000;
+	link_failed(&link, "fake:", "cut");
+	CHECK(link_is_down(&link) && link.offline_since_s == 1700000001);
+	link_answered(&link);
+	CHECK(link_may_ask(&link) && !link_is_down(&link));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(pauses_longer_each_time_and_never_the_same),
+		cmocka_unit_test(sends_one_request_to_look_after_a_failure),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

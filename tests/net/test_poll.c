@@ -1,0 +1,156 @@
+#include "net/poll.h"
+
+#include "tests/net/fake_http.h"
+
+struct stage {
+	struct link link;
+	struct poll *poll;
+	char said[256]; /* "root1 timestamp ..." */
+};
+
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	static const char *const names[] = { "root", "release", "timestamp" };
+	struct stage *stage = data;
+	size_t used = strlen(stage->said);
+
+	snprintf(stage->said + used, sizeof(stage->said) - used, "%s%u:%.*s ", names[role], version,
+		 (int)bytes.size, (const char *)bytes.data);
+}
+
+static int set_up(void **state)
+{
+	struct stage *stage = calloc(1, sizeof(*stage));
+	struct poll_options options = {
+		.link = &stage->link, .period_s = 60, .meta = on_meta, .data = stage
+	};
+
+	*state = stage;
+	memset(&server, 0, sizeof(server));
+	server.now_ms = 1000;
+	link_init(&stage->link);
+	CHECK(poll_create(&stage->poll, &options) == 0);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	struct stage *stage = *state;
+
+	poll_destroy(stage->poll);
+	free(stage);
+	return 0;
+}
+
+/* Answers the open request, which must be for path: with text, or "" for "has it not". */
+static void answer(const char *path, const char *text)
+{
+	CHECK(asked(0)->open && strcmp(asked(0)->path, path) == 0);
+	if (text[0])
+		give(asked(0), (struct bytes){ (const uint8_t *)text, strlen(text) });
+	end(asked(0), text[0] ? 0 : -ENOENT);
+}
+
+static void heard(struct stage *stage, const char *expected)
+{
+	CHECK(strcmp(stage->said, expected) == 0);
+	stage->said[0] = '\0';
+}
+
+static void look_once(struct stage *stage)
+{
+	poll_ask(stage->poll);
+	poll_work(stage->poll);
+	answer("root/1.json", "A");
+	answer("root/2.json", "");
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	heard(stage, "root1:A timestamp0:T release0:R ");
+}
+
+static void says_each_file_once_roots_first(void **state)
+{
+	struct stage *stage = *state;
+
+	poll_work(stage->poll);
+	CHECK(server.count == 0); /* nobody asked yet */
+	look_once(stage);
+	poll_work(stage->poll);
+	CHECK(server.count == 4); /* not before the minute is over */
+	CHECK(poll_due_ms(stage->poll) >= server.now_ms + 54000);
+	CHECK(poll_due_ms(stage->poll) <= server.now_ms + 66000);
+	server.now_ms += 66001;
+	poll_work(stage->poll);
+	answer("root/2.json", "B");
+	answer("root/3.json", "");
+	answer("timestamp.json", "T"); /* the same again: not a word */
+	answer("release.json", "S");
+	heard(stage, "root2:B release0:S ");
+}
+
+static void says_all_again_when_asked(void **state)
+{
+	struct stage *stage = *state;
+
+	look_once(stage);
+	poll_ask(stage->poll);
+	heard(stage, "root1:A timestamp0:T release0:R ");
+	poll_work(stage->poll);
+	CHECK(server.count == 5); /* and looks at once */
+	poll_stop(stage->poll);
+	CHECK(server.cancelled == 1);
+	poll_work(stage->poll);
+	CHECK(server.count == 5 && poll_due_ms(stage->poll) == INT64_MAX);
+	look_once(stage); /* what was known before poll_stop is forgotten */
+}
+
+static void tries_again_after_pauses_when_the_server_is_away(void **state)
+{
+	struct stage *stage = *state;
+
+	poll_ask(stage->poll);
+	for (size_t n = 1; n < 8; n++) {
+		poll_work(stage->poll);
+		CHECK(server.count == n);
+		end(asked(0), -EHOSTUNREACH);
+		poll_work(stage->poll);
+		CHECK(server.count == n && !stage->link.online);
+		CHECK(poll_due_ms(stage->poll) > server.now_ms);
+		server.now_ms = poll_due_ms(stage->poll);
+	}
+	poll_work(stage->poll);
+	answer("root/1.json", "A");
+	CHECK(stage->link.online);
+	heard(stage, "root1:A ");
+}
+
+static void refuses_a_file_past_its_ceiling(void **state)
+{
+	struct stage *stage = *state;
+	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MOST + 1);
+
+	poll_ask(stage->poll);
+	poll_work(stage->poll);
+	CHECK(asked(0)->ask.ceiling == MESSAGE_META_BYTES_MOST);
+	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MOST + 1 });
+	end(asked(0), 0);
+	CHECK(stage->said[0] == '\0');
+	answer("timestamp.json", ""); /* goes on with the others */
+	answer("release.json", "R");
+	heard(stage, "release0:R ");
+	free(large);
+}
+
+#define STAGED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		STAGED(says_each_file_once_roots_first),
+		STAGED(says_all_again_when_asked),
+		STAGED(tries_again_after_pauses_when_the_server_is_away),
+		STAGED(refuses_a_file_past_its_ceiling),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
