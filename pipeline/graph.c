@@ -70,8 +70,28 @@ static bool unite(uint32_t *parents, uint32_t a, uint32_t b)
 	return true;
 }
 
+/* Bits of a lattice coordinate spread out, two zeros after each. */
+static uint64_t spread(uint64_t bits)
+{
+	bits &= 0xffff;
+	bits = (bits | bits << 16) & 0x0000ff0000ffu;
+	bits = (bits | bits << 8) & 0x00f00f00f00fu;
+	bits = (bits | bits << 4) & 0x0c30c30c30c3u;
+	return (bits | bits << 2) & 0x249249249249u;
+}
+
+/* Along the curve of Morton (1966) a cell of any size is one run. */
+static uint64_t place_on_curve(const float at[3])
+{
+	uint64_t place = 0;
+
+	for (int i = 0; i < 3; i++)
+		place |= spread((uint64_t)fminf(fmaxf(at[i], 0.0f), 65535.0f)) << i;
+	return place;
+}
+
 struct placed {
-	uint64_t cell;
+	uint64_t place;
 	uint32_t node;
 };
 
@@ -79,32 +99,27 @@ static int compare_placed(const void *left, const void *right)
 {
 	const struct placed *a = left, *b = right;
 
-	if (a->cell != b->cell)
-		return a->cell < b->cell ? -1 : 1;
+	if (a->place != b->place)
+		return a->place < b->place ? -1 : 1;
 	return a->node < b->node ? -1 : a->node > b->node;
 }
 
-/* Nodes of one cell of the grid are near: the parts among them are joined. */
-static int connect_within_cells(struct graph *graph, uint32_t *parents, struct placed *placed,
-				float (*at)[3], float cell_size, int32_t weight,
-				uint32_t *part_count)
+/* Nodes of one cell are near: the parts among them are joined, in ever larger cells; at the last
+ * all nodes lie in one. */
+static int connect_runs(struct graph *graph, uint32_t *parents, const struct placed *placed,
+			int32_t weight, uint32_t part_count)
 {
-	for (uint32_t i = 0; i < graph->node_count; i++) {
-		uint64_t cell = 0;
+	for (int bits = 15; part_count > 1 && bits <= 48; bits += 3)
+		for (uint32_t i = 1; part_count > 1 && i < graph->node_count; i++) {
+			uint32_t a = placed[i - 1].node, b = placed[i].node;
 
-		for (int axis = 0; axis < 3; axis++)
-			cell = cell << 21 | (uint64_t)fmaxf(0.0f, at[i][axis] / cell_size);
-		placed[i] = (struct placed){ cell, i };
-	}
-	qsort(placed, graph->node_count, sizeof(*placed), compare_placed);
-	for (uint32_t i = 1; i < graph->node_count; i++) {
-		if (placed[i].cell != placed[i - 1].cell ||
-		    !unite(parents, placed[i].node, placed[i - 1].node))
-			continue;
-		--*part_count;
-		if (graph_add(graph, placed[i].node, placed[i - 1].node, weight) < 0)
-			return -ENOMEM;
-	}
+			if (placed[i - 1].place >> bits != placed[i].place >> bits ||
+			    !unite(parents, a, b))
+				continue;
+			part_count--;
+			if (graph_add(graph, a, b, weight) < 0)
+				return -ENOMEM;
+		}
 	return 0;
 }
 
@@ -122,10 +137,13 @@ int graph_connect(struct graph *graph, float (*at)[3], int32_t weight)
 	if (rc == 0 && part_count > 1) {
 		placed = malloc(graph->node_count * sizeof(*placed));
 		rc = placed ? 0 : -ENOMEM;
+		for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+			placed[i] = (struct placed){ place_on_curve(at[i]), i };
+		if (rc == 0) {
+			qsort(placed, graph->node_count, sizeof(*placed), compare_placed);
+			rc = connect_runs(graph, parents, placed, weight, part_count);
+		}
 	}
-	/* Ever coarser cells: at the last all nodes lie in one. */
-	for (float cell = 32.0f; rc == 0 && part_count > 1 && cell <= 131072.0f; cell *= 2.0f)
-		rc = connect_within_cells(graph, parents, placed, at, cell, weight, &part_count);
 	free(placed);
 	free(parents);
 	return rc;

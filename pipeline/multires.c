@@ -13,11 +13,14 @@
 #include "pipeline/partition.h"
 
 enum {
-	PATCH_TRIANGLES = 1500,
-	GROUP_PATCHES = 6,
+	PATCH_TRIANGLES = 1000,
+	GROUP_PATCHES = 4,
 	TOP_TRIANGLES = 6000,
 	VOXEL_TRIANGLES = 256,
-	CHUNK_TRIANGLES = 65536
+	CHUNK_TRIANGLES = 65536,
+	TOUCH_WEIGHT = 4, /* of each vertex that two patches share */
+	NEIGHBOURS = 6,   /* of each patch, by distance */
+	NEAR_WEIGHT = 10  /* of each of them */
 };
 
 struct builder {
@@ -150,11 +153,41 @@ static int add_touching(struct graph *graph, const struct builder *builder)
 			uint32_t vertex = patch->triangles[c / 3][c % 3];
 
 			if (last[vertex] != NO_GROUP && last[vertex] != p)
-				rc = graph_add(graph, last[vertex], p, 4);
+				rc = graph_add(graph, last[vertex], p, TOUCH_WEIGHT);
 			last[vertex] = p;
 		}
 	}
 	free(last);
+	return rc;
+}
+
+/* What is near goes together though it may not touch: scans of temples come in many pieces. */
+static int add_near(struct graph *graph, float (*centres)[3])
+{
+	int rc = 0;
+
+	for (uint32_t p = 0; rc == 0 && p < graph->node_count; p++) {
+		float best[NEIGHBOURS];
+		uint32_t who[NEIGHBOURS], count = 0;
+
+		for (uint32_t q = 0; q < graph->node_count; q++) {
+			float x = centres[p][0] - centres[q][0], y = centres[p][1] - centres[q][1];
+			float z = centres[p][2] - centres[q][2], square = x * x + y * y + z * z;
+			uint32_t at = count < NEIGHBOURS ? count : NEIGHBOURS - 1;
+
+			if (q == p || (count == NEIGHBOURS && square >= best[at]))
+				continue;
+			for (; at > 0 && best[at - 1] > square; at--) {
+				best[at] = best[at - 1];
+				who[at] = who[at - 1];
+			}
+			best[at] = square;
+			who[at] = q;
+			count += count < NEIGHBOURS;
+		}
+		for (uint32_t i = 0; rc == 0 && i < count; i++)
+			rc = graph_add(graph, p, who[i], NEAR_WEIGHT);
+	}
 	return rc;
 }
 
@@ -176,6 +209,8 @@ static int group_level(uint32_t *labels, uint32_t *group_count, const struct bui
 	}
 	if (rc == 0)
 		rc = add_touching(&graph, builder);
+	if (rc == 0)
+		rc = add_near(&graph, centres);
 	if (rc == 0)
 		rc = graph_connect(&graph, centres, 1);
 	if (rc == 0)
@@ -349,8 +384,10 @@ static int coarser_level(struct builder *builder, uint32_t group_patches)
 	if (rc == 0)
 		rc = sort_into_jobs(builder, labels);
 	free(labels);
-	for (uint32_t j = 0; rc == 0 && j < builder->job_count; j++)
+	for (uint32_t j = 0; rc == 0 && j < builder->job_count; j++) {
 		builder->jobs[j].target_triangles = half_of(&builder->jobs[j]);
+		builder->jobs[j].is_whole = builder->job_count == 1;
+	}
 	if (rc == 0)
 		rc = run_level(builder, &next);
 	live_patches_finish(&builder->level);
@@ -377,6 +414,9 @@ static int build_groups(struct builder *builder)
 
 	while (rc == 0 && (before > builder->options.top_triangles ||
 			   builder->level.count > GROUP_PATCHES_MOST)) {
+		/* Close to the top borders are most of what there is: one group without. */
+		if (before <= 2 * (uint64_t)builder->options.top_triangles)
+			group_patches = GROUP_PATCHES_MOST;
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
 		/* Borders hinder: fewer, larger groups have less of them. */
@@ -456,6 +496,7 @@ static int add_tree_job(struct builder *builder, struct tree *tree, uint32_t n)
 		.low = node->first_leaf,
 		.high = node->first_leaf + node->leaf_count - 1,
 		.target_triangles = builder->options.patch_triangles,
+		.is_whole = true, /* the paper simplifies to the limit, whatever it takes */
 	};
 	builder->job_count++;
 	return rc == 0 && left->count > GROUP_PATCHES_MOST ? -E2BIG : rc;

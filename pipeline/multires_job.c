@@ -9,6 +9,9 @@
 #include "pipeline/partition.h"
 #include "pipeline/simplify.h"
 
+/* Times the error so far, what one level may add. */
+#define ERROR_GROWTH 3.0
+
 void live_patch_finish(struct live_patch *patch)
 {
 	free(patch->triangles);
@@ -175,6 +178,15 @@ static int divide(struct group_job *job, const struct merged *merged, uint32_t p
 	return rc;
 }
 
+/* Where a group is hindered by its border, better few collapses than wild ones: another border is
+ * hindering next time. The first level has nothing to go by, the last nothing to hinder it. */
+static double error_most(const struct job_site *site, const struct group_job *job, double error_m)
+{
+	if (job->is_whole || error_m <= 0.0)
+		return INFINITY;
+	return ERROR_GROWTH * error_m / site->mesh->lattice.step_m;
+}
+
 int group_job_run(const struct job_site *site, struct group_job *job, uint32_t worker)
 {
 	struct simplify_result result;
@@ -188,7 +200,8 @@ int group_job_run(const struct job_site *site, struct group_job *job, uint32_t w
 	if (rc == 0 && job->target_triangles > 0) {
 		rc = merge(&merged, site, job, site->local_of[worker]);
 		if (rc == 0)
-			rc = simplify(&merged.surface, job->target_triangles, &result);
+			rc = simplify(&merged.surface, job->target_triangles,
+				      error_most(site, job, error), &result);
 		if (rc == 0) {
 			/* The errors of the levels below add up. */
 			error += result.error_steps * site->mesh->lattice.step_m;

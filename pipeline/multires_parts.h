@@ -2,6 +2,8 @@
 #ifndef GOPURA_PIPELINE_MULTIRES_PARTS_H
 #define GOPURA_PIPELINE_MULTIRES_PARTS_H
 
+#include <stdbool.h>
+
 #include "pipeline/multires.h"
 
 #define NO_GROUP UINT32_MAX
@@ -36,6 +38,7 @@ struct group_job {
 	uint32_t low, high;        /* a vertex is the group's own if low <= its users <= high */
 	uint32_t number;           /* by order of making */
 	uint32_t target_triangles; /* 0: it is the top, nothing coarser is made */
+	bool is_whole;             /* the level is this one group */
 	/* What comes of it, owned: */
 	struct buffer object;
 	struct hierarchy_group group;

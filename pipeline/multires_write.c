@@ -163,34 +163,59 @@ static void bound_normals(struct hierarchy_patch *out, const struct patch_mesh *
 	out->cone_cos = length > 1e-9 ? (float)fmax(-1.0, least - 1e-6) : -1.0f;
 }
 
-static void bound_group(struct group_job *job)
+/* The farthest point of all the spheres that the group's has to enclose. */
+static double farthest(double out[3], const struct group_job *job, const double centre[3])
 {
-	double low[3], high[3], centre[3], radius = 0.0;
+	double most = -1.0;
 
-	for (int i = 0; i < 3; i++) {
-		low[i] = INFINITY;
-		high[i] = -INFINITY;
-		for (uint32_t p = 0; p < job->patch_count; p++) {
-			const struct hierarchy_patch *made = &job->made[p];
-
-			low[i] = fmin(low[i], made->centre_m[i] - made->radius_m);
-			high[i] = fmax(high[i], made->centre_m[i] + made->radius_m);
-		}
-		job->group.centre_m[i] = (float)((low[i] + high[i]) / 2.0);
-		centre[i] = job->group.centre_m[i];
-	}
 	for (uint32_t p = 0; p < job->patch_count; p++) {
 		const struct live_patch *patch = &job->patches[p];
-		double at[3] = { job->made[p].centre_m[0], job->made[p].centre_m[1],
-				 job->made[p].centre_m[2] };
+		const struct hierarchy_patch *made = &job->made[p];
+		struct sphere spheres[2] = {
+			{ { made->centre_m[0], made->centre_m[1], made->centre_m[2] },
+			  made->radius_m },
+			patch->finer_sphere,
+		};
 
-		radius = fmax(radius, distance(at, centre) + job->made[p].radius_m);
-		if (patch->finer != NO_GROUP)
-			radius = fmax(radius, distance(patch->finer_sphere.centre, centre) +
-						      patch->finer_sphere.radius);
+		for (int s = 0; s < (patch->finer == NO_GROUP ? 1 : 2); s++) {
+			double away = distance(spheres[s].centre, centre);
+			double reach = away + spheres[s].radius;
+
+			if (reach <= most)
+				continue;
+			most = reach;
+			for (int i = 0; i < 3; i++)
+				out[i] = away > 0.0
+						 ? centre[i] + (spheres[s].centre[i] - centre[i]) *
+								       reach / away
+						 : centre[i];
+		}
+	}
+	return most;
+}
+
+/* Nearly the smallest sphere, by steps towards what is farthest (Badoiu and Clarkson 2003): spheres
+ * nest over many levels, so slack would add up. */
+static void bound_group(struct group_job *job)
+{
+	double centre[3] = { job->made[0].centre_m[0], job->made[0].centre_m[1],
+			     job->made[0].centre_m[2] };
+	double best = INFINITY, reach, far[3], rounded[3];
+
+	for (int step = 1; step <= 100; step++) {
+		for (int i = 0; i < 3; i++)
+			rounded[i] = (float)centre[i];
+		reach = farthest(far, job, rounded);
+		if (reach < best) {
+			best = reach;
+			for (int i = 0; i < 3; i++)
+				job->group.centre_m[i] = (float)centre[i];
+		}
+		for (int i = 0; i < 3; i++)
+			centre[i] += (far[i] - centre[i]) / (step + 1);
 	}
 	/* A hair more, so that what is nested stays nested in single precision. */
-	job->group.radius_m = (float)(radius * (1.0 + 1e-6));
+	job->group.radius_m = (float)(best * (1.0 + 1e-6));
 }
 
 int group_job_write(const struct job_site *site, struct group_job *job, uint32_t *local_of)

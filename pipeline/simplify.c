@@ -33,6 +33,7 @@ struct work {
 	size_t heap_count, heap_room;
 	uint32_t alive_count;
 	double worst; /* square of the error so far, lattice steps */
+	double most;  /* that it may come to */
 	bool loose;   /* the surface may close onto itself */
 	uint32_t collapse_count;
 };
@@ -510,11 +511,11 @@ static int collapse(struct work *work, const struct candidate *candidate)
 	double at[3], value, weight;
 
 	value = place_collapse(at, &keep, &gone, work, candidate->a, candidate->b);
-	if (value < 0.0 || is_last(work, keep, gone) ||
+	weight = work->quadrics[keep].weight + work->quadrics[gone].weight;
+	if (value < 0.0 || value > weight * work->most || is_last(work, keep, gone) ||
 	    (!work->loose && !link_is_sound(work, keep, gone)) || folds(work, gone, keep, at) ||
 	    (!is_fixed(work, keep) && folds(work, keep, gone, at)))
 		return 0;
-	weight = work->quadrics[keep].weight + work->quadrics[gone].weight;
 	if (weight > 0.0 && value / weight > work->worst)
 		work->worst = value / weight;
 	if (!work->surface->locked[keep])
@@ -590,13 +591,15 @@ static void work_finish(struct work *work)
 	free(work->heap);
 }
 
-int simplify(struct surface *surface, uint32_t target_triangles, struct simplify_result *result)
+int simplify(struct surface *surface, uint32_t target_triangles, double error_most_steps,
+	     struct simplify_result *result)
 {
 	struct work work;
 	uint32_t kept = 0, before;
 	int rc = work_init(&work, surface);
 
 	*result = (struct simplify_result){ 0 };
+	work.most = error_most_steps * error_most_steps;
 	if (rc == 0)
 		rc = collapse_until(&work, target_triangles);
 	/* Stuck: what hinders is the shape of the surface, so let it pinch, as long as it helps. */

@@ -25,10 +25,11 @@ struct simplify_result {
 	uint32_t collapse_count;
 };
 
-/* In place until at most target_triangles are left or no edge may be collapsed: the triangles that
- * are left move to the front, vertices keep their index and are changed where they moved. At least
- * one triangle stays. -ENOMEM: the surface is then of no use. */
-must_check int simplify(struct surface *surface, uint32_t target_triangles,
+/* In place until at most target_triangles are left, or no edge may be collapsed without an error
+ * above error_most_steps (INFINITY: whatever it takes): the triangles that are left move to the
+ * front, vertices keep their index and are changed where they moved. At least one triangle stays.
+ * -ENOMEM: the surface is then of no use. */
+must_check int simplify(struct surface *surface, uint32_t target_triangles, double error_most_steps,
 			struct simplify_result *result);
 
 #endif
