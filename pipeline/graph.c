@@ -10,6 +10,9 @@
 
 enum { PARTS_BY_BISECTION_MOST = 8, NODES_A_PART = 64 };
 
+/* Thousandths that a part may be too heavy, so that a cut can follow what it is to follow. */
+enum { IMBALANCE = 40 };
+
 static pthread_mutex_t metis_lock = PTHREAD_MUTEX_INITIALIZER;
 
 int graph_init(struct graph *graph, uint32_t node_count)
@@ -241,6 +244,7 @@ static int run_metis(idx_t *parts, struct rows *rows, const struct graph *graph,
 	METIS_SetDefaultOptions(options);
 	options[METIS_OPTION_SEED] = 1;
 	options[METIS_OPTION_NUMBERING] = 0;
+	options[METIS_OPTION_UFACTOR] = IMBALANCE;
 	if (shares && part_count == 2) {
 		wanted[0] = shares[0];
 		wanted[1] = shares[1];

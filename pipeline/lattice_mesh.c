@@ -209,6 +209,7 @@ static void add_normals(struct lattice_mesh *mesh)
 static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts)
 {
 	struct incidence incidence;
+	double crowded = 0.0;
 	int rc = incidence_create(&incidence, mesh->triangles, mesh->triangle_count,
 				  mesh->vertex_count);
 
@@ -221,14 +222,15 @@ static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts
 			uint32_t runs[2];
 
 			incidence_edge(runs, &incidence, mesh->triangles, a, b);
-			/* An edge counts once, from its smaller end where both ways exist. */
-			if (runs[0] + runs[1] > 2 && (a < b || runs[1] == 0))
-				counts->crowded_edges++;
+			/* Met once from each of its triangles, it counts as one. */
+			if (runs[0] + runs[1] > 2)
+				crowded += 1.0 / (runs[0] + runs[1]);
 			if (runs[0] == runs[1])
 				continue;
 			counts->border_edges++;
 			mesh->vertices[a].border = mesh->vertices[b].border = 1;
 		}
+	counts->crowded_edges = (uint32_t)lrint(crowded);
 	incidence_finish(&incidence);
 	return 0;
 }

@@ -16,6 +16,7 @@ enum {
 	PATCH_TRIANGLES = 1000,
 	GROUP_PATCHES = 4,
 	TOP_TRIANGLES = 6000,
+	TOP_PART = 25, /* of a small scan's triangles: far below what is published of it */
 	VOXEL_TRIANGLES = 256,
 	CHUNK_TRIANGLES = 65536,
 	TOUCH_WEIGHT = 4, /* of each vertex that two patches share */
@@ -38,7 +39,7 @@ struct builder {
 	uint32_t group_room, patch_room;
 };
 
-static void set_defaults(struct multires_options *options)
+static void set_defaults(struct multires_options *options, uint32_t triangle_count)
 {
 	long processors = sysconf(_SC_NPROCESSORS_ONLN);
 
@@ -48,7 +49,9 @@ static void set_defaults(struct multires_options *options)
 	if (options->group_patches < 2 || options->group_patches > GROUP_PATCHES_MOST / 2)
 		options->group_patches = GROUP_PATCHES;
 	if (options->top_triangles == 0)
-		options->top_triangles = TOP_TRIANGLES;
+		options->top_triangles = triangle_count / TOP_PART < TOP_TRIANGLES
+						 ? triangle_count / TOP_PART + 1
+						 : TOP_TRIANGLES;
 	if (options->jobs == 0)
 		options->jobs = processors > 0 ? (uint32_t)processors : 1;
 }
@@ -635,7 +638,7 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 
 	*out = (struct hierarchy){ 0 };
 	*stats = (struct multires_stats){ 0 };
-	set_defaults(&builder.options);
+	set_defaults(&builder.options, mesh->triangle_count);
 	rc = site_init(&builder);
 	if (rc == 0)
 		rc = partition_scan(&builder);

@@ -431,7 +431,8 @@ static int split_voxels(struct splitter *splitter, uint32_t *set, uint32_t count
 	float shares[2];
 	int rc;
 
-	if (count < 2 || triangle_count <= splitter->options.chunk_triangles)
+	if (count < 2 || triangle_count <= splitter->options.chunk_triangles ||
+	    triangle_count <= splitter->options.patch_triangles)
 		return release_triangles(splitter, set, count, node);
 	rc = splitter->options.binary ? add_node(splitter, node) : 0;
 	labels = malloc(count * sizeof(*labels));

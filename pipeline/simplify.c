@@ -384,6 +384,19 @@ static bool is_cancelled(struct work *work, uint32_t corner, uint32_t other_end)
 	return false;
 }
 
+/* Does a triangle look the way the scan did there, by the normals that its corners carry? Small
+ * turns add up over many collapses; this does not. */
+static bool faces_as_scan(const struct work *work, const uint32_t triangle[3],
+			  const double normal[3])
+{
+	double sum = 0.0;
+
+	for (int corner = 0; corner < 3; corner++)
+		for (int i = 0; i < 3; i++)
+			sum += normal[i] * work->surface->vertices[triangle[corner]].normal[i];
+	return sum > 0.0;
+}
+
 /* Would a triangle at vertex turn over when the vertex moves to at? */
 static bool folds(struct work *work, uint32_t vertex, uint32_t other_end, const double at[3])
 {
@@ -399,9 +412,11 @@ static bool folds(struct work *work, uint32_t vertex, uint32_t other_end, const 
 		place_of(q, work, triangle[(corner % 3 + 2) % 3]);
 		cross_of(after, at, p, q);
 		turned = dot(before, after);
-		if (turned > 0.0 && turned * turned > FOLD_COSINE * FOLD_COSINE *
-							      dot(before, before) *
-							      dot(after, after))
+		if (turned > 0.0 &&
+		    turned * turned >
+			    FOLD_COSINE * FOLD_COSINE * dot(before, before) * dot(after, after) &&
+		    (faces_as_scan(work, triangle, after) ||
+		     !faces_as_scan(work, triangle, before)))
 			continue;
 		if (dot(before, before) > 0.0 && !is_cancelled(work, corner, other_end))
 			return true;
