@@ -121,7 +121,8 @@ static void colour_vertex(const struct writer *w, const float position[3], const
 {
 	float rgb[3], open = sky_open(w->sky, position, normal);
 
-	open = powf(open, 0.7f) * (1 - 0.45f * hollow * hollow);
+	/* Light is thrown back by the stone around: nothing is quite dark. */
+	open = (0.14f + 0.86f * powf(open, 0.75f)) * (1 - 0.45f * hollow * hollow);
 	stone_colour(rgb, position, normal, spacing_m);
 	for (int k = 0; k < 3; k++)
 		out[k] = (uint8_t)(fminf(1, fmaxf(0, rgb[k])) * 255 + 0.5f);

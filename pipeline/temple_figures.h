@@ -14,6 +14,7 @@ float figure_tympanum(float x, float y, float aspect, float shape);
 float figure_door(float x, float y, float aspect);
 float figure_window(float x, float y, float aspect);
 float figure_face(float x, float y, float aspect);
+float figure_lion(float x, float y);
 float figure_hood(float x, float y, float aspect);
 float figure_flame(float x, float y, float aspect, float shape);
 

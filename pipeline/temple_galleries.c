@@ -15,15 +15,15 @@ static const struct profile base = { ARRAY_COUNT(base_points), base_points };
 static const struct profile_point vault_points[] = {
 	{ 0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
 	{ 1.0f, 0.0f, RELIEF_PETALS, 0.05f, 0.22f },
-	{ 0.98f, 0.13f, RELIEF_TILES, 0.07f, 0.24f },
-	{ 0.92f, 0.38f, RELIEF_TILES, 0.07f, 0.24f },
-	{ 0.76f, 0.66f, RELIEF_TILES, 0.07f, 0.24f },
-	{ 0.48f, 0.87f, RELIEF_TILES, 0.07f, 0.24f },
+	{ 0.98f, 0.13f, RELIEF_TILES, 0.09f, 0.44f },
+	{ 0.92f, 0.38f, RELIEF_TILES, 0.09f, 0.44f },
+	{ 0.76f, 0.66f, RELIEF_TILES, 0.09f, 0.44f },
+	{ 0.48f, 0.87f, RELIEF_TILES, 0.09f, 0.44f },
 	{ 0.10f, 0.99f, RELIEF_ROUND, 0.05f, 0 },
-	{ -0.10f, 0.99f, RELIEF_TILES, 0.07f, 0.24f },
-	{ -0.48f, 0.87f, RELIEF_TILES, 0.07f, 0.24f },
-	{ -0.76f, 0.66f, RELIEF_TILES, 0.07f, 0.24f },
-	{ -0.92f, 0.38f, RELIEF_TILES, 0.07f, 0.24f },
+	{ -0.10f, 0.99f, RELIEF_TILES, 0.09f, 0.44f },
+	{ -0.48f, 0.87f, RELIEF_TILES, 0.09f, 0.44f },
+	{ -0.76f, 0.66f, RELIEF_TILES, 0.09f, 0.44f },
+	{ -0.92f, 0.38f, RELIEF_TILES, 0.09f, 0.44f },
 	{ -0.98f, 0.13f, RELIEF_DROPS, 0.05f, 0.22f },
 	{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },
 	{ -0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
@@ -132,7 +132,7 @@ static void plan_vault(struct plan *plan, const struct frame *frame, const struc
 	struct sheet *roof = plan_sheet(plan, &eave, &outline_line, &vault,
 					gallery->length_m + 0.2f, gallery->half_m + 0.32f, rise);
 
-	roof->interest = 0.8f;
+	roof->interest = 0.95f;
 	plan_sheet(plan, &eave, &outline_line, &ceiling, gallery->length_m, gallery->half_m + 0.3f,
 		   rise);
 	plan_crest(plan, &eave, gallery->length_m, rise * 0.97f);
@@ -176,11 +176,11 @@ void plan_galleries(struct plan *plan)
 	for (int turn = 0; turn < 4; turn++) {
 		struct frame side = frame_at(0, 0, 0, turn);
 		for (int half = -1; half <= 1; half += 2) {
-			struct gallery outer = { 9.9f, 1.15f, 2.75f, true, true, false };
-			struct frame at = frame_within(&side, (float)half * 8.35f, -15.0f, 2.4f, 0);
+			struct gallery outer = { 10.7f, 1.15f, 2.75f, true, true, false };
+			struct frame at = frame_within(&side, (float)half * 8.55f, -15.0f, 2.4f, 0);
 			plan_gallery(plan, &at, &outer);
 		}
-		struct gallery upper = { 9.6f, 0.85f, 2.3f, false, false, true };
+		struct gallery upper = { 10.5f, 0.85f, 2.3f, false, false, true };
 		struct frame at = frame_within(&side, 0, -6.9f, 8.2f, 0);
 		plan_gallery(plan, &at, &upper);
 	}

@@ -110,6 +110,29 @@ float figure_face(float x, float y, float aspect)
 	return h - 0.035f * (1 - carve_step(0.0f, 0.008f, joint));
 }
 
+/* ---- a lion: round eyes, a broad muzzle with teeth, curls all around */
+
+float figure_lion(float x, float y)
+{
+	float ax = fabsf(x), cy = y - 0.5f, r = hypotf(x, cy), a = atan2f(cy, x);
+	float head = r < 0.5f ? 0.62f * sqrtf(1 - r * r * 4) : 0;
+	float curl_r = (r - 0.36f) / 0.07f, curl_a = a * 2.2f;
+	float curls = r > 0.32f && r < 0.5f ? 0.14f * fabsf(sinf(curl_a * 3.14159f)) *
+						      carve_ridge(curl_r - roundf(curl_r), 0.5f)
+					    : 0;
+	float eyes = 0.13f * carve_ridge(hypotf(ax - 0.14f, y - 0.6f), 0.075f);
+	float brow = 0.09f * carve_ridge(y - 0.70f - 0.5f * (ax - 0.14f) * (0.14f - ax), 0.035f) *
+		     carve_step(0.28f, 0.22f, ax);
+	float muzzle = 0.34f * bump(ax, y, 0.0f, 0.40f, 0.2f, 0.13f);
+	float nose = 0.10f * bump(x, y, 0, 0.47f, 0.07f, 0.05f);
+	float mouth = -0.16f * carve_ridge(y - 0.315f - 0.3f * ax * ax, 0.028f) *
+		      carve_step(0.24f, 0.18f, ax);
+	float teeth = y < 0.335f && y > 0.295f && ax < 0.17f ? 0.07f * fabsf(sinf(x * 52)) : 0;
+	float ears = 0.2f * bump(ax, y, 0.33f, 0.83f, 0.07f, 0.08f);
+
+	return head + curls + eyes + brow + muzzle + nose + mouth + teeth + ears;
+}
+
 /* ---- the naga's hood: seven heads rising from one throat, the middle one highest */
 
 static float naga_head(float x, float y, float size)
@@ -142,7 +165,7 @@ float figure_hood(float x, float y, float aspect)
 					       (0.55f + 0.08f * cosf(along * 70))
 				     : 0;
 		float head = naga_head((x - tip[0]) * dy - (y - tip[1]) * dx,
-				       (x - tip[0]) * dx + (y - tip[1]) * dy, 0.13f);
+				       (x - tip[0]) * dx + (y - tip[1]) * dy, 0.155f);
 		most = fmaxf(most, fmaxf(neck, head));
 	}
 	float throat = 0.75f * carve_ridge(x, 0.13f) * carve_step(0.62f, 0.3f, y);

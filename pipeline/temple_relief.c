@@ -184,6 +184,8 @@ static float carving(const struct relief_style *s, const struct relief_place *p)
 		return figure_window(x, y, aspect);
 	case RELIEF_FACE:
 		return figure_face(x, y, aspect);
+	case RELIEF_LION:
+		return figure_lion(x, y);
 	case RELIEF_TILES:
 		return tiles(s, p);
 	case RELIEF_FLAME:

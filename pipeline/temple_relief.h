@@ -26,6 +26,7 @@ enum relief {
 	RELIEF_DOOR,      /* a false door */
 	RELIEF_WINDOW,    /* a window closed by turned balusters */
 	RELIEF_FACE,      /* a great smiling face */
+	RELIEF_LION,      /* the mask of a guardian lion */
 	RELIEF_TILES,     /* roof stones carved as tiles */
 	RELIEF_FLAME,     /* an antefix */
 	RELIEF_HOOD,      /* the seven heads of a naga */

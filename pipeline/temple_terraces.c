@@ -90,9 +90,9 @@ static void plan_lion(struct plan *plan, const struct frame *frame, float height
 {
 	struct sheet *sheet =
 		plan_sheet(plan, frame, &outline_circle, &lion, 0.01f, height_m * 0.34f, height_m);
-	struct frame head = frame_within(frame, 0, -height_m * 0.16f, height_m * 0.60f, 0);
-	struct sheet *face = plan_panel(plan, &head, height_m * 0.42f, height_m * 0.36f,
-					RELIEF_FACE, height_m * 0.26f, 0);
+	struct frame head = frame_within(frame, 0, -height_m * 0.10f, height_m * 0.56f, 0);
+	struct sheet *face = plan_panel(plan, &head, height_m * 0.46f, height_m * 0.44f,
+					RELIEF_LION, height_m * 0.30f, 0);
 
 	sheet->optional = true;
 	sheet->interest = 2;
@@ -143,7 +143,7 @@ static void plan_naga(struct plan *plan, const struct frame *side, float from_m,
 	float sign = from_m < to_m ? 1.0f : -1.0f, length = fabsf(to_m - from_m);
 	struct frame middle = frame_within(side, (from_m + to_m) * 0.5f, 0, 0.62f, 0);
 	struct frame head = frame_within(side, from_m, 0, 0.05f, 0);
-	struct sheet *snake = plan_sheet(plan, &middle, &outline_line, &body, length, 0.18f, 0.18f);
+	struct sheet *snake = plan_sheet(plan, &middle, &outline_line, &body, length, 0.21f, 0.21f);
 
 	snake->optional = true;
 	snake->interest = 1.2f;

@@ -129,12 +129,12 @@ static void plan_porch_roof(struct plan *plan, const struct frame *frame, float 
 {
 	static const struct profile_point points[] = {
 		{ 1.0f, 0.0f, RELIEF_PETALS, 0.04f, 0.2f },
-		{ 0.98f, 0.15f, RELIEF_TILES, 0.06f, 0.2f },
-		{ 0.86f, 0.5f, RELIEF_TILES, 0.06f, 0.2f },
-		{ 0.5f, 0.85f, RELIEF_TILES, 0.06f, 0.2f },
-		{ 0.0f, 1.0f, RELIEF_TILES, 0.06f, 0.2f },
-		{ -0.5f, 0.85f, RELIEF_TILES, 0.06f, 0.2f },
-		{ -0.86f, 0.5f, RELIEF_TILES, 0.06f, 0.2f },
+		{ 0.98f, 0.15f, RELIEF_TILES, 0.07f, 0.34f },
+		{ 0.86f, 0.5f, RELIEF_TILES, 0.07f, 0.34f },
+		{ 0.5f, 0.85f, RELIEF_TILES, 0.07f, 0.34f },
+		{ 0.0f, 1.0f, RELIEF_TILES, 0.07f, 0.34f },
+		{ -0.5f, 0.85f, RELIEF_TILES, 0.07f, 0.34f },
+		{ -0.86f, 0.5f, RELIEF_TILES, 0.07f, 0.34f },
 		{ -0.98f, 0.15f, RELIEF_DROPS, 0.04f, 0.2f },
 		{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },
 	};
@@ -211,7 +211,7 @@ static void plan_bud(struct plan *plan, const struct frame *frame, float half_m,
 	for (uint32_t i = 0; i < tiers; i++)
 		total += powf(0.86f, (float)i);
 	for (uint32_t i = 0; i < tiers; i++) {
-		float t = z / rise_m, half = half_m * 0.95f * (1 - 0.86f * powf(t, 1.75f));
+		float t = z / rise_m, half = half_m * 0.97f * (1 - 0.92f * powf(t, 1.85f));
 		float high = rise_m * 0.82f * powf(0.86f, (float)i) / total;
 		struct frame at = frame_within(frame, 0, 0, z, 0);
 		struct frame deck = frame_within(frame, 0, 0, z + high * 0.92f, 0);
@@ -220,7 +220,7 @@ static void plan_bud(struct plan *plan, const struct frame *frame, float half_m,
 		z += high;
 	}
 	struct frame top = frame_within(frame, 0, 0, z, 0);
-	struct sheet *lotus = plan_sheet(plan, &top, &outline_circle, &crown, 0.01f, half_m * 0.50f,
+	struct sheet *lotus = plan_sheet(plan, &top, &outline_circle, &crown, 0.01f, half_m * 0.46f,
 					 rise_m * 0.24f);
 	lotus->interest = 1.6f;
 }
@@ -266,7 +266,7 @@ void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m)
 
 	plan_sheet(plan, frame, &outline_redented, &wall, half_m, 1, body_m);
 	plan_sheet(plan, &head, &outline_redented, &cornice, half_m, 0.25f, 0.55f);
-	plan_sheet(plan, &neck, &outline_redented, &wall, half_m * 0.78f, 1, head_m - 0.2f);
+	plan_sheet(plan, &neck, &outline_redented, &wall, half_m * 0.86f, 1, head_m - 0.2f);
 	for (int turn = 0; turn < 4; turn++) {
 		struct frame face = frame_within(&neck, 0, 0, 0.1f, turn);
 		face = frame_within(&face, 0, -half_m * 0.62f, 0, 0);
@@ -308,7 +308,9 @@ void plan_towers(struct plan *plan)
 		corner = frame_within(&corner, 6.7f, -6.7f, 0, 0);
 		struct frame angle = frame_at(0, 0, 2.4f, turn);
 		angle = frame_within(&angle, 15.0f, -15.0f, 0, 0);
+		struct frame high = frame_within(&porch, 0, -0.55f, 3.9f, 0);
 		plan_porch(plan, &porch, 1.15f, 1.5f, 3.0f);
+		plan_pediment(plan, &high, 3.6f, 2.3f);
 		plan_stairs(plan, &steps, 0.7f, 1.2f, 1.3f);
 		plan_tower(plan, &corner, 1.75f, 2.6f, 9.6f, 5);
 		plan_tower(plan, &angle, 1.6f, 2.6f, 6.4f, 3);
