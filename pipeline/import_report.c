@@ -22,6 +22,8 @@ static void print_repairs(FILE *to, const struct mesh_repairs *repairs)
 		    "border edges: the scan is open there");
 	print_count(to, repairs->non_manifold_edges, "edge of three faces or more, tolerated",
 		    "edges of three faces or more, tolerated");
+	print_count(to, repairs->turned_edges, "edge whose faces show opposite sides, tolerated",
+		    "edges whose faces show opposite sides, tolerated");
 }
 
 void import_report_print(FILE *to, const char *path, const struct import_report *report)

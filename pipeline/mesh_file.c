@@ -138,6 +138,8 @@ int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 	if (fd < 0)
 		return -errno;
 	rc = mesh_file_write(fd, mesh, key);
+	if (fchmod(fd, 0644) < 0 && rc == 0)
+		rc = -errno;
 	if (close(fd) < 0 && rc == 0)
 		rc = -errno;
 	if (rc == 0 && rename(temporary, path) < 0)

@@ -184,20 +184,22 @@ static void judge_edges_of_vertex(uint32_t *others, size_t count, struct mesh_re
 	else
 		sort_small(others, count);
 	for (size_t i = 0, next; i < count; i = next) {
-		for (next = i + 1; next < count && others[next] == others[i]; next++)
+		for (next = i + 1; next < count && others[next] >> 1 == others[i] >> 1; next++)
 			;
 		repairs->border_edges += next - i == 1;
 		repairs->non_manifold_edges += next - i > 2;
+		repairs->turned_edges += next - i == 2 && others[i] == others[i + 1];
 	}
 }
 
+/* edge[0]: the lower end; edge[1]: the other, doubled, and one more where the face runs to it. */
 static void edge_of(const struct mesh *mesh, const uint32_t *place, uint32_t i, int k,
 		    uint32_t edge[2])
 {
 	uint32_t a = place[mesh->triangles[i][k]], b = place[mesh->triangles[i][(k + 1) % 3]];
 
 	edge[0] = a < b ? a : b;
-	edge[1] = a < b ? b : a;
+	edge[1] = a < b ? 2 * b + 1 : 2 * a;
 }
 
 /* Every edge is filed under its lower end, by counting. */
@@ -246,5 +248,5 @@ int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
 	filter_faces(mesh, first, repairs);
 	drop_unused_vertices(mesh, first, repairs);
 	free(first);
-	return count_edges(mesh, repairs);
+	return mesh->vertex_count >> 31 ? 0 : count_edges(mesh, repairs);
 }

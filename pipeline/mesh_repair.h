@@ -11,10 +11,12 @@ struct mesh_repairs {
 	uint32_t unused_vertices;    /* removed: no face uses them (any more) */
 	uint32_t border_edges;       /* of one face only: the scan is open there; tolerated */
 	uint32_t non_manifold_edges; /* of three faces or more; tolerated */
+	uint32_t turned_edges;       /* of two faces that show opposite sides; tolerated */
 };
 
 /* Repairs mesh in place; the order of what remains does not change. Edges are judged by place, so
- * that a seam of the texture is no border. Indices must be below vertex_count. -ENOMEM. */
+ * that a seam of the texture is no border; they are not counted past 2^31 vertices. Indices must be
+ * below vertex_count. -ENOMEM. */
 must_check int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs);
 
 /* Of each vertex the first one at the same place. Owned by the caller; NULL: no memory. */

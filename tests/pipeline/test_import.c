@@ -52,10 +52,31 @@ static void repairs_and_counts(void **state)
 	CHECK(report.repairs.degenerate_faces == 2 && report.repairs.lost_faces == 1);
 	CHECK(report.repairs.merged_vertices == 2 && report.repairs.unused_vertices == 2);
 	CHECK(report.repairs.non_manifold_edges == 1 && report.repairs.border_edges == 6);
+	CHECK(report.repairs.turned_edges == 0);
 	CHECK(mesh.triangles[1][0] == 0 && mesh.triangles[1][2] == 1);
 	CHECK(mesh.colours && mesh.colours[0][0] == 186 && mesh.colours[0][3] == 255);
 	CHECK(!report.had_colours && strcmp(report.format, "PLY") == 0);
 	mesh_finish(&mesh);
+}
+
+static void counts_neighbours_that_show_opposite_sides(void **state)
+{
+	static const char off[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 %s\n";
+	static const char *const second[] = { "0 2 3", "0 3 2" };
+	const struct import_options options = { 0 };
+	(void)state;
+
+	for (uint32_t turned = 0; turned < 2; turned++) {
+		struct import_report report;
+		struct fault fault;
+		struct mesh mesh;
+		char text[128];
+
+		snprintf(text, sizeof(text), off, second[turned]);
+		CHECK(import_text(&mesh, &report, "a.off", text, &options, &fault) == 0);
+		CHECK(report.repairs.turned_edges == turned && report.repairs.border_edges == 4);
+		mesh_finish(&mesh);
+	}
 }
 
 static void colours_part_what_is_at_one_place(void **state)
@@ -369,6 +390,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(repairs_and_counts),
+		cmocka_unit_test(counts_neighbours_that_show_opposite_sides),
 		cmocka_unit_test(colours_part_what_is_at_one_place),
 		cmocka_unit_test(turns_up_and_scales_to_metres),
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
