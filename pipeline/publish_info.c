@@ -32,12 +32,45 @@ static int add_picture(struct object_store *objects, const char *folder,
 	return rc;
 }
 
+/* Every error, but warnings only until it is clear what they are about. */
+enum { WARNINGS_SHOWN = 5 };
+
+static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	uint32_t *warnings = data;
+	char at[16] = "";
+
+	if (line > 0)
+		snprintf(at, sizeof(at), ":%u", line);
+	if (is_error)
+		log_error("pipeline", "%s%s: %s", file, at, text);
+	else if (++*warnings <= WARNINGS_SHOWN)
+		log_warn("pipeline", "%s%s: %s", file, at, text);
+}
+
+static int build(struct info_built *built, const struct info_build_options *options)
+{
+	struct info_build_options told = *options;
+	uint32_t warnings = 0;
+	int rc;
+
+	if (!told.complaint) {
+		told.complaint = complain;
+		told.complaint_data = &warnings;
+	}
+	rc = info_build(built, &told);
+	if (warnings > WARNINGS_SHOWN)
+		log_warn("pipeline", "%s: and %u warnings more of pages and parts", options->folder,
+			 warnings - WARNINGS_SHOWN);
+	return rc;
+}
+
 int publish_info(struct object_store *objects, const struct info_build_options *options,
 		 struct page_child *out)
 {
 	struct page page = { .kind = PAGE_INFO };
 	struct info_built built;
-	int rc = info_build(&built, options);
+	int rc = build(&built, options);
 
 	if (rc < 0)
 		return rc;
