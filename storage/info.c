@@ -5,6 +5,7 @@
 #include "storage/info.h"
 
 #include <errno.h>
+#include <libxml/xmlstring.h>
 #include <math.h>
 #include <sqlite3.h>
 #include <stdio.h>
@@ -83,7 +84,8 @@ static int each_row(struct info *info, const char *sql, row_reader *read)
 	return rc;
 }
 
-/* A copy of a text column; NULL stays NULL. Zero bytes inside are refused. */
+/* A copy of a text column; NULL stays NULL. Zero bytes inside and what is not UTF-8
+ * are refused. */
 static int copy_text(sqlite3_stmt *row, int column, char **out)
 {
 	const char *text = (const char *)sqlite3_column_text(row, column);
@@ -91,7 +93,7 @@ static int copy_text(sqlite3_stmt *row, int column, char **out)
 
 	if (!text)
 		return sqlite3_column_type(row, column) == SQLITE_NULL ? 0 : -ENOMEM;
-	if (strlen(text) != (size_t)size)
+	if (strlen(text) != (size_t)size || !xmlCheckUTF8((const unsigned char *)text))
 		return -EBADMSG;
 	*out = strdup(text);
 	return *out ? 0 : -ENOMEM;

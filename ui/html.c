@@ -462,7 +462,8 @@ int html_parse(struct html *out, struct bytes source)
 	memset(out, 0, sizeof(*out));
 	if (source.size > HTML_BYTES_MOST)
 		return -EFBIG;
-	if (source.size == 0)
+	if (source.size == 0 ||
+	    !g_utf8_validate((const char *)source.data, (gssize)source.size, NULL))
 		return -EBADMSG;
 	doc = htmlReadMemory((const char *)source.data, (int)source.size, NULL, "UTF-8",
 			     HTML_PARSE_RECOVER | HTML_PARSE_NOERROR | HTML_PARSE_NOWARNING |

@@ -1,0 +1,143 @@
+/* HTML into blocks: what is kept, what is dropped, and that nothing nasty gets further. */
+#include "ui/html.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+static struct html html;
+
+static int parse(const char *text)
+{
+	return html_parse(&html, (struct bytes){ (const uint8_t *)text, strlen(text) });
+}
+
+/* The blocks as "style:text" would be; texts only, joined by |. */
+static bool reads(const char *source, const char *expected)
+{
+	char joined[1000] = "";
+	size_t at = 0;
+	int rc = parse(source);
+	bool equal;
+
+	for (uint32_t i = 0; rc == 0 && i < html.block_count; i++)
+		at += (size_t)snprintf(joined + at, sizeof(joined) - at, "%s%s%s", i ? "|" : "",
+				       html.blocks[i].marker ? html.blocks[i].marker : "",
+				       html.blocks[i].text ? html.blocks[i].text : "--");
+	equal = rc == 0 && strcmp(joined, expected) == 0;
+	if (!equal)
+		printf("%d: \"%s\" instead of \"%s\"\n", rc, joined, expected);
+	html_finish(&html);
+	return equal;
+}
+
+static void keeps_blocks_in_order(void **state)
+{
+	(void)state;
+	CHECK(reads("<h1>A</h1>\n<p>b <em>c</em>\n d</p><hr><p>e<br>f</p>", "A|b c d|--|e\nf"));
+	CHECK(reads("text<p>then</p>more", "text|then|more"));
+	CHECK(reads("<ul><li>a<li>b<ol><li>c</li><li><p>d</p></li></ol></ul>", "•a|•b|1.c|2.d"));
+	CHECK(reads("<figure><img src=pictures/x.jpg><figcaption>cap</figcaption></figure>",
+		    "pictures/x.jpg|cap"));
+	CHECK(reads("<table><tr><th>a<th>b</tr><tr><td>c<td><p>d</p><p>e</p></tr></table>",
+		    "a|b|c|d|e"));
+	CHECK(reads("<p>a</p><p> \n </p><div></div><p>b</p>", "a|b")); /* empty ones go */
+	CHECK(reads("<p>&lt;&amp;&eacute;&#x1780;</p>", "<&éក"));
+}
+
+static void knows_white_space(void **state)
+{
+	(void)state;
+	CHECK(reads("<p>  a \n\t b  </p>", "a b"));
+	CHECK(reads("<p>日本\n語の塔</p>", "日本語の塔")); /* a line's end is no space here */
+	CHECK(reads("<p>日本 語</p>", "日本 語"));         /* a written space is one */
+	CHECK(reads("<p>tower\n塔</p>", "tower 塔"));
+	CHECK(reads("<p>a <em> b</em></p>", "a b"));
+}
+
+static void drops_scripts_styles_and_foreign_links(void **state)
+{
+	(void)state;
+	CHECK(reads("<head><title>t</title></head><script>alert('x')</script>"
+		    "<style>p{}</style><p onclick=x>seen</p><!-- not -->",
+		    "seen"));
+	CHECK(parse("<p><a href=\"https://example.org\">out</a> <a href=\"part:gate\">in</a> "
+		    "<a href='part:'>none</a></p>") == 0);
+	CHECK(html.link_count == 1 && strcmp(html.links[0], "gate") == 0);
+	CHECK(html.blocks[0].span_count == 1 && html.blocks[0].spans[0].link == 0);
+	CHECK(html.blocks[0].spans[0].start == 4 && html.blocks[0].spans[0].end == 6);
+	html_finish(&html);
+}
+
+static void marks_rows_columns_and_looks(void **state)
+{
+	(void)state;
+	CHECK(parse("<table><tr><th>a</th><td></td><td>b</td></tr><tr><td>c</td></tr></table>"
+		    "<blockquote>q</blockquote><p>x<strong>y<em>z</em></strong></p>") == 0);
+	CHECK(html.block_count == 5);
+	CHECK(html.blocks[0].row == 1 && html.blocks[0].heading_cell);
+	CHECK(html.blocks[1].row == 1 && html.blocks[1].column == 2);
+	CHECK(html.blocks[1].column_count == 3);
+	CHECK(html.blocks[2].row == 2 && html.blocks[2].column_count == 1);
+	CHECK(html.blocks[3].quote && html.blocks[3].style == TEXT_QUOTE);
+	CHECK(html.blocks[4].span_count == 2);
+	CHECK(html.blocks[4].spans[1].flags == (HTML_STRONG | HTML_EMPHASIS));
+	html_finish(&html);
+}
+
+static void refuses_what_says_nothing(void **state)
+{
+	char *large = malloc(HTML_BYTES_MOST + 1);
+
+	(void)state;
+	CHECK(parse("") == -EBADMSG);
+	CHECK(parse("   \n") == -EBADMSG);
+	CHECK(parse("<script>x</script>") == -EBADMSG);
+	CHECK(parse("<p>a\xff</p>") == -EBADMSG);
+	CHECK(parse("<<<>>>&;&#;") == 0 || html.block_count == 0);
+	html_finish(&html);
+	memset(large, 'a', HTML_BYTES_MOST + 1);
+	CHECK(html_parse(&html, (struct bytes){ (uint8_t *)large, HTML_BYTES_MOST + 1 }) == -EFBIG);
+	free(large);
+	html_finish(NULL);
+}
+
+/* Deep, wide, unclosed, many: in bounded time and memory, without a crash. */
+static void survives_nasty_pages(void **state)
+{
+	static const char *const pieces[] = { "<div>",     "<ul><li>",     "<table><tr><td>",
+					      "<b>",       "<blockquote>", "<p>x",
+					      "<ol><li>a", "<td>",         "<a href=part:x>",
+					      "</p></ul>", "<br>",         "<li>" };
+	struct buffer page;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(pieces); i++) {
+		buffer_init(&page, HTML_BYTES_MOST);
+		for (int k = 0; k < 4000; k++)
+			buffer_put(&page, pieces[i], strlen(pieces[i]));
+		buffer_put(&page, "end", 3);
+		if (html_parse(&html, buffer_bytes(&page)) == 0) {
+			CHECK(html.block_count > 0 && html.block_count <= HTML_BLOCKS_MOST);
+			html_finish(&html);
+		}
+		buffer_finish(&page);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(keeps_blocks_in_order),
+		cmocka_unit_test(knows_white_space),
+		cmocka_unit_test(drops_scripts_styles_and_foreign_links),
+		cmocka_unit_test(marks_rows_columns_and_looks),
+		cmocka_unit_test(refuses_what_says_nothing),
+		cmocka_unit_test(survives_nasty_pages),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
