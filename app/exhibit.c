@@ -63,22 +63,23 @@ void exhibit_close(struct exhibit *exhibit)
 	*exhibit = (struct exhibit){ 0 };
 }
 
-bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
 {
 	struct page page;
 
 	if (!exhibit->scene)
-		return false;
+		return;
+	if (page_is(object) && exhibit->page_count < EXHIBIT_PAGES_MOST)
+		exhibit->pages[exhibit->page_count++] = hash;
 	if (!story_give(exhibit->story, hash, object))
 		scene_give(exhibit->scene, hash, object);
-	if (!hash_equal(hash, exhibit->root) || !scene_root(exhibit->scene))
-		return false;
-	if (!exhibit->root_here && page_decode(&page, object) == 0) {
+	if (exhibit->root_here || !hash_equal(hash, exhibit->root) || !scene_root(exhibit->scene))
+		return;
+	if (page_decode(&page, object) == 0) {
 		story_open(exhibit->story, hash, &page);
 		page_finish(&page);
 		exhibit->root_here = true;
 	}
-	return true;
 }
 
 /* The eye's bounds are the release's. At the first release it goes to its start; at an update it
@@ -106,14 +107,23 @@ static void set_bounds(struct kiosk *kiosk)
 		 (unsigned long long)root->source_triangles);
 }
 
+/* The fetcher forgets all wants of other releases; the next frame says ours again. */
+static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
+{
+	net_client_use_release(kiosk->net, root, root_bytes);
+	wants_clear(&kiosk->wants);
+}
+
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 {
 	struct exhibit *exhibit = kiosk->shown.scene ? &kiosk->coming : &kiosk->shown;
 	int rc;
 
 	exhibit_close(&kiosk->coming);
-	net_client_use_release(kiosk->net, root, root_bytes);
-	wants_clear(&kiosk->wants);
+	if (exhibit == &kiosk->coming)
+		net_client_add_release(kiosk->net, root, root_bytes);
+	else
+		use_release(kiosk, root, root_bytes);
 	rc = exhibit_open(kiosk, exhibit, root, root_bytes);
 	if (rc < 0)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
@@ -139,6 +149,9 @@ static void take_over(struct kiosk *kiosk)
 		return; /* it could not be remembered: what is remembered stays on the panel */
 	kiosk->shown = kiosk->coming;
 	kiosk->coming = (struct exhibit){ 0 };
+	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
+	for (uint32_t i = 0; i < kiosk->shown.page_count; i++)
+		net_client_keep(kiosk->net, kiosk->shown.pages[i]);
 	if (story_language(before.story))
 		story_set_language(kiosk->shown.story, story_language(before.story));
 	overlay_show_help(overlay, false);

@@ -36,6 +36,8 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 	wants_arrived(&kiosk->wants, hash);
 	exhibit_give(&kiosk->shown, hash, bytes);
 	exhibit_give(&kiosk->coming, hash, bytes);
+	if (page_is(bytes)) /* without its index what is cached could not be found */
+		net_client_keep(kiosk->net, hash);
 	if (kiosk->capture)
 		capture_object(kiosk->capture);
 	kiosk_redraw(kiosk);
@@ -176,6 +178,7 @@ static int start_net(struct kiosk *kiosk)
 		.program = kiosk->options.fetch_program,
 		.release_url = kiosk->options.release_url,
 		.cache_path = cache,
+		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
 		.ca_file = kiosk->options.ca_path,
 		.events = { on_object, on_missing, on_meta, on_status },

@@ -19,6 +19,8 @@
 struct capture;
 struct follow;
 
+enum { EXHIBIT_PAGES_MOST = 4096 };
+
 /* One release as it is shown: its pictures and its words. */
 struct exhibit {
 	struct scene *scene;
@@ -26,6 +28,8 @@ struct exhibit {
 	struct hash root;
 	uint32_t root_bytes;
 	bool root_here;
+	struct hash pages[EXHIBIT_PAGES_MOST]; /* that came: the fetcher is to keep them */
+	uint32_t page_count;
 	struct scene_frame frame; /* of the last time it was drawn */
 };
 
@@ -80,8 +84,8 @@ int kiosk_height_px(const struct kiosk *kiosk);
 must_check int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
 			    uint32_t root_bytes);
 void exhibit_close(struct exhibit *exhibit);
-/* An object came; true: it was the exhibit's root page. */
-bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
+/* An object came. */
+void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
 /* Begins with the release, in the background where another one is shown. */
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
 /* Draws a little of what is coming, and makes the change once it can be shown whole. */

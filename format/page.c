@@ -10,6 +10,12 @@ static const uint8_t page_magic[4] = { 'G', 'P', 'a', 'g' };
 #define PAGE_VERSION    1
 #define CHILD_IS_A_PAGE (1u << 31)
 
+bool page_is(struct bytes object)
+{
+	return object.size >= PAGE_HEADER_BYTES &&
+	       memcmp(object.data, page_magic, sizeof(page_magic)) == 0;
+}
+
 void page_encode(struct buffer *out, const struct page *page)
 {
 	uint64_t size = PAGE_HEADER_BYTES + (uint64_t)page->child_count * PAGE_CHILD_BYTES +

@@ -52,6 +52,9 @@ void page_encode(struct buffer *out, const struct page *page);
 must_check int page_decode(struct page *out, struct bytes object);
 void page_finish(struct page *page);
 
+/* The object begins as a page does; page_decode may still refuse it. */
+bool page_is(struct bytes object);
+
 /* Where the page's child lies in the page's block, in bytes. */
 uint64_t page_child_offset(const struct page *page, uint32_t child);
 
