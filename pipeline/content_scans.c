@@ -14,7 +14,7 @@
 #include "pipeline/mesh_file.h"
 
 /* Raised whenever import gives another mesh from the same files. */
-enum { IMPORT_VERSION = 1, KEY_TEXT_MOST = 1 << 22 };
+enum { IMPORT_VERSION = 2, KEY_TEXT_MOST = 1 << 22 };
 
 /* By its name within the folder, which may be called by another path tomorrow. */
 static void put_file(struct buffer *text, const struct content *content, const char *path)

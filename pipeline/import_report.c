@@ -18,6 +18,8 @@ static void print_repairs(FILE *to, const struct mesh_repairs *repairs)
 		    "duplicate vertices, merged");
 	print_count(to, repairs->unused_vertices, "vertex without a face, removed",
 		    "vertices without a face, removed");
+	print_count(to, repairs->turned_faces, "face showing the wrong side, turned",
+		    "faces showing the wrong side, turned");
 	print_count(to, repairs->border_edges, "border edge: the scan is open there",
 		    "border edges: the scan is open there");
 	print_count(to, repairs->non_manifold_edges, "edge of three faces or more, tolerated",

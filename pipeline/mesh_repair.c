@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/mesh_edges.h"
+#include "pipeline/mesh_orient.h"
+
 #define NO_VERTEX UINT32_MAX
 
 /* ---- equal vertices, by open addressing */
@@ -158,77 +161,36 @@ static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh
 
 /* ---- edges */
 
-static void sort_small(uint32_t *values, size_t count)
+static void count_edge(void *data, const struct mesh_edge *edge)
 {
-	for (size_t i = 1; i < count; i++) {
-		uint32_t value = values[i];
-		size_t at = i;
+	struct mesh_repairs *repairs = data;
 
-		for (; at > 0 && values[at - 1] > value; at--)
-			values[at] = values[at - 1];
-		values[at] = value;
-	}
+	repairs->border_edges += edge->face_count == 1;
+	repairs->non_manifold_edges += edge->face_count > 2;
+	repairs->turned_edges += edge->turned;
 }
 
-static int compare_u32(const void *a, const void *b)
+/* Only edges whose faces disagree need the work of finding out who is right. */
+static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
 {
-	uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+	struct mesh_edges edges;
+	int rc = mesh_edges_init(&edges, mesh);
 
-	return x < y ? -1 : x > y;
-}
-
-static void judge_edges_of_vertex(uint32_t *others, size_t count, struct mesh_repairs *repairs)
-{
-	if (count > 64)
-		qsort(others, count, sizeof(*others), compare_u32);
-	else
-		sort_small(others, count);
-	for (size_t i = 0, next; i < count; i = next) {
-		for (next = i + 1; next < count && others[next] >> 1 == others[i] >> 1; next++)
-			;
-		repairs->border_edges += next - i == 1;
-		repairs->non_manifold_edges += next - i > 2;
-		repairs->turned_edges += next - i == 2 && others[i] == others[i + 1];
-	}
-}
-
-/* edge[0]: the lower end; edge[1]: the other, doubled, and one more where the face runs to it. */
-static void edge_of(const struct mesh *mesh, const uint32_t *place, uint32_t i, int k,
-		    uint32_t edge[2])
-{
-	uint32_t a = place[mesh->triangles[i][k]], b = place[mesh->triangles[i][(k + 1) % 3]];
-
-	edge[0] = a < b ? a : b;
-	edge[1] = a < b ? 2 * b + 1 : 2 * a;
-}
-
-/* Every edge is filed under its lower end, by counting. */
-static int count_edges(const struct mesh *mesh, struct mesh_repairs *repairs)
-{
-	uint32_t *place = find_first_equals(mesh, true);
-	uint64_t *start = calloc((size_t)mesh->vertex_count + 2, sizeof(*start));
-	uint32_t *others = malloc(((size_t)mesh->triangle_count * 3 + 1) * sizeof(*others));
-	uint32_t edge[2];
-	int rc = place && start && others ? 0 : -ENOMEM;
-
-	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++)
-		for (int k = 0; k < 3; k++) {
-			edge_of(mesh, place, i, k, edge);
-			start[edge[0] + 2]++;
-		}
-	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++)
-		start[i + 2] += start[i + 1];
-	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++)
-		for (int k = 0; k < 3; k++) {
-			edge_of(mesh, place, i, k, edge);
-			others[start[edge[0] + 1]++] = edge[1];
-		}
-	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++)
-		judge_edges_of_vertex(others + start[i], start[i + 1] - start[i], repairs);
-	free(place);
-	free(start);
-	free(others);
-	return rc;
+	if (rc < 0)
+		return rc;
+	mesh_edges_each(&edges, count_edge, repairs);
+	if (repairs->turned_edges > 0)
+		rc = mesh_orient(mesh, &edges, &repairs->turned_faces);
+	mesh_edges_finish(&edges);
+	if (rc < 0 || repairs->turned_faces == 0)
+		return rc;
+	rc = mesh_edges_init(&edges, mesh);
+	if (rc < 0)
+		return rc;
+	repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
+	mesh_edges_each(&edges, count_edge, repairs);
+	mesh_edges_finish(&edges);
+	return 0;
 }
 
 uint32_t *mesh_places(const struct mesh *mesh)
@@ -248,5 +210,5 @@ int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
 	filter_faces(mesh, first, repairs);
 	drop_unused_vertices(mesh, first, repairs);
 	free(first);
-	return mesh->vertex_count >> 31 ? 0 : count_edges(mesh, repairs);
+	return mesh->vertex_count >> 31 ? 0 : settle_edges(mesh, repairs);
 }

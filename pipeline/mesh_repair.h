@@ -11,7 +11,8 @@ struct mesh_repairs {
 	uint32_t unused_vertices;    /* removed: no face uses them (any more) */
 	uint32_t border_edges;       /* of one face only: the scan is open there; tolerated */
 	uint32_t non_manifold_edges; /* of three faces or more; tolerated */
-	uint32_t turned_edges;       /* of two faces that show opposite sides; tolerated */
+	uint32_t turned_faces;       /* turned to the side that the larger part around them shows */
+	uint32_t turned_edges;       /* of two faces that still show opposite sides; tolerated */
 };
 
 /* Repairs mesh in place; the order of what remains does not change. Edges are judged by place, so

@@ -59,24 +59,48 @@ static void repairs_and_counts(void **state)
 	mesh_finish(&mesh);
 }
 
-static void counts_neighbours_that_show_opposite_sides(void **state)
+/* A strip of five squares, its first face (and the last square) showing the other side. */
+static void turns_the_smaller_part_to_the_side_of_the_larger(void **state)
 {
-	static const char off[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 %s\n";
-	static const char *const second[] = { "0 2 3", "0 3 2" };
+	static const char off[] =
+		"OFF\n12 10 0\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n3 0 0\n3 1 0\n4 0 0\n"
+		"4 1 0\n5 0 0\n5 1 0\n3 1 2 0\n3 1 2 3\n3 2 4 3\n3 3 4 5\n3 4 6 5\n3 5 6 7\n"
+		"3 6 8 7\n3 7 8 9\n3 9 10 8\n3 9 11 10\n";
 	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
 	(void)state;
 
-	for (uint32_t turned = 0; turned < 2; turned++) {
-		struct import_report report;
-		struct fault fault;
-		struct mesh mesh;
-		char text[128];
+	CHECK(import_text(&mesh, &report, "strip.off", off, &options, &fault) == 0);
+	CHECK(report.repairs.turned_faces == 3 && report.repairs.turned_edges == 0);
+	CHECK(report.repairs.border_edges == 12 && mesh.triangle_count == 10);
+	for (uint32_t i = 0; i < mesh.triangle_count; i++) {
+		const float *a = mesh.positions[mesh.triangles[i][0]];
+		const float *b = mesh.positions[mesh.triangles[i][1]];
+		const float *c = mesh.positions[mesh.triangles[i][2]];
+		float up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 
-		snprintf(text, sizeof(text), off, second[turned]);
-		CHECK(import_text(&mesh, &report, "a.off", text, &options, &fault) == 0);
-		CHECK(report.repairs.turned_edges == turned && report.repairs.border_edges == 4);
-		mesh_finish(&mesh);
+		if (!(up > 0))
+			fail_msg("face %u shows the wrong side", i);
 	}
+	mesh_finish(&mesh);
+}
+
+/* Five triangles around: a band with half a twist, which has one side only. */
+static void a_surface_with_one_side_stays_as_it_is(void **state)
+{
+	static const char off[] = "OFF\n5 5 0\n0 0 0\n2 0 1\n2 2 0\n1 3 1\n-1 2 2\n3 0 1 2\n"
+				  "3 1 3 2\n3 2 3 4\n3 3 0 4\n3 4 0 1\n";
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "band.off", off, &options, &fault) == 0);
+	CHECK(report.repairs.turned_faces == 0 && report.repairs.turned_edges == 1);
+	mesh_finish(&mesh);
 }
 
 static void colours_part_what_is_at_one_place(void **state)
@@ -390,7 +414,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(repairs_and_counts),
-		cmocka_unit_test(counts_neighbours_that_show_opposite_sides),
+		cmocka_unit_test(turns_the_smaller_part_to_the_side_of_the_larger),
+		cmocka_unit_test(a_surface_with_one_side_stays_as_it_is),
 		cmocka_unit_test(colours_part_what_is_at_one_place),
 		cmocka_unit_test(turns_up_and_scales_to_metres),
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
