@@ -11,7 +11,7 @@
 enum { PARTS_BY_BISECTION_MOST = 8, NODES_A_PART = 64 };
 
 /* Thousandths that a part may be too heavy, so that a cut can follow what it is to follow. */
-enum { IMBALANCE = 40 };
+enum { IMBALANCE = 40, TRIES = 8 /* of halving, the best is taken */ };
 
 static pthread_mutex_t metis_lock = PTHREAD_MUTEX_INITIALIZER;
 
@@ -245,6 +245,8 @@ static int run_metis(idx_t *parts, struct rows *rows, const struct graph *graph,
 	options[METIS_OPTION_SEED] = 1;
 	options[METIS_OPTION_NUMBERING] = 0;
 	options[METIS_OPTION_UFACTOR] = IMBALANCE;
+	if (part_count == 2)
+		options[METIS_OPTION_NCUTS] = TRIES;
 	if (shares && part_count == 2) {
 		wanted[0] = shares[0];
 		wanted[1] = shares[1];
