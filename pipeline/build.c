@@ -213,8 +213,10 @@ static int run_stages(struct build_report *report, const struct content *content
 		      const struct publish_content_options *publish)
 {
 	int64_t start = clock_now_ms(), at;
-	int rc = build_hierarchy(report, content, options->jobs);
+	int rc = publish_content_check(content); /* before the long work, not after it */
 
+	if (rc == 0)
+		rc = build_hierarchy(report, content, options->jobs);
 	at = clock_now_ms();
 	report->hierarchy_ms = at - start;
 	if (rc == 0)

@@ -1,5 +1,6 @@
 #include "pipeline/commands.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -75,9 +76,9 @@ static int run(const char *folder, const struct build_options *options, const ch
 		print_report(&report);
 	else
 		fprintf(stderr,
-			"gopura-content build: %s: %s; run it again once that is mended, it "
-			"goes on where it stopped\n",
-			folder, strerror(-rc));
+			"gopura-content build: %s: %s; once that is mended, run it again: it goes on "
+			"where it stopped\n",
+			folder, rc == -EINVAL ? "the content has faults" : strerror(-rc));
 	if (lock >= 0)
 		close(lock);
 	content_release(&content);

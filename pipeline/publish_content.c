@@ -140,16 +140,30 @@ static int fill_root(struct root_page *root, const struct content *content,
 
 /* ---- the parts */
 
+static struct info_build_options info_options(const struct content *content,
+					      const char *languages[CONTENT_LANGUAGES_MOST])
+{
+	for (uint32_t i = 0; i < content->language_count; i++)
+		languages[i] = content->languages[i];
+	return (struct info_build_options){ .folder = content->folder,
+					    .languages = languages,
+					    .language_count = content->language_count };
+}
+
+int publish_content_check(const struct content *content)
+{
+	const char *languages[CONTENT_LANGUAGES_MOST];
+	const struct info_build_options options = info_options(content, languages);
+
+	return publish_check_info(&options);
+}
+
 static int add_info(struct object_store *objects, const struct content *content,
 		    struct page_child *out)
 {
 	const char *languages[CONTENT_LANGUAGES_MOST];
-	const struct info_build_options options = { .folder = content->folder,
-						    .languages = languages,
-						    .language_count = content->language_count };
+	const struct info_build_options options = info_options(content, languages);
 
-	for (uint32_t i = 0; i < content->language_count; i++)
-		languages[i] = content->languages[i];
 	return publish_info(objects, &options, out);
 }
 

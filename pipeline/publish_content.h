@@ -27,6 +27,9 @@ struct publish_content_report {
 must_check int publish_content(struct publish_content_report *report,
 			       const struct publish_content_options *options);
 
+/* Whether parts, pages and pictures can be published; every fault is logged. */
+must_check int publish_content_check(const struct content *content);
+
 /* The root of an earlier release again: see publish_again. */
 must_check int publish_content_again(struct publish_content_report *report,
 				     const struct publish_content_options *options,

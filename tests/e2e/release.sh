@@ -29,7 +29,11 @@ parts() { # TITLE
 	  "anchor": [0, 0, 22], "title": {"en": "$1", "fr": "Tour", "km": "ប្រាង្គ", "ja": "塔"}}]}
 	JSON
 }
+# ---- what is wrong with the words is told before the long work, not after it
 parts Tower
+"$content" build "$dir" --out "$release" >"$folder/log" 2>&1 && fail "a part without its page was built"
+grep -q 'pages/tower.en.html' "$folder/log" || fail "the message does not name the page: $(cat "$folder/log")"
+[ ! -e "$dir/.work/master" ] || fail "the fault was found after the hierarchy was made"
 echo '<h1>Tower</h1><p>The mountain in the middle.</p>' >"$dir/pages/tower.en.html"
 
 root_of() { sed -nE 's/.*root ([0-9a-f]{32})$/\1/p' "$1"; }
