@@ -140,7 +140,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		fingers_go_home(kiosk);
 		break;
 	case OVERLAY_HELP:
-		overlay_show_help(overlay, true);
+		overlay_show_help(overlay, !overlay_help(overlay));
 		break;
 	}
 }

@@ -295,6 +295,11 @@ void overlay_show_help(struct overlay *overlay, bool on)
 		overlay_show_card(overlay, -1);
 }
 
+bool overlay_help(const struct overlay *overlay)
+{
+	return overlay->help.on;
+}
+
 void overlay_picture_arrived(struct overlay *overlay, const char *name)
 {
 	int from_px = overlay->article ? article_picture_arrived(overlay->article, name) : -1;

@@ -82,6 +82,7 @@ int overlay_page(const struct overlay *overlay); /* the part whose page is open,
 
 /* How to touch the model, in pictures and words; on at first, off at the first touch. */
 void overlay_show_help(struct overlay *overlay, bool on);
+bool overlay_help(const struct overlay *overlay);
 
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
@@ -102,7 +103,7 @@ enum overlay_action_kind {
 	OVERLAY_LANGUAGE, /* language */
 	OVERLAY_LINK,     /* link: the id of the part that a page's link names */
 	OVERLAY_HOME,     /* back to the first view */
-	OVERLAY_HELP,     /* show or hide the help */
+	OVERLAY_HELP,     /* the help, which is there or not (overlay_help), changes over */
 };
 
 struct overlay_action {

@@ -2,7 +2,9 @@
 #include "input/touch_replay.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -121,12 +123,42 @@ static void plays_through_one_fd(void **state)
 	CHECK(touch_create(&touch, &options) == -ENOENT);
 }
 
+/* Nothing there, then files that are no devices: no device, no fault, and it still listens. */
+static void waits_for_devices_that_may_come(void **state)
+{
+	char folder[] = "/tmp/gopura-input-XXXXXX", path[100];
+	struct touch_options options = { .width_px = 100, .height_px = 100, .folder = folder };
+	struct pollfd wait = { .events = POLLIN };
+	struct touch *touch;
+	int fd;
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	CHECK(touch_create(&touch, &options) == 0);
+	wait.fd = touch_fd(touch);
+	CHECK(poll(&wait, 1, 0) == 0);
+	snprintf(path, sizeof(path), "%s/event3", folder);
+	fd = open(path, O_CREAT | O_WRONLY, 0600);
+	CHECK(fd >= 0);
+	close(fd);
+	CHECK(poll(&wait, 1, 5000) == 1); /* heard of it */
+	CHECK(touch_dispatch(touch) == 0);
+	CHECK(touch_device_count(touch) == 0 && !touch_replay_ended(touch));
+	CHECK(poll(&wait, 1, 0) == 0);
+	touch_destroy(touch);
+	unlink(path);
+	rmdir(folder);
+	CHECK(touch_create(&touch, &options) == 0); /* the folder is missing: it goes on */
+	touch_destroy(touch);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(reads_what_it_says),
 		cmocka_unit_test(names_the_line_of_a_fault),
 		cmocka_unit_test(plays_through_one_fd),
+		cmocka_unit_test(waits_for_devices_that_may_come),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

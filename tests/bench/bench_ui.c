@@ -1,0 +1,111 @@
+/* What words cost the thread that draws frames: CPU time of each piece, on a 1920 x 1080 panel.
+ * bench_ui PAGE.html writes JSON to standard output. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "ui/overlay_state.h"
+
+enum { PARTS = 200, ROUNDS = 60 };
+
+static struct overlay *overlay;
+
+static void give_anchors(float turn)
+{
+	static struct overlay_anchor anchors[PARTS];
+
+	for (int i = 0; i < PARTS; i++) {
+		float angle = turn + (float)i * 2.4f, radius = 40 + 2 * (float)i;
+
+		anchors[i] = (struct overlay_anchor){ 960 + radius * 1.4f * cosf(angle),
+						      450 + radius * sinf(angle), true };
+	}
+	overlay_anchors(overlay, anchors, PARTS);
+}
+
+static int give_parts(void)
+{
+	static struct overlay_part parts[PARTS];
+	static char titles[PARTS][40];
+
+	for (int i = 0; i < PARTS; i++) {
+		snprintf(titles[i], sizeof(titles[i]), "Gallery of reliefs, bay %d", i + 1);
+		parts[i] = (struct overlay_part){ titles[i], "A caption of ordinary length.", "",
+						  true };
+	}
+	return overlay_parts(overlay, parts, PARTS);
+}
+
+static int64_t worst(int64_t a, int64_t b)
+{
+	return a > b ? a : b;
+}
+
+/* Until nothing moves; the worst frame. */
+static int64_t settle(int64_t *now_ms)
+{
+	int64_t most_us = 0, start_us;
+	bool moving = true;
+
+	while (moving) {
+		start_us = clock_thread_us();
+		moving = overlay_update(overlay, *now_ms += 16);
+		most_us = worst(most_us, clock_thread_us() - start_us);
+	}
+	return most_us;
+}
+
+static void measure(struct bytes page)
+{
+	int64_t now_ms = 1000, start_us, turn_us = 0, turn_most_us = 0, open_most_us = 0;
+	int64_t update_most_us = 0, scroll_most_us = 0;
+
+	for (int i = 0; i < ROUNDS; i++) {
+		give_anchors((float)i * 0.01f);
+		start_us = clock_thread_us();
+		overlay_update(overlay, now_ms += 16);
+		start_us = clock_thread_us() - start_us;
+		turn_us += start_us;
+		turn_most_us = worst(turn_most_us, start_us);
+	}
+	for (int i = 0; i < 5; i++) {
+		start_us = clock_thread_us();
+		if (overlay_show_page(overlay, 0, page) < 0)
+			exit(1);
+		open_most_us = worst(open_most_us, clock_thread_us() - start_us);
+		update_most_us = worst(update_most_us, settle(&now_ms));
+		overlay_scroll(overlay, -600);
+		scroll_most_us = worst(scroll_most_us, settle(&now_ms));
+		overlay_close_page(overlay);
+		settle(&now_ms);
+	}
+	printf("{\"panel\": \"1920x1080\", \"parts\": %d, \"page_bytes\": %zu,\n"
+	       " \"turning_frame_ms\": %.2f, \"turning_frame_worst_ms\": %.2f,\n"
+	       " \"page_open_worst_ms\": %.2f, \"page_frame_worst_ms\": %.2f,"
+	       " \"scroll_frame_worst_ms\": %.2f}\n",
+	       PARTS, page.size, (double)turn_us / ROUNDS / 1000, (double)turn_most_us / 1000,
+	       (double)open_most_us / 1000, (double)update_most_us / 1000,
+	       (double)scroll_most_us / 1000);
+}
+
+int main(int argc, char **argv)
+{
+	static const char *const languages[] = { "en", "fr", "km", "ja" };
+	const struct overlay_options options = {
+		.width_px = 1920, .height_px = 1080, .languages = languages, .language_count = 4
+	};
+	struct buffer page;
+
+	buffer_init(&page, 1 << 20);
+	if (argc != 2 || buffer_read_file(&page, argv[1]) < 0 ||
+	    overlay_create(&overlay, &options) < 0 || give_parts() < 0) {
+		fprintf(stderr, "usage: bench_ui PAGE.html\n");
+		return 1;
+	}
+	measure(buffer_bytes(&page));
+	overlay_destroy(overlay);
+	buffer_finish(&page);
+	return 0;
+}
