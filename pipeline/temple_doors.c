@@ -46,6 +46,18 @@ static float kala(float x, float y)
 	return fmaxf(fmaxf(skull + eyes + brow + nose, jaw), fmaxf(claws, crest)) * 0.8f;
 }
 
+/* A head turned outwards, its trunk rolled up, a row of teeth; at the end of the garland. */
+static float lintel_makara(float x, float y)
+{
+	float r = hypotf(x, y), a = atan2f(y, x), turns = r * 7.5f + a / 6.28319f;
+	float head = 0.7f * disc(x, y, 0, 0, 0.21f, 0.25f);
+	float trunk = r < 0.2f ? 0.4f * carve_ridge(turns - roundf(turns), 0.4f) : 0;
+	float eye = 0.45f * disc(x, y, -0.05f, 0.16f, 0.05f, 0.05f);
+	float crest = 0.6f * carve_ridge(r - 0.26f, 0.05f) * fabsf(sinf(a * 6));
+
+	return fmaxf(fmaxf(head * 0.6f + trunk, eye), crest);
+}
+
 float figure_lintel(float x, float y, float aspect)
 {
 	float half = aspect * 0.5f, ax = fabsf(x) / half;
@@ -58,7 +70,7 @@ float figure_lintel(float x, float y, float aspect)
 	float pendant_x = ax * 3.5f, px = pendant_x - floorf(pendant_x) - 0.5f;
 	float hang = y < line ? 0.6f * carve_ridge(px, 0.36f * carve_step(0.02f, 0.4f, y)) : 0;
 	float vein = y < line ? 0.16f * cosf((y + fabsf(px)) * 75) : 0;
-	float makara = 0.95f * disc(fabsf(x), y, half - 0.22f, 0.42f, 0.2f, 0.24f);
+	float makara = lintel_makara(fabsf(x) - half + 0.24f, y - 0.42f);
 	float rider =
 		8 * fmaxf(limb(fabsf(x), y, half * 0.5f, 0.62f, half * 0.5f, 0.78f, 0.09f, 0.1f),
 			  limb(fabsf(x), y, half * 0.5f, 0.9f, half * 0.5f, 0.92f, 0.07f, 0.06f));

@@ -178,10 +178,14 @@ void plan_galleries(struct plan *plan)
 		for (int half = -1; half <= 1; half += 2) {
 			struct gallery outer = { 10.7f, 1.15f, 2.75f, true, true, false };
 			struct frame at = frame_within(&side, (float)half * 8.55f, -15.0f, 2.4f, 0);
+			uint32_t first = plan->count;
 			plan_gallery(plan, &at, &outer);
+			plan_refine(plan, first, turn == 0 && half == 1 ? 1.25f : 0.9f);
 		}
 		struct gallery upper = { 10.5f, 0.85f, 2.3f, false, false, true };
 		struct frame at = frame_within(&side, 0, -6.9f, 8.2f, 0);
+		uint32_t first = plan->count;
 		plan_gallery(plan, &at, &upper);
+		plan_refine(plan, first, turn == 0 ? 1.4f : 1.0f);
 	}
 }

@@ -130,7 +130,9 @@ float figure_lion(float x, float y)
 	float teeth = y < 0.335f && y > 0.295f && ax < 0.17f ? 0.07f * fabsf(sinf(x * 52)) : 0;
 	float ears = 0.2f * bump(ax, y, 0.33f, 0.83f, 0.07f, 0.08f);
 
-	return head + curls + eyes + brow + muzzle + nose + mouth + teeth + ears;
+	/* Outside the mane the ground falls back into the body. */
+	return head + curls + eyes + brow + muzzle + nose + mouth + teeth + ears -
+	       0.75f * carve_step(0.43f, 0.56f, r);
 }
 
 /* ---- the naga's hood: seven heads rising from one throat, the middle one highest */

@@ -137,6 +137,13 @@ void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, floa
 	plan_floor(plan, &top, half_x_m, half_y_m, RELIEF_PLAIN, 0, 0);
 }
 
+void plan_refine(struct plan *plan, uint32_t from, float factor)
+{
+	for (uint32_t i = from; i < plan->count; i++)
+		if (relief_varies_across(plan->sheets[i].relief.kind))
+			plan->sheets[i].interest *= factor;
+}
+
 int plan_create(struct plan *plan, uint32_t seed)
 {
 	*plan = (struct plan){ .seed = seed };

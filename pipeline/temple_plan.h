@@ -46,6 +46,10 @@ void plan_floor(struct plan *plan, const struct frame *frame, float half_x_m, fl
 void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
 	      float height_m);
 
+/* The reliefs laid out since `from` (a plan->count) get more divisions: what a visitor
+ * meets first, and what the parts point at, was scanned more closely. */
+void plan_refine(struct plan *plan, uint32_t from, float factor);
+
 void plan_terraces(struct plan *plan);
 void plan_galleries(struct plan *plan);
 void plan_towers(struct plan *plan);

@@ -86,6 +86,13 @@ static const struct profile_point lion_points[] = {
 };
 static const struct profile lion = { ARRAY_COUNT(lion_points), lion_points };
 
+static const struct profile_point leg_points[] = {
+	{ 1.5f, 0, RELIEF_PLAIN, 0, 0 },     { 1.5f, 0.1f, RELIEF_ROUND, 0.01f, 0 },
+	{ 0.4f, 0.22f, RELIEF_PLAIN, 0, 0 }, { 0.3f, 0.7f, RELIEF_PLAIN, 0, 0 },
+	{ 0.8f, 0.9f, RELIEF_PLAIN, 0, 0 },  { -0.8f, 1.05f, RELIEF_PLAIN, 0, 0 },
+};
+static const struct profile leg = { ARRAY_COUNT(leg_points), leg_points };
+
 static void plan_lion(struct plan *plan, const struct frame *frame, float height_m)
 {
 	struct sheet *sheet =
@@ -98,10 +105,10 @@ static void plan_lion(struct plan *plan, const struct frame *frame, float height
 	sheet->interest = 2;
 	face->interest = 4;
 	for (int side = -1; side <= 1; side += 2) {
-		struct frame leg = frame_within(frame, (float)side * height_m * 0.17f,
-						-height_m * 0.28f, 0, 0);
-		sheet = plan_sheet(plan, &leg, &outline_circle, &post, height_m * 0.04f,
-				   height_m * 0.045f, height_m * 0.5f);
+		struct frame foot = frame_within(frame, (float)side * height_m * 0.17f,
+						 -height_m * 0.27f, 0, 0);
+		sheet = plan_sheet(plan, &foot, &outline_circle, &leg, height_m * 0.045f,
+				   height_m * 0.045f, height_m * 0.52f);
 		sheet->optional = true;
 	}
 }
@@ -164,11 +171,13 @@ static void plan_side(struct plan *plan, int turn)
 	struct frame high = frame_within(&axis, 0, -11.05f, 5.4f, 0);
 	struct frame rim = frame_within(&axis, 0, -18.0f, 2.4f, 0);
 
+	uint32_t first = plan->count;
 	plan_stairs(plan, &low, 1.3f, 2.2f, 2.4f);
 	plan_stairs(plan, &middle, 1.1f, 1.9f, 3.0f);
 	plan_stairs(plan, &high, 1.1f, 1.9f, 2.8f);
 	plan_naga(plan, &rim, 2.35f, 17.7f);
 	plan_naga(plan, &rim, -2.35f, -17.7f);
+	plan_refine(plan, first, turn == 1 ? 1.7f : 1.0f); /* the eastern approach */
 }
 
 void plan_terraces(struct plan *plan)

@@ -265,7 +265,7 @@ void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m)
 	struct frame bud = frame_within(&head, 0, 0, head_m + 0.35f, 0);
 
 	plan_sheet(plan, frame, &outline_redented, &wall, half_m, 1, body_m);
-	plan_sheet(plan, &head, &outline_redented, &cornice, half_m, 0.25f, 0.55f);
+	plan_sheet(plan, &head, &outline_redented, &cornice, half_m, 0.42f, 0.55f);
 	plan_sheet(plan, &neck, &outline_redented, &wall, half_m * 0.86f, 1, head_m - 0.2f);
 	for (int turn = 0; turn < 4; turn++) {
 		struct frame face = frame_within(&neck, 0, 0, 0.1f, turn);
@@ -283,11 +283,16 @@ static void plan_gate(struct plan *plan, int turn)
 	struct frame gate = frame_at(0, 0, 0, turn);
 
 	gate = frame_within(&gate, 0, -15.0f, 2.4f, 0);
+	uint32_t tower = plan->count;
 	plan_face_tower(plan, &gate, 1.7f);
+	plan_refine(plan, tower, turn == 1 ? 1.4f : 1.0f);
 	for (int side = 0; side < 4; side++) {
+		uint32_t first = plan->count;
 		struct frame porch = frame_within(&gate, 0, 0, 0.1f, side);
 		porch = frame_within(&porch, 0, -1.7f, 0, 0);
 		plan_porch(plan, &porch, 1.05f, side & 1 ? 1.7f : 1.1f, 2.7f);
+		if (side == 0 && turn < 2) /* the eastern door, and the southern */
+			plan_refine(plan, first, turn == 1 ? 2.1f : 1.7f);
 	}
 }
 
