@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/build.h"
 #include "pipeline/content.h"
 #include "pipeline/master.h"
 
@@ -32,21 +33,6 @@ struct settings {
 	uint32_t jobs;
 	bool force;
 };
-
-static struct master_options options_of(const struct content *content,
-					const struct settings *settings)
-{
-	bool tree = settings->kind ? strcmp(settings->kind, "tree") == 0 : content->binary_tree;
-
-	return (struct master_options){
-		.multires = {
-			.kind = tree ? MULTIRES_TREE : MULTIRES_GROUPS,
-			.patch_triangles = content->patch_triangles,
-			.jobs = settings->jobs,
-		},
-		.stone_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
-	};
-}
 
 static void print_master(const struct master *master, double share)
 {
@@ -124,13 +110,14 @@ static int build(const char *folder, const struct content *content, struct hash 
 
 static int make(const struct settings *settings, const struct content *content)
 {
-	const struct master_options options = options_of(content, settings);
+	struct master_options options;
 	struct fault fault = { "" };
 	struct master *master = NULL;
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
 	int rc = content_work_path(content, "master", folder);
 
+	build_master_options(&options, content, settings->jobs);
 	if (rc == 0)
 		rc = content_scans_key(content, &key, &fault);
 	if (rc < 0)
@@ -167,6 +154,8 @@ static int run(const struct settings *settings)
 		complain(settings->folder, rc, &fault);
 		return EXIT_FAILURE;
 	}
+	if (settings->kind)
+		content.binary_tree = strcmp(settings->kind, "tree") == 0;
 	rc = make(settings, &content);
 	content_release(&content);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -239,7 +239,7 @@ static void set_defaults(struct content *content, const char *folder)
 		.grid_points = 8,
 		.face_px = 512,
 		.jpeg_quality = 75,
-		.patch_triangles = 4000,
+		.patch_triangles = 0,
 		.publish_share = 0.10,
 		.language_count = 1,
 		.languages = { "en" },

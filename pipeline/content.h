@@ -45,7 +45,7 @@ struct content {
 	uint32_t face_px;         /* of a sampling face at its finest: 128, 256 ... 2048 */
 	uint32_t jpeg_quality;    /* 1..100 */
 	bool binary_tree;         /* the paper's hierarchy, not groups */
-	uint32_t patch_triangles; /* 256..4000 */
+	uint32_t patch_triangles; /* 256..4000; 0: by the size of the scan */
 	double publish_share;     /* of the scan's triangles; above 0, at most 1 */
 	uint32_t language_count;
 	char languages[CONTENT_LANGUAGES_MOST][CONTENT_LANGUAGE_BYTES]; /* the first is default */

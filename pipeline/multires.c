@@ -13,7 +13,9 @@
 #include "pipeline/partition.h"
 
 enum {
+	PATCHES = 256, /* a scan has at least so many, where they are not too small for it */
 	PATCH_TRIANGLES = 1000,
+	PATCH_TRIANGLES_LEAST = 256,
 	GROUP_PATCHES = 4,
 	TOP_TRIANGLES = 6000,
 	TOP_PART = 25, /* of a small scan's triangles: far below what is published of it */
@@ -39,13 +41,24 @@ struct builder {
 	uint32_t group_room, patch_room;
 };
 
+/* Small enough that a view can choose, of small scans too; docs/hierarchy.md has the figures. */
+static uint32_t patch_triangles_for(uint32_t triangle_count)
+{
+	uint32_t some = triangle_count / PATCHES;
+
+	return some > PATCH_TRIANGLES         ? PATCH_TRIANGLES
+	       : some < PATCH_TRIANGLES_LEAST ? PATCH_TRIANGLES_LEAST
+					      : some;
+}
+
 static void set_defaults(struct multires_options *options, uint32_t triangle_count)
 {
 	long processors = sysconf(_SC_NPROCESSORS_ONLN);
 
-	if (options->patch_triangles == 0 || options->patch_triangles > PATCH_TRIANGLES_MOST)
-		options->patch_triangles =
-			options->kind == MULTIRES_TREE ? PATCH_TRIANGLES_MOST : PATCH_TRIANGLES;
+	if (options->patch_triangles == 0)
+		options->patch_triangles = patch_triangles_for(triangle_count);
+	if (options->patch_triangles > PATCH_TRIANGLES_MOST)
+		options->patch_triangles = PATCH_TRIANGLES_MOST;
 	if (options->group_patches < 2 || options->group_patches > GROUP_PATCHES_MOST / 2)
 		options->group_patches = GROUP_PATCHES;
 	if (options->top_triangles == 0)

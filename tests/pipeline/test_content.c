@@ -40,7 +40,7 @@ static void defaults_need_only_a_scan(void **state)
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
 	CHECK(content.grid_points == 8 && content.face_px == 512 && content.jpeg_quality == 75);
-	CHECK(content.patch_triangles == 4000 && content.publish_share == 0.10);
+	CHECK(content.patch_triangles == 0 && content.publish_share == 0.10);
 	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
 	CHECK(content.lit == CONTENT_LIT_AUTO && !content.has_start && !content.binary_tree);
 	CHECK(fabs(content.sun[0] * content.sun[0] + content.sun[1] * content.sun[1] +
