@@ -167,7 +167,7 @@ static bool range_begins_at(const char *line, size_t size, uint64_t first)
 
 static void take_etag(struct http_request *request, const char *text, size_t size)
 {
-	while (size > 0 && (text[size - 1] == '\n' || text[size - 1] == '\r'))
+	while (size > 0 && strchr("\r\n ", text[size - 1]))
 		size--;
 	while (size > 0 && *text == ' ') {
 		text++;

@@ -1,0 +1,344 @@
+/* Requests against a small server inside the test that answers as no good server would. */
+#include "net/http.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "tests/check.h"
+
+static const char letters[] = "abcdefghijklmnopqrstuvwxyz";
+
+/* What the server sends for a path, byte for byte; then it closes. */
+static const struct script {
+	const char *path, *answer;
+	bool stalls; /* then nothing more comes, until the client gives up */
+} scripts[] = {
+	{ "/whole",
+	  "HTTP/1.1 200 OK\r\nETag:  \"v1\" \r\nContent-Length: 26\r\n\r\n"
+	  "abcdefghijklmnopqrstuvwxyz",
+	  0 },
+	{ "/range",
+	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
+	  "Content-Length: 5\r\n\r\ndefgh",
+	  0 },
+	{ "/other-range",
+	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 4-8/26\r\n"
+	  "Content-Length: 5\r\n\r\nefghi",
+	  0 },
+	{ "/no-range", "HTTP/1.1 206 Partial\r\nContent-Length: 5\r\n\r\ndefgh", false },
+	{ "/too-much",
+	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
+	  "Content-Length: 9\r\n\r\ndefghijkl",
+	  0 },
+	{ "/cut",
+	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
+	  "Content-Length: 5\r\n\r\nde",
+	  0 },
+	{ "/not-modified", "HTTP/1.1 304 Not Modified\r\nETag: \"v1\"\r\n\r\n", false },
+	{ "/absent", "HTTP/1.1 404 Not Found\r\nContent-Length: 7\r\n\r\nabsent!", false },
+	{ "/ill", "HTTP/1.1 503 Ill\r\nContent-Length: 4\r\n\r\nill!", false },
+	{ "/round", "HTTP/1.1 302 Found\r\nLocation: /round\r\nContent-Length: 0\r\n\r\n", false },
+	{ "/to-a-file",
+	  "HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\n"
+	  "Content-Length: 0\r\n\r\n",
+	  0 },
+	{ "/rubbish", "I am no web server\r\n\r\n", false },
+	{ "/stall", "HTTP/1.1 200 OK\r\nContent-Length: 26\r\n\r\nabc", true },
+};
+
+static struct {
+	int listener, port;
+	pthread_t thread;
+	char request[2048]; /* the last one */
+} server;
+
+static const struct script *script_for(const char *request)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++) {
+		size_t length = strlen(scripts[i].path);
+
+		if (strncmp(request, "GET ", 4) == 0 &&
+		    strncmp(request + 4, scripts[i].path, length) == 0 &&
+		    request[4 + length] == ' ')
+			return &scripts[i];
+	}
+	return NULL;
+}
+
+static void serve_one(int fd)
+{
+	const struct script *script;
+	size_t used = 0;
+	ssize_t got;
+
+	do {
+		got = read(fd, server.request + used, sizeof(server.request) - 1 - used);
+		used += got > 0 ? (size_t)got : 0;
+		server.request[used] = '\0';
+	} while (got > 0 && !strstr(server.request, "\r\n\r\n"));
+	script = script_for(server.request);
+	if (script && write(fd, script->answer, strlen(script->answer)) > 0 && script->stalls)
+		while (read(fd, server.request, 1) > 0)
+			;
+	close(fd);
+}
+
+static void *serve(void *unused)
+{
+	int fd;
+
+	while ((fd = accept(server.listener, NULL, NULL)) >= 0)
+		serve_one(fd);
+	return unused;
+}
+
+static int begin_server(void **state)
+{
+	struct sockaddr_in address = { .sin_family = AF_INET };
+	socklen_t size = sizeof(address);
+
+	(void)state;
+	address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	server.listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	CHECK(bind(server.listener, (struct sockaddr *)&address, size) == 0);
+	CHECK(listen(server.listener, 8) == 0);
+	CHECK(getsockname(server.listener, (struct sockaddr *)&address, &size) == 0);
+	server.port = ntohs(address.sin_port);
+	return pthread_create(&server.thread, NULL, serve, NULL);
+}
+
+static int end_server(void **state)
+{
+	(void)state;
+	shutdown(server.listener, SHUT_RDWR);
+	pthread_join(server.thread, NULL);
+	close(server.listener);
+	return 0;
+}
+
+struct outcome {
+	char body[64], etag[64];
+	size_t size;
+	bool ended, not_modified;
+	int rc;
+	uint64_t received_bytes;
+};
+
+static bool on_piece(void *data, struct bytes piece)
+{
+	struct outcome *outcome = data;
+
+	CHECK(outcome->size + piece.size < sizeof(outcome->body));
+	memcpy(outcome->body + outcome->size, piece.data, piece.size);
+	outcome->size += piece.size;
+	return true;
+}
+
+static void on_done(void *data, const struct http_result *result)
+{
+	struct outcome *outcome = data;
+
+	CHECK(!outcome->ended && result->why[0]);
+	outcome->ended = true;
+	outcome->rc = result->rc;
+	outcome->not_modified = result->not_modified;
+	snprintf(outcome->etag, sizeof(outcome->etag), "%s", result->etag);
+}
+
+static struct outcome fetch_from(const char *url, const char *path, uint64_t first, uint64_t size,
+				 const char *etag)
+{
+	struct http_options options = { .url = url, .stall_s = 1 };
+	struct outcome outcome = { .rc = 1 };
+	struct http_ask ask = { .path = path,
+				.first = first,
+				.size = size,
+				.ceiling = 30,
+				.etag = etag,
+				.receive = on_piece,
+				.done = on_done,
+				.data = &outcome };
+	int64_t until_ms = clock_now_ms() + 20000;
+	struct http_request *request;
+	struct http *http;
+
+	CHECK(http_create(&http, &options) == 0);
+	CHECK(http_ask(http, &ask, &request) == 0);
+	while (!outcome.ended && clock_now_ms() < until_ms) {
+		struct pollfd ready = { .fd = http_fd(http), .events = POLLIN };
+
+		if (poll(&ready, 1, 1000) > 0)
+			CHECK(http_dispatch(http) == 0);
+	}
+	CHECK(outcome.ended);
+	outcome.received_bytes = http_received_bytes(http);
+	http_destroy(http);
+	return outcome;
+}
+
+static struct outcome fetch(const char *path, uint64_t first, uint64_t size)
+{
+	char url[64];
+
+	snprintf(url, sizeof(url), "http://127.0.0.1:%d/", server.port);
+	return fetch_from(url, path, first, size, NULL);
+}
+
+static bool gave(const struct outcome *outcome, const char *text)
+{
+	return outcome->rc == 0 && outcome->size == strlen(text) &&
+	       memcmp(outcome->body, text, outcome->size) == 0;
+}
+
+static void brings_files_and_ranges(void **state)
+{
+	struct outcome outcome = fetch("whole", 0, 0);
+
+	(void)state;
+	CHECK(gave(&outcome, letters) && strcmp(outcome.etag, "\"v1\"") == 0);
+	CHECK(outcome.received_bytes >= 26 + 50); /* headers too */
+	outcome = fetch("range", 3, 5);
+	CHECK(gave(&outcome, "defgh"));
+	CHECK(strstr(server.request, "Range: bytes=3-7\r\n"));
+}
+
+static void finds_the_range_in_a_whole_file(void **state)
+{
+	struct outcome outcome = fetch("whole", 3, 5);
+
+	(void)state;
+	CHECK(gave(&outcome, "defgh"));
+	outcome = fetch("whole", 24, 5); /* it ends before */
+	CHECK(gave(&outcome, "yz"));
+}
+
+static void refuses_another_range_than_it_asked_for(void **state)
+{
+	struct outcome outcome = fetch("other-range", 3, 5);
+
+	(void)state;
+	CHECK(outcome.rc == -EBADMSG && outcome.size == 0);
+	outcome = fetch("no-range", 3, 5);
+	CHECK(outcome.rc == -EBADMSG && outcome.size == 0);
+}
+
+static void takes_no_byte_past_what_it_asked_for(void **state)
+{
+	struct outcome outcome = fetch("too-much", 3, 5);
+
+	(void)state;
+	CHECK(outcome.size == 5);
+}
+
+static void refuses_a_file_past_the_ceiling(void **state)
+{
+	char folder[] = "/tmp/gopura-http-XXXXXX", path[64];
+	struct outcome outcome;
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/large", folder);
+	CHECK(bytes_write_file(
+		      (struct bytes){ (const uint8_t *)"0123456789012345678901234567890", 31 },
+		      path) == 0);
+	outcome = fetch_from(folder, "large", 0, 0, NULL);
+	CHECK(outcome.rc == -EBADMSG);
+	unlink(path);
+	rmdir(folder);
+}
+
+static void knows_a_bad_answer_from_no_answer(void **state)
+{
+	static const struct {
+		const char *path;
+		int rc;
+	} cases[] = {
+		{ "absent", -ENOENT },          { "ill", -EHOSTUNREACH },
+		{ "cut", -EHOSTUNREACH },       { "round", -EHOSTUNREACH },
+		{ "to-a-file", -EHOSTUNREACH }, { "rubbish", -EHOSTUNREACH },
+		{ "stall", -EHOSTUNREACH },     { "nothing-at-all", -EHOSTUNREACH },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		bool ranged = strcmp(cases[i].path, "cut") == 0;
+		struct outcome outcome = fetch(cases[i].path, ranged ? 3 : 0, ranged ? 5 : 0);
+
+		if (outcome.rc != cases[i].rc)
+			fail_msg("%s: %d", cases[i].path, outcome.rc);
+	}
+}
+
+static void asks_conditionally(void **state)
+{
+	struct outcome outcome;
+	char url[64];
+
+	(void)state;
+	snprintf(url, sizeof(url), "http://127.0.0.1:%d", server.port);
+	outcome = fetch_from(url, "not-modified", 0, 0, "\"v1\"");
+	CHECK(outcome.rc == 0 && outcome.not_modified && outcome.size == 0);
+	CHECK(strstr(server.request, "If-None-Match: \"v1\"\r\n"));
+}
+
+static void reads_a_folder_like_a_server(void **state)
+{
+	char folder[] = "/tmp/gopura 100% ü-XXXXXX", path[64];
+	struct outcome outcome;
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/file", folder);
+	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)letters, 26 }, path) == 0);
+	outcome = fetch_from(folder, "file", 0, 0, NULL);
+	CHECK(gave(&outcome, letters) && outcome.received_bytes == 26);
+	outcome = fetch_from(folder, "file", 3, 5, NULL);
+	CHECK(gave(&outcome, "defgh") && outcome.received_bytes == 5);
+	outcome = fetch_from(folder, "absent", 0, 0, NULL);
+	CHECK(outcome.rc == -ENOENT);
+	outcome = fetch_from(folder, "file", 300, 5, NULL); /* past its end */
+	CHECK(outcome.rc == -ENOENT || outcome.size == 0);
+	unlink(path);
+	rmdir(folder);
+	outcome = fetch_from(folder, "file", 0, 0, NULL); /* the stick was pulled out */
+	CHECK(outcome.rc == -EHOSTUNREACH);
+}
+
+static void knows_which_urls_it_can_serve(void **state)
+{
+	static const char *const bad[] = { "", "ftp://museum.example/", "gopher://x" };
+	struct http *http;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
+		struct http_options options = { .url = bad[i] };
+
+		CHECK(http_create(&http, &options) == -EINVAL && http == NULL);
+	}
+	http_destroy(NULL);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(brings_files_and_ranges),
+		cmocka_unit_test(finds_the_range_in_a_whole_file),
+		cmocka_unit_test(refuses_another_range_than_it_asked_for),
+		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),
+		cmocka_unit_test(refuses_a_file_past_the_ceiling),
+		cmocka_unit_test(knows_a_bad_answer_from_no_answer),
+		cmocka_unit_test(asks_conditionally),
+		cmocka_unit_test(reads_a_folder_like_a_server),
+		cmocka_unit_test(knows_which_urls_it_can_serve),
+	};
+
+	return cmocka_run_group_tests(tests, begin_server, end_server);
+}
