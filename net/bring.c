@@ -11,6 +11,8 @@
 enum {
 	WANTS_MOST = 1 << 18,
 	RANGES_MOST = 8,
+	SMALL_RANGES_MOST = 32, /* as long as all together stay small: the line's delay */
+	SMALL_BYTES = 256 << 10,
 	RANGES_FOR_PAGES = 2, /* beside those: nothing can be judged without pages */
 	GAP_BYTES = 4096,
 	RANGE_BYTES_LEAST = 64 << 10,
@@ -300,9 +302,14 @@ static size_t gather(struct bring *bring)
 	return count;
 }
 
+static uint32_t ranges_most(const struct bring *bring)
+{
+	return bring->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MOST : RANGES_MOST;
+}
+
 static bool may_ask_for(const struct bring *bring, const struct range_item *item)
 {
-	uint32_t most = RANGES_MOST;
+	uint32_t most = ranges_most(bring);
 
 	if (item->priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
@@ -334,7 +341,7 @@ static void work_ranges(struct bring *bring)
 {
 	size_t count, first, taken;
 
-	if (!bring->plan_changed || bring->range_count >= RANGES_MOST + RANGES_FOR_PAGES ||
+	if (!bring->plan_changed || bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
 	    !link_may_ask(bring->options.link) ||
 	    !bring->options.events.has_room(bring->options.data))
 		return;
@@ -399,7 +406,7 @@ int64_t bring_due_ms(const struct bring *bring)
 		return line_due_ms(link, due_ms); /* the kiosk will wake us */
 	if (bring->fresh_count > 0)
 		return 0;
-	if (bring->range_count < RANGES_MOST) {
+	if (bring->range_count < ranges_most(bring)) {
 		int64_t plan_ms = bring->plan_changed ? 0 : bring->plan_due_ms;
 
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;

@@ -53,6 +53,7 @@ struct bring {
 	struct bring_release *releases[MESSAGE_RELEASES_MOST]; /* newest first */
 	struct range *ranges;                                  /* in flight */
 	uint32_t range_count;
+	uint64_t flying_bytes;    /* that the ranges in flight asked for */
 	struct range_item *items; /* scratch of planning */
 	size_t item_capacity;
 	struct buffer scratch; /* an object from the cache */

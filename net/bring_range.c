@@ -23,6 +23,7 @@ struct range {
 	uint32_t wanted;   /* slots with a want that are still to come */
 	size_t count, now; /* slots; the one whose bytes come */
 	uint64_t at;       /* place in the pack of the next byte */
+	uint64_t bytes;    /* of the whole range */
 	int64_t began_ms;
 	struct buffer object; /* of the slot that comes, so far */
 	struct slot slots[];
@@ -34,6 +35,7 @@ static void unlink_range(struct range *range)
 	if (range->next)
 		range->next->link = range->link;
 	range->bring->range_count--;
+	range->bring->flying_bytes -= range->bytes;
 	range->bring->options.link->in_flight--;
 	range->bring->plan_changed = true;
 	buffer_finish(&range->object);
@@ -161,6 +163,7 @@ void bring_ask_range(struct bring *bring, const struct range_item *items, size_t
 	}
 	range->bring = bring;
 	buffer_init(&range->object, UINT32_MAX);
+	range->bytes = ask.size;
 	fill_slots(range, items, count);
 	range->next = bring->ranges;
 	range->link = &bring->ranges;
@@ -168,6 +171,7 @@ void bring_ask_range(struct bring *bring, const struct range_item *items, size_t
 		range->next->link = &range->next;
 	bring->ranges = range;
 	bring->range_count++;
+	bring->flying_bytes += range->bytes;
 	bring->figures.ranges++;
 	bring->options.link->in_flight++;
 }
