@@ -41,6 +41,7 @@ struct touch {
 	char *folder, *replay_path;
 	float matrix[6];
 	int epoll_fd, inotify_fd, timer_fd;
+	int parent_watch; /* of the folder's own folder while it is missing, else -1 */
 	struct source sources[DEVICES_MOST];
 	bool contact_used[TOUCH_CONTACTS_MOST];
 	struct touch_replay replay;
@@ -240,10 +241,32 @@ static void scan(struct touch *touch)
 	struct dirent *entry;
 
 	if (!folder)
-		return; /* none yet: the watch on its parent is not ours to keep */
+		return;
 	while ((entry = readdir(folder)))
 		try_device(touch, entry->d_name);
 	closedir(folder);
+}
+
+/* A kernel without any device may have no /dev/input yet: then its parent is watched for it. */
+static void watch_folder(struct touch *touch)
+{
+	char parent[PATH_MAX];
+
+	if (touch->parent_watch >= 0)
+		inotify_rm_watch(touch->inotify_fd, touch->parent_watch);
+	touch->parent_watch = -1;
+	if (inotify_add_watch(touch->inotify_fd, touch->folder,
+			      IN_CREATE | IN_ATTRIB | IN_MOVED_TO) >= 0) {
+		scan(touch);
+		return;
+	}
+	snprintf(parent, sizeof(parent), "%s", touch->folder);
+	if (strrchr(parent, '/'))
+		strrchr(parent, '/')[1] = 0;
+	touch->parent_watch = inotify_add_watch(touch->inotify_fd, parent, IN_CREATE | IN_MOVED_TO);
+	if (touch->parent_watch < 0)
+		log_warn("input", "%s cannot be watched (%s): devices plugged in later are missed",
+			 touch->folder, strerror(errno));
 }
 
 static void read_source(struct touch *touch, struct source *source)
@@ -266,6 +289,7 @@ static void read_changes(struct touch *touch)
 		struct inotify_event event;
 		char bytes[4096];
 	} buffer;
+	bool folder_may_have_come = false;
 	ssize_t size;
 
 	while ((size = read(touch->inotify_fd, buffer.bytes, sizeof(buffer.bytes))) > 0) {
@@ -273,11 +297,14 @@ static void read_changes(struct touch *touch)
 			struct inotify_event event;
 
 			memcpy(&event, buffer.bytes + at, sizeof(event));
-			if (event.len > 0)
+			folder_may_have_come |= event.wd == touch->parent_watch;
+			if (event.len > 0 && event.wd != touch->parent_watch)
 				try_device(touch, buffer.bytes + at + sizeof(event));
 			at += (ssize_t)(sizeof(event) + event.len);
 		}
 	}
+	if (folder_may_have_come && touch->parent_watch >= 0)
+		watch_folder(touch);
 }
 
 /* ---- replay ---- */
@@ -356,11 +383,7 @@ static int open_devices(struct touch *touch)
 	rc = watch(touch, touch->inotify_fd, NULL);
 	if (rc < 0)
 		return rc;
-	if (inotify_add_watch(touch->inotify_fd, touch->folder,
-			      IN_CREATE | IN_ATTRIB | IN_MOVED_TO) < 0)
-		log_warn("input", "%s cannot be watched (%s): devices plugged in later are missed",
-			 touch->folder, strerror(errno));
-	scan(touch);
+	watch_folder(touch);
 	return 0;
 }
 
@@ -391,7 +414,7 @@ int touch_create(struct touch **out, const struct touch_options *options)
 	if (!touch)
 		return -ENOMEM;
 	touch->options = *options;
-	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = -1;
+	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = touch->parent_watch = -1;
 	rc = start(touch, options);
 	if (rc < 0) {
 		touch_destroy(touch);
