@@ -14,11 +14,7 @@
 #include "format/stone.h"
 
 /* Raised whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 2, INDEX_VERSION = 1, INDEX_BYTES_MOST = 256 << 20 };
-
-/* The coarsest cut of a small scan: far below the share of it that is published, so that finer
- * patches have room in that too. Large scans are bounded by what a first picture may cost. */
-enum { TOP_SHARE_INVERSE = 40, TOP_TRIANGLES_LEAST = 200, TOP_TRIANGLES_MOST = 6000 };
+enum { BUILD_VERSION = 3, INDEX_VERSION = 1, INDEX_BYTES_MOST = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -182,22 +178,12 @@ static void remove_other_files(const char *folder, const char *keep)
 		closedir(entries);
 }
 
-static uint32_t top_triangles(uint32_t scan)
-{
-	uint32_t top = scan / TOP_SHARE_INVERSE;
-
-	if (top < TOP_TRIANGLES_LEAST)
-		return TOP_TRIANGLES_LEAST;
-	return top < TOP_TRIANGLES_MOST ? top : TOP_TRIANGLES_MOST;
-}
-
 static int build_into(struct writer *writer, const char *folder, const struct mesh *mesh,
 		      struct hash stamp, const struct master_options *options,
 		      struct master_report *report)
 {
 	static const uint8_t plain[3] = { 184, 172, 150 };
 	const struct multires_sink sink = { write_object, writer };
-	struct multires_options multires = options->multires;
 	struct lattice_mesh lattice_mesh;
 	struct hierarchy hierarchy = { 0 };
 	struct master head = { .stamp = stamp, .source_triangles = mesh->triangle_count };
@@ -205,14 +191,12 @@ static int build_into(struct writer *writer, const char *folder, const struct me
 
 	if (rc < 0)
 		return rc;
-	if (multires.top_triangles == 0)
-		multires.top_triangles = top_triangles(mesh->triangle_count);
 	if (options->stone_colours)
 		colour_as_stone(&lattice_mesh);
 	head.lattice = lattice_mesh.lattice;
 	memcpy(head.box_min_m, lattice_mesh.box_min_m, sizeof(head.box_min_m));
 	memcpy(head.box_max_m, lattice_mesh.box_max_m, sizeof(head.box_max_m));
-	rc = multires_build(&hierarchy, &report->stats, &lattice_mesh, &multires, &sink);
+	rc = multires_build(&hierarchy, &report->stats, &lattice_mesh, &options->multires, &sink);
 	if (rc == 0 && fsync(writer->fd) < 0)
 		rc = -errno;
 	if (rc == 0)

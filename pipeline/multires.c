@@ -18,7 +18,7 @@ enum {
 	PATCH_TRIANGLES_LEAST = 256,
 	GROUP_PATCHES = 4,
 	TOP_TRIANGLES = 6000,
-	TOP_PART = 25, /* of a small scan's triangles: far below what is published of it */
+	TOP_PART = 40, /* of a small scan's triangles: far below what is published of it */
 	VOXEL_TRIANGLES = 256,
 	CHUNK_TRIANGLES = 65536,
 	TOUCH_WEIGHT = 4, /* of each vertex that two patches share */

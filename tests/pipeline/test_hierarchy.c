@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "format/patch.h"
+#include "pipeline/import.h"
 #include "tests/check.h"
 #include "tests/pipeline/shapes.h"
 
@@ -426,6 +427,38 @@ static void no_cut_of_an_open_scan_has_a_crack(void **state)
 	model_finish(&model);
 }
 
+/* Real scans, where they lie beside the tree: open, with holes and with what scanners make. */
+static void no_cut_of_a_real_scan_has_a_crack(void **state)
+{
+	static const char *const paths[] = {
+		"../shared/scans/lionstatue/lionstatue.obj",
+		"../shared/scans/stanford-bunny/reconstruction/bun_zipper.ply",
+	};
+	uint32_t seen = 0;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(paths); i++) {
+		const struct import_options options = { .up = IMPORT_Y_UP };
+		struct fault fault = { "" };
+		struct verdict verdict;
+		struct model model;
+		struct mesh mesh;
+
+		if (import_scan(&mesh, paths[i], &options, NULL, &fault) < 0)
+			continue;
+		seen++;
+		model_build(&model, mesh, &small_groups);
+		verdict = walk_cuts(&model, CUTS);
+		CHECK(verdict.shared > 100 * CUTS);
+		CHECK(verdict.cracks == 0);
+		print_message("%s: %u edges shared by two patches, %u by more, %u open\n", paths[i],
+			      verdict.shared, verdict.crowded, verdict.open);
+		model_finish(&model);
+	}
+	if (seen == 0)
+		skip();
+}
+
 static void no_cut_of_the_binary_tree_has_a_crack(void **state)
 {
 	const struct multires_options options = { .kind = MULTIRES_TREE,
@@ -551,6 +584,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_cut_of_the_temple_has_a_crack),
 		cmocka_unit_test(no_cut_of_an_open_scan_has_a_crack),
+		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
 		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
 		cmocka_unit_test(loose_stones_become_few),
 		cmocka_unit_test(one_lattice_step_is_found),
