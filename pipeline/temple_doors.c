@@ -170,7 +170,8 @@ float figure_window(float x, float y, float aspect)
 
 	if (edge < frame)
 		return 0.78f + 0.16f * cosf(edge * 120) + (edge < 0.02f ? 0.06f : 0);
-	float inner = 2 * (half - frame), count = fmaxf(3.0f, roundf(inner / 0.15f));
+	float inner = 2 * (half - frame);
+	float count = fmaxf(3.0f, 2 * roundf((inner / 0.15f - 1) * 0.5f) + 1);
 	float u = (x / inner + 0.5f) * count;
 	float across = (u - floorf(u) - 0.5f) * inner / count;
 	float t = fabsf(y - 0.5f) / (0.5f - frame);

@@ -175,6 +175,10 @@ static void plan_side(struct plan *plan, int turn)
 	plan_stairs(plan, &low, 1.3f, 2.2f, 2.4f);
 	plan_stairs(plan, &middle, 1.1f, 1.9f, 3.0f);
 	plan_stairs(plan, &high, 1.1f, 1.9f, 2.8f);
+	struct frame corner = frame_within(&rim, 18.0f, 0, 0, 0);
+	plan_box(plan, &corner, 0.34f, 0.34f, 0.95f);
+	struct frame seat = frame_within(&corner, 0, 0, 0.95f, 0);
+	plan_lion(plan, &seat, 1.0f);
 	plan_naga(plan, &rim, 2.35f, 17.7f);
 	plan_naga(plan, &rim, -2.35f, -17.7f);
 	plan_refine(plan, first, turn == 1 ? 1.7f : 1.0f); /* the eastern approach */

@@ -296,6 +296,17 @@ static void plan_gate(struct plan *plan, int turn)
 	}
 }
 
+/* Doors of stone on the two outer sides. */
+static void plan_closed_doors(struct plan *plan, const struct frame *tower, float half_m)
+{
+	for (int side = 0; side < 2; side++) {
+		struct frame door = frame_within(tower, 0, 0, 0.5f, side);
+		door = frame_within(&door, 0, -half_m - 0.06f, 0, 0);
+		plan_panel(plan, &door, 0.74f, 1.6f, RELIEF_DOOR, 0.1f, 0)->interest = 2;
+		plan_doorway(plan, &door, 0.66f, 2.2f);
+	}
+}
+
 void plan_towers(struct plan *plan)
 {
 	struct frame middle = frame_at(0, 0, 8.2f, 0);
@@ -319,6 +330,7 @@ void plan_towers(struct plan *plan)
 		plan_stairs(plan, &steps, 0.7f, 1.2f, 1.3f);
 		plan_tower(plan, &corner, 1.75f, 2.6f, 9.6f, 5);
 		plan_tower(plan, &angle, 1.6f, 2.6f, 6.4f, 3);
+		plan_closed_doors(plan, &angle, 1.6f);
 		for (int door = 0; door < 4; door++) {
 			struct frame at = frame_within(&corner, 0, 0, 0.4f, door);
 			at = frame_within(&at, 0, -1.75f, 0, 0);
