@@ -13,7 +13,8 @@
  *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
  *                    fetcher goes on trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
- *   MESSAGE_STATUS   figures, once a second while they change
+ *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute: the sign of
+ *                    life by which the kiosk knows a hanging fetcher
  *
  * The kiosk hashes every object it receives. A message that does not decode closes the socket. */
 #ifndef GOPURA_FORMAT_MESSAGE_H

@@ -30,6 +30,7 @@ enum {
 	PAUSE_MOST_MS = 10000,
 	STEADY_MS = 10000, /* a connection that lasted so long was a good one */
 	END_MS = 2000,     /* for the fetcher to end by itself */
+	SILENT_MS = 90000, /* without a word: it hangs (it speaks every 30 s at least) */
 	FETCHER_FD = 3,    /* of the socket, in the fetcher */
 };
 
@@ -53,7 +54,7 @@ struct net_client {
 	pid_t pid; /* of the fetcher we started; 0: none */
 	int pid_fd;
 	uint32_t failures; /* connections that did not last, in a row */
-	int64_t connected_ms;
+	int64_t connected_ms, heard_ms;
 	uint64_t received_before,
 		received_now; /* bytes, of the fetchers that died and of this one */
 	struct by_hash wants; /* struct wanted, owned */
@@ -143,7 +144,8 @@ static int adopt_socket(struct net_client *client, int fd)
 {
 	packets_init(&client->packets, fd);
 	client->waits_to_send = false;
-	client->connected_ms = clock_now_ms();
+	client->connected_ms = client->heard_ms = clock_now_ms();
+	set_timer(client, SILENT_MS);
 	return watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
 }
 
@@ -284,6 +286,20 @@ static bool reap(struct net_client *client)
 	return true;
 }
 
+/* A fetcher that hangs is as good as a dead one. */
+static void look_after(struct net_client *client)
+{
+	int64_t silent_ms = clock_now_ms() - client->heard_ms;
+
+	if (silent_ms < SILENT_MS) {
+		set_timer(client, SILENT_MS - silent_ms + 1);
+		return;
+	}
+	if (client->pid)
+		kill(client->pid, SIGKILL);
+	disconnect(client, "it said nothing for a long time");
+}
+
 /* The pause is over. The cache has one owner: the old fetcher must be gone first. */
 static void on_timer(struct net_client *client)
 {
@@ -291,8 +307,10 @@ static void on_timer(struct net_client *client)
 
 	if (read(client->timer_fd, &expirations, sizeof(expirations)) < 0)
 		return;
-	if (client->packets.fd >= 0)
+	if (client->packets.fd >= 0) {
+		look_after(client);
 		return;
+	}
 	if (!reap(client)) {
 		kill(client->pid, SIGKILL);
 		set_timer(client, PAUSE_MS);
@@ -379,8 +397,10 @@ static void hear_fetcher(struct net_client *client)
 		int passed;
 
 		rc = packets_receive(&client->packets, &message, &passed);
-		if (rc == 0)
+		if (rc == 0) {
+			client->heard_ms = clock_now_ms();
 			rc = obey(client, &message, passed);
+		}
 	}
 	watch_socket(client);
 	if (rc == -EBADMSG)

@@ -22,7 +22,8 @@ enum {
 	QUEUE_BYTES_MOST = 8 << 20, /* to the kiosk; past it nothing more is brought */
 	PACKETS_MOST = 512,         /* read in one go */
 	FLUSH_MS = 500,             /* what is in the cache's transaction is at most that old */
-	STATUS_MS = 1000,
+	STATUS_MS = 1000,           /* while figures change */
+	ALIVE_MS = 30000,           /* while they do not: the kiosk shall know that we live */
 };
 
 enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL };
@@ -40,6 +41,7 @@ struct fetch {
 	struct poll *poll;
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
+	int64_t said_ms;             /* when the kiosk was last told the figures */
 };
 
 /* ---- the kiosk comes and goes */
@@ -195,11 +197,13 @@ static void tell_status(struct fetch *fetch)
 	status->cache_bytes = cache_file_bytes(fetch->cache);
 	status->cache_budget_bytes = fetch->options->cache_budget_bytes;
 	status->offline_since_s = fetch->link.offline_since_s;
-	fetch->status_ms = clock_now_ms() + STATUS_MS;
-	if (memcmp(status, &fetch->said, sizeof(*status)) == 0) {
-		fetch->status_ms = INT64_MAX; /* until something happens */
+	if (memcmp(status, &fetch->said, sizeof(*status)) == 0 &&
+	    clock_now_ms() < fetch->said_ms + ALIVE_MS) {
+		fetch->status_ms = fetch->said_ms + ALIVE_MS; /* or when something happens */
 		return;
 	}
+	fetch->status_ms = clock_now_ms() + STATUS_MS;
+	fetch->said_ms = clock_now_ms();
 	fetch->said = *status;
 	send_to_kiosk(fetch, &message, -1);
 }
@@ -291,7 +295,7 @@ static int loop(struct fetch *fetch)
 			if (rc < 0)
 				return rc;
 		}
-		if (count > 0 && fetch->status_ms == INT64_MAX)
+		if (count > 0 && fetch->status_ms > clock_now_ms() + STATUS_MS)
 			fetch->status_ms = clock_now_ms() + STATUS_MS;
 	}
 	return 0;

@@ -6,12 +6,63 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
+#include <sys/timerfd.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "net/packets.h"
 #include "tests/check.h"
+
+/* Time goes on by itself, and by what a test adds; timers ring when a test says so (ring). */
+static int64_t later_ms;
+
+int64_t clock_now_us(void)
+{
+	struct timespec now;
+
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000 + later_ms * 1000;
+}
+
+int64_t clock_now_ms(void)
+{
+	return clock_now_us() / 1000;
+}
+
+int64_t clock_thread_us(void)
+{
+	return 0;
+}
+
+int64_t clock_wall_s(void)
+{
+	return 0;
+}
+
+static int timer_fd = -1;
+
+int timerfd_create(int clock, int flags)
+{
+	(void)clock;
+	timer_fd = eventfd(0, EFD_CLOEXEC | (flags & TFD_NONBLOCK ? EFD_NONBLOCK : 0));
+	return timer_fd;
+}
+
+/* A short timer (a pause before reconnecting) rings at once, a long one when ring() is called. */
+int timerfd_settime(int fd, int flags, const struct itimerspec *when, struct itimerspec *before)
+{
+	uint64_t one = 1;
+
+	(void)flags;
+	(void)before;
+	if (when->it_value.tv_sec < 20)
+		CHECK(write(fd, &one, sizeof(one)) == sizeof(one));
+	return 0;
+}
 
 struct stage {
 	char folder[64], path[96];
@@ -128,6 +179,14 @@ static void dispatch(struct stage *stage)
 
 	for (int i = 0; i < 50 && poll(&ready, 1, 0) > 0; i++)
 		CHECK(net_client_dispatch(stage->client) == 0);
+}
+
+static void ring(struct stage *stage)
+{
+	uint64_t one = 1;
+
+	CHECK(write(timer_fd, &one, sizeof(one)) == sizeof(one));
+	dispatch(stage);
 }
 
 /* The next message that the fetcher gets; MESSAGE_ASK_META of a connection's begin left out. */
@@ -344,6 +403,27 @@ static void does_not_block_on_a_fetcher_that_hangs(void **state)
 	}
 }
 
+/* Ninety seconds without a word: time is moved, not spent. */
+static void leaves_a_fetcher_that_says_nothing(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 1 };
+	struct message message;
+	int passed;
+
+	net_client_want(stage->client, &want);
+	later_ms += 60000;
+	tell(stage, status, -1); /* a sign of life */
+	later_ms += 60000;
+	ring(stage);
+	CHECK(packets_receive(&stage->fetcher, &message, &passed) != -EPIPE);
+	later_ms += 40000;
+	ring(stage);
+	accept_client(stage);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+}
+
 static void says_what_is_wrong_with_its_options(void **state)
 {
 	struct net_client_options options = { .program = "/bin/true" };
@@ -391,6 +471,7 @@ int main(void)
 		STAGED(says_everything_again_after_the_fetcher_died),
 		STAGED(begins_anew_with_another_release),
 		STAGED(leaves_a_fetcher_that_lies),
+		STAGED(leaves_a_fetcher_that_says_nothing),
 		STAGED(does_not_block_on_a_fetcher_that_hangs),
 		cmocka_unit_test(says_what_is_wrong_with_its_options),
 		cmocka_unit_test(survives_a_fetcher_that_cannot_start),
