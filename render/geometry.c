@@ -192,3 +192,16 @@ bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const 
 	}
 	return hit;
 }
+
+bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
+		     const float direction[3], float most_m)
+{
+	for (uint32_t i = 0; i < cut->patch_count; i++) {
+		uint32_t p = cut->patches[i];
+		const struct hierarchy_patch *patch = &geometry->hierarchy->patches[p];
+		if (ray_meets_sphere(from_m, direction, most_m, patch->centre_m, patch->radius_m) &&
+		    solid_blocks(&geometry->patches[p].content.solid, from_m, direction, most_m))
+			return true;
+	}
+	return false;
+}

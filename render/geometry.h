@@ -21,8 +21,9 @@ struct blend {
 struct piece_state {
 	struct plan_choice choice;
 	struct blend blend[PLAN_ENTRIES];
-	bool planned, orphan;   /* orphan: a face it was blended from is gone */
-	uint32_t planned_epoch; /* of the world, when it was */
+	bool planned, orphan;      /* orphan: a face it was blended from is gone */
+	uint32_t planned_epoch;    /* of the world, when it was */
+	uint32_t planned_versions; /* sum over the faces it wants */
 	float planned_eye_m[3];
 };
 
@@ -59,5 +60,8 @@ void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
 /* Nearest hit among the listed patches between least_m and *distance_m, which becomes it. */
 bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
 		  const float direction[3], float least_m, float *distance_m);
+/* Whether any of them is met before most_m. */
+bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
+		     const float direction[3], float most_m);
 
 #endif

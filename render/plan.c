@@ -8,12 +8,13 @@
 
 enum {
 	POINTS_BEST = 12,    /* considered for a piece, of all */
-	POINTS_RESIDENT = 8, /* besides, of those with tiles */
+	POINTS_RESIDENT = 6, /* besides, of those with tiles */
+	POINTS_ENOUGH = 3,   /* that see all of it */
 	CANDIDATES_MOST = 2 * (POINTS_BEST + POINTS_RESIDENT),
 };
 
 /* Below these a further face or fetch is not worth its cost. */
-static const float entry_gain_least = 0.02f, want_gain_least = 0.06f;
+static const float entry_gain_least = 0.005f, want_gain_least = 0.02f;
 /* What is shown stays unless another is better by this. */
 static const float loyalty = 1.1f;
 /* A level is sharp enough with this share of the pixels needed. */
@@ -23,6 +24,7 @@ const struct plan_tuning plan_tuning = {
 	.blur = 0.5f,
 	.parallax = 0.25f,
 	.angle = 0.6f,
+	.own = 0.5f,
 	.facing_low = 0.06f,
 	.facing_high = 0.25f,
 };
@@ -46,8 +48,10 @@ static struct geometry look(const struct plan_eye *eye, const float point[3], co
 	g.eye_distance = fmaxf(vec_normalise(to_eye), 1e-3f);
 	g.sample_distance = fmaxf(vec_normalise(to_sample), 1e-3f);
 	g.depth = fmaxf(g.depth, 1e-3f);
-	g.eye_cosine = fabsf(vec_dot(to_eye, normal));
-	g.sample_cosine = vec_dot(to_sample, normal);
+	/* Scans have rims: what shows is the side that is turned to the eye. */
+	float side = vec_dot(to_eye, normal) < 0 ? -1 : 1;
+	g.eye_cosine = side * vec_dot(to_eye, normal);
+	g.sample_cosine = side * vec_dot(to_sample, normal);
 	g.angle_cosine = vec_dot(to_eye, to_sample);
 	return g;
 }
@@ -84,6 +88,21 @@ float plan_quality(const struct plan_eye *eye, const float point_m[3], const flo
 	return fminf(facing, 1) / ((1 + penalty) * (1 + penalty));
 }
 
+float plan_own_quality(const struct plan_eye *eye, const float point_m[3], float spacing_m)
+{
+	float distance = fmaxf(vec_distance(eye->eye_m, point_m), 1e-3f);
+	float penalty = 1 + plan_tuning.own * spacing_m * eye->focal_px / distance;
+	return 1 / (penalty * penalty);
+}
+
+float plan_worth(float quality, float instead)
+{
+	if (quality <= instead)
+		return 0;
+	/* Quality is one over a squared penalty: two of its octaves are one of detail. */
+	return fminf(log2f(quality / instead) / 16, 1);
+}
+
 float plan_level_half_px(uint32_t level)
 {
 	return (float)(SAMPLE_TILE_PX << level) / 2;
@@ -115,14 +134,14 @@ struct candidate {
 	uint8_t level;
 	bool resident;
 	float u0, v0, u1, v1;
-	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* quality, 0 where it does not see */
+	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* worth, 0 where it does not see */
 	float resident_half_px;
 };
 
 struct ranked {
 	uint32_t point[POINTS_BEST + POINTS_RESIDENT];
 	float quality[POINTS_BEST + POINTS_RESIDENT];
-	uint32_t count;
+	uint32_t count, resident_from;
 };
 
 static void rank(struct ranked *ranked, uint32_t from, uint32_t most, uint32_t point, float quality)
@@ -195,6 +214,7 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 		rank(ranked, 0, POINTS_BEST, point,
 		     point_quality(world, eye, piece, error_m, point));
 	uint32_t from = ranked->count;
+	ranked->resident_from = from;
 	for (uint32_t i = 0; i < world->resident_count; i++) {
 		uint32_t point = world->resident[i] / CUBE_FACES;
 		if (!is_ranked(ranked, point))
@@ -207,7 +227,7 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 static uint8_t sight_of(struct plan_choice *choice, const struct plan_world *world,
 			const struct piece *piece, uint32_t point, const float sample[3])
 {
-	struct plan_sight *sight = &choice->sight[point % PLAN_SIGHTS];
+	struct plan_sight *sight = &choice->sight[point * 2654435761u >> 26];
 	if (sight->point == point + 1)
 		return sight->seen;
 	*sight = (struct plan_sight){ .point = point + 1 };
@@ -257,8 +277,11 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 	candidate->u1 = fmaxf(candidate->u1, uv[0]);
 	candidate->v0 = fminf(candidate->v0, uv[1]);
 	candidate->v1 = fmaxf(candidate->v1, uv[1]);
-	candidate->ideal[probe] = plan_quality(eye, at, normal, candidate->sample_m,
-					       plan_level_half_px(candidate->level), error_m);
+	float own = plan_own_quality(eye, at, piece->spacing_m);
+	candidate->ideal[probe] =
+		plan_worth(plan_quality(eye, at, normal, candidate->sample_m,
+					plan_level_half_px(candidate->level), error_m),
+			   own);
 	if (!candidate->resident)
 		return;
 	int level = world->level_at(world->data, candidate->face, uv[0], uv[1]);
@@ -266,25 +289,26 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 		return;
 	float half_px = plan_level_half_px((uint32_t)level);
 	candidate->resident_half_px = fmaxf(candidate->resident_half_px, half_px);
-	candidate->now[probe] =
-		plan_quality(eye, at, normal, candidate->sample_m, half_px, error_m);
+	candidate->now[probe] = plan_worth(
+		plan_quality(eye, at, normal, candidate->sample_m, half_px, error_m), own);
 	candidate->ideal[probe] = fmaxf(candidate->ideal[probe], candidate->now[probe]);
 }
 
-static void add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
-		      const struct plan_world *world, const struct plan_eye *eye,
-		      const struct piece *piece, uint32_t point, float error_m)
+/* Returns which probes it sees. */
+static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
+			 const struct plan_world *world, const struct plan_eye *eye,
+			 const struct piece *piece, uint8_t in_sight, uint32_t point, float error_m)
 {
 	float sample[3];
 	repository_point_m(world->repository, point, sample);
-	uint8_t seen = sight_of(choice, world, piece, point, sample);
+	uint8_t seen = sight_of(choice, world, piece, point, sample) & in_sight;
 	uint32_t level =
 		plan_level(plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
 			   repository_levels(world->repository));
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		float to[3], uv[2];
 		vec_sub(to, piece->probe_m[k], sample);
-		if (!(seen & 1 << k) || vec_dot(to, to) < 1e-6f || !faces_eye(eye, piece, k))
+		if (!(seen & 1 << k) || vec_dot(to, to) < 1e-6f)
 			continue;
 		face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
 		if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY ||
@@ -292,12 +316,13 @@ static void add_point(struct candidate *list, uint32_t *count, struct plan_choic
 			continue;
 		struct candidate *candidate = candidate_of(list, count, face);
 		if (!candidate)
-			return;
+			return seen;
 		memcpy(candidate->sample_m, sample, sizeof(sample));
 		candidate->level = (uint8_t)level;
 		candidate->resident = is_resident(world, face);
 		judge_probe(candidate, world, eye, piece, k, uv, error_m);
 	}
+	return seen;
 }
 
 /* ---- choosing */
@@ -386,11 +411,32 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 	struct candidate list[CANDIDATES_MOST];
 	struct ranked ranked;
 	uint32_t count = 0;
+	uint8_t facing = 0, in_sight = 0;
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		if (!faces_eye(eye, piece, k))
+			continue;
+		facing |= (uint8_t)(1 << k);
+		if (world->sees(world->data, eye->eye_m, piece->probe_m[k]))
+			in_sight |= (uint8_t)(1 << k);
+	}
+	/* Hidden, as far as probes tell: coloured by what is there, worth no fetch. */
+	bool hidden = in_sight == 0;
+	if (hidden)
+		in_sight = facing;
 	rank_points(&ranked, world, eye, piece, error_m);
-	for (uint32_t i = 0; i < ranked.count; i++)
-		add_point(list, &count, choice, world, eye, piece, ranked.point[i], error_m);
+	/* Rays are dear: once enough good points see it whole, worse ones add nothing. */
+	uint32_t whole = 0;
+	for (uint32_t i = 0; i < ranked.count; i++) {
+		if (whole >= POINTS_ENOUGH && i < ranked.resident_from)
+			continue;
+		uint8_t seen = add_point(list, &count, choice, world, eye, piece, in_sight,
+					 ranked.point[i], error_m);
+		whole += seen == in_sight;
+	}
 	choose_entries(choice, list, count);
-	choose_wants(choice, list, count);
+	choice->want_count = 0;
+	if (!hidden)
+		choose_wants(choice, list, count);
 }
 
 /* ---- the paper's eight corners */

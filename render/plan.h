@@ -6,8 +6,10 @@
  *   blur      how much coarser its pixels lie on the surface than the screen's
  *   parallax  how many pixels the mesh's own error shifts it, seen from the eye
  *   angle     between the two lines of sight
- * and is nothing where it sees the back, or not at all. docs/lumigraph.md has the formula and the
- * measurements behind its constants; the vertex shader holds its twin. */
+ * and is nothing where it sees the back, or not at all. The patch's own colours have a quality too,
+ * by the distance of their vertices: images are chosen and fetched for what they add to it.
+ * docs/lumigraph.md has the formula and the measurements behind its constants; the vertex shader
+ * holds its twin. */
 #ifndef GOPURA_RENDER_PLAN_H
 #define GOPURA_RENDER_PLAN_H
 
@@ -17,7 +19,7 @@
 enum {
 	PLAN_ENTRIES = 4, /* faces blended on a piece */
 	PLAN_WANTS = 3,
-	PLAN_SIGHTS = 32, /* remembered rays of a piece: sampling points, direct-mapped */
+	PLAN_SIGHTS = 64, /* remembered rays of a piece: sampling points, direct-mapped */
 };
 
 struct plan_eye {
@@ -27,7 +29,7 @@ struct plan_eye {
 
 /* The constants of the quality; plan_tuning is what the product uses. */
 struct plan_tuning {
-	float blur, parallax, angle;
+	float blur, parallax, angle, own;
 	float facing_low, facing_high; /* cosine at the surface: nothing below, all above */
 };
 extern const struct plan_tuning plan_tuning;
@@ -36,6 +38,11 @@ extern const struct plan_tuning plan_tuning;
  * mesh is wrong by error_m. */
 float plan_quality(const struct plan_eye *eye, const float point_m[3], const float normal[3],
 		   const float sample_m[3], float half_px, float error_m);
+/* The same scale for the patch's own colours, whose vertices are spacing_m apart. */
+float plan_own_quality(const struct plan_eye *eye, const float point_m[3], float spacing_m);
+/* What an image of one quality is worth where something of another would be shown instead, 0..1:
+ * octaves of detail, of which a picture has about eight. */
+float plan_worth(float quality, float instead);
 /* Pixels a unit of tangent that a face must have to be as sharp there as the screen. */
 float plan_needed_half_px(const struct plan_eye *eye, const float point_m[3], const float normal[3],
 			  const float sample_m[3]);

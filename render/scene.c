@@ -275,8 +275,8 @@ void scene_give(struct scene *scene, struct hash hash, struct bytes object)
 		log_warn("render", "no memory for an object; it stays wanted");
 	else if (rc < 0)
 		scene_refuse(known, rc);
-	else if (known->state != OBJECT_DECODING)
-		scene->epoch++;
+	else if (known->kind == OBJECT_BRICK)
+		scene->epoch++; /* it tells what is empty */
 }
 
 int scene_fd(const struct scene *scene)

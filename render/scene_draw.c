@@ -10,7 +10,8 @@
 enum {
 	DEPTH_TRIANGLES_MOST = 60000, /* of a face's picture */
 	PLAN_BUDGET_US = 5000,
-	SHARE_PX_MOST = 320, /* the picture from which image_share is counted */
+	PLAN_BUDGET_REST_US = 25000, /* nobody waits for the next frame */
+	SHARE_PX_MOST = 320,         /* the picture from which image_share is counted */
 };
 
 /* ---- depth of faces */
@@ -102,7 +103,7 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 		if (frame->tiles)
 			surface_blend(&scene->surface, frame, &scene->repository,
 				      patch->pieces[v->piece].blend,
-				      scene_patch_error_m(scene, v->patch));
+				      scene_patch_error_m(scene, v->patch), piece->spacing_m);
 		if (count == 0)
 			first = piece->first_triangle;
 		count += piece->triangle_count;
@@ -143,9 +144,8 @@ static void begin_picture(const struct scene *scene, int width_px, int height_px
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	glEnable(GL_CULL_FACE);
-	glCullFace(GL_BACK);
-	glFrontFace(GL_CCW);
+	/* Both sides, as samples show them: scans have rims. */
+	glDisable(GL_CULL_FACE);
 	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
@@ -166,7 +166,6 @@ static void draw_picture(struct scene *scene, const struct view *view, const str
 	draw_pieces(scene, &frame);
 	if (region && region->kind != REGION_NONE)
 		draw_mark(scene, view, region);
-	glDisable(GL_CULL_FACE);
 }
 
 /* How much of the model's pixels images colour, from a small picture. */
@@ -214,7 +213,7 @@ static bool view_changed(const struct scene *scene, const struct view *view)
 	       was->width_px != view->width_px || was->height_px != view->height_px;
 }
 
-static void prepare(struct scene *scene, struct scene_frame *out)
+static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 {
 	int64_t now_us = clock_now_us();
 	float passed_ms = scene->frame_us ? (float)(now_us - scene->frame_us) / 1000 : 0;
@@ -226,7 +225,7 @@ static void prepare(struct scene *scene, struct scene_frame *out)
 		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
 		return;
 	}
-	scene_plan_pieces(scene, PLAN_BUDGET_US);
+	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, fminf(passed_ms, 100));
 	scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
 }
@@ -289,7 +288,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	bool moved = view_changed(scene, &view);
 	scene->view = view;
 	scene->has_view = true;
-	prepare(scene, out);
+	prepare(scene, moved, out);
 	bool changed = mark_changed(scene, highlight) || is_busy(scene);
 	show(scene, (GLuint)framebuffer, highlight, moved, changed);
 	out->triangles = scene->cut.triangle_count;

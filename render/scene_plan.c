@@ -35,7 +35,6 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 		scene_refuse(object, rc);
 	else if (rc < 0)
 		log_warn("render", "an object was not taken up: %s", strerror(-rc));
-	scene->epoch++;
 }
 
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out)
@@ -101,8 +100,7 @@ void scene_list_pieces(struct scene *scene)
 	for (uint32_t i = 0; i < scene->cut.patch_count; i++) {
 		uint32_t p = scene->cut.patches[i];
 		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
-		if (!view_sees_sphere(view, patch->centre_m, patch->radius_m) ||
-		    !cut_patch_faces(patch, view->eye_m))
+		if (!view_sees_sphere(view, patch->centre_m, patch->radius_m))
 			continue;
 		const struct solid *solid = &scene->geometry.patches[p].content.solid;
 		for (uint32_t k = 0; k < solid->piece_count; k++) {
@@ -133,7 +131,19 @@ static bool sees(void *data, const float sample_m[3], const float point_m[3])
 	float most = distance * 0.985f - 0.05f;
 	if (most <= 0)
 		return true;
-	return !geometry_ray(&scene->geometry, &scene->cut, sample_m, to, 0, &most);
+	return !geometry_blocks(&scene->geometry, &scene->cut, sample_m, to, most);
+}
+
+/* Changes when a tile of a wanted face comes or goes. */
+static uint32_t versions_of(const struct scene *scene, const struct plan_choice *choice)
+{
+	uint32_t sum = 0;
+	for (uint32_t i = 0; i < choice->want_count; i++) {
+		int slot = tiles_face_slot(&scene->tiles, choice->want[i].face);
+		if (slot >= 0)
+			sum += scene->tiles.faces[slot].version;
+	}
+	return sum;
 }
 
 static bool is_stale(const struct scene *scene, const struct piece *piece,
@@ -141,9 +151,9 @@ static bool is_stale(const struct scene *scene, const struct piece *piece,
 {
 	if (!state->planned || state->orphan)
 		return true;
-	const struct plan_choice *choice = &state->choice;
-	if (state->planned_epoch != scene->epoch &&
-	    (choice->want_count > 0 || choice->entry_count < 2))
+	if (state->choice.want_count > 0 &&
+	    (state->planned_epoch != scene->epoch ||
+	     state->planned_versions != versions_of(scene, &state->choice)))
 		return true;
 	float moved = vec_distance(state->planned_eye_m, scene->view.eye_m);
 	float distance = view_sphere_distance(&scene->view, piece->centre_m, piece->radius_m);
@@ -165,6 +175,7 @@ static void plan_one(struct scene *scene, const struct plan_world *world,
 	state->planned = true;
 	state->orphan = false;
 	state->planned_epoch = scene->epoch;
+	state->planned_versions = versions_of(scene, &state->choice);
 	memcpy(state->planned_eye_m, eye.eye_m, sizeof(eye.eye_m));
 }
 

@@ -9,7 +9,7 @@
 
 enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
 
-static const float flat_enough = 0.9f;
+static const float flat_enough = 0.8f;
 
 static void vertex_m(const struct solid *solid, uint32_t vertex, float out[3])
 {
@@ -305,8 +305,8 @@ static bool meets_triangle(const struct solid *solid, uint32_t triangle, const f
 	return true;
 }
 
-bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
-	       float least_m, float *distance_m)
+static bool cast(const struct solid *solid, const float from[3], const float direction[3],
+		 float least, float *distance, bool any)
 {
 	uint32_t stack[DEPTH_MOST], depth = 0;
 	float inverse[3];
@@ -315,19 +315,30 @@ bool solid_ray(const struct solid *solid, const float from_m[3], const float dir
 		inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
 	if (solid->node_count > 0)
 		stack[depth++] = 0;
-	while (depth > 0) {
+	while (depth > 0 && !(hit && any)) {
 		uint32_t at = stack[--depth];
 		const struct solid_node *node = &solid->nodes[at];
-		if (!meets_box(node, from_m, inverse, *distance_m))
+		if (!meets_box(node, from, inverse, *distance))
 			continue;
 		if (!node->right) {
 			for (uint32_t t = node->first; t < node->first + node->count; t++)
-				hit |= meets_triangle(solid, t, from_m, direction, least_m,
-						      distance_m);
+				hit |= meets_triangle(solid, t, from, direction, least, distance);
 			continue;
 		}
 		stack[depth++] = node->right;
 		stack[depth++] = at + 1;
 	}
 	return hit;
+}
+
+bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
+	       float least_m, float *distance_m)
+{
+	return cast(solid, from_m, direction, least_m, distance_m, false);
+}
+
+bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
+		  float most_m)
+{
+	return cast(solid, from_m, direction, 0, &most_m, true);
 }

@@ -15,7 +15,7 @@ enum {
 	/* Small enough that one choice of samples suits all of it; a piece that bends is split
 	 * further, down to the second. */
 	PIECE_TRIANGLES_MOST = 256,
-	PIECE_TRIANGLES_BENT = 48,
+	PIECE_TRIANGLES_BENT = 96,
 	PIECE_PROBES = 8
 };
 
@@ -57,6 +57,9 @@ size_t solid_bytes(const struct solid *solid);
  * triangle; then *distance_m becomes it. */
 bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
 	       float least_m, float *distance_m);
+/* Whether anything is met before most_m. */
+bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
+		  float most_m);
 /* Whether a ray meets the sphere before most_m. */
 bool ray_meets_sphere(const float from_m[3], const float direction[3], float most_m,
 		      const float centre_m[3], float radius_m);

@@ -17,7 +17,7 @@ static const char vertex_common[] =
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n" /* origin from the eye, step */
 	"uniform vec4 u_sun;\n"     /* direction, 1 where the model is lit */
-	"varying vec3 v_colour;\n"
+	"varying vec4 v_colour;\n"  /* a: weight of the own colour among the images */
 	"vec3 unit_normal() {\n"
 	"	vec2 e = a_normal / 127.0;\n"
 	"	vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));\n"
@@ -33,28 +33,30 @@ static const char vertex_common[] =
 
 static const char plain_vertex[] = "void main() {\n"
 				   "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-				   "	v_colour = own_colour(unit_normal());\n"
+				   "	v_colour = vec4(own_colour(unit_normal()), 1.0);\n"
 				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
 				   "}\n";
 
 static const char plain_fragment[] = "precision mediump float;\n"
-				     "varying vec3 v_colour;\n"
+				     "varying vec4 v_colour;\n"
 				     "uniform float u_share;\n"
 				     "void main() {\n"
-				     "	gl_FragColor = vec4(v_colour * (1.0 - u_share), 1.0);\n"
+				     "	gl_FragColor = vec4(v_colour.rgb * (1.0 - u_share), 1.0);\n"
 				     "}\n";
 
 /* Per face five rows: right, up, forward (xyz, and minus their product with the point), the point
  * and the blend's weight, and (half_px, 0, 0, 0). The quality is plan_quality's twin. */
 static const char blended_vertex[] =
 	"uniform vec4 u_face[20];\n"
-	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, 0 */
+	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, spacing by its penalty */
 	"uniform vec4 u_tune[2];\n" /* blur, parallax, angle, 0; facing low, 1 / (high - low) */
 	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
 	"float quality(vec3 p, vec3 n, vec3 s, float depth, float half_px) {\n"
 	"	float d = length(p);\n"
 	"	vec3 to_eye = -p / d, to_sample = normalize(s - p);\n"
-	"	float cs = dot(to_sample, n), ce = abs(dot(to_eye, n)), ca = dot(to_eye, to_sample);\n"
+	"	float side = dot(to_eye, n) < 0.0 ? -1.0 : 1.0;\n"
+	"	float cs = side * dot(to_sample, n), ce = side * dot(to_eye, n);\n"
+	"	float ca = dot(to_eye, to_sample);\n"
 	"	float facing = clamp((cs - u_tune[1].x) * u_tune[1].y, 0.0, 1.0);\n"
 	"	float needed = u_eye.x * depth / d * sqrt(max(ce, 0.05) / max(cs, 0.05));\n"
 	"	float blur = max(needed / half_px - 1.0, 0.0);\n"
@@ -69,21 +71,25 @@ static const char blended_vertex[] =
 	"	if (s.w <= 0.0)\n"
 	"		return vec4(0.0, 0.0, 1.0, 0.0);\n"
 	"	vec3 q = vec3(dot(r.xyz, p) + r.w, dot(u.xyz, p) + u.w, dot(f.xyz, p) + f.w);\n"
-	"	float w = s.w;\n"
-	"	if (u_eye.z < 0.5) {\n"
-	"		float k = quality(p, n, s.xyz, max(q.z, 0.01), size.x);\n"
-	"		w *= k * k * k;\n"
-	"	}\n"
-	"	return vec4(q, w);\n"
+	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z, 0.01), size.x) : 1.0;\n"
+	"	return vec4(q, s.w * k);\n"
 	"}\n"
+	"float sharpen(float k) { return k * k * k; }\n"
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	vec3 n = unit_normal();\n"
-	"	v_colour = own_colour(n);\n"
 	"	v_face0 = seen(p, n, u_face[0], u_face[1], u_face[2], u_face[3], u_face[4]);\n"
 	"	v_face1 = seen(p, n, u_face[5], u_face[6], u_face[7], u_face[8], u_face[9]);\n"
 	"	v_face2 = seen(p, n, u_face[10], u_face[11], u_face[12], u_face[13], u_face[14]);\n"
 	"	v_face3 = seen(p, n, u_face[15], u_face[16], u_face[17], u_face[18], u_face[19]);\n"
+	"	float own = 1.0 + u_eye.w * u_eye.x / length(p);\n"
+	"	own = u_eye.z < 0.5 ? 1.0 / (own * own) : 0.01;\n"
+	"	float most = max(max(max(v_face0.w, v_face1.w), max(v_face2.w, v_face3.w)), own);\n"
+	"	v_face0.w = sharpen(v_face0.w / most);\n"
+	"	v_face1.w = sharpen(v_face1.w / most);\n"
+	"	v_face2.w = sharpen(v_face2.w / most);\n"
+	"	v_face3.w = sharpen(v_face3.w / most);\n"
+	"	v_colour = vec4(own_colour(n), OWN_SHARE * sharpen(own / most) + 0.0005);\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
@@ -92,7 +98,7 @@ static const char blended_fragment[] =
 	"uniform sampler2D u_tiles, u_cells, u_depths;\n"
 	"uniform vec4 u_slot[4];\n" /* face slot's column and row, 0, 0 */
 	"uniform float u_share, u_far, u_slack;\n"
-	"varying vec3 v_colour;\n"
+	"varying vec4 v_colour;\n"
 	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
 	"vec4 from_face(vec4 face, vec2 slot) {\n"
 	"	if (face.w < 0.0005 || face.z < 0.05)\n"
@@ -119,8 +125,8 @@ static const char blended_fragment[] =
 	"	sum += from_face(v_face1, u_slot[1].xy);\n"
 	"	sum += from_face(v_face2, u_slot[2].xy);\n"
 	"	sum += from_face(v_face3, u_slot[3].xy);\n"
-	"	float own = OWN_WEIGHT;\n"
-	"	vec3 colour = (sum.rgb + own * v_colour) / (sum.a + own);\n"
+	"	float own = v_colour.a;\n"
+	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
 	"	gl_FragColor = vec4(mix(colour, vec3(share), u_share), 1.0);\n"
 	"}\n";
@@ -147,7 +153,7 @@ static void set_constants(char *out, size_t bytes, int atlas_px)
 		 "#define APRON_PX %d.0\n"
 		 "#define TILE_PX %d.0\n"
 		 "#define ATLAS_PX %d.0\n"
-		 "#define OWN_WEIGHT 0.004\n",
+		 "#define OWN_SHARE 0.3\n",
 		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, TILES_FACES_ACROSS,
 		 TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX,
 		 SAMPLE_TILE_PX, atlas_px);
@@ -167,7 +173,8 @@ int surface_init(struct surface *surface, int atlas_px)
 	};
 	const struct gl_program_source blended = {
 		.name = "lumigraph",
-		.vertex = (const char *const[]){ light_glsl, vertex_common, blended_vertex, NULL },
+		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
+						 blended_vertex, NULL },
 		.fragment = (const char *const[]){ constants, blended_fragment, NULL },
 		.attributes = attributes,
 	};
@@ -258,7 +265,8 @@ static void set_face(float rows[20], const struct repository *repository, const 
 }
 
 void surface_blend(const struct surface *surface, const struct surface_frame *frame,
-		   const struct repository *repository, const struct blend *blend, float error_m)
+		   const struct repository *repository, const struct blend *blend, float error_m,
+		   float spacing_m)
 {
 	const struct surface_program *p = &surface->blended;
 	if (!frame->tiles)
@@ -274,6 +282,7 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 	}
 	glUniform4fv(p->face, 5 * PLAN_ENTRIES, rows);
 	glUniform4fv(p->slot, PLAN_ENTRIES, slots);
-	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0, 0);
+	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
+		    plan_tuning.own * spacing_m);
 	glUniform1f(surface->slack, 0.02f + 2 * error_m);
 }

@@ -34,8 +34,10 @@ struct surface_frame {
 
 /* Sets up state and uniforms; geometry_bind and surface_blend follow per patch and piece. */
 void surface_begin(const struct surface *surface, const struct surface_frame *frame);
-/* The faces of the piece that is drawn next, at most PLAN_ENTRIES; error_m as in plan_quality. */
+/* The faces of the piece that is drawn next, at most PLAN_ENTRIES; error_m and
+ * spacing_m as in plan_quality and plan_own_quality. */
 void surface_blend(const struct surface *surface, const struct surface_frame *frame,
-		   const struct repository *repository, const struct blend *blend, float error_m);
+		   const struct repository *repository, const struct blend *blend, float error_m,
+		   float spacing_m);
 
 #endif

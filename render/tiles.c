@@ -162,6 +162,7 @@ static void drop_tile(struct tiles *tiles, uint32_t slot)
 	if (!face)
 		return;
 	uncover(tiles, face, name);
+	face->version = ++tiles->version;
 	if (--face->tile_count == 0)
 		drop_face(tiles, face);
 }
@@ -236,6 +237,7 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 	}
 	tiles->slot_name[slot] = tile_name_pack(name) + 1;
 	tiles->slot_stamp[slot] = tiles->stamp;
+	face->version = ++tiles->version;
 	int x = (int)slot % tiles->slots_across, y = (int)slot / tiles->slots_across;
 	glBindTexture(GL_TEXTURE_2D, tiles->atlas);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -20,9 +20,9 @@ enum {
 
 struct tiles_face {
 	face_key key;
-	bool used;      /* holds a face */
-	uint32_t stamp; /* last plan that used it */
-	uint32_t tile_count;
+	bool used;                    /* holds a face */
+	uint32_t stamp;               /* last plan that used it */
+	uint32_t tile_count, version; /* version: changes with every tile that comes or goes */
 	int8_t level[TILES_CELLS][TILES_CELLS]; /* finest that is there, -1: none; [row][column] */
 	uint16_t slot[TILES_CELLS][TILES_CELLS];
 	int64_t born_ms[TILES_CELLS][TILES_CELLS];
@@ -38,7 +38,7 @@ struct tiles {
 	uint32_t *slot_stamp;
 	struct tiles_face *faces;
 	struct map slot_of, face_of;
-	uint32_t stamp;
+	uint32_t stamp, version;
 	face_key *keys; /* of the faces in use, dense */
 	uint32_t key_count;
 };

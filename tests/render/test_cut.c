@@ -1,0 +1,178 @@
+#include <math.h>
+#include <string.h>
+
+#include "render/cut.h"
+#include "tests/check.h"
+
+/* Group 0 holds patches 0 and 1; group 1 replaces patch 0, group 2 replaces patch 1, group 3
+ * replaces one patch of each of them: a graph, not a tree. The second half lies 20 m to the east.
+ */
+static struct hierarchy_group groups[4] = {
+	{ 0, 2, INFINITY, { 10, 0, 0 }, 30 },
+	{ 2, 2, 0.4f, { 0, 0, 0 }, 5 },
+	{ 4, 2, 0.4f, { 20, 0, 0 }, 5 },
+	{ 6, 2, 0.1f, { 1, 0, 0 }, 3 },
+};
+static struct hierarchy_patch patches[8] = {
+	{ .group = 0, .finer = 1 },
+	{ .group = 0, .finer = 2 },
+	{ .group = 1, .finer = 3 },
+	{ .group = 1, .finer = HIERARCHY_NONE },
+	{ .group = 2, .finer = 3 },
+	{ .group = 2, .finer = HIERARCHY_NONE },
+	{ .group = 3, .finer = HIERARCHY_NONE },
+	{ .group = 3, .finer = HIERARCHY_NONE },
+};
+static const struct hierarchy hierarchy = { 4, 8, groups, patches };
+
+static struct view view_from(float x, float y, float target_x)
+{
+	const struct camera camera = { .eye_m = { x, y, 0 },
+				       .target_m = { target_x, 0, 0 },
+				       .up = { 0, 0, 1 },
+				       .fov_deg = 40,
+				       .near_m = 0.1f,
+				       .far_m = 1000,
+				       .width_px = 1000,
+				       .height_px = 1000 };
+	struct view view;
+	view_from_camera(&view, &camera);
+	return view;
+}
+
+static int set_up(void **state)
+{
+	static struct cut cut;
+	for (uint32_t p = 0; p < 8; p++) {
+		patches[p].triangle_count = 100;
+		patches[p].centre_m[0] = p == 1 || p == 4 || p == 5 ? 20 : 0;
+		patches[p].radius_m = 4;
+		patches[p].cone_cos = -1;
+	}
+	*state = &cut;
+	return cut_init(&cut, &hierarchy);
+}
+
+static int tear_down(void **state)
+{
+	cut_finish(*state);
+	return 0;
+}
+
+static bool shows(const struct cut *cut, uint32_t patch)
+{
+	for (uint32_t i = 0; i < cut->patch_count; i++)
+		if (cut->patches[i] == patch)
+			return true;
+	return false;
+}
+
+static void shows_nothing_before_the_top_group_is_there(void **state)
+{
+	struct cut *cut = *state;
+	const struct cut_options options = { 1, 100000 };
+	const uint8_t loaded[4] = { 0, 1, 1, 1 };
+	struct view view = view_from(10, -60, 10);
+	cut_update(cut, &view, loaded, &options);
+	CHECK(cut->patch_count == 0);
+	CHECK(cut->want_count > 0 && cut->wants[0].group == 0);
+}
+
+static void coarser_patches_stand_in_for_what_is_not_loaded(void **state)
+{
+	struct cut *cut = *state;
+	const struct cut_options options = { 1, 100000 };
+	const uint8_t loaded[4] = { 1, 1, 0, 1 };
+	struct view view = view_from(10, -60, 10);
+	cut_update(cut, &view, loaded, &options);
+	/* Group 3 needs group 2, so it waits although it is loaded. */
+	CHECK(cut->shown[1] && !cut->shown[2] && !cut->shown[3]);
+	CHECK(shows(cut, 1) && shows(cut, 2) && shows(cut, 3) && cut->patch_count == 3);
+	CHECK(cut->want_count == 1 && cut->wants[0].group == 2);
+	CHECK(cut->wants[0].error_px > 1 && cut->wants[0].area_px > 0);
+}
+
+static void refines_no_further_than_the_error_asks(void **state)
+{
+	struct cut *cut = *state;
+	const uint8_t loaded[4] = { 1, 1, 1, 1 };
+	struct view view = view_from(10, -60, 10);
+	float error_px = cut_group_error_px(&groups[3], view.eye_m, view.focal_px);
+	struct cut_options options = { error_px * 1.01f, 100000 };
+	cut_update(cut, &view, loaded, &options);
+	CHECK(cut->shown[1] && cut->shown[2] && !cut->shown[3]);
+	options.error_px = error_px * 0.99f;
+	cut_update(cut, &view, loaded, &options);
+	CHECK(cut->shown[3] && shows(cut, 6) && !shows(cut, 2) && !shows(cut, 4));
+}
+
+static void stays_within_the_triangles(void **state)
+{
+	struct cut *cut = *state;
+	const struct cut_options options = { 1, 300 };
+	const uint8_t loaded[4] = { 1, 1, 1, 1 };
+	struct view view = view_from(10, -60, 10);
+	cut_update(cut, &view, loaded, &options);
+	CHECK(cut->triangle_count <= 300 && cut->triangle_count >= 200);
+	CHECK(cut->shown[1] + cut->shown[2] == 1 && !cut->shown[3]);
+}
+
+static void wants_only_what_is_in_sight(void **state)
+{
+	struct cut *cut = *state;
+	const struct cut_options options = { 1, 100000 };
+	const uint8_t loaded[4] = { 1, 0, 0, 0 };
+	struct view view = view_from(40, -60, 40);
+	cut_update(cut, &view, loaded, &options);
+	for (uint32_t i = 0; i < cut->want_count; i++)
+		CHECK(cut->wants[i].group == 2);
+	CHECK(cut->want_count == 1);
+}
+
+static void every_cut_is_valid_from_everywhere(void **state)
+{
+	struct cut *cut = *state;
+	for (int from = 0; from < 16 * 40; from++) {
+		const uint8_t loaded[4] = { 1, from & 1, from >> 1 & 1, from >> 2 & 1 };
+		const struct cut_options options = { 0.5f + (float)(from % 7),
+						     250 + 50u * (uint32_t)(from % 9) };
+		struct view view = view_from((float)(from % 40) - 10, -5 - (float)(from / 8), 10);
+		cut_update(cut, &view, loaded, &options);
+		for (uint32_t g = 1; g < 4; g++)
+			for (uint32_t on = 0; on < 4; on++)
+				CHECK(!cut->shown[g] || !cut_depends(cut, g, on) || cut->shown[on]);
+		for (uint32_t g = 0; g < 4; g++)
+			CHECK(!cut->shown[g] || loaded[g]);
+		/* Each surface once: patch 0's by itself or by group 1. */
+		CHECK(shows(cut, 0) != (bool)cut->shown[1]);
+		CHECK(shows(cut, 1) != (bool)cut->shown[2]);
+	}
+}
+
+static void a_back_side_is_told_by_its_cone(void **state)
+{
+	(void)state;
+	struct hierarchy_patch patch = { .radius_m = 1,
+					 .cone_axis = { 0, 1, 0 },
+					 .cone_cos = 0.9f };
+	const float before[3] = { 0, 50, 0 }, behind[3] = { 0, -50, 0 }, near[3] = { 0, -0.5f, 0 };
+	CHECK(cut_patch_faces(&patch, before));
+	CHECK(!cut_patch_faces(&patch, behind));
+	CHECK(cut_patch_faces(&patch, near));
+	patch.cone_cos = -1;
+	CHECK(cut_patch_faces(&patch, behind));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(shows_nothing_before_the_top_group_is_there),
+		cmocka_unit_test(coarser_patches_stand_in_for_what_is_not_loaded),
+		cmocka_unit_test(refines_no_further_than_the_error_asks),
+		cmocka_unit_test(stays_within_the_triangles),
+		cmocka_unit_test(wants_only_what_is_in_sight),
+		cmocka_unit_test(every_cut_is_valid_from_everywhere),
+		cmocka_unit_test(a_back_side_is_told_by_its_cone),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
