@@ -59,10 +59,10 @@ static void draw_help(cairo_t *c)
 static void draw_turn(cairo_t *c)
 {
 	/* Once around the finger, seen from above, open where the arrow ends. */
-	const double end = 0.9, radius = 0.85;
+	const double end = 0.15, radius = 0.85;
 
-	cairo_arc_negative(c, 0, 0, radius, end - 0.75, end - 4 * acos(0.0));
-	arrow_head(c, radius * cos(end), radius * sin(end), sin(end), -cos(end));
+	cairo_arc_negative(c, 0, 0, radius, end - 1.0, end - 4 * acos(0.0) + 0.25);
+	arrow_head(c, radius * cos(end) + 0.03, radius * sin(end) - 0.16, sin(end), -cos(end));
 	dot(c, 0, 0, 0.36);
 }
 

@@ -33,13 +33,13 @@ static void end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 /* Across a leader: a light core between dark edges, so that it shows on any stone. */
 static void draw_leader(struct overlay *overlay)
 {
-	int across_px = px(overlay, 1.2f) + 2;
+	int across_px = px(overlay, 1.5f) + 2;
 	cairo_t *context = begin(overlay, BITMAP_LEADER, 4, across_px);
 
 	if (!context)
 		return;
 	cairo_rectangle(context, 0, 1, 4, across_px - 2);
-	theme_set_source(context, theme_night, 0.45);
+	theme_set_source(context, theme_night, 0.72);
 	cairo_fill(context);
 	cairo_rectangle(context, 0, across_px * 0.34, 4, across_px * 0.32);
 	theme_set_source(context, theme_night_text, 1);
@@ -56,7 +56,7 @@ static void draw_dot(struct overlay *overlay)
 	if (!context)
 		return;
 	cairo_arc(context, middle, middle, middle * 0.95, 0, turn);
-	theme_set_source(context, theme_night, 0.5);
+	theme_set_source(context, theme_night, 0.72);
 	cairo_fill(context);
 	cairo_arc(context, middle, middle, middle * 0.72, 0, turn);
 	theme_set_source(context, theme_night_text, 1);

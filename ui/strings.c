@@ -13,8 +13,7 @@ static const struct {
 	  { "Lire la suite", "Fermer", "Glissez pour tourner", "Écartez pour approcher",
 	    "Touchez un nom pour lire" } },
 	{ "km", { "អានបន្ថែម", "បិទ", "អូសដើម្បីបង្វិល", "ច្បិចដើម្បីពង្រីក", "ប៉ះឈ្មោះដើម្បីអាន" } },
-	{ "ja",
-	  { "詳しく読む", "閉じる", "なぞって回す", "つまんで拡大・縮小", "名前にふれて読む" } },
+	{ "ja", { "詳しく読む", "閉じる", "なぞって回す", "つまんで拡大", "名前にふれて読む" } },
 };
 
 static const struct {
