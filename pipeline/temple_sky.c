@@ -10,7 +10,7 @@ enum { SOLID = 1 };
 
 struct sky {
 	uint8_t solid[HIGH][WIDE][WIDE];
-	uint8_t open[HIGH][WIDE][WIDE]; /* 0..255, of free voxels beside solid ones */
+	uint8_t open[HIGH][WIDE][WIDE]; /* 1..255, of free voxels near solid ones */
 };
 
 static int cell(float metres, float low_m)
@@ -90,17 +90,17 @@ static uint8_t look_up(const struct sky *sky, int x, int y, int z)
 		seen += free ? weight : 0;
 		all += weight;
 	}
-	return (uint8_t)(255 * seen / all + 0.5f);
+	return (uint8_t)(1 + 254 * seen / all);
 }
 
-static bool near_solid(const struct sky *sky, int x, int y, int z)
+/* The free voxels a vertex of this solid one may ask about; 0 is "not looked at yet". */
+static void look_around(struct sky *sky, int x, int y, int z)
 {
-	for (int k = -2; k <= 2; k++)
-		for (int j = -2; j <= 2; j++)
-			for (int i = -2; i <= 2; i++)
-				if (inside(x + i, y + j, z + k) && sky->solid[z + k][y + j][x + i])
-					return true;
-	return false;
+	for (int k = z - 2; k <= z + 2; k++)
+		for (int j = y - 2; j <= y + 2; j++)
+			for (int i = x - 2; i <= x + 2; i++)
+				if (inside(i, j, k) && !sky->solid[k][j][i] && !sky->open[k][j][i])
+					sky->open[k][j][i] = look_up(sky, i, j, k);
 }
 
 int sky_create(struct sky **out, const struct plan *plan)
@@ -120,8 +120,8 @@ int sky_create(struct sky **out, const struct plan *plan)
 	for (int z = 0; z < HIGH; z++)
 		for (int y = 0; y < WIDE; y++)
 			for (int x = 0; x < WIDE; x++)
-				if (!sky->solid[z][y][x] && near_solid(sky, x, y, z))
-					sky->open[z][y][x] = look_up(sky, x, y, z);
+				if (sky->solid[z][y][x])
+					look_around(sky, x, y, z);
 	*out = sky;
 	return 0;
 }
