@@ -112,8 +112,8 @@ static void begin_next(struct follow *follow, const struct release *release, str
 	if (follow->next_file.error)
 		return;
 	follow->next = *release;
-	log_info("app", "release %llu: %s", (unsigned long long)release->sequence,
-		 release->comment);
+	log_info("app", "release %llu is published%s%s", (unsigned long long)release->sequence,
+		 release->comment[0] ? ": " : "", release->comment);
 	/* The same pictures under a new signature: nothing to bring. */
 	if (state_release(follow->state, &shown) == 0 && hash_equal(shown.root, release->root)) {
 		if (follow_switched(follow) < 0)

@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "render/display_backend.h"
 #include "render/drm_card.h"
+#include "render/gl.h"
 
 struct drm_display {
 	struct drm_card card;
@@ -175,7 +176,8 @@ static int dispatch(struct display *display)
 
 static void begin(struct display *display)
 {
-	(void)display; /* the surface's own framebuffer is the default one */
+	(void)display;
+	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the surface's own */
 }
 
 static void forget_framebuffer(struct gbm_bo *bo, void *data)

@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "render/display_backend.h"
+#include "render/gl.h"
 
 enum { POLL_MS = 8 };
 
@@ -118,6 +119,7 @@ static int dispatch(struct display *display)
 static void begin(struct display *display)
 {
 	(void)display;
+	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the window's own */
 }
 
 static int present(struct display *display)

@@ -8,9 +8,9 @@ work=build/e2e/update
 rm -rf "$work"
 mkdir -p "$work"
 small_release
-cp -r "$small/content" "$work/content"
-cp -r "$small/release" "$work/release"
-cp -r "$work/release" "$work/release1"
+cp -a "$small/content" "$work/content"
+cp -a "$small/release" "$work/release"
+cp -a "$work/release" "$work/release1"
 serve "$work/release" "$work/server"
 build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
 	--trust "$work/release/root/1.json" --state "$work/state" 2>"$work/kiosk.log" &
