@@ -13,20 +13,13 @@ static const struct profile base = { ARRAY_COUNT(base_points), base_points };
 
 /* From the eave in front over the ridge to the eave behind. */
 static const struct profile_point vault_points[] = {
-	{ 0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
-	{ 1.0f, 0.0f, RELIEF_PETALS, 0.05f, 0.22f },
-	{ 0.98f, 0.13f, RELIEF_TILES, 0.09f, 0.44f },
-	{ 0.92f, 0.38f, RELIEF_TILES, 0.09f, 0.44f },
-	{ 0.76f, 0.66f, RELIEF_TILES, 0.09f, 0.44f },
-	{ 0.48f, 0.87f, RELIEF_TILES, 0.09f, 0.44f },
-	{ 0.10f, 0.99f, RELIEF_ROUND, 0.05f, 0 },
-	{ -0.10f, 0.99f, RELIEF_TILES, 0.09f, 0.44f },
-	{ -0.48f, 0.87f, RELIEF_TILES, 0.09f, 0.44f },
-	{ -0.76f, 0.66f, RELIEF_TILES, 0.09f, 0.44f },
-	{ -0.92f, 0.38f, RELIEF_TILES, 0.09f, 0.44f },
-	{ -0.98f, 0.13f, RELIEF_DROPS, 0.05f, 0.22f },
-	{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },
-	{ -0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
+	{ 0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },        { 1.0f, 0.0f, RELIEF_PETALS, 0.05f, 0.22f },
+	{ 0.98f, 0.13f, RELIEF_TILES, 0.13f, 0.5f },  { 0.92f, 0.38f, RELIEF_TILES, 0.13f, 0.5f },
+	{ 0.76f, 0.66f, RELIEF_TILES, 0.13f, 0.5f },  { 0.48f, 0.87f, RELIEF_TILES, 0.13f, 0.5f },
+	{ 0.10f, 0.99f, RELIEF_ROUND, 0.05f, 0 },     { -0.10f, 0.99f, RELIEF_TILES, 0.13f, 0.5f },
+	{ -0.48f, 0.87f, RELIEF_TILES, 0.13f, 0.5f }, { -0.76f, 0.66f, RELIEF_TILES, 0.13f, 0.5f },
+	{ -0.92f, 0.38f, RELIEF_TILES, 0.13f, 0.5f }, { -0.98f, 0.13f, RELIEF_DROPS, 0.05f, 0.22f },
+	{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },          { -0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
 };
 static const struct profile vault = { ARRAY_COUNT(vault_points), vault_points };
 
@@ -182,8 +175,8 @@ void plan_galleries(struct plan *plan)
 			plan_gallery(plan, &at, &outer);
 			plan_refine(plan, first, turn == 0 && half == 1 ? 1.25f : 0.9f);
 		}
-		struct gallery upper = { 10.5f, 0.85f, 2.3f, false, false, true };
-		struct frame at = frame_within(&side, 0, -6.9f, 8.2f, 0);
+		struct gallery upper = { 9.1f, 0.85f, 2.3f, false, false, true };
+		struct frame at = frame_within(&side, 0, -6.2f, 8.2f, 0);
 		uint32_t first = plan->count;
 		plan_gallery(plan, &at, &upper);
 		plan_refine(plan, first, turn == 0 ? 1.4f : 1.0f);

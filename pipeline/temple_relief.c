@@ -120,7 +120,7 @@ static float tiles(const struct relief_style *s, const struct relief_place *p)
 	struct cell c = cell_at(p->x_m, p->width_m, s->period_m, 0);
 	float x = c.x * 2, course = p->y_m / 0.42f, lap = course - floorf(course);
 
-	return 0.25f + 0.6f * sqrtf(fmaxf(0.0f, 1 - x * x)) + 0.15f * (1 - lap);
+	return 0.42f + 0.42f * cosf(x * 3.14159f) + 0.15f * (1 - lap);
 }
 
 static float scales(const struct relief_style *s, const struct relief_place *p)

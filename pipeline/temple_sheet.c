@@ -282,7 +282,7 @@ void sheet_at(const struct sheet *sheet, const struct station *across, const str
 	foot_at(sheet, across, width, &foot);
 	*hollow = style.depth_m > 0 ? fminf(1.0f, fmaxf(0.0f, 1.0f - height / style.depth_m)) : 0;
 	if (across->rim || up->rim)
-		height -= sheet->rim_m;
+		height = -sheet->rim_m;
 	out += z * sheet->lean;
 	if (mitred)
 		out += height * face_out;

@@ -129,12 +129,12 @@ static void plan_porch_roof(struct plan *plan, const struct frame *frame, float 
 {
 	static const struct profile_point points[] = {
 		{ 1.0f, 0.0f, RELIEF_PETALS, 0.04f, 0.2f },
-		{ 0.98f, 0.15f, RELIEF_TILES, 0.07f, 0.34f },
-		{ 0.86f, 0.5f, RELIEF_TILES, 0.07f, 0.34f },
-		{ 0.5f, 0.85f, RELIEF_TILES, 0.07f, 0.34f },
-		{ 0.0f, 1.0f, RELIEF_TILES, 0.07f, 0.34f },
-		{ -0.5f, 0.85f, RELIEF_TILES, 0.07f, 0.34f },
-		{ -0.86f, 0.5f, RELIEF_TILES, 0.07f, 0.34f },
+		{ 0.98f, 0.15f, RELIEF_TILES, 0.10f, 0.44f },
+		{ 0.86f, 0.5f, RELIEF_TILES, 0.10f, 0.44f },
+		{ 0.5f, 0.85f, RELIEF_TILES, 0.10f, 0.44f },
+		{ 0.0f, 1.0f, RELIEF_TILES, 0.10f, 0.44f },
+		{ -0.5f, 0.85f, RELIEF_TILES, 0.10f, 0.44f },
+		{ -0.86f, 0.5f, RELIEF_TILES, 0.10f, 0.44f },
 		{ -0.98f, 0.15f, RELIEF_DROPS, 0.04f, 0.2f },
 		{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },
 	};
@@ -321,7 +321,7 @@ void plan_towers(struct plan *plan)
 		struct frame porch = frame_within(&side, 0, -2.45f, 0.4f, 0);
 		struct frame steps = frame_within(&side, 0, -5.1f, -1.3f, 0);
 		struct frame corner = frame_at(0, 0, 8.2f, turn);
-		corner = frame_within(&corner, 6.7f, -6.7f, 0, 0);
+		corner = frame_within(&corner, 6.0f, -6.0f, 0, 0);
 		struct frame angle = frame_at(0, 0, 2.4f, turn);
 		angle = frame_within(&angle, 15.0f, -15.0f, 0, 0);
 		struct frame high = frame_within(&porch, 0, -0.55f, 3.9f, 0);
