@@ -1,11 +1,14 @@
 #include "pipeline/temple.h"
 
 #include <errno.h>
+#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include "pipeline/commands.h"
 #include "pipeline/temple_plan.h"
 #include "tests/check.h"
 
@@ -224,6 +227,34 @@ static void says_what_went_wrong(void **state)
 	fclose(full);
 }
 
+static int command(char *triangles, char *out)
+{
+	char *argv[] = { "temple", "--triangles", triangles, "--out", out, NULL };
+
+	optind = 0; /* getopt starts anew */
+	return command_temple(5, argv);
+}
+
+static void leaves_a_whole_file_or_none(void **state)
+{
+	char folder[] = "/tmp/gopura-temple-XXXXXX", path[64], part[80];
+
+	(void)state;
+	CHECK(mkdtemp(folder) != NULL);
+	snprintf(path, sizeof(path), "%s/scan.ply", folder);
+	snprintf(part, sizeof(part), "%s.part", path);
+	CHECK(command("12", path) == 2);
+	CHECK(command("many", path) == 2);
+	CHECK(command("-10000", path) == 2);
+	CHECK(command("200000000", path) == 2);
+	CHECK(command("10000", "/nonexistent/scan.ply") == 1);
+	CHECK(access(path, F_OK) != 0);
+	CHECK(command("10000", path) == 0);
+	CHECK(access(path, F_OK) == 0 && access(part, F_OK) != 0);
+	unlink(path);
+	CHECK(rmdir(folder) == 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -234,6 +265,7 @@ int main(void)
 		cmocka_unit_test(stands_on_its_ground_and_has_its_size),
 		cmocka_unit_test(spends_its_triangles_on_carving),
 		cmocka_unit_test(says_what_went_wrong),
+		cmocka_unit_test(leaves_a_whole_file_or_none),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
