@@ -37,7 +37,7 @@ static const char grow_vertex[] = "attribute vec2 a_position;\n"
 
 static const char grow_fragment[] =
 	"precision highp float;\n"
-	"uniform sampler2D u_raw;\n"
+	"uniform highp sampler2D u_raw;\n" /* by default lowp: 16 bits of depth need more */
 	"uniform float u_texel;\n"
 	"varying vec2 v_at;\n"
 	"float depth_at(vec2 at) {\n"

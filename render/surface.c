@@ -95,8 +95,9 @@ static const char blended_vertex[] =
 
 /* Constants that C and GLSL share come first, made by set_constants. */
 static const char blended_fragment[] =
-	"uniform sampler2D u_tiles, u_cells, u_depths;\n"
-	"uniform vec4 u_slot[4];\n" /* face slot's column and row, 0, 0 */
+	"uniform sampler2D u_tiles;\n"
+	"uniform highp sampler2D u_cells, u_depths;\n" /* by default lowp: 16 bits need more */
+	"uniform vec4 u_slot[4];\n"                    /* face slot's column and row, 0, 0 */
 	"uniform float u_share, u_far, u_slack;\n"
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
