@@ -302,6 +302,32 @@ static size_t gather(struct bring *bring)
 	return count;
 }
 
+/* What the rate limit allows now; half a second of it is saved up at most. */
+static void refill_allowance(struct bring *bring)
+{
+	int64_t rate = (int64_t)bring->options.rate_limit;
+	int64_t now_ms = clock_now_ms(), most = rate / 2;
+
+	bring->allowance_bytes += (now_ms - bring->allowance_ms) * rate / 1000;
+	if (bring->allowance_bytes > most)
+		bring->allowance_bytes = most;
+	bring->allowance_ms = now_ms;
+}
+
+static bool is_overdrawn(const struct bring *bring)
+{
+	return bring->options.rate_limit > 0 && bring->allowance_bytes <= 0;
+}
+
+/* When a range may go out again. */
+static int64_t allowance_due_ms(const struct bring *bring)
+{
+	if (!is_overdrawn(bring))
+		return 0;
+	return bring->allowance_ms + 1 +
+	       -bring->allowance_bytes * 1000 / (int64_t)bring->options.rate_limit;
+}
+
 static uint32_t ranges_most(const struct bring *bring)
 {
 	return bring->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MOST : RANGES_MOST;
@@ -313,13 +339,15 @@ static bool may_ask_for(const struct bring *bring, const struct range_item *item
 
 	if (item->priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
-	return bring->range_count < most && link_may_ask(bring->options.link);
+	return bring->range_count < most && !is_overdrawn(bring) &&
+	       link_may_ask(bring->options.link);
 }
 
 static struct range_limits limits_now(const struct bring *bring)
 {
-	uint64_t most = bring->bytes_per_s * RANGE_MS / 1000;
+	uint64_t rate = bring->options.rate_limit, most = bring->bytes_per_s;
 
+	most = (rate > 0 && rate < most ? rate : most) * RANGE_MS / 1000;
 	if (most < RANGE_BYTES_LEAST)
 		most = RANGE_BYTES_LEAST;
 	if (most > RANGE_BYTES_MOST)
@@ -341,7 +369,10 @@ static void work_ranges(struct bring *bring)
 {
 	size_t count, first, taken;
 
-	if (!bring->plan_changed || bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
+	if (bring->options.rate_limit)
+		refill_allowance(bring);
+	if (is_overdrawn(bring) || !bring->plan_changed ||
+	    bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
 	    !link_may_ask(bring->options.link) ||
 	    !bring->options.events.has_room(bring->options.data))
 		return;
@@ -352,7 +383,7 @@ static void work_ranges(struct bring *bring)
 			bring->plan_changed = true;
 			return;
 		}
-		bring_ask_range(bring, &bring->items[first], taken);
+		bring->allowance_bytes -= bring_ask_range(bring, &bring->items[first], taken);
 	}
 }
 
@@ -409,6 +440,8 @@ int64_t bring_due_ms(const struct bring *bring)
 	if (bring->range_count < ranges_most(bring)) {
 		int64_t plan_ms = bring->plan_changed ? 0 : bring->plan_due_ms;
 
+		if (plan_ms < allowance_due_ms(bring))
+			plan_ms = allowance_due_ms(bring);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}
 	return line_due_ms(link, due_ms);

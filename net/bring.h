@@ -28,6 +28,7 @@ struct bring_options {
 	struct http *http; /* borrowed, as all that follow */
 	struct cache *cache;
 	struct link *link;
+	uint64_t rate_limit; /* bytes of objects a second, in the mean; 0: none */
 	struct bring_events events;
 	void *data;
 };

@@ -56,9 +56,11 @@ struct bring {
 	uint64_t flying_bytes;    /* that the ranges in flight asked for */
 	struct range_item *items; /* scratch of planning */
 	size_t item_capacity;
-	struct buffer scratch; /* an object from the cache */
-	bool was_down;         /* all wants were told of being offline */
-	uint64_t bytes_per_s;  /* lately */
+	struct buffer scratch;   /* an object from the cache */
+	bool was_down;           /* all wants were told of being offline */
+	uint64_t bytes_per_s;    /* lately */
+	int64_t allowance_bytes; /* with a rate limit: what may be asked for; below 0: overdrawn */
+	int64_t allowance_ms;    /* as of then */
 	struct bring_figures figures;
 };
 
@@ -82,8 +84,9 @@ void bring_forget_releases(struct bring *bring);
 
 /* -- bring_range.c */
 
-/* Asks for items[0 .. count), in order, of one pack, each a struct want. */
-void bring_ask_range(struct bring *bring, const struct range_item *items, size_t count);
+/* Asks for items[0 .. count), in order, of one pack, each a struct want. Gives the bytes asked
+ * for; 0: no memory, and the wants wait on. */
+int64_t bring_ask_range(struct bring *bring, const struct range_item *items, size_t count);
 /* The want leaves its range; a range nobody wants is cancelled. */
 void bring_leave_range(struct bring *bring, struct want *want);
 void bring_cancel_ranges(struct bring *bring);

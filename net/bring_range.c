@@ -144,14 +144,14 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 	range->began_ms = clock_now_ms();
 }
 
-void bring_ask_range(struct bring *bring, const struct range_item *items, size_t count)
+int64_t bring_ask_range(struct bring *bring, const struct range_item *items, size_t count)
 {
 	struct range *range = calloc(1, sizeof(*range) + count * sizeof(range->slots[0]));
 	char path[64], hex[HASH_HEX_BYTES];
 	struct http_ask ask = { .path = path, .receive = on_piece, .done = on_done };
 
 	if (!range)
-		return; /* the wants wait on */
+		return 0;
 	hash_to_hex(items[0].pack, hex);
 	snprintf(path, sizeof(path), "packs/%s", hex);
 	ask.first = items[0].place;
@@ -159,7 +159,7 @@ void bring_ask_range(struct bring *bring, const struct range_item *items, size_t
 	ask.data = range;
 	if (http_ask(bring->options.http, &ask, &range->request) < 0) {
 		free(range);
-		return;
+		return 0;
 	}
 	range->bring = bring;
 	buffer_init(&range->object, UINT32_MAX);
@@ -174,6 +174,7 @@ void bring_ask_range(struct bring *bring, const struct range_item *items, size_t
 	bring->flying_bytes += range->bytes;
 	bring->figures.ranges++;
 	bring->options.link->in_flight++;
+	return (int64_t)range->bytes;
 }
 
 void bring_leave_range(struct bring *bring, struct want *want)

@@ -342,11 +342,11 @@ static int create_parts(struct fetch *fetch)
 	const struct fetch_options *options = fetch->options;
 	struct http_options http = { .url = options->release_url,
 				     .ca_file = options->ca_file,
-				     .rate_limit = options->rate_limit,
 				     .stall_s = options->stall_s };
 	struct cache_options cache = { .path = options->cache_path,
 				       .budget_bytes = options->cache_budget_bytes };
 	struct bring_options bring = { .link = &fetch->link,
+				       .rate_limit = options->rate_limit,
 				       .events = { on_object, on_missing, has_room },
 				       .data = fetch };
 	struct poll_options poll = {

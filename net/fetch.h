@@ -15,7 +15,7 @@ struct fetch_options {
 	const char *socket_path; /* to listen on; NULL: fd */
 	int fd;                  /* connected already; the fetcher ends with it */
 	uint32_t poll_s;
-	uint64_t rate_limit; /* bytes a second of each request; 0: none */
+	uint64_t rate_limit; /* bytes of objects a second; 0: none */
 	uint32_t stall_s;    /* 0: the default */
 };
 

@@ -34,7 +34,6 @@ struct http {
 	char url[URL_BYTES_MOST];
 	char folder[PATH_MAX]; /* as given, when local */
 	char *ca_file;
-	uint64_t rate_limit;
 	long stall_s;
 	bool is_local;
 	int sockets[SOCKETS_MOST]; /* open ones, for what they received */
@@ -404,7 +403,6 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)STALL_BYTES_PER_S);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, http->stall_s);
-	curl_easy_setopt(easy, CURLOPT_MAX_RECV_SPEED_LARGE, (curl_off_t)http->rate_limit);
 	curl_easy_setopt(easy, CURLOPT_OPENSOCKETFUNCTION, on_open);
 	curl_easy_setopt(easy, CURLOPT_OPENSOCKETDATA, http);
 	curl_easy_setopt(easy, CURLOPT_CLOSESOCKETFUNCTION, on_close);
@@ -552,7 +550,6 @@ int http_create(struct http **out, const struct http_options *options)
 	if (!http)
 		return -ENOMEM;
 	http->epoll_fd = http->timer_fd = -1;
-	http->rate_limit = options->rate_limit;
 	http->stall_s = options->stall_s ? (long)options->stall_s : STALL_S;
 	rc = take_url(http, options->url);
 	if (rc == 0 && options->ca_file) {

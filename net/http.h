@@ -12,7 +12,6 @@ struct http_request; /* one in flight */
 struct http_options {
 	const char *url;     /* copied; https://..., http://..., file://... or a folder's path */
 	const char *ca_file; /* copied; NULL: the system's */
-	uint64_t rate_limit; /* bytes a second of each request; 0: none */
 	uint32_t stall_s;    /* a request that brings nothing for so long has failed; 0: 15 */
 };
 
