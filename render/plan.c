@@ -141,7 +141,7 @@ struct candidate {
 struct ranked {
 	uint32_t point[POINTS_BEST + POINTS_RESIDENT];
 	float quality[POINTS_BEST + POINTS_RESIDENT];
-	uint32_t count, resident_from;
+	uint32_t count;
 };
 
 static void rank(struct ranked *ranked, uint32_t from, uint32_t most, uint32_t point, float quality)
@@ -214,7 +214,6 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 		rank(ranked, 0, POINTS_BEST, point,
 		     point_quality(world, eye, piece, error_m, point));
 	uint32_t from = ranked->count;
-	ranked->resident_from = from;
 	for (uint32_t i = 0; i < world->resident_count; i++) {
 		uint32_t point = world->resident[i] / CUBE_FACES;
 		if (!is_ranked(ranked, point))
@@ -241,6 +240,14 @@ static bool is_resident(const struct plan_world *world, face_key face)
 {
 	for (uint32_t i = 0; i < world->resident_count; i++)
 		if (world->resident[i] == face)
+			return true;
+	return false;
+}
+
+static bool has_resident(const struct plan_world *world, uint32_t point)
+{
+	for (uint32_t i = 0; i < world->resident_count; i++)
+		if (world->resident[i] / CUBE_FACES == point)
 			return true;
 	return false;
 }
@@ -427,7 +434,7 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 	/* Rays are dear: once enough good points see it whole, worse ones add nothing. */
 	uint32_t whole = 0;
 	for (uint32_t i = 0; i < ranked.count; i++) {
-		if (whole >= POINTS_ENOUGH && i < ranked.resident_from)
+		if (whole >= POINTS_ENOUGH && !has_resident(world, ranked.point[i]))
 			continue;
 		uint8_t seen = add_point(list, &count, choice, world, eye, piece, in_sight,
 					 ranked.point[i], error_m);
