@@ -126,6 +126,29 @@ uint32_t plan_priority(float gain, uint32_t bytes)
 	       (uint32_t)(scaled * (MESSAGE_PRIORITY_INDEX - MESSAGE_PRIORITY_PICTURE - 2));
 }
 
+bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3],
+		    const struct piece *piece)
+{
+	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
+	bool any = false;
+	*out = (struct plan_area){ 1, 1, -1, -1 };
+	for (int k = 0; k < 6; k++) {
+		float to[3];
+		vec_sub(to, piece->extent_m[k], sample_m);
+		float x = vec_dot(to, axes->right), y = vec_dot(to, axes->up);
+		float z = vec_dot(to, axes->forward);
+		any |= z > 0;
+		/* Beside or behind the face: as far as its rim. */
+		z = fmaxf(z, 1e-3f * (fabsf(x) + fabsf(y)) + 1e-6f);
+		float u = fminf(fmaxf(x / z, -1), 1), v = fminf(fmaxf(y / z, -1), 1);
+		out->u0 = fminf(out->u0, u);
+		out->u1 = fmaxf(out->u1, u);
+		out->v0 = fminf(out->v0, v);
+		out->v1 = fmaxf(out->v1, v);
+	}
+	return any;
+}
+
 /* ---- candidates */
 
 struct candidate {
@@ -133,7 +156,6 @@ struct candidate {
 	float sample_m[3];
 	uint8_t level;
 	bool resident;
-	float u0, v0, u1, v1;
 	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* worth, 0 where it does not see */
 	float resident_half_px;
 };
@@ -262,8 +284,6 @@ static struct candidate *candidate_of(struct candidate *list, uint32_t *count, f
 	struct candidate *candidate = &list[(*count)++];
 	memset(candidate, 0, sizeof(*candidate));
 	candidate->face = face;
-	candidate->u0 = candidate->v0 = 1;
-	candidate->u1 = candidate->v1 = -1;
 	return candidate;
 }
 
@@ -280,10 +300,6 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 			const float uv[2], float error_m)
 {
 	const float *at = piece->probe_m[probe], *normal = piece->probe_normal[probe];
-	candidate->u0 = fminf(candidate->u0, uv[0]);
-	candidate->u1 = fmaxf(candidate->u1, uv[0]);
-	candidate->v0 = fminf(candidate->v0, uv[1]);
-	candidate->v1 = fmaxf(candidate->v1, uv[1]);
 	float own = plan_own_quality(eye, at, piece->spacing_m);
 	candidate->ideal[probe] =
 		plan_worth(plan_quality(eye, at, normal, candidate->sample_m,
@@ -379,7 +395,8 @@ static void choose_entries(struct plan_choice *choice, const struct candidate *l
 
 /* A piece is coloured well by one good image; so each probe counts its best alone, and a fetch is
  * worth what it adds to that. */
-static void choose_wants(struct plan_choice *choice, const struct candidate *list, uint32_t count)
+static void choose_wants(struct plan_choice *choice, const struct candidate *list, uint32_t count,
+			 const struct piece *piece)
 {
 	float best_now[PIECE_PROBES] = { 0 };
 	for (uint32_t i = 0; i < count; i++)
@@ -402,13 +419,12 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 			return;
 		for (int k = 0; k < PIECE_PROBES; k++)
 			best_now[k] = fmaxf(best_now[k], best->ideal[k]);
-		choice->want[choice->want_count++] = (struct plan_want){ .face = best->face,
-									 .level = best->level,
-									 .u0 = best->u0,
-									 .v0 = best->v0,
-									 .u1 = best->u1,
-									 .v1 = best->v1,
-									 .gain = best_gain };
+		struct plan_want want = { .face = best->face,
+					  .level = best->level,
+					  .gain = best_gain };
+		if (!plan_footprint(&want.area, want.face, best->sample_m, piece))
+			return;
+		choice->want[choice->want_count++] = want;
 	}
 }
 
@@ -443,7 +459,7 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 	choose_entries(choice, list, count);
 	choice->want_count = 0;
 	if (!hidden)
-		choose_wants(choice, list, count);
+		choose_wants(choice, list, count, piece);
 }
 
 /* ---- the paper's eight corners */
@@ -460,7 +476,7 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
 	if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY)
 		return;
-	struct candidate one = { .face = face, .u0 = 1, .v0 = 1, .u1 = -1, .v1 = -1 };
+	struct candidate one = { .face = face };
 	memcpy(one.sample_m, sample, sizeof(sample));
 	one.level = (uint8_t)plan_level(
 		plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
@@ -475,15 +491,10 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 		choice->entry[choice->entry_count++] = (struct plan_entry){
 			.face = face, .half_px = one.resident_half_px, .share = weight
 		};
+	struct plan_want want = { .face = face, .level = one.level, .gain = weight };
 	if (one.resident_half_px < plan_level_half_px(one.level) &&
-	    choice->want_count < PLAN_WANTS && one.u0 <= one.u1)
-		choice->want[choice->want_count++] = (struct plan_want){ .face = face,
-									 .level = one.level,
-									 .u0 = one.u0,
-									 .v0 = one.v0,
-									 .u1 = one.u1,
-									 .v1 = one.v1,
-									 .gain = weight };
+	    choice->want_count < PLAN_WANTS && plan_footprint(&want.area, face, sample, piece))
+		choice->want[choice->want_count++] = want;
 }
 
 void plan_piece_corners(struct plan_choice *choice, const struct plan_world *world,

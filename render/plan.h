@@ -50,6 +50,15 @@ float plan_needed_half_px(const struct plan_eye *eye, const float point_m[3], co
 uint32_t plan_level(float needed_half_px, uint32_t level_count);
 float plan_level_half_px(uint32_t level);
 
+/* A rectangle of a face, -1..1. */
+struct plan_area {
+	float u0, v0, u1, v1;
+};
+
+/* What a piece covers of a face; false: nothing. */
+bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3],
+		    const struct piece *piece);
+
 struct plan_sight {
 	uint32_t point; /* + 1; 0: none */
 	uint8_t seen;   /* bit per probe */
@@ -64,8 +73,8 @@ struct plan_entry {
 struct plan_want {
 	face_key face;
 	uint8_t level;
-	float u0, v0, u1, v1; /* of the piece on the face, -1..1 */
-	float gain;           /* 0..1: what the picture of the piece would win */
+	struct plan_area area; /* of the piece on the face */
+	float gain;            /* 0..1: what the picture of the piece would win */
 };
 
 /* What is chosen for a piece; also remembers what it saw. Zeroed is new. */

@@ -2,9 +2,6 @@
 
 #include <string.h>
 
-/* A changing picture is the mean of about so many frames. */
-enum { CHANGING_FRAMES = 3 };
-
 static const char square_vertex[] = "attribute vec2 a_position;\n"
 				    "varying vec2 v_at;\n"
 				    "void main() {\n"
@@ -103,14 +100,16 @@ static void draw_square(const struct rest *rest, GLuint texture)
 
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
 {
-	if (changed && rest->count > CHANGING_FRAMES - 1)
-		rest->count = CHANGING_FRAMES - 1;
+	if (changed && rest->count > 1)
+		rest->count = 1;
 	if (rest->count < REST_FRAMES) {
 		rest->count++;
 		gl_target_bind(&rest->sum);
 		glDisable(GL_DEPTH_TEST);
 		glEnable(GL_BLEND);
-		glBlendColor(0, 0, 0, 1.0f / (float)rest->count);
+		/* Frame n weighs n: what the picture was before it came to rest is soon forgotten,
+		 * and eight bits do not swallow the last frames. */
+		glBlendColor(0, 0, 0, 2.0f / (float)(rest->count + 1));
 		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
 		draw_square(rest, rest->frame.colour);
 		glDisable(GL_BLEND);

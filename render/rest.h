@@ -5,7 +5,7 @@
 
 #include "render/gl.h"
 
-enum { REST_FRAMES = 16 };
+enum { REST_FRAMES = 8 };
 
 struct rest {
 	struct gl_target frame, sum;

@@ -289,7 +289,9 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, out);
-	bool changed = mark_changed(scene, highlight) || is_busy(scene);
+	if (mark_changed(scene, highlight))
+		rest_break(&scene->rest); /* an answer to a touch: at once */
+	bool changed = is_busy(scene);
 	show(scene, (GLuint)framebuffer, highlight, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;

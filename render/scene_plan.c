@@ -287,19 +287,12 @@ static void touch_piece(struct scene *scene, const struct piece *piece,
 	for (int i = 0; i < PLAN_ENTRIES; i++) {
 		if (!state->blend[i].held)
 			continue;
-		float u0 = 1, v0 = 1, u1 = -1, v1 = -1, sample[3], to[3], u, v;
+		struct plan_area area;
+		float sample[3];
 		face_key face = state->blend[i].face;
 		repository_point_m(&scene->repository, face / CUBE_FACES, sample);
-		for (int k = 0; k < PIECE_PROBES; k++) {
-			vec_sub(to, piece->probe_m[k], sample);
-			if ((uint32_t)cube_project(to, &u, &v) != face % CUBE_FACES)
-				continue;
-			u0 = fminf(u0, u);
-			u1 = fmaxf(u1, u);
-			v0 = fminf(v0, v);
-			v1 = fmaxf(v1, v);
-		}
-		tiles_touch(&scene->tiles, face, u0, v0, u1, v1);
+		if (plan_footprint(&area, face, sample, piece))
+			tiles_touch(&scene->tiles, face, area.u0, area.v0, area.u1, area.v1);
 	}
 }
 

@@ -111,8 +111,8 @@ static void add_level(const struct scene *scene, struct gains *gains, const stru
 		      uint32_t level, float pixels)
 {
 	int count = 1 << level;
-	int x0 = place_of(w->u0, count), x1 = place_of(w->u1, count);
-	int y0 = place_of(-w->v1, count), y1 = place_of(-w->v0, count);
+	int x0 = place_of(w->area.u0, count), x1 = place_of(w->area.u1, count);
+	int y0 = place_of(-w->area.v1, count), y1 = place_of(-w->area.v0, count);
 	float each = pixels / (float)((x1 - x0 + 1) * (y1 - y0 + 1));
 	for (int y = y0; y <= y1; y++) {
 		for (int x = x0; x <= x1; x++) {
@@ -142,7 +142,7 @@ static void add_want(const struct scene *scene, struct gains *gains, const struc
 	case REPOSITORY_READY:
 		break;
 	}
-	float u = (w->u0 + w->u1) / 2, v = (w->v0 + w->v1) / 2;
+	float u = (w->area.u0 + w->area.u1) / 2, v = (w->area.v0 + w->area.v1) / 2;
 	bool bare = tiles_level_at(&scene->tiles, w->face, u, v) < 0;
 	if (bare && w->level >= COARSER_FIRST) {
 		add_level(scene, gains, w, w->level - COARSER_FIRST, 0.6f * pixels);

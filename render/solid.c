@@ -178,6 +178,21 @@ static void set_probes(const struct solid *solid, const uint16_t *indices, struc
 	}
 }
 
+static void set_extents(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+{
+	uint32_t first = 3 * piece->first_triangle, end = first + 3 * piece->triangle_count;
+	for (uint32_t k = first; k < end; k++) {
+		float at[3];
+		vertex_m(solid, indices[k], at);
+		for (int i = 0; i < 6; i++) {
+			const float *was = piece->extent_m[i];
+			bool farther = i & 1 ? at[i / 2] > was[i / 2] : at[i / 2] < was[i / 2];
+			if (k == first || farther)
+				memcpy(piece->extent_m[i], at, sizeof(at));
+		}
+	}
+}
+
 static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_t at)
 {
 	const struct solid_node *node = &solid->nodes[at];
@@ -195,6 +210,7 @@ static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_
 		piece->centre_m[i] = (node->min_m[i] + node->max_m[i]) / 2;
 	piece->radius_m = vec_distance(node->max_m, piece->centre_m);
 	measure_piece(solid, indices, piece);
+	set_extents(solid, indices, piece);
 	set_probes(solid, indices, piece);
 }
 

@@ -23,9 +23,10 @@ enum {
 struct piece {
 	uint32_t first_triangle, triangle_count;
 	float centre_m[3], radius_m;
-	float normal[3]; /* mean, unit */
-	float flatness;  /* length of the mean of its unit normals: 1 flat, 0 all around */
-	float spacing_m; /* mean distance of neighbouring vertices */
+	float normal[3];      /* mean, unit */
+	float flatness;       /* length of the mean of its unit normals: 1 flat, 0 all around */
+	float spacing_m;      /* mean distance of neighbouring vertices */
+	float extent_m[6][3]; /* its vertices farthest along -x, +x, -y, +y, -z, +z */
 	float probe_m[PIECE_PROBES][3], probe_normal[PIECE_PROBES][3]; /* on its surface */
 };
 

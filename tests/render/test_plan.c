@@ -146,7 +146,7 @@ static struct piece small_piece(void)
 		.radius_m = 0.5f, .normal = { 0, -1, 0 }, .flatness = 1, .spacing_m = 1
 	};
 	for (int k = 0; k < PIECE_PROBES; k++) {
-		piece.probe_m[k][0] = 0.02f * (float)k;
+		piece.probe_m[k][0] = piece.extent_m[k % 6][0] = 0.02f * (float)k;
 		memcpy(piece.probe_normal[k], piece.normal, sizeof(piece.normal));
 	}
 	return piece;

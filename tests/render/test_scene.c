@@ -8,6 +8,8 @@
 
 enum { WIDTH = 480, HEIGHT = 270, FRAMES_MOST = 3000 };
 
+static struct little_release *release; /* made once for all tests */
+
 struct stage {
 	struct headless *headless;
 	struct gl_target target;
@@ -44,7 +46,8 @@ static void raise_stage(struct stage *stage, const struct scene_options *options
 	CHECK(headless_create(&stage->headless) == 0);
 	CHECK(gl_target_create(&stage->target, WIDTH, HEIGHT) == 0);
 	CHECK(scene_create(&stage->scene, options) == 0);
-	stage->release = little_release_make(4);
+	stage->release = release;
+	release->given_bytes = 0;
 	stage->seen = malloc(4 * WIDTH * HEIGHT);
 	CHECK(scene_open(stage->scene, stage->release->root, stage->release->root_bytes) == 0);
 }
@@ -55,7 +58,6 @@ static void strike_stage(struct stage *stage)
 	gl_target_destroy(&stage->target);
 	CHECK(gl_check("the test") == 0);
 	headless_destroy(stage->headless);
-	little_release_free(stage->release);
 	free(stage->seen);
 }
 
@@ -138,10 +140,244 @@ static void images_show_what_vertices_cannot(void **state)
 	CHECK(lumigraph > 22);
 }
 
+static size_t wants_left(struct stage *stage)
+{
+	struct message_want wants[16];
+	return scene_wants(stage->scene, wants, 16);
+}
+
+static void settled_leaves_nothing_wanted_and_nothing_moving(void **state)
+{
+	struct stage stage;
+	uint8_t *before = malloc(4 * WIDTH * HEIGHT);
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	memcpy(before, stage.seen, 4 * WIDTH * HEIGHT);
+	CHECK(wants_left(&stage) == 0);
+	CHECK(stage.frame.image_share > 0.8f && stage.frame.image_share <= 1);
+	draw(&stage, &usual_camera, NULL);
+	CHECK(stage.frame.settled && !stage.frame.moving);
+	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+	CHECK(memcmp(before, stage.seen, 4 * WIDTH * HEIGHT) == 0);
+	free(before);
+	strike_stage(&stage);
+}
+
+static void polygons_want_no_images(void **state)
+{
+	struct stage stage;
+	struct scene_options options = usual;
+	(void)state;
+	options.mode = SCENE_POLYGONS;
+	raise_stage(&stage, &options);
+	settle(&stage, &usual_camera, NULL);
+	/* Root page, hierarchy page and two groups. */
+	CHECK(release->given_bytes < 16384);
+	CHECK(stage.frame.image_share == 0 && stage.frame.tiles_uploaded == 0);
+	strike_stage(&stage);
+}
+
+static void objects_that_do_not_decode_are_not_wanted_again(void **state)
+{
+	struct stage stage;
+	static const uint8_t rubbish[] = "this is no object of any kind";
+	(void)state;
+	raise_stage(&stage, &usual);
+	for (int i = 0; i < 200; i++) {
+		struct message_want want;
+		draw(&stage, &usual_camera, NULL);
+		/* From the hierarchy page on, every second object is rubbish. */
+		if (scene_root(stage.scene) && i % 2 && scene_wants(stage.scene, &want, 1) == 1) {
+			scene_give(stage.scene, want.hash,
+				   (struct bytes){ rubbish, sizeof(rubbish) });
+			for (int k = 0; k < 50; k++) {
+				draw(&stage, &usual_camera, NULL);
+				usleep(1000);
+			}
+			struct message_want again[64];
+			size_t count = scene_wants(stage.scene, again, 64);
+			for (size_t k = 0; k < count; k++)
+				CHECK(!hash_equal(again[k].hash, want.hash));
+			if (i > 20)
+				break;
+		} else {
+			little_release_serve(release, stage.scene, 1);
+		}
+	}
+	strike_stage(&stage);
+}
+
+static void another_release_is_shown_whole(void **state)
+{
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	for (int i = 0; i < 12; i++) { /* in the middle of its work */
+		draw(&stage, &usual_camera, NULL);
+		little_release_serve(release, stage.scene, 8);
+	}
+	CHECK(scene_open(stage.scene, release->root, release->root_bytes) == 0);
+	CHECK(scene_root(stage.scene) == NULL);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(psnr(&stage, &usual_camera) > 24);
+	strike_stage(&stage);
+}
+
+static void a_small_atlas_settles_too(void **state)
+{
+	struct stage stage;
+	struct scene_options options = usual;
+	(void)state;
+	options.texture_budget_bytes = 1 << 20; /* sixteen tiles, the least */
+	options.geometry_budget_bytes = 4096;
+	raise_stage(&stage, &options);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(stage.frame.triangles > 0);
+	strike_stage(&stage);
+}
+
+static void rays_meet_what_is_shown(void **state)
+{
+	struct stage stage;
+	float point[3];
+	(void)state;
+	raise_stage(&stage, &usual);
+	CHECK(!scene_pick(stage.scene, &usual_camera, WIDTH / 2, HEIGHT / 2, point));
+	settle(&stage, &usual_camera, NULL);
+	CHECK(!scene_pick(stage.scene, &usual_camera, 2, 2, point)); /* sky */
+	int met = 0;
+	for (int x = 8; x < WIDTH; x += 16) {
+		float direction[3], rgb[3];
+		camera_ray(&usual_camera, (float)x, 180, direction);
+		bool there = little_cast(usual_camera.eye_m, direction, rgb);
+		CHECK(scene_pick(stage.scene, &usual_camera, (float)x, 180, point) == there);
+		met += there;
+	}
+	CHECK(met > 10);
+	const float above[3] = { 1, 1, 3 }, down[3] = { 0, 0, -2 }, up[3] = { 0, 0, 1 };
+	CHECK(fabsf(scene_clearance(stage.scene, above, down, 10) - 3) < 0.01f);
+	CHECK(isinf(scene_clearance(stage.scene, above, down, 2)));
+	CHECK(isinf(scene_clearance(stage.scene, above, up, 100)));
+	strike_stage(&stage);
+}
+
+static uint32_t pixels_changed(const uint8_t *a, const uint8_t *b, int by)
+{
+	uint32_t changed = 0;
+	for (int i = 0; i < WIDTH * HEIGHT; i++) {
+		int most = 0;
+		for (int k = 0; k < 3; k++) {
+			int d = abs(a[4 * i + k] - b[4 * i + k]);
+			most = d > most ? d : most;
+		}
+		changed += most > by;
+	}
+	return changed;
+}
+
+static void a_millimetre_changes_next_to_nothing(void **state)
+{
+	struct stage stage;
+	uint8_t *before = malloc(4 * WIDTH * HEIGHT);
+	struct camera camera = usual_camera;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &camera, NULL);
+	memcpy(before, stage.seen, 4 * WIDTH * HEIGHT);
+	for (int step = 0; step < 3; step++) {
+		camera.eye_m[0] += 0.001f;
+		settle(&stage, &camera, NULL);
+		CHECK(pixels_changed(before, stage.seen, 24) < WIDTH * HEIGHT / 200);
+		memcpy(before, stage.seen, 4 * WIDTH * HEIGHT);
+	}
+	free(before);
+	strike_stage(&stage);
+}
+
+static void a_mark_draws_its_border_and_leaves_the_rest(void **state)
+{
+	struct stage stage;
+	uint8_t *plain = malloc(4 * WIDTH * HEIGHT);
+	const struct region pillar = {
+		.kind = REGION_PRISM,
+		.floor_m = 0.5f,
+		.roof_m = 4,
+		.corner_count = 4,
+		.corners_m = { { 2.8f, -5.2f }, { 5.2f, -5.2f }, { 5.2f, -2.8f }, { 2.8f, -2.8f } }
+	};
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	memcpy(plain, stage.seen, 4 * WIDTH * HEIGHT);
+	settle(&stage, &usual_camera, &pillar);
+	keep_picture("mark", stage.seen);
+	uint32_t bold = pixels_changed(plain, stage.seen, 60);
+	uint32_t any = pixels_changed(plain, stage.seen, 2);
+	CHECK(bold > 150);
+	CHECK(any > bold && any < WIDTH * HEIGHT / 4);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(pixels_changed(plain, stage.seen, 16) == 0);
+	free(plain);
+	strike_stage(&stage);
+}
+
+static void regions_know_what_is_in_them(void **state)
+{
+	(void)state;
+	const struct region sphere = { .kind = REGION_SPHERE,
+				       .centre_m = { 1, 2, 3 },
+				       .radius_m = 2 };
+	const struct region box = {
+		.kind = REGION_BOX, .centre_m = { 0, 0, 0 }, .half_m = { 4, 1, 1 }, .turn_deg = 90
+	};
+	/* An L: not convex. */
+	const struct region prism = {
+		.kind = REGION_PRISM,
+		.floor_m = 0,
+		.roof_m = 2,
+		.corner_count = 6,
+		.corners_m = { { 0, 0 }, { 4, 0 }, { 4, 1 }, { 1, 1 }, { 1, 4 }, { 0, 4 } }
+	};
+	CHECK(region_contains(&sphere, (float[]){ 1, 3.9f, 3 }));
+	CHECK(!region_contains(&sphere, (float[]){ 1, 4.1f, 3 }));
+	CHECK(region_contains(&box, (float[]){ 0, 3.5f, 0 }));
+	CHECK(!region_contains(&box, (float[]){ 3.5f, 0, 0 }));
+	CHECK(region_contains(&prism, (float[]){ 3, 0.5f, 1 }));
+	CHECK(region_contains(&prism, (float[]){ 0.5f, 3, 1 }));
+	CHECK(!region_contains(&prism, (float[]){ 3, 3, 1 }));
+	CHECK(!region_contains(&prism, (float[]){ 3, 0.5f, 2.5f }));
+	const struct region none = { .kind = REGION_NONE };
+	CHECK(!region_contains(&none, (float[]){ 0, 0, 0 }));
+}
+
+static int make_release(void **state)
+{
+	(void)state;
+	release = little_release_make(4);
+	return 0;
+}
+
+static int free_release(void **state)
+{
+	(void)state;
+	little_release_free(release);
+	return 0;
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(images_show_what_vertices_cannot),
+		cmocka_unit_test(settled_leaves_nothing_wanted_and_nothing_moving),
+		cmocka_unit_test(polygons_want_no_images),
+		cmocka_unit_test(objects_that_do_not_decode_are_not_wanted_again),
+		cmocka_unit_test(another_release_is_shown_whole),
+		cmocka_unit_test(a_small_atlas_settles_too),
+		cmocka_unit_test(rays_meet_what_is_shown),
+		cmocka_unit_test(a_millimetre_changes_next_to_nothing),
+		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
+		cmocka_unit_test(regions_know_what_is_in_them),
 	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, make_release, free_release);
 }
