@@ -193,11 +193,23 @@ static void set_extents(const struct solid *solid, const uint16_t *indices, stru
 	}
 }
 
+/* Whether one choice of samples may suit a run of triangles. */
+static bool is_one_piece(const struct solid *solid, const struct solid_node *node)
+{
+	if (!node->right || node->count <= PIECE_TRIANGLES_LEAST)
+		return true;
+	float side_m = 0;
+	for (int i = 0; i < 3; i++)
+		side_m = fmaxf(side_m, node->max_m[i] - node->min_m[i]);
+	bool wide = side_m > (float)solid->lattice.step_m * UINT16_MAX / PIECES_ACROSS;
+	bool bent = node->flatness < flat_enough && node->count > PIECE_TRIANGLES_BENT;
+	return node->count <= PIECE_TRIANGLES_MOST && !bent && !wide;
+}
+
 static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_t at)
 {
 	const struct solid_node *node = &solid->nodes[at];
-	bool bent = node->flatness < flat_enough && node->count > PIECE_TRIANGLES_BENT;
-	if (node->right && (node->count > PIECE_TRIANGLES_MOST || bent)) {
+	if (!is_one_piece(solid, node)) {
 		collect_pieces(solid, indices, at + 1);
 		collect_pieces(solid, indices, node->right);
 		return;
@@ -238,7 +250,7 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	struct builder builder = { .solid = out, .indices = mesh->indices };
 	builder.key = malloc(count * sizeof(*builder.key));
 	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
-	out->pieces = calloc(count / (PIECE_TRIANGLES_BENT / 2) + 1, sizeof(*out->pieces));
+	out->pieces = calloc(count / (PIECE_TRIANGLES_LEAST / 2) + 1, sizeof(*out->pieces));
 	if (!builder.key || !out->nodes || !out->pieces) {
 		free(builder.key);
 		solid_finish(out);

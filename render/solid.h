@@ -13,9 +13,12 @@
 
 enum {
 	/* Small enough that one choice of samples suits all of it; a piece that bends is split
-	 * further, down to the second. */
+	 * further, down to the second number; one that is wide (in parts of the lattice, as wide as
+	 * the model), down to the third. */
 	PIECE_TRIANGLES_MOST = 256,
 	PIECE_TRIANGLES_BENT = 96,
+	PIECE_TRIANGLES_LEAST = 16,
+	PIECES_ACROSS = 16,
 	PIECE_PROBES = 8
 };
 
