@@ -9,11 +9,13 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-#define FLIGHT_MS       900
-#define SLOP_MM         3
-#define NEAR_MM         10
-#define PX_PER_MM_GUESS 3.8f /* 96 dots an inch */
-#define WHEEL_STEP      1.12f
+#define FLIGHT_MS        900
+#define PART_LEAST_M     0.5f  /* a part without a size, as the flight to it sees it */
+#define PART_LEAST_SHARE 0.03f /* the same of a small model: of its diagonal */
+#define SLOP_MM          3
+#define NEAR_MM          10
+#define PX_PER_MM_GUESS  3.8f /* 96 dots an inch */
+#define WHEEL_STEP       1.12f
 
 static float px_per_mm(const struct kiosk *kiosk)
 {
@@ -35,7 +37,10 @@ static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
 	camera_ray(&kiosk->camera, x_px, y_px, direction);
 	glm_vec3_lerp((float *)o->box_min_m, (float *)o->box_max_m, 0.5f, middle);
 	glm_vec3_copy(kiosk->camera.eye_m, point_m);
-	glm_vec3_muladds(direction, fmaxf(1, glm_vec3_distance(middle, point_m)), point_m);
+	glm_vec3_muladds(
+		direction,
+		fmaxf(navigator_keep_off_m(&kiosk->navigator), glm_vec3_distance(middle, point_m)),
+		point_m);
 	return false;
 }
 
@@ -57,9 +62,11 @@ static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 	const float tangent = tanf(glm_rad(kiosk->navigator.options.fov_deg) / 2);
 	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;
 	const float height = 1 - ((float)rect.y_px + (float)rect.height_px / 2) / h * 2;
+	const float least =
+		fminf(PART_LEAST_M, PART_LEAST_SHARE * navigator_diagonal_m(&kiosk->navigator));
 	float eye[3], target[3], forward[3], right[3], up[3], distance;
 
-	story_viewpoint(kiosk->shown.story, part, kiosk->navigator.eye_m, eye, target);
+	story_viewpoint(kiosk->shown.story, part, least, kiosk->navigator.eye_m, eye, target);
 	glm_vec3_sub(target, eye, forward);
 	distance = glm_vec3_norm(forward);
 	glm_vec3_cross(forward, (vec3){ 0, 0, 1 }, right);

@@ -87,15 +87,16 @@ void frame_camera(const struct kiosk *kiosk, struct camera *out)
 
 static bool anchor_is_hidden(struct kiosk *kiosk, const float anchor_m[3])
 {
+	const float off = navigator_keep_off_m(&kiosk->navigator);
 	float direction[3], distance, free_m;
 
 	glm_vec3_sub((float *)anchor_m, kiosk->camera.eye_m, direction);
 	distance = glm_vec3_norm(direction);
-	if (distance < 0.01f)
+	if (distance < off / 35)
 		return false;
 	glm_vec3_scale(direction, 1 / distance, direction);
 	free_m = scene_clearance(kiosk->shown.scene, kiosk->camera.eye_m, direction, distance);
-	return free_m < distance - fmaxf(0.4f, 0.03f * distance);
+	return free_m < distance - fmaxf(off, 0.03f * distance);
 }
 
 /* A few rays a frame: stone in front of an anchor changes slowly. */

@@ -6,10 +6,14 @@
 
 #define PITCH_MOST     1.45f /* radians; past it "up" on the panel would jump */
 #define FLING_DECAY_MS 325.0f
-#define FLING_LEAST    8.0f  /* px/s; slower is rest */
-#define GROUND_LEAST_M 0.25f /* eye above the bottom of the box */
-#define KEEP_OFF_M     0.35f /* eye to a wall */
-#define FAR_SHARE      2.5f  /* eye to the model's middle, in half diagonals */
+#define FLING_LEAST    8.0f /* px/s; slower is rest */
+/* Of a temple, in a visitor's measure; of what is smaller than a house, a share of its diagonal. */
+#define GROUND_LEAST_M     0.25f /* eye above the bottom of the box */
+#define GROUND_LEAST_SHARE 0.005f
+#define KEEP_OFF_M         0.35f /* eye to a wall */
+#define KEEP_OFF_SHARE     0.006f
+#define FAR_SHARE          2.5f /* eye to the model's middle, in half diagonals */
+#define FAR_OVER_HOME      1.1f /* or as far as it begins, and a little more */
 
 static void view_direction(const struct navigator *nav, float out[3])
 {
@@ -25,48 +29,65 @@ static void view_right(const struct navigator *nav, float out[3])
 	out[2] = 0;
 }
 
-static float diagonal_m(const struct navigator *nav)
+float navigator_diagonal_m(const struct navigator *nav)
 {
 	return glm_vec3_distance((float *)nav->options.box_min_m, (float *)nav->options.box_max_m);
+}
+
+float navigator_keep_off_m(const struct navigator *nav)
+{
+	return fminf(KEEP_OFF_M, KEEP_OFF_SHARE * navigator_diagonal_m(nav));
+}
+
+static float lowest_m(const struct navigator *nav)
+{
+	return nav->options.box_min_m[2] +
+	       fminf(GROUND_LEAST_M, GROUND_LEAST_SHARE * navigator_diagonal_m(nav));
+}
+
+/* How far from the model's middle the eye may go. */
+static float farthest_m(const struct navigator *nav, float middle_m[3])
+{
+	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
+		      middle_m);
+	return fmaxf(FAR_SHARE * navigator_diagonal_m(nav) / 2,
+		     FAR_OVER_HOME * glm_vec3_distance((float *)nav->options.home_eye_m, middle_m));
 }
 
 /* Where the eye may be, whatever asked for it. */
 static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
 {
-	const float most = FAR_SHARE * diagonal_m(nav) / 2;
 	float middle[3], from_middle[3], distance;
+	const float most = farthest_m(nav, middle);
 
-	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
-		      middle);
 	glm_vec3_sub(eye_m, middle, from_middle);
 	distance = glm_vec3_norm(from_middle);
 	if (distance > most) {
 		glm_vec3_scale(from_middle, most / distance, from_middle);
 		glm_vec3_add(middle, from_middle, eye_m);
 	}
-	if (eye_m[2] < nav->options.box_min_m[2] + GROUND_LEAST_M)
-		eye_m[2] = nav->options.box_min_m[2] + GROUND_LEAST_M;
+	eye_m[2] = fmaxf(eye_m[2], lowest_m(nav));
 }
 
 /* Moves the eye towards a place, as far as there is nothing in the way. true: all of it. */
 static bool move_eye(struct navigator *nav, float to_m[3])
 {
 	const struct navigator_options *o = &nav->options;
+	const float off = navigator_keep_off_m(nav);
 	float way[3], length, free_m;
 
 	keep_in_bounds(nav, to_m);
 	glm_vec3_sub(to_m, nav->eye_m, way);
 	length = glm_vec3_norm(way);
-	if (length < 1e-6f)
+	if (length < 1e-6f * navigator_diagonal_m(nav))
 		return true;
 	glm_vec3_scale(way, 1 / length, way);
-	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + KEEP_OFF_M)
-			      : INFINITY;
-	if (free_m >= length + KEEP_OFF_M) {
+	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + off) : INFINITY;
+	if (free_m >= length + off) {
 		glm_vec3_copy(to_m, nav->eye_m);
 		return true;
 	}
-	free_m = fmaxf(0, free_m - KEEP_OFF_M);
+	free_m = fmaxf(0, free_m - off);
 	glm_vec3_muladds(way, fminf(free_m, length), nav->eye_m);
 	return false;
 }
@@ -121,7 +142,7 @@ static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by
 	glm_vec3_add(nav->pivot_m, arm, eye);
 	nav->pitch = pitch;
 	nav->yaw += yaw_by;
-	if (eye[2] < nav->options.box_min_m[2] + GROUND_LEAST_M || !move_eye(nav, eye)) {
+	if (eye[2] < lowest_m(nav) || !move_eye(nav, eye)) {
 		*nav = before;
 		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
 		if (yaw_by != 0 && pitch != nav->pitch)
@@ -152,7 +173,7 @@ void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_p
 	view_right(nav, right);
 	glm_vec3_cross(right, direction, up);
 	glm_vec3_sub(nav->pivot_m, nav->eye_m, arm);
-	depth = fmaxf(glm_vec3_dot(arm, direction), 0.1f);
+	depth = fmaxf(glm_vec3_dot(arm, direction), navigator_keep_off_m(nav) / 3);
 	glm_vec3_copy(nav->eye_m, eye);
 	glm_vec3_muladds(right, -dx_px * depth / focal_px, eye);
 	glm_vec3_muladds(up, dy_px * depth / focal_px, eye);
@@ -221,7 +242,8 @@ bool navigator_step(struct navigator *nav, float dt_ms, float height_px)
 void navigator_camera(const struct navigator *nav, struct camera *camera)
 {
 	float direction[3];
-	const float reach = FAR_SHARE * diagonal_m(nav) + diagonal_m(nav);
+	float middle[3];
+	const float reach = 2 * farthest_m(nav, middle) + navigator_diagonal_m(nav);
 
 	view_direction(nav, direction);
 	glm_vec3_copy((float *)nav->eye_m, camera->eye_m);
@@ -229,6 +251,6 @@ void navigator_camera(const struct navigator *nav, struct camera *camera)
 	camera->up[0] = camera->up[1] = 0;
 	camera->up[2] = 1;
 	camera->fov_deg = nav->options.fov_deg;
-	camera->near_m = KEEP_OFF_M / 3;
+	camera->near_m = navigator_keep_off_m(nav) / 3;
 	camera->far_m = reach;
 }

@@ -51,6 +51,10 @@ void navigator_look(struct navigator *nav, const float eye_m[3], const float tar
 
 /* Lets time pass. true while the eye moves by itself. */
 bool navigator_step(struct navigator *nav, float dt_ms, float height_px);
+/* Of the model's box. */
+float navigator_diagonal_m(const struct navigator *nav);
+/* How near the eye may come to a surface; what is nearer to the model than this touches it. */
+float navigator_keep_off_m(const struct navigator *nav);
 /* Fills eye, target, up, field of view and clip distances; leaves the panel's fields. */
 void navigator_camera(const struct navigator *nav, struct camera *camera);
 

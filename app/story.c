@@ -401,18 +401,18 @@ int story_part_at(const struct story *story, const float point_m[3])
 	return best;
 }
 
-void story_viewpoint(const struct story *story, uint32_t part, const float eye_m[3],
+void story_viewpoint(const struct story *story, uint32_t part, float least_m, const float eye_m[3],
 		     float eye_out_m[3], float target_m[3])
 {
 	const struct info_part *info = info_part(story->info, part);
-	const float size = fmaxf(region_size_m(&info->region), 0.5f);
+	const float size = fmaxf(region_size_m(&info->region), least_m);
 	const float wanted = 5 * size;
 	float away[3], distance;
 
 	glm_vec3_copy((float *)info->anchor_m, target_m);
 	glm_vec3_sub((float *)eye_m, target_m, away);
 	distance = glm_vec3_norm(away);
-	if (distance < 0.1f)
+	if (distance < least_m / 5)
 		glm_vec3_copy((vec3){ 0, -1, 0.3f }, away);
 	glm_vec3_normalize(away);
 	away[2] = glm_clamp(away[2], 0.05f, 0.7f); /* from the side rather than from above */

@@ -39,8 +39,9 @@ void story_set_language(struct story *story, const char *language);
 int story_part_at(const struct story *story, const float point_m[3]);
 /* The region of a part, for the bold border. false: it is only a point. */
 bool story_region(const struct story *story, uint32_t part, struct region *out);
-/* Where to stand to see a part well: as the eye stands now, but nearer. */
-void story_viewpoint(const struct story *story, uint32_t part, const float eye_m[3],
+/* Where to stand to see a part well: as the eye stands now, but nearer. A part that is smaller
+ * than least_m, or a mere point, is looked at as if it were as large. */
+void story_viewpoint(const struct story *story, uint32_t part, float least_m, const float eye_m[3],
 		     float eye_out_m[3], float target_m[3]);
 
 /* Opens a part's page beside the model. false: it has none. */

@@ -28,6 +28,9 @@ struct depth {
 must_check int depth_init(struct depth *depth, int face_px);
 void depth_finish(struct depth *depth);
 void depth_clear(struct depth *depth, float far_m);
+/* How far a depth may be off without being another surface's: what stone forgives, less of a small
+ * model, and at least what 16 bits can tell apart. */
+float depth_slack_m(const struct depth *depth);
 
 /* Begins a face: afterwards the caller draws patches (attribute 0: lattice position), then calls
  * depth_end. lattice_origin_m: of the model's lattice. */

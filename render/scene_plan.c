@@ -128,7 +128,7 @@ static bool sees(void *data, const float sample_m[3], const float point_m[3])
 	vec_sub(to, point_m, sample_m);
 	float distance = vec_normalise(to);
 	/* Short of the surface itself, by more than a mesh is usually wrong. */
-	float most = distance * 0.985f - 0.05f;
+	float most = distance * 0.985f - 2.5f * depth_slack_m(&scene->depth);
 	if (most <= 0)
 		return true;
 	return !geometry_blocks(&scene->geometry, &scene->cut, sample_m, to, most);

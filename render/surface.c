@@ -71,7 +71,7 @@ static const char blended_vertex[] =
 	"	if (s.w <= 0.0)\n"
 	"		return vec4(0.0, 0.0, 1.0, 0.0);\n"
 	"	vec3 q = vec3(dot(r.xyz, p) + r.w, dot(u.xyz, p) + u.w, dot(f.xyz, p) + f.w);\n"
-	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z, 0.01), size.x) : 1.0;\n"
+	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z, 1e-5), size.x) : 1.0;\n"
 	"	return vec4(q, s.w * k);\n"
 	"}\n"
 	"float sharpen(float k) { return k * k * k; }\n"
@@ -102,7 +102,7 @@ static const char blended_fragment[] =
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
 	"vec4 from_face(vec4 face, vec2 slot) {\n"
-	"	if (face.w < 0.0005 || face.z < 0.05)\n"
+	"	if (face.w < 0.0005 || face.z < u_far * 0.0004)\n"
 	"		return vec4(0.0);\n"
 	"	vec2 at = vec2(face.x, -face.y) / face.z * 0.5 + 0.5;\n"
 	"	if (at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0)\n"
@@ -285,5 +285,5 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 	glUniform4fv(p->slot, PLAN_ENTRIES, slots);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
 		    plan_tuning.own * spacing_m);
-	glUniform1f(surface->slack, 0.02f + 2 * error_m);
+	glUniform1f(surface->slack, depth_slack_m(frame->depth) + 2 * error_m);
 }

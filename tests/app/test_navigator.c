@@ -180,6 +180,57 @@ static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
 	CHECK(camera.near_m > 0 && camera.far_m > 100);
 }
 
+static float wall_before_bunny(void *data, const float from[3], const float direction[3],
+			       float most)
+{
+	float d = direction[0] > 0 ? (-0.08f - from[0]) / direction[0] : INFINITY;
+
+	(void)data;
+	return d >= 0 && d < most ? d : INFINITY;
+}
+
+/* What a hand can hold is looked at from a finger's breadth, and not cut open by the near plane. */
+static void a_small_model_is_approached_as_near_as_a_large_one(void **state)
+{
+	const struct navigator_options bunny = { .box_min_m = { -0.08f, -0.06f, 0.03f },
+						 .box_max_m = { 0.08f, 0.06f, 0.19f },
+						 .home_eye_m = { -0.5f, 0, 0.15f },
+						 .home_target_m = { 0, 0, 0.11f },
+						 .fov_deg = 45,
+						 .clearance = wall_before_bunny };
+	const float snout[3] = { -0.08f, 0, 0.1f };
+	struct navigator nav;
+	struct camera camera;
+
+	(void)state;
+	navigator_init(&nav, &bunny);
+	navigator_grab(&nav, snout);
+	for (int i = 0; i < 60; i++)
+		navigator_pinch(&nav, 1.3f, 0, 0, 0, HEIGHT_PX);
+	navigator_camera(&nav, &camera);
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)snout) < 0.004f);
+	CHECK(camera.near_m < glm_vec3_distance(nav.eye_m, (float *)snout));
+	for (int i = 0; i < 60; i++)
+		navigator_turn(&nav, 0, -40, HEIGHT_PX);
+	CHECK(nav.eye_m[2] > 0.03f);
+}
+
+static void going_home_leads_to_where_it_began_however_far(void **state)
+{
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.home_eye_m[0] = -130; /* beyond two and a half half diagonals */
+	navigator_init(&nav, &options);
+	navigator_grab(&nav, pivot);
+	navigator_pinch(&nav, 3, 0, 0, 0, HEIGHT_PX);
+	navigator_fly(&nav, options.home_eye_m, options.home_target_m, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(glm_vec3_distance(nav.eye_m, options.home_eye_m) < 1e-3f);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -191,6 +242,8 @@ int main(void)
 		cmocka_unit_test(stays_above_ground_and_near),
 		cmocka_unit_test(a_fling_slows_down_and_ends),
 		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
+		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
+		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
