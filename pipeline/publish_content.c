@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +9,7 @@
 #include "base/log.h"
 #include "pipeline/master.h"
 #include "pipeline/publish_sources.h"
+#include "pipeline/start_view.h"
 
 /* Where the release goes and who signs it. */
 struct setting {
@@ -79,26 +79,6 @@ static int measure(struct publish_content_report *report)
 
 /* ---- the root page */
 
-/* From a corner in front, a little above, far enough that all of the model is in the picture. */
-static void look_from_afar(struct root_page *root)
-{
-	static const double from[3] = { 0.62, -0.74, 0.27 };
-	double radius = 0;
-
-	for (int axis = 0; axis < 3; axis++) {
-		double size = (double)root->box_max_m[axis] - root->box_min_m[axis];
-
-		radius += size * size / 4;
-	}
-	radius = sqrt(radius);
-	for (int axis = 0; axis < 3; axis++) {
-		double middle = ((double)root->box_max_m[axis] + root->box_min_m[axis]) / 2;
-
-		root->start_target_m[axis] = (float)middle;
-		root->start_eye_m[axis] = (float)(middle + 1.9 * radius * from[axis]);
-	}
-}
-
 /* Only "auto" needs the mesh, to see whether it has pictures. */
 static int judge_light(bool *lit, const struct content *content)
 {
@@ -130,7 +110,7 @@ static int fill_root(struct root_page *root, const struct content *content,
 	memcpy(root->background, content->background, sizeof(root->background));
 	root->source_triangles = master->source_triangles;
 	root->lit = lit;
-	look_from_afar(root);
+	start_view(root->start_eye_m, root->start_target_m, root->box_min_m, root->box_max_m);
 	if (content->has_start) {
 		memcpy(root->start_eye_m, content->start_eye_m, sizeof(root->start_eye_m));
 		memcpy(root->start_target_m, content->start_target_m, sizeof(root->start_target_m));
