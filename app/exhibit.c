@@ -12,6 +12,7 @@ enum {
 	WARM_PERIOD_MS = 100,
 	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
 	WARM_WIDTH_PX = 320,
+	FORGETFUL_MS = 30000, /* until a state that could not be written is tried again */
 	FOV_DEG = 45,
 };
 
@@ -116,11 +117,16 @@ static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_byt
 
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 {
-	struct exhibit *exhibit = kiosk->shown.scene ? &kiosk->coming : &kiosk->shown;
+	/* What has not even its root page shows nothing: no reason to wait for its end. */
+	const bool unseen = kiosk->shown.root_here;
+	struct exhibit *exhibit = unseen ? &kiosk->coming : &kiosk->shown;
 	int rc;
 
 	exhibit_close(&kiosk->coming);
-	if (exhibit == &kiosk->coming)
+	if (kiosk->shown.scene && hash_equal(kiosk->shown.root, root))
+		return; /* back to the pictures that are on the panel */
+	exhibit_close(exhibit);
+	if (unseen)
 		net_client_add_release(kiosk->net, root, root_bytes);
 	else
 		use_release(kiosk, root, root_bytes);
@@ -128,6 +134,7 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 	if (rc < 0)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
 	kiosk->coming_since_ms = clock_now_ms();
+	kiosk->coming_drawn_ms = 0;
 	kiosk_redraw(kiosk);
 }
 
@@ -145,8 +152,12 @@ static void take_over(struct kiosk *kiosk)
 	struct exhibit before = kiosk->shown;
 	struct overlay *overlay = story_overlay(kiosk->coming.story);
 
-	if (follow_switched(kiosk->follow) < 0)
-		return; /* it could not be remembered: what is remembered stays on the panel */
+	if (follow_switched(kiosk->follow) < 0) {
+		/* What is remembered stays on the panel; the disk is asked again later. */
+		kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
+		kiosk->coming_waits = true;
+		return;
+	}
 	kiosk->shown = kiosk->coming;
 	kiosk->coming = (struct exhibit){ 0 };
 	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
@@ -155,25 +166,17 @@ static void take_over(struct kiosk *kiosk)
 	if (story_language(before.story))
 		story_set_language(kiosk->shown.story, story_language(before.story));
 	overlay_show_help(overlay, false);
+	kiosk->looked_triangles = 0; /* its anchors are others */
 	quads_forget(kiosk->quads);
 	exhibit_close(&before);
 	set_bounds(kiosk);
 	kiosk_redraw(kiosk);
 }
 
-void exhibit_warm(struct kiosk *kiosk)
+static void draw_small(struct kiosk *kiosk)
 {
 	struct camera camera = kiosk->camera;
-	const int64_t now_ms = clock_now_ms();
 
-	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
-		set_bounds(kiosk);
-		if (follow_switched(kiosk->follow) < 0)
-			log_warn("app", "at the next start the release is asked for again");
-	}
-	if (!kiosk->coming.root_here || now_ms - kiosk->coming_drawn_ms < WARM_PERIOD_MS)
-		return;
-	kiosk->coming_drawn_ms = now_ms;
 	camera.height_px = camera.height_px * WARM_WIDTH_PX / camera.width_px;
 	camera.width_px = WARM_WIDTH_PX;
 	if (!kiosk->warm_target.framebuffer &&
@@ -182,6 +185,38 @@ void exhibit_warm(struct kiosk *kiosk)
 	gl_target_bind(&kiosk->warm_target);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	scene_draw(kiosk->coming.scene, &camera, NULL, &kiosk->coming.frame);
+}
+
+void exhibit_warm(struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+
+	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
+		set_bounds(kiosk);
+		if (follow_switched(kiosk->follow) < 0)
+			log_warn("app", "at the next start the release is asked for again");
+	}
+	kiosk->coming_waits = kiosk->coming.root_here;
+	if (!kiosk->coming.root_here || kiosk->camera.width_px == 0 ||
+	    now_ms < kiosk->coming_drawn_ms + WARM_PERIOD_MS)
+		return;
+	kiosk->coming_drawn_ms = now_ms;
+	draw_small(kiosk);
+	kiosk->coming_waits = kiosk->coming.frame.moving;
 	if (can_take_over(kiosk))
 		take_over(kiosk);
+}
+
+int exhibit_wait_ms(const struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+	int64_t due_ms = kiosk->coming_since_ms + WARM_MOST_MS + 1;
+
+	if (!kiosk->coming.root_here)
+		return -1;
+	if (kiosk->coming_waits)
+		due_ms = kiosk->coming_drawn_ms + WARM_PERIOD_MS;
+	else if (due_ms <= now_ms)
+		return -1; /* until something of it arrives */
+	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;
 }

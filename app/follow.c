@@ -114,12 +114,11 @@ static void begin_next(struct follow *follow, const struct release *release, str
 	follow->next = *release;
 	log_info("app", "release %llu is published%s%s", (unsigned long long)release->sequence,
 		 release->comment[0] ? ": " : "", release->comment);
-	/* The same pictures under a new signature: nothing to bring. */
-	if (state_release(follow->state, &shown) == 0 && hash_equal(shown.root, release->root)) {
-		if (follow_switched(follow) < 0)
-			log_warn("app", "the new sequence could not be remembered");
-		return;
-	}
+	/* The same pictures under a new signature: nothing to bring, and what was coming is not
+	 * wanted any more. */
+	if (state_release(follow->state, &shown) == 0 && hash_equal(shown.root, release->root) &&
+	    follow_switched(follow) < 0)
+		log_warn("app", "the new sequence could not be remembered");
 	follow->options.begin(follow->options.data, release->root, release->root_bytes);
 }
 

@@ -104,8 +104,11 @@ static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 {
 	const struct info *info = story_info(kiosk->shown.story);
 
-	if (kiosk->eye_moves || kiosk->shown.frame.tiles_uploaded || !kiosk->shown.frame.settled)
+	/* Not while something is merely missing: a kiosk without a network rests too. */
+	if (kiosk->eye_moves || kiosk->shown.frame.moving ||
+	    kiosk->looked_triangles != kiosk->shown.frame.triangles)
 		kiosk->anchors_to_look = count;
+	kiosk->looked_triangles = kiosk->shown.frame.triangles;
 	for (int i = 0; i < ANCHORS_A_FRAME && kiosk->anchors_to_look > 0; i++) {
 		kiosk->next_anchor = (kiosk->next_anchor + 1) % count;
 		kiosk->hidden[kiosk->next_anchor] =
@@ -249,8 +252,8 @@ int frame_draw(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = display_present(kiosk->display);
 	say_wants(kiosk);
-	if (kiosk->shown.frame.moving || kiosk->coming.root_here || kiosk->words_move ||
-	    kiosk->eye_moves || kiosk->anchors_to_look > 0)
+	if (kiosk->shown.frame.moving || kiosk->words_move || kiosk->eye_moves ||
+	    kiosk->anchors_to_look > 0)
 		kiosk->frame_wanted = true;
 	return rc;
 }

@@ -307,12 +307,16 @@ static int wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t since = clock_now_ms() - kiosk->last_frame_ms;
 	const bool paced = display_kind(kiosk->display) == DISPLAY_DRM;
+	const int coming_ms = exhibit_wait_ms(kiosk);
+	const int capture_ms = kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
 
 	if (!display_ready(kiosk->display))
 		return FLIP_WATCH_MS;
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	return kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
+	if (coming_ms >= 0 && (capture_ms < 0 || coming_ms < capture_ms))
+		return coming_ms;
+	return capture_ms;
 }
 
 static int turn(struct kiosk *kiosk)
@@ -327,8 +331,9 @@ static int turn(struct kiosk *kiosk)
 		rc = dispatch(kiosk, ready[i].data.fd);
 	if (rc == 0 && count == 0 && !display_ready(kiosk->display))
 		rc = display_dispatch(kiosk->display); /* a flip that never completes */
-	if (count == 0 && kiosk->capture)
-		kiosk_redraw(kiosk); /* the wait for quiet is counted in frames */
+	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
+	if (count == 0 && (kiosk->capture || exhibit_wait_ms(kiosk) == 0))
+		kiosk_redraw(kiosk);
 	if (rc < 0 || kiosk->quit)
 		return rc;
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&

@@ -42,6 +42,7 @@ struct kiosk {
 	struct exhibit shown;  /* its scene and story are NULL before the first release */
 	struct exhibit coming; /* the next release, warming up unseen; NULL: none */
 	int64_t coming_since_ms, coming_drawn_ms;
+	bool coming_waits; /* to be drawn again by itself, not only when something arrives */
 	struct gl_target warm_target; /* where it is drawn */
 	struct quads *quads;
 	struct touch *touch;
@@ -65,6 +66,7 @@ struct kiosk {
 	bool hidden[OVERLAY_PARTS_MOST]; /* anchors behind stone, as last looked at */
 	uint32_t next_anchor;            /* to look at */
 	uint32_t anchors_to_look;        /* at, before a picture at rest is right */
+	uint32_t looked_triangles;       /* drawn when the anchors were looked at */
 	bool quit;
 };
 
@@ -86,10 +88,13 @@ must_check int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct
 void exhibit_close(struct exhibit *exhibit);
 /* An object came. */
 void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
-/* Begins with the release, in the background where another one is shown. */
+/* Begins with the release, in the background where another one is shown. What was coming before is
+ * given up; the release that is on the panel just stays there. */
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
 /* Draws a little of what is coming, and makes the change once it can be shown whole. */
 void exhibit_warm(struct kiosk *kiosk);
+/* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
+int exhibit_wait_ms(const struct kiosk *kiosk);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);

@@ -1,6 +1,7 @@
 #!/bin/bash
 # A content update while the kiosk runs: version 2 arrives in the background and is switched to at
-# once; a bad signature, an older sequence and a server that dies half-way leave what is shown.
+# once; a bad signature, an older sequence and a server that dies leave what is shown; a kiosk that
+# remembers a release nobody has any more shows the next one.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -12,9 +13,12 @@ cp -a "$small/content" "$work/content"
 cp -a "$small/release" "$work/release"
 cp -a "$work/release" "$work/release1"
 serve "$work/release" "$work/server"
-build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
-	--trust "$work/release/root/1.json" --state "$work/state" 2>"$work/kiosk.log" &
-pid=$!
+start_kiosk() {
+	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 \
+		--log debug --trust "$work/release/root/1.json" --state "$work/state" 2>"$1" &
+	pid=$!
+}
+start_kiosk "$work/kiosk.log"
 trap 'kill $pid 2>/dev/null || true; stop_server' EXIT
 shown() { [ "$(grep -c 'is shown' "$work/kiosk.log")" -ge "$1" ]; }
 wait_for 60 "first release" shown 1
@@ -40,14 +44,34 @@ wait_for 90 "version 2" shown 2
 [ "$(grep -c 'app: showing' "$work/kiosk.log")" = 2 ] || fail "two releases were to be shown"
 
 # ---- an older one comes back
+cp "$work/release/release.json" "$work/release/timestamp.json" "$work/"
 cp "$work/release1/release.json" "$work/release1/timestamp.json" "$work/release/"
 wait_for 20 "refusal of an older release" grep -q 'refused timestamp.json: .*older' "$work/kiosk.log"
 kill -0 "$pid" || fail "the kiosk ended"
 
-# ---- version 3 is announced and the server dies before it arrives
+# ---- the server dies: the kiosk stays, and rests (a frame is several switches of context)
 stop_server
-sleep 2
-kill -0 "$pid" || fail "the kiosk ended with the server"
+wait_for 60 "notice that the server is gone" grep -q 'does not answer: offline' "$work/kiosk.log"
+switches() { awk '/^voluntary_ctxt/ { print $2 }' "/proc/$pid/status"; }
+is_at_rest() {
+	local before
+	before=$(switches)
+	sleep 3
+	[ $(($(switches) - before)) -lt 60 ]
+}
+wait_for 60 "rest without a server" is_at_rest
 kill "$pid"
 wait "$pid" || fail "the kiosk did not end well"
 [ "$(grep -c 'is shown' "$work/kiosk.log")" = 2 ] || fail "something else was shown"
+
+# ---- version 3 is published, what the kiosk remembers is gone from server and cache
+find "$work/release/locator" -type f -delete
+rm -f "$work"/state/cache.db*
+cp "$work/release.json" "$work/timestamp.json" "$work/release/"
+sed -i 's/<h1>/<h1>Newer: /' "$work"/content/pages/*.en.html
+build/gopura-content build "$work/content" --out "$work/release"
+serve "$work/release" "$work/server"
+start_kiosk "$work/kiosk3.log"
+wait_for 60 "version 3 in place of one that is gone" grep -q 'release .* is shown' "$work/kiosk3.log"
+kill "$pid"
+wait "$pid" || fail "the kiosk did not end well after a release that was gone"
