@@ -1,5 +1,6 @@
 /* What is shown, and what comes next. A new release is drawn small and unseen, with the visitor's
- * own camera, until nothing of it is missing; then the two change places between two frames. */
+ * own camera, until nothing of it is missing; it is written down, and then the two change places
+ * between two frames. */
 #include <errno.h>
 #include <string.h>
 
@@ -143,7 +144,7 @@ static bool can_take_over(const struct kiosk *kiosk)
 	const struct exhibit *coming = &kiosk->coming;
 	const bool waited = clock_now_ms() - kiosk->coming_since_ms > WARM_MOST_MS;
 
-	return coming->frame.patches > 0 && story_info(coming->story) &&
+	return !coming->remembering && coming->frame.patches > 0 && story_info(coming->story) &&
 	       (coming->frame.settled || waited);
 }
 
@@ -152,12 +153,6 @@ static void take_over(struct kiosk *kiosk)
 	struct exhibit before = kiosk->shown;
 	struct overlay *overlay = story_overlay(kiosk->coming.story);
 
-	if (follow_switched(kiosk->follow) < 0) {
-		/* What is remembered stays on the panel; the disk is asked again later. */
-		kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
-		kiosk->coming_waits = true;
-		return;
-	}
 	kiosk->shown = kiosk->coming;
 	kiosk->coming = (struct exhibit){ 0 };
 	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
@@ -187,14 +182,27 @@ static void draw_small(struct kiosk *kiosk)
 	scene_draw(kiosk->coming.scene, &camera, NULL, &kiosk->coming.frame);
 }
 
+void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
+{
+	if (!kiosk->coming.scene || !hash_equal(kiosk->coming.root, root))
+		return;
+	if (rc == 0) {
+		take_over(kiosk);
+		return;
+	}
+	/* What is remembered stays on the panel; the disk is asked again later. */
+	kiosk->coming.remembering = false;
+	kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
+	kiosk->coming_waits = true;
+}
+
 void exhibit_warm(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
 
 	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
 		set_bounds(kiosk);
-		if (follow_switched(kiosk->follow) < 0)
-			log_warn("app", "at the next start the release is asked for again");
+		follow_remember(kiosk->follow, kiosk->shown.root);
 	}
 	kiosk->coming_waits = kiosk->coming.root_here;
 	if (!kiosk->coming.root_here || kiosk->camera.width_px == 0 ||
@@ -203,8 +211,10 @@ void exhibit_warm(struct kiosk *kiosk)
 	kiosk->coming_drawn_ms = now_ms;
 	draw_small(kiosk);
 	kiosk->coming_waits = kiosk->coming.frame.moving;
-	if (can_take_over(kiosk))
-		take_over(kiosk);
+	if (can_take_over(kiosk)) {
+		kiosk->coming.remembering = true;
+		follow_remember(kiosk->follow, kiosk->coming.root);
+	}
 }
 
 int exhibit_wait_ms(const struct kiosk *kiosk)

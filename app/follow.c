@@ -4,27 +4,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/keeper.h"
 #include "app/update.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "storage/state.h"
 
 struct follow {
 	struct follow_options options;
-	struct state *state;
+	struct keeper *keeper; /* of the state */
 	struct update update;
+	struct hash root; /* of the remembered release; zero: none */
+	uint32_t root_bytes;
+	int64_t time_floor_s;
 	const char *refusal;     /* static */
 	struct release next;     /* brought now; sequence 0: none */
 	struct buffer next_file; /* its release.json */
 };
 
 /* The trust root in use: what the state remembers, or the pinned file at the first start. */
-static int find_trust(struct follow *follow)
+static int find_trust(struct follow *follow, struct state *state)
 {
 	struct buffer pinned;
 	struct bytes file;
 	const char *why = "";
-	int rc = state_trust(follow->state, &file);
+	int rc = state_trust(state, &file);
 
 	if (rc == 0) {
 		rc = update_pin(&follow->update, file, &why);
@@ -42,7 +45,7 @@ static int find_trust(struct follow *follow)
 		why = strerror(-rc);
 	else
 		rc = update_pin(&follow->update, buffer_bytes(&pinned), &why);
-	if (rc == 0 && state_set_trust(follow->state, buffer_bytes(&pinned)) < 0)
+	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned)) < 0)
 		log_warn("app", "the trust root could not be remembered");
 	if (rc < 0)
 		log_error("app", "%s: %s", follow->options.trust_path, why);
@@ -50,9 +53,24 @@ static int find_trust(struct follow *follow)
 	return rc;
 }
 
+/* What the state says, before the keeper has it. */
+static int read_state(struct follow *follow, struct state *state)
+{
+	struct state_release release;
+
+	follow->update.sequence_floor = state_sequence_floor(state);
+	follow->time_floor_s = state_time_floor_s(state);
+	if (state_release(state, &release) == 0) {
+		follow->root = release.root;
+		follow->root_bytes = release.root_bytes;
+	}
+	return find_trust(follow, state);
+}
+
 int follow_create(struct follow **out, const struct follow_options *options)
 {
 	struct follow *follow = calloc(1, sizeof(*follow));
+	struct state *state = NULL;
 	int rc;
 
 	*out = NULL;
@@ -61,15 +79,18 @@ int follow_create(struct follow **out, const struct follow_options *options)
 	follow->options = *options;
 	follow->refusal = "";
 	buffer_init(&follow->next_file, METADATA_FILE_BYTES_MOST);
-	rc = state_create(&follow->state, options->state_path);
+	rc = state_create(&state, options->state_path);
 	if (rc == 0)
-		rc = find_trust(follow);
+		rc = read_state(follow, state);
+	if (rc == 0)
+		rc = keeper_create(&follow->keeper, state);
+	else
+		state_destroy(state);
 	follow->options.state_path = follow->options.trust_path = NULL; /* borrowed */
 	if (rc < 0) {
 		follow_destroy(follow);
 		return rc;
 	}
-	follow->update.sequence_floor = state_sequence_floor(follow->state);
 	*out = follow;
 	return 0;
 }
@@ -78,23 +99,21 @@ void follow_destroy(struct follow *follow)
 {
 	if (!follow)
 		return;
-	state_destroy(follow->state);
+	keeper_destroy(follow->keeper);
 	buffer_finish(&follow->next_file);
 	free(follow);
 }
 
 void follow_start(struct follow *follow)
 {
-	struct state_release release;
-
-	if (state_release(follow->state, &release) == 0)
-		follow->options.begin(follow->options.data, release.root, release.root_bytes);
+	if (!hash_is_zero(follow->root))
+		follow->options.begin(follow->options.data, follow->root, follow->root_bytes);
 }
 
 /* The later of clock and floor; 0 where the clock is not known to be set. */
 static struct update_time time_now(const struct follow *follow)
 {
-	const int64_t now_s = clock_wall_s(), floor_s = state_time_floor_s(follow->state);
+	const int64_t now_s = clock_wall_s(), floor_s = follow->time_floor_s;
 
 	if (!clock_wall_is_set())
 		return (struct update_time){ 0 };
@@ -103,8 +122,6 @@ static struct update_time time_now(const struct follow *follow)
 
 static void begin_next(struct follow *follow, const struct release *release, struct bytes file)
 {
-	struct state_release shown;
-
 	if (follow->next.sequence == release->sequence)
 		return; /* it is on its way */
 	buffer_clear(&follow->next_file);
@@ -116,9 +133,8 @@ static void begin_next(struct follow *follow, const struct release *release, str
 		 release->comment[0] ? ": " : "", release->comment);
 	/* The same pictures under a new signature: nothing to bring, and what was coming is not
 	 * wanted any more. */
-	if (state_release(follow->state, &shown) == 0 && hash_equal(shown.root, release->root) &&
-	    follow_switched(follow) < 0)
-		log_warn("app", "the new sequence could not be remembered");
+	if (hash_equal(follow->root, release->root))
+		follow_remember(follow, release->root);
 	follow->options.begin(follow->options.data, release->root, release->root_bytes);
 }
 
@@ -135,7 +151,7 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 		if (version != follow->update.trust.version + 1)
 			return; /* known already, or not to be judged yet */
 		rc = update_root(&follow->update, bytes, &why);
-		if (rc == 0 && state_set_trust(follow->state, bytes) < 0)
+		if (rc == 0 && keeper_set_trust(follow->keeper, bytes) < 0)
 			log_warn("app", "the new trust root could not be remembered");
 		break;
 	case META_TIMESTAMP:
@@ -151,11 +167,13 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 		log_warn("app", "refused %s: %s", names[role], why);
 	if (rc < 0 || role == META_RELEASE)
 		follow->refusal = rc < 0 ? why : "";
-	if (rc >= 0 && time.now_s && state_raise_time_floor(follow->state, time.now_s) < 0)
-		log_debug("app", "the time floor could not be written");
+	if (rc >= 0 && time.now_s > follow->time_floor_s) {
+		follow->time_floor_s = time.now_s;
+		keeper_raise_time_floor(follow->keeper, time.now_s);
+	}
 }
 
-int follow_switched(struct follow *follow)
+void follow_remember(struct follow *follow, struct hash root)
 {
 	const struct state_release release = {
 		.root = follow->next.root,
@@ -165,17 +183,37 @@ int follow_switched(struct follow *follow)
 	};
 	int rc;
 
-	if (follow->next.sequence == 0)
-		return 0; /* the remembered one */
-	rc = state_activate(follow->state, &release);
-	if (rc < 0) {
-		log_error("app", "release %llu could not be remembered: %s",
-			  (unsigned long long)release.sequence, strerror(-rc));
-		return rc;
+	if (release.sequence == 0 || !hash_equal(release.root, root)) {
+		follow->options.remembered(follow->options.data, root, 0); /* it is already */
+		return;
 	}
-	update_accept(&follow->update, release.sequence);
-	log_info("app", "release %llu is shown", (unsigned long long)release.sequence);
-	follow->next = (struct release){ 0 };
+	rc = keeper_activate(follow->keeper, &release);
+	if (rc < 0)
+		follow->options.remembered(follow->options.data, root, rc);
+}
+
+int follow_fd(const struct follow *follow)
+{
+	return keeper_fd(follow->keeper);
+}
+
+int follow_dispatch(struct follow *follow)
+{
+	struct keeper_answer answer;
+
+	if (!keeper_take(follow->keeper, &answer))
+		return 0;
+	if (answer.rc < 0) {
+		log_error("app", "release %llu could not be remembered: %s",
+			  (unsigned long long)answer.sequence, strerror(-answer.rc));
+	} else {
+		follow->root = answer.root;
+		update_accept(&follow->update, answer.sequence);
+		log_info("app", "release %llu is shown", (unsigned long long)answer.sequence);
+		if (follow->next.sequence == answer.sequence)
+			follow->next = (struct release){ 0 };
+	}
+	follow->options.remembered(follow->options.data, answer.root, answer.rc);
 	return 0;
 }
 

@@ -1,6 +1,6 @@
 /* Follows the releases of the museum server: remembers which one is shown (state.db), checks the
- * signed metadata, has the next release brought in the background, and switches to it at once and
- * whole. */
+ * signed metadata, and has the next release brought in the background and remembered before it is
+ * shown. No call but follow_create waits for a disk. */
 #ifndef GOPURA_APP_FOLLOW_H
 #define GOPURA_APP_FOLLOW_H
 
@@ -11,10 +11,12 @@ struct follow;
 struct follow_options {
 	const char *state_path; /* state.db; copied */
 	const char *trust_path; /* root/1.json to pin where the state has none; NULL: none */
-	struct net_client *net; /* borrowed */
-	/* Bring this release: at the start the remembered one, later each new one. follow_switched
-	 * answers when it is shown. */
+	/* Bring this release: at the start the remembered one, later each new one. Once it can be
+	 * shown whole, follow_remember is to be called. */
 	void (*begin)(void *data, struct hash root, uint32_t root_bytes);
+	/* The release is remembered, durably: show it. rc < 0: it is not; stay with what is shown,
+	 * and ask again later. */
+	void (*remembered)(void *data, struct hash root, int rc);
 	void *data;
 };
 
@@ -24,9 +26,12 @@ void follow_destroy(struct follow *follow); /* NULL is fine */
 /* Begins: shows the remembered release, if there is one. */
 void follow_start(struct follow *follow);
 void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes);
-/* The release that began last can be shown whole: remembers it, durably. On failure the one before
- * stays the one that is shown. */
-must_check int follow_switched(struct follow *follow);
+/* The release with this root can be shown whole: has it remembered. `remembered` is called from
+ * follow_dispatch when the disk has it, or at once where there is nothing to write. */
+void follow_remember(struct follow *follow, struct hash root);
+/* Readable when follow_dispatch has something to do. */
+int follow_fd(const struct follow *follow);
+must_check int follow_dispatch(struct follow *follow);
 /* Why the last metadata was refused, for the health page; "" where it was not. */
 const char *follow_refusal(const struct follow *follow);
 

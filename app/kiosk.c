@@ -78,6 +78,11 @@ static void begin_release(void *data, struct hash root, uint32_t root_bytes)
 	exhibit_begin(data, root, root_bytes);
 }
 
+static void release_remembered(void *data, struct hash root, int rc)
+{
+	exhibit_remembered(data, root, rc);
+}
+
 /* ---- start */
 
 static void on_closed(void *data)
@@ -188,6 +193,7 @@ static int start_net(struct kiosk *kiosk)
 		.state_path = state,
 		.trust_path = kiosk->options.trust_path,
 		.begin = begin_release,
+		.remembered = release_remembered,
 		.data = kiosk,
 	};
 	int rc = state_folder(kiosk, folder);
@@ -203,7 +209,6 @@ static int start_net(struct kiosk *kiosk)
 	rc = net_client_create(&kiosk->net, &net);
 	if (rc < 0)
 		return rc;
-	follow.net = kiosk->net;
 	return follow_create(&kiosk->follow, &follow);
 }
 
@@ -234,6 +239,8 @@ static int start_loop(struct kiosk *kiosk)
 		rc = kiosk_watch(kiosk, display_fd(kiosk->display));
 	if (rc == 0)
 		rc = kiosk_watch(kiosk, net_client_fd(kiosk->net));
+	if (rc == 0)
+		rc = kiosk_watch(kiosk, follow_fd(kiosk->follow));
 	if (rc == 0 && kiosk->touch)
 		rc = kiosk_watch(kiosk, touch_fd(kiosk->touch));
 	return rc;
@@ -289,6 +296,8 @@ static int dispatch(struct kiosk *kiosk, int fd)
 		return display_dispatch(kiosk->display);
 	if (fd == net_client_fd(kiosk->net))
 		return net_client_dispatch(kiosk->net);
+	if (fd == follow_fd(kiosk->follow))
+		return follow_dispatch(kiosk->follow);
 	if (kiosk->touch && fd == touch_fd(kiosk->touch))
 		return touch_dispatch(kiosk->touch);
 	if (kiosk->shown.scene && fd == scene_fd(kiosk->shown.scene)) {

@@ -28,6 +28,7 @@ struct exhibit {
 	struct hash root;
 	uint32_t root_bytes;
 	bool root_here;
+	bool remembering;                      /* being written down, to be shown then */
 	struct hash pages[EXHIBIT_PAGES_MOST]; /* that came: the fetcher is to keep them */
 	uint32_t page_count;
 	struct scene_frame frame; /* of the last time it was drawn */
@@ -91,8 +92,10 @@ void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object
 /* Begins with the release, in the background where another one is shown. What was coming before is
  * given up; the release that is on the panel just stays there. */
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
-/* Draws a little of what is coming, and makes the change once it can be shown whole. */
+/* Draws a little of what is coming, and has it remembered once it can be shown whole. */
 void exhibit_warm(struct kiosk *kiosk);
+/* The release was written down, or could not be: shows it, if it is what is coming. */
+void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc);
 /* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
 int exhibit_wait_ms(const struct kiosk *kiosk);
 
