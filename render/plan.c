@@ -44,10 +44,10 @@ static struct geometry look(const struct plan_eye *eye, const float point[3], co
 	float to_eye[3], to_sample[3];
 	vec_sub(to_eye, eye->eye_m, point);
 	vec_sub(to_sample, sample, point);
-	g.depth = fmaxf(fabsf(to_sample[0]), fmaxf(fabsf(to_sample[1]), fabsf(to_sample[2])));
-	g.eye_distance = fmaxf(vec_normalise(to_eye), 1e-3f);
-	g.sample_distance = fmaxf(vec_normalise(to_sample), 1e-3f);
-	g.depth = fmaxf(g.depth, 1e-3f);
+	g.depth = vec_most(fabsf(to_sample[0]), vec_most(fabsf(to_sample[1]), fabsf(to_sample[2])));
+	g.eye_distance = vec_most(vec_normalise(to_eye), 1e-3f);
+	g.sample_distance = vec_most(vec_normalise(to_sample), 1e-3f);
+	g.depth = vec_most(g.depth, 1e-3f);
 	/* Scans have rims: what shows is the side that is turned to the eye. */
 	float side = vec_dot(to_eye, normal) < 0 ? -1 : 1;
 	g.eye_cosine = side * vec_dot(to_eye, normal);
@@ -60,7 +60,7 @@ static struct geometry look(const struct plan_eye *eye, const float point[3], co
 static float needed(const struct plan_eye *eye, const struct geometry *g)
 {
 	return eye->focal_px * g->depth / g->eye_distance *
-	       sqrtf(fmaxf(g->eye_cosine, 0.05f) / fmaxf(g->sample_cosine, 0.05f));
+	       sqrtf(vec_most(g->eye_cosine, 0.05f) / vec_most(g->sample_cosine, 0.05f));
 }
 
 float plan_needed_half_px(const struct plan_eye *eye, const float point_m[3], const float normal[3],
@@ -78,19 +78,19 @@ float plan_quality(const struct plan_eye *eye, const float point_m[3], const flo
 		       (plan_tuning.facing_high - plan_tuning.facing_low);
 	if (facing <= 0)
 		return 0;
-	float blur = fmaxf(needed(eye, &g) / half_px - 1, 0);
-	float sine = sqrtf(fmaxf(1 - g.angle_cosine * g.angle_cosine, 0));
+	float blur = vec_most(needed(eye, &g) / half_px - 1, 0);
+	float sine = sqrtf(vec_most(1 - g.angle_cosine * g.angle_cosine, 0));
 	if (g.angle_cosine < 0)
 		sine = 2 - sine;
 	float shift = error_m * eye->focal_px / g.eye_distance * sine;
 	float penalty = plan_tuning.blur * blur + plan_tuning.parallax * shift +
 			plan_tuning.angle * (1 - g.angle_cosine);
-	return fminf(facing, 1) / ((1 + penalty) * (1 + penalty));
+	return vec_least(facing, 1) / ((1 + penalty) * (1 + penalty));
 }
 
 float plan_own_quality(const struct plan_eye *eye, const float point_m[3], float spacing_m)
 {
-	float distance = fmaxf(vec_distance(eye->eye_m, point_m), 1e-3f);
+	float distance = vec_most(vec_distance(eye->eye_m, point_m), 1e-3f);
 	float penalty = 1 + plan_tuning.own * spacing_m * eye->focal_px / distance;
 	return 1 / (penalty * penalty);
 }
@@ -100,7 +100,7 @@ float plan_worth(float quality, float instead)
 	if (quality <= instead)
 		return 0;
 	/* Quality is one over a squared penalty: two of its octaves are one of detail. */
-	return fminf(log2f(quality / instead) / 16, 1);
+	return vec_least(log2f(quality / instead) / 16, 1);
 }
 
 float plan_level_half_px(uint32_t level)
@@ -120,8 +120,8 @@ uint32_t plan_priority(float gain, uint32_t bytes)
 {
 	/* From a hundredth of a pixel in a megabyte to the whole picture in a byte: 60 octaves. */
 	float per_byte = gain / (float)(bytes > 0 ? bytes : 1);
-	float octaves = log2f(fmaxf(per_byte, 1e-9f)) + 30;
-	float scaled = fminf(fmaxf(octaves / 64, 0), 1);
+	float octaves = log2f(vec_most(per_byte, 1e-9f)) + 30;
+	float scaled = vec_least(vec_most(octaves / 64, 0), 1);
 	return MESSAGE_PRIORITY_PICTURE +
 	       (uint32_t)(scaled * (MESSAGE_PRIORITY_INDEX - MESSAGE_PRIORITY_PICTURE - 2));
 }
@@ -139,12 +139,12 @@ bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3
 		float z = vec_dot(to, axes->forward);
 		any |= z > 0;
 		/* Beside or behind the face: as far as its rim. */
-		z = fmaxf(z, 1e-3f * (fabsf(x) + fabsf(y)) + 1e-6f);
-		float u = fminf(fmaxf(x / z, -1), 1), v = fminf(fmaxf(y / z, -1), 1);
-		out->u0 = fminf(out->u0, u);
-		out->u1 = fmaxf(out->u1, u);
-		out->v0 = fminf(out->v0, v);
-		out->v1 = fmaxf(out->v1, v);
+		z = vec_most(z, 1e-3f * (fabsf(x) + fabsf(y)) + 1e-6f);
+		float u = vec_least(vec_most(x / z, -1), 1), v = vec_least(vec_most(y / z, -1), 1);
+		out->u0 = vec_least(out->u0, u);
+		out->u1 = vec_most(out->u1, u);
+		out->v0 = vec_least(out->v0, v);
+		out->v1 = vec_most(out->v1, v);
 	}
 	return any;
 }
@@ -217,9 +217,9 @@ static float point_quality(const struct plan_world *world, const struct plan_eye
 			plan_quality(eye, piece->centre_m, piece->normal, sample, half_px, error_m);
 	for (int k = 0; k < PIECE_PROBES && piece->flatness <= 0.8f; k += 2)
 		if (faces_eye(eye, piece, k))
-			quality = fmaxf(quality,
-					plan_quality(eye, piece->probe_m[k], piece->probe_normal[k],
-						     sample, half_px, error_m));
+			quality = vec_most(quality, plan_quality(eye, piece->probe_m[k],
+								 piece->probe_normal[k], sample,
+								 half_px, error_m));
 	if (quality <= 0)
 		return 0;
 	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &u, &v);
@@ -311,10 +311,10 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 	if (level < 0)
 		return;
 	float half_px = plan_level_half_px((uint32_t)level);
-	candidate->resident_half_px = fmaxf(candidate->resident_half_px, half_px);
+	candidate->resident_half_px = vec_most(candidate->resident_half_px, half_px);
 	candidate->now[probe] = plan_worth(
 		plan_quality(eye, at, normal, candidate->sample_m, half_px, error_m), own);
-	candidate->ideal[probe] = fmaxf(candidate->ideal[probe], candidate->now[probe]);
+	candidate->ideal[probe] = vec_most(candidate->ideal[probe], candidate->now[probe]);
 }
 
 /* Returns which probes it sees. */
@@ -401,7 +401,7 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 	float best_now[PIECE_PROBES] = { 0 };
 	for (uint32_t i = 0; i < count; i++)
 		for (int k = 0; k < PIECE_PROBES; k++)
-			best_now[k] = fmaxf(best_now[k], list[i].now[k]);
+			best_now[k] = vec_most(best_now[k], list[i].now[k]);
 	choice->want_count = 0;
 	while (choice->want_count < PLAN_WANTS) {
 		const struct candidate *best = NULL;
@@ -409,7 +409,7 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 		for (uint32_t i = 0; i < count; i++) {
 			float gain = 0;
 			for (int k = 0; k < PIECE_PROBES; k++)
-				gain += fmaxf(list[i].ideal[k] - best_now[k], 0) / PIECE_PROBES;
+				gain += vec_most(list[i].ideal[k] - best_now[k], 0) / PIECE_PROBES;
 			if (gain > best_gain) {
 				best = &list[i];
 				best_gain = gain;
@@ -418,7 +418,7 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 		if (!best)
 			return;
 		for (int k = 0; k < PIECE_PROBES; k++)
-			best_now[k] = fmaxf(best_now[k], best->ideal[k]);
+			best_now[k] = vec_most(best_now[k], best->ideal[k]);
 		struct plan_want want = { .face = best->face,
 					  .level = best->level,
 					  .gain = best_gain };
@@ -507,8 +507,8 @@ void plan_piece_corners(struct plan_choice *choice, const struct plan_world *wor
 	for (int i = 0; i < 3; i++) {
 		float at = (eye->eye_m[i] - grid->origin_m[i]) / grid->spacing_m[i];
 		float most = (float)grid->count[i] - 1;
-		at = fminf(fmaxf(at, 0), most);
-		low[i] = (uint32_t)fminf(floorf(at), fmaxf(most - 1, 0));
+		at = vec_least(vec_most(at, 0), most);
+		low[i] = (uint32_t)vec_least(floorf(at), vec_most(most - 1, 0));
 		share[i] = at - (float)low[i];
 	}
 	for (uint32_t c = 0; c < 8; c++) {

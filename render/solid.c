@@ -7,7 +7,7 @@
 
 #include "render/vec.h"
 
-enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
+enum { LEAF_TRIANGLES = 4, DEPTH_MOST = 48 };
 
 static const float flat_enough = 0.8f;
 
@@ -66,15 +66,14 @@ static void split_at_median(struct builder *b, uint32_t first, uint32_t count, i
 static void bound(const struct builder *b, struct solid_node *node)
 {
 	for (int i = 0; i < 3; i++) {
-		node->min_m[i] = INFINITY;
-		node->max_m[i] = -INFINITY;
+		node->low[i] = UINT16_MAX;
+		node->high[i] = 0;
 	}
 	for (uint32_t k = 3 * node->first; k < 3 * (node->first + node->count); k++) {
-		float at[3];
-		vertex_m(b->solid, b->indices[k], at);
+		const uint16_t *at = b->solid->vertices[b->indices[k]].position;
 		for (int i = 0; i < 3; i++) {
-			node->min_m[i] = fminf(node->min_m[i], at[i]);
-			node->max_m[i] = fmaxf(node->max_m[i], at[i]);
+			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
+			node->high[i] = at[i] > node->high[i] ? at[i] : node->high[i];
 		}
 	}
 }
@@ -101,8 +100,8 @@ static int longest_axis(const struct builder *b, const struct solid_node *node)
 		least[k] = INFINITY;
 		most[k] = -INFINITY;
 		for (uint32_t t = node->first; t < node->first + node->count; t++) {
-			least[k] = fminf(least[k], b->key[t][k]);
-			most[k] = fmaxf(most[k], b->key[t][k]);
+			least[k] = vec_least(least[k], b->key[t][k]);
+			most[k] = vec_most(most[k], b->key[t][k]);
 		}
 		if (k < 3 && most[k] - least[k] > longest) {
 			longest = most[k] - least[k];
@@ -194,14 +193,13 @@ static void set_extents(const struct solid *solid, const uint16_t *indices, stru
 }
 
 /* Whether one choice of samples may suit a run of triangles. */
-static bool is_one_piece(const struct solid *solid, const struct solid_node *node)
+static bool is_one_piece(const struct solid_node *node)
 {
 	if (!node->right || node->count <= PIECE_TRIANGLES_LEAST)
 		return true;
-	float side_m = 0;
+	bool wide = false;
 	for (int i = 0; i < 3; i++)
-		side_m = fmaxf(side_m, node->max_m[i] - node->min_m[i]);
-	bool wide = side_m > (float)solid->lattice.step_m * UINT16_MAX / PIECES_ACROSS;
+		wide |= node->high[i] - node->low[i] > UINT16_MAX / PIECES_ACROSS;
 	bool bent = node->flatness < flat_enough && node->count > PIECE_TRIANGLES_BENT;
 	return node->count <= PIECE_TRIANGLES_MOST && !bent && !wide;
 }
@@ -209,7 +207,7 @@ static bool is_one_piece(const struct solid *solid, const struct solid_node *nod
 static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_t at)
 {
 	const struct solid_node *node = &solid->nodes[at];
-	if (!is_one_piece(solid, node)) {
+	if (!is_one_piece(node)) {
 		collect_pieces(solid, indices, at + 1);
 		collect_pieces(solid, indices, node->right);
 		return;
@@ -218,9 +216,14 @@ static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_
 	*piece = (struct piece){ .first_triangle = node->first,
 				 .triangle_count = node->count,
 				 .flatness = node->flatness };
-	for (int i = 0; i < 3; i++)
-		piece->centre_m[i] = (node->min_m[i] + node->max_m[i]) / 2;
-	piece->radius_m = vec_distance(node->max_m, piece->centre_m);
+	float diagonal[3];
+	for (int i = 0; i < 3; i++) {
+		float middle = (float)(node->low[i] + node->high[i]) / 2;
+		piece->centre_m[i] =
+			(float)(solid->lattice.origin_m[i] + solid->lattice.step_m * middle);
+		diagonal[i] = (float)(node->high[i] - node->low[i]);
+	}
+	piece->radius_m = vec_length(diagonal) / 2 * (float)solid->lattice.step_m;
 	measure_piece(solid, indices, piece);
 	set_extents(solid, indices, piece);
 	set_probes(solid, indices, piece);
@@ -285,72 +288,83 @@ bool ray_meets_sphere(const float from_m[3], const float direction[3], float mos
 	float to[3];
 	vec_sub(to, centre_m, from_m);
 	float along = vec_dot(to, direction);
-	float nearest = fminf(fmaxf(along, 0), most_m);
+	float nearest = vec_least(vec_most(along, 0), most_m);
 	float off[3];
 	vec_add_scaled(off, to, -nearest, direction);
 	return vec_dot(off, off) <= radius_m * radius_m;
 }
 
-static bool meets_box(const struct solid_node *node, const float from[3], const float inverse[3],
-		      float most)
+/* A ray in units of the lattice, where vertices are whole numbers. */
+struct cast {
+	const struct solid *solid;
+	float from[3], direction[3], inverse[3];
+	float least, distance;
+};
+
+static bool meets_box(const struct cast *cast, const struct solid_node *node)
 {
-	float low = 0, high = most;
+	float low = 0, high = cast->distance;
 	for (int i = 0; i < 3; i++) {
-		float a = (node->min_m[i] - from[i]) * inverse[i];
-		float b = (node->max_m[i] - from[i]) * inverse[i];
-		low = fmaxf(low, fminf(a, b));
-		high = fminf(high, fmaxf(a, b));
+		float a = ((float)node->low[i] - cast->from[i]) * cast->inverse[i];
+		float b = ((float)node->high[i] - cast->from[i]) * cast->inverse[i];
+		low = vec_most(low, vec_least(a, b));
+		high = vec_least(high, vec_most(a, b));
 	}
 	return low <= high;
 }
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
-static bool meets_triangle(const struct solid *solid, uint32_t triangle, const float from[3],
-			   const float direction[3], float least, float *distance)
+static void corner_of(const struct cast *cast, uint16_t index, float out[3])
 {
+	const uint16_t *at = cast->solid->vertices[index].position;
+	for (int i = 0; i < 3; i++)
+		out[i] = at[i];
+}
+
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
+static bool meets_triangle(struct cast *cast, uint32_t triangle)
+{
+	const uint16_t *index = &cast->solid->indices[3 * triangle];
 	float a[3], ab[3], ac[3], p[3], t[3], q[3];
-	vertex_m(solid, solid->indices[3 * triangle], a);
-	vertex_m(solid, solid->indices[3 * triangle + 1], ab);
-	vertex_m(solid, solid->indices[3 * triangle + 2], ac);
+	corner_of(cast, index[0], a);
+	corner_of(cast, index[1], ab);
+	corner_of(cast, index[2], ac);
 	vec_sub(ab, ab, a);
 	vec_sub(ac, ac, a);
-	vec_cross(p, direction, ac);
+	vec_cross(p, cast->direction, ac);
 	float determinant = vec_dot(ab, p);
-	if (fabsf(determinant) < 1e-12f)
+	if (fabsf(determinant) < 1e-6f)
 		return false;
-	vec_sub(t, from, a);
-	float u = vec_dot(t, p) / determinant;
+	float inverse = 1 / determinant;
+	vec_sub(t, cast->from, a);
+	float u = vec_dot(t, p) * inverse;
 	if (u < 0 || u > 1)
 		return false;
 	vec_cross(q, t, ab);
-	float v = vec_dot(direction, q) / determinant;
+	float v = vec_dot(cast->direction, q) * inverse;
 	if (v < 0 || u + v > 1)
 		return false;
-	float at = vec_dot(ac, q) / determinant;
-	if (at < least || at >= *distance)
+	float at = vec_dot(ac, q) * inverse;
+	if (at < cast->least || at >= cast->distance)
 		return false;
-	*distance = at;
+	cast->distance = at;
 	return true;
 }
 
-static bool cast(const struct solid *solid, const float from[3], const float direction[3],
-		 float least, float *distance, bool any)
+static bool run_cast(struct cast *cast, bool any)
 {
+	const struct solid *solid = cast->solid;
 	uint32_t stack[DEPTH_MOST], depth = 0;
-	float inverse[3];
 	bool hit = false;
-	for (int i = 0; i < 3; i++)
-		inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
 	if (solid->node_count > 0)
 		stack[depth++] = 0;
 	while (depth > 0 && !(hit && any)) {
 		uint32_t at = stack[--depth];
 		const struct solid_node *node = &solid->nodes[at];
-		if (!meets_box(node, from, inverse, *distance))
+		if (!meets_box(cast, node))
 			continue;
 		if (!node->right) {
 			for (uint32_t t = node->first; t < node->first + node->count; t++)
-				hit |= meets_triangle(solid, t, from, direction, least, distance);
+				hit |= meets_triangle(cast, t);
 			continue;
 		}
 		stack[depth++] = node->right;
@@ -359,14 +373,36 @@ static bool cast(const struct solid *solid, const float from[3], const float dir
 	return hit;
 }
 
+static struct cast begin_cast(const struct solid *solid, const float from_m[3],
+			      const float direction[3])
+{
+	struct cast cast = { .solid = solid };
+	for (int i = 0; i < 3; i++) {
+		cast.from[i] =
+			(float)((from_m[i] - solid->lattice.origin_m[i]) / solid->lattice.step_m);
+		cast.direction[i] = direction[i];
+		cast.inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
+	}
+	return cast;
+}
+
 bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
 	       float least_m, float *distance_m)
 {
-	return cast(solid, from_m, direction, least_m, distance_m, false);
+	float step = (float)solid->lattice.step_m;
+	struct cast cast = begin_cast(solid, from_m, direction);
+	cast.least = least_m / step;
+	cast.distance = *distance_m / step;
+	if (!run_cast(&cast, false))
+		return false;
+	*distance_m = cast.distance * step;
+	return true;
 }
 
 bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
 		  float most_m)
 {
-	return cast(solid, from_m, direction, 0, &most_m, true);
+	struct cast cast = begin_cast(solid, from_m, direction);
+	cast.distance = most_m / (float)solid->lattice.step_m;
+	return run_cast(&cast, true);
 }

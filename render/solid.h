@@ -17,8 +17,8 @@ enum {
 	 * the model), down to the third. */
 	PIECE_TRIANGLES_MOST = 256,
 	PIECE_TRIANGLES_BENT = 96,
-	PIECE_TRIANGLES_LEAST = 16,
-	PIECES_ACROSS = 16,
+	PIECE_TRIANGLES_LEAST = 32,
+	PIECES_ACROSS = 8,
 	PIECE_PROBES = 8
 };
 
@@ -34,10 +34,10 @@ struct piece {
 };
 
 struct solid_node {
-	float min_m[3], max_m[3];
-	uint32_t first, count; /* triangles; an inner node's children are node + 1 and right */
-	uint32_t right;        /* 0: a leaf */
-	float flatness;        /* as a piece's */
+	uint16_t low[3], high[3]; /* on the lattice */
+	uint32_t first, count;    /* triangles; an inner node's children are node + 1 and right */
+	uint32_t right;           /* 0: a leaf */
+	float flatness;           /* as a piece's */
 };
 
 struct solid {

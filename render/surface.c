@@ -74,7 +74,7 @@ static const char blended_vertex[] =
 	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z, 1e-5), size.x) : 1.0;\n"
 	"	return vec4(q, s.w * k);\n"
 	"}\n"
-	"float sharpen(float k) { return k * k * k; }\n"
+	"float sharpen(float k) { return pow(k, 8.0); }\n"
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	vec3 n = unit_normal();\n"

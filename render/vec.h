@@ -4,6 +4,17 @@
 
 #include <math.h>
 
+/* fminf and fmaxf are calls where NaN must be minded; nothing here is NaN. */
+static inline float vec_least(float a, float b)
+{
+	return a < b ? a : b;
+}
+
+static inline float vec_most(float a, float b)
+{
+	return a > b ? a : b;
+}
+
 static inline float vec_dot(const float a[3], const float b[3])
 {
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
