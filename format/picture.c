@@ -75,9 +75,12 @@ int picture_encode_png(struct buffer *out, const struct picture *picture)
 
 /* ---- JPEG */
 
+enum { SCANS_MOST = 64 /* of a progressive file; encoders write about ten */ };
+
 struct jpeg_failure {
 	struct jpeg_error_mgr manager;
 	jmp_buf jump;
+	struct jpeg_progress_mgr progress;
 };
 
 static void jpeg_fail(j_common_ptr codec)
@@ -100,6 +103,14 @@ static struct jpeg_error_mgr *jpeg_errors(struct jpeg_failure *failure)
 	failure->manager.error_exit = jpeg_fail;
 	failure->manager.emit_message = jpeg_quiet;
 	return &failure->manager;
+}
+
+/* Each scan goes over the whole picture: a thousand empty ones are a small file and a long wait. */
+static void jpeg_count_scans(j_common_ptr codec)
+{
+	if (codec->is_decompressor &&
+	    ((struct jpeg_decompress_struct *)codec)->input_scan_number > SCANS_MOST)
+		jpeg_fail(codec);
 }
 
 static void read_rgba_rows(struct jpeg_decompress_struct *codec, struct picture *out)
@@ -126,9 +137,12 @@ static int decode_jpeg(struct picture *out, struct bytes file)
 	jpeg_mem_src(&codec, file.data, file.size);
 	jpeg_read_header(&codec, TRUE);
 	codec.out_color_space = JCS_EXT_RGBA;
-	jpeg_start_decompress(&codec);
-	rc = allocate(out, codec.output_width, codec.output_height);
+	/* Before libjpeg allocates: a progressive file's coefficients need twice that. */
+	rc = allocate(out, codec.image_width, codec.image_height);
 	if (rc == 0) {
+		failure.progress.progress_monitor = jpeg_count_scans;
+		codec.progress = &failure.progress;
+		jpeg_start_decompress(&codec);
 		read_rgba_rows(&codec, out);
 		/* A file that ends early is padded with grey by libjpeg, and a warning. */
 		if (failure.manager.num_warnings > 0)

@@ -69,6 +69,36 @@ static void check_truncations(const struct buffer *file, size_t may_miss)
 	}
 }
 
+/* The frame header of a JPEG: 0xff 0xc0, u16 size, u8 bits, u16 height, u16 width, big endian. */
+static uint8_t *frame_header(struct buffer *file)
+{
+	for (size_t i = 0; i + 9 < file->size; i++)
+		if (file->data[i] == 0xff && file->data[i + 1] == 0xc0)
+			return file->data + i;
+	return NULL;
+}
+
+/* A progressive picture of 65500 pixels square would have libjpeg take 24 GiB. */
+static void refuses_a_huge_jpeg_before_room_is_made_for_it(void **state)
+{
+	struct picture picture = gradient(), back;
+	struct buffer file;
+	uint8_t *frame;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(picture_encode_jpeg(&file, &picture, 95) == 0);
+	frame = frame_header(&file);
+	CHECK(frame);
+	frame[1] = 0xc2; /* progressive */
+	frame[5] = frame[7] = 0xff;
+	frame[6] = frame[8] = 0xdc;
+	CHECK(picture_decode(&back, buffer_bytes(&file)) == -EFBIG);
+	CHECK(back.rgba == NULL);
+	picture_finish(&picture);
+	buffer_finish(&file);
+}
+
 static void refuses_every_truncated_file(void **state)
 {
 	struct picture picture = gradient();
@@ -90,6 +120,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(png_gives_every_pixel_back),
 		cmocka_unit_test(jpeg_is_near_and_opaque),
+		cmocka_unit_test(refuses_a_huge_jpeg_before_room_is_made_for_it),
 		cmocka_unit_test(refuses_every_truncated_file),
 	};
 
