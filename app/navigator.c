@@ -11,7 +11,7 @@
 #define GROUND_LEAST_M     0.25f /* eye above the bottom of the box */
 #define GROUND_LEAST_SHARE 0.005f
 #define KEEP_OFF_M         0.35f /* eye to a wall */
-#define KEEP_OFF_SHARE     0.006f
+#define KEEP_OFF_SHARE     0.02f
 #define FAR_SHARE          2.5f /* eye to the model's middle, in half diagonals */
 #define FAR_OVER_HOME      1.1f /* or as far as it begins, and a little more */
 

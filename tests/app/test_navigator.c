@@ -208,7 +208,7 @@ static void a_small_model_is_approached_as_near_as_a_large_one(void **state)
 	for (int i = 0; i < 60; i++)
 		navigator_pinch(&nav, 1.3f, 0, 0, 0, HEIGHT_PX);
 	navigator_camera(&nav, &camera);
-	CHECK(glm_vec3_distance(nav.eye_m, (float *)snout) < 0.004f);
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)snout) < 0.0055f);
 	CHECK(camera.near_m < glm_vec3_distance(nav.eye_m, (float *)snout));
 	for (int i = 0; i < 60; i++)
 		navigator_turn(&nav, 0, -40, HEIGHT_PX);
