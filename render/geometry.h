@@ -21,6 +21,9 @@ struct blend {
 struct piece_state {
 	struct plan_choice choice;
 	struct blend blend[PLAN_ENTRIES];
+	float seen_px; /* of the screen, by the last census that had it in the frustum */
+	float weight[PIECE_PROBES];
+	bool counted;              /* by any census */
 	bool planned, orphan;      /* orphan: a face it was blended from is gone */
 	uint32_t planned_epoch;    /* of the world, when it was */
 	uint32_t planned_versions; /* sum over the faces it wants */

@@ -359,7 +359,8 @@ static bool is_chosen(const struct plan_entry *entries, uint32_t count, face_key
 }
 
 /* Greedy: what is left undone of a probe is the product of what each face leaves undone. */
-static void choose_entries(struct plan_choice *choice, const struct candidate *list, uint32_t count)
+static void choose_entries(struct plan_choice *choice, const struct candidate *list, uint32_t count,
+			   const struct plan_surface *surface)
 {
 	struct plan_entry was[PLAN_ENTRIES];
 	uint32_t was_count = choice->entry_count;
@@ -374,7 +375,7 @@ static void choose_entries(struct plan_choice *choice, const struct candidate *l
 		for (uint32_t i = 0; i < count; i++) {
 			float gain = 0;
 			for (int k = 0; k < PIECE_PROBES; k++)
-				gain += undone[k] * list[i].now[k] / PIECE_PROBES;
+				gain += undone[k] * list[i].now[k] * surface->weight[k];
 			if (is_chosen(was, was_count, list[i].face))
 				gain *= loyalty;
 			if (gain > best_gain &&
@@ -396,7 +397,7 @@ static void choose_entries(struct plan_choice *choice, const struct candidate *l
 /* A piece is coloured well by one good image; so each probe counts its best alone, and a fetch is
  * worth what it adds to that. */
 static void choose_wants(struct plan_choice *choice, const struct candidate *list, uint32_t count,
-			 const struct piece *piece)
+			 const struct plan_surface *surface)
 {
 	float best_now[PIECE_PROBES] = { 0 };
 	for (uint32_t i = 0; i < count; i++)
@@ -409,7 +410,8 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 		for (uint32_t i = 0; i < count; i++) {
 			float gain = 0;
 			for (int k = 0; k < PIECE_PROBES; k++)
-				gain += vec_most(list[i].ideal[k] - best_now[k], 0) / PIECE_PROBES;
+				gain += vec_most(list[i].ideal[k] - best_now[k], 0) *
+					surface->weight[k];
 			if (gain > best_gain) {
 				best = &list[i];
 				best_gain = gain;
@@ -422,44 +424,35 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 		struct plan_want want = { .face = best->face,
 					  .level = best->level,
 					  .gain = best_gain };
-		if (!plan_footprint(&want.area, want.face, best->sample_m, piece))
+		if (!plan_footprint(&want.area, want.face, best->sample_m, surface->piece))
 			return;
 		choice->want[choice->want_count++] = want;
 	}
 }
 
 void plan_piece(struct plan_choice *choice, const struct plan_world *world,
-		const struct plan_eye *eye, const struct piece *piece, float error_m)
+		const struct plan_eye *eye, const struct plan_surface *surface)
 {
 	struct candidate list[CANDIDATES_MOST];
 	struct ranked ranked;
 	uint32_t count = 0;
-	uint8_t facing = 0, in_sight = 0;
-	for (int k = 0; k < PIECE_PROBES; k++) {
-		if (!faces_eye(eye, piece, k))
-			continue;
-		facing |= (uint8_t)(1 << k);
-		if (world->sees(world->data, eye->eye_m, piece->probe_m[k]))
+	const struct piece *piece = surface->piece;
+	uint8_t in_sight = 0;
+	for (int k = 0; k < PIECE_PROBES; k++)
+		if (surface->weight[k] > 0)
 			in_sight |= (uint8_t)(1 << k);
-	}
-	/* Hidden, as far as probes tell: coloured by what is there, worth no fetch. */
-	bool hidden = in_sight == 0;
-	if (hidden)
-		in_sight = facing;
-	rank_points(&ranked, world, eye, piece, error_m);
+	rank_points(&ranked, world, eye, piece, surface->error_m);
 	/* Rays are dear: once enough good points see it whole, worse ones add nothing. */
 	uint32_t whole = 0;
 	for (uint32_t i = 0; i < ranked.count; i++) {
 		if (whole >= POINTS_ENOUGH && !has_resident(world, ranked.point[i]))
 			continue;
 		uint8_t seen = add_point(list, &count, choice, world, eye, piece, in_sight,
-					 ranked.point[i], error_m);
+					 ranked.point[i], surface->error_m);
 		whole += seen == in_sight;
 	}
-	choose_entries(choice, list, count);
-	choice->want_count = 0;
-	if (!hidden)
-		choose_wants(choice, list, count, piece);
+	choose_entries(choice, list, count, surface);
+	choose_wants(choice, list, count, surface);
 }
 
 /* ---- the paper's eight corners */

@@ -98,9 +98,16 @@ struct plan_world {
 	void *data;
 };
 
-/* error_m: of the mesh that is shown there. Entries that are chosen now are kept on a near draw. */
+/* A piece as the eye has it before it. */
+struct plan_surface {
+	const struct piece *piece;
+	float error_m;              /* of the mesh that is shown there */
+	float weight[PIECE_PROBES]; /* how much of what shows is near each probe; their sum is 1 */
+};
+
+/* Entries that are chosen now are kept on a near draw. */
 void plan_piece(struct plan_choice *choice, const struct plan_world *world,
-		const struct plan_eye *eye, const struct piece *piece, float error_m);
+		const struct plan_eye *eye, const struct plan_surface *surface);
 /* The paper's way instead: the sampling points of the grid cell around the eye, by trilinear
  * weight (which is what entry.share then holds). */
 void plan_piece_corners(struct plan_choice *choice, const struct plan_world *world,

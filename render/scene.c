@@ -32,6 +32,8 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		rc = surface_init(&scene->surface, scene->tiles.atlas_px);
 	if (rc == 0)
 		rc = mark_init(&scene->mark);
+	if (rc == 0)
+		rc = census_init(&scene->census);
 	if (rc < 0) {
 		scene_destroy(scene);
 		return rc;
@@ -71,6 +73,7 @@ void scene_destroy(struct scene *scene)
 	pool_destroy(scene->pool);
 	mark_finish(&scene->mark);
 	rest_finish(&scene->rest);
+	census_finish(&scene->census);
 	surface_finish(&scene->surface);
 	depth_finish(&scene->depth);
 	tiles_finish(&scene->tiles);
@@ -88,6 +91,7 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	tiles_clear(&scene->tiles);
 	depth_clear(&scene->depth, 1);
 	rest_break(&scene->rest);
+	scene->census_us = 0;
 	scene->root_hash = root;
 	scene->root_bytes = root_bytes;
 	scene_list_wants(scene);

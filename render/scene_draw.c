@@ -10,7 +10,7 @@
 enum {
 	DEPTH_TRIANGLES_MOST = 60000, /* of a face's picture */
 	PLAN_BUDGET_US = 5000,
-	PLAN_BUDGET_REST_US = 25000, /* nobody waits for the next frame */
+	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
 	SHARE_PX_MOST = 320,         /* the picture from which image_share is counted */
 };
 
@@ -225,6 +225,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
 		return;
 	}
+	scene_take_census(scene, moved);
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, fminf(passed_ms, 100));
 	scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);

@@ -1,12 +1,14 @@
 /* What the sources of the scene share; private to them.
  *   scene.c        life, objects in
  *   scene_wants.c  objects wanted
- *   scene_plan.c   what is shown: cut, pieces, blends, depth faces
+ *   scene_plan.c   what is shown: cut, pieces, blends
+ *   scene_census.c which pieces are in sight
  *   scene_draw.c   the frame */
 #ifndef GOPURA_RENDER_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_PARTS_H
 
 #include "format/hierarchy.h"
+#include "render/census.h"
 #include "render/cut.h"
 #include "render/depth.h"
 #include "render/geometry.h"
@@ -42,7 +44,7 @@ struct object {
 /* A piece in sight. */
 struct visible_piece {
 	uint32_t patch, piece;
-	float pixels; /* of the screen, about */
+	float pixels; /* of the screen, as far as known */
 };
 
 struct scene {
@@ -53,6 +55,7 @@ struct scene {
 	struct surface surface;
 	struct mark mark;
 	struct rest rest;
+	struct census census;
 
 	struct object *objects; /* owned */
 	uint32_t object_count, object_capacity;
@@ -78,8 +81,13 @@ struct scene {
 	int64_t frame_us;
 	struct visible_piece *visible; /* owned */
 	uint32_t visible_count, visible_capacity;
-	uint32_t epoch;       /* of what planning looks at: tiles, pages */
-	bool cut_is_stale;    /* geometry came or went */
+	uint32_t epoch;    /* of what planning looks at: tiles, pages */
+	bool cut_is_stale; /* geometry came or went */
+	int64_t census_us; /* when it was taken */
+	float census_eye_m[3];
+	float census_forward[3];
+	uint64_t census_cut;
+	bool census_is_stale;
 	bool plans_are_stale; /* some piece in sight waits to be planned */
 	bool fading, depth_is_stale, uploads_wait;
 	uint64_t cut_signature;
@@ -100,6 +108,9 @@ void scene_refuse(struct object *object, int error);
 
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);
+
+/* scene_census.c */
+void scene_take_census(struct scene *scene, bool moved);
 
 /* scene_plan.c */
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);

@@ -149,6 +149,8 @@ static uint32_t versions_of(const struct scene *scene, const struct plan_choice 
 static bool is_stale(const struct scene *scene, const struct piece *piece,
 		     const struct piece_state *state)
 {
+	if (state->counted && state->seen_px <= 0)
+		return false; /* hidden: coloured by what it had */
 	if (!state->planned || state->orphan)
 		return true;
 	if (state->choice.want_count > 0 &&
@@ -158,6 +160,20 @@ static bool is_stale(const struct scene *scene, const struct piece *piece,
 	float moved = vec_distance(state->planned_eye_m, scene->view.eye_m);
 	float distance = view_sphere_distance(&scene->view, piece->centre_m, piece->radius_m);
 	return moved > eye_moved * (distance + piece->radius_m);
+}
+
+static void plan_seen_piece(const struct scene *scene, const struct plan_world *world,
+			    const struct plan_eye *eye, const struct visible_piece *visible,
+			    struct piece_state *state)
+{
+	struct plan_surface surface = {
+		.piece = &scene->geometry.patches[visible->patch]
+				  .content.solid.pieces[visible->piece],
+		.error_m = scene_patch_error_m(scene, visible->patch),
+	};
+	for (int k = 0; k < PIECE_PROBES; k++)
+		surface.weight[k] = state->counted ? state->weight[k] : 1.0f / PIECE_PROBES;
+	plan_piece(&state->choice, world, eye, &surface);
 }
 
 static void plan_one(struct scene *scene, const struct plan_world *world,
@@ -170,8 +186,7 @@ static void plan_one(struct scene *scene, const struct plan_world *world,
 	if (scene->options.mode == SCENE_CORNERS)
 		plan_piece_corners(&state->choice, world, &eye, piece);
 	else
-		plan_piece(&state->choice, world, &eye, piece,
-			   scene_patch_error_m(scene, visible->patch));
+		plan_seen_piece(scene, world, &eye, visible, state);
 	state->planned = true;
 	state->orphan = false;
 	state->planned_epoch = scene->epoch;

@@ -183,10 +183,12 @@ static void want_images(struct scene *scene)
 	struct gains gains = { 0 };
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
-		const struct plan_choice *choice =
-			&scene->geometry.patches[v->patch].pieces[v->piece].choice;
-		for (uint32_t k = 0; k < choice->want_count; k++)
-			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * v->pixels);
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		const struct plan_choice *choice = &state->choice;
+		float pixels = state->counted ? state->seen_px : v->pixels / 8;
+		for (uint32_t k = 0; k < choice->want_count && pixels > 0; k++)
+			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * pixels);
 	}
 	for (uint32_t i = 0; i < gains.count; i++) {
 		struct message_want place;

@@ -152,8 +152,8 @@ static bool read_picture(const char *folder, uint32_t view, struct picture *out)
 	return rc == 0;
 }
 
-/* Over the union of both silhouettes, uncovered pixels black in both. */
-static double psnr_of(const struct picture *a, const uint8_t *b)
+/* Over the union of both silhouettes, on the release's background. */
+static double psnr_of(const struct picture *a, const uint8_t *b, const uint8_t sky[3])
 {
 	double sum = 0, count = 0;
 	for (size_t i = 0; i < (size_t)a->width * a->height; i++) {
@@ -161,7 +161,7 @@ static double psnr_of(const struct picture *a, const uint8_t *b)
 		if (p[3] == 0 && q[3] == 0)
 			continue;
 		for (int k = 0; k < 3; k++) {
-			double d = (double)(p[3] ? p[k] : 0) - (q[3] ? q[k] : 0);
+			double d = (double)(p[3] ? p[k] : sky[k]) - (q[3] ? q[k] : sky[k]);
 			sum += d * d;
 		}
 		count += 3;
@@ -177,7 +177,7 @@ static double score(struct bench *bench, uint32_t view, const uint8_t *rgba)
 	double psnr = NAN;
 	if ((int)truth.width == bench->camera.width_px &&
 	    (int)truth.height == bench->camera.height_px)
-		psnr = psnr_of(&truth, rgba);
+		psnr = psnr_of(&truth, rgba, scene_root(bench->scene)->background);
 	picture_finish(&truth);
 	if (!isnan(psnr)) {
 		bench->psnr_sum += psnr;

@@ -152,25 +152,34 @@ static struct piece small_piece(void)
 	return piece;
 }
 
+static struct plan_surface even_surface(const struct piece *piece)
+{
+	struct plan_surface surface = { .piece = piece };
+	for (int k = 0; k < PIECE_PROBES; k++)
+		surface.weight[k] = 1.0f / PIECE_PROBES;
+	return surface;
+}
+
 static void a_piece_wants_the_best_point_that_sees_it(void **state)
 {
 	(void)state;
 	struct world world;
 	struct plan_choice choice = { 0 };
 	const struct piece piece = small_piece();
+	const struct plan_surface surface = even_surface(&piece);
 	make_world(&world);
-	plan_piece(&choice, &world.plan, &eye, &piece, 0);
+	plan_piece(&choice, &world.plan, &eye, &surface);
 	CHECK(choice.entry_count == 0 && choice.want_count >= 1);
 	uint32_t best = choice.want[0].face / CUBE_FACES;
 	CHECK(choice.want[0].gain > 0.1f && choice.want[0].gain <= 1);
 	/* Behind a pillar it is no use: another one is wanted. */
 	struct plan_choice anew = { 0 };
 	world.blocked = 1u << best;
-	plan_piece(&anew, &world.plan, &eye, &piece, 0);
+	plan_piece(&anew, &world.plan, &eye, &surface);
 	CHECK(anew.want_count >= 1 && anew.want[0].face / CUBE_FACES != best);
 	world.blocked = 15;
 	memset(&anew, 0, sizeof(anew));
-	plan_piece(&anew, &world.plan, &eye, &piece, 0);
+	plan_piece(&anew, &world.plan, &eye, &surface);
 	CHECK(anew.want_count == 0);
 }
 
@@ -180,13 +189,14 @@ static void what_is_good_enough_is_not_fetched_again(void **state)
 	struct world world;
 	struct plan_choice choice = { 0 };
 	const struct piece piece = small_piece();
+	const struct plan_surface surface = even_surface(&piece);
 	make_world(&world);
-	plan_piece(&choice, &world.plan, &eye, &piece, 0);
+	plan_piece(&choice, &world.plan, &eye, &surface);
 	float first_gain = choice.want[0].gain;
 	/* As if the best had come; level_at says its finest tiles are there. */
 	world.resident[0] = choice.want[0].face;
 	world.plan.resident_count = 1;
-	plan_piece(&choice, &world.plan, &eye, &piece, 0);
+	plan_piece(&choice, &world.plan, &eye, &surface);
 	CHECK(choice.entry_count == 1 && choice.entry[0].face == world.resident[0]);
 	for (uint32_t i = 0; i < choice.want_count; i++)
 		CHECK(choice.want[i].face != world.resident[0] && choice.want[i].gain < first_gain);
@@ -198,6 +208,7 @@ static void an_eye_that_barely_moves_keeps_its_faces(void **state)
 	struct world world;
 	struct plan_choice choice = { 0 };
 	const struct piece piece = small_piece();
+	const struct plan_surface surface = even_surface(&piece);
 	make_world(&world);
 	for (uint32_t p = 0; p < 4; p++) {
 		float at[3], to[3], u, v;
@@ -206,12 +217,12 @@ static void an_eye_that_barely_moves_keeps_its_faces(void **state)
 		world.resident[p] = p * CUBE_FACES + (uint32_t)cube_project(to, &u, &v);
 	}
 	world.plan.resident_count = 4;
-	plan_piece(&choice, &world.plan, &eye, &piece, 0);
+	plan_piece(&choice, &world.plan, &eye, &surface);
 	struct plan_choice was = choice;
 	CHECK(was.entry_count > 1);
 	struct plan_eye moved = eye;
 	moved.eye_m[0] += 0.01f;
-	plan_piece(&choice, &world.plan, &moved, &piece, 0);
+	plan_piece(&choice, &world.plan, &moved, &surface);
 	CHECK(choice.entry_count == was.entry_count);
 	for (uint32_t i = 0; i < was.entry_count; i++) {
 		bool kept = false;
