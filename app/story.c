@@ -14,6 +14,7 @@ enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16 };
 /* A picture that was asked for. */
 struct story_picture {
 	bool wanted;
+	bool broken;            /* came, and cannot be decoded: not asked for again */
 	struct picture decoded; /* rgba NULL: not here */
 	uint32_t used;          /* turn of its last use, for letting the oldest go */
 };
@@ -107,7 +108,7 @@ static bool on_picture(void *data, const char *name, struct overlay_picture *out
 		return false;
 	own = &story->pictures[picture_index(story, picture)];
 	own->used = ++story->turn;
-	own->wanted = !own->decoded.rgba;
+	own->wanted = !own->decoded.rgba && !own->broken;
 	*out = (struct overlay_picture){
 		.picture = own->decoded.rgba ? &own->decoded : NULL,
 		.width_px = picture->width_px,
@@ -149,7 +150,8 @@ static bool give_picture(struct story *story, struct hash hash, struct bytes obj
 			continue;
 		ours = true;
 		own->wanted = false;
-		if (!own->decoded.rgba && picture_decode(&own->decoded, object) < 0)
+		own->broken = !own->decoded.rgba && picture_decode(&own->decoded, object) < 0;
+		if (own->broken)
 			log_error("app", "content bug: picture %s cannot be shown", picture->name);
 		let_oldest_picture_go(story);
 		overlay_picture_arrived(story->overlay, picture->name);

@@ -395,7 +395,9 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*"); /* the museum's server is reached directly */
 	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");
 	curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, http->is_local ? "file" : "http,https");
-	curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
+	/* Who asks in secret is not answered in the open. */
+	curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR,
+			 strncmp(http->url, "https:", 6) == 0 ? "https" : "http,https");
 	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, http->is_local ? 0L : 1L);
 	curl_easy_setopt(easy, CURLOPT_MAXREDIRS, 4L);
 	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);

@@ -22,7 +22,6 @@ start_kiosk "$work/kiosk.log"
 trap 'kill $pid 2>/dev/null || true; stop_server' EXIT
 shown() { [ "$(grep -c 'is shown' "$work/kiosk.log")" -ge "$1" ]; }
 wait_for 60 "first release" shown 1
-sleep 3
 
 # ---- a release.json whose signature is not the publisher's
 cp "$work/release/release.json" "$work/good.json"
