@@ -1,6 +1,5 @@
 #include "render/depth.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { ROWS = TILES_FACES_MOST / TILES_FACES_ACROSS };
@@ -13,8 +12,8 @@ static const char draw_vertex[] =
 	"varying float v_depth;\n"
 	"void main() {\n"
 	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
-	/* Nothing is nearer to a sampling point of a temple, or of a statue. */
-	"	float n = min(0.1, u_far * 0.0007);\n"
+	/* Sampling points lie as far apart as the model is large, and as far from it. */
+	"	float n = u_far * 0.0007;\n"
 	/* Row 0 of a face is its top and row 0 of a texture its bottom: y is turned over. */
 	"	gl_Position = vec4(q.x, -q.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
 	"			   q.z);\n"
@@ -153,9 +152,7 @@ void depth_clear(struct depth *depth, float far_m)
 
 float depth_slack_m(const struct depth *depth)
 {
-	const float far_m = depth->far_limit_m;
-
-	return fmaxf(fminf(0.02f, far_m / 6000), far_m / 32768);
+	return depth->far_limit_m / 6800;
 }
 
 void depth_begin(struct depth *depth, face_key face, const float sample_m[3],

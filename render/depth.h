@@ -28,8 +28,8 @@ struct depth {
 must_check int depth_init(struct depth *depth, int face_px);
 void depth_finish(struct depth *depth);
 void depth_clear(struct depth *depth, float far_m);
-/* How far a depth may be off without being another surface's: what stone forgives, less of a small
- * model, and at least what 16 bits can tell apart. */
+/* How far a depth may be off without being another surface's, besides the error of the patches:
+ * 2 cm of a temple of 40 m, ten steps of the 16 bits. */
 float depth_slack_m(const struct depth *depth);
 
 /* Begins a face: afterwards the caller draws patches (attribute 0: lattice position), then calls
