@@ -29,13 +29,6 @@ static const char help[] =
 	"examples: gopura-content build temple\n"
 	"          gopura-content build temple --out /srv/museum --jobs 8\n";
 
-static int wrong(const char *what, const char *value)
-{
-	fprintf(stderr, "gopura-content build: %s%s; see gopura-content build --help\n", what,
-		value);
-	return 2;
-}
-
 static void print_report(const struct build_report *report)
 {
 	publish_content_print(stdout, &report->publish);
@@ -98,7 +91,7 @@ int command_build(int argc, char **argv)
 	struct build_options build = { 0 };
 	const char *kind = NULL;
 	int option;
-	char *end;
+	uint64_t jobs = 0;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
 		switch (option) {
@@ -106,13 +99,16 @@ int command_build(int argc, char **argv)
 			build.out = optarg;
 			break;
 		case 'j':
-			build.jobs = (uint32_t)strtoul(optarg, &end, 10);
-			if (*end || build.jobs < 1 || build.jobs > 64)
-				return wrong("--jobs must be 1 to 64, not ", optarg);
+			if (!command_number(optarg, 1, 64, &jobs))
+				return command_wrong(argv[0], "--jobs must be 1 to 64, not ",
+						     optarg);
+			build.jobs = (uint32_t)jobs;
 			break;
 		case 'k':
 			if (strcmp(optarg, "groups") != 0 && strcmp(optarg, "tree") != 0)
-				return wrong("--hierarchy must be groups or tree, not ", optarg);
+				return command_wrong(argv[0],
+						     "--hierarchy must be groups or tree, not ",
+						     optarg);
 			kind = optarg;
 			break;
 		case 'c':
@@ -126,6 +122,6 @@ int command_build(int argc, char **argv)
 		}
 	}
 	if (optind + 1 != argc)
-		return wrong("name one content folder", "");
+		return command_wrong(argv[0], "name one content folder", "");
 	return run(argv[optind], &build, kind);
 }

@@ -137,13 +137,6 @@ static int make(const struct settings *settings, const struct content *content)
 	return rc;
 }
 
-static int wrong(const char *what, const char *value)
-{
-	fprintf(stderr, "gopura-content hierarchy: %s%s; see gopura-content hierarchy --help\n",
-		what, value);
-	return 2;
-}
-
 static int run(const struct settings *settings)
 {
 	struct fault fault = { "" };
@@ -172,19 +165,22 @@ int command_hierarchy(int argc, char **argv)
 	};
 	struct settings settings = { 0 };
 	int option;
-	char *end;
+	uint64_t jobs = 0;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
 		switch (option) {
 		case 'k':
 			if (strcmp(optarg, "groups") != 0 && strcmp(optarg, "tree") != 0)
-				return wrong("--hierarchy must be groups or tree, not ", optarg);
+				return command_wrong(argv[0],
+						     "--hierarchy must be groups or tree, not ",
+						     optarg);
 			settings.kind = optarg;
 			break;
 		case 'j':
-			settings.jobs = (uint32_t)strtoul(optarg, &end, 10);
-			if (*end || settings.jobs < 1 || settings.jobs > 64)
-				return wrong("--jobs must be 1 to 64, not ", optarg);
+			if (!command_number(optarg, 1, 64, &jobs))
+				return command_wrong(argv[0], "--jobs must be 1 to 64, not ",
+						     optarg);
+			settings.jobs = (uint32_t)jobs;
 			break;
 		case 'f':
 			settings.force = true;
@@ -197,7 +193,7 @@ int command_hierarchy(int argc, char **argv)
 		}
 	}
 	if (optind + 1 != argc)
-		return wrong("name one content folder", "");
+		return command_wrong(argv[0], "name one content folder", "");
 	settings.folder = argv[optind];
 	return run(&settings);
 }

@@ -70,13 +70,6 @@ static int read_all(char **paths, int count, const struct settings *settings)
 	return status;
 }
 
-static int wrong(const char *what, const char *value)
-{
-	fprintf(stderr, "gopura-content import: %s%s; see gopura-content import --help\n", what,
-		value);
-	return 2;
-}
-
 int command_import(int argc, char **argv)
 {
 	static const struct option options[] = {
@@ -93,12 +86,14 @@ int command_import(int argc, char **argv)
 		switch (option) {
 		case 'a':
 			if (!import_axis_named(optarg, &settings.import.up))
-				return wrong("--up must be x, y or z, not ", optarg);
+				return command_wrong(argv[0], "--up must be x, y or z, not ",
+						     optarg);
 			break;
 		case 'u':
 			if (!import_unit_named(optarg, &settings.import.metres_per_unit))
-				return wrong("--unit must be m, cm, mm, in or a number, not ",
-					     optarg);
+				return command_wrong(
+					argv[0], "--unit must be m, cm, mm, in or a number, not ",
+					optarg);
 			break;
 		case 'o':
 			settings.out = optarg;
@@ -111,6 +106,6 @@ int command_import(int argc, char **argv)
 		}
 	}
 	if (optind == argc)
-		return wrong("name at least one file", "");
+		return command_wrong(argv[0], "name at least one file", "");
 	return read_all(argv + optind, argc - optind, &settings);
 }

@@ -35,23 +35,6 @@ struct settings {
 	bool undo, renew;
 };
 
-static int wrong(const char *what, const char *value)
-{
-	fprintf(stderr, "gopura-content publish: %s%s; see gopura-content publish --help\n", what,
-		value);
-	return 2;
-}
-
-static bool positive(const char *text, uint64_t most, uint64_t *out)
-{
-	char *end;
-
-	errno = 0;
-	*out = strtoull(text, &end, 10);
-	return errno == 0 && *end == '\0' && text[0] >= '0' && text[0] <= '9' && *out >= 1 &&
-	       *out <= most;
-}
-
 static int publish(struct publish_content_report *report, const struct settings *settings)
 {
 	if (settings->renew)
@@ -114,16 +97,19 @@ int command_publish(int argc, char **argv)
 			settings.publish.comment = optarg;
 			break;
 		case 'e':
-			if (!positive(optarg, 36500, &days))
-				return wrong("--expires must be 1 to 36500 days, not ", optarg);
+			if (!command_number(optarg, 1, 36500, &days))
+				return command_wrong(
+					argv[0], "--expires must be 1 to 36500 days, not ", optarg);
 			settings.publish.release_life_s = (int64_t)days * 86400;
 			break;
 		case 'u':
 			settings.undo = true;
 			break;
 		case 's':
-			if (!positive(optarg, UINT32_MAX, &settings.sequence))
-				return wrong("--sequence must be a release's number, not ", optarg);
+			if (!command_number(optarg, 1, UINT32_MAX, &settings.sequence))
+				return command_wrong(argv[0],
+						     "--sequence must be a release's number, not ",
+						     optarg);
 			break;
 		case 'r':
 			settings.renew = true;
@@ -136,8 +122,8 @@ int command_publish(int argc, char **argv)
 		}
 	}
 	if (optind + 1 != argc)
-		return wrong("name one content folder", "");
+		return command_wrong(argv[0], "name one content folder", "");
 	if (settings.undo + settings.renew + (settings.sequence > 0) > 1)
-		return wrong("only one of --undo, --sequence and --renew", "");
+		return command_wrong(argv[0], "only one of --undo, --sequence and --renew", "");
 	return run(&settings, argv[optind]);
 }

@@ -23,15 +23,6 @@ static const char help[] =
 	"  gopura-content temple --triangles 1500000 --out scan.ply\n"
 	"  gopura-content temple --triangles 100000000 --seed 7 --out large.ply\n";
 
-static bool read_number(const char *text, unsigned long long most, unsigned long long *out)
-{
-	char *end;
-
-	errno = 0;
-	*out = strtoull(text, &end, 10);
-	return *text >= '0' && *text <= '9' && *end == 0 && errno == 0 && *out <= most;
-}
-
 /* Into a file beside it first, so that no half temple is ever taken for a whole one. */
 static int write_file(const char *path, struct temple_options *options)
 {
@@ -58,7 +49,7 @@ static int write_file(const char *path, struct temple_options *options)
 }
 
 struct request {
-	unsigned long long triangles, seed;
+	uint64_t triangles, seed;
 	const char *path;
 };
 
@@ -78,10 +69,10 @@ static int read_options(int argc, char **argv, struct request *request)
 			fputs(help, stdout);
 			return 1;
 		} else if (c == 't') {
-			good = good &&
-			       read_number(optarg, TEMPLE_TRIANGLES_MOST, &request->triangles);
+			good = good && command_number(optarg, 0, TEMPLE_TRIANGLES_MOST,
+						      &request->triangles);
 		} else if (c == 's') {
-			good = good && read_number(optarg, UINT32_MAX, &request->seed);
+			good = good && command_number(optarg, 0, UINT32_MAX, &request->seed);
 		} else if (c == 'o') {
 			request->path = optarg;
 		} else {
