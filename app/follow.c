@@ -216,8 +216,3 @@ int follow_dispatch(struct follow *follow)
 	follow->options.remembered(follow->options.data, answer.root, answer.rc);
 	return 0;
 }
-
-const char *follow_refusal(const struct follow *follow)
-{
-	return follow->refusal;
-}

@@ -32,7 +32,5 @@ void follow_remember(struct follow *follow, struct hash root);
 /* Readable when follow_dispatch has something to do. */
 int follow_fd(const struct follow *follow);
 must_check int follow_dispatch(struct follow *follow);
-/* Why the last metadata was refused, for the health page; "" where it was not. */
-const char *follow_refusal(const struct follow *follow);
 
 #endif

@@ -263,26 +263,53 @@ static int sync_folder_of(const char *path)
 	return rc;
 }
 
-int bytes_write_file(struct bytes bytes, const char *path)
+int bytes_read_at(int fd, void *to, size_t size, uint64_t at)
 {
-	char temporary[PATH_MAX];
-	int fd, rc;
+	size_t done = 0;
 
-	if (snprintf(temporary, sizeof(temporary), "%s.XXXXXX", path) >= (int)sizeof(temporary))
+	while (done < size) {
+		ssize_t got = pread(fd, (uint8_t *)to + done, size - done, (off_t)(at + done));
+
+		if (got < 0 && errno != EINTR)
+			return -errno;
+		if (got == 0)
+			return -EBADMSG;
+		if (got > 0)
+			done += (size_t)got;
+	}
+	return 0;
+}
+
+int bytes_begin_file(char temporary[BYTES_PATH_MOST], const char *path)
+{
+	int fd;
+
+	if (snprintf(temporary, BYTES_PATH_MOST, "%s.XXXXXX", path) >= BYTES_PATH_MOST)
 		return -ENAMETOOLONG;
 	fd = mkostemp(temporary, O_CLOEXEC);
-	if (fd < 0)
-		return -errno;
-	rc = write_all(fd, bytes);
+	return fd < 0 ? -errno : fd;
+}
+
+int bytes_end_file(int fd, const char *temporary, const char *path, int rc)
+{
 	if (fchmod(fd, 0644) < 0 && rc == 0)
 		rc = -errno;
 	if (close(fd) < 0 && rc == 0)
 		rc = -errno;
 	if (rc == 0 && rename(temporary, path) < 0)
 		rc = -errno;
-	if (rc < 0) {
+	if (rc < 0)
 		unlink(temporary);
-		return rc;
-	}
-	return sync_folder_of(path);
+	return rc;
+}
+
+int bytes_write_file(struct bytes bytes, const char *path)
+{
+	char temporary[BYTES_PATH_MOST];
+	int fd = bytes_begin_file(temporary, path), rc;
+
+	if (fd < 0)
+		return fd;
+	rc = bytes_end_file(fd, temporary, path, write_all(fd, bytes));
+	return rc < 0 ? rc : sync_folder_of(path);
 }

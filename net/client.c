@@ -629,10 +629,3 @@ void net_client_keep(struct net_client *client, struct hash hash)
 	}
 	say(client, &message);
 }
-
-void net_client_ask_meta(struct net_client *client)
-{
-	struct message message = { .kind = MESSAGE_ASK_META };
-
-	say(client, &message);
-}

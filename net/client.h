@@ -49,6 +49,5 @@ void net_client_drop(struct net_client *client, struct hash hash);
 /* Remembered until net_client_use_release, and said again when the fetcher was restarted. The cache
  * keeps up to three quarters of its budget this way. */
 void net_client_keep(struct net_client *client, struct hash hash);
-void net_client_ask_meta(struct net_client *client);
 
 #endif

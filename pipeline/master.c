@@ -353,7 +353,6 @@ int master_read_group(const struct master *master, uint32_t group, struct buffer
 {
 	uint64_t at, size;
 	uint8_t *to;
-	size_t done = 0;
 
 	if (group >= master->hierarchy.group_count)
 		return -EINVAL;
@@ -362,15 +361,5 @@ int master_read_group(const struct master *master, uint32_t group, struct buffer
 	to = buffer_extend(out, size);
 	if (!to)
 		return out->error;
-	while (done < size) {
-		ssize_t got = pread(master->fd, to + done, size - done, (off_t)(at + done));
-
-		if (got < 0 && errno != EINTR)
-			return -errno;
-		if (got == 0)
-			return -EBADMSG;
-		if (got > 0)
-			done += (size_t)got;
-	}
-	return 0;
+	return bytes_read_at(master->fd, to, size, at);
 }

@@ -129,24 +129,12 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 
 int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 {
-	char temporary[PATH_MAX];
-	int fd, rc;
+	char temporary[BYTES_PATH_MOST];
+	int fd = bytes_begin_file(temporary, path);
 
-	if (snprintf(temporary, sizeof(temporary), "%s.XXXXXX", path) >= (int)sizeof(temporary))
-		return -ENAMETOOLONG;
-	fd = mkostemp(temporary, O_CLOEXEC);
 	if (fd < 0)
-		return -errno;
-	rc = mesh_file_write(fd, mesh, key);
-	if (fchmod(fd, 0644) < 0 && rc == 0)
-		rc = -errno;
-	if (close(fd) < 0 && rc == 0)
-		rc = -errno;
-	if (rc == 0 && rename(temporary, path) < 0)
-		rc = -errno;
-	if (rc < 0)
-		unlink(temporary);
-	return rc;
+		return fd;
+	return bytes_end_file(fd, temporary, path, mesh_file_write(fd, mesh, key));
 }
 
 /* ---- reading: nothing is allocated that the file is not long enough for */

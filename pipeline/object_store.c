@@ -148,8 +148,6 @@ int object_store_add_stretch(struct object_store *store, const char *path, uint6
 
 static int read_stretch(struct object_store *store, const struct stored *object, uint8_t *to)
 {
-	size_t done = 0;
-
 	if (store->open_fd < 0 || store->open_file != object->file) {
 		if (store->open_fd >= 0)
 			close(store->open_fd);
@@ -158,18 +156,7 @@ static int read_stretch(struct object_store *store, const struct stored *object,
 	}
 	if (store->open_fd < 0)
 		return -errno;
-	while (done < object->size) {
-		ssize_t got = pread(store->open_fd, to + done, object->size - done,
-				    (off_t)(object->offset + done));
-
-		if (got < 0 && errno != EINTR)
-			return -errno;
-		if (got == 0)
-			return -EBADMSG;
-		if (got > 0)
-			done += (size_t)got;
-	}
-	return 0;
+	return bytes_read_at(store->open_fd, to, object->size, object->offset);
 }
 
 int object_store_read(struct object_store *store, struct hash hash, struct buffer *out)

@@ -70,11 +70,6 @@ void shot_finish(struct shot *shot)
 	buffer_finish(&shot->objects);
 }
 
-const struct pyramid *shooter_picture(const struct shooter *shooter)
-{
-	return &shooter->pyramid;
-}
-
 static struct camera face_camera(const struct shooter *shooter, const float point_m[3], int face)
 {
 	struct camera camera = { .width_px = shooter->frame_px, .height_px = shooter->frame_px };

@@ -38,7 +38,5 @@ void shot_finish(struct shot *shot);
 /* Into shot, which may have been used before. */
 must_check int shooter_take(struct shooter *shooter, struct shot *shot, const float point_m[3],
 			    int face);
-/* The last face taken, filled: level 0 is the finest with its aprons. Borrowed. */
-const struct pyramid *shooter_picture(const struct shooter *shooter);
 
 #endif

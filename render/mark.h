@@ -5,7 +5,7 @@
 
 #include "format/root_page.h"
 #include "render/gl.h"
-#include "render/scene.h"
+#include "render/region.h"
 #include "render/view.h"
 
 struct mark {
@@ -19,9 +19,5 @@ void mark_finish(struct mark *mark);
 void mark_begin(const struct mark *mark, const struct view *view, const struct root_page *root,
 		const struct region *region);
 void mark_end(void);
-
-/* Metres to the region's boundary, negative inside; exact on faces, a bound elsewhere. */
-float region_distance(const struct region *region, const float point_m[3]);
-bool region_meets_sphere(const struct region *region, const float centre_m[3], float radius_m);
 
 #endif

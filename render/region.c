@@ -1,6 +1,7 @@
+#include "render/region.h"
+
 #include <math.h>
 
-#include "render/mark.h"
 #include "render/vec.h"
 
 /* To the polygon's edge, negative inside (crossings counted). */

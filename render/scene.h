@@ -10,6 +10,7 @@
 #include "format/message.h"
 #include "format/root_page.h"
 #include "render/camera.h"
+#include "render/region.h"
 
 enum scene_mode {
 	SCENE_POLYGONS,  /* patches with their own colours */
@@ -54,21 +55,6 @@ struct scene_frame {
 	uint32_t triangles, patches, tiles_uploaded, depth_faces_drawn;
 	float image_share; /* of the model's pixels, settled frames only; else -1 */
 };
-
-/* A part's region to mark with a bold border (ui does the words). */
-enum region_kind { REGION_NONE, REGION_SPHERE, REGION_BOX, REGION_PRISM };
-enum { REGION_CORNERS_MOST = 16 };
-struct region {
-	enum region_kind kind;
-	float centre_m[3];
-	float radius_m;        /* sphere */
-	float half_m[3];       /* box, before turning */
-	float turn_deg;        /* box: about the vertical */
-	float floor_m, roof_m; /* prism */
-	uint32_t corner_count;
-	float corners_m[REGION_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
-};
-bool region_contains(const struct region *region, const float point_m[3]);
 
 /* Draws into the framebuffer that is bound; alpha is coverage. highlight may be NULL. */
 void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
