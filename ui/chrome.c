@@ -134,8 +134,9 @@ const struct chrome_button *chrome_button_at(const struct chrome *chrome, float 
 	return NULL;
 }
 
-/* Three columns, each a pictogram over its words. */
-int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_width_px)
+/* Columns, each a pictogram over its words. */
+int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_width_px,
+		     bool has_names)
 {
 	static const struct {
 		enum icon icon;
@@ -145,7 +146,7 @@ int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_wid
 		{ ICON_ZOOM, UI_HELP_ZOOM },
 		{ ICON_TAP, UI_HELP_TAP },
 	};
-	const int count = (int)ARRAY_COUNT(lines);
+	const int count = (int)ARRAY_COUNT(lines) - !has_names; /* the last speaks of them */
 	int padding = theme_px(theme, PADDING_MM), icon_px = theme_px(theme, 11.0f);
 	int cell_px = theme_px(theme, 38.0f), text_px = 0;
 	PangoLayout *layouts[ARRAY_COUNT(lines)];

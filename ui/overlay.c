@@ -178,6 +178,7 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	free(overlay->anchors);
 	overlay->parts = copies;
 	overlay->anchors = anchors;
+	overlay->help_dirty |= (count > 0) != (overlay->part_count > 0);
 	overlay->part_count = count;
 	overlay->column_px = 0;
 	for (uint32_t i = 0; i < count; i++) {

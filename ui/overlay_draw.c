@@ -135,7 +135,8 @@ void overlay_draw_help(struct overlay *overlay)
 	struct bitmap fresh;
 	int most_px = overlay_scene_rect(overlay).width_px - 2 * px(overlay, THEME_GAP_MM);
 
-	put(overlay, BITMAP_HELP, &fresh, chrome_draw_help(&fresh, &overlay->theme, most_px));
+	put(overlay, BITMAP_HELP, &fresh,
+	    chrome_draw_help(&fresh, &overlay->theme, most_px, overlay->part_count > 0));
 }
 
 void overlay_draw_card(struct overlay *overlay)

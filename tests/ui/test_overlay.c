@@ -449,6 +449,29 @@ static void refuses_impossible_panels(void **state)
 	overlay_destroy(NULL);
 }
 
+/* A model without parts has no names to tap. */
+static void the_help_speaks_of_names_where_there_are_some(void **state)
+{
+	struct overlay_rect with, without;
+	struct album album;
+	struct overlay *overlay;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	settle(overlay);
+	with = overlay_help_rect(overlay);
+	CHECK(overlay_parts(overlay, NULL, 0) == 0);
+	settle(overlay);
+	without = overlay_help_rect(overlay);
+	CHECK(3 * without.width_px < 2 * with.width_px + with.width_px / 4);
+	give_parts(overlay, 0);
+	settle(overlay);
+	CHECK(overlay_help_rect(overlay).width_px == with.width_px);
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -458,6 +481,7 @@ int main(void)
 		cmocka_unit_test(a_late_picture_moves_nothing),
 		cmocka_unit_test(nothing_pops),
 		cmocka_unit_test(refuses_impossible_panels),
+		cmocka_unit_test(the_help_speaks_of_names_where_there_are_some),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
