@@ -22,7 +22,7 @@ const struct profile profile_default = {
 	.cache_mib = 256,
 };
 
-enum profile_type { TYPE_INT, TYPE_FLOAT, TYPE_MATRIX };
+enum profile_type { TYPE_INT, TYPE_QUARTERS, TYPE_FLOAT, TYPE_MATRIX };
 
 struct profile_key {
 	const char *section, *name;
@@ -37,7 +37,7 @@ struct profile_key {
 	}
 
 static const struct profile_key keys[] = {
-	KEY("panel", "rotation", TYPE_INT, rotation_deg, 0, 270),
+	KEY("panel", "rotation", TYPE_QUARTERS, rotation_deg, 0, 270),
 	KEY("panel", "width_mm", TYPE_INT, width_mm, 0, 5000),
 	KEY("touch", "matrix", TYPE_MATRIX, matrix, -10, 10),
 	KEY("touch", "edge_mm", TYPE_FLOAT, edge_mm, 0, 50),
@@ -99,6 +99,9 @@ static bool set_key(struct profile *profile, const struct profile_key *key, cons
 	case TYPE_INT:
 		*(int *)to = (int)numbers[0];
 		return numbers[0] == floor(numbers[0]);
+	case TYPE_QUARTERS:
+		*(int *)to = (int)numbers[0];
+		return fmod(numbers[0], 90) == 0;
 	case TYPE_FLOAT:
 		*(float *)to = (float)numbers[0];
 		return true;
@@ -145,7 +148,5 @@ int profile_read(struct profile *out, const char *path)
 		complain(&reading, "neither a [section] nor name = value", "");
 	}
 	fclose(reading.file);
-	if (out->rotation_deg % 90 != 0)
-		complain(&reading, "rotation is 0, 90, 180 or 270, not", "that");
 	return reading.failed ? -EINVAL : rc < 0 ? -EIO : 0;
 }
