@@ -187,6 +187,15 @@ static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 		overlay_fling(overlay, gesture->vy_px_per_s);
 }
 
+/* Two lines a gesture, for whoever wonders what a panel's fingers did. */
+static void say_eye(const struct kiosk *kiosk, const char *when)
+{
+	const float *eye_m = kiosk->navigator.eye_m;
+
+	log_debug("app", "%s: eye at %.3f %.3f %.3f", when, (double)eye_m[0], (double)eye_m[1],
+		  (double)eye_m[2]);
+}
+
 static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	const float height = (float)kiosk_height_px(kiosk);
@@ -195,6 +204,8 @@ static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
 	switch (gesture->kind) {
 	case GESTURE_DRAG_BEGIN:
 	case GESTURE_PINCH_BEGIN:
+		say_eye(kiosk,
+			gesture->kind == GESTURE_DRAG_BEGIN ? "drag begins" : "pinch begins");
 		grab(kiosk, gesture->x_px, gesture->y_px);
 		if (overlay)
 			overlay_show_help(overlay, false);
@@ -204,10 +215,14 @@ static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
 		break;
 	case GESTURE_DRAG_END:
 		navigator_fling(&kiosk->navigator, gesture->vx_px_per_s, gesture->vy_px_per_s);
+		say_eye(kiosk, "drag ends");
 		break;
 	case GESTURE_PINCH:
 		navigator_pinch(&kiosk->navigator, gesture->scale, gesture->dx_px, gesture->dy_px,
 				gesture->turn_rad, height);
+		break;
+	case GESTURE_PINCH_END:
+		say_eye(kiosk, "pinch ends");
 		break;
 	default:
 		break;

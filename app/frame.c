@@ -7,6 +7,7 @@
 
 #include "app/kiosk.h"
 #include "base/clock.h"
+#include "base/log.h"
 #include "render/gl.h"
 
 enum {
@@ -224,6 +225,15 @@ static void say_wants(struct kiosk *kiosk)
 	wants_say(&kiosk->wants, kiosk->net);
 }
 
+static void say_first_picture(struct kiosk *kiosk)
+{
+	if (kiosk->pictured || kiosk->shown.frame.patches == 0)
+		return;
+	kiosk->pictured = true;
+	log_info("app", "first picture after %lld ms",
+		 (long long)(clock_now_ms() - kiosk->started_ms));
+}
+
 int frame_draw(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms(), began_us = clock_thread_us();
@@ -251,6 +261,7 @@ int frame_draw(struct kiosk *kiosk)
 	kiosk->frame_us = (uint32_t)(clock_thread_us() - began_us);
 	if (rc == 0)
 		rc = display_present(kiosk->display);
+	say_first_picture(kiosk);
 	say_wants(kiosk);
 	if (kiosk->shown.frame.moving || kiosk->words_move || kiosk->eye_moves ||
 	    kiosk->anchors_to_look > 0)

@@ -250,6 +250,7 @@ int kiosk_start(struct kiosk *kiosk)
 {
 	int rc = profile_read(&kiosk->profile, kiosk->options.board_path);
 
+	kiosk->started_ms = clock_now_ms();
 	if (rc == 0)
 		rc = start_display(kiosk);
 	if (rc == 0)

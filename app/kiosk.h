@@ -60,7 +60,7 @@ struct kiosk {
 	float px_per_mm;      /* of the panel; 0: not known */
 	struct camera camera; /* of the last frame */
 	struct message_status status;
-	int64_t last_frame_ms;
+	int64_t started_ms, last_frame_ms;
 	bool frame_wanted, words_move, eye_moves;
 	uint32_t frame_us;               /* work of the last frame, this thread */
 	uint64_t object_count;           /* given to the scene since start */
@@ -68,6 +68,7 @@ struct kiosk {
 	uint32_t next_anchor;            /* to look at */
 	uint32_t anchors_to_look;        /* at, before a picture at rest is right */
 	uint32_t looked_triangles;       /* drawn when the anchors were looked at */
+	bool pictured;                   /* the model was on the panel */
 	bool quit;
 };
 

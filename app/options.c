@@ -201,7 +201,9 @@ static bool set_value(struct options *o, int option, const char *text)
 
 static bool check_together(const struct options *o)
 {
-	if ((o->views_path || o->shots_path) && !o->capture_dir)
+	if (!o->release_url && !o->socket_path)
+		fputs("gopura-kiosk: --release is missing; see --help\n", stderr);
+	else if ((o->views_path || o->shots_path) && !o->capture_dir)
 		fputs("gopura-kiosk: --views and --shots need --capture DIR\n", stderr);
 	else if (o->quit_after_replay && !o->touch_replay_path)
 		fputs("gopura-kiosk: --quit-after-replay needs --touch-replay FILE\n", stderr);
