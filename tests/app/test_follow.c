@@ -1,0 +1,231 @@
+#include "app/follow.h"
+
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <sodium.h>
+
+#include "base/clock.h"
+#include "format/metadata.h"
+#include "tests/check.h"
+
+enum { DAY_S = 86400 };
+
+static char folder[64], state_path[96], trust_path[96];
+static struct signing_key root_key, release_key, timestamp_key;
+
+/* What the kiosk was told. */
+static struct {
+	int begun, remembered, failed;
+	struct hash begun_root, remembered_root;
+} told;
+
+static void on_begin(void *data, struct hash root, uint32_t root_bytes)
+{
+	(void)data;
+	CHECK(root_bytes == 100);
+	told.begun++;
+	told.begun_root = root;
+}
+
+static void on_remembered(void *data, struct hash root, int rc)
+{
+	(void)data;
+	told.remembered += rc == 0;
+	told.failed += rc < 0;
+	told.remembered_root = root;
+}
+
+static void write_trust(void)
+{
+	const struct signing_key *const keys[] = {
+		[META_ROOT] = &root_key,
+		[META_RELEASE] = &release_key,
+		[META_TIMESTAMP] = &timestamp_key,
+	};
+	struct trust_root root = { .version = 1, .expires_s = clock_wall_s() + 365 * DAY_S };
+	struct buffer file;
+
+	for (int role = 0; role < 3; role++) {
+		memcpy(root.roles[role].keys[0], keys[role]->public_key, KEY_BYTES);
+		root.roles[role].key_count = root.roles[role].threshold = 1;
+	}
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
+	CHECK(bytes_write_file(buffer_bytes(&file), trust_path) == 0);
+	buffer_finish(&file);
+}
+
+static int enter_museum(void **unused)
+{
+	struct signing_key *const keys[] = { &root_key, &release_key, &timestamp_key };
+
+	(void)unused;
+	CHECK(sodium_init() >= 0);
+	for (int i = 0; i < 3; i++)
+		CHECK(crypto_sign_keypair(keys[i]->public_key, keys[i]->secret) == 0);
+	snprintf(folder, sizeof(folder), "/tmp/gopura-follow-XXXXXX");
+	CHECK(mkdtemp(folder));
+	snprintf(state_path, sizeof(state_path), "%s/state.db", folder);
+	snprintf(trust_path, sizeof(trust_path), "%s/1.json", folder);
+	write_trust();
+	memset(&told, 0, sizeof(told));
+	return 0;
+}
+
+static int leave_museum(void **unused)
+{
+	char command[128];
+
+	(void)unused;
+	snprintf(command, sizeof(command), "rm -rf %s", folder);
+	return system(command);
+}
+
+static struct follow *open_follow(void)
+{
+	const struct follow_options options = {
+		.state_path = state_path,
+		.trust_path = trust_path,
+		.begin = on_begin,
+		.remembered = on_remembered,
+	};
+	struct follow *follow;
+
+	CHECK(follow_create(&follow, &options) == 0);
+	follow_start(follow);
+	return follow;
+}
+
+static struct hash root_of(uint8_t n)
+{
+	struct hash root;
+
+	memset(root.bytes, n, HASH_BYTES);
+	return root;
+}
+
+/* The fetcher brings the metadata of a release. */
+static void publish(struct follow *follow, uint64_t sequence, uint8_t root)
+{
+	const int64_t expires_s = clock_wall_s() + DAY_S;
+	const struct release release = { .sequence = sequence,
+					 .root = root_of(root),
+					 .root_bytes = 100,
+					 .expires_s = expires_s };
+	struct timestamp timestamp = { .sequence = sequence, .expires_s = expires_s };
+	struct buffer file, stamp;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	CHECK(release_encode(&file, &release, &release_key, 1) == 0);
+	timestamp.release = hash_of(buffer_bytes(&file));
+	CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
+	follow_meta(follow, META_TIMESTAMP, 0, buffer_bytes(&stamp));
+	follow_meta(follow, META_RELEASE, 0, buffer_bytes(&file));
+	buffer_finish(&file);
+	buffer_finish(&stamp);
+}
+
+static void dispatch(struct follow *follow)
+{
+	struct pollfd ready = { .fd = follow_fd(follow), .events = POLLIN };
+
+	CHECK(poll(&ready, 1, 60000) == 1);
+	CHECK(follow_dispatch(follow) == 0);
+}
+
+static void show(struct follow *follow, uint8_t root)
+{
+	follow_remember(follow, root_of(root));
+	dispatch(follow);
+	CHECK(hash_equal(told.remembered_root, root_of(root)));
+}
+
+static void begins_a_release_and_remembers_it_once_shown(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	CHECK(told.begun == 0);
+	publish(follow, 1, 0x11);
+	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x11)));
+	publish(follow, 1, 0x11); /* it is on its way */
+	CHECK(told.begun == 1 && told.remembered == 0);
+	show(follow, 0x11);
+	CHECK(told.remembered == 1 && told.failed == 0);
+	follow_destroy(follow);
+	follow = open_follow();
+	CHECK(told.begun == 2 && hash_equal(told.begun_root, root_of(0x11)));
+	publish(follow, 1, 0x11); /* it is there already */
+	CHECK(told.begun == 2);
+	follow_destroy(follow);
+}
+
+static void forgets_a_release_that_was_never_shown(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	publish(follow, 1, 0x11);
+	show(follow, 0x11);
+	publish(follow, 2, 0x22);
+	follow_destroy(follow);
+	follow = open_follow();
+	CHECK(hash_equal(told.begun_root, root_of(0x11)));
+	follow_destroy(follow);
+}
+
+static void takes_the_newest_of_two_that_come_in_a_row(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	publish(follow, 1, 0x11);
+	publish(follow, 2, 0x22);
+	CHECK(told.begun == 2 && hash_equal(told.begun_root, root_of(0x22)));
+	/* The first is shown after all: that must not be written down as the second. */
+	follow_remember(follow, root_of(0x11));
+	CHECK(told.remembered == 1);
+	follow_destroy(follow);
+	told.begun = 0;
+	follow = open_follow();
+	CHECK(told.begun == 0);
+	follow_destroy(follow);
+}
+
+static void goes_back_to_the_pictures_on_the_panel(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	publish(follow, 1, 0x11);
+	show(follow, 0x11);
+	publish(follow, 2, 0x22);
+	publish(follow, 3, 0x11); /* the museum took 2 back while it was coming */
+	CHECK(told.begun == 3 && hash_equal(told.begun_root, root_of(0x11)));
+	dispatch(follow); /* the new number is written without being asked for */
+	CHECK(told.remembered == 2 && hash_equal(told.remembered_root, root_of(0x11)));
+	publish(follow, 2, 0x22);
+	CHECK(told.begun == 3); /* older than what was seen */
+	follow_destroy(follow);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(begins_a_release_and_remembers_it_once_shown,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(forgets_a_release_that_was_never_shown,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(takes_the_newest_of_two_that_come_in_a_row,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(goes_back_to_the_pictures_on_the_panel,
+						enter_museum, leave_museum),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
