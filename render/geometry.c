@@ -97,6 +97,18 @@ static void unload(struct geometry *geometry, uint32_t group)
 	geometry->loaded[group] = 0;
 }
 
+static void init_pieces(struct geometry_patch *patch)
+{
+	for (uint32_t i = 0; i < patch->content.solid.piece_count; i++) {
+		const struct piece *piece = &patch->content.solid.pieces[i];
+		struct plan_probe *probe = patch->pieces[i].probe;
+		for (int k = 0; k < PIECE_PROBES; k++) {
+			memcpy(probe[k].at_m, piece->probe_m[k], sizeof(probe[k].at_m));
+			memcpy(probe[k].normal, piece->probe_normal[k], sizeof(probe[k].normal));
+		}
+	}
+}
+
 int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *answer)
 {
 	if (group >= geometry->hierarchy->group_count || !is_as_announced(geometry, group, answer))
@@ -112,6 +124,8 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 		patch->pieces =
 			calloc(patch->content.solid.piece_count + 1, sizeof(*patch->pieces));
 		rc = patch->pieces ? upload(patch) : -ENOMEM;
+		if (rc == 0)
+			init_pieces(patch);
 		geometry->group_bytes[group] += patch_bytes(patch);
 	}
 	geometry->bytes += geometry->group_bytes[group];

@@ -22,11 +22,13 @@ struct piece_state {
 	struct plan_choice choice;
 	struct blend blend[PLAN_ENTRIES];
 	float seen_px; /* of the screen, by the last census that had it in the frustum */
+	struct plan_probe probe[PIECE_PROBES]; /* move to where it shows */
 	float weight[PIECE_PROBES];
-	bool counted;              /* by any census */
-	bool planned, orphan;      /* orphan: a face it was blended from is gone */
-	uint32_t planned_epoch;    /* of the world, when it was */
-	uint32_t planned_versions; /* sum over the faces it wants */
+	float stray_m[3], stray_off_m; /* what shows farthest from any probe */
+	bool counted;                  /* by any census */
+	bool planned, orphan;          /* orphan: a face it was blended from is gone */
+	uint32_t planned_epoch;        /* of the world, when it was */
+	uint32_t planned_versions;     /* sum over the faces it wants */
 	float planned_eye_m[3];
 };
 

@@ -195,31 +195,24 @@ static bool is_ranked(const struct ranked *ranked, uint32_t point)
 	return false;
 }
 
-static bool faces_eye(const struct plan_eye *eye, const struct piece *piece, int probe)
-{
-	float to_eye[3];
-	vec_sub(to_eye, eye->eye_m, piece->probe_m[probe]);
-	return vec_dot(to_eye, piece->probe_normal[probe]) > 0;
-}
-
 static float point_quality(const struct plan_world *world, const struct plan_eye *eye,
-			   const struct piece *piece, float error_m, uint32_t point)
+			   const struct plan_surface *surface, uint32_t point)
 {
 	float sample[3], to[3], u, v;
 	repository_point_m(world->repository, point, sample);
-	vec_sub(to, piece->centre_m, sample);
+	vec_sub(to, surface->piece->centre_m, sample);
 	if (vec_dot(to, to) < 1e-6f)
 		return 0;
 	float half_px = plan_level_half_px(repository_levels(world->repository) - 1);
 	float quality = 0;
-	if (piece->flatness > 0.8f)
-		quality =
-			plan_quality(eye, piece->centre_m, piece->normal, sample, half_px, error_m);
-	for (int k = 0; k < PIECE_PROBES && piece->flatness <= 0.8f; k += 2)
-		if (faces_eye(eye, piece, k))
-			quality = vec_most(quality, plan_quality(eye, piece->probe_m[k],
-								 piece->probe_normal[k], sample,
-								 half_px, error_m));
+	if (surface->piece->flatness > 0.8f)
+		quality = plan_quality(eye, surface->piece->centre_m, surface->piece->normal,
+				       sample, half_px, surface->error_m);
+	for (int k = 0; k < PIECE_PROBES && surface->piece->flatness <= 0.8f; k += 2)
+		if (surface->weight[k] > 0)
+			quality = vec_most(quality, plan_quality(eye, surface->probe[k].at_m,
+								 surface->probe[k].normal, sample,
+								 half_px, surface->error_m));
 	if (quality <= 0)
 		return 0;
 	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &u, &v);
@@ -229,33 +222,54 @@ static float point_quality(const struct plan_world *world, const struct plan_eye
 }
 
 static void rank_points(struct ranked *ranked, const struct plan_world *world,
-			const struct plan_eye *eye, const struct piece *piece, float error_m)
+			const struct plan_eye *eye, const struct plan_surface *surface)
 {
 	ranked->count = 0;
 	for (uint32_t point = 0; point < world->repository->point_count; point++)
-		rank(ranked, 0, POINTS_BEST, point,
-		     point_quality(world, eye, piece, error_m, point));
+		rank(ranked, 0, POINTS_BEST, point, point_quality(world, eye, surface, point));
 	uint32_t from = ranked->count;
 	for (uint32_t i = 0; i < world->resident_count; i++) {
 		uint32_t point = world->resident[i] / CUBE_FACES;
 		if (!is_ranked(ranked, point))
 			rank(ranked, from, POINTS_RESIDENT, point,
-			     point_quality(world, eye, piece, error_m, point));
+			     point_quality(world, eye, surface, point));
 	}
 }
 
 /* Bit per probe: whether nothing is between. Remembered with the piece: neither moves. */
 static uint8_t sight_of(struct plan_choice *choice, const struct plan_world *world,
-			const struct piece *piece, uint32_t point, const float sample[3])
+			const struct plan_surface *surface, uint32_t point, const float sample[3])
 {
 	struct plan_sight *sight = &choice->sight[point * 2654435761u >> 26];
-	if (sight->point == point + 1)
-		return sight->seen;
-	*sight = (struct plan_sight){ .point = point + 1 };
-	for (int k = 0; k < PIECE_PROBES; k++)
-		if (world->sees(world->data, sample, piece->probe_m[k]))
-			sight->seen |= (uint8_t)(1 << k);
+	if (sight->point != point + 1)
+		*sight = (struct plan_sight){ .point = point + 1 };
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		uint8_t bit = (uint8_t)(1 << k);
+		if (sight->known & bit || surface->weight[k] <= 0)
+			continue;
+		sight->known |= bit;
+		if (world->sees(world->data, sample, surface->probe[k].at_m))
+			sight->seen |= bit;
+	}
 	return sight->seen;
+}
+
+void plan_forget_probe(struct plan_choice *choice, int probe)
+{
+	for (int i = 0; i < PLAN_SIGHTS; i++) {
+		choice->sight[i].known &= (uint8_t) ~(1 << probe);
+		choice->sight[i].seen &= (uint8_t) ~(1 << probe);
+	}
+}
+
+/* Where most of what shows is. */
+static const struct plan_probe *main_probe(const struct plan_surface *surface)
+{
+	int main = 0;
+	for (int k = 1; k < PIECE_PROBES; k++)
+		if (surface->weight[k] > surface->weight[main])
+			main = k;
+	return &surface->probe[main];
 }
 
 static bool is_resident(const struct plan_world *world, face_key face)
@@ -296,14 +310,14 @@ static uint16_t sixteenth_of(float u, float v)
 }
 
 static void judge_probe(struct candidate *candidate, const struct plan_world *world,
-			const struct plan_eye *eye, const struct piece *piece, int probe,
-			const float uv[2], float error_m)
+			const struct plan_eye *eye, const struct plan_surface *surface, int probe,
+			const float uv[2])
 {
-	const float *at = piece->probe_m[probe], *normal = piece->probe_normal[probe];
-	float own = plan_own_quality(eye, at, piece->spacing_m);
+	const float *at = surface->probe[probe].at_m, *normal = surface->probe[probe].normal;
+	float own = plan_own_quality(eye, at, surface->piece->spacing_m);
 	candidate->ideal[probe] =
 		plan_worth(plan_quality(eye, at, normal, candidate->sample_m,
-					plan_level_half_px(candidate->level), error_m),
+					plan_level_half_px(candidate->level), surface->error_m),
 			   own);
 	if (!candidate->resident)
 		return;
@@ -313,24 +327,24 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 	float half_px = plan_level_half_px((uint32_t)level);
 	candidate->resident_half_px = vec_most(candidate->resident_half_px, half_px);
 	candidate->now[probe] = plan_worth(
-		plan_quality(eye, at, normal, candidate->sample_m, half_px, error_m), own);
+		plan_quality(eye, at, normal, candidate->sample_m, half_px, surface->error_m), own);
 	candidate->ideal[probe] = vec_most(candidate->ideal[probe], candidate->now[probe]);
 }
 
 /* Returns which probes it sees. */
 static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
 			 const struct plan_world *world, const struct plan_eye *eye,
-			 const struct piece *piece, uint8_t in_sight, uint32_t point, float error_m)
+			 const struct plan_surface *surface, uint8_t in_sight, uint32_t point)
 {
 	float sample[3];
 	repository_point_m(world->repository, point, sample);
-	uint8_t seen = sight_of(choice, world, piece, point, sample) & in_sight;
-	uint32_t level =
-		plan_level(plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
-			   repository_levels(world->repository));
+	const struct plan_probe *main = main_probe(surface);
+	uint8_t seen = sight_of(choice, world, surface, point, sample) & in_sight;
+	uint32_t level = plan_level(plan_needed_half_px(eye, main->at_m, main->normal, sample),
+				    repository_levels(world->repository));
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		float to[3], uv[2];
-		vec_sub(to, piece->probe_m[k], sample);
+		vec_sub(to, surface->probe[k].at_m, sample);
 		if (!(seen & 1 << k) || vec_dot(to, to) < 1e-6f)
 			continue;
 		face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
@@ -343,7 +357,7 @@ static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_ch
 		memcpy(candidate->sample_m, sample, sizeof(sample));
 		candidate->level = (uint8_t)level;
 		candidate->resident = is_resident(world, face);
-		judge_probe(candidate, world, eye, piece, k, uv, error_m);
+		judge_probe(candidate, world, eye, surface, k, uv);
 	}
 	return seen;
 }
@@ -436,19 +450,18 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 	struct candidate list[CANDIDATES_MOST];
 	struct ranked ranked;
 	uint32_t count = 0;
-	const struct piece *piece = surface->piece;
 	uint8_t in_sight = 0;
 	for (int k = 0; k < PIECE_PROBES; k++)
 		if (surface->weight[k] > 0)
 			in_sight |= (uint8_t)(1 << k);
-	rank_points(&ranked, world, eye, piece, surface->error_m);
+	rank_points(&ranked, world, eye, surface);
 	/* Rays are dear: once enough good points see it whole, worse ones add nothing. */
 	uint32_t whole = 0;
 	for (uint32_t i = 0; i < ranked.count; i++) {
 		if (whole >= POINTS_ENOUGH && !has_resident(world, ranked.point[i]))
 			continue;
-		uint8_t seen = add_point(list, &count, choice, world, eye, piece, in_sight,
-					 ranked.point[i], surface->error_m);
+		uint8_t seen = add_point(list, &count, choice, world, eye, surface, in_sight,
+					 ranked.point[i]);
 		whole += seen == in_sight;
 	}
 	choose_entries(choice, list, count, surface);
@@ -458,27 +471,27 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 /* ---- the paper's eight corners */
 
 static void add_corner(struct plan_choice *choice, const struct plan_world *world,
-		       const struct plan_eye *eye, const struct piece *piece, uint32_t point,
-		       float weight)
+		       const struct plan_eye *eye, const struct plan_surface *surface,
+		       uint32_t point, float weight)
 {
 	float sample[3], to[3], uv[2];
 	repository_point_m(world->repository, point, sample);
-	vec_sub(to, piece->centre_m, sample);
+	vec_sub(to, surface->piece->centre_m, sample);
 	if (weight <= 0 || vec_dot(to, to) < 1e-6f)
 		return;
 	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
 	if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY)
 		return;
+	const struct plan_probe *main = main_probe(surface);
 	struct candidate one = { .face = face };
 	memcpy(one.sample_m, sample, sizeof(sample));
-	one.level = (uint8_t)plan_level(
-		plan_needed_half_px(eye, piece->centre_m, piece->normal, sample),
-		repository_levels(world->repository));
+	one.level = (uint8_t)plan_level(plan_needed_half_px(eye, main->at_m, main->normal, sample),
+					repository_levels(world->repository));
 	one.resident = is_resident(world, face);
 	for (int k = 0; k < PIECE_PROBES; k++) {
-		vec_sub(to, piece->probe_m[k], sample);
+		vec_sub(to, surface->probe[k].at_m, sample);
 		if (face % CUBE_FACES == (uint32_t)cube_project(to, &uv[0], &uv[1]))
-			judge_probe(&one, world, eye, piece, k, uv, 0);
+			judge_probe(&one, world, eye, surface, k, uv);
 	}
 	if (one.resident_half_px > 0)
 		choice->entry[choice->entry_count++] = (struct plan_entry){
@@ -486,12 +499,13 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 		};
 	struct plan_want want = { .face = face, .level = one.level, .gain = weight };
 	if (one.resident_half_px < plan_level_half_px(one.level) &&
-	    choice->want_count < PLAN_WANTS && plan_footprint(&want.area, face, sample, piece))
+	    choice->want_count < PLAN_WANTS &&
+	    plan_footprint(&want.area, face, sample, surface->piece))
 		choice->want[choice->want_count++] = want;
 }
 
 void plan_piece_corners(struct plan_choice *choice, const struct plan_world *world,
-			const struct plan_eye *eye, const struct piece *piece)
+			const struct plan_eye *eye, const struct plan_surface *surface)
 {
 	const struct samples_page *grid = &world->repository->grid;
 	uint32_t low[3], order[8];
@@ -517,7 +531,7 @@ void plan_piece_corners(struct plan_choice *choice, const struct plan_world *wor
 		uint32_t c = order[i], x = low[0] + (c & 1), y = low[1] + (c >> 1 & 1);
 		uint32_t z = low[2] + (c >> 2 & 1);
 		if (x < grid->count[0] && y < grid->count[1] && z < grid->count[2])
-			add_corner(choice, world, eye, piece,
+			add_corner(choice, world, eye, surface,
 				   (z * grid->count[1] + y) * grid->count[0] + x, weight[c]);
 	}
 }

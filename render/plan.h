@@ -60,8 +60,8 @@ bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3
 		    const struct piece *piece);
 
 struct plan_sight {
-	uint32_t point; /* + 1; 0: none */
-	uint8_t seen;   /* bit per probe */
+	uint32_t point;      /* + 1; 0: none */
+	uint8_t known, seen; /* bit per probe */
 };
 
 struct plan_entry {
@@ -98,20 +98,27 @@ struct plan_world {
 	void *data;
 };
 
+struct plan_probe {
+	float at_m[3], normal[3];
+};
+
 /* A piece as the eye has it before it. */
 struct plan_surface {
 	const struct piece *piece;
-	float error_m;              /* of the mesh that is shown there */
-	float weight[PIECE_PROBES]; /* how much of what shows is near each probe; their sum is 1 */
+	float error_m;                  /* of the mesh that is shown there */
+	const struct plan_probe *probe; /* PIECE_PROBES places of it */
+	float weight[PIECE_PROBES];     /* how much of what shows is near each; their sum is 1 */
 };
 
+/* Another place is probed: what was known of the old one is forgotten. */
+void plan_forget_probe(struct plan_choice *choice, int probe);
 /* Entries that are chosen now are kept on a near draw. */
 void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 		const struct plan_eye *eye, const struct plan_surface *surface);
 /* The paper's way instead: the sampling points of the grid cell around the eye, by trilinear
  * weight (which is what entry.share then holds). */
 void plan_piece_corners(struct plan_choice *choice, const struct plan_world *world,
-			const struct plan_eye *eye, const struct piece *piece);
+			const struct plan_eye *eye, const struct plan_surface *surface);
 
 /* gain: pixels x 0..1 that a fetch of `bytes` mends -> a priority, MESSAGE_PRIORITY_PICTURE and
  * above, below MESSAGE_PRIORITY_INDEX; monotonic in gain per byte. */

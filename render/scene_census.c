@@ -4,10 +4,15 @@
 #include "render/scene_parts.h"
 #include "render/vec.h"
 
-enum { MOVING_US = 120000 }; /* between two censuses of a moving eye */
+enum {
+	MOVING_US = 120000, /* between two censuses of a moving eye */
+	PROBE_MOVES = 2,    /* rounds of a census */
+};
 
 /* A view that differs by less than this is counted as the same. */
 static const float moved_m = 0.05f, turned = 0.01f;
+/* What shows farther than this share of a piece's radius from a probe deserves one. */
+static const float stray_share = 0.2f;
 
 static bool is_due(const struct scene *scene, bool moved)
 {
@@ -36,21 +41,77 @@ static void draw_numbers(struct scene *scene)
 	}
 }
 
-static void count_point(struct scene *scene, const struct census_point *point)
+static int nearest_probe(const struct piece_state *state, const float at_m[3])
 {
-	if (point->piece >= scene->visible_count)
-		return;
-	const struct visible_piece *v = &scene->visible[point->piece];
-	struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-	const struct piece *piece = &patch->content.solid.pieces[v->piece];
-	struct piece_state *state = &patch->pieces[v->piece];
 	int nearest = 0;
 	for (int k = 1; k < PIECE_PROBES; k++)
-		if (vec_distance(piece->probe_m[k], point->at_m) <
-		    vec_distance(piece->probe_m[nearest], point->at_m))
+		if (vec_distance(state->probe[k].at_m, at_m) <
+		    vec_distance(state->probe[nearest].at_m, at_m))
 			nearest = k;
+	return nearest;
+}
+
+static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
+{
+	if (visible >= scene->visible_count)
+		return NULL;
+	const struct visible_piece *v = &scene->visible[visible];
+	return &scene->geometry.patches[v->patch].pieces[v->piece];
+}
+
+/* What shows far from every probe: the farthest of a piece, in stray_m and stray. */
+static void count_point(struct scene *scene, const struct census_point *point)
+{
+	struct piece_state *state = state_of(scene, point->piece);
+	if (!state)
+		return;
+	int nearest = nearest_probe(state, point->at_m);
+	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
 	state->weight[nearest] += 1;
 	state->seen_px += 1;
+	if (off > state->stray_off_m) {
+		state->stray_off_m = off;
+		memcpy(state->stray_m, point->at_m, sizeof(state->stray_m));
+	}
+}
+
+static void count_all(struct scene *scene)
+{
+	struct census_point point;
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		struct piece_state *state = state_of(scene, i);
+		state->seen_px = state->stray_off_m = 0;
+		memset(state->weight, 0, sizeof(state->weight));
+	}
+	for (int y = 0; y < CENSUS_HEIGHT; y++)
+		for (int x = 0; x < CENSUS_WIDTH; x++)
+			if (census_at(&scene->census, x, y, &point))
+				count_point(scene, &point);
+}
+
+/* A probe that shows nothing moves to the place that is farthest from any. */
+static void move_probe(struct scene *scene, uint32_t visible)
+{
+	struct piece_state *state = state_of(scene, visible);
+	const struct visible_piece *v = &scene->visible[visible];
+	const struct piece *piece =
+		&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
+	if (state->stray_off_m < stray_share * piece->radius_m)
+		return;
+	int idle = 0;
+	while (idle < PIECE_PROBES && state->weight[idle] > 0)
+		idle++;
+	if (idle == PIECE_PROBES)
+		return;
+	int like = 0; /* of the piece's own places the nearest lends its normal */
+	for (int k = 1; k < PIECE_PROBES; k++)
+		if (vec_distance(piece->probe_m[k], state->stray_m) <
+		    vec_distance(piece->probe_m[like], state->stray_m))
+			like = k;
+	memcpy(state->probe[idle].at_m, state->stray_m, sizeof(state->stray_m));
+	memcpy(state->probe[idle].normal, piece->probe_normal[like],
+	       sizeof(state->probe[idle].normal));
+	plan_forget_probe(&state->choice, idle);
 }
 
 /* Weights that sum to one; pixels of the screen; a new judgement where what shows has changed. */
@@ -71,17 +132,12 @@ void scene_take_census(struct scene *scene, bool moved)
 	draw_numbers(scene);
 	if (census_end(&scene->census) < 0)
 		return;
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
-		const struct visible_piece *v = &scene->visible[i];
-		struct piece_state *state = &scene->geometry.patches[v->patch].pieces[v->piece];
-		state->seen_px = 0;
-		memset(state->weight, 0, sizeof(state->weight));
+	count_all(scene);
+	for (int round = 0; round < PROBE_MOVES; round++) {
+		for (uint32_t i = 0; i < scene->visible_count; i++)
+			move_probe(scene, i);
+		count_all(scene);
 	}
-	struct census_point point;
-	for (int y = 0; y < CENSUS_HEIGHT; y++)
-		for (int x = 0; x < CENSUS_WIDTH; x++)
-			if (census_at(&scene->census, x, y, &point))
-				count_point(scene, &point);
 	for (uint32_t i = 0; i < scene->visible_count; i++)
 		conclude(scene, &scene->visible[i]);
 	scene->census_us = clock_now_us();

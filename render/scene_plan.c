@@ -162,31 +162,23 @@ static bool is_stale(const struct scene *scene, const struct piece *piece,
 	return moved > eye_moved * (distance + piece->radius_m);
 }
 
-static void plan_seen_piece(const struct scene *scene, const struct plan_world *world,
-			    const struct plan_eye *eye, const struct visible_piece *visible,
-			    struct piece_state *state)
+static void plan_one(struct scene *scene, const struct plan_world *world,
+		     const struct visible_piece *visible, struct piece_state *state)
 {
 	struct plan_surface surface = {
 		.piece = &scene->geometry.patches[visible->patch]
 				  .content.solid.pieces[visible->piece],
 		.error_m = scene_patch_error_m(scene, visible->patch),
+		.probe = state->probe,
 	};
 	for (int k = 0; k < PIECE_PROBES; k++)
 		surface.weight[k] = state->counted ? state->weight[k] : 1.0f / PIECE_PROBES;
-	plan_piece(&state->choice, world, eye, &surface);
-}
-
-static void plan_one(struct scene *scene, const struct plan_world *world,
-		     const struct visible_piece *visible, struct piece_state *state)
-{
-	const struct piece *piece =
-		&scene->geometry.patches[visible->patch].content.solid.pieces[visible->piece];
 	struct plan_eye eye = { .focal_px = scene->view.focal_px };
 	memcpy(eye.eye_m, scene->view.eye_m, sizeof(eye.eye_m));
 	if (scene->options.mode == SCENE_CORNERS)
-		plan_piece_corners(&state->choice, world, &eye, piece);
+		plan_piece_corners(&state->choice, world, &eye, &surface);
 	else
-		plan_seen_piece(scene, world, &eye, visible, state);
+		plan_piece(&state->choice, world, &eye, &surface);
 	state->planned = true;
 	state->orphan = false;
 	state->planned_epoch = scene->epoch;

@@ -154,9 +154,13 @@ static struct piece small_piece(void)
 
 static struct plan_surface even_surface(const struct piece *piece)
 {
-	struct plan_surface surface = { .piece = piece };
-	for (int k = 0; k < PIECE_PROBES; k++)
+	static struct plan_probe probe[PIECE_PROBES];
+	struct plan_surface surface = { .piece = piece, .probe = probe };
+	for (int k = 0; k < PIECE_PROBES; k++) {
+		memcpy(probe[k].at_m, piece->probe_m[k], sizeof(probe[k].at_m));
+		memcpy(probe[k].normal, piece->probe_normal[k], sizeof(probe[k].normal));
 		surface.weight[k] = 1.0f / PIECE_PROBES;
+	}
 	return surface;
 }
 
@@ -238,6 +242,7 @@ static void the_corners_of_the_cell_weigh_one_together(void **state)
 	struct world world;
 	struct plan_choice choice = { 0 };
 	const struct piece piece = small_piece();
+	const struct plan_surface surface = even_surface(&piece);
 	make_world(&world);
 	for (uint32_t p = 0; p < 4; p++) {
 		float at[3], to[3], u, v;
@@ -247,7 +252,7 @@ static void the_corners_of_the_cell_weigh_one_together(void **state)
 	}
 	world.plan.resident_count = 4;
 	const struct plan_eye inside = { { 1, -9, 0 }, 800 };
-	plan_piece_corners(&choice, &world.plan, &inside, &piece);
+	plan_piece_corners(&choice, &world.plan, &inside, &surface);
 	float sum = 0;
 	for (uint32_t i = 0; i < choice.entry_count; i++)
 		sum += choice.entry[i].share;
