@@ -20,7 +20,7 @@ static bool is_due(const struct scene *scene, bool moved)
 		return true;
 	if (moved && clock_now_us() - scene->census_us < MOVING_US)
 		return false;
-	float limit = moved ? 1 : 0.01f; /* at rest it must be right */
+	float limit = moved ? 1 : 0.2f; /* at rest it must be right */
 	return vec_distance(scene->census_eye_m, scene->view.eye_m) > limit * moved_m ||
 	       vec_distance(scene->census_forward, scene->view.forward) > limit * turned;
 }
