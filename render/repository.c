@@ -245,6 +245,20 @@ static uint32_t brick_of(const struct repository *r, uint32_t point, uint32_t *i
 				 x / BRICK_SIDE];
 }
 
+bool repository_brick(const struct repository *repository, uint32_t child,
+		      struct message_want *want)
+{
+	if (!repository->ready || child >= repository->page.child_count ||
+	    repository->bricks[child])
+		return false;
+	*want = (struct message_want){ .hash = repository->page.children[child].hash,
+				       .page = repository->page_hash,
+				       .offset = (uint32_t)page_child_offset(&repository->page,
+									     child),
+				       .size = repository->page.children[child].size };
+	return true;
+}
+
 enum repository_state repository_face(const struct repository *repository, face_key face,
 				      struct message_want *want, uint32_t *brick_child)
 {
@@ -258,13 +272,8 @@ enum repository_state repository_face(const struct repository *repository, face_
 	if (!brick) {
 		if (brick_child)
 			*brick_child = child;
-		if (want)
-			*want = (struct message_want){
-				.hash = repository->page.children[child].hash,
-				.page = repository->page_hash,
-				.offset = (uint32_t)page_child_offset(&repository->page, child),
-				.size = repository->page.children[child].size
-			};
+		if (want && !repository_brick(repository, child, want))
+			return REPOSITORY_EMPTY;
 		return REPOSITORY_UNKNOWN;
 	}
 	uint32_t at = brick->page.face_child[in_brick][face % CUBE_FACES];

@@ -52,6 +52,9 @@ void repository_point_m(const struct repository *repository, uint32_t point, flo
 /* want may be NULL. For REPOSITORY_UNKNOWN *brick_child is set too (may be NULL). */
 enum repository_state repository_face(const struct repository *repository, face_key face,
 				      struct message_want *want, uint32_t *brick_child);
+/* Where a brick's page lies; false: it is here already, or none is by that child. */
+bool repository_brick(const struct repository *repository, uint32_t child,
+		      struct message_want *want);
 /* Whether anything is seen in the given sixteenths of the face (bits as in brick_page); true while
  * unknown. */
 bool repository_covers(const struct repository *repository, face_key face, uint16_t sixteenths);

@@ -154,15 +154,9 @@ static void add_want(const struct scene *scene, struct gains *gains, const struc
 static bool place_gain(const struct scene *scene, const struct gain *gain,
 		       struct message_want *place)
 {
-	uint32_t brick;
 	switch (gain->kind) {
 	case OBJECT_BRICK:
-		for (uint32_t p = 0; p < scene->repository.point_count; p++)
-			if (repository_face(&scene->repository, p * CUBE_FACES, place, &brick) ==
-				    REPOSITORY_UNKNOWN &&
-			    brick == gain->id)
-				return true;
-		return false;
+		return repository_brick(&scene->repository, (uint32_t)gain->id, place);
 	case OBJECT_FACE:
 		return repository_face(&scene->repository, (face_key)gain->id, place, NULL) ==
 		       REPOSITORY_PAGE;
