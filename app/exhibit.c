@@ -160,7 +160,8 @@ static void take_over(struct kiosk *kiosk)
 		net_client_keep(kiosk->net, kiosk->shown.pages[i]);
 	if (story_language(before.story))
 		story_set_language(kiosk->shown.story, story_language(before.story));
-	overlay_show_help(overlay, false);
+	if (overlay) /* a panel too small for words has none */
+		overlay_show_help(overlay, false);
 	kiosk->looked_triangles = 0; /* its anchors are others */
 	quads_forget(kiosk->quads);
 	exhibit_close(&before);

@@ -140,7 +140,7 @@ static bool give_picture(struct story *story, struct hash hash, struct bytes obj
 {
 	bool ours = false;
 
-	if (!story->info)
+	if (!story->info || !story->overlay)
 		return false;
 	for (uint32_t i = 0; i < info_picture_count(story->info) && i < PICTURES_MOST; i++) {
 		const struct info_picture *picture = info_picture(story->info, i);

@@ -274,6 +274,7 @@ void scene_give(struct scene *scene, struct hash hash, struct bytes object)
 	struct object *known = scene_object(scene, hash);
 	if (!known || known->state != OBJECT_WANTED)
 		return;
+	scene->wants_are_stale = true;
 	int rc = take_object(scene, known, object);
 	if (rc == -ENOMEM)
 		log_warn("render", "no memory for an object; it stays wanted");

@@ -94,6 +94,7 @@ struct scene {
 	float image_share;
 	struct message_want *wants; /* owned */
 	uint32_t want_count, want_capacity;
+	bool wants_are_stale; /* something came since they were listed */
 	uint32_t plan_cursor;
 	struct region marked; /* by the last frame */
 };

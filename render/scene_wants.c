@@ -222,6 +222,7 @@ static void limit_to_room(struct scene *scene)
 
 void scene_list_wants(struct scene *scene)
 {
+	scene->wants_are_stale = false;
 	scene->want_count = 0;
 	if (!scene->has_root) {
 		const struct message_want place = { .hash = scene->root_hash,
@@ -248,7 +249,8 @@ void scene_list_wants(struct scene *scene)
 
 size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most)
 {
-	scene_list_wants(scene);
+	if (scene->wants_are_stale)
+		scene_list_wants(scene);
 	size_t count = scene->want_count < most ? scene->want_count : most;
 	if (count > 0)
 		memcpy(wants, scene->wants, count * sizeof(*wants));

@@ -68,7 +68,7 @@ is came "$line" -eq "$(figure wanted "$line")"
 
 # ---- damage: refused, told, and well after repair
 damage_and_repair() { # CACHE HOW
-	(sleep 4; cp "$folder/whole" "$pack") &
+	(sleep 8; cp "$folder/whole" "$pack") &
 	line=$(walk "$1" --most-s 90) || fail "$2: not all came after the repair: $line"
 	wait %% 2>/dev/null || true
 	is came "$line" -eq 2051
@@ -77,7 +77,7 @@ damage_and_repair() { # CACHE HOW
 for at in 1000 5000000 9000000 16100000; do
 	printf '\x5a\xa5\x5a' | dd of="$pack" bs=1 seek="$at" conv=notrunc status=none
 done
-line=$(walk flipped.db --most-s 3) && fail "damaged objects were taken: $line"
+line=$(walk flipped.db --most-s 8) && fail "damaged objects were taken: $line"
 is damaged "$line" -gt 0
 damage_and_repair flipped.db "flipped bytes" damaged
 cp "$folder/whole" "$pack"

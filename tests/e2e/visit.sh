@@ -31,7 +31,7 @@ grep -q 'app: page of' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "
 
 # ---- no network at all, and no server's name even
 stop_server
-echo '7000 offline' >"$work/offline.shots"
+echo '12000 offline' >"$work/offline.shots"
 timeout 60 build/gopura-kiosk --display headless --size 1280x720 --release https://localhost:9/ --ca "$ca" \
 	--state "$work/state" --touch-replay tests/e2e/nothing.touch --quit-after-replay \
 	--shots "$work/offline.shots" --capture "$work/shots" 2>"$work/offline.log" ||
