@@ -176,14 +176,10 @@ static int write_picture(const struct capture *capture, struct kiosk *kiosk, con
 	picture.rgba = malloc(count * 4);
 	if (picture.rgba)
 		rc = display_read(kiosk->display, picture.rgba);
-	for (size_t i = 0; rc == 0 && i < count; i++) {
-		uint8_t *pixel = picture.rgba + 4 * i;
-
-		if (!coverage)
-			pixel[3] = 255;
-		else if (pixel[3] == 0)
-			memset(pixel, 0, 3);
-	}
+	if (rc == 0 && coverage && kiosk->shown.scene)
+		scene_unmix(kiosk->shown.scene, picture.rgba, count);
+	for (size_t i = 0; rc == 0 && !coverage && i < count; i++)
+		picture.rgba[4 * i + 3] = 255;
 	if (rc == 0)
 		rc = picture_encode_png(&file, &picture);
 	snprintf(path, sizeof(path), "%s/%s.png", capture->folder, name);

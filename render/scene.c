@@ -297,6 +297,18 @@ int scene_dispatch(struct scene *scene)
 	return 0;
 }
 
+void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count)
+{
+	for (uint8_t *pixel = rgba; pixel < rgba + 4 * pixel_count; pixel += 4) {
+		for (int k = 0; k < 3; k++) {
+			int alpha = pixel[3], sky = scene->root.background[k];
+			int value = 255 * pixel[k] - (255 - alpha) * sky;
+			value = alpha > 0 ? (value + alpha / 2) / alpha : 0;
+			pixel[k] = (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+		}
+	}
+}
+
 /* ---- rays */
 
 bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,

@@ -56,9 +56,13 @@ struct scene_frame {
 	float image_share; /* of the model's pixels, settled frames only; else -1 */
 };
 
-/* Draws into the framebuffer that is bound; alpha is coverage. highlight may be NULL. */
+/* Draws into the framebuffer that is bound, on the release's background; alpha is coverage.
+ * highlight may be NULL. */
 void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
 		struct scene_frame *out);
+
+/* Takes the background out of pixels that were read back: straight alpha, 0 where nothing is. */
+void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count);
 
 /* The surface point under a pixel (x right, y down, panel pixels) of the camera given, by the
  * patches shown. false: nothing there. */

@@ -5,8 +5,9 @@
  *              [--error-px E] [--triangles N] [--texture-mb N]
  *
  * VIEWS: a line a view, eye x y z, target x y z, vertical field of view in degrees. OUT gets
- * NNNN.png (alpha is coverage) and views.jsonl. FOLDER holds NNNN.png of the same views
- * (gopura-content render). Quality is judged over the union of both silhouettes. */
+ * view-NNNN.png (alpha is coverage) and views.jsonl. FOLDER holds view-NNNN.png of the same views
+ * (gopura-content render). Quality is judged over the union of both silhouettes, on one
+ * grey (as tests/tools/compare_pictures does). */
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
@@ -143,7 +144,7 @@ static bool read_picture(const char *folder, uint32_t view, struct picture *out)
 {
 	char path[512];
 	struct buffer file;
-	snprintf(path, sizeof(path), "%s/%04u.png", folder, view);
+	snprintf(path, sizeof(path), "%s/view-%04u.png", folder, view);
 	buffer_init(&file, 256 << 20);
 	int rc = buffer_read_file(&file, path);
 	if (rc == 0)
@@ -152,8 +153,12 @@ static bool read_picture(const char *folder, uint32_t view, struct picture *out)
 	return rc == 0;
 }
 
-/* Over the union of both silhouettes, on the release's background. */
-static double psnr_of(const struct picture *a, const uint8_t *b, const uint8_t sky[3])
+static double over_grey(const uint8_t pixel[4], int channel)
+{
+	return (pixel[channel] * pixel[3] + 96.0 * (255 - pixel[3])) / 255;
+}
+
+static double psnr_of(const struct picture *a, const uint8_t *b)
 {
 	double sum = 0, count = 0;
 	for (size_t i = 0; i < (size_t)a->width * a->height; i++) {
@@ -161,7 +166,7 @@ static double psnr_of(const struct picture *a, const uint8_t *b, const uint8_t s
 		if (p[3] == 0 && q[3] == 0)
 			continue;
 		for (int k = 0; k < 3; k++) {
-			double d = (double)(p[3] ? p[k] : sky[k]) - (q[3] ? q[k] : sky[k]);
+			double d = over_grey(p, k) - over_grey(q, k);
 			sum += d * d;
 		}
 		count += 3;
@@ -177,7 +182,7 @@ static double score(struct bench *bench, uint32_t view, const uint8_t *rgba)
 	double psnr = NAN;
 	if ((int)truth.width == bench->camera.width_px &&
 	    (int)truth.height == bench->camera.height_px)
-		psnr = psnr_of(&truth, rgba, scene_root(bench->scene)->background);
+		psnr = psnr_of(&truth, rgba);
 	picture_finish(&truth);
 	if (!isnan(psnr)) {
 		bench->psnr_sum += psnr;
@@ -193,7 +198,7 @@ static void keep(const struct bench *bench, uint32_t view, uint8_t *rgba)
 	const struct picture picture = { (uint32_t)bench->camera.width_px,
 					 (uint32_t)bench->camera.height_px, rgba };
 	buffer_init(&file, 256 << 20);
-	snprintf(path, sizeof(path), "%s/%04u.png", bench->out, view);
+	snprintf(path, sizeof(path), "%s/view-%04u.png", bench->out, view);
 	int rc = picture_encode_png(&file, &picture);
 	if (rc == 0)
 		rc = bytes_write_file(buffer_bytes(&file), path);
@@ -230,6 +235,8 @@ static void draw_view(struct bench *bench, uint32_t view)
 		malloc(4 * (size_t)bench->camera.width_px * (size_t)bench->camera.height_px);
 	if (!rgba || gl_target_read(&bench->target, rgba) < 0)
 		die("reading the picture", -EIO);
+	scene_unmix(bench->scene, rgba,
+		    (size_t)bench->camera.width_px * (size_t)bench->camera.height_px);
 	double psnr = score(bench, view, rgba);
 	keep(bench, view, rgba);
 	free(rgba);
