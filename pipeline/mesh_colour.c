@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/mesh_repair.h"
+#include "pipeline/mesh_places.h"
 
 enum { CELLS_LEAST = 2, CELLS_MOST = 8 };
 

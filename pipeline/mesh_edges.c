@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
-#include "pipeline/mesh_repair.h"
+#include "pipeline/mesh_places.h"
 
 /* Few enough to sort by insertion; a vertex has six edges on average, half of them filed here. */
 enum { FEW = 64 };

@@ -20,7 +20,4 @@ struct mesh_repairs {
  * below vertex_count. -ENOMEM. */
 must_check int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs);
 
-/* Of each vertex the first one at the same place. Owned by the caller; NULL: no memory. */
-uint32_t *mesh_places(const struct mesh *mesh);
-
 #endif
