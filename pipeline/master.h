@@ -59,7 +59,8 @@ struct master_cut {
 };
 
 /* The groups without which the picture is most wrong, while the triangles of all their patches are
- * at most share (0..1) of the scan's. -ERANGE: not even group 0 is; -ENOMEM. Zeroed on failure. */
+ * at most share (0..1) of the scan's; 1: everything, the finest level too. -ERANGE: not even group
+ * 0 is; -ENOMEM. Zeroed on failure. */
 must_check int master_cut_create(struct master_cut *out, const struct master *master, double share);
 void master_cut_finish(struct master_cut *cut); /* NULL is fine */
 

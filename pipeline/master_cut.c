@@ -110,7 +110,9 @@ int master_cut_create(struct master_cut *out, const struct master *master, doubl
 	bool *chosen = calloc(hierarchy->group_count, sizeof(*chosen));
 	struct ranked *ranked = calloc(hierarchy->group_count, sizeof(*ranked));
 	uint32_t *missing = calloc(hierarchy->group_count, sizeof(*missing));
-	uint64_t most = (uint64_t)(share * (double)master->source_triangles);
+	/* All levels together are about twice the scan, so all of it is no share of it. */
+	uint64_t most =
+		share >= 1 ? UINT64_MAX : (uint64_t)(share * (double)master->source_triangles);
 	int rc = chosen && ranked && missing ? 0 : -ENOMEM;
 
 	*out = (struct master_cut){ 0 };
