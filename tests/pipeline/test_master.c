@@ -145,7 +145,7 @@ static uint64_t triangles_in(const struct hierarchy *hierarchy)
 
 static void publishes_no_more_than_the_share(void **state)
 {
-	static const double shares[] = { 0.05, 0.1, 0.5, 1.0, 2.0 };
+	static const double shares[] = { 0.05, 0.1, 0.5, 0.99 };
 	struct home home;
 	struct master *master;
 	struct master_cut cut;
@@ -168,6 +168,9 @@ static void publishes_no_more_than_the_share(void **state)
 			      master->hierarchy.groups[cut.groups[g]].error_m);
 		master_cut_finish(&cut);
 	}
+	CHECK(master_cut_create(&cut, master, 1) == 0); /* everything */
+	CHECK(cut.hierarchy.group_count == master->hierarchy.group_count);
+	master_cut_finish(&cut);
 	CHECK(master_cut_create(&cut, master, 0.001) == -ERANGE);
 	CHECK(!cut.groups && !cut.hierarchy.groups);
 	master_destroy(master);
