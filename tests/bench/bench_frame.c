@@ -20,7 +20,7 @@
 #include "render/headless.h"
 #include "render/scene.h"
 
-enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, WANTS = 64, SETTLE_MS = 120000, ROUNDS = 3 };
+enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, WANTS = 64, SETTLE_MS = 20000 };
 
 struct bench {
 	struct release_reader *reader;
@@ -30,7 +30,7 @@ struct bench {
 	struct gl_target target;
 	GLuint quad_program, quad_texture, quad_buffer;
 	struct camera cameras[VIEWS_MOST];
-	uint32_t views, frames;
+	uint32_t views, frames, unsettled;
 };
 
 static void die(const char *what, int rc)
@@ -194,6 +194,7 @@ static double quad_ms(const struct bench *bench)
 	return median(ms, bench->frames);
 }
 
+/* Until nothing is wanted any more, at most SETTLE_MS. */
 static void settle(struct bench *bench, struct scene *scene, const struct camera *camera)
 {
 	const int64_t until_ms = clock_now_ms() + SETTLE_MS;
@@ -204,9 +205,14 @@ static void settle(struct bench *bench, struct scene *scene, const struct camera
 		scene_draw(scene, camera, NULL, &frame);
 		serve(bench, scene);
 		must(scene_dispatch(scene), "scene");
-		usleep(500); /* the workers decode */
-		if (clock_now_ms() > until_ms)
-			die("a view does not settle", -ETIMEDOUT);
+		usleep(500);                     /* the workers decode */
+		if (clock_now_ms() > until_ms) { /* warm enough, and the report says so */
+			fprintf(stderr,
+				"bench_frame: a view did not settle: %u tiles in its last frame\n",
+				frame.tiles_uploaded);
+			bench->unsettled++;
+			return;
+		}
 	}
 }
 
@@ -239,13 +245,15 @@ static struct cost frames_of(struct bench *bench, struct scene *scene, struct ca
 /* The middle view's cost. */
 static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 {
-	const struct scene_options options = { .mode = mode,
-					       .texture_budget_bytes = 64 << 20,
-					       .geometry_budget_bytes = 64 << 20,
-					       .triangle_budget = 400000,
-					       .patch_error_px = 2,
-					       .upload_budget_us = 4000,
-					       .worker_count = 2 };
+	const struct scene_options options = {
+		.mode = mode,
+		.texture_budget_bytes = 64 << 20,
+		.geometry_budget_bytes = 64 << 20,
+		.triangle_budget = 400000,
+		.patch_error_px = 2,
+		.upload_budget_us = 100000, /* warm soon; then nothing is left to upload */
+		.worker_count = 2
+	};
 	double ms[VIEWS_MOST], triangles[VIEWS_MOST];
 	const struct locator_block *block;
 	struct scene *scene;
@@ -305,7 +313,7 @@ int main(int argc, char **argv)
 	       (const char *)glGetString(GL_RENDERER), bench.views, bench.frames);
 	measure(&bench, 1280, 720, false);
 	measure(&bench, 1920, 1080, true);
-	puts("]}");
+	printf("], \"unsettled\": %u}\n", bench.unsettled);
 	headless_destroy(bench.headless);
 	release_reader_destroy(bench.reader);
 	locator_finish(&bench.locator);

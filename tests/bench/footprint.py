@@ -1,4 +1,5 @@
 """footprint.py WORK: measures gopura-kiosk and its fetcher and prints JSON. See docs/figures.md."""
+import atexit
 import glob
 import json
 import os
@@ -15,10 +16,12 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 def kiosk(*more):
     """Without Mesa's cache of compiled shaders, whose bytes on the disk are not ours."""
-    return subprocess.Popen(
+    process = subprocess.Popen(
         ["build/gopura-kiosk", "--display", "headless", "--size", "1920x1080", "--release", "build/demo/release",
          "--trust", "build/demo/release/root/1.json", "--state", f"{WORK}/state", *more],
         stderr=open(f"{WORK}/kiosk.log", "a"), env=dict(os.environ, MESA_SHADER_CACHE_DISABLE="true"))
+    atexit.register(process.kill)  # does nothing once it was waited for
+    return process
 
 
 def fetcher_of(pid):

@@ -1,11 +1,11 @@
 #!/bin/bash
 # A frame with the eye moving a millimetre a frame over a warm cache, as a multiple of one textured
-# quad that fills the screen in the same run, and of the same patches without images: five views of
+# quad that fills the screen in the same run, and of the same patches without images: three views of
 # the demo temple. build/bench/frame.json.
 set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/bench
 make --no-print-directory benches >/dev/null
 demo/prepare.sh >/dev/null
-grep -v '^#' tests/bench/views.txt | awk 'NR % 8 == 1' >build/bench/frame-views.txt
-build/tests/bench/bench_frame build/demo/release build/bench/frame-views.txt 40 >build/bench/frame.json
+grep -v '^#' tests/bench/views.txt | awk 'NR % 14 == 1' >build/bench/frame-views.txt
+build/tests/bench/bench_frame build/demo/release build/bench/frame-views.txt 25 >build/bench/frame.json
