@@ -40,7 +40,7 @@ def cpu_ticks(pid):
 
 def rest(pids):
     """Until both have done next to nothing for three seconds."""
-    quiet, until = 0, time.monotonic() + 180
+    quiet, until = 0, time.monotonic() + 400
     while quiet < 3:
         before = sum(map(cpu_ticks, pids))
         time.sleep(1)
