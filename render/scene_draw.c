@@ -83,37 +83,59 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 
 /* ---- pictures */
 
+/* A run of triangles of the patch that is bound, not drawn yet: pieces that need no uniforms of
+ * their own are drawn at once. */
+struct run {
+	uint32_t patch, first, count;
+};
+
+static void end_run(struct run *run)
+{
+	if (run->count > 0)
+		geometry_draw(run->first, run->count);
+	run->count = 0;
+}
+
+static void draw_piece(struct scene *scene, const struct surface_frame *frame,
+		       const struct visible_piece *v, struct run *run)
+{
+	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+	const struct piece *piece = &patch->content.solid.pieces[v->piece];
+	bool joins = v->faces == 0 && v->patch == run->patch &&
+		     piece->first_triangle == run->first + run->count;
+	if (!joins)
+		end_run(run);
+	if (v->patch != run->patch)
+		geometry_bind(&scene->geometry, v->patch);
+	run->patch = v->patch;
+	if (v->faces > 0)
+		surface_blend(&scene->surface, frame, v->faces, patch->pieces[v->piece].blend,
+			      scene_patch_error_m(scene, v->patch), piece->spacing_m);
+	if (run->count == 0)
+		run->first = piece->first_triangle;
+	run->count += piece->triangle_count;
+}
+
+/* Program by program, so that each sets its uniforms once. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
-	uint32_t bound = HIERARCHY_NONE, first = 0, count = 0;
+	uint32_t with[PLAN_ENTRIES + 1] = { 0 };
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
-		const struct visible_piece *v = &scene->visible[i];
-		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-		const struct piece *piece = &patch->content.solid.pieces[v->piece];
-		/* Pieces of the patches' own colours need no uniforms: runs are drawn at once. */
-		bool joins = !frame->tiles && v->patch == bound &&
-			     piece->first_triangle == first + count;
-		if (!joins && count > 0)
-			geometry_draw(first, count);
-		if (!joins)
-			count = 0;
-		if (v->patch != bound)
-			geometry_bind(&scene->geometry, v->patch);
-		bound = v->patch;
-		if (frame->tiles)
-			surface_blend(&scene->surface, frame, &scene->repository,
-				      patch->pieces[v->piece].blend,
-				      scene_patch_error_m(scene, v->patch), piece->spacing_m);
-		if (count == 0)
-			first = piece->first_triangle;
-		count += piece->triangle_count;
-		if (frame->tiles) {
-			geometry_draw(first, count);
-			count = 0;
-		}
+		struct visible_piece *v = &scene->visible[i];
+		v->faces = surface_faces(frame,
+					 scene->geometry.patches[v->patch].pieces[v->piece].blend);
+		with[v->faces]++;
 	}
-	if (count > 0)
-		geometry_draw(first, count);
+	for (int faces = PLAN_ENTRIES; faces >= 0; faces--) {
+		struct run run = { .patch = HIERARCHY_NONE };
+		if (with[faces] == 0)
+			continue;
+		surface_begin(&scene->surface, frame, faces);
+		for (uint32_t i = 0; i < scene->visible_count; i++)
+			if (scene->visible[i].faces == faces)
+				draw_piece(scene, frame, &scene->visible[i], &run);
+		end_run(&run);
+	}
 }
 
 static void draw_mark(struct scene *scene, const struct view *view, const struct region *region)
@@ -159,10 +181,10 @@ static void draw_picture(struct scene *scene, const struct view *view, const str
 		.root = &scene->root,
 		.tiles = images ? &scene->tiles : NULL,
 		.depth = &scene->depth,
+		.repository = &scene->repository,
 		.even = scene->options.mode == SCENE_CORNERS,
 		.shares = shares,
 	};
-	surface_begin(&scene->surface, &frame);
 	draw_pieces(scene, &frame);
 	if (region && region->kind != REGION_NONE)
 		draw_mark(scene, view, region);

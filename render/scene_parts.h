@@ -45,6 +45,7 @@ struct object {
 struct visible_piece {
 	uint32_t patch, piece;
 	float pixels; /* of the screen, as far as known */
+	int faces;    /* that it is drawn with in this picture */
 };
 
 struct scene {

@@ -89,7 +89,7 @@ static bool add_visible(struct scene *scene, uint32_t patch, uint32_t piece, flo
 		scene->visible = larger;
 		scene->visible_capacity = capacity;
 	}
-	scene->visible[scene->visible_count++] = (struct visible_piece){ patch, piece, pixels };
+	scene->visible[scene->visible_count++] = (struct visible_piece){ patch, piece, pixels, 0 };
 	return true;
 }
 

@@ -5,9 +5,6 @@
 
 #include "format/light.h"
 
-#define ENTRIES 4
-_Static_assert(ENTRIES == PLAN_ENTRIES, "the shader is written for so many");
-
 /* Positions are metres relative to the eye, so that floats suffice anywhere in the model. */
 static const char vertex_common[] =
 	"invariant gl_Position;\n" /* the mark is drawn over it at equal depth */
@@ -47,10 +44,10 @@ static const char plain_fragment[] = "precision mediump float;\n"
 /* Per face five rows: right, up, forward (xyz, and minus their product with the point), the point
  * and the blend's weight, and (half_px, 0, 0, 0). The quality is plan_quality's twin. */
 static const char blended_vertex[] =
-	"uniform vec4 u_face[20];\n"
+	"uniform vec4 u_face[5 * FACES];\n"
 	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, spacing by its penalty */
 	"uniform vec4 u_tune[2];\n" /* blur, parallax, angle, 0; facing low, 1 / (high - low) */
-	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
+	"varying vec4 v_face[FACES];\n"
 	"float quality(vec3 p, vec3 n, vec3 s, float depth, float half_px) {\n"
 	"	float d = length(p);\n"
 	"	vec3 to_eye = -p / d, to_sample = normalize(s - p);\n"
@@ -78,17 +75,17 @@ static const char blended_vertex[] =
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	vec3 n = unit_normal();\n"
-	"	v_face0 = seen(p, n, u_face[0], u_face[1], u_face[2], u_face[3], u_face[4]);\n"
-	"	v_face1 = seen(p, n, u_face[5], u_face[6], u_face[7], u_face[8], u_face[9]);\n"
-	"	v_face2 = seen(p, n, u_face[10], u_face[11], u_face[12], u_face[13], u_face[14]);\n"
-	"	v_face3 = seen(p, n, u_face[15], u_face[16], u_face[17], u_face[18], u_face[19]);\n"
+	"	float most = 0.0;\n"
+	"	for (int i = 0; i < FACES; i++) {\n"
+	"		v_face[i] = seen(p, n, u_face[5 * i], u_face[5 * i + 1], u_face[5 * i + 2],\n"
+	"				 u_face[5 * i + 3], u_face[5 * i + 4]);\n"
+	"		most = max(most, v_face[i].w);\n"
+	"	}\n"
 	"	float own = 1.0 + u_eye.w * u_eye.x / length(p);\n"
 	"	own = u_eye.z < 0.5 ? 1.0 / (own * own) : 0.01;\n"
-	"	float most = max(max(max(v_face0.w, v_face1.w), max(v_face2.w, v_face3.w)), own);\n"
-	"	v_face0.w = sharpen(v_face0.w / most);\n"
-	"	v_face1.w = sharpen(v_face1.w / most);\n"
-	"	v_face2.w = sharpen(v_face2.w / most);\n"
-	"	v_face3.w = sharpen(v_face3.w / most);\n"
+	"	most = max(most, own);\n"
+	"	for (int i = 0; i < FACES; i++)\n"
+	"		v_face[i].w = sharpen(v_face[i].w / most);\n"
 	"	v_colour = vec4(own_colour(n), OWN_SHARE * sharpen(own / most) + 0.0005);\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
@@ -97,10 +94,10 @@ static const char blended_vertex[] =
 static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
 	"uniform highp sampler2D u_cells, u_depths;\n" /* by default lowp: 16 bits need more */
-	"uniform vec4 u_slot[4];\n"                    /* face slot's column and row, 0, 0 */
+	"uniform vec4 u_slot[FACES];\n"                /* face slot's column and row, 0, 0 */
 	"uniform float u_share, u_far, u_slack;\n"
 	"varying vec4 v_colour;\n"
-	"varying vec4 v_face0, v_face1, v_face2, v_face3;\n"
+	"varying vec4 v_face[FACES];\n"
 	"vec4 from_face(vec4 face, vec2 slot) {\n"
 	"	if (face.w < 0.0005 || face.z < u_far * 0.0004)\n"
 	"		return vec4(0.0);\n"
@@ -122,10 +119,9 @@ static const char blended_fragment[] =
 	"	return vec4(texture2D(u_tiles, pixel / ATLAS_PX).rgb * w, w);\n"
 	"}\n"
 	"void main() {\n"
-	"	vec4 sum = from_face(v_face0, u_slot[0].xy);\n"
-	"	sum += from_face(v_face1, u_slot[1].xy);\n"
-	"	sum += from_face(v_face2, u_slot[2].xy);\n"
-	"	sum += from_face(v_face3, u_slot[3].xy);\n"
+	"	vec4 sum = vec4(0.0);\n"
+	"	for (int i = 0; i < FACES; i++)\n"
+	"		sum += from_face(v_face[i], u_slot[i].xy);\n"
 	"	float own = v_colour.a;\n"
 	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
@@ -142,12 +138,15 @@ static void find_uniforms(struct surface_program *p)
 	p->slot = glGetUniformLocation(p->program, "u_slot");
 	p->tune = glGetUniformLocation(p->program, "u_tune");
 	p->share = glGetUniformLocation(p->program, "u_share");
+	p->far_m = glGetUniformLocation(p->program, "u_far");
+	p->slack = glGetUniformLocation(p->program, "u_slack");
 }
 
-static void set_constants(char *out, size_t bytes, int atlas_px)
+static void set_constants(char *out, size_t bytes, int atlas_px, int faces)
 {
 	snprintf(out, bytes,
 		 "precision highp float;\n"
+		 "#define FACES %d\n"
 		 "#define DEPTH_GRID vec2(%d.0, %d.0)\n"
 		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
 		 "#define IMAGE_PX %d.0\n"
@@ -155,66 +154,71 @@ static void set_constants(char *out, size_t bytes, int atlas_px)
 		 "#define TILE_PX %d.0\n"
 		 "#define ATLAS_PX %d.0\n"
 		 "#define OWN_SHARE 0.3\n",
-		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, TILES_FACES_ACROSS,
-		 TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX,
-		 SAMPLE_TILE_PX, atlas_px);
+		 faces, TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS,
+		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX,
+		 SAMPLE_APRON_PX, SAMPLE_TILE_PX, atlas_px);
 }
 
-int surface_init(struct surface *surface, int atlas_px)
+static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
+
+static int init_plain(struct surface_program *p)
 {
-	memset(surface, 0, sizeof(*surface));
-	char constants[512];
-	set_constants(constants, sizeof(constants), atlas_px);
-	const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
-	const struct gl_program_source plain = {
+	const struct gl_program_source source = {
 		.name = "patches",
 		.vertex = (const char *const[]){ light_glsl, vertex_common, plain_vertex, NULL },
 		.fragment = (const char *const[]){ plain_fragment, NULL },
 		.attributes = attributes,
 	};
-	const struct gl_program_source blended = {
+	int rc = gl_program_build(&p->program, &source);
+	if (rc == 0)
+		find_uniforms(p);
+	return rc;
+}
+
+static int init_blended(struct surface_program *p, int atlas_px, int faces)
+{
+	char constants[512];
+	set_constants(constants, sizeof(constants), atlas_px, faces);
+	const struct gl_program_source source = {
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
 						 blended_vertex, NULL },
 		.fragment = (const char *const[]){ constants, blended_fragment, NULL },
 		.attributes = attributes,
 	};
-	int rc = gl_program_build(&surface->plain.program, &plain);
-	if (rc == 0)
-		rc = gl_program_build(&surface->blended.program, &blended);
-	if (rc < 0) {
-		surface_finish(surface);
+	int rc = gl_program_build(&p->program, &source);
+	if (rc < 0)
 		return rc;
-	}
-	find_uniforms(&surface->plain);
-	find_uniforms(&surface->blended);
-	glUseProgram(surface->blended.program);
-	glUniform1i(glGetUniformLocation(surface->blended.program, "u_tiles"), 0);
-	glUniform1i(glGetUniformLocation(surface->blended.program, "u_cells"), 1);
-	glUniform1i(glGetUniformLocation(surface->blended.program, "u_depths"), 2);
-	surface->far_m = glGetUniformLocation(surface->blended.program, "u_far");
-	surface->slack = glGetUniformLocation(surface->blended.program, "u_slack");
+	find_uniforms(p);
+	glUseProgram(p->program);
+	glUniform1i(glGetUniformLocation(p->program, "u_tiles"), 0);
+	glUniform1i(glGetUniformLocation(p->program, "u_cells"), 1);
+	glUniform1i(glGetUniformLocation(p->program, "u_depths"), 2);
 	return 0;
+}
+
+int surface_init(struct surface *surface, int atlas_px)
+{
+	memset(surface, 0, sizeof(*surface));
+	int rc = init_plain(&surface->of[0]);
+	for (int faces = 1; faces <= PLAN_ENTRIES && rc == 0; faces++)
+		rc = init_blended(&surface->of[faces], atlas_px, faces);
+	if (rc < 0)
+		surface_finish(surface);
+	return rc;
 }
 
 void surface_finish(struct surface *surface)
 {
-	if (surface->plain.program)
-		glDeleteProgram(surface->plain.program);
-	if (surface->blended.program)
-		glDeleteProgram(surface->blended.program);
+	for (int faces = 0; faces <= PLAN_ENTRIES; faces++)
+		if (surface->of[faces].program)
+			glDeleteProgram(surface->of[faces].program);
 	memset(surface, 0, sizeof(*surface));
 }
 
-static const struct surface_program *program_of(const struct surface *surface,
-						const struct surface_frame *frame)
+void surface_begin(const struct surface *surface, const struct surface_frame *frame, int faces)
 {
-	return frame->tiles ? &surface->blended : &surface->plain;
-}
-
-void surface_begin(const struct surface *surface, const struct surface_frame *frame)
-{
-	const struct surface_program *p = program_of(surface, frame);
+	const struct surface_program *p = &surface->of[faces];
 	const struct lattice *lattice = &frame->root->lattice;
 	const float *eye = frame->view->eye_m, *sun = frame->root->sun;
 	glUseProgram(p->program);
@@ -226,22 +230,30 @@ void surface_begin(const struct surface *surface, const struct surface_frame *fr
 	glUniform1f(p->share, frame->shares ? 1 : 0);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
-	if (!frame->tiles)
+	if (faces == 0)
 		return;
 	const struct plan_tuning *t = &plan_tuning;
-	const float tune[8] = { t->blur,
-				t->parallax,
-				t->angle,
-				0,
-				t->facing_low,
-				1 / (t->facing_high - t->facing_low),
-				0,
-				0 };
+	const float facing = 1 / (t->facing_high - t->facing_low);
+	const float tune[8] = { t->blur, t->parallax, t->angle, 0, t->facing_low, facing };
 	glUniform4fv(p->tune, 2, tune);
-	glUniform1f(surface->far_m, frame->depth->far_limit_m);
+	glUniform1f(p->far_m, frame->depth->far_limit_m);
 	gl_bind_texture(0, frame->tiles->atlas);
 	gl_bind_texture(1, frame->tiles->indirection);
 	gl_bind_texture(2, frame->depth->atlas);
+}
+
+static int slot_of(const struct surface_frame *frame, const struct blend *blend)
+{
+	int slot = blend->weight > 0 ? tiles_face_slot(frame->tiles, blend->face) : -1;
+	return slot >= 0 && depth_ready(frame->depth, slot, blend->face) ? slot : -1;
+}
+
+int surface_faces(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES])
+{
+	int faces = 0;
+	for (int i = 0; i < PLAN_ENTRIES && frame->tiles; i++)
+		faces += slot_of(frame, &blend[i]) >= 0;
+	return faces;
 }
 
 static void set_face(float rows[20], const struct repository *repository, const struct blend *blend,
@@ -265,25 +277,24 @@ static void set_face(float rows[20], const struct repository *repository, const 
 	rows[16] = blend->half_px;
 }
 
-void surface_blend(const struct surface *surface, const struct surface_frame *frame,
-		   const struct repository *repository, const struct blend *blend, float error_m,
-		   float spacing_m)
+void surface_blend(const struct surface *surface, const struct surface_frame *frame, int faces,
+		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m)
 {
-	const struct surface_program *p = &surface->blended;
-	if (!frame->tiles)
-		return;
+	const struct surface_program *p = &surface->of[faces];
 	float rows[20 * PLAN_ENTRIES] = { 0 }, slots[4 * PLAN_ENTRIES] = { 0 };
+	int at = 0;
 	for (int i = 0; i < PLAN_ENTRIES; i++) {
-		int slot = blend[i].weight > 0 ? tiles_face_slot(frame->tiles, blend[i].face) : -1;
-		if (slot < 0 || !depth_ready(frame->depth, slot, blend[i].face))
+		int slot = slot_of(frame, &blend[i]);
+		if (slot < 0)
 			continue;
-		set_face(&rows[20 * i], repository, &blend[i], frame->view->eye_m);
-		slots[4 * i] = (float)(slot % TILES_FACES_ACROSS);
-		slots[4 * i + 1] = (float)(slot / TILES_FACES_ACROSS);
+		set_face(&rows[20 * at], frame->repository, &blend[i], frame->view->eye_m);
+		slots[4 * at] = (float)(slot % TILES_FACES_ACROSS);
+		slots[4 * at + 1] = (float)(slot / TILES_FACES_ACROSS);
+		at++;
 	}
-	glUniform4fv(p->face, 5 * PLAN_ENTRIES, rows);
-	glUniform4fv(p->slot, PLAN_ENTRIES, slots);
+	glUniform4fv(p->face, 5 * faces, rows);
+	glUniform4fv(p->slot, faces, slots);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
 		    plan_tuning.own * spacing_m);
-	glUniform1f(surface->slack, depth_slack_m(frame->depth) + 2 * error_m);
+	glUniform1f(p->slack, depth_slack_m(frame->depth) + 2 * error_m);
 }

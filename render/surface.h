@@ -11,12 +11,12 @@
 
 struct surface_program {
 	GLuint program;
-	GLint clip, lattice, sun, eye, face, slot, tune, share;
+	GLint clip, lattice, sun, eye, face, slot, tune, share, far_m, slack;
 };
 
+/* A program for each number of faces: none, the patch's own colours, is the cheapest. */
 struct surface {
-	struct surface_program plain, blended;
-	GLint far_m, slack;
+	struct surface_program of[PLAN_ENTRIES + 1];
 };
 
 /* atlas_px: of the tiles' atlas. */
@@ -28,16 +28,19 @@ struct surface_frame {
 	const struct root_page *root;
 	const struct tiles *tiles; /* NULL: the patches' own colours */
 	const struct depth *depth;
+	const struct repository *repository;
 	bool even;   /* faces weigh what their blend says, whatever they see (the eight corners) */
 	bool shares; /* draws how much of a pixel images colour, instead of its colour */
 };
 
-/* Sets up state and uniforms; geometry_bind and surface_blend follow per patch and piece. */
-void surface_begin(const struct surface *surface, const struct surface_frame *frame);
-/* The faces of the piece that is drawn next, at most PLAN_ENTRIES; error_m and
- * spacing_m as in plan_quality and plan_own_quality. */
-void surface_blend(const struct surface *surface, const struct surface_frame *frame,
-		   const struct repository *repository, const struct blend *blend, float error_m,
-		   float spacing_m);
+/* How many of a piece's faces can be drawn now: 0..PLAN_ENTRIES. */
+int surface_faces(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES]);
+/* Sets up state and uniforms for pieces with so many faces; geometry_bind and, but for none,
+ * surface_blend follow per patch and piece. */
+void surface_begin(const struct surface *surface, const struct surface_frame *frame, int faces);
+/* The faces of the piece that is drawn next; error_m and spacing_m as in plan_quality and
+ * plan_own_quality. */
+void surface_blend(const struct surface *surface, const struct surface_frame *frame, int faces,
+		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m);
 
 #endif
