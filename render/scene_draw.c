@@ -11,6 +11,7 @@ enum {
 	DEPTH_TRIANGLES_MOST = 60000, /* of a face's picture */
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
+	SEASON_US = 1000000,         /* a view for which it is known what there is no room for */
 	SHARE_PX_MOST = 320,         /* the picture from which image_share is counted */
 };
 
@@ -235,6 +236,17 @@ static bool view_changed(const struct scene *scene, const struct view *view)
 	       was->width_px != view->width_px || was->height_px != view->height_px;
 }
 
+/* Another view may have room for other tiles. */
+static void keep_season(struct scene *scene, bool moved, int64_t now_us)
+{
+	bool came_to_rest = scene->was_moving && !moved;
+	scene->was_moving = moved;
+	if (!came_to_rest && (!moved || now_us - scene->season_us < SEASON_US))
+		return;
+	tiles_begin_season(&scene->tiles);
+	scene->season_us = now_us;
+}
+
 static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 {
 	int64_t now_us = clock_now_us();
@@ -248,6 +260,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		return;
 	}
 	scene_take_census(scene, moved);
+	keep_season(scene, moved, now_us);
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, fminf(passed_ms, 100));
 	scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);

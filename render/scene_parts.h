@@ -85,6 +85,8 @@ struct scene {
 	uint32_t epoch;    /* of what planning looks at: tiles, pages */
 	bool cut_is_stale; /* geometry came or went */
 	int64_t census_us; /* when it was taken */
+	int64_t season_us; /* when the tiles' season began */
+	bool was_moving;
 	float census_eye_m[3];
 	float census_forward[3];
 	uint64_t census_cut;

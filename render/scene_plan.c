@@ -313,7 +313,8 @@ void scene_fade_blends(struct scene *scene, float passed_ms)
 		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 		struct piece_state *state = &patch->pieces[v->piece];
 		scene->fading |= fade_piece(scene, state, step);
-		touch_piece(scene, &patch->content.solid.pieces[v->piece], state);
+		if (!state->counted || state->seen_px > 0)
+			touch_piece(scene, &patch->content.solid.pieces[v->piece], state);
 	}
 	scene->fading |= tiles_tick(&scene->tiles);
 }

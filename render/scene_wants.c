@@ -120,7 +120,8 @@ static void add_level(const struct scene *scene, struct gains *gains, const stru
 						  .level = (uint8_t)level,
 						  .row = (uint8_t)y,
 						  .column = (uint8_t)x };
-			if (!tiles_has(&scene->tiles, name))
+			if (!tiles_has(&scene->tiles, name) &&
+			    !tiles_is_declined(&scene->tiles, name))
 				gain_add(gains, OBJECT_TILE, tile_name_pack(name), each);
 		}
 	}

@@ -41,9 +41,11 @@ int tiles_init(struct tiles *tiles, uint64_t budget_bytes)
 	tiles->slot_count = (uint32_t)(tiles->slots_across * tiles->slots_across);
 	tiles->slot_name = calloc(tiles->slot_count, sizeof(*tiles->slot_name));
 	tiles->slot_stamp = calloc(tiles->slot_count, sizeof(*tiles->slot_stamp));
+	tiles->slot_season = calloc(tiles->slot_count, sizeof(*tiles->slot_season));
 	tiles->faces = calloc(TILES_FACES_MOST, sizeof(*tiles->faces));
 	tiles->keys = calloc(TILES_FACES_MOST, sizeof(*tiles->keys));
-	bool ok = tiles->slot_name && tiles->slot_stamp && tiles->faces && tiles->keys;
+	bool ok = tiles->slot_name && tiles->slot_stamp && tiles->slot_season && tiles->faces &&
+		  tiles->keys;
 	int rc = ok ? make_textures(tiles) : -ENOMEM;
 	if (rc < 0)
 		tiles_finish(tiles);
@@ -58,10 +60,12 @@ void tiles_finish(struct tiles *tiles)
 		glDeleteTextures(1, &tiles->indirection);
 	free(tiles->slot_name);
 	free(tiles->slot_stamp);
+	free(tiles->slot_season);
 	free(tiles->faces);
 	free(tiles->keys);
 	map_finish(&tiles->slot_of);
 	map_finish(&tiles->face_of);
+	map_finish(&tiles->declined);
 	memset(tiles, 0, sizeof(*tiles));
 }
 
@@ -71,6 +75,7 @@ void tiles_clear(struct tiles *tiles)
 	memset(tiles->faces, 0, TILES_FACES_MOST * sizeof(*tiles->faces));
 	map_clear(&tiles->slot_of);
 	map_clear(&tiles->face_of);
+	map_clear(&tiles->declined);
 	tiles->key_count = 0;
 }
 
@@ -153,10 +158,31 @@ static void drop_face(struct tiles *tiles, struct tiles_face *face)
 	face->used = false;
 }
 
+/* Without memory it may be fetched once more: no harm. */
+static void decline(struct tiles *tiles, struct tile_name name)
+{
+	int rc = map_set(&tiles->declined, tile_name_pack(name), 1);
+	(void)rc;
+}
+
+void tiles_begin_season(struct tiles *tiles)
+{
+	tiles->season++;
+	if (tiles->declined.count > 0)
+		map_clear(&tiles->declined);
+}
+
+bool tiles_is_declined(const struct tiles *tiles, struct tile_name name)
+{
+	return map_get(&tiles->declined, tile_name_pack(name)) != MAP_NONE;
+}
+
 static void drop_tile(struct tiles *tiles, uint32_t slot)
 {
 	struct tile_name name = tile_name_unpack(tiles->slot_name[slot] - 1);
 	struct tiles_face *face = face_of(tiles, name.face);
+	if (tiles->slot_season[slot] == tiles->season)
+		decline(tiles, name);
 	map_remove(&tiles->slot_of, tiles->slot_name[slot] - 1);
 	tiles->slot_name[slot] = 0;
 	if (!face)
@@ -225,18 +251,22 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 	struct tiles_face *face = face_of(tiles, name.face);
 	if (!face)
 		face = take_face(tiles, name.face);
-	if (!face)
+	if (!face) {
+		decline(tiles, name);
 		return -ENOSPC;
+	}
 	face->tile_count++; /* holds the face while a slot is sought */
 	uint32_t slot = take_slot(tiles);
 	int rc = slot == MAP_NONE ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
 	if (rc < 0) {
 		if (--face->tile_count == 0)
 			drop_face(tiles, face);
+		decline(tiles, name);
 		return rc;
 	}
 	tiles->slot_name[slot] = tile_name_pack(name) + 1;
 	tiles->slot_stamp[slot] = tiles->stamp;
+	tiles->slot_season[slot] = tiles->season;
 	face->version = ++tiles->version;
 	int x = (int)slot % tiles->slots_across, y = (int)slot / tiles->slots_across;
 	glBindTexture(GL_TEXTURE_2D, tiles->atlas);

@@ -37,6 +37,9 @@ struct tiles {
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
 	struct tiles_face *faces;
+	uint32_t *slot_season; /* when it came */
+	uint32_t season;
+	struct map declined; /* tiles that came and went within a season */
 	struct map slot_of, face_of;
 	uint32_t stamp, version;
 	face_key *keys; /* of the faces in use, dense */
@@ -60,6 +63,10 @@ must_check int tiles_put(struct tiles *tiles, struct tile_name name, const uint8
 int tiles_face_slot(const struct tiles *tiles, face_key face);
 /* Finest level at a place of a face (-1..1), -1: none. */
 int tiles_level_at(const struct tiles *tiles, face_key face, float u, float v);
+/* More is in use than there is room for: a tile that came and had to go again within a season, or
+ * found no room, is not worth fetching until the next one. */
+void tiles_begin_season(struct tiles *tiles);
+bool tiles_is_declined(const struct tiles *tiles, struct tile_name name);
 /* Room for so many more tiles without taking one that is in use. */
 uint32_t tiles_room(const struct tiles *tiles);
 /* Advances fades and uploads what changed. Returns whether any fade runs. */
