@@ -280,7 +280,8 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 			*blend = (struct blend){ 0 };
 	}
 	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
-		if (is_blended(state, state->choice.entry[i].face))
+		face_key face = state->choice.entry[i].face;
+		if (is_blended(state, face) || tiles_face_slot(&scene->tiles, face) < 0)
 			continue;
 		take_up(state, &state->choice.entry[i]);
 		moving = true;
