@@ -42,7 +42,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/tools/*.c))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check unit unit-san check-style format bench clean
+.PHONY: all help deps demo test check qemu unit unit-san check-style format bench clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the three programs into build/
@@ -66,6 +66,9 @@ test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, f
 
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
+
+qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
+	@bash tests/qemu/kiosk.sh
 
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
