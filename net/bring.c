@@ -416,6 +416,7 @@ void bring_work(struct bring *bring)
 	if (bring->plan_due_ms <= clock_now_ms())
 		bring->plan_changed = true; /* a want's pause is over */
 	work_ranges(bring);
+	bring_ask_suspects(bring); /* last: planning, too, finds objects without a place */
 }
 
 /* When what is due may go out, the line considered: an answer wakes us anyhow. */

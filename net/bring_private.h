@@ -57,6 +57,7 @@ struct bring {
 	struct range_item *items; /* scratch of planning */
 	size_t item_capacity;
 	struct buffer scratch;   /* an object from the cache */
+	bool suspicious;         /* bring_suspect_locators, for bring_work to act on */
 	bool was_down;           /* all wants were told of being offline */
 	uint64_t bytes_per_s;    /* lately */
 	int64_t allowance_bytes; /* with a rate limit: what may be asked for; below 0: overdrawn */
@@ -78,8 +79,10 @@ void bring_failed(struct bring *bring, struct want *want, int rc);
 must_check int bring_locate(struct bring *bring, const struct want *want, struct range_item *out);
 void bring_work_releases(struct bring *bring);
 int64_t bring_releases_due_ms(const struct bring *bring);
-/* Objects were not where a locator said: get it anew (packs may have been packed anew). */
+/* Objects were not where a locator said: bring_ask_suspects gets it anew (packs may have been
+ * packed anew). Only notes it, as it is called while bytes arrive, where nothing may be asked. */
 void bring_suspect_locators(struct bring *bring);
+void bring_ask_suspects(struct bring *bring);
 void bring_forget_releases(struct bring *bring);
 
 /* -- bring_range.c */

@@ -199,6 +199,14 @@ int64_t bring_releases_due_ms(const struct bring *bring)
 
 void bring_suspect_locators(struct bring *bring)
 {
+	bring->suspicious = true;
+}
+
+void bring_ask_suspects(struct bring *bring)
+{
+	if (!bring->suspicious)
+		return;
+	bring->suspicious = false;
 	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
 		struct bring_release *release = bring->releases[i];
 

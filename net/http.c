@@ -22,6 +22,9 @@ enum {
 	CONNECT_MS = 8000,
 	STALL_S = 15,
 	STALL_BYTES_PER_S = 64,
+	PATIENCE_S = 60,
+	TRICKLE_BYTES_PER_S = 1024, /* of a whole request; less is no line but a trap */
+	TRICKLE_S_MOST = 900,
 	ERROR_BODY_BYTES_MOST = 64 * 1024, /* read to its end, so that the connection can stay */
 	CONNECTIONS_MOST = 8,              /* with HTTP/1.1; HTTP/2 needs one */
 	SOCKETS_MOST = 64,
@@ -34,7 +37,7 @@ struct http {
 	char url[URL_BYTES_MOST];
 	char folder[PATH_MAX]; /* as given, when local */
 	char *ca_file;
-	long stall_s;
+	long stall_s, patience_s;
 	bool is_local;
 	int sockets[SOCKETS_MOST]; /* open ones, for what they received */
 	size_t socket_count;
@@ -417,11 +420,23 @@ static void set_options(struct http_request *request)
 		curl_easy_setopt(easy, CURLOPT_CAINFO, http->ca_file);
 }
 
+/* A server that sends a little now and then never stalls, and would hold its place for hours. */
+static long time_limit_s(const struct http_request *request)
+{
+	const struct http_ask *ask = &request->ask;
+	uint64_t for_bytes_s = (ask->size ? ask->size : ask->ceiling) / TRICKLE_BYTES_PER_S;
+
+	if (for_bytes_s > TRICKLE_S_MOST)
+		for_bytes_s = TRICKLE_S_MOST;
+	return request->http->patience_s + (long)for_bytes_s;
+}
+
 static void set_ask(struct http_request *request)
 {
 	const struct http_ask *ask = &request->ask;
 	char text[URL_BYTES_MOST + 256];
 
+	curl_easy_setopt(request->easy, CURLOPT_TIMEOUT, time_limit_s(request));
 	snprintf(text, sizeof(text), "%s/%s", request->http->url, ask->path);
 	curl_easy_setopt(request->easy, CURLOPT_URL, text);
 	if (ask->size > 0) {
@@ -553,6 +568,7 @@ int http_create(struct http **out, const struct http_options *options)
 		return -ENOMEM;
 	http->epoll_fd = http->timer_fd = -1;
 	http->stall_s = options->stall_s ? (long)options->stall_s : STALL_S;
+	http->patience_s = options->patience_s ? (long)options->patience_s : PATIENCE_S;
 	rc = take_url(http, options->url);
 	if (rc == 0 && options->ca_file) {
 		http->ca_file = strdup(options->ca_file);

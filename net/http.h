@@ -13,6 +13,9 @@ struct http_options {
 	const char *url;     /* copied; https://..., http://..., file://... or a folder's path */
 	const char *ca_file; /* copied; NULL: the system's */
 	uint32_t stall_s;    /* a request that brings nothing for so long has failed; 0: 15 */
+	/* Before a request that trickles has failed: so long, and a second for each KiB it may
+	 * bring, a quarter of an hour beside at most. 0: 60. */
+	uint32_t patience_s;
 };
 
 struct http_result {

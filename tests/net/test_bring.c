@@ -317,17 +317,36 @@ static void asks_again_for_damaged_bytes_then_tells(void **state)
 	end(asked(0), 0);
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1; /* repaired */
 	server.now_ms += 200000;
-	for (int i = 0; i < 3; i++) { /* the locator perhaps first */
+	bring_work(stage->bring);
+	CHECK(server.count == 5 && asked(1)->ask.size == OBJECT_BYTES); /* and the locator */
+	give(asked(1), answer_to(stage, asked(1)));
+	end(asked(1), 0);
+	give(asked(0), buffer_bytes(&stage->locator));
+	end(asked(0), 0);
+	CHECK(stage->objects == 2 && bring_wanted(stage->bring) == 0);
+}
+
+static void asks_for_the_locator_after_damage_but_not_amid_it(void **state)
+{
+	struct stage *stage = *state;
+	size_t before;
+
+	begin(stage);
+	server.now_ms += 100000; /* the locator is old enough to be suspected */
+	want(stage, 3, 1000);
+	stage->pack[3 * OBJECT_BYTES + 77] ^= 1;
+	for (int i = 0; i < 2; i++) {
 		bring_work(stage->bring);
-		if (!asked(0)->open)
-			continue;
-		if (asked(0)->ask.size)
-			give(asked(0), answer_to(stage, asked(0)));
-		else
-			give(asked(0), buffer_bytes(&stage->locator));
+		before = server.count;
+		give(asked(0), answer_to(stage, asked(0)));
+		CHECK(server.count == before);
 		end(asked(0), 0);
 	}
-	CHECK(stage->objects == 2 && bring_wanted(stage->bring) == 0);
+	CHECK(stage->missing == 1 && stage->reason == MISSING_DAMAGED);
+	bring_work(stage->bring);
+	CHECK(server.count == before + 1 && strncmp(asked(0)->path, "locator/", 8) == 0);
+	bring_work(stage->bring);
+	CHECK(server.count == before + 1); /* once */
 }
 
 static void asks_again_for_the_rest_of_a_pack_cut_short(void **state)
@@ -434,6 +453,7 @@ static void follows_objects_into_other_packs(void **state)
 	want(stage, 3, 1000);
 	bring_work(stage->bring);
 	end(asked(0), -ENOENT); /* the old pack is gone */
+	bring_work(stage->bring);
 	CHECK(strncmp(asked(0)->path, "locator/", 8) == 0);
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
@@ -500,6 +520,7 @@ int main(void)
 		STAGED(cancels_what_nobody_wants_any_more),
 		STAGED(keeps_what_was_dropped_while_it_came),
 		STAGED(asks_again_for_damaged_bytes_then_tells),
+		STAGED(asks_for_the_locator_after_damage_but_not_amid_it),
 		STAGED(asks_again_for_the_rest_of_a_pack_cut_short),
 		STAGED(waits_while_the_server_is_away),
 		STAGED(tells_what_the_release_does_not_have),

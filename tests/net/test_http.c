@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -19,39 +20,44 @@ static const char letters[] = "abcdefghijklmnopqrstuvwxyz";
 /* What the server sends for a path, byte for byte; then it closes. */
 static const struct script {
 	const char *path, *answer;
-	bool stalls; /* then nothing more comes, until the client gives up */
+	enum {
+		ENDS,
+		STALLS,   /* nothing more comes, until the client gives up */
+		TRICKLES, /* a byte now and then, for 25 s */
+	} then;
 } scripts[] = {
 	{ "/whole",
 	  "HTTP/1.1 200 OK\r\nETag:  \"v1\" \r\nContent-Length: 26\r\n\r\n"
 	  "abcdefghijklmnopqrstuvwxyz",
-	  0 },
+	  ENDS },
 	{ "/range",
 	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
 	  "Content-Length: 5\r\n\r\ndefgh",
-	  0 },
+	  ENDS },
 	{ "/other-range",
 	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 4-8/26\r\n"
 	  "Content-Length: 5\r\n\r\nefghi",
-	  0 },
-	{ "/no-range", "HTTP/1.1 206 Partial\r\nContent-Length: 5\r\n\r\ndefgh", false },
+	  ENDS },
+	{ "/no-range", "HTTP/1.1 206 Partial\r\nContent-Length: 5\r\n\r\ndefgh", ENDS },
 	{ "/too-much",
 	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
 	  "Content-Length: 9\r\n\r\ndefghijkl",
-	  0 },
+	  ENDS },
 	{ "/cut",
 	  "HTTP/1.1 206 Partial\r\nContent-Range: bytes 3-7/26\r\n"
 	  "Content-Length: 5\r\n\r\nde",
-	  0 },
-	{ "/not-modified", "HTTP/1.1 304 Not Modified\r\nETag: \"v1\"\r\n\r\n", false },
-	{ "/absent", "HTTP/1.1 404 Not Found\r\nContent-Length: 7\r\n\r\nabsent!", false },
-	{ "/ill", "HTTP/1.1 503 Ill\r\nContent-Length: 4\r\n\r\nill!", false },
-	{ "/round", "HTTP/1.1 302 Found\r\nLocation: /round\r\nContent-Length: 0\r\n\r\n", false },
+	  ENDS },
+	{ "/not-modified", "HTTP/1.1 304 Not Modified\r\nETag: \"v1\"\r\n\r\n", ENDS },
+	{ "/absent", "HTTP/1.1 404 Not Found\r\nContent-Length: 7\r\n\r\nabsent!", ENDS },
+	{ "/ill", "HTTP/1.1 503 Ill\r\nContent-Length: 4\r\n\r\nill!", ENDS },
+	{ "/round", "HTTP/1.1 302 Found\r\nLocation: /round\r\nContent-Length: 0\r\n\r\n", ENDS },
 	{ "/to-a-file",
 	  "HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\n"
 	  "Content-Length: 0\r\n\r\n",
-	  0 },
-	{ "/rubbish", "I am no web server\r\n\r\n", false },
-	{ "/stall", "HTTP/1.1 200 OK\r\nContent-Length: 26\r\n\r\nabc", true },
+	  ENDS },
+	{ "/rubbish", "I am no web server\r\n\r\n", ENDS },
+	{ "/stall", "HTTP/1.1 200 OK\r\nContent-Length: 26\r\n\r\nabc", STALLS },
+	{ "/trickle", "HTTP/1.1 200 OK\r\nContent-Length: 9999\r\n\r\nabc", TRICKLES },
 };
 
 static struct {
@@ -73,6 +79,14 @@ static const struct script *script_for(const char *request)
 	return NULL;
 }
 
+static void trickle(int fd)
+{
+	const struct timespec pause = { .tv_nsec = 500000000 };
+
+	for (int i = 0; i < 50 && send(fd, "x", 1, MSG_NOSIGNAL) == 1; i++)
+		nanosleep(&pause, NULL);
+}
+
 static void serve_one(int fd)
 {
 	const struct script *script;
@@ -85,9 +99,12 @@ static void serve_one(int fd)
 		server.request[used] = '\0';
 	} while (got > 0 && !strstr(server.request, "\r\n\r\n"));
 	script = script_for(server.request);
-	if (script && write(fd, script->answer, strlen(script->answer)) > 0 && script->stalls)
+	if (script && write(fd, script->answer, strlen(script->answer)) > 0 &&
+	    script->then == STALLS)
 		while (read(fd, server.request, 1) > 0)
 			;
+	if (script && script->then == TRICKLES)
+		trickle(fd);
 	close(fd);
 }
 
@@ -153,10 +170,9 @@ static void on_done(void *data, const struct http_result *result)
 	snprintf(outcome->etag, sizeof(outcome->etag), "%s", result->etag);
 }
 
-static struct outcome fetch_from(const char *url, const char *path, uint64_t first, uint64_t size,
-				 const char *etag)
+static struct outcome fetch_with(const struct http_options *options, const char *path,
+				 uint64_t first, uint64_t size, const char *etag)
 {
-	struct http_options options = { .url = url, .stall_s = 1 };
 	struct outcome outcome = { .rc = 1 };
 	struct http_ask ask = { .path = path,
 				.first = first,
@@ -170,7 +186,7 @@ static struct outcome fetch_from(const char *url, const char *path, uint64_t fir
 	struct http_request *request;
 	struct http *http;
 
-	CHECK(http_create(&http, &options) == 0);
+	CHECK(http_create(&http, options) == 0);
 	CHECK(http_ask(http, &ask, &request) == 0);
 	while (!outcome.ended && clock_now_ms() < until_ms) {
 		struct pollfd ready = { .fd = http_fd(http), .events = POLLIN };
@@ -182,6 +198,14 @@ static struct outcome fetch_from(const char *url, const char *path, uint64_t fir
 	outcome.received_bytes = http_received_bytes(http);
 	http_destroy(http);
 	return outcome;
+}
+
+static struct outcome fetch_from(const char *url, const char *path, uint64_t first, uint64_t size,
+				 const char *etag)
+{
+	const struct http_options options = { .url = url, .stall_s = 1 };
+
+	return fetch_with(&options, path, first, size, etag);
 }
 
 static struct outcome fetch(const char *path, uint64_t first, uint64_t size)
@@ -277,6 +301,20 @@ static void knows_a_bad_answer_from_no_answer(void **state)
 	}
 }
 
+static void gives_up_on_a_server_that_trickles(void **state)
+{
+	char url[64];
+	const struct http_options options = { .url = url, .stall_s = 15, .patience_s = 1 };
+	const int64_t began_ms = clock_now_ms();
+	struct outcome outcome;
+
+	(void)state;
+	snprintf(url, sizeof(url), "http://127.0.0.1:%d", server.port);
+	outcome = fetch_with(&options, "trickle", 0, 0, NULL);
+	CHECK(outcome.rc == -EHOSTUNREACH && outcome.size >= 3);
+	CHECK(clock_now_ms() - began_ms < 10000); /* long before it would count as stalled */
+}
+
 static void asks_conditionally(void **state)
 {
 	struct outcome outcome;
@@ -335,6 +373,7 @@ int main(void)
 		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),
 		cmocka_unit_test(refuses_a_file_past_the_ceiling),
 		cmocka_unit_test(knows_a_bad_answer_from_no_answer),
+		cmocka_unit_test(gives_up_on_a_server_that_trickles),
 		cmocka_unit_test(asks_conditionally),
 		cmocka_unit_test(reads_a_folder_like_a_server),
 		cmocka_unit_test(knows_which_urls_it_can_serve),
