@@ -136,6 +136,18 @@ static void let_oldest_picture_go(struct story *story)
 		picture_finish(&oldest->decoded);
 }
 
+static void decode_picture(struct story_picture *own, const char *name, struct bytes object)
+{
+	const int rc = picture_decode_for_page(&own->decoded, object);
+
+	own->broken = rc < 0;
+	if (rc == -EFBIG)
+		log_error("app", "content bug: picture %s is larger than %d px a side", name,
+			  PICTURE_PAGE_SIDE_MOST_PX);
+	else if (rc < 0)
+		log_error("app", "content bug: picture %s cannot be shown", name);
+}
+
 static bool give_picture(struct story *story, struct hash hash, struct bytes object)
 {
 	bool ours = false;
@@ -150,9 +162,8 @@ static bool give_picture(struct story *story, struct hash hash, struct bytes obj
 			continue;
 		ours = true;
 		own->wanted = false;
-		own->broken = !own->decoded.rgba && picture_decode(&own->decoded, object) < 0;
-		if (own->broken)
-			log_error("app", "content bug: picture %s cannot be shown", picture->name);
+		if (!own->decoded.rgba)
+			decode_picture(own, picture->name, object);
 		let_oldest_picture_go(story);
 		overlay_picture_arrived(story->overlay, picture->name);
 	}

@@ -10,11 +10,11 @@
 #include <png.h>
 
 /* Room for width x height pixels. */
-static int allocate(struct picture *out, uint32_t width, uint32_t height)
+static int allocate(struct picture *out, uint32_t width, uint32_t height, uint32_t side_most_px)
 {
 	if (width == 0 || height == 0)
 		return -EBADMSG;
-	if (width > PICTURE_SIDE_MOST_PX || height > PICTURE_SIDE_MOST_PX ||
+	if (width > side_most_px || height > side_most_px ||
 	    (uint64_t)width * height > PICTURE_PIXELS_MOST)
 		return -EFBIG;
 	out->rgba = malloc((size_t)width * height * 4);
@@ -35,7 +35,7 @@ void picture_finish(struct picture *picture)
 
 /* ---- PNG, by libpng's simplified interface, which holds its own error handling */
 
-static int decode_png(struct picture *out, struct bytes file)
+static int decode_png(struct picture *out, struct bytes file, uint32_t side_most_px)
 {
 	png_image image = { .version = PNG_IMAGE_VERSION };
 	int rc;
@@ -43,7 +43,7 @@ static int decode_png(struct picture *out, struct bytes file)
 	if (!png_image_begin_read_from_memory(&image, file.data, file.size))
 		return -EBADMSG;
 	image.format = PNG_FORMAT_RGBA;
-	rc = allocate(out, image.width, image.height);
+	rc = allocate(out, image.width, image.height, side_most_px);
 	if (rc == 0 && !png_image_finish_read(&image, NULL, out->rgba, 0, NULL))
 		rc = -EBADMSG;
 	png_image_free(&image);
@@ -122,7 +122,7 @@ static void read_rgba_rows(struct jpeg_decompress_struct *codec, struct picture 
 	}
 }
 
-static int decode_jpeg(struct picture *out, struct bytes file)
+static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_most_px)
 {
 	struct jpeg_decompress_struct codec;
 	struct jpeg_failure failure;
@@ -138,7 +138,7 @@ static int decode_jpeg(struct picture *out, struct bytes file)
 	jpeg_read_header(&codec, TRUE);
 	codec.out_color_space = JCS_EXT_RGBA;
 	/* Before libjpeg allocates: a progressive file's coefficients need twice that. */
-	rc = allocate(out, codec.image_width, codec.image_height);
+	rc = allocate(out, codec.image_width, codec.image_height, side_most_px);
 	if (rc == 0) {
 		failure.progress.progress_monitor = jpeg_count_scans;
 		codec.progress = &failure.progress;
@@ -189,17 +189,27 @@ int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int q
 	return out->error;
 }
 
-int picture_decode(struct picture *out, struct bytes file)
+static int decode(struct picture *out, struct bytes file, uint32_t side_most_px)
 {
 	static const uint8_t png_start[] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' };
 	int rc = -EBADMSG;
 
 	*out = (struct picture){ 0 };
 	if (file.size >= sizeof(png_start) && memcmp(file.data, png_start, sizeof(png_start)) == 0)
-		rc = decode_png(out, file);
+		rc = decode_png(out, file, side_most_px);
 	else if (file.size >= 2 && file.data[0] == 0xff && file.data[1] == 0xd8)
-		rc = decode_jpeg(out, file);
+		rc = decode_jpeg(out, file, side_most_px);
 	if (rc < 0)
 		picture_finish(out);
 	return rc;
+}
+
+int picture_decode(struct picture *out, struct bytes file)
+{
+	return decode(out, file, PICTURE_SIDE_MOST_PX);
+}
+
+int picture_decode_for_page(struct picture *out, struct bytes file)
+{
+	return decode(out, file, PICTURE_PAGE_SIDE_MOST_PX);
 }

@@ -5,7 +5,12 @@
 
 #include "base/bytes.h"
 
-enum { PICTURE_SIDE_MOST_PX = 16384, PICTURE_PIXELS_MOST = 1 << 28 };
+enum {
+	PICTURE_SIDE_MOST_PX = 16384,
+	PICTURE_PIXELS_MOST = 1 << 28,
+	/* Of pages and cards: a terminal decodes these between two frames. */
+	PICTURE_PAGE_SIDE_MOST_PX = 4096,
+};
 
 /* sRGB with straight alpha, 4 bytes a pixel, row 0 on top, rows side by side. */
 struct picture {
@@ -16,6 +21,9 @@ struct picture {
 /* Told apart by their first bytes. -EBADMSG: damaged, truncated, or neither; -EFBIG: past the
  * limits above; -ENOMEM. *out is zeroed on failure. */
 must_check int picture_decode(struct picture *out, struct bytes file);
+/* The same for a picture of a page: -EFBIG past PICTURE_PAGE_SIDE_MOST_PX, before any pixel is
+ * decoded or room for it allocated. */
+must_check int picture_decode_for_page(struct picture *out, struct bytes file);
 must_check int picture_encode_png(struct buffer *out, const struct picture *picture);
 /* quality 1..100; alpha is dropped. */
 must_check int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality);

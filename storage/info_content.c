@@ -104,7 +104,12 @@ static void measure_picture(struct content *content, struct content_picture *pic
 	} else if (rc < 0) {
 		content_complain(content, true, picture->name, 0, "cannot be read: %s",
 				 strerror(-rc));
-	} else if (picture_decode(&decoded, buffer_bytes(&bytes)) < 0) {
+	} else if ((rc = picture_decode_for_page(&decoded, buffer_bytes(&bytes))) == -EFBIG) {
+		content_complain(content, true, picture->name, 0,
+				 "picture is larger than %d pixels a side, which terminals do not "
+				 "show: save it smaller",
+				 PICTURE_PAGE_SIDE_MOST_PX);
+	} else if (rc < 0) {
 		content_complain(content, true, picture->name, 0,
 				 "is no whole JPEG or PNG picture: save it anew as one");
 	} else {

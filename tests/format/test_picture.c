@@ -95,6 +95,12 @@ static void refuses_a_huge_jpeg_before_room_is_made_for_it(void **state)
 	frame[6] = frame[8] = 0xdc;
 	CHECK(picture_decode(&back, buffer_bytes(&file)) == -EFBIG);
 	CHECK(back.rgba == NULL);
+	frame[5] = 0x10; /* 4097 rows: a texture may, a page's picture may not */
+	frame[6] = 0x01;
+	frame[7] = 0;
+	frame[8] = 16;
+	CHECK(picture_decode_for_page(&back, buffer_bytes(&file)) == -EFBIG);
+	CHECK(picture_decode(&back, buffer_bytes(&file)) == -EBADMSG); /* it has not as many */
 	picture_finish(&picture);
 	buffer_finish(&file);
 }

@@ -341,6 +341,20 @@ static void wants_the_page_in_the_first_language(void **state)
 	CHECK(!was_told(&complaints, "pages/gate.km.html", 0, "")); /* that one only a warning */
 }
 
+static void refuses_a_picture_too_large_for_a_terminal(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+
+	(void)state;
+	write_picture("pictures/b.png", PICTURE_PAGE_SIDE_MOST_PX, 1, 200);
+	CHECK(build(&built, &complaints) == 0);
+	info_built_finish(&built);
+	write_picture("pictures/b.png", 1, PICTURE_PAGE_SIDE_MOST_PX + 1, 200);
+	CHECK(build(&built, &complaints) == -EINVAL);
+	CHECK(was_told(&complaints, "pictures/b.png", 0, "4096 pixels a side"));
+}
+
 static void refuses_a_damaged_picture(void **state)
 {
 	struct complaints complaints;
@@ -451,6 +465,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_part, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_page, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(wants_the_page_in_the_first_language, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(refuses_a_picture_too_large_for_a_terminal, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(refuses_a_damaged_picture, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(keeps_foreign_keys, set_up, tear_down),
