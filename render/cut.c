@@ -119,21 +119,6 @@ float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[
 	return group->error_m * focal_px / distance;
 }
 
-bool cut_patch_faces(const struct hierarchy_patch *patch, const float eye_m[3])
-{
-	if (patch->cone_cos <= 0)
-		return true;
-	/* Back-facing for certain where the eye lies within the anti-cone, grown by the sphere. */
-	float to[3];
-	vec_sub(to, patch->centre_m, eye_m);
-	float distance = vec_length(to);
-	if (distance <= patch->radius_m)
-		return true;
-	float along = vec_dot(to, patch->cone_axis);
-	float sine = sqrtf(1 - fminf(1, patch->cone_cos * patch->cone_cos));
-	return along < sine * distance + patch->radius_m;
-}
-
 /* From where, with what, the cut is grown. */
 struct growth {
 	const struct view *view; /* NULL: all around */

@@ -49,11 +49,9 @@ void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,
 void cut_update_around(struct cut *cut, const float eye_m[3], float focal_px, const uint8_t *loaded,
 		       const struct cut_options *options);
 
-/* Whether a patch can show a front side to the eye. */
-bool cut_patch_faces(const struct hierarchy_patch *patch, const float eye_m[3]);
 /* Error on the screen while the group is not refined, pixels; INFINITY inside its sphere. */
 float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[3], float focal_px);
-/* Groups whose patches this one replaces; *count of them. Borrowed until the next call. */
+/* Whether a group replaces a patch of another, and so needs it refined first. */
 bool cut_depends(const struct cut *cut, uint32_t group, uint32_t on_group);
 
 #endif

@@ -212,7 +212,7 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		return rc;
 	}
 	scene->hierarchy_hash = hash;
-	scene->has_hierarchy = scene->cut_is_stale = true;
+	scene->has_hierarchy = true;
 	return 0;
 }
 

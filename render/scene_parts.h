@@ -83,14 +83,12 @@ struct scene {
 	struct visible_piece *visible; /* owned */
 	uint32_t visible_count, visible_capacity;
 	uint32_t epoch;    /* of what planning looks at: tiles, pages */
-	bool cut_is_stale; /* geometry came or went */
 	int64_t census_us; /* when it was taken */
 	int64_t season_us; /* when the tiles' season began */
 	bool was_moving;
 	float census_eye_m[3];
 	float census_forward[3];
 	uint64_t census_cut;
-	bool census_is_stale;
 	bool plans_are_stale; /* some piece in sight waits to be planned */
 	bool fading, depth_is_stale, uploads_wait;
 	uint64_t cut_signature;

@@ -24,7 +24,6 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 	object->state = OBJECT_WANTED; /* again, should it be dropped */
 	if (rc == 0 && object->kind == OBJECT_GROUP) {
 		rc = geometry_put(&scene->geometry, (uint32_t)object->id, answer);
-		scene->cut_is_stale = true;
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;
@@ -64,7 +63,6 @@ void scene_update_cut(struct scene *scene)
 	if (geometry->loaded_count != loaded)
 		cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->loaded_count;
-	scene->cut_is_stale = false;
 }
 
 float scene_patch_error_m(const struct scene *scene, uint32_t patch)

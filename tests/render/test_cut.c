@@ -149,20 +149,6 @@ static void every_cut_is_valid_from_everywhere(void **state)
 	}
 }
 
-static void a_back_side_is_told_by_its_cone(void **state)
-{
-	(void)state;
-	struct hierarchy_patch patch = { .radius_m = 1,
-					 .cone_axis = { 0, 1, 0 },
-					 .cone_cos = 0.9f };
-	const float before[3] = { 0, 50, 0 }, behind[3] = { 0, -50, 0 }, near[3] = { 0, -0.5f, 0 };
-	CHECK(cut_patch_faces(&patch, before));
-	CHECK(!cut_patch_faces(&patch, behind));
-	CHECK(cut_patch_faces(&patch, near));
-	patch.cone_cos = -1;
-	CHECK(cut_patch_faces(&patch, behind));
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -172,7 +158,6 @@ int main(void)
 		cmocka_unit_test(stays_within_the_triangles),
 		cmocka_unit_test(wants_only_what_is_in_sight),
 		cmocka_unit_test(every_cut_is_valid_from_everywhere),
-		cmocka_unit_test(a_back_side_is_told_by_its_cone),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
 }
