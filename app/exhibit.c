@@ -24,8 +24,8 @@ static float free_ahead(void *data, const float from_m[3], const float direction
 	return scene_clearance(kiosk->shown.scene, from_m, direction, most_m);
 }
 
-int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
-		 uint32_t root_bytes)
+static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+			uint32_t root_bytes)
 {
 	const struct profile *profile = &kiosk->profile;
 	const struct scene_options scene = {
@@ -131,7 +131,7 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 		net_client_add_release(kiosk->net, root, root_bytes);
 	else
 		use_release(kiosk, root, root_bytes);
-	rc = exhibit_open(kiosk, exhibit, root, root_bytes);
+	rc = open_exhibit(kiosk, exhibit, root, root_bytes);
 	if (rc < 0)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
 	kiosk->coming_since_ms = clock_now_ms();

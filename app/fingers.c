@@ -78,7 +78,7 @@ static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 	navigator_fly(&kiosk->navigator, eye, target, FLIGHT_MS);
 }
 
-void fingers_go_home(struct kiosk *kiosk)
+static void go_home(struct kiosk *kiosk)
 {
 	const struct navigator_options *o = &kiosk->navigator.options;
 
@@ -144,7 +144,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_HOME:
 		overlay_close_page(overlay);
 		show_card(kiosk, -1);
-		fingers_go_home(kiosk);
+		go_home(kiosk);
 		break;
 	case OVERLAY_HELP:
 		overlay_show_help(overlay, !overlay_help(overlay));

@@ -85,8 +85,6 @@ int kiosk_width_px(const struct kiosk *kiosk);
 int kiosk_height_px(const struct kiosk *kiosk);
 
 /* exhibit.c: what is shown, and what comes next. */
-must_check int exhibit_open(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
-			    uint32_t root_bytes);
 void exhibit_close(struct exhibit *exhibit);
 /* An object came. */
 void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
@@ -113,6 +111,5 @@ void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
 void fingers_init(struct kiosk *kiosk);
 void fingers_on_touch(void *data, const struct touch_event *event);
 void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps);
-void fingers_go_home(struct kiosk *kiosk);
 
 #endif

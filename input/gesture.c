@@ -254,16 +254,3 @@ void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_even
 		break;
 	}
 }
-
-void gesture_reset(struct gesture_recogniser *recogniser)
-{
-	bool running = recogniser->state != GESTURE_IDLE && recogniser->state != GESTURE_SPENT;
-	struct gesture_options options = recogniser->options;
-	float x_px = recogniser->fingers[recogniser->first].x_px;
-	float y_px = recogniser->fingers[recogniser->first].y_px;
-	int64_t time_us = recogniser->last.time_us;
-
-	gesture_init(recogniser, &options);
-	if (running)
-		emit_at(recogniser, GESTURE_CANCEL, x_px, y_px, time_us);
-}

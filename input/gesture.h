@@ -79,8 +79,5 @@ struct gesture_recogniser {
 
 void gesture_init(struct gesture_recogniser *recogniser, const struct gesture_options *options);
 void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_event *event);
-/* Forgets every finger: the panel or the page under them changed. Ends what runs by
- * GESTURE_CANCEL. */
-void gesture_reset(struct gesture_recogniser *recogniser);
 
 #endif

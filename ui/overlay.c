@@ -84,7 +84,6 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	overlay->width_px = options->width_px;
 	overlay->height_px = options->height_px;
 	overlay->pictures = (struct picture_source){ options->picture, options->data };
-	overlay->callouts_on = true;
 	overlay->help.on = true;
 	overlay->card_part = overlay->page_part = -1;
 	for (uint32_t i = 0; i < LABELS; i++)
@@ -211,12 +210,6 @@ void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *ancho
 		overlay->anchors[i].y_px = anchors[i].y_px;
 		overlay->anchors[i].visible = anchors[i].visible;
 	}
-	overlay->callouts_dirty = true;
-}
-
-void overlay_show_callouts(struct overlay *overlay, bool on)
-{
-	overlay->callouts_on = on;
 	overlay->callouts_dirty = true;
 }
 

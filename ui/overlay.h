@@ -67,8 +67,6 @@ struct overlay_anchor {
 	bool visible;
 };
 void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count);
-/* Callouts fade out (during an idle show, say) and in. They are on at first. */
-void overlay_show_callouts(struct overlay *overlay, bool on);
 
 /* The card of a part; -1 closes it. */
 void overlay_show_card(struct overlay *overlay, int part);

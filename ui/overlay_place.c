@@ -207,10 +207,7 @@ void overlay_lay_out_callouts(struct overlay *overlay)
 		overlay->anchors[i].label_px =
 			label_px < area.column_px ? label_px : area.column_px;
 	}
-	if (overlay->callouts_on)
-		callouts_layout(&overlay->callouts, &area, overlay->anchors, overlay->part_count);
-	else
-		overlay->callouts.count = 0;
+	callouts_layout(&overlay->callouts, &area, overlay->anchors, overlay->part_count);
 	for (uint32_t i = 0; i < LABELS; i++)
 		overlay->labels[i].fade.on = false;
 	for (uint32_t i = 0; i < overlay->callouts.count; i++)

@@ -66,7 +66,7 @@ struct overlay {
 	struct part *parts;
 	uint32_t part_count;
 	struct callout_anchor *anchors; /* as many as parts */
-	bool callouts_on, callouts_dirty;
+	bool callouts_dirty;
 	int column_px; /* of the widest label */
 	struct callouts callouts;
 	struct label labels[LABELS];
