@@ -255,8 +255,10 @@ bool story_give(struct story *story, struct hash hash, struct bytes object)
 		buffer_put(&story->page_bytes, object.data, object.size);
 		if (story->page_bytes.error ||
 		    page_decode(&story->page, buffer_bytes(&story->page_bytes)) < 0 ||
-		    story->page.kind != PAGE_INFO || story->page.child_count == 0)
+		    story->page.kind != PAGE_INFO || story->page.child_count == 0) {
 			log_error("app", "content bug: the release's info page is damaged");
+			page_finish(&story->page); /* one of another kind names nothing of ours */
+		}
 		return true;
 	}
 	if (!story->database_here && story->page.child_count > 0 &&
