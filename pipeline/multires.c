@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/progress.h"
 #include "format/patch.h"
 #include "pipeline/graph.h"
 #include "pipeline/multires_parts.h"
@@ -36,6 +37,7 @@ struct builder {
 	struct live_patches level;
 	struct group_job *jobs; /* of the level */
 	uint32_t job_count;
+	struct progress *progress; /* in triangles, those of every level */
 	/* What was made so far, in order. */
 	struct hierarchy made;
 	uint32_t group_room, patch_room;
@@ -328,8 +330,15 @@ static int keep_job(struct builder *builder, struct group_job *job)
 static int run_job(void *user, uint32_t piece, uint32_t worker)
 {
 	struct builder *builder = user;
+	struct group_job *job = &builder->jobs[piece];
+	uint64_t triangles = 0;
+	int rc;
 
-	return group_job_run(&builder->site, &builder->jobs[piece], worker);
+	for (uint32_t p = 0; p < job->patch_count; p++) /* the job uses its patches up */
+		triangles += job->patches[p].triangle_count;
+	rc = group_job_run(&builder->site, job, worker);
+	progress_add(builder->progress, triangles);
+	return rc;
 }
 
 /* Runs the level's jobs; next gets the coarser patches in the order of the jobs. */
@@ -647,6 +656,7 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 		.stats = stats,
 		.sink = sink,
 	};
+	const uint64_t finest_triangles = mesh->triangle_count;
 	int rc;
 
 	*out = (struct hierarchy){ 0 };
@@ -655,6 +665,8 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 	rc = site_init(&builder);
 	if (rc == 0)
 		rc = partition_scan(&builder);
+	/* Each level has half the triangles of the one below: twice the finest, all together. */
+	builder.progress = progress_start("simplifying", "triangles", 2 * finest_triangles);
 	if (rc == 0)
 		rc = options->kind == MULTIRES_TREE ? build_tree(&builder) : build_groups(&builder);
 	if (rc == 0)
@@ -663,6 +675,7 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 		rc = hierarchy_check(out) < 0 ? -EPROTO : 0;
 	if (rc < 0)
 		hierarchy_finish(out);
+	progress_end(builder.progress);
 	builder_finish(&builder);
 	return rc;
 }
