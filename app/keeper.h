@@ -23,6 +23,7 @@ void keeper_destroy(struct keeper *keeper);
 must_check int keeper_activate(struct keeper *keeper, const struct state_release *release);
 /* Failures are logged: the trust root in use stays in use without a disk, too. */
 must_check int keeper_set_trust(struct keeper *keeper, struct bytes file);
+/* Wall clock; never lowers it, and does not wait for the disk. */
 void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s);
 
 /* Readable when keeper_take has something. */

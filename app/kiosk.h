@@ -74,6 +74,7 @@ struct kiosk {
 
 /* kiosk.c: start, run, stop (the reverse; any part may be missing). */
 must_check int kiosk_start(struct kiosk *kiosk);
+/* Until quit is set; negative errno (logged) where going on makes no sense. */
 must_check int kiosk_run(struct kiosk *kiosk);
 void kiosk_stop(struct kiosk *kiosk);
 /* Has the loop wait for this descriptor too, until it is closed; -1: nothing. */

@@ -33,6 +33,7 @@ struct navigator {
 	float from_eye_m[3], to_eye_m[3], from_yaw, to_yaw, from_pitch, to_pitch;
 };
 
+/* The eye stands at the options' home. */
 void navigator_init(struct navigator *nav, const struct navigator_options *options);
 
 /* A finger came down on this surface point. Stops flings and flights. */
@@ -47,6 +48,7 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
 /* Smoothly to a pose; a touch stops it. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
+/* At once to a pose; ends flings and flights. */
 void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3]);
 
 /* Lets time pass. true while the eye moves by itself. */

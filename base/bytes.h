@@ -25,12 +25,15 @@ struct buffer {
 	int error;      /* 0, or -ENOMEM, or -EFBIG, sticky */
 };
 
+/* Empty; allocates when first written to. */
 void buffer_init(struct buffer *buffer, size_t ceiling_bytes);
 void buffer_finish(struct buffer *buffer); /* NULL and zeroed are fine */
 void buffer_clear(struct buffer *buffer);  /* keeps the memory, forgets the error */
 
 /* Room for size more bytes, counted as written, contents undefined. NULL on failure. */
 uint8_t *buffer_extend(struct buffer *buffer, size_t size);
+/* Appends a copy, numbers little endian. Failures are kept in error, to be asked for once at the
+ * end; nothing is written after one. */
 void buffer_put(struct buffer *buffer, const void *data, size_t size);
 void buffer_put_u8(struct buffer *buffer, uint8_t value);
 void buffer_put_u16(struct buffer *buffer, uint16_t value);
@@ -50,6 +53,8 @@ struct reader {
 	bool failed; /* read past the end; every later read gives zero */
 };
 
+/* Reads from borrowed bytes, numbers little endian. What lies past the end reads as zero and sets
+ * failed, to be asked for once at the end. */
 void reader_init(struct reader *reader, struct bytes bytes);
 size_t reader_left(const struct reader *reader);
 uint8_t reader_u8(struct reader *reader);

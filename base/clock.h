@@ -7,6 +7,7 @@
 
 /* Monotonic; the zero is arbitrary. */
 int64_t clock_now_ms(void);
+/* The same clock, microseconds. */
 int64_t clock_now_us(void);
 
 /* CPU time of the calling thread. */

@@ -28,9 +28,11 @@ must_check int ini_read(const char *path, const struct ini_key *keys, size_t key
 
 /* ---- values, for set functions; false leaves *out as it was */
 
+/* One finite number in least .. most, and nothing behind it. */
 bool ini_number(const char *value, double least, double most, double *out);
 /* 1 to most numbers, separated by spaces or commas; *count is how many. */
 bool ini_numbers(const char *value, double *out, size_t most, size_t *count);
+/* One whole number in least .. most. */
 bool ini_whole(const char *value, long least, long most, long *out);
 bool ini_yes_no(const char *value, bool *out); /* yes, no, true, false, on, off */
 /* Index of value in names, a table that ends with NULL. */

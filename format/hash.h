@@ -16,6 +16,7 @@ struct hash {
 	uint8_t bytes[HASH_BYTES];
 };
 
+/* BLAKE2b of 128 bits, of all the bytes: the object's name. */
 struct hash hash_of(struct bytes object);
 bool hash_equal(struct hash a, struct hash b);
 int hash_compare(struct hash a, struct hash b); /* as memcmp */

@@ -26,7 +26,10 @@ struct locator {
 	struct locator_block *blocks; /* owned; sorted by page */
 };
 
+/* Appends the file, its checksum included; blocks must be sorted. Failures are out->error. */
 void locator_encode(struct buffer *out, const struct locator *locator);
+/* Copies all it needs. *out is finished by the caller; on failure it is zeroed. -EBADMSG: damaged,
+ * truncated or no locator; -ENOMEM. */
 must_check int locator_decode(struct locator *out, struct bytes file);
 /* NULL: not there. */
 const struct locator_block *locator_find(const struct locator *locator, struct hash page);

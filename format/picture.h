@@ -24,6 +24,7 @@ must_check int picture_decode(struct picture *out, struct bytes file);
 /* The same for a picture of a page: -EFBIG past PICTURE_PAGE_SIDE_MOST_PX, before any pixel is
  * decoded or room for it allocated. */
 must_check int picture_decode_for_page(struct picture *out, struct bytes file);
+/* Appends the file. -ENOMEM, or -EFBIG past the buffer's ceiling. */
 must_check int picture_encode_png(struct buffer *out, const struct picture *picture);
 /* quality 1..100; alpha is dropped. */
 must_check int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality);

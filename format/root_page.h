@@ -26,7 +26,10 @@ struct root_page {
 	uint64_t published_triangles;
 };
 
+/* Appends the payload, for page.payload. */
 void root_page_encode(struct buffer *out, const struct root_page *root);
+/* -EBADMSG: truncated, bytes left over, numbers that are not finite or make no sense; *out is
+ * zeroed then. */
 must_check int root_page_decode(struct root_page *out, struct bytes payload);
 
 #endif

@@ -44,7 +44,10 @@ struct samples_page {
 
 #define SAMPLE_NONE UINT32_MAX
 
+/* Appends the payload, for page.payload, as the other two encoders do. Failures are out->error. */
 void samples_page_encode(struct buffer *out, const struct samples_page *samples);
+/* jpeg_tables is borrowed from payload. *out is finished by the caller; on failure it is zeroed.
+ * -EBADMSG, -ENOMEM. */
 must_check int samples_page_decode(struct samples_page *out, struct bytes payload);
 void samples_page_finish(struct samples_page *samples);
 
@@ -60,6 +63,7 @@ struct brick_page {
 };
 
 void brick_page_encode(struct buffer *out, const struct brick_page *brick);
+/* -EBADMSG: *out is of no use then. The same of face_page_decode; neither allocates. */
 must_check int brick_page_decode(struct brick_page *out, struct bytes payload);
 
 struct face_page {

@@ -78,6 +78,8 @@ struct gesture_recogniser {
 };
 
 void gesture_init(struct gesture_recogniser *recogniser, const struct gesture_options *options);
+/* Emits what the event leads to before it returns. Contacts past TOUCH_CONTACTS_MOST are ignored.
+ */
 void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_event *event);
 
 #endif

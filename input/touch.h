@@ -48,6 +48,7 @@ struct touch;
 must_check int touch_create(struct touch **out, const struct touch_options *options);
 void touch_destroy(struct touch *touch); /* NULL is fine */
 
+/* Readable when touch_dispatch has something to do (an epoll descriptor of its own). */
 int touch_fd(const struct touch *touch);
 /* Calls event for whatever happened since. Errors of a device are logged and end that device, not
  * the program; negative errno only where waiting itself is broken. */

@@ -41,13 +41,17 @@ struct bring_figures {
 	uint64_t cancelled; /* requests given up: nothing in them was wanted any more */
 };
 
+/* *out is owned by the caller. -ENOMEM. */
 must_check int bring_create(struct bring **out, const struct bring_options *options);
 void bring_destroy(struct bring *bring);
 
 /* Alone: drops every want, forgets other releases. Also: beside them. */
 void bring_use_release(struct bring *bring, struct hash root, uint32_t root_bytes, bool also);
+/* Copied. Wanted already: only its priority changes. */
 void bring_want(struct bring *bring, const struct message_want *want);
+/* No event follows; a request that brings nothing else is cancelled. */
 void bring_drop(struct bring *bring, struct hash hash);
+/* The cache lets it go last. */
 void bring_keep(struct bring *bring, struct hash hash);
 void bring_forget_all(struct bring *bring); /* the kiosk is gone: wants and releases */
 
@@ -57,6 +61,7 @@ void bring_work(struct bring *bring);
  * earlier: at once. */
 int64_t bring_due_ms(const struct bring *bring);
 
+/* Wants that were neither brought nor dropped. */
 uint32_t bring_wanted(const struct bring *bring);
 void bring_figures(const struct bring *bring, struct bring_figures *out);
 

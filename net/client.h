@@ -29,11 +29,14 @@ struct net_client_options {
 	void *data;
 };
 
+/* *out is owned by the caller; on failure it is NULL. A fetcher that is not there is no failure: it
+ * is tried again. -EINVAL: options are missing; -ENOMEM. */
 must_check int net_client_create(struct net_client **out, const struct net_client_options *options);
 void net_client_destroy(struct net_client *client); /* ends a fetcher it started */
 
 /* Readable when net_client_dispatch has something to do (an epoll descriptor of its own). */
 int net_client_fd(const struct net_client *client);
+/* Calls events. Negative errno only where waiting itself is broken. */
 must_check int net_client_dispatch(struct net_client *client);
 
 /* From now on this release alone: every want is dropped, every keep forgotten; say anew what is
@@ -45,6 +48,7 @@ void net_client_use_release(struct net_client *client, struct hash root, uint32_
 void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes);
 /* Said again with another priority, only that changes. Forgotten once the object event came. */
 void net_client_want(struct net_client *client, const struct message_want *want);
+/* What is not wanted is ignored. */
 void net_client_drop(struct net_client *client, struct hash hash);
 /* Remembered until net_client_use_release, and said again when the fetcher was restarted. The cache
  * keeps up to three quarters of its budget this way. */

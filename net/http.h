@@ -46,6 +46,7 @@ struct http_ask {
 must_check int http_create(struct http **out, const struct http_options *options);
 void http_destroy(struct http *http); /* requests must have ended or been cancelled */
 
+/* Readable when http_dispatch has something to do: requests' receive and done are called there. */
 int http_fd(const struct http *http);
 must_check int http_dispatch(struct http *http);
 

@@ -18,10 +18,13 @@ struct link {
 /* Of the n-th failure in a row (from 1): half a second doubling to a minute, times 0.5 .. 1.5. */
 int64_t link_pause_ms(uint32_t failures);
 
+/* Before the first answer: not online, and free to ask. */
 void link_init(struct link *link);
+/* Any answer of the server counts, also one that says no. */
 void link_answered(struct link *link);
 /* Logs the first failure, with why. */
 void link_failed(struct link *link, const char *url, const char *why);
+/* After a failure only one request at a time, and not before its pause is over. */
 bool link_may_ask(const struct link *link);
 /* False until it failed twice: a server that starts anew is not worth telling. */
 bool link_is_down(const struct link *link);

@@ -18,6 +18,7 @@ struct poll_options {
 	void *data;
 };
 
+/* *out is owned by the caller; it looks for nothing before poll_ask. -ENOMEM. */
 must_check int poll_create(struct poll **out, const struct poll_options *options);
 void poll_destroy(struct poll *poll);
 

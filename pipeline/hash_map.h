@@ -20,6 +20,7 @@ struct hash_map {
 
 /* 1: put. 0: it was there; its value stays. -ENOMEM. */
 must_check int hash_map_put(struct hash_map *map, struct hash hash, uint64_t value);
+/* false: not there, and *value (may be NULL) stays as it was. */
 bool hash_map_get(const struct hash_map *map, struct hash hash, uint64_t *value);
 void hash_map_finish(struct hash_map *map); /* NULL is fine */
 

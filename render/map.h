@@ -20,6 +20,7 @@ void map_clear(struct map *map); /* keeps the memory */
 uint32_t map_get(const struct map *map, uint64_t key);
 /* Sets or replaces. -ENOMEM: nothing changed. */
 must_check int map_set(struct map *map, uint64_t key, uint32_t value);
+/* A key that is not there is fine. */
 void map_remove(struct map *map, uint64_t key);
 
 #endif

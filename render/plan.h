@@ -48,6 +48,7 @@ float plan_needed_half_px(const struct plan_eye *eye, const float point_m[3], co
 			  const float sample_m[3]);
 /* Coarsest level that is sharp enough, or the finest there is. */
 uint32_t plan_level(float needed_half_px, uint32_t level_count);
+/* Half the side of a face's picture at the level, pixels. */
 float plan_level_half_px(uint32_t level);
 
 /* A rectangle of a face, -1..1. */

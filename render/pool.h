@@ -43,6 +43,7 @@ uint32_t pool_busy(const struct pool *pool); /* given and not yet taken */
 void pool_forget(struct pool *pool);
 /* Readable from when work was done until pool_quiet. */
 int pool_fd(const struct pool *pool);
+/* The descriptor is readable no more until another answer comes; answers stay. */
 void pool_quiet(struct pool *pool);
 
 #endif

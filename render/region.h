@@ -19,9 +19,11 @@ struct region {
 	float corners_m[REGION_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
 };
 
+/* The boundary belongs to it. */
 bool region_contains(const struct region *region, const float point_m[3]);
 /* Metres to the region's boundary, negative inside; exact on faces, a bound elsewhere. */
 float region_distance(const struct region *region, const float point_m[3]);
+/* May say so of a sphere that only comes near an edge; never misses one that meets it. */
 bool region_meets_sphere(const struct region *region, const float centre_m[3], float radius_m);
 
 #endif

@@ -45,9 +45,11 @@ must_check int repository_open(struct repository *repository, struct hash hash,
 /* The page of a brick, by the child of the samples page that it is. */
 must_check int repository_give_brick(struct repository *repository, uint32_t child,
 				     struct bytes object);
+/* The page of a face whose brick is here; a second time it is ignored. -EBADMSG, -ENOMEM. */
 must_check int repository_give_face(struct repository *repository, face_key face,
 				    struct bytes object);
 
+/* Where a sampling point is, metres. */
 void repository_point_m(const struct repository *repository, uint32_t point, float out[3]);
 /* want may be NULL. For REPOSITORY_UNKNOWN *brick_child is set too (may be NULL). */
 enum repository_state repository_face(const struct repository *repository, face_key face,
@@ -58,6 +60,7 @@ bool repository_brick(const struct repository *repository, uint32_t child,
 /* Whether anything is seen in the given sixteenths of the face (bits as in brick_page); true while
  * unknown. */
 bool repository_covers(const struct repository *repository, face_key face, uint16_t sixteenths);
+/* Levels of every face, 1 .. SAMPLE_LEVELS_MOST. */
 uint32_t repository_levels(const struct repository *repository);
 /* false: the tile is absent, or the face's page is not there. */
 bool repository_tile(const struct repository *repository, struct tile_name name,

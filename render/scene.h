@@ -30,6 +30,8 @@ struct scene_options {
 
 struct scene;
 
+/* Needs a current GL context, as drawing does; starts the workers. *out is owned by the caller; on
+ * failure it is NULL. */
 must_check int scene_create(struct scene **out, const struct scene_options *options);
 void scene_destroy(struct scene *scene);
 
@@ -43,6 +45,7 @@ const struct root_page *scene_root(const struct scene *scene);
 void scene_give(struct scene *scene, struct hash hash, struct bytes object);
 /* Readable when scene_dispatch has something to do: a worker finished. */
 int scene_fd(const struct scene *scene);
+/* Only quiets the descriptor: the next frame takes the answers, within its time. */
 must_check int scene_dispatch(struct scene *scene);
 
 /* Most wanted first, at most `most`; those not listed any more are no longer wanted. Valid for the

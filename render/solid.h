@@ -55,6 +55,7 @@ struct solid {
 must_check int solid_init(struct solid *out, struct patch_mesh *mesh,
 			  const struct lattice *lattice);
 void solid_finish(struct solid *solid);
+/* Of memory it holds. */
 size_t solid_bytes(const struct solid *solid);
 
 /* Nearest hit between *distance_m and least_m along the (unit) direction, either side of a

@@ -56,6 +56,7 @@ void tiles_begin(struct tiles *tiles);
 /* Marks a resident face, and its tiles under the rectangle (-1..1), as in use. */
 void tiles_touch(struct tiles *tiles, face_key face, float u0, float v0, float u1, float v1);
 
+/* Uploaded and resident; whether it is in use does not matter. */
 bool tiles_has(const struct tiles *tiles, struct tile_name name);
 /* Uploads. -ENOSPC: everything there is in use. */
 must_check int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb);

@@ -21,6 +21,7 @@ void view_from_camera(struct view *view, const struct camera *camera);
 /* Moves the picture by a part of a pixel, for anti-aliasing by accumulation. */
 void view_jitter(struct view *view, float x_px, float y_px);
 
+/* false: no part of the sphere is in the picture. True also of some that just miss a corner. */
 bool view_sees_sphere(const struct view *view, const float centre_m[3], float radius_m);
 /* Pixels that a sphere covers, at most the picture's; all of them when the eye is inside. */
 float view_sphere_px(const struct view *view, const float centre_m[3], float radius_m);
