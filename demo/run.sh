@@ -16,10 +16,10 @@ if [ "${1:-}" = --triangles ]; then
 	shift 2
 fi
 demo=$PWD/build/demo release=$PWD/build/demo/release
-server=''
+server='' kiosk_pid=''
 end() {
 	trap - EXIT INT TERM
-	[ -z "$server" ] || kill "$server" 2>/dev/null || true
+	for pid in $kiosk_pid $server; do kill "$pid" 2>/dev/null || true; done
 	wait 2>/dev/null || true
 }
 trap end EXIT
@@ -27,6 +27,7 @@ trap 'exit 130' INT TERM
 
 demo/prepare.sh ${triangles:+"$triangles"}
 
+rm -f "$demo/server/url" # of the run before
 server/serve.sh "$release" 0 "$demo/server" >"$demo/server.log" 2>&1 &
 server=$!
 for _ in $(seq 100); do
@@ -38,13 +39,19 @@ echo "Museum server: $(cat "$demo/server/url")"
 
 kiosk=(build/gopura-kiosk --release "$(cat "$demo/server/url")" --ca "$demo/server/ca.pem"
 	--trust "$release/root/1.json" --state "$demo/state")
+# In the background, so that a signal to this script ends it at once and not after the kiosk.
+show() {
+	"${kiosk[@]}" "$@" &
+	kiosk_pid=$!
+	wait "$kiosk_pid"
+}
 # A panel that is free, or a desktop: the kiosk takes it. Else a visit is played and photographed.
 if [ $# -gt 0 ] || [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || compgen -G '/dev/dri/card*' >/dev/null; then
 	echo "Starting the kiosk; Ctrl-C ends it. With a mouse: drag to turn, wheel to come nearer."
-	"${kiosk[@]}" "$@"
+	show "$@"
 else
 	echo "No panel and no desktop here: playing a visit without them (about half a minute) ..."
-	"${kiosk[@]}" --display headless --size 1280x720 --touch-replay demo/visit.touch \
+	show --display headless --size 1280x720 --touch-replay demo/visit.touch \
 		--quit-after-replay --shots demo/visit.shots --capture "$demo"
 	echo "Pictures of the visit:"
 	ls "$demo"/*.png
