@@ -10,7 +10,9 @@ work=build/e2e/damage
 rm -rf "$work"
 mkdir -p "$work"
 make --no-print-directory -j"$(nproc)" SAN=1 BUILD=build/asan build/asan/gopura-kiosk build/asan/gopura-fetch >/dev/null
-export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+# The unit tests look for leaks: in a whole kiosk the leak checker itself often dies while it stops
+# the threads of Mesa's llvmpipe at the end ("Tracer caught signal 11").
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 small_release
 cp -a "$small/release" "$work/release"
