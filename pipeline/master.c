@@ -14,7 +14,7 @@
 #include "format/stone.h"
 
 /* Raised whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 3, INDEX_VERSION = 1, INDEX_BYTES_MOST = 256 << 20 };
+enum { BUILD_VERSION = 4, INDEX_VERSION = 2, INDEX_BYTES_MOST = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -54,25 +54,28 @@ static int groups_path(char out[PATH_MAX], const char *folder, struct hash stamp
 
 struct writer {
 	int fd;
-	uint64_t *sizes; /* of each object, in the order they are made */
+	struct written {
+		uint32_t size;
+		float loss_m4;
+	} *objects; /* owned; in the order they are made */
 	uint32_t count, room;
 };
 
-static int write_object(void *user, struct bytes object)
+static int write_object(void *user, struct bytes object, float loss_m4)
 {
 	struct writer *writer = user;
 	size_t done = 0;
 
 	if (writer->count == writer->room) {
 		uint32_t room = writer->room ? 2 * writer->room : 256;
-		uint64_t *grown = realloc(writer->sizes, room * sizeof(*grown));
+		struct written *grown = realloc(writer->objects, room * sizeof(*grown));
 
 		if (!grown)
 			return -ENOMEM;
-		writer->sizes = grown;
+		writer->objects = grown;
 		writer->room = room;
 	}
-	writer->sizes[writer->count++] = object.size;
+	writer->objects[writer->count++] = (struct written){ (uint32_t)object.size, loss_m4 };
 	while (done < object.size) {
 		ssize_t put = write(writer->fd, object.data + done, object.size - done);
 
@@ -138,8 +141,10 @@ static int put_index(struct buffer *out, const struct master *head,
 	buffer_put(out, payload.data, payload.size);
 	buffer_finish(&payload);
 	/* In the order they lie in the file: made finest first. */
-	for (uint32_t i = 0; i < writer->count; i++)
-		buffer_put_u32(out, (uint32_t)writer->sizes[i]);
+	for (uint32_t i = 0; i < writer->count; i++) {
+		buffer_put_u32(out, writer->objects[i].size);
+		buffer_put_f32(out, writer->objects[i].loss_m4);
+	}
 	hash = hash_of(buffer_bytes(out));
 	buffer_put(out, hash.bytes, sizeof(hash.bytes));
 	return rc < 0 ? rc : out->error;
@@ -227,7 +232,7 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 		return -errno;
 	rc = build_into(&writer, folder, mesh, stamp, options, report);
 	close(writer.fd);
-	free(writer.sizes);
+	free(writer.objects);
 	if (rc < 0)
 		unlink(path);
 	else
@@ -286,11 +291,13 @@ static int get_index(struct master *master, struct bytes index, const struct has
 	count = master->hierarchy.group_count;
 	master->places = calloc(count, sizeof(*master->places));
 	master->sizes = calloc(count, sizeof(*master->sizes));
-	if (!master->places || !master->sizes)
+	master->losses_m4 = calloc(count, sizeof(*master->losses_m4));
+	if (!master->places || !master->sizes || !master->losses_m4)
 		return -ENOMEM;
 	/* Group 0 was made last and lies last. */
 	for (uint32_t g = count; g-- > 0;) {
 		master->sizes[g] = reader_u32(&reader);
+		master->losses_m4[g] = reader_f32(&reader);
 		master->places[g] =
 			g + 1 < count ? master->places[g + 1] + master->sizes[g + 1] : 0;
 	}
@@ -345,6 +352,7 @@ void master_destroy(struct master *master)
 		close(master->fd);
 	free(master->places);
 	free(master->sizes);
+	free(master->losses_m4);
 	hierarchy_finish(&master->hierarchy);
 	free(master);
 }

@@ -19,6 +19,7 @@ struct master {
 	struct hierarchy hierarchy;       /* owned; complete */
 	uint64_t *places;                 /* owned; of each group's object in the file, bytes */
 	uint32_t *sizes;                  /* owned; bytes */
+	float *losses_m4; /* owned; of each group, what its absence costs: see multires_sink */
 	int fd;                           /* owned; of the objects */
 };
 

@@ -5,17 +5,17 @@
 #include "pipeline/master.h"
 
 struct ranked {
-	float error_m;
+	float loss_m4;
 	uint32_t group;
 };
 
-/* The worst first. Errors are saturated, so what depends on a group never comes before it. */
+/* The worst first. Losses are saturated, so what depends on a group never comes before it. */
 static int compare_ranked(const void *left, const void *right)
 {
 	const struct ranked *a = left, *b = right;
 
-	if (a->error_m != b->error_m)
-		return a->error_m > b->error_m ? -1 : 1;
+	if (a->loss_m4 != b->loss_m4)
+		return a->loss_m4 > b->loss_m4 ? -1 : 1;
 	return a->group < b->group ? -1 : a->group > b->group;
 }
 
@@ -41,15 +41,16 @@ static void choose_group(const struct hierarchy *hierarchy, uint32_t group, uint
 
 /* Returns the triangles of what is chosen. */
 static uint64_t choose(bool *chosen, struct ranked *ranked, uint32_t *missing,
-		       const struct hierarchy *hierarchy, uint64_t most)
+		       const struct master *master, uint64_t most)
 {
+	const struct hierarchy *hierarchy = &master->hierarchy;
 	uint64_t total = 0;
 
 	for (uint32_t p = 0; p < hierarchy->patch_count; p++)
 		if (hierarchy->patches[p].finer != HIERARCHY_NONE)
 			missing[hierarchy->patches[p].finer]++;
 	for (uint32_t g = 0; g < hierarchy->group_count; g++)
-		ranked[g] = (struct ranked){ hierarchy->groups[g].error_m, g };
+		ranked[g] = (struct ranked){ master->losses_m4[g], g };
 	qsort(ranked, hierarchy->group_count, sizeof(*ranked), compare_ranked);
 	for (uint32_t i = 0; i < hierarchy->group_count; i++) {
 		uint32_t group = ranked[i].group;
@@ -117,7 +118,7 @@ int master_cut_create(struct master_cut *out, const struct master *master, doubl
 
 	*out = (struct master_cut){ 0 };
 	if (rc == 0) {
-		out->triangle_count = choose(chosen, ranked, missing, hierarchy, most);
+		out->triangle_count = choose(chosen, ranked, missing, master, most);
 		rc = chosen[0] ? copy_chosen(out, hierarchy, chosen) : -ERANGE;
 	}
 	free(chosen);

@@ -17,7 +17,8 @@ enum {
 	PATCHES = 256, /* a scan has at least so many, where they are not too small for it */
 	PATCH_TRIANGLES = 1000,
 	PATCH_TRIANGLES_LEAST = 256,
-	GROUP_PATCHES = 4,
+	GROUP_PATCHES = 8,
+	REDUCTION = 4, /* each level has so many times fewer triangles */
 	TOP_TRIANGLES = 6000,
 	TOP_PART = 40, /* of a small scan's triangles: far below what is published of it */
 	VOXEL_TRIANGLES = 256,
@@ -324,7 +325,7 @@ static int keep_job(struct builder *builder, struct group_job *job)
 	stats->object_bytes += job->object.size;
 	stats->top_bytes = (uint32_t)job->object.size;
 	stats->vertex_count += job->vertex_count;
-	return builder->sink->put(builder->sink->user, buffer_bytes(&job->object));
+	return builder->sink->put(builder->sink->user, buffer_bytes(&job->object), job->loss_m4);
 }
 
 static int run_job(void *user, uint32_t piece, uint32_t worker)
@@ -376,13 +377,13 @@ static int run_level(struct builder *builder, struct live_patches *next)
 	return rc;
 }
 
-static uint32_t half_of(const struct group_job *job)
+static uint32_t target_of(const struct group_job *job)
 {
 	uint32_t count = 0;
 
 	for (uint32_t p = 0; p < job->patch_count; p++)
 		count += job->patches[p].triangle_count;
-	return count / 2 > 1 ? count / 2 : 1;
+	return count / REDUCTION > 1 ? count / REDUCTION : 1;
 }
 
 static int one_group(struct builder *builder)
@@ -410,7 +411,7 @@ static int coarser_level(struct builder *builder, uint32_t group_patches)
 		rc = sort_into_jobs(builder, labels);
 	free(labels);
 	for (uint32_t j = 0; rc == 0 && j < builder->job_count; j++) {
-		builder->jobs[j].target_triangles = half_of(&builder->jobs[j]);
+		builder->jobs[j].target_triangles = target_of(&builder->jobs[j]);
 		builder->jobs[j].is_whole = builder->job_count == 1;
 	}
 	if (rc == 0)
@@ -440,7 +441,7 @@ static int build_groups(struct builder *builder)
 	while (rc == 0 && (before > builder->options.top_triangles ||
 			   builder->level.count > GROUP_PATCHES_MOST)) {
 		/* Close to the top borders are most of what there is: one group without. */
-		if (before <= 2 * (uint64_t)builder->options.top_triangles)
+		if (before <= REDUCTION * (uint64_t)builder->options.top_triangles)
 			group_patches = GROUP_PATCHES_MOST;
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
@@ -647,6 +648,14 @@ static void builder_finish(struct builder *builder)
 	hierarchy_finish(&builder->made);
 }
 
+/* Of all levels together. */
+static uint64_t all_triangles(enum multires_kind kind, uint64_t finest)
+{
+	uint64_t reduction = kind == MULTIRES_TREE ? 2 : REDUCTION;
+
+	return finest * reduction / (reduction - 1);
+}
+
 int multires_build(struct hierarchy *out, struct multires_stats *stats, struct lattice_mesh *mesh,
 		   const struct multires_options *options, const struct multires_sink *sink)
 {
@@ -665,8 +674,8 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 	rc = site_init(&builder);
 	if (rc == 0)
 		rc = partition_scan(&builder);
-	/* Each level has half the triangles of the one below: twice the finest, all together. */
-	builder.progress = progress_start("simplifying", "triangles", 2 * finest_triangles);
+	builder.progress = progress_start("simplifying", "triangles",
+					  all_triangles(options->kind, finest_triangles));
 	if (rc == 0)
 		rc = options->kind == MULTIRES_TREE ? build_tree(&builder) : build_groups(&builder);
 	if (rc == 0)

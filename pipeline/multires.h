@@ -39,9 +39,11 @@ struct multires_stats {
 };
 
 /* Takes the groups' objects in the order they are made, which is finest first: number n will be
- * group (group_count - 1 - n) of the hierarchy. Negative errno ends the build. */
+ * group (group_count - 1 - n) of the hierarchy. loss_m4: what is lost where the group is not shown,
+ * squared distance times area of the costliest collapse of its replacement, never less than of what
+ * is finer; infinite for the last. Negative errno ends the build. */
 struct multires_sink {
-	int (*put)(void *user, struct bytes object);
+	int (*put)(void *user, struct bytes object, float loss_m4);
 	void *user;
 };
 

@@ -10,7 +10,7 @@
 #include "pipeline/simplify.h"
 
 /* Times the error so far, what one level may add. */
-#define ERROR_GROWTH 3.0
+#define ERROR_GROWTH 9.0
 
 void live_patch_finish(struct live_patch *patch)
 {
@@ -130,6 +130,7 @@ static int add_coarser(struct group_job *job, const struct merged *merged, const
 		.triangle_count = count,
 		.finer = job->number,
 		.error_m = job->group.error_m,
+		.loss_m4 = job->loss_m4,
 		.finer_sphere = { .radius = job->group.radius_m },
 	};
 
@@ -191,12 +192,15 @@ int group_job_run(const struct job_site *site, struct group_job *job, uint32_t w
 {
 	struct simplify_result result;
 	struct merged merged = { 0 };
-	double error = 0.0;
+	const double step_m = site->mesh->lattice.step_m;
+	double error = 0.0, loss = 0.0;
 	int rc = group_job_write(site, job, site->local_of[worker]);
 
-	for (uint32_t p = 0; p < job->patch_count; p++)
+	for (uint32_t p = 0; p < job->patch_count; p++) {
 		error = fmax(error, job->patches[p].error_m);
-	job->group.error_m = INFINITY;
+		loss = fmax(loss, job->patches[p].loss_m4);
+	}
+	job->group.error_m = job->loss_m4 = INFINITY;
 	if (rc == 0 && job->target_triangles > 0) {
 		rc = merge(&merged, site, job, site->local_of[worker]);
 		if (rc == 0)
@@ -204,8 +208,9 @@ int group_job_run(const struct job_site *site, struct group_job *job, uint32_t w
 				      error_most(site, job, error), &result);
 		if (rc == 0) {
 			/* The errors of the levels below add up. */
-			error += result.error_steps * site->mesh->lattice.step_m;
+			error += result.error_steps * step_m;
 			job->group.error_m = (float)error;
+			job->loss_m4 = (float)fmax(loss, result.loss_steps4 * pow(step_m, 4));
 			give_back_vertices(&merged, site);
 			rc = divide(job, &merged, site->patch_triangles);
 		}

@@ -9,10 +9,10 @@
 #include "pipeline/quadric.h"
 
 #define NONE          UINT32_MAX
-#define BORDER_WEIGHT 2.0  /* of the planes that hold open edges, to the edge's square */
-#define COLOUR_WEIGHT 0.02 /* black to white over an edge, against moving it by its length */
-#define SHAPE_WEIGHT  1e-6 /* on flat ground, short edges first */
-#define FOLD_COSINE   0.2  /* a triangle may turn by less than this */
+#define BORDER_WEIGHT 20.0  /* of the planes that hold open edges, to the edge's square */
+#define COLOUR_WEIGHT 0.005 /* black to white over an edge, against moving it by its length */
+#define SHAPE_WEIGHT  1e-6  /* on flat ground, short edges first */
+#define FOLD_COSINE   0.2   /* a triangle may turn by less than this */
 
 struct candidate {
 	float cost;
@@ -34,6 +34,7 @@ struct work {
 	uint32_t alive_count;
 	double worst; /* square of the error so far, lattice steps */
 	double most;  /* that it may come to */
+	double loss;
 	bool loose;   /* the surface may close onto itself */
 	uint32_t collapse_count;
 };
@@ -533,6 +534,7 @@ static int collapse(struct work *work, const struct candidate *candidate)
 		return 0;
 	if (weight > 0.0 && value / weight > work->worst)
 		work->worst = value / weight;
+	work->loss = fmax(work->loss, value);
 	if (!work->surface->locked[keep])
 		blend(work, keep, gone);
 	for (int i = 0; i < 3; i++)
@@ -632,6 +634,7 @@ int simplify(struct surface *surface, uint32_t target_triangles, double error_mo
 	if (rc == 0) {
 		surface->triangle_count = kept;
 		result->error_steps = sqrt(work.worst);
+		result->loss_steps4 = work.loss;
 		result->collapse_count = work.collapse_count;
 	}
 	work_finish(&work);

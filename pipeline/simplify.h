@@ -22,6 +22,9 @@ struct simplify_result {
 	/* What the surface is wrong by: the largest distance (root of the mean square, weighted by
 	 * area) of a new vertex from the planes it stands for; lattice steps. */
 	double error_steps;
+	/* What the costliest collapse lost: squared distance times area, lattice steps to the
+	 * fourth. */
+	double loss_steps4;
 	uint32_t collapse_count;
 };
 

@@ -12,7 +12,7 @@
 #include "tests/pipeline/shapes.h"
 
 static const struct master_options options = {
-	.multires = { .patch_triangles = 256, .top_triangles = 400, .jobs = 2 },
+	.multires = { .patch_triangles = 64, .top_triangles = 400, .jobs = 2 },
 };
 
 struct home {
@@ -145,7 +145,7 @@ static uint64_t triangles_in(const struct hierarchy *hierarchy)
 
 static void publishes_no_more_than_the_share(void **state)
 {
-	static const double shares[] = { 0.05, 0.1, 0.5, 0.99 };
+	static const double shares[] = { 0.1, 0.2, 0.5, 0.99 };
 	struct home home;
 	struct master *master;
 	struct master_cut cut;

@@ -16,6 +16,7 @@ static struct hierarchy_group groups[GROUPS];
 static struct hierarchy_patch patches[PATCHES];
 static uint64_t places[GROUPS];
 static uint32_t sizes[GROUPS];
+static float losses_m4[GROUPS];
 static struct master master;
 static struct object_store *objects;
 
@@ -55,11 +56,13 @@ static int set_up(void **state)
 						      .radius_m = 20 - (float)i };
 		places[i] = i;
 		sizes[i] = 1;
+		losses_m4[i] = errors[i];
 	}
 	master = (struct master){ .source_triangles = 10000,
 				  .hierarchy = { GROUPS, PATCHES, groups, patches },
 				  .places = places,
 				  .sizes = sizes,
+				  .losses_m4 = losses_m4,
 				  .fd = mkstemp(path) };
 	unlink(path);
 	return write(master.fd, bytes, GROUPS) == GROUPS ? object_store_create(&objects) : -1;
@@ -132,6 +135,20 @@ static void objects_go_with_their_groups(void **state)
 	page_finish(&page);
 }
 
+/* Group 2 is less wrong than 1 and costs more where it is missing: it goes first. */
+static void what_costs_most_goes_first(void **state)
+{
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	losses_m4[2] = 2 * losses_m4[1];
+	CHECK(publish(0.04, &page, &back) == 400);
+	CHECK(back.group_count == 2 && back.groups[1].error_m == groups[2].error_m);
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
 static void the_top_is_published_whatever_the_share(void **state)
 {
 	struct hierarchy back;
@@ -160,6 +177,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(what_is_published_is_a_hierarchy_within_the_share,
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(objects_go_with_their_groups, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(what_costs_most_goes_first, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(the_top_is_published_whatever_the_share, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_master_that_was_cut_off_is_found, set_up,
