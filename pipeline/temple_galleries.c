@@ -70,7 +70,7 @@ static void plan_crest(struct plan *plan, const struct frame *middle, float leng
 				plan_panel(plan, &foot, 0.36f, 0.5f, RELIEF_FLAME, 0.05f, 0);
 			leaf->shape = SHAPE_LEAF;
 			leaf->rim_m = 0.05f;
-			leaf->interest = 1.0f;
+			leaf->interest = 1.8f;
 		}
 	}
 }

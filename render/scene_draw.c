@@ -8,7 +8,6 @@
 #include "render/vec.h"
 
 enum {
-	DEPTH_TRIANGLES_MOST = 60000, /* of a face's picture */
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
 	SEASON_US = 1000000,         /* a view for which it is known what there is no room for */
@@ -16,6 +15,10 @@ enum {
 };
 
 /* ---- depth of faces */
+
+/* What the eye sees is tested against these depths: a surface that is drawn but simplified away
+ * here would take the colours of what lies before it. */
+static const float depth_error_px = 0.25f;
 
 /* Whether a sphere can be in a face's quarter of space. */
 static bool face_sees(const struct cube_axes *axes, const float sample[3], const float centre[3],
@@ -30,8 +33,8 @@ static bool face_sees(const struct cube_axes *axes, const float sample[3], const
 
 static void draw_depth_face(struct scene *scene, int slot, face_key face)
 {
-	const struct cut_options options = { .error_px = 1,
-					     .triangle_budget = DEPTH_TRIANGLES_MOST };
+	const struct cut_options options = { .error_px = depth_error_px,
+					     .triangle_budget = scene->options.triangle_budget };
 	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
 	float sample[3];
 	repository_point_m(&scene->repository, face / CUBE_FACES, sample);

@@ -107,7 +107,7 @@ static const char blended_fragment[] =
 	"	at = clamp(at, 0.0001, 0.9999);\n"
 	"	vec4 d = texture2D(u_depths, (slot + at) / DEPTH_GRID);\n"
 	"	float depth = (d.r * 256.0 + d.g) * 255.0 / 65535.0 * u_far;\n"
-	"	float slack = u_slack + 0.005 * face.z;\n"
+	"	float slack = u_slack + 0.001 * face.z;\n"
 	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
 	"	w *= 0.25 + 0.75 * d.b;\n"
 	"	if (w < 0.0002)\n"
@@ -296,5 +296,5 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 	glUniform4fv(p->slot, faces, slots);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
 		    plan_tuning.own * spacing_m);
-	glUniform1f(p->slack, depth_slack_m(frame->depth) + 2 * error_m);
+	glUniform1f(p->slack, depth_slack_m(frame->depth) + 0.5f * error_m);
 }
