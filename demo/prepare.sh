@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 demo=build/demo content=build/demo/content
-triangles=${1:-$(cat "$demo/triangles" 2>/dev/null || echo 1500000)}
+triangles=${1:-$(cat "$demo/triangles" 2>/dev/null || echo 2000000)}
 mkdir -p "$content"
 cp -ru demo/content/. "$content/"
 if [ ! -f "$content/scan.ply" ] || [ "$(cat "$demo/triangles" 2>/dev/null)" != "$triangles" ]; then

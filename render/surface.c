@@ -153,7 +153,7 @@ static void set_constants(char *out, size_t bytes, int atlas_px, int faces)
 		 "#define APRON_PX %d.0\n"
 		 "#define TILE_PX %d.0\n"
 		 "#define ATLAS_PX %d.0\n"
-		 "#define OWN_SHARE 0.3\n",
+		 "#define OWN_SHARE 0.1\n",
 		 faces, TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS,
 		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX,
 		 SAMPLE_APRON_PX, SAMPLE_TILE_PX, atlas_px);
