@@ -116,7 +116,10 @@ static const char blended_fragment[] =
 	"	vec2 local = fract(at * floor(cell.b + 0.5));\n"
 	"	vec2 pixel = floor(cell.rg + 0.5) * IMAGE_PX + APRON_PX + local * TILE_PX;\n"
 	"	w *= cell.a / 255.0;\n"
-	"	return vec4(texture2D(u_tiles, pixel / ATLAS_PX).rgb * w, w);\n"
+	"	vec3 colour = texture2D(u_tiles, pixel / ATLAS_PX).rgb;\n"
+	"	vec3 off = colour - v_colour.rgb;\n"
+	"	w /= 1.0 + DOUBT * dot(off, off);\n"
+	"	return vec4(colour * w, w);\n"
 	"}\n"
 	"void main() {\n"
 	"	vec4 sum = vec4(0.0);\n"
@@ -153,7 +156,8 @@ static void set_constants(char *out, size_t bytes, int atlas_px, int faces)
 		 "#define APRON_PX %d.0\n"
 		 "#define TILE_PX %d.0\n"
 		 "#define ATLAS_PX %d.0\n"
-		 "#define OWN_SHARE 0.1\n",
+		 "#define OWN_SHARE 0.1\n"
+		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
 		 faces, TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS,
 		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX,
 		 SAMPLE_APRON_PX, SAMPLE_TILE_PX, atlas_px);
