@@ -57,7 +57,7 @@ struct writer {
 	struct written {
 		uint32_t size;
 		float loss_m4;
-	} *objects; /* owned; in the order they are made */
+	} * objects; /* owned; in the order they are made */
 	uint32_t count, room;
 };
 

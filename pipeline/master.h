@@ -20,7 +20,7 @@ struct master {
 	uint64_t *places;                 /* owned; of each group's object in the file, bytes */
 	uint32_t *sizes;                  /* owned; bytes */
 	float *losses_m4; /* owned; of each group, what its absence costs: see multires_sink */
-	int fd;                           /* owned; of the objects */
+	int fd;           /* owned; of the objects */
 };
 
 struct master_options {

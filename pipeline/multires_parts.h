@@ -16,7 +16,7 @@ struct sphere {
 struct live_patch {
 	uint32_t (*triangles)[3]; /* owned */
 	uint32_t triangle_count;
-	uint32_t finer; /* the group that replaces it, by order of making; or NO_GROUP */
+	uint32_t finer;          /* the group that replaces it, by order of making; or NO_GROUP */
 	double error_m, loss_m4; /* of that group; 0: none */
 	struct sphere finer_sphere;
 	float centre[3]; /* lattice steps; where it is, roughly */
@@ -42,7 +42,7 @@ struct group_job {
 	/* What comes of it, owned: */
 	struct buffer object;
 	struct hierarchy_group group;
-	float loss_m4; /* as multires_sink has it */
+	float loss_m4;                /* as multires_sink has it */
 	struct hierarchy_patch *made; /* patch_count; finer is by order of making */
 	struct live_patches coarser;
 	uint64_t vertex_count;

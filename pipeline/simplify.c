@@ -35,7 +35,7 @@ struct work {
 	double worst; /* square of the error so far, lattice steps */
 	double most;  /* that it may come to */
 	double loss;
-	bool loose;   /* the surface may close onto itself */
+	bool loose; /* the surface may close onto itself */
 	uint32_t collapse_count;
 };
 
