@@ -10,16 +10,17 @@ static float mod289(float x)
 	return x - floorf((x + 0.5f) * (1.0f / 289.0f)) * 289.0f;
 }
 
+/* Of an integer 0..577, the sum of two remainders. */
 static float permute(float x)
 {
-	float y = mod289(x);
+	float y = x >= 289.0f ? x - 289.0f : x;
 
 	return mod289((34.0f * y + 1.0f) * y);
 }
 
 static float hash(float i, float j, float k)
 {
-	return permute(permute(permute(i) + mod289(j)) + mod289(k)) * (1.0f / 289.0f);
+	return permute(permute(permute(mod289(i)) + mod289(j)) + mod289(k)) * (1.0f / 289.0f);
 }
 
 static float blend(float a, float b, float t)
@@ -44,7 +45,7 @@ static float noise(const float p[3], float fx, float fy, float fz)
 	u = u * u * (3.0f - 2.0f * u);
 	v = v * v * (3.0f - 2.0f * v);
 	w = w * w * (3.0f - 2.0f * w);
-	float a = permute(i), b = permute(i + 1.0f);
+	float a = permute(mod289(i)), b = permute(mod289(i + 1.0f));
 	float m = mod289(j), n = mod289(j + 1.0f);
 	float aa = permute(a + m), ba = permute(b + m), ab = permute(a + n), bb = permute(b + n);
 	float lo = mod289(k), hi = mod289(k + 1.0f);
@@ -146,11 +147,11 @@ const char stone_glsl[] =
 	"return x - floor((x + 0.5) * (1.0 / 289.0)) * 289.0;\n"
 	"}\n"
 	"float stone_permute(float x) {\n"
-	"float y = stone_mod289(x);\n"
+	"float y = x - step(289.0, x) * 289.0;\n"
 	"return stone_mod289((34.0 * y + 1.0) * y);\n"
 	"}\n"
 	"float stone_hash(float i, float j, float k) {\n"
-	"return stone_permute(stone_permute(stone_permute(i) + stone_mod289(j)) +"
+	"return stone_permute(stone_permute(stone_permute(stone_mod289(i)) + stone_mod289(j)) +"
 	" stone_mod289(k)) * (1.0 / 289.0);\n"
 	"}\n"
 	"float stone_blend(float a, float b, float t) {\n"
@@ -167,7 +168,7 @@ const char stone_glsl[] =
 	"u = u * u * (3.0 - 2.0 * u);\n"
 	"v = v * v * (3.0 - 2.0 * v);\n"
 	"w = w * w * (3.0 - 2.0 * w);\n"
-	"float a = stone_permute(i), b = stone_permute(i + 1.0);\n"
+	"float a = stone_permute(stone_mod289(i)), b = stone_permute(stone_mod289(i + 1.0));\n"
 	"float m = stone_mod289(j), n = stone_mod289(j + 1.0);\n"
 	"float aa = stone_permute(a + m), ba = stone_permute(b + m), ab = stone_permute(a +"
 	" n), bb = stone_permute(b + n);\n"
