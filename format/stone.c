@@ -1,21 +1,20 @@
 /* The C text below and the GLSL text at the end are the same function, line for line: a change of
  * one is a change of both. The hash is a permutation polynomial modulo 289, whose every
- * intermediate is an integer below 2^24. */
+ * intermediate is an integer below 2^24. A quarter, not a half, is added before the floor: past
+ * 2^23 floats have no halves. */
 #include "format/stone.h"
 
 #include <math.h>
 
 static float mod289(float x)
 {
-	return x - floorf((x + 0.5f) * (1.0f / 289.0f)) * 289.0f;
+	return x - floorf((x + 0.25f) * (1.0f / 289.0f)) * 289.0f;
 }
 
 /* Of an integer 0..577, the sum of two remainders. */
 static float permute(float x)
 {
-	float y = x >= 289.0f ? x - 289.0f : x;
-
-	return mod289((34.0f * y + 1.0f) * y);
+	return mod289((34.0f * x + 1.0f) * x);
 }
 
 static float hash(float i, float j, float k)
@@ -80,14 +79,10 @@ static float detail(const float p[3], float frequency, float footprint_m)
 	return blend(0.5f, noise(p, frequency, frequency, frequency), share);
 }
 
-void stone_colour(float rgb[3], const float p[3], const float n[3], float footprint_m)
+/* Courses of blocks: along the wall and up it; on a floor, both ways along it. Of the block: tone,
+ * tint, how much of a joint this is, and how far from the joint's middle (metres or more). */
+static void block_at(float block[4], const float p[3], const float n[3], float footprint_m)
 {
-	float wide = noise(p, 0.31f, 0.31f, 0.31f), metre = noise(p, 1.3f, 1.3f, 1.3f);
-	float hand = detail(p, 6.1f, footprint_m), inch = detail(p, 23.0f, footprint_m);
-	float grain = detail(p, 97.0f, footprint_m);
-	float upward = ramp(0.35f, 0.85f, n[2]), upright = 1.0f - fminf(fabsf(n[2]), 1.0f);
-
-	/* Courses of blocks: along the wall and up it; on a floor, both ways along it. */
 	float along = fabsf(n[0]) > fabsf(n[1]) ? p[1] : p[0], up = p[2] * 2.3f;
 	if (fabsf(n[2]) > 0.75f) {
 		along = p[0];
@@ -96,10 +91,22 @@ void stone_colour(float rgb[3], const float p[3], const float n[3], float footpr
 	float row = floorf(up);
 	float across = along * 1.17f + hash(row, 5.0f, 1.0f);
 	float stone = floorf(across);
-	float tone = hash(stone, row, 9.0f), tint = hash(row, stone, 23.0f);
 	float edge = fminf(fminf(across - stone, stone + 1.0f - across) * 0.85f,
 			   fminf(up - row, row + 1.0f - up) * 0.43f);
-	float joint = (1.0f - ramp(0.003f, 0.014f, edge)) * kept(30.0f, footprint_m);
+
+	block[0] = hash(stone, row, 9.0f);
+	block[1] = hash(row, stone, 23.0f);
+	block[2] = (1.0f - ramp(0.003f, 0.014f, edge)) * kept(30.0f, footprint_m);
+	block[3] = edge;
+}
+
+/* All but the finest: inch and grain are the noises of that detail. */
+static void paint(float rgb[3], const float p[3], const float n[3], float footprint_m,
+		  const float block[4], float inch, float grain)
+{
+	float wide = noise(p, 0.31f, 0.31f, 0.31f), metre = noise(p, 1.3f, 1.3f, 1.3f);
+	float hand = detail(p, 6.1f, footprint_m), tone = block[0], tint = block[1];
+	float upward = ramp(0.35f, 0.85f, n[2]), upright = 1.0f - fminf(fabsf(n[2]), 1.0f);
 
 	/* Sandstone: ochre grey, some blocks pinker, some greyer. */
 	rgb[0] = 0.90f, rgb[1] = 0.785f, rgb[2] = 0.61f;
@@ -138,17 +145,25 @@ void stone_colour(float rgb[3], const float p[3], const float n[3], float footpr
 	float grass = ramp(0.46f, 0.60f, wide * 0.5f + metre * 0.35f + hand * 0.15f);
 	mix3(rgb, 0.40f + 0.1f * inch, 0.44f + 0.1f * inch, 0.21f, earth * grass * 0.8f);
 
-	float dark = 1.0f - (0.12f + 0.5f * metre * tone) * joint;
+	float dark = 1.0f - (0.12f + 0.5f * metre * tone) * block[2];
 	rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;
+}
+
+void stone_colour(float rgb[3], const float p[3], const float n[3], float footprint_m)
+{
+	float block[4];
+
+	block_at(block, p, n, footprint_m);
+	paint(rgb, p, n, footprint_m, block, detail(p, 23.0f, footprint_m),
+	      detail(p, 97.0f, footprint_m));
 }
 
 const char stone_glsl[] =
 	"float stone_mod289(float x) {\n"
-	"return x - floor((x + 0.5) * (1.0 / 289.0)) * 289.0;\n"
+	"return x - floor((x + 0.25) * (1.0 / 289.0)) * 289.0;\n"
 	"}\n"
 	"float stone_permute(float x) {\n"
-	"float y = x - step(289.0, x) * 289.0;\n"
-	"return stone_mod289((34.0 * y + 1.0) * y);\n"
+	"return stone_mod289((34.0 * x + 1.0) * x);\n"
 	"}\n"
 	"float stone_hash(float i, float j, float k) {\n"
 	"return stone_permute(stone_permute(stone_permute(stone_mod289(i)) + stone_mod289(j)) +"
@@ -192,14 +207,7 @@ const char stone_glsl[] =
 	"if (share <= 0.0) return 0.5;\n"
 	"return stone_blend(0.5, stone_noise(p, frequency, frequency, frequency), share);\n"
 	"}\n"
-	"vec3 stone_colour(vec3 p, vec3 n, float footprint_m) {\n"
-	"vec3 rgb;\n"
-	"float wide = stone_noise(p, 0.31, 0.31, 0.31), metre = stone_noise(p, 1.3, 1.3,"
-	" 1.3);\n"
-	"float hand = stone_detail(p, 6.1, footprint_m), inch = stone_detail(p, 23.0,"
-	" footprint_m);\n"
-	"float grain = stone_detail(p, 97.0, footprint_m);\n"
-	"float upward = stone_ramp(0.35, 0.85, n[2]), upright = 1.0 - min(abs(n[2]), 1.0);\n"
+	"vec4 stone_block(vec3 p, vec3 n, float footprint_m) {\n"
 	"float along = abs(n[0]) > abs(n[1]) ? p[1] : p[0], up = p[2] * 2.3;\n"
 	"if (abs(n[2]) > 0.75) {\n"
 	"along = p[0];\n"
@@ -208,11 +216,17 @@ const char stone_glsl[] =
 	"float row = floor(up);\n"
 	"float across = along * 1.17 + stone_hash(row, 5.0, 1.0);\n"
 	"float stone = floor(across);\n"
-	"float tone = stone_hash(stone, row, 9.0), tint = stone_hash(row, stone, 23.0);\n"
 	"float edge = min(min(across - stone, stone + 1.0 - across) * 0.85, min(up - row,"
 	" row + 1.0 - up) * 0.43);\n"
-	"float joint = (1.0 - stone_ramp(0.003, 0.014, edge)) * stone_kept(30.0,"
-	" footprint_m);\n"
+	"return vec4(stone_hash(stone, row, 9.0), stone_hash(row, stone, 23.0), (1.0 -"
+	" stone_ramp(0.003, 0.014, edge)) * stone_kept(30.0, footprint_m), edge);\n"
+	"}\n"
+	"vec3 stone_paint(vec3 p, vec3 n, float footprint_m, vec4 block, float inch, float grain) {\n"
+	"vec3 rgb;\n"
+	"float wide = stone_noise(p, 0.31, 0.31, 0.31), metre = stone_noise(p, 1.3, 1.3,"
+	" 1.3);\n"
+	"float hand = stone_detail(p, 6.1, footprint_m), tone = block[0], tint = block[1];\n"
+	"float upward = stone_ramp(0.35, 0.85, n[2]), upright = 1.0 - min(abs(n[2]), 1.0);\n"
 	"rgb[0] = 0.90, rgb[1] = 0.785, rgb[2] = 0.61;\n"
 	"stone_mix3(rgb, 0.90, 0.72, 0.565, stone_ramp(0.60, 0.95, tint) * 0.6);\n"
 	"stone_mix3(rgb, 0.77, 0.735, 0.62, stone_ramp(0.45, 0.05, tint) * 0.6);\n"
@@ -243,7 +257,11 @@ const char stone_glsl[] =
 	"stone_mix3(rgb, 0.72, 0.59, 0.42, earth * (0.35 + 0.45 * metre));\n"
 	"float grass = stone_ramp(0.46, 0.60, wide * 0.5 + metre * 0.35 + hand * 0.15);\n"
 	"stone_mix3(rgb, 0.40 + 0.1 * inch, 0.44 + 0.1 * inch, 0.21, earth * grass * 0.8);\n"
-	"float dark = 1.0 - (0.12 + 0.5 * metre * tone) * joint;\n"
+	"float dark = 1.0 - (0.12 + 0.5 * metre * tone) * block[2];\n"
 	"rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;\n"
 	"return rgb;\n"
+	"}\n"
+	"vec3 stone_colour(vec3 p, vec3 n, float footprint_m) {\n"
+	"return stone_paint(p, n, footprint_m, stone_block(p, n, footprint_m), stone_detail(p,"
+	" 23.0, footprint_m), stone_detail(p, 97.0, footprint_m));\n"
 	"}\n";
