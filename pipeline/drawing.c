@@ -61,6 +61,15 @@ static const char fragment_main[] =
 	"			    gl_FrontFacing ? 1.0 : 254.0 / 255.0);\n"
 	"}\n";
 
+/* Normal, and in alpha the share of open sky: 1..127 of a back, 128..255 of a front. Nothing is 0.
+ * Eight bits do: vertices have no more. Little is done on purpose, where triangles are small this
+ * runs several times a pixel. */
+static const char surface_main[] =
+	"void main() {\n"
+	"	float open = gl_FrontFacing ? 128.0 + 127.0 * v_colour.a : 1.0 + 126.0 * v_colour.a;\n"
+	"	gl_FragColor = vec4(v_normal * 0.5 + 0.5, open / 255.0);\n"
+	"}\n";
+
 static int build_program(struct drawing *drawing, const struct drawing_options *options)
 {
 	const char *colour = options->procedural      ? stone
@@ -74,7 +83,10 @@ static int build_program(struct drawing *drawing, const struct drawing_options *
 					 options->lit ? sun_light : no_light,
 					 fragment_main,
 					 NULL };
-	const struct gl_program_source source = { "drawing", vertex, fragment, attributes };
+	const char *const surface[] = { fragment_head, surface_main, NULL };
+	const struct gl_program_source source = { "drawing", vertex,
+						  options->surfaces ? surface : fragment,
+						  attributes };
 	int rc = gl_program_build(&drawing->program, &source);
 
 	if (rc < 0)

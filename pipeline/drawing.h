@@ -1,7 +1,8 @@
 /* The model at its finest, drawn by GLES2 from anywhere: what samples and reference pictures are
  * made of. Colour is the scan's vertices, its pictures, or the procedural stone, times the light
  * where the model is lit (format/light.h). Alpha tells what a pixel shows: 255 the front of a
- * surface, 254 its back (DRAWING_BACK), 0 nothing. Both sides are drawn, as a scan's rim needs.
+ * surface, 254 its back (DRAWING_BACK), 0 nothing. Surfaces instead of colours are for shading.h,
+ * which knows how they are packed. Both sides are drawn, as a scan's rim needs.
  *
  * Every call is from the thread that owns the GL context. */
 #ifndef GOPURA_PIPELINE_DRAWING_H
@@ -17,6 +18,7 @@ struct drawing_options {
 	bool lit;
 	float sun[3];    /* unit vector */
 	bool procedural; /* colours from format/stone.h */
+	bool surfaces;   /* procedural only: draw what shading.h makes the colours of, not these */
 };
 
 struct drawing;

@@ -15,27 +15,32 @@ struct frame {
 	GLuint framebuffer, colour, depth;
 	struct gl_target blocks; /* nearest and farthest of BLOCK_PX squares */
 	GLuint program;
-	uint8_t *pixels, *block_pixels; /* owned */
+	uint8_t *block_pixels; /* owned */
 };
 
 static const char *const attributes[] = { "corner", NULL };
 
-static const char vertex_text[] = "attribute vec2 corner;\n"
-				  "void main() { gl_Position = vec4(corner, 0.0, 1.0); }\n";
+static const char vertex_text[] = "attribute vec2 corner; varying highp vec2 share;\n"
+				  "void main() {\n"
+				  "	share = corner * 0.5 + 0.5;\n"
+				  "	gl_Position = vec4(corner, 0.0, 1.0);\n"
+				  "}\n";
 
 /* 16 bits each for the logarithm of the nearest and of the farthest distance, as a share of the
  * way from near to far plane; 65535 in both: nothing. The sampler is highp in so many words: its
- * default is lowp whatever floats are, and Mesa then reads it in 16 bits. */
+ * default is lowp whatever floats are, and Mesa then reads it in 16 bits. gl_FragCoord is mediump
+ * whatever is said, and its 16 bits cannot tell the rows of a large frame apart. */
 static const char fragment_text[] =
 	"precision highp float;\n"
 	"uniform highp sampler2D depth; uniform vec2 size; uniform vec2 planes;\n"
-	"float share(float d) {\n"
+	"varying highp vec2 share;\n"
+	"float way(float d) {\n"
 	"	float z = planes.x * planes.y / (planes.y - d * (planes.y - planes.x));\n"
 	"	return clamp(log(z / planes.x) / log(planes.y / planes.x), 0.0, 1.0) * 65534.0;\n"
 	"}\n"
 	"vec2 bytes(float v) { return vec2(floor(v / 256.0), mod(v, 256.0)) / 255.0; }\n"
 	"void main() {\n"
-	"	vec2 first = (gl_FragCoord.xy - 0.5) * 8.0 + 0.5;\n"
+	"	vec2 first = floor(share * size / 8.0) * 8.0 + 0.5;\n"
 	"	float low = 1.0, high = -1.0;\n"
 	"	for (int y = 0; y < 8; y++) {\n"
 	"		for (int x = 0; x < 8; x++) {\n"
@@ -45,7 +50,7 @@ static const char fragment_text[] =
 	"		}\n"
 	"	}\n"
 	"	gl_FragColor = high < 0.0 ? vec4(1.0)\n"
-	"		: vec4(bytes(floor(share(low))), bytes(ceil(share(high))));\n"
+	"		: vec4(bytes(floor(way(low))), bytes(ceil(way(high))));\n"
 	"}\n";
 
 static int build_program(struct frame *frame)
@@ -102,10 +107,9 @@ int frame_create(struct frame **out, int width_px, int height_px)
 		return -ENOMEM;
 	frame->width_px = width_px;
 	frame->height_px = height_px;
-	frame->pixels = malloc((size_t)width_px * (size_t)height_px * 4);
 	frame->block_pixels =
 		malloc((size_t)(width_px / BLOCK_PX) * (size_t)(height_px / BLOCK_PX) * 4);
-	rc = frame->pixels && frame->block_pixels ? 0 : -ENOMEM;
+	rc = frame->block_pixels ? 0 : -ENOMEM;
 	if (rc == 0 && !gl_has_extension("GL_OES_depth_texture")) {
 		log_error("pipeline", "the GL driver has no depth textures; run with "
 				      "LIBGL_ALWAYS_SOFTWARE=1");
@@ -138,7 +142,6 @@ void frame_destroy(struct frame *frame)
 		glDeleteTextures(1, &frame->colour);
 	if (frame->depth)
 		glDeleteTextures(1, &frame->depth);
-	free(frame->pixels);
 	free(frame->block_pixels);
 	free(frame);
 }
@@ -149,14 +152,12 @@ void frame_bind(const struct frame *frame)
 	glViewport(0, 0, frame->width_px, frame->height_px);
 }
 
-int frame_read(struct frame *frame, const uint8_t **rgba)
+void frame_bind_textures(const struct frame *frame, unsigned colour_unit, unsigned depth_unit,
+			 unsigned blocks_unit)
 {
-	frame_bind(frame);
-	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, frame->width_px, frame->height_px, GL_RGBA, GL_UNSIGNED_BYTE,
-		     frame->pixels);
-	*rgba = frame->pixels;
-	return gl_check("reading a frame");
+	gl_bind_texture(colour_unit, frame->colour);
+	gl_bind_texture(depth_unit, frame->depth);
+	gl_bind_texture(blocks_unit, frame->blocks.colour);
 }
 
 static void draw_blocks(struct frame *frame, float plane_near_m, float plane_far_m)

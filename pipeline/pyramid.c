@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/shading.h"
+
 int pyramid_init(struct pyramid *pyramid, uint32_t side_px)
 {
 	*pyramid = (struct pyramid){ 0 };
@@ -33,37 +35,35 @@ void pyramid_finish(struct pyramid *pyramid)
 	*pyramid = (struct pyramid){ 0 };
 }
 
-void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint8_t marked, uint64_t *covered,
-		 uint64_t *marked_count)
+void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs)
 {
-	uint32_t side = pyramid->side_px[0];
-	size_t row = (size_t)side * 2 * 4;
-	uint64_t all = 0, with_mark = 0;
+	size_t count = (size_t)pyramid->side_px[0] * pyramid->side_px[0];
 
-	for (uint32_t y = 0; y < side; y++) {
-		const uint8_t *low = rgba + (size_t)(2 * (side - 1 - y)) * row;
-		uint8_t(*to)[4] = pyramid->levels[0] + (size_t)y * side;
+	*covered = *backs = 0;
+	memcpy(pyramid->levels[0], rgba, count * 4);
+	for (size_t i = 0; i < count; i++) {
+		uint8_t *alpha = &pyramid->levels[0][i][3];
+		unsigned samples = *alpha / SHADING_COVERED;
 
-		for (uint32_t x = 0; x < side; x++, low += 8, to++) {
-			const uint8_t *four[] = { low, low + 4, low + row, low + row + 4 };
-			unsigned sum[3] = { 0 }, count = 0;
-
-			for (int i = 0; i < 4; i++) {
-				if (!four[i][3])
-					continue;
-				count++;
-				with_mark += four[i][3] == marked;
-				for (int c = 0; c < 3; c++)
-					sum[c] += four[i][c];
-			}
-			all += count;
-			for (int c = 0; c < 3; c++)
-				(*to)[c] = count ? (uint8_t)((sum[c] + count / 2) / count) : 0;
-			(*to)[3] = (uint8_t)(count * 255 / 4);
-		}
+		*covered += samples;
+		*backs += *alpha % SHADING_COVERED;
+		*alpha = (uint8_t)(samples * 255 / SHADING_SAMPLES);
 	}
-	*covered = all;
-	*marked_count = with_mark;
+}
+
+/* Of the four pixels, those that there are, weighted by coverage. */
+static void reduce_pixel(uint8_t to[4], const uint8_t *const four[4], unsigned count)
+{
+	unsigned sum[3] = { 0 }, weight = 0;
+
+	for (unsigned k = 0; k < count; k++) {
+		weight += four[k][3];
+		for (int c = 0; c < 3; c++)
+			sum[c] += (unsigned)four[k][c] * four[k][3];
+	}
+	for (int c = 0; c < 3; c++)
+		to[c] = weight ? (uint8_t)((sum[c] + weight / 2) / weight) : 0;
+	to[3] = (uint8_t)((weight + 3) / 4);
 }
 
 static void reduce(const struct pyramid *pyramid, uint32_t level)
@@ -71,24 +71,37 @@ static void reduce(const struct pyramid *pyramid, uint32_t level)
 	uint32_t side = pyramid->side_px[level], finer = pyramid->side_px[level - 1];
 	const uint8_t(*from)[4] = (const uint8_t(*)[4])pyramid->levels[level - 1];
 
-	for (uint32_t i = 0; i < side * side; i++) {
-		uint32_t x = 2 * (i % side), y = 2 * (i / side);
-		uint8_t *to = pyramid->levels[level][i];
-		unsigned sum[3] = { 0 }, weight = 0;
+	for (uint32_t y = 0; y < side; y++) {
+		for (uint32_t x = 0; x < side; x++) {
+			const uint8_t *first = from[(size_t)2 * y * finer + 2 * x], *four[4];
+			uint8_t *to = pyramid->levels[level][(size_t)y * side + x];
+			bool right = 2 * x + 1 < finer, below = 2 * y + 1 < finer;
+			unsigned count = 0, least, most;
 
-		for (uint32_t k = 0; k < 4; k++) {
-			const uint8_t *p;
-
-			if (x + k % 2 >= finer || y + k / 2 >= finer)
-				continue;
-			p = from[(size_t)(y + k / 2) * finer + x + k % 2];
-			weight += p[3];
-			for (int c = 0; c < 3; c++)
-				sum[c] += (unsigned)p[c] * p[3];
+			four[count++] = first;
+			if (right)
+				four[count++] = first + 4;
+			if (below)
+				four[count++] = first + (size_t)4 * finer;
+			if (right && below)
+				four[count++] = first + (size_t)4 * finer + 4;
+			least = most = first[3];
+			for (unsigned k = 1; k < count; k++) {
+				least = four[k][3] < least ? four[k][3] : least;
+				most = four[k][3] > most ? four[k][3] : most;
+			}
+			if (most == 0) {
+				memset(to, 0, 4);
+			} else if (least == 255 && count == 4) {
+				for (int c = 0; c < 3; c++)
+					to[c] = (uint8_t)((four[0][c] + four[1][c] + four[2][c] +
+							   four[3][c] + 2) /
+							  4);
+				to[3] = 255;
+			} else {
+				reduce_pixel(to, four, count);
+			}
 		}
-		for (int c = 0; c < 3; c++)
-			to[c] = weight ? (uint8_t)((sum[c] + weight / 2) / weight) : 0;
-		to[3] = (uint8_t)((weight + 3) / 4);
 	}
 }
 

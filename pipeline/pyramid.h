@@ -21,11 +21,9 @@ struct pyramid {
 must_check int pyramid_init(struct pyramid *pyramid, uint32_t side_px);
 void pyramid_finish(struct pyramid *pyramid); /* NULL and zeroed are fine */
 
-/* Level 0 from a picture twice as wide and high, the lowest row first, alpha 0 for nothing (any
- * other is full coverage): the mean of the four pixels' covered ones. Gives how many pixels of the
- * picture had alpha, and how many of them alpha `marked`. */
-void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint8_t marked, uint64_t *covered,
-		 uint64_t *marked_count);
+/* Level 0 from a picture as shading_take gives it. Gives how many of its samples show anything, and
+ * how many of these a back. */
+void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs);
 /* All other levels by box filter, weighted by coverage; a pixel that shows anything has coverage
  * of at least 1 at every level. */
 void pyramid_reduce(struct pyramid *pyramid);

@@ -20,7 +20,7 @@
 #include "pipeline/shooter.h"
 #include "render/headless.h"
 
-enum { SAMPLER_VERSION = 1, JOBS_MOST = 64, CHROMA_FULL = 0 };
+enum { SAMPLER_VERSION = 2, JOBS_MOST = 64, CHROMA_FULL = 0 };
 
 /* Solid where the surface winds around the point at least this often; and, for scans that are open
  * towards the point, where more than this share of what it sees are backs. */
@@ -248,7 +248,8 @@ static int work(const struct sampling *sampling, struct shooter *shooter, int do
 /* All of a child process. */
 static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd)
 {
-	struct shooter_options options = { .level_count = sampling->grid.level_count,
+	struct shooter_options options = { .drawn = sampling->drawing,
+					   .level_count = sampling->grid.level_count,
 					   .quality = (int)sampling->content->jpeg_quality,
 					   .chroma_full = CHROMA_FULL };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -263,7 +264,7 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 	rc = headless_create(&headless);
 	if (rc == 0)
 		rc = drawing_create(&options.drawing, &sampling->chunks, sampling->mesh,
-				    &sampling->drawing);
+				    &options.drawn);
 	if (rc == 0)
 		rc = shooter_create(&shooter, &options);
 	if (rc == 0)
@@ -367,6 +368,7 @@ int sampler_run(const struct content *content, const struct sampler_options *opt
 	sampling.mesh = &mesh;
 	sampling.drawing.lit = content_is_lit(content, &mesh);
 	sampling.drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
+	sampling.drawing.surfaces = sampling.drawing.procedural;
 	memcpy(sampling.drawing.sun, content->sun, sizeof(content->sun));
 	rc = chunks_init(&sampling.chunks, &mesh, content->import.default_colour);
 	if (rc == 0) {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "pipeline/frame.h"
+#include "pipeline/shading.h"
 #include "render/camera.h"
 
 enum { OBJECTS_BYTES_MOST = 128 << 20 };
@@ -13,6 +14,7 @@ enum { OBJECTS_BYTES_MOST = 128 << 20 };
 struct shooter {
 	struct shooter_options options;
 	struct frame *frame;
+	struct shading *shading;
 	struct pyramid pyramid;
 	struct tile_codec *codec;
 	int frame_px;
@@ -40,6 +42,9 @@ int shooter_create(struct shooter **out, const struct shooter_options *options)
 	if (rc == 0)
 		rc = frame_create(&shooter->frame, shooter->frame_px, shooter->frame_px);
 	if (rc == 0)
+		rc = shading_create(&shooter->shading, shooter->frame, shooter->frame_px,
+				    shooter->frame_px, &options->drawn);
+	if (rc == 0)
 		rc = tile_encoder_create(&shooter->codec, options->quality, options->chroma_full);
 	if (rc < 0) {
 		shooter_destroy(shooter);
@@ -53,6 +58,7 @@ void shooter_destroy(struct shooter *shooter)
 {
 	if (!shooter)
 		return;
+	shading_destroy(shooter->shading);
 	frame_destroy(shooter->frame);
 	pyramid_finish(&shooter->pyramid);
 	tile_codec_destroy(shooter->codec);
@@ -171,10 +177,10 @@ static int render(struct shooter *shooter, struct shot *shot, const float point_
 			 &shot->far_m);
 	if (rc < 0 || !*found)
 		return rc;
-	rc = frame_read(shooter->frame, &rgba);
+	rc = shading_take(shooter->shading, &camera, &rgba);
 	if (rc < 0)
 		return rc;
-	pyramid_set(&shooter->pyramid, rgba, DRAWING_BACK, &shot->covered, &shot->backs);
+	pyramid_set(&shooter->pyramid, rgba, &shot->covered, &shot->backs);
 	return 0;
 }
 

@@ -12,8 +12,9 @@
 enum { SHOT_OVERSAMPLING = 2 /* pixels rendered per pixel kept, a side */ };
 
 struct shooter_options {
-	struct drawing *drawing; /* borrowed for as long as the shooter lives */
-	uint32_t level_count;    /* 1 .. SAMPLE_LEVELS_MOST */
+	struct drawing *drawing;      /* borrowed for as long as the shooter lives */
+	struct drawing_options drawn; /* what it was made with: surfaces if procedural */
+	uint32_t level_count;         /* 1 .. SAMPLE_LEVELS_MOST */
 	int quality;
 	bool chroma_full;
 };
