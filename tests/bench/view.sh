@@ -2,7 +2,7 @@
 # Pictures of the demo temple against the truth, and what they cost: 40 views (an orbit, a walk,
 # close-ups; none on a sampling point), 1280 x 720, from an empty cache, in the three modes.
 #
-#   VIEWS=N   N of them, spread over the path     SUPERSAMPLE=N  of the truth (default 2: 4 samples a pixel)
+#   VIEWS=N   N of them, spread over the path     SUPERSAMPLE=N  of the truth (default 4: 16 samples a pixel)
 set -eu
 cd "$(dirname "$0")/../.."
 demo=build/demo work=build/bench/view
@@ -10,7 +10,7 @@ mkdir -p "$work"
 demo/prepare.sh
 grep -v '^#' tests/bench/views.txt | awk -v n="${VIEWS:-40}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
 build/gopura-content render "$demo/content" --views "$work/views.txt" --size 1280x720 \
-	--supersample "${SUPERSAMPLE:-2}" --out "$work/truth"
+	--supersample "${SUPERSAMPLE:-4}" --out "$work/truth"
 
 for mode in lumigraph polygons corners; do
 	rm -rf "$work/$mode" "$work/state-$mode"
