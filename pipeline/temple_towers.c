@@ -197,7 +197,7 @@ static void plan_antefixes(struct plan *plan, const struct frame *deck, float ha
 			leaf->shape = SHAPE_LEAF;
 			leaf->rim_m = 0.12f;
 			leaf->lean = -0.18f;
-			leaf->interest = i ? 2.4f : 2.6f;
+			leaf->interest = i ? 3.6f : 3.9f;
 		}
 	}
 }
