@@ -18,14 +18,6 @@ struct frame {
 	uint8_t *block_pixels; /* owned */
 };
 
-static const char *const attributes[] = { "corner", NULL };
-
-static const char vertex_text[] = "attribute vec2 corner; varying highp vec2 share;\n"
-				  "void main() {\n"
-				  "	share = corner * 0.5 + 0.5;\n"
-				  "	gl_Position = vec4(corner, 0.0, 1.0);\n"
-				  "}\n";
-
 /* 16 bits each for the logarithm of the nearest and of the farthest distance, as a share of the
  * way from near to far plane; 65535 in both: nothing. The sampler is highp in so many words: its
  * default is lowp whatever floats are, and Mesa then reads it in 16 bits. gl_FragCoord is mediump
@@ -33,14 +25,14 @@ static const char vertex_text[] = "attribute vec2 corner; varying highp vec2 sha
 static const char fragment_text[] =
 	"precision highp float;\n"
 	"uniform highp sampler2D depth; uniform vec2 size; uniform vec2 planes;\n"
-	"varying highp vec2 share;\n"
-	"float way(float d) {\n"
+	"varying vec2 v_at;\n"
+	"float share(float d) {\n"
 	"	float z = planes.x * planes.y / (planes.y - d * (planes.y - planes.x));\n"
 	"	return clamp(log(z / planes.x) / log(planes.y / planes.x), 0.0, 1.0) * 65534.0;\n"
 	"}\n"
 	"vec2 bytes(float v) { return vec2(floor(v / 256.0), mod(v, 256.0)) / 255.0; }\n"
 	"void main() {\n"
-	"	vec2 first = floor(share * size / 8.0) * 8.0 + 0.5;\n"
+	"	vec2 first = floor(v_at * size / 8.0) * 8.0 + 0.5;\n"
 	"	float low = 1.0, high = -1.0;\n"
 	"	for (int y = 0; y < 8; y++) {\n"
 	"		for (int x = 0; x < 8; x++) {\n"
@@ -50,14 +42,14 @@ static const char fragment_text[] =
 	"		}\n"
 	"	}\n"
 	"	gl_FragColor = high < 0.0 ? vec4(1.0)\n"
-	"		: vec4(bytes(floor(way(low))), bytes(ceil(way(high))));\n"
+	"		: vec4(bytes(floor(share(low))), bytes(ceil(share(high))));\n"
 	"}\n";
 
 static int build_program(struct frame *frame)
 {
-	const char *const vertex[] = { vertex_text, NULL };
+	const char *const vertex[] = { gl_square_vertex, NULL };
 	const char *const fragment[] = { fragment_text, NULL };
-	const struct gl_program_source source = { "range", vertex, fragment, attributes };
+	const struct gl_program_source source = { "range", vertex, fragment, gl_square_attributes };
 
 	return gl_program_build(&frame->program, &source);
 }
@@ -162,8 +154,6 @@ void frame_bind_textures(const struct frame *frame, unsigned colour_unit, unsign
 
 static void draw_blocks(struct frame *frame, float plane_near_m, float plane_far_m)
 {
-	static const float strip[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
-
 	gl_target_bind(&frame->blocks);
 	glDisable(GL_DEPTH_TEST);
 	glDisable(GL_BLEND);
@@ -173,11 +163,7 @@ static void draw_blocks(struct frame *frame, float plane_near_m, float plane_far
 	glUniform2f(glGetUniformLocation(frame->program, "size"), (float)frame->width_px,
 		    (float)frame->height_px);
 	glUniform2f(glGetUniformLocation(frame->program, "planes"), plane_near_m, plane_far_m);
-	glBindBuffer(GL_ARRAY_BUFFER, 0);
-	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, strip);
-	glEnableVertexAttribArray(0);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-	glDisableVertexAttribArray(0);
+	gl_draw_square();
 }
 
 int frame_range(struct frame *frame, float plane_near_m, float plane_far_m, bool *found,

@@ -15,32 +15,24 @@ struct shading {
 	uint8_t *pixels; /* owned */
 };
 
-static const char *const attributes[] = { "corner", NULL };
-
 /* As in frame.c, samplers are highp in so many words and gl_FragCoord is not used. */
-static const char vertex_text[] = "attribute vec2 corner; varying highp vec2 share;\n"
-				  "void main() {\n"
-				  "	share = corner * 0.5 + 0.5;\n"
-				  "	gl_Position = vec4(corner, 0.0, 1.0);\n"
-				  "}\n";
-
 static const char fragment_head[] =
 	"precision highp float;\n"
 	"uniform highp sampler2D colour; uniform highp sampler2D depth;\n"
 	"uniform vec2 size; uniform vec2 planes; uniform float px_radians;\n"
 	"uniform vec3 eye; uniform vec3 corner_ray; uniform vec3 right; uniform vec3 up;\n"
-	"uniform vec3 sun; varying highp vec2 share;\n"
+	"uniform vec3 sun; varying vec2 v_at;\n"
 	"vec2 place(int i) {\n"
 	"	vec2 odd = vec2(mod(float(i), 2.0), floor(float(i) * 0.5));\n"
-	"	return floor(share * size * 0.5) * 2.0 + 0.5 + odd;\n"
+	"	return floor(v_at * size * 0.5) * 2.0 + 0.5 + odd;\n"
 	"}\n";
 
 /* A rasteriser in software leaves out a shader where no pixel passes the depth test, and nothing
  * else does: so the mask sets the depth of what is worth shading. */
 static const char mask_text[] = "precision highp float;\n"
-				"uniform highp sampler2D blocks; varying highp vec2 share;\n"
+				"uniform highp sampler2D blocks; varying vec2 v_at;\n"
 				"void main() {\n"
-				"	if (texture2D(blocks, share) == vec4(1.0)) discard;\n"
+				"	if (texture2D(blocks, v_at) == vec4(1.0)) discard;\n"
 				"	gl_FragColor = vec4(0.0);\n"
 				"}\n";
 
@@ -166,7 +158,7 @@ static const char stone_main[] =
 
 static int build_program(struct shading *shading, const struct drawing_options *options)
 {
-	const char *const vertex[] = { vertex_text, NULL };
+	const char *const vertex[] = { gl_square_vertex, NULL };
 	const char *const plain[] = { fragment_head, colour_main, NULL };
 	const char *const stone[] = { fragment_head,
 				      stone_glsl,
@@ -177,9 +169,10 @@ static int build_program(struct shading *shading, const struct drawing_options *
 				      stone_main,
 				      NULL };
 	const struct gl_program_source source = { "shading", vertex,
-						  options->procedural ? stone : plain, attributes };
+						  options->procedural ? stone : plain,
+						  gl_square_attributes };
 	const char *const mask[] = { mask_text, NULL };
-	const struct gl_program_source mask_source = { "mask", vertex, mask, attributes };
+	const struct gl_program_source mask_source = { "mask", vertex, mask, gl_square_attributes };
 	int rc = gl_program_build(&shading->mask, &mask_source);
 
 	if (rc == 0)
@@ -271,8 +264,6 @@ static void set_camera(const struct shading *shading, const struct camera *camer
 
 int shading_take(struct shading *shading, const struct camera *camera, const uint8_t **rgba)
 {
-	static const float strip[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
-
 	gl_target_bind(&shading->picture);
 	glClearColor(0, 0, 0, 0);
 	glClearDepthf(1);
@@ -281,19 +272,15 @@ int shading_take(struct shading *shading, const struct camera *camera, const uin
 	glEnable(GL_DEPTH_TEST);
 	glDisable(GL_BLEND);
 	frame_bind_textures(shading->frame, 0, 1, 2);
-	glBindBuffer(GL_ARRAY_BUFFER, 0);
-	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, strip);
-	glEnableVertexAttribArray(0);
 	glUseProgram(shading->mask);
 	glDepthFunc(GL_LESS);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	gl_draw_square();
 	glUseProgram(shading->program);
 	set_camera(shading, camera);
 	glDepthFunc(GL_EQUAL);
 	glDepthMask(GL_FALSE);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	gl_draw_square();
 	glDepthMask(GL_TRUE);
-	glDisableVertexAttribArray(0);
 	*rgba = shading->pixels;
 	return gl_target_read(&shading->picture, shading->pixels);
 }

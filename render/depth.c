@@ -29,13 +29,6 @@ static const char draw_fragment[] =
 	"	gl_FragColor = vec4(high, floor(value - high * 256.0), 0.0, 255.0) / 255.0;\n"
 	"}\n";
 
-static const char grow_vertex[] = "attribute vec2 a_position;\n"
-				  "varying vec2 v_at;\n"
-				  "void main() {\n"
-				  "	v_at = a_position * 0.5 + 0.5;\n"
-				  "	gl_Position = vec4(a_position, 0.0, 1.0);\n"
-				  "}\n";
-
 static const char grow_fragment[] =
 	"precision highp float;\n"
 	"uniform highp sampler2D u_raw;\n" /* by default lowp: 16 bits of depth need more */
@@ -72,9 +65,9 @@ static int build_programs(struct depth *depth)
 	};
 	const struct gl_program_source grow = {
 		.name = "face depth, grown",
-		.vertex = (const char *const[]){ grow_vertex, NULL },
+		.vertex = (const char *const[]){ gl_square_vertex, NULL },
 		.fragment = (const char *const[]){ grow_fragment, NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = gl_square_attributes,
 	};
 	int rc = gl_program_build(&depth->draw_program, &draw);
 	if (rc == 0)
@@ -104,10 +97,6 @@ static int make_atlas(struct depth *depth)
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, depth->atlas,
 			       0);
-	static const float corners[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
-	glGenBuffers(1, &depth->square);
-	glBindBuffer(GL_ARRAY_BUFFER, depth->square);
-	glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners, GL_STATIC_DRAW);
 	return gl_check("making the depth atlas");
 }
 
@@ -135,8 +124,6 @@ void depth_finish(struct depth *depth)
 		glDeleteFramebuffers(1, &depth->framebuffer);
 	if (depth->atlas)
 		glDeleteTextures(1, &depth->atlas);
-	if (depth->square)
-		glDeleteBuffers(1, &depth->square);
 	if (depth->draw_program)
 		glDeleteProgram(depth->draw_program);
 	if (depth->grow_program)
@@ -189,10 +176,7 @@ void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
 	glDisable(GL_DEPTH_TEST);
 	glUseProgram(depth->grow_program);
 	gl_bind_texture(0, depth->raw.colour);
-	glBindBuffer(GL_ARRAY_BUFFER, depth->square);
-	glEnableVertexAttribArray(0);
-	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, NULL);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	gl_draw_square();
 	glEnable(GL_DEPTH_TEST);
 	depth->face[slot] = (struct depth_face){ .ready = true, .key = face, .cut = cut };
 }

@@ -235,6 +235,26 @@ int gl_texture_create(GLuint *out, const struct gl_texture_options *options)
 	return rc;
 }
 
+const char gl_square_vertex[] = "attribute vec2 a_position;\n"
+				"varying vec2 v_at;\n"
+				"void main() {\n"
+				"	v_at = a_position * 0.5 + 0.5;\n"
+				"	gl_Position = vec4(a_position, 0.0, 1.0);\n"
+				"}\n";
+
+const char *const gl_square_attributes[] = { "a_position", NULL };
+
+void gl_draw_square(void)
+{
+	static const float corners[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
+
+	glBindBuffer(GL_ARRAY_BUFFER, 0);
+	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, corners);
+	glEnableVertexAttribArray(0);
+	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	glDisableVertexAttribArray(0);
+}
+
 void gl_bind_texture(unsigned unit, GLuint texture)
 {
 	assert(unit < GL_LIMIT_UNITS);

@@ -36,6 +36,13 @@ struct gl_program_source {
  * driver's words. -EINVAL: does not compile or link. -E2BIG: more than the limits above. */
 must_check int gl_program_build(GLuint *out, const struct gl_program_source *source);
 
+/* The whole viewport as two triangles: a vertex shader that gives v_at, 0..1 across and up, and
+ * what draws them with the program in use, built with gl_square_attributes. Leaves attribute 0 off.
+ */
+extern const char gl_square_vertex[];
+extern const char *const gl_square_attributes[];
+void gl_draw_square(void);
+
 struct gl_texture_options {
 	int width_px, height_px;
 	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA; 8 bits each */

@@ -2,13 +2,6 @@
 
 #include <string.h>
 
-static const char square_vertex[] = "attribute vec2 a_position;\n"
-				    "varying vec2 v_at;\n"
-				    "void main() {\n"
-				    "	v_at = a_position * 0.5 + 0.5;\n"
-				    "	gl_Position = vec4(a_position, 0.0, 1.0);\n"
-				    "}\n";
-
 static const char square_fragment[] = "precision mediump float;\n"
 				      "uniform sampler2D u_picture;\n"
 				      "varying vec2 v_at;\n"
@@ -20,19 +13,15 @@ static int build(struct rest *rest)
 {
 	const struct gl_program_source source = {
 		.name = "rest",
-		.vertex = (const char *const[]){ square_vertex, NULL },
+		.vertex = (const char *const[]){ gl_square_vertex, NULL },
 		.fragment = (const char *const[]){ square_fragment, NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = gl_square_attributes,
 	};
 	int rc = gl_program_build(&rest->program, &source);
 	if (rc < 0)
 		return rc;
 	glUseProgram(rest->program);
 	glUniform1i(glGetUniformLocation(rest->program, "u_picture"), 0);
-	static const float corners[] = { -1, -1, 1, -1, -1, 1, 1, 1 };
-	glGenBuffers(1, &rest->square);
-	glBindBuffer(GL_ARRAY_BUFFER, rest->square);
-	glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners, GL_STATIC_DRAW);
 	return 0;
 }
 
@@ -58,8 +47,6 @@ void rest_finish(struct rest *rest)
 	gl_target_destroy(&rest->sum);
 	if (rest->program)
 		glDeleteProgram(rest->program);
-	if (rest->square)
-		glDeleteBuffers(1, &rest->square);
 	memset(rest, 0, sizeof(*rest));
 }
 
@@ -90,12 +77,9 @@ static void draw_square(const struct rest *rest, GLuint texture)
 {
 	glUseProgram(rest->program);
 	gl_bind_texture(0, texture);
-	glBindBuffer(GL_ARRAY_BUFFER, rest->square);
-	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
-	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, NULL);
-	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+	gl_draw_square();
 }
 
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed)

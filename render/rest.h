@@ -9,7 +9,7 @@ enum { REST_FRAMES = 8 };
 
 struct rest {
 	struct gl_target frame, sum;
-	GLuint program, square;
+	GLuint program;
 	uint32_t count; /* frames in the sum */
 };
 
