@@ -52,12 +52,14 @@ static int groups_path(char out[PATH_MAX], const char *folder, struct hash stamp
 
 /* ---- building */
 
+struct written {
+	uint32_t size;
+	float loss_m4;
+};
+
 struct writer {
 	int fd;
-	struct written {
-		uint32_t size;
-		float loss_m4;
-	} * objects; /* owned; in the order they are made */
+	struct written *objects; /* owned; in the order they are made */
 	uint32_t count, room;
 };
 

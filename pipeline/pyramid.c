@@ -76,7 +76,7 @@ static void reduce(const struct pyramid *pyramid, uint32_t level)
 			const uint8_t *first = from[(size_t)2 * y * finer + 2 * x], *four[4];
 			uint8_t *to = pyramid->levels[level][(size_t)y * side + x];
 			bool right = 2 * x + 1 < finer, below = 2 * y + 1 < finer;
-			unsigned count = 0, least, most;
+			unsigned count = 0, covered = 0;
 
 			four[count++] = first;
 			if (right)
@@ -85,14 +85,11 @@ static void reduce(const struct pyramid *pyramid, uint32_t level)
 				four[count++] = first + (size_t)4 * finer;
 			if (right && below)
 				four[count++] = first + (size_t)4 * finer + 4;
-			least = most = first[3];
-			for (unsigned k = 1; k < count; k++) {
-				least = four[k][3] < least ? four[k][3] : least;
-				most = four[k][3] > most ? four[k][3] : most;
-			}
-			if (most == 0) {
+			for (unsigned k = 0; k < count; k++)
+				covered += four[k][3];
+			if (covered == 0) {
 				memset(to, 0, 4);
-			} else if (least == 255 && count == 4) {
+			} else if (covered == 4 * 255) {
 				for (int c = 0; c < 3; c++)
 					to[c] = (uint8_t)((four[0][c] + four[1][c] + four[2][c] +
 							   four[3][c] + 2) /

@@ -34,8 +34,8 @@ struct work {
 	uint32_t alive_count;
 	double worst; /* square of the error so far, lattice steps */
 	double most;  /* that it may come to */
-	double loss;
-	bool loose; /* the surface may close onto itself */
+	double loss;  /* of the costliest collapse */
+	bool loose;   /* the surface may close onto itself */
 	uint32_t collapse_count;
 };
 

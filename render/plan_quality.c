@@ -3,7 +3,7 @@
 #include "render/plan.h"
 #include "render/vec.h"
 
-/* A level is sharp enough with this share of the pixels needed. */
+/* A level is sharp enough with so many times the pixels needed. */
 static const float sharp_enough = 1.2f;
 
 const struct plan_tuning plan_tuning = {
