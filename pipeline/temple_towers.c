@@ -173,31 +173,43 @@ void plan_porch(struct plan *plan, const struct frame *frame, float half_m, floa
 	plan_doorway(plan, &front, half_m, height_m);
 }
 
-/* Antefixes on a cornice: one on each axis, two beside it, one on each corner. */
+/* A leaf of stone that stands free on a cornice and leans out over it. */
+static void plan_antefix(struct plan *plan, const struct frame *frame, float width_m, float high_m)
+{
+	struct sheet *leaf = plan_panel(plan, frame, width_m, high_m, RELIEF_FLAME, 0.09f, 0);
+
+	leaf->shape = SHAPE_LEAF;
+	leaf->rim_m = fminf(0.12f, 0.2f * width_m);
+	leaf->lean = -0.18f;
+	leaf->interest = 3.9f;
+}
+
+/* Antefixes on a cornice: one on each axis and one across each corner; where there is room two
+ * more beside each axis. */
 static void plan_antefixes(struct plan *plan, const struct frame *deck, float half_m, float high_m)
 {
-	static const struct {
-		float x, y, width;
-	} stones[] = { { 0, 1.0f, 0.62f },
-		       { -0.55f, 0.9f, 0.26f },
-		       { 0.55f, 0.9f, 0.26f },
-		       { -0.78f, 0.72f, 0.24f },
-		       { 0.78f, 0.72f, 0.24f } };
+	const float eighth = sqrtf(0.5f); /* of a turn: its sine and cosine */
+	const bool roomy = half_m > 1.9f;
 
 	for (int turn = 0; turn < 4; turn++) {
 		struct frame side = frame_within(deck, 0, 0, 0, turn);
-		for (uint32_t i = 0; i < ARRAY_COUNT(stones); i++) {
-			if (i && temple_chance(plan->seed, plan->count, 13 + i) < 0.08f)
-				continue; /* fallen */
-			struct frame at = frame_within(&side, stones[i].x * half_m,
-						       -stones[i].y * half_m - 0.1f, 0, 0);
-			struct sheet *leaf =
-				plan_panel(plan, &at, fmaxf(stones[i].width * half_m, 0.25f),
-					   high_m * (i ? 0.82f : 1.05f), RELIEF_FLAME, 0.09f, 0);
-			leaf->shape = SHAPE_LEAF;
-			leaf->rim_m = 0.12f;
-			leaf->lean = -0.18f;
-			leaf->interest = i ? 3.6f : 3.9f;
+		struct frame axis = frame_within(&side, 0, -half_m - 0.1f, 0, 0);
+		struct frame corner =
+			frame_within(&side, 0.68f * half_m + 0.07f, -0.68f * half_m - 0.07f, 0, 0);
+		float x = corner.turn[0], y = corner.turn[1];
+
+		corner.turn[0] = eighth * (x - y);
+		corner.turn[1] = eighth * (x + y);
+		plan_antefix(plan, &axis, fmaxf(0.62f * half_m, 0.25f), high_m * 1.05f);
+		if (temple_chance(plan->seed, plan->count, 13) >= 0.08f) /* not fallen */
+			plan_antefix(plan, &corner, fmaxf(0.4f * half_m, 0.25f), high_m * 0.9f);
+		for (int i = 0; roomy && i < 2; i++) {
+			struct frame beside = frame_within(&side, (i ? 0.55f : -0.55f) * half_m,
+							   -0.9f * half_m - 0.1f, 0, 0);
+
+			if (temple_chance(plan->seed, plan->count, 14) >= 0.08f)
+				plan_antefix(plan, &beside, fmaxf(0.26f * half_m, 0.25f),
+					     high_m * 0.82f);
 		}
 	}
 }
