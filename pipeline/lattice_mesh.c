@@ -99,11 +99,13 @@ static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const
 			merged->sum[id][i] += own[i];
 	}
 	free(table);
-	for (uint32_t v = 0; v < out->vertex_count; v++)
+	for (uint32_t v = 0; v < out->vertex_count; v++) {
+		out->vertices[v].seen = 255;
 		for (int i = 0; i < 4; i++)
 			out->vertices[v].colour[i] =
 				(uint8_t)((merged->sum[v][i] + merged->count[v] / 2) /
 					  merged->count[v]);
+	}
 	return 0;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "format/patch.h"
+#include "pipeline/exposure.h"
 #include "pipeline/graph.h"
 #include "pipeline/multires_parts.h"
 #include "pipeline/parallel.h"
@@ -672,6 +673,8 @@ int multires_build(struct hierarchy *out, struct multires_stats *stats, struct l
 	*stats = (struct multires_stats){ 0 };
 	set_defaults(&builder.options, mesh->triangle_count);
 	rc = site_init(&builder);
+	if (rc == 0)
+		rc = exposure_find(mesh, builder.options.jobs);
 	if (rc == 0)
 		rc = partition_scan(&builder);
 	builder.progress = progress_start("simplifying", "triangles",

@@ -13,6 +13,7 @@
 #define COLOUR_WEIGHT 0.005 /* black to white over an edge, against moving it by its length */
 #define SHAPE_WEIGHT  1e-6  /* on flat ground, short edges first */
 #define FOLD_COSINE   0.2   /* a triangle may turn by less than this */
+#define UNSEEN_WEIGHT 0.03  /* of what nobody sees, to what is seen from all sides */
 
 struct candidate {
 	float cost;
@@ -160,7 +161,14 @@ static bool edge_is_open(struct work *work, uint32_t a, uint32_t b)
 
 /* ---- quadrics */
 
-static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const double normal[3])
+/* Errors count by how many see them: "Visibility-guided simplification", Zhang and Turk 2002. */
+static double importance(const struct lattice_vertex *vertex)
+{
+	return UNSEEN_WEIGHT + (1.0 - UNSEEN_WEIGHT) * vertex->seen / 255.0;
+}
+
+static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const double normal[3],
+			  double weight)
 {
 	double at[3], to[3], along[3], side[3], length;
 
@@ -176,15 +184,16 @@ static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const doubl
 		return;
 	for (int i = 0; i < 3; i++)
 		side[i] /= length;
-	quadric_add_plane(&work->quadrics[a], side, at, BORDER_WEIGHT * dot(along, along));
-	quadric_add_plane(&work->quadrics[b], side, at, BORDER_WEIGHT * dot(along, along));
+	weight *= BORDER_WEIGHT * dot(along, along);
+	quadric_add_plane(&work->quadrics[a], side, at, weight);
+	quadric_add_plane(&work->quadrics[b], side, at, weight);
 }
 
 static void add_triangle(struct work *work, uint32_t t)
 {
 	const uint32_t *triangle = work->surface->triangles[t];
 	const struct lattice_vertex *vertices = work->surface->vertices;
-	double normal[3], at[3], length;
+	double normal[3], at[3], length, weight = 0.0;
 
 	cross_of_triangle(normal, work, t);
 	length = sqrt(dot(normal, normal));
@@ -193,13 +202,15 @@ static void add_triangle(struct work *work, uint32_t t)
 	for (int i = 0; i < 3; i++)
 		normal[i] /= length;
 	place_of(at, work, triangle[0]);
+	for (int corner = 0; corner < 3; corner++)
+		weight += importance(&vertices[triangle[corner]]) / 3.0;
 	for (int corner = 0; corner < 3; corner++) {
 		uint32_t a = triangle[corner], b = triangle[(corner + 1) % 3];
 
-		quadric_add_plane(&work->quadrics[a], normal, at, length / 6.0);
+		quadric_add_plane(&work->quadrics[a], normal, at, weight * length / 6.0);
 		work->areas[a] += length / 6.0;
 		if (vertices[a].border && vertices[b].border && edge_is_open(work, a, b))
-			add_open_edge(work, a, b, normal);
+			add_open_edge(work, a, b, normal, weight);
 	}
 }
 
@@ -307,6 +318,7 @@ static int push_edge(struct work *work, uint32_t a, uint32_t b)
 	place_of(to, work, b);
 	square = squared_distance(from, to);
 	cost += square * fmin(work->areas[a], work->areas[b]) * COLOUR_WEIGHT *
+		fmin(importance(&vertices[a]), importance(&vertices[b])) *
 		colour_distance(&vertices[a], &vertices[b]);
 	cost += square * square * SHAPE_WEIGHT;
 	return push(work,
@@ -438,6 +450,7 @@ static void blend(struct work *work, uint32_t keep, uint32_t gone)
 	for (int i = 0; i < 4; i++)
 		to->colour[i] =
 			(uint8_t)(to->colour[i] + lrint(share * (from->colour[i] - to->colour[i])));
+	to->seen = (uint8_t)(to->seen + lrint(share * (from->seen - to->seen)));
 	for (int i = 0; i < 3; i++)
 		normal[i] = (1.0 - share) * to->normal[i] + share * from->normal[i];
 	length = sqrt(dot(normal, normal));
