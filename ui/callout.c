@@ -258,6 +258,49 @@ static void uncross(const struct layout *layout, struct column *column)
 	}
 }
 
+/* From a point to a leader, pixels. */
+static float distance_to(const struct callout *leader, float x_px, float y_px)
+{
+	float dx = leader->anchor_x_px - leader->port_x_px;
+	float dy = leader->anchor_y_px - leader->port_y_px;
+	float square = dx * dx + dy * dy, t = 0;
+
+	if (square > 0)
+		t = ((x_px - leader->port_x_px) * dx + (y_px - leader->port_y_px) * dy) / square;
+	t = fminf(fmaxf(t, 0), 1);
+	return hypotf(leader->port_x_px + t * dx - x_px, leader->port_y_px + t * dy - y_px);
+}
+
+/* How far the leader of one of two neighbours keeps from the dot of the other. */
+static float clearance(const struct layout *layout, const struct column *column, uint32_t upper)
+{
+	struct callout a = place(layout, column, upper), b = place(layout, column, upper + 1);
+
+	return fminf(distance_to(&a, b.anchor_x_px, b.anchor_y_px),
+		     distance_to(&b, a.anchor_x_px, a.anchor_y_px));
+}
+
+/* A leader that all but runs through another's dot seems to belong to it: neighbours change places
+ * where that parts them clearly. */
+static void clear_dots(const struct layout *layout, struct column *column)
+{
+	float near_px = (float)layout->area->row_px / 3;
+
+	for (uint32_t i = 0; i + 1 < column->count; i++) {
+		struct column tried = *column;
+		float now_px = clearance(layout, column, i);
+		uint32_t a, b;
+
+		if (now_px >= near_px)
+			continue;
+		swap(&tried, i, i + 1);
+		settle(layout, &tried);
+		if (clearance(layout, &tried, i) > 2 * near_px - now_px &&
+		    !find_crossing(layout, &tried, &a, &b))
+			*column = tried;
+	}
+}
+
 static void lay_out(const struct layout *layout, struct callouts *out)
 {
 	struct column columns[2] = { { .left = true }, { .left = false } };
@@ -267,6 +310,7 @@ static void lay_out(const struct layout *layout, struct callouts *out)
 	for (int side = 0; side < 2; side++) {
 		sort(&columns[side]);
 		uncross(layout, &columns[side]);
+		clear_dots(layout, &columns[side]);
 		for (uint32_t i = 0; i < columns[side].count; i++)
 			out->list[out->count++] = place(layout, &columns[side], i);
 	}

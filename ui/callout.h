@@ -5,8 +5,9 @@
  * column's labels are ordered; their heights are the least-squares answer to "as near to your
  * anchor as you can without touching a neighbour" (isotonic regression by pooling adjacent
  * violators), which never moves further than the anchors moved. Where two leaders of a column
- * cross, the two labels change places (for given places that shortens the leaders, so it ends);
- * side and order of the frame before are kept as long as nothing crosses.
+ * cross, the two labels change places (for given places that shortens the leaders, so it ends), and
+ * so do neighbours of which one's leader all but runs through the other's dot; side and order of
+ * the frame before are kept as long as nothing crosses.
  *
  * Boundary labelling after Bekos et al. 2007, one-sided straight leaders, twice. */
 #ifndef GOPURA_UI_CALLOUT_H

@@ -181,6 +181,32 @@ static void follows_small_moves_quietly(void **state)
 	CHECK(jumps < frames / 20);
 }
 
+/* As seen of a corner tower before the central one: the order of a frame before, kept, would lead
+ * one leader through the other's dot. */
+static void no_leader_runs_through_a_dot(void **state)
+{
+	const struct callout_area area = { .x_px = 7,
+					   .y_px = 7,
+					   .width_px = 1266,
+					   .height_px = 640,
+					   .column_px = 190,
+					   .row_px = 27,
+					   .gap_px = 11,
+					   .lead_px = 14 };
+	struct callout_anchor anchors[2] = { { 900, 120, true, 104 }, { 700, 148, true, 136 } };
+	struct callouts callouts = { 0 };
+
+	(void)state;
+	callouts_layout(&callouts, &area, anchors, 2);
+	CHECK(callouts.count == 2 && callouts.list[0].part == 0);
+	anchors[0] = (struct callout_anchor){ 958, 163, true, 104 };
+	callouts_layout(&callouts, &area, anchors, 2);
+	CHECK(callouts.count == 2 && callouts.list[0].part == 1);
+	/* And it stays so. */
+	callouts_layout(&callouts, &area, anchors, 2);
+	CHECK(callouts.list[0].part == 1);
+}
+
 static void hides_what_is_hidden(void **state)
 {
 	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10 };
@@ -246,6 +272,7 @@ int main(void)
 		cmocka_unit_test(never_overlaps_crosses_or_leaves_the_area),
 		cmocka_unit_test(shows_all_where_there_is_room),
 		cmocka_unit_test(follows_small_moves_quietly),
+		cmocka_unit_test(no_leader_runs_through_a_dot),
 		cmocka_unit_test(hides_what_is_hidden),
 		cmocka_unit_test(prefers_the_important),
 		cmocka_unit_test(says_how_long_it_takes),
