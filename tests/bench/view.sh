@@ -1,45 +1,149 @@
 #!/bin/bash
-# Pictures of the demo temple against the truth, and what they cost: 40 views (an orbit, a walk,
-# close-ups; none on a sampling point), 1280 x 720, from an empty cache, in the three modes.
+# Settled pictures against the truth, and what they cost: views of an orbit, nearer ones and
+# close-ups, none on a sampling point, 1280 x 720, from an empty cache, in the three modes.
 #
-#   VIEWS=N   N of them, spread over the path     SUPERSAMPLE=N  of the truth (default 4: 16 samples a pixel)
+#   ROWS="demo venus"  these rows alone            VIEWS=N  of each row, spread over its path
+#   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
+#
+# Rows: demo (2 M triangles, colours finer than vertices; 40 views, those of tests/e2e/pictures.sh),
+# temple and temple-open (5 M triangles, colours of vertices, a tenth of it published or all; 60
+# views), venus and zeus (real scans, textured; 60 views).
+# What is built stays in build/bench/view; build/bench/view.json has a row for each.
 set -eu
 cd "$(dirname "$0")/../.."
-demo=build/demo work=build/bench/view
+work=build/bench/view scans=../shared/scans
 mkdir -p "$work"
-demo/prepare.sh
-grep -v '^#' tests/bench/views.txt | awk -v n="${VIEWS:-40}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
-build/gopura-content render "$demo/content" --views "$work/views.txt" --size 1280x720 \
-	--supersample "${SUPERSAMPLE:-4}" --out "$work/truth"
 
-for mode in lumigraph polygons corners; do
-	rm -rf "$work/$mode" "$work/state-$mode"
-	build/gopura-kiosk --display headless --size 1280x720 --mode "$mode" --release "$demo/release" \
-		--trust "$demo/release/root/1.json" --state "$work/state-$mode" \
-		--views "$work/views.txt" --capture "$work/$mode" 2>"$work/$mode.log"
-	build/tests/tools/compare_pictures "$work/truth" "$work/$mode" >"$work/$mode.jsonl"
+# spread: of the views that come in, VIEWS
+spread() {
+	awk -v n="${VIEWS:-1000}" '!/^#/ { line[++count] = $0 }
+		END { for (i = 1; i <= count; i++)
+			if (n >= count || int(i * n / count) > int((i - 1) * n / count)) print line[i] }'
+}
+
+# folder NAME LINE...: a content folder with that temple.ini; equal text keeps what was built.
+folder() {
+	mkdir -p "$work/$1/content"
+	printf '%s\n' '[model]' "name = $1" "${@:2}" >"$work/temple.ini"
+	cmp -s "$work/temple.ini" "$work/$1/content/temple.ini" || cp "$work/temple.ini" "$work/$1/content/"
+}
+
+# around RELEASE: views by the box of the model
+around() {
+	# shellcheck disable=SC2046
+	python3 tests/bench/around.py $(build/gopura-content inspect "$1" | awk '$1 == "box" { print $3, $4, $5 }')
+}
+
+# draw NAME CONTENT RELEASE <PATH: truth, pictures, and how near they come
+draw() {
+	local out=$work/$1 mode
+	mkdir -p "$out"
+	spread >"$out/views.txt"
+	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
+		--supersample "${SUPERSAMPLE:-4}" --out "$out/truth" >&2
+	for mode in lumigraph polygons corners; do
+		rm -rf "${out:?}/$mode" "$out/state"
+		build/gopura-kiosk --display headless --size 1280x720 --mode "$mode" --release "$3" \
+			--trust "$3/root/1.json" --state "$out/state" \
+			--views "$out/views.txt" --capture "$out/$mode" 2>"$out/$mode.log"
+		build/tests/tools/compare_pictures "$out/truth" "$out/$mode" >"$out/$mode.jsonl"
+	done
+	rm -rf "$out/state"
+}
+
+row_demo() {
+	demo/prepare.sh >&2
+	grep -v '^#' tests/bench/views.txt | head -40 | draw demo build/demo/content build/demo/release
+}
+
+temple_ini=('scans = scan.ply' 'colours = scan' 'lit = yes' 'sun = 0.60 -0.58 0.55' '[grid]'
+	'points = 8' 'face_px = 2048' 'quality = 75')
+
+build_temple() {
+	folder temple "${temple_ini[@]}"
+	[ -f "$work/temple/content/scan.ply" ] ||
+		build/gopura-content temple --triangles 5000000 --out "$work/temple/content/scan.ply" >&2
+	build/gopura-content build "$work/temple/content" --out "$work/temple/release" >&2
+}
+
+row_temple() {
+	build_temple
+	draw temple "$work/temple/content" "$work/temple/release" <tests/bench/views.txt
+}
+
+# The same scan, hierarchy and samples, all of it published; the same truth.
+row_temple_open() {
+	local open=$work/temple-open
+	build_temple
+	folder temple-open "${temple_ini[@]}" '[release]' 'publish_share = 1'
+	rm -rf "$open/content/scan.ply" "$open/content/.work"
+	cp -rl "$work/temple/content/scan.ply" "$work/temple/content/.work" "$open/content/"
+	build/gopura-content build "$open/content" --out "$open/release" >&2
+	draw temple-open "$open/content" "$open/release" <tests/bench/views.txt
+}
+
+# scan NAME FILES LINE...: a real scan; skipped where it is not at hand
+scan() {
+	local file
+	[ -d "$scans" ] || { echo "skipped: $1, no $scans" >&2; return; }
+	folder "$1" "${@:3}"
+	for file in $2; do ln -sf "$(realpath "$file")" "$work/$1/content/"; done
+	build/gopura-content build "$work/$1/content" --out "$work/$1/release" >&2
+	around "$work/$1/release" | draw "$1" "$work/$1/content" "$work/$1/release"
+}
+
+row_venus() {
+	scan venus "$scans/venus-cc0-textured/decoded/*" 'scans = venus.obj' 'up = y' 'unit = 0.1'
+}
+
+row_zeus() {
+	scan zeus "$scans/bust-zeus-head/*.obj $scans/bust-zeus-head/*.mtl $scans/bust-zeus-head/*.jpg" \
+		'scans = koepfchenzeus.obj' 'up = y' 'unit = mm'
+}
+
+rows=${ROWS:-demo temple temple-open venus zeus}
+for row in $rows; do
+	echo "-- $row" >&2
+	rm -f "$work/$row/lumigraph.jsonl"
+	"row_${row//-/_}"
 done
-python3 - "$work" lumigraph polygons corners >build/bench/view.json <<'P'
+# shellcheck disable=SC2086
+python3 - "$work" $rows >build/bench/view.json <<'P'
 import json
+import os
 import sys
 
-work, modes = sys.argv[1], sys.argv[2:]
-rows = []
-for mode in modes:
-    views = [json.loads(line) for line in open(f"{work}/{mode}/views.jsonl")]
-    quality = json.loads(open(f"{work}/{mode}.jsonl").readlines()[-1])
-    orbit = views[: max(1, len(views) // 2)]
-    mean = lambda key, of: sum(v[key] for v in of) / len(of)
+work, rows = sys.argv[1], []
+
+
+def last(row, mode):
+    return json.loads(open(f"{work}/{row}/{mode}.jsonl").readlines()[-1])
+
+
+def kb(views):
+    return round(sum(v["bytes_fetched"] for v in views) / 1000 / len(views), 1)
+
+
+for name in sys.argv[2:]:
+    if not os.path.exists(f"{work}/{name}/lumigraph.jsonl"):
+        continue
+    of = {m: [json.loads(line) for line in open(f"{work}/{name}/{m}/views.jsonl")]
+          for m in ("lumigraph", "polygons", "corners")}
+    views, quality = of["lumigraph"], last(name, "lumigraph")
+    orbit = views[: max(1, len(views) // 3)]
     middle = lambda key: sorted(v[key] for v in views)[len(views) // 2]
-    rows.append({
-        "name": mode, "views": len(views),
+    row = {
+        "name": name, "views": len(views), "kb_per_view": kb(views),
+        "first_view_kb": kb(views[:1]),
         "psnr_db": quality["psnr_db"], "psnr_worst5_db": quality["psnr_worst5_db"], "ssim": quality["ssim"],
-        "kb_per_view": round(mean("bytes_fetched", views) / 1000, 1),
-        "first_view_kb": round(views[0]["bytes_fetched"] / 1000, 1),
-        "image_share": round(mean("image_share", views), 3),
-        "image_share_orbit": round(mean("image_share", orbit), 3),
-        "frame_ms": middle("frame_ms"), "settled_ms": middle("settled_ms"),
-        "all_settled": all(v["settled"] for v in views),
-    })
+        "image_share": round(sum(v["image_share"] for v in views) / len(views), 3),
+        "image_share_orbit": round(sum(v["image_share"] for v in orbit) / len(orbit), 3),
+        "settled_ms": middle("settled_ms"), "all_settled": all(v["settled"] for m in of.values() for v in m),
+    }
+    for mode in ("polygons", "corners"):
+        other = last(name, mode)
+        row |= {f"{mode}_psnr_db": other["psnr_db"], f"{mode}_psnr_worst5_db": other["psnr_worst5_db"],
+                f"{mode}_ssim": other["ssim"], f"{mode}_kb_per_view": kb(of[mode])}
+    rows.append(row)
 print(json.dumps({"rows": rows}, indent=1))
 P
