@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/bench
 make --no-print-directory -j"$(nproc)" tests >/dev/null
-# All rows of view take half an hour of their own.
+# Whole, it draws one row of view; all of them take longer than the rest together.
 [ $# -gt 0 ] || export ROWS=${ROWS:-demo}
 for script in tests/bench/${1:-*}.sh; do
 	name=$(basename "$script" .sh)
