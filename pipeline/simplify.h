@@ -20,10 +20,11 @@ struct surface {
 
 struct simplify_result {
 	/* What the surface is wrong by: the largest distance (root of the mean square, weighted by
-	 * area) of a new vertex from the planes it stands for; lattice steps. */
+	 * area) of a new vertex from the planes it stands for, as far as they are seen (`seen` of
+	 * their vertices, pipeline/exposure.h); lattice steps. */
 	double error_steps;
-	/* What the costliest collapse lost: squared distance times area, lattice steps to the
-	 * fourth. */
+	/* What the costliest collapse lost: squared distance times area that is seen, lattice steps
+	 * to the fourth. */
 	double loss_steps4;
 	uint32_t collapse_count;
 };

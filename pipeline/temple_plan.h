@@ -31,8 +31,8 @@ struct frame frame_within(const struct frame *frame, float x_m, float y_m, float
 extern const struct outline outline_line, outline_square, outline_circle, outline_octagon,
 	outline_redented, outline_redented_deep;
 
-/* A sheet of the profile, standing at the frame; the caller changes what differs. NULL when memory
- * ran out. */
+/* A sheet of the profile, standing at the frame; the caller changes what differs. Never NULL:
+ * when memory ran out, a sheet that is in no plan. */
 struct sheet *plan_sheet(struct plan *plan, const struct frame *frame,
 			 const struct outline *outline, const struct profile *profile, float size_m,
 			 float reach_m, float height_m);

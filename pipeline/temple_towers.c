@@ -173,7 +173,7 @@ void plan_porch(struct plan *plan, const struct frame *frame, float half_m, floa
 	plan_doorway(plan, &front, half_m, height_m);
 }
 
-/* A leaf of stone that stands free on a cornice and leans out over it. */
+/* A leaf of stone that stands free on a cornice and leans back a little. */
 static void plan_antefix(struct plan *plan, const struct frame *frame, float width_m, float high_m)
 {
 	struct sheet *leaf = plan_panel(plan, frame, width_m, high_m, RELIEF_FLAME, 0.09f, 0);

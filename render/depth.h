@@ -15,7 +15,7 @@
 struct depth {
 	struct gl_target raw; /* the face that is being drawn */
 	GLuint atlas, framebuffer, draw_program, grow_program;
-	GLint lattice, axes, far_m, texel;
+	GLint lattice, axes, far_m;
 	int face_px, atlas_width_px, atlas_height_px;
 	float far_limit_m;
 	struct depth_face {
