@@ -40,9 +40,13 @@ int cut_init(struct cut *cut, const struct hierarchy *hierarchy)
 	cut->heap_group = calloc(groups, sizeof(uint32_t));
 	cut->heap_error = calloc(groups, sizeof(float));
 	cut->patches = calloc(patches, sizeof(uint32_t));
+	cut->patch_px = calloc(patches, sizeof(float));
+	cut->group_px = calloc(groups, sizeof(float));
+	cut->needed = calloc(groups, 1);
 	cut->wants = calloc(groups, sizeof(*cut->wants));
 	bool ok = cut->shown && cut->desired && cut->waiting && cut->heap_group &&
-		  cut->heap_error && cut->patches && cut->wants;
+		  cut->heap_error && cut->patches && cut->wants && cut->patch_px && cut->group_px &&
+		  cut->needed;
 	int rc = ok ? index_replaced(cut) : -ENOMEM;
 	if (rc < 0)
 		cut_finish(cut);
@@ -58,15 +62,26 @@ void cut_finish(struct cut *cut)
 	free(cut->heap_error);
 	free(cut->patches);
 	free(cut->wants);
+	free(cut->patch_px);
+	free(cut->group_px);
+	free(cut->needed);
 	free(cut->replaced_first);
 	free(cut->replaced);
 	memset(cut, 0, sizeof(*cut));
 }
 
+const uint32_t *cut_replaced(const struct cut *cut, uint32_t group, uint32_t *count)
+{
+	*count = cut->replaced_first[group + 1] - cut->replaced_first[group];
+	return cut->replaced + cut->replaced_first[group];
+}
+
 bool cut_depends(const struct cut *cut, uint32_t group, uint32_t on_group)
 {
-	for (uint32_t i = cut->replaced_first[group]; i < cut->replaced_first[group + 1]; i++)
-		if (cut->hierarchy->patches[cut->replaced[i]].group == on_group)
+	uint32_t count;
+	const uint32_t *replaced = cut_replaced(cut, group, &count);
+	for (uint32_t i = 0; i < count; i++)
+		if (cut->hierarchy->patches[replaced[i]].group == on_group)
 			return true;
 	return false;
 }
@@ -124,18 +139,14 @@ struct growth {
 	const struct view *view; /* NULL: all around */
 	const float *eye_m;
 	float focal_px;
-	const uint8_t *loaded; /* NULL: as if all were */
+	const uint8_t *loaded; /* only these */
 	uint8_t *refined;
 	const struct cut_options *options;
 };
 
 static float growth_error(const struct cut *cut, const struct growth *growth, uint32_t group)
 {
-	const struct hierarchy_group *g = &cut->hierarchy->groups[group];
-	if (growth->view && !growth->loaded &&
-	    !view_sees_sphere(growth->view, g->centre_m, g->radius_m))
-		return 0;
-	return cut_group_error_px(g, growth->eye_m, growth->focal_px);
+	return cut_group_error_px(&cut->hierarchy->groups[group], growth->eye_m, growth->focal_px);
 }
 
 static uint32_t patch_cost(const struct growth *growth, const struct hierarchy_patch *patch)
@@ -166,7 +177,7 @@ static void release_finer(struct cut *cut, const struct growth *growth, uint32_t
 		uint32_t finer = h->patches[p].finer;
 		if (finer == HIERARCHY_NONE || --cut->waiting[finer] > 0)
 			continue;
-		if (!growth->loaded || growth->loaded[finer])
+		if (growth->loaded[finer])
 			heap_push(cut, finer, growth_error(cut, growth, finer));
 	}
 }
@@ -178,7 +189,7 @@ static int64_t grow(struct cut *cut, const struct growth *growth)
 	cut->heap_count = 0;
 	for (uint32_t g = 0; g < h->group_count; g++)
 		cut->waiting[g] = cut->replaced_first[g + 1] - cut->replaced_first[g];
-	if (h->group_count > 0 && (!growth->loaded || growth->loaded[0]))
+	if (h->group_count > 0 && growth->loaded[0])
 		heap_push(cut, 0, INFINITY);
 	int64_t triangles = 0;
 	while (cut->heap_count > 0 && cut->heap_error[0] >= growth->options->error_px) {
@@ -211,8 +222,70 @@ void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,
 	struct growth growth = { view, view->eye_m, view->focal_px, loaded, cut->shown, options };
 	cut->triangle_count = (uint32_t)grow(cut, &growth);
 	list_patches(cut);
-	growth.loaded = NULL;
-	growth.refined = cut->desired;
+}
+
+/* ---- desire */
+
+/* What shows of each patch and of what each group replaces; a group comes after those it depends
+ * on, so coarser patches have theirs before they share it out. */
+static void share_out(struct cut *cut, const struct view *view, const float *seen_px)
+{
+	const struct hierarchy *h = cut->hierarchy;
+	const struct growth growth = { .view = view };
+	for (uint32_t i = 0; i < h->patch_count; i++)
+		cut->patch_px[i] = -1;
+	for (uint32_t i = 0; i < cut->patch_count; i++) {
+		uint32_t p = cut->patches[i];
+		const struct hierarchy_patch *patch = &h->patches[p];
+		cut->patch_px[p] = seen_px ? seen_px[p] : -1;
+		if (!view_sees_sphere(view, patch->centre_m, patch->radius_m))
+			cut->patch_px[p] = 0;
+		else if (cut->patch_px[p] < 0)
+			cut->patch_px[p] = view_sphere_px(view, patch->centre_m, patch->radius_m);
+	}
+	for (uint32_t g = 0; g < h->group_count; g++) {
+		const struct hierarchy_group *group = &h->groups[g];
+		uint32_t count, triangles = 0;
+		const uint32_t *replaced = cut_replaced(cut, g, &count);
+		cut->group_px[g] = g == 0 ? view->picture_px : 0;
+		for (uint32_t i = 0; i < count; i++)
+			cut->group_px[g] += vec_most(cut->patch_px[replaced[i]], 0);
+		for (uint32_t p = group->first_patch; p < group->first_patch + group->patch_count;
+		     p++)
+			triangles += patch_cost(&growth, &h->patches[p]);
+		for (uint32_t p = group->first_patch; p < group->first_patch + group->patch_count;
+		     p++)
+			if (cut->patch_px[p] < 0 && triangles > 0)
+				cut->patch_px[p] = cut->group_px[g] *
+						   (float)patch_cost(&growth, &h->patches[p]) /
+						   (float)triangles;
+	}
+}
+
+/* What shows, and what that depends on. */
+static void mark_needed(struct cut *cut, const struct view *view, float error_px)
+{
+	const struct hierarchy *h = cut->hierarchy;
+	memset(cut->needed, 0, h->group_count);
+	for (uint32_t g = h->group_count; g-- > 0;) {
+		uint32_t count;
+		const uint32_t *replaced = cut_replaced(cut, g, &count);
+		if (cut->group_px[g] > 0 &&
+		    view_sees_sphere(view, h->groups[g].centre_m, h->groups[g].radius_m) &&
+		    cut_group_error_px(&h->groups[g], view->eye_m, view->focal_px) >= error_px)
+			cut->needed[g] = 1;
+		for (uint32_t i = 0; i < count && cut->needed[g]; i++)
+			cut->needed[h->patches[replaced[i]].group] = 1;
+	}
+}
+
+void cut_desire(struct cut *cut, const struct view *view, const uint8_t *loaded,
+		const float *seen_px, const struct cut_options *options)
+{
+	share_out(cut, view, seen_px);
+	mark_needed(cut, view, options->error_px);
+	struct growth growth = { view,        view->eye_m,  view->focal_px,
+				 cut->needed, cut->desired, options };
 	grow(cut, &growth);
 	cut->want_count = 0;
 	for (uint32_t g = 0; g < cut->hierarchy->group_count; g++) {
@@ -222,7 +295,7 @@ void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,
 		cut->wants[cut->want_count++] = (struct cut_want){
 			.group = g,
 			.error_px = cut_group_error_px(group, view->eye_m, view->focal_px),
-			.area_px = view_sphere_px(view, group->centre_m, group->radius_m),
+			.seen_px = cut->group_px[g],
 		};
 	}
 }

@@ -21,6 +21,12 @@ struct queue {
 	struct job *first, **last;
 };
 
+/* A decoder of one thread, made again when the tables change. */
+struct decoder {
+	struct tile_codec *codec;
+	uint32_t version;
+};
+
 struct pool {
 	pthread_mutex_t lock;
 	pthread_cond_t work, idle;
@@ -32,7 +38,8 @@ struct pool {
 	size_t tables_bytes;
 	uint32_t tables_version;
 	struct lattice lattice;
-	uint32_t busy; /* of the thread that gives and takes */
+	struct decoder decoder; /* without workers: of the thread that gives */
+	uint32_t busy;          /* of the thread that gives and takes */
 	int fd;
 };
 
@@ -87,12 +94,6 @@ void pool_answer_finish(struct pool_answer *answer)
 }
 
 /* ---- on a worker */
-
-/* A worker's own decoder, made again when the tables change. */
-struct decoder {
-	struct tile_codec *codec;
-	uint32_t version;
-};
 
 /* Called with the lock held: the tables are the pool's. */
 static void refresh_decoder(struct pool *pool, struct decoder *decoder)
@@ -153,31 +154,36 @@ static void do_job(struct job *job, struct tile_codec *codec, const struct latti
 	job->object = NULL;
 }
 
+/* Called with the lock held, which is not held while the job is done. false: nothing to do. */
+static bool do_one(struct pool *pool, struct decoder *decoder)
+{
+	struct job *job = queue_take(&pool->todo);
+	if (!job)
+		return false;
+	refresh_decoder(pool, decoder);
+	struct lattice lattice = pool->lattice;
+	pool->at_work++;
+	pthread_mutex_unlock(&pool->lock);
+	do_job(job, decoder->codec, &lattice);
+	pthread_mutex_lock(&pool->lock);
+	pool->at_work--;
+	queue_put(&pool->done, job);
+	pthread_cond_signal(&pool->idle);
+	const uint64_t one = 1;
+	/* The counter cannot overflow: it is read whenever an answer is taken. */
+	ssize_t written = write(pool->fd, &one, sizeof(one));
+	(void)written;
+	return true;
+}
+
 static void *run_worker(void *data)
 {
 	struct pool *pool = data;
 	struct decoder decoder = { 0 };
 	pthread_mutex_lock(&pool->lock);
-	while (!pool->stopping) {
-		struct job *job = queue_take(&pool->todo);
-		if (!job) {
+	while (!pool->stopping)
+		if (!do_one(pool, &decoder))
 			pthread_cond_wait(&pool->work, &pool->lock);
-			continue;
-		}
-		refresh_decoder(pool, &decoder);
-		struct lattice lattice = pool->lattice;
-		pool->at_work++;
-		pthread_mutex_unlock(&pool->lock);
-		do_job(job, decoder.codec, &lattice);
-		pthread_mutex_lock(&pool->lock);
-		pool->at_work--;
-		queue_put(&pool->done, job);
-		pthread_cond_signal(&pool->idle);
-		const uint64_t one = 1;
-		/* The counter cannot overflow: it is read whenever an answer is taken. */
-		ssize_t written = write(pool->fd, &one, sizeof(one));
-		(void)written;
-	}
 	pthread_mutex_unlock(&pool->lock);
 	tile_codec_destroy(decoder.codec);
 	return NULL;
@@ -198,7 +204,6 @@ int pool_create(struct pool **out, uint32_t worker_count)
 	pthread_cond_init(&pool->idle, NULL);
 	pool->fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	int rc = pool->fd < 0 ? -errno : 0;
-	worker_count = worker_count < 1 ? 1 : worker_count;
 	worker_count = worker_count > WORKERS_MOST ? WORKERS_MOST : worker_count;
 	while (rc == 0 && pool->worker_count < worker_count) {
 		rc = -pthread_create(&pool->workers[pool->worker_count], NULL, run_worker, pool);
@@ -230,6 +235,7 @@ void pool_destroy(struct pool *pool)
 	pthread_mutex_destroy(&pool->lock);
 	if (pool->fd >= 0)
 		close(pool->fd);
+	tile_codec_destroy(pool->decoder.codec);
 	free(pool->tables);
 	free(pool);
 }
@@ -275,6 +281,8 @@ int pool_give(struct pool *pool, enum pool_kind kind, uint64_t id, struct bytes 
 	pthread_mutex_lock(&pool->lock);
 	queue_put(&pool->todo, job);
 	pthread_cond_signal(&pool->work);
+	if (pool->worker_count == 0)
+		do_one(pool, &pool->decoder);
 	pthread_mutex_unlock(&pool->lock);
 	pool->busy++;
 	return 0;

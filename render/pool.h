@@ -26,6 +26,7 @@ struct pool_answer {
 
 struct pool;
 
+/* Without workers the thread that gives decodes at once: answers come in the order of the gifts. */
 must_check int pool_create(struct pool **out, uint32_t worker_count);
 void pool_destroy(struct pool *pool); /* waits for the work at hand */
 

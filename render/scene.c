@@ -57,8 +57,10 @@ static void forget(struct scene *scene)
 	}
 	free(scene->groups);
 	free(scene->group_offset);
+	free(scene->seen_px);
 	scene->groups = NULL;
 	scene->group_offset = NULL;
+	scene->seen_px = NULL;
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->want_count = 0;
@@ -196,8 +198,10 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		rc = keep_groups(scene, &page);
 	if (rc == 0)
 		rc = geometry_init(&scene->geometry, &scene->hierarchy);
-	if (rc == 0)
-		rc = cut_init(&scene->cut, &scene->hierarchy);
+	if (rc == 0) {
+		scene->seen_px = calloc(scene->hierarchy.patch_count + 1, sizeof(float));
+		rc = scene->seen_px ? cut_init(&scene->cut, &scene->hierarchy) : -ENOMEM;
+	}
 	if (rc == 0)
 		rc = cut_init(&scene->around, &scene->hierarchy);
 	page_finish(&page);
@@ -207,8 +211,10 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		hierarchy_finish(&scene->hierarchy);
 		free(scene->groups);
 		free(scene->group_offset);
+		free(scene->seen_px);
 		scene->groups = NULL;
 		scene->group_offset = NULL;
+		scene->seen_px = NULL;
 		return rc;
 	}
 	scene->hierarchy_hash = hash;

@@ -25,7 +25,7 @@ struct scene_options {
 	uint32_t triangle_budget;  /* drawn in a frame */
 	float patch_error_px;      /* refine while a group's error is larger on the screen */
 	uint32_t upload_budget_us; /* of a frame */
-	uint32_t worker_count;
+	uint32_t worker_count;     /* 0: what comes is decoded by who gives it */
 };
 
 struct scene;

@@ -125,6 +125,17 @@ static void conclude(struct scene *scene, const struct visible_piece *visible)
 	state->planned = false;
 }
 
+/* Of the patches that are shown now; nobody looked at the others. */
+static void sum_patches(struct scene *scene)
+{
+	for (uint32_t p = 0; p < scene->hierarchy.patch_count; p++)
+		scene->seen_px[p] = -1;
+	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
+		scene->seen_px[scene->cut.patches[i]] = 0;
+	for (uint32_t i = 0; i < scene->visible_count; i++)
+		scene->seen_px[scene->visible[i].patch] += state_of(scene, i)->seen_px;
+}
+
 void scene_take_census(struct scene *scene, bool moved)
 {
 	if (!is_due(scene, moved))
@@ -140,6 +151,7 @@ void scene_take_census(struct scene *scene, bool moved)
 	}
 	for (uint32_t i = 0; i < scene->visible_count; i++)
 		conclude(scene, &scene->visible[i]);
+	sum_patches(scene);
 	scene->census_us = clock_now_us();
 	scene->census_cut = scene->cut_signature;
 	memcpy(scene->census_eye_m, scene->view.eye_m, sizeof(scene->census_eye_m));

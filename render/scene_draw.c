@@ -258,11 +258,12 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
 	scene_update_cut(scene);
 	scene_list_pieces(scene);
+	scene_take_census(scene, moved);
+	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
 		return;
 	}
-	scene_take_census(scene, moved);
 	keep_season(scene, moved, now_us);
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, fminf(passed_ms, 100));

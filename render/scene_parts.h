@@ -74,6 +74,7 @@ struct scene {
 	uint32_t *group_offset;    /* owned */
 	struct geometry geometry;
 	struct cut cut, around;
+	float *seen_px; /* per patch, by the last census; owned */
 	struct repository repository;
 
 	/* The frame at hand. */
@@ -117,6 +118,7 @@ void scene_take_census(struct scene *scene, bool moved);
 /* scene_plan.c */
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);
 void scene_update_cut(struct scene *scene);
+void scene_desire(struct scene *scene); /* after the census */
 void scene_list_pieces(struct scene *scene);
 void scene_plan_pieces(struct scene *scene, int64_t budget_us);
 void scene_fade_blends(struct scene *scene, float passed_ms);

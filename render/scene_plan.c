@@ -52,17 +52,26 @@ void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out
 
 /* ---- what is in sight */
 
+static struct cut_options cut_options_of(const struct scene *scene)
+{
+	return (struct cut_options){ .error_px = scene->options.patch_error_px,
+				     .triangle_budget = scene->options.triangle_budget };
+}
+
 void scene_update_cut(struct scene *scene)
 {
-	const struct cut_options options = { .error_px = scene->options.patch_error_px,
-					     .triangle_budget = scene->options.triangle_budget };
+	const struct cut_options options = cut_options_of(scene);
 	struct geometry *geometry = &scene->geometry;
-	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
-	uint32_t loaded = geometry->loaded_count;
 	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
-	if (geometry->loaded_count != loaded)
-		cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
+	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->loaded_count;
+}
+
+void scene_desire(struct scene *scene)
+{
+	const struct cut_options options = cut_options_of(scene);
+	cut_desire(&scene->cut, &scene->view, scene->geometry.loaded,
+		   scene->census_us ? scene->seen_px : NULL, &options);
 }
 
 float scene_patch_error_m(const struct scene *scene, uint32_t patch)

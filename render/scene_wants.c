@@ -49,21 +49,40 @@ static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
 	want(scene, OBJECT_GROUP, group, &place, priority);
 }
 
+/* What surfaces that are off by so many pixels cost the picture, on plan_worth's scale: an image
+ * brings octaves of detail even to a rough surface, a finer surface puts them into place. */
+static float misplaced(float error_px)
+{
+	return 0.1f * (isfinite(error_px) ? error_px / (error_px + 8) : 1);
+}
+
+/* What a group is worth, and what others need it for. */
 static void want_groups(struct scene *scene)
 {
+	const struct cut *cut = &scene->cut;
 	if (!scene->geometry.loaded[0]) {
 		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
 		return;
 	}
-	for (uint32_t i = 0; i < scene->cut.want_count; i++) {
-		const struct cut_want *w = &scene->cut.wants[i];
-		/* The share of its pixels that are wrong grows with the error, up to all. */
-		float wrong = w->error_px / (w->error_px + 8);
-		if (!isfinite(w->error_px))
-			wrong = 1;
-		want_group(scene, w->group,
-			   plan_priority(w->area_px * wrong, scene->groups[w->group].size));
+	uint32_t *priority = calloc(scene->hierarchy.group_count, sizeof(*priority));
+	if (!priority)
+		return; /* the next frame lists them */
+	for (uint32_t i = cut->want_count; i-- > 0;) {
+		const struct cut_want *w = &cut->wants[i];
+		uint32_t own = plan_priority(w->seen_px * misplaced(w->error_px),
+					     scene->groups[w->group].size);
+		if (priority[w->group] < own)
+			priority[w->group] = own;
+		uint32_t count;
+		const uint32_t *replaced = cut_replaced(cut, w->group, &count);
+		for (uint32_t k = 0; k < count; k++) {
+			uint32_t on = scene->hierarchy.patches[replaced[k]].group;
+			if (priority[on] <= priority[w->group])
+				priority[on] = priority[w->group] + 1;
+		}
+		want_group(scene, w->group, priority[w->group]);
 	}
+	free(priority);
 }
 
 /* ---- images */

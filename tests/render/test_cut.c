@@ -40,6 +40,13 @@ static struct view view_from(float x, float y, float target_x)
 	return view;
 }
 
+static void update(struct cut *cut, const struct view *view, const uint8_t *loaded,
+		   const struct cut_options *options)
+{
+	cut_update(cut, view, loaded, options);
+	cut_desire(cut, view, loaded, NULL, options);
+}
+
 static int set_up(void **state)
 {
 	static struct cut cut;
@@ -73,7 +80,7 @@ static void shows_nothing_before_the_top_group_is_there(void **state)
 	const struct cut_options options = { 1, 100000 };
 	const uint8_t loaded[4] = { 0, 1, 1, 1 };
 	struct view view = view_from(10, -60, 10);
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	CHECK(cut->patch_count == 0);
 	CHECK(cut->want_count > 0 && cut->wants[0].group == 0);
 }
@@ -84,12 +91,12 @@ static void coarser_patches_stand_in_for_what_is_not_loaded(void **state)
 	const struct cut_options options = { 1, 100000 };
 	const uint8_t loaded[4] = { 1, 1, 0, 1 };
 	struct view view = view_from(10, -60, 10);
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	/* Group 3 needs group 2, so it waits although it is loaded. */
 	CHECK(cut->shown[1] && !cut->shown[2] && !cut->shown[3]);
 	CHECK(shows(cut, 1) && shows(cut, 2) && shows(cut, 3) && cut->patch_count == 3);
 	CHECK(cut->want_count == 1 && cut->wants[0].group == 2);
-	CHECK(cut->wants[0].error_px > 1 && cut->wants[0].area_px > 0);
+	CHECK(cut->wants[0].error_px > 1 && cut->wants[0].seen_px > 0);
 }
 
 static void refines_no_further_than_the_error_asks(void **state)
@@ -99,10 +106,10 @@ static void refines_no_further_than_the_error_asks(void **state)
 	struct view view = view_from(10, -60, 10);
 	float error_px = cut_group_error_px(&groups[3], view.eye_m, view.focal_px);
 	struct cut_options options = { error_px * 1.01f, 100000 };
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	CHECK(cut->shown[1] && cut->shown[2] && !cut->shown[3]);
 	options.error_px = error_px * 0.99f;
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	CHECK(cut->shown[3] && shows(cut, 6) && !shows(cut, 2) && !shows(cut, 4));
 }
 
@@ -112,7 +119,7 @@ static void stays_within_the_triangles(void **state)
 	const struct cut_options options = { 1, 300 };
 	const uint8_t loaded[4] = { 1, 1, 1, 1 };
 	struct view view = view_from(10, -60, 10);
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	CHECK(cut->triangle_count <= 300 && cut->triangle_count >= 200);
 	CHECK(cut->shown[1] + cut->shown[2] == 1 && !cut->shown[3]);
 }
@@ -123,10 +130,31 @@ static void wants_only_what_is_in_sight(void **state)
 	const struct cut_options options = { 1, 100000 };
 	const uint8_t loaded[4] = { 1, 0, 0, 0 };
 	struct view view = view_from(40, -60, 40);
-	cut_update(cut, &view, loaded, &options);
+	update(cut, &view, loaded, &options);
 	for (uint32_t i = 0; i < cut->want_count; i++)
 		CHECK(cut->wants[i].group == 2);
 	CHECK(cut->want_count == 1);
+}
+
+static void wants_only_what_shows_and_what_that_needs(void **state)
+{
+	struct cut *cut = *state;
+	const struct cut_options options = { 1, 100000 };
+	const uint8_t top[4] = { 1, 0, 0, 0 }, one[4] = { 1, 1, 0, 0 };
+	float seen_px[8] = { 0, 500, -1, -1, -1, -1, -1, -1 };
+	struct view view = view_from(10, -60, 10);
+	cut_update(cut, &view, top, &options);
+	cut_desire(cut, &view, top, seen_px, &options);
+	/* Group 1 mends nothing that shows, but 3 mends some of 2's and needs it. */
+	CHECK(cut->want_count == 3 && cut->wants[0].group == 1 && cut->wants[2].group == 3);
+	CHECK(cut->wants[0].seen_px <= 0 && cut->wants[1].seen_px > 499);
+	CHECK(cut->wants[2].seen_px > 100 && cut->wants[2].seen_px < 400);
+	cut_update(cut, &view, one, &options);
+	for (int p = 0; p < 8; p++)
+		seen_px[p] = 0;
+	seen_px[3] = 300; /* the finest there */
+	cut_desire(cut, &view, one, seen_px, &options);
+	CHECK(cut->want_count == 0);
 }
 
 static void every_cut_is_valid_from_everywhere(void **state)
@@ -137,7 +165,7 @@ static void every_cut_is_valid_from_everywhere(void **state)
 		const struct cut_options options = { 0.5f + (float)(from % 7),
 						     250 + 50u * (uint32_t)(from % 9) };
 		struct view view = view_from((float)(from % 40) - 10, -5 - (float)(from / 8), 10);
-		cut_update(cut, &view, loaded, &options);
+		update(cut, &view, loaded, &options);
 		for (uint32_t g = 1; g < 4; g++)
 			for (uint32_t on = 0; on < 4; on++)
 				CHECK(!cut->shown[g] || !cut_depends(cut, g, on) || cut->shown[on]);
@@ -157,6 +185,7 @@ int main(void)
 		cmocka_unit_test(refines_no_further_than_the_error_asks),
 		cmocka_unit_test(stays_within_the_triangles),
 		cmocka_unit_test(wants_only_what_is_in_sight),
+		cmocka_unit_test(wants_only_what_shows_and_what_that_needs),
 		cmocka_unit_test(every_cut_is_valid_from_everywhere),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,387 @@
+#include "tests/bench/stage.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "board/profile.h"
+#include "format/picture.h"
+
+/* ---- clock: these stand in for base/clock */
+
+enum {
+	LOOK_US = 50, /* a look at the clock takes so long, so budgets of time end */
+	FRAME_US = 16667,
+	WINDOW_BYTES = 64 << 10, /* asked for ahead: what comes first can still change */
+};
+
+static bool is_virtual;
+static int64_t virtual_us = 1000000000;
+
+static int64_t read_us(clockid_t id)
+{
+	struct timespec now;
+
+	clock_gettime(id, &now);
+	return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int64_t clock_now_us(void)
+{
+	if (!is_virtual)
+		return read_us(CLOCK_MONOTONIC);
+	return virtual_us += LOOK_US;
+}
+
+int64_t clock_now_ms(void)
+{
+	return clock_now_us() / 1000;
+}
+
+int64_t clock_thread_us(void)
+{
+	return read_us(CLOCK_THREAD_CPUTIME_ID);
+}
+
+int64_t clock_wall_s(void)
+{
+	return read_us(CLOCK_REALTIME) / 1000000;
+}
+
+bool clock_wall_is_set(void)
+{
+	return false;
+}
+
+/* ---- life */
+
+void stage_die(const char *what, int rc)
+{
+	fprintf(stderr, "bench: %s: %s\n", what, strerror(-rc));
+	exit(1);
+}
+
+void stage_must(int rc, const char *what)
+{
+	if (rc < 0)
+		stage_die(what, rc);
+}
+
+uint32_t stage_read_views(struct camera *cameras, uint32_t most, const char *path, int width_px,
+			  int height_px)
+{
+	FILE *file = fopen(path, "re");
+	char line[256];
+	uint32_t count = 0;
+
+	if (!file)
+		stage_die(path, -errno);
+	while (count < most && fgets(line, sizeof(line), file)) {
+		struct camera c = { .up = { 0, 0, 1 },
+				    .near_m = 0.1f,
+				    .far_m = 2000,
+				    .width_px = width_px,
+				    .height_px = height_px };
+
+		if (sscanf(line, "%f %f %f %f %f %f %f", &c.eye_m[0], &c.eye_m[1], &c.eye_m[2],
+			   &c.target_m[0], &c.target_m[1], &c.target_m[2], &c.fov_deg) == 7)
+			cameras[count++] = c;
+	}
+	fclose(file);
+	if (count == 0)
+		stage_die(path, -EINVAL);
+	return count;
+}
+
+/* The newest file of locator/ names the root. */
+static void find_root(struct stage *stage, char path[512])
+{
+	char newest[HASH_HEX_BYTES] = "";
+	time_t when = 0;
+	DIR *folder;
+
+	snprintf(path, 512, "%s/locator", stage->options.release);
+	folder = opendir(path);
+	if (!folder)
+		stage_die(path, -errno);
+	for (struct dirent *entry; (entry = readdir(folder));) {
+		struct stat info;
+
+		snprintf(path, 512, "%s/locator/%.200s", stage->options.release, entry->d_name);
+		if (strlen(entry->d_name) != HASH_HEX_BYTES - 1 || stat(path, &info) < 0 ||
+		    info.st_mtime < when)
+			continue;
+		when = info.st_mtime;
+		snprintf(newest, sizeof(newest), "%.32s", entry->d_name);
+	}
+	closedir(folder);
+	stage_must(hash_from_hex(&stage->root, newest), "no locator");
+	snprintf(path, 512, "locator/%s", newest);
+}
+
+static void open_release(struct stage *stage)
+{
+	const struct release_reader_options options = { .place = stage->options.release };
+	const struct locator_block *block;
+	struct buffer file;
+	char path[512];
+
+	find_root(stage, path);
+	stage_must(release_reader_create(&stage->reader, &options), stage->options.release);
+	buffer_init(&file, 256 << 20);
+	stage_must(release_reader_file(stage->reader, path, &file), path);
+	stage_must(locator_decode(&stage->locator, buffer_bytes(&file)), path);
+	buffer_finish(&file);
+	block = locator_find(&stage->locator,
+			     (struct hash){ 0 }); /* the root page is its block alone */
+	stage_must(block ? 0 : -ENOENT, "the root page");
+	stage->root_bytes = block->size;
+}
+
+struct scene_options stage_scene_options(enum scene_mode mode)
+{
+	const struct profile *profile = &profile_default;
+
+	return (struct scene_options){
+		.mode = mode,
+		.texture_budget_bytes = (uint64_t)profile->texture_mib << 20,
+		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
+		.triangle_budget = profile->triangles,
+		.patch_error_px = profile->error_px,
+		.upload_budget_us = profile->upload_us,
+		.worker_count = profile->workers,
+	};
+}
+
+void stage_begin(struct stage *stage, const struct scene_options *options)
+{
+	struct scene_options chosen = *options;
+
+	if (!stage->options.wall_clock)
+		chosen.worker_count = 0;
+	scene_destroy(stage->scene);
+	stage->flights = 0;
+	stage->bytes = stage->objects = 0;
+	stage->bytes_most = UINT64_MAX;
+	stage_must(scene_create(&stage->scene, &chosen), "scene");
+	stage_must(scene_open(stage->scene, stage->root, stage->root_bytes), "scene");
+}
+
+void stage_open(struct stage *stage, const struct stage_options *options)
+{
+	memset(stage, 0, sizeof(*stage));
+	stage->options = *options;
+	if (stage->options.frame_us == 0)
+		stage->options.frame_us = FRAME_US;
+	is_virtual = !options->wall_clock;
+	open_release(stage);
+	stage_must(headless_create(&stage->headless), "no GL");
+	stage_must(gl_target_create(&stage->target, options->width_px, options->height_px),
+		   "target");
+	stage_begin(stage, &options->scene);
+}
+
+void stage_close(struct stage *stage)
+{
+	scene_destroy(stage->scene);
+	gl_target_destroy(&stage->target);
+	headless_destroy(stage->headless);
+	locator_finish(&stage->locator);
+	release_reader_destroy(stage->reader);
+}
+
+/* ---- the link */
+
+static void land(struct stage *stage, const struct message_want *want)
+{
+	const struct page_child child = { .hash = want->hash, .size = want->size };
+	struct bytes bytes;
+	int rc = release_reader_child(stage->reader, &stage->locator, want->page, want->offset,
+				      &child, &bytes);
+
+	if (rc < 0)
+		stage_die(release_reader_why(stage->reader), rc);
+	stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
+	stage->objects++;
+	scene_give(stage->scene, want->hash, bytes);
+}
+
+static bool is_in_flight(const struct stage *stage, struct hash hash)
+{
+	for (uint32_t i = 0; i < stage->flights; i++)
+		if (hash_equal(stage->flight[i].want.hash, hash))
+			return true;
+	return false;
+}
+
+/* Sends for what is wanted most, as far as the window goes. */
+static void send_for(struct stage *stage, int64_t now_us)
+{
+	struct message_want wants[2 * STAGE_IN_FLIGHT];
+	size_t count = scene_wants(stage->scene, wants, 2 * STAGE_IN_FLIGHT);
+	const uint64_t rate = stage->options.bits_a_second;
+	uint64_t ahead = 0;
+
+	for (uint32_t i = 0; i < stage->flights; i++)
+		ahead += stage->flight[i].want.size;
+	for (size_t i = 0; i < count && stage->flights < STAGE_IN_FLIGHT; i++) {
+		int64_t from_us = now_us + stage->options.latency_us;
+
+		if (is_in_flight(stage, wants[i].hash))
+			continue;
+		if (stage->bytes + ahead >= stage->bytes_most)
+			return;
+		if (rate > 0 && ahead > 0 && ahead + wants[i].size > WINDOW_BYTES)
+			return;
+		ahead += wants[i].size;
+		if (rate > 0) {
+			from_us = from_us > stage->link_free_us ? from_us : stage->link_free_us;
+			from_us += (int64_t)((wants[i].size + STAGE_OBJECT_OVERHEAD) * 8000000ull /
+					     rate);
+			stage->link_free_us = from_us;
+		}
+		stage->flight[stage->flights++] = (struct stage_flight){ wants[i], from_us };
+	}
+}
+
+static void pass_link(struct stage *stage)
+{
+	const int64_t now_us = is_virtual ? virtual_us : clock_now_us();
+	uint32_t kept = 0, count;
+
+	send_for(stage, now_us);
+	count = stage->flights;
+	for (uint32_t i = 0; i < count; i++) {
+		const struct stage_flight flight = stage->flight[i];
+
+		if (flight.due_us <= now_us)
+			land(stage, &flight.want);
+		else
+			stage->flight[kept++] = flight;
+	}
+	stage->flights = kept;
+}
+
+/* ---- frames */
+
+void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
+{
+	const int64_t began_us = virtual_us;
+
+	gl_target_bind(&stage->target);
+	stage_must(scene_dispatch(stage->scene), "scene");
+	scene_draw(stage->scene, camera, NULL, out);
+	glFinish();
+	if (is_virtual) {
+		const int64_t next_us = began_us + stage->options.frame_us;
+
+		virtual_us = next_us > virtual_us ? next_us : virtual_us;
+	}
+	pass_link(stage);
+}
+
+uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t most_ms,
+		      struct scene_frame *out)
+{
+	const int64_t until_ms = clock_now_ms() + most_ms;
+	uint32_t frames = 0;
+
+	do {
+		stage_frame(stage, camera, out);
+		frames++;
+		if (!is_virtual && !out->moving)
+			usleep(2000); /* the workers decode */
+	} while ((!out->settled || stage->flights > 0) && clock_now_ms() < until_ms);
+	return frames;
+}
+
+uint8_t *stage_read(struct stage *stage)
+{
+	const size_t pixels = (size_t)stage->target.width_px * (size_t)stage->target.height_px;
+	uint8_t *rgba = malloc(4 * pixels);
+
+	if (!rgba || gl_target_read(&stage->target, rgba) < 0)
+		stage_die("reading the picture", -EIO);
+	scene_unmix(stage->scene, rgba, pixels);
+	return rgba;
+}
+
+/* ---- quality */
+
+static double over_grey(const uint8_t pixel[4], int channel)
+{
+	return (pixel[channel] * pixel[3] + 96.0 * (255 - pixel[3])) / 255;
+}
+
+static double psnr_of(const struct picture *a, const uint8_t *b)
+{
+	double sum = 0, count = 0;
+
+	for (size_t i = 0; i < (size_t)a->width * a->height; i++) {
+		const uint8_t *p = a->rgba + 4 * i, *q = b + 4 * i;
+
+		if (p[3] == 0 && q[3] == 0)
+			continue;
+		for (int k = 0; k < 3; k++) {
+			const double d = over_grey(p, k) - over_grey(q, k);
+
+			sum += d * d;
+		}
+		count += 3;
+	}
+	return count > 0 ? 10 * log10(255.0 * 255.0 * count / (sum + 1e-3)) : 99;
+}
+
+double stage_psnr(const struct stage *stage, const uint8_t *rgba, const char *folder, uint32_t view)
+{
+	struct picture truth = { 0 };
+	struct buffer file;
+	double psnr = NAN;
+	char path[512];
+
+	snprintf(path, sizeof(path), "%s/view-%04u.png", folder, view);
+	buffer_init(&file, 256 << 20);
+	if (buffer_read_file(&file, path) == 0 &&
+	    picture_decode(&truth, buffer_bytes(&file)) == 0 &&
+	    (int)truth.width == stage->target.width_px &&
+	    (int)truth.height == stage->target.height_px)
+		psnr = psnr_of(&truth, rgba);
+	picture_finish(&truth);
+	buffer_finish(&file);
+	return psnr;
+}
+
+void stage_keep(const struct stage *stage, uint8_t *rgba, const char *folder, uint32_t view)
+{
+	const struct picture picture = { (uint32_t)stage->target.width_px,
+					 (uint32_t)stage->target.height_px, rgba };
+	struct buffer file;
+	char path[512];
+
+	mkdir(folder, 0777);
+	snprintf(path, sizeof(path), "%s/view-%04u.png", folder, view);
+	buffer_init(&file, 256 << 20);
+	stage_must(picture_encode_png(&file, &picture), path);
+	stage_must(bytes_write_file(buffer_bytes(&file), path), path);
+	buffer_finish(&file);
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const double left = *(const double *)a, right = *(const double *)b;
+
+	return left < right ? -1 : left > right;
+}
+
+double stage_median(double *values, uint32_t count)
+{
+	qsort(values, count, sizeof(values[0]), by_value);
+	return values[count / 2];
+}

@@ -1,0 +1,85 @@
+/* A scene without kiosk and fetcher: a release's folder, a panel nobody sees, a link between them
+ * and, unless asked otherwise, a clock of its own, so that the same path gives the same pictures
+ * on any machine, however long a frame takes to draw there. */
+#ifndef GOPURA_TESTS_BENCH_STAGE_H
+#define GOPURA_TESTS_BENCH_STAGE_H
+
+#include "format/locator.h"
+#include "pipeline/release_reader.h"
+#include "render/gl.h"
+#include "render/headless.h"
+#include "render/scene.h"
+
+enum {
+	STAGE_IN_FLIGHT = 64,
+	STAGE_VIEWS_MOST = 1000,
+	STAGE_OBJECT_OVERHEAD = 40, /* bytes of a range's headers, beside its object's */
+};
+
+struct stage_options {
+	const char *release; /* folder */
+	struct scene_options scene;
+	int width_px, height_px;
+	bool wall_clock;        /* the machine's time and its workers */
+	uint32_t frame_us;      /* between frames of the stage's clock; 0: 16667 */
+	uint64_t bits_a_second; /* 0: what is asked for is there in the next frame */
+	uint32_t latency_us;
+};
+
+/* An object asked for and not there yet. */
+struct stage_flight {
+	struct message_want want;
+	int64_t due_us;
+};
+
+struct stage {
+	struct stage_options options;
+	struct release_reader *reader;
+	struct locator locator;
+	struct hash root;
+	uint32_t root_bytes;
+	struct headless *headless;
+	struct gl_target target;
+	struct scene *scene;
+	struct stage_flight flight[STAGE_IN_FLIGHT];
+	uint32_t flights;
+	int64_t link_free_us;
+	uint64_t bytes, objects; /* that came, with what their transport adds */
+	uint64_t bytes_most;     /* nothing is sent for past them; UINT64_MAX from the start */
+};
+
+/* Ends the program with a line on standard error. */
+void stage_die(const char *what, int rc);
+void stage_must(int rc, const char *what); /* dies below 0 */
+
+/* Reads lines "eye x y z, target x y z, vertical field of view in degrees" (# begins a comment)
+ * into cameras of that size; at least one, or it dies. */
+uint32_t stage_read_views(struct camera *cameras, uint32_t most, const char *path, int width_px,
+			  int height_px);
+
+/* What the kiosk asks for without a board's profile. */
+struct scene_options stage_scene_options(enum scene_mode mode);
+
+/* The newest release of the folder. Dies with a reason. */
+void stage_open(struct stage *stage, const struct stage_options *options);
+void stage_close(struct stage *stage);
+
+/* Another scene, with nothing in it. */
+void stage_begin(struct stage *stage, const struct scene_options *options);
+/* Draws a frame into stage->target, then lets time pass and objects come. */
+void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out);
+/* Frames until the picture is settled or so much time has passed; frames drawn. */
+uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t most_ms,
+		      struct scene_frame *out);
+/* What the target shows, straight alpha, width x height x 4, owned by the caller. */
+uint8_t *stage_read(struct stage *stage);
+
+/* PSNR of the stage's picture against FOLDER/view-NNNN.png over the union of both silhouettes on
+ * one grey (as tests/tools/compare_pictures has it); NAN where there is no such picture. */
+double stage_psnr(const struct stage *stage, const uint8_t *rgba, const char *folder,
+		  uint32_t view);
+void stage_keep(const struct stage *stage, uint8_t *rgba, const char *folder, uint32_t view);
+
+double stage_median(double *values, uint32_t count); /* sorts them */
+
+#endif
