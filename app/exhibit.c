@@ -34,6 +34,7 @@ static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct has
 		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
 		.triangle_budget = profile->triangles,
 		.patch_error_px = profile->error_px,
+		.thrift_px_per_kb = profile->thrift,
 		.upload_budget_us = profile->upload_us,
 		.worker_count = profile->workers,
 	};

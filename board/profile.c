@@ -46,6 +46,7 @@ static const struct profile_key keys[] = {
 	KEY("render", "texture_mib", TYPE_INT, texture_mib, 8, 1024),
 	KEY("render", "geometry_mib", TYPE_INT, geometry_mib, 8, 1024),
 	KEY("render", "error_px", TYPE_FLOAT, error_px, 0.25, 64),
+	KEY("render", "thrift", TYPE_FLOAT, thrift, 0, 100000),
 	KEY("render", "upload_us", TYPE_INT, upload_us, 200, 100000),
 	KEY("render", "workers", TYPE_INT, workers, 1, 8),
 	KEY("cache", "mib", TYPE_INT, cache_mib, 8, 65536),

@@ -52,7 +52,7 @@ void rest_finish(struct rest *rest)
 
 void rest_break(struct rest *rest)
 {
-	rest->count = 0;
+	rest->count = rest->same = 0;
 }
 
 /* Halton's sequence in bases 2 and 3. */
@@ -66,9 +66,10 @@ static float halton(uint32_t index, uint32_t base)
 	return value;
 }
 
-void rest_offset(const struct rest *rest, float *x_px, float *y_px)
+void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px)
 {
-	uint32_t index = rest->count % REST_FRAMES + 1;
+	/* The last frames lie alike whenever they began, so one scene has one picture. */
+	uint32_t index = (changed ? rest->count : rest->same) % REST_OFFSETS + 1;
 	*x_px = halton(index, 2) - 0.5f;
 	*y_px = halton(index, 3) - 0.5f;
 }
@@ -84,16 +85,18 @@ static void draw_square(const struct rest *rest, GLuint texture)
 
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
 {
-	if (changed && rest->count > 1)
-		rest->count = 1;
-	if (rest->count < REST_FRAMES) {
+	if (changed)
+		rest->same = 0;
+	if (!rest_is_done(rest)) {
+		float window = (float)(rest->count < REST_WINDOW ? rest->count : REST_WINDOW);
 		rest->count++;
+		rest->same++;
 		gl_target_bind(&rest->sum);
 		glDisable(GL_DEPTH_TEST);
 		glEnable(GL_BLEND);
-		/* Frame n weighs n: what the picture was before it came to rest is soon forgotten,
-		 * and eight bits do not swallow the last frames. */
-		glBlendColor(0, 0, 0, 2.0f / (float)(rest->count + 1));
+		/* The first frame is all there is; then each has a steady share, so that what the
+		 * picture was is soon forgotten and eight bits do not swallow what is new. */
+		glBlendColor(0, 0, 0, 2 / (window + 2));
 		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
 		draw_square(rest, rest->frame.colour);
 		glDisable(GL_BLEND);
@@ -106,5 +109,5 @@ void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
 
 bool rest_is_done(const struct rest *rest)
 {
-	return rest->count >= REST_FRAMES;
+	return rest->same >= REST_FRAMES;
 }

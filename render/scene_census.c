@@ -136,13 +136,13 @@ static void sum_patches(struct scene *scene)
 		scene->seen_px[scene->visible[i].patch] += state_of(scene, i)->seen_px;
 }
 
-void scene_take_census(struct scene *scene, bool moved)
+bool scene_take_census(struct scene *scene, bool moved)
 {
 	if (!is_due(scene, moved))
-		return;
+		return false;
 	draw_numbers(scene);
 	if (census_end(&scene->census) < 0)
-		return;
+		return false;
 	count_all(scene);
 	for (int round = 0; round < PROBE_MOVES; round++) {
 		for (uint32_t i = 0; i < scene->visible_count; i++)
@@ -156,4 +156,5 @@ void scene_take_census(struct scene *scene, bool moved)
 	scene->census_cut = scene->cut_signature;
 	memcpy(scene->census_eye_m, scene->view.eye_m, sizeof(scene->census_eye_m));
 	memcpy(scene->census_forward, scene->view.forward, sizeof(scene->census_forward));
+	return true;
 }

@@ -258,7 +258,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
 	scene_update_cut(scene);
 	scene_list_pieces(scene);
-	scene_take_census(scene, moved);
+	bool counted = scene_take_census(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
@@ -267,7 +267,10 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	keep_season(scene, moved, now_us);
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, fminf(passed_ms, 100));
-	scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
+	if (moved && counted)
+		scene->depth_is_stale = true; /* one pass more than the picture's is enough */
+	else
+		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
 }
 
 /* Draws into the framebuffer given: at rest by way of the sum, moving at once. */
@@ -286,7 +289,7 @@ static void show(struct scene *scene, GLuint framebuffer, const struct region *r
 	if (!rest_is_done(&scene->rest) || changed) {
 		struct view jittered = *view;
 		float x, y;
-		rest_offset(&scene->rest, &x, &y);
+		rest_offset(&scene->rest, changed, &x, &y);
 		view_jitter(&jittered, x, y);
 		gl_target_bind(&scene->rest.frame);
 		begin_picture(scene, view->width_px, view->height_px);

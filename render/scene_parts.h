@@ -112,8 +112,8 @@ void scene_refuse(struct object *object, int error);
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);
 
-/* scene_census.c */
-void scene_take_census(struct scene *scene, bool moved);
+/* scene_census.c: whether it was due and taken. */
+bool scene_take_census(struct scene *scene, bool moved);
 
 /* scene_plan.c */
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);

@@ -64,6 +64,7 @@ static void want_groups(struct scene *scene)
 		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
 		return;
 	}
+	uint32_t least = plan_priority(scene->options.thrift_px_per_kb, 1000);
 	uint32_t *priority = calloc(scene->hierarchy.group_count, sizeof(*priority));
 	if (!priority)
 		return; /* the next frame lists them */
@@ -80,7 +81,8 @@ static void want_groups(struct scene *scene)
 			if (priority[on] <= priority[w->group])
 				priority[on] = priority[w->group] + 1;
 		}
-		want_group(scene, w->group, priority[w->group]);
+		if (priority[w->group] >= least)
+			want_group(scene, w->group, priority[w->group]);
 	}
 	free(priority);
 }
@@ -185,10 +187,13 @@ static bool place_gain(const struct scene *scene, const struct gain *gain,
 	}
 }
 
-/* Pages of what matters come before pictures: without them nothing can be judged. */
-static uint32_t gain_priority(const struct gain *gain, uint32_t bytes)
+/* Pages of what matters come before pictures: without them nothing can be judged. 0: not worth it.
+ */
+static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
 {
 	uint32_t priority = plan_priority(gain->pixels, bytes);
+	if (priority < plan_priority(scene->options.thrift_px_per_kb, 1000))
+		return 0;
 	return gain->kind == OBJECT_TILE ? priority : MESSAGE_PRIORITY_INDEX + priority / 2;
 }
 
@@ -206,9 +211,11 @@ static void want_images(struct scene *scene)
 	}
 	for (uint32_t i = 0; i < gains.count; i++) {
 		struct message_want place;
-		if (place_gain(scene, &gains.list[i], &place))
-			want(scene, gains.list[i].kind, gains.list[i].id, &place,
-			     gain_priority(&gains.list[i], place.size));
+		if (!place_gain(scene, &gains.list[i], &place))
+			continue;
+		uint32_t priority = gain_priority(scene, &gains.list[i], place.size);
+		if (priority > 0)
+			want(scene, gains.list[i].kind, gains.list[i].id, &place, priority);
 	}
 	free(gains.list);
 	map_finish(&gains.of);

@@ -17,7 +17,7 @@
 /* ---- clock: these stand in for base/clock */
 
 enum {
-	LOOK_US = 50, /* a look at the clock takes so long, so budgets of time end */
+	LOOK_US = 100, /* a look at the clock takes so long, so budgets of time end */
 	FRAME_US = 16667,
 	WINDOW_BYTES = 64 << 10, /* asked for ahead: what comes first can still change */
 };
@@ -155,6 +155,7 @@ struct scene_options stage_scene_options(enum scene_mode mode)
 		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
 		.triangle_budget = profile->triangles,
 		.patch_error_px = profile->error_px,
+		.thrift_px_per_kb = profile->thrift,
 		.upload_budget_us = profile->upload_us,
 		.worker_count = profile->workers,
 	};
@@ -170,6 +171,7 @@ void stage_begin(struct stage *stage, const struct scene_options *options)
 	stage->flights = 0;
 	stage->bytes = stage->objects = 0;
 	stage->bytes_most = UINT64_MAX;
+	map_clear(&stage->had);
 	stage_must(scene_create(&stage->scene, &chosen), "scene");
 	stage_must(scene_open(stage->scene, stage->root, stage->root_bytes), "scene");
 }
@@ -191,6 +193,7 @@ void stage_open(struct stage *stage, const struct stage_options *options)
 void stage_close(struct stage *stage)
 {
 	scene_destroy(stage->scene);
+	map_finish(&stage->had);
 	gl_target_destroy(&stage->target);
 	headless_destroy(stage->headless);
 	locator_finish(&stage->locator);
@@ -198,6 +201,19 @@ void stage_close(struct stage *stage)
 }
 
 /* ---- the link */
+
+static uint64_t key_of(struct hash hash)
+{
+	uint64_t key;
+
+	memcpy(&key, hash.bytes, sizeof(key));
+	return key;
+}
+
+static bool was_had(const struct stage *stage, struct hash hash)
+{
+	return map_get(&stage->had, key_of(hash)) != MAP_NONE;
+}
 
 static void land(struct stage *stage, const struct message_want *want)
 {
@@ -208,8 +224,11 @@ static void land(struct stage *stage, const struct message_want *want)
 
 	if (rc < 0)
 		stage_die(release_reader_why(stage->reader), rc);
-	stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
-	stage->objects++;
+	if (!was_had(stage, want->hash)) {
+		stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
+		stage->objects++;
+		stage_must(map_set(&stage->had, key_of(want->hash), 1), "memory");
+	}
 	scene_give(stage->scene, want->hash, bytes);
 }
 
@@ -241,7 +260,7 @@ static void send_for(struct stage *stage, int64_t now_us)
 		if (rate > 0 && ahead > 0 && ahead + wants[i].size > WINDOW_BYTES)
 			return;
 		ahead += wants[i].size;
-		if (rate > 0) {
+		if (rate > 0 && !was_had(stage, wants[i].hash)) {
 			from_us = from_us > stage->link_free_us ? from_us : stage->link_free_us;
 			from_us += (int64_t)((wants[i].size + STAGE_OBJECT_OVERHEAD) * 8000000ull /
 					     rate);
@@ -273,12 +292,13 @@ static void pass_link(struct stage *stage)
 
 void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
 {
-	const int64_t began_us = virtual_us;
+	const int64_t began_us = virtual_us, work_us = clock_thread_us();
 
 	gl_target_bind(&stage->target);
 	stage_must(scene_dispatch(stage->scene), "scene");
 	scene_draw(stage->scene, camera, NULL, out);
 	glFinish();
+	stage->work_us = clock_thread_us() - work_us;
 	if (is_virtual) {
 		const int64_t next_us = began_us + stage->options.frame_us;
 

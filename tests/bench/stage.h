@@ -8,6 +8,7 @@
 #include "pipeline/release_reader.h"
 #include "render/gl.h"
 #include "render/headless.h"
+#include "render/map.h"
 #include "render/scene.h"
 
 enum {
@@ -44,7 +45,9 @@ struct stage {
 	struct stage_flight flight[STAGE_IN_FLIGHT];
 	uint32_t flights;
 	int64_t link_free_us;
-	uint64_t bytes, objects; /* that came, with what their transport adds */
+	struct map had;          /* by hash: what a cache would hold */
+	uint64_t bytes, objects; /* that came for the first time, with what their transport adds */
+	int64_t work_us;         /* of this thread, for the last frame */
 	uint64_t bytes_most;     /* nothing is sent for past them; UINT64_MAX from the start */
 };
 
