@@ -64,18 +64,16 @@ void census_finish(struct census *census)
 	memset(census, 0, sizeof(*census));
 }
 
-void census_begin(struct census *census, const struct view *view, const struct root_page *root)
+void census_resume(struct census *census, const struct root_page *root)
 {
 	const struct lattice *lattice = &root->lattice;
-	census->view = *view;
+	const struct view *view = &census->view;
 	gl_target_bind(&census->target);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	glClearColor(0, 0, 0, 0);
-	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	glUseProgram(census->program);
 	glUniform4f(census->lattice, (float)(lattice->origin_m[0] - view->eye_m[0]),
 		    (float)(lattice->origin_m[1] - view->eye_m[1]),
@@ -88,6 +86,14 @@ void census_begin(struct census *census, const struct view *view, const struct r
 	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
+}
+
+void census_begin(struct census *census, const struct view *view, const struct root_page *root)
+{
+	census->view = *view;
+	census_resume(census, root);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 void census_number(const struct census *census, uint32_t piece)

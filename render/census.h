@@ -28,6 +28,8 @@ void census_finish(struct census *census);
 
 /* Afterwards for each piece census_number, then its patch bound and its triangles drawn. */
 void census_begin(struct census *census, const struct view *view, const struct root_page *root);
+/* The same once more where other things were drawn between. */
+void census_resume(struct census *census, const struct root_page *root);
 void census_number(const struct census *census, uint32_t piece); /* below CENSUS_PIECES_MOST */
 /* Reads the picture. */
 must_check int census_end(struct census *census);

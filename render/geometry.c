@@ -92,8 +92,7 @@ static void unload(struct geometry *geometry, uint32_t group)
 		patch_finish(&geometry->patches[g->first_patch + i]);
 	geometry->bytes -= geometry->group_bytes[group];
 	geometry->group_bytes[group] = 0;
-	if (geometry->loaded[group])
-		geometry->loaded_count--;
+	geometry->changes += geometry->loaded[group];
 	geometry->loaded[group] = 0;
 }
 
@@ -134,7 +133,7 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 		return rc;
 	}
 	geometry->loaded[group] = 1;
-	geometry->loaded_count++;
+	geometry->changes++;
 	geometry->group_stamp[group] = geometry->stamp;
 	return 0;
 }

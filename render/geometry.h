@@ -45,7 +45,8 @@ struct geometry {
 	uint64_t *group_bytes;
 	uint32_t *group_stamp; /* last frame it was of use */
 	uint64_t bytes;
-	uint32_t stamp, loaded_count;
+	uint64_t changes; /* of what is loaded, so far */
+	uint32_t stamp;
 };
 
 must_check int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy);

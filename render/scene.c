@@ -63,7 +63,8 @@ static void forget(struct scene *scene)
 	scene->seen_px = NULL;
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
-	scene->visible_count = scene->want_count = 0;
+	scene->visible_count = scene->counted_count = scene->want_count = 0;
+	scene->counting = false;
 }
 
 void scene_destroy(struct scene *scene)
@@ -83,6 +84,7 @@ void scene_destroy(struct scene *scene)
 	map_finish(&scene->decoding);
 	free(scene->objects);
 	free(scene->visible);
+	free(scene->counted);
 	free(scene->wants);
 	free(scene);
 }

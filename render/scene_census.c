@@ -1,3 +1,4 @@
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -25,12 +26,12 @@ static bool is_due(const struct scene *scene, bool moved)
 	       vec_distance(scene->census_forward, scene->view.forward) > limit * turned;
 }
 
-static void draw_numbers(struct scene *scene)
+/* Of the pieces in the list, numbers `from` up to `to`. */
+static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 {
 	uint32_t bound = HIERARCHY_NONE;
-	census_begin(&scene->census, &scene->view, &scene->root);
-	for (uint32_t i = 0; i < scene->visible_count && i < CENSUS_PIECES_MOST; i++) {
-		const struct visible_piece *v = &scene->visible[i];
+	for (uint32_t i = from; i < to; i++) {
+		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
 			&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
 		if (v->patch != bound)
@@ -39,6 +40,44 @@ static void draw_numbers(struct scene *scene)
 		census_number(&scene->census, i);
 		geometry_draw(piece->first_triangle, piece->triangle_count);
 	}
+}
+
+/* What is in sight now will be counted. */
+static bool begin(struct scene *scene)
+{
+	if (scene->counted_capacity < scene->visible_count) {
+		struct visible_piece *larger =
+			realloc(scene->counted, scene->visible_count * sizeof(*larger));
+		if (!larger)
+			return false;
+		scene->counted = larger;
+		scene->counted_capacity = scene->visible_count;
+	}
+	scene->counted_count = scene->visible_count < CENSUS_PIECES_MOST ? scene->visible_count
+									 : CENSUS_PIECES_MOST;
+	if (scene->counted_count > 0)
+		memcpy(scene->counted, scene->visible,
+		       scene->counted_count * sizeof(*scene->counted));
+	scene->counting_cut = scene->cut_signature;
+	census_begin(&scene->census, &scene->view, &scene->root);
+	return true;
+}
+
+/* A moving eye's is drawn in two frames, so that neither takes much longer than the others. Returns
+ * whether it is drawn. */
+static bool draw(struct scene *scene, bool moved)
+{
+	if (scene->counting && moved && scene->counting_cut == scene->cut_signature) {
+		scene->counting = false;
+		census_resume(&scene->census, &scene->root);
+		draw_numbers(scene, scene->counted_count / 2, scene->counted_count);
+		return true;
+	}
+	if (!begin(scene))
+		return false;
+	scene->counting = moved;
+	draw_numbers(scene, 0, moved ? scene->counted_count / 2 : scene->counted_count);
+	return !moved;
 }
 
 static int nearest_probe(const struct piece_state *state, const float at_m[3])
@@ -53,9 +92,9 @@ static int nearest_probe(const struct piece_state *state, const float at_m[3])
 
 static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
 {
-	if (visible >= scene->visible_count)
+	if (visible >= scene->counted_count)
 		return NULL;
-	const struct visible_piece *v = &scene->visible[visible];
+	const struct visible_piece *v = &scene->counted[visible];
 	return &scene->geometry.patches[v->patch].pieces[v->piece];
 }
 
@@ -78,7 +117,7 @@ static void count_point(struct scene *scene, const struct census_point *point)
 static void count_all(struct scene *scene)
 {
 	struct census_point point;
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
+	for (uint32_t i = 0; i < scene->counted_count; i++) {
 		struct piece_state *state = state_of(scene, i);
 		state->seen_px = state->stray_off_m = 0;
 		memset(state->weight, 0, sizeof(state->weight));
@@ -93,7 +132,7 @@ static void count_all(struct scene *scene)
 static void move_probe(struct scene *scene, uint32_t visible)
 {
 	struct piece_state *state = state_of(scene, visible);
-	const struct visible_piece *v = &scene->visible[visible];
+	const struct visible_piece *v = &scene->counted[visible];
 	const struct piece *piece =
 		&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
 	if (state->stray_off_m < stray_share * piece->radius_m)
@@ -132,29 +171,28 @@ static void sum_patches(struct scene *scene)
 		scene->seen_px[p] = -1;
 	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
 		scene->seen_px[scene->cut.patches[i]] = 0;
-	for (uint32_t i = 0; i < scene->visible_count; i++)
-		scene->seen_px[scene->visible[i].patch] += state_of(scene, i)->seen_px;
+	for (uint32_t i = 0; i < scene->counted_count; i++)
+		scene->seen_px[scene->counted[i].patch] += state_of(scene, i)->seen_px;
 }
 
 bool scene_take_census(struct scene *scene, bool moved)
 {
-	if (!is_due(scene, moved))
+	if (!scene->counting && !is_due(scene, moved))
 		return false;
-	draw_numbers(scene);
-	if (census_end(&scene->census) < 0)
-		return false;
+	if (!draw(scene, moved) || census_end(&scene->census) < 0)
+		return true;
 	count_all(scene);
 	for (int round = 0; round < PROBE_MOVES; round++) {
-		for (uint32_t i = 0; i < scene->visible_count; i++)
+		for (uint32_t i = 0; i < scene->counted_count; i++)
 			move_probe(scene, i);
 		count_all(scene);
 	}
-	for (uint32_t i = 0; i < scene->visible_count; i++)
-		conclude(scene, &scene->visible[i]);
+	for (uint32_t i = 0; i < scene->counted_count; i++)
+		conclude(scene, &scene->counted[i]);
 	sum_patches(scene);
 	scene->census_us = clock_now_us();
 	scene->census_cut = scene->cut_signature;
-	memcpy(scene->census_eye_m, scene->view.eye_m, sizeof(scene->census_eye_m));
-	memcpy(scene->census_forward, scene->view.forward, sizeof(scene->census_forward));
+	memcpy(scene->census_eye_m, scene->census.view.eye_m, sizeof(scene->census_eye_m));
+	memcpy(scene->census_forward, scene->census.view.forward, sizeof(scene->census_forward));
 	return true;
 }

@@ -83,9 +83,13 @@ struct scene {
 	int64_t frame_us;
 	struct visible_piece *visible; /* owned */
 	uint32_t visible_count, visible_capacity;
-	uint32_t epoch;    /* of what planning looks at: tiles, pages */
-	int64_t census_us; /* when it was taken */
-	int64_t season_us; /* when the tiles' season began */
+	struct visible_piece *counted; /* those that the census at hand numbers; owned */
+	uint32_t counted_count, counted_capacity;
+	uint64_t counting_cut; /* cut_signature as it began */
+	bool counting;         /* half of it is drawn */
+	uint32_t epoch;        /* of what planning looks at: tiles, pages */
+	int64_t census_us;     /* when it was taken */
+	int64_t season_us;     /* when the tiles' season began */
 	bool was_moving;
 	float census_eye_m[3];
 	float census_forward[3];
@@ -112,7 +116,7 @@ void scene_refuse(struct object *object, int error);
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);
 
-/* scene_census.c: whether it was due and taken. */
+/* scene_census.c: whether any of it was drawn. */
 bool scene_take_census(struct scene *scene, bool moved);
 
 /* scene_plan.c */

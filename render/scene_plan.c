@@ -64,7 +64,7 @@ void scene_update_cut(struct scene *scene)
 	struct geometry *geometry = &scene->geometry;
 	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
-	scene->cut_signature = geometry->loaded_count;
+	scene->cut_signature = geometry->changes;
 }
 
 void scene_desire(struct scene *scene)
