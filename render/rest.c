@@ -69,7 +69,7 @@ static float halton(uint32_t index, uint32_t base)
 void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px)
 {
 	/* The last frames lie alike whenever they began, so one scene has one picture. */
-	uint32_t index = (changed ? rest->count : rest->same) % REST_OFFSETS + 1;
+	uint32_t index = (changed ? rest->count : rest->same) % REST_FRAMES + 1;
 	*x_px = halton(index, 2) - 0.5f;
 	*y_px = halton(index, 3) - 0.5f;
 }
@@ -88,15 +88,16 @@ void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
 	if (changed)
 		rest->same = 0;
 	if (!rest_is_done(rest)) {
-		float window = (float)(rest->count < REST_WINDOW ? rest->count : REST_WINDOW);
+		uint32_t before = changed ? REST_WINDOW : rest->same + REST_STALE;
+		before = rest->count < before ? rest->count : before;
 		rest->count++;
 		rest->same++;
 		gl_target_bind(&rest->sum);
 		glDisable(GL_DEPTH_TEST);
 		glEnable(GL_BLEND);
-		/* The first frame is all there is; then each has a steady share, so that what the
-		 * picture was is soon forgotten and eight bits do not swallow what is new. */
-		glBlendColor(0, 0, 0, 2 / (window + 2));
+		/* Frame n weighs n: what the picture was is soon forgotten, and eight bits do not
+		 * swallow the last frames. */
+		glBlendColor(0, 0, 0, 2.0f / (float)(before + 2));
 		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
 		draw_square(rest, rest->frame.colour);
 		glDisable(GL_BLEND);

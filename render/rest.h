@@ -6,9 +6,9 @@
 #include "render/gl.h"
 
 enum {
-	REST_OFFSETS = 8,
-	REST_WINDOW = 6, /* frames that count, by their weights */
-	REST_FRAMES = 12 /* without a change: what was before has a fiftieth left */
+	REST_WINDOW = 6, /* frames that what was before counts for, while the scene changes */
+	REST_STALE = 3,  /* and once it does not */
+	REST_FRAMES = 12 /* without a change: what was before has a twentieth left */
 };
 
 struct rest {
