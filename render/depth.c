@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-enum { ROWS = TILES_FACES_MOST / TILES_FACES_ACROSS };
-
 static const char draw_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform vec4 u_lattice;\n" /* of the lattice's origin from the point, metres; step */
@@ -100,12 +98,12 @@ static int make_atlas(struct depth *depth)
 	return gl_check("making the depth atlas");
 }
 
-int depth_init(struct depth *depth, int face_px)
+int depth_init(struct depth *depth, int face_px, uint32_t face_rows)
 {
 	memset(depth, 0, sizeof(*depth));
 	depth->face_px = face_px;
 	depth->atlas_width_px = TILES_FACES_ACROSS * face_px;
-	depth->atlas_height_px = ROWS * face_px;
+	depth->atlas_height_px = (int)face_rows * face_px;
 	depth->far_limit_m = 1;
 	int rc = build_programs(depth);
 	if (rc == 0)

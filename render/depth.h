@@ -25,7 +25,7 @@ struct depth {
 	} face[TILES_FACES_MOST];
 };
 
-must_check int depth_init(struct depth *depth, int face_px);
+must_check int depth_init(struct depth *depth, int face_px, uint32_t face_rows);
 void depth_finish(struct depth *depth);
 void depth_clear(struct depth *depth, float far_m);
 /* How far a depth may be off without being another surface's, besides the error of the patches:

@@ -262,29 +262,36 @@ void gl_bind_texture(unsigned unit, GLuint texture)
 	glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-int gl_target_create(struct gl_target *out, int width_px, int height_px)
+static void add_depth(struct gl_target *out)
+{
+	bool deep = gl_has_extension("GL_OES_depth24");
+
+	out->depth_bits = deep ? 24 : 16;
+	glGenRenderbuffers(1, &out->depth);
+	glBindRenderbuffer(GL_RENDERBUFFER, out->depth);
+	glRenderbufferStorage(GL_RENDERBUFFER,
+			      deep ? GL_DEPTH_COMPONENT24_OES : GL_DEPTH_COMPONENT16, out->width_px,
+			      out->height_px);
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, out->depth);
+}
+
+static int create_target(struct gl_target *out, int width_px, int height_px, bool has_depth)
 {
 	const struct gl_texture_options colour = { .width_px = width_px,
 						   .height_px = height_px,
 						   .format = GL_RGBA,
 						   .filter = GL_NEAREST };
-	bool deep = gl_has_extension("GL_OES_depth24");
 	int rc;
 
 	*out = (struct gl_target){ .width_px = width_px, .height_px = height_px };
-	out->depth_bits = deep ? 24 : 16;
 	rc = gl_texture_create(&out->colour, &colour);
 	if (rc < 0)
 		goto fail;
-	glGenRenderbuffers(1, &out->depth);
-	glBindRenderbuffer(GL_RENDERBUFFER, out->depth);
-	glRenderbufferStorage(GL_RENDERBUFFER,
-			      deep ? GL_DEPTH_COMPONENT24_OES : GL_DEPTH_COMPONENT16, width_px,
-			      height_px);
 	glGenFramebuffers(1, &out->framebuffer);
 	gl_target_bind(out);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out->colour, 0);
-	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, out->depth);
+	if (has_depth)
+		add_depth(out);
 	rc = gl_check("making a framebuffer");
 	if (rc == 0 && glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
 		log_error("render", "the driver refuses a framebuffer of %d x %d", width_px,
@@ -296,6 +303,16 @@ int gl_target_create(struct gl_target *out, int width_px, int height_px)
 fail:
 	gl_target_destroy(out);
 	return rc;
+}
+
+int gl_target_create(struct gl_target *out, int width_px, int height_px)
+{
+	return create_target(out, width_px, height_px, true);
+}
+
+int gl_target_create_flat(struct gl_target *out, int width_px, int height_px)
+{
+	return create_target(out, width_px, height_px, false);
 }
 
 void gl_target_destroy(struct gl_target *target)

@@ -66,6 +66,8 @@ struct gl_target {
 
 /* Leaves it bound, the viewport set to all of it. *out is zeroed on failure. */
 must_check int gl_target_create(struct gl_target *out, int width_px, int height_px);
+/* The same without a depth buffer. */
+must_check int gl_target_create_flat(struct gl_target *out, int width_px, int height_px);
 void gl_target_destroy(struct gl_target *target); /* NULL and zeroed are fine */
 void gl_target_bind(const struct gl_target *target);
 /* 4 bytes a pixel, row 0 on top. Binds the target. */

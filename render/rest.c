@@ -35,7 +35,7 @@ int rest_prepare(struct rest *rest, int width_px, int height_px)
 	if (rc == 0)
 		rc = gl_target_create(&rest->frame, width_px, height_px);
 	if (rc == 0)
-		rc = gl_target_create(&rest->sum, width_px, height_px);
+		rc = gl_target_create_flat(&rest->sum, width_px, height_px);
 	if (rc < 0)
 		rest_finish(rest);
 	return rc;

@@ -9,7 +9,7 @@
 #include "render/scene_parts.h"
 #include "render/vec.h"
 
-enum { DEPTH_FACE_PX = 256 };
+enum { DEPTH_FACE_PX = 256, DEPTH_ROWS_LEAST = 2 };
 
 /* ---- life */
 
@@ -21,15 +21,21 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		return -ENOMEM;
 	scene->options = *options;
 	scene->image_share = -1;
-	uint64_t depth_bytes = 4ull * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_MOST;
+	const uint64_t row_bytes = 4ull * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
 	uint64_t budget = options->texture_budget_bytes;
+	/* Three eighths: a face in use has about a dozen tiles in use. */
+	uint64_t rows = budget * 3 / 8 / row_bytes;
+	rows = rows < DEPTH_ROWS_LEAST ? DEPTH_ROWS_LEAST : rows;
+	rows = rows > TILES_ROWS_MOST ? TILES_ROWS_MOST : rows;
 	int rc = pool_create(&scene->pool, options->worker_count);
 	if (rc == 0)
-		rc = tiles_init(&scene->tiles, budget > depth_bytes ? budget - depth_bytes : 0);
+		rc = tiles_init(&scene->tiles,
+				budget > rows * row_bytes ? budget - rows * row_bytes : 0,
+				(uint32_t)rows);
 	if (rc == 0)
-		rc = depth_init(&scene->depth, DEPTH_FACE_PX);
+		rc = depth_init(&scene->depth, DEPTH_FACE_PX, (uint32_t)rows);
 	if (rc == 0)
-		rc = surface_init(&scene->surface, scene->tiles.atlas_px);
+		rc = surface_init(&scene->surface, &scene->tiles);
 	if (rc == 0)
 		rc = mark_init(&scene->mark);
 	if (rc == 0)

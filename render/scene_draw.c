@@ -60,7 +60,7 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 {
 	int outdated = -1;
 	scene->depth_is_stale = false;
-	for (int i = 0; i < TILES_FACES_MOST; i++) {
+	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
 		const struct tiles_face *face = &scene->tiles.faces[i];
 		if (!face->used || face->stamp != scene->tiles.stamp)
 			continue;

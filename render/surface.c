@@ -145,7 +145,7 @@ static void find_uniforms(struct surface_program *p)
 	p->slack = glGetUniformLocation(p->program, "u_slack");
 }
 
-static void set_constants(char *out, size_t bytes, int atlas_px, int faces)
+static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
 {
 	snprintf(out, bytes,
 		 "precision highp float;\n"
@@ -158,9 +158,9 @@ static void set_constants(char *out, size_t bytes, int atlas_px, int faces)
 		 "#define ATLAS_PX %d.0\n"
 		 "#define OWN_SHARE 0.1\n"
 		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
-		 faces, TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS,
-		 TILES_FACES_ACROSS, TILES_FACES_MOST / TILES_FACES_ACROSS, SAMPLE_IMAGE_PX,
-		 SAMPLE_APRON_PX, SAMPLE_TILE_PX, atlas_px);
+		 faces, TILES_FACES_ACROSS, (int)tiles->face_rows, TILES_FACES_ACROSS,
+		 (int)tiles->face_rows, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX, SAMPLE_TILE_PX,
+		 tiles->atlas_px);
 }
 
 static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
@@ -179,10 +179,10 @@ static int init_plain(struct surface_program *p)
 	return rc;
 }
 
-static int init_blended(struct surface_program *p, int atlas_px, int faces)
+static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces)
 {
 	char constants[512];
-	set_constants(constants, sizeof(constants), atlas_px, faces);
+	set_constants(constants, sizeof(constants), tiles, faces);
 	const struct gl_program_source source = {
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
@@ -201,12 +201,12 @@ static int init_blended(struct surface_program *p, int atlas_px, int faces)
 	return 0;
 }
 
-int surface_init(struct surface *surface, int atlas_px)
+int surface_init(struct surface *surface, const struct tiles *tiles)
 {
 	memset(surface, 0, sizeof(*surface));
 	int rc = init_plain(&surface->of[0]);
 	for (int faces = 1; faces <= PLAN_ENTRIES && rc == 0; faces++)
-		rc = init_blended(&surface->of[faces], atlas_px, faces);
+		rc = init_blended(&surface->of[faces], tiles, faces);
 	if (rc < 0)
 		surface_finish(surface);
 	return rc;

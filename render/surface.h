@@ -20,7 +20,7 @@ struct surface {
 };
 
 /* atlas_px: of the tiles' atlas. */
-must_check int surface_init(struct surface *surface, int atlas_px);
+must_check int surface_init(struct surface *surface, const struct tiles *tiles);
 void surface_finish(struct surface *surface);
 
 struct surface_frame {

@@ -12,21 +12,23 @@ static int make_textures(struct tiles *tiles)
 						  .height_px = tiles->atlas_px,
 						  .format = GL_RGB,
 						  .filter = GL_LINEAR };
-	const struct gl_texture_options indirection = {
-		.width_px = TILES_CELLS * TILES_FACES_ACROSS,
-		.height_px = TILES_CELLS * TILES_FACES_MOST / TILES_FACES_ACROSS,
-		.format = GL_RGBA,
-		.filter = GL_NEAREST
-	};
+	const struct gl_texture_options indirection = { .width_px =
+								TILES_CELLS * TILES_FACES_ACROSS,
+							.height_px =
+								TILES_CELLS * (int)tiles->face_rows,
+							.format = GL_RGBA,
+							.filter = GL_NEAREST };
 	int rc = gl_texture_create(&tiles->atlas, &atlas);
 	if (rc == 0)
 		rc = gl_texture_create(&tiles->indirection, &indirection);
 	return rc;
 }
 
-int tiles_init(struct tiles *tiles, uint64_t budget_bytes)
+int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t face_rows)
 {
 	memset(tiles, 0, sizeof(*tiles));
+	tiles->face_rows = face_rows;
+	tiles->face_count = TILES_FACES_ACROSS * face_rows;
 	GLint most = 0;
 	glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
 	if (most > GL_LIMIT_TEXTURE_PX)
@@ -42,8 +44,8 @@ int tiles_init(struct tiles *tiles, uint64_t budget_bytes)
 	tiles->slot_name = calloc(tiles->slot_count, sizeof(*tiles->slot_name));
 	tiles->slot_stamp = calloc(tiles->slot_count, sizeof(*tiles->slot_stamp));
 	tiles->slot_season = calloc(tiles->slot_count, sizeof(*tiles->slot_season));
-	tiles->faces = calloc(TILES_FACES_MOST, sizeof(*tiles->faces));
-	tiles->keys = calloc(TILES_FACES_MOST, sizeof(*tiles->keys));
+	tiles->faces = calloc(tiles->face_count, sizeof(*tiles->faces));
+	tiles->keys = calloc(tiles->face_count, sizeof(*tiles->keys));
 	bool ok = tiles->slot_name && tiles->slot_stamp && tiles->slot_season && tiles->faces &&
 		  tiles->keys;
 	int rc = ok ? make_textures(tiles) : -ENOMEM;
@@ -72,7 +74,7 @@ void tiles_finish(struct tiles *tiles)
 void tiles_clear(struct tiles *tiles)
 {
 	memset(tiles->slot_name, 0, tiles->slot_count * sizeof(*tiles->slot_name));
-	memset(tiles->faces, 0, TILES_FACES_MOST * sizeof(*tiles->faces));
+	memset(tiles->faces, 0, tiles->face_count * sizeof(*tiles->faces));
 	map_clear(&tiles->slot_of);
 	map_clear(&tiles->face_of);
 	map_clear(&tiles->declined);
@@ -212,7 +214,7 @@ static uint32_t take_slot(struct tiles *tiles)
 static struct tiles_face *take_face(struct tiles *tiles, face_key key)
 {
 	struct tiles_face *best = NULL;
-	for (uint32_t i = 0; i < TILES_FACES_MOST; i++) {
+	for (uint32_t i = 0; i < tiles->face_count; i++) {
 		struct tiles_face *face = &tiles->faces[i];
 		if (!face->used) {
 			best = face;
@@ -342,7 +344,7 @@ bool tiles_tick(struct tiles *tiles)
 {
 	int64_t now_ms = clock_now_ms();
 	bool fading = false, bound = false;
-	for (uint32_t i = 0; i < TILES_FACES_MOST; i++) {
+	for (uint32_t i = 0; i < tiles->face_count; i++) {
 		struct tiles_face *face = &tiles->faces[i];
 		if (!face->used || (!face->fading && !face->dirty))
 			continue;

@@ -14,7 +14,8 @@
 enum {
 	TILES_CELLS = 16,       /* a side: tiles of the finest level */
 	TILES_FACES_ACROSS = 8, /* face slots a row, in the indirection texture and depth atlas */
-	TILES_FACES_MOST = 128,
+	TILES_ROWS_MOST = 16,
+	TILES_FACES_MOST = TILES_FACES_ACROSS * TILES_ROWS_MOST,
 	TILES_FADE_MS = 250,
 };
 
@@ -32,7 +33,8 @@ struct tiles_face {
 struct tiles {
 	GLuint atlas, indirection;
 	int atlas_px, slots_across; /* the atlas is square */
-	uint32_t slot_count, face_count;
+	uint32_t slot_count, face_rows,
+		face_count; /* face_count: slots of faces, rows of them all */
 	/* Private. */
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
@@ -46,8 +48,9 @@ struct tiles {
 	uint32_t key_count;
 };
 
-/* budget_bytes: for the atlas (3 bytes a pixel) alone. */
-must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes);
+/* budget_bytes: for the atlas (3 bytes a pixel) alone. face_rows: of face slots, at most
+ * TILES_ROWS_MOST. */
+must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t face_rows);
 void tiles_finish(struct tiles *tiles);
 void tiles_clear(struct tiles *tiles); /* forgets all, keeps the textures */
 

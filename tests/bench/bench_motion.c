@@ -209,7 +209,7 @@ static void break_patch(struct scene *scene, struct broken *broken)
 /* As if each had been there for long. */
 static void break_fades(struct scene *scene)
 {
-	for (uint32_t i = 0; i < TILES_FACES_MOST; i++)
+	for (uint32_t i = 0; i < scene->tiles.face_count; i++)
 		memset(scene->tiles.faces[i].born_ms, 0, sizeof(scene->tiles.faces[i].born_ms));
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
@@ -227,7 +227,7 @@ static void break_sample(struct scene *scene)
 	struct tiles_face *a = NULL, *b = NULL;
 	uint16_t slots[TILES_CELLS][TILES_CELLS];
 
-	for (uint32_t i = 0; i < TILES_FACES_MOST; i++) {
+	for (uint32_t i = 0; i < scene->tiles.face_count; i++) {
 		struct tiles_face *face = &scene->tiles.faces[i];
 
 		if (!face->used || face->stamp != scene->tiles.stamp)
