@@ -1,7 +1,7 @@
 #!/bin/bash
-# A frame with the eye moving a millimetre a frame over a warm cache, as a multiple of one textured
-# quad that fills the screen in the same run, and of the same patches without images: three views of
-# the demo temple. build/bench/frame.json.
+# A frame with the eye moving a millimetre a frame over a warm cache, as a multiple of the same
+# triangles with one plain texture lookup, of one textured quad that fills the screen, and of the same
+# patches without images, all in one run: three views of the demo temple. build/bench/frame.json.
 set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/bench

@@ -2,12 +2,13 @@
 # Settled pictures against the truth, and what they cost: views of an orbit, nearer ones and
 # close-ups, none on a sampling point, 1280 x 720, from an empty cache, in the three modes.
 #
-#   ROWS="demo venus"  these rows alone            VIEWS=N  of each row, spread over its path
+#   ROWS="demo venus-70"  these rows alone          VIEWS=N  of each row, spread over its path
 #   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
 #
-# Rows: demo (2 M triangles, colours finer than vertices; 40 views, those of tests/e2e/pictures.sh),
-# temple and temple-open (5 M triangles, colours of vertices, a tenth of it published or all; 60
-# views), venus and zeus (real scans, textured; 60 views).
+# Rows: demo (2 M triangles, colours finer than vertices; 40 views, those of tests/e2e/pictures.sh);
+# of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
+# published; so many KB a view by thrift), temple-open-300 (all of it published), fine-250 (colours
+# finer than vertices), venus-70 and zeus-70 (real scans, textured).
 # What is built stays in build/bench/view; build/bench/view.json has a row for each.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -34,52 +35,73 @@ around() {
 	python3 tests/bench/around.py $(build/gopura-content inspect "$1" | awk '$1 == "box" { print $3, $4, $5 }')
 }
 
-# draw NAME CONTENT RELEASE <PATH: truth, pictures, and how near they come
+# draw NAME CONTENT RELEASE THRIFT <PATH: truth, pictures, and how near they come
 draw() {
-	local out=$work/$1 mode
+	local out=$work/$1 truth=${2%/content}/truth mode
 	mkdir -p "$out"
 	spread >"$out/views.txt"
+	printf '[render]\nthrift = %s\n' "$4" >"$out/board.ini"
 	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
-		--supersample "${SUPERSAMPLE:-4}" --out "$out/truth" >&2
+		--supersample "${SUPERSAMPLE:-4}" --out "$truth" >&2
 	for mode in lumigraph polygons corners; do
 		rm -rf "${out:?}/$mode" "$out/state"
 		build/gopura-kiosk --display headless --size 1280x720 --mode "$mode" --release "$3" \
-			--trust "$3/root/1.json" --state "$out/state" \
+			--trust "$3/root/1.json" --state "$out/state" --board "$out/board.ini" \
 			--views "$out/views.txt" --capture "$out/$mode" 2>"$out/$mode.log"
-		build/tests/tools/compare_pictures "$out/truth" "$out/$mode" >"$out/$mode.jsonl"
+		build/tests/tools/compare_pictures "$truth" "$out/$mode" >"$out/$mode.jsonl"
 	done
 	rm -rf "$out/state"
 }
 
 row_demo() {
 	demo/prepare.sh >&2
-	grep -v '^#' tests/bench/views.txt | head -40 | draw demo build/demo/content build/demo/release
+	mkdir -p "$work/demo"
+	ln -sfn "$PWD/build/demo/content" "$work/demo/content"
+	grep -v '^#' tests/bench/views.txt | head -40 | draw demo "$work/demo/content" build/demo/release 0
 }
 
-temple_ini=('scans = scan.ply' 'colours = scan' 'lit = yes' 'sun = 0.60 -0.58 0.55' '[grid]'
-	'points = 8' 'face_px = 2048' 'quality = 75')
+# temple NAME LINE...: a content folder of the temple of 5 M triangles
+temple() {
+	folder "$1" 'scans = scan.ply' 'lit = yes' 'sun = 0.60 -0.58 0.55' "${@:2}" '[grid]' \
+		'points = 8' 'face_px = 2048' 'quality = 75'
+	[ -f "$work/temple.ply" ] ||
+		build/gopura-content temple --triangles 5000000 --out "$work/temple.ply" >&2
+	ln -f "$work/temple.ply" "$work/$1/content/scan.ply"
+}
 
 build_temple() {
-	folder temple "${temple_ini[@]}"
-	[ -f "$work/temple/content/scan.ply" ] ||
-		build/gopura-content temple --triangles 5000000 --out "$work/temple/content/scan.ply" >&2
+	temple temple 'colours = scan'
 	build/gopura-content build "$work/temple/content" --out "$work/temple/release" >&2
 }
 
-row_temple() {
+row_temple_300() {
 	build_temple
-	draw temple "$work/temple/content" "$work/temple/release" <tests/bench/views.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 1 <tests/bench/views.txt
 }
 
-# The same scan, hierarchy and samples, all of it published; the same truth.
-row_temple_open() {
+row_temple_100() {
+	build_temple
+	draw temple-100 "$work/temple/content" "$work/temple/release" 10 <tests/bench/views.txt
+}
+
+# The same hierarchy and samples, all of it published.
+row_temple_open_300() {
 	local open=$work/temple-open
 	build_temple
-	folder temple-open "${temple_ini[@]}" '[release]' 'publish_share = 1'
-	rm -rf "$open/content/scan.ply" "$open/content/.work"
-	cp -rl "$work/temple/content/scan.ply" "$work/temple/content/.work" "$open/content/"
-	build/gopura-content build "$open/content" --out "$open/release" >&2
-	draw temple-open "$open/content" "$open/release" <tests/bench/views.txt
+	mkdir -p "$open"
+	rm -rf "$open/content"
+	cp -rl "$work/temple/content" "$open/content"
+	cp --remove-destination "$work/temple/content/temple.ini" "$open/content/"
+	printf '%s\n' '[release]' 'publish_share = 1' >>"$open/content/temple.ini"
+	build/gopura-content publish "$open/content" --out "$open/release" >&2
+	ln -sfn ../temple/truth "$open/truth"
+	draw temple-open-300 "$open/content" "$open/release" 1 <tests/bench/views.txt
+}
+
+row_fine_250() {
+	temple fine 'colours = procedural'
+	build/gopura-content build "$work/fine/content" --out "$work/fine/release" >&2
+	draw fine-250 "$work/fine/content" "$work/fine/release" 1 <tests/bench/views.txt
 }
 
 # scan NAME FILES LINE...: a real scan; skipped where it is not at hand
@@ -89,19 +111,19 @@ scan() {
 	folder "$1" "${@:3}"
 	for file in $2; do ln -sf "$(realpath "$file")" "$work/$1/content/"; done
 	build/gopura-content build "$work/$1/content" --out "$work/$1/release" >&2
-	around "$work/$1/release" | draw "$1" "$work/$1/content" "$work/$1/release"
+	around "$work/$1/release" | draw "$1-70" "$work/$1/content" "$work/$1/release" 0
 }
 
-row_venus() {
+row_venus_70() {
 	scan venus "$scans/venus-cc0-textured/decoded/*" 'scans = venus.obj' 'up = y' 'unit = 0.1'
 }
 
-row_zeus() {
+row_zeus_70() {
 	scan zeus "$scans/bust-zeus-head/*.obj $scans/bust-zeus-head/*.mtl $scans/bust-zeus-head/*.jpg" \
 		'scans = koepfchenzeus.obj' 'up = y' 'unit = mm'
 }
 
-rows=${ROWS:-demo temple temple-open venus zeus}
+rows=${ROWS:-demo temple-300 temple-100 temple-open-300 fine-250 venus-70 zeus-70}
 for row in $rows; do
 	echo "-- $row" >&2
 	rm -f "$work/$row/lumigraph.jsonl"
