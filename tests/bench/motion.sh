@@ -1,7 +1,7 @@
 #!/bin/bash
 # A visit on a clock of its own over 10 Mbit/s and 40 ms: pictures while the eye moves, the time to
-# settle at each stop, a frame's work, pops and holes; once whole at 1280 x 720, and at half of that with
-# each of three faults, which must be found. build/bench/motion.json; pictures in build/bench/motion.
+# settle at each stop, a frame's work, pops and holes; once whole at 1280 x 720, and at half of that
+# without and with each of three faults, to show what is found. build/bench/motion.json; pictures in build/bench/motion.
 set -eu
 cd "$(dirname "$0")/../.."
 work=build/bench/motion release=build/demo/release visit=tests/bench/visit.txt
