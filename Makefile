@@ -109,6 +109,7 @@ $(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(BUILD)/obj/tests/fuzz/main.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
+$(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
 $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/stage.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)

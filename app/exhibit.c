@@ -24,12 +24,10 @@ static float free_ahead(void *data, const float from_m[3], const float direction
 	return scene_clearance(kiosk->shown.scene, from_m, direction, most_m);
 }
 
-static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
-			uint32_t root_bytes)
+struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode)
 {
-	const struct profile *profile = &kiosk->profile;
-	const struct scene_options scene = {
-		.mode = kiosk->options.mode,
+	return (struct scene_options){
+		.mode = mode,
 		.texture_budget_bytes = (uint64_t)profile->texture_mib << 20,
 		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
 		.triangle_budget = profile->triangles,
@@ -38,6 +36,13 @@ static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct has
 		.upload_budget_us = profile->upload_us,
 		.worker_count = profile->workers,
 	};
+}
+
+static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+			uint32_t root_bytes)
+{
+	const struct profile *profile = &kiosk->profile;
+	const struct scene_options scene = kiosk_scene_options(profile, kiosk->options.mode);
 	const struct story_options story = {
 		.width_px = kiosk_width_px(kiosk),
 		.height_px = kiosk_height_px(kiosk),

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/kiosk.h"
 #include "base/clock.h"
 #include "render/scene_parts.h"
 #include "tests/bench/stage.h"
@@ -227,7 +228,7 @@ int main(int argc, char **argv)
 		.width_px = 1280,
 		.height_px = 720,
 		.wall_clock = true,
-		.scene = stage_scene_options(SCENE_LUMIGRAPH),
+		.scene = kiosk_scene_options(&profile_default, SCENE_LUMIGRAPH),
 	};
 	options.scene.upload_budget_us = 100000; /* warm soon; then nothing is left to upload */
 	bench.frames = (uint32_t)frames;

@@ -6,7 +6,8 @@
  *                [--latency MS] [--fault none|patch|tile|sample] [--mode M]
  *
  * Writes OUT/views.txt first: the frames that are judged, a line each, for `gopura-content render
- * --views`; without --truth that is all. Then OUT/view-NNNN.png of those and OUT/motion.json.
+ * --views`; without --truth and --fault that is all. Then OUT/view-NNNN.png of those and
+ * OUT/motion.json.
  *
  * Every camera is drawn twice, before and after a frame's time passed for the scene: what differs
  * then is no motion. A block of 8 x 8 pixels whose mean changes by POP in that time pops; one in
@@ -19,6 +20,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/kiosk.h"
 #include "base/clock.h"
 #include "render/scene_parts.h"
 #include "render/vec.h"
@@ -51,6 +53,7 @@ struct bench {
 	const char *visit, *out, *truth;
 	struct stage_options options;
 	struct stage stage;
+	bool tries_fault;
 	enum fault fault;
 	struct leg leg[LEGS_MOST];
 	uint32_t leg_count, fps;
@@ -222,22 +225,46 @@ static void break_fades(struct scene *scene)
 	}
 }
 
-/* Two sampling points' pictures change places. */
+/* Pixels that each face slot colours. */
+static void count_faces(const struct scene *scene, float pixels[TILES_FACES_MOST])
+{
+	memset(pixels, 0, TILES_FACES_MOST * sizeof(*pixels));
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+
+		for (int k = 0; k < PLAN_ENTRIES; k++) {
+			const struct blend *blend = &state->blend[k];
+			const int slot =
+				blend->held ? tiles_face_slot(&scene->tiles, blend->face) : -1;
+
+			if (slot >= 0)
+				pixels[slot] += blend->weight * state->seen_px;
+		}
+	}
+}
+
+static uint32_t take_most(float pixels[TILES_FACES_MOST])
+{
+	uint32_t most = 0;
+
+	for (uint32_t i = 1; i < TILES_FACES_MOST; i++)
+		if (pixels[i] > pixels[most])
+			most = i;
+	pixels[most] = -1;
+	return most;
+}
+
+/* The two faces that colour most exchange their pictures. */
 static void break_sample(struct scene *scene)
 {
-	struct tiles_face *a = NULL, *b = NULL;
+	float pixels[TILES_FACES_MOST];
 	uint16_t slots[TILES_CELLS][TILES_CELLS];
 
-	for (uint32_t i = 0; i < scene->tiles.face_count; i++) {
-		struct tiles_face *face = &scene->tiles.faces[i];
-
-		if (!face->used || face->stamp != scene->tiles.stamp)
-			continue;
-		b = a;
-		a = face;
-	}
-	if (!b)
-		return;
+	count_faces(scene, pixels);
+	struct tiles_face *a = &scene->tiles.faces[take_most(pixels)];
+	struct tiles_face *b = &scene->tiles.faces[take_most(pixels)];
 	memcpy(slots, a->slot, sizeof(slots));
 	memcpy(a->slot, b->slot, sizeof(slots));
 	memcpy(b->slot, slots, sizeof(slots));
@@ -304,7 +331,8 @@ static void draw_moment(struct bench *bench, uint32_t i)
 	m->depth_faces = frame.depth_faces_drawn;
 	m->bytes = stage->bytes;
 	uint8_t *before = stage_read(stage);
-	m->psnr = m->judge ? stage_psnr(stage, before, bench->truth, m->judge - 1) : NAN;
+	m->psnr = m->judge && bench->truth ? stage_psnr(stage, before, bench->truth, m->judge - 1)
+					   : NAN;
 	if (m->judge && (i + 1 == bench->moment_count || bench->moment[i + 1].judge != m->judge))
 		stage_keep(stage, before, bench->out, m->judge - 1);
 	if (!m->rests) {
@@ -377,15 +405,17 @@ static void report(const struct bench *bench)
 	file = fopen(path, "we");
 	if (!file)
 		stage_die(path, -errno);
-	fprintf(file,
-		"{\"frames\": %u, \"fps\": %u, \"moving_db\": %.2f, \"moving_least_db\": %.2f, "
-		"\"rest_db\": %.2f, \"stops_ms\": [",
-		bench->moment_count, bench->fps, moving_sum / moving, moving_least,
-		rest_sum / stop_count);
-	for (uint32_t i = 0; i < stop_count; i++)
-		fprintf(file, "%s%.0f", i ? ", " : "", stops[i]);
-	median = stage_median(stops + 1, stop_count - 1);
-	fprintf(file, "], \"stop_median_ms\": %.0f, ", median);
+	fprintf(file, "{\"frames\": %u, \"fps\": %u, ", bench->moment_count, bench->fps);
+	if (bench->truth) {
+		fprintf(file,
+			"\"moving_db\": %.2f, \"moving_least_db\": %.2f, \"rest_db\": %.2f, "
+			"\"stops_ms\": [",
+			moving_sum / moving, moving_least, rest_sum / stop_count);
+		for (uint32_t i = 0; i < stop_count; i++)
+			fprintf(file, "%s%.0f", i ? ", " : "", stops[i]);
+		fprintf(file, "], \"stop_median_ms\": %.0f, ",
+			stage_median(stops + 1, stop_count - 1));
+	}
 	median = stage_median(cpu, cpus);
 	fprintf(file,
 		"\"work_median_ms\": %.2f, \"work_p99_ms\": %.2f, \"work_p99_over_median\": %.2f, "
@@ -427,12 +457,13 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		bench->options.scene.mode = !strcmp(value, "polygons")  ? SCENE_POLYGONS
 					    : !strcmp(value, "corners") ? SCENE_CORNERS
 									: SCENE_LUMIGRAPH;
-	else if (!strcmp(name, "--fault"))
+	else if (!strcmp(name, "--fault")) {
+		bench->tries_fault = true;
 		bench->fault = !strcmp(value, "patch")    ? FAULT_PATCH
 			       : !strcmp(value, "tile")   ? FAULT_TILE
 			       : !strcmp(value, "sample") ? FAULT_SAMPLE
 							  : FAULT_NONE;
-	else
+	} else
 		stage_die(name, -EINVAL);
 }
 
@@ -447,14 +478,15 @@ int main(int argc, char **argv)
 						.height_px = 720,
 						.latency_us = 40000,
 						.bits_a_second = 10000000,
-						.scene = stage_scene_options(SCENE_LUMIGRAPH) };
+						.scene = kiosk_scene_options(&profile_default,
+									     SCENE_LUMIGRAPH) };
 	bench.visit = argv[2];
 	bench.out = argv[3];
 	bench.fps = 30;
 	for (int i = 4; i + 1 < argc; i += 2)
 		read_option(&bench, argv[i], argv[i + 1]);
 	plan_visit(&bench);
-	if (!bench.truth)
+	if (!bench.truth && !bench.tries_fault)
 		return 0;
 	/* A frame is drawn twice while the eye moves, so each takes half of its time. */
 	bench.options.frame_us = 500000 / bench.fps;

@@ -14,7 +14,7 @@ build/gopura-content render build/demo/content --views "$work/visit/views.txt" -
 	--supersample 4 --out "$work/truth" >&2
 play "$work/visit" --truth "$work/truth"
 for fault in none patch tile sample; do
-	play "$work/$fault" --truth "$work/truth" --size 640x360 --fault "$fault"
+	play "$work/$fault" --size 640x360 --fault "$fault"
 done
 python3 - "$work" >build/bench/motion.json <<'P'
 import json

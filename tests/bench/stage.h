@@ -1,6 +1,6 @@
 /* A scene without kiosk and fetcher: a release's folder, a panel nobody sees, a link between them
  * and, unless asked otherwise, a clock of its own, so that the same path gives the same pictures
- * on any machine, however long a frame takes to draw there. */
+ * however long a frame takes to draw. */
 #ifndef GOPURA_TESTS_BENCH_STAGE_H
 #define GOPURA_TESTS_BENCH_STAGE_H
 
@@ -59,9 +59,6 @@ void stage_must(int rc, const char *what); /* dies below 0 */
  * into cameras of that size; at least one, or it dies. */
 uint32_t stage_read_views(struct camera *cameras, uint32_t most, const char *path, int width_px,
 			  int height_px);
-
-/* What the kiosk asks for without a board's profile. */
-struct scene_options stage_scene_options(enum scene_mode mode);
 
 /* The newest release of the folder. Dies with a reason. */
 void stage_open(struct stage *stage, const struct stage_options *options);
