@@ -25,6 +25,7 @@ struct depth {
 	} face[TILES_FACES_MOST];
 };
 
+/* A square of face_px for each of the tiles' face slots. */
 must_check int depth_init(struct depth *depth, int face_px, uint32_t face_rows);
 void depth_finish(struct depth *depth);
 void depth_clear(struct depth *depth, float far_m);

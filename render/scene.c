@@ -64,9 +64,11 @@ static void forget(struct scene *scene)
 	free(scene->groups);
 	free(scene->group_offset);
 	free(scene->seen_px);
+	free(scene->group_priority);
 	scene->groups = NULL;
 	scene->group_offset = NULL;
 	scene->seen_px = NULL;
+	scene->group_priority = NULL;
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->counted_count = scene->want_count = 0;
@@ -208,8 +210,11 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		rc = geometry_init(&scene->geometry, &scene->hierarchy);
 	if (rc == 0) {
 		scene->seen_px = calloc(scene->hierarchy.patch_count + 1, sizeof(float));
-		rc = scene->seen_px ? cut_init(&scene->cut, &scene->hierarchy) : -ENOMEM;
+		scene->group_priority = calloc(scene->hierarchy.group_count + 1, sizeof(uint32_t));
+		rc = scene->seen_px && scene->group_priority ? 0 : -ENOMEM;
 	}
+	if (rc == 0)
+		rc = cut_init(&scene->cut, &scene->hierarchy);
 	if (rc == 0)
 		rc = cut_init(&scene->around, &scene->hierarchy);
 	page_finish(&page);
@@ -220,9 +225,11 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		free(scene->groups);
 		free(scene->group_offset);
 		free(scene->seen_px);
+		free(scene->group_priority);
 		scene->groups = NULL;
 		scene->group_offset = NULL;
 		scene->seen_px = NULL;
+		scene->group_priority = NULL;
 		return rc;
 	}
 	scene->hierarchy_hash = hash;

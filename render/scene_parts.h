@@ -74,7 +74,8 @@ struct scene {
 	uint32_t *group_offset;    /* owned */
 	struct geometry geometry;
 	struct cut cut, around;
-	float *seen_px; /* per patch, by the last census; owned */
+	float *seen_px;           /* per patch, by the last census; owned */
+	uint32_t *group_priority; /* of the list of wants at hand; owned */
 	struct repository repository;
 
 	/* The frame at hand. */

@@ -38,6 +38,12 @@ static void want_child_of_root(struct scene *scene, enum object_kind kind, uint3
 	want(scene, kind, 0, &place, priority);
 }
 
+/* What is worth less is not fetched. */
+static uint32_t least_priority(const struct scene *scene)
+{
+	return plan_priority(scene->options.thrift_px_per_kb, 1000);
+}
+
 /* ---- geometry */
 
 static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
@@ -64,10 +70,8 @@ static void want_groups(struct scene *scene)
 		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
 		return;
 	}
-	uint32_t least = plan_priority(scene->options.thrift_px_per_kb, 1000);
-	uint32_t *priority = calloc(scene->hierarchy.group_count, sizeof(*priority));
-	if (!priority)
-		return; /* the next frame lists them */
+	uint32_t least = least_priority(scene), *priority = scene->group_priority;
+	memset(priority, 0, scene->hierarchy.group_count * sizeof(*priority));
 	for (uint32_t i = cut->want_count; i-- > 0;) {
 		const struct cut_want *w = &cut->wants[i];
 		uint32_t own = plan_priority(w->seen_px * misplaced(w->error_px),
@@ -84,7 +88,6 @@ static void want_groups(struct scene *scene)
 		if (priority[w->group] >= least)
 			want_group(scene, w->group, priority[w->group]);
 	}
-	free(priority);
 }
 
 /* ---- images */
@@ -192,7 +195,7 @@ static bool place_gain(const struct scene *scene, const struct gain *gain,
 static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
 {
 	uint32_t priority = plan_priority(gain->pixels, bytes);
-	if (priority < plan_priority(scene->options.thrift_px_per_kb, 1000))
+	if (priority < least_priority(scene))
 		return 0;
 	return gain->kind == OBJECT_TILE ? priority : MESSAGE_PRIORITY_INDEX + priority / 2;
 }

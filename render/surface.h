@@ -19,7 +19,7 @@ struct surface {
 	struct surface_program of[PLAN_ENTRIES + 1];
 };
 
-/* atlas_px: of the tiles' atlas. */
+/* For the sizes of those textures. */
 must_check int surface_init(struct surface *surface, const struct tiles *tiles);
 void surface_finish(struct surface *surface);
 

@@ -33,8 +33,8 @@ struct tiles_face {
 struct tiles {
 	GLuint atlas, indirection;
 	int atlas_px, slots_across; /* the atlas is square */
-	uint32_t slot_count, face_rows,
-		face_count; /* face_count: slots of faces, rows of them all */
+	uint32_t slot_count;
+	uint32_t face_rows, face_count; /* slots of faces; TILES_FACES_ACROSS a row */
 	/* Private. */
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
