@@ -66,12 +66,24 @@ static float halton(uint32_t index, uint32_t base)
 	return value;
 }
 
+/* Of the last frames, as they weigh in the sum. */
+static float mean_of_halton(uint32_t base)
+{
+	float sum = 0, weights = 0;
+	for (uint32_t i = 0; i < REST_FRAMES; i++) {
+		float weight = (float)(i + REST_STALE + 1);
+		sum += weight * halton(i + 1, base);
+		weights += weight;
+	}
+	return sum / weights;
+}
+
 void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px)
 {
 	/* The last frames lie alike whenever they began, so one scene has one picture. */
 	uint32_t index = (changed ? rest->count : rest->same) % REST_FRAMES + 1;
-	*x_px = halton(index, 2) - 0.5f;
-	*y_px = halton(index, 3) - 0.5f;
+	*x_px = halton(index, 2) - mean_of_halton(2);
+	*y_px = halton(index, 3) - mean_of_halton(3);
 }
 
 static void draw_square(const struct rest *rest, GLuint texture)

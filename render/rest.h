@@ -22,7 +22,8 @@ struct rest {
 must_check int rest_prepare(struct rest *rest, int width_px, int height_px);
 void rest_finish(struct rest *rest);
 void rest_break(struct rest *rest); /* the eye moved: begin anew */
-/* Where the next frame lies within its pixel, -0.5..0.5; changed as for rest_add. */
+/* How far the next frame is moved, under a pixel; in the sum the mean is none. changed as for
+ * rest_add. */
 void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px);
 /* Adds rest->frame, which was just drawn, and shows the sum in the framebuffer given. changed: the
  * scene is not what it was. */
