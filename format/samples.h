@@ -20,11 +20,11 @@ enum {
 	SAMPLE_TILE_PX = 128,
 	SAMPLE_APRON_PX = 4,
 	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile's JPEG holds */
-	SAMPLE_LEVELS_MOST = 5, /* 128, 256, 512, 1024, 2048 pixels a side */
+	SAMPLE_LEVELS_MOST = 6, /* 128, 256, 512, 1024, 2048, 4096 pixels a side */
 	SAMPLE_GRID_MOST = 64,  /* points a side */
 	BRICK_SIDE = 4,         /* points */
 	BRICK_POINTS = BRICK_SIDE * BRICK_SIDE * BRICK_SIDE,
-	FACE_TILES_MOST = 1 + 4 + 16 + 64 + 256
+	FACE_TILES_MOST = 1 + 4 + 16 + 64 + 256 + 1024
 };
 
 struct samples_page {

@@ -144,7 +144,7 @@ static bool set_face_px(void *target, const char *value)
 {
 	uint32_t *px = &((struct content *)target)->face_px;
 
-	return set_whole(value, 128, 2048, px) && (*px & (*px - 1)) == 0;
+	return set_whole(value, 128, 4096, px) && (*px & (*px - 1)) == 0;
 }
 
 static bool set_quality(void *target, const char *value)
@@ -216,7 +216,7 @@ static const struct ini_key keys[] = {
 	{ "model", "background", "a colour as #rrggbb", set_background },
 	{ "view", "start", "eye X Y Z target X Y Z in metres, two different places", set_start },
 	{ "grid", "points", "a whole number from 4 to 32", set_points },
-	{ "grid", "face_px", "128, 256, 512, 1024 or 2048", set_face_px },
+	{ "grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px },
 	{ "grid", "quality", "a whole number from 1 to 100", set_quality },
 	{ "hierarchy", "kind", "groups or tree", set_kind },
 	{ "hierarchy", "patch_triangles", "a whole number from 256 to 4000", set_patch_triangles },

@@ -269,6 +269,8 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 		rc = shooter_create(&shooter, &options);
 	if (rc == 0)
 		rc = work(sampling, shooter, done_fd);
+	if (rc < 0)
+		log_error("pipeline", "a process of the sampler ended: %s", strerror(-rc));
 	shooter_destroy(shooter);
 	drawing_destroy(options.drawing);
 	headless_destroy(headless);

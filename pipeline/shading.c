@@ -10,21 +10,25 @@
 struct shading {
 	const struct frame *frame; /* borrowed */
 	int width_px, height_px;   /* the frame's */
+	int side;                  /* samples a pixel's */
 	struct gl_target picture;
 	GLuint mask, program;
 	uint8_t *pixels; /* owned */
 };
 
 /* As in frame.c, samplers are highp in so many words and gl_FragCoord is not used. */
+static const char one_sample[] = "#define SIDE 1\n";
+static const char four_samples[] = "#define SIDE 2\n";
 static const char fragment_head[] =
 	"precision highp float;\n"
+	"const int SAMPLES = SIDE * SIDE;\n"
 	"uniform highp sampler2D colour; uniform highp sampler2D depth;\n"
 	"uniform vec2 size; uniform vec2 planes; uniform float px_radians;\n"
 	"uniform vec3 eye; uniform vec3 corner_ray; uniform vec3 right; uniform vec3 up;\n"
 	"uniform vec3 sun; varying vec2 v_at;\n"
 	"vec2 place(int i) {\n"
-	"	vec2 odd = vec2(mod(float(i), 2.0), floor(float(i) * 0.5));\n"
-	"	return floor(v_at * size * 0.5) * 2.0 + 0.5 + odd;\n"
+	"	vec2 odd = vec2(mod(float(i), float(SIDE)), floor(float(i) / float(SIDE)));\n"
+	"	return floor(v_at * size / float(SIDE)) * float(SIDE) + 0.5 + odd;\n"
 	"}\n";
 
 /* A rasteriser in software leaves out a shader where no pixel passes the depth test, and nothing
@@ -40,14 +44,14 @@ static const char colour_main[] =
 	"void main() {\n"
 	"	vec3 sum = vec3(0.0);\n"
 	"	float covered = 0.0, backs = 0.0;\n"
-	"	for (int i = 0; i < 4; i++) {\n"
+	"	for (int i = 0; i < SAMPLES; i++) {\n"
 	"		vec4 texel = texture2D(colour, place(i) / size);\n"
 	"		float there = step(0.5, texel.a);\n"
 	"		sum += there * texel.rgb;\n"
 	"		covered += there;\n"
 	"		backs += there * step(texel.a, 254.5 / 255.0);\n"
 	"	}\n"
-	"	gl_FragColor = vec4(sum / max(covered, 1.0), (covered * 8.0 + backs) / 255.0);\n"
+	"	gl_FragColor = vec4(sum / max(covered, 1.0), float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0);\n"
 	"}\n";
 
 static const char no_light[] = "float shade(vec3 n, float open) { return 1.0; }\n";
@@ -72,7 +76,7 @@ static const char unpack[] =
 static const char stone_means[] =
 	"float mean_detail(float frequency, float footprint) {\n"
 	"	float cells = frequency * footprint, sum = 0.0, weight = 0.0;\n"
-	"	float count = cells >= 1.0 ? 0.0 : cells < 0.15 ? 1.0 : 4.0;\n"
+	"	float count = cells >= 1.0 ? 0.0 : cells < 0.15 ? 1.0 : float(SAMPLES);\n"
 	"	int i = 0;\n"
 	"	while (true) {\n"
 	"		float w = count < 2.0 ? 1.0 : is_mine(i);\n"
@@ -93,13 +97,13 @@ static const char stone_means[] =
 	"		if (i < 0 && block.w > 0.014 + 1.2 * spread) {\n"
 	"			sum = block;\n"
 	"			weight = 1.0;\n"
-	"			i = 4;\n"
+	"			i = SAMPLES;\n"
 	"		} else if (i >= 0) {\n"
 	"			sum += is_mine(i) * block;\n"
 	"			weight += is_mine(i);\n"
 	"		}\n"
 	"		i++;\n"
-	"		if (i >= 4) break;\n"
+	"		if (i >= SAMPLES) break;\n"
 	"	}\n"
 	"	return sum / weight;\n"
 	"}\n"
@@ -114,7 +118,9 @@ static const char stone_main[] =
 	"void main() {\n"
 	"	vec3 sum = vec3(0.0);\n"
 	"	float covered = 0.0, backs = 0.0;\n"
-	"	for (int i = 0; i < 4; i++) {\n"
+	"	for (int i = 0; i < 4; i++)\n"
+	"		left[i] = mine[i] = 0.0;\n"
+	"	for (int i = 0; i < SAMPLES; i++) {\n"
 	"		vec4 surface = texture2D(colour, place(i) / size);\n"
 	"		float open = floor(surface.a * 255.0 + 0.5);\n"
 	"		bool back = open < 128.0;\n"
@@ -134,7 +140,7 @@ static const char stone_main[] =
 	"		vec3 n = vec3(0.0);\n"
 	"		float count = 0.0;\n"
 	"		middle = vec3(0.0);\n"
-	"		for (int i = 0; i < 4; i++) {\n"
+	"		for (int i = 0; i < SAMPLES; i++) {\n"
 	"			bool away = distance(at[i], from) > 0.1 ||\n"
 	"				    dot(normal[i], ahead) < 0.7;\n"
 	"			mine[i] = away ? 0.0 : left[i];\n"
@@ -145,22 +151,24 @@ static const char stone_main[] =
 	"		}\n"
 	"		middle /= max(count, 1.0);\n"
 	"		spread = 0.0;\n"
-	"		for (int i = 0; i < 4; i++)\n"
+	"		for (int i = 0; i < SAMPLES; i++)\n"
 	"			spread = max(spread, mine[i] * distance(at[i], middle));\n"
 	"		vec3 rgb = base(normalize(n));\n"
-	"		for (int i = 0; i < 4; i++)\n"
+	"		for (int i = 0; i < SAMPLES; i++)\n"
 	"			sum += mine[i] * min(vec3(1.0), rgb * shine[i]);\n"
 	"		if (left[0] + left[1] + left[2] + left[3] < 0.5) break;\n"
 	"	}\n"
 	"	vec3 mean = covered > 0.5 ? sum / covered : vec3(0.0);\n"
-	"	gl_FragColor = vec4(mean, (covered * 8.0 + backs) / 255.0);\n"
+	"	gl_FragColor = vec4(mean, float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0);\n"
 	"}\n";
 
 static int build_program(struct shading *shading, const struct drawing_options *options)
 {
 	const char *const vertex[] = { gl_square_vertex, NULL };
-	const char *const plain[] = { fragment_head, colour_main, NULL };
-	const char *const stone[] = { fragment_head,
+	const char *const side = shading->side == 1 ? one_sample : four_samples;
+	const char *const plain[] = { side, fragment_head, colour_main, NULL };
+	const char *const stone[] = { side,
+				      fragment_head,
 				      stone_glsl,
 				      options->lit ? light_glsl : "",
 				      options->lit ? sun_light : no_light,
@@ -191,7 +199,7 @@ static int build_program(struct shading *shading, const struct drawing_options *
 }
 
 int shading_create(struct shading **out, const struct frame *frame, int width_px, int height_px,
-		   const struct drawing_options *options)
+		   int side, const struct drawing_options *options)
 {
 	struct shading *shading = calloc(1, sizeof(*shading));
 	int rc;
@@ -202,10 +210,11 @@ int shading_create(struct shading **out, const struct frame *frame, int width_px
 	shading->frame = frame;
 	shading->width_px = width_px;
 	shading->height_px = height_px;
-	shading->pixels = malloc((size_t)width_px * (size_t)height_px);
+	shading->side = side;
+	shading->pixels = malloc((size_t)(width_px / side) * (size_t)(height_px / side) * 4);
 	rc = shading->pixels ? 0 : -ENOMEM;
 	if (rc == 0)
-		rc = gl_target_create(&shading->picture, width_px / 2, height_px / 2);
+		rc = gl_target_create(&shading->picture, width_px / side, height_px / side);
 	if (rc == 0)
 		rc = build_program(shading, options);
 	if (rc < 0) {

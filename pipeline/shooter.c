@@ -37,13 +37,14 @@ int shooter_create(struct shooter **out, const struct shooter_options *options)
 	if (!shooter)
 		return -ENOMEM;
 	shooter->options = *options;
-	shooter->frame_px = (int)side * SHOT_OVERSAMPLING;
+	int samples = options->level_count < SAMPLE_LEVELS_MOST ? 2 : 1;
+	shooter->frame_px = (int)side * samples;
 	rc = pyramid_init(&shooter->pyramid, side);
 	if (rc == 0)
 		rc = frame_create(&shooter->frame, shooter->frame_px, shooter->frame_px);
 	if (rc == 0)
 		rc = shading_create(&shooter->shading, shooter->frame, shooter->frame_px,
-				    shooter->frame_px, &options->drawn);
+				    shooter->frame_px, samples, &options->drawn);
 	if (rc == 0)
 		rc = tile_encoder_create(&shooter->codec, options->quality, options->chroma_full);
 	if (rc < 0) {

@@ -9,8 +9,6 @@
 #include "pipeline/drawing.h"
 #include "pipeline/pyramid.h"
 
-enum { SHOT_OVERSAMPLING = 2 /* pixels rendered per pixel kept, a side */ };
-
 struct shooter_options {
 	struct drawing *drawing;      /* borrowed for as long as the shooter lives */
 	struct drawing_options drawn; /* what it was made with: surfaces if procedural */

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -212,8 +213,9 @@ int gl_texture_create(GLuint *out, const struct gl_texture_options *options)
 	bool powers = is_power_of_two(width) && is_power_of_two(height);
 
 	*out = 0;
-	if (width < 1 || height < 1 || width > GL_LIMIT_TEXTURE_PX ||
-	    height > GL_LIMIT_TEXTURE_PX || ((options->mipmaps || options->repeat) && !powers))
+	int most = options->large ? INT_MAX : GL_LIMIT_TEXTURE_PX;
+	if (width < 1 || height < 1 || width > most || height > most ||
+	    ((options->mipmaps || options->repeat) && !powers))
 		return -EINVAL;
 	glGenTextures(1, out);
 	glBindTexture(GL_TEXTURE_2D, *out);
@@ -280,7 +282,8 @@ static int create_target(struct gl_target *out, int width_px, int height_px, boo
 	const struct gl_texture_options colour = { .width_px = width_px,
 						   .height_px = height_px,
 						   .format = GL_RGBA,
-						   .filter = GL_NEAREST };
+						   .filter = GL_NEAREST,
+						   .large = true };
 	int rc;
 
 	*out = (struct gl_target){ .width_px = width_px, .height_px = height_px };

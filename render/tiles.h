@@ -12,7 +12,7 @@
 #include "render/repository.h"
 
 enum {
-	TILES_CELLS = 16,       /* a side: tiles of the finest level */
+	TILES_CELLS = 32,       /* a side: tiles of the finest level */
 	TILES_FACES_ACROSS = 8, /* face slots a row, in the indirection texture and depth atlas */
 	TILES_ROWS_MOST = 16,
 	TILES_FACES_MOST = TILES_FACES_ACROSS * TILES_ROWS_MOST,

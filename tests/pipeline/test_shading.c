@@ -41,7 +41,7 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	CHECK(chunks_init(&chunks, mesh, grey) == 0);
 	CHECK(drawing_create(&drawing, &chunks, mesh, options) == 0);
 	CHECK(frame_create(&frame, side, side) == 0);
-	CHECK(shading_create(&shading, frame, side, side, options) == 0);
+	CHECK(shading_create(&shading, frame, side, side, 2, options) == 0);
 	camera.width_px = camera.height_px = side;
 	camera_ray(&camera, (float)side / 2, (float)side / 2, forward);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
