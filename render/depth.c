@@ -2,18 +2,22 @@
 
 #include <string.h>
 
+#include "render/vec.h"
+
 static const char draw_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform vec4 u_lattice;\n" /* of the lattice's origin from the point, metres; step */
 	"uniform mat3 u_axes;\n"
 	"uniform float u_far;\n"
+	"uniform vec4 u_window;\n"
 	"varying float v_depth;\n"
 	"void main() {\n"
 	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
 	/* Sampling points lie as far apart as the model is large, and as far from it. */
 	"	float n = u_far * 0.0007;\n"
 	/* Row 0 of a face is its top and row 0 of a texture its bottom: y is turned over. */
-	"	gl_Position = vec4(q.x, -q.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
+	"	vec2 at = (q.xy - u_window.xy * q.z) / u_window.zw;\n"
+	"	gl_Position = vec4(at.x, -at.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
 	"			   q.z);\n"
 	"	v_depth = q.z / u_far;\n"
 	"}\n";
@@ -49,8 +53,9 @@ static const char grow_fragment[] =
 	"	float jump = 0.06 * own;\n"
 	"	float z = own - nearest > jump ? nearest : own;\n"
 	"	float rim = own < 1.0 && farthest - own > jump ? 0.0 : 1.0;\n"
-	"	float value = z * 65535.0, high = floor(value / 256.0);\n"
-	"	gl_FragColor = vec4(high / 255.0, floor(value - high * 256.0) / 255.0, rim, 1.0);\n"
+	"	float value = floor(z * 32767.0 + 0.5), high = floor(value / 1024.0);\n"
+	"	float low = mod(value, 16.0), middle = floor(mod(value, 1024.0) / 16.0);\n"
+	"	gl_FragColor = vec4(high / 31.0, middle / 63.0, (2.0 * low + rim) / 31.0, 1.0);\n"
 	"}\n";
 
 static int build_programs(struct depth *depth)
@@ -75,6 +80,7 @@ static int build_programs(struct depth *depth)
 	depth->lattice = glGetUniformLocation(depth->draw_program, "u_lattice");
 	depth->axes = glGetUniformLocation(depth->draw_program, "u_axes");
 	depth->far_m = glGetUniformLocation(depth->draw_program, "u_far");
+	depth->window = glGetUniformLocation(depth->draw_program, "u_window");
 	glUseProgram(depth->grow_program);
 	glUniform1i(glGetUniformLocation(depth->grow_program, "u_raw"), 0);
 	glUniform1f(glGetUniformLocation(depth->grow_program, "u_texel"),
@@ -86,7 +92,8 @@ static int make_atlas(struct depth *depth)
 {
 	const struct gl_texture_options atlas = { .width_px = depth->atlas_width_px,
 						  .height_px = depth->atlas_height_px,
-						  .format = GL_RGBA,
+						  .format = GL_RGB,
+						  .type = GL_UNSIGNED_SHORT_5_6_5,
 						  .filter = GL_NEAREST };
 	int rc = gl_texture_create(&depth->atlas, &atlas);
 	if (rc < 0)
@@ -140,9 +147,67 @@ float depth_slack_m(const struct depth *depth)
 	return depth->far_limit_m / 6800;
 }
 
-void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
-		 const struct lattice *lattice)
+/* ---- windows */
+
+struct rectangle {
+	float low[2], high[2];
+};
+
+/* What shows of an edge in a face's plane; nothing behind the point. */
+static void add_edge(struct rectangle *out, const float a[3], const float b[3])
 {
+	const float least = 1e-3f, *ends[2] = { a, b };
+	for (int i = 0; i < 2; i++) {
+		const float *p = ends[i], *q = ends[1 - i];
+		float part = p[2] >= least ? 0 : (least - p[2]) / (q[2] - p[2]);
+		if (p[2] < least && q[2] < least)
+			return;
+		float z = p[2] + part * (q[2] - p[2]);
+		for (int k = 0; k < 2; k++) {
+			float at = (p[k] + part * (q[k] - p[k])) / z;
+			out->low[k] = vec_least(out->low[k], at);
+			out->high[k] = vec_most(out->high[k], at);
+		}
+	}
+}
+
+/* Of the face that part in which the box shows, with a texel around it. */
+static void find_window(float window[4], const struct cube_axes *axes, const float sample_m[3],
+			const struct root_page *root, int face_px)
+{
+	struct rectangle r = { { 1, 1 }, { -1, -1 } };
+	float corner[8][3];
+	for (int c = 0; c < 8; c++) {
+		float to[3];
+		for (int i = 0; i < 3; i++)
+			to[i] = (c >> i & 1 ? root->box_max_m[i] : root->box_min_m[i]) -
+				sample_m[i];
+		corner[c][0] = vec_dot(to, axes->right);
+		corner[c][1] = vec_dot(to, axes->up);
+		corner[c][2] = vec_dot(to, axes->forward);
+	}
+	for (int c = 0; c < 8; c++)
+		for (int i = 0; i < 3; i++)
+			if (!(c >> i & 1))
+				add_edge(&r, corner[c], corner[c | 1 << i]);
+	for (int k = 0; k < 2; k++) {
+		float texel = 4 / (float)face_px;
+		float low = vec_most(r.low[k] - texel, -1), high = vec_least(r.high[k] + texel, 1);
+		if (high - low < texel) {
+			low = -1;
+			high = 1;
+		}
+		window[k] = (low + high) / 2;
+		window[2 + k] = (high - low) / 2;
+	}
+}
+
+/* ---- faces */
+
+void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
+		 const struct root_page *root)
+{
+	const struct lattice *lattice = &root->lattice;
 	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
 	float columns[9];
 	for (int i = 0; i < 3; i++) {
@@ -150,6 +215,7 @@ void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
 		columns[3 * i + 1] = axes->up[i];
 		columns[3 * i + 2] = axes->forward[i];
 	}
+	find_window(depth->begun, axes, sample_m, root, depth->face_px);
 	gl_target_bind(&depth->raw);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
@@ -164,6 +230,7 @@ void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
 		    (float)(lattice->origin_m[2] - sample_m[2]), (float)lattice->step_m);
 	glUniformMatrix3fv(depth->axes, 1, GL_FALSE, columns);
 	glUniform1f(depth->far_m, depth->far_limit_m);
+	glUniform4fv(depth->window, 1, depth->begun);
 }
 
 void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
@@ -172,11 +239,14 @@ void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
 	glViewport(slot % TILES_FACES_ACROSS * depth->face_px,
 		   slot / TILES_FACES_ACROSS * depth->face_px, depth->face_px, depth->face_px);
 	glDisable(GL_DEPTH_TEST);
+	glDisable(GL_DITHER); /* its bits are no colour's */
 	glUseProgram(depth->grow_program);
 	gl_bind_texture(0, depth->raw.colour);
 	gl_draw_square();
 	glEnable(GL_DEPTH_TEST);
-	depth->face[slot] = (struct depth_face){ .ready = true, .key = face, .cut = cut };
+	struct depth_face *drawn = &depth->face[slot];
+	*drawn = (struct depth_face){ .ready = true, .key = face, .cut = cut };
+	memcpy(drawn->window, depth->begun, sizeof(drawn->window));
 }
 
 bool depth_ready(const struct depth *depth, int slot, face_key face)

@@ -226,7 +226,7 @@ int gl_texture_create(GLuint *out, const struct gl_texture_options *options)
 			options->mipmaps ? GL_LINEAR_MIPMAP_LINEAR : (GLint)options->filter);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)options->format, width, height, 0, options->format,
-		     GL_UNSIGNED_BYTE, options->pixels);
+		     options->type ? options->type : GL_UNSIGNED_BYTE, options->pixels);
 	if (options->mipmaps && options->pixels)
 		glGenerateMipmap(GL_TEXTURE_2D);
 	rc = gl_check("making a texture");

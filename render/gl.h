@@ -45,7 +45,8 @@ void gl_draw_square(void);
 
 struct gl_texture_options {
 	int width_px, height_px;
-	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA; 8 bits each */
+	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA */
+	GLenum type;        /* 0: 8 bits each; GL_UNSIGNED_SHORT_5_6_5 */
 	GLenum filter;      /* GL_NEAREST or GL_LINEAR; with mipmaps: trilinear */
 	bool mipmaps;       /* sides must be powers of two: GLES2 */
 	bool repeat;        /* likewise */

@@ -9,7 +9,11 @@
 #include "render/scene_parts.h"
 #include "render/vec.h"
 
-enum { DEPTH_FACE_PX = 256, DEPTH_ROWS_LEAST = 2 };
+enum {
+	DEPTH_FACE_PX = 512,
+	DEPTH_ROWS_LEAST = 2,
+	DEPTH_ROWS_MOST = GL_LIMIT_TEXTURE_PX / DEPTH_FACE_PX
+};
 
 /* ---- life */
 
@@ -21,12 +25,12 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		return -ENOMEM;
 	scene->options = *options;
 	scene->image_share = -1;
-	const uint64_t row_bytes = 4ull * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
+	const uint64_t row_bytes = 2ull * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
 	uint64_t budget = options->texture_budget_bytes;
 	/* Three eighths: a face in use has about a dozen tiles in use. */
 	uint64_t rows = budget * 3 / 8 / row_bytes;
 	rows = rows < DEPTH_ROWS_LEAST ? DEPTH_ROWS_LEAST : rows;
-	rows = rows > TILES_ROWS_MOST ? TILES_ROWS_MOST : rows;
+	rows = rows > DEPTH_ROWS_MOST ? DEPTH_ROWS_MOST : rows;
 	int rc = pool_create(&scene->pool, options->worker_count);
 	if (rc == 0)
 		rc = tiles_init(&scene->tiles,

@@ -40,7 +40,7 @@ static void draw_depth_face(struct scene *scene, int slot, face_key face)
 	repository_point_m(&scene->repository, face / CUBE_FACES, sample);
 	cut_update_around(&scene->around, sample, (float)scene->depth.face_px / 2,
 			  scene->geometry.loaded, &options);
-	depth_begin(&scene->depth, face, sample, &scene->root.lattice);
+	depth_begin(&scene->depth, face, sample, &scene->root);
 	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);

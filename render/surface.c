@@ -95,21 +95,25 @@ static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
 	"uniform highp sampler2D u_cells, u_depths;\n" /* by default lowp: 16 bits need more */
 	"uniform vec4 u_slot[FACES];\n"                /* face slot's column and row, 0, 0 */
+	"uniform vec4 u_window[FACES];\n"              /* of the depths: middle, half sides */
 	"uniform float u_share, u_far, u_slack;\n"
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face[FACES];\n"
-	"vec4 from_face(vec4 face, vec2 slot) {\n"
+	"vec4 from_face(vec4 face, vec2 slot, vec4 window) {\n"
 	"	if (face.w < 0.0005 || face.z < u_far * 0.0004)\n"
 	"		return vec4(0.0);\n"
 	"	vec2 at = vec2(face.x, -face.y) / face.z * 0.5 + 0.5;\n"
 	"	if (at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0)\n"
 	"		return vec4(0.0);\n"
 	"	at = clamp(at, 0.0001, 0.9999);\n"
-	"	vec4 d = texture2D(u_depths, (slot + at) / DEPTH_GRID);\n"
-	"	float depth = (d.r * 256.0 + d.g) * 255.0 / 65535.0 * u_far;\n"
+	"	vec2 in_window = (face.xy / face.z - window.xy) / window.zw;\n"
+	"	in_window = clamp(vec2(in_window.x, -in_window.y) * 0.5 + 0.5, 0.0001, 0.9999);\n"
+	"	vec3 d = texture2D(u_depths, (slot + in_window) / DEPTH_GRID).rgb;\n"
+	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n" /* 5, 6, 5 bits; some return 8 */
+	"	float depth = dot(d, vec3(1024.0, 16.0, 0.5)) / 32767.0 * u_far;\n"
 	"	float slack = u_slack + 0.001 * face.z;\n"
 	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
-	"	w *= 0.25 + 0.75 * d.b;\n"
+	"	w *= fract(d.b * 0.5) > 0.25 ? 1.0 : 0.25;\n"
 	"	if (w < 0.0002)\n"
 	"		return vec4(0.0);\n"
 	"	vec4 cell = texture2D(u_cells, (slot + at) / CELL_GRID) * 255.0;\n"
@@ -124,7 +128,7 @@ static const char blended_fragment[] =
 	"void main() {\n"
 	"	vec4 sum = vec4(0.0);\n"
 	"	for (int i = 0; i < FACES; i++)\n"
-	"		sum += from_face(v_face[i], u_slot[i].xy);\n"
+	"		sum += from_face(v_face[i], u_slot[i].xy, u_window[i]);\n"
 	"	float own = v_colour.a;\n"
 	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
@@ -139,6 +143,7 @@ static void find_uniforms(struct surface_program *p)
 	p->eye = glGetUniformLocation(p->program, "u_eye");
 	p->face = glGetUniformLocation(p->program, "u_face");
 	p->slot = glGetUniformLocation(p->program, "u_slot");
+	p->window = glGetUniformLocation(p->program, "u_window");
 	p->tune = glGetUniformLocation(p->program, "u_tune");
 	p->share = glGetUniformLocation(p->program, "u_share");
 	p->far_m = glGetUniformLocation(p->program, "u_far");
@@ -286,6 +291,7 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 {
 	const struct surface_program *p = &surface->of[faces];
 	float rows[20 * PLAN_ENTRIES] = { 0 }, slots[4 * PLAN_ENTRIES] = { 0 };
+	float windows[4 * PLAN_ENTRIES];
 	int at = 0;
 	for (int i = 0; i < PLAN_ENTRIES; i++) {
 		int slot = slot_of(frame, &blend[i]);
@@ -294,10 +300,12 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 		set_face(&rows[20 * at], frame->repository, &blend[i], frame->view->eye_m);
 		slots[4 * at] = (float)(slot % TILES_FACES_ACROSS);
 		slots[4 * at + 1] = (float)(slot / TILES_FACES_ACROSS);
+		memcpy(&windows[4 * at], frame->depth->face[slot].window, 4 * sizeof(float));
 		at++;
 	}
 	glUniform4fv(p->face, 5 * faces, rows);
 	glUniform4fv(p->slot, faces, slots);
+	glUniform4fv(p->window, faces, windows);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
 		    plan_tuning.own * spacing_m);
 	glUniform1f(p->slack, depth_slack_m(frame->depth) + 0.5f * error_m);

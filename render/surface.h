@@ -11,7 +11,7 @@
 
 struct surface_program {
 	GLuint program;
-	GLint clip, lattice, sun, eye, face, slot, tune, share, far_m, slack;
+	GLint clip, lattice, sun, eye, face, slot, window, tune, share, far_m, slack;
 };
 
 /* A program for each number of faces: none, the patch's own colours, is the cheapest. */
