@@ -1,8 +1,7 @@
 /* What each resident face of a sampling point can see, as depth: rendered by the kiosk from its own
  * patches, so that it costs no bytes and fits the mesh it is tested against.
  *
- * One texel is 5, 6 and 5 bits: 15 of depth along the face's axis over far_limit_m, then one that
- * is 0 on a foreground's rim (its pixels may be the background's).
+ * A texel is depth along the face's axis over far_limit_m, 16 bits as 5, 6 and 5.
  * Nearer surfaces are grown by one texel over a step, so that nothing behind a silhouette takes
  * the silhouette's colour. */
 #ifndef GOPURA_RENDER_DEPTH_H
@@ -32,7 +31,7 @@ must_check int depth_init(struct depth *depth, int face_px, uint32_t face_rows);
 void depth_finish(struct depth *depth);
 void depth_clear(struct depth *depth, float far_m);
 /* How far a depth may be off without being another surface's, besides the error of the patches:
- * 2 cm of a temple of 40 m, five steps of the 15 bits. */
+ * 2 cm of a temple of 40 m, ten steps of the 16 bits. */
 float depth_slack_m(const struct depth *depth);
 
 /* Begins a face: afterwards the caller draws patches (attribute 0: lattice position), then calls

@@ -110,10 +110,9 @@ static const char blended_fragment[] =
 	"	in_window = clamp(vec2(in_window.x, -in_window.y) * 0.5 + 0.5, 0.0001, 0.9999);\n"
 	"	vec3 d = texture2D(u_depths, (slot + in_window) / DEPTH_GRID).rgb;\n"
 	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n" /* 5, 6, 5 bits; some return 8 */
-	"	float depth = dot(d, vec3(1024.0, 16.0, 0.5)) / 32767.0 * u_far;\n"
+	"	float depth = dot(d, vec3(2048.0, 32.0, 1.0)) / 65535.0 * u_far;\n"
 	"	float slack = u_slack + 0.001 * face.z;\n"
 	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
-	"	w *= fract(d.b * 0.5) > 0.25 ? 1.0 : 0.25;\n"
 	"	if (w < 0.0002)\n"
 	"		return vec4(0.0);\n"
 	"	vec4 cell = texture2D(u_cells, (slot + at) / CELL_GRID) * 255.0;\n"
@@ -161,7 +160,7 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 		 "#define APRON_PX %d.0\n"
 		 "#define TILE_PX %d.0\n"
 		 "#define ATLAS_PX %d.0\n"
-		 "#define OWN_SHARE 0.1\n"
+		 "#define OWN_SHARE 0.05\n"
 		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
 		 faces, TILES_FACES_ACROSS, (int)tiles->face_rows, TILES_FACES_ACROSS,
 		 (int)tiles->face_rows, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX, SAMPLE_TILE_PX,
@@ -308,5 +307,5 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 	glUniform4fv(p->window, faces, windows);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
 		    plan_tuning.own * spacing_m);
-	glUniform1f(p->slack, depth_slack_m(frame->depth) + 0.5f * error_m);
+	glUniform1f(p->slack, depth_slack_m(frame->depth) + 0.15f * error_m);
 }
