@@ -24,10 +24,11 @@ static int stop(void **state)
 	return 0;
 }
 
-/* Draws into a frame of side pixels. picture: as shading_take gives it, or NULL. samples: the
- * frame's colours, lowest row first, or NULL. Both owned by the caller. */
+/* Draws into a frame of side pixels, `finer` samples a pixel's side. picture: as shading_take gives
+ * it, or NULL. samples: the frame's colours, lowest row first, or NULL. Both owned by the caller.
+ */
 static void shoot(struct mesh *mesh, const struct drawing_options *options, struct camera camera,
-		  int side, uint8_t **picture, uint8_t **samples)
+		  int side, int finer, uint8_t **picture, uint8_t **samples)
 {
 	float matrix[16], forward[3], near_m, far_m;
 	size_t bytes = (size_t)side * (size_t)side * 4;
@@ -41,7 +42,7 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	CHECK(chunks_init(&chunks, mesh, grey) == 0);
 	CHECK(drawing_create(&drawing, &chunks, mesh, options) == 0);
 	CHECK(frame_create(&frame, side, side) == 0);
-	CHECK(shading_create(&shading, frame, side, side, 2, options) == 0);
+	CHECK(shading_create(&shading, frame, side, side, finer, options) == 0);
 	camera.width_px = camera.height_px = side;
 	camera_ray(&camera, (float)side / 2, (float)side / 2, forward);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
@@ -56,8 +57,9 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	CHECK(frame_range(frame, camera.near_m, camera.far_m, &found, &near_m, &far_m) == 0);
 	CHECK(shading_take(shading, &camera, &rgba) == 0);
 	if (picture) {
-		*picture = malloc(bytes / 4);
-		memcpy(*picture, rgba, bytes / 4);
+		bytes /= (size_t)(finer * finer);
+		*picture = malloc(bytes);
+		memcpy(*picture, rgba, bytes);
 	}
 	shading_destroy(shading);
 	frame_destroy(frame);
@@ -70,17 +72,20 @@ struct comparison {
 	double squares;                                 /* of all channels' differences */
 };
 
-static struct comparison compare(const uint8_t *picture, const uint8_t *samples, int side)
+static struct comparison compare(const uint8_t *picture, const uint8_t *samples, int side,
+				 int finer)
 {
 	struct comparison all = { 0 };
 
-	for (int i = 0; i < side / 2 * (side / 2); i++) {
-		int x = i % (side / 2), y = i / (side / 2), sum[3] = { 0 }, code = 0, worst = 0;
+	for (int i = 0; i < side / finer * (side / finer); i++) {
+		int x = i % (side / finer), y = i / (side / finer), sum[3] = { 0 }, code = 0;
+		int worst = 0;
 
-		for (int k = 0; k < 4; k++) {
+		for (int k = 0; k < SHADING_SAMPLES; k++) { /* one counts as four */
+			int row = finer * y + k / 2 % finer, column = finer * x + k % finer;
 			const uint8_t *from =
-				samples + 4 * ((size_t)(side - 1 - 2 * y - k / 2) * (size_t)side +
-					       (size_t)(2 * x + k % 2));
+				samples +
+				4 * ((size_t)(side - 1 - row) * (size_t)side + (size_t)column);
 
 			for (int c = 0; from[3] && c < 3; c++)
 				sum[c] += from[c];
@@ -118,13 +123,15 @@ static void averages_colours_of_a_large_frame(void **state)
 
 	(void)state;
 	toy_box(&mesh, (float[3]){ -1, -1, -1 }, (float[3]){ 1, 1, 1 }, six);
-	shoot(&mesh, &plain, camera, SIDE, &picture, &samples);
-	all = compare(picture, samples, SIDE);
-	CHECK(all.partial > 500 && all.shown > SIDE * SIDE / 20);
-	CHECK(all.coverage_differs == 0);
-	CHECK(all.far_off == 0 && all.squares < 3.0 * (double)all.shown);
-	free(picture);
-	free(samples);
+	for (int finer = 1; finer <= 2; finer++) {
+		shoot(&mesh, &plain, camera, SIDE, finer, &picture, &samples);
+		all = compare(picture, samples, SIDE, finer);
+		CHECK(all.shown > SIDE * SIDE / 20 && all.coverage_differs == 0);
+		CHECK(finer == 1 ? all.partial == 0 : all.partial > 500);
+		CHECK(all.far_off == 0 && all.squares < 3.0 * (double)all.shown);
+		free(picture);
+		free(samples);
+	}
 	toy_free(&mesh);
 }
 
@@ -144,11 +151,12 @@ static void counts_backs(void **state)
 
 	(void)state;
 	toy_box(&mesh, (float[3]){ -1, -1, -1 }, (float[3]){ 1, 1, 1 }, six);
-	for (size_t i = 0; i < ARRAY_COUNT(stone); i++) {
+	for (size_t i = 0; i < 2 * ARRAY_COUNT(stone); i++) {
+		int finer = 1 + (int)i % 2;
 		uint8_t *picture;
 
-		shoot(&mesh, &stone[i], camera, SIDE, &picture, NULL);
-		for (int k = 0; k < SIDE / 2 * (SIDE / 2); k++)
+		shoot(&mesh, &stone[i / 2], camera, SIDE, finer, &picture, NULL);
+		for (int k = 0; k < SIDE / finer * (SIDE / finer); k++)
 			CHECK(picture[4 * k + 3] == SHADING_SAMPLES * (SHADING_COVERED + 1));
 		free(picture);
 	}
@@ -176,21 +184,22 @@ static void shades_stone_as_the_drawing_does(void **state)
 	toy_sphere(&mesh, (float[3]){ 0.3f, -0.2f, 1 }, 1, 64, grey);
 	toy_box(&mesh, (float[3]){ -3, -3, -0.5f }, (float[3]){ 3, 3, 0 }, six);
 	toy_box(&mesh, (float[3]){ -1, -1, 0 }, (float[3]){ 0.4f, 1, 1.5f }, six);
-	for (size_t i = 0; i < ARRAY_COUNT(cameras); i++) {
-		struct camera camera = cameras[i];
+	for (size_t i = 0; i < 2 * ARRAY_COUNT(cameras); i++) {
+		struct camera camera = cameras[i / 2];
+		int finer = 1 + (int)i % 2;
 		uint8_t *picture, *samples;
 		struct comparison all;
 		double db;
 
 		camera.up[2] = 1;
-		shoot(&mesh, &drawn, camera, SIDE, NULL, &samples);
-		shoot(&mesh, &surfaces, camera, SIDE, &picture, NULL);
-		all = compare(picture, samples, SIDE);
+		shoot(&mesh, &drawn, camera, SIDE, finer, NULL, &samples);
+		shoot(&mesh, &surfaces, camera, SIDE, finer, &picture, NULL);
+		all = compare(picture, samples, SIDE, finer);
 		db = 10 * log10(255.0 * 255 * 3 * (double)all.shown / all.squares);
 		CHECK(all.coverage_differs == 0 && all.shown > 10000);
 		if (db < 42 || all.far_off > all.shown / 30)
-			fail_msg("camera %zu: %.1f dB, %ld of %ld pixels are off", i, db,
-				 all.far_off, all.shown);
+			fail_msg("camera %zu, %d: %.1f dB, %ld of %ld pixels are off", i / 2, finer,
+				 db, all.far_off, all.shown);
 		free(picture);
 		free(samples);
 	}
