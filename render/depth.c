@@ -1,5 +1,6 @@
 #include "render/depth.h"
 
+#include <errno.h>
 #include <string.h>
 
 #include "render/vec.h"
@@ -84,12 +85,12 @@ static int build_programs(struct depth *depth)
 	return 0;
 }
 
-static int make_atlas(struct depth *depth)
+static int make_atlas_of(struct depth *depth, GLenum format, GLenum type, bool *complete)
 {
 	const struct gl_texture_options atlas = { .width_px = depth->atlas_width_px,
 						  .height_px = depth->atlas_height_px,
-						  .format = GL_RGB,
-						  .type = GL_UNSIGNED_SHORT_5_6_5,
+						  .format = format,
+						  .type = type,
 						  .filter = GL_NEAREST };
 	int rc = gl_texture_create(&depth->atlas, &atlas);
 	if (rc < 0)
@@ -98,7 +99,21 @@ static int make_atlas(struct depth *depth)
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, depth->atlas,
 			       0);
+	*complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 	return gl_check("making the depth atlas");
+}
+
+static int make_atlas(struct depth *depth)
+{
+	bool complete;
+	int rc = make_atlas_of(depth, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, &complete);
+	if (rc < 0 || complete)
+		return rc;
+	/* GLES2 leaves open what can be drawn into; 5, 6 and 5 bits survive in 8 as well. */
+	glDeleteFramebuffers(1, &depth->framebuffer);
+	glDeleteTextures(1, &depth->atlas);
+	rc = make_atlas_of(depth, GL_RGBA, GL_UNSIGNED_BYTE, &complete);
+	return rc < 0 || complete ? rc : -ENOTSUP;
 }
 
 int depth_init(struct depth *depth, int face_px, uint32_t face_rows)

@@ -115,12 +115,12 @@ scan() {
 }
 
 row_venus_70() {
-	scan venus "$scans/venus-cc0-textured/decoded/*" 'scans = venus.obj' 'up = y' 'unit = 0.1'
+	scan venus "$scans/venus-cc0-textured/decoded/*" 'scans = venus.obj' 'up = y' 'unit = 0.1' '[grid]' 'face_px = 2048'
 }
 
 row_zeus_70() {
 	scan zeus "$scans/bust-zeus-head/*.obj $scans/bust-zeus-head/*.mtl $scans/bust-zeus-head/*.jpg" \
-		'scans = koepfchenzeus.obj' 'up = y' 'unit = mm'
+		'scans = koepfchenzeus.obj' 'up = y' 'unit = mm' '[grid]' 'face_px = 2048'
 }
 
 rows=${ROWS:-demo temple-300 temple-100 temple-open-300 fine-250 venus-70 zeus-70}
