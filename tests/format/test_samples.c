@@ -94,9 +94,9 @@ static void refuses_impossible_grids(void **state)
 		{ 24, 0 },    /* no points */
 		{ 25, 65 },   /* too many */
 		{ 27, 0 },    /* no level */
-		{ 27, 6 },    /* too many levels */
-		{ 31, 1 },    /* tables longer than the page */
-		{ 38, 0x1d }, /* a fifth brick of four */
+		{ 27, SAMPLE_LEVELS_MOST + 1 }, /* too many levels */
+		{ 31, 1 },                      /* tables longer than the page */
+		{ 38, 0x1d },                   /* a fifth brick of four */
 	};
 	struct samples_page page = a_page();
 	struct buffer wire;
