@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "format/picture.h"
+#include "render/vec.h"
 
 /* ---- clock: the linker wraps base/clock's in these (Makefile) */
 
@@ -64,14 +65,16 @@ uint32_t stage_read_views(struct camera *cameras, uint32_t most, const char *pat
 		stage_die(path, -errno);
 	while (count < most && fgets(line, sizeof(line), file)) {
 		struct camera c = { .up = { 0, 0, 1 },
-				    .near_m = 0.1f,
 				    .far_m = 2000,
 				    .width_px = width_px,
 				    .height_px = height_px };
 
 		if (sscanf(line, "%f %f %f %f %f %f %f", &c.eye_m[0], &c.eye_m[1], &c.eye_m[2],
-			   &c.target_m[0], &c.target_m[1], &c.target_m[2], &c.fov_deg) == 7)
-			cameras[count++] = c;
+			   &c.target_m[0], &c.target_m[1], &c.target_m[2], &c.fov_deg) != 7)
+			continue;
+		/* Models may be a hand wide, or a temple's length. */
+		c.near_m = fminf(0.1f, vec_distance(c.eye_m, c.target_m) / 100);
+		cameras[count++] = c;
 	}
 	fclose(file);
 	if (count == 0)
