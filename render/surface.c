@@ -102,15 +102,13 @@ static const char blended_fragment[] =
 	"vec4 from_face(vec4 face, vec2 slot, vec4 window) {\n"
 	"	if (face.w < 0.0005 || face.z < u_far * 0.0004)\n"
 	"		return vec4(0.0);\n"
-	"	vec2 at = vec2(face.x, -face.y) / face.z * 0.5 + 0.5;\n"
-	"	if (at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0)\n"
+	"	vec2 at = vec2(face.x, -face.y) / face.z;\n"
+	"	if (abs(at.x) > 1.0 || abs(at.y) > 1.0)\n"
 	"		return vec4(0.0);\n"
-	"	at = clamp(at, 0.0001, 0.9999);\n"
-	"	vec2 in_window = (face.xy / face.z - window.xy) / window.zw;\n"
-	"	in_window = clamp(vec2(in_window.x, -in_window.y) * 0.5 + 0.5, 0.0001, 0.9999);\n"
-	"	vec3 d = texture2D(u_depths, (slot + in_window) / DEPTH_GRID).rgb;\n"
+	"	vec3 d = texture2D(u_depths, at * window.xy + window.zw).rgb;\n"
 	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n" /* 5, 6, 5 bits; some return 8 */
 	"	float depth = dot(d, vec3(2048.0, 32.0, 1.0)) / 65535.0 * u_far;\n"
+	"	at = clamp(at * 0.5 + 0.5, 0.0001, 0.9999);\n"
 	"	float slack = u_slack + 0.001 * face.z;\n"
 	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
 	"	if (w < 0.0002)\n"
@@ -154,7 +152,6 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 	snprintf(out, bytes,
 		 "precision highp float;\n"
 		 "#define FACES %d\n"
-		 "#define DEPTH_GRID vec2(%d.0, %d.0)\n"
 		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
 		 "#define IMAGE_PX %d.0\n"
 		 "#define APRON_PX %d.0\n"
@@ -162,9 +159,8 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 		 "#define ATLAS_PX %d.0\n"
 		 "#define OWN_SHARE 0.05\n"
 		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
-		 faces, TILES_FACES_ACROSS, (int)tiles->face_rows, TILES_FACES_ACROSS,
-		 (int)tiles->face_rows, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX, SAMPLE_TILE_PX,
-		 tiles->atlas_px);
+		 faces, TILES_FACES_ACROSS, (int)tiles->face_rows, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX,
+		 SAMPLE_TILE_PX, tiles->atlas_px);
 }
 
 static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
@@ -285,6 +281,22 @@ static void set_face(float rows[20], const struct repository *repository, const 
 	rows[16] = blend->half_px;
 }
 
+/* From a place of the face (-1..1, y down) to one in the atlas of depths. */
+static void place_window(float out[4], const struct depth *depth, int slot)
+{
+	const float *window = depth->face[slot].window;
+	const float middle[2] = { window[0], -window[1] };
+	const float grid[2] = { TILES_FACES_ACROSS,
+				(float)depth->atlas_height_px / (float)depth->face_px };
+	const float corner[2] = { (float)(slot % TILES_FACES_ACROSS),
+				  (float)(slot / TILES_FACES_ACROSS) };
+	for (int k = 0; k < 2; k++) {
+		/* A hair less, so that the face's rim is not its neighbour's. */
+		out[k] = 0.4999f / window[2 + k] / grid[k];
+		out[2 + k] = (corner[k] + 0.5f) / grid[k] - middle[k] * out[k];
+	}
+}
+
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int faces,
 		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m)
 {
@@ -299,7 +311,7 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 		set_face(&rows[20 * at], frame->repository, &blend[i], frame->view->eye_m);
 		slots[4 * at] = (float)(slot % TILES_FACES_ACROSS);
 		slots[4 * at + 1] = (float)(slot / TILES_FACES_ACROSS);
-		memcpy(&windows[4 * at], frame->depth->face[slot].window, 4 * sizeof(float));
+		place_window(&windows[4 * at], frame->depth, slot);
 		at++;
 	}
 	glUniform4fv(p->face, 5 * faces, rows);
