@@ -63,7 +63,7 @@ row_demo() {
 # temple NAME LINE...: a content folder of the temple of 5 M triangles
 temple() {
 	folder "$1" 'scans = scan.ply' 'lit = yes' 'sun = 0.60 -0.58 0.55' "${@:2}" '[grid]' \
-		'points = 8' 'face_px = 2048' 'quality = 75'
+		'points = 8' 'face_px = 2048' 'quality = 80'
 	[ -f "$work/temple.ply" ] ||
 		build/gopura-content temple --triangles 5000000 --out "$work/temple.ply" >&2
 	ln -f "$work/temple.ply" "$work/$1/content/scan.ply"
@@ -76,12 +76,12 @@ build_temple() {
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 1 <tests/bench/views.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 2 <tests/bench/views.txt
 }
 
 row_temple_100() {
 	build_temple
-	draw temple-100 "$work/temple/content" "$work/temple/release" 10 <tests/bench/views.txt
+	draw temple-100 "$work/temple/content" "$work/temple/release" 15 <tests/bench/views.txt
 }
 
 # The same hierarchy and samples, all of it published.
