@@ -86,6 +86,7 @@ int kiosk_width_px(const struct kiosk *kiosk);
 int kiosk_height_px(const struct kiosk *kiosk);
 
 /* exhibit.c: what is shown, and what comes next. */
+/* What a board's profile asks of a scene. */
 struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode);
 void exhibit_close(struct exhibit *exhibit);
 /* An object came. */

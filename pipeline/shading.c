@@ -22,6 +22,9 @@ static const char four_samples[] = "#define SIDE 2\n";
 static const char fragment_head[] =
 	"precision highp float;\n"
 	"const int SAMPLES = SIDE * SIDE;\n"
+	"float code(float covered, float backs) {\n" /* of shading.h; one sample counts as four */
+	"	return float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0;\n"
+	"}\n"
 	"uniform highp sampler2D colour; uniform highp sampler2D depth;\n"
 	"uniform vec2 size; uniform vec2 planes; uniform float px_radians;\n"
 	"uniform vec3 eye; uniform vec3 corner_ray; uniform vec3 right; uniform vec3 up;\n"
@@ -51,7 +54,7 @@ static const char colour_main[] =
 	"		covered += there;\n"
 	"		backs += there * step(texel.a, 254.5 / 255.0);\n"
 	"	}\n"
-	"	gl_FragColor = vec4(sum / max(covered, 1.0), float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0);\n"
+	"	gl_FragColor = vec4(sum / max(covered, 1.0), code(covered, backs));\n"
 	"}\n";
 
 static const char no_light[] = "float shade(vec3 n, float open) { return 1.0; }\n";
@@ -159,7 +162,7 @@ static const char stone_main[] =
 	"		if (left[0] + left[1] + left[2] + left[3] < 0.5) break;\n"
 	"	}\n"
 	"	vec3 mean = covered > 0.5 ? sum / covered : vec3(0.0);\n"
-	"	gl_FragColor = vec4(mean, float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0);\n"
+	"	gl_FragColor = vec4(mean, code(covered, backs));\n"
 	"}\n";
 
 static int build_program(struct shading *shading, const struct drawing_options *options)

@@ -50,7 +50,7 @@ struct gl_texture_options {
 	GLenum filter;      /* GL_NEAREST or GL_LINEAR; with mipmaps: trilinear */
 	bool mipmaps;       /* sides must be powers of two: GLES2 */
 	bool repeat;        /* likewise */
-	bool large;         /* may be past what every board has: the pipeline's machines draw it */
+	bool large;         /* may be past what every board has, as a panel or the pipeline asks */
 	const void *pixels; /* rows without padding; NULL: undefined */
 };
 

@@ -10,9 +10,9 @@
 #include "render/vec.h"
 
 enum {
-	DEPTH_FACE_PX = 512,
+	DEPTH_FACE_PX = 512,   /* TILES_ROWS_MOST of them are as high as a texture may be */
+	DEPTH_TEXEL_BYTES = 2, /* four where RGB565 cannot be drawn into */
 	DEPTH_ROWS_LEAST = 2,
-	DEPTH_ROWS_MOST = GL_LIMIT_TEXTURE_PX / DEPTH_FACE_PX
 };
 
 /* ---- life */
@@ -25,12 +25,13 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		return -ENOMEM;
 	scene->options = *options;
 	scene->image_share = -1;
-	const uint64_t row_bytes = 2ull * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
+	const uint64_t row_bytes =
+		(uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
 	uint64_t budget = options->texture_budget_bytes;
 	/* Three eighths: a face in use has about a dozen tiles in use. */
 	uint64_t rows = budget * 3 / 8 / row_bytes;
 	rows = rows < DEPTH_ROWS_LEAST ? DEPTH_ROWS_LEAST : rows;
-	rows = rows > DEPTH_ROWS_MOST ? DEPTH_ROWS_MOST : rows;
+	rows = rows > TILES_ROWS_MOST ? TILES_ROWS_MOST : rows;
 	int rc = pool_create(&scene->pool, options->worker_count);
 	if (rc == 0)
 		rc = tiles_init(&scene->tiles,
@@ -52,19 +53,12 @@ int scene_create(struct scene **out, const struct scene_options *options)
 	return 0;
 }
 
-/* Everything of a release. */
-static void forget(struct scene *scene)
+static void drop_hierarchy(struct scene *scene)
 {
-	pool_forget(scene->pool);
-	scene->object_count = 0;
-	map_clear(&scene->object_of);
-	map_clear(&scene->decoding);
-	if (scene->has_hierarchy) {
-		cut_finish(&scene->cut);
-		cut_finish(&scene->around);
-		geometry_finish(&scene->geometry);
-		hierarchy_finish(&scene->hierarchy);
-	}
+	cut_finish(&scene->cut);
+	cut_finish(&scene->around);
+	geometry_finish(&scene->geometry);
+	hierarchy_finish(&scene->hierarchy);
 	free(scene->groups);
 	free(scene->group_offset);
 	free(scene->seen_px);
@@ -73,6 +67,17 @@ static void forget(struct scene *scene)
 	scene->group_offset = NULL;
 	scene->seen_px = NULL;
 	scene->group_priority = NULL;
+}
+
+/* Everything of a release. */
+static void forget(struct scene *scene)
+{
+	pool_forget(scene->pool);
+	scene->object_count = 0;
+	map_clear(&scene->object_of);
+	map_clear(&scene->decoding);
+	if (scene->has_hierarchy)
+		drop_hierarchy(scene);
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->counted_count = scene->want_count = 0;
@@ -223,17 +228,7 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		rc = cut_init(&scene->around, &scene->hierarchy);
 	page_finish(&page);
 	if (rc < 0) {
-		cut_finish(&scene->cut);
-		geometry_finish(&scene->geometry);
-		hierarchy_finish(&scene->hierarchy);
-		free(scene->groups);
-		free(scene->group_offset);
-		free(scene->seen_px);
-		free(scene->group_priority);
-		scene->groups = NULL;
-		scene->group_offset = NULL;
-		scene->seen_px = NULL;
-		scene->group_priority = NULL;
+		drop_hierarchy(scene);
 		return rc;
 	}
 	scene->hierarchy_hash = hash;

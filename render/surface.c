@@ -95,7 +95,7 @@ static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
 	"uniform highp sampler2D u_cells, u_depths;\n" /* by default lowp: 16 bits need more */
 	"uniform vec4 u_slot[FACES];\n"                /* face slot's column and row, 0, 0 */
-	"uniform vec4 u_window[FACES];\n"              /* of the depths: middle, half sides */
+	"uniform vec4 u_window[FACES];\n"              /* place in the depths: scale, offset */
 	"uniform float u_share, u_far, u_slack;\n"
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face[FACES];\n"

@@ -1,7 +1,7 @@
 /* Image tiles on the GPU as a virtual texture for GLES2's eight units.
  *
  * Tiles lie in an atlas of slots. A face of a sampling point that has any tile owns a face slot:
- * 16 x 16 cells of an indirection texture, each naming the finest tile that covers it (atlas
+ * 32 x 32 cells of an indirection texture, each naming the finest tile that covers it (atlas
  * column, row, tiles a side at its level, weight while it fades in), and a square of the depth
  * atlas (render/depth.h) of the same number. Past the budgets the face or tile used longest ago
  * goes first, never one that is in use now. */
@@ -14,7 +14,7 @@
 enum {
 	TILES_CELLS = 32,       /* a side: tiles of the finest level */
 	TILES_FACES_ACROSS = 8, /* face slots a row, in the indirection texture and depth atlas */
-	TILES_ROWS_MOST = 16,
+	TILES_ROWS_MOST = 8,
 	TILES_FACES_MOST = TILES_FACES_ACROSS * TILES_ROWS_MOST,
 	TILES_FADE_MS = 250,
 };
