@@ -22,10 +22,22 @@ enum stream {
 	STREAM_COUNT
 };
 
-enum { VERSION = 1, ZSTD_LEVEL = 12, INDEX_BYTES_MOST = 8 * PATCH_TRIANGLES_MOST };
+enum {
+	VERSION = 2,
+	ZSTD_LEVEL = 12,
+	INDEX_BYTES_MOST = 8 * PATCH_TRIANGLES_MOST,
+	NORMAL_ZEROS_MOST = 6,
+	BITS_LEAST = 4 /* fewer do not fill eight by one repetition */
+};
 
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
 static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1 };
+
+/* The fewest digits that tell every vertex of a group without loss. */
+struct precision {
+	uint8_t normal_zeros; /* low binary digits that are zero in each of them */
+	uint8_t colour_bits, open_bits;
+};
 
 struct streams {
 	uint8_t *data[STREAM_COUNT]; /* owned */
@@ -83,10 +95,23 @@ static uint8_t unfold8(uint8_t folded)
 	return (uint8_t)(folded >> 1 ^ (folded & 1 ? 0xff : 0));
 }
 
+/* So many bits fill eight by repetition: none and all stay what they are. */
+static uint8_t widen(uint8_t value, int bits)
+{
+	return bits == 8 ? value : (uint8_t)(value << (8 - bits) | value >> (2 * bits - 8));
+}
+
+static int shorten_normal(int guess, int zeros)
+{
+	return (guess + ((1 << zeros) >> 1)) >> zeros;
+}
+
 static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
-		       const struct predict_step *step, const int8_t normal[2])
+		       const struct predict_step *step, const int8_t normal[2],
+		       const struct precision *precision)
 {
 	const struct patch_vertex *vertex = &mesh->vertices[step->vertex];
+	int zeros = precision->normal_zeros;
 	uint16_t position[3];
 	uint8_t colour[4], difference[4];
 
@@ -99,9 +124,14 @@ static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
 		put(streams, STREAM_POSITION_HIGH, (uint8_t)(folded >> 8));
 	}
 	for (int i = 0; i < 2; i++)
-		put(streams, STREAM_NORMAL, fold8((uint8_t)(vertex->normal[i] - normal[i])));
-	for (int i = 0; i < 4; i++)
-		difference[i] = (uint8_t)(vertex->colour[i] - colour[i]);
+		put(streams, STREAM_NORMAL,
+		    fold8((uint8_t)((vertex->normal[i] >> zeros) -
+				    shorten_normal(normal[i], zeros))));
+	for (int i = 0; i < 4; i++) {
+		int dropped = 8 - (i < 3 ? precision->colour_bits : precision->open_bits);
+
+		difference[i] = (uint8_t)((vertex->colour[i] >> dropped) - (colour[i] >> dropped));
+	}
 	put(streams, STREAM_GREEN, fold8(difference[1]));
 	put(streams, STREAM_TINT, fold8((uint8_t)(difference[0] - difference[1])));
 	put(streams, STREAM_TINT, fold8((uint8_t)(difference[2] - difference[1])));
@@ -123,27 +153,40 @@ static void get_position(struct streams *streams, struct patch_mesh *mesh,
 	}
 }
 
+static uint8_t get_colour(uint8_t guess, uint8_t difference, int bits)
+{
+	uint8_t value = (uint8_t)((guess >> (8 - bits)) + difference);
+
+	return widen((uint8_t)(value & ((1 << bits) - 1)), bits);
+}
+
 static void get_rest(struct streams *streams, struct patch_mesh *mesh,
-		     const struct predict_step *step, const int8_t normal[2])
+		     const struct predict_step *step, const int8_t normal[2],
+		     const struct precision *precision)
 {
 	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
+	int zeros = precision->normal_zeros, bits = precision->colour_bits;
 	uint8_t colour[4], green, red, blue;
 
 	predict_colour(colour, step, mesh->vertices);
-	for (int i = 0; i < 2; i++)
-		vertex->normal[i] = (int8_t)(uint8_t)((uint8_t)normal[i] +
-						      unfold8(get(streams, STREAM_NORMAL)));
+	for (int i = 0; i < 2; i++) {
+		int value = shorten_normal(normal[i], zeros) + unfold8(get(streams, STREAM_NORMAL));
+
+		vertex->normal[i] = (int8_t)(uint8_t)((uint32_t)value << zeros);
+	}
 	green = unfold8(get(streams, STREAM_GREEN));
 	red = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
 	blue = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
-	vertex->colour[0] = (uint8_t)(colour[0] + red);
-	vertex->colour[1] = (uint8_t)(colour[1] + green);
-	vertex->colour[2] = (uint8_t)(colour[2] + blue);
-	vertex->colour[3] = (uint8_t)(colour[3] + unfold8(get(streams, STREAM_OPEN)));
+	vertex->colour[0] = get_colour(colour[0], red, bits);
+	vertex->colour[1] = get_colour(colour[1], green, bits);
+	vertex->colour[2] = get_colour(colour[2], blue, bits);
+	vertex->colour[3] =
+		get_colour(colour[3], unfold8(get(streams, STREAM_OPEN)), precision->open_bits);
 }
 
 /* The vertices of one patch, to or from the streams. The mesh's indices are in range. */
-static int code_vertices(struct streams *streams, struct patch_mesh *mesh, bool encoding)
+static int code_vertices(struct streams *streams, struct patch_mesh *mesh,
+			 const struct precision *precision, bool encoding)
 {
 	struct predict_step *steps = malloc(mesh->vertex_count * sizeof(*steps));
 	int8_t(*normals)[2] = malloc(mesh->vertex_count * sizeof(*normals));
@@ -155,9 +198,9 @@ static int code_vertices(struct streams *streams, struct patch_mesh *mesh, bool 
 		rc = predict_normals(normals, mesh);
 	for (uint32_t i = 0; rc == 0 && i < mesh->vertex_count; i++) {
 		if (encoding)
-			put_vertex(streams, mesh, &steps[i], normals[steps[i].vertex]);
+			put_vertex(streams, mesh, &steps[i], normals[steps[i].vertex], precision);
 		else
-			get_rest(streams, mesh, &steps[i], normals[steps[i].vertex]);
+			get_rest(streams, mesh, &steps[i], normals[steps[i].vertex], precision);
 	}
 	free(steps);
 	free(normals);
@@ -228,10 +271,39 @@ static int put_streams(struct buffer *out, const struct streams *streams)
 	return out->error;
 }
 
+static uint8_t bits_of(uint8_t value, uint8_t bits)
+{
+	while (widen((uint8_t)(value >> (8 - bits)), bits) != value)
+		bits++;
+	return bits;
+}
+
+static void tell_vertex(struct precision *precision, const struct patch_vertex *vertex)
+{
+	int digits = vertex->normal[0] | vertex->normal[1];
+
+	while (digits & ((1 << precision->normal_zeros) - 1))
+		precision->normal_zeros--;
+	for (int i = 0; i < 3; i++)
+		precision->colour_bits = bits_of(vertex->colour[i], precision->colour_bits);
+	precision->open_bits = bits_of(vertex->colour[3], precision->open_bits);
+}
+
+static struct precision precision_of(const struct patch_mesh *patches, uint32_t patch_count)
+{
+	struct precision precision = { NORMAL_ZEROS_MOST, BITS_LEAST, BITS_LEAST };
+
+	for (uint32_t p = 0; p < patch_count; p++)
+		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
+			tell_vertex(&precision, &patches[p].vertices[v]);
+	return precision;
+}
+
 /* Header and streams of patches whose indices are packed already. */
 static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t patch_count,
 		     const uint32_t *index_bytes, struct bytes indices)
 {
+	struct precision precision = precision_of(decoded, patch_count);
 	struct streams streams;
 	size_t vertex_count = 0;
 	int rc;
@@ -239,6 +311,9 @@ static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t pa
 	buffer_put(out, magic, sizeof(magic));
 	buffer_put_u8(out, VERSION);
 	buffer_put_u8(out, (uint8_t)patch_count);
+	buffer_put_u8(out, precision.normal_zeros);
+	buffer_put_u8(out, precision.colour_bits);
+	buffer_put_u8(out, precision.open_bits);
 	for (uint32_t p = 0; p < patch_count; p++) {
 		buffer_put_u16(out, (uint16_t)decoded[p].vertex_count);
 		buffer_put_u16(out, (uint16_t)decoded[p].triangle_count);
@@ -249,7 +324,7 @@ static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t pa
 	if (rc == 0)
 		memcpy(streams.data[STREAM_INDICES], indices.data, indices.size);
 	for (uint32_t p = 0; rc == 0 && p < patch_count; p++)
-		rc = code_vertices(&streams, &decoded[p], true);
+		rc = code_vertices(&streams, &decoded[p], &precision, true);
 	if (rc == 0)
 		rc = put_streams(out, &streams);
 	streams_finish(&streams);
@@ -286,8 +361,17 @@ int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uin
 	return rc;
 }
 
+static bool get_precision(struct reader *reader, struct precision *out)
+{
+	out->normal_zeros = reader_u8(reader);
+	out->colour_bits = reader_u8(reader);
+	out->open_bits = reader_u8(reader);
+	return out->normal_zeros <= NORMAL_ZEROS_MOST && out->colour_bits >= BITS_LEAST &&
+	       out->colour_bits <= 8 && out->open_bits >= BITS_LEAST && out->open_bits <= 8;
+}
+
 static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_t *patch_count,
-		      uint32_t *index_bytes)
+		      uint32_t *index_bytes, struct precision *precision)
 {
 	struct bytes start = reader_bytes(reader, sizeof(magic));
 
@@ -295,7 +379,8 @@ static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_
 	    reader_u8(reader) != VERSION)
 		return -EBADMSG;
 	*patch_count = reader_u8(reader);
-	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MOST)
+	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MOST ||
+	    !get_precision(reader, precision))
 		return -EBADMSG;
 	for (uint32_t p = 0; p < *patch_count; p++) {
 		patches[p].vertex_count = reader_u16(reader);
@@ -322,7 +407,8 @@ static int get_streams(struct reader *reader, struct streams *streams)
 	return reader_left(reader) == 0 ? 0 : -EBADMSG;
 }
 
-static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32_t index_bytes)
+static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32_t index_bytes,
+			const struct precision *precision)
 {
 	const uint8_t *packed = streams->data[STREAM_INDICES] + streams->at[STREAM_INDICES];
 
@@ -335,7 +421,7 @@ static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32
 				      index_bytes) != 0 ||
 	    !indices_fit(mesh))
 		return -EBADMSG;
-	return code_vertices(streams, mesh, false);
+	return code_vertices(streams, mesh, precision, false);
 }
 
 int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *patch_count,
@@ -343,13 +429,14 @@ int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *
 {
 	uint32_t index_bytes[GROUP_PATCHES_MOST];
 	size_t index_total = 0, vertex_total = 0;
+	struct precision precision = { 0 };
 	struct streams streams = { 0 };
 	struct reader reader;
 	int rc;
 
 	memset(patches, 0, GROUP_PATCHES_MOST * sizeof(*patches));
 	reader_init(&reader, object);
-	rc = get_header(&reader, patches, patch_count, index_bytes);
+	rc = get_header(&reader, patches, patch_count, index_bytes, &precision);
 	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++) {
 		index_total += index_bytes[p];
 		vertex_total += patches[p].vertex_count;
@@ -359,7 +446,7 @@ int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *
 	if (rc == 0)
 		rc = get_streams(&reader, &streams);
 	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++)
-		rc = decode_patch(&patches[p], &streams, index_bytes[p]);
+		rc = decode_patch(&patches[p], &streams, index_bytes[p], &precision);
 	streams_finish(&streams);
 	if (rc < 0) {
 		for (uint32_t p = 0; p < GROUP_PATCHES_MOST; p++)

@@ -14,7 +14,7 @@
 #include "format/stone.h"
 
 /* Raised whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 5, INDEX_VERSION = 2, INDEX_BYTES_MOST = 256 << 20 };
+enum { BUILD_VERSION = 6, INDEX_VERSION = 2, INDEX_BYTES_MOST = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 

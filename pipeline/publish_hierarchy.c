@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "format/patch.h"
 #include "pipeline/publish_sources.h"
 
 /* The share that holds the top and no more. */
@@ -30,6 +31,51 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 	return master_cut_create(cut, master, share_of_top(master));
 }
 
+/* To 6, for light 4, bits and back: what a patch is coloured with where no image is needs no more,
+ * and none and all stay what they are. */
+static void round_colours(uint8_t colour[4])
+{
+	for (int i = 0; i < 3; i++) {
+		int value = (colour[i] * 63 + 127) / 255;
+
+		colour[i] = (uint8_t)(value << 2 | value >> 4);
+	}
+	colour[3] = (uint8_t)((colour[3] * 15 + 127) / 255 * 17);
+}
+
+/* To every fourth step, away from zero at the half; -128 is no normal's. */
+static void round_normal(int8_t normal[2])
+{
+	for (int i = 0; i < 2; i++) {
+		int value = (normal[i] + (normal[i] < 0 ? -2 : 2)) / 4 * 4;
+
+		normal[i] = (int8_t)(value > 124 ? 124 : value < -124 ? -124 : value);
+	}
+}
+
+/* The same for equal vertices, so that neighbours go on agreeing. Places stay as they are: they
+ * decide which image is seen where (docs/patch.md has the figures). */
+static int round_group(struct buffer *object)
+{
+	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	uint32_t count;
+	int rc = patch_group_decode(meshes, &count, buffer_bytes(object));
+
+	if (rc < 0)
+		return rc;
+	for (uint32_t p = 0; p < count; p++) {
+		for (uint32_t v = 0; v < meshes[p].vertex_count; v++) {
+			round_colours(meshes[p].vertices[v].colour);
+			round_normal(meshes[p].vertices[v].normal);
+		}
+	}
+	buffer_clear(object);
+	rc = patch_group_encode(object, meshes, count);
+	for (uint32_t p = 0; p < count; p++)
+		patch_mesh_finish(&meshes[p]);
+	return rc;
+}
+
 static int add_groups(struct object_store *objects, const struct master *master,
 		      const struct master_cut *cut, struct page_child *children)
 {
@@ -40,6 +86,8 @@ static int add_groups(struct object_store *objects, const struct master *master,
 	for (uint32_t i = 0; rc == 0 && i < cut->hierarchy.group_count; i++) {
 		buffer_clear(&object);
 		rc = master_read_group(master, cut->groups[i], &object);
+		if (rc == 0)
+			rc = round_group(&object);
 		if (rc == 0)
 			rc = object_store_add(objects, buffer_bytes(&object), &children[i]);
 	}

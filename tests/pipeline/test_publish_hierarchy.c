@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "format/page.h"
+#include "format/patch.h"
 #include "pipeline/publish_sources.h"
 #include "tests/check.h"
 
@@ -20,8 +21,36 @@ static float losses_m4[GROUPS];
 static struct master master;
 static struct object_store *objects;
 
+/* Colours and normals with more digits than are published. */
+static int put_object(uint32_t group)
+{
+	struct patch_vertex vertices[3] = {
+		{ .position = { (uint16_t)group, 9, 7 },
+		  .normal = { 127, -127 },
+		  .colour = { 0, 255, 100, 255 } },
+		{ .position = { 1001, 9, 7 }, .normal = { 1, -2 }, .colour = { 1, 2, 3, 9 } },
+		{ .position = { 1001, 907, 7 },
+		  .normal = { 2, -1 },
+		  .colour = { 252, 253, 254, 0 } },
+	};
+	uint16_t indices[3] = { 0, 1, 2 };
+	struct patch_mesh mesh = { 3, 1, vertices, indices };
+	struct buffer object;
+	int rc;
+
+	buffer_init(&object, OBJECT_BYTES_MOST);
+	rc = patch_group_encode(&object, &mesh, 1);
+	places[group] = group == 0 ? 0 : places[group - 1] + sizes[group - 1];
+	sizes[group] = (uint32_t)object.size;
+	if (rc == 0 && write(master.fd, object.data, object.size) != (ssize_t)object.size)
+		rc = -EIO;
+	buffer_finish(&object);
+	return rc;
+}
+
 /* Two patches a group, 100 triangles each. 1 and 2 refine one patch of group 0 each; 3 refines one
- * of 1 and one of 2; 4 the other of 1; 5 the other of 2. The object of group g is the byte g. */
+ * of 1 and one of 2; 4 the other of 1; 5 the other of 2. The object of group g holds a
+ * triangle that begins at x = g; counts are the page's to tell, verify compares them. */
 static int set_up(void **state)
 {
 	static const uint32_t finer[PATCHES] = { 1,
@@ -37,7 +66,6 @@ static int set_up(void **state)
 						 HIERARCHY_NONE,
 						 HIERARCHY_NONE };
 	static const float errors[GROUPS] = { INFINITY, 4, 3, 2, 1, 0.5f };
-	static const uint8_t bytes[GROUPS] = { 0, 1, 2, 3, 4, 5 };
 	char path[] = "/tmp/gopura-master-XXXXXX";
 
 	(void)state;
@@ -54,8 +82,6 @@ static int set_up(void **state)
 						      .patch_count = 2,
 						      .error_m = errors[i],
 						      .radius_m = 20 - (float)i };
-		places[i] = i;
-		sizes[i] = 1;
 		losses_m4[i] = errors[i];
 	}
 	master = (struct master){ .source_triangles = 10000,
@@ -65,7 +91,10 @@ static int set_up(void **state)
 				  .losses_m4 = losses_m4,
 				  .fd = mkstemp(path) };
 	unlink(path);
-	return write(master.fd, bytes, GROUPS) == GROUPS ? object_store_create(&objects) : -1;
+	for (uint32_t i = 0; i < GROUPS; i++)
+		if (put_object(i) < 0)
+			return -1;
+	return object_store_create(&objects);
 }
 
 static int tear_down(void **state)
@@ -115,6 +144,24 @@ static void what_is_published_is_a_hierarchy_within_the_share(void **state)
 	}
 }
 
+/* The first vertex of a published group that holds the triangle of put_object. */
+static struct patch_vertex read_object(struct hash hash)
+{
+	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_vertex first;
+	struct buffer object;
+	uint32_t count;
+
+	buffer_init(&object, OBJECT_BYTES_MOST);
+	CHECK(object_store_read(objects, hash, &object) == 0);
+	CHECK(patch_group_decode(meshes, &count, buffer_bytes(&object)) == 0);
+	CHECK(count == 1 && meshes[0].vertex_count == 3);
+	first = meshes[0].vertices[0];
+	patch_mesh_finish(&meshes[0]);
+	buffer_finish(&object);
+	return first;
+}
+
 static void objects_go_with_their_groups(void **state)
 {
 	struct hierarchy back;
@@ -124,13 +171,30 @@ static void objects_go_with_their_groups(void **state)
 	CHECK(publish(1.0, &page, &back) == 1200);
 	CHECK(back.group_count == GROUPS);
 	for (uint32_t i = 0; i < GROUPS; i++) {
-		uint8_t byte = 0;
+		uint16_t expected = 0;
 
-		for (uint8_t g = 0; g < GROUPS; g++)
+		for (uint16_t g = 0; g < GROUPS; g++)
 			if (groups[g].error_m == back.groups[i].error_m)
-				byte = g;
-		CHECK(hash_equal(page.children[i].hash, hash_of((struct bytes){ &byte, 1 })));
+				expected = g;
+		CHECK(read_object(page.children[i].hash).position[0] == expected);
 	}
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
+static void colours_are_rounded_and_places_are_not(void **state)
+{
+	struct patch_vertex vertex;
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	CHECK(publish(0.02, &page, &back) == 200);
+	vertex = read_object(page.children[0].hash);
+	CHECK(vertex.position[0] == 0 && vertex.position[1] == 9 && vertex.position[2] == 7);
+	CHECK(vertex.normal[0] == 124 && vertex.normal[1] == -124);
+	CHECK(vertex.colour[0] == 0 && vertex.colour[1] == 255 && vertex.colour[3] == 255);
+	CHECK(vertex.colour[2] == 101); /* 25 of 63 */
 	hierarchy_finish(&back);
 	page_finish(&page);
 }
@@ -177,6 +241,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(what_is_published_is_a_hierarchy_within_the_share,
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(objects_go_with_their_groups, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(colours_are_rounded_and_places_are_not, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(what_costs_most_goes_first, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(the_top_is_published_whatever_the_share, set_up,
 						tear_down),
