@@ -1,11 +1,13 @@
 /* What a frame costs with the eye moving a millimetre a frame over a warm scene, as a multiple of
  * the same triangles with one plain texture lookup, and of one textured quad that fills the screen.
- * Everything in one run, each frame finished before the clock stops.
+ * Everything in one run, each frame finished before the clock stops. And how much of the picture
+ * changes when the eye crosses the border between two cells of the grid by a millimetre a frame.
  *
  *   bench_frame RELEASE VIEWS [FRAMES]
  *
  * Prints JSON: medians over the views of VIEWS (eye x y z, target x y z, vertical field of view in
  * degrees), for 1280 x 720 and 1920 x 1080. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +17,7 @@
 #include "render/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 20000 };
+enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 20000, CROSSING_FRAMES = 10 };
 
 struct bench {
 	struct stage stage;
@@ -141,10 +143,80 @@ static double time_ms(struct bench *bench, void (*draw)(const struct bench *))
 	return stage_median(ms, bench->frames);
 }
 
+/* ---- crossing a border */
+
+/* Aside, along the axis where it is nearest: to half way before the border between the cells. */
+static void go_to_border(const struct samples_page *grid, struct camera *camera, int *axis)
+{
+	float nearest = INFINITY;
+
+	for (int i = 0; i < 3; i++) {
+		float cell = roundf((camera->eye_m[i] - grid->origin_m[i]) / grid->spacing_m[i]);
+		float plane = fminf(fmaxf(cell, 0), (float)(grid->count[i] - 1));
+		float way = grid->origin_m[i] + plane * grid->spacing_m[i] - camera->eye_m[i];
+
+		if (fabsf(way) < fabsf(nearest)) {
+			nearest = way;
+			*axis = i;
+		}
+	}
+	nearest -= 0.001f * (CROSSING_FRAMES + 0.5f) / 2;
+	camera->eye_m[*axis] += nearest;
+	camera->target_m[*axis] += nearest;
+}
+
+/* Of the pixels that show anything in either: those where a colour differs by more than 10. */
+static double changed_pct(const uint8_t *a, const uint8_t *b, size_t count)
+{
+	size_t shown = 0, changed = 0;
+
+	for (size_t i = 0; i < count; i++, a += 4, b += 4) {
+		bool differs = false;
+
+		for (int c = 0; c < 3; c++)
+			differs = differs || abs(a[c] - b[c]) > 10;
+		shown += a[3] > 0 || b[3] > 0;
+		changed += differs;
+	}
+	return shown > 0 ? 100 * (double)changed / (double)shown : 0;
+}
+
+/* The most that one of the frames changes; the first ends the rest before it and does not count. */
+static double cross_border(struct bench *bench, struct camera camera)
+{
+	struct stage *stage = &bench->stage;
+	struct scene_frame frame;
+	uint8_t *before = NULL;
+	double most = 0;
+	int axis = 0;
+
+	camera.width_px = stage->target.width_px;
+	camera.height_px = stage->target.height_px;
+	go_to_border(&stage->scene->repository.grid, &camera, &axis);
+	stage_settle(stage, &camera, SETTLE_MS, &frame);
+	bench->unsettled += !frame.settled;
+	for (int i = 0; i < CROSSING_FRAMES; i++) {
+		uint8_t *now;
+
+		camera.eye_m[axis] += 0.001f;
+		camera.target_m[axis] += 0.001f;
+		stage_frame(stage, &camera, &frame);
+		now = stage_read(stage);
+		if (before)
+			most = fmax(most, changed_pct(before, now,
+						      (size_t)camera.width_px *
+							      (size_t)camera.height_px));
+		free(before);
+		before = now;
+	}
+	free(before);
+	return most;
+}
+
 /* ---- frames */
 
 struct cost {
-	double ms, plain_ms, triangles;
+	double ms, plain_ms, triangles, crossing_pct;
 };
 
 static struct cost cost_of(struct bench *bench, struct camera camera)
@@ -178,6 +250,7 @@ static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 {
 	struct scene_options options = bench->stage.options.scene;
 	double ms[VIEWS_MOST], plain_ms[VIEWS_MOST], triangles[VIEWS_MOST];
+	double crossing_pct[VIEWS_MOST];
 
 	options.mode = mode;
 	stage_begin(&bench->stage, &options);
@@ -187,9 +260,11 @@ static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 		ms[i] = cost.ms;
 		plain_ms[i] = cost.plain_ms;
 		triangles[i] = cost.triangles;
+		crossing_pct[i] = cross_border(bench, bench->cameras[i]);
 	}
 	return (struct cost){ stage_median(ms, bench->views), stage_median(plain_ms, bench->views),
-			      stage_median(triangles, bench->views) };
+			      stage_median(triangles, bench->views),
+			      stage_median(crossing_pct, bench->views) };
 }
 
 static void measure(struct bench *bench, const struct stage_options *options, bool last)
@@ -207,10 +282,12 @@ static void measure(struct bench *bench, const struct stage_options *options, bo
 	printf(" {\"size\": \"%dx%d\", \"quad_ms\": %.3f, \"plain_ms\": %.3f, \"lumigraph_ms\": %.3f, "
 	       "\"polygons_ms\": %.3f, \"triangles\": %.0f, \"lumigraph_per_plain\": %.2f, "
 	       "\"lumigraph_per_quad\": %.2f, \"polygons_per_quad\": %.2f, "
-	       "\"lumigraph_per_polygons\": %.2f}%s\n",
+	       "\"lumigraph_per_polygons\": %.2f, \"crossing_changed_pct\": %.3f, "
+	       "\"crossing_changed_pct_polygons\": %.3f}%s\n",
 	       options->width_px, options->height_px, quad, images.plain_ms, images.ms, polygons.ms,
 	       images.triangles, images.ms / images.plain_ms, images.ms / quad, polygons.ms / quad,
-	       images.ms / polygons.ms, last ? "" : ",");
+	       images.ms / polygons.ms, images.crossing_pct, polygons.crossing_pct,
+	       last ? "" : ",");
 	stage_close(&bench->stage);
 }
 

@@ -5,15 +5,18 @@
 #   ROWS="demo venus-70"  these rows alone          VIEWS=N  of each row, spread over its path
 #   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
 #
-# Rows: demo (2 M triangles, colours finer than vertices; 40 views, those of tests/e2e/pictures.sh);
-# of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
+# Rows, of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
 # published; so many KB a view by thrift), temple-open-300 (all of it published), fine-250 (colours
-# finer than vertices), venus-70 and zeus-70 (real scans, textured).
-# What is built stays in build/bench/view; build/bench/view.json has a row for each.
+# finer than vertices), venus-70 and zeus-70 (real scans, textured); demo (2 M triangles, colours finer
+# than vertices) has the 40 farther apart of tests/e2e/pictures.sh.
+# What is built stays in build/bench/view; build/bench/view.json has a row for each, and what the
+# benchmarks frame, motion, footprint and start left.
 set -eu
 cd "$(dirname "$0")/../.."
 work=build/bench/view scans=../shared/scans
+visitor="orbit=20 walk=20 close=20"
 mkdir -p "$work"
+make --no-print-directory benches >/dev/null
 
 # spread: of the views that come in, VIEWS
 spread() {
@@ -35,11 +38,13 @@ around() {
 	python3 tests/bench/around.py $(build/gopura-content inspect "$1" | awk '$1 == "box" { print $3, $4, $5 }')
 }
 
-# draw NAME CONTENT RELEASE THRIFT <PATH: truth, pictures, and how near they come
+# draw NAME CONTENT RELEASE THRIFT CLASSES <PATH: truth, pictures, and how near they come.
+# CLASSES: name=views of the path's parts, in order
 draw() {
 	local out=$work/$1 truth=${2%/content}/truth mode
 	mkdir -p "$out"
 	spread >"$out/views.txt"
+	echo "$5" >"$out/classes"
 	printf '[render]\nthrift = %s\n' "$4" >"$out/board.ini"
 	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
 		--supersample "${SUPERSAMPLE:-4}" --out "$truth" >&2
@@ -57,7 +62,7 @@ row_demo() {
 	demo/prepare.sh >&2
 	mkdir -p "$work/demo"
 	ln -sfn "$PWD/build/demo/content" "$work/demo/content"
-	grep -v '^#' tests/bench/views.txt | head -40 | draw demo "$work/demo/content" build/demo/release 0
+	grep -v '^#' tests/bench/views.txt | head -40 | draw demo "$work/demo/content" build/demo/release 0 "orbit=20 walk=12 close=8"
 }
 
 # temple NAME LINE...: a content folder of the temple of 5 M triangles
@@ -76,12 +81,16 @@ build_temple() {
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 2 <tests/bench/views.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 1 "$visitor" <tests/bench/path.txt
+	# Of the first view alone: object bytes until it has 30 dB at rest.
+	head -n 1 "$work/temple-300/views.txt" >"$work/first.txt"
+	build/tests/bench/bench_view "$work/temple/release" "$work/first.txt" "$work/first" --truth "$work/temple/truth" \
+		--trace 30 | tail -n 1 >"$work/first-30db"
 }
 
 row_temple_100() {
 	build_temple
-	draw temple-100 "$work/temple/content" "$work/temple/release" 15 <tests/bench/views.txt
+	draw temple-100 "$work/temple/content" "$work/temple/release" 10 "$visitor" <tests/bench/path.txt
 }
 
 # The same hierarchy and samples, all of it published.
@@ -95,13 +104,13 @@ row_temple_open_300() {
 	printf '%s\n' '[release]' 'publish_share = 1' >>"$open/content/temple.ini"
 	build/gopura-content publish "$open/content" --out "$open/release" >&2
 	ln -sfn ../temple/truth "$open/truth"
-	draw temple-open-300 "$open/content" "$open/release" 1 <tests/bench/views.txt
+	draw temple-open-300 "$open/content" "$open/release" 1 "$visitor" <tests/bench/path.txt
 }
 
 row_fine_250() {
 	temple fine 'colours = procedural'
 	build/gopura-content build "$work/fine/content" --out "$work/fine/release" >&2
-	draw fine-250 "$work/fine/content" "$work/fine/release" 1 <tests/bench/views.txt
+	draw fine-250 "$work/fine/content" "$work/fine/release" 1 "$visitor" <tests/bench/path.txt
 }
 
 # scan NAME FILES LINE...: a real scan; skipped where it is not at hand
@@ -111,7 +120,8 @@ scan() {
 	folder "$1" "${@:3}"
 	for file in $2; do ln -sf "$(realpath "$file")" "$work/$1/content/"; done
 	build/gopura-content build "$work/$1/content" --out "$work/$1/release" >&2
-	around "$work/$1/release" | draw "$1-70" "$work/$1/content" "$work/$1/release" 0
+	around "$work/$1/release" | draw "$1-70" "$work/$1/content" "$work/$1/release" 0 \
+		"orbit=24 nearer=20 close=16"
 }
 
 row_venus_70() {
@@ -123,49 +133,11 @@ row_zeus_70() {
 		'scans = koepfchenzeus.obj' 'up = y' 'unit = mm' '[grid]' 'face_px = 2048'
 }
 
-rows=${ROWS:-demo temple-300 temple-100 temple-open-300 fine-250 venus-70 zeus-70}
+rows=${ROWS:-temple-300 temple-100 temple-open-300 fine-250 venus-70 zeus-70 demo}
 for row in $rows; do
 	echo "-- $row" >&2
 	rm -f "$work/$row/lumigraph.jsonl"
 	"row_${row//-/_}"
 done
 # shellcheck disable=SC2086
-python3 - "$work" $rows >build/bench/view.json <<'P'
-import json
-import os
-import sys
-
-work, rows = sys.argv[1], []
-
-
-def last(row, mode):
-    return json.loads(open(f"{work}/{row}/{mode}.jsonl").readlines()[-1])
-
-
-def kb(views):
-    return round(sum(v["bytes_fetched"] for v in views) / 1000 / len(views), 1)
-
-
-for name in sys.argv[2:]:
-    if not os.path.exists(f"{work}/{name}/lumigraph.jsonl"):
-        continue
-    of = {m: [json.loads(line) for line in open(f"{work}/{name}/{m}/views.jsonl")]
-          for m in ("lumigraph", "polygons", "corners")}
-    views, quality = of["lumigraph"], last(name, "lumigraph")
-    orbit = views[: max(1, len(views) // 3)]
-    middle = lambda key: sorted(v[key] for v in views)[len(views) // 2]
-    row = {
-        "name": name, "views": len(views), "kb_per_view": kb(views),
-        "first_view_kb": kb(views[:1]),
-        "psnr_db": quality["psnr_db"], "psnr_worst5_db": quality["psnr_worst5_db"], "ssim": quality["ssim"],
-        "image_share": round(sum(v["image_share"] for v in views) / len(views), 3),
-        "image_share_orbit": round(sum(v["image_share"] for v in orbit) / len(orbit), 3),
-        "settled_ms": middle("settled_ms"), "all_settled": all(v["settled"] for m in of.values() for v in m),
-    }
-    for mode in ("polygons", "corners"):
-        other = last(name, mode)
-        row |= {f"{mode}_psnr_db": other["psnr_db"], f"{mode}_psnr_worst5_db": other["psnr_worst5_db"],
-                f"{mode}_ssim": other["ssim"], f"{mode}_kb_per_view": kb(of[mode])}
-    rows.append(row)
-print(json.dumps({"rows": rows}, indent=1))
-P
+python3 tests/bench/view_rows.py "$work" $rows >build/bench/view.json
