@@ -142,3 +142,50 @@ void pyramid_fill(struct pyramid *pyramid)
 	for (uint32_t level = pyramid->level_count - 1; level > 0; level--)
 		fill(pyramid, level - 1);
 }
+
+/* In 64ths, of how far a pixel lies from the mean of its four neighbours, four times. */
+enum { SHARPENING = 8 };
+
+static void sharpen_row(uint8_t (*to)[4], const uint8_t (*above)[4], const uint8_t (*row)[4],
+			const uint8_t (*below)[4], uint32_t side)
+{
+	for (uint32_t x = 0; x < side; x++) {
+		const uint8_t *left = row[x - (x > 0)], *right = row[x + (x + 1 < side)];
+
+		for (int c = 0; c < 3; c++) {
+			int bend = 4 * row[x][c] - left[c] - right[c] - above[x][c] - below[x][c];
+			int value = (64 * row[x][c] + SHARPENING * bend + 32) >> 6;
+
+			to[x][c] = (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+		}
+	}
+}
+
+/* rows: room for two, which are kept as they were while the picture changes. */
+static void sharpen(const struct pyramid *pyramid, uint32_t level, uint8_t (*rows)[4])
+{
+	uint32_t side = pyramid->side_px[level];
+
+	for (uint32_t y = 0; y < side; y++) {
+		uint8_t(*at)[4] = pyramid->levels[level] + (size_t)y * side;
+		uint8_t(*row)[4] = rows + (y % 2 ? side : 0);
+		const uint8_t(*above)[4] = (const uint8_t(*)[4])rows + (y % 2 ? 0 : side);
+		const uint8_t(*below)[4] = (const uint8_t(*)[4])at + side;
+
+		memcpy(row, at, side * sizeof(*row));
+		sharpen_row(at, y > 0 ? above : (const uint8_t(*)[4])row, (const uint8_t(*)[4])row,
+			    y + 1 < side ? below : (const uint8_t(*)[4])row, side);
+	}
+}
+
+int pyramid_sharpen(struct pyramid *pyramid)
+{
+	uint8_t(*rows)[4] = malloc(2 * pyramid->side_px[0] * sizeof(*rows));
+
+	if (!rows)
+		return -ENOMEM;
+	for (uint32_t level = 0; level < pyramid->level_count; level++)
+		sharpen(pyramid, level, rows);
+	free(rows);
+	return 0;
+}

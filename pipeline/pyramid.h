@@ -29,5 +29,8 @@ void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered
 void pyramid_reduce(struct pyramid *pyramid);
 /* Colours of uncovered pixels from the next coarser level; coverage stays. */
 void pyramid_fill(struct pyramid *pyramid);
+/* Every level, by what showing it will blur: texels are means over their squares, and between them
+ * the kiosk interpolates. Colours that leave 0..255 stay at its ends. Last of all. -ENOMEM. */
+must_check int pyramid_sharpen(struct pyramid *pyramid);
 
 #endif

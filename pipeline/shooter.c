@@ -202,6 +202,7 @@ int shooter_take(struct shooter *shooter, struct shot *shot, const float point_m
 		return 0;
 	pyramid_reduce(&shooter->pyramid);
 	pyramid_fill(&shooter->pyramid);
+	rc = pyramid_sharpen(&shooter->pyramid);
 	for (uint32_t level = 0; rc == 0 && level < shooter->options.level_count; level++)
 		rc = cut_level(shooter, shot, level);
 	return rc;

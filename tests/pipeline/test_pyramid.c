@@ -101,12 +101,45 @@ static void stays_black_where_nothing_is(void **state)
 	free(rgba);
 }
 
+/* Edges are overdrawn by as much on either side; flat places stay. */
+static void sharpens_edges_alone(void **state)
+{
+	struct pyramid pyramid;
+	uint8_t *rgba = picture();
+	uint64_t covered, backs;
+
+	(void)state;
+	for (int i = 0; i < SIDE * SIDE; i++)
+		memcpy(rgba + (size_t)4 * i, i % SIDE < SIDE / 2 ? "ddd\040" : "\244\244\244\040",
+		       4);
+	CHECK(pyramid_init(&pyramid, SIDE) == 0);
+	pyramid_set(&pyramid, rgba, &covered, &backs);
+	pyramid_reduce(&pyramid);
+	pyramid_fill(&pyramid);
+	CHECK(pyramid_sharpen(&pyramid) == 0);
+	for (int level = 0; level < 2; level++) {
+		int side = SIDE >> level, edge = side / 2;
+
+		for (int i = 0; i < side * side; i++) {
+			const uint8_t *row = pyramid.levels[level][i / side * side];
+			int x = i % side, over = row[4 * edge] - 164;
+
+			CHECK(over > 0 && over < 16 && row[4 * (edge - 1)] == 100 - over);
+			if (x != edge && x != edge - 1)
+				CHECK(row[4 * x + 1] == (x < edge ? 100 : 164));
+		}
+	}
+	pyramid_finish(&pyramid);
+	free(rgba);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(counts_samples),
 		cmocka_unit_test(covers_silhouettes_in_part),
 		cmocka_unit_test(fills_only_the_background),
+		cmocka_unit_test(sharpens_edges_alone),
 		cmocka_unit_test(stays_black_where_nothing_is),
 	};
 
