@@ -20,10 +20,12 @@
 #include "pipeline/shooter.h"
 #include "render/headless.h"
 
-enum { SAMPLER_VERSION = 3, JOBS_MOST = 64, CHROMA_FULL = 0 };
+enum { SAMPLER_VERSION = 4, JOBS_MOST = 64, CHROMA_FULL = 0 };
 
 /* Solid where the surface winds around the point at least this often; and, for scans that are open
  * towards the point, where more than this share of what it sees are backs. */
+/* The grid's box, in sizes of the model. */
+static const float grid_reach = 1.5f;
 static const double winding_solid = 0.5, backs_solid = 0.5;
 
 /* What a child process takes from; shared memory. */
@@ -50,13 +52,14 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 	float longest = 0, spacing;
 
 	for (int i = 0; i < 3; i++)
-		longest = fmaxf(longest, 2 * (high_m[i] - low_m[i]));
+		longest = fmaxf(longest, grid_reach * (high_m[i] - low_m[i]));
 	spacing = longest / (float)(points - 1);
 	*out = (struct sample_grid){ 0 };
 	while (((uint32_t)SAMPLE_TILE_PX << out->level_count) <= face_px)
 		out->level_count++;
 	for (int i = 0; i < 3; i++) {
-		float middle = (low_m[i] + high_m[i]) / 2, half = high_m[i] - low_m[i];
+		float middle = (low_m[i] + high_m[i]) / 2,
+		      half = grid_reach / 2 * (high_m[i] - low_m[i]);
 		float from = middle - half, side = 2 * half;
 		uint32_t steps = (uint32_t)lrintf(side / spacing);
 

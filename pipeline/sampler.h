@@ -14,8 +14,9 @@ struct sampler_options {
 	bool below_ground;   /* points also below the lowest point of the model */
 };
 
-/* Where the sampling points of a model lie: over a box twice its size, `points` along the longest
- * side, as many on the others as keep the distances alike; above the ground unless below_ground. */
+/* Where the sampling points of a model lie: over a box half as large again, `points` along the
+ * longest side, as many on the others as keep the distances alike; above the ground unless
+ * below_ground. */
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground);
 void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3]);

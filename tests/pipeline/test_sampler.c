@@ -60,7 +60,7 @@ static void sample(const char *folder, uint32_t jobs, uint32_t shard, uint32_t s
 	struct content content;
 
 	CHECK(content_read(&content, folder, &fault) == 0);
-	content.grid_points = 6; /* -2 -1.2 -0.4 0.4 1.2 2: none on the surface */
+	content.grid_points = 6; /* -1.5 -0.9 -0.3 0.3 0.9 1.5: none on the surface */
 	CHECK(sampler_run(&content, &options, &fault) == 0);
 	content_release(&content);
 }
@@ -114,12 +114,12 @@ static void plans_grids_by_the_longest_side(void **state)
 	(void)state;
 	sampler_grid(&grid, (float[3]){ 0, 0, 0 }, (float[3]){ 42, 42, 24 }, 8, 1024, false);
 	CHECK(grid.count[0] == 8 && grid.count[1] == 8 && grid.count[2] == 3);
-	CHECK(grid.level_count == 4 && grid.origin_m[0] == -21 && grid.spacing_m[0] == 12);
-	CHECK(grid.origin_m[2] == 6 && grid.spacing_m[2] == 12);
+	CHECK(grid.level_count == 4 && grid.origin_m[0] == -10.5f && grid.spacing_m[0] == 9);
+	CHECK(grid.origin_m[2] == 5 && grid.spacing_m[2] == 10);
 	sampler_point(place, &grid, (uint32_t[3]){ 7, 0, 2 });
-	CHECK(place[0] == 63 && place[1] == -21 && place[2] == 30);
+	CHECK(place[0] == 52.5f && place[1] == -10.5f && place[2] == 25);
 	sampler_grid(&grid, (float[3]){ 0, 0, 0 }, (float[3]){ 42, 42, 24 }, 8, 512, true);
-	CHECK(grid.count[2] == 5 && grid.origin_m[2] == -12 && grid.level_count == 3);
+	CHECK(grid.count[2] == 5 && grid.origin_m[2] == -6 && grid.level_count == 3);
 	sampler_grid(&grid, (float[3]){ 0, 0, 0 }, (float[3]){ 1, 1, 0 }, 8, 128, false);
 	CHECK(grid.count[2] == 1 && grid.spacing_m[2] > 0 && grid.level_count == 1);
 }
@@ -133,8 +133,8 @@ static void finds_the_points_inside(void **state)
 	(void)state;
 	CHECK(samples_store_open(&store, dir[0]) == 0);
 	samples_store_states(store, states);
-	CHECK(states[SAMPLE_INSIDE] == 2 * 2 * 3);
-	CHECK(states[SAMPLE_RENDERED] == 6 * 6 * 4 - 12);
+	CHECK(states[SAMPLE_INSIDE] == 4 * 4 * 3);
+	CHECK(states[SAMPLE_RENDERED] == 6 * 6 * 4 - 48);
 	while (samples_store_next(store, &face) == 1) {
 		float place[3];
 
@@ -230,7 +230,7 @@ static void knows_near_and_far(void **state)
 		CHECK(face.near_m > 0.9f * near && face.far_m < 1.1f * far); /* aprons see more */
 		seen++;
 	}
-	CHECK(seen > 100);
+	CHECK(seen > 50);
 	samples_store_close(store);
 }
 
