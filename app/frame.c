@@ -1,6 +1,7 @@
 /* A frame: the eye moves, the scene is drawn, the words go over it, and what is missing is asked
  * for. Nothing here waits for disk, network or a decoder. */
 #include <errno.h>
+#include <malloc.h>
 #include <math.h>
 
 #include <cglm/cglm.h>
@@ -234,6 +235,16 @@ static void say_first_picture(struct kiosk *kiosk)
 		 (long long)(clock_now_ms() - kiosk->started_ms));
 }
 
+/* What loading took and freed, to the machine: once a rest, since pages that come back cost time.
+ */
+static void give_back_memory(struct kiosk *kiosk)
+{
+	if (!kiosk->shown.frame.settled)
+		kiosk->memory_given_back = false;
+	else if (!kiosk->frame_wanted && !kiosk->memory_given_back)
+		kiosk->memory_given_back = malloc_trim(0) >= 0;
+}
+
 int frame_draw(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms(), began_us = clock_thread_us();
@@ -266,5 +277,6 @@ int frame_draw(struct kiosk *kiosk)
 	if (kiosk->shown.frame.moving || kiosk->words_move || kiosk->eye_moves ||
 	    kiosk->anchors_to_look > 0)
 		kiosk->frame_wanted = true;
+	give_back_memory(kiosk);
 	return rc;
 }

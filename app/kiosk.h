@@ -69,6 +69,7 @@ struct kiosk {
 	uint32_t anchors_to_look;        /* at, before a picture at rest is right */
 	uint32_t looked_triangles;       /* drawn when the anchors were looked at */
 	bool pictured;                   /* the model was on the panel */
+	bool memory_given_back;          /* since the picture settled last */
 	bool quit;
 };
 

@@ -242,6 +242,14 @@ static void set_key(const struct solid *solid, const uint16_t index[3], float ke
 	vec_normalise(&key[3]);
 }
 
+/* To what was used of the most that could have been; where that fails the block stays as it is. */
+static void *shrink(void *block, size_t bytes)
+{
+	void *smaller = realloc(block, bytes);
+
+	return smaller ? smaller : block;
+}
+
 int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice *lattice)
 {
 	*out = (struct solid){ .vertices = mesh->vertices,
@@ -264,6 +272,8 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	build_node(&builder, 0, count);
 	collect_pieces(out, mesh->indices, 0);
 	free(builder.key);
+	out->nodes = shrink(out->nodes, out->node_count * sizeof(*out->nodes));
+	out->pieces = shrink(out->pieces, out->piece_count * sizeof(*out->pieces));
 	return 0;
 }
 
