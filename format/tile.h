@@ -1,5 +1,6 @@
 /* A tile: SAMPLE_IMAGE_PX square, 8-bit sRGB, as an abbreviated JPEG (its tables are in the samples
- * page). Quality and chroma sampling are chosen by the encoder; the decoder reads any baseline. */
+ * page). Quality and chroma sampling are chosen by the encoder; the decoder reads any that is
+ * sequential, coded by arithmetic (as ours are) or by Huffman. */
 #ifndef GOPURA_FORMAT_TILE_H
 #define GOPURA_FORMAT_TILE_H
 

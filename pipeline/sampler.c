@@ -20,7 +20,7 @@
 #include "pipeline/shooter.h"
 #include "render/headless.h"
 
-enum { SAMPLER_VERSION = 4, JOBS_MOST = 64, CHROMA_FULL = 0 };
+enum { SAMPLER_VERSION = 5, JOBS_MOST = 64, CHROMA_FULL = 0 };
 
 /* Solid where the surface winds around the point at least this often; and, for scans that are open
  * towards the point, where more than this share of what it sees are backs. */
