@@ -4,7 +4,7 @@
 #include "render/vec.h"
 
 /* A level is sharp enough with so many times the pixels needed. */
-static const float sharp_enough = 1.2f;
+static const float sharp_enough = 1.0f;
 
 const struct plan_tuning plan_tuning = {
 	.blur = 0.5f,

@@ -38,10 +38,13 @@ static void want_child_of_root(struct scene *scene, enum object_kind kind, uint3
 	want(scene, kind, 0, &place, priority);
 }
 
+/* Geometry stays good for every view after, an image for those from near where it was taken. */
+static const float lasting = 4;
+
 /* What is worth less is not fetched. */
-static uint32_t least_priority(const struct scene *scene)
+static uint32_t least_priority(const struct scene *scene, float lasts)
 {
-	return plan_priority(scene->options.thrift_px_per_kb, 1000);
+	return plan_priority(scene->options.thrift_px_per_kb / lasts, 1000);
 }
 
 /* ---- geometry */
@@ -70,7 +73,7 @@ static void want_groups(struct scene *scene)
 		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
 		return;
 	}
-	uint32_t least = least_priority(scene), *priority = scene->group_priority;
+	uint32_t least = least_priority(scene, lasting), *priority = scene->group_priority;
 	memset(priority, 0, scene->hierarchy.group_count * sizeof(*priority));
 	for (uint32_t i = cut->want_count; i-- > 0;) {
 		const struct cut_want *w = &cut->wants[i];
@@ -195,7 +198,7 @@ static bool place_gain(const struct scene *scene, const struct gain *gain,
 static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
 {
 	uint32_t priority = plan_priority(gain->pixels, bytes);
-	if (priority < least_priority(scene))
+	if (priority < least_priority(scene, 1))
 		return 0;
 	return gain->kind == OBJECT_TILE ? priority : MESSAGE_PRIORITY_INDEX + priority / 2;
 }
