@@ -231,8 +231,9 @@ static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_ch
 	repository_point_m(world->repository, point, sample);
 	const struct plan_probe *main = main_probe(surface);
 	uint8_t seen = sight_of(choice, world, surface, point, sample) & in_sight;
-	uint32_t level = plan_level(plan_needed_half_px(eye, main->at_m, main->normal, sample),
-				    repository_levels(world->repository));
+	uint32_t level =
+		plan_level(eye->texels * plan_needed_half_px(eye, main->at_m, main->normal, sample),
+			   repository_levels(world->repository));
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		float to[3], uv[2];
 		vec_sub(to, surface->probe[k].at_m, sample);
@@ -376,8 +377,9 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 	const struct plan_probe *main = main_probe(surface);
 	struct candidate one = { .face = face };
 	memcpy(one.sample_m, sample, sizeof(sample));
-	one.level = (uint8_t)plan_level(plan_needed_half_px(eye, main->at_m, main->normal, sample),
-					repository_levels(world->repository));
+	one.level = (uint8_t)plan_level(
+		eye->texels * plan_needed_half_px(eye, main->at_m, main->normal, sample),
+		repository_levels(world->repository));
 	one.resident = is_resident(world, face);
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		vec_sub(to, surface->probe[k].at_m, sample);

@@ -25,6 +25,7 @@ enum {
 struct plan_eye {
 	float eye_m[3];
 	float focal_px;
+	float texels; /* asked for a pixel of the screen: more are sharper, and dearer */
 };
 
 /* The constants of the quality; plan_tuning is what the product uses. */

@@ -3,9 +3,6 @@
 #include "render/plan.h"
 #include "render/vec.h"
 
-/* A level is sharp enough with so many times the pixels needed. */
-static const float sharp_enough = 1.0f;
-
 const struct plan_tuning plan_tuning = {
 	.blur = 0.5f,
 	.parallax = 0.25f,
@@ -95,7 +92,7 @@ float plan_level_half_px(uint32_t level)
 uint32_t plan_level(float needed_half_px, uint32_t level_count)
 {
 	uint32_t level = 0;
-	while (level + 1 < level_count && plan_level_half_px(level) < sharp_enough * needed_half_px)
+	while (level + 1 < level_count && plan_level_half_px(level) < needed_half_px)
 		level++;
 	return level;
 }

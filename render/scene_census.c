@@ -171,8 +171,13 @@ static void sum_patches(struct scene *scene)
 		scene->seen_px[p] = -1;
 	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
 		scene->seen_px[scene->cut.patches[i]] = 0;
-	for (uint32_t i = 0; i < scene->counted_count; i++)
-		scene->seen_px[scene->counted[i].patch] += state_of(scene, i)->seen_px;
+	float all_px = 0;
+	for (uint32_t i = 0; i < scene->counted_count; i++) {
+		float seen_px = state_of(scene, i)->seen_px;
+		scene->seen_px[scene->counted[i].patch] += seen_px;
+		all_px += seen_px;
+	}
+	scene->filled = all_px / scene->view.picture_px;
 }
 
 bool scene_take_census(struct scene *scene, bool moved)

@@ -75,6 +75,7 @@ struct scene {
 	struct geometry geometry;
 	struct cut cut, around;
 	float *seen_px;           /* per patch, by the last census; owned */
+	float filled;             /* share of the picture that shows the model, likewise */
 	uint32_t *group_priority; /* of the list of wants at hand; owned */
 	struct repository repository;
 

@@ -41,10 +41,12 @@ static void want_child_of_root(struct scene *scene, enum object_kind kind, uint3
 /* Geometry stays good for every view after, an image for those from near where it was taken. */
 static const float lasting = 4;
 
-/* What is worth less is not fetched. */
+/* What is worth less is not fetched. A model that fills a tenth of the picture is not worth less
+ * than one that fills it: it is what there is to see. */
 static uint32_t least_priority(const struct scene *scene, float lasts)
 {
-	return plan_priority(scene->options.thrift_px_per_kb / lasts, 1000);
+	float filled = scene->census_us ? scene->filled : 1;
+	return plan_priority(scene->options.thrift_px_per_kb * filled / lasts, 1000);
 }
 
 /* ---- geometry */

@@ -81,7 +81,7 @@ build_temple() {
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 1 "$visitor" <tests/bench/path.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 0.5 "$visitor" <tests/bench/path.txt
 	# Of the first view alone: object bytes until it has 30 dB at rest.
 	head -n 1 "$work/temple-300/views.txt" >"$work/first.txt"
 	build/tests/bench/bench_view "$work/temple/release" "$work/first.txt" "$work/first" --truth "$work/temple/truth" \
@@ -90,7 +90,7 @@ row_temple_300() {
 
 row_temple_100() {
 	build_temple
-	draw temple-100 "$work/temple/content" "$work/temple/release" 10 "$visitor" <tests/bench/path.txt
+	draw temple-100 "$work/temple/content" "$work/temple/release" 46 "$visitor" <tests/bench/path.txt
 }
 
 # The same hierarchy and samples, all of it published.

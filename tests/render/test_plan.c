@@ -5,7 +5,7 @@
 #include "render/vec.h"
 #include "tests/check.h"
 
-static const struct plan_eye eye = { { 0, -10, 0 }, 800 };
+static const struct plan_eye eye = { { 0, -10, 0 }, 800, 1.2f };
 static const float wall[3] = { 0, 0, 0 }, towards[3] = { 0, -1, 0 };
 
 static float quality(float x, float y, float half_px, float error_m)
@@ -52,7 +52,7 @@ static void quality_is_continuous_in_the_eyes_place(void **state)
 	const float sample[3] = { 3, -7, 2 };
 	float last = -1;
 	for (int i = 0; i <= 4000; i++) {
-		struct plan_eye moving = { { -20 + 0.01f * (float)i, -10, 1 }, 800 };
+		struct plan_eye moving = { { -20 + 0.01f * (float)i, -10, 1 }, 800, 1.2f };
 		float now = plan_quality(&moving, wall, towards, sample, 256, 0.05f);
 		CHECK(last < 0 || fabsf(now - last) < 0.01f);
 		last = now;
@@ -251,7 +251,7 @@ static void the_corners_of_the_cell_weigh_one_together(void **state)
 		world.resident[p] = p * CUBE_FACES + (uint32_t)cube_project(to, &u, &v);
 	}
 	world.plan.resident_count = 4;
-	const struct plan_eye inside = { { 1, -9, 0 }, 800 };
+	const struct plan_eye inside = { { 1, -9, 0 }, 800, 1.2f };
 	plan_piece_corners(&choice, &world.plan, &inside, &surface);
 	float sum = 0;
 	for (uint32_t i = 0; i < choice.entry_count; i++)
