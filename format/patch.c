@@ -101,6 +101,13 @@ static uint8_t widen(uint8_t value, int bits)
 	return bits == 8 ? value : (uint8_t)(value << (8 - bits) | value >> (2 * bits - 8));
 }
 
+uint8_t patch_round_colour(uint8_t value, int bits)
+{
+	int most = (1 << bits) - 1;
+
+	return widen((uint8_t)((value * most + 127) / 255), bits);
+}
+
 static int shorten_normal(int guess, int zeros)
 {
 	return (guess + ((1 << zeros) >> 1)) >> zeros;

@@ -34,6 +34,9 @@ must_check int patch_group_encode(struct buffer *out, const struct patch_mesh *p
 must_check int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST],
 				  uint32_t *patch_count, struct bytes object);
 void patch_mesh_finish(struct patch_mesh *mesh);
+/* The nearest colour that so many bits tell (4 to 8); 0 and 255 stay. A group whose colours are all
+ * of so many bits, or of fewer, takes fewer bytes. */
+uint8_t patch_round_colour(uint8_t value, int bits);
 
 /* Octahedral normals (Cigolle et al. 2014, "A survey of efficient representations for independent
  * unit vectors"). Decoding gives a unit vector. */

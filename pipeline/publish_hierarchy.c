@@ -31,16 +31,13 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 	return master_cut_create(cut, master, share_of_top(master));
 }
 
-/* To 6, for light 4, bits and back: what a patch is coloured with where no image is needs no more,
- * and none and all stay what they are. */
+/* What a patch is coloured with where no image is needs no more. */
+enum { COLOUR_BITS = 6, OPEN_BITS = 4 };
+
 static void round_colours(uint8_t colour[4])
 {
-	for (int i = 0; i < 3; i++) {
-		int value = (colour[i] * 63 + 127) / 255;
-
-		colour[i] = (uint8_t)(value << 2 | value >> 4);
-	}
-	colour[3] = (uint8_t)((colour[3] * 15 + 127) / 255 * 17);
+	for (int i = 0; i < 4; i++)
+		colour[i] = patch_round_colour(colour[i], i < 3 ? COLOUR_BITS : OPEN_BITS);
 }
 
 /* To every fourth step, away from zero at the half; -128 is no normal's. */
