@@ -241,8 +241,10 @@ static void give_back_memory(struct kiosk *kiosk)
 {
 	if (!kiosk->shown.frame.settled)
 		kiosk->memory_given_back = false;
-	else if (!kiosk->frame_wanted && !kiosk->memory_given_back)
-		kiosk->memory_given_back = malloc_trim(0) >= 0;
+	else if (!kiosk->frame_wanted && !kiosk->memory_given_back) {
+		malloc_trim(0);
+		kiosk->memory_given_back = true;
+	}
 }
 
 int frame_draw(struct kiosk *kiosk)

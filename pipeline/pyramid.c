@@ -143,7 +143,7 @@ void pyramid_fill(struct pyramid *pyramid)
 		fill(pyramid, level - 1);
 }
 
-/* In 64ths, of how far a pixel lies from the mean of its four neighbours, four times. */
+/* 64ths of its difference to each of its four neighbours that a pixel takes on. */
 enum { SHARPENING = 8 };
 
 static void sharpen_row(uint8_t (*to)[4], const uint8_t (*above)[4], const uint8_t (*row)[4],

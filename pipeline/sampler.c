@@ -22,10 +22,10 @@
 
 enum { SAMPLER_VERSION = 5, JOBS_MOST = 64, CHROMA_FULL = 0 };
 
+/* The grid's box, in sizes of the model: docs/samples.md. */
+static const float grid_reach = 1.5f;
 /* Solid where the surface winds around the point at least this often; and, for scans that are open
  * towards the point, where more than this share of what it sees are backs. */
-/* The grid's box, in sizes of the model. */
-static const float grid_reach = 1.5f;
 static const double winding_solid = 0.5, backs_solid = 0.5;
 
 /* What a child process takes from; shared memory. */

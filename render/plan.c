@@ -222,6 +222,13 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 	candidate->ideal[probe] = vec_most(candidate->ideal[probe], candidate->now[probe]);
 }
 
+static uint32_t level_for(const struct plan_world *world, const struct plan_eye *eye,
+			  const struct plan_probe *probe, const float sample_m[3])
+{
+	float needed = plan_needed_half_px(eye, probe->at_m, probe->normal, sample_m);
+	return plan_level(eye->texels * needed, repository_levels(world->repository));
+}
+
 /* Returns which probes it sees. */
 static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
 			 const struct plan_world *world, const struct plan_eye *eye,
@@ -231,9 +238,7 @@ static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_ch
 	repository_point_m(world->repository, point, sample);
 	const struct plan_probe *main = main_probe(surface);
 	uint8_t seen = sight_of(choice, world, surface, point, sample) & in_sight;
-	uint32_t level =
-		plan_level(eye->texels * plan_needed_half_px(eye, main->at_m, main->normal, sample),
-			   repository_levels(world->repository));
+	uint32_t level = level_for(world, eye, main, sample);
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		float to[3], uv[2];
 		vec_sub(to, surface->probe[k].at_m, sample);
@@ -377,9 +382,7 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 	const struct plan_probe *main = main_probe(surface);
 	struct candidate one = { .face = face };
 	memcpy(one.sample_m, sample, sizeof(sample));
-	one.level = (uint8_t)plan_level(
-		eye->texels * plan_needed_half_px(eye, main->at_m, main->normal, sample),
-		repository_levels(world->repository));
+	one.level = (uint8_t)level_for(world, eye, main, sample);
 	one.resident = is_resident(world, face);
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		vec_sub(to, surface->probe[k].at_m, sample);
