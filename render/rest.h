@@ -29,5 +29,8 @@ void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px
  * scene is not what it was. */
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed);
 bool rest_is_done(const struct rest *rest);
+/* When nothing is left to draw: a driver that draws with the processor keeps what each pass was
+ * made of until another pass takes its place. rest->frame is empty then. */
+void rest_let_go(const struct rest *rest);
 
 #endif
