@@ -55,6 +55,7 @@ int scene_create(struct scene **out, const struct scene_options *options)
 
 static void drop_hierarchy(struct scene *scene)
 {
+	dissolve_finish(&scene->dissolve);
 	cut_finish(&scene->cut);
 	cut_finish(&scene->around);
 	geometry_finish(&scene->geometry);
@@ -80,7 +81,8 @@ static void forget(struct scene *scene)
 		drop_hierarchy(scene);
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
-	scene->visible_count = scene->counted_count = scene->want_count = 0;
+	scene->visible_count = scene->leaving_count = 0;
+	scene->counted_count = scene->want_count = 0;
 	scene->counting = false;
 }
 
@@ -226,6 +228,8 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 		rc = cut_init(&scene->cut, &scene->hierarchy);
 	if (rc == 0)
 		rc = cut_init(&scene->around, &scene->hierarchy);
+	if (rc == 0)
+		rc = dissolve_init(&scene->dissolve, &scene->cut);
 	page_finish(&page);
 	if (rc < 0) {
 		drop_hierarchy(scene);

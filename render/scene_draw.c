@@ -105,15 +105,17 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 {
 	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 	const struct piece *piece = &patch->content.solid.pieces[v->piece];
-	bool joins = v->faces == 0 && v->patch == run->patch &&
+	bool joins = surface_faces(v->program) == 0 && v->patch == run->patch &&
 		     piece->first_triangle == run->first + run->count;
 	if (!joins)
 		end_run(run);
 	if (v->patch != run->patch)
 		geometry_bind(&scene->geometry, v->patch);
+	if (v->patch != run->patch)
+		surface_dissolve(&scene->surface, v->program, v->range);
 	run->patch = v->patch;
-	if (v->faces > 0)
-		surface_blend(&scene->surface, frame, v->faces, patch->pieces[v->piece].blend,
+	if (surface_faces(v->program) > 0)
+		surface_blend(&scene->surface, frame, v->program, patch->pieces[v->piece].blend,
 			      scene_patch_error_m(scene, v->patch), piece->spacing_m);
 	if (run->count == 0)
 		run->first = piece->first_triangle;
@@ -123,20 +125,23 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 /* Program by program, so that each sets its uniforms once. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
-	uint32_t with[PLAN_ENTRIES + 1] = { 0 };
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
+	const uint32_t count = scene->visible_count + scene->leaving_count;
+	uint32_t with[SURFACE_PROGRAMS] = { 0 };
+	for (uint32_t i = 0; i < count; i++) {
 		struct visible_piece *v = &scene->visible[i];
-		v->faces = surface_faces(frame,
-					 scene->geometry.patches[v->patch].pieces[v->piece].blend);
-		with[v->faces]++;
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		v->program = surface_choose(frame, state->blend, v->range);
+		if (v->program >= 0)
+			with[v->program]++;
 	}
-	for (int faces = PLAN_ENTRIES; faces >= 0; faces--) {
+	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
 		struct run run = { .patch = HIERARCHY_NONE };
-		if (with[faces] == 0)
+		if (with[program] == 0)
 			continue;
-		surface_begin(&scene->surface, frame, faces);
-		for (uint32_t i = 0; i < scene->visible_count; i++)
-			if (scene->visible[i].faces == faces)
+		surface_begin(&scene->surface, frame, program);
+		for (uint32_t i = 0; i < count; i++)
+			if (scene->visible[i].program == program)
 				draw_piece(scene, frame, &scene->visible[i], &run);
 		end_run(&run);
 	}
@@ -256,12 +261,13 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	float passed_ms = scene->frame_us ? (float)(now_us - scene->frame_us) / 1000 : 0;
 	scene->frame_us = now_us;
 	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
-	scene_update_cut(scene);
+	scene_update_cut(scene, fminf(passed_ms, 100));
 	scene_list_pieces(scene);
 	bool counted = scene_take_census(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
-		scene->plans_are_stale = scene->fading = scene->depth_is_stale = false;
+		scene->plans_are_stale = scene->depth_is_stale = false;
+		scene->fading = scene->dissolve.moving;
 		return;
 	}
 	keep_season(scene, moved, now_us);

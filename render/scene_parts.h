@@ -11,6 +11,7 @@
 #include "render/census.h"
 #include "render/cut.h"
 #include "render/depth.h"
+#include "render/dissolve.h"
 #include "render/geometry.h"
 #include "render/map.h"
 #include "render/mark.h"
@@ -45,7 +46,8 @@ struct object {
 struct visible_piece {
 	uint32_t patch, piece;
 	float pixels; /* of the screen, as far as known */
-	int faces;    /* that it is drawn with in this picture */
+	int program;  /* of the surface's, that draws it in this picture; below 0: none */
+	struct dissolve_range range;
 };
 
 struct scene {
@@ -74,6 +76,7 @@ struct scene {
 	uint32_t *group_offset;    /* owned */
 	struct geometry geometry;
 	struct cut cut, around;
+	struct dissolve dissolve;
 	float *seen_px;           /* per patch, by the last census; owned */
 	float filled;             /* share of the picture that shows the model, likewise */
 	uint32_t *group_priority; /* of the list of wants at hand; owned */
@@ -83,8 +86,8 @@ struct scene {
 	struct view view;
 	bool has_view;
 	int64_t frame_us;
-	struct visible_piece *visible; /* owned */
-	uint32_t visible_count, visible_capacity;
+	struct visible_piece *visible; /* owned; of the cut, then of what it replaced */
+	uint32_t visible_count, leaving_count, visible_capacity;
 	struct visible_piece *counted; /* those that the census at hand numbers; owned */
 	uint32_t counted_count, counted_capacity;
 	uint64_t counting_cut; /* cut_signature as it began */
@@ -123,7 +126,7 @@ bool scene_take_census(struct scene *scene, bool moved);
 
 /* scene_plan.c */
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);
-void scene_update_cut(struct scene *scene);
+void scene_update_cut(struct scene *scene, float passed_ms);
 void scene_desire(struct scene *scene); /* after the census */
 void scene_list_pieces(struct scene *scene);
 void scene_plan_pieces(struct scene *scene, int64_t budget_us);

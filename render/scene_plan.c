@@ -58,13 +58,14 @@ static struct cut_options cut_options_of(const struct scene *scene)
 				     .triangle_budget = scene->options.triangle_budget };
 }
 
-void scene_update_cut(struct scene *scene)
+void scene_update_cut(struct scene *scene, float passed_ms)
 {
 	const struct cut_options options = cut_options_of(scene);
 	struct geometry *geometry = &scene->geometry;
 	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->changes;
+	dissolve_step(&scene->dissolve, geometry->loaded, passed_ms);
 }
 
 void scene_desire(struct scene *scene)
@@ -85,9 +86,10 @@ float scene_patch_error_m(const struct scene *scene, uint32_t patch)
 	return isfinite(error) ? error / 2 : 0;
 }
 
-static bool add_visible(struct scene *scene, uint32_t patch, uint32_t piece, float pixels)
+static bool add_visible(struct scene *scene, const struct visible_piece *piece)
 {
-	if (scene->visible_count == scene->visible_capacity) {
+	const uint32_t count = scene->visible_count + scene->leaving_count;
+	if (count == scene->visible_capacity) {
 		uint32_t capacity = scene->visible_capacity ? 2 * scene->visible_capacity : 512;
 		struct visible_piece *larger =
 			realloc(scene->visible, capacity * sizeof(*scene->visible));
@@ -96,27 +98,43 @@ static bool add_visible(struct scene *scene, uint32_t patch, uint32_t piece, flo
 		scene->visible = larger;
 		scene->visible_capacity = capacity;
 	}
-	scene->visible[scene->visible_count++] = (struct visible_piece){ patch, piece, pixels, 0 };
+	scene->visible[count] = *piece;
 	return true;
+}
+
+/* Those of a patch, if there is room for them. */
+static void list_patch(struct scene *scene, uint32_t p, uint32_t *count)
+{
+	const struct view *view = &scene->view;
+	const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
+	const struct solid *solid = &scene->geometry.patches[p].content.solid;
+	if (!view_sees_sphere(view, patch->centre_m, patch->radius_m))
+		return;
+	for (uint32_t k = 0; k < solid->piece_count; k++) {
+		const struct piece *piece = &solid->pieces[k];
+		const struct visible_piece visible = {
+			.patch = p,
+			.piece = k,
+			.pixels = view_sphere_px(view, piece->centre_m, piece->radius_m),
+			.range = dissolve_range(&scene->dissolve, p),
+		};
+		if (view_sees_sphere(view, piece->centre_m, piece->radius_m))
+			*count += add_visible(scene, &visible);
+	}
 }
 
 void scene_list_pieces(struct scene *scene)
 {
-	const struct view *view = &scene->view;
-	scene->visible_count = 0;
-	for (uint32_t i = 0; i < scene->cut.patch_count; i++) {
-		uint32_t p = scene->cut.patches[i];
-		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
-		if (!view_sees_sphere(view, patch->centre_m, patch->radius_m))
-			continue;
-		const struct solid *solid = &scene->geometry.patches[p].content.solid;
-		for (uint32_t k = 0; k < solid->piece_count; k++) {
-			const struct piece *piece = &solid->pieces[k];
-			if (view_sees_sphere(view, piece->centre_m, piece->radius_m) &&
-			    !add_visible(scene, p, k,
-					 view_sphere_px(view, piece->centre_m, piece->radius_m)))
-				return;
-		}
+	const struct hierarchy *h = &scene->hierarchy;
+	scene->visible_count = scene->leaving_count = 0;
+	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
+		list_patch(scene, scene->cut.patches[i], &scene->visible_count);
+	for (uint32_t p = 0; p < h->patch_count && scene->dissolve.moving; p++) {
+		const uint32_t finer = h->patches[p].finer;
+		const bool stays = scene->cut.shown[h->patches[p].group] &&
+				   (finer == HIERARCHY_NONE || !scene->cut.shown[finer]);
+		if (!stays && dissolve_draws(dissolve_range(&scene->dissolve, p)))
+			list_patch(scene, p, &scene->leaving_count);
 	}
 }
 
@@ -313,18 +331,39 @@ static void touch_piece(struct scene *scene, const struct piece *piece,
 	}
 }
 
+/* All that was chosen to colour it does. */
+static bool is_dressed(const struct scene *scene, const struct piece_state *state)
+{
+	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
+		const struct plan_entry *entry = &state->choice.entry[i];
+		bool held = tiles_face_slot(&scene->tiles, entry->face) < 0;
+		for (int k = 0; k < PLAN_ENTRIES; k++)
+			held |= state->blend[k].held && state->blend[k].face == entry->face &&
+				state->blend[k].weight >= entry->share;
+		if (!held)
+			return false;
+	}
+	return true;
+}
+
 void scene_fade_blends(struct scene *scene, float passed_ms)
 {
 	float step = passed_ms / TILES_FADE_MS;
 	tiles_begin(&scene->tiles);
 	scene->fading = false;
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
+	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 		struct piece_state *state = &patch->pieces[v->piece];
-		scene->fading |= fade_piece(scene, state, step);
-		if (!state->counted || state->seen_px > 0)
+		/* Not shown yet: what it shows first is no change. */
+		const bool shown = dissolve_draws(v->range);
+		const bool hidden = state->counted && state->seen_px <= 0;
+		const bool moving = fade_piece(scene, state, shown ? step : 1);
+		scene->fading |= moving;
+		if (!hidden)
 			touch_piece(scene, &patch->content.solid.pieces[v->piece], state);
+		if (!shown && !hidden && (moving || !state->planned || !is_dressed(scene, state)))
+			dissolve_hold(&scene->dissolve, scene->hierarchy.patches[v->patch].group);
 	}
-	scene->fading |= tiles_tick(&scene->tiles);
+	scene->fading |= tiles_tick(&scene->tiles) || scene->dissolve.moving;
 }

@@ -34,10 +34,22 @@ static const char plain_vertex[] = "void main() {\n"
 				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
 				   "}\n";
 
-static const char plain_fragment[] = "precision mediump float;\n"
-				     "varying vec4 v_colour;\n"
+/* A number of each pixel's own, spread evenly over any few neighbours (Jimenez 2014, "Next
+ * generation post processing in Call of Duty: Advanced Warfare", interleaved gradient noise). */
+static const char dissolve_none[] = "void dissolve() {}\n";
+static const char dissolve_some[] =
+	"uniform highp vec2 u_range;\n"
+	"void dissolve() {\n"
+	"	highp float u = fract(52.9829189 * fract(dot(gl_FragCoord.xy,\n"
+	"						   vec2(0.06711056, 0.00583715))));\n"
+	"	if (u < u_range.x || u >= u_range.y)\n"
+	"		discard;\n"
+	"}\n";
+
+static const char plain_fragment[] = "varying vec4 v_colour;\n"
 				     "uniform float u_share;\n"
 				     "void main() {\n"
+				     "	dissolve();\n"
 				     "	gl_FragColor = vec4(v_colour.rgb * (1.0 - u_share), 1.0);\n"
 				     "}\n";
 
@@ -123,6 +135,7 @@ static const char blended_fragment[] =
 	"	return vec4(colour * w, w);\n"
 	"}\n"
 	"void main() {\n"
+	"	dissolve();\n"
 	"	vec4 sum = vec4(0.0);\n"
 	"	for (int i = 0; i < FACES; i++)\n"
 	"		sum += from_face(v_face[i], u_slot[i].xy, u_window[i]);\n"
@@ -145,6 +158,7 @@ static void find_uniforms(struct surface_program *p)
 	p->share = glGetUniformLocation(p->program, "u_share");
 	p->far_m = glGetUniformLocation(p->program, "u_far");
 	p->slack = glGetUniformLocation(p->program, "u_slack");
+	p->range = glGetUniformLocation(p->program, "u_range");
 }
 
 static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
@@ -165,12 +179,13 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 
 static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
 
-static int init_plain(struct surface_program *p)
+static int init_plain(struct surface_program *p, const char *dissolve)
 {
 	const struct gl_program_source source = {
 		.name = "patches",
 		.vertex = (const char *const[]){ light_glsl, vertex_common, plain_vertex, NULL },
-		.fragment = (const char *const[]){ plain_fragment, NULL },
+		.fragment = (const char *const[]){ "precision mediump float;\n", dissolve,
+						   plain_fragment, NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -179,7 +194,8 @@ static int init_plain(struct surface_program *p)
 	return rc;
 }
 
-static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces)
+static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces,
+			const char *dissolve)
 {
 	char constants[512];
 	set_constants(constants, sizeof(constants), tiles, faces);
@@ -187,7 +203,7 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
 						 blended_vertex, NULL },
-		.fragment = (const char *const[]){ constants, blended_fragment, NULL },
+		.fragment = (const char *const[]){ constants, dissolve, blended_fragment, NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -204,9 +220,13 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 int surface_init(struct surface *surface, const struct tiles *tiles)
 {
 	memset(surface, 0, sizeof(*surface));
-	int rc = init_plain(&surface->of[0]);
-	for (int faces = 1; faces <= PLAN_ENTRIES && rc == 0; faces++)
-		rc = init_blended(&surface->of[faces], tiles, faces);
+	int rc = 0;
+	for (int i = 0; i < SURFACE_PROGRAMS && rc == 0; i++) {
+		const int faces = surface_faces(i);
+		const char *dissolve = i == faces ? dissolve_none : dissolve_some;
+		rc = faces == 0 ? init_plain(&surface->of[i], dissolve)
+				: init_blended(&surface->of[i], tiles, faces, dissolve);
+	}
 	if (rc < 0)
 		surface_finish(surface);
 	return rc;
@@ -214,15 +234,15 @@ int surface_init(struct surface *surface, const struct tiles *tiles)
 
 void surface_finish(struct surface *surface)
 {
-	for (int faces = 0; faces <= PLAN_ENTRIES; faces++)
-		if (surface->of[faces].program)
-			glDeleteProgram(surface->of[faces].program);
+	for (int i = 0; i < SURFACE_PROGRAMS; i++)
+		if (surface->of[i].program)
+			glDeleteProgram(surface->of[i].program);
 	memset(surface, 0, sizeof(*surface));
 }
 
-void surface_begin(const struct surface *surface, const struct surface_frame *frame, int faces)
+void surface_begin(const struct surface *surface, const struct surface_frame *frame, int program)
 {
-	const struct surface_program *p = &surface->of[faces];
+	const struct surface_program *p = &surface->of[program];
 	const struct lattice *lattice = &frame->root->lattice;
 	const float *eye = frame->view->eye_m, *sun = frame->root->sun;
 	glUseProgram(p->program);
@@ -234,7 +254,7 @@ void surface_begin(const struct surface *surface, const struct surface_frame *fr
 	glUniform1f(p->share, frame->shares ? 1 : 0);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
-	if (faces == 0)
+	if (surface_faces(program) == 0)
 		return;
 	const struct plan_tuning *t = &plan_tuning;
 	const float facing = 1 / (t->facing_high - t->facing_low);
@@ -252,12 +272,27 @@ static int slot_of(const struct surface_frame *frame, const struct blend *blend)
 	return slot >= 0 && depth_ready(frame->depth, slot, blend->face) ? slot : -1;
 }
 
-int surface_faces(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES])
+int surface_choose(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],
+		   struct dissolve_range range)
 {
 	int faces = 0;
+	if (!dissolve_draws(range))
+		return -1;
 	for (int i = 0; i < PLAN_ENTRIES && frame->tiles; i++)
 		faces += slot_of(frame, &blend[i]) >= 0;
-	return faces;
+	return dissolve_is_whole(range) ? faces : faces + PLAN_ENTRIES + 1;
+}
+
+int surface_faces(int program)
+{
+	return program % (PLAN_ENTRIES + 1);
+}
+
+void surface_dissolve(const struct surface *surface, int program, struct dissolve_range range)
+{
+	const struct surface_program *p = &surface->of[program];
+	if (p->range >= 0)
+		glUniform2f(p->range, range.low, range.high);
 }
 
 static void set_face(float rows[20], const struct repository *repository, const struct blend *blend,
@@ -297,10 +332,11 @@ static void place_window(float out[4], const struct depth *depth, int slot)
 	}
 }
 
-void surface_blend(const struct surface *surface, const struct surface_frame *frame, int faces,
+void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
 		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m)
 {
-	const struct surface_program *p = &surface->of[faces];
+	const struct surface_program *p = &surface->of[program];
+	const int faces = surface_faces(program);
 	float rows[20 * PLAN_ENTRIES] = { 0 }, slots[4 * PLAN_ENTRIES] = { 0 };
 	float windows[4 * PLAN_ENTRIES];
 	int at = 0;

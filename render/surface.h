@@ -5,18 +5,22 @@
 
 #include "format/root_page.h"
 #include "render/depth.h"
+#include "render/dissolve.h"
 #include "render/geometry.h"
 #include "render/tiles.h"
 #include "render/view.h"
 
 struct surface_program {
 	GLuint program;
-	GLint clip, lattice, sun, eye, face, slot, window, tune, share, far_m, slack;
+	GLint clip, lattice, sun, eye, face, slot, window, tune, share, far_m, slack, range;
 };
 
-/* A program for each number of faces: none, the patch's own colours, is the cheapest. */
+/* A program for each number of faces: none, the patch's own colours, is the cheapest; and one each
+ * for patches that dissolve, which leave out pixels. */
+enum { SURFACE_PROGRAMS = 2 * (PLAN_ENTRIES + 1) };
+
 struct surface {
-	struct surface_program of[PLAN_ENTRIES + 1];
+	struct surface_program of[SURFACE_PROGRAMS];
 };
 
 /* For the sizes of those textures. */
@@ -33,14 +37,19 @@ struct surface_frame {
 	bool shares; /* draws how much of a pixel images colour, instead of its colour */
 };
 
-/* How many of a piece's faces can be drawn now: 0..PLAN_ENTRIES. */
-int surface_faces(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES]);
-/* Sets up state and uniforms for pieces with so many faces; geometry_bind and, but for none,
- * surface_blend follow per patch and piece. */
-void surface_begin(const struct surface *surface, const struct surface_frame *frame, int faces);
+/* The program for a piece by which of its faces can be drawn now; below 0: it shows nowhere. */
+int surface_choose(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],
+		   struct dissolve_range range);
+/* How many faces a program blends: 0..PLAN_ENTRIES. */
+int surface_faces(int program);
+/* Sets up state and uniforms for the program's pieces; geometry_bind and, but for none,
+ * surface_dissolve and surface_blend follow per patch and piece. */
+void surface_begin(const struct surface *surface, const struct surface_frame *frame, int program);
+/* Where the patch that is drawn next shows; of no effect in programs that draw it whole. */
+void surface_dissolve(const struct surface *surface, int program, struct dissolve_range range);
 /* The faces of the piece that is drawn next; error_m and spacing_m as in plan_quality and
  * plan_own_quality. */
-void surface_blend(const struct surface *surface, const struct surface_frame *frame, int faces,
+void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
 		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m);
 
 #endif
