@@ -41,7 +41,7 @@ static void want_child_of_root(struct scene *scene, enum object_kind kind, uint3
 /* Geometry stays good for every view after, an image for those from near where it was taken. */
 static const float lasting = 4;
 
-/* What is worth less is not fetched. A model that fills a tenth of the picture is not worth less
+/* What is worth less is not fetched. A model that fills a third of the picture is not worth less
  * than one that fills it: it is what there is to see. */
 static uint32_t least_priority(const struct scene *scene, float lasts)
 {
