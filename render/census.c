@@ -16,18 +16,18 @@ static const char census_vertex[] =
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	float z = dot(p, u_forward), n = 0.05, f = 1000.0;\n"
-	"	v_depth = z / f;\n"
+	"	v_depth = z / f * 65535.0 / 256.0;\n"
 	"	gl_Position = vec4(dot(p, u_right), dot(p, u_up),\n"
 	"			   ((f + n) * z - 2.0 * f * n) / (f - n), z);\n"
 	"}\n";
 
 static const char census_fragment[] =
-	"precision highp float;\n"
 	"uniform vec2 u_number;\n"
 	"varying float v_depth;\n"
 	"void main() {\n"
-	"	float value = clamp(v_depth, 0.0, 1.0) * 65535.0, high = floor(value / 256.0);\n"
-	"	gl_FragColor = vec4(u_number, vec2(high, floor(value - high * 256.0)) / 255.0);\n"
+	"	float high = floor(v_depth);\n"
+	"	float low = floor((v_depth - high) * 256.0);\n"
+	"	gl_FragColor = vec4(u_number, vec2(high, low) / 255.0);\n"
 	"}\n";
 
 int census_init(struct census *census)
@@ -36,7 +36,7 @@ int census_init(struct census *census)
 	const struct gl_program_source source = {
 		.name = "census",
 		.vertex = (const char *const[]){ census_vertex, NULL },
-		.fragment = (const char *const[]){ census_fragment, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, census_fragment, NULL },
 		.attributes = (const char *const[]){ "a_position", NULL },
 	};
 	census->pixels = calloc(CENSUS_WIDTH * CENSUS_HEIGHT, 4);

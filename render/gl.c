@@ -64,6 +64,31 @@ bool gl_has_extension(const char *name)
 	return all && has_word(all, name);
 }
 
+bool gl_has_highp(void)
+{
+	GLint range[2] = { 0, 0 }, bits = 0;
+
+	glGetShaderPrecisionFormat(GL_FRAGMENT_SHADER, GL_HIGH_FLOAT, range, &bits);
+	return bits > 0;
+}
+
+int gl_texture_most_px(void)
+{
+	const int limit = gl_has_highp() ? GL_LIMIT_TEXTURE_PX : GL_LIMIT_MEDIUMP_PX;
+	GLint most = 0;
+
+	glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+	return most < limit ? most : limit;
+}
+
+const char gl_fine_fragment[] = "#ifdef GL_FRAGMENT_PRECISION_HIGH\n"
+				"precision highp float;\n"
+				"#define FINE highp\n"
+				"#else\n"
+				"precision mediump float;\n"
+				"#define FINE mediump\n"
+				"#endif\n";
+
 static int compile(GLuint *out, GLenum kind, const char *name, const char *const *parts)
 {
 	GLuint shader = glCreateShader(kind);

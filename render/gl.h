@@ -18,12 +18,21 @@ enum {
 	GL_LIMIT_FRAGMENT_UNIFORMS = 16, /* vec4 each, scalars packed by four */
 	GL_LIMIT_VERTEX_UNIFORMS = 128,  /* vec4 each */
 	GL_LIMIT_TEXTURE_PX = 4096,      /* a side */
+	GL_LIMIT_MEDIUMP_PX = 2048,      /* a side, where fragments have no highp */
 };
 
 /* Logs every pending GL error as "doing: NAME". 0, or -ENOMEM, or -EIO. */
 must_check int gl_check(const char *doing);
 /* Whole words only. */
 bool gl_has_extension(const char *name);
+/* Whether fragments have more than mediump, of which eleven bits are promised. */
+bool gl_has_highp(void);
+/* A side of the largest texture to make: what this board takes, within the limits above. Sides
+ * that are powers of two may repeat, and coordinates from -0.5 to 0.5 then name 2048 pixels to
+ * a quarter of one even in mediump. */
+int gl_texture_most_px(void);
+/* Begins a fragment shader: floats, and what is declared FINE, in the best precision there is. */
+extern const char gl_fine_fragment[];
 
 struct gl_program_source {
 	const char *name;              /* for complaints */

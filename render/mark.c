@@ -3,29 +3,30 @@
 #include <math.h>
 #include <string.h>
 
-static const char mark_vertex[] = "invariant gl_Position;\n"
-				  "attribute vec3 a_position;\n"
-				  "uniform mat4 u_clip;\n"
-				  "uniform vec4 u_lattice;\n"
-				  "varying vec3 v_at;\n"
-				  "void main() {\n"
-				  "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-				  "	v_at = p;\n"
-				  "	gl_Position = u_clip * vec4(p, 1.0);\n"
-				  "}\n";
+static const char mark_vertex[] =
+	"invariant gl_Position;\n"
+	"attribute vec3 a_position;\n"
+	"uniform mat4 u_clip;\n"
+	"uniform vec4 u_lattice;\n"
+	"uniform vec4 u_middle;\n" /* of the region from the eye; focal_px */
+	"varying vec4 v_at;\n"     /* from there; a pixel's width */
+	"void main() {\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	v_at = vec4(p - u_middle.xyz, length(p) / u_middle.w);\n"
+	"	gl_Position = u_clip * vec4(p, 1.0);\n"
+	"}\n";
 
-/* The twin of region_distance. u_region[0]: kind (as the enum), corners, floor, roof (from the
- * eye); [1]: centre from the eye, radius; [2]: half sides, 0; [3].xy: cosine, sine of the turn.
- * u_corners: x, y, two to a vector, from the eye. */
+/* The twin of region_distance. u_region[0]: kind (as the enum), corners, floor, roof;
+ * [1].w: radius; [2]: half sides, 0; [3].xy: cosine, sine of the turn. u_corners: x, y, two to a
+ * vector. All from the region's middle, so that mediump holds it. */
+static const char mark_extensions[] = "#extension GL_OES_standard_derivatives : enable\n";
+
 static const char mark_fragment[] =
-	"#extension GL_OES_standard_derivatives : enable\n"
-	"precision highp float;\n"
 	"uniform vec4 u_region[4];\n"
 	"uniform vec4 u_corners[8];\n"
-	"uniform float u_focal;\n"
-	"varying vec3 v_at;\n"
+	"varying vec4 v_at;\n"
 	"float polygon(vec2 p) {\n"
-	"	float nearest = 1e12, side = 1.0;\n"
+	"	float nearest = 6e4, side = 1.0;\n"
 	"	vec2 a = u_corners[0].xy;\n"
 	"	vec2 first = a;\n"
 	"	for (int i = 1; i <= 16; i++) {\n"
@@ -34,7 +35,7 @@ static const char mark_fragment[] =
 	"		vec4 pair = u_corners[i == 16 ? 0 : i / 2];\n"
 	"		vec2 b = n >= u_region[0].y ? first : (i / 2 * 2 == i ? pair.xy : pair.zw);\n"
 	"		vec2 e = b - a, w = p - a;\n"
-	"		vec2 d = w - e * clamp(dot(w, e) / max(dot(e, e), 1e-12), 0.0, 1.0);\n"
+	"		vec2 d = w - e * clamp(dot(w, e) / max(dot(e, e), 1e-7), 0.0, 1.0);\n"
 	"		nearest = min(nearest, dot(d, d));\n"
 	"		if ((a.y > p.y) != (b.y > p.y) && w.x < w.y / e.y * e.x) side = -side;\n"
 	"		a = b;\n"
@@ -43,17 +44,17 @@ static const char mark_fragment[] =
 	"}\n"
 	"float region_distance(vec3 p) {\n"
 	"	if (u_region[0].x < 1.5)\n"
-	"		return length(p - u_region[1].xyz) - u_region[1].w;\n"
+	"		return length(p) - u_region[1].w;\n"
 	"	if (u_region[0].x > 2.5)\n"
 	"		return max(polygon(p.xy), max(u_region[0].z - p.z, p.z - u_region[0].w));\n"
-	"	vec3 q = p - u_region[1].xyz;\n"
 	"	vec2 c = u_region[3].xy;\n"
-	"	q = abs(vec3(c.x * q.x + c.y * q.y, c.x * q.y - c.y * q.x, q.z)) - u_region[2].xyz;\n"
+	"	vec3 q = vec3(c.x * p.x + c.y * p.y, c.x * p.y - c.y * p.x, p.z);\n"
+	"	q = abs(q) - u_region[2].xyz;\n"
 	"	return max(q.x, max(q.y, q.z));\n"
 	"}\n"
 	"void main() {\n"
-	"	float d = region_distance(v_at);\n"
-	"	float pixel = length(v_at) / u_focal;\n"
+	"	float d = region_distance(v_at.xyz);\n"
+	"	float pixel = v_at.w;\n"
 	"#ifdef GL_OES_standard_derivatives\n"
 	/* A surface that runs along the boundary would be line all over: width along the surface.
 	 */
@@ -72,7 +73,8 @@ int mark_init(struct mark *mark)
 	const struct gl_program_source source = {
 		.name = "mark",
 		.vertex = (const char *const[]){ mark_vertex, NULL },
-		.fragment = (const char *const[]){ mark_fragment, NULL },
+		.fragment = (const char *const[]){ mark_extensions, gl_fine_fragment, mark_fragment,
+						   NULL },
 		.attributes = (const char *const[]){ "a_position", NULL },
 	};
 	int rc = gl_program_build(&mark->program, &source);
@@ -80,7 +82,7 @@ int mark_init(struct mark *mark)
 	mark->lattice = glGetUniformLocation(mark->program, "u_lattice");
 	mark->region = glGetUniformLocation(mark->program, "u_region");
 	mark->corners = glGetUniformLocation(mark->program, "u_corners");
-	mark->focal = glGetUniformLocation(mark->program, "u_focal");
+	mark->middle = glGetUniformLocation(mark->program, "u_middle");
 	return rc;
 }
 
@@ -91,16 +93,29 @@ void mark_finish(struct mark *mark)
 	memset(mark, 0, sizeof(*mark));
 }
 
-static void set_region(const struct mark *mark, const float eye[3], const struct region *region)
+static void find_middle(float out[3], const struct region *region)
+{
+	memcpy(out, region->centre_m, 3 * sizeof(out[0]));
+	if (region->kind != REGION_PRISM || region->corner_count < 3 ||
+	    region->corner_count > REGION_CORNERS_MOST)
+		return;
+	out[0] = out[1] = 0;
+	for (uint32_t i = 0; i < region->corner_count; i++)
+		for (int k = 0; k < 2; k++)
+			out[k] += region->corners_m[i][k] / (float)region->corner_count;
+	out[2] = (region->floor_m + region->roof_m) / 2;
+}
+
+static void set_region(const struct mark *mark, const float middle[3], const struct region *region)
 {
 	float turn = region->turn_deg * (float)M_PI / 180;
 	float rows[16] = { (float)region->kind,
 			   (float)region->corner_count,
-			   region->floor_m - eye[2],
-			   region->roof_m - eye[2],
-			   region->centre_m[0] - eye[0],
-			   region->centre_m[1] - eye[1],
-			   region->centre_m[2] - eye[2],
+			   region->floor_m - middle[2],
+			   region->roof_m - middle[2],
+			   0,
+			   0,
+			   0,
 			   region->radius_m,
 			   region->half_m[0],
 			   region->half_m[1],
@@ -110,8 +125,8 @@ static void set_region(const struct mark *mark, const float eye[3], const struct
 			   sinf(turn) };
 	float corners[2 * REGION_CORNERS_MOST] = { 0 };
 	for (uint32_t i = 0; i < region->corner_count && i < REGION_CORNERS_MOST; i++) {
-		corners[2 * i] = region->corners_m[i][0] - eye[0];
-		corners[2 * i + 1] = region->corners_m[i][1] - eye[1];
+		corners[2 * i] = region->corners_m[i][0] - middle[0];
+		corners[2 * i + 1] = region->corners_m[i][1] - middle[1];
 	}
 	glUniform4fv(mark->region, 4, rows);
 	glUniform4fv(mark->corners, REGION_CORNERS_MOST / 2, corners);
@@ -127,8 +142,11 @@ void mark_begin(const struct mark *mark, const struct view *view, const struct r
 	glUniform4f(mark->lattice, (float)(lattice->origin_m[0] - eye[0]),
 		    (float)(lattice->origin_m[1] - eye[1]), (float)(lattice->origin_m[2] - eye[2]),
 		    (float)lattice->step_m);
-	glUniform1f(mark->focal, view->focal_px);
-	set_region(mark, eye, region);
+	float middle[3];
+	find_middle(middle, region);
+	glUniform4f(mark->middle, middle[0] - eye[0], middle[1] - eye[1], middle[2] - eye[2],
+		    view->focal_px);
+	set_region(mark, middle, region);
 	glEnable(GL_BLEND);
 	/* Coverage stays what the surface wrote. */
 	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);

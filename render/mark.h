@@ -10,7 +10,7 @@
 
 struct mark {
 	GLuint program;
-	GLint clip, lattice, region, corners, focal;
+	GLint clip, lattice, region, corners, middle;
 };
 
 must_check int mark_init(struct mark *mark);

@@ -10,10 +10,52 @@
 #include "render/vec.h"
 
 enum {
-	DEPTH_FACE_PX = 512,   /* TILES_ROWS_MOST of them are as high as a texture may be */
+	DEPTH_FACE_PX = 512,
 	DEPTH_TEXEL_BYTES = 2, /* four where RGB565 cannot be drawn into */
-	DEPTH_ROWS_LEAST = 2,
+	FACES_LEAST = 16,
+	SIDE_FACES_MOST = 8, /* of a sheet of depths: GL_LIMIT_TEXTURE_PX */
 };
+
+static uint32_t limited(uint64_t value, uint64_t least, uint64_t most)
+{
+	value = value < least ? least : value;
+	return (uint32_t)(value > most ? most : value);
+}
+
+/* Sheets as large as a texture may be, as few as that gives. Where they must repeat (depth.h), two
+ * rows each: of powers of two those that fit most budgets. */
+static struct depth_layout lay_out_depths(uint32_t faces)
+{
+	struct depth_layout out = { .face_px = DEPTH_FACE_PX };
+	uint32_t side = limited((uint64_t)gl_texture_most_px() / DEPTH_FACE_PX, 1, SIDE_FACES_MOST);
+	uint32_t rows = faces / side;
+	out.across = (int)side;
+	out.sheets = (int)((rows + side - 1) / side);
+	out.rows = (int)rows / out.sheets;
+	if (!gl_has_highp() && side > 1) {
+		out.rows = 2;
+		out.sheets = (int)rows / 2;
+	}
+	if (out.sheets > DEPTH_SHEETS_MOST)
+		out.sheets = DEPTH_SHEETS_MOST;
+	return out;
+}
+
+/* Of the texture budget three eighths are depths: a face in use has about a dozen tiles in use. */
+static int make_atlases(struct scene *scene)
+{
+	const uint64_t face_bytes = (uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX;
+	const uint64_t budget = scene->options.texture_budget_bytes;
+	const uint32_t faces = limited(budget * 3 / 8 / face_bytes, FACES_LEAST, TILES_FACES_MOST);
+	const struct depth_layout layout = lay_out_depths(faces);
+	const int rows = layout.rows * layout.sheets;
+	const uint64_t spent = face_bytes * (uint64_t)(rows * layout.across);
+	int rc = tiles_init(&scene->tiles, budget > spent ? budget - spent : 0,
+			    (uint32_t)layout.across, (uint32_t)rows);
+	if (rc == 0)
+		rc = depth_init(&scene->depth, &layout);
+	return rc;
+}
 
 /* ---- life */
 
@@ -25,20 +67,9 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		return -ENOMEM;
 	scene->options = *options;
 	scene->image_share = -1;
-	const uint64_t row_bytes =
-		(uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX * TILES_FACES_ACROSS;
-	uint64_t budget = options->texture_budget_bytes;
-	/* Three eighths: a face in use has about a dozen tiles in use. */
-	uint64_t rows = budget * 3 / 8 / row_bytes;
-	rows = rows < DEPTH_ROWS_LEAST ? DEPTH_ROWS_LEAST : rows;
-	rows = rows > TILES_ROWS_MOST ? TILES_ROWS_MOST : rows;
 	int rc = pool_create(&scene->pool, options->worker_count);
 	if (rc == 0)
-		rc = tiles_init(&scene->tiles,
-				budget > rows * row_bytes ? budget - rows * row_bytes : 0,
-				(uint32_t)rows);
-	if (rc == 0)
-		rc = depth_init(&scene->depth, DEPTH_FACE_PX, (uint32_t)rows);
+		rc = make_atlases(scene);
 	if (rc == 0)
 		rc = surface_init(&scene->surface, &scene->tiles);
 	if (rc == 0)

@@ -38,7 +38,7 @@ static void draw_depth_face(struct scene *scene, int slot, face_key face)
 	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
 	float sample[3];
 	repository_point_m(&scene->repository, face / CUBE_FACES, sample);
-	cut_update_around(&scene->around, sample, (float)scene->depth.face_px / 2,
+	cut_update_around(&scene->around, sample, (float)scene->depth.layout.face_px / 2,
 			  scene->geometry.loaded, &options);
 	depth_begin(&scene->depth, face, sample, &scene->root);
 	glEnableVertexAttribArray(0);
@@ -50,6 +50,7 @@ static void draw_depth_face(struct scene *scene, int slot, face_key face)
 		if (!face_sees(axes, sample, patch->centre_m, patch->radius_m))
 			continue;
 		geometry_bind(&scene->geometry, p);
+		depth_patch(&scene->depth, patch->centre_m);
 		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
 	}
 	depth_end(&scene->depth, slot, face, scene->cut_signature);
@@ -116,7 +117,7 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 	run->patch = v->patch;
 	if (surface_faces(v->program) > 0)
 		surface_blend(&scene->surface, frame, v->program, patch->pieces[v->piece].blend,
-			      scene_patch_error_m(scene, v->patch), piece->spacing_m);
+			      piece, scene_patch_error_m(scene, v->patch));
 	if (run->count == 0)
 		run->first = piece->first_triangle;
 	run->count += piece->triangle_count;

@@ -4,6 +4,10 @@
 #include <string.h>
 
 #include "format/light.h"
+#include "render/aim.h"
+#include "render/vec.h"
+
+enum { DEPTH_UNIT = 2 }; /* and those after it, one for each face of a piece */
 
 /* Positions are metres relative to the eye, so that floats suffice anywhere in the model. */
 static const char vertex_common[] =
@@ -38,10 +42,17 @@ static const char plain_vertex[] = "void main() {\n"
  * generation post processing in Call of Duty: Advanced Warfare", interleaved gradient noise). */
 static const char dissolve_none[] = "void dissolve() {}\n";
 static const char dissolve_some[] =
-	"uniform highp vec2 u_range;\n"
+	"#ifdef GL_FRAGMENT_PRECISION_HIGH\n"
+	"#define NUMBER highp\n"
+	"#define PIXEL gl_FragCoord.xy\n"
+	"#else\n"
+	"#define NUMBER mediump\n"
+	"#define PIXEL mod(floor(gl_FragCoord.xy), 32.0)\n" /* of larger ones little is left */
+	"#endif\n"
+	"uniform NUMBER vec2 u_range;\n"
 	"void dissolve() {\n"
-	"	highp float u = fract(52.9829189 * fract(dot(gl_FragCoord.xy,\n"
-	"						   vec2(0.06711056, 0.00583715))));\n"
+	"	NUMBER float u = fract(52.9829189 * fract(dot(PIXEL, vec2(0.06711056,\n"
+	"								  0.00583715))));\n"
 	"	if (u < u_range.x || u >= u_range.y)\n"
 	"		discard;\n"
 	"}\n";
@@ -53,8 +64,8 @@ static const char plain_fragment[] = "varying vec4 v_colour;\n"
 				     "	gl_FragColor = vec4(v_colour.rgb * (1.0 - u_share), 1.0);\n"
 				     "}\n";
 
-/* Per face five rows: right, up, forward (xyz, and minus their product with the point), the point
- * and the blend's weight, and (half_px, 0, 0, 0). The quality is plan_quality's twin. */
+/* Per face five rows: the aim's three, the point and the blend's weight, and (half_px, the aim's
+ * depth, 0, 0). The quality is plan_quality's twin. */
 static const char blended_vertex[] =
 	"uniform vec4 u_face[5 * FACES];\n"
 	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, spacing by its penalty */
@@ -76,11 +87,11 @@ static const char blended_vertex[] =
 	"			+ u_tune[0].z * (1.0 - ca);\n"
 	"	return facing / (penalty * penalty);\n"
 	"}\n"
-	"vec4 seen(vec3 p, vec3 n, vec4 r, vec4 u, vec4 f, vec4 s, vec4 size) {\n"
+	"vec4 seen(vec3 p, vec3 n, vec4 r, vec4 u, vec4 f, vec4 s, vec2 size) {\n"
 	"	if (s.w <= 0.0)\n"
 	"		return vec4(0.0, 0.0, 1.0, 0.0);\n"
 	"	vec3 q = vec3(dot(r.xyz, p) + r.w, dot(u.xyz, p) + u.w, dot(f.xyz, p) + f.w);\n"
-	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z, 1e-5), size.x) : 1.0;\n"
+	"	float k = u_eye.z < 0.5 ? quality(p, n, s.xyz, max(q.z + size.y, 1e-5), size.x) : 1.0;\n"
 	"	return vec4(q, s.w * k);\n"
 	"}\n"
 	"float sharpen(float k) { return k * k * k * k; }\n"
@@ -90,7 +101,7 @@ static const char blended_vertex[] =
 	"	float most = 0.0;\n"
 	"	for (int i = 0; i < FACES; i++) {\n"
 	"		v_face[i] = seen(p, n, u_face[5 * i], u_face[5 * i + 1], u_face[5 * i + 2],\n"
-	"				 u_face[5 * i + 3], u_face[5 * i + 4]);\n"
+	"				 u_face[5 * i + 3], u_face[5 * i + 4].xy);\n"
 	"		most = max(most, v_face[i].w);\n"
 	"	}\n"
 	"	float own = 1.0 + u_eye.w * u_eye.x / length(p);\n"
@@ -102,34 +113,41 @@ static const char blended_vertex[] =
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
-/* Constants that C and GLSL share come first, made by set_constants. */
+/* Constants that C and GLSL share come first, made by set_constants. Cells and depths count from
+ * the aim's, which are whole, so all of it holds in mediump (tests/render/test_mediump.c). */
 static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
-	"uniform highp sampler2D u_cells, u_depths;\n" /* by default lowp: 16 bits need more */
-	"uniform vec4 u_slot[FACES];\n"                /* face slot's column and row, 0, 0 */
-	"uniform vec4 u_window[FACES];\n"              /* place in the depths: scale, offset */
-	"uniform float u_share, u_far, u_slack;\n"
+	"uniform FINE sampler2D u_cells, u_depths[FACES];\n" /* by default lowp */
+	"uniform vec4 u_place[FACES];\n"  /* the aim's cell; the face's first in the texture */
+	"uniform vec4 u_window[FACES];\n" /* of cells, place in the depths: scale, offset */
+	"uniform vec3 u_base[FACES];\n"   /* the aim's depth in metres; in units, as 64 x + y */
+	"uniform vec2 u_depth;\n"         /* a unit in metres, the nearest */
+	"uniform float u_share, u_slack;\n"
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face[FACES];\n"
-	"vec4 from_face(vec4 face, vec2 slot, vec4 window) {\n"
-	"	if (face.w < 0.0005 || face.z < u_far * 0.0004)\n"
+	"vec4 from_face(FINE sampler2D depths, vec4 face, vec4 place, vec4 window, vec3 base) {\n"
+	"	float z = face.z + base.x;\n"
+	"	if (face.w < 0.0005 || z < u_depth.y)\n"
 	"		return vec4(0.0);\n"
-	"	vec2 at = vec2(face.x, -face.y) / face.z;\n"
-	"	if (abs(at.x) > 1.0 || abs(at.y) > 1.0)\n"
+	"	vec2 way = face.xy / z;\n"
+	"	vec2 cell = place.xy + floor(way);\n"
+	"	vec2 outside = abs(cell - (CELLS - 1.0) / 2.0);\n"
+	"	if (max(outside.x, outside.y) > CELLS / 2.0)\n"
 	"		return vec4(0.0);\n"
-	"	vec3 d = texture2D(u_depths, at * window.xy + window.zw).rgb;\n"
+	"	vec3 d = texture2D(depths, way * window.xy + window.zw).rgb;\n"
 	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n" /* 5, 6, 5 bits; some return 8 */
-	"	float depth = dot(d, vec3(2048.0, 32.0, 1.0)) / 65535.0 * u_far;\n"
-	"	at = clamp(at * 0.5 + 0.5, 0.0001, 0.9999);\n"
-	"	float slack = u_slack + 0.001 * face.z;\n"
-	"	float w = face.w * clamp(2.0 - (face.z - depth) / slack, 0.0, 1.0);\n"
+	"	d.xy -= base.yz;\n"
+	"	float behind = face.z - dot(d, vec3(64.0, 1.0, 1.0 / 32.0)) * u_depth.x;\n"
+	"	float slack = u_slack + 0.001 * z;\n"
+	"	float w = face.w * clamp(2.0 - behind / slack, 0.0, 1.0);\n"
 	"	if (w < 0.0002)\n"
 	"		return vec4(0.0);\n"
-	"	vec4 cell = texture2D(u_cells, (slot + at) / CELL_GRID) * 255.0;\n"
-	"	vec2 local = fract(at * floor(cell.b + 0.5));\n"
-	"	vec2 pixel = floor(cell.rg + 0.5) * IMAGE_PX + APRON_PX + local * TILE_PX;\n"
-	"	w *= cell.a / 255.0;\n"
-	"	vec3 colour = texture2D(u_tiles, pixel / ATLAS_PX).rgb;\n"
+	"	vec4 tile = texture2D(u_cells, (place.zw + cell) / CELL_GRID) * 255.0;\n"
+	"	float share = floor(tile.b + 0.5) / CELLS;\n" /* of the tile, that a cell is */
+	"	vec2 local = way * share + (place.xy * share - floor((cell + 0.5) * share));\n"
+	"	vec2 at = floor(tile.rg + 0.5 - MIDDLE) * IMAGE + (local * TILE + APRON);\n"
+	"	w *= tile.a / 255.0;\n"
+	"	vec3 colour = texture2D(u_tiles, at).rgb;\n"
 	"	vec3 off = colour - v_colour.rgb;\n"
 	"	w /= 1.0 + DOUBT * dot(off, off);\n"
 	"	return vec4(colour * w, w);\n"
@@ -138,7 +156,8 @@ static const char blended_fragment[] =
 	"	dissolve();\n"
 	"	vec4 sum = vec4(0.0);\n"
 	"	for (int i = 0; i < FACES; i++)\n"
-	"		sum += from_face(v_face[i], u_slot[i].xy, u_window[i]);\n"
+	"		sum += from_face(u_depths[i], v_face[i], u_place[i], u_window[i],\n"
+	"				 u_base[i]);\n"
 	"	float own = v_colour.a;\n"
 	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
@@ -152,29 +171,33 @@ static void find_uniforms(struct surface_program *p)
 	p->sun = glGetUniformLocation(p->program, "u_sun");
 	p->eye = glGetUniformLocation(p->program, "u_eye");
 	p->face = glGetUniformLocation(p->program, "u_face");
-	p->slot = glGetUniformLocation(p->program, "u_slot");
+	p->place = glGetUniformLocation(p->program, "u_place");
 	p->window = glGetUniformLocation(p->program, "u_window");
+	p->base = glGetUniformLocation(p->program, "u_base");
 	p->tune = glGetUniformLocation(p->program, "u_tune");
 	p->share = glGetUniformLocation(p->program, "u_share");
-	p->far_m = glGetUniformLocation(p->program, "u_far");
+	p->depth = glGetUniformLocation(p->program, "u_depth");
 	p->slack = glGetUniformLocation(p->program, "u_slack");
 	p->range = glGetUniformLocation(p->program, "u_range");
 }
 
 static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
 {
+	const float atlas_px = (float)tiles->atlas_px;
 	snprintf(out, bytes,
-		 "precision highp float;\n"
 		 "#define FACES %d\n"
+		 "#define CELLS %d.0\n"
 		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
-		 "#define IMAGE_PX %d.0\n"
-		 "#define APRON_PX %d.0\n"
-		 "#define TILE_PX %d.0\n"
-		 "#define ATLAS_PX %d.0\n"
+		 "#define IMAGE %.9f\n" /* the slots' sides as shares of the atlas */
+		 "#define APRON %.9f\n"
+		 "#define TILE %.9f\n"
+		 "#define MIDDLE %d.0\n"
 		 "#define OWN_SHARE 0.05\n"
 		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
-		 faces, TILES_FACES_ACROSS, (int)tiles->face_rows, SAMPLE_IMAGE_PX, SAMPLE_APRON_PX,
-		 SAMPLE_TILE_PX, tiles->atlas_px);
+		 faces, AIM_CELLS, (int)tiles->faces_across * TILES_CELLS,
+		 (int)tiles->face_rows * TILES_CELLS, (double)(SAMPLE_IMAGE_PX / atlas_px),
+		 (double)(SAMPLE_APRON_PX / atlas_px), (double)(SAMPLE_TILE_PX / atlas_px),
+		 tiles->slots_before);
 }
 
 static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
@@ -203,7 +226,8 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
 						 blended_vertex, NULL },
-		.fragment = (const char *const[]){ constants, dissolve, blended_fragment, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, constants, dissolve,
+						   blended_fragment, NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -213,7 +237,9 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 	glUseProgram(p->program);
 	glUniform1i(glGetUniformLocation(p->program, "u_tiles"), 0);
 	glUniform1i(glGetUniformLocation(p->program, "u_cells"), 1);
-	glUniform1i(glGetUniformLocation(p->program, "u_depths"), 2);
+	static const GLint units[PLAN_ENTRIES] = { DEPTH_UNIT, DEPTH_UNIT + 1, DEPTH_UNIT + 2,
+						   DEPTH_UNIT + 3 };
+	glUniform1iv(glGetUniformLocation(p->program, "u_depths"), faces, units);
 	return 0;
 }
 
@@ -260,10 +286,12 @@ void surface_begin(const struct surface *surface, const struct surface_frame *fr
 	const float facing = 1 / (t->facing_high - t->facing_low);
 	const float tune[8] = { t->blur, t->parallax, t->angle, 0, t->facing_low, facing };
 	glUniform4fv(p->tune, 2, tune);
-	glUniform1f(p->far_m, frame->depth->far_limit_m);
+	glUniform2f(p->depth, aim_unit_m(frame->depth->far_limit_m),
+		    0.0004f * frame->depth->far_limit_m);
 	gl_bind_texture(0, frame->tiles->atlas);
 	gl_bind_texture(1, frame->tiles->indirection);
-	gl_bind_texture(2, frame->depth->atlas);
+	for (int i = 0; i < surface_faces(program); i++)
+		gl_bind_texture(DEPTH_UNIT + (unsigned)i, frame->depth->sheet[0]);
 }
 
 static int slot_of(const struct surface_frame *frame, const struct blend *blend)
@@ -295,65 +323,78 @@ void surface_dissolve(const struct surface *surface, int program, struct dissolv
 		glUniform2f(p->range, range.low, range.high);
 }
 
-static void set_face(float rows[20], const struct repository *repository, const struct blend *blend,
-		     const float eye_m[3])
-{
-	const struct cube_axes *axes = &cube_axes[blend->face % CUBE_FACES];
-	const float *axis[3] = { axes->right, axes->up, axes->forward };
-	float sample[3];
-	repository_point_m(repository, blend->face / CUBE_FACES, sample);
-	for (int i = 0; i < 3; i++)
-		sample[i] -= eye_m[i];
-	for (int r = 0; r < 3; r++) {
-		for (int i = 0; i < 3; i++) {
-			rows[4 * r + i] = axis[r][i];
-			rows[4 * r + 3] -= axis[r][i] * sample[i];
-		}
-	}
-	for (int i = 0; i < 3; i++)
-		rows[12 + i] = sample[i];
-	rows[15] = blend->weight;
-	rows[16] = blend->half_px;
-}
-
-/* From a place of the face (-1..1, y down) to one in the atlas of depths. */
-static void place_window(float out[4], const struct depth *depth, int slot)
+/* From a place of the aim's cells to one in the atlas of depths. */
+static void place_window(float out[4], const struct depth *depth, int slot, const struct aim *aim)
 {
 	const float *window = depth->face[slot].window;
 	const float middle[2] = { window[0], -window[1] };
-	const float grid[2] = { TILES_FACES_ACROSS,
-				(float)depth->atlas_height_px / (float)depth->face_px };
-	const float corner[2] = { (float)(slot % TILES_FACES_ACROSS),
-				  (float)(slot / TILES_FACES_ACROSS) };
+	const struct depth_place place = depth_place(depth, slot);
+	const float grid[2] = { (float)depth->layout.across, (float)depth->layout.rows };
+	const float corner[2] = { (float)place.column, (float)place.row };
+	const float half = AIM_CELLS / 2;
 	for (int k = 0; k < 2; k++) {
 		/* A hair less, so that the face's rim is not its neighbour's. */
-		out[k] = 0.4999f / window[2 + k] / grid[k];
-		out[2 + k] = (corner[k] + 0.5f) / grid[k] - middle[k] * out[k];
+		float scale = 0.4999f / window[2 + k] / grid[k];
+		float from = (aim->cell[k] - half) / half - middle[k];
+		out[k] = scale / half;
+		out[2 + k] = (corner[k] + 0.5f) / grid[k] + from * scale;
+		if (depth->repeats && 2 * corner[k] >= grid[k])
+			out[2 + k] -= 1;
 	}
 }
 
+/* What the shader is told of the faces, one after the other. */
+struct told {
+	float face[PLAN_ENTRIES][20], place[PLAN_ENTRIES][4], window[PLAN_ENTRIES][4];
+	float base[PLAN_ENTRIES][3];
+};
+
+static void tell(struct told *told, int at, const struct surface_frame *frame,
+		 const struct blend *blend, int slot, const struct piece *piece)
+{
+	const struct tiles *tiles = frame->tiles;
+	float point[3], centre[3], *row = told->face[at];
+	struct aim aim;
+	repository_point_m(frame->repository, blend->face / CUBE_FACES, point);
+	vec_sub(point, point, frame->view->eye_m);
+	vec_sub(centre, piece->centre_m, frame->view->eye_m);
+	aim_at(&aim, &cube_axes[blend->face % CUBE_FACES], point, centre, piece->radius_m,
+	       frame->depth->far_limit_m);
+	memcpy(row, aim.rows, sizeof(aim.rows));
+	memcpy(&row[12], point, sizeof(point));
+	row[15] = blend->weight;
+	row[16] = blend->half_px;
+	row[17] = aim.depth_m;
+	told->place[at][0] = aim.cell[0];
+	told->place[at][1] = aim.cell[1];
+	told->place[at][2] = (float)(slot % (int)tiles->faces_across * TILES_CELLS) + 0.5f;
+	told->place[at][3] = (float)(slot / (int)tiles->faces_across * TILES_CELLS) + 0.5f;
+	place_window(told->window[at], frame->depth, slot, &aim);
+	if (frame->depth->layout.sheets > 1)
+		gl_bind_texture(DEPTH_UNIT + (unsigned)at,
+				frame->depth->sheet[depth_place(frame->depth, slot).sheet]);
+	told->base[at][0] = aim.depth_m;
+	told->base[at][1] = floorf(aim.units / 64);
+	told->base[at][2] = aim.units - 64 * told->base[at][1];
+}
+
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
-		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m)
+		   const struct blend blend[PLAN_ENTRIES], const struct piece *piece, float error_m)
 {
 	const struct surface_program *p = &surface->of[program];
 	const int faces = surface_faces(program);
-	float rows[20 * PLAN_ENTRIES] = { 0 }, slots[4 * PLAN_ENTRIES] = { 0 };
-	float windows[4 * PLAN_ENTRIES];
+	struct told told = { 0 };
 	int at = 0;
 	for (int i = 0; i < PLAN_ENTRIES; i++) {
 		int slot = slot_of(frame, &blend[i]);
-		if (slot < 0)
-			continue;
-		set_face(&rows[20 * at], frame->repository, &blend[i], frame->view->eye_m);
-		slots[4 * at] = (float)(slot % TILES_FACES_ACROSS);
-		slots[4 * at + 1] = (float)(slot / TILES_FACES_ACROSS);
-		place_window(&windows[4 * at], frame->depth, slot);
-		at++;
+		if (slot >= 0)
+			tell(&told, at++, frame, &blend[i], slot, piece);
 	}
-	glUniform4fv(p->face, 5 * faces, rows);
-	glUniform4fv(p->slot, faces, slots);
-	glUniform4fv(p->window, faces, windows);
+	glUniform4fv(p->face, 5 * faces, told.face[0]);
+	glUniform4fv(p->place, faces, told.place[0]);
+	glUniform4fv(p->window, faces, told.window[0]);
+	glUniform3fv(p->base, faces, told.base[0]);
 	glUniform4f(p->eye, frame->view->focal_px, error_m, frame->even ? 1 : 0,
-		    plan_tuning.own * spacing_m);
+		    plan_tuning.own * piece->spacing_m);
 	glUniform1f(p->slack, depth_slack_m(frame->depth) + 0.15f * error_m);
 }

@@ -12,7 +12,7 @@
 
 struct surface_program {
 	GLuint program;
-	GLint clip, lattice, sun, eye, face, slot, window, tune, share, far_m, slack, range;
+	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range;
 };
 
 /* A program for each number of faces: none, the patch's own colours, is the cheapest; and one each
@@ -47,9 +47,9 @@ int surface_faces(int program);
 void surface_begin(const struct surface *surface, const struct surface_frame *frame, int program);
 /* Where the patch that is drawn next shows; of no effect in programs that draw it whole. */
 void surface_dissolve(const struct surface *surface, int program, struct dissolve_range range);
-/* The faces of the piece that is drawn next; error_m and spacing_m as in plan_quality and
- * plan_own_quality. */
+/* The faces of the piece that is drawn next; error_m as in plan_quality. */
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
-		   const struct blend blend[PLAN_ENTRIES], float error_m, float spacing_m);
+		   const struct blend blend[PLAN_ENTRIES], const struct piece *piece,
+		   float error_m);
 
 #endif

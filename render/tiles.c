@@ -11,35 +11,54 @@ static int make_textures(struct tiles *tiles)
 	const struct gl_texture_options atlas = { .width_px = tiles->atlas_px,
 						  .height_px = tiles->atlas_px,
 						  .format = GL_RGB,
-						  .filter = GL_LINEAR };
-	const struct gl_texture_options indirection = { .width_px =
-								TILES_CELLS * TILES_FACES_ACROSS,
-							.height_px =
-								TILES_CELLS * (int)tiles->face_rows,
-							.format = GL_RGBA,
-							.filter = GL_NEAREST };
+						  .filter = GL_LINEAR,
+						  .repeat = tiles->repeats };
+	const struct gl_texture_options indirection = {
+		.width_px = TILES_CELLS * (int)tiles->faces_across,
+		.height_px = TILES_CELLS * (int)tiles->face_rows,
+		.format = GL_RGBA,
+		.filter = GL_NEAREST,
+	};
 	int rc = gl_texture_create(&tiles->atlas, &atlas);
 	if (rc == 0)
 		rc = gl_texture_create(&tiles->indirection, &indirection);
 	return rc;
 }
 
-int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t face_rows)
+static bool fits(int side_px, uint64_t budget_bytes)
 {
-	memset(tiles, 0, sizeof(*tiles));
-	tiles->face_rows = face_rows;
-	tiles->face_count = TILES_FACES_ACROSS * face_rows;
-	GLint most = 0;
-	glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-	if (most > GL_LIMIT_TEXTURE_PX)
-		most = GL_LIMIT_TEXTURE_PX;
-	tiles->slots_across = most / SAMPLE_IMAGE_PX;
-	while (tiles->slots_across > 4 && 3ull * (uint64_t)tiles->slots_across * SAMPLE_IMAGE_PX *
-							  (uint64_t)tiles->slots_across *
-							  SAMPLE_IMAGE_PX >
-						  budget_bytes)
+	return 3ull * (uint64_t)side_px * (uint64_t)side_px <= budget_bytes;
+}
+
+/* As many slots as board and budget allow, four a row at least. */
+static void choose_size(struct tiles *tiles, uint64_t budget_bytes)
+{
+	enum { LEAST = 4 };
+	int side_px = gl_texture_most_px();
+	tiles->repeats = !gl_has_highp();
+	if (tiles->repeats) {
+		while (side_px / 2 >= LEAST * SAMPLE_IMAGE_PX && !fits(side_px, budget_bytes))
+			side_px /= 2;
+		tiles->slots_before = side_px / 2 / SAMPLE_IMAGE_PX;
+		tiles->slots_across = 2 * tiles->slots_before;
+		tiles->atlas_px = side_px;
+		return;
+	}
+	tiles->slots_across = side_px / SAMPLE_IMAGE_PX;
+	while (tiles->slots_across > LEAST &&
+	       !fits(tiles->slots_across * SAMPLE_IMAGE_PX, budget_bytes))
 		tiles->slots_across--;
 	tiles->atlas_px = tiles->slots_across * SAMPLE_IMAGE_PX;
+}
+
+int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across,
+	       uint32_t face_rows)
+{
+	memset(tiles, 0, sizeof(*tiles));
+	tiles->faces_across = faces_across;
+	tiles->face_rows = face_rows;
+	tiles->face_count = faces_across * face_rows;
+	choose_size(tiles, budget_bytes);
 	tiles->slot_count = (uint32_t)(tiles->slots_across * tiles->slots_across);
 	tiles->slot_name = calloc(tiles->slot_count, sizeof(*tiles->slot_name));
 	tiles->slot_stamp = calloc(tiles->slot_count, sizeof(*tiles->slot_stamp));
@@ -246,6 +265,13 @@ bool tiles_has(const struct tiles *tiles, struct tile_name name)
 	return map_get(&tiles->slot_of, tile_name_pack(name)) != MAP_NONE;
 }
 
+/* Of a column or row of slots in the atlas. */
+static int place_px(const struct tiles *tiles, int slot)
+{
+	int place = (slot - tiles->slots_before) * SAMPLE_IMAGE_PX;
+	return place < 0 ? place + tiles->atlas_px : place;
+}
+
 int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 {
 	if (tiles_has(tiles, name))
@@ -270,11 +296,12 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 	tiles->slot_stamp[slot] = tiles->stamp;
 	tiles->slot_season[slot] = tiles->season;
 	face->version = ++tiles->version;
-	int x = (int)slot % tiles->slots_across, y = (int)slot / tiles->slots_across;
+	int x = place_px(tiles, (int)slot % tiles->slots_across);
+	int y = place_px(tiles, (int)slot / tiles->slots_across);
 	glBindTexture(GL_TEXTURE_2D, tiles->atlas);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-	glTexSubImage2D(GL_TEXTURE_2D, 0, x * SAMPLE_IMAGE_PX, y * SAMPLE_IMAGE_PX, SAMPLE_IMAGE_PX,
-			SAMPLE_IMAGE_PX, GL_RGB, GL_UNSIGNED_BYTE, rgb);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, SAMPLE_IMAGE_PX, SAMPLE_IMAGE_PX, GL_RGB,
+			GL_UNSIGNED_BYTE, rgb);
 	cover(face, name, slot, clock_now_ms());
 	return 0;
 }
@@ -354,8 +381,8 @@ bool tiles_tick(struct tiles *tiles)
 			glBindTexture(GL_TEXTURE_2D, tiles->indirection);
 		bound = true;
 		glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-		glTexSubImage2D(GL_TEXTURE_2D, 0, (GLint)(i % TILES_FACES_ACROSS) * TILES_CELLS,
-				(GLint)(i / TILES_FACES_ACROSS) * TILES_CELLS, TILES_CELLS,
+		glTexSubImage2D(GL_TEXTURE_2D, 0, (GLint)(i % tiles->faces_across) * TILES_CELLS,
+				(GLint)(i / tiles->faces_across) * TILES_CELLS, TILES_CELLS,
 				TILES_CELLS, GL_RGBA, GL_UNSIGNED_BYTE, cells);
 		face->dirty = false;
 		fading |= face->fading;

@@ -8,14 +8,13 @@
 #ifndef GOPURA_RENDER_TILES_H
 #define GOPURA_RENDER_TILES_H
 
+#include "render/aim.h"
 #include "render/gl.h"
 #include "render/repository.h"
 
 enum {
-	TILES_CELLS = 32,       /* a side: tiles of the finest level */
-	TILES_FACES_ACROSS = 8, /* face slots a row, in the indirection texture and depth atlas */
-	TILES_ROWS_MOST = 8,
-	TILES_FACES_MOST = TILES_FACES_ACROSS * TILES_ROWS_MOST,
+	TILES_CELLS = AIM_CELLS, /* a side: tiles of the finest level */
+	TILES_FACES_MOST = 64,
 	TILES_FADE_MS = 250,
 };
 
@@ -33,8 +32,10 @@ struct tiles_face {
 struct tiles {
 	GLuint atlas, indirection;
 	int atlas_px, slots_across; /* the atlas is square */
+	bool repeats;               /* without highp, so that coordinates are near 0 */
+	int slots_before;           /* 0, a side: of those across */
 	uint32_t slot_count;
-	uint32_t face_rows, face_count; /* slots of faces; TILES_FACES_ACROSS a row */
+	uint32_t faces_across, face_rows, face_count; /* slots of faces */
 	/* Private. */
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
@@ -48,9 +49,10 @@ struct tiles {
 	uint32_t key_count;
 };
 
-/* budget_bytes: for the atlas (3 bytes a pixel) alone. face_rows: of face slots, at most
- * TILES_ROWS_MOST. */
-must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t face_rows);
+/* budget_bytes: for the atlas (3 bytes a pixel) alone. Rows of face slots: at most
+ * TILES_FACES_MOST in all. */
+must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across,
+			  uint32_t face_rows);
 void tiles_finish(struct tiles *tiles);
 void tiles_clear(struct tiles *tiles); /* forgets all, keeps the textures */
 
