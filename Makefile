@@ -38,7 +38,8 @@ PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
-TOOLS    := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/tools/*.c))
+SHIM     := tests/tools/weak_gl
+TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIM).c,$(wildcard tests/tools/*.c)))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
@@ -117,7 +118,13 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 
-tests: $(TESTS) $(FUZZ) $(TOOLS)
+# Preloaded by tests of weak boards; of no program.
+$(BUILD)/$(SHIM).so: $(SHIM).c | $(BUILD)/.deps
+	@mkdir -p $(@D)
+	@echo '  link  $@'
+	@$(CC) $(CFLAGS) -shared -fPIC $< -o $@ -ldl
+
+tests: $(TESTS) $(FUZZ) $(TOOLS) $(BUILD)/$(SHIM).so
 benches: $(BENCHES)
 .PHONY: tests benches
 
