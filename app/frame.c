@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <malloc.h>
 #include <math.h>
+#include <string.h>
 
 #include <cglm/cglm.h>
 
@@ -14,6 +15,7 @@
 enum {
 	STEP_MOST_MS = 50, /* of the navigator: a hiccup is not a jump */
 	ANCHORS_A_FRAME = 3,
+	SAY_EYE_MS = 100,
 };
 
 static bool is_sideways(const struct kiosk *kiosk)
@@ -235,6 +237,21 @@ static void say_first_picture(struct kiosk *kiosk)
 		 (long long)(clock_now_ms() - kiosk->started_ms));
 }
 
+/* The eye's way, for whoever plays a visit again on another clock. */
+static void say_eye(struct kiosk *kiosk, int64_t now_ms)
+{
+	const float *e = kiosk->camera.eye_m, *t = kiosk->camera.target_m;
+
+	if (now_ms - kiosk->said_ms < SAY_EYE_MS ||
+	    (memcmp(e, kiosk->said.eye_m, sizeof(kiosk->said.eye_m)) == 0 &&
+	     memcmp(t, kiosk->said.target_m, sizeof(kiosk->said.target_m)) == 0))
+		return;
+	kiosk->said = kiosk->camera;
+	kiosk->said_ms = now_ms;
+	log_debug("app", "eye at %.3f %.3f %.3f, looks at %.3f %.3f %.3f", (double)e[0],
+		  (double)e[1], (double)e[2], (double)t[0], (double)t[1], (double)t[2]);
+}
+
 /* What loading took and freed, to the machine: once a rest, since it takes milliseconds (7 of the 5
  * M temple), and so does every page that comes back. */
 static void give_back_memory(struct kiosk *kiosk)
@@ -242,6 +259,7 @@ static void give_back_memory(struct kiosk *kiosk)
 	if (!kiosk->shown.frame.settled)
 		kiosk->memory_given_back = false;
 	else if (!kiosk->frame_wanted && !kiosk->memory_given_back) {
+		log_debug("app", "the picture has settled");
 		malloc_trim(0);
 		kiosk->memory_given_back = true;
 	}
@@ -262,6 +280,7 @@ int frame_draw(struct kiosk *kiosk)
 		kiosk->eye_moves =
 			navigator_step(&kiosk->navigator, dt_ms, (float)kiosk_height_px(kiosk));
 		frame_camera(kiosk, &kiosk->camera);
+		say_eye(kiosk, now_ms);
 	}
 	exhibit_warm(kiosk);
 	display_begin(kiosk->display);

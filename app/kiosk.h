@@ -70,6 +70,8 @@ struct kiosk {
 	uint32_t looked_triangles;       /* drawn when the anchors were looked at */
 	bool pictured;                   /* the model was on the panel */
 	bool memory_given_back;          /* since the picture settled last */
+	struct camera said;              /* the eye, as the log has it last */
+	int64_t said_ms;
 	bool quit;
 };
 
