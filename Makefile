@@ -43,7 +43,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIM).c,$(wildcard tests/to
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check qemu unit unit-san check-style format bench clean
+.PHONY: all help deps demo test check qemu unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the three programs into build/
@@ -73,6 +73,9 @@ qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures 
 
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
+
+bench-full: all ## what takes hours: temples of 1, 6 and 18 million triangles, into build/bench/growth.json
+	@tests/bench/run.sh --full
 
 check-style: deps ## clang-format, the include table, house rules
 	@tests/style/check.sh

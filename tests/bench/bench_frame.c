@@ -3,28 +3,31 @@
  * Everything in one run, each frame finished before the clock stops. And how much of the picture
  * changes when the eye crosses the border between two cells of the grid by a millimetre a frame.
  *
- *   bench_frame RELEASE VIEWS [FRAMES]
+ *   bench_frame RELEASE VIEWS [FRAMES [frames]]
  *
  * Prints JSON: medians over the views of VIEWS (eye x y z, target x y z, vertical field of view in
- * degrees), for 1280 x 720 and 1920 x 1080. */
+ * degrees), for 1280 x 720 and 1920 x 1080. "frames": of the Lumigraph alone, and no crossing. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "render/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 20000, CROSSING_FRAMES = 10 };
+enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 120000, CROSSING_FRAMES = 10 };
 
 struct bench {
 	struct stage stage;
 	GLuint quad_program, plain_program, texture, quad_buffer;
 	GLint plain_clip, plain_lattice;
-	struct camera cameras[VIEWS_MOST];
+	struct camera cameras[VIEWS_MOST], moving;
+	struct scene_frame frame; /* drawn last */
 	uint32_t views, frames, unsettled;
+	bool frames_alone;
 };
 
 /* ---- the measures: the same triangles, and a quad, with one texture */
@@ -83,7 +86,7 @@ static void clear(const struct bench *bench)
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-static void draw_quad(const struct bench *bench)
+static void draw_quad(struct bench *bench)
 {
 	gl_target_bind(&bench->stage.target);
 	glDisable(GL_DEPTH_TEST);
@@ -97,7 +100,7 @@ static void draw_quad(const struct bench *bench)
 }
 
 /* The pieces that the scene just drew, all of a patch at once. */
-static void draw_plain(const struct bench *bench)
+static void draw_plain(struct bench *bench)
 {
 	const struct scene *scene = bench->stage.scene;
 	const struct lattice *lattice = &scene->root.lattice;
@@ -129,18 +132,37 @@ static void draw_plain(const struct bench *bench)
 	}
 }
 
-static double time_ms(struct bench *bench, void (*draw)(const struct bench *))
+struct spent {
+	double ms, cpu_ms;
+};
+
+/* Of the process, llvmpipe's threads and all: what other work on the machine changes little. */
+static struct spent spent_until_now(void)
 {
-	double ms[FRAMES_MOST];
+	struct timespec cpu;
+
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+	return (struct spent){ (double)clock_now_us() / 1000,
+			       (double)cpu.tv_sec * 1000 + (double)cpu.tv_nsec / 1e6 };
+}
+
+/* Of the frames, the median; the frame that is drawn is finished. */
+static struct spent median_spent(struct bench *bench, void (*draw)(struct bench *))
+{
+	double ms[FRAMES_MOST], cpu_ms[FRAMES_MOST];
 
 	for (uint32_t i = 0; i < bench->frames; i++) {
-		const int64_t began_us = clock_now_us();
+		const struct spent began = spent_until_now();
+		struct spent ended;
 
 		draw(bench);
 		glFinish();
-		ms[i] = (double)(clock_now_us() - began_us) / 1000;
+		ended = spent_until_now();
+		ms[i] = ended.ms - began.ms;
+		cpu_ms[i] = ended.cpu_ms - began.cpu_ms;
 	}
-	return stage_median(ms, bench->frames);
+	return (struct spent){ stage_median(ms, bench->frames),
+			       stage_median(cpu_ms, bench->frames) };
 }
 
 /* ---- crossing a border */
@@ -216,32 +238,30 @@ static double cross_border(struct bench *bench, struct camera camera)
 /* ---- frames */
 
 struct cost {
-	double ms, plain_ms, triangles, crossing_pct;
+	struct spent scene, plain;
+	double triangles, crossing_pct;
 };
+
+static void draw_moving(struct bench *bench)
+{
+	bench->moving.eye_m[0] += 0.001f;
+	bench->moving.target_m[0] += 0.001f;
+	clear(bench);
+	scene_draw(bench->stage.scene, &bench->moving, NULL, &bench->frame);
+}
 
 static struct cost cost_of(struct bench *bench, struct camera camera)
 {
-	struct scene_frame frame;
-	double ms[FRAMES_MOST];
-	struct cost cost;
+	struct cost cost = { 0 };
 
 	camera.width_px = bench->stage.target.width_px;
 	camera.height_px = bench->stage.target.height_px;
-	stage_settle(&bench->stage, &camera, SETTLE_MS, &frame);
-	bench->unsettled += !frame.settled;
-	for (uint32_t i = 0; i < bench->frames; i++) {
-		camera.eye_m[0] += 0.001f;
-		camera.target_m[0] += 0.001f;
-		const int64_t began_us = clock_now_us();
-
-		clear(bench);
-		scene_draw(bench->stage.scene, &camera, NULL, &frame);
-		glFinish();
-		ms[i] = (double)(clock_now_us() - began_us) / 1000;
-	}
-	cost.ms = stage_median(ms, bench->frames);
-	cost.plain_ms = time_ms(bench, draw_plain);
-	cost.triangles = frame.triangles;
+	stage_settle(&bench->stage, &camera, SETTLE_MS, &bench->frame);
+	bench->unsettled += !bench->frame.settled;
+	bench->moving = camera;
+	cost.scene = median_spent(bench, draw_moving);
+	cost.plain = median_spent(bench, draw_plain);
+	cost.triangles = bench->frame.triangles;
 	return cost;
 }
 
@@ -249,45 +269,58 @@ static struct cost cost_of(struct bench *bench, struct camera camera)
 static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 {
 	struct scene_options options = bench->stage.options.scene;
-	double ms[VIEWS_MOST], plain_ms[VIEWS_MOST], triangles[VIEWS_MOST];
-	double crossing_pct[VIEWS_MOST];
+	double ms[VIEWS_MOST], cpu_ms[VIEWS_MOST], plain_ms[VIEWS_MOST], plain_cpu_ms[VIEWS_MOST];
+	double triangles[VIEWS_MOST], crossing_pct[VIEWS_MOST];
 
 	options.mode = mode;
 	stage_begin(&bench->stage, &options);
 	for (uint32_t i = 0; i < bench->views; i++) {
 		const struct cost cost = cost_of(bench, bench->cameras[i]);
 
-		ms[i] = cost.ms;
-		plain_ms[i] = cost.plain_ms;
+		ms[i] = cost.scene.ms;
+		cpu_ms[i] = cost.scene.cpu_ms;
+		plain_ms[i] = cost.plain.ms;
+		plain_cpu_ms[i] = cost.plain.cpu_ms;
 		triangles[i] = cost.triangles;
-		crossing_pct[i] = cross_border(bench, bench->cameras[i]);
+		crossing_pct[i] = bench->frames_alone ? 0 : cross_border(bench, bench->cameras[i]);
 	}
-	return (struct cost){ stage_median(ms, bench->views), stage_median(plain_ms, bench->views),
-			      stage_median(triangles, bench->views),
-			      stage_median(crossing_pct, bench->views) };
+	return (struct cost){
+		.scene = { stage_median(ms, bench->views), stage_median(cpu_ms, bench->views) },
+		.plain = { stage_median(plain_ms, bench->views),
+			   stage_median(plain_cpu_ms, bench->views) },
+		.triangles = stage_median(triangles, bench->views),
+		.crossing_pct = stage_median(crossing_pct, bench->views),
+	};
 }
 
 static void measure(struct bench *bench, const struct stage_options *options, bool last)
 {
-	struct cost images, polygons;
+	struct cost images, polygons = { 0 };
 	double quads[2], quad;
 
 	stage_open(&bench->stage, options);
 	make_programs(bench);
-	quads[0] = time_ms(bench, draw_quad);
+	quads[0] = median_spent(bench, draw_quad).ms;
 	images = mode_cost(bench, SCENE_LUMIGRAPH);
-	polygons = mode_cost(bench, SCENE_POLYGONS);
-	quads[1] = time_ms(bench, draw_quad);
+	if (!bench->frames_alone)
+		polygons = mode_cost(bench, SCENE_POLYGONS);
+	quads[1] = median_spent(bench, draw_quad).ms;
 	quad = (quads[0] + quads[1]) / 2;
 	printf(" {\"size\": \"%dx%d\", \"quad_ms\": %.3f, \"plain_ms\": %.3f, \"lumigraph_ms\": %.3f, "
-	       "\"polygons_ms\": %.3f, \"triangles\": %.0f, \"lumigraph_per_plain\": %.2f, "
-	       "\"lumigraph_per_quad\": %.2f, \"polygons_per_quad\": %.2f, "
-	       "\"lumigraph_per_polygons\": %.2f, \"crossing_changed_pct\": %.3f, "
-	       "\"crossing_changed_pct_polygons\": %.3f}%s\n",
-	       options->width_px, options->height_px, quad, images.plain_ms, images.ms, polygons.ms,
-	       images.triangles, images.ms / images.plain_ms, images.ms / quad, polygons.ms / quad,
-	       images.ms / polygons.ms, images.crossing_pct, polygons.crossing_pct,
-	       last ? "" : ",");
+	       "\"plain_cpu_ms\": %.3f, \"lumigraph_cpu_ms\": %.3f, \"triangles\": %.0f, "
+	       "\"lumigraph_per_plain\": %.2f, \"lumigraph_per_quad\": %.2f",
+	       options->width_px, options->height_px, quad, images.plain.ms, images.scene.ms,
+	       images.plain.cpu_ms, images.scene.cpu_ms, images.triangles,
+	       images.scene.ms / images.plain.ms, images.scene.ms / quad);
+	if (!bench->frames_alone)
+		printf(", \"polygons_ms\": %.3f, \"polygons_per_quad\": %.2f, "
+		       "\"lumigraph_per_polygons\": %.2f, \"crossing_changed_pct\": %.3f, "
+		       "\"crossing_changed_pct_polygons\": %.3f",
+		       polygons.scene.ms, polygons.scene.ms / quad,
+		       images.scene.ms / polygons.scene.ms, images.crossing_pct,
+		       polygons.crossing_pct);
+	printf("}%s\n", last ? "" : ",");
+	fflush(stdout);
 	stage_close(&bench->stage);
 }
 
@@ -297,7 +330,7 @@ int main(int argc, char **argv)
 	unsigned long frames = argc > 3 ? strtoul(argv[3], NULL, 10) : 60;
 
 	if (argc < 3 || frames < 1 || frames > FRAMES_MOST) {
-		fputs("usage: bench_frame RELEASE VIEWS [FRAMES, at most 1000]\n", stderr);
+		fputs("usage: bench_frame RELEASE VIEWS [FRAMES, at most 1000 [frames]]\n", stderr);
 		return 2;
 	}
 	struct stage_options options = {
@@ -309,6 +342,7 @@ int main(int argc, char **argv)
 	};
 	options.scene.upload_budget_us = 100000; /* warm soon; then nothing is left to upload */
 	bench.frames = (uint32_t)frames;
+	bench.frames_alone = argc > 4;
 	bench.views = stage_read_views(bench.cameras, VIEWS_MOST, argv[2], 0, 0);
 	printf("{\"views\": %u, \"frames\": %u, \"sizes\": [\n", bench.views, bench.frames);
 	measure(&bench, &options, false);

@@ -1,4 +1,7 @@
-"""footprint.py WORK: measures gopura-kiosk and its fetcher and prints JSON. See docs/figures.md."""
+"""footprint.py WORK: measures gopura-kiosk and its fetcher and prints JSON. See docs/figures.md.
+
+footprint.py WORK RELEASE BOARD: of that release, with that board's profile, only what both take at rest.
+"""
 import atexit
 import glob
 import json
@@ -9,6 +12,7 @@ import sys
 import time
 
 WORK = sys.argv[1]
+RELEASE, *BOARD = sys.argv[2:] or ["build/demo/release"]
 MESA = re.compile(r"/(libgallium|libLLVM|libEGL|libGLES|libGL|libglapi|libgbm|swrast_dri|kms_swrast|dri/|libdrm|"
                   r"libz3|libstdc\+\+|libedit|libelf|libsensors|libvulkan|libX|libxcb|libxshm|libwayland)")
 TICKS = os.sysconf("SC_CLK_TCK")
@@ -17,8 +21,9 @@ TICKS = os.sysconf("SC_CLK_TCK")
 def kiosk(*more):
     """Without Mesa's cache of compiled shaders, whose bytes on the disk are not ours."""
     process = subprocess.Popen(
-        ["build/gopura-kiosk", "--display", "headless", "--size", "1920x1080", "--release", "build/demo/release",
-         "--trust", "build/demo/release/root/1.json", "--state", f"{WORK}/state", *more],
+        ["build/gopura-kiosk", "--display", "headless", "--size", "1920x1080", "--release", RELEASE,
+         "--trust", f"{RELEASE}/root/1.json", "--state", f"{WORK}/state",
+         *(option for board in BOARD for option in ("--board", board)), *more],
         stderr=open(f"{WORK}/kiosk.log", "a"), env=dict(os.environ, MESA_SHADER_CACHE_DISABLE="true"))
     atexit.register(process.kill)  # does nothing once it was waited for
     return process
@@ -112,6 +117,10 @@ def visit():
     return written("self") - before, time.monotonic() - began
 
 
+if BOARD:
+    kiosk_rest, fetch_rest = at_rest()[0]
+    print(json.dumps({"kiosk_kb": kiosk_rest, "fetch_kb": fetch_rest}))
+    sys.exit()
 first, _ = visit()
 for _ in range(3):  # the same visit meets the same tiles not quite exactly: timing differs
     later, later_s = visit()

@@ -1,0 +1,63 @@
+#!/bin/bash
+# By make bench-full: what a larger scan costs the kiosk. The temple of 1, 6 and 18 million triangles,
+# a tenth of each published, everything else alike: bytes, frames, memory. build/bench/growth.json.
+#
+#   SIZES="1 6 18"     of these millions alone; the others' rows are those measured before
+#   VIEWS=N            every N-th of tests/bench/path.txt (default 5)
+#
+# Faces have 1024 px and thrift is 0.5 at every size: the question is how figures grow, and sampling
+# at 2048 px takes up to three times as long. Scans, hierarchies, samples, releases and true pictures
+# stay in build/bench/growth, so a run that was cut short goes on where it was; figures are measured anew.
+# 18 M: 3 GB on the disk at most.
+set -eu
+cd "$(dirname "$0")/../.."
+work=build/bench/growth thrift=0.5
+make --no-print-directory -j"$(nproc)" all benches >/dev/null
+mkdir -p "$work"
+
+# views NAME EVERY: of the visitor's way
+views() {
+	grep -v '^#' tests/bench/path.txt | awk -v n="$2" '(NR - 1) % n == 0' >"$work/$1.txt"
+}
+
+# build SIZE: the temple's release; what is there already stays.
+build() {
+	local content=$work/$1/content
+	mkdir -p "$content"
+	printf '%s\n' '[model]' 'name = growth' 'scans = scan.ply' 'lit = yes' 'sun = 0.60 -0.58 0.55' \
+		'colours = scan' '[grid]' 'points = 8' 'face_px = 1024' 'quality = 80' >"$work/temple.ini"
+	cmp -s "$work/temple.ini" "$content/temple.ini" || cp "$work/temple.ini" "$content/"
+	if [ ! -f "$content/scan.ply" ]; then
+		build/gopura-content temple --triangles "${1}000000" --out "$work/scan.part" >&2
+		mv "$work/scan.part" "$content/scan.ply"
+	fi
+	build/gopura-content build "$content" --out "$work/$1/release" >&2
+	build/gopura-content inspect "$work/$1/release" >"$work/$1/inspect"
+}
+
+# measure SIZE: each figure into a file of its own
+measure() {
+	local at=$work/$1
+	build/gopura-content render "$at/content" --views "$work/views.txt" --size 1280x720 \
+		--supersample 4 --out "$at/truth" >&2
+	build/tests/bench/bench_view "$at/release" "$work/views.txt" "$at/views" --truth "$at/truth" \
+		--thrift "$thrift" >&2
+	# Not limited by the line, like the paper's: what the visit asks for.
+	build/tests/bench/bench_motion "$at/release" tests/bench/visit.txt "$at/visit" --fault none \
+		--thrift "$thrift" --link 1000
+	build/tests/bench/bench_frame "$at/release" "$work/frames.txt" 15 frames >"$at/frame.json"
+	rm -rf "$at/rest"
+	mkdir -p "$at/rest"
+	python3 tests/bench/footprint.py "$at/rest" "$at/release" "$work/board.ini" >"$at/rest.json"
+	rm -rf "$at/rest"
+}
+
+views views "${VIEWS:-5}"
+views frames 20 # one of each kind
+printf '%s\n' '[render]' 'texture_mib = 32' "thrift = $thrift" >"$work/board.ini"
+for size in ${SIZES:-1 6 18}; do
+	echo "-- $size million triangles" >&2
+	build "$size"
+	measure "$size"
+done
+python3 tests/bench/growth_rows.py "$work" 1 6 18 >build/bench/growth.json
