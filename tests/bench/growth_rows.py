@@ -59,13 +59,17 @@ def row(size):
     return out | visit(lines(f"{at}/visit/frames.jsonl"))
 
 
-def growth(rows):
-    """The last row over the one before: 1 is flat."""
+def growth(row, before):
+    """A row over another: 1 is flat."""
     keys = ("release_mb", "kb_per_view", "first_view_kb", "triangles_drawn", "plain_ms_720p", "lumigraph_ms_720p",
             "plain_cpu_ms_720p", "lumigraph_cpu_ms_720p", "plain_ms_1080p", "lumigraph_ms_1080p", "plain_cpu_ms_1080p",
             "lumigraph_cpu_ms_1080p", "pss_kiosk_mb", "visit_kb_per_s", "visit_later_kb_per_s")
-    return {key: round(rows[-1][key] / rows[-2][key], 2) for key in keys}
+    return {key: round(row[key] / before[key], 2) for key in keys}
 
 
-rows = [row(size) for size in sizes if os.path.exists(f"{work}/{size}/rest.json")]
-print(json.dumps({"rows": rows, "last_over_before": growth(rows) if len(rows) > 1 else {}}, indent=1))
+def measured(size):
+    return all(os.path.exists(f"{work}/{size}/{name}") for name in ("rest.json", "frame.json", "views/views.jsonl", "visit/frames.jsonl"))
+
+
+rows = {size: row(size) for size in sizes if measured(size)}
+print(json.dumps({"rows": rows, "over_6": {size: growth(rows[size], rows["6"]) for size in rows if "6" in rows}}, indent=1))
