@@ -12,7 +12,8 @@ import sys
 import time
 
 WORK = sys.argv[1]
-RELEASE, *BOARD = sys.argv[2:] or ["build/demo/release"]
+REST_ONLY = len(sys.argv) > 2
+RELEASE, BOARD = sys.argv[2:] if REST_ONLY else ("build/demo/release", f"{WORK}/board.ini")
 MESA = re.compile(r"/(libgallium|libLLVM|libEGL|libGLES|libGL|libglapi|libgbm|swrast_dri|kms_swrast|dri/|libdrm|"
                   r"libz3|libstdc\+\+|libedit|libelf|libsensors|libvulkan|libX|libxcb|libxshm|libwayland)")
 TICKS = os.sysconf("SC_CLK_TCK")
@@ -22,8 +23,7 @@ def kiosk(*more):
     """Without Mesa's cache of compiled shaders, whose bytes on the disk are not ours."""
     process = subprocess.Popen(
         ["build/gopura-kiosk", "--display", "headless", "--size", "1920x1080", "--release", RELEASE,
-         "--trust", f"{RELEASE}/root/1.json", "--state", f"{WORK}/state",
-         *(option for board in BOARD for option in ("--board", board)), *more],
+         "--trust", f"{RELEASE}/root/1.json", "--state", f"{WORK}/state", "--board", BOARD, *more],
         stderr=open(f"{WORK}/kiosk.log", "a"), env=dict(os.environ, MESA_SHADER_CACHE_DISABLE="true"))
     atexit.register(process.kill)  # does nothing once it was waited for
     return process
@@ -117,14 +117,40 @@ def visit():
     return written("self") - before, time.monotonic() - began
 
 
-if BOARD:
+def roam(minutes):
+    """PSS of both, MB: after one visit, after so many minutes of them in one process, and at rest then."""
+    lines = [line for line in open("demo/visit.touch") if line[0].isdigit()]
+    visit_ms = 30000
+    with open(f"{WORK}/roam.touch", "w") as out:
+        for k in range(max(1, minutes * 60000 // visit_ms)):
+            for line in lines:
+                ms, rest_of_it = line.split(maxsplit=1)
+                out.write(f"{int(ms) + k * visit_ms} {rest_of_it}")
+    process = kiosk("--touch-replay", f"{WORK}/roam.touch")
+    pids = (process.pid, fetcher_of(process.pid))
+    sums = []
+    for seconds in (visit_ms / 1000 + 5, (minutes * 60 - visit_ms / 1000)):
+        time.sleep(seconds)
+        sums.append(round(sum(memory_kb(pid)["all"] for pid in pids) / 1024, 1))
+    rest(pids)
+    sums.append(round(sum(memory_kb(pid)["all"] for pid in pids) / 1024, 1))
+    process.terminate()
+    process.wait()
+    return sums
+
+
+if REST_ONLY:
     kiosk_rest, fetch_rest = at_rest()[0]
     print(json.dumps({"kiosk_kb": kiosk_rest, "fetch_kb": fetch_rest}))
     sys.exit()
+
+with open(BOARD, "w") as board:
+    board.write("[render]\ntexture_mib = 32\n")
 first, _ = visit()
 for _ in range(3):  # the same visit meets the same tiles not quite exactly: timing differs
     later, later_s = visit()
 (kiosk_rest, fetch_rest), loaded = at_rest()
+after_one, after_all, resting = roam(int(os.environ.get("MINUTES", "4")))
 closure = libraries("build/gopura-kiosk") | libraries("build/gopura-fetch")
 print(json.dumps({
     "size": "1920x1080",
@@ -132,6 +158,7 @@ print(json.dumps({
     "pss_mb": round((kiosk_rest["all"] + fetch_rest["all"]) / 1024, 1),
     "pss_without_mesa_files_mb": round(
         (kiosk_rest["all"] + fetch_rest["all"] - kiosk_rest["mesa_files"] - fetch_rest["mesa_files"]) / 1024, 1),
+    "roaming_pss_mb": {"after_one_visit": after_one, "after_all": after_all, "at_rest_after": resting},
     "wakeups_per_s": round(kiosk_rest["wakeups_per_s"] + fetch_rest["wakeups_per_s"], 2),
     "stripped_kb": {p: round(os.path.getsize(f"{WORK}/gopura-{p}") / 1000) for p in ("kiosk", "fetch", "content")},
     "libraries": len(closure), "libraries_mb": megabytes(closure),

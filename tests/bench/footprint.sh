@@ -1,6 +1,7 @@
 #!/bin/bash
 # What kiosk and fetcher take from a machine: memory and wake-ups at rest, programs and libraries,
-# bytes written in a visitor's hour. build/bench/footprint.json.
+# bytes written in a visitor's hour, memory after MINUTES of visits (default 4; 60 for the hour).
+# build/bench/footprint.json.
 set -eu
 cd "$(dirname "$0")/../.."
 work=build/bench/footprint
