@@ -13,7 +13,7 @@ enum {
 };
 
 /* Below these a further face or fetch is not worth its cost. */
-static const float entry_gain_least = 0.02f, want_gain_least = 0.02f;
+static const float entry_gain_least = 0.05f, want_gain_least = 0.02f;
 /* What is shown stays unless another is better by this. */
 static const float loyalty = 1.1f;
 
