@@ -81,7 +81,7 @@ build_temple() {
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 0.5 "$visitor" <tests/bench/path.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 0.3 "$visitor" <tests/bench/path.txt
 	# Of the first view alone: object bytes until it has 30 dB at rest.
 	head -n 1 "$work/temple-300/views.txt" >"$work/first.txt"
 	build/tests/bench/bench_view "$work/temple/release" "$work/first.txt" "$work/first" --truth "$work/temple/truth" \
@@ -110,7 +110,7 @@ row_temple_open_300() {
 row_fine_250() {
 	temple fine 'colours = procedural'
 	build/gopura-content build "$work/fine/content" --out "$work/fine/release" >&2
-	draw fine-250 "$work/fine/content" "$work/fine/release" 1 "$visitor" <tests/bench/path.txt
+	draw fine-250 "$work/fine/content" "$work/fine/release" 4 "$visitor" <tests/bench/path.txt
 }
 
 # scan NAME FILES LINE...: a real scan; skipped where it is not at hand
