@@ -28,17 +28,21 @@ static int build(struct rest *rest)
 	return 0;
 }
 
-int rest_prepare(struct rest *rest, int width_px, int height_px)
+static int prepare_sum(struct rest *rest, int width_px, int height_px)
 {
 	if (rest->sum.framebuffer && rest->sum.width_px == width_px &&
 	    rest->sum.height_px == height_px)
 		return 0;
 	rest_finish(rest);
 	int rc = build(rest);
-	if (rc == 0)
+	return rc < 0 ? rc : gl_target_create_flat(&rest->sum, width_px, height_px);
+}
+
+int rest_prepare(struct rest *rest, int width_px, int height_px, bool draws)
+{
+	int rc = prepare_sum(rest, width_px, height_px);
+	if (rc == 0 && draws && !rest->frame.framebuffer)
 		rc = gl_target_create(&rest->frame, width_px, height_px);
-	if (rc == 0)
-		rc = gl_target_create_flat(&rest->sum, width_px, height_px);
 	if (rc < 0)
 		rest_finish(rest);
 	return rc;
@@ -128,8 +132,10 @@ bool rest_is_done(const struct rest *rest)
 	return rest->same >= REST_FRAMES;
 }
 
-void rest_let_go(const struct rest *rest)
+void rest_let_go(struct rest *rest)
 {
+	if (!rest->frame.framebuffer)
+		return;
 	/* Large ones, so that none is done before all have begun. */
 	gl_target_bind(&rest->frame);
 	for (int i = 0; i < PASSES_MOST; i++) {
@@ -137,4 +143,5 @@ void rest_let_go(const struct rest *rest)
 		glFlush();
 	}
 	glFinish();
+	gl_target_destroy(&rest->frame);
 }

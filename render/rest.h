@@ -18,8 +18,9 @@ struct rest {
 	uint32_t same;  /* of them the last that showed the same scene */
 };
 
-/* Room for pictures of that size; cheap when it is there. On failure pictures are drawn plainly. */
-must_check int rest_prepare(struct rest *rest, int width_px, int height_px);
+/* Room for the sum of pictures of that size and, where another is to be drawn, for that; cheap when
+ * it is there. On failure pictures are drawn plainly. */
+must_check int rest_prepare(struct rest *rest, int width_px, int height_px, bool draws);
 void rest_finish(struct rest *rest);
 void rest_break(struct rest *rest); /* the eye moved: begin anew */
 /* How far the next frame is moved, under a pixel; in the sum the mean is none. changed as for
@@ -30,7 +31,7 @@ void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed);
 bool rest_is_done(const struct rest *rest);
 /* When nothing is left to draw: a driver that draws with the processor keeps what each pass was
- * made of until another pass takes its place. rest->frame is empty then. */
-void rest_let_go(const struct rest *rest);
+ * made of until another pass takes its place. Nor is rest->frame needed any more. */
+void rest_let_go(struct rest *rest);
 
 #endif

@@ -287,13 +287,14 @@ static void show(struct scene *scene, GLuint framebuffer, const struct region *r
 	const struct view *view = &scene->view;
 	if (moved)
 		rest_break(&scene->rest);
-	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px) < 0) {
+	const bool draws = changed || !rest_is_done(&scene->rest);
+	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px, draws) < 0) {
 		glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 		begin_picture(scene, view->width_px, view->height_px);
 		draw_picture(scene, view, region, false);
 		return;
 	}
-	if (!rest_is_done(&scene->rest) || changed) {
+	if (draws) {
 		struct view jittered = *view;
 		float x, y;
 		rest_offset(&scene->rest, changed, &x, &y);
