@@ -132,16 +132,18 @@ bool rest_is_done(const struct rest *rest)
 	return rest->same >= REST_FRAMES;
 }
 
-void rest_let_go(struct rest *rest)
+void rest_let_go(struct rest *rest, GLuint framebuffer)
 {
 	if (!rest->frame.framebuffer)
 		return;
+	gl_target_destroy(&rest->frame);
+	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+	glViewport(0, 0, rest->sum.width_px, rest->sum.height_px);
+	glDisable(GL_DEPTH_TEST);
 	/* Large ones, so that none is done before all have begun. */
-	gl_target_bind(&rest->frame);
 	for (int i = 0; i < PASSES_MOST; i++) {
-		glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+		draw_square(rest, rest->sum.colour);
 		glFlush();
 	}
 	glFinish();
-	gl_target_destroy(&rest->frame);
 }

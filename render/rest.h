@@ -30,8 +30,9 @@ void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px
  * scene is not what it was. */
 void rest_add(struct rest *rest, GLuint framebuffer, bool changed);
 bool rest_is_done(const struct rest *rest);
-/* When nothing is left to draw: a driver that draws with the processor keeps what each pass was
- * made of until another pass takes its place. Nor is rest->frame needed any more. */
-void rest_let_go(struct rest *rest);
+/* When nothing is left to draw: rest->frame is not needed any more, and a driver that draws with
+ * the processor keeps what each pass was made of, and drew into, until another takes its place. So
+ * the sum is shown in the framebuffer as often as passes can be in flight. */
+void rest_let_go(struct rest *rest, GLuint framebuffer);
 
 #endif

@@ -356,7 +356,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	}
 	if (scene->image_share < 0) {
 		scene->image_share = count_share(scene);
-		rest_let_go(&scene->rest);
+		rest_let_go(&scene->rest, (GLuint)framebuffer);
 		glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)framebuffer);
 		glViewport(0, 0, camera->width_px, camera->height_px);
 	}
