@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/* More than frames have in flight: census, depths, picture, sum, words. */
-enum { PASSES_MOST = 16 };
+/* As many as are in flight: census, depths, picture, sum, words. More only delay the panel. */
+enum { PASSES_MOST = 6 };
 
 static const char square_fragment[] = "precision mediump float;\n"
 				      "uniform sampler2D u_picture;\n"
