@@ -204,16 +204,18 @@ static int64_t grow(struct cut *cut, const struct growth *growth)
 	return triangles;
 }
 
+bool cut_shows(const struct cut *cut, uint32_t patch)
+{
+	const struct hierarchy_patch *p = &cut->hierarchy->patches[patch];
+	return cut->shown[p->group] && (p->finer == HIERARCHY_NONE || !cut->shown[p->finer]);
+}
+
 static void list_patches(struct cut *cut)
 {
-	const struct hierarchy *h = cut->hierarchy;
 	cut->patch_count = 0;
-	for (uint32_t p = 0; p < h->patch_count; p++) {
-		uint32_t finer = h->patches[p].finer;
-		if (cut->shown[h->patches[p].group] &&
-		    (finer == HIERARCHY_NONE || !cut->shown[finer]))
+	for (uint32_t p = 0; p < cut->hierarchy->patch_count; p++)
+		if (cut_shows(cut, p))
 			cut->patches[cut->patch_count++] = p;
-	}
 }
 
 void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,

@@ -60,6 +60,8 @@ void cut_update_around(struct cut *cut, const float eye_m[3], float focal_px, co
 float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[3], float focal_px);
 /* The patches that a group replaces: the groups that hold them must be refined before it. */
 const uint32_t *cut_replaced(const struct cut *cut, uint32_t group, uint32_t *count);
+/* Whether a patch is among those shown. */
+bool cut_shows(const struct cut *cut, uint32_t patch);
 /* Whether a group replaces a patch of another. */
 bool cut_depends(const struct cut *cut, uint32_t group, uint32_t on_group);
 

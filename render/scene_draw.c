@@ -110,10 +110,10 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 		     piece->first_triangle == run->first + run->count;
 	if (!joins)
 		end_run(run);
-	if (v->patch != run->patch)
+	if (v->patch != run->patch) {
 		geometry_bind(&scene->geometry, v->patch);
-	if (v->patch != run->patch)
 		surface_dissolve(&scene->surface, v->program, v->range);
+	}
 	run->patch = v->patch;
 	if (surface_faces(v->program) > 0)
 		surface_blend(&scene->surface, frame, v->program, patch->pieces[v->piece].blend,
@@ -259,10 +259,12 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 {
 	int64_t now_us = clock_now_us();
-	float passed_ms = scene->frame_us ? (float)(now_us - scene->frame_us) / 1000 : 0;
+	/* A hiccup is not a jump. */
+	float passed_ms =
+		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
 	scene->frame_us = now_us;
 	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
-	scene_update_cut(scene, fminf(passed_ms, 100));
+	scene_update_cut(scene, passed_ms);
 	scene_list_pieces(scene);
 	bool counted = scene_take_census(scene, moved);
 	scene_desire(scene);
@@ -273,7 +275,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	}
 	keep_season(scene, moved, now_us);
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
-	scene_fade_blends(scene, fminf(passed_ms, 100));
+	scene_fade_blends(scene, passed_ms);
 	if (moved && counted)
 		scene->depth_is_stale = true; /* one pass more than the picture's is enough */
 	else

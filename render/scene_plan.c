@@ -125,17 +125,13 @@ static void list_patch(struct scene *scene, uint32_t p, uint32_t *count)
 
 void scene_list_pieces(struct scene *scene)
 {
-	const struct hierarchy *h = &scene->hierarchy;
 	scene->visible_count = scene->leaving_count = 0;
 	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
 		list_patch(scene, scene->cut.patches[i], &scene->visible_count);
-	for (uint32_t p = 0; p < h->patch_count && scene->dissolve.moving; p++) {
-		const uint32_t finer = h->patches[p].finer;
-		const bool stays = scene->cut.shown[h->patches[p].group] &&
-				   (finer == HIERARCHY_NONE || !scene->cut.shown[finer]);
-		if (!stays && dissolve_draws(dissolve_range(&scene->dissolve, p)))
+	for (uint32_t p = 0; p < scene->hierarchy.patch_count && scene->dissolve.moving; p++)
+		if (!cut_shows(&scene->cut, p) &&
+		    dissolve_draws(dissolve_range(&scene->dissolve, p)))
 			list_patch(scene, p, &scene->leaving_count);
-	}
 }
 
 /* ---- which faces colour them */
