@@ -3,26 +3,7 @@
 
 #include "render/dissolve.h"
 #include "tests/check.h"
-
-/* Group 0 holds patches 0 and 1; group 1 replaces patch 0, group 2 replaces patch 1, group 3
- * replaces one patch of each of them. Patches 0, 2 and 3 cover one place, 1, 4 and 5 another. */
-static struct hierarchy_group groups[4] = {
-	{ .first_patch = 0, .patch_count = 2 },
-	{ .first_patch = 2, .patch_count = 2 },
-	{ .first_patch = 4, .patch_count = 2 },
-	{ .first_patch = 6, .patch_count = 2 },
-};
-static struct hierarchy_patch patches[8] = {
-	{ .group = 0, .finer = 1 },
-	{ .group = 0, .finer = 2 },
-	{ .group = 1, .finer = 3 },
-	{ .group = 1, .finer = HIERARCHY_NONE },
-	{ .group = 2, .finer = 3 },
-	{ .group = 2, .finer = HIERARCHY_NONE },
-	{ .group = 3, .finer = HIERARCHY_NONE },
-	{ .group = 3, .finer = HIERARCHY_NONE },
-};
-static const struct hierarchy hierarchy = { 4, 8, groups, patches };
+#include "tests/render/little_hierarchy.h"
 
 struct world {
 	struct cut cut;
