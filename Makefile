@@ -10,7 +10,7 @@ JOBS    ?= $(shell nproc)
 MAKEFLAGS += --no-builtin-rules
 
 FOLDERS := base format board render ui input storage net app pipeline
-LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libcurl libzstd libsodium \
+LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo libxml-2.0 libcjson sdl2 assimp
 # METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lmeshoptimizer -linih -lm -pthread

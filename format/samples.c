@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLES_BYTES_MOST = 64 * 1024 };
-
 /* Which of count children exist, a bit each; a child's number is the count of those before it, so
  * that numbers need no bytes. children must be numbered in order. */
 static void put_presence(struct buffer *out, const uint32_t *children, uint32_t count)
@@ -60,8 +58,6 @@ void samples_page_encode(struct buffer *out, const struct samples_page *samples)
 		buffer_put_u8(out, samples->count[i]);
 	}
 	buffer_put_u8(out, samples->level_count);
-	buffer_put_u32(out, (uint32_t)samples->jpeg_tables.size);
-	buffer_put(out, samples->jpeg_tables.data, samples->jpeg_tables.size);
 	put_presence(out, samples->brick_child, brick_total(samples));
 }
 
@@ -90,16 +86,11 @@ static bool read_grid(struct reader *reader, struct samples_page *out)
 int samples_page_decode(struct samples_page *out, struct bytes payload)
 {
 	struct reader reader;
-	uint32_t size;
 
 	*out = (struct samples_page){ 0 };
 	reader_init(&reader, payload);
 	if (!read_grid(&reader, out))
 		goto bad;
-	size = reader_u32(&reader);
-	if (reader.failed || size > TABLES_BYTES_MOST)
-		goto bad;
-	out->jpeg_tables = reader_bytes(&reader, size);
 	out->brick_child = malloc(brick_total(out) * sizeof(*out->brick_child));
 	if (!out->brick_child) {
 		*out = (struct samples_page){ 0 };

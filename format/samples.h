@@ -5,10 +5,11 @@
  * at every half of that down to one tile. A level is cut into tiles of SAMPLE_TILE_PX pixels, each
  * stored with an apron of SAMPLE_APRON_PX on every side (what lies there on the neighbouring tile
  * or, outside the face, on the 90 degree face's own plane continued), so that bilinear filtering
- * never needs a neighbour. A tile that shows nothing of the model is absent.
+ * never needs a neighbour; both together are whole blocks of the coding (docs/samples.md). A tile
+ * that shows nothing of the model is absent.
  *
- * Three kinds of page: PAGE_SAMPLES (one; the grid, the JPEG tables that all tiles share; children:
- * bricks that hold anything) -> PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything)
+ * Three kinds of page: PAGE_SAMPLES (one; the grid; children: bricks that hold anything) ->
+ * PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything)
  * -> PAGE_FACE (children: tiles that are there, level by level from the coarsest, row by row). */
 #ifndef GOPURA_FORMAT_SAMPLES_H
 #define GOPURA_FORMAT_SAMPLES_H
@@ -17,10 +18,10 @@
 #include "format/page.h"
 
 enum {
-	SAMPLE_TILE_PX = 128,
-	SAMPLE_APRON_PX = 4,
-	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile's JPEG holds */
-	SAMPLE_LEVELS_MOST = 6, /* 128, 256, 512, 1024, 2048, 4096 pixels a side */
+	SAMPLE_TILE_PX = 126,
+	SAMPLE_APRON_PX = 1,
+	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile holds: 128 */
+	SAMPLE_LEVELS_MOST = 6, /* 126, 252, 504, 1008, 2016, 4032 pixels a side */
 	SAMPLE_GRID_MOST = 64,  /* points a side */
 	BRICK_SIDE = 4,         /* points */
 	BRICK_POINTS = BRICK_SIDE * BRICK_SIDE * BRICK_SIDE,
@@ -29,9 +30,8 @@ enum {
 
 struct samples_page {
 	float origin_m[3], spacing_m[3];
-	uint8_t count[3];         /* points a side */
-	uint8_t level_count;      /* level l has SAMPLE_TILE_PX << l pixels a side */
-	struct bytes jpeg_tables; /* abbreviated JPEG stream, tables only; borrowed */
+	uint8_t count[3];    /* points a side */
+	uint8_t level_count; /* level l has SAMPLE_TILE_PX << l pixels a side */
 	/* Child of the page that is brick (bx, by, bz), or HIERARCHY_NONE's twin SAMPLE_NONE:
 	 * nothing was sampled there. Index: (bz * bricks[1] + by) * bricks[0] + bx. Owned. */
 	uint32_t bricks[3];
@@ -46,8 +46,7 @@ struct samples_page {
 
 /* Appends the payload, for page.payload, as the other two encoders do. Failures are out->error. */
 void samples_page_encode(struct buffer *out, const struct samples_page *samples);
-/* jpeg_tables is borrowed from payload. *out is finished by the caller; on failure it is zeroed.
- * -EBADMSG, -ENOMEM. */
+/* *out is finished by the caller; on failure it is zeroed. -EBADMSG, -ENOMEM. */
 must_check int samples_page_decode(struct samples_page *out, struct bytes payload);
 void samples_page_finish(struct samples_page *samples);
 

@@ -149,7 +149,7 @@ static bool set_face_px(void *target, const char *value)
 
 static bool set_quality(void *target, const char *value)
 {
-	return set_whole(value, 1, 100, &((struct content *)target)->jpeg_quality);
+	return set_whole(value, 1, 100, &((struct content *)target)->quality);
 }
 
 static bool set_kind(void *target, const char *value)
@@ -238,7 +238,7 @@ static void set_defaults(struct content *content, const char *folder)
 		.background = { 0x2b, 0x33, 0x3d },
 		.grid_points = 8,
 		.face_px = 512,
-		.jpeg_quality = 75,
+		.quality = 75,
 		.patch_triangles = 0,
 		.publish_share = 0.10,
 		.language_count = 1,

@@ -43,7 +43,7 @@ struct content {
 	float start_eye_m[3], start_target_m[3]; /* where has_start */
 	uint32_t grid_points;                    /* 4..32, along the longest side of the box */
 	uint32_t face_px;         /* of a sampling face at its finest: 128, 256 ... 4096 */
-	uint32_t jpeg_quality;    /* 1..100 */
+	uint32_t quality;         /* 1..100 */
 	bool binary_tree;         /* the paper's hierarchy, not groups */
 	uint32_t patch_triangles; /* 256..4000; 0: by the size of the scan */
 	double publish_share;     /* of the scan's triangles; above 0, at most 1 */

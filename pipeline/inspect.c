@@ -13,6 +13,7 @@
 #include "format/picture.h"
 #include "format/root_page.h"
 #include "format/samples.h"
+#include "format/tile.h"
 #include "storage/info.h"
 
 enum { CHILDREN_SHOWN = 8 };
@@ -97,7 +98,6 @@ static int print_samples(FILE *to, const struct page *page)
 	print_vector(to, "from", samples.origin_m);
 	print_vector(to, "spacing", samples.spacing_m);
 	fprintf(to, "  finest face        %u px\n", SAMPLE_TILE_PX << (samples.level_count - 1));
-	fprintf(to, "  JPEG tables        %zu bytes\n", samples.jpeg_tables.size);
 	samples_page_finish(&samples);
 	return 0;
 }
@@ -266,10 +266,12 @@ static int print_signed(FILE *to, struct bytes bytes)
 	return shown ? 0 : -EBADMSG;
 }
 
-/* A whole picture, or a tile, whose tables are in the samples page. */
+/* A whole picture, or a tile. */
 static int print_picture(FILE *to, struct bytes bytes)
 {
+	uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 	struct picture picture;
+	int rc;
 
 	if (picture_decode(&picture, bytes) == 0) {
 		fprintf(to, "picture, %zu bytes, %u x %u pixels\n", bytes.size, picture.width,
@@ -277,11 +279,11 @@ static int print_picture(FILE *to, struct bytes bytes)
 		picture_finish(&picture);
 		return 0;
 	}
-	if (bytes.size > 2 && bytes.data[0] == 0xff && bytes.data[1] == 0xd8) {
-		fprintf(to, "tile (abbreviated JPEG), %zu bytes\n", bytes.size);
-		return 0;
-	}
-	return -EBADMSG;
+	rc = tile_decode(rgb, SAMPLE_IMAGE_PX, bytes);
+	if (rc == 0)
+		fprintf(to, "tile, %zu bytes, %d x %d pixels\n", bytes.size, SAMPLE_IMAGE_PX,
+			SAMPLE_IMAGE_PX);
+	return rc;
 }
 
 int inspect_bytes(FILE *to, struct bytes bytes)

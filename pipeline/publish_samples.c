@@ -145,7 +145,6 @@ static int start(struct samples_writer *writer, const struct samples_store *stor
 		total *= page->bricks[axis];
 	}
 	page->level_count = (uint8_t)grid->level_count;
-	page->jpeg_tables = samples_store_tables(store);
 	page->brick_child = malloc(total * sizeof(*page->brick_child));
 	if (!page->brick_child)
 		return -ENOMEM;

@@ -1,5 +1,5 @@
 /* A picture with coverage at every half of its size, and its background filled in: push-pull after
- * Gortler et al. 1996 ("The Lumigraph"). Filled, because JPEG would ring at the silhouettes and
+ * Gortler et al. 1996 ("The Lumigraph"). Filled, because coding would ring at the silhouettes and
  * bilinear filtering would bleed the background into them. */
 #ifndef GOPURA_PIPELINE_PYRAMID_H
 #define GOPURA_PIPELINE_PYRAMID_H

@@ -20,7 +20,6 @@ struct samples_store {
 	struct sample_grid grid;
 	struct hash key;
 	struct buffer grid_file;
-	struct bytes tables; /* in grid_file */
 	struct buffer point_file;
 	struct reader reader; /* in point_file */
 	uint32_t next_point;  /* in the order of the bricks */
@@ -102,8 +101,7 @@ static bool read_grid(struct samples_store *store)
 	for (int i = 0; i < 3; i++)
 		store->grid.count[i] = reader_u32(&reader);
 	store->grid.level_count = reader_u32(&reader);
-	store->tables = reader_bytes(&reader, reader_left(&reader));
-	return !reader.failed && grid_is_sane(&store->grid);
+	return !reader.failed && !reader_left(&reader) && grid_is_sane(&store->grid);
 }
 
 /* The point that comes n-th, brick by brick. false: past the last. */
@@ -227,11 +225,6 @@ const struct sample_grid *samples_store_grid(const struct samples_store *store)
 	return &store->grid;
 }
 
-struct bytes samples_store_tables(const struct samples_store *store)
-{
-	return store->tables;
-}
-
 struct hash samples_store_key(const struct samples_store *store)
 {
 	return store->key;
@@ -335,8 +328,7 @@ static int make_dirs(const char *content_dir)
 	return 0;
 }
 
-int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
-			struct bytes tables, struct hash key)
+int samples_store_begin(const char *content_dir, const struct sample_grid *grid, struct hash key)
 {
 	char path[PATH_MAX];
 	struct buffer file, old;
@@ -354,7 +346,6 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	for (int i = 0; i < 3; i++)
 		buffer_put_u32(&file, grid->count[i]);
 	buffer_put_u32(&file, grid->level_count);
-	buffer_put(&file, tables.data, tables.size);
 	seal(&file);
 	rc = file.error;
 	if (snprintf(path, sizeof(path), "%s/.work/samples/grid", content_dir) >= PATH_MAX)

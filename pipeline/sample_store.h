@@ -50,8 +50,6 @@ must_check int samples_store_open(struct samples_store **out, const char *conten
 void samples_store_close(struct samples_store *store);
 
 const struct sample_grid *samples_store_grid(const struct samples_store *store);
-/* The JPEG tables that all tiles share; borrowed. */
-struct bytes samples_store_tables(const struct samples_store *store);
 /* Changes when anything that was sampled changes. */
 struct hash samples_store_key(const struct samples_store *store);
 
@@ -69,7 +67,7 @@ void samples_store_states(const struct samples_store *store, uint32_t counts[SAM
 
 /* Writes `grid`, unless one of the same bytes is there. */
 must_check int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
-				   struct bytes tables, struct hash key);
+				   struct hash key);
 /* Is the point there, whole, with that key? */
 bool samples_store_has(const char *content_dir, const uint32_t point[3], struct hash key);
 /* faces: face_count of them, by rising face, for SAMPLE_RENDERED; none for other states. */

@@ -20,7 +20,7 @@
 #include "pipeline/shooter.h"
 #include "render/headless.h"
 
-enum { SAMPLER_VERSION = 5, JOBS_MOST = 64, CHROMA_FULL = 0 };
+enum { SAMPLER_VERSION = 6, JOBS_MOST = 64 };
 
 /* The grid's box, in sizes of the model: docs/samples.md. */
 static const float grid_reach = 1.5f;
@@ -105,29 +105,10 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 		buffer_put_u32(&text, grid->count[i]);
 	}
 	buffer_put_u32(&text, grid->level_count);
-	buffer_put_u32(&text, sampling->content->jpeg_quality);
-	buffer_put_u32(&text, CHROMA_FULL);
+	buffer_put_u32(&text, sampling->content->quality);
 	key = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
 	return key;
-}
-
-static int begin_store(const struct sampling *sampling)
-{
-	struct tile_codec *codec;
-	struct buffer tables;
-	int rc = tile_encoder_create(&codec, (int)sampling->content->jpeg_quality, CHROMA_FULL);
-
-	if (rc < 0)
-		return rc;
-	buffer_init(&tables, 64 * 1024);
-	rc = tile_encoder_tables(codec, &tables);
-	if (rc == 0)
-		rc = samples_store_begin(sampling->content->folder, &sampling->grid,
-					 buffer_bytes(&tables), sampling->key);
-	tile_codec_destroy(codec);
-	buffer_finish(&tables);
-	return rc;
 }
 
 /* Points of the shard that are not there yet. */
@@ -253,8 +234,7 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 {
 	struct shooter_options options = { .drawn = sampling->drawing,
 					   .level_count = sampling->grid.level_count,
-					   .quality = (int)sampling->content->jpeg_quality,
-					   .chroma_full = CHROMA_FULL };
+					   .quality = (int)sampling->content->quality };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	struct headless *headless = NULL;
 	struct shooter *shooter = NULL;
@@ -341,7 +321,7 @@ static int sample(struct sampling *sampling, const struct sampler_options *optio
 {
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	uint32_t jobs = options->jobs ? options->jobs : (uint32_t)(cores > 0 ? cores : 1);
-	int rc = begin_store(sampling);
+	int rc = samples_store_begin(sampling->content->folder, &sampling->grid, sampling->key);
 
 	if (rc == 0)
 		rc = list_points(sampling, options);

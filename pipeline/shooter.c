@@ -16,7 +16,6 @@ struct shooter {
 	struct frame *frame;
 	struct shading *shading;
 	struct pyramid pyramid;
-	struct tile_codec *codec;
 	int frame_px;
 	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 };
@@ -45,8 +44,6 @@ int shooter_create(struct shooter **out, const struct shooter_options *options)
 	if (rc == 0)
 		rc = shading_create(&shooter->shading, shooter->frame, shooter->frame_px,
 				    shooter->frame_px, samples, &options->drawn);
-	if (rc == 0)
-		rc = tile_encoder_create(&shooter->codec, options->quality, options->chroma_full);
 	if (rc < 0) {
 		shooter_destroy(shooter);
 		return rc;
@@ -62,7 +59,6 @@ void shooter_destroy(struct shooter *shooter)
 	shading_destroy(shooter->shading);
 	frame_destroy(shooter->frame);
 	pyramid_finish(&shooter->pyramid);
-	tile_codec_destroy(shooter->codec);
 	free(shooter);
 }
 
@@ -109,11 +105,12 @@ static uint16_t find_coverage(const struct shooter *shooter)
 {
 	uint32_t level = shooter->options.level_count - 1;
 	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
-	uint32_t side = ((uint32_t)SAMPLE_TILE_PX << level) / 4;
+	uint32_t width = (uint32_t)SAMPLE_TILE_PX << level, side = (width + 3) / 4;
 	uint16_t coverage = 0;
 
 	for (uint32_t i = 0; i < 16; i++)
-		if (shows(shooter, level, apron + i % 4 * side, apron + i / 4 * side, side))
+		if (shows(shooter, level, apron + i % 4 * width / 4, apron + i / 4 * width / 4,
+			  side))
 			coverage |= (uint16_t)(1u << i);
 	return coverage;
 }
@@ -128,7 +125,8 @@ static int encode_tile(struct shooter *shooter, struct shot *shot, uint32_t leve
 	for (uint32_t row = 0; row < SAMPLE_IMAGE_PX; row++)
 		for (uint32_t column = 0; column < SAMPLE_IMAGE_PX; column++, to += 3)
 			memcpy(to, pixels[(size_t)(y + row) * width + x + column], 3);
-	return tile_encode(shooter->codec, &shot->objects, shooter->tile, SAMPLE_IMAGE_PX);
+	return tile_encode(&shot->objects, shooter->tile, SAMPLE_IMAGE_PX,
+			   shooter->options.quality);
 }
 
 static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)

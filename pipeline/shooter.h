@@ -14,7 +14,6 @@ struct shooter_options {
 	struct drawing_options drawn; /* what it was made with: surfaces if procedural */
 	uint32_t level_count;         /* 1 .. SAMPLE_LEVELS_MOST */
 	int quality;
-	bool chroma_full;
 };
 
 struct shot {

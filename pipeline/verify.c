@@ -311,7 +311,6 @@ int verify_release(struct verify_report *report, const struct verify_options *op
 	int rc;
 
 	*report = (struct verify_report){ 0 };
-	buffer_init(&walk.sample_tables, PAGE_BYTES_MOST);
 	rc = read_metadata(&walk);
 	if (rc == 0)
 		rc = read_locator(&walk);
@@ -327,8 +326,6 @@ int verify_release(struct verify_report *report, const struct verify_options *op
 		verify_blame(report, rc, "%s", strerror(-rc));
 	report->read_bytes = release_reader_bytes(options->reader);
 	samples_page_finish(&walk.samples);
-	buffer_finish(&walk.sample_tables);
-	tile_codec_destroy(walk.decoder);
 	locator_finish(&walk.locator);
 	hash_map_finish(&walk.seen);
 	free(walk.tasks);

@@ -125,18 +125,10 @@ static uint32_t children_named(const uint32_t *children, uint32_t length)
 int verify_samples_page(struct verify_walk *walk, const struct verify_page *page)
 {
 	struct samples_page *samples = &walk->samples;
-	int rc;
+	int rc = samples_page_decode(samples, page->page.payload);
 
-	buffer_put(&walk->sample_tables, page->page.payload.data, page->page.payload.size);
-	if (walk->sample_tables.error)
-		return walk->sample_tables.error;
-	rc = samples_page_decode(samples, buffer_bytes(&walk->sample_tables));
 	if (rc < 0)
 		return rc;
-	rc = tile_decoder_create(&walk->decoder, samples->jpeg_tables);
-	if (rc < 0)
-		return rc == -EBADMSG ? blame_page(walk, page, "its JPEG tables do not decode")
-				      : rc;
 	if (children_named(samples->brick_child,
 			   samples->bricks[0] * samples->bricks[1] * samples->bricks[2]) !=
 	    page->page.child_count)
@@ -177,7 +169,7 @@ static int check_tile(struct verify_walk *walk, const struct verify_page *page, 
 	if (rc < 0)
 		return rc;
 	count(&walk->report->tiles, object);
-	rc = tile_decode(walk->decoder, rgb, SAMPLE_IMAGE_PX, object);
+	rc = tile_decode(rgb, SAMPLE_IMAGE_PX, object);
 	return rc == -EBADMSG ? blame_child(walk, page, child, "tile", "does not decode") : rc;
 }
 

@@ -24,9 +24,7 @@ struct verify_walk {
 	struct verify_task *tasks;
 	size_t task_count, task_room;
 	uint32_t blocks_used;
-	struct samples_page samples; /* its tables point into sample_tables */
-	struct buffer sample_tables;
-	struct tile_codec *decoder; /* once the samples page was met */
+	struct samples_page samples; /* once it was met */
 	struct progress *progress;
 };
 

@@ -21,12 +21,6 @@ struct queue {
 	struct job *first, **last;
 };
 
-/* A decoder of one thread, made again when the tables change. */
-struct decoder {
-	struct tile_codec *codec;
-	uint32_t version;
-};
-
 struct pool {
 	pthread_mutex_t lock;
 	pthread_cond_t work, idle;
@@ -34,12 +28,8 @@ struct pool {
 	uint32_t worker_count, at_work;
 	bool stopping;
 	struct queue todo, done; /* under lock */
-	uint8_t *tables;         /* owned; under lock */
-	size_t tables_bytes;
-	uint32_t tables_version;
 	struct lattice lattice;
-	struct decoder decoder; /* without workers: of the thread that gives */
-	uint32_t busy;          /* of the thread that gives and takes */
+	uint32_t busy; /* of the thread that gives and takes */
 	int fd;
 };
 
@@ -95,28 +85,13 @@ void pool_answer_finish(struct pool_answer *answer)
 
 /* ---- on a worker */
 
-/* Called with the lock held: the tables are the pool's. */
-static void refresh_decoder(struct pool *pool, struct decoder *decoder)
+static int decode_tile(struct job *job)
 {
-	if (decoder->version == pool->tables_version)
-		return;
-	tile_codec_destroy(decoder->codec);
-	decoder->codec = NULL;
-	struct bytes tables = { pool->tables, pool->tables_bytes };
-	if (tile_decoder_create(&decoder->codec, tables) < 0)
-		decoder->codec = NULL;
-	decoder->version = pool->tables_version;
-}
-
-static int decode_tile(struct job *job, struct tile_codec *codec)
-{
-	if (!codec)
-		return -EBADMSG;
 	job->answer.rgb = malloc((size_t)SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3);
 	if (!job->answer.rgb)
 		return -ENOMEM;
 	struct bytes object = { job->object, job->object_bytes };
-	return tile_decode(codec, job->answer.rgb, SAMPLE_IMAGE_PX, object);
+	return tile_decode(job->answer.rgb, SAMPLE_IMAGE_PX, object);
 }
 
 static int decode_group(struct job *job, const struct lattice *lattice)
@@ -143,10 +118,9 @@ static int decode_group(struct job *job, const struct lattice *lattice)
 	return rc;
 }
 
-static void do_job(struct job *job, struct tile_codec *codec, const struct lattice *lattice)
+static void do_job(struct job *job, const struct lattice *lattice)
 {
-	int rc = job->answer.kind == POOL_TILE ? decode_tile(job, codec)
-					       : decode_group(job, lattice);
+	int rc = job->answer.kind == POOL_TILE ? decode_tile(job) : decode_group(job, lattice);
 	if (rc < 0)
 		pool_answer_finish(&job->answer);
 	job->answer.error = rc;
@@ -155,16 +129,15 @@ static void do_job(struct job *job, struct tile_codec *codec, const struct latti
 }
 
 /* Called with the lock held, which is not held while the job is done. false: nothing to do. */
-static bool do_one(struct pool *pool, struct decoder *decoder)
+static bool do_one(struct pool *pool)
 {
 	struct job *job = queue_take(&pool->todo);
 	if (!job)
 		return false;
-	refresh_decoder(pool, decoder);
 	struct lattice lattice = pool->lattice;
 	pool->at_work++;
 	pthread_mutex_unlock(&pool->lock);
-	do_job(job, decoder->codec, &lattice);
+	do_job(job, &lattice);
 	pthread_mutex_lock(&pool->lock);
 	pool->at_work--;
 	queue_put(&pool->done, job);
@@ -179,13 +152,11 @@ static bool do_one(struct pool *pool, struct decoder *decoder)
 static void *run_worker(void *data)
 {
 	struct pool *pool = data;
-	struct decoder decoder = { 0 };
 	pthread_mutex_lock(&pool->lock);
 	while (!pool->stopping)
-		if (!do_one(pool, &decoder))
+		if (!do_one(pool))
 			pthread_cond_wait(&pool->work, &pool->lock);
 	pthread_mutex_unlock(&pool->lock);
-	tile_codec_destroy(decoder.codec);
 	return NULL;
 }
 
@@ -235,25 +206,7 @@ void pool_destroy(struct pool *pool)
 	pthread_mutex_destroy(&pool->lock);
 	if (pool->fd >= 0)
 		close(pool->fd);
-	tile_codec_destroy(pool->decoder.codec);
-	free(pool->tables);
 	free(pool);
-}
-
-int pool_set_tables(struct pool *pool, struct bytes tables)
-{
-	uint8_t *copy = malloc(tables.size + 1);
-	if (!copy)
-		return -ENOMEM;
-	if (tables.size > 0)
-		memcpy(copy, tables.data, tables.size);
-	pthread_mutex_lock(&pool->lock);
-	free(pool->tables);
-	pool->tables = copy;
-	pool->tables_bytes = tables.size;
-	pool->tables_version++;
-	pthread_mutex_unlock(&pool->lock);
-	return 0;
 }
 
 void pool_set_lattice(struct pool *pool, const struct lattice *lattice)
@@ -282,7 +235,7 @@ int pool_give(struct pool *pool, enum pool_kind kind, uint64_t id, struct bytes 
 	queue_put(&pool->todo, job);
 	pthread_cond_signal(&pool->work);
 	if (pool->worker_count == 0)
-		do_one(pool, &pool->decoder);
+		do_one(pool);
 	pthread_mutex_unlock(&pool->lock);
 	pool->busy++;
 	return 0;

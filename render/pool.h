@@ -30,9 +30,7 @@ struct pool;
 must_check int pool_create(struct pool **out, uint32_t worker_count);
 void pool_destroy(struct pool *pool); /* waits for the work at hand */
 
-/* The tables that all tiles share and the lattice of all patches; copied. Only while idle or after
- * pool_forget. */
-must_check int pool_set_tables(struct pool *pool, struct bytes tables);
+/* Of all patches. Only while idle or after pool_forget. */
 void pool_set_lattice(struct pool *pool, const struct lattice *lattice);
 /* The object is copied. -ENOMEM. */
 must_check int pool_give(struct pool *pool, enum pool_kind kind, uint64_t id, struct bytes object);

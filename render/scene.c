@@ -271,14 +271,6 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 	return 0;
 }
 
-static int open_samples(struct scene *scene, struct hash hash, struct bytes bytes)
-{
-	int rc = repository_open(&scene->repository, hash, bytes);
-	if (rc == 0)
-		rc = pool_set_tables(scene->pool, scene->repository.grid.jpeg_tables);
-	return rc;
-}
-
 static int decode_elsewhere(struct scene *scene, struct object *object, enum pool_kind kind,
 			    struct bytes bytes)
 {
@@ -299,7 +291,9 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 	case OBJECT_HIERARCHY:
 		return scene->has_hierarchy ? 0 : open_hierarchy(scene, object->hash, bytes);
 	case OBJECT_SAMPLES:
-		return scene->repository.ready ? 0 : open_samples(scene, object->hash, bytes);
+		return scene->repository.ready
+			       ? 0
+			       : repository_open(&scene->repository, object->hash, bytes);
 	case OBJECT_GROUP:
 		return decode_elsewhere(scene, object, POOL_GROUP, bytes);
 	case OBJECT_BRICK:

@@ -14,7 +14,6 @@ static struct samples_page a_page(void)
 				     .spacing_m = { 0.5f, 0.5f, 0.25f },
 				     .count = { 8, 5, 3 },
 				     .level_count = 3,
-				     .jpeg_tables = { (const uint8_t *)"tables", 6 },
 				     .bricks = { 2, 2, 1 },
 				     .brick_child = children };
 
@@ -73,7 +72,6 @@ static void keeps_the_samples_page(void **state)
 	CHECK(memcmp(back.origin_m, page.origin_m, sizeof(page.origin_m)) == 0);
 	CHECK(memcmp(back.spacing_m, page.spacing_m, sizeof(page.spacing_m)) == 0);
 	CHECK(memcmp(back.count, page.count, 3) == 0 && back.level_count == 3);
-	CHECK(back.jpeg_tables.size == 6 && memcmp(back.jpeg_tables.data, "tables", 6) == 0);
 	CHECK(memcmp(back.bricks, page.bricks, sizeof(page.bricks)) == 0);
 	CHECK(memcmp(back.brick_child, children, 4 * sizeof(*children)) == 0);
 	samples_page_finish(&back);
@@ -95,8 +93,7 @@ static void refuses_impossible_grids(void **state)
 		{ 25, 65 },   /* too many */
 		{ 27, 0 },    /* no level */
 		{ 27, SAMPLE_LEVELS_MOST + 1 }, /* too many levels */
-		{ 31, 1 },                      /* tables longer than the page */
-		{ 38, 0x1d },                   /* a fifth brick of four */
+		{ 28, 0x1d },                   /* a fifth brick of four */
 	};
 	struct samples_page page = a_page();
 	struct buffer wire;

@@ -39,7 +39,7 @@ static void defaults_need_only_a_scan(void **state)
 	CHECK(content_read(&content, folder, &fault) == 0);
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
-	CHECK(content.grid_points == 8 && content.face_px == 512 && content.jpeg_quality == 75);
+	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 75);
 	CHECK(content.patch_triangles == 0 && content.publish_share == 0.10);
 	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
 	CHECK(content.lit == CONTENT_LIT_AUTO && !content.has_start && !content.binary_tree);
@@ -70,7 +70,7 @@ static void every_key_is_read(void **state)
 	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
 	CHECK(content.background[0] == 255 && content.has_start);
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
-	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.jpeg_quality == 90);
+	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
 	CHECK(content.binary_tree && content.patch_triangles == 1000);
 	CHECK(content.publish_share == 0.5 && content.language_count == 4);
 	CHECK(strcmp(content.languages[3], "pt-BR") == 0);

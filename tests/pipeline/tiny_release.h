@@ -74,14 +74,9 @@ static inline void tiny_samples(const struct tiny *tiny, uint8_t shade, uint8_t 
 					  .count = { 5, 1, 1 },
 					  .level_count = 2 };
 	static const uint16_t tiles[] = { 0, 3 };
-	struct buffer tables, encoded[2];
-	struct tile_codec *codec;
+	struct buffer encoded[2];
 
-	CHECK(tile_encoder_create(&codec, 75, false) == 0);
-	buffer_init(&tables, 1 << 20);
-	CHECK(tile_encoder_tables(codec, &tables) == 0);
-	CHECK(samples_store_begin(tiny->content, &grid, buffer_bytes(&tables),
-				  (struct hash){ { key } }) == 0);
+	CHECK(samples_store_begin(tiny->content, &grid, (struct hash){ { key } }) == 0);
 	for (uint32_t x = 0; x < 5; x++) {
 		struct bytes objects[2];
 		struct sample_face faces[2];
@@ -90,7 +85,7 @@ static inline void tiny_samples(const struct tiny *tiny, uint8_t shade, uint8_t 
 			/* Only the last point changes with shade. */
 			memset(rgb, (x == 4 ? shade : 10 * (int)x) + i, sizeof(rgb));
 			buffer_init(&encoded[i], 1 << 20);
-			CHECK(tile_encode(codec, &encoded[i], rgb, SAMPLE_IMAGE_PX) == 0);
+			CHECK(tile_encode(&encoded[i], rgb, SAMPLE_IMAGE_PX, 75) == 0);
 			objects[i] = buffer_bytes(&encoded[i]);
 		}
 		faces[0] = (struct sample_face){ .face = 1,
@@ -109,8 +104,6 @@ static inline void tiny_samples(const struct tiny *tiny, uint8_t shade, uint8_t 
 		buffer_finish(&encoded[0]);
 		buffer_finish(&encoded[1]);
 	}
-	buffer_finish(&tables);
-	tile_codec_destroy(codec);
 }
 
 static inline void tiny_group(struct object_store *objects, struct page_child *out, uint16_t seed)

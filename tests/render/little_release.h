@@ -261,8 +261,8 @@ static bool little_tile(const float point[3], int face, uint32_t level, uint32_t
 	return shows;
 }
 
-static bool little_face(struct little_release *r, struct tile_codec *codec, const float point[3],
-			int face, struct page_child *out)
+static bool little_face(struct little_release *r, const float point[3], int face,
+			struct page_child *out)
 {
 	static uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 	struct page_child children[FACE_TILES_MOST];
@@ -276,7 +276,7 @@ static bool little_face(struct little_release *r, struct tile_codec *codec, cons
 			uint32_t row = at >> level, column = at & ((1u << level) - 1);
 			if (!little_tile(point, face, level, row, column, rgb))
 				continue;
-			CHECK(tile_encode(codec, &bytes, rgb, SAMPLE_IMAGE_PX) == 0);
+			CHECK(tile_encode(&bytes, rgb, SAMPLE_IMAGE_PX, 95) == 0);
 			page.tile_child[face_tile_index(level, row, column)] = count;
 			children[count++] = little_add(r, &bytes, false);
 		}
@@ -292,13 +292,9 @@ static struct page_child little_samples(struct little_release *r)
 {
 	static struct brick_page brick;
 	struct page_child children[BRICK_POINTS * CUBE_FACES], brick_child;
-	struct tile_codec *codec;
-	struct buffer tables, payload;
+	struct buffer payload;
 	uint32_t count = 0, zero = 0;
-	buffer_init(&tables, 65536);
 	buffer_init(&payload, PAGE_BYTES_MOST);
-	CHECK(tile_encoder_create(&codec, 90, true) == 0);
-	CHECK(tile_encoder_tables(codec, &tables) == 0);
 	memset(&brick, 0, sizeof(brick));
 	memset(brick.face_child, 0xff, sizeof(brick.face_child));
 	for (uint32_t p = 0; p < r->points * r->points * 2; p++) {
@@ -308,7 +304,7 @@ static struct page_child little_samples(struct little_release *r)
 		little_point(r, x, y, z, point);
 		uint32_t at = (z * BRICK_SIDE + y) * BRICK_SIDE + x;
 		for (int face = 0; face < CUBE_FACES && !little_is_inside(point); face++) {
-			if (!little_face(r, codec, point, face, &children[count]))
+			if (!little_face(r, point, face, &children[count]))
 				continue;
 			brick.face_child[at][face] = count++;
 			brick.coverage[at][face] = 0xffff;
@@ -320,7 +316,6 @@ static struct page_child little_samples(struct little_release *r)
 	brick_child = little_page(r, PAGE_BRICK, children, count, &payload);
 	struct samples_page samples = { .count = { (uint8_t)r->points, (uint8_t)r->points, 2 },
 					.level_count = LITTLE_LEVELS,
-					.jpeg_tables = buffer_bytes(&tables),
 					.bricks = { 1, 1, 1 },
 					.brick_child = &zero };
 	float next[3];
@@ -330,8 +325,6 @@ static struct page_child little_samples(struct little_release *r)
 		samples.spacing_m[i] = next[i] - samples.origin_m[i];
 	samples_page_encode(&payload, &samples);
 	struct page_child page = little_page(r, PAGE_SAMPLES, &brick_child, 1, &payload);
-	tile_codec_destroy(codec);
-	buffer_finish(&tables);
 	buffer_finish(&payload);
 	return page;
 }
