@@ -27,7 +27,8 @@ static const char census_fragment[] =
 	"void main() {\n"
 	"	float high = floor(v_depth);\n"
 	"	float low = floor((v_depth - high) * 256.0);\n"
-	"	gl_FragColor = vec4(u_number, vec2(high, low) / 255.0);\n"
+	"	float back = gl_FrontFacing ? 0.0 : 128.0;\n"
+	"	gl_FragColor = vec4(back / 255.0 + u_number.x, u_number.y, vec2(high, low) / 255.0);\n"
 	"}\n";
 
 int census_init(struct census *census)
@@ -113,10 +114,11 @@ bool census_at(const struct census *census, int x, int y, struct census_point *o
 {
 	const uint8_t *pixel = census->pixels + 4 * (y * CENSUS_WIDTH + x);
 	const struct view *view = &census->view;
-	uint32_t number = (uint32_t)pixel[0] << 8 | pixel[1];
+	uint32_t number = (uint32_t)(pixel[0] & 127) << 8 | pixel[1];
 	if (number == 0)
 		return false;
 	out->piece = number - 1;
+	out->back = pixel[0] & 128;
 	float depth = (float)(pixel[2] << 8 | pixel[3]) / 65535 * far_m;
 	float right = (2 * ((float)x + 0.5f) / CENSUS_WIDTH - 1) * view->tan_x * depth;
 	float up = (2 * ((float)y + 0.5f) / CENSUS_HEIGHT - 1) * view->tan_y * depth;

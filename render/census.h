@@ -1,6 +1,6 @@
 /* Which surface is in sight, counted: the pieces in the frustum are drawn into a small picture as
- * numbers and depths, and read back. What is hidden wants nothing, and what shows is judged by the
- * places of it that show. */
+ * numbers, sides and depths, and read back. What is hidden wants nothing, and what shows is judged
+ * by the places of it that show. */
 #ifndef GOPURA_RENDER_CENSUS_H
 #define GOPURA_RENDER_CENSUS_H
 
@@ -8,7 +8,7 @@
 #include "render/gl.h"
 #include "render/view.h"
 
-enum { CENSUS_WIDTH = 320, CENSUS_HEIGHT = 180, CENSUS_PIECES_MOST = 65535 };
+enum { CENSUS_WIDTH = 320, CENSUS_HEIGHT = 180, CENSUS_PIECES_MOST = 32767 };
 
 struct census {
 	struct gl_target target;
@@ -20,6 +20,7 @@ struct census {
 
 struct census_point {
 	uint32_t piece; /* as numbered */
+	bool back;      /* of a triangle: it turns clockwise to the eye */
 	float at_m[3];
 };
 

@@ -120,6 +120,7 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 		struct geometry_patch *patch = &geometry->patches[g->first_patch + i];
 		patch->content = answer->patches[i];
 		memset(&answer->patches[i], 0, sizeof(answer->patches[i]));
+		patch->sides = SIDES_UNKNOWN;
 		patch->pieces =
 			calloc(patch->content.solid.piece_count + 1, sizeof(*patch->pieces));
 		rc = patch->pieces ? upload(patch) : -ENOMEM;
@@ -183,6 +184,19 @@ void geometry_bind(const struct geometry *geometry, uint32_t patch)
 			      (void *)offsetof(struct patch_vertex, normal));
 	glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
 			      (void *)offsetof(struct patch_vertex, colour));
+}
+
+void geometry_cull(const struct geometry *geometry, uint32_t patch)
+{
+	if (geometry->patches[patch].sides == SIDES_FRONT)
+		glEnable(GL_CULL_FACE);
+	else
+		glDisable(GL_CULL_FACE);
+}
+
+void geometry_cull_none(void)
+{
+	glDisable(GL_CULL_FACE);
 }
 
 void geometry_draw(uint32_t first_triangle, uint32_t triangle_count)

@@ -32,10 +32,18 @@ struct piece_state {
 	float planned_eye_m[3];
 };
 
+/* Which sides of a patch's triangles have been seen to show. */
+enum geometry_sides {
+	SIDES_UNKNOWN, /* nobody looked */
+	SIDES_FRONT,
+	SIDES_BOTH, /* a back, through a scan's rim: this stays */
+};
+
 struct geometry_patch {
 	GLuint vertices, indices;
 	struct pool_patch content;
 	struct piece_state *pieces; /* owned; one per content.solid.pieces */
+	enum geometry_sides sides;
 };
 
 struct geometry {
@@ -60,6 +68,10 @@ void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t b
 
 /* Binds buffers; attribute 0 position, 1 normal (raw octahedral), 2 colour. */
 void geometry_bind(const struct geometry *geometry, uint32_t patch);
+/* Backs are not drawn where only fronts show: half of a closed model's triangles. Otherwise, and
+ * when the last patch is drawn (geometry_cull_none), both are. */
+void geometry_cull(const struct geometry *geometry, uint32_t patch);
+void geometry_cull_none(void);
 /* A run of a bound patch's triangles. */
 void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
 

@@ -104,6 +104,8 @@ static void count_point(struct scene *scene, const struct census_point *point)
 	struct piece_state *state = state_of(scene, point->piece);
 	if (!state)
 		return;
+	if (point->back)
+		scene->geometry.patches[scene->counted[point->piece].patch].sides = SIDES_BOTH;
 	int nearest = nearest_probe(state, point->at_m);
 	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
 	state->weight[nearest] += 1;
@@ -156,7 +158,10 @@ static void move_probe(struct scene *scene, uint32_t visible)
 /* Weights that sum to one; pixels of the screen; a new judgement where what shows has changed. */
 static void conclude(struct scene *scene, const struct visible_piece *visible)
 {
-	struct piece_state *state = &scene->geometry.patches[visible->patch].pieces[visible->piece];
+	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
+	struct piece_state *state = &patch->pieces[visible->piece];
+	if (patch->sides == SIDES_UNKNOWN)
+		patch->sides = SIDES_FRONT;
 	for (int k = 0; k < PIECE_PROBES && state->seen_px > 0; k++)
 		state->weight[k] /= state->seen_px;
 	state->seen_px *= scene->view.picture_px / (CENSUS_WIDTH * CENSUS_HEIGHT);

@@ -112,6 +112,7 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 		end_run(run);
 	if (v->patch != run->patch) {
 		geometry_bind(&scene->geometry, v->patch);
+		geometry_cull(&scene->geometry, v->patch);
 		surface_dissolve(&scene->surface, v->program, v->range);
 	}
 	run->patch = v->patch;
@@ -146,6 +147,7 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 				draw_piece(scene, frame, &scene->visible[i], &run);
 		end_run(&run);
 	}
+	geometry_cull_none();
 }
 
 static void draw_mark(struct scene *scene, const struct view *view, const struct region *region)
@@ -176,8 +178,6 @@ static void begin_picture(const struct scene *scene, int width_px, int height_px
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	/* Both sides, as samples show them: scans have rims. */
-	glDisable(GL_CULL_FACE);
 	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }

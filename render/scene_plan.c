@@ -123,8 +123,22 @@ static void list_patch(struct scene *scene, uint32_t p, uint32_t *count)
 	}
 }
 
+static int by_distance(const void *a, const void *b, void *data)
+{
+	const struct scene *scene = data;
+	const uint32_t *patch[2] = { a, b };
+	float distance[2];
+	for (int i = 0; i < 2; i++)
+		distance[i] = vec_distance(scene->hierarchy.patches[*patch[i]].centre_m,
+					   scene->view.eye_m);
+	return (distance[0] > distance[1]) - (distance[0] < distance[1]);
+}
+
+/* Front to back, so that what is hidden fails its depth test before it is coloured. */
 void scene_list_pieces(struct scene *scene)
 {
+	qsort_r(scene->cut.patches, scene->cut.patch_count, sizeof(*scene->cut.patches),
+		by_distance, scene);
 	scene->visible_count = scene->leaving_count = 0;
 	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
 		list_patch(scene, scene->cut.patches[i], &scene->visible_count);

@@ -128,8 +128,10 @@ static void draw_plain(struct bench *bench)
 		     run++)
 			count += pieces[v[run].piece].triangle_count;
 		geometry_bind(&scene->geometry, v->patch);
+		geometry_cull(&scene->geometry, v->patch);
 		geometry_draw(pieces[v->piece].first_triangle, count);
 	}
+	geometry_cull_none();
 }
 
 struct spent {

@@ -4,6 +4,7 @@
 #include "format/picture.h"
 #include "render/gl.h"
 #include "render/headless.h"
+#include "render/scene_parts.h"
 #include "tests/render/little_release.h"
 
 enum { WIDTH = 480, HEIGHT = 270, FRAMES_MOST = 3000 };
@@ -276,6 +277,36 @@ static uint32_t pixels_changed(const uint8_t *a, const uint8_t *b, int by)
 	return changed;
 }
 
+static uint32_t patches_of_sides(const struct stage *stage, enum geometry_sides sides)
+{
+	const struct cut *cut = &stage->scene->cut;
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < cut->patch_count; i++)
+		count += stage->scene->geometry.patches[cut->patches[i]].sides == sides;
+	return count;
+}
+
+/* From within a pillar nothing but backs is seen, which from outside were left out. */
+static void backs_are_drawn_where_they_show(void **state)
+{
+	struct scene_options options = usual;
+	struct camera within = usual_camera;
+	struct stage stage;
+	(void)state;
+	options.mode = SCENE_POLYGONS;
+	memcpy(within.eye_m, (float[3]){ -4, -4, 2.5f }, sizeof(within.eye_m));
+	memcpy(within.target_m, (float[3]){ 0, -4, 2.5f }, sizeof(within.target_m));
+	raise_stage(&stage, &options);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(patches_of_sides(&stage, SIDES_FRONT) == stage.scene->cut.patch_count);
+	settle(&stage, &within, NULL);
+	keep_picture("within", stage.seen);
+	for (int i = 0; i < WIDTH * HEIGHT; i++)
+		CHECK(stage.seen[4 * i + 2] < 170); /* no sky: its blue is 180 */
+	CHECK(patches_of_sides(&stage, SIDES_BOTH) > 0);
+	strike_stage(&stage);
+}
+
 static void a_millimetre_changes_next_to_nothing(void **state)
 {
 	struct stage stage;
@@ -375,6 +406,7 @@ int main(void)
 		cmocka_unit_test(another_release_is_shown_whole),
 		cmocka_unit_test(a_small_atlas_settles_too),
 		cmocka_unit_test(rays_meet_what_is_shown),
+		cmocka_unit_test(backs_are_drawn_where_they_show),
 		cmocka_unit_test(a_millimetre_changes_next_to_nothing),
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
 		cmocka_unit_test(regions_know_what_is_in_them),
