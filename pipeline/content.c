@@ -238,7 +238,7 @@ static void set_defaults(struct content *content, const char *folder)
 		.background = { 0x2b, 0x33, 0x3d },
 		.grid_points = 8,
 		.face_px = 512,
-		.quality = 75,
+		.quality = 80,
 		.patch_triangles = 0,
 		.publish_share = 0.10,
 		.language_count = 1,

@@ -25,9 +25,10 @@ static int make_textures(struct tiles *tiles)
 	return rc;
 }
 
+/* Drivers keep RGB in four bytes a pixel. */
 static bool fits(int side_px, uint64_t budget_bytes)
 {
-	return 3ull * (uint64_t)side_px * (uint64_t)side_px <= budget_bytes;
+	return 4ull * (uint64_t)side_px * (uint64_t)side_px <= budget_bytes;
 }
 
 /* As many slots as board and budget allow, four a row at least. */

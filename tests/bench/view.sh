@@ -68,7 +68,7 @@ row_demo() {
 # temple NAME LINE...: a content folder of the temple of 5 M triangles
 temple() {
 	folder "$1" 'scans = scan.ply' 'lit = yes' 'sun = 0.60 -0.58 0.55' "${@:2}" '[grid]' \
-		'points = 8' 'face_px = 2048' 'quality = 80'
+		'points = 8' 'face_px = 2048' 'quality = 90'
 	[ -f "$work/temple.ply" ] ||
 		build/gopura-content temple --triangles 5000000 --out "$work/temple.ply" >&2
 	ln -f "$work/temple.ply" "$work/$1/content/scan.ply"

@@ -39,7 +39,7 @@ static void defaults_need_only_a_scan(void **state)
 	CHECK(content_read(&content, folder, &fault) == 0);
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
-	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 75);
+	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 80);
 	CHECK(content.patch_triangles == 0 && content.publish_share == 0.10);
 	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
 	CHECK(content.lit == CONTENT_LIT_AUTO && !content.has_start && !content.binary_tree);
