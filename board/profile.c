@@ -14,7 +14,7 @@
 
 const struct profile profile_default = {
 	.triangles = 400000,
-	.texture_mib = 64,
+	.texture_mib = 96,
 	.geometry_mib = 64,
 	.error_px = 2,
 	.upload_us = 4000,
