@@ -146,4 +146,5 @@ void rest_let_go(struct rest *rest, GLuint framebuffer)
 		glFlush();
 	}
 	glFinish();
+	glReleaseShaderCompiler(); /* of no use until the next scene */
 }
