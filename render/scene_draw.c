@@ -349,18 +349,18 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	scene_list_wants(scene);
-	bool idle = !moved && !changed && scene->want_count == 0;
-	out->settled = idle && rest_is_done(&scene->rest);
+	/* What is wanted may never come: memory is given back without it. */
+	bool still = !moved && !changed && rest_is_done(&scene->rest);
+	out->settled = still && scene->want_count == 0;
 	out->moving = is_busy(scene) || moved || !rest_is_done(&scene->rest);
-	if (!out->settled) {
+	if (!out->settled)
 		scene->image_share = -1;
-		return;
-	}
-	if (scene->image_share < 0) {
+	else if (scene->image_share < 0)
 		scene->image_share = count_share(scene);
-		rest_let_go(&scene->rest, (GLuint)framebuffer);
-		glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)framebuffer);
-		glViewport(0, 0, camera->width_px, camera->height_px);
-	}
 	out->image_share = scene->image_share;
+	if (!still)
+		return;
+	rest_let_go(&scene->rest, (GLuint)framebuffer);
+	glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)framebuffer);
+	glViewport(0, 0, camera->width_px, camera->height_px);
 }

@@ -93,7 +93,7 @@ row_temple_100() {
 	temple temple-84 84 'colours = scan'
 	build/gopura-content build "$work/temple-84/content" --out "$work/temple-84/release" >&2
 	ln -sfn ../temple/truth "$work/temple-84/truth"
-	draw temple-100 "$work/temple-84/content" "$work/temple-84/release" 40 "$visitor" <tests/bench/path.txt
+	draw temple-100 "$work/temple-84/content" "$work/temple-84/release" 55 "$visitor" <tests/bench/path.txt
 }
 
 # The same hierarchy and samples, all of it published.
