@@ -14,7 +14,7 @@ enum {
 
 /* Chosen by error for the bytes, not for an eye at a fixed distance: a tile is magnified, shrunk
  * and blended with others, so nothing is moved from where it would not be seen (sns), and blocks
- * are smoothed just as much as their coding left steps. */
+ * are smoothed a little (docs/samples.md). */
 static bool set_up(WebPConfig *config, int quality)
 {
 	if (!WebPConfigInit(config))
@@ -61,8 +61,8 @@ int tile_encode(struct buffer *out, const uint8_t *rgb, uint32_t side_px, int qu
 	return rc;
 }
 
-/* A key frame whose first partition and size fill the object: libwebp would also take a container,
- * a lossless picture or bytes after the frame. RFC 6386, 9.1. */
+/* The head of a key frame of that size (RFC 6386, 9.1): libwebp would also take a container or a
+ * lossless picture. */
 static bool acceptable(struct bytes object, uint32_t side_px)
 {
 	static const uint8_t start_code[3] = { 0x9d, 0x01, 0x2a };

@@ -7,7 +7,7 @@
 #include "base/bytes.h"
 
 /* rgb: side_px * side_px * 3 bytes, row 0 on top; quality 1..100. Appends one tile. -EINVAL: no
- * such side; -ENOMEM. */
+ * such side or quality; -ENOMEM. */
 must_check int tile_encode(struct buffer *out, const uint8_t *rgb, uint32_t side_px, int quality);
 
 /* Into rgb (side_px * side_px * 3 bytes). -EBADMSG: damaged, or not side_px square. */

@@ -120,7 +120,6 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 		struct geometry_patch *patch = &geometry->patches[g->first_patch + i];
 		patch->content = answer->patches[i];
 		memset(&answer->patches[i], 0, sizeof(answer->patches[i]));
-		patch->sides = SIDES_UNKNOWN;
 		patch->pieces =
 			calloc(patch->content.solid.piece_count + 1, sizeof(*patch->pieces));
 		rc = patch->pieces ? upload(patch) : -ENOMEM;

@@ -32,7 +32,8 @@ void rest_add(struct rest *rest, GLuint framebuffer, bool changed);
 bool rest_is_done(const struct rest *rest);
 /* When nothing is left to draw: rest->frame is not needed any more, and a driver that draws with
  * the processor keeps what each pass was made of, and drew into, until another takes its place. So
- * the sum is shown in the framebuffer as often as passes can be in flight. */
+ * the sum is shown in the framebuffer as often as passes can be in flight. The compiler of shaders
+ * is let go as well. */
 void rest_let_go(struct rest *rest, GLuint framebuffer);
 
 #endif
