@@ -100,11 +100,8 @@ static void init_pieces(struct geometry_patch *patch)
 {
 	for (uint32_t i = 0; i < patch->content.solid.piece_count; i++) {
 		const struct piece *piece = &patch->content.solid.pieces[i];
-		struct plan_probe *probe = patch->pieces[i].probe;
-		for (int k = 0; k < PIECE_PROBES; k++) {
-			memcpy(probe[k].at_m, piece->probe_m[k], sizeof(probe[k].at_m));
-			memcpy(probe[k].normal, piece->probe_normal[k], sizeof(probe[k].normal));
-		}
+		for (int k = 0; k < PIECE_PROBES; k++)
+			patch->pieces[i].probe[k] = solid_probe(&patch->content.solid, piece, k);
 	}
 }
 

@@ -22,7 +22,7 @@ struct piece_state {
 	struct plan_choice choice;
 	struct blend blend[PLAN_ENTRIES];
 	float seen_px; /* of the screen, by the last census that had it in the frustum */
-	struct plan_probe probe[PIECE_PROBES]; /* move to where it shows */
+	struct piece_probe probe[PIECE_PROBES]; /* move to where it shows */
 	float weight[PIECE_PROBES];
 	float stray_m[3], stray_off_m; /* what shows farthest from any probe */
 	bool counted;                  /* by any census */

@@ -131,9 +131,12 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 static uint8_t sight_of(struct plan_choice *choice, const struct plan_world *world,
 			const struct plan_surface *surface, uint32_t point, const float sample[3])
 {
-	struct plan_sight *sight = &choice->sight[point * 2654435761u >> 26];
-	if (sight->point != point + 1)
-		*sight = (struct plan_sight){ .point = point + 1 };
+	/* A slot for each value of the lowest bits, turned by the others: rows of the grid, whose
+	 * lengths are often powers of two, share them out. */
+	uint32_t high = point / PLAN_SIGHTS;
+	struct plan_sight *sight = &choice->sight[(point + high * 37) % PLAN_SIGHTS];
+	if (sight->point != high + 1)
+		*sight = (struct plan_sight){ .point = (uint16_t)(high + 1) };
 	for (int k = 0; k < PIECE_PROBES; k++) {
 		uint8_t bit = (uint8_t)(1 << k);
 		if (sight->known & bit || surface->weight[k] <= 0)
@@ -154,7 +157,7 @@ void plan_forget_probe(struct plan_choice *choice, int probe)
 }
 
 /* Where most of what shows is. */
-static const struct plan_probe *main_probe(const struct plan_surface *surface)
+static const struct piece_probe *main_probe(const struct plan_surface *surface)
 {
 	int main = 0;
 	for (int k = 1; k < PIECE_PROBES; k++)
@@ -223,7 +226,7 @@ static void judge_probe(struct candidate *candidate, const struct plan_world *wo
 }
 
 static uint32_t level_for(const struct plan_world *world, const struct plan_eye *eye,
-			  const struct plan_probe *probe, const float sample_m[3])
+			  const struct piece_probe *probe, const float sample_m[3])
 {
 	float needed = plan_needed_half_px(eye, probe->at_m, probe->normal, sample_m);
 	return plan_level(eye->texels * needed, repository_levels(world->repository));
@@ -236,7 +239,7 @@ static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_ch
 {
 	float sample[3];
 	repository_point_m(world->repository, point, sample);
-	const struct plan_probe *main = main_probe(surface);
+	const struct piece_probe *main = main_probe(surface);
 	uint8_t seen = sight_of(choice, world, surface, point, sample) & in_sight;
 	uint32_t level = level_for(world, eye, main, sample);
 	for (int k = 0; k < PIECE_PROBES; k++) {
@@ -379,7 +382,7 @@ static void add_corner(struct plan_choice *choice, const struct plan_world *worl
 	face_key face = point * CUBE_FACES + (uint32_t)cube_project(to, &uv[0], &uv[1]);
 	if (repository_face(world->repository, face, NULL, NULL) == REPOSITORY_EMPTY)
 		return;
-	const struct plan_probe *main = main_probe(surface);
+	const struct piece_probe *main = main_probe(surface);
 	struct candidate one = { .face = face };
 	memcpy(one.sample_m, sample, sizeof(sample));
 	one.level = (uint8_t)level_for(world, eye, main, sample);

@@ -62,7 +62,7 @@ bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3
 		    const struct piece *piece);
 
 struct plan_sight {
-	uint32_t point;      /* + 1; 0: none */
+	uint16_t point;      /* all but its lowest bits, + 1; 0: none */
 	uint8_t known, seen; /* bit per probe */
 };
 
@@ -100,16 +100,12 @@ struct plan_world {
 	void *data;
 };
 
-struct plan_probe {
-	float at_m[3], normal[3];
-};
-
 /* A piece as the eye has it before it. */
 struct plan_surface {
 	const struct piece *piece;
-	float error_m;                  /* of the mesh that is shown there */
-	const struct plan_probe *probe; /* PIECE_PROBES places of it */
-	float weight[PIECE_PROBES];     /* how much of what shows is near each; their sum is 1 */
+	float error_m;                   /* of the mesh that is shown there */
+	const struct piece_probe *probe; /* PIECE_PROBES places of it */
+	float weight[PIECE_PROBES];      /* how much of what shows is near each; their sum is 1 */
 };
 
 /* Another place is probed: what was known of the old one is forgotten. */

@@ -135,8 +135,8 @@ static void move_probe(struct scene *scene, uint32_t visible)
 {
 	struct piece_state *state = state_of(scene, visible);
 	const struct visible_piece *v = &scene->counted[visible];
-	const struct piece *piece =
-		&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
+	const struct solid *solid = &scene->geometry.patches[v->patch].content.solid;
+	const struct piece *piece = &solid->pieces[v->piece];
 	if (state->stray_off_m < stray_share * piece->radius_m)
 		return;
 	int idle = 0;
@@ -144,14 +144,16 @@ static void move_probe(struct scene *scene, uint32_t visible)
 		idle++;
 	if (idle == PIECE_PROBES)
 		return;
-	int like = 0; /* of the piece's own places the nearest lends its normal */
-	for (int k = 1; k < PIECE_PROBES; k++)
-		if (vec_distance(piece->probe_m[k], state->stray_m) <
-		    vec_distance(piece->probe_m[like], state->stray_m))
-			like = k;
-	memcpy(state->probe[idle].at_m, state->stray_m, sizeof(state->stray_m));
-	memcpy(state->probe[idle].normal, piece->probe_normal[like],
-	       sizeof(state->probe[idle].normal));
+	/* Of the piece's own places the nearest lends its normal. */
+	struct piece_probe like = solid_probe(solid, piece, 0);
+	for (int k = 1; k < PIECE_PROBES; k++) {
+		struct piece_probe other = solid_probe(solid, piece, k);
+		if (vec_distance(other.at_m, state->stray_m) <
+		    vec_distance(like.at_m, state->stray_m))
+			like = other;
+	}
+	memcpy(like.at_m, state->stray_m, sizeof(like.at_m));
+	state->probe[idle] = like;
 	plan_forget_probe(&state->choice, idle);
 }
 

@@ -7,7 +7,7 @@
 
 #include "render/vec.h"
 
-enum { LEAF_TRIANGLES = 4, DEPTH_MOST = 48 };
+enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
 
 static const float flat_enough = 0.8f;
 
@@ -69,7 +69,8 @@ static void bound(const struct builder *b, struct solid_node *node)
 		node->low[i] = UINT16_MAX;
 		node->high[i] = 0;
 	}
-	for (uint32_t k = 3 * node->first; k < 3 * (node->first + node->count); k++) {
+	const uint32_t first = 3u * node->first, end = first + 3u * node->count;
+	for (uint32_t k = first; k < end; k++) {
 		const uint16_t *at = b->solid->vertices[b->indices[k]].position;
 		for (int i = 0; i < 3; i++) {
 			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
@@ -99,7 +100,7 @@ static int longest_axis(const struct builder *b, const struct solid_node *node)
 	for (int k = 0; k < 6; k++) {
 		least[k] = INFINITY;
 		most[k] = -INFINITY;
-		for (uint32_t t = node->first; t < node->first + node->count; t++) {
+		for (uint32_t t = node->first; t < (uint32_t)node->first + node->count; t++) {
 			least[k] = vec_least(least[k], b->key[t][k]);
 			most[k] = vec_most(most[k], b->key[t][k]);
 		}
@@ -123,29 +124,28 @@ static uint32_t build_node(struct builder *b, uint32_t first, uint32_t count)
 {
 	uint32_t self = b->solid->node_count++;
 	struct solid_node *node = &b->solid->nodes[self];
-	*node = (struct solid_node){ .first = first, .count = count };
+	*node = (struct solid_node){ .first = (uint16_t)first, .count = (uint16_t)count };
 	bound(b, node);
-	node->flatness = flatness_of(b, first, count);
 	if (count <= LEAF_TRIANGLES)
 		return self;
 	split_at_median(b, first, count, longest_axis(b, node));
 	build_node(b, first, count / 2);
 	uint32_t right = build_node(b, first + count / 2, count - count / 2);
-	b->solid->nodes[self].right = right;
+	b->solid->nodes[self].right = (uint16_t)right;
 	return self;
 }
 
 /* ---- pieces */
 
-static void measure_piece(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+static void measure_piece(const struct solid *solid, struct piece *piece)
 {
 	float area2 = 0;
 	for (uint32_t t = piece->first_triangle; t < piece->first_triangle + piece->triangle_count;
 	     t++) {
 		float a[3], b[3], c[3], n[3];
-		vertex_m(solid, indices[3 * t], a);
-		vertex_m(solid, indices[3 * t + 1], b);
-		vertex_m(solid, indices[3 * t + 2], c);
+		vertex_m(solid, solid->indices[3 * t], a);
+		vertex_m(solid, solid->indices[3 * t + 1], b);
+		vertex_m(solid, solid->indices[3 * t + 2], c);
 		vec_sub(b, b, a);
 		vec_sub(c, c, a);
 		vec_cross(n, b, c);
@@ -158,31 +158,31 @@ static void measure_piece(const struct solid *solid, const uint16_t *indices, st
 	vec_normalise(piece->normal);
 }
 
-static void set_probes(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe)
 {
-	for (int k = 0; k < PIECE_PROBES; k++) {
-		/* Triangles of a piece are sorted in space: even steps are spread well. */
-		uint32_t t = piece->first_triangle +
-			     (uint32_t)((2 * k + 1) * piece->triangle_count / (2 * PIECE_PROBES));
-		float corner[3][3], ab[3], ac[3];
-		for (int c = 0; c < 3; c++)
-			vertex_m(solid, indices[3 * t + c], corner[c]);
-		for (int i = 0; i < 3; i++)
-			piece->probe_m[k][i] = (corner[0][i] + corner[1][i] + corner[2][i]) / 3;
-		vec_sub(ab, corner[1], corner[0]);
-		vec_sub(ac, corner[2], corner[0]);
-		vec_cross(piece->probe_normal[k], ab, ac);
-		if (vec_normalise(piece->probe_normal[k]) <= 0)
-			memcpy(piece->probe_normal[k], piece->normal, sizeof(piece->normal));
-	}
+	struct piece_probe out;
+	/* Triangles of a piece are sorted in space: even steps are spread well. */
+	uint32_t t = piece->first_triangle +
+		     (2 * (uint32_t)probe + 1) * piece->triangle_count / (2 * PIECE_PROBES);
+	float corner[3][3], ab[3], ac[3];
+	for (int c = 0; c < 3; c++)
+		vertex_m(solid, solid->indices[3 * t + c], corner[c]);
+	for (int i = 0; i < 3; i++)
+		out.at_m[i] = (corner[0][i] + corner[1][i] + corner[2][i]) / 3;
+	vec_sub(ab, corner[1], corner[0]);
+	vec_sub(ac, corner[2], corner[0]);
+	vec_cross(out.normal, ab, ac);
+	if (vec_normalise(out.normal) <= 0)
+		memcpy(out.normal, piece->normal, sizeof(piece->normal));
+	return out;
 }
 
-static void set_extents(const struct solid *solid, const uint16_t *indices, struct piece *piece)
+static void set_extents(const struct solid *solid, struct piece *piece)
 {
 	uint32_t first = 3 * piece->first_triangle, end = first + 3 * piece->triangle_count;
 	for (uint32_t k = first; k < end; k++) {
 		float at[3];
-		vertex_m(solid, indices[k], at);
+		vertex_m(solid, solid->indices[k], at);
 		for (int i = 0; i < 6; i++) {
 			const float *was = piece->extent_m[i];
 			bool farther = i & 1 ? at[i / 2] > was[i / 2] : at[i / 2] < was[i / 2];
@@ -193,29 +193,32 @@ static void set_extents(const struct solid *solid, const uint16_t *indices, stru
 }
 
 /* Whether one choice of samples may suit a run of triangles. */
-static bool is_one_piece(const struct solid_node *node)
+static bool is_one_piece(const struct builder *b, const struct solid_node *node)
 {
 	if (!node->right || node->count <= PIECE_TRIANGLES_LEAST)
 		return true;
 	bool wide = false;
 	for (int i = 0; i < 3; i++)
 		wide |= node->high[i] - node->low[i] > UINT16_MAX / PIECES_ACROSS;
-	bool bent = node->flatness < flat_enough && node->count > PIECE_TRIANGLES_BENT;
-	return node->count <= PIECE_TRIANGLES_MOST && !bent && !wide;
+	if (node->count > PIECE_TRIANGLES_MOST || wide)
+		return false;
+	return node->count <= PIECE_TRIANGLES_BENT ||
+	       flatness_of(b, node->first, node->count) >= flat_enough;
 }
 
-static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_t at)
+static void collect_pieces(const struct builder *b, uint32_t at)
 {
+	struct solid *solid = b->solid;
 	const struct solid_node *node = &solid->nodes[at];
-	if (!is_one_piece(node)) {
-		collect_pieces(solid, indices, at + 1);
-		collect_pieces(solid, indices, node->right);
+	if (!is_one_piece(b, node)) {
+		collect_pieces(b, at + 1);
+		collect_pieces(b, node->right);
 		return;
 	}
 	struct piece *piece = &solid->pieces[solid->piece_count++];
 	*piece = (struct piece){ .first_triangle = node->first,
 				 .triangle_count = node->count,
-				 .flatness = node->flatness };
+				 .flatness = flatness_of(b, node->first, node->count) };
 	float diagonal[3];
 	for (int i = 0; i < 3; i++) {
 		float middle = (float)(node->low[i] + node->high[i]) / 2;
@@ -224,9 +227,8 @@ static void collect_pieces(struct solid *solid, const uint16_t *indices, uint32_
 		diagonal[i] = (float)(node->high[i] - node->low[i]);
 	}
 	piece->radius_m = vec_length(diagonal) / 2 * (float)solid->lattice.step_m;
-	measure_piece(solid, indices, piece);
-	set_extents(solid, indices, piece);
-	set_probes(solid, indices, piece);
+	measure_piece(solid, piece);
+	set_extents(solid, piece);
 }
 
 static void set_key(const struct solid *solid, const uint16_t index[3], float key[6])
@@ -270,7 +272,7 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	for (uint32_t t = 0; t < count; t++)
 		set_key(out, &mesh->indices[3 * t], builder.key[t]);
 	build_node(&builder, 0, count);
-	collect_pieces(out, mesh->indices, 0);
+	collect_pieces(&builder, 0);
 	free(builder.key);
 	out->nodes = shrink(out->nodes, out->node_count * sizeof(*out->nodes));
 	out->pieces = shrink(out->pieces, out->piece_count * sizeof(*out->pieces));
@@ -373,7 +375,7 @@ static bool run_cast(struct cast *cast, bool any)
 		if (!meets_box(cast, node))
 			continue;
 		if (!node->right) {
-			for (uint32_t t = node->first; t < node->first + node->count; t++)
+			for (uint32_t t = node->first; t < (uint32_t)node->first + node->count; t++)
 				hit |= meets_triangle(cast, t);
 			continue;
 		}

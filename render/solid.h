@@ -30,14 +30,18 @@ struct piece {
 	float flatness;       /* length of the mean of its unit normals: 1 flat, 0 all around */
 	float spacing_m;      /* mean distance of neighbouring vertices */
 	float extent_m[6][3]; /* its vertices farthest along -x, +x, -y, +y, -z, +z */
-	float probe_m[PIECE_PROBES][3], probe_normal[PIECE_PROBES][3]; /* on its surface */
 };
 
+/* A place of a piece's surface. */
+struct piece_probe {
+	float at_m[3], normal[3];
+};
+
+/* Small, as there is one for every three triangles that are held. */
 struct solid_node {
 	uint16_t low[3], high[3]; /* on the lattice */
-	uint32_t first, count;    /* triangles; an inner node's children are node + 1 and right */
-	uint32_t right;           /* 0: a leaf */
-	float flatness;           /* as a piece's */
+	uint16_t first, count;    /* triangles; an inner node's children are node + 1 and right */
+	uint16_t right;           /* 0: a leaf */
 };
 
 struct solid {
@@ -51,12 +55,16 @@ struct solid {
 	struct lattice lattice;
 };
 
-/* Reorders the mesh's triangles. *out is finished by the caller. -ENOMEM. */
+/* Reorders the mesh's triangles, of which a patch has at most PATCH_TRIANGLES_MOST. *out is
+ * finished by the caller. -ENOMEM. */
 must_check int solid_init(struct solid *out, struct patch_mesh *mesh,
 			  const struct lattice *lattice);
 void solid_finish(struct solid *solid);
 /* Of memory it holds. */
 size_t solid_bytes(const struct solid *solid);
+
+/* One of PIECE_PROBES places of a piece, spread over it. */
+struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe);
 
 /* Nearest hit between *distance_m and least_m along the (unit) direction, either side of a
  * triangle; then *distance_m becomes it. */

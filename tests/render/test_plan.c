@@ -145,20 +145,18 @@ static struct piece small_piece(void)
 	struct piece piece = {
 		.radius_m = 0.5f, .normal = { 0, -1, 0 }, .flatness = 1, .spacing_m = 1
 	};
-	for (int k = 0; k < PIECE_PROBES; k++) {
-		piece.probe_m[k][0] = piece.extent_m[k % 6][0] = 0.02f * (float)k;
-		memcpy(piece.probe_normal[k], piece.normal, sizeof(piece.normal));
-	}
+	for (int k = 0; k < PIECE_PROBES; k++)
+		piece.extent_m[k % 6][0] = 0.02f * (float)k;
 	return piece;
 }
 
 static struct plan_surface even_surface(const struct piece *piece)
 {
-	static struct plan_probe probe[PIECE_PROBES];
+	static struct piece_probe probe[PIECE_PROBES];
 	struct plan_surface surface = { .piece = piece, .probe = probe };
 	for (int k = 0; k < PIECE_PROBES; k++) {
-		memcpy(probe[k].at_m, piece->probe_m[k], sizeof(probe[k].at_m));
-		memcpy(probe[k].normal, piece->probe_normal[k], sizeof(probe[k].normal));
+		probe[k] = (struct piece_probe){ .at_m = { 0.02f * (float)k } };
+		memcpy(probe[k].normal, piece->normal, sizeof(probe[k].normal));
 		surface.weight[k] = 1.0f / PIECE_PROBES;
 	}
 	return surface;

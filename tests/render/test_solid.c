@@ -87,7 +87,7 @@ static void pieces_hold_every_triangle_once(void **state)
 		CHECK(piece->first_triangle == next && piece->triangle_count > 0);
 		CHECK(piece->triangle_count <= PIECE_TRIANGLES_MOST);
 		for (int k = 0; k < PIECE_PROBES; k++)
-			CHECK(vec_distance(piece->probe_m[k], piece->centre_m) <=
+			CHECK(vec_distance(solid_probe(&solid, piece, k).at_m, piece->centre_m) <=
 			      piece->radius_m * 1.001f);
 		next += piece->triangle_count;
 	}
