@@ -196,6 +196,19 @@ int face_page_decode(struct face_page *out, struct bytes payload)
 
 uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column)
 {
-	/* 1 + 4 + 16 + ... below this level */
-	return ((1u << 2 * level) - 1) / 3 + (row << level) + column;
+	uint32_t index = ((1u << 2 * level) - 1) / 3; /* 1 + 4 + 16 + ... below this level */
+
+	for (uint32_t bit = 0; bit < level; bit++)
+		index += (row >> bit & 1) << (2 * bit + 1) | (column >> bit & 1) << 2 * bit;
+	return index;
+}
+
+void face_tile_place(uint32_t level, uint32_t index, uint32_t *row, uint32_t *column)
+{
+	index -= face_tile_index(level, 0, 0);
+	*row = *column = 0;
+	for (uint32_t bit = 0; bit < level; bit++) {
+		*row |= (index >> (2 * bit + 1) & 1) << bit;
+		*column |= (index >> 2 * bit & 1) << bit;
+	}
 }

@@ -10,7 +10,8 @@
  *
  * Three kinds of page: PAGE_SAMPLES (one; the grid; children: bricks that hold anything) ->
  * PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything)
- * -> PAGE_FACE (children: tiles that are there, level by level from the coarsest, row by row). */
+ * -> PAGE_FACE (children: tiles that are there, level by level from the coarsest, each in
+ * Morton's order). */
 #ifndef GOPURA_FORMAT_SAMPLES_H
 #define GOPURA_FORMAT_SAMPLES_H
 
@@ -74,7 +75,11 @@ struct face_page {
 void face_page_encode(struct buffer *out, const struct face_page *face);
 must_check int face_page_decode(struct face_page *out, struct bytes payload);
 
-/* Index of a tile among all of a face: coarsest level first, row by row. */
+/* Index of a tile among all of a face: coarsest level first, and each level in Morton's order (by
+ * the bits of row and column in turn), so that what is near on the face is near in the pack, and
+ * what a view asks for lies in few ranges. */
 uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column);
+/* Where the tile of such an index lies; the level must be the index's own. */
+void face_tile_place(uint32_t level, uint32_t index, uint32_t *row, uint32_t *column);
 
 #endif

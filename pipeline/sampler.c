@@ -20,7 +20,7 @@
 #include "pipeline/shooter.h"
 #include "render/headless.h"
 
-enum { SAMPLER_VERSION = 6, JOBS_MOST = 64 };
+enum { SAMPLER_VERSION = 7, JOBS_MOST = 64 };
 
 /* The grid's box, in sizes of the model: docs/samples.md. */
 static const float grid_reach = 1.5f;

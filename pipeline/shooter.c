@@ -133,22 +133,22 @@ static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)
 {
 	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
 
-	for (uint32_t row = 0; row < 1u << level; row++) {
-		for (uint32_t column = 0; column < 1u << level; column++) {
-			uint32_t x = apron + column * SAMPLE_TILE_PX;
-			uint32_t y = apron + row * SAMPLE_TILE_PX, n = shot->tile_count;
-			int rc;
+	uint32_t end = face_tile_index(level + 1, 0, 0);
 
-			if (!shows(shooter, level, x, y, SAMPLE_TILE_PX))
-				continue;
-			rc = encode_tile(shooter, shot, level, x - SAMPLE_APRON_PX,
-					 y - SAMPLE_APRON_PX);
-			if (rc < 0)
-				return rc;
-			shot->tiles[n] = (uint16_t)face_tile_index(level, row, column);
-			shot->end_of[n] = (uint32_t)shot->objects.size;
-			shot->tile_count++;
-		}
+	for (uint32_t index = face_tile_index(level, 0, 0); index < end; index++) {
+		uint32_t row, column, n = shot->tile_count;
+		int rc;
+
+		face_tile_place(level, index, &row, &column);
+		uint32_t x = apron + column * SAMPLE_TILE_PX, y = apron + row * SAMPLE_TILE_PX;
+		if (!shows(shooter, level, x, y, SAMPLE_TILE_PX))
+			continue;
+		rc = encode_tile(shooter, shot, level, x - SAMPLE_APRON_PX, y - SAMPLE_APRON_PX);
+		if (rc < 0)
+			return rc;
+		shot->tiles[n] = (uint16_t)index;
+		shot->end_of[n] = (uint32_t)shot->objects.size;
+		shot->tile_count++;
 	}
 	return 0;
 }

@@ -28,6 +28,8 @@ cmp "$folder/got" <(tail -c +1001 "$release/$pack" | head -c 1000)
 has cache-control '.*immutable' "$pack"
 has cache-control '.*immutable' locator/0123456789abcdef0123456789abcdef
 has content-type application/octet-stream "$pack"
+has x-content-type-options nosniff "$pack"
+[ "$(get -I "$server_url$pack" | wc -c)" -lt 256 ] || fail "what is said beside a range is long"
 for file in release.json timestamp.json root/1.json; do
 	has cache-control no-cache "$file"
 	has content-type application/json "$file"

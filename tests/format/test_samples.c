@@ -172,11 +172,29 @@ static void numbers_tiles_from_the_coarsest(void **state)
 	uint32_t expected = 0;
 
 	(void)state;
-	for (uint32_t level = 0; level < SAMPLE_LEVELS_MOST; level++)
-		for (uint32_t row = 0; row < 1u << level; row++)
-			for (uint32_t column = 0; column < 1u << level; column++)
-				CHECK(face_tile_index(level, row, column) == expected++);
+	for (uint32_t level = 0; level < SAMPLE_LEVELS_MOST; level++) {
+		for (uint32_t n = 0; n < 1u << 2 * level; n++) {
+			uint32_t row, column;
+
+			face_tile_place(level, expected, &row, &column);
+			CHECK(row < 1u << level && column < 1u << level);
+			CHECK(face_tile_index(level, row, column) == expected++);
+		}
+	}
 	CHECK(expected == FACE_TILES_MOST);
+}
+
+static void numbers_of_a_square_of_tiles_follow_one_another(void **state)
+{
+	(void)state;
+	for (uint32_t row = 0; row < 16; row += 4)
+		for (uint32_t column = 0; column < 16; column += 4) {
+			uint32_t first = face_tile_index(4, row, column);
+
+			for (uint32_t k = 0; k < 16; k++)
+				CHECK(face_tile_index(4, row + k / 4, column + k % 4) - first < 16);
+		}
+	CHECK(face_tile_index(2, 0, 3) == 1 + 4 + 5 && face_tile_index(2, 3, 0) == 1 + 4 + 10);
 }
 
 int main(void)
@@ -187,6 +205,7 @@ int main(void)
 		cmocka_unit_test(keeps_a_brick_and_errs_on_the_safe_side),
 		cmocka_unit_test(keeps_a_face),
 		cmocka_unit_test(numbers_tiles_from_the_coarsest),
+		cmocka_unit_test(numbers_of_a_square_of_tiles_follow_one_another),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -258,8 +258,7 @@ static void find_place(uint16_t tile, uint32_t *level, uint32_t *row, uint32_t *
 {
 	for (*level = 0; face_tile_index(*level + 1, 0, 0) <= tile; ++*level)
 		;
-	*row = (tile - face_tile_index(*level, 0, 0)) >> *level;
-	*column = (tile - face_tile_index(*level, 0, 0)) & ((1u << *level) - 1);
+	face_tile_place(*level, tile, row, column);
 }
 
 static void tiles_show_what_rays_meet(void **state)
