@@ -14,7 +14,7 @@ enum {
 	SMALL_RANGES_MOST = 32, /* as long as all together stay small: the line's delay */
 	SMALL_BYTES = 256 << 10,
 	RANGES_FOR_PAGES = 2, /* beside those: nothing can be judged without pages */
-	GAP_BYTES = 4096,
+	GAP_BYTES = 512, /* what a request of its own would cost on the line, and a little more */
 	RANGE_BYTES_LEAST = 64 << 10,
 	RANGE_BYTES_MOST = 1 << 20,
 	RANGE_MS = 250, /* of the line: what comes later in it should not wait longer */

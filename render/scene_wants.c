@@ -4,7 +4,7 @@
 
 #include "render/scene_parts.h"
 
-/* A coarse tile stands in for sixteen fine ones: it comes first where there is nothing. */
+/* A coarse tile stands in for sixteen fine ones: it comes first where no image shows yet. */
 enum { COARSER_FIRST = 2 };
 
 static void want(struct scene *scene, enum object_kind kind, uint64_t id,
@@ -157,7 +157,7 @@ static void add_level(const struct scene *scene, struct gains *gains, const stru
 }
 
 static void add_want(const struct scene *scene, struct gains *gains, const struct plan_want *w,
-		     float pixels)
+		     float pixels, bool bare)
 {
 	uint32_t brick = 0;
 	switch (repository_face(&scene->repository, w->face, NULL, &brick)) {
@@ -172,8 +172,6 @@ static void add_want(const struct scene *scene, struct gains *gains, const struc
 	case REPOSITORY_READY:
 		break;
 	}
-	float u = (w->area.u0 + w->area.u1) / 2, v = (w->area.v0 + w->area.v1) / 2;
-	bool bare = tiles_level_at(&scene->tiles, w->face, u, v) < 0;
 	if (bare && w->level >= COARSER_FIRST) {
 		add_level(scene, gains, w, w->level - COARSER_FIRST, 0.6f * pixels);
 		pixels *= 0.4f;
@@ -215,7 +213,8 @@ static void want_images(struct scene *scene)
 		const struct plan_choice *choice = &state->choice;
 		float pixels = state->counted ? state->seen_px : v->pixels / 8;
 		for (uint32_t k = 0; k < choice->want_count && pixels > 0; k++)
-			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * pixels);
+			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * pixels,
+				 choice->entry_count == 0);
 	}
 	for (uint32_t i = 0; i < gains.count; i++) {
 		struct message_want place;

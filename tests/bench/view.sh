@@ -1,6 +1,7 @@
 #!/bin/bash
 # Settled pictures against the truth, and what they cost: views of an orbit, nearer ones and
-# close-ups, none on a sampling point, 1280 x 720, from an empty cache, in the three modes.
+# close-ups, none on a sampling point, 1280 x 720, from an empty cache, in the three modes, fetched from
+# the museum server: bytes are all that its connections brought.
 #
 #   ROWS="demo venus-70"  these rows alone          VIEWS=N  of each row, spread over its path
 #   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
@@ -13,6 +14,8 @@
 # benchmarks frame, motion, footprint and start left.
 set -eu
 cd "$(dirname "$0")/../.."
+. tests/e2e/lib-server.sh
+trap stop_server EXIT
 work=build/bench/view scans=../shared/scans
 visitor="orbit=20 walk=20 close=20"
 mkdir -p "$work"
@@ -48,13 +51,17 @@ draw() {
 	printf '[render]\nthrift = %s\n' "$4" >"$out/board.ini"
 	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
 		--supersample "${SUPERSAMPLE:-4}" --out "$truth" >&2
+	# Those of a longer path before are of no use, and would be missed below.
+	find "$truth/" -name 'view-*' | sort | awk -F'view-' -v n="$(wc -l <"$out/views.txt")" '$NF + 0 >= n' | xargs -r rm
+	start_server "$3" "$out/server"
 	for mode in lumigraph polygons corners; do
 		rm -rf "${out:?}/$mode" "$out/state"
-		build/gopura-kiosk --display headless --size 1280x720 --mode "$mode" --release "$3" \
-			--trust "$3/root/1.json" --state "$out/state" --board "$out/board.ini" \
+		build/gopura-kiosk --display headless --size 1280x720 --mode "$mode" --release "$server_url" \
+			--ca "$server_ca" --trust "$3/root/1.json" --state "$out/state" --board "$out/board.ini" \
 			--views "$out/views.txt" --capture "$out/$mode" 2>"$out/$mode.log"
 		build/tests/tools/compare_pictures "$truth" "$out/$mode" >"$out/$mode.jsonl"
 	done
+	stop_server
 	rm -rf "$out/state"
 }
 
