@@ -1,4 +1,5 @@
 /* gopura-kiosk: owns panel and touch, and has no network. */
+#include <malloc.h>
 #include <stdlib.h>
 
 #include "app/kiosk.h"
@@ -9,6 +10,7 @@ int main(int argc, char **argv)
 	static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
 	int rc;
 
+	mallopt(M_ARENA_MAX, 1); /* workers' own would keep 2 MB that nobody uses */
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:
 		return EXIT_SUCCESS;

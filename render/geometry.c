@@ -44,9 +44,10 @@ void geometry_finish(struct geometry *geometry)
 
 /* ---- loading */
 
+/* After it only the GPU has the vertices; where they are, solid has for itself. */
 static int upload(struct geometry_patch *patch)
 {
-	const struct patch_mesh *mesh = &patch->content.mesh;
+	struct patch_mesh *mesh = &patch->content.mesh;
 	glGenBuffers(1, &patch->vertices);
 	glBindBuffer(GL_ARRAY_BUFFER, patch->vertices);
 	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->vertex_count * sizeof(*mesh->vertices)),
@@ -56,15 +57,17 @@ static int upload(struct geometry_patch *patch)
 	glBufferData(GL_ELEMENT_ARRAY_BUFFER,
 		     (GLsizeiptr)(3 * mesh->triangle_count * sizeof(*mesh->indices)), mesh->indices,
 		     GL_STATIC_DRAW);
+	free(mesh->vertices);
+	mesh->vertices = NULL;
 	return gl_check("uploading a patch");
 }
 
 static size_t patch_bytes(const struct geometry_patch *patch)
 {
 	const struct patch_mesh *mesh = &patch->content.mesh;
-	size_t once = mesh->vertex_count * sizeof(*mesh->vertices) +
-		      3 * mesh->triangle_count * sizeof(*mesh->indices);
-	return 2 * once + solid_bytes(&patch->content.solid) +
+	size_t indices = 3 * mesh->triangle_count * sizeof(*mesh->indices);
+	return mesh->vertex_count * sizeof(*mesh->vertices) + 2 * indices +
+	       solid_bytes(&patch->content.solid) +
 	       patch->content.solid.piece_count * sizeof(*patch->pieces);
 }
 

@@ -19,7 +19,7 @@
 enum {
 	PLAN_ENTRIES = 4, /* faces blended on a piece */
 	PLAN_WANTS = 3,
-	PLAN_SIGHTS = 64, /* remembered rays of a piece: sampling points, direct-mapped */
+	PLAN_SIGHTS = 32, /* remembered rays of a piece: sampling points, direct-mapped */
 };
 
 struct plan_eye {

@@ -13,7 +13,7 @@ static const float flat_enough = 0.8f;
 
 static void vertex_m(const struct solid *solid, uint32_t vertex, float out[3])
 {
-	const uint16_t *at = solid->vertices[vertex].position;
+	const uint16_t *at = solid->positions[vertex];
 	for (int i = 0; i < 3; i++)
 		out[i] = (float)(solid->lattice.origin_m[i] + solid->lattice.step_m * at[i]);
 }
@@ -71,7 +71,7 @@ static void bound(const struct builder *b, struct solid_node *node)
 	}
 	const uint32_t first = 3u * node->first, end = first + 3u * node->count;
 	for (uint32_t k = first; k < end; k++) {
-		const uint16_t *at = b->solid->vertices[b->indices[k]].position;
+		const uint16_t *at = b->solid->positions[b->indices[k]];
 		for (int i = 0; i < 3; i++) {
 			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
 			node->high[i] = at[i] > node->high[i] ? at[i] : node->high[i];
@@ -254,9 +254,7 @@ static void *shrink(void *block, size_t bytes)
 
 int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice *lattice)
 {
-	*out = (struct solid){ .vertices = mesh->vertices,
-			       .indices = mesh->indices,
-			       .lattice = *lattice };
+	*out = (struct solid){ .indices = mesh->indices, .lattice = *lattice };
 	uint32_t count = mesh->triangle_count;
 	if (count == 0)
 		return 0;
@@ -264,11 +262,15 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	builder.key = malloc(count * sizeof(*builder.key));
 	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
 	out->pieces = calloc(count / (PIECE_TRIANGLES_LEAST / 2) + 1, sizeof(*out->pieces));
-	if (!builder.key || !out->nodes || !out->pieces) {
+	out->positions = malloc(mesh->vertex_count * sizeof(*out->positions));
+	if (!builder.key || !out->nodes || !out->pieces || !out->positions) {
 		free(builder.key);
 		solid_finish(out);
 		return -ENOMEM;
 	}
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		memcpy(out->positions[v], mesh->vertices[v].position, sizeof(*out->positions));
+	out->vertex_count = mesh->vertex_count;
 	for (uint32_t t = 0; t < count; t++)
 		set_key(out, &mesh->indices[3 * t], builder.key[t]);
 	build_node(&builder, 0, count);
@@ -283,13 +285,15 @@ void solid_finish(struct solid *solid)
 {
 	free(solid->nodes);
 	free(solid->pieces);
+	free(solid->positions);
 	memset(solid, 0, sizeof(*solid));
 }
 
 size_t solid_bytes(const struct solid *solid)
 {
 	return solid->node_count * sizeof(*solid->nodes) +
-	       solid->piece_count * sizeof(*solid->pieces);
+	       solid->piece_count * sizeof(*solid->pieces) +
+	       solid->vertex_count * sizeof(*solid->positions);
 }
 
 /* ---- rays */
@@ -327,7 +331,7 @@ static bool meets_box(const struct cast *cast, const struct solid_node *node)
 
 static void corner_of(const struct cast *cast, uint16_t index, float out[3])
 {
-	const uint16_t *at = cast->solid->vertices[index].position;
+	const uint16_t *at = cast->solid->positions[index];
 	for (int i = 0; i < 3; i++)
 		out[i] = at[i];
 }

@@ -49,9 +49,9 @@ struct solid {
 	uint32_t node_count;
 	struct piece *pieces; /* owned */
 	uint32_t piece_count;
-	/* Borrowed from the mesh, which must outlive this. */
-	const struct patch_vertex *vertices;
-	const uint16_t *indices;
+	uint16_t (*positions)[3]; /* owned; on the lattice */
+	uint32_t vertex_count;
+	const uint16_t *indices; /* borrowed from the mesh, which must keep them */
 	struct lattice lattice;
 };
 
