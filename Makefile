@@ -11,7 +11,7 @@ MAKEFLAGS += --no-builtin-rules
 
 FOLDERS := base format board render ui input storage net app pipeline
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
-           pangocairo libxml-2.0 libcjson sdl2 assimp
+           pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd
 # METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lmeshoptimizer -linih -lm -pthread
 

@@ -15,6 +15,7 @@
 #include "app/follow.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/service.h"
 
 enum {
 	FRAME_MS = 16, /* where no panel sets the pace */
@@ -312,6 +313,23 @@ static int dispatch(struct kiosk *kiosk, int fd)
 	return 0; /* of a scene that was closed a moment ago */
 }
 
+/* Of two times to wait, of which -1 is for ever. */
+static int sooner(int a_ms, int b_ms)
+{
+	if (a_ms < 0 || b_ms < 0)
+		return a_ms < 0 ? b_ms : a_ms;
+	return a_ms < b_ms ? a_ms : b_ms;
+}
+
+static int manager_wait_ms(void)
+{
+	const int64_t due_ms = service_due_ms(), now_ms = clock_now_ms();
+
+	if (due_ms == INT64_MAX)
+		return -1;
+	return due_ms <= now_ms ? 0 : due_ms - now_ms > INT_MAX ? INT_MAX : (int)(due_ms - now_ms);
+}
+
 /* How long nothing needs to be done, milliseconds; -1: until something happens. */
 static int wait_ms(const struct kiosk *kiosk)
 {
@@ -319,14 +337,31 @@ static int wait_ms(const struct kiosk *kiosk)
 	const bool paced = display_kind(kiosk->display) == DISPLAY_DRM;
 	const int coming_ms = exhibit_wait_ms(kiosk);
 	const int capture_ms = kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
-
 	if (!display_ready(kiosk->display))
 		return FLIP_WATCH_MS;
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	if (coming_ms >= 0 && (capture_ms < 0 || coming_ms < capture_ms))
-		return coming_ms;
-	return capture_ms;
+	return sooner(sooner(coming_ms, capture_ms), manager_wait_ms());
+}
+
+/* The terminal is well when what was drawn has come onto the panel. At rest nothing is drawn, and a
+ * panel that hangs would not be noticed: then what is shown is drawn once more. */
+static void tell_manager(struct kiosk *kiosk)
+{
+	if (kiosk->last_frame_ms == 0 || !display_ready(kiosk->display))
+		return;
+	if (kiosk->well_ms == 0) {
+		service_ready();
+		kiosk->well_ms = kiosk->last_frame_ms;
+	}
+	if (clock_now_ms() < service_due_ms())
+		return;
+	if (kiosk->last_frame_ms > kiosk->well_ms) {
+		service_alive();
+		kiosk->well_ms = kiosk->last_frame_ms;
+	} else {
+		kiosk_redraw(kiosk);
+	}
 }
 
 static int turn(struct kiosk *kiosk)
@@ -346,6 +381,7 @@ static int turn(struct kiosk *kiosk)
 		kiosk_redraw(kiosk);
 	if (rc < 0 || kiosk->quit)
 		return rc;
+	tell_manager(kiosk);
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
 	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
 		kiosk->quit = true;
@@ -365,6 +401,7 @@ int kiosk_run(struct kiosk *kiosk)
 
 	while (rc == 0 && !kiosk->quit)
 		rc = turn(kiosk);
+	service_stopping();
 	if (rc < 0)
 		log_error("app", "stopping: %s", strerror(-rc));
 	return rc;

@@ -61,6 +61,7 @@ struct kiosk {
 	struct camera camera; /* of the last frame */
 	struct message_status status;
 	int64_t started_ms, last_frame_ms;
+	int64_t well_ms; /* of the last frame that the service manager was told of; 0: of none */
 	bool frame_wanted, words_move, eye_moves;
 	uint32_t frame_us;               /* work of the last frame, this thread */
 	uint64_t object_count;           /* given to the scene since start */

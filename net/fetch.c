@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/service.h"
 #include "net/bring.h"
 #include "net/packets.h"
 #include "net/poll.h"
@@ -253,6 +254,7 @@ static int timeout_ms(const struct fetch *fetch)
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
 	}
+	due_ms = service_due_ms() < due_ms ? service_due_ms() : due_ms;
 	if (due_ms == INT64_MAX)
 		return -1;
 	if (due_ms <= now_ms)
@@ -287,6 +289,8 @@ static int loop(struct fetch *fetch)
 		work(fetch);
 		if (fetch->ends)
 			break;
+		if (service_due_ms() <= clock_now_ms())
+			service_alive();
 		count = epoll_wait(fetch->epoll_fd, events, 8, timeout_ms(fetch));
 		if (count < 0 && errno != EINTR)
 			return -errno;
@@ -412,8 +416,12 @@ int fetch_run(const struct fetch_options *options)
 			       .flush_ms = INT64_MAX };
 	int rc = start(&fetch);
 
+	if (rc == 0 && options->socket_path) /* else the kiosk is the service, and waits for us */
+		service_ready();
 	if (rc == 0)
 		rc = loop(&fetch);
+	if (options->socket_path)
+		service_stopping();
 	stop(&fetch);
 	return rc;
 }

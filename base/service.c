@@ -1,0 +1,38 @@
+#include "base/service.h"
+
+#include <systemd/sd-daemon.h>
+
+#include "base/clock.h"
+
+/* The variables stay in the environment: WATCHDOG_PID says whose they are. */
+enum { KEEP = 0 };
+
+static int64_t alive_ms; /* when it was told last */
+
+void service_ready(void)
+{
+	sd_notify(KEEP, "READY=1");
+	alive_ms = clock_now_ms();
+}
+
+int64_t service_due_ms(void)
+{
+	static int64_t every_ms = -1; /* what the environment says does not change */
+	uint64_t period_us;
+
+	if (every_ms < 0)
+		every_ms =
+			sd_watchdog_enabled(KEEP, &period_us) > 0 ? (int64_t)(period_us / 3000) : 0;
+	return every_ms > 0 ? alive_ms + every_ms : INT64_MAX;
+}
+
+void service_alive(void)
+{
+	sd_notify(KEEP, "WATCHDOG=1");
+	alive_ms = clock_now_ms();
+}
+
+void service_stopping(void)
+{
+	sd_notify(KEEP, "STOPPING=1");
+}
