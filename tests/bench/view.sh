@@ -88,7 +88,7 @@ build_temple() {
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 0.3 "$visitor" <tests/bench/path.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 0.6 "$visitor" <tests/bench/path.txt
 	# Of the first view alone: object bytes until it has 30 dB at rest.
 	head -n 1 "$work/temple-300/views.txt" >"$work/first.txt"
 	build/tests/bench/bench_view "$work/temple/release" "$work/first.txt" "$work/first" --truth "$work/temple/truth" \
@@ -100,7 +100,7 @@ row_temple_100() {
 	temple temple-84 84 'colours = scan'
 	build/gopura-content build "$work/temple-84/content" --out "$work/temple-84/release" >&2
 	ln -sfn ../temple/truth "$work/temple-84/truth"
-	draw temple-100 "$work/temple-84/content" "$work/temple-84/release" 55 "$visitor" <tests/bench/path.txt
+	draw temple-100 "$work/temple-84/content" "$work/temple-84/release" 57 "$visitor" <tests/bench/path.txt
 }
 
 # The same hierarchy and samples, all of it published.
