@@ -38,8 +38,8 @@ PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
-SHIM     := tests/tools/weak_gl
-TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIM).c,$(wildcard tests/tools/*.c)))
+SHIMS    := tests/tools/weak_gl tests/tools/lost_gl
+TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
@@ -121,13 +121,13 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 
-# Preloaded by tests of weak boards; of no program.
-$(BUILD)/$(SHIM).so: $(SHIM).c | $(BUILD)/.deps
+# Preloaded by tests of weak and failing boards; of no program.
+$(SHIMS:%=$(BUILD)/%.so): $(BUILD)/%.so: %.c | $(BUILD)/.deps
 	@mkdir -p $(@D)
 	@echo '  link  $@'
 	@$(CC) $(CFLAGS) -shared -fPIC $< -o $@ -ldl
 
-tests: $(TESTS) $(FUZZ) $(TOOLS) $(BUILD)/$(SHIM).so
+tests: $(TESTS) $(FUZZ) $(TOOLS) $(SHIMS:%=$(BUILD)/%.so)
 benches: $(BENCHES)
 .PHONY: tests benches
 

@@ -10,6 +10,7 @@
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "render/context.h"
 #include "render/gl.h"
 
 enum {
@@ -274,6 +275,8 @@ int frame_draw(struct kiosk *kiosk)
 	struct overlay *overlay;
 	int rc = 0;
 
+	if (context_is_lost())
+		return -ENOTRECOVERABLE;
 	kiosk->last_frame_ms = now_ms;
 	kiosk->frame_wanted = false;
 	if (kiosk->navigator_ready && !kiosk->options.views_path) {

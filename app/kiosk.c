@@ -402,7 +402,9 @@ int kiosk_run(struct kiosk *kiosk)
 	while (rc == 0 && !kiosk->quit)
 		rc = turn(kiosk);
 	service_stopping();
-	if (rc < 0)
+	if (rc == -ENOTRECOVERABLE)
+		log_warn("app", "board bug: the GPU lost its context: starting anew");
+	else if (rc < 0)
 		log_error("app", "stopping: %s", strerror(-rc));
 	return rc;
 }

@@ -19,6 +19,11 @@
 struct capture;
 struct follow;
 
+/* Of the program, beside success and failure: it is well, but must begin anew, from what it has
+ * cached (EX_TEMPFAIL of sysexits.h). The service manager is to start it at once and to count no
+ * crash. */
+enum { KIOSK_STATUS_ANEW = 75 };
+
 enum { EXHIBIT_PAGES_MOST = 4096 };
 
 /* One release as it is shown: its pictures and its words. */
@@ -78,7 +83,8 @@ struct kiosk {
 
 /* kiosk.c: start, run, stop (the reverse; any part may be missing). */
 must_check int kiosk_start(struct kiosk *kiosk);
-/* Until quit is set; negative errno (logged) where going on makes no sense. */
+/* Until quit is set; negative errno (logged) where going on makes no sense; -ENOTRECOVERABLE: a new
+ * process does. */
 must_check int kiosk_run(struct kiosk *kiosk);
 void kiosk_stop(struct kiosk *kiosk);
 /* Has the loop wait for this descriptor too, until it is closed; -1: nothing. */

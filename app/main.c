@@ -1,4 +1,5 @@
 /* gopura-kiosk: owns panel and touch, and has no network. */
+#include <errno.h>
 #include <malloc.h>
 #include <stdlib.h>
 
@@ -23,5 +24,7 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = kiosk_run(&kiosk);
 	kiosk_stop(&kiosk); /* the reverse; any part may be missing */
+	if (rc == -ENOTRECOVERABLE)
+		return KIOSK_STATUS_ANEW;
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

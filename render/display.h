@@ -56,7 +56,8 @@ must_check int display_dispatch(struct display *display);
 bool display_ready(const struct display *display);
 /* Binds the framebuffer to draw into. */
 void display_begin(struct display *display);
-/* Shows what was drawn, without waiting: display_ready is false until it is on the panel. */
+/* Shows what was drawn, without waiting: display_ready is false until it is on the panel.
+ * -ENOTRECOVERABLE: the GPU lost its context. */
 must_check int display_present(struct display *display);
 
 /* What display_begin bound, as it is now: 4 bytes a pixel, row 0 on top. Waits for the GPU, so not

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "render/context.h"
 #include "render/display_backend.h"
 #include "render/drm_card.h"
 #include "render/gl.h"
@@ -75,7 +76,6 @@ static EGLConfig choose_config(EGLDisplay egl)
 
 static int create_context(struct drm_display *drm)
 {
-	static const EGLint version[] = { EGL_CONTEXT_CLIENT_VERSION, 2, EGL_NONE };
 	EGLConfig config;
 
 	drm->egl = eglGetPlatformDisplay(EGL_PLATFORM_GBM_KHR, drm->gbm, NULL);
@@ -85,7 +85,7 @@ static int create_context(struct drm_display *drm)
 	config = choose_config(drm->egl);
 	if (!config)
 		return -ENODEV;
-	drm->context = eglCreateContext(drm->egl, config, EGL_NO_CONTEXT, version);
+	drm->context = context_create(drm->egl, config);
 	drm->egl_surface = eglCreatePlatformWindowSurface(drm->egl, config, drm->surface, NULL);
 	if (drm->context == EGL_NO_CONTEXT || drm->egl_surface == EGL_NO_SURFACE ||
 	    !eglMakeCurrent(drm->egl, drm->egl_surface, drm->egl_surface, drm->context))
@@ -220,7 +220,7 @@ static int present(struct display *display)
 	int rc;
 
 	if (!eglSwapBuffers(drm->egl, drm->egl_surface))
-		return -EIO;
+		return eglGetError() == EGL_CONTEXT_LOST ? -ENOTRECOVERABLE : -EIO;
 	drm->next = gbm_surface_lock_front_buffer(drm->surface);
 	if (!drm->next)
 		return -EIO;

@@ -34,8 +34,10 @@ int gl_check(const char *doing)
 	int rc = 0;
 	GLenum error;
 
-	/* A lost context may report for ever. */
+	/* A driver that has given up may report for ever. */
 	for (int n = 0; n < 8 && (error = glGetError()) != GL_NO_ERROR; n++) {
+		if (error == GL_CONTEXT_LOST_KHR)
+			return -ENOTRECOVERABLE;
 		log_error("render", "%s: GL says %s", doing, error_name(error));
 		rc = error == GL_OUT_OF_MEMORY ? -ENOMEM : -EIO;
 	}

@@ -21,7 +21,8 @@ enum {
 	GL_LIMIT_MEDIUMP_PX = 2048,      /* a side, where fragments have no highp */
 };
 
-/* Logs every pending GL error as "doing: NAME". 0, or -ENOMEM, or -EIO. */
+/* Logs every pending GL error as "doing: NAME". 0, or -ENOMEM, or -EIO; -ENOTRECOVERABLE, which is
+ * not logged: the GPU lost its context. */
 must_check int gl_check(const char *doing);
 /* Whole words only. */
 bool gl_has_extension(const char *name);

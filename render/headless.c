@@ -9,6 +9,7 @@
 #include <EGL/eglext.h>
 
 #include "base/log.h"
+#include "render/context.h"
 
 enum { DEVICES_MOST = 8 };
 
@@ -28,7 +29,6 @@ static bool start_context(struct headless *headless)
 {
 	static const EGLint wanted[] = { EGL_SURFACE_TYPE, 0, /* none: we draw into textures */
 					 EGL_RENDERABLE_TYPE, EGL_OPENGL_ES2_BIT, EGL_NONE };
-	static const EGLint version[] = { EGL_CONTEXT_CLIENT_VERSION, 2, EGL_NONE };
 	EGLConfig config;
 	EGLint count = 0;
 
@@ -36,8 +36,7 @@ static bool start_context(struct headless *headless)
 		return false;
 	if (eglBindAPI(EGL_OPENGL_ES_API) &&
 	    eglChooseConfig(headless->display, wanted, &config, 1, &count) && count == 1) {
-		headless->context =
-			eglCreateContext(headless->display, config, EGL_NO_CONTEXT, version);
+		headless->context = context_create(headless->display, config);
 		if (headless->context != EGL_NO_CONTEXT &&
 		    eglMakeCurrent(headless->display, EGL_NO_SURFACE, EGL_NO_SURFACE,
 				   headless->context))

@@ -1,0 +1,38 @@
+#!/bin/bash
+# The GPU loses its context in the middle of a visit (tests/tools/lost_gl.c plays it): the kiosk says
+# so in one line and ends with the status that asks to be started anew, and the next one shows the
+# temple again from its cache.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/lost
+rm -rf "$work"
+mkdir -p "$work"
+small_release
+release=$small/release pid=
+trap 'kill $pid 2>/dev/null || true' EXIT
+kiosk=(build/gopura-kiosk --display headless --size 640x360 --release "$release"
+	--trust "$release/root/1.json" --state "$work/state")
+
+# loses WAY: told as LOST_GL_BY says.
+loses() {
+	local log=$work/$1.log status=0
+	rm -f "$work/reset"
+	# A watchdog has the kiosk draw at rest too, as in the field.
+	WATCHDOG_USEC=1000000 LOST_GL=$work/reset LOST_GL_BY=$1 LD_PRELOAD=$PWD/build/tests/tools/lost_gl.so \
+		NOTIFY_SOCKET=@gopura-nobody "${kiosk[@]}" 2>"$log" &
+	pid=$!
+	wait_for 60 "first picture ($1)" grep -q 'app: first picture' "$log"
+	touch "$work/reset"
+	wait "$pid" || status=$?
+	[ "$status" = 75 ] || { tail -20 "$log"; fail "$1: ended with status $status, not 75"; }
+	[ "$(grep -c 'the GPU lost its context' "$log")" = 1 ] || fail "$1: not one line about it"
+	! grep -E 'GL says|kiosk bug|content bug|stopping' "$log" || fail "$1: more is said than that"
+}
+loses status
+loses error
+"${kiosk[@]}" 2>"$work/again.log" &
+pid=$!
+wait_for 60 "first picture once more" grep -q 'app: first picture' "$work/again.log"
+kill "$pid"
+wait "$pid" || fail "the kiosk did not end well"
