@@ -192,6 +192,11 @@ void follow_remember(struct follow *follow, struct hash root)
 		follow->options.remembered(follow->options.data, root, rc);
 }
 
+uint64_t follow_sequence(const struct follow *follow)
+{
+	return follow->update.sequence_floor;
+}
+
 int follow_fd(const struct follow *follow)
 {
 	return keeper_fd(follow->keeper);

@@ -29,6 +29,8 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 /* The release with this root can be shown whole: has it remembered. `remembered` is called from
  * follow_dispatch when the disk has it, or at once where there is nothing to write. */
 void follow_remember(struct follow *follow, struct hash root);
+/* Of the release that is remembered last; 0: none yet. */
+uint64_t follow_sequence(const struct follow *follow);
 /* Readable when follow_dispatch has something to do. */
 int follow_fd(const struct follow *follow);
 must_check int follow_dispatch(struct follow *follow);

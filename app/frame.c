@@ -294,6 +294,8 @@ int frame_draw(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = gl_check("drawing a frame");
 	kiosk->frame_us = (uint32_t)(clock_thread_us() - began_us);
+	kiosk->frames++;
+	kiosk->late_frames += kiosk->frame_us > FRAME_BUDGET_US;
 	if (rc == 0)
 		rc = display_present(kiosk->display);
 	say_first_picture(kiosk);

@@ -14,6 +14,7 @@
 #include "app/capture.h"
 #include "app/follow.h"
 #include "base/clock.h"
+#include "base/figures_socket.h"
 #include "base/log.h"
 #include "base/service.h"
 
@@ -263,6 +264,8 @@ int kiosk_start(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = capture_create(&kiosk->capture, kiosk);
 	if (rc == 0)
+		rc = vitals_offer(kiosk);
+	if (rc == 0)
 		follow_start(kiosk->follow);
 	kiosk->frame_wanted = true;
 	return rc;
@@ -270,6 +273,7 @@ int kiosk_start(struct kiosk *kiosk)
 
 void kiosk_stop(struct kiosk *kiosk)
 {
+	figures_socket_destroy(kiosk->figures);
 	capture_destroy(kiosk->capture);
 	if (kiosk->epoll_fd >= 0)
 		close(kiosk->epoll_fd);
@@ -302,6 +306,10 @@ static int dispatch(struct kiosk *kiosk, int fd)
 		return follow_dispatch(kiosk->follow);
 	if (kiosk->touch && fd == touch_fd(kiosk->touch))
 		return touch_dispatch(kiosk->touch);
+	if (kiosk->figures && fd == figures_socket_fd(kiosk->figures)) {
+		figures_socket_dispatch(kiosk->figures);
+		return 0;
+	}
 	if (kiosk->shown.scene && fd == scene_fd(kiosk->shown.scene)) {
 		kiosk_redraw(kiosk);
 		return scene_dispatch(kiosk->shown.scene);

@@ -17,6 +17,7 @@
 #include "render/scene.h"
 
 struct capture;
+struct figures_socket;
 struct follow;
 
 /* Of the program, beside success and failure: it is well, but must begin anew, from what it has
@@ -24,7 +25,10 @@ struct follow;
  * crash. */
 enum { KIOSK_STATUS_ANEW = 75 };
 
-enum { EXHIBIT_PAGES_MOST = 4096 };
+enum {
+	EXHIBIT_PAGES_MOST = 4096,
+	FRAME_BUDGET_US = 16667, /* what a panel of 60 Hz leaves */
+};
 
 /* One release as it is shown: its pictures and its words. */
 struct exhibit {
@@ -53,8 +57,9 @@ struct kiosk {
 	struct quads *quads;
 	struct touch *touch;
 	struct net_client *net;
-	struct follow *follow;   /* of releases */
-	struct capture *capture; /* NULL: a kiosk, not a measurement */
+	struct follow *follow;          /* of releases */
+	struct figures_socket *figures; /* NULL: not offered */
+	struct capture *capture;        /* NULL: a kiosk, not a measurement */
 
 	struct wants wants;
 	struct navigator navigator;
@@ -69,6 +74,7 @@ struct kiosk {
 	int64_t well_ms; /* of the last frame that the service manager was told of; 0: of none */
 	bool frame_wanted, words_move, eye_moves;
 	uint32_t frame_us;               /* work of the last frame, this thread */
+	uint64_t frames, late_frames;    /* drawn; of them with more work than a frame may take */
 	uint64_t object_count;           /* given to the scene since start */
 	bool hidden[OVERLAY_PARTS_MOST]; /* anchors behind stone, as last looked at */
 	uint32_t next_anchor;            /* to look at */
@@ -110,6 +116,9 @@ void exhibit_warm(struct kiosk *kiosk);
 void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc);
 /* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
 int exhibit_wait_ms(const struct kiosk *kiosk);
+
+/* vitals.c: offers how the terminal is, where the options ask for it. */
+must_check int vitals_offer(struct kiosk *kiosk);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);

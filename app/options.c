@@ -34,6 +34,7 @@ static const char help_text[] =
 	"  --log LEVEL          error, warn, info (default) or debug\n"
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
+	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
 	"  --help, --version\n"
 	"\n"
 	"Examples:\n"
@@ -63,6 +64,7 @@ enum {
 	OPTION_POLL,
 	OPTION_FETCH,
 	OPTION_SOCKET,
+	OPTION_FIGURES,
 	OPTION_LOG,
 	OPTION_HELP,
 	OPTION_VERSION
@@ -88,6 +90,7 @@ static const struct option long_options[] = {
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "figures", required_argument, NULL, OPTION_FIGURES },
 	{ "log", required_argument, NULL, OPTION_LOG },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ "version", no_argument, NULL, OPTION_VERSION },
@@ -154,7 +157,7 @@ static bool set_text(struct options *o, int option, const char *text)
 		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
 		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
 		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },
+		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->figures_path },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)

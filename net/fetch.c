@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/figures_socket.h"
 #include "base/log.h"
 #include "base/service.h"
 #include "net/bring.h"
@@ -27,7 +28,7 @@ enum {
 	ALIVE_MS = 30000,           /* while they do not: the kiosk shall know that we live */
 };
 
-enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL };
+enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL, SOURCE_FIGURES };
 
 struct fetch {
 	const struct fetch_options *options;
@@ -40,6 +41,7 @@ struct fetch {
 	struct link link;
 	struct bring *bring;
 	struct poll *poll;
+	struct figures_socket *figures; /* NULL: not offered */
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
 	int64_t said_ms;             /* when the kiosk was last told the figures */
@@ -209,6 +211,46 @@ static void tell_status(struct fetch *fetch)
 	send_to_kiosk(fetch, &message, -1);
 }
 
+/* ---- figures, for whoever looks after the terminal: docs/health.md has them as a table */
+
+static void write_figures(void *data, struct buffer *out)
+{
+	const struct fetch *fetch = data;
+	const struct link *link = &fetch->link;
+	struct bring_figures objects;
+
+	bring_figures(fetch->bring, &objects);
+	figures_gauge(out, "gopura_fetch_online", "Whether the last request was answered.",
+		      link->online);
+	figures_gauge(out, "gopura_fetch_offline_since_seconds",
+		      "When it was found offline (1970 is 0); 0 while online.",
+		      (double)link->offline_since_s);
+	figures_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is here.",
+		      fetch->has_kiosk);
+	figures_gauge(out, "gopura_fetch_wanted", "Objects that the kiosk waits for.",
+		      bring_wanted(fetch->bring));
+	figures_counter(out, "gopura_fetch_received_bytes_total",
+			"From the network, TLS and headers too.",
+			(double)http_received_bytes(fetch->http));
+	figures_counter(out, "gopura_fetch_requests_total", "Requests that ended, well or not.",
+			(double)(link->answers + link->errors));
+	figures_counter(out, "gopura_fetch_errors_total", "Requests without an answer.",
+			(double)link->errors);
+	figures_counter(out, "gopura_fetch_damaged_total", "Objects with wrong bytes, refused.",
+			(double)objects.damaged);
+	figures_counter(out, "gopura_fetch_from_cache_total", "Objects that the cache had.",
+			(double)objects.from_cache);
+	figures_counter(out, "gopura_fetch_from_server_total", "Objects that the server sent.",
+			(double)objects.from_server);
+	figures_gauge(out, "gopura_fetch_cache_bytes", "The cache on disk.",
+		      (double)cache_file_bytes(fetch->cache));
+	figures_gauge(out, "gopura_fetch_cache_budget_bytes", "What it may grow to.",
+		      (double)fetch->options->cache_budget_bytes);
+	figures_counter(out, "gopura_fetch_cache_refused_total",
+			"Writes that the cache's disk did not take.",
+			(double)cache_refused_writes(fetch->cache));
+}
+
 /* ---- the loop */
 
 static void flush_cache(struct fetch *fetch)
@@ -275,6 +317,9 @@ static int dispatch(struct fetch *fetch, enum source source)
 		return http_dispatch(fetch->http);
 	case SOURCE_SIGNAL:
 		fetch->ends = true;
+		return 0;
+	case SOURCE_FIGURES:
+		figures_socket_dispatch(fetch->figures);
 		return 0;
 	}
 	return 0;
@@ -372,6 +417,22 @@ static int create_parts(struct fetch *fetch)
 	return rc;
 }
 
+static int offer_figures(struct fetch *fetch)
+{
+	const struct figures_socket_options options = { .path = fetch->options->figures_path,
+							.prefix = "gopura_fetch",
+							.write = write_figures,
+							.data = fetch };
+	int rc = 0;
+
+	if (options.path)
+		rc = figures_socket_create(&fetch->figures, &options);
+	if (rc == 0 && fetch->figures)
+		rc = watch(fetch, figures_socket_fd(fetch->figures), SOURCE_FIGURES, EPOLLIN,
+			   EPOLL_CTL_ADD);
+	return rc;
+}
+
 static int start(struct fetch *fetch)
 {
 	int rc;
@@ -383,6 +444,8 @@ static int start(struct fetch *fetch)
 	rc = watch_signals(fetch);
 	if (rc == 0)
 		rc = create_parts(fetch);
+	if (rc == 0)
+		rc = offer_figures(fetch);
 	if (rc < 0)
 		return rc;
 	if (fetch->options->socket_path)
@@ -392,6 +455,7 @@ static int start(struct fetch *fetch)
 
 static void stop(struct fetch *fetch)
 {
+	figures_socket_destroy(fetch->figures);
 	poll_destroy(fetch->poll);
 	bring_destroy(fetch->bring);
 	packets_finish(&fetch->kiosk);

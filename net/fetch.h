@@ -11,9 +11,10 @@ struct fetch_options {
 	const char *release_url; /* https://..., http://..., a folder */
 	const char *cache_path;
 	uint64_t cache_budget_bytes;
-	const char *ca_file;     /* NULL: the system's */
-	const char *socket_path; /* to listen on; NULL: fd */
-	int fd;                  /* connected already; the fetcher ends with it */
+	const char *ca_file;      /* NULL: the system's */
+	const char *socket_path;  /* to listen on; NULL: fd */
+	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
+	int fd;                   /* connected already; the fetcher ends with it */
 	uint32_t poll_s;
 	uint64_t rate_limit; /* bytes of objects a second; 0: none */
 	uint32_t stall_s;    /* 0: the default */

@@ -28,6 +28,7 @@ void link_answered(struct link *link)
 {
 	if (!link->online)
 		log_info("net", "online");
+	link->answers++;
 	link->online = true;
 	link->offline_since_s = 0;
 	link->failures = 0;
@@ -36,6 +37,7 @@ void link_answered(struct link *link)
 
 void link_failed(struct link *link, const char *url, const char *why)
 {
+	link->errors++;
 	/* Requests that were under way when it broke tell nothing new. */
 	if (link->failures > 0 && clock_now_ms() < link->retry_at_ms)
 		return;

@@ -13,6 +13,7 @@ struct link {
 	bool online;              /* the last request was answered; false before the first */
 	uint64_t offline_since_s; /* wall clock; 0 while online */
 	uint32_t in_flight;       /* requests */
+	uint64_t answers, errors; /* requests that ended so, since link_init */
 };
 
 /* Of the n-th failure in a row (from 1): half a second doubling to a minute, times 0.5 .. 1.5. */

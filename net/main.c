@@ -16,6 +16,7 @@ static const char help[] =
 	"  --release URL       https://..., http://..., or a folder (a USB stick)\n"
 	"  --cache FILE        the cache's database; made when missing, set aside when damaged\n"
 	"  --socket PATH       listen for the kiosk here\n"
+	"  --figures PATH      tell whoever connects here how it goes (docs/health.md)\n"
 	"  --fd N              or talk to the kiosk over this connected descriptor, and end with it\n"
 	"  --cache-budget MIB  of the database and its log together (1024; at least 4)\n"
 	"  --ca FILE           certificate authority for https (the system's)\n"
@@ -34,6 +35,7 @@ enum {
 	OPTION_RELEASE = 256,
 	OPTION_CACHE,
 	OPTION_SOCKET,
+	OPTION_FIGURES,
 	OPTION_FD,
 	OPTION_CACHE_BUDGET,
 	OPTION_CA,
@@ -49,6 +51,7 @@ static const struct option long_options[] = {
 	{ "release", required_argument, NULL, OPTION_RELEASE },
 	{ "cache", required_argument, NULL, OPTION_CACHE },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "figures", required_argument, NULL, OPTION_FIGURES },
 	{ "fd", required_argument, NULL, OPTION_FD },
 	{ "cache-budget", required_argument, NULL, OPTION_CACHE_BUDGET },
 	{ "ca", required_argument, NULL, OPTION_CA },
@@ -88,6 +91,9 @@ static void take_option(struct fetch_options *options, int option)
 		break;
 	case OPTION_SOCKET:
 		options->socket_path = optarg;
+		break;
+	case OPTION_FIGURES:
+		options->figures_path = optarg;
 		break;
 	case OPTION_FD:
 		options->fd = (int)number("fd", optarg, 0, 65535);

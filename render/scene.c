@@ -346,6 +346,16 @@ int scene_dispatch(struct scene *scene)
 	return 0;
 }
 
+void scene_memory(const struct scene *scene, struct scene_memory *out)
+{
+	const uint64_t tile_bytes = 4ull * SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX;
+	const uint64_t face_bytes = (uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX;
+
+	out->texture_bytes =
+		scene->tiles.slot_of.count * tile_bytes + scene->tiles.key_count * face_bytes;
+	out->geometry_bytes = scene->geometry.bytes;
+}
+
 void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count)
 {
 	for (uint8_t *pixel = rgba; pixel < rgba + 4 * pixel_count; pixel += 4) {

@@ -65,6 +65,13 @@ struct scene_frame {
 void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
 		struct scene_frame *out);
 
+/* What is held of the budgets. */
+struct scene_memory {
+	uint64_t texture_bytes;  /* of tiles and depths that hold something */
+	uint64_t geometry_bytes; /* of patches, GPU and memory together */
+};
+void scene_memory(const struct scene *scene, struct scene_memory *out);
+
 /* Takes the background out of pixels that were read back: straight alpha, 0 where nothing is. */
 void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count);
 

@@ -323,6 +323,11 @@ uint64_t cache_file_bytes(const struct cache *cache)
 	return size_of_file(cache->path, "") + size_of_file(cache->path, "-wal");
 }
 
+uint64_t cache_refused_writes(const struct cache *cache)
+{
+	return cache->figures.refused_writes;
+}
+
 void cache_figures(struct cache *cache, struct cache_figures *out)
 {
 	int64_t kept;

@@ -63,7 +63,8 @@ must_check int cache_put_file(struct cache *cache, struct hash name, struct byte
 must_check int cache_flush(struct cache *cache);
 bool cache_needs_flush(const struct cache *cache);
 
-uint64_t cache_file_bytes(const struct cache *cache); /* of PATH and PATH-wal now */
+uint64_t cache_refused_writes(const struct cache *cache); /* since create */
+uint64_t cache_file_bytes(const struct cache *cache);     /* of PATH and PATH-wal now */
 /* Counts rows: not for every second. */
 void cache_figures(struct cache *cache, struct cache_figures *out);
 

@@ -46,6 +46,7 @@ static void sends_one_request_to_look_after_a_failure(void **state)
 	CHECK(link_is_down(&link) && link.offline_since_s == 1700000001);
 	link_answered(&link);
 	CHECK(link_may_ask(&link) && !link_is_down(&link));
+	CHECK(link.answers == 2 && link.errors == 3);
 }
 
 int main(void)
