@@ -16,8 +16,11 @@ struct follow {
 	struct hash root; /* of the remembered release; zero: none */
 	uint32_t root_bytes;
 	int64_t time_floor_s;
-	const char *refusal;     /* static */
-	struct release next;     /* brought now; sequence 0: none */
+	const char *said; /* of a refusal, in the log; static; "": none since a good release */
+	struct refusal refusal;
+	bool stamp_refused;  /* the last timestamp.json was: a refused release.json is a consequence
+			      */
+	struct release next; /* brought now; sequence 0: none */
 	struct buffer next_file; /* its release.json */
 };
 
@@ -77,7 +80,7 @@ int follow_create(struct follow **out, const struct follow_options *options)
 	if (!follow)
 		return -ENOMEM;
 	follow->options = *options;
-	follow->refusal = "";
+	follow->said = "";
 	buffer_init(&follow->next_file, METADATA_FILE_BYTES_MOST);
 	rc = state_create(&state, options->state_path);
 	if (rc == 0)
@@ -163,10 +166,16 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 			begin_next(follow, &release, bytes);
 		break;
 	}
-	if (rc < 0 && why != follow->refusal)
-		log_warn("app", "refused %s: %s", names[role], why);
-	if (rc < 0 || role == META_RELEASE)
-		follow->refusal = rc < 0 ? why : "";
+	if (rc < 0 && !(role == META_RELEASE && follow->stamp_refused)) {
+		if (why != follow->said) /* it will be the same in a minute */
+			log_warn("app", "refused %s: %s", names[role], why);
+		follow->said = why;
+		refusal_note(&follow->refusal, names[role], why);
+	}
+	if (role == META_TIMESTAMP)
+		follow->stamp_refused = rc < 0;
+	if (rc >= 0 && role == META_RELEASE)
+		follow->said = "";
 	if (rc >= 0 && time.now_s > follow->time_floor_s) {
 		follow->time_floor_s = time.now_s;
 		keeper_raise_time_floor(follow->keeper, time.now_s);
@@ -195,6 +204,11 @@ void follow_remember(struct follow *follow, struct hash root)
 uint64_t follow_sequence(const struct follow *follow)
 {
 	return follow->update.sequence_floor;
+}
+
+const struct refusal *follow_refusal(const struct follow *follow)
+{
+	return &follow->refusal;
 }
 
 int follow_fd(const struct follow *follow)

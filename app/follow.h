@@ -4,6 +4,7 @@
 #ifndef GOPURA_APP_FOLLOW_H
 #define GOPURA_APP_FOLLOW_H
 
+#include "base/refusal.h"
 #include "net/client.h"
 
 struct follow;
@@ -31,6 +32,8 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 void follow_remember(struct follow *follow, struct hash root);
 /* Of the release that is remembered last; 0: none yet. */
 uint64_t follow_sequence(const struct follow *follow);
+/* What was refused last of the releases that were offered. Borrowed; the counter tells of news. */
+const struct refusal *follow_refusal(const struct follow *follow);
 /* Readable when follow_dispatch has something to do. */
 int follow_fd(const struct follow *follow);
 must_check int follow_dispatch(struct follow *follow);

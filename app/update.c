@@ -47,6 +47,8 @@ int update_timestamp(struct update *update, struct bytes file, struct update_tim
 	rc = timestamp_decode(&timestamp, &update->trust, file, why);
 	if (rc < 0)
 		return rc;
+	if (has_expired(time, update->trust.expires_s))
+		return refuse(-EKEYEXPIRED, why, "the trust root has expired: sign root/N+1.json");
 	if (has_expired(time, timestamp.expires_s))
 		return refuse(-EKEYEXPIRED, why, "timestamp.json has expired: sign a new one");
 	if (timestamp.sequence < update->sequence_floor ||

@@ -4,7 +4,8 @@
  *   threshold, signatures   by the keys of the trust root in use (format/metadata.h)
  *   rollback                a sequence below the floor is refused
  *   mix and match           release.json must be the one that timestamp.json names by its hash
- *   freeze                  an expired file is refused, where the clock is known to be set
+ *   freeze                  an expired file is refused, where the clock is known to be set; so is
+ *                           every file under an expired root
  *   key rotation            root N+1 must be signed by the keys of N and by its own */
 #ifndef GOPURA_APP_UPDATE_H
 #define GOPURA_APP_UPDATE_H

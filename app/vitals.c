@@ -41,6 +41,22 @@ static void write_release(const struct kiosk *kiosk, struct buffer *out)
 		     (const struct figure_label[]){ { "root", hex }, { "name", root->name } }, 2);
 }
 
+static void write_refusal(const struct kiosk *kiosk, struct buffer *out)
+{
+	const struct refusal *refusal = follow_refusal(kiosk->follow);
+
+	figures_counter(out, "gopura_kiosk_refusals_total", "Releases and their files refused.",
+			(double)refusal->count);
+	if (refusal->count == 0)
+		return;
+	figures_gauge(out, "gopura_kiosk_refused_at_seconds", "When the last one was.",
+		      (double)refusal->at_s);
+	figures_info(
+		out, "gopura_kiosk_refusal_info", "What it was, and why.",
+		(const struct figure_label[]){ { "what", refusal->what }, { "why", refusal->why } },
+		2);
+}
+
 static void write_memory(const struct kiosk *kiosk, struct buffer *out)
 {
 	const struct scene_options budget =
@@ -79,6 +95,7 @@ static void write_figures(void *data, struct buffer *out)
 
 	write_frames(kiosk, out);
 	write_release(kiosk, out);
+	write_refusal(kiosk, out);
 	write_memory(kiosk, out);
 	write_board(kiosk, out);
 }

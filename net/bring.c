@@ -171,8 +171,11 @@ static void note_damage(struct bring *bring, struct want *want)
 	if (want->damages < 2)
 		return;
 	hash_to_hex(want->entry.key, hex);
-	if (want->reported != MISSING_DAMAGED)
+	if (want->reported != MISSING_DAMAGED) {
 		log_warn("net", "content bug: the server's bytes of object %s are damaged", hex);
+		refusal_note(bring->options.link->refusal, hex,
+			     "the server's bytes of this object are damaged");
+	}
 	want->retry_at_ms += link_pause_ms(want->failures);
 	report(bring, want, MISSING_DAMAGED);
 	bring_suspect_locators(bring);

@@ -69,8 +69,10 @@ static void note_failure(struct bring_release *release, int rc, const char *why)
 		return;
 	release->missing = !release->has_locator;
 	release->bring->plan_changed = true;
-	if (release->failures == 1)
-		log_warn("net", "content bug: locator/%s: %s", hex, why);
+	if (release->failures > 1)
+		return;
+	log_warn("net", "content bug: locator/%s: %s", hex, why);
+	refusal_note(release->bring->options.link->refusal, hex, why);
 }
 
 static void on_done(void *data, const struct http_result *result)

@@ -39,6 +39,7 @@ struct fetch {
 	struct http *http;
 	struct cache *cache;
 	struct link link;
+	struct refusal refusal; /* the last one, of the server's */
 	struct bring *bring;
 	struct poll *poll;
 	struct figures_socket *figures; /* NULL: not offered */
@@ -213,6 +214,20 @@ static void tell_status(struct fetch *fetch)
 
 /* ---- figures, for whoever looks after the terminal: docs/health.md has them as a table */
 
+static void write_refusal(const struct refusal *refusal, struct buffer *out)
+{
+	figures_counter(out, "gopura_fetch_refusals_total",
+			"Files, objects and connections given up.", (double)refusal->count);
+	if (refusal->count == 0)
+		return;
+	figures_gauge(out, "gopura_fetch_refused_at_seconds", "When the last one was.",
+		      (double)refusal->at_s);
+	figures_info(
+		out, "gopura_fetch_refusal_info", "What it was, and why.",
+		(const struct figure_label[]){ { "what", refusal->what }, { "why", refusal->why } },
+		2);
+}
+
 static void write_figures(void *data, struct buffer *out)
 {
 	const struct fetch *fetch = data;
@@ -249,6 +264,7 @@ static void write_figures(void *data, struct buffer *out)
 	figures_counter(out, "gopura_fetch_cache_refused_total",
 			"Writes that the cache's disk did not take.",
 			(double)cache_refused_writes(fetch->cache));
+	write_refusal(&fetch->refusal, out);
 }
 
 /* ---- the loop */
@@ -408,6 +424,7 @@ static int create_parts(struct fetch *fetch)
 	bring.http = poll.http = fetch->http;
 	bring.cache = fetch->cache;
 	link_init(&fetch->link);
+	fetch->link.refusal = &fetch->refusal;
 	if (rc == 0)
 		rc = bring_create(&fetch->bring, &bring);
 	if (rc == 0)

@@ -329,6 +329,8 @@ static void finish_request(CURL *easy, CURLcode code)
 		snprintf(why, sizeof(why), "HTTP status %ld", request->status);
 	else if (code == CURLE_OK || request->enough)
 		snprintf(why, sizeof(why), "fine");
+	else if (code == CURLE_OPERATION_TIMEDOUT)
+		snprintf(why, sizeof(why), "too slow: %s", request->error);
 	else
 		snprintf(why, sizeof(why), "%s",
 			 request->error[0] ? request->error : curl_easy_strerror(code));

@@ -41,8 +41,10 @@ void link_failed(struct link *link, const char *url, const char *why)
 	/* Requests that were under way when it broke tell nothing new. */
 	if (link->failures > 0 && clock_now_ms() < link->retry_at_ms)
 		return;
-	if (link->online || link->failures == 0)
+	if (link->online || link->failures == 0) {
 		log_warn("net", "offline: %s: %s", url, why);
+		refusal_note(link->refusal, url, why);
+	}
 	if (link->online)
 		link->offline_since_s = (uint64_t)clock_wall_s();
 	link->online = false;

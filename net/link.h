@@ -7,12 +7,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/refusal.h"
+
 struct link {
 	uint32_t failures; /* since the last answer */
 	int64_t retry_at_ms;
 	bool online;              /* the last request was answered; false before the first */
 	uint64_t offline_since_s; /* wall clock; 0 while online */
 	uint32_t in_flight;       /* requests */
+	struct refusal *refusal;  /* what was not taken of the server; borrowed, NULL: untold */
 	uint64_t answers, errors; /* requests that ended so, since link_init */
 };
 

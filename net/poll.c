@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { ROOTS_MOST = 64, ETAG_BYTES_MOST = 128 };
+enum { ROOTS_MOST = 64, ETAG_BYTES_MOST = 128, PATH_BYTES = 32 };
 
 enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_TIMESTAMP, STAGE_RELEASE };
 
@@ -107,6 +107,16 @@ static struct known *known_of_stage(struct poll *poll)
 	}
 }
 
+static const char *path_of_stage(const struct poll *poll, char out[PATH_BYTES])
+{
+	if (poll->stage == STAGE_ROOT)
+		snprintf(out, PATH_BYTES, "root/%u.json", poll->root_count + 1);
+	else
+		snprintf(out, PATH_BYTES, "%s.json",
+			 poll->stage == STAGE_RELEASE ? "release" : "timestamp");
+	return out;
+}
+
 /* ---- answers */
 
 static bool on_piece(void *data, struct bytes piece)
@@ -150,13 +160,13 @@ static int64_t period_ms(const struct poll *poll)
 	return period - period / 10 + random() % (period / 5 + 1);
 }
 
-/* Once: it will be the same in a minute. */
-static void complain(struct poll *poll, const char *why)
+/* Logged once: it will be the same in a minute. */
+static void complain(struct poll *poll, const char *path, const char *why)
 {
 	if (!poll->complained)
-		log_warn("net", "content bug: no %s.json to be had: %s",
-			 poll->stage == STAGE_TIMESTAMP ? "timestamp" : "release", why);
+		log_warn("net", "content bug: no %s to be had: %s", path, why);
 	poll->complained = true;
+	refusal_note(poll->options.link->refusal, path, why);
 }
 
 static void ask(struct poll *poll);
@@ -165,6 +175,7 @@ static void on_done(void *data, const struct http_result *result)
 {
 	struct poll *poll = data;
 	int rc = result->rc ? result->rc : poll->body.error;
+	char path[PATH_BYTES];
 
 	poll->request = NULL;
 	poll->options.link->in_flight--;
@@ -178,8 +189,10 @@ static void on_done(void *data, const struct http_result *result)
 	poll->failures = 0;
 	if (rc == 0 && !result->not_modified)
 		take_body(poll, result->etag);
-	else if (rc < 0 && poll->stage != STAGE_ROOT)
-		complain(poll, result->why);
+	else if (rc == -EFBIG || rc == -EBADMSG)
+		complain(poll, path_of_stage(poll, path), "larger than such a file may be");
+	else if (rc < 0 && poll->stage != STAGE_ROOT) /* the next root is not there, as a rule */
+		complain(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {
 		rest(poll, period_ms(poll));
 		return;
@@ -197,18 +210,14 @@ static void on_done(void *data, const struct http_result *result)
 static void ask(struct poll *poll)
 {
 	const struct known *known = known_of_stage(poll);
-	char path[32] = "timestamp.json";
-	struct http_ask question = { .path = path,
+	char path[PATH_BYTES];
+	struct http_ask question = { .path = path_of_stage(poll, path),
 				     .ceiling = MESSAGE_META_BYTES_MOST,
 				     .etag = known->file.size ? known->etag : NULL,
 				     .receive = on_piece,
 				     .done = on_done,
 				     .data = poll };
 
-	if (poll->stage == STAGE_ROOT)
-		snprintf(path, sizeof(path), "root/%u.json", poll->root_count + 1);
-	else if (poll->stage == STAGE_RELEASE)
-		snprintf(path, sizeof(path), "release.json");
 	buffer_clear(&poll->body);
 	if (http_ask(poll->options.http, &question, &poll->request) < 0)
 		rest(poll, 1000);

@@ -210,7 +210,10 @@ static void goes_back_to_the_pictures_on_the_panel(void **unused)
 	dispatch(follow); /* the new number is written without being asked for */
 	CHECK(told.remembered == 2 && hash_equal(told.remembered_root, root_of(0x11)));
 	publish(follow, 2, 0x22);
-	CHECK(told.begun == 3); /* older than what was seen */
+	CHECK(told.begun == 3);                    /* older than what was seen */
+	CHECK(follow_refusal(follow)->count == 1); /* the cause, in words for later */
+	CHECK(strcmp(follow_refusal(follow)->what, "timestamp.json") == 0);
+	CHECK(strstr(follow_refusal(follow)->why, "older") && follow_refusal(follow)->at_s > 0);
 	follow_destroy(follow);
 }
 

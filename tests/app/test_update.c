@@ -106,6 +106,22 @@ static int take(struct update *update, const struct offer *offer, const char **w
 	return rc;
 }
 
+static int offer_stamp(struct update *update, uint64_t sequence, struct bytes release)
+{
+	const struct timestamp timestamp = { .sequence = sequence,
+					     .expires_s = NOW_S + DAY_S,
+					     .release = hash_of(release) };
+	struct buffer stamp;
+	const char *why;
+	int rc;
+
+	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
+	rc = update_timestamp(update, buffer_bytes(&stamp), now, &why);
+	buffer_finish(&stamp);
+	return rc;
+}
+
 static void takes_a_newer_release_once(void **state)
 {
 	struct update update;
@@ -118,7 +134,7 @@ static void takes_a_newer_release_once(void **state)
 	CHECK(take(&update, &(struct offer){ .sequence = 7, .time = now }, &why) == 1);
 }
 
-static void refuses_to_go_back(void **state)
+static void refuses_a_rollback(void **state)
 {
 	struct update update;
 	const char *why;
@@ -132,7 +148,7 @@ static void refuses_to_go_back(void **state)
 		   &why) == -ESTALE);
 }
 
-static void refuses_files_that_do_not_belong_together(void **state)
+static void refuses_mix_and_match(void **state)
 {
 	struct update update;
 	const char *why;
@@ -143,7 +159,7 @@ static void refuses_files_that_do_not_belong_together(void **state)
 		   &why) == -ESTALE);
 }
 
-static void judges_expiry_only_by_a_clock_that_is_set(void **state)
+static void refuses_a_freeze_where_the_clock_is_set(void **state)
 {
 	struct offer late = { .sequence = 3, .expires_s = NOW_S - DAY_S };
 	struct update update;
@@ -193,7 +209,7 @@ static int offer_root(struct update *update, uint32_t version, const struct sign
 	return rc;
 }
 
-static void changes_keys_only_by_the_old_ones(void **state)
+static void follows_a_key_rotation_signed_by_old_and_new_keys(void **state)
 {
 	const struct signing_key both[2] = { root_key, root_key_2 };
 	struct update update;
@@ -210,6 +226,56 @@ static void changes_keys_only_by_the_old_ones(void **state)
 	CHECK(offer_root(&update, 3, &root_key_2, &root_key_2, 1) == 0);
 }
 
+/* A root whose releases need two of two keys. */
+static void refuses_a_release_below_the_threshold(void **state)
+{
+	const struct signing_key both[2] = { release_key, stranger };
+	const struct release release = {
+		.sequence = 2, .expires_s = NOW_S + DAY_S, .root = { { 1 } }, .root_bytes = 100
+	};
+	struct trust_root root = root_of(1, &root_key);
+	struct buffer file, one, two;
+	struct update update = { 0 };
+	struct release got;
+	const char *why = "";
+
+	(void)state;
+	give_role(&root, META_RELEASE, &stranger);
+	root.roles[META_RELEASE].threshold = 2;
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&one, METADATA_FILE_BYTES_MOST);
+	buffer_init(&two, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
+	CHECK(update_pin(&update, buffer_bytes(&file), &why) == 0);
+	CHECK(release_encode(&one, &release, both, 1) == 0);
+	CHECK(release_encode(&two, &release, both, 2) == 0);
+	CHECK(offer_stamp(&update, 2, buffer_bytes(&one)) == 0);
+	CHECK(update_release(&update, buffer_bytes(&one), now, &got, &why) == -EKEYREJECTED);
+	CHECK(strstr(why, "threshold"));
+	CHECK(offer_stamp(&update, 2, buffer_bytes(&two)) == 0);
+	CHECK(update_release(&update, buffer_bytes(&two), now, &got, &why) == 1);
+	buffer_finish(&file);
+	buffer_finish(&one);
+	buffer_finish(&two);
+}
+
+static void refuses_all_under_a_root_that_has_expired(void **state)
+{
+	const struct update_time late = { NOW_S + 366 * DAY_S };
+	struct offer offer = { .sequence = 2,
+			       .expires_s = late.now_s + DAY_S,
+			       .timestamp_expires_s = late.now_s + DAY_S,
+			       .time = late };
+	struct update update;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	CHECK(take(&update, &offer, &why) == -EKEYEXPIRED && strstr(why, "root"));
+	offer.time = no_clock;
+	CHECK(take(&update, &offer, &why) == 1);
+}
+
 static void takes_nothing_without_a_trust_root(void **state)
 {
 	struct update update = { 0 };
@@ -223,11 +289,13 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(takes_a_newer_release_once),
-		cmocka_unit_test(refuses_to_go_back),
-		cmocka_unit_test(refuses_files_that_do_not_belong_together),
-		cmocka_unit_test(judges_expiry_only_by_a_clock_that_is_set),
+		cmocka_unit_test(refuses_a_rollback),
+		cmocka_unit_test(refuses_mix_and_match),
+		cmocka_unit_test(refuses_a_freeze_where_the_clock_is_set),
 		cmocka_unit_test(refuses_strangers),
-		cmocka_unit_test(changes_keys_only_by_the_old_ones),
+		cmocka_unit_test(follows_a_key_rotation_signed_by_old_and_new_keys),
+		cmocka_unit_test(refuses_a_release_below_the_threshold),
+		cmocka_unit_test(refuses_all_under_a_root_that_has_expired),
 		cmocka_unit_test(takes_nothing_without_a_trust_root),
 	};
 

@@ -13,6 +13,7 @@ struct stage {
 	char folder[64];
 	struct cache *cache;
 	struct link link;
+	struct refusal refusal;
 	struct bring *bring;
 	uint8_t pack[OBJECTS * OBJECT_BYTES];
 	struct hash names[OBJECTS], page, pack_name, root;
@@ -76,6 +77,7 @@ static int set_up(void **state)
 	cache.path = path;
 	CHECK(cache_create(&stage->cache, &cache) == 0);
 	link_init(&stage->link);
+	stage->link.refusal = &stage->refusal;
 	options.cache = stage->cache;
 	CHECK(bring_create(&stage->bring, &options) == 0);
 	for (size_t i = 0; i < sizeof(stage->pack); i++)
@@ -299,7 +301,7 @@ static void keeps_what_was_dropped_while_it_came(void **state)
 	buffer_finish(&back);
 }
 
-static void asks_again_for_damaged_bytes_then_tells(void **state)
+static void refuses_a_wrong_hash_asks_again_and_tells(void **state)
 {
 	struct stage *stage = *state;
 
@@ -315,6 +317,7 @@ static void asks_again_for_damaged_bytes_then_tells(void **state)
 	CHECK(server.count == 3 && asked(0)->ask.size == OBJECT_BYTES);
 	give(asked(0), answer_to(stage, asked(0)));
 	CHECK(stage->missing == 1 && stage->reason == MISSING_DAMAGED);
+	CHECK(stage->refusal.count == 1 && strstr(stage->refusal.why, "damaged"));
 	end(asked(0), 0);
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1; /* repaired */
 	server.now_ms += 200000;
@@ -520,7 +523,7 @@ int main(void)
 		STAGED(stops_when_the_kiosk_takes_no_more),
 		STAGED(cancels_what_nobody_wants_any_more),
 		STAGED(keeps_what_was_dropped_while_it_came),
-		STAGED(asks_again_for_damaged_bytes_then_tells),
+		STAGED(refuses_a_wrong_hash_asks_again_and_tells),
 		STAGED(asks_for_the_locator_after_damage_but_not_amid_it),
 		STAGED(asks_again_for_the_rest_of_a_pack_cut_short),
 		STAGED(waits_while_the_server_is_away),

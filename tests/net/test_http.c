@@ -142,6 +142,7 @@ static int end_server(void **state)
 }
 
 struct outcome {
+	char why[128];
 	char body[64], etag[64];
 	size_t size;
 	bool ended, not_modified;
@@ -168,6 +169,7 @@ static void on_done(void *data, const struct http_result *result)
 	outcome->rc = result->rc;
 	outcome->not_modified = result->not_modified;
 	snprintf(outcome->etag, sizeof(outcome->etag), "%s", result->etag);
+	snprintf(outcome->why, sizeof(outcome->why), "%s", result->why);
 }
 
 static struct outcome fetch_with(const struct http_options *options, const char *path,
@@ -301,7 +303,7 @@ static void knows_a_bad_answer_from_no_answer(void **state)
 	}
 }
 
-static void gives_up_on_a_server_that_trickles(void **state)
+static void refuses_slow_retrieval(void **state)
 {
 	char url[64];
 	const struct http_options options = { .url = url, .stall_s = 15, .patience_s = 1 };
@@ -312,6 +314,7 @@ static void gives_up_on_a_server_that_trickles(void **state)
 	snprintf(url, sizeof(url), "http://127.0.0.1:%d", server.port);
 	outcome = fetch_with(&options, "trickle", 0, 0, NULL);
 	CHECK(outcome.rc == -EHOSTUNREACH && outcome.size >= 3);
+	CHECK(strncmp(outcome.why, "too slow", 8) == 0);
 	CHECK(clock_now_ms() - began_ms < 10000); /* long before it would count as stalled */
 }
 
@@ -373,7 +376,7 @@ int main(void)
 		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),
 		cmocka_unit_test(refuses_a_file_past_the_ceiling),
 		cmocka_unit_test(knows_a_bad_answer_from_no_answer),
-		cmocka_unit_test(gives_up_on_a_server_that_trickles),
+		cmocka_unit_test(refuses_slow_retrieval),
 		cmocka_unit_test(asks_conditionally),
 		cmocka_unit_test(reads_a_folder_like_a_server),
 		cmocka_unit_test(knows_which_urls_it_can_serve),

@@ -5,6 +5,7 @@
 struct stage {
 	struct link link;
 	struct poll *poll;
+	struct refusal refusal;
 	char said[256]; /* "root1 timestamp ..." */
 };
 
@@ -29,6 +30,7 @@ static int set_up(void **state)
 	memset(&server, 0, sizeof(server));
 	server.now_ms = 1000;
 	link_init(&stage->link);
+	stage->link.refusal = &stage->refusal;
 	CHECK(poll_create(&stage->poll, &options) == 0);
 	return 0;
 }
@@ -124,7 +126,7 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 	heard(stage, "root1:A ");
 }
 
-static void refuses_a_file_past_its_ceiling(void **state)
+static void refuses_endless_data(void **state)
 {
 	struct stage *stage = *state;
 	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MOST + 1);
@@ -135,6 +137,8 @@ static void refuses_a_file_past_its_ceiling(void **state)
 	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MOST + 1 });
 	end(asked(0), 0);
 	CHECK(stage->said[0] == '\0');
+	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/1.json") == 0);
+	CHECK(strcmp(stage->refusal.why, "larger than such a file may be") == 0);
 	answer("timestamp.json", ""); /* goes on with the others */
 	answer("release.json", "R");
 	heard(stage, "release0:R ");
@@ -149,7 +153,7 @@ int main(void)
 		STAGED(says_each_file_once_roots_first),
 		STAGED(says_all_again_when_asked),
 		STAGED(tries_again_after_pauses_when_the_server_is_away),
-		STAGED(refuses_a_file_past_its_ceiling),
+		STAGED(refuses_endless_data),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
