@@ -266,6 +266,16 @@ static void give_back_memory(struct kiosk *kiosk)
 	}
 }
 
+int frame_unseen(struct kiosk *kiosk)
+{
+	if (context_is_lost())
+		return -ENOTRECOVERABLE;
+	kiosk->frame_wanted = false;
+	exhibit_warm(kiosk);
+	say_wants(kiosk);
+	return 0;
+}
+
 int frame_draw(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms(), began_us = clock_thread_us();

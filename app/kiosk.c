@@ -13,6 +13,7 @@
 
 #include "app/capture.h"
 #include "app/follow.h"
+#include "app/panel.h"
 #include "base/clock.h"
 #include "base/figures_socket.h"
 #include "base/log.h"
@@ -20,7 +21,6 @@
 
 enum {
 	FRAME_MS = 16, /* where no panel sets the pace */
-	FLIP_WATCH_MS = 1000,
 	FOV_DEG = 45,
 };
 
@@ -100,6 +100,7 @@ static int start_display(struct kiosk *kiosk)
 		.kind = kiosk->options.display,
 		.width_px = kiosk->options.width_px,
 		.height_px = kiosk->options.height_px,
+		.hz = kiosk->options.hz,
 		.device = kiosk->options.device,
 		.title = "Gopura",
 		.pointer = fingers_on_pointer,
@@ -321,23 +322,6 @@ static int dispatch(struct kiosk *kiosk, int fd)
 	return 0; /* of a scene that was closed a moment ago */
 }
 
-/* Of two times to wait, of which -1 is for ever. */
-static int sooner(int a_ms, int b_ms)
-{
-	if (a_ms < 0 || b_ms < 0)
-		return a_ms < 0 ? b_ms : a_ms;
-	return a_ms < b_ms ? a_ms : b_ms;
-}
-
-static int manager_wait_ms(void)
-{
-	const int64_t due_ms = service_due_ms(), now_ms = clock_now_ms();
-
-	if (due_ms == INT64_MAX)
-		return -1;
-	return due_ms <= now_ms ? 0 : due_ms - now_ms > INT_MAX ? INT_MAX : (int)(due_ms - now_ms);
-}
-
 /* How long nothing needs to be done, milliseconds; -1: until something happens. */
 static int wait_ms(const struct kiosk *kiosk)
 {
@@ -345,31 +329,12 @@ static int wait_ms(const struct kiosk *kiosk)
 	const bool paced = display_kind(kiosk->display) == DISPLAY_DRM;
 	const int coming_ms = exhibit_wait_ms(kiosk);
 	const int capture_ms = kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
+
 	if (!display_ready(kiosk->display))
-		return FLIP_WATCH_MS;
+		return panel_wait_ms(kiosk);
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	return sooner(sooner(coming_ms, capture_ms), manager_wait_ms());
-}
-
-/* The terminal is well when what was drawn has come onto the panel. At rest nothing is drawn, and a
- * panel that hangs would not be noticed: then what is shown is drawn once more. */
-static void tell_manager(struct kiosk *kiosk)
-{
-	if (kiosk->last_frame_ms == 0 || !display_ready(kiosk->display))
-		return;
-	if (kiosk->well_ms == 0) {
-		service_ready();
-		kiosk->well_ms = kiosk->last_frame_ms;
-	}
-	if (clock_now_ms() < service_due_ms())
-		return;
-	if (kiosk->last_frame_ms > kiosk->well_ms) {
-		service_alive();
-		kiosk->well_ms = kiosk->last_frame_ms;
-	} else {
-		kiosk_redraw(kiosk);
-	}
+	return sooner(sooner(coming_ms, capture_ms), panel_wait_ms(kiosk));
 }
 
 static int turn(struct kiosk *kiosk)
@@ -382,14 +347,13 @@ static int turn(struct kiosk *kiosk)
 		return errno == EINTR ? 0 : -errno;
 	for (int i = 0; i < count && rc == 0; i++)
 		rc = dispatch(kiosk, ready[i].data.fd);
-	if (rc == 0 && count == 0 && !display_ready(kiosk->display))
-		rc = display_dispatch(kiosk->display); /* a flip that never completes */
 	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
 	if (count == 0 && (kiosk->capture || exhibit_wait_ms(kiosk) == 0))
 		kiosk_redraw(kiosk);
+	if (rc == 0 && !kiosk->quit)
+		rc = panel_turn(kiosk);
 	if (rc < 0 || kiosk->quit)
 		return rc;
-	tell_manager(kiosk);
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
 	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
 		kiosk->quit = true;
@@ -412,6 +376,8 @@ int kiosk_run(struct kiosk *kiosk)
 	service_stopping();
 	if (rc == -ENOTRECOVERABLE)
 		log_warn("app", "board bug: the GPU lost its context: starting anew");
+	else if (rc == -ESTALE)
+		log_warn("app", "the panel is another one now: starting anew");
 	else if (rc < 0)
 		log_error("app", "stopping: %s", strerror(-rc));
 	return rc;

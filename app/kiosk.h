@@ -89,12 +89,19 @@ struct kiosk {
 
 /* kiosk.c: start, run, stop (the reverse; any part may be missing). */
 must_check int kiosk_start(struct kiosk *kiosk);
-/* Until quit is set; negative errno (logged) where going on makes no sense; -ENOTRECOVERABLE: a new
- * process does. */
+/* Until quit is set; negative errno (logged) where going on makes no sense; -ENOTRECOVERABLE,
+ * -ESTALE: a new process does. */
 must_check int kiosk_run(struct kiosk *kiosk);
 void kiosk_stop(struct kiosk *kiosk);
 /* Has the loop wait for this descriptor too, until it is closed; -1: nothing. */
 must_check int kiosk_watch(struct kiosk *kiosk, int fd);
+/* Of two times to wait, milliseconds, of which -1 is for ever. */
+static inline int sooner(int a_ms, int b_ms)
+{
+	if (a_ms < 0 || b_ms < 0)
+		return a_ms < 0 ? b_ms : a_ms;
+	return a_ms < b_ms ? a_ms : b_ms;
+}
 /* The picture changes: draw soon. */
 void kiosk_redraw(struct kiosk *kiosk);
 /* Of the picture as the visitor sees it. */
@@ -122,6 +129,8 @@ must_check int vitals_offer(struct kiosk *kiosk);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);
+/* What a frame does beside drawing, while there is nothing to draw on: brings the next release. */
+must_check int frame_unseen(struct kiosk *kiosk);
 /* Where the eye is now, with the panel's fields filled in. */
 void frame_camera(const struct kiosk *kiosk, struct camera *out);
 /* From the visitor's pixels to the framebuffer's, and back: they differ where the panel is turned.

@@ -24,7 +24,7 @@ int main(int argc, char **argv)
 	if (rc == 0)
 		rc = kiosk_run(&kiosk);
 	kiosk_stop(&kiosk); /* the reverse; any part may be missing */
-	if (rc == -ENOTRECOVERABLE)
+	if (rc == -ENOTRECOVERABLE || rc == -ESTALE)
 		return KIOSK_STATUS_ANEW;
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

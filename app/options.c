@@ -19,7 +19,7 @@ static const char help_text[] =
 	"                       (default: $XDG_STATE_HOME/gopura or ~/.local/state/gopura)\n"
 	"  --display KIND       drm, window, headless or auto (default)\n"
 	"  --device FILE        KMS card, such as /dev/dri/card0 (default: the first with a panel)\n"
-	"  --size WxH           window, picture in memory, or mode of the panel\n"
+	"  --size WxH[@HZ]      window, picture in memory, or mode of the panel\n"
 	"  --board FILE         profile of the board (docs/board.md)\n"
 	"  --mode MODE          lumigraph (default), polygons, or corners (for comparison)\n"
 	"  --language CODE      first language, such as km\n"
@@ -128,12 +128,17 @@ static bool choose(const struct choice *choices, const char *name, int *value)
 	return false;
 }
 
-static bool parse_size(const char *text, int *width, int *height)
+static bool parse_size(const char *text, struct options *o)
 {
 	char end;
+	int count;
 
-	return sscanf(text, "%dx%d%c", width, height, &end) == 2 && *width >= 64 &&
-	       *width <= 8192 && *height >= 64 && *height <= 8192;
+	o->hz = 0;
+	count = sscanf(text, "%dx%d%c%d%c", &o->width_px, &o->height_px, &end, &o->hz, &end);
+	if (count != 2 && (count != 4 || !strchr(text, '@') || o->hz < 10 || o->hz > 500))
+		return false;
+	return o->width_px >= 64 && o->width_px <= 8192 && o->height_px >= 64 &&
+	       o->height_px <= 8192;
 }
 
 static bool parse_seconds(const char *text, uint32_t *out)
@@ -188,7 +193,7 @@ static bool set_value(struct options *o, int option, const char *text)
 			log_set_level((enum log_level)value);
 		return good;
 	case OPTION_SIZE:
-		return parse_size(text, &o->width_px, &o->height_px);
+		return parse_size(text, o);
 	case OPTION_POLL:
 		return parse_seconds(text, &o->poll_s);
 	case OPTION_OVERLAY:

@@ -18,8 +18,9 @@ struct options {
 	const char *fetch_program;
 	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
 	enum display_kind display;
-	const char *device; /* /dev/dri/cardN */
-	int width_px, height_px;
+	const char *device;      /* /dev/dri/cardN */
+	int width_px, height_px; /* 0: what the panel prefers */
+	int hz;                  /* 0: any */
 	const char *board_path;
 	const char *touch_replay_path;
 	const char *views_path; /* with capture_dir */

@@ -4,12 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/log.h"
 #include "render/display_backend.h"
 #include "render/gl.h"
-
-enum { FLIP_TIMEOUT_MS = 1000 };
 
 static int try_backend(struct display *display, const struct display_backend *backend,
 		       const struct display_options *options)
@@ -106,21 +103,58 @@ int display_fd(const struct display *display)
 	return display->fd;
 }
 
+int display_wait_ms(const struct display *display)
+{
+	return display->backend->wait_ms ? display->backend->wait_ms(display) : -1;
+}
+
 int display_dispatch(struct display *display)
 {
-	int rc = display->backend->dispatch ? display->backend->dispatch(display) : 0;
-
-	if (rc == 0 && display->flip_pending &&
-	    clock_now_ms() - display->flip_asked_ms > FLIP_TIMEOUT_MS) {
-		log_error("render", "board bug: a page flip did not complete within a second");
-		return -ETIMEDOUT;
-	}
-	return rc;
+	return display->backend->dispatch ? display->backend->dispatch(display) : 0;
 }
 
 bool display_ready(const struct display *display)
 {
-	return !display->flip_pending;
+	return !display->asleep && (!display->backend->ready || display->backend->ready(display));
+}
+
+bool display_is_dark(const struct display *display)
+{
+	return display->asleep || (display->backend->dark && display->backend->dark(display));
+}
+
+bool display_take_stale(struct display *display)
+{
+	const bool woken = display->woken;
+
+	display->woken = false;
+	return (display->backend->take_stale && display->backend->take_stale(display)) || woken;
+}
+
+/* A panel that cannot be switched off is black at least. */
+static int show_black(struct display *display, int why)
+{
+	log_warn("render", "board bug: the panel cannot be switched off (%s): it is black instead",
+		 strerror(-why));
+	display_begin(display);
+	glClearColor(0, 0, 0, 1);
+	glClear(GL_COLOR_BUFFER_BIT);
+	return display_present(display);
+}
+
+int display_sleep(struct display *display, bool asleep)
+{
+	int rc = 0;
+
+	if (asleep == display->asleep)
+		return 0;
+	if (display->backend->sleep)
+		rc = display->backend->sleep(display, asleep);
+	if (asleep && rc < 0)
+		rc = show_black(display, rc);
+	display->asleep = asleep;
+	display->woken = !asleep;
+	return rc;
 }
 
 void display_begin(struct display *display)

@@ -15,6 +15,12 @@ struct display_backend {
 	int (*dispatch)(struct display *display);
 	void (*begin)(struct display *display);
 	int (*present)(struct display *display);
+	/* What may be missing where nothing is waited for. */
+	bool (*ready)(const struct display *display);
+	bool (*dark)(const struct display *display);
+	int (*wait_ms)(const struct display *display);
+	bool (*take_stale)(struct display *display);
+	int (*sleep)(struct display *display, bool asleep);
 };
 
 struct display {
@@ -22,8 +28,7 @@ struct display {
 	void *state; /* the backend's own */
 	int width_px, height_px, width_mm;
 	int fd;
-	bool flip_pending;
-	int64_t flip_asked_ms;
+	bool asleep, woken;
 };
 
 extern const struct display_backend display_drm, display_window, display_headless;

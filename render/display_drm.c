@@ -2,41 +2,38 @@
  * render nodes may differ. */
 #include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <drm_fourcc.h>
 #include <gbm.h>
-#include <xf86drm.h>
 
-#include "base/clock.h"
 #include "base/log.h"
 #include "render/context.h"
 #include "render/display_backend.h"
-#include "render/drm_card.h"
+#include "render/drm_panel.h"
 #include "render/gl.h"
 
 struct drm_display {
-	struct drm_card card;
+	struct drm_panel panel;
 	struct gbm_device *gbm;
 	struct gbm_surface *surface;
 	EGLDisplay egl;
 	EGLContext context;
 	EGLSurface egl_surface;
 	struct gbm_bo *shown, *next; /* borrowed from the surface until released */
-	bool mode_is_set;
 };
 
 static int create_surface(struct drm_display *drm)
 {
-	const uint32_t width = drm->card.mode.hdisplay, height = drm->card.mode.vdisplay;
+	const uint32_t width = drm->panel.card.mode.hdisplay,
+		       height = drm->panel.card.mode.vdisplay;
 	const uint64_t linear = DRM_FORMAT_MOD_LINEAR;
 
-	if (drm->card.modifier_count > 0)
+	if (drm->panel.card.modifier_count > 0)
 		drm->surface = gbm_surface_create_with_modifiers(
-			drm->gbm, width, height, GBM_FORMAT_XRGB8888, drm->card.modifiers,
-			drm->card.modifier_count);
+			drm->gbm, width, height, GBM_FORMAT_XRGB8888, drm->panel.card.modifiers,
+			drm->panel.card.modifier_count);
 	if (!drm->surface)
 		drm->surface = gbm_surface_create_with_modifiers(drm->gbm, width, height,
 								 GBM_FORMAT_XRGB8888, &linear, 1);
@@ -101,12 +98,16 @@ static int create(struct display *display, const struct display_options *options
 	if (!drm)
 		return -ENOMEM;
 	display->state = drm;
-	drm->card.fd = -1;
-	rc = drm_card_open(&drm->card, options->device, options->connector, options->width_px,
-			   options->height_px);
+	rc = drm_panel_open(&drm->panel,
+			    &(struct drm_card_options){
+				    .device = options->device,
+				    .connector = options->connector,
+				    .mode = { options->width_px, options->height_px, options->hz },
+				    .may_wait = options->kind == DISPLAY_DRM,
+			    });
 	if (rc < 0)
 		return rc;
-	drm->gbm = gbm_create_device(drm->card.fd);
+	drm->gbm = gbm_create_device(drm->panel.card.fd);
 	rc = drm->gbm ? create_surface(drm) : -ENODEV;
 	if (rc == 0)
 		rc = create_context(drm);
@@ -116,10 +117,10 @@ static int create(struct display *display, const struct display_options *options
 			  (unsigned)eglGetError());
 		return rc;
 	}
-	display->width_px = drm->card.mode.hdisplay;
-	display->height_px = drm->card.mode.vdisplay;
-	display->width_mm = drm->card.width_mm;
-	display->fd = drm->card.fd;
+	display->width_px = drm->panel.card.mode.hdisplay;
+	display->height_px = drm->panel.card.mode.vdisplay;
+	display->width_mm = drm->panel.card.width_mm;
+	display->fd = drm_panel_fd(&drm->panel);
 	return 0;
 }
 
@@ -145,33 +146,24 @@ static void destroy(struct display *display)
 		gbm_surface_destroy(drm->surface);
 	if (drm->gbm)
 		gbm_device_destroy(drm->gbm);
-	drm_card_close(&drm->card);
+	drm_panel_close(&drm->panel);
 	free(drm);
 	display->state = NULL;
-}
-
-static void on_flip(int fd, unsigned int sequence, unsigned int seconds, unsigned int microseconds,
-		    void *data)
-{
-	struct display *display = data;
-	struct drm_display *drm = display->state;
-
-	(void)fd, (void)sequence, (void)seconds, (void)microseconds;
-	if (drm->shown)
-		gbm_surface_release_buffer(drm->surface, drm->shown);
-	drm->shown = drm->next;
-	drm->next = NULL;
-	display->flip_pending = false;
 }
 
 static int dispatch(struct display *display)
 {
 	struct drm_display *drm = display->state;
-	drmEventContext events = { .version = 2, .page_flip_handler = on_flip };
+	bool flipped;
+	const int rc = drm_panel_dispatch(&drm->panel, &flipped);
 
-	if (drmHandleEvent(drm->card.fd, &events) < 0 && errno != EAGAIN)
-		return -errno;
-	return 0;
+	if (flipped) {
+		if (drm->shown)
+			gbm_surface_release_buffer(drm->surface, drm->shown);
+		drm->shown = drm->next;
+		drm->next = NULL;
+	}
+	return rc;
 }
 
 static void begin(struct display *display)
@@ -199,13 +191,13 @@ static uint32_t framebuffer_of(struct drm_display *drm, struct gbm_bo *bo)
 
 	if (fb)
 		return fb;
-	if (drm->card.modifier_count > 0 && modifier != DRM_FORMAT_MOD_INVALID &&
+	if (drm->panel.card.modifier_count > 0 && modifier != DRM_FORMAT_MOD_INVALID &&
 	    gbm_bo_get_plane_count(bo) == 1)
-		rc = drmModeAddFB2WithModifiers(drm->card.fd, width, height, DRM_FORMAT_XRGB8888,
-						handles, strides, offsets, modifiers, &fb,
-						DRM_MODE_FB_MODIFIERS);
+		rc = drmModeAddFB2WithModifiers(drm->panel.card.fd, width, height,
+						DRM_FORMAT_XRGB8888, handles, strides, offsets,
+						modifiers, &fb, DRM_MODE_FB_MODIFIERS);
 	if (rc < 0)
-		rc = drmModeAddFB2(drm->card.fd, width, height, DRM_FORMAT_XRGB8888, handles,
+		rc = drmModeAddFB2(drm->panel.card.fd, width, height, DRM_FORMAT_XRGB8888, handles,
 				   strides, offsets, &fb, 0);
 	if (rc < 0)
 		return 0;
@@ -216,6 +208,7 @@ static uint32_t framebuffer_of(struct drm_display *drm, struct gbm_bo *bo)
 static int present(struct display *display)
 {
 	struct drm_display *drm = display->state;
+	bool shown = false;
 	uint32_t fb;
 	int rc;
 
@@ -225,17 +218,47 @@ static int present(struct display *display)
 	if (!drm->next)
 		return -EIO;
 	fb = framebuffer_of(drm, drm->next);
-	rc = fb ? drm_card_flip(&drm->card, fb, !drm->mode_is_set, display) : -EIO;
-	if (rc < 0) {
-		log_error("render", "the panel refused a picture: %s", strerror(-rc));
+	rc = fb ? drm_panel_show(&drm->panel, fb, &shown) : -EIO;
+	if (!shown) {
 		gbm_surface_release_buffer(drm->surface, drm->next);
 		drm->next = NULL;
-		return rc;
 	}
-	drm->mode_is_set = true;
-	display->flip_pending = true;
-	display->flip_asked_ms = clock_now_ms();
-	return 0;
+	return rc;
+}
+
+static bool is_ready(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_ready(&drm->panel);
+}
+
+static bool is_dark(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_dark(&drm->panel);
+}
+
+static int wait_ms(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_wait_ms(&drm->panel);
+}
+
+static bool take_stale(struct display *display)
+{
+	struct drm_display *drm = display->state;
+
+	return drm_panel_take_stale(&drm->panel);
+}
+
+static int sleep_or_wake(struct display *display, bool asleep)
+{
+	struct drm_display *drm = display->state;
+
+	return drm_panel_sleep(&drm->panel, asleep);
 }
 
 const struct display_backend display_drm = {
@@ -246,4 +269,9 @@ const struct display_backend display_drm = {
 	.dispatch = dispatch,
 	.begin = begin,
 	.present = present,
+	.ready = is_ready,
+	.dark = is_dark,
+	.wait_ms = wait_ms,
+	.take_stale = take_stale,
+	.sleep = sleep_or_wake,
 };

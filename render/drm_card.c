@@ -61,6 +61,9 @@ static bool find_properties(struct drm_card *card)
 		{ &p->plane_crtc_h, card->plane, plane, "CRTC_H" },
 	};
 
+	p->connector_link = property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR,
+					"link-status", NULL);
+
 	for (size_t i = 0; i < ARRAY_COUNT(wanted); i++) {
 		*wanted[i].id = property_id(card->fd, wanted[i].object, wanted[i].type,
 					    wanted[i].name, NULL);
@@ -72,12 +75,12 @@ static bool find_properties(struct drm_card *card)
 
 /* ---- choosing */
 
-static bool connector_fits(const drmModeConnector *connector, const char *name)
+static bool connector_has_name(const drmModeConnector *connector, const char *name)
 {
 	char own_name[64];
 
-	if (connector->connection != DRM_MODE_CONNECTED || connector->count_modes == 0)
-		return false;
+	if (connector->connector_type == DRM_MODE_CONNECTOR_WRITEBACK)
+		return false; /* writes into memory */
 	if (!name)
 		return true;
 	snprintf(own_name, sizeof(own_name), "%s-%u",
@@ -86,20 +89,26 @@ static bool connector_fits(const drmModeConnector *connector, const char *name)
 	return strcmp(name, own_name) == 0;
 }
 
-static void choose_mode(struct drm_card *card, const drmModeConnector *connector, int width_px,
-			int height_px)
+static void choose_mode(struct drm_card *card, const drmModeConnector *connector,
+			const struct drm_mode_wish *wish)
 {
-	card->mode = connector->modes[0];
-	for (int i = connector->count_modes - 1; i >= 0; i--) {
-		const drmModeModeInfo *mode = &connector->modes[i];
+	uint64_t edid = 0;
+	enum drm_mode_reason reason;
 
-		if (width_px ? mode->hdisplay == width_px && mode->vdisplay == height_px
-			     : (mode->type & DRM_MODE_TYPE_PREFERRED) != 0)
-			card->mode = *mode;
-	}
-	if (width_px && (card->mode.hdisplay != width_px || card->mode.vdisplay != height_px))
+	property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR, "EDID", &edid);
+	reason = drm_mode_choose(&card->mode, connector->modes, connector->count_modes, edid != 0,
+				 wish);
+	if (!card->connected)
+		log_warn("render", "no panel is connected: going on unseen");
+	else if (reason == DRM_MODE_UNKNOWN)
 		log_warn("render", "board bug: the panel has no mode %d x %d, taking %d x %d",
-			 width_px, height_px, card->mode.hdisplay, card->mode.vdisplay);
+			 wish->width_px, wish->height_px, card->mode.hdisplay, card->mode.vdisplay);
+	else if (reason == DRM_MODE_OTHER_RATE)
+		log_warn("render", "board bug: the panel has %d x %d not at %d Hz, taking %u",
+			 wish->width_px, wish->height_px, wish->hz, card->mode.vrefresh);
+	else if (reason == DRM_MODE_MADE)
+		log_info("render", "the panel does not say what it can: taking %d x %d at %u Hz",
+			 card->mode.hdisplay, card->mode.vdisplay, card->mode.vrefresh);
 }
 
 /* Bits of the CRTCs that the connector can be driven by. */
@@ -117,18 +126,22 @@ static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
 	return bits;
 }
 
-static bool choose_connector(struct drm_card *card, const drmModeRes *resources, const char *name,
-			     int width_px, int height_px, uint32_t *crtc_bits)
+/* The first connector of that name with a panel; where there is none and connected is false, the
+ * first of that name. */
+static bool choose_connector(struct drm_card *card, const drmModeRes *resources, bool connected,
+			     const struct drm_card_options *options, uint32_t *crtc_bits)
 {
 	for (int i = 0; i < resources->count_connectors; i++) {
 		drmModeConnector *connector =
 			drmModeGetConnector(card->fd, resources->connectors[i]);
-		bool fits = connector && connector_fits(connector, name);
+		const bool fits = connector && connector_has_name(connector, options->connector) &&
+				  (!connected || connector->connection == DRM_MODE_CONNECTED);
 
 		if (fits) {
 			card->connector = connector->connector_id;
+			card->connected = connector->connection == DRM_MODE_CONNECTED;
 			card->width_mm = (int)connector->mmWidth;
-			choose_mode(card, connector, width_px, height_px);
+			choose_mode(card, connector, &options->mode);
 			*crtc_bits = possible_crtcs(card->fd, connector);
 		}
 		drmModeFreeConnector(connector);
@@ -194,8 +207,8 @@ static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint3
 	return -ENODEV;
 }
 
-static int open_card(struct drm_card *card, const char *device, const char *connector, int width_px,
-		     int height_px)
+static int open_card(struct drm_card *card, const char *device, bool connected,
+		     const struct drm_card_options *options)
 {
 	drmModeRes *resources;
 	uint32_t crtc_bits = 0;
@@ -210,7 +223,7 @@ static int open_card(struct drm_card *card, const char *device, const char *conn
 	resources = drmModeGetResources(card->fd);
 	if (!resources)
 		rc = -ENODEV; /* renders, but shows nothing: another card drives the panel */
-	else if (!choose_connector(card, resources, connector, width_px, height_px, &crtc_bits))
+	else if (!choose_connector(card, resources, connected, options, &crtc_bits))
 		rc = -ENXIO;
 	else if (!drmIsMaster(card->fd) && drmSetMaster(card->fd) < 0)
 		rc = -EBUSY;
@@ -236,28 +249,61 @@ static const char *why_not(int rc)
 	}
 }
 
-int drm_card_open(struct drm_card *out, const char *device, const char *connector, int width_px,
-		  int height_px)
+static int open_any(struct drm_card *out, bool connected, const struct drm_card_options *options)
 {
-	int rc;
+	char path[32];
 
-	if (device) {
-		rc = open_card(out, device, connector, width_px, height_px);
-		if (rc < 0)
-			log_error("render", "%s: %s", device, why_not(rc));
-		return rc < 0 ? -ENODEV : 0;
-	}
 	for (int i = 0; i < CARDS_MOST; i++) {
-		char path[32];
+		int rc;
 
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
-		rc = open_card(out, path, connector, width_px, height_px);
+		rc = open_card(out, options->device ? options->device : path, connected, options);
 		if (rc == 0)
 			return 0;
-		if (rc != -ENOENT)
+		if (options->device) {
+			if (connected && rc == -ENXIO && options->may_wait)
+				return -ENODEV; /* looked at again without a panel */
+			log_error("render", "%s: %s", options->device, why_not(rc));
+			return -ENODEV;
+		}
+		if (rc != -ENOENT && connected)
 			log_info("render", "%s: %s", path, why_not(rc));
 	}
 	return -ENODEV;
+}
+
+int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
+{
+	int rc = open_any(out, true, options);
+
+	if (rc < 0 && options->may_wait)
+		rc = open_any(out, false, options);
+	return rc;
+}
+
+enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)
+{
+	drmModeRes *resources = drmModeGetResources(card->fd);
+	struct drm_card now = *card;
+	uint32_t crtc_bits;
+	uint64_t link = DRM_MODE_LINK_STATUS_GOOD;
+	bool there, same;
+
+	there = resources && choose_connector(&now, resources, true, options, &crtc_bits);
+	drmModeFreeResources(resources);
+	if (!there) {
+		card->connected = false;
+		return DRM_CARD_NO_PANEL;
+	}
+	same = now.connector == card->connector && now.mode.hdisplay == card->mode.hdisplay &&
+	       now.mode.vdisplay == card->mode.vdisplay;
+	if (!same)
+		return DRM_CARD_OTHER_PANEL;
+	property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR, "link-status", &link);
+	card->link_is_bad = link == DRM_MODE_LINK_STATUS_BAD;
+	card->connected = true;
+	card->mode = now.mode;
+	return DRM_CARD_SAME_PANEL;
 }
 
 void drm_card_close(struct drm_card *card)
@@ -271,98 +317,4 @@ void drm_card_close(struct drm_card *card)
 	if (card->fd >= 0)
 		close(card->fd);
 	*card = (struct drm_card){ .fd = -1 };
-}
-
-/* ---- flips */
-
-/* Sticky: the first failure stays, and is judged once. */
-struct atomic {
-	drmModeAtomicReq *request;
-	bool failed;
-};
-
-static void atomic_add(struct atomic *atomic, uint32_t object, uint32_t property, uint64_t value)
-{
-	if (!atomic->request ||
-	    drmModeAtomicAddProperty(atomic->request, object, property, value) < 0)
-		atomic->failed = true;
-}
-
-static void add_mode(struct atomic *atomic, struct drm_card *card, uint32_t *blob)
-{
-	const struct drm_card_properties *p = &card->properties;
-
-	if (drmModeCreatePropertyBlob(card->fd, &card->mode, sizeof(card->mode), blob) < 0)
-		atomic->failed = true;
-	atomic_add(atomic, card->connector, p->connector_crtc, card->crtc);
-	atomic_add(atomic, card->crtc, p->crtc_mode, *blob);
-	atomic_add(atomic, card->crtc, p->crtc_active, 1);
-}
-
-static void add_plane(struct atomic *atomic, const struct drm_card *card, uint32_t fb)
-{
-	const struct drm_card_properties *p = &card->properties;
-	const uint64_t width = card->mode.hdisplay, height = card->mode.vdisplay;
-
-	atomic_add(atomic, card->plane, p->plane_fb, fb);
-	atomic_add(atomic, card->plane, p->plane_crtc, card->crtc);
-	atomic_add(atomic, card->plane, p->plane_src_x, 0);
-	atomic_add(atomic, card->plane, p->plane_src_y, 0);
-	atomic_add(atomic, card->plane, p->plane_src_w, width << 16);
-	atomic_add(atomic, card->plane, p->plane_src_h, height << 16);
-	atomic_add(atomic, card->plane, p->plane_crtc_x, 0);
-	atomic_add(atomic, card->plane, p->plane_crtc_y, 0);
-	atomic_add(atomic, card->plane, p->plane_crtc_w, width);
-	atomic_add(atomic, card->plane, p->plane_crtc_h, height);
-}
-
-static int flip_atomic(struct drm_card *card, uint32_t fb, bool set_mode, void *data)
-{
-	const uint32_t flags = set_mode ? DRM_MODE_ATOMIC_ALLOW_MODESET : 0;
-	struct atomic atomic = { .request = drmModeAtomicAlloc() };
-	uint32_t mode_blob = 0;
-	int rc = -ENOMEM;
-
-	if (set_mode)
-		add_mode(&atomic, card, &mode_blob);
-	add_plane(&atomic, card, fb);
-	if (!atomic.failed)
-		rc = drmModeAtomicCommit(card->fd, atomic.request,
-					 flags | DRM_MODE_ATOMIC_TEST_ONLY, NULL);
-	if (rc == 0)
-		rc = drmModeAtomicCommit(
-			card->fd, atomic.request,
-			flags | DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT, data);
-	if (mode_blob)
-		drmModeDestroyPropertyBlob(card->fd, mode_blob);
-	drmModeAtomicFree(atomic.request);
-	return rc;
-}
-
-static int flip_legacy(struct drm_card *card, uint32_t fb, bool set_mode, void *data)
-{
-	int rc = 0;
-
-	if (set_mode)
-		rc = drmModeSetCrtc(card->fd, card->crtc, fb, 0, 0, &card->connector, 1,
-				    &card->mode);
-	if (rc == 0)
-		rc = drmModePageFlip(card->fd, card->crtc, fb, DRM_MODE_PAGE_FLIP_EVENT, data);
-	return rc < 0 ? -errno : 0;
-}
-
-int drm_card_flip(struct drm_card *card, uint32_t fb, bool set_mode, void *data)
-{
-	int rc;
-
-	if (!card->atomic)
-		return flip_legacy(card, fb, set_mode, data);
-	rc = flip_atomic(card, fb, set_mode, data);
-	if (rc < 0 && set_mode) {
-		log_info("render", "atomic mode set refused (%s), trying the legacy interface",
-			 strerror(-rc));
-		card->atomic = false;
-		rc = flip_legacy(card, fb, true, data);
-	}
-	return rc;
 }

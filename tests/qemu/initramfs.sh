@@ -7,7 +7,7 @@ lib=/usr/lib/x86_64-linux-gnu
 rm -rf "$root"
 mkdir -p "$root"/{bin,dev,proc,sys,tmp,run,etc/fonts,modules,release,usr/share/fonts,usr/share/glvnd/egl_vendor.d}
 cp /bin/busybox "$root/bin/"
-for name in sh mount insmod mkdir sleep poweroff cat ls; do ln -s busybox "$root/bin/$name"; done
+for name in sh mount insmod mkdir sleep poweroff cat ls grep tee sed; do ln -s busybox "$root/bin/$name"; done
 cp -r "$release/." "$root/release/"
 
 # Modules, in the order they need each other.
@@ -60,11 +60,17 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do [ -e /dev/dri/card0 ] && break; sleep 0.2; don
 # Under TCG with -cpu max, wide vectors are emulated and slow.
 export LP_NATIVE_VECTOR_WIDTH=128 HOME=/tmp MESA_SHADER_CACHE_DIR=/tmp
 echo "init: starting the kiosk" >/dev/console
-/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug >/dev/console 2>&1
-echo "init: the kiosk ended with status $?" >/dev/console
+kiosk() {
+	/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug "$@" 2>&1
+	echo "init: the kiosk ended with status $?"
+}
+said() { until grep -q "$1" /tmp/log; do sleep 0.2; done; }
+: >/tmp/log
+. /lib-init.sh # what the kernel's command line asks for
 sleep 1
 poweroff -f
 C
+cp "$(dirname "$0")/lib-init.sh" "$root/"
 chmod +x "$root/init"
 (cd "$root" && find . | cpio -o -H newc --quiet) >"$out"
 echo "initramfs: $(($(stat -c %s "$out") / 1048576)) MiB"

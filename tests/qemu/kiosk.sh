@@ -1,7 +1,7 @@
 #!/bin/bash
 # The kiosk on a real KMS card, inside QEMU without KVM: virtio-gpu, virtio-tablet, an initramfs
 # with nothing but the kiosk and a small release. A tap through QMP opens a card, which the
-# screendump shows. Pictures: build/qemu/*.png.
+# screendump shows. Then the panel is unplugged and plugged in. Pictures: build/qemu/*.png.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }
@@ -31,4 +31,5 @@ sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
 build/gopura-content build "$content" --out "$release"
 
 "$here/initramfs.sh" "$work/kernel" "$release" "$work/initramfs.cpio"
-exec python3 "$here/visit.py" "$kernel" "$work/initramfs.cpio" "$work"
+python3 "$here/visit.py" "$kernel" "$work/initramfs.cpio" "$work"
+exec python3 "$here/plug.py" "$kernel" "$work/initramfs.cpio" "$work"

@@ -1,0 +1,25 @@
+# Part of the guest's init: the kiosk, and what happens to its panel (gopura.case= of the command line).
+case $(sed -n 's/.*gopura\.case=\([a-z]*\).*/\1/p' /proc/cmdline) in
+unplugged)
+	# Without a panel at the start; then it comes, goes and comes again.
+	status=$(ls /sys/class/drm/card0-*/status)
+	echo off >"$status"
+	(
+		said 'no panel is connected'
+		sleep 4
+		echo "init: plugged in"
+		echo on >"$status"
+		said 'app: first picture'
+		sleep 2
+		echo "init: unplugged"
+		echo off >"$status"
+		said 'the panel is gone'
+		sleep 5
+		echo "init: plugged in again"
+		echo on >"$status"
+	) >/dev/console &
+	;;
+esac
+until kiosk | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
+	sleep 0.2 # as the service manager does for status 75
+done

@@ -1,0 +1,112 @@
+"""The machine that runs the kiosk: boot, log, pictures."""
+import os
+import re
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+sys.path.insert(0, os.path.dirname(__file__))
+from qmp import Qmp
+
+WIDTH, HEIGHT = 640, 360
+BOOT_S, ANSWER_S = 300, 90
+
+
+def read_png(path):
+    """Rows of RGB bytes of an 8-bit RGB PNG, as QEMU writes it."""
+    data = open(path, "rb").read()
+    at, packed, width, height = 8, b"", 0, 0
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at : at + 8])
+        body = data[at + 8 : at + 8 + size]
+        if kind == b"IHDR":
+            width, height, _, colour = struct.unpack(">IIBB", body[:10])
+            assert colour == 2, "RGB expected"
+        elif kind == b"IDAT":
+            packed += body
+        at += size + 12
+    raw, stride, rows, before = zlib.decompress(packed), width * 3, [], bytearray(width * 3)
+    for y in range(height):
+        filter_type, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1 : (y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b = line[i - 3] if i >= 3 else 0, before[i]
+            c = before[i - 3] if i >= 3 else 0
+            if filter_type == 1:
+                line[i] = (line[i] + a) & 255
+            elif filter_type == 2:
+                line[i] = (line[i] + b) & 255
+            elif filter_type == 3:
+                line[i] = (line[i] + (a + b) // 2) & 255
+            elif filter_type == 4:
+                p = a + b - c
+                pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+                line[i] = (line[i] + (a if pa <= pb and pa <= pc else b if pb <= pc else c)) & 255
+        rows.append(line)
+        before = line
+    return rows
+
+
+def share_that_differs(a, b):
+    """Of the pixels, how many differ by more than 24 in some channel."""
+    count = 0
+    for row_a, row_b in zip(a, b):
+        for x in range(0, len(row_a), 3):
+            if any(abs(row_a[x + c] - row_b[x + c]) > 24 for c in range(3)):
+                count += 1
+    return count / (WIDTH * HEIGHT)
+
+
+def tones(rows):
+    return len({bytes(row[x : x + 3]) for row in rows[::4] for x in range(0, len(row), 12)})
+
+
+class Machine:
+    def __init__(self, kernel, initramfs, work, case="visit"):
+        self.work, self.serial = work, os.path.join(work, f"{case}.log")
+        socket_path = os.path.join(work, "qmp.sock")
+        for path in (socket_path, self.serial):
+            if os.path.exists(path):
+                os.unlink(path)
+        self.process = subprocess.Popen(
+            ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
+             "-display", "none", "-nodefaults", "-vga", "none", "-no-reboot",
+             "-device", f"virtio-gpu-pci,xres={WIDTH},yres={HEIGHT}", "-device", "virtio-tablet-pci",
+             "-kernel", kernel, "-initrd", initramfs, "-append", f"console=ttyS0 quiet panic=1 gopura.case={case}",
+             "-serial", f"file:{self.serial}", "-qmp", f"unix:{socket_path},server,nowait"])
+        self.qmp = Qmp(socket_path)
+
+    def log(self):
+        try:
+            return open(self.serial, errors="replace").read()
+        except FileNotFoundError:
+            return ""
+
+    def picture(self, name):
+        path = os.path.join(self.work, name + ".png")
+        self.qmp.screendump(path)
+        return read_png(path)
+
+    def wait_for(self, what, seconds, condition):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if self.process.poll() is not None or re.search("the kiosk ended with status (?!75)", self.log()):
+                raise SystemExit(f"the machine or the kiosk ended while waiting for {what}:\n" + self.log()[-3000:])
+            found = condition()
+            if found:
+                return found
+            time.sleep(0.5)
+        raise SystemExit(f"no {what} in {seconds} s:\n" + self.log()[-3000:])
+
+    def resting_picture(self, name):
+        """The picture once two dumps half a second apart are the same."""
+        last = [None]
+
+        def same():
+            now = self.picture(name)
+            still = last[0] is not None and share_that_differs(now, last[0]) < 0.002
+            last[0] = now
+            return now if still else None
+
+        return self.wait_for("picture at rest", ANSWER_S, same)

@@ -1,0 +1,37 @@
+"""plug.py KERNEL INITRAMFS WORK: the kiosk starts without a panel, which is then plugged in, out and in
+again; no process ends but to fit the panel that came first, and the temple is on it afterwards."""
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(__file__))
+from machine import ANSWER_S, BOOT_S, Machine, share_that_differs, tones
+
+
+def main():
+    kernel, initramfs, work = sys.argv[1:4]
+    began = time.monotonic()
+    machine = Machine(kernel, initramfs, work, "unplugged")
+    said = lambda what: lambda: what in machine.log()
+    try:
+        machine.wait_for("start without a panel", BOOT_S, said("no panel is connected"))
+        machine.wait_for("panel plugged in", ANSWER_S, said("init: plugged in"))
+        machine.wait_for("temple", ANSWER_S, lambda: said("app: first picture")() and tones(machine.picture("plugged")) > 300)
+        before = machine.picture("plugged")
+        machine.wait_for("panel unplugged", ANSWER_S, said("the panel is gone"))
+        machine.wait_for("panel back", ANSWER_S, said("the panel is back"))
+        print(f"unplugged and back {time.monotonic() - began:.0f} s after QEMU's start")
+        machine.qmp.tap(0.5, 0.45)
+        machine.wait_for("card in the log", ANSWER_S, said("app: card of"))
+        machine.wait_for("card on the panel", ANSWER_S, lambda: share_that_differs(before, machine.picture("replugged")) > 0.15)
+        starts = machine.log().count("KMS display")
+        print(f"{starts} starts of the kiosk")
+        if starts > 2 or machine.log().count("the kiosk ended") > 1:
+            raise SystemExit("the kiosk ended over a panel:\n" + machine.log()[-3000:])
+    finally:
+        machine.process.kill()
+        machine.process.wait()
+    print(f"done in {time.monotonic() - began:.0f} s")
+
+
+main()
