@@ -1,0 +1,70 @@
+/* gopura.conf: the one file that makes an appliance this museum's terminal (docs/terminal.md).
+ * Every value is checked; who has a struct terminal need not doubt it. */
+#ifndef GOPURA_BOARD_TERMINAL_H
+#define GOPURA_BOARD_TERMINAL_H
+
+#include <netinet/in.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/compiler.h"
+#include "board/hours.h"
+#include "board/settings.h"
+
+enum { TERMINAL_SERVERS_MOST = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
+
+struct terminal_servers {
+	char names[TERMINAL_SERVERS_MOST][254]; /* addresses; of time servers names too */
+	uint32_t count;
+};
+
+/* Strings are "" where the file says nothing. */
+struct terminal {
+	/* [terminal] */
+	char name[TERMINAL_NAME_BYTES]; /* UTF-8, as people call it */
+	char language[16];              /* such as km or pt-BR */
+	char time_zone[64];             /* of /usr/share/zoneinfo */
+	char board[32];                 /* a profile's name, without .ini */
+	/* [release] */
+	char release_url[TERMINAL_URL_BYTES]; /* https://, http:// or an absolute folder */
+	char trust[TERMINAL_NAME_BYTES];      /* file beside gopura.conf, no slashes */
+	char ca[TERMINAL_NAME_BYTES];         /* the same */
+	uint32_t poll_s;                      /* 60 .. 86400; 0: not said */
+	bool has_download;
+	int download_from_min, download_to_min; /* of the local day; from > to: over midnight */
+	uint32_t rate_limit_kib;                /* a second; 0: none */
+	/* [panel] */
+	int width_px, height_px; /* 0: what the panel prefers */
+	float refresh_hz;        /* 0: any */
+	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board's profile says it */
+	struct hours hours;      /* always open where the file says nothing */
+	bool shift;              /* pixels move now and then; yes where the file says nothing */
+	/* [network] */
+	bool is_static;                 /* address and prefix_bits hold; else by DHCP */
+	char address[INET6_ADDRSTRLEN]; /* without the prefix */
+	uint32_t prefix_bits;
+	char gateway[INET6_ADDRSTRLEN];
+	struct terminal_servers dns, ntp;
+	/* [wifi] */
+	char ssid[33];       /* bytes that make UTF-8 */
+	char passphrase[65]; /* 8 to 63 printable ASCII characters, or 64 hexadecimal digits (a key)
+			      */
+	char country[3];     /* two capital letters */
+	/* [health] */
+	char listen_address[INET6_ADDRSTRLEN];
+	uint32_t listen_port;
+};
+
+extern const struct terminal terminal_default;
+
+/* *out starts as terminal_default; what is right is set although other lines are wrong. */
+void terminal_parse(struct terminal *out, struct bytes text, struct faults *faults);
+/* Reads the file, and looks beside it for the files that it names. -ENOENT: there is no such file;
+ * it is not among the faults. What is no file to read is one fault. */
+must_check int terminal_read(struct terminal *out, const char *path, struct faults *faults);
+
+/* The terminal's name as computers say it: letters, digits and dashes; "gopura" where nothing is
+ * left of it. */
+void terminal_host_name(const struct terminal *terminal, char out[TERMINAL_NAME_BYTES]);
+
+#endif
