@@ -9,7 +9,7 @@ SAN     ?=
 JOBS    ?= $(shell nproc)
 MAKEFLAGS += --no-builtin-rules
 
-FOLDERS := base format board render ui input storage net app pipeline
+FOLDERS := base format board render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd
 # METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
@@ -30,11 +30,11 @@ ifneq ($(SAN),)
 OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 endif
 
-MAINS    := app/main.c net/main.c pipeline/main.c
+MAINS    := app/main.c net/main.c pipeline/main.c health/main.c
 SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
 OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 ARCHIVE  := $(BUILD)/libgopura.a
-PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch
+PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
@@ -46,7 +46,7 @@ BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 .PHONY: all help deps demo test check qemu unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
-all: deps $(PROGRAMS) ## build the three programs into build/
+all: deps $(PROGRAMS) ## build the programs into build/
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 20
@@ -107,6 +107,8 @@ $(BUILD)/gopura-content: $(BUILD)/obj/pipeline/main.o $(ARCHIVE)
 $(BUILD)/gopura-kiosk: $(BUILD)/obj/app/main.o $(ARCHIVE)
 	$(LINK)
 $(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
+	$(LINK)
+$(BUILD)/gopura-health: $(BUILD)/obj/health/main.o $(ARCHIVE)
 	$(LINK)
 
 # A test may define a function of the archive itself: its own object wins.

@@ -30,7 +30,7 @@ says() {
 }
 
 # ---- what the programs say of themselves
-for program in content kiosk fetch; do
+for program in content kiosk fetch health; do
 	says 0 "^gopura-$program [0-9a-f]{7}" build/gopura-$program --version
 	says 0 "^gopura-$program: " build/gopura-$program --help
 	says 2 'nonsense' build/gopura-$program --nonsense

@@ -18,13 +18,13 @@ fi
 may_include() {
 	case $1 in
 	base) echo ;;
-	format | board | input) echo base ;;
+	format | board | input | health) echo base ;;
 	render | ui | storage) echo base format ;;
 	net) echo base format storage ;;
 	app) echo base format board render ui input storage net ;;
 	pipeline) echo base format render storage ;;
 	curator) echo base format render storage pipeline ;;
-	tests) echo base format board render ui input storage net app pipeline curator ;;
+	tests) echo base format board render ui input storage net app pipeline curator health ;;
 	*) echo ;;
 	esac
 }

@@ -1,0 +1,114 @@
+#include "health/gather.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+
+static const char *const prefixes[PROGRAM_COUNT] = { "gopura_kiosk_", "gopura_fetch_" };
+
+void snapshot_init(struct snapshot *snapshot)
+{
+	memset(snapshot, 0, sizeof(*snapshot));
+	for (int i = 0; i < PROGRAM_COUNT; i++)
+		buffer_init(&snapshot->answers[i].text, FIGURES_BYTES_MOST);
+}
+
+void snapshot_finish(struct snapshot *snapshot)
+{
+	for (int i = 0; i < PROGRAM_COUNT; i++)
+		buffer_finish(&snapshot->answers[i].text);
+}
+
+/* A descriptor, or negative errno. A hung program's queue that is full counts as a hang. */
+static int begin(const char *path)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+	int fd, rc;
+
+	if (strlen(path) >= sizeof(address.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(address.sun_path, path, strlen(path) + 1);
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	if (connect(fd, (struct sockaddr *)&address, sizeof(address)) == 0)
+		return fd;
+	rc = errno == EAGAIN ? -ETIMEDOUT : -errno;
+	close(fd);
+	return rc;
+}
+
+/* What is there now. 1: more will come, 0: that was all; negative errno. */
+static int hear(struct buffer *text, int fd)
+{
+	uint8_t piece[4096];
+	ssize_t size;
+
+	while ((size = read(fd, piece, sizeof(piece))) > 0)
+		buffer_put(text, piece, (size_t)size);
+	if (text->error)
+		return -EBADMSG;
+	if (size < 0)
+		return errno == EAGAIN || errno == EINTR ? 1 : -errno;
+	return 0;
+}
+
+static void end(struct answer *answer, struct pollfd *waiting, int rc, const char *prefix)
+{
+	close(waiting->fd);
+	waiting->fd = -1;
+	if (rc == 0 && !figures_valid(buffer_bytes(&answer->text), prefix))
+		rc = -EBADMSG;
+	answer->rc = rc;
+	if (rc < 0)
+		buffer_clear(&answer->text);
+}
+
+static void ask_programs(struct snapshot *snapshot, const struct gather_options *options)
+{
+	const int64_t until_ms = clock_now_ms() + options->patience_ms;
+	struct pollfd waiting[PROGRAM_COUNT];
+	int left = 0;
+
+	for (int i = 0; i < PROGRAM_COUNT; i++) {
+		const int fd = begin(options->sockets[i]);
+
+		waiting[i] = (struct pollfd){ .fd = fd, .events = POLLIN };
+		snapshot->answers[i].rc = fd < 0 ? fd : -ETIMEDOUT;
+		buffer_clear(&snapshot->answers[i].text);
+		left += fd >= 0;
+	}
+	while (left > 0) {
+		const int64_t wait_ms = until_ms - clock_now_ms();
+
+		if (wait_ms <= 0 || poll(waiting, PROGRAM_COUNT, (int)wait_ms) < 0)
+			break;
+		for (int i = 0; i < PROGRAM_COUNT; i++) {
+			int rc;
+
+			if (waiting[i].fd < 0 || !waiting[i].revents)
+				continue;
+			rc = hear(&snapshot->answers[i].text, waiting[i].fd);
+			if (rc <= 0) {
+				end(&snapshot->answers[i], &waiting[i], rc, prefixes[i]);
+				left--;
+			}
+		}
+	}
+	for (int i = 0; i < PROGRAM_COUNT; i++)
+		if (waiting[i].fd >= 0)
+			end(&snapshot->answers[i], &waiting[i], -ETIMEDOUT, prefixes[i]);
+}
+
+void snapshot_take(struct snapshot *snapshot, const struct gather_options *options)
+{
+	ask_programs(snapshot, options);
+	machine_read(&snapshot->machine, &options->machine);
+	snapshot->taken_ms = clock_now_ms();
+	snapshot->taken_wall_s = clock_wall_s();
+}

@@ -1,0 +1,256 @@
+/* gopura-health: says over HTTP whether the terminal is well, and if not, what to do. */
+#include <errno.h>
+#include <getopt.h>
+#include <netdb.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "health/page.h"
+#include "health/server.h"
+
+enum {
+	FRESH_MS = 1000,    /* what was gathered answers so long: many clients are one question */
+	PROGRAMS_MS = 2000, /* a kiosk without a GPU may be that long at one frame */
+	PATIENCE_MS = 10000,
+	IDLE_S = 30,
+	LISTEN_BACKLOG = 16,
+};
+
+static const char help[] =
+	"gopura-health: says over HTTP whether the terminal is well, and if not, what to do\n"
+	"\n"
+	"  gopura-health [options]\n"
+	"\n"
+	"  Pages: / for people, /metrics for Prometheus, /health (200 or 503) for scripts.\n"
+	"  systemd passes the listening socket (gopura-health.socket) and starts the program when\n"
+	"  somebody asks; without one:\n"
+	"\n"
+	"  --listen ADDR:PORT  listen here, and do not end when idle ([::1]:9100 for IPv6)\n"
+	"  --kiosk PATH        gopura-kiosk's --figures (/run/gopura-kiosk/figures)\n"
+	"  --fetch PATH        gopura-fetch's --figures (/run/gopura-fetch/figures)\n"
+	"  --faults FILE       what gopura.conf said in vain, a line each (/run/gopura/faults)\n"
+	"  --data DIR          on the partition whose room is told (/var/lib)\n"
+	"  --idle-s SECONDS    with systemd's socket: end when nobody asked for so long (30)\n"
+	"  --version, --help\n"
+	"\n"
+	"Example\n"
+	"  gopura-health --listen 127.0.0.1:9100\n";
+
+enum {
+	OPTION_LISTEN = 256,
+	OPTION_KIOSK,
+	OPTION_FETCH,
+	OPTION_FAULTS,
+	OPTION_DATA,
+	OPTION_IDLE,
+	OPTION_VERSION,
+	OPTION_HELP,
+};
+
+static const struct option long_options[] = {
+	{ "listen", required_argument, NULL, OPTION_LISTEN },
+	{ "kiosk", required_argument, NULL, OPTION_KIOSK },
+	{ "fetch", required_argument, NULL, OPTION_FETCH },
+	{ "faults", required_argument, NULL, OPTION_FAULTS },
+	{ "data", required_argument, NULL, OPTION_DATA },
+	{ "idle-s", required_argument, NULL, OPTION_IDLE },
+	{ "version", no_argument, NULL, OPTION_VERSION },
+	{ "help", no_argument, NULL, OPTION_HELP },
+	{ 0 },
+};
+
+struct health {
+	const char *listen; /* NULL: systemd's */
+	unsigned long idle_s;
+	struct gather_options gather;
+	struct snapshot snapshot;
+	struct verdict verdict;
+};
+
+/* ---- the command line */
+
+static void bad(const char *option, const char *text, const char *expects)
+{
+	fprintf(stderr, "gopura-health: --%s: '%s' is not %s; see gopura-health --help\n", option,
+		text, expects);
+	exit(2);
+}
+
+static void take_option(struct health *health, int option)
+{
+	char *end;
+
+	switch (option) {
+	case OPTION_LISTEN:
+		health->listen = optarg;
+		break;
+	case OPTION_KIOSK:
+		health->gather.sockets[PROGRAM_KIOSK] = optarg;
+		break;
+	case OPTION_FETCH:
+		health->gather.sockets[PROGRAM_FETCH] = optarg;
+		break;
+	case OPTION_FAULTS:
+		health->gather.machine.faults = optarg;
+		break;
+	case OPTION_DATA:
+		health->gather.machine.data = optarg;
+		break;
+	case OPTION_IDLE:
+		health->idle_s = strtoul(optarg, &end, 10);
+		if (*end || health->idle_s < 1 || health->idle_s > 86400)
+			bad("idle-s", optarg, "a number from 1 to 86400");
+		break;
+	case OPTION_VERSION:
+		puts("gopura-health " GOPURA_VERSION);
+		exit(0);
+	case OPTION_HELP:
+		fputs(help, stdout);
+		exit(0);
+	default: /* getopt has said what is wrong */
+		fputs("gopura-health: see gopura-health --help\n", stderr);
+		exit(2);
+	}
+}
+
+static void parse(struct health *health, int argc, char **argv)
+{
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
+		take_option(health, option);
+	if (optind == argc)
+		return;
+	fprintf(stderr, "gopura-health: '%s' is not an option; see gopura-health --help\n",
+		argv[optind]);
+	exit(2);
+}
+
+/* ---- sockets */
+
+static int bind_to(const struct addrinfo *address)
+{
+	const int yes = 1;
+	int rc, fd = socket(address->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+
+	if (fd < 0)
+		return -errno;
+	if (setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) == 0 &&
+	    bind(fd, address->ai_addr, address->ai_addrlen) == 0 && listen(fd, LISTEN_BACKLOG) == 0)
+		return fd;
+	rc = -errno;
+	close(fd);
+	return rc;
+}
+
+/* A listening descriptor, or negative errno. */
+static int listen_on(const char *text)
+{
+	const struct addrinfo wish = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE,
+				       .ai_socktype = SOCK_STREAM };
+	const char *colon = strrchr(text, ':');
+	struct addrinfo *found;
+	char host[64] = "";
+	size_t size = colon ? (size_t)(colon - text) : 0;
+	int fd;
+
+	if (size > 2 && text[0] == '[' && text[size - 1] == ']') {
+		text++;
+		size -= 2;
+	}
+	if (size == 0 || size >= sizeof(host))
+		bad("listen", text, "an address and a port, such as 127.0.0.1:9100");
+	memcpy(host, text, size);
+	if (getaddrinfo(host, colon + 1, &wish, &found) != 0)
+		bad("listen", text, "an address and a port, such as 127.0.0.1:9100");
+	fd = bind_to(found);
+	freeaddrinfo(found);
+	return fd;
+}
+
+/* How many of systemd's sockets are in fds; negative errno. */
+static int passed_sockets(int fds[SERVER_LISTENERS_MOST])
+{
+	const int count = sd_listen_fds(1);
+
+	if (count <= 0 || count > SERVER_LISTENERS_MOST)
+		return count < 0 ? count : -EINVAL;
+	for (int i = 0; i < count; i++) {
+		fds[i] = SD_LISTEN_FDS_START + i;
+		if (sd_is_socket(fds[i], AF_UNSPEC, SOCK_STREAM, 1) <= 0)
+			return -ENOTSOCK;
+	}
+	return count;
+}
+
+/* ---- answers */
+
+static void answer(void *data, int status, const struct request *request, struct buffer *out)
+{
+	struct health *health = data;
+
+	if (status != 200) {
+		page_refuse(out, status);
+		return;
+	}
+	if (health->snapshot.taken_ms == 0 ||
+	    clock_now_ms() >= health->snapshot.taken_ms + FRESH_MS) {
+		snapshot_take(&health->snapshot, &health->gather);
+		verdict_judge(&health->verdict, &health->snapshot);
+	}
+	page_answer(out, request, &health->snapshot, &health->verdict);
+}
+
+static int run(struct health *health)
+{
+	int fds[SERVER_LISTENERS_MOST];
+	struct server_options server = {
+		.listeners = fds,
+		.patience_ms = PATIENCE_MS,
+		.idle_ms = health->listen ? 0 : (int64_t)health->idle_s * 1000,
+		.answer = answer,
+		.data = health,
+	};
+	int count = 1;
+
+	if (health->listen)
+		fds[0] = listen_on(health->listen);
+	else
+		count = passed_sockets(fds);
+	if (count < 0 || fds[0] < 0) {
+		const int rc = count < 0 ? count : fds[0];
+
+		fprintf(stderr, "gopura-health: %s: %s\n",
+			health->listen ? health->listen
+				       : "no socket of systemd's (or use --listen ADDR:PORT)",
+			strerror(-rc));
+		return rc;
+	}
+	server.listener_count = (size_t)count;
+	return server_run(&server);
+}
+
+int main(int argc, char **argv)
+{
+	static struct health health = {
+		.idle_s = IDLE_S,
+		.gather = { .sockets = { "/run/gopura-kiosk/figures", "/run/gopura-fetch/figures" },
+			    .patience_ms = PROGRAMS_MS,
+			    .machine = { .root = "",
+					 .faults = "/run/gopura/faults",
+					 .data = "/var/lib" } },
+	};
+	int rc;
+
+	parse(&health, argc, argv);
+	snapshot_init(&health.snapshot);
+	rc = run(&health);
+	snapshot_finish(&health.snapshot);
+	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,282 @@
+#include "health/overview.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "health/text.h"
+
+/* No script, no picture, nothing from elsewhere: it must open in whatever browser is at hand, on a
+ * network that has nothing else. */
+static const char style[] =
+	":root{color-scheme:light dark;--paper:#f6f4ef;--sheet:#fff;--ink:#22201c;--soft:#6b665c;--line:#e2ddd2;"
+	"--well:#2f7d4f;--remark:#b87a12;--ill:#b3372b}"
+	"@media(prefers-color-scheme:dark){:root{--paper:#1a1917;--sheet:#242220;--ink:#ece8df;--soft:#a49d8f;"
+	"--line:#3a3733;--well:#3f9a64;--remark:#c98a1c;--ill:#cf4f41}}"
+	"*{box-sizing:border-box}"
+	"body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}"
+	"main{max-width:52rem;margin:0 auto;padding:1.25rem 1rem 3rem}"
+	"header{color:#fff;padding:1.1rem 1rem;background:var(--level)}"
+	"header>div{max-width:50rem;margin:0 auto;display:flex;gap:1rem;align-items:center}"
+	"header svg{flex:none;width:3.2rem;height:3.2rem}"
+	"h1{margin:0;font-size:1.6rem;line-height:1.2}header p{margin:.2rem 0 0;opacity:.9}"
+	"h2{font-size:1rem;margin:2rem 0 .6rem;color:var(--soft);font-weight:600}"
+	"article{background:var(--sheet);border:1px solid var(--line);border-left:.45rem solid var(--level);"
+	"border-radius:.4rem;padding:.8rem 1rem;margin:.8rem 0}"
+	"article h3{margin:0;font-size:1.1rem}article p{margin:.35rem 0 0;overflow-wrap:anywhere}"
+	"article .cure{color:var(--soft)}"
+	".well{--level:var(--well)}.remark{--level:var(--remark)}.ill{--level:var(--ill)}"
+	"table{width:100%;border-collapse:collapse;background:var(--sheet);border:1px solid var(--line)}"
+	"th,td{text-align:left;vertical-align:top;padding:.45rem .8rem;border-top:1px solid var(--line)}"
+	"tr:first-child>*{border-top:0}th{width:13rem;font-weight:500;color:var(--soft)}"
+	"td{overflow-wrap:anywhere;font-variant-numeric:tabular-nums}"
+	"meter{width:7rem;height:.9rem;margin-right:.6rem;vertical-align:-.1rem}"
+	"footer{margin-top:1.5rem;color:var(--soft);font-size:.9rem}a{color:inherit}"
+	"@media(max-width:34rem){th,td{display:block;width:auto;padding:.4rem .8rem}td{border:0;padding-top:0}}";
+
+static const char *const classes[LEVEL_COUNT] = { "well", "remark", "ill" };
+
+static const char *const signs[LEVEL_COUNT] = {
+	"<path d='M14 25l8 8 13-17'/>",
+	"<path d='M24 12v14'/><path d='M24 34v.5'/>",
+	"<path d='M16 16l16 16M32 16L16 32'/>",
+};
+
+/* ---- pieces */
+
+struct facts {
+	struct buffer *out;
+	const struct snapshot *snapshot;
+};
+
+static double figure(const struct facts *facts, enum program program, const char *name)
+{
+	double value = NAN;
+
+	figures_find(buffer_bytes(&facts->snapshot->answers[program].text), name, &value);
+	return value;
+}
+
+static void row(const struct facts *facts, const char *name)
+{
+	text_format(facts->out, "<tr><th scope=row>%s<td>", name);
+}
+
+static void put_bytes(struct buffer *out, double bytes)
+{
+	static const char *const units[] = { "B", "kB", "MB", "GB", "TB" };
+	size_t unit = 0;
+
+	for (; bytes >= 999.5 && unit + 1 < ARRAY_COUNT(units); unit++)
+		bytes /= 1000;
+	text_format(out, bytes < 10 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+}
+
+/* How much of a whole is used; nothing where it is not told. */
+static void put_share(const struct facts *facts, double used, double whole, const char *what)
+{
+	if (!(whole > 0) || !(used >= 0))
+		return;
+	text_format(facts->out, "<meter min=0 max=1 high=.93 optimum=.2 value=%.3f></meter>",
+		    used / whole);
+	put_bytes(facts->out, used);
+	text_put(facts->out, " of ");
+	put_bytes(facts->out, whole);
+	text_format(facts->out, " %s<br>", what);
+}
+
+static void put_duration(struct buffer *out, double seconds)
+{
+	char text[40];
+
+	verdict_duration(text, sizeof(text), seconds);
+	text_put(out, text);
+}
+
+/* ---- rows */
+
+static void write_release(const struct facts *facts)
+{
+	const struct bytes kiosk = buffer_bytes(&facts->snapshot->answers[PROGRAM_KIOSK].text);
+	const double sequence = figure(facts, PROGRAM_KIOSK, "gopura_kiosk_release_sequence");
+	char name[200], root[80];
+
+	row(facts, "Release");
+	if (!figures_label(kiosk, "gopura_kiosk_release_info", "root", root, sizeof(root))) {
+		text_put(facts->out, kiosk.size ? "none is shown" : "not known");
+		return;
+	}
+	figures_label(kiosk, "gopura_kiosk_release_info", "name", name, sizeof(name));
+	text_put_html(facts->out, name);
+	if (sequence > 0)
+		text_format(facts->out, ", number %.0f", sequence);
+	text_put(facts->out, " <small>(");
+	text_put_html(facts->out, root);
+	text_put(facts->out, ")</small>");
+}
+
+static void write_server(const struct facts *facts)
+{
+	const double online = figure(facts, PROGRAM_FETCH, "gopura_fetch_online");
+	const double since_s = figure(facts, PROGRAM_FETCH, "gopura_fetch_offline_since_seconds");
+
+	row(facts, "Museum server");
+	if (isnan(online)) {
+		text_put(facts->out, "not known");
+		return;
+	}
+	text_put(facts->out, online > 0 ? "answers" : "does not answer");
+	if (online == 0 && since_s > 0) {
+		text_put(facts->out, ", for ");
+		put_duration(facts->out, (double)facts->snapshot->taken_wall_s - since_s);
+	}
+	text_put(facts->out, "; ");
+	put_bytes(facts->out, figure(facts, PROGRAM_FETCH, "gopura_fetch_received_bytes_total"));
+	text_format(facts->out, " received, %.0f of %.0f requests without an answer",
+		    figure(facts, PROGRAM_FETCH, "gopura_fetch_errors_total"),
+		    figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
+}
+
+static void write_panel(const struct facts *facts)
+{
+	const struct bytes kiosk = buffer_bytes(&facts->snapshot->answers[PROGRAM_KIOSK].text);
+	const double touch = figure(facts, PROGRAM_KIOSK, "gopura_kiosk_touch_devices");
+	char renderer[120];
+
+	if (kiosk.size == 0)
+		return;
+	row(facts, "Pictures");
+	text_format(facts->out, "%.0f drawn, %.0f late, the last one ",
+		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_frames_total"),
+		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_late_frames_total"));
+	put_duration(facts->out,
+		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_last_frame_age_seconds"));
+	text_put(facts->out, " ago (at rest none is drawn)");
+	row(facts, "Drawn by");
+	figures_label(kiosk, "gopura_kiosk_gl_info", "renderer", renderer, sizeof(renderer));
+	text_put_html(facts->out, renderer);
+	if (!isnan(touch)) {
+		row(facts, "Touchscreens");
+		text_format(facts->out, "%.0f", touch);
+	}
+	row(facts, "Held for drawing");
+	put_share(facts, figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_bytes"),
+		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_budget_bytes"), "of images");
+	put_share(facts, figure(facts, PROGRAM_KIOSK, "gopura_kiosk_geometry_bytes"),
+		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_geometry_budget_bytes"), "of shape");
+}
+
+static void write_machine(const struct facts *facts)
+{
+	const struct machine *m = &facts->snapshot->machine;
+
+	if (!isnan(m->temperature_c)) {
+		row(facts, "Temperature");
+		text_format(facts->out, "%.0f degrees Celsius", m->temperature_c);
+	}
+	row(facts, "Memory");
+	put_share(facts, m->memory_bytes - m->memory_free_bytes, m->memory_bytes, "in use");
+	row(facts, "Disk");
+	put_share(facts, m->data_bytes - m->data_free_bytes, m->data_bytes, "in use");
+	put_share(facts, figure(facts, PROGRAM_FETCH, "gopura_fetch_cache_bytes"),
+		  figure(facts, PROGRAM_FETCH, "gopura_fetch_cache_budget_bytes"),
+		  "of what may be kept");
+	if (!isnan(m->written_bytes)) {
+		row(facts, "Written to disks");
+		put_bytes(facts->out, m->written_bytes);
+		text_put(facts->out, " since the machine began");
+	}
+	row(facts, "On for");
+	put_duration(facts->out, m->uptime_s);
+	if (m->slot[0]) {
+		row(facts, "Firmware");
+		text_put(facts->out, "slot ");
+		text_put_html(facts->out, m->slot);
+	}
+}
+
+static void write_program(const struct facts *facts, enum program program, const char *name,
+			  const char *uptime, const char *starts, const char *memory)
+{
+	row(facts, name);
+	if (facts->snapshot->answers[program].rc < 0) {
+		text_put(facts->out, "silent");
+		return;
+	}
+	text_put(facts->out, "runs for ");
+	put_duration(facts->out, figure(facts, program, uptime));
+	text_format(facts->out, ", began %.0f times, holds ", figure(facts, program, starts));
+	put_bytes(facts->out, figure(facts, program, memory));
+}
+
+/* ---- the page */
+
+static void write_head(const struct facts *facts, const struct verdict *verdict)
+{
+	static const char *const words[LEVEL_COUNT] = { "All is well", "It works, with a remark",
+							"It is ill" };
+	const char *word = words[verdict->level];
+
+	if (verdict->level == LEVEL_REMARK && verdict->count > 1)
+		word = "It works, with remarks";
+	text_put(facts->out, "<!doctype html><html lang=en><meta charset=utf-8>"
+			     "<meta name=viewport content='width=device-width'>"
+			     "<meta http-equiv=refresh content=10><title>");
+	text_put_html(facts->out, facts->snapshot->machine.name);
+	text_format(facts->out, ": %s</title><style>", word);
+	text_put(facts->out, style);
+	text_format(facts->out,
+		    "</style><header class=%s><div><svg viewBox='0 0 48 48' fill=none stroke=#fff "
+		    "stroke-width=4 stroke-linecap=round stroke-linejoin=round aria-hidden=true>"
+		    "<circle cx=24 cy=24 r=21 />%s</svg><div><h1>%s</h1><p>",
+		    classes[verdict->level], signs[verdict->level], word);
+	text_put_html(facts->out, facts->snapshot->machine.name);
+	text_put(facts->out, "</div></div></header><main>");
+}
+
+static void write_findings(struct buffer *out, const struct verdict *verdict)
+{
+	for (size_t i = 0; i < verdict->count; i++) {
+		const struct finding *finding = &verdict->findings[i];
+
+		text_format(out, "<article class=%s><h3>", classes[finding->level]);
+		text_put_html(out, finding->what);
+		text_put(out, "</h3>");
+		if (finding->detail[0]) {
+			text_put(out, "<p>");
+			text_put_html(out, finding->detail);
+		}
+		text_put(out, "<p class=cure>");
+		text_put_html(out, finding->cure);
+		text_put(out, "</article>");
+	}
+}
+
+void overview_write(struct buffer *out, const struct snapshot *snapshot,
+		    const struct verdict *verdict)
+{
+	const struct facts facts = { out, snapshot };
+	const time_t taken_s = (time_t)snapshot->taken_wall_s;
+	char when[40];
+	struct tm local;
+
+	write_head(&facts, verdict);
+	write_findings(out, verdict);
+	text_put(out, "<h2>What is shown</h2><table>");
+	write_release(&facts);
+	write_server(&facts);
+	write_panel(&facts);
+	text_put(out, "</table><h2>The machine</h2><table>");
+	write_machine(&facts);
+	write_program(&facts, PROGRAM_KIOSK, "gopura-kiosk", "gopura_kiosk_uptime_seconds",
+		      "gopura_kiosk_starts_total", "gopura_kiosk_resident_bytes");
+	write_program(&facts, PROGRAM_FETCH, "gopura-fetch", "gopura_fetch_uptime_seconds",
+		      "gopura_fetch_starts_total", "gopura_fetch_resident_bytes");
+	strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", localtime_r(&taken_s, &local));
+	text_format(out,
+		    "</table><footer>As of %s by this machine's clock; looks again every 10 "
+		    "seconds. <a href=/metrics>Figures</a> for Prometheus, <a href=/health>one "
+		    "word</a> for scripts.</footer></main>\n",
+		    when);
+}

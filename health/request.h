@@ -1,0 +1,25 @@
+/* The head of an HTTP/1.1 request, as far as three pages need it. Pure. */
+#ifndef GOPURA_HEALTH_REQUEST_H
+#define GOPURA_HEALTH_REQUEST_H
+
+#include "base/bytes.h"
+
+enum { REQUEST_BYTES_MOST = 4096 /* of a head */ };
+
+enum request_page {
+	REQUEST_OVERVIEW, /* / */
+	REQUEST_METRICS,  /* /metrics */
+	REQUEST_HEALTH,   /* /health */
+};
+
+struct request {
+	enum request_page page;
+	bool head; /* HEAD: the answer has no body */
+};
+
+/* received is what came so far. 0: the head is not whole yet. Else an HTTP status: 200 with *out,
+ * or what is wrong: 400 not HTTP, 404 no such page, 405 neither GET nor HEAD, 431 longer than
+ * REQUEST_BYTES_MOST, 505 neither HTTP/1.0 nor 1.1. */
+must_check int request_parse(struct request *out, struct bytes received);
+
+#endif

@@ -1,0 +1,251 @@
+#include "health/verdict.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	PICTURE_S = 120,    /* from the kiosk's start until a picture must be there */
+	TOGETHER_S = 60,    /* until kiosk and fetcher must have met */
+	OFFLINE_S = 300,    /* shorter gaps are life */
+	CLOCK_S = 900,      /* of the machine, until its clock must be set */
+	RESTARTED_S = 3600, /* a restart is told that long */
+	FRAMES_LEAST = 500, /* before late ones are judged */
+	HOT_C = 80,
+	BURNING_C = 95,
+};
+
+/* Shares. */
+static const double late_most = 0.2, memory_low = 0.08, memory_out = 0.03, data_low = 0.05;
+
+static void add(struct verdict *verdict, enum level level, const char *what, const char *cure,
+		const char *detail, ...) printf_like(5, 6);
+
+static void add(struct verdict *verdict, enum level level, const char *what, const char *cure,
+		const char *detail, ...)
+{
+	struct finding *finding = verdict->findings;
+	size_t at = 0;
+	va_list args;
+
+	if (verdict->count == FINDINGS_MOST)
+		return;
+	while (at < verdict->count && finding[at].level >= level)
+		at++;
+	memmove(&finding[at + 1], &finding[at], (verdict->count - at) * sizeof(*finding));
+	finding += at;
+	verdict->count++;
+	if (level > verdict->level)
+		verdict->level = level;
+	*finding = (struct finding){ .level = level, .what = what, .cure = cure };
+	va_start(args, detail);
+	vsnprintf(finding->detail, sizeof(finding->detail), detail, args);
+	va_end(args);
+}
+
+void verdict_duration(char *out, size_t out_bytes, double seconds)
+{
+	static const struct {
+		double seconds;
+		const char *name;
+	} units[] = { { 86400, "day" }, { 3600, "hour" }, { 60, "minute" }, { 1, "second" } };
+	size_t i = 0;
+	double count;
+
+	/* Two of the smaller unit say more than one of the larger. */
+	while (i + 1 < ARRAY_COUNT(units) && seconds < 2 * units[i].seconds)
+		i++;
+	count = floor(fmax(seconds, 0) / units[i].seconds);
+	snprintf(out, out_bytes, "%.0f %s%s", count, units[i].name, count == 1 ? "" : "s");
+}
+
+/* NAN: not told. */
+static double figure(const struct snapshot *snapshot, enum program program, const char *name)
+{
+	double value = NAN;
+
+	figures_find(buffer_bytes(&snapshot->answers[program].text), name, &value);
+	return value;
+}
+
+/* ---- the programs */
+
+static const char *silence(int rc)
+{
+	switch (rc) {
+	case -ENOENT:
+		return "It does not run: it was stopped, or has not begun.";
+	case -ECONNREFUSED:
+		return "It has ended, and was not started again yet.";
+	case -ETIMEDOUT:
+		return "It runs, and does not answer: it hangs.";
+	case -EBADMSG:
+		return "It answers, but not what it should.";
+	default:
+		return strerror(-rc);
+	}
+}
+
+static void judge_silence(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const int kiosk = snapshot->answers[PROGRAM_KIOSK].rc;
+	const int fetch = snapshot->answers[PROGRAM_FETCH].rc;
+
+	if (kiosk < 0)
+		add(verdict, LEVEL_ILL, "The program that draws the picture is silent",
+		    "It is started again by itself within a minute. If this stays, switch the "
+		    "terminal off and on; if that does not help, keep what journalctl -u "
+		    "gopura-kiosk says and call whoever installed it.",
+		    "%s", silence(kiosk));
+	if (fetch < 0)
+		add(verdict, LEVEL_ILL, "The program that brings pictures and pages is silent",
+		    "It is started again by itself within a minute; until then visitors see what "
+		    "was on the panel. If this stays, switch the terminal off and on, and keep "
+		    "what journalctl -u gopura-fetch says.",
+		    "%s", silence(fetch));
+}
+
+static void judge_restart(struct verdict *verdict, const struct snapshot *snapshot,
+			  enum program program, const char *starts, const char *uptime,
+			  const char *what)
+{
+	const double count = figure(snapshot, program, starts);
+	const double since_s = figure(snapshot, program, uptime);
+	char ago[40];
+
+	if (!(count > 1) || !(since_s < RESTARTED_S))
+		return;
+	verdict_duration(ago, sizeof(ago), since_s);
+	add(verdict, LEVEL_REMARK, what,
+	    "Once is nothing. If the number grows from day to day, keep what journalctl says of "
+	    "it and call whoever installed the terminal.",
+	    "%s ago; %.0f restart%s since the machine began.", ago, count - 1,
+	    count == 2 ? "" : "s");
+}
+
+/* ---- what visitors see and touch */
+
+static void judge_picture(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const double since_s = figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds");
+	const double frames = figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_frames_total");
+	const double late = figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_late_frames_total");
+	char renderer[80];
+
+	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_picture") == 0 && since_s > PICTURE_S)
+		add(verdict, LEVEL_ILL, "There is no picture yet",
+		    "The terminal never got a release whole. See below whether the museum server "
+		    "answers; check [release] url and trust in gopura.conf.",
+		    "%s", "");
+	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch_devices") == 0)
+		add(verdict, LEVEL_ILL, "No finger is felt",
+		    "No touchscreen answers. Check the cable between panel and computer (USB, mostly), "
+		    "then the panel's supply.",
+		    "%s", "");
+	figures_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text), "gopura_kiosk_gl_info",
+		      "renderer", renderer, sizeof(renderer));
+	if (strstr(renderer, "llvmpipe") || strstr(renderer, "softpipe"))
+		add(verdict, LEVEL_REMARK, "No graphics driver: the processor draws",
+		    "Pictures come slowly and the machine runs hot. This board's GPU needs a driver "
+		    "that the image does not have, or its kernel module did not load.",
+		    "%s", renderer);
+	else if (frames >= FRAMES_LEAST && late > late_most * frames)
+		add(verdict, LEVEL_REMARK, "Pictures come late",
+		    "The board is too slow for what is asked of it: a smaller mode in gopura.conf "
+		    "or fewer triangles in the board's profile (docs/board.md).",
+		    "%.0f %% of the frames took longer than the panel waits.", 100 * late / frames);
+}
+
+static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const double since_s =
+		figure(snapshot, PROGRAM_FETCH, "gopura_fetch_offline_since_seconds");
+	const double offline_s = (double)snapshot->taken_wall_s - since_s;
+	char reason[200], gone[40];
+
+	if (since_s > 0 && offline_s > OFFLINE_S) {
+		verdict_duration(gone, sizeof(gone), offline_s);
+		add(verdict, LEVEL_REMARK, "The museum server does not answer",
+		    "Visitors see what was brought before. Check the network cable or Wi-Fi, then "
+		    "whether [release] url in gopura.conf opens from another computer here.",
+		    "For %s.", gone);
+	}
+	if (figures_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text),
+			  "gopura_kiosk_refusal_info", "reason", reason, sizeof(reason)))
+		add(verdict, LEVEL_REMARK, "A new release was refused",
+		    "The one before is shown. Publish anew, or sign what has expired (docs/release.md).",
+		    "%s", reason);
+	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk_connected") == 0 &&
+	    figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds") > TOGETHER_S &&
+	    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_uptime_seconds") > TOGETHER_S)
+		add(verdict, LEVEL_REMARK, "The two programs do not talk with each other",
+		    "Nothing new is brought. Switch the terminal off and on.", "%s", "");
+	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total") > 0)
+		add(verdict, LEVEL_REMARK, "The disk does not take what is to be kept",
+		    "It is full, or worn out: after a power cut less may be there to be shown. Look at "
+		    "the room below; replace the card or disk where there is enough.",
+		    "%.0f writes were refused.",
+		    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total"));
+}
+
+/* ---- the machine */
+
+static void judge_machine(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const struct machine *m = &snapshot->machine;
+
+	if (m->temperature_c >= HOT_C)
+		add(verdict, m->temperature_c >= BURNING_C ? LEVEL_ILL : LEVEL_REMARK,
+		    "The computer is too hot",
+		    "It slows down, and ages. Free its air vents, check its fan, take it out of the sun.",
+		    "%.0f degrees Celsius.", m->temperature_c);
+	if (m->memory_free_bytes < memory_low * m->memory_bytes)
+		add(verdict,
+		    m->memory_free_bytes < memory_out * m->memory_bytes ? LEVEL_ILL : LEVEL_REMARK,
+		    "Memory runs short",
+		    "Switch the terminal off and on. If it comes back, lower texture_mib and "
+		    "geometry_mib in the board's profile.",
+		    "%.0f of %.0f MB are free.", m->memory_free_bytes / 1e6, m->memory_bytes / 1e6);
+	if (m->data_free_bytes < data_low * m->data_bytes)
+		add(verdict, LEVEL_REMARK, "The disk is nearly full",
+		    "What is on the panel stays. Lower [cache] mib in the board's profile, or use a "
+		    "larger card.",
+		    "%.0f of %.0f MB are free.", m->data_free_bytes / 1e6, m->data_bytes / 1e6);
+	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock_trusted") == 0 &&
+	    m->uptime_s > CLOCK_S)
+		add(verdict, LEVEL_REMARK, "The clock may be wrong",
+		    "No time server answered, so nobody can tell whether a release has expired. Check "
+		    "[network] ntp in gopura.conf.",
+		    "%s", "");
+}
+
+/* gopura-setup writes a line for each entry of gopura.conf that it could not obey. */
+static void judge_faults(struct verdict *verdict, const char *faults)
+{
+	while (*faults) {
+		const size_t size = strcspn(faults, "\n");
+
+		if (size > 0)
+			add(verdict, LEVEL_REMARK, "gopura.conf says what cannot be done",
+			    "Correct the line, and switch the terminal off and on.", "%.*s",
+			    (int)size, faults);
+		faults += size + (faults[size] == '\n');
+	}
+}
+
+void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
+{
+	memset(out, 0, sizeof(*out));
+	judge_silence(out, snapshot);
+	judge_picture(out, snapshot);
+	judge_content(out, snapshot);
+	judge_machine(out, snapshot);
+	judge_restart(out, snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts_total",
+		      "gopura_kiosk_uptime_seconds", "The program that draws began anew");
+	judge_restart(out, snapshot, PROGRAM_FETCH, "gopura_fetch_starts_total",
+		      "gopura_fetch_uptime_seconds", "The program that brings began anew");
+	judge_faults(out, snapshot->machine.faults);
+}

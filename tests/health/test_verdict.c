@@ -1,0 +1,236 @@
+#include <errno.h>
+#include <string.h>
+
+#include "health/verdict.h"
+#include "tests/health/snapshots.h"
+
+static struct snapshot snapshot;
+static struct verdict verdict;
+
+static int begin(void **state)
+{
+	(void)state;
+	make_well(&snapshot);
+	return 0;
+}
+
+static int end(void **state)
+{
+	(void)state;
+	snapshot_finish(&snapshot);
+	return 0;
+}
+
+/* One finding, of that level, whose title says that. */
+static bool finds(enum level level, const char *what)
+{
+	verdict_judge(&verdict, &snapshot);
+	return verdict.count == 1 && verdict.level == level && verdict.findings[0].level == level &&
+	       strstr(verdict.findings[0].what, what);
+}
+
+static bool finds_nothing(void)
+{
+	verdict_judge(&verdict, &snapshot);
+	return verdict.count == 0 && verdict.level == LEVEL_WELL;
+}
+
+static void a_well_terminal_gets_no_remark(void **state)
+{
+	(void)state;
+	CHECK(finds_nothing());
+}
+
+static void a_silent_program_is_ill_and_the_way_it_is_silent_is_told(void **state)
+{
+	static const struct {
+		int rc;
+		const char *detail;
+	} ways[] = {
+		{ -ENOENT, "does not run" },   { -ECONNREFUSED, "has ended" },
+		{ -ETIMEDOUT, "hangs" },       { -EBADMSG, "not what it should" },
+		{ -EACCES, "Permission den" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(ways); i++) {
+		buffer_clear(&snapshot.answers[PROGRAM_FETCH].text);
+		snapshot.answers[PROGRAM_FETCH].rc = ways[i].rc;
+		CHECK(finds(LEVEL_ILL, "brings pictures"));
+		CHECK(strstr(verdict.findings[0].detail, ways[i].detail));
+		CHECK(strstr(verdict.findings[0].cure, "switch the terminal off"));
+	}
+	set_text(&snapshot, PROGRAM_FETCH, WELL_FETCH);
+	buffer_clear(&snapshot.answers[PROGRAM_KIOSK].text);
+	snapshot.answers[PROGRAM_KIOSK].rc = -ECONNREFUSED;
+	CHECK(finds(LEVEL_ILL, "draws the picture"));
+}
+
+static void no_picture_is_ill_after_two_minutes(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_picture 1", "gopura_kiosk_picture 0");
+	CHECK(finds(LEVEL_ILL, "no picture"));
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds",
+	       "gopura_kiosk_uptime_seconds 100");
+	CHECK(finds_nothing());
+}
+
+static void no_touchscreen_is_ill_unless_none_was_looked_for(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch", "gopura_kiosk_touch_devices 0");
+	CHECK(finds(LEVEL_ILL, "No finger"));
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch", "");
+	CHECK(finds_nothing());
+}
+
+static void a_slow_board_is_told_with_its_reason(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_late",
+	       "gopura_kiosk_late_frames_total 1001");
+	CHECK(finds(LEVEL_REMARK, "come late"));
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_gl_info",
+	       "gopura_kiosk_gl_info{renderer=\"llvmpipe (LLVM 15)\"} 1");
+	CHECK(finds(LEVEL_REMARK, "No graphics driver"));
+	set_text(&snapshot, PROGRAM_KIOSK, WELL_KIOSK);
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_late", "gopura_kiosk_late_frames_total 300");
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_frames", "gopura_kiosk_frames_total 400");
+	CHECK(finds_nothing()); /* too few to judge by */
+}
+
+static void a_server_away_for_five_minutes_is_a_remark(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_online", "gopura_fetch_online 0");
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_offline",
+	       "gopura_fetch_offline_since_seconds 1699999800");
+	CHECK(finds_nothing());
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_offline",
+	       "gopura_fetch_offline_since_seconds 1699989000");
+	CHECK(finds(LEVEL_REMARK, "server does not answer"));
+	CHECK(strcmp(verdict.findings[0].detail, "For 3 hours.") == 0);
+}
+
+static void programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk", "gopura_fetch_kiosk_connected 0");
+	CHECK(finds(LEVEL_REMARK, "do not talk"));
+	set_text(&snapshot, PROGRAM_FETCH, WELL_FETCH);
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_cache_ref",
+	       "gopura_fetch_cache_refused_total 3");
+	CHECK(finds(LEVEL_REMARK, "disk does not take"));
+}
+
+static void heat_and_want_of_memory_have_two_degrees(void **state)
+{
+	struct machine *m = &snapshot.machine;
+
+	(void)state;
+	m->temperature_c = 79.9;
+	CHECK(finds_nothing());
+	m->temperature_c = 80;
+	CHECK(finds(LEVEL_REMARK, "too hot"));
+	m->temperature_c = 95;
+	CHECK(finds(LEVEL_ILL, "too hot"));
+	m->temperature_c = NAN;
+	CHECK(finds_nothing());
+	m->memory_free_bytes = 0.07 * m->memory_bytes;
+	CHECK(finds(LEVEL_REMARK, "Memory"));
+	m->memory_free_bytes = 0.02 * m->memory_bytes;
+	CHECK(finds(LEVEL_ILL, "Memory"));
+	m->memory_free_bytes = m->memory_bytes = NAN;
+	CHECK(finds_nothing());
+	m->data_free_bytes = 0.04 * m->data_bytes;
+	CHECK(finds(LEVEL_REMARK, "disk is nearly full"));
+}
+
+static void a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock", "gopura_kiosk_clock_trusted 0");
+	CHECK(finds(LEVEL_REMARK, "clock"));
+	snapshot.machine.uptime_s = 600;
+	CHECK(finds_nothing());
+}
+
+static void a_restart_is_told_for_an_hour(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts", "gopura_kiosk_starts_total 3");
+	CHECK(finds_nothing());
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime", "gopura_kiosk_uptime_seconds 130");
+	CHECK(finds(LEVEL_REMARK, "began anew"));
+	CHECK(strcmp(verdict.findings[0].detail,
+		     "2 minutes ago; 2 restarts since the machine began.") == 0);
+}
+
+static void each_line_of_the_faults_is_a_remark_and_the_worst_stands_first(void **state)
+{
+	(void)state;
+	snprintf(snapshot.machine.faults, sizeof(snapshot.machine.faults),
+		 "gopura.conf, line 3: no\n\ngopura.conf, line 9: no");
+	snapshot.answers[PROGRAM_FETCH].rc = -ENOENT;
+	buffer_clear(&snapshot.answers[PROGRAM_FETCH].text);
+	verdict_judge(&verdict, &snapshot);
+	CHECK(verdict.count == 3 && verdict.level == LEVEL_ILL);
+	CHECK(verdict.findings[0].level == LEVEL_ILL);
+	CHECK(strcmp(verdict.findings[1].detail, "gopura.conf, line 3: no") == 0);
+	CHECK(strcmp(verdict.findings[2].detail, "gopura.conf, line 9: no") == 0);
+}
+
+static void more_faults_than_have_room_leave_what_is_ill(void **state)
+{
+	(void)state;
+	for (int i = 0; i < 100; i++)
+		memcpy(snapshot.machine.faults + 6 * i, "again\n", 7);
+	snapshot.machine.temperature_c = 99;
+	verdict_judge(&verdict, &snapshot);
+	CHECK(verdict.count == FINDINGS_MOST && verdict.level == LEVEL_ILL);
+	CHECK(strstr(verdict.findings[0].what, "too hot"));
+}
+
+static void durations_are_in_the_unit_that_says_most(void **state)
+{
+	static const struct {
+		double seconds;
+		const char *text;
+	} cases[] = {
+		{ 0, "0 seconds" },   { 1.9, "1 second" },     { 119, "119 seconds" },
+		{ 120, "2 minutes" }, { 7199, "119 minutes" }, { 7200, "2 hours" },
+		{ 172800, "2 days" }, { -5, "0 seconds" },
+	};
+	char text[40];
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		verdict_duration(text, sizeof(text), cases[i].seconds);
+		if (strcmp(text, cases[i].text) != 0)
+			fail_msg("%s and not %s", text, cases[i].text);
+	}
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, begin, end)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		CASE(a_well_terminal_gets_no_remark),
+		CASE(a_silent_program_is_ill_and_the_way_it_is_silent_is_told),
+		CASE(no_picture_is_ill_after_two_minutes),
+		CASE(no_touchscreen_is_ill_unless_none_was_looked_for),
+		CASE(a_slow_board_is_told_with_its_reason),
+		CASE(a_server_away_for_five_minutes_is_a_remark),
+		CASE(programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks),
+		CASE(heat_and_want_of_memory_have_two_degrees),
+		CASE(a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour),
+		CASE(a_restart_is_told_for_an_hour),
+		CASE(each_line_of_the_faults_is_a_remark_and_the_worst_stands_first),
+		CASE(more_faults_than_have_room_leave_what_is_ill),
+		CASE(durations_are_in_the_unit_that_says_most),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
