@@ -138,6 +138,24 @@ static void write_server(const struct facts *facts)
 		    figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
 }
 
+static void write_refusal(const struct facts *facts, enum program program, const char *name,
+			  const char *at, const char *info)
+{
+	const struct bytes text = buffer_bytes(&facts->snapshot->answers[program].text);
+	char what[120], why[200];
+
+	if (!figures_label(text, info, "what", what, sizeof(what)))
+		return;
+	figures_label(text, info, "why", why, sizeof(why));
+	row(facts, name);
+	text_put_html(facts->out, what);
+	text_put(facts->out, ", ");
+	put_duration(facts->out,
+		     (double)facts->snapshot->taken_wall_s - figure(facts, program, at));
+	text_put(facts->out, " ago: ");
+	text_put_html(facts->out, why);
+}
+
 static void write_panel(const struct facts *facts)
 {
 	const struct bytes kiosk = buffer_bytes(&facts->snapshot->answers[PROGRAM_KIOSK].text);
@@ -206,7 +224,8 @@ static void write_program(const struct facts *facts, enum program program, const
 	}
 	text_put(facts->out, "runs for ");
 	put_duration(facts->out, figure(facts, program, uptime));
-	text_format(facts->out, ", began %.0f times, holds ", figure(facts, program, starts));
+	text_format(facts->out, ", %.0f start%s, holds ", figure(facts, program, starts),
+		    figure(facts, program, starts) == 1 ? "" : "s");
 	put_bytes(facts->out, figure(facts, program, memory));
 }
 
@@ -266,6 +285,10 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 	text_put(out, "<h2>What is shown</h2><table>");
 	write_release(&facts);
 	write_server(&facts);
+	write_refusal(&facts, PROGRAM_KIOSK, "Refused last", "gopura_kiosk_refused_at_seconds",
+		      "gopura_kiosk_refusal_info");
+	write_refusal(&facts, PROGRAM_FETCH, "Not brought last", "gopura_fetch_refused_at_seconds",
+		      "gopura_fetch_refusal_info");
 	write_panel(&facts);
 	text_put(out, "</table><h2>The machine</h2><table>");
 	write_machine(&facts);

@@ -13,6 +13,7 @@ enum {
 	OFFLINE_S = 300,    /* shorter gaps are life */
 	CLOCK_S = 900,      /* of the machine, until its clock must be set */
 	RESTARTED_S = 3600, /* a restart is told that long */
+	REFUSED_S = 86400,
 	FRAMES_LEAST = 500, /* before late ones are judged */
 	HOT_C = 80,
 	BURNING_C = 95,
@@ -159,12 +160,31 @@ static void judge_picture(struct verdict *verdict, const struct snapshot *snapsh
 		    "%.0f %% of the frames took longer than the panel waits.", 100 * late / frames);
 }
 
+/* Releases that were offered and not taken. What is wrong with one is found again at each look for
+ * a new one: what was found last a day ago is mended. */
+static void judge_refusal(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const struct bytes kiosk = buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text);
+	const double ago_s = (double)snapshot->taken_wall_s -
+			     figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_refused_at_seconds");
+	char what[80], why[200], ago[40];
+
+	if (!(ago_s < REFUSED_S))
+		return;
+	figures_label(kiosk, "gopura_kiosk_refusal_info", "what", what, sizeof(what));
+	figures_label(kiosk, "gopura_kiosk_refusal_info", "why", why, sizeof(why));
+	verdict_duration(ago, sizeof(ago), ago_s);
+	add(verdict, LEVEL_REMARK, "A new release was refused",
+	    "The one before is shown. Publish anew, or sign what has expired (docs/release.md).",
+	    "%s, %s ago: %s", what, ago, why);
+}
+
 static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
 {
 	const double since_s =
 		figure(snapshot, PROGRAM_FETCH, "gopura_fetch_offline_since_seconds");
 	const double offline_s = (double)snapshot->taken_wall_s - since_s;
-	char reason[200], gone[40];
+	char gone[40];
 
 	if (since_s > 0 && offline_s > OFFLINE_S) {
 		verdict_duration(gone, sizeof(gone), offline_s);
@@ -173,11 +193,6 @@ static void judge_content(struct verdict *verdict, const struct snapshot *snapsh
 		    "whether [release] url in gopura.conf opens from another computer here.",
 		    "For %s.", gone);
 	}
-	if (figures_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text),
-			  "gopura_kiosk_refusal_info", "reason", reason, sizeof(reason)))
-		add(verdict, LEVEL_REMARK, "A new release was refused",
-		    "The one before is shown. Publish anew, or sign what has expired (docs/release.md).",
-		    "%s", reason);
 	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk_connected") == 0 &&
 	    figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds") > TOGETHER_S &&
 	    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_uptime_seconds") > TOGETHER_S)
@@ -242,6 +257,7 @@ void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 	judge_silence(out, snapshot);
 	judge_picture(out, snapshot);
 	judge_content(out, snapshot);
+	judge_refusal(out, snapshot);
 	judge_machine(out, snapshot);
 	judge_restart(out, snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts_total",
 		      "gopura_kiosk_uptime_seconds", "The program that draws began anew");

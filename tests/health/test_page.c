@@ -119,9 +119,13 @@ static void the_page_says_what_is_ill_and_escapes_what_others_wrote(void **state
 	CHECK(strstr(body, "V3D 7.1") && strstr(body, "slot A"));
 	CHECK(!strstr(body, "<b>") && !strstr(body, "<script"));
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch", "gopura_kiosk_touch_devices 0");
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_requests",
+	       "gopura_fetch_requests_total 9\ngopura_fetch_refused_at_seconds 1699999400\n"
+	       "gopura_fetch_refusal_info{what=\"<x>\",why=\"too slow\"} 1");
 	snprintf(snapshot.machine.faults, sizeof(snapshot.machine.faults), "line 3: '\"<&>\"'");
 	ask(REQUEST_OVERVIEW, false, &body);
 	CHECK(strstr(body, "It is ill") && strstr(body, "No finger is felt"));
+	CHECK(strstr(body, "&#60;x&#62;, 10 minutes ago: too slow"));
 	CHECK(strstr(body, "line 3: &#39;&#34;&#60;&#38;&#62;&#34;&#39;"));
 }
 

@@ -113,6 +113,23 @@ static void a_server_away_for_five_minutes_is_a_remark(void **state)
 	CHECK(strcmp(verdict.findings[0].detail, "For 3 hours.") == 0);
 }
 
+static void a_refusal_is_a_remark_for_a_day(void **state)
+{
+	static char text[4096];
+
+	(void)state;
+	snprintf(text, sizeof(text), "%s%s", WELL_KIOSK,
+		 "gopura_kiosk_refused_at_seconds 1699999400\n"
+		 "gopura_kiosk_refusal_info{what=\"release.json\",why=\"it has expired\"} 1\n");
+	set_text(&snapshot, PROGRAM_KIOSK, text);
+	CHECK(finds(LEVEL_REMARK, "refused"));
+	CHECK(strcmp(verdict.findings[0].detail, "release.json, 10 minutes ago: it has expired") ==
+	      0);
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_refused_at",
+	       "gopura_kiosk_refused_at_seconds 1699913600");
+	CHECK(finds_nothing());
+}
+
 static void programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks(void **state)
 {
 	(void)state;
@@ -223,6 +240,7 @@ int main(void)
 		CASE(no_touchscreen_is_ill_unless_none_was_looked_for),
 		CASE(a_slow_board_is_told_with_its_reason),
 		CASE(a_server_away_for_five_minutes_is_a_remark),
+		CASE(a_refusal_is_a_remark_for_a_day),
 		CASE(programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks),
 		CASE(heat_and_want_of_memory_have_two_degrees),
 		CASE(a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour),
