@@ -2,15 +2,11 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include <ini.h>
-
 #include "base/log.h"
+#include "board/settings.h"
 
 const struct profile profile_default = {
 	.triangles = 400000,
@@ -22,132 +18,76 @@ const struct profile profile_default = {
 	.cache_mib = 256,
 };
 
-enum profile_type { TYPE_INT, TYPE_QUARTERS, TYPE_FLOAT, TYPE_MATRIX };
-
-struct profile_key {
-	const char *section, *name;
-	enum profile_type type;
-	size_t offset;
-	double least, most;
-};
-
-#define KEY(section, name, type, field, least, most)                                               \
-	{                                                                                          \
-		section, name, type, offsetof(struct profile, field), least, most                  \
-	}
-
-static const struct profile_key keys[] = {
-	KEY("panel", "rotation", TYPE_QUARTERS, rotation_deg, 0, 270),
-	KEY("panel", "width_mm", TYPE_INT, width_mm, 0, 5000),
-	KEY("touch", "matrix", TYPE_MATRIX, matrix, -10, 10),
-	KEY("touch", "edge_mm", TYPE_FLOAT, edge_mm, 0, 50),
-	KEY("touch", "palm_mm", TYPE_FLOAT, palm_mm, 0, 200),
-	KEY("render", "triangles", TYPE_INT, triangles, 10000, 20000000),
-	KEY("render", "texture_mib", TYPE_INT, texture_mib, 8, 1024),
-	KEY("render", "geometry_mib", TYPE_INT, geometry_mib, 8, 1024),
-	KEY("render", "error_px", TYPE_FLOAT, error_px, 0.25, 64),
-	KEY("render", "thrift", TYPE_FLOAT, thrift, 0, 100000),
-	KEY("render", "upload_us", TYPE_INT, upload_us, 200, 100000),
-	KEY("render", "workers", TYPE_INT, workers, 1, 8),
-	KEY("cache", "mib", TYPE_INT, cache_mib, 8, 65536),
-};
-
-struct profile_reading {
-	struct profile *profile;
-	FILE *file;
-	const char *path;
-	unsigned line;
-	bool failed;
-};
-
-static char *read_line(char *text, int bytes, void *stream)
+static bool set_float(const struct setting *setting, void *target, const char *value)
 {
-	struct profile_reading *reading = stream;
+	double number;
 
-	reading->line++;
-	return fgets(text, bytes, reading->file);
+	if (!settings_numbers(setting, value, &number, 1))
+		return false;
+	*(float *)((char *)target + setting->offset) = (float)number;
+	return true;
 }
 
-static void complain(struct profile_reading *reading, const char *what, const char *name)
+static bool set_quarters(const struct setting *setting, void *target, const char *value)
 {
-	reading->failed = true;
-	log_error("board", "board bug: %s, line %u: %s '%s' (see docs/board.md)", reading->path,
-		  reading->line, what, name);
+	double number;
+
+	return settings_numbers(setting, value, &number, 1) && fmod(number, 90) == 0 &&
+	       settings_whole(setting, target, value);
 }
 
-/* As many numbers within the key's limits as wanted, and nothing else. */
-static bool read_numbers(const struct profile_key *key, const char *text, double *out, int wanted)
+static bool set_matrix(const struct setting *setting, void *target, const char *value)
 {
-	for (int i = 0; i < wanted; i++) {
-		char *end;
-
-		out[i] = strtod(text, &end);
-		if (end == text || !(out[i] >= key->least && out[i] <= key->most))
-			return false;
-		text = end + strspn(end, " \t,");
-	}
-	return *text == '\0';
-}
-
-static bool set_key(struct profile *profile, const struct profile_key *key, const char *text)
-{
-	void *to = (char *)profile + key->offset;
 	double numbers[6];
 
-	if (!read_numbers(key, text, numbers, key->type == TYPE_MATRIX ? 6 : 1))
+	if (!settings_numbers(setting, value, numbers, 6))
 		return false;
-	switch (key->type) {
-	case TYPE_INT:
-		*(int *)to = (int)numbers[0];
-		return numbers[0] == floor(numbers[0]);
-	case TYPE_QUARTERS:
-		*(int *)to = (int)numbers[0];
-		return fmod(numbers[0], 90) == 0;
-	case TYPE_FLOAT:
-		*(float *)to = (float)numbers[0];
-		return true;
-	case TYPE_MATRIX:
-		for (int i = 0; i < 6; i++)
-			((float *)to)[i] = (float)numbers[i];
-		return true;
-	}
-	return false;
+	for (int i = 0; i < 6; i++)
+		((float *)((char *)target + setting->offset))[i] = (float)numbers[i];
+	return true;
 }
 
-static int on_entry(void *data, const char *section, const char *name, const char *value)
-{
-	struct profile_reading *reading = data;
-
-	for (size_t i = 0; i < ARRAY_COUNT(keys); i++) {
-		if (strcmp(keys[i].section, section) != 0 || strcmp(keys[i].name, name) != 0)
-			continue;
-		if (!set_key(reading->profile, &keys[i], value))
-			complain(reading, "this value does not do:", value);
-		return 1;
+#define SETTING(section, name, expects, set, field, least, most)                                   \
+	{                                                                                          \
+		section, name, expects, set, offsetof(struct profile, field), least, most, false,  \
+			false                                                                      \
 	}
-	complain(reading, "no such entry:", name);
-	return 1;
-}
+
+static const struct setting settings[] = {
+	SETTING("panel", "rotation", "0, 90, 180 or 270", set_quarters, rotation_deg, 0, 270),
+	SETTING("panel", "width_mm", NULL, settings_whole, width_mm, 0, 5000),
+	SETTING("touch", "matrix", "six numbers from -10 to 10", set_matrix, matrix, -10, 10),
+	SETTING("touch", "edge_mm", NULL, set_float, edge_mm, 0, 50),
+	SETTING("touch", "palm_mm", NULL, set_float, palm_mm, 0, 200),
+	SETTING("render", "triangles", NULL, settings_whole, triangles, 10000, 20000000),
+	SETTING("render", "texture_mib", NULL, settings_whole, texture_mib, 8, 1024),
+	SETTING("render", "geometry_mib", NULL, settings_whole, geometry_mib, 8, 1024),
+	SETTING("render", "error_px", NULL, set_float, error_px, 0.25, 64),
+	SETTING("render", "thrift", NULL, set_float, thrift, 0, 100000),
+	SETTING("render", "upload_us", NULL, settings_whole, upload_us, 200, 100000),
+	SETTING("render", "workers", NULL, settings_whole, workers, 1, 8),
+	SETTING("cache", "mib", NULL, settings_whole, cache_mib, 8, 65536),
+};
 
 int profile_read(struct profile *out, const char *path)
 {
-	struct profile_reading reading = { .profile = out, .path = path };
+	struct faults faults = { .count = 0 };
+	struct buffer file;
 	int rc;
 
 	*out = profile_default;
 	if (!path)
 		return 0;
-	reading.file = fopen(path, "re");
-	if (!reading.file) {
-		rc = -errno;
+	buffer_init(&file, SETTINGS_FILE_MOST);
+	rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		settings_read(buffer_bytes(&file), settings, ARRAY_COUNT(settings), out, NULL,
+			      &faults);
+	else
 		log_error("board", "board bug: %s: %s", path, strerror(-rc));
-		return rc;
-	}
-	rc = ini_parse_stream(read_line, &reading, on_entry, &reading);
-	if (rc > 0) {
-		reading.line = (unsigned)rc;
-		complain(&reading, "neither a [section] nor name = value", "");
-	}
-	fclose(reading.file);
-	return reading.failed ? -EINVAL : rc < 0 ? -EIO : 0;
+	buffer_finish(&file);
+	for (unsigned i = 0; i < faults.count; i++)
+		log_error("board", "board bug: %s, %s (see docs/board.md)", path,
+			  faults.list[i].text);
+	return faults.count > 0 ? -EINVAL : rc;
 }

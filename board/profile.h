@@ -29,8 +29,8 @@ struct profile {
 
 extern const struct profile profile_default;
 
-/* *out starts as profile_default. path NULL: only that. -ENOENT, -EIO; -EINVAL: the log names the
- * file, the line and what it may say. */
+/* *out starts as profile_default. path NULL: only that. -ENOENT and others of the file; -EINVAL:
+ * the log names the file, the line and what it may say. */
 must_check int profile_read(struct profile *out, const char *path);
 
 #endif

@@ -31,12 +31,13 @@ void faults_add(struct faults *faults, unsigned line, const char *text, ...) pri
 
 struct setting {
 	const char *section, *name;
-	const char *expects; /* for the complaint: "name must be ..., not 'x'" */
+	const char *expects; /* "name must be ..., not 'x'"; NULL: a number least .. most */
 	/* false: value is not what the setting expects, and nothing is set. */
 	bool (*set)(const struct setting *setting, void *target, const char *value);
-	size_t offset;      /* of the field in the target */
-	double least, most; /* numbers; of text: most is the field's size in bytes */
-	bool secret;        /* its value is never told */
+	size_t offset; /* of the field in the target */
+	double least, most;
+	bool secret;    /* its value is never told */
+	bool free_text; /* a # in it may belong to it: then quotes must say so */
 };
 
 /* lines (of `count`, or NULL) gets the line of each setting that the text names, also where its
@@ -44,9 +45,11 @@ struct setting {
 void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
 		   unsigned *lines, struct faults *faults);
 
-/* ---- set functions; least and most of the setting hold */
+/* ---- for set functions; numbers lie within the setting's least and most */
 
-/* One whole number into an int or uint32_t. */
+/* As many numbers as wanted, with spaces or commas between, and nothing else. */
+bool settings_numbers(const struct setting *setting, const char *value, double *out, int wanted);
+/* A set function: one whole number, into an int or uint32_t. */
 bool settings_whole(const struct setting *setting, void *target, const char *value);
 
 #endif
