@@ -5,6 +5,7 @@
 
 #include "app/kiosk.h"
 #include "app/options.h"
+#include "app/safe_mode.h"
 
 int main(int argc, char **argv)
 {
@@ -20,10 +21,14 @@ int main(int argc, char **argv)
 	case OPTIONS_RUN:
 		break;
 	}
-	rc = kiosk_start(&kiosk); /* display, scene, input, fetcher */
-	if (rc == 0)
-		rc = kiosk_run(&kiosk);
-	kiosk_stop(&kiosk); /* the reverse; any part may be missing */
+	if (kiosk.options.safe_page) {
+		rc = safe_mode_run(&kiosk.options);
+	} else {
+		rc = kiosk_start(&kiosk); /* display, scene, input, fetcher */
+		if (rc == 0)
+			rc = kiosk_run(&kiosk);
+		kiosk_stop(&kiosk); /* the reverse; any part may be missing */
+	}
 	if (rc == -ENOTRECOVERABLE || rc == -ESTALE)
 		return KIOSK_STATUS_ANEW;
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

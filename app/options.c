@@ -35,6 +35,8 @@ static const char help_text[] =
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
 	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
+	"  --safe-page          say that the terminal will be back, without GPU and release\n"
+	"                       (docs/display.md); with --capture: safe-0.png and safe-1.png\n"
 	"  --help, --version\n"
 	"\n"
 	"Examples:\n"
@@ -66,6 +68,7 @@ enum {
 	OPTION_SOCKET,
 	OPTION_FIGURES,
 	OPTION_LOG,
+	OPTION_SAFE_PAGE,
 	OPTION_HELP,
 	OPTION_VERSION
 };
@@ -92,6 +95,7 @@ static const struct option long_options[] = {
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
 	{ "log", required_argument, NULL, OPTION_LOG },
+	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ "version", no_argument, NULL, OPTION_VERSION },
 	{ NULL, 0, NULL, 0 },
@@ -199,6 +203,9 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_OVERLAY:
 		o->capture_overlay = true;
 		return true;
+	case OPTION_SAFE_PAGE:
+		o->safe_page = true;
+		return true;
 	case OPTION_QUIT_AFTER_REPLAY:
 		o->quit_after_replay = true;
 		return true;
@@ -209,6 +216,8 @@ static bool set_value(struct options *o, int option, const char *text)
 
 static bool check_together(const struct options *o)
 {
+	if (o->safe_page)
+		return true;
 	if (!o->release_url && !o->socket_path)
 		fputs("gopura-kiosk: --release is missing; see --help\n", stderr);
 	else if ((o->views_path || o->shots_path) && !o->capture_dir)

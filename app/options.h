@@ -31,6 +31,7 @@ struct options {
 	const char *language;
 	uint32_t poll_s; /* for updates; 0: the fetcher's default */
 	bool quit_after_replay;
+	bool safe_page; /* no kiosk: app/safe_mode.h */
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_BAD };

@@ -68,5 +68,7 @@ is_well() {
 managed kiosk build/gopura-kiosk --display headless --size 640x360 --release "$release" \
 	--trust "$release/root/1.json" --state "$work/state"
 is_well kiosk
+managed safe build/gopura-kiosk --safe-page --display headless --size 640x360
+is_well safe
 managed fetch build/gopura-fetch --release "$release" --cache "$work/cache.db" --socket "$work/socket"
 is_well fetch

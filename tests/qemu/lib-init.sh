@@ -19,6 +19,9 @@ unplugged)
 		echo on >"$status"
 	) >/dev/console &
 	;;
+safe)
+	kiosk --safe-page >/dev/console
+	;;
 esac
 until kiosk | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
 	sleep 0.2 # as the service manager does for status 75

@@ -1,4 +1,4 @@
-"""plug.py KERNEL INITRAMFS WORK: the kiosk starts without a panel, which is then plugged in, out and in
+"""plug.py KERNEL INITRAMFS WORK: the safe page on a panel; then the kiosk starts without a panel, which is then plugged in, out and in
 again; no process ends but to fit the panel that came first, and the temple is on it afterwards."""
 import os
 import sys
@@ -8,8 +8,19 @@ sys.path.insert(0, os.path.dirname(__file__))
 from machine import ANSWER_S, BOOT_S, Machine, share_that_differs, tones
 
 
-def main():
-    kernel, initramfs, work = sys.argv[1:4]
+def safe_page(kernel, initramfs, work):
+    """Without GPU and release: a page that moves, on the card's own memory."""
+    machine = Machine(kernel, initramfs, work, "safe")
+    try:
+        machine.wait_for("safe page", BOOT_S, lambda: "KMS canvas" in machine.log() and tones(machine.picture("safe")) > 20)
+        before = machine.picture("safe")
+        machine.wait_for("movement", ANSWER_S, lambda: share_that_differs(before, machine.picture("safe")) > 0.01)
+    finally:
+        machine.process.kill()
+        machine.process.wait()
+
+
+def plugging(kernel, initramfs, work):
     began = time.monotonic()
     machine = Machine(kernel, initramfs, work, "unplugged")
     said = lambda what: lambda: what in machine.log()
@@ -34,4 +45,5 @@ def main():
     print(f"done in {time.monotonic() - began:.0f} s")
 
 
-main()
+safe_page(*sys.argv[1:4])
+plugging(*sys.argv[1:4])
