@@ -7,6 +7,7 @@
 BUILD   ?= build
 SAN     ?=
 JOBS    ?= $(shell nproc)
+WINDOW  ?= yes
 MAKEFLAGS += --no-builtin-rules
 
 FOLDERS := base format board render ui input storage net app pipeline health
@@ -32,6 +33,11 @@ endif
 
 MAINS    := app/main.c net/main.c pipeline/main.c health/main.c
 SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
+ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
+SOURCES  := $(filter-out render/display_window.c,$(SOURCES))
+LIBS     := $(filter-out sdl2,$(LIBS))
+CFLAGS   += -DGOPURA_NO_WINDOW
+endif
 OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 ARCHIVE  := $(BUILD)/libgopura.a
 PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health
@@ -43,7 +49,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check qemu unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check image qemu unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -67,6 +73,10 @@ test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, f
 
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
+
+image: all ## the bootable disk image of a terminal, build/image/gopura.img
+	@./deps.sh image/tools.txt
+	@image/build.sh
 
 qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
 	@bash tests/qemu/kiosk.sh

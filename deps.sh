@@ -1,8 +1,9 @@
 #!/bin/sh
-# Install the packages of packages.txt that are missing. Root, or a user with sudo.
+# deps.sh [LIST]: install the packages of the list (packages.txt) that are missing. Root, or a user with sudo.
 set -eu
 cd "$(dirname "$0")"
-missing=$(grep -v '^#' packages.txt | while read -r name; do
+list=${1:-packages.txt}
+missing=$(grep -v '^#' "$list" | while read -r name; do
 	dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || echo "$name"
 done)
 [ -n "$missing" ] || exit 0
@@ -10,7 +11,7 @@ if [ "$(id -u)" = 0 ]; then as_root=; else
 	as_root=sudo
 	command -v sudo >/dev/null || { echo "deps.sh: be root, or install sudo; missing:" $missing >&2; exit 1; }
 fi
-echo "Installing $(echo "$missing" | wc -l) Debian packages (see packages.txt) ..."
+echo "Installing $(echo "$missing" | wc -l) Debian packages (see $list) ..."
 $as_root apt-get update -qq
 # shellcheck disable=SC2086
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \

@@ -25,13 +25,25 @@ static int try_backend(struct display *display, const struct display_backend *ba
 	return 0;
 }
 
+static int try_window(struct display *display, const struct display_options *options)
+{
+#ifdef GOPURA_NO_WINDOW
+	(void)display;
+	(void)options;
+	log_error("render", "this kiosk was built without a window: choose --display drm");
+	return -ENOTSUP;
+#else
+	return try_backend(display, &display_window, options);
+#endif
+}
+
 static int try_any(struct display *display, const struct display_options *options)
 {
 	const bool desktop = getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
 	int rc;
 
 	/* In a desktop session the card is taken: a window, without asking for it. */
-	if (desktop && try_backend(display, &display_window, options) == 0)
+	if (desktop && try_window(display, options) == 0)
 		return 0;
 	rc = try_backend(display, &display_drm, options);
 	if (rc < 0)
@@ -55,7 +67,7 @@ int display_create(struct display **out, const struct display_options *options)
 		rc = try_backend(display, &display_drm, options);
 		break;
 	case DISPLAY_WINDOW:
-		rc = try_backend(display, &display_window, options);
+		rc = try_window(display, options);
 		break;
 	case DISPLAY_HEADLESS:
 		rc = try_backend(display, &display_headless, options);

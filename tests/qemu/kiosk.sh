@@ -10,14 +10,7 @@ command -v qemu-system-x86_64 >/dev/null || skip "qemu-system-x86 is not install
 here=tests/qemu work=build/qemu
 mkdir -p "$work"
 
-# ---- a kernel: Debian's generic one, unpacked and not installed (the cloud kernel has no GPU)
-if ! ls "$work"/kernel/boot/vmlinuz-* >/dev/null 2>&1; then
-	package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends: linux-image/{print $2; exit}')
-	[ -n "$package" ] || skip "no kernel package to be had (apt-cache knows no linux-image-amd64)"
-	(cd "$work" && apt-get download "$package" >/dev/null 2>&1) || skip "the kernel package cannot be fetched"
-	dpkg-deb -x "$work"/linux-image-*.deb "$work/kernel"
-	rm -f "$work"/linux-image-*.deb
-fi
+image/kernel.sh "$work/kernel"
 kernel=$(ls "$work"/kernel/boot/vmlinuz-*)
 
 # ---- a small release

@@ -1,0 +1,162 @@
+#!/bin/bash
+# assemble.sh: called by build.sh beneath fakeroot, with its variables: base.tar, kernel and programs into
+# tree/, that into the images of a slot, those into a disk.
+set -eu
+tree=$out/tree kernel=$out/kernel
+version=$(basename "$kernel"/lib/modules/*)
+list() { grep -v '^#' "$1"; }
+rm -rf "$tree"
+mkdir -p "$tree"
+tar -x --exclude=./dev -C "$tree" -f "$out/base.tar"
+: >"$out/left-out.txt"
+left_out() { echo "$*" >>"$out/left-out.txt"; }
+
+# ---- what only builds or administers a Debian, and no terminal
+mv "$tree/packages.txt" "$out/packages.txt"
+for path in usr/bin/perl* usr/lib/x86_64-linux-gnu/perl* usr/lib/x86_64-linux-gnu/libperl* usr/share/perl* \
+	usr/bin/apt* usr/bin/dpkg* usr/lib/apt usr/lib/dpkg var/lib/dpkg var/lib/apt var/cache var/log \
+	usr/share/doc usr/share/info usr/share/bash-completion usr/share/zsh usr/share/lintian usr/share/debconf \
+	usr/share/bug usr/lib/udev/hwdb.d usr/share/gcc usr/share/common-licenses \
+	usr/sbin/agetty sbin/agetty usr/bin/login bin/login bin/su usr/bin/passwd usr/bin/chsh usr/bin/chfn usr/bin/newgrp usr/bin/gpasswd; do
+	for file in "$tree"/$path; do
+		[ -e "$file" ] || [ -L "$file" ] || continue
+		left_out "/${file#"$tree"/}"
+		rm -rf "$file"
+	done
+done
+
+# ---- fonts, by list
+find "$tree/usr/share/fonts" -type f -name '*.tt[fc]' | sort | while read -r font; do
+	list "$here/fonts" | grep -qxF "$(basename "$font")" || { left_out "${font#"$tree"}"; rm "$font"; }
+done
+
+# ---- kernel modules, by list
+modules=$tree/usr/lib/modules/$version
+mkdir -p "$modules"
+cp "$kernel/lib/modules/$version"/modules.{order,builtin,builtin.modinfo} "$modules/"
+depmod -b "$kernel" "$version"
+# wanted TO NAME...: the modules and all they need
+wanted() {
+	local to=$1 name
+	shift
+	for name in "$@"; do
+		modprobe -d "$kernel" -S "$version" --show-depends "$name" 2>/dev/null || echo "missing $name"
+	done | awk '$1 == "insmod" { print $2 } $1 == "missing" { print "no module " $2 > "/dev/stderr" }' | sort -u |
+		while read -r file; do
+			file=${file#"$kernel"/lib/modules/"$version"/}
+			mkdir -p "$to/$(dirname "$file")"
+			cp "$kernel/lib/modules/$version/$file" "$to/$file"
+		done
+}
+# shellcheck disable=SC2046
+wanted "$modules" $(list "$here/modules" | sed 's/^early //')
+(cd "$kernel/lib/modules/$version" && find . -name '*.ko' | sort) | while read -r file; do
+	[ -f "$modules/$file" ] || left_out "/usr/lib/modules/$version/${file#./}"
+done
+depmod -b "$tree/usr" -m /lib/modules "$version" 2>/dev/null || depmod -b "$tree" "$version"
+
+# ---- ours
+for program in gopura-kiosk gopura-fetch; do
+	install -m 755 -s "build/appliance/$program" "$tree/usr/bin/$program"
+done
+LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u | while read -r library; do
+	[ -n "$(find "$tree/usr/lib" -name "$library" -print -quit)" ] ||
+		{ echo "image: no package of image/packages brings $library" >&2; exit 1; }
+done
+cp -r "$here/root/." "$tree/"
+install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
+mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura"
+cp /usr/bin/grub-editenv "$tree/usr/bin/"
+if [ -n "${RELEASE:-}" ]; then cp -r "$RELEASE" "$tree/usr/share/gopura/release"; fi
+systemd-sysusers --root="$tree"
+rm -rf "$tree"/etc/systemd/system/*.wants
+# No shell on any console, whatever asks for one.
+for unit in getty.target getty@.service autovt@.service serial-getty@.service console-getty.service container-getty@.service \
+	debug-shell.service emergency.service emergency.target rescue.service rescue.target systemd-logind.service ctrl-alt-del.target; do
+	ln -sfn /dev/null "$tree/etc/systemd/system/$unit"
+done
+systemctl --root="$tree" preset-all 2>"$out/preset.log" || { cat "$out/preset.log" >&2; exit 1; }
+systemctl --root="$tree" set-default gopura.target 2>/dev/null
+rm -f "$tree/etc/machine-id" "$tree/var/lib/dbus/machine-id" "$tree"/etc/{hostname,resolv.conf}
+: >"$tree/etc/machine-id"
+ln -s /run/gopura/hostname "$tree/etc/hostname"
+ln -s /run/systemd/resolve/stub-resolv.conf "$tree/etc/resolv.conf"
+ln -sfn /run/gopura/localtime "$tree/etc/localtime"
+rm -rf "$tree"/var/* "$tree"/run/* "$tree"/tmp/*
+rm -rf "$tree"/{boot,home,media,mnt,opt,srv}
+find "$tree" -newermt "@$SOURCE_DATE_EPOCH" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
+fc-cache -s -y "$tree" >/dev/null 2>&1 || true
+
+# ---- the slot: kernel and first program of the boot, and the root
+early=$out/early
+rm -rf "$early"
+mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
+cp /bin/busybox "$early/bin/"
+for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir switch_root; do
+	ln -s busybox "$early/bin/$name"
+done
+install -m 755 "$here/init" "$early/init"
+cp "$kernel/lib/modules/$version"/modules.{order,builtin} "$early/lib/modules/$version/"
+# shellcheck disable=SC2046
+wanted "$early/lib/modules/$version" $(sed -n 's/^early //p' "$here/modules") 2>/dev/null
+depmod -b "$early" "$version" 2>/dev/null
+find "$early" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
+boot=$out/boot
+rm -rf "$boot"
+mkdir -p "$boot"
+(cd "$early" && find . | sort | cpio -o -H newc --quiet --reproducible) | zstd -q -19 -T0 >"$boot/initrd"
+cp "$kernel"/boot/vmlinuz-* "$boot/vmlinuz"
+touch -d "@$SOURCE_DATE_EPOCH" "$boot"/* "$boot"
+
+# ext2 LABEL FILE: the loader finds it by its label, so a and b are the same but for that.
+ext2() {
+	rm -f "$2"
+	E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH mke2fs -q -t ext2 -L "$1" -U 6f707572-6100-4000-8000-000000000000 \
+		-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$2" "${boot_mib}M" 2>/dev/null
+}
+ext2 gopura-boot-a "$out/boot-a.ext2"
+rm -f "$out/root.squashfs"
+mksquashfs "$tree" "$out/root.squashfs" -comp zstd -Xcompression-level ${LEVEL:-15} -quiet -no-progress -noappend
+[ "$(stat -c %s "$out/root.squashfs")" -le $((slot_mib << 20)) ] || {
+	echo "image: the root is larger than a slot of $slot_mib MiB; see $out/tree" >&2
+	exit 1
+}
+
+# ---- the loader's partition
+esp=$out/esp.vfat
+rm -f "$esp"
+truncate -s "${esp_mib}M" "$esp"
+mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
+grub-mkimage -O x86_64-efi -p /gopura -o "$out/BOOTX64.EFI" part_gpt fat ext2 normal configfile linux boot search search_label \
+	search_fs_file loadenv test echo sleep reboot minicmd all_video
+grub-editenv "$out/grubenv" create
+grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0 KERNEL="${KERNEL:-}"
+mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura
+mcopy -i "$esp" "$out/BOOTX64.EFI" ::/EFI/BOOT/BOOTX64.EFI
+mcopy -i "$esp" "$here/grub.cfg" "$out/grubenv" ::/gopura/
+
+# ---- the disk
+disk=$out/gopura.img
+rm -f "$disk" "$out/data.ext4"
+mke2fs -q -t ext4 -L gopura-data "$out/data.ext4" "${data_mib}M" 2>/dev/null
+table=$out/disk.sfdisk
+printf '%s\n' 'label: gpt' 'label-id: 6F707572-6100-4000-8000-0000000000FF' >"$table"
+start=1 number=0
+put=()
+partition() { # NAME MIB TYPE [FILE]
+	number=$((number + 1))
+	echo "start=${start}MiB, size=$2MiB, type=$3, name=gopura-$1, uuid=6F707572-6100-4000-8000-00000000010$number" >>"$table"
+	[ -z "${4:-}" ] || put+=("$4:$start")
+	start=$((start + $2))
+}
+partition esp "$esp_mib" U "$esp"
+partition boot-a "$boot_mib" L "$out/boot-a.ext2"
+partition boot-b "$boot_mib" L
+partition root-a "$slot_mib" L "$out/root.squashfs"
+partition root-b "$slot_mib" L
+partition data "$data_mib" L "$out/data.ext4"
+truncate -s "$((start + 1))M" "$disk"
+sfdisk -q "$disk" <"$table"
+for entry in "${put[@]}"; do
+	dd if="${entry%:*}" of="$disk" bs=1M seek="${entry##*:}" conv=notrunc,sparse status=none
+done

@@ -1,0 +1,48 @@
+#!/bin/bash
+# image/build.sh: the bootable disk image of a terminal, build/image/gopura.img, from Debian 12 packages and
+# the programs of this tree. As root or as a user (then with user namespaces, which mmdebstrap needs).
+#
+#   MIRROR=URL      of Debian (default: deb.debian.org); a date of snapshot.debian.org pins every package
+#   RELEASE=FOLDER  lies in the image as well, for a terminal that never gets a network
+#   OUT=FOLDER      instead of build/image
+#
+# What is made: base.tar (the packages), tree/ (the root as it will be), root.squashfs and boot.ext2 (a slot),
+# esp.vfat, gopura.img, and left-out.txt: what the packages would have brought.
+# docs/image.md tells the layout of the disk and why.
+set -eu
+cd "$(dirname "$0")/.."
+here=$PWD/image out=${OUT:-build/image} mirror=${MIRROR:-http://deb.debian.org}
+export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)} LC_ALL=C TZ=UTC
+export PATH=$PATH:/usr/sbin:/sbin
+slot_mib=300 boot_mib=48 esp_mib=64 data_mib=${DATA_MIB:-256}
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+say() { echo "image: $*"; }
+list() { grep -v '^#' "$1"; }
+
+# ---- Debian's packages, as long as their list and the mirror stay
+key=$({ list image/packages; echo "$mirror"; } | sha256sum | cut -c1-16)
+if [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
+	say "installing packages into base.tar"
+	rm -f "$out/base.key"
+	mmdebstrap --variant=essential --include="$(list image/packages | paste -sd,)" \
+		--aptopt='APT::Install-Recommends "false"' \
+		--dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
+		--customize-hook='chroot "$1" dpkg-query -W -f "\${Package} \${Version}\n" >"$1/packages.txt"' \
+		bookworm "$out/base.tar" \
+		"deb $mirror/debian bookworm main" "deb $mirror/debian bookworm-updates main" \
+		"deb $mirror/debian-security bookworm-security main" >"$out/base.log" 2>&1 ||
+		{ tail -n 20 "$out/base.log" >&2; exit 1; }
+	echo "$key" >"$out/base.key"
+fi
+image/kernel.sh "$out/kernel"
+
+# ---- the programs, without the window of a desktop
+make --no-print-directory -j"$(nproc)" WINDOW=no BUILD=build/appliance \
+	build/appliance/gopura-kiosk build/appliance/gopura-fetch
+
+# ---- root, slot and disk, all files root's
+say "putting the root together"
+export here out slot_mib boot_mib esp_mib data_mib
+fakeroot image/assemble.sh
+say "$(stat -c %s "$out/root.squashfs" | awk '{ printf "a slot has %.0f MB", $1 / 1e6 }'), the image $(du -m "$out/gopura.img" | cut -f1) MiB: $out/gopura.img"

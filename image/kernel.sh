@@ -1,0 +1,13 @@
+#!/bin/bash
+# kernel.sh FOLDER: Debian's generic kernel, unpacked into the folder and not installed (the cloud kernel has no
+# GPU). Exit status 77 where none is to be had.
+set -eu
+folder=$1
+ls "$folder"/boot/vmlinuz-* >/dev/null 2>&1 && exit 0
+skip() { echo "$*"; exit 77; }
+package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends: linux-image/ { print $2; exit }')
+[ -n "$package" ] || skip "no kernel package to be had (apt-cache knows no linux-image-amd64)"
+mkdir -p "$folder"
+(cd "$folder" && apt-get download "$package" >/dev/null 2>&1) || skip "the kernel package cannot be fetched"
+dpkg-deb -x "$folder"/linux-image-*.deb "$folder"
+rm -f "$folder"/linux-image-*.deb

@@ -1,0 +1,32 @@
+#!/bin/bash
+# How much each unit is exposed, by systemd's own measure, and what must not be in any of them.
+set -eu
+cd "$(dirname "$0")/../.."
+command -v systemd-analyze >/dev/null || { echo "systemd-analyze is not installed"; exit 77; }
+failed=0
+
+# most UNIT TENTHS: exposed at most so much
+most() {
+	local tenths
+	tenths=$(systemd-analyze security --offline=true "systemd/$1" 2>/dev/null |
+		sed -n 's/.*Overall exposure level.*: \([0-9]*\)\.\([0-9]\).*/\1\2/p')
+	echo "$1: $tenths tenths (at most $2)"
+	[ -n "$tenths" ] && [ "$((10#$tenths))" -le "$2" ] || failed=1
+}
+most gopura-kiosk.service 10
+most gopura-fetch.service 15
+most gopura-safe.service 15
+
+# Filters of system calls are what systemd calls a service's, less an explicit list.
+for unit in systemd/*.service; do
+	grep -q '^SystemCallFilter=@system-service$' "$unit" || grep -q '^Type=oneshot$' "$unit" ||
+		{ echo "$unit: no filter of system calls"; failed=1; }
+done
+# What a unit starts is in the image's packages or in this tree.
+for program in $(sed -nE 's/^Exec[A-Za-z]+=[+!-]*([^ ]+).*/\1/p' systemd/*.service | sort -u); do
+	case $program in
+	/usr/lib/gopura/*) [ -x "image/root$program" ] || { echo "$program is not in image/root"; failed=1; } ;;
+	/usr/bin/gopura-*) grep -q "${program##*/}" Makefile || { echo "$program is not built"; failed=1; } ;;
+	esac
+done
+exit $failed
