@@ -181,6 +181,7 @@ static void draw_small(struct kiosk *kiosk)
 
 	camera.height_px = camera.height_px * WARM_WIDTH_PX / camera.width_px;
 	camera.width_px = WARM_WIDTH_PX;
+	camera.shift_px[0] = camera.shift_px[1] = 0;
 	if (!kiosk->warm_target.framebuffer &&
 	    gl_target_create(&kiosk->warm_target, camera.width_px, camera.height_px) < 0)
 		return;

@@ -262,8 +262,12 @@ void fingers_init(struct kiosk *kiosk)
 void fingers_on_touch(void *data, const struct touch_event *event)
 {
 	struct kiosk *kiosk = data;
+	struct touch_event seen = *event;
 
-	gesture_feed(&kiosk->gestures, event);
+	if (panel_takes_touch(kiosk, event))
+		return; /* it was for the panel alone */
+	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
+	gesture_feed(&kiosk->gestures, &seen);
 }
 
 void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps)
@@ -287,10 +291,10 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 	}
 	if (kind == POINTER_MOVE && !kiosk->gestures.fingers[0].down)
 		return;
-	gesture_feed(&kiosk->gestures, &(struct touch_event){
-					       .phase = phases[kind],
-					       .x_px = x_px,
-					       .y_px = y_px,
-					       .time_us = clock_now_us(),
-				       });
+	fingers_on_touch(kiosk, &(struct touch_event){
+					.phase = phases[kind],
+					.x_px = x_px,
+					.y_px = y_px,
+					.time_us = clock_now_us(),
+				});
 }

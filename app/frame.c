@@ -80,12 +80,21 @@ void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
 	}
 }
 
+void frame_unshift(const struct kiosk *kiosk, float *x_px, float *y_px)
+{
+	frame_to_panel(kiosk, x_px, y_px);
+	*x_px -= (float)kiosk->panel.shift_px[0];
+	*y_px += (float)kiosk->panel.shift_px[1]; /* GL counts upwards */
+	frame_from_panel(kiosk, x_px, y_px);
+}
+
 void frame_camera(const struct kiosk *kiosk, struct camera *out)
 {
 	navigator_camera(&kiosk->navigator, out);
 	out->width_px = display_width_px(kiosk->display);
 	out->height_px = display_height_px(kiosk->display);
 	out->rotation_deg = kiosk->profile.rotation_deg;
+	memcpy(out->shift_px, kiosk->panel.shift_px, sizeof(out->shift_px));
 }
 
 /* ---- words over the model */
@@ -155,7 +164,7 @@ static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_
 	place_anchors(kiosk, overlay);
 	kiosk->words_move = overlay_update(overlay, now_ms);
 	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
-	quads_begin(kiosk->quads, display_width_px(kiosk->display),
+	quads_begin(kiosk->quads, kiosk->panel.shift_px, display_width_px(kiosk->display),
 		    display_height_px(kiosk->display), kiosk->profile.rotation_deg);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
 		const struct overlay_layer *layer = &layers[i];

@@ -5,6 +5,7 @@
 
 #include "app/navigator.h"
 #include "app/options.h"
+#include "app/panel.h"
 #include "app/story.h"
 #include "app/wants.h"
 #include "board/profile.h"
@@ -71,7 +72,7 @@ struct kiosk {
 	struct camera camera; /* of the last frame */
 	struct message_status status;
 	int64_t started_ms, last_frame_ms;
-	int64_t well_ms; /* of the last frame that the service manager was told of; 0: of none */
+	struct panel panel;
 	bool frame_wanted, words_move, eye_moves;
 	uint32_t frame_us;               /* work of the last frame, this thread */
 	uint64_t frames, late_frames;    /* drawn; of them with more work than a frame may take */
@@ -137,6 +138,9 @@ void frame_camera(const struct kiosk *kiosk, struct camera *out);
  */
 void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
 void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
+/* From where a finger is on the glass to where it is on the picture, which may lie a little beside
+ * it; both the visitor's pixels. */
+void frame_unshift(const struct kiosk *kiosk, float *x_px, float *y_px);
 
 /* fingers.c */
 void fingers_init(struct kiosk *kiosk);

@@ -1,5 +1,6 @@
 #include "app/options.h"
 
+#include <ctype.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,6 +36,10 @@ static const char help_text[] =
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
 	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
+	"  --hours TEXT         the panel is on, such as \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\"\n"
+	"                       (default: always); outside them a touch wakes it for a while\n"
+	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
+	"  --shift              move the picture by a pixel now and then, to spare the panel\n"
 	"  --safe-page          say that the terminal will be back, without GPU and release\n"
 	"                       (docs/display.md); with --capture: safe-0.png and safe-1.png\n"
 	"  --help, --version\n"
@@ -68,6 +73,9 @@ enum {
 	OPTION_SOCKET,
 	OPTION_FIGURES,
 	OPTION_LOG,
+	OPTION_HOURS,
+	OPTION_WAKE,
+	OPTION_SHIFT,
 	OPTION_SAFE_PAGE,
 	OPTION_HELP,
 	OPTION_VERSION
@@ -95,6 +103,9 @@ static const struct option long_options[] = {
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
 	{ "log", required_argument, NULL, OPTION_LOG },
+	{ "hours", required_argument, NULL, OPTION_HOURS },
+	{ "wake-min", required_argument, NULL, OPTION_WAKE },
+	{ "shift", no_argument, NULL, OPTION_SHIFT },
 	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ "version", no_argument, NULL, OPTION_VERSION },
@@ -154,6 +165,15 @@ static bool parse_seconds(const char *text, uint32_t *out)
 	return *text && !*end && value >= 1 && value <= 86400;
 }
 
+static bool parse_minutes(const char *text, uint32_t *out)
+{
+	char *end;
+	unsigned long value = strtoul(text, &end, 10);
+
+	*out = (uint32_t)value;
+	return isdigit((unsigned char)text[0]) && !*end && value <= 24 * 60;
+}
+
 static bool set_text(struct options *o, int option, const char *text)
 {
 	const struct {
@@ -203,6 +223,13 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_OVERLAY:
 		o->capture_overlay = true;
 		return true;
+	case OPTION_HOURS:
+		return hours_parse(&o->hours, text);
+	case OPTION_WAKE:
+		return parse_minutes(text, &o->wake_min);
+	case OPTION_SHIFT:
+		o->shift = true;
+		return true;
 	case OPTION_SAFE_PAGE:
 		o->safe_page = true;
 		return true;
@@ -233,7 +260,8 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 {
 	int option, which = 0;
 
-	*out = (struct options){ .mode = SCENE_LUMIGRAPH };
+	*out = (struct options){ .mode = SCENE_LUMIGRAPH, .wake_min = 5 };
+	hours_always(&out->hours);
 	while ((option = getopt_long(argc, argv, "", long_options, &which)) != -1) {
 		if (option == OPTION_HELP) {
 			fputs(help_text, stdout);

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "board/hours.h"
 #include "render/display.h"
 #include "render/scene.h"
 
@@ -29,7 +30,10 @@ struct options {
 	bool capture_overlay;   /* pictures of views with callouts and all */
 	enum scene_mode mode;
 	const char *language;
-	uint32_t poll_s; /* for updates; 0: the fetcher's default */
+	uint32_t poll_s;    /* for updates; 0: the fetcher's default */
+	struct hours hours; /* in which the panel is on */
+	uint32_t wake_min;  /* how long a touch keeps it on outside them; 0: not at all */
+	bool shift;         /* the picture moves by a pixel now and then */
 	bool quit_after_replay;
 	bool safe_page; /* no kiosk: app/safe_mode.h */
 };

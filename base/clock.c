@@ -1,5 +1,7 @@
 #include "base/clock.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <sys/timex.h>
 #include <time.h>
 
@@ -36,4 +38,26 @@ bool clock_wall_is_set(void)
 	struct timex state = { .modes = 0 };
 
 	return adjtimex(&state) >= 0 && !(state.status & STA_UNSYNC);
+}
+
+bool clock_agrees(const char *battery_s, int64_t system_s)
+{
+	char *end;
+	const long long battery = strtoll(battery_s, &end, 10);
+
+	/* A day apart is a time zone and then some; a dead battery is years apart. */
+	return end != battery_s && llabs(battery - (long long)system_s) < 24 * 3600;
+}
+
+bool clock_wall_is_plausible(void)
+{
+	char text[32] = "";
+	FILE *file = fopen("/sys/class/rtc/rtc0/since_epoch", "re");
+
+	if (file) {
+		if (!fgets(text, sizeof(text), file))
+			text[0] = '\0';
+		fclose(file);
+	}
+	return clock_wall_is_set() || clock_agrees(text, clock_wall_s());
 }

@@ -17,5 +17,10 @@ int64_t clock_thread_us(void);
 int64_t clock_wall_s(void);
 /* The kernel was told the time by somebody who knows it (NTP): expiry may be judged. */
 bool clock_wall_is_set(void);
+/* The time of day may be believed although nobody on the network confirmed it: a clock with a
+ * battery runs in this machine, and says the same. */
+bool clock_wall_is_plausible(void);
+/* What such a clock says (seconds since 1970 as text) against what the system says. Pure. */
+bool clock_agrees(const char *battery_s, int64_t system_s);
 
 #endif

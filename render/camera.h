@@ -18,6 +18,8 @@ struct camera {
 	float near_m, far_m;
 	int width_px, height_px;
 	int rotation_deg; /* of the panel: 0, 90, 180, 270, clockwise; in the projection only */
+	int shift_px[2];  /* right and up: where the picture lies in the framebuffer it is drawn
+			     into; pixels are counted from the picture's corner all the same */
 };
 
 /* World to eye: the eye looks along -z, y is up. Where up runs along the line of sight another one

@@ -385,3 +385,9 @@ int gl_target_read(const struct gl_target *target, uint8_t *rgba)
 	free(spare);
 	return gl_check("reading a picture");
 }
+
+void gl_place_bind(const struct gl_place *place, int width_px, int height_px)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, place->framebuffer);
+	glViewport(place->x_px, place->y_px, width_px, height_px);
+}

@@ -76,6 +76,14 @@ struct gl_target {
 	int depth_bits;
 };
 
+/* Where a picture goes: a framebuffer that is there, and the picture's lower left corner in it. */
+struct gl_place {
+	GLuint framebuffer;
+	int x_px, y_px;
+};
+/* Binds it and sets the viewport to the picture. */
+void gl_place_bind(const struct gl_place *place, int width_px, int height_px);
+
 /* Leaves it bound, the viewport set to all of it. *out is zeroed on failure. */
 must_check int gl_target_create(struct gl_target *out, int width_px, int height_px);
 /* The same without a depth buffer. */

@@ -165,12 +165,13 @@ static void clip_matrix(float out[9], int width_px, int height_px, int rotation_
 	out[8] = 1;
 }
 
-void quads_begin(struct quads *quads, int width_px, int height_px, int rotation_deg)
+void quads_begin(struct quads *quads, const int shift_px[2], int width_px, int height_px,
+		 int rotation_deg)
 {
 	float to_clip[9];
 
 	clip_matrix(to_clip, width_px, height_px, rotation_deg);
-	glViewport(0, 0, width_px, height_px);
+	glViewport(shift_px[0], shift_px[1], width_px, height_px);
 	glUseProgram(quads->program);
 	glUniformMatrix3fv(quads->to_clip, 1, GL_FALSE, to_clip);
 	glDisable(GL_DEPTH_TEST);

@@ -27,8 +27,10 @@ must_check int quads_upload(struct quads *quads, const struct quads_pixels *pixe
 /* Every texture is uploaded again when it is next given: its id means something else now. */
 void quads_forget(struct quads *quads);
 
-/* Sets the state for drawing; width and height are of the framebuffer, rotation of the panel. */
-void quads_begin(struct quads *quads, int width_px, int height_px, int rotation_deg);
+/* Sets the state for drawing; width and height are of the picture, whose lower left corner lies at
+ * shift_px of the framebuffer that is bound; rotation is the panel's. */
+void quads_begin(struct quads *quads, const int shift_px[2], int width_px, int height_px,
+		 int rotation_deg);
 /* corners: top left, top right, bottom right, bottom left; source: left, top, right, bottom in
  * 0..1 of the texture. */
 void quads_draw(struct quads *quads, uint32_t id, const float corners_px[4][2],

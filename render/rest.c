@@ -102,7 +102,7 @@ static void draw_square(const struct rest *rest, GLuint texture)
 	gl_draw_square();
 }
 
-void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
+void rest_add(struct rest *rest, const struct gl_place *place, bool changed)
 {
 	if (changed)
 		rest->same = 0;
@@ -121,8 +121,7 @@ void rest_add(struct rest *rest, GLuint framebuffer, bool changed)
 		draw_square(rest, rest->frame.colour);
 		glDisable(GL_BLEND);
 	}
-	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-	glViewport(0, 0, rest->sum.width_px, rest->sum.height_px);
+	gl_place_bind(place, rest->sum.width_px, rest->sum.height_px);
 	glDisable(GL_DEPTH_TEST);
 	draw_square(rest, rest->sum.colour);
 }
@@ -132,13 +131,12 @@ bool rest_is_done(const struct rest *rest)
 	return rest->same >= REST_FRAMES;
 }
 
-void rest_let_go(struct rest *rest, GLuint framebuffer)
+void rest_let_go(struct rest *rest, const struct gl_place *place)
 {
 	if (!rest->frame.framebuffer)
 		return;
 	gl_target_destroy(&rest->frame);
-	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-	glViewport(0, 0, rest->sum.width_px, rest->sum.height_px);
+	gl_place_bind(place, rest->sum.width_px, rest->sum.height_px);
 	glDisable(GL_DEPTH_TEST);
 	/* Large ones, so that none is done before all have begun. */
 	for (int i = 0; i < PASSES_MOST; i++) {

@@ -26,14 +26,14 @@ void rest_break(struct rest *rest); /* the eye moved: begin anew */
 /* How far the next frame is moved, under a pixel; in the sum the mean is none. changed as for
  * rest_add. */
 void rest_offset(const struct rest *rest, bool changed, float *x_px, float *y_px);
-/* Adds rest->frame, which was just drawn, and shows the sum in the framebuffer given. changed: the
+/* Adds rest->frame, which was just drawn, and shows the sum at the place given. changed: the
  * scene is not what it was. */
-void rest_add(struct rest *rest, GLuint framebuffer, bool changed);
+void rest_add(struct rest *rest, const struct gl_place *place, bool changed);
 bool rest_is_done(const struct rest *rest);
 /* When nothing is left to draw: rest->frame is not needed any more, and a driver that draws with
  * the processor keeps what each pass was made of, and drew into, until another takes its place. So
- * the sum is shown in the framebuffer as often as passes can be in flight. The compiler of shaders
+ * the sum is shown at the place as often as passes can be in flight. The compiler of shaders
  * is let go as well. */
-void rest_let_go(struct rest *rest, GLuint framebuffer);
+void rest_let_go(struct rest *rest, const struct gl_place *place);
 
 #endif

@@ -170,10 +170,10 @@ static void draw_mark(struct scene *scene, const struct view *view, const struct
 	mark_end();
 }
 
-static void begin_picture(const struct scene *scene, int width_px, int height_px)
+/* What it is drawn into is bound. */
+static void begin_picture(const struct scene *scene)
 {
 	const uint8_t *sky = scene->root.background;
-	glViewport(0, 0, width_px, height_px);
 	glDisable(GL_BLEND);
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
@@ -211,7 +211,7 @@ static float count_share(struct scene *scene)
 	}
 	if (gl_target_create(&small, width, height > 0 ? height : 1) < 0)
 		return -1;
-	begin_picture(scene, small.width_px, small.height_px);
+	begin_picture(scene);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT);
 	draw_picture(scene, &scene->view, NULL, true);
@@ -282,17 +282,17 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
 }
 
-/* Draws into the framebuffer given: at rest by way of the sum, moving at once. */
-static void show(struct scene *scene, GLuint framebuffer, const struct region *region, bool moved,
-		 bool changed)
+/* Draws to the place given: at rest by way of the sum, moving at once. */
+static void show(struct scene *scene, const struct gl_place *place, const struct region *region,
+		 bool moved, bool changed)
 {
 	const struct view *view = &scene->view;
 	if (moved)
 		rest_break(&scene->rest);
 	const bool draws = changed || !rest_is_done(&scene->rest);
 	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px, draws) < 0) {
-		glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-		begin_picture(scene, view->width_px, view->height_px);
+		gl_place_bind(place, view->width_px, view->height_px);
+		begin_picture(scene);
 		draw_picture(scene, view, region, false);
 		return;
 	}
@@ -302,10 +302,10 @@ static void show(struct scene *scene, GLuint framebuffer, const struct region *r
 		rest_offset(&scene->rest, changed, &x, &y);
 		view_jitter(&jittered, x, y);
 		gl_target_bind(&scene->rest.frame);
-		begin_picture(scene, view->width_px, view->height_px);
+		begin_picture(scene);
 		draw_picture(scene, &jittered, region, false);
 	}
-	rest_add(&scene->rest, framebuffer, changed);
+	rest_add(&scene->rest, place, changed);
 }
 
 static void draw_nothing(const struct camera *camera)
@@ -328,6 +328,7 @@ static bool mark_changed(struct scene *scene, const struct region *region)
 void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
 		struct scene_frame *out)
 {
+	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
 	GLint framebuffer = 0;
 	*out = (struct scene_frame){ .image_share = -1 };
 	if (!scene->has_hierarchy) {
@@ -336,6 +337,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 		return;
 	}
 	glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
+	place.framebuffer = (GLuint)framebuffer;
 	struct view view;
 	view_from_camera(&view, camera);
 	bool moved = view_changed(scene, &view);
@@ -345,7 +347,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	if (mark_changed(scene, highlight))
 		rest_break(&scene->rest); /* an answer to a touch: at once */
 	bool changed = is_busy(scene);
-	show(scene, (GLuint)framebuffer, highlight, moved, changed);
+	show(scene, &place, highlight, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	scene_list_wants(scene);
@@ -360,7 +362,6 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	out->image_share = scene->image_share;
 	if (!still)
 		return;
-	rest_let_go(&scene->rest, (GLuint)framebuffer);
-	glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)framebuffer);
-	glViewport(0, 0, camera->width_px, camera->height_px);
+	rest_let_go(&scene->rest, &place);
+	gl_place_bind(&place, camera->width_px, camera->height_px);
 }

@@ -7,7 +7,7 @@ lib=/usr/lib/x86_64-linux-gnu
 rm -rf "$root"
 mkdir -p "$root"/{bin,dev,proc,sys,tmp,run,etc/fonts,modules,release,usr/share/fonts,usr/share/glvnd/egl_vendor.d}
 cp /bin/busybox "$root/bin/"
-for name in sh mount insmod mkdir sleep poweroff cat ls grep tee sed; do ln -s busybox "$root/bin/$name"; done
+for name in sh mount insmod mkdir sleep poweroff cat ls grep tee sed date; do ln -s busybox "$root/bin/$name"; done
 cp -r "$release/." "$root/release/"
 
 # Modules, in the order they need each other.

@@ -19,10 +19,14 @@ unplugged)
 		echo on >"$status"
 	) >/dev/console &
 	;;
+closed)
+	# Open on a day that is neither today nor next to it, in whatever time zone.
+	set -- --hours "$(date -d "@$(($(date +%s) + 259200))" +%a) 09:00-10:00" --shift
+	;;
 safe)
 	kiosk --safe-page >/dev/console
 	;;
 esac
-until kiosk | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
+until kiosk "$@" | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
 	sleep 0.2 # as the service manager does for status 75
 done

@@ -45,5 +45,28 @@ def plugging(kernel, initramfs, work):
     print(f"done in {time.monotonic() - began:.0f} s")
 
 
+def closed(kernel, initramfs, work):
+    """Outside its hours the panel is off; a touch wakes it, and opens nothing."""
+    machine = Machine(kernel, initramfs, work, "closed")
+    said = lambda what: lambda: what in machine.log()
+    try:
+        machine.wait_for("panel that is off", BOOT_S, said("app: the panel is off"))
+        machine.wait_for("touchscreen", ANSWER_S, said("Tablet"))
+        machine.wait_for("release, brought in the dark", ANSWER_S, said("app: showing"))
+        if tones(machine.picture("closed")) > 20:
+            raise SystemExit("the panel shows a picture outside its hours")
+        machine.qmp.tap(0.5, 0.45)
+        machine.wait_for("panel that is on", ANSWER_S, said("app: the panel is on"))
+        machine.wait_for("temple", ANSWER_S, lambda: tones(machine.picture("woken")) > 300)
+        if "app: card of" in machine.log():
+            raise SystemExit("the touch that woke the panel did something else")
+        machine.qmp.tap(0.5, 0.45)
+        machine.wait_for("card", ANSWER_S, said("app: card of"))
+    finally:
+        machine.process.kill()
+        machine.process.wait()
+
+
 safe_page(*sys.argv[1:4])
+closed(*sys.argv[1:4])
 plugging(*sys.argv[1:4])

@@ -165,6 +165,47 @@ static void settled_leaves_nothing_wanted_and_nothing_moving(void **state)
 	strike_stage(&stage);
 }
 
+/* Row 0 is on top; what the picture does not cover is the sky. */
+static void check_moved(const uint8_t *before, const uint8_t *after, const int by_px[2])
+{
+	for (int y = 0; y < HEIGHT; y++)
+		for (int x = 0; x < WIDTH; x++) {
+			const int from_x = x - by_px[0], from_y = y + by_px[1];
+			const bool inside =
+				from_x >= 0 && from_x < WIDTH && from_y >= 0 && from_y < HEIGHT;
+			const uint8_t *pixel = after + 4 * (y * WIDTH + x);
+
+			if (inside ? memcmp(pixel, before + 4 * (from_y * WIDTH + from_x), 4) != 0
+				   : pixel[3] != 0)
+				fail_msg("pixel %d, %d", x, y);
+		}
+}
+
+/* At rest and moving alike: to spare the panel, the picture is drawn a little beside. */
+static void a_shifted_picture_is_the_same_beside(void **state)
+{
+	const int shifts[][2] = { { 3, -2 }, { -4, 4 }, { 0, 0 } };
+	struct camera camera = usual_camera;
+	uint8_t *before = malloc(4 * WIDTH * HEIGHT);
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &camera, NULL);
+	memcpy(before, stage.seen, 4 * WIDTH * HEIGHT);
+	for (size_t i = 0; i < ARRAY_COUNT(shifts); i++) {
+		memcpy(camera.shift_px, shifts[i], sizeof(camera.shift_px));
+		gl_target_bind(&stage.target);
+		glClearColor(0, 0, 0, 0);
+		glClear(GL_COLOR_BUFFER_BIT);
+		draw(&stage, &camera, NULL);
+		CHECK(stage.frame.settled && !stage.frame.moving); /* no reason to begin anew */
+		CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+		check_moved(before, stage.seen, shifts[i]);
+	}
+	free(before);
+	strike_stage(&stage);
+}
+
 static void polygons_want_no_images(void **state)
 {
 	struct stage stage;
@@ -401,6 +442,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(images_show_what_vertices_cannot),
 		cmocka_unit_test(settled_leaves_nothing_wanted_and_nothing_moving),
+		cmocka_unit_test(a_shifted_picture_is_the_same_beside),
 		cmocka_unit_test(polygons_want_no_images),
 		cmocka_unit_test(objects_that_do_not_decode_are_not_wanted_again),
 		cmocka_unit_test(another_release_is_shown_whole),
