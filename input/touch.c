@@ -14,6 +14,7 @@
 #include "base/bytes.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "input/calibration.h"
 #include "input/touch_device.h"
 #include "input/touch_replay.h"
 
@@ -33,13 +34,15 @@ struct slot {
 
 struct source {
 	struct touch_device *device; /* NULL: free */
+	float matrix[6];             /* calibration */
+	bool matrix_is_known;        /* udev need not be asked again */
 	struct slot slots[TOUCH_SLOTS_MOST];
 };
 
 struct touch {
 	struct touch_options options; /* folder and replay_path are our copies */
 	char *folder, *replay_path;
-	float matrix[6];
+	bool is_calibrated; /* by the options: udev is not asked */
 	int epoll_fd, inotify_fd, timer_fd;
 	int parent_watch; /* of the folder's own folder while it is missing, else -1 */
 	struct source sources[DEVICES_MOST];
@@ -53,10 +56,9 @@ static const float no_calibration[6] = { 1, 0, 0, 0, 1, 0 };
 
 /* ---- from the device to the panel ---- */
 
-static void to_panel(const struct touch *touch, const struct touch_raw *raw, float *x_px,
-		     float *y_px)
+static void to_panel(const struct touch *touch, const float m[6], const struct touch_raw *raw,
+		     float *x_px, float *y_px)
 {
-	const float *m = touch->matrix;
 	float u = m[0] * raw->x + m[1] * raw->y + m[2];
 	float v = m[3] * raw->x + m[4] * raw->y + m[5];
 	float x = u, y = v;
@@ -131,23 +133,23 @@ static void lift(struct touch *touch, struct slot *slot, enum touch_phase phase,
 	slot->contact = -1;
 }
 
-static void put_down(struct touch *touch, struct slot *slot, const struct touch_raw *raw,
-		     int64_t time_us)
+static void put_down(struct touch *touch, const float matrix[6], struct slot *slot,
+		     const struct touch_raw *raw, int64_t time_us)
 {
 	*slot = (struct slot){ .id = raw->id, .down = true, .contact = -1 };
-	to_panel(touch, raw, &slot->x_px, &slot->y_px);
+	to_panel(touch, matrix, raw, &slot->x_px, &slot->y_px);
 	if (is_at_edge(touch, slot->x_px, slot->y_px) || is_palm(touch, raw))
 		return;
 	slot->contact = take_contact(touch);
 	report(touch, TOUCH_DOWN, slot, time_us);
 }
 
-static void move(struct touch *touch, struct slot *slot, const struct touch_raw *raw,
-		 int64_t time_us)
+static void move(struct touch *touch, const float matrix[6], struct slot *slot,
+		 const struct touch_raw *raw, int64_t time_us)
 {
 	float x_px, y_px;
 
-	to_panel(touch, raw, &x_px, &y_px);
+	to_panel(touch, matrix, raw, &x_px, &y_px);
 	if (is_palm(touch, raw)) {
 		lift(touch, slot, TOUCH_CANCEL, time_us);
 		return;
@@ -159,10 +161,38 @@ static void move(struct touch *touch, struct slot *slot, const struct touch_raw 
 	report(touch, TOUCH_MOVE, slot, time_us);
 }
 
+static bool any_down(const struct source *source)
+{
+	for (int i = 0; i < TOUCH_SLOTS_MOST; i++)
+		if (source->slots[i].down)
+			return true;
+	return false;
+}
+
+static void calibrate(const struct touch *touch, struct source *source)
+{
+	int rc;
+
+	if (source->matrix_is_known)
+		return;
+	if (touch->is_calibrated) {
+		memcpy(source->matrix, touch->options.matrix, sizeof(source->matrix));
+		rc = 0;
+	} else {
+		memcpy(source->matrix, no_calibration, sizeof(source->matrix));
+		rc = calibration_read(touch_device_path(source->device), source->matrix);
+	}
+	if (rc > 0)
+		log_info("input", "%s is calibrated by udev", touch_device_name(source->device));
+	source->matrix_is_known = rc >= 0;
+}
+
 /* A frame against what was known. A finger whose lift was lost shows as a changed id. */
 static void compare(struct touch *touch, struct source *source, const struct touch_raw *slots,
 		    int64_t time_us)
 {
+	if (!any_down(source)) /* between two fingers the world may turn */
+		calibrate(touch, source);
 	for (int i = 0; i < TOUCH_SLOTS_MOST; i++) {
 		struct slot *slot = &source->slots[i];
 		const struct touch_raw *raw = &slots[i];
@@ -172,9 +202,9 @@ static void compare(struct touch *touch, struct source *source, const struct tou
 			slot->down = false;
 		}
 		if (raw->down && !slot->down)
-			put_down(touch, slot, raw, time_us);
+			put_down(touch, source->matrix, slot, raw, time_us);
 		else if (raw->down)
-			move(touch, slot, raw, time_us);
+			move(touch, source->matrix, slot, raw, time_us);
 	}
 }
 
@@ -233,6 +263,7 @@ static void try_device(struct touch *touch, const char *name)
 		return;
 	}
 	log_info("input", "%s (%s) is there", touch_device_name(source->device), path);
+	calibrate(touch, source);
 }
 
 static void scan(struct touch *touch)
@@ -389,11 +420,8 @@ static int open_devices(struct touch *touch)
 
 static int start(struct touch *touch, const struct touch_options *options)
 {
-	bool calibrated = false;
-
 	for (int i = 0; i < 6; i++)
-		calibrated |= options->matrix[i] != 0;
-	memcpy(touch->matrix, calibrated ? options->matrix : no_calibration, sizeof(touch->matrix));
+		touch->is_calibrated |= options->matrix[i] != 0;
 	touch->folder = strdup(options->folder ? options->folder : "/dev/input");
 	if (options->replay_path)
 		touch->replay_path = strdup(options->replay_path);

@@ -31,7 +31,8 @@ struct touch_options {
 	int width_px, height_px; /* of the picture as the visitor sees it (after rotation) */
 	int rotation_deg;        /* of the panel, clockwise: 0, 90, 180, 270; as the camera's */
 	/* Calibration of the raw position, both 0..1, before the rotation:
-	 * x' = m[0] x + m[1] y + m[2], y' = m[3] x + m[4] y + m[5]. All zero: none. */
+	 * x' = m[0] x + m[1] y + m[2], y' = m[3] x + m[4] y + m[5]. All zero: what udev knows of
+	 * the device. */
 	float matrix[6];
 	float edge_px;      /* a finger that comes down nearer to the edge is ignored; 0: none */
 	float palm_px;      /* a contact larger than this is a palm; 0: none are */

@@ -123,6 +123,29 @@ static int follows_calibration(void)
 	return 0;
 }
 
+/* What udev's rules say of the device, as desktops take it too. */
+static int follows_udevs_calibration(void)
+{
+	const struct touch_options options = { .width_px = 1000, .height_px = 500 };
+	struct heard heard = { 0 };
+
+	EXPECT(listen_to(&heard, &options, 2) == 0);
+	EXPECT(at(&heard.events[0], 600, 125) && at(&heard.events[1], 400, 125));
+	return 0;
+}
+
+static int the_profiles_calibration_wins(void)
+{
+	const struct touch_options options = { .width_px = 1000,
+					       .height_px = 500,
+					       .matrix = { 1, 0, 0, 0, 1, 0.25f } };
+	struct heard heard = { 0 };
+
+	EXPECT(listen_to(&heard, &options, 2) == 0);
+	EXPECT(at(&heard.events[0], 400, 375) && at(&heard.events[1], 600, 375));
+	return 0;
+}
+
 static int heals_what_was_lost_and_ignores_palms(void)
 {
 	const struct touch_options options = {
@@ -158,6 +181,31 @@ static int takes_a_tablet_for_one_finger(void)
 	return 0;
 }
 
+/* The node appears while the kiosk runs, as when a cable is put in. */
+static int takes_a_device_that_is_plugged_in_later(void)
+{
+	const struct touch_options options = { .width_px = 1000, .height_px = 500 };
+	struct pollfd wait = { .events = POLLIN };
+	const char *bed = getenv("UMOCKDEV_DIR");
+	char node[256], aside[256];
+	struct touch *touch;
+
+	EXPECT(bed);
+	snprintf(node, sizeof(node), "%s/dev/input/event5", bed);
+	snprintf(aside, sizeof(aside), "%s/dev/unplugged", bed);
+	EXPECT(rename(node, aside) == 0);
+	EXPECT(touch_create(&touch, &options) == 0);
+	EXPECT(touch_device_count(touch) == 0);
+	EXPECT(rename(aside, node) == 0);
+	wait.fd = touch_fd(touch);
+	while (touch_device_count(touch) == 0) {
+		EXPECT(poll(&wait, 1, 5000) == 1);
+		EXPECT(touch_dispatch(touch) == 0);
+	}
+	touch_destroy(touch);
+	return 0;
+}
+
 static const struct {
 	const char *name, *device, *events;
 	int number;
@@ -166,8 +214,16 @@ static const struct {
 	{ "sees_two_fingers_part", "panel", "panel-pinch", 5, sees_two_fingers_part },
 	{ "follows_the_panels_turn", "panel", "panel-pinch", 5, follows_the_panels_turn },
 	{ "follows_calibration", "panel", "panel-pinch", 5, follows_calibration },
+	{ "follows_udevs_calibration", "panel-calibrated", "panel-pinch", 5,
+	  follows_udevs_calibration },
+	{ "the_profiles_calibration_wins", "panel-calibrated", "panel-pinch", 5,
+	  the_profiles_calibration_wins },
+	{ "goes_without_a_matrix_that_is_none", "panel-misread", "panel-pinch", 5,
+	  sees_two_fingers_part },
 	{ "heals_what_was_lost_and_ignores_palms", "panel", "panel-faults", 5,
 	  heals_what_was_lost_and_ignores_palms },
+	{ "takes_a_device_that_is_plugged_in_later", "panel", "panel-pinch", 5,
+	  takes_a_device_that_is_plugged_in_later },
 	{ "takes_a_tablet_for_one_finger", "tablet", "tablet-tap", 6,
 	  takes_a_tablet_for_one_finger },
 };
@@ -178,14 +234,15 @@ static const char *program;
 
 static int run_beneath(size_t i)
 {
+	const int plain = (int)strcspn(cases[i].device, "-"); /* calibration is udev's alone */
 	char command[1024];
 	int status;
 
 	snprintf(command, sizeof(command),
 		 "umockdev-run -d tests/input/data/%s.umockdev"
-		 " -i /dev/input/event%d=tests/input/data/%s.ioctl"
+		 " -i /dev/input/event%d=tests/input/data/%.*s.ioctl"
 		 " -e /dev/input/event%d=tests/input/data/%s.events -- %s %s",
-		 cases[i].device, cases[i].number, cases[i].device, cases[i].number,
+		 cases[i].device, cases[i].number, plain, cases[i].device, cases[i].number,
 		 cases[i].events, program, cases[i].name);
 	status = system(command);
 	return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -23,17 +23,19 @@ def slots(axis, value):
     return struct.pack("<257i", axis, *values).hex().upper()
 
 
-def write(name, title, number, keys, axes, slot_axes, properties):
+def write(name, title, number, keys, axes, slot_axes, properties, calibrations={}):
     device = f"input/input{number}/event{number}"
     words = sum(1 << k for k in keys)
     key_words = " ".join(f"{(words >> shift) & (2 ** 64 - 1):x}" for shift in range(704, -1, -64))
-    with open(f"{HERE}/{name}.umockdev", "w") as out:
-        out.write(f"""P: /devices/virtual/{device}
+    for suffix, matrix in {"": None, **calibrations}.items():
+        udev = f"E: LIBINPUT_CALIBRATION_MATRIX={matrix}\n" if matrix else ""
+        with open(f"{HERE}/{name}{suffix}.umockdev", "w") as out:
+            out.write(f"""P: /devices/virtual/{device}
 N: input/event{number}
 E: DEVNAME=/dev/input/event{number}
 E: DEVPATH=/devices/virtual/{device}
 E: ID_INPUT=1
-E: MAJOR=13
+{udev}E: MAJOR=13
 E: MINOR={64 + number}
 E: SUBSYSTEM=input
 A: dev=13:{64 + number}\\n
@@ -69,5 +71,5 @@ A: name={title}\\n
 
 write("panel", "Gopura test panel", 5, [0x14A], {
     0x00: 4095, 0x01: 4095, 0x2F: 4, 0x30: 4095, 0x35: 4095, 0x36: 4095, 0x39: 65535,
-}, [0x30, 0x35, 0x36, 0x39], [1])
+}, [0x30, 0x35, 0x36, 0x39], [1], {"-calibrated": "-1 0 1 0 0.5 0", "-misread": "1 0 0 0 1"})
 write("tablet", "Gopura test tablet", 6, [0x110, 0x111, 0x112], {0: 32767, 1: 32767}, [], [])
