@@ -264,8 +264,8 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	struct kiosk *kiosk = data;
 	struct touch_event seen = *event;
 
-	if (panel_takes_touch(kiosk, event))
-		return; /* it was for the panel alone */
+	if (panel_takes_touch(kiosk, event) || provision_covers(kiosk))
+		return; /* for the panel alone, or a page without anything to touch */
 	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
 	gesture_feed(&kiosk->gestures, &seen);
 }
@@ -279,6 +279,8 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 	};
 	struct kiosk *kiosk = data;
 
+	if (provision_covers(kiosk))
+		return;
 	frame_from_panel(kiosk, &x_px, &y_px);
 	if (kind == POINTER_WHEEL) {
 		if (!kiosk->navigator_ready)

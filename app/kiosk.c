@@ -184,7 +184,8 @@ static int start_net(struct kiosk *kiosk)
 	struct net_client_options net = {
 		.socket_path = kiosk->options.socket_path,
 		.program = kiosk->options.fetch_program,
-		.release_url = kiosk->options.release_url,
+		/* Without a server, what is cached: no release is in the state's own folder. */
+		.release_url = kiosk->options.release_url ? kiosk->options.release_url : folder,
 		.cache_path = cache,
 		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
@@ -251,7 +252,7 @@ static int start_loop(struct kiosk *kiosk)
 
 int kiosk_start(struct kiosk *kiosk)
 {
-	int rc = profile_read(&kiosk->profile, kiosk->options.board_path);
+	int rc = provision_read(kiosk);
 
 	kiosk->started_ms = clock_now_ms();
 	if (rc == 0)
@@ -268,6 +269,8 @@ int kiosk_start(struct kiosk *kiosk)
 		rc = vitals_offer(kiosk);
 	if (rc == 0)
 		follow_start(kiosk->follow);
+	if (rc == 0)
+		rc = provision_show(kiosk);
 	kiosk->frame_wanted = true;
 	return rc;
 }
@@ -285,6 +288,7 @@ void kiosk_stop(struct kiosk *kiosk)
 	touch_destroy(kiosk->touch);
 	exhibit_close(&kiosk->coming);
 	exhibit_close(&kiosk->shown);
+	provision_finish(&kiosk->provision);
 	if (kiosk->warm_target.framebuffer)
 		gl_target_destroy(&kiosk->warm_target);
 	quads_destroy(kiosk->quads);
@@ -334,7 +338,8 @@ static int wait_ms(const struct kiosk *kiosk)
 		return panel_wait_ms(kiosk);
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	return sooner(sooner(coming_ms, capture_ms), panel_wait_ms(kiosk));
+	return sooner(sooner(coming_ms, capture_ms),
+		      sooner(provision_wait_ms(kiosk), panel_wait_ms(kiosk)));
 }
 
 static int turn(struct kiosk *kiosk)
@@ -348,7 +353,8 @@ static int turn(struct kiosk *kiosk)
 	for (int i = 0; i < count && rc == 0; i++)
 		rc = dispatch(kiosk, ready[i].data.fd);
 	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
-	if (count == 0 && (kiosk->capture || exhibit_wait_ms(kiosk) == 0))
+	if (count == 0 &&
+	    (kiosk->capture || exhibit_wait_ms(kiosk) == 0 || provision_wait_ms(kiosk) == 0))
 		kiosk_redraw(kiosk);
 	if (rc == 0 && !kiosk->quit)
 		rc = panel_turn(kiosk);

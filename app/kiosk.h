@@ -6,6 +6,7 @@
 #include "app/navigator.h"
 #include "app/options.h"
 #include "app/panel.h"
+#include "app/provision.h"
 #include "app/story.h"
 #include "app/wants.h"
 #include "board/profile.h"
@@ -45,7 +46,8 @@ struct exhibit {
 };
 
 struct kiosk {
-	struct options options;
+	struct options options; /* of the command line; then of gopura.conf */
+	struct provision provision;
 	struct profile profile;
 
 	int epoll_fd, signal_fd;

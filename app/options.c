@@ -13,6 +13,9 @@ static const char help_text[] =
 	"\n"
 	"usage: gopura-kiosk [OPTIONS]\n"
 	"\n"
+	"  --conf FILE          the terminal's gopura.conf (docs/terminal.md); options of the command\n"
+	"                       line override it; given again: the first file that is there\n"
+	"  --boards DIR         profiles that gopura.conf may name (/usr/share/gopura/board)\n"
 	"  --release URL        museum server (https://..., http://... or a folder)\n"
 	"  --trust FILE         root/1.json of that museum: needed once, then remembered\n"
 	"  --ca FILE            certificate authority of the server (default: the system's)\n"
@@ -52,7 +55,9 @@ static const char help_text[] =
 	"               --trust build/demo/release/root/1.json --views views.txt --capture out\n";
 
 enum {
-	OPTION_RELEASE = 256,
+	OPTION_CONF = 256,
+	OPTION_BOARDS,
+	OPTION_RELEASE,
 	OPTION_TRUST,
 	OPTION_CA,
 	OPTION_STATE,
@@ -82,6 +87,8 @@ enum {
 };
 
 static const struct option long_options[] = {
+	{ "conf", required_argument, NULL, OPTION_CONF },
+	{ "boards", required_argument, NULL, OPTION_BOARDS },
 	{ "release", required_argument, NULL, OPTION_RELEASE },
 	{ "trust", required_argument, NULL, OPTION_TRUST },
 	{ "ca", required_argument, NULL, OPTION_CA },
@@ -180,13 +187,21 @@ static bool set_text(struct options *o, int option, const char *text)
 		int option;
 		const char **to;
 	} texts[] = {
-		{ OPTION_RELEASE, &o->release_url }, { OPTION_TRUST, &o->trust_path },
-		{ OPTION_CA, &o->ca_path },          { OPTION_STATE, &o->state_dir },
-		{ OPTION_DEVICE, &o->device },       { OPTION_BOARD, &o->board_path },
-		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
-		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
-		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->figures_path },
+		{ OPTION_BOARDS, &o->boards_dir },
+		{ OPTION_RELEASE, &o->release_url },
+		{ OPTION_TRUST, &o->trust_path },
+		{ OPTION_CA, &o->ca_path },
+		{ OPTION_STATE, &o->state_dir },
+		{ OPTION_DEVICE, &o->device },
+		{ OPTION_BOARD, &o->board_path },
+		{ OPTION_LANGUAGE, &o->language },
+		{ OPTION_TOUCH_REPLAY, &o->touch_replay_path },
+		{ OPTION_VIEWS, &o->views_path },
+		{ OPTION_CAPTURE, &o->capture_dir },
+		{ OPTION_SHOTS, &o->shots_path },
+		{ OPTION_FETCH, &o->fetch_program },
+		{ OPTION_SOCKET, &o->socket_path },
+		{ OPTION_FIGURES, &o->figures_path },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)
@@ -220,6 +235,11 @@ static bool set_value(struct options *o, int option, const char *text)
 		return parse_size(text, o);
 	case OPTION_POLL:
 		return parse_seconds(text, &o->poll_s);
+	case OPTION_CONF:
+		if (o->conf_count == OPTIONS_CONFS_MOST)
+			return false;
+		o->conf_paths[o->conf_count++] = text;
+		return true;
 	case OPTION_OVERLAY:
 		o->capture_overlay = true;
 		return true;
@@ -245,8 +265,8 @@ static bool check_together(const struct options *o)
 {
 	if (o->safe_page)
 		return true;
-	if (!o->release_url && !o->socket_path)
-		fputs("gopura-kiosk: --release is missing; see --help\n", stderr);
+	if (!o->release_url && !o->socket_path && o->conf_count == 0)
+		fputs("gopura-kiosk: --release or --conf is missing; see --help\n", stderr);
 	else if ((o->views_path || o->shots_path) && !o->capture_dir)
 		fputs("gopura-kiosk: --views and --shots need --capture DIR\n", stderr);
 	else if (o->quit_after_replay && !o->touch_replay_path)
@@ -260,7 +280,9 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 {
 	int option, which = 0;
 
-	*out = (struct options){ .mode = SCENE_LUMIGRAPH, .wake_min = 5 };
+	*out = (struct options){ .mode = SCENE_LUMIGRAPH,
+				 .wake_min = 5,
+				 .boards_dir = "/usr/share/gopura/board" };
 	hours_always(&out->hours);
 	while ((option = getopt_long(argc, argv, "", long_options, &which)) != -1) {
 		if (option == OPTION_HELP) {

@@ -9,8 +9,13 @@
 #include "render/display.h"
 #include "render/scene.h"
 
+enum { OPTIONS_CONFS_MOST = 4 };
+
 /* Strings are borrowed from argv or static. */
 struct options {
+	const char *conf_paths[OPTIONS_CONFS_MOST]; /* gopura.conf: the first that is there */
+	uint32_t conf_count;
+	const char *boards_dir;  /* of the profiles that gopura.conf names */
 	const char *release_url; /* NULL: whatever the state remembers, from the cache */
 	const char *trust_path;  /* root/1.json pinned at the first start; NULL: the state's */
 	const char *ca_path;

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -161,7 +162,7 @@ static bool set_mode(const struct setting *setting, void *target, const char *va
 		return false;
 	terminal->width_px = width;
 	terminal->height_px = height;
-	terminal->refresh_hz = (float)hz;
+	terminal->hz = (int)lround(hz);
 	return true;
 }
 
@@ -359,7 +360,8 @@ static bool set_listen(const struct setting *setting, void *target, const char *
 /* ---- the table */
 
 enum {
-	AT_URL = 4,
+	AT_BOARD = 3,
+	AT_URL,
 	AT_TRUST,
 	AT_CA,
 	AT_ADDRESS = 14,
@@ -383,10 +385,10 @@ static const struct setting settings[] = {
 	  .name = "time_zone",
 	  .expects = "a time zone such as Asia/Phnom_Penh or Europe/Berlin",
 	  .set = set_time_zone },
-	{ .section = "terminal",
-	  .name = "board",
-	  .expects = "the name of a board's profile, such as generic",
-	  .set = set_board },
+	[AT_BOARD] = { .section = "terminal",
+		       .name = "board",
+		       .expects = "the name of a board's profile, such as generic",
+		       .set = set_board },
 	[AT_URL] = { .section = "release",
 		     .name = "url",
 		     .expects = "an address such as https://museum.example/temple/, or a folder "
@@ -539,18 +541,57 @@ void terminal_parse(struct terminal *out, struct bytes text, struct faults *faul
 	parse(out, text, lines, faults);
 }
 
-static void look_beside(const char *path, const char *name, unsigned line, struct faults *faults)
+/* A file that is named and not there is as good as not named. */
+static void look_beside(const char *path, char *name, unsigned line, struct faults *faults)
 {
 	const char *slash = strrchr(path, '/');
 	char beside[PATH_MAX];
 
 	snprintf(beside, sizeof(beside), "%.*s%s", slash ? (int)(slash - path) + 1 : 0, path, name);
-	if (*name && access(beside, R_OK) < 0)
-		faults_add(faults, line, "there is no file %s beside %s; copy it there", name,
-			   slash ? slash + 1 : path);
+	if (!*name || access(beside, R_OK) == 0)
+		return;
+	faults_add(faults, line, "there is no file %s beside %s; copy it there", name,
+		   slash ? slash + 1 : path);
+	*name = '\0';
 }
 
-int terminal_read(struct terminal *out, const char *path, struct faults *faults)
+/* "generic, weak-arm" */
+static void list_profiles(const char *boards, char *out, size_t bytes)
+{
+	struct dirent **entries = NULL;
+	int count = scandir(boards, &entries, NULL, alphasort);
+
+	out[0] = '\0';
+	for (int i = 0; i < count; i++) {
+		const char *name = entries[i]->d_name, *dot = strrchr(name, '.');
+		const size_t length = strlen(out);
+
+		if (dot && strcmp(dot, ".ini") == 0)
+			snprintf(out + length, bytes - length, "%s%.*s", length ? ", " : "",
+				 (int)(dot - name), name);
+		free(entries[i]);
+	}
+	free(entries);
+}
+
+static void look_for_profile(const char *boards, char *name, unsigned line, struct faults *faults)
+{
+	char path[PATH_MAX], known[160];
+
+	snprintf(path, sizeof(path), "%s/%s.ini", boards, name);
+	if (!*name || access(path, R_OK) == 0)
+		return;
+	list_profiles(boards, known, sizeof(known));
+	if (known[0])
+		faults_add(faults, line, "there is no board profile '%s'; there are %s", name,
+			   known);
+	else
+		faults_add(faults, line, "there is no board profile '%s', nor any other in %s",
+			   name, boards);
+	*name = '\0';
+}
+
+int terminal_read(struct terminal *out, const char *path, const char *boards, struct faults *faults)
 {
 	unsigned lines[ARRAY_COUNT(settings)];
 	struct buffer file;
@@ -563,6 +604,8 @@ int terminal_read(struct terminal *out, const char *path, struct faults *faults)
 		parse(out, buffer_bytes(&file), lines, faults);
 		look_beside(path, out->trust, lines[AT_TRUST], faults);
 		look_beside(path, out->ca, lines[AT_CA], faults);
+		if (boards)
+			look_for_profile(boards, out->board, lines[AT_BOARD], faults);
 	} else if (rc != -ENOENT) {
 		faults_add(faults, 0, "the file cannot be read: %s", strerror(-rc));
 	}

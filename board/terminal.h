@@ -35,7 +35,7 @@ struct terminal {
 	uint32_t rate_limit_kib;                /* a second; 0: none */
 	/* [panel] */
 	int width_px, height_px; /* 0: what the panel prefers */
-	float refresh_hz;        /* 0: any */
+	int hz;                  /* whole; 0: any */
 	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board's profile says it */
 	struct hours hours;      /* always open where the file says nothing */
 	bool shift;              /* pixels move now and then; yes where the file says nothing */
@@ -59,9 +59,11 @@ extern const struct terminal terminal_default;
 
 /* *out starts as terminal_default; what is right is set although other lines are wrong. */
 void terminal_parse(struct terminal *out, struct bytes text, struct faults *faults);
-/* Reads the file, and looks beside it for the files that it names. -ENOENT: there is no such file;
- * it is not among the faults. What is no file to read is one fault. */
-must_check int terminal_read(struct terminal *out, const char *path, struct faults *faults);
+/* Reads the file, looks beside it for the files that it names and in the folder `boards` (NULL: no
+ * look) for the profile; a name without a file is at fault, and "" then. -ENOENT: there is no
+ * gopura.conf at path; that is not among the faults. What cannot be read is one. */
+must_check int terminal_read(struct terminal *out, const char *path, const char *boards,
+			     struct faults *faults);
 
 /* The terminal's name as computers say it: letters, digits and dashes; "gopura" where nothing is
  * left of it. */

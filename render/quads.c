@@ -137,6 +137,15 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 	return 0;
 }
 
+void quads_drop(struct quads *quads, uint32_t id)
+{
+	if (id >= QUADS_TEXTURES_MOST)
+		return;
+	if (quads->textures[id].name)
+		glDeleteTextures(1, &quads->textures[id].name);
+	quads->textures[id] = (struct quads_texture){ 0 };
+}
+
 void quads_forget(struct quads *quads)
 {
 	for (size_t i = 0; i < QUADS_TEXTURES_MOST; i++)

@@ -7,7 +7,7 @@
 
 #include "base/compiler.h"
 
-enum { QUADS_TEXTURES_MOST = 128 };
+enum { QUADS_TEXTURES_MOST = 129 };
 
 struct quads;
 
@@ -24,6 +24,8 @@ struct quads_pixels {
 };
 must_check int quads_upload(struct quads *quads, const struct quads_pixels *pixels);
 
+/* Its memory is given back, until it is uploaded again. */
+void quads_drop(struct quads *quads, uint32_t id);
 /* Every texture is uploaded again when it is next given: its id means something else now. */
 void quads_forget(struct quads *quads);
 
