@@ -13,7 +13,8 @@ enum {
 	WARM_PERIOD_MS = 100,
 	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
 	WARM_WIDTH_PX = 320,
-	FORGETFUL_MS = 30000, /* until a state that could not be written is tried again */
+	FORGETFUL_MS = 30000, /* until what could not be written is tried again */
+	HELD_MS = 60000,      /* between looks at the clock */
 	FOV_DEG = 45,
 };
 
@@ -71,23 +72,32 @@ void exhibit_close(struct exhibit *exhibit)
 	*exhibit = (struct exhibit){ 0 };
 }
 
-void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+static void open_root(struct exhibit *exhibit, struct hash hash, struct bytes object)
 {
 	struct page page;
 
-	if (!exhibit->scene)
-		return;
-	if (page_is(object) && exhibit->page_count < EXHIBIT_PAGES_MOST)
-		exhibit->pages[exhibit->page_count++] = hash;
-	if (!story_give(exhibit->story, hash, object))
-		scene_give(exhibit->scene, hash, object);
-	if (exhibit->root_here || !hash_equal(hash, exhibit->root) || !scene_root(exhibit->scene))
-		return;
 	if (page_decode(&page, object) == 0) {
 		story_open(exhibit->story, hash, &page);
 		page_finish(&page);
 		exhibit->root_here = true;
 	}
+}
+
+bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+{
+	bool kept;
+
+	if (!exhibit->scene)
+		return false;
+	exhibit->was_settled = exhibit->was_settled || exhibit->frame.settled;
+	kept = page_is(object) || !exhibit->was_settled;
+	if (kept && exhibit->kept_count < EXHIBIT_KEPT_MOST)
+		exhibit->kept[exhibit->kept_count++] = hash;
+	if (!story_give(exhibit->story, hash, object))
+		scene_give(exhibit->scene, hash, object);
+	if (!exhibit->root_here && hash_equal(hash, exhibit->root) && scene_root(exhibit->scene))
+		open_root(exhibit, hash, object);
+	return kept;
 }
 
 /* The eye's bounds are the release's. At the first release it goes to its start; at an update it
@@ -133,6 +143,7 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 	if (kiosk->shown.scene && hash_equal(kiosk->shown.root, root))
 		return; /* back to the pictures that are on the panel */
 	exhibit_close(exhibit);
+	kiosk->coming_held = false;
 	if (unseen)
 		net_client_add_release(kiosk->net, root, root_bytes);
 	else
@@ -142,16 +153,24 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
 	kiosk->coming_since_ms = clock_now_ms();
 	kiosk->coming_drawn_ms = 0;
+	kiosk->shown.shown_ms = unseen ? kiosk->shown.shown_ms : clock_now_ms();
 	kiosk_redraw(kiosk);
 }
 
-static bool can_take_over(const struct kiosk *kiosk)
+bool exhibit_may_load(const struct kiosk *kiosk)
+{
+	/* A clock that nobody set would hold it back for ever. */
+	return follow_next_on_stick(kiosk->follow) || !clock_wall_is_set() ||
+	       daily_holds(&kiosk->options.download, clock_wall_s());
+}
+
+static bool is_ready(const struct kiosk *kiosk)
 {
 	const struct exhibit *coming = &kiosk->coming;
 	const bool waited = clock_now_ms() - kiosk->coming_since_ms > WARM_MOST_MS;
 
-	return !coming->remembering && coming->frame.patches > 0 && story_info(coming->story) &&
-	       (coming->frame.settled || waited);
+	return !coming->syncing && !coming->remembering && coming->frame.patches > 0 &&
+	       story_info(coming->story) && (coming->frame.settled || waited);
 }
 
 static void take_over(struct kiosk *kiosk)
@@ -161,9 +180,10 @@ static void take_over(struct kiosk *kiosk)
 
 	kiosk->shown = kiosk->coming;
 	kiosk->coming = (struct exhibit){ 0 };
+	kiosk->shown.shown_ms = clock_now_ms();
 	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
-	for (uint32_t i = 0; i < kiosk->shown.page_count; i++)
-		net_client_keep(kiosk->net, kiosk->shown.pages[i]);
+	for (uint32_t i = 0; i < kiosk->shown.kept_count; i++)
+		net_client_keep(kiosk->net, kiosk->shown.kept[i]);
 	if (story_language(before.story))
 		story_set_language(kiosk->shown.story, story_language(before.story));
 	if (overlay) /* a panel too small for words has none */
@@ -190,6 +210,12 @@ static void draw_small(struct kiosk *kiosk)
 	scene_draw(kiosk->coming.scene, &camera, NULL, &kiosk->coming.frame);
 }
 
+static void wait_for_disk(struct kiosk *kiosk)
+{
+	kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
+	kiosk->coming_waits = true;
+}
+
 void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
 {
 	if (!kiosk->coming.scene || !hash_equal(kiosk->coming.root, root))
@@ -200,8 +226,23 @@ void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
 	}
 	/* What is remembered stays on the panel; the disk is asked again later. */
 	kiosk->coming.remembering = false;
-	kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
-	kiosk->coming_waits = true;
+	wait_for_disk(kiosk);
+}
+
+/* Objects first, then the state that names them: a power cut between the two costs nothing. */
+void exhibit_synced(struct kiosk *kiosk, bool done)
+{
+	struct exhibit *coming = &kiosk->coming;
+
+	if (!coming->scene || !coming->syncing)
+		return;
+	coming->syncing = false;
+	if (!done) {
+		log_warn("app", "the new release is not safe on the disk yet: the old one stays");
+		return;
+	}
+	coming->remembering = true;
+	follow_remember(kiosk->follow, coming->root);
 }
 
 void exhibit_warm(struct kiosk *kiosk)
@@ -212,6 +253,10 @@ void exhibit_warm(struct kiosk *kiosk)
 		set_bounds(kiosk);
 		follow_remember(kiosk->follow, kiosk->shown.root);
 	}
+	if (trial_is_broken(&kiosk->coming)) {
+		follow_refuse(kiosk->follow, kiosk->coming.root, "objects of it cannot be decoded");
+		exhibit_close(&kiosk->coming);
+	}
 	kiosk->coming_waits = kiosk->coming.root_here;
 	if (!kiosk->coming.root_here || kiosk->camera.width_px == 0 ||
 	    now_ms < kiosk->coming_drawn_ms + WARM_PERIOD_MS)
@@ -219,9 +264,11 @@ void exhibit_warm(struct kiosk *kiosk)
 	kiosk->coming_drawn_ms = now_ms;
 	draw_small(kiosk);
 	kiosk->coming_waits = kiosk->coming.frame.moving;
-	if (can_take_over(kiosk)) {
-		kiosk->coming.remembering = true;
-		follow_remember(kiosk->follow, kiosk->coming.root);
+	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was another one */
+	if (is_ready(kiosk) && trial_visitor_ms(kiosk) == 0) {
+		kiosk->coming.syncing = true;
+		net_client_sync(kiosk->net);
+		wait_for_disk(kiosk);
 	}
 }
 
@@ -230,10 +277,14 @@ int exhibit_wait_ms(const struct kiosk *kiosk)
 	const int64_t now_ms = clock_now_ms();
 	int64_t due_ms = kiosk->coming_since_ms + WARM_MOST_MS + 1;
 
+	if (kiosk->coming_held)
+		return exhibit_may_load(kiosk) ? 0 : HELD_MS;
 	if (!kiosk->coming.root_here)
 		return -1;
 	if (kiosk->coming_waits)
 		due_ms = kiosk->coming_drawn_ms + WARM_PERIOD_MS;
+	else if (is_ready(kiosk))
+		return trial_visitor_ms(kiosk);
 	else if (due_ms <= now_ms)
 		return -1; /* until something of it arrives */
 	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;

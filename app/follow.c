@@ -1,6 +1,7 @@
 #include "app/follow.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,12 +10,19 @@
 #include "base/clock.h"
 #include "base/log.h"
 
+/* Of a release; root zero: none. */
+struct place {
+	struct hash root;
+	uint32_t root_bytes;
+	uint64_t sequence;
+};
+
 struct follow {
 	struct follow_options options;
 	struct keeper *keeper; /* of the state */
 	struct update update;
-	struct hash root; /* of the remembered release; zero: none */
-	uint32_t root_bytes;
+	struct place shown, before; /* remembered; the one that worked before it */
+	bool on_trial;              /* shown was not seen to work yet */
 	int64_t time_floor_s;
 	const char *said; /* of a refusal, in the log; static; "": none since a good release */
 	struct refusal refusal;
@@ -22,6 +30,7 @@ struct follow {
 			      */
 	struct release next; /* brought now; sequence 0: none */
 	struct buffer next_file; /* its release.json */
+	enum meta_source next_source;
 };
 
 /* The trust root in use: what the state remembers, or the pinned file at the first start. */
@@ -56,17 +65,54 @@ static int find_trust(struct follow *follow, struct state *state)
 	return rc;
 }
 
+static void note(struct follow *follow, uint64_t sequence, const char *why)
+{
+	char what[32];
+
+	snprintf(what, sizeof(what), "release %llu", (unsigned long long)sequence);
+	refusal_note(&follow->refusal, what, why);
+	log_warn("app", "refused %s: %s", what, why);
+}
+
+static struct place place_of(const struct state_release *release)
+{
+	return (struct place){ release->root, release->root_bytes, release->sequence };
+}
+
+/* A release on trial that was begun so often and never got to a picture does not work here. Else
+ * this is one more try, written down before it begins: what follows may be a crash. */
+static void judge_trial(struct follow *follow, struct state *state)
+{
+	struct state_release release;
+
+	if (state_tries(state) == 0 || state_release(state, &release) < 0)
+		return;
+	if (state_tries(state) < STATE_TRIES_MOST) {
+		if (state_try(state) < 0)
+			log_warn("app", "a try of a new release could not be remembered");
+	} else if (state_fall_back(state) == 0) {
+		note(follow, release.sequence,
+		     "it was started three times and never got to a picture");
+	}
+}
+
 /* What the state says, before the keeper has it. */
 static int read_state(struct follow *follow, struct state *state)
 {
 	struct state_release release;
 
+	judge_trial(follow, state);
 	follow->update.sequence_floor = state_sequence_floor(state);
 	follow->time_floor_s = state_time_floor_s(state);
-	if (state_release(state, &release) == 0) {
-		follow->root = release.root;
-		follow->root_bytes = release.root_bytes;
-	}
+	if (state_release(state, &release) == 0)
+		follow->shown = place_of(&release);
+	if (state_previous(state, &release) == 0)
+		follow->before = place_of(&release);
+	follow->on_trial = state_tries(state) > 0;
+	if (follow->on_trial)
+		log_info("app", "release %llu is on trial, start %u of %d",
+			 (unsigned long long)follow->shown.sequence, state_tries(state),
+			 STATE_TRIES_MOST);
 	return find_trust(follow, state);
 }
 
@@ -109,8 +155,9 @@ void follow_destroy(struct follow *follow)
 
 void follow_start(struct follow *follow)
 {
-	if (!hash_is_zero(follow->root))
-		follow->options.begin(follow->options.data, follow->root, follow->root_bytes);
+	if (!hash_is_zero(follow->shown.root))
+		follow->options.begin(follow->options.data, follow->shown.root,
+				      follow->shown.root_bytes);
 }
 
 /* The later of clock and floor; 0 where the clock is not known to be set. */
@@ -123,27 +170,39 @@ static struct update_time time_now(const struct follow *follow)
 	return (struct update_time){ now_s > floor_s ? now_s : floor_s };
 }
 
-static void begin_next(struct follow *follow, const struct release *release, struct bytes file)
+static void begin_next(struct follow *follow, const struct release *release, struct bytes file,
+		       enum meta_source source)
 {
-	if (follow->next.sequence == release->sequence)
+	if (follow->next.sequence == release->sequence) {
+		if (source == META_FROM_STICK)
+			follow->next_source = source;
 		return; /* it is on its way */
+	}
 	buffer_clear(&follow->next_file);
 	buffer_put(&follow->next_file, file.data, file.size);
 	if (follow->next_file.error)
 		return;
 	follow->next = *release;
-	log_info("app", "release %llu is published%s%s", (unsigned long long)release->sequence,
+	follow->next_source = source;
+	log_info("app", "release %llu is %s%s%s", (unsigned long long)release->sequence,
+		 source == META_FROM_STICK ? "on the stick" : "published",
 		 release->comment[0] ? ": " : "", release->comment);
 	/* The same pictures under a new signature: nothing to bring, and what was coming is not
 	 * wanted any more. */
-	if (hash_equal(follow->root, release->root))
+	if (hash_equal(follow->shown.root, release->root))
 		follow_remember(follow, release->root);
 	follow->options.begin(follow->options.data, release->root, release->root_bytes);
 }
 
-void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes)
+void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes,
+		 enum meta_source source)
 {
-	static const char *const names[] = { "root", "release.json", "timestamp.json" };
+	static const char *const names[][3] = {
+		[META_FROM_SERVER] = { "root", "release.json", "timestamp.json" },
+		[META_FROM_STICK] = { "root of the stick", "release.json of the stick",
+				      "timestamp.json of the stick" },
+	};
+	const char *const name = names[source][role];
 	const struct update_time time = time_now(follow);
 	struct release release;
 	const char *why = "";
@@ -163,14 +222,14 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 	case META_RELEASE:
 		rc = update_release(&follow->update, bytes, time, &release, &why);
 		if (rc > 0)
-			begin_next(follow, &release, bytes);
+			begin_next(follow, &release, bytes, source);
 		break;
 	}
 	if (rc < 0 && !(role == META_RELEASE && follow->stamp_refused)) {
 		if (why != follow->said) /* it will be the same in a minute */
-			log_warn("app", "refused %s: %s", names[role], why);
+			log_warn("app", "refused %s: %s", name, why);
 		follow->said = why;
-		refusal_note(&follow->refusal, names[role], why);
+		refusal_note(&follow->refusal, name, why);
 	}
 	if (role == META_TIMESTAMP)
 		follow->stamp_refused = rc < 0;
@@ -216,6 +275,61 @@ int follow_fd(const struct follow *follow)
 	return keeper_fd(follow->keeper);
 }
 
+/* As state_activate has it. */
+static void take_answer(struct follow *follow, const struct keeper_answer *answer)
+{
+	if (!hash_equal(follow->shown.root, answer->root)) {
+		if (!follow->on_trial)
+			follow->before = follow->shown;
+		follow->on_trial = true;
+	}
+	follow->shown = (struct place){ answer->root, answer->root_bytes, answer->sequence };
+	if (follow->next.sequence == answer->sequence)
+		follow->next = (struct release){ 0 };
+}
+
+bool follow_next_on_stick(const struct follow *follow)
+{
+	return follow->next.sequence > 0 && follow->next_source == META_FROM_STICK;
+}
+
+bool follow_on_trial(const struct follow *follow)
+{
+	return follow->on_trial;
+}
+
+bool follow_has_before(const struct follow *follow)
+{
+	return !hash_is_zero(follow->before.root);
+}
+
+void follow_prove(struct follow *follow)
+{
+	if (!follow->on_trial)
+		return;
+	follow->on_trial = false;
+	keeper_prove(follow->keeper);
+}
+
+void follow_fall_back(struct follow *follow, const char *why)
+{
+	if (!follow->on_trial || !follow_has_before(follow))
+		return;
+	note(follow, follow->shown.sequence, why);
+	follow->shown = follow->before;
+	follow->before = (struct place){ 0 };
+	follow->on_trial = false;
+	follow->next = (struct release){ 0 }; /* it gives way */
+	keeper_fall_back(follow->keeper);
+	follow->options.begin(follow->options.data, follow->shown.root, follow->shown.root_bytes);
+}
+
+void follow_refuse(struct follow *follow, struct hash root, const char *why)
+{
+	if (hash_equal(follow->next.root, root))
+		note(follow, follow->next.sequence, why);
+}
+
 int follow_dispatch(struct follow *follow)
 {
 	struct keeper_answer answer;
@@ -226,11 +340,9 @@ int follow_dispatch(struct follow *follow)
 		log_error("app", "release %llu could not be remembered: %s",
 			  (unsigned long long)answer.sequence, strerror(-answer.rc));
 	} else {
-		follow->root = answer.root;
+		take_answer(follow, &answer);
 		update_accept(&follow->update, answer.sequence);
 		log_info("app", "release %llu is shown", (unsigned long long)answer.sequence);
-		if (follow->next.sequence == answer.sequence)
-			follow->next = (struct release){ 0 };
 	}
 	follow->options.remembered(follow->options.data, answer.root, answer.rc);
 	return 0;

@@ -234,7 +234,9 @@ static void say_wants(struct kiosk *kiosk)
 {
 	wants_begin(&kiosk->wants);
 	add_wants(kiosk, &kiosk->shown, 1);
-	add_wants(kiosk, &kiosk->coming, 1000);
+	kiosk->coming_held = kiosk->coming.scene && !exhibit_may_load(kiosk);
+	if (!kiosk->coming_held)
+		add_wants(kiosk, &kiosk->coming, 1000);
 	wants_say(&kiosk->wants, kiosk->net);
 }
 

@@ -12,6 +12,7 @@
 /* What is asked for; the buffers change hands with it. */
 struct wish {
 	bool release_wanted, trust_wanted;
+	bool proof_wanted, return_wanted;
 	struct state_release release;      /* its file: release_file */
 	struct buffer release_file, trust; /* owned */
 	int64_t time_floor_s;              /* 0: none */
@@ -45,7 +46,8 @@ static void wish_finish(struct wish *wish)
 
 static bool is_something(const struct wish *wish)
 {
-	return wish->release_wanted || wish->trust_wanted || wish->time_floor_s > 0;
+	return wish->release_wanted || wish->trust_wanted || wish->time_floor_s > 0 ||
+	       wish->proof_wanted || wish->return_wanted;
 }
 
 /* ---- on the thread */
@@ -55,7 +57,8 @@ static void answer(struct keeper *keeper, const struct state_release *release, i
 	const uint64_t one = 1;
 
 	pthread_mutex_lock(&keeper->lock);
-	keeper->answer = (struct keeper_answer){ release->root, release->sequence, rc };
+	keeper->answer =
+		(struct keeper_answer){ release->root, release->root_bytes, release->sequence, rc };
 	keeper->answered = true;
 	pthread_mutex_unlock(&keeper->lock);
 	if (write(keeper->fd, &one, sizeof(one)) < 0)
@@ -67,6 +70,11 @@ static void fulfil(struct keeper *keeper, struct wish *wish)
 {
 	if (wish->trust_wanted && state_set_trust(keeper->state, buffer_bytes(&wish->trust)) < 0)
 		log_warn("app", "the trust root could not be remembered");
+	/* Both are about the release before the one that is wanted now. */
+	if (wish->proof_wanted && state_prove(keeper->state) < 0)
+		log_warn("app", "that the release works could not be remembered");
+	if (wish->return_wanted && state_fall_back(keeper->state) < 0)
+		log_warn("app", "the return to the release before could not be remembered");
 	if (wish->time_floor_s > 0 && state_raise_time_floor(keeper->state, wish->time_floor_s) < 0)
 		log_debug("app", "the time floor could not be written");
 	if (wish->release_wanted) {
@@ -188,6 +196,23 @@ int keeper_set_trust(struct keeper *keeper, struct bytes file)
 	pthread_cond_signal(&keeper->asked);
 	pthread_mutex_unlock(&keeper->lock);
 	return rc;
+}
+
+void keeper_prove(struct keeper *keeper)
+{
+	pthread_mutex_lock(&keeper->lock);
+	keeper->wish.proof_wanted = true;
+	pthread_cond_signal(&keeper->asked);
+	pthread_mutex_unlock(&keeper->lock);
+}
+
+void keeper_fall_back(struct keeper *keeper)
+{
+	pthread_mutex_lock(&keeper->lock);
+	keeper->wish.return_wanted = true;
+	keeper->wish.proof_wanted = false;
+	pthread_cond_signal(&keeper->asked);
+	pthread_mutex_unlock(&keeper->lock);
 }
 
 void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s)

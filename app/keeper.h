@@ -10,6 +10,7 @@ struct keeper;
 
 struct keeper_answer {
 	struct hash root; /* of the release that was to be remembered */
+	uint32_t root_bytes;
 	uint64_t sequence;
 	int rc; /* of state_activate */
 };
@@ -23,6 +24,10 @@ void keeper_destroy(struct keeper *keeper);
 must_check int keeper_activate(struct keeper *keeper, const struct state_release *release);
 /* Failures are logged: the trust root in use stays in use without a disk, too. */
 must_check int keeper_set_trust(struct keeper *keeper, struct bytes file);
+/* The release that was remembered last works, or does not: state_prove, state_fall_back. Failures
+ * are logged: the next start then tries again. */
+void keeper_prove(struct keeper *keeper);
+void keeper_fall_back(struct keeper *keeper);
 /* Wall clock; never lowers it, and does not wait for the disk. */
 void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s);
 

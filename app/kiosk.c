@@ -35,10 +35,11 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 {
 	struct kiosk *kiosk = data;
 
+	bool kept;
+
 	wants_arrived(&kiosk->wants, hash);
-	exhibit_give(&kiosk->shown, hash, bytes);
-	exhibit_give(&kiosk->coming, hash, bytes);
-	if (page_is(bytes)) /* without its index what is cached could not be found */
+	kept = exhibit_give(&kiosk->shown, hash, bytes);
+	if (exhibit_give(&kiosk->coming, hash, bytes) || kept)
 		net_client_keep(kiosk->net, hash);
 	if (kiosk->capture)
 		capture_object(kiosk->capture);
@@ -55,12 +56,18 @@ static void on_missing(void *data, struct hash hash, enum missing_reason reason)
 	log_debug("app", "object %s is missing: %s", hex, why[reason]);
 }
 
-static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes,
+		    enum meta_source source)
 {
 	struct kiosk *kiosk = data;
 
-	follow_meta(kiosk->follow, role, version, bytes);
+	follow_meta(kiosk->follow, role, version, bytes, source);
 	kiosk_redraw(kiosk);
+}
+
+static void on_synced(void *data, bool done)
+{
+	exhibit_synced(data, done);
 }
 
 static void on_status(void *data, const struct message_status *status)
@@ -190,7 +197,7 @@ static int start_net(struct kiosk *kiosk)
 		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
 		.ca_file = kiosk->options.ca_path,
-		.events = { on_object, on_missing, on_meta, on_status },
+		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = kiosk,
 	};
 	struct follow_options follow = {
@@ -339,7 +346,8 @@ static int wait_ms(const struct kiosk *kiosk)
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
 	return sooner(sooner(coming_ms, capture_ms),
-		      sooner(provision_wait_ms(kiosk), panel_wait_ms(kiosk)));
+		      sooner(sooner(trial_wait_ms(kiosk), provision_wait_ms(kiosk)),
+			     panel_wait_ms(kiosk)));
 }
 
 static int turn(struct kiosk *kiosk)
@@ -360,6 +368,7 @@ static int turn(struct kiosk *kiosk)
 		rc = panel_turn(kiosk);
 	if (rc < 0 || kiosk->quit)
 		return rc;
+	trial_watch(kiosk);
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
 	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
 		kiosk->quit = true;

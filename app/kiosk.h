@@ -28,7 +28,7 @@ struct follow;
 enum { KIOSK_STATUS_ANEW = 75 };
 
 enum {
-	EXHIBIT_PAGES_MOST = 4096,
+	EXHIBIT_KEPT_MOST = 4096,
 	FRAME_BUDGET_US = 16667, /* what a panel of 60 Hz leaves */
 };
 
@@ -39,9 +39,12 @@ struct exhibit {
 	struct hash root;
 	uint32_t root_bytes;
 	bool root_here;
-	bool remembering;                      /* being written down, to be shown then */
-	struct hash pages[EXHIBIT_PAGES_MOST]; /* that came: the fetcher is to keep them */
-	uint32_t page_count;
+	bool syncing;                  /* its objects are being written durably */
+	bool remembering;              /* it is being written down itself, to be shown then */
+	int64_t shown_ms, pictured_ms; /* since it is on the panel, and to be seen there; 0: not */
+	struct hash kept[EXHIBIT_KEPT_MOST]; /* the fetcher is to keep these */
+	uint32_t kept_count;
+	bool was_settled;         /* what came since its first whole picture may go again */
 	struct scene_frame frame; /* of the last time it was drawn */
 };
 
@@ -55,6 +58,7 @@ struct kiosk {
 	struct exhibit shown;  /* its scene and story are NULL before the first release */
 	struct exhibit coming; /* the next release, warming up unseen; NULL: none */
 	int64_t coming_since_ms, coming_drawn_ms;
+	bool coming_held;  /* its objects are not asked for at this time of day */
 	bool coming_waits; /* to be drawn again by itself, not only when something arrives */
 	struct gl_target warm_target; /* where it is drawn */
 	struct quads *quads;
@@ -69,6 +73,7 @@ struct kiosk {
 	bool navigator_ready; /* a release's box is known */
 	struct gesture_recogniser gestures;
 	bool finger_on_words; /* the gesture began on a page or card */
+	int64_t touched_ms;   /* last; 0: never */
 
 	float px_per_mm;      /* of the panel; 0: not known */
 	struct camera camera; /* of the last frame */
@@ -115,13 +120,17 @@ int kiosk_height_px(const struct kiosk *kiosk);
 /* What a board's profile asks of a scene. */
 struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode);
 void exhibit_close(struct exhibit *exhibit);
-/* An object came. */
-void exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
+/* An object came. true: without it what is cached could not be found, or would be no picture. */
+bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
 /* Begins with the release, in the background where another one is shown. What was coming before is
  * given up; the release that is on the panel just stays there. */
 void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
 /* Draws a little of what is coming, and has it remembered once it can be shown whole. */
 void exhibit_warm(struct kiosk *kiosk);
+/* Its objects survive a power cut now (done), or the disk failed: net_client_sync's answer. */
+void exhibit_synced(struct kiosk *kiosk, bool done);
+/* The objects of what is coming may be asked for: the network's time of day, or a stick's. */
+bool exhibit_may_load(const struct kiosk *kiosk);
 /* The release was written down, or could not be: shows it, if it is what is coming. */
 void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc);
 /* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
@@ -129,6 +138,16 @@ int exhibit_wait_ms(const struct kiosk *kiosk);
 
 /* vitals.c: offers how the terminal is, where the options ask for it. */
 must_check int vitals_offer(struct kiosk *kiosk);
+
+/* trial.c: whether the visitor has left, and whether a new release works. */
+/* Until the panel counts as left alone, milliseconds; 0: it is. */
+int trial_visitor_ms(const struct kiosk *kiosk);
+/* A release that is on trial is proven by its picture on the panel, or the one before it taken. */
+void trial_watch(struct kiosk *kiosk);
+/* When trial_watch has something to do by time alone, milliseconds; -1: never. */
+int trial_wait_ms(const struct kiosk *kiosk);
+/* The exhibit has an object that cannot be decoded. */
+bool trial_is_broken(const struct exhibit *exhibit);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);

@@ -34,7 +34,9 @@ static const char help_text[] =
 	"  --capture DIR        pictures go here: view-0000.png and views.jsonl, or the shots\n"
 	"  --shots FILE         pictures during a replay: milliseconds and a name, a shot a line\n"
 	"  --overlay            callouts and all on the pictures of --views too\n"
-	"  --poll-s SECONDS     how often to look for a new release\n"
+	"  --poll-s SECONDS     how often to look for a new release (1 to 86400; the fetcher's)\n"
+	"  --download HH:MM-HH:MM\n"
+	"                       time of day in which a new release is brought (default: any)\n"
 	"  --log LEVEL          error, warn, info (default) or debug\n"
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
@@ -74,6 +76,7 @@ enum {
 	OPTION_SHOTS,
 	OPTION_OVERLAY,
 	OPTION_POLL,
+	OPTION_DOWNLOAD,
 	OPTION_FETCH,
 	OPTION_SOCKET,
 	OPTION_FIGURES,
@@ -106,6 +109,7 @@ static const struct option long_options[] = {
 	{ "shots", required_argument, NULL, OPTION_SHOTS },
 	{ "overlay", no_argument, NULL, OPTION_OVERLAY },
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
+	{ "download", required_argument, NULL, OPTION_DOWNLOAD },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
@@ -240,6 +244,8 @@ static bool set_value(struct options *o, int option, const char *text)
 			return false;
 		o->conf_paths[o->conf_count++] = text;
 		return true;
+	case OPTION_DOWNLOAD:
+		return daily_parse(&o->download, text) == 0;
 	case OPTION_OVERLAY:
 		o->capture_overlay = true;
 		return true;

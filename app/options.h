@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/daily.h"
 #include "board/hours.h"
 #include "render/display.h"
 #include "render/scene.h"
@@ -35,7 +36,8 @@ struct options {
 	bool capture_overlay;   /* pictures of views with callouts and all */
 	enum scene_mode mode;
 	const char *language;
-	uint32_t poll_s;    /* for updates; 0: the fetcher's default */
+	struct daily download; /* when the objects of a new release are brought; 0: always */
+	uint32_t poll_s;       /* for updates; 0: the fetcher's default */
 	struct hours hours; /* in which the panel is on */
 	uint32_t wake_min;  /* how long a touch keeps it on outside them; 0: not at all */
 	bool shift;         /* the picture moves by a pixel now and then */

@@ -312,6 +312,12 @@ void story_wants(struct story *story, struct wants *wants)
 	}
 }
 
+bool story_broken(const struct story *story)
+{
+	return story->page_here && (story->page.child_count == 0 || story->database_here) &&
+	       !story->info;
+}
+
 const char *story_language(const struct story *story)
 {
 	return story->language[0] ? story->language : NULL;

@@ -31,6 +31,8 @@ void story_wants(struct story *story, struct wants *wants);
  * story_give. */
 struct overlay *story_overlay(struct story *story);
 const struct info *story_info(const struct story *story);
+/* What the words come from arrived and cannot be read. */
+bool story_broken(const struct story *story);
 /* NULL: not chosen yet. Borrowed. */
 const char *story_language(const struct story *story);
 void story_set_language(struct story *story, const char *language);

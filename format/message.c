@@ -87,6 +87,12 @@ void message_encode(struct buffer *out, const struct message *message)
 		put_hash(out, message->keep);
 		break;
 	case MESSAGE_ASK_META:
+		buffer_put_u32(out, message->period_s);
+		break;
+	case MESSAGE_SYNC:
+		break;
+	case MESSAGE_SYNCED:
+		buffer_put_u8(out, message->synced);
 		break;
 	case MESSAGE_OBJECT:
 		put_hash(out, message->object.hash);
@@ -99,6 +105,7 @@ void message_encode(struct buffer *out, const struct message *message)
 		break;
 	case MESSAGE_META:
 		buffer_put_u8(out, (uint8_t)message->meta.role);
+		buffer_put_u8(out, (uint8_t)message->meta.source);
 		buffer_put_u32(out, message->meta.version);
 		put_rest(out, message->meta.bytes, MESSAGE_META_BYTES_MOST);
 		break;
@@ -125,7 +132,7 @@ static bool object_in_range(const struct message *message)
 /* Reads the fields of *out's kind; true when each is in its range. */
 static bool get_fields(struct message *out, struct reader *reader)
 {
-	uint8_t small;
+	uint8_t small, source;
 
 	switch (out->kind) {
 	case MESSAGE_RELEASE:
@@ -145,7 +152,14 @@ static bool get_fields(struct message *out, struct reader *reader)
 		out->keep = get_hash(reader);
 		return !hash_is_zero(out->keep);
 	case MESSAGE_ASK_META:
+		out->period_s = reader_u32(reader);
+		return out->period_s <= MESSAGE_PERIOD_S_MOST;
+	case MESSAGE_SYNC:
 		return true;
+	case MESSAGE_SYNCED:
+		small = reader_u8(reader);
+		out->synced = small == 1;
+		return small <= 1;
 	case MESSAGE_OBJECT:
 		out->object.hash = get_hash(reader);
 		out->object.size = reader_u32(reader);
@@ -159,10 +173,12 @@ static bool get_fields(struct message *out, struct reader *reader)
 	case MESSAGE_META:
 		small = reader_u8(reader);
 		out->meta.role = (enum meta_role)small;
+		source = reader_u8(reader);
+		out->meta.source = (enum meta_source)source;
 		out->meta.version = reader_u32(reader);
 		out->meta.bytes = reader_bytes(reader, reader_left(reader));
-		return small <= META_TIMESTAMP && out->meta.bytes.size > 0 &&
-		       out->meta.bytes.size <= MESSAGE_META_BYTES_MOST;
+		return small <= META_TIMESTAMP && source <= META_FROM_STICK &&
+		       out->meta.bytes.size > 0 && out->meta.bytes.size <= MESSAGE_META_BYTES_MOST;
 	case MESSAGE_STATUS:
 		get_status(&out->status, reader);
 		return out->status.online <= 1;

@@ -7,12 +7,14 @@
  *   MESSAGE_WANT     bring an object (again with another priority: only the priority changes)
  *   MESSAGE_DROP     no longer wanted
  *   MESSAGE_KEEP     an object that must not leave the cache while its release is in use
- *   MESSAGE_ASK_META fetch the signed metadata now (the fetcher also polls by itself)
+ *   MESSAGE_ASK_META fetch the signed metadata now, and from now on as often as this says
+ *   MESSAGE_SYNC     what was brought so far must survive a power cut: answered by MESSAGE_SYNCED
  * Fetcher to kiosk
  *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MOST, else a sealed memfd
  *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
  *                    fetcher goes on trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
+ *   MESSAGE_SYNCED   it does, or the disk failed
  *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute: the sign of
  *                    life by which the kiosk knows a hanging fetcher
  *
@@ -28,20 +30,24 @@ enum message_kind {
 	MESSAGE_DROP,
 	MESSAGE_KEEP,
 	MESSAGE_ASK_META,
+	MESSAGE_SYNC,
 	MESSAGE_OBJECT = 64,
 	MESSAGE_MISSING,
 	MESSAGE_META,
 	MESSAGE_STATUS,
+	MESSAGE_SYNCED,
 };
 
 enum {
 	MESSAGE_INLINE_MOST = 96 * 1024,
 	MESSAGE_BYTES_MOST = MESSAGE_INLINE_MOST + 1024,
 	MESSAGE_META_BYTES_MOST = 64 * 1024,
-	MESSAGE_RELEASES_MOST = 4 /* in use at once */
+	MESSAGE_RELEASES_MOST = 4, /* in use at once */
+	MESSAGE_PERIOD_S_MOST = 86400,
 };
 
 enum meta_role { META_ROOT, META_RELEASE, META_TIMESTAMP };
+enum meta_source { META_FROM_SERVER, META_FROM_STICK };
 enum missing_reason { MISSING_OFFLINE, MISSING_NOT_FOUND, MISSING_DAMAGED };
 
 struct message_want {
@@ -77,6 +83,8 @@ struct message {
 		struct message_want want;
 		struct hash drop;
 		struct hash keep;
+		uint32_t period_s; /* of MESSAGE_ASK_META; 0: as the fetcher has it */
+		bool synced;
 		struct {
 			struct hash hash;
 			struct bytes bytes; /* borrowed; empty: in the descriptor that came along */
@@ -90,6 +98,7 @@ struct message {
 			enum meta_role role;
 			uint32_t version;   /* of META_ROOT: N of root/N.json */
 			struct bytes bytes; /* borrowed */
+			enum meta_source source;
 		} meta;
 		struct message_status status;
 	};

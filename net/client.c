@@ -120,7 +120,7 @@ static void say_releases(struct net_client *client)
 
 static void say_everything(struct net_client *client)
 {
-	struct message message = { .kind = MESSAGE_ASK_META };
+	struct message message = { .kind = MESSAGE_ASK_META, .period_s = client->options.poll_s };
 	struct hash_entry *keep;
 	struct wanted *wanted;
 	size_t at = 0;
@@ -202,7 +202,7 @@ static int spawn_with(struct net_client *client, char *const *arguments, int fd)
 static int start_fetcher(struct net_client *client)
 {
 	const struct net_client_options *options = &client->options;
-	char budget[32], poll_s[32], fd[8];
+	char budget[32], fd[8];
 	const char *arguments[16] = {
 		options->program, "--release", options->release_url, "--cache", options->cache_path,
 		"--fd",           fd,          "--cache-budget",     budget
@@ -213,11 +213,6 @@ static int start_fetcher(struct net_client *client)
 	snprintf(fd, sizeof(fd), "%d", FETCHER_FD);
 	snprintf(budget, sizeof(budget), "%llu",
 		 (unsigned long long)(options->cache_budget_bytes >> 20));
-	snprintf(poll_s, sizeof(poll_s), "%u", options->poll_s);
-	if (options->poll_s) {
-		arguments[count++] = "--poll-s";
-		arguments[count++] = poll_s;
-	}
 	if (options->ca_file) {
 		arguments[count++] = "--ca";
 		arguments[count++] = options->ca_file;
@@ -377,7 +372,11 @@ static int obey(struct net_client *client, const struct message *message, int pa
 	case MESSAGE_META:
 		if (events->meta)
 			events->meta(data, message->meta.role, message->meta.version,
-				     message->meta.bytes);
+				     message->meta.bytes, message->meta.source);
+		return 0;
+	case MESSAGE_SYNCED:
+		if (events->synced)
+			events->synced(data, message->synced);
 		return 0;
 	case MESSAGE_STATUS:
 		pass_status_on(client, message->status);
@@ -610,6 +609,11 @@ void net_client_drop(struct net_client *client, struct hash hash)
 	by_hash_remove(&client->wants, hash);
 	free(wanted);
 	say(client, &message);
+}
+
+void net_client_sync(struct net_client *client)
+{
+	say(client, &(struct message){ .kind = MESSAGE_SYNC });
 }
 
 void net_client_keep(struct net_client *client, struct hash hash)

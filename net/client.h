@@ -13,7 +13,10 @@ struct net_client_events {
 	void (*object)(void *data, struct hash hash, struct bytes bytes);
 	void (*missing)(void *data, struct hash hash, enum missing_reason reason);
 	/* As received: the signature is not checked yet. */
-	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
+	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes,
+		     enum meta_source source);
+	/* Of net_client_sync; done: all that came before it survives a power cut. */
+	void (*synced)(void *data, bool done);
 	void (*status)(void *data, const struct message_status *status);
 };
 
@@ -50,6 +53,8 @@ void net_client_add_release(struct net_client *client, struct hash root, uint32_
 void net_client_want(struct net_client *client, const struct message_want *want);
 /* What is not wanted is ignored. */
 void net_client_drop(struct net_client *client, struct hash hash);
+/* Has what came so far written durably. The answer is lost with the fetcher: ask again then. */
+void net_client_sync(struct net_client *client);
 /* Remembered until net_client_use_release, and said again when the fetcher was restarted. The cache
  * keeps up to three quarters of its budget this way. */
 void net_client_keep(struct net_client *client, struct hash hash);

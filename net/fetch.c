@@ -163,7 +163,13 @@ static int obey(struct fetch *fetch, const struct message *message)
 		bring_keep(fetch->bring, message->keep);
 		return 0;
 	case MESSAGE_ASK_META:
-		poll_ask(fetch->poll);
+		poll_ask(fetch->poll, message->period_s);
+		return 0;
+	case MESSAGE_SYNC:
+		send_to_kiosk(fetch,
+			      &(struct message){ .kind = MESSAGE_SYNCED,
+						 .synced = cache_sync(fetch->cache) == 0 },
+			      -1);
 		return 0;
 	default:
 		return -EBADMSG; /* that is ours to say */

@@ -84,8 +84,10 @@ static void say(struct poll *poll, enum meta_role role, uint32_t version, const 
 		poll->options.meta(poll->options.data, role, version, buffer_bytes(&known->file));
 }
 
-void poll_ask(struct poll *poll)
+void poll_ask(struct poll *poll, uint32_t period_s)
 {
+	if (period_s)
+		poll->options.period_s = period_s;
 	for (uint32_t i = 0; i < poll->root_count; i++)
 		say(poll, META_ROOT, i + 1, &poll->roots[i]);
 	say(poll, META_TIMESTAMP, 0, &poll->timestamp);

@@ -22,8 +22,8 @@ struct poll_options {
 must_check int poll_create(struct poll **out, const struct poll_options *options);
 void poll_destroy(struct poll *poll);
 
-/* Says again all that is known, and looks now. */
-void poll_ask(struct poll *poll);
+/* Says again all that is known, and looks now; from now on every period_s (0: as before). */
+void poll_ask(struct poll *poll, uint32_t period_s);
 void poll_stop(struct poll *poll); /* until poll_ask; what is known is forgotten */
 void poll_work(struct poll *poll);
 int64_t poll_due_ms(const struct poll *poll); /* as bring_due_ms */

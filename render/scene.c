@@ -306,7 +306,7 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 	return -EBADMSG;
 }
 
-void scene_refuse(struct object *object, int error)
+void scene_refuse(struct scene *scene, struct object *object, int error)
 {
 	static const char *const names[] = { "root page",   "hierarchy page", "samples page",
 					     "patch group", "brick page",     "face page",
@@ -316,6 +316,7 @@ void scene_refuse(struct object *object, int error)
 	log_error("render", "content bug: %s %s cannot be used: %s", names[object->kind], hex,
 		  strerror(-error));
 	object->state = OBJECT_BAD;
+	scene->refused++;
 }
 
 void scene_give(struct scene *scene, struct hash hash, struct bytes object)
@@ -328,9 +329,14 @@ void scene_give(struct scene *scene, struct hash hash, struct bytes object)
 	if (rc == -ENOMEM)
 		log_warn("render", "no memory for an object; it stays wanted");
 	else if (rc < 0)
-		scene_refuse(known, rc);
+		scene_refuse(scene, known, rc);
 	else if (known->kind == OBJECT_BRICK)
 		scene->epoch++; /* it tells what is empty */
+}
+
+uint32_t scene_refused(const struct scene *scene)
+{
+	return scene->refused;
 }
 
 int scene_fd(const struct scene *scene)

@@ -44,6 +44,8 @@ const struct root_page *scene_root(const struct scene *scene);
 /* A verified object that was wanted. Unknown ones are ignored; one that does not decode is logged
  * as a content bug and not wanted again. */
 void scene_give(struct scene *scene, struct hash hash, struct bytes object);
+/* Objects of this release that did not decode, so far. */
+uint32_t scene_refused(const struct scene *scene);
 /* Readable when scene_dispatch has something to do: a worker finished. */
 int scene_fd(const struct scene *scene);
 /* Only quiets the descriptor: the next frame takes the answers, within its time. */

@@ -60,6 +60,7 @@ struct scene {
 	struct rest rest;
 	struct census census;
 
+	uint32_t refused;       /* objects that could not be used */
 	struct object *objects; /* owned */
 	uint32_t object_count, object_capacity;
 	struct map object_of; /* first 8 bytes of a hash -> index of objects */
@@ -116,7 +117,7 @@ struct object *scene_object(struct scene *scene, struct hash hash);
 struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,
 			    uint64_t id);
 /* Logs a content bug; the object is not wanted again. */
-void scene_refuse(struct object *object, int error);
+void scene_refuse(struct scene *scene, struct object *object, int error);
 
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);

@@ -31,7 +31,7 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 			rc = 0; /* all that is there is in use */
 	}
 	if (rc == -EBADMSG)
-		scene_refuse(object, rc);
+		scene_refuse(scene, object, rc);
 	else if (rc < 0)
 		log_warn("render", "an object was not taken up: %s", strerror(-rc));
 }

@@ -13,6 +13,8 @@ enum {
 	LOG_BYTES_MOST = 64 << 20,
 	TOUCH_S = 600, /* a want moves an object up at most this often: it costs a write */
 	EVICT_TRIES = 8,
+	KEPT_NOW = 1, /* in keeps.releases */
+	KEPT_BEFORE = 2,
 };
 
 static int64_t pages_of(size_t bytes)
@@ -149,13 +151,14 @@ int cache_get(struct cache *cache, struct hash hash, uint32_t priority, struct b
 	return 0;
 }
 
-static bool is_kept(struct cache *cache, const struct hash *hash)
+/* For which releases: KEPT_NOW, KEPT_BEFORE, both or none. */
+static int kept_for(struct cache *cache, const struct hash *hash)
 {
 	sqlite3_stmt *statement = bound_to_hash(cache, STATEMENT_IS_KEPT, hash);
-	bool kept = sqlite3_step(statement) == SQLITE_ROW;
+	int releases = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int(statement, 0) : 0;
 
 	sqlite3_reset(statement);
-	return kept;
+	return releases;
 }
 
 static bool may_keep_more(struct cache *cache)
@@ -207,7 +210,7 @@ int cache_put(struct cache *cache, struct hash hash, struct bytes object, uint32
 
 	if (!cache_ready(cache))
 		return -EIO;
-	kept = is_kept(cache, &hash) && may_keep_more(cache);
+	kept = kept_for(cache, &hash) != 0 && may_keep_more(cache);
 	put = bound_to_hash(cache, STATEMENT_PUT, &hash);
 	sqlite3_bind_int64(put, 2, cache_tick(cache) + worth_s(priority));
 	sqlite3_bind_int(put, 3, kept);
@@ -226,7 +229,7 @@ int cache_keep(struct cache *cache, struct hash hash)
 
 	if (!cache_ready(cache))
 		return -EIO;
-	if (is_kept(cache, &hash))
+	if (kept_for(cache, &hash) & KEPT_NOW)
 		return 0;
 	if (!may_keep_more(cache))
 		return -ENOSPC;
@@ -240,28 +243,42 @@ int cache_keep(struct cache *cache, struct hash hash)
 	return rc < 0 ? rc : cache_count_pages(cache, CACHE_EXTRA_PAGES);
 }
 
+static bool is_fact(struct cache *cache, const char *name, const char *value)
+{
+	char sql[128];
+
+	snprintf(sql, sizeof(sql), "SELECT count(*) FROM facts WHERE name = '%s' AND value = '%s'",
+		 name, value);
+	return db_integer(cache->db, sql) == 1;
+}
+
 int cache_use_release(struct cache *cache, struct hash root)
 {
-	char hex[HASH_HEX_BYTES], sql[512];
+	char hex[HASH_HEX_BYTES], sql[1024];
+	bool returns;
 	int rc;
 
 	if (!cache_ready(cache))
 		return -EIO;
 	hash_to_hex(root, hex);
-	snprintf(sql, sizeof(sql),
-		 "SELECT count(*) FROM facts WHERE name = 'release'"
-		 " AND value = '%s'",
-		 hex);
-	if (db_integer(cache->db, sql) == 1)
+	if (is_fact(cache, "release", hex))
 		return 0;
+	returns = is_fact(cache, "before", hex);
 	rc = cache_begin(cache);
 	if (rc < 0)
 		return rc;
-	snprintf(sql, sizeof(sql),
-		 "DELETE FROM keeps; UPDATE objects SET kept = 0 WHERE kept = 1;"
-		 "DELETE FROM files WHERE name <> x'%s';"
-		 "INSERT OR REPLACE INTO facts (name, value) VALUES ('release', '%s')",
-		 hex, hex);
+	/* What was in use is now before; what was before is in use again, or let go. */
+	snprintf(
+		sql, sizeof(sql),
+		"UPDATE keeps SET releases = (releases & %d) * 2 + (releases & %d) / 2;"
+		"DELETE FROM keeps WHERE releases = 0;"
+		"UPDATE objects SET kept = 0 WHERE kept = 1 AND hash NOT IN (SELECT hash FROM keeps);"
+		"INSERT OR REPLACE INTO facts (name, value)"
+		" SELECT 'before', value FROM facts WHERE name = 'release';"
+		"INSERT OR REPLACE INTO facts (name, value) VALUES ('release', '%s');"
+		"DELETE FROM files WHERE lower(hex(name)) NOT IN"
+		" (SELECT value FROM facts WHERE name IN ('release', 'before'))",
+		KEPT_NOW, returns ? KEPT_BEFORE : 0, hex);
 	rc = cache_judge(cache, db_exec(cache->db, sql), "changing the release");
 	return rc < 0 ? rc : cache_flush(cache);
 }

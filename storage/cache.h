@@ -46,21 +46,24 @@ must_check int cache_get(struct cache *cache, struct hash hash, uint32_t priorit
  *   -EIO     the disk failed */
 must_check int cache_put(struct cache *cache, struct hash hash, struct bytes object,
 			 uint32_t priority);
-/* Must not go while release (cache_use_release) is in use; may be said before the object came.
- * -ENOSPC: three quarters of the budget are kept already. -EIO. */
+/* Must not go while release (cache_use_release) is in use, nor while it is the one before; may be
+ * said before the object came. -ENOSPC: three quarters of the budget are kept already. -EIO. */
 must_check int cache_keep(struct cache *cache, struct hash hash);
-/* Another release than before: what was kept is so no longer, other files are dropped. The same:
+/* Another release than before: what was kept for that one stays kept, so that it can be returned
+ * to; what was kept for the one before it is so no longer, and other files are dropped. The same:
  * nothing changes, across restarts too. */
 must_check int cache_use_release(struct cache *cache, struct hash root);
 
-/* A whole file kept beside the objects until another release is used: a release's locator under
- * its root hash. Errors as cache_get and cache_put. */
+/* A whole file kept beside the objects as long as what is kept for its release: a release's locator
+ * under its root hash. Errors as cache_get and cache_put. */
 must_check int cache_get_file(struct cache *cache, struct hash name, struct buffer *out);
 must_check int cache_put_file(struct cache *cache, struct hash name, struct bytes file);
 
 /* Ends the transaction of writes. On failure what was put since the last one is not in the cache.
  */
 must_check int cache_flush(struct cache *cache);
+/* As cache_flush, and what is in the cache then survives a power cut: waits for the disk. */
+must_check int cache_sync(struct cache *cache);
 bool cache_needs_flush(const struct cache *cache);
 
 uint64_t cache_refused_writes(const struct cache *cache); /* since create */

@@ -13,7 +13,7 @@ enum {
 	COMPLAIN_MS = 60000,
 	FAULTS_MOST = 16,            /* failed reads in a row: the file is as good as damaged */
 	BROKEN_BYTES_MOST = 1 << 20, /* of a damaged file: its header and schema, for who looks */
-	SCHEMA_VERSION = 1,
+	SCHEMA_VERSION = 2,
 };
 
 static const char *const statement_sql[STATEMENT_COUNT] = {
@@ -26,8 +26,9 @@ static const char *const statement_sql[STATEMENT_COUNT] = {
 	[STATEMENT_DROP] = "DELETE FROM objects WHERE id = ?1",
 	[STATEMENT_LEAST] =
 		"SELECT id, size FROM objects WHERE kept = 0 ORDER BY rank, size LIMIT 1",
-	[STATEMENT_IS_KEPT] = "SELECT 1 FROM keeps WHERE hash = ?1",
-	[STATEMENT_KEEP] = "INSERT OR IGNORE INTO keeps (hash) VALUES (?1)",
+	[STATEMENT_IS_KEPT] = "SELECT releases FROM keeps WHERE hash = ?1",
+	[STATEMENT_KEEP] = "INSERT INTO keeps (hash, releases) VALUES (?1, 1)"
+			   " ON CONFLICT (hash) DO UPDATE SET releases = releases | 1",
 	[STATEMENT_MARK_KEPT] = "UPDATE objects SET kept = 1 WHERE hash = ?1 AND kept = 0",
 	[STATEMENT_KEPT_BYTES] = "SELECT ifnull(sum(size), 0) FROM objects WHERE kept = 1",
 	[STATEMENT_GET_FILE] = "SELECT check_hash, bytes FROM files WHERE name = ?1",
@@ -38,14 +39,16 @@ static const char *const statement_sql[STATEMENT_COUNT] = {
 	[STATEMENT_TICK] = "INSERT OR REPLACE INTO facts (name, value) VALUES ('tick', ?1)",
 };
 
-/* Objects need a rowid: reading large rows by a WITHOUT ROWID key is seven times slower. */
+/* keeps.releases: bit 0, for the release in use; bit 1, for the one before. facts.release and
+ * facts.before name these. Objects need a rowid: reading large rows by a WITHOUT ROWID key is seven
+ * times slower. */
 static const char schema[] =
 	"CREATE TABLE objects (id INTEGER PRIMARY KEY, hash BLOB NOT NULL, rank INTEGER NOT NULL,"
 	" kept INTEGER NOT NULL, size INTEGER NOT NULL, bytes BLOB NOT NULL);"
 	"CREATE UNIQUE INDEX objects_hash ON objects (hash);"
 	"CREATE INDEX objects_rank ON objects (rank, size) WHERE kept = 0;"
 	"CREATE INDEX objects_kept ON objects (size) WHERE kept = 1;"
-	"CREATE TABLE keeps (hash BLOB PRIMARY KEY) WITHOUT ROWID;"
+	"CREATE TABLE keeps (hash BLOB PRIMARY KEY, releases INTEGER NOT NULL) WITHOUT ROWID;"
 	"CREATE TABLE files (id INTEGER PRIMARY KEY, name BLOB NOT NULL UNIQUE,"
 	" check_hash BLOB NOT NULL, bytes BLOB NOT NULL);"
 	"CREATE TABLE facts (name TEXT PRIMARY KEY, value) WITHOUT ROWID;";

@@ -88,6 +88,17 @@ int cache_flush(struct cache *cache)
 	return 0;
 }
 
+int cache_sync(struct cache *cache)
+{
+	int rc = cache_flush(cache), code;
+
+	if (rc < 0 || !cache->db)
+		return rc < 0 ? rc : -EIO;
+	/* A commit alone is not synced; writing the log back is, before and after. */
+	code = sqlite3_wal_checkpoint_v2(cache->db, NULL, SQLITE_CHECKPOINT_FULL, NULL, NULL);
+	return cache_judge(cache, db_code(code), "writing the log back");
+}
+
 bool cache_needs_flush(const struct cache *cache)
 {
 	return cache->in_batch;

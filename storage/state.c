@@ -14,24 +14,34 @@
  * person can read, with a hash over the encoded record; and encoded, with that hash behind it, in
  * PATH.second. The encoded form:
  *
- *   "GSta"  u32 version(1)  u64 sequence floor  u64 time floor
- *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json */
+ *   "GSta"  u32 version(2)  u64 sequence floor  u64 time floor
+ *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json
+ *   u32 tries  of the previous release: 16 bytes root ... release.json
+ *
+ * Version 1 ended before the tries; such a copy is read, as of a release that is proven. */
 
 enum {
-	RECORD_BYTES_MOST = 2 * STATE_FILE_BYTES_MOST + 256,
+	RECORD_BYTES_MOST = 3 * STATE_FILE_BYTES_MOST + 256,
+	RECORD_VERSION = 2,
 	BROKEN_BYTES_MOST = 1 << 20,
 	TIME_STEP_S = 3600,
 	COUNTERS_MOST = 32,
 	COUNTER_NAME_BYTES = 32,
 };
 
+struct kept_release {
+	struct hash root; /* zero: none yet */
+	uint32_t root_bytes;
+	uint64_t sequence;
+	struct buffer file;
+};
+
 struct record {
 	uint64_t sequence_floor;
 	int64_t time_floor_s;
-	struct hash root; /* zero: no release yet */
-	uint32_t root_bytes;
-	uint64_t sequence;
-	struct buffer release, trust; /* empty: none yet */
+	struct kept_release release, previous;
+	struct buffer trust; /* empty: none yet */
+	uint32_t tries;      /* of release; 0: proven */
 };
 
 struct counter {
@@ -53,36 +63,55 @@ static const char schema[] =
 	"BEGIN IMMEDIATE;"
 	"CREATE TABLE IF NOT EXISTS record (id INTEGER PRIMARY KEY CHECK (id = 1),"
 	" sequence_floor INTEGER, time_floor_s INTEGER, root BLOB, root_bytes INTEGER,"
-	" sequence INTEGER, release BLOB, trust BLOB, check_hash BLOB);"
+	" sequence INTEGER, release BLOB, trust BLOB, tries INTEGER, previous_root BLOB,"
+	" previous_root_bytes INTEGER, previous_sequence INTEGER, previous_release BLOB,"
+	" check_hash BLOB);"
 	"CREATE TABLE IF NOT EXISTS counters (name TEXT PRIMARY KEY, value INTEGER) WITHOUT ROWID;"
 	"COMMIT";
 
 static void record_init(struct record *record)
 {
 	*record = (struct record){ 0 };
-	buffer_init(&record->release, STATE_FILE_BYTES_MOST);
+	buffer_init(&record->release.file, STATE_FILE_BYTES_MOST);
+	buffer_init(&record->previous.file, STATE_FILE_BYTES_MOST);
 	buffer_init(&record->trust, STATE_FILE_BYTES_MOST);
 }
 
 static void record_finish(struct record *record)
 {
-	buffer_finish(&record->release);
+	buffer_finish(&record->release.file);
+	buffer_finish(&record->previous.file);
 	buffer_finish(&record->trust);
+}
+
+/* A file that did not fit. */
+static int record_error(const struct record *record)
+{
+	return record->release.file.error    ? record->release.file.error
+	       : record->previous.file.error ? record->previous.file.error
+					     : record->trust.error;
+}
+
+static void release_encode(struct buffer *out, const struct kept_release *release)
+{
+	buffer_put(out, release->root.bytes, HASH_BYTES);
+	buffer_put_u32(out, release->root_bytes);
+	buffer_put_u64(out, release->sequence);
+	buffer_put_u32(out, (uint32_t)release->file.size);
+	buffer_put(out, release->file.data, release->file.size);
 }
 
 static void record_encode(struct buffer *out, const struct record *record)
 {
 	buffer_put(out, "GSta", 4);
-	buffer_put_u32(out, 1);
+	buffer_put_u32(out, RECORD_VERSION);
 	buffer_put_u64(out, record->sequence_floor);
 	buffer_put_u64(out, (uint64_t)record->time_floor_s);
-	buffer_put(out, record->root.bytes, HASH_BYTES);
-	buffer_put_u32(out, record->root_bytes);
-	buffer_put_u64(out, record->sequence);
-	buffer_put_u32(out, (uint32_t)record->release.size);
-	buffer_put(out, record->release.data, record->release.size);
+	release_encode(out, &record->release);
 	buffer_put_u32(out, (uint32_t)record->trust.size);
 	buffer_put(out, record->trust.data, record->trust.size);
+	buffer_put_u32(out, record->tries);
+	release_encode(out, &record->previous);
 }
 
 static void get_sized(struct buffer *out, struct reader *reader)
@@ -93,13 +122,25 @@ static void get_sized(struct buffer *out, struct reader *reader)
 	buffer_put(out, bytes.data, bytes.size);
 }
 
+static void release_decode(struct kept_release *out, struct reader *reader)
+{
+	struct bytes root = reader_bytes(reader, HASH_BYTES);
+
+	if (root.size)
+		memcpy(out->root.bytes, root.data, HASH_BYTES);
+	out->root_bytes = reader_u32(reader);
+	out->sequence = reader_u64(reader);
+	get_sized(&out->file, reader);
+}
+
 /* -EBADMSG: not such a record, or changed since it was written. */
 static int record_decode(struct record *out, struct bytes file)
 {
 	struct bytes body = { file.data, file.size - HASH_BYTES };
-	struct bytes magic, root;
+	struct bytes magic;
 	struct reader reader;
 	struct hash check;
+	uint32_t version;
 
 	if (file.size < HASH_BYTES)
 		return -EBADMSG;
@@ -108,20 +149,19 @@ static int record_decode(struct record *out, struct bytes file)
 		return -EBADMSG;
 	reader_init(&reader, body);
 	magic = reader_bytes(&reader, 4);
-	if (magic.size != 4 || memcmp(magic.data, "GSta", 4) != 0 || reader_u32(&reader) != 1)
+	version = reader_u32(&reader);
+	if (magic.size != 4 || memcmp(magic.data, "GSta", 4) != 0 || version < 1 ||
+	    version > RECORD_VERSION)
 		return -EBADMSG;
 	out->sequence_floor = reader_u64(&reader);
 	out->time_floor_s = (int64_t)reader_u64(&reader);
-	root = reader_bytes(&reader, HASH_BYTES);
-	if (root.size)
-		memcpy(out->root.bytes, root.data, HASH_BYTES);
-	out->root_bytes = reader_u32(&reader);
-	out->sequence = reader_u64(&reader);
-	get_sized(&out->release, &reader);
+	release_decode(&out->release, &reader);
 	get_sized(&out->trust, &reader);
-	if (reader.failed || reader_left(&reader) || out->release.error || out->trust.error)
-		return -EBADMSG;
-	return 0;
+	if (version > 1) {
+		out->tries = reader_u32(&reader);
+		release_decode(&out->previous, &reader);
+	}
+	return reader.failed || reader_left(&reader) || record_error(out) < 0 ? -EBADMSG : 0;
 }
 
 static int hash_record(struct hash *out, const struct record *record)
@@ -185,23 +225,31 @@ static void take_column(struct buffer *out, sqlite3_stmt *row, int column)
 		buffer_put(out, bytes, (size_t)size);
 }
 
+/* From four columns. */
+static int take_release(struct kept_release *out, sqlite3_stmt *row, int column)
+{
+	if (sqlite3_column_bytes(row, column) != HASH_BYTES)
+		return -EBADMSG;
+	memcpy(out->root.bytes, sqlite3_column_blob(row, column), HASH_BYTES);
+	out->root_bytes = (uint32_t)sqlite3_column_int64(row, column + 1);
+	out->sequence = (uint64_t)sqlite3_column_int64(row, column + 2);
+	take_column(&out->file, row, column + 3);
+	return 0;
+}
+
 static int take_row(struct record *out, sqlite3_stmt *row)
 {
 	struct hash check;
 
 	out->sequence_floor = (uint64_t)sqlite3_column_int64(row, 0);
 	out->time_floor_s = sqlite3_column_int64(row, 1);
-	if (sqlite3_column_bytes(row, 2) != HASH_BYTES ||
-	    sqlite3_column_bytes(row, 7) != HASH_BYTES)
-		return -EBADMSG;
-	memcpy(out->root.bytes, sqlite3_column_blob(row, 2), HASH_BYTES);
-	out->root_bytes = (uint32_t)sqlite3_column_int64(row, 3);
-	out->sequence = (uint64_t)sqlite3_column_int64(row, 4);
-	take_column(&out->release, row, 5);
 	take_column(&out->trust, row, 6);
-	if (out->release.error || out->trust.error || hash_record(&check, out) < 0)
+	out->tries = (uint32_t)sqlite3_column_int64(row, 7);
+	if (take_release(&out->release, row, 2) < 0 || take_release(&out->previous, row, 8) < 0 ||
+	    sqlite3_column_bytes(row, 12) != HASH_BYTES || record_error(out) < 0 ||
+	    hash_record(&check, out) < 0)
 		return -EBADMSG;
-	return memcmp(check.bytes, sqlite3_column_blob(row, 7), HASH_BYTES) == 0 ? 0 : -EBADMSG;
+	return memcmp(check.bytes, sqlite3_column_blob(row, 12), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
 
 /* -ENOENT: a fresh database. */
@@ -211,6 +259,7 @@ static int read_record(struct record *out, sqlite3 *db)
 	int code = sqlite3_prepare_v2(
 		db,
 		"SELECT sequence_floor, time_floor_s, root, root_bytes, sequence, release, trust,"
+		" tries, previous_root, previous_root_bytes, previous_sequence, previous_release,"
 		" check_hash FROM record WHERE id = 1",
 		-1, &select, NULL);
 	int rc;
@@ -228,6 +277,15 @@ static int read_record(struct record *out, sqlite3 *db)
 	return rc;
 }
 
+static void bind_release(sqlite3_stmt *insert, int first, const struct kept_release *release)
+{
+	sqlite3_bind_blob(insert, first, release->root.bytes, HASH_BYTES, SQLITE_STATIC);
+	sqlite3_bind_int64(insert, first + 1, release->root_bytes);
+	sqlite3_bind_int64(insert, first + 2, (sqlite3_int64)release->sequence);
+	sqlite3_bind_blob(insert, first + 3, release->file.data, (int)release->file.size,
+			  SQLITE_STATIC);
+}
+
 static int write_record(sqlite3 *db, const struct record *record)
 {
 	sqlite3_stmt *insert = NULL;
@@ -235,20 +293,19 @@ static int write_record(sqlite3 *db, const struct record *record)
 	int rc = hash_record(&check, record);
 
 	if (rc == 0)
-		rc = db_code(sqlite3_prepare_v2(
-			db, "INSERT OR REPLACE INTO record VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", -1,
-			&insert, NULL));
+		rc = db_code(sqlite3_prepare_v2(db,
+						"INSERT OR REPLACE INTO record VALUES"
+						" (1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+						-1, &insert, NULL));
 	if (rc < 0)
 		return rc;
 	sqlite3_bind_int64(insert, 1, (sqlite3_int64)record->sequence_floor);
 	sqlite3_bind_int64(insert, 2, record->time_floor_s);
-	sqlite3_bind_blob(insert, 3, record->root.bytes, HASH_BYTES, SQLITE_STATIC);
-	sqlite3_bind_int64(insert, 4, record->root_bytes);
-	sqlite3_bind_int64(insert, 5, (sqlite3_int64)record->sequence);
-	sqlite3_bind_blob(insert, 6, record->release.data, (int)record->release.size,
-			  SQLITE_STATIC);
+	bind_release(insert, 3, &record->release);
 	sqlite3_bind_blob(insert, 7, record->trust.data, (int)record->trust.size, SQLITE_STATIC);
-	sqlite3_bind_blob(insert, 8, check.bytes, HASH_BYTES, SQLITE_STATIC);
+	sqlite3_bind_int64(insert, 8, record->tries);
+	bind_release(insert, 9, &record->previous);
+	sqlite3_bind_blob(insert, 13, check.bytes, HASH_BYTES, SQLITE_STATIC);
 	rc = db_run(insert);
 	if (rc < 0)
 		rc = db_error(db, sqlite3_extended_errcode(db), "writing the kiosk's state");
@@ -379,15 +436,28 @@ void state_destroy(struct state *state)
 
 /* ---- the calls */
 
+static int tell_release(const struct kept_release *release, struct state_release *out)
+{
+	if (hash_is_zero(release->root))
+		return -ENOENT;
+	*out = (struct state_release){ release->root, release->root_bytes, release->sequence,
+				       buffer_bytes(&release->file) };
+	return 0;
+}
+
 int state_release(const struct state *state, struct state_release *out)
 {
-	const struct record *record = &state->record;
+	return tell_release(&state->record.release, out);
+}
 
-	if (hash_is_zero(record->root))
-		return -ENOENT;
-	*out = (struct state_release){ record->root, record->root_bytes, record->sequence,
-				       buffer_bytes(&record->release) };
-	return 0;
+int state_previous(const struct state *state, struct state_release *out)
+{
+	return tell_release(&state->record.previous, out);
+}
+
+uint32_t state_tries(const struct state *state)
+{
+	return state->record.tries;
 }
 
 int state_trust(const struct state *state, struct bytes *out)
@@ -409,7 +479,7 @@ int64_t state_time_floor_s(const struct state *state)
 /* Writes next, which is taken: it becomes the record, or is finished on failure. */
 static int change(struct state *state, struct record *next)
 {
-	int rc = next->release.error ? next->release.error : next->trust.error;
+	int rc = record_error(next);
 
 	if (rc == 0)
 		rc = state->db ? write_record(state->db, next) : -EIO;
@@ -426,13 +496,27 @@ static int change(struct state *state, struct record *next)
 	return 0;
 }
 
+static void copy_file(struct buffer *out, const struct buffer *from)
+{
+	buffer_init(out, STATE_FILE_BYTES_MOST);
+	buffer_put(out, from->data, from->size);
+}
+
 static void copy_record(struct record *out, const struct record *from)
 {
 	*out = *from;
-	buffer_init(&out->release, STATE_FILE_BYTES_MOST);
-	buffer_init(&out->trust, STATE_FILE_BYTES_MOST);
-	buffer_put(&out->release, from->release.data, from->release.size);
-	buffer_put(&out->trust, from->trust.data, from->trust.size);
+	copy_file(&out->release.file, &from->release.file);
+	copy_file(&out->previous.file, &from->previous.file);
+	copy_file(&out->trust, &from->trust);
+}
+
+/* To the back: what was there is finished, what comes to the front has no file yet. */
+static void make_previous(struct record *record)
+{
+	buffer_finish(&record->previous.file);
+	record->previous = record->release;
+	record->release = (struct kept_release){ 0 };
+	buffer_init(&record->release.file, STATE_FILE_BYTES_MOST);
 }
 
 int state_activate(struct state *state, const struct state_release *release)
@@ -442,11 +526,52 @@ int state_activate(struct state *state, const struct state_release *release)
 	if (release->sequence < state->record.sequence_floor)
 		return -ESTALE;
 	copy_record(&next, &state->record);
-	next.root = release->root;
-	next.root_bytes = release->root_bytes;
-	next.sequence = next.sequence_floor = release->sequence;
-	buffer_clear(&next.release);
-	buffer_put(&next.release, release->file.data, release->file.size);
+	if (!hash_equal(next.release.root, release->root)) {
+		if (next.tries == 0 && !hash_is_zero(next.release.root))
+			make_previous(&next);
+		next.tries = 1;
+	}
+	next.release.root = release->root;
+	next.release.root_bytes = release->root_bytes;
+	next.release.sequence = next.sequence_floor = release->sequence;
+	buffer_clear(&next.release.file);
+	buffer_put(&next.release.file, release->file.data, release->file.size);
+	return change(state, &next);
+}
+
+static int change_tries(struct state *state, uint32_t tries)
+{
+	struct record next;
+
+	copy_record(&next, &state->record);
+	next.tries = tries;
+	return change(state, &next);
+}
+
+int state_try(struct state *state)
+{
+	if (state->record.tries == 0 || hash_is_zero(state->record.previous.root))
+		return 0;
+	return change_tries(state, state->record.tries + 1);
+}
+
+int state_prove(struct state *state)
+{
+	return state->record.tries == 0 ? 0 : change_tries(state, 0);
+}
+
+int state_fall_back(struct state *state)
+{
+	struct record next;
+
+	if (hash_is_zero(state->record.previous.root))
+		return -ENOENT;
+	copy_record(&next, &state->record);
+	buffer_finish(&next.release.file);
+	next.release = next.previous;
+	next.previous = (struct kept_release){ 0 };
+	buffer_init(&next.previous.file, STATE_FILE_BYTES_MOST);
+	next.tries = 0;
 	return change(state, &next);
 }
 

@@ -12,7 +12,10 @@
 
 struct state; /* private to state.c */
 
-enum { STATE_FILE_BYTES_MOST = 64 * 1024 /* a metadata file */ };
+enum {
+	STATE_FILE_BYTES_MOST = 64 * 1024, /* a metadata file */
+	STATE_TRIES_MOST = 3,              /* of a release that was never seen to work */
+};
 
 struct state_release {
 	struct hash root;
@@ -28,6 +31,10 @@ void state_destroy(struct state *state); /* writes the counters; NULL is fine */
 
 /* The release in use; *out is borrowed until the next change. -ENOENT: none yet. */
 must_check int state_release(const struct state *state, struct state_release *out);
+/* The last release that worked, kept until the one in use is seen to; borrowed. -ENOENT: none. */
+must_check int state_previous(const struct state *state, struct state_release *out);
+/* How often it was tried to show the release in use, since state_activate; 0: it is proven. */
+uint32_t state_tries(const struct state *state);
 /* The file of the trust root in use (root/N.json as received), borrowed. -ENOENT: none yet. */
 must_check int state_trust(const struct state *state, struct bytes *out);
 /* No release below it may be activated; 0 at first. */
@@ -35,9 +42,16 @@ uint64_t state_sequence_floor(const struct state *state);
 /* It is at least this late, seconds since 1970; 0 at first. */
 int64_t state_time_floor_s(const struct state *state);
 
-/* Copies what release says and raises the sequence floor to it. -ESTALE: below the floor.
- * -EFBIG: file past STATE_FILE_BYTES_MOST. -EIO, -ENOSPC: the old one stays in use. */
+/* Copies what release says and raises the sequence floor to it; the one in use becomes the
+ * previous one where it is proven. The first try begins, unless it is the same root. -ESTALE: below
+ * the floor. -EFBIG: file past STATE_FILE_BYTES_MOST. -EIO, -ENOSPC: the old one stays in use. */
 must_check int state_activate(struct state *state, const struct state_release *release);
+/* Another try of a release that is not proven; nothing where there is no other. */
+must_check int state_try(struct state *state);
+/* The release in use works: tries are counted no more. */
+must_check int state_prove(struct state *state);
+/* The previous release is in use again, and proven; floors stay. -ENOENT: there is none. */
+must_check int state_fall_back(struct state *state);
 /* Copies. Errors as state_activate. */
 must_check int state_set_trust(struct state *state, struct bytes file);
 /* Lower than the floor: nothing happens. Writes only when it rises by an hour or more, so that a

@@ -15,6 +15,7 @@
 enum { DAY_S = 86400 };
 
 static char folder[64], state_path[96], trust_path[96];
+static int64_t expires_in_s = DAY_S;
 static struct signing_key root_key, release_key, timestamp_key;
 
 /* What the kiosk was told. */
@@ -109,9 +110,9 @@ static struct hash root_of(uint8_t n)
 }
 
 /* The fetcher brings the metadata of a release. */
-static void publish(struct follow *follow, uint64_t sequence, uint8_t root)
+static void offer(struct follow *follow, uint64_t sequence, uint8_t root, enum meta_source source)
 {
-	const int64_t expires_s = clock_wall_s() + DAY_S;
+	const int64_t expires_s = clock_wall_s() + expires_in_s;
 	const struct release release = { .sequence = sequence,
 					 .root = root_of(root),
 					 .root_bytes = 100,
@@ -124,10 +125,15 @@ static void publish(struct follow *follow, uint64_t sequence, uint8_t root)
 	CHECK(release_encode(&file, &release, &release_key, 1) == 0);
 	timestamp.release = hash_of(buffer_bytes(&file));
 	CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
-	follow_meta(follow, META_TIMESTAMP, 0, buffer_bytes(&stamp));
-	follow_meta(follow, META_RELEASE, 0, buffer_bytes(&file));
+	follow_meta(follow, META_TIMESTAMP, 0, buffer_bytes(&stamp), source);
+	follow_meta(follow, META_RELEASE, 0, buffer_bytes(&file), source);
 	buffer_finish(&file);
 	buffer_finish(&stamp);
+}
+
+static void publish(struct follow *follow, uint64_t sequence, uint8_t root)
+{
+	offer(follow, sequence, root, META_FROM_SERVER);
 }
 
 static void dispatch(struct follow *follow)
@@ -217,6 +223,132 @@ static void goes_back_to_the_pictures_on_the_panel(void **unused)
 	follow_destroy(follow);
 }
 
+/* As a kiosk that works, and is followed by another. */
+static void show_and_prove(struct follow *follow, uint64_t sequence, uint8_t root)
+{
+	publish(follow, sequence, root);
+	show(follow, root);
+	follow_prove(follow);
+}
+
+static void returns_to_the_one_before_after_three_starts_without_a_picture(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 1, 0x11);
+	publish(follow, 2, 0x22);
+	show(follow, 0x22);
+	for (int crash = 1; crash <= 3; crash++) {
+		CHECK(follow_on_trial(follow) && hash_equal(told.begun_root, root_of(0x22)));
+		follow_destroy(follow);
+		follow = open_follow();
+	}
+	CHECK(hash_equal(told.begun_root, root_of(0x11)) && !follow_on_trial(follow));
+	CHECK(strcmp(follow_refusal(follow)->what, "release 2") == 0);
+	CHECK(strstr(follow_refusal(follow)->why, "three times"));
+	told.begun = 0;
+	publish(follow, 2, 0x22); /* the server still has it: nothing happens */
+	CHECK(told.begun == 0);
+	publish(follow, 3, 0x33);
+	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x33)));
+	follow_destroy(follow);
+}
+
+static void keeps_a_release_that_was_seen_to_work(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 1, 0x11);
+	show_and_prove(follow, 2, 0x22);
+	for (int crash = 0; crash < 5; crash++) {
+		follow_destroy(follow);
+		follow = open_follow();
+		CHECK(hash_equal(told.begun_root, root_of(0x22)) && !follow_on_trial(follow));
+	}
+	follow_fall_back(follow, "no");
+	CHECK(hash_equal(told.begun_root, root_of(0x22)) && follow_refusal(follow)->count == 0);
+	follow_destroy(follow);
+}
+
+static void falls_back_while_it_runs_and_stays_so(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 1, 0x11);
+	publish(follow, 2, 0x22);
+	show(follow, 0x22);
+	follow_fall_back(follow, "nothing to be seen");
+	for (int start = 0; start < 2; start++) {
+		CHECK(hash_equal(told.begun_root, root_of(0x11)) && !follow_on_trial(follow));
+		told.begun = 0;
+		publish(follow, 2, 0x22); /* the floor did not fall */
+		publish(follow, 1, 0x11);
+		CHECK(told.begun == 0);
+		follow_destroy(follow);
+		follow = open_follow();
+	}
+	follow_destroy(follow);
+}
+
+static void begins_no_release_again_that_cannot_be_decoded(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 1, 0x11);
+	publish(follow, 2, 0x22);
+	follow_refuse(follow, root_of(0x22), "objects of it cannot be decoded");
+	CHECK(strcmp(follow_refusal(follow)->what, "release 2") == 0);
+	told.begun = 0;
+	publish(follow, 2, 0x22);
+	CHECK(told.begun == 0);
+	follow_destroy(follow);
+}
+
+static void takes_a_stick_by_the_same_rules(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	offer(follow, 5, 0x55, META_FROM_STICK);
+	CHECK(told.begun == 1 && follow_next_on_stick(follow));
+	show(follow, 0x55);
+	CHECK(!follow_next_on_stick(follow));
+	offer(follow, 4, 0x44, META_FROM_STICK);
+	CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
+	CHECK(strcmp(follow_refusal(follow)->what, "timestamp.json of the stick") == 0);
+	CHECK(strstr(follow_refusal(follow)->why, "older"));
+	publish(follow, 6, 0x66);
+	CHECK(told.begun == 2 && !follow_next_on_stick(follow));
+	offer(follow, 6, 0x66, META_FROM_STICK); /* the same, nearer */
+	CHECK(told.begun == 2 && follow_next_on_stick(follow));
+	follow_destroy(follow);
+}
+
+/* Expired while nobody looked: what is shown stays, only updates are refused. */
+static void keeps_showing_what_has_expired(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 1, 0x11);
+	expires_in_s = -DAY_S;
+	publish(follow, 2, 0x22);
+	expires_in_s = DAY_S;
+	if (clock_wall_is_set()) {
+		CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
+		CHECK(strstr(follow_refusal(follow)->why, "expired"));
+	}
+	follow_destroy(follow);
+	told.begun = 0;
+	follow = open_follow();
+	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x11)));
+	follow_destroy(follow);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -228,6 +360,19 @@ int main(void)
 						enter_museum, leave_museum),
 		cmocka_unit_test_setup_teardown(goes_back_to_the_pictures_on_the_panel,
 						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(
+			returns_to_the_one_before_after_three_starts_without_a_picture,
+			enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(keeps_a_release_that_was_seen_to_work, enter_museum,
+						leave_museum),
+		cmocka_unit_test_setup_teardown(falls_back_while_it_runs_and_stays_so, enter_museum,
+						leave_museum),
+		cmocka_unit_test_setup_teardown(begins_no_release_again_that_cannot_be_decoded,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(takes_a_stick_by_the_same_rules, enter_museum,
+						leave_museum),
+		cmocka_unit_test_setup_teardown(keeps_showing_what_has_expired, enter_museum,
+						leave_museum),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,11 +18,13 @@ static const struct message samples[] = {
 	{ .kind = MESSAGE_WANT, .want = { some, other, 70000, OBJECT_BYTES_MOST, 1234567 } },
 	{ .kind = MESSAGE_DROP, .drop = some },
 	{ .kind = MESSAGE_KEEP, .keep = other },
-	{ .kind = MESSAGE_ASK_META },
+	{ .kind = MESSAGE_ASK_META, .period_s = 3600 },
+	{ .kind = MESSAGE_SYNC },
+	{ .kind = MESSAGE_SYNCED, .synced = true },
 	{ .kind = MESSAGE_OBJECT, .object = { some, { text, sizeof(text) }, sizeof(text) } },
 	{ .kind = MESSAGE_OBJECT, .object = { some, { NULL, 0 }, 5 << 20 } },
 	{ .kind = MESSAGE_MISSING, .missing = { some, MISSING_DAMAGED } },
-	{ .kind = MESSAGE_META, .meta = { META_ROOT, 7, { text, sizeof(text) } } },
+	{ .kind = MESSAGE_META, .meta = { META_ROOT, 7, { text, sizeof(text) }, META_FROM_STICK } },
 	{ .kind = MESSAGE_STATUS, .status = { 1, 12, 1ull << 40, 5, 6, 1700000000 } },
 };
 
@@ -64,7 +66,7 @@ static void keeps_every_field(void **state)
 	CHECK(back.want.offset == 70000 && back.want.size == OBJECT_BYTES_MOST);
 	CHECK(back.want.priority == 1234567);
 	buffer_finish(&wire);
-	wire = encoded(&samples[10]);
+	wire = encoded(&samples[12]);
 	CHECK(message_decode(&back, buffer_bytes(&wire)) == 0);
 	CHECK(back.status.online == 1 && back.status.wanted == 12);
 	CHECK(back.status.received_bytes == 1ull << 40 && back.status.cache_bytes == 5);
@@ -93,8 +95,8 @@ static void refuses_every_truncated_packet(void **state)
 			rc = message_decode(&back, (struct bytes){ exact, n });
 			if (n == wire.size)
 				CHECK(rc == 0);
-			else if (has_a_rest(&samples[i]) && n > 6)
-				CHECK(rc == 0 && back.meta.bytes.size == n - 6);
+			else if (has_a_rest(&samples[i]) && n > 7)
+				CHECK(rc == 0 && back.meta.bytes.size == n - 7);
 			else if (samples[i].kind == MESSAGE_OBJECT && n == 21)
 				CHECK(rc == 0 && back.object.bytes.size == 0); /* in a descriptor */
 			else
@@ -133,6 +135,9 @@ static void refuses_sizes_out_of_range(void **state)
 		{ .kind = MESSAGE_MISSING, .missing = { some, MISSING_DAMAGED + 1 } },
 		{ .kind = MESSAGE_META, .meta = { META_TIMESTAMP + 1, 0, { text, 4 } } },
 		{ .kind = MESSAGE_META, .meta = { META_ROOT, 0, { NULL, 0 } } },
+		{ .kind = MESSAGE_META,
+		  .meta = { META_ROOT, 0, { text, 4 }, META_FROM_STICK + 1 } },
+		{ .kind = MESSAGE_ASK_META, .period_s = MESSAGE_PERIOD_S_MOST + 1 },
 		{ .kind = MESSAGE_STATUS, .status = { .online = 2 } },
 		{ .kind = 200 },
 	};

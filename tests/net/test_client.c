@@ -69,7 +69,7 @@ struct stage {
 	int listener;
 	struct packets fetcher;
 	struct net_client *client;
-	int objects, missing, metas, statuses;
+	int objects, missing, metas, statuses, synced;
 	struct hash last;
 	enum missing_reason reason;
 	uint64_t received_bytes;
@@ -100,12 +100,19 @@ static void on_missing(void *data, struct hash hash, enum missing_reason reason)
 	stage->reason = reason;
 }
 
-static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes,
+		    enum meta_source source)
 {
 	struct stage *stage = data;
 
 	CHECK(role == META_ROOT && version == 4 && bytes.size == 9);
+	CHECK(source == META_FROM_STICK);
 	stage->metas++;
+}
+
+static void on_synced(void *data, bool done)
+{
+	((struct stage *)data)->synced += done ? 1 : 100;
 }
 
 static void on_status(void *data, const struct message_status *status)
@@ -145,7 +152,7 @@ static int set_up(void **state)
 {
 	struct stage *stage = calloc(1, sizeof(*stage));
 	struct net_client_options options = {
-		.events = { on_object, on_missing, on_meta, on_status },
+		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = stage,
 	};
 
@@ -255,7 +262,8 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	struct message_want want = want_of(stone, 7);
 	struct message missing = { .kind = MESSAGE_MISSING,
 				   .missing = { want.hash, MISSING_NOT_FOUND } };
-	struct message meta = { .kind = MESSAGE_META, .meta = { META_ROOT, 4, of(stone) } };
+	struct message meta = { .kind = MESSAGE_META,
+				.meta = { META_ROOT, 4, of(stone), META_FROM_STICK } };
 	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 500 };
 
 	tell(stage, missing, -1);
@@ -269,6 +277,18 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	CHECK(stage->metas == 1);
 	tell(stage, status, -1);
 	CHECK(stage->statuses == 1 && stage->received_bytes == 500);
+}
+
+static void asks_for_what_came_to_be_safe(void **state)
+{
+	struct stage *stage = *state;
+
+	net_client_sync(stage->client);
+	CHECK(heard(stage).kind == MESSAGE_SYNC && stage->synced == 0);
+	tell(stage, (struct message){ .kind = MESSAGE_SYNCED, .synced = true }, -1);
+	CHECK(stage->synced == 1);
+	tell(stage, (struct message){ .kind = MESSAGE_SYNCED }, -1);
+	CHECK(stage->synced == 101);
 }
 
 static void drops_and_forgets(void **state)
@@ -466,6 +486,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		STAGED(brings_what_is_wanted_once),
 		STAGED(passes_on_what_is_missing_and_meta_and_status),
+		STAGED(asks_for_what_came_to_be_safe),
 		STAGED(drops_and_forgets),
 		STAGED(takes_large_objects_sealed),
 		STAGED(says_everything_again_after_the_fetcher_died),

@@ -61,7 +61,7 @@ static void heard(struct stage *stage, const char *expected)
 
 static void look_once(struct stage *stage)
 {
-	poll_ask(stage->poll);
+	poll_ask(stage->poll, 0);
 	poll_work(stage->poll);
 	answer("root/1.json", "A");
 	answer("root/2.json", "");
@@ -95,7 +95,7 @@ static void says_all_again_when_asked(void **state)
 	struct stage *stage = *state;
 
 	look_once(stage);
-	poll_ask(stage->poll);
+	poll_ask(stage->poll, 0);
 	heard(stage, "root1:A timestamp0:T release0:R ");
 	poll_work(stage->poll);
 	CHECK(server.count == 5); /* and looks at once */
@@ -110,7 +110,7 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 {
 	struct stage *stage = *state;
 
-	poll_ask(stage->poll);
+	poll_ask(stage->poll, 0);
 	for (size_t n = 1; n < 8; n++) {
 		poll_work(stage->poll);
 		CHECK(server.count == n);
@@ -131,7 +131,7 @@ static void refuses_endless_data(void **state)
 	struct stage *stage = *state;
 	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MOST + 1);
 
-	poll_ask(stage->poll);
+	poll_ask(stage->poll, 0);
 	poll_work(stage->poll);
 	CHECK(asked(0)->ask.ceiling == MESSAGE_META_BYTES_MOST);
 	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MOST + 1 });

@@ -210,7 +210,7 @@ static void knows_what_was_wanted_before_a_restart(void **state)
 
 static void keeps_what_it_was_told_to_keep(void **state)
 {
-	const struct hash first = { { 1 } }, second = { { 2 } };
+	const struct hash first = { { 1 } }, second = { { 2 } }, third = { { 3 } };
 	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
 
 	(void)state;
@@ -228,11 +228,51 @@ static void keeps_what_it_was_told_to_keep(void **state)
 	for (uint32_t n = 250; n < 400; n++)
 		CHECK(put(cache, n, 50000, 0) == 0);
 	CHECK(get(cache, 1, 50000) == 0 && get(cache, 2, 50000) == 0);
-	CHECK(cache_use_release(cache, second) == 0);
+	CHECK(cache_use_release(cache, second) == 0); /* the one before, whole still */
 	now_ms += 1000;
 	for (uint32_t n = 400; n < 550; n++)
 		CHECK(put(cache, n, 50000, 0) == 0);
+	CHECK(get(cache, 1, 50000) == 0 && get(cache, 2, 50000) == 0);
+	CHECK(cache_use_release(cache, third) == 0);
+	now_ms += 1000;
+	for (uint32_t n = 550; n < 700; n++)
+		CHECK(put(cache, n, 50000, 0) == 0);
 	CHECK(get(cache, 1, 50000) == -ENOENT && get(cache, 2, 50000) == -ENOENT);
+	cache_destroy(cache);
+}
+
+static void churn(struct cache *cache, uint32_t first)
+{
+	now_ms += 1000;
+	for (uint32_t n = first; n < first + 150; n++)
+		CHECK(put(cache, n, 50000, 0) == 0);
+}
+
+/* Object 1 is the first release's, 2 the second's, 3 of both. */
+static void keeps_both_releases_across_a_return(void **state)
+{
+	const struct hash first = { { 1 } }, second = { { 2 } };
+	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+
+	(void)state;
+	for (uint32_t n = 1; n <= 3; n++)
+		CHECK(put(cache, n, 50000, 0) == 0);
+	CHECK(cache_use_release(cache, first) == 0);
+	CHECK(cache_keep(cache, hash_of(object(1, 50000))) == 0);
+	CHECK(cache_keep(cache, hash_of(object(3, 50000))) == 0);
+	CHECK(cache_use_release(cache, second) == 0);
+	CHECK(cache_keep(cache, hash_of(object(2, 50000))) == 0);
+	CHECK(cache_keep(cache, hash_of(object(3, 50000))) == 0);
+	CHECK(cache_use_release(cache, first) == 0); /* it did not work */
+	cache_destroy(cache);
+	cache = open_cache(CACHE_BUDGET_LEAST);
+	churn(cache, 100);
+	for (uint32_t n = 1; n <= 3; n++)
+		CHECK(get(cache, n, 50000) == 0);
+	CHECK(cache_use_release(cache, (struct hash){ { 9 } }) == 0);
+	churn(cache, 300);
+	CHECK(get(cache, 1, 50000) == 0 && get(cache, 3, 50000) == 0);
+	CHECK(get(cache, 2, 50000) == -ENOENT); /* of the one that was returned from */
 	cache_destroy(cache);
 }
 
@@ -283,7 +323,7 @@ static void refuses_what_can_never_fit(void **state)
 	cache_destroy(cache);
 }
 
-static void keeps_the_locator_of_the_release_in_use(void **state)
+static void keeps_the_locators_of_this_release_and_the_last(void **state)
 {
 	const struct hash first = { { 1 } }, second = { { 2 } };
 	struct cache *cache = open_cache(8 << 20);
@@ -298,8 +338,11 @@ static void keeps_the_locator_of_the_release_in_use(void **state)
 	cache = open_cache(8 << 20);
 	CHECK(cache_get_file(cache, first, &back) == 0 && back.size == 70000);
 	CHECK(cache_use_release(cache, second) == 0);
-	CHECK(cache_get_file(cache, first, &back) == -ENOENT);
+	CHECK(cache_get_file(cache, first, &back) == 0); /* to be returned to */
 	CHECK(cache_get_file(cache, second, &back) == 0 && back.size == 100);
+	CHECK(cache_use_release(cache, (struct hash){ { 3 } }) == 0);
+	CHECK(cache_get_file(cache, first, &back) == -ENOENT);
+	CHECK(cache_get_file(cache, second, &back) == 0);
 	buffer_finish(&back);
 	cache_destroy(cache);
 }
@@ -529,10 +572,11 @@ int main(void)
 		IN_A_FOLDER(drops_the_least_useful_first),
 		IN_A_FOLDER(knows_what_was_wanted_before_a_restart),
 		IN_A_FOLDER(keeps_what_it_was_told_to_keep),
+		IN_A_FOLDER(keeps_both_releases_across_a_return),
 		IN_A_FOLDER(keeps_no_more_than_three_quarters),
 		IN_A_FOLDER(gives_the_disk_back_when_the_budget_shrinks),
 		IN_A_FOLDER(refuses_what_can_never_fit),
-		IN_A_FOLDER(keeps_the_locator_of_the_release_in_use),
+		IN_A_FOLDER(keeps_the_locators_of_this_release_and_the_last),
 		IN_A_FOLDER(drops_an_object_whose_bytes_changed),
 		IN_A_FOLDER(sets_what_is_no_database_aside),
 		IN_A_FOLDER(survives_every_kind_of_truncated_file),

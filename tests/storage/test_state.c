@@ -221,6 +221,66 @@ static void survives_a_database_cut_anywhere(void **unused)
 	buffer_finish(&whole);
 }
 
+/* The number of the release that could be returned to; 0: none. */
+static int previous(const struct state *state)
+{
+	struct state_release before;
+
+	return state_previous(state, &before) == 0 ? (int)before.sequence : 0;
+}
+
+static void keeps_the_last_release_that_worked(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(activate(state, 1) == 0);
+	CHECK(state_tries(state) == 1 && previous(state) == 0);
+	CHECK(state_fall_back(state) == -ENOENT);
+	CHECK(state_try(state) == 0 && state_tries(state) == 1); /* there is no other */
+	CHECK(state_prove(state) == 0 && state_tries(state) == 0);
+	CHECK(activate(state, 2) == 0 && previous(state) == 1);
+	CHECK(activate(state, 3) == 0 && previous(state) == 1); /* 2 was never seen to work */
+	CHECK(state_try(state) == 0);
+	state_destroy(state);
+	state = open_state();
+	CHECK(active(state) == 3 && previous(state) == 1 && state_tries(state) == 2);
+	CHECK(state_prove(state) == 0 && previous(state) == 1);
+	CHECK(activate(state, 4) == 0 && previous(state) == 3);
+	state_destroy(state);
+}
+
+static void falls_back_without_lowering_the_floor(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(activate(state, 1) == 0 && state_prove(state) == 0 && activate(state, 2) == 0);
+	CHECK(state_fall_back(state) == 0);
+	for (int i = 0; i < 2; i++) {
+		CHECK(active(state) == 1 && previous(state) == 0 && state_tries(state) == 0);
+		CHECK(state_sequence_floor(state) == 2);
+		CHECK(activate(state, 1) == -ESTALE); /* nobody may offer it again */
+		state_destroy(state);
+		state = open_state();
+	}
+	CHECK(activate(state, 3) == 0 && previous(state) == 1);
+	state_destroy(state);
+}
+
+static void signs_the_same_root_anew_without_a_trial(void **unused)
+{
+	struct state_release again = release(1);
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(activate(state, 1) == 0 && state_prove(state) == 0);
+	again.sequence = 9;
+	CHECK(state_activate(state, &again) == 0);
+	CHECK(state_tries(state) == 0 && previous(state) == 0);
+	state_destroy(state);
+}
+
 /* Power goes at every write in turn: afterwards it is the old release or the new one, whole. */
 static void is_old_or_new_after_a_power_cut_anywhere(void **unused)
 {
@@ -296,6 +356,9 @@ int main(void)
 		IN_A_FOLDER(begins_anew_when_both_copies_are_damaged),
 		IN_A_FOLDER(keeps_the_floor_when_an_old_database_is_put_back),
 		IN_A_FOLDER(survives_a_database_cut_anywhere),
+		IN_A_FOLDER(keeps_the_last_release_that_worked),
+		IN_A_FOLDER(falls_back_without_lowering_the_floor),
+		IN_A_FOLDER(signs_the_same_root_anew_without_a_trial),
 		IN_A_FOLDER(is_old_or_new_after_a_power_cut_anywhere),
 		IN_A_FOLDER(refuses_changes_on_a_full_disk_and_goes_on),
 		IN_A_FOLDER(lives_without_a_disk),

@@ -339,7 +339,7 @@ static int walk_main(int argc, char **argv)
 	struct walk walk = { .every = 1, .most_s = 30 };
 	struct net_client_options options = {
 		.cache_budget_bytes = 256 << 20,
-		.events = { on_object, on_missing, NULL, on_status },
+		.events = { on_object, on_missing, NULL, NULL, on_status },
 		.data = &walk,
 	};
 	uint32_t root_bytes = 0;

@@ -1,0 +1,132 @@
+#!/bin/bash
+# The change from one release to the next where things go wrong: visitors in the middle of it, a
+# release on trial that crashes, a kill at any moment of the switch, and a time of day in which
+# nothing is brought.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/switch
+rm -rf "$work"
+mkdir -p "$work"
+small_release
+cp -a "$small/content" "$work/content"
+cp -a "$small/release" "$work/release"
+pid=
+trap '[ -z "$pid" ] || kill -9 "$pid" 2>/dev/null || true; stop_server' EXIT
+serve "$work/release" "$work/server"
+start_kiosk() { # LOG OPTION...
+	log=$1
+	shift
+	rm -f "$log" # of the start before
+	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 \
+		--log debug --trust "$work/release/root/1.json" --state "$work/state" "$@" 2>"$log" &
+	pid=$!
+}
+says() { grep -qE "$1" "$log" 2>/dev/null; }
+publish() { # WORD: another heading on each page
+	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
+	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+}
+end_kiosk() {
+	kill "$pid"
+	wait "$pid" || fail "the kiosk did not end well"
+	pid=
+}
+crash_kiosk() {
+	kill -9 "$pid"
+	wait "$pid" 2>/dev/null || true
+	pid=
+}
+trial_is_over() { [ -n "$(find "$work/state/state.db.second" -newer "$1")" ]; }
+prove() { # a release that was shown is seen to work ten seconds later, which is written down
+	touch "$work/since"
+	wait_for 30 "proof of the release" trial_is_over "$work/since"
+}
+
+# ---- visitors: drags for half a minute, and a release that comes meanwhile
+start_kiosk "$work/first.log"
+wait_for 60 "first release" says 'release 1 is shown'
+prove
+end_kiosk
+for ((ms = 1000; ms < 26000; ms += 2000)); do
+	printf '%d down 0 320 180\n%d move 0 360 180\n%d up 0\n' "$ms" $((ms + 300)) $((ms + 600))
+done >"$work/drags.touch"
+start_kiosk "$work/visit.log" --touch-replay "$work/drags.touch"
+wait_for 60 "a finger" says 'drag begins'
+publish Second
+wait_for 90 "release 2 after the visit" says 'release 2 is shown'
+[ "$(grep -nE 'drag ends|is shown' "$log" | tail -n 1 | grep -c 'is shown')" = 1 ] ||
+	fail "the release changed under a finger"
+[ "$(grep -c 'drag ends' "$log")" = 13 ] || fail "the visit was cut short"
+wait_for 20 "release 2 on the panel" grep -cq 'app: showing' "$log"
+
+# ---- it crashes on trial: three starts that get to no picture, and the one before is back
+crash_kiosk
+stop_server
+printf '#!/bin/sh\nexec sleep 20\n' >"$work/silent"
+chmod +x "$work/silent"
+for try in 2 3; do
+	start_kiosk "$work/try$try.log" --fetch "$work/silent"
+	wait_for 30 "start $try" says "release 2 is on trial, start $try of 3"
+	sleep 1
+	crash_kiosk
+done
+start_kiosk "$work/back.log"
+wait_for 30 "refusal of what never worked" says 'refused release 2: it was started three times'
+wait_for 60 "the release before, without a network" says 'first picture'
+end_kiosk
+serve "$work/release" "$work/server"
+start_kiosk "$work/again.log"
+wait_for 30 "first picture" says 'first picture'
+wait_for 30 "the server" says 'net: online'
+sleep 4 # several looks at the server
+! says 'release 2 is' || fail "what was refused was taken up again"
+publish Third
+wait_for 90 "release 3" says 'release 3 is shown'
+prove
+end_kiosk
+
+# ---- killed during the switch, at other moments each time: old or new, and it shows
+news=0
+for delay in 0 0.1 0.2 0.4 0.8; do
+	start_kiosk "$work/kill.log"
+	wait_for 60 "first picture" says 'first picture'
+	publish "At $delay"
+	wait_for 60 "the next release" says 'is published'
+	sleep "$delay"
+	crash_kiosk
+	stop_server
+	start_kiosk "$work/killed.log"
+	wait_for 60 "a picture without a network after a kill at $delay s" says 'first picture'
+	! says 'damaged|broken|content bug' || { cat "$log"; fail "damage after a kill"; }
+	if says 'on trial'; then
+		news=$((news + 1))
+		prove
+	fi
+	end_kiosk
+	serve "$work/release" "$work/server"
+done
+echo "killed 5 times: $news times the new release was remembered already"
+
+# ---- a time of day in which nothing is brought
+now=$(date +%H:%M)
+later=$(date -d '2 hours' +%H:%M)
+latest=$(date -d '3 hours' +%H:%M)
+start_kiosk "$work/closed.log" --download "$later-$latest"
+wait_for 60 "first picture" says 'first picture'
+publish Nightly
+wait_for 30 "the next release" says 'is published'
+sleep 5
+clock_is_set() { [ "$(adjtimex_status)" = set ]; }
+adjtimex_status() { python3 -c '
+import ctypes
+class Timex(ctypes.Structure):
+    _fields_ = [("bytes", ctypes.c_byte * 208)]
+print("unset" if ctypes.CDLL(None).adjtimex(ctypes.byref(Timex())) == 5 else "set")'; }
+if clock_is_set; then
+	! says 'is shown' || fail "a release was brought at a time when none is to be"
+	end_kiosk
+	start_kiosk "$work/open.log" --download "$now-$later"
+fi
+wait_for 90 "the release at its time" says 'is shown'
+end_kiosk
