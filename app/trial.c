@@ -55,7 +55,8 @@ void trial_watch(struct kiosk *kiosk)
 
 	if (!follow_on_trial(kiosk->follow) || shown->shown_ms == 0)
 		return;
-	if (shown->frame.patches > 0 && shown->pictured_ms == 0)
+	if (shown->frame.patches > 0 && shown->pictured_ms == 0 &&
+	    kiosk->last_frame_ms >= shown->shown_ms && !display_is_dark(kiosk->display))
 		shown->pictured_ms = kiosk->last_frame_ms;
 	if (shown->pictured_ms > 0 && left_ms(shown->pictured_ms, PROVEN_MS) == 0)
 		follow_prove(kiosk->follow);
