@@ -87,6 +87,9 @@ static void merge(struct provision *provision, struct options *options)
 		options->ca_path = beside(provision, terminal->ca, provision->ca_path);
 	if (options->poll_s == 0)
 		options->poll_s = terminal->poll_s;
+	if (options->download.from_min == options->download.until_min && terminal->has_download)
+		options->download =
+			(struct daily){ terminal->download_from_min, terminal->download_to_min };
 	if (options->width_px == 0) {
 		options->width_px = terminal->width_px;
 		options->height_px = terminal->height_px;
