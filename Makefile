@@ -31,7 +31,7 @@ ifneq ($(SAN),)
 OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 endif
 
-MAINS    := app/main.c net/main.c pipeline/main.c health/main.c
+MAINS    := app/main.c net/main.c pipeline/main.c health/main.c board/main.c
 SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
 SOURCES  := $(filter-out render/display_window.c,$(SOURCES))
@@ -40,7 +40,8 @@ CFLAGS   += -DGOPURA_NO_WINDOW
 endif
 OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 ARCHIVE  := $(BUILD)/libgopura.a
-PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health
+PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health \
+            $(BUILD)/gopura-setup
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
@@ -119,6 +120,8 @@ $(BUILD)/gopura-kiosk: $(BUILD)/obj/app/main.o $(ARCHIVE)
 $(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
 	$(LINK)
 $(BUILD)/gopura-health: $(BUILD)/obj/health/main.o $(ARCHIVE)
+	$(LINK)
+$(BUILD)/gopura-setup: $(BUILD)/obj/board/main.o $(ARCHIVE)
 	$(LINK)
 
 # A test may define a function of the archive itself: its own object wins.

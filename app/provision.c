@@ -222,13 +222,17 @@ static int draw_missing(struct kiosk *kiosk)
 int provision_show(struct kiosk *kiosk)
 {
 	struct provision *provision = &kiosk->provision;
+	/* Nothing to show, and no key to trust what may come. */
+	const bool is_unset =
+		kiosk->options.conf_count > 0 && !kiosk->options.trust_path && !kiosk->shown.scene;
 
-	if (provision->faults.count > 0)
-		return draw_faults(kiosk);
-	if (kiosk->options.conf_count > 0 && !provision->path && !kiosk->options.release_url &&
-	    !kiosk->shown.scene)
+	if (is_unset && !provision->path)
 		return draw_missing(kiosk);
-	return 0;
+	if (is_unset && !provision->terminal.release_url[0] && provision->faults.count == 0)
+		faults_add(&provision->faults, 0,
+			   "under [release] the lines url = ... and trust = ... are missing; they "
+			   "say where the temple is and whose key to trust");
+	return provision->faults.count > 0 ? draw_faults(kiosk) : 0;
 }
 
 void provision_finish(struct provision *provision)

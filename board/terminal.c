@@ -500,11 +500,11 @@ static bool in_one_network(const char *a, const char *b, uint32_t bits)
 /* What is wrong between right lines. A line that was refused has been complained of already. */
 static void check_together(const struct terminal *t, const unsigned *lines, struct faults *faults)
 {
-	if (!lines[AT_URL])
+	if (lines[AT_TRUST] && !lines[AT_URL])
 		faults_add(faults, 0,
 			   "under [release] the line url = ... is missing; say where the release "
 			   "is, such as https://museum.example/temple/");
-	if (!lines[AT_TRUST])
+	if (lines[AT_URL] && !lines[AT_TRUST])
 		faults_add(faults, 0,
 			   "under [release] the line trust = ... is missing; copy the release's "
 			   "root/1.json beside this file and write trust = 1.json");

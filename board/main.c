@@ -1,0 +1,155 @@
+/* gopura-setup: makes gopura.conf hold for the system, or tells what is wrong with it. */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "board/setup.h"
+
+static const char help[] =
+	"gopura-setup: makes a terminal's gopura.conf hold for the system (docs/terminal.md)\n"
+	"\n"
+	"  gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
+	"  gopura-setup --check FILE [--boards DIR]\n"
+	"\n"
+	"  --conf FILE    gopura.conf; given again: the first file that is there; where none is,\n"
+	"                 the terminal goes by what a network offers (DHCP)\n"
+	"  --out DIR      network, Wi-Fi, fetcher, health page, host name, time zone and faults\n"
+	"                 are written here, for units to link in\n"
+	"  --boards DIR   profiles that gopura.conf may name (/usr/share/gopura/board)\n"
+	"  --check FILE   only says what is wrong with the file, and ends with 1 if anything is\n"
+	"  --version, --help\n"
+	"\n"
+	"Examples\n"
+	"  gopura-setup --check gopura.conf\n"
+	"  gopura-setup --conf /efi/gopura.conf --conf /media/usb/gopura.conf --out /run/gopura\n";
+
+enum { CONFS_MOST = 4 };
+
+struct command {
+	const char *confs[CONFS_MOST];
+	unsigned count;
+	const char *out, *check, *boards;
+	bool boards_asked;
+};
+
+enum {
+	OPTION_CONF = 256,
+	OPTION_OUT,
+	OPTION_BOARDS,
+	OPTION_CHECK,
+	OPTION_VERSION,
+	OPTION_HELP,
+};
+
+static const struct option long_options[] = {
+	{ "conf", required_argument, NULL, OPTION_CONF },
+	{ "out", required_argument, NULL, OPTION_OUT },
+	{ "boards", required_argument, NULL, OPTION_BOARDS },
+	{ "check", required_argument, NULL, OPTION_CHECK },
+	{ "version", no_argument, NULL, OPTION_VERSION },
+	{ "help", no_argument, NULL, OPTION_HELP },
+	{ 0 },
+};
+
+static void usage(const char *wrong)
+{
+	fprintf(stderr, "gopura-setup: %s; see gopura-setup --help\n", wrong);
+	exit(2);
+}
+
+static void take_option(struct command *command, int option)
+{
+	switch (option) {
+	case OPTION_CONF:
+		if (command->count == CONFS_MOST)
+			usage("--conf stands there too often");
+		command->confs[command->count++] = optarg;
+		break;
+	case OPTION_OUT:
+		command->out = optarg;
+		break;
+	case OPTION_BOARDS:
+		command->boards = optarg;
+		command->boards_asked = true;
+		break;
+	case OPTION_CHECK:
+		command->check = optarg;
+		break;
+	case OPTION_VERSION:
+		puts("gopura-setup " GOPURA_VERSION);
+		exit(0);
+	case OPTION_HELP:
+		fputs(help, stdout);
+		exit(0);
+	default: /* getopt has said what is wrong */
+		usage("wrong options");
+	}
+}
+
+static void parse(struct command *command, int argc, char **argv)
+{
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
+		take_option(command, option);
+	if (optind < argc)
+		usage(argv[optind]);
+	if (command->check && (command->count > 0 || command->out))
+		usage("--check stands alone");
+	if (!command->check && command->count == 0)
+		usage("--conf is missing");
+	if (!command->check && !command->out)
+		usage("--out is missing");
+}
+
+/* On a desk the terminal's profiles are not there unless somebody says where. */
+static int check(const struct command *command)
+{
+	static struct terminal terminal;
+	static struct faults faults;
+
+	if (terminal_read(&terminal, command->check, command->boards_asked ? command->boards : NULL,
+			  &faults) < 0) {
+		fprintf(stderr, "gopura-setup: there is no file %s\n", command->check);
+		return 1;
+	}
+	for (unsigned i = 0; i < faults.count; i++)
+		printf("%s: %s\n", command->check, faults.list[i].text);
+	if (faults.dropped > 0)
+		printf("%s: and %u more\n", command->check, faults.dropped);
+	if (faults.count == 0)
+		printf("%s: no faults\n", command->check);
+	return faults.count > 0;
+}
+
+static int apply(const struct command *command)
+{
+	static struct terminal terminal;
+	static struct faults faults;
+	struct setup setup = { .terminal = &terminal, .faults = &faults, .out = command->out };
+
+	for (unsigned i = 0; i < command->count && !setup.conf_path; i++)
+		if (terminal_read(&terminal, command->confs[i], command->boards, &faults) == 0)
+			setup.conf_path = command->confs[i];
+	if (setup.conf_path)
+		log_info("setup", "%s: %u faults", setup.conf_path, faults.count + faults.dropped);
+	else
+		faults_add(&faults, 0,
+			   "there is no %s; write one (docs/terminal.md). Until then the terminal "
+			   "takes the network as it is offered",
+			   command->confs[0]);
+	for (unsigned i = 0; i < faults.count; i++)
+		log_warn("setup", "%s", faults.list[i].text);
+	return setup_write(&setup) < 0;
+}
+
+int main(int argc, char **argv)
+{
+	struct command command = { .boards = "/usr/share/gopura/board" };
+
+	parse(&command, argc, argv);
+	return command.check ? check(&command) : apply(&command);
+}
