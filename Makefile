@@ -50,7 +50,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check image qemu unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check image qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -81,6 +81,9 @@ image: all ## the bootable disk image of a terminal, build/image/gopura.img
 
 qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
 	@bash tests/qemu/kiosk.sh
+
+arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user
+	@bash tests/qemu/arm64.sh
 
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)

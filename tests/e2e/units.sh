@@ -16,6 +16,7 @@ most() {
 most gopura-kiosk.service 10
 most gopura-fetch.service 15
 most gopura-safe.service 15
+most gopura-health.service 5
 
 # Filters of system calls are what systemd calls a service's, less an explicit list.
 for unit in systemd/*.service; do
