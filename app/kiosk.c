@@ -259,7 +259,7 @@ static int start_loop(struct kiosk *kiosk)
 
 int kiosk_start(struct kiosk *kiosk)
 {
-	int rc = provision_read(kiosk);
+	int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
 
 	kiosk->started_ms = clock_now_ms();
 	if (rc == 0)

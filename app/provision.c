@@ -87,9 +87,8 @@ static void merge(struct provision *provision, struct options *options)
 		options->ca_path = beside(provision, terminal->ca, provision->ca_path);
 	if (options->poll_s == 0)
 		options->poll_s = terminal->poll_s;
-	if (options->download.from_min == options->download.until_min && terminal->has_download)
-		options->download =
-			(struct daily){ terminal->download_from_min, terminal->download_to_min };
+	if (options->download.from_min == options->download.until_min)
+		options->download = terminal->download;
 	if (options->width_px == 0) {
 		options->width_px = terminal->width_px;
 		options->height_px = terminal->height_px;
@@ -103,19 +102,19 @@ static void merge(struct provision *provision, struct options *options)
 		tzset();
 }
 
-static int read_profile(struct kiosk *kiosk)
+static int read_profile(struct provision *provision, const struct options *options,
+			struct profile *out)
 {
-	struct provision *provision = &kiosk->provision;
 	const struct terminal *terminal = &provision->terminal;
-	const char *path = kiosk->options.board_path;
+	const char *path = options->board_path;
 	int rc;
 
 	if (!path && terminal->board[0]) {
-		snprintf(provision->board_path, PATH_MAX, "%s/%s.ini", kiosk->options.boards_dir,
+		snprintf(provision->board_path, PATH_MAX, "%s/%s.ini", options->boards_dir,
 			 terminal->board);
 		path = provision->board_path;
 	}
-	rc = profile_read(&kiosk->profile, path);
+	rc = profile_read(out, path);
 	if (rc < 0 && path == provision->board_path) {
 		faults_add(&provision->faults, 0,
 			   "the profile of the board '%s' has faults (the log names them); what is "
@@ -124,20 +123,18 @@ static int read_profile(struct kiosk *kiosk)
 		rc = 0;
 	}
 	if (terminal->rotation_deg >= 0)
-		kiosk->profile.rotation_deg = terminal->rotation_deg;
+		out->rotation_deg = terminal->rotation_deg;
 	return rc;
 }
 
-int provision_read(struct kiosk *kiosk)
+int provision_read(struct provision *provision, struct options *options, struct profile *profile)
 {
-	struct provision *provision = &kiosk->provision;
-	const struct options *options = &kiosk->options;
 	int rc;
 
 	read_file(provision, options);
 	if (provision->path)
-		merge(provision, &kiosk->options);
-	rc = read_profile(kiosk);
+		merge(provision, options);
+	rc = read_profile(provision, options, profile);
 	for (unsigned i = 0; i < provision->faults.count; i++)
 		log_error("app", "set-up bug: %s: %s", provision->path,
 			  provision->faults.list[i].text);

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "app/options.h"
+#include "board/profile.h"
 #include "board/terminal.h"
 #include "ui/bitmap.h"
 
@@ -23,9 +25,11 @@ struct provision {
 	int64_t page_leaves_ms; /* when it began to go; 0: it stays */
 };
 
-/* Fills in the options that the command line leaves open, and kiosk->profile; logs the faults.
- * Negative errno (logged): the profile of --board does not do. */
-must_check int provision_read(struct kiosk *kiosk);
+/* provision is zeroed. Fills in the options that the command line leaves open, and the profile;
+ * logs the faults. What it fills in is borrowed from provision. Negative errno (logged): the
+ * profile of --board does not do, and holds what is right of it. */
+must_check int provision_read(struct provision *provision, struct options *options,
+			      struct profile *profile);
 /* Draws the page, if there is something to say. Needs the panel's size, and whether a release is
  * remembered. */
 must_check int provision_show(struct kiosk *kiosk);

@@ -50,23 +50,25 @@ static void turn_matrix(cairo_matrix_t *out, int rotation_deg, int width_px, int
 	}
 }
 
-static int start(struct safe_mode *safe, const struct options *options)
+static int start(struct safe_mode *safe, struct options *options)
 {
-	const struct display_options display = {
+	static struct provision provision; /* the options borrow from it */
+	struct display_options display;
+	struct profile profile;
+	sigset_t signals;
+	bool sideways;
+	int rc, width, height;
+
+	/* A profile may be what is wrong: then what is right of it holds. */
+	if (provision_read(&provision, options, &profile) < 0)
+		log_warn("app", "safe page: going on in spite of the profile");
+	display = (struct display_options){
 		.kind = options->display,
 		.width_px = options->width_px,
 		.height_px = options->height_px,
 		.hz = options->hz,
 		.device = options->device,
 	};
-	struct profile profile;
-	sigset_t signals;
-	bool sideways;
-	int rc, width, height;
-
-	/* A profile may be what is wrong: then at least something is seen, if turned. */
-	if (profile_read(&profile, options->board_path) < 0)
-		profile = profile_default;
 	sigemptyset(&signals);
 	sigaddset(&signals, SIGINT);
 	sigaddset(&signals, SIGTERM);
@@ -180,7 +182,7 @@ static int turn(struct safe_mode *safe, bool *quit)
 	return canvas_show(safe->canvas, safe->bitmap.pixels, safe->bitmap.stride_bytes);
 }
 
-int safe_mode_run(const struct options *options)
+int safe_mode_run(struct options *options)
 {
 	struct safe_mode safe = { .signal_fd = -1 };
 	bool quit = false;

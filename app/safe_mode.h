@@ -6,8 +6,9 @@
 
 #include "app/options.h"
 
-/* Until SIGTERM or SIGINT; with options->capture_dir, writes safe-0.png and safe-1.png, five
- * seconds apart, and ends. Negative errno (logged); -ESTALE: another panel, begin anew. */
-must_check int safe_mode_run(const struct options *options);
+/* Fills in options by gopura.conf, of which it takes how the panel hangs. Until SIGTERM or SIGINT;
+ * with options->capture_dir, writes safe-0.png and safe-1.png, five seconds apart, and ends.
+ * Negative errno (logged); -ESTALE: another panel, begin anew. */
+must_check int safe_mode_run(struct options *options);
 
 #endif

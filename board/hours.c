@@ -48,7 +48,8 @@ static bool read_days(const char **text, unsigned *days)
 	}
 }
 
-bool hours_clock(const char **text, int *minutes)
+/* A time of day as HH:MM or H:MM, 00:00 to 24:00, in minutes; *text moves behind it. */
+static bool read_clock(const char **text, int *minutes)
 {
 	const char *at = *text;
 	int parts[2];
@@ -86,13 +87,13 @@ static bool read_times(const char **text, struct hours *hours, unsigned days)
 {
 	int from, to;
 
-	if (!hours_clock(text, &from))
+	if (!read_clock(text, &from))
 		return false;
 	*text = skip_space(*text);
 	if (*(*text)++ != '-')
 		return false;
 	*text = skip_space(*text);
-	if (!hours_clock(text, &to) || from == to || from == DAY_MINUTES)
+	if (!read_clock(text, &to) || from == to || from == DAY_MINUTES)
 		return false;
 	*text = skip_space(*text);
 	open_times(hours, days, from, to);
@@ -142,7 +143,7 @@ bool hours_open_at(const struct hours *hours, const struct tm *local)
 }
 
 /* Minute by minute, each asked of the time zone: that is right on every day there is, and a week
- * of them takes a millisecond or two. A week and a day, since one on which the clocks change may
+ * of them takes under a millisecond. A week and a day, since one on which the clocks change may
  * hide what stands in an hour that is not there. */
 int hours_change_min(const struct hours *hours, time_t now)
 {

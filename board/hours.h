@@ -34,7 +34,4 @@ bool hours_open_at(const struct hours *hours, const struct tm *local);
  * longer. -1: never. */
 int hours_change_min(const struct hours *hours, time_t now);
 
-/* A time of day as HH:MM or H:MM, 00:00 to 24:00, in minutes; *text moves behind it. */
-must_check bool hours_clock(const char **text, int *minutes);
-
 #endif

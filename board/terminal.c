@@ -5,18 +5,13 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#define LETTERS     "abcdefghijklmnopqrstuvwxyz"
-#define BIG_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-#define DIGITS      "0123456789"
+#include "board/terminal_values.h"
 
 const struct terminal terminal_default = {
 	.rotation_deg = -1,
@@ -25,337 +20,6 @@ const struct terminal terminal_default = {
 	.listen_address = "127.0.0.1",
 	.listen_port = 9100,
 };
-
-/* ---- texts */
-
-/* Into the field, if it has room. */
-static bool put(char *to, size_t bytes, const char *value)
-{
-	const size_t length = strlen(value);
-
-	if (length >= bytes)
-		return false;
-	memcpy(to, value, length + 1);
-	return true;
-}
-
-static bool only(const char *text, const char *chars)
-{
-	return text[strspn(text, chars)] == '\0';
-}
-
-static bool set_name(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-
-	(void)setting;
-	return put(terminal->name, sizeof(terminal->name), value);
-}
-
-/* km, pt-BR, zh_Hant */
-static bool set_language(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	const size_t letters = strspn(value, LETTERS), rest = strlen(value) - letters;
-
-	(void)setting;
-	if (letters < 2 || letters > 3)
-		return false;
-	if (rest > 0 && (!strchr("-_", value[letters]) || rest < 3 ||
-			 !only(value + letters + 1, LETTERS BIG_LETTERS DIGITS "-_")))
-		return false;
-	return put(terminal->language, sizeof(terminal->language), value);
-}
-
-static bool set_time_zone(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	char path[PATH_MAX];
-	struct stat found;
-
-	(void)setting;
-	if (!only(value, LETTERS BIG_LETTERS DIGITS "_+-/") || *value == '/')
-		return false;
-	snprintf(path, sizeof(path), "/usr/share/zoneinfo/%s", value);
-	return stat(path, &found) == 0 && S_ISREG(found.st_mode) &&
-	       put(terminal->time_zone, sizeof(terminal->time_zone), value);
-}
-
-static bool set_board(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-
-	(void)setting;
-	return only(value, LETTERS DIGITS "-_") &&
-	       put(terminal->board, sizeof(terminal->board), value);
-}
-
-/* ---- the release */
-
-/* An address that stands in a command line and in a file of the service manager's. */
-static bool set_url(const struct setting *setting, void *target, const char *value)
-{
-	static const char signs[] = LETTERS BIG_LETTERS DIGITS "-._~:/?[]@!&()*+,;=%";
-	struct terminal *terminal = target;
-	const char *host = NULL;
-
-	(void)setting;
-	if (!only(value, signs))
-		return false;
-	if (strncmp(value, "https://", 8) == 0)
-		host = value + 8;
-	else if (strncmp(value, "http://", 7) == 0)
-		host = value + 7;
-	if (host ? !isalnum((unsigned char)*host) && *host != '[' : *value != '/')
-		return false;
-	return put(terminal->release_url, sizeof(terminal->release_url), value);
-}
-
-static bool set_file(const struct setting *setting, void *target, const char *value)
-{
-	return *value != '.' && *value != '-' && only(value, LETTERS BIG_LETTERS DIGITS "._-") &&
-	       put((char *)target + setting->offset, TERMINAL_NAME_BYTES, value);
-}
-
-static bool set_download(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	int from, to;
-
-	(void)setting;
-	if (!hours_clock(&value, &from))
-		return false;
-	value += strspn(value, " ");
-	if (*value++ != '-')
-		return false;
-	value += strspn(value, " ");
-	if (!hours_clock(&value, &to) || *value || from == to || from == 24 * 60)
-		return false;
-	terminal->has_download = true;
-	terminal->download_from_min = from;
-	terminal->download_to_min = to;
-	return true;
-}
-
-/* ---- the panel */
-
-/* 1920x1080, 1920x1080@60 */
-static bool set_mode(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	int width, height, length = 0;
-	double hz = 0;
-
-	(void)setting;
-	if (!only(value, DIGITS "x@.") || sscanf(value, "%4dx%4d%n", &width, &height, &length) != 2)
-		return false;
-	value += length;
-	if (*value == '@') {
-		char *end;
-
-		hz = strtod(value + 1, &end);
-		if (end == value + 1 || !(hz >= 10 && hz <= 240))
-			return false;
-		value = end;
-	}
-	if (*value || width < 64 || width > 8192 || height < 64 || height > 8192)
-		return false;
-	terminal->width_px = width;
-	terminal->height_px = height;
-	terminal->hz = (int)lround(hz);
-	return true;
-}
-
-static bool set_rotation(const struct setting *setting, void *target, const char *value)
-{
-	double number;
-
-	return settings_numbers(setting, value, &number, 1) && fmod(number, 90) == 0 &&
-	       settings_whole(setting, target, value);
-}
-
-static bool set_hours(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	struct hours hours;
-
-	(void)setting;
-	if (!hours_parse(&hours, value))
-		return false;
-	terminal->hours = hours;
-	return true;
-}
-
-static bool set_shift(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-
-	(void)setting;
-	if (strcasecmp(value, "yes") != 0 && strcasecmp(value, "no") != 0)
-		return false;
-	terminal->shift = strcasecmp(value, "yes") == 0;
-	return true;
-}
-
-/* ---- networks */
-
-static bool is_address(const char *text)
-{
-	struct in6_addr bytes;
-
-	return inet_pton(AF_INET, text, &bytes) == 1 || inet_pton(AF_INET6, text, &bytes) == 1;
-}
-
-/* dhcp, or 192.168.1.20/24. Of a network of its own no host is the first or the last. */
-static bool set_address(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	char address[INET6_ADDRSTRLEN];
-	const char *slash = strchr(value, '/');
-	struct in6_addr bytes;
-	unsigned long bits;
-	uint32_t host;
-
-	(void)setting;
-	if (strcasecmp(value, "dhcp") == 0)
-		return true;
-	if (!slash || (size_t)(slash - value) >= sizeof(address) || !slash[1] ||
-	    !only(slash + 1, DIGITS) || strlen(slash) > 4)
-		return false;
-	snprintf(address, sizeof(address), "%.*s", (int)(slash - value), value);
-	bits = strtoul(slash + 1, NULL, 10);
-	if (inet_pton(AF_INET, address, &bytes) == 1) {
-		if (bits < 1 || bits > 32)
-			return false;
-		memcpy(&host, &bytes, sizeof(host));
-		host = bits == 32 ? 1 : ntohl(host) & (UINT32_MAX >> bits);
-		if (bits < 31 && (host == 0 || host == UINT32_MAX >> bits))
-			return false;
-	} else if (inet_pton(AF_INET6, address, &bytes) != 1 || bits < 1 || bits > 128) {
-		return false;
-	}
-	terminal->is_static = true;
-	terminal->prefix_bits = (uint32_t)bits;
-	return put(terminal->address, sizeof(terminal->address), address);
-}
-
-static bool set_gateway(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-
-	(void)setting;
-	return is_address(value) && put(terminal->gateway, sizeof(terminal->gateway), value);
-}
-
-static bool is_host(const char *text)
-{
-	return is_address(text) ||
-	       (only(text, LETTERS BIG_LETTERS DIGITS ".-") && isalnum((unsigned char)*text) &&
-		!strstr(text, "..") && strpbrk(text, LETTERS BIG_LETTERS));
-}
-
-static bool set_servers(struct terminal_servers *out, const char *value,
-			bool (*is_good)(const char *text))
-{
-	struct terminal_servers servers = { .count = 0 };
-
-	for (;;) {
-		size_t length;
-
-		value += strspn(value, " \t,");
-		length = strcspn(value, " \t,");
-		if (length == 0)
-			break;
-		if (servers.count == TERMINAL_SERVERS_MOST || length >= sizeof(servers.names[0]))
-			return false;
-		memcpy(servers.names[servers.count], value, length);
-		if (!is_good(servers.names[servers.count++]))
-			return false;
-		value += length;
-	}
-	*out = servers;
-	return servers.count > 0;
-}
-
-static bool set_dns(const struct setting *setting, void *target, const char *value)
-{
-	(void)setting;
-	return set_servers(&((struct terminal *)target)->dns, value, is_address);
-}
-
-static bool set_ntp(const struct setting *setting, void *target, const char *value)
-{
-	(void)setting;
-	return set_servers(&((struct terminal *)target)->ntp, value, is_host);
-}
-
-static bool set_ssid(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-
-	(void)setting;
-	return put(terminal->ssid, sizeof(terminal->ssid), value);
-}
-
-static bool set_passphrase(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	const size_t length = strlen(value);
-
-	(void)setting;
-	for (size_t i = 0; i < length; i++)
-		if (value[i] < 0x20 || value[i] > 0x7e)
-			return false;
-	if (length < 8 || (length == 64 && !only(value, DIGITS "abcdefABCDEF")))
-		return false;
-	return put(terminal->passphrase, sizeof(terminal->passphrase), value);
-}
-
-/* As the time zones' list of countries has it; any two letters where the system has no list. */
-static bool set_country(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	FILE *list;
-	char line[256];
-	bool known = false;
-
-	(void)setting;
-	if (strlen(value) != 2 || !only(value, LETTERS BIG_LETTERS))
-		return false;
-	list = fopen("/usr/share/zoneinfo/iso3166.tab", "re");
-	while (list && !known && fgets(line, sizeof(line), list))
-		known = strncasecmp(line, value, 2) == 0 && line[2] == '\t';
-	if (list)
-		fclose(list);
-	if (list && !known)
-		return false;
-	for (int i = 0; i < 2; i++)
-		terminal->country[i] = (char)toupper((unsigned char)value[i]);
-	return true;
-}
-
-/* 127.0.0.1:9100, [::1]:9100 */
-static bool set_listen(const struct setting *setting, void *target, const char *value)
-{
-	struct terminal *terminal = target;
-	const char *colon = strrchr(value, ':');
-	const bool brackets = *value == '[';
-	char address[INET6_ADDRSTRLEN] = "";
-	unsigned long port;
-
-	(void)setting;
-	if (!colon || (brackets && (colon < value + 2 || colon[-1] != ']')) ||
-	    !only(colon + 1, DIGITS) || strlen(colon + 1) > 5)
-		return false;
-	port = strtoul(colon + 1, NULL, 10);
-	if ((size_t)(colon - value) >= sizeof(address) || port < 1 || port > 65535)
-		return false;
-	memcpy(address, value + brackets, (size_t)(colon - value) - 2 * brackets);
-	if (!is_address(address) || brackets != !!strchr(address, ':'))
-		return false;
-	terminal->listen_port = (uint32_t)port;
-	return put(terminal->listen_address, sizeof(terminal->listen_address), address);
-}
 
 /* ---- the table */
 
@@ -375,36 +39,36 @@ static const struct setting settings[] = {
 	{ .section = "terminal",
 	  .name = "name",
 	  .expects = "a name of up to 63 bytes, such as East gate",
-	  .set = set_name,
+	  .set = terminal_set_name,
 	  .free_text = true },
 	{ .section = "terminal",
 	  .name = "language",
 	  .expects = "the code of a language, such as km, en or pt-BR",
-	  .set = set_language },
+	  .set = terminal_set_language },
 	{ .section = "terminal",
 	  .name = "time_zone",
 	  .expects = "a time zone such as Asia/Phnom_Penh or Europe/Berlin",
-	  .set = set_time_zone },
+	  .set = terminal_set_time_zone },
 	[AT_BOARD] = { .section = "terminal",
 		       .name = "board",
 		       .expects = "the name of a board's profile, such as generic",
-		       .set = set_board },
+		       .set = terminal_set_board },
 	[AT_URL] = { .section = "release",
 		     .name = "url",
 		     .expects = "an address such as https://museum.example/temple/, or a folder "
 				"such as /media/release",
-		     .set = set_url },
+		     .set = terminal_set_url },
 	[AT_TRUST] = { .section = "release",
 		       .name = "trust",
 		       .expects = "the name of a file beside this one, without folders or spaces, "
 				  "such as 1.json",
-		       .set = set_file,
+		       .set = terminal_set_file,
 		       .offset = offsetof(struct terminal, trust) },
 	[AT_CA] = { .section = "release",
 		    .name = "ca",
 		    .expects = "the name of a file beside this one, without folders or spaces, "
 			       "such as ca.pem",
-		    .set = set_file,
+		    .set = terminal_set_file,
 		    .offset = offsetof(struct terminal, ca) },
 	{ .section = "release",
 	  .name = "poll_s",
@@ -416,7 +80,7 @@ static const struct setting settings[] = {
 	{ .section = "release",
 	  .name = "download",
 	  .expects = "two times of day such as 22:00-06:00",
-	  .set = set_download },
+	  .set = terminal_set_download },
 	{ .section = "release",
 	  .name = "rate_limit_kib",
 	  .expects = "a whole number of KiB a second from 1 to 1048576",
@@ -427,56 +91,56 @@ static const struct setting settings[] = {
 	{ .section = "panel",
 	  .name = "mode",
 	  .expects = "a size such as 1920x1080, or with its frequency 1920x1080@60",
-	  .set = set_mode },
+	  .set = terminal_set_mode },
 	{ .section = "panel",
 	  .name = "rotation",
 	  .expects = "0, 90, 180 or 270",
-	  .set = set_rotation,
+	  .set = terminal_set_rotation,
 	  .offset = offsetof(struct terminal, rotation_deg),
 	  .least = 0,
 	  .most = 270 },
 	{ .section = "panel",
 	  .name = "hours",
 	  .expects = "days and times such as Mo-Fr 09:00-18:00, Sa 10:00-17:00",
-	  .set = set_hours },
-	{ .section = "panel", .name = "shift", .expects = "yes or no", .set = set_shift },
+	  .set = terminal_set_hours },
+	{ .section = "panel", .name = "shift", .expects = "yes or no", .set = terminal_set_shift },
 	[AT_ADDRESS] = { .section = "network",
 			 .name = "address",
 			 .expects = "dhcp, or an address with its network's bits such as "
 				    "192.168.1.20/24",
-			 .set = set_address },
+			 .set = terminal_set_address },
 	[AT_GATEWAY] = { .section = "network",
 			 .name = "gateway",
 			 .expects = "an address such as 192.168.1.1",
-			 .set = set_gateway },
+			 .set = terminal_set_gateway },
 	{ .section = "network",
 	  .name = "dns",
 	  .expects = "up to 4 addresses such as 192.168.1.1, 9.9.9.9",
-	  .set = set_dns },
+	  .set = terminal_set_dns },
 	{ .section = "network",
 	  .name = "ntp",
 	  .expects = "up to 4 time servers such as 192.168.1.1, pool.ntp.org",
-	  .set = set_ntp },
+	  .set = terminal_set_ntp },
 	[AT_SSID] = { .section = "wifi",
 		      .name = "ssid",
 		      .expects = "a network's name of 1 to 32 bytes",
-		      .set = set_ssid,
+		      .set = terminal_set_ssid,
 		      .free_text = true },
 	[AT_PASSPHRASE] = { .section = "wifi",
 			    .name = "passphrase",
 			    .expects = "8 to 63 letters, digits and signs (no accents), or 64 "
 				       "hexadecimal digits",
-			    .set = set_passphrase,
+			    .set = terminal_set_passphrase,
 			    .free_text = true,
 			    .secret = true },
 	[AT_COUNTRY] = { .section = "wifi",
 			 .name = "country",
 			 .expects = "the two letters of a country such as KH or GB",
-			 .set = set_country },
+			 .set = terminal_set_country },
 	{ .section = "health",
 	  .name = "listen",
 	  .expects = "an address and a port such as 127.0.0.1:9100 or [::1]:9100",
-	  .set = set_listen },
+	  .set = terminal_set_listen },
 };
 
 /* ---- the whole */

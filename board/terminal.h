@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
+#include "base/daily.h"
 #include "board/hours.h"
 #include "board/settings.h"
 
@@ -30,9 +31,8 @@ struct terminal {
 	char trust[TERMINAL_NAME_BYTES];      /* file beside gopura.conf, no slashes */
 	char ca[TERMINAL_NAME_BYTES];         /* the same */
 	uint32_t poll_s;                      /* 60 .. 86400; 0: not said */
-	bool has_download;
-	int download_from_min, download_to_min; /* of the local day; from > to: over midnight */
-	uint32_t rate_limit_kib;                /* a second; 0: none */
+	struct daily download;                /* of the local day; its ends equal: always */
+	uint32_t rate_limit_kib;              /* a second; 0: none */
 	/* [panel] */
 	int width_px, height_px; /* 0: what the panel prefers */
 	int hz;                  /* whole; 0: any */

@@ -47,7 +47,7 @@ static void takes_every_value(void **state)
 	(void)state;
 	parse("[terminal]\nname = East gate\nlanguage = pt-BR\ntime_zone = Europe/Berlin\n"
 	      "board = weak-arm\n" RELEASE
-	      "ca = ca.pem\npoll_s = 600\ndownload = 22:00 - 6:00\nrate_limit_kib = 500\n"
+	      "ca = ca.pem\npoll_s = 600\ndownload = 22:00-06:00\nrate_limit_kib = 500\n"
 	      "[panel]\nmode = 3840x2160@59.94\nrotation = 270\nhours = Mo-Fr 09:00-18:00\n"
 	      "shift = no\n"
 	      "[network]\naddress = 192.168.1.20/24\ngateway = 192.168.1.1\n"
@@ -62,8 +62,8 @@ static void takes_every_value(void **state)
 	CHECK(strcmp(terminal.release_url, "https://museum.example/temple/") == 0);
 	CHECK(strcmp(terminal.trust, "1.json") == 0 && strcmp(terminal.ca, "ca.pem") == 0);
 	CHECK(terminal.poll_s == 600 && terminal.rate_limit_kib == 500);
-	CHECK(terminal.has_download && terminal.download_from_min == 22 * 60);
-	CHECK(terminal.download_to_min == 6 * 60);
+	CHECK(terminal.download.from_min == 22 * 60);
+	CHECK(terminal.download.until_min == 6 * 60);
 	CHECK(terminal.width_px == 3840 && terminal.height_px == 2160);
 	CHECK(terminal.hz == 60 && terminal.rotation_deg == 270 && !terminal.shift);
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 1, .tm_hour = 9 }));
@@ -84,7 +84,8 @@ static void keeps_defaults_where_nothing_is_said(void **state)
 	parse(RELEASE);
 	CHECK(faults.count == 0);
 	CHECK(terminal.rotation_deg == -1 && terminal.shift && !terminal.is_static);
-	CHECK(!terminal.has_download && terminal.poll_s == 0 && terminal.width_px == 0);
+	CHECK(terminal.download.from_min == terminal.download.until_min && terminal.poll_s == 0 &&
+	      terminal.width_px == 0);
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 0, .tm_hour = 3 }));
 	CHECK(strcmp(terminal.listen_address, "127.0.0.1") == 0 && terminal.listen_port == 9100);
 	parse(RELEASE "[network]\naddress = dhcp\n");
@@ -389,7 +390,7 @@ static void the_example_is_without_fault(void **state)
 	buffer_finish(&file);
 	if (faults.count)
 		fail_msg("%s", faults.list[0].text);
-	CHECK(terminal.is_static && terminal.ssid[0] && terminal.has_download);
+	CHECK(terminal.is_static && terminal.ssid[0] && terminal.download.from_min > 0);
 }
 
 static void makes_a_host_name_of_any_name(void **state)

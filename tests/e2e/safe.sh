@@ -36,4 +36,9 @@ for turn in 90 180 270; do
 	python3 -c "import json, sys; sys.exit(json.load(open('$work/$turn.json'))['psnr_db'] < 25)" ||
 		{ cat "$work/$turn.json"; fail "turned by $turn degrees it is another page"; }
 done
+# gopura.conf says as well how the panel hangs, whatever else it says.
+printf '[panel]\nrotation = 90\nhours = never\n' >"$work/gopura.conf"
+"${bare[@]}" "$PWD/build/gopura-kiosk" --safe-page --display headless --size 360x640 --conf "$work/gopura.conf" \
+	--capture "$work/conf" 2>"$work/conf.log" || fail "no safe page by gopura.conf"
+cmp "$work/90/safe-1.png" "$work/conf/safe-1.png" || fail "gopura.conf does not turn the safe page"
 cat "$work"/*.json

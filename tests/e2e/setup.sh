@@ -1,0 +1,45 @@
+#!/bin/bash
+# gopura-setup as an engineer and as a unit call it: a check at a desk, the first file that is there, none at all.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/setup
+rm -rf "$work"
+mkdir -p "$work/stick"
+setup=build/gopura-setup
+
+# status COMMAND...: its exit status; what it says is in $work/said.
+status() { "$@" >"$work/said" 2>&1 && echo 0 || echo $?; }
+
+cp board/gopura.conf.example "$work/gopura.conf"
+touch "$work/1.json" "$work/ca.pem"
+[ "$(status $setup --check "$work/gopura.conf" --boards board)" = 0 ] || fail "the example has faults: $(cat "$work/said")"
+sed -i 's/^rotation.*/rotation = 45/' "$work/gopura.conf"
+[ "$(status $setup --check "$work/gopura.conf")" = 1 ] || fail "a fault was not found"
+line=$(grep -n '^rotation' "$work/gopura.conf" | cut -d: -f1)
+grep -qx "$work/gopura.conf: line $line: rotation must be 0, 90, 180 or 270, not '45'" "$work/said" || fail "said: $(cat "$work/said")"
+[ "$(status $setup --check "$work/none")" = 1 ] || fail "a file that is not there is right"
+
+# The first file that is there is the one, and its faults stop nothing.
+printf '[terminal]\nname = Stick\n' >"$work/stick/gopura.conf"
+[ "$(status $setup --conf "$work/none" --conf "$work/gopura.conf" --conf "$work/stick/gopura.conf" --boards board \
+	--out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
+[ "$(cat "$work/out/hostname")" = east-gate ] || fail "the wrong file was taken"
+grep -q "^line $line: rotation" "$work/out/faults" || fail "the faults are not written"
+[ -z "$(find "$work/out" -name '*.[A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9]' -type f)" ] ||
+	fail "a temporary file is left"
+# What a unit reads of it is what systemd takes for words.
+sh -c '. "$1"; [ "$RELEASE_URL" = https://museum.example/temple/ ] && case $FETCH_OPTIONS in *"--ca $2/ca.pem"*) ;; *) exit 1 ;; esac' \
+	sh "$work/out/fetch.env" "$(realpath "$work")" || fail "fetch.env: $(cat "$work/out/fetch.env")"
+
+# No file: by DHCP, and it is told what to do. What was of an earlier file is gone.
+[ "$(status $setup --conf "$work/none" --out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
+grep -q DHCP=yes "$work/out/network/10-wired.network" || fail "no DHCP without a file"
+grep -q "there is no $work/none; write one" "$work/out/faults" || fail "nobody is told"
+[ ! -e "$work/out/network/20-wifi.network" ] || fail "the radio network of an earlier file is left"
+
+for wrong in "" "--check a --conf b" "--conf a" "--out a" "--nonsense" "--check a b"; do
+	# shellcheck disable=SC2086
+	[ "$(status $setup $wrong)" = 2 ] || fail "taken: '$wrong'"
+done
+echo "gopura-setup: checked, applied, without a file"
