@@ -9,6 +9,9 @@
  *     --keep-pages    as the kiosk does
  *     --kill          kill the fetcher once, when half has come
  *     --cancel        drop every second object when a quarter has come
+ *     --batch N       want N objects, then no more until they came and
+ *     --pause-ms MS   so long passed: as a visitor does who looks, and goes on
+ *     --latencies FILE  from want to object, milliseconds, a line each
  *   prints one line of JSON; exit 0: all that was wanted came, 1: not. */
 #include <errno.h>
 #include <getopt.h>
@@ -168,6 +171,7 @@ static int make(const char *folder, uint32_t pages, uint32_t objects, uint32_t b
 struct pending {
 	struct hash hash;
 	bool is_page;
+	int64_t since_ms; /* wanted */
 };
 
 struct walk {
@@ -177,10 +181,39 @@ struct walk {
 	bool keep_pages, kill, cancel, killed, cancelled;
 	struct pending *pending; /* what is to come */
 	size_t pending_count, pending_capacity;
+	struct message_want *later; /* of batches to come, first come first */
+	size_t later_count, later_capacity;
+	uint32_t batch; /* 0: all at once */
+	int64_t pause_ms, batch_at_ms;
+	FILE *latencies;
 	uint64_t wanted, came, pages, bytes, dropped, met;
 	uint64_t missing[3];
 	struct message_status status;
 };
+
+static void *grown(void *array, size_t count, size_t *capacity, size_t size)
+{
+	if (count < *capacity)
+		return array;
+	*capacity = *capacity * 2 + 64;
+	array = realloc(array, *capacity * size);
+	if (!array)
+		die("what is to come", -ENOMEM);
+	return array;
+}
+
+static void want_now(struct walk *walk, const struct message_want *message)
+{
+	const bool is_page = message->priority == MESSAGE_PRIORITY_INDEX;
+
+	walk->pending = grown(walk->pending, walk->pending_count, &walk->pending_capacity,
+			      sizeof(*walk->pending));
+	walk->pending[walk->pending_count++] =
+		(struct pending){ message->hash, is_page, clock_now_ms() };
+	if (walk->keep_pages && is_page)
+		net_client_keep(walk->client, message->hash);
+	net_client_want(walk->client, message);
+}
 
 static void want(struct walk *walk, struct hash page, const struct page_child *child,
 		 uint32_t offset)
@@ -194,18 +227,32 @@ static void want(struct walk *walk, struct hash page, const struct page_child *c
 
 	if (!child->is_page && walk->met++ % walk->every != 0)
 		return;
-	if (walk->pending_count == walk->pending_capacity) {
-		walk->pending_capacity = walk->pending_capacity * 2 + 64;
-		walk->pending =
-			realloc(walk->pending, walk->pending_capacity * sizeof(*walk->pending));
-		if (!walk->pending)
-			die("pending", -ENOMEM);
-	}
-	walk->pending[walk->pending_count++] = (struct pending){ child->hash, child->is_page };
 	walk->wanted++;
-	if (walk->keep_pages && child->is_page)
-		net_client_keep(walk->client, child->hash);
-	net_client_want(walk->client, &message);
+	if (child->is_page || walk->batch == 0) {
+		want_now(walk, &message);
+		return;
+	}
+	walk->later =
+		grown(walk->later, walk->later_count, &walk->later_capacity, sizeof(*walk->later));
+	walk->later[walk->later_count++] = message;
+}
+
+/* The next batch, once the one before has come and was looked at. */
+static void want_batch(struct walk *walk)
+{
+	uint32_t count = 0;
+
+	if (walk->pending_count > 0 || walk->later_count == 0)
+		return;
+	if (walk->batch_at_ms == 0)
+		walk->batch_at_ms = clock_now_ms() + walk->pause_ms;
+	if (clock_now_ms() < walk->batch_at_ms)
+		return;
+	walk->batch_at_ms = 0;
+	while (count < walk->batch && count < walk->later_count)
+		want_now(walk, &walk->later[count++]);
+	walk->later_count -= count;
+	memmove(walk->later, walk->later + count, walk->later_count * sizeof(*walk->later));
 }
 
 static void on_object(void *data, struct hash hash, struct bytes bytes)
@@ -218,6 +265,9 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 		if (!hash_equal(walk->pending[i].hash, hash))
 			continue;
 		is_page = walk->pending[i].is_page;
+		if (walk->latencies)
+			fprintf(walk->latencies, "%lld\n",
+				(long long)(clock_now_ms() - walk->pending[i].since_ms));
 		walk->pending[i] = walk->pending[--walk->pending_count];
 		break;
 	}
@@ -294,9 +344,11 @@ static int run_walk(struct walk *walk, uint32_t root_bytes)
 
 	net_client_use_release(walk->client, walk->root, root_bytes);
 	want(walk, (struct hash){ { 0 } }, &root, 0);
-	while (walk->pending_count > 0 && clock_now_ms() - began_ms < walk->most_s * 1000) {
+	while (walk->pending_count + walk->later_count > 0 &&
+	       clock_now_ms() - began_ms < walk->most_s * 1000) {
 		struct pollfd ready = { .fd = net_client_fd(walk->client), .events = POLLIN };
 
+		want_batch(walk);
 		if (poll(&ready, 1, 100) > 0)
 			must(net_client_dispatch(walk->client), "dispatch");
 		if (first_ms < 0 && walk->came > 0)
@@ -322,19 +374,29 @@ static int run_walk(struct walk *walk, uint32_t root_bytes)
 	       (unsigned long long)walk->missing[MISSING_DAMAGED],
 	       (unsigned long long)walk->status.cache_bytes, walk->status.online,
 	       (long long)first_ms, (long long)took_ms);
-	return walk->pending_count > 0;
+	return walk->pending_count + walk->later_count > 0;
 }
 
 static int walk_main(int argc, char **argv)
 {
 	static const struct option long_options[] = {
-		{ "fetch", 1, NULL, 'f' },      { "release", 1, NULL, 'r' },
-		{ "cache", 1, NULL, 'c' },      { "root", 1, NULL, 'h' },
-		{ "bytes", 1, NULL, 'b' },      { "ca", 1, NULL, 'a' },
-		{ "budget", 1, NULL, 'B' },     { "socket", 1, NULL, 's' },
-		{ "every", 1, NULL, 'e' },      { "most-s", 1, NULL, 'm' },
-		{ "kill", 0, NULL, 'k' },       { "cancel", 0, NULL, 'C' },
-		{ "keep-pages", 0, NULL, 'K' }, { 0 },
+		{ "fetch", 1, NULL, 'f' },
+		{ "release", 1, NULL, 'r' },
+		{ "cache", 1, NULL, 'c' },
+		{ "root", 1, NULL, 'h' },
+		{ "bytes", 1, NULL, 'b' },
+		{ "ca", 1, NULL, 'a' },
+		{ "budget", 1, NULL, 'B' },
+		{ "socket", 1, NULL, 's' },
+		{ "every", 1, NULL, 'e' },
+		{ "most-s", 1, NULL, 'm' },
+		{ "kill", 0, NULL, 'k' },
+		{ "cancel", 0, NULL, 'C' },
+		{ "keep-pages", 0, NULL, 'K' },
+		{ "batch", 1, NULL, 'n' },
+		{ "pause-ms", 1, NULL, 'p' },
+		{ "latencies", 1, NULL, 'l' },
+		{ 0 },
 	};
 	struct walk walk = { .every = 1, .most_s = 30 };
 	struct net_client_options options = {
@@ -386,6 +448,17 @@ static int walk_main(int argc, char **argv)
 		case 'K':
 			walk.keep_pages = true;
 			break;
+		case 'n':
+			walk.batch = (uint32_t)strtoul(optarg, NULL, 10);
+			break;
+		case 'p':
+			walk.pause_ms = (int64_t)strtoul(optarg, NULL, 10);
+			break;
+		case 'l':
+			walk.latencies = fopen(optarg, "w");
+			if (!walk.latencies)
+				die(optarg, -errno);
+			break;
 		default:
 			return 2;
 		}
@@ -394,6 +467,9 @@ static int walk_main(int argc, char **argv)
 	rc = run_walk(&walk, root_bytes);
 	net_client_destroy(walk.client);
 	free(walk.pending);
+	free(walk.later);
+	if (walk.latencies)
+		fclose(walk.latencies);
 	return rc;
 }
 
