@@ -192,7 +192,10 @@ static int start_net(struct kiosk *kiosk)
 		.socket_path = kiosk->options.socket_path,
 		.program = kiosk->options.fetch_program,
 		/* Without a server, what is cached: no release is in the state's own folder. */
-		.release_url = kiosk->options.release_url ? kiosk->options.release_url : folder,
+		.release_url = kiosk->options.release_url ? kiosk->options.release_url
+			       : kiosk->options.stick_dir ? kiosk->options.stick_dir
+							  : folder,
+		.stick_path = kiosk->options.stick_dir,
 		.cache_path = cache,
 		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,

@@ -17,6 +17,7 @@ static const char help_text[] =
 	"                       line override it; given again: the first file that is there\n"
 	"  --boards DIR         profiles that gopura.conf may name (/usr/share/gopura/board)\n"
 	"  --release URL        museum server (https://..., http://... or a folder)\n"
+	"  --stick DIR          where a USB stick with a release may come to lie\n"
 	"  --trust FILE         root/1.json of that museum: needed once, then remembered\n"
 	"  --ca FILE            certificate authority of the server (default: the system's)\n"
 	"  --state DIR          what survives power loss, and the cache\n"
@@ -77,6 +78,7 @@ enum {
 	OPTION_OVERLAY,
 	OPTION_POLL,
 	OPTION_DOWNLOAD,
+	OPTION_STICK,
 	OPTION_FETCH,
 	OPTION_SOCKET,
 	OPTION_FIGURES,
@@ -109,6 +111,7 @@ static const struct option long_options[] = {
 	{ "shots", required_argument, NULL, OPTION_SHOTS },
 	{ "overlay", no_argument, NULL, OPTION_OVERLAY },
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
+	{ "stick", required_argument, NULL, OPTION_STICK },
 	{ "download", required_argument, NULL, OPTION_DOWNLOAD },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
@@ -191,21 +194,14 @@ static bool set_text(struct options *o, int option, const char *text)
 		int option;
 		const char **to;
 	} texts[] = {
-		{ OPTION_BOARDS, &o->boards_dir },
-		{ OPTION_RELEASE, &o->release_url },
-		{ OPTION_TRUST, &o->trust_path },
-		{ OPTION_CA, &o->ca_path },
-		{ OPTION_STATE, &o->state_dir },
-		{ OPTION_DEVICE, &o->device },
-		{ OPTION_BOARD, &o->board_path },
-		{ OPTION_LANGUAGE, &o->language },
-		{ OPTION_TOUCH_REPLAY, &o->touch_replay_path },
-		{ OPTION_VIEWS, &o->views_path },
-		{ OPTION_CAPTURE, &o->capture_dir },
-		{ OPTION_SHOTS, &o->shots_path },
-		{ OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },
-		{ OPTION_FIGURES, &o->figures_path },
+		{ OPTION_BOARDS, &o->boards_dir },   { OPTION_STICK, &o->stick_dir },
+		{ OPTION_RELEASE, &o->release_url }, { OPTION_TRUST, &o->trust_path },
+		{ OPTION_CA, &o->ca_path },          { OPTION_STATE, &o->state_dir },
+		{ OPTION_DEVICE, &o->device },       { OPTION_BOARD, &o->board_path },
+		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
+		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
+		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
+		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->figures_path },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)
@@ -271,7 +267,7 @@ static bool check_together(const struct options *o)
 {
 	if (o->safe_page)
 		return true;
-	if (!o->release_url && !o->socket_path && o->conf_count == 0)
+	if (!o->release_url && !o->stick_dir && !o->socket_path && o->conf_count == 0)
 		fputs("gopura-kiosk: --release or --conf is missing; see --help\n", stderr);
 	else if ((o->views_path || o->shots_path) && !o->capture_dir)
 		fputs("gopura-kiosk: --views and --shots need --capture DIR\n", stderr);

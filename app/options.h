@@ -18,6 +18,7 @@ struct options {
 	uint32_t conf_count;
 	const char *boards_dir;  /* of the profiles that gopura.conf names */
 	const char *release_url; /* NULL: whatever the state remembers, from the cache */
+	const char *stick_dir;   /* a stick with a release may come to lie here; NULL: nowhere */
 	const char *trust_path;  /* root/1.json pinned at the first start; NULL: the state's */
 	const char *ca_path;
 	const char *state_dir;   /* state.db and cache.db */

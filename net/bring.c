@@ -231,9 +231,27 @@ static void ask_cache(struct bring *bring, struct want *want)
 		pass_on(bring, want, buffer_bytes(&bring->scratch));
 		return;
 	}
+	if (bring_from_stick(bring, want)) {
+		bring->figures.from_stick++;
+		if (cache_put(bring->options.cache, want->entry.key, buffer_bytes(&bring->scratch),
+			      want->asked.priority) < 0)
+			log_debug("net", "an object did not get into the cache");
+		pass_on(bring, want, buffer_bytes(&bring->scratch));
+		return;
+	}
 	bring->plan_changed = true;
 	if (link_is_down(bring->options.link))
 		report(bring, want, MISSING_OFFLINE);
+}
+
+void bring_ask_again(struct bring *bring)
+{
+	struct want *want;
+	size_t at = 0;
+
+	while ((want = by_hash_next(&bring->wants, &at)))
+		if (want->state == WANT_WAITING && add_fresh(bring, want) < 0)
+			return; /* the server may have it */
 }
 
 static void work_fresh(struct bring *bring)

@@ -11,6 +11,7 @@
 #include "format/message.h"
 #include "net/http.h"
 #include "net/link.h"
+#include "net/stick.h"
 #include "storage/cache.h"
 
 struct bring; /* private to bring*.c */
@@ -28,6 +29,7 @@ struct bring_options {
 	struct http *http; /* borrowed, as all that follow */
 	struct cache *cache;
 	struct link *link;
+	struct stick *stick; /* asked before the server; NULL: none */
 	uint64_t rate_limit; /* bytes of objects a second, in the mean; 0: none */
 	struct bring_events events;
 	void *data;
@@ -35,10 +37,11 @@ struct bring_options {
 
 /* Since create. */
 struct bring_figures {
-	uint64_t from_cache, from_server; /* objects */
-	uint64_t ranges;                  /* requests for objects */
-	uint64_t damaged;                 /* objects whose bytes were not of their hash */
-	uint64_t cancelled; /* requests given up: nothing in them was wanted any more */
+	uint64_t from_cache, from_server, from_stick; /* objects */
+	uint64_t ranges;                              /* requests for objects */
+	uint64_t damaged;       /* objects whose bytes were not of their hash */
+	uint64_t stick_damaged; /* the same, of a stick; the server is asked then */
+	uint64_t cancelled;     /* requests given up: nothing in them was wanted any more */
 };
 
 /* *out is owned by the caller. -ENOMEM. */
@@ -53,6 +56,8 @@ void bring_want(struct bring *bring, const struct message_want *want);
 void bring_drop(struct bring *bring, struct hash hash);
 /* The cache lets it go last. */
 void bring_keep(struct bring *bring, struct hash hash);
+/* A stick came: what is waited for may be there. */
+void bring_ask_again(struct bring *bring);
 void bring_forget_all(struct bring *bring); /* the kiosk is gone: wants and releases */
 
 /* Does what can be done now. Call after dispatching http and after each of the calls above. */

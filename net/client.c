@@ -213,6 +213,10 @@ static int start_fetcher(struct net_client *client)
 	snprintf(fd, sizeof(fd), "%d", FETCHER_FD);
 	snprintf(budget, sizeof(budget), "%llu",
 		 (unsigned long long)(options->cache_budget_bytes >> 20));
+	if (options->stick_path) {
+		arguments[count++] = "--stick";
+		arguments[count++] = options->stick_path;
+	}
 	if (options->ca_file) {
 		arguments[count++] = "--ca";
 		arguments[count++] = options->ca_file;
@@ -457,7 +461,7 @@ static int copy_options(struct net_client *client, const struct net_client_optio
 {
 	const char **const texts[] = { &client->options.socket_path, &client->options.program,
 				       &client->options.release_url, &client->options.cache_path,
-				       &client->options.ca_file };
+				       &client->options.ca_file,     &client->options.stick_path };
 	int rc = 0;
 
 	client->options = *options;
@@ -541,6 +545,7 @@ void net_client_destroy(struct net_client *client)
 	free((char *)client->options.release_url);
 	free((char *)client->options.cache_path);
 	free((char *)client->options.ca_file);
+	free((char *)client->options.stick_path);
 	free(client);
 }
 

@@ -24,6 +24,7 @@ struct net_client_options {
 	const char *socket_path; /* copied; of a fetcher that runs already; NULL: start one */
 	const char *program;     /* copied; path of gopura-fetch, for starting it */
 	const char *release_url; /* copied; https://..., http://... or a folder */
+	const char *stick_path;  /* copied; for a fetcher that is started; NULL: none */
 	const char *cache_path;  /* copied; the fetcher's cache.db */
 	uint64_t cache_budget_bytes;
 	uint32_t poll_s;     /* between looks for a new release; 0: the fetcher's default */

@@ -42,6 +42,7 @@ struct fetch {
 	struct refusal refusal; /* the last one, of the server's */
 	struct bring *bring;
 	struct poll *poll;
+	struct stick *stick;            /* NULL: none is looked for */
 	struct figures_socket *figures; /* NULL: not offered */
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
@@ -139,7 +140,16 @@ static bool has_room(void *data)
 
 static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
 {
-	struct message message = { .kind = MESSAGE_META, .meta = { role, version, bytes } };
+	struct message message = { .kind = MESSAGE_META,
+				   .meta = { role, version, bytes, META_FROM_SERVER } };
+
+	send_to_kiosk(data, &message, -1);
+}
+
+static void on_stick_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
+{
+	struct message message = { .kind = MESSAGE_META,
+				   .meta = { role, version, bytes, META_FROM_STICK } };
 
 	send_to_kiosk(data, &message, -1);
 }
@@ -164,6 +174,7 @@ static int obey(struct fetch *fetch, const struct message *message)
 		return 0;
 	case MESSAGE_ASK_META:
 		poll_ask(fetch->poll, message->period_s);
+		stick_forget(fetch->stick); /* it is told again */
 		return 0;
 	case MESSAGE_SYNC:
 		send_to_kiosk(fetch,
@@ -263,6 +274,8 @@ static void write_figures(void *data, struct buffer *out)
 			(double)objects.from_cache);
 	figures_counter(out, "gopura_fetch_from_server_total", "Objects that the server sent.",
 			(double)objects.from_server);
+	figures_counter(out, "gopura_fetch_from_stick_total", "Objects that a stick had.",
+			(double)objects.from_stick);
 	figures_gauge(out, "gopura_fetch_cache_bytes", "The cache on disk.",
 		      (double)cache_file_bytes(fetch->cache));
 	figures_gauge(out, "gopura_fetch_cache_budget_bytes", "What it may grow to.",
@@ -295,6 +308,8 @@ static void work(struct fetch *fetch)
 	bool waits;
 
 	if (fetch->has_kiosk) {
+		if (stick_work(fetch->stick))
+			bring_ask_again(fetch->bring);
 		bring_work(fetch->bring);
 		poll_work(fetch->poll);
 		tell_status(fetch);
@@ -316,6 +331,7 @@ static int timeout_ms(const struct fetch *fetch)
 
 		due_ms = bring_ms < due_ms ? bring_ms : due_ms;
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
+		due_ms = stick_due_ms(fetch->stick) < due_ms ? stick_due_ms(fetch->stick) : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
 	}
 	due_ms = service_due_ms() < due_ms ? service_due_ms() : due_ms;
@@ -423,8 +439,14 @@ static int create_parts(struct fetch *fetch)
 	struct poll_options poll = {
 		.link = &fetch->link, .period_s = options->poll_s, .meta = on_meta, .data = fetch
 	};
+	struct stick_options stick = { .folder = options->stick_path,
+				       .meta = on_stick_meta,
+				       .data = fetch };
 	int rc = http_create(&fetch->http, &http);
 
+	if (rc == 0 && options->stick_path)
+		rc = stick_create(&fetch->stick, &stick);
+	bring.stick = fetch->stick;
 	if (rc == 0)
 		rc = cache_create(&fetch->cache, &cache);
 	bring.http = poll.http = fetch->http;
@@ -482,6 +504,7 @@ static void stop(struct fetch *fetch)
 	poll_destroy(fetch->poll);
 	bring_destroy(fetch->bring);
 	packets_finish(&fetch->kiosk);
+	stick_destroy(fetch->stick);
 	cache_destroy(fetch->cache);
 	http_destroy(fetch->http);
 	if (fetch->listen_fd >= 0) {

@@ -9,6 +9,7 @@
 
 struct fetch_options {
 	const char *release_url; /* https://..., http://..., a folder */
+	const char *stick_path;  /* a folder where a release may come to lie; NULL: none */
 	const char *cache_path;
 	uint64_t cache_budget_bytes;
 	const char *ca_file;      /* NULL: the system's */

@@ -13,7 +13,9 @@ static const char help[] =
 	"\n"
 	"  gopura-fetch --release URL --cache FILE (--socket PATH | --fd N) [options]\n"
 	"\n"
-	"  --release URL       https://..., http://..., or a folder (a USB stick)\n"
+	"  --release URL       https://..., http://..., or a folder\n"
+	"  --stick DIR         where a stick with a release may come to lie, asked before the server;\n"
+	"                      alone, it is the server\n"
 	"  --cache FILE        the cache's database; made when missing, set aside when damaged\n"
 	"  --socket PATH       listen for the kiosk here\n"
 	"  --figures PATH      tell whoever connects here how it goes (docs/health.md)\n"
@@ -29,10 +31,11 @@ static const char help[] =
 	"Examples\n"
 	"  gopura-fetch --release https://museum.example/temple --cache /var/lib/gopura/cache.db \\\n"
 	"               --socket /run/gopura/fetch\n"
-	"  gopura-fetch --release /media/stick/release --cache /tmp/cache.db --socket /tmp/fetch\n";
+	"  gopura-fetch --stick /run/gopura-stick --cache /tmp/cache.db --socket /tmp/fetch\n";
 
 enum {
 	OPTION_RELEASE = 256,
+	OPTION_STICK,
 	OPTION_CACHE,
 	OPTION_SOCKET,
 	OPTION_FIGURES,
@@ -49,6 +52,7 @@ enum {
 
 static const struct option long_options[] = {
 	{ "release", required_argument, NULL, OPTION_RELEASE },
+	{ "stick", required_argument, NULL, OPTION_STICK },
 	{ "cache", required_argument, NULL, OPTION_CACHE },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
@@ -85,6 +89,9 @@ static void take_option(struct fetch_options *options, int option)
 	switch (option) {
 	case OPTION_RELEASE:
 		options->release_url = optarg;
+		break;
+	case OPTION_STICK:
+		options->stick_path = optarg;
 		break;
 	case OPTION_CACHE:
 		options->cache_path = optarg;
@@ -135,6 +142,8 @@ static void parse(struct fetch_options *options, int argc, char **argv)
 
 	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
 		take_option(options, option);
+	if (!options->release_url || !*options->release_url)
+		options->release_url = options->stick_path;
 	if (optind < argc)
 		wrong = argv[optind];
 	else if (!options->release_url)

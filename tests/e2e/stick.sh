@@ -1,0 +1,100 @@
+#!/bin/bash
+# Releases from a USB stick: a terminal that never had a network gets its first one and an update;
+# what is older or not signed is refused with the reason; beside a server the newer one wins, and
+# what is damaged on the stick comes from the server.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/stick
+rm -rf "$work"
+mkdir -p "$work/mount"
+small_release
+cp -a "$small/content" "$work/content"
+cp -a "$small/release" "$work/release"
+pid=
+trap '[ -z "$pid" ] || kill -9 "$pid" 2>/dev/null || true; stop_server' EXIT
+start_kiosk() { # LOG URL OPTION...
+	log=$1
+	rm -f "$log"
+	build/gopura-kiosk --display headless --size 640x360 --release "$2" --stick "$work/mount" --poll-s 1 \
+		--log debug --trust "$small/release/root/1.json" --state "$work/state" "${@:3}" 2>"$log" &
+	pid=$!
+}
+end_kiosk() {
+	kill "$pid"
+	wait "$pid" || fail "the kiosk did not end well"
+	pid=
+}
+says() { grep -qE "$1" "$log" 2>/dev/null; }
+publish() {
+	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
+	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+}
+plug() { cp -a "$1/." "$work/mount/"; }
+pull() { rm -rf "${work:?}/mount/"*; }
+nowhere=https://localhost:1/
+
+# ---- never a network: the stick comes while the kiosk waits
+start_kiosk "$work/first.log" $nowhere
+wait_for 30 "word that there is no network" says 'offline'
+mkdir "$work/mount/release"
+cp -a "$work/release/." "$work/mount/release/"
+wait_for 30 "the stick's release" says 'release 1 is on the stick'
+wait_for 90 "release 1" says 'release 1 is shown'
+wait_for 90 "whole picture" says 'picture has settled'
+pull
+wait_for 30 "notice that it was pulled out" says 'stick is gone'
+
+# ---- an update from another stick
+publish Second
+cp -a "$work/release" "$work/release2"
+plug "$work/release2"
+wait_for 90 "release 2 of a stick" says 'release 2 is shown'
+
+# ---- an older one, and one that somebody wrote into
+pull
+plug "$small/release"
+wait_for 30 "refusal of an older stick" says 'refused timestamp.json of the stick: .*older'
+pull
+publish Third
+plug "$work/release"
+pull
+cp -a "$work/release" "$work/forged"
+python3 - "$work/forged/release.json" <<'P'
+import base64, json, sys
+envelope = json.load(open(sys.argv[1]))
+payload = base64.b64decode(envelope["payload"]).replace(b'"sequence":3', b'"sequence":9')
+envelope["payload"] = base64.b64encode(payload).decode()
+json.dump(envelope, open(sys.argv[1], "w"))
+P
+plug "$work/forged"
+wait_for 30 "refusal of a forged stick" says 'refused release.json of the stick: fewer good signatures'
+! says 'release 9 is' || fail "a forged release was begun"
+end_kiosk
+pull
+
+# ---- without stick and network all is there
+start_kiosk "$work/alone.log" $nowhere
+wait_for 60 "picture from the cache" says 'first picture'
+end_kiosk
+
+# ---- the server has release 3, a stick 4, whose packs are damaged; then the server has 4 too
+cp -a "$work/release" "$work/release3"
+serve "$work/release3" "$work/server"
+publish Fourth
+plug "$work/release"
+python3 - "$work"/mount/packs/* <<'P'
+import sys
+for name in sys.argv[1:]:
+    pack = bytearray(open(name, "rb").read())
+    for at in range(0, len(pack), 500):
+        pack[at] ^= 1
+    open(name, "wb").write(pack)
+P
+start_kiosk "$work/both.log" "$url" --ca "$ca"
+wait_for 60 "release 4 of the stick" says 'release 4 is on the stick'
+wait_for 30 "notice of the damage" says "the stick's bytes of object"
+! says 'release 4 is shown' || fail "a damaged stick was shown"
+cp -a "$work/release/." "$work/release3/"
+wait_for 90 "release 4, from the server" says 'release 4 is shown'
+end_kiosk
