@@ -9,6 +9,7 @@ SAN     ?=
 JOBS    ?= $(shell nproc)
 WINDOW  ?= yes
 MAKEFLAGS += --no-builtin-rules
+comma   := ,
 
 FOLDERS := base format board render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
@@ -50,7 +51,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check image qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check powercut image qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -78,6 +79,10 @@ check: all ## the quick loop: format, include rules, unit tests under sanitizers
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt
 	@image/build.sh
+
+powercut: deps ## the power goes at every write of cache and state (minutes); SEED=N: other samples
+	@$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut
+	@nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED)
 
 qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
 	@bash tests/qemu/kiosk.sh
@@ -135,6 +140,7 @@ $(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
 $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/stage.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
+$(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
