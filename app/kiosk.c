@@ -8,10 +8,10 @@
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "app/capture.h"
+#include "app/folder.h"
 #include "app/follow.h"
 #include "app/panel.h"
 #include "base/clock.h"
@@ -147,33 +147,6 @@ static int start_input(struct kiosk *kiosk)
 	return touch_create(&kiosk->touch, &touch);
 }
 
-/* The folder of state.db and cache.db, made where it is not there. */
-static int state_folder(const struct kiosk *kiosk, char out[PATH_MAX])
-{
-	const char *home = getenv("HOME"), *state = getenv("XDG_STATE_HOME");
-
-	if (kiosk->options.state_dir)
-		snprintf(out, PATH_MAX, "%s", kiosk->options.state_dir);
-	else if (state && *state)
-		snprintf(out, PATH_MAX, "%s/gopura", state);
-	else
-		snprintf(out, PATH_MAX, "%s/.local/state/gopura", home ? home : "/var/lib");
-	for (char *slash = out + 1; *slash; slash++) {
-		if (*slash != '/')
-			continue;
-		*slash = '\0';
-		mkdir(out, 0700); /* what cannot be made is found out at the end */
-		*slash = '/';
-	}
-	if (mkdir(out, 0700) < 0 && errno != EEXIST) {
-		const int rc = -errno;
-
-		log_error("app", "%s: %s (choose another with --state)", out, strerror(-rc));
-		return rc;
-	}
-	return 0;
-}
-
 /* gopura-fetch beside this program. */
 static void fetch_beside(char out[PATH_MAX])
 {
@@ -210,10 +183,12 @@ static int start_net(struct kiosk *kiosk)
 		.remembered = release_remembered,
 		.data = kiosk,
 	};
-	int rc = state_folder(kiosk, folder);
+	int rc = folder_of_state(kiosk->options.state_dir, folder);
 
 	if (rc < 0)
 		return rc;
+	if (touch_device_count(kiosk->touch) > 0)
+		folder_remember_touch(folder, touch_device_text(kiosk->touch, 0));
 	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
 	snprintf(state, sizeof(state), "%s/state.db", folder);
 	if (!net.program) {

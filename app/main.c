@@ -6,6 +6,7 @@
 #include "app/kiosk.h"
 #include "app/options.h"
 #include "app/safe_mode.h"
+#include "app/self_test.h"
 
 int main(int argc, char **argv)
 {
@@ -21,6 +22,8 @@ int main(int argc, char **argv)
 	case OPTIONS_RUN:
 		break;
 	}
+	if (kiosk.options.self_test)
+		return self_test_run(&kiosk.options) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (kiosk.options.safe_page) {
 		rc = safe_mode_run(&kiosk.options);
 	} else {

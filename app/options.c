@@ -46,6 +46,8 @@ static const char help_text[] =
 	"                       (default: always); outside them a touch wakes it for a while\n"
 	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
 	"  --shift              move the picture by a pixel now and then, to spare the panel\n"
+	"  --self-test          check panel, GPU, touch, storage and trust, a line each, and end:\n"
+	"                       0 where all is well (docs/display.md)\n"
 	"  --safe-page          say that the terminal will be back, without GPU and release\n"
 	"                       (docs/display.md); with --capture: safe-0.png and safe-1.png\n"
 	"  --help, --version\n"
@@ -86,6 +88,7 @@ enum {
 	OPTION_HOURS,
 	OPTION_WAKE,
 	OPTION_SHIFT,
+	OPTION_SELF_TEST,
 	OPTION_SAFE_PAGE,
 	OPTION_HELP,
 	OPTION_VERSION
@@ -120,6 +123,7 @@ static const struct option long_options[] = {
 	{ "hours", required_argument, NULL, OPTION_HOURS },
 	{ "wake-min", required_argument, NULL, OPTION_WAKE },
 	{ "shift", no_argument, NULL, OPTION_SHIFT },
+	{ "self-test", no_argument, NULL, OPTION_SELF_TEST },
 	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ "version", no_argument, NULL, OPTION_VERSION },
@@ -252,6 +256,9 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_SHIFT:
 		o->shift = true;
 		return true;
+	case OPTION_SELF_TEST:
+		o->self_test = true;
+		return true;
 	case OPTION_SAFE_PAGE:
 		o->safe_page = true;
 		return true;
@@ -265,7 +272,7 @@ static bool set_value(struct options *o, int option, const char *text)
 
 static bool check_together(const struct options *o)
 {
-	if (o->safe_page)
+	if (o->safe_page || o->self_test)
 		return true;
 	if (!o->release_url && !o->stick_dir && !o->socket_path && o->conf_count == 0)
 		fputs("gopura-kiosk: --release or --conf is missing; see --help\n", stderr);

@@ -44,6 +44,7 @@ struct options {
 	bool shift;            /* the picture moves by a pixel now and then */
 	bool quit_after_replay;
 	bool safe_page; /* no kiosk: app/safe_mode.h */
+	bool self_test; /* likewise: app/self_test.h */
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_BAD };

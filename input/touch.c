@@ -497,9 +497,17 @@ uint32_t touch_device_count(const struct touch *touch)
 {
 	uint32_t count = 0;
 
-	for (int i = 0; i < DEVICES_MOST; i++)
+	for (int i = 0; touch && i < DEVICES_MOST; i++)
 		count += touch->sources[i].device != NULL;
 	return count;
+}
+
+const char *touch_device_text(const struct touch *touch, uint32_t index)
+{
+	for (int i = 0; i < DEVICES_MOST; i++)
+		if (touch->sources[i].device && index-- == 0)
+			return touch_device_describe(touch->sources[i].device);
+	return "";
 }
 
 bool touch_replay_ended(const struct touch *touch)

@@ -55,8 +55,10 @@ int touch_fd(const struct touch *touch);
  * the program; negative errno only where waiting itself is broken. */
 must_check int touch_dispatch(struct touch *touch);
 
-/* Devices that are open now. */
+/* Devices that are open now; NULL: none. */
 uint32_t touch_device_count(const struct touch *touch);
+/* The index-th of them as people know it, with its ranges; borrowed until the next call. */
+const char *touch_device_text(const struct touch *touch, uint32_t index);
 /* The replay played its last line (always false for devices). */
 bool touch_replay_ended(const struct touch *touch);
 

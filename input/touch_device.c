@@ -38,6 +38,10 @@ static bool read_axis(struct touch_device *device, unsigned code, struct axis *o
 	out->code = code;
 	out->minimum = libevdev_get_abs_minimum(device->evdev, code);
 	out->maximum = libevdev_get_abs_maximum(device->evdev, code);
+	if (out->maximum <= out->minimum)
+		log_warn("input", "board bug: %s (%s) has axis %s from %d to %d, which is no range",
+			 touch_device_name(device), device->path,
+			 libevdev_event_code_get_name(EV_ABS, code), out->minimum, out->maximum);
 	return out->maximum > out->minimum;
 }
 
@@ -148,6 +152,16 @@ const char *touch_device_path(const struct touch_device *device)
 const char *touch_device_name(const struct touch_device *device)
 {
 	return libevdev_get_name(device->evdev);
+}
+
+const char *touch_device_describe(const struct touch_device *device)
+{
+	static char text[256];
+
+	snprintf(text, sizeof(text), "%s: %d..%d x %d..%d, %d finger%s", touch_device_name(device),
+		 device->x.minimum, device->x.maximum, device->y.minimum, device->y.maximum,
+		 device->slot_count, device->slot_count == 1 ? "" : "s");
+	return text;
 }
 
 static float fraction(const struct axis *axis, int value)

@@ -26,6 +26,8 @@ void touch_device_close(struct touch_device *device); /* NULL is fine */
 int touch_device_fd(const struct touch_device *device);
 const char *touch_device_path(const struct touch_device *device);
 const char *touch_device_name(const struct touch_device *device);
+/* Name, ranges and fingers; borrowed until the next call for any device. */
+const char *touch_device_describe(const struct touch_device *device);
 
 /* One frame: 1 and the slots filled in; 0: nothing (more) to read; -ENODEV: it is gone. */
 must_check int touch_device_read(struct touch_device *device,
