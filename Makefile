@@ -46,7 +46,7 @@ PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch 
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
-SHIMS    := tests/tools/weak_gl tests/tools/lost_gl
+SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 

@@ -15,6 +15,7 @@
 
 #include "app/folder.h"
 #include "app/kiosk.h"
+#include "app/provision.h"
 #include "base/clock.h"
 #include "format/metadata.h"
 #include "render/gl.h"
@@ -50,17 +51,27 @@ static void say(struct self_test *test, bool good, const char *what, const char 
 	test->failed |= !good;
 }
 
-/* ---- profile */
+/* ---- settings */
 
-static void check_profile(struct self_test *test)
+static void check_settings(struct self_test *test, struct options *options)
 {
-	const char *path = test->options->board_path;
+	static struct provision own; /* the options borrow from it */
+	const struct provision *provision = &own;
+	const int rc = provision_read(&own, options, &test->profile);
+	const unsigned faults = provision->faults.count + provision->faults.dropped;
 
-	if (profile_read(&test->profile, path) == 0)
-		say(test, true, "profile", "%s", path ? path : "the default");
+	if (rc < 0)
+		say(test, false, "settings", "%s cannot be used: mend what the log says of it",
+		    test->options->board_path);
+	else if (faults > 0)
+		say(test, false, "settings", "%s: %u to mend, see the log", provision->path,
+		    faults);
+	else if (test->options->conf_count > 0 && !provision->path)
+		say(test, false, "settings", "there is no %s: write it (docs/terminal.md)",
+		    test->options->conf_paths[0]);
 	else
-		say(test, false, "profile",
-		    "%s cannot be used: mend what the log says (docs/board.md)", path);
+		say(test, true, "settings", "%s",
+		    provision->path ? provision->path : "of the command line");
 }
 
 /* ---- panel and GPU */
@@ -366,11 +377,11 @@ static void check_trust(struct self_test *test)
 	buffer_finish(&file);
 }
 
-bool self_test_run(const struct options *options)
+bool self_test_run(struct options *options)
 {
 	struct self_test test = { .options = options };
 
-	check_profile(&test);
+	check_settings(&test, options);
 	check_storage(&test); /* which says whether there was a touchscreen */
 	check_trust(&test);
 	check_touch(&test);

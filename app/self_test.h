@@ -7,8 +7,9 @@
 
 #include "app/options.h"
 
-/* A line a check on standard output: "ok" or "fail", what was checked, what was found, and where it
- * failed what to do. true: all are well. Not beside a running kiosk: the panel is one program's. */
-must_check bool self_test_run(const struct options *options);
+/* Fills in options by gopura.conf. A line a check on standard output: "ok" or "fail", what was
+ * checked, what was found, and where it failed what to do. true: all are well. Not beside a running
+ * kiosk: the panel is one program's. */
+must_check bool self_test_run(struct options *options);
 
 #endif

@@ -64,6 +64,9 @@ kiosk() {
 	/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug "$@" 2>&1
 	echo "init: the kiosk ended with status $?"
 }
+self_test() {
+	/bin/gopura-kiosk --self-test --display drm --trust /release/root/1.json --state /tmp/state 2>&1
+}
 said() { until grep -q "$1" /tmp/log; do sleep 0.2; done; }
 : >/tmp/log
 . /lib-init.sh # what the kernel's command line asks for

@@ -1,9 +1,13 @@
 # Part of the guest's init: the kiosk, and what happens to its panel (gopura.case= of the command line).
 case $(sed -n 's/.*gopura\.case=\([a-z]*\).*/\1/p' /proc/cmdline) in
+visit)
+	self_test >/dev/console
+	;;
 unplugged)
 	# Without a panel at the start; then it comes, goes and comes again.
 	status=$(ls /sys/class/drm/card0-*/status)
 	echo off >"$status"
+	self_test >/dev/console
 	(
 		said 'no panel is connected'
 		sleep 4
