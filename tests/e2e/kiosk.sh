@@ -52,7 +52,7 @@ says 2 'need --capture' $kiosk --release . --views x
 says 2 'needs --touch-replay' $kiosk --release . --quit-after-replay
 headless=("$kiosk" --display headless --size 640x360)
 printf '[panel]\nrotation = 45\n' >"$work/crooked.ini"
-says 1 "crooked.ini, line 2: this value does not do: .45" "${headless[@]}" --board "$work/crooked.ini" --state "$work/s" --release .
+says 1 "crooked.ini, line 2: rotation must be 0, 90, 180 or 270, not '45'" "${headless[@]}" --board "$work/crooked.ini" --state "$work/s" --release .
 says 1 'absent.ini' "${headless[@]}" --board "$work/absent.ini" --state "$work/s" --release .
 echo '1 2 3 4 5 6' >"$work/short.txt"
 says 1 'short.txt, line 1' "${headless[@]}" --state "$work/s" --release "$release" --views "$work/short.txt" \

@@ -30,4 +30,12 @@ for program in $(sed -nE 's/^Exec[A-Za-z]+=[+!-]*([^ ]+).*/\1/p' systemd/*.servi
 	/usr/bin/gopura-*) grep -q "${program##*/}" Makefile || { echo "$program is not built"; failed=1; } ;;
 	esac
 done
+# gopura-health, which has no user or group of its own, reaches the figures, and a restart does not
+# forget how many there were.
+for unit in $(grep -l -e '--figures' systemd/*.service); do
+	! grep -q '^RuntimeDirectoryMode=' "$unit" || grep -q '^RuntimeDirectoryMode=07[15][15]$' "$unit" ||
+		{ echo "$unit: its RuntimeDirectoryMode= keeps gopura-health out: 0755 (sockets have modes of their own)"; failed=1; }
+	grep -q '^RuntimeDirectoryPreserve=yes$' "$unit" ||
+		{ echo "$unit: without RuntimeDirectoryPreserve=yes its starts are not counted"; failed=1; }
+done
 exit $failed
