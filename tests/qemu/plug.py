@@ -35,9 +35,7 @@ def plugging(kernel, initramfs, work):
         machine.qmp.tap(0.5, 0.45)
         machine.wait_for("card in the log", ANSWER_S, said("app: card of"))
         machine.wait_for("card on the panel", ANSWER_S, lambda: share_that_differs(before, machine.picture("replugged")) > 0.15)
-        starts = machine.log().count("KMS display")
-        print(f"{starts} starts of the kiosk")
-        if starts > 2 or machine.log().count("the kiosk ended") > 1:
+        if machine.log().count("the kiosk ended") > 1:
             raise SystemExit("the kiosk ended over a panel:\n" + machine.log()[-3000:])
     finally:
         machine.process.kill()
