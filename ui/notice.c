@@ -6,11 +6,12 @@
 #include "ui/theme.h"
 
 /* Millimetres, at scale 1. */
-#define PADDING_MM 9.0f
-#define BAR_MM     2.2f
-#define GAP_MM     2.6f
-#define MARK_MM    2.4f   /* between a mark and its text */
-#define WIDEST_MM  230.0f /* of a line of text: longer ones are hard to follow */
+#define PADDING_MM   9.0f
+#define BAR_MM       2.2f
+#define GAP_MM       2.6f
+#define MARK_MM      2.4f   /* between a mark and its text */
+#define NARROWEST_MM 85.0f  /* what a panel is taken for at least */
+#define WIDEST_MM    230.0f /* of a line of text: longer ones are hard to follow */
 
 /* Largest first. The last is the smallest that is read from an arm's length. */
 static const float scales[] = { 1.5f, 1.25f, 1.0f, 0.8f, 0.65f };
@@ -162,7 +163,10 @@ static bool draw_at(struct page *page, const struct notice *notice, bool forced,
 int notice_draw(struct bitmap *out, const struct notice *notice, float px_per_mm, int width_px,
 		int height_px, uint32_t *shown)
 {
-	const float guess = theme_guess_px_per_mm(width_px, height_px);
+	const int shorter_px = width_px < height_px ? width_px : height_px;
+	/* Large panels have large pixels: letters need enough of them, however large that is. */
+	const float mm_px = fmaxf(theme_guess_px_per_mm(width_px, height_px),
+				  fminf(px_per_mm, (float)shorter_px / NARROWEST_MM));
 	uint32_t count = 0;
 	bool done = false;
 	int rc = bitmap_init(out, width_px, height_px);
@@ -171,7 +175,7 @@ int notice_draw(struct bitmap *out, const struct notice *notice, float px_per_mm
 		struct theme theme;
 		struct page page = { .theme = &theme };
 
-		rc = theme_init(&theme, (px_per_mm > 0 ? px_per_mm : guess) * scales[i], "en");
+		rc = theme_init(&theme, mm_px * scales[i], "en");
 		if (rc < 0)
 			break;
 		page.context = bitmap_begin(out);

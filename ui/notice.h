@@ -24,7 +24,7 @@ struct notice {
 	const char *foot; /* what to do then */
 };
 
-/* A fresh bitmap of that size, opaque. px_per_mm of the panel; 0: guessed from its size. *shown, or
+/* A fresh bitmap of that size, opaque. px_per_mm of the panel; 0: not known. *shown, or
  * NULL, is how many of the items found room. -EINVAL, -ENOMEM as bitmap_init. */
 must_check int notice_draw(struct bitmap *out, const struct notice *notice, float px_per_mm,
 			   int width_px, int height_px, uint32_t *shown);

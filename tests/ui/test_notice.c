@@ -119,6 +119,23 @@ static void few_faults_are_written_larger_than_many(void **state)
 		fail_msg("titles of %d and %d pixels", height[0], height[1]);
 }
 
+/* 55 inches at 1920 x 1080 have 1.6 pixels a millimetre. */
+static void letters_have_enough_pixels_where_those_are_large(void **state)
+{
+	struct notice notice = notice_of(20, 0);
+	struct bitmap coarse, guessed;
+
+	(void)state;
+	CHECK(notice_draw(&coarse, &notice, 1.6f, 1920, 1080, NULL) == 0);
+	CHECK(notice_draw(&guessed, &notice, 0, 1920, 1080, NULL) == 0);
+	CHECK(memcmp(coarse.pixels, guessed.pixels, (size_t)coarse.stride_bytes * 1080) == 0);
+	bitmap_finish(&coarse);
+	CHECK(notice_draw(&coarse, &notice, 8, 1920, 1080, NULL) == 0);
+	CHECK(memcmp(coarse.pixels, guessed.pixels, (size_t)coarse.stride_bytes * 1080) != 0);
+	bitmap_finish(&coarse);
+	bitmap_finish(&guessed);
+}
+
 static void refuses_sizes_that_are_none(void **state)
 {
 	struct notice notice = notice_of(1, 0);
@@ -135,6 +152,7 @@ int main(void)
 		cmocka_unit_test(everything_stands_on_the_page_whatever_its_size),
 		cmocka_unit_test(a_large_panel_shows_a_long_list_and_a_small_one_what_fits),
 		cmocka_unit_test(few_faults_are_written_larger_than_many),
+		cmocka_unit_test(letters_have_enough_pixels_where_those_are_large),
 		cmocka_unit_test(refuses_sizes_that_are_none),
 	};
 
