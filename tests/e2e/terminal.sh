@@ -16,10 +16,10 @@ cp "$small/release/root/1.json" "$work/conf/"
 visit() {
 	local name=$1 late=$2
 	shift 2
-	printf '3000 %s-early\n%s000 %s-late\n' "$name" "$late" "$name" >"$work/shots"
-	printf '%s500 down 0 2 2\n%s550 up 0 2 2\n' "$late" "$late" >"$work/touch"
+	printf '3000 %s-early\n%s000 %s-late\n' "$name" "$late" "$name" >"$work/shots-$name"
+	printf '%s500 down 0 2 2\n%s550 up 0 2 2\n' "$late" "$late" >"$work/touch-$name"
 	timeout 120 build/gopura-kiosk --boards board --display headless --size 320x200 --state "$work/state-$name" \
-		--touch-replay "$work/touch" --quit-after-replay --capture "$work" --shots "$work/shots" \
+		--touch-replay "$work/touch-$name" --quit-after-replay --capture "$work" --shots "$work/shots-$name" \
 		"$@" >"$work/$name.log" 2>&1 || fail "$name: the kiosk ended with $? ($work/$name.log)"
 }
 
@@ -60,21 +60,23 @@ bar() {
 # ---- right: no page; the release comes from where the file says
 printf '[release]\nurl = %s\ntrust = 1.json\n[terminal]\nlanguage = km\nboard = generic\n' \
 	"$PWD/$small/release" >"$conf"
-visit right 4 --conf "$work/no/gopura.conf" --conf "$conf"
+visit right 8 --conf "$work/no/gopura.conf" --conf "$conf"
 bar right-early nowhere
 ! grep -q 'set-up bug' "$work/right.log" || fail "a right file has faults"
 grep -q 'app: showing' "$work/right.log" || fail "the release of gopura.conf was not shown"
 
 # ---- one fault: it is said, the rest is in use (a turned panel), and the temple comes afterwards
 printf '[panel]\nrotation = 90\nhours = nine to five\n' >>"$conf"
-visit faulty 34 --conf "$conf"
+visit faulty 40 --conf "$conf" &
+faulty=$!
+# ---- the command line overrides; without a release that could be shown the page stays
+mkdir -p "$work/other"
+printf '[release]\nurl = %s\n' "$PWD/$small/release" >"$work/other/gopura.conf"
+visit overridden 40 --conf "$work/other/gopura.conf" --release "$PWD/$work/empty" || exit 1
+wait "$faulty" || exit 1
 bar faulty-early bottom
 bar faulty-late nowhere
 grep -q 'gopura.conf: line 9: hours must be days and times such as' "$work/faulty.log" || fail "the log is silent"
-
-# ---- the command line overrides; without a release that could be shown the page stays
-printf '[release]\nurl = %s\n' "$PWD/$small/release" >"$conf"
-visit overridden 34 --conf "$conf" --release "$PWD/$work/empty"
 bar overridden-early left
 bar overridden-late left
 grep -q 'trust = ... is missing' "$work/overridden.log" || fail "what is missing was not said"
