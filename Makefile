@@ -84,7 +84,7 @@ powercut: deps ## the power goes at every write of cache and state (minutes); SE
 	@$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut
 	@nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED)
 
-qemu: all ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
+qemu: all $(BUILD)/tests/tools/lost_gl.so ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
 	@bash tests/qemu/kiosk.sh
 
 arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user

@@ -21,6 +21,7 @@
 
 enum {
 	FRAME_MS = 16, /* where no panel sets the pace */
+	LOST_LEAST_MS = 5000,
 	FOV_DEG = 45,
 };
 
@@ -367,6 +368,10 @@ int kiosk_run(struct kiosk *kiosk)
 	while (rc == 0 && !kiosk->quit)
 		rc = turn(kiosk);
 	service_stopping();
+	if (rc == -ENOTRECOVERABLE && clock_now_ms() - kiosk->started_ms < LOST_LEAST_MS) {
+		log_error("app", "board bug: the GPU loses its context as soon as it is used");
+		return -EIO; /* a crash: to begin anew does not help */
+	}
 	if (rc == -ENOTRECOVERABLE)
 		log_warn("app", "board bug: the GPU lost its context: starting anew");
 	else if (rc == -ESTALE)

@@ -37,6 +37,7 @@ for program in gopura-kiosk gopura-fetch; do
 		[ -f "$root$library" ] || { mkdir -p "$root$(dirname "$library")"; cp -L "$library" "$root$library"; }
 	done
 done
+cp build/tests/tools/lost_gl.so "$root/"
 copy_with_libraries "$lib/libEGL_mesa.so.0" "$lib/libGLESv2.so.2"
 mkdir -p "$root$lib/dri"
 cp -L "$lib/dri/kms_swrast_dri.so" "$root$lib/dri/kms_swrast_dri.so"
@@ -61,7 +62,7 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do [ -e /dev/dri/card0 ] && break; sleep 0.2; don
 export LP_NATIVE_VECTOR_WIDTH=128 HOME=/tmp MESA_SHADER_CACHE_DIR=/tmp
 echo "init: starting the kiosk" >/dev/console
 kiosk() {
-	/bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug "$@" 2>&1
+	LD_PRELOAD=$preload LOST_GL=/tmp/lost LOST_GL_BY=swap /bin/gopura-kiosk --display drm --release /release --trust /release/root/1.json --state /tmp/state --log debug "$@" 2>&1
 	echo "init: the kiosk ended with status $?"
 }
 self_test() {

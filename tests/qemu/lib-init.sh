@@ -1,10 +1,12 @@
 # Part of the guest's init: the kiosk, and what happens to its panel (gopura.case= of the command line).
+preload=
 case $(sed -n 's/.*gopura\.case=\([a-z]*\).*/\1/p' /proc/cmdline) in
 visit)
 	self_test >/dev/console
 	;;
 unplugged)
 	# Without a panel at the start; then it comes, goes and comes again.
+	preload=/lost_gl.so
 	status=$(ls /sys/class/drm/card0-*/status)
 	echo off >"$status"
 	self_test >/dev/console
@@ -21,6 +23,10 @@ unplugged)
 		sleep 5
 		echo "init: plugged in again"
 		echo on >"$status"
+		said 'app: card of'
+		sleep 3
+		echo "init: the GPU is reset"
+		: >/tmp/lost
 	) >/dev/console &
 	;;
 closed)
@@ -32,5 +38,6 @@ safe)
 	;;
 esac
 until kiosk "$@" | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
+	rm -f /tmp/lost
 	sleep 0.2 # as the service manager does for status 75
 done

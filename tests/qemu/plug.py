@@ -1,5 +1,5 @@
 """plug.py KERNEL INITRAMFS WORK: the safe page on a panel; then the kiosk starts without a panel, which is then plugged in, out and in
-again; no process ends but to fit the panel that came first, and the temple is on it afterwards."""
+again, and the GPU is reset at last; no process ends but to fit the panel that came first, and for the GPU."""
 import os
 import sys
 import time
@@ -35,7 +35,10 @@ def plugging(kernel, initramfs, work):
         machine.qmp.tap(0.5, 0.45)
         machine.wait_for("card in the log", ANSWER_S, said("app: card of"))
         machine.wait_for("card on the panel", ANSWER_S, lambda: share_that_differs(before, machine.picture("replugged")) > 0.15)
-        if machine.log().count("the kiosk ended") > 1:
+        machine.wait_for("lost context", ANSWER_S, said("the GPU lost its context"))
+        began_anew = lambda: machine.log().count("app: first picture") == 2
+        machine.wait_for("start after the lost context", ANSWER_S, lambda: began_anew() and tones(machine.picture("anew")) > 300)
+        if machine.log().count("the kiosk ended") != 2:  # for the first panel, and for the GPU
             raise SystemExit("the kiosk ended over a panel:\n" + machine.log()[-3000:])
     finally:
         machine.process.kill()
