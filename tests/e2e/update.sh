@@ -1,6 +1,6 @@
 #!/bin/bash
-# A content update while the kiosk runs: version 2 arrives in the background and is switched to at
-# once; a bad signature, an older sequence and a server that dies leave what is shown; a kiosk that
+# A content update while the kiosk runs: version 2 arrives in the background and, nobody being there,
+# is switched to at once; a bad signature, an older sequence and a server that dies leave what is shown; a kiosk that
 # remembers a release nobody has any more shows the next one.
 set -eu
 cd "$(dirname "$0")/../.."

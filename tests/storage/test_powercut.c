@@ -62,6 +62,18 @@ static struct bytes object(uint32_t number)
 	return (struct bytes){ bytes, size };
 }
 
+/* Of each object, once: a million disks ask. */
+static struct hash hash_of_object(uint32_t number)
+{
+	static struct hash hashes[OBJECTS * RELEASES];
+	static bool known;
+
+	for (uint32_t n = 0; !known && n < OBJECTS * RELEASES; n++)
+		hashes[n] = hash_of(object(n));
+	known = true;
+	return hashes[number];
+}
+
 static struct hash root_of(uint64_t sequence)
 {
 	return (struct hash){ { (uint8_t)sequence, 0xaa } };
@@ -265,7 +277,7 @@ static const char *judge_objects(struct cache *cache, uint32_t promised)
 
 	buffer_init(&got, 1 << 20);
 	for (uint32_t n = 0; n < object_number(RELEASES, 0) && !wrong; n++) {
-		const struct hash hash = hash_of(object(n));
+		const struct hash hash = hash_of_object(n);
 		const int rc = cache_get(cache, hash, 0, &got);
 
 		if (rc == 0 && !hash_equal(hash_of(buffer_bytes(&got)), hash))
@@ -299,7 +311,7 @@ static const char *judge_locators(struct cache *cache, const struct state *state
 }
 
 /* What it promises now, and what will be promised next. */
-static const char *judge_disk(const struct promise *old, const struct promise *new)
+static const char *judge_disk(const struct promise *old, const struct promise *new, bool goes_on)
 {
 	struct cache *cache = open_cache(replay_folder);
 	struct state *state = open_state(replay_folder);
@@ -319,7 +331,7 @@ static const char *judge_disk(const struct promise *old, const struct promise *n
 	cache_figures(cache, &figures);
 	if (!wrong && figures.set_aside > 0)
 		wrong = "the cache was set aside as damaged";
-	if (!wrong) { /* and it goes on */
+	if (!wrong && goes_on) {
 		release = release_of(100);
 		if (state_activate(state, &release) < 0)
 			wrong = "the state takes no other release";
@@ -371,6 +383,7 @@ struct effort {
 	uint32_t samples;         /* of more */
 	uint32_t torn;            /* one in so many disks has its last write torn too */
 	uint64_t losses_most;     /* enough is known then */
+	bool tells;               /* how far it is */
 };
 
 static void try_disk(const uint8_t *has, uint64_t torn, const struct promise *old,
@@ -380,7 +393,7 @@ static void try_disk(const uint8_t *has, uint64_t torn, const struct promise *ol
 	const char *wrong;
 
 	power_disk_make(replay_folder, is_in, &subset, torn);
-	wrong = judge_disk(old, new);
+	wrong = judge_disk(old, new, counts->disks % 16 == 0);
 	counts->disks++;
 	if (!wrong)
 		return;
@@ -435,6 +448,10 @@ static struct counts replay(const struct effort *effort, size_t stride)
 			continue;
 		if (op % stride != 0 && power.ops[op].kind != POWER_MARK)
 			continue;
+		if (effort->tells && op % 50 == 0)
+			fprintf(stderr, "operation %zu of %zu, %llu disks, %llu losses\n", op,
+				power.op_count, (unsigned long long)counts.disks,
+				(unsigned long long)counts.losses);
 		next = old == &nothing ? 0 : (size_t)(old - promises) + 1;
 		cut_here(op, old, next < promise_count ? &promises[next] : old, effort, &counts);
 	}
@@ -511,9 +528,11 @@ static int tear_down(void **unused)
 /* Every write, for minutes to hours; another seed takes other samples. */
 static int run_all(const char *seed)
 {
-	const struct effort all = {
-		.subsets_of_most = 8, .samples = 1000, .torn = 4, .losses_most = UINT64_MAX
-	};
+	const struct effort all = { .subsets_of_most = 8,
+				    .samples = 1000,
+				    .torn = 4,
+				    .losses_most = UINT64_MAX,
+				    .tells = true };
 	struct counts counts;
 	int64_t began_ms;
 
