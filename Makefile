@@ -51,13 +51,13 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check powercut image qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
 
 help: ## list the targets
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 20
+	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /make \1\t/' | expand -t 20
 
 deps: $(BUILD)/.deps
 
@@ -80,9 +80,16 @@ image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt
 	@image/build.sh
 
+image-check: all ## two images from nothing have the same slots
+	@./deps.sh image/tools.txt
+	@image/check.sh
+
 powercut: deps ## the power goes at every write of cache and state (minutes); SEED=N: other samples
 	@$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut
 	@nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED)
+
+qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang
+	@bash tests/qemu/image.sh updates
 
 qemu: all $(BUILD)/tests/tools/lost_gl.so ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
 	@bash tests/qemu/kiosk.sh

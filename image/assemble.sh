@@ -56,7 +56,7 @@ done
 depmod -b "$tree/usr" -m /lib/modules "$version" 2>/dev/null || depmod -b "$tree" "$version"
 
 # ---- ours
-for program in gopura-kiosk gopura-fetch; do
+for program in gopura-kiosk gopura-fetch gopura-setup gopura-health; do
 	install -m 755 -s "build/appliance/$program" "$tree/usr/bin/$program"
 done
 LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u | while read -r library; do
@@ -65,9 +65,18 @@ LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u |
 done
 cp -r "$here/root/." "$tree/"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
-mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura"
+# What fontconfig knows of the fonts lies beside them: there is nothing it could find out at run time.
+sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fonts/cache</cachedir>|' \
+	-e '/<cachedir prefix="xdg"/d' -e '/<cachedir>~/d' "$tree/etc/fonts/fonts.conf"
+mkdir -p "$tree/usr/share/fonts/cache"
+mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura/board"
+install -m 644 board/*.ini "$tree/usr/share/gopura/board/"
 cp /usr/bin/grub-editenv "$tree/usr/bin/"
-if [ -n "${RELEASE:-}" ]; then cp -r "$RELEASE" "$tree/usr/share/gopura/release"; fi
+install -m 644 "$keys/cert.pem" "$tree/etc/rauc/keyring.pem"
+printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\n' "$version_text" >>"$tree/usr/lib/os-release"
+if [ -n "${RELEASE:-}" ]; then
+	cp -r "$RELEASE" "$tree/usr/share/gopura/release"
+fi
 systemd-sysusers --root="$tree"
 rm -rf "$tree"/etc/systemd/system/*.wants
 # No shell on any console, whatever asks for one.
@@ -85,7 +94,7 @@ ln -sfn /run/gopura/localtime "$tree/etc/localtime"
 rm -rf "$tree"/var/* "$tree"/run/* "$tree"/tmp/*
 rm -rf "$tree"/{boot,home,media,mnt,opt,srv}
 find "$tree" -newermt "@$SOURCE_DATE_EPOCH" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
-fc-cache -s -y "$tree" >/dev/null 2>&1 || true
+fc-cache -s -y "$tree"
 
 # ---- the slot: kernel and first program of the boot, and the root
 early=$out/early
@@ -108,15 +117,11 @@ mkdir -p "$boot"
 cp "$kernel"/boot/vmlinuz-* "$boot/vmlinuz"
 touch -d "@$SOURCE_DATE_EPOCH" "$boot"/* "$boot"
 
-# ext2 LABEL FILE: the loader finds it by its label, so a and b are the same but for that.
-ext2() {
-	rm -f "$2"
-	E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH mke2fs -q -t ext2 -L "$1" -U 6f707572-6100-4000-8000-000000000000 \
-		-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$2" "${boot_mib}M" 2>/dev/null
-}
-ext2 gopura-boot-a "$out/boot-a.ext2"
+rm -f "$out/boot.img"
+E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH mke2fs -q -t ext2 -U 6f707572-6100-4000-8000-000000000000 \
+	-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$out/boot.img" "${boot_mib}M" 2>/dev/null
 rm -f "$out/root.squashfs"
-mksquashfs "$tree" "$out/root.squashfs" -comp zstd -Xcompression-level ${LEVEL:-15} -quiet -no-progress -noappend
+mksquashfs "$tree" "$out/root.squashfs" -all-root -comp zstd -Xcompression-level ${LEVEL:-15} -quiet -no-progress -noappend
 [ "$(stat -c %s "$out/root.squashfs")" -le $((slot_mib << 20)) ] || {
 	echo "image: the root is larger than a slot of $slot_mib MiB; see $out/tree" >&2
 	exit 1
@@ -127,13 +132,26 @@ esp=$out/esp.vfat
 rm -f "$esp"
 truncate -s "${esp_mib}M" "$esp"
 mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
-grub-mkimage -O x86_64-efi -p /gopura -o "$out/BOOTX64.EFI" part_gpt fat ext2 normal configfile linux boot search search_label \
-	search_fs_file loadenv test echo sleep reboot minicmd all_video
+grub-mkimage -O x86_64-efi -p /gopura -o "$out/BOOTX64.EFI" part_gpt fat ext2 normal configfile linux boot \
+	regexp loadenv test echo sleep reboot minicmd all_video
 grub-editenv "$out/grubenv" create
 grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0 KERNEL="${KERNEL:-}"
 mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura
 mcopy -i "$esp" "$out/BOOTX64.EFI" ::/EFI/BOOT/BOOTX64.EFI
 mcopy -i "$esp" "$here/grub.cfg" "$out/grubenv" ::/gopura/
+conf=${CONF:-}
+if [ -z "$conf" ] && [ -n "${RELEASE:-}" ]; then
+	conf=$out/gopura.conf
+	printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' >"$conf"
+	cp "$RELEASE/root/1.json" "$out/root.json"
+fi
+if [ -n "$conf" ]; then
+	mcopy -i "$esp" "$conf" ::/gopura.conf
+	sed -nE 's/^ *(trust|ca) *= *([^ ]+).*/\2/p' "$conf" | while read -r file; do
+		mcopy -i "$esp" "$(dirname "$conf")/$file" "::/$file"
+	done
+fi
+mcopy -i "$esp" board/gopura.conf.example ::/gopura.conf.example
 
 # ---- the disk
 disk=$out/gopura.img
@@ -150,7 +168,7 @@ partition() { # NAME MIB TYPE [FILE]
 	start=$((start + $2))
 }
 partition esp "$esp_mib" U "$esp"
-partition boot-a "$boot_mib" L "$out/boot-a.ext2"
+partition boot-a "$boot_mib" L "$out/boot.img"
 partition boot-b "$boot_mib" L
 partition root-a "$slot_mib" L "$out/root.squashfs"
 partition root-b "$slot_mib" L

@@ -4,10 +4,12 @@
 #
 #   MIRROR=URL      of Debian (default: deb.debian.org); a date of snapshot.debian.org pins every package
 #   RELEASE=FOLDER  lies in the image as well, for a terminal that never gets a network
+#   CONF=FILE       the gopura.conf of the image; the files that it names are taken from beside it
+#   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, made where missing)
 #   OUT=FOLDER      instead of build/image
 #
-# What is made: base.tar (the packages), tree/ (the root as it will be), root.squashfs and boot.ext2 (a slot),
-# esp.vfat, gopura.img, and left-out.txt: what the packages would have brought.
+# What is made: base.tar (the packages), tree/ (the root as it will be), root.squashfs and boot.img (a slot),
+# esp.vfat, gopura.img, gopura.raucb (an update to the same), and left-out.txt: what the packages would have brought.
 # docs/image.md tells the layout of the disk and why.
 set -eu
 cd "$(dirname "$0")/.."
@@ -39,10 +41,21 @@ image/kernel.sh "$out/kernel"
 
 # ---- the programs, without the window of a desktop
 make --no-print-directory -j"$(nproc)" WINDOW=no BUILD=build/appliance \
-	build/appliance/gopura-kiosk build/appliance/gopura-fetch
+	build/appliance/gopura-{kiosk,fetch,setup,health}
+
+# ---- who may sign updates
+keys=${KEYS:-build/image-keys}
+if [ ! -f "$keys/key.pem" ]; then
+	mkdir -p "$keys"
+	(umask 077 && openssl req -x509 -newkey rsa:3072 -nodes -days 7300 -subj '/CN=Gopura updates' \
+		-keyout "$keys/key.pem" -out "$keys/cert.pem" 2>/dev/null)
+	say "made keys for updates in $keys: keep a copy of key.pem in a safe place"
+fi
 
 # ---- root, slot and disk, all files root's
 say "putting the root together"
-export here out slot_mib boot_mib esp_mib data_mib
+version_text=${VERSION:-$(git describe --always --dirty)}
+export here out keys version_text slot_mib boot_mib esp_mib data_mib
 fakeroot image/assemble.sh
+image/bundle.sh "$out"
 say "$(stat -c %s "$out/root.squashfs" | awk '{ printf "a slot has %.0f MB", $1 / 1e6 }'), the image $(du -m "$out/gopura.img" | cut -f1) MiB: $out/gopura.img"

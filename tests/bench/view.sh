@@ -19,7 +19,7 @@ trap stop_server EXIT
 work=build/bench/view scans=../shared/scans
 visitor="orbit=20 walk=20 close=20"
 mkdir -p "$work"
-make --no-print-directory benches >/dev/null
+make --no-print-directory benches tests >/dev/null
 
 # spread: of the views that come in, VIEWS
 spread() {
@@ -82,13 +82,13 @@ temple() {
 }
 
 build_temple() {
-	temple temple 90 'colours = scan'
+	temple temple 93 'colours = scan'
 	build/gopura-content build "$work/temple/content" --out "$work/temple/release" >&2
 }
 
 row_temple_300() {
 	build_temple
-	draw temple-300 "$work/temple/content" "$work/temple/release" 0.6 "$visitor" <tests/bench/path.txt
+	draw temple-300 "$work/temple/content" "$work/temple/release" 0.8 "$visitor" <tests/bench/path.txt
 	# Of the first view alone: object bytes until it has 30 dB at rest.
 	head -n 1 "$work/temple-300/views.txt" >"$work/first.txt"
 	build/tests/bench/bench_view "$work/temple/release" "$work/first.txt" "$work/first" --truth "$work/temple/truth" \

@@ -13,16 +13,7 @@ mkdir -p "$work"
 image/kernel.sh "$work/kernel"
 kernel=$(ls "$work"/kernel/boot/vmlinuz-*)
 
-# ---- a small release
-content=$work/content release=$work/release
-mkdir -p "$content"
-cp -ru demo/content/. "$content/"
-sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
-	-e 's/^publish_share *=.*/publish_share = 0.5/' "$content/temple.ini"
-[ -f "$content/scan.ply" ] ||
-	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/scan.ply"
-build/gopura-content build "$content" --out "$release"
-
-"$here/initramfs.sh" "$work/kernel" "$release" "$work/initramfs.cpio"
+tests/qemu/release.sh "$work"
+"$here/initramfs.sh" "$work/kernel" "$work/release" "$work/initramfs.cpio"
 python3 "$here/visit.py" "$kernel" "$work/initramfs.cpio" "$work"
 exec python3 "$here/plug.py" "$kernel" "$work/initramfs.cpio" "$work"

@@ -63,7 +63,9 @@ def tones(rows):
 
 
 class Machine:
-    def __init__(self, kernel, initramfs, work, case="visit"):
+    """A machine under TCG with a panel, a tablet and a log on its serial line; `arguments` say what it starts from."""
+
+    def __init__(self, work, case, arguments):
         self.work, self.serial = work, os.path.join(work, f"{case}.log")
         socket_path = os.path.join(work, "qmp.sock")
         for path in (socket_path, self.serial):
@@ -71,11 +73,14 @@ class Machine:
                 os.unlink(path)
         self.process = subprocess.Popen(
             ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
-             "-display", "none", "-nodefaults", "-vga", "none", "-no-reboot",
+             "-display", "none", "-nodefaults", "-vga", "none",
              "-device", f"virtio-gpu-pci,xres={WIDTH},yres={HEIGHT}", "-device", "virtio-tablet-pci",
-             "-kernel", kernel, "-initrd", initramfs, "-append", f"console=ttyS0 quiet panic=1 gopura.case={case}",
-             "-serial", f"file:{self.serial}", "-qmp", f"unix:{socket_path},server,nowait"])
+             "-serial", f"file:{self.serial}", "-qmp", f"unix:{socket_path},server,nowait", *arguments])
         self.qmp = Qmp(socket_path)
+
+    def stop(self):
+        self.process.kill()
+        self.process.wait()
 
     def log(self):
         try:
@@ -110,3 +115,11 @@ class Machine:
             return now if still else None
 
         return self.wait_for("picture at rest", ANSWER_S, same)
+
+
+class Kiosk(Machine):
+    """Nothing but the kiosk in an initramfs (initramfs.sh), which ends with it."""
+
+    def __init__(self, kernel, initramfs, work, case="visit"):
+        super().__init__(work, case, ["-no-reboot", "-kernel", kernel, "-initrd", initramfs,
+                                      "-append", f"console=ttyS0 quiet panic=1 gopura.case={case}"])

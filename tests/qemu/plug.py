@@ -5,24 +5,23 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(__file__))
-from machine import ANSWER_S, BOOT_S, Machine, share_that_differs, tones
+from machine import ANSWER_S, BOOT_S, Kiosk, share_that_differs, tones
 
 
 def safe_page(kernel, initramfs, work):
     """Without GPU and release: a page that moves, on the card's own memory."""
-    machine = Machine(kernel, initramfs, work, "safe")
+    machine = Kiosk(kernel, initramfs, work, "safe")
     try:
         machine.wait_for("safe page", BOOT_S, lambda: "KMS canvas" in machine.log() and tones(machine.picture("safe")) > 20)
         before = machine.picture("safe")
         machine.wait_for("movement", ANSWER_S, lambda: share_that_differs(before, machine.picture("safe")) > 0.01)
     finally:
-        machine.process.kill()
-        machine.process.wait()
+        machine.stop()
 
 
 def plugging(kernel, initramfs, work):
     began = time.monotonic()
-    machine = Machine(kernel, initramfs, work, "unplugged")
+    machine = Kiosk(kernel, initramfs, work, "unplugged")
     said = lambda what: lambda: what in machine.log()
     try:
         machine.wait_for("self-test that misses the panel", BOOT_S, said("fail  panel    none is connected"))
@@ -41,8 +40,7 @@ def plugging(kernel, initramfs, work):
         if machine.log().count("the kiosk ended") != 2:  # for the first panel, and for the GPU
             raise SystemExit("the kiosk ended over a panel:\n" + machine.log()[-3000:])
     finally:
-        machine.process.kill()
-        machine.process.wait()
+        machine.stop()
     print(f"done in {time.monotonic() - began:.0f} s")
 
 

@@ -4,7 +4,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.dirname(__file__))
-from machine import ANSWER_S, BOOT_S, Machine, share_that_differs, tones
+from machine import ANSWER_S, BOOT_S, Kiosk, share_that_differs, tones
 
 CARD_SHARE = 0.15  # of the panel: a card covers about 0.3, what still refines behind it much less
 
@@ -12,7 +12,7 @@ CARD_SHARE = 0.15  # of the panel: a card covers about 0.3, what still refines b
 def main():
     kernel, initramfs, work = sys.argv[1:4]
     began = time.monotonic()
-    machine = Machine(kernel, initramfs, work)
+    machine = Kiosk(kernel, initramfs, work)
     try:
         machine.wait_for("temple", BOOT_S, lambda: "app: showing" in machine.log() and tones(machine.picture("temple")) > 300)
         if "ok    panel    640 x 360, a picture came onto it (KMS)" not in machine.log():
@@ -31,8 +31,7 @@ def main():
         if "KMS display" not in machine.log():
             raise SystemExit("the picture did not come through KMS:\n" + machine.log()[-2000:])
     finally:
-        machine.process.kill()
-        machine.process.wait()
+        machine.stop()
     print(f"done in {time.monotonic() - began:.0f} s")
 
 

@@ -1,0 +1,118 @@
+"""appliance.py IMAGE WORK [STICKS]: starts the appliance's image as a box would, waits for the temple, taps it, expects a card,
+and reads the journal on the way. With STICKS, a folder of update bundles by name (docs/image.md): each is plugged in as a stick."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(__file__))
+from machine import Machine, share_that_differs, tones
+
+FIRMWARE = "/usr/share/OVMF"
+BOOT_S, ANSWER_S, INSTALL_S, BACK_S = 420, 300, 900, 1500
+CARD_SHARE = 0.15  # of the panel
+
+
+class Appliance(Machine):
+    def __init__(self, image, work, case):
+        disk, variables = os.path.join(work, "disk.img"), os.path.join(work, "variables.fd")
+        subprocess.run(["cp", "--sparse=always", image, disk], check=True)
+        shutil.copy(f"{FIRMWARE}/OVMF_VARS_4M.fd", variables)
+        super().__init__(work, case, [
+            "-cpu", "Nehalem", # of a box without AVX, which this QEMU emulates slowly and not always rightly
+            "-drive", f"if=pflash,format=raw,readonly=on,file={FIRMWARE}/OVMF_CODE_4M.fd",
+            "-drive", f"if=pflash,format=raw,file={variables}",
+            "-drive", f"file={disk},if=none,id=disk,format=raw", "-device", "virtio-blk-pci,drive=disk,bootindex=0",
+            "-netdev", "user,id=net,restrict=on", "-device", "virtio-net-pci,netdev=net,romfile=",
+            "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
+        self.seen = 0
+
+    def since(self):
+        """What the log says since the last look that found something."""
+        return self.log()[self.seen :]
+
+    def said(self, what, seconds):
+        """Waits for a line with the pattern, which is returned."""
+        found = self.wait_for(what, seconds, lambda: re.search(what, self.since()))
+        self.seen += found.end()
+        return found.group(0)
+
+    def plug(self, stick):
+        self.qmp.command("blockdev-add", driver="raw", **{"node-name": "stick", "read-only": True, "file": {"driver": "file", "filename": stick}})
+        self.qmp.command("device_add", driver="usb-storage", id="stick", drive="stick")
+
+    def unplug(self):
+        self.qmp.command("device_del", id="stick")
+        time.sleep(2)
+        self.qmp.command("blockdev-del", **{"node-name": "stick"})
+
+    def temple(self, name):
+        self.wait_for("temple", ANSWER_S, lambda: tones(self.picture(name)) > 300)
+
+
+def stages(log):
+    """Seconds of the kernel's clock at which the boot came to each stage."""
+    marks = {"systemd runs": "systemd.1.: Detected virtualization", "units may start": "Reached target basic.target", "fetcher runs": "Started gopura-fetch",
+             "kiosk begins": "Starting gopura-kiosk", "panel is set": "KMS display", "first picture": "app: first picture"}
+    for name, mark in marks.items():
+        found = re.search(r"\[ *([\d.]+)\][^\n]*" + mark, log)
+        print(f"  {name:16} {found.group(1) if found else '-':>8} s")
+
+
+def visit(machine, began):
+    machine.said("app: first picture", BOOT_S)
+    machine.temple("temple")
+    print(f"first temple {time.monotonic() - began:.0f} s after power, by the kernel's clock:")
+    stages(machine.log())
+    before = machine.resting_picture("temple")
+    until = time.monotonic() + ANSWER_S
+    while not re.search("app: card of", machine.since()):  # the first touch may only take the hint away
+        if time.monotonic() > until:
+            raise SystemExit("no tap opens a card:\n" + machine.log()[-3000:])
+        machine.qmp.tap(0.5, 0.45)
+        time.sleep(5)
+    machine.wait_for("card on the panel", ANSWER_S, lambda: share_that_differs(before, machine.picture("card")) > CARD_SHARE)
+    print("a tap opened a card")
+    for fault in ("crashed", "core dump", "Failed with result"):
+        if fault in machine.log():
+            raise SystemExit(f"the journal says '{fault}':\n" + machine.log()[-3000:])
+
+
+def updates(machine, sticks):
+    stick = lambda name: os.path.join(sticks, name + ".img")
+    machine.said("slot A, .* is good", BOOT_S)
+    machine.plug(stick("tampered"))
+    print(machine.said("raucb is refused: .*", INSTALL_S))
+    machine.unplug()
+
+    machine.plug(stick("next"))
+    machine.said("installing .*next", INSTALL_S)
+    machine.said("Linux version|first picture", INSTALL_S)
+    print(machine.said("slot B, .*next, is good", BOOT_S))
+    machine.temple("next")
+    machine.unplug()
+
+    for name in ("blank", "hangs"):
+        machine.plug(stick(name))
+        machine.said(f"installing .*{name}", INSTALL_S)
+        print(machine.said("slot B, .*next, is good", BACK_S), f"again, after {name}")
+        machine.temple(name + "-back")
+        machine.unplug()
+
+
+def main():
+    image, work = sys.argv[1:3]
+    began = time.monotonic()
+    machine = Appliance(image, work, "appliance")
+    try:
+        visit(machine, began)
+        if len(sys.argv) > 3:
+            updates(machine, sys.argv[3])
+    finally:
+        machine.stop()
+    print(f"done in {time.monotonic() - began:.0f} s")
+
+
+main()

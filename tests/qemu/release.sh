@@ -1,0 +1,12 @@
+#!/bin/bash
+# release.sh WORK: a small release of the demo's content, WORK/release.
+set -eu
+work=$1
+content=$work/content
+mkdir -p "$content"
+cp -ru demo/content/. "$content/"
+sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
+	-e 's/^publish_share *=.*/publish_share = 0.5/' "$content/temple.ini"
+[ -f "$content/scan.ply" ] ||
+	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/scan.ply"
+build/gopura-content build "$content" --out "$work/release"

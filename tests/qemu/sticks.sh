@@ -1,0 +1,47 @@
+#!/bin/bash
+# sticks.sh IMAGE_FOLDER WORK: update bundles on sticks, for appliance.py: next (the same, newer), tampered (one byte of next
+# is another), blank (boots, but its kiosk shows nothing), hangs (the kernel stops half a minute after the start).
+set -eu
+cd "$(dirname "$0")/../.."
+image=$1 work=$2
+mkdir -p "$work"
+
+# stick NAME BUNDLE
+stick() {
+	rm -f "$work/$1.img"
+	truncate -s "$(($(stat -c %s "$2") / 1048576 + 24))M" "$work/$1.img"
+	mformat -i "$work/$1.img" -F ::
+	mcopy -i "$work/$1.img" "$2" "::/$1.raucb"
+}
+
+# variant NAME COMMAND...: the image's root, changed by a command that gets its folder
+variant() {
+	local name=$1 tree=$work/tree
+	shift
+	rm -rf "$tree"
+	cp -al "$image/tree" "$tree"
+	cp --remove-destination "$image/tree/usr/lib/os-release" "$tree/usr/lib/os-release"
+	sed -i "s/^IMAGE_VERSION=.*/&-$name/" "$tree/usr/lib/os-release"
+	"$@" "$tree"
+	rm -f "$work/root.squashfs"
+	mksquashfs "$tree" "$work/root.squashfs" -all-root -comp zstd -Xcompression-level 1 -quiet -no-progress
+	ln -f "$image/boot.img" "$work/boot.img"
+	VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$tree/usr/lib/os-release") image/bundle.sh "$work"
+	rm -rf "$tree"
+	stick "$name" "$work/gopura.raucb"
+}
+unchanged() { :; }
+blank() { printf '#!/bin/sh\nexec sleep infinity\n' >"$work/kiosk"; install -m 755 "$work/kiosk" "$1/usr/bin/gopura-kiosk.new"; mv "$1/usr/bin/gopura-kiosk.new" "$1/usr/bin/gopura-kiosk"; }
+hangs() {
+	mkdir -p "$1/etc/systemd/system/gopura.target.wants"
+	# The service manager itself stops, which only the hardware's watchdog sees.
+	printf '[Service]\nExecStart=/bin/sh -c "sleep 30; kill -STOP 1"\n' >"$1/etc/systemd/system/hang.service"
+	ln -s ../hang.service "$1/etc/systemd/system/gopura.target.wants/hang.service"
+}
+variant next unchanged
+cp "$work/gopura.raucb" "$work/tampered.raucb"
+printf 'x' | dd of="$work/tampered.raucb" bs=1 seek=$(($(stat -c %s "$work/tampered.raucb") / 2)) conv=notrunc status=none
+stick tampered "$work/tampered.raucb"
+variant blank blank
+variant hangs hangs
+rm -f "$work"/*.squashfs "$work"/*.raucb "$work/boot.img" "$work/kiosk"
