@@ -46,6 +46,7 @@ says 2 "--size cannot be '12'" $kiosk --size 12
 says 2 "--display cannot be 'tv'" $kiosk --display tv
 says 2 "--mode cannot be 'best'" $kiosk --mode best
 says 2 "--poll-s cannot be '0'" $kiosk --poll-s 0
+says 2 "--download cannot be '22:00'" $kiosk --download 22:00
 says 2 "--log cannot be 'all'" $kiosk --log all
 says 2 "'more' is not an option" $kiosk more
 says 2 'need --capture' $kiosk --release . --views x

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The change from one release to the next where things go wrong: visitors in the middle of it, a
+# The change from one release to the next where things go wrong: patches that are none, visitors in the middle of it, a
 # release on trial that crashes, a kill at any moment of the switch, and a time of day in which
 # nothing is brought.
 set -eu
@@ -42,6 +42,22 @@ prove() { # a release that was shown is seen to work ten seconds later, which is
 	touch "$work/since"
 	wait_for 30 "proof of the release" trial_is_over "$work/since"
 }
+
+# ---- a release that is signed and whole, and holds no patches
+make --no-print-directory build/tests/tools/spoiled_release >/dev/null
+start_kiosk "$work/spoiled.log"
+wait_for 60 "first release" says 'release 1 is shown'
+prove
+build/tests/tools/spoiled_release "$work/content/keys" "$work/release"
+wait_for 60 "refusal of what cannot be decoded" says 'refused release 2: objects of it cannot be decoded'
+! says 'release 2 is shown' || fail "what cannot be decoded was shown"
+publish Mended
+wait_for 90 "the next release" says 'release 3 is shown'
+prove
+end_kiosk
+cp -a "$small/content/." "$work/content/"
+rm -rf "$work/release"/* "$work/state"
+cp -a "$small/release/." "$work/release/"
 
 # ---- visitors: drags for half a minute, and a release that comes meanwhile
 start_kiosk "$work/first.log"

@@ -346,7 +346,7 @@ static const char *judge_disk(const struct promise *old, const struct promise *n
 
 /* ---- all disks of a cut */
 
-static uint64_t random_state;
+static uint64_t seed = 1, random_state;
 
 static uint64_t next_random(void)
 {
@@ -383,7 +383,7 @@ struct effort {
 	uint32_t samples;         /* of more */
 	uint32_t torn;            /* one in so many disks has its last write torn too */
 	uint64_t losses_most;     /* enough is known then */
-	bool tells;               /* how far it is */
+	uint32_t shard, shards;   /* cuts are dealt out; 0 shards: all are ours */
 };
 
 static void try_disk(const uint8_t *has, uint64_t torn, const struct promise *old,
@@ -448,10 +448,9 @@ static struct counts replay(const struct effort *effort, size_t stride)
 			continue;
 		if (op % stride != 0 && power.ops[op].kind != POWER_MARK)
 			continue;
-		if (effort->tells && op % 50 == 0)
-			fprintf(stderr, "operation %zu of %zu, %llu disks, %llu losses\n", op,
-				power.op_count, (unsigned long long)counts.disks,
-				(unsigned long long)counts.losses);
+		if (effort->shards > 0 && op % effort->shards != effort->shard)
+			continue;
+		random_state = seed ^ (op + 1) * 0x9e3779b97f4a7c15ull;
 		next = old == &nothing ? 0 : (size_t)(old - promises) + 1;
 		cut_here(op, old, next < promise_count ? &promises[next] : old, effort, &counts);
 	}
@@ -510,7 +509,6 @@ static int set_up(void **unused)
 		return -1;
 	snprintf(record_folder, sizeof(record_folder), "%s/work", folder);
 	snprintf(replay_folder, sizeof(replay_folder), "%s/disk", folder);
-	random_state = 88172645463325252ull;
 	power_install();
 	log_set_level(LOG_LEVEL_ERROR);
 	return 0;
@@ -525,32 +523,66 @@ static int tear_down(void **unused)
 	return system(command);
 }
 
-/* Every write, for minutes to hours; another seed takes other samples. */
-static int run_all(const char *seed)
+/* A child's part; the counts go through the pipe. */
+static void run_shard(int pipe, uint32_t shard, uint32_t shards)
 {
 	const struct effort all = { .subsets_of_most = 8,
 				    .samples = 1000,
 				    .torn = 4,
 				    .losses_most = UINT64_MAX,
-				    .tells = true };
+				    .shard = shard,
+				    .shards = shards };
 	struct counts counts;
-	int64_t began_ms;
 
-	CHECK(set_up(NULL) == 0);
-	if (seed)
-		random_state = strtoull(seed, NULL, 10) * 2654435761u + 1;
-	record(false);
-	began_ms = clock_now_ms();
+	snprintf(replay_folder, sizeof(replay_folder), "%s/disk%u", folder, shard);
+	CHECK(mkdir(replay_folder, 0755) == 0);
 	counts = replay(&all, 1);
+	CHECK(write(pipe, &counts, sizeof(counts)) == (ssize_t)sizeof(counts));
+	_exit(0);
+}
+
+static void add(struct counts *sum, const struct counts *more)
+{
+	sum->ops = more->ops;
+	sum->cuts += more->cuts;
+	sum->whole_cuts += more->whole_cuts;
+	sum->disks += more->disks;
+	if (sum->losses == 0)
+		memcpy(sum->loss, more->loss, sizeof(sum->loss));
+	sum->losses += more->losses;
+}
+
+/* Every write, in as many processes as there are cores; another seed takes other samples. */
+static int run_all(const char *text)
+{
+	const uint32_t shards = (uint32_t)sysconf(_SC_NPROCESSORS_ONLN);
+	const int64_t began_ms = clock_now_ms();
+	struct counts sum = { 0 }, counts;
+	uint32_t answers = 0;
+	int pipes[2];
+
+	CHECK(set_up(NULL) == 0 && pipe(pipes) == 0);
+	seed = text ? strtoull(text, NULL, 10) + 1 : 1;
+	record(false);
+	for (uint32_t i = 0; i < shards; i++)
+		if (fork() == 0)
+			run_shard(pipes[1], i, shards);
+	close(pipes[1]);
+	while (read(pipes[0], &counts, sizeof(counts)) == (ssize_t)sizeof(counts)) {
+		add(&sum, &counts);
+		answers++;
+	}
 	printf("%llu operations on disk, %llu cuts, of these %llu with every subset tried\n"
 	       "%llu disks opened in %lld s, %llu losses\n",
-	       (unsigned long long)counts.ops, (unsigned long long)counts.cuts,
-	       (unsigned long long)counts.whole_cuts, (unsigned long long)counts.disks,
-	       (long long)(clock_now_ms() - began_ms) / 1000, (unsigned long long)counts.losses);
-	if (counts.losses > 0)
-		printf("first loss: %s\n", counts.loss);
+	       (unsigned long long)sum.ops, (unsigned long long)sum.cuts,
+	       (unsigned long long)sum.whole_cuts, (unsigned long long)sum.disks,
+	       (long long)(clock_now_ms() - began_ms) / 1000, (unsigned long long)sum.losses);
+	if (sum.losses > 0)
+		printf("first loss: %s\n", sum.loss);
+	if (answers < shards)
+		printf("%u of %u processes did not end well\n", shards - answers, shards);
 	CHECK(tear_down(NULL) == 0);
-	return counts.losses == 0 ? 0 : 1;
+	return sum.losses == 0 && answers == shards ? 0 : 1;
 }
 
 int main(int argc, char **argv)
