@@ -23,6 +23,7 @@ struct poll {
 	int64_t next_ms;
 	uint32_t failures;
 	bool complained; /* of a file the server has not */
+	bool stamped;    /* a new timestamp was said, and no release since */
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
@@ -67,6 +68,7 @@ void poll_stop(struct poll *poll)
 	poll->root_count = 0;
 	forget(&poll->timestamp);
 	forget(&poll->release);
+	poll->stamped = false;
 }
 
 void poll_destroy(struct poll *poll)
@@ -145,6 +147,7 @@ static void take_body(struct poll *poll, const char *etag)
 		poll->root_count++;
 		say(poll, META_ROOT, poll->root_count, known);
 	} else {
+		poll->stamped = poll->stage == STAGE_TIMESTAMP;
 		say(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0, known);
 	}
 }
@@ -196,6 +199,11 @@ static void on_done(void *data, const struct http_result *result)
 	else if (rc < 0 && poll->stage != STAGE_ROOT) /* the next root is not there, as a rule */
 		complain(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {
+		/* Published between two looks, the release came before the timestamp that names it,
+		 * and was refused: it is the same still, but now it fits. */
+		if (poll->stamped)
+			say(poll, META_RELEASE, 0, &poll->release);
+		poll->stamped = false;
 		rest(poll, period_ms(poll));
 		return;
 	}

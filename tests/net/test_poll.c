@@ -90,6 +90,33 @@ static void says_each_file_once_roots_first(void **state)
 	heard(stage, "root2:B release0:S ");
 }
 
+/* The publisher writes release.json, then the timestamp that names it; who looks in between has the
+ * new release under the old timestamp, and refuses it. */
+static void says_a_release_again_under_its_timestamp(void **state)
+{
+	struct stage *stage = *state;
+
+	look_once(stage);
+	server.now_ms += 66001;
+	poll_work(stage->poll);
+	answer("root/2.json", "");
+	answer("timestamp.json", "T");
+	answer("release.json", "S");
+	heard(stage, "release0:S ");
+	server.now_ms += 66001;
+	poll_work(stage->poll);
+	answer("root/2.json", "");
+	answer("timestamp.json", "U");
+	answer("release.json", "S");
+	heard(stage, "timestamp0:U release0:S ");
+	server.now_ms += 66001;
+	poll_work(stage->poll);
+	answer("root/2.json", "");
+	answer("timestamp.json", "U");
+	answer("release.json", "S");
+	heard(stage, "");
+}
+
 static void says_all_again_when_asked(void **state)
 {
 	struct stage *stage = *state;
@@ -151,6 +178,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(says_each_file_once_roots_first),
+		STAGED(says_a_release_again_under_its_timestamp),
 		STAGED(says_all_again_when_asked),
 		STAGED(tries_again_after_pauses_when_the_server_is_away),
 		STAGED(refuses_endless_data),
