@@ -30,15 +30,20 @@ publish() {
 	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
 	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
 }
-plug() { cp -a "$1/." "$work/mount/"; }
+plug() { # RELEASE [BELOW]: whole at once, as a mount is: what is looked for comes last
+	local to=$work/mount${2:-}
+	mkdir -p "$to"
+	tar -c -C "$1" --exclude=./timestamp.json . | tar -x -C "$to"
+	cp "$1/timestamp.json" "$work/stamp"
+	mv "$work/stamp" "$to/timestamp.json"
+}
 pull() { rm -rf "${work:?}/mount/"*; }
 nowhere=https://localhost:1/
 
 # ---- never a network: the stick comes while the kiosk waits
 start_kiosk "$work/first.log" $nowhere
 wait_for 30 "word that there is no network" says 'offline'
-mkdir "$work/mount/release"
-cp -a "$work/release/." "$work/mount/release/"
+plug "$work/release" /release
 wait_for 30 "the stick's release" says 'release 1 is on the stick'
 wait_for 90 "release 1" says 'release 1 is shown'
 wait_for 90 "whole picture" says 'picture has settled'
@@ -57,8 +62,6 @@ plug "$small/release"
 wait_for 30 "refusal of an older stick" says 'refused timestamp.json of the stick: .*older'
 pull
 publish Third
-plug "$work/release"
-pull
 cp -a "$work/release" "$work/forged"
 python3 - "$work/forged/release.json" <<'P'
 import base64, json, sys
