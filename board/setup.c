@@ -175,7 +175,8 @@ static void write_network(struct writing *writing, const char *file, const char 
 		put(writing, "\n[Route]\nGateway=%s\nMetric=%d\n", t->gateway, metric);
 	if (!is_static) {
 		put_uses(writing, "DHCPv4", true);
-		put(writing, "RouteMetric=%d\nSendHostname=yes\nHostname=%s\n", metric, host);
+		put(writing, "RouteMetric=%d\nUseHostname=no\nSendHostname=yes\nHostname=%s\n",
+		    metric, host);
 		put_uses(writing, "DHCPv6", true);
 		put_uses(writing, "IPv6AcceptRA", false);
 		put(writing, "RouteMetric=%d\n", metric);

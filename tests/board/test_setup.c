@@ -114,7 +114,7 @@ static void the_fetcher_is_told_what_is_its(void **state)
 	has("fetch.env", "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 --ca /efi/ca.pem\"\n");
 	has("gopura-health.socket.d/listen.conf", "ListenStream=[::]:9200\n");
 	CHECK(strcmp(text_of("hostname"), "east-gate\n") == 0);
-	has("network/10-wired.network", "Hostname=east-gate\n");
+	has("network/10-wired.network", "UseHostname=no\nSendHostname=yes\nHostname=east-gate\n");
 }
 
 static void a_radio_network_is_named_as_iwd_looks_for_it(void **state)
