@@ -46,7 +46,7 @@ def plugging(kernel, initramfs, work):
 
 def closed(kernel, initramfs, work):
     """Outside its hours the panel is off; a touch wakes it, and opens nothing."""
-    machine = Machine(kernel, initramfs, work, "closed")
+    machine = Kiosk(kernel, initramfs, work, "closed")
     said = lambda what: lambda: what in machine.log()
     try:
         machine.wait_for("panel that is off", BOOT_S, said("app: the panel is off"))
@@ -62,8 +62,7 @@ def closed(kernel, initramfs, work):
         machine.qmp.tap(0.5, 0.45)
         machine.wait_for("card", ANSWER_S, said("app: card of"))
     finally:
-        machine.process.kill()
-        machine.process.wait()
+        machine.stop()
 
 
 safe_page(*sys.argv[1:4])
