@@ -2,6 +2,7 @@
 import os
 import re
 import struct
+import signal
 import subprocess
 import sys
 import time
@@ -9,6 +10,8 @@ import zlib
 
 sys.path.insert(0, os.path.dirname(__file__))
 from qmp import Qmp
+
+signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # whoever ends us ends the machine too
 
 WIDTH, HEIGHT = 640, 360
 BOOT_S, ANSWER_S = 300, 90
