@@ -91,8 +91,9 @@ powercut: deps ## the power goes at every write of cache and state (minutes); SE
 qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang
 	@bash tests/qemu/image.sh updates
 
-qemu: all $(BUILD)/tests/tools/lost_gl.so ## boot the kiosk on a KMS panel inside QEMU, touch it, keep pictures in build/qemu
-	@bash tests/qemu/kiosk.sh
+qemu: all ## boot the image for a person: a window, or a VNC screen
+	@./deps.sh image/tools.txt
+	@image/qemu.sh
 
 arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user
 	@bash tests/qemu/arm64.sh
