@@ -5,14 +5,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <drm_fourcc.h>
 #include <xf86drm.h>
 
+#include "base/clock.h"
 #include "base/log.h"
 
-enum { CARDS_MOST = 8 };
+enum {
+	CARDS_MOST = 8,
+	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk */
+	CARD_LOOK_MS = 500,
+};
 
 /* ---- properties */
 
@@ -272,13 +278,47 @@ static int open_any(struct drm_card *out, bool connected, const struct drm_card_
 	return -ENODEV;
 }
 
-int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
+static int open_once(struct drm_card *out, const struct drm_card_options *options)
 {
 	int rc = open_any(out, true, options);
 
 	if (rc < 0 && options->may_wait)
 		rc = open_any(out, false, options);
 	return rc;
+}
+
+/* Is there none at all, or none that we may open yet? */
+static bool is_late(const struct drm_card_options *options)
+{
+	char path[32];
+
+	if (options->device)
+		return false;
+	for (int i = 0; i < CARDS_MOST; i++) {
+		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
+		if (access(path, R_OK | W_OK) == 0)
+			return false;
+	}
+	return true;
+}
+
+int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
+{
+	const struct timespec pause = { .tv_nsec = CARD_LOOK_MS * 1000000l };
+	const int64_t until_ms = clock_now_ms() + CARD_WAIT_MS;
+
+	if (options->may_wait && is_late(options)) {
+		log_warn("render", "no graphics card yet: waiting for one");
+		while (is_late(options) && clock_now_ms() < until_ms)
+			nanosleep(&pause, NULL);
+		if (is_late(options)) {
+			log_error("render",
+				  "no graphics card under /dev/dri that may be opened: has the "
+				  "system a driver for it, and is this user in the group video?");
+			return -ENODEV;
+		}
+	}
+	return open_once(out, options);
 }
 
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)
