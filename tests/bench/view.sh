@@ -114,7 +114,7 @@ row_temple_open_300() {
 	printf '%s\n' '[release]' 'publish_share = 1' >>"$open/content/temple.ini"
 	build/gopura-content publish "$open/content" --out "$open/release" >&2
 	ln -sfn ../temple/truth "$open/truth"
-	draw temple-open-300 "$open/content" "$open/release" 1 "$visitor" <tests/bench/path.txt
+	draw temple-open-300 "$open/content" "$open/release" 6 "$visitor" <tests/bench/path.txt
 }
 
 row_fine_250() {
