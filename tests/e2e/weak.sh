@@ -68,18 +68,21 @@ for name in ["strong", "size", "units", "mediump", "rgba8", "index", "depth24", 
     assert 20 << 20 < held["rgb_bytes"] <= 32 << 20, f"{name}: {held['rgb_bytes']} B of tiles and depths"
 P
 
-# ---- a little scene, with room for all its faces: what a limit itself costs
-# little NAME LIMITS
+# ---- a little scene, with room for all its faces: what a limit itself costs, the better of three
+# runs (which samples arrive first moves one run by 0.6 dB)
+# little LIMITS
 little() {
-	WEAK_GL=$2 WEAK_GL_REPORT=$work/little-$1.json LD_PRELOAD=$shim build/tests/render/test_scene \
-		>"$work/little-$1.log" 2>&1 || { cat "$work/little-$1.log"; fail "the little scene, $1"; }
-	grep -q '"refusals": 0,' "$work/little-$1.json" || fail "$1: the little scene was refused something"
-	sed -n "s/^lumigraph: \([0-9.]*\) dB.*/$1 \1/p" "$work/little-$1.log" >>"$work/little.txt"
+	local run
+	for run in 1 2 3; do
+		WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/test_scene \
+			>"$work/little.log" 2>&1 || { cat "$work/little.log" >&2; fail "the little scene, without $1"; }
+		grep -q '"refusals": 0,' "$work/little.json" || fail "$1: the little scene was refused something"
+		sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"
+	done | sort -n | tail -n 1
 }
-little strong ''
+strong=$(little '')
 for limit in size mediump all; do
-	little "$limit" "$limit"
+	held=$(little "$limit")
+	echo "the little scene: $held dB without $limit, $strong with everything"
+	awk "BEGIN { exit !($held >= $strong - 1) }" || fail "the little scene loses more than 1 dB without $limit"
 done
-cat "$work/little.txt"
-awk '$1 == "strong" { most = $2 } $2 < most - 1 { bad = 1 } END { exit bad || NR != 4 }' "$work/little.txt" ||
-	fail "the little scene loses more than 1 dB"
