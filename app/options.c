@@ -183,12 +183,12 @@ static bool parse_seconds(const char *text, uint32_t *out)
 	return *text && !*end && value >= 1 && value <= 86400;
 }
 
-static bool parse_minutes(const char *text, uint32_t *out)
+static bool parse_minutes(const char *text, int *out)
 {
 	char *end;
 	unsigned long value = strtoul(text, &end, 10);
 
-	*out = (uint32_t)value;
+	*out = (int)value;
 	return isdigit((unsigned char)text[0]) && !*end && value <= 24 * 60;
 }
 
@@ -290,7 +290,7 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 	int option, which = 0;
 
 	*out = (struct options){ .mode = SCENE_LUMIGRAPH,
-				 .wake_min = 5,
+				 .wake_min = -1,
 				 .boards_dir = "/usr/share/gopura/board" };
 	hours_always(&out->hours);
 	while ((option = getopt_long(argc, argv, "", long_options, &which)) != -1) {

@@ -40,7 +40,8 @@ struct options {
 	struct daily download; /* when the objects of a new release are brought; 0: always */
 	uint32_t poll_s;       /* for updates; 0: the fetcher's default */
 	struct hours hours;    /* in which the panel is on */
-	uint32_t wake_min;     /* how long a touch keeps it on outside them; 0: not at all */
+	int wake_min;          /* how long a touch keeps it on outside them; 0: not at all; -1: as
+				* gopura.conf has it */
 	bool shift;            /* the picture moves by a pixel now and then */
 	bool quit_after_replay;
 	bool safe_page; /* no kiosk: app/safe_mode.h */

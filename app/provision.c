@@ -134,6 +134,8 @@ int provision_read(struct provision *provision, struct options *options, struct 
 	read_file(provision, options);
 	if (provision->path)
 		merge(provision, options);
+	if (options->wake_min < 0)
+		options->wake_min = (int)provision->terminal.wake_min;
 	rc = read_profile(provision, options, profile);
 	for (unsigned i = 0; i < provision->faults.count; i++)
 		log_error("app", "set-up bug: %s: %s", provision->path,

@@ -38,6 +38,7 @@ struct terminal {
 	int hz;                  /* whole; 0: any */
 	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board's profile says it */
 	struct hours hours;      /* always open where the file says nothing */
+	uint32_t wake_min;       /* a touch switches it on outside of hours; 0: it does not */
 	bool shift;              /* pixels move now and then; yes where the file says nothing */
 	/* [network] */
 	bool is_static;                 /* address and prefix_bits hold; else by DHCP */

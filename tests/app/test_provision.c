@@ -32,7 +32,8 @@ static void bare_options(void)
 	memset(&provision, 0, sizeof(provision));
 	options = (struct options){ .conf_paths = { none_path, conf_path },
 				    .conf_count = 2,
-				    .boards_dir = "board" };
+				    .boards_dir = "board",
+				    .wake_min = -1 };
 	hours_always(&options.hours);
 }
 
@@ -54,7 +55,7 @@ static const char full[] =
 	"[terminal]\nlanguage = km\ntime_zone = Asia/Phnom_Penh\nboard = weak-arm\n"
 	"[release]\nurl = https://museum.example/temple/\npoll_s = 600\n"
 	"download = 22:00-06:00\nca = ca.pem\n"
-	"[panel]\nmode = 1280x800@50\nrotation = 270\nhours = 09:00-18:00\n";
+	"[panel]\nmode = 1280x800@50\nrotation = 270\nhours = 09:00-18:00\nwake_min = 20\n";
 
 static void takes_from_the_file_what_the_command_line_leaves_open(void **state)
 {
@@ -70,6 +71,7 @@ static void takes_from_the_file_what_the_command_line_leaves_open(void **state)
 	CHECK(strcmp(options.ca_path, ca) == 0);
 	CHECK(options.width_px == 1280 && options.height_px == 800 && options.hz == 50);
 	CHECK(options.download.from_min == 22 * 60 && options.shift);
+	CHECK(options.wake_min == 20);
 	CHECK(!hours_open_at(&options.hours, &(struct tm){ .tm_hour = 8 }));
 	CHECK(hours_open_at(&options.hours, &(struct tm){ .tm_hour = 9 }));
 	CHECK(profile.rotation_deg == 270 && profile.texture_mib == 32);
@@ -83,6 +85,7 @@ static void the_command_line_overrides(void **state)
 	options.language = "en";
 	options.ca_path = "/etc/ca.pem";
 	options.poll_s = 5;
+	options.wake_min = 0;
 	options.width_px = 640;
 	options.height_px = 360;
 	options.download = (struct daily){ 60, 120 };
@@ -93,7 +96,7 @@ static void the_command_line_overrides(void **state)
 	CHECK(strcmp(options.language, "en") == 0 && options.poll_s == 5);
 	CHECK(strcmp(options.ca_path, "/etc/ca.pem") == 0);
 	CHECK(options.width_px == 640 && options.hz == 0);
-	CHECK(options.download.from_min == 60);
+	CHECK(options.download.from_min == 60 && options.wake_min == 0);
 	CHECK(!hours_open_at(&options.hours, &(struct tm){ .tm_hour = 9 }));
 	CHECK(profile.texture_mib == 256);
 }
@@ -164,6 +167,7 @@ static void without_a_file_everything_is_as_the_command_line_has_it(void **state
 	bare_options();
 	CHECK(provision_read(&provision, &options, &profile) == 0);
 	CHECK(!provision.path && provision.faults.count == 0 && !options.shift);
+	CHECK(options.wake_min == 5);
 	CHECK(memcmp(&profile, &profile_default, sizeof(profile)) == 0);
 }
 

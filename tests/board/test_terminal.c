@@ -49,7 +49,7 @@ static void takes_every_value(void **state)
 	      "board = weak-arm\n" RELEASE
 	      "ca = ca.pem\npoll_s = 600\ndownload = 22:00-06:00\nrate_limit_kib = 500\n"
 	      "[panel]\nmode = 3840x2160@59.94\nrotation = 270\nhours = Mo-Fr 09:00-18:00\n"
-	      "shift = no\n"
+	      "wake_min = 0\nshift = no\n"
 	      "[network]\naddress = 192.168.1.20/24\ngateway = 192.168.1.1\n"
 	      "dns = 192.168.1.1, 2620:fe::fe\nntp = pool.ntp.org 192.168.1.1\n"
 	      "[wifi]\nssid = Musée d'Angkor\npassphrase = stone and water\ncountry = kh\n"
@@ -66,6 +66,7 @@ static void takes_every_value(void **state)
 	CHECK(terminal.download.until_min == 6 * 60);
 	CHECK(terminal.width_px == 3840 && terminal.height_px == 2160);
 	CHECK(terminal.hz == 60 && terminal.rotation_deg == 270 && !terminal.shift);
+	CHECK(terminal.wake_min == 0);
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 1, .tm_hour = 9 }));
 	CHECK(!hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 0, .tm_hour = 9 }));
 	CHECK(terminal.is_static && strcmp(terminal.address, "192.168.1.20") == 0);
@@ -84,6 +85,7 @@ static void keeps_defaults_where_nothing_is_said(void **state)
 	parse(RELEASE);
 	CHECK(faults.count == 0);
 	CHECK(terminal.rotation_deg == -1 && terminal.shift && !terminal.is_static);
+	CHECK(terminal.wake_min == 5);
 	CHECK(terminal.download.from_min == terminal.download.until_min && terminal.poll_s == 0 &&
 	      terminal.width_px == 0);
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 0, .tm_hour = 3 }));
@@ -104,6 +106,9 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "panel", "mode = 1920x1080@1000", "such as 1920x1080" },
 		{ "panel", "mode = 1920x99999", "such as 1920x1080" },
 		{ "panel", "hours = 9 to 5", "such as Mo-Fr 09:00-18:00" },
+		{ "panel", "wake_min = -1", "whole minutes from 0 to 1440" },
+		{ "panel", "wake_min = 1441", "whole minutes from 0 to 1440" },
+		{ "panel", "wake_min = 2.5", "whole minutes from 0 to 1440" },
 		{ "panel", "shift = maybe", "yes or no" },
 		{ "panel", "shift =", "is empty" },
 		{ "terminal", "language = English", "such as km" },
@@ -207,7 +212,7 @@ static void names_what_was_meant(void **state)
 	parse(RELEASE "[terminal]\nrotation = 90\n");
 	says_only("line 5: rotation belongs under [panel]; move it there");
 	parse(RELEASE "[panel]\nbrightness = 90\n");
-	says_only("[panel] has no 'brightness'; it has mode, rotation, hours, shift");
+	says_only("[panel] has no 'brightness'; it has mode, rotation, hours, wake_min, shift");
 	parse(RELEASE "[sound]\nvolume = 3\n");
 	says_only("there are [terminal], [release], [panel], [network], [wifi], [health]");
 	parse("colour = red\n" RELEASE);
