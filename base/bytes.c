@@ -1,5 +1,7 @@
 #include "base/bytes.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -312,4 +314,34 @@ int bytes_write_file(struct bytes bytes, const char *path)
 		return fd;
 	rc = bytes_end_file(fd, temporary, path, write_all(fd, bytes));
 	return rc < 0 ? rc : sync_folder_of(path);
+}
+
+/* "state.db.second.a1B2c3" of "state.db.second", as mkostemp names it. */
+static bool is_leftover(const char *entry, const char *name)
+{
+	const size_t length = strlen(name);
+	const char *end = entry + length + 1;
+
+	if (strncmp(entry, name, length) != 0 || entry[length] != '.' || strlen(end) != 6)
+		return false;
+	while (isalnum((unsigned char)*end))
+		end++;
+	return *end == '\0';
+}
+
+void bytes_drop_leftovers(const char *path)
+{
+	char folder[BYTES_PATH_MOST];
+	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+	struct dirent *entry;
+	DIR *entries;
+
+	snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(slash - path) + 1 : 1,
+		 slash ? path : ".");
+	entries = opendir(folder);
+	while (entries && (entry = readdir(entries)))
+		if (is_leftover(entry->d_name, name))
+			unlinkat(dirfd(entries), entry->d_name, 0);
+	if (entries)
+		closedir(entries);
 }

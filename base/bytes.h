@@ -80,5 +80,7 @@ must_check int bytes_begin_file(char temporary[BYTES_PATH_MOST], const char *pat
 must_check int bytes_end_file(int fd, const char *temporary, const char *path, int rc);
 /* Atomically: a temporary file beside it, fsync, rename, fsync of the folder. */
 must_check int bytes_write_file(struct bytes bytes, const char *path);
+/* Removes temporary files that power cuts left of path's. While nobody writes it. */
+void bytes_drop_leftovers(const char *path);
 
 #endif

@@ -9,39 +9,13 @@
 
 #include "base/log.h"
 #include "storage/db.h"
-
-/* The record, in memory all the time, stands twice on disk: as the row of a table whose columns a
- * person can read, with a hash over the encoded record; and encoded, with that hash behind it, in
- * PATH.second. The encoded form:
- *
- *   "GSta"  u32 version(2)  u64 sequence floor  u64 time floor
- *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json
- *   u32 tries  of the previous release: 16 bytes root ... release.json
- *
- * Version 1 ended before the tries; such a copy is read, as of a release that is proven. */
+#include "storage/state_record.h"
 
 enum {
-	RECORD_BYTES_MOST = 3 * STATE_FILE_BYTES_MOST + 256,
-	RECORD_VERSION = 2,
 	BROKEN_BYTES_MOST = 1 << 20,
 	TIME_STEP_S = 3600,
 	COUNTERS_MOST = 32,
 	COUNTER_NAME_BYTES = 32,
-};
-
-struct kept_release {
-	struct hash root; /* zero: none yet */
-	uint32_t root_bytes;
-	uint64_t sequence;
-	struct buffer file;
-};
-
-struct record {
-	uint64_t sequence_floor;
-	int64_t time_floor_s;
-	struct kept_release release, previous;
-	struct buffer trust; /* empty: none yet */
-	uint32_t tries;      /* of release; 0: proven */
 };
 
 struct counter {
@@ -68,150 +42,6 @@ static const char schema[] =
 	" check_hash BLOB);"
 	"CREATE TABLE IF NOT EXISTS counters (name TEXT PRIMARY KEY, value INTEGER) WITHOUT ROWID;"
 	"COMMIT";
-
-static void record_init(struct record *record)
-{
-	*record = (struct record){ 0 };
-	buffer_init(&record->release.file, STATE_FILE_BYTES_MOST);
-	buffer_init(&record->previous.file, STATE_FILE_BYTES_MOST);
-	buffer_init(&record->trust, STATE_FILE_BYTES_MOST);
-}
-
-static void record_finish(struct record *record)
-{
-	buffer_finish(&record->release.file);
-	buffer_finish(&record->previous.file);
-	buffer_finish(&record->trust);
-}
-
-/* A file that did not fit. */
-static int record_error(const struct record *record)
-{
-	return record->release.file.error    ? record->release.file.error
-	       : record->previous.file.error ? record->previous.file.error
-					     : record->trust.error;
-}
-
-static void release_encode(struct buffer *out, const struct kept_release *release)
-{
-	buffer_put(out, release->root.bytes, HASH_BYTES);
-	buffer_put_u32(out, release->root_bytes);
-	buffer_put_u64(out, release->sequence);
-	buffer_put_u32(out, (uint32_t)release->file.size);
-	buffer_put(out, release->file.data, release->file.size);
-}
-
-static void record_encode(struct buffer *out, const struct record *record)
-{
-	buffer_put(out, "GSta", 4);
-	buffer_put_u32(out, RECORD_VERSION);
-	buffer_put_u64(out, record->sequence_floor);
-	buffer_put_u64(out, (uint64_t)record->time_floor_s);
-	release_encode(out, &record->release);
-	buffer_put_u32(out, (uint32_t)record->trust.size);
-	buffer_put(out, record->trust.data, record->trust.size);
-	buffer_put_u32(out, record->tries);
-	release_encode(out, &record->previous);
-}
-
-static void get_sized(struct buffer *out, struct reader *reader)
-{
-	struct bytes bytes = reader_bytes(reader, reader_u32(reader));
-
-	buffer_clear(out);
-	buffer_put(out, bytes.data, bytes.size);
-}
-
-static void release_decode(struct kept_release *out, struct reader *reader)
-{
-	struct bytes root = reader_bytes(reader, HASH_BYTES);
-
-	if (root.size)
-		memcpy(out->root.bytes, root.data, HASH_BYTES);
-	out->root_bytes = reader_u32(reader);
-	out->sequence = reader_u64(reader);
-	get_sized(&out->file, reader);
-}
-
-/* -EBADMSG: not such a record, or changed since it was written. */
-static int record_decode(struct record *out, struct bytes file)
-{
-	struct bytes body = { file.data, file.size - HASH_BYTES };
-	struct bytes magic;
-	struct reader reader;
-	struct hash check;
-	uint32_t version;
-
-	if (file.size < HASH_BYTES)
-		return -EBADMSG;
-	check = hash_of(body);
-	if (memcmp(check.bytes, file.data + body.size, HASH_BYTES) != 0)
-		return -EBADMSG;
-	reader_init(&reader, body);
-	magic = reader_bytes(&reader, 4);
-	version = reader_u32(&reader);
-	if (magic.size != 4 || memcmp(magic.data, "GSta", 4) != 0 || version < 1 ||
-	    version > RECORD_VERSION)
-		return -EBADMSG;
-	out->sequence_floor = reader_u64(&reader);
-	out->time_floor_s = (int64_t)reader_u64(&reader);
-	release_decode(&out->release, &reader);
-	get_sized(&out->trust, &reader);
-	if (version > 1) {
-		out->tries = reader_u32(&reader);
-		release_decode(&out->previous, &reader);
-	}
-	return reader.failed || reader_left(&reader) || record_error(out) < 0 ? -EBADMSG : 0;
-}
-
-static int hash_record(struct hash *out, const struct record *record)
-{
-	struct buffer encoded;
-	int rc;
-
-	buffer_init(&encoded, RECORD_BYTES_MOST);
-	record_encode(&encoded, record);
-	rc = encoded.error;
-	*out = hash_of(buffer_bytes(&encoded));
-	buffer_finish(&encoded);
-	return rc;
-}
-
-/* ---- PATH.second */
-
-static int read_second(struct record *out, const char *path)
-{
-	char name[PATH_MAX + 8];
-	struct buffer file;
-	int rc;
-
-	snprintf(name, sizeof(name), "%s.second", path);
-	buffer_init(&file, RECORD_BYTES_MOST);
-	rc = buffer_read_file(&file, name);
-	if (rc == 0)
-		rc = record_decode(out, buffer_bytes(&file));
-	buffer_finish(&file);
-	return rc;
-}
-
-static int write_second(const struct record *record, const char *path)
-{
-	char name[PATH_MAX + 8];
-	struct buffer file;
-	struct hash check;
-	int rc;
-
-	snprintf(name, sizeof(name), "%s.second", path);
-	buffer_init(&file, RECORD_BYTES_MOST);
-	record_encode(&file, record);
-	check = hash_of(buffer_bytes(&file));
-	buffer_put(&file, check.bytes, HASH_BYTES);
-	rc = file.error;
-	if (rc == 0)
-		rc = bytes_write_file(buffer_bytes(&file), name);
-	buffer_finish(&file);
-	return rc;
-}
 
 /* ---- the database */
 
@@ -247,7 +77,7 @@ static int take_row(struct record *out, sqlite3_stmt *row)
 	out->tries = (uint32_t)sqlite3_column_int64(row, 7);
 	if (take_release(&out->release, row, 2) < 0 || take_release(&out->previous, row, 8) < 0 ||
 	    sqlite3_column_bytes(row, 12) != HASH_BYTES || record_error(out) < 0 ||
-	    hash_record(&check, out) < 0)
+	    record_hash(&check, out) < 0)
 		return -EBADMSG;
 	return memcmp(check.bytes, sqlite3_column_blob(row, 12), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
@@ -290,7 +120,7 @@ static int write_record(sqlite3 *db, const struct record *record)
 {
 	sqlite3_stmt *insert = NULL;
 	struct hash check;
-	int rc = hash_record(&check, record);
+	int rc = record_hash(&check, record);
 
 	if (rc == 0)
 		rc = db_code(sqlite3_prepare_v2(db,
@@ -384,7 +214,7 @@ static void recover(struct state *state, int rc)
 			  state->db ? sqlite3_errmsg(state->db) : strerror(-rc));
 		close_db(state);
 	}
-	if (read_second(&state->record, state->path) < 0) {
+	if (record_read_second(&state->record, state->path) < 0) {
 		record_finish(&state->record);
 		record_init(&state->record);
 		if (damaged)
@@ -408,13 +238,14 @@ int state_create(struct state **out, const char *path)
 		return -ENOMEM;
 	snprintf(state->path, sizeof(state->path), "%s", path);
 	record_init(&state->record);
+	record_drop_leftovers(path);
 	rc = open_db(state);
 	if (rc < 0) {
 		recover(state, rc);
 	} else {
 		/* An older database put back in place must not lower the floors. */
 		record_init(&second);
-		if (read_second(&second, path) == 0)
+		if (record_read_second(&second, path) == 0)
 			raise_floors(&state->record, &second);
 		record_finish(&second);
 	}
@@ -491,23 +322,9 @@ static int change(struct state *state, struct record *next)
 	state->record = *next;
 	state->written_time_floor_s = next->time_floor_s;
 	/* The database has it: a failure here costs only the second copy. */
-	if (write_second(&state->record, state->path) < 0)
+	if (record_write_second(&state->record, state->path) < 0)
 		log_warn("storage", "%s.second could not be written", state->path);
 	return 0;
-}
-
-static void copy_file(struct buffer *out, const struct buffer *from)
-{
-	buffer_init(out, STATE_FILE_BYTES_MOST);
-	buffer_put(out, from->data, from->size);
-}
-
-static void copy_record(struct record *out, const struct record *from)
-{
-	*out = *from;
-	copy_file(&out->release.file, &from->release.file);
-	copy_file(&out->previous.file, &from->previous.file);
-	copy_file(&out->trust, &from->trust);
 }
 
 /* To the back: what was there is finished, what comes to the front has no file yet. */
@@ -525,7 +342,7 @@ int state_activate(struct state *state, const struct state_release *release)
 
 	if (release->sequence < state->record.sequence_floor)
 		return -ESTALE;
-	copy_record(&next, &state->record);
+	record_copy(&next, &state->record);
 	if (!hash_equal(next.release.root, release->root)) {
 		if (next.tries == 0 && !hash_is_zero(next.release.root))
 			make_previous(&next);
@@ -543,7 +360,7 @@ static int change_tries(struct state *state, uint32_t tries)
 {
 	struct record next;
 
-	copy_record(&next, &state->record);
+	record_copy(&next, &state->record);
 	next.tries = tries;
 	return change(state, &next);
 }
@@ -566,7 +383,7 @@ int state_fall_back(struct state *state)
 
 	if (hash_is_zero(state->record.previous.root))
 		return -ENOENT;
-	copy_record(&next, &state->record);
+	record_copy(&next, &state->record);
 	buffer_finish(&next.release.file);
 	next.release = next.previous;
 	next.previous = (struct kept_release){ 0 };
@@ -579,7 +396,7 @@ int state_set_trust(struct state *state, struct bytes file)
 {
 	struct record next;
 
-	copy_record(&next, &state->record);
+	record_copy(&next, &state->record);
 	buffer_clear(&next.trust);
 	buffer_put(&next.trust, file.data, file.size);
 	return change(state, &next);
@@ -594,7 +411,7 @@ int state_raise_time_floor(struct state *state, int64_t at_least_s)
 	state->record.time_floor_s = at_least_s;
 	if (at_least_s - state->written_time_floor_s < TIME_STEP_S)
 		return 0;
-	copy_record(&next, &state->record);
+	record_copy(&next, &state->record);
 	return change(state, &next);
 }
 

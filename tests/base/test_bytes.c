@@ -1,6 +1,7 @@
 #include "base/bytes.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -83,6 +84,46 @@ static void writes_a_file_whole_or_not_at_all(void **state)
 	buffer_finish(&back);
 }
 
+static void touch_beside(const char *path, const char *end)
+{
+	char name[128];
+	FILE *file;
+
+	snprintf(name, sizeof(name), "%s%s", path, end);
+	file = fopen(name, "w");
+	CHECK(file && fclose(file) == 0);
+}
+
+static bool is_beside(const char *path, const char *end)
+{
+	char name[128];
+
+	snprintf(name, sizeof(name), "%s%s", path, end);
+	return access(name, F_OK) == 0;
+}
+
+static void drops_what_a_cut_left_of_a_file_and_nothing_else(void **state)
+{
+	static const char *const others[] = { "",        ".a1B2c",   ".a1B2c3d",
+					      ".a1B2c.", "2.a1B2c3", ".second.a1B2c3" };
+	char folder[] = "/tmp/gopura-bytes-XXXXXX", path[64], command[64];
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/state", folder);
+	for (size_t i = 0; i < ARRAY_COUNT(others); i++)
+		touch_beside(path, others[i]);
+	touch_beside(path, ".a1B2c3");
+	touch_beside(path, ".ZZZZZZ");
+	bytes_drop_leftovers(path);
+	CHECK(!is_beside(path, ".a1B2c3") && !is_beside(path, ".ZZZZZZ"));
+	for (size_t i = 0; i < ARRAY_COUNT(others); i++)
+		CHECK(is_beside(path, others[i]));
+	bytes_drop_leftovers("/nonexistent/state");
+	snprintf(command, sizeof(command), "rm -r %s", folder);
+	CHECK(system(command) == 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -90,6 +131,7 @@ int main(void)
 		cmocka_unit_test(stays_failed_past_the_end),
 		cmocka_unit_test(refuses_to_pass_its_ceiling),
 		cmocka_unit_test(writes_a_file_whole_or_not_at_all),
+		cmocka_unit_test(drops_what_a_cut_left_of_a_file_and_nothing_else),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -109,6 +109,23 @@ static void remembers_across_a_restart(void **unused)
 	state_destroy(NULL);
 }
 
+static void cleans_up_what_a_cut_left_of_the_second_copy(void **unused)
+{
+	struct state *state = open_state();
+	char name[128];
+	FILE *file;
+
+	(void)unused;
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	snprintf(name, sizeof(name), "%s.second.x1Y2z3", path);
+	file = fopen(name, "w");
+	CHECK(file && fputs("half a rec", file) >= 0 && fclose(file) == 0);
+	state = open_state();
+	CHECK(!exists(".second.x1Y2z3") && exists(".second") && active(state) == 3);
+	state_destroy(state);
+}
+
 static void never_lowers_a_floor(void **unused)
 {
 	struct state *state = open_state();
@@ -350,6 +367,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(remembers_across_a_restart),
+		IN_A_FOLDER(cleans_up_what_a_cut_left_of_the_second_copy),
 		IN_A_FOLDER(never_lowers_a_floor),
 		IN_A_FOLDER(refuses_a_file_past_its_ceiling),
 		IN_A_FOLDER(comes_back_from_the_second_copy),
