@@ -23,9 +23,9 @@ struct figures_socket;
 struct follow;
 
 /* Of the program, beside success and failure: it is well, but must begin anew, from what it has
- * cached (EX_TEMPFAIL of sysexits.h). The service manager is to start it at once and to count no
- * crash. */
-enum { KIOSK_STATUS_ANEW = 75 };
+ * cached, for another panel or since the GPU lost its context. The service manager is to start it
+ * at once; the former is no crash, the latter none unless it comes again and again. */
+enum { KIOSK_STATUS_ANEW = 75, KIOSK_STATUS_LOST_GPU = 76 };
 
 enum {
 	EXHIBIT_KEPT_MOST = 4096,

@@ -32,7 +32,9 @@ int main(int argc, char **argv)
 			rc = kiosk_run(&kiosk);
 		kiosk_stop(&kiosk); /* the reverse; any part may be missing */
 	}
-	if (rc == -ENOTRECOVERABLE || rc == -ESTALE)
+	if (rc == -ENOTRECOVERABLE)
+		return KIOSK_STATUS_LOST_GPU;
+	if (rc == -ESTALE)
 		return KIOSK_STATUS_ANEW;
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

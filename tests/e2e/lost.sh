@@ -30,8 +30,8 @@ loses() {
 	[ "$(grep -c 'the GPU los.* its context' "$log")" = 1 ] || fail "$1: not one line about it"
 	! grep -E 'GL says|kiosk bug|content bug|stopping' "$log" || fail "$1: more is said than that"
 }
-loses status 6 75
-loses error 6 75
+loses status 6 76
+loses error 6 76
 # One that is lost at once would be lost again: that is a crash, and three of them bring the safe page.
 loses status 0 1
 "${kiosk[@]}" 2>"$work/again.log" &

@@ -39,5 +39,5 @@ safe)
 esac
 until kiosk "$@" | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do
 	rm -f /tmp/lost
-	sleep 0.2 # as the service manager does for status 75
+	sleep 0.2 # as the service manager does for status 75 and 76
 done

@@ -99,7 +99,7 @@ class Machine:
     def wait_for(self, what, seconds, condition):
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            if self.process.poll() is not None or re.search("the kiosk ended with status (?!75)", self.log()):
+            if self.process.poll() is not None or re.search("the kiosk ended with status (?!7[56])", self.log()):
                 raise SystemExit(f"the machine or the kiosk ended while waiting for {what}:\n" + self.log()[-3000:])
             found = condition()
             if found:
