@@ -16,7 +16,7 @@
 
 enum {
 	CARDS_MOST = 8,
-	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk */
+	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk, a boot splash go later */
 	CARD_LOOK_MS = 500,
 };
 
@@ -255,9 +255,12 @@ static const char *why_not(int rc)
 	}
 }
 
-static int open_any(struct drm_card *out, bool connected, const struct drm_card_options *options)
+/* -EBUSY, where another program has one that would do: *taken is its number. */
+static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
+		    const struct drm_card_options *options)
 {
 	char path[32];
+	int result = -ENODEV;
 
 	for (int i = 0; i < CARDS_MOST; i++) {
 		int rc;
@@ -266,25 +269,57 @@ static int open_any(struct drm_card *out, bool connected, const struct drm_card_
 		rc = open_card(out, options->device ? options->device : path, connected, options);
 		if (rc == 0)
 			return 0;
-		if (options->device) {
-			if (connected && rc == -ENXIO && options->may_wait)
-				return -ENODEV; /* looked at again without a panel */
-			log_error("render", "%s: %s", options->device, why_not(rc));
-			return -ENODEV;
+		if (rc == -EBUSY && result != -EBUSY) {
+			result = -EBUSY;
+			*taken = i;
 		}
-		if (rc != -ENOENT && connected)
+		if (options->device) {
+			/* What is waited for, or looked at again without a panel, is no fault. */
+			if (!options->may_wait || (rc != -EBUSY && (rc != -ENXIO || !connected)))
+				log_error("render", "%s: %s", options->device, why_not(rc));
+			return result;
+		}
+		if (rc != -ENOENT && connected && !told)
 			log_info("render", "%s: %s", path, why_not(rc));
 	}
-	return -ENODEV;
+	return result;
 }
 
-static int open_once(struct drm_card *out, const struct drm_card_options *options)
+static int open_once(struct drm_card *out, bool told, int *taken,
+		     const struct drm_card_options *options)
 {
-	int rc = open_any(out, true, options);
+	int rc = open_any(out, true, told, taken, options);
 
-	if (rc < 0 && options->may_wait)
-		rc = open_any(out, false, options);
+	/* A panel that another program has is worth more than a card without one. */
+	if (rc == -ENODEV && options->may_wait)
+		rc = open_any(out, false, told, taken, options);
 	return rc;
+}
+
+/* A card is given up with its descriptor, so it is opened anew each time: the first to open it when
+ * nobody has it is its master, and no other call needs no privilege. */
+static int open_when_free(struct drm_card *out, const struct drm_card_options *options)
+{
+	const struct timespec pause = { .tv_nsec = CARD_LOOK_MS * 1000000l };
+	const int64_t until_ms = clock_now_ms() + CARD_WAIT_MS;
+	char path[32];
+	const char *name = options->device ? options->device : path;
+	int taken, rc = open_once(out, false, &taken, options);
+
+	if (rc != -EBUSY || !options->may_wait)
+		return rc < 0 ? -ENODEV : 0;
+	snprintf(path, sizeof(path), "/dev/dri/card%d", taken);
+	log_warn("render", "another program shows pictures on %s: waiting until it ends", name);
+	while (rc == -EBUSY && clock_now_ms() < until_ms) {
+		nanosleep(&pause, NULL);
+		rc = open_once(out, true, &taken, options);
+	}
+	if (rc == -EBUSY)
+		log_error("render",
+			  "another program still shows pictures on %s: end it (a desktop, a boot "
+			  "splash, another kiosk), or name another card by --device",
+			  name);
+	return rc < 0 ? -ENODEV : 0;
 }
 
 /* Is there none at all, or none that we may open yet? */
@@ -318,7 +353,7 @@ int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
 			return -ENODEV;
 		}
 	}
-	return open_once(out, options);
+	return open_when_free(out, options);
 }
 
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)

@@ -41,8 +41,9 @@ struct drm_card {
 	uint32_t modifier_count;
 };
 
-/* With may_wait and no device named, half a minute for a first card to come, in which this does not
- * return. -ENODEV: no card with a connected panel that is free; the log says why for each card. */
+/* With may_wait, half a minute for a first card to come (where no device is named) and as long for
+ * another program to give it up, in which this does not return. -ENODEV: no card with a connected
+ * panel that is free; the log says why for each card. */
 must_check int drm_card_open(struct drm_card *out, const struct drm_card_options *options);
 void drm_card_close(struct drm_card *card);
 
