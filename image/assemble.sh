@@ -92,7 +92,7 @@ ln -s /run/gopura/hostname "$tree/etc/hostname"
 ln -s /run/systemd/resolve/stub-resolv.conf "$tree/etc/resolv.conf"
 ln -sfn /run/gopura/localtime "$tree/etc/localtime"
 rm -rf "$tree"/var/* "$tree"/run/* "$tree"/tmp/*
-rm -rf "$tree"/{boot,home,media,mnt,opt,srv}
+rm -rf "$tree"/{boot,media,mnt,opt} "$tree"/{home,srv}/*  # systemd-tmpfiles wants these two
 find "$tree" -newermt "@$SOURCE_DATE_EPOCH" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
 fc-cache -s -y "$tree"
 

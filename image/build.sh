@@ -16,7 +16,7 @@ cd "$(dirname "$0")/.."
 here=$PWD/image out=${OUT:-build/image} mirror=${MIRROR:-http://deb.debian.org}
 export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)} LC_ALL=C TZ=UTC
 export PATH=$PATH:/usr/sbin:/sbin
-slot_mib=300 boot_mib=48 esp_mib=64 data_mib=${DATA_MIB:-256}
+slot_mib=300 boot_mib=48 esp_mib=64 data_mib=${DATA_MIB:-512}
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 say() { echo "image: $*"; }

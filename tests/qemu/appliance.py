@@ -3,9 +3,12 @@ and reads the journal on the way. With STICKS, a folder of update bundles by nam
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import time
+import urllib.error
+import urllib.request
 
 sys.path.insert(0, os.path.dirname(__file__))
 from machine import Machine, tones
@@ -15,8 +18,15 @@ BOOT_S, ANSWER_S, INSTALL_S, BACK_S = 420, 300, 900, 1500
 CARD_SHARE = 0.1  # of the panel, in its own colour; without a card it is 0.02
 
 
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
 class Appliance(Machine):
     def __init__(self, image, work, case):
+        self.health = free_port()
         disk, variables = os.path.join(work, "disk.img"), os.path.join(work, "variables.fd")
         subprocess.run(["cp", "--sparse=always", image, disk], check=True)
         shutil.copy(f"{FIRMWARE}/OVMF_VARS_4M.fd", variables)
@@ -25,7 +35,7 @@ class Appliance(Machine):
             "-drive", f"if=pflash,format=raw,readonly=on,file={FIRMWARE}/OVMF_CODE_4M.fd",
             "-drive", f"if=pflash,format=raw,file={variables}",
             "-drive", f"file={disk},if=none,id=disk,format=raw", "-device", "virtio-blk-pci,drive=disk,bootindex=0",
-            "-netdev", "user,id=net,restrict=on", "-device", "virtio-net-pci,netdev=net,romfile=",
+            "-netdev", f"user,id=net,restrict=on,hostfwd=tcp:127.0.0.1:{self.health}-:9100", "-device", "virtio-net-pci,netdev=net,romfile=",
             "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
         self.seen = 0
 
@@ -39,6 +49,12 @@ class Appliance(Machine):
         self.seen += found.end()
         return found.group(0)
 
+    def installed(self, name):
+        """Waits until the update of a stick is in the other slot and the machine starts again."""
+        self.said(f"installing .*{name}", INSTALL_S)
+        if "GRUB" not in self.said("Welcome to GRUB|could not be installed", INSTALL_S):
+            raise SystemExit(f"{name} was not installed:\n" + self.log()[-3000:])
+
     def plug(self, stick):
         self.qmp.command("blockdev-add", driver="raw", **{"node-name": "stick", "read-only": True, "file": {"driver": "file", "filename": stick}})
         self.qmp.command("device_add", driver="usb-storage", id="stick", drive="stick")
@@ -47,6 +63,14 @@ class Appliance(Machine):
         self.qmp.command("device_del", id="stick")
         time.sleep(2)
         self.qmp.command("blockdev-del", **{"node-name": "stick"})
+
+    def asked(self, path):
+        """What the health page answers to a question from outside, whatever its status."""
+        try:
+            answer = urllib.request.urlopen(f"http://127.0.0.1:{self.health}{path}", timeout=60)
+        except urllib.error.HTTPError as ill:
+            answer = ill
+        return answer.read().decode()
 
     def temple(self, name):
         self.wait_for("temple", ANSWER_S, lambda: tones(self.picture(name)) > 300)
@@ -60,7 +84,7 @@ def paper(rows):
 
 def stages(log):
     """Seconds of the kernel's clock at which the boot came to each stage."""
-    marks = {"systemd runs": "systemd.1.: Detected virtualization", "units may start": "Reached target basic.target", "fetcher runs": "Started gopura-fetch",
+    marks = {"systemd runs": "systemd", "units may start": "Reached target basic.target", "fetcher runs": "Started gopura-fetch",
              "kiosk begins": "Starting gopura-kiosk", "panel is set": "KMS display", "first picture": "app: first picture"}
     for name, mark in marks.items():
         found = re.search(r"\[ *([\d.]+)\][^\n]*" + mark, log)
@@ -80,9 +104,19 @@ def visit(machine, began):
         machine.qmp.tap(0.5, 0.45)
         time.sleep(5)
     print("a tap opened a card")
+    well(machine)
     for fault in ("crashed", "core dump", "Failed with result"):
         if fault in machine.log():
             raise SystemExit(f"the journal says '{fault}':\n" + machine.log()[-3000:])
+
+
+def well(machine):
+    """The health page, asked over the network, knows both programs and finds nothing ill."""
+    verdict, figures = machine.asked("/health"), machine.asked("/metrics")
+    print("the health page says: " + verdict.replace("\n", "; "))
+    up = [f"gopura_{what} 1" for what in ("kiosk_up", "fetch_up", "kiosk_picture")]
+    if "ill" in verdict.split() or not set(up) <= set(figures.splitlines()):
+        raise SystemExit("the health page is wrong:\n" + verdict + figures)
 
 
 def updates(machine, sticks):
@@ -93,15 +127,14 @@ def updates(machine, sticks):
     machine.unplug()
 
     machine.plug(stick("next"))
-    machine.said("installing .*next", INSTALL_S)
-    machine.said("Linux version|first picture", INSTALL_S)
+    machine.installed("next")
     print(machine.said("slot B, .*next, is good", BOOT_S))
     machine.temple("next")
     machine.unplug()
 
     for name in ("blank", "hangs"):
         machine.plug(stick(name))
-        machine.said(f"installing .*{name}", INSTALL_S)
+        machine.installed(name)
         print(machine.said("slot B, .*next, is good", BACK_S), f"again, after {name}")
         machine.temple(name + "-back")
         machine.unplug()

@@ -9,7 +9,9 @@ skip() { echo "$*"; exit 77; }
 work=build/qemu-image
 mkdir -p "$work"
 tests/qemu/release.sh build/qemu
-RELEASE=build/qemu/release OUT=$work/image KERNEL="console=ttyS0 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} image/build.sh
+cp build/qemu/release/root/1.json "$work/root.json"
+printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$work/gopura.conf"
+CONF=$work/gopura.conf RELEASE=build/qemu/release OUT=$work/image KERNEL="console=ttyS0 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} image/build.sh
 sticks=
 if [ "${1:-}" = updates ]; then
 	sticks=$work/sticks

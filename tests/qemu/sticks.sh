@@ -10,8 +10,9 @@ mkdir -p "$work"
 stick() {
 	rm -f "$work/$1.img"
 	truncate -s "$(($(stat -c %s "$2") / 1048576 + 24))M" "$work/$1.img"
-	mformat -i "$work/$1.img" -F ::
-	mcopy -i "$work/$1.img" "$2" "::/$1.raucb"
+	echo 'start=1MiB, type=c' | sfdisk -q --label dos "$work/$1.img"
+	mformat -i "$work/$1.img@@1M" -F ::
+	mcopy -i "$work/$1.img@@1M" "$2" "::/$1.raucb"
 }
 
 # variant NAME COMMAND...: the image's root, changed by a command that gets its folder
