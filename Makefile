@@ -149,6 +149,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/st
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
+$(BUILD)/tests/board/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "board/grow.h"
 #include "board/setup.h"
 
 static const char help[] =
@@ -13,6 +14,7 @@ static const char help[] =
 	"\n"
 	"  gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
 	"  gopura-setup --check FILE [--boards DIR]\n"
+	"  gopura-setup --grow DISK --partition NAME --mounted DIR\n"
 	"\n"
 	"  --conf FILE    gopura.conf; given again: the first file that is there; where none is,\n"
 	"                 the terminal goes by what a network offers (DHCP)\n"
@@ -20,6 +22,8 @@ static const char help[] =
 	"                 are written here, for units to link in\n"
 	"  --boards DIR   profiles that gopura.conf may name (/usr/share/gopura/board)\n"
 	"  --check FILE   only says what is wrong with the file, and ends with 1 if anything is\n"
+	"  --grow DISK    the partition NAME, the disk's last, becomes as large as the disk allows,\n"
+	"                 and so does its ext4 that is mounted at DIR\n"
 	"  --version, --help\n"
 	"\n"
 	"Examples\n"
@@ -32,6 +36,7 @@ struct command {
 	const char *confs[CONFS_MOST];
 	unsigned count;
 	const char *out, *check, *boards;
+	const char *grow, *partition, *mounted;
 	bool boards_asked;
 };
 
@@ -40,6 +45,9 @@ enum {
 	OPTION_OUT,
 	OPTION_BOARDS,
 	OPTION_CHECK,
+	OPTION_GROW,
+	OPTION_PARTITION,
+	OPTION_MOUNTED,
 	OPTION_VERSION,
 	OPTION_HELP,
 };
@@ -49,6 +57,9 @@ static const struct option long_options[] = {
 	{ "out", required_argument, NULL, OPTION_OUT },
 	{ "boards", required_argument, NULL, OPTION_BOARDS },
 	{ "check", required_argument, NULL, OPTION_CHECK },
+	{ "grow", required_argument, NULL, OPTION_GROW },
+	{ "partition", required_argument, NULL, OPTION_PARTITION },
+	{ "mounted", required_argument, NULL, OPTION_MOUNTED },
 	{ "version", no_argument, NULL, OPTION_VERSION },
 	{ "help", no_argument, NULL, OPTION_HELP },
 	{ 0 },
@@ -78,6 +89,15 @@ static void take_option(struct command *command, int option)
 	case OPTION_CHECK:
 		command->check = optarg;
 		break;
+	case OPTION_GROW:
+		command->grow = optarg;
+		break;
+	case OPTION_PARTITION:
+		command->partition = optarg;
+		break;
+	case OPTION_MOUNTED:
+		command->mounted = optarg;
+		break;
 	case OPTION_VERSION:
 		puts("gopura-setup " GOPURA_VERSION);
 		exit(0);
@@ -97,6 +117,13 @@ static void parse(struct command *command, int argc, char **argv)
 		take_option(command, option);
 	if (optind < argc)
 		usage(argv[optind]);
+	if (command->grow || command->partition || command->mounted) {
+		if (!command->grow || !command->partition || !command->mounted)
+			usage("--grow, --partition and --mounted go together");
+		if (command->check || command->count > 0 || command->out)
+			usage("--grow stands alone");
+		return;
+	}
 	if (command->check && (command->count > 0 || command->out))
 		usage("--check stands alone");
 	if (!command->check && command->count == 0)
@@ -151,5 +178,7 @@ int main(int argc, char **argv)
 	struct command command = { .boards = "/usr/share/gopura/board" };
 
 	parse(&command, argc, argv);
+	if (command.grow)
+		return grow(command.grow, command.partition, command.mounted) < 0;
 	return command.check ? check(&command) : apply(&command);
 }

@@ -71,7 +71,7 @@ sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fon
 mkdir -p "$tree/usr/share/fonts/cache"
 mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura/board"
 install -m 644 board/*.ini "$tree/usr/share/gopura/board/"
-cp /usr/bin/grub-editenv "$tree/usr/bin/"
+cp /usr/bin/grub-editenv "$tree/usr/lib/gopura/" # behind image/root/usr/bin/grub-editenv
 install -m 644 "$keys/cert.pem" "$tree/etc/rauc/keyring.pem"
 printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\n' "$version_text" >>"$tree/usr/lib/os-release"
 if [ -n "${RELEASE:-}" ]; then
@@ -101,7 +101,7 @@ early=$out/early
 rm -rf "$early"
 mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
 cp /bin/busybox "$early/bin/"
-for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir switch_root; do
+for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir switch_root basename readlink; do
 	ln -s busybox "$early/bin/$name"
 done
 install -m 755 "$here/init" "$early/init"
@@ -156,7 +156,8 @@ mcopy -i "$esp" board/gopura.conf.example ::/gopura.conf.example
 # ---- the disk
 disk=$out/gopura.img
 rm -f "$disk" "$out/data.ext4"
-mke2fs -q -t ext4 -L gopura-data "$out/data.ext4" "${data_mib}M" 2>/dev/null
+# Blocks and inodes as a large disk has them: what is small here grows (image/init).
+mke2fs -q -t ext4 -b 4096 -I 256 -i 16384 -L gopura-data "$out/data.ext4" "${data_mib}M" 2>/dev/null
 table=$out/disk.sfdisk
 printf '%s\n' 'label: gpt' 'label-id: 6F707572-6100-4000-8000-0000000000FF' >"$table"
 start=1 number=0

@@ -1,5 +1,6 @@
 """appliance.py IMAGE WORK [STICKS]: starts the appliance's image as a box would, waits for the temple, taps it, expects a card,
 and reads the journal on the way. With STICKS, a folder of update bundles by name (docs/image.md): each is plugged in as a stick."""
+import json
 import os
 import re
 import shutil
@@ -15,6 +16,7 @@ from machine import Machine, tones
 
 FIRMWARE = "/usr/share/OVMF"
 BOOT_S, ANSWER_S, INSTALL_S, BACK_S = 420, 300, 900, 1500
+DISK_BYTES = 2 << 30  # the disk is larger than the image: the data partition takes what is left
 CARD_SHARE = 0.1  # of the panel, in its own colour; without a card it is 0.02
 
 
@@ -24,17 +26,29 @@ def free_port():
         return probe.getsockname()[1]
 
 
+def table(image):
+    """The partitions, in order: start and size in sectors, name."""
+    found = subprocess.run(["sfdisk", "--json", image], check=True, capture_output=True, env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
+    return json.loads(found.stdout)["partitiontable"]["partitions"]
+
+
 class Appliance(Machine):
-    def __init__(self, image, work, case):
+    """A box with the disk's file; LOG: where what is written to the disk is noted too (writelog.py)."""
+
+    def __init__(self, disk, work, case, log=None):
+        variables, self.disk = os.path.join(work, "variables.fd"), disk
         self.health = free_port()
-        disk, variables = os.path.join(work, "disk.img"), os.path.join(work, "variables.fd")
-        subprocess.run(["cp", "--sparse=always", image, disk], check=True)
         shutil.copy(f"{FIRMWARE}/OVMF_VARS_4M.fd", variables)
+        drive = ["-blockdev", f"driver=file,filename={disk},node-name={'file' if log else 'disk'},cache.no-flush=on"]
+        if log:
+            open(log, "w").close()
+            drive += ["-blockdev", f"driver=file,filename={log},node-name=log,cache.no-flush=on",
+                      "-blockdev", "driver=blklogwrites,node-name=disk,file=file,log=log,log-sector-size=512"]
         super().__init__(work, case, [
             "-cpu", "Nehalem", # of a box without AVX, which this QEMU emulates slowly and not always rightly
             "-drive", f"if=pflash,format=raw,readonly=on,file={FIRMWARE}/OVMF_CODE_4M.fd",
             "-drive", f"if=pflash,format=raw,file={variables}",
-            "-drive", f"file={disk},if=none,id=disk,format=raw", "-device", "virtio-blk-pci,drive=disk,bootindex=0",
+            *drive, "-device", "virtio-blk-pci,drive=disk,bootindex=0",
             "-netdev", f"user,id=net,restrict=on,hostfwd=tcp:127.0.0.1:{self.health}-:9100", "-device", "virtio-net-pci,netdev=net,romfile=",
             "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
         self.seen = 0
@@ -104,6 +118,11 @@ def visit(machine, began):
         machine.qmp.tap(0.5, 0.45)
         time.sleep(5)
     print("a tap opened a card")
+    grown = re.search(r"gopura-data has (\d+) MiB now", machine.log())
+    rest = DISK_BYTES - sum(part["size"] * 512 for part in table(machine.disk)[:-1])
+    if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "stays as large" in machine.log():
+        raise SystemExit(f"the data partition did not grow to the disk's {rest >> 20} MiB that are left:\n" + machine.log()[:3000])
+    print(grown.group(0))
     well(machine)
     for fault in ("crashed", "core dump", "Failed with result"):
         if fault in machine.log():
@@ -143,7 +162,10 @@ def updates(machine, sticks):
 def main():
     image, work = sys.argv[1:3]
     began = time.monotonic()
-    machine = Appliance(image, work, "appliance")
+    disk = os.path.join(work, "disk.img")
+    subprocess.run(["cp", "--sparse=always", image, disk], check=True)
+    os.truncate(disk, DISK_BYTES)
+    machine = Appliance(disk, work, "appliance")
     try:
         visit(machine, began)
         if len(sys.argv) > 3:

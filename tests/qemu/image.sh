@@ -8,10 +8,7 @@ skip() { echo "$*"; exit 77; }
 ./deps.sh image/tools.txt || skip "what makes an image cannot be installed here"
 work=build/qemu-image
 mkdir -p "$work"
-tests/qemu/release.sh build/qemu
-cp build/qemu/release/root/1.json "$work/root.json"
-printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$work/gopura.conf"
-CONF=$work/gopura.conf RELEASE=build/qemu/release OUT=$work/image KERNEL="console=ttyS0 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} image/build.sh
+tests/qemu/lib-image.sh "$work/image"
 sticks=
 if [ "${1:-}" = updates ]; then
 	sticks=$work/sticks

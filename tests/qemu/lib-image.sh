@@ -1,0 +1,16 @@
+#!/bin/bash
+# lib-image.sh FOLDER: the appliance's image as the tests start it, FOLDER/gopura.img: a small release inside, the journal on the serial
+# line. What is there stays while nothing that it is made of is newer.
+set -eu
+cd "$(dirname "$0")/../.."
+out=$1
+tests/qemu/release.sh build/qemu
+made_of=(image systemd board/*.ini board/gopura.conf.example build/gopura-{kiosk,fetch,setup,health} build/qemu/release/release.json tests/qemu/lib-image.sh)
+if [ -f "$out/gopura.raucb" ] && [ -z "$(find "${made_of[@]}" -newer "$out/gopura.img" -print -quit)" ]; then
+	echo "image: $out/gopura.img is there"
+	exit 0
+fi
+conf=$(dirname "$out")
+cp build/qemu/release/root/1.json "$conf/root.json"
+printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
+CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=ttyS0 loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} image/build.sh
