@@ -214,7 +214,7 @@ static void draw_scene(struct kiosk *kiosk, bool words)
 			   &kiosk->shown.frame);
 }
 
-static void add_wants(struct kiosk *kiosk, struct exhibit *exhibit, uint32_t share)
+static void add_wants(struct kiosk *kiosk, struct exhibit *exhibit)
 {
 	static struct message_want list[WANTS_MOST];
 	size_t count;
@@ -223,20 +223,19 @@ static void add_wants(struct kiosk *kiosk, struct exhibit *exhibit, uint32_t sha
 		return;
 	story_wants(exhibit->story, &kiosk->wants);
 	count = scene_wants(exhibit->scene, list, WANTS_MOST / 2);
-	for (size_t i = 0; i < count; i++) {
-		list[i].priority /= share;
+	for (size_t i = 0; i < count; i++)
 		wants_add(&kiosk->wants, &list[i]);
-	}
 }
 
 /* What is shown comes first; what is coming has what is left of the line. */
 static void say_wants(struct kiosk *kiosk)
 {
 	wants_begin(&kiosk->wants);
-	add_wants(kiosk, &kiosk->shown, 1);
+	add_wants(kiosk, &kiosk->shown);
 	kiosk->coming_held = kiosk->coming.scene && !exhibit_may_load(kiosk);
+	wants_later(&kiosk->wants);
 	if (!kiosk->coming_held)
-		add_wants(kiosk, &kiosk->coming, 1000);
+		add_wants(kiosk, &kiosk->coming);
 	wants_say(&kiosk->wants, kiosk->net);
 }
 

@@ -3,6 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum {
+	/* Twice MESSAGE_PRIORITY_INDEX, the highest, becomes 999. */
+	LATER_SHARE = 2 * MESSAGE_PRIORITY_INDEX / MESSAGE_PRIORITY_PICTURE + 2,
+};
+
 static int by_hash(const void *a, const void *b)
 {
 	const struct message_want *left = a, *right = b;
@@ -13,12 +18,22 @@ static int by_hash(const void *a, const void *b)
 void wants_begin(struct wants *wants)
 {
 	wants->next_count = 0;
+	wants->later = false;
 }
 
 void wants_add(struct wants *wants, const struct message_want *want)
 {
-	if (wants->next_count < WANTS_MOST)
-		wants->next[wants->next_count++] = *want;
+	if (wants->next_count == WANTS_MOST)
+		return;
+	wants->next[wants->next_count] = *want;
+	if (wants->later)
+		wants->next[wants->next_count].priority /= LATER_SHARE;
+	wants->next_count++;
+}
+
+void wants_later(struct wants *wants)
+{
+	wants->later = true;
 }
 
 /* Sorts the new list and leaves each hash once, with its highest priority. */

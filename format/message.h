@@ -59,7 +59,7 @@ struct message_want {
 };
 
 enum {
-	MESSAGE_PRIORITY_PREFETCH = 0,
+	MESSAGE_PRIORITY_LATER = 0,       /* of a release that is not shown yet: 0 .. 999 */
 	MESSAGE_PRIORITY_PICTURE = 1000,  /* tiles and patches: 1000 .. 999999 by gain */
 	MESSAGE_PRIORITY_INDEX = 1000000, /* pages: without them nothing can be judged */
 };

@@ -77,11 +77,19 @@ static void report(struct bring *bring, struct want *want, enum missing_reason r
 	bring->options.events.missing(bring->options.data, want->entry.key, reason);
 }
 
+/* Of a release that is not shown yet: the rate limit is for that, no visitor waits for it. */
+static bool is_for_later(uint32_t priority)
+{
+	return priority < MESSAGE_PRIORITY_PICTURE;
+}
+
 void bring_want(struct bring *bring, const struct message_want *asked)
 {
 	struct want *want = by_hash_find(&bring->wants, asked->hash);
 
 	if (want) {
+		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
+			bring->plan_changed = true; /* it waits for the rate no more */
 		want->asked.priority = asked->priority;
 		bring->fresh_changed = true;
 		return;
@@ -275,6 +283,32 @@ static void work_fresh(struct bring *bring)
 
 /* ---- the server */
 
+/* What the rate limit allows now; half a second of it is saved up at most. */
+static void refill_allowance(struct bring *bring)
+{
+	int64_t rate = (int64_t)bring->options.rate_limit;
+	int64_t now_ms = clock_now_ms(), most = rate / 2;
+
+	bring->allowance_bytes += (now_ms - bring->allowance_ms) * rate / 1000;
+	if (bring->allowance_bytes > most)
+		bring->allowance_bytes = most;
+	bring->allowance_ms = now_ms;
+}
+
+static bool is_overdrawn(const struct bring *bring)
+{
+	return bring->options.rate_limit > 0 && bring->allowance_bytes <= 0;
+}
+
+/* When what is for later may be asked for again. */
+static int64_t allowance_due_ms(const struct bring *bring)
+{
+	if (!is_overdrawn(bring))
+		return 0;
+	return bring->allowance_ms + 1 +
+	       -bring->allowance_bytes * 1000 / (int64_t)bring->options.rate_limit;
+}
+
 static bool reserve_items(struct bring *bring)
 {
 	size_t needed = bring->wants.count;
@@ -299,6 +333,7 @@ static size_t gather(struct bring *bring)
 	size_t at = 0, count = 0;
 
 	bring->plan_due_ms = INT64_MAX;
+	bring->later_waits = false;
 	if (!reserve_items(bring))
 		return 0;
 	while ((want = by_hash_next(&bring->wants, &at))) {
@@ -307,6 +342,10 @@ static size_t gather(struct bring *bring)
 
 		if (want->state != WANT_WAITING)
 			continue;
+		if (is_overdrawn(bring) && is_for_later(want->asked.priority)) {
+			bring->later_waits = true;
+			continue;
+		}
 		rc = want->retry_at_ms > now_ms ? -EBUSY : bring_locate(bring, want, item);
 		if (rc == -ENOENT)
 			bring_failed(bring, want, rc);
@@ -323,50 +362,46 @@ static size_t gather(struct bring *bring)
 	return count;
 }
 
-/* What the rate limit allows now; half a second of it is saved up at most. */
-static void refill_allowance(struct bring *bring)
-{
-	int64_t rate = (int64_t)bring->options.rate_limit;
-	int64_t now_ms = clock_now_ms(), most = rate / 2;
-
-	bring->allowance_bytes += (now_ms - bring->allowance_ms) * rate / 1000;
-	if (bring->allowance_bytes > most)
-		bring->allowance_bytes = most;
-	bring->allowance_ms = now_ms;
-}
-
-static bool is_overdrawn(const struct bring *bring)
-{
-	return bring->options.rate_limit > 0 && bring->allowance_bytes <= 0;
-}
-
-/* When a range may go out again. */
-static int64_t allowance_due_ms(const struct bring *bring)
-{
-	if (!is_overdrawn(bring))
-		return 0;
-	return bring->allowance_ms + 1 +
-	       -bring->allowance_bytes * 1000 / (int64_t)bring->options.rate_limit;
-}
-
 static uint32_t ranges_most(const struct bring *bring)
 {
 	return bring->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MOST : RANGES_MOST;
 }
 
-static bool may_ask_for(const struct bring *bring, const struct range_item *item)
+static bool may_ask_for(const struct bring *bring, uint32_t priority)
 {
 	uint32_t most = ranges_most(bring);
 
-	if (item->priority >= MESSAGE_PRIORITY_INDEX)
+	if (priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
-	return bring->range_count < most && !is_overdrawn(bring) &&
-	       link_may_ask(bring->options.link);
+	return bring->range_count < most && link_may_ask(bring->options.link);
 }
 
-static struct range_limits limits_now(const struct bring *bring)
+/* Of those that no range has taken; 0 where all are. */
+static uint32_t best_priority(const struct range_item *items, size_t count)
 {
-	uint64_t rate = bring->options.rate_limit, most = bring->bytes_per_s;
+	uint32_t best = 0;
+
+	for (size_t i = 0; i < count; i++)
+		if (!items[i].taken && items[i].priority > best)
+			best = items[i].priority;
+	return best;
+}
+
+static uint32_t later_bytes(const struct range_item *items, size_t count)
+{
+	uint32_t bytes = 0;
+
+	for (size_t i = 0; i < count; i++)
+		if (is_for_later(items[i].priority))
+			bytes += items[i].size;
+	return bytes;
+}
+
+/* Of a range whose best one has this priority. */
+static struct range_limits limits_now(const struct bring *bring, uint32_t priority)
+{
+	uint64_t rate = is_for_later(priority) ? bring->options.rate_limit : 0;
+	uint64_t most = bring->bytes_per_s;
 
 	most = (rate > 0 && rate < most ? rate : most) * RANGE_MS / 1000;
 	if (most < RANGE_BYTES_LEAST)
@@ -376,35 +411,34 @@ static struct range_limits limits_now(const struct bring *bring)
 	return (struct range_limits){ .gap_bytes = GAP_BYTES, .most_bytes = (uint32_t)most };
 }
 
-/* The best one of a range decides whether there is a place for it. */
-static bool any_may_be_asked(const struct bring *bring, const struct range_item *items,
-			     size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		if (may_ask_for(bring, &items[i]))
-			return true;
-	return false;
-}
-
 static void work_ranges(struct bring *bring)
 {
 	size_t count, first, taken;
+	uint32_t best;
 
 	if (bring->options.rate_limit)
 		refill_allowance(bring);
-	if (is_overdrawn(bring) || !bring->plan_changed ||
-	    bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
+	if (bring->later_waits && !is_overdrawn(bring))
+		bring->plan_changed = true;
+	if (!bring->plan_changed || bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
 	    !link_may_ask(bring->options.link) ||
 	    !bring->options.events.has_room(bring->options.data))
 		return;
 	count = gather(bring);
 	bring->plan_changed = false;
-	while ((taken = range_plan(bring->items, count, limits_now(bring), &first)) > 0) {
-		if (!any_may_be_asked(bring, &bring->items[first], taken)) {
+	/* The best one decides whether there is a place for its range. */
+	while (best = best_priority(bring->items, count),
+	       (taken = range_plan(bring->items, count, limits_now(bring, best), &first)) > 0) {
+		if (is_for_later(best) && is_overdrawn(bring)) {
+			bring->later_waits = true;
+			return;
+		}
+		if (!may_ask_for(bring, best)) {
 			bring->plan_changed = true;
 			return;
 		}
-		bring->allowance_bytes -= bring_ask_range(bring, &bring->items[first], taken);
+		if (bring_ask_range(bring, &bring->items[first], taken) > 0)
+			bring->allowance_bytes -= later_bytes(&bring->items[first], taken);
 	}
 }
 
@@ -462,7 +496,7 @@ int64_t bring_due_ms(const struct bring *bring)
 	if (bring->range_count < ranges_most(bring)) {
 		int64_t plan_ms = bring->plan_changed ? 0 : bring->plan_due_ms;
 
-		if (plan_ms < allowance_due_ms(bring))
+		if (bring->later_waits && allowance_due_ms(bring) < plan_ms)
 			plan_ms = allowance_due_ms(bring);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}

@@ -30,7 +30,7 @@ struct bring_options {
 	struct cache *cache;
 	struct link *link;
 	struct stick *stick; /* asked before the server; NULL: none */
-	uint64_t rate_limit; /* bytes of objects a second, in the mean; 0: none */
+	uint64_t rate_limit; /* bytes a second of what is for later, in the mean; 0: none */
 	struct bring_events events;
 	void *data;
 };

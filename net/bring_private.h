@@ -60,8 +60,10 @@ struct bring {
 	bool suspicious;         /* bring_suspect_locators, for bring_work to act on */
 	bool was_down;           /* all wants were told of being offline */
 	uint64_t bytes_per_s;    /* lately */
-	int64_t allowance_bytes; /* with a rate limit: what may be asked for; below 0: overdrawn */
+	int64_t allowance_bytes; /* with a rate limit: what may be asked for of what is for later;
+				  * below 0: overdrawn */
 	int64_t allowance_ms;    /* as of then */
+	bool later_waits;        /* for the rate limit alone */
 	struct bring_figures figures;
 };
 

@@ -17,7 +17,7 @@ struct fetch_options {
 	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
 	int fd;                   /* connected already; the fetcher ends with it */
 	uint32_t poll_s;
-	uint64_t rate_limit; /* bytes of objects a second; 0: none */
+	uint64_t rate_limit; /* bytes a second of a release that is not shown yet; 0: none */
 	uint32_t stall_s;    /* 0: the default */
 };
 

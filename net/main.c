@@ -23,7 +23,7 @@ static const char help[] =
 	"  --cache-budget MIB  of the database and its log together (1024; at least 4)\n"
 	"  --ca FILE           certificate authority for https (the system's)\n"
 	"  --poll-s SECONDS    between looks for a new release (60)\n"
-	"  --rate-limit KIB    of objects a second, in the mean (none)\n"
+	"  --rate-limit KIB    a second, in the mean, of a release that is not shown yet (none)\n"
 	"  --stall-s SECONDS   without a byte: a request has failed (15)\n"
 	"  --verbose           say more\n"
 	"  --version, --help\n"

@@ -101,6 +101,40 @@ static void twice_wanted_counts_once_with_the_higher_priority(void **state)
 	CHECK(want_count == 1 && last_want.priority == 700);
 }
 
+static void what_is_for_later_comes_after_all_that_is_shown(void **state)
+{
+	static struct wants wants;
+	const struct message_want root = want_of(1, 2 * MESSAGE_PRIORITY_INDEX);
+	const struct message_want tile = want_of(2, MESSAGE_PRIORITY_INDEX / 2);
+
+	(void)state;
+	wants_clear(&wants);
+	for (int i = 0; i < 2; i++) { /* a turn begins with what is shown */
+		wants_begin(&wants);
+		wants_add(&wants, &tile);
+		wants_later(&wants);
+		wants_add(&wants, &root);
+		wants_say(&wants, NULL);
+		CHECK(wants.said[0].priority < MESSAGE_PRIORITY_PICTURE);
+		CHECK(wants.said[1].priority == tile.priority);
+	}
+	wants_begin(&wants);
+	wants_add(&wants, &tile); /* of both: it is shown */
+	wants_later(&wants);
+	wants_add(&wants, &tile);
+	wants_add(&wants, &root);
+	wants_say(&wants, NULL);
+	CHECK(wants.said_count == 2 && wants.said[1].priority == tile.priority);
+	turn(&wants, &root, 1);
+	CHECK(want_count == 1 && last_want.priority == root.priority); /* now it is shown */
+	wants_begin(&wants);
+	wants_later(&wants);
+	wants_add(&wants, &root);
+	wants_add(&wants, &tile);
+	wants_say(&wants, NULL);
+	CHECK(wants.said[0].priority > wants.said[1].priority);
+}
+
 static void more_than_fit_are_ignored(void **state)
 {
 	static struct wants wants;
@@ -127,6 +161,7 @@ int main(void)
 		cmocka_unit_test(a_slow_drift_of_priority_is_said_in_the_end),
 		cmocka_unit_test(an_object_that_came_is_neither_dropped_nor_said),
 		cmocka_unit_test(twice_wanted_counts_once_with_the_higher_priority),
+		cmocka_unit_test(what_is_for_later_comes_after_all_that_is_shown),
 		cmocka_unit_test(more_than_fit_are_ignored),
 	};
 

@@ -86,7 +86,7 @@ damage_and_repair cut.db "a pack cut short" not_found
 
 # ---- the server dies half-way and comes back
 slow_fetch=$fetch fetch=$folder/slow
-(walk dies.db --most-s 60 >"$folder/line"; echo $? >"$folder/rc") &
+(walk dies.db --unseen --most-s 60 >"$folder/line"; echo $? >"$folder/rc") &
 sleep 2
 end_nginx
 # What was under way when it died still comes out of buffers for a while.
@@ -100,7 +100,7 @@ is offline "$line" -gt 0
 is came "$line" -eq 2051
 
 # ---- the fetcher is killed half-way
-line=$(walk killed.db --kill --most-s 60) || fail "not all came after the fetcher was killed: $line"
+line=$(walk killed.db --unseen --kill --most-s 60) || fail "not all came after the fetcher was killed: $line"
 is came "$line" -eq 2051
 grep -q 'the fetcher is gone' "$folder/walk.log" || fail "the fetcher was not killed"
 # what the first one brought was not asked for twice: its transaction at most

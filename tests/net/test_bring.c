@@ -219,36 +219,78 @@ static void leaves_the_line_room(void **state)
 	CHECK(server.count == 1 + 9 && asked(0)->ask.size == 500);
 }
 
-static void keeps_to_its_rate(void **state)
+/* The bringer anew, with a limit of 6000 bytes a second. */
+static void limit(struct stage *stage)
 {
-	struct stage *stage = *state;
 	struct bring_options options = { .cache = stage->cache,
 					 .link = &stage->link,
 					 .rate_limit = 6000,
 					 .events = { on_object, on_missing, has_room },
 					 .data = stage };
-	int64_t began_ms;
-	size_t answered = 1;
 
 	bring_destroy(stage->bring);
 	CHECK(bring_create(&stage->bring, &options) == 0);
 	begin(stage);
+}
+
+/* Answers what was asked since, at once. */
+static void answer_all(struct stage *stage, size_t *answered)
+{
+	for (; *answered < server.count; (*answered)++) {
+		give(&server.asked[*answered], answer_to(stage, &server.asked[*answered]));
+		end(&server.asked[*answered], 0);
+	}
+}
+
+static void keeps_to_its_rate_with_what_is_for_later(void **state)
+{
+	struct stage *stage = *state;
+	int64_t began_ms;
+	size_t answered = 1;
+	int turns = 0;
+
+	limit(stage);
 	began_ms = server.now_ms;
-	for (int n = 0; n < OBJECTS; n++)
-		want(stage, n, 1000);
+	for (int n = 0; n < OBJECTS; n += 2) /* too far apart to join */
+		want(stage, n, MESSAGE_PRIORITY_PICTURE - 1);
 	while (bring_wanted(stage->bring) > 0) {
+		CHECK(++turns < 200); /* it sleeps until they are paid for */
 		bring_work(stage->bring);
-		for (; answered < server.count; answered++) {
-			give(&server.asked[answered], answer_to(stage, &server.asked[answered]));
-			end(&server.asked[answered], 0);
-		}
+		answer_all(stage, &answered);
 		if (bring_due_ms(stage->bring) > server.now_ms &&
 		    bring_due_ms(stage->bring) != INT64_MAX)
 			server.now_ms = bring_due_ms(stage->bring);
 	}
-	/* 60 000 bytes: the next may go out when they are paid for; half a second was saved */
-	CHECK(server.now_ms - began_ms > 60000 / 6 - 500 - 3000);
-	CHECK(server.now_ms - began_ms < 60000 / 6 + 100);
+	/* 30 000 bytes: the next may go out when they are paid for; half a second was saved */
+	CHECK(server.now_ms - began_ms > 30000 / 6 - 500 - 600);
+	CHECK(server.now_ms - began_ms < 30000 / 6 + 100);
+}
+
+static void what_is_shown_has_no_rate(void **state)
+{
+	struct stage *stage = *state;
+	const int64_t began_ms = server.now_ms;
+	size_t answered = 1;
+
+	limit(stage);
+	for (int n = 0; n < 8; n++) /* overdrawn by 21 000 bytes then: 3.5 seconds */
+		want(stage, n, 0);
+	bring_work(stage->bring);
+	answer_all(stage, &answered);
+	CHECK(stage->objects == 8);
+	want(stage, 10, 500); /* for later, though it stands beside what is shown */
+	for (int n = 11; n < OBJECTS; n++)
+		want(stage, n, MESSAGE_PRIORITY_PICTURE);
+	for (int i = 0; i < 3; i++) {
+		bring_work(stage->bring);
+		answer_all(stage, &answered);
+	}
+	CHECK(server.now_ms == began_ms && bring_wanted(stage->bring) == 1);
+	CHECK(bring_due_ms(stage->bring) > server.now_ms + 2000);
+	want(stage, 10, MESSAGE_PRIORITY_PICTURE); /* now it is shown */
+	bring_work(stage->bring);
+	answer_all(stage, &answered);
+	CHECK(bring_wanted(stage->bring) == 0);
 }
 
 static void stops_when_the_kiosk_takes_no_more(void **state)
@@ -519,7 +561,8 @@ int main(void)
 		STAGED(brings_from_the_cache_what_it_brought_before),
 		STAGED(asks_for_the_best_first_and_for_few_at_once),
 		STAGED(leaves_the_line_room),
-		STAGED(keeps_to_its_rate),
+		STAGED(keeps_to_its_rate_with_what_is_for_later),
+		STAGED(what_is_shown_has_no_rate),
 		STAGED(stops_when_the_kiosk_takes_no_more),
 		STAGED(cancels_what_nobody_wants_any_more),
 		STAGED(keeps_what_was_dropped_while_it_came),

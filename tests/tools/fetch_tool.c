@@ -7,6 +7,7 @@
  *     --every N       want one object of N only, so that there are gaps
  *     --most-s S      give up then (30)
  *     --keep-pages    as the kiosk does
+ *     --unseen        as of a release that is not shown yet: --rate-limit holds
  *     --kill          kill the fetcher once, when half has come
  *     --cancel        drop every second object when a quarter has come
  *     --batch N       want N objects, then no more until they came and
@@ -178,7 +179,7 @@ struct walk {
 	struct net_client *client;
 	struct hash root;
 	uint32_t every, most_s;
-	bool keep_pages, kill, cancel, killed, cancelled;
+	bool keep_pages, unseen, kill, cancel, killed, cancelled;
 	struct pending *pending; /* what is to come */
 	size_t pending_count, pending_capacity;
 	struct message_want *later; /* of batches to come, first come first */
@@ -223,6 +224,7 @@ static void want(struct walk *walk, struct hash page, const struct page_child *c
 					.offset = offset,
 					.size = child->size,
 					.priority = child->is_page ? MESSAGE_PRIORITY_INDEX
+						    : walk->unseen ? MESSAGE_PRIORITY_LATER
 								   : MESSAGE_PRIORITY_PICTURE };
 
 	if (!child->is_page && walk->met++ % walk->every != 0)
@@ -380,23 +382,15 @@ static int run_walk(struct walk *walk, uint32_t root_bytes)
 static int walk_main(int argc, char **argv)
 {
 	static const struct option long_options[] = {
-		{ "fetch", 1, NULL, 'f' },
-		{ "release", 1, NULL, 'r' },
-		{ "cache", 1, NULL, 'c' },
-		{ "root", 1, NULL, 'h' },
-		{ "bytes", 1, NULL, 'b' },
-		{ "ca", 1, NULL, 'a' },
-		{ "budget", 1, NULL, 'B' },
-		{ "socket", 1, NULL, 's' },
-		{ "every", 1, NULL, 'e' },
-		{ "most-s", 1, NULL, 'm' },
-		{ "kill", 0, NULL, 'k' },
-		{ "cancel", 0, NULL, 'C' },
-		{ "keep-pages", 0, NULL, 'K' },
-		{ "batch", 1, NULL, 'n' },
-		{ "pause-ms", 1, NULL, 'p' },
-		{ "latencies", 1, NULL, 'l' },
-		{ 0 },
+		{ "fetch", 1, NULL, 'f' },      { "release", 1, NULL, 'r' },
+		{ "cache", 1, NULL, 'c' },      { "root", 1, NULL, 'h' },
+		{ "bytes", 1, NULL, 'b' },      { "ca", 1, NULL, 'a' },
+		{ "budget", 1, NULL, 'B' },     { "socket", 1, NULL, 's' },
+		{ "every", 1, NULL, 'e' },      { "most-s", 1, NULL, 'm' },
+		{ "kill", 0, NULL, 'k' },       { "cancel", 0, NULL, 'C' },
+		{ "keep-pages", 0, NULL, 'K' }, { "unseen", 0, NULL, 'u' },
+		{ "batch", 1, NULL, 'n' },      { "pause-ms", 1, NULL, 'p' },
+		{ "latencies", 1, NULL, 'l' },  { 0 },
 	};
 	struct walk walk = { .every = 1, .most_s = 30 };
 	struct net_client_options options = {
@@ -447,6 +441,9 @@ static int walk_main(int argc, char **argv)
 			break;
 		case 'K':
 			walk.keep_pages = true;
+			break;
+		case 'u':
+			walk.unseen = true;
 			break;
 		case 'n':
 			walk.batch = (uint32_t)strtoul(optarg, NULL, 10);
