@@ -344,7 +344,8 @@ bool story_open_page(struct story *story, uint32_t part)
 	int rc = info_page(story->info, part, story->language, &html, NULL);
 
 	if (rc == 0)
-		rc = overlay_show_page(story->overlay, (int)part, html);
+		rc = overlay_show_page(story->overlay, (int)part, html,
+				       info_credits(story->info, part, story->language));
 	if (rc < 0 && rc != -ENOENT)
 		log_error("app", "content bug: page of %s: %s", info_part(story->info, part)->id,
 			  strerror(-rc));

@@ -13,38 +13,16 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "storage/info_index.h"
+#include "storage/info_private.h"
 #include "storage/info_schema.h"
 
 enum {
 	STEPS_PER_CALL = 1000,
-	CALLS_MOST = 100000, /* 10^8 steps of SQLite's machine while opening */
 	PICTURES_MOST = 100000,
 };
 
-struct text {
-	char *title, *caption; /* owned or NULL */
-	bool has_page;
-};
-
-struct part {
-	struct info_part public; /* id owned */
-	uint32_t thumbnail;      /* picture index + 1; 0: none */
-	struct text texts[INFO_LANGUAGES_MOST];
-};
-
-struct info {
-	sqlite3 *db;
-	sqlite3_stmt *page; /* steps on the row that the last info_page gave */
-	uint32_t calls;
-	char *languages[INFO_LANGUAGES_MOST];
-	uint32_t language_count;
-	struct part *parts;
-	uint32_t part_count;
-	struct info_picture *pictures; /* names owned */
-	uint32_t picture_count;
-};
-
-static int from_sqlite(sqlite3 *db, int code, const char *doing)
+int info_from_sqlite(sqlite3 *db, int code, const char *doing)
 {
 	switch (code) {
 	case SQLITE_OK:
@@ -63,7 +41,7 @@ static int bound_work(void *data)
 {
 	struct info *info = data;
 
-	return ++info->calls > CALLS_MOST;
+	return ++info->calls > info->calls_most;
 }
 
 /* ---- rows ---- */
@@ -74,12 +52,12 @@ static int each_row(struct info *info, const char *sql, row_reader *read)
 {
 	sqlite3_stmt *statement = NULL;
 	int code = sqlite3_prepare_v2(info->db, sql, -1, &statement, NULL);
-	int rc = from_sqlite(info->db, code, sql);
+	int rc = info_from_sqlite(info->db, code, sql);
 
 	while (rc == 0 && (code = sqlite3_step(statement)) == SQLITE_ROW)
 		rc = read(info, statement);
 	if (rc == 0)
-		rc = from_sqlite(info->db, code, sql);
+		rc = info_from_sqlite(info->db, code, sql);
 	sqlite3_finalize(statement);
 	return rc;
 }
@@ -252,6 +230,7 @@ static int read_content(struct info *info, sqlite3_stmt *row)
 	text = &info->parts[id].texts[language];
 	if (text->title || text->caption || text->has_page)
 		return 0; /* a second information of the part: the kiosk shows the first */
+	text->content_id = sqlite3_column_int64(row, 5);
 	text->has_page = sqlite3_column_int(row, 4) != 0;
 	info->parts[id].public.has_page |= text->has_page;
 	rc = copy_text(row, 2, &text->title);
@@ -269,7 +248,7 @@ static int read_one_number(struct info *info, const char *sql, sqlite3_int64 *ou
 		code = sqlite3_step(statement);
 	*out = code == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : -1;
 	sqlite3_finalize(statement);
-	return from_sqlite(info->db, code, sql);
+	return info_from_sqlite(info->db, code, sql);
 }
 
 static int attach_image(struct info *info, struct bytes image)
@@ -278,7 +257,7 @@ static int attach_image(struct info *info, struct bytes image)
 	int code = sqlite3_open(":memory:", &info->db);
 
 	if (code != SQLITE_OK)
-		return from_sqlite(info->db, code, "open");
+		return info_from_sqlite(info->db, code, "open");
 	copy = sqlite3_malloc64(image.size ? image.size : 1);
 	if (!copy)
 		return -ENOMEM;
@@ -288,34 +267,37 @@ static int attach_image(struct info *info, struct bytes image)
 				   (sqlite3_int64)image.size,
 				   SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY);
 	if (code != SQLITE_OK)
-		return from_sqlite(info->db, code, "open");
+		return info_from_sqlite(info->db, code, "open");
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
 	sqlite3_limit(info->db, SQLITE_LIMIT_LENGTH, 16 << 20);
+	info->calls_most = INFO_CALLS_MOST;
 	sqlite3_progress_handler(info->db, STEPS_PER_CALL, bound_work, info);
 	return 0;
 }
 
 /* What the file says it is, and whether its b-trees are whole. */
-static int check_image(struct info *info)
+static int check_image(struct info *info, sqlite3_int64 *version)
 {
-	sqlite3_int64 application = 0, version = 0;
+	sqlite3_int64 application = 0;
 	sqlite3_stmt *statement = NULL;
 	const char *verdict = NULL;
 	int code, rc;
 
 	rc = read_one_number(info, "PRAGMA application_id", &application);
 	if (rc == 0)
-		rc = read_one_number(info, "PRAGMA user_version", &version);
+		rc = read_one_number(info, "PRAGMA user_version", version);
 	if (rc < 0)
 		return rc;
-	if (application != INFO_APPLICATION_ID || version != INFO_SCHEMA_VERSION) {
+	if (application != INFO_APPLICATION_ID || *version < INFO_SCHEMA_OLDEST ||
+	    *version > INFO_SCHEMA_VERSION) {
 		log_error("storage",
 			  "content bug: information database of kind %llx version %lld; this "
-			  "program reads version %d",
-			  (unsigned long long)application, (long long)version, INFO_SCHEMA_VERSION);
+			  "program reads versions %d to %d",
+			  (unsigned long long)application, (long long)*version, INFO_SCHEMA_OLDEST,
+			  INFO_SCHEMA_VERSION);
 		return -EBADMSG;
 	}
 	code = sqlite3_prepare_v2(info->db, "PRAGMA quick_check(1)", -1, &statement, NULL);
@@ -326,6 +308,21 @@ static int check_image(struct info *info)
 	rc = verdict && strcmp(verdict, "ok") == 0 ? 0 : -EBADMSG;
 	sqlite3_finalize(statement);
 	return rc;
+}
+
+/* What version 2 has and 1 lacks, in temp: the image itself is never written. */
+static int complete_version_1(struct info *info)
+{
+	static const char missing[] =
+		"PRAGMA temp_store = MEMORY;"
+		"CREATE TEMP TABLE dublin_core(information_id INTEGER, position INTEGER,"
+		" element TEXT, language INTEGER, value TEXT)";
+	const struct info_index_options options = { .temporary = true };
+	int code = sqlite3_exec(info->db, missing, NULL, NULL, NULL);
+
+	if (code == SQLITE_OK)
+		code = info_index_make(info->db, &options);
+	return info_from_sqlite(info->db, code, "completing version 1");
 }
 
 static int load(struct info *info)
@@ -346,7 +343,8 @@ static int load(struct info *info)
 		  " USING(information_id) JOIN picture p ON p.picture_id = i.thumbnail"
 		  " ORDER BY a.part_id, a.position DESC",
 		  read_thumbnail },
-		{ "SELECT a.part_id, c.language, c.title, c.caption, c.body IS NOT NULL"
+		{ "SELECT a.part_id, c.language, c.title, c.caption, c.body IS NOT NULL,"
+		  " c.content_id"
 		  " FROM assigned_information a JOIN information_contents c USING(information_id)"
 		  " ORDER BY a.part_id, a.position",
 		  read_content },
@@ -374,16 +372,19 @@ static int open_image(struct info *info, struct bytes image)
 		"SELECT c.body FROM assigned_information a JOIN information_contents c"
 		" USING(information_id) WHERE a.part_id = ?1 AND c.language = ?2"
 		" AND c.body IS NOT NULL ORDER BY a.position LIMIT 1";
+	sqlite3_int64 version = 0;
 	int rc = attach_image(info, image);
 
 	if (rc == 0)
-		rc = check_image(info);
+		rc = check_image(info, &version);
 	if (rc == 0)
 		rc = load(info);
 	if (rc == 0)
-		rc = from_sqlite(info->db,
-				 sqlite3_prepare_v2(info->db, page_sql, -1, &info->page, NULL),
-				 "page");
+		rc = info_from_sqlite(info->db,
+				      sqlite3_prepare_v2(info->db, page_sql, -1, &info->page, NULL),
+				      "page");
+	if (rc == 0 && version == 1)
+		rc = complete_version_1(info);
 	return rc;
 }
 
@@ -395,6 +396,7 @@ int info_open(struct info **out, struct bytes image)
 	*out = NULL;
 	if (!info)
 		return -ENOMEM;
+	buffer_init(&info->credits, INFO_CREDITS_BYTES_MOST);
 	rc = open_image(info, image);
 	if (rc < 0) {
 		info_close(info);
@@ -410,6 +412,8 @@ void info_close(struct info *info)
 		return;
 	sqlite3_finalize(info->page);
 	sqlite3_close(info->db);
+	buffer_finish(&info->credits);
+	free(info->contents);
 	for (uint32_t i = 0; i < info->part_count; i++) {
 		free((char *)info->parts[i].public.id);
 		for (size_t k = 0; k < INFO_LANGUAGES_MOST; k++) {
@@ -456,8 +460,7 @@ const char *info_language(const struct info *info, uint32_t index)
 	return info->languages[index];
 }
 
-/* An unknown language is the default. */
-static uint32_t language_index(const struct info *info, const char *language)
+uint32_t info_language_index(const struct info *info, const char *language)
 {
 	for (uint32_t i = 0; i < info->language_count; i++)
 		if (language && strcmp(info->languages[i], language) == 0)
@@ -468,7 +471,7 @@ static uint32_t language_index(const struct info *info, const char *language)
 struct info_text info_text(const struct info *info, uint32_t part, const char *language)
 {
 	const struct part *p = &info->parts[part];
-	uint32_t found = language_index(info, language);
+	uint32_t found = info_language_index(info, language);
 	struct info_text text;
 
 	if (!p->texts[found].title)
@@ -484,7 +487,7 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
 static uint32_t page_language(const struct info *info, const struct part *part,
 			      const char *language)
 {
-	uint32_t asked = language_index(info, language);
+	uint32_t asked = info_language_index(info, language);
 	uint32_t found = 0;
 
 	if (part->texts[asked].has_page)
@@ -510,7 +513,7 @@ int info_page(struct info *info, uint32_t part, const char *language, struct byt
 	sqlite3_bind_int64(info->page, 2, found);
 	code = sqlite3_step(info->page);
 	if (code != SQLITE_ROW)
-		return code == SQLITE_DONE ? -EBADMSG : from_sqlite(info->db, code, "page");
+		return code == SQLITE_DONE ? -EBADMSG : info_from_sqlite(info->db, code, "page");
 	body = sqlite3_column_text(info->page, 0);
 	if (!body)
 		return -ENOMEM;

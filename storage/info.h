@@ -92,7 +92,8 @@ struct info_picture {
 };
 
 /* image is copied. *out is owned by the caller; on failure it is NULL. -EBADMSG: not such a
- * database, damaged, or of another version of the schema. */
+ * database, damaged, or of a version of the schema that this program does not read. Older versions
+ * are read as they are; what they lack is made in memory beside them. */
 must_check int info_open(struct info **out, struct bytes image);
 void info_close(struct info *info); /* NULL is fine */
 
@@ -112,6 +113,16 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
  * NULL) says which language was found. -ENOENT: the part has no page. -EBADMSG: damaged. */
 must_check int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
 			 const char **language_found);
+
+/* Who made what is said of the part, when, after what, and whose it is: one line of text, "" where
+ * nothing is known. Borrowed until the next info_credits or info_close. */
+const char *info_credits(struct info *info, uint32_t part, const char *language);
+
+/* Parts in which every word of query stands, the last letters of each may be missing: first where
+ * it stands in that language, of these in titles before captions before pages. How many were
+ * written to parts, `most` at most; 0 for a query without words. */
+uint32_t info_search(struct info *info, const char *query, const char *language, uint32_t *parts,
+		     uint32_t most);
 
 /* Every picture of the database, sorted by name. Borrowed until info_close. */
 uint32_t info_picture_count(const struct info *info);

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "format/page.h"
 #include "storage/info_content.h"
+#include "storage/info_index.h"
 #include "storage/info_schema.h"
 
 /* The paper's three tables, and what relational honesty adds: the identity of an information
@@ -21,6 +22,7 @@ static const char schema[] =
 	"CREATE TABLE language(position INTEGER PRIMARY KEY, code TEXT NOT NULL UNIQUE);"
 	"CREATE TABLE picture(picture_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
 	" hash BLOB NOT NULL CHECK(length(hash) = 16), bytes INTEGER NOT NULL,"
+	" media_type TEXT NOT NULL CHECK(media_type IN ('image/jpeg','image/png')),"
 	" width_px INTEGER NOT NULL, height_px INTEGER NOT NULL);"
 	"CREATE TABLE identified_part(part_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
 	" region_kind TEXT NOT NULL CHECK(region_kind IN ('point','sphere','box','prism')),"
@@ -38,8 +40,11 @@ static const char schema[] =
 	" PRIMARY KEY(part_id, information_id)) WITHOUT ROWID;"
 	"CREATE TABLE information_contents(content_id INTEGER PRIMARY KEY,"
 	" information_id INTEGER NOT NULL REFERENCES information,"
-	" language INTEGER NOT NULL REFERENCES language, title TEXT, caption TEXT, body TEXT,"
-	" UNIQUE(information_id, language));"
+	" language INTEGER NOT NULL REFERENCES language, title TEXT, reading TEXT, caption TEXT,"
+	" body TEXT, UNIQUE(information_id, language));"
+	"CREATE TABLE dublin_core(information_id INTEGER NOT NULL REFERENCES information,"
+	" position INTEGER NOT NULL, element TEXT NOT NULL, language INTEGER REFERENCES language,"
+	" value TEXT NOT NULL, PRIMARY KEY(information_id, position)) WITHOUT ROWID;"
 	"CREATE TABLE content_picture(content_id INTEGER NOT NULL REFERENCES information_contents,"
 	" position INTEGER NOT NULL, picture_id INTEGER NOT NULL REFERENCES picture,"
 	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
@@ -110,13 +115,14 @@ static void write_pictures(struct writer *w, const struct content *content)
 	for (uint32_t i = 0; i < content->picture_count; i++) {
 		const struct content_picture *picture = &content->pictures[i];
 
-		prepare(w, "INSERT INTO picture VALUES(?, ?, ?, ?, ?, ?)");
+		prepare(w, "INSERT INTO picture VALUES(?, ?, ?, ?, ?, ?, ?)");
 		bind_int(w, i);
 		bind_text(w, picture->name);
 		if (w->code == SQLITE_OK)
 			w->code = sqlite3_bind_blob(w->statement, ++w->bound, picture->hash.bytes,
 						    HASH_BYTES, SQLITE_STATIC);
 		bind_int(w, picture->size);
+		bind_text(w, picture->media_type);
 		bind_int(w, picture->width_px);
 		bind_int(w, picture->height_px);
 		insert(w);
@@ -164,11 +170,12 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 
 	if (!part->titles[language] && !part->captions[language] && !page->html)
 		return;
-	prepare(w, "INSERT INTO information_contents VALUES(?,?,?, ?,?,?)");
+	prepare(w, "INSERT INTO information_contents VALUES(?,?,?, ?,?,?,?)");
 	bind_int(w, content_id);
 	bind_int(w, information);
 	bind_int(w, language);
 	bind_text(w, part->titles[language]);
+	bind_text(w, part->readings[language]);
 	bind_text(w, part->captions[language]);
 	bind_text(w, page->html);
 	insert(w);
@@ -177,6 +184,25 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 		bind_int(w, content_id);
 		bind_int(w, i);
 		bind_int(w, page->pictures[i]);
+		insert(w);
+	}
+}
+
+/* Whole: what is said of all parts as well. */
+static void write_credits(struct writer *w, int64_t information, const struct content_part *part)
+{
+	for (uint32_t i = 0; i < part->credit_count; i++) {
+		const struct content_credit *credit = &part->credits[i];
+
+		prepare(w, "INSERT INTO dublin_core VALUES(?,?,?,?,?)");
+		bind_int(w, information);
+		bind_int(w, i);
+		bind_text(w, credit->element);
+		if (credit->language >= 0)
+			bind_int(w, credit->language);
+		else
+			w->bound++; /* NULL */
+		bind_text(w, credit->value);
 		insert(w);
 	}
 }
@@ -200,6 +226,7 @@ static void write_information(struct writer *w, int64_t id, const struct content
 	insert(w);
 	for (uint32_t i = 0; i < language_count; i++)
 		write_content(w, id, i, part);
+	write_credits(w, id, part);
 }
 
 static void write_database(struct writer *w, const struct content *content)
@@ -217,6 +244,8 @@ static void write_database(struct writer *w, const struct content *content)
 		write_part(w, i, &content->parts[i]);
 		write_information(w, i, &content->parts[i], content->options->language_count);
 	}
+	if (w->code == SQLITE_OK)
+		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
 	run(w, "COMMIT");
 	run(w, "VACUUM");
 }

@@ -36,9 +36,12 @@ static void part_finish(struct content_part *part)
 {
 	free(part->id);
 	free(part->thumbnail);
+	for (uint32_t i = 0; i < part->credit_count; i++)
+		free(part->credits[i].value);
 	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
 		free(part->titles[i]);
 		free(part->captions[i]);
+		free(part->readings[i]);
 		free(part->pages[i].html);
 		free(part->pages[i].pictures);
 	}
@@ -114,6 +117,7 @@ static void measure_picture(struct content *content, struct content_picture *pic
 				 "is no whole JPEG or PNG picture: save it anew as one");
 	} else {
 		picture->damaged = false;
+		picture->media_type = bytes.data[0] == 0x89 ? "image/png" : "image/jpeg";
 		picture->hash = hash_of(buffer_bytes(&bytes));
 		picture->size = (uint32_t)bytes.size;
 		picture->width_px = decoded.width;

@@ -5,6 +5,8 @@
 
 #include "storage/info.h"
 
+struct cJSON;
+
 enum { INFO_ID_BYTES_MOST = 64, INFO_PARTS_FILE_BYTES_MOST = 16 << 20 };
 
 struct content_page {
@@ -14,6 +16,15 @@ struct content_page {
 	uint32_t picture_count;
 };
 
+/* A statement in Dublin Core's terms. */
+struct content_credit {
+	const char *element; /* borrowed from a constant table */
+	int language;        /* index into the release's languages; -1: of none */
+	char *value;         /* owned */
+};
+
+enum { CONTENT_CREDITS_MOST = 64 };
+
 struct content_part {
 	char *id;
 	unsigned line; /* of parts.json */
@@ -21,6 +32,9 @@ struct content_part {
 	struct info_region region;
 	float anchor_m[3];
 	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	char *readings[INFO_LANGUAGES_MOST];                               /* the same */
+	struct content_credit credits[CONTENT_CREDITS_MOST]; /* in the order of the elements */
+	uint32_t credit_count;
 	char *thumbnail;       /* owned, a name; NULL: none */
 	int thumbnail_picture; /* index into content.pictures, or -1 */
 	struct content_page pages[INFO_LANGUAGES_MOST];
@@ -28,6 +42,7 @@ struct content_part {
 
 struct content_picture {
 	char *name;
+	const char *media_type;
 	struct hash hash;
 	uint32_t size, width_px, height_px;
 	bool damaged; /* complained about once */
@@ -50,6 +65,10 @@ void content_finish(struct content *content);
 /* Each returns 0 even where it complained; negative errno only where it cannot go on. */
 must_check int content_read_parts(struct content *content);
 must_check int content_read_pages(struct content *content);
+/* Adds what json, the "credits" of a part, and, where that lacks an element, all, those of all
+ * parts, say. Either may be NULL. Complains as of the part's line. */
+must_check int content_read_credits(struct content *content, struct content_part *part,
+				    const struct cJSON *json, const struct cJSON *all);
 /* Reads and checks a picture that file:line refers to. Its index, or -1 after a complaint, or
  * -ENOMEM. */
 int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);

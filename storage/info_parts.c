@@ -1,5 +1,4 @@
-/* parts.json into parts. cJSON keeps no positions, so the line of a part is found by counting the
- * objects of the "parts" array in the text. */
+/* parts.json into parts. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
@@ -8,45 +7,9 @@
 #include <string.h>
 
 #include "storage/info_content.h"
+#include "storage/json_lines.h"
 
 static const char parts_file[] = "parts.json";
-
-/* ---- lines ---- */
-
-static unsigned line_at(const char *text, const char *at)
-{
-	unsigned line = 1;
-
-	for (; text < at && *text; text++)
-		line += *text == '\n';
-	return line;
-}
-
-/* Lines on which the objects at depth 3 begin: {"parts": [ {here}, {here} ]}. */
-static void find_part_lines(const char *text, unsigned *lines, size_t most)
-{
-	unsigned line = 1, depth = 0;
-	bool in_string = false;
-	size_t found = 0;
-
-	for (const char *p = text; *p && found < most; p++) {
-		line += *p == '\n';
-		if (in_string) {
-			if (*p == '\\' && p[1])
-				p++;
-			else if (*p == '"')
-				in_string = false;
-		} else if (*p == '"') {
-			in_string = true;
-		} else if (*p == '{' || *p == '[') {
-			depth++;
-			if (*p == '{' && depth == 3)
-				lines[found++] = line;
-		} else if ((*p == '}' || *p == ']') && depth > 0) {
-			depth--;
-		}
-	}
-}
 
 /* ---- pieces of a part ---- */
 
@@ -283,7 +246,8 @@ static int read_thumbnail(struct part_reader *r)
 	return r->part->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
 }
 
-static int read_part(struct content *content, const cJSON *json, unsigned line)
+static int read_part(struct content *content, const cJSON *json, unsigned line,
+		     const cJSON *credits)
 {
 	struct content_part *part = &content->parts[content->part_count];
 	struct part_reader reader = { .content = content, .part = part, .json = json };
@@ -300,12 +264,19 @@ static int read_part(struct content *content, const cJSON *json, unsigned line)
 	if (rc == 0)
 		rc = read_texts(&reader, "caption", part->captions, false);
 	if (rc == 0)
+		rc = read_texts(&reader, "reading", part->readings, false);
+	if (rc == 0)
+		rc = content_read_credits(
+			content, part, cJSON_GetObjectItemCaseSensitive(json, "credits"), credits);
+	if (rc == 0)
 		rc = read_thumbnail(&reader);
 	return rc;
 }
 
-static int read_array(struct content *content, const cJSON *array, const char *text)
+static int read_array(struct content *content, const cJSON *json, const char *text)
 {
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "parts");
+	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(json, "credits");
 	int count = cJSON_GetArraySize(array);
 	unsigned *lines;
 	const cJSON *item;
@@ -321,13 +292,13 @@ static int read_array(struct content *content, const cJSON *array, const char *t
 	if (!lines || !content->parts)
 		rc = -ENOMEM;
 	else
-		find_part_lines(text, lines, (size_t)count);
+		json_item_lines(text, "parts", lines, (size_t)count);
 	cJSON_ArrayForEach(item, array)
 	{
 		if (rc < 0)
 			break;
 		if (cJSON_IsObject(item))
-			rc = read_part(content, item, lines[i]);
+			rc = read_part(content, item, lines[i], credits);
 		else
 			content_complain(content, true, parts_file, 0,
 					 "entry %d of \"parts\" is no object: write {\"id\": ...}",
@@ -351,14 +322,14 @@ static int parse_parts(struct content *content, struct buffer *text)
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
 	if (!json)
-		content_complain(content, true, parts_file, line_at((char *)text->data, end),
+		content_complain(content, true, parts_file, json_line_of((char *)text->data, end),
 				 "is not JSON from here on: look for a missing comma, quote or "
 				 "bracket");
 	else if (!cJSON_IsArray(array))
 		content_complain(content, true, parts_file, 1,
 				 "must be {\"parts\": [...]} at the outside");
 	else
-		rc = read_array(content, array, (const char *)text->data);
+		rc = read_array(content, json, (const char *)text->data);
 	cJSON_Delete(json);
 	return rc;
 }

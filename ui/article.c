@@ -317,6 +317,9 @@ int article_create(struct article **out, const struct article_options *options, 
 		article->column_px = 1;
 	article->left_px = (options->width_px - article->column_px) / 2;
 	rc = html_parse(&article->html, html);
+	if (rc == 0 && options->credits && *options->credits)
+		rc = html_add_note(&article->html, options->credits);
+	article->options.credits = NULL;
 	if (rc == 0) {
 		article->items = calloc(article->html.block_count, sizeof(*article->items));
 		rc = article->items ? 0 : -ENOMEM;

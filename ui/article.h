@@ -14,6 +14,7 @@ struct article_options {
 	int width_px;
 	int view_px; /* height of the window on it; no picture is taller than 3/4 of it */
 	struct picture_source pictures;
+	const char *credits; /* below the page in small; not kept; NULL or "": none */
 };
 
 /* html is not kept. *out is owned by the caller; on failure it is NULL. As html_parse. */

@@ -480,6 +480,17 @@ int html_parse(struct html *out, struct bytes source)
 	return parser.error;
 }
 
+int html_add_note(struct html *html, const char *text)
+{
+	const struct inherited in = { .link = -1, .list_number = -1, .style = TEXT_FIGURE };
+	struct parser parser = { .html = html };
+
+	add_block(&parser, HTML_RULE, &in);
+	put_text(&parser, (const unsigned char *)text, &in);
+	close_block(&parser);
+	return parser.error;
+}
+
 void html_finish(struct html *html)
 {
 	if (!html)

@@ -50,6 +50,8 @@ enum { HTML_BLOCKS_MOST = 5000, HTML_COLUMNS_MOST = 8, HTML_BYTES_MOST = 1 << 20
 /* *out is finished by the caller; zeroed on failure. -EBADMSG: not UTF-8, or no text and no picture
  * in it; -EFBIG; -ENOMEM. */
 must_check int html_parse(struct html *out, struct bytes source);
+/* Adds a paragraph in small below a rule. -ENOMEM, -EFBIG; html is still to be finished then. */
+must_check int html_add_note(struct html *html, const char *text);
 void html_finish(struct html *html); /* NULL and zeroed are fine */
 
 #endif

@@ -236,13 +236,14 @@ int overlay_card(const struct overlay *overlay)
 	return overlay->card_part;
 }
 
-int overlay_show_page(struct overlay *overlay, int part, struct bytes html)
+int overlay_show_page(struct overlay *overlay, int part, struct bytes html, const char *credits)
 {
 	struct overlay_rect view = overlay_view_rect(overlay);
 	const struct article_options options = { .theme = &overlay->theme,
 						 .width_px = view.width_px,
 						 .view_px = view.height_px,
-						 .pictures = overlay->pictures };
+						 .pictures = overlay->pictures,
+						 .credits = credits };
 	struct article *article;
 	int rc;
 

@@ -73,8 +73,10 @@ void overlay_show_card(struct overlay *overlay, int part);
 int overlay_card(const struct overlay *overlay); /* the part whose card is open, or -1 */
 
 /* Opens the page beside the model, or replaces the one that is open. html is parsed now and not
- * kept. -EBADMSG: nothing in it can be shown; -ENOMEM. */
-must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes html);
+ * kept; credits, a line below it in small, is copied and may be "". -EBADMSG: nothing in it can be
+ * shown; -ENOMEM. */
+must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes html,
+				 const char *credits);
 void overlay_close_page(struct overlay *overlay);
 int overlay_page(const struct overlay *overlay); /* the part whose page is open, or -1 */
 

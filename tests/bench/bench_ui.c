@@ -72,7 +72,7 @@ static void measure(struct bytes page)
 	}
 	for (int i = 0; i < 5; i++) {
 		start_us = clock_thread_us();
-		if (overlay_show_page(overlay, 0, page) < 0)
+		if (overlay_show_page(overlay, 0, page, "") < 0)
 			exit(1);
 		open_most_us = worst(open_most_us, clock_thread_us() - start_us);
 		update_most_us = worst(update_most_us, settle(&now_ms));

@@ -128,9 +128,20 @@ static void survives_nasty_pages(void **state)
 	}
 }
 
+static void a_note_stands_below_a_rule(void **state)
+{
+	(void)state;
+	CHECK(parse("<p>a</p>") == 0);
+	CHECK(html_add_note(&html, "b <p>· c") == 0); /* text, not HTML */
+	CHECK(html.block_count == 3 && html.blocks[1].kind == HTML_RULE);
+	CHECK(strcmp(html.blocks[2].text, "b <p>· c") == 0 && html.blocks[2].style == TEXT_FIGURE);
+	html_finish(&html);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_note_stands_below_a_rule),
 		cmocka_unit_test(keeps_blocks_in_order),
 		cmocka_unit_test(knows_white_space),
 		cmocka_unit_test(drops_scripts_styles_and_foreign_links),

@@ -253,7 +253,8 @@ static void shows_every_screen_on_every_panel(void **state)
 
 			CHECK(overlay_show_page(overlay, 0,
 						(struct bytes){ (const uint8_t *)pages[language],
-								strlen(pages[language]) }) == 0);
+								strlen(pages[language]) },
+						"© The museum · 1150") == 0);
 			CHECK(article_unknown_glyphs(overlay->article) == 0);
 			give_anchors(overlay);
 			snprintf(name, sizeof(name), "page-%s", languages[language]);
@@ -336,8 +337,8 @@ static void a_page_scrolls_links_and_closes(void **state)
 	paint_album(&album);
 	overlay = open_overlay(&album, 1280, 720);
 	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) }) ==
-	      0);
+				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) },
+				"") == 0);
 	CHECK(overlay_page(overlay) == 0 && overlay_scene_rect(overlay).width_px == 640);
 	settle(overlay);
 	view = overlay_view_rect(overlay);
@@ -360,7 +361,8 @@ static void a_page_scrolls_links_and_closes(void **state)
 	settle(overlay);
 	CHECK(overlay->scroll_px == (float)overlay_scroll_most(overlay));
 	check_layers(overlay);
-	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)"", 0 }) == -EBADMSG);
+	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)"", 0 }, "x") ==
+	      -EBADMSG);
 	CHECK(overlay_page(overlay) == 0); /* the one before stays */
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
@@ -379,8 +381,8 @@ static void a_late_picture_moves_nothing(void **state)
 	album.arrived = false;
 	overlay = open_overlay(&album, 1280, 720);
 	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) }) ==
-	      0);
+				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) },
+				"") == 0);
 	CHECK(album.asked > 0);
 	height_px = article_height_px(overlay->article);
 	before = screen(overlay, "page-waiting");

@@ -1,0 +1,52 @@
+/* Private to storage: what the sources of an open information database share. */
+#ifndef GOPURA_STORAGE_INFO_PRIVATE_H
+#define GOPURA_STORAGE_INFO_PRIVATE_H
+
+#include <sqlite3.h>
+
+#include "storage/info.h"
+
+enum {
+	INFO_CALLS_MOST = 100000, /* 10^8 steps of SQLite's machine while opening */
+	INFO_CREDITS_BYTES_MOST = 8 << 10,
+};
+
+/* A row of information_contents. */
+struct info_hit {
+	int64_t content_id;
+	uint32_t part, language;
+};
+
+struct text {
+	char *title, *caption; /* owned or NULL */
+	bool has_page;
+	int64_t content_id;
+};
+
+struct part {
+	struct info_part public; /* id owned */
+	uint32_t thumbnail;      /* picture index + 1; 0: none */
+	struct text texts[INFO_LANGUAGES_MOST];
+};
+
+struct info {
+	sqlite3 *db;
+	sqlite3_stmt *page;    /* steps on the row that the last info_page gave */
+	struct buffer credits; /* what the last info_credits gave */
+	uint32_t calls, calls_most;
+	struct info_hit *contents; /* by id; made by the first search */
+	uint32_t content_count;
+	char *languages[INFO_LANGUAGES_MOST];
+	uint32_t language_count;
+	struct part *parts;
+	uint32_t part_count;
+	struct info_picture *pictures; /* names owned */
+	uint32_t picture_count;
+};
+
+/* 0, -ENOMEM or -EBADMSG, logged. */
+must_check int info_from_sqlite(sqlite3 *db, int code, const char *doing);
+/* An unknown language is the default. */
+uint32_t info_language_index(const struct info *info, const char *language);
+
+#endif
