@@ -88,7 +88,7 @@ powercut: deps ## the power goes at every write of cache and state (minutes); SE
 	@$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut
 	@nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED)
 
-qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang
+qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick
 	@bash tests/qemu/image.sh updates
 
 qemu: all ## boot the image for a person: a window, or a VNC screen

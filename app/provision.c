@@ -168,8 +168,9 @@ static int draw_faults(struct kiosk *kiosk)
 		.items = items,
 		.count = faults->count,
 		.dropped = faults->dropped,
-		.foot = "Correct the file on any computer, then switch the terminal off and on. "
-			"gopura-setup --check gopura.conf tells beforehand whether it is right.",
+		.foot = "Correct the file on any computer, then switch the terminal off and on; a "
+			"stick need only be plugged in again. gopura-setup --check gopura.conf "
+			"tells beforehand whether it is right.",
 	};
 
 	for (unsigned i = 0; i < faults->count; i++) {
@@ -196,7 +197,7 @@ static int draw_missing(struct kiosk *kiosk)
 		       "url = https://museum.example/temple/\n"
 		       "trust = 1.json" },
 		{ "2", where },
-		{ "3", "Switch the terminal off and on." },
+		{ "3", "Switch the terminal off and on; a stick need only be plugged in." },
 	};
 	const struct notice notice = {
 		.title = "This terminal is not set up yet",

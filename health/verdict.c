@@ -245,8 +245,9 @@ static void judge_faults(struct verdict *verdict, const char *faults)
 
 		if (size > 0)
 			add(verdict, LEVEL_REMARK, "gopura.conf says what cannot be done",
-			    "Correct the line, and switch the terminal off and on.", "%.*s",
-			    (int)size, faults);
+			    "Correct the line, and switch the terminal off and on; a stick need only "
+			    "be plugged in again.",
+			    "%.*s", (int)size, faults);
 		faults += size + (faults[size] == '\n');
 	}
 }

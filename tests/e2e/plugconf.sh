@@ -1,0 +1,78 @@
+#!/bin/bash
+# A stick with a gopura.conf, plugged into a terminal that runs: the appliance's own script with the real gopura-setup; only
+# the service manager is played. (The whole, in a machine: tests/qemu/image.sh.)
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=$PWD/build/e2e/plugconf
+rm -rf "$work"
+mkdir -p "$work"/{bin,efi,stick,out}
+script=$PWD/image/root/usr/lib/gopura/gopura-conf
+conf=("$work/efi/gopura.conf" "$work/stick/gopura.conf")
+
+# What gopura-setup.service does when it is started; the others are only named.
+cat >"$work/set-up" <<END
+#!/bin/sh
+set -e
+"$PWD/build/gopura-setup" --conf "${conf[0]}" --conf "${conf[1]}" --boards "$PWD/board" --out "$work/out"
+"$script" note "${conf[0]}" "${conf[1]}" "$work/out"
+END
+cat >"$work/bin/systemctl" <<END
+#!/bin/sh
+echo "\$@" >>"$work/asked"
+case "\$*" in
+"restart gopura-setup.service") exec "$work/set-up" ;;
+*iwd*) exit 1 ;; # whoever fails
+esac
+END
+chmod +x "$work/set-up" "$work/bin/systemctl"
+
+# plugged: as gopura-conf.service does when a stick came
+plugged() {
+	: >"$work/asked"
+	PATH=$work/bin:$PATH "$script" apply "${conf[@]}" "$work/out" >"$work/said" 2>&1 || fail "apply: $(cat "$work/said")"
+}
+asked() { grep -q -- "$1" "$work/asked"; }
+host() { cat "$work/out/hostname"; }
+
+"$work/set-up" 2>"$work/log"
+[ "$(host)" = gopura ] || fail "a terminal without a gopura.conf is called $(host)"
+
+cp board/gopura.conf.example "$work/stick/gopura.conf"
+echo root >"$work/stick/1.json"
+echo authority >"$work/stick/ca.pem"
+plugged
+[ "$(host)" = east-gate ] || fail "the stick's gopura.conf does not hold"
+asked 'restart .*gopura-fetch.service' && asked 'restart .*gopura-kiosk.service' || fail "nobody is told: $(cat "$work/asked")"
+asked '^restart .*systemd-networkd' || fail "the network is as it was"
+[ "$(head -n 1 "$work/asked")" = "restart gopura-setup.service" ] || fail "others came before gopura-setup"
+
+plugged
+[ ! -s "$work/asked" ] || fail "the same stick once more disturbed: $(cat "$work/asked")"
+echo another >"$work/stick/ca.pem"
+plugged
+asked gopura-kiosk.service || fail "another authority beside the same gopura.conf was not taken"
+
+# What is wrong in it is told, and what is right holds.
+sed -i -e 's/^name .*/name = West gate/' -e 's/^rotation .*/rotation = 45/' "$work/stick/gopura.conf"
+plugged
+[ "$(host)" = west-gate ] || fail "a fault kept the rest from holding"
+grep -q 'rotation must be 0, 90, 180 or 270' "$work/out/faults" || fail "the fault is not told"
+asked gopura-kiosk.service || fail "the panel does not show the fault"
+
+# The disk's comes first; whoever plugs in another is told.
+printf '[terminal]\nname = Disk\n' >"$work/efi/gopura.conf"
+"$work/set-up" 2>"$work/log"
+plugged
+plugged
+[ ! -s "$work/asked" ] && [ "$(host)" = disk ] || fail "the stick came before the disk"
+[ "$(grep -c 'of the stick is not used' "$work/out/faults")" = 1 ] || fail "nobody is told: $(cat "$work/out/faults")"
+# Pulled out, the disk's without: nothing is in use any more, and the same stick holds again.
+rm "$work/efi/gopura.conf"
+mv "$work/stick" "$work/pocket"
+"$work/set-up" 2>"$work/log"
+[ "$(host)" = gopura ] && [ ! -e "$work/out/conf.sum" ] || fail "what is gone is in use"
+mv "$work/pocket" "$work/stick"
+plugged
+[ "$(host)" = west-gate ] || fail "the stick does not hold again"
+echo "a stick's gopura.conf: applied, told, not twice, not before the disk's"
