@@ -75,7 +75,7 @@ static void finish_file(struct writing *writing, const char *name)
 	buffer_clear(&writing->text);
 }
 
-/* Networks of an earlier gopura.conf are none any more. */
+/* What an earlier gopura.conf said is said no more. */
 static void empty_folder(struct writing *writing, const char *name)
 {
 	char path[PATH_MAX];
@@ -136,6 +136,20 @@ static void write_health(struct writing *writing)
 	finish_file(writing, "gopura-health.socket.d/listen.conf");
 }
 
+/* What systemd-resolved tells who asks by multicast for web pages (DNS-SD). */
+static void write_announcement(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+
+	folder(writing, "dnssd", 0755);
+	empty_folder(writing, "dnssd");
+	if (!t->mdns)
+		return;
+	put(writing, "[Service]\nName=%%H\nType=_http._tcp\nPort=%u\nTxtText=path=/\n",
+	    t->listen_port);
+	finish_file(writing, "dnssd/gopura-health.dnssd");
+}
+
 /* ---- networks */
 
 static void put_servers(struct writing *writing, const char *name,
@@ -165,6 +179,8 @@ static void write_network(struct writing *writing, const char *file, const char 
 
 	terminal_host_name(t, host);
 	put(writing, "[Match]\nType=%s\n\n[Link]\nRequiredForOnline=no\n\n[Network]\n", type);
+	if (t->mdns)
+		put(writing, "MulticastDNS=yes\n");
 	if (!is_static)
 		put(writing, "DHCP=yes\n");
 	else
@@ -301,6 +317,7 @@ int setup_write(const struct setup *setup)
 	write_faults(&writing); /* first: whatever fails then, they are told */
 	write_fetcher(&writing);
 	write_health(&writing);
+	write_announcement(&writing);
 	write_networks(&writing);
 	write_time_zone(&writing);
 	write_host_name(&writing);

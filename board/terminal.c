@@ -34,6 +34,7 @@ enum {
 	AT_SSID = 19,
 	AT_PASSPHRASE,
 	AT_COUNTRY,
+	AT_MDNS = 23,
 };
 
 static const struct setting settings[] = {
@@ -111,7 +112,11 @@ static const struct setting settings[] = {
 	  .offset = offsetof(struct terminal, wake_min),
 	  .least = 0,
 	  .most = 1440 },
-	{ .section = "panel", .name = "shift", .expects = "yes or no", .set = terminal_set_shift },
+	{ .section = "panel",
+	  .name = "shift",
+	  .expects = "yes or no",
+	  .set = terminal_set_yes_no,
+	  .offset = offsetof(struct terminal, shift) },
 	[AT_ADDRESS] = { .section = "network",
 			 .name = "address",
 			 .expects = "dhcp, or an address with its network's bits such as "
@@ -149,6 +154,11 @@ static const struct setting settings[] = {
 	  .name = "listen",
 	  .expects = "an address and a port such as 127.0.0.1:9100 or [::1]:9100",
 	  .set = terminal_set_listen },
+	[AT_MDNS] = { .section = "health",
+		      .name = "mdns",
+		      .expects = "yes or no",
+		      .set = terminal_set_yes_no,
+		      .offset = offsetof(struct terminal, mdns) },
 };
 
 /* ---- the whole */
@@ -167,6 +177,11 @@ static bool in_one_network(const char *a, const char *b, uint32_t bits)
 		if ((bytes[0][i / 8] ^ bytes[1][i / 8]) >> (7 - i % 8) & 1)
 			return false;
 	return true;
+}
+
+static bool is_loopback(const char *address)
+{
+	return strncmp(address, "127.", 4) == 0 || strcmp(address, "::1") == 0;
 }
 
 /* What is wrong between right lines. A line that was refused has been complained of already. */
@@ -196,6 +211,11 @@ static void check_together(const struct terminal *t, const unsigned *lines, stru
 		faults_add(faults, lines[AT_SSID],
 			   "with ssid the line country = ... is needed: the radio must keep that "
 			   "country's rules");
+	if (t->mdns && is_loopback(t->listen_address))
+		faults_add(faults, lines[AT_MDNS],
+			   "mdns tells the network of a page that answers nobody but the terminal; "
+			   "write listen = 0.0.0.0:9100 or the terminal's own address too, or take "
+			   "mdns out");
 }
 
 static void parse(struct terminal *out, struct bytes text, unsigned *lines, struct faults *faults)

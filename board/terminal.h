@@ -54,6 +54,7 @@ struct terminal {
 	/* [health] */
 	char listen_address[INET6_ADDRSTRLEN];
 	uint32_t listen_port;
+	bool mdns; /* the network is told of it */
 };
 
 extern const struct terminal terminal_default;

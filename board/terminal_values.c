@@ -166,14 +166,13 @@ bool terminal_set_hours(const struct setting *setting, void *target, const char 
 	return true;
 }
 
-bool terminal_set_shift(const struct setting *setting, void *target, const char *value)
+bool terminal_set_yes_no(const struct setting *setting, void *target, const char *value)
 {
-	struct terminal *terminal = target;
+	const bool yes = strcasecmp(value, "yes") == 0;
 
-	(void)setting;
-	if (strcasecmp(value, "yes") != 0 && strcasecmp(value, "no") != 0)
+	if (!yes && strcasecmp(value, "no") != 0)
 		return false;
-	terminal->shift = strcasecmp(value, "yes") == 0;
+	*(bool *)((char *)target + setting->offset) = yes;
 	return true;
 }
 

@@ -15,7 +15,7 @@ bool terminal_set_download(const struct setting *setting, void *target, const ch
 bool terminal_set_mode(const struct setting *setting, void *target, const char *value);
 bool terminal_set_rotation(const struct setting *setting, void *target, const char *value);
 bool terminal_set_hours(const struct setting *setting, void *target, const char *value);
-bool terminal_set_shift(const struct setting *setting, void *target, const char *value);
+bool terminal_set_yes_no(const struct setting *setting, void *target, const char *value);
 bool terminal_set_address(const struct setting *setting, void *target, const char *value);
 bool terminal_set_gateway(const struct setting *setting, void *target, const char *value);
 bool terminal_set_dns(const struct setting *setting, void *target, const char *value);

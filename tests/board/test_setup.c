@@ -235,6 +235,20 @@ static int remove_folder(void **state)
 	return system(command);
 }
 
+static void the_network_is_told_of_the_health_page_where_asked_for(void **state)
+{
+	(void)state;
+	apply(RELEASE "[health]\nlisten = 0.0.0.0:9200\nmdns = yes\n"
+		      "[wifi]\nssid = x\npassphrase = 12345678\ncountry = KH\n");
+	CHECK(strcmp(text_of("dnssd/gopura-health.dnssd"),
+		     "[Service]\nName=%H\nType=_http._tcp\nPort=9200\nTxtText=path=/\n") == 0);
+	has("network/10-wired.network", "[Network]\nMulticastDNS=yes\n");
+	has("network/20-wifi.network", "[Network]\nMulticastDNS=yes\n");
+	apply(RELEASE "[health]\nlisten = 0.0.0.0:9200\n");
+	CHECK(is_there("dnssd") && !is_there("dnssd/gopura-health.dnssd"));
+	has_not("network/10-wired.network", "MulticastDNS");
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -243,6 +257,7 @@ int main(void)
 		cmocka_unit_test(the_fetcher_is_told_what_is_its),
 		cmocka_unit_test(a_radio_network_is_named_as_iwd_looks_for_it),
 		cmocka_unit_test(the_radio_has_the_address_and_old_networks_go),
+		cmocka_unit_test(the_network_is_told_of_the_health_page_where_asked_for),
 		cmocka_unit_test(faults_are_written_a_line_each_and_the_rest_holds),
 		cmocka_unit_test(says_where_it_cannot_write),
 		cmocka_unit_test(every_profile_that_comes_along_is_right),
