@@ -12,6 +12,7 @@ struct command {
 	int (*run)(int argc, char **argv);
 };
 
+int command_annotations(int argc, char **argv);
 int command_build(int argc, char **argv);
 int command_hierarchy(int argc, char **argv);
 int command_import(int argc, char **argv);

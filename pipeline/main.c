@@ -12,6 +12,7 @@ static const struct command commands[] = {
 	{ "publish", "make a signed release of what is built, or undo one", command_publish },
 	{ "verify", "walk a whole release and check everything in it", command_verify },
 	{ "inspect", "say what an object, a file or a release holds", command_inspect },
+	{ "annotations", "parts and pages to and from W3C Web Annotations", command_annotations },
 	{ "keys", "make the signing keys of a content folder", command_keys },
 	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
 	  command_hierarchy },
@@ -26,7 +27,7 @@ static void print_help(void)
 	     "\n"
 	     "usage: gopura-content COMMAND [OPTIONS]\n");
 	for (const struct command *c = commands; c->name; c++)
-		printf("  %-10s %s\n", c->name, c->summary);
+		printf("  %-11s %s\n", c->name, c->summary);
 	puts("\ngopura-content COMMAND --help says more, with examples.");
 }
 

@@ -321,7 +321,7 @@ static void count(struct info_built *out, const struct content *content)
 			out->page_count += content->parts[p].pages[i].html != NULL;
 }
 
-static bool languages_are_sane(const struct info_build_options *options)
+bool content_languages_are_sane(const struct info_build_options *options)
 {
 	if (options->language_count < 1 || options->language_count > INFO_LANGUAGES_MOST)
 		return false;
@@ -346,7 +346,7 @@ int info_build(struct info_built *out, const struct info_build_options *options)
 
 	*out = (struct info_built){ 0 };
 	buffer_init(&out->database, OBJECT_BYTES_MOST);
-	if (!languages_are_sane(options))
+	if (!content_languages_are_sane(options))
 		content_complain(&content, true, "temple.ini", 0,
 				 "languages: give 1 to %d codes such as \"en fr km\", each once",
 				 INFO_LANGUAGES_MOST);

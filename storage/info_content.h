@@ -72,6 +72,8 @@ must_check int content_read_credits(struct content *content, struct content_part
 /* Reads and checks a picture that file:line refers to. Its index, or -1 after a complaint, or
  * -ENOMEM. */
 int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);
+/* 1 to INFO_LANGUAGES_MOST codes, each once. */
+bool content_languages_are_sane(const struct info_build_options *options);
 /* The part's index or -1. */
 int content_find_part(const struct content *content, const char *id);
 

@@ -1,0 +1,207 @@
+#include "pipeline/commands.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "storage/annotations.h"
+
+static const char help[] =
+	"gopura-content annotations: parts and pages to and from W3C Web Annotations (JSON-LD)\n"
+	"\n"
+	"usage: gopura-content annotations export CONTENT --out FILE [--languages LIST]\n"
+	"       gopura-content annotations import FILE --into CONTENT [OPTIONS]\n"
+	"\n"
+	"export writes one annotation for each part of CONTENT/parts.json, and the pictures beside FILE.\n"
+	"  --languages LIST  such as en,fr; the first must have every title. Default: those of the\n"
+	"                    titles, in the order they appear\n"
+	"\n"
+	"import writes parts.json, pages/ and pictures/ into CONTENT, which must have no parts yet.\n"
+	"  --language CODE   of texts that do not say which (default: en)\n"
+	"  --up AXIS         of PointSelectors: z (default), or y as IIIF has it\n"
+	"  --skip-unknown    leave annotations out whose selectors say no place on a model; without it\n"
+	"                    they are refused\n"
+	"\n"
+	"docs/annotations.md has the format. Exit status: 0 done, 1 refused, 2 wrong command line.\n"
+	"\n"
+	"  gopura-content annotations export temple --out exchange/temple.jsonld\n"
+	"  gopura-content annotations import exchange/temple.jsonld --into copy\n";
+
+static void say(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	char at[16] = "";
+
+	(void)data;
+	if (line > 0)
+		snprintf(at, sizeof(at), ":%u", line);
+	fprintf(stderr, "%s: %s%s: %s\n", is_error ? "error" : "warning", file, at, text);
+}
+
+/* "en,fr" in place. 0: it is no such list. */
+static uint32_t split_languages(char *list, const char *languages[INFO_LANGUAGES_MOST])
+{
+	uint32_t count = 0;
+
+	for (char *code; (code = strsep(&list, ",")); count++) {
+		if (!*code || count == INFO_LANGUAGES_MOST)
+			return 0;
+		languages[count] = code;
+	}
+	return count;
+}
+
+static int fail(const char *what, int rc)
+{
+	if (rc != -EINVAL) /* that was said in full */
+		fprintf(stderr, "gopura-content annotations: %s: %s\n", what, strerror(-rc));
+	return EXIT_FAILURE;
+}
+
+/* ---- export */
+
+static int copy_picture(const char *content, const char *beside, const char *name)
+{
+	char from[PATH_MAX], to[PATH_MAX];
+	struct stat a, b;
+	struct buffer file;
+	int rc;
+
+	if (snprintf(from, sizeof(from), "%s/%s", content, name) >= PATH_MAX ||
+	    snprintf(to, sizeof(to), "%s/%s", beside, name) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	if (stat(from, &a) == 0 && stat(to, &b) == 0 && a.st_dev == b.st_dev &&
+	    a.st_ino == b.st_ino)
+		return 0; /* the file is written into the content folder itself */
+	buffer_init(&file, 64 << 20);
+	rc = buffer_read_file(&file, from);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&file), to);
+	buffer_finish(&file);
+	return rc;
+}
+
+static int write_export(const struct annotations *annotations, const char *content, const char *out)
+{
+	char folder[PATH_MAX], pictures[PATH_MAX];
+	const char *slash = strrchr(out, '/');
+	int rc = bytes_write_file(buffer_bytes(&annotations->json), out);
+
+	snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(slash - out) : 1, slash ? out : ".");
+	if (slash == out)
+		snprintf(folder, sizeof(folder), "/");
+	if (snprintf(pictures, sizeof(pictures), "%s/pictures", folder) >= PATH_MAX)
+		rc = -ENAMETOOLONG;
+	if (rc == 0 && annotations->picture_count > 0 && mkdir(pictures, 0755) < 0 &&
+	    errno != EEXIST)
+		rc = -errno;
+	for (uint32_t i = 0; rc == 0 && i < annotations->picture_count; i++)
+		rc = copy_picture(content, folder, annotations->pictures[i]);
+	return rc;
+}
+
+static int run_export(const char *content, const char *out, char *language_list)
+{
+	const char *languages[INFO_LANGUAGES_MOST];
+	struct annotations_export_options options = { .folder = content, .complaint = say };
+	struct annotations annotations;
+	int rc;
+
+	if (!out)
+		return command_wrong("annotations", "export needs --out FILE", "");
+	if (language_list) {
+		options.languages = languages;
+		options.language_count = split_languages(language_list, languages);
+		if (options.language_count == 0)
+			return command_wrong("annotations", "--languages must be such as en,fr",
+					     "");
+	}
+	rc = annotations_export(&annotations, &options);
+	if (rc < 0)
+		return fail(content, rc);
+	rc = write_export(&annotations, content, out);
+	if (rc == 0)
+		printf("%s: %u annotations, %u pictures beside it\n", out, annotations.count,
+		       annotations.picture_count);
+	annotations_finish(&annotations);
+	return rc == 0 ? EXIT_SUCCESS : fail(out, rc);
+}
+
+/* ---- import */
+
+static int run_import(const struct annotations_import_options *options)
+{
+	struct annotations_imported report;
+	int rc;
+
+	if (!options->folder)
+		return command_wrong("annotations", "import needs --into CONTENT", "");
+	rc = annotations_import(&report, options);
+	if (rc < 0)
+		return fail(options->file, rc);
+	printf("%s: %u parts, %u pages, %u pictures", options->folder, report.part_count,
+	       report.page_count, report.picture_count);
+	if (report.skipped_count > 0)
+		printf("; %u annotations left out", report.skipped_count);
+	putchar('\n');
+	return EXIT_SUCCESS;
+}
+
+int command_annotations(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "out", required_argument, NULL, 'o' },
+		{ "into", required_argument, NULL, 'i' },
+		{ "languages", required_argument, NULL, 'L' },
+		{ "language", required_argument, NULL, 'l' },
+		{ "up", required_argument, NULL, 'u' },
+		{ "skip-unknown", no_argument, NULL, 's' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	struct annotations_import_options import = { .complaint = say };
+	const char *out = NULL;
+	char *languages = NULL;
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'o':
+			out = optarg;
+			break;
+		case 'i':
+			import.folder = optarg;
+			break;
+		case 'L':
+			languages = optarg;
+			break;
+		case 'l':
+			import.language = optarg;
+			break;
+		case 'u':
+			if (strcmp(optarg, "y") != 0 && strcmp(optarg, "z") != 0)
+				return command_wrong(argv[0], "--up must be y or z, not ", optarg);
+			import.y_is_up = *optarg == 'y';
+			break;
+		case 's':
+			import.skip_unknown = true;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return 0;
+		default:
+			return 2;
+		}
+	}
+	if (argc - optind != 2)
+		return command_wrong(argv[0], "say export CONTENT or import FILE", "");
+	import.file = argv[optind + 1];
+	if (strcmp(argv[optind], "export") == 0)
+		return run_export(argv[optind + 1], out, languages);
+	if (strcmp(argv[optind], "import") == 0)
+		return run_import(&import);
+	return command_wrong(argv[0], "export or import, not ", argv[optind]);
+}

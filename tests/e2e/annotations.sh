@@ -1,0 +1,36 @@
+#!/bin/bash
+# The demo's parts and pages out as W3C Web Annotations, into an empty folder, and out again: the
+# same bytes; and a foreign file is refused by name and place.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/annotations
+rm -rf "$work"
+mkdir -p "$work/out" "$work/again"
+gopura=build/gopura-content
+"$gopura" annotations export demo/content --out "$work/out/demo.jsonld"
+"$gopura" annotations import "$work/out/demo.jsonld" --into "$work/copy"
+"$gopura" annotations export "$work/copy" --out "$work/again/demo.jsonld"
+cmp "$work/out/demo.jsonld" "$work/again/demo.jsonld" || fail "the round trip lost something"
+diff -r demo/content/pages "$work/copy/pages" || fail "pages came back changed"
+diff -r "$work/out/pictures" "$work/again/pictures" || fail "pictures came back changed"
+python3 - "$work/out/demo.jsonld" <<'P'
+import json
+import sys
+
+collection = json.load(open(sys.argv[1]))
+assert collection["total"] == len(collection["first"]["items"]) > 0
+P
+
+cat >"$work/foreign.jsonld" <<'P'
+{"type": "AnnotationPage", "items": [
+ {"id": "https://example.org/1", "type": "Annotation", "bodyValue": "a note",
+  "target": {"source": "https://example.org/photo.jpg", "selector": {"type": "SvgSelector"}}}]}
+P
+! "$gopura" annotations import "$work/foreign.jsonld" --into "$work/foreign" 2>"$work/foreign.log" ||
+	fail "an annotation of a photograph was taken"
+grep -q 'foreign.jsonld:2: .*SvgSelector.*PointSelector' "$work/foreign.log" ||
+	fail "not said what and where: $(cat "$work/foreign.log")"
+[ ! -e "$work/foreign" ] || fail "something was left"
+"$gopura" annotations import "$work/foreign.jsonld" --into "$work/foreign" --skip-unknown ||
+	fail "cannot be left out"
