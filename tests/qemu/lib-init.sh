@@ -34,7 +34,19 @@ closed)
 	set -- --hours "$(date -d "@$(($(date +%s) + 259200))" +%a) 09:00-10:00" --shift
 	;;
 safe)
-	kiosk --safe-page >/dev/console
+	# A safe page, and a kiosk that begins while that has the card.
+	{
+		/bin/gopura-kiosk --safe-page --display drm 2>&1 &
+		echo $! >/tmp/safe
+		wait
+	} | tee -a /tmp/log >/dev/console &
+	said 'KMS canvas'
+	(
+		said 'waiting until it ends'
+		sleep 12
+		echo "init: the safe page ends"
+		kill "$(cat /tmp/safe)"
+	) >/dev/console &
 	;;
 esac
 until kiosk "$@" | tee -a /tmp/log >/dev/console; grep -q 'the kiosk ended with status [^7]' /tmp/log; do

@@ -1,4 +1,4 @@
-"""plug.py KERNEL INITRAMFS WORK: the safe page on a panel; then the kiosk starts without a panel, which is then plugged in, out and in
+"""plug.py KERNEL INITRAMFS WORK: the safe page on a panel, and a kiosk that waits for its end; then the kiosk starts without a panel, which is then plugged in, out and in
 again, and the GPU is reset at last; no process ends but to fit the panel that came first, and for the GPU."""
 import os
 import sys
@@ -9,12 +9,15 @@ from machine import ANSWER_S, BOOT_S, Kiosk, share_that_differs, tones
 
 
 def safe_page(kernel, initramfs, work):
-    """Without GPU and release: a page that moves, on the card's own memory."""
+    """Without GPU and release: a page that moves, on the card's own memory. A kiosk that begins meanwhile waits for the card."""
     machine = Kiosk(kernel, initramfs, work, "safe")
     try:
         machine.wait_for("safe page", BOOT_S, lambda: "KMS canvas" in machine.log() and tones(machine.picture("safe")) > 20)
         before = machine.picture("safe")
         machine.wait_for("movement", ANSWER_S, lambda: share_that_differs(before, machine.picture("safe")) > 0.01)
+        machine.wait_for("kiosk that waits", ANSWER_S, lambda: "/dev/dri/card0: waiting until it ends" in machine.log())
+        machine.wait_for("end of the safe page", ANSWER_S, lambda: "init: the safe page ends" in machine.log())
+        machine.wait_for("temple after it", ANSWER_S, lambda: "app: first picture" in machine.log() and tones(machine.picture("after")) > 300)
     finally:
         machine.stop()
 
