@@ -20,6 +20,10 @@ small_release() {
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
 	[ -f "$small/content/scan.ply" ] ||
 		build/gopura-content temple --triangles 200000 --seed 1 --out "$small/content/scan.ply"
+	build/gopura-content build "$small/content" --out "$small/release" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
+	# The tests count from 1; a program that makes other bytes of the same content has made a second one.
+	grep -q '^release 1 ' "$small/log" && return
+	rm -rf "$small/release"
 	build/gopura-content build "$small/content" --out "$small/release"
 }
 
