@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "input/calibration.h"
+#include "input/contacts.h"
 #include "input/touch_device.h"
 #include "input/touch_replay.h"
 
@@ -24,19 +25,11 @@ enum {
 	REPLAY_BYTES_MOST = 16 << 20,
 };
 
-/* What a slot of a device is on the panel. */
-struct slot {
-	int id;      /* the finger's, while down */
-	bool down;   /* known to be down, reported or ignored */
-	int contact; /* reported as; -1: ignored until it lifts */
-	float x_px, y_px;
-};
-
 struct source {
 	struct touch_device *device; /* NULL: free */
 	float matrix[6];             /* calibration */
 	bool matrix_is_known;        /* udev need not be asked again */
-	struct slot slots[TOUCH_SLOTS_MOST];
+	struct contact_slot slots[TOUCH_SLOTS_MOST];
 };
 
 struct touch {
@@ -46,7 +39,7 @@ struct touch {
 	int epoll_fd, inotify_fd, timer_fd;
 	int parent_watch; /* of the folder's own folder while it is missing, else -1 */
 	struct source sources[DEVICES_MOST];
-	bool contact_used[TOUCH_CONTACTS_MOST];
+	struct contacts contacts;
 	struct touch_replay replay;
 	size_t replayed; /* events */
 	int64_t replay_start_us;
@@ -54,120 +47,7 @@ struct touch {
 
 static const float no_calibration[6] = { 1, 0, 0, 0, 1, 0 };
 
-/* ---- from the device to the panel ---- */
-
-static void to_panel(const struct touch *touch, const float m[6], const struct touch_raw *raw,
-		     float *x_px, float *y_px)
-{
-	float u = m[0] * raw->x + m[1] * raw->y + m[2];
-	float v = m[3] * raw->x + m[4] * raw->y + m[5];
-	float x = u, y = v;
-
-	switch (touch->options.rotation_deg) {
-	case 90: /* the panel's own left edge is on top */
-		x = 1 - v;
-		y = u;
-		break;
-	case 180:
-		x = 1 - u;
-		y = 1 - v;
-		break;
-	case 270:
-		x = v;
-		y = 1 - u;
-		break;
-	}
-	x = x < 0 ? 0 : x > 1 ? 1 : x;
-	y = y < 0 ? 0 : y > 1 ? 1 : y;
-	*x_px = x * (float)touch->options.width_px;
-	*y_px = y * (float)touch->options.height_px;
-}
-
-static bool is_at_edge(const struct touch *touch, float x_px, float y_px)
-{
-	const struct touch_options *o = &touch->options;
-
-	return o->edge_px > 0 &&
-	       (x_px < o->edge_px || y_px < o->edge_px || x_px > (float)o->width_px - o->edge_px ||
-		y_px > (float)o->height_px - o->edge_px);
-}
-
-static bool is_palm(const struct touch *touch, const struct touch_raw *raw)
-{
-	const struct touch_options *o = &touch->options;
-	bool sideways = o->rotation_deg % 180 != 0;
-	float width_px = (float)(sideways ? o->height_px : o->width_px);
-
-	return o->palm_px > 0 && raw->major * width_px > o->palm_px;
-}
-
-static int take_contact(struct touch *touch)
-{
-	for (int i = 0; i < TOUCH_CONTACTS_MOST; i++) {
-		if (!touch->contact_used[i]) {
-			touch->contact_used[i] = true;
-			return i;
-		}
-	}
-	return -1;
-}
-
-static void report(struct touch *touch, enum touch_phase phase, const struct slot *slot,
-		   int64_t time_us)
-{
-	const struct touch_event event = { .phase = phase,
-					   .contact = (uint32_t)slot->contact,
-					   .x_px = slot->x_px,
-					   .y_px = slot->y_px,
-					   .time_us = time_us };
-
-	if (slot->contact >= 0 && touch->options.event)
-		touch->options.event(touch->options.data, &event);
-}
-
-static void lift(struct touch *touch, struct slot *slot, enum touch_phase phase, int64_t time_us)
-{
-	report(touch, phase, slot, time_us);
-	if (slot->contact >= 0)
-		touch->contact_used[slot->contact] = false;
-	slot->contact = -1;
-}
-
-static void put_down(struct touch *touch, const float matrix[6], struct slot *slot,
-		     const struct touch_raw *raw, int64_t time_us)
-{
-	*slot = (struct slot){ .id = raw->id, .down = true, .contact = -1 };
-	to_panel(touch, matrix, raw, &slot->x_px, &slot->y_px);
-	if (is_at_edge(touch, slot->x_px, slot->y_px) || is_palm(touch, raw))
-		return;
-	slot->contact = take_contact(touch);
-	report(touch, TOUCH_DOWN, slot, time_us);
-}
-
-static void move(struct touch *touch, const float matrix[6], struct slot *slot,
-		 const struct touch_raw *raw, int64_t time_us)
-{
-	float x_px, y_px;
-
-	to_panel(touch, matrix, raw, &x_px, &y_px);
-	if (is_palm(touch, raw)) {
-		lift(touch, slot, TOUCH_CANCEL, time_us);
-		return;
-	}
-	if (x_px == slot->x_px && y_px == slot->y_px)
-		return;
-	slot->x_px = x_px;
-	slot->y_px = y_px;
-	report(touch, TOUCH_MOVE, slot, time_us);
-}
-
-static bool any_down(const struct source *source)
-{
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++)
-		if (source->slots[i].down)
-			return true;
-	return false;
-}
+/* ---- devices that come and go ---- */
 
 static void calibrate(const struct touch *touch, struct source *source)
 {
@@ -187,29 +67,6 @@ static void calibrate(const struct touch *touch, struct source *source)
 	source->matrix_is_known = rc >= 0;
 }
 
-/* A frame against what was known. A finger whose lift was lost shows as a changed id. */
-static void compare(struct touch *touch, struct source *source, const struct touch_raw *slots,
-		    int64_t time_us)
-{
-	if (!any_down(source)) /* between two fingers the world may turn */
-		calibrate(touch, source);
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++) {
-		struct slot *slot = &source->slots[i];
-		const struct touch_raw *raw = &slots[i];
-
-		if (slot->down && (!raw->down || raw->id != slot->id)) {
-			lift(touch, slot, TOUCH_UP, time_us);
-			slot->down = false;
-		}
-		if (raw->down && !slot->down)
-			put_down(touch, source->matrix, slot, raw, time_us);
-		else if (raw->down)
-			move(touch, source->matrix, slot, raw, time_us);
-	}
-}
-
-/* ---- devices that come and go ---- */
-
 static int watch(struct touch *touch, int fd, struct source *source)
 {
 	struct epoll_event event = { .events = EPOLLIN, .data.ptr = source };
@@ -219,13 +76,9 @@ static int watch(struct touch *touch, int fd, struct source *source)
 
 static void remove_source(struct touch *touch, struct source *source)
 {
-	int64_t now_us = clock_now_us();
-
 	log_info("input", "%s (%s) is gone", touch_device_name(source->device),
 		 touch_device_path(source->device));
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++)
-		if (source->slots[i].down)
-			lift(touch, &source->slots[i], TOUCH_CANCEL, now_us);
+	contacts_cancel(&touch->contacts, source->slots, clock_now_us());
 	epoll_ctl(touch->epoll_fd, EPOLL_CTL_DEL, touch_device_fd(source->device), NULL);
 	touch_device_close(source->device);
 	*source = (struct source){ 0 };
@@ -308,8 +161,11 @@ static void read_source(struct touch *touch, struct source *source)
 
 	if (!source->device)
 		return; /* went in this very dispatch */
-	while ((rc = touch_device_read(source->device, slots, &time_us)) > 0)
-		compare(touch, source, slots, time_us);
+	while ((rc = touch_device_read(source->device, slots, &time_us)) > 0) {
+		if (!contacts_any_down(source->slots)) /* between two fingers the world may turn */
+			calibrate(touch, source);
+		contacts_take(&touch->contacts, source->slots, slots, source->matrix, time_us);
+	}
 	if (rc < 0)
 		remove_source(touch, source);
 }
@@ -442,6 +298,7 @@ int touch_create(struct touch **out, const struct touch_options *options)
 	if (!touch)
 		return -ENOMEM;
 	touch->options = *options;
+	touch->contacts.options = &touch->options;
 	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = touch->parent_watch = -1;
 	rc = start(touch, options);
 	if (rc < 0) {
