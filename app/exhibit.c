@@ -179,6 +179,7 @@ static void take_over(struct kiosk *kiosk)
 	struct overlay *overlay = story_overlay(kiosk->coming.story);
 
 	kiosk->shown = kiosk->coming;
+	kiosk->shown.synced = true;
 	kiosk->coming = (struct exhibit){ 0 };
 	kiosk->shown.shown_ms = clock_now_ms();
 	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
@@ -231,11 +232,31 @@ void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
 	wait_for_disk(kiosk);
 }
 
+/* A release that came after another was made durable before it was shown. The first one is shown as
+ * it comes, and nobody else syncs what the cache has of it: a power cut minutes later would lose
+ * it. */
+void exhibit_keep_first(struct kiosk *kiosk)
+{
+	struct exhibit *shown = &kiosk->shown;
+
+	if (shown->synced || shown->frame.patches == 0 || !shown->frame.settled ||
+	    kiosk->coming.syncing)
+		return;
+	shown->synced = shown->syncing = true;
+	net_client_sync(kiosk->net);
+}
+
 /* Objects first, then the state that names them: a power cut between the two costs nothing. */
 void exhibit_synced(struct kiosk *kiosk, bool done)
 {
 	struct exhibit *coming = &kiosk->coming;
 
+	if (kiosk->shown.syncing) { /* answers come in order */
+		kiosk->shown.syncing = false;
+		if (done)
+			log_info("app", "the picture is safe on the disk");
+		return;
+	}
 	if (!coming->scene || !coming->syncing)
 		return;
 	coming->syncing = false;

@@ -155,9 +155,10 @@ void follow_destroy(struct follow *follow)
 
 void follow_start(struct follow *follow)
 {
-	if (!hash_is_zero(follow->shown.root))
-		follow->options.begin(follow->options.data, follow->shown.root,
-				      follow->shown.root_bytes);
+	if (hash_is_zero(follow->shown.root))
+		return;
+	log_info("app", "release %llu is remembered", (unsigned long long)follow->shown.sequence);
+	follow->options.begin(follow->options.data, follow->shown.root, follow->shown.root_bytes);
 }
 
 /* The later of clock and floor; 0 where the clock is not known to be set. */

@@ -321,6 +321,7 @@ int frame_draw(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = display_present(kiosk->display);
 	say_first_picture(kiosk);
+	exhibit_keep_first(kiosk);
 	say_wants(kiosk);
 	if (kiosk->shown.frame.moving || kiosk->words_move || kiosk->eye_moves ||
 	    kiosk->anchors_to_look > 0)

@@ -40,6 +40,7 @@ struct exhibit {
 	uint32_t root_bytes;
 	bool root_here;
 	bool syncing;                  /* its objects are being written durably */
+	bool synced;                   /* that was asked for, for its first whole picture */
 	bool remembering;              /* it is being written down itself, to be shown then */
 	int64_t shown_ms, pictured_ms; /* since it is on the panel, and to be seen there; 0: not */
 	struct hash kept[EXHIBIT_KEPT_MOST]; /* the fetcher is to keep these */
@@ -129,6 +130,7 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
 void exhibit_warm(struct kiosk *kiosk);
 /* Its objects survive a power cut now (done), or the disk failed: net_client_sync's answer. */
 void exhibit_synced(struct kiosk *kiosk, bool done);
+void exhibit_keep_first(struct kiosk *kiosk); /* after each frame */
 /* The objects of what is coming may be asked for: the network's time of day, or a stick's. */
 bool exhibit_may_load(const struct kiosk *kiosk);
 /* The release was written down, or could not be: shows it, if it is what is coming. */
