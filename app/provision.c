@@ -204,8 +204,9 @@ static int draw_missing(struct kiosk *kiosk)
 		.lead = "It does not know where its temple is.",
 		.items = items,
 		.count = HINTS_MOST,
-		.foot = "What else the file may say stands in docs/terminal.md: language, panel, "
-			"opening hours, network, Wi-Fi.",
+		.foot = "Of the appliance /efi is the partition gopura-esp of its disk, and "
+			"/run/gopura-stick any USB stick. What else the file may say stands in "
+			"docs/terminal.md: language, panel, opening hours, network, Wi-Fi.",
 	};
 
 	for (uint32_t i = 0; i < options->conf_count; i++) {
