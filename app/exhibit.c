@@ -288,7 +288,7 @@ void exhibit_warm(struct kiosk *kiosk)
 	draw_small(kiosk);
 	kiosk->coming_waits = kiosk->coming.frame.moving;
 	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was another one */
-	if (is_ready(kiosk) && trial_visitor_ms(kiosk) == 0) {
+	if (is_ready(kiosk) && guest_left_ms(kiosk) == 0) {
 		kiosk->coming.syncing = true;
 		net_client_sync(kiosk->net);
 		wait_for_disk(kiosk);
@@ -307,7 +307,7 @@ int exhibit_wait_ms(const struct kiosk *kiosk)
 	if (kiosk->coming_waits)
 		due_ms = kiosk->coming_drawn_ms + WARM_PERIOD_MS;
 	else if (is_ready(kiosk))
-		return trial_visitor_ms(kiosk);
+		return guest_left_ms(kiosk);
 	else if (due_ms <= now_ms)
 		return -1; /* until something of it arrives */
 	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;

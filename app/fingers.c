@@ -264,9 +264,10 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	struct kiosk *kiosk = data;
 	struct touch_event seen = *event;
 
-	kiosk->touched_ms = clock_now_ms();
 	if (panel_takes_touch(kiosk, event) || provision_covers(kiosk))
 		return; /* for the panel alone, or a page without anything to touch */
+	if (guest_takes_touch(kiosk, event))
+		return;
 	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
 	gesture_feed(&kiosk->gestures, &seen);
 }
@@ -283,9 +284,8 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 	if (provision_covers(kiosk))
 		return;
 	frame_from_panel(kiosk, &x_px, &y_px);
-	if (kind != POINTER_MOVE || kiosk->gestures.fingers[0].down)
-		kiosk->touched_ms = clock_now_ms();
 	if (kind == POINTER_WHEEL) {
+		visit_touch(&kiosk->visit, clock_now_ms());
 		if (!kiosk->navigator_ready)
 			return;
 		grab(kiosk, x_px, y_px);

@@ -302,6 +302,7 @@ int frame_draw(struct kiosk *kiosk)
 	if (kiosk->navigator_ready && !kiosk->options.views_path) {
 		kiosk->eye_moves =
 			navigator_step(&kiosk->navigator, dt_ms, (float)kiosk_height_px(kiosk));
+		kiosk->eye_moves |= guest_leads_eye(kiosk, now_ms);
 		frame_camera(kiosk, &kiosk->camera);
 		say_eye(kiosk, now_ms);
 	}

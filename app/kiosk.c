@@ -241,6 +241,8 @@ int kiosk_start(struct kiosk *kiosk)
 	int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
 
 	kiosk->started_ms = clock_now_ms();
+	visit_init(&kiosk->visit, kiosk->options.idle_s, kiosk->started_ms);
+	kiosk->visit_said = kiosk->visit.state;
 	if (rc == 0)
 		rc = start_display(kiosk);
 	if (rc == 0)
@@ -324,7 +326,7 @@ static int wait_ms(const struct kiosk *kiosk)
 		return panel_wait_ms(kiosk);
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	return sooner(sooner(coming_ms, capture_ms),
+	return sooner(sooner(sooner(coming_ms, capture_ms), guest_wait_ms(kiosk)),
 		      sooner(sooner(trial_wait_ms(kiosk), provision_wait_ms(kiosk)),
 			     panel_wait_ms(kiosk)));
 }
@@ -348,6 +350,7 @@ static int turn(struct kiosk *kiosk)
 	if (rc < 0 || kiosk->quit)
 		return rc;
 	trial_watch(kiosk);
+	guest_watch(kiosk);
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
 	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
 		kiosk->quit = true;

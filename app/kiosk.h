@@ -7,7 +7,9 @@
 #include "app/options.h"
 #include "app/panel.h"
 #include "app/provision.h"
+#include "app/roam.h"
 #include "app/story.h"
+#include "app/visit.h"
 #include "app/wants.h"
 #include "board/profile.h"
 #include "input/gesture.h"
@@ -74,7 +76,12 @@ struct kiosk {
 	bool navigator_ready; /* a release's box is known */
 	struct gesture_recogniser gestures;
 	bool finger_on_words; /* the gesture began on a page or card */
-	int64_t touched_ms;   /* last; 0: never */
+	uint32_t answers;     /* contacts, a bit each, that only said that somebody is there */
+	struct visit visit;
+	enum visit_state visit_said; /* as the log has it */
+	int asked_s;                 /* as the words have it */
+	struct roam roam;
+	int64_t roam_since_ms; /* the eye's way without a visitor began, or will */
 
 	float px_per_mm;      /* of the panel; 0: not known */
 	struct camera camera; /* of the last frame */
@@ -141,9 +148,19 @@ int exhibit_wait_ms(const struct kiosk *kiosk);
 /* vitals.c: offers how the terminal is, where the options ask for it. */
 must_check int vitals_offer(struct kiosk *kiosk);
 
-/* trial.c: whether the visitor has left, and whether a new release works. */
+/* guest.c: whether a visitor is there. */
+/* Once a turn: asks, begins anew, shows the model. */
+void guest_watch(struct kiosk *kiosk);
+/* When guest_watch has something to do by time alone, milliseconds; -1: never. */
+int guest_wait_ms(const struct kiosk *kiosk);
+/* Moves the eye where nobody else does. true: it moves on. */
+bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms);
+/* A finger does something. true: it is the answer to the question, and means nothing else. */
+bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Until the panel counts as left alone, milliseconds; 0: it is. */
-int trial_visitor_ms(const struct kiosk *kiosk);
+int guest_left_ms(const struct kiosk *kiosk);
+
+/* trial.c: whether a new release works. */
 /* A release that is on trial is proven by its picture on the panel, or the one before it taken. */
 void trial_watch(struct kiosk *kiosk);
 /* When trial_watch has something to do by time alone, milliseconds; -1: never. */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/visit.h"
 #include "base/log.h"
 
 static const char help_text[] =
@@ -45,6 +46,8 @@ static const char help_text[] =
 	"  --hours TEXT         the panel is on, such as \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\"\n"
 	"                       (default: always); outside them a touch wakes it for a while\n"
 	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
+	"  --idle-s SECONDS     without a touch until the visitor is asked whether somebody is\n"
+	"                       there, and the model shows itself (5 to 3600; default: 60)\n"
 	"  --shift              move the picture by a pixel now and then, to spare the panel\n"
 	"  --self-test          check panel, GPU, touch, storage and trust, a line each, and end:\n"
 	"                       0 where all is well (docs/display.md)\n"
@@ -87,6 +90,7 @@ enum {
 	OPTION_LOG,
 	OPTION_HOURS,
 	OPTION_WAKE,
+	OPTION_IDLE,
 	OPTION_SHIFT,
 	OPTION_SELF_TEST,
 	OPTION_SAFE_PAGE,
@@ -122,6 +126,7 @@ static const struct option long_options[] = {
 	{ "log", required_argument, NULL, OPTION_LOG },
 	{ "hours", required_argument, NULL, OPTION_HOURS },
 	{ "wake-min", required_argument, NULL, OPTION_WAKE },
+	{ "idle-s", required_argument, NULL, OPTION_IDLE },
 	{ "shift", no_argument, NULL, OPTION_SHIFT },
 	{ "self-test", no_argument, NULL, OPTION_SELF_TEST },
 	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
@@ -183,13 +188,13 @@ static bool parse_seconds(const char *text, uint32_t *out)
 	return *text && !*end && value >= 1 && value <= 86400;
 }
 
-static bool parse_minutes(const char *text, int *out)
+static bool parse_whole(const char *text, unsigned long least, unsigned long most, int *out)
 {
 	char *end;
 	unsigned long value = strtoul(text, &end, 10);
 
 	*out = (int)value;
-	return isdigit((unsigned char)text[0]) && !*end && value <= 24 * 60;
+	return isdigit((unsigned char)text[0]) && !*end && value >= least && value <= most;
 }
 
 static bool set_text(struct options *o, int option, const char *text)
@@ -252,7 +257,9 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_HOURS:
 		return hours_parse(&o->hours, text);
 	case OPTION_WAKE:
-		return parse_minutes(text, &o->wake_min);
+		return parse_whole(text, 0, 24 * 60, &o->wake_min);
+	case OPTION_IDLE:
+		return parse_whole(text, VISIT_IDLE_LEAST_S, VISIT_IDLE_MOST_S, &o->idle_s);
 	case OPTION_SHIFT:
 		o->shift = true;
 		return true;

@@ -42,7 +42,8 @@ struct options {
 	struct hours hours;    /* in which the panel is on */
 	int wake_min;          /* how long a touch keeps it on outside them; 0: not at all; -1: as
 				* gopura.conf has it */
-	bool shift;            /* the picture moves by a pixel now and then */
+	int idle_s; /* without a touch until a visitor is asked; 0: as gopura.conf has it */
+	bool shift; /* the picture moves by a pixel now and then */
 	bool quit_after_replay;
 	bool safe_page; /* no kiosk: app/safe_mode.h */
 	bool self_test; /* likewise: app/self_test.h */

@@ -136,6 +136,8 @@ int provision_read(struct provision *provision, struct options *options, struct 
 		merge(provision, options);
 	if (options->wake_min < 0)
 		options->wake_min = (int)provision->terminal.wake_min;
+	if (options->idle_s == 0)
+		options->idle_s = (int)provision->terminal.idle_s;
 	rc = read_profile(provision, options, profile);
 	for (unsigned i = 0; i < provision->faults.count; i++)
 		log_error("app", "set-up bug: %s: %s", provision->path,

@@ -327,6 +327,9 @@ void story_set_language(struct story *story, const char *language)
 {
 	int page;
 
+	if (strcmp(story->language, language) == 0)
+		return;
+	log_debug("app", "words in %s", language);
 	snprintf(story->language, sizeof(story->language), "%s", language);
 	if (!story->overlay)
 		return;

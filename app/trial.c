@@ -5,34 +5,15 @@
 #include "base/clock.h"
 
 enum {
-	QUIET_MS = 20000,  /* without a touch, nothing open: nobody is there */
-	GONE_MS = 180000,  /* the same with a card or page open, or something lying on the panel */
 	PROVEN_MS = 10000, /* to be seen for so long without a crash: it works */
 	BLANK_MS = 60000,  /* all that was wanted is here, and there is nothing to be seen */
 };
-
-static bool is_held(const struct kiosk *kiosk)
-{
-	const struct overlay *overlay = story_overlay(kiosk->shown.story);
-
-	for (size_t i = 0; i < TOUCH_CONTACTS_MOST; i++)
-		if (kiosk->gestures.fingers[i].down)
-			return true;
-	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0);
-}
 
 static int left_ms(int64_t since_ms, int64_t most_ms)
 {
 	const int64_t left = since_ms + most_ms - clock_now_ms();
 
 	return left > 0 ? (int)left : 0;
-}
-
-int trial_visitor_ms(const struct kiosk *kiosk)
-{
-	if (kiosk->touched_ms == 0 || kiosk->shown.frame.patches == 0)
-		return 0;
-	return left_ms(kiosk->touched_ms, is_held(kiosk) ? GONE_MS : QUIET_MS);
 }
 
 bool trial_is_broken(const struct exhibit *exhibit)

@@ -17,6 +17,7 @@ const struct terminal terminal_default = {
 	.rotation_deg = -1,
 	.hours = { .open = { [0 ... HOURS_MINUTES / 8 - 1] = 0xff } },
 	.wake_min = 5,
+	.idle_s = 60,
 	.shift = true,
 	.listen_address = "127.0.0.1",
 	.listen_port = 9100,
@@ -159,6 +160,13 @@ static const struct setting settings[] = {
 		      .expects = "yes or no",
 		      .set = terminal_set_yes_no,
 		      .offset = offsetof(struct terminal, mdns) },
+	{ .section = "visit",
+	  .name = "idle_s",
+	  .expects = "whole seconds from 5 to 3600",
+	  .set = settings_whole,
+	  .offset = offsetof(struct terminal, idle_s),
+	  .least = 5,
+	  .most = 3600 },
 };
 
 /* ---- the whole */

@@ -55,6 +55,8 @@ struct terminal {
 	char listen_address[INET6_ADDRSTRLEN];
 	uint32_t listen_port;
 	bool mdns; /* the network is told of it */
+	/* [visit] */
+	uint32_t idle_s; /* without a touch until a visitor is asked; 5 .. 3600 */
 };
 
 extern const struct terminal terminal_default;

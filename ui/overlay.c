@@ -198,6 +198,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->language = (int)i;
 		theme_set_language(&overlay->theme, language);
 		overlay->chrome_dirty = overlay->help_dirty = true;
+		overlay->question_drawn_s = 0; /* in the other language */
 		overlay->card_dirty = overlay->head_dirty = true;
 		forget_labels(overlay);
 	}
@@ -293,6 +294,24 @@ void overlay_show_help(struct overlay *overlay, bool on)
 bool overlay_help(const struct overlay *overlay)
 {
 	return overlay->help.on;
+}
+
+void overlay_invite(struct overlay *overlay, bool on)
+{
+	if (overlay->invitation.on == on)
+		return;
+	overlay->invitation.on = on;
+	if (on)
+		overlay_draw_invitation(overlay);
+	overlay_show_help(overlay, !on);
+	overlay->callouts_dirty = true;
+}
+
+void overlay_ask(struct overlay *overlay, int seconds_left)
+{
+	overlay->question.on = seconds_left >= 0;
+	if (seconds_left >= 0)
+		overlay->question_s = seconds_left;
 }
 
 void overlay_picture_arrived(struct overlay *overlay, const char *name)
@@ -519,6 +538,8 @@ static void draw_what_changed(struct overlay *overlay)
 		overlay_draw_card(overlay);
 	if (overlay->head_dirty && overlay->page_part >= 0)
 		overlay_draw_page_head(overlay);
+	if (overlay->question.on && overlay->question_drawn_s != overlay->question_s)
+		overlay_draw_question(overlay);
 	overlay->help_dirty = overlay->chrome_dirty = false;
 	overlay->card_dirty = overlay->head_dirty = false;
 }
@@ -536,6 +557,8 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;
 	moving = advance(&overlay->help, step_ms);
+	moving |= advance(&overlay->invitation, step_ms);
+	moving |= advance(&overlay->question, step_ms);
 	moving |= advance(&overlay->card, step_ms);
 	moving |= advance(&overlay->page, step_ms);
 	moving |= advance_scroll(overlay, step_ms);

@@ -84,6 +84,13 @@ int overlay_page(const struct overlay *overlay); /* the part whose page is open,
 void overlay_show_help(struct overlay *overlay, bool on);
 bool overlay_help(const struct overlay *overlay);
 
+/* Nobody is there: the invitation to touch, in every language, where the help stands; the help is
+ * there when it goes. Off at first. */
+void overlay_invite(struct overlay *overlay, bool on);
+/* Asks over everything whether somebody is still there, and counts down; -1: does not ask. Whoever
+ * asks takes the touch that answers. */
+void overlay_ask(struct overlay *overlay, int seconds_left);
+
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 

@@ -4,6 +4,7 @@
 
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
+#include "ui/prompt.h"
 #include "ui/strings.h"
 
 static int px(const struct overlay *overlay, float mm)
@@ -137,6 +138,26 @@ void overlay_draw_help(struct overlay *overlay)
 
 	put(overlay, BITMAP_HELP, &fresh,
 	    chrome_draw_help(&fresh, &overlay->theme, most_px, overlay->part_count > 0));
+}
+
+void overlay_draw_invitation(struct overlay *overlay)
+{
+	struct bitmap fresh;
+	int most_px = overlay->width_px - 2 * px(overlay, THEME_GAP_MM);
+
+	put(overlay, BITMAP_INVITATION, &fresh,
+	    prompt_draw_invitation(&fresh, &overlay->theme, (const char *const *)overlay->languages,
+				   overlay->language_count, most_px));
+}
+
+void overlay_draw_question(struct overlay *overlay)
+{
+	struct bitmap fresh;
+	int most_px = overlay->width_px - 2 * px(overlay, THEME_GAP_MM);
+
+	put(overlay, BITMAP_QUESTION, &fresh,
+	    prompt_draw_question(&fresh, &overlay->theme, overlay->question_s, most_px));
+	overlay->question_drawn_s = overlay->question_s;
 }
 
 void overlay_draw_card(struct overlay *overlay)

@@ -176,14 +176,20 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	struct list list = { .overlay = overlay, .layers = layers, .most = most };
 	struct overlay_rect card = overlay_card_rect(overlay), help = overlay_help_rect(overlay);
 	struct overlay_rect chrome = overlay_chrome_rect(overlay);
+	struct overlay_rect invitation = overlay_invitation_rect(overlay);
+	struct overlay_rect question = overlay_question_rect(overlay);
 
 	add_callouts(&list);
 	add_bitmap(&list, BITMAP_HELP, ease(overlay->help.alpha), (float)help.x_px,
 		   (float)help.y_px);
+	add_bitmap(&list, BITMAP_INVITATION, ease(overlay->invitation.alpha),
+		   (float)invitation.x_px, (float)invitation.y_px);
 	add_bitmap(&list, BITMAP_CARD, ease(overlay->card.alpha), (float)card.x_px,
 		   (float)card.y_px);
 	add_page(&list);
 	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
+	add_bitmap(&list, BITMAP_QUESTION, ease(overlay->question.alpha), (float)question.x_px,
+		   (float)question.y_px);
 	return list.count;
 }
 

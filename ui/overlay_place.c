@@ -114,6 +114,23 @@ struct overlay_rect overlay_help_rect(const struct overlay *overlay)
 	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
+struct overlay_rect overlay_invitation_rect(const struct overlay *overlay)
+{
+	const struct bitmap *bitmap = &overlay->drawings[BITMAP_INVITATION].bitmap;
+
+	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
+}
+
+/* In the middle of everything: nothing else counts then. */
+struct overlay_rect overlay_question_rect(const struct overlay *overlay)
+{
+	const struct bitmap *bitmap = &overlay->drawings[BITMAP_QUESTION].bitmap;
+
+	return (struct overlay_rect){ (overlay->width_px - bitmap->width_px) / 2,
+				      (overlay->height_px - bitmap->height_px) / 2,
+				      bitmap->width_px, bitmap->height_px };
+}
+
 int overlay_scroll_most(const struct overlay *overlay)
 {
 	int most_px = overlay->article ? article_height_px(overlay->article) -
@@ -143,6 +160,8 @@ static struct callout_area callout_area(const struct overlay *overlay)
 
 	if (overlay->card_part >= 0)
 		floor_px = overlay_card_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	else if (overlay->invitation.on)
+		floor_px = overlay_invitation_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	else if (overlay->help.on)
 		floor_px = overlay_help_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	area.height_px = floor_px - area.y_px;

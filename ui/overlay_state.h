@@ -16,6 +16,8 @@ enum bitmap_id {
 	BITMAP_DOT,
 	BITMAP_CHROME,
 	BITMAP_HELP,
+	BITMAP_INVITATION,
+	BITMAP_QUESTION,
 	BITMAP_CARD,
 	BITMAP_PAPER,
 	BITMAP_PAGE_HEAD,
@@ -73,10 +75,11 @@ struct overlay {
 
 	struct chrome chrome;
 	bool chrome_dirty, help_dirty, card_dirty, head_dirty;
-	struct fade help, card, page;
-	int card_part, card_shown;  /* shown: on its bitmap, also while fading out */
-	int page_part, page_titled; /* titled: in its head, also while fading out */
-	struct article *article;    /* NULL when no page is open or fading out */
+	struct fade help, card, page, invitation, question;
+	int question_s, question_drawn_s; /* on the count-down; on its bitmap */
+	int card_part, card_shown;        /* shown: on its bitmap, also while fading out */
+	int page_part, page_titled;       /* titled: in its head, also while fading out */
+	struct article *article;          /* NULL when no page is open or fading out */
 	struct strip strips[STRIPS];
 	int strip_px;
 	float scroll_px, scroll_px_per_s;
@@ -92,6 +95,8 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay); /* window 
 struct overlay_rect overlay_card_rect(const struct overlay *overlay);
 struct overlay_rect overlay_chrome_rect(const struct overlay *overlay);
 struct overlay_rect overlay_help_rect(const struct overlay *overlay);
+struct overlay_rect overlay_invitation_rect(const struct overlay *overlay);
+struct overlay_rect overlay_question_rect(const struct overlay *overlay);
 struct overlay_rect overlay_close_rect(const struct overlay *overlay); /* of the page */
 bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px);
 int overlay_scroll_most(const struct overlay *overlay);
@@ -100,6 +105,8 @@ int overlay_scroll_most(const struct overlay *overlay);
 void overlay_draw_fixed(struct overlay *overlay); /* leader, dot, paper, foot, scroll mark */
 void overlay_draw_chrome(struct overlay *overlay);
 void overlay_draw_help(struct overlay *overlay);
+void overlay_draw_invitation(struct overlay *overlay);
+void overlay_draw_question(struct overlay *overlay);
 void overlay_draw_card(struct overlay *overlay);
 void overlay_draw_page_head(struct overlay *overlay);
 void overlay_draw_label(struct overlay *overlay, uint32_t label);

@@ -8,12 +8,20 @@ static const struct {
 	const char *language, *strings[UI_STRING_COUNT];
 } tables[] = {
 	{ "en",
-	  { "Read more", "Close", "Drag to turn", "Pinch to come nearer", "Tap a name to read" } },
+	  { "Read more", "Close", "Drag to turn", "Pinch to come nearer", "Tap a name to read",
+	    "Touch to explore", "Are you still there?", "In %d seconds it begins anew.",
+	    "Go on" } },
 	{ "fr",
 	  { "Lire la suite", "Fermer", "Glissez pour tourner", "Écartez pour approcher",
-	    "Touchez un nom pour lire" } },
-	{ "km", { "អានបន្ថែម", "បិទ", "អូសដើម្បីបង្វិល", "ច្បិចដើម្បីពង្រីក", "ប៉ះឈ្មោះដើម្បីអាន" } },
-	{ "ja", { "詳しく読む", "閉じる", "なぞって回す", "つまんで拡大", "名前にふれて読む" } },
+	    "Touchez un nom pour lire", "Touchez pour explorer", "Êtes-vous toujours là ?",
+	    "Retour au début dans %d secondes.", "Continuer" } },
+	{ "km",
+	  { "អានបន្ថែម", "បិទ", "អូសដើម្បីបង្វិល", "ច្បិចដើម្បីពង្រីក", "ប៉ះឈ្មោះដើម្បីអាន", "ប៉ះដើម្បីស្វែងយល់",
+	    "តើអ្នកនៅទីនេះទេ?", "នឹងចាប់ផ្តើមឡើងវិញក្នុង %d វិនាទី។", "បន្ត" } },
+	{ "ja",
+	  { "詳しく読む", "閉じる", "なぞって回す", "つまんで拡大", "名前にふれて読む",
+	    "さわってご覧ください", "まだご覧になっていますか？", "あと%d秒で最初にもどります。",
+	    "つづける" } },
 };
 
 static const struct {

@@ -8,6 +8,10 @@ enum ui_string {
 	UI_HELP_TURN,
 	UI_HELP_ZOOM,
 	UI_HELP_TAP,
+	UI_TOUCH,       /* the invitation */
+	UI_STILL_THERE, /* asked of a visitor who does nothing */
+	UI_ANEW,        /* %d seconds */
+	UI_GO_ON,
 	UI_STRING_COUNT,
 };
 

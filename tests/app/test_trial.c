@@ -10,7 +10,7 @@ static struct {
 	int64_t now_ms;
 	bool on_trial, has_before, dark, broken_words;
 	uint32_t refused;
-	int card, page, proven, returned;
+	int proven, returned;
 } world;
 
 static struct kiosk kiosk;
@@ -60,23 +60,6 @@ bool story_broken(const struct story *story)
 	return world.broken_words;
 }
 
-struct overlay *story_overlay(struct story *story)
-{
-	return (struct overlay *)story;
-}
-
-int overlay_card(const struct overlay *overlay)
-{
-	(void)overlay;
-	return world.card;
-}
-
-int overlay_page(const struct overlay *overlay)
-{
-	(void)overlay;
-	return world.page;
-}
-
 bool display_is_dark(const struct display *display)
 {
 	(void)display;
@@ -91,7 +74,6 @@ static int set_up(void **state)
 	memset(&kiosk, 0, sizeof(kiosk));
 	world.now_ms = 1000000;
 	world.on_trial = world.has_before = true;
-	world.card = world.page = -1;
 	kiosk.shown.scene = (struct scene *)&some_thing;
 	kiosk.shown.story = (struct story *)&some_thing;
 	kiosk.shown.root_here = true;
@@ -109,46 +91,6 @@ static void after(int64_t ms)
 {
 	world.now_ms += ms;
 	trial_watch(&kiosk);
-}
-
-static void waits_until_nobody_touches(void **state)
-{
-	(void)state;
-	draw(9);
-	CHECK(trial_visitor_ms(&kiosk) == 0); /* nobody ever did */
-	kiosk.touched_ms = world.now_ms;
-	CHECK(trial_visitor_ms(&kiosk) == 20000);
-	world.now_ms += 19999;
-	CHECK(trial_visitor_ms(&kiosk) == 1);
-	world.now_ms += 1;
-	CHECK(trial_visitor_ms(&kiosk) == 0);
-}
-
-static void waits_longer_while_something_is_open_or_lies_there(void **state)
-{
-	(void)state;
-	draw(9);
-	kiosk.touched_ms = world.now_ms;
-	world.now_ms += 20000;
-	world.card = 3;
-	CHECK(trial_visitor_ms(&kiosk) == 160000);
-	world.card = -1;
-	world.page = 3;
-	CHECK(trial_visitor_ms(&kiosk) == 160000);
-	world.page = -1;
-	CHECK(trial_visitor_ms(&kiosk) == 0);
-	kiosk.gestures.fingers[2].down = true;
-	CHECK(trial_visitor_ms(&kiosk) == 160000);
-	world.now_ms += 160000; /* it is no finger */
-	CHECK(trial_visitor_ms(&kiosk) == 0);
-}
-
-static void waits_for_nobody_where_nothing_is_to_be_seen(void **state)
-{
-	(void)state;
-	kiosk.touched_ms = world.now_ms;
-	draw(0);
-	CHECK(trial_visitor_ms(&kiosk) == 0);
 }
 
 static void proves_what_was_seen_for_a_while(void **state)
@@ -243,9 +185,6 @@ static void leaves_a_proven_release_alone(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		ON_TRIAL(waits_until_nobody_touches),
-		ON_TRIAL(waits_longer_while_something_is_open_or_lies_there),
-		ON_TRIAL(waits_for_nobody_where_nothing_is_to_be_seen),
 		ON_TRIAL(proves_what_was_seen_for_a_while),
 		ON_TRIAL(proves_nothing_by_the_frame_before_it),
 		ON_TRIAL(returns_from_what_cannot_be_decoded),

@@ -23,7 +23,7 @@ def kiosk(*more):
     """Without Mesa's cache of compiled shaders, whose bytes on the disk are not ours."""
     process = subprocess.Popen(
         ["build/gopura-kiosk", "--display", "headless", "--size", "1920x1080", "--release", RELEASE,
-         "--trust", f"{RELEASE}/root/1.json", "--state", f"{WORK}/state", "--board", BOARD, *more],
+         "--trust", f"{RELEASE}/root/1.json", "--state", f"{WORK}/state", "--board", BOARD, "--idle-s", "3600", *more],
         stderr=open(f"{WORK}/kiosk.log", "a"), env=dict(os.environ, MESA_SHADER_CACHE_DISABLE="true"))
     atexit.register(process.kill)  # does nothing once it was waited for
     return process

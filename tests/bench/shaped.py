@@ -47,7 +47,7 @@ class Kiosk:
         self.began = time.monotonic()
         self.lines = []
         self.process = subprocess.Popen(
-            ["build/gopura-kiosk", "--display", "headless", "--size", "1280x720", "--release", url, "--ca", ca,
+            ["build/gopura-kiosk", "--display", "headless", "--size", "1280x720", "--idle-s", "3600", "--release", url, "--ca", ca,
              "--trust", f"{release}/root/1.json", "--state", f"{work}/state", "--touch-replay", f"{work}/visit.touch",
              "--log", "debug"], stderr=subprocess.PIPE, text=True)
         threading.Thread(target=self.read, daemon=True).start()

@@ -53,7 +53,8 @@ static void takes_every_value(void **state)
 	      "[network]\naddress = 192.168.1.20/24\ngateway = 192.168.1.1\n"
 	      "dns = 192.168.1.1, 2620:fe::fe\nntp = pool.ntp.org 192.168.1.1\n"
 	      "[wifi]\nssid = Musée d'Angkor\npassphrase = stone and water\ncountry = kh\n"
-	      "[health]\nlisten = [::]:9200\nmdns = yes\n");
+	      "[health]\nlisten = [::]:9200\nmdns = yes\n"
+	      "[visit]\nidle_s = 90\n");
 	if (faults.count)
 		fail_msg("%s", faults.list[0].text);
 	CHECK(strcmp(terminal.name, "East gate") == 0 && strcmp(terminal.language, "pt-BR") == 0);
@@ -77,7 +78,7 @@ static void takes_every_value(void **state)
 	CHECK(strcmp(terminal.passphrase, "stone and water") == 0);
 	CHECK(strcmp(terminal.country, "KH") == 0);
 	CHECK(strcmp(terminal.listen_address, "::") == 0 && terminal.listen_port == 9200);
-	CHECK(terminal.mdns);
+	CHECK(terminal.mdns && terminal.idle_s == 90);
 }
 
 static void keeps_defaults_where_nothing_is_said(void **state)
@@ -86,7 +87,7 @@ static void keeps_defaults_where_nothing_is_said(void **state)
 	parse(RELEASE);
 	CHECK(faults.count == 0);
 	CHECK(terminal.rotation_deg == -1 && terminal.shift && !terminal.is_static);
-	CHECK(terminal.wake_min == 5 && !terminal.mdns);
+	CHECK(terminal.wake_min == 5 && !terminal.mdns && terminal.idle_s == 60);
 	CHECK(terminal.download.from_min == terminal.download.until_min && terminal.poll_s == 0 &&
 	      terminal.width_px == 0);
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 0, .tm_hour = 3 }));
@@ -110,6 +111,8 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "panel", "wake_min = -1", "whole minutes from 0 to 1440" },
 		{ "panel", "wake_min = 1441", "whole minutes from 0 to 1440" },
 		{ "panel", "wake_min = 2.5", "whole minutes from 0 to 1440" },
+		{ "visit", "idle_s = 4", "whole seconds from 5 to 3600" },
+		{ "visit", "idle_s = 3601", "whole seconds from 5 to 3600" },
 		{ "health", "mdns = 1", "yes or no" },
 		{ "panel", "shift = maybe", "yes or no" },
 		{ "panel", "shift =", "is empty" },

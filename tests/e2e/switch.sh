@@ -19,7 +19,7 @@ start_kiosk() { # LOG OPTION...
 	shift
 	rm -f "$log" # of the start before
 	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 \
-		--log debug --trust "$work/release/root/1.json" --state "$work/state" "$@" 2>"$log" &
+		--log debug --idle-s 5 --trust "$work/release/root/1.json" --state "$work/state" "$@" 2>"$log" &
 	pid=$!
 }
 says() { grep -qE "$1" "$log" 2>/dev/null; }

@@ -230,6 +230,7 @@ static void shows_every_screen_on_every_panel(void **state)
 	paint_album(&album);
 	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
 		struct overlay *overlay = open_overlay(&album, sizes[s][0], sizes[s][1]);
+		struct bitmap invited;
 
 		for (int language = 0; language < 4; language++) {
 			struct bitmap bitmap;
@@ -243,6 +244,15 @@ static void shows_every_screen_on_every_panel(void **state)
 			CHECK(painted(&bitmap, overlay_help_rect(overlay)) > 100);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
+
+			overlay_ask(overlay, 12);
+			snprintf(name, sizeof(name), "asked-%s", languages[language]);
+			bitmap = screen(overlay, name);
+			CHECK(painted(&bitmap, overlay_question_rect(overlay)) > 500);
+			bitmap_finish(&bitmap);
+			check_layers(overlay);
+			overlay_ask(overlay, -1);
+			settle(overlay);
 
 			overlay_show_card(overlay, 0);
 			snprintf(name, sizeof(name), "card-%s", languages[language]);
@@ -267,6 +277,11 @@ static void shows_every_screen_on_every_panel(void **state)
 			settle(overlay);
 			CHECK(overlay_page(overlay) == -1 && !overlay->article);
 		}
+		overlay_invite(overlay, true);
+		invited = screen(overlay, "invited");
+		CHECK(painted(&invited, overlay_invitation_rect(overlay)) > 500);
+		bitmap_finish(&invited);
+		check_layers(overlay);
 		overlay_destroy(overlay);
 	}
 	picture_finish(&album.picture);
@@ -431,6 +446,50 @@ static void nothing_pops(void **state)
 	picture_finish(&album.picture);
 }
 
+static void the_invitation_takes_the_place_of_the_help(void **state)
+{
+	struct album album;
+	struct overlay *overlay;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	overlay_show_help(overlay, false);
+	overlay_invite(overlay, true);
+	settle(overlay);
+	CHECK(!overlay_help(overlay) && overlay->invitation.alpha == 1);
+	overlay_invite(overlay, false); /* somebody came */
+	settle(overlay);
+	CHECK(overlay_help(overlay) && overlay->invitation.alpha == 0);
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
+}
+
+static void the_question_counts_down_in_the_language_that_is_set(void **state)
+{
+	struct album album;
+	struct overlay *overlay;
+	uint32_t revision;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	overlay_ask(overlay, 9);
+	settle(overlay);
+	revision = overlay->drawings[BITMAP_QUESTION].revision;
+	overlay_ask(overlay, 9);
+	settle(overlay);
+	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision);
+	overlay_ask(overlay, 8);
+	settle(overlay);
+	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision + 1);
+	overlay_language(overlay, languages[1]);
+	settle(overlay);
+	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision + 2);
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
+}
+
 static void refuses_impossible_panels(void **state)
 {
 	struct overlay_options options = {
@@ -482,6 +541,8 @@ int main(void)
 		cmocka_unit_test(a_page_scrolls_links_and_closes),
 		cmocka_unit_test(a_late_picture_moves_nothing),
 		cmocka_unit_test(nothing_pops),
+		cmocka_unit_test(the_invitation_takes_the_place_of_the_help),
+		cmocka_unit_test(the_question_counts_down_in_the_language_that_is_set),
 		cmocka_unit_test(refuses_impossible_panels),
 		cmocka_unit_test(the_help_speaks_of_names_where_there_are_some),
 	};

@@ -1,0 +1,133 @@
+/* What a visit asks of the rest: the model that shows itself while nobody is there, the question
+ * whether somebody still is, and everything as it was for whoever comes next. */
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+enum { HOMEWARD_MS = 2500 };
+
+static bool is_reading(const struct kiosk *kiosk)
+{
+	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	for (size_t i = 0; i < TOUCH_CONTACTS_MOST; i++)
+		if (kiosk->gestures.fingers[i].down)
+			return true;
+	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0);
+}
+
+/* Nothing of one visitor is left for the next. */
+static void begin_anew(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const char *language = kiosk->options.language;
+
+	if (overlay) {
+		overlay_close_page(overlay);
+		overlay_show_card(overlay, -1);
+		story_set_language(kiosk->shown.story,
+				   language ? language
+					    : info_language(story_info(kiosk->shown.story), 0));
+	}
+	fingers_init(kiosk); /* what still lies on the glass is nobody's */
+}
+
+/* From where the eye is to where its way begins. */
+static void send_round(struct kiosk *kiosk, int64_t now_ms)
+{
+	const struct navigator_options *o = &kiosk->navigator.options;
+	float eye_m[3], target_m[3];
+
+	roam_init(&kiosk->roam, o->box_min_m, o->box_max_m, o->home_eye_m, o->home_target_m);
+	roam_pose(&kiosk->roam, 0, eye_m, target_m);
+	navigator_fly(&kiosk->navigator, eye_m, target_m, HOMEWARD_MS);
+	kiosk->roam_since_ms = now_ms + HOMEWARD_MS;
+}
+
+/* For whoever wonders what a visit was. */
+static void say_state(struct kiosk *kiosk)
+{
+	static const char *const states[] = {
+		[VISIT_NOBODY] = "nobody is there",
+		[VISIT_SOMEBODY] = "somebody is there",
+		[VISIT_ASKED] = "is somebody there?",
+	};
+
+	if (kiosk->visit_said != kiosk->visit.state)
+		log_debug("app", "%s", states[kiosk->visit.state]);
+	kiosk->visit_said = kiosk->visit.state;
+}
+
+static bool is_off(const struct kiosk *kiosk)
+{
+	return kiosk->options.views_path || !kiosk->navigator_ready;
+}
+
+void guest_watch(struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+	const enum visit_state before = kiosk->visit.state;
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	int asked_s;
+
+	if (is_off(kiosk))
+		return;
+	visit_step(&kiosk->visit, now_ms, is_reading(kiosk));
+	say_state(kiosk);
+	if (kiosk->visit.state == VISIT_NOBODY && before != VISIT_NOBODY) {
+		begin_anew(kiosk);
+		send_round(kiosk, now_ms);
+	}
+	asked_s = visit_asked_s(&kiosk->visit, now_ms);
+	if (overlay) { /* also one that is new */
+		overlay_invite(overlay, kiosk->visit.state == VISIT_NOBODY);
+		overlay_ask(overlay, asked_s);
+	}
+	if (kiosk->visit.state != before || asked_s != kiosk->asked_s)
+		kiosk_redraw(kiosk);
+	kiosk->asked_s = asked_s;
+	if (kiosk->visit.state == VISIT_NOBODY && roam_rest_ms(now_ms - kiosk->roam_since_ms) == 0)
+		kiosk_redraw(kiosk);
+}
+
+int guest_wait_ms(const struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+
+	if (is_off(kiosk))
+		return -1;
+	return kiosk->visit.state == VISIT_NOBODY ? roam_rest_ms(now_ms - kiosk->roam_since_ms)
+						  : visit_wait_ms(&kiosk->visit, now_ms);
+}
+
+bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+{
+	float eye_m[3], target_m[3];
+	bool moves;
+
+	if (is_off(kiosk) || kiosk->visit.state != VISIT_NOBODY || now_ms < kiosk->roam_since_ms)
+		return false;
+	moves = roam_pose(&kiosk->roam, now_ms - kiosk->roam_since_ms, eye_m, target_m);
+	navigator_look(&kiosk->navigator, eye_m, target_m);
+	return moves;
+}
+
+bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
+{
+	const uint32_t bit = 1u << event->contact;
+	const bool asked = kiosk->visit.state == VISIT_ASKED;
+
+	visit_touch(&kiosk->visit, clock_now_ms());
+	if (event->phase == TOUCH_DOWN)
+		kiosk->answers = asked ? kiosk->answers | bit : kiosk->answers & ~bit;
+	if (asked)
+		kiosk_redraw(kiosk);
+	return (kiosk->answers & bit) != 0;
+}
+
+int guest_left_ms(const struct kiosk *kiosk)
+{
+	if (!kiosk->visit.touched || kiosk->shown.frame.patches == 0)
+		return 0;
+	return visit_left_ms(&kiosk->visit, clock_now_ms());
+}

@@ -1,0 +1,244 @@
+/* What a visit asks of the words and the eye. */
+#include <stdio.h>
+#include <string.h>
+
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "tests/check.h"
+
+enum { S = 1000 };
+
+/* The rest of the kiosk, as guest.c sees and leaves it. */
+static struct {
+	int64_t now_ms;
+	int card, page, asked_s, flights, looks, redraws;
+	bool invites;
+	char language[8];
+} world;
+
+static struct kiosk kiosk;
+static int some_thing; /* for pointers that nobody looks behind */
+
+int64_t clock_now_ms(void)
+{
+	return world.now_ms;
+}
+
+void kiosk_redraw(struct kiosk *of)
+{
+	(void)of;
+	world.redraws++;
+}
+
+void fingers_init(struct kiosk *of)
+{
+	memset(&of->gestures, 0, sizeof(of->gestures));
+}
+
+struct overlay *story_overlay(struct story *story)
+{
+	return (struct overlay *)story;
+}
+
+const struct info *story_info(const struct story *story)
+{
+	return (const struct info *)story;
+}
+
+const char *info_language(const struct info *info, uint32_t index)
+{
+	(void)info;
+	CHECK(index == 0);
+	return "km";
+}
+
+void story_set_language(struct story *story, const char *language)
+{
+	(void)story;
+	snprintf(world.language, sizeof(world.language), "%s", language);
+}
+
+int overlay_card(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.card;
+}
+
+int overlay_page(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.page;
+}
+
+void overlay_close_page(struct overlay *overlay)
+{
+	(void)overlay;
+	world.page = -1;
+}
+
+void overlay_show_card(struct overlay *overlay, int part)
+{
+	(void)overlay;
+	world.card = part;
+}
+
+void overlay_invite(struct overlay *overlay, bool on)
+{
+	(void)overlay;
+	world.invites = on;
+}
+
+void overlay_ask(struct overlay *overlay, int seconds_left)
+{
+	(void)overlay;
+	world.asked_s = seconds_left;
+}
+
+void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
+		   float duration_ms)
+{
+	(void)nav, (void)eye_m, (void)target_m;
+	CHECK(duration_ms > 0);
+	world.flights++;
+}
+
+void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3])
+{
+	(void)nav, (void)eye_m, (void)target_m;
+	world.looks++;
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	memset(&world, 0, sizeof(world));
+	memset(&kiosk, 0, sizeof(kiosk));
+	world.now_ms = 1000000;
+	world.card = world.page = world.asked_s = -1;
+	snprintf(world.language, sizeof(world.language), "fr");
+	kiosk.shown.story = (struct story *)&some_thing;
+	kiosk.shown.frame.patches = 9;
+	kiosk.navigator_ready = true;
+	kiosk.navigator.options = (struct navigator_options){
+		.box_max_m = { 10, 10, 10 },
+		.home_eye_m = { 5, -40, 5 },
+	};
+	visit_init(&kiosk.visit, 60, world.now_ms);
+	return 0;
+}
+
+static void after(int64_t ms)
+{
+	world.now_ms += ms;
+	guest_watch(&kiosk);
+}
+
+static bool touches(enum touch_phase phase)
+{
+	return guest_takes_touch(&kiosk, &(struct touch_event){ .phase = phase, .contact = 3 });
+}
+
+static void shows_the_model_round_while_nobody_is_there(void **state)
+{
+	(void)state;
+	after(0);
+	CHECK(!world.invites && guest_wait_ms(&kiosk) == 60 * S);
+	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 0);
+	after(60 * S);
+	CHECK(world.invites && world.flights == 1 && world.asked_s == -1 && world.redraws > 0);
+	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 0); /* it flies there */
+	after(3 * S);
+	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 1); /* and rests */
+	CHECK(guest_wait_ms(&kiosk) > S);
+	world.redraws = 0;
+	after(ROAM_REST_MS);
+	CHECK(world.redraws == 1 && guest_wait_ms(&kiosk) == 0);
+	CHECK(guest_leads_eye(&kiosk, world.now_ms));
+}
+
+static void leaves_nothing_of_a_visitor_for_the_next(void **state)
+{
+	(void)state;
+	CHECK(!touches(TOUCH_DOWN) && !touches(TOUCH_UP));
+	world.page = 4;
+	after(180 * S);
+	CHECK(world.asked_s == 15 && world.page == 4 && !world.invites);
+	after(15 * S);
+	CHECK(world.invites && world.page == -1 && world.asked_s == -1);
+	CHECK(strcmp(world.language, "km") == 0);
+	set_up(NULL);
+	kiosk.options.language = "ja"; /* the terminal's own */
+	after(60 * S);
+	CHECK(strcmp(world.language, "ja") == 0);
+}
+
+static void an_answer_is_no_touch_of_the_model(void **state)
+{
+	(void)state;
+	CHECK(!touches(TOUCH_DOWN) && !touches(TOUCH_MOVE) && !touches(TOUCH_UP));
+	after(61 * S);
+	CHECK(world.asked_s == 14);
+	CHECK(touches(TOUCH_DOWN));
+	after(0);
+	CHECK(world.asked_s == -1);
+	CHECK(touches(TOUCH_MOVE) && touches(TOUCH_UP));
+	CHECK(!touches(TOUCH_DOWN) && !touches(TOUCH_UP));
+}
+
+static void the_first_touch_already_counts(void **state)
+{
+	(void)state;
+	after(60 * S);
+	CHECK(world.invites);
+	CHECK(!touches(TOUCH_DOWN));
+	after(0);
+	CHECK(!world.invites && !guest_leads_eye(&kiosk, world.now_ms));
+}
+
+static void what_lies_on_the_glass_keeps_nobody_for_ever(void **state)
+{
+	(void)state;
+	CHECK(!touches(TOUCH_DOWN));
+	kiosk.gestures.fingers[3].down = true;
+	after(179 * S);
+	CHECK(world.asked_s == -1);
+	after(S);
+	CHECK(world.asked_s == 15);
+	after(15 * S);
+	CHECK(world.invites && !kiosk.gestures.fingers[3].down);
+}
+
+static void tells_how_long_the_panel_is_somebodys(void **state)
+{
+	(void)state;
+	CHECK(guest_left_ms(&kiosk) == 0); /* nobody ever came */
+	touches(TOUCH_DOWN);
+	CHECK(guest_left_ms(&kiosk) == 75 * S);
+	kiosk.shown.frame.patches = 0;
+	CHECK(guest_left_ms(&kiosk) == 0); /* nothing is to be seen */
+}
+
+static void pictures_of_views_have_no_visitors(void **state)
+{
+	(void)state;
+	kiosk.options.views_path = "views.txt";
+	after(3600 * S);
+	CHECK(world.redraws == 0 && world.flights == 0 && guest_wait_ms(&kiosk) == -1);
+}
+
+#define VISITED(test) cmocka_unit_test_setup(test, set_up)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		VISITED(shows_the_model_round_while_nobody_is_there),
+		VISITED(leaves_nothing_of_a_visitor_for_the_next),
+		VISITED(an_answer_is_no_touch_of_the_model),
+		VISITED(the_first_touch_already_counts),
+		VISITED(what_lies_on_the_glass_keeps_nobody_for_ever),
+		VISITED(tells_how_long_the_panel_is_somebodys),
+		VISITED(pictures_of_views_have_no_visitors),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

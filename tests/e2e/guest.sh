@@ -1,0 +1,41 @@
+#!/bin/bash
+# A visitor who taps a part, chooses another language and walks away: the terminal asks, counts
+# down, forgets the language and shows the temple round until somebody touches it again, who is
+# taken at the first touch.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/guest
+rm -rf "$work"
+mkdir -p "$work"
+small_release
+# At 960 x 540: the language bar's third button, then the temple's middle; 20 s after the last touch
+# (5 with nothing open) the question has been there for 5, and is answered; then for good.
+cat >"$work/fingers.touch" <<'T'
+4000 down 0 160 520
+4080 up 0
+6000 down 0 480 240
+6080 up 0
+26500 down 0 480 270
+26580 up 0
+64000 down 0 480 240
+64300 move 0 520 240
+64600 move 0 560 240
+64900 up 0
+67000 down 0 480 20
+67050 up 0
+T
+printf '%s\n' '5500 language' '25500 asked' '28000 answered' '48000 asked-again' '62500 nobody' '66500 somebody' >"$work/shots.txt"
+build/gopura-kiosk --display headless --size 960x540 --release "$small/release" \
+	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 \
+	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
+	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
+grep -E 'app: (card of|nobody|somebody|is somebody|drag|words in)' "$work/kiosk.log"
+python3 - "$work/kiosk.log" <<'P'
+import re
+import sys
+
+marks = r"app: (card of|is somebody there|somebody is there|nobody is there|drag begins|words in (?P<language>\w+))"
+said = [m["language"] or m[1].split()[0] for m in re.finditer(marks, open(sys.argv[1]).read())]
+assert said == ["fr", "card", "is", "somebody", "is", "nobody", "en", "somebody", "drag"], said
+P

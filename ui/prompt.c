@@ -1,0 +1,165 @@
+#include "ui/prompt.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "ui/icon.h"
+#include "ui/strings.h"
+
+enum { LINES_MOST = 8 };
+
+#define PADDING_MM 5.0f
+#define ICON_MM    16.0f
+#define LINE_MM    1.6f /* between two */
+#define BUTTON_MM  12.0f
+
+static void measure(PangoLayout *layout, int *width_px, int *height_px)
+{
+	pango_layout_get_pixel_size(layout, width_px, height_px);
+}
+
+static void draw_text(cairo_t *context, PangoLayout *layout, double x, double y)
+{
+	cairo_move_to(context, x, y);
+	pango_cairo_show_layout(context, layout);
+}
+
+static bool is_said(const char *const *languages, uint32_t before, const char *text)
+{
+	for (uint32_t i = 0; i < before; i++)
+		if (strcmp(ui_string(UI_TOUCH, languages[i]), text) == 0)
+			return true;
+	return false;
+}
+
+/* The first language in large, the others below. Each is set as its own language sets it. */
+static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
+			      const char *const *languages, uint32_t language_count, int room_px)
+{
+	char language[sizeof(theme->language)];
+	uint32_t count = 0;
+
+	memcpy(language, theme->language, sizeof(language));
+	for (uint32_t i = 0; i < language_count && count < LINES_MOST; i++) {
+		const char *text = ui_string(UI_TOUCH, languages[i]);
+
+		if (is_said(languages, i, text))
+			continue;
+		theme_set_language(theme, languages[i]);
+		lines[count] =
+			theme_layout(theme, count == 0 ? TEXT_TITLE : TEXT_CAPTION, text, -1);
+		theme_limit_lines(lines[count++], room_px, 1);
+	}
+	theme_set_language(theme, language);
+	return count;
+}
+
+int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *const *languages,
+			   uint32_t language_count, int most_width_px)
+{
+	const int padding = theme_px(theme, PADDING_MM), icon = theme_px(theme, ICON_MM);
+	const int gap = theme_px(theme, LINE_MM);
+	const int room_px = most_width_px - 3 * padding - icon;
+	int text_width = 0, text_height = -gap, rc;
+	PangoLayout *lines[LINES_MOST];
+	uint32_t count =
+		lay_out_lines(lines, theme, languages, language_count, room_px > 1 ? room_px : 1);
+
+	for (uint32_t i = 0; i < count; i++) {
+		int width, height;
+
+		measure(lines[i], &width, &height);
+		text_width = width > text_width ? width : text_width;
+		text_height += height + gap;
+	}
+	rc = bitmap_init(out, text_width + icon + 3 * padding,
+			 (text_height > icon ? text_height : icon) + 2 * padding);
+	if (rc == 0) {
+		cairo_t *context = bitmap_begin(out);
+		double y = (out->height_px - text_height) / 2.0;
+
+		theme_rounded(context, 0, 0, out->width_px, out->height_px,
+			      theme_px(theme, THEME_RADIUS_MM));
+		theme_set_source(context, theme_night, 0.82);
+		cairo_fill(context);
+		theme_set_source(context, theme_night_text, 1);
+		icon_draw(context, ICON_TAP, padding + icon / 2.0, out->height_px / 2.0, icon);
+		for (uint32_t i = 0; i < count; i++) {
+			int height;
+
+			measure(lines[i], NULL, &height);
+			draw_text(context, lines[i], 2 * padding + icon, y);
+			y += height + gap;
+		}
+		bitmap_end(out, context);
+	}
+	for (uint32_t i = 0; i < count; i++)
+		g_object_unref(lines[i]);
+	return rc;
+}
+
+static void draw_button(cairo_t *context, PangoLayout *label, double x, double y, int width_px,
+			int height_px)
+{
+	int label_px, text_px;
+
+	theme_rounded(context, x, y, width_px, height_px, height_px / 2.0);
+	theme_set_source(context, theme_accent, 1);
+	cairo_fill(context);
+	measure(label, &label_px, &text_px);
+	theme_set_source(context, theme_paper, 1);
+	draw_text(context, label, x + (width_px - label_px) / 2.0, y + (height_px - text_px) / 2.0);
+}
+
+int prompt_draw_question(struct bitmap *out, const struct theme *theme, int seconds_left,
+			 int most_width_px)
+{
+	const int padding = theme_px(theme, PADDING_MM), gap = 2 * theme_px(theme, LINE_MM);
+	const int room_px = most_width_px > 3 * padding ? most_width_px - 2 * padding : padding;
+	const char *texts[] = { ui_string(UI_STILL_THERE, theme->language), NULL,
+				ui_string(UI_GO_ON, theme->language) };
+	enum { QUESTION, COUNT_DOWN, BUTTON, COUNT };
+	int width[COUNT], height[COUNT], button_px, wide_px, rc;
+	PangoLayout *layouts[COUNT];
+	char count_down[160];
+
+	/* Each of strings.c has one %d. */
+	snprintf(count_down, sizeof(count_down), ui_string(UI_ANEW, theme->language), seconds_left);
+	texts[COUNT_DOWN] = count_down;
+	for (int i = 0; i < COUNT; i++) {
+		static const enum text_style styles[] = { TEXT_TITLE, TEXT_CAPTION, TEXT_BUTTON };
+
+		layouts[i] = theme_layout(theme, styles[i], texts[i], -1);
+		theme_limit_lines(layouts[i], room_px, 2);
+		measure(layouts[i], &width[i], &height[i]);
+	}
+	button_px = width[BUTTON] + 4 * padding;
+	wide_px = width[QUESTION] > width[COUNT_DOWN] ? width[QUESTION] : width[COUNT_DOWN];
+	wide_px = wide_px > button_px ? wide_px : button_px;
+	rc = bitmap_init(out, wide_px + 2 * padding,
+			 height[QUESTION] + height[COUNT_DOWN] + 3 * gap + 2 * padding +
+				 theme_px(theme, BUTTON_MM));
+	if (rc == 0) {
+		cairo_t *context = bitmap_begin(out);
+		double y = padding;
+
+		theme_rounded(context, 0, 0, out->width_px, out->height_px,
+			      theme_px(theme, THEME_RADIUS_MM));
+		theme_set_source(context, theme_paper, 1);
+		cairo_fill(context);
+		theme_set_source(context, theme_ink, 1);
+		draw_text(context, layouts[QUESTION], (out->width_px - width[QUESTION]) / 2.0, y);
+		y += height[QUESTION] + gap;
+		theme_set_source(context, theme_ink_soft, 1);
+		draw_text(context, layouts[COUNT_DOWN], (out->width_px - width[COUNT_DOWN]) / 2.0,
+			  y);
+		y += height[COUNT_DOWN] + 2 * gap;
+		draw_button(context, layouts[BUTTON], (out->width_px - button_px) / 2.0, y,
+			    button_px, theme_px(theme, BUTTON_MM));
+		bitmap_end(out, context);
+	}
+	for (int i = 0; i < COUNT; i++)
+		g_object_unref(layouts[i]);
+	return rc;
+}
