@@ -115,6 +115,17 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 	show_card(kiosk, part);
 }
 
+/* What is typed is nobody's business: a number is said, for whoever tests keyboards. */
+static void press_key(struct kiosk *kiosk, int key)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	if (!overlay_press(overlay, key))
+		return;
+	story_search(kiosk->shown.story);
+	log_debug("app", "search: %zu bytes typed", strlen(overlay_query(overlay)));
+}
+
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
@@ -143,11 +154,23 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		break;
 	case OVERLAY_HOME:
 		overlay_close_page(overlay);
+		overlay_show_search(overlay, false);
 		show_card(kiosk, -1);
 		go_home(kiosk);
 		break;
 	case OVERLAY_HELP:
 		overlay_show_help(overlay, !overlay_help(overlay));
+		break;
+	case OVERLAY_SEARCH:
+		overlay_show_search(overlay, !overlay_searching(overlay));
+		break;
+	case OVERLAY_KEY:
+		press_key(kiosk, action->key);
+		break;
+	case OVERLAY_FOUND:
+		overlay_show_search(overlay, false);
+		show_card(kiosk, action->part);
+		fly_to_part(kiosk, (uint32_t)action->part);
 		break;
 	}
 }
@@ -257,6 +280,34 @@ void fingers_init(struct kiosk *kiosk)
 	};
 
 	gesture_init(&kiosk->gestures, &options);
+	kiosk->fingers_on_keys = 0;
+}
+
+/* Keys answer when the finger comes down, each finger for itself: who types with two does not
+ * pinch, and whose finger slides off has typed all the same. true: the finger is a key's until it
+ * lifts. */
+static bool types(struct kiosk *kiosk, const struct touch_event *event)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const uint32_t finger = 1u << event->contact;
+	struct overlay_action action;
+
+	if (event->phase != TOUCH_DOWN) {
+		const bool is_typing = kiosk->fingers_on_keys & finger;
+
+		if (event->phase != TOUCH_MOVE)
+			kiosk->fingers_on_keys &= ~finger;
+		return is_typing;
+	}
+	if (!overlay || !kiosk->navigator_ready)
+		return false;
+	action = overlay_tap(overlay, event->x_px, event->y_px);
+	if (action.kind != OVERLAY_KEY || action.key == OVERLAY_KEY_CLEAR)
+		return false;
+	kiosk->fingers_on_keys |= finger;
+	press_key(kiosk, action.key);
+	kiosk_redraw(kiosk);
+	return true;
 }
 
 void fingers_on_touch(void *data, const struct touch_event *event)
@@ -269,7 +320,8 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	if (guest_takes_touch(kiosk, event))
 		return;
 	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
-	gesture_feed(&kiosk->gestures, &seen);
+	if (!types(kiosk, &seen))
+		gesture_feed(&kiosk->gestures, &seen);
 }
 
 void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps)

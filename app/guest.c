@@ -13,7 +13,8 @@ static bool is_reading(const struct kiosk *kiosk)
 	for (size_t i = 0; i < TOUCH_CONTACTS_MOST; i++)
 		if (kiosk->gestures.fingers[i].down)
 			return true;
-	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0);
+	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
+			   overlay_searching(overlay));
 }
 
 /* Nothing of one visitor is left for the next. */
@@ -25,6 +26,7 @@ static void begin_anew(struct kiosk *kiosk)
 	if (overlay) {
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);
+		overlay_show_search(overlay, false);
 		story_set_language(kiosk->shown.story,
 				   language ? language
 					    : info_language(story_info(kiosk->shown.story), 0));

@@ -75,8 +75,9 @@ struct kiosk {
 	struct navigator navigator;
 	bool navigator_ready; /* a release's box is known */
 	struct gesture_recogniser gestures;
-	bool finger_on_words; /* the gesture began on a page or card */
-	uint32_t answers;     /* contacts, a bit each, that only said that somebody is there */
+	bool finger_on_words;     /* the gesture began on a page or card */
+	uint32_t fingers_on_keys; /* a bit a contact */
+	uint32_t answers;         /* contacts, a bit each, that only said that somebody is there */
 	struct visit visit;
 	enum visit_state visit_said; /* as the log has it */
 	int asked_s;                 /* as the words have it */

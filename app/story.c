@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 
-enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16 };
+enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16, FOUND_MOST = 100 };
 
 /* A picture that was asked for. */
 struct story_picture {
@@ -339,6 +339,8 @@ void story_set_language(struct story *story, const char *language)
 		log_error("app", "out of memory for the parts' texts");
 	if (page >= 0)
 		story_open_page(story, (uint32_t)page);
+	if (overlay_searching(story->overlay))
+		story_search(story); /* the language's own come first */
 }
 
 bool story_open_page(struct story *story, uint32_t part)
@@ -353,6 +355,16 @@ bool story_open_page(struct story *story, uint32_t part)
 		log_error("app", "content bug: page of %s: %s", info_part(story->info, part)->id,
 			  strerror(-rc));
 	return rc == 0;
+}
+
+void story_search(struct story *story)
+{
+	static uint32_t parts[FOUND_MOST];
+	const char *query = overlay_query(story->overlay);
+
+	if (*query)
+		overlay_found(story->overlay, parts,
+			      info_search(story->info, query, story->language, parts, FOUND_MOST));
 }
 
 /* ---- regions */

@@ -37,6 +37,9 @@ bool story_broken(const struct story *story);
 const char *story_language(const struct story *story);
 void story_set_language(struct story *story, const char *language);
 
+/* Says to the overlay what its query finds. */
+void story_search(struct story *story);
+
 /* The part that a point of the surface belongs to: of those that contain it the smallest, or -1. */
 int story_part_at(const struct story *story, const float point_m[3]);
 /* The region of a part, for the bold border. false: it is only a point. */

@@ -32,7 +32,7 @@ struct visit {
 void visit_init(struct visit *visit, int idle_s, int64_t now_ms);
 /* Something was done with a finger. */
 void visit_touch(struct visit *visit, int64_t now_ms);
-/* Lets time pass. reading: a card or page is open, or a finger lies still on the glass. */
+/* Lets time pass. reading: a card, page or search is open, or a finger lies still on the glass. */
 void visit_step(struct visit *visit, int64_t now_ms, bool reading);
 /* Milliseconds until visit_step changes something, or the count-down's next second; -1: never. */
 int visit_wait_ms(const struct visit *visit, int64_t now_ms);

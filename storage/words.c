@@ -45,12 +45,19 @@ static bool is_of_a_word(gunichar c)
 
 static gunichar fold(gunichar c)
 {
+	static const gunichar small_kana[] = { 0x3041, 0x3043, 0x3045, 0x3047, 0x3049,
+					       0x3063, 0x3083, 0x3085, 0x3087, 0x308e };
 	gunichar base, mark;
 
 	c = g_unichar_tolower(c);
 	while (g_unichar_decompose(c, &base, &mark) && mark != 0 && is_left_out(mark))
 		c = base;
-	return is_between(c, 0x30a1, 0x30f6) ? c - 0x60 : c; /* katakana are hiragana */
+	if (is_between(c, 0x30a1, 0x30f6)) /* katakana are hiragana */
+		c -= 0x60;
+	for (size_t i = 0; i < ARRAY_COUNT(small_kana); i++)
+		if (small_kana[i] == c)
+			return c + 1; /* each stands before the large one */
+	return c;
 }
 
 static void put_char(struct buffer *out, gunichar c)

@@ -28,14 +28,17 @@ static void add(struct chrome *chrome, enum chrome_button_kind kind, int languag
 }
 
 static void try_layout(struct chrome *chrome, const struct theme *theme,
-		       const char *const *languages, uint32_t language_count)
+		       const char *const *languages, uint32_t language_count, bool has_search)
 {
-	int target_px = theme_px(theme, BAR_MM);
+	int target_px = theme_px(theme, chrome->tight ? THEME_TARGET_MM : BAR_MM);
+	float padding_mm = chrome->tight ? 0.6f : chrome->codes ? 1.5f : PADDING_MM;
 
 	chrome->button_count = 0;
 	chrome->width_px = 0;
 	add(chrome, CHROME_HOME, -1, target_px);
 	add(chrome, CHROME_HELP, -1, target_px);
+	if (has_search)
+		add(chrome, CHROME_SEARCH, -1, target_px);
 	for (uint32_t i = 0; language_count > 1 && i < language_count; i++) {
 		char code[20];
 		const char *label = label_of(chrome, languages[i], code, sizeof(code));
@@ -44,22 +47,26 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 
 		pango_layout_get_pixel_size(layout, &width_px, NULL);
 		g_object_unref(layout);
-		width_px += 2 * theme_px(theme, chrome->codes ? 1.5f : PADDING_MM);
+		width_px += 2 * theme_px(theme, padding_mm);
 		add(chrome, CHROME_LANGUAGE, (int)i, width_px > target_px ? width_px : target_px);
 	}
 }
 
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px)
+		   uint32_t language_count, int most_width_px, bool has_search)
 {
 	if (language_count > CHROME_LANGUAGES_MOST)
 		language_count = CHROME_LANGUAGES_MOST;
 	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM) };
-	try_layout(out, theme, languages, language_count);
+	try_layout(out, theme, languages, language_count, has_search);
 	if (out->width_px <= most_width_px)
 		return;
 	out->codes = true;
-	try_layout(out, theme, languages, language_count);
+	try_layout(out, theme, languages, language_count, has_search);
+	if (out->width_px <= most_width_px)
+		return;
+	out->tight = true;
+	try_layout(out, theme, languages, language_count, has_search);
 }
 
 static void draw_label(cairo_t *context, const struct theme *theme, const char *text,
@@ -78,6 +85,9 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 			const struct chrome_button *button, const struct theme *theme,
 			const char *const *languages, bool on)
 {
+	static const enum icon icons[] = {
+		[CHROME_HOME] = ICON_HOME, [CHROME_HELP] = ICON_HELP, [CHROME_SEARCH] = ICON_SEARCH
+	};
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
 	char code[20];
@@ -94,12 +104,11 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 		draw_label(context, theme,
 			   label_of(chrome, languages[button->language], code, sizeof(code)), x, y);
 	else
-		icon_draw(context, button->kind == CHROME_HOME ? ICON_HOME : ICON_HELP, x, y,
-			  theme_px(theme, 5.0f));
+		icon_draw(context, icons[button->kind], x, y, theme_px(theme, 5.0f));
 }
 
 int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct theme *theme,
-		const char *const *languages, int current, bool help_is_on)
+		const char *const *languages, int current, bool help_is_on, bool search_is_on)
 {
 	cairo_t *context;
 	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);
@@ -113,9 +122,9 @@ int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct th
 	cairo_fill(context);
 	for (uint32_t i = 0; i < chrome->button_count; i++) {
 		const struct chrome_button *button = &chrome->buttons[i];
-		bool on = button->kind == CHROME_LANGUAGE
-				  ? button->language == current
-				  : button->kind == CHROME_HELP && help_is_on;
+		bool on = (button->kind == CHROME_LANGUAGE && button->language == current) ||
+			  (button->kind == CHROME_HELP && help_is_on) ||
+			  (button->kind == CHROME_SEARCH && search_is_on);
 
 		draw_button(context, chrome, button, theme, languages, on);
 	}

@@ -116,6 +116,26 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 	case ICON_TAP:
 		draw_tap(context);
 		break;
+	case ICON_SEARCH:
+		ring(context, -0.2, -0.2, 0.68);
+		line(context, 0.3, 0.3, 0.9, 0.9);
+		break;
+	case ICON_SPACE:
+		cairo_move_to(context, -1, 0);
+		cairo_line_to(context, -1, 0.45);
+		cairo_line_to(context, 1, 0.45);
+		cairo_line_to(context, 1, 0);
+		break;
+	case ICON_BACKSPACE:
+		cairo_move_to(context, -1.2, 0);
+		cairo_line_to(context, -0.5, -0.75);
+		cairo_line_to(context, 1.1, -0.75);
+		cairo_line_to(context, 1.1, 0.75);
+		cairo_line_to(context, -0.5, 0.75);
+		cairo_close_path(context);
+		line(context, -0.1, -0.3, 0.5, 0.3);
+		line(context, -0.1, 0.3, 0.5, -0.3);
+		break;
 	}
 	cairo_stroke(context);
 	cairo_restore(context);

@@ -12,6 +12,9 @@ enum icon {
 	ICON_TURN, /* one finger goes sideways */
 	ICON_ZOOM, /* two fingers part */
 	ICON_TAP,
+	ICON_SEARCH,
+	ICON_SPACE,
+	ICON_BACKSPACE,
 };
 
 /* About size across, centred on x, y. */

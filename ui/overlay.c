@@ -39,7 +39,7 @@ static void lay_out_chrome(struct overlay *overlay)
 	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
 
 	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		      overlay->language_count, most_px - gaps_px);
+		      overlay->language_count, most_px - gaps_px, overlay->part_count > 0);
 	overlay->chrome_dirty = true;
 }
 
@@ -85,7 +85,7 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	overlay->height_px = options->height_px;
 	overlay->pictures = (struct picture_source){ options->picture, options->data };
 	overlay->help.on = true;
-	overlay->card_part = overlay->page_part = -1;
+	overlay->card_part = overlay->page_part = overlay->search.pressed = -1;
 	for (uint32_t i = 0; i < LABELS; i++)
 		overlay->labels[i].part = -1;
 	for (uint32_t i = 0; i < STRIPS; i++)
@@ -116,6 +116,7 @@ void overlay_destroy(struct overlay *overlay)
 	article_destroy(overlay->article);
 	drop_parts(overlay->parts, overlay->part_count);
 	free(overlay->anchors);
+	free(overlay->search.found);
 	for (uint32_t i = 0; i < BITMAP_COUNT; i++)
 		bitmap_finish(&overlay->drawings[i].bitmap);
 	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MOST; i++)
@@ -156,11 +157,14 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	struct part *copies = calloc((size_t)count + 1, sizeof(*copies));
 	struct callout_anchor *anchors = calloc((size_t)count + 1, sizeof(*anchors));
 	int rc = copies && anchors ? 0 : -ENOMEM;
+	bool had_parts;
 
 	if (count > OVERLAY_PARTS_MOST)
 		rc = -EINVAL;
 	for (uint32_t i = 0; rc == 0 && i < count; i++)
 		rc = copy_part(&copies[i], &parts[i]);
+	if (rc == 0 && count != overlay->part_count && overlay_search_parts(overlay, count) < 0)
+		rc = -ENOMEM;
 	if (rc < 0) {
 		drop_parts(copies, count > OVERLAY_PARTS_MOST ? 0 : count);
 		free(anchors);
@@ -168,7 +172,7 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	}
 	if (count != overlay->part_count) {
 		drop_page(overlay);
-		overlay->card = (struct fade){ 0 };
+		overlay->card = overlay->search.fade = (struct fade){ 0 };
 		overlay->card_part = -1;
 	} else if (overlay->part_count > 0) {
 		memcpy(anchors, overlay->anchors, count * sizeof(*anchors));
@@ -177,8 +181,13 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	free(overlay->anchors);
 	overlay->parts = copies;
 	overlay->anchors = anchors;
-	overlay->help_dirty |= (count > 0) != (overlay->part_count > 0);
+	had_parts = overlay->part_count > 0;
 	overlay->part_count = count;
+	if (had_parts != (count > 0)) {
+		overlay->help_dirty = true;
+		lay_out_chrome(overlay);
+	}
+	overlay_search_language(overlay); /* its rows are in other words */
 	overlay->column_px = 0;
 	for (uint32_t i = 0; i < count; i++) {
 		copies[i].label_px = overlay_measure_label(overlay, copies[i].title);
@@ -200,6 +209,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->chrome_dirty = overlay->help_dirty = true;
 		overlay->question_drawn_s = 0; /* in the other language */
 		overlay->card_dirty = overlay->head_dirty = true;
+		overlay_search_language(overlay);
 		forget_labels(overlay);
 	}
 }
@@ -262,7 +272,8 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 	for (uint32_t i = 0; i < STRIPS; i++)
 		overlay->strips[i] = (struct strip){ .index = -1 };
 	overlay->head_dirty = true;
-	overlay_show_card(overlay, -1); /* the page says it all */
+	overlay_show_search(overlay, false); /* it takes its place */
+	overlay_show_card(overlay, -1);      /* the page says it all */
 	overlay_show_help(overlay, false);
 	overlay->callouts_dirty = true;
 	return 0;
@@ -318,6 +329,7 @@ void overlay_picture_arrived(struct overlay *overlay, const char *name)
 {
 	int from_px = overlay->article ? article_picture_arrived(overlay->article, name) : -1;
 
+	overlay_search_picture(overlay, name);
 	for (uint32_t i = 0; from_px >= 0 && i < STRIPS; i++)
 		if ((overlay->strips[i].index + 1) * overlay->strip_px > from_px)
 			overlay->strips[i].stale = true;
@@ -372,6 +384,8 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_HOME;
 	} else if (button->kind == CHROME_HELP) {
 		action.kind = OVERLAY_HELP;
+	} else if (button->kind == CHROME_SEARCH) {
+		action.kind = OVERLAY_SEARCH;
 	} else if (button->language != overlay->language) {
 		action.kind = OVERLAY_LANGUAGE;
 		action.language = overlay->languages[button->language];
@@ -399,6 +413,8 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 
 	if (overlay_rect_holds(chrome, x_px, y_px))
 		return tap_chrome(overlay, x_px - (float)chrome.x_px);
+	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
+		return overlay_search_tap(overlay, x_px, y_px);
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return tap_page(overlay, x_px, y_px);
 	if (overlay->card_part >= 0 && overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px))
@@ -419,34 +435,45 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 		return true;
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return true;
+	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
+		return true;
 	return overlay->card_part >= 0 &&
 	       overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px);
 }
 
-static void scroll_by(struct overlay *overlay, float by_px)
+static void scroll_by(float *scroll_px, float *px_per_s, int most_px, float by_px)
 {
-	float most_px = (float)overlay_scroll_most(overlay), to_px = overlay->scroll_px + by_px;
+	float to_px = *scroll_px + by_px;
 
-	overlay->scroll_px = fminf(fmaxf(to_px, 0), most_px);
-	if (overlay->scroll_px != to_px)
-		overlay->scroll_px_per_s = 0;
+	*scroll_px = fminf(fmaxf(to_px, 0), (float)most_px);
+	if (*scroll_px != to_px)
+		*px_per_s = 0;
 }
 
 void overlay_scroll(struct overlay *overlay, float dy_px)
 {
-	overlay->scroll_px_per_s = 0;
-	scroll_by(overlay, -dy_px);
+	struct search *search = &overlay->search;
+
+	search->scroll_px_per_s = overlay->scroll_px_per_s = 0;
+	if (search->fade.on)
+		scroll_by(&search->scroll_px, &search->scroll_px_per_s,
+			  overlay_found_scroll_most(overlay), -dy_px);
+	else
+		scroll_by(&overlay->scroll_px, &overlay->scroll_px_per_s,
+			  overlay_scroll_most(overlay), -dy_px);
 }
 
 void overlay_fling(struct overlay *overlay, float vy_px_per_s)
 {
-	overlay->scroll_px_per_s = -vy_px_per_s;
+	if (overlay->search.fade.on)
+		overlay->search.scroll_px_per_s = -vy_px_per_s;
+	else
+		overlay->scroll_px_per_s = -vy_px_per_s;
 }
 
 /* ---- a frame ---- */
 
-/* true: still on its way. */
-static bool advance(struct fade *fade, int64_t step_ms)
+bool overlay_advance(struct fade *fade, int64_t step_ms)
 {
 	float target = fade->on ? 1 : 0, step = (float)step_ms / FADE_MS;
 
@@ -456,17 +483,15 @@ static bool advance(struct fade *fade, int64_t step_ms)
 	return fade->alpha != target;
 }
 
-static bool advance_scroll(struct overlay *overlay, int64_t step_ms)
+static bool advance_scroll(float *scroll_px, float *px_per_s, int most_px, int64_t step_ms)
 {
-	float seconds = (float)step_ms / 1000;
-
-	if (overlay->scroll_px_per_s == 0)
+	if (*px_per_s == 0)
 		return false;
-	scroll_by(overlay, overlay->scroll_px_per_s * seconds);
-	overlay->scroll_px_per_s *= expf(-(float)step_ms / FLING_SLOWDOWN_MS);
-	if (fabsf(overlay->scroll_px_per_s) < FLING_LEAST_PX_PER_S)
-		overlay->scroll_px_per_s = 0;
-	return overlay->scroll_px_per_s != 0;
+	scroll_by(scroll_px, px_per_s, most_px, *px_per_s * (float)step_ms / 1000);
+	*px_per_s *= expf(-(float)step_ms / FLING_SLOWDOWN_MS);
+	if (fabsf(*px_per_s) < FLING_LEAST_PX_PER_S)
+		*px_per_s = 0;
+	return *px_per_s != 0;
 }
 
 static bool update_labels(struct overlay *overlay, int64_t step_ms)
@@ -491,7 +516,7 @@ static bool update_labels(struct overlay *overlay, int64_t step_ms)
 			overlay_draw_label(overlay, i);
 			budget--;
 		}
-		moving |= advance(&label->fade, step_ms);
+		moving |= overlay_advance(&label->fade, step_ms);
 		if (!label->fade.on && label->fade.alpha == 0)
 			*label = (struct label){ .part = -1 };
 	}
@@ -523,7 +548,7 @@ static bool update_strips(struct overlay *overlay, int64_t step_ms)
 			overlay_draw_strip(overlay, slot);
 			budget--;
 		}
-		moving |= advance(&strip->fade, step_ms);
+		moving |= overlay_advance(&strip->fade, step_ms);
 	}
 	return moving;
 }
@@ -556,12 +581,18 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	if (overlay->callouts_dirty)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;
-	moving = advance(&overlay->help, step_ms);
-	moving |= advance(&overlay->invitation, step_ms);
-	moving |= advance(&overlay->question, step_ms);
-	moving |= advance(&overlay->card, step_ms);
-	moving |= advance(&overlay->page, step_ms);
-	moving |= advance_scroll(overlay, step_ms);
+	moving = overlay_advance(&overlay->help, step_ms);
+	moving |= overlay_advance(&overlay->invitation, step_ms);
+	moving |= overlay_advance(&overlay->question, step_ms);
+	moving |= overlay_advance(&overlay->card, step_ms);
+	moving |= overlay_advance(&overlay->page, step_ms);
+	moving |= advance_scroll(&overlay->scroll_px, &overlay->scroll_px_per_s,
+				 overlay_scroll_most(overlay), step_ms);
+	if (overlay->search.scroll_px_per_s != 0)
+		moving |=
+			advance_scroll(&overlay->search.scroll_px, &overlay->search.scroll_px_per_s,
+				       overlay_found_scroll_most(overlay), step_ms);
+	moving |= overlay_update_search(overlay, step_ms);
 	moving |= update_labels(overlay, step_ms);
 	if (!overlay->page.on && overlay->page.alpha == 0)
 		drop_page(overlay);

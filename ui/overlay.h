@@ -1,8 +1,8 @@
 /* Everything that is written over the model: callouts, the card, the page beside the model, the
- * language switch, home and help. The overlay owns what is shown, draws it with Pango and Cairo
- * into bitmaps, and gives the app a list of textured quads. It knows no GL, no network and no
- * database: texts, pictures and the pixels of anchors are given to it, and a tap is answered by an
- * action that the app carries out.
+ * search, the language switch, home and help. The overlay owns what is shown, draws it with Pango
+ * and Cairo into bitmaps, and gives the app a list of textured quads. It knows no GL, no network
+ * and no database: texts, pictures and the pixels of anchors are given to it, and a tap is answered
+ * by an action that the app carries out.
  *
  * A frame:  overlay_anchors (if the camera moved)  ->  overlay_update  ->  overlay_layers.
  * One thread. Pixels are of the picture as the visitor sees it: x right, y down. */
@@ -91,6 +91,18 @@ void overlay_invite(struct overlay *overlay, bool on);
  * asks takes the touch that answers. */
 void overlay_ask(struct overlay *overlay, int seconds_left);
 
+/* The search, in the page's place: a field, parts that were found, a keyboard. It opens with
+ * nothing typed and all parts listed, and closes card and page; without parts it does not open. */
+void overlay_show_search(struct overlay *overlay, bool on);
+bool overlay_searching(const struct overlay *overlay);
+/* What is typed; borrowed until the next overlay_press. */
+const char *overlay_query(const struct overlay *overlay);
+/* A key that OVERLAY_KEY named. true: what is typed changed; say what is found, unless it is
+ * nothing, for then all parts are listed. */
+bool overlay_press(struct overlay *overlay, int key);
+/* Parts, best first, copied. */
+void overlay_found(struct overlay *overlay, const uint32_t *parts, uint32_t count);
+
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 
@@ -111,11 +123,17 @@ enum overlay_action_kind {
 	OVERLAY_LINK,     /* link: the id of the part that a page's link names */
 	OVERLAY_HOME,     /* back to the first view */
 	OVERLAY_HELP,     /* the help, which is there or not (overlay_help), changes over */
+	OVERLAY_SEARCH,   /* the search, which is open or not (overlay_searching), changes over */
+	OVERLAY_KEY,      /* key: for overlay_press */
+	OVERLAY_FOUND,    /* part: one of those that were found */
 };
+
+enum { OVERLAY_KEY_CLEAR = -1 }; /* the field's own: empties it */
 
 struct overlay_action {
 	enum overlay_action_kind kind;
 	int part;             /* else -1 */
+	int key;              /* of OVERLAY_KEY */
 	const char *language; /* borrowed until the overlay is destroyed; else NULL */
 	const char *link;     /* borrowed until the page changes; else NULL */
 };

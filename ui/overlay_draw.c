@@ -12,8 +12,7 @@ static int px(const struct overlay *overlay, float mm)
 	return theme_px(&overlay->theme, mm);
 }
 
-/* Makes room for a new picture of that size; NULL where there is no memory. */
-static cairo_t *begin(struct overlay *overlay, enum bitmap_id id, int width_px, int height_px)
+cairo_t *overlay_begin(struct overlay *overlay, enum bitmap_id id, int width_px, int height_px)
 {
 	struct drawing *drawing = &overlay->drawings[id];
 
@@ -26,7 +25,7 @@ static cairo_t *begin(struct overlay *overlay, enum bitmap_id id, int width_px, 
 	return bitmap_begin(&drawing->bitmap);
 }
 
-static void end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
+void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 {
 	bitmap_end(&overlay->drawings[id].bitmap, context);
 }
@@ -35,7 +34,7 @@ static void end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 static void draw_leader(struct overlay *overlay)
 {
 	int across_px = px(overlay, 1.5f) + 2;
-	cairo_t *context = begin(overlay, BITMAP_LEADER, 4, across_px);
+	cairo_t *context = overlay_begin(overlay, BITMAP_LEADER, 4, across_px);
 
 	if (!context)
 		return;
@@ -45,14 +44,14 @@ static void draw_leader(struct overlay *overlay)
 	cairo_rectangle(context, 0, across_px * 0.34, 4, across_px * 0.32);
 	theme_set_source(context, theme_night_text, 1);
 	cairo_fill(context);
-	end(overlay, BITMAP_LEADER, context);
+	overlay_end(overlay, BITMAP_LEADER, context);
 }
 
 static void draw_dot(struct overlay *overlay)
 {
 	int side_px = px(overlay, 3.2f);
 	double middle = side_px / 2.0, turn = 4 * acos(0.0);
-	cairo_t *context = begin(overlay, BITMAP_DOT, side_px, side_px);
+	cairo_t *context = overlay_begin(overlay, BITMAP_DOT, side_px, side_px);
 
 	if (!context)
 		return;
@@ -65,13 +64,13 @@ static void draw_dot(struct overlay *overlay)
 	cairo_arc(context, middle, middle, middle * 0.42, 0, turn);
 	theme_set_source(context, theme_accent, 1);
 	cairo_fill(context);
-	end(overlay, BITMAP_DOT, context);
+	overlay_end(overlay, BITMAP_DOT, context);
 }
 
 static void draw_foot(struct overlay *overlay)
 {
 	int height_px = px(overlay, 8.0f);
-	cairo_t *context = begin(overlay, BITMAP_PAGE_FOOT, 4, height_px);
+	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_FOOT, 4, height_px);
 	cairo_pattern_t *gradient;
 
 	if (!context)
@@ -84,7 +83,7 @@ static void draw_foot(struct overlay *overlay)
 	cairo_set_source(context, gradient);
 	cairo_paint(context);
 	cairo_pattern_destroy(gradient);
-	end(overlay, BITMAP_PAGE_FOOT, context);
+	overlay_end(overlay, BITMAP_PAGE_FOOT, context);
 }
 
 void overlay_draw_fixed(struct overlay *overlay)
@@ -95,18 +94,24 @@ void overlay_draw_fixed(struct overlay *overlay)
 	draw_leader(overlay);
 	draw_dot(overlay);
 	draw_foot(overlay);
-	context = begin(overlay, BITMAP_PAPER, 4, 4);
+	context = overlay_begin(overlay, BITMAP_PAPER, 4, 4);
 	if (context) {
 		theme_set_source(context, theme_paper, 1);
 		cairo_paint(context);
-		end(overlay, BITMAP_PAPER, context);
+		overlay_end(overlay, BITMAP_PAPER, context);
 	}
-	context = begin(overlay, BITMAP_SCROLL, width_px, 4 * width_px);
+	context = overlay_begin(overlay, BITMAP_KEY, 4, 4);
+	if (context) {
+		theme_set_source(context, theme_accent, 1);
+		cairo_paint(context);
+		overlay_end(overlay, BITMAP_KEY, context);
+	}
+	context = overlay_begin(overlay, BITMAP_SCROLL, width_px, 4 * width_px);
 	if (context) {
 		theme_rounded(context, 0, 0, width_px, 4 * width_px, width_px / 2.0);
 		theme_set_source(context, theme_ink_soft, 0.6);
 		cairo_fill(context);
-		end(overlay, BITMAP_SCROLL, context);
+		overlay_end(overlay, BITMAP_SCROLL, context);
 	}
 }
 
@@ -126,9 +131,17 @@ void overlay_draw_chrome(struct overlay *overlay)
 	struct bitmap fresh;
 	int rc = chrome_draw(&fresh, &overlay->chrome, &overlay->theme,
 			     (const char *const *)overlay->languages, overlay->language,
-			     overlay->help.on);
+			     overlay->help.on, overlay->search.fade.on);
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
+}
+
+void overlay_draw_keyboard(struct overlay *overlay)
+{
+	struct bitmap fresh;
+
+	put(overlay, BITMAP_KEYBOARD, &fresh,
+	    keyboard_draw(&fresh, &overlay->search.keyboard, &overlay->theme));
 }
 
 void overlay_draw_help(struct overlay *overlay)
@@ -177,16 +190,35 @@ void overlay_draw_card(struct overlay *overlay)
 	    card_draw(&fresh, &overlay->theme, &card, rect.width_px, rect.height_px));
 }
 
+void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int width_px,
+			int height_px)
+{
+	PangoLayout *layout = theme_layout(&overlay->theme, TEXT_BUTTON,
+					   ui_string(UI_CLOSE, overlay->theme.language), -1);
+	int label_px, text_px, cross_px = px(overlay, 3.0f);
+	double x;
+
+	theme_rounded(context, 0, 0, width_px, height_px, height_px / 2.0);
+	theme_set_source(context, theme_accent, 1);
+	cairo_fill(context);
+	pango_layout_get_pixel_size(layout, &label_px, &text_px);
+	theme_set_source(context, theme_paper, 1);
+	x = (width_px - label_px - 2 * cross_px) / 2.0;
+	cairo_move_to(context, x, (height_px - text_px) / 2.0);
+	pango_cairo_show_layout(context, layout);
+	icon_draw(context, ICON_CLOSE, x + label_px + 1.5 * cross_px, height_px / 2.0, cross_px);
+	g_object_unref(layout);
+}
+
 /* The part's name in small, a line below, and the one control that closes. */
 void overlay_draw_page_head(struct overlay *overlay)
 {
 	struct overlay_rect page = overlay_page_rect(overlay), close = overlay_close_rect(overlay);
-	int height_px = overlay_view_rect(overlay).y_px - page.y_px, text_px, label_px;
-	int left_px = px(overlay, 8.0f), cross_px = px(overlay, 3.0f);
+	int height_px = overlay_view_rect(overlay).y_px - page.y_px, text_px;
+	int left_px = px(overlay, 8.0f);
 	int room_px = close.x_px - page.x_px - left_px - px(overlay, THEME_GAP_MM);
-	cairo_t *context = begin(overlay, BITMAP_PAGE_HEAD, page.width_px, height_px);
+	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_HEAD, page.width_px, height_px);
 	PangoLayout *layout;
-	double x, y;
 
 	if (!context)
 		return;
@@ -205,22 +237,9 @@ void overlay_draw_page_head(struct overlay *overlay)
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
 
-	x = close.x_px - page.x_px;
-	y = close.y_px - page.y_px;
-	theme_rounded(context, x, y, close.width_px, close.height_px, close.height_px / 2.0);
-	theme_set_source(context, theme_accent, 1);
-	cairo_fill(context);
-	layout = theme_layout(&overlay->theme, TEXT_BUTTON,
-			      ui_string(UI_CLOSE, overlay->theme.language), -1);
-	pango_layout_get_pixel_size(layout, &label_px, &text_px);
-	theme_set_source(context, theme_paper, 1);
-	x += (close.width_px - label_px - 2 * cross_px) / 2.0;
-	cairo_move_to(context, x, y + (close.height_px - text_px) / 2.0);
-	pango_cairo_show_layout(context, layout);
-	icon_draw(context, ICON_CLOSE, x + label_px + 1.5 * cross_px, y + close.height_px / 2.0,
-		  cross_px);
-	g_object_unref(layout);
-	end(overlay, BITMAP_PAGE_HEAD, context);
+	cairo_translate(context, close.x_px - page.x_px, close.y_px - page.y_px);
+	overlay_draw_close(overlay, context, close.width_px, close.height_px);
+	overlay_end(overlay, BITMAP_PAGE_HEAD, context);
 }
 
 int overlay_measure_label(const struct overlay *overlay, const char *title)
@@ -240,7 +259,7 @@ void overlay_draw_label(struct overlay *overlay, uint32_t index)
 	int width_px = label->place.width_px, height_px = overlay_row_px(overlay), text_px;
 	int padding_px = px(overlay, 2.2f), inset_px = px(overlay, 0.6f);
 	enum bitmap_id id = (enum bitmap_id)(BITMAP_LABEL + index);
-	cairo_t *context = begin(overlay, id, width_px, height_px);
+	cairo_t *context = overlay_begin(overlay, id, width_px, height_px);
 	PangoLayout *layout;
 
 	label->drawn = true;
@@ -262,18 +281,18 @@ void overlay_draw_label(struct overlay *overlay, uint32_t index)
 	cairo_move_to(context, padding_px, (height_px - text_px) / 2.0);
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
-	end(overlay, id, context);
+	overlay_end(overlay, id, context);
 }
 
 void overlay_draw_strip(struct overlay *overlay, uint32_t slot)
 {
 	enum bitmap_id id = (enum bitmap_id)(BITMAP_STRIP + slot);
 	int width_px = overlay_page_rect(overlay).width_px;
-	cairo_t *context = begin(overlay, id, width_px, overlay->strip_px);
+	cairo_t *context = overlay_begin(overlay, id, width_px, overlay->strip_px);
 
 	if (!context)
 		return;
 	article_draw(overlay->article, context, overlay->strips[slot].index * overlay->strip_px,
 		     overlay->strip_px);
-	end(overlay, id, context);
+	overlay_end(overlay, id, context);
 }

@@ -103,22 +103,18 @@ static void add_callouts(struct list *list)
 	}
 }
 
-/* The piece of a strip that the view shows. */
-static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view, float dx,
-		      float dy)
+/* The piece that the view shows of a bitmap as wide as it. */
+static void add_clipped(struct list *list, int id, float alpha, struct overlay_rect view, float top,
+			float dx, float dy)
 {
-	const struct overlay *overlay = list->overlay;
-	const struct strip *strip = &overlay->strips[slot];
-	float height = (float)overlay->strip_px, top_in, bottom_in;
-	float top = (float)view.y_px - roundf(overlay->scroll_px) + (float)strip->index * height;
+	float height = (float)list->overlay->drawings[id].bitmap.height_px;
+	float top_in = fmaxf(top, (float)view.y_px);
+	float bottom_in = fminf(top + height, (float)(view.y_px + view.height_px));
 	struct overlay_layer *layer;
 
-	top_in = fmaxf(top, (float)view.y_px);
-	bottom_in = fminf(top + height, (float)(view.y_px + view.height_px));
-	if (strip->index < 0 || bottom_in <= top_in)
+	if (bottom_in <= top_in)
 		return;
-	layer = add(list, BITMAP_STRIP + (int)slot,
-		    ease(overlay->page.alpha) * ease(strip->fade.alpha));
+	layer = add(list, id, alpha);
 	if (!layer)
 		return;
 	layer->source[1] = (top_in - top) / height;
@@ -132,20 +128,31 @@ static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view
 	}
 }
 
-static void add_scroll_mark(struct list *list, struct overlay_rect view, float alpha, float dx,
-			    float dy)
+static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view, float dx,
+		      float dy)
 {
 	const struct overlay *overlay = list->overlay;
-	float most = (float)overlay_scroll_most(overlay), height;
-	float width = (float)overlay->drawings[BITMAP_SCROLL].bitmap.width_px;
+	const struct strip *strip = &overlay->strips[slot];
+	float top = (float)view.y_px - roundf(overlay->scroll_px) +
+		    (float)(strip->index * overlay->strip_px);
+
+	if (strip->index >= 0)
+		add_clipped(list, BITMAP_STRIP + (int)slot,
+			    ease(overlay->page.alpha) * ease(strip->fade.alpha), view, top, dx, dy);
+}
+
+static void add_scroll_mark(struct list *list, struct overlay_rect view, float scroll_px,
+			    float most, float alpha, float dx, float dy)
+{
+	const struct overlay *overlay = list->overlay;
+	float width = (float)overlay->drawings[BITMAP_SCROLL].bitmap.width_px, height;
 
 	if (most <= 0)
 		return;
 	height = (float)view.height_px * (float)view.height_px / ((float)view.height_px + most);
 	add_rect(list, BITMAP_SCROLL, alpha, (float)(view.x_px + view.width_px) - 2 * width + dx,
-		 (float)view.y_px + overlay->scroll_px / most * ((float)view.height_px - height) +
-			 dy,
-		 width, height);
+		 (float)view.y_px + scroll_px / most * ((float)view.height_px - height) + dy, width,
+		 height);
 }
 
 static void add_page(struct list *list)
@@ -167,8 +174,47 @@ static void add_page(struct list *list)
 		add_rect(list, BITMAP_PAGE_FOOT, alpha, (float)view.x_px + dx,
 			 (float)(view.y_px + view.height_px) - foot_px + dy, (float)view.width_px,
 			 foot_px);
-	add_scroll_mark(list, view, alpha, dx, dy);
+	add_scroll_mark(list, view, overlay->scroll_px, (float)overlay_scroll_most(overlay), alpha,
+			dx, dy);
 	add_bitmap(list, BITMAP_PAGE_HEAD, alpha, (float)page.x_px + dx, (float)page.y_px + dy);
+}
+
+static void add_row(struct list *list, uint32_t slot, struct overlay_rect view, float alpha,
+		    float dx, float dy)
+{
+	const struct overlay *overlay = list->overlay;
+	const struct search_row *row = &overlay->search.rows[slot];
+	int count = overlay->search.found_count > 0 ? (int)overlay->search.found_count : 1;
+	float top = (float)view.y_px - roundf(overlay->search.scroll_px) +
+		    (float)(row->index * overlay_found_row_px(overlay));
+
+	if (row->fade.on && row->index < count)
+		add_clipped(list, BITMAP_ROW + (int)slot, alpha * ease(row->fade.alpha), view, top,
+			    dx, dy);
+}
+
+static void add_search(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	struct overlay_rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
+	struct overlay_rect key;
+	float alpha = ease(overlay->search.fade.alpha);
+	float slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
+	float dx = overlay_is_portrait(overlay) ? 0 : slide, dy = slide - dx;
+
+	add_rect(list, BITMAP_PAPER, alpha, (float)all.x_px + dx, (float)all.y_px + dy,
+		 (float)all.width_px, (float)all.height_px);
+	for (uint32_t slot = 0; slot < SEARCH_ROWS; slot++)
+		add_row(list, slot, rows, alpha, dx, dy);
+	add_scroll_mark(list, rows, overlay->search.scroll_px,
+			(float)overlay_found_scroll_most(overlay), alpha, dx, dy);
+	add_bitmap(list, BITMAP_SEARCH_HEAD, alpha, (float)all.x_px + dx, (float)all.y_px + dy);
+	add_bitmap(list, BITMAP_KEYBOARD, alpha, (float)all.x_px + dx,
+		   (float)(rows.y_px + rows.height_px) + dy);
+	if (overlay_pressed_rect(overlay, &key))
+		add_rect(list, BITMAP_KEY, alpha * 0.35f * overlay->search.press.alpha,
+			 (float)key.x_px + dx, (float)key.y_px + dy, (float)key.width_px,
+			 (float)key.height_px);
 }
 
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
@@ -187,6 +233,8 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	add_bitmap(&list, BITMAP_CARD, ease(overlay->card.alpha), (float)card.x_px,
 		   (float)card.y_px);
 	add_page(&list);
+	if (overlay->search.fade.alpha > 0)
+		add_search(&list);
 	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
 	add_bitmap(&list, BITMAP_QUESTION, ease(overlay->question.alpha), (float)question.x_px,
 		   (float)question.y_px);

@@ -40,6 +40,16 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
 
+	if (overlay->search.fade.on) {
+		struct overlay_rect search = overlay_search_rect(overlay);
+
+		/* Where that leaves a strip, or nothing, the model has the whole behind it. */
+		if (search.x_px > 0)
+			rect.width_px = search.x_px;
+		else if (search.y_px > 0)
+			rect.height_px = search.y_px;
+		return rect;
+	}
 	if (overlay->page_part >= 0 && overlay_is_portrait(overlay))
 		rect.height_px = overlay->height_px / 2;
 	else if (overlay->page_part >= 0)

@@ -6,10 +6,12 @@
 #include "ui/callout.h"
 #include "ui/card.h"
 #include "ui/chrome.h"
+#include "ui/keyboard.h"
 #include "ui/overlay.h"
 #include "ui/theme.h"
 
 enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
+enum { SEARCH_ROWS = 16, SEARCH_ROWS_A_FRAME = 2, SEARCH_QUERY_BYTES = 128 };
 
 enum bitmap_id {
 	BITMAP_LEADER,
@@ -23,8 +25,12 @@ enum bitmap_id {
 	BITMAP_PAGE_HEAD,
 	BITMAP_PAGE_FOOT, /* text fades out where there is more below */
 	BITMAP_SCROLL,
+	BITMAP_SEARCH_HEAD,
+	BITMAP_KEYBOARD,
+	BITMAP_KEY, /* over the one that was pressed */
 	BITMAP_STRIP,
-	BITMAP_LABEL = BITMAP_STRIP + STRIPS,
+	BITMAP_ROW = BITMAP_STRIP + STRIPS,
+	BITMAP_LABEL = BITMAP_ROW + SEARCH_ROWS,
 	BITMAP_COUNT = BITMAP_LABEL + LABELS,
 };
 
@@ -57,6 +63,25 @@ struct strip {
 	struct fade fade;
 };
 
+struct search_row {
+	int part, index; /* what is drawn on it; part -1: nothing yet */
+	bool stale;
+	struct fade fade;
+};
+
+struct search {
+	struct fade fade; /* on: it is open */
+	char query[SEARCH_QUERY_BYTES];
+	struct keyboard keyboard;
+	int pressed; /* the key that was pressed last, or -1 */
+	struct fade press;
+	uint32_t *found; /* owned; room for every part */
+	uint32_t found_count;
+	struct search_row rows[SEARCH_ROWS];
+	float scroll_px, scroll_px_per_s;
+	bool head_dirty, keyboard_dirty;
+};
+
 struct overlay {
 	int width_px, height_px;
 	struct picture_source pictures;
@@ -83,6 +108,7 @@ struct overlay {
 	struct strip strips[STRIPS];
 	int strip_px;
 	float scroll_px, scroll_px_per_s;
+	struct search search;
 
 	struct drawing drawings[BITMAP_COUNT];
 	int64_t then_ms; /* of the last update; 0: none yet */
@@ -114,6 +140,30 @@ void overlay_draw_strip(struct overlay *overlay, uint32_t slot);
 /* Width of a part's label. */
 int overlay_measure_label(const struct overlay *overlay, const char *title);
 int overlay_row_px(const struct overlay *overlay);
+
+/* Makes room for a new picture of that size; NULL where there is no memory. */
+cairo_t *overlay_begin(struct overlay *overlay, enum bitmap_id id, int width_px, int height_px);
+void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context);
+/* The control that closes a page or the search, at the origin. */
+void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int width_px,
+			int height_px);
+/* true: still on its way. */
+bool overlay_advance(struct fade *fade, int64_t step_ms);
+
+/* overlay_search.c */
+struct overlay_rect overlay_search_rect(const struct overlay *overlay); /* all of its paper */
+struct overlay_rect overlay_found_rect(const struct overlay *overlay);  /* the list */
+int overlay_found_row_px(const struct overlay *overlay);
+int overlay_found_scroll_most(const struct overlay *overlay);
+struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_px, float y_px);
+/* Other parts: nothing is found yet. -1: no memory. */
+must_check int overlay_search_parts(struct overlay *overlay, uint32_t count);
+void overlay_search_language(struct overlay *overlay);
+void overlay_search_picture(struct overlay *overlay, const char *name);
+bool overlay_update_search(struct overlay *overlay, int64_t step_ms);
+void overlay_draw_search_head(struct overlay *overlay);
+void overlay_draw_keyboard(struct overlay *overlay);
+bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out);
 
 /* Callouts into labels. true: some wait to be drawn. */
 void overlay_lay_out_callouts(struct overlay *overlay);

@@ -12,6 +12,8 @@ enum ui_string {
 	UI_STILL_THERE, /* asked of a visitor who does nothing */
 	UI_ANEW,        /* %d seconds */
 	UI_GO_ON,
+	UI_SEARCH,
+	UI_NOTHING_FOUND,
 	UI_STRING_COUNT,
 };
 

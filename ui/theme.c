@@ -89,6 +89,16 @@ bool theme_has_italics(const struct theme *theme)
 	return true;
 }
 
+bool theme_is_right_to_left(const struct theme *theme)
+{
+	static const char *const those[] = { "ar", "he", "fa", "ur" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(those); i++)
+		if (strncmp(theme->language, those[i], 2) == 0)
+			return true;
+	return false;
+}
+
 int theme_px(const struct theme *theme, float mm)
 {
 	int px = (int)lroundf(mm * theme->px_per_mm);

@@ -52,6 +52,9 @@ void theme_set_language(struct theme *theme, const char *language);
 /* Scripts that know no italics are not slanted: their emphasis is weight. */
 bool theme_has_italics(const struct theme *theme);
 
+/* Arabic, Hebrew, Persian, Urdu: lists and fields begin at the right. */
+bool theme_is_right_to_left(const struct theme *theme);
+
 int theme_px(const struct theme *theme, float mm); /* at least 1 */
 /* Of a panel of which nothing else is known: as a 20 cm tall one, never under 3.2. */
 float theme_guess_px_per_mm(int width_px, int height_px);

@@ -12,7 +12,7 @@ enum { S = 1000 };
 static struct {
 	int64_t now_ms;
 	int card, page, asked_s, flights, looks, redraws;
-	bool invites;
+	bool invites, searches;
 	char language[8];
 } world;
 
@@ -80,6 +80,18 @@ void overlay_show_card(struct overlay *overlay, int part)
 {
 	(void)overlay;
 	world.card = part;
+}
+
+bool overlay_searching(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.searches;
+}
+
+void overlay_show_search(struct overlay *overlay, bool on)
+{
+	(void)overlay;
+	world.searches = on;
 }
 
 void overlay_invite(struct overlay *overlay, bool on)
@@ -166,6 +178,13 @@ static void leaves_nothing_of_a_visitor_for_the_next(void **state)
 	after(15 * S);
 	CHECK(world.invites && world.page == -1 && world.asked_s == -1);
 	CHECK(strcmp(world.language, "km") == 0);
+	set_up(NULL);
+	touches(TOUCH_DOWN);
+	world.searches = true; /* a list is read as a page is */
+	after(179 * S);
+	CHECK(world.asked_s == -1 && world.searches);
+	after(16 * S);
+	CHECK(!world.searches && world.invites);
 	set_up(NULL);
 	kiosk.options.language = "ja"; /* the terminal's own */
 	after(60 * S);

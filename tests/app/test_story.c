@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "tests/check.h"
+#include "ui/overlay_state.h"
 
 enum { PICTURES = 50, PICTURES_KEPT = 48 };
 
@@ -228,6 +229,39 @@ static void falls_back_to_the_first_language(void **state)
 	finish_release(&release);
 }
 
+/* The letters as the overlay's own keyboard has them. */
+static void press(struct overlay *overlay, const char *letter)
+{
+	const struct keyboard *keyboard = &overlay->search.keyboard;
+
+	for (uint32_t i = 0; i < keyboard->key_count; i++)
+		if (strcmp(keyboard->keys[i].text, letter) == 0)
+			CHECK(overlay_press(overlay, (int)i));
+}
+
+static void a_query_lists_what_it_finds(void **state)
+{
+	struct release release;
+	struct story *story;
+	struct overlay *overlay;
+
+	(void)state;
+	make_release(&release);
+	story = begin(&release, NULL);
+	CHECK(give_page(story, &release) && give(story, &release, 0));
+	overlay = story_overlay(story);
+	overlay_show_search(overlay, true);
+	story_search(story); /* nothing typed: all stay */
+	CHECK(overlay->search.found_count == 3);
+	press(overlay, "d");
+	story_search(story);
+	CHECK(overlay->search.found_count == 1 && overlay->search.found[0] == 1);
+	story_set_language(story, "km"); /* what is typed is looked for again */
+	CHECK(overlay_searching(overlay) && overlay->search.found_count == 1);
+	story_destroy(story);
+	finish_release(&release);
+}
+
 static void a_point_belongs_to_the_smallest_region(void **state)
 {
 	const float in_both[3] = { 5, 0, 0 }, in_tower[3] = { -5, 0, 0 }, outside[3] = { 50, 0, 0 };
@@ -328,6 +362,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(asks_for_page_then_database_then_nothing),
 		IN_A_FOLDER(falls_back_to_the_first_language),
+		IN_A_FOLDER(a_query_lists_what_it_finds),
 		IN_A_FOLDER(a_point_belongs_to_the_smallest_region),
 		IN_A_FOLDER(does_not_ask_again_for_what_came_damaged),
 		IN_A_FOLDER(a_damaged_picture_is_not_asked_for_again),

@@ -57,10 +57,30 @@ static int64_t settle(int64_t *now_ms)
 	return most_us;
 }
 
+/* Opens the Khmer keyboard, the largest, and types; the worst frame of each. */
+static void measure_search(int64_t *now_ms, int64_t *open_us, int64_t *typed_us)
+{
+	overlay_language(overlay, "km");
+	settle(now_ms);
+	for (int i = 0; i < 5; i++) {
+		overlay_show_search(overlay, true);
+		*open_us = worst(*open_us, settle(now_ms));
+		for (uint32_t key = 0; key < 9; key++) {
+			const uint32_t found[] = { key, key + 7, key + 20, key + 3, key + 90 };
+
+			overlay_press(overlay, (int)key);
+			overlay_found(overlay, found, ARRAY_COUNT(found));
+			*typed_us = worst(*typed_us, settle(now_ms));
+		}
+		overlay_show_search(overlay, false);
+		settle(now_ms);
+	}
+}
+
 static void measure(struct bytes page)
 {
 	int64_t now_ms = 1000, start_us, turn_us = 0, turn_most_us = 0, open_most_us = 0;
-	int64_t update_most_us = 0, scroll_most_us = 0;
+	int64_t update_most_us = 0, scroll_most_us = 0, search_us = 0, typed_us = 0;
 
 	for (int i = 0; i < ROUNDS; i++) {
 		give_anchors((float)i * 0.01f);
@@ -81,13 +101,15 @@ static void measure(struct bytes page)
 		overlay_close_page(overlay);
 		settle(&now_ms);
 	}
+	measure_search(&now_ms, &search_us, &typed_us);
 	printf("{\"panel\": \"1920x1080\", \"parts\": %d, \"page_bytes\": %zu,\n"
 	       " \"turning_frame_ms\": %.2f, \"turning_frame_worst_ms\": %.2f,\n"
 	       " \"page_open_worst_ms\": %.2f, \"page_frame_worst_ms\": %.2f,"
-	       " \"scroll_frame_worst_ms\": %.2f}\n",
+	       " \"scroll_frame_worst_ms\": %.2f,\n"
+	       " \"search_open_worst_ms\": %.2f, \"letter_frame_worst_ms\": %.2f}\n",
 	       PARTS, page.size, (double)turn_us / ROUNDS / 1000, (double)turn_most_us / 1000,
 	       (double)open_most_us / 1000, (double)update_most_us / 1000,
-	       (double)scroll_most_us / 1000);
+	       (double)scroll_most_us / 1000, (double)search_us / 1000, (double)typed_us / 1000);
 }
 
 int main(int argc, char **argv)

@@ -37,7 +37,7 @@ for program in content kiosk fetch health; do
 done
 says 0 '^Examples' build/gopura-kiosk --help
 says 0 '^Examples' build/gopura-fetch --help
-for command in build import temple publish verify inspect keys hierarchy render sample; do
+for command in annotations build import temple publish verify inspect keys hierarchy render sample; do
 	says 0 "^(example: +| +)gopura-content $command " build/gopura-content "$command" --help
 done
 

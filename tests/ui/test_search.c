@@ -1,0 +1,453 @@
+/* The search on every panel and in every language that has a keyboard: keys are large enough, say
+ * what they show, and what is found can be read and tapped. With GOPURA_PICTURES=DIR set it leaves
+ * its screens there. */
+#include "ui/overlay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+#include "ui/overlay_state.h"
+
+enum { PARTS = 12, LANGUAGES = 8 };
+
+static const char *const languages[LANGUAGES] = { "en", "fr", "km", "ja", "ar", "th", "hi", "de" };
+static const char *const titles[LANGUAGES] = { "The central tower", "La tour centrale",
+					       "ប្រាង្គកណ្តាល",        "中央塔",
+					       "البرج المركزي",     "ปรางค์ประธาน",
+					       "मध्य शिखर",          "Der Hauptturm" };
+static const char *const captions[LANGUAGES] = {
+	"The mountain at the middle of the world, in stone.",
+	"La montagne au milieu du monde, en pierre.",
+	"ភ្នំកណ្តាលពិភពលោក ធ្វើពីថ្ម។",
+	"世界の中心の山を、石でかたどる。",
+	"الجبل في وسط العالم، من الحجر.",
+	"ภูเขากลางโลกที่สร้างด้วยหิน",
+	"संसार के मध्य का पर्वत, पत्थर में।",
+	"Der Berg in der Mitte der Welt, aus Stein.",
+};
+
+static uint8_t pixels[8 * 8 * 4];
+static struct picture thumbnail = { 8, 8, pixels };
+static bool arrived = true;
+static uint32_t asked;
+
+static bool get_picture(void *data, const char *name, struct overlay_picture *out)
+{
+	(void)data;
+	asked++;
+	*out = (struct overlay_picture){ arrived ? &thumbnail : NULL, 8, 8 };
+	return strcmp(name, "pictures/a.png") == 0;
+}
+
+static void give_parts(struct overlay *overlay, int language)
+{
+	struct overlay_part parts[PARTS];
+
+	for (int i = 0; i < PARTS; i++)
+		parts[i] = (struct overlay_part){ titles[language],
+						  i % 3 == 2 ? "" : captions[language],
+						  i % 4 == 3 ? "" : "pictures/a.png", true };
+	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
+}
+
+static struct overlay *open_overlay(int width_px, int height_px)
+{
+	const struct overlay_options options = { .width_px = width_px,
+						 .height_px = height_px,
+						 .languages = languages,
+						 .language_count = LANGUAGES,
+						 .picture = get_picture };
+	struct overlay *overlay;
+
+	for (size_t i = 0; i < sizeof(pixels); i++)
+		pixels[i] = (uint8_t)(i % 4 == 3 ? 255 : 100 + i % 97);
+	arrived = true;
+	CHECK(overlay_create(&overlay, &options) == 0);
+	give_parts(overlay, 0);
+	return overlay;
+}
+
+static void settle(struct overlay *overlay)
+{
+	static int64_t now_ms = 1000;
+	int frames = 0;
+
+	while (overlay_update(overlay, now_ms += 20))
+		CHECK(++frames < 500);
+}
+
+static struct bitmap screen(struct overlay *overlay, const char *name)
+{
+	const char *folder = getenv("GOPURA_PICTURES");
+	struct bitmap bitmap;
+	cairo_t *context;
+	char path[300];
+
+	settle(overlay);
+	CHECK(bitmap_init(&bitmap, overlay->width_px, overlay->height_px) == 0);
+	context = bitmap_begin(&bitmap);
+	cairo_set_source_rgb(context, 0.55, 0.52, 0.47);
+	cairo_paint(context);
+	overlay_paint(overlay, context);
+	bitmap_end(&bitmap, context);
+	if (folder) {
+		snprintf(path, sizeof(path), "%s/search-%s-%dx%d.png", folder, name,
+			 overlay->width_px, overlay->height_px);
+		cairo_surface_write_to_png(bitmap.surface, path);
+	}
+	return bitmap;
+}
+
+/* The middle of a key, on the panel. */
+static struct overlay_action tap_key(const struct overlay *overlay, int key)
+{
+	const struct keyboard_key *k = &overlay->search.keyboard.keys[key];
+	struct overlay_rect all = overlay_search_rect(overlay);
+	float top = (float)(all.y_px + all.height_px - overlay->search.keyboard.height_px);
+
+	return overlay_tap(overlay, (float)(all.x_px + k->x_px) + (float)k->width_px / 2,
+			   top + (float)k->y_px + (float)k->height_px / 2);
+}
+
+/* Taps the key of that letter as the app does; false: there is none. */
+static bool type(struct overlay *overlay, const char *letter)
+{
+	for (int i = 0; i < (int)overlay->search.keyboard.key_count; i++) {
+		const struct keyboard_key *key = &overlay->search.keyboard.keys[i];
+		struct overlay_action action;
+
+		if (key->kind != KEY_TEXT || strcmp(key->text, letter) != 0)
+			continue;
+		action = tap_key(overlay, i);
+		CHECK(action.kind == OVERLAY_KEY && action.key == i);
+		return overlay_press(overlay, action.key);
+	}
+	return false;
+}
+
+static int find_key(const struct overlay *overlay, enum keyboard_key_kind kind)
+{
+	for (int i = 0; i < (int)overlay->search.keyboard.key_count; i++)
+		if (overlay->search.keyboard.keys[i].kind == kind)
+			return i;
+	return -1;
+}
+
+static const int sizes[][2] = { { 1920, 1080 }, { 1080, 1920 }, { 1280, 720 }, { 640, 360 },
+				{ 360, 640 },   { 3840, 2160 }, { 800, 600 },  { 320, 320 } };
+
+/* Whether it all lies on the panel, beside one another, and keys are as large as a finger. */
+static void check_places(const struct overlay *overlay)
+{
+	struct overlay_rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
+	const struct keyboard *keyboard = &overlay->search.keyboard;
+	struct overlay_rect bar;
+	int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
+
+	CHECK(all.x_px >= 0 && all.x_px + all.width_px <= overlay->width_px);
+	CHECK(all.y_px >= 0 && all.y_px + all.height_px <= overlay->height_px);
+	CHECK(rows.height_px >= theme_px(&overlay->theme, 17.9f));
+	bar = overlay_chrome_rect(overlay);
+	CHECK(bar.x_px + bar.width_px <= overlay->width_px || overlay->width_px == 320);
+	CHECK(bar.x_px + bar.width_px <= all.x_px || bar.y_px >= all.y_px + all.height_px);
+	for (uint32_t i = 0; i < keyboard->key_count; i++) {
+		const struct keyboard_key *key = &keyboard->keys[i];
+
+		CHECK(key->x_px >= 0 && key->x_px + key->width_px <= keyboard->width_px);
+		CHECK(key->y_px >= 0 && key->y_px + key->height_px <= keyboard->height_px);
+		CHECK(key->width_px >= target_px);
+		CHECK(key->height_px >= target_px || overlay->width_px == 320);
+		CHECK(keyboard_key_at(keyboard, (float)key->x_px + 1, (float)key->y_px + 1) ==
+		      (int)i);
+	}
+}
+
+static void shows_the_search_on_every_panel(void **state)
+{
+	(void)state;
+	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
+		struct overlay *overlay = open_overlay(sizes[s][0], sizes[s][1]);
+
+		for (int language = 0; language < LANGUAGES; language++) {
+			struct bitmap bitmap;
+
+			overlay_language(overlay, languages[language]);
+			give_parts(overlay, language);
+			overlay_show_search(overlay, true);
+			bitmap = screen(overlay, languages[language]);
+			bitmap_finish(&bitmap);
+			check_places(overlay);
+			overlay_show_search(overlay, false);
+			settle(overlay);
+		}
+		overlay_destroy(overlay);
+	}
+}
+
+/* No key without a glyph: what cannot be drawn cannot be found on the keyboard. */
+static void every_key_can_be_read(void **state)
+{
+	struct overlay *overlay = open_overlay(1920, 1080);
+
+	(void)state;
+	for (int language = 0; language < LANGUAGES; language++) {
+		overlay_language(overlay, languages[language]);
+		overlay_show_search(overlay, true);
+		for (uint32_t i = 0; i < overlay->search.keyboard.key_count; i++) {
+			PangoLayout *layout =
+				theme_layout(&overlay->theme, TEXT_BODY,
+					     overlay->search.keyboard.keys[i].text, -1);
+
+			CHECK(pango_layout_get_unknown_glyphs_count(layout) == 0);
+			g_object_unref(layout);
+		}
+		CHECK((find_key(overlay, KEY_LATIN) >= 0) == (language >= 2 && language < 7));
+		CHECK(find_key(overlay, KEY_SPACE) >= 0 && find_key(overlay, KEY_BACKSPACE) >= 0);
+		overlay_show_search(overlay, false);
+	}
+	overlay_destroy(overlay);
+}
+
+static void keys_write_into_the_field(void **state)
+{
+	static const struct {
+		const char *language, *letters[8], *text;
+	} cases[] = {
+		{ "en", { "n", "a", "g", "a" }, "naga" },
+		{ "km", { "ន", "ា", "គ" }, "នាគ" },
+		{ "km", { "ប", "្", "រ" }, "ប្រ" },
+		{ "ja", { "か", "\xe3\x82\x99", "は", "\xe3\x82\x9a" }, "がぱ" },
+		{ "ar", { "ب", "ر", "ج" }, "برج" },
+		{ "th", { "น", "า", "ค" }, "นาค" },
+		{ "hi", { "न", "ा", "ग" }, "नाग" },
+		{ "de", { "t", "u", "r", "m" }, "turm" },
+	};
+	struct overlay *overlay = open_overlay(1920, 1080);
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		overlay_language(overlay, cases[i].language);
+		overlay_show_search(overlay, true);
+		CHECK(strcmp(overlay_query(overlay), "") == 0);
+		for (size_t k = 0; k < 8 && cases[i].letters[k]; k++)
+			CHECK(type(overlay, cases[i].letters[k]));
+		if (strcmp(overlay_query(overlay), cases[i].text) != 0)
+			fail_msg("%s: \"%s\"", cases[i].language, overlay_query(overlay));
+		overlay_show_search(overlay, false);
+	}
+	overlay_destroy(overlay);
+}
+
+static void a_letter_is_taken_back_and_the_field_emptied(void **state)
+{
+	struct overlay *overlay = open_overlay(1920, 1080);
+	struct overlay_rect all, rows;
+	struct overlay_action action = { 0 };
+	char before[SEARCH_QUERY_BYTES];
+
+	(void)state;
+	overlay_language(overlay, "km");
+	overlay_show_search(overlay, true);
+	CHECK(!overlay_press(overlay, find_key(overlay, KEY_BACKSPACE))); /* nothing to take */
+	CHECK(!overlay_press(overlay, find_key(overlay, KEY_SPACE)));     /* nothing to part */
+	CHECK(type(overlay, "ន") && type(overlay, "ា"));
+	CHECK(overlay_press(overlay, find_key(overlay, KEY_BACKSPACE)));
+	CHECK(strcmp(overlay_query(overlay), "ន") == 0);
+	CHECK(overlay_press(overlay, find_key(overlay, KEY_SPACE)));
+	CHECK(!overlay_press(overlay, find_key(overlay, KEY_SPACE))); /* one is enough */
+
+	CHECK(!overlay_press(overlay, find_key(overlay, KEY_LATIN)));
+	CHECK(overlay->search.keyboard.latin && type(overlay, "x"));
+	CHECK(strcmp(overlay_query(overlay), "ន x") == 0);
+	CHECK(!overlay_press(overlay, find_key(overlay, KEY_LATIN)) &&
+	      !overlay->search.keyboard.latin);
+
+	while (type(overlay, "ក")) /* until it is full */
+		snprintf(before, sizeof(before), "%s", overlay_query(overlay));
+	CHECK(strcmp(before, overlay_query(overlay)) == 0);
+	CHECK(strlen(before) > SEARCH_QUERY_BYTES - 5);
+
+	rows = overlay_found_rect(overlay);
+	all = overlay_search_rect(overlay);
+	for (int x = all.x_px; x < all.x_px + all.width_px && action.kind != OVERLAY_KEY; x += 4)
+		action = overlay_tap(overlay, (float)x, (float)rows.y_px - 20);
+	CHECK(action.kind == OVERLAY_KEY && action.key == OVERLAY_KEY_CLEAR);
+	CHECK(overlay_press(overlay, action.key) && !*overlay_query(overlay));
+	CHECK(overlay->search.found_count == PARTS); /* all again */
+	overlay_destroy(overlay);
+}
+
+static void what_is_found_is_listed_and_tapped(void **state)
+{
+	static const uint32_t found[] = { 7, 2, 4, 99 };
+	struct overlay *overlay = open_overlay(1920, 1080);
+	struct overlay_rect rows;
+	struct overlay_action action;
+	struct bitmap bitmap;
+
+	(void)state;
+	overlay_show_search(overlay, true);
+	settle(overlay);
+	CHECK(overlay_searching(overlay) && overlay->search.found_count == PARTS);
+	CHECK(overlay_scene_rect(overlay).width_px == 960);
+	CHECK(type(overlay, "t"));
+	overlay_found(overlay, found, 4); /* 99 is no part */
+	bitmap = screen(overlay, "found");
+	bitmap_finish(&bitmap);
+	rows = overlay_found_rect(overlay);
+	for (int i = 0; i < 3; i++) {
+		action = overlay_tap(overlay, (float)rows.x_px + 50,
+				     (float)(rows.y_px + i * overlay_found_row_px(overlay)) + 9);
+		CHECK(action.kind == OVERLAY_FOUND && action.part == (int)found[i]);
+	}
+	action = overlay_tap(overlay, (float)rows.x_px + 50,
+			     (float)(rows.y_px + 3 * overlay_found_row_px(overlay)) + 9);
+	CHECK(action.kind == OVERLAY_SWALLOWED); /* below the last */
+	CHECK(overlay_covers(overlay, (float)rows.x_px + 5, (float)rows.y_px + 5));
+	action = overlay_tap(overlay, (float)(rows.x_px + rows.width_px) - 20, 20);
+	CHECK(action.kind == OVERLAY_SEARCH);
+
+	overlay_found(overlay, NULL, 0);
+	bitmap = screen(overlay, "nothing");
+	bitmap_finish(&bitmap);
+	CHECK(overlay->search.rows[0].part == -2); /* it says so */
+	CHECK(overlay_tap(overlay, (float)rows.x_px + 50, (float)rows.y_px + 9).kind ==
+	      OVERLAY_SWALLOWED);
+	overlay_destroy(overlay);
+}
+
+/* Right-to-left: pictures and text stand at the right, and the control that empties at the left. */
+static void arabic_begins_at_the_right(void **state)
+{
+	struct overlay *overlay = open_overlay(1920, 1080);
+	struct overlay_rect all;
+	struct bitmap bitmap;
+	int left = 0, right = 0;
+
+	(void)state;
+	overlay_language(overlay, "ar");
+	give_parts(overlay, 4);
+	overlay_show_search(overlay, true);
+	CHECK(type(overlay, "ب") && type(overlay, "ر"));
+	bitmap = screen(overlay, "ar-typed");
+	all = overlay_search_rect(overlay);
+	CHECK(overlay_tap(overlay, (float)all.x_px + 45, 40).kind == OVERLAY_KEY);
+	for (int y = 10; y < 60; y++) { /* ink in either half of the field */
+		const uint32_t *line =
+			(const uint32_t *)(const void *)(bitmap.pixels +
+							 (size_t)y * bitmap.stride_bytes);
+
+		for (int x = all.x_px + 60; x < all.x_px + 725; x++)
+			if ((line[x] & 0xff) < 0x60)
+				*(x < all.x_px + 390 ? &left : &right) += 1;
+	}
+	CHECK(left == 0 && right > 50);
+	bitmap_finish(&bitmap);
+	overlay_destroy(overlay);
+}
+
+static void the_list_scrolls_and_stays_inside(void **state)
+{
+	struct overlay *overlay = open_overlay(1280, 720);
+	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	struct overlay_rect rows;
+	struct overlay_action action;
+	uint32_t count;
+
+	(void)state;
+	overlay_show_search(overlay, true);
+	settle(overlay);
+	rows = overlay_found_rect(overlay);
+	CHECK(overlay_found_scroll_most(overlay) > 0);
+	overlay_fling(overlay, -100000);
+	settle(overlay);
+	CHECK(overlay->search.scroll_px == (float)overlay_found_scroll_most(overlay));
+	action = overlay_tap(overlay, (float)rows.x_px + 40,
+			     (float)(rows.y_px + rows.height_px) - 4);
+	CHECK(action.kind == OVERLAY_FOUND && action.part == PARTS - 1);
+	overlay_scroll(overlay, 15);
+	settle(overlay);
+	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	for (uint32_t i = 0; i < count; i++)
+		if (layers[i].bitmap >= BITMAP_ROW && layers[i].bitmap < BITMAP_ROW + SEARCH_ROWS)
+			CHECK(layers[i].corners_px[0][1] >= (float)rows.y_px &&
+			      layers[i].corners_px[2][1] <= (float)(rows.y_px + rows.height_px));
+	overlay_scroll(overlay, 100000);
+	CHECK(overlay->search.scroll_px == 0);
+	overlay_destroy(overlay);
+}
+
+static void page_card_and_search_take_turns(void **state)
+{
+	static const char page[] = "<p>A page.</p>";
+	struct overlay *overlay = open_overlay(1280, 720);
+	struct overlay_rect bar;
+	struct overlay_action action = { 0 };
+
+	(void)state;
+	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)page, strlen(page) },
+				"") == 0);
+	bar = overlay_chrome_rect(overlay);
+	for (int x = bar.x_px; x < bar.x_px + bar.width_px && action.kind != OVERLAY_SEARCH; x += 9)
+		action = overlay_tap(overlay, (float)x, (float)bar.y_px + 9);
+	CHECK(action.kind == OVERLAY_SEARCH);
+	overlay_show_search(overlay, true);
+	CHECK(overlay_page(overlay) == -1 && overlay_searching(overlay));
+	overlay_show_card(overlay, 1); /* a callout beside it */
+	CHECK(overlay_searching(overlay));
+	CHECK(overlay_show_page(overlay, 1, (struct bytes){ (const uint8_t *)page, strlen(page) },
+				"") == 0);
+	CHECK(!overlay_searching(overlay));
+	settle(overlay);
+	overlay_show_search(overlay, true);
+	CHECK(overlay_parts(overlay, NULL, 0) == 0); /* another release */
+	CHECK(!overlay_searching(overlay));
+	overlay_show_search(overlay, true); /* nothing to find */
+	CHECK(!overlay_searching(overlay));
+	settle(overlay);
+	overlay_destroy(overlay);
+}
+
+/* A picture that comes late is drawn into its row, which stays where it is. */
+static void a_late_thumbnail_comes_into_its_row(void **state)
+{
+	struct overlay *overlay = open_overlay(1280, 720);
+	struct bitmap before, after;
+
+	(void)state;
+	arrived = false;
+	asked = 0;
+	overlay_show_search(overlay, true);
+	before = screen(overlay, "waiting");
+	CHECK(asked > 0);
+	arrived = true;
+	overlay_search_picture(overlay, "pictures/other.png");
+	CHECK(!overlay_update(overlay, 100000000));
+	overlay_picture_arrived(overlay, "pictures/a.png");
+	after = screen(overlay, "arrived");
+	CHECK(memcmp(before.pixels, after.pixels,
+		     (size_t)before.stride_bytes * (size_t)before.height_px) != 0);
+	bitmap_finish(&before);
+	bitmap_finish(&after);
+	overlay_destroy(overlay);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(shows_the_search_on_every_panel),
+		cmocka_unit_test(every_key_can_be_read),
+		cmocka_unit_test(keys_write_into_the_field),
+		cmocka_unit_test(a_letter_is_taken_back_and_the_field_emptied),
+		cmocka_unit_test(what_is_found_is_listed_and_tapped),
+		cmocka_unit_test(arabic_begins_at_the_right),
+		cmocka_unit_test(the_list_scrolls_and_stays_inside),
+		cmocka_unit_test(page_card_and_search_take_turns),
+		cmocka_unit_test(a_late_thumbnail_comes_into_its_row),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,261 @@
+#include "ui/keyboard.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "ui/icon.h"
+
+#define ROW_MM     11.0f
+#define COLUMN_MM  14.0f
+#define KEY_GAP_MM 0.5f /* on each side of what is drawn of a key */
+
+static const char latin[] = "q w e r t y u i o p\na s d f g h j k l\nz x c v b n m";
+
+/* Rows as they stand on the glass, from the left. Kana go from the right, as in a table of them. */
+static const struct {
+	const char *language, *rows;
+} layouts[] = {
+	{ "en", latin },
+	{ "fr", "a z e r t y u i o p\nq s d f g h j k l m\nw x c v b n '" },
+	{ "km", "ក ខ គ ឃ ង ច ឆ ជ ឈ ញ ដ\nឋ ឌ ឍ ណ ត ថ ទ ធ ន ប ផ\nព ភ ម យ រ ល វ ស ហ ឡ អ\n"
+		"្ ា ិ ី ឹ ឺ ុ ូ ួ ើ ឿ\nៀ េ ែ ៃ ោ ៅ ំ ះ ់ ៉ ៊\nឥ ឧ ឪ ឫ ឬ ឭ ឮ ឯ ឱ ័ ៍" },
+	{ "ja", "ー わ ら や ま は な た さ か あ\n\xe3\x82\x99 を り ゃ み ひ に ち し き い\n"
+		"\xe3\x82\x9a ん る ゆ む ふ ぬ つ す く う\nぁ ょ れ ゅ め へ ね て せ け え\n"
+		"ぃ っ ろ よ も ほ の と そ こ お" },
+	{ "ar", "ض ص ث ق ف غ ع ه خ ح ج\nش س ي ب ل ا ت ن م ك ط\nذ ئ ء ؤ ر ى ة و ز ظ د" },
+	{ "th", "ก ข ฃ ค ฅ ฆ ง จ ฉ ช ซ\nฌ ญ ฎ ฏ ฐ ฑ ฒ ณ ด ต ถ\nท ธ น บ ป ผ ฝ พ ฟ ภ ม\n"
+		"ย ร ล ว ศ ษ ส ห ฬ อ ฮ\nะ ั า ำ ิ ี ึ ื ุ ู เ\nแ โ ใ ไ ็ ่ ้ ๊ ๋ ์ ๆ" },
+	{ "hi", "अ आ इ ई उ ऊ ऋ ए ऐ ओ औ\nा ि ी ु ू ृ े ै ो ौ ्\nक ख ग घ ङ च छ ज झ ञ ट\n"
+		"ठ ड ढ ण त थ द ध न प फ\nब भ म य र ल व श ष स ह\nं ः ँ ़ ळ" },
+};
+
+/* ---- layout ---- */
+
+static const char *find_rows(const char *language)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(layouts); i++)
+		if (strncmp(layouts[i].language, language, 2) == 0)
+			return layouts[i].rows;
+	return latin;
+}
+
+static bool is_latin(const char *rows)
+{
+	return (unsigned char)rows[0] < 0x80;
+}
+
+/* The longest row. */
+static int count_columns(const char *rows)
+{
+	int most = 0, count = 1;
+
+	for (const char *p = rows; *p; p++) {
+		count = *p == '\n' ? 1 : count + (*p == ' ');
+		if (count > most)
+			most = count;
+	}
+	return most;
+}
+
+static struct keyboard_key *add(struct keyboard *keyboard, enum keyboard_key_kind kind)
+{
+	struct keyboard_key *key = &keyboard->keys[keyboard->key_count++];
+
+	*key = (struct keyboard_key){ .kind = kind };
+	return key;
+}
+
+/* Letters into rows of at most `columns`, in cells; y_px is the row. Returns how many rows. */
+static int place_letters(struct keyboard *keyboard, const char *rows, int columns)
+{
+	int row = 0, column = 0;
+
+	while (*rows) {
+		size_t size = strcspn(rows, " \n");
+		struct keyboard_key *key;
+
+		if (column == columns) {
+			row++;
+			column = 0;
+		}
+		key = add(keyboard, KEY_TEXT);
+		snprintf(key->text, sizeof(key->text), "%.*s", (int)size, rows);
+		key->x_px = column++;
+		key->y_px = row;
+		rows += size;
+		if (*rows == '\n') {
+			row++;
+			column = 0;
+		}
+		rows += *rows != 0;
+	}
+	return row + 1;
+}
+
+/* Cells into pixels, each row in the middle. */
+static void place_cells(struct keyboard *keyboard, int column_px, int row_px)
+{
+	for (uint32_t first = 0; first < keyboard->key_count;) {
+		uint32_t end = first;
+		int left_px;
+
+		while (end < keyboard->key_count &&
+		       keyboard->keys[end].y_px == keyboard->keys[first].y_px)
+			end++;
+		left_px = (keyboard->width_px - (int)(end - first) * column_px) / 2;
+		for (; first < end; first++) {
+			struct keyboard_key *key = &keyboard->keys[first];
+
+			key->x_px = left_px + key->x_px * column_px;
+			key->width_px = column_px;
+			key->height_px = row_px;
+		}
+	}
+	for (uint32_t i = 0; i < keyboard->key_count; i++)
+		keyboard->keys[i].y_px *= row_px;
+}
+
+/* The other letters, a space, and the key that takes a letter back. */
+static void place_bottom(struct keyboard *keyboard, int y_px, int row_px, bool has_latin,
+			 int column_px)
+{
+	int side_px = 2 * column_px, space_px = 5 * column_px, x_px;
+
+	if (2 * side_px + space_px > keyboard->width_px)
+		space_px = keyboard->width_px - 2 * side_px;
+	x_px = (keyboard->width_px - 2 * side_px - space_px) / 2;
+	if (has_latin)
+		*add(keyboard, KEY_LATIN) =
+			(struct keyboard_key){ KEY_LATIN, "", x_px, y_px, side_px, row_px };
+	x_px += has_latin ? side_px : side_px / 2;
+	*add(keyboard, KEY_SPACE) =
+		(struct keyboard_key){ KEY_SPACE, "", x_px, y_px, space_px, row_px };
+	*add(keyboard, KEY_BACKSPACE) =
+		(struct keyboard_key){ KEY_BACKSPACE, "", x_px + space_px, y_px, side_px, row_px };
+}
+
+void keyboard_layout(struct keyboard *out, const struct theme *theme, const char *language,
+		     bool use_latin, int width_px, int most_height_px)
+{
+	const char *own = find_rows(language), *rows = use_latin ? latin : own;
+	int target_px = theme_px(theme, THEME_TARGET_MM), columns = count_columns(rows);
+	int column_px, row_px, row_count;
+
+	*out = (struct keyboard){ .width_px = width_px, .latin = use_latin };
+	if (columns * target_px > width_px)
+		columns = width_px / target_px > 4 ? width_px / target_px : 4;
+	column_px = width_px / columns;
+	if (column_px > theme_px(theme, COLUMN_MM))
+		column_px = theme_px(theme, COLUMN_MM);
+	row_count = place_letters(out, rows, columns) + 1;
+	row_px = theme_px(theme, ROW_MM);
+	if (row_px * row_count > most_height_px)
+		row_px = most_height_px / row_count > 1 ? most_height_px / row_count : 1;
+	place_cells(out, column_px, row_px);
+	place_bottom(out, (row_count - 1) * row_px, row_px, !is_latin(own), column_px);
+	out->height_px = row_count * row_px;
+}
+
+int keyboard_key_at(const struct keyboard *keyboard, float x_px, float y_px)
+{
+	for (uint32_t i = 0; i < keyboard->key_count; i++) {
+		const struct keyboard_key *key = &keyboard->keys[i];
+
+		if (x_px >= (float)key->x_px && x_px < (float)(key->x_px + key->width_px) &&
+		    y_px >= (float)key->y_px && y_px < (float)(key->y_px + key->height_px))
+			return (int)i;
+	}
+	return -1;
+}
+
+/* ---- drawing ---- */
+
+/* A mark alone stands on a circle of dots; the two of kana have signs of their own. */
+static void label_of(const struct keyboard *keyboard, const struct keyboard_key *key, char *label,
+		     size_t label_bytes)
+{
+	gunichar c = g_utf8_get_char(key->text);
+
+	if (key->kind == KEY_LATIN)
+		snprintf(label, label_bytes, "%s", keyboard->latin ? "← abc" : "abc");
+	else if (c == 0x3099 || c == 0x309a)
+		snprintf(label, label_bytes, "%s", c == 0x3099 ? "゛" : "゜");
+	else
+		snprintf(label, label_bytes, "%s%s", g_unichar_ismark(c) ? "◌" : "", key->text);
+}
+
+static void draw_key(cairo_t *context, const struct keyboard *keyboard,
+		     const struct keyboard_key *key, const struct theme *theme)
+{
+	double gap = theme_px(theme, KEY_GAP_MM), x = key->x_px + key->width_px / 2.0;
+	double y = key->y_px + key->height_px / 2.0;
+	PangoLayout *layout;
+	char label[16];
+	int width_px, height_px;
+
+	theme_rounded(context, key->x_px + gap, key->y_px + gap, key->width_px - 2 * gap,
+		      key->height_px - 2 * gap, theme_px(theme, THEME_RADIUS_MM));
+	theme_set_source(context, theme_paper, 1);
+	cairo_fill(context);
+	theme_set_source(context, theme_ink, 1);
+	if (key->kind == KEY_SPACE || key->kind == KEY_BACKSPACE) {
+		icon_draw(context, key->kind == KEY_SPACE ? ICON_SPACE : ICON_BACKSPACE, x, y,
+			  theme_px(theme, 4.2f));
+		return;
+	}
+	label_of(keyboard, key, label, sizeof(label));
+	layout = theme_layout(theme, key->kind == KEY_TEXT ? TEXT_BODY : TEXT_BUTTON, label, -1);
+	pango_layout_get_pixel_size(layout, &width_px, &height_px);
+	cairo_move_to(context, x - width_px / 2.0, y - height_px / 2.0);
+	pango_cairo_show_layout(context, layout);
+	g_object_unref(layout);
+}
+
+int keyboard_draw(struct bitmap *out, const struct keyboard *keyboard, const struct theme *theme)
+{
+	cairo_t *context;
+	int rc = bitmap_init(out, keyboard->width_px, keyboard->height_px);
+
+	if (rc < 0)
+		return rc;
+	context = bitmap_begin(out);
+	theme_set_source(context, theme_line, 1);
+	cairo_paint(context);
+	for (uint32_t i = 0; i < keyboard->key_count; i++)
+		draw_key(context, keyboard, &keyboard->keys[i], theme);
+	bitmap_end(out, context);
+	return 0;
+}
+
+/* ---- typing ---- */
+
+bool keyboard_type(const struct keyboard_key *key, char *text, size_t text_bytes)
+{
+	size_t size = strlen(text);
+	char *typed, *composed;
+	bool fits;
+
+	switch (key->kind) {
+	case KEY_LATIN:
+		return false;
+	case KEY_BACKSPACE:
+		if (size == 0)
+			return false;
+		*g_utf8_find_prev_char(text, text + size) = 0;
+		return true;
+	case KEY_SPACE:
+		if (size == 0 || text[size - 1] == ' ')
+			return false; /* words are parted once */
+		break;
+	case KEY_TEXT:
+		break;
+	}
+	typed = g_strconcat(text, key->kind == KEY_SPACE ? " " : key->text, NULL);
+	composed = g_utf8_normalize(typed, -1, G_NORMALIZE_NFC);
+	fits = composed && strlen(composed) < text_bytes;
+	if (fits)
+		snprintf(text, text_bytes, "%s", composed);
+	g_free(composed);
+	g_free(typed);
+	return fits;
+}
