@@ -115,6 +115,17 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 	show_card(kiosk, part);
 }
 
+/* To the part's page; to one that has none on the model, beside the page that is read. */
+static void follow_link(struct kiosk *kiosk, int part)
+{
+	if (part >= 0 && !info_part(story_info(kiosk->shown.story), (uint32_t)part)->has_page) {
+		show_card(kiosk, part);
+		fly_to_part(kiosk, (uint32_t)part);
+		return;
+	}
+	open_page(kiosk, part);
+}
+
 /* What is typed is nobody's business: a number is said, for whoever tests keyboards. */
 static void press_key(struct kiosk *kiosk, int key)
 {
@@ -150,7 +161,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		story_set_language(kiosk->shown.story, action->language);
 		break;
 	case OVERLAY_LINK:
-		open_page(kiosk, info_find(story_info(kiosk->shown.story), action->link));
+		follow_link(kiosk, info_find(story_info(kiosk->shown.story), action->link));
 		break;
 	case OVERLAY_HOME:
 		overlay_close_page(overlay);

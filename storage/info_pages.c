@@ -84,19 +84,27 @@ static int check_image(struct page_check *check, xmlNode *node)
 static void check_link(struct page_check *check, xmlNode *node)
 {
 	char *href = (char *)xmlGetProp(node, BAD_CAST "href");
+	bool to_page = href && strncmp(href, "page:", 5) == 0;
+	bool to_part = href && strncmp(href, "part:", 5) == 0;
+	int part = to_page || to_part ? content_find_part(check->content, href + 5) : -1;
 	unsigned line = node_line(node);
 
 	if (!href)
 		content_complain(check->content, true, check->file, line,
 				 "<a> without href: write href=\"part:ID\", or remove it");
-	else if (strncmp(href, "part:", 5) != 0)
+	else if (!to_page && !to_part)
 		content_complain(check->content, true, check->file, line,
 				 "link to \"%.80s\": a kiosk leads nowhere outside; link to "
-				 "\"part:ID\" or write the address as text",
+				 "\"part:ID\" or \"page:ID\", or write the address as text",
 				 href);
-	else if (content_find_part(check->content, href + 5) < 0)
+	else if (part < 0)
 		content_complain(check->content, true, check->file, line,
 				 "link to \"%.80s\": no part has that id; see parts.json", href);
+	else if (to_page && check->content->parts[part].without_page)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": that part has no page; write \"part:%.64s\", "
+				 "which shows it on the model",
+				 href, href + 5);
 	xmlFree(href);
 }
 

@@ -1,6 +1,6 @@
 /* A page's HTML into a flat list of blocks to draw one below the other. libxml2 reads the HTML and
  * forgives; what we do not draw contributes its text, scripts and styles contribute nothing. Only
- * links to parts ("part:ID") are links. */
+ * links to parts and their pages ("part:ID", "page:ID") are links. */
 #ifndef GOPURA_UI_HTML_H
 #define GOPURA_UI_HTML_H
 

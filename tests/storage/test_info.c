@@ -175,6 +175,9 @@ static void names_the_line_of_a_bad_page(void **state)
 	} cases[] = {
 		{ "<p>x\n<a href=\"https://example.org\">out</a></p>", "leads nowhere outside", 2 },
 		{ "<p>x</p>\n\n<p><a href=\"part:none\">y</a></p>", "no part has that id", 3 },
+		{ "<p>x</p>\n<a href=\"page:none\">y</a>", "no part has that id", 2 },
+		{ "<p>x</p>\n<a href=\"page:naga\">y</a>", "has no page; write \"part:naga\"", 2 },
+		{ "<p>x</p>\n<a href=\"page\">y</a>", "leads nowhere outside", 2 },
 		{ "<p>x</p>\n<img src=\"pictures/none.png\">", "is not there", 2 },
 		{ "<p>x</p>\n<img src=\"http://example.org/a.png\">", "pictures/NAME", 2 },
 		{ "<p>x</p>\n<script>alert(1)</script>", "<script>", 2 },

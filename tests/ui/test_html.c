@@ -128,6 +128,16 @@ static void survives_nasty_pages(void **state)
 	}
 }
 
+static void links_lead_to_parts_and_to_pages(void **state)
+{
+	(void)state;
+	CHECK(parse("<p><a href=\"page:gate\">a</a> <a href=\"part:naga\">b</a>"
+		    "<a href=\"tour:x\">c</a></p>") == 0);
+	CHECK(html.link_count == 2 && strcmp(html.links[0], "gate") == 0);
+	CHECK(strcmp(html.links[1], "naga") == 0);
+	html_finish(&html);
+}
+
 static void a_note_stands_below_a_rule(void **state)
 {
 	(void)state;
@@ -142,6 +152,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_note_stands_below_a_rule),
+		cmocka_unit_test(links_lead_to_parts_and_to_pages),
 		cmocka_unit_test(keeps_blocks_in_order),
 		cmocka_unit_test(knows_white_space),
 		cmocka_unit_test(drops_scripts_styles_and_foreign_links),
