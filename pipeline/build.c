@@ -128,14 +128,14 @@ static bool is_built(struct build_report *report, const char *stamp_path, struct
 	struct buffer file;
 	bool same;
 
-	if (access(stamp_path, R_OK) < 0 || publish_content_renew(&report->publish, publish) < 0)
+	if (access(stamp_path, R_OK) < 0 || publish_content_current(&report->publish, publish) < 0)
 		return false;
 	expected = stamp_text(stamp, report->publish.publish.release.root);
 	buffer_init(&file, sizeof(expected.text));
 	same = buffer_read_file(&file, stamp_path) == 0 && file.size == strlen(expected.text) &&
 	       memcmp(file.data, expected.text, file.size) == 0;
 	buffer_finish(&file);
-	return same;
+	return same && publish_content_renew(&report->publish, publish) == 0;
 }
 
 /* ---- the stages */

@@ -218,8 +218,8 @@ int publish_content_again(struct publish_content_report *report,
 	return rc < 0 ? rc : measure(report);
 }
 
-int publish_content_renew(struct publish_content_report *report,
-			  const struct publish_content_options *options)
+static int look_at_current(struct publish_content_report *report,
+			   const struct publish_content_options *options, bool renew)
 {
 	struct setting setting = { 0 };
 	int rc;
@@ -231,10 +231,22 @@ int publish_content_renew(struct publish_content_report *report,
 					   &setting.keys);
 	if (rc == 0)
 		rc = measure(report);
-	if (rc == 0)
+	if (rc == 0 && renew)
 		rc = publish_renew(&setting.target);
 	keys_finish(&setting.keys);
 	return rc;
+}
+
+int publish_content_current(struct publish_content_report *report,
+			    const struct publish_content_options *options)
+{
+	return look_at_current(report, options, false);
+}
+
+int publish_content_renew(struct publish_content_report *report,
+			  const struct publish_content_options *options)
+{
+	return look_at_current(report, options, true);
 }
 
 void publish_content_print(FILE *to, const struct publish_content_report *report)

@@ -35,6 +35,9 @@ must_check int publish_content_again(struct publish_content_report *report,
 				     const struct publish_content_options *options,
 				     uint64_t sequence);
 
+/* What is published, and nothing written. -ENOENT as below. */
+must_check int publish_content_current(struct publish_content_report *report,
+				       const struct publish_content_options *options);
 /* Nothing but a new timestamp. -ENOENT: nothing is published there, or its packs are not all there
  * any more. */
 must_check int publish_content_renew(struct publish_content_report *report,

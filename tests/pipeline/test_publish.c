@@ -126,6 +126,25 @@ static void a_change_adds_only_what_changed(void **state)
 	CHECK(verify() == 0);
 }
 
+/* A server tells versions of a file apart by size and second. */
+static void no_two_timestamps_are_of_one_second(void **state)
+{
+	const struct publish_target target = tiny_target(&tiny);
+	time_t before = 0;
+	char path[PATH_MAX];
+
+	(void)state;
+	tiny_publish(&tiny, NULL);
+	snprintf(path, sizeof(path), "%s/timestamp.json", tiny.release);
+	for (int i = 0; i < 5; i++) {
+		struct stat status;
+
+		CHECK(publish_renew(&target) == 0);
+		CHECK(stat(path, &status) == 0 && status.st_mtim.tv_sec > before);
+		before = status.st_mtim.tv_sec;
+	}
+}
+
 static void undo_shows_the_old_root_under_a_higher_sequence(void **state)
 {
 	const struct publish_target target = tiny_target(&tiny);
@@ -285,6 +304,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(the_same_content_gives_the_same_packs, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_change_adds_only_what_changed, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(no_two_timestamps_are_of_one_second, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(undo_shows_the_old_root_under_a_higher_sequence,
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(expiry_is_judged_by_the_clock_that_is_given, set_up,
