@@ -175,6 +175,10 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_SEARCH:
 		overlay_show_search(overlay, !overlay_searching(overlay));
 		break;
+	case OVERLAY_PICTURE:
+		overlay_show_picture(overlay, action->picture);
+		log_debug("app", "picture %d", action->picture);
+		break;
 	case OVERLAY_KEY:
 		press_key(kiosk, action->key);
 		break;
@@ -192,7 +196,11 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 		overlay_tap(story_overlay(kiosk->shown.story), gesture->x_px, gesture->y_px);
 	float point[3];
 
-	if (action.kind != OVERLAY_NONE)
+	if (action.kind == OVERLAY_SWALLOWED && gesture->kind == GESTURE_DOUBLE_TAP &&
+	    overlay_picture(story_overlay(kiosk->shown.story)) >= 0)
+		overlay_picture_double_tap(story_overlay(kiosk->shown.story), gesture->x_px,
+					   gesture->y_px);
+	else if (action.kind != OVERLAY_NONE)
 		carry_out(kiosk, &action);
 	else if (gesture->kind == GESTURE_TAP)
 		tap_model(kiosk, gesture->x_px, gesture->y_px);
@@ -211,10 +219,33 @@ static void on_press(struct kiosk *kiosk, const struct gesture *gesture)
 		grab(kiosk, gesture->x_px, gesture->y_px);
 }
 
+static void on_picture(struct overlay *overlay, const struct gesture *gesture)
+{
+	switch (gesture->kind) {
+	case GESTURE_DRAG:
+		overlay_picture_drag(overlay, gesture->dx_px, gesture->dy_px);
+		break;
+	case GESTURE_DRAG_END:
+	case GESTURE_CANCEL:
+		overlay_picture_drag_end(overlay, gesture->vx_px_per_s);
+		break;
+	case GESTURE_PINCH:
+		overlay_picture_pinch(overlay, gesture->x_px, gesture->y_px, gesture->scale,
+				      gesture->dx_px, gesture->dy_px);
+		break;
+	default:
+		break;
+	}
+}
+
 static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
+	if (overlay_picture(overlay) >= 0) {
+		on_picture(overlay, gesture);
+		return;
+	}
 	if (gesture->kind == GESTURE_DRAG)
 		overlay_scroll(overlay, gesture->dy_px);
 	else if (gesture->kind == GESTURE_DRAG_END)

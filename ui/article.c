@@ -474,6 +474,47 @@ const char *article_link_at(const struct article *article, float x_px, float y_p
 	return found;
 }
 
+uint32_t article_picture_count(const struct article *article)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = 0; i < article->html.block_count; i++)
+		count += article->html.blocks[i].kind == HTML_IMAGE;
+	return count;
+}
+
+const char *article_picture(const struct article *article, uint32_t picture, const char **caption)
+{
+	const struct html *html = &article->html;
+	uint32_t i = 0;
+
+	while (i < html->block_count && (html->blocks[i].kind != HTML_IMAGE || picture-- > 0))
+		i++;
+	if (caption)
+		*caption = i + 1 < html->block_count && html->blocks[i + 1].kind == HTML_TEXT &&
+					   html->blocks[i + 1].style == TEXT_FIGURE
+				   ? html->blocks[i + 1].text
+				   : "";
+	return i < html->block_count ? html->blocks[i].text : "";
+}
+
+int article_picture_at(const struct article *article, float x_px, float y_px)
+{
+	int picture = 0;
+
+	for (uint32_t i = 0; i < article->html.block_count; i++) {
+		const struct item *item = &article->items[i];
+
+		if (item->block->kind != HTML_IMAGE)
+			continue;
+		if (x_px >= (float)item->x_px && x_px < (float)(item->x_px + item->width_px) &&
+		    y_px >= (float)item->y_px && y_px < (float)(item->y_px + item->height_px))
+			return picture;
+		picture++;
+	}
+	return -1;
+}
+
 int article_picture_arrived(struct article *article, const char *name)
 {
 	for (uint32_t i = 0; i < article->html.block_count; i++) {

@@ -27,6 +27,12 @@ int article_height_px(const struct article *article);
 void article_draw(const struct article *article, cairo_t *context, int top_px, int height_px);
 /* The id of the part that a link at or near that point names; NULL: none. Borrowed. */
 const char *article_link_at(const struct article *article, float x_px, float y_px);
+/* Its pictures, in order; *caption (may be NULL) is what stands below one in its figure, or "".
+ * Borrowed. */
+uint32_t article_picture_count(const struct article *article);
+const char *article_picture(const struct article *article, uint32_t picture, const char **caption);
+/* Which picture is there, or -1. */
+int article_picture_at(const struct article *article, float x_px, float y_px);
 /* Asks the source again and lays out anew. The height from which on something changed, or -1 where
  * the article does not show that picture. */
 int article_picture_arrived(struct article *article, const char *name);

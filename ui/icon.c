@@ -101,6 +101,11 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		cairo_line_to(context, 0.4, 0);
 		cairo_line_to(context, -0.4, 0.8);
 		break;
+	case ICON_BACK:
+		cairo_move_to(context, 0.4, -0.8);
+		cairo_line_to(context, -0.4, 0);
+		cairo_line_to(context, 0.4, 0.8);
+		break;
 	case ICON_HOME:
 		draw_home(context);
 		break;

@@ -7,6 +7,7 @@
 enum icon {
 	ICON_CLOSE,
 	ICON_FORWARD,
+	ICON_BACK,
 	ICON_HOME,
 	ICON_HELP,
 	ICON_TURN, /* one finger goes sideways */

@@ -146,6 +146,7 @@ static void forget_labels(struct overlay *overlay)
 
 static void drop_page(struct overlay *overlay)
 {
+	overlay->gallery = (struct gallery){ 0 };
 	article_destroy(overlay->article);
 	overlay->article = NULL;
 	overlay->page = (struct fade){ 0 };
@@ -263,6 +264,7 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 	rc = article_create(&article, &options, html);
 	if (rc < 0)
 		return rc;
+	overlay->gallery = (struct gallery){ 0 };
 	article_destroy(overlay->article);
 	overlay->article = article;
 	overlay->page_part = overlay->page_titled = part;
@@ -281,6 +283,7 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 
 void overlay_close_page(struct overlay *overlay)
 {
+	overlay_show_picture(overlay, -1);
 	overlay->page_part = -1;
 	overlay->page.on = false;
 	overlay->callouts_dirty = true;
@@ -330,6 +333,7 @@ void overlay_picture_arrived(struct overlay *overlay, const char *name)
 	int from_px = overlay->article ? article_picture_arrived(overlay->article, name) : -1;
 
 	overlay_search_picture(overlay, name);
+	overlay_gallery_arrived(overlay, name);
 	for (uint32_t i = 0; from_px >= 0 && i < STRIPS; i++)
 		if ((overlay->strips[i].index + 1) * overlay->strip_px > from_px)
 			overlay->strips[i].stale = true;
@@ -357,6 +361,7 @@ static struct overlay_action tap_page(const struct overlay *overlay, float x_px,
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->page_part };
 	struct overlay_rect view = overlay_view_rect(overlay);
+	int picture;
 
 	if (y_px < (float)view.y_px) {
 		/* The head's whole right end, so that a near miss closes too. */
@@ -366,10 +371,16 @@ static struct overlay_action tap_page(const struct overlay *overlay, float x_px,
 	}
 	if (!overlay_rect_holds(view, x_px, y_px))
 		return action;
-	action.link = article_link_at(overlay->article, x_px - (float)view.x_px,
-				      y_px - (float)view.y_px + overlay->scroll_px);
+	x_px -= (float)view.x_px;
+	y_px += overlay->scroll_px - (float)view.y_px;
+	action.link = article_link_at(overlay->article, x_px, y_px);
+	picture = article_picture_at(overlay->article, x_px, y_px);
 	if (action.link)
 		action.kind = OVERLAY_LINK;
+	else if (picture >= 0)
+		action = (struct overlay_action){ .kind = OVERLAY_PICTURE,
+						  .part = overlay->page_part,
+						  .picture = picture };
 	return action;
 }
 
@@ -413,6 +424,8 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 
 	if (overlay_rect_holds(chrome, x_px, y_px))
 		return tap_chrome(overlay, x_px - (float)chrome.x_px);
+	if (overlay->gallery.fade.on)
+		return overlay_gallery_tap(overlay, x_px, y_px);
 	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
 		return overlay_search_tap(overlay, x_px, y_px);
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
@@ -431,6 +444,8 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 {
+	if (overlay->gallery.fade.on)
+		return true;
 	if (overlay_rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
 		return true;
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
@@ -593,6 +608,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 			advance_scroll(&overlay->search.scroll_px, &overlay->search.scroll_px_per_s,
 				       overlay_found_scroll_most(overlay), step_ms);
 	moving |= overlay_update_search(overlay, step_ms);
+	moving |= overlay_update_gallery(overlay, step_ms);
 	moving |= update_labels(overlay, step_ms);
 	if (!overlay->page.on && overlay->page.alpha == 0)
 		drop_page(overlay);

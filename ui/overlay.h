@@ -91,6 +91,11 @@ void overlay_invite(struct overlay *overlay, bool on);
  * asks takes the touch that answers. */
 void overlay_ask(struct overlay *overlay, int seconds_left);
 
+/* A picture of the page that is open, over the whole panel, by its number on the page; the next one
+ * slides in where one is shown already. -1 closes it, and so does whatever closes the page. */
+void overlay_show_picture(struct overlay *overlay, int picture);
+int overlay_picture(const struct overlay *overlay); /* or -1 */
+
 /* The search, in the page's place: a field, parts that were found, a keyboard. It opens with
  * nothing typed and all parts listed, and closes card and page; without parts it does not open. */
 void overlay_show_search(struct overlay *overlay, bool on);
@@ -126,6 +131,7 @@ enum overlay_action_kind {
 	OVERLAY_SEARCH,   /* the search, which is open or not (overlay_searching), changes over */
 	OVERLAY_KEY,      /* key: for overlay_press */
 	OVERLAY_FOUND,    /* part: one of those that were found */
+	OVERLAY_PICTURE,  /* picture: for overlay_show_picture */
 };
 
 enum { OVERLAY_KEY_CLEAR = -1 }; /* the field's own: empties it */
@@ -134,6 +140,7 @@ struct overlay_action {
 	enum overlay_action_kind kind;
 	int part;             /* else -1 */
 	int key;              /* of OVERLAY_KEY */
+	int picture;          /* of OVERLAY_PICTURE */
 	const char *language; /* borrowed until the overlay is destroyed; else NULL */
 	const char *link;     /* borrowed until the page changes; else NULL */
 };
@@ -145,6 +152,14 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px);
 /* Scrolls the page by a finger's movement; a fling goes on by itself. */
 void overlay_scroll(struct overlay *overlay, float dy_px);
 void overlay_fling(struct overlay *overlay, float vy_px_per_s);
+
+/* Fingers on a picture that overlay_show_picture shows: one moves it when it is zoomed, else swipes
+ * to the next; two zoom; two taps zoom in and out. */
+void overlay_picture_drag(struct overlay *overlay, float dx_px, float dy_px);
+void overlay_picture_drag_end(struct overlay *overlay, float vx_px_per_s);
+void overlay_picture_pinch(struct overlay *overlay, float x_px, float y_px, float scale,
+			   float dx_px, float dy_px);
+void overlay_picture_double_tap(struct overlay *overlay, float x_px, float y_px);
 
 /* ---- a frame ---- */
 

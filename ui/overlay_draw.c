@@ -106,6 +106,13 @@ void overlay_draw_fixed(struct overlay *overlay)
 		cairo_paint(context);
 		overlay_end(overlay, BITMAP_KEY, context);
 	}
+	context = overlay_begin(overlay, BITMAP_NIGHT, 4, 4);
+	if (context) {
+		theme_set_source(context, theme_night, 1);
+		cairo_paint(context);
+		overlay_end(overlay, BITMAP_NIGHT, context);
+	}
+	overlay_draw_gallery_buttons(overlay);
 	context = overlay_begin(overlay, BITMAP_SCROLL, width_px, 4 * width_px);
 	if (context) {
 		theme_rounded(context, 0, 0, width_px, 4 * width_px, width_px / 2.0);

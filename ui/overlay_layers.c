@@ -217,6 +217,41 @@ static void add_search(struct list *list)
 			 (float)key.height_px);
 }
 
+static void add_gallery(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	const struct gallery *gallery = &overlay->gallery;
+	struct overlay_rect view = overlay_gallery_rect(overlay);
+	float alpha = ease(gallery->fade.alpha);
+
+	add_rect(list, BITMAP_NIGHT, alpha, 0, 0, (float)overlay->width_px,
+		 (float)overlay->height_px);
+	for (int picture = gallery->at - 1; picture <= gallery->at + 1; picture++) {
+		float place[4];
+
+		if (picture < 0 || picture >= gallery->count ||
+		    !overlay_gallery_place(overlay, picture, place) ||
+		    place[0] >= (float)overlay->width_px || place[0] + place[2] <= 0)
+			continue;
+		add_rect(list, BITMAP_PICTURE + picture % GALLERY_SLOTS,
+			 alpha * ease(gallery->slots[picture % GALLERY_SLOTS].fade.alpha), place[0],
+			 place[1], place[2], place[3]);
+	}
+	if (gallery->zoom == 1)
+		add_bitmap(list, BITMAP_PICTURE_WORDS, alpha, (float)view.x_px,
+			   (float)(view.y_px + view.height_px) + 2 * overlay->theme.px_per_mm);
+	for (int button = 0; button < GALLERY_BUTTONS; button++) {
+		struct overlay_rect rect =
+			overlay_gallery_button(overlay, (enum gallery_button)button);
+
+		if ((button == GALLERY_BACK && gallery->at == 0) ||
+		    (button == GALLERY_ON && gallery->at + 1 >= gallery->count))
+			continue;
+		add_bitmap(list, BITMAP_PICTURE_BUTTON + button, alpha, (float)rect.x_px,
+			   (float)rect.y_px);
+	}
+}
+
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
 {
 	struct list list = { .overlay = overlay, .layers = layers, .most = most };
@@ -235,6 +270,8 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	add_page(&list);
 	if (overlay->search.fade.alpha > 0)
 		add_search(&list);
+	if (overlay->gallery.fade.alpha > 0)
+		add_gallery(&list);
 	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
 	add_bitmap(&list, BITMAP_QUESTION, ease(overlay->question.alpha), (float)question.x_px,
 		   (float)question.y_px);

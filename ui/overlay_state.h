@@ -13,6 +13,9 @@
 enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
 enum { SEARCH_ROWS = 16, SEARCH_ROWS_A_FRAME = 2, SEARCH_QUERY_BYTES = 128 };
 
+enum gallery_button { GALLERY_CLOSE, GALLERY_BACK, GALLERY_ON, GALLERY_BUTTONS };
+enum { GALLERY_SLOTS = 3 }; /* the picture that is looked at and its neighbours */
+
 enum bitmap_id {
 	BITMAP_LEADER,
 	BITMAP_DOT,
@@ -28,7 +31,11 @@ enum bitmap_id {
 	BITMAP_SEARCH_HEAD,
 	BITMAP_KEYBOARD,
 	BITMAP_KEY, /* over the one that was pressed */
-	BITMAP_STRIP,
+	BITMAP_NIGHT,
+	BITMAP_PICTURE_WORDS,
+	BITMAP_PICTURE,
+	BITMAP_PICTURE_BUTTON = BITMAP_PICTURE + GALLERY_SLOTS,
+	BITMAP_STRIP = BITMAP_PICTURE_BUTTON + GALLERY_BUTTONS,
 	BITMAP_ROW = BITMAP_STRIP + STRIPS,
 	BITMAP_LABEL = BITMAP_ROW + SEARCH_ROWS,
 	BITMAP_COUNT = BITMAP_LABEL + LABELS,
@@ -82,6 +89,20 @@ struct search {
 	bool head_dirty, keyboard_dirty;
 };
 
+struct gallery_slot {
+	int picture; /* that was drawn, or asked for; -1: none */
+	struct fade fade;
+};
+
+struct gallery {
+	struct fade fade; /* on: it is open */
+	int at, count;
+	float zoom, x_px, y_px; /* 1: it fits; of its middle from the view's */
+	float swipe_px;         /* on its way to the next, or back to its place */
+	bool dragging, words_dirty;
+	struct gallery_slot slots[GALLERY_SLOTS]; /* picture % GALLERY_SLOTS */
+};
+
 struct overlay {
 	int width_px, height_px;
 	struct picture_source pictures;
@@ -109,6 +130,7 @@ struct overlay {
 	int strip_px;
 	float scroll_px, scroll_px_per_s;
 	struct search search;
+	struct gallery gallery;
 
 	struct drawing drawings[BITMAP_COUNT];
 	int64_t then_ms; /* of the last update; 0: none yet */
@@ -164,6 +186,16 @@ bool overlay_update_search(struct overlay *overlay, int64_t step_ms);
 void overlay_draw_search_head(struct overlay *overlay);
 void overlay_draw_keyboard(struct overlay *overlay);
 bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out);
+
+/* overlay_gallery.c */
+struct overlay_rect overlay_gallery_rect(const struct overlay *overlay);
+struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
+					   enum gallery_button button);
+bool overlay_gallery_place(const struct overlay *overlay, int picture, float place_px[4]);
+struct overlay_action overlay_gallery_tap(const struct overlay *overlay, float x_px, float y_px);
+void overlay_gallery_arrived(struct overlay *overlay, const char *name);
+void overlay_draw_gallery_buttons(struct overlay *overlay);
+bool overlay_update_gallery(struct overlay *overlay, int64_t step_ms);
 
 /* Callouts into labels. true: some wait to be drawn. */
 void overlay_lay_out_callouts(struct overlay *overlay);
