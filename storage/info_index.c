@@ -104,7 +104,7 @@ static int bind_page(sqlite3_stmt *to, int column, const char *html)
 	return code;
 }
 
-/* from: content_id, title, reading, caption, body. */
+/* from: content_id, title, reading, caption, body, subjects. */
 static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from)
 {
 	int code = sqlite3_bind_int64(to, 1, sqlite3_column_int64(from, 0));
@@ -113,7 +113,8 @@ static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from)
 		code = bind_words(to, 2, (const char *)sqlite3_column_text(from, 1),
 				  (const char *)sqlite3_column_text(from, 2));
 	if (code == SQLITE_OK)
-		code = bind_words(to, 3, (const char *)sqlite3_column_text(from, 3), NULL);
+		code = bind_words(to, 3, (const char *)sqlite3_column_text(from, 3),
+				  (const char *)sqlite3_column_text(from, 5));
 	if (code == SQLITE_OK)
 		code = bind_page(to, 4, (const char *)sqlite3_column_text(from, 4));
 	if (code == SQLITE_OK)
@@ -125,12 +126,15 @@ static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from)
 static int fill(sqlite3 *db, const char *schema, bool has_reading)
 {
 	sqlite3_stmt *from = NULL, *to = NULL;
-	char sql[200];
+	char sql[500];
 	int code, step = SQLITE_DONE;
 
 	snprintf(sql, sizeof(sql),
-		 "SELECT content_id, title, %s, caption, body FROM main.information_contents"
-		 " ORDER BY content_id",
+		 "SELECT content_id, title, %s, caption, body,"
+		 " (SELECT group_concat(value, ' ') FROM dublin_core d WHERE d.information_id ="
+		 " c.information_id AND element = 'subject'"
+		 " AND (d.language IS NULL OR d.language = c.language))"
+		 " FROM main.information_contents c ORDER BY content_id",
 		 has_reading ? "reading" : "NULL");
 	code = sqlite3_prepare_v2(db, sql, -1, &from, NULL);
 	snprintf(sql, sizeof(sql),

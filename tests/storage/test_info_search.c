@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sqlite3.h>
 
+#include "storage/info_index.h"
 #include "storage/words.h"
 #include "tests/storage/info_folder.h"
 
@@ -17,7 +18,8 @@ static const char parts[] =
 	"\"ប្រាង្គកណ្តាល\", \"ja\": \"中央塔\"},\n"
 	"  \"reading\": {\"ja\": \"ちゅうおうとう\"},\n"
 	"  \"caption\": {\"en\": \"The mountain above the gate.\", \"fr\": \"Élevée au cœur.\"},\n"
-	"  \"credits\": {\"creator\": [\"A. Mason\", \"B. Mason\"], \"date\": \"1150\"}},\n"
+	"  \"credits\": {\"creator\": [\"A. Mason\", \"B. Mason\"], \"date\": \"1150\",\n"
+	"    \"subject\": {\"en\": \"Sanctuary, prang\", \"fr\": \"Sanctuaire\"}}},\n"
 	"{\"id\": \"naga\", \"anchor\": [0, 0, 2],\n"
 	"  \"title\": {\"en\": \"Naga balustrade\", \"fr\": \"Balustrade de nāgas\", \"km\": "
 	"\"បង្កាន់ដៃនាគ\", \"ja\": \"ナーガの欄干\"},\n"
@@ -116,6 +118,17 @@ static void titles_come_before_captions_before_pages(void **state)
 	info_close(info);
 }
 
+static void subjects_are_searched_as_captions_are(void **state)
+{
+	struct info *info = open_folder();
+
+	(void)state;
+	FINDS("sanctuary", "en", "tower");
+	FINDS("prang", "en", "tower");
+	FINDS("sanctuaire", "fr", "tower");
+	info_close(info);
+}
+
 static void the_visitors_language_comes_first(void **state)
 {
 	struct info *info = open_folder();
@@ -176,6 +189,50 @@ static void a_query_of_operators_or_rubbish_is_only_words(void **state)
 		long_query[i] = ' ';
 	FINDS(long_query, "en", "tower naga"); /* "a": above; A ser.. */
 	info_close(info);
+}
+
+static bool take(void *data, int64_t content_id)
+{
+	(void)content_id;
+	*(uint32_t *)data += 1;
+	return true;
+}
+
+/* Operators, quotes, halves of characters: whatever a text holds, FTS5 gets words of it. */
+static void no_text_is_an_error_of_syntax(void **state)
+{
+	static const char *const pieces[] = { "\"",   "*",    "(",   ")",    " AND ", " OR ",
+					      "NOT ", "NEAR", "{a}", "^",    ":",     "+",
+					      "-",    "gate", "塔",  "\xe5", "\xff",  "\x01",
+					      "ក្",    "\t",   "'",   ";",    "\\",    "--",
+					      "a",    "é" };
+	struct complaints complaints;
+	struct info_built built;
+	unsigned char *image;
+	uint32_t random = 3, found = 0;
+	sqlite3 *db;
+
+	(void)state;
+	build_folder(&built, &complaints, 0);
+	CHECK(sqlite3_open(":memory:", &db) == SQLITE_OK);
+	image = sqlite3_malloc64(built.database.size);
+	memcpy(image, built.database.data, built.database.size);
+	CHECK(sqlite3_deserialize(db, "main", image, (sqlite3_int64)built.database.size,
+				  (sqlite3_int64)built.database.size,
+				  SQLITE_DESERIALIZE_FREEONCLOSE) == SQLITE_OK);
+	for (int i = 0; i < 5000; i++) {
+		char text[100] = "";
+
+		for (int k = 0; k < 8; k++) {
+			random = random * 1664525u + 1013904223u;
+			strncat(text, pieces[(random >> 8) % ARRAY_COUNT(pieces)], 10);
+		}
+		if (info_index_find(db, text, take, &found) != SQLITE_OK)
+			fail_msg("\"%s\": %s", text, sqlite3_errmsg(db));
+	}
+	CHECK(found > 100);
+	sqlite3_close(db);
+	info_built_finish(&built);
 }
 
 static void words_are_folded_as_the_header_says(void **state)
@@ -357,7 +414,9 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(a_word_is_found_as_it_is_typed),
 		IN_A_FOLDER(titles_come_before_captions_before_pages),
+		IN_A_FOLDER(subjects_are_searched_as_captions_are),
 		IN_A_FOLDER(the_visitors_language_comes_first),
+		IN_A_FOLDER(no_text_is_an_error_of_syntax),
 		IN_A_FOLDER(accents_case_and_widths_make_no_difference),
 		IN_A_FOLDER(scripts_without_spaces_are_found_anywhere),
 		IN_A_FOLDER(a_query_of_operators_or_rubbish_is_only_words),
