@@ -1,7 +1,5 @@
 #include "storage/annotations.h"
 
-#include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,18 +45,6 @@ uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANG
 		}
 	}
 	return count;
-}
-
-void annotation_folder_of(const char *file, char *folder)
-{
-	char *slash;
-
-	snprintf(folder, PATH_MAX, "%s", file);
-	slash = strrchr(folder, '/');
-	if (!slash)
-		snprintf(folder, PATH_MAX, ".");
-	else
-		slash[slash == folder] = 0;
 }
 
 void annotations_finish(struct annotations *annotations)

@@ -1,44 +1,18 @@
 /* A file of annotations, ours or another tool's, into parts.json, pages/ and pictures/. All of it
  * is read and judged before anything is written; what came of it is then checked by info_build's
  * own readers, and taken away again where they refuse it. */
-#include <dirent.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/log.h"
-#include "storage/annotations.h"
 #include "storage/annotations_private.h"
 #include "storage/json_lines.h"
 
-struct page_file {
-	char name[INFO_ID_BYTES_MOST + 40]; /* "pages/gate.en.html" */
-	const char *html;                   /* borrowed from the file's JSON */
-};
-
-struct importer {
-	const struct annotations_import_options *options;
-	struct annotations_imported *report;
-	const char *language;
-	cJSON *parts_file, *parts; /* parts_file owned; parts is its array */
-	struct page_file *pages;   /* owned */
-	uint32_t page_count, error_count;
-	char **written; /* owned paths, in the order of writing */
-	size_t written_count;
-	bool failed; /* memory ran out */
-	/* The annotation that is read. */
-	const cJSON *item;
-	unsigned line;
-	cJSON *part;
-};
-
-printf_like(4, 5) static void complain(struct importer *im, bool is_error, unsigned line,
-				       const char *text, ...)
+void importer_complain(struct importer *im, bool is_error, unsigned line, const char *text, ...)
 {
 	const struct annotations_import_options *options = im->options;
 	char message[512];
@@ -118,12 +92,13 @@ static void read_id(struct importer *im)
 		if (!strchr("abcdefghijklmnopqrstuvwxyz0123456789-_", id[i]))
 			id[i] = '-';
 	if (size == 0)
-		complain(im, true, im->line,
-			 "annotation without an id that can name a part: give it an \"id\" such as "
-			 "\"#gate\"");
+		importer_complain(
+			im, true, im->line,
+			"annotation without an id that can name a part: give it an \"id\" such as "
+			"\"#gate\"");
 	for (const cJSON *other = im->parts->child; other; other = other->next)
 		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
-			complain(
+			importer_complain(
 				im, true, im->line,
 				"annotation \"%.80s\": another one is part \"%s\" already: give it "
 				"another \"id\"",
@@ -203,9 +178,9 @@ static void add_page(struct importer *im, const char *language, const char *html
 		 language);
 	for (uint32_t i = 0; i < im->page_count; i++)
 		if (strcmp(grown[i].name, page.name) == 0) {
-			complain(im, true, im->line,
-				 "annotation \"%.80s\": two pages in \"%.16s\": leave one",
-				 item_id(im), language);
+			importer_complain(im, true, im->line,
+					  "annotation \"%.80s\": two pages in \"%.16s\": leave one",
+					  item_id(im), language);
 			return;
 		}
 	grown[im->page_count++] = page;
@@ -241,14 +216,15 @@ static void read_body(struct importer *im, const cJSON *body)
 	if (!language)
 		language = im->language;
 	if (!value || !key) {
-		complain(im, false, im->line,
-			 "annotation \"%.80s\": a body %s is left out: what is kept are "
-			 "TextualBody with purpose identifying, describing, commenting or tagging",
-			 item_id(im), value ? "of another purpose" : "without \"value\"");
+		importer_complain(
+			im, false, im->line,
+			"annotation \"%.80s\": a body %s is left out: what is kept are "
+			"TextualBody with purpose identifying, describing, commenting or tagging",
+			item_id(im), value ? "of another purpose" : "without \"value\"");
 		return;
 	}
 	if (!is_language(language)) {
-		complain(
+		importer_complain(
 			im, true, im->line,
 			"annotation \"%.80s\": \"%.40s\" is no language's code: write such as \"en\"",
 			item_id(im), language);
@@ -259,9 +235,9 @@ static void read_body(struct importer *im, const cJSON *body)
 		return;
 	}
 	if (cJSON_HasObjectItem(object_of(im, im->part, key), language))
-		complain(im, true, im->line,
-			 "annotation \"%.80s\": two %ss in \"%.16s\": leave one", item_id(im), key,
-			 language);
+		importer_complain(im, true, im->line,
+				  "annotation \"%.80s\": two %ss in \"%.16s\": leave one",
+				  item_id(im), key, language);
 	else
 		add(im, object_of(im, im->part, key), language, cJSON_CreateString(value));
 }
@@ -275,14 +251,16 @@ static void read_bodies(struct importer *im)
 	     body = next_of(bodies, body))
 		read_body(im, body);
 	if (string_of(im->item, "bodyValue") && !bodies)
-		complain(im, false, im->line,
-			 "annotation \"%.80s\": bodyValue is left out: write a TextualBody",
-			 item_id(im));
+		importer_complain(
+			im, false, im->line,
+			"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
+			item_id(im));
 	if (!cJSON_HasObjectItem(im->part, "title"))
-		complain(im, true, im->line,
-			 "annotation \"%.80s\" has no title: add a TextualBody with \"purpose\": "
-			 "\"identifying\"",
-			 item_id(im));
+		importer_complain(
+			im, true, im->line,
+			"annotation \"%.80s\" has no title: add a TextualBody with \"purpose\": "
+			"\"identifying\"",
+			item_id(im));
 	if (im->page_count == pages_before)
 		add(im, im->part, "page", cJSON_CreateFalse());
 }
@@ -295,10 +273,10 @@ static void read_thumbnail(struct importer *im)
 	if (name)
 		add(im, im->part, "thumbnail", cJSON_CreateString(name));
 	else if (said)
-		complain(im, false, im->line,
-			 "annotation \"%.80s\": its thumbnail is left out: "
-			 "write {\"id\": \"pictures/NAME\"}",
-			 item_id(im));
+		importer_complain(im, false, im->line,
+				  "annotation \"%.80s\": its thumbnail is left out: "
+				  "write {\"id\": \"pictures/NAME\"}",
+				  item_id(im));
 }
 
 /* ---- the target */
@@ -390,7 +368,7 @@ static bool read_target(struct importer *im)
 		return true;
 	selectors = first_of(selectors);
 	im->report->skipped_count += im->options->skip_unknown;
-	complain(
+	importer_complain(
 		im, !im->options->skip_unknown, im->line,
 		"annotation \"%.80s\": %s%.40s%s says no place on a model%s: use PointSelector with "
 		"x, y and z, SphereSelector, BoxSelector or PrismSelector",
@@ -432,7 +410,7 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	if (cJSON_IsArray(json))
 		return json;
 	if (cJSON_IsString(page)) {
-		complain(
+		importer_complain(
 			im, true, 1,
 			"the collection's first page is elsewhere (\"%.80s\"): fetch it and import "
 			"that file",
@@ -441,17 +419,19 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	}
 	page = page ? page : json;
 	if (cJSON_HasObjectItem(page, "next")) {
-		complain(im, true, 1,
-			 "there are more pages than the first: put all \"items\" into one");
+		importer_complain(
+			im, true, 1,
+			"there are more pages than the first: put all \"items\" into one");
 		return NULL;
 	}
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(page, "items")))
 		return cJSON_GetObjectItemCaseSensitive(page, "items");
 	if (cJSON_HasObjectItem(json, "target"))
 		return json;
-	complain(im, true, 1,
-		 "holds no annotations: write an AnnotationCollection whose \"first\" page has "
-		 "\"items\"");
+	importer_complain(
+		im, true, 1,
+		"holds no annotations: write an AnnotationCollection whose \"first\" page has "
+		"\"items\"");
 	return NULL;
 }
 
@@ -475,162 +455,7 @@ static void read_items(struct importer *im, const cJSON *json, const char *text)
 	free(lines);
 }
 
-/* ---- writing */
-
-static int note_written(struct importer *im, const char *path)
-{
-	char **grown = realloc(im->written, (im->written_count + 1) * sizeof(*grown));
-
-	if (!grown)
-		return -ENOMEM;
-	im->written = grown;
-	grown[im->written_count] = strdup(path);
-	return grown[im->written_count] ? (im->written_count++, 0) : -ENOMEM;
-}
-
-static int write_file(struct importer *im, const char *name, struct bytes bytes)
-{
-	char path[PATH_MAX];
-	int rc;
-
-	if (snprintf(path, sizeof(path), "%s/%s", im->options->folder, name) >= PATH_MAX)
-		return -ENAMETOOLONG;
-	rc = note_written(im, path);
-	if (rc == 0)
-		rc = bytes_write_file(bytes, path);
-	if (rc < 0)
-		complain(im, true, 0, "%s cannot be written: %s", path, strerror(-rc));
-	return rc;
-}
-
-static int make_folder(struct importer *im, const char *name)
-{
-	char path[PATH_MAX];
-
-	if (snprintf(path, sizeof(path), "%s/%s", im->options->folder, name) >= PATH_MAX)
-		return -ENAMETOOLONG;
-	if (mkdir(path, 0755) == 0)
-		return note_written(im, path);
-	if (errno == EEXIST)
-		return 0;
-	complain(im, true, 0, "%s cannot be made: %s", path, strerror(errno));
-	return -EIO;
-}
-
-static int copy_picture(struct importer *im, const char *from, const char *name)
-{
-	char to[PATH_MAX], relative[300];
-	struct buffer file;
-	int rc;
-
-	snprintf(relative, sizeof(relative), "pictures/%s", name);
-	if (snprintf(to, sizeof(to), "%s/%s", im->options->folder, relative) >= PATH_MAX)
-		return -ENAMETOOLONG;
-	if (access(to, F_OK) == 0) /* the folder's own, or the same one */
-		return 0;
-	buffer_init(&file, 64 << 20);
-	rc = buffer_read_file(&file, from);
-	if (rc < 0)
-		complain(im, true, 0, "%s cannot be read: %s", from, strerror(-rc));
-	else
-		rc = write_file(im, relative, buffer_bytes(&file));
-	buffer_finish(&file);
-	im->report->picture_count += rc == 0;
-	return rc;
-}
-
-/* All that lie beside the file: which of them the pages show is not known yet. */
-static int copy_pictures(struct importer *im)
-{
-	char folder[PATH_MAX], from[2 * PATH_MAX];
-	struct dirent **entries = NULL;
-	int count, rc = 0;
-
-	annotation_folder_of(im->options->file, folder);
-	snprintf(from, sizeof(from), "%s/pictures", folder);
-	count = scandir(from, &entries, NULL, alphasort);
-	if (count > 0)
-		rc = make_folder(im, "pictures");
-	for (int i = 0; i < count; i++) {
-		struct stat info;
-
-		snprintf(from, sizeof(from), "%s/pictures/%s", folder, entries[i]->d_name);
-		if (rc == 0 && entries[i]->d_name[0] != '.' && stat(from, &info) == 0 &&
-		    S_ISREG(info.st_mode))
-			rc = copy_picture(im, from, entries[i]->d_name);
-		free(entries[i]);
-	}
-	free(entries);
-	return rc;
-}
-
-static int write_all(struct importer *im)
-{
-	char *text = cJSON_Print(im->parts_file);
-	int rc = text ? make_folder(im, "") : -ENOMEM;
-
-	if (rc == 0)
-		rc = write_file(im, "parts.json",
-				(struct bytes){ (const uint8_t *)text, strlen(text) });
-	if (rc == 0)
-		rc = make_folder(im, "pages");
-	for (uint32_t i = 0; i < im->page_count && rc == 0; i++)
-		rc = write_file(im, im->pages[i].name,
-				(struct bytes){ (const uint8_t *)im->pages[i].html,
-						strlen(im->pages[i].html) });
-	if (rc == 0)
-		rc = copy_pictures(im);
-	im->report->page_count = im->page_count;
-	cJSON_free(text);
-	return rc;
-}
-
-/* As a release of all its languages would be. */
-static int check_written(struct importer *im)
-{
-	const char *languages[INFO_LANGUAGES_MOST] = { "en" };
-	struct info_build_options build = { .folder = im->options->folder,
-					    .languages = languages,
-					    .complaint = im->options->complaint,
-					    .complaint_data = im->options->complaint_data };
-	struct info_built built;
-	int rc;
-
-	build.language_count = annotation_languages(im->parts_file, languages);
-	if (build.language_count == 0)
-		build.language_count = 1;
-	rc = info_build(&built, &build);
-	if (rc == 0)
-		info_built_finish(&built);
-	return rc;
-}
-
-static void take_away(struct importer *im)
-{
-	for (size_t i = im->written_count; i-- > 0;)
-		remove(im->written[i]); /* folders are empty by then, or not ours */
-}
-
 /* ---- the whole */
-
-static bool is_free(struct importer *im)
-{
-	static const char *const names[] = { "parts.json", "pages" };
-
-	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
-		char path[PATH_MAX];
-
-		snprintf(path, sizeof(path), "%s/%s", im->options->folder, names[i]);
-		if (i == 1 && rmdir(path) == 0) /* an empty one is as good as none */
-			continue;
-		if (access(path, F_OK) < 0)
-			continue;
-		complain(im, true, 0,
-			 "%s is there already: import into a folder without parts and pages", path);
-		return false;
-	}
-	return true;
-}
 
 static int read_file(struct importer *im, cJSON **json, struct buffer *text)
 {
@@ -644,14 +469,14 @@ static int read_file(struct importer *im, cJSON **json, struct buffer *text)
 	if (rc == -ENOMEM)
 		return rc;
 	if (rc < 0) {
-		complain(im, true, 0, "cannot be read: %s", strerror(-rc));
+		importer_complain(im, true, 0, "cannot be read: %s", strerror(-rc));
 		return -EINVAL;
 	}
 	*json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	if (*json)
 		return 0;
-	complain(im, true, json_line_of((char *)text->data, end),
-		 "is not JSON from here on: look for a missing comma, quote or bracket");
+	importer_complain(im, true, json_line_of((char *)text->data, end),
+			  "is not JSON from here on: look for a missing comma, quote or bracket");
 	return -EINVAL;
 }
 
@@ -663,7 +488,7 @@ static int import(struct importer *im)
 
 	buffer_init(&text, ANNOTATIONS_BYTES_MOST);
 	rc = read_file(im, &json, &text);
-	if (rc == 0 && is_free(im)) {
+	if (rc == 0 && importer_has_room(im)) {
 		im->parts_file = cJSON_CreateObject();
 		add(im, im->parts_file, "parts", cJSON_CreateArray());
 		im->parts = cJSON_GetObjectItemCaseSensitive(im->parts_file, "parts");
@@ -674,13 +499,8 @@ static int import(struct importer *im)
 	}
 	if (rc == 0 && im->error_count > 0)
 		rc = -EINVAL;
-	if (rc == 0) {
-		rc = write_all(im);
-		if (rc == 0)
-			rc = check_written(im);
-		if (rc < 0)
-			take_away(im);
-	}
+	if (rc == 0)
+		rc = importer_write(im);
 	buffer_finish(&text);
 	cJSON_Delete(json);
 	return rc;

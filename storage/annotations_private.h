@@ -4,6 +4,7 @@
 
 #include <cjson/cJSON.h>
 
+#include "storage/annotations.h"
 #include "storage/info_content.h"
 
 enum { ANNOTATION_MEMBERS_MOST = 4 };
@@ -29,7 +30,35 @@ extern const struct annotation_text annotation_texts[ANNOTATION_TEXTS];
  * many there are; at most INFO_LANGUAGES_MOST are written. */
 uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MOST]);
 
-/* PATH_MAX bytes of a path: the folder of a file, or ".". */
-void annotation_folder_of(const char *file, char *folder);
+/* ---- import */
+
+struct page_file {
+	char name[INFO_ID_BYTES_MOST + 40]; /* "pages/gate.en.html" */
+	const char *html;                   /* borrowed from the file's JSON */
+};
+
+struct importer {
+	const struct annotations_import_options *options;
+	struct annotations_imported *report;
+	const char *language;
+	cJSON *parts_file, *parts; /* parts_file owned; parts is its array */
+	struct page_file *pages;   /* owned */
+	uint32_t page_count, error_count;
+	char **written; /* owned paths, in the order of writing */
+	size_t written_count;
+	bool failed; /* memory ran out */
+	/* The annotation that is read. */
+	const cJSON *item;
+	unsigned line;
+	cJSON *part;
+};
+
+/* Of options->file. */
+printf_like(4, 5) void importer_complain(struct importer *im, bool is_error, unsigned line,
+					 const char *text, ...);
+/* The folder has no parts and pages yet; else it was complained about. */
+bool importer_has_room(struct importer *im);
+/* Writes what was read, checks it, and takes it away again where that fails. */
+must_check int importer_write(struct importer *im);
 
 #endif
