@@ -366,6 +366,20 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 		gesture_feed(&kiosk->gestures, &seen);
 }
 
+/* The wheel is a pinch: of the picture that is shown, else of the model. */
+static void turn_wheel(struct kiosk *kiosk, float x_px, float y_px, float scale)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	if (overlay && overlay_picture(overlay) >= 0) {
+		overlay_picture_pinch(overlay, x_px, y_px, scale, 0, 0);
+	} else {
+		grab(kiosk, x_px, y_px);
+		navigator_pinch(&kiosk->navigator, scale, 0, 0, 0, (float)kiosk_height_px(kiosk));
+	}
+	kiosk_redraw(kiosk);
+}
+
 void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps)
 {
 	static const enum touch_phase phases[] = {
@@ -380,12 +394,8 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 	frame_from_panel(kiosk, &x_px, &y_px);
 	if (kind == POINTER_WHEEL) {
 		visit_touch(&kiosk->visit, clock_now_ms());
-		if (!kiosk->navigator_ready)
-			return;
-		grab(kiosk, x_px, y_px);
-		navigator_pinch(&kiosk->navigator, powf(WHEEL_STEP, steps), 0, 0, 0,
-				(float)kiosk_height_px(kiosk));
-		kiosk_redraw(kiosk);
+		if (kiosk->navigator_ready)
+			turn_wheel(kiosk, x_px, y_px, powf(WHEEL_STEP, steps));
 		return;
 	}
 	if (kind == POINTER_MOVE && !kiosk->gestures.fingers[0].down)
