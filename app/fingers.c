@@ -87,9 +87,11 @@ static void go_home(struct kiosk *kiosk)
 
 static void show_card(struct kiosk *kiosk, int part)
 {
-	if (part >= 0)
+	if (part >= 0) {
 		log_debug("app", "card of %s",
 			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
+		guest_count(kiosk, TALLY_PART, part);
+	}
 	overlay_show_card(story_overlay(kiosk->shown.story), part);
 }
 
@@ -98,6 +100,7 @@ static void open_page(struct kiosk *kiosk, int part)
 	if (part >= 0 && story_open_page(kiosk->shown.story, (uint32_t)part)) {
 		log_debug("app", "page of %s",
 			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
+		guest_count(kiosk, TALLY_PAGE, part);
 		show_card(kiosk, -1);
 		fly_to_part(kiosk, (uint32_t)part);
 	}
@@ -159,6 +162,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		break;
 	case OVERLAY_LANGUAGE:
 		story_set_language(kiosk->shown.story, action->language);
+		guest_count(kiosk, TALLY_LANGUAGE, -1);
 		break;
 	case OVERLAY_LINK:
 		follow_link(kiosk, info_find(story_info(kiosk->shown.story), action->link));
@@ -174,6 +178,8 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		break;
 	case OVERLAY_SEARCH:
 		overlay_show_search(overlay, !overlay_searching(overlay));
+		if (overlay_searching(overlay))
+			guest_count(kiosk, TALLY_SEARCH, -1);
 		break;
 	case OVERLAY_PICTURE:
 		overlay_show_picture(overlay, action->picture);

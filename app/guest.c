@@ -17,6 +17,22 @@ static bool is_reading(const struct kiosk *kiosk)
 			   overlay_searching(overlay));
 }
 
+int64_t guest_clock_s(void)
+{
+	return clock_wall_is_set() || clock_wall_is_plausible() ? clock_wall_s() : 0;
+}
+
+void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part)
+{
+	const struct info *info = story_info(kiosk->shown.story);
+	const char *language = kiosk->shown.story ? story_language(kiosk->shown.story) : NULL;
+
+	if (kiosk->tally)
+		tally_add(kiosk->tally, kind,
+			  info && part >= 0 ? info_part(info, (uint32_t)part)->id : "",
+			  language ? language : "", guest_clock_s());
+}
+
 /* Nothing of one visitor is left for the next. */
 static void begin_anew(struct kiosk *kiosk)
 {
@@ -32,6 +48,8 @@ static void begin_anew(struct kiosk *kiosk)
 					    : info_language(story_info(kiosk->shown.story), 0));
 	}
 	fingers_init(kiosk); /* what still lies on the glass is nobody's */
+	if (kiosk->tally)
+		tally_write(kiosk->tally);
 }
 
 /* From where the eye is to where its way begins. */
@@ -119,6 +137,8 @@ bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
 	const uint32_t bit = 1u << event->contact;
 	const bool asked = kiosk->visit.state == VISIT_ASKED;
 
+	if (!kiosk->visit.touched)
+		guest_count(kiosk, TALLY_VISIT, -1);
 	visit_touch(&kiosk->visit, clock_now_ms());
 	if (event->phase == TOUCH_DOWN)
 		kiosk->answers = asked ? kiosk->answers | bit : kiosk->answers & ~bit;

@@ -162,6 +162,7 @@ static void fetch_beside(char out[PATH_MAX])
 static int start_net(struct kiosk *kiosk)
 {
 	char folder[PATH_MAX], cache[PATH_MAX + 16], state[PATH_MAX + 16], program[PATH_MAX];
+	char visits[PATH_MAX + 16];
 	struct net_client_options net = {
 		.socket_path = kiosk->options.socket_path,
 		.program = kiosk->options.fetch_program,
@@ -192,6 +193,10 @@ static int start_net(struct kiosk *kiosk)
 		folder_remember_touch(folder, touch_device_text(kiosk->touch, 0));
 	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
 	snprintf(state, sizeof(state), "%s/state.db", folder);
+	snprintf(visits, sizeof(visits), "%s/visits.csv", folder);
+	rc = tally_create(&kiosk->tally, visits, kiosk->options.visits_path, guest_clock_s());
+	if (rc < 0)
+		return rc;
 	if (!net.program) {
 		fetch_beside(program);
 		net.program = program;
@@ -266,6 +271,7 @@ int kiosk_start(struct kiosk *kiosk)
 void kiosk_stop(struct kiosk *kiosk)
 {
 	figures_socket_destroy(kiosk->figures);
+	tally_destroy(kiosk->tally);
 	capture_destroy(kiosk->capture);
 	if (kiosk->epoll_fd >= 0)
 		close(kiosk->epoll_fd);

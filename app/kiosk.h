@@ -19,6 +19,7 @@
 #include "render/gl.h"
 #include "render/quads.h"
 #include "render/scene.h"
+#include "storage/tally.h"
 
 struct capture;
 struct figures_socket;
@@ -69,6 +70,7 @@ struct kiosk {
 	struct net_client *net;
 	struct follow *follow;          /* of releases */
 	struct figures_socket *figures; /* NULL: not offered */
+	struct tally *tally;            /* of what visitors look at */
 	struct capture *capture;        /* NULL: a kiosk, not a measurement */
 
 	struct wants wants;
@@ -150,12 +152,16 @@ int exhibit_wait_ms(const struct kiosk *kiosk);
 must_check int vitals_offer(struct kiosk *kiosk);
 
 /* guest.c: whether a visitor is there. */
+/* The clock on the wall, seconds since 1970; 0: nobody set it. */
+int64_t guest_clock_s(void);
 /* Once a turn: asks, begins anew, shows the model. */
 void guest_watch(struct kiosk *kiosk);
 /* When guest_watch has something to do by time alone, milliseconds; -1: never. */
 int guest_wait_ms(const struct kiosk *kiosk);
 /* Moves the eye where nobody else does. true: it moves on. */
 bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms);
+/* A visitor looked at something: storage/tally.h. part: -1 for what is of none. */
+void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part);
 /* A finger does something. true: it is the answer to the question, and means nothing else. */
 bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Until the panel counts as left alone, milliseconds; 0: it is. */

@@ -43,6 +43,8 @@ static const char help_text[] =
 	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
 	"  --socket FILE        talk to a gopura-fetch that runs already\n"
 	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
+	"  --visits FILE        a copy of the counts of what visitors look at, for the health page\n"
+	"                       (docs/visitors.md)\n"
 	"  --hours TEXT         the panel is on, such as \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\"\n"
 	"                       (default: always); outside them a touch wakes it for a while\n"
 	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
@@ -87,6 +89,7 @@ enum {
 	OPTION_FETCH,
 	OPTION_SOCKET,
 	OPTION_FIGURES,
+	OPTION_VISITS,
 	OPTION_LOG,
 	OPTION_HOURS,
 	OPTION_WAKE,
@@ -122,6 +125,7 @@ static const struct option long_options[] = {
 	{ "download", required_argument, NULL, OPTION_DOWNLOAD },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "visits", required_argument, NULL, OPTION_VISITS },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
 	{ "log", required_argument, NULL, OPTION_LOG },
 	{ "hours", required_argument, NULL, OPTION_HOURS },
@@ -211,6 +215,7 @@ static bool set_text(struct options *o, int option, const char *text)
 		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
 		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
 		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->figures_path },
+		{ OPTION_VISITS, &o->visits_path },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)

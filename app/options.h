@@ -24,6 +24,7 @@ struct options {
 	const char *state_dir;   /* state.db and cache.db */
 	const char *socket_path; /* of a fetcher that runs; NULL: one is started */
 	const char *fetch_program;
+	const char *visits_path;  /* a copy of the counts of what visitors look at; NULL: none */
 	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
 	enum display_kind display;
 	const char *device;      /* /dev/dri/cardN */

@@ -20,6 +20,7 @@ enum {
 	PATIENCE_MS = 10000,
 	IDLE_S = 30,
 	LISTEN_BACKLOG = 16,
+	VISITS_BYTES_MOST = 8 << 20,
 };
 
 static const char help[] =
@@ -27,7 +28,8 @@ static const char help[] =
 	"\n"
 	"  gopura-health [options]\n"
 	"\n"
-	"  Pages: / for people, /metrics for Prometheus, /health (200 or 503) for scripts.\n"
+	"  Pages: / for people, /metrics for Prometheus, /health (200 or 503) for scripts,\n"
+	"  /visits.csv for who wants to know what visitors look at (docs/visitors.md).\n"
 	"  systemd passes the listening socket (gopura-health.socket) and starts the program when\n"
 	"  somebody asks; without one:\n"
 	"\n"
@@ -35,6 +37,7 @@ static const char help[] =
 	"  --kiosk PATH        gopura-kiosk's --figures (/run/gopura-kiosk/figures)\n"
 	"  --fetch PATH        gopura-fetch's --figures (/run/gopura-fetch/figures)\n"
 	"  --faults FILE       what gopura.conf said in vain, a line each (/run/gopura/faults)\n"
+	"  --visits FILE       counts of what visitors look at (/run/gopura-kiosk/visits.csv)\n"
 	"  --data DIR          on the partition whose room is told (/var/lib)\n"
 	"  --idle-s SECONDS    with systemd's socket: end when nobody asked for so long (30)\n"
 	"  --version, --help\n"
@@ -47,6 +50,7 @@ enum {
 	OPTION_KIOSK,
 	OPTION_FETCH,
 	OPTION_FAULTS,
+	OPTION_VISITS,
 	OPTION_DATA,
 	OPTION_IDLE,
 	OPTION_VERSION,
@@ -58,6 +62,7 @@ static const struct option long_options[] = {
 	{ "kiosk", required_argument, NULL, OPTION_KIOSK },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
 	{ "faults", required_argument, NULL, OPTION_FAULTS },
+	{ "visits", required_argument, NULL, OPTION_VISITS },
 	{ "data", required_argument, NULL, OPTION_DATA },
 	{ "idle-s", required_argument, NULL, OPTION_IDLE },
 	{ "version", no_argument, NULL, OPTION_VERSION },
@@ -68,6 +73,7 @@ static const struct option long_options[] = {
 struct health {
 	const char *listen; /* NULL: systemd's */
 	unsigned long idle_s;
+	const char *visits; /* a file; the kiosk's --visits */
 	struct gather_options gather;
 	struct snapshot snapshot;
 	struct verdict verdict;
@@ -98,6 +104,9 @@ static void take_option(struct health *health, int option)
 		break;
 	case OPTION_FAULTS:
 		health->gather.machine.faults = optarg;
+		break;
+	case OPTION_VISITS:
+		health->visits = optarg;
 		break;
 	case OPTION_DATA:
 		health->gather.machine.data = optarg;
@@ -191,12 +200,30 @@ static int passed_sockets(int fds[SERVER_LISTENERS_MOST])
 
 /* ---- answers */
 
+/* As the kiosk left it; there is none before its first start. */
+static void answer_visits(const struct health *health, const struct request *request,
+			  struct buffer *out)
+{
+	struct buffer csv;
+
+	buffer_init(&csv, VISITS_BYTES_MOST);
+	if (buffer_read_file(&csv, health->visits) == 0)
+		page_visits(out, request, &csv);
+	else
+		page_refuse(out, 404);
+	buffer_finish(&csv);
+}
+
 static void answer(void *data, int status, const struct request *request, struct buffer *out)
 {
 	struct health *health = data;
 
 	if (status != 200) {
 		page_refuse(out, status);
+		return;
+	}
+	if (request->page == REQUEST_VISITS) {
+		answer_visits(health, request, out);
 		return;
 	}
 	if (health->snapshot.taken_ms == 0 ||
@@ -245,6 +272,7 @@ int main(int argc, char **argv)
 			    .machine = { .root = "",
 					 .faults = "/run/gopura/faults",
 					 .data = "/var/lib" } },
+		.visits = "/run/gopura-kiosk/visits.csv",
 	};
 	int rc;
 

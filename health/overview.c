@@ -300,6 +300,7 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 	text_format(out,
 		    "</table><footer>As of %s by this machine's clock; looks again every 10 "
 		    "seconds. <a href=/metrics>Figures</a> for Prometheus, <a href=/health>one "
-		    "word</a> for scripts.</footer></main>\n",
+		    "word</a> for scripts; <a href=/visits.csv>what visitors look at</a>, "
+		    "without anything about them.</footer></main>\n",
 		    when);
 }

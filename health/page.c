@@ -118,9 +118,17 @@ void page_answer(struct buffer *out, const struct request *request, const struct
 	case REQUEST_HEALTH:
 		status = write_word(&body, verdict);
 		break;
+	case REQUEST_VISITS:
+		status = 404;
+		break;
 	}
 	answer(out, status, type, &body, request->head);
 	buffer_finish(&body);
+}
+
+void page_visits(struct buffer *out, const struct request *request, const struct buffer *csv)
+{
+	answer(out, 200, "text/csv", csv, request->head);
 }
 
 void page_refuse(struct buffer *out, int status)

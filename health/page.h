@@ -8,9 +8,12 @@
 
 enum { PAGE_BYTES_MOST = 128 * 1024 };
 
-/* out is written from its beginning; its ceiling is PAGE_BYTES_MOST at least. */
+/* To all requests but REQUEST_VISITS. out is written from its beginning; its ceiling is
+ * PAGE_BYTES_MOST at least. */
 void page_answer(struct buffer *out, const struct request *request, const struct snapshot *snapshot,
 		 const struct verdict *verdict);
+/* To REQUEST_VISITS: the counts of what visitors look at (storage/tally.h), as they are. */
+void page_visits(struct buffer *out, const struct request *request, const struct buffer *csv);
 /* To what is none of ours: status as by request_parse. */
 void page_refuse(struct buffer *out, int status);
 

@@ -50,6 +50,7 @@ static int find_page(struct request *out, struct bytes target)
 		{ "/", REQUEST_OVERVIEW },
 		{ "/metrics", REQUEST_METRICS },
 		{ "/health", REQUEST_HEALTH },
+		{ "/visits.csv", REQUEST_VISITS },
 	};
 	const uint8_t *query = memchr(target.data, '?', target.size);
 	const struct bytes path = { target.data,

@@ -1,4 +1,4 @@
-/* The head of an HTTP/1.1 request, as far as three pages need it. Pure. */
+/* The head of an HTTP/1.1 request, as far as four pages need it. Pure. */
 #ifndef GOPURA_HEALTH_REQUEST_H
 #define GOPURA_HEALTH_REQUEST_H
 
@@ -10,6 +10,7 @@ enum request_page {
 	REQUEST_OVERVIEW, /* / */
 	REQUEST_METRICS,  /* /metrics */
 	REQUEST_HEALTH,   /* /health */
+	REQUEST_VISITS,   /* /visits.csv */
 };
 
 struct request {

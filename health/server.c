@@ -11,8 +11,8 @@
 #include "base/log.h"
 
 enum {
-	ANSWER_BYTES_MOST = 256 * 1024,
-	PAUSE_MS = 100, /* when the system has no descriptors left */
+	ANSWER_BYTES_MOST = 9 << 20, /* the counts of 400 days; others have some kilobytes */
+	PAUSE_MS = 100,              /* when the system has no descriptors left */
 };
 
 enum stage { STAGE_FREE, STAGE_HEARS, STAGE_ANSWERS, STAGE_LEAVES };

@@ -12,6 +12,7 @@ enum { S = 1000 };
 static struct {
 	int64_t now_ms;
 	int card, page, asked_s, flights, looks, redraws;
+	int counted[TALLY_SEARCH + 1], written;
 	bool invites, searches;
 	char language[8];
 } world;
@@ -120,6 +121,49 @@ void navigator_look(struct navigator *nav, const float eye_m[3], const float tar
 	world.looks++;
 }
 
+const char *story_language(const struct story *story)
+{
+	(void)story;
+	return world.language;
+}
+
+const struct info_part *info_part(const struct info *info, uint32_t part)
+{
+	static const struct info_part gate = { .id = "gate" };
+
+	(void)info, (void)part;
+	return &gate;
+}
+
+bool clock_wall_is_set(void)
+{
+	return true;
+}
+
+bool clock_wall_is_plausible(void)
+{
+	return true;
+}
+
+int64_t clock_wall_s(void)
+{
+	return 1795953600;
+}
+
+void tally_add(struct tally *tally, enum tally_kind kind, const char *what, const char *language,
+	       int64_t now_s)
+{
+	CHECK(tally == (struct tally *)&some_thing && now_s == 1795953600);
+	CHECK(strcmp(what, kind == TALLY_PART ? "gate" : "") == 0 && language == world.language);
+	world.counted[kind]++;
+}
+
+void tally_write(struct tally *tally)
+{
+	(void)tally;
+	world.written++;
+}
+
 static int set_up(void **state)
 {
 	(void)state;
@@ -130,6 +174,7 @@ static int set_up(void **state)
 	snprintf(world.language, sizeof(world.language), "fr");
 	kiosk.shown.story = (struct story *)&some_thing;
 	kiosk.shown.frame.patches = 9;
+	kiosk.tally = (struct tally *)&some_thing;
 	kiosk.navigator_ready = true;
 	kiosk.navigator.options = (struct navigator_options){
 		.box_max_m = { 10, 10, 10 },
@@ -237,6 +282,21 @@ static void tells_how_long_the_panel_is_somebodys(void **state)
 	CHECK(guest_left_ms(&kiosk) == 0); /* nothing is to be seen */
 }
 
+static void counts_visits_and_writes_when_they_end(void **state)
+{
+	(void)state;
+	touches(TOUCH_DOWN);
+	touches(TOUCH_UP);
+	guest_count(&kiosk, TALLY_PART, 0);
+	CHECK(world.counted[TALLY_VISIT] == 1 && world.counted[TALLY_PART] == 1);
+	after(74 * S);
+	CHECK(world.written == 0);
+	after(S);
+	CHECK(world.written == 1);
+	touches(TOUCH_DOWN);
+	CHECK(world.counted[TALLY_VISIT] == 2);
+}
+
 static void pictures_of_views_have_no_visitors(void **state)
 {
 	(void)state;
@@ -256,6 +316,7 @@ int main(void)
 		VISITED(the_first_touch_already_counts),
 		VISITED(what_lies_on_the_glass_keeps_nobody_for_ever),
 		VISITED(tells_how_long_the_panel_is_somebodys),
+		VISITED(counts_visits_and_writes_when_they_end),
 		VISITED(pictures_of_views_have_no_visitors),
 	};
 

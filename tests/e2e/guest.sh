@@ -27,7 +27,7 @@ cat >"$work/fingers.touch" <<'T'
 T
 printf '%s\n' '5500 language' '25500 asked' '28000 answered' '48000 asked-again' '62500 nobody' '66500 somebody' >"$work/shots.txt"
 build/gopura-kiosk --display headless --size 960x540 --release "$small/release" \
-	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 \
+	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 --visits "$work/visits.csv" \
 	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
 	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
 grep -E 'app: (card of|nobody|somebody|is somebody|drag|words in)' "$work/kiosk.log"
@@ -38,4 +38,24 @@ import sys
 marks = r"app: (card of|is somebody there|somebody is there|nobody is there|drag begins|words in (?P<language>\w+))"
 said = [m["language"] or m[1].split()[0] for m in re.finditer(marks, open(sys.argv[1]).read())]
 assert said == ["fr", "card", "is", "somebody", "is", "nobody", "en", "somebody", "drag"], said
+P
+
+# ---- what is counted of it, and nothing of him; handed out by the health page
+cat "$work/visits.csv"
+cmp "$work/visits.csv" "$work/state/visits.csv" || fail "the copy says something else"
+port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+build/gopura-health --listen "127.0.0.1:$port" --visits "$work/visits.csv" 2>"$work/health.log" &
+health=$!
+trap 'kill "$health" 2>/dev/null || true' EXIT
+wait_for 20 "counts from the health page" curl -sf -o "$work/served.csv" "http://127.0.0.1:$port/visits.csv"
+cmp "$work/served.csv" "$work/visits.csv" || fail "the health page hands out something else"
+python3 - "$work/served.csv" <<'P'
+import collections
+import csv
+import sys
+
+sums = collections.Counter()
+for row in csv.DictReader(open(sys.argv[1])):
+    sums[row["kind"], row["what"], row["language"]] += int(row["count"])
+assert sums == {("visit", "", "en"): 2, ("language", "", "fr"): 1, ("part", "corner-towers", "fr"): 1}, sums
 P

@@ -26,6 +26,8 @@ static void three_pages_answer_to_get_and_head(void **state)
 	CHECK(r.page == REQUEST_METRICS);
 	CHECK(parse(&r, "HEAD /health?verbose=1 HTTP/1.0\r\nA-b_c: \td\r\n\r\nmore") == 200);
 	CHECK(r.page == REQUEST_HEALTH && r.head);
+	CHECK(parse(&r, "GET /visits.csv HTTP/1.1\r\n\r\n") == 200);
+	CHECK(r.page == REQUEST_VISITS && !r.head);
 }
 
 static void what_is_wrong_gets_its_status(void **state)
@@ -36,6 +38,7 @@ static void what_is_wrong_gets_its_status(void **state)
 	} wrong[] = {
 		{ "GET /etc/passwd HTTP/1.1\r\n\r\n", 404 },
 		{ "GET /../metrics HTTP/1.1\r\n\r\n", 404 },
+		{ "GET /visits HTTP/1.1\r\n\r\n", 404 },
 		{ "GET /metrics/ HTTP/1.1\r\n\r\n", 404 },
 		{ "GET //metrics HTTP/1.1\r\n\r\n", 404 },
 		{ "GET /%6detrics HTTP/1.1\r\n\r\n", 404 },

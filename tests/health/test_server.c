@@ -194,7 +194,7 @@ static void an_answer_that_does_not_fit_is_none(void **state)
 	int fd;
 
 	(void)state;
-	answer_bytes = 1 << 20;
+	answer_bytes = 10 << 20;
 	start(&server, 60000, 200);
 	fd = visit();
 	say(fd, "GET / HTTP/1.1\r\n\r\n");
