@@ -1,0 +1,81 @@
+/* A file of annotations of anybody's: refused with a complaint and nothing left behind, or a
+ * content folder that goes out again. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "storage/annotations.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static char base[64], file[100], folder[100];
+
+static void count(void *data, bool is_error, const char *name, unsigned line, const char *text)
+{
+	(void)name, (void)line;
+	if (strlen(text) < 10)
+		abort();
+	*(int *)data += is_error;
+}
+
+static void clean(void)
+{
+	char command[150];
+
+	snprintf(command, sizeof(command), "rm -rf %s", base);
+	if (system(command) != 0)
+		abort();
+}
+
+/* A file written as any tool writes one: it need not outlive the power. */
+static void write_input(const uint8_t *data, size_t size)
+{
+	FILE *out = fopen(file, "wb");
+
+	if (!out || fwrite(data, 1, size, out) != size || fclose(out) != 0)
+		abort();
+}
+
+static void begin(void)
+{
+	snprintf(base, sizeof(base), "/tmp/gopura-fuzz-XXXXXX");
+	if (!mkdtemp(base) || atexit(clean) != 0)
+		abort();
+	snprintf(file, sizeof(file), "%s/in.jsonld", base);
+	snprintf(folder, sizeof(folder), "%s/content", base);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	int errors = 0, rc;
+	const struct annotations_import_options options = { .file = file,
+							    .folder = folder,
+							    .skip_unknown = size % 2,
+							    .complaint = count,
+							    .complaint_data = &errors };
+	const struct annotations_export_options export = { .folder = folder,
+							   .complaint = count,
+							   .complaint_data = &errors };
+	struct annotations_imported report;
+	struct annotations annotations;
+	char command[150];
+
+	if (!base[0])
+		begin();
+	write_input(data, size);
+	rc = annotations_import(&report, &options);
+	if (rc != 0 && (rc != -EINVAL || errors == 0 || access(folder, F_OK) == 0))
+		abort();
+	if (rc != 0)
+		return 0;
+	if (annotations_export(&annotations, &export) != 0 ||
+	    annotations.count != report.part_count)
+		abort();
+	annotations_finish(&annotations);
+	snprintf(command, sizeof(command), "rm -rf %s", folder);
+	if (system(command) != 0)
+		abort();
+	return 0;
+}
