@@ -35,8 +35,8 @@ unchanged() { :; }
 blank() { printf '#!/bin/sh\nexec sleep infinity\n' >"$work/kiosk"; install -m 755 "$work/kiosk" "$1/usr/bin/gopura-kiosk.new"; mv "$1/usr/bin/gopura-kiosk.new" "$1/usr/bin/gopura-kiosk"; }
 hangs() {
 	mkdir -p "$1/etc/systemd/system/gopura.target.wants"
-	# The service manager itself stops, which only the hardware's watchdog sees.
-	printf '[Service]\nExecStart=/bin/sh -c "sleep 30; kill -STOP 1"\n' >"$1/etc/systemd/system/hang.service"
+	# The service manager itself stops (its own answer to a fault is to freeze), which only the hardware's watchdog sees.
+	printf '[Service]\nExecStart=/bin/sh -c "sleep 30; kill -ABRT 1"\n' >"$1/etc/systemd/system/hang.service"
 	ln -s ../hang.service "$1/etc/systemd/system/gopura.target.wants/hang.service"
 }
 variant next unchanged
