@@ -140,6 +140,23 @@ static void press_key(struct kiosk *kiosk, int key)
 	log_debug("app", "search: %zu bytes typed", strlen(overlay_query(overlay)));
 }
 
+/* What a page leaves for the model may be another piece of the panel then. */
+static void change_comfort(struct kiosk *kiosk, enum overlay_action_kind which)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay_comfort comfort = overlay_comfort(overlay);
+
+	if (which == OVERLAY_LARGE)
+		comfort.large = !comfort.large;
+	else
+		comfort.reach = !comfort.reach;
+	overlay_set_comfort(overlay, comfort);
+	log_debug("app", "comfort:%s%s", comfort.large ? " large" : "",
+		  comfort.reach ? " reach" : "");
+	if (which == OVERLAY_REACH && overlay_page(overlay) >= 0)
+		fly_to_part(kiosk, (uint32_t)overlay_page(overlay));
+}
+
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
@@ -180,6 +197,10 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		overlay_show_search(overlay, !overlay_searching(overlay));
 		if (overlay_searching(overlay))
 			guest_count(kiosk, TALLY_SEARCH, -1);
+		break;
+	case OVERLAY_LARGE:
+	case OVERLAY_REACH:
+		change_comfort(kiosk, action->kind);
 		break;
 	case OVERLAY_PICTURE:
 		overlay_show_picture(overlay, action->picture);

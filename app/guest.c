@@ -43,6 +43,7 @@ static void begin_anew(struct kiosk *kiosk)
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);
 		overlay_show_search(overlay, false);
+		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
 		story_set_language(kiosk->shown.story,
 				   language ? language
 					    : info_language(story_info(kiosk->shown.story), 0));

@@ -300,22 +300,34 @@ static int lay_out(struct article *article)
 	return find_links(article);
 }
 
+int article_lay_out(struct article *article, int width_px, int view_px)
+{
+	int measure_px = MEASURE_EMS * theme_style_px(article->options.theme, TEXT_BODY);
+	int rc;
+
+	article->options.width_px = width_px;
+	article->options.view_px = view_px;
+	article->column_px = width_px - 2 * px(article, SIDE_MARGIN_MM);
+	if (article->column_px > measure_px)
+		article->column_px = measure_px;
+	if (article->column_px < 1)
+		article->column_px = 1;
+	article->left_px = (width_px - article->column_px) / 2;
+	rc = lay_out(article);
+	if (rc < 0)
+		article->link_count = 0;
+	return rc;
+}
+
 int article_create(struct article **out, const struct article_options *options, struct bytes html)
 {
 	struct article *article = calloc(1, sizeof(*article));
-	int measure_px, rc;
+	int rc;
 
 	*out = NULL;
 	if (!article)
 		return -ENOMEM;
 	article->options = *options;
-	measure_px = MEASURE_EMS * theme_style_px(options->theme, TEXT_BODY);
-	article->column_px = options->width_px - 2 * px(article, SIDE_MARGIN_MM);
-	if (article->column_px > measure_px)
-		article->column_px = measure_px;
-	if (article->column_px < 1)
-		article->column_px = 1;
-	article->left_px = (options->width_px - article->column_px) / 2;
 	rc = html_parse(&article->html, html);
 	if (rc == 0 && options->credits && *options->credits)
 		rc = html_add_note(&article->html, options->credits);
@@ -327,7 +339,7 @@ int article_create(struct article **out, const struct article_options *options, 
 	for (uint32_t i = 0; rc == 0 && i < article->html.block_count; i++)
 		article->items[i].block = &article->html.blocks[i];
 	if (rc == 0)
-		rc = lay_out(article);
+		rc = article_lay_out(article, options->width_px, options->view_px);
 	if (rc < 0) {
 		article_destroy(article);
 		return rc;

@@ -20,6 +20,9 @@ struct article_options {
 /* html is not kept. *out is owned by the caller; on failure it is NULL. As html_parse. */
 must_check int article_create(struct article **out, const struct article_options *options,
 			      struct bytes html);
+/* In other type, or for another window on it; as article_create. -ENOMEM: it has no links
+ * then. */
+must_check int article_lay_out(struct article *article, int width_px, int view_px);
 void article_destroy(struct article *article); /* NULL is fine */
 
 int article_height_px(const struct article *article);

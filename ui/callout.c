@@ -68,7 +68,7 @@ static bool is_eligible(const struct layout *layout, const struct callout_anchor
 	return anchor->visible && anchor->label_px > 0 && anchor->label_px <= area->column_px &&
 	       anchor->x_px >= layout->left_port_px + (float)area->lead_px &&
 	       anchor->x_px <= layout->right_port_px - (float)area->lead_px &&
-	       anchor->y_px >= (float)area->y_px &&
+	       anchor->y_px >= (float)(area->y_px - area->above_px) &&
 	       anchor->y_px <= (float)(area->y_px + area->height_px);
 }
 

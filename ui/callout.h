@@ -23,6 +23,7 @@ struct callout_area {
 	int column_px;                       /* width of a column; no label is wider */
 	int row_px, gap_px;                  /* height of every label; between two */
 	int lead_px;                         /* shortest horizontal run of a leader */
+	int above_px;                        /* how far above it anchors may lie */
 };
 
 struct callout_anchor {

@@ -13,8 +13,8 @@
 
 void card_size(const struct theme *theme, int most_width_px, int *width_px, int *height_px)
 {
-	*width_px = theme_px(theme, WIDTH_MM);
-	*height_px = theme_px(theme, HEIGHT_MM);
+	*width_px = theme_text_px(theme, WIDTH_MM);
+	*height_px = theme_text_px(theme, HEIGHT_MM);
 	if (*width_px > most_width_px)
 		*width_px = most_width_px;
 }

@@ -27,9 +27,21 @@ static void add(struct chrome *chrome, enum chrome_button_kind kind, int languag
 	chrome->width_px += width_px;
 }
 
-static void try_layout(struct chrome *chrome, const struct theme *theme,
-		       const char *const *languages, uint32_t language_count, bool has_search)
+/* Borrowed of the theme. */
+static struct theme type_of(const struct chrome *chrome, const struct theme *theme)
 {
+	struct theme type = *theme;
+
+	if (chrome->usual)
+		type.text_scale = 1;
+	return type;
+}
+
+static void try_layout(struct chrome *chrome, const struct theme *theme,
+		       const char *const *languages, uint32_t language_count, bool has_search,
+		       bool has_reach)
+{
+	struct theme type = type_of(chrome, theme);
 	int target_px = theme_px(theme, chrome->tight ? THEME_TARGET_MM : BAR_MM);
 	float padding_mm = chrome->tight ? 0.6f : chrome->codes ? 1.5f : PADDING_MM;
 
@@ -39,10 +51,13 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 	add(chrome, CHROME_HELP, -1, target_px);
 	if (has_search)
 		add(chrome, CHROME_SEARCH, -1, target_px);
+	add(chrome, CHROME_LARGE, -1, target_px);
+	if (has_reach)
+		add(chrome, CHROME_REACH, -1, target_px);
 	for (uint32_t i = 0; language_count > 1 && i < language_count; i++) {
 		char code[20];
 		const char *label = label_of(chrome, languages[i], code, sizeof(code));
-		PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, label, -1);
+		PangoLayout *layout = theme_layout(&type, TEXT_BUTTON, label, -1);
 		int width_px;
 
 		pango_layout_get_pixel_size(layout, &width_px, NULL);
@@ -53,20 +68,19 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 }
 
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search)
+		   uint32_t language_count, int most_width_px, bool has_search, bool has_reach)
 {
 	if (language_count > CHROME_LANGUAGES_MOST)
 		language_count = CHROME_LANGUAGES_MOST;
 	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM) };
-	try_layout(out, theme, languages, language_count, has_search);
-	if (out->width_px <= most_width_px)
-		return;
-	out->codes = true;
-	try_layout(out, theme, languages, language_count, has_search);
-	if (out->width_px <= most_width_px)
-		return;
-	out->tight = true;
-	try_layout(out, theme, languages, language_count, has_search);
+	/* Before buttons shrink, type does: so large type moves none but the languages. */
+	bool *const savings[] = { &out->codes, &out->usual, &out->tight };
+
+	try_layout(out, theme, languages, language_count, has_search, has_reach);
+	for (size_t i = 0; i < ARRAY_COUNT(savings) && out->width_px > most_width_px; i++) {
+		*savings[i] = true;
+		try_layout(out, theme, languages, language_count, has_search, has_reach);
+	}
 }
 
 static void draw_label(cairo_t *context, const struct theme *theme, const char *text,
@@ -85,11 +99,14 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 			const struct chrome_button *button, const struct theme *theme,
 			const char *const *languages, bool on)
 {
-	static const enum icon icons[] = {
-		[CHROME_HOME] = ICON_HOME, [CHROME_HELP] = ICON_HELP, [CHROME_SEARCH] = ICON_SEARCH
-	};
+	static const enum icon icons[] = { [CHROME_HOME] = ICON_HOME,
+					   [CHROME_HELP] = ICON_HELP,
+					   [CHROME_SEARCH] = ICON_SEARCH,
+					   [CHROME_LARGE] = ICON_LARGE,
+					   [CHROME_REACH] = ICON_REACH };
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
+	struct theme type = type_of(chrome, theme);
 	char code[20];
 
 	if (on) {
@@ -101,15 +118,20 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 	}
 	theme_set_source(context, on ? theme_night : theme_night_text, 1);
 	if (button->kind == CHROME_LANGUAGE)
-		draw_label(context, theme,
+		draw_label(context, &type,
 			   label_of(chrome, languages[button->language], code, sizeof(code)), x, y);
 	else
-		icon_draw(context, icons[button->kind], x, y, theme_px(theme, 5.0f));
+		icon_draw(context, icons[button->kind], x, y, theme_text_px(&type, 5.0f));
 }
 
 int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct theme *theme,
-		const char *const *languages, int current, bool help_is_on, bool search_is_on)
+		const char *const *languages, struct chrome_state state)
 {
+	const bool on[] = { [CHROME_HELP] = state.help,
+			    [CHROME_SEARCH] = state.search,
+			    [CHROME_LARGE] = state.large,
+			    [CHROME_REACH] = state.reach,
+			    [CHROME_LANGUAGE] = false };
 	cairo_t *context;
 	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);
 
@@ -118,15 +140,14 @@ int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct th
 	context = bitmap_begin(out);
 	theme_rounded(context, 0, 0, chrome->width_px, chrome->height_px,
 		      theme_px(theme, THEME_RADIUS_MM));
-	theme_set_source(context, theme_night, 0.82);
+	theme_set_source(context, theme_night, THEME_CHIP_ALPHA);
 	cairo_fill(context);
 	for (uint32_t i = 0; i < chrome->button_count; i++) {
 		const struct chrome_button *button = &chrome->buttons[i];
-		bool on = (button->kind == CHROME_LANGUAGE && button->language == current) ||
-			  (button->kind == CHROME_HELP && help_is_on) ||
-			  (button->kind == CHROME_SEARCH && search_is_on);
 
-		draw_button(context, chrome, button, theme, languages, on);
+		draw_button(context, chrome, button, theme, languages,
+			    button->kind == CHROME_LANGUAGE ? button->language == state.language
+							    : on[button->kind]);
 	}
 	bitmap_end(out, context);
 	return 0;
@@ -157,7 +178,7 @@ int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_wid
 	};
 	const int count = (int)ARRAY_COUNT(lines) - !has_names; /* the last speaks of them */
 	int padding = theme_px(theme, PADDING_MM), icon_px = theme_px(theme, 11.0f);
-	int cell_px = theme_px(theme, 38.0f), text_px = 0;
+	int cell_px = theme_text_px(theme, 38.0f), text_px = 0;
 	PangoLayout *layouts[ARRAY_COUNT(lines)];
 	cairo_t *context;
 	int rc;
@@ -180,7 +201,7 @@ int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_wid
 		context = bitmap_begin(out);
 		theme_rounded(context, 0, 0, out->width_px, out->height_px,
 			      theme_px(theme, THEME_RADIUS_MM));
-		theme_set_source(context, theme_night, 0.82);
+		theme_set_source(context, theme_night, THEME_CHIP_ALPHA);
 		cairo_fill(context);
 		theme_set_source(context, theme_night_text, 1);
 		for (int i = 0; i < count; i++) {

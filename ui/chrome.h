@@ -1,14 +1,22 @@
-/* What is always there, always in the same place: home, help, search and the languages, on one bar
- * at the lower left, where a seated visitor reaches it too; and the help it shows. */
+/* What is always there, always in the same place: home, help, search, large type, reach and the
+ * languages, on one bar at the lower left, where a seated visitor reaches it too; and the help it
+ * shows. */
 #ifndef GOPURA_UI_CHROME_H
 #define GOPURA_UI_CHROME_H
 
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 3 };
+enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 5 };
 
-enum chrome_button_kind { CHROME_HOME, CHROME_HELP, CHROME_SEARCH, CHROME_LANGUAGE };
+enum chrome_button_kind {
+	CHROME_HOME,
+	CHROME_HELP,
+	CHROME_SEARCH,
+	CHROME_LARGE,
+	CHROME_REACH,
+	CHROME_LANGUAGE,
+};
 
 struct chrome_button {
 	enum chrome_button_kind kind;
@@ -21,17 +29,23 @@ struct chrome {
 	uint32_t button_count;
 	int width_px, height_px;
 	bool codes; /* no room for the languages' names: their codes */
+	bool usual; /* no room for large type: labels at their usual size */
 	bool tight; /* not even for those at full size: no button wider than a finger */
 };
 
 /* languages are borrowed for the call. One language alone needs no switch. */
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search);
-/* A fresh bitmap of the bar. current is the index of the language that is set; those that are on
- * are shown so. */
+		   uint32_t language_count, int most_width_px, bool has_search, bool has_reach);
+
+struct chrome_state {
+	int language; /* index of the one that is set */
+	bool help, search, large, reach;
+};
+
+/* A fresh bitmap of the bar; what is on is shown so. */
 must_check int chrome_draw(struct bitmap *out, const struct chrome *chrome,
-			   const struct theme *theme, const char *const *languages, int current,
-			   bool help_is_on, bool search_is_on);
+			   const struct theme *theme, const char *const *languages,
+			   struct chrome_state state);
 /* NULL: between the buttons. x relative to the bar. */
 const struct chrome_button *chrome_button_at(const struct chrome *chrome, float x_px);
 

@@ -82,6 +82,26 @@ static void draw_tap(cairo_t *c)
 	dot(c, 0, 0, 0.36);
 }
 
+static void draw_letter(cairo_t *c, double x, double half, double height)
+{
+	cairo_move_to(c, x - half, 0.85);
+	cairo_line_to(c, x, 0.85 - height);
+	cairo_line_to(c, x + half, 0.85);
+	line(c, x - half * 0.6, 0.85 - height * 0.36, x + half * 0.6, 0.85 - height * 0.36);
+}
+
+static void draw_seated(cairo_t *c)
+{
+	cairo_move_to(c, -0.3, -0.4);
+	cairo_line_to(c, -0.25, 0.15);
+	cairo_line_to(c, 0.35, 0.15);
+	cairo_line_to(c, 0.7, 0.85);
+	line(c, -0.28, -0.15, 0.3, -0.15);
+	cairo_new_sub_path(c);
+	cairo_arc(c, -0.15, 0.38, 0.57, 0.2, 3.7);
+	dot(c, -0.32, -0.8, 0.2);
+}
+
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
 {
 	cairo_save(context);
@@ -130,6 +150,13 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		cairo_line_to(context, -1, 0.45);
 		cairo_line_to(context, 1, 0.45);
 		cairo_line_to(context, 1, 0);
+		break;
+	case ICON_LARGE:
+		draw_letter(context, -0.66, 0.3, 0.8);
+		draw_letter(context, 0.36, 0.58, 1.65);
+		break;
+	case ICON_REACH:
+		draw_seated(context);
 		break;
 	case ICON_BACKSPACE:
 		cairo_move_to(context, -1.2, 0);

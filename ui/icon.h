@@ -16,6 +16,8 @@ enum icon {
 	ICON_SEARCH,
 	ICON_SPACE,
 	ICON_BACKSPACE,
+	ICON_LARGE, /* type */
+	ICON_REACH, /* who sits in a wheelchair */
 };
 
 /* About size across, centred on x, y. */

@@ -65,11 +65,19 @@ static struct keyboard_key *add(struct keyboard *keyboard, enum keyboard_key_kin
 	return key;
 }
 
-/* Letters into rows of at most `columns`, in cells; y_px is the row. Returns how many rows. */
-static int place_letters(struct keyboard *keyboard, const char *rows, int columns)
+/* Kana are: their rows mean something. */
+static bool is_table(const char *rows)
+{
+	return rows == find_rows("ja");
+}
+
+/* Letters into rows of at most `columns`, in cells; y_px is the row. on: whether the rows run on
+ * into each other. Returns how many rows. */
+static int place_letters(struct keyboard *keyboard, const char *rows, int columns, bool on)
 {
 	int row = 0, column = 0;
 
+	keyboard->key_count = 0;
 	while (*rows) {
 		size_t size = strcspn(rows, " \n");
 		struct keyboard_key *key;
@@ -83,7 +91,7 @@ static int place_letters(struct keyboard *keyboard, const char *rows, int column
 		key->x_px = column++;
 		key->y_px = row;
 		rows += size;
-		if (*rows == '\n') {
+		if (*rows == '\n' && !on) {
 			row++;
 			column = 0;
 		}
@@ -139,15 +147,19 @@ void keyboard_layout(struct keyboard *out, const struct theme *theme, const char
 {
 	const char *own = find_rows(language), *rows = use_latin ? latin : own;
 	int target_px = theme_px(theme, THEME_TARGET_MM), columns = count_columns(rows);
+	int most_rows = most_height_px / target_px;
 	int column_px, row_px, row_count;
 
 	*out = (struct keyboard){ .width_px = width_px, .latin = use_latin };
 	if (columns * target_px > width_px)
 		columns = width_px / target_px > 4 ? width_px / target_px : 4;
+	row_count = place_letters(out, rows, columns, false) + 1;
+	/* Too low for that: as alphabets run, in longer rows. */
+	while (row_count > most_rows && !is_table(rows) && (columns + 1) * target_px <= width_px)
+		row_count = place_letters(out, rows, ++columns, true) + 1;
 	column_px = width_px / columns;
 	if (column_px > theme_px(theme, COLUMN_MM))
 		column_px = theme_px(theme, COLUMN_MM);
-	row_count = place_letters(out, rows, columns) + 1;
 	row_px = theme_px(theme, ROW_MM);
 	if (row_px * row_count > most_height_px)
 		row_px = most_height_px / row_count > 1 ? most_height_px / row_count : 1;

@@ -32,14 +32,15 @@ static int copy_languages(struct overlay *overlay, const struct overlay_options 
 	return 0;
 }
 
-static void lay_out_chrome(struct overlay *overlay)
+void overlay_lay_out_chrome(struct overlay *overlay)
 {
 	int gaps_px = 2 * theme_px(&overlay->theme, THEME_GAP_MM);
 	/* It must fit beside an open page. */
 	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
 
 	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		      overlay->language_count, most_px - gaps_px, overlay->part_count > 0);
+		      overlay->language_count, most_px - gaps_px, overlay->part_count > 0,
+		      overlay_offers_reach(overlay));
 	overlay->chrome_dirty = true;
 }
 
@@ -59,7 +60,7 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 		rc = copy_languages(overlay, options);
 	if (rc < 0)
 		return rc;
-	lay_out_chrome(overlay);
+	overlay_lay_out_chrome(overlay);
 	overlay_draw_fixed(overlay);
 	overlay->strip_px = options->height_px / (STRIPS - 4) > STRIP_PX
 				    ? options->height_px / (STRIPS - 4)
@@ -136,7 +137,7 @@ static int copy_part(struct part *to, const struct overlay_part *from)
 	return to->title && to->caption && to->thumbnail ? 0 : -ENOMEM;
 }
 
-static void forget_labels(struct overlay *overlay)
+void overlay_forget_labels(struct overlay *overlay)
 {
 	for (uint32_t i = 0; i < LABELS; i++)
 		overlay->labels[i] = (struct label){ .part = -1 };
@@ -186,16 +187,11 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	overlay->part_count = count;
 	if (had_parts != (count > 0)) {
 		overlay->help_dirty = true;
-		lay_out_chrome(overlay);
+		overlay_lay_out_chrome(overlay);
 	}
 	overlay_search_language(overlay); /* its rows are in other words */
-	overlay->column_px = 0;
-	for (uint32_t i = 0; i < count; i++) {
-		copies[i].label_px = overlay_measure_label(overlay, copies[i].title);
-		if (copies[i].label_px > overlay->column_px)
-			overlay->column_px = copies[i].label_px;
-	}
-	forget_labels(overlay);
+	overlay_measure_labels(overlay);
+	overlay_forget_labels(overlay);
 	overlay->card_dirty = overlay->head_dirty = true;
 	return 0;
 }
@@ -211,7 +207,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->question_drawn_s = 0; /* in the other language */
 		overlay->card_dirty = overlay->head_dirty = true;
 		overlay_search_language(overlay);
-		forget_labels(overlay);
+		overlay_forget_labels(overlay);
 	}
 }
 
@@ -363,7 +359,8 @@ static struct overlay_action tap_page(const struct overlay *overlay, float x_px,
 	struct overlay_rect view = overlay_view_rect(overlay);
 	int picture;
 
-	if (y_px < (float)view.y_px) {
+	if (overlay_rect_holds(overlay_head_rect(overlay, overlay_page_rect(overlay)), x_px,
+			       y_px)) {
 		/* The head's whole right end, so that a near miss closes too. */
 		if (x_px >= (float)overlay_close_rect(overlay).x_px)
 			action.kind = OVERLAY_CLOSE_PAGE;
@@ -397,6 +394,10 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_HELP;
 	} else if (button->kind == CHROME_SEARCH) {
 		action.kind = OVERLAY_SEARCH;
+	} else if (button->kind == CHROME_LARGE) {
+		action.kind = OVERLAY_LARGE;
+	} else if (button->kind == CHROME_REACH) {
+		action.kind = OVERLAY_REACH;
 	} else if (button->language != overlay->language) {
 		action.kind = OVERLAY_LANGUAGE;
 		action.language = overlay->languages[button->language];
@@ -428,10 +429,10 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 		return overlay_gallery_tap(overlay, x_px, y_px);
 	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
 		return overlay_search_tap(overlay, x_px, y_px);
-	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
-		return tap_page(overlay, x_px, y_px);
 	if (overlay->card_part >= 0 && overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px))
 		return tap_card(overlay, x_px, y_px);
+	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
+		return tap_page(overlay, x_px, y_px);
 	if (overlay->help.on && overlay_rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
 		action.kind = OVERLAY_HELP;
 		return action;

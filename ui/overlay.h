@@ -117,6 +117,16 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay);
 
 /* ---- touch ---- */
 
+/* What a visitor chooses once and the next one does not find. */
+struct overlay_comfort {
+	bool large; /* type, THEME_LARGE_TYPE times as large */
+	bool reach; /* all that can be touched is in the lower third, for who sits or is small */
+};
+
+/* Where the panel is so small that all of it is within reach, reach stays off. */
+void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort);
+struct overlay_comfort overlay_comfort(const struct overlay *overlay);
+
 enum overlay_action_kind {
 	OVERLAY_NONE,      /* nothing of ours is there: the tap is the model's */
 	OVERLAY_SWALLOWED, /* ours, but nothing happens */
@@ -129,6 +139,8 @@ enum overlay_action_kind {
 	OVERLAY_HOME,     /* back to the first view */
 	OVERLAY_HELP,     /* the help, which is there or not (overlay_help), changes over */
 	OVERLAY_SEARCH,   /* the search, which is open or not (overlay_searching), changes over */
+	OVERLAY_LARGE,    /* large type (overlay_comfort) changes over */
+	OVERLAY_REACH,    /* so does reach */
 	OVERLAY_KEY,      /* key: for overlay_press */
 	OVERLAY_FOUND,    /* part: one of those that were found */
 	OVERLAY_PICTURE,  /* picture: for overlay_show_picture */

@@ -136,9 +136,10 @@ static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh
 void overlay_draw_chrome(struct overlay *overlay)
 {
 	struct bitmap fresh;
-	int rc = chrome_draw(&fresh, &overlay->chrome, &overlay->theme,
-			     (const char *const *)overlay->languages, overlay->language,
-			     overlay->help.on, overlay->search.fade.on);
+	int rc = chrome_draw(
+		&fresh, &overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
+		(struct chrome_state){ overlay->language, overlay->help.on, overlay->search.fade.on,
+				       overlay->comfort.large, overlay->comfort.reach });
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
 }
@@ -220,18 +221,20 @@ void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int wid
 /* The part's name in small, a line below, and the one control that closes. */
 void overlay_draw_page_head(struct overlay *overlay)
 {
-	struct overlay_rect page = overlay_page_rect(overlay), close = overlay_close_rect(overlay);
-	int height_px = overlay_view_rect(overlay).y_px - page.y_px, text_px;
+	struct overlay_rect head = overlay_head_rect(overlay, overlay_page_rect(overlay));
+	struct overlay_rect close = overlay_close_rect(overlay);
+	int text_px;
 	int left_px = px(overlay, 8.0f);
-	int room_px = close.x_px - page.x_px - left_px - px(overlay, THEME_GAP_MM);
-	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_HEAD, page.width_px, height_px);
+	int room_px = close.x_px - head.x_px - left_px - px(overlay, THEME_GAP_MM);
+	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_HEAD, head.width_px, head.height_px);
 	PangoLayout *layout;
 
 	if (!context)
 		return;
 	theme_set_source(context, theme_paper, 1);
 	cairo_paint(context);
-	cairo_rectangle(context, 0, height_px - 1, page.width_px, 1);
+	cairo_rectangle(context, 0, overlay_is_flat(overlay) ? 0 : head.height_px - 1,
+			head.width_px, 1);
 	theme_set_source(context, theme_line, 1);
 	cairo_fill(context);
 
@@ -240,13 +243,25 @@ void overlay_draw_page_head(struct overlay *overlay)
 	theme_limit_lines(layout, room_px > 1 ? room_px : 1, 1);
 	pango_layout_get_pixel_size(layout, NULL, &text_px);
 	theme_set_source(context, theme_ink_soft, 1);
-	cairo_move_to(context, left_px, (height_px - text_px) / 2.0);
+	cairo_move_to(context, left_px, close.y_px - head.y_px + (close.height_px - text_px) / 2.0);
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
 
-	cairo_translate(context, close.x_px - page.x_px, close.y_px - page.y_px);
+	cairo_translate(context, close.x_px - head.x_px, close.y_px - head.y_px);
 	overlay_draw_close(overlay, context, close.width_px, close.height_px);
 	overlay_end(overlay, BITMAP_PAGE_HEAD, context);
+}
+
+void overlay_measure_labels(struct overlay *overlay)
+{
+	overlay->column_px = 0;
+	for (uint32_t i = 0; i < overlay->part_count; i++) {
+		struct part *part = &overlay->parts[i];
+
+		part->label_px = overlay_measure_label(overlay, part->title);
+		if (part->label_px > overlay->column_px)
+			overlay->column_px = part->label_px;
+	}
 }
 
 int overlay_measure_label(const struct overlay *overlay, const char *title)
@@ -276,9 +291,9 @@ void overlay_draw_label(struct overlay *overlay, uint32_t index)
 	theme_rounded(context, 0, inset_px, width_px, height_px - 2 * inset_px,
 		      px(overlay, THEME_RADIUS_MM));
 	if (selected)
-		theme_set_source(context, theme_accent, 0.95);
+		theme_set_source(context, theme_accent, THEME_CHOSEN_ALPHA);
 	else
-		theme_set_source(context, theme_night, 0.78);
+		theme_set_source(context, theme_night, THEME_LABEL_ALPHA);
 	cairo_fill(context);
 	layout = theme_layout(&overlay->theme, TEXT_LABEL, overlay->parts[label->part].title, -1);
 	/* A pixel more: rounding must not cut a text that fits. */

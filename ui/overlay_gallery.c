@@ -32,7 +32,8 @@ static int px(const struct overlay *overlay, float mm)
 /* Where a picture stands that is not zoomed: above its caption, which is above the bar. */
 struct overlay_rect overlay_gallery_rect(const struct overlay *overlay)
 {
-	int bottom_px = overlay_chrome_rect(overlay).y_px - px(overlay, CAPTION_MM);
+	int bottom_px =
+		overlay_chrome_rect(overlay).y_px - theme_text_px(&overlay->theme, CAPTION_MM);
 	int margin_px = px(overlay, MARGIN_MM);
 
 	return (struct overlay_rect){ margin_px, margin_px, overlay->width_px - 2 * margin_px,
@@ -48,9 +49,13 @@ struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
 	struct overlay_rect rect = { overlay->width_px - side_px - margin_px, margin_px, side_px,
 				     side_px };
 
-	if (button == GALLERY_CLOSE)
-		return rect;
-	rect.y_px = view.y_px + (view.height_px - side_px) / 2;
+	if (overlay->comfort.reach) { /* at the lower end, the one that closes above the next */
+		rect.y_px = view.y_px + view.height_px - side_px;
+		if (button == GALLERY_CLOSE)
+			rect.y_px -= side_px + px(overlay, THEME_GAP_MM);
+	} else if (button != GALLERY_CLOSE) {
+		rect.y_px = view.y_px + (view.height_px - side_px) / 2;
+	}
 	if (button == GALLERY_BACK)
 		rect.x_px = margin_px;
 	return rect;
@@ -283,7 +288,7 @@ static void draw_words(struct overlay *overlay)
 	const struct gallery *gallery = &overlay->gallery;
 	struct overlay_rect view = overlay_gallery_rect(overlay);
 	cairo_t *context = overlay_begin(overlay, BITMAP_PICTURE_WORDS, view.width_px,
-					 px(overlay, CAPTION_MM));
+					 theme_text_px(&overlay->theme, CAPTION_MM));
 	const char *caption = "";
 	char count[32], *text;
 	PangoLayout *layout;
@@ -322,7 +327,7 @@ void overlay_draw_gallery_buttons(struct overlay *overlay)
 		if (!context)
 			continue;
 		theme_rounded(context, 0, 0, side_px, side_px, side_px / 2.0);
-		theme_set_source(context, theme_night, 0.7);
+		theme_set_source(context, theme_night, THEME_BUTTON_ALPHA);
 		cairo_fill(context);
 		theme_set_source(context, theme_night_text, 1);
 		icon_draw(context, icons[i], side_px / 2.0, side_px / 2.0, px(overlay, 4.5f));

@@ -159,9 +159,11 @@ static void add_page(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
 	struct overlay_rect page = overlay_page_rect(overlay), view = overlay_view_rect(overlay);
+	struct overlay_rect head = overlay_head_rect(overlay, page);
 	float alpha = ease(overlay->page.alpha),
 	      slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
-	float dx = overlay_is_portrait(overlay) ? 0 : slide, dy = slide - dx;
+	float dx = overlay_is_portrait(overlay) || overlay_is_flat(overlay) ? 0 : slide,
+	      dy = slide - dx;
 	float foot_px = (float)overlay->drawings[BITMAP_PAGE_FOOT].bitmap.height_px;
 
 	if (!overlay->article)
@@ -176,7 +178,7 @@ static void add_page(struct list *list)
 			 foot_px);
 	add_scroll_mark(list, view, overlay->scroll_px, (float)overlay_scroll_most(overlay), alpha,
 			dx, dy);
-	add_bitmap(list, BITMAP_PAGE_HEAD, alpha, (float)page.x_px + dx, (float)page.y_px + dy);
+	add_bitmap(list, BITMAP_PAGE_HEAD, alpha, (float)head.x_px + dx, (float)head.y_px + dy);
 }
 
 static void add_row(struct list *list, uint32_t slot, struct overlay_rect view, float alpha,
@@ -197,10 +199,12 @@ static void add_search(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
 	struct overlay_rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
-	struct overlay_rect key;
+	struct overlay_rect head = overlay_head_rect(overlay, all);
+	struct overlay_rect keys = overlay_keyboard_rect(overlay), key;
 	float alpha = ease(overlay->search.fade.alpha);
 	float slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
-	float dx = overlay_is_portrait(overlay) ? 0 : slide, dy = slide - dx;
+	float dx = overlay_is_portrait(overlay) || overlay_is_flat(overlay) ? 0 : slide,
+	      dy = slide - dx;
 
 	add_rect(list, BITMAP_PAPER, alpha, (float)all.x_px + dx, (float)all.y_px + dy,
 		 (float)all.width_px, (float)all.height_px);
@@ -208,9 +212,8 @@ static void add_search(struct list *list)
 		add_row(list, slot, rows, alpha, dx, dy);
 	add_scroll_mark(list, rows, overlay->search.scroll_px,
 			(float)overlay_found_scroll_most(overlay), alpha, dx, dy);
-	add_bitmap(list, BITMAP_SEARCH_HEAD, alpha, (float)all.x_px + dx, (float)all.y_px + dy);
-	add_bitmap(list, BITMAP_KEYBOARD, alpha, (float)all.x_px + dx,
-		   (float)(rows.y_px + rows.height_px) + dy);
+	add_bitmap(list, BITMAP_SEARCH_HEAD, alpha, (float)head.x_px + dx, (float)head.y_px + dy);
+	add_bitmap(list, BITMAP_KEYBOARD, alpha, (float)keys.x_px + dx, (float)keys.y_px + dy);
 	if (overlay_pressed_rect(overlay, &key))
 		add_rect(list, BITMAP_KEY, alpha * 0.35f * overlay->search.press.alpha,
 			 (float)key.x_px + dx, (float)key.y_px + dy, (float)key.width_px,
@@ -265,9 +268,9 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 		   (float)help.y_px);
 	add_bitmap(&list, BITMAP_INVITATION, ease(overlay->invitation.alpha),
 		   (float)invitation.x_px, (float)invitation.y_px);
+	add_page(&list);
 	add_bitmap(&list, BITMAP_CARD, ease(overlay->card.alpha), (float)card.x_px,
 		   (float)card.y_px);
-	add_page(&list);
 	if (overlay->search.fade.alpha > 0)
 		add_search(&list);
 	if (overlay->gallery.fade.alpha > 0)

@@ -3,8 +3,13 @@
 
 #include "ui/overlay_state.h"
 
-#define HEAD_MM  13.0f
-#define CLOSE_MM 34.0f /* the close control is as wide as this at most */
+#define HEAD_MM 13.0f
+/* Reach mode's part of the panel: a third, but not less than the search needs with keys of
+ * THEME_TARGET_MM. */
+#define REACH_MM          70.0f
+#define REACH_PORTRAIT_MM 110.0f
+#define REACH_WIDTH_MM    200.0f /* two keyboards beside each other */
+#define CLOSE_MM          34.0f  /* the close control is as wide as this at most */
 
 static int px(const struct overlay *overlay, float mm)
 {
@@ -14,6 +19,31 @@ static int px(const struct overlay *overlay, float mm)
 bool overlay_is_portrait(const struct overlay *overlay)
 {
 	return overlay->height_px > overlay->width_px;
+}
+
+static int reach_height(const struct overlay *overlay)
+{
+	int least_px = px(overlay, overlay_is_portrait(overlay) ? REACH_PORTRAIT_MM : REACH_MM);
+
+	return overlay->height_px / 3 > least_px ? overlay->height_px / 3 : least_px;
+}
+
+bool overlay_offers_reach(const struct overlay *overlay)
+{
+	int least_px =
+		px(overlay, overlay_is_portrait(overlay) ? REACH_WIDTH_MM / 2 : REACH_WIDTH_MM);
+
+	return 2 * reach_height(overlay) <= overlay->height_px && overlay->width_px >= least_px;
+}
+
+int overlay_reach_top(const struct overlay *overlay)
+{
+	return overlay->comfort.reach ? overlay->height_px - reach_height(overlay) : 0;
+}
+
+bool overlay_is_flat(const struct overlay *overlay)
+{
+	return overlay->comfort.reach && !overlay_is_portrait(overlay);
 }
 
 bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px)
@@ -26,8 +56,9 @@ struct overlay_rect overlay_page_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
 
-	if (overlay_is_portrait(overlay)) {
-		rect.y_px = overlay->height_px / 2;
+	if (overlay->comfort.reach || overlay_is_portrait(overlay)) {
+		rect.y_px = overlay->comfort.reach ? overlay_reach_top(overlay)
+						   : overlay->height_px / 2;
 		rect.height_px -= rect.y_px;
 	} else {
 		rect.x_px = overlay->width_px / 2;
@@ -50,22 +81,44 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 			rect.height_px = search.y_px;
 		return rect;
 	}
-	if (overlay->page_part >= 0 && overlay_is_portrait(overlay))
-		rect.height_px = overlay->height_px / 2;
+	if (overlay->page_part >= 0 && overlay_page_rect(overlay).y_px > 0)
+		rect.height_px = overlay_page_rect(overlay).y_px;
 	else if (overlay->page_part >= 0)
-		rect.width_px = overlay->width_px / 2;
+		rect.width_px = overlay_page_rect(overlay).x_px;
 	return rect;
 }
 
-/* Below the head; in portrait also above the bar, which stays where it always is. */
+/* Beside what is always there in a flat panel's lowest line, else on top of its paper. */
+struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper)
+{
+	if (overlay_is_flat(overlay)) {
+		paper.x_px = overlay->width_px / 2;
+		paper.width_px = overlay->width_px - paper.x_px;
+		paper.y_px = overlay_chrome_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+		paper.height_px = overlay->height_px - paper.y_px;
+	} else {
+		paper.height_px = px(overlay, HEAD_MM);
+	}
+	return paper;
+}
+
+struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overlay_rect head)
+{
+	int width_px = theme_text_px(&overlay->theme, CLOSE_MM), gap_px = px(overlay, THEME_GAP_MM);
+
+	return (struct overlay_rect){ head.x_px + head.width_px - width_px - gap_px,
+				      head.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
+}
+
+/* Below the head; in portrait and in reach also above the bar, which stays where it always is. */
 struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = overlay_page_rect(overlay);
-	int head_px = px(overlay, HEAD_MM);
+	int head_px = overlay_is_flat(overlay) ? 0 : px(overlay, HEAD_MM);
 
 	rect.y_px += head_px;
 	rect.height_px -= head_px;
-	if (overlay_is_portrait(overlay))
+	if (rect.y_px > head_px) /* it is below the model, not beside it */
 		rect.height_px -= overlay->chrome.height_px + 2 * px(overlay, THEME_GAP_MM);
 	if (rect.height_px < 1)
 		rect.height_px = 1;
@@ -74,11 +127,7 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 
 struct overlay_rect overlay_close_rect(const struct overlay *overlay)
 {
-	struct overlay_rect page = overlay_page_rect(overlay);
-	int width_px = px(overlay, CLOSE_MM), gap_px = px(overlay, THEME_GAP_MM);
-
-	return (struct overlay_rect){ page.x_px + page.width_px - width_px - gap_px,
-				      page.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
+	return overlay_close_in(overlay, overlay_head_rect(overlay, overlay_page_rect(overlay)));
 }
 
 struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)
@@ -90,14 +139,16 @@ struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)
 				      overlay->chrome.width_px, overlay->chrome.height_px };
 }
 
-/* The lowest line that the scene may use: above the bar where that is in the scene. */
+/* The lowest line that the scene may use: above the bar where that is in the scene. In reach it is
+ * there always: a card comes to lie over a page rather than above it. */
 static int floor_of(const struct overlay *overlay)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
 	int bottom_px = scene.y_px + scene.height_px;
 	int bar_px = overlay_chrome_rect(overlay).y_px;
 
-	return (bottom_px < bar_px ? bottom_px : bar_px) - px(overlay, THEME_GAP_MM);
+	return (bottom_px < bar_px && !overlay->comfort.reach ? bottom_px : bar_px) -
+	       px(overlay, THEME_GAP_MM);
 }
 
 static struct overlay_rect above_floor(const struct overlay *overlay, int width_px, int height_px)
@@ -131,11 +182,13 @@ struct overlay_rect overlay_invitation_rect(const struct overlay *overlay)
 	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
-/* In the middle of everything: nothing else counts then. */
+/* In the middle of everything: nothing else counts then. In reach its button is low. */
 struct overlay_rect overlay_question_rect(const struct overlay *overlay)
 {
 	const struct bitmap *bitmap = &overlay->drawings[BITMAP_QUESTION].bitmap;
 
+	if (overlay->comfort.reach)
+		return above_floor(overlay, bitmap->width_px, bitmap->height_px);
 	return (struct overlay_rect){ (overlay->width_px - bitmap->width_px) / 2,
 				      (overlay->height_px - bitmap->height_px) / 2,
 				      bitmap->width_px, bitmap->height_px };
@@ -152,7 +205,7 @@ int overlay_scroll_most(const struct overlay *overlay)
 
 int overlay_row_px(const struct overlay *overlay)
 {
-	return px(overlay, THEME_TARGET_MM);
+	return theme_text_px(&overlay->theme, THEME_TARGET_MM);
 }
 
 /* ---- callouts ---- */
@@ -174,6 +227,12 @@ static struct callout_area callout_area(const struct overlay *overlay)
 		floor_px = overlay_invitation_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	else if (overlay->help.on)
 		floor_px = overlay_help_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	if (overlay->comfort.reach) {
+		area.above_px = overlay_reach_top(overlay) - area.y_px;
+		area.y_px = overlay_reach_top(overlay);
+		if (overlay->page_part >= 0 || overlay->search.fade.on)
+			floor_px = area.y_px; /* they have the labels' place */
+	}
 	area.height_px = floor_px - area.y_px;
 	area.column_px = overlay->column_px;
 	/* Half of the width is the model's own. */

@@ -7,8 +7,6 @@
 #include "ui/overlay_state.h"
 #include "ui/strings.h"
 
-#define HEAD_MM    13.0f
-#define CLOSE_MM   34.0f
 #define SIDE_MM    4.0f   /* beside field and rows */
 #define ROW_MM     18.0f  /* of the list; more on panels so tall that SEARCH_ROWS would not do */
 #define WIDTH_MM   100.0f /* narrower than this no keyboard is, if the panel has it */
@@ -30,8 +28,10 @@ struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 	struct overlay_rect rect = overlay_page_rect(overlay), bar = overlay_chrome_rect(overlay);
 	int bar_px = bar.y_px - px(overlay, THEME_GAP_MM);
 
+	if (overlay_is_flat(overlay))
+		return rect;
 	if (overlay_is_portrait(overlay)) {
-		if (rect.y_px > bar_px - px(overlay, HEIGHT_MM))
+		if (rect.y_px > bar_px - px(overlay, HEIGHT_MM) && !overlay->comfort.reach)
 			rect.y_px = bar_px - px(overlay, HEIGHT_MM);
 		if (rect.y_px < px(overlay, KEEP_MM))
 			rect.y_px = 0;
@@ -44,42 +44,59 @@ struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 	return rect;
 }
 
-static int head_px(const struct overlay *overlay)
+static struct overlay_rect head_rect(const struct overlay *overlay)
 {
-	return px(overlay, HEAD_MM);
+	return overlay_head_rect(overlay, overlay_search_rect(overlay));
 }
 
-static struct overlay_rect keyboard_rect(const struct overlay *overlay)
+/* What the head leaves for list and keyboard: below it; flat, above it and the bar. */
+static struct overlay_rect body_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay);
+	struct overlay_rect rect = overlay_search_rect(overlay), head = head_rect(overlay);
+
+	if (overlay_is_flat(overlay)) {
+		rect.height_px = head.y_px - rect.y_px;
+		return rect;
+	}
+	rect.y_px += head.height_px;
+	rect.height_px -= head.height_px;
+	return rect;
+}
+
+/* Below the list; flat, beside it. */
+struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay)
+{
+	struct overlay_rect rect = body_rect(overlay);
 
 	rect.y_px += rect.height_px - overlay->search.keyboard.height_px;
 	rect.height_px = overlay->search.keyboard.height_px;
+	if (overlay_is_flat(overlay))
+		rect.width_px /= 2;
 	return rect;
 }
 
 struct overlay_rect overlay_found_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay);
+	struct overlay_rect rect = body_rect(overlay);
 
-	rect.y_px += head_px(overlay);
-	rect.height_px = keyboard_rect(overlay).y_px - rect.y_px;
+	if (overlay_is_flat(overlay)) {
+		rect.x_px = rect.width_px / 2;
+		rect.width_px -= rect.x_px;
+	} else {
+		rect.height_px -= overlay->search.keyboard.height_px;
+	}
 	return rect;
 }
 
 static struct overlay_rect close_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay);
-	int width_px = px(overlay, CLOSE_MM), gap_px = px(overlay, THEME_GAP_MM);
-
-	return (struct overlay_rect){ rect.x_px + rect.width_px - width_px - gap_px,
-				      rect.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
+	return overlay_close_in(overlay, head_rect(overlay));
 }
 
 static struct overlay_rect field_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = close_rect(overlay);
-	int left_px = overlay_search_rect(overlay).x_px + px(overlay, SIDE_MM);
+	int left_px = head_rect(overlay).x_px + px(overlay, SIDE_MM);
 
 	rect.width_px = rect.x_px - px(overlay, THEME_GAP_MM) - left_px;
 	rect.x_px = left_px;
@@ -88,7 +105,7 @@ static struct overlay_rect field_rect(const struct overlay *overlay)
 
 int overlay_found_row_px(const struct overlay *overlay)
 {
-	int row_px = px(overlay, ROW_MM);
+	int row_px = theme_text_px(&overlay->theme, ROW_MM);
 	int least_px = overlay_found_rect(overlay).height_px / (SEARCH_ROWS - 2);
 
 	return row_px > least_px ? row_px : least_px;
@@ -111,11 +128,15 @@ int overlay_found_scroll_most(const struct overlay *overlay)
 
 static void lay_out_keyboard(struct overlay *overlay, bool latin)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay);
+	struct overlay_rect body = body_rect(overlay);
 	struct keyboard *keyboard = &overlay->search.keyboard;
 
-	keyboard_layout(keyboard, &overlay->theme, overlay->theme.language, latin, rect.width_px,
-			rect.height_px - head_px(overlay) - px(overlay, ROW_MM));
+	if (overlay_is_flat(overlay))
+		body.width_px /= 2;
+	else
+		body.height_px -= px(overlay, ROW_MM); /* one is seen at least */
+	keyboard_layout(keyboard, &overlay->theme, overlay->theme.language, latin, body.width_px,
+			body.height_px);
 	overlay->search.keyboard_dirty = true;
 	overlay->search.pressed = -1;
 }
@@ -237,27 +258,28 @@ void overlay_search_picture(struct overlay *overlay, const char *name)
 struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
-	struct overlay_rect keys = keyboard_rect(overlay), list = overlay_found_rect(overlay);
+	struct overlay_rect keys = overlay_keyboard_rect(overlay);
+	struct overlay_rect list = overlay_found_rect(overlay), head = head_rect(overlay);
 	struct overlay_rect field = field_rect(overlay);
 	bool mirrored = theme_is_right_to_left(&overlay->theme);
 
-	if (y_px < (float)list.y_px) {
+	if (overlay_rect_holds(head, x_px, y_px)) {
 		float from_end_px = mirrored ? x_px - (float)field.x_px
 					     : (float)(field.x_px + field.width_px) - x_px;
 
 		if (x_px >= (float)close_rect(overlay).x_px)
 			action.kind = OVERLAY_SEARCH;
 		else if (overlay->search.query[0] && from_end_px >= 0 &&
-			 from_end_px < (float)px(overlay, HEAD_MM))
+			 from_end_px < (float)head.height_px)
 			action = (struct overlay_action){ .kind = OVERLAY_KEY,
 							  .part = -1,
 							  .key = OVERLAY_KEY_CLEAR };
-	} else if (y_px >= (float)keys.y_px) {
+	} else if (overlay_rect_holds(keys, x_px, y_px)) {
 		action.key = keyboard_key_at(&overlay->search.keyboard, x_px - (float)keys.x_px,
 					     y_px - (float)keys.y_px);
 		if (action.key >= 0)
 			action.kind = OVERLAY_KEY;
-	} else {
+	} else if (overlay_rect_holds(list, x_px, y_px)) {
 		int row = (int)((y_px - (float)list.y_px + overlay->search.scroll_px) /
 				(float)overlay_found_row_px(overlay));
 
@@ -334,7 +356,7 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 
 static void draw_field(cairo_t *context, const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay), field = field_rect(overlay);
+	struct overlay_rect rect = head_rect(overlay), field = field_rect(overlay);
 	bool mirrored = theme_is_right_to_left(&overlay->theme);
 	int icon_px = px(overlay, 4.0f), end_px = field.height_px;
 
@@ -356,15 +378,16 @@ static void draw_field(cairo_t *context, const struct overlay *overlay)
 
 void overlay_draw_search_head(struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay), close = close_rect(overlay);
+	struct overlay_rect rect = head_rect(overlay), close = close_rect(overlay);
 	cairo_t *context =
-		overlay_begin(overlay, BITMAP_SEARCH_HEAD, rect.width_px, head_px(overlay));
+		overlay_begin(overlay, BITMAP_SEARCH_HEAD, rect.width_px, rect.height_px);
 
 	if (!context)
 		return;
 	theme_set_source(context, theme_paper, 1);
 	cairo_paint(context);
-	cairo_rectangle(context, 0, head_px(overlay) - 1, rect.width_px, 1);
+	cairo_rectangle(context, 0, overlay_is_flat(overlay) ? 0 : rect.height_px - 1,
+			rect.width_px, 1);
 	theme_set_source(context, theme_line, 1);
 	cairo_fill(context);
 	draw_field(context, overlay);
@@ -421,7 +444,7 @@ static void draw_row(struct overlay *overlay, uint32_t slot)
 {
 	const struct search_row *row = &overlay->search.rows[slot];
 	enum bitmap_id id = (enum bitmap_id)(BITMAP_ROW + slot);
-	int width_px = overlay_search_rect(overlay).width_px;
+	int width_px = overlay_found_rect(overlay).width_px;
 	int height_px = overlay_found_row_px(overlay);
 	cairo_t *context = overlay_begin(overlay, id, width_px, height_px);
 
@@ -494,7 +517,7 @@ bool overlay_update_search(struct overlay *overlay, int64_t step_ms)
 /* Where the key that was pressed last is; false: none is. */
 bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out)
 {
-	struct overlay_rect keys = keyboard_rect(overlay);
+	struct overlay_rect keys = overlay_keyboard_rect(overlay);
 	const struct keyboard_key *key;
 
 	if (overlay->search.pressed < 0)

@@ -107,6 +107,7 @@ struct overlay {
 	int width_px, height_px;
 	struct picture_source pictures;
 	struct theme theme;
+	struct overlay_comfort comfort;
 	char *languages[OVERLAY_LANGUAGES_MOST];
 	uint32_t language_count;
 	int language; /* index of the one that is set */
@@ -138,6 +139,11 @@ struct overlay {
 
 /* Where things are; pixels of the panel. */
 bool overlay_is_portrait(const struct overlay *overlay);
+/* In reach mode the line below which everything is that can be touched; else 0. */
+int overlay_reach_top(const struct overlay *overlay);
+bool overlay_offers_reach(const struct overlay *overlay);
+/* Reach mode on a panel that is wide: what is open lies flat, its head beside the bar. */
+bool overlay_is_flat(const struct overlay *overlay);
 struct overlay_rect overlay_page_rect(const struct overlay *overlay); /* all of its paper */
 struct overlay_rect overlay_view_rect(const struct overlay *overlay); /* window on the article */
 struct overlay_rect overlay_card_rect(const struct overlay *overlay);
@@ -146,6 +152,10 @@ struct overlay_rect overlay_help_rect(const struct overlay *overlay);
 struct overlay_rect overlay_invitation_rect(const struct overlay *overlay);
 struct overlay_rect overlay_question_rect(const struct overlay *overlay);
 struct overlay_rect overlay_close_rect(const struct overlay *overlay); /* of the page */
+/* Of a page or the search: the line with the control that closes it. */
+struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper);
+/* The control that closes, at the end of a head. */
+struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overlay_rect head);
 bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px);
 int overlay_scroll_most(const struct overlay *overlay);
 
@@ -159,6 +169,10 @@ void overlay_draw_card(struct overlay *overlay);
 void overlay_draw_page_head(struct overlay *overlay);
 void overlay_draw_label(struct overlay *overlay, uint32_t label);
 void overlay_draw_strip(struct overlay *overlay, uint32_t slot);
+void overlay_lay_out_chrome(struct overlay *overlay);
+void overlay_measure_labels(struct overlay *overlay);
+/* All come in anew. */
+void overlay_forget_labels(struct overlay *overlay);
 /* Width of a part's label. */
 int overlay_measure_label(const struct overlay *overlay, const char *title);
 int overlay_row_px(const struct overlay *overlay);
@@ -174,7 +188,8 @@ bool overlay_advance(struct fade *fade, int64_t step_ms);
 
 /* overlay_search.c */
 struct overlay_rect overlay_search_rect(const struct overlay *overlay); /* all of its paper */
-struct overlay_rect overlay_found_rect(const struct overlay *overlay);  /* the list */
+struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay);
+struct overlay_rect overlay_found_rect(const struct overlay *overlay); /* the list */
 int overlay_found_row_px(const struct overlay *overlay);
 int overlay_found_scroll_most(const struct overlay *overlay);
 struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_px, float y_px);

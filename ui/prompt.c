@@ -81,7 +81,7 @@ int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *
 
 		theme_rounded(context, 0, 0, out->width_px, out->height_px,
 			      theme_px(theme, THEME_RADIUS_MM));
-		theme_set_source(context, theme_night, 0.82);
+		theme_set_source(context, theme_night, THEME_CHIP_ALPHA);
 		cairo_fill(context);
 		theme_set_source(context, theme_night_text, 1);
 		icon_draw(context, ICON_TAP, padding + icon / 2.0, out->height_px / 2.0, icon);

@@ -16,7 +16,6 @@ enum {
 #define DRIFT_SHARE  0.025 /* of the shorter side, each way */
 #define TOWER_WIDTH  1.44  /* of its drawing */
 #define TOWER_HEIGHT 2.13
-#define DIM          0.34 /* of a line that is not lit */
 
 static const struct {
 	const char *language, *text;
@@ -179,7 +178,9 @@ static void draw_lines(const struct safe_page *page, cairo_t *c, double left, do
 		const struct safe_page_line *line = &page->lines[i];
 		const double inset = centred ? (page->text_width_px - line->width_px) / 2 : 0;
 
-		theme_set_source(c, theme_night_text, DIM + (1 - DIM) * emphasis(page, i, time_ms));
+		theme_set_source(c, theme_night_text,
+				 THEME_DIM_ALPHA +
+					 (1 - THEME_DIM_ALPHA) * emphasis(page, i, time_ms));
 		cairo_move_to(c, left + inset, y);
 		pango_cairo_show_layout(c, line->layout);
 		y += line->height_px;

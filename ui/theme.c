@@ -48,6 +48,7 @@ int theme_init(struct theme *theme, float px_per_mm, const char *language)
 
 	memset(theme, 0, sizeof(*theme));
 	theme->px_per_mm = px_per_mm;
+	theme->text_scale = 1;
 	theme->context = pango_font_map_create_context(pango_cairo_font_map_get_default());
 	if (!theme->context)
 		return -ENOMEM;
@@ -106,6 +107,11 @@ int theme_px(const struct theme *theme, float mm)
 	return px > 0 ? px : 1;
 }
 
+int theme_text_px(const struct theme *theme, float mm)
+{
+	return theme_px(theme, mm * theme->text_scale);
+}
+
 float theme_guess_px_per_mm(int width_px, int height_px)
 {
 	int shorter = width_px < height_px ? width_px : height_px;
@@ -132,7 +138,7 @@ void theme_rounded(cairo_t *context, double x, double y, double width, double he
 
 int theme_style_px(const struct theme *theme, enum text_style style)
 {
-	return theme_px(theme, styles[style].size_mm);
+	return theme_text_px(theme, styles[style].size_mm);
 }
 
 PangoLayout *theme_layout(const struct theme *theme, enum text_style style, const char *text,

@@ -14,6 +14,15 @@
 #define THEME_MARGIN_MM 4.0f
 #define THEME_GAP_MM    2.0f
 #define THEME_RADIUS_MM 1.2f
+/* Type for who sees little, in sizes of the usual one. */
+#define THEME_LARGE_TYPE 1.35f
+/* Of a line that waits for its turn to be lit. */
+#define THEME_DIM_ALPHA 0.5
+/* How much of night is in a chip over the model, at least: the rest is whatever shines through. */
+#define THEME_CHIP_ALPHA   0.82
+#define THEME_LABEL_ALPHA  0.78
+#define THEME_CHOSEN_ALPHA 0.95 /* of accent, the label that is chosen */
+#define THEME_BUTTON_ALPHA 0.7  /* controls over a picture */
 
 enum text_style {
 	TEXT_LABEL,   /* on a callout */
@@ -39,6 +48,7 @@ extern const struct colour theme_paper, theme_paper_shade, theme_ink, theme_ink_
 
 struct theme {
 	float px_per_mm;
+	float text_scale; /* 1, or THEME_LARGE_TYPE */
 	char language[17];
 	PangoContext *context; /* owned */
 };
@@ -55,7 +65,8 @@ bool theme_has_italics(const struct theme *theme);
 /* Arabic, Hebrew, Persian, Urdu: lists and fields begin at the right. */
 bool theme_is_right_to_left(const struct theme *theme);
 
-int theme_px(const struct theme *theme, float mm); /* at least 1 */
+int theme_px(const struct theme *theme, float mm);      /* at least 1 */
+int theme_text_px(const struct theme *theme, float mm); /* of what grows with the type */
 /* Of a panel of which nothing else is known: as a 20 cm tall one, never under 3.2. */
 float theme_guess_px_per_mm(int width_px, int height_px);
 

@@ -123,7 +123,7 @@ static void never_overlaps_crosses_or_leaves_the_area(void **state)
 /* With few parts and room for all, all are shown. */
 static void shows_all_where_there_is_room(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10 };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
 	struct callouts callouts = { 0 };
 	struct callout_anchor anchors[12];
 
@@ -143,7 +143,7 @@ static void shows_all_where_there_is_room(void **state)
  * order, each moving by no more than two (one, and rounding), unless leaders came to cross. */
 static void follows_small_moves_quietly(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10 };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
 	struct callout_anchor anchors[14];
 	struct callouts callouts = { 0 };
 	int frames = 0, jumps = 0;
@@ -209,7 +209,7 @@ static void no_leader_runs_through_a_dot(void **state)
 
 static void hides_what_is_hidden(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10 };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
 	struct callout_anchor anchors[3] = { { 500, 100, true, 100 },
 					     { 500, 200, false, 100 },
 					     { 100, 300, true, 100 } /* under the labels */ };
@@ -225,7 +225,7 @@ static void hides_what_is_hidden(void **state)
 /* More than fit: the important ones (the first) are shown. */
 static void prefers_the_important(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 300, 200, 30, 6, 10 };
+	const struct callout_area area = { 0, 0, 1280, 300, 200, 30, 6, 10, 0 };
 	struct callout_anchor anchors[ANCHORS];
 	struct callouts callouts = { 0 };
 	uint32_t worst = 0;
@@ -245,7 +245,7 @@ static void prefers_the_important(void **state)
 
 static void says_how_long_it_takes(void **state)
 {
-	const struct callout_area area = { 0, 0, 1920, 1000, 300, 38, 8, 16 };
+	const struct callout_area area = { 0, 0, 1920, 1000, 300, 38, 8, 16, 0 };
 	struct callout_anchor anchors[ANCHORS];
 	struct callouts callouts = { 0 };
 	int64_t start_us, worst_us = 0, total_us = 0;

@@ -105,11 +105,10 @@ static struct bitmap screen(struct overlay *overlay, const char *name)
 static struct overlay_action tap_key(const struct overlay *overlay, int key)
 {
 	const struct keyboard_key *k = &overlay->search.keyboard.keys[key];
-	struct overlay_rect all = overlay_search_rect(overlay);
-	float top = (float)(all.y_px + all.height_px - overlay->search.keyboard.height_px);
+	struct overlay_rect keys = overlay_keyboard_rect(overlay);
 
-	return overlay_tap(overlay, (float)(all.x_px + k->x_px) + (float)k->width_px / 2,
-			   top + (float)k->y_px + (float)k->height_px / 2);
+	return overlay_tap(overlay, (float)(keys.x_px + k->x_px) + (float)k->width_px / 2,
+			   (float)(keys.y_px + k->y_px) + (float)k->height_px / 2);
 }
 
 /* Taps the key of that letter as the app does; false: there is none. */
