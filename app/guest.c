@@ -43,6 +43,8 @@ static void begin_anew(struct kiosk *kiosk)
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);
 		overlay_show_search(overlay, false);
+		if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
+			log_debug("app", "comfort: forgotten");
 		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
 		story_set_language(kiosk->shown.story,
 				   language ? language

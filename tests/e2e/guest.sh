@@ -1,6 +1,6 @@
 #!/bin/bash
-# A visitor who taps a part, chooses another language and walks away: the terminal asks, counts
-# down, forgets the language and shows the temple round until somebody touches it again, who is
+# A visitor who chooses another language and large type, taps a part and walks away: the terminal asks, counts
+# down, forgets both and shows the temple round until somebody touches it again, who is
 # taken at the first touch.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -9,11 +9,13 @@ work=build/e2e/guest
 rm -rf "$work"
 mkdir -p "$work"
 small_release
-# At 960 x 540: the bar's second language, then the temple's middle; 20 s after the last touch
+# At 960 x 540: the bar's second language and its letters, then the temple's middle; 20 s after the last touch
 # (5 with nothing open) the question has been there for 5, and is answered; then for good.
 cat >"$work/fingers.touch" <<'T'
 4000 down 0 265 520
 4080 up 0
+4800 down 0 129 520
+4880 up 0
 6000 down 0 480 240
 6080 up 0
 26500 down 0 480 270
@@ -30,14 +32,14 @@ build/gopura-kiosk --display headless --size 960x540 --release "$small/release" 
 	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 --visits "$work/visits.csv" \
 	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
 	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
-grep -E 'app: (card of|nobody|somebody|is somebody|drag|words in)' "$work/kiosk.log"
+grep -E 'app: (card of|nobody|somebody|is somebody|drag|comfort|words in)' "$work/kiosk.log"
 python3 - "$work/kiosk.log" <<'P'
 import re
 import sys
 
-marks = r"app: (card of|is somebody there|somebody is there|nobody is there|drag begins|words in (?P<language>\w+))"
-said = [m["language"] or m[1].split()[0] for m in re.finditer(marks, open(sys.argv[1]).read())]
-assert said == ["fr", "card", "is", "somebody", "is", "nobody", "en", "somebody", "drag"], said
+marks = r"app: (card of|is somebody there|somebody is there|nobody is there|drag begins|comfort: (?P<comfort>\w+)|words in (?P<language>\w+))"
+said = [m["language"] or m["comfort"] or m[1].split()[0] for m in re.finditer(marks, open(sys.argv[1]).read())]
+assert said == ["fr", "large", "card", "is", "somebody", "is", "nobody", "forgotten", "en", "somebody", "drag"], said
 P
 
 # ---- what is counted of it, and nothing of him; handed out by the health page
