@@ -153,7 +153,6 @@ static const char blended_fragment[] =
 	"	return vec4(colour * w, w);\n"
 	"}\n"
 	"void main() {\n"
-	"	dissolve();\n"
 	"	vec4 sum = vec4(0.0);\n"
 	"	for (int i = 0; i < FACES; i++)\n"
 	"		sum += from_face(u_depths[i], v_face[i], u_place[i], u_window[i],\n"
@@ -162,6 +161,7 @@ static const char blended_fragment[] =
 	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
 	"	gl_FragColor = vec4(mix(colour, vec3(share), u_share), 1.0);\n"
+	"	dissolve();\n" /* last: SwiftShader reads a texture after a discard astray */
 	"}\n";
 
 static void find_uniforms(struct surface_program *p)
