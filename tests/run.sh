@@ -65,7 +65,7 @@ if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests
 	unit build unit
 	for script in $(find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name initramfs.sh ! -name release.sh ! -name sticks.sh | sort); do
-		run_one "${script#tests/}" 1200 bash "$script"
+		run_one "${script#tests/}" 2400 bash "$script"
 	done
 fi
 
