@@ -84,9 +84,10 @@ image-check: all ## two images from nothing have the same slots
 	@./deps.sh image/tools.txt
 	@image/check.sh
 
-powercut: deps ## the power goes at every write of cache and state (minutes); SEED=N: other samples
-	@$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut
-	@nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED)
+powercut: all ## the power goes: at every write of cache and state (minutes), and 100 times in the appliance (hours); CUTS=N, SEED=N
+	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
+	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
+	@CUTS=$(or $(CUTS),100) bash tests/qemu/powercut.sh system
 
 qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick
 	@bash tests/qemu/image.sh updates
