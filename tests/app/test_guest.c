@@ -14,6 +14,7 @@ static struct {
 	int card, page, asked_s, flights, looks, redraws;
 	int counted[TALLY_SEARCH + 1], written;
 	bool invites, searches;
+	struct overlay_comfort comfort;
 	char language[8];
 } world;
 
@@ -93,6 +94,18 @@ void overlay_show_search(struct overlay *overlay, bool on)
 {
 	(void)overlay;
 	world.searches = on;
+}
+
+void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort)
+{
+	(void)overlay;
+	world.comfort = comfort;
+}
+
+struct overlay_comfort overlay_comfort(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.comfort;
 }
 
 void overlay_invite(struct overlay *overlay, bool on)
@@ -218,11 +231,13 @@ static void leaves_nothing_of_a_visitor_for_the_next(void **state)
 	(void)state;
 	CHECK(!touches(TOUCH_DOWN) && !touches(TOUCH_UP));
 	world.page = 4;
+	world.comfort = (struct overlay_comfort){ .large = true, .reach = true };
 	after(180 * S);
 	CHECK(world.asked_s == 15 && world.page == 4 && !world.invites);
 	after(15 * S);
 	CHECK(world.invites && world.page == -1 && world.asked_s == -1);
 	CHECK(strcmp(world.language, "km") == 0);
+	CHECK(!world.comfort.large && !world.comfort.reach);
 	set_up(NULL);
 	touches(TOUCH_DOWN);
 	world.searches = true; /* a list is read as a page is */
