@@ -13,8 +13,9 @@ enum {
 	WARM_PERIOD_MS = 100,
 	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
 	WARM_WIDTH_PX = 320,
-	FORGETFUL_MS = 30000, /* until what could not be written is tried again */
-	HELD_MS = 60000,      /* between looks at the clock */
+	FORGETFUL_MS = 30000,  /* until what could not be written is tried again */
+	HELD_MS = 60000,       /* between looks at the clock */
+	WHOLE_MOST_MS = 20000, /* that a first picture has until it is kept as far as it came */
 	FOV_DEG = 45,
 };
 
@@ -234,13 +235,15 @@ void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
 
 /* A release that came after another was made durable before it was shown. The first one is shown as
  * it comes, and nobody else syncs what the cache has of it: a power cut minutes later would lose
- * it. */
+ * it. On a slow machine the eye is sent round before its picture is whole, and then it never is. */
 void exhibit_keep_first(struct kiosk *kiosk)
 {
 	struct exhibit *shown = &kiosk->shown;
 
-	if (shown->synced || shown->frame.patches == 0 || !shown->frame.settled ||
-	    kiosk->coming.syncing)
+	if (shown->synced || shown->frame.patches == 0 || kiosk->coming.syncing)
+		return;
+	if (!shown->frame.settled &&
+	    (shown->pictured_ms == 0 || clock_now_ms() < shown->pictured_ms + WHOLE_MOST_MS))
 		return;
 	shown->synced = shown->syncing = true;
 	net_client_sync(kiosk->net);
