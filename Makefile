@@ -51,7 +51,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check soak powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -75,6 +75,9 @@ test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, f
 
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
+
+soak: all ## random fingers on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (an hour)
+	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
 
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt
@@ -150,6 +153,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/st
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
+$(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw fingers_on_touch)
 $(BUILD)/tests/board/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)

@@ -1,0 +1,315 @@
+/* gopura-kiosk on a clock that does not wait: where a kiosk would wait for time alone (a visitor, a
+ * fade, the next frame) time jumps, so that hours of visits pass in minutes. Where it waits for
+ * the fetcher or a decoder it waits.
+ *
+ *   hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE [--log debug]
+ *
+ * After each frame the budgets of the board are looked at, and in each turn whether a terminal that
+ * nobody touched for long shows itself, with nothing left of the visitor. It goes on after the
+ * replay's end until nobody is there. Ends with 1, and says why, where anything of that fails. */
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/timerfd.h>
+
+#include "app/kiosk.h"
+#include "app/options.h"
+#include "base/clock.h"
+#include "ui/overlay.h"
+
+/* The linker wraps these (Makefile). */
+int64_t __wrap_clock_now_us(void);
+int64_t __wrap_clock_now_ms(void);
+int __real_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_ms);
+int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_ms);
+int __real_timerfd_settime(int fd, int flags, const struct itimerspec *to,
+			   struct itimerspec *before);
+int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
+			   struct itimerspec *before);
+int __real_frame_draw(struct kiosk *kiosk);
+int __wrap_frame_draw(struct kiosk *kiosk);
+void __real_fingers_on_touch(void *data, const struct touch_event *event);
+void __wrap_fingers_on_touch(void *data, const struct touch_event *event);
+
+enum {
+	TIMERS_MOST = 8,
+	LOOK_US = 100,         /* a look at the clock takes so long, so budgets of time end */
+	REAL_WAIT_MS = 2,      /* a look at what others do */
+	HELD_AT_US = 2000000,  /* of the kiosk's life, until there is a picture */
+	END_MOST_US = 1200000, /* of a turn, past when nobody should have been there */
+};
+
+static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
+static _Atomic int64_t virtual_us = 1000000000;
+static struct {
+	int fd;
+	int64_t due_us;
+} timers[TIMERS_MOST];
+static uint32_t timer_count;
+static bool failed;
+
+static struct {
+	uint64_t frames, touches, jumps_us;
+	uint32_t triangles, layers;
+	uint64_t texture_bytes, geometry_bytes;
+	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, help, language;
+} seen;
+static int64_t last_touch_us;
+
+static void fail(const char *format, ...)
+{
+	va_list arguments;
+
+	fprintf(stderr, "hurried_kiosk: %.3f s: ", (double)(virtual_us - 1000000000) / 1e6);
+	va_start(arguments, format);
+	vfprintf(stderr, format, arguments);
+	va_end(arguments);
+	fputc('\n', stderr);
+	failed = true;
+	kiosk.quit = true;
+}
+
+/* ---- time */
+
+/* Before the first picture no visitor comes. */
+static bool held(void)
+{
+	return !kiosk.pictured && virtual_us > 1000000000 + HELD_AT_US;
+}
+
+int64_t __wrap_clock_now_us(void)
+{
+	return held() ? virtual_us : (virtual_us += LOOK_US);
+}
+
+int64_t __wrap_clock_now_ms(void)
+{
+	return __wrap_clock_now_us() / 1000;
+}
+
+int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
+			   struct itimerspec *before)
+{
+	const int64_t wait_us = to->it_value.tv_sec * 1000000 + to->it_value.tv_nsec / 1000;
+	const struct itimerspec never = { 0 };
+	uint32_t i = 0;
+
+	while (i < timer_count && timers[i].fd != fd)
+		i++;
+	if (i == TIMERS_MOST)
+		abort();
+	if (i == timer_count)
+		timer_count++;
+	timers[i].fd = fd;
+	timers[i].due_us = wait_us > 0 ? virtual_us + wait_us : INT64_MAX;
+	return __real_timerfd_settime(fd, flags, &never, before);
+}
+
+/* When a timer is due next; those that are rung. */
+static int64_t ring_timers(void)
+{
+	const struct itimerspec now = { .it_value = { .tv_nsec = 1 } };
+	int64_t next_us = INT64_MAX;
+
+	for (uint32_t i = 0; i < timer_count; i++) {
+		if (timers[i].due_us <= virtual_us) {
+			timers[i].due_us = INT64_MAX;
+			__real_timerfd_settime(timers[i].fd, 0, &now, NULL);
+		}
+		next_us = timers[i].due_us < next_us ? timers[i].due_us : next_us;
+	}
+	return next_us;
+}
+
+static void advance(int64_t by_us)
+{
+	const int64_t next_us = ring_timers();
+
+	if (held())
+		return;
+	if (!kiosk.pictured && by_us > REAL_WAIT_MS * 1000)
+		by_us = REAL_WAIT_MS * 1000;
+	if (next_us - virtual_us < by_us)
+		by_us = next_us - virtual_us;
+	virtual_us += by_us;
+	ring_timers();
+}
+
+int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_ms)
+{
+	const bool works = !kiosk.pictured || (!kiosk.shown.frame.settled && !kiosk.frame_wanted);
+	int count = __real_epoll_wait(fd, events, most, 0);
+
+	if (count != 0 || timeout_ms == 0)
+		return count;
+	if (works) {
+		count = __real_epoll_wait(fd, events, most, REAL_WAIT_MS);
+		advance(REAL_WAIT_MS * 1000);
+	} else {
+		/* No wait is cut that something else could end but time: look first. */
+		advance(timeout_ms < 0 ? INT64_MAX / 2 : (int64_t)timeout_ms * 1000);
+	}
+	return count != 0 ? count : __real_epoll_wait(fd, events, most, 0);
+}
+
+/* ---- what must hold */
+
+static void check_budgets(void)
+{
+	const struct scene_options budget = kiosk_scene_options(&kiosk.profile, kiosk.options.mode);
+	static struct overlay_layer layers[OVERLAY_LAYERS_MOST + 1];
+	const struct scene_frame *frame = &kiosk.shown.frame;
+	struct scene_memory memory = { 0 };
+	uint32_t layer_count = 0;
+
+	if (kiosk.shown.scene)
+		scene_memory(kiosk.shown.scene, &memory);
+	if (story_overlay(kiosk.shown.story))
+		layer_count = overlay_layers(story_overlay(kiosk.shown.story), layers,
+					     OVERLAY_LAYERS_MOST + 1);
+	if (frame->triangles > budget.triangle_budget)
+		fail("%u triangles drawn, %u are the most", frame->triangles,
+		     budget.triangle_budget);
+	if (memory.texture_bytes > budget.texture_budget_bytes)
+		fail("%llu bytes of textures", (unsigned long long)memory.texture_bytes);
+	if (memory.geometry_bytes > budget.geometry_budget_bytes)
+		fail("%llu bytes of patches", (unsigned long long)memory.geometry_bytes);
+	if (layer_count >= OVERLAY_LAYERS_MOST)
+		fail("%u layers of words", layer_count);
+	for (int i = 0; i < 3; i++)
+		if (!isfinite(kiosk.camera.eye_m[i]) || !isfinite(kiosk.camera.target_m[i]))
+			fail("the eye is nowhere");
+#define MOST(what, value) seen.what = seen.what > (value) ? seen.what : (value)
+	MOST(triangles, frame->triangles);
+	MOST(layers, layer_count);
+	MOST(texture_bytes, memory.texture_bytes);
+	MOST(geometry_bytes, memory.geometry_bytes);
+}
+
+static void look_at_words(const struct overlay *overlay)
+{
+	seen.card += overlay_card(overlay) >= 0;
+	seen.page += overlay_page(overlay) >= 0;
+	seen.picture += overlay_picture(overlay) >= 0;
+	seen.search += overlay_searching(overlay);
+	seen.typed += overlay_searching(overlay) && overlay_query(overlay)[0];
+	seen.large += overlay_comfort(overlay).large;
+	seen.reach += overlay_comfort(overlay).reach;
+	seen.help += overlay_help(overlay);
+	seen.language += strcmp(story_language(kiosk.shown.story),
+				info_language(story_info(kiosk.shown.story), 0)) != 0;
+}
+
+int __wrap_frame_draw(struct kiosk *of)
+{
+	int rc = __real_frame_draw(of);
+
+	seen.frames++;
+	check_budgets();
+	if (story_overlay(kiosk.shown.story))
+		look_at_words(story_overlay(kiosk.shown.story));
+	return rc;
+}
+
+/* A finger's event: what was before it must have been right. */
+void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
+{
+	const int64_t idle_us = (int64_t)kiosk.visit.idle_ms * 1000;
+	const int64_t most_us = VISIT_READ_TIMES * idle_us + VISIT_ASK_MS * 1000 + END_MOST_US;
+	const enum visit_state state = kiosk.visit.state;
+
+	seen.asked += state == VISIT_ASKED;
+	if (seen.touches > 0 && virtual_us - last_touch_us > most_us) {
+		seen.nobody++;
+		if (state != VISIT_NOBODY)
+			fail("nobody touched it for %.1f s, and it does not show itself",
+			     (double)(virtual_us - last_touch_us) / 1e6);
+	}
+	seen.touches++;
+	last_touch_us = virtual_us;
+	__real_fingers_on_touch(data, event);
+}
+
+/* Nothing of the last visitor is there. */
+static void check_attract(void)
+{
+	struct overlay *overlay = story_overlay(kiosk.shown.story);
+
+	if (kiosk.visit.state != VISIT_NOBODY || !overlay) {
+		fail("it does not show itself at the end");
+		return;
+	}
+	if (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
+	    overlay_picture(overlay) >= 0 || overlay_searching(overlay) || overlay_help(overlay))
+		fail("something is open while nobody is there");
+	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
+		fail("large type or reach stayed");
+	if (strcmp(story_language(kiosk.shown.story),
+		   info_language(story_info(kiosk.shown.story), 0)) != 0)
+		fail("the language stayed %s", story_language(kiosk.shown.story));
+	if (overlay_tap(overlay, 1, 1).kind != OVERLAY_NONE)
+		fail("something lies in the corner that is the model's");
+	for (int i = 0; i < TOUCH_CONTACTS_MOST; i++)
+		if (kiosk.gestures.fingers[i].down)
+			fail("finger %d is still down", i);
+	if (kiosk.fingers_on_keys != 0)
+		fail("keys are still held");
+}
+
+/* ---- run */
+
+/* As app/main.c does, but that it ends when nobody is there any more. */
+static int run(void)
+{
+	const struct options asked = kiosk.options;
+	int64_t until_us;
+	int rc;
+
+	kiosk.options.quit_after_replay = true;
+	rc = kiosk_run(&kiosk);
+	if (rc < 0 || failed || asked.shots_path)
+		return rc;
+	until_us = virtual_us + VISIT_READ_TIMES * (int64_t)kiosk.visit.idle_ms * 1000 +
+		   VISIT_ASK_MS * 1000 + END_MOST_US;
+	while (rc == 0 && !failed && kiosk.visit.state != VISIT_NOBODY && virtual_us < until_us) {
+		kiosk.quit = false; /* the replay ended: a turn sets it again */
+		rc = kiosk_run(&kiosk);
+	}
+	if (rc == 0 && !failed)
+		check_attract();
+	return rc;
+}
+
+int main(int argc, char **argv)
+{
+	int rc;
+
+	if (options_parse(&kiosk.options, argc, argv) != OPTIONS_RUN ||
+	    !kiosk.options.touch_replay_path) {
+		fputs("usage: hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE\n", stderr);
+		return 2;
+	}
+	rc = kiosk_start(&kiosk);
+	if (rc == 0)
+		rc = run();
+	printf("{\"touches\": %llu, \"frames\": %llu, \"seconds\": %.1f,\n"
+	       " \"triangles_most\": %u, \"texture_bytes_most\": %llu, \"geometry_bytes_most\": "
+	       "%llu, \"layers_most\": %u,\n"
+	       " \"left_alone\": %u, \"asked\": %u,\n"
+	       " \"frames_with\": {\"card\": %u, \"page\": %u, \"picture\": %u, \"search\": %u, "
+	       "\"typed\": %u, \"help\": %u, \"large\": %u, \"reach\": %u, \"language\": %u}}\n",
+	       (unsigned long long)seen.touches, (unsigned long long)seen.frames,
+	       (double)(virtual_us - 1000000000) / 1e6, seen.triangles,
+	       (unsigned long long)seen.texture_bytes, (unsigned long long)seen.geometry_bytes,
+	       seen.layers, seen.nobody, seen.asked, seen.card, seen.page, seen.picture,
+	       seen.search, seen.typed, seen.help, seen.large, seen.reach, seen.language);
+	kiosk_stop(&kiosk);
+	if (rc < 0)
+		fprintf(stderr, "hurried_kiosk: %s\n", strerror(-rc));
+	return rc == 0 && !failed ? 0 : 1;
+}
