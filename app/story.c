@@ -2,12 +2,12 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cglm/cglm.h>
-
 #include "base/log.h"
+#include "storage/info_view.h"
 
 enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16, FOUND_MOST = 100 };
 
@@ -392,28 +392,6 @@ static void region_of(const struct info_region *from, struct region *out)
 	memcpy(out->corners_m, from->corners_m, sizeof(out->corners_m));
 }
 
-/* Radius of a sphere of about the region's size: tells the smaller of two that overlap. */
-static float region_size_m(const struct info_region *region)
-{
-	float most = 0;
-
-	switch (region->kind) {
-	case INFO_REGION_POINT:
-		return 0;
-	case INFO_REGION_SPHERE:
-		return region->radius_m;
-	case INFO_REGION_BOX:
-		return cbrtf(region->half_m[0] * region->half_m[1] * region->half_m[2]);
-	case INFO_REGION_PRISM:
-		for (uint32_t i = 0; i < region->corner_count; i++)
-			most = fmaxf(most,
-				     hypotf(region->corners_m[i][0] - region->corners_m[0][0],
-					    region->corners_m[i][1] - region->corners_m[0][1]));
-		return cbrtf(most * most * (region->roof_m - region->floor_m)) / 2;
-	}
-	return 0;
-}
-
 bool story_region(const struct story *story, uint32_t part, struct region *out)
 {
 	region_of(&info_part(story->info, part)->region, out);
@@ -426,7 +404,7 @@ int story_part_at(const struct story *story, const float point_m[3])
 	int best = -1;
 
 	for (uint32_t i = 0; story->info && i < info_part_count(story->info); i++) {
-		const float size = region_size_m(&info_part(story->info, i)->region);
+		const float size = info_region_size_m(&info_part(story->info, i)->region);
 		struct region region;
 
 		if (size < best_size && story_region(story, i, &region) &&
@@ -442,18 +420,6 @@ void story_viewpoint(const struct story *story, uint32_t part, float least_m, co
 		     float eye_out_m[3], float target_m[3])
 {
 	const struct info_part *info = info_part(story->info, part);
-	const float size = fmaxf(region_size_m(&info->region), least_m);
-	const float wanted = 5 * size;
-	float away[3], distance;
 
-	glm_vec3_copy((float *)info->anchor_m, target_m);
-	glm_vec3_sub((float *)eye_m, target_m, away);
-	distance = glm_vec3_norm(away);
-	if (distance < least_m / 5)
-		glm_vec3_copy((vec3){ 0, -1, 0.3f }, away);
-	glm_vec3_normalize(away);
-	away[2] = glm_clamp(away[2], 0.05f, 0.7f); /* from the side rather than from above */
-	glm_vec3_normalize(away);
-	glm_vec3_copy(target_m, eye_out_m);
-	glm_vec3_muladds(away, fminf(distance, wanted), eye_out_m);
+	info_view(&info->region, info->anchor_m, least_m, eye_m, eye_out_m, target_m);
 }

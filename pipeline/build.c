@@ -75,7 +75,7 @@ static int put_program(struct buffer *text)
 static int make_stamp(struct hash *out, const struct content *content,
 		      const struct build_options *options)
 {
-	static const char *const names[] = { "temple.ini", "parts.json" };
+	static const char *const names[] = { "temple.ini", "parts.json", "tours.json" };
 	struct fault fault = { "" };
 	struct hash scans;
 	struct buffer text;

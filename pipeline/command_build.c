@@ -21,7 +21,7 @@ static const char help[] =
 	"  --hierarchy KIND  groups or tree; by default as temple.ini says\n"
 	"  --comment TEXT    what is new, for people\n"
 	"\n"
-	"Reads DIR/temple.ini, the scans it names, parts.json, pages/ and pictures/. What is made on the\n"
+	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. What is made on the\n"
 	"way stays in DIR/.work, so that an interrupted build goes on where it stopped, and the next\n"
 	"one does only what changed. Signing keys are made in DIR/keys at the first build.\n"
 	"Exit status: 0 done, 1 failed (the reason is printed), 2 the command line is wrong.\n"

@@ -10,6 +10,7 @@
 #include "pipeline/master.h"
 #include "pipeline/publish_sources.h"
 #include "pipeline/start_view.h"
+#include "pipeline/tour_check.h"
 
 /* Where the release goes and who signs it. */
 struct setting {
@@ -130,12 +131,52 @@ static struct info_build_options info_options(const struct content *content,
 					    .language_count = content->language_count };
 }
 
+static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	(void)data;
+	if (is_error && line > 0)
+		log_error("pipeline", "%s:%u: %s", file, line, text);
+	else if (is_error)
+		log_error("pipeline", "%s: %s", file, text);
+}
+
+static int check_ways(const struct info_built *built, const struct content *content)
+{
+	struct tour_check_options options = { .complaint = complain };
+	struct fault fault = { "" };
+	struct mesh mesh = { 0 };
+	int rc = content_import(&mesh, content, NULL, &fault);
+
+	options.mesh = &mesh;
+	if (rc < 0)
+		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
+	else
+		rc = tour_check(built, &options);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+/* Every fault of what is told; the scan is read only where there are tours. */
+static int check_tours(const struct info_build_options *options, const struct content *content)
+{
+	struct info_build_options quiet = *options;
+	struct info_built built;
+	int rc;
+
+	quiet.complaint = complain; /* warnings are publish_info's */
+	rc = info_build(&built, &quiet);
+	if (rc == 0 && built.tour_count > 0)
+		rc = check_ways(&built, content);
+	info_built_finish(&built);
+	return rc;
+}
+
 int publish_content_check(const struct content *content)
 {
 	const char *languages[CONTENT_LANGUAGES_MOST];
 	const struct info_build_options options = info_options(content, languages);
 
-	return publish_check_info(&options);
+	return check_tours(&options, content);
 }
 
 static int add_info(struct object_store *objects, const struct content *content,
@@ -144,7 +185,9 @@ static int add_info(struct object_store *objects, const struct content *content,
 	const char *languages[CONTENT_LANGUAGES_MOST];
 	const struct info_build_options options = info_options(content, languages);
 
-	return publish_info(objects, &options, out);
+	const int rc = check_tours(&options, content);
+
+	return rc < 0 ? rc : publish_info(objects, &options, out);
 }
 
 static int open_master(struct master **master, const struct content *content)

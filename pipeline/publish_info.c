@@ -65,27 +65,6 @@ static int build(struct info_built *built, const struct info_build_options *opti
 	return rc;
 }
 
-static void complain_of_errors(void *data, bool is_error, const char *file, unsigned line,
-			       const char *text)
-{
-	(void)data;
-	if (is_error)
-		complain(NULL, true, file, line, text);
-}
-
-int publish_check_info(const struct info_build_options *options)
-{
-	struct info_build_options told = *options;
-	struct info_built built;
-	int rc;
-
-	told.complaint = complain_of_errors;
-	rc = info_build(&built, &told);
-	if (rc == 0)
-		info_built_finish(&built);
-	return rc;
-}
-
 int publish_info(struct object_store *objects, const struct info_build_options *options,
 		 struct page_child *out)
 {

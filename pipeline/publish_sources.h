@@ -17,9 +17,6 @@ must_check int publish_samples(struct object_store *objects, const char *content
 must_check int publish_info(struct object_store *objects, const struct info_build_options *options,
 			    struct page_child *out);
 
-/* Only the faults, told before hours of work: as publish_info would find them. */
-must_check int publish_check_info(const struct info_build_options *options);
-
 /* The hierarchy page and its groups: the part of the master within the share. Where not even the
  * top of it is, the top alone, with a warning: a picture needs something. *published_triangles
  * counts all patches. Errors are logged. */

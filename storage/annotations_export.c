@@ -20,7 +20,8 @@ static const char context[] =
 	"\"half\": {\"@id\": \"gopura:half\", \"@container\": \"@list\"},"
 	"\"corners\": {\"@id\": \"gopura:corners\", \"@container\": \"@list\"},"
 	"\"radius\": \"gopura:radius\", \"turn\": \"gopura:turn\", \"floor\": \"gopura:floor\","
-	"\"roof\": \"gopura:roof\"}]";
+	"\"roof\": \"gopura:roof\","
+	"\"tours\": {\"@id\": \"gopura:tours\", \"@type\": \"@json\"}}]";
 
 /* cJSON's adders return NULL where memory ran out: sticky, judged once. */
 struct exporter {
@@ -236,7 +237,8 @@ static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32
 				 read->id);
 }
 
-static cJSON *make_collection(struct exporter *e, const cJSON *json)
+/* tours: as tours.json has them, which no other tool reads; NULL: none. */
+static cJSON *make_collection(struct exporter *e, const cJSON *json, const cJSON *tours)
 {
 	cJSON *collection = cJSON_CreateObject(), *page, *items;
 	const cJSON *part;
@@ -249,6 +251,8 @@ static cJSON *make_collection(struct exporter *e, const cJSON *json)
 	add_text(e, collection, "type", "AnnotationCollection");
 	add(e, collection, "total", cJSON_CreateNumber(e->content->part_count));
 	add_credits(e, collection, json);
+	if (e->content->tour_count > 0)
+		add(e, collection, "tours", cJSON_Duplicate(tours, true));
 	page = add_object(e, collection, "first");
 	items = cJSON_CreateArray();
 	if (page) {
@@ -286,10 +290,11 @@ static int list_pictures(struct annotations *out, const struct content *content)
 	return 0;
 }
 
-static int write_collection(struct annotations *out, struct content *content, const cJSON *json)
+static int write_collection(struct annotations *out, struct content *content, const cJSON *json,
+			    const cJSON *tours)
 {
 	struct exporter exporter = { .content = content };
-	cJSON *collection = make_collection(&exporter, json);
+	cJSON *collection = make_collection(&exporter, json, tours);
 	char *text = collection ? cJSON_Print(collection) : NULL;
 	int rc = text ? 0 : -ENOMEM;
 
@@ -304,8 +309,8 @@ static int write_collection(struct annotations *out, struct content *content, co
 	return rc == 0 && content->error_count > 0 ? -EINVAL : rc;
 }
 
-/* Its text again as JSON: content_read_parts has judged it. */
-static int read_json(cJSON **out, struct content *content)
+/* A file's text again as JSON: the folder's own readers have judged it, or will. */
+static int read_json(cJSON **out, struct content *content, const char *name)
 {
 	struct buffer text;
 	char path[PATH_MAX];
@@ -313,7 +318,7 @@ static int read_json(cJSON **out, struct content *content)
 
 	*out = NULL;
 	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
-	if (content_path(content, path, sizeof(path), "parts.json"))
+	if (content_path(content, path, sizeof(path), name))
 		rc = buffer_read_file(&text, path);
 	if (rc == 0)
 		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
@@ -330,8 +335,8 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 					    .complaint = options->complaint,
 					    .complaint_data = options->complaint_data };
 	struct content content = { .options = &build };
-	cJSON *json;
-	int rc = read_json(&json, &content);
+	cJSON *json, *tours = NULL;
+	int rc = read_json(&json, &content, "parts.json");
 
 	*out = (struct annotations){ 0 };
 	buffer_init(&out->json, ANNOTATIONS_BYTES_MOST);
@@ -350,17 +355,23 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 	}
 	if (rc == 0)
 		rc = content_read_parts(&content);
+	if (rc == 0)
+		rc = content_read_tours(&content);
+	if (rc == 0 && content.tour_count > 0)
+		rc = read_json(&tours, &content, "tours.json");
 	if (rc == 0 && content.part_count > 0)
 		rc = content_read_pages(&content);
 	if (rc == 0 && content.error_count > 0)
 		rc = -EINVAL;
 	if (rc == 0)
-		rc = write_collection(out, &content, json);
+		rc = write_collection(out, &content, json,
+				      cJSON_GetObjectItemCaseSensitive(tours, "tours"));
 	if (rc == 0)
 		rc = list_pictures(out, &content);
 	if (rc < 0)
 		annotations_finish(out);
 	cJSON_Delete(json);
+	cJSON_Delete(tours);
 	content_finish(&content);
 	return rc;
 }

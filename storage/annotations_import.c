@@ -494,6 +494,7 @@ static int import(struct importer *im)
 		im->parts = cJSON_GetObjectItemCaseSensitive(im->parts_file, "parts");
 		if (im->parts)
 			read_items(im, json, (const char *)text.data);
+		im->tours = cJSON_GetObjectItemCaseSensitive(json, "tours");
 		if (im->failed)
 			rc = -ENOMEM;
 	}

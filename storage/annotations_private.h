@@ -42,6 +42,7 @@ struct importer {
 	struct annotations_imported *report;
 	const char *language;
 	cJSON *parts_file, *parts; /* parts_file owned; parts is its array */
+	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
 	struct page_file *pages;   /* owned */
 	uint32_t page_count, error_count;
 	char **written; /* owned paths, in the order of writing */

@@ -111,6 +111,23 @@ static int copy_pictures(struct importer *im)
 	return rc;
 }
 
+/* tours.json around what the file has of it. */
+static int write_tours(struct importer *im)
+{
+	cJSON *file = cJSON_CreateObject();
+	char *text = NULL;
+	int rc = -ENOMEM;
+
+	if (file && cJSON_AddItemToObject(file, "tours", cJSON_Duplicate(im->tours, true)))
+		text = cJSON_Print(file);
+	if (text)
+		rc = write_file(im, "tours.json",
+				(struct bytes){ (const uint8_t *)text, strlen(text) });
+	cJSON_free(text);
+	cJSON_Delete(file);
+	return rc;
+}
+
 static int write_all(struct importer *im)
 {
 	char *text = cJSON_Print(im->parts_file);
@@ -119,6 +136,8 @@ static int write_all(struct importer *im)
 	if (rc == 0)
 		rc = write_file(im, "parts.json",
 				(struct bytes){ (const uint8_t *)text, strlen(text) });
+	if (rc == 0 && im->tours)
+		rc = write_tours(im);
 	if (rc == 0)
 		rc = make_folder(im, "pages");
 	for (uint32_t i = 0; i < im->page_count && rc == 0; i++)
@@ -160,7 +179,7 @@ static void take_away(struct importer *im)
 
 bool importer_has_room(struct importer *im)
 {
-	static const char *const names[] = { "parts.json", "pages" };
+	static const char *const names[] = { "parts.json", "pages", "tours.json" };
 
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
 		char path[PATH_MAX];

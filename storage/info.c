@@ -46,9 +46,7 @@ static int bound_work(void *data)
 
 /* ---- rows ---- */
 
-typedef int row_reader(struct info *info, sqlite3_stmt *row);
-
-static int each_row(struct info *info, const char *sql, row_reader *read)
+int info_each_row(struct info *info, const char *sql, info_row_reader *read)
 {
 	sqlite3_stmt *statement = NULL;
 	int code = sqlite3_prepare_v2(info->db, sql, -1, &statement, NULL);
@@ -62,9 +60,7 @@ static int each_row(struct info *info, const char *sql, row_reader *read)
 	return rc;
 }
 
-/* A copy of a text column; NULL stays NULL. Zero bytes inside and what is not UTF-8
- * are refused. */
-static int copy_text(sqlite3_stmt *row, int column, char **out)
+int info_copy_text(sqlite3_stmt *row, int column, char **out)
 {
 	const char *text = (const char *)sqlite3_column_text(row, column);
 	int size = sqlite3_column_bytes(row, column);
@@ -83,7 +79,7 @@ static int read_float(sqlite3_stmt *row, int column, float *out)
 	return isfinite(*out) ? 0 : -EBADMSG;
 }
 
-static int read_floats(sqlite3_stmt *row, int column, float *out, int count)
+int info_read_floats(sqlite3_stmt *row, int column, float *out, int count)
 {
 	int rc = 0;
 
@@ -99,7 +95,7 @@ static int read_language(struct info *info, sqlite3_stmt *row)
 	if (info->language_count == INFO_LANGUAGES_MOST ||
 	    sqlite3_column_int64(row, 0) != info->language_count)
 		return -EBADMSG;
-	rc = copy_text(row, 1, &info->languages[info->language_count]);
+	rc = info_copy_text(row, 1, &info->languages[info->language_count]);
 	if (rc == 0 && !info->languages[info->language_count])
 		rc = -EBADMSG;
 	if (rc == 0)
@@ -123,7 +119,7 @@ static int read_picture(struct info *info, sqlite3_stmt *row)
 
 	if (info->picture_count == PICTURES_MOST || sqlite3_column_bytes(row, 1) != HASH_BYTES)
 		return -EBADMSG;
-	rc = copy_text(row, 0, &name);
+	rc = info_copy_text(row, 0, &name);
 	if (rc < 0 || !name)
 		return rc < 0 ? rc : -EBADMSG;
 	grown = grow(info->pictures, info->picture_count, sizeof(*grown));
@@ -152,11 +148,11 @@ static int read_region(sqlite3_stmt *row, struct info_region *region)
 	if (i == ARRAY_COUNT(kinds))
 		return -EBADMSG;
 	region->kind = (enum info_region_kind)i;
-	rc = read_floats(row, 3, region->centre_m, 3);
+	rc = info_read_floats(row, 3, region->centre_m, 3);
 	if (rc == 0)
 		rc = read_float(row, 9, &region->radius_m);
 	if (rc == 0)
-		rc = read_floats(row, 10, region->half_m, 3);
+		rc = info_read_floats(row, 10, region->half_m, 3);
 	if (rc == 0)
 		rc = read_float(row, 13, &region->turn_deg);
 	if (rc == 0)
@@ -174,7 +170,7 @@ static int read_part(struct info *info, sqlite3_stmt *row)
 
 	if (info->part_count == INFO_PARTS_MOST || sqlite3_column_int64(row, 0) != info->part_count)
 		return -EBADMSG;
-	rc = copy_text(row, 1, &id);
+	rc = info_copy_text(row, 1, &id);
 	if (rc < 0 || !id)
 		return rc < 0 ? rc : -EBADMSG;
 	grown = grow(info->parts, info->part_count, sizeof(*grown));
@@ -188,7 +184,7 @@ static int read_part(struct info *info, sqlite3_stmt *row)
 	part->public.id = id;
 	rc = read_region(row, &part->public.region);
 	if (rc == 0)
-		rc = read_floats(row, 6, part->public.anchor_m, 3);
+		rc = info_read_floats(row, 6, part->public.anchor_m, 3);
 	return rc;
 }
 
@@ -202,7 +198,7 @@ static int read_corner(struct info *info, sqlite3_stmt *row)
 	region = &info->parts[id].public.region;
 	if (region->corner_count == INFO_CORNERS_MOST)
 		return -EBADMSG;
-	return read_floats(row, 1, region->corners_m[region->corner_count++], 2);
+	return info_read_floats(row, 1, region->corners_m[region->corner_count++], 2);
 }
 
 static int read_thumbnail(struct info *info, sqlite3_stmt *row)
@@ -233,8 +229,8 @@ static int read_content(struct info *info, sqlite3_stmt *row)
 	text->content_id = sqlite3_column_int64(row, 5);
 	text->has_page = sqlite3_column_int(row, 4) != 0;
 	info->parts[id].public.has_page |= text->has_page;
-	rc = copy_text(row, 2, &text->title);
-	return rc == 0 ? copy_text(row, 3, &text->caption) : rc;
+	rc = info_copy_text(row, 2, &text->title);
+	return rc == 0 ? info_copy_text(row, 3, &text->caption) : rc;
 }
 
 /* ---- open ---- */
@@ -329,7 +325,7 @@ static int load(struct info *info)
 {
 	static const struct {
 		const char *sql;
-		row_reader *read;
+		info_row_reader *read;
 	} steps[] = {
 		{ "SELECT position, code FROM language ORDER BY position", read_language },
 		{ "SELECT name, hash, width_px, height_px FROM picture ORDER BY name",
@@ -352,7 +348,7 @@ static int load(struct info *info)
 	int rc = 0;
 
 	for (size_t i = 0; i < ARRAY_COUNT(steps) && rc == 0; i++)
-		rc = each_row(info, steps[i].sql, steps[i].read);
+		rc = info_each_row(info, steps[i].sql, steps[i].read);
 	if (rc == 0 && info->language_count == 0)
 		rc = -EBADMSG;
 	for (uint32_t i = 0; i < info->part_count && rc == 0; i++) {
@@ -383,6 +379,8 @@ static int open_image(struct info *info, struct bytes image)
 		rc = info_from_sqlite(info->db,
 				      sqlite3_prepare_v2(info->db, page_sql, -1, &info->page, NULL),
 				      "page");
+	if (rc == 0 && version > INFO_SCHEMA_TOURLESS)
+		rc = info_load_tours(info);
 	if (rc == 0 && version == 1)
 		rc = complete_version_1(info);
 	return rc;
@@ -414,6 +412,7 @@ void info_close(struct info *info)
 	sqlite3_close(info->db);
 	buffer_finish(&info->credits);
 	free(info->contents);
+	info_drop_tours(info);
 	for (uint32_t i = 0; i < info->part_count; i++) {
 		free((char *)info->parts[i].public.id);
 		for (size_t k = 0; k < INFO_LANGUAGES_MOST; k++) {

@@ -17,6 +17,8 @@ enum {
 	INFO_PARTS_MOST = 1000,
 	INFO_PAGE_BYTES_MOST = 1 << 20, /* one HTML page */
 	INFO_PAGE_PICTURES_MOST = 64,
+	INFO_TOURS_MOST = 8,
+	INFO_STOPS_MOST = 64, /* of a tour */
 };
 
 enum info_region_kind { INFO_REGION_POINT, INFO_REGION_SPHERE, INFO_REGION_BOX, INFO_REGION_PRISM };
@@ -41,7 +43,7 @@ typedef void info_complaint(void *data, bool is_error, const char *file, unsigne
 			    const char *text);
 
 struct info_build_options {
-	const char *folder;           /* the content folder: parts.json, pages/, pictures/ */
+	const char *folder; /* the content folder: parts.json, tours.json, pages/, pictures/ */
 	const char *const *languages; /* such as "en"; the first must have every title */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MOST */
 	info_complaint *complaint;    /* NULL: they are logged */
@@ -54,9 +56,15 @@ struct info_picture_file {
 	char *name;       /* owned; such as "pictures/gate.jpg", relative to the content folder */
 };
 
+/* Where in tours.json a tour stands, and its stops: for those who find fault with its way. */
+struct info_tour_lines {
+	unsigned tour, stops[INFO_STOPS_MOST];
+};
+
 struct info_built {
 	struct buffer database; /* the SQLite image */
-	uint32_t part_count, page_count, picture_count;
+	uint32_t part_count, page_count, picture_count, tour_count;
+	struct info_tour_lines tour_lines[INFO_TOURS_MOST];
 	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
 };
 
@@ -123,6 +131,30 @@ const char *info_credits(struct info *info, uint32_t part, const char *language)
  * written to parts, `most` at most; 0 for a query without words. */
 uint32_t info_search(struct info *info, const char *query, const char *language, uint32_t *parts,
 		     uint32_t most);
+
+/* ---- guided tours: docs/tours.md ---- */
+
+struct info_stop {
+	float eye_m[3], target_m[3];
+	float stay_s, travel_s; /* 0: none, it is only on the way; 0: by the distance */
+	int part;               /* that is lit, or -1 */
+};
+
+struct info_tour {
+	const char *id;
+	bool attract; /* flown round while nobody is there; its way is closed */
+	uint32_t stop_count;
+	struct info_stop stops[INFO_STOPS_MOST];
+};
+
+/* None in images before version 3. Borrowed until info_close; texts as info_text gives them. */
+uint32_t info_tour_count(const struct info *info);
+const struct info_tour *info_tour(const struct info *info, uint32_t tour);
+int info_find_tour(const struct info *info, const char *id); /* or -ENOENT */
+struct info_text info_tour_text(const struct info *info, uint32_t tour, const char *language);
+/* What is said at a stop; "": nothing. */
+const char *info_stop_caption(const struct info *info, uint32_t tour, uint32_t stop,
+			      const char *language);
 
 /* Every picture of the database, sorted by name. Borrowed until info_close. */
 uint32_t info_picture_count(const struct info *info);

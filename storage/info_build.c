@@ -49,6 +49,24 @@ static const char schema[] =
 	" position INTEGER NOT NULL, picture_id INTEGER NOT NULL REFERENCES picture,"
 	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
 
+/* Where there are tours: an image of a folder without them is of the version before, for programs
+ * that know no later one. */
+static const char tour_schema[] =
+	"CREATE TABLE tour(tour_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
+	" attract INTEGER NOT NULL, thumbnail INTEGER REFERENCES picture);"
+	"CREATE TABLE tour_contents(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" language INTEGER NOT NULL REFERENCES language, title TEXT, caption TEXT,"
+	" PRIMARY KEY(tour_id, language)) WITHOUT ROWID;"
+	"CREATE TABLE tour_stop(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" position INTEGER NOT NULL, eye_x REAL NOT NULL, eye_y REAL NOT NULL,"
+	" eye_z REAL NOT NULL, target_x REAL NOT NULL, target_y REAL NOT NULL,"
+	" target_z REAL NOT NULL, stay_s REAL NOT NULL, travel_s REAL NOT NULL,"
+	" part_id INTEGER REFERENCES identified_part, PRIMARY KEY(tour_id, position))"
+	" WITHOUT ROWID;"
+	"CREATE TABLE tour_stop_contents(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" position INTEGER NOT NULL, language INTEGER NOT NULL REFERENCES language,"
+	" caption TEXT NOT NULL, PRIMARY KEY(tour_id, position, language)) WITHOUT ROWID;";
+
 /* Sticky: after the first failure nothing happens any more; judged once. */
 struct writer {
 	sqlite3 *db;
@@ -229,13 +247,64 @@ static void write_information(struct writer *w, int64_t id, const struct content
 	write_credits(w, id, part);
 }
 
+static void write_stop(struct writer *w, int64_t tour, int64_t position,
+		       const struct content_stop *stop)
+{
+	prepare(w, "INSERT INTO tour_stop VALUES(?,?, ?,?,?, ?,?,?, ?,?,?)");
+	bind_int(w, tour);
+	bind_int(w, position);
+	bind_vector(w, stop->view.eye_m);
+	bind_vector(w, stop->view.target_m);
+	bind_real(w, stop->view.stay_s);
+	bind_real(w, stop->view.travel_s);
+	if (stop->view.part >= 0)
+		bind_int(w, stop->view.part);
+	insert(w);
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		if (!stop->captions[i])
+			continue;
+		prepare(w, "INSERT INTO tour_stop_contents VALUES(?,?,?,?)");
+		bind_int(w, tour);
+		bind_int(w, position);
+		bind_int(w, i);
+		bind_text(w, stop->captions[i]);
+		insert(w);
+	}
+}
+
+static void write_tour(struct writer *w, int64_t id, const struct content_tour *tour)
+{
+	prepare(w, "INSERT INTO tour VALUES(?,?,?,?)");
+	bind_int(w, id);
+	bind_text(w, tour->id);
+	bind_int(w, tour->attract);
+	if (tour->thumbnail_picture >= 0)
+		bind_int(w, tour->thumbnail_picture);
+	insert(w);
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		if (!tour->titles[i] && !tour->captions[i])
+			continue;
+		prepare(w, "INSERT INTO tour_contents VALUES(?,?,?,?)");
+		bind_int(w, id);
+		bind_int(w, i);
+		bind_text(w, tour->titles[i]);
+		bind_text(w, tour->captions[i]);
+		insert(w);
+	}
+	for (uint32_t i = 0; i < tour->stop_count; i++)
+		write_stop(w, id, i, &tour->stops[i]);
+}
+
 static void write_database(struct writer *w, const struct content *content)
 {
 	char pragmas[100];
 
 	snprintf(pragmas, sizeof(pragmas), "PRAGMA application_id = %d; PRAGMA user_version = %d;",
-		 INFO_APPLICATION_ID, INFO_SCHEMA_VERSION);
+		 INFO_APPLICATION_ID,
+		 content->tour_count > 0 ? INFO_SCHEMA_VERSION : INFO_SCHEMA_TOURLESS);
 	run(w, schema);
+	if (content->tour_count > 0)
+		run(w, tour_schema);
 	run(w, pragmas);
 	run(w, "BEGIN");
 	write_languages(w, content->options);
@@ -244,6 +313,8 @@ static void write_database(struct writer *w, const struct content *content)
 		write_part(w, i, &content->parts[i]);
 		write_information(w, i, &content->parts[i], content->options->language_count);
 	}
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		write_tour(w, i, &content->tours[i]);
 	if (w->code == SQLITE_OK)
 		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
 	run(w, "COMMIT");
@@ -316,6 +387,12 @@ static int list_pictures(struct info_built *out, struct content *content)
 static void count(struct info_built *out, const struct content *content)
 {
 	out->part_count = content->part_count;
+	out->tour_count = content->tour_count;
+	for (uint32_t t = 0; t < content->tour_count; t++) {
+		out->tour_lines[t].tour = content->tours[t].line;
+		for (uint32_t i = 0; i < content->tours[t].stop_count; i++)
+			out->tour_lines[t].stops[i] = content->tours[t].stops[i].line;
+	}
 	for (uint32_t p = 0; p < content->part_count; p++)
 		for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++)
 			out->page_count += content->parts[p].pages[i].html != NULL;
@@ -350,8 +427,8 @@ int info_build(struct info_built *out, const struct info_build_options *options)
 		content_complain(&content, true, "temple.ini", 0,
 				 "languages: give 1 to %d codes such as \"en fr km\", each once",
 				 INFO_LANGUAGES_MOST);
-	else
-		rc = content_read_parts(&content);
+	else if ((rc = content_read_parts(&content)) == 0)
+		rc = content_read_tours(&content);
 	if (rc == 0 && content.part_count > 0)
 		rc = content_read_pages(&content);
 	if (rc == 0 && content.error_count > 0)

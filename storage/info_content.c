@@ -47,8 +47,23 @@ static void part_finish(struct content_part *part)
 	}
 }
 
+static void tour_finish(struct content_tour *tour)
+{
+	free(tour->id);
+	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		free(tour->titles[i]);
+		free(tour->captions[i]);
+		for (uint32_t s = 0; s < tour->stop_count; s++)
+			free(tour->stops[s].captions[i]);
+	}
+	free(tour->stops);
+}
+
 void content_finish(struct content *content)
 {
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		tour_finish(&content->tours[i]);
+	free(content->tours);
 	for (uint32_t i = 0; i < content->part_count; i++)
 		part_finish(&content->parts[i]);
 	for (uint32_t i = 0; i < content->picture_count; i++)
@@ -62,6 +77,14 @@ int content_find_part(const struct content *content, const char *id)
 {
 	for (uint32_t i = 0; i < content->part_count; i++)
 		if (strcmp(content->parts[i].id, id) == 0)
+			return (int)i;
+	return -1;
+}
+
+int content_find_tour(const struct content *content, const char *id)
+{
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		if (strcmp(content->tours[i].id, id) == 0)
 			return (int)i;
 	return -1;
 }

@@ -40,6 +40,22 @@ struct content_part {
 	struct content_page pages[INFO_LANGUAGES_MOST];
 };
 
+struct content_stop {
+	struct info_stop view;
+	unsigned line;                       /* of tours.json */
+	char *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+};
+
+struct content_tour {
+	char *id;
+	unsigned line;
+	bool attract;
+	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	int thumbnail_picture;      /* index into content.pictures, or -1 */
+	struct content_stop *stops; /* owned */
+	uint32_t stop_count;
+};
+
 struct content_picture {
 	char *name;
 	const char *media_type;
@@ -52,6 +68,8 @@ struct content {
 	const struct info_build_options *options;
 	struct content_part *parts;
 	uint32_t part_count;
+	struct content_tour *tours;
+	uint32_t tour_count;
 	struct content_picture *pictures;
 	uint32_t picture_count;
 	uint32_t error_count; /* complaints that are errors */
@@ -65,6 +83,8 @@ void content_finish(struct content *content);
 /* Each returns 0 even where it complained; negative errno only where it cannot go on. */
 must_check int content_read_parts(struct content *content);
 must_check int content_read_pages(struct content *content);
+/* After the parts: stops may name them. */
+must_check int content_read_tours(struct content *content);
 /* Adds what json, the "credits" of a part, and, where that lacks an element, all, those of all
  * parts, say. Either may be NULL. Complains as of the part's line. */
 must_check int content_read_credits(struct content *content, struct content_part *part,
@@ -76,6 +96,9 @@ int content_add_picture(struct content *content, const char *name, const char *f
 bool content_languages_are_sane(const struct info_build_options *options);
 /* The part's index or -1. */
 int content_find_part(const struct content *content, const char *id);
+int content_find_tour(const struct content *content, const char *id);
+/* May name a part or a tour. */
+bool content_is_id(const char *id);
 
 /* The path of a file of the folder; false where it does not fit. */
 bool content_path(const struct content *content, char *path, size_t path_bytes, const char *name);

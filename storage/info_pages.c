@@ -86,18 +86,23 @@ static void check_link(struct page_check *check, xmlNode *node)
 	char *href = (char *)xmlGetProp(node, BAD_CAST "href");
 	bool to_page = href && strncmp(href, "page:", 5) == 0;
 	bool to_part = href && strncmp(href, "part:", 5) == 0;
+	bool to_tour = href && strncmp(href, "tour:", 5) == 0;
 	int part = to_page || to_part ? content_find_part(check->content, href + 5) : -1;
 	unsigned line = node_line(node);
 
 	if (!href)
 		content_complain(check->content, true, check->file, line,
 				 "<a> without href: write href=\"part:ID\", or remove it");
-	else if (!to_page && !to_part)
+	else if (to_tour && content_find_tour(check->content, href + 5) < 0)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": no tour has that id; see tours.json", href);
+	else if (!to_page && !to_part && !to_tour)
 		content_complain(check->content, true, check->file, line,
 				 "link to \"%.80s\": a kiosk leads nowhere outside; link to "
-				 "\"part:ID\" or \"page:ID\", or write the address as text",
+				 "\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
+				 "text",
 				 href);
-	else if (part < 0)
+	else if (!to_tour && part < 0)
 		content_complain(check->content, true, check->file, line,
 				 "link to \"%.80s\": no part has that id; see parts.json", href);
 	else if (to_page && check->content->parts[part].without_page)

@@ -207,7 +207,7 @@ static int read_texts(struct part_reader *r, const char *key, char *texts[], boo
 	return 0;
 }
 
-static bool is_id(const char *id)
+bool content_is_id(const char *id)
 {
 	size_t size = strlen(id);
 
@@ -219,7 +219,7 @@ static int read_id(struct part_reader *r)
 {
 	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r->json, "id"));
 
-	if (!id || !is_id(id))
+	if (!id || !content_is_id(id))
 		complain_part(r,
 			      "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
 			      "page's file)",

@@ -29,6 +29,13 @@ struct part {
 	struct text texts[INFO_LANGUAGES_MOST];
 };
 
+struct tour {
+	struct info_tour public;                                           /* id owned */
+	uint32_t thumbnail;                                                /* as a part's */
+	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	char *stop_captions[INFO_STOPS_MOST][INFO_LANGUAGES_MOST];         /* the same */
+};
+
 struct info {
 	sqlite3 *db;
 	sqlite3_stmt *page;    /* steps on the row that the last info_page gave */
@@ -40,12 +47,23 @@ struct info {
 	uint32_t language_count;
 	struct part *parts;
 	uint32_t part_count;
+	struct tour *tours;
+	uint32_t tour_count;
 	struct info_picture *pictures; /* names owned */
 	uint32_t picture_count;
 };
 
 /* 0, -ENOMEM or -EBADMSG, logged. */
 must_check int info_from_sqlite(sqlite3 *db, int code, const char *doing);
+/* Of an image that is not trusted. */
+typedef int info_row_reader(struct info *info, sqlite3_stmt *row);
+must_check int info_each_row(struct info *info, const char *sql, info_row_reader *read);
+/* A copy of a text column; NULL stays NULL. Zero bytes inside and what is not UTF-8 are refused. */
+must_check int info_copy_text(sqlite3_stmt *row, int column, char **out);
+must_check int info_read_floats(sqlite3_stmt *row, int column, float *out, int count);
+/* info_tour.c: after parts and pictures. */
+must_check int info_load_tours(struct info *info);
+void info_drop_tours(struct info *info);
 /* An unknown language is the default. */
 uint32_t info_language_index(const struct info *info, const char *language);
 

@@ -4,7 +4,8 @@
 
 enum {
 	INFO_APPLICATION_ID = 0x47704966, /* "GpIf", in the SQLite header */
-	INFO_SCHEMA_VERSION = 2,          /* user_version, as info_build writes it */
+	INFO_SCHEMA_VERSION = 3,          /* user_version, as info_build writes it with tours */
+	INFO_SCHEMA_TOURLESS = 2,         /* and without */
 	INFO_SCHEMA_OLDEST = 1,           /* that info_open still reads; docs/information.md */
 };
 

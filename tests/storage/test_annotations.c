@@ -109,6 +109,35 @@ static void comes_back_byte_for_byte(void **state)
 	annotations_finish(NULL);
 }
 
+/* And the links to them, which are faults where they are not there. */
+static void tours_come_back_with_the_parts(void **state)
+{
+	static const char tours[] =
+		"{\"tours\": [{\"id\": \"walk\", \"title\": {\"en\": \"A walk\"},\n"
+		"\"thumbnail\": \"pictures/b.png\", \"stops\": [\n"
+		"{\"eye\": [1, 2.5, 3], \"target\": [4, 5, 6]}, {\"part\": \"tower\"}]}]}";
+	struct annotations first, second;
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("tours.json", tours);
+	write_text("pages/tower.en.html", "<p>Take <a href=\"tour:walk\">a walk</a>.</p>");
+	CHECK(export_from(&first, folder) == 0);
+	CHECK(first.picture_count == 2); /* one that only the tour shows */
+	write_file("exchange.jsonld", first.json.data, first.json.size);
+	if (import_with(&report, false, false) != 0)
+		fail_msg("%s", complaints.list[0].text);
+	CHECK(copy_says("tours.json", "2.5"));
+	CHECK(export_from(&second, copy) == 0);
+	CHECK(second.json.size == first.json.size);
+	CHECK(memcmp(second.json.data, first.json.data, first.json.size) == 0);
+	annotations_finish(&first);
+	annotations_finish(&second);
+	write_text("tours.json", "{\"tours\": [{\"id\": \"walk\"}]}");
+	CHECK(export_from(&first, folder) == -EINVAL);
+	CHECK(was_told(&complaints, "tours.json", 1, "no title in"));
+}
+
 /* What the standards ask for, and where our own terms are used. */
 static void writes_what_the_standards_name(void **state)
 {
@@ -351,6 +380,7 @@ int main(void)
 #define IN_A_FOLDER(claim) cmocka_unit_test_setup_teardown(claim, set_up_exchange, tear_down)
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(comes_back_byte_for_byte),
+		IN_A_FOLDER(tours_come_back_with_the_parts),
 		IN_A_FOLDER(writes_what_the_standards_name),
 		IN_A_FOLDER(refuses_a_folder_that_is_at_fault),
 		IN_A_FOLDER(takes_what_another_tool_wrote),
