@@ -22,6 +22,7 @@ enum page_kind {
 	PAGE_BRICK,     /* 4 x 4 x 4 sampling points: children are face pages */
 	PAGE_FACE,      /* one face of one sampling point: children are tiles */
 	PAGE_INFO,      /* children: the information database (SQLite), then its pictures */
+	PAGE_LABELS,    /* format/label.h: children are the labels of patch groups */
 };
 
 enum {

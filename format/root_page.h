@@ -1,11 +1,19 @@
 /* Payload of PAGE_ROOT: what a release shows, before anything of it is fetched.
- * Children, in this order: the hierarchy page, the samples page, the info page. */
+ * Children, in this order: the hierarchy page, the samples page, the info page; then, where parts
+ * have regions, the labels page. */
 #ifndef GOPURA_FORMAT_ROOT_PAGE_H
 #define GOPURA_FORMAT_ROOT_PAGE_H
 
 #include "format/page.h"
 
-enum { ROOT_CHILD_HIERARCHY, ROOT_CHILD_SAMPLES, ROOT_CHILD_INFO, ROOT_CHILD_COUNT };
+enum {
+	ROOT_CHILD_HIERARCHY,
+	ROOT_CHILD_SAMPLES,
+	ROOT_CHILD_INFO,
+	ROOT_CHILD_COUNT, /* that every root page has */
+	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
+	ROOT_CHILDREN_MOST
+};
 
 /* The one quantisation lattice of a model: metres = origin + step * lattice, lattice in 0..65535
  * on each axis, so that a border shared by two patches is equal bit for bit at every level. */

@@ -202,6 +202,8 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	 */
 	if (!is_indexed)
 		report->repairs.merged_vertices = 0;
+	mesh->scan_count = 1;
+	mesh->scans[0].triangle_count = mesh->triangle_count;
 	report->vertices = mesh->vertex_count;
 	report->triangles = mesh->triangle_count;
 	judge_box(mesh, path, report);

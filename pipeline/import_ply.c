@@ -61,6 +61,10 @@ static int grow_triangles(struct collector *collector)
 	if (!grown)
 		return -ENOMEM;
 	mesh->triangles = grown;
+	grown = realloc(mesh->faces, capacity * sizeof(*mesh->faces));
+	if (!grown)
+		return -ENOMEM;
+	mesh->faces = grown;
 	if (mesh->materials) {
 		grown = realloc(mesh->materials, capacity * sizeof(*mesh->materials));
 		if (!grown)
@@ -90,6 +94,7 @@ static int take_triangle(void *data, const struct ply_triangle *triangle)
 			return rc;
 	}
 	memcpy(mesh->triangles[i], triangle->corner, sizeof(mesh->triangles[i]));
+	mesh->faces[i] = triangle->face;
 	if (mesh->materials)
 		mesh->materials[i] =
 			(uint16_t)(triangle->texture < collector->summary->texture_count
@@ -113,6 +118,7 @@ static int allocate(struct collector *collector)
 
 	mesh->positions = malloc(vertices * sizeof(*mesh->positions));
 	mesh->triangles = malloc(triangles * sizeof(*mesh->triangles));
+	mesh->faces = malloc(triangles * sizeof(*mesh->faces));
 	if (summary->has_colour || summary->has_open_sky)
 		mesh->colours = malloc(vertices * sizeof(*mesh->colours));
 	if (has_picture && !summary->has_corner_uv)
@@ -122,7 +128,7 @@ static int allocate(struct collector *collector)
 	if (has_picture && summary->has_corner_uv)
 		collector->corner_uvs = malloc(triangles * sizeof(*collector->corner_uvs));
 	collector->triangle_capacity = triangles;
-	if (!mesh->positions || !mesh->triangles ||
+	if (!mesh->positions || !mesh->triangles || !mesh->faces ||
 	    ((summary->has_colour || summary->has_open_sky) && !mesh->colours) ||
 	    (has_picture && (!mesh->materials || (!mesh->uvs && !collector->corner_uvs))))
 		return -ENOMEM;
@@ -226,6 +232,7 @@ int import_ply(struct mesh *out, const char *path, struct import_report *report,
 	report->trailing_bytes = ply_bytes_trailing(ply);
 	if (rc == 0) {
 		*out = collector.mesh;
+		out->scans[0].face_count = (uint32_t)collector.summary->face_count;
 		collector.mesh = (struct mesh){ 0 };
 	}
 	mesh_finish(&collector.mesh);

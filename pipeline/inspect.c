@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "format/hierarchy.h"
+#include "format/label.h"
 #include "format/metadata.h"
 #include "format/patch.h"
 #include "format/picture.h"
@@ -149,6 +150,7 @@ static int print_page(FILE *to, struct bytes bytes)
 		[PAGE_BRICK] = { "brick", print_brick },
 		[PAGE_FACE] = { "face", print_face },
 		[PAGE_INFO] = { "information", NULL },
+		[PAGE_LABELS] = { "labels", NULL },
 	};
 	struct page page;
 	int rc = page_decode(&page, bytes);
@@ -178,6 +180,31 @@ static int print_patch_group(FILE *to, struct bytes bytes)
 			meshes[i].vertex_count, meshes[i].triangle_count);
 		patch_mesh_finish(&meshes[i]);
 	}
+	return 0;
+}
+
+static int print_labels(FILE *to, struct bytes bytes)
+{
+	struct label_group labels;
+	int rc = label_group_decode(&labels, bytes);
+
+	if (rc < 0)
+		return rc;
+	fprintf(to, "labels, %zu bytes: %u patches, %u sets of %u parts\n", bytes.size,
+		labels.patch_count, labels.set_count, labels.part_count);
+	for (uint32_t i = 0; i < labels.part_count; i++) {
+		uint32_t whole = 0, crossed = 0;
+
+		for (uint32_t p = 0; p < labels.patch_count; p++) {
+			for (uint32_t t = 0; t < labels.patches[p].triangle_count; t++)
+				whole += label_holds(&labels, p, t, i);
+			for (uint32_t b = 0; b < labels.patches[p].border_count; b++)
+				crossed += labels.patches[p].borders[b].part == i;
+		}
+		fprintf(to, "  %-24s %.2f m2; here %u triangles and %u that its outline crosses\n",
+			labels.parts[i].id, (double)labels.parts[i].area_m2, whole, crossed);
+	}
+	label_group_finish(&labels);
 	return 0;
 }
 
@@ -292,9 +319,13 @@ int inspect_bytes(FILE *to, struct bytes bytes)
 		const char *magic;
 		int (*print)(FILE *, struct bytes);
 	} forms[] = {
-		{ "GPag", print_page },       { "GPpg", print_patch_group },
-		{ "GLoc", print_locator },    { "SQLite format 3", print_info },
-		{ "{", print_signed },        { "\xff\xd8", print_picture },
+		{ "GPag", print_page },
+		{ "GPpg", print_patch_group },
+		{ "GPlb", print_labels },
+		{ "GLoc", print_locator },
+		{ "SQLite format 3", print_info },
+		{ "{", print_signed },
+		{ "\xff\xd8", print_picture },
 		{ "\x89PNG", print_picture },
 	};
 	int rc = -EBADMSG;

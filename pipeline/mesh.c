@@ -15,6 +15,7 @@ void mesh_finish(struct mesh *mesh)
 	free(mesh->uvs);
 	free(mesh->triangles);
 	free(mesh->materials);
+	free(mesh->faces);
 	for (uint32_t i = 0; mesh->textures && i < mesh->texture_count; i++)
 		free(mesh->textures[i].rgb);
 	free(mesh->textures);
@@ -140,6 +141,20 @@ static int join_meshes(struct mesh *joined, const struct mesh *a, const struct m
 	return join_materials(joined, a, b);
 }
 
+static int join_scans(struct mesh *joined, const struct mesh *a, const struct mesh *b)
+{
+	if (a->scan_count + b->scan_count > MESH_SCANS_MOST)
+		return -EFBIG;
+	memcpy(joined->scans, a->scans, a->scan_count * sizeof(*a->scans));
+	memcpy(joined->scans + a->scan_count, b->scans, b->scan_count * sizeof(*b->scans));
+	joined->scan_count = a->scan_count + b->scan_count;
+	if (!a->faces && !b->faces)
+		return 0;
+	joined->faces = join(a->faces, a->triangle_count, b->faces, b->triangle_count,
+			     sizeof(*a->faces), 0xff); /* MESH_NO_FACE */
+	return joined->faces ? 0 : -ENOMEM;
+}
+
 int mesh_append(struct mesh *mesh, const struct mesh *other)
 {
 	struct mesh joined = { 0 };
@@ -149,6 +164,8 @@ int mesh_append(struct mesh *mesh, const struct mesh *other)
 	    (uint64_t)mesh->triangle_count + other->triangle_count >= UINT32_MAX)
 		return -EFBIG;
 	rc = join_meshes(&joined, mesh, other);
+	if (rc == 0)
+		rc = join_scans(&joined, mesh, other);
 	if (rc < 0) {
 		mesh_finish(&joined);
 		return rc;

@@ -97,7 +97,8 @@ void mesh_edges_each(const struct mesh_edges *edges,
 
 		for (uint64_t i = edges->start[vertex]; i < end; i = next) {
 			const uint64_t *items = edges->items + i;
-			struct mesh_edge edge = { .faces = { (uint32_t)items[0] } };
+			struct mesh_edge edge = { .ends = { vertex, (uint32_t)(items[0] >> 33) },
+						  .faces = { (uint32_t)items[0] } };
 
 			for (next = i + 1; next < end && edges->items[next] >> 33 == *items >> 33;)
 				next++;

@@ -7,6 +7,7 @@
 #include "pipeline/mesh.h"
 
 struct mesh_edge {
+	uint32_t ends[2];    /* the first vertices at its places */
 	uint32_t face_count; /* 1: border; 2: as it should be */
 	uint32_t faces[2];   /* the second only where face_count > 1 */
 	bool turned;         /* of two faces, which show opposite sides */

@@ -17,10 +17,12 @@ enum {
 	HAS_COLOURS = 1,
 	HAS_UVS = 2,
 	HAS_MATERIALS = 4,
+	HAS_FACES = 8,
+	COUNTS = 5,
 	CHUNK_BYTES = 1 << 24,
 };
 
-static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 1 };
+static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 2 };
 
 /* A file, with the hash of what passed; sticky. */
 struct stream {
@@ -79,7 +81,7 @@ struct section {
 	size_t bytes;
 };
 
-enum { SECTIONS = 5 };
+enum { SECTIONS = 6 };
 
 static void lay_out(struct mesh *mesh, uint32_t flags, struct section sections[SECTIONS])
 {
@@ -92,6 +94,8 @@ static void lay_out(struct mesh *mesh, uint32_t flags, struct section sections[S
 	sections[3] = (struct section){ (void **)&mesh->triangles, triangles * 12 };
 	sections[4] = (struct section){ (void **)&mesh->materials,
 					flags & HAS_MATERIALS ? triangles * 2 : 0 };
+	sections[5] =
+		(struct section){ (void **)&mesh->faces, flags & HAS_FACES ? triangles * 4 : 0 };
 }
 
 static size_t texture_bytes(const struct mesh_texture *texture)
@@ -103,9 +107,12 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 {
 	struct mesh shape = *mesh;
 	uint32_t head[5] = { BYTE_ORDER_PROBE };
-	uint32_t counts[4] = { mesh->vertex_count, mesh->triangle_count, mesh->texture_count,
-			       (mesh->colours ? HAS_COLOURS : 0u) | (mesh->uvs ? HAS_UVS : 0u) |
-				       (mesh->materials ? HAS_MATERIALS : 0u) };
+	uint32_t counts[COUNTS] = { mesh->vertex_count, mesh->triangle_count, mesh->texture_count,
+				    (mesh->colours ? HAS_COLOURS : 0u) |
+					    (mesh->uvs ? HAS_UVS : 0u) |
+					    (mesh->materials ? HAS_MATERIALS : 0u) |
+					    (mesh->faces ? HAS_FACES : 0u),
+				    mesh->scan_count };
 	struct section sections[SECTIONS];
 	struct stream stream;
 	uint8_t digest[HASH_BYTES];
@@ -115,6 +122,9 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 	put(&stream, head, sizeof(head[0]));
 	put(&stream, key.bytes, HASH_BYTES);
 	put(&stream, counts, sizeof(counts));
+	for (uint32_t i = 0; i < mesh->scan_count; i++)
+		put(&stream,
+		    (uint32_t[]){ mesh->scans[i].triangle_count, mesh->scans[i].face_count }, 8);
 	for (uint32_t i = 0; i < mesh->texture_count; i++)
 		put(&stream, (uint32_t[]){ mesh->textures[i].width, mesh->textures[i].height }, 8);
 	lay_out(&shape, counts[3], sections);
@@ -199,6 +209,39 @@ static int read_arrays(struct stream *stream, struct mesh *mesh, uint32_t flags,
 	return stream->error;
 }
 
+static bool scans_are_sound(const struct mesh *mesh)
+{
+	uint64_t triangles = 0;
+
+	for (uint32_t s = 0; s < mesh->scan_count; s++) {
+		uint64_t next = triangles + mesh->scans[s].triangle_count;
+
+		if (next > mesh->triangle_count)
+			return false;
+		for (uint64_t t = triangles; mesh->faces && t < next; t++)
+			if (mesh->faces[t] != MESH_NO_FACE &&
+			    mesh->faces[t] >= mesh->scans[s].face_count)
+				return false;
+		triangles = next;
+	}
+	return mesh->scan_count == 0 || triangles == mesh->triangle_count;
+}
+
+static int read_scans(struct stream *stream, struct mesh *mesh, uint32_t count, int64_t *left)
+{
+	if (count > MESH_SCANS_MOST)
+		return -EBADMSG;
+	for (uint32_t s = 0; s < count; s++) {
+		uint32_t numbers[2] = { 0 };
+
+		get(stream, numbers, sizeof(numbers));
+		mesh->scans[s] = (struct mesh_scan){ numbers[0], numbers[1] };
+	}
+	mesh->scan_count = count;
+	*left -= 8 * (int64_t)count;
+	return stream->error;
+}
+
 /* The hash guards against accidents; these rules against whoever writes hashes. */
 static bool is_sound(const struct mesh *mesh)
 {
@@ -209,12 +252,12 @@ static bool is_sound(const struct mesh *mesh)
 	for (uint32_t i = 0; mesh->materials && i < mesh->triangle_count; i++)
 		if (mesh->materials[i] >= mesh->texture_count)
 			return false;
-	return true;
+	return scans_are_sound(mesh);
 }
 
 static int read_body(struct stream *stream, struct mesh *mesh, struct hash key, int64_t left)
 {
-	uint32_t probe = 0, counts[4] = { 0 };
+	uint32_t probe = 0, counts[COUNTS] = { 0 };
 	uint8_t start[sizeof(magic)] = { 0 }, digest[HASH_BYTES], stored[HASH_BYTES] = { 0 };
 	struct hash made_from = { { 0 } };
 	int rc;
@@ -236,7 +279,9 @@ static int read_body(struct stream *stream, struct mesh *mesh, struct hash key, 
 	if (!(counts[3] & HAS_UVS) != !(counts[3] & HAS_MATERIALS) ||
 	    !(counts[3] & HAS_UVS) != (counts[2] == 0))
 		return -EBADMSG;
-	rc = mesh->texture_count ? read_textures_sizes(stream, mesh, &left) : 0;
+	rc = read_scans(stream, mesh, counts[4], &left);
+	if (rc == 0 && mesh->texture_count)
+		rc = read_textures_sizes(stream, mesh, &left);
 	if (rc == 0)
 		rc = read_arrays(stream, mesh, counts[3], left);
 	if (rc < 0)

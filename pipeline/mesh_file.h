@@ -1,12 +1,13 @@
 /* A mesh as a cache file (DIR/.work/mesh): arrays as they lie in memory, so of this machine's byte
  * order and never published; a BLAKE2b of everything at the end.
  *
- *   8 bytes   "gopmesh" and the version, 1
+ *   8 bytes   "gopmesh" and the version, 2
  *   u32       0x01020304, tells the byte order
  *   16 bytes  key: what the mesh was made from
- *   u32 x 4   vertices, triangles, textures, flags (1 colours, 2 uvs, 4 materials)
+ *   u32 x 5   vertices, triangles, textures, flags (1 colours, 2 uvs, 4 materials, 8 faces), scans
+ *   u32 x 2   triangles and faces of each scan
  *   u32 x 2   width and height of each texture
- *   arrays    positions, colours, uvs, triangles, materials, pixels of each texture
+ *   arrays    positions, colours, uvs, triangles, materials, faces, pixels of each texture
  *   16 bytes  BLAKE2b of all before
  */
 #ifndef GOPURA_PIPELINE_MESH_FILE_H

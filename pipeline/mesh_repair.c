@@ -62,6 +62,8 @@ static void filter_faces(struct mesh *mesh, const uint32_t *first, struct mesh_r
 		memcpy(mesh->triangles[kept], merged, sizeof(merged));
 		if (mesh->materials)
 			mesh->materials[kept] = mesh->materials[i];
+		if (mesh->faces)
+			mesh->faces[kept] = mesh->faces[i];
 		kept++;
 	}
 	mesh->triangle_count = kept;

@@ -18,6 +18,7 @@ struct pass {
 	struct fault *fault;
 	const struct ply_element *element;
 	uint64_t index; /* of the element at hand */
+	uint64_t faces; /* and strips, of the elements before */
 	double values[PLY_SLOT_NONE];
 	struct ply_triangle triangle;
 	uint32_t strip[2], strip_length; /* the last corners of the strip at hand */
@@ -111,6 +112,7 @@ static int emit(struct pass *pass, uint32_t a, uint32_t b, uint32_t c)
 	pass->triangle.corner[0] = a;
 	pass->triangle.corner[1] = b;
 	pass->triangle.corner[2] = c;
+	pass->triangle.face = (uint32_t)(pass->faces + pass->index);
 	return pass->visitor->triangle(pass->visitor->data, &pass->triangle);
 }
 
@@ -344,6 +346,8 @@ static int read_element(struct pass *pass, const struct ply_element *element)
 			types[element->properties[i].slot] = element->properties[i].type;
 	for (pass->index = 0; pass->index < element->count && rc == 0; pass->index++)
 		rc = read_one(pass, types);
+	if (element->kind == PLY_KIND_FACE || element->kind == PLY_KIND_STRIP)
+		pass->faces += element->count;
 	return rc;
 }
 

@@ -47,6 +47,7 @@ struct ply_triangle {
 	uint32_t corner[3]; /* each below vertex_count */
 	float uv[3][2];     /* where has_corner_uv */
 	uint32_t texture;   /* texnumber; 0 where the file has none */
+	uint32_t face;      /* the face or strip it is of, from 0 */
 };
 
 /* Called in file order. What they return other than 0 ends the reading and is its result. */

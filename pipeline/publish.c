@@ -1,5 +1,6 @@
 #include "pipeline/publish.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
@@ -76,15 +77,16 @@ int publish_renew(const struct publish_target *target)
 }
 
 static int make_root(struct page_child *out, struct object_store *objects,
-		     const struct root_page *root,
-		     const struct page_child children[ROOT_CHILD_COUNT])
+		     const struct root_page *root, const struct page_child *children,
+		     uint32_t child_count)
 {
-	struct page_child copy[ROOT_CHILD_COUNT];
-	struct page page = { .kind = PAGE_ROOT, .child_count = ROOT_CHILD_COUNT, .children = copy };
+	struct page_child copy[ROOT_CHILDREN_MOST];
+	struct page page = { .kind = PAGE_ROOT, .child_count = child_count, .children = copy };
 	struct buffer payload;
 	int rc;
 
-	memcpy(copy, children, sizeof(copy));
+	assert(child_count >= ROOT_CHILD_COUNT && child_count <= ROOT_CHILDREN_MOST);
+	memcpy(copy, children, child_count * sizeof(*copy));
 	buffer_init(&payload, PAGE_BYTES_MOST);
 	root_page_encode(&payload, root);
 	page.payload = buffer_bytes(&payload);
@@ -138,7 +140,7 @@ static int pack(struct publish_report *report, const struct publish_target *targ
 
 int publish_parts(struct publish_report *report, const struct publish_target *target,
 		  struct object_store *objects, const struct root_page *root,
-		  const struct page_child children[ROOT_CHILD_COUNT])
+		  const struct page_child *children, uint32_t child_count)
 {
 	struct release before;
 	struct page_child page;
@@ -148,7 +150,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 
 	*report = (struct publish_report){ 0 };
 	if (rc == 0)
-		rc = make_root(&page, objects, root, children);
+		rc = make_root(&page, objects, root, children, child_count);
 	if (rc < 0)
 		return rc;
 	rc = release_files_current(&before, target->release, target->keys);

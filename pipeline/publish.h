@@ -27,11 +27,12 @@ struct publish_report {
 	struct pack_result packs;
 };
 
-/* children: hierarchy, samples and information page, in objects with all that is below them.
+/* children: hierarchy, samples, information and, where there is one, labels page, in objects with
+ * all that is below them.
  * Nothing new and no comment: only the timestamp is renewed. Errors are logged. */
 must_check int publish_parts(struct publish_report *report, const struct publish_target *target,
 			     struct object_store *objects, const struct root_page *root,
-			     const struct page_child children[ROOT_CHILD_COUNT]);
+			     const struct page_child *children, uint32_t child_count);
 
 /* The root of an earlier release again, under a higher sequence. sequence 0: the last one that had
  * another root than the current (undo). -ENOENT: there is none (logged). */

@@ -122,13 +122,17 @@ static int fill_root(struct root_page *root, const struct content *content,
 /* ---- the parts */
 
 static struct info_build_options info_options(const struct content *content,
-					      const char *languages[CONTENT_LANGUAGES_MOST])
+					      const char *languages[CONTENT_LANGUAGES_MOST],
+					      struct part_faces_all *faces)
 {
+	faces->content = content;
 	for (uint32_t i = 0; i < content->language_count; i++)
 		languages[i] = content->languages[i];
 	return (struct info_build_options){ .folder = content->folder,
 					    .languages = languages,
-					    .language_count = content->language_count };
+					    .language_count = content->language_count,
+					    .place_faces = part_faces_place,
+					    .place_faces_data = faces };
 }
 
 static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
@@ -156,15 +160,22 @@ static int check_ways(const struct info_built *built, const struct content *cont
 	return rc;
 }
 
-/* Every fault of what is told; the scan is read only where there are tours. */
+/* Every fault of what is told; the scan is read only where there are tours. Their stops need the
+ * anchors of lists of faces. */
 static int check_tours(const struct info_build_options *options, const struct content *content)
 {
 	struct info_build_options quiet = *options;
+	struct part_faces_all *faces = options->place_faces_data;
 	struct info_built built;
 	int rc;
 
 	quiet.complaint = complain; /* warnings are publish_info's */
 	rc = info_build(&built, &quiet);
+	if (rc == 0 && built.tour_count > 0 && faces->only_judge) {
+		info_built_finish(&built);
+		faces->only_judge = false;
+		rc = info_build(&built, &quiet);
+	}
 	if (rc == 0 && built.tour_count > 0)
 		rc = check_ways(&built, content);
 	info_built_finish(&built);
@@ -174,16 +185,19 @@ static int check_tours(const struct info_build_options *options, const struct co
 int publish_content_check(const struct content *content)
 {
 	const char *languages[CONTENT_LANGUAGES_MOST];
-	const struct info_build_options options = info_options(content, languages);
+	struct part_faces_all faces = { .only_judge = true };
+	const struct info_build_options options = info_options(content, languages, &faces);
+	int rc = check_tours(&options, content);
 
-	return check_tours(&options, content);
+	part_faces_finish(&faces);
+	return rc;
 }
 
 static int add_info(struct object_store *objects, const struct content *content,
-		    struct page_child *out)
+		    struct part_faces_all *faces, struct page_child *out)
 {
 	const char *languages[CONTENT_LANGUAGES_MOST];
-	const struct info_build_options options = info_options(content, languages);
+	const struct info_build_options options = info_options(content, languages, faces);
 
 	const int rc = check_tours(&options, content);
 
@@ -208,7 +222,9 @@ static int publish_objects(struct publish_content_report *report,
 			   const struct publish_target *target, struct object_store *objects,
 			   const struct content *content)
 {
-	struct page_child children[ROOT_CHILD_COUNT];
+	struct page_child children[ROOT_CHILDREN_MOST];
+	uint32_t child_count = ROOT_CHILD_COUNT;
+	struct part_faces_all faces = { 0 };
 	struct root_page root = { 0 };
 	struct master *master;
 	int rc = open_master(&master, content);
@@ -222,9 +238,14 @@ static int publish_objects(struct publish_content_report *report,
 	if (rc == 0)
 		rc = publish_samples(objects, content->folder, &children[ROOT_CHILD_SAMPLES]);
 	if (rc == 0)
-		rc = add_info(objects, content, &children[ROOT_CHILD_INFO]);
+		rc = add_info(objects, content, &faces, &children[ROOT_CHILD_INFO]);
 	if (rc == 0)
-		rc = publish_parts(&report->publish, target, objects, &root, children);
+		rc = publish_labels(objects, &root, &faces, children, &children[ROOT_CHILD_LABELS]);
+	if (rc > 0)
+		child_count = ROOT_CHILD_LABELS + 1;
+	part_faces_finish(&faces);
+	if (rc >= 0)
+		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
 	report->published_triangles = root.published_triangles;
 	return rc;
 }

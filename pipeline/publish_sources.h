@@ -5,6 +5,7 @@
 
 #include "pipeline/master.h"
 #include "pipeline/object_store.h"
+#include "pipeline/part_faces.h"
 #include "storage/info.h"
 
 /* The samples page, its bricks and faces; tiles stay where the sampler left them. -ENOENT: nothing
@@ -16,6 +17,14 @@ must_check int publish_samples(struct object_store *objects, const char *content
  * at fault (every fault is logged). */
 must_check int publish_info(struct object_store *objects, const struct info_build_options *options,
 			    struct page_child *out);
+
+/* The labels page and its objects: which parts the published patches of the hierarchy page belong
+ * to, by the scan's surface (docs/labels.md). 1: there it is; 0: no part has a region, so there is
+ * none. Errors are logged. */
+must_check int publish_labels(struct object_store *objects, const struct root_page *root,
+			      struct part_faces_all *faces,
+			      const struct page_child children[ROOT_CHILD_COUNT],
+			      struct page_child *out);
 
 /* The hierarchy page and its groups: the part of the master within the share. Where not even the
  * top of it is, the top alone, with a warning: a picture needs something. *published_triangles

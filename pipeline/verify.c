@@ -231,6 +231,7 @@ static int look_into(struct verify_walk *walk, enum page_kind kind, const struct
 		[PAGE_ROOT] = verify_root_page,       [PAGE_HIERARCHY] = verify_hierarchy_page,
 		[PAGE_SAMPLES] = verify_samples_page, [PAGE_BRICK] = verify_brick_page,
 		[PAGE_FACE] = verify_face_page,       [PAGE_INFO] = verify_info_page,
+		[PAGE_LABELS] = verify_labels_page,
 	};
 	char hex[HASH_HEX_BYTES];
 	int rc;
@@ -326,6 +327,8 @@ int verify_release(struct verify_report *report, const struct verify_options *op
 		verify_blame(report, rc, "%s", strerror(-rc));
 	report->read_bytes = release_reader_bytes(options->reader);
 	samples_page_finish(&walk.samples);
+	hierarchy_finish(&walk.hierarchy);
+	info_close(walk.info);
 	locator_finish(&walk.locator);
 	hash_map_finish(&walk.seen);
 	free(walk.tasks);

@@ -29,8 +29,8 @@ struct verify_report {
 	struct root_page root;
 	uint32_t locator_bytes, pack_count;
 	uint64_t read_bytes; /* all files; packs may hold blocks of other releases too */
-	struct verify_sum pages[PAGE_INFO + 1]; /* by enum page_kind */
-	struct verify_sum groups, tiles, pictures, database;
+	struct verify_sum pages[PAGE_LABELS + 1]; /* by enum page_kind */
+	struct verify_sum groups, tiles, pictures, database, labels;
 	uint64_t hierarchy_triangles; /* of all published patches */
 	uint32_t patches;
 	uint32_t points, faces; /* that show something */

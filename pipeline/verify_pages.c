@@ -4,10 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "format/hierarchy.h"
-#include "format/patch.h"
+#include "format/label.h"
 #include "pipeline/verify_parts.h"
-#include "storage/info.h"
 
 static int blame_page(struct verify_walk *walk, const struct verify_page *page, const char *text)
 {
@@ -36,18 +34,21 @@ static void count(struct verify_sum *sum, struct bytes object)
 
 int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 {
-	static const enum page_kind kinds[ROOT_CHILD_COUNT] = {
+	static const enum page_kind kinds[ROOT_CHILDREN_MOST] = {
 		[ROOT_CHILD_HIERARCHY] = PAGE_HIERARCHY,
 		[ROOT_CHILD_SAMPLES] = PAGE_SAMPLES,
 		[ROOT_CHILD_INFO] = PAGE_INFO,
+		[ROOT_CHILD_LABELS] = PAGE_LABELS,
 	};
 	int rc = root_page_decode(&walk->report->root, page->page.payload);
 
 	if (rc < 0)
 		return rc;
-	if (page->page.child_count != ROOT_CHILD_COUNT)
-		return blame_page(walk, page, "a root page has three children");
-	for (uint32_t i = 0; rc == 0 && i < ROOT_CHILD_COUNT; i++)
+	if (page->page.child_count < ROOT_CHILD_COUNT ||
+	    page->page.child_count > ROOT_CHILDREN_MOST)
+		return blame_page(walk, page,
+				  "a root page has three children, or four with labels");
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
 		rc = verify_later(walk, page, i, kinds[i]);
 	return rc;
 }
@@ -93,19 +94,18 @@ static int check_group(struct verify_walk *walk, const struct verify_page *page,
 
 int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *page)
 {
-	struct hierarchy hierarchy;
-	int rc = hierarchy_decode(&hierarchy, page->page.payload);
+	struct hierarchy *hierarchy = &walk->hierarchy;
+	int rc = hierarchy_decode(hierarchy, page->page.payload);
 
 	if (rc < 0)
 		return rc;
-	if (hierarchy.group_count != page->page.child_count)
+	if (hierarchy->group_count != page->page.child_count)
 		rc = blame_page(walk, page, "has another number of children than of patch groups");
-	for (uint32_t i = 0; rc == 0 && i < hierarchy.group_count; i++)
-		rc = check_group(walk, page, &hierarchy, i);
-	for (uint32_t i = 0; i < hierarchy.patch_count; i++)
-		walk->report->hierarchy_triangles += hierarchy.patches[i].triangle_count;
-	walk->report->patches = hierarchy.patch_count;
-	hierarchy_finish(&hierarchy);
+	for (uint32_t i = 0; rc == 0 && i < hierarchy->group_count; i++)
+		rc = check_group(walk, page, hierarchy, i);
+	for (uint32_t i = 0; i < hierarchy->patch_count; i++)
+		walk->report->hierarchy_triangles += hierarchy->patches[i].triangle_count;
+	walk->report->patches = hierarchy->patch_count;
 	return rc;
 }
 
@@ -222,7 +222,6 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 
 int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
 {
-	struct info *info;
 	struct bytes image;
 	int rc;
 
@@ -232,13 +231,66 @@ int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
 	if (rc < 0)
 		return rc;
 	count(&walk->report->database, image);
-	rc = info_open(&info, image);
+	rc = info_open(&walk->info, image);
 	if (rc < 0)
 		return rc == -EBADMSG ? blame_child(walk, page, 0, "information database",
 						    "is damaged or of another version")
 				      : rc;
-	walk->report->parts = info_part_count(info);
-	rc = check_pictures(walk, page, info);
-	info_close(info);
+	walk->report->parts = info_part_count(walk->info);
+	return check_pictures(walk, page, walk->info);
+}
+
+/* ---- labels ---- */
+
+static const char *compare_labels(const struct verify_walk *walk, uint32_t index,
+				  const struct label_group *labels)
+{
+	const struct hierarchy_group *group = &walk->hierarchy.groups[index];
+
+	if (labels->patch_count != group->patch_count)
+		return "are of another number of patches than their group";
+	for (uint32_t p = 0; p < labels->patch_count; p++)
+		if (labels->patches[p].triangle_count !=
+		    walk->hierarchy.patches[group->first_patch + p].triangle_count)
+			return "are of another number of triangles than a patch of their group";
+	for (uint32_t p = 0; p < labels->part_count; p++)
+		if (info_find(walk->info, labels->parts[p].id) < 0)
+			return "name a part of which the information knows nothing";
+	return NULL;
+}
+
+static int check_labels(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+			uint32_t group)
+{
+	struct label_group labels;
+	const char *wrong = "do not decode";
+	struct bytes object;
+	int rc = verify_child(walk, page, child, &object);
+
+	if (rc < 0)
+		return rc;
+	count(&walk->report->labels, object);
+	rc = label_group_decode(&labels, object);
+	if (rc == -ENOMEM)
+		return rc;
+	if (rc == 0)
+		wrong = compare_labels(walk, group, &labels);
+	label_group_finish(&labels);
+	return wrong ? blame_child(walk, page, child, "labels", wrong) : 0;
+}
+
+int verify_labels_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	uint32_t *child_of_group;
+	int rc;
+
+	if (!walk->info || walk->hierarchy.group_count == 0)
+		return blame_page(walk, page, "comes before what it labels");
+	rc = label_page_decode(&child_of_group, walk->hierarchy.group_count, page->page.child_count,
+			       page->page.payload);
+	for (uint32_t g = 0; rc == 0 && g < walk->hierarchy.group_count; g++)
+		if (child_of_group[g] != LABEL_NONE)
+			rc = check_labels(walk, page, child_of_group[g], g);
+	free(child_of_group);
 	return rc;
 }

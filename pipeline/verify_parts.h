@@ -3,10 +3,12 @@
 #define GOPURA_PIPELINE_VERIFY_PARTS_H
 
 #include "base/progress.h"
+#include "format/hierarchy.h"
 #include "format/samples.h"
 #include "format/tile.h"
 #include "pipeline/hash_map.h"
 #include "pipeline/verify.h"
+#include "storage/info.h"
 
 /* A page that is still to be looked into: where it lies, and what it must be. */
 struct verify_task {
@@ -24,7 +26,9 @@ struct verify_walk {
 	struct verify_task *tasks;
 	size_t task_count, task_room;
 	uint32_t blocks_used;
-	struct samples_page samples; /* once it was met */
+	struct samples_page samples; /* once it was met, as the next two */
+	struct hierarchy hierarchy;
+	struct info *info;
 	struct progress *progress;
 };
 
@@ -51,5 +55,6 @@ must_check int verify_samples_page(struct verify_walk *walk, const struct verify
 must_check int verify_brick_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_face_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_info_page(struct verify_walk *walk, const struct verify_page *page);
+must_check int verify_labels_page(struct verify_walk *walk, const struct verify_page *page);
 
 #endif

@@ -9,6 +9,7 @@ const struct annotation_selector annotation_selectors[ANNOTATION_SELECTORS] = {
 	{ "sphere", "SphereSelector", { "centre", "radius" } },
 	{ "box", "BoxSelector", { "centre", "half", "turn" } },
 	{ "prism", "PrismSelector", { "floor", "roof", "corners" } },
+	{ "faces", "FaceListSelector", { "file", "scan" } },
 };
 
 const char *const annotation_elements[ANNOTATION_ELEMENTS] = {

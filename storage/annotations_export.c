@@ -15,12 +15,13 @@ static const char context[] =
 	"\"PointSelector\": \"gopura:PointSelector\","
 	"\"SphereSelector\": \"gopura:SphereSelector\", \"BoxSelector\": \"gopura:BoxSelector\","
 	"\"PrismSelector\": \"gopura:PrismSelector\","
+	"\"FaceListSelector\": \"gopura:FaceListSelector\","
 	"\"x\": \"gopura:x\", \"y\": \"gopura:y\", \"z\": \"gopura:z\","
 	"\"centre\": {\"@id\": \"gopura:centre\", \"@container\": \"@list\"},"
 	"\"half\": {\"@id\": \"gopura:half\", \"@container\": \"@list\"},"
 	"\"corners\": {\"@id\": \"gopura:corners\", \"@container\": \"@list\"},"
 	"\"radius\": \"gopura:radius\", \"turn\": \"gopura:turn\", \"floor\": \"gopura:floor\","
-	"\"roof\": \"gopura:roof\","
+	"\"roof\": \"gopura:roof\", \"file\": \"gopura:file\", \"scan\": \"gopura:scan\","
 	"\"tours\": {\"@id\": \"gopura:tours\", \"@type\": \"@json\"}}]";
 
 /* cJSON's adders return NULL where memory ran out: sticky, judged once. */

@@ -371,7 +371,7 @@ static bool read_target(struct importer *im)
 	importer_complain(
 		im, !im->options->skip_unknown, im->line,
 		"annotation \"%.80s\": %s%.40s%s says no place on a model%s: use PointSelector with "
-		"x, y and z, SphereSelector, BoxSelector or PrismSelector",
+		"x, y and z, SphereSelector, BoxSelector, PrismSelector or FaceListSelector",
 		item_id(im), selectors ? "selector \"" : "a target without selector",
 		selectors && string_of(selectors, "type") ? string_of(selectors, "type") : "",
 		selectors ? "\"" : "", im->options->skip_unknown ? ", left out" : "");

@@ -15,7 +15,7 @@ struct annotation_selector {
 	const char *members[ANNOTATION_MEMBERS_MOST]; /* up to the first NULL */
 };
 
-enum { ANNOTATION_SELECTORS = 3 };
+enum { ANNOTATION_SELECTORS = 4 };
 extern const struct annotation_selector annotation_selectors[ANNOTATION_SELECTORS];
 
 /* Dublin Core's terms that parts.json knows, and the texts that a part has in each language. */

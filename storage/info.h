@@ -9,6 +9,7 @@
 #ifndef GOPURA_STORAGE_INFO_H
 #define GOPURA_STORAGE_INFO_H
 
+#include "base/fault.h"
 #include "format/hash.h"
 
 enum {
@@ -23,11 +24,13 @@ enum {
 
 enum info_region_kind { INFO_REGION_POINT, INFO_REGION_SPHERE, INFO_REGION_BOX, INFO_REGION_PRISM };
 
-/* The place of a part on the model; metres, z up. A point has only its centre. */
+/* The place of a part on the model; metres, z up. A point has only its centre; one that stands for
+ * a list of faces has their radius too, and its surface in the release's labels (format/label.h).
+ */
 struct info_region {
 	enum info_region_kind kind;
 	float centre_m[3];
-	float radius_m;        /* sphere */
+	float radius_m;        /* sphere, list of faces */
 	float half_m[3];       /* box, before turning */
 	float turn_deg;        /* box: about the vertical */
 	float floor_m, roof_m; /* prism */
@@ -42,12 +45,25 @@ struct info_region {
 typedef void info_complaint(void *data, bool is_error, const char *file, unsigned line,
 			    const char *text);
 
+/* A region that is a list of faces of a scan. */
+struct info_faces {
+	const char *part; /* its id */
+	const char *file; /* relative to the folder */
+	const char *scan; /* as temple.ini has it; NULL: the only one */
+	float centre_m[3], radius_m,
+		anchor_m[3]; /* to be filled in: where it lies; a place on it */
+};
+/* Judges and places it. -EINVAL: fault says what is wrong, with the cure. */
+typedef int info_place_faces(void *data, struct info_faces *faces, struct fault *fault);
+
 struct info_build_options {
 	const char *folder; /* the content folder: parts.json, tours.json, pages/, pictures/ */
 	const char *const *languages; /* such as "en"; the first must have every title */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MOST */
 	info_complaint *complaint;    /* NULL: they are logged */
 	void *complaint_data;
+	info_place_faces *place_faces; /* NULL: lists of faces are not looked into */
+	void *place_faces_data;
 };
 
 struct info_picture_file {

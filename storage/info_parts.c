@@ -154,13 +154,46 @@ static void read_prism(struct part_reader *r, const cJSON *json)
 		complain_part(r, "part \"%s\": the corners enclose no area", part_name(r));
 }
 
-static void read_region(struct part_reader *r)
+/* What knows the scan places it; without an anchor a leader line ends where it says. */
+static int read_faces(struct part_reader *r, const cJSON *json)
+{
+	const struct info_build_options *options = r->content->options;
+	struct info_faces faces = {
+		.part = part_name(r),
+		.file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file")),
+		.scan = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "scan")),
+	};
+	struct fault fault = { "" };
+	int rc;
+
+	if (!faces.file)
+		complain_part(
+			r,
+			"part \"%s\": a region of faces needs a \"file\" that lists them, such "
+			"as \"regions/lintel.faces\"",
+			part_name(r));
+	if (!faces.file || !options->place_faces)
+		return 0;
+	rc = options->place_faces(options->place_faces_data, &faces, &fault);
+	if (rc == -EINVAL)
+		complain_part(r, "part \"%s\": %s", part_name(r), fault.text);
+	memcpy(r->part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));
+	memcpy(r->part->anchor_m, faces.anchor_m, sizeof(faces.anchor_m));
+	r->part->region.radius_m = faces.radius_m;
+	return rc == -EINVAL ? 0 : rc;
+}
+
+static int read_region(struct part_reader *r)
 {
 	const cJSON *json = cJSON_GetObjectItemCaseSensitive(r->json, "region");
 	const cJSON *anchor = cJSON_GetObjectItemCaseSensitive(r->json, "anchor");
 	const char *kind = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "kind"));
+	bool has_faces = kind && strcmp(kind, "faces") == 0;
+	int rc = 0;
 
-	if (!json && anchor)
+	if (has_faces)
+		rc = read_faces(r, json);
+	else if (!json && anchor)
 		r->part->region.kind = INFO_REGION_POINT;
 	else if (kind && strcmp(kind, "sphere") == 0)
 		read_sphere(r, json);
@@ -173,13 +206,15 @@ static void read_region(struct part_reader *r)
 	else
 		complain_part(r,
 			      "part \"%s\": region kind \"%.40s\" is none of point, sphere, box, "
-			      "prism",
+			      "prism, faces",
 			      part_name(r), kind ? kind : "");
-	memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
+	if (!has_faces)
+		memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
 	if (anchor)
 		read_vector(r, r->json, "anchor", r->part->anchor_m);
 	if (!json)
 		memcpy(r->part->region.centre_m, r->part->anchor_m, sizeof(r->part->anchor_m));
+	return rc;
 }
 
 /* {"en": "...", "fr": "..."} into texts by the release's languages. */
@@ -259,8 +294,9 @@ static int read_part(struct content *content, const cJSON *json, unsigned line,
 		return rc;
 	content->part_count++; /* now content_finish releases it */
 	part->without_page = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
-	read_region(&reader);
-	rc = read_texts(&reader, "title", part->titles, true);
+	rc = read_region(&reader);
+	if (rc == 0)
+		rc = read_texts(&reader, "title", part->titles, true);
 	if (rc == 0)
 		rc = read_texts(&reader, "caption", part->captions, false);
 	if (rc == 0)

@@ -54,6 +54,10 @@ static void repairs_and_counts(void **state)
 	CHECK(report.repairs.non_manifold_edges == 1 && report.repairs.border_edges == 6);
 	CHECK(report.repairs.turned_edges == 0);
 	CHECK(mesh.triangles[1][0] == 0 && mesh.triangles[1][2] == 1);
+	/* Lists of faces count as the file does. */
+	CHECK(mesh.scan_count == 1 && mesh.scans[0].triangle_count == 3);
+	CHECK(mesh.scans[0].face_count == 6);
+	CHECK(mesh.faces[0] == 0 && mesh.faces[1] == 1 && mesh.faces[2] == 5);
 	CHECK(mesh.colours && mesh.colours[0][0] == 186 && mesh.colours[0][3] == 255);
 	CHECK(!report.had_colours && strcmp(report.format, "PLY") == 0);
 	mesh_finish(&mesh);

@@ -27,8 +27,14 @@ static struct mesh make_mesh(bool with_texture)
 	memcpy(mesh.positions, positions, sizeof(positions));
 	memcpy(mesh.triangles, triangles, sizeof(triangles));
 	memset(mesh.colours, 77, 16);
+	mesh.scan_count = 1;
+	mesh.scans[0] = (struct mesh_scan){ 2, 7 };
 	if (!with_texture)
 		return mesh;
+	mesh.faces = malloc(2 * sizeof(*mesh.faces));
+	CHECK(mesh.faces);
+	mesh.faces[0] = 6;
+	mesh.faces[1] = MESH_NO_FACE;
 	mesh.uvs = malloc(sizeof(uvs));
 	mesh.materials = calloc(2, sizeof(*mesh.materials));
 	mesh.textures = calloc(1, sizeof(*mesh.textures));
@@ -124,6 +130,8 @@ static void appending_shifts_indices_and_fills_what_is_missing(void **state)
 	CHECK(all.textures[0].width == 1 && all.textures[0].rgb[0] == 77);
 	CHECK(memcmp(all.textures[1].rgb, "abcdefghijkl", 12) == 0);
 	CHECK(all.uvs[0][0] == 0 && all.uvs[6][0] == 0.99f);
+	CHECK(all.scan_count == 2 && all.scans[1].face_count == 7);
+	CHECK(all.faces[0] == MESH_NO_FACE && all.faces[2] == 6 && all.faces[3] == MESH_NO_FACE);
 	free(plain.colours);
 	plain.colours = NULL;
 	CHECK(mesh_append(&all, &plain) == 0 && all.colours[8][0] == 255 &&
@@ -143,6 +151,9 @@ static bool same_mesh(const struct mesh *a, const struct mesh *b)
 	       memcmp(a->positions, b->positions, a->vertex_count * 12) == 0 &&
 	       memcmp(a->colours, b->colours, a->vertex_count * 4) == 0 &&
 	       memcmp(a->triangles, b->triangles, a->triangle_count * 12) == 0 &&
+	       a->scan_count == b->scan_count && !a->faces == !b->faces &&
+	       memcmp(a->scans, b->scans, a->scan_count * sizeof(*a->scans)) == 0 &&
+	       (!a->faces || memcmp(a->faces, b->faces, a->triangle_count * 4) == 0) &&
 	       (!a->uvs || (memcmp(a->uvs, b->uvs, a->vertex_count * 8) == 0 &&
 			    memcmp(a->materials, b->materials, a->triangle_count * 2) == 0 &&
 			    memcmp(a->textures[0].rgb, b->textures[0].rgb, 12) == 0));

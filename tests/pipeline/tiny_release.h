@@ -216,7 +216,8 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(publish_samples(objects, tiny->content, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
-	CHECK(publish_parts(&report, &target, objects, &tiny->root, children) == 0);
+	CHECK(publish_parts(&report, &target, objects, &tiny->root, children, ROOT_CHILD_COUNT) ==
+	      0);
 	object_store_destroy(objects);
 	return report;
 }

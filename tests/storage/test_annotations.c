@@ -33,7 +33,10 @@ static int set_up_exchange(void **state)
 		"{\"id\": \"spot\", \"region\": {\"kind\": \"point\", \"centre\": [1, 2, 3]},\n"
 		" \"anchor\": [4, 5, 6], \"page\": false, \"title\": {\"en\": \"Spot\"}},\n"
 		"{\"id\": \"naga\", \"anchor\": [5, 6, 7], \"page\": false,\n"
-		" \"title\": {\"en\": \"Naga\"}}\n"
+		" \"title\": {\"en\": \"Naga\"}},\n"
+		"{\"id\": \"lintel\", \"region\": {\"kind\": \"faces\", \"file\":\n"
+		" \"regions/lintel.faces\", \"scan\": \"gate.ply\"}, \"anchor\": [6, 7, 8],\n"
+		" \"page\": false, \"title\": {\"en\": \"Lintel\"}}\n"
 		"]}\n");
 	snprintf(copy, sizeof(copy), "%s/copy", folder);
 	snprintf(file, sizeof(file), "%s/exchange.jsonld", folder);
@@ -93,17 +96,19 @@ static void comes_back_byte_for_byte(void **state)
 
 	(void)state;
 	CHECK(export_from(&first, folder) == 0);
-	CHECK(first.count == 5 && first.picture_count == 2);
+	CHECK(first.count == 6 && first.picture_count == 2);
 	write_file("exchange.jsonld", first.json.data, first.json.size);
 	if (import_with(&report, false, false) != 0)
 		fail_msg("%s", complaints.list[0].text);
-	CHECK(report.part_count == 5 && report.page_count == 3 && report.picture_count == 2);
+	CHECK(report.part_count == 6 && report.page_count == 3 && report.picture_count == 2);
 	CHECK(export_from(&second, copy) == 0);
 	CHECK(second.json.size == first.json.size);
 	CHECK(memcmp(second.json.data, first.json.data, first.json.size) == 0);
 	read_copy(&page, "pages/tower.en.html");
 	CHECK(strstr((char *)page.data, "<h1>Central tower</h1>\n<p>Above the <a"));
 	buffer_finish(&page);
+	CHECK(strstr((char *)first.json.data, "FaceListSelector"));
+	CHECK(copy_says("parts.json", "\"regions/lintel.faces\""));
 	annotations_finish(&first);
 	annotations_finish(&second);
 	annotations_finish(NULL);
@@ -152,7 +157,7 @@ static void writes_what_the_standards_name(void **state)
 	CHECK(strcmp(cJSON_GetArrayItem(context, 0)->valuestring,
 		     "http://www.w3.org/ns/anno.jsonld") == 0);
 	CHECK(strcmp(cJSON_GetObjectItem(json, "type")->valuestring, "AnnotationCollection") == 0);
-	CHECK(cJSON_GetObjectItem(json, "total")->valueint == 5);
+	CHECK(cJSON_GetObjectItem(json, "total")->valueint == 6);
 	item = cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(json, "first"), "items"),
 				  0);
 	CHECK(strcmp(cJSON_GetObjectItem(item, "type")->valuestring, "Annotation") == 0);

@@ -139,6 +139,9 @@ static void names_the_line_of_a_bad_part(void **state)
 		{ "{\"parts\": [\n{\"id\": \"a\", \"region\": {\"kind\": \"sphere\", \"centre\":"
 		  "[0,0,0], \"radius\": -1}, \"page\": false, \"title\": {\"en\": \"x\"}}]}",
 		  "radius", 2 },
+		{ "{\"parts\": [\n{\"id\": \"a\", \"region\": {\"kind\": \"faces\"}, \"page\": false,"
+		  "\"title\": {\"en\": \"x\"}}]}",
+		  "needs a \"file\"", 2 },
 		{ "{\"parts\": [\n{\"id\": \"a\", \"region\": {\"kind\": \"prism\", \"floor\": 0,"
 		  "\"roof\": 1, \"corners\": [[0,0],[1,1]]}, \"page\": false,"
 		  "\"title\": {\"en\": \"x\"}}]}",

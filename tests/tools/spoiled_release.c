@@ -61,7 +61,8 @@ int main(int argc, char **argv)
 	spoiled_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
-	CHECK(publish_parts(&report, &target, objects, &tiny.root, children) == 0);
+	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILD_COUNT) ==
+	      0);
 	object_store_destroy(objects);
 	keys_finish(&keys);
 	tiny_remove(&tiny);
