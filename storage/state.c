@@ -14,13 +14,6 @@
 enum {
 	BROKEN_BYTES_MOST = 1 << 20,
 	TIME_STEP_S = 3600,
-	COUNTERS_MOST = 32,
-	COUNTER_NAME_BYTES = 32,
-};
-
-struct counter {
-	char name[COUNTER_NAME_BYTES];
-	uint64_t value;
 };
 
 struct state {
@@ -28,9 +21,6 @@ struct state {
 	sqlite3 *db; /* NULL: could not be opened; nothing is written */
 	struct record record;
 	int64_t written_time_floor_s;
-	struct counter counters[COUNTERS_MOST];
-	size_t counter_count;
-	bool counters_changed;
 };
 
 static const char schema[] =
@@ -40,7 +30,6 @@ static const char schema[] =
 	" sequence INTEGER, release BLOB, trust BLOB, tries INTEGER, previous_root BLOB,"
 	" previous_root_bytes INTEGER, previous_sequence INTEGER, previous_release BLOB,"
 	" check_hash BLOB);"
-	"CREATE TABLE IF NOT EXISTS counters (name TEXT PRIMARY KEY, value INTEGER) WITHOUT ROWID;"
 	"COMMIT";
 
 /* ---- the database */
@@ -143,23 +132,6 @@ static int write_record(sqlite3 *db, const struct record *record)
 	return rc;
 }
 
-static int read_counters(struct state *state)
-{
-	sqlite3_stmt *select = NULL;
-	int code = sqlite3_prepare_v2(state->db, "SELECT name, value FROM counters", -1, &select,
-				      NULL);
-
-	while (code == SQLITE_OK || code == SQLITE_ROW) {
-		code = sqlite3_step(select);
-		if (code == SQLITE_ROW && sqlite3_column_text(select, 0))
-			state_count(state, (const char *)sqlite3_column_text(select, 0),
-				    (uint64_t)sqlite3_column_int64(select, 1));
-	}
-	sqlite3_finalize(select);
-	state->counters_changed = false;
-	return code == SQLITE_ERROR ? -EBADMSG : db_code(code);
-}
-
 static void close_db(struct state *state)
 {
 	sqlite3_close_v2(state->db);
@@ -175,8 +147,6 @@ static int open_db(struct state *state)
 		rc = db_exec(state->db, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL");
 	if (rc == 0)
 		rc = db_exec(state->db, schema);
-	if (rc == 0)
-		rc = read_counters(state);
 	if (rc == 0)
 		rc = read_record(&state->record, state->db);
 	/* Read-only though the file is not: its header claims a format of the future. */
@@ -202,7 +172,6 @@ static void recover(struct state *state, int rc)
 	record_init(&state->record);
 	if (damaged) {
 		close_db(state);
-		state->counter_count = 0;
 		log_error("storage", "%s is damaged: set aside as %s.broken", state->path,
 			  state->path);
 		rc = db_set_aside(state->path, BROKEN_BYTES_MOST);
@@ -258,8 +227,6 @@ void state_destroy(struct state *state)
 {
 	if (!state)
 		return;
-	if (state_flush(state) < 0)
-		log_warn("storage", "%s: counters were not written", state->path);
 	close_db(state);
 	record_finish(&state->record);
 	free(state);
@@ -413,68 +380,4 @@ int state_raise_time_floor(struct state *state, int64_t at_least_s)
 		return 0;
 	record_copy(&next, &state->record);
 	return change(state, &next);
-}
-
-static struct counter *find_counter(const struct state *state, const char *name)
-{
-	for (size_t i = 0; i < state->counter_count; i++)
-		if (strcmp(state->counters[i].name, name) == 0)
-			return (struct counter *)&state->counters[i];
-	return NULL;
-}
-
-void state_count(struct state *state, const char *name, uint64_t more)
-{
-	struct counter *counter = find_counter(state, name);
-
-	if (!counter && state->counter_count < COUNTERS_MOST) {
-		counter = &state->counters[state->counter_count++];
-		*counter = (struct counter){ .value = 0 };
-		snprintf(counter->name, sizeof(counter->name), "%s", name);
-	}
-	if (counter)
-		counter->value += more;
-	state->counters_changed = true;
-}
-
-uint64_t state_counted(const struct state *state, const char *name)
-{
-	const struct counter *counter = find_counter(state, name);
-
-	return counter ? counter->value : 0;
-}
-
-static int write_counters(struct state *state)
-{
-	sqlite3_stmt *insert = NULL;
-	int rc = db_code(sqlite3_prepare_v2(
-		state->db, "INSERT OR REPLACE INTO counters VALUES (?, ?)", -1, &insert, NULL));
-
-	for (size_t i = 0; rc == 0 && i < state->counter_count; i++) {
-		sqlite3_bind_text(insert, 1, state->counters[i].name, -1, SQLITE_STATIC);
-		sqlite3_bind_int64(insert, 2, (sqlite3_int64)state->counters[i].value);
-		rc = db_run(insert);
-	}
-	sqlite3_finalize(insert);
-	return rc;
-}
-
-int state_flush(struct state *state)
-{
-	int rc;
-
-	if (!state->counters_changed)
-		return 0;
-	if (!state->db)
-		return -EIO;
-	rc = db_exec(state->db, "BEGIN IMMEDIATE");
-	if (rc == 0)
-		rc = write_counters(state);
-	if (rc == 0)
-		rc = db_exec(state->db, "COMMIT");
-	if (rc < 0)
-		sqlite3_exec(state->db, "ROLLBACK", NULL, NULL, NULL);
-	else
-		state->counters_changed = false;
-	return rc;
 }

@@ -1,5 +1,5 @@
 /* What the kiosk must not forget when the power goes: the release it shows, the trust root, the
- * floors that never fall, a few counters. docs/cache.md tells what happens to it in an accident.
+ * floors that never fall. docs/cache.md tells what happens to it in an accident.
  *
  * SQLite with synchronous=FULL at PATH; each change is one transaction, so after a power cut it is
  * wholly there or wholly not. A damaged file is set aside as PATH.broken and what matters comes
@@ -27,7 +27,7 @@ struct state_release {
 /* *out is owned by the caller. Fails with -ENOMEM alone: where the disk fails, the state is what
  * could be read (or empty) and changes are refused. */
 must_check int state_create(struct state **out, const char *path);
-void state_destroy(struct state *state); /* writes the counters; NULL is fine */
+void state_destroy(struct state *state); /* NULL is fine */
 
 /* The release in use; *out is borrowed until the next change. -ENOENT: none yet. */
 must_check int state_release(const struct state *state, struct state_release *out);
@@ -57,10 +57,5 @@ must_check int state_set_trust(struct state *state, struct bytes file);
 /* Lower than the floor: nothing happens. Writes only when it rises by an hour or more, so that a
  * card does not wear; until then the higher floor holds in memory. */
 must_check int state_raise_time_floor(struct state *state, int64_t at_least_s);
-
-/* Counters gather in memory; state_flush writes them. name: a literal. */
-void state_count(struct state *state, const char *name, uint64_t more);
-uint64_t state_counted(const struct state *state, const char *name);
-must_check int state_flush(struct state *state);
 
 #endif

@@ -200,7 +200,6 @@ static void work(void)
 	CHECK(state_fall_back(state) == 0);
 	promise(state, three, 3);
 	CHECK(cache_use_release(cache, root_of(2)) == 0);
-	state_count(state, "visits", 7);
 	switch_to(cache, state, 4);
 	prove(state, 4);
 	state_destroy(state);

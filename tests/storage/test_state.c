@@ -96,15 +96,12 @@ static void remembers_across_a_restart(void **unused)
 	CHECK(state_set_trust(state, (struct bytes){ (const uint8_t *)"root", 4 }) == 0);
 	CHECK(activate(state, 3) == 0);
 	CHECK(state_raise_time_floor(state, 1700000000) == 0);
-	state_count(state, "visits", 2);
-	state_count(state, "visits", 1);
 	state_destroy(state);
 	state = open_state();
 	CHECK(active(state) == 3 && state_sequence_floor(state) == 3);
 	CHECK(state_time_floor_s(state) == 1700000000);
 	CHECK(state_trust(state, &trust) == 0 && trust.size == 4);
 	CHECK(memcmp(trust.data, "root", 4) == 0);
-	CHECK(state_counted(state, "visits") == 3 && state_counted(state, "crashes") == 0);
 	state_destroy(state);
 	state_destroy(NULL);
 }
@@ -355,9 +352,6 @@ static void lives_without_a_disk(void **unused)
 	CHECK(state_create(&state, "/nonexistent/state.db") == 0);
 	CHECK(active(state) == 0);
 	CHECK(activate(state, 1) == -EIO);
-	state_count(state, "visits", 1);
-	CHECK(state_counted(state, "visits") == 1);
-	CHECK(state_flush(state) == -EIO);
 	state_destroy(state);
 }
 
