@@ -108,14 +108,25 @@ static void open_page(struct kiosk *kiosk, int part)
 
 /* ---- taps */
 
+/* By the release's labels; by the regions themselves where those are not here. */
+static int part_under(struct kiosk *kiosk, float x_px, float y_px)
+{
+	const struct info *info = story_info(kiosk->shown.story);
+	float point[3];
+	const char *id;
+
+	if (!info || !pick(kiosk, x_px, y_px, point))
+		return -1;
+	frame_to_panel(kiosk, &x_px, &y_px);
+	id = scene_part(kiosk->shown.scene, &kiosk->camera, x_px, y_px);
+	if (!id)
+		return story_part_at(kiosk->shown.story, point);
+	return *id ? info_find(info, id) : -1;
+}
+
 static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 {
-	float point[3];
-	int part = -1;
-
-	if (pick(kiosk, x_px, y_px, point))
-		part = story_part_at(kiosk->shown.story, point);
-	show_card(kiosk, part);
+	show_card(kiosk, part_under(kiosk, x_px, y_px));
 }
 
 /* To the part's page; to one that has none on the model, beside the page that is read. */
@@ -221,7 +232,7 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	const struct overlay_action action =
 		overlay_tap(story_overlay(kiosk->shown.story), gesture->x_px, gesture->y_px);
-	float point[3];
+	int part;
 
 	if (action.kind == OVERLAY_SWALLOWED && gesture->kind == GESTURE_DOUBLE_TAP &&
 	    overlay_picture(story_overlay(kiosk->shown.story)) >= 0)
@@ -231,8 +242,8 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 		carry_out(kiosk, &action);
 	else if (gesture->kind == GESTURE_TAP)
 		tap_model(kiosk, gesture->x_px, gesture->y_px);
-	else if (pick(kiosk, gesture->x_px, gesture->y_px, point))
-		open_page(kiosk, story_part_at(kiosk->shown.story, point));
+	else if ((part = part_under(kiosk, gesture->x_px, gesture->y_px)) >= 0)
+		open_page(kiosk, part);
 }
 
 /* ---- gestures */

@@ -11,9 +11,11 @@ int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy)
 	size_t groups = hierarchy->group_count + 1;
 	geometry->patches = calloc(hierarchy->patch_count + 1, sizeof(*geometry->patches));
 	geometry->loaded = calloc(groups, 1);
+	geometry->labels = calloc(groups, sizeof(*geometry->labels));
 	geometry->group_bytes = calloc(groups, sizeof(*geometry->group_bytes));
 	geometry->group_stamp = calloc(groups, sizeof(*geometry->group_stamp));
-	if (geometry->patches && geometry->loaded && geometry->group_bytes && geometry->group_stamp)
+	if (geometry->patches && geometry->loaded && geometry->labels && geometry->group_bytes &&
+	    geometry->group_stamp)
 		return 0;
 	geometry_finish(geometry);
 	return -ENOMEM;
@@ -35,7 +37,10 @@ void geometry_finish(struct geometry *geometry)
 {
 	for (uint32_t i = 0; geometry->patches && i < geometry->hierarchy->patch_count; i++)
 		patch_finish(&geometry->patches[i]);
+	for (uint32_t g = 0; geometry->labels && g < geometry->hierarchy->group_count; g++)
+		label_group_finish(&geometry->labels[g]);
 	free(geometry->patches);
+	free(geometry->labels);
 	free(geometry->loaded);
 	free(geometry->group_bytes);
 	free(geometry->group_stamp);
@@ -93,6 +98,7 @@ static void unload(struct geometry *geometry, uint32_t group)
 	const struct hierarchy_group *g = &geometry->hierarchy->groups[group];
 	for (uint32_t i = 0; i < g->patch_count; i++)
 		patch_finish(&geometry->patches[g->first_patch + i]);
+	label_group_finish(&geometry->labels[group]);
 	geometry->bytes -= geometry->group_bytes[group];
 	geometry->group_bytes[group] = 0;
 	geometry->changes += geometry->loaded[group];
@@ -135,6 +141,32 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 	geometry->loaded[group] = 1;
 	geometry->changes++;
 	geometry->group_stamp[group] = geometry->stamp;
+	return 0;
+}
+
+static bool are_of(const struct geometry *geometry, uint32_t group,
+		   const struct label_group *labels)
+{
+	const struct hierarchy_group *g = &geometry->hierarchy->groups[group];
+	if (labels->patch_count != g->patch_count)
+		return false;
+	for (uint32_t i = 0; i < g->patch_count; i++)
+		if (labels->patches[i].triangle_count !=
+		    geometry->hierarchy->patches[g->first_patch + i].triangle_count)
+			return false;
+	return true;
+}
+
+int geometry_label(struct geometry *geometry, uint32_t group, struct label_group *labels)
+{
+	if (group >= geometry->hierarchy->group_count || !are_of(geometry, group, labels))
+		return -EBADMSG;
+	if (!geometry->loaded[group] || geometry->labels[group].patch_count > 0)
+		return 0;
+	geometry->labels[group] = *labels;
+	*labels = (struct label_group){ 0 };
+	geometry->group_bytes[group] += label_group_bytes(&geometry->labels[group]);
+	geometry->bytes += label_group_bytes(&geometry->labels[group]);
 	return 0;
 }
 
@@ -205,18 +237,23 @@ void geometry_draw(uint32_t first_triangle, uint32_t triangle_count)
 }
 
 bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
-		  const float direction[3], float least_m, float *distance_m)
+		  const float direction[3], float least_m, float *distance_m,
+		  struct geometry_hit *hit)
 {
-	bool hit = false;
+	bool found = false;
 	for (uint32_t i = 0; i < cut->patch_count; i++) {
 		uint32_t p = cut->patches[i];
 		const struct hierarchy_patch *patch = &geometry->hierarchy->patches[p];
-		if (ray_meets_sphere(from_m, direction, *distance_m, patch->centre_m,
-				     patch->radius_m))
-			hit |= solid_ray(&geometry->patches[p].content.solid, from_m, direction,
-					 least_m, distance_m);
+		if (!ray_meets_sphere(from_m, direction, *distance_m, patch->centre_m,
+				      patch->radius_m) ||
+		    !solid_ray(&geometry->patches[p].content.solid, from_m, direction, least_m,
+			       distance_m, hit ? &hit->on : NULL))
+			continue;
+		found = true;
+		if (hit)
+			hit->patch = p;
 	}
-	return hit;
+	return found;
 }
 
 bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, const float from_m[3],

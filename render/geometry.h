@@ -50,6 +50,7 @@ struct geometry {
 	const struct hierarchy *hierarchy; /* borrowed */
 	struct geometry_patch *patches;    /* per patch of the hierarchy; owned, as all below */
 	uint8_t *loaded;                   /* per group */
+	struct label_group *labels;        /* per group; without patches: not here */
 	uint64_t *group_bytes;
 	uint32_t *group_stamp; /* last frame it was of use */
 	uint64_t bytes;
@@ -63,6 +64,10 @@ void geometry_finish(struct geometry *geometry);
 /* Takes the answer's patches. -EBADMSG: they are not what the hierarchy says; -ENOMEM. On failure
  * nothing is taken. */
 must_check int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *answer);
+/* Takes the labels of a group; of one that was dropped meanwhile they are dropped too. -EBADMSG:
+ * they are not of its patches. */
+must_check int geometry_label(struct geometry *geometry, uint32_t group,
+			      struct label_group *labels);
 /* Marks what a cut stands on, then drops groups until the budget holds. */
 void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t budget_bytes);
 
@@ -75,9 +80,16 @@ void geometry_cull_none(void);
 /* A run of a bound patch's triangles. */
 void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
 
-/* Nearest hit among the listed patches between least_m and *distance_m, which becomes it. */
+struct geometry_hit {
+	uint32_t patch;
+	struct solid_hit on;
+};
+
+/* Nearest hit among the listed patches between least_m and *distance_m, which becomes it; *hit (may
+ * be NULL) says where. */
 bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
-		  const float direction[3], float least_m, float *distance_m);
+		  const float direction[3], float least_m, float *distance_m,
+		  struct geometry_hit *hit);
 /* Whether any of them is met before most_m. */
 bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
 		     const float direction[3], float most_m);

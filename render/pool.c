@@ -78,6 +78,7 @@ void pool_answer_finish(struct pool_answer *answer)
 		patch_mesh_finish(&answer->patches[i].mesh);
 	}
 	free(answer->patches);
+	label_group_finish(&answer->labels);
 	answer->rgb = NULL;
 	answer->patches = NULL;
 	answer->patch_count = 0;
@@ -120,7 +121,19 @@ static int decode_group(struct job *job, const struct lattice *lattice)
 
 static void do_job(struct job *job, const struct lattice *lattice)
 {
-	int rc = job->answer.kind == POOL_TILE ? decode_tile(job) : decode_group(job, lattice);
+	int rc = -EINVAL;
+	switch (job->answer.kind) {
+	case POOL_TILE:
+		rc = decode_tile(job);
+		break;
+	case POOL_GROUP:
+		rc = decode_group(job, lattice);
+		break;
+	case POOL_LABELS:
+		rc = label_group_decode(&job->answer.labels,
+					(struct bytes){ job->object, job->object_bytes });
+		break;
+	}
 	if (rc < 0)
 		pool_answer_finish(&job->answer);
 	job->answer.error = rc;
@@ -252,6 +265,7 @@ bool pool_take(struct pool *pool, struct pool_answer *answer)
 	job->answer.rgb = NULL;
 	job->answer.patches = NULL;
 	job->answer.patch_count = 0;
+	job->answer.labels = (struct label_group){ 0 };
 	job_destroy(job);
 	pool->busy--;
 	return true;

@@ -1,13 +1,15 @@
 /* Worker threads that decode what arrived: tiles into pixels, patch groups into meshes that rays
- * and GPU can use. One thread gives and takes; answers are told through an eventfd. */
+ * and GPU can use, their labels. One thread gives and takes; answers are told through an eventfd.
+ */
 #ifndef GOPURA_RENDER_POOL_H
 #define GOPURA_RENDER_POOL_H
 
+#include "format/label.h"
 #include "format/samples.h"
 #include "format/tile.h"
 #include "render/solid.h"
 
-enum pool_kind { POOL_TILE, POOL_GROUP };
+enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS };
 
 /* A patch as decoded: mesh and the tree over it. */
 struct pool_patch {
@@ -22,6 +24,7 @@ struct pool_answer {
 	uint8_t *rgb; /* tile: SAMPLE_IMAGE_PX square. Owned by who took the answer, like patches */
 	struct pool_patch *patches;
 	uint32_t patch_count;
+	struct label_group labels;
 };
 
 struct pool;

@@ -86,6 +86,7 @@ int scene_create(struct scene **out, const struct scene_options *options)
 
 static void drop_hierarchy(struct scene *scene)
 {
+	scene_drop_labels(scene);
 	dissolve_finish(&scene->dissolve);
 	cut_finish(&scene->cut);
 	cut_finish(&scene->around);
@@ -211,7 +212,11 @@ static int open_root(struct scene *scene, struct bytes bytes)
 	if (rc == 0)
 		rc = root_page_decode(&scene->root, page.payload);
 	if (rc == 0) {
-		memcpy(scene->root_child, page.children, sizeof(scene->root_child));
+		scene->root_child_count = page.child_count < ROOT_CHILDREN_MOST
+						  ? page.child_count
+						  : ROOT_CHILDREN_MOST;
+		memcpy(scene->root_child, page.children,
+		       scene->root_child_count * sizeof(*scene->root_child));
 		pool_set_lattice(scene->pool, &scene->root.lattice);
 		/* A sampling point may be outside the box by its half on every side. */
 		float far_m = 2.2f * vec_distance(scene->root.box_min_m, scene->root.box_max_m);
@@ -302,6 +307,10 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 		return repository_give_face(&scene->repository, (face_key)object->id, bytes);
 	case OBJECT_TILE:
 		return decode_elsewhere(scene, object, POOL_TILE, bytes);
+	case OBJECT_LABELS_PAGE:
+		return scene->labels ? 0 : scene_open_labels(scene, bytes);
+	case OBJECT_LABELS:
+		return decode_elsewhere(scene, object, POOL_LABELS, bytes);
 	}
 	return -EBADMSG;
 }
@@ -310,7 +319,7 @@ void scene_refuse(struct scene *scene, struct object *object, int error)
 {
 	static const char *const names[] = { "root page",   "hierarchy page", "samples page",
 					     "patch group", "brick page",     "face page",
-					     "tile" };
+					     "tile",        "labels page",    "labels" };
 	char hex[HASH_HEX_BYTES];
 	hash_to_hex(object->hash, hex);
 	log_error("render", "content bug: %s %s cannot be used: %s", names[object->kind], hex,
@@ -384,7 +393,7 @@ bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, fl
 		return false;
 	camera_ray(camera, x_px, y_px, direction);
 	if (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, camera->near_m,
-			  &distance))
+			  &distance, NULL))
 		return false;
 	vec_add_scaled(point_m, camera->eye_m, distance, direction);
 	return true;
@@ -397,6 +406,7 @@ float scene_clearance(struct scene *scene, const float from_m[3], const float di
 	memcpy(unit, direction, sizeof(unit));
 	if (!scene->has_hierarchy || vec_normalise(unit) <= 0)
 		return INFINITY;
-	return geometry_ray(&scene->geometry, &scene->cut, from_m, unit, 0, &distance) ? distance
-										       : INFINITY;
+	return geometry_ray(&scene->geometry, &scene->cut, from_m, unit, 0, &distance, NULL)
+		       ? distance
+		       : INFINITY;
 }

@@ -81,6 +81,10 @@ void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count);
  * patches shown. false: nothing there. */
 bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
 		float point_m[3]);
+/* The id of the smallest part there by the release's labels, "" where it is none's; borrowed until
+ * the next scene_draw. NULL: nothing there, the labels are not here yet, or the release has none.
+ */
+const char *scene_part(struct scene *scene, const struct camera *camera, float x_px, float y_px);
 /* Distance from a point to the nearest surface along a direction, metres; INFINITY: free. Used to
  * keep the eye out of solid matter. */
 float scene_clearance(struct scene *scene, const float from_m[3], const float direction[3],

@@ -1,6 +1,7 @@
 /* What the sources of the scene share; private to them.
  *   scene.c        life, objects in
  *   scene_wants.c  objects wanted
+ *   scene_labels.c which part a place belongs to
  *   scene_plan.c   what is shown: cut, pieces, blends
  *   scene_census.c which pieces are in sight
  *   scene_draw.c   the frame */
@@ -30,6 +31,8 @@ enum object_kind {
 	OBJECT_BRICK, /* id: child of the samples page */
 	OBJECT_FACE,  /* id: face_key */
 	OBJECT_TILE,  /* id: packed tile name */
+	OBJECT_LABELS_PAGE,
+	OBJECT_LABELS, /* id: group */
 };
 
 enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
@@ -70,11 +73,16 @@ struct scene {
 	uint32_t root_bytes;
 	bool has_root, has_hierarchy;
 	struct root_page root;
-	struct page_child root_child[ROOT_CHILD_COUNT];
+	struct page_child root_child[ROOT_CHILDREN_MOST];
+	uint32_t root_child_count;
 	struct hierarchy hierarchy;
 	struct hash hierarchy_hash;
 	struct page_child *groups; /* children of the hierarchy's page; owned */
 	uint32_t *group_offset;    /* owned */
+	/* Children of the labels page: */
+	struct page_child *labels; /* owned; NULL: not here */
+	uint32_t *labels_offset;   /* owned */
+	uint32_t *labels_of;       /* of each group, which, or LABEL_NONE; owned */
 	struct geometry geometry;
 	struct cut cut, around;
 	struct dissolve dissolve;
@@ -118,6 +126,11 @@ struct object *scene_expect(struct scene *scene, struct hash hash, enum object_k
 			    uint64_t id);
 /* Logs a content bug; the object is not wanted again. */
 void scene_refuse(struct scene *scene, struct object *object, int error);
+
+/* scene_labels.c: the labels page; once the hierarchy is here. -EBADMSG, -ENOMEM. */
+must_check int scene_open_labels(struct scene *scene, struct bytes bytes);
+void scene_drop_labels(struct scene *scene);
+bool scene_has_labels(const struct scene *scene); /* the release, here or not */
 
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);

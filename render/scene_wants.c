@@ -95,6 +95,42 @@ static void want_groups(struct scene *scene)
 	}
 }
 
+/* ---- labels */
+
+/* After all that is to be seen: a touch is answered by regions until then. */
+enum { LABELS_PRIORITY = 1 };
+
+static void want_labels_of(struct scene *scene, uint32_t group)
+{
+	const uint32_t child = scene->labels_of[group];
+	struct message_want place = { .page = scene->root_child[ROOT_CHILD_LABELS].hash };
+	if (child == LABEL_NONE || scene->geometry.labels[group].patch_count > 0)
+		return;
+	place.hash = scene->labels[child].hash;
+	place.size = scene->labels[child].size;
+	place.offset = scene->labels_offset[child];
+	want(scene, OBJECT_LABELS, group, &place, LABELS_PRIORITY);
+}
+
+/* Of what is in sight. */
+static void want_labels(struct scene *scene)
+{
+	uint8_t *asked = scene->labels ? calloc(scene->hierarchy.group_count, 1) : NULL;
+	if (!scene->labels)
+		want_child_of_root(scene, OBJECT_LABELS_PAGE, ROOT_CHILD_LABELS, LABELS_PRIORITY);
+	for (uint32_t i = 0; asked && i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		uint32_t group = scene->hierarchy.patches[v->patch].group;
+		if (asked[group] || (state->counted && state->seen_px <= 0))
+			continue;
+		asked[group] = 1;
+		want_labels_of(scene, group);
+	}
+	free(asked);
+}
+
 /* ---- images */
 
 /* A tile or face page that pieces want, with the sum of what they would win. */
@@ -274,6 +310,8 @@ void scene_list_wants(struct scene *scene)
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
 	if (scene->has_hierarchy)
 		want_groups(scene);
+	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))
+		want_labels(scene);
 	if (scene->repository.ready && scene->has_hierarchy && images)
 		want_images(scene);
 	if (scene->want_count > 0)

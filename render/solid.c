@@ -34,6 +34,9 @@ static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
 		b->indices[3 * i + k] = b->indices[3 * j + k];
 		b->indices[3 * j + k] = index;
 	}
+	uint16_t number = b->solid->order[i];
+	b->solid->order[i] = b->solid->order[j];
+	b->solid->order[j] = number;
 	for (int k = 0; k < 6; k++) {
 		float key = b->key[i][k];
 		b->key[i][k] = b->key[j][k];
@@ -263,7 +266,8 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
 	out->pieces = calloc(count / (PIECE_TRIANGLES_LEAST / 2) + 1, sizeof(*out->pieces));
 	out->positions = malloc(mesh->vertex_count * sizeof(*out->positions));
-	if (!builder.key || !out->nodes || !out->pieces || !out->positions) {
+	out->order = malloc(count * sizeof(*out->order));
+	if (!builder.key || !out->nodes || !out->pieces || !out->positions || !out->order) {
 		free(builder.key);
 		solid_finish(out);
 		return -ENOMEM;
@@ -271,8 +275,10 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	for (uint32_t v = 0; v < mesh->vertex_count; v++)
 		memcpy(out->positions[v], mesh->vertices[v].position, sizeof(*out->positions));
 	out->vertex_count = mesh->vertex_count;
-	for (uint32_t t = 0; t < count; t++)
+	for (uint32_t t = 0; t < count; t++) {
 		set_key(out, &mesh->indices[3 * t], builder.key[t]);
+		out->order[t] = (uint16_t)t;
+	}
 	build_node(&builder, 0, count);
 	collect_pieces(&builder, 0);
 	free(builder.key);
@@ -286,6 +292,7 @@ void solid_finish(struct solid *solid)
 	free(solid->nodes);
 	free(solid->pieces);
 	free(solid->positions);
+	free(solid->order);
 	memset(solid, 0, sizeof(*solid));
 }
 
@@ -293,7 +300,8 @@ size_t solid_bytes(const struct solid *solid)
 {
 	return solid->node_count * sizeof(*solid->nodes) +
 	       solid->piece_count * sizeof(*solid->pieces) +
-	       solid->vertex_count * sizeof(*solid->positions);
+	       solid->vertex_count * sizeof(*solid->positions) +
+	       (solid->node_count ? solid->nodes[0].count * sizeof(*solid->order) : 0);
 }
 
 /* ---- rays */
@@ -315,6 +323,7 @@ struct cast {
 	const struct solid *solid;
 	float from[3], direction[3], inverse[3];
 	float least, distance;
+	struct solid_hit hit;
 };
 
 static bool meets_box(const struct cast *cast, const struct solid_node *node)
@@ -363,6 +372,7 @@ static bool meets_triangle(struct cast *cast, uint32_t triangle)
 	if (at < cast->least || at >= cast->distance)
 		return false;
 	cast->distance = at;
+	cast->hit = (struct solid_hit){ triangle, u, v };
 	return true;
 }
 
@@ -403,7 +413,7 @@ static struct cast begin_cast(const struct solid *solid, const float from_m[3],
 }
 
 bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
-	       float least_m, float *distance_m)
+	       float least_m, float *distance_m, struct solid_hit *hit)
 {
 	float step = (float)solid->lattice.step_m;
 	struct cast cast = begin_cast(solid, from_m, direction);
@@ -412,6 +422,8 @@ bool solid_ray(const struct solid *solid, const float from_m[3], const float dir
 	if (!run_cast(&cast, false))
 		return false;
 	*distance_m = cast.distance * step;
+	if (hit)
+		*hit = cast.hit;
 	return true;
 }
 

@@ -52,6 +52,7 @@ struct solid {
 	uint16_t (*positions)[3]; /* owned; on the lattice */
 	uint32_t vertex_count;
 	const uint16_t *indices; /* borrowed from the mesh, which must keep them */
+	uint16_t *order;         /* owned; of each triangle, its number in the mesh as it came */
 	struct lattice lattice;
 };
 
@@ -66,10 +67,16 @@ size_t solid_bytes(const struct solid *solid);
 /* One of PIECE_PROBES places of a piece, spread over it. */
 struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe);
 
+/* Where a triangle was met: at (1 - u - v) a + u b + v c. */
+struct solid_hit {
+	uint32_t triangle;
+	float u, v;
+};
+
 /* Nearest hit between *distance_m and least_m along the (unit) direction, either side of a
- * triangle; then *distance_m becomes it. */
+ * triangle; then *distance_m becomes it, and *hit (may be NULL) says where. */
 bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
-	       float least_m, float *distance_m);
+	       float least_m, float *distance_m, struct solid_hit *hit);
 /* Whether anything is met before most_m. */
 bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
 		  float most_m);

@@ -332,7 +332,7 @@ static struct page_child little_samples(struct little_release *r)
 /* ---- the whole */
 
 /* points: sampling points along x and y, 2 .. BRICK_SIDE; two layers. */
-static struct little_release *little_release_make(uint32_t points)
+static inline struct little_release *little_release_make(uint32_t points)
 {
 	struct little_release *r = calloc(1, sizeof(*r));
 	struct page_child children[ROOT_CHILD_COUNT];
@@ -360,7 +360,7 @@ static struct little_release *little_release_make(uint32_t points)
 	return r;
 }
 
-static void little_release_free(struct little_release *r)
+static inline void little_release_free(struct little_release *r)
 {
 	for (uint32_t i = 0; i < r->object_count; i++)
 		free(r->objects[i].bytes);
@@ -368,7 +368,8 @@ static void little_release_free(struct little_release *r)
 }
 
 /* Gives the scene everything it wants, at most `most` objects. */
-static uint32_t little_release_serve(struct little_release *r, struct scene *scene, size_t most)
+static inline uint32_t little_release_serve(struct little_release *r, struct scene *scene,
+					    size_t most)
 {
 	struct message_want wants[256];
 	size_t count = scene_wants(scene, wants, most < 256 ? most : 256);
@@ -387,7 +388,7 @@ static uint32_t little_release_serve(struct little_release *r, struct scene *sce
 }
 
 /* rgb: width x height x 3, row 0 on top; alpha-less, sky as the root page says. */
-static void little_truth(const struct camera *camera, uint8_t *rgb)
+static inline void little_truth(const struct camera *camera, uint8_t *rgb)
 {
 	static const float sky[3] = { 120, 150, 180 };
 	for (int y = 0; y < camera->height_px; y++) {

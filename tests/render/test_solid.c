@@ -42,6 +42,23 @@ static float uniform(uint32_t *seed)
 	return (float)(*seed >> 8) / 16777216.0f;
 }
 
+/* The place on the triangle, by its corners as the mesh came, is the one along the ray. */
+static bool is_where_it_says(const struct solid *solid, const float from[3],
+			     const float direction[3], float distance, const struct solid_hit *hit,
+			     const uint16_t *came)
+{
+	const uint16_t *corner = &came[3 * solid->order[hit->triangle]];
+	const float share[3] = { 1 - hit->u - hit->v, hit->u, hit->v };
+	float on_ray[3], on_triangle[3] = { 0 };
+	vec_add_scaled(on_ray, from, distance, direction);
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			on_triangle[i] +=
+				share[k] * (float)(lattice.origin_m[i] +
+						   lattice.step_m * solid->positions[corner[k]][i]);
+	return vec_distance(on_ray, on_triangle) < 1e-3f;
+}
+
 static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
 {
 	(void)state;
@@ -49,6 +66,8 @@ static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
 	struct solid solid;
 	uint32_t seed = 1, hits = 0;
 	make_bumps(&mesh);
+	uint16_t *came = malloc(3 * mesh.triangle_count * sizeof(*came));
+	memcpy(came, mesh.indices, 3 * mesh.triangle_count * sizeof(*came));
 	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
 	for (int i = 0; i < 2000; i++) {
 		float from[3], direction[3];
@@ -58,18 +77,22 @@ static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
 		}
 		vec_normalise(direction);
 		float found = INFINITY, nearest = INFINITY;
-		bool hit = solid_ray(&solid, from, direction, 0, &found);
+		struct solid_hit where;
+		bool hit = solid_ray(&solid, from, direction, 0, &found, &where);
 		/* One leaf of everything: the same test without the tree. */
 		struct solid flat = solid;
 		struct solid_node all = solid.nodes[0];
 		all.right = 0;
 		flat.nodes = &all;
 		flat.node_count = 1;
-		CHECK(solid_ray(&flat, from, direction, 0, &nearest) == hit);
+		CHECK(solid_ray(&flat, from, direction, 0, &nearest, NULL) == hit);
 		CHECK(found == nearest);
 		hits += hit;
+		if (hit)
+			CHECK(is_where_it_says(&solid, from, direction, found, &where, came));
 	}
 	CHECK(hits > 100 && hits < 1900);
+	free(came);
 	solid_finish(&solid);
 	patch_mesh_finish(&mesh);
 }
@@ -104,7 +127,7 @@ static void an_empty_patch_is_met_by_nothing(void **state)
 	const float from[3] = { 0 }, up[3] = { 0, 0, 1 };
 	float distance = INFINITY;
 	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
-	CHECK(!solid_ray(&solid, from, up, 0, &distance));
+	CHECK(!solid_ray(&solid, from, up, 0, &distance, NULL));
 	solid_finish(&solid);
 }
 
