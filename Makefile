@@ -51,7 +51,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check soak powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check soak golden powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -78,6 +78,9 @@ check: all ## the quick loop: format, include rules, unit tests under sanitizers
 
 soak: all ## random fingers on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (an hour)
 	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
+
+golden: all ## pictures of every state in four languages into build/golden/, beside those that were kept; KEEP=yes keeps them
+	@LANGUAGES="$(LANGUAGES)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt

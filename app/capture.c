@@ -18,6 +18,7 @@ enum {
 	VIEW_MOST_MS = 120000, /* then it is written as it is, and said so */
 	QUIET_MS = 1200, /* without a byte received: longer than between two status messages */
 	FRAMES_MOST = 4096,
+	LOOK_MS = 20, /* at what came, between two frames at rest */
 };
 
 struct view {
@@ -321,5 +322,12 @@ void capture_object(struct capture *capture)
 
 int capture_wait_ms(const struct capture *capture)
 {
-	return capture->at < capture->count ? 20 : -1;
+	int64_t left_ms;
+
+	if (capture->at >= capture->count)
+		return -1;
+	if (capture->views || !capture->began_ms)
+		return LOOK_MS;
+	left_ms = capture->began_ms + capture->shots[capture->at].at_ms - clock_now_ms();
+	return left_ms > 0 ? (int)left_ms : 0;
 }

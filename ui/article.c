@@ -300,6 +300,19 @@ static int lay_out(struct article *article)
 	return find_links(article);
 }
 
+static void drop_layouts(struct article *article)
+{
+	for (uint32_t i = 0; i < article->html.block_count; i++) {
+		struct item *item = &article->items[i];
+
+		if (item->layout)
+			g_object_unref(item->layout);
+		if (item->marker)
+			g_object_unref(item->marker);
+		item->layout = item->marker = NULL;
+	}
+}
+
 int article_lay_out(struct article *article, int width_px, int view_px)
 {
 	int measure_px = MEASURE_EMS * theme_style_px(article->options.theme, TEXT_BODY);
@@ -313,6 +326,7 @@ int article_lay_out(struct article *article, int width_px, int view_px)
 	if (article->column_px < 1)
 		article->column_px = 1;
 	article->left_px = (width_px - article->column_px) / 2;
+	drop_layouts(article); /* made for another width, or another size of type */
 	rc = lay_out(article);
 	if (rc < 0)
 		article->link_count = 0;

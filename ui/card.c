@@ -38,23 +38,31 @@ static void draw_paper(const struct theme *theme, cairo_t *context, int width_px
 	cairo_fill(context);
 }
 
-/* Returns where the text may begin. -ENOMEM from the scaling leaves the place shaded. */
+/* Where something lies that is so far from the side at which its language begins to read. */
+static int mirrored(const struct theme *theme, int all_px, int x_px, int width_px)
+{
+	return theme_is_right_to_left(theme) ? all_px - x_px - width_px : x_px;
+}
+
+/* Returns where the text may begin, from that side. -ENOMEM from the scaling leaves the place
+ * shaded. */
 static int draw_thumbnail(const struct theme *theme, cairo_t *context, const struct card *card,
-			  int height_px)
+			  int width_px, int height_px)
 {
 	int padding = theme_px(theme, SHADOW_MM) + theme_px(theme, PADDING_MM) / 2;
 	int side = height_px - 2 * padding;
+	int x_px = mirrored(theme, width_px, padding, side);
 	struct bitmap scaled;
 
 	if (!card->has_thumbnail)
 		return padding + theme_px(theme, PADDING_MM);
 	cairo_save(context);
-	theme_rounded(context, padding, padding, side, side, theme_px(theme, 0.8f));
+	theme_rounded(context, x_px, padding, side, side, theme_px(theme, 0.8f));
 	cairo_clip(context);
 	theme_set_source(context, theme_paper_shade, 1);
 	cairo_paint(context);
 	if (card->thumbnail && bitmap_from_picture(&scaled, card->thumbnail, side, side) == 0) {
-		cairo_set_source_surface(context, scaled.surface, padding, padding);
+		cairo_set_source_surface(context, scaled.surface, x_px, padding);
 		cairo_paint(context);
 		bitmap_finish(&scaled);
 	}
@@ -90,20 +98,25 @@ static int text_height(const struct theme *theme, enum text_style style, const c
 	return height_px;
 }
 
-/* "Read more >" at the lower right; returns the height it takes. */
-static int draw_more(const struct theme *theme, cairo_t *context, int right_px, int bottom_px)
+/* "Read more >" where the lines end, at the bottom; returns the height it takes. */
+static int draw_more(const struct theme *theme, cairo_t *context, int card_px, int right_px,
+		     int bottom_px)
 {
 	const char *text = ui_string(UI_READ_MORE, theme->language);
+	const enum icon onward = theme_is_right_to_left(theme) ? ICON_BACK : ICON_FORWARD;
 	PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, text, -1);
 	int width_px, height_px, arrow_px = theme_px(theme, 2.4f);
 
 	pango_layout_get_pixel_size(layout, &width_px, &height_px);
 	theme_set_source(context, theme_accent, 1);
-	cairo_move_to(context, right_px - width_px - 2 * arrow_px, bottom_px - height_px);
+	cairo_move_to(context,
+		      mirrored(theme, card_px, right_px - width_px - 2 * arrow_px, width_px),
+		      bottom_px - height_px);
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
-	icon_draw(context, ICON_FORWARD, right_px - arrow_px / 2.0, bottom_px - height_px / 2.0,
-		  arrow_px);
+	icon_draw(context, onward,
+		  mirrored(theme, card_px, right_px - arrow_px, arrow_px) + arrow_px / 2.0,
+		  bottom_px - height_px / 2.0, arrow_px);
 	return height_px;
 }
 
@@ -120,15 +133,16 @@ int card_draw(struct bitmap *out, const struct theme *theme, const struct card *
 		return rc;
 	context = bitmap_begin(out);
 	draw_paper(theme, context, width_px, height_px);
-	x_px = draw_thumbnail(theme, context, card, height_px);
+	x_px = draw_thumbnail(theme, context, card, width_px, height_px);
 	right_px = width_px - shadow - padding;
 	bottom_px = height_px - shadow - padding / 2 - theme_px(theme, 0.8f);
 	if (card->has_page)
-		bottom_px -= draw_more(theme, context, right_px, bottom_px);
+		bottom_px -= draw_more(theme, context, width_px, right_px, bottom_px);
 	y_px = shadow + padding;
 	room_px = right_px - close - x_px > 1 ? right_px - close - x_px : 1;
 	title_px = text_height(theme, TEXT_TITLE, card->title, room_px, 2);
-	draw_text(theme, context, TEXT_TITLE, theme_ink, card->title, x_px, y_px, room_px, 2);
+	draw_text(theme, context, TEXT_TITLE, theme_ink, card->title,
+		  mirrored(theme, width_px, x_px, room_px), y_px, room_px, 2);
 	y_px += title_px + theme_px(theme, 1.0f);
 	for (int lines = 3; lines > 0; lines--) { /* as many as there is room for */
 		int caption_px =
@@ -136,13 +150,15 @@ int card_draw(struct bitmap *out, const struct theme *theme, const struct card *
 
 		if (y_px + caption_px > bottom_px)
 			continue;
-		draw_text(theme, context, TEXT_CAPTION, theme_ink_soft, card->caption, x_px, y_px,
-			  right_px - x_px, lines);
+		draw_text(theme, context, TEXT_CAPTION, theme_ink_soft, card->caption,
+			  mirrored(theme, width_px, x_px, right_px - x_px), y_px, right_px - x_px,
+			  lines);
 		break;
 	}
 	theme_set_source(context, theme_ink_soft, 1);
-	icon_draw(context, ICON_CLOSE, width_px - shadow - close / 2.0, shadow + close / 2.0,
-		  theme_px(theme, 3.2f));
+	icon_draw(context, ICON_CLOSE,
+		  mirrored(theme, width_px, width_px - shadow - close, close) + close / 2.0,
+		  shadow + close / 2.0, theme_px(theme, 3.2f));
 	bitmap_end(out, context);
 	return 0;
 }
@@ -151,5 +167,7 @@ bool card_closes(const struct theme *theme, int width_px, float x_px, float y_px
 {
 	int reach = theme_px(theme, THEME_TARGET_MM) + theme_px(theme, SHADOW_MM);
 
+	if (theme_is_right_to_left(theme))
+		x_px = (float)width_px - x_px;
 	return x_px >= (float)(width_px - reach) && y_px <= (float)reach;
 }

@@ -49,9 +49,4 @@ must_check int chrome_draw(struct bitmap *out, const struct chrome *chrome,
 /* NULL: between the buttons. x relative to the bar. */
 const struct chrome_button *chrome_button_at(const struct chrome *chrome, float x_px);
 
-/* The help in the theme's language; a fresh bitmap as large as it needs, at most that wide. Of
- * names to tap it speaks where the model has some. */
-must_check int chrome_draw_help(struct bitmap *out, const struct theme *theme, int most_width_px,
-				bool has_names);
-
 #endif

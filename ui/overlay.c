@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ui/hint.h"
 #include "ui/overlay_state.h"
 
 _Static_assert((int)BITMAP_COUNT <= (int)OVERLAY_BITMAPS_MOST, "ids of bitmaps");
@@ -296,6 +297,7 @@ void overlay_show_help(struct overlay *overlay, bool on)
 		return;
 	overlay->help.on = on;
 	overlay->help_dirty |= on;
+	overlay->help_ms = on ? 0 : overlay->help_ms;
 	overlay->chrome_dirty = overlay->callouts_dirty = true;
 	if (on)
 		overlay_show_card(overlay, -1);
@@ -598,6 +600,10 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;
 	moving = overlay_advance(&overlay->help, step_ms);
+	if (overlay->help.on && overlay->help_ms < HINT_MOVES_MS) {
+		overlay->help_ms += step_ms;
+		moving = true;
+	}
 	moving |= overlay_advance(&overlay->invitation, step_ms);
 	moving |= overlay_advance(&overlay->question, step_ms);
 	moving |= overlay_advance(&overlay->card, step_ms);

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "ui/hint.h"
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
 #include "ui/prompt.h"
@@ -28,6 +29,17 @@ cairo_t *overlay_begin(struct overlay *overlay, enum bitmap_id id, int width_px,
 void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 {
 	bitmap_end(&overlay->drawings[id].bitmap, context);
+}
+
+/* Modules that make their own bitmap hand it over here. */
+static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh, int rc)
+{
+	struct drawing *drawing = &overlay->drawings[id];
+
+	bitmap_finish(&drawing->bitmap);
+	drawing->revision++;
+	if (rc == 0)
+		drawing->bitmap = *fresh;
 }
 
 /* Across a leader: a light core between dark edges, so that it shows on any stone. */
@@ -88,6 +100,7 @@ static void draw_foot(struct overlay *overlay)
 
 void overlay_draw_fixed(struct overlay *overlay)
 {
+	struct bitmap finger;
 	cairo_t *context;
 	int width_px = px(overlay, 1.0f);
 
@@ -113,6 +126,7 @@ void overlay_draw_fixed(struct overlay *overlay)
 		overlay_end(overlay, BITMAP_NIGHT, context);
 	}
 	overlay_draw_gallery_buttons(overlay);
+	put(overlay, BITMAP_FINGER, &finger, hint_draw_finger(&finger, &overlay->theme));
 	context = overlay_begin(overlay, BITMAP_SCROLL, width_px, 4 * width_px);
 	if (context) {
 		theme_rounded(context, 0, 0, width_px, 4 * width_px, width_px / 2.0);
@@ -120,17 +134,6 @@ void overlay_draw_fixed(struct overlay *overlay)
 		cairo_fill(context);
 		overlay_end(overlay, BITMAP_SCROLL, context);
 	}
-}
-
-/* Modules that make their own bitmap hand it over here. */
-static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh, int rc)
-{
-	struct drawing *drawing = &overlay->drawings[id];
-
-	bitmap_finish(&drawing->bitmap);
-	drawing->revision++;
-	if (rc == 0)
-		drawing->bitmap = *fresh;
 }
 
 void overlay_draw_chrome(struct overlay *overlay)
@@ -158,7 +161,7 @@ void overlay_draw_help(struct overlay *overlay)
 	int most_px = overlay_scene_rect(overlay).width_px - 2 * px(overlay, THEME_GAP_MM);
 
 	put(overlay, BITMAP_HELP, &fresh,
-	    chrome_draw_help(&fresh, &overlay->theme, most_px, overlay->part_count > 0));
+	    hint_draw(&fresh, &overlay->theme, most_px, overlay->part_count > 0));
 }
 
 void overlay_draw_invitation(struct overlay *overlay)

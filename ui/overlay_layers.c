@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "ui/hint.h"
 #include "ui/overlay_state.h"
 
 struct list {
@@ -255,17 +256,32 @@ static void add_gallery(struct list *list)
 	}
 }
 
+static void add_help(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	const struct bitmap *finger = &overlay->drawings[BITMAP_FINGER].bitmap;
+	struct overlay_rect help = overlay_help_rect(overlay);
+	float alpha = ease(overlay->help.alpha), middles_px[HINT_FINGERS][2];
+
+	add_bitmap(list, BITMAP_HELP, alpha, (float)help.x_px, (float)help.y_px);
+	hint_fingers(&overlay->theme, help.width_px, overlay->part_count > 0, overlay->help_ms,
+		     middles_px);
+	for (int i = 0; i < HINT_FINGERS; i++)
+		add_bitmap(list, BITMAP_FINGER, alpha,
+			   (float)help.x_px + middles_px[i][0] - (float)finger->width_px / 2,
+			   (float)help.y_px + middles_px[i][1] - (float)finger->height_px / 2);
+}
+
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
 {
 	struct list list = { .overlay = overlay, .layers = layers, .most = most };
-	struct overlay_rect card = overlay_card_rect(overlay), help = overlay_help_rect(overlay);
+	struct overlay_rect card = overlay_card_rect(overlay);
 	struct overlay_rect chrome = overlay_chrome_rect(overlay);
 	struct overlay_rect invitation = overlay_invitation_rect(overlay);
 	struct overlay_rect question = overlay_question_rect(overlay);
 
 	add_callouts(&list);
-	add_bitmap(&list, BITMAP_HELP, ease(overlay->help.alpha), (float)help.x_px,
-		   (float)help.y_px);
+	add_help(&list);
 	add_bitmap(&list, BITMAP_INVITATION, ease(overlay->invitation.alpha),
 		   (float)invitation.x_px, (float)invitation.y_px);
 	add_page(&list);

@@ -213,7 +213,7 @@ int overlay_row_px(const struct overlay *overlay)
 static struct callout_area callout_area(const struct overlay *overlay)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
-	int margin_px = px(overlay, THEME_MARGIN_MM), floor_px = floor_of(overlay);
+	int margin_px = px(overlay, THEME_MARGIN_MM), floor_px = floor_of(overlay), most_px;
 	struct callout_area area = { .x_px = scene.x_px + margin_px,
 				     .y_px = scene.y_px + margin_px,
 				     .width_px = scene.width_px - 2 * margin_px,
@@ -235,9 +235,11 @@ static struct callout_area callout_area(const struct overlay *overlay)
 	}
 	area.height_px = floor_px - area.y_px;
 	area.column_px = overlay->column_px;
-	/* Half of the width is the model's own. */
-	if (area.column_px > area.width_px * 27 / 100)
-		area.column_px = area.width_px * 27 / 100;
+	/* Half of the width is the model's own; beside a page, where it is narrow, a little less.
+	 */
+	most_px = area.width_px * (scene.width_px < overlay->width_px ? 31 : 27) / 100;
+	if (area.column_px > most_px)
+		area.column_px = most_px;
 	return area;
 }
 

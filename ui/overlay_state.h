@@ -21,6 +21,7 @@ enum bitmap_id {
 	BITMAP_DOT,
 	BITMAP_CHROME,
 	BITMAP_HELP,
+	BITMAP_FINGER, /* on it */
 	BITMAP_INVITATION,
 	BITMAP_QUESTION,
 	BITMAP_CARD,
@@ -123,6 +124,7 @@ struct overlay {
 	struct chrome chrome;
 	bool chrome_dirty, help_dirty, card_dirty, head_dirty;
 	struct fade help, card, page, invitation, question;
+	int64_t help_ms;                  /* for which its fingers have moved */
 	int question_s, question_drawn_s; /* on the count-down; on its bitmap */
 	int card_part, card_shown;        /* shown: on its bitmap, also while fading out */
 	int page_part, page_titled;       /* titled: in its head, also while fading out */

@@ -73,6 +73,9 @@ int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *
 		text_width = width > text_width ? width : text_width;
 		text_height += height + gap;
 	}
+	for (uint32_t i = 0; i < count;
+	     i++) /* what is read from the right ends where the others do */
+		pango_layout_set_width(lines[i], text_width * PANGO_SCALE);
 	rc = bitmap_init(out, text_width + icon + 3 * padding,
 			 (text_height > icon ? text_height : icon) + 2 * padding);
 	if (rc == 0) {
@@ -133,6 +136,8 @@ int prompt_draw_question(struct bitmap *out, const struct theme *theme, int seco
 		layouts[i] = theme_layout(theme, styles[i], texts[i], -1);
 		theme_limit_lines(layouts[i], room_px, 2);
 		measure(layouts[i], &width[i], &height[i]);
+		/* Else what is read from the right would begin at the far end of the room. */
+		pango_layout_set_width(layouts[i], width[i] * PANGO_SCALE);
 	}
 	button_px = width[BUTTON] + 4 * padding;
 	wide_px = width[QUESTION] > width[COUNT_DOWN] ? width[QUESTION] : width[COUNT_DOWN];

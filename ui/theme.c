@@ -19,8 +19,13 @@ const struct colour theme_accent = RGB(158, 72, 38); /* laterite */
 const struct colour theme_night = RGB(28, 25, 22);
 const struct colour theme_night_text = RGB(246, 240, 230);
 
-static const char serif[] = "Noto Serif, Noto Serif Khmer, Noto Serif CJK JP";
-static const char sans[] = "Noto Sans, Noto Sans Khmer, Noto Sans CJK JP";
+/* Each script by name: what a system would choose by itself has another weight and line. */
+static const char serif[] =
+	"Noto Serif, Noto Serif Khmer, Noto Serif CJK JP, Noto Naskh Arabic, Noto Serif Thai, "
+	"Noto Serif Devanagari";
+static const char sans[] =
+	"Noto Sans, Noto Sans Khmer, Noto Sans CJK JP, Noto Sans Arabic, Noto Sans Thai, "
+	"Noto Sans Devanagari";
 
 static const struct {
 	const char *families;
@@ -41,6 +46,32 @@ static const struct {
 	[TEXT_FIGURE] = { sans, 3.7f, PANGO_WEIGHT_NORMAL, false, 1.1f },
 	[TEXT_CELL] = { sans, 4.1f, PANGO_WEIGHT_NORMAL, false, 1.1f },
 };
+
+/* Scripts whose letters are small in their em, or whose fonts leave room for marks that few texts
+ * have. Not of controls: what stands beside each other there are several languages. */
+static const struct {
+	const char language[3];
+	float size, line;
+} scripts[] = {
+	{ "km", 1.1f, 1 },     { "th", 1.1f, 1 },     { "hi", 1.05f, 1 },
+	{ "ar", 1.1f, 0.72f }, { "fa", 1.1f, 0.72f }, { "ur", 1.1f, 0.8f },
+};
+
+static float script_size(const struct theme *theme)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++)
+		if (strncmp(theme->language, scripts[i].language, 2) == 0)
+			return scripts[i].size;
+	return 1;
+}
+
+static float script_line(const struct theme *theme)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++)
+		if (strncmp(theme->language, scripts[i].language, 2) == 0)
+			return scripts[i].line;
+	return 1;
+}
 
 int theme_init(struct theme *theme, float px_per_mm, const char *language)
 {
@@ -138,7 +169,9 @@ void theme_rounded(cairo_t *context, double x, double y, double width, double he
 
 int theme_style_px(const struct theme *theme, enum text_style style)
 {
-	return theme_text_px(theme, styles[style].size_mm);
+	const float script = style == TEXT_BUTTON ? 1 : script_size(theme);
+
+	return theme_text_px(theme, styles[style].size_mm * script);
 }
 
 PangoLayout *theme_layout(const struct theme *theme, enum text_style style, const char *text,
@@ -155,7 +188,7 @@ PangoLayout *theme_layout(const struct theme *theme, enum text_style style, cons
 							       (double)PANGO_SCALE);
 	pango_layout_set_font_description(layout, font);
 	pango_font_description_free(font);
-	pango_layout_set_line_spacing(layout, styles[style].line_spacing);
+	pango_layout_set_line_spacing(layout, styles[style].line_spacing * script_line(theme));
 	/* Words first; a word longer than the line (Khmer is written without spaces) is broken
 	 * between clusters, never inside one. */
 	pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);

@@ -414,7 +414,7 @@ static void the_bar_stays_where_it_is(void **state)
 static void large_type_is_larger_and_keeps_the_place_that_is_read(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720);
-	int usual_px = theme_style_px(&overlay->theme, TEXT_BODY), height_px;
+	int usual_px = theme_style_px(&overlay->theme, TEXT_BODY), height_px, large_px;
 	float read;
 
 	(void)state;
@@ -427,11 +427,16 @@ static void large_type_is_larger_and_keeps_the_place_that_is_read(void **state)
 	settle(overlay);
 	CHECK(fabsf((float)theme_style_px(&overlay->theme, TEXT_BODY) -
 		    THEME_LARGE_TYPE * (float)usual_px) < 1.5f);
-	CHECK(article_height_px(overlay->article) > height_px);
+	large_px = article_height_px(overlay->article);
+	CHECK(large_px > height_px);
 	CHECK(fabsf(overlay->scroll_px / (float)article_height_px(overlay->article) - read) <
 	      0.001f);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
 	CHECK(article_height_px(overlay->article) == height_px);
+	overlay_set_comfort(overlay, (struct overlay_comfort){ .large = true });
+	show_page(
+		overlay); /* as a page is that opens so: no line is left as it was broken before */
+	CHECK(article_height_px(overlay->article) == large_px);
 	overlay_destroy(overlay);
 }
 

@@ -1,0 +1,44 @@
+#!/bin/bash
+# Every state in four languages, as it was looked at and kept in tests/golden/STATE-LANGUAGE.png, within a
+# tolerance: a visit (tests/golden/visit.py) is played in each language on a clock that jumps. What
+# differs is named, and lies beside the kept picture in build/golden/differ/.
+#
+#   make golden [LANGUAGES="en km"] [STATES=card]   takes them anew into build/golden/, compares
+#   make golden KEEP=yes ...                        and keeps what was taken: look at each first
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/golden
+mkdir -p "$work/content"
+make --no-print-directory -j"$(nproc)" build/tests/tools/hurried_kiosk build/tests/tools/golden >/dev/null
+small_release
+# The small temple with the demo's words (other tests write into its own copy) and Arabic ones.
+cp -ru "$small/content/." "$work/content/"
+rm -rf "$work/content/pages" "$work/differ"
+cp -r demo/content/pages demo/content/parts.json "$work/content/"
+python3 tests/golden/content.py "$work/content"
+build/gopura-content build "$work/content" --out "$work/release" >"$work/log" 2>&1 ||
+	{ cat "$work/log"; fail "no release for the pictures"; }
+python3 tests/golden/visit.py "$work"
+
+differ=0
+mkdir -p "$work/differ"
+for language in ${LANGUAGES:-en km ja ar}; do
+	shots=$work/$language
+	rm -rf "$shots" "$work/state"
+	build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --display headless --size 960x540 \
+		--release "$work/release" --trust "$work/release/root/1.json" --state "$work/state" \
+		--language "$language" --idle-s 20 --touch-replay "$work/visit.touch" --shots "$work/shots.txt" \
+		--capture "$shots" --log debug >"$shots.json" 2>"$shots.log" ||
+		{ tail -n 20 "$shots.log"; fail "the kiosk ended with an error"; }
+	for shot in "$shots"/*.png; do
+		state=$(basename "$shot" .png)
+		golden=tests/golden/$state-$language.png
+		[ "${STATES:-$state}" = "$state" ] || continue
+		build/tests/tools/golden compare "$golden" "$shot" "$work/differ/$state-$language.png" ||
+			{ echo "differs: $golden, see $shot and $work/differ/$state-$language.png"; differ=1; }
+		[ -z "${KEEP:-}" ] || build/tests/tools/golden keep "$shot" "$golden"
+	done
+done
+[ -z "${KEEP:-}" ] || exit 0
+[ "$differ" = 0 ] || fail "pictures differ from those that were kept; where that is right: make golden KEEP=yes"

@@ -1,0 +1,81 @@
+"""One visit through every state, for a panel of 960 x 540: visit.py FOLDER writes visit.touch (docs/input.md)
+and shots.txt. The bar, the first row of the search, a card and what closes stand in the same place in
+every language; where a page has its picture says GALLERY."""
+import sys
+
+HOME, SEARCH, LARGE, REACH = (23, 516), (93, 516), (129, 516), (164, 516)
+ROW, CARD, CLOSE, PICTURE_CLOSE = (720, 75), (480, 430), (915, 22), (933, 27)
+
+touches, shots = [], []
+now = 9500
+
+
+def say(what, finger, place):
+    touches.append(f"{now} {what} {finger} {place[0]:.0f} {place[1]:.0f}")
+
+
+def tap(place, then=600):
+    global now
+    say("down", 0, place)
+    now += 80
+    say("up", 0, place)
+    now += then
+
+
+def move(*fingers, then=600, steps=20):
+    """Each finger from a place to a place, and still before it lifts: nothing is flung."""
+    global now
+    for finger, (begin, _) in enumerate(fingers):
+        say("down", finger, begin)
+    for step in range(1, steps + 1):
+        now += 20
+        for finger, (begin, end) in enumerate(fingers):
+            say("move", finger, [a + (b - a) * step / steps for a, b in zip(begin, end)])
+    now += 200
+    for finger, (_, end) in enumerate(fingers):
+        say("up", finger, end)
+    now += then
+
+
+def shot(name, after):
+    """The picture is at rest by then."""
+    global now
+    now += after
+    shots.append(f"{now} {name}")
+    now += 500
+
+
+shots.append("8800 hint")
+move(((480, 200), (640, 200)))
+shot("far", 5000)
+move(((440, 260), (330, 260)), ((520, 260), (630, 260)))
+shot("near", 6000)
+tap(HOME, 2000)
+tap(SEARCH, 1500)
+shot("search", 1500)
+tap(ROW)
+shot("card", 6000)
+tap(CARD)
+shot("page", 6000)
+move(((720, 470), (720, 130)))
+shot("read", 2000)
+move(((720, 130), (720, 530)))
+tap((720, 300))
+shot("picture", 2500)
+tap(PICTURE_CLOSE, 1000)
+tap(LARGE)
+tap(REACH)
+shot("comfort", 5000)
+tap(LARGE)
+tap(REACH)
+tap(CLOSE)
+tap(HOME)
+# Asked 20 s after the last touch, and gone 15 s later; the eye is under way for 2.5 s.
+last = now - 600
+now = last + 20000
+shot("asked", 3400)
+now = last + 35000
+shot("attract", 8000)
+
+open(f"{sys.argv[1]}/visit.touch", "w").write("\n".join(touches) + "\n")
+open(f"{sys.argv[1]}/shots.txt", "w").write("\n".join(shots) + "\n")
