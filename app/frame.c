@@ -187,21 +187,27 @@ static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_
 
 /* ---- the scene */
 
-static const struct region *marked_region(struct kiosk *kiosk, struct region *out)
+static const struct scene_mark *marked_part(struct kiosk *kiosk, struct scene_mark *out)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 	int part = -1;
 
 	if (overlay)
 		part = overlay_page(overlay) >= 0 ? overlay_page(overlay) : overlay_card(overlay);
-	return part >= 0 && story_region(kiosk->shown.story, (uint32_t)part, out) ? out : NULL;
+	if (part < 0)
+		return NULL;
+	*out = (struct scene_mark){
+		.part = info_part(story_info(kiosk->shown.story), (uint32_t)part)->id
+	};
+	story_region(kiosk->shown.story, (uint32_t)part, &out->region);
+	return out;
 }
 
 static void draw_scene(struct kiosk *kiosk, bool words)
 {
 	struct scene *scene = kiosk->shown.scene;
 	const struct root_page *root = scene ? scene_root(scene) : NULL;
-	struct region region;
+	struct scene_mark mark;
 
 	glDisable(GL_SCISSOR_TEST);
 	glViewport(0, 0, kiosk->camera.width_px, kiosk->camera.height_px);
@@ -210,7 +216,7 @@ static void draw_scene(struct kiosk *kiosk, bool words)
 		     (float)(root ? root->background[2] : 20) / 255, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	if (scene && kiosk->navigator_ready)
-		scene_draw(scene, &kiosk->camera, words ? marked_region(kiosk, &region) : NULL,
+		scene_draw(scene, &kiosk->camera, words ? marked_part(kiosk, &mark) : NULL,
 			   &kiosk->shown.frame);
 }
 

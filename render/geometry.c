@@ -27,6 +27,7 @@ static void patch_finish(struct geometry_patch *patch)
 		glDeleteBuffers(1, &patch->vertices);
 	if (patch->indices)
 		glDeleteBuffers(1, &patch->indices);
+	ribbon_finish(&patch->ribbon);
 	solid_finish(&patch->content.solid);
 	patch_mesh_finish(&patch->content.mesh);
 	free(patch->pieces);

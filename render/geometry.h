@@ -9,6 +9,7 @@
 #include "render/gl.h"
 #include "render/plan.h"
 #include "render/pool.h"
+#include "render/ribbon.h"
 
 /* One of the faces blended on a piece, fading in and out. */
 struct blend {
@@ -44,6 +45,7 @@ struct geometry_patch {
 	struct pool_patch content;
 	struct piece_state *pieces; /* owned; one per content.solid.pieces */
 	enum geometry_sides sides;
+	struct ribbon ribbon; /* the outline of the part that was marked last */
 };
 
 struct geometry {

@@ -75,6 +75,8 @@ int scene_create(struct scene **out, const struct scene_options *options)
 	if (rc == 0)
 		rc = mark_init(&scene->mark);
 	if (rc == 0)
+		rc = ribbons_init(&scene->ribbons);
+	if (rc == 0)
 		rc = census_init(&scene->census);
 	if (rc < 0) {
 		scene_destroy(scene);
@@ -126,6 +128,7 @@ void scene_destroy(struct scene *scene)
 		forget(scene);
 	pool_destroy(scene->pool);
 	mark_finish(&scene->mark);
+	ribbons_finish(&scene->ribbons);
 	rest_finish(&scene->rest);
 	census_finish(&scene->census);
 	surface_finish(&scene->surface);

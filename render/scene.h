@@ -62,9 +62,15 @@ struct scene_frame {
 	float image_share; /* of the model's pixels, settled frames only; else -1 */
 };
 
+/* The part whose border is drawn in bold. */
+struct scene_mark {
+	const char *part;     /* its id, by which the release's labels know its outline; borrowed */
+	struct region region; /* where those are not here; REGION_NONE: nothing then */
+};
+
 /* Draws into the framebuffer that is bound, on the release's background; alpha is coverage.
- * highlight may be NULL. */
-void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
+ * mark may be NULL. */
+void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
 		struct scene_frame *out);
 
 /* What is held of the budgets. */

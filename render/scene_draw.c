@@ -150,26 +150,6 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 	geometry_cull_none();
 }
 
-static void draw_mark(struct scene *scene, const struct view *view, const struct region *region)
-{
-	uint32_t bound = HIERARCHY_NONE;
-	mark_begin(&scene->mark, view, &scene->root, region);
-	glDisableVertexAttribArray(1);
-	glDisableVertexAttribArray(2);
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
-		const struct visible_piece *v = &scene->visible[i];
-		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-		const struct piece *piece = &patch->content.solid.pieces[v->piece];
-		if (!region_meets_sphere(region, piece->centre_m, piece->radius_m))
-			continue;
-		if (v->patch != bound)
-			geometry_bind(&scene->geometry, v->patch);
-		bound = v->patch;
-		geometry_draw(piece->first_triangle, piece->triangle_count);
-	}
-	mark_end();
-}
-
 /* What it is drawn into is bound. */
 static void begin_picture(const struct scene *scene)
 {
@@ -182,8 +162,7 @@ static void begin_picture(const struct scene *scene)
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-static void draw_picture(struct scene *scene, const struct view *view, const struct region *region,
-			 bool shares)
+static void draw_picture(struct scene *scene, const struct view *view, bool shares)
 {
 	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
 	const struct surface_frame frame = {
@@ -196,8 +175,8 @@ static void draw_picture(struct scene *scene, const struct view *view, const str
 		.shares = shares,
 	};
 	draw_pieces(scene, &frame);
-	if (region && region->kind != REGION_NONE)
-		draw_mark(scene, view, region);
+	if (!shares)
+		scene_draw_mark(scene, view);
 }
 
 /* How much of the model's pixels images colour, from a small picture. */
@@ -214,7 +193,7 @@ static float count_share(struct scene *scene)
 	begin_picture(scene);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT);
-	draw_picture(scene, &scene->view, NULL, true);
+	draw_picture(scene, &scene->view, true);
 	size_t pixels = (size_t)small.width_px * (size_t)small.height_px;
 	uint8_t *rgba = malloc(4 * pixels);
 	double shares = 0, covered = 0;
@@ -283,8 +262,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 }
 
 /* Draws to the place given: at rest by way of the sum, moving at once. */
-static void show(struct scene *scene, const struct gl_place *place, const struct region *region,
-		 bool moved, bool changed)
+static void show(struct scene *scene, const struct gl_place *place, bool moved, bool changed)
 {
 	const struct view *view = &scene->view;
 	if (moved)
@@ -293,7 +271,7 @@ static void show(struct scene *scene, const struct gl_place *place, const struct
 	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px, draws) < 0) {
 		gl_place_bind(place, view->width_px, view->height_px);
 		begin_picture(scene);
-		draw_picture(scene, view, region, false);
+		draw_picture(scene, view, false);
 		return;
 	}
 	if (draws) {
@@ -303,7 +281,7 @@ static void show(struct scene *scene, const struct gl_place *place, const struct
 		view_jitter(&jittered, x, y);
 		gl_target_bind(&scene->rest.frame);
 		begin_picture(scene);
-		draw_picture(scene, &jittered, region, false);
+		draw_picture(scene, &jittered, false);
 	}
 	rest_add(&scene->rest, place, changed);
 }
@@ -315,17 +293,7 @@ static void draw_nothing(const struct camera *camera)
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-static bool mark_changed(struct scene *scene, const struct region *region)
-{
-	struct region now = { 0 };
-	if (region)
-		now = *region;
-	bool changed = memcmp(&now, &scene->marked, sizeof(now)) != 0;
-	scene->marked = now;
-	return changed;
-}
-
-void scene_draw(struct scene *scene, const struct camera *camera, const struct region *highlight,
+void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
 		struct scene_frame *out)
 {
 	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
@@ -344,10 +312,10 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct r
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, out);
-	if (mark_changed(scene, highlight))
+	if (scene_note_mark(scene, mark))
 		rest_break(&scene->rest); /* an answer to a touch: at once */
 	bool changed = is_busy(scene);
-	show(scene, &place, highlight, moved, changed);
+	show(scene, &place, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	scene_list_wants(scene);

@@ -72,3 +72,34 @@ const char *scene_part(struct scene *scene, const struct camera *camera, float x
 		hit.on.v);
 	return part < 0 ? "" : labels->parts[part].id;
 }
+
+static int make_ribbon(struct scene *scene, uint32_t patch, const struct label_group *labels)
+{
+	const struct hierarchy_patch *known = &scene->hierarchy.patches[patch];
+	struct geometry_patch *out = &scene->geometry.patches[patch];
+	struct outline outline = { 0 };
+	int part = label_find(labels, scene->marked_part), rc = 0;
+	if (part >= 0)
+		rc = outline_create(&outline, &out->content.solid, labels,
+				    patch - scene->hierarchy.groups[known->group].first_patch,
+				    (uint32_t)part);
+	if (rc == 0)
+		rc = ribbon_make(&out->ribbon, &outline, scene->mark_serial);
+	outline_finish(&outline);
+	return rc;
+}
+
+bool scene_outline(struct scene *scene, uint32_t patch)
+{
+	const uint32_t group = scene->hierarchy.patches[patch].group;
+	const struct label_group *labels = &scene->geometry.labels[group];
+	if (!scene->labels || !scene->marked_part[0])
+		return false;
+	if (scene->labels_of[group] == LABEL_NONE) /* nothing of any part is on it */
+		return true;
+	if (labels->patch_count == 0)
+		return false;
+	if (scene->geometry.patches[patch].ribbon.serial == scene->mark_serial)
+		return true;
+	return make_ribbon(scene, patch, labels) == 0;
+}

@@ -4,7 +4,8 @@
  *   scene_labels.c which part a place belongs to
  *   scene_plan.c   what is shown: cut, pieces, blends
  *   scene_census.c which pieces are in sight
- *   scene_draw.c   the frame */
+ *   scene_draw.c   the frame
+ *   scene_mark.c   the marked part over it */
 #ifndef GOPURA_RENDER_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_PARTS_H
 
@@ -60,6 +61,7 @@ struct scene {
 	struct depth depth;
 	struct surface surface;
 	struct mark mark;
+	struct ribbons ribbons;
 	struct rest rest;
 	struct census census;
 
@@ -116,7 +118,11 @@ struct scene {
 	uint32_t want_count, want_capacity;
 	bool wants_are_stale; /* something came since they were listed */
 	uint32_t plan_cursor;
-	struct region marked; /* by the last frame */
+	/* What the last frame marked: */
+	bool is_marked;
+	char marked_part[LABEL_ID_BYTES];
+	struct region marked_region;
+	uint32_t mark_serial; /* so many parts were */
 };
 
 /* scene.c */
@@ -131,6 +137,9 @@ void scene_refuse(struct scene *scene, struct object *object, int error);
 must_check int scene_open_labels(struct scene *scene, struct bytes bytes);
 void scene_drop_labels(struct scene *scene);
 bool scene_has_labels(const struct scene *scene); /* the release, here or not */
+/* A labelled patch has the marked part's outline as ribbon, made where it is not there yet. false:
+ * it is not known, or there was no memory. */
+bool scene_outline(struct scene *scene, uint32_t patch);
 
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);
@@ -146,6 +155,9 @@ void scene_list_pieces(struct scene *scene);
 void scene_plan_pieces(struct scene *scene, int64_t budget_us);
 void scene_fade_blends(struct scene *scene, float passed_ms);
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out);
+/* scene_mark.c: notes it; whether it is another than in the frame before. */
+bool scene_note_mark(struct scene *scene, const struct scene_mark *mark);
+void scene_draw_mark(struct scene *scene, const struct view *view);
 float scene_patch_error_m(const struct scene *scene, uint32_t patch);
 
 #endif

@@ -26,6 +26,8 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 		rc = geometry_put(&scene->geometry, (uint32_t)object->id, answer);
 	} else if (rc == 0 && object->kind == OBJECT_LABELS) {
 		rc = geometry_label(&scene->geometry, (uint32_t)object->id, &answer->labels);
+		if (scene->is_marked)
+			rest_break(&scene->rest); /* another outline than the sum has */
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;

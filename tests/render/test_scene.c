@@ -64,9 +64,12 @@ static void strike_stage(struct stage *stage)
 
 static void draw(struct stage *stage, const struct camera *camera, const struct region *region)
 {
+	struct scene_mark mark = { .part = NULL };
+	if (region)
+		mark.region = *region;
 	gl_target_bind(&stage->target);
 	CHECK(scene_dispatch(stage->scene) == 0);
-	scene_draw(stage->scene, camera, region, &stage->frame);
+	scene_draw(stage->scene, camera, region ? &mark : NULL, &stage->frame);
 }
 
 /* Serves and draws until the scene says that it is settled. Returns frames. */
