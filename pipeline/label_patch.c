@@ -201,15 +201,20 @@ static int label_part(struct writer *w, struct label_patch *patch, uint32_t tria
 {
 	int8_t values[SAMPLES_MOST];
 	uint32_t count, within = 0;
+	float cell_m, inset_m = 0;
 
 	if (w->level == 0)
 		take_samples(w);
 	count = label_values(w->level);
+	cell_m = w->longest_m / (float)(1 << w->level);
+	/* Where the surface ends with the part nothing lies outside: the outline runs just within.
+	 */
+	if (label_source_part(w->source, part)->triangles)
+		inset_m = fminf(cell_m, w->cell_m) / 4;
 	for (uint32_t i = 0; i < count; i++) {
-		const float cell_m = w->longest_m / (float)(1 << w->level);
-
 		values[i] = value_of(
-			label_source_within(w->source, part, &w->samples[i], 2 * cell_m), cell_m);
+			label_source_within(w->source, part, &w->samples[i], 2 * cell_m) - inset_m,
+			cell_m);
 		within += values[i] > 0;
 	}
 	if (within == 0)

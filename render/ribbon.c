@@ -215,8 +215,6 @@ void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
 			 const struct root_page *root)
 {
 	begin(&ribbons->tint, view, root);
-	/* Parts of triangles are as far as the whole, but for rounding. */
-	glEnable(GL_POLYGON_OFFSET_FILL);
 	glPolygonOffset(-1, -2);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
@@ -231,7 +229,10 @@ void ribbon_tint(const struct ribbon *ribbon)
 	if (ribbon->within_count > 0) {
 		glBindBuffer(GL_ARRAY_BUFFER, ribbon->within);
 		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, NULL);
+		/* Parts of triangles are as far away as the whole, but for rounding. */
+		glEnable(GL_POLYGON_OFFSET_FILL);
 		glDrawArrays(GL_TRIANGLES, 0, (GLsizei)ribbon->within_count);
+		glDisable(GL_POLYGON_OFFSET_FILL);
 	}
 }
 
@@ -239,7 +240,6 @@ void ribbons_begin_lines(const struct ribbons *ribbons, const struct view *view,
 			 const struct root_page *root)
 {
 	begin(&ribbons->line, view, root);
-	glDisable(GL_POLYGON_OFFSET_FILL);
 	glEnableVertexAttribArray(1);
 	glEnableVertexAttribArray(2);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, ribbons->quads);
@@ -269,5 +269,4 @@ void ribbons_end(void)
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
 	glDisable(GL_BLEND);
-	glDisable(GL_POLYGON_OFFSET_FILL);
 }

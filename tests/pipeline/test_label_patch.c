@@ -205,6 +205,39 @@ static void a_list_of_faces_is_those_faces(void **state)
 	toy_free(&coarse);
 }
 
+/* As loose stones of a scan are parts: nothing lies beyond their rims that could be outside. */
+static void a_part_that_ends_with_the_surface_is_outlined_all_around(void **state)
+{
+	struct mesh scan = sheet(32, 0), coarse = sheet(8, 0);
+	struct patch_mesh patch = patch_of(&coarse);
+	uint32_t triangles[2 * 32 * 32];
+	const struct label_source_part part = { .id = "stone",
+						.triangles = triangles,
+						.triangle_count = 2 * 32 * 32 };
+	struct label_group labels;
+
+	(void)state;
+	for (uint32_t t = 0; t < 2 * 32 * 32; t++)
+		triangles[t] = t;
+	labels = label(&scan, &part, 1, &patch, 2.0f / 32);
+	for (uint32_t t = 0; t < patch.triangle_count; t++) {
+		bool at_rim = false;
+		uint32_t first;
+
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint16_t *at = patch.vertices[patch.indices[3 * t + k]].position;
+
+			at_rim |= at[0] == 1024 || at[0] == 3072 || at[1] == 1024 || at[1] == 3072;
+		}
+		CHECK((label_borders(&labels.patches[0], t, &first) == 1) == at_rim);
+		CHECK(label_part_at(&labels, 0, t, 0.33f, 0.33f) == 0);
+	}
+	label_group_finish(&labels);
+	patch_mesh_finish(&patch);
+	toy_free(&scan);
+	toy_free(&coarse);
+}
+
 /* A wall 4 cm thick, and a patch that is off by more than that: the face that looks up is a part,
  * the one that looks down is not. */
 static void the_sides_of_a_thin_wall_are_not_confused(void **state)
@@ -295,6 +328,7 @@ int main(void)
 		cmocka_unit_test(a_ball_cuts_a_circle_out_of_a_coarse_patch),
 		cmocka_unit_test(a_turned_box_keeps_its_corners),
 		cmocka_unit_test(a_list_of_faces_is_those_faces),
+		cmocka_unit_test(a_part_that_ends_with_the_surface_is_outlined_all_around),
 		cmocka_unit_test(the_sides_of_a_thin_wall_are_not_confused),
 		cmocka_unit_test(the_smaller_of_two_parts_answers),
 		cmocka_unit_test(a_part_that_is_elsewhere_leaves_no_labels),
