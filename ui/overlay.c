@@ -13,6 +13,7 @@ _Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MOST, "labels that come and labe
 
 enum {
 	FADE_MS = 180,
+	PAGE_FADE_MS = 110, /* it is there, whole, within 150 of the tap */
 	STEP_MOST_MS = 100, /* a longer pause counts as this */
 	LABELS_A_FRAME = 4, /* drawn in one update */
 	STRIPS_A_FRAME = 1, /* so that opening a page costs no frame */
@@ -563,6 +564,8 @@ static bool update_strips(struct overlay *overlay, int64_t step_ms)
 			strip->index = index;
 			strip->stale = false;
 			strip->fade.on = true;
+			if (overlay->page.alpha < 1) /* it comes in with its page */
+				strip->fade.alpha = 1;
 			overlay_draw_strip(overlay, slot);
 			budget--;
 		}
@@ -607,7 +610,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	moving |= overlay_advance(&overlay->invitation, step_ms);
 	moving |= overlay_advance(&overlay->question, step_ms);
 	moving |= overlay_advance(&overlay->card, step_ms);
-	moving |= overlay_advance(&overlay->page, step_ms);
+	moving |= overlay_advance(&overlay->page, step_ms * FADE_MS / PAGE_FADE_MS);
 	moving |= advance_scroll(&overlay->scroll_px, &overlay->scroll_px_per_s,
 				 overlay_scroll_most(overlay), step_ms);
 	if (overlay->search.scroll_px_per_s != 0)
