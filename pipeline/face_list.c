@@ -33,6 +33,14 @@ static bool next_word(struct text *text)
 	}
 }
 
+/* Of a word, as much as a message should show. */
+static int shown(const char *word)
+{
+	const size_t size = strcspn(word, " \t\r\n#");
+
+	return size < 20 ? (int)size : 20;
+}
+
 static int read_number(struct text *text, uint32_t *out)
 {
 	uint64_t value = 0;
@@ -42,9 +50,9 @@ static int read_number(struct text *text, uint32_t *out)
 		value = value > UINT32_MAX ? value : 10 * value + (uint64_t)(*text->at - '0');
 	if (text->at == from)
 		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: '%.20s' is no face: write numbers such as 17 and ranges "
+				 "%s:%u: '%.*s' is no face: write numbers such as 17 and ranges "
 				 "such as 20-31",
-				 text->name, text->line, from);
+				 text->name, text->line, shown(from), from);
 	if (value >= text->face_count)
 		return fault_set(text->fault, -EINVAL,
 				 "%s:%u: face %" PRIu64 " is not in the scan, which has %" PRIu32
@@ -67,8 +75,8 @@ static int read_range(struct text *text, struct face_range *out)
 		return rc;
 	if (*text->at && *text->at != '#' && !isspace((unsigned char)*text->at))
 		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: '%.20s' behind a number: put spaces between faces",
-				 text->name, text->line, text->at);
+				 "%s:%u: '%.*s' behind a number: put spaces between faces",
+				 text->name, text->line, shown(text->at), text->at);
 	if (out->last < out->first)
 		return fault_set(text->fault, -EINVAL,
 				 "%s:%u: %" PRIu32 "-%" PRIu32

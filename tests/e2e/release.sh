@@ -26,9 +26,13 @@ INI
 parts() { # TITLE
 	cat >"$dir/parts.json" <<-JSON
 	{"parts": [{"id": "tower", "region": {"kind": "sphere", "centre": [0, 0, 20], "radius": 4},
-	  "anchor": [0, 0, 22], "title": {"en": "$1", "fr": "Tour", "km": "ប្រាង្គ", "ja": "塔"}}]}
+	  "anchor": [0, 0, 22], "title": {"en": "$1", "fr": "Tour", "km": "ប្រាង្គ", "ja": "塔"}},
+	  {"id": "step", "region": {"kind": "faces", "file": "regions/step.faces"}, "page": false,
+	  "title": {"en": "A step", "fr": "Marche", "km": "ជណ្ដើរ", "ja": "段"}}]}
 	JSON
 }
+mkdir -p "$dir/regions"
+echo '0-399 # the first that were made' >"$dir/regions/step.faces"
 # ---- what is wrong with the words is told before the long work, not after it
 parts Tower
 "$content" build "$dir" --out "$release" >"$folder/log" 2>&1 && fail "a part without its page was built"
@@ -57,6 +61,7 @@ start_server "$release" "$run"
 "$content" verify "$server_url" --ca "$server_ca" --trust "$dir/keys/root/1.json" >"$folder/verified" ||
 	fail "verify over TLS"
 cat "$folder/verified"
+grep -qE '^  labels +[1-9]' "$folder/verified" || fail "parts have regions, and nothing is labelled"
 share=$(sed -nE 's/.*published share: ([0-9]+) of ([0-9]+) .*/\1 \2/p' "$folder/verified")
 [ -n "$share" ] && [ $((10 * ${share% *})) -le "${share#* }" ] || fail "the published share passes a tenth: $share"
 "$content" verify "$server_url" >/dev/null 2>&1 && fail "an unknown authority was trusted"
@@ -95,6 +100,19 @@ grep -q '^release 3 ' "$folder/undone" || fail "undo has no higher number"
 "$content" inspect "$release" >"$folder/log"
 hash=$(sed -nE 's/^  child +[0-9]+ +([0-9a-f]{32}) .*/\1/p' "$folder/log" | tail -n 1)
 "$content" inspect "$release" "$hash" | grep -q 'in packs/' || fail "inspect: $hash"
+
+# ---- another region: labels and words alone are new
+"$content" publish "$dir" --out "$release" >/dev/null
+files >"$folder/before"
+echo 'here' >"$dir/regions/step.faces"
+"$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log" && fail "a list without faces was published"
+grep -q "regions/step.faces:1: 'here' is no face" "$folder/log" || fail "the message does not name the line: $(cat "$folder/log")"
+echo '0-99' >"$dir/regions/step.faces"
+"$content" publish "$dir" --out "$release" >/dev/null
+files >"$folder/after"
+new=$(comm -13 "$folder/before" "$folder/after" | (cd "$release" && xargs cat | wc -c))
+[ "$new" -gt 0 ] && [ "$new" -lt 150000 ] || fail "another region cost $new bytes"
+"$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "another region, but not whole"
 
 # ---- a byte that is not what it was, at rest or on the way
 pack=$(find "$release/packs" -type f -size +100k | head -n 1)
