@@ -48,6 +48,7 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 {
 	float pivot[3];
 
+	guide_halt(kiosk);
 	pick(kiosk, x_px, y_px, pivot);
 	navigator_grab(&kiosk->navigator, pivot);
 }
@@ -129,10 +130,19 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 	show_card(kiosk, part_under(kiosk, x_px, y_px));
 }
 
-/* To the part's page; to one that has none on the model, beside the page that is read. */
-static void follow_link(struct kiosk *kiosk, int part)
+/* To the tour; to the part's page; to one that has none on the model, beside the page that is read.
+ */
+static void follow_link(struct kiosk *kiosk, const char *link)
 {
-	if (part >= 0 && !info_part(story_info(kiosk->shown.story), (uint32_t)part)->has_page) {
+	const struct info *info = story_info(kiosk->shown.story);
+	int part;
+
+	if (strncmp(link, "tour:", 5) == 0) {
+		guide_start(kiosk, info_find_tour(info, link + 5));
+		return;
+	}
+	part = info_find(info, link);
+	if (part >= 0 && !info_part(info, (uint32_t)part)->has_page) {
 		show_card(kiosk, part);
 		fly_to_part(kiosk, (uint32_t)part);
 		return;
@@ -168,10 +178,19 @@ static void change_comfort(struct kiosk *kiosk, enum overlay_action_kind which)
 		fly_to_part(kiosk, (uint32_t)overlay_page(overlay));
 }
 
+/* What is to be read, or lies elsewhere, and the eye's way do not go together. */
+static bool halts_tour(enum overlay_action_kind kind)
+{
+	return kind == OVERLAY_OPEN_CARD || kind == OVERLAY_OPEN_PAGE || kind == OVERLAY_SEARCH ||
+	       kind == OVERLAY_HELP || kind == OVERLAY_LINK || kind == OVERLAY_FOUND;
+}
+
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 
+	if (halts_tour(action->kind))
+		guide_halt(kiosk);
 	switch (action->kind) {
 	case OVERLAY_NONE:
 	case OVERLAY_SWALLOWED:
@@ -193,9 +212,23 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		guest_count(kiosk, TALLY_LANGUAGE, -1);
 		break;
 	case OVERLAY_LINK:
-		follow_link(kiosk, info_find(story_info(kiosk->shown.story), action->link));
+		follow_link(kiosk, action->link);
+		break;
+	case OVERLAY_TOURS:
+		guide_press(kiosk);
+		break;
+	case OVERLAY_TOUR:
+		guide_start(kiosk, action->tour);
+		break;
+	case OVERLAY_TOUR_PAUSE:
+		guide_press(kiosk);
+		break;
+	case OVERLAY_TOUR_CLOSE:
+		guide_end(kiosk);
 		break;
 	case OVERLAY_HOME:
+		guide_end(kiosk);
+		overlay_show_tours(overlay, false);
 		overlay_close_page(overlay);
 		overlay_show_search(overlay, false);
 		show_card(kiosk, -1);

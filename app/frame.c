@@ -195,6 +195,8 @@ static const struct scene_mark *marked_part(struct kiosk *kiosk, struct scene_ma
 	if (overlay)
 		part = overlay_page(overlay) >= 0 ? overlay_page(overlay) : overlay_card(overlay);
 	if (part < 0)
+		part = guide_part(kiosk);
+	if (part < 0)
 		return NULL;
 	*out = (struct scene_mark){
 		.part = info_part(story_info(kiosk->shown.story), (uint32_t)part)->id

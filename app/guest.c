@@ -14,7 +14,8 @@ static bool is_reading(const struct kiosk *kiosk)
 		if (kiosk->gestures.fingers[i].down)
 			return true;
 	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
-			   overlay_searching(overlay));
+			   overlay_searching(overlay) || overlay_choosing(overlay) ||
+			   kiosk->tour.state == TOUR_HALTED);
 }
 
 int64_t guest_clock_s(void)
@@ -25,12 +26,16 @@ int64_t guest_clock_s(void)
 void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part)
 {
 	const struct info *info = story_info(kiosk->shown.story);
+
+	guest_count_id(kiosk, kind, info && part >= 0 ? info_part(info, (uint32_t)part)->id : "");
+}
+
+void guest_count_id(struct kiosk *kiosk, enum tally_kind kind, const char *id)
+{
 	const char *language = kiosk->shown.story ? story_language(kiosk->shown.story) : NULL;
 
 	if (kiosk->tally)
-		tally_add(kiosk->tally, kind,
-			  info && part >= 0 ? info_part(info, (uint32_t)part)->id : "",
-			  language ? language : "", guest_clock_s());
+		tally_add(kiosk->tally, kind, id, language ? language : "", guest_clock_s());
 }
 
 /* Nothing of one visitor is left for the next. */
@@ -39,10 +44,12 @@ static void begin_anew(struct kiosk *kiosk)
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 	const char *language = kiosk->options.language;
 
+	guide_end(kiosk);
 	if (overlay) {
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);
 		overlay_show_search(overlay, false);
+		overlay_show_tours(overlay, false);
 		if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 			log_debug("app", "comfort: forgotten");
 		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
@@ -61,6 +68,8 @@ static void send_round(struct kiosk *kiosk, int64_t now_ms)
 	const struct navigator_options *o = &kiosk->navigator.options;
 	float eye_m[3], target_m[3];
 
+	if (guide_go_round(kiosk))
+		return;
 	roam_init(&kiosk->roam, o->box_min_m, o->box_max_m, o->home_eye_m, o->home_target_m);
 	roam_pose(&kiosk->roam, 0, eye_m, target_m);
 	navigator_fly(&kiosk->navigator, eye_m, target_m, HOMEWARD_MS);
@@ -86,6 +95,15 @@ static bool is_off(const struct kiosk *kiosk)
 	return kiosk->options.views_path || !kiosk->navigator_ready;
 }
 
+/* Until the eye moves by itself, whoever leads it; -1: it does not. */
+static int eye_wait_ms(const struct kiosk *kiosk, int64_t now_ms)
+{
+	if (kiosk->tour.state != TOUR_OFF)
+		return tour_wait_ms(&kiosk->tour, now_ms);
+	return kiosk->visit.state == VISIT_NOBODY ? roam_rest_ms(now_ms - kiosk->roam_since_ms)
+						  : -1;
+}
+
 void guest_watch(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
@@ -95,21 +113,26 @@ void guest_watch(struct kiosk *kiosk)
 
 	if (is_off(kiosk))
 		return;
+	if (!kiosk->tour.loops && tour_runs(&kiosk->tour))
+		visit_keep(&kiosk->visit, now_ms);
 	visit_step(&kiosk->visit, now_ms, is_reading(kiosk));
 	say_state(kiosk);
 	if (kiosk->visit.state == VISIT_NOBODY && before != VISIT_NOBODY) {
 		begin_anew(kiosk);
 		send_round(kiosk, now_ms);
+	} else if (kiosk->visit.state == VISIT_NOBODY && kiosk->tour.state == TOUR_OFF) {
+		guide_go_round(kiosk); /* of another release, or one whose words came late */
 	}
 	asked_s = visit_asked_s(&kiosk->visit, now_ms);
 	if (overlay) { /* also one that is new */
 		overlay_invite(overlay, kiosk->visit.state == VISIT_NOBODY);
 		overlay_ask(overlay, asked_s);
+		guide_say(kiosk);
 	}
 	if (kiosk->visit.state != before || asked_s != kiosk->asked_s)
 		kiosk_redraw(kiosk);
 	kiosk->asked_s = asked_s;
-	if (kiosk->visit.state == VISIT_NOBODY && roam_rest_ms(now_ms - kiosk->roam_since_ms) == 0)
+	if (eye_wait_ms(kiosk, now_ms) == 0)
 		kiosk_redraw(kiosk);
 }
 
@@ -119,8 +142,7 @@ int guest_wait_ms(const struct kiosk *kiosk)
 
 	if (is_off(kiosk))
 		return -1;
-	return kiosk->visit.state == VISIT_NOBODY ? roam_rest_ms(now_ms - kiosk->roam_since_ms)
-						  : visit_wait_ms(&kiosk->visit, now_ms);
+	return sooner(eye_wait_ms(kiosk, now_ms), visit_wait_ms(&kiosk->visit, now_ms));
 }
 
 bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms)
@@ -128,7 +150,11 @@ bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 	float eye_m[3], target_m[3];
 	bool moves;
 
-	if (is_off(kiosk) || kiosk->visit.state != VISIT_NOBODY || now_ms < kiosk->roam_since_ms)
+	if (is_off(kiosk))
+		return false;
+	if (kiosk->tour.state != TOUR_OFF)
+		return guide_leads_eye(kiosk, now_ms);
+	if (kiosk->visit.state != VISIT_NOBODY || now_ms < kiosk->roam_since_ms)
 		return false;
 	moves = roam_pose(&kiosk->roam, now_ms - kiosk->roam_since_ms, eye_m, target_m);
 	navigator_look(&kiosk->navigator, eye_m, target_m);

@@ -9,6 +9,7 @@
 #include "app/provision.h"
 #include "app/roam.h"
 #include "app/story.h"
+#include "app/tour.h"
 #include "app/visit.h"
 #include "app/wants.h"
 #include "board/profile.h"
@@ -83,6 +84,7 @@ struct kiosk {
 	struct visit visit;
 	enum visit_state visit_said; /* as the log has it */
 	int asked_s;                 /* as the words have it */
+	struct tour tour;            /* a visitor's, or nobody's */
 	struct roam roam;
 	int64_t roam_since_ms; /* the eye's way without a visitor began, or will */
 
@@ -162,10 +164,28 @@ int guest_wait_ms(const struct kiosk *kiosk);
 bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms);
 /* A visitor looked at something: storage/tally.h. part: -1 for what is of none. */
 void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part);
+/* The same of what has that id. */
+void guest_count_id(struct kiosk *kiosk, enum tally_kind kind, const char *id);
 /* A finger does something. true: it is the answer to the question, and means nothing else. */
 bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Until the panel counts as left alone, milliseconds; 0: it is. */
 int guest_left_ms(const struct kiosk *kiosk);
+
+/* guide.c: guided tours. */
+void guide_start(struct kiosk *kiosk, int which); /* a visitor's; -1: none */
+void guide_halt(struct kiosk *kiosk);
+void guide_go_on(struct kiosk *kiosk);
+void guide_end(struct kiosk *kiosk);
+/* The bar's control: halts one, has it go on, starts the only one, or has the visitor choose. */
+void guide_press(struct kiosk *kiosk);
+/* The tour of who is not there. false: the release has none. */
+bool guide_go_round(struct kiosk *kiosk);
+/* Moves the eye along the way, if one is flown. true: it moves on. */
+bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms);
+/* What the words have of it. */
+void guide_say(struct kiosk *kiosk);
+/* The part that is lit, or -1. */
+int guide_part(const struct kiosk *kiosk);
 
 /* trial.c: whether a new release works. */
 /* A release that is on trial is proven by its picture on the panel, or the one before it taken. */

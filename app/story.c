@@ -195,6 +195,19 @@ static int tell_parts(struct story *story)
 	return rc;
 }
 
+static int tell_tours(struct story *story)
+{
+	struct overlay_tour tours[INFO_TOURS_MOST];
+	const uint32_t count = info_tour_count(story->info);
+
+	for (uint32_t i = 0; i < count; i++) {
+		const struct info_text text = info_tour_text(story->info, i, story->language);
+
+		tours[i] = (struct overlay_tour){ text.title, text.caption, text.thumbnail };
+	}
+	return overlay_tours(story->overlay, tours, count) < 0 ? -ENOMEM : 0;
+}
+
 static bool language_is_there(const struct info *info, const char *language)
 {
 	for (uint32_t i = 0; i < info_language_count(info); i++)
@@ -242,6 +255,8 @@ static void give_database(struct story *story, struct bytes object)
 	if (rc == 0) {
 		overlay_language(story->overlay, story->language);
 		rc = tell_parts(story);
+		if (rc == 0)
+			rc = tell_tours(story);
 	}
 	if (rc < 0)
 		log_error("app", "the words over the model cannot be shown: %s", strerror(-rc));
@@ -335,8 +350,8 @@ void story_set_language(struct story *story, const char *language)
 		return;
 	page = overlay_page(story->overlay);
 	overlay_language(story->overlay, story->language);
-	if (tell_parts(story) < 0)
-		log_error("app", "out of memory for the parts' texts");
+	if (tell_parts(story) < 0 || tell_tours(story) < 0)
+		log_error("app", "out of memory for the words of parts and tours");
 	if (page >= 0)
 		story_open_page(story, (uint32_t)page);
 	if (overlay_searching(story->overlay))

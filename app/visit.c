@@ -18,6 +18,12 @@ void visit_touch(struct visit *visit, int64_t now_ms)
 	visit->touched = true;
 }
 
+void visit_keep(struct visit *visit, int64_t now_ms)
+{
+	if (visit->state == VISIT_SOMEBODY)
+		visit->touched_ms = now_ms;
+}
+
 static int64_t ask_at_ms(const struct visit *visit)
 {
 	return visit->touched_ms + visit->idle_ms * (visit->reading ? VISIT_READ_TIMES : 1);

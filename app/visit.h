@@ -32,6 +32,8 @@ struct visit {
 void visit_init(struct visit *visit, int idle_s, int64_t now_ms);
 /* Something was done with a finger. */
 void visit_touch(struct visit *visit, int64_t now_ms);
+/* Somebody is led about, and needs not touch anything: as if it were touched now. */
+void visit_keep(struct visit *visit, int64_t now_ms);
 /* Lets time pass. reading: a card, page or search is open, or a finger lies still on the glass. */
 void visit_step(struct visit *visit, int64_t now_ms, bool reading);
 /* Milliseconds until visit_step changes something, or the count-down's next second; -1: never. */

@@ -16,7 +16,7 @@
 enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MOST = 256, DAY_S = 86400 };
 
 static const char header[] = "hour,kind,what,language,count\n";
-static const char *const kind_names[] = { "visit", "part", "page", "language", "search" };
+static const char *const kind_names[] = { "visit", "part", "page", "language", "search", "tour" };
 /* Of a terminal whose clock nobody set; after every date, so never too old. */
 static const char unset_hour[] = "unset";
 

@@ -39,7 +39,7 @@ static struct theme type_of(const struct chrome *chrome, const struct theme *the
 
 static void try_layout(struct chrome *chrome, const struct theme *theme,
 		       const char *const *languages, uint32_t language_count, bool has_search,
-		       bool has_reach)
+		       bool has_tours, bool has_reach)
 {
 	struct theme type = type_of(chrome, theme);
 	int target_px = theme_px(theme, chrome->tight ? THEME_TARGET_MM : BAR_MM);
@@ -51,6 +51,8 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 	add(chrome, CHROME_HELP, -1, target_px);
 	if (has_search)
 		add(chrome, CHROME_SEARCH, -1, target_px);
+	if (has_tours)
+		add(chrome, CHROME_TOURS, -1, target_px);
 	add(chrome, CHROME_LARGE, -1, target_px);
 	if (has_reach)
 		add(chrome, CHROME_REACH, -1, target_px);
@@ -68,7 +70,8 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 }
 
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search, bool has_reach)
+		   uint32_t language_count, int most_width_px, bool has_search, bool has_tours,
+		   bool has_reach)
 {
 	if (language_count > CHROME_LANGUAGES_MOST)
 		language_count = CHROME_LANGUAGES_MOST;
@@ -76,10 +79,10 @@ void chrome_layout(struct chrome *out, const struct theme *theme, const char *co
 	/* Before buttons shrink, type does: so large type moves none but the languages. */
 	bool *const savings[] = { &out->codes, &out->usual, &out->tight };
 
-	try_layout(out, theme, languages, language_count, has_search, has_reach);
+	try_layout(out, theme, languages, language_count, has_search, has_tours, has_reach);
 	for (size_t i = 0; i < ARRAY_COUNT(savings) && out->width_px > most_width_px; i++) {
 		*savings[i] = true;
-		try_layout(out, theme, languages, language_count, has_search, has_reach);
+		try_layout(out, theme, languages, language_count, has_search, has_tours, has_reach);
 	}
 }
 
@@ -99,11 +102,11 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 			const struct chrome_button *button, const struct theme *theme,
 			const char *const *languages, bool on)
 {
-	static const enum icon icons[] = { [CHROME_HOME] = ICON_HOME,
-					   [CHROME_HELP] = ICON_HELP,
-					   [CHROME_SEARCH] = ICON_SEARCH,
-					   [CHROME_LARGE] = ICON_LARGE,
-					   [CHROME_REACH] = ICON_REACH };
+	static const enum icon icons[] = {
+		[CHROME_HOME] = ICON_HOME,     [CHROME_HELP] = ICON_HELP,
+		[CHROME_SEARCH] = ICON_SEARCH, [CHROME_TOURS] = ICON_TOUR,
+		[CHROME_LARGE] = ICON_LARGE,   [CHROME_REACH] = ICON_REACH
+	};
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
 	struct theme type = type_of(chrome, theme);
@@ -127,11 +130,9 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct theme *theme,
 		const char *const *languages, struct chrome_state state)
 {
-	const bool on[] = { [CHROME_HELP] = state.help,
-			    [CHROME_SEARCH] = state.search,
-			    [CHROME_LARGE] = state.large,
-			    [CHROME_REACH] = state.reach,
-			    [CHROME_LANGUAGE] = false };
+	const bool on[] = { [CHROME_HELP] = state.help,   [CHROME_SEARCH] = state.search,
+			    [CHROME_TOURS] = state.tours, [CHROME_LARGE] = state.large,
+			    [CHROME_REACH] = state.reach, [CHROME_LANGUAGE] = false };
 	cairo_t *context;
 	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);
 

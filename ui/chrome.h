@@ -1,18 +1,19 @@
-/* What is always there, always in the same place: home, help, search, large type, reach and the
- * languages, on one bar at the lower left, where a seated visitor reaches it too; and the help it
- * shows. */
+/* What is always there, always in the same place: home, help, search, tours, large type, reach and
+ * the languages, on one bar at the lower left, where a seated visitor reaches it too; and the help
+ * it shows. */
 #ifndef GOPURA_UI_CHROME_H
 #define GOPURA_UI_CHROME_H
 
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 5 };
+enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 6 };
 
 enum chrome_button_kind {
 	CHROME_HOME,
 	CHROME_HELP,
 	CHROME_SEARCH,
+	CHROME_TOURS,
 	CHROME_LARGE,
 	CHROME_REACH,
 	CHROME_LANGUAGE,
@@ -35,11 +36,12 @@ struct chrome {
 
 /* languages are borrowed for the call. One language alone needs no switch. */
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search, bool has_reach);
+		   uint32_t language_count, int most_width_px, bool has_search, bool has_tours,
+		   bool has_reach);
 
 struct chrome_state {
 	int language; /* index of the one that is set */
-	bool help, search, large, reach;
+	bool help, search, tours, large, reach;
 };
 
 /* A fresh bitmap of the bar; what is on is shown so. */

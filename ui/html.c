@@ -302,9 +302,12 @@ static int add_link(struct parser *p, const xmlNode *node)
 	struct html *html = p->html;
 	int link = -1;
 
-	if (href && (strncmp(href, "part:", 5) == 0 || strncmp(href, "page:", 5) == 0) && href[5]) {
+	const bool to_tour = href && strncmp(href, "tour:", 5) == 0;
+
+	if (href && (to_tour || strncmp(href, "part:", 5) == 0 || strncmp(href, "page:", 5) == 0) &&
+	    href[5]) {
 		char **grown = grow(p, html->links, html->link_count, sizeof(*grown));
-		char *id = grown ? copy(p, href + 5) : NULL;
+		char *id = grown ? copy(p, to_tour ? href : href + 5) : NULL;
 
 		if (grown)
 			html->links = grown;

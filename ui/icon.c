@@ -153,6 +153,17 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 	case ICON_REACH:
 		draw_seated(context);
 		break;
+	case ICON_TOUR:
+		cairo_move_to(context, -0.6, 0.7);
+		cairo_curve_to(context, 1.5, 0.6, -1.5, -0.35, 0.3, -0.55);
+		cairo_stroke(context);
+		ring(context, 0.62, -0.6, 0.3);
+		dot(context, -0.75, 0.7, 0.26);
+		break;
+	case ICON_PAUSE:
+		line(context, -0.4, -0.7, -0.4, 0.7);
+		line(context, 0.4, -0.7, 0.4, 0.7);
+		break;
 	case ICON_BACKSPACE:
 		cairo_move_to(context, -1.2, 0);
 		cairo_line_to(context, -0.5, -0.75);

@@ -18,6 +18,8 @@ enum icon {
 	ICON_BACKSPACE,
 	ICON_LARGE, /* type */
 	ICON_REACH, /* who sits in a wheelchair */
+	ICON_TOUR,  /* a way from stop to stop */
+	ICON_PAUSE,
 };
 
 /* About size across, centred on x, y. */

@@ -42,7 +42,7 @@ void overlay_lay_out_chrome(struct overlay *overlay)
 
 	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
 		      overlay->language_count, most_px - gaps_px, overlay->part_count > 0,
-		      overlay_offers_reach(overlay));
+		      overlay->tours.count > 0, overlay_offers_reach(overlay));
 	overlay->chrome_dirty = true;
 }
 
@@ -120,6 +120,7 @@ void overlay_destroy(struct overlay *overlay)
 	drop_parts(overlay->parts, overlay->part_count);
 	free(overlay->anchors);
 	free(overlay->search.found);
+	overlay_drop_tours(overlay->tours.entries);
 	for (uint32_t i = 0; i < BITMAP_COUNT; i++)
 		bitmap_finish(&overlay->drawings[i].bitmap);
 	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MOST; i++)
@@ -208,6 +209,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->chrome_dirty = overlay->help_dirty = true;
 		overlay->question_drawn_s = 0; /* in the other language */
 		overlay->card_dirty = overlay->head_dirty = true;
+		overlay->tour.dirty = overlay->tours.dirty = true;
 		overlay_search_language(overlay);
 		overlay_forget_labels(overlay);
 	}
@@ -239,6 +241,7 @@ void overlay_show_card(struct overlay *overlay, int part)
 	overlay->card_shown = part;
 	overlay->card_dirty = true;
 	overlay_show_help(overlay, false); /* they share their place */
+	overlay_show_tours(overlay, false);
 }
 
 int overlay_card(const struct overlay *overlay)
@@ -275,6 +278,7 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 	overlay_show_search(overlay, false); /* it takes its place */
 	overlay_show_card(overlay, -1);      /* the page says it all */
 	overlay_show_help(overlay, false);
+	overlay_show_tours(overlay, false);
 	overlay->callouts_dirty = true;
 	return 0;
 }
@@ -300,8 +304,10 @@ void overlay_show_help(struct overlay *overlay, bool on)
 	overlay->help_dirty |= on;
 	overlay->help_ms = on ? 0 : overlay->help_ms;
 	overlay->chrome_dirty = overlay->callouts_dirty = true;
-	if (on)
-		overlay_show_card(overlay, -1);
+	if (!on)
+		return;
+	overlay_show_card(overlay, -1);
+	overlay_show_tours(overlay, false);
 }
 
 bool overlay_help(const struct overlay *overlay)
@@ -333,6 +339,7 @@ void overlay_picture_arrived(struct overlay *overlay, const char *name)
 
 	overlay_search_picture(overlay, name);
 	overlay_gallery_arrived(overlay, name);
+	overlay_picture_of_tours(overlay, name);
 	for (uint32_t i = 0; from_px >= 0 && i < STRIPS; i++)
 		if ((overlay->strips[i].index + 1) * overlay->strip_px > from_px)
 			overlay->strips[i].stale = true;
@@ -397,6 +404,8 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_HELP;
 	} else if (button->kind == CHROME_SEARCH) {
 		action.kind = OVERLAY_SEARCH;
+	} else if (button->kind == CHROME_TOURS) {
+		action.kind = OVERLAY_TOURS;
 	} else if (button->kind == CHROME_LARGE) {
 		action.kind = OVERLAY_LARGE;
 	} else if (button->kind == CHROME_REACH) {
@@ -436,6 +445,11 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 		return tap_card(overlay, x_px, y_px);
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return tap_page(overlay, x_px, y_px);
+	if (overlay->tours.fade.on && overlay_rect_holds(overlay_menu_rect(overlay), x_px, y_px))
+		return overlay_menu_tap(overlay, x_px, y_px);
+	if (overlay_tour_shows(overlay) &&
+	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
+		return overlay_tour_tap(overlay, x_px, y_px);
 	if (overlay->help.on && overlay_rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
 		action.kind = OVERLAY_HELP;
 		return action;
@@ -455,6 +469,11 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return true;
 	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
+		return true;
+	if (overlay->tours.fade.on && overlay_rect_holds(overlay_menu_rect(overlay), x_px, y_px))
+		return true;
+	if (overlay_tour_shows(overlay) &&
+	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
 		return true;
 	return overlay->card_part >= 0 &&
 	       overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px);
@@ -599,10 +618,11 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 		step_ms = step_ms < 0 ? 0 : STEP_MOST_MS;
 	overlay->then_ms = now_ms;
 	draw_what_changed(overlay);
+	moving = overlay_update_tours(overlay, step_ms);
 	if (overlay->callouts_dirty)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;
-	moving = overlay_advance(&overlay->help, step_ms);
+	moving |= overlay_advance(&overlay->help, step_ms);
 	if (overlay->help.on && overlay->help_ms < HINT_MOVES_MS) {
 		overlay->help_ms += step_ms;
 		moving = true;

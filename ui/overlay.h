@@ -19,6 +19,7 @@
 enum {
 	OVERLAY_PARTS_MOST = 1000,
 	OVERLAY_LANGUAGES_MOST = 8,
+	OVERLAY_TOURS_MOST = 8,
 	OVERLAY_LAYERS_MOST = 256,  /* in a frame */
 	OVERLAY_BITMAPS_MOST = 128, /* bitmap ids are below this */
 };
@@ -108,6 +109,25 @@ bool overlay_press(struct overlay *overlay, int key);
 /* Parts, best first, copied. */
 void overlay_found(struct overlay *overlay, const uint32_t *parts, uint32_t count);
 
+/* Guided tours, for the bar's menu, in the language that is set; copied. -1: no memory, or too
+ * many: those before stay. What is shown of them closes where the count changes. */
+struct overlay_tour {
+	const char *title, *caption; /* caption may be "" */
+	const char *thumbnail;       /* a picture's name, or "" */
+};
+must_check int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours,
+			     uint32_t count);
+/* The menu; closes what is open. */
+void overlay_show_tours(struct overlay *overlay, bool on);
+bool overlay_choosing(const struct overlay *overlay);
+/* The panel of the tour that is flown, while nothing else has its place; copied. NULL: none is. */
+struct overlay_tour_state {
+	int tour, stop, stop_count; /* stops are those at which it stays */
+	const char *caption;
+	bool paused;
+};
+void overlay_show_tour(struct overlay *overlay, const struct overlay_tour_state *state);
+
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 
@@ -135,15 +155,19 @@ enum overlay_action_kind {
 	OVERLAY_CLOSE_CARD,
 	OVERLAY_CLOSE_PAGE,
 	OVERLAY_LANGUAGE, /* language */
-	OVERLAY_LINK,     /* link: the id of the part that a page's link names */
-	OVERLAY_HOME,     /* back to the first view */
-	OVERLAY_HELP,     /* the help, which is there or not (overlay_help), changes over */
-	OVERLAY_SEARCH,   /* the search, which is open or not (overlay_searching), changes over */
-	OVERLAY_LARGE,    /* large type (overlay_comfort) changes over */
-	OVERLAY_REACH,    /* so does reach */
-	OVERLAY_KEY,      /* key: for overlay_press */
-	OVERLAY_FOUND,    /* part: one of those that were found */
-	OVERLAY_PICTURE,  /* picture: for overlay_show_picture */
+	OVERLAY_LINK,    /* link: what a page's link names, the id of a part or "tour:" and one's */
+	OVERLAY_HOME,    /* back to the first view */
+	OVERLAY_HELP,    /* the help, which is there or not (overlay_help), changes over */
+	OVERLAY_SEARCH,  /* the search, which is open or not (overlay_searching), changes over */
+	OVERLAY_LARGE,   /* large type (overlay_comfort) changes over */
+	OVERLAY_REACH,   /* so does reach */
+	OVERLAY_KEY,     /* key: for overlay_press */
+	OVERLAY_FOUND,   /* part: one of those that were found */
+	OVERLAY_PICTURE, /* picture: for overlay_show_picture */
+	OVERLAY_TOURS,   /* the bar's: the menu, or the tour that is flown goes on */
+	OVERLAY_TOUR,    /* tour: one was chosen */
+	OVERLAY_TOUR_PAUSE, /* it halts, or goes on */
+	OVERLAY_TOUR_CLOSE,
 };
 
 enum { OVERLAY_KEY_CLEAR = -1 }; /* the field's own: empties it */
@@ -153,6 +177,7 @@ struct overlay_action {
 	int part;             /* else -1 */
 	int key;              /* of OVERLAY_KEY */
 	int picture;          /* of OVERLAY_PICTURE */
+	int tour;             /* of OVERLAY_TOUR */
 	const char *language; /* borrowed until the overlay is destroyed; else NULL */
 	const char *link;     /* borrowed until the page changes; else NULL */
 };

@@ -142,6 +142,7 @@ void overlay_draw_chrome(struct overlay *overlay)
 	int rc = chrome_draw(
 		&fresh, &overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
 		(struct chrome_state){ overlay->language, overlay->help.on, overlay->search.fade.on,
+				       overlay->tours.fade.on || overlay->tour.on,
 				       overlay->comfort.large, overlay->comfort.reach });
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);

@@ -279,11 +279,16 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	struct overlay_rect chrome = overlay_chrome_rect(overlay);
 	struct overlay_rect invitation = overlay_invitation_rect(overlay);
 	struct overlay_rect question = overlay_question_rect(overlay);
+	struct overlay_rect tour = overlay_tour_rect(overlay), menu = overlay_menu_rect(overlay);
 
 	add_callouts(&list);
 	add_help(&list);
 	add_bitmap(&list, BITMAP_INVITATION, ease(overlay->invitation.alpha),
 		   (float)invitation.x_px, (float)invitation.y_px);
+	add_bitmap(&list, BITMAP_TOUR, ease(overlay->tour.fade.alpha), (float)tour.x_px,
+		   (float)tour.y_px);
+	add_bitmap(&list, BITMAP_TOURS, ease(overlay->tours.fade.alpha), (float)menu.x_px,
+		   (float)menu.y_px);
 	add_page(&list);
 	add_bitmap(&list, BITMAP_CARD, ease(overlay->card.alpha), (float)card.x_px,
 		   (float)card.y_px);

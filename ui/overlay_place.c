@@ -151,7 +151,7 @@ static int floor_of(const struct overlay *overlay)
 	       px(overlay, THEME_GAP_MM);
 }
 
-static struct overlay_rect above_floor(const struct overlay *overlay, int width_px, int height_px)
+struct overlay_rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
 
@@ -165,21 +165,21 @@ struct overlay_rect overlay_card_rect(const struct overlay *overlay)
 	int width_px, height_px;
 
 	card_size(&overlay->theme, most_px, &width_px, &height_px);
-	return above_floor(overlay, width_px, height_px);
+	return overlay_above_floor(overlay, width_px, height_px);
 }
 
 struct overlay_rect overlay_help_rect(const struct overlay *overlay)
 {
 	const struct bitmap *bitmap = &overlay->drawings[BITMAP_HELP].bitmap;
 
-	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
+	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
 struct overlay_rect overlay_invitation_rect(const struct overlay *overlay)
 {
 	const struct bitmap *bitmap = &overlay->drawings[BITMAP_INVITATION].bitmap;
 
-	return above_floor(overlay, bitmap->width_px, bitmap->height_px);
+	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
 /* In the middle of everything: nothing else counts then. In reach its button is low. */
@@ -188,7 +188,7 @@ struct overlay_rect overlay_question_rect(const struct overlay *overlay)
 	const struct bitmap *bitmap = &overlay->drawings[BITMAP_QUESTION].bitmap;
 
 	if (overlay->comfort.reach)
-		return above_floor(overlay, bitmap->width_px, bitmap->height_px);
+		return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 	return (struct overlay_rect){ (overlay->width_px - bitmap->width_px) / 2,
 				      (overlay->height_px - bitmap->height_px) / 2,
 				      bitmap->width_px, bitmap->height_px };
@@ -223,6 +223,10 @@ static struct callout_area callout_area(const struct overlay *overlay)
 
 	if (overlay->card_part >= 0)
 		floor_px = overlay_card_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	else if (overlay_choosing(overlay))
+		floor_px = overlay_menu_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	else if (overlay_tour_shows(overlay))
+		floor_px = overlay_tour_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	else if (overlay->invitation.on)
 		floor_px = overlay_invitation_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	else if (overlay->help.on)

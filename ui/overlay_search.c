@@ -169,6 +169,7 @@ void overlay_show_search(struct overlay *overlay, bool on)
 	overlay_close_page(overlay);
 	overlay_show_card(overlay, -1);
 	overlay_show_help(overlay, false);
+	overlay_show_tours(overlay, false);
 	search->query[0] = 0;
 	search->head_dirty = true;
 	for (uint32_t i = 0; i < SEARCH_ROWS; i++)

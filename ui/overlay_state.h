@@ -13,6 +13,8 @@
 enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
 enum { SEARCH_ROWS = 16, SEARCH_ROWS_A_FRAME = 2, SEARCH_QUERY_BYTES = 128 };
 
+enum { TOUR_CAPTION_BYTES = 1024 };
+
 enum gallery_button { GALLERY_CLOSE, GALLERY_BACK, GALLERY_ON, GALLERY_BUTTONS };
 enum { GALLERY_SLOTS = 3 }; /* the picture that is looked at and its neighbours */
 
@@ -34,6 +36,8 @@ enum bitmap_id {
 	BITMAP_KEY, /* over the one that was pressed */
 	BITMAP_NIGHT,
 	BITMAP_PICTURE_WORDS,
+	BITMAP_TOUR,
+	BITMAP_TOURS,
 	BITMAP_PICTURE,
 	BITMAP_PICTURE_BUTTON = BITMAP_PICTURE + GALLERY_SLOTS,
 	BITMAP_STRIP = BITMAP_PICTURE_BUTTON + GALLERY_BUTTONS,
@@ -104,6 +108,24 @@ struct gallery {
 	struct gallery_slot slots[GALLERY_SLOTS]; /* picture % GALLERY_SLOTS */
 };
 
+struct tour_entry {
+	char *title, *caption, *thumbnail; /* owned */
+};
+
+struct tours_menu {
+	struct fade fade; /* on: it is open */
+	struct tour_entry entries[OVERLAY_TOURS_MOST];
+	uint32_t count;
+	bool dirty;
+};
+
+struct tour_panel {
+	struct fade fade; /* on: nothing else has its place */
+	bool on, paused, dirty;
+	int tour, stop, stop_count;
+	char caption[TOUR_CAPTION_BYTES];
+};
+
 struct overlay {
 	int width_px, height_px;
 	struct picture_source pictures;
@@ -134,6 +156,8 @@ struct overlay {
 	float scroll_px, scroll_px_per_s;
 	struct search search;
 	struct gallery gallery;
+	struct tours_menu tours;
+	struct tour_panel tour;
 
 	struct drawing drawings[BITMAP_COUNT];
 	int64_t then_ms; /* of the last update; 0: none yet */
@@ -159,6 +183,8 @@ struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct over
 /* The control that closes, at the end of a head. */
 struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overlay_rect head);
 bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px);
+/* In the middle of the scene, on the lowest line that it may use. */
+struct overlay_rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px);
 int overlay_scroll_most(const struct overlay *overlay);
 
 /* Bitmaps; each replaces what was there and raises the revision. */
@@ -213,6 +239,16 @@ struct overlay_action overlay_gallery_tap(const struct overlay *overlay, float x
 void overlay_gallery_arrived(struct overlay *overlay, const char *name);
 void overlay_draw_gallery_buttons(struct overlay *overlay);
 bool overlay_update_gallery(struct overlay *overlay, int64_t step_ms);
+
+/* overlay_tour.c */
+struct overlay_rect overlay_tour_rect(const struct overlay *overlay);
+struct overlay_rect overlay_menu_rect(const struct overlay *overlay);
+bool overlay_tour_shows(const struct overlay *overlay);
+struct overlay_action overlay_tour_tap(const struct overlay *overlay, float x_px, float y_px);
+struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px, float y_px);
+void overlay_drop_tours(struct tour_entry *entries);
+void overlay_picture_of_tours(struct overlay *overlay, const char *name);
+bool overlay_update_tours(struct overlay *overlay, int64_t step_ms);
 
 /* Callouts into labels. true: some wait to be drawn. */
 void overlay_lay_out_callouts(struct overlay *overlay);

@@ -14,6 +14,7 @@ enum ui_string {
 	UI_GO_ON,
 	UI_SEARCH,
 	UI_NOTHING_FOUND,
+	UI_TOURS,
 	UI_STRING_COUNT,
 };
 

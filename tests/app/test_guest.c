@@ -11,9 +11,9 @@ enum { S = 1000 };
 /* The rest of the kiosk, as guest.c sees and leaves it. */
 static struct {
 	int64_t now_ms;
-	int card, page, asked_s, flights, looks, redraws;
-	int counted[TALLY_SEARCH + 1], written;
-	bool invites, searches;
+	int card, page, asked_s, flights, looks, redraws, led;
+	int counted[TALLY_TOUR + 1], written;
+	bool invites, searches, chooses, has_tour;
 	struct overlay_comfort comfort;
 	char language[8];
 } world;
@@ -94,6 +94,56 @@ void overlay_show_search(struct overlay *overlay, bool on)
 {
 	(void)overlay;
 	world.searches = on;
+}
+
+void overlay_show_tours(struct overlay *overlay, bool on)
+{
+	(void)overlay;
+	world.chooses = on;
+}
+
+bool overlay_choosing(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.chooses;
+}
+
+bool guide_go_round(struct kiosk *of)
+{
+	if (world.has_tour) {
+		of->tour.state = TOUR_FLYING;
+		of->tour.loops = true;
+	}
+	return world.has_tour;
+}
+
+void guide_end(struct kiosk *of)
+{
+	of->tour.state = TOUR_OFF;
+	of->tour.loops = false;
+}
+
+bool guide_leads_eye(struct kiosk *of, int64_t now_ms)
+{
+	CHECK(of == &kiosk && now_ms == world.now_ms);
+	world.led++;
+	return true;
+}
+
+void guide_say(struct kiosk *of)
+{
+	(void)of;
+}
+
+bool tour_runs(const struct tour *tour)
+{
+	return tour->state == TOUR_COMING || tour->state == TOUR_FLYING;
+}
+
+int tour_wait_ms(const struct tour *tour, int64_t now_ms)
+{
+	(void)now_ms;
+	return tour->state == TOUR_FLYING ? 0 : -1;
 }
 
 void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort)
@@ -226,6 +276,56 @@ static void shows_the_model_round_while_nobody_is_there(void **state)
 	CHECK(guest_leads_eye(&kiosk, world.now_ms));
 }
 
+static void the_tour_for_nobody_takes_the_circles_place(void **state)
+{
+	(void)state;
+	world.has_tour = true;
+	after(60 * S);
+	CHECK(world.invites && world.flights == 0 && kiosk.tour.loops);
+	CHECK(guest_leads_eye(&kiosk, world.now_ms) && world.led == 1 && world.looks == 0);
+	CHECK(guest_wait_ms(&kiosk) == 0);
+	guide_end(&kiosk); /* another release */
+	after(0);
+	CHECK(kiosk.tour.loops);
+	guide_end(&kiosk);
+	world.has_tour = false; /* one without */
+	after(0);
+	CHECK(!kiosk.tour.loops && guest_wait_ms(&kiosk) >= 0);
+}
+
+/* Nobody is asked while led about; who halted a tour reads; then nobody is there. */
+static void a_tour_that_runs_is_somebody_and_ends_as_nobody(void **state)
+{
+	(void)state;
+	touches(TOUCH_DOWN);
+	kiosk.tour.state = TOUR_FLYING;
+	for (int s = 0; s < 300; s++) {
+		after(S);
+		CHECK(world.asked_s == -1 && !world.invites);
+	}
+	guide_end(&kiosk);
+	after(59 * S);
+	CHECK(world.asked_s == -1);
+	after(S);
+	CHECK(world.asked_s == 15);
+	after(15 * S);
+	CHECK(world.invites);
+	set_up(NULL);
+	touches(TOUCH_DOWN);
+	kiosk.tour.state = TOUR_HALTED;
+	after(179 * S);
+	CHECK(world.asked_s == -1);
+	after(16 * S);
+	CHECK(world.invites && kiosk.tour.state == TOUR_OFF);
+	set_up(NULL);
+	touches(TOUCH_DOWN);
+	world.chooses = true; /* from the menu */
+	after(179 * S);
+	CHECK(world.asked_s == -1);
+	after(16 * S);
+	CHECK(world.invites && !world.chooses);
+}
+
 static void leaves_nothing_of_a_visitor_for_the_next(void **state)
 {
 	(void)state;
@@ -326,6 +426,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		VISITED(shows_the_model_round_while_nobody_is_there),
+		VISITED(the_tour_for_nobody_takes_the_circles_place),
+		VISITED(a_tour_that_runs_is_somebody_and_ends_as_nobody),
 		VISITED(leaves_nothing_of_a_visitor_for_the_next),
 		VISITED(an_answer_is_no_touch_of_the_model),
 		VISITED(the_first_touch_already_counts),

@@ -174,6 +174,28 @@ static void set_language(struct overlay *overlay, int language)
 	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
 }
 
+/* As many as there may be. */
+static void set_tours(struct overlay *overlay, int language)
+{
+	struct overlay_tour tours[OVERLAY_TOURS_MOST];
+
+	for (int i = 0; i < OVERLAY_TOURS_MOST; i++)
+		tours[i] = (struct overlay_tour){ titles[language], captions[language],
+						  i % 2 ? "a.png" : "" };
+	CHECK(overlay_tours(overlay, tours, OVERLAY_TOURS_MOST) == 0);
+}
+
+static void show_tour(struct overlay *overlay, int language, bool paused)
+{
+	const struct overlay_tour_state state = { .tour = 1,
+						  .stop = 2,
+						  .stop_count = 7,
+						  .caption = captions[language],
+						  .paused = paused };
+
+	overlay_show_tour(overlay, &state);
+}
+
 static struct overlay *open_overlay(int width_px, int height_px)
 {
 	const struct overlay_options options = { .width_px = width_px,
@@ -233,6 +255,7 @@ struct control {
 static bool is_same(const struct overlay_action *a, const struct overlay_action *b)
 {
 	return a->kind == b->kind && a->part == b->part && a->language == b->language &&
+	       (a->kind != OVERLAY_TOUR || a->tour == b->tour) &&
 	       (a->kind != OVERLAY_KEY || a->key == b->key) &&
 	       (a->kind != OVERLAY_PICTURE || a->picture == b->picture);
 }
@@ -356,6 +379,16 @@ static void every_target_is_9_mm_and_in_reach_mode_low(void **state)
 				overlay_show_help(overlay, true);
 				feel_all(overlay, "help", OVERLAY_HELP);
 				overlay_show_help(overlay, false);
+				set_tours(overlay, language);
+				overlay_show_tours(overlay, true);
+				feel_all(overlay, "tours", OVERLAY_TOUR);
+				overlay_show_tours(overlay, false);
+				show_tour(overlay, language, false);
+				feel_all(overlay, "tour", OVERLAY_TOUR_CLOSE);
+				show_tour(overlay, language, true);
+				feel_all(overlay, "tour-halted", OVERLAY_TOUR_PAUSE);
+				overlay_show_tour(overlay, NULL);
+				settle(overlay);
 			}
 		}
 		overlay_destroy(overlay);

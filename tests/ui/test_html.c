@@ -128,12 +128,14 @@ static void survives_nasty_pages(void **state)
 	}
 }
 
-static void links_lead_to_parts_and_to_pages(void **state)
+static void links_lead_to_parts_pages_and_tours(void **state)
 {
 	(void)state;
 	CHECK(parse("<p><a href=\"page:gate\">a</a> <a href=\"part:naga\">b</a>"
-		    "<a href=\"tour:x\">c</a></p>") == 0);
-	CHECK(html.link_count == 2 && strcmp(html.links[0], "gate") == 0);
+		    "<a href=\"tour:x\">c</a><a href=\"tour:\">d</a><a href=\"mail:x\">e</a></p>") ==
+	      0);
+	CHECK(html.link_count == 3 && strcmp(html.links[2], "tour:x") == 0);
+	CHECK(strcmp(html.links[0], "gate") == 0);
 	CHECK(strcmp(html.links[1], "naga") == 0);
 	html_finish(&html);
 }
@@ -152,7 +154,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_note_stands_below_a_rule),
-		cmocka_unit_test(links_lead_to_parts_and_to_pages),
+		cmocka_unit_test(links_lead_to_parts_pages_and_tours),
 		cmocka_unit_test(keeps_blocks_in_order),
 		cmocka_unit_test(knows_white_space),
 		cmocka_unit_test(drops_scripts_styles_and_foreign_links),

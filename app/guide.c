@@ -1,0 +1,191 @@
+/* Guided tours in the kiosk: who starts and halts them, where the eye comes from, and what is said
+ * on the way. */
+#include <math.h>
+#include <string.h>
+
+#include <cglm/cglm.h>
+
+#include "app/kiosk.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+#define CALM_SHARE 0.1f /* of the diagonal, a second: the eye comes to the way */
+
+enum { COME_LEAST_MS = 1200, COME_MOST_MS = 5000 };
+
+/* The tour that is flown; NULL: none. */
+static const struct info_tour *flown(const struct kiosk *kiosk)
+{
+	const struct info *info = story_info(kiosk->shown.story);
+
+	if (kiosk->tour.state == TOUR_OFF || !info || kiosk->tour.which >= info_tour_count(info))
+		return NULL;
+	return info_tour(info, kiosk->tour.which);
+}
+
+static void come(struct kiosk *kiosk)
+{
+	struct navigator *nav = &kiosk->navigator;
+	struct tour_pose pose;
+	float ms;
+
+	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	ms = 1000 * glm_vec3_distance(nav->eye_m, pose.eye_m) /
+	     (CALM_SHARE * navigator_diagonal_m(nav));
+	navigator_fly(nav, pose.eye_m, pose.target_m, glm_clamp(ms, COME_LEAST_MS, COME_MOST_MS));
+	kiosk_redraw(kiosk);
+}
+
+static void begin(struct kiosk *kiosk, uint32_t which, bool loops)
+{
+	const struct info_tour *tour = info_tour(story_info(kiosk->shown.story), which);
+
+	tour_begin(&kiosk->tour, which, tour, loops, navigator_diagonal_m(&kiosk->navigator),
+		   clock_now_ms());
+	log_debug("app", "tour %s%s", tour->id, loops ? " for nobody" : "");
+	come(kiosk);
+}
+
+bool guide_go_round(struct kiosk *kiosk)
+{
+	const struct info *info = story_info(kiosk->shown.story);
+
+	for (uint32_t i = 0; info && i < info_tour_count(info); i++)
+		if (info_tour(info, i)->attract) {
+			begin(kiosk, i, true);
+			return true;
+		}
+	return false;
+}
+
+/* The model alone, for the tour to be seen. */
+static void clear(struct overlay *overlay)
+{
+	overlay_close_page(overlay);
+	overlay_show_search(overlay, false);
+	overlay_show_tours(overlay, false);
+	overlay_show_help(overlay, false);
+	overlay_show_card(overlay, -1);
+}
+
+void guide_start(struct kiosk *kiosk, int which)
+{
+	const struct info *info = story_info(kiosk->shown.story);
+
+	if (!info || which < 0 || (uint32_t)which >= info_tour_count(info))
+		return;
+	clear(story_overlay(kiosk->shown.story));
+	begin(kiosk, (uint32_t)which, false);
+	guest_count_id(kiosk, TALLY_TOUR, info_tour(info, (uint32_t)which)->id);
+}
+
+void guide_halt(struct kiosk *kiosk)
+{
+	if (kiosk->tour.loops)
+		tour_end(&kiosk->tour); /* nobody's, and somebody came */
+	if (!tour_runs(&kiosk->tour))
+		return;
+	tour_halt(&kiosk->tour);
+	log_debug("app", "tour halts");
+}
+
+void guide_go_on(struct kiosk *kiosk)
+{
+	if (kiosk->tour.state != TOUR_HALTED)
+		return;
+	clear(story_overlay(kiosk->shown.story));
+	tour_go_on(&kiosk->tour);
+	log_debug("app", "tour goes on");
+	come(kiosk);
+}
+
+void guide_end(struct kiosk *kiosk)
+{
+	if (kiosk->tour.state != TOUR_OFF)
+		log_debug("app", "tour ends");
+	tour_end(&kiosk->tour);
+}
+
+void guide_press(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct info *info = story_info(kiosk->shown.story);
+
+	if (kiosk->tour.state == TOUR_HALTED)
+		guide_go_on(kiosk);
+	else if (tour_runs(&kiosk->tour))
+		guide_halt(kiosk);
+	else if (info_tour_count(info) == 1)
+		guide_start(kiosk, 0);
+	else
+		overlay_show_tours(overlay, !overlay_choosing(overlay));
+}
+
+bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+{
+	struct tour_pose pose;
+
+	/* Another release, or somebody came. */
+	if (!flown(kiosk) || (kiosk->tour.loops && kiosk->visit.state != VISIT_NOBODY))
+		tour_end(&kiosk->tour);
+	if (!tour_step(&kiosk->tour, now_ms, kiosk->navigator.flight_left_ms <= 0, &pose))
+		return false;
+	navigator_look(&kiosk->navigator, pose.eye_m, pose.target_m);
+	if (kiosk->tour.state == TOUR_OFF)
+		log_debug("app", "tour ends");
+	return pose.moves;
+}
+
+/* ---- what is said */
+
+/* Where it stays, or will next: stops on the way alone are not spoken of. */
+static uint32_t spoken_stop(const struct kiosk *kiosk, const struct info_tour *tour)
+{
+	struct tour_pose pose;
+	uint32_t stop;
+
+	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	stop = pose.stop;
+	while (tour->stops[stop].stay_s == 0)
+		stop = (stop + 1) % tour->stop_count; /* the last one stays */
+	return stop;
+}
+
+int guide_part(const struct kiosk *kiosk)
+{
+	const struct info_tour *tour = flown(kiosk);
+	struct tour_pose pose;
+
+	if (!tour || kiosk->tour.state == TOUR_COMING)
+		return -1;
+	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	return pose.moves ? -1 : tour->stops[pose.stop].part;
+}
+
+void guide_say(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct info *info = story_info(kiosk->shown.story);
+	const struct info_tour *tour = flown(kiosk);
+	struct overlay_tour_state state = { .paused = kiosk->tour.state == TOUR_HALTED };
+	const char *language;
+	uint32_t stop;
+
+	if (!overlay || !info)
+		return;
+	if (!tour || kiosk->tour.loops) {
+		overlay_show_tour(overlay, NULL);
+		return;
+	}
+	language = story_language(kiosk->shown.story);
+	stop = spoken_stop(kiosk, tour);
+	state.tour = (int)kiosk->tour.which;
+	state.caption = info_stop_caption(info, kiosk->tour.which, stop, language);
+	if (!*state.caption && tour->stops[stop].part >= 0)
+		state.caption = info_text(info, (uint32_t)tour->stops[stop].part, language).caption;
+	for (uint32_t i = 0; i < tour->stop_count; i++) {
+		state.stop_count += tour->stops[i].stay_s > 0;
+		state.stop += tour->stops[i].stay_s > 0 && i < stop;
+	}
+	overlay_show_tour(overlay, &state);
+}
