@@ -23,6 +23,15 @@ static const struct info_tour *flown(const struct kiosk *kiosk)
 	return info_tour(info, kiosk->tour.which);
 }
 
+/* For whoever wonders where it was taken, and where it went on. */
+static void say_eye(const struct kiosk *kiosk, const char *what)
+{
+	const float *eye_m = kiosk->navigator.eye_m;
+
+	log_debug("app", "tour %s: eye at %.3f %.3f %.3f", what, (double)eye_m[0], (double)eye_m[1],
+		  (double)eye_m[2]);
+}
+
 static void come(struct kiosk *kiosk)
 {
 	struct navigator *nav = &kiosk->navigator;
@@ -86,7 +95,7 @@ void guide_halt(struct kiosk *kiosk)
 	if (!tour_runs(&kiosk->tour))
 		return;
 	tour_halt(&kiosk->tour);
-	log_debug("app", "tour halts");
+	say_eye(kiosk, "halts");
 }
 
 void guide_go_on(struct kiosk *kiosk)
@@ -123,6 +132,7 @@ void guide_press(struct kiosk *kiosk)
 
 bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 {
+	const enum tour_state before = kiosk->tour.state;
 	struct tour_pose pose;
 
 	/* Another release, or somebody came. */
@@ -131,6 +141,8 @@ bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 	if (!tour_step(&kiosk->tour, now_ms, kiosk->navigator.flight_left_ms <= 0, &pose))
 		return false;
 	navigator_look(&kiosk->navigator, pose.eye_m, pose.target_m);
+	if (before == TOUR_COMING)
+		say_eye(kiosk, "flies");
 	if (kiosk->tour.state == TOUR_OFF)
 		log_debug("app", "tour ends");
 	return pose.moves;

@@ -3,7 +3,7 @@ and shots.txt. The bar, the first row of the search, a card and what closes stan
 every language; where a page has its picture says GALLERY."""
 import sys
 
-HOME, SEARCH, LARGE, REACH = (23, 516), (93, 516), (129, 516), (164, 516)
+HOME, SEARCH, LARGE, REACH = (23, 516), (93, 516), (164, 516), (199, 516)
 ROW, CARD, CLOSE, PICTURE_CLOSE = (720, 75), (480, 430), (915, 22), (933, 27)
 
 touches, shots = [], []

@@ -57,9 +57,10 @@ static struct {
 	uint64_t frames, touches, jumps_us;
 	uint32_t triangles, layers;
 	uint64_t texture_bytes, geometry_bytes;
-	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, help, language;
+	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, help, language,
+		tour;
 } seen;
-static int64_t last_touch_us;
+static int64_t last_touch_us; /* or when somebody was last led about */
 
 static void fail(const char *format, ...)
 {
@@ -205,11 +206,19 @@ static void look_at_words(const struct overlay *overlay)
 				info_language(story_info(kiosk.shown.story), 0)) != 0;
 }
 
+static bool somebody_is_led(void)
+{
+	return !kiosk.tour.loops && tour_runs(&kiosk.tour);
+}
+
 int __wrap_frame_draw(struct kiosk *of)
 {
 	int rc = __real_frame_draw(of);
 
 	seen.frames++;
+	seen.tour += somebody_is_led();
+	if (somebody_is_led())
+		last_touch_us = virtual_us;
 	check_budgets();
 	if (story_overlay(kiosk.shown.story))
 		look_at_words(story_overlay(kiosk.shown.story));
@@ -224,7 +233,7 @@ void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
 	const enum visit_state state = kiosk.visit.state;
 
 	seen.asked += state == VISIT_ASKED;
-	if (seen.touches > 0 && virtual_us - last_touch_us > most_us) {
+	if (seen.touches > 0 && !somebody_is_led() && virtual_us - last_touch_us > most_us) {
 		seen.nobody++;
 		if (state != VISIT_NOBODY)
 			fail("nobody touched it for %.1f s, and it does not show itself",
@@ -245,7 +254,8 @@ static void check_attract(void)
 		return;
 	}
 	if (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
-	    overlay_picture(overlay) >= 0 || overlay_searching(overlay) || overlay_help(overlay))
+	    overlay_picture(overlay) >= 0 || overlay_searching(overlay) || overlay_help(overlay) ||
+	    overlay_choosing(overlay) || (kiosk.tour.state != TOUR_OFF && !kiosk.tour.loops))
 		fail("something is open while nobody is there");
 	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 		fail("large type or reach stayed");
@@ -277,6 +287,10 @@ static int run(void)
 	until_us = virtual_us + VISIT_READ_TIMES * (int64_t)kiosk.visit.idle_ms * 1000 +
 		   VISIT_ASK_MS * 1000 + END_MOST_US;
 	while (rc == 0 && !failed && kiosk.visit.state != VISIT_NOBODY && virtual_us < until_us) {
+		if (somebody_is_led()) /* which ends by itself, and then it is as after a touch */
+			until_us = virtual_us + kiosk.tour.path.duration_ms * 1000 +
+				   VISIT_READ_TIMES * (int64_t)kiosk.visit.idle_ms * 1000 +
+				   VISIT_ASK_MS * 1000 + END_MOST_US;
 		kiosk.quit = false; /* the replay ended: a turn sets it again */
 		rc = kiosk_run(&kiosk);
 	}
@@ -302,12 +316,14 @@ int main(int argc, char **argv)
 	       "%llu, \"layers_most\": %u,\n"
 	       " \"left_alone\": %u, \"asked\": %u,\n"
 	       " \"frames_with\": {\"card\": %u, \"page\": %u, \"picture\": %u, \"search\": %u, "
-	       "\"typed\": %u, \"help\": %u, \"large\": %u, \"reach\": %u, \"language\": %u}}\n",
+	       "\"typed\": %u, \"help\": %u, \"large\": %u, \"reach\": %u, \"language\": %u, \"tour\": "
+	       "%u}}\n",
 	       (unsigned long long)seen.touches, (unsigned long long)seen.frames,
 	       (double)(virtual_us - 1000000000) / 1e6, seen.triangles,
 	       (unsigned long long)seen.texture_bytes, (unsigned long long)seen.geometry_bytes,
 	       seen.layers, seen.nobody, seen.asked, seen.card, seen.page, seen.picture,
-	       seen.search, seen.typed, seen.help, seen.large, seen.reach, seen.language);
+	       seen.search, seen.typed, seen.help, seen.large, seen.reach, seen.language,
+	       seen.tour);
 	kiosk_stop(&kiosk);
 	if (rc < 0)
 		fprintf(stderr, "hurried_kiosk: %s\n", strerror(-rc));
