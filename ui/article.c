@@ -165,7 +165,8 @@ static void place_item(struct article *article, struct item *item, int x_px, int
 
 	if (indent_px > width_px / 2) /* however deep the lists: half the line stays */
 		indent_px = width_px / 2;
-	item->x_px = x_px + indent_px;
+	/* Indented on the side where its language begins. */
+	item->x_px = theme_is_right_to_left(article->options.theme) ? x_px : x_px + indent_px;
 	item->y_px = y_px;
 	item->width_px = width_px - indent_px > 1 ? width_px - indent_px : 1;
 	switch (block->kind) {
@@ -434,7 +435,11 @@ static void draw_item(const struct article *article, const struct item *item, ca
 
 		pango_layout_get_pixel_size(item->marker, &width_px, NULL);
 		theme_set_source(context, theme_accent, 1);
-		cairo_move_to(context, item->x_px - width_px - px(article, 1.8f), item->y_px);
+		cairo_move_to(context,
+			      theme_is_right_to_left(article->options.theme)
+				      ? item->x_px + item->width_px + px(article, 1.8f)
+				      : item->x_px - width_px - px(article, 1.8f),
+			      item->y_px);
 		pango_cairo_show_layout(context, item->marker);
 	}
 }

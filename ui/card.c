@@ -148,7 +148,8 @@ int card_draw(struct bitmap *out, const struct theme *theme, const struct card *
 		int caption_px =
 			text_height(theme, TEXT_CAPTION, card->caption, right_px - x_px, lines);
 
-		if (y_px + caption_px > bottom_px)
+		/* One line is always said: fonts with tall lines leave them mostly empty. */
+		if (lines > 1 && y_px + caption_px > bottom_px)
 			continue;
 		draw_text(theme, context, TEXT_CAPTION, theme_ink_soft, card->caption,
 			  mirrored(theme, width_px, x_px, right_px - x_px), y_px, right_px - x_px,
