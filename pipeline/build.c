@@ -97,6 +97,7 @@ static int make_stamp(struct hash *out, const struct content *content,
 	}
 	put_folder(&text, content, "pages");
 	put_folder(&text, content, "pictures");
+	put_folder(&text, content, "regions");
 	*out = hash_of(buffer_bytes(&text));
 	if (rc == 0)
 		rc = text.error;

@@ -157,6 +157,12 @@ int part_faces_place(void *data, struct info_faces *faces, struct fault *fault)
 	uint32_t scan, face_count;
 	int rc = find_scan(all->content, faces, &scan, fault);
 
+	/* Where a build looks for what has changed. */
+	if (rc == 0 && strncmp(faces->file, "regions/", 8) != 0)
+		rc = fault_set(fault, -EINVAL,
+			       "\"%.60s\": lists of faces lie in regions/, such as "
+			       "\"regions/lintel.faces\"",
+			       faces->file);
 	if (rc == 0 && content_file_path(all->content, faces->file, path) < 0)
 		rc = fault_set(fault, -EINVAL, "\"%.60s\" is no file within the folder",
 			       faces->file);

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "format/hierarchy.h"
+#include "pipeline/label_cache.h"
 #include "pipeline/label_patch.h"
 #include "pipeline/parallel.h"
 #include "pipeline/publish_sources.h"
@@ -149,11 +150,19 @@ static int open_groups(struct labelling *l, const struct page_child *hierarchy)
 	l->labels = calloc(l->page.child_count + 1, sizeof(*l->labels));
 	if (!l->groups || !l->labels)
 		return -ENOMEM;
-	for (uint32_t g = 0; rc == 0 && g < l->page.child_count; g++) {
+	for (uint32_t g = 0; g < l->page.child_count; g++) {
 		buffer_init(&l->groups[g], OBJECT_BYTES_MOST);
 		buffer_init(&l->labels[g], OBJECT_BYTES_MOST);
-		rc = object_store_read(l->objects, l->page.children[g].hash, &l->groups[g]);
 	}
+	return rc;
+}
+
+static int read_groups(struct labelling *l)
+{
+	int rc = 0;
+
+	for (uint32_t g = 0; rc == 0 && g < l->page.child_count; g++)
+		rc = object_store_read(l->objects, l->page.children[g].hash, &l->groups[g]);
 	return rc;
 }
 
@@ -217,27 +226,46 @@ static int add_page(struct labelling *l, struct page_child *out)
 	return rc;
 }
 
-static int make_labels(struct labelling *l, const struct label_source_part *parts, uint32_t count,
-		       struct part_faces_all *faces, const struct page_child *hierarchy,
-		       struct page_child *out)
+static int label_by_scan(struct labelling *l, const struct label_source_part *parts, uint32_t count,
+			 struct part_faces_all *faces, struct fault *fault)
 {
 	struct label_source *source = NULL;
-	struct fault fault = { "" };
-	int rc = part_faces_mesh(faces, &fault);
+	int rc = part_faces_mesh(faces, fault);
 
-	if (rc < 0)
-		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
 	if (rc == 0)
 		rc = label_source_create(&source, &faces->mesh, parts, count);
 	l->source = source;
 	if (rc == 0)
-		rc = open_groups(l, hierarchy);
+		rc = read_groups(l);
 	if (rc == 0)
 		rc = label_all(l);
+	label_source_destroy(source);
+	return rc;
+}
+
+static int make_labels(struct labelling *l, const struct label_source_part *parts, uint32_t count,
+		       struct part_faces_all *faces, const struct page_child *hierarchy,
+		       struct page_child *out)
+{
+	char path[CONTENT_PATH_BYTES];
+	struct fault fault = { "" };
+	struct hash key;
+	int rc = open_groups(l, hierarchy);
+
+	if (rc == 0)
+		rc = label_cache_key(&key, faces->content, hierarchy->hash, parts, count, &fault);
+	if (rc == 0)
+		rc = content_work_path(faces->content, "labels", path);
+	if (rc == 0 && label_cache_load(l->labels, l->page.child_count, key, path) < 0) {
+		rc = label_by_scan(l, parts, count, faces, &fault);
+		if (rc == 0)
+			rc = label_cache_save(l->labels, l->page.child_count, key, path);
+	}
 	if (rc == 0)
 		rc = add_page(l, out);
+	if (fault.text[0])
+		log_error("pipeline", "%s", fault.text);
 	labelling_finish(l);
-	label_source_destroy(source);
 	return rc;
 }
 

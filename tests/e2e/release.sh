@@ -112,6 +112,9 @@ echo '0-99' >"$dir/regions/step.faces"
 files >"$folder/after"
 new=$(comm -13 "$folder/before" "$folder/after" | (cd "$release" && xargs cat | wc -c))
 [ "$new" -gt 0 ] && [ "$new" -lt 150000 ] || fail "another region cost $new bytes"
+"$content" build "$dir" --out "$release" >/dev/null
+echo '0-199' >"$dir/regions/step.faces"
+"$content" build "$dir" --out "$release" | grep -q '^release' || fail "a build did not see another list of faces"
 "$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "another region, but not whole"
 
 # ---- a byte that is not what it was, at rest or on the way

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "format/label.h"
 #include "pipeline/master.h"
@@ -60,7 +61,7 @@ static void write_faces(float most_z)
 	char path[200];
 	FILE *file;
 
-	snprintf(path, sizeof(path), "%s/foot.faces", folder);
+	snprintf(path, sizeof(path), "%s/regions/foot.faces", folder);
 	file = fopen(path, "w");
 	CHECK(file != NULL);
 	for (uint32_t t = 0; t < mesh.triangle_count; t++)
@@ -86,7 +87,7 @@ static void write_parts(float radius_m)
 		 "{\"parts\":["
 		 "{\"id\":\"side\",\"region\":{\"kind\":\"sphere\",\"centre\":[1,0,0],"
 		 "\"radius\":%g},\"page\":false,\"title\":{\"en\":\"Side\"}},"
-		 "{\"id\":\"foot\",\"region\":{\"kind\":\"faces\",\"file\":\"foot.faces\"},"
+		 "{\"id\":\"foot\",\"region\":{\"kind\":\"faces\",\"file\":\"regions/foot.faces\"},"
 		 "\"page\":false,\"title\":{\"en\":\"Foot\"}},"
 		 "{\"id\":\"spot\",\"anchor\":[0,0,2.5],\"page\":false,"
 		 "\"title\":{\"en\":\"Spot\"}}]}",
@@ -97,10 +98,13 @@ static void write_parts(float radius_m)
 static int set_up(void **state)
 {
 	struct fault fault = { "" };
+	char regions[80];
 
 	(void)state;
 	snprintf(folder, sizeof(folder), "/tmp/gopura-labels-XXXXXX");
 	CHECK(mkdtemp(folder) != NULL);
+	snprintf(regions, sizeof(regions), "%s/regions", folder);
+	CHECK(mkdir(regions, 0755) == 0);
 	write_text("temple.ini", "[model]\nscans = scan.ply\ncolours = #808080\n");
 	write_scan();
 	write_faces(-0.8f);
@@ -127,7 +131,8 @@ struct made {
 	struct object_store *objects;
 	struct root_page root;
 	struct page_child children[ROOT_CHILDREN_MOST];
-	int labels; /* what publish_labels said */
+	int labels;    /* what publish_labels said */
+	bool imported; /* it, or a list of faces, needed the scan */
 };
 
 static char told[400]; /* the last complaint */
@@ -174,6 +179,7 @@ static struct made make(uint32_t patch_triangles)
 	CHECK(add_info(&made, &faces) == 0);
 	made.labels = publish_labels(made.objects, &made.root, &faces, made.children,
 				     &made.children[ROOT_CHILD_LABELS]);
+	made.imported = faces.has_mesh;
 	part_faces_finish(&faces);
 	return made;
 }
@@ -416,12 +422,48 @@ static void another_region_changes_no_geometry(void **state)
 
 static void the_same_parts_give_the_same_bytes(void **state)
 {
-	struct made before = make(130), after = make(130);
+	struct made before = make(130), after;
+	char path[CONTENT_PATH_BYTES];
 
 	(void)state;
+	CHECK(content_work_path(&content, "labels", path) == 0 && unlink(path) == 0);
+	after = make(130);
 	CHECK(hash_equal(before.children[ROOT_CHILD_LABELS].hash,
 			 after.children[ROOT_CHILD_LABELS].hash));
 	made_finish(&before);
+	made_finish(&after);
+}
+
+static void only_what_changes_is_labelled_again(void **state)
+{
+	struct made before, after, damaged;
+	char path[CONTENT_PATH_BYTES];
+	FILE *file;
+
+	(void)state;
+	write_text(
+		"parts.json",
+		"{\"parts\":[{\"id\":\"ball\",\"region\":{\"kind\":\"sphere\",\"centre\":[1,0,0],"
+		"\"radius\":0.6},\"page\":false,\"title\":{\"en\":\"Ball\"}}]}");
+	before = make(130);
+	CHECK(before.imported);
+	after = make(130);
+	CHECK(!after.imported);
+	CHECK(hash_equal(before.children[ROOT_CHILD_LABELS].hash,
+			 after.children[ROOT_CHILD_LABELS].hash));
+	CHECK(content_work_path(&content, "labels", path) == 0);
+	file = fopen(path, "r+");
+	CHECK(file && fseek(file, -3, SEEK_END) == 0 && fputc('!', file) == '!' &&
+	      fclose(file) == 0);
+	damaged = make(130);
+	CHECK(damaged.imported);
+	CHECK(hash_equal(before.children[ROOT_CHILD_LABELS].hash,
+			 damaged.children[ROOT_CHILD_LABELS].hash));
+	made_finish(&before);
+	made_finish(&after);
+	made_finish(&damaged);
+	after = make(60);
+	CHECK(after.imported);
 	made_finish(&after);
 }
 
@@ -443,16 +485,17 @@ static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 		const char *region, *says;
 	} cases[] = {
 		{ "{\"kind\":\"faces\"}", "needs a \"file\"" },
-		{ "{\"kind\":\"faces\",\"file\":\"none.faces\"}", "none.faces" },
-		{ "{\"kind\":\"faces\",\"file\":\"../foot.faces\"}", "no file within" },
-		{ "{\"kind\":\"faces\",\"file\":\"bad.faces\"}", "bad.faces:2" },
-		{ "{\"kind\":\"faces\",\"file\":\"foot.faces\",\"scan\":\"other.ply\"}",
+		{ "{\"kind\":\"faces\",\"file\":\"regions/none.faces\"}", "none.faces" },
+		{ "{\"kind\":\"faces\",\"file\":\"foot.faces\"}", "lie in regions/" },
+		{ "{\"kind\":\"faces\",\"file\":\"regions/../../foot.faces\"}", "no file within" },
+		{ "{\"kind\":\"faces\",\"file\":\"regions/bad.faces\"}", "bad.faces:2" },
+		{ "{\"kind\":\"faces\",\"file\":\"regions/foot.faces\",\"scan\":\"other.ply\"}",
 		  "none of the scans" },
 	};
 	struct part_faces_all faces = { .content = &content, .only_judge = true };
 
 	(void)state;
-	write_text("bad.faces", "1\n99999999\n");
+	write_text("regions/bad.faces", "1\n99999999\n");
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
 		struct made made = { 0 };
 		char text[400];
@@ -480,6 +523,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(another_region_changes_no_geometry, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(the_same_parts_give_the_same_bytes, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(only_what_changes_is_labelled_again, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(points_alone_need_no_labels, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(faces_that_cannot_be_are_told_before_the_long_work,
