@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "render/context.h"
 #include "render/gl.h"
+#include "storage/info_view.h"
 
 enum {
 	STEP_MOST_MS = 50, /* of the navigator: a hiccup is not a jump */
@@ -131,6 +132,16 @@ static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 	}
 }
 
+/* Across; 0: it is a mere place. */
+static float size_on_panel(const struct kiosk *kiosk, const struct info_part *part)
+{
+	const float distance_m =
+		glm_vec3_distance((float *)part->anchor_m, (float *)kiosk->camera.eye_m);
+
+	return 2 * info_region_size_m(&part->region) * camera_px_per_radian(&kiosk->camera) /
+	       fmaxf(distance_m, 0.01f);
+}
+
 static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 {
 	static struct overlay_anchor anchors[OVERLAY_PARTS_MOST];
@@ -148,8 +159,10 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 
 		if (before_eye)
 			frame_from_panel(kiosk, &a->x_px, &a->y_px);
-		a->visible = before_eye && !kiosk->hidden[i] && a->x_px >= rect.x_px &&
-			     a->y_px >= rect.y_px && a->x_px < rect.x_px + rect.width_px &&
+		a->hidden = kiosk->hidden[i];
+		a->size_px = size_on_panel(kiosk, info_part(info, i));
+		a->visible = before_eye && a->x_px >= rect.x_px && a->y_px >= rect.y_px &&
+			     a->x_px < rect.x_px + rect.width_px &&
 			     a->y_px < rect.y_px + rect.height_px;
 	}
 	overlay_anchors(overlay, anchors, count);

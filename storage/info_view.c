@@ -11,8 +11,7 @@ float info_region_size_m(const struct info_region *region)
 	float most = 0;
 
 	switch (region->kind) {
-	case INFO_REGION_POINT:
-		return 0;
+	case INFO_REGION_POINT: /* one of a list of faces has their radius */
 	case INFO_REGION_SPHERE:
 		return region->radius_m;
 	case INFO_REGION_BOX:

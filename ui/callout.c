@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SHOWN_DETAIL 0.75f /* of what a part must be large to be shown, to stay so */
+
 struct candidate {
 	uint32_t part;
 	int64_t rank; /* smaller stays */
@@ -25,7 +27,8 @@ struct layout {
 	uint32_t anchor_count;
 	const struct callouts *before;
 	float left_port_px, right_port_px;
-	bool strict; /* sides by the middle alone */
+	bool strict;     /* sides by the middle alone */
+	float detail_px; /* of parts that are not shown yet */
 };
 
 static double side_of(double ax, double ay, double bx, double by, double cx, double cy)
@@ -108,6 +111,34 @@ static void offer(struct column *column, uint32_t most, struct candidate candida
 		column->list[worst] = candidate;
 }
 
+/* The area's, or what the largest few are larger than where those are all details. */
+static float detail_of(const struct layout *layout)
+{
+	float largest[CALLOUTS_FEW] = { 0 }; /* descending */
+
+	for (uint32_t i = 0; i < layout->anchor_count; i++) {
+		const struct callout_anchor *anchor = &layout->anchors[i];
+		float size_px = anchor->size_px > 0 ? anchor->size_px : INFINITY;
+
+		if (!is_eligible(layout, anchor))
+			continue;
+		for (int k = 0; k < CALLOUTS_FEW; k++) {
+			if (size_px <= largest[k])
+				continue;
+			float smaller = largest[k];
+			largest[k] = size_px;
+			size_px = smaller;
+		}
+	}
+	return fminf(layout->area->detail_px, largest[CALLOUTS_FEW - 1]);
+}
+
+static bool is_detail(const struct layout *layout, const struct callout_anchor *anchor, bool shown)
+{
+	return anchor->size_px > 0 &&
+	       anchor->size_px < layout->detail_px * (shown ? SHOWN_DETAIL : 1);
+}
+
 static void choose(const struct layout *layout, struct column *left, struct column *right)
 {
 	uint32_t most = capacity(layout->area);
@@ -123,6 +154,8 @@ static void choose(const struct layout *layout, struct column *left, struct colu
 		if (!is_eligible(layout, anchor))
 			continue;
 		before = find_before(layout, i, &candidate.order);
+		if (is_detail(layout, anchor, before))
+			continue;
 		/* Whoever is shown stays, unless someone much more important comes. */
 		candidate.rank = 4 * (int64_t)i - (before ? layout->anchor_count : 0);
 		offer(goes_left(layout, before, anchor->x_px) ? left : right, most, candidate);
@@ -336,6 +369,7 @@ void callouts_layout(struct callouts *callouts, const struct callout_area *area,
 
 	layout.left_port_px = (float)(area->x_px + area->column_px);
 	layout.right_port_px = (float)(area->x_px + area->width_px - area->column_px);
+	layout.detail_px = detail_of(&layout);
 	lay_out(&layout, &out);
 	if (sides_cross(&out)) {
 		/* Each side of the middle keeps to itself: nothing can cross. */

@@ -7,7 +7,8 @@
  * violators), which never moves further than the anchors moved. Where two leaders of a column
  * cross, the two labels change places (for given places that shortens the leaders, so it ends), and
  * so do neighbours of which one's leader all but runs through the other's dot; side and order of
- * the frame before are kept as long as nothing crosses.
+ * the frame before are kept as long as nothing crosses. Few from far, details from near: a part has
+ * one while it looks large enough, and a little longer.
  *
  * Boundary labelling after Bekos et al. 2007, one-sided straight leaders, twice. */
 #ifndef GOPURA_UI_CALLOUT_H
@@ -16,7 +17,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CALLOUTS_A_SIDE = 14, CALLOUTS_MOST = 2 * CALLOUTS_A_SIDE };
+enum {
+	CALLOUTS_A_SIDE = 14,
+	CALLOUTS_MOST = 2 * CALLOUTS_A_SIDE,
+	CALLOUTS_FEW = 6, /* as many are shown even where all are details */
+};
 
 struct callout_area {
 	int x_px, y_px, width_px, height_px; /* labels stay inside */
@@ -24,12 +29,14 @@ struct callout_area {
 	int row_px, gap_px;                  /* height of every label; between two */
 	int lead_px;                         /* shortest horizontal run of a leader */
 	int above_px;                        /* how far above it anchors may lie */
+	float detail_px; /* parts that look smaller wait until they are nearer; 0: none do */
 };
 
 struct callout_anchor {
 	float x_px, y_px;
 	bool visible;
-	int label_px; /* width of its label */
+	int label_px;  /* width of its label */
+	float size_px; /* across, of the part as it is seen; 0: of a place without a size */
 };
 
 struct callout {

@@ -220,7 +220,9 @@ void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *ancho
 	for (uint32_t i = 0; i < count && i < overlay->part_count; i++) {
 		overlay->anchors[i].x_px = anchors[i].x_px;
 		overlay->anchors[i].y_px = anchors[i].y_px;
-		overlay->anchors[i].visible = anchors[i].visible;
+		overlay->parts[i].size_px = anchors[i].size_px;
+		overlay->parts[i].in_view = anchors[i].visible;
+		overlay->parts[i].hidden = anchors[i].hidden;
 	}
 	overlay->callouts_dirty = true;
 }
@@ -532,6 +534,20 @@ static bool advance_scroll(float *scroll_px, float *px_per_s, int most_px, int64
 	return *px_per_s != 0;
 }
 
+/* A pillar that passes before a part takes nothing away. */
+static bool watch_hidden(struct overlay *overlay, struct label *label, int64_t step_ms)
+{
+	label->dim.on = overlay->parts[label->part].hidden;
+	if (!label->dim.on || !label->fade.on) {
+		label->hidden_ms = 0;
+		return overlay_advance(&label->dim, step_ms);
+	}
+	label->hidden_ms += step_ms;
+	overlay->callouts_dirty |= label->hidden_ms >= OVERLAY_HIDDEN_MS;
+	overlay_advance(&label->dim, step_ms);
+	return true;
+}
+
 static bool update_labels(struct overlay *overlay, int64_t step_ms)
 {
 	uint32_t budget = LABELS_A_FRAME;
@@ -555,6 +571,7 @@ static bool update_labels(struct overlay *overlay, int64_t step_ms)
 			budget--;
 		}
 		moving |= overlay_advance(&label->fade, step_ms);
+		moving |= watch_hidden(overlay, label, step_ms);
 		if (!label->fade.on && label->fade.alpha == 0)
 			*label = (struct label){ .part = -1 };
 	}

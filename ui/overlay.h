@@ -61,11 +61,12 @@ must_check int overlay_parts(struct overlay *overlay, const struct overlay_part 
 /* Its texts and marks; give the parts (and the page, if one is open) again in that language. */
 void overlay_language(struct overlay *overlay, const char *language);
 
-/* Where each part's anchor is on the panel now; visible is false for hidden parts, for those
- * behind the eye and for those off the scene's rectangle. As many as there are parts. */
+/* Where each part's anchor is on the panel now. As many as there are parts. */
 struct overlay_anchor {
 	float x_px, y_px;
-	bool visible;
+	float size_px; /* across, of the part; 0: it is a mere place */
+	bool visible;  /* before the eye, in the scene's rectangle */
+	bool hidden;   /* behind the model: a callout that is there dims, and goes if it stays so */
 };
 void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count);
 

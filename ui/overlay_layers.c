@@ -5,6 +5,8 @@
 #include "ui/hint.h"
 #include "ui/overlay_state.h"
 
+#define DIM 0.6f /* what a callout loses while its part is hidden */
+
 struct list {
 	const struct overlay *overlay;
 	struct overlay_layer *layers;
@@ -53,6 +55,11 @@ static void add_bitmap(struct list *list, int id, float alpha, float x, float y)
 	add_rect(list, id, alpha, x, y, (float)bitmap->width_px, (float)bitmap->height_px);
 }
 
+static float label_alpha(const struct label *label)
+{
+	return ease(label->fade.alpha) * (1 - DIM * ease(label->dim.alpha));
+}
+
 static void add_leader(struct list *list, const struct label *label)
 {
 	const struct callout *c = &label->place;
@@ -64,7 +71,7 @@ static void add_leader(struct list *list, const struct label *label)
 
 	if (length < 1)
 		return;
-	layer = add(list, BITMAP_LEADER, ease(label->fade.alpha));
+	layer = add(list, BITMAP_LEADER, label_alpha(label));
 	if (!layer)
 		return;
 	nx = dy / length * half;
@@ -91,7 +98,7 @@ static void add_callouts(struct list *list)
 		const struct label *label = &overlay->labels[i];
 
 		if (label->drawn)
-			add_bitmap(list, BITMAP_DOT, ease(label->fade.alpha),
+			add_bitmap(list, BITMAP_DOT, label_alpha(label),
 				   label->place.anchor_x_px - half,
 				   label->place.anchor_y_px - half);
 	}
@@ -99,7 +106,7 @@ static void add_callouts(struct list *list)
 		const struct label *label = &overlay->labels[i];
 
 		if (label->drawn)
-			add_bitmap(list, BITMAP_LABEL + (int)i, ease(label->fade.alpha),
+			add_bitmap(list, BITMAP_LABEL + (int)i, label_alpha(label),
 				   (float)label->place.x_px, (float)label->place.y_px);
 	}
 }

@@ -4,6 +4,7 @@
 #include "ui/overlay_state.h"
 
 #define HEAD_MM 13.0f
+#define DETAIL  0.05f /* of the scene's height: what looks smaller is one */
 /* Reach mode's part of the panel: a third, but not less than the search needs with keys of
  * THEME_TARGET_MM. */
 #define REACH_MM          70.0f
@@ -244,6 +245,7 @@ static struct callout_area callout_area(const struct overlay *overlay)
 	most_px = area.width_px * (scene.width_px < overlay->width_px ? 31 : 27) / 100;
 	if (area.column_px > most_px)
 		area.column_px = most_px;
+	area.detail_px = (float)scene.height_px * DETAIL;
 	return area;
 }
 
@@ -291,6 +293,15 @@ static void show_label(struct overlay *overlay, const struct callout *place)
 	label->fade.on = true;
 }
 
+static bool may_have_callout(struct overlay *overlay, int part)
+{
+	const struct label *label = find_label(overlay, part);
+
+	return overlay->parts[part].in_view &&
+	       (!overlay->parts[part].hidden ||
+		(label && label->fade.on && label->hidden_ms < OVERLAY_HIDDEN_MS));
+}
+
 void overlay_lay_out_callouts(struct overlay *overlay)
 {
 	struct callout_area area = callout_area(overlay);
@@ -300,6 +311,12 @@ void overlay_lay_out_callouts(struct overlay *overlay)
 
 		overlay->anchors[i].label_px =
 			label_px < area.column_px ? label_px : area.column_px;
+		overlay->anchors[i].visible = may_have_callout(overlay, (int)i);
+		/* What was chosen is no detail. */
+		overlay->anchors[i].size_px =
+			(int)i == overlay->card_part || (int)i == overlay->page_part
+				? 0
+				: overlay->parts[i].size_px;
 	}
 	callouts_layout(&overlay->callouts, &area, overlay->anchors, overlay->part_count);
 	for (uint32_t i = 0; i < LABELS; i++)

@@ -11,6 +11,7 @@
 #include "ui/theme.h"
 
 enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
+enum { OVERLAY_HIDDEN_MS = 1500 }; /* that a callout outlasts its part */
 enum { SEARCH_ROWS = 16, SEARCH_ROWS_A_FRAME = 2, SEARCH_QUERY_BYTES = 128 };
 
 enum { TOUR_CAPTION_BYTES = 1024 };
@@ -59,13 +60,16 @@ struct fade {
 struct part {
 	char *title, *caption, *thumbnail; /* owned */
 	bool has_page;
-	int label_px; /* width of its label */
+	int label_px;  /* width of its label */
+	float size_px; /* this and what follows: as struct overlay_anchor has it */
+	bool in_view, hidden;
 };
 
 struct label {
 	int part; /* -1: free */
 	bool drawn, drawn_selected;
-	struct fade fade;
+	struct fade fade, dim; /* dim: its part is hidden */
+	int64_t hidden_ms;     /* for which that is so */
 	struct callout place;
 };
 

@@ -123,7 +123,7 @@ static void never_overlaps_crosses_or_leaves_the_area(void **state)
 /* With few parts and room for all, all are shown. */
 static void shows_all_where_there_is_room(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0, 0 };
 	struct callouts callouts = { 0 };
 	struct callout_anchor anchors[12];
 
@@ -131,8 +131,9 @@ static void shows_all_where_there_is_room(void **state)
 	random_state = 2;
 	for (int view = 0; view < 200; view++) {
 		for (int i = 0; i < 12; i++)
-			anchors[i] = (struct callout_anchor){ 300 + random_unit() * 680,
-							      50 + random_unit() * 540, true, 150 };
+			anchors[i] =
+				(struct callout_anchor){ 300 + random_unit() * 680,
+							 50 + random_unit() * 540, true, 150, 0 };
 		callouts.count = 0;
 		callouts_layout(&callouts, &area, anchors, 12);
 		CHECK(callouts.count == 12);
@@ -143,7 +144,7 @@ static void shows_all_where_there_is_room(void **state)
  * order, each moving by no more than two (one, and rounding), unless leaders came to cross. */
 static void follows_small_moves_quietly(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0, 0 };
 	struct callout_anchor anchors[14];
 	struct callouts callouts = { 0 };
 	int frames = 0, jumps = 0;
@@ -152,7 +153,7 @@ static void follows_small_moves_quietly(void **state)
 	random_state = 3;
 	for (int i = 0; i < 14; i++)
 		anchors[i] = (struct callout_anchor){ 300 + random_unit() * 680,
-						      50 + random_unit() * 540, true, 150 };
+						      50 + random_unit() * 540, true, 150, 0 };
 	callouts_layout(&callouts, &area, anchors, 14);
 	for (int frame = 0; frame < 2000; frame++) {
 		struct callouts before = callouts;
@@ -193,13 +194,14 @@ static void no_leader_runs_through_a_dot(void **state)
 					   .row_px = 27,
 					   .gap_px = 11,
 					   .lead_px = 14 };
-	struct callout_anchor anchors[2] = { { 900, 120, true, 104 }, { 700, 148, true, 136 } };
+	struct callout_anchor anchors[2] = { { 900, 120, true, 104, 0 },
+					     { 700, 148, true, 136, 0 } };
 	struct callouts callouts = { 0 };
 
 	(void)state;
 	callouts_layout(&callouts, &area, anchors, 2);
 	CHECK(callouts.count == 2 && callouts.list[0].part == 0);
-	anchors[0] = (struct callout_anchor){ 958, 163, true, 104 };
+	anchors[0] = (struct callout_anchor){ 958, 163, true, 104, 0 };
 	callouts_layout(&callouts, &area, anchors, 2);
 	CHECK(callouts.count == 2 && callouts.list[0].part == 1);
 	/* And it stays so. */
@@ -209,10 +211,10 @@ static void no_leader_runs_through_a_dot(void **state)
 
 static void hides_what_is_hidden(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0 };
-	struct callout_anchor anchors[3] = { { 500, 100, true, 100 },
-					     { 500, 200, false, 100 },
-					     { 100, 300, true, 100 } /* under the labels */ };
+	const struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0, 0 };
+	struct callout_anchor anchors[3] = { { 500, 100, true, 100, 0 },
+					     { 500, 200, false, 100, 0 },
+					     { 100, 300, true, 100, 0 } /* under the labels */ };
 	struct callouts callouts = { 0 };
 
 	(void)state;
@@ -222,10 +224,50 @@ static void hides_what_is_hidden(void **state)
 	CHECK(callouts.count == 0);
 }
 
+/* Few from far, and never none; details from near. A size that wavers changes nothing. */
+static void details_wait_until_they_are_near(void **state)
+{
+	struct callout_area area = { 0, 0, 1280, 640, 200, 30, 6, 10, 0, 40 };
+	struct callout_anchor anchors[12];
+	struct callouts callouts = { 0 };
+
+	(void)state;
+	for (uint32_t i = 0; i < 12; i++)
+		anchors[i] = (struct callout_anchor){ 400 + 40 * (float)i, 60 + 40 * (float)i, true,
+						      100, i < 8 ? 50 : 10 };
+	callouts_layout(&callouts, &area, anchors, 12);
+	CHECK(callouts.count == 8);
+	for (uint32_t i = 0; i < callouts.count; i++)
+		CHECK(callouts.list[i].part < 8);
+	for (int turn = 0; turn < 20; turn++) {
+		anchors[3].size_px = turn % 2 ? 32 : 42;
+		callouts_layout(&callouts, &area, anchors, 12);
+		CHECK(callouts.count == 8);
+	}
+	anchors[3].size_px = 20;
+	callouts_layout(&callouts, &area, anchors, 12);
+	CHECK(callouts.count == 7);
+	for (uint32_t i = 0; i < 12; i++)
+		anchors[i].size_px *= 5;
+	callouts_layout(&callouts, &area, anchors, 12);
+	CHECK(callouts.count == 12);
+	for (uint32_t i = 0; i < 12; i++)
+		anchors[i].size_px = 1 + (float)i;
+	callouts = (struct callouts){ 0 };
+	callouts_layout(&callouts, &area, anchors, 12);
+	CHECK(callouts.count == CALLOUTS_FEW);
+	for (uint32_t i = 0; i < callouts.count; i++)
+		CHECK(callouts.list[i].part >= 12 - CALLOUTS_FEW);
+	for (uint32_t i = 0; i < 12; i++)
+		anchors[i].size_px = 0;
+	callouts_layout(&callouts, &area, anchors, 12);
+	CHECK(callouts.count == 12);
+}
+
 /* More than fit: the important ones (the first) are shown. */
 static void prefers_the_important(void **state)
 {
-	const struct callout_area area = { 0, 0, 1280, 300, 200, 30, 6, 10, 0 };
+	const struct callout_area area = { 0, 0, 1280, 300, 200, 30, 6, 10, 0, 0 };
 	struct callout_anchor anchors[ANCHORS];
 	struct callouts callouts = { 0 };
 	uint32_t worst = 0;
@@ -234,7 +276,7 @@ static void prefers_the_important(void **state)
 	random_state = 4;
 	for (uint32_t i = 0; i < ANCHORS; i++)
 		anchors[i] = (struct callout_anchor){ 300 + random_unit() * 680,
-						      20 + random_unit() * 260, true, 150 };
+						      20 + random_unit() * 260, true, 150, 0 };
 	callouts_layout(&callouts, &area, anchors, ANCHORS);
 	CHECK(callouts.count >= 14);
 	for (uint32_t i = 0; i < callouts.count; i++)
@@ -245,7 +287,7 @@ static void prefers_the_important(void **state)
 
 static void says_how_long_it_takes(void **state)
 {
-	const struct callout_area area = { 0, 0, 1920, 1000, 300, 38, 8, 16, 0 };
+	const struct callout_area area = { 0, 0, 1920, 1000, 300, 38, 8, 16, 0, 0 };
 	struct callout_anchor anchors[ANCHORS];
 	struct callouts callouts = { 0 };
 	int64_t start_us, worst_us = 0, total_us = 0;
@@ -274,6 +316,7 @@ int main(void)
 		cmocka_unit_test(follows_small_moves_quietly),
 		cmocka_unit_test(no_leader_runs_through_a_dot),
 		cmocka_unit_test(hides_what_is_hidden),
+		cmocka_unit_test(details_wait_until_they_are_near),
 		cmocka_unit_test(prefers_the_important),
 		cmocka_unit_test(says_how_long_it_takes),
 	};

@@ -111,10 +111,12 @@ static void give_parts(struct overlay *overlay, int language)
 	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
 }
 
+static bool hides[PARTS]; /* the model does, of the parts */
+
 static void give_anchors(struct overlay *overlay)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
-	struct overlay_anchor anchors[PARTS];
+	struct overlay_anchor anchors[PARTS] = { 0 };
 
 	for (int i = 0; i < PARTS; i++) {
 		float turn = (float)i * 2.4f, radius = 0.04f + 0.02f * (float)i;
@@ -124,6 +126,7 @@ static void give_anchors(struct overlay *overlay)
 		anchors[i].y_px =
 			(float)scene.y_px + (float)scene.height_px * (0.45f + radius * sinf(turn));
 		anchors[i].visible = i != 6;
+		anchors[i].hidden = hides[i];
 	}
 	overlay_anchors(overlay, anchors, PARTS);
 }
@@ -447,6 +450,55 @@ static void nothing_pops(void **state)
 	picture_finish(&album.picture);
 }
 
+/* Of the part's label; 0: it has none. */
+static float label_alpha(struct overlay *overlay, int part)
+{
+	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	const uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+
+	for (uint32_t i = 0; i < count; i++)
+		if (layers[i].bitmap >= BITMAP_LABEL && layers[i].bitmap < BITMAP_LABEL + LABELS &&
+		    overlay->labels[layers[i].bitmap - BITMAP_LABEL].part == part)
+			return layers[i].alpha;
+	return 0;
+}
+
+static void what_is_hidden_dims_and_goes_if_it_stays_so(void **state)
+{
+	struct album album;
+	struct overlay *overlay;
+	int64_t now_ms = 700000;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	overlay_show_help(overlay, false);
+	settle(overlay);
+	CHECK(label_alpha(overlay, 2) == 1);
+	for (int turn = 0; turn < 3; turn++) { /* a pillar that passes */
+		hides[2] = true;
+		for (int64_t end_ms = now_ms + 1000; now_ms < end_ms; now_ms += 16) {
+			give_anchors(overlay);
+			overlay_update(overlay, now_ms);
+		}
+		CHECK(label_alpha(overlay, 2) > 0.2f && label_alpha(overlay, 2) < 0.6f);
+		hides[2] = false;
+		give_anchors(overlay);
+		settle(overlay);
+		CHECK(label_alpha(overlay, 2) == 1);
+	}
+	hides[2] = true;
+	give_anchors(overlay);
+	settle(overlay);
+	CHECK(label_alpha(overlay, 2) == 0 && label_alpha(overlay, 1) == 1);
+	give_anchors(overlay); /* and does not come back */
+	settle(overlay);
+	CHECK(label_alpha(overlay, 2) == 0);
+	hides[2] = false;
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
+}
+
 static void the_invitation_takes_the_place_of_the_help(void **state)
 {
 	struct album album;
@@ -542,6 +594,7 @@ int main(void)
 		cmocka_unit_test(a_page_scrolls_links_and_closes),
 		cmocka_unit_test(a_late_picture_moves_nothing),
 		cmocka_unit_test(nothing_pops),
+		cmocka_unit_test(what_is_hidden_dims_and_goes_if_it_stays_so),
 		cmocka_unit_test(the_invitation_takes_the_place_of_the_help),
 		cmocka_unit_test(the_question_counts_down_in_the_language_that_is_set),
 		cmocka_unit_test(refuses_impossible_panels),
