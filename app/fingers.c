@@ -107,6 +107,18 @@ static void open_page(struct kiosk *kiosk, int part)
 	}
 }
 
+/* Its part stood in the middle of what the page left: now in that of the whole, unless somebody has
+ * looked elsewhere. */
+static void close_page(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const int part = overlay_page(overlay);
+
+	overlay_close_page(overlay);
+	if (part >= 0 && navigator_is_left_alone(&kiosk->navigator))
+		fly_to_part(kiosk, (uint32_t)part);
+}
+
 /* ---- taps */
 
 /* By the release's labels; by the regions themselves where those are not here. */
@@ -205,7 +217,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		show_card(kiosk, -1);
 		break;
 	case OVERLAY_CLOSE_PAGE:
-		overlay_close_page(overlay);
+		close_page(kiosk);
 		break;
 	case OVERLAY_LANGUAGE:
 		story_set_language(kiosk->shown.story, action->language);

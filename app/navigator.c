@@ -205,6 +205,15 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms, 1);
 }
 
+bool navigator_is_left_alone(const struct navigator *nav)
+{
+	return nav->flight_left_ms > 0 ||
+	       (nav->flight_ms > 0 &&
+		glm_vec3_distance((float *)nav->eye_m, (float *)nav->to_eye_m) < 1e-3f &&
+		fabsf(remainderf(nav->yaw - nav->to_yaw, 2 * (float)M_PI)) < 1e-4f &&
+		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
+}
+
 static void step_flight(struct navigator *nav, float dt_ms)
 {
 	float t, eye[3];

@@ -48,6 +48,8 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
 /* Smoothly to a pose; a touch stops it. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
+/* It flies, or nobody has moved it since it arrived. */
+bool navigator_is_left_alone(const struct navigator *nav);
 /* At once to a pose; ends flings and flights. */
 void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3]);
 

@@ -222,7 +222,9 @@ static void draw_dots(struct overlay *overlay, cairo_t *context, int width_px, i
 		step = (double)width_px / panel->stop_count;
 	for (int i = 0; i < panel->stop_count; i++) {
 		bool is_here = i == panel->stop;
-		double x = px(overlay, PADDING_MM) + radius + step * i;
+		double along = radius + step * i;
+		double x = px(overlay, PADDING_MM) +
+			   (theme_is_right_to_left(&overlay->theme) ? width_px - along : along);
 
 		cairo_new_path(context);
 		cairo_arc(context, x, y_px, is_here ? radius * 1.25 : radius * 0.8, 0, turn);
@@ -238,9 +240,11 @@ static void draw_dots(struct overlay *overlay, cairo_t *context, int width_px, i
 
 static void draw_button(struct overlay *overlay, cairo_t *context, int right_px)
 {
-	int width_px, text_px, height_px = px(overlay, THEME_TARGET_MM);
+	const bool from_right = theme_is_right_to_left(&overlay->theme);
+	int width_px, words_px, text_px, height_px = px(overlay, THEME_TARGET_MM);
 	PangoLayout *layout = lay_out_button(overlay, &width_px);
 	double y = head_height(overlay) / 2.0, x = right_px - width_px;
+	const double from_side = px(overlay, PADDING_MM) + px(overlay, ICON_MM) / 2.0;
 
 	if (overlay->tour.paused) {
 		theme_rounded(context, x, y - height_px / 2.0, width_px, height_px,
@@ -249,12 +253,15 @@ static void draw_button(struct overlay *overlay, cairo_t *context, int right_px)
 		cairo_fill(context);
 	}
 	theme_set_source(context, overlay->tour.paused ? theme_paper : theme_night_text, 1);
-	pango_layout_get_pixel_size(layout, NULL, &text_px);
-	cairo_move_to(context, x + px(overlay, PADDING_MM), y - text_px / 2.0);
+	pango_layout_get_pixel_size(layout, &words_px, &text_px);
+	cairo_move_to(context,
+		      from_right ? right_px - px(overlay, PADDING_MM) - words_px
+				 : x + px(overlay, PADDING_MM),
+		      y - text_px / 2.0);
 	pango_cairo_show_layout(context, layout);
 	if (overlay->tour.paused)
-		icon_draw(context, ICON_FORWARD,
-			  right_px - px(overlay, PADDING_MM) - px(overlay, ICON_MM) / 2.0, y,
+		icon_draw(context, from_right ? ICON_BACK : ICON_FORWARD,
+			  from_right ? x + from_side : right_px - from_side, y,
 			  px(overlay, ICON_MM));
 	else
 		icon_draw(context, ICON_PAUSE, right_px - width_px / 2.0, y,

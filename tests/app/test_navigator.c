@@ -180,6 +180,30 @@ static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
 	CHECK(camera.near_m > 0 && camera.far_m > 100);
 }
 
+static void knows_whether_somebody_moved_it_since_a_flight(void **state)
+{
+	const float eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	CHECK(!navigator_is_left_alone(&nav)); /* there was none */
+	navigator_fly(&nav, eye, target, 800);
+	navigator_step(&nav, 16, HEIGHT_PX);
+	CHECK(navigator_is_left_alone(&nav));
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(navigator_is_left_alone(&nav));
+	navigator_grab(&nav, target); /* a tap is no look elsewhere */
+	CHECK(navigator_is_left_alone(&nav));
+	navigator_turn(&nav, 30, 0, HEIGHT_PX);
+	CHECK(!navigator_is_left_alone(&nav));
+	navigator_fly(&nav, eye, target, 800);
+	navigator_step(&nav, 16, HEIGHT_PX);
+	navigator_grab(&nav, target); /* a touch stops it on its way */
+	CHECK(!navigator_is_left_alone(&nav));
+}
+
 static float wall_before_bunny(void *data, const float from[3], const float direction[3],
 			       float most)
 {
@@ -242,6 +266,7 @@ int main(void)
 		cmocka_unit_test(stays_above_ground_and_near),
 		cmocka_unit_test(a_fling_slows_down_and_ends),
 		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
+		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
 		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
 		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),
 	};

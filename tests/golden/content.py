@@ -6,11 +6,19 @@ import shutil
 import sys
 
 folder = sys.argv[1]
+arabic = json.load(open("tests/golden/ar.json"))
 parts = json.load(open(f"{folder}/parts.json"))
 for part in parts["parts"]:
-    words = json.load(open("tests/golden/ar.json"))[part["id"]]
+    words = arabic[part["id"]]
     part["title"]["ar"], part["caption"]["ar"] = words["title"], words["caption"]
 json.dump(parts, open(f"{folder}/parts.json", "w"), ensure_ascii=False, indent="\t")
+tours = json.load(open(f"{folder}/tours.json"))
+for tour in tours["tours"]:
+    words = arabic[tour["id"]]
+    tour["title"]["ar"], tour["caption"]["ar"] = words["title"], words["caption"]
+    for stop, caption in zip([stop for stop in tour["stops"] if "caption" in stop], words["stops"]):
+        stop["caption"]["ar"] = caption
+json.dump(tours, open(f"{folder}/tours.json", "w"), ensure_ascii=False, indent="\t")
 shutil.copy("tests/golden/central-tower.ar.html", f"{folder}/pages/")
 ini = open(f"{folder}/temple.ini").read()
 open(f"{folder}/temple.ini", "w").write(re.sub(r"(?m)^languages *=.*", "languages = en km ja ar", ini))

@@ -3,8 +3,8 @@ and shots.txt. The bar, the first row of the search, a card and what closes stan
 every language; where a page has its picture says GALLERY."""
 import sys
 
-HOME, SEARCH, LARGE, REACH = (23, 516), (93, 516), (164, 516), (199, 516)
-ROW, CARD, CLOSE, PICTURE_CLOSE = (720, 75), (480, 430), (915, 22), (933, 27)
+HOME, SEARCH, TOURS, LARGE, REACH = (23, 516), (93, 516), (128, 516), (164, 516), (199, 516)
+ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 465)
 
 touches, shots = [], []
 now = 9500
@@ -68,7 +68,12 @@ tap(REACH)
 shot("comfort", 5000)
 tap(LARGE)
 tap(REACH)
-tap(CLOSE)
+tap(CLOSE, 3000)
+tap(TOURS)
+shot("tours", 1500)
+tap(SECOND_TOUR, 5500)
+tap((60, 440))  # beside the model: it halts at its first stop
+shot("tour", 5000)
 tap(HOME)
 # Asked 20 s after the last touch, and gone 15 s later; the eye is under way for 2.5 s.
 last = now - 600
