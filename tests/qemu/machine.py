@@ -107,6 +107,15 @@ class Machine:
             time.sleep(0.5)
         raise SystemExit(f"no {what} in {seconds} s:\n" + self.log()[-3000:])
 
+    def tap_for_card(self):
+        """Taps a tower, above the hint, until its card is open: another touch may have been for something else."""
+        until = time.monotonic() + ANSWER_S
+        while "app: card of" not in self.log():
+            if time.monotonic() > until:
+                raise SystemExit("no tap opens a card:\n" + self.log()[-3000:])
+            self.qmp.tap(0.5, 0.38)
+            time.sleep(3)
+
     def resting_picture(self, name):
         """The picture once two dumps half a second apart are the same."""
         last = [None]

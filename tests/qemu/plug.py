@@ -34,8 +34,7 @@ def plugging(kernel, initramfs, work):
         machine.wait_for("panel unplugged", ANSWER_S, said("the panel is gone"))
         machine.wait_for("panel back", ANSWER_S, said("the panel is back"))
         print(f"unplugged and back {time.monotonic() - began:.0f} s after QEMU's start")
-        machine.qmp.tap(0.5, 0.45)
-        machine.wait_for("card in the log", ANSWER_S, said("app: card of"))
+        machine.tap_for_card()
         machine.wait_for("card on the panel", ANSWER_S, lambda: share_that_differs(before, machine.picture("replugged")) > 0.15)
         machine.wait_for("lost context", ANSWER_S, said("the GPU lost its context"))
         began_anew = lambda: machine.log().count("app: first picture") == 2
@@ -57,13 +56,12 @@ def closed(kernel, initramfs, work):
         machine.wait_for("release, brought in the dark", ANSWER_S, said("app: showing"))
         if tones(machine.picture("closed")) > 20:
             raise SystemExit("the panel shows a picture outside its hours")
-        machine.qmp.tap(0.5, 0.45)
+        machine.qmp.tap(0.5, 0.38)
         machine.wait_for("panel that is on", ANSWER_S, said("app: the panel is on"))
         machine.wait_for("temple", ANSWER_S, lambda: tones(machine.picture("woken")) > 300)
         if "app: card of" in machine.log():
             raise SystemExit("the touch that woke the panel did something else")
-        machine.qmp.tap(0.5, 0.45)
-        machine.wait_for("card", ANSWER_S, said("app: card of"))
+        machine.tap_for_card()
     finally:
         machine.stop()
 

@@ -62,7 +62,7 @@ def prepare(image, base):
 
 def above_the_hint(picture):
     """A visitor is shown how to touch, below the temple's towers, until he has."""
-    return picture[: len(picture) * 4 // 9]
+    return picture[: len(picture) * 2 // 5]
 
 
 class Session:
@@ -106,7 +106,7 @@ class Session:
                              lambda: share_that_differs(first, above_the_hint(machine.picture("next"))) > SAME_SHARE)
             time.sleep(5)  # what fades in
             machine.resting_picture("next")
-            machine.qmp.tap(0.5, 0.45)
+            machine.qmp.tap(0.5, 0.38)
             said("slot A, .* is good")
             self.mark("slot A is good")
             machine.unplug()

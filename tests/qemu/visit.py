@@ -19,8 +19,7 @@ def main():
             raise SystemExit("the self-test does not find the panel well:\n" + machine.log()[-2000:])
         print(f"first temple {time.monotonic() - began:.0f} s after QEMU's start")
         before = machine.resting_picture("temple")
-        machine.qmp.tap(0.5, 0.45)
-        machine.wait_for("card in the log", ANSWER_S, lambda: "app: card of" in machine.log())
+        machine.tap_for_card()
         # The log is ahead of the panel, on a loaded machine by many seconds: wait for the picture.
         shows_card = lambda: share_that_differs(before, machine.picture("card")) > CARD_SHARE
         machine.wait_for("card on the panel", ANSWER_S, shows_card)
