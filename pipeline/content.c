@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "base/ini.h"
+#include "storage/info.h"
 
 /* ---- keys */
 
@@ -125,6 +126,23 @@ static bool set_start(void *target, const char *value)
 	return true;
 }
 
+static bool set_tools(void *target, const char *value)
+{
+	unsigned *tools = &((struct content *)target)->tools;
+
+	*tools = 0;
+	while (*(value += strspn(value, " \t,"))) {
+		const size_t length = strcspn(value, " \t,");
+		const unsigned tool = info_tool_named(value, length);
+
+		if (tool == 0 || *tools & tool)
+			return false;
+		*tools |= tool;
+		value += length;
+	}
+	return true;
+}
+
 static bool set_whole(const char *value, long least, long most, uint32_t *out)
 {
 	long number;
@@ -215,6 +233,7 @@ static const struct ini_key keys[] = {
 	{ "model", "sun", "three numbers x y z, pointing to the sun", set_sun },
 	{ "model", "background", "a colour as #rrggbb", set_background },
 	{ "view", "start", "eye X Y Z target X Y Z in metres, two different places", set_start },
+	{ "view", "tools", "light, section, both, each once, or nothing", set_tools },
 	{ "grid", "points", "a whole number from 4 to 32", set_points },
 	{ "grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px },
 	{ "grid", "quality", "a whole number from 1 to 100", set_quality },

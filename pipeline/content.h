@@ -41,6 +41,7 @@ struct content {
 	uint8_t background[3];
 	bool has_start;
 	float start_eye_m[3], start_target_m[3]; /* where has_start */
+	unsigned tools;                          /* of enum info_tool, that visitors have */
 	uint32_t grid_points;                    /* 4..32, along the longest side of the box */
 	uint32_t face_px;         /* of a sampling face at its finest: 128, 256 ... 4096 */
 	uint32_t quality;         /* 1..100 */

@@ -131,6 +131,7 @@ static struct info_build_options info_options(const struct content *content,
 	return (struct info_build_options){ .folder = content->folder,
 					    .languages = languages,
 					    .language_count = content->language_count,
+					    .tools = content->tools,
 					    .place_faces = part_faces_place,
 					    .place_faces_data = faces };
 }

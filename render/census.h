@@ -12,8 +12,11 @@ enum { CENSUS_WIDTH = 320, CENSUS_HEIGHT = 180, CENSUS_PIECES_MOST = 32767 };
 
 struct census {
 	struct gl_target target;
-	GLuint program;
-	GLint right, up, forward, lattice, number;
+	struct census_program {
+		GLuint program;
+		GLint right, up, forward, lattice, number, cut;
+	} whole, section; /* the latter for views that are cut, made when first needed */
+	const struct census_program *used;
 	uint8_t *pixels; /* owned */
 	struct view view;
 };

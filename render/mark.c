@@ -9,9 +9,12 @@ static const char mark_vertex[] =
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
 	"uniform vec4 u_middle;\n" /* of the region from the eye; focal_px */
+	"uniform vec4 u_cut;\n"
+	"varying float v_cut;\n"  /* before the section */
 	"varying vec4 v_at;\n"     /* from there; a pixel's width */
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"	v_at = vec4(p - u_middle.xyz, length(p) / u_middle.w);\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
@@ -25,6 +28,7 @@ static const char mark_fragment[] =
 	"uniform vec4 u_region[4];\n"
 	"uniform vec4 u_corners[8];\n"
 	"varying vec4 v_at;\n"
+	"varying float v_cut;\n"
 	"float polygon(vec2 p) {\n"
 	"	float nearest = 6e4, side = 1.0;\n"
 	"	vec2 a = u_corners[0].xy;\n"
@@ -63,7 +67,7 @@ static const char mark_fragment[] =
 	"	float line = 1.0 - smoothstep(2.0, 3.0, abs(d) / pixel);\n"
 	"	float tint = d < 0.0 ? 0.14 : 0.0;\n"
 	"	float alpha = max(line, tint);\n"
-	"	if (alpha <= 0.0) discard;\n"
+	"	if (alpha <= 0.0 || v_cut > 0.0) discard;\n"
 	"	gl_FragColor = vec4(1.0, 0.78, 0.25, alpha);\n"
 	"}\n";
 
@@ -82,6 +86,7 @@ int mark_init(struct mark *mark)
 	mark->lattice = glGetUniformLocation(mark->program, "u_lattice");
 	mark->region = glGetUniformLocation(mark->program, "u_region");
 	mark->corners = glGetUniformLocation(mark->program, "u_corners");
+	mark->cut = glGetUniformLocation(mark->program, "u_cut");
 	mark->middle = glGetUniformLocation(mark->program, "u_middle");
 	return rc;
 }
@@ -142,6 +147,7 @@ void mark_begin(const struct mark *mark, const struct view *view, const struct r
 	glUniform4f(mark->lattice, (float)(lattice->origin_m[0] - eye[0]),
 		    (float)(lattice->origin_m[1] - eye[1]), (float)(lattice->origin_m[2] - eye[2]),
 		    (float)lattice->step_m);
+	glUniform4fv(mark->cut, 1, view->cut);
 	float middle[3];
 	find_middle(middle, region);
 	glUniform4f(mark->middle, middle[0] - eye[0], middle[1] - eye[1], middle[2] - eye[2],

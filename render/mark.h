@@ -10,7 +10,7 @@
 
 struct mark {
 	GLuint program;
-	GLint clip, lattice, region, corners, middle;
+	GLint clip, lattice, region, corners, middle, cut;
 };
 
 must_check int mark_init(struct mark *mark);

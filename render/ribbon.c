@@ -24,10 +24,13 @@ static const char line_vertex[] =
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
 	"uniform vec4 u_picture;\n" /* half its sides, focal length: pixels */
+	"uniform vec4 u_cut;\n"
+	"varying float v_cut;\n"    /* before the section */
 	"varying vec3 v_at;\n"      /* pixels along, across; length */
 	"void main() {\n"
 	"	const float reach = 3.5;\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"	vec4 here = u_clip * vec4(p, 1.0);\n"
 	"	vec4 there = u_clip * vec4(u_lattice.xyz + u_lattice.w * a_other, 1.0);\n"
 	"	if (here.z < -here.w || there.z < -there.w) {\n" /* one is behind the eye */
@@ -54,10 +57,11 @@ static const char line_vertex[] =
 
 static const char line_fragment[] =
 	"varying FINE vec3 v_at;\n"
+	"varying float v_cut;\n"
 	"void main() {\n"
 	"	FINE vec2 off = vec2(v_at.x - clamp(v_at.x, 0.0, v_at.z), v_at.y);\n"
 	"	float alpha = 1.0 - smoothstep(2.0, 3.0, length(off));\n"
-	"	if (alpha <= 0.0) discard;\n"
+	"	if (alpha <= 0.0 || v_cut > 0.0) discard;\n"
 	"	gl_FragColor = vec4(1.0, 0.78, 0.25, alpha);\n"
 	"}\n";
 
@@ -66,11 +70,17 @@ static const char tint_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
+	"uniform vec4 u_cut;\n"
+	"varying float v_cut;\n"
 	"void main() {\n"
-	"	gl_Position = u_clip * vec4(u_lattice.xyz + u_lattice.w * a_position, 1.0);\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
+	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
-static const char tint_fragment[] = "void main() {\n"
+static const char tint_fragment[] = "varying float v_cut;\n"
+				    "void main() {\n"
+				    "	if (v_cut > 0.0) discard;\n"
 				    "	gl_FragColor = vec4(1.0, 0.78, 0.25, 0.14);\n"
 				    "}\n";
 
@@ -79,6 +89,7 @@ static int build(struct ribbon_program *out, const struct gl_program_source *sou
 	int rc = gl_program_build(&out->program, source);
 	out->clip = glGetUniformLocation(out->program, "u_clip");
 	out->lattice = glGetUniformLocation(out->program, "u_lattice");
+	out->cut = glGetUniformLocation(out->program, "u_cut");
 	out->picture = glGetUniformLocation(out->program, "u_picture");
 	return rc;
 }
@@ -200,6 +211,7 @@ static void begin(const struct ribbon_program *program, const struct view *view,
 	glUniform4f(program->lattice, (float)(lattice->origin_m[0] - eye[0]),
 		    (float)(lattice->origin_m[1] - eye[1]), (float)(lattice->origin_m[2] - eye[2]),
 		    (float)lattice->step_m);
+	glUniform4fv(program->cut, 1, view->cut);
 	if (program->picture >= 0)
 		glUniform4f(program->picture, (float)view->width_px / 2, (float)view->height_px / 2,
 			    view->focal_px, 0);

@@ -10,7 +10,7 @@
 
 struct ribbon_program {
 	GLuint program;
-	GLint clip, lattice, picture;
+	GLint clip, lattice, picture, cut;
 };
 
 struct ribbons {

@@ -386,17 +386,27 @@ void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count)
 	}
 }
 
+void scene_use(struct scene *scene, const struct scene_tools *tools)
+{
+	const struct rake *was = &scene->tools.rake, *rake = &tools->rake;
+	/* The section moves the view. */
+	scene->tools_moved |= was->on != rake->on ||
+			      (rake->on && memcmp(was->at, rake->at, sizeof(was->at)) != 0);
+	scene->tools = *tools;
+}
+
 /* ---- rays */
 
 bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
 		float point_m[3])
 {
-	float direction[3], distance = INFINITY;
+	float direction[3], distance = INFINITY, least = camera->near_m;
 	if (!scene->has_hierarchy)
 		return false;
 	camera_ray(camera, x_px, y_px, direction);
-	if (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, camera->near_m,
-			  &distance, NULL))
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
+	    !geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
+			  NULL))
 		return false;
 	vec_add_scaled(point_m, camera->eye_m, distance, direction);
 	return true;
@@ -405,11 +415,12 @@ bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, fl
 float scene_clearance(struct scene *scene, const float from_m[3], const float direction[3],
 		      float most_m)
 {
-	float unit[3], distance = most_m;
+	float unit[3], distance = most_m, least = 0;
 	memcpy(unit, direction, sizeof(unit));
-	if (!scene->has_hierarchy || vec_normalise(unit) <= 0)
+	if (!scene->has_hierarchy || vec_normalise(unit) <= 0 ||
+	    !section_clip(&scene->tools.section, from_m, unit, &least, &distance))
 		return INFINITY;
-	return geometry_ray(&scene->geometry, &scene->cut, from_m, unit, 0, &distance, NULL)
+	return geometry_ray(&scene->geometry, &scene->cut, from_m, unit, least, &distance, NULL)
 		       ? distance
 		       : INFINITY;
 }

@@ -10,7 +10,9 @@
 #include "format/message.h"
 #include "format/root_page.h"
 #include "render/camera.h"
+#include "render/rake.h"
 #include "render/region.h"
+#include "render/section.h"
 
 enum scene_mode {
 	SCENE_POLYGONS,  /* patches with their own colours */
@@ -72,6 +74,13 @@ struct scene_mark {
  * mark may be NULL. */
 void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
 		struct scene_frame *out);
+
+/* How it is looked at from now on, in pictures and by rays; at first neither. */
+struct scene_tools {
+	struct rake rake;
+	struct section section;
+};
+void scene_use(struct scene *scene, const struct scene_tools *tools);
 
 /* What is held of the budgets. */
 struct scene_memory {

@@ -19,10 +19,13 @@ static bool is_due(const struct scene *scene, bool moved)
 {
 	if (scene->census_us == 0 || scene->census_cut != scene->cut_signature)
 		return true;
+	if (!moved && memcmp(scene->census_section, scene->view.cut, sizeof(scene->view.cut)) != 0)
+		return true;
 	if (moved && clock_now_us() - scene->census_us < MOVING_US)
 		return false;
 	float limit = moved ? 1 : 0.2f; /* at rest it must be right */
-	return vec_distance(scene->census_eye_m, scene->view.eye_m) > limit * moved_m ||
+	return (moved && view_is_cut(&scene->view)) ||
+	       vec_distance(scene->census_eye_m, scene->view.eye_m) > limit * moved_m ||
 	       vec_distance(scene->census_forward, scene->view.forward) > limit * turned;
 }
 
@@ -104,7 +107,7 @@ static void count_point(struct scene *scene, const struct census_point *point)
 	struct piece_state *state = state_of(scene, point->piece);
 	if (!state)
 		return;
-	if (point->back)
+	if (point->back && !view_is_cut(&scene->census.view)) /* a section shows many for once */
 		scene->geometry.patches[scene->counted[point->piece].patch].sides = SIDES_BOTH;
 	int nearest = nearest_probe(state, point->at_m);
 	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
@@ -162,7 +165,7 @@ static void conclude(struct scene *scene, const struct visible_piece *visible)
 {
 	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
 	struct piece_state *state = &patch->pieces[visible->piece];
-	if (patch->sides == SIDES_UNKNOWN)
+	if (patch->sides == SIDES_UNKNOWN && !view_is_cut(&scene->census.view))
 		patch->sides = SIDES_FRONT;
 	for (int k = 0; k < PIECE_PROBES && state->seen_px > 0; k++)
 		state->weight[k] /= state->seen_px;
@@ -204,6 +207,7 @@ bool scene_take_census(struct scene *scene, bool moved)
 	sum_patches(scene);
 	scene->census_us = clock_now_us();
 	scene->census_cut = scene->cut_signature;
+	memcpy(scene->census_section, scene->census.view.cut, sizeof(scene->census_section));
 	memcpy(scene->census_eye_m, scene->census.view.eye_m, sizeof(scene->census_eye_m));
 	memcpy(scene->census_forward, scene->census.view.forward, sizeof(scene->census_forward));
 	return true;

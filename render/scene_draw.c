@@ -112,8 +112,9 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 		end_run(run);
 	if (v->patch != run->patch) {
 		geometry_bind(&scene->geometry, v->patch);
-		geometry_cull(&scene->geometry, v->patch);
-		surface_dissolve(&scene->surface, v->program, v->range);
+		if (!view_is_cut(frame->view))
+			geometry_cull(&scene->geometry, v->patch);
+		surface_dissolve(&scene->surface, v->range);
 	}
 	run->patch = v->patch;
 	if (surface_faces(v->program) > 0)
@@ -171,6 +172,7 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.tiles = images ? &scene->tiles : NULL,
 		.depth = &scene->depth,
 		.repository = &scene->repository,
+		.rake = scene->tools.rake,
 		.even = scene->options.mode == SCENE_CORNERS,
 		.shares = shares,
 	};
@@ -221,6 +223,7 @@ static bool view_changed(const struct scene *scene, const struct view *view)
 	const struct view *was = &scene->view;
 	return !scene->has_view || memcmp(was->eye_m, view->eye_m, sizeof(was->eye_m)) != 0 ||
 	       memcmp(was->clip, view->clip, sizeof(was->clip)) != 0 ||
+	       memcmp(was->cut, view->cut, sizeof(was->cut)) != 0 ||
 	       was->width_px != view->width_px || was->height_px != view->height_px;
 }
 
@@ -308,7 +311,9 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	place.framebuffer = (GLuint)framebuffer;
 	struct view view;
 	view_from_camera(&view, camera);
-	bool moved = view_changed(scene, &view);
+	section_cut(&scene->tools.section, view.eye_m, view.cut);
+	bool moved = view_changed(scene, &view) || scene->tools_moved;
+	scene->tools_moved = false;
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, out);

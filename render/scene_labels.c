@@ -52,13 +52,14 @@ int scene_open_labels(struct scene *scene, struct bytes bytes)
 
 const char *scene_part(struct scene *scene, const struct camera *camera, float x_px, float y_px)
 {
-	float direction[3], distance = INFINITY;
+	float direction[3], distance = INFINITY, least = camera->near_m;
 	struct geometry_hit hit;
 	if (!scene->has_hierarchy || !scene->labels)
 		return NULL;
 	camera_ray(camera, x_px, y_px, direction);
-	if (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, camera->near_m,
-			  &distance, &hit))
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
+	    !geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
+			  &hit))
 		return NULL;
 	const uint32_t group = scene->hierarchy.patches[hit.patch].group;
 	const struct label_group *labels = &scene->geometry.labels[group];

@@ -93,6 +93,8 @@ struct scene {
 	uint32_t *group_priority; /* of the list of wants at hand; owned */
 	struct repository repository;
 
+	struct scene_tools tools;
+	bool tools_moved; /* since the last frame */
 	/* The frame at hand. */
 	struct view view;
 	bool has_view;
@@ -110,6 +112,7 @@ struct scene {
 	float census_eye_m[3];
 	float census_forward[3];
 	uint64_t census_cut;
+	float census_section[4];
 	bool plans_are_stale; /* some piece in sight waits to be planned */
 	bool fading, depth_is_stale, uploads_wait;
 	uint64_t cut_signature;

@@ -19,6 +19,21 @@ static const char vertex_common[] =
 	"uniform vec4 u_lattice;\n" /* origin from the eye, step */
 	"uniform vec4 u_sun;\n"     /* direction, 1 where the model is lit */
 	"varying vec4 v_colour;\n"  /* a: weight of the own colour among the images */
+	"#ifdef CUT\n"
+	"uniform vec4 u_cut;\n"
+	"varying float v_cut;\n" /* metres before the plane */
+	"#endif\n"
+	"#ifdef RAKE\n"
+	"varying vec4 v_rake;\n"
+	"#endif\n"
+	"void use_tools(vec3 p, vec3 n) {\n"
+	"#ifdef CUT\n"
+	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
+	"#endif\n"
+	"#ifdef RAKE\n"
+	"	v_rake = rake_of(n, a_colour.a, u_sun);\n"
+	"#endif\n"
+	"}\n"
 	"vec3 unit_normal() {\n"
 	"	vec2 e = a_normal / 127.0;\n"
 	"	vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));\n"
@@ -34,9 +49,39 @@ static const char vertex_common[] =
 
 static const char plain_vertex[] = "void main() {\n"
 				   "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-				   "	v_colour = vec4(own_colour(unit_normal()), 1.0);\n"
+				   "	vec3 n = unit_normal();\n"
+				   "	v_colour = vec4(own_colour(n), 1.0);\n"
+				   "	use_tools(p, n);\n"
 				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
 				   "}\n";
+
+/* Backs that show are where the plane went into solid matter: one flat colour, as on a drawing of a
+ * section, and a dark line along the cut. Last, as dissolve is, in a program that looks textures
+ * up. */
+static const char tools_fragment[] =
+	"#ifdef RAKE\n"
+	"uniform vec3 u_rake;\n"
+	"varying vec4 v_rake;\n"
+	"#endif\n"
+	"#ifdef CUT\n"
+	"varying float v_cut;\n"
+	"#endif\n"
+	"vec3 lit_by_tools(vec3 colour) {\n"
+	"#ifdef RAKE\n"
+	"	colour = min(colour * rake_light(v_rake, u_rake), 1.0);\n"
+	"#endif\n"
+	"#ifdef CUT\n"
+	"	if (!gl_FrontFacing)\n"
+	"		colour = vec3(0.62, 0.28, 0.15);\n" /* the theme's laterite */
+	"#endif\n"
+	"	return colour;\n"
+	"}\n"
+	"void cut_away() {\n"
+	"#ifdef CUT\n"
+	"	if (v_cut > 0.0)\n"
+	"		discard;\n"
+	"#endif\n"
+	"}\n";
 
 /* A number of each pixel's own, spread evenly over any few neighbours (Jimenez 2014, "Next
  * generation post processing in Call of Duty: Advanced Warfare", interleaved gradient noise). */
@@ -61,7 +106,9 @@ static const char plain_fragment[] = "varying vec4 v_colour;\n"
 				     "uniform float u_share;\n"
 				     "void main() {\n"
 				     "	dissolve();\n"
-				     "	gl_FragColor = vec4(v_colour.rgb * (1.0 - u_share), 1.0);\n"
+				     "	cut_away();\n"
+				     "	gl_FragColor = vec4(lit_by_tools(v_colour.rgb) * (1.0 - u_share),"
+				     "			    1.0);\n"
 				     "}\n";
 
 /* Per face five rows: the aim's three, the point and the blend's weight, and (half_px, the aim's
@@ -109,6 +156,7 @@ static const char blended_vertex[] =
 	"	most = max(most, own);\n"
 	"	for (int i = 0; i < FACES; i++)\n"
 	"		v_face[i].w = sharpen(v_face[i].w / most);\n"
+	"	use_tools(p, n);\n"
 	"	v_colour = vec4(own_colour(n), OWN_SHARE * sharpen(own / most) + 0.0005);\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
@@ -160,7 +208,8 @@ static const char blended_fragment[] =
 	"	float own = v_colour.a;\n"
 	"	vec3 colour = (sum.rgb + own * v_colour.rgb) / (sum.a + own);\n"
 	"	float share = sum.a / (sum.a + own);\n"
-	"	gl_FragColor = vec4(mix(colour, vec3(share), u_share), 1.0);\n"
+	"	gl_FragColor = vec4(mix(lit_by_tools(colour), vec3(share), u_share), 1.0);\n"
+	"	cut_away();\n"
 	"	dissolve();\n" /* last: SwiftShader reads a texture after a discard astray */
 	"}\n";
 
@@ -179,6 +228,8 @@ static void find_uniforms(struct surface_program *p)
 	p->depth = glGetUniformLocation(p->program, "u_depth");
 	p->slack = glGetUniformLocation(p->program, "u_slack");
 	p->range = glGetUniformLocation(p->program, "u_range");
+	p->rake = glGetUniformLocation(p->program, "u_rake");
+	p->cut = glGetUniformLocation(p->program, "u_cut");
 }
 
 static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
@@ -202,13 +253,26 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 
 static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
 
-static int init_plain(struct surface_program *p, const char *dissolve)
+static const char *const tool_defines[SURFACE_TOOLS] = {
+	[0] = "",
+	[SURFACE_RAKE] = "#define RAKE\n",
+	[SURFACE_CUT] = "#define CUT\n",
+	[SURFACE_RAKE | SURFACE_CUT] = "#define RAKE\n#define CUT\n",
+};
+
+static int init_plain(struct surface_program *p, unsigned tools, const char *dissolve)
 {
+	const char *defines = tool_defines[tools], *vertex = "", *fragment = "";
+	if (tools & SURFACE_RAKE) {
+		vertex = rake_vertex_glsl;
+		fragment = rake_fragment_glsl;
+	}
 	const struct gl_program_source source = {
 		.name = "patches",
-		.vertex = (const char *const[]){ light_glsl, vertex_common, plain_vertex, NULL },
-		.fragment = (const char *const[]){ "precision mediump float;\n", dissolve,
-						   plain_fragment, NULL },
+		.vertex = (const char *const[]){ defines, light_glsl, vertex, vertex_common,
+						 plain_vertex, NULL },
+		.fragment = (const char *const[]){ "precision mediump float;\n", defines, fragment,
+						   tools_fragment, dissolve, plain_fragment, NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -218,16 +282,22 @@ static int init_plain(struct surface_program *p, const char *dissolve)
 }
 
 static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces,
-			const char *dissolve)
+			unsigned tools, const char *dissolve)
 {
+	const char *defines = tool_defines[tools], *vertex = "", *fragment = "";
 	char constants[512];
+	if (tools & SURFACE_RAKE) {
+		vertex = rake_vertex_glsl;
+		fragment = rake_fragment_glsl;
+	}
 	set_constants(constants, sizeof(constants), tiles, faces);
 	const struct gl_program_source source = {
 		.name = "lumigraph",
-		.vertex = (const char *const[]){ constants, light_glsl, vertex_common,
-						 blended_vertex, NULL },
-		.fragment = (const char *const[]){ gl_fine_fragment, constants, dissolve,
-						   blended_fragment, NULL },
+		.vertex = (const char *const[]){ defines, constants, light_glsl, vertex,
+						 vertex_common, blended_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, defines, constants, fragment,
+						   tools_fragment, dissolve, blended_fragment,
+						   NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -243,16 +313,22 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 	return 0;
 }
 
+static int init_program(struct surface *surface, unsigned tools, int program)
+{
+	struct surface_program *p = &surface->of[tools][program];
+	const int faces = surface_faces(program);
+	const char *dissolve = program == faces ? dissolve_none : dissolve_some;
+	return faces == 0 ? init_plain(p, tools, dissolve)
+			  : init_blended(p, surface->tiles, faces, tools, dissolve);
+}
+
 int surface_init(struct surface *surface, const struct tiles *tiles)
 {
 	memset(surface, 0, sizeof(*surface));
+	surface->tiles = tiles;
 	int rc = 0;
-	for (int i = 0; i < SURFACE_PROGRAMS && rc == 0; i++) {
-		const int faces = surface_faces(i);
-		const char *dissolve = i == faces ? dissolve_none : dissolve_some;
-		rc = faces == 0 ? init_plain(&surface->of[i], dissolve)
-				: init_blended(&surface->of[i], tiles, faces, dissolve);
-	}
+	for (int i = 0; i < SURFACE_PROGRAMS && rc == 0; i++)
+		rc = init_program(surface, 0, i);
 	if (rc < 0)
 		surface_finish(surface);
 	return rc;
@@ -260,15 +336,28 @@ int surface_init(struct surface *surface, const struct tiles *tiles)
 
 void surface_finish(struct surface *surface)
 {
-	for (int i = 0; i < SURFACE_PROGRAMS; i++)
-		if (surface->of[i].program)
-			glDeleteProgram(surface->of[i].program);
+	for (int tools = 0; tools < SURFACE_TOOLS; tools++)
+		for (int i = 0; i < SURFACE_PROGRAMS; i++)
+			if (surface->of[tools][i].program)
+				glDeleteProgram(surface->of[tools][i].program);
 	memset(surface, 0, sizeof(*surface));
 }
 
-void surface_begin(const struct surface *surface, const struct surface_frame *frame, int program)
+/* The program with the tools that are on. */
+static const struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
+					 int program)
 {
-	const struct surface_program *p = &surface->of[program];
+	unsigned tools = frame->rake.on && !frame->shares ? SURFACE_RAKE : 0;
+	if (view_is_cut(frame->view))
+		tools |= SURFACE_CUT;
+	if (!surface->of[tools][program].program && !surface->lacks[tools])
+		surface->lacks[tools] = init_program(surface, tools, program) < 0;
+	return &surface->of[surface->lacks[tools] ? 0 : tools][program];
+}
+
+void surface_begin(struct surface *surface, const struct surface_frame *frame, int program)
+{
+	const struct surface_program *p = surface->used = use(surface, frame, program);
 	const struct lattice *lattice = &frame->root->lattice;
 	const float *eye = frame->view->eye_m, *sun = frame->root->sun;
 	glUseProgram(p->program);
@@ -278,6 +367,14 @@ void surface_begin(const struct surface *surface, const struct surface_frame *fr
 		    (float)lattice->step_m);
 	glUniform4f(p->sun, sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
 	glUniform1f(p->share, frame->shares ? 1 : 0);
+	if (p->rake >= 0) {
+		float towards[3];
+		rake_direction(&frame->rake, frame->view->right, frame->view->up,
+			       frame->view->forward, towards);
+		glUniform3fv(p->rake, 1, towards);
+	}
+	if (p->cut >= 0)
+		glUniform4fv(p->cut, 1, frame->view->cut);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
 	if (surface_faces(program) == 0)
@@ -316,9 +413,9 @@ int surface_faces(int program)
 	return program % (PLAN_ENTRIES + 1);
 }
 
-void surface_dissolve(const struct surface *surface, int program, struct dissolve_range range)
+void surface_dissolve(const struct surface *surface, struct dissolve_range range)
 {
-	const struct surface_program *p = &surface->of[program];
+	const struct surface_program *p = surface->used;
 	if (p->range >= 0)
 		glUniform2f(p->range, range.low, range.high);
 }
@@ -381,7 +478,7 @@ static void tell(struct told *told, int at, const struct surface_frame *frame,
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
 		   const struct blend blend[PLAN_ENTRIES], const struct piece *piece, float error_m)
 {
-	const struct surface_program *p = &surface->of[program];
+	const struct surface_program *p = surface->used;
 	const int faces = surface_faces(program);
 	struct told told = { 0 };
 	int at = 0;

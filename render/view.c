@@ -48,6 +48,7 @@ void view_from_camera(struct view *view, const struct camera *camera)
 	view->picture_px = (float)camera->width_px * (float)camera->height_px;
 	set_matrix(view, camera);
 	set_sides(view);
+	view->cut[3] = 1;
 }
 
 void view_jitter(struct view *view, float x_px, float y_px)
@@ -58,6 +59,11 @@ void view_jitter(struct view *view, float x_px, float y_px)
 	}
 }
 
+bool view_is_cut(const struct view *view)
+{
+	return view->cut[0] != 0 || view->cut[1] != 0 || view->cut[2] != 0;
+}
+
 bool view_sees_sphere(const struct view *view, const float centre_m[3], float radius_m)
 {
 	float to[3];
@@ -65,6 +71,8 @@ bool view_sees_sphere(const struct view *view, const float centre_m[3], float ra
 	for (int i = 0; i < 4; i++)
 		if (vec_dot(to, view->side_normal[i]) < -radius_m)
 			return false;
+	if (view_is_cut(view) && vec_dot(to, view->cut) > view->cut[3] + radius_m)
+		return false;
 	return vec_dot(to, view->forward) > -radius_m;
 }
 

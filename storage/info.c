@@ -381,6 +381,8 @@ static int open_image(struct info *info, struct bytes image)
 				      "page");
 	if (rc == 0 && version > INFO_SCHEMA_TOURLESS)
 		rc = info_load_tours(info);
+	if (rc == 0)
+		rc = info_load_tools(info);
 	if (rc == 0 && version == 1)
 		rc = complete_version_1(info);
 	return rc;

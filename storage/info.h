@@ -56,10 +56,16 @@ struct info_faces {
 /* Judges and places it. -EINVAL: fault says what is wrong, with the cure. */
 typedef int info_place_faces(void *data, struct info_faces *faces, struct fault *fault);
 
+/* Ways of looking that the content gives visitors, a bit each: docs/tools.md. */
+enum info_tool { INFO_TOOL_LIGHT = 1, INFO_TOOL_SECTION = 2 };
+/* "light" or "section"; 0: neither. */
+unsigned info_tool_named(const char *name, size_t length);
+
 struct info_build_options {
 	const char *folder; /* the content folder: parts.json, tours.json, pages/, pictures/ */
 	const char *const *languages; /* such as "en"; the first must have every title */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MOST */
+	unsigned tools;               /* enum info_tool */
 	info_complaint *complaint;    /* NULL: they are logged */
 	void *complaint_data;
 	info_place_faces *place_faces; /* NULL: lists of faces are not looked into */
@@ -147,6 +153,9 @@ const char *info_credits(struct info *info, uint32_t part, const char *language)
  * written to parts, `most` at most; 0 for a query without words. */
 uint32_t info_search(struct info *info, const char *query, const char *language, uint32_t *parts,
 		     uint32_t most);
+
+/* What the content switched on, of enum info_tool; what this program does not know is left out. */
+unsigned info_tools(const struct info *info);
 
 /* ---- guided tours: docs/tours.md ---- */
 

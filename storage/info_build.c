@@ -295,6 +295,19 @@ static void write_tour(struct writer *w, int64_t id, const struct content_tour *
 		write_stop(w, id, i, &tour->stops[i]);
 }
 
+static void write_tools(struct writer *w, unsigned tools)
+{
+	if (tools)
+		run(w, "CREATE TABLE tool(name TEXT PRIMARY KEY) WITHOUT ROWID");
+	for (unsigned i = 0; i < INFO_TOOL_NAMES; i++) {
+		if (!(tools & 1u << i))
+			continue;
+		prepare(w, "INSERT INTO tool VALUES(?)");
+		bind_text(w, info_tool_names[i]);
+		insert(w);
+	}
+}
+
 static void write_database(struct writer *w, const struct content *content)
 {
 	char pragmas[100];
@@ -315,6 +328,7 @@ static void write_database(struct writer *w, const struct content *content)
 	}
 	for (uint32_t i = 0; i < content->tour_count; i++)
 		write_tour(w, i, &content->tours[i]);
+	write_tools(w, content->options->tools);
 	if (w->code == SQLITE_OK)
 		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
 	run(w, "COMMIT");

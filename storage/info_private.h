@@ -49,6 +49,8 @@ struct info {
 	uint32_t part_count;
 	struct tour *tours;
 	uint32_t tour_count;
+	unsigned tools;
+	bool has_tools;
 	struct info_picture *pictures; /* names owned */
 	uint32_t picture_count;
 };
@@ -61,6 +63,8 @@ must_check int info_each_row(struct info *info, const char *sql, info_row_reader
 /* A copy of a text column; NULL stays NULL. Zero bytes inside and what is not UTF-8 are refused. */
 must_check int info_copy_text(sqlite3_stmt *row, int column, char **out);
 must_check int info_read_floats(sqlite3_stmt *row, int column, float *out, int count);
+/* info_tools.c: an image has such a table or not, of any version. */
+must_check int info_load_tools(struct info *info);
 /* info_tour.c: after parts and pictures. */
 must_check int info_load_tours(struct info *info);
 void info_drop_tours(struct info *info);

@@ -9,4 +9,8 @@ enum {
 	INFO_SCHEMA_OLDEST = 1,           /* that info_open still reads; docs/information.md */
 };
 
+/* A bit each of enum info_tool, in this order. */
+enum { INFO_TOOL_NAMES = 2 };
+extern const char *const info_tool_names[INFO_TOOL_NAMES];
+
 #endif

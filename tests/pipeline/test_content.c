@@ -1,4 +1,5 @@
 #include "pipeline/content.h"
+#include "storage/info.h"
 
 #include <errno.h>
 #include <math.h>
@@ -43,6 +44,7 @@ static void defaults_need_only_a_scan(void **state)
 	CHECK(content.patch_triangles == 0 && content.publish_share == 0.10);
 	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
 	CHECK(content.lit == CONTENT_LIT_AUTO && !content.has_start && !content.binary_tree);
+	CHECK(content.tools == 0);
 	CHECK(fabs(content.sun[0] * content.sun[0] + content.sun[1] * content.sun[1] +
 		   content.sun[2] * content.sun[2] - 1) < 1e-3);
 	content_release(&content);
@@ -54,7 +56,8 @@ static void every_key_is_read(void **state)
 	static const char ini[] =
 		"# a comment\n[model]\nname = Banteay of the Test\nscans = tower.ply, tower.ply\n"
 		"up = y\nunit = mm\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
-		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n[grid]\n"
+		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
+		"tools = section, light\n[grid]\n"
 		"points = 32\nface_px = 1024\nquality = 90\n[hierarchy]\nkind = tree\n"
 		"patch_triangles = 1000\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
@@ -69,6 +72,7 @@ static void every_key_is_read(void **state)
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
 	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
 	CHECK(content.background[0] == 255 && content.has_start);
+	CHECK(content.tools == (INFO_TOOL_LIGHT | INFO_TOOL_SECTION));
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
 	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
 	CHECK(content.binary_tree && content.patch_triangles == 1000);
@@ -105,6 +109,9 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "points-text", "[grid]\npoints = 8x\n", "from 4 to 32" },
 		{ "face", "[grid]\nface_px = 500\n", "512" },
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
+		{ "tools", "[view]\n\ntools = light, lens\n",
+		  "temple.ini:3: tools = light, lens: it must be light, section" },
+		{ "tools-twice", "[view]\ntools = light light\n", "each once" },
 		{ "share", "[release]\npublish_share = 0\n", "above 0" },
 		{ "languages", "[release]\nlanguages = en f\n", "language tags" },
 	};

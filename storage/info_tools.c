@@ -1,0 +1,48 @@
+/* Which tools the content gives visitors. A table of its own that is there only where it gives some:
+ * programs that know none never ask for it, and the version stays what it is for them. */
+#include <string.h>
+
+#include "storage/info_private.h"
+#include "storage/info_schema.h"
+
+const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section" };
+
+unsigned info_tool_named(const char *name, size_t length)
+{
+	for (unsigned i = 0; i < INFO_TOOL_NAMES; i++)
+		if (strlen(info_tool_names[i]) == length &&
+		    memcmp(info_tool_names[i], name, length) == 0)
+			return 1u << i;
+	return 0;
+}
+
+static int note_table(struct info *info, sqlite3_stmt *row)
+{
+	(void)row;
+	info->has_tools = true;
+	return 0;
+}
+
+static int read_tool(struct info *info, sqlite3_stmt *row)
+{
+	const char *name = (const char *)sqlite3_column_text(row, 0);
+
+	info->tools |= name ? info_tool_named(name, strlen(name)) : 0;
+	return 0;
+}
+
+int info_load_tools(struct info *info)
+{
+	int rc = info_each_row(
+		info, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'tool'",
+		note_table);
+
+	if (rc == 0 && info->has_tools)
+		rc = info_each_row(info, "SELECT name FROM tool", read_tool);
+	return rc;
+}
+
+unsigned info_tools(const struct info *info)
+{
+	return info->tools;
+}
