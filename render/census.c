@@ -50,8 +50,8 @@ static int build(struct census_program *out, const char *defines)
 	const struct gl_program_source source = {
 		.name = "census",
 		.vertex = (const char *const[]){ defines, census_vertex, NULL },
-		.fragment = (const char *const[]){ gl_fine_fragment, defines, census_fragment,
-						   NULL },
+		.fragment =
+			(const char *const[]){ gl_fine_fragment, defines, census_fragment, NULL },
 		.attributes = (const char *const[]){ "a_position", NULL },
 	};
 	int rc = gl_program_build(&out->program, &source);

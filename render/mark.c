@@ -10,8 +10,8 @@ static const char mark_vertex[] =
 	"uniform vec4 u_lattice;\n"
 	"uniform vec4 u_middle;\n" /* of the region from the eye; focal_px */
 	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n"  /* before the section */
-	"varying vec4 v_at;\n"     /* from there; a pixel's width */
+	"varying float v_cut;\n" /* before the section */
+	"varying vec4 v_at;\n"   /* from there; a pixel's width */
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"

@@ -25,8 +25,8 @@ static const char line_vertex[] =
 	"uniform vec4 u_lattice;\n"
 	"uniform vec4 u_picture;\n" /* half its sides, focal length: pixels */
 	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n"    /* before the section */
-	"varying vec3 v_at;\n"      /* pixels along, across; length */
+	"varying float v_cut;\n" /* before the section */
+	"varying vec3 v_at;\n"   /* pixels along, across; length */
 	"void main() {\n"
 	"	const float reach = 3.5;\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
@@ -65,18 +65,17 @@ static const char line_fragment[] =
 	"	gl_FragColor = vec4(1.0, 0.78, 0.25, alpha);\n"
 	"}\n";
 
-static const char tint_vertex[] =
-	"invariant gl_Position;\n"
-	"attribute vec3 a_position;\n"
-	"uniform mat4 u_clip;\n"
-	"uniform vec4 u_lattice;\n"
-	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n"
-	"void main() {\n"
-	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
-	"	gl_Position = u_clip * vec4(p, 1.0);\n"
-	"}\n";
+static const char tint_vertex[] = "invariant gl_Position;\n"
+				  "attribute vec3 a_position;\n"
+				  "uniform mat4 u_clip;\n"
+				  "uniform vec4 u_lattice;\n"
+				  "uniform vec4 u_cut;\n"
+				  "varying float v_cut;\n"
+				  "void main() {\n"
+				  "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+				  "	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
+				  "	gl_Position = u_clip * vec4(p, 1.0);\n"
+				  "}\n";
 
 static const char tint_fragment[] = "varying float v_cut;\n"
 				    "void main() {\n"

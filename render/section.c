@@ -50,8 +50,7 @@ void section_face(struct section *section, const float eye_m[3], const float for
 
 void section_push(struct section *section, float by_m)
 {
-	section->push_m =
-		fmaxf(-section->reach_m, fminf(section->push_m + by_m, section->reach_m));
+	section->push_m = fmaxf(-section->reach_m, fminf(section->push_m + by_m, section->reach_m));
 }
 
 void section_turn(struct section *section, float turn_rad)

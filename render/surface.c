@@ -102,14 +102,15 @@ static const char dissolve_some[] =
 	"		discard;\n"
 	"}\n";
 
-static const char plain_fragment[] = "varying vec4 v_colour;\n"
-				     "uniform float u_share;\n"
-				     "void main() {\n"
-				     "	dissolve();\n"
-				     "	cut_away();\n"
-				     "	gl_FragColor = vec4(lit_by_tools(v_colour.rgb) * (1.0 - u_share),"
-				     "			    1.0);\n"
-				     "}\n";
+static const char plain_fragment[] =
+	"varying vec4 v_colour;\n"
+	"uniform float u_share;\n"
+	"void main() {\n"
+	"	dissolve();\n"
+	"	cut_away();\n"
+	"	gl_FragColor = vec4(lit_by_tools(v_colour.rgb) * (1.0 - u_share),"
+	"			    1.0);\n"
+	"}\n";
 
 /* Per face five rows: the aim's three, the point and the blend's weight, and (half_px, the aim's
  * depth, 0, 0). The quality is plan_quality's twin. */
@@ -295,9 +296,9 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ defines, constants, light_glsl, vertex,
 						 vertex_common, blended_vertex, NULL },
-		.fragment = (const char *const[]){ gl_fine_fragment, defines, constants, fragment,
-						   tools_fragment, dissolve, blended_fragment,
-						   NULL },
+		.fragment =
+			(const char *const[]){ gl_fine_fragment, defines, constants, fragment,
+					       tools_fragment, dissolve, blended_fragment, NULL },
 		.attributes = attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);

@@ -13,7 +13,8 @@
 
 struct surface_program {
 	GLuint program;
-	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range, rake, cut;
+	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range,
+		rake, cut;
 };
 
 /* A program for each number of faces: none, the patch's own colours, is the cheapest; and one each

@@ -12,8 +12,8 @@ struct view {
 	float tan_x, tan_y;                /* of half the field of view */
 	float focal_px;                    /* pixels of one unit of tangent, in the middle */
 	float picture_px;                  /* width x height */
-	float clip[16];          /* metres relative to the eye to clip space, as GL takes it */
-	float cut[4]; /* shown is where dot(cut, p) <= cut[3], p metres from the eye: section.h */
+	float clip[16]; /* metres relative to the eye to clip space, as GL takes it */
+	float cut[4];   /* shown is where dot(cut, p) <= cut[3], p metres from the eye: section.h */
 	float side_normal[4][3]; /* left, right, bottom, top: inward, unit, through the eye */
 	int width_px, height_px;
 };

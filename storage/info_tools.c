@@ -1,5 +1,5 @@
-/* Which tools the content gives visitors. A table of its own that is there only where it gives some:
- * programs that know none never ask for it, and the version stays what it is for them. */
+/* Which tools the content gives visitors. A table of its own that is there only where it gives
+ * some: programs that know none never ask for it, and the version stays what it is for them. */
 #include <string.h>
 
 #include "storage/info_private.h"
@@ -33,9 +33,9 @@ static int read_tool(struct info *info, sqlite3_stmt *row)
 
 int info_load_tools(struct info *info)
 {
-	int rc = info_each_row(
-		info, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'tool'",
-		note_table);
+	int rc = info_each_row(info,
+			       "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = 'tool'",
+			       note_table);
 
 	if (rc == 0 && info->has_tools)
 		rc = info_each_row(info, "SELECT name FROM tool", read_tool);
