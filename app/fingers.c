@@ -258,6 +258,12 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_REACH:
 		change_comfort(kiosk, action->kind);
 		break;
+	case OVERLAY_LIGHT:
+		tools_press(kiosk, OVERLAY_TOOL_LIGHT);
+		break;
+	case OVERLAY_SECTION:
+		tools_press(kiosk, OVERLAY_TOOL_SECTION);
+		break;
 	case OVERLAY_PICTURE:
 		overlay_show_picture(overlay, action->picture);
 		log_debug("app", "picture %d", action->picture);
@@ -445,7 +451,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	if (guest_takes_touch(kiosk, event))
 		return;
 	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
-	if (!types(kiosk, &seen))
+	if (!tools_take_touch(kiosk, &seen) && !types(kiosk, &seen))
 		gesture_feed(&kiosk->gestures, &seen);
 }
 

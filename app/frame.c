@@ -123,6 +123,8 @@ static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 	if (kiosk->eye_moves || kiosk->shown.frame.moving ||
 	    kiosk->looked_triangles != kiosk->shown.frame.triangles)
 		kiosk->anchors_to_look = count;
+	if (kiosk->anchors_to_look > count)
+		kiosk->anchors_to_look = count;
 	kiosk->looked_triangles = kiosk->shown.frame.triangles;
 	for (int i = 0; i < ANCHORS_A_FRAME && kiosk->anchors_to_look > 0; i++) {
 		kiosk->next_anchor = (kiosk->next_anchor + 1) % count;
@@ -161,7 +163,10 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 			frame_from_panel(kiosk, &a->x_px, &a->y_px);
 		a->hidden = kiosk->hidden[i];
 		a->size_px = size_on_panel(kiosk, info_part(info, i));
-		a->visible = before_eye && a->x_px >= rect.x_px && a->y_px >= rect.y_px &&
+		a->visible = before_eye &&
+			     section_keeps(&kiosk->tools.now.section,
+					   info_part(info, i)->anchor_m) &&
+			     a->x_px >= rect.x_px && a->y_px >= rect.y_px &&
 			     a->x_px < rect.x_px + rect.width_px &&
 			     a->y_px < rect.y_px + rect.height_px;
 	}
@@ -327,6 +332,7 @@ int frame_draw(struct kiosk *kiosk)
 		frame_camera(kiosk, &kiosk->camera);
 		say_eye(kiosk, now_ms);
 	}
+	tools_say(kiosk);
 	exhibit_warm(kiosk);
 	display_begin(kiosk->display);
 	draw_scene(kiosk, words);

@@ -15,7 +15,8 @@ static bool is_reading(const struct kiosk *kiosk)
 			return true;
 	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
 			   overlay_searching(overlay) || overlay_choosing(overlay) ||
-			   kiosk->tour.state == TOUR_HALTED);
+			   kiosk->tour.state == TOUR_HALTED || kiosk->tools.now.rake.on ||
+			   kiosk->tools.now.section.on);
 }
 
 int64_t guest_clock_s(void)
@@ -45,6 +46,7 @@ static void begin_anew(struct kiosk *kiosk)
 	const char *language = kiosk->options.language;
 
 	guide_end(kiosk);
+	tools_end(kiosk);
 	if (overlay) {
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);

@@ -9,6 +9,7 @@
 #include "app/provision.h"
 #include "app/roam.h"
 #include "app/story.h"
+#include "app/tools.h"
 #include "app/tour.h"
 #include "app/visit.h"
 #include "app/wants.h"
@@ -85,6 +86,7 @@ struct kiosk {
 	enum visit_state visit_said; /* as the log has it */
 	int asked_s;                 /* as the words have it */
 	struct tour tour;            /* a visitor's, or nobody's */
+	struct tools tools;          /* a visitor's */
 	struct roam roam;
 	int64_t roam_since_ms; /* the eye's way without a visitor began, or will */
 
@@ -186,6 +188,14 @@ bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms);
 void guide_say(struct kiosk *kiosk);
 /* The part that is lit, or -1. */
 int guide_part(const struct kiosk *kiosk);
+
+/* tools.c: the light and the section that visitors hold. */
+void tools_press(struct kiosk *kiosk, unsigned tool); /* enum overlay_tool: on, or off again */
+void tools_end(struct kiosk *kiosk);                  /* all is as for whoever comes */
+/* true: the finger is a tool's until it lifts. */
+bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event);
+/* Before each frame: what scene and words have of them. */
+void tools_say(struct kiosk *kiosk);
 
 /* trial.c: whether a new release works. */
 /* A release that is on trial is proven by its picture on the panel, or the one before it taken. */

@@ -237,6 +237,10 @@ static int create_overlay(struct story *story)
 	return overlay_create(&story->overlay, &options);
 }
 
+_Static_assert((int)INFO_TOOL_LIGHT == (int)OVERLAY_TOOL_LIGHT &&
+		       (int)INFO_TOOL_SECTION == (int)OVERLAY_TOOL_SECTION,
+	       "one set of tools");
+
 static void give_database(struct story *story, struct bytes object)
 {
 	struct info *info;
@@ -254,6 +258,7 @@ static void give_database(struct story *story, struct bytes object)
 	rc = create_overlay(story);
 	if (rc == 0) {
 		overlay_language(story->overlay, story->language);
+		overlay_offer_tools(story->overlay, info_tools(info));
 		rc = tell_parts(story);
 		if (rc == 0)
 			rc = tell_tours(story);

@@ -38,8 +38,7 @@ static struct theme type_of(const struct chrome *chrome, const struct theme *the
 }
 
 static void try_layout(struct chrome *chrome, const struct theme *theme,
-		       const char *const *languages, uint32_t language_count, bool has_search,
-		       bool has_tours, bool has_reach)
+		       const char *const *languages, uint32_t language_count, struct chrome_has has)
 {
 	struct theme type = type_of(chrome, theme);
 	int target_px = theme_px(theme, chrome->tight ? THEME_TARGET_MM : BAR_MM);
@@ -49,12 +48,16 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 	chrome->width_px = 0;
 	add(chrome, CHROME_HOME, -1, target_px);
 	add(chrome, CHROME_HELP, -1, target_px);
-	if (has_search)
+	if (has.search)
 		add(chrome, CHROME_SEARCH, -1, target_px);
-	if (has_tours)
+	if (has.tours)
 		add(chrome, CHROME_TOURS, -1, target_px);
+	if (has.light && !chrome->toolless)
+		add(chrome, CHROME_LIGHT, -1, target_px);
+	if (has.section && !chrome->toolless)
+		add(chrome, CHROME_SECTION, -1, target_px);
 	add(chrome, CHROME_LARGE, -1, target_px);
-	if (has_reach)
+	if (has.reach)
 		add(chrome, CHROME_REACH, -1, target_px);
 	for (uint32_t i = 0; language_count > 1 && i < language_count; i++) {
 		char code[20];
@@ -70,19 +73,18 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 }
 
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search, bool has_tours,
-		   bool has_reach)
+		   uint32_t language_count, int most_width_px, struct chrome_has has)
 {
 	if (language_count > CHROME_LANGUAGES_MOST)
 		language_count = CHROME_LANGUAGES_MOST;
 	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM) };
 	/* Before buttons shrink, type does: so large type moves none but the languages. */
-	bool *const savings[] = { &out->codes, &out->usual, &out->tight };
+	bool *const savings[] = { &out->codes, &out->usual, &out->tight, &out->toolless };
 
-	try_layout(out, theme, languages, language_count, has_search, has_tours, has_reach);
+	try_layout(out, theme, languages, language_count, has);
 	for (size_t i = 0; i < ARRAY_COUNT(savings) && out->width_px > most_width_px; i++) {
 		*savings[i] = true;
-		try_layout(out, theme, languages, language_count, has_search, has_tours, has_reach);
+		try_layout(out, theme, languages, language_count, has);
 	}
 }
 
@@ -105,6 +107,7 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 	static const enum icon icons[] = {
 		[CHROME_HOME] = ICON_HOME,     [CHROME_HELP] = ICON_HELP,
 		[CHROME_SEARCH] = ICON_SEARCH, [CHROME_TOURS] = ICON_TOUR,
+		[CHROME_LIGHT] = ICON_LIGHT,   [CHROME_SECTION] = ICON_SECTION,
 		[CHROME_LARGE] = ICON_LARGE,   [CHROME_REACH] = ICON_REACH
 	};
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
@@ -132,6 +135,7 @@ int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct th
 {
 	const bool on[] = { [CHROME_HELP] = state.help,   [CHROME_SEARCH] = state.search,
 			    [CHROME_TOURS] = state.tours, [CHROME_LARGE] = state.large,
+			    [CHROME_LIGHT] = state.light, [CHROME_SECTION] = state.section,
 			    [CHROME_REACH] = state.reach, [CHROME_LANGUAGE] = false };
 	cairo_t *context;
 	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);

@@ -1,19 +1,21 @@
-/* What is always there, always in the same place: home, help, search, tours, large type, reach and
- * the languages, on one bar at the lower left, where a seated visitor reaches it too; and the help
- * it shows. */
+/* What is always there, always in the same place: home, help, search, tours, tools, large type,
+ * reach and the languages, on one bar at the lower left, where a seated visitor reaches it too; and
+ * the help it shows. */
 #ifndef GOPURA_UI_CHROME_H
 #define GOPURA_UI_CHROME_H
 
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 6 };
+enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 8 };
 
 enum chrome_button_kind {
 	CHROME_HOME,
 	CHROME_HELP,
 	CHROME_SEARCH,
 	CHROME_TOURS,
+	CHROME_LIGHT,
+	CHROME_SECTION,
 	CHROME_LARGE,
 	CHROME_REACH,
 	CHROME_LANGUAGE,
@@ -29,19 +31,24 @@ struct chrome {
 	struct chrome_button buttons[CHROME_BUTTONS_MOST];
 	uint32_t button_count;
 	int width_px, height_px;
-	bool codes; /* no room for the languages' names: their codes */
-	bool usual; /* no room for large type: labels at their usual size */
-	bool tight; /* not even for those at full size: no button wider than a finger */
+	bool codes;    /* no room for the languages' names: their codes */
+	bool usual;    /* no room for large type: labels at their usual size */
+	bool tight;    /* not even for those at full size: no button wider than a finger */
+	bool toolless; /* nor for those: the tools are left out */
+};
+
+/* What there is beside home, help, large type and languages. */
+struct chrome_has {
+	bool search, tours, light, section, reach;
 };
 
 /* languages are borrowed for the call. One language alone needs no switch. */
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
-		   uint32_t language_count, int most_width_px, bool has_search, bool has_tours,
-		   bool has_reach);
+		   uint32_t language_count, int most_width_px, struct chrome_has has);
 
 struct chrome_state {
 	int language; /* index of the one that is set */
-	bool help, search, tours, large, reach;
+	bool help, search, tours, large, reach, light, section;
 };
 
 /* A fresh bitmap of the bar; what is on is shown so. */

@@ -97,6 +97,28 @@ static void draw_seated(cairo_t *c)
 	dot(c, -0.32, -0.8, 0.2);
 }
 
+static void draw_light(cairo_t *c)
+{
+	line(c, -0.98, 0.9, 0.98, 0.9);
+	for (int ray = 0; ray < 4; ray++) {
+		const double turn = -0.1 - ray * 0.5, x = cos(turn), y = sin(turn);
+
+		line(c, -0.55 + 0.62 * x, 0.25 + 0.62 * y, -0.55 + 1.1 * x, 0.25 + 1.1 * y);
+	}
+	cairo_move_to(c, 0.3, 0.9);
+	cairo_curve_to(c, 0.4, 0.35, 0.85, 0.35, 0.95, 0.9);
+	dot(c, -0.55, 0.25, 0.34);
+}
+
+static void draw_section(cairo_t *c)
+{
+	cairo_rectangle(c, -0.85, -0.5, 1.7, 1.1);
+	line(c, 0, -1, 0, 1);
+	cairo_stroke(c);
+	cairo_rectangle(c, -0.85, -0.5, 0.85, 1.1);
+	cairo_fill(c);
+}
+
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
 {
 	cairo_save(context);
@@ -159,6 +181,17 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		cairo_stroke(context);
 		ring(context, 0.62, -0.6, 0.3);
 		dot(context, -0.75, 0.7, 0.26);
+		break;
+	case ICON_LIGHT:
+		draw_light(context);
+		break;
+	case ICON_SECTION:
+		draw_section(context);
+		break;
+	case ICON_PUSH:
+		line(context, 0, -0.95, 0, 0.95);
+		arrow_head(context, 0, -0.95, 0, -1);
+		arrow_head(context, 0, 0.95, 0, 1);
 		break;
 	case ICON_PAUSE:
 		line(context, -0.4, -0.7, -0.4, 0.7);

@@ -39,10 +39,16 @@ void overlay_lay_out_chrome(struct overlay *overlay)
 	int gaps_px = 2 * theme_px(&overlay->theme, THEME_GAP_MM);
 	/* It must fit beside an open page. */
 	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
+	const struct chrome_has has = {
+		.search = overlay->part_count > 0,
+		.tours = overlay->tours.count > 0,
+		.light = overlay->tools.offered & OVERLAY_TOOL_LIGHT,
+		.section = overlay->tools.offered & OVERLAY_TOOL_SECTION,
+		.reach = overlay_offers_reach(overlay),
+	};
 
 	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		      overlay->language_count, most_px - gaps_px, overlay->part_count > 0,
-		      overlay->tours.count > 0, overlay_offers_reach(overlay));
+		      overlay->language_count, most_px - gaps_px, has);
 	overlay->chrome_dirty = true;
 }
 
@@ -209,7 +215,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->chrome_dirty = overlay->help_dirty = true;
 		overlay->question_drawn_s = 0; /* in the other language */
 		overlay->card_dirty = overlay->head_dirty = true;
-		overlay->tour.dirty = overlay->tours.dirty = true;
+		overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
 		overlay_search_language(overlay);
 		overlay_forget_labels(overlay);
 	}
@@ -408,6 +414,10 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_SEARCH;
 	} else if (button->kind == CHROME_TOURS) {
 		action.kind = OVERLAY_TOURS;
+	} else if (button->kind == CHROME_LIGHT) {
+		action.kind = OVERLAY_LIGHT;
+	} else if (button->kind == CHROME_SECTION) {
+		action.kind = OVERLAY_SECTION;
 	} else if (button->kind == CHROME_LARGE) {
 		action.kind = OVERLAY_LARGE;
 	} else if (button->kind == CHROME_REACH) {
@@ -452,6 +462,10 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 	if (overlay_tour_shows(overlay) &&
 	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
 		return overlay_tour_tap(overlay, x_px, y_px);
+	if (overlay_on_tools(overlay, x_px, y_px)) {
+		action.kind = OVERLAY_SWALLOWED;
+		return action;
+	}
 	if (overlay->help.on && overlay_rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
 		action.kind = OVERLAY_HELP;
 		return action;
@@ -476,6 +490,8 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 		return true;
 	if (overlay_tour_shows(overlay) &&
 	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
+		return true;
+	if (overlay_on_tools(overlay, x_px, y_px))
 		return true;
 	return overlay->card_part >= 0 &&
 	       overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px);
@@ -636,6 +652,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	overlay->then_ms = now_ms;
 	draw_what_changed(overlay);
 	moving = overlay_update_tours(overlay, step_ms);
+	moving |= overlay_update_tools(overlay, step_ms);
 	if (overlay->callouts_dirty)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;

@@ -129,6 +129,21 @@ struct overlay_tour_state {
 };
 void overlay_show_tour(struct overlay *overlay, const struct overlay_tour_state *state);
 
+/* Ways of looking that the content gives visitors, a bit each: docs/tools.md. None at first. */
+enum overlay_tool { OVERLAY_TOOL_LIGHT = 1, OVERLAY_TOOL_SECTION = 2 };
+enum { OVERLAY_TOOL_COUNT = 2 };
+void overlay_offer_tools(struct overlay *overlay, unsigned tools);
+/* Those there is room for on the bar. */
+unsigned overlay_tools_offered(const struct overlay *overlay);
+/* Each frame. Directions are the disc's: its ring is at 1, up is away from who looks. */
+struct overlay_tools {
+	unsigned on;
+	float light_at[2]; /* right, up */
+	float turn_rad;    /* of what is cut away, from up to the left */
+	float push;        /* of the section that way; 1 and -1 at the ring */
+};
+void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *state);
+
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 
@@ -162,6 +177,8 @@ enum overlay_action_kind {
 	OVERLAY_SEARCH,  /* the search, which is open or not (overlay_searching), changes over */
 	OVERLAY_LARGE,   /* large type (overlay_comfort) changes over */
 	OVERLAY_REACH,   /* so does reach */
+	OVERLAY_LIGHT,   /* the tool, which is on or not, changes over */
+	OVERLAY_SECTION, /* so does this one */
 	OVERLAY_KEY,     /* key: for overlay_press */
 	OVERLAY_FOUND,   /* part: one of those that were found */
 	OVERLAY_PICTURE, /* picture: for overlay_show_picture */
@@ -187,6 +204,17 @@ struct overlay_action {
 struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px);
 /* A gesture that begins there is ours (it scrolls the page or is swallowed), not the model's. */
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px);
+/* A finger that comes down on one has it until it lifts. */
+enum overlay_handle {
+	OVERLAY_HANDLE_NONE,
+	OVERLAY_HANDLE_LIGHT,
+	OVERLAY_HANDLE_PUSH,
+	OVERLAY_HANDLE_TURN,
+};
+enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px, float y_px);
+/* Where the finger is on its disc: right, up; also beyond the ring. */
+void overlay_handle_place(const struct overlay *overlay, enum overlay_handle handle, float x_px,
+			  float y_px, float at[2]);
 /* Scrolls the page by a finger's movement; a fling goes on by itself. */
 void overlay_scroll(struct overlay *overlay, float dy_px);
 void overlay_fling(struct overlay *overlay, float vy_px_per_s);

@@ -143,7 +143,9 @@ void overlay_draw_chrome(struct overlay *overlay)
 		&fresh, &overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
 		(struct chrome_state){ overlay->language, overlay->help.on, overlay->search.fade.on,
 				       overlay->tours.fade.on || overlay->tour.on,
-				       overlay->comfort.large, overlay->comfort.reach });
+				       overlay->comfort.large, overlay->comfort.reach,
+				       overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
+				       overlay->tools.now.on & OVERLAY_TOOL_SECTION });
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
 }

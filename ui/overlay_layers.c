@@ -279,6 +279,51 @@ static void add_help(struct list *list)
 			   (float)help.y_px + middles_px[i][1] - (float)finger->height_px / 2);
 }
 
+/* A quad about a place, its height along a unit vector. */
+static void add_turned(struct list *list, int id, float alpha, const float at[2],
+		       const float along[2], float half_across, float half_along)
+{
+	struct overlay_layer *layer = add(list, id, alpha);
+	static const float sides[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
+
+	if (!layer)
+		return;
+	for (int corner = 0; corner < 4; corner++) {
+		const float across = sides[corner][0] * half_across;
+		const float down = sides[corner][1] * half_along;
+
+		layer->corners_px[corner][0] = at[0] + across * along[1] - down * along[0];
+		layer->corners_px[corner][1] = at[1] - across * along[0] - down * along[1];
+	}
+}
+
+static void add_tools(struct list *list)
+{
+	const struct overlay *overlay = list->overlay;
+	const float knob = (float)overlay->drawings[BITMAP_KNOB].bitmap.width_px / 2;
+	const float upright[2] = { 0, -1 };
+	float alpha[OVERLAY_TOOL_COUNT];
+	struct overlay_knobs knobs;
+
+	overlay_tool_knobs(overlay, &knobs);
+	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
+		const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
+
+		alpha[tool] = ease(overlay->tools.fade[tool].alpha);
+		if (alpha[tool] > 0)
+			add_bitmap(list, BITMAP_DISC + tool, alpha[tool], (float)rect.x_px,
+				   (float)rect.y_px);
+	}
+	if (alpha[0] > 0)
+		add_turned(list, BITMAP_KNOB, alpha[0], knobs.light, upright, knob, knob);
+	if (alpha[1] <= 0)
+		return;
+	add_turned(list, BITMAP_CUT, alpha[1], knobs.push, knobs.along, knobs.line_px,
+		   knobs.thick_px);
+	add_turned(list, BITMAP_KNOB, alpha[1], knobs.turn, upright, knob, knob);
+	add_turned(list, BITMAP_PUSH, alpha[1], knobs.push, knobs.along, knob, knob);
+}
+
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
 {
 	struct list list = { .overlay = overlay, .layers = layers, .most = most };
@@ -289,6 +334,7 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	struct overlay_rect tour = overlay_tour_rect(overlay), menu = overlay_menu_rect(overlay);
 
 	add_callouts(&list);
+	add_tools(&list);
 	add_help(&list);
 	add_bitmap(&list, BITMAP_INVITATION, ease(overlay->invitation.alpha),
 		   (float)invitation.x_px, (float)invitation.y_px);

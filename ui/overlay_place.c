@@ -232,7 +232,12 @@ static struct callout_area callout_area(const struct overlay *overlay)
 		floor_px = overlay_invitation_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
 	else if (overlay->help.on)
 		floor_px = overlay_help_rect(overlay).y_px - px(overlay, THEME_GAP_MM);
+	if (!overlay->comfort.reach &&
+	    overlay_tools_top(overlay) - px(overlay, THEME_GAP_MM) < floor_px)
+		floor_px = overlay_tools_top(overlay) - px(overlay, THEME_GAP_MM);
 	if (overlay->comfort.reach) {
+		if (overlay_tools_left(overlay) < area.x_px + area.width_px)
+			area.width_px = overlay_tools_left(overlay) - area.x_px - margin_px;
 		area.above_px = overlay_reach_top(overlay) - area.y_px;
 		area.y_px = overlay_reach_top(overlay);
 		if (overlay->page_part >= 0 || overlay->search.fade.on)

@@ -39,6 +39,10 @@ enum bitmap_id {
 	BITMAP_PICTURE_WORDS,
 	BITMAP_TOUR,
 	BITMAP_TOURS,
+	BITMAP_DISC, /* a tool each */
+	BITMAP_KNOB = BITMAP_DISC + OVERLAY_TOOL_COUNT,
+	BITMAP_PUSH,
+	BITMAP_CUT,
 	BITMAP_PICTURE,
 	BITMAP_PICTURE_BUTTON = BITMAP_PICTURE + GALLERY_SLOTS,
 	BITMAP_STRIP = BITMAP_PICTURE_BUTTON + GALLERY_BUTTONS,
@@ -130,6 +134,14 @@ struct tour_panel {
 	char caption[TOUR_CAPTION_BYTES];
 };
 
+struct tools_panel {
+	unsigned offered;
+	struct overlay_tools now;
+	struct fade fade[OVERLAY_TOOL_COUNT]; /* on: what is open leaves its place */
+	struct overlay_rect drawn;            /* as large as the discs' bitmaps are */
+	bool dirty;
+};
+
 struct overlay {
 	int width_px, height_px;
 	struct picture_source pictures;
@@ -160,6 +172,7 @@ struct overlay {
 	float scroll_px, scroll_px_per_s;
 	struct search search;
 	struct gallery gallery;
+	struct tools_panel tools;
 	struct tours_menu tours;
 	struct tour_panel tour;
 
@@ -253,6 +266,21 @@ struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px
 void overlay_drop_tours(struct tour_entry *entries);
 void overlay_picture_of_tours(struct overlay *overlay, const char *name);
 bool overlay_update_tours(struct overlay *overlay, int64_t step_ms);
+
+/* overlay_tools.c */
+struct overlay_knobs {
+	float light[2], turn[2], push[2];
+	float along[2];          /* the push's way, a unit vector */
+	float line_px, thick_px; /* half of what the section's line is long and thick */
+};
+struct overlay_rect overlay_tool_rect(const struct overlay *overlay, int tool);
+bool overlay_tool_shows(const struct overlay *overlay, int tool);
+/* Of those that show: the panel's own height and width where none does. */
+int overlay_tools_top(const struct overlay *overlay);
+int overlay_tools_left(const struct overlay *overlay);
+bool overlay_on_tools(const struct overlay *overlay, float x_px, float y_px);
+void overlay_tool_knobs(const struct overlay *overlay, struct overlay_knobs *out);
+bool overlay_update_tools(struct overlay *overlay, int64_t step_ms);
 
 /* Callouts into labels. true: some wait to be drawn. */
 void overlay_lay_out_callouts(struct overlay *overlay);

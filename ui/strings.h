@@ -15,6 +15,8 @@ enum ui_string {
 	UI_SEARCH,
 	UI_NOTHING_FOUND,
 	UI_TOURS,
+	UI_LIGHT, /* the tools */
+	UI_SECTION,
 	UI_STRING_COUNT,
 };
 

@@ -1,0 +1,181 @@
+#include "app/tools.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "app/kiosk.h"
+#include "base/log.h"
+
+/* Where the lamp is when it is switched on: from the upper left, as drawings have it, and low. */
+static const float first_light[2] = { -0.62f, 0.52f };
+
+/* Of the eye, about the vertical: discs have up away from it. */
+static float heading(const struct kiosk *kiosk)
+{
+	const float *eye = kiosk->camera.eye_m, *target = kiosk->camera.target_m;
+
+	return atan2f(target[1] - eye[1], target[0] - eye[0]);
+}
+
+static unsigned offered(const struct kiosk *kiosk)
+{
+	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	return overlay ? overlay_tools_offered(overlay) : 0;
+}
+
+static void say(const struct kiosk *kiosk)
+{
+	const struct rake *rake = &kiosk->tools.now.rake;
+	const struct section *section = &kiosk->tools.now.section;
+
+	if (rake->on)
+		log_debug("app", "light at %.2f %.2f", (double)rake->at[0], (double)rake->at[1]);
+	if (section->on)
+		log_debug("app", "section at %.2f m, turned %.2f", (double)section->push_m,
+			  (double)section->turn_rad);
+	if (!rake->on && !section->on)
+		log_debug("app", "no tools");
+}
+
+static void let_go(struct tools *tools)
+{
+	tools->held = OVERLAY_HANDLE_NONE;
+	tools->contact = TOOLS_CONTACT_NONE;
+}
+
+void tools_press(struct kiosk *kiosk, unsigned tool)
+{
+	const struct navigator_options *o = &kiosk->navigator.options;
+	struct scene_tools *now = &kiosk->tools.now;
+
+	let_go(&kiosk->tools);
+	if (tool == OVERLAY_TOOL_LIGHT) {
+		now->rake.on = !now->rake.on;
+		rake_place(&now->rake, first_light[0], first_light[1]);
+	} else if (now->section.on) {
+		now->section.on = false;
+	} else {
+		float forward[3];
+
+		for (int k = 0; k < 3; k++)
+			forward[k] = kiosk->camera.target_m[k] - kiosk->camera.eye_m[k];
+		const float far = hypotf(hypotf(forward[0], forward[1]), forward[2]);
+		for (int k = 0; k < 3 && far > 0; k++)
+			forward[k] /= far;
+		section_init(&now->section, o->box_min_m, o->box_max_m);
+		section_face(&now->section, kiosk->camera.eye_m, forward);
+	}
+	kiosk->anchors_to_look = OVERLAY_PARTS_MOST; /* other stone is before them */
+	say(kiosk);
+	kiosk_redraw(kiosk);
+}
+
+void tools_end(struct kiosk *kiosk)
+{
+	struct scene_tools *now = &kiosk->tools.now;
+
+	let_go(&kiosk->tools);
+	if (!now->rake.on && !now->section.on)
+		return;
+	now->rake.on = now->section.on = false;
+	say(kiosk);
+	kiosk_redraw(kiosk);
+}
+
+/* ---- fingers */
+
+static void grab(struct kiosk *kiosk, int contact, enum overlay_handle handle, const float at[2])
+{
+	struct tools *tools = &kiosk->tools;
+
+	tools->held = handle;
+	tools->contact = contact;
+	memcpy(tools->grabbed_at, at, sizeof(tools->grabbed_at));
+	tools->grabbed_push_m = tools->now.section.push_m;
+}
+
+static void move(struct kiosk *kiosk, const float at[2])
+{
+	struct tools *tools = &kiosk->tools;
+	struct section *section = &tools->now.section;
+	const float turn = section->turn_rad - heading(kiosk);
+
+	switch (tools->held) {
+	case OVERLAY_HANDLE_NONE:
+		break;
+	case OVERLAY_HANDLE_LIGHT:
+		rake_place(&tools->now.rake, at[0], at[1]);
+		break;
+	case OVERLAY_HANDLE_TURN:
+		if (hypotf(at[0], at[1]) > 0.1f)
+			section_turn(section, heading(kiosk) + atan2f(-at[0], at[1]));
+		break;
+	case OVERLAY_HANDLE_PUSH:
+		/* As far as the finger went along the normal. */
+		section->push_m = tools->grabbed_push_m;
+		section_push(section,
+			     section->reach_m * ((at[1] - tools->grabbed_at[1]) * cosf(turn) -
+						 (at[0] - tools->grabbed_at[0]) * sinf(turn)));
+		break;
+	}
+	kiosk->anchors_to_look = OVERLAY_PARTS_MOST;
+	kiosk_redraw(kiosk);
+}
+
+bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
+{
+	struct tools *tools = &kiosk->tools;
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const bool is_holder =
+		tools->held != OVERLAY_HANDLE_NONE && tools->contact == (int)event->contact;
+	enum overlay_handle handle;
+	float at[2];
+
+	if (!overlay || !kiosk->navigator_ready)
+		return false;
+	if (event->phase == TOUCH_DOWN) {
+		handle = overlay_handle_at(overlay, event->x_px, event->y_px);
+		if (handle == OVERLAY_HANDLE_NONE || tools->held != OVERLAY_HANDLE_NONE)
+			return false;
+		overlay_handle_place(overlay, handle, event->x_px, event->y_px, at);
+		grab(kiosk, (int)event->contact, handle, at);
+		move(kiosk, at);
+		return true;
+	}
+	if (!is_holder)
+		return false;
+	if (event->phase == TOUCH_MOVE) {
+		overlay_handle_place(overlay, tools->held, event->x_px, event->y_px, at);
+		move(kiosk, at);
+		return true;
+	}
+	let_go(tools);
+	say(kiosk);
+	return true;
+}
+
+/* ---- a frame */
+
+void tools_say(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct scene_tools *now = &kiosk->tools.now;
+
+	/* Another release may offer others. */
+	now->rake.on = now->rake.on && offered(kiosk) & OVERLAY_TOOL_LIGHT;
+	now->section.on = now->section.on && offered(kiosk) & OVERLAY_TOOL_SECTION;
+	if (kiosk->shown.scene)
+		scene_use(kiosk->shown.scene, now);
+	if (overlay)
+		overlay_show_tools(
+			overlay,
+			&(struct overlay_tools){
+				.on = (now->rake.on ? OVERLAY_TOOL_LIGHT : 0u) |
+				      (now->section.on ? OVERLAY_TOOL_SECTION : 0u),
+				.light_at = { now->rake.at[0], now->rake.at[1] },
+				.turn_rad = now->section.turn_rad - heading(kiosk),
+				.push = now->section.on ? now->section.push_m / now->section.reach_m
+							: 0,
+			});
+}
