@@ -123,6 +123,11 @@ void guide_end(struct kiosk *of)
 	of->tour.loops = false;
 }
 
+void tools_end(struct kiosk *of)
+{
+	of->tools.now.rake.on = of->tools.now.section.on = false;
+}
+
 bool guide_leads_eye(struct kiosk *of, int64_t now_ms)
 {
 	CHECK(of == &kiosk && now_ms == world.now_ms);
