@@ -345,6 +345,13 @@ static void leaves_nothing_of_a_visitor_for_the_next(void **state)
 	CHECK(!world.comfort.large && !world.comfort.reach);
 	set_up(NULL);
 	touches(TOUCH_DOWN);
+	kiosk.tools.now.section.on = kiosk.tools.now.rake.on = true; /* looked at as long */
+	after(179 * S);
+	CHECK(world.asked_s == -1 && kiosk.tools.now.section.on);
+	after(16 * S);
+	CHECK(!kiosk.tools.now.section.on && !kiosk.tools.now.rake.on && world.invites);
+	set_up(NULL);
+	touches(TOUCH_DOWN);
 	world.searches = true; /* a list is read as a page is */
 	after(179 * S);
 	CHECK(world.asked_s == -1 && world.searches);
