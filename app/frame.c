@@ -163,12 +163,11 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 			frame_from_panel(kiosk, &a->x_px, &a->y_px);
 		a->hidden = kiosk->hidden[i];
 		a->size_px = size_on_panel(kiosk, info_part(info, i));
-		a->visible = before_eye &&
-			     section_keeps(&kiosk->tools.now.section,
-					   info_part(info, i)->anchor_m) &&
-			     a->x_px >= rect.x_px && a->y_px >= rect.y_px &&
-			     a->x_px < rect.x_px + rect.width_px &&
-			     a->y_px < rect.y_px + rect.height_px;
+		a->visible =
+			before_eye &&
+			section_keeps(&kiosk->tools.now.section, info_part(info, i)->anchor_m) &&
+			a->x_px >= rect.x_px && a->y_px >= rect.y_px &&
+			a->x_px < rect.x_px + rect.width_px && a->y_px < rect.y_px + rect.height_px;
 	}
 	overlay_anchors(overlay, anchors, count);
 }

@@ -48,10 +48,12 @@ static struct overlay *open_overlay(int width_px, int height_px, unsigned tools)
 		const float turn = (float)i * 2.4f, radius = 0.04f + 0.02f * (float)i;
 
 		parts[i] = (struct overlay_part){ "A part of the temple", "Of stone.", "", true };
-		anchors[i] =
-			(struct overlay_anchor){ (float)width_px * (0.5f + radius * cosf(turn)),
-						 (float)height_px * (0.45f + radius * sinf(turn)),
-						 true };
+		anchors[i] = (struct overlay_anchor){
+			.x_px = (float)width_px * (0.5f + radius * cosf(turn)),
+			.y_px = (float)height_px * (0.45f + radius * sinf(turn)),
+			.visible = true,
+			.size_px = (float)height_px / 4,
+		};
 	}
 	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
 	overlay_show_help(overlay, false);
