@@ -487,7 +487,8 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 			turn_wheel(kiosk, x_px, y_px, powf(WHEEL_STEP, steps));
 		return;
 	}
-	if (kind == POINTER_MOVE && !kiosk->gestures.fingers[0].down)
+	if (kind == POINTER_MOVE && !kiosk->gestures.fingers[0].down &&
+	    kiosk->tools.held == OVERLAY_HANDLE_NONE)
 		return;
 	fingers_on_touch(kiosk, &(struct touch_event){
 					.phase = phases[kind],
