@@ -12,7 +12,7 @@ small_release
 # At 960 x 540: the bar's second language and its letters, then the temple's middle; 20 s after the last touch
 # (5 with nothing open) the question has been there for 5, and is answered; then for good.
 cat >"$work/fingers.touch" <<'T'
-4000 down 0 370 520
+4000 down 0 338 520
 4080 up 0
 4800 down 0 234 520
 4880 up 0

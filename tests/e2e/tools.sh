@@ -19,8 +19,8 @@ fi
 grep -q 'temple.ini:[0-9]*: tools = light, lens: it must be light, section' "$work/bad.log" ||
 	{ cat "$work/bad.log"; fail "the tool has no name"; }
 
-# ---- at 960 x 540: the bar's light, its ring, the bar's light again; the section, pushed away and turned, a
-# touch on what is seen through it, the end of it; both at once, and nobody
+# ---- at 960 x 540: the bar's light, its ring, the bar's light again, a touch on what stands in front; the section, the
+# same touch through it, pushed away and turned, the end of it; both at once, and nobody
 cat >"$work/fingers.touch" <<'T'
 5000 down 0 164 520
 5080 up 0
@@ -30,8 +30,16 @@ cat >"$work/fingers.touch" <<'T'
 12300 up 0
 19000 down 0 164 520
 19080 up 0
+20000 down 0 510 341
+20080 up 0
+21500 down 0 480 20
+21580 up 0
 26000 down 0 199 520
 26080 up 0
+27500 down 0 510 341
+27580 up 0
+29000 down 0 480 20
+29080 up 0
 33000 down 0 713 438
 33150 move 0 713 430
 33300 move 0 713 424
@@ -67,6 +75,10 @@ said = re.findall(r"app: (light|section|no tools|nobody)", log)
 said = said[said.index("light"):]
 assert said == ["light", "light", "no tools", "section", "section", "section", "no tools", "light", "light", "section",
                 "nobody", "no tools"], said
+at = log.index("app: section at")
+before, through = (re.findall(r"app: card of (\S+)", part) for part in (log[:at], log[at:]))
+print(f"in front stands {before}, behind it {through}")
+assert len(before) == 1 and before[0] not in through, (before, through)
 (x, y), (x2, y2) = lights[:2]
 assert x < 0 < y and x2 > 0.7 and abs(x2 * x2 + y2 * y2) <= 1.01, lights
 assert sections[0][0] == 0 and sections[1][0] < -2, sections  # away from the visitor
