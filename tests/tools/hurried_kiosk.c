@@ -57,8 +57,8 @@ static struct {
 	uint64_t frames, touches, jumps_us;
 	uint32_t triangles, layers;
 	uint64_t texture_bytes, geometry_bytes;
-	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, help, language,
-		tour;
+	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, tools, help,
+		language, tour;
 } seen;
 static int64_t last_touch_us; /* or when somebody was last led about */
 
@@ -201,6 +201,7 @@ static void look_at_words(const struct overlay *overlay)
 	seen.typed += overlay_searching(overlay) && overlay_query(overlay)[0];
 	seen.large += overlay_comfort(overlay).large;
 	seen.reach += overlay_comfort(overlay).reach;
+	seen.tools += kiosk.tools.now.rake.on || kiosk.tools.now.section.on;
 	seen.help += overlay_help(overlay);
 	seen.language += strcmp(story_language(kiosk.shown.story),
 				info_language(story_info(kiosk.shown.story), 0)) != 0;
@@ -259,6 +260,8 @@ static void check_attract(void)
 		fail("something is open while nobody is there");
 	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 		fail("large type or reach stayed");
+	if (kiosk.tools.now.rake.on || kiosk.tools.now.section.on)
+		fail("a tool stayed");
 	if (strcmp(story_language(kiosk.shown.story),
 		   info_language(story_info(kiosk.shown.story), 0)) != 0)
 		fail("the language stayed %s", story_language(kiosk.shown.story));
@@ -316,14 +319,14 @@ int main(int argc, char **argv)
 	       "%llu, \"layers_most\": %u,\n"
 	       " \"left_alone\": %u, \"asked\": %u,\n"
 	       " \"frames_with\": {\"card\": %u, \"page\": %u, \"picture\": %u, \"search\": %u, "
-	       "\"typed\": %u, \"help\": %u, \"large\": %u, \"reach\": %u, \"language\": %u, \"tour\": "
-	       "%u}}\n",
+	       "\"typed\": %u, \"help\": %u, \"large\": %u, \"reach\": %u, \"tools\": %u, "
+	       "\"language\": %u, \"tour\": %u}}\n",
 	       (unsigned long long)seen.touches, (unsigned long long)seen.frames,
 	       (double)(virtual_us - 1000000000) / 1e6, seen.triangles,
 	       (unsigned long long)seen.texture_bytes, (unsigned long long)seen.geometry_bytes,
 	       seen.layers, seen.nobody, seen.asked, seen.card, seen.page, seen.picture,
-	       seen.search, seen.typed, seen.help, seen.large, seen.reach, seen.language,
-	       seen.tour);
+	       seen.search, seen.typed, seen.help, seen.large, seen.reach, seen.tools,
+	       seen.language, seen.tour);
 	kiosk_stop(&kiosk);
 	if (rc < 0)
 		fprintf(stderr, "hurried_kiosk: %s\n", strerror(-rc));
