@@ -56,8 +56,8 @@ static const char plain_vertex[] = "void main() {\n"
 				   "}\n";
 
 /* Backs that show are where the plane went into solid matter: one flat colour, as on a drawing of a
- * section, and a dark line along the cut. Last, as dissolve is, in a program that looks textures
- * up. */
+ * section. What is cut away is left out last, as what dissolves is, where textures are looked up.
+ */
 static const char tools_fragment[] =
 	"#ifdef RAKE\n"
 	"uniform vec3 u_rake;\n"
