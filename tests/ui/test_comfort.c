@@ -148,7 +148,7 @@ static void settle(struct overlay *overlay)
 static void give_anchors(struct overlay *overlay)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
-	struct overlay_anchor anchors[PARTS];
+	struct overlay_anchor anchors[PARTS] = { 0 };
 
 	for (int i = 0; i < PARTS; i++) {
 		float turn = (float)i * 2.4f, radius = 0.04f + 0.02f * (float)i;
