@@ -16,7 +16,8 @@ mkdir -p "$content"
 cp -ru demo/content/. "$content/"
 if [ ! -f "$content/scan.ply" ] || [ "$before" != "$temple" ]; then
 	echo "Making the temple: $triangles triangles ..."
-	build/gopura-content temple --triangles "$triangles" --seed 1 --out "$content/scan.ply.part"
+	build/gopura-content temple --triangles "$triangles" --seed 1 --regions "$content/regions" \
+		--out "$content/scan.ply.part"
 	mv "$content/scan.ply.part" "$content/scan.ply"
 	echo "$temple" >"$demo/temple"
 fi

@@ -9,15 +9,18 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char help[] =
-	"usage: gopura-content temple --triangles N [--seed S] --out FILE.ply\n"
+	"usage: gopura-content temple --triangles N [--seed S] [--regions FOLDER] --out FILE.ply\n"
 	"\n"
 	"Writes the demo temple, a Khmer temple that never stood, as a binary PLY file.\n"
 	"  --triangles N  10000 to 100000000, met within 2 %; most lie in reliefs and mouldings\n"
 	"  --seed S       poses, stones out of line, what has fallen (default 1)\n"
 	"  --out FILE     the file; nothing is left of it when writing fails\n"
+	"  --regions DIR  also which faces each lion and each naga's hood is, DIR/lion-1.faces and so\n"
+	"                 on: a part's region can be such a list\n"
 	"\n"
 	"examples:\n"
 	"  gopura-content temple --triangles 1500000 --out scan.ply\n"
@@ -48,9 +51,34 @@ static int write_file(const char *path, struct temple_options *options)
 	return rc;
 }
 
+/* FOLDER/lion-1.faces and so on. On failure path is what could not be written. */
+static int write_regions(const char *folder, const struct temple_bodies *all, char path[4096])
+{
+	int rc = 0;
+
+	if (snprintf(path, 4096, "%s", folder) >= 4096)
+		return -ENAMETOOLONG;
+	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
+		return -errno;
+	for (uint32_t i = 0; rc == 0 && i < all->count; i++) {
+		const struct temple_body *body = &all->bodies[i];
+		if (snprintf(path, 4096, "%s/%s.faces", folder, body->id) >= 4096)
+			return -ENAMETOOLONG;
+		FILE *file = fopen(path, "w");
+		if (!file)
+			return -errno;
+		fprintf(file, "# faces of the demo temple\n%u-%u\n", body->first_face,
+			body->first_face + body->face_count - 1);
+		rc = ferror(file) ? -EIO : 0;
+		if (fclose(file) != 0 && rc == 0)
+			rc = -errno;
+	}
+	return rc;
+}
+
 struct request {
 	uint64_t triangles, seed;
-	const char *path;
+	const char *path, *regions;
 };
 
 /* 0: go on; else the exit status plus one. */
@@ -59,6 +87,7 @@ static int read_options(int argc, char **argv, struct request *request)
 	static const struct option names[] = { { "triangles", required_argument, NULL, 't' },
 					       { "seed", required_argument, NULL, 's' },
 					       { "out", required_argument, NULL, 'o' },
+					       { "regions", required_argument, NULL, 'r' },
 					       { "help", no_argument, NULL, 'h' },
 					       { NULL, 0, NULL, 0 } };
 	bool good = true;
@@ -75,6 +104,8 @@ static int read_options(int argc, char **argv, struct request *request)
 			good = good && command_number(optarg, 0, UINT32_MAX, &request->seed);
 		} else if (c == 'o') {
 			request->path = optarg;
+		} else if (c == 'r') {
+			request->regions = optarg;
 		} else {
 			return 3;
 		}
@@ -96,13 +127,22 @@ int command_temple(int argc, char **argv)
 	if (stop)
 		return stop - 1;
 	struct progress *progress = progress_start("temple", "vertices and triangles", 0);
+	struct temple_bodies bodies = { 0 };
 	struct temple_options options = { .triangles = request.triangles,
 					  .seed = (uint32_t)request.seed,
-					  .progress = progress };
+					  .progress = progress,
+					  .bodies = request.regions ? &bodies : NULL };
+	char region[4096];
+	const char *path = request.path;
 	int rc = write_file(request.path, &options);
 	progress_end(progress);
+	if (rc == 0 && request.regions) {
+		path = region;
+		rc = write_regions(request.regions, &bodies, region);
+	}
+	free(bodies.bodies);
 	if (rc < 0) {
-		fprintf(stderr, "gopura-content temple: %s: %s\n", request.path, strerror(-rc));
+		fprintf(stderr, "gopura-content temple: %s: %s\n", path, strerror(-rc));
 		return 1;
 	}
 	return 0;

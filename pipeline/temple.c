@@ -228,6 +228,31 @@ static int write_all(struct writer *w)
 	return rc;
 }
 
+static int list_bodies(const struct writer *w, struct temple_bodies *out)
+{
+	uint64_t face = 0;
+	uint32_t columns, rows, sheet = 0;
+
+	out->bodies = calloc(w->plan.body_count, sizeof(*out->bodies));
+	if (!out->bodies)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < w->plan.body_count; i++) {
+		const struct body *body = &w->plan.bodies[i];
+		struct temple_body *listed = &out->bodies[out->count];
+		for (; sheet < body->first + body->count; sheet++) {
+			if (sheet == body->first)
+				listed->first_face = (uint32_t)face;
+			sheet_stations(&w->plan.sheets[sheet], density_of(w, sheet), NULL, &columns,
+				       NULL, &rows, 0);
+			face += sheet_triangles(&w->plan.sheets[sheet], columns, rows);
+		}
+		listed->face_count = (uint32_t)face - listed->first_face;
+		snprintf(listed->id, sizeof(listed->id), "%.8s-%u", body->kind, body->number);
+		out->count += listed->face_count > 0;
+	}
+	return 0;
+}
+
 static int writer_rooms(struct writer *w)
 {
 	bool whole = true;
@@ -259,6 +284,8 @@ int temple_write(FILE *file, const struct temple_options *options)
 	struct writer w = { .file = file, .options = options };
 	int rc;
 
+	if (options->bodies)
+		*options->bodies = (struct temple_bodies){ 0 };
 	if (options->triangles < TEMPLE_TRIANGLES_LEAST ||
 	    options->triangles > TEMPLE_TRIANGLES_MOST)
 		return -ERANGE;
@@ -272,6 +299,8 @@ int temple_write(FILE *file, const struct temple_options *options)
 		progress_set_total(options->progress, w.vertices + w.triangles);
 		rc = write_all(&w);
 	}
+	if (rc == 0 && options->bodies)
+		rc = list_bodies(&w, options->bodies);
 	writer_finish(&w);
 	return rc;
 }

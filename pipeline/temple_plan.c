@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const struct outline outline_line = { OUTLINE_LINE, 2, { { -0.5f, 0 }, { 0.5f, 0 } } };
 const struct outline outline_square = { OUTLINE_CLOSED,
@@ -144,6 +145,21 @@ void plan_refine(struct plan *plan, uint32_t from, float factor)
 			plan->sheets[i].interest *= factor;
 }
 
+void plan_body(struct plan *plan, const char *kind, uint32_t from)
+{
+	struct body *more = realloc(plan->bodies, (plan->body_count + 1) * sizeof(*more));
+	uint32_t number = 1;
+
+	if (!more) {
+		plan->error = -ENOMEM;
+		return;
+	}
+	plan->bodies = more;
+	for (uint32_t i = 0; i < plan->body_count; i++)
+		number += strcmp(more[i].kind, kind) == 0;
+	more[plan->body_count++] = (struct body){ kind, number, from, plan->count - from };
+}
+
 int plan_create(struct plan *plan, uint32_t seed)
 {
 	*plan = (struct plan){ .seed = seed };
@@ -163,5 +179,6 @@ void plan_destroy(struct plan *plan)
 	if (!plan)
 		return;
 	free(plan->sheets);
+	free(plan->bodies);
 	*plan = (struct plan){ 0 };
 }

@@ -5,9 +5,18 @@
 
 #include "pipeline/temple_sheet.h"
 
+/* Sheets that are one carving, such as a lion: a part can be marked by its faces. */
+struct body {
+	const char *kind; /* static: "lion", "naga" */
+	uint32_t number;  /* of its kind, from 1 */
+	uint32_t first, count;
+};
+
 struct plan {
 	struct sheet *sheets; /* owned */
 	uint32_t count, capacity;
+	struct body *bodies; /* owned; ascending, apart from one another */
+	uint32_t body_count;
 	uint32_t seed;
 	int error; /* 0 or -ENOMEM, sticky */
 };
@@ -49,6 +58,8 @@ void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, floa
 /* The reliefs laid out since `from` (a plan->count) get more divisions: what a visitor
  * meets first, and what the parts point at, was scanned more closely. */
 void plan_refine(struct plan *plan, uint32_t from, float factor);
+/* What was laid out since `from` is one carving. */
+void plan_body(struct plan *plan, const char *kind, uint32_t from);
 
 void plan_terraces(struct plan *plan);
 void plan_galleries(struct plan *plan);

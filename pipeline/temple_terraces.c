@@ -95,6 +95,7 @@ static const struct profile leg = { ARRAY_COUNT(leg_points), leg_points };
 
 static void plan_lion(struct plan *plan, const struct frame *frame, float height_m)
 {
+	const uint32_t first = plan->count;
 	struct sheet *sheet =
 		plan_sheet(plan, frame, &outline_circle, &lion, 0.01f, height_m * 0.34f, height_m);
 	struct frame head = frame_within(frame, 0, -height_m * 0.10f, height_m * 0.56f, 0);
@@ -111,6 +112,7 @@ static void plan_lion(struct plan *plan, const struct frame *frame, float height
 				   height_m * 0.045f, height_m * 0.52f);
 		sheet->optional = true;
 	}
+	plan_body(plan, "lion", first);
 }
 
 void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, float run_m,
@@ -133,6 +135,8 @@ void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, flo
 
 static void plan_hood(struct plan *plan, const struct frame *frame)
 {
+	const uint32_t first = plan->count;
+
 	for (int side = 0; side < 2; side++) {
 		struct frame face = frame_within(frame, 0, side ? 0.10f : -0.10f, 0, side ? 2 : 0);
 		struct sheet *hood =
@@ -142,6 +146,7 @@ static void plan_hood(struct plan *plan, const struct frame *frame)
 		hood->interest = 2.4f;
 		hood->lean = side ? -0.1f : 0.1f;
 	}
+	plan_body(plan, "naga", first);
 }
 
 /* Along the rim of the lowest terrace, from the stairs to the corner. */

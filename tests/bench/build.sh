@@ -34,7 +34,8 @@ def run(*arguments):
 
 
 scan, folder = f"{work}/content/scan.ply", f"{work}/content"
-_, temple_s, _ = run("temple", "--triangles", wanted, "--seed", "1", "--out", scan)
+_, temple_s, _ = run("temple", "--triangles", wanted, "--seed", "1", "--regions", f"{folder}/regions",
+                     "--out", scan)
 said, import_s, _ = run("import", scan)
 triangles = int(re.search(r", (\d+) triangles", said)[1])
 _, hierarchy_s, hierarchy_cpu_s = run("hierarchy", folder)

@@ -62,24 +62,6 @@ static bool prism_contains(const cJSON *region, const float p[3])
 	return in;
 }
 
-static bool contains(const cJSON *region, const float p[3])
-{
-	const char *kind = cJSON_GetObjectItem(region, "kind")->valuestring;
-	float centre[3], half[3];
-
-	if (strcmp(kind, "prism") == 0)
-		return prism_contains(region, p);
-	numbers(cJSON_GetObjectItem(region, "centre"), 3, centre);
-	float d[3] = { p[0] - centre[0], p[1] - centre[1], p[2] - centre[2] };
-	if (strcmp(kind, "sphere") == 0)
-		return sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) <=
-		       cJSON_GetObjectItem(region, "radius")->valuedouble;
-	CHECK(strcmp(kind, "box") == 0);
-	CHECK(cJSON_GetObjectItem(region, "turn")->valuedouble == 0);
-	numbers(cJSON_GetObjectItem(region, "half"), 3, half);
-	return fabsf(d[0]) <= half[0] && fabsf(d[1]) <= half[1] && fabsf(d[2]) <= half[2];
-}
-
 /* To the nearest of the points a quad is sampled at, 0.2 m apart at most. */
 static float quad_distance_m(float q[4][3], const float p[3])
 {
@@ -103,13 +85,15 @@ static float quad_distance_m(float q[4][3], const float p[3])
 	return nearest;
 }
 
-static float surface_distance_m(const struct plan *plan, const float p[3])
+/* To count sheets from first. */
+static float surface_distance_m(const struct plan *plan, uint32_t first, uint32_t count,
+				const float p[3])
 {
 	enum { MOST = 4096 };
 	static struct station across[MOST], up[MOST];
 	float nearest = INFINITY;
 
-	for (uint32_t i = 0; i < plan->count; i++) {
+	for (uint32_t i = first; i < first + count; i++) {
 		const struct sheet *sheet = &plan->sheets[i];
 		uint32_t columns, rows;
 		sheet_stations(sheet, 3, across, &columns, up, &rows, MOST);
@@ -126,6 +110,40 @@ static float surface_distance_m(const struct plan *plan, const float p[3])
 	return nearest;
 }
 
+/* file: of one of the generator's carvings. */
+static bool body_contains(const char *file, const struct plan *plan, const float p[3])
+{
+	for (uint32_t i = 0; i < plan->body_count; i++) {
+		const struct body *body = &plan->bodies[i];
+		char name[64];
+		snprintf(name, sizeof(name), "regions/%s-%u.faces", body->kind, body->number);
+		if (strcmp(file, name) == 0)
+			return surface_distance_m(plan, body->first, body->count, p) < 0.3f;
+	}
+	fail_msg("%s: the generator writes no such list", file);
+	return false;
+}
+
+static bool contains(const cJSON *region, const struct plan *plan, const float p[3])
+{
+	const char *kind = cJSON_GetObjectItem(region, "kind")->valuestring;
+	float centre[3], half[3];
+
+	if (strcmp(kind, "faces") == 0)
+		return body_contains(cJSON_GetObjectItem(region, "file")->valuestring, plan, p);
+	if (strcmp(kind, "prism") == 0)
+		return prism_contains(region, p);
+	numbers(cJSON_GetObjectItem(region, "centre"), 3, centre);
+	float d[3] = { p[0] - centre[0], p[1] - centre[1], p[2] - centre[2] };
+	if (strcmp(kind, "sphere") == 0)
+		return sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) <=
+		       cJSON_GetObjectItem(region, "radius")->valuedouble;
+	CHECK(strcmp(kind, "box") == 0);
+	CHECK(cJSON_GetObjectItem(region, "turn")->valuedouble == 0);
+	numbers(cJSON_GetObjectItem(region, "half"), 3, half);
+	return fabsf(d[0]) <= half[0] && fabsf(d[1]) <= half[1] && fabsf(d[2]) <= half[2];
+}
+
 static void anchors_lie_on_the_temple_and_in_their_regions(void **state)
 {
 	cJSON *root = read_parts();
@@ -140,9 +158,9 @@ static void anchors_lie_on_the_temple_and_in_their_regions(void **state)
 		const char *id = cJSON_GetObjectItem(part, "id")->valuestring;
 		float anchor[3];
 		numbers(cJSON_GetObjectItem(part, "anchor"), 3, anchor);
-		if (!contains(cJSON_GetObjectItem(part, "region"), anchor))
+		if (!contains(cJSON_GetObjectItem(part, "region"), &plan, anchor))
 			fail_msg("%s: the anchor is outside the region", id);
-		float distance = surface_distance_m(&plan, anchor);
+		float distance = surface_distance_m(&plan, 0, plan.count, anchor);
 		if (distance > 0.5f)
 			fail_msg("%s: the anchor is %.2f m off the temple", id, distance);
 	}

@@ -10,6 +10,7 @@
 
 #include "pipeline/commands.h"
 #include "pipeline/temple_plan.h"
+#include "render/vec.h"
 #include "tests/check.h"
 
 /* The file a temple_write of these options gives. */
@@ -20,9 +21,10 @@ struct temple {
 	const uint8_t *vertices, *triangles; /* 16 and 13 bytes each */
 };
 
-static void build(struct temple *out, uint64_t triangles, uint32_t seed)
+static void build_with(struct temple *out, struct temple_bodies *bodies, uint64_t triangles,
+		       uint32_t seed)
 {
-	struct temple_options options = { .triangles = triangles, .seed = seed };
+	struct temple_options options = { .triangles = triangles, .seed = seed, .bodies = bodies };
 	char *text = NULL;
 	FILE *file = open_memstream(&text, &out->size);
 
@@ -39,6 +41,11 @@ static void build(struct temple *out, uint64_t triangles, uint32_t seed)
 	out->triangles = out->vertices + 16 * (size_t)out->vertex_count;
 	CHECK(out->size ==
 	      (size_t)(out->triangles - out->bytes) + 13 * (size_t)out->triangle_count);
+}
+
+static void build(struct temple *out, uint64_t triangles, uint32_t seed)
+{
+	build_with(out, NULL, triangles, seed);
 }
 
 static void vertex(const struct temple *temple, uint32_t index, float out[3])
@@ -227,31 +234,76 @@ static void says_what_went_wrong(void **state)
 	fclose(full);
 }
 
-static int command(char *triangles, char *out)
+/* The hood of the naga on the right of who comes from the east, 1.5 m wide, and the lion below it.
+ */
+static void knows_which_faces_a_carving_is(void **state)
 {
-	char *argv[] = { "temple", "--triangles", triangles, "--out", out, NULL };
+	static const struct {
+		const char *id;
+		float middle[3], reach_m;
+	} known[] = { { "naga-3", { 18, 2.35f, 3.3f }, 1.2f },
+		      { "lion-16", { 20.1f, 1.58f, 1.3f }, 0.8f } };
+	struct temple_bodies bodies;
+	struct temple temple;
+	uint32_t found = 0;
+
+	(void)state;
+	build_with(&temple, &bodies, 100000, 1);
+	CHECK(bodies.count > 20);
+	for (uint32_t i = 0; i < bodies.count; i++) {
+		const struct temple_body *body = &bodies.bodies[i];
+		const uint32_t end = body->first_face + body->face_count;
+		CHECK(body->face_count > 0 && end <= temple.triangle_count);
+		CHECK(i == 0 || body->first_face >= body[-1].first_face + body[-1].face_count);
+		for (size_t k = 0; k < ARRAY_COUNT(known); k++) {
+			if (strcmp(body->id, known[k].id) != 0)
+				continue;
+			found++;
+			for (uint32_t face = body->first_face; face < end; face++) {
+				uint32_t at[3];
+				float p[3];
+				corners(&temple, face, at);
+				vertex(&temple, at[0], p);
+				CHECK(vec_distance(p, known[k].middle) < known[k].reach_m);
+			}
+		}
+	}
+	CHECK(found == ARRAY_COUNT(known));
+	free(bodies.bodies);
+	free(temple.bytes);
+}
+
+static int command(char *triangles, char *regions, char *out)
+{
+	char *argv[] = { "temple", "--triangles", triangles, "--regions",
+			 regions,  "--out",       out,       NULL };
 
 	optind = 0; /* getopt starts anew */
-	return command_temple(5, argv);
+	return command_temple(7, argv);
 }
 
 static void leaves_a_whole_file_or_none(void **state)
 {
-	char folder[] = "/tmp/gopura-temple-XXXXXX", path[64], part[80];
+	char folder[] = "/tmp/gopura-temple-XXXXXX", path[96], part[112], regions[64], list[80];
 
 	(void)state;
 	CHECK(mkdtemp(folder) != NULL);
 	snprintf(path, sizeof(path), "%s/scan.ply", folder);
 	snprintf(part, sizeof(part), "%s.part", path);
-	CHECK(command("12", path) == 2);
-	CHECK(command("many", path) == 2);
-	CHECK(command("-10000", path) == 2);
-	CHECK(command("200000000", path) == 2);
-	CHECK(command("10000", "/nonexistent/scan.ply") == 1);
-	CHECK(access(path, F_OK) != 0);
-	CHECK(command("10000", path) == 0);
-	CHECK(access(path, F_OK) == 0 && access(part, F_OK) != 0);
+	snprintf(regions, sizeof(regions), "%s/regions", folder);
+	snprintf(list, sizeof(list), "%s/naga-3.faces", regions);
+	CHECK(command("12", regions, path) == 2);
+	CHECK(command("many", regions, path) == 2);
+	CHECK(command("-10000", regions, path) == 2);
+	CHECK(command("200000000", regions, path) == 2);
+	CHECK(command("10000", regions, "/nonexistent/scan.ply") == 1);
+	CHECK(access(path, F_OK) != 0 && access(regions, F_OK) != 0);
+	CHECK(command("10000", "/nonexistent/regions", path) == 1);
+	CHECK(command("10000", regions, path) == 0);
+	CHECK(access(path, F_OK) == 0 && access(part, F_OK) != 0 && access(list, F_OK) == 0);
 	unlink(path);
+	snprintf(path, sizeof(path), "rm -r %s", regions);
+	CHECK(system(path) == 0);
 	CHECK(rmdir(folder) == 0);
 }
 
@@ -264,6 +316,7 @@ int main(void)
 		cmocka_unit_test(has_only_sound_triangles),
 		cmocka_unit_test(stands_on_its_ground_and_has_its_size),
 		cmocka_unit_test(spends_its_triangles_on_carving),
+		cmocka_unit_test(knows_which_faces_a_carving_is),
 		cmocka_unit_test(says_what_went_wrong),
 		cmocka_unit_test(leaves_a_whole_file_or_none),
 	};

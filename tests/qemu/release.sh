@@ -7,6 +7,6 @@ mkdir -p "$content"
 cp -ru demo/content/. "$content/"
 sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
 	-e 's/^publish_share *=.*/publish_share = 0.5/' "$content/temple.ini"
-[ -f "$content/scan.ply" ] ||
-	build/gopura-content temple --triangles 60000 --seed 1 --out "$content/scan.ply"
+[ -d "$content/regions" ] ||
+	build/gopura-content temple --triangles 60000 --seed 1 --regions "$content/regions" --out "$content/scan.ply"
 build/gopura-content build "$content" --out "$work/release"
