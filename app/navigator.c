@@ -12,6 +12,7 @@
 #define GROUND_LEAST_SHARE 0.005f
 #define KEEP_OFF_M         0.35f /* eye to a wall */
 #define KEEP_OFF_SHARE     0.02f
+#define BOW_MOST           2.0f /* times as long as straight on: a flight takes no longer */
 #define FAR_SHARE          2.5f /* eye to the model's middle, in half diagonals */
 #define FAR_OVER_HOME      1.1f /* or as far as it begins, and a little more */
 
@@ -188,28 +189,62 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s)
 	nav->fling_px_s[1] = vy_px_s;
 }
 
+/* Whether the eye can go from here to there, and no near plane reaches anything there. */
+static bool way_is_free(void *data, const float from_m[3], const float to_m[3])
+{
+	const struct navigator *nav = data;
+	const struct navigator_options *o = &nav->options;
+	const float room_m = navigator_keep_off_m(nav) / 3;
+	float from[3], to[3], way[3], length;
+
+	if (!o->clearance)
+		return true;
+	glm_vec3_copy((float *)from_m, from);
+	glm_vec3_copy((float *)to_m, to);
+	keep_in_bounds(nav, from);
+	keep_in_bounds(nav, to);
+	glm_vec3_sub(to, from, way);
+	length = glm_vec3_norm(way);
+	if (length > 0) {
+		glm_vec3_scale(way, 1 / length, way);
+		if (o->clearance(o->data, from, way, length) < length)
+			return false;
+	}
+	for (int axis = 0; axis < 3; axis++) {
+		for (int sign = -1; sign <= 1; sign += 2) {
+			float direction[3] = { 0 };
+			direction[axis] = (float)sign;
+			if (o->clearance(o->data, to, direction, room_m) < room_m)
+				return false;
+		}
+	}
+	return true;
+}
+
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms)
 {
-	float turn;
+	float turn, straight_m, longer;
 
 	stop(nav);
-	glm_vec3_copy(nav->eye_m, nav->from_eye_m);
-	glm_vec3_copy((float *)eye_m, nav->to_eye_m);
+	flight_way_choose(&nav->way, nav->eye_m, eye_m,
+			  nav->options.box_max_m[2] - nav->options.box_min_m[2], way_is_free, nav);
+	straight_m = glm_vec3_distance(nav->eye_m, (float *)eye_m);
+	longer = straight_m > 0 ? flight_way_length_m(&nav->way) / straight_m : 1;
 	glm_vec3_copy((float *)target_m, nav->pivot_m);
 	nav->from_yaw = nav->yaw;
 	nav->from_pitch = nav->pitch;
 	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
 	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the short way round */
 	nav->to_yaw = nav->from_yaw + turn;
-	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms, 1);
+	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MOST), 1);
 }
 
 bool navigator_is_left_alone(const struct navigator *nav)
 {
 	return nav->flight_left_ms > 0 ||
 	       (nav->flight_ms > 0 &&
-		glm_vec3_distance((float *)nav->eye_m, (float *)nav->to_eye_m) < 1e-3f &&
+		glm_vec3_distance((float *)nav->eye_m, (float *)nav->way.to_m) < 1e-3f &&
 		fabsf(remainderf(nav->yaw - nav->to_yaw, 2 * (float)M_PI)) < 1e-4f &&
 		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
 }
@@ -221,9 +256,9 @@ static void step_flight(struct navigator *nav, float dt_ms)
 	nav->flight_left_ms = fmaxf(0, nav->flight_left_ms - dt_ms);
 	t = 1 - nav->flight_left_ms / nav->flight_ms;
 	t = t * t * (3 - 2 * t);
-	glm_vec3_lerp(nav->from_eye_m, nav->to_eye_m, t, eye);
+	flight_way_at(&nav->way, t, eye);
 	keep_in_bounds(nav, eye);
-	glm_vec3_copy(eye, nav->eye_m); /* a flight may cross a wall; it never ends in one */
+	glm_vec3_copy(eye, nav->eye_m); /* even through a wall, where no bow was free */
 	nav->yaw = glm_lerp(nav->from_yaw, nav->to_yaw, t);
 	nav->pitch = glm_lerp(nav->from_pitch, nav->to_pitch, t);
 }

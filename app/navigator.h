@@ -7,6 +7,7 @@
 #ifndef GOPURA_APP_NAVIGATOR_H
 #define GOPURA_APP_NAVIGATOR_H
 
+#include "app/flight_way.h"
 #include "render/camera.h"
 
 #include <stdbool.h>
@@ -30,7 +31,8 @@ struct navigator {
 
 	/* A flight to another pose; ends when flight_left_ms is 0. */
 	float flight_left_ms, flight_ms;
-	float from_eye_m[3], to_eye_m[3], from_yaw, to_yaw, from_pitch, to_pitch;
+	struct flight_way way;
+	float from_yaw, to_yaw, from_pitch, to_pitch;
 };
 
 /* The eye stands at the options' home. */
@@ -45,7 +47,8 @@ void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_p
 		     float height_px);
 /* The finger left with this speed. */
 void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
-/* Smoothly to a pose; a touch stops it. */
+/* Smoothly to a pose, round what is in the way where that can be; a touch stops it. duration_ms:
+ * of the straight way; a bow takes as much longer as it is. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
 /* It flies, or nobody has moved it since it arrived. */

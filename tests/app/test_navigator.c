@@ -180,6 +180,85 @@ static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
 	CHECK(camera.near_m > 0 && camera.far_m > 100);
 }
 
+/* A temple of one box, 20 m wide and high, without a ceiling to look for: steps of 0.1 m find it.
+ */
+static float box_ahead(void *data, const float from[3], const float direction[3], float most)
+{
+	(void)data;
+	for (float m = 0; m < most; m += 0.1f) {
+		const float p[3] = { from[0] + m * direction[0], from[1] + m * direction[1],
+				     from[2] + m * direction[2] };
+		if (fabsf(p[0]) < 10 && fabsf(p[1]) < 10 && p[2] < 20)
+			return m;
+	}
+	return INFINITY;
+}
+
+/* From each side to the opposite one, low and high. */
+static void a_flight_leads_round_what_is_in_the_way(void **state)
+{
+	static const float middle[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	const float none[3] = { 0, 0, 1 };
+	int bows = 0;
+
+	(void)state;
+	options.clearance = box_ahead;
+	for (int i = 0; i < 32; i++) {
+		const float turn = (float)(i % 16) * 0.37f, far = i < 16 ? 18 : 40;
+		const float from[3] = { far * cosf(turn), far * sinf(turn), i % 3 ? 2 : 15 };
+		const float to[3] = { -from[0], -from[1], i % 4 ? 1.8f : 12 };
+		struct navigator nav;
+		navigator_init(&nav, &options);
+		navigator_look(&nav, from, middle);
+		navigator_fly(&nav, to, middle, 900);
+		while (navigator_step(&nav, 16, HEIGHT_PX)) {
+			CHECK(box_ahead(NULL, nav.eye_m, none, 0.05f) > 0.05f);
+			bows += nav.flight_ms > 910;
+		}
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)to) < 1e-3f);
+	}
+	CHECK(bows > 0);
+}
+
+static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
+{
+	const float eye[3] = { -50, -30, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+	float along[3], from[3], off[3];
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	glm_vec3_copy(nav.eye_m, from);
+	navigator_fly(&nav, eye, target, 800);
+	CHECK(fabsf(nav.flight_ms - 800) < 1);
+	glm_vec3_sub((float *)eye, from, along);
+	while (navigator_step(&nav, 16, HEIGHT_PX)) {
+		glm_vec3_sub(nav.eye_m, from, off);
+		glm_vec3_cross(off, along, off);
+		CHECK(glm_vec3_norm(off) / glm_vec3_norm(along) < 1e-3f);
+	}
+}
+
+/* Out of a room without a door: better through the wall than never. */
+static void a_flight_from_within_arrives_all_the_same(void **state)
+{
+	const float within[3] = { 0, 0, 5 }, eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, within, target);
+	navigator_fly(&nav, eye, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+}
+
 static void knows_whether_somebody_moved_it_since_a_flight(void **state)
 {
 	const float eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
@@ -266,6 +345,9 @@ int main(void)
 		cmocka_unit_test(stays_above_ground_and_near),
 		cmocka_unit_test(a_fling_slows_down_and_ends),
 		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
+		cmocka_unit_test(a_flight_leads_round_what_is_in_the_way),
+		cmocka_unit_test(where_nothing_is_in_the_way_a_flight_is_straight),
+		cmocka_unit_test(a_flight_from_within_arrives_all_the_same),
 		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
 		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
 		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),

@@ -1,0 +1,75 @@
+#include "app/flight_way.h"
+
+#include <cglm/cglm.h>
+
+enum { STEPS = 16 };
+
+void flight_way_at(const struct flight_way *way, float t, float out_m[3])
+{
+	const float s = 1 - t;
+
+	for (int k = 0; k < 3; k++)
+		out_m[k] =
+			s * s * way->from_m[k] + 2 * s * t * way->over_m[k] + t * t * way->to_m[k];
+}
+
+float flight_way_length_m(const struct flight_way *way)
+{
+	float from[3], to[3], length = 0;
+
+	flight_way_at(way, 0, to);
+	for (int i = 1; i <= STEPS; i++) {
+		glm_vec3_copy(to, from);
+		flight_way_at(way, (float)i / STEPS, to);
+		length += glm_vec3_distance(from, to);
+	}
+	return length;
+}
+
+static bool way_is_free(const struct flight_way *way, flight_way_free *is_free, void *data)
+{
+	float from[3], to[3];
+
+	flight_way_at(way, 0, to);
+	for (int i = 1; i <= STEPS; i++) {
+		glm_vec3_copy(to, from);
+		flight_way_at(way, (float)i / STEPS, to);
+		if (!is_free(data, from, to))
+			return false;
+	}
+	return true;
+}
+
+void flight_way_choose(struct flight_way *way, const float from_m[3], const float to_m[3],
+		       float size_m, flight_way_free *is_free, void *data)
+{
+	/* Up, and to the sides, as shares of the bow. */
+	static const float bends[][2] = {
+		{ 1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7f, 0.7f }, { 0.7f, -0.7f }
+	};
+	static const float bows[] = { 0.25f, 0.5f, 1, 1.6f, 2.4f };
+	float across[3], side[3], middle[3], reach_m;
+
+	glm_vec3_copy((float *)from_m, way->from_m);
+	glm_vec3_copy((float *)to_m, way->to_m);
+	glm_vec3_lerp(way->from_m, way->to_m, 0.5f, middle);
+	glm_vec3_copy(middle, way->over_m);
+	if (way_is_free(way, is_free, data))
+		return;
+	glm_vec3_sub(way->to_m, way->from_m, across);
+	reach_m = fmaxf(glm_vec3_norm(across) / 2, size_m / 2);
+	glm_vec3_copy((vec3){ -across[1], across[0], 0 }, side);
+	if (glm_vec3_norm(side) < 1e-6f * reach_m)
+		side[0] = 1; /* straight up or down: any side */
+	glm_vec3_normalize(side);
+	for (size_t i = 0; i < sizeof(bows) / sizeof(bows[0]); i++) {
+		for (size_t k = 0; k < sizeof(bends) / sizeof(bends[0]); k++) {
+			glm_vec3_copy(middle, way->over_m);
+			way->over_m[2] += bows[i] * bends[k][0] * reach_m;
+			glm_vec3_muladds(side, bows[i] * bends[k][1] * reach_m, way->over_m);
+			if (way_is_free(way, is_free, data))
+				return;
+		}
+	}
+	glm_vec3_copy(middle, way->over_m);
+}
