@@ -5,7 +5,8 @@
 #   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
 #
 # A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
-# tests run as many at a time as there are cores; what is timed or serves runs alone.
+# and end-to-end tests run as many at a time as there are cores, each with a port and a folder of its
+# own; machines in QEMU one after the other.
 set -u
 cd "$(dirname "$0")/.."
 logs=$PWD/build/test-logs
@@ -59,12 +60,20 @@ began=$SECONDS
 rm -rf "$logs"
 mkdir -p "$logs"
 run_one check-style 120 tests/style/check.sh
-run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan tests
+run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan all tests
 unit build/asan san
 if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests
 	unit build unit
-	for script in $(find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name initramfs.sh ! -name release.sh ! -name sticks.sh | sort); do
+	run_one releases 2400 bash -c '. tests/e2e/lib.sh; small_release; demo_release'
+	export RELEASES_MADE=yes
+	# First those that take long, so that none of them is left over in the end.
+	{
+		printf 'tests/e2e/%s.sh\n' pictures golden weak switch
+		find tests/e2e -name '*.sh' ! -name 'lib*.sh' | sort
+	} | awk '!seen[$0]++ { sub("tests/", ""); print $0, 2400, "bash tests/" $0 }' |
+		xargs -P "$jobs" -L 1 tests/run.sh one
+	for script in $(find tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name initramfs.sh ! -name release.sh ! -name sticks.sh | sort); do
 		run_one "${script#tests/}" 2400 bash "$script"
 	done
 fi

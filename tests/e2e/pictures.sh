@@ -1,14 +1,14 @@
 #!/bin/bash
 # The kiosk's settled pictures of the demo temple against the reference, over the whole path: nginx,
-# fetcher, cache: the first 40 views of the bench's path (VIEWS=N: N of them, spread over it).
+# fetcher, cache: 16 of the first 40 views of the bench's path (VIEWS=N: N of them, spread over it).
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 work=build/e2e/pictures demo=build/demo
 rm -rf "$work/state" "$work/lumigraph" "$work/polygons"
 mkdir -p "$work"
-demo/prepare.sh
-grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-40}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
+demo_release
+grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-16}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
 build/gopura-content render "$demo/content" --views "$work/views.txt" --size 1280x720 \
 	--supersample 4 --out "$work/truth"
 serve "$demo/release" "$work/server"

@@ -32,7 +32,7 @@ build/tests/tools/weak_probe >"$work/probe"
 grep '^more than' "$work/probe-mediump"
 
 # ---- the pictures
-demo/prepare.sh
+demo_release
 grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-2}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
 build/gopura-content render "$demo/content" --views "$work/views.txt" --size "$size" \
 	--supersample 4 --out "$work/truth"
