@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 work=build/qemu-image release=build/demo/release size=${SIZE:-1280x720}
 firmware=/usr/share/OVMF
 mkdir -p "$work"
-[ -f "$release/release.json" ] || { tests/qemu/release.sh build/qemu; release=build/qemu/release; }
+[ -f "$release/release.json" ] || { tests/qemu/make-release.sh build/qemu; release=build/qemu/release; }
 RELEASE=$release OUT=$work/demo image/build.sh
 if [ ! -f "$work/person.img" ] || [ "$work/demo/gopura.img" -nt "$work/person.img" ]; then
 	cp --sparse=always "$work/demo/gopura.img" "$work/person.img"

@@ -5,8 +5,8 @@
 #   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
 #
 # A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
-# and end-to-end tests run as many at a time as there are cores, each with a port and a folder of its
-# own; machines in QEMU one after the other.
+# tests, and after them end-to-end tests and machines in QEMU, run as many at a time as there are
+# cores: each has a port and a folder of its own, and mostly waits.
 set -u
 cd "$(dirname "$0")/.."
 logs=$PWD/build/test-logs
@@ -41,6 +41,12 @@ if [ "${1:-}" = one ]; then
 	exit 0
 fi
 
+if [ "${1:-}" = lane ]; then
+	shift
+	for name; do run_one "$name.sh" 2400 bash "tests/$name.sh"; done
+	exit 0
+fi
+
 unit() { # FOLDER_OF_THE_BUILD LABEL
 	local program
 	{
@@ -63,19 +69,19 @@ run_one check-style 120 tests/style/check.sh
 run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan all tests
 unit build/asan san
 if [ "$mode" = all ]; then
-	run_one build-field 1500 make --no-print-directory -j"$jobs" tests
+	run_one build-field 1500 make --no-print-directory -j"$jobs" tests benches
 	unit build unit
 	run_one releases 2400 bash -c '. tests/e2e/lib.sh; small_release; demo_release'
 	export RELEASES_MADE=yes
-	# First those that take long, so that none of them is left over in the end.
+	# A line is what runs in turn, as it shares what it makes. Those that take long come first, so that
+	# none of them is left over in the end.
 	{
-		printf 'tests/e2e/%s.sh\n' pictures golden weak switch
-		find tests/e2e -name '*.sh' ! -name 'lib*.sh' | sort
-	} | awk '!seen[$0]++ { sub("tests/", ""); print $0, 2400, "bash tests/" $0 }' |
-		xargs -P "$jobs" -L 1 tests/run.sh one
-	for script in $(find tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name initramfs.sh ! -name release.sh ! -name sticks.sh | sort); do
-		run_one "${script#tests/}" 2400 bash "$script"
-	done
+		echo qemu/kiosk qemu/image qemu/powercut
+		printf '%s\n' e2e/weak qemu/arm64 e2e/golden e2e/pictures e2e/switch e2e/tours
+		find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' -printf '%P %h\n' |
+			sed 's/\(.*\)\.sh tests\/\(.*\)/\2\/\1/' | sort
+	} | awk '!seen[$1]++ { print } { for (i = 2; i <= NF; i++) seen[$i]++ }' |
+		xargs -P "$jobs" -L 1 tests/run.sh lane
 fi
 
 count() { cat "$logs"/*.verdict | grep -c "$1"; }

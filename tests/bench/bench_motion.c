@@ -32,7 +32,7 @@ enum { FRAMES_MOST = 6000, LEGS_MOST = 2000, BLOCK = 8, POP = 16, HOLE = 16 };
 static const double pop_share = 0.002;
 
 enum gait { GAIT_START, GAIT_GO, GAIT_ON, GAIT_FLING, GAIT_REST };
-enum fault { FAULT_NONE, FAULT_PATCH, FAULT_TILE, FAULT_SAMPLE };
+enum harm { HARM_NONE, HARM_PATCH, HARM_TILE, HARM_SAMPLE };
 
 struct leg {
 	float seconds, eye_m[3], target_m[3];
@@ -54,7 +54,7 @@ struct bench {
 	struct stage_options options;
 	struct stage stage;
 	bool tries_fault;
-	enum fault fault;
+	enum harm harm;
 	struct leg leg[LEGS_MOST];
 	uint32_t leg_count, fps;
 	struct moment moment[FRAMES_MOST];
@@ -275,13 +275,13 @@ static void break_scene(struct bench *bench, uint32_t frame, struct broken *brok
 {
 	struct scene *scene = bench->stage.scene;
 
-	if (bench->fault == FAULT_TILE)
+	if (bench->harm == HARM_TILE)
 		break_fades(scene);
 	if (!scene->has_hierarchy || frame % bench->fps != bench->fps / 2)
 		return;
-	if (bench->fault == FAULT_PATCH)
+	if (bench->harm == HARM_PATCH)
 		break_patch(scene, broken);
-	if (bench->fault == FAULT_SAMPLE)
+	if (bench->harm == HARM_SAMPLE)
 		break_sample(scene);
 }
 
@@ -461,10 +461,10 @@ static void read_option(struct bench *bench, const char *name, const char *value
 									: SCENE_LUMIGRAPH;
 	else if (!strcmp(name, "--fault")) {
 		bench->tries_fault = true;
-		bench->fault = !strcmp(value, "patch")    ? FAULT_PATCH
-			       : !strcmp(value, "tile")   ? FAULT_TILE
-			       : !strcmp(value, "sample") ? FAULT_SAMPLE
-							  : FAULT_NONE;
+		bench->harm = !strcmp(value, "patch")    ? HARM_PATCH
+			      : !strcmp(value, "tile")   ? HARM_TILE
+			      : !strcmp(value, "sample") ? HARM_SAMPLE
+							 : HARM_NONE;
 	} else
 		stage_die(name, -EINVAL);
 }

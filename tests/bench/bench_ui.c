@@ -19,8 +19,9 @@ static void give_anchors(float turn)
 	for (int i = 0; i < PARTS; i++) {
 		float angle = turn + (float)i * 2.4f, radius = 40 + 2 * (float)i;
 
-		anchors[i] = (struct overlay_anchor){ 960 + radius * 1.4f * cosf(angle),
-						      450 + radius * sinf(angle), true };
+		anchors[i] = (struct overlay_anchor){ .x_px = 960 + radius * 1.4f * cosf(angle),
+						      .y_px = 450 + radius * sinf(angle),
+						      .visible = true };
 	}
 	overlay_anchors(overlay, anchors, PARTS);
 }

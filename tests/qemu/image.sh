@@ -12,7 +12,7 @@ tests/qemu/lib-image.sh "$work/image"
 sticks=
 if [ "${1:-}" = updates ]; then
 	sticks=$work/sticks
-	tests/qemu/sticks.sh "$work/image" "$sticks"
+	tests/qemu/make-sticks.sh "$work/image" "$sticks"
 fi
 # shellcheck disable=SC2086
 python3 tests/qemu/appliance.py "$work/image/gopura.img" "$work" $sticks

@@ -13,7 +13,7 @@ mkdir -p "$work"
 image/kernel.sh "$work/kernel"
 kernel=$(ls "$work"/kernel/boot/vmlinuz-*)
 
-tests/qemu/release.sh "$work"
-"$here/initramfs.sh" "$work/kernel" "$work/release" "$work/initramfs.cpio"
+tests/qemu/make-release.sh "$work"
+"$here/make-initramfs.sh" "$work/kernel" "$work/release" "$work/initramfs.cpio"
 python3 "$here/visit.py" "$kernel" "$work/initramfs.cpio" "$work"
 exec python3 "$here/plug.py" "$kernel" "$work/initramfs.cpio" "$work"

@@ -130,7 +130,7 @@ class Machine:
 
 
 class Kiosk(Machine):
-    """Nothing but the kiosk in an initramfs (initramfs.sh), which ends with it."""
+    """Nothing but the kiosk in an initramfs (make-initramfs.sh), which ends with it."""
 
     def __init__(self, kernel, initramfs, work, case="visit"):
         super().__init__(work, case, ["-no-reboot", "-kernel", kernel, "-initrd", initramfs,

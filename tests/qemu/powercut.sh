@@ -31,7 +31,7 @@ if [ ! -f "$work/next/release/release.json" ] || [ build/qemu/release/release.js
 	cp -r build/qemu/content "$content"
 	cp -r build/qemu/release "$work/next/release"
 	sed -i -e 's/^background *=.*/background = #503018/' "$content/temple.ini"
-	build/gopura-content temple --triangles 50000 --seed 2 --out "$content/scan.ply"
+	build/gopura-content temple --triangles 50000 --seed 2 --regions "$content/regions" --out "$content/scan.ply"
 	build/gopura-content build "$content" --out "$work/next/release"
 fi
 # release NAME FOLDER: on a stick, and its sequence beside it

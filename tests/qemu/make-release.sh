@@ -1,5 +1,5 @@
 #!/bin/bash
-# release.sh WORK: a small release of the demo's content, WORK/release.
+# make-release.sh WORK: a small release of the demo's content, WORK/release.
 set -eu
 work=$1
 content=$work/content

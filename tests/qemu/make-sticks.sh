@@ -1,5 +1,5 @@
 #!/bin/bash
-# sticks.sh IMAGE_FOLDER WORK: update bundles on sticks, for appliance.py: next (the same, newer), tampered (one byte of next
+# make-sticks.sh IMAGE_FOLDER WORK: update bundles on sticks, for appliance.py: next (the same, newer), tampered (one byte of next
 # is another), blank (boots, but its kiosk shows nothing), hangs (the kernel stops half a minute after the start).
 set -eu
 cd "$(dirname "$0")/../.."

@@ -1,5 +1,5 @@
 #!/bin/bash
-# initramfs.sh KERNEL_DIR RELEASE OUT: the smallest system that runs the kiosk on a KMS card.
+# make-initramfs.sh KERNEL_DIR RELEASE OUT: the smallest system that runs the kiosk on a KMS card.
 set -eu
 kernel=$1 release=$2 out=$3
 root=$(dirname "$out")/root
