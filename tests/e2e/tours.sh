@@ -73,7 +73,7 @@ for part in own:
     eyes = [tuple(map(float, m)) for m in re.findall(r"app: eye at (\S+) (\S+) (\S+),", part)]
     longest = max([longest] + [math.dist(a, b) for a, b in zip(eyes, eyes[1:])])
 print(f"the longest step of the eye by itself: {longest:.2f} m")
-assert 0.1 < longest < 2, longest
+assert 0.1 < longest < 4, longest  # it is said now and then, not each frame: 1 to 2 m; a jump is some 20
 
 counts = collections.Counter()
 for row in csv.DictReader(open(sys.argv[2])):
