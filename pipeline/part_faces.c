@@ -92,7 +92,8 @@ static void middle_of(const struct mesh *mesh, uint32_t triangle, float out[3])
 			 3;
 }
 
-/* A sphere about the faces' box; the anchor is the face nearest to its middle. */
+/* In the middle of the faces' box and as large as it: a ball has its radius, a cube half its side,
+ * as regions of these kinds have. The anchor is the face nearest to the middle. */
 static void place(struct info_faces *faces, const struct mesh *mesh, const struct part_faces *part)
 {
 	float low[3] = { INFINITY, INFINITY, INFINITY };
@@ -107,7 +108,7 @@ static void place(struct info_faces *faces, const struct mesh *mesh, const struc
 	}
 	for (int k = 0; k < 3; k++)
 		faces->centre_m[k] = (low[k] + high[k]) / 2;
-	faces->radius_m = vec_distance(low, high) / 2;
+	faces->radius_m = vec_distance(low, high) / 2 / sqrtf(3);
 	for (uint32_t i = 0; i < part->count; i++) {
 		middle_of(mesh, part->triangles[i], at);
 		if (vec_distance(at, faces->centre_m) >= nearest)
