@@ -7,7 +7,7 @@
 
 /* Sheets that are one carving, such as a lion: a part can be marked by its faces. */
 struct body {
-	const char *kind; /* static: "lion", "naga" */
+	const char *kind; /* static: "lion", "naga", "stairs" */
 	uint32_t number;  /* of its kind, from 1 */
 	uint32_t first, count;
 };

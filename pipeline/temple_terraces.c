@@ -119,6 +119,7 @@ void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, flo
 		 float rise_m)
 {
 	plan_sheet(plan, frame, &outline_line, &stairs, 2 * half_m, run_m, rise_m);
+	plan_body(plan, "stairs", plan->count - 1);
 	for (int side = -1; side <= 1; side += 2) {
 		float x = (float)side * (half_m + 0.28f);
 		for (int block = 0; block < 3; block++) {
