@@ -49,4 +49,4 @@ if [ "${1:-}" = system ] && [ ! -f "$sticks/system.img" ]; then
 	VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$image/tree/usr/lib/os-release")-next image/bundle.sh "$work/system"
 	stick system "$(($(stat -c %s "$work/system/gopura.raucb") / 1048576 + 40))" "$work/system/gopura.raucb"
 fi
-CUTS=${CUTS:-3} exec nice -n 5 python3 tests/qemu/powercut.py "$image/gopura.img" "$sticks" "$work"
+CUTS=${CUTS:-3} exec python3 tests/qemu/powercut.py "$image/gopura.img" "$sticks" "$work"
