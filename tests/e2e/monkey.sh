@@ -32,23 +32,40 @@ play() {
 		--state "$work/state" --idle-s 5 --touch-replay "$work/$2.touch" --log debug \
 		>"$work/$2.json" 2>"$work/$2.log"
 }
-events=${EVENTS:-1000} seed=${SEED:-3}
-status=0
-play "$events" "$seed" || status=$?
-# The leak checker itself dies now and then while it stops llvmpipe's threads: that says nothing.
-if [ "$status" -ne 0 ] && grep -q 'LeakSanitizer has encountered a fatal error' "$work/$seed.log"; then
-	status=0
+
+# holds EVENTS SEED: it was played, and nothing is wrong.
+holds() {
+	local events=$1 seed=$2 status=0
 	play "$events" "$seed" || status=$?
-fi
-cat "$work/$seed.json"
-[ "$status" -eq 0 ] || { tail -n 40 "$work/$seed.log"; fail "after EVENTS=$events SEED=$seed: status $status"; }
-! grep -qE 'Sanitizer|runtime error' "$work/$seed.log" ||
-	{ grep -E -A 20 'Sanitizer|runtime error' "$work/$seed.log"; fail "EVENTS=$events SEED=$seed"; }
-python3 - "$work/$seed.json" <<'P'
+	# The leak checker itself dies now and then while it stops llvmpipe's threads: that says nothing.
+	if [ "$status" -ne 0 ] && grep -q 'LeakSanitizer has encountered a fatal error' "$work/$seed.log"; then
+		status=0
+		play "$events" "$seed" || status=$?
+	fi
+	cat "$work/$seed.json"
+	[ "$status" -eq 0 ] || { tail -n 40 "$work/$seed.log"; fail "after EVENTS=$events SEED=$seed: status $status"; }
+	! grep -qE 'Sanitizer|runtime error' "$work/$seed.log" ||
+		{ grep -E -A 20 'Sanitizer|runtime error' "$work/$seed.log"; fail "EVENTS=$events SEED=$seed"; }
+}
+
+# reached: the fingers came wherever there is something to touch.
+reached() {
+	python3 - "$work"/*.json <<'P'
 import json
 import sys
 
-seen = json.load(open(sys.argv[1]))
-never = [name for name in ("card", "page", "search", "language", "help", "tools") if not seen["frames_with"][name]]
-assert not never and seen["left_alone"] > 0, f"such a monkey tests little: it never saw {never}"
+seen = [json.load(open(path)) for path in sys.argv[1:]]
+never = [name for name in ("card", "page", "search", "language", "help", "tools")
+         if not any(one["frames_with"][name] for one in seen)]
+sys.exit(f"the fingers never reached {never}" if never or not any(one["left_alone"] for one in seen) else 0)
 P
+}
+
+# What a finger meets depends on how soon the temple comes, which no clock of ours rules: where the
+# first ones reach too little, others follow.
+events=${EVENTS:-1000} first=${SEED:-3}
+for seed in $(seq "$first" $((first + 3))); do
+	holds "$events" "$seed"
+	! reached || exit 0
+done
+fail "such fingers test little"
