@@ -48,7 +48,7 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 		{ 1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7f, 0.7f }, { 0.7f, -0.7f }
 	};
 	static const float bows[] = { 0.25f, 0.5f, 1, 1.6f, 2.4f };
-	float across[3], side[3], middle[3], reach_m;
+	float across[3], side[3], middle[3], length_m, reach_m;
 
 	glm_vec3_copy((float *)from_m, way->from_m);
 	glm_vec3_copy((float *)to_m, way->to_m);
@@ -57,7 +57,8 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 	if (way_is_free(way, is_free, data))
 		return;
 	glm_vec3_sub(way->to_m, way->from_m, across);
-	reach_m = fmaxf(glm_vec3_norm(across) / 2, size_m / 2);
+	length_m = glm_vec3_norm(across);
+	reach_m = fmaxf(length_m / 2, fminf(size_m / 2, 2 * length_m)); /* no detour for a step */
 	glm_vec3_copy((vec3){ -across[1], across[0], 0 }, side);
 	if (glm_vec3_norm(side) < 1e-6f * reach_m)
 		side[0] = 1; /* straight up or down: any side */

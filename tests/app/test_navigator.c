@@ -221,6 +221,26 @@ static void a_flight_leads_round_what_is_in_the_way(void **state)
 	CHECK(bows > 0);
 }
 
+/* Where it stands something is so near that no way is free, and it has hardly any to go. */
+static void a_step_is_no_reason_for_a_detour(void **state)
+{
+	const float here[3] = { -10.02f, 0, 5 }, there[3] = { -10.02f, 0.01f, 5 };
+	const float target[3] = { 0, 0, 5 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, here, target);
+	navigator_fly(&nav, there, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)here) < 0.05f);
+	navigator_fly(&nav, there, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)there) < 1e-3f);
+}
+
 static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
 {
 	const float eye[3] = { -50, -30, 12 }, target[3] = { 0, 0, 8 };
@@ -346,6 +366,7 @@ int main(void)
 		cmocka_unit_test(a_fling_slows_down_and_ends),
 		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
 		cmocka_unit_test(a_flight_leads_round_what_is_in_the_way),
+		cmocka_unit_test(a_step_is_no_reason_for_a_detour),
 		cmocka_unit_test(where_nothing_is_in_the_way_a_flight_is_straight),
 		cmocka_unit_test(a_flight_from_within_arrives_all_the_same),
 		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
