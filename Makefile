@@ -78,7 +78,7 @@ test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, f
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
 
-soak: all ## random fingers on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (an hour)
+soak: all ## random fingers on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
 	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
 
 golden: all ## pictures of every state in four languages into build/golden/, beside those that were kept; KEEP=yes keeps them
