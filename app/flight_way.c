@@ -2,6 +2,8 @@
 
 #include <cglm/cglm.h>
 
+#include "base/compiler.h"
+
 enum { STEPS = 16 };
 
 void flight_way_at(const struct flight_way *way, float t, float out_m[3])
@@ -63,8 +65,8 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 	if (glm_vec3_norm(side) < 1e-6f * reach_m)
 		side[0] = 1; /* straight up or down: any side */
 	glm_vec3_normalize(side);
-	for (size_t i = 0; i < sizeof(bows) / sizeof(bows[0]); i++) {
-		for (size_t k = 0; k < sizeof(bends) / sizeof(bends[0]); k++) {
+	for (size_t i = 0; i < ARRAY_COUNT(bows); i++) {
+		for (size_t k = 0; k < ARRAY_COUNT(bends); k++) {
 			glm_vec3_copy(middle, way->over_m);
 			way->over_m[2] += bows[i] * bends[k][0] * reach_m;
 			glm_vec3_muladds(side, bows[i] * bends[k][1] * reach_m, way->over_m);
