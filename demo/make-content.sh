@@ -1,0 +1,20 @@
+#!/bin/bash
+# The demo's content with a procedural temple as its scan; a temple that is there already stays, unless it
+# has another number of triangles or its plan has changed since.
+#
+#   demo/make-content.sh FOLDER TRIANGLES
+set -eu
+cd "$(dirname "$0")/.."
+content=$1 triangles=$2
+mkdir -p "$content"
+cp -ru demo/content/. "$content/"
+temple="$triangles $(cat pipeline/temple*.[ch] format/stone.[ch] | cksum)"
+# Of what the scan was made, beside the folder: in it lies only content.
+made=${content%/}.scan
+if [ ! -f "$content/scan.ply" ] || [ "$(cat "$made" 2>/dev/null)" != "$temple" ]; then
+	echo "Making the temple: $triangles triangles ..."
+	build/gopura-content temple --triangles "$triangles" --seed 1 --regions "$content/regions" \
+		--out "$content/scan.ply.part"
+	mv "$content/scan.ply.part" "$content/scan.ply"
+	echo "$temple" >"$made"
+fi
