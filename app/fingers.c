@@ -446,7 +446,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	struct kiosk *kiosk = data;
 	struct touch_event seen = *event;
 
-	if (panel_takes_touch(kiosk, event) || provision_covers(kiosk))
+	if (panel_takes_touch(kiosk, event) || setup_page_covers(kiosk))
 		return; /* for the panel alone, or a page without anything to touch */
 	if (guest_takes_touch(kiosk, event))
 		return;
@@ -478,7 +478,7 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 	};
 	struct kiosk *kiosk = data;
 
-	if (provision_covers(kiosk))
+	if (setup_page_covers(kiosk))
 		return;
 	frame_from_panel(kiosk, &x_px, &y_px);
 	if (kind == POINTER_WHEEL) {

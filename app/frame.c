@@ -339,7 +339,7 @@ int frame_draw(struct kiosk *kiosk)
 	if (overlay && words)
 		rc = draw_words(kiosk, overlay, now_ms);
 	if (rc == 0)
-		rc = provision_draw(kiosk, now_ms);
+		rc = setup_page_draw(kiosk, now_ms);
 	if (rc == 0)
 		rc = gl_check("drawing a frame");
 	kiosk->frame_us = (uint32_t)(clock_thread_us() - began_us);

@@ -5,11 +5,9 @@
 
 #include "app/navigator.h"
 #include "app/options.h"
-#include "app/panel.h"
 #include "app/provision.h"
 #include "app/roam.h"
 #include "app/story.h"
-#include "app/tools.h"
 #include "app/tour.h"
 #include "app/visit.h"
 #include "app/wants.h"
@@ -22,6 +20,8 @@
 #include "render/quads.h"
 #include "render/scene.h"
 #include "storage/tally.h"
+#include "ui/bitmap.h"
+#include "ui/overlay.h"
 
 struct capture;
 struct figures_socket;
@@ -54,10 +54,40 @@ struct exhibit {
 	struct scene_frame frame; /* of the last time it was drawn */
 };
 
+/* The panel over the day: when it is on, where the picture lies on it, and what the service manager
+ * is told of it. */
+struct panel {
+	int64_t well_ms;    /* of the last frame that the service manager was told of; 0: of none */
+	int64_t look_ms;    /* at the clock on the wall next; 0: at once */
+	int64_t touched_ms; /* last; 0: never */
+	bool closed;        /* by the hours, as last looked at */
+	bool asleep;
+	uint32_t taken;  /* contacts, a bit each, whose touch was for the panel alone */
+	int shift_px[2]; /* of the picture: right and up */
+};
+
+/* What tells the exhibit engineer on the panel what is wrong with gopura.conf. */
+struct setup_page {
+	struct bitmap bitmap; /* no surface: nothing is to be said */
+	int64_t since_ms;     /* when it came onto the panel; 0: not yet */
+	int64_t leaves_ms;    /* when it began to go; 0: it stays */
+};
+
+/* What a visitor holds of the tools that the content gives: a raking light and a section.
+ * docs/tools.md. */
+struct tools {
+	struct scene_tools now;
+	enum overlay_handle held; /* by the one finger that may */
+	uint32_t contact;         /* which that is */
+	float grabbed_at[2];      /* where on the disc it came down */
+	float grabbed_push_m;
+};
+
 struct kiosk {
 	struct options options; /* of the command line; then of gopura.conf */
 	struct provision provision;
 	struct profile profile;
+	struct setup_page setup_page;
 
 	int epoll_fd, signal_fd;
 	struct display *display;
@@ -110,7 +140,7 @@ struct kiosk {
 	bool quit;
 };
 
-/* kiosk.c: start, run, stop (the reverse; any part may be missing). */
+/* loop.c: start, run, stop (the reverse; any part may be missing). */
 must_check int kiosk_start(struct kiosk *kiosk);
 /* Until quit is set; negative errno (logged) where going on makes no sense; -ENOTRECOVERABLE,
  * -ESTALE: a new process does. */
@@ -151,6 +181,27 @@ bool exhibit_may_load(const struct kiosk *kiosk);
 void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc);
 /* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
 int exhibit_wait_ms(const struct kiosk *kiosk);
+
+/* panel.c */
+/* Once a turn of the loop. Negative errno as of display_dispatch and display_sleep. */
+must_check int panel_turn(struct kiosk *kiosk);
+/* In how many milliseconds the next turn is due; -1: when something happens. */
+int panel_wait_ms(const struct kiosk *kiosk);
+/* A finger on the glass. true: it wakes the panel, or did, and means nothing else. */
+bool panel_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
+
+/* setup_page.c: it stays for half a minute where there is a release to be shown then, else until
+ * the terminal is started anew. */
+/* Draws it, if there is something to say. Needs the panel's size, and whether a release is
+ * remembered. */
+must_check int setup_page_show(struct kiosk *kiosk);
+void setup_page_finish(struct kiosk *kiosk); /* one that was never shown is fine */
+/* Over everything else that is in the frame. */
+must_check int setup_page_draw(struct kiosk *kiosk, int64_t now_ms);
+/* It is up: touch means nothing. */
+bool setup_page_covers(const struct kiosk *kiosk);
+/* In how many milliseconds it changes by itself; -1: not by time. */
+int setup_page_wait_ms(const struct kiosk *kiosk);
 
 /* vitals.c: offers how the terminal is, where the options ask for it. */
 must_check int vitals_offer(struct kiosk *kiosk);

@@ -1,5 +1,3 @@
-#include "app/panel.h"
-
 #include <limits.h>
 #include <string.h>
 #include <time.h>

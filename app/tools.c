@@ -1,5 +1,3 @@
-#include "app/tools.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -41,7 +39,6 @@ static void say(const struct kiosk *kiosk)
 static void let_go(struct tools *tools)
 {
 	tools->held = OVERLAY_HANDLE_NONE;
-	tools->contact = TOOLS_CONTACT_NONE;
 }
 
 void tools_press(struct kiosk *kiosk, unsigned tool)
@@ -85,7 +82,8 @@ void tools_end(struct kiosk *kiosk)
 
 /* ---- fingers */
 
-static void grab(struct kiosk *kiosk, int contact, enum overlay_handle handle, const float at[2])
+static void grab(struct kiosk *kiosk, uint32_t contact, enum overlay_handle handle,
+		 const float at[2])
 {
 	struct tools *tools = &kiosk->tools;
 
@@ -128,7 +126,7 @@ bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
 	struct tools *tools = &kiosk->tools;
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 	const bool is_holder =
-		tools->held != OVERLAY_HANDLE_NONE && tools->contact == (int)event->contact;
+		tools->held != OVERLAY_HANDLE_NONE && tools->contact == event->contact;
 	enum overlay_handle handle;
 	float at[2];
 
@@ -139,7 +137,7 @@ bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
 		if (handle == OVERLAY_HANDLE_NONE || tools->held != OVERLAY_HANDLE_NONE)
 			return false;
 		overlay_handle_place(overlay, handle, event->x_px, event->y_px, at);
-		grab(kiosk, (int)event->contact, handle, at);
+		grab(kiosk, event->contact, handle, at);
 		move(kiosk, at);
 		return true;
 	}

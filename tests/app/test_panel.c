@@ -1,6 +1,4 @@
 /* A day of the panel: display, clocks and service manager are played. 1 July 2024 was a Monday. */
-#include "app/panel.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,3 @@
-#include "app/kiosk.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -13,7 +11,7 @@
 #include "app/capture.h"
 #include "app/folder.h"
 #include "app/follow.h"
-#include "app/panel.h"
+#include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/figures_socket.h"
 #include "base/log.h"
@@ -263,7 +261,7 @@ int kiosk_start(struct kiosk *kiosk)
 	if (rc == 0)
 		follow_start(kiosk->follow);
 	if (rc == 0)
-		rc = provision_show(kiosk);
+		rc = setup_page_show(kiosk);
 	kiosk->frame_wanted = true;
 	return rc;
 }
@@ -282,7 +280,7 @@ void kiosk_stop(struct kiosk *kiosk)
 	touch_destroy(kiosk->touch);
 	exhibit_close(&kiosk->coming);
 	exhibit_close(&kiosk->shown);
-	provision_finish(&kiosk->provision);
+	setup_page_finish(kiosk);
 	if (kiosk->warm_target.framebuffer)
 		gl_target_destroy(&kiosk->warm_target);
 	quads_destroy(kiosk->quads);
@@ -333,7 +331,7 @@ static int wait_ms(const struct kiosk *kiosk)
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
 	return sooner(sooner(sooner(coming_ms, capture_ms), guest_wait_ms(kiosk)),
-		      sooner(sooner(trial_wait_ms(kiosk), provision_wait_ms(kiosk)),
+		      sooner(sooner(trial_wait_ms(kiosk), setup_page_wait_ms(kiosk)),
 			     panel_wait_ms(kiosk)));
 }
 
@@ -349,7 +347,7 @@ static int turn(struct kiosk *kiosk)
 		rc = dispatch(kiosk, ready[i].data.fd);
 	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
 	if (count == 0 &&
-	    (kiosk->capture || exhibit_wait_ms(kiosk) == 0 || provision_wait_ms(kiosk) == 0))
+	    (kiosk->capture || exhibit_wait_ms(kiosk) == 0 || setup_page_wait_ms(kiosk) == 0))
 		kiosk_redraw(kiosk);
 	if (rc == 0 && !kiosk->quit)
 		rc = panel_turn(kiosk);
