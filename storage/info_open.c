@@ -2,8 +2,6 @@
  * languages are a few hundred KB, and no frame ever waits for SQLite. The image may come from a
  * damaged cache or a stranger, so the schema is not trusted (it cannot run functions), the pages
  * of the file are checked, and work is bounded. */
-#include "storage/info.h"
-
 #include <errno.h>
 #include <libxml/xmlstring.h>
 #include <math.h>
