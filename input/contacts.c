@@ -7,7 +7,7 @@ static void to_panel(const struct contacts *contacts, const float m[6], const st
 	float v = m[3] * raw->x + m[4] * raw->y + m[5];
 	float x = u, y = v;
 
-	switch (contacts->options->rotation_deg) {
+	switch (contacts->rotation_deg) {
 	case 90: /* the panel's own left edge is on top */
 		x = 1 - v;
 		y = u;
@@ -23,26 +23,25 @@ static void to_panel(const struct contacts *contacts, const float m[6], const st
 	}
 	x = x < 0 ? 0 : x > 1 ? 1 : x;
 	y = y < 0 ? 0 : y > 1 ? 1 : y;
-	*x_px = x * (float)contacts->options->width_px;
-	*y_px = y * (float)contacts->options->height_px;
+	*x_px = x * (float)contacts->width_px;
+	*y_px = y * (float)contacts->height_px;
 }
 
 static bool is_at_edge(const struct contacts *contacts, float x_px, float y_px)
 {
-	const struct touch_options *o = contacts->options;
+	const float edge_px = contacts->edge_px;
 
-	return o->edge_px > 0 &&
-	       (x_px < o->edge_px || y_px < o->edge_px || x_px > (float)o->width_px - o->edge_px ||
-		y_px > (float)o->height_px - o->edge_px);
+	return edge_px > 0 &&
+	       (x_px < edge_px || y_px < edge_px || x_px > (float)contacts->width_px - edge_px ||
+		y_px > (float)contacts->height_px - edge_px);
 }
 
 static bool is_palm(const struct contacts *contacts, const struct touch_raw *raw)
 {
-	const struct touch_options *o = contacts->options;
-	bool sideways = o->rotation_deg % 180 != 0;
-	float width_px = (float)(sideways ? o->height_px : o->width_px);
+	bool sideways = contacts->rotation_deg % 180 != 0;
+	float width_px = (float)(sideways ? contacts->height_px : contacts->width_px);
 
-	return o->palm_px > 0 && raw->major * width_px > o->palm_px;
+	return contacts->palm_px > 0 && raw->major * width_px > contacts->palm_px;
 }
 
 /* -1: more are down than anybody has fingers. */
@@ -66,8 +65,8 @@ static void report(struct contacts *contacts, enum touch_phase phase,
 					   .y_px = slot->y_px,
 					   .time_us = time_us };
 
-	if (slot->contact >= 0 && contacts->options->event)
-		contacts->options->event(contacts->options->data, &event);
+	if (slot->contact >= 0 && contacts->event)
+		contacts->event(contacts->data, &event);
 }
 
 static void lift(struct contacts *contacts, struct contact_slot *slot, enum touch_phase phase,

@@ -4,11 +4,14 @@
 #ifndef GOPURA_INPUT_CONTACTS_H
 #define GOPURA_INPUT_CONTACTS_H
 
-#include "input/touch.h"
 #include "input/touch_device.h"
+#include "input/touch_event.h"
 
 struct contacts {
-	const struct touch_options *options; /* borrowed */
+	int width_px, height_px, rotation_deg; /* these as in struct touch_options */
+	float edge_px, palm_px;
+	void (*event)(void *data, const struct touch_event *event); /* NULL is fine */
+	void *data;
 	bool used[TOUCH_CONTACTS_MOST];
 };
 
@@ -21,7 +24,7 @@ struct contact_slot {
 };
 
 /* A frame of a device against what was known of its slots. A finger whose lift was lost shows as a
- * changed id. Calls the options' event. */
+ * changed id. Calls event. */
 void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MOST],
 		   const struct touch_raw raws[TOUCH_SLOTS_MOST], const float matrix[6],
 		   int64_t time_us);

@@ -7,7 +7,9 @@
 #ifndef GOPURA_INPUT_GESTURE_H
 #define GOPURA_INPUT_GESTURE_H
 
-#include "input/touch.h"
+#include <stdbool.h>
+
+#include "input/touch_event.h"
 
 enum gesture_kind {
 	GESTURE_PRESS,       /* the first finger came down: stop inertia, note the pivot */

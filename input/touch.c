@@ -298,7 +298,15 @@ int touch_create(struct touch **out, const struct touch_options *options)
 	if (!touch)
 		return -ENOMEM;
 	touch->options = *options;
-	touch->contacts.options = &touch->options;
+	touch->contacts = (struct contacts){
+		.width_px = options->width_px,
+		.height_px = options->height_px,
+		.rotation_deg = options->rotation_deg,
+		.edge_px = options->edge_px,
+		.palm_px = options->palm_px,
+		.event = options->event,
+		.data = options->data,
+	};
 	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = touch->parent_watch = -1;
 	rc = start(touch, options);
 	if (rc < 0) {

@@ -3,7 +3,7 @@
 #define GOPURA_INPUT_TOUCH_REPLAY_H
 
 #include "base/bytes.h"
-#include "input/touch.h"
+#include "input/touch_event.h"
 
 struct touch_replay {
 	struct touch_event *events; /* owned; in order of time; pixels of the panel */

@@ -15,8 +15,7 @@
 
 enum { LEAVES_MS = 40000, LEAVES_EVERY = 300, FIRST_MS = 3000 };
 
-static struct touch_options options = { .palm_px = 120 };
-static struct contacts contacts = { .options = &options };
+static struct contacts contacts = { .palm_px = 120 };
 static struct contact_slot slots[TOUCH_SLOTS_MOST];
 static struct touch_raw raws[TOUCH_SLOTS_MOST];
 static uint64_t state;
@@ -176,15 +175,15 @@ int main(int argc, char **argv)
 {
 	if (argc == 5) {
 		left = strtol(argv[1], NULL, 10);
-		options.width_px = (int)strtol(argv[3], NULL, 10);
-		options.height_px = (int)strtol(argv[4], NULL, 10);
+		contacts.width_px = (int)strtol(argv[3], NULL, 10);
+		contacts.height_px = (int)strtol(argv[4], NULL, 10);
 	}
-	if (left < 1 || options.width_px < 1 || options.height_px < 1) {
+	if (left < 1 || contacts.width_px < 1 || contacts.height_px < 1) {
 		fputs("usage: random_touches EVENTS SEED WIDTH HEIGHT\n", stderr);
 		return 2;
 	}
+	contacts.event = on_event;
 	state = strtoull(argv[2], NULL, 10) * 2654435761u + 1;
-	options.event = on_event;
 	for (int i = 0; i < 8; i++)
 		random_below(2);
 	leaves_at = left - LEAVES_EVERY;

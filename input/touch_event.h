@@ -1,0 +1,23 @@
+/* What a finger does on the panel. */
+#ifndef GOPURA_INPUT_TOUCH_EVENT_H
+#define GOPURA_INPUT_TOUCH_EVENT_H
+
+#include <stdint.h>
+
+enum { TOUCH_CONTACTS_MOST = 10 };
+
+enum touch_phase {
+	TOUCH_DOWN,
+	TOUCH_MOVE,
+	TOUCH_UP,
+	TOUCH_CANCEL, /* lifted without meaning it: a palm, or the device went away */
+};
+
+struct touch_event {
+	enum touch_phase phase;
+	uint32_t contact; /* 0 .. TOUCH_CONTACTS_MOST-1; unique among the fingers that are down */
+	float x_px, y_px; /* of the picture as the visitor sees it: x right, y down */
+	int64_t time_us;  /* CLOCK_MONOTONIC of the kernel's event; 0-based in a replay */
+};
+
+#endif
