@@ -1,4 +1,4 @@
-#include "format/patch.h"
+#include "format/normal.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
-/* What the patch codec expects of a vertex before it reads the difference: private to patch.c and
- * patch_predict.c. All arithmetic is on integers, so that every machine expects the same.
+/* What the patch codec expects of a vertex before it reads the difference: private to format. All
+ * arithmetic is on integers, so that every machine expects the same.
  *
  * Positions: the parallelogram rule (Touma and Gotsman 1998, "Triangle mesh compression") over the
  * triangles in their order. Normals: the area-weighted normal of the patch's own triangles.
@@ -7,7 +7,8 @@
 #ifndef GOPURA_FORMAT_PREDICT_H
 #define GOPURA_FORMAT_PREDICT_H
 
-#include "format/patch.h"
+#include "base/compiler.h"
+#include "format/patch_mesh.h"
 
 /* One step a vertex, in the order in which the vertices are coded: the order in which the
  * triangles name them, then the ones that no triangle names. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/normal.h"
 #include "render/vec.h"
 
 enum { SAMPLES_MOST = ((1 << LABEL_LEVEL_MOST) + 1) * ((1 << LABEL_LEVEL_MOST) + 2) / 2 };

@@ -6,6 +6,7 @@
 
 #include <meshoptimizer.h>
 
+#include "format/normal.h"
 #include "format/patch.h"
 #include "pipeline/multires_parts.h"
 

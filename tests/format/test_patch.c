@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/normal.h"
 #include "tests/check.h"
 
 enum { SIDE = 24 };

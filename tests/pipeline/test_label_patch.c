@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/normal.h"
 #include "pipeline/mesh.h"
 #include "render/vec.h"
 #include "tests/check.h"

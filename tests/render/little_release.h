@@ -10,6 +10,7 @@
 
 #include "format/hierarchy.h"
 #include "format/light.h"
+#include "format/normal.h"
 #include "format/patch.h"
 #include "format/samples.h"
 #include "format/tile.h"

@@ -1,5 +1,3 @@
-#include "format/metadata.h"
-
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
