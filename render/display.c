@@ -92,7 +92,9 @@ void display_destroy(struct display *display)
 
 enum display_kind display_kind(const struct display *display)
 {
-	return display->backend->kind;
+	return display->backend == &display_drm        ? DISPLAY_DRM
+	       : display->backend == &display_headless ? DISPLAY_HEADLESS
+						       : DISPLAY_WINDOW;
 }
 
 int display_width_px(const struct display *display)

@@ -2,12 +2,12 @@
 #ifndef GOPURA_RENDER_DISPLAY_BACKEND_H
 #define GOPURA_RENDER_DISPLAY_BACKEND_H
 
-#include <stdint.h>
+#include <stdbool.h>
 
-#include "render/display.h"
+struct display;
+struct display_options;
 
 struct display_backend {
-	enum display_kind kind;
 	const char *name;
 	/* Fills display->state; on failure destroy is called as well. */
 	int (*create)(struct display *display, const struct display_options *options);

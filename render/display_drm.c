@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "render/context.h"
+#include "render/display.h"
 #include "render/display_backend.h"
 #include "render/drm_panel.h"
 #include "render/gl.h"
@@ -262,7 +263,6 @@ static int sleep_or_wake(struct display *display, bool asleep)
 }
 
 const struct display_backend display_drm = {
-	.kind = DISPLAY_DRM,
 	.name = "KMS",
 	.create = create,
 	.destroy = destroy,

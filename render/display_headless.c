@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "render/display.h"
 #include "render/display_backend.h"
 #include "render/gl.h"
 #include "render/headless.h"
@@ -55,7 +56,6 @@ static int present(struct display *display)
 }
 
 const struct display_backend display_headless = {
-	.kind = DISPLAY_HEADLESS,
 	.name = "headless",
 	.create = create,
 	.destroy = destroy,

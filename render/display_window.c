@@ -8,6 +8,7 @@
 #include <SDL.h>
 
 #include "base/log.h"
+#include "render/display.h"
 #include "render/display_backend.h"
 #include "render/gl.h"
 
@@ -131,7 +132,6 @@ static int present(struct display *display)
 }
 
 const struct display_backend display_window = {
-	.kind = DISPLAY_WINDOW,
 	.name = "window",
 	.create = create,
 	.destroy = destroy,

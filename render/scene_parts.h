@@ -1,11 +1,11 @@
 /* What the sources of the scene share; private to them.
- *   scene.c        life, objects in
- *   scene_wants.c  objects wanted
- *   scene_labels.c which part a place belongs to
- *   scene_plan.c   what is shown: cut, pieces, blends
- *   scene_census.c which pieces are in sight
- *   scene_draw.c   the frame
- *   scene_mark.c   the marked part over it */
+ *   scene_objects.c  life, objects in
+ *   scene_wants.c    objects wanted
+ *   scene_labels.c   which part a place belongs to
+ *   scene_plan.c     what is shown: cut, pieces, blends
+ *   scene_census.c   which pieces are in sight
+ *   scene_draw.c     the frame
+ *   scene_mark.c     the marked part over it */
 #ifndef GOPURA_RENDER_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_PARTS_H
 
@@ -128,7 +128,7 @@ struct scene {
 	uint32_t mark_serial; /* so many parts were */
 };
 
-/* scene.c */
+/* scene_objects.c */
 struct object *scene_object(struct scene *scene, struct hash hash);
 /* Remembers what an object is for; NULL without memory. */
 struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,

@@ -1,5 +1,3 @@
-#include "render/scene.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
