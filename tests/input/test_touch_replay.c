@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "input/touch.h"
 #include "tests/check.h"
 
 static int parse(struct touch_replay *out, const char *text, unsigned *line)
