@@ -5,8 +5,8 @@
 #   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
 #
 # A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
-# tests, and after them end-to-end tests and machines in QEMU, run as many at a time as there are
-# cores: each has a port and a folder of its own, and mostly waits.
+# tests, and after them end-to-end tests and machines in QEMU, run beside one another: each has a
+# port and a folder of its own.
 set -u
 cd "$(dirname "$0")/.."
 logs=$PWD/build/test-logs
@@ -67,21 +67,26 @@ rm -rf "$logs"
 mkdir -p "$logs"
 run_one check-style 120 tests/style/check.sh
 run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan all tests
-unit build/asan san
 if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests benches
+	# What the end-to-end tests show, made beside the unit tests: much of it is the work of one core.
+	run_one releases 2400 bash -c '. tests/e2e/lib.sh; small_release; demo_release' &
+fi
+unit build/asan san
+if [ "$mode" = all ]; then
 	unit build unit
-	run_one releases 2400 bash -c '. tests/e2e/lib.sh; small_release; demo_release'
+	wait
 	export RELEASES_MADE=yes
 	# A line is what runs in turn, as it shares what it makes. Those that take long come first, so that
-	# none of them is left over in the end.
+	# none of them is left over in the end; those that compute alternate with those that mostly wait, and
+	# so there is one more at a time than there are cores.
 	{
 		echo qemu/kiosk qemu/image qemu/powercut
-		printf '%s\n' e2e/weak qemu/arm64 e2e/golden e2e/pictures e2e/switch e2e/tours
+		printf '%s\n' e2e/weak e2e/switch e2e/golden e2e/tours qemu/arm64 e2e/tools e2e/pictures e2e/visit
 		find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' -printf '%P %h\n' |
 			sed 's/\(.*\)\.sh tests\/\(.*\)/\2\/\1/' | sort
 	} | awk '!seen[$1]++ { print } { for (i = 2; i <= NF; i++) seen[$i]++ }' |
-		xargs -P "$jobs" -L 1 tests/run.sh lane
+		xargs -P "$((jobs + 1))" -L 1 tests/run.sh lane
 fi
 
 count() { cat "$logs"/*.verdict | grep -c "$1"; }

@@ -68,21 +68,25 @@ for name in ["strong", "size", "units", "mediump", "rgba8", "index", "depth24", 
     assert 20 << 20 < held["rgb_bytes"] <= 32 << 20, f"{name}: {held['rgb_bytes']} B of tiles and depths"
 P
 
-# ---- a little scene, with room for all its faces: what a limit itself costs, the better of three
-# runs (which samples arrive first moves one run by 0.6 dB)
-# little LIMITS
+# ---- a little scene, with room for all its faces: what a limit itself costs. Which samples arrive first moves one run
+# by 0.6 dB, so the best of three runs counts; a limit gets no more of them than it takes.
+# little LIMITS: the dB of a run
 little() {
-	local run
-	for run in 1 2 3; do
-		WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/test_scene \
-			>"$work/little.log" 2>&1 || { cat "$work/little.log" >&2; fail "the little scene, without $1"; }
-		grep -q '"refusals": 0,' "$work/little.json" || fail "$1: the little scene was refused something"
-		sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"
-	done | sort -n | tail -n 1
+	WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/test_scene \
+		>"$work/little.log" 2>&1 || { cat "$work/little.log" >&2; fail "the little scene, without $1"; }
+	grep -q '"refusals": 0,' "$work/little.json" || fail "$1: the little scene was refused something"
+	sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"
 }
-strong=$(little '')
+strong=0
+for _ in 1 2 3; do
+	one=$(little '')
+	strong=$(printf '%s\n' "$strong" "$one" | sort -n | tail -n 1)
+done
 for limit in size mediump all; do
-	held=$(little "$limit")
+	held=0
+	for _ in 1 2 3; do
+		awk "BEGIN { exit !($held >= $strong - 1) }" || held=$(little "$limit")
+	done
 	echo "the little scene: $held dB without $limit, $strong with everything"
 	awk "BEGIN { exit !($held >= $strong - 1) }" || fail "the little scene loses more than 1 dB without $limit"
 done
