@@ -118,8 +118,13 @@ cp "$kernel"/boot/vmlinuz-* "$boot/vmlinuz"
 touch -d "@$SOURCE_DATE_EPOCH" "$boot"/* "$boot"
 
 rm -f "$out/boot.img"
-E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH mke2fs -q -t ext2 -U 6f707572-6100-4000-8000-000000000000 \
+export E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH
+mke2fs -q -t ext2 -U 6f707572-6100-4000-8000-000000000000 \
 	-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$out/boot.img" "${boot_mib}M" 2>/dev/null
+# It takes the times when the files came into $boot along, which no touch can set.
+for file in initrd vmlinuz; do
+	echo "set_inode_field $file ctime @$SOURCE_DATE_EPOCH"
+done | debugfs -w -f - "$out/boot.img" >/dev/null 2>&1
 rm -f "$out/root.squashfs"
 mksquashfs "$tree" "$out/root.squashfs" -all-root -comp zstd -Xcompression-level ${LEVEL:-15} -quiet -no-progress -noappend
 [ "$(stat -c %s "$out/root.squashfs")" -le $((slot_mib << 20)) ] || {
