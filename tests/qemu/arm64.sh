@@ -117,7 +117,8 @@ look() { # NAME OPTIONS...: a kiosk that draws the view and ends
 	! grep -q '"settled": false' "$work/view-$name/views.jsonl" || fail "$name: the view did not settle"
 }
 look here build/gopura-kiosk --release "$release"
-arm64 $build/gopura-fetch --release "$release" --cache "$work/cache.db" --socket "$work/socket" \
+# Not by the function, whose shell alone would be ended.
+qemu-aarch64 -L "$root" $build/gopura-fetch --release "$release" --cache "$work/cache.db" --socket "$work/socket" \
 	>"$work/fetch.log" 2>&1 &
 fetch=$!
 trap 'kill $fetch 2>/dev/null || true' EXIT
