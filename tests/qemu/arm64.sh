@@ -20,7 +20,7 @@ declare -A left_out=(
 	[pipeline/test_sandbox]="qemu-user holds no child to its memory"
 )
 for name in pipeline/{demo_content,hierarchy,master,publish_labels,reference,sampler,shading,temple} render/{mediump,scene,scene_labels,scene_tools} \
-	storage/{cache,powercut} ui/comfort; do
+	storage/{cache,powercut} ui/{comfort,tools}; do
 	left_out[${name%/*}/test_${name#*/}]="over 20 s there"
 done
 
