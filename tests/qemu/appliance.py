@@ -16,6 +16,7 @@ from machine import Machine, tones
 
 FIRMWARE = "/usr/share/OVMF"
 BOOT_S, ANSWER_S, INSTALL_S, BACK_S = 420, 300, 900, 1500
+LOADER_S = 15  # for which keys are pressed, so that firmware and loader see some
 DISK_BYTES = 2 << 30  # the disk is larger than the image: the data partition takes what is left
 CARD_SHARE = 0.1  # of the panel, in its own colour; without a card it is 0.02
 
@@ -50,7 +51,7 @@ class Appliance(Machine):
             "-drive", f"if=pflash,format=raw,file={variables}",
             *drive, "-device", "virtio-blk-pci,drive=disk,bootindex=0",
             "-netdev", f"user,id=net,restrict=on,hostfwd=tcp:127.0.0.1:{self.health}-:9100", "-device", "virtio-net-pci,netdev=net,romfile=",
-            "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
+            "-device", "virtio-keyboard-pci", "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
         self.seen = 0
 
     def since(self):
@@ -105,7 +106,27 @@ def stages(log):
         print(f"  {name:16} {found.group(1) if found else '-':>8} s")
 
 
+def keyboard(machine):
+    """Whoever plugs in a keyboard meets no console, no shell and no restart: the panel stays the kiosk's."""
+    machine.picture("before-keys")
+    said = len(machine.log())
+    for keys in (("ctrl", "alt", "f2"), ("alt", "f3"), ("alt", "up"), *[("ctrl", "alt", "delete")] * 8, ("alt", "sysrq", "b"), ("alt", "sysrq", "k"),
+                 ("ctrl", "c"), ("ctrl", "alt", "f1"), *[("ret",)] * 3):
+        machine.qmp.press(*keys)
+    time.sleep(15)
+    if tones(machine.picture("after-keys")) < 300:
+        raise SystemExit("a keyboard took the panel away: " + os.path.join(machine.work, "after-keys.png"))
+    if "Received SIGINT" not in machine.log()[said:]:  # of Ctrl-Alt-Del
+        raise SystemExit("no key came to the system:\n" + machine.log()[said:][-3000:])
+    answer = re.search("GRUB|login:|[Rr]ebooting|Stopping gopura-kiosk|Started .*(getty|shell)|sysrq: (Resetting|SAK)", machine.log()[said:])
+    if answer:
+        raise SystemExit(f"a keyboard was answered by '{answer.group(0)}':\n" + machine.log()[said:][-3000:])
+    print("a keyboard opens nothing")
+
+
 def visit(machine, began):
+    while time.monotonic() - began < LOADER_S:
+        machine.qmp.press(*"ce")  # GRUB's keys for its shell and its editor
     machine.said("app: first picture", BOOT_S)
     machine.temple("temple")
     print(f"first temple {time.monotonic() - began:.0f} s after power, by the kernel's clock:")
@@ -123,6 +144,7 @@ def visit(machine, began):
     if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "stays as large" in machine.log():
         raise SystemExit(f"the data partition did not grow to the disk's {rest >> 20} MiB that are left:\n" + machine.log()[:3000])
     print(grown.group(0))
+    keyboard(machine)
     well(machine)
     for fault in ("crashed", "core dump", "Failed with result"):
         if fault in machine.log():

@@ -39,5 +39,10 @@ class Qmp:
         time.sleep(hold_s)
         self.command("input-send-event", events=[button(False)])
 
+    def press(self, *keys):
+        """Keys by QEMU's names, held together for a tenth of a second."""
+        self.command("send-key", keys=[{"type": "qcode", "data": key} for key in keys])
+        time.sleep(0.3)
+
     def screendump(self, path):
         self.command("screendump", filename=path, format="png")
