@@ -294,35 +294,6 @@ struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_
 
 /* ---- drawing ---- */
 
-/* By the first letter, as Pango decides it: of Hebrew, Arabic and their kin. */
-static bool begins_at_right(const char *text)
-{
-	while (*text && !g_unichar_isalpha(g_utf8_get_char(text)))
-		text = g_utf8_next_char(text);
-	return *text && g_utf8_get_char(text) >= 0x590 && g_utf8_get_char(text) < 0x900;
-}
-
-static int draw_text(cairo_t *context, const struct overlay *overlay, enum text_style style,
-		     struct colour colour, const char *text, int x_px, int y_px, int width_px)
-{
-	PangoLayout *layout = theme_layout(&overlay->theme, style, text, -1);
-	int height_px;
-
-	theme_limit_lines(layout, width_px > 1 ? width_px : 1, 1);
-	if (theme_is_right_to_left(&overlay->theme)) {
-		/* Pango takes left to mean the beginning of a line of the text's own direction. */
-		bool own = begins_at_right(text);
-
-		pango_layout_set_alignment(layout, own ? PANGO_ALIGN_LEFT : PANGO_ALIGN_RIGHT);
-	}
-	pango_layout_get_pixel_size(layout, NULL, &height_px);
-	theme_set_source(context, colour, 1);
-	cairo_move_to(context, x_px, y_px);
-	pango_cairo_show_layout(context, layout);
-	g_object_unref(layout);
-	return height_px;
-}
-
 /* The query with a caret behind it; where nothing is typed, what the field is for. */
 static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px, int width_px,
 		       int height_px)
@@ -334,7 +305,7 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 	int text_px, tall_px, left_px, caret_px = px(overlay, 0.5f);
 
 	if (*query)
-		from_right = begins_at_right(query);
+		from_right = theme_begins_at_right(query);
 	pango_layout_get_pixel_size(layout, &text_px, &tall_px);
 	if (text_px > width_px) { /* the end is what one is typing */
 		pango_layout_set_width(layout, width_px * PANGO_SCALE);
@@ -424,18 +395,21 @@ static void draw_part(cairo_t *context, const struct overlay *overlay, const str
 	int side_px = px(overlay, SIDE_MM), gap_px = px(overlay, 1.5f);
 	int picture_px = height_px - 2 * gap_px, padding_px = px(overlay, PADDING_MM);
 	int text_px = width_px - 2 * side_px - picture_px - padding_px;
-	int x_px = side_px + picture_px + padding_px, picture_x_px = side_px, y_px;
+	int x_px = side_px + picture_px + padding_px, picture_x_px = side_px;
+	int title_px, caption_px, y_px;
 
 	if (theme_is_right_to_left(&overlay->theme)) {
 		x_px = side_px;
 		picture_x_px = width_px - side_px - picture_px;
 	}
 	draw_thumbnail(context, overlay, part->thumbnail, picture_x_px, gap_px, picture_px);
-	y_px = *part->caption ? gap_px + px(overlay, 1.0f) : height_px / 2 - px(overlay, 3.2f);
-	y_px += draw_text(context, overlay, TEXT_BODY, theme_ink, part->title, x_px, y_px, text_px);
-	if (*part->caption)
-		draw_text(context, overlay, TEXT_FIGURE, theme_ink_soft, part->caption, x_px, y_px,
-			  text_px);
+	title_px = theme_line_px(&overlay->theme, TEXT_BODY, part->title);
+	caption_px = theme_line_px(&overlay->theme, TEXT_FIGURE, part->caption);
+	y_px = (height_px - title_px - (*part->caption ? caption_px : 0)) / 2;
+	theme_show_line(context, &overlay->theme, TEXT_BODY, theme_ink, part->title, x_px, y_px,
+			text_px);
+	theme_show_line(context, &overlay->theme, TEXT_FIGURE, theme_ink_soft, part->caption, x_px,
+			y_px + title_px, text_px);
 	cairo_rectangle(context, side_px, height_px - 1, width_px - 2 * side_px, 1);
 	theme_set_source(context, theme_line, 1);
 	cairo_fill(context);
@@ -456,10 +430,10 @@ static void draw_row(struct overlay *overlay, uint32_t slot)
 	if (row->part >= 0)
 		draw_part(context, overlay, &overlay->parts[row->part], width_px, height_px);
 	else
-		draw_text(context, overlay, TEXT_BODY, theme_ink_soft,
-			  ui_string(UI_NOTHING_FOUND, overlay->theme.language),
-			  px(overlay, SIDE_MM + PADDING_MM), px(overlay, 5.0f),
-			  width_px - 2 * px(overlay, SIDE_MM + PADDING_MM));
+		theme_show_line(context, &overlay->theme, TEXT_BODY, theme_ink_soft,
+				ui_string(UI_NOTHING_FOUND, overlay->theme.language),
+				px(overlay, SIDE_MM + PADDING_MM), px(overlay, 5.0f),
+				width_px - 2 * px(overlay, SIDE_MM + PADDING_MM));
 	overlay_end(overlay, id, context);
 }
 

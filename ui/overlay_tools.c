@@ -201,7 +201,7 @@ static void draw_disc(struct overlay *overlay, int tool)
 	const double turn = 4 * acos(0.0), line = px(overlay, 0.35f);
 	const int padding = px(overlay, PADDING_MM);
 	float x, y, radius;
-	int width_px, height_px;
+	int height_px;
 	PangoLayout *layout;
 
 	if (!context)
@@ -215,10 +215,10 @@ static void draw_disc(struct overlay *overlay, int tool)
 	layout = theme_layout(&overlay->theme, TEXT_BUTTON,
 			      ui_string(names[tool], overlay->theme.language), -1);
 	theme_limit_lines(layout, rect.width_px - 2 * padding, 1);
-	pango_layout_get_pixel_size(layout, &width_px, &height_px);
+	pango_layout_set_alignment(layout, PANGO_ALIGN_CENTER);
+	pango_layout_get_pixel_size(layout, NULL, &height_px);
 	theme_set_source(context, theme_night_text, 1);
-	cairo_move_to(context, (rect.width_px - width_px) / 2.0,
-		      (head_px(overlay) - height_px) / 2.0);
+	cairo_move_to(context, padding, ((double)(y - radius) - height_px) / 2);
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
 

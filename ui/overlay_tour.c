@@ -358,35 +358,14 @@ struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px
 	return action;
 }
 
-static void draw_line(const struct overlay *overlay, cairo_t *context, enum text_style style,
-		      struct colour colour, const char *text, int x_px, int y_px, int width_px)
-{
-	PangoLayout *layout = theme_layout(&overlay->theme, style, text, -1);
-
-	theme_limit_lines(layout, width_px > 1 ? width_px : 1, 1);
-	theme_set_source(context, colour, 1);
-	cairo_move_to(context, x_px, y_px);
-	pango_cairo_show_layout(context, layout);
-	g_object_unref(layout);
-}
-
-static int line_height(const struct overlay *overlay, enum text_style style, const char *text)
-{
-	PangoLayout *layout = theme_layout(&overlay->theme, style, text, -1);
-	int height_px;
-
-	pango_layout_get_pixel_size(layout, NULL, &height_px);
-	g_object_unref(layout);
-	return height_px;
-}
-
 /* Title and, where there is room for it, caption, beside a picture. */
 static void draw_entry(struct overlay *overlay, cairo_t *context, const struct tour_entry *entry,
 		       struct overlay_rect at)
 {
+	const bool from_right = theme_is_right_to_left(&overlay->theme);
 	int gap_px = px(overlay, THEME_GAP_MM), side_px = at.height_px - gap_px;
-	int title_px = line_height(overlay, TEXT_BUTTON, entry->title);
-	int caption_px = line_height(overlay, TEXT_FIGURE, entry->caption), y_px;
+	int title_px = theme_line_px(&overlay->theme, TEXT_BUTTON, entry->title);
+	int caption_px = theme_line_px(&overlay->theme, TEXT_FIGURE, entry->caption), y_px;
 	struct overlay_picture found = { 0 };
 	struct bitmap scaled;
 
@@ -395,27 +374,29 @@ static void draw_entry(struct overlay *overlay, cairo_t *context, const struct t
 	cairo_fill(context);
 	if (*entry->thumbnail && overlay->pictures.get &&
 	    overlay->pictures.get(overlay->pictures.data, entry->thumbnail, &found)) {
-		cairo_rectangle(context, at.x_px, at.y_px + gap_px / 2.0, side_px, side_px);
+		const int left_px = from_right ? at.x_px + at.width_px - side_px : at.x_px;
+
+		cairo_rectangle(context, left_px, at.y_px + gap_px / 2.0, side_px, side_px);
 		theme_set_source(context, theme_paper_shade, 1);
 		cairo_fill(context);
 		if (found.picture &&
 		    bitmap_from_picture(&scaled, found.picture, side_px, side_px) == 0) {
-			cairo_set_source_surface(context, scaled.surface, at.x_px,
+			cairo_set_source_surface(context, scaled.surface, left_px,
 						 at.y_px + gap_px / 2);
 			cairo_paint(context);
 			bitmap_finish(&scaled);
 		}
-		at.x_px += side_px + gap_px;
+		at.x_px += from_right ? 0 : side_px + gap_px;
 		at.width_px -= side_px + gap_px;
 	}
 	if (!*entry->caption || title_px + caption_px > at.height_px)
 		caption_px = 0;
 	y_px = at.y_px + (at.height_px - title_px - caption_px) / 2;
-	draw_line(overlay, context, TEXT_BUTTON, theme_accent, entry->title, at.x_px, y_px,
-		  at.width_px);
+	theme_show_line(context, &overlay->theme, TEXT_BUTTON, theme_accent, entry->title, at.x_px,
+			y_px, at.width_px);
 	if (caption_px > 0)
-		draw_line(overlay, context, TEXT_FIGURE, theme_ink_soft, entry->caption, at.x_px,
-			  y_px + title_px, at.width_px);
+		theme_show_line(context, &overlay->theme, TEXT_FIGURE, theme_ink_soft,
+				entry->caption, at.x_px, y_px + title_px, at.width_px);
 }
 
 static void draw_menu(struct overlay *overlay)
@@ -428,12 +409,12 @@ static void draw_menu(struct overlay *overlay)
 	if (!context)
 		return;
 	cross_px = cross_width(overlay);
-	text_px = line_height(overlay, TEXT_TITLE, head);
+	text_px = theme_line_px(&overlay->theme, TEXT_TITLE, head);
 	theme_rounded(context, 0, 0, width_px, menu.all.height_px, px(overlay, THEME_RADIUS_MM));
 	theme_set_source(context, theme_paper, 1);
 	cairo_fill(context);
-	draw_line(overlay, context, TEXT_TITLE, theme_ink, head, padding,
-		  (menu.head_px - text_px) / 2, width_px - cross_px - padding);
+	theme_show_line(context, &overlay->theme, TEXT_TITLE, theme_ink, head, padding,
+			(menu.head_px - text_px) / 2, width_px - cross_px - padding);
 	theme_set_source(context, theme_ink_soft, 1);
 	icon_draw(context, ICON_CLOSE, width_px - cross_px / 2.0, menu.head_px / 2.0,
 		  px(overlay, ICON_MM));

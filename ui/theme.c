@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define LINE_MOST 1.5 /* of a line that stands alone; sizes of its type */
+
 #define RGB(r, g, b)                                                                               \
 	{                                                                                          \
 		(r) / 255.0, (g) / 255.0, (b) / 255.0                                              \
@@ -202,4 +204,55 @@ void theme_limit_lines(PangoLayout *layout, int width_px, int lines)
 	pango_layout_set_width(layout, width_px * PANGO_SCALE);
 	pango_layout_set_height(layout, -lines);
 	pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_END);
+}
+
+/* ---- lines that stand alone ---- */
+
+bool theme_begins_at_right(const char *text)
+{
+	while (*text && !g_unichar_isalpha(g_utf8_get_char(text)))
+		text = g_utf8_next_char(text);
+	return *text && g_utf8_get_char(text) >= 0x590 && g_utf8_get_char(text) < 0x900;
+}
+
+/* above_px: what its font would have above that it does not need. */
+static int trim_line(const struct theme *theme, enum text_style style, PangoLayout *layout,
+		     int *above_px)
+{
+	const int most_px = (int)lround(theme_style_px(theme, style) * LINE_MOST);
+	int height_px, baseline_px;
+
+	pango_layout_get_pixel_size(layout, NULL, &height_px);
+	*above_px = 0;
+	if (height_px <= most_px)
+		return height_px;
+	baseline_px = PANGO_PIXELS(pango_layout_get_baseline(layout));
+	*above_px = (height_px - most_px) * baseline_px / height_px;
+	return most_px;
+}
+
+int theme_line_px(const struct theme *theme, enum text_style style, const char *text)
+{
+	PangoLayout *layout = theme_layout(theme, style, text, -1);
+	int above_px, height_px = trim_line(theme, style, layout, &above_px);
+
+	g_object_unref(layout);
+	return height_px;
+}
+
+void theme_show_line(cairo_t *context, const struct theme *theme, enum text_style style,
+		     struct colour colour, const char *text, int x_px, int y_px, int width_px)
+{
+	PangoLayout *layout = theme_layout(theme, style, text, -1);
+	int above_px;
+
+	theme_limit_lines(layout, width_px > 1 ? width_px : 1, 1);
+	/* Pango takes left to mean the beginning of a line of the text's own direction. */
+	if (theme_is_right_to_left(theme) && !theme_begins_at_right(text))
+		pango_layout_set_alignment(layout, PANGO_ALIGN_RIGHT);
+	trim_line(theme, style, layout, &above_px);
+	theme_set_source(context, colour, 1);
+	cairo_move_to(context, x_px, y_px - above_px);
+	pango_cairo_show_layout(context, layout);
+	g_object_unref(layout);
 }

@@ -83,4 +83,14 @@ PangoLayout *theme_layout(const struct theme *theme, enum text_style style, cons
 void theme_limit_lines(PangoLayout *layout, int width_px, int lines);
 int theme_style_px(const struct theme *theme, enum text_style style); /* the size of its type */
 
+/* A line that stands alone, as in lists. It is no taller than it needs to be: fonts of some scripts
+ * ask for twice their size, for marks that meet no line above here. What is too long ends in an
+ * ellipsis; where the language is read from the right the line begins there, whatever its script.
+ */
+int theme_line_px(const struct theme *theme, enum text_style style, const char *text);
+void theme_show_line(cairo_t *context, const struct theme *theme, enum text_style style,
+		     struct colour colour, const char *text, int x_px, int y_px, int width_px);
+/* By its first letter: Hebrew, Arabic and their kin. */
+bool theme_begins_at_right(const char *text);
+
 #endif

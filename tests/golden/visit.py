@@ -3,7 +3,7 @@ and shots.txt. The bar, the first row of the search, a card and what closes stan
 every language; where a page has its picture says GALLERY."""
 import sys
 
-HOME, SEARCH, TOURS, LARGE, REACH = (23, 516), (93, 516), (128, 516), (164, 516), (199, 516)
+HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 93, 128, 164, 199, 234, 269)]
 ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 465)
 
 touches, shots = [], []
@@ -50,7 +50,13 @@ move(((480, 200), (640, 200)))
 shot("far", 5000)
 move(((440, 260), (330, 260)), ((520, 260), (630, 260)))
 shot("near", 6000)
-tap(HOME, 2000)
+tap(HOME, 3000)
+tap(LIGHT)
+shot("light", 4000)
+tap(LIGHT)
+tap(SECTION)
+shot("section", 4000)
+tap(SECTION)
 tap(SEARCH, 1500)
 shot("search", 1500)
 tap(ROW)
