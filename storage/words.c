@@ -5,13 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hangul.h"
+
 /* Letters that decompose into nothing, and what people type for them. */
 static const struct {
 	gunichar from;
 	const char *to;
 } spellings[] = {
-	{ 0xdf, "ss" }, { 0xe6, "ae" }, { 0x153, "oe" }, { 0xf8, "o" },  { 0x111, "d" },
-	{ 0x142, "l" }, { 0x131, "i" }, { 0x629, "ه" },  { 0x649, "ي" },
+	{ 0xdf, "ss" }, { 0xe6, "ae" }, { 0x153, "oe" }, { 0xf8, "o" },
+	{ 0x111, "d" }, { 0x142, "l" }, { 0x131, "i" },  { 0x629, "ه" },
+	{ 0x649, "ي" }, { 0x6cc, "ي" }, { 0x6a9, "ك" },  { 0x3c2, "σ" },
 };
 
 static bool is_between(gunichar c, gunichar first, gunichar last)
@@ -60,9 +63,17 @@ static gunichar fold(gunichar c)
 	return c;
 }
 
+/* Korean by its letters, so that half a syllable finds what it may become. */
 static void put_char(struct buffer *out, gunichar c)
 {
+	uint32_t letters[HANGUL_LETTERS_MOST];
+	const size_t count = hangul_letters(c, letters);
 	char utf8[6];
+
+	for (size_t i = 0; i < count; i++)
+		buffer_put(out, utf8, (size_t)g_unichar_to_utf8(letters[i], utf8));
+	if (count > 0)
+		return;
 
 	for (size_t i = 0; i < ARRAY_COUNT(spellings); i++)
 		if (spellings[i].from == c) {

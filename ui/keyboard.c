@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/hangul.h"
 #include "ui/icon.h"
 
 #define ROW_MM     11.0f
@@ -11,7 +12,8 @@
 
 static const char latin[] = "q w e r t y u i o p\na s d f g h j k l\nz x c v b n m";
 
-/* Rows as they stand on the glass, from the left. Kana go from the right, as in a table of them. */
+/* Rows as they stand on the glass, from the left. Kana go from the right, as in a table of them.
+ * Chinese has Latin letters: of Pinyin. */
 static const struct {
 	const char *language, *rows;
 } layouts[] = {
@@ -27,6 +29,19 @@ static const struct {
 		"ย ร ล ว ศ ษ ส ห ฬ อ ฮ\nะ ั า ำ ิ ี ึ ื ุ ู เ\nแ โ ใ ไ ็ ่ ้ ๊ ๋ ์ ๆ" },
 	{ "hi", "अ आ इ ई उ ऊ ऋ ए ऐ ओ औ\nा ि ी ु ू ृ े ै ो ौ ्\nक ख ग घ ङ च छ ज झ ञ ट\n"
 		"ठ ड ढ ण त थ द ध न प फ\nब भ म य र ल व श ष स ह\nं ः ँ ़ ळ" },
+	{ "ko", "ㅂ ㅈ ㄷ ㄱ ㅅ ㅛ ㅕ ㅑ ㅐ ㅔ\nㅁ ㄴ ㅇ ㄹ ㅎ ㅗ ㅓ ㅏ ㅣ\n"
+		"ㅋ ㅌ ㅊ ㅍ ㅠ ㅜ ㅡ\nㅃ ㅉ ㄸ ㄲ ㅆ ㅒ ㅖ" },
+	{ "ru", "й ц у к е н г ш щ з х ъ\nф ы в а п р о л д ж э\nя ч с м и т ь б ю" },
+	{ "uk", "й ц у к е н г ш щ з х ї\nф і в а п р о л д ж є\nґ я ч с м и т ь б ю" },
+	{ "el", "ς ε ρ τ υ θ ι ο π\nα σ δ φ γ η ξ κ λ\nζ χ ψ ω β ν μ" },
+	{ "he", "ק ר א ט ו ן ם פ\nש ד ג כ ע י ח ל ך ף\nז ס ב ה נ מ צ ת ץ" },
+	{ "fa", "ض ص ث ق ف غ ع ه خ ح ج\nش س ی ب ل ا ت ن م ک گ\nظ ط ز ژ ر ذ د پ و چ ء" },
+	{ "lo", "ກ ຂ ຄ ງ ຈ ສ ຊ ຍ ດ ຕ ຖ\nທ ນ ບ ປ ຜ ຝ ພ ຟ ມ ຢ ຣ\nລ ວ ຫ ໜ ໝ ອ ຮ ຽ ຼ ັ ົ\n"
+		"ະ າ ຳ ິ ີ ຶ ື ຸ ູ ໆ ໌\nເ ແ ໂ ໃ ໄ ່ ້ ໊ ໋" },
+	{ "my", "က ခ ဂ ဃ င စ ဆ ဇ ဈ ည ဉ\nဋ ဌ ဍ ဎ ဏ တ ထ ဒ ဓ န ပ\nဖ ဗ ဘ မ ယ ရ လ ဝ သ ဟ ဠ\n"
+		"အ ဣ ဤ ဥ ဦ ဧ ဩ ဪ ဿ ျ ြ\nွ ှ ါ ာ ိ ီ ု ူ ေ ဲ ံ\n့ း ် ္" },
+	{ "ta", "அ ஆ இ ஈ உ ஊ எ ஏ ஐ ஒ ஓ\nா ி ீ ு ூ ெ ே ை ொ ோ ்\n"
+		"க ங ச ஞ ட ண த ந ப ம ய\nர ல வ ழ ள ற ன ஜ ஷ ஸ ஹ\nஔ ௌ ஃ" },
 };
 
 /* ---- layout ---- */
@@ -241,28 +256,51 @@ int keyboard_draw(struct bitmap *out, const struct keyboard *keyboard, const str
 
 /* ---- typing ---- */
 
+/* The text up to `end` and the Korean letters, which join. */
+static char *with_letters(const char *text, const char *end, uint32_t *letters, size_t count)
+{
+	char *syllables =
+		g_ucs4_to_utf8(letters, (glong)hangul_compose(letters, count), NULL, NULL, NULL);
+	char *typed =
+		g_strdup_printf("%.*s%s", (int)(end - text), text, syllables ? syllables : "");
+
+	g_free(syllables);
+	return typed;
+}
+
+/* What stands there once the key is pressed. Released by g_free. */
+static char *type_key(const struct keyboard_key *key, const char *text)
+{
+	const char *end = text + strlen(text), *last = end;
+	uint32_t letters[2 * HANGUL_LETTERS_MOST];
+	size_t count = 0;
+
+	if (end > text) {
+		last = g_utf8_find_prev_char(text, end);
+		count = hangul_letters(g_utf8_get_char(last), letters);
+	}
+	if (key->kind == KEY_BACKSPACE) /* a letter of a syllable, else a character */
+		return with_letters(text, last, letters, count > 0 ? count - 1 : 0);
+	if (key->kind == KEY_TEXT) {
+		const size_t added = hangul_letters(g_utf8_get_char(key->text), letters + count);
+
+		if (added > 0)
+			return with_letters(text, count > 0 ? last : end, letters, count + added);
+	}
+	return g_strconcat(text, key->kind == KEY_SPACE ? " " : key->text, NULL);
+}
+
 bool keyboard_type(const struct keyboard_key *key, char *text, size_t text_bytes)
 {
-	size_t size = strlen(text);
+	const size_t size = strlen(text);
 	char *typed, *composed;
 	bool fits;
 
-	switch (key->kind) {
-	case KEY_LATIN:
+	if (key->kind == KEY_LATIN || (key->kind == KEY_BACKSPACE && size == 0))
 		return false;
-	case KEY_BACKSPACE:
-		if (size == 0)
-			return false;
-		*g_utf8_find_prev_char(text, text + size) = 0;
-		return true;
-	case KEY_SPACE:
-		if (size == 0 || text[size - 1] == ' ')
-			return false; /* words are parted once */
-		break;
-	case KEY_TEXT:
-		break;
-	}
-	typed = g_strconcat(text, key->kind == KEY_SPACE ? " " : key->text, NULL);
+	if (key->kind == KEY_SPACE && (size == 0 || text[size - 1] == ' '))
+		return false; /* words are parted once */
+	typed = type_key(key, text);
 	composed = g_utf8_normalize(typed, -1, G_NORMALIZE_NFC);
 	fits = composed && strlen(composed) < text_bytes;
 	if (fits)

@@ -1,7 +1,8 @@
-/* A keyboard on the panel: one of our own for English, French, Khmer, Japanese (kana), Arabic, Thai
- * and Hindi; Latin letters for every other language. Whoever types other letters than Latin has
- * those behind one key. A key's target is never smaller than THEME_TARGET_MM, but where the panel
- * itself is too small for that. */
+/* A keyboard on the panel: one of their own for English, French, Khmer, Japanese (kana), Arabic,
+ * Thai, Hindi, Korean, Russian, Ukrainian, Greek, Hebrew, Persian, Lao, Burmese and Tamil; Latin
+ * letters for every other language. Whoever types other letters than Latin has those behind one
+ * key. A key's target is never smaller than THEME_TARGET_MM, but where the panel itself is too
+ * small for that. */
 #ifndef GOPURA_UI_KEYBOARD_H
 #define GOPURA_UI_KEYBOARD_H
 
@@ -35,7 +36,8 @@ must_check int keyboard_draw(struct bitmap *out, const struct keyboard *keyboard
 int keyboard_key_at(const struct keyboard *keyboard, float x_px, float y_px);
 
 /* What the key does to a text of at most text_bytes, its end included; what does not fit is not
- * typed. Marks join the letter before them (か and ゛ are が). true: the text changed. */
+ * typed. Marks join the letter before them (か and ゛ are が), Korean letters their syllable, of
+ * which one is taken back at a time. true: the text changed. */
 bool keyboard_type(const struct keyboard_key *key, char *text, size_t text_bytes);
 
 #endif

@@ -11,22 +11,38 @@
 #include "tests/check.h"
 #include "ui/overlay_state.h"
 
-enum { PARTS = 12, LANGUAGES = 8 };
+enum { PARTS = 12, LANGUAGES = 17 };
 
-static const char *const languages[LANGUAGES] = { "en", "fr", "km", "ja", "ar", "th", "hi", "de" };
-static const char *const titles[LANGUAGES] = { "The central tower", "La tour centrale",
-					       "ប្រាង្គកណ្តាល",        "中央塔",
-					       "البرج المركزي",     "ปรางค์ประธาน",
-					       "मध्य शिखर",          "Der Hauptturm" };
+/* Those from the third on are written in other letters than Latin. */
+static const char *const languages[LANGUAGES] = { "en", "fr", "de", "km", "ja", "ar",
+						  "th", "hi", "ko", "ru", "uk", "el",
+						  "he", "fa", "lo", "my", "ta" };
+static const char *const titles[LANGUAGES] = {
+	"The central tower", "La tour centrale", "Der Hauptturm",
+	"ប្រាង្គកណ្តាល",        "中央塔",           "البرج المركزي",
+	"ปรางค์ประธาน",       "मध्य शिखर",         "중앙 탑",
+	"Центральная башня", "Центральна вежа",  "Ο κεντρικός πύργος",
+	"המגדל המרכזי",      "برج مرکزی",        "ຫໍກາງ",
+	"အလယ်မျှော်စင်",         "மைய கோபுரம்",
+};
 static const char *const captions[LANGUAGES] = {
 	"The mountain at the middle of the world, in stone.",
 	"La montagne au milieu du monde, en pierre.",
+	"Der Berg in der Mitte der Welt, aus Stein.",
 	"ភ្នំកណ្តាលពិភពលោក ធ្វើពីថ្ម។",
 	"世界の中心の山を、石でかたどる。",
 	"الجبل في وسط العالم، من الحجر.",
 	"ภูเขากลางโลกที่สร้างด้วยหิน",
 	"संसार के मध्य का पर्वत, पत्थर में।",
-	"Der Berg in der Mitte der Welt, aus Stein.",
+	"세계의 한가운데 있는 산을 돌로 지었다.",
+	"Гора в центре мира, из камня.",
+	"Гора в центрі світу, з каменю.",
+	"Το βουνό στη μέση του κόσμου, από πέτρα.",
+	"ההר שבמרכז העולם, מאבן.",
+	"کوه میانهٔ جهان، از سنگ.",
+	"ພູເຂົາກາງໂລກ ສ້າງດ້ວຍຫີນ.",
+	"ကမ္ဘာ့အလယ်က တောင်၊ ကျောက်ဖြင့်။",
+	"உலகின் நடுவில் உள்ள மலை, கல்லில்.",
 };
 
 static uint8_t pixels[8 * 8 * 4];
@@ -203,7 +219,7 @@ static void every_key_can_be_read(void **state)
 			CHECK(pango_layout_get_unknown_glyphs_count(layout) == 0);
 			g_object_unref(layout);
 		}
-		CHECK((find_key(overlay, KEY_LATIN) >= 0) == (language >= 2 && language < 7));
+		CHECK((find_key(overlay, KEY_LATIN) >= 0) == (language >= 3));
 		CHECK(find_key(overlay, KEY_SPACE) >= 0 && find_key(overlay, KEY_BACKSPACE) >= 0);
 		overlay_show_search(overlay, false);
 	}
@@ -213,7 +229,7 @@ static void every_key_can_be_read(void **state)
 static void keys_write_into_the_field(void **state)
 {
 	static const struct {
-		const char *language, *letters[8], *text;
+		const char *language, *letters[12], *text;
 	} cases[] = {
 		{ "en", { "n", "a", "g", "a" }, "naga" },
 		{ "km", { "ន", "ា", "គ" }, "នាគ" },
@@ -223,6 +239,15 @@ static void keys_write_into_the_field(void **state)
 		{ "th", { "น", "า", "ค" }, "นาค" },
 		{ "hi", { "न", "ा", "ग" }, "नाग" },
 		{ "de", { "t", "u", "r", "m" }, "turm" },
+		{ "ko", { "ㅇ", "ㅏ", "ㅇ", "ㅋ", "ㅗ", "ㄹ", "ㅡ" }, "앙코르" },
+		{ "ko", { "ㄷ", "ㅏ", "ㄹ", "ㄱ", "ㅇ", "ㅣ" }, "닭이" },
+		{ "ko", { "ㄷ", "ㅏ", "ㄹ", "ㄱ", "ㅣ" }, "달기" },
+		{ "ko", { "ㅇ", "ㅗ", "ㅏ", "ㅇ", "ㄱ", "ㅜ", "ㅇ" }, "왕궁" },
+		{ "ko", { "ㄲ", "ㅗ", "ㅊ" }, "꽃" },
+		{ "ko", { "ㅎ", "ㅏ", "ㅃ", "ㅏ" }, "하빠" },
+		{ "ru", { "б", "а", "ш", "н", "я" }, "башня" },
+		{ "lo", { "ນ", "າ", "ກ" }, "ນາກ" },
+		{ "my", { "န", "ဂ", "ါ", "း" }, "နဂါး" },
 	};
 	struct overlay *overlay = open_overlay(1920, 1080);
 
@@ -231,11 +256,29 @@ static void keys_write_into_the_field(void **state)
 		overlay_language(overlay, cases[i].language);
 		overlay_show_search(overlay, true);
 		CHECK(strcmp(overlay_query(overlay), "") == 0);
-		for (size_t k = 0; k < 8 && cases[i].letters[k]; k++)
+		for (size_t k = 0; k < 12 && cases[i].letters[k]; k++)
 			CHECK(type(overlay, cases[i].letters[k]));
 		if (strcmp(overlay_query(overlay), cases[i].text) != 0)
 			fail_msg("%s: \"%s\"", cases[i].language, overlay_query(overlay));
 		overlay_show_search(overlay, false);
+	}
+	overlay_destroy(overlay);
+}
+
+static void a_korean_syllable_loses_a_letter_at_a_time(void **state)
+{
+	static const char *const left[] = { "왕ㅇ", "왕", "와", "오", "ㅇ", "" };
+	struct overlay *overlay = open_overlay(1920, 1080);
+
+	(void)state;
+	overlay_language(overlay, "ko");
+	overlay_show_search(overlay, true);
+	CHECK(type(overlay, "ㅇ") && type(overlay, "ㅗ") && type(overlay, "ㅏ") &&
+	      type(overlay, "ㅇ") && type(overlay, "ㅇ") && type(overlay, "ㅣ"));
+	CHECK(strcmp(overlay_query(overlay), "왕이") == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(left); i++) {
+		CHECK(overlay_press(overlay, find_key(overlay, KEY_BACKSPACE)));
+		CHECK(strcmp(overlay_query(overlay), left[i]) == 0);
 	}
 	overlay_destroy(overlay);
 }
@@ -440,6 +483,7 @@ int main(void)
 		cmocka_unit_test(shows_the_search_on_every_panel),
 		cmocka_unit_test(every_key_can_be_read),
 		cmocka_unit_test(keys_write_into_the_field),
+		cmocka_unit_test(a_korean_syllable_loses_a_letter_at_a_time),
 		cmocka_unit_test(a_letter_is_taken_back_and_the_field_emptied),
 		cmocka_unit_test(what_is_found_is_listed_and_tapped),
 		cmocka_unit_test(arabic_begins_at_the_right),
