@@ -203,6 +203,8 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 
 	if (halts_tour(action->kind))
 		guide_halt(kiosk);
+	if (action->kind != OVERLAY_LANGUAGES && action->kind != OVERLAY_NONE)
+		overlay_show_languages(overlay, false);
 	switch (action->kind) {
 	case OVERLAY_NONE:
 	case OVERLAY_SWALLOWED:
@@ -222,6 +224,9 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_LANGUAGE:
 		story_set_language(kiosk->shown.story, action->language);
 		guest_count(kiosk, TALLY_LANGUAGE, -1);
+		break;
+	case OVERLAY_LANGUAGES:
+		overlay_show_languages(overlay, !overlay_choosing_language(overlay));
 		break;
 	case OVERLAY_LINK:
 		follow_link(kiosk, action->link);

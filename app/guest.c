@@ -15,8 +15,8 @@ static bool is_reading(const struct kiosk *kiosk)
 			return true;
 	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
 			   overlay_searching(overlay) || overlay_choosing(overlay) ||
-			   kiosk->tour.state == TOUR_HALTED || kiosk->tools.now.rake.on ||
-			   kiosk->tools.now.section.on);
+			   overlay_choosing_language(overlay) || kiosk->tour.state == TOUR_HALTED ||
+			   kiosk->tools.now.rake.on || kiosk->tools.now.section.on);
 }
 
 int64_t guest_clock_s(void)
@@ -52,6 +52,7 @@ static void begin_anew(struct kiosk *kiosk)
 		overlay_show_card(overlay, -1);
 		overlay_show_search(overlay, false);
 		overlay_show_tours(overlay, false);
+		overlay_show_languages(overlay, false);
 		if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 			log_debug("app", "comfort: forgotten");
 		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });

@@ -30,6 +30,10 @@ find "$tree/usr/share/fonts" -type f -name '*.tt[fc]' | sort | while read -r fon
 	list "$here/fonts" | grep -qxF "$(basename "$font")" || { left_out "${font#"$tree"}"; rm "$font"; }
 done
 
+list "$here/fonts" | while read -r font; do
+	[ -n "$(find "$tree/usr/share/fonts" -name "$font" -print -quit)" ] || { echo "image/fonts: no package has $font" >&2; exit 1; }
+done
+
 # ---- kernel modules, by list
 modules=$tree/usr/lib/modules/$version
 mkdir -p "$modules"

@@ -59,7 +59,9 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 	add(chrome, CHROME_LARGE, -1, target_px);
 	if (has.reach)
 		add(chrome, CHROME_REACH, -1, target_px);
-	for (uint32_t i = 0; language_count > 1 && i < language_count; i++) {
+	if (language_count > 1 && chrome->menu)
+		add(chrome, CHROME_LANGUAGES, -1, target_px);
+	for (uint32_t i = 0; language_count > 1 && !chrome->menu && i < language_count; i++) {
 		char code[20];
 		const char *label = label_of(chrome, languages[i], code, sizeof(code));
 		PangoLayout *layout = theme_layout(&type, TEXT_BUTTON, label, -1);
@@ -75,11 +77,11 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 void chrome_layout(struct chrome *out, const struct theme *theme, const char *const *languages,
 		   uint32_t language_count, int most_width_px, struct chrome_has has)
 {
-	if (language_count > CHROME_LANGUAGES_MOST)
-		language_count = CHROME_LANGUAGES_MOST;
-	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM) };
+	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM),
+				.menu = language_count > CHROME_LANGUAGES_MOST };
 	/* Before buttons shrink, type does: so large type moves none but the languages. */
-	bool *const savings[] = { &out->codes, &out->usual, &out->tight, &out->toolless };
+	bool *const savings[] = { &out->codes, &out->usual, &out->tight, &out->menu,
+				  &out->toolless };
 
 	try_layout(out, theme, languages, language_count, has);
 	for (size_t i = 0; i < ARRAY_COUNT(savings) && out->width_px > most_width_px; i++) {
@@ -105,10 +107,11 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 			const char *const *languages, bool on)
 {
 	static const enum icon icons[] = {
-		[CHROME_HOME] = ICON_HOME,     [CHROME_HELP] = ICON_HELP,
-		[CHROME_SEARCH] = ICON_SEARCH, [CHROME_TOURS] = ICON_TOUR,
-		[CHROME_LIGHT] = ICON_LIGHT,   [CHROME_SECTION] = ICON_SECTION,
-		[CHROME_LARGE] = ICON_LARGE,   [CHROME_REACH] = ICON_REACH
+		[CHROME_HOME] = ICON_HOME,           [CHROME_HELP] = ICON_HELP,
+		[CHROME_SEARCH] = ICON_SEARCH,       [CHROME_TOURS] = ICON_TOUR,
+		[CHROME_LIGHT] = ICON_LIGHT,         [CHROME_SECTION] = ICON_SECTION,
+		[CHROME_LARGE] = ICON_LARGE,         [CHROME_REACH] = ICON_REACH,
+		[CHROME_LANGUAGES] = ICON_LANGUAGES,
 	};
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
@@ -133,10 +136,11 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct theme *theme,
 		const char *const *languages, struct chrome_state state)
 {
-	const bool on[] = { [CHROME_HELP] = state.help,   [CHROME_SEARCH] = state.search,
-			    [CHROME_TOURS] = state.tours, [CHROME_LARGE] = state.large,
-			    [CHROME_LIGHT] = state.light, [CHROME_SECTION] = state.section,
-			    [CHROME_REACH] = state.reach, [CHROME_LANGUAGE] = false };
+	const bool on[] = { [CHROME_HELP] = state.help,          [CHROME_SEARCH] = state.search,
+			    [CHROME_TOURS] = state.tours,        [CHROME_LARGE] = state.large,
+			    [CHROME_LIGHT] = state.light,        [CHROME_SECTION] = state.section,
+			    [CHROME_REACH] = state.reach,        [CHROME_LANGUAGE] = false,
+			    [CHROME_LANGUAGES] = state.languages };
 	cairo_t *context;
 	int rc = bitmap_init(out, chrome->width_px, chrome->height_px);
 

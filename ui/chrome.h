@@ -7,7 +7,8 @@
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { CHROME_LANGUAGES_MOST = 8, CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 8 };
+enum { CHROME_LANGUAGES_MOST = 8 }; /* side by side; more are behind one button */
+enum { CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 8 };
 
 enum chrome_button_kind {
 	CHROME_HOME,
@@ -19,6 +20,7 @@ enum chrome_button_kind {
 	CHROME_LARGE,
 	CHROME_REACH,
 	CHROME_LANGUAGE,
+	CHROME_LANGUAGES, /* all of them */
 };
 
 struct chrome_button {
@@ -34,6 +36,7 @@ struct chrome {
 	bool codes;    /* no room for the languages' names: their codes */
 	bool usual;    /* no room for large type: labels at their usual size */
 	bool tight;    /* not even for those at full size: no button wider than a finger */
+	bool menu;     /* nor for those, or too many: one button stands for all languages */
 	bool toolless; /* nor for those: the tools are left out */
 };
 
@@ -48,7 +51,7 @@ void chrome_layout(struct chrome *out, const struct theme *theme, const char *co
 
 struct chrome_state {
 	int language; /* index of the one that is set */
-	bool help, search, tours, large, reach, light, section;
+	bool help, search, tours, large, reach, light, section, languages;
 };
 
 /* A fresh bitmap of the bar; what is on is shown so. */

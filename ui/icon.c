@@ -49,6 +49,21 @@ static void draw_home(cairo_t *c)
 	cairo_line_to(c, 0.75, 0.85);
 }
 
+/* Equator, two parallels, two meridians. */
+static void draw_globe(cairo_t *c)
+{
+	ring(c, 0, 0, 0.95);
+	line(c, -0.95, 0, 0.95, 0);
+	cairo_move_to(c, -0.8, -0.5);
+	cairo_curve_to(c, -0.4, -0.3, 0.4, -0.3, 0.8, -0.5);
+	cairo_move_to(c, -0.8, 0.5);
+	cairo_curve_to(c, -0.4, 0.3, 0.4, 0.3, 0.8, 0.5);
+	cairo_move_to(c, 0, -0.95);
+	cairo_curve_to(c, -0.6, -0.5, -0.6, 0.5, 0, 0.95);
+	cairo_move_to(c, 0, -0.95);
+	cairo_curve_to(c, 0.6, -0.5, 0.6, 0.5, 0, 0.95);
+}
+
 static void draw_help(cairo_t *c)
 {
 	cairo_arc(c, 0, -0.38, 0.46, -2 * acos(0.0), 0.55);
@@ -192,6 +207,9 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		line(context, 0, -0.95, 0, 0.95);
 		arrow_head(context, 0, -0.95, 0, -1);
 		arrow_head(context, 0, 0.95, 0, 1);
+		break;
+	case ICON_LANGUAGES:
+		draw_globe(context);
 		break;
 	case ICON_PAUSE:
 		line(context, -0.4, -0.7, -0.4, 0.7);

@@ -49,6 +49,8 @@ void overlay_lay_out_chrome(struct overlay *overlay)
 
 	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
 		      overlay->language_count, most_px - gaps_px, has);
+	if (!overlay->chrome.menu)
+		overlay_show_languages(overlay, false);
 	overlay->chrome_dirty = true;
 }
 
@@ -217,6 +219,8 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->card_dirty = overlay->head_dirty = true;
 		overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
 		overlay_search_language(overlay);
+		overlay_show_languages(overlay, false);
+		overlay->menu.dirty = true;
 		overlay_forget_labels(overlay);
 	}
 }
@@ -422,6 +426,8 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_LARGE;
 	} else if (button->kind == CHROME_REACH) {
 		action.kind = OVERLAY_REACH;
+	} else if (button->kind == CHROME_LANGUAGES) {
+		action.kind = OVERLAY_LANGUAGES;
 	} else if (button->language != overlay->language) {
 		action.kind = OVERLAY_LANGUAGE;
 		action.language = overlay->languages[button->language];
@@ -449,6 +455,8 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 
 	if (overlay_rect_holds(chrome, x_px, y_px))
 		return tap_chrome(overlay, x_px - (float)chrome.x_px);
+	if (overlay->menu.fade.on)
+		return overlay_languages_tap(overlay, x_px, y_px);
 	if (overlay->gallery.fade.on)
 		return overlay_gallery_tap(overlay, x_px, y_px);
 	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
@@ -479,6 +487,9 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 {
 	if (overlay->gallery.fade.on)
+		return true;
+	if (overlay->menu.fade.on &&
+	    overlay_rect_holds(overlay_languages_rect(overlay), x_px, y_px))
 		return true;
 	if (overlay_rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
 		return true;
@@ -652,6 +663,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	overlay->then_ms = now_ms;
 	draw_what_changed(overlay);
 	moving = overlay_update_tours(overlay, step_ms);
+	moving |= overlay_update_languages(overlay, step_ms);
 	moving |= overlay_update_tools(overlay, step_ms);
 	if (overlay->callouts_dirty)
 		overlay_lay_out_callouts(overlay);

@@ -18,7 +18,7 @@
 
 enum {
 	OVERLAY_PARTS_MOST = 1000,
-	OVERLAY_LANGUAGES_MOST = 8,
+	OVERLAY_LANGUAGES_MOST = 64,
 	OVERLAY_TOURS_MOST = 8,
 	OVERLAY_LAYERS_MOST = 256,  /* in a frame */
 	OVERLAY_BITMAPS_MOST = 128, /* bitmap ids are below this */
@@ -121,6 +121,10 @@ must_check int overlay_tours(struct overlay *overlay, const struct overlay_tour 
 /* The menu; closes what is open. */
 void overlay_show_tours(struct overlay *overlay, bool on);
 bool overlay_choosing(const struct overlay *overlay);
+/* All languages above the bar, over what is open, where the bar has one button for them; closes
+ * when one is set. */
+void overlay_show_languages(struct overlay *overlay, bool on);
+bool overlay_choosing_language(const struct overlay *overlay);
 /* The panel of the tour that is flown, while nothing else has its place; copied. NULL: none is. */
 struct overlay_tour_state {
 	int tour, stop, stop_count; /* stops are those at which it stays */
@@ -170,7 +174,9 @@ enum overlay_action_kind {
 	OVERLAY_OPEN_PAGE, /* part: its card was tapped */
 	OVERLAY_CLOSE_CARD,
 	OVERLAY_CLOSE_PAGE,
-	OVERLAY_LANGUAGE, /* language */
+	OVERLAY_LANGUAGE,  /* language */
+	OVERLAY_LANGUAGES, /* their menu, which is open or not (overlay_choosing_language), changes
+			      over */
 	OVERLAY_LINK,    /* link: what a page's link names, the id of a part or "tour:" and one's */
 	OVERLAY_HOME,    /* back to the first view */
 	OVERLAY_HELP,    /* the help, which is there or not (overlay_help), changes over */

@@ -41,6 +41,7 @@ void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort
 	if (overlay->invitation.on)
 		overlay_draw_invitation(overlay);
 	overlay->tools.dirty = overlay->tour.dirty = overlay->tours.dirty = true;
+	overlay->menu.dirty = true;
 	overlay->help_dirty = overlay->card_dirty = overlay->head_dirty = true;
 	overlay->gallery.words_dirty = true;
 	overlay->question_drawn_s = 0;

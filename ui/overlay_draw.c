@@ -141,11 +141,11 @@ void overlay_draw_chrome(struct overlay *overlay)
 	struct bitmap fresh;
 	int rc = chrome_draw(
 		&fresh, &overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		(struct chrome_state){ overlay->language, overlay->help.on, overlay->search.fade.on,
-				       overlay->tours.fade.on || overlay->tour.on,
-				       overlay->comfort.large, overlay->comfort.reach,
-				       overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
-				       overlay->tools.now.on & OVERLAY_TOOL_SECTION });
+		(struct chrome_state){
+			overlay->language, overlay->help.on, overlay->search.fade.on,
+			overlay->tours.fade.on || overlay->tour.on, overlay->comfort.large,
+			overlay->comfort.reach, overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
+			overlay->tools.now.on & OVERLAY_TOOL_SECTION, overlay->menu.fade.on });
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
 }

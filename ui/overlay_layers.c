@@ -332,6 +332,7 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	struct overlay_rect invitation = overlay_invitation_rect(overlay);
 	struct overlay_rect question = overlay_question_rect(overlay);
 	struct overlay_rect tour = overlay_tour_rect(overlay), menu = overlay_menu_rect(overlay);
+	struct overlay_rect languages = overlay_languages_rect(overlay);
 
 	add_callouts(&list);
 	add_tools(&list);
@@ -349,6 +350,8 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 		add_search(&list);
 	if (overlay->gallery.fade.alpha > 0)
 		add_gallery(&list);
+	add_bitmap(&list, BITMAP_LANGUAGES, ease(overlay->menu.fade.alpha), (float)languages.x_px,
+		   (float)languages.y_px);
 	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
 	add_bitmap(&list, BITMAP_QUESTION, ease(overlay->question.alpha), (float)question.x_px,
 		   (float)question.y_px);

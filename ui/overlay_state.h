@@ -39,6 +39,7 @@ enum bitmap_id {
 	BITMAP_PICTURE_WORDS,
 	BITMAP_TOUR,
 	BITMAP_TOURS,
+	BITMAP_LANGUAGES,
 	BITMAP_DISC, /* a tool each */
 	BITMAP_KNOB = BITMAP_DISC + OVERLAY_TOOL_COUNT,
 	BITMAP_PUSH,
@@ -127,6 +128,11 @@ struct tours_menu {
 	bool dirty;
 };
 
+struct languages_menu {
+	struct fade fade; /* on: it is open */
+	bool dirty;
+};
+
 struct tour_panel {
 	struct fade fade; /* on: nothing else has its place */
 	bool on, paused, dirty;
@@ -174,6 +180,7 @@ struct overlay {
 	struct gallery gallery;
 	struct tools_panel tools;
 	struct tours_menu tours;
+	struct languages_menu menu;
 	struct tour_panel tour;
 
 	struct drawing drawings[BITMAP_COUNT];
@@ -266,6 +273,11 @@ struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px
 void overlay_drop_tours(struct tour_entry *entries);
 void overlay_picture_of_tours(struct overlay *overlay, const char *name);
 bool overlay_update_tours(struct overlay *overlay, int64_t step_ms);
+
+/* overlay_languages.c */
+struct overlay_rect overlay_languages_rect(const struct overlay *overlay);
+struct overlay_action overlay_languages_tap(const struct overlay *overlay, float x_px, float y_px);
+bool overlay_update_languages(struct overlay *overlay, int64_t step_ms);
 
 /* overlay_tools.c */
 struct overlay_knobs {

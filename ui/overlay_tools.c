@@ -162,7 +162,9 @@ enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px,
 {
 	float x, y, radius;
 
-	if (overlay->question.on)
+	if (overlay->question.on ||
+	    (overlay->menu.fade.on &&
+	     overlay_rect_holds(overlay_languages_rect(overlay), x_px, y_px)))
 		return OVERLAY_HANDLE_NONE;
 	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
 		if (!overlay_tool_shows(overlay, tool))

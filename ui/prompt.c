@@ -7,7 +7,8 @@
 #include "ui/icon.h"
 #include "ui/strings.h"
 
-enum { LINES_MOST = 8 };
+/* Of the invitation: below the first language they stand in columns where they are many. */
+enum { LINES_MOST = 24, COLUMN_LINES = 7, COLUMNS_MOST = 3 };
 
 #define PADDING_MM 5.0f
 #define ICON_MM    16.0f
@@ -55,32 +56,63 @@ static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 	return count;
 }
 
+/* Pixels. The first line is above all columns. */
+struct lines {
+	PangoLayout *lines[LINES_MOST];
+	uint32_t count;
+	int columns, rows, column_width, first_height, row_heights[COLUMN_LINES];
+};
+
+/* In as many columns as there is room for; lines that find none are left out. */
+static struct lines place_lines(struct theme *theme, const char *const *languages,
+				uint32_t language_count, int room_px, int gap)
+{
+	struct lines all = { 0 };
+	int width;
+
+	all.count = lay_out_lines(all.lines, theme, languages, language_count, room_px);
+	measure(all.lines[0], &all.column_width, &all.first_height);
+	for (uint32_t i = 1; i < all.count; i++) {
+		measure(all.lines[i], &width, NULL);
+		all.column_width = width > all.column_width ? width : all.column_width;
+	}
+	all.columns = ((int)all.count - 1 + COLUMN_LINES - 1) / COLUMN_LINES;
+	all.columns = all.columns < COLUMNS_MOST ? all.columns : COLUMNS_MOST;
+	while (all.columns > 1 &&
+	       all.columns * all.column_width + (all.columns - 1) * 2 * gap > room_px)
+		all.columns--;
+	if (all.columns < 1)
+		all.columns = 1;
+	all.rows = ((int)all.count - 1 + all.columns - 1) / all.columns;
+	all.rows = all.rows < COLUMN_LINES ? all.rows : COLUMN_LINES;
+	for (int i = 1; i < (int)all.count && i <= all.rows * all.columns; i++) {
+		int *row_height = &all.row_heights[(i - 1) % all.rows], height;
+
+		measure(all.lines[i], NULL, &height);
+		*row_height = height > *row_height ? height : *row_height;
+	}
+	return all;
+}
+
 int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *const *languages,
 			   uint32_t language_count, int most_width_px)
 {
 	const int padding = theme_px(theme, PADDING_MM), icon = theme_px(theme, ICON_MM);
 	const int gap = theme_px(theme, LINE_MM);
 	const int room_px = most_width_px - 3 * padding - icon;
-	int text_width = 0, text_height = -gap, rc;
-	PangoLayout *lines[LINES_MOST];
-	uint32_t count =
-		lay_out_lines(lines, theme, languages, language_count, room_px > 1 ? room_px : 1);
+	const struct lines all =
+		place_lines(theme, languages, language_count, room_px > 1 ? room_px : 1, gap);
+	const int text_width = all.columns * all.column_width + (all.columns - 1) * 2 * gap;
+	int text_height = all.first_height, rc;
 
-	for (uint32_t i = 0; i < count; i++) {
-		int width, height;
-
-		measure(lines[i], &width, &height);
-		text_width = width > text_width ? width : text_width;
-		text_height += height + gap;
-	}
-	for (uint32_t i = 0; i < count;
-	     i++) /* what is read from the right ends where the others do */
-		pango_layout_set_width(lines[i], text_width * PANGO_SCALE);
+	for (int row = 0; row < all.rows; row++)
+		text_height += gap + all.row_heights[row];
 	rc = bitmap_init(out, text_width + icon + 3 * padding,
 			 (text_height > icon ? text_height : icon) + 2 * padding);
 	if (rc == 0) {
 		cairo_t *context = bitmap_begin(out);
-		double y = (out->height_px - text_height) / 2.0;
+		const double x = 2 * padding + icon, top = (out->height_px - text_height) / 2.0;
+		double y = top;
 
 		theme_rounded(context, 0, 0, out->width_px, out->height_px,
 			      theme_px(theme, THEME_RADIUS_MM));
@@ -88,17 +120,22 @@ int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *
 		cairo_fill(context);
 		theme_set_source(context, theme_night_text, 1);
 		icon_draw(context, ICON_TAP, padding + icon / 2.0, out->height_px / 2.0, icon);
-		for (uint32_t i = 0; i < count; i++) {
-			int height;
+		/* What is read from the right ends where the others do. */
+		pango_layout_set_width(all.lines[0], text_width * PANGO_SCALE);
+		draw_text(context, all.lines[0], x, y);
+		for (int i = 1; i < (int)all.count && i <= all.rows * all.columns; i++) {
+			const int column = (i - 1) / all.rows, row = (i - 1) % all.rows;
 
-			measure(lines[i], NULL, &height);
-			draw_text(context, lines[i], 2 * padding + icon, y);
-			y += height + gap;
+			y = row == 0 ? top + all.first_height + gap
+				     : y + all.row_heights[row - 1] + gap;
+			pango_layout_set_width(all.lines[i], all.column_width * PANGO_SCALE);
+			draw_text(context, all.lines[i], x + column * (all.column_width + 2 * gap),
+				  y);
 		}
 		bitmap_end(out, context);
 	}
-	for (uint32_t i = 0; i < count; i++)
-		g_object_unref(lines[i]);
+	for (uint32_t i = 0; i < all.count; i++)
+		g_object_unref(all.lines[i]);
 	return rc;
 }
 

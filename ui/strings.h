@@ -20,7 +20,7 @@ enum ui_string {
 	UI_STRING_COUNT,
 };
 
-/* In English where the language is not among ours. Never NULL. */
+/* "pt-BR" as "pt"; in English where the language is not among ours. Never NULL. */
 const char *ui_string(enum ui_string string, const char *language);
 /* "ខ្មែរ" for "km"; the code itself where we do not know better. */
 const char *ui_endonym(const char *language);

@@ -24,10 +24,11 @@ const struct colour theme_night_text = RGB(246, 240, 230);
 /* Each script by name: what a system would choose by itself has another weight and line. */
 static const char serif[] =
 	"Noto Serif, Noto Serif Khmer, Noto Serif CJK JP, Noto Naskh Arabic, Noto Serif Thai, "
-	"Noto Serif Devanagari";
+	"Noto Serif Devanagari, Noto Serif Lao, Noto Serif Myanmar, Noto Serif Hebrew, "
+	"Noto Serif Tamil";
 static const char sans[] =
 	"Noto Sans, Noto Sans Khmer, Noto Sans CJK JP, Noto Sans Arabic, Noto Sans Thai, "
-	"Noto Sans Devanagari";
+	"Noto Sans Devanagari, Noto Sans Lao, Noto Sans Myanmar, Noto Sans Hebrew, Noto Sans Tamil";
 
 static const struct {
 	const char *families;

@@ -13,7 +13,7 @@ static struct {
 	int64_t now_ms;
 	int card, page, asked_s, flights, looks, redraws, led;
 	int counted[TALLY_TOUR + 1], written;
-	bool invites, searches, chooses, has_tour;
+	bool invites, searches, chooses, chooses_language, has_tour;
 	struct overlay_comfort comfort;
 	char language[8];
 } world;
@@ -106,6 +106,18 @@ bool overlay_choosing(const struct overlay *overlay)
 {
 	(void)overlay;
 	return world.chooses;
+}
+
+void overlay_show_languages(struct overlay *overlay, bool on)
+{
+	(void)overlay;
+	world.chooses_language = on;
+}
+
+bool overlay_choosing_language(const struct overlay *overlay)
+{
+	(void)overlay;
+	return world.chooses_language;
 }
 
 bool guide_go_round(struct kiosk *of)
@@ -325,10 +337,11 @@ static void a_tour_that_runs_is_somebody_and_ends_as_nobody(void **state)
 	set_up(NULL);
 	touches(TOUCH_DOWN);
 	world.chooses = true; /* from the menu */
+	world.chooses_language = true;
 	after(179 * S);
 	CHECK(world.asked_s == -1);
 	after(16 * S);
-	CHECK(world.invites && !world.chooses);
+	CHECK(world.invites && !world.chooses && !world.chooses_language);
 }
 
 static void leaves_nothing_of_a_visitor_for_the_next(void **state)

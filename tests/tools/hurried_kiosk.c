@@ -256,7 +256,8 @@ static void check_attract(void)
 	}
 	if (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
 	    overlay_picture(overlay) >= 0 || overlay_searching(overlay) || overlay_help(overlay) ||
-	    overlay_choosing(overlay) || (kiosk.tour.state != TOUR_OFF && !kiosk.tour.loops))
+	    overlay_choosing(overlay) || overlay_choosing_language(overlay) ||
+	    (kiosk.tour.state != TOUR_OFF && !kiosk.tour.loops))
 		fail("something is open while nobody is there");
 	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 		fail("large type or reach stayed");

@@ -258,11 +258,72 @@ static void breaks_lines_where_readers_do(void **state)
 	CHECK(lines > 1000);
 }
 
+/* A family by the name of its files: "Noto Serif CJK JP" is in NotoSerifCJK-Bold.ttc. */
+static void file_of(const char *family, char *out)
+{
+	const char *end = strstr(family, "CJK") ? strstr(family, "CJK") + 3 : strchr(family, 0);
+
+	for (; family < end; family++)
+		if (*family != ' ')
+			*out++ = *family;
+	*out++ = '-';
+	*out = 0;
+}
+
+/* What is set in one family here is set in the same on the appliance, which has those of a list. */
+static void every_font_is_in_the_image(void **state)
+{
+	static const struct {
+		const char *language, *text;
+	} texts[] = {
+		{ "en", "tower" }, { "km", "ប្រាង្គ" },  { "ja", "塔" },     { "zh", "塔" },
+		{ "ko", "탑" },    { "ar", "برج" },    { "th", "ปรางค์" },  { "hi", "शिखर" },
+		{ "ru", "башня" }, { "el", "πύργος" }, { "he", "מגדל" },   { "fa", "برج" },
+		{ "lo", "ຫໍ" },     { "my", "စင်" },     { "ta", "கோபுரம்" }, { "vi", "Tháp" },
+	};
+	static char list[8192];
+	FILE *file = fopen("image/fonts", "r");
+	size_t size;
+
+	(void)state;
+	CHECK(file);
+	size = fread(list, 1, sizeof(list) - 1, file);
+	list[size] = 0;
+	fclose(file);
+	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
+		struct theme theme;
+
+		CHECK(theme_init(&theme, PX_PER_MM, texts[i].language) == 0);
+		for (int style = 0; style < TEXT_STYLE_COUNT; style++) {
+			PangoLayout *layout =
+				theme_layout(&theme, (enum text_style)style, texts[i].text, -1);
+			GSList *run = pango_layout_get_line_readonly(layout, 0)->runs;
+
+			for (; run; run = run->next) {
+				PangoFontDescription *font = pango_font_describe(
+					((PangoGlyphItem *)run->data)->item->analysis.font);
+				char name[200];
+
+				file_of(pango_font_description_get_family(font), name);
+				if (!strstr(list, name))
+					fail_msg("%s: image/fonts has no %s", texts[i].language,
+						 name);
+				/* Of its own script, not what some other font has of it. */
+				CHECK(strncmp(name, "Noto", 4) == 0);
+				pango_font_description_free(font);
+			}
+			g_object_unref(layout);
+		}
+		theme_finish(&theme);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(is_set_as_pango_sets_it),
 		cmocka_unit_test(breaks_lines_where_readers_do),
+		cmocka_unit_test(every_font_is_in_the_image),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

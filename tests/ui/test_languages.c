@@ -1,0 +1,227 @@
+/* The menu of languages: many of them, on every panel, each within a finger's reach. With
+ * GOPURA_PICTURES=DIR set it leaves its screens there. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+#include "ui/overlay_state.h"
+#include "ui/strings.h"
+
+static const char *const languages[] = {
+	"en",      "km",      "ja", "fr", "de", "es", "it", "pt-BR", "nl", "pl", "ru",
+	"zh-Hans", "zh-Hant", "ko", "vi", "th", "lo", "my", "hi",    "ar", "he", "fa",
+	"tr",      "id",      "el", "uk", "ta", "ms", "cs", "sk",    "hu", "ro", "sl",
+	"hr",      "sv",      "da", "nb", "fi", "et", "lv", "lt",    "is",
+};
+enum { MANY = ARRAY_COUNT(languages), PARTS = 3 };
+
+static const int sizes[][2] = { { 1920, 1080 }, { 1080, 1920 }, { 3840, 2160 }, { 1280, 720 },
+				{ 800, 600 },   { 640, 360 },   { 360, 640 } };
+
+static struct overlay *open_overlay(int width_px, int height_px, uint32_t language_count)
+{
+	const struct overlay_part part = { "The central tower", "In stone.", "", true };
+	const struct overlay_part parts[PARTS] = { part, part, part };
+	const struct overlay_options options = { .width_px = width_px,
+						 .height_px = height_px,
+						 .languages = languages,
+						 .language_count = language_count };
+	struct overlay *overlay;
+
+	CHECK(overlay_create(&overlay, &options) == 0);
+	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
+	return overlay;
+}
+
+static void settle(struct overlay *overlay)
+{
+	static int64_t now_ms = 1000;
+	int frames = 0;
+
+	while (overlay_update(overlay, now_ms += 20))
+		CHECK(++frames < 500);
+}
+
+static void leave_picture(struct overlay *overlay, const char *name)
+{
+	const char *folder = getenv("GOPURA_PICTURES");
+	struct bitmap bitmap;
+	cairo_t *context;
+	char path[300];
+
+	settle(overlay);
+	if (!folder)
+		return;
+	CHECK(bitmap_init(&bitmap, overlay->width_px, overlay->height_px) == 0);
+	context = bitmap_begin(&bitmap);
+	cairo_set_source_rgb(context, 0.55, 0.52, 0.47);
+	cairo_paint(context);
+	overlay_paint(overlay, context);
+	bitmap_end(&bitmap, context);
+	snprintf(path, sizeof(path), "%s/languages-%s-%dx%d.png", folder, name, overlay->width_px,
+		 overlay->height_px);
+	cairo_surface_write_to_png(bitmap.surface, path);
+	bitmap_finish(&bitmap);
+}
+
+/* The bar's button for all of them; NULL: they stand there themselves. */
+static const struct chrome_button *menu_button(const struct overlay *overlay)
+{
+	for (uint32_t i = 0; i < overlay->chrome.button_count; i++)
+		if (overlay->chrome.buttons[i].kind == CHROME_LANGUAGES)
+			return &overlay->chrome.buttons[i];
+	return NULL;
+}
+
+static struct overlay_action tap_button(const struct overlay *overlay)
+{
+	const struct overlay_rect bar = overlay_chrome_rect(overlay);
+	const struct chrome_button *button = menu_button(overlay);
+
+	CHECK(button);
+	return overlay_tap(overlay, (float)(bar.x_px + button->x_px) + (float)button->width_px / 2,
+			   (float)bar.y_px + (float)bar.height_px / 2);
+}
+
+/* Where the fingers that choose each language come down: as large as a finger, and each once. */
+static void check_cells(const struct overlay *overlay)
+{
+	const struct overlay_rect all = overlay_languages_rect(overlay);
+	const int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
+	uint32_t pixels[MANY] = { 0 };
+
+	CHECK(all.x_px >= 0 && all.x_px + all.width_px <= overlay->width_px);
+	CHECK(all.y_px >= overlay_reach_top(overlay));
+	CHECK(all.y_px + all.height_px <= overlay_chrome_rect(overlay).y_px);
+	for (int y = all.y_px; y < all.y_px + all.height_px; y++)
+		for (int x = all.x_px; x < all.x_px + all.width_px; x++) {
+			const struct overlay_action action =
+				overlay_tap(overlay, (float)x, (float)y);
+
+			CHECK(overlay_covers(overlay, (float)x, (float)y));
+			if (action.kind != OVERLAY_LANGUAGE)
+				continue;
+			for (uint32_t i = 0; i < overlay->language_count; i++)
+				pixels[i] += strcmp(languages[i], action.language) == 0;
+		}
+	for (uint32_t i = 0; i < overlay->language_count; i++) {
+		if ((int)i == overlay->language)
+			CHECK(pixels[i] == 0);
+		else if (pixels[i] < (uint32_t)(target_px * target_px))
+			fail_msg("%dx%d: %s has %u px", overlay->width_px, overlay->height_px,
+				 languages[i], pixels[i]);
+	}
+}
+
+static void many_languages_are_a_menu_on_every_panel(void **state)
+{
+	(void)state;
+	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
+		struct overlay *overlay = open_overlay(sizes[s][0], sizes[s][1], MANY);
+
+		for (int mode = 0; mode < 4; mode++) {
+			overlay_set_comfort(overlay, (struct overlay_comfort){ .large = mode & 1,
+									       .reach = mode & 2 });
+			if (overlay_comfort(overlay).reach != (mode >= 2))
+				continue; /* a panel that is small enough */
+			CHECK(tap_button(overlay).kind == OVERLAY_LANGUAGES);
+			overlay_show_languages(overlay, true);
+			leave_picture(overlay, mode == 0 ? "many" : mode == 1 ? "large" : "reach");
+			check_cells(overlay);
+			overlay_show_languages(overlay, false);
+			settle(overlay);
+		}
+		overlay_destroy(overlay);
+	}
+}
+
+static void a_language_closes_the_menu_and_nothing_else(void **state)
+{
+	static const char html[] = "<h1>Central tower</h1><p>In stone.</p>";
+	struct overlay *overlay = open_overlay(1280, 720, 14);
+	const struct overlay_part part = { "Zentralturm", "Aus Stein.", "", true };
+	const struct overlay_part parts[PARTS] = { part, part, part };
+	struct overlay_rect all;
+
+	(void)state;
+	CHECK(overlay_show_page(overlay, 0,
+				(struct bytes){ (const uint8_t *)html, sizeof(html) - 1 },
+				"") == 0);
+	overlay_show_languages(overlay, true);
+	leave_picture(overlay, "page");
+	CHECK(overlay_choosing_language(overlay) && overlay_page(overlay) == 0);
+	all = overlay_languages_rect(overlay);
+	check_cells(overlay);
+	/* Beside it: it closes, and the page's own control is not meant. */
+	CHECK(overlay_tap(overlay, 1270, 10).kind == OVERLAY_LANGUAGES);
+	CHECK(overlay_tap(overlay, (float)all.x_px - 2, (float)all.y_px).kind == OVERLAY_LANGUAGES);
+	overlay_language(overlay, "de");
+	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
+	settle(overlay);
+	CHECK(!overlay_choosing_language(overlay) && overlay_page(overlay) == 0);
+	CHECK(overlay->menu.fade.alpha == 0);
+	overlay_destroy(overlay);
+}
+
+static void few_languages_stand_on_the_bar(void **state)
+{
+	struct overlay *overlay = open_overlay(1920, 1080, 8);
+
+	(void)state;
+	CHECK(!menu_button(overlay));
+	overlay_show_languages(overlay, true); /* there is none */
+	CHECK(!overlay_choosing_language(overlay));
+	overlay_destroy(overlay);
+
+	overlay = open_overlay(360, 640, 8); /* no room for them */
+	CHECK(menu_button(overlay));
+	overlay_destroy(overlay);
+
+	overlay = open_overlay(1920, 1080, 1);
+	CHECK(!menu_button(overlay));
+	overlay_destroy(overlay);
+}
+
+static void every_language_is_invited(void **state)
+{
+	(void)state;
+	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
+		struct overlay *overlay = open_overlay(sizes[s][0], sizes[s][1], 25);
+		struct overlay_rect rect;
+
+		overlay_invite(overlay, true);
+		leave_picture(overlay, "invited");
+		rect = overlay_invitation_rect(overlay);
+		CHECK(rect.x_px >= 0 && rect.x_px + rect.width_px <= overlay->width_px);
+		CHECK(rect.y_px >= 0 && rect.y_px + rect.height_px <= overlay->height_px);
+		overlay_destroy(overlay);
+	}
+}
+
+static void a_language_says_its_own_name(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < MANY; i++) {
+		if (strcmp(ui_endonym(languages[i]), languages[i]) == 0)
+			fail_msg("%s has no name", languages[i]);
+		for (size_t k = 0; k < i; k++)
+			CHECK(strcmp(ui_endonym(languages[i]), ui_endonym(languages[k])) != 0);
+	}
+	CHECK(strcmp(ui_endonym("xx"), "xx") == 0);
+	CHECK(strcmp(ui_string(UI_CLOSE, "pt-BR"), ui_string(UI_CLOSE, "pt")) == 0);
+	CHECK(strcmp(ui_string(UI_CLOSE, "ptx"), ui_string(UI_CLOSE, "en")) == 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(many_languages_are_a_menu_on_every_panel),
+		cmocka_unit_test(a_language_closes_the_menu_and_nothing_else),
+		cmocka_unit_test(few_languages_stand_on_the_bar),
+		cmocka_unit_test(every_language_is_invited),
+		cmocka_unit_test(a_language_says_its_own_name),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
