@@ -1,8 +1,8 @@
 /* Text of any language into the words that a search finds it by. Case, accents and widths are
  * folded ("Nâga", "NAGA" and "naga" are one word), katakana and small kana are hiragana, Arabic is
- * without its vowel signs. Scripts that are written without spaces (Khmer, Thai, Lao, Burmese,
- * ideographs and kana) give a word a character: a run of them is then found by any run inside it,
- * as it is typed, and no dictionary has to know where words end. */
+ * without its vowel signs, Korean is apart in letters. Scripts that are written without spaces
+ * (Khmer, Thai, Lao, Burmese, ideographs and kana) give a word a character: a run of them is then
+ * found by any run inside it, as it is typed, and no dictionary has to know where words end. */
 #ifndef GOPURA_STORAGE_WORDS_H
 #define GOPURA_STORAGE_WORDS_H
 

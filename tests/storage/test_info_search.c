@@ -7,7 +7,7 @@
 #include "storage/words.h"
 #include "tests/storage/info_folder.h"
 
-static const char *const languages[] = { "en", "fr", "km", "ja" };
+static const char *const languages[] = { "en", "fr", "km", "ja", "ko", "zh" };
 
 static const char parts[] =
 	"{\"credits\": {\"rights\": {\"en\": \"© The museum\", \"fr\": \"© Le musée\"}, \"date\": "
@@ -15,8 +15,9 @@ static const char parts[] =
 	"\"parts\": [\n"
 	"{\"id\": \"tower\", \"anchor\": [0, 0, 1],\n"
 	"  \"title\": {\"en\": \"Central tower\", \"fr\": \"Tour centrale\", \"km\": "
-	"\"ប្រាង្គកណ្តាល\", \"ja\": \"中央塔\"},\n"
-	"  \"reading\": {\"ja\": \"ちゅうおうとう\"},\n"
+	"\"ប្រាង្គកណ្តាល\", \"ja\": \"中央塔\", \"ko\": \"중앙 탑\", \"zh\": "
+	"\"中央塔\"},\n"
+	"  \"reading\": {\"ja\": \"ちゅうおうとう\", \"zh\": \"zhōngyāng tǎ zhongyangta\"},\n"
 	"  \"caption\": {\"en\": \"The mountain above the gate.\", \"fr\": \"Élevée au cœur.\"},\n"
 	"  \"credits\": {\"creator\": [\"A. Mason\", \"B. Mason\"], \"date\": \"1150\",\n"
 	"    \"subject\": {\"en\": \"Sanctuary, prang\", \"fr\": \"Sanctuaire\"}}},\n"
@@ -45,7 +46,7 @@ static void build_folder(struct info_built *out, struct complaints *complaints, 
 {
 	const struct info_build_options options = { .folder = folder,
 						    .languages = languages,
-						    .language_count = 4,
+						    .language_count = ARRAY_COUNT(languages),
 						    .complaint = note,
 						    .complaint_data = complaints };
 
@@ -172,6 +173,24 @@ static void scripts_without_spaces_are_found_anywhere(void **state)
 	info_close(info);
 }
 
+static void korean_is_found_by_its_letters_and_chinese_by_pinyin(void **state)
+{
+	static const char *const typed[] = { "ㅈ",   "주",   "중",      "중ㅇ",
+					     "중아", "중앙", "중앙 ㅌ", "중앙 탑" };
+	struct info *info = open_folder();
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(typed); i++)
+		FINDS(typed[i], "ko", "tower");
+	FINDS("주ㅏ", "ko", "");
+	FINDS("앙", "ko", ""); /* words begin where words begin */
+	FINDS("中央", "zh", "tower");
+	FINDS("zhongyang", "zh", "tower");
+	FINDS("zhong ta", "zh", "tower");
+	FINDS("zhongyangta", "zh", "tower");
+	info_close(info);
+}
+
 static void a_query_of_operators_or_rubbish_is_only_words(void **state)
 {
 	struct info *info = open_folder();
@@ -246,6 +265,9 @@ static void words_are_folded_as_the_header_says(void **state)
 		{ "12世紀", " 12 世 紀" },
 		{ "مَعْبَد", " معبد" },
 		{ "أنغكور", " انغكور" },
+		{ "کوهی", " كوهي" },
+		{ "Πύργος", " πυργοσ" },
+		{ "앙코르 닭ㄱ", " ㅇㅏㅇㅋㅗㄹㅡ ㄷㅏㄹㄱㄱ" },
 		{ "ปราสาท", " ป ร า ส า ท" },
 		{ "मंदिर", " मंदिर" },
 		{ "", "" },
@@ -419,6 +441,7 @@ int main(void)
 		IN_A_FOLDER(no_text_is_an_error_of_syntax),
 		IN_A_FOLDER(accents_case_and_widths_make_no_difference),
 		IN_A_FOLDER(scripts_without_spaces_are_found_anywhere),
+		IN_A_FOLDER(korean_is_found_by_its_letters_and_chinese_by_pinyin),
 		IN_A_FOLDER(a_query_of_operators_or_rubbish_is_only_words),
 		cmocka_unit_test(words_are_folded_as_the_header_says),
 		IN_A_FOLDER(credits_are_of_the_part_or_of_all),
