@@ -221,6 +221,12 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_CLOSE_PAGE:
 		close_page(kiosk);
 		break;
+	case OVERLAY_WIDEN_PAGE:
+		overlay_widen_page(overlay, !overlay_page_is_wide(overlay));
+		log_debug("app", "page: %s",
+			  overlay_page_is_wide(overlay) ? "over the whole panel"
+							: "beside the model");
+		break;
 	case OVERLAY_LANGUAGE:
 		story_set_language(kiosk->shown.story, action->language);
 		guest_count(kiosk, TALLY_LANGUAGE, -1);

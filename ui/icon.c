@@ -49,6 +49,17 @@ static void draw_home(cairo_t *c)
 	cairo_line_to(c, 0.75, 0.85);
 }
 
+/* Two arrows along a diagonal, by the distance of their tails and heads from the middle. */
+static void draw_corners(cairo_t *c, double tail, double head)
+{
+	const double way = (head > tail ? 1 : -1) * sqrt(0.5);
+
+	line(c, tail, -tail, head, -head);
+	arrow_head(c, head, -head, way, -way);
+	line(c, -tail, tail, -head, head);
+	arrow_head(c, -head, head, -way, way);
+}
+
 /* Equator, two parallels, two meridians. */
 static void draw_globe(cairo_t *c)
 {
@@ -207,6 +218,12 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		line(context, 0, -0.95, 0, 0.95);
 		arrow_head(context, 0, -0.95, 0, -1);
 		arrow_head(context, 0, 0.95, 0, 1);
+		break;
+	case ICON_WIDEN:
+		draw_corners(context, 0.15, 0.9);
+		break;
+	case ICON_NARROW:
+		draw_corners(context, 0.9, 0.15);
 		break;
 	case ICON_LANGUAGES:
 		draw_globe(context);

@@ -20,9 +20,11 @@ enum icon {
 	ICON_REACH, /* who sits in a wheelchair */
 	ICON_TOUR,  /* a way from stop to stop */
 	ICON_PAUSE,
-	ICON_LIGHT,     /* a lamp low beside a relief */
-	ICON_SECTION,   /* a body that is cut */
-	ICON_PUSH,      /* to and fro */
+	ICON_LIGHT,   /* a lamp low beside a relief */
+	ICON_SECTION, /* a body that is cut */
+	ICON_PUSH,    /* to and fro */
+	ICON_WIDEN,   /* out into the corners */
+	ICON_NARROW,
 	ICON_LANGUAGES, /* a globe */
 };
 

@@ -163,6 +163,7 @@ static void drop_page(struct overlay *overlay)
 	overlay->article = NULL;
 	overlay->page = (struct fade){ 0 };
 	overlay->page_part = -1;
+	overlay->page_wide = false;
 }
 
 int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uint32_t count)
@@ -243,6 +244,8 @@ void overlay_show_card(struct overlay *overlay, int part)
 		part = -1;
 	if (part == overlay->card_part)
 		return;
+	if (part >= 0)
+		overlay_widen_page(overlay, false); /* it is about the model */
 	overlay->card_part = part;
 	overlay->card.on = part >= 0;
 	overlay->callouts_dirty = true;
@@ -263,17 +266,18 @@ int overlay_card(const struct overlay *overlay)
 
 int overlay_show_page(struct overlay *overlay, int part, struct bytes html, const char *credits)
 {
-	struct overlay_rect view = overlay_view_rect(overlay);
-	const struct article_options options = { .theme = &overlay->theme,
-						 .width_px = view.width_px,
-						 .view_px = view.height_px,
-						 .pictures = overlay->pictures,
-						 .credits = credits };
+	struct article_options options = { .theme = &overlay->theme,
+					   .pictures = overlay->pictures,
+					   .credits = credits };
 	struct article *article;
 	int rc;
 
 	if (part < 0 || part >= (int)overlay->part_count)
 		return -EINVAL;
+	if (overlay->page_part < 0)
+		overlay->page_wide = false;
+	options.width_px = overlay_view_rect(overlay).width_px;
+	options.view_px = overlay_view_rect(overlay).height_px;
 	rc = article_create(&article, &options, html);
 	if (rc < 0)
 		return rc;
@@ -386,6 +390,8 @@ static struct overlay_action tap_page(const struct overlay *overlay, float x_px,
 		/* The head's whole right end, so that a near miss closes too. */
 		if (x_px >= (float)overlay_close_rect(overlay).x_px)
 			action.kind = OVERLAY_CLOSE_PAGE;
+		else if (overlay_rect_holds(overlay_widen_rect(overlay), x_px, y_px))
+			action.kind = OVERLAY_WIDEN_PAGE;
 		return action;
 	}
 	if (!overlay_rect_holds(view, x_px, y_px))

@@ -82,6 +82,11 @@ must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes
 void overlay_close_page(struct overlay *overlay);
 int overlay_page(const struct overlay *overlay); /* the part whose page is open, or -1 */
 
+/* The page has the whole panel, or stands beside the model again, which it also does for a card and
+ * in reach mode; the next page that is opened stands beside it. */
+void overlay_widen_page(struct overlay *overlay, bool on);
+bool overlay_page_is_wide(const struct overlay *overlay);
+
 /* How to touch the model, in pictures and words; on at first, off at the first touch. */
 void overlay_show_help(struct overlay *overlay, bool on);
 bool overlay_help(const struct overlay *overlay);
@@ -174,9 +179,11 @@ enum overlay_action_kind {
 	OVERLAY_OPEN_PAGE, /* part: its card was tapped */
 	OVERLAY_CLOSE_CARD,
 	OVERLAY_CLOSE_PAGE,
-	OVERLAY_LANGUAGE,  /* language */
-	OVERLAY_LANGUAGES, /* their menu, which is open or not (overlay_choosing_language), changes
-			      over */
+	OVERLAY_WIDEN_PAGE, /* the page, which is wide or not (overlay_page_is_wide), changes over
+			     */
+	OVERLAY_LANGUAGE,   /* language */
+	OVERLAY_LANGUAGES,  /* their menu, which is open or not (overlay_choosing_language), changes
+			       over */
 	OVERLAY_LINK,    /* link: what a page's link names, the id of a part or "tour:" and one's */
 	OVERLAY_HOME,    /* back to the first view */
 	OVERLAY_HELP,    /* the help, which is there or not (overlay_help), changes over */

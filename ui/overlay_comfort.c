@@ -1,4 +1,5 @@
-/* Large type and reach mode: everything that is shown is measured and placed anew. */
+/* Large type, reach mode and a page over the whole panel: what is shown is measured and placed
+ * anew. */
 #include "ui/overlay_state.h"
 
 struct overlay_comfort overlay_comfort(const struct overlay *overlay)
@@ -24,12 +25,29 @@ static void lay_out_page(struct overlay *overlay)
 		overlay->strips[i] = (struct strip){ .index = -1 };
 }
 
+void overlay_widen_page(struct overlay *overlay, bool on)
+{
+	on = on && overlay->page_part >= 0 && !overlay->comfort.reach;
+	if (on == overlay->page_wide)
+		return;
+	overlay->page_wide = on;
+	if (overlay->article)
+		lay_out_page(overlay);
+	overlay->head_dirty = overlay->callouts_dirty = true;
+}
+
+bool overlay_page_is_wide(const struct overlay *overlay)
+{
+	return overlay->page_wide;
+}
+
 void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort)
 {
 	comfort.reach &= overlay_offers_reach(overlay);
 	if (comfort.large == overlay->comfort.large && comfort.reach == overlay->comfort.reach)
 		return;
 	overlay->comfort = comfort;
+	overlay->page_wide &= !comfort.reach;
 	overlay->theme.text_scale = comfort.large ? THEME_LARGE_TYPE : 1;
 	overlay_lay_out_chrome(overlay);
 	overlay_measure_labels(overlay);

@@ -231,7 +231,9 @@ void overlay_draw_page_head(struct overlay *overlay)
 	struct overlay_rect close = overlay_close_rect(overlay);
 	int text_px;
 	int left_px = px(overlay, 8.0f);
-	int room_px = close.x_px - head.x_px - left_px - px(overlay, THEME_GAP_MM);
+	const struct overlay_rect widen = overlay_widen_rect(overlay);
+	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px;
+	int room_px = end_px - head.x_px - left_px - px(overlay, THEME_GAP_MM);
 	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_HEAD, head.width_px, head.height_px);
 	PangoLayout *layout;
 
@@ -253,6 +255,10 @@ void overlay_draw_page_head(struct overlay *overlay)
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
 
+	if (widen.width_px > 0)
+		icon_draw(context, overlay->page_wide ? ICON_NARROW : ICON_WIDEN,
+			  widen.x_px - head.x_px + widen.width_px / 2.0,
+			  widen.y_px - head.y_px + widen.height_px / 2.0, px(overlay, 4.5f));
 	cairo_translate(context, close.x_px - head.x_px, close.y_px - head.y_px);
 	overlay_draw_close(overlay, context, close.width_px, close.height_px);
 	overlay_end(overlay, BITMAP_PAGE_HEAD, context);

@@ -53,7 +53,8 @@ bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px)
 	       y_px >= (float)rect.y_px && y_px < (float)(rect.y_px + rect.height_px);
 }
 
-struct overlay_rect overlay_page_rect(const struct overlay *overlay)
+/* What a page has beside the model, and the search. */
+struct overlay_rect overlay_half_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
 
@@ -66,6 +67,13 @@ struct overlay_rect overlay_page_rect(const struct overlay *overlay)
 		rect.width_px -= rect.x_px;
 	}
 	return rect;
+}
+
+struct overlay_rect overlay_page_rect(const struct overlay *overlay)
+{
+	if (overlay->page_wide)
+		return (struct overlay_rect){ 0, 0, overlay->width_px, overlay->height_px };
+	return overlay_half_rect(overlay);
 }
 
 struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
@@ -82,10 +90,10 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 			rect.height_px = search.y_px;
 		return rect;
 	}
-	if (overlay->page_part >= 0 && overlay_page_rect(overlay).y_px > 0)
-		rect.height_px = overlay_page_rect(overlay).y_px;
+	if (overlay->page_part >= 0 && overlay_half_rect(overlay).y_px > 0)
+		rect.height_px = overlay_half_rect(overlay).y_px;
 	else if (overlay->page_part >= 0)
-		rect.width_px = overlay_page_rect(overlay).x_px;
+		rect.width_px = overlay_half_rect(overlay).x_px;
 	return rect;
 }
 
@@ -119,7 +127,7 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 
 	rect.y_px += head_px;
 	rect.height_px -= head_px;
-	if (rect.y_px > head_px) /* it is below the model, not beside it */
+	if (rect.x_px == 0) /* it is below the model, not beside it, or has the whole panel */
 		rect.height_px -= overlay->chrome.height_px + 2 * px(overlay, THEME_GAP_MM);
 	if (rect.height_px < 1)
 		rect.height_px = 1;
@@ -129,6 +137,18 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 struct overlay_rect overlay_close_rect(const struct overlay *overlay)
 {
 	return overlay_close_in(overlay, overlay_head_rect(overlay, overlay_page_rect(overlay)));
+}
+
+/* Beside it; nothing where there is no such control. */
+struct overlay_rect overlay_widen_rect(const struct overlay *overlay)
+{
+	struct overlay_rect close = overlay_close_rect(overlay);
+	int side_px = px(overlay, THEME_TARGET_MM);
+
+	if (overlay->comfort.reach)
+		return (struct overlay_rect){ 0 };
+	return (struct overlay_rect){ close.x_px - px(overlay, THEME_GAP_MM) - side_px, close.y_px,
+				      side_px, side_px };
 }
 
 struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)

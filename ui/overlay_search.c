@@ -25,7 +25,7 @@ static int px(const struct overlay *overlay, float mm)
 
 struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_page_rect(overlay), bar = overlay_chrome_rect(overlay);
+	struct overlay_rect rect = overlay_half_rect(overlay), bar = overlay_chrome_rect(overlay);
 	int bar_px = bar.y_px - px(overlay, THEME_GAP_MM);
 
 	if (overlay_is_flat(overlay))

@@ -172,6 +172,7 @@ struct overlay {
 	int question_s, question_drawn_s; /* on the count-down; on its bitmap */
 	int card_part, card_shown;        /* shown: on its bitmap, also while fading out */
 	int page_part, page_titled;       /* titled: in its head, also while fading out */
+	bool page_wide;                   /* likewise */
 	struct article *article;          /* NULL when no page is open or fading out */
 	struct strip strips[STRIPS];
 	int strip_px;
@@ -194,6 +195,7 @@ int overlay_reach_top(const struct overlay *overlay);
 bool overlay_offers_reach(const struct overlay *overlay);
 /* Reach mode on a panel that is wide: what is open lies flat, its head beside the bar. */
 bool overlay_is_flat(const struct overlay *overlay);
+struct overlay_rect overlay_half_rect(const struct overlay *overlay);
 struct overlay_rect overlay_page_rect(const struct overlay *overlay); /* all of its paper */
 struct overlay_rect overlay_view_rect(const struct overlay *overlay); /* window on the article */
 struct overlay_rect overlay_card_rect(const struct overlay *overlay);
@@ -202,6 +204,7 @@ struct overlay_rect overlay_help_rect(const struct overlay *overlay);
 struct overlay_rect overlay_invitation_rect(const struct overlay *overlay);
 struct overlay_rect overlay_question_rect(const struct overlay *overlay);
 struct overlay_rect overlay_close_rect(const struct overlay *overlay); /* of the page */
+struct overlay_rect overlay_widen_rect(const struct overlay *overlay);
 /* Of a page or the search: the line with the control that closes it. */
 struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper);
 /* The control that closes, at the end of a head. */

@@ -5,6 +5,7 @@ import sys
 
 HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 93, 128, 164, 199, 234, 269)]
 ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 465)
+WIDEN = (824, 20)
 
 touches, shots = [], []
 now = 9500
@@ -66,6 +67,9 @@ shot("page", 6000)
 move(((720, 470), (720, 130)))
 shot("read", 2000)
 move(((720, 130), (720, 530)))
+tap(WIDEN, 1000)
+shot("full", 3000)
+tap(WIDEN, 2000)
 tap((720, 300))
 shot("picture", 2500)
 tap(PICTURE_CLOSE, 1000)

@@ -369,6 +369,8 @@ static void every_target_is_9_mm_and_in_reach_mode_low(void **state)
 				feel_all(overlay, "search", OVERLAY_KEY);
 				show_page(overlay);
 				feel_all(overlay, "page", OVERLAY_CLOSE_PAGE);
+				overlay_widen_page(overlay, true);
+				feel_all(overlay, "page-wide", OVERLAY_CLOSE_PAGE);
 				overlay_show_card(overlay, 1); /* by a link, beside the page */
 				feel_all(overlay, "page-card", OVERLAY_CLOSE_CARD);
 				overlay_show_card(overlay, -1);

@@ -275,6 +275,12 @@ static void shows_every_screen_on_every_panel(void **state)
 			CHECK(painted(&bitmap, overlay_view_rect(overlay)) > 500);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
+			overlay_widen_page(overlay, true);
+			snprintf(name, sizeof(name), "wide-%s", languages[language]);
+			bitmap = screen(overlay, name);
+			CHECK(painted(&bitmap, overlay_view_rect(overlay)) > 500);
+			bitmap_finish(&bitmap);
+			check_layers(overlay);
 			overlay_close_page(overlay);
 			give_anchors(overlay);
 			settle(overlay);
@@ -383,6 +389,58 @@ static void a_page_scrolls_links_and_closes(void **state)
 	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)"", 0 }, "x") ==
 	      -EBADMSG);
 	CHECK(overlay_page(overlay) == 0); /* the one before stays */
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
+}
+
+/* Over the whole panel and beside the model again, about where it was read. */
+static void a_page_takes_the_whole_panel_on_request(void **state)
+{
+	struct album album;
+	struct overlay *overlay;
+	struct overlay_rect half, bar;
+	const struct bytes html = { (const uint8_t *)pages[0], strlen(pages[0]) };
+	float read;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	overlay_widen_page(overlay, true); /* there is none */
+	CHECK(!overlay_page_is_wide(overlay));
+	CHECK(overlay_show_page(overlay, 0, html, "") == 0);
+	settle(overlay);
+	half = overlay_page_rect(overlay);
+	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
+	overlay_scroll(overlay, -150);
+	read = overlay->scroll_px / (float)article_height_px(overlay->article);
+
+	overlay_widen_page(overlay, true);
+	settle(overlay);
+	CHECK(overlay_page_is_wide(overlay) && overlay_page_rect(overlay).width_px == 1280);
+	CHECK(fabsf(overlay->scroll_px / (float)article_height_px(overlay->article) - read) < 0.1f);
+	bar = overlay_chrome_rect(overlay);
+	CHECK(overlay_view_rect(overlay).y_px + overlay_view_rect(overlay).height_px <= bar.y_px);
+	CHECK(overlay_covers(overlay, 100, 300));
+	CHECK(overlay_tap(overlay, 100, 300).kind == OVERLAY_SWALLOWED);
+	CHECK(overlay_scene_rect(overlay).width_px == half.x_px); /* the eye stays where it is */
+	CHECK(tap(overlay, overlay_close_rect(overlay)).kind == OVERLAY_CLOSE_PAGE);
+	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
+	CHECK(overlay_show_page(overlay, 1, html, "") == 0); /* by a link */
+	CHECK(overlay_page_is_wide(overlay));
+
+	overlay_show_card(overlay, 2); /* of a part that has no page: look at it */
+	CHECK(!overlay_page_is_wide(overlay) && overlay_page(overlay) == 1);
+	overlay_show_card(overlay, -1);
+	overlay_widen_page(overlay, true);
+	overlay_set_comfort(overlay, (struct overlay_comfort){ .reach = true });
+	CHECK(!overlay_page_is_wide(overlay) && overlay_widen_rect(overlay).width_px == 0);
+	overlay_widen_page(overlay, true);
+	CHECK(!overlay_page_is_wide(overlay));
+	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
+	overlay_widen_page(overlay, true);
+	overlay_close_page(overlay);
+	CHECK(overlay_show_page(overlay, 0, html, "") == 0); /* the next one */
+	CHECK(overlay_page_rect(overlay).x_px == half.x_px);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
@@ -592,6 +650,7 @@ int main(void)
 		cmocka_unit_test(shows_every_screen_on_every_panel),
 		cmocka_unit_test(a_tap_means_what_is_under_it),
 		cmocka_unit_test(a_page_scrolls_links_and_closes),
+		cmocka_unit_test(a_page_takes_the_whole_panel_on_request),
 		cmocka_unit_test(a_late_picture_moves_nothing),
 		cmocka_unit_test(nothing_pops),
 		cmocka_unit_test(what_is_hidden_dims_and_goes_if_it_stays_so),
