@@ -208,14 +208,6 @@ static int tell_tours(struct story *story)
 	return overlay_tours(story->overlay, tours, count) < 0 ? -ENOMEM : 0;
 }
 
-static bool language_is_there(const struct info *info, const char *language)
-{
-	for (uint32_t i = 0; i < info_language_count(info); i++)
-		if (strcmp(info_language(info, i), language) == 0)
-			return true;
-	return false;
-}
-
 static int create_overlay(struct story *story)
 {
 	const char *languages[OVERLAY_LANGUAGES_MOST];
@@ -253,8 +245,8 @@ static void give_database(struct story *story, struct bytes object)
 	info_close(story->info);
 	story->info = info;
 	forget_pictures(story);
-	if (!language_is_there(info, story->language))
-		snprintf(story->language, sizeof(story->language), "%s", info_language(info, 0));
+	snprintf(story->language, sizeof(story->language), "%s",
+		 info_nearest_language(info, story->language));
 	rc = create_overlay(story);
 	if (rc == 0) {
 		overlay_language(story->overlay, story->language);
@@ -347,6 +339,8 @@ void story_set_language(struct story *story, const char *language)
 {
 	int page;
 
+	if (story->info)
+		language = info_nearest_language(story->info, language);
 	if (strcmp(story->language, language) == 0)
 		return;
 	log_debug("app", "words in %s", language);

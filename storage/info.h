@@ -107,7 +107,8 @@ struct info_part {
 	bool has_page;     /* in some language */
 };
 
-/* Texts in the language asked for; in the release's first language where that has none. All
+/* Texts in the language asked for; where that has none in one of its kind ("pt" for "pt-BR"), else
+ * in the first of the release's languages that has one. All
  * UTF-8 and borrowed until info_close. caption and thumbnail may be "". */
 struct info_text {
 	const char *language; /* that was found */
@@ -136,6 +137,8 @@ int info_find(const struct info *info, const char *id);
 /* The release's languages, the default first. */
 uint32_t info_language_count(const struct info *info);
 const char *info_language(const struct info *info, uint32_t index);
+/* Of these the one asked for, or what stands in for it. */
+const char *info_nearest_language(const struct info *info, const char *language);
 
 struct info_text info_text(const struct info *info, uint32_t part, const char *language);
 

@@ -459,22 +459,63 @@ const char *info_language(const struct info *info, uint32_t index)
 	return info->languages[index];
 }
 
+static bool is_of_a_kind(const char *a, const char *b)
+{
+	const size_t size = strcspn(a, "-");
+
+	return size == strcspn(b, "-") && strncmp(a, b, size) == 0;
+}
+
+struct info_order info_order_of(const struct info *info, const char *language)
+{
+	struct info_order order = { .count = 0 };
+
+	/* The same, of a kind, others: every language is in one of these. */
+	for (int round = 0; round < 3; round++)
+		for (uint32_t i = 0; i < info->language_count; i++) {
+			const char *other = info->languages[i];
+			const bool same = language && strcmp(other, language) == 0;
+			const bool of_a_kind = language && is_of_a_kind(other, language);
+
+			if (round == (same ? 0 : of_a_kind ? 1 : 2))
+				order.languages[order.count++] = i;
+		}
+	return order;
+}
+
+const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found)
+{
+	for (uint32_t i = 0; i < order->count; i++) {
+		const char *text = texts[order->languages[i]];
+
+		if (text && found)
+			*found = order->languages[i];
+		if (text)
+			return text;
+	}
+	return NULL;
+}
+
 uint32_t info_language_index(const struct info *info, const char *language)
 {
-	for (uint32_t i = 0; i < info->language_count; i++)
-		if (language && strcmp(info->languages[i], language) == 0)
-			return i;
-	return 0;
+	return info_order_of(info, language).languages[0];
+}
+
+const char *info_nearest_language(const struct info *info, const char *language)
+{
+	return info->languages[info_language_index(info, language)];
 }
 
 struct info_text info_text(const struct info *info, uint32_t part, const char *language)
 {
 	const struct part *p = &info->parts[part];
-	uint32_t found = info_language_index(info, language);
+	const struct info_order order = info_order_of(info, language);
+	uint32_t at = 0, found;
 	struct info_text text;
 
-	if (!p->texts[found].title)
-		found = 0;
+	while (!p->texts[order.languages[at]].title)
+		at++; /* one has it: it was looked at when the image was opened */
+	found = order.languages[at];
 	text.language = info->languages[found];
 	text.title = p->texts[found].title;
 	text.caption = p->texts[found].caption ? p->texts[found].caption : "";
@@ -482,18 +523,16 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
 	return text;
 }
 
-/* The language asked for, else the default, else whichever has a page; or language_count. */
+/* Or language_count: none has a page. */
 static uint32_t page_language(const struct info *info, const struct part *part,
 			      const char *language)
 {
-	uint32_t asked = info_language_index(info, language);
-	uint32_t found = 0;
+	const struct info_order order = info_order_of(info, language);
 
-	if (part->texts[asked].has_page)
-		return asked;
-	while (found < info->language_count && !part->texts[found].has_page)
-		found++;
-	return found;
+	for (uint32_t i = 0; i < order.count; i++)
+		if (part->texts[order.languages[i]].has_page)
+			return order.languages[i];
+	return info->language_count;
 }
 
 int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,

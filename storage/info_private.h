@@ -68,7 +68,15 @@ must_check int info_load_tools(struct info *info);
 /* info_tour.c: after parts and pictures. */
 must_check int info_load_tours(struct info *info);
 void info_drop_tours(struct info *info);
-/* An unknown language is the default. */
+/* All languages, in the order in which they stand in for one another: the one asked for, those of
+ * its kind ("pt" for "pt-BR", and the other way round), then as the release has them. */
+struct info_order {
+	uint32_t languages[INFO_LANGUAGES_MOST], count;
+};
+struct info_order info_order_of(const struct info *info, const char *language);
+/* The first that has a text; NULL: none has. found may be NULL. */
+const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found);
+/* The one asked for, or what stands in for it. */
 uint32_t info_language_index(const struct info *info, const char *language);
 
 #endif

@@ -172,14 +172,14 @@ int info_find_tour(const struct info *info, const char *id)
 struct info_text info_tour_text(const struct info *info, uint32_t tour, const char *language)
 {
 	const struct tour *t = &info->tours[tour];
-	uint32_t found = info_language_index(info, language);
-	const char *caption = t->captions[found] ? t->captions[found] : t->captions[0];
+	const struct info_order order = info_order_of(info, language);
+	const char *caption = info_first_of(&order, t->captions, NULL);
+	uint32_t found = 0;
+	const char *title = info_first_of(&order, t->titles, &found);
 
-	if (!t->titles[found])
-		found = 0;
 	return (struct info_text){
 		.language = info->languages[found],
-		.title = t->titles[found],
+		.title = title,
 		.caption = caption ? caption : "",
 		.thumbnail = t->thumbnail ? info->pictures[t->thumbnail - 1].name : "",
 	};
@@ -188,10 +188,8 @@ struct info_text info_tour_text(const struct info *info, uint32_t tour, const ch
 const char *info_stop_caption(const struct info *info, uint32_t tour, uint32_t stop,
 			      const char *language)
 {
-	char *const *captions = info->tours[tour].stop_captions[stop];
-	const char *caption = captions[info_language_index(info, language)];
+	const struct info_order order = info_order_of(info, language);
+	const char *caption = info_first_of(&order, info->tours[tour].stop_captions[stop], NULL);
 
-	if (!caption)
-		caption = captions[0];
 	return caption ? caption : "";
 }

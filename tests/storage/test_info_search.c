@@ -191,6 +191,46 @@ static void korean_is_found_by_its_letters_and_chinese_by_pinyin(void **state)
 	info_close(info);
 }
 
+/* Itself, those of its kind, then as the release has them. */
+static void languages_stand_in_for_one_another(void **state)
+{
+	static const char *const others[] = { "en", "km", "pt-BR", "pt" };
+	const struct info_build_options options = { .folder = folder,
+						    .languages = others,
+						    .language_count = ARRAY_COUNT(others) };
+	const char *language;
+	struct info_built built;
+	struct bytes html;
+	struct info *info;
+
+	(void)state;
+	write_text("parts.json",
+		   "{\"parts\": [{\"id\": \"tower\", \"anchor\": [0, 0, 1], \"title\": {\"en\": "
+		   "\"Tower\", \"pt\": \"Torre\"}},\n{\"id\": \"lion\", \"anchor\": [0, 0, 2], "
+		   "\"title\": {\"en\": \"Lion\"}}]}");
+	write_text("pages/tower.pt.html", "<h1>Torre</h1>");
+	write_text("pages/tower.en.html", "<h1>Tower</h1>");
+	write_text("pages/lion.pt-BR.html", "<h1>Leão</h1>");
+	write_text("pages/lion.en.html", "<h1>Lion</h1>");
+	CHECK(info_build(&built, &options) == 0);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	CHECK(strcmp(info_text(info, 0, "pt-BR").title, "Torre") == 0);
+	CHECK(strcmp(info_text(info, 0, "pt-AO").title, "Torre") == 0);
+	CHECK(strcmp(info_text(info, 0, "km").title, "Tower") == 0);
+	CHECK(strcmp(info_text(info, 1, "pt").title, "Lion") == 0);
+	CHECK(info_page(info, 0, "pt-BR", &html, &language) == 0 && strcmp(language, "pt") == 0);
+	CHECK(info_page(info, 0, "km", &html, &language) == 0 && strcmp(language, "km") == 0);
+	CHECK(info_page(info, 1, "pt", &html, &language) == 0 && strcmp(language, "pt-BR") == 0);
+	CHECK(info_page(info, 1, "xx", &html, &language) == 0 && strcmp(language, "en") == 0);
+	CHECK(strcmp(info_nearest_language(info, "pt"), "pt") == 0);
+	CHECK(strcmp(info_nearest_language(info, "pt-AO"), "pt-BR") == 0);
+	CHECK(strcmp(info_nearest_language(info, "km-KH"), "km") == 0);
+	CHECK(strcmp(info_nearest_language(info, "p"), "en") == 0);
+	CHECK(strcmp(info_nearest_language(info, ""), "en") == 0);
+	info_close(info);
+	info_built_finish(&built);
+}
+
 static void a_query_of_operators_or_rubbish_is_only_words(void **state)
 {
 	struct info *info = open_folder();
@@ -442,6 +482,7 @@ int main(void)
 		IN_A_FOLDER(accents_case_and_widths_make_no_difference),
 		IN_A_FOLDER(scripts_without_spaces_are_found_anywhere),
 		IN_A_FOLDER(korean_is_found_by_its_letters_and_chinese_by_pinyin),
+		IN_A_FOLDER(languages_stand_in_for_one_another),
 		IN_A_FOLDER(a_query_of_operators_or_rubbish_is_only_words),
 		cmocka_unit_test(words_are_folded_as_the_header_says),
 		IN_A_FOLDER(credits_are_of_the_part_or_of_all),
