@@ -257,7 +257,7 @@ static int read_part_pages(struct content *content, struct content_part *part)
 			content_complain(content, i == 0, file, 0,
 					 i == 0 ? "is missing: write it, or give the part "
 						  "\"page\": false in parts.json"
-						: "is missing: the page in the first language is "
+						: "is missing: the page in another language is "
 						  "shown instead");
 		if (rc < 0)
 			return rc;

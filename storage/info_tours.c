@@ -115,7 +115,7 @@ static int read_texts(const struct tour_reader *r, const cJSON *json, const char
 		} else if (object) {
 			content_complain(
 				r->content, false, tours_file, r->line,
-				"tour \"%.64s\": no %s in \"%s\": that of the first language is "
+				"tour \"%.64s\": no %s in \"%s\": that of another language is "
 				"shown instead",
 				r->tour->id, key, options->languages[i]);
 		}
