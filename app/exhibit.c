@@ -191,6 +191,7 @@ static void take_over(struct kiosk *kiosk)
 	if (overlay) /* a panel too small for words has none */
 		overlay_show_help(overlay, false);
 	guide_end(kiosk);              /* its tours are others */
+	back_forget(kiosk);            /* and its parts */
 	kiosk->looked_triangles = 0;   /* its anchors are others */
 	if (before.frame.patches == 0) /* nobody has the eye anywhere */
 		kiosk->navigator_ready = false;

@@ -139,7 +139,11 @@ static int part_under(struct kiosk *kiosk, float x_px, float y_px)
 
 static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 {
-	show_card(kiosk, part_under(kiosk, x_px, y_px));
+	const int part = part_under(kiosk, x_px, y_px);
+
+	if (part >= 0 && part != overlay_card(story_overlay(kiosk->shown.story)))
+		back_note(kiosk);
+	show_card(kiosk, part);
 }
 
 /* To the tour; to the part's page; to one that has none on the model, beside the page that is read.
@@ -197,10 +201,33 @@ static bool halts_tour(enum overlay_action_kind kind)
 	       kind == OVERLAY_HELP || kind == OVERLAY_LINK || kind == OVERLAY_FOUND;
 }
 
+/* The way back leads to before it. What only closes something is none. */
+static bool is_step(const struct overlay *overlay, enum overlay_action_kind kind)
+{
+	switch (kind) {
+	case OVERLAY_OPEN_CARD:
+	case OVERLAY_OPEN_PAGE:
+	case OVERLAY_LINK:
+	case OVERLAY_FOUND:
+	case OVERLAY_TOUR:
+	case OVERLAY_HOME:
+		return true;
+	case OVERLAY_SEARCH:
+		return !overlay_searching(overlay);
+	case OVERLAY_TOURS:
+		return !overlay_choosing(overlay);
+	default:
+		return false;
+	}
+}
+
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const bool chose_language = overlay_choosing_language(overlay);
 
+	if (is_step(overlay, action->kind))
+		back_note(kiosk);
 	if (halts_tour(action->kind))
 		guide_halt(kiosk);
 	if (action->kind != OVERLAY_LANGUAGES && action->kind != OVERLAY_NONE)
@@ -257,6 +284,10 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		show_card(kiosk, -1);
 		go_home(kiosk);
 		break;
+	case OVERLAY_BACK:
+		if (!chose_language)
+			back_press(kiosk);
+		break;
 	case OVERLAY_HELP:
 		overlay_show_help(overlay, !overlay_help(overlay));
 		break;
@@ -304,8 +335,10 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 		carry_out(kiosk, &action);
 	else if (gesture->kind == GESTURE_TAP)
 		tap_model(kiosk, gesture->x_px, gesture->y_px);
-	else if ((part = part_under(kiosk, gesture->x_px, gesture->y_px)) >= 0)
+	else if ((part = part_under(kiosk, gesture->x_px, gesture->y_px)) >= 0) {
+		back_note(kiosk);
 		open_page(kiosk, part);
+	}
 }
 
 /* ---- gestures */

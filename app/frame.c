@@ -332,6 +332,7 @@ int frame_draw(struct kiosk *kiosk)
 		say_eye(kiosk, now_ms);
 	}
 	tools_say(kiosk);
+	back_say(kiosk);
 	exhibit_warm(kiosk);
 	display_begin(kiosk->display);
 	draw_scene(kiosk, words);

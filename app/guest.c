@@ -47,6 +47,7 @@ static void begin_anew(struct kiosk *kiosk)
 
 	guide_end(kiosk);
 	tools_end(kiosk);
+	back_forget(kiosk);
 	if (overlay) {
 		overlay_close_page(overlay);
 		overlay_show_card(overlay, -1);

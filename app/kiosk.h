@@ -11,6 +11,7 @@
 #include "app/tour.h"
 #include "app/visit.h"
 #include "app/wants.h"
+#include "app/way_back.h"
 #include "board/profile.h"
 #include "input/gesture.h"
 #include "input/touch.h"
@@ -117,6 +118,7 @@ struct kiosk {
 	int asked_s;                 /* as the words have it */
 	struct tour tour;            /* a visitor's, or nobody's */
 	struct tools tools;          /* a visitor's */
+	struct way_back way_back;    /* the same */
 	struct roam roam;
 	int64_t roam_since_ms; /* the eye's way without a visitor began, or will */
 
@@ -239,6 +241,15 @@ bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms);
 void guide_say(struct kiosk *kiosk);
 /* The part that is lit, or -1. */
 int guide_part(const struct kiosk *kiosk);
+
+/* back.c: what the bar's way back undoes. */
+/* A step begins that leads elsewhere. */
+void back_note(struct kiosk *kiosk);
+void back_press(struct kiosk *kiosk);
+/* Another visitor, or another release. */
+void back_forget(struct kiosk *kiosk);
+/* Before each frame: whether there is a way back. */
+void back_say(struct kiosk *kiosk);
 
 /* tools.c: the light and the section that visitors hold. */
 void tools_press(struct kiosk *kiosk, unsigned tool); /* enum overlay_tool: on, or off again */

@@ -240,6 +240,23 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MOST), 1);
 }
 
+void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3])
+{
+	struct navigator there = *nav;
+	float direction[3];
+
+	if (nav->flight_left_ms > 0) {
+		glm_vec3_copy((float *)nav->way.to_m, there.eye_m);
+		there.yaw = nav->to_yaw;
+		there.pitch = nav->to_pitch;
+	}
+	view_direction(&there, direction);
+	glm_vec3_copy(there.eye_m, eye_m);
+	glm_vec3_copy(there.eye_m, target_m);
+	glm_vec3_muladds(direction, fmaxf(glm_vec3_distance(there.eye_m, there.pivot_m), 1e-3f),
+			 target_m);
+}
+
 bool navigator_is_left_alone(const struct navigator *nav)
 {
 	return nav->flight_left_ms > 0 ||

@@ -51,6 +51,8 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
  * of the straight way; a bow takes as much longer as it is. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
+/* Where it stands and looks, or flies to. */
+void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3]);
 /* It flies, or nobody has moved it since it arrived. */
 bool navigator_is_left_alone(const struct navigator *nav);
 /* At once to a pose; ends flings and flights. */

@@ -47,6 +47,7 @@ static void try_layout(struct chrome *chrome, const struct theme *theme,
 	chrome->button_count = 0;
 	chrome->width_px = 0;
 	add(chrome, CHROME_HOME, -1, target_px);
+	add(chrome, CHROME_BACK, -1, target_px);
 	add(chrome, CHROME_HELP, -1, target_px);
 	if (has.search)
 		add(chrome, CHROME_SEARCH, -1, target_px);
@@ -104,14 +105,14 @@ static void draw_label(cairo_t *context, const struct theme *theme, const char *
 
 static void draw_button(cairo_t *context, const struct chrome *chrome,
 			const struct chrome_button *button, const struct theme *theme,
-			const char *const *languages, bool on)
+			const char *const *languages, bool on, bool dim)
 {
 	static const enum icon icons[] = {
-		[CHROME_HOME] = ICON_HOME,           [CHROME_HELP] = ICON_HELP,
-		[CHROME_SEARCH] = ICON_SEARCH,       [CHROME_TOURS] = ICON_TOUR,
-		[CHROME_LIGHT] = ICON_LIGHT,         [CHROME_SECTION] = ICON_SECTION,
-		[CHROME_LARGE] = ICON_LARGE,         [CHROME_REACH] = ICON_REACH,
-		[CHROME_LANGUAGES] = ICON_LANGUAGES,
+		[CHROME_HOME] = ICON_HOME,       [CHROME_BACK] = ICON_RETURN,
+		[CHROME_HELP] = ICON_HELP,       [CHROME_SEARCH] = ICON_SEARCH,
+		[CHROME_TOURS] = ICON_TOUR,      [CHROME_LIGHT] = ICON_LIGHT,
+		[CHROME_SECTION] = ICON_SECTION, [CHROME_LARGE] = ICON_LARGE,
+		[CHROME_REACH] = ICON_REACH,     [CHROME_LANGUAGES] = ICON_LANGUAGES,
 	};
 	double x = button->x_px + button->width_px / 2.0, y = chrome->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
@@ -125,7 +126,7 @@ static void draw_button(cairo_t *context, const struct chrome *chrome,
 		theme_set_source(context, theme_night_text, 1);
 		cairo_fill(context);
 	}
-	theme_set_source(context, on ? theme_night : theme_night_text, 1);
+	theme_set_source(context, on ? theme_night : theme_night_text, dim ? THEME_DIM_ALPHA : 1);
 	if (button->kind == CHROME_LANGUAGE)
 		draw_label(context, &type,
 			   label_of(chrome, languages[button->language], code, sizeof(code)), x, y);
@@ -156,7 +157,8 @@ int chrome_draw(struct bitmap *out, const struct chrome *chrome, const struct th
 
 		draw_button(context, chrome, button, theme, languages,
 			    button->kind == CHROME_LANGUAGE ? button->language == state.language
-							    : on[button->kind]);
+							    : on[button->kind],
+			    button->kind == CHROME_BACK && !state.back);
 	}
 	bitmap_end(out, context);
 	return 0;

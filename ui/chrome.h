@@ -1,6 +1,6 @@
-/* What is always there, always in the same place: home, help, search, tours, tools, large type,
- * reach and the languages, on one bar at the lower left, where a seated visitor reaches it too; and
- * the help it shows. */
+/* What is always there, always in the same place: home, back, help, search, tours, tools, large
+ * type, reach and the languages, on one bar at the lower left, where a seated visitor reaches it
+ * too; and the help it shows. */
 #ifndef GOPURA_UI_CHROME_H
 #define GOPURA_UI_CHROME_H
 
@@ -8,10 +8,11 @@
 #include "ui/theme.h"
 
 enum { CHROME_LANGUAGES_MOST = 8 }; /* side by side; more are behind one button */
-enum { CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 8 };
+enum { CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 9 };
 
 enum chrome_button_kind {
 	CHROME_HOME,
+	CHROME_BACK, /* there is one or not: it is dim then */
 	CHROME_HELP,
 	CHROME_SEARCH,
 	CHROME_TOURS,
@@ -40,7 +41,7 @@ struct chrome {
 	bool toolless; /* nor for those: the tools are left out */
 };
 
-/* What there is beside home, help, large type and languages. */
+/* What there is beside home, back, help, large type and languages. */
 struct chrome_has {
 	bool search, tours, light, section, reach;
 };
@@ -51,7 +52,7 @@ void chrome_layout(struct chrome *out, const struct theme *theme, const char *co
 
 struct chrome_state {
 	int language; /* index of the one that is set */
-	bool help, search, tours, large, reach, light, section, languages;
+	bool back, help, search, tours, large, reach, light, section, languages;
 };
 
 /* A fresh bitmap of the bar; what is on is shown so. */

@@ -228,6 +228,12 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 	case ICON_LANGUAGES:
 		draw_globe(context);
 		break;
+	case ICON_RETURN:
+		line(context, 0.9, 0, -0.9, 0);
+		cairo_move_to(context, -0.15, -0.75);
+		cairo_line_to(context, -0.9, 0);
+		cairo_line_to(context, -0.15, 0.75);
+		break;
 	case ICON_PAUSE:
 		line(context, -0.4, -0.7, -0.4, 0.7);
 		line(context, 0.4, -0.7, 0.4, 0.7);

@@ -9,6 +9,7 @@ enum icon {
 	ICON_FORWARD,
 	ICON_BACK,
 	ICON_HOME,
+	ICON_RETURN, /* an arrow to where one came from */
 	ICON_HELP,
 	ICON_TURN, /* one finger goes sideways */
 	ICON_ZOOM, /* two fingers part */

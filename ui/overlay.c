@@ -307,6 +307,28 @@ void overlay_close_page(struct overlay *overlay)
 	overlay->callouts_dirty = true;
 }
 
+float overlay_read(const struct overlay *overlay)
+{
+	return overlay->page_part >= 0
+		       ? overlay->scroll_px / (float)article_height_px(overlay->article)
+		       : 0;
+}
+
+void overlay_read_from(struct overlay *overlay, float share)
+{
+	if (overlay->page_part < 0)
+		return;
+	overlay->scroll_px_per_s = 0;
+	overlay->scroll_px = fminf(share * (float)article_height_px(overlay->article),
+				   (float)overlay_scroll_most(overlay));
+}
+
+void overlay_offer_back(struct overlay *overlay, bool on)
+{
+	overlay->chrome_dirty |= overlay->back != on;
+	overlay->back = on;
+}
+
 int overlay_page(const struct overlay *overlay)
 {
 	return overlay->page_part;
@@ -418,6 +440,8 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		return action;
 	if (button->kind == CHROME_HOME) {
 		action.kind = OVERLAY_HOME;
+	} else if (button->kind == CHROME_BACK) {
+		action.kind = overlay->back ? OVERLAY_BACK : OVERLAY_SWALLOWED;
 	} else if (button->kind == CHROME_HELP) {
 		action.kind = OVERLAY_HELP;
 	} else if (button->kind == CHROME_SEARCH) {

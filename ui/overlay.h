@@ -87,6 +87,10 @@ int overlay_page(const struct overlay *overlay); /* the part whose page is open,
 void overlay_widen_page(struct overlay *overlay, bool on);
 bool overlay_page_is_wide(const struct overlay *overlay);
 
+/* What of the page is above the first line that is seen, a share of it; 0 without one. */
+float overlay_read(const struct overlay *overlay);
+void overlay_read_from(struct overlay *overlay, float share);
+
 /* How to touch the model, in pictures and words; on at first, off at the first touch. */
 void overlay_show_help(struct overlay *overlay, bool on);
 bool overlay_help(const struct overlay *overlay);
@@ -106,6 +110,8 @@ int overlay_picture(const struct overlay *overlay); /* or -1 */
 /* The search, in the page's place: a field, parts that were found, a keyboard. It opens with
  * nothing typed and all parts listed, and closes card and page; without parts it does not open. */
 void overlay_show_search(struct overlay *overlay, bool on);
+/* Opens it as it was left. Say what is found, as of overlay_press. */
+void overlay_search_again(struct overlay *overlay);
 bool overlay_searching(const struct overlay *overlay);
 /* What is typed; borrowed until the next overlay_press. */
 const char *overlay_query(const struct overlay *overlay);
@@ -156,6 +162,9 @@ void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *sta
 /* A picture that was asked for is there now. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 
+/* Whether there is a way back, as the bar shows it. Not at first. */
+void overlay_offer_back(struct overlay *overlay, bool on);
+
 /* The part of the panel that is left for the model: all of it, or what a page leaves. Jumps when a
  * page opens; the app moves its camera there at its own pace. */
 struct overlay_rect overlay_scene_rect(const struct overlay *overlay);
@@ -185,7 +194,8 @@ enum overlay_action_kind {
 	OVERLAY_LANGUAGES,  /* their menu, which is open or not (overlay_choosing_language), changes
 			       over */
 	OVERLAY_LINK,    /* link: what a page's link names, the id of a part or "tour:" and one's */
-	OVERLAY_HOME,    /* back to the first view */
+	OVERLAY_HOME,    /* to the first view */
+	OVERLAY_BACK,    /* to where the visitor was, where that is offered */
 	OVERLAY_HELP,    /* the help, which is there or not (overlay_help), changes over */
 	OVERLAY_SEARCH,  /* the search, which is open or not (overlay_searching), changes over */
 	OVERLAY_LARGE,   /* large type (overlay_comfort) changes over */

@@ -139,13 +139,20 @@ void overlay_draw_fixed(struct overlay *overlay)
 void overlay_draw_chrome(struct overlay *overlay)
 {
 	struct bitmap fresh;
-	int rc = chrome_draw(
-		&fresh, &overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		(struct chrome_state){
-			overlay->language, overlay->help.on, overlay->search.fade.on,
-			overlay->tours.fade.on || overlay->tour.on, overlay->comfort.large,
-			overlay->comfort.reach, overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
-			overlay->tools.now.on & OVERLAY_TOOL_SECTION, overlay->menu.fade.on });
+	const struct chrome_state state = {
+		.language = overlay->language,
+		.back = overlay->back,
+		.help = overlay->help.on,
+		.search = overlay->search.fade.on,
+		.tours = overlay->tours.fade.on || overlay->tour.on,
+		.large = overlay->comfort.large,
+		.reach = overlay->comfort.reach,
+		.light = overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
+		.section = overlay->tools.now.on & OVERLAY_TOOL_SECTION,
+		.languages = overlay->menu.fade.on,
+	};
+	int rc = chrome_draw(&fresh, &overlay->chrome, &overlay->theme,
+			     (const char *const *)overlay->languages, state);
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
 }

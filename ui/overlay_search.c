@@ -162,15 +162,27 @@ void overlay_show_search(struct overlay *overlay, bool on)
 
 	if (on == search->fade.on || (on && overlay->part_count == 0))
 		return;
-	search->fade.on = on;
-	overlay->chrome_dirty = overlay->callouts_dirty = true;
-	if (!on)
+	if (on) {
+		search->query[0] = 0;
+		overlay_search_again(overlay);
 		return;
+	}
+	search->fade.on = false;
+	overlay->chrome_dirty = overlay->callouts_dirty = true;
+}
+
+void overlay_search_again(struct overlay *overlay)
+{
+	struct search *search = &overlay->search;
+
+	if (search->fade.on || overlay->part_count == 0)
+		return;
+	search->fade.on = true;
+	overlay->chrome_dirty = overlay->callouts_dirty = true;
 	overlay_close_page(overlay);
 	overlay_show_card(overlay, -1);
 	overlay_show_help(overlay, false);
 	overlay_show_tours(overlay, false);
-	search->query[0] = 0;
 	search->head_dirty = true;
 	for (uint32_t i = 0; i < SEARCH_ROWS; i++)
 		search->rows[i] = (struct search_row){ .part = ROW_NONE };

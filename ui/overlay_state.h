@@ -171,6 +171,7 @@ struct overlay {
 	int64_t help_ms;                  /* for which its fingers have moved */
 	int question_s, question_drawn_s; /* on the count-down; on its bitmap */
 	int card_part, card_shown;        /* shown: on its bitmap, also while fading out */
+	bool back;                        /* is offered */
 	int page_part, page_titled;       /* titled: in its head, also while fading out */
 	bool page_wide;                   /* likewise */
 	struct article *article;          /* NULL when no page is open or fading out */

@@ -140,6 +140,11 @@ void tools_end(struct kiosk *of)
 	of->tools.now.rake.on = of->tools.now.section.on = false;
 }
 
+void back_forget(struct kiosk *of)
+{
+	of->way_back.count = 0;
+}
+
 bool guide_leads_eye(struct kiosk *of, int64_t now_ms)
 {
 	CHECK(of == &kiosk && now_ms == world.now_ms);
@@ -337,11 +342,13 @@ static void a_tour_that_runs_is_somebody_and_ends_as_nobody(void **state)
 	set_up(NULL);
 	touches(TOUCH_DOWN);
 	world.chooses = true; /* from the menu */
+	kiosk.way_back.count = 3;
 	world.chooses_language = true;
 	after(179 * S);
 	CHECK(world.asked_s == -1);
 	after(16 * S);
 	CHECK(world.invites && !world.chooses && !world.chooses_language);
+	CHECK(kiosk.way_back.count == 0);
 }
 
 static void leaves_nothing_of_a_visitor_for_the_next(void **state)

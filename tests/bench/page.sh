@@ -22,7 +22,7 @@ def tap(x, y, then):
 
 
 for row in range(5):
-    tap(93, 516, 1500)  # the search
+    tap(128, 516, 1500)  # the search
     tap(720, 75 + 58 * row, 5000)  # a row of it: card and flight, until the eye rests
     tap(480, 430, 4000)  # the card
     tap(915, 22, 1000)  # what closes the page

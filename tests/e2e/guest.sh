@@ -12,9 +12,9 @@ small_release
 # At 960 x 540: the bar's second language and its letters, then the temple's middle; 20 s after the last touch
 # (5 with nothing open) the question has been there for 5, and is answered; then for good.
 cat >"$work/fingers.touch" <<'T'
-4000 down 0 338 520
+4000 down 0 373 520
 4080 up 0
-4800 down 0 234 520
+4800 down 0 269 520
 4880 up 0
 6000 down 0 480 240
 6080 up 0

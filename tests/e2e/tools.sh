@@ -22,19 +22,19 @@ grep -q 'temple.ini:[0-9]*: tools = light, lens: it must be light, section' "$wo
 # ---- at 960 x 540: the bar's light, its ring, the bar's light again, a touch on what stands in front; the section, the
 # same touch through it, pushed away and turned, the end of it; both at once, and nobody
 cat >"$work/fingers.touch" <<'T'
-5000 down 0 164 520
+5000 down 0 199 520
 5080 up 0
 12000 down 0 905 380
 12100 move 0 920 400
 12200 move 0 921 440
 12300 up 0
-19000 down 0 164 520
+19000 down 0 199 520
 19080 up 0
 20000 down 0 408 352
 20080 up 0
 21500 down 0 480 20
 21580 up 0
-26000 down 0 199 520
+26000 down 0 234 520
 26080 up 0
 27500 down 0 408 352
 27580 up 0
@@ -48,11 +48,11 @@ cat >"$work/fingers.touch" <<'T'
 40150 move 0 745 472
 40300 move 0 765 450
 40400 up 0
-47000 down 0 199 520
+47000 down 0 234 520
 47080 up 0
-54000 down 0 164 520
+54000 down 0 199 520
 54080 up 0
-54500 down 0 199 520
+54500 down 0 234 520
 54580 up 0
 97000 down 0 480 20
 97050 up 0

@@ -24,7 +24,7 @@ grep -q 'tours.json:[0-9]*: tour "round", from stop 3 to stop 4: the way leads t
 
 # ---- at 960 x 540: the bar's tours, the menu's second row, the model, the panel
 cat >"$work/fingers.touch" <<'T'
-4000 down 0 128 520
+4000 down 0 163 520
 4080 up 0
 6500 down 0 480 465
 6580 up 0

@@ -3,7 +3,7 @@ and shots.txt. The bar, the first row of the search, a card and what closes stan
 every language; where a page has its picture says GALLERY."""
 import sys
 
-HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 93, 128, 164, 199, 234, 269)]
+HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 128, 163, 199, 234, 269, 304)]
 ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 465)
 WIDEN = (824, 20)
 

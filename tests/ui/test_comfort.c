@@ -208,6 +208,7 @@ static struct overlay *open_overlay(int width_px, int height_px)
 	CHECK(overlay_create(&overlay, &options) == 0);
 	set_language(overlay, 0);
 	overlay_show_help(overlay, false);
+	overlay_offer_back(overlay, true);
 	give_anchors(overlay);
 	return overlay;
 }

@@ -616,9 +616,34 @@ static void refuses_impossible_panels(void **state)
 	options.language_count = 1; /* no switch, no pictures, no parts */
 	CHECK(overlay_create(&overlay, &options) == 0);
 	settle(overlay);
-	CHECK(overlay->chrome.button_count == 4); /* home, help, large type, reach */
+	CHECK(overlay->chrome.button_count == 5); /* home, back, help, large type, reach */
 	overlay_destroy(overlay);
 	overlay_destroy(NULL);
+}
+
+/* It stands where it stands, and answers where it leads somewhere. */
+static void the_way_back_answers_where_there_is_one(void **state)
+{
+	struct album album;
+	struct overlay *overlay;
+	struct overlay_rect bar;
+	float x, y;
+
+	(void)state;
+	paint_album(&album);
+	overlay = open_overlay(&album, 1280, 720);
+	bar = overlay_chrome_rect(overlay);
+	CHECK(overlay->chrome.buttons[1].kind == CHROME_BACK);
+	x = (float)(bar.x_px + overlay->chrome.buttons[1].x_px + 10);
+	y = (float)(bar.y_px + 10);
+	CHECK(overlay_tap(overlay, x, y).kind == OVERLAY_SWALLOWED);
+	overlay_offer_back(overlay, true);
+	settle(overlay);
+	CHECK(overlay_tap(overlay, x, y).kind == OVERLAY_BACK);
+	overlay_offer_back(overlay, false);
+	CHECK(overlay_tap(overlay, x, y).kind == OVERLAY_SWALLOWED);
+	overlay_destroy(overlay);
+	picture_finish(&album.picture);
 }
 
 /* A model without parts has no names to tap. */
@@ -651,6 +676,7 @@ int main(void)
 		cmocka_unit_test(a_tap_means_what_is_under_it),
 		cmocka_unit_test(a_page_scrolls_links_and_closes),
 		cmocka_unit_test(a_page_takes_the_whole_panel_on_request),
+		cmocka_unit_test(the_way_back_answers_where_there_is_one),
 		cmocka_unit_test(a_late_picture_moves_nothing),
 		cmocka_unit_test(nothing_pops),
 		cmocka_unit_test(what_is_hidden_dims_and_goes_if_it_stays_so),

@@ -1,0 +1,89 @@
+/* The bar's way back: one step at a time to where the visitor was. */
+#include "app/kiosk.h"
+#include "base/log.h"
+
+#define FLIGHT_MS  900
+#define NEAR_SHARE 0.01f /* of the model's diagonal: there the eye has not moved */
+
+static bool is_on_tour(const struct kiosk *kiosk)
+{
+	return kiosk->tour.state != TOUR_OFF && !kiosk->tour.loops;
+}
+
+static struct place place_of(const struct kiosk *kiosk)
+{
+	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct place here = { .card = overlay_card(overlay),
+			      .page = overlay_page(overlay),
+			      .read = overlay_read(overlay),
+			      .wide = overlay_page_is_wide(overlay),
+			      .searching = overlay_searching(overlay),
+			      .on_tour = is_on_tour(kiosk) };
+
+	navigator_goal(&kiosk->navigator, here.eye_m, here.target_m);
+	return here;
+}
+
+void back_note(struct kiosk *kiosk)
+{
+	const struct place here = place_of(kiosk);
+
+	way_back_note(&kiosk->way_back, &here);
+}
+
+void back_forget(struct kiosk *kiosk)
+{
+	kiosk->way_back.count = 0;
+}
+
+static void go_to(struct kiosk *kiosk, const struct place *place)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	if (!place->on_tour)
+		guide_end(kiosk);
+	if (place->page < 0) {
+		overlay_close_page(overlay);
+	} else if (place->page == overlay_page(overlay) ||
+		   story_open_page(kiosk->shown.story, (uint32_t)place->page)) {
+		overlay_widen_page(overlay, place->wide);
+		overlay_read_from(overlay, place->read);
+	}
+	if (place->searching) {
+		overlay_search_again(overlay);
+		story_search(kiosk->shown.story);
+	} else {
+		overlay_show_search(overlay, false);
+	}
+	overlay_show_card(overlay, place->card);
+	if (!place->on_tour || !tour_runs(&kiosk->tour))
+		navigator_fly(&kiosk->navigator, place->eye_m, place->target_m, FLIGHT_MS);
+	log_debug("app", "back: card %d, page %d%s", place->card, place->page,
+		  place->searching ? ", search" : "");
+}
+
+void back_press(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct place here = place_of(kiosk);
+	const float near_m = NEAR_SHARE * navigator_diagonal_m(&kiosk->navigator);
+	struct place place;
+
+	/* What lies over the rest goes first. */
+	if (overlay_picture(overlay) >= 0)
+		overlay_show_picture(overlay, -1);
+	else if (overlay_choosing(overlay))
+		overlay_show_tours(overlay, false);
+	else if (way_back_take(&kiosk->way_back, &here, near_m, &place))
+		go_to(kiosk, &place);
+}
+
+void back_say(struct kiosk *kiosk)
+{
+	struct overlay *overlay = story_overlay(kiosk->shown.story);
+
+	if (overlay)
+		overlay_offer_back(overlay, kiosk->way_back.count > 0 ||
+						    overlay_picture(overlay) >= 0 ||
+						    overlay_choosing(overlay));
+}
