@@ -62,11 +62,16 @@ static void go_to(struct kiosk *kiosk, const struct place *place)
 		  place->searching ? ", search" : "");
 }
 
+static bool take(const struct kiosk *kiosk, struct way_back *way, struct place *out)
+{
+	const struct place here = place_of(kiosk);
+
+	return way_back_take(way, &here, NEAR_SHARE * navigator_diagonal_m(&kiosk->navigator), out);
+}
+
 void back_press(struct kiosk *kiosk)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
-	const struct place here = place_of(kiosk);
-	const float near_m = NEAR_SHARE * navigator_diagonal_m(&kiosk->navigator);
 	struct place place;
 
 	/* What lies over the rest goes first. */
@@ -74,16 +79,18 @@ void back_press(struct kiosk *kiosk)
 		overlay_show_picture(overlay, -1);
 	else if (overlay_choosing(overlay))
 		overlay_show_tours(overlay, false);
-	else if (way_back_take(&kiosk->way_back, &here, near_m, &place))
+	else if (take(kiosk, &kiosk->way_back, &place))
 		go_to(kiosk, &place);
 }
 
 void back_say(struct kiosk *kiosk)
 {
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct way_back rest = kiosk->way_back; /* what a press would leave of it is not wanted */
+	struct place place;
 
 	if (overlay)
-		overlay_offer_back(overlay, kiosk->way_back.count > 0 ||
-						    overlay_picture(overlay) >= 0 ||
-						    overlay_choosing(overlay));
+		overlay_offer_back(overlay, overlay_picture(overlay) >= 0 ||
+						    overlay_choosing(overlay) ||
+						    take(kiosk, &rest, &place));
 }

@@ -202,8 +202,10 @@ static bool halts_tour(enum overlay_action_kind kind)
 }
 
 /* The way back leads to before it. What only closes something is none. */
-static bool is_step(const struct overlay *overlay, enum overlay_action_kind kind)
+static bool is_step(const struct kiosk *kiosk, enum overlay_action_kind kind)
 {
+	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+
 	switch (kind) {
 	case OVERLAY_OPEN_CARD:
 	case OVERLAY_OPEN_PAGE:
@@ -215,7 +217,8 @@ static bool is_step(const struct overlay *overlay, enum overlay_action_kind kind
 	case OVERLAY_SEARCH:
 		return !overlay_searching(overlay);
 	case OVERLAY_TOURS:
-		return !overlay_choosing(overlay);
+		return !overlay_choosing(overlay) &&
+		       (kiosk->tour.state == TOUR_OFF || kiosk->tour.loops);
 	default:
 		return false;
 	}
@@ -226,7 +229,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	struct overlay *overlay = story_overlay(kiosk->shown.story);
 	const bool chose_language = overlay_choosing_language(overlay);
 
-	if (is_step(overlay, action->kind))
+	if (is_step(kiosk, action->kind))
 		back_note(kiosk);
 	if (halts_tour(action->kind))
 		guide_halt(kiosk);

@@ -50,6 +50,10 @@ static void a_place_that_is_here_is_passed_over(void **state)
 	turned.on_tour = true;
 	way_back_note(&way, &turned);
 	CHECK(way_back_take(&way, &start, 0.1f, &back) && back.on_tour);
+	way_back_note(&way, &start);
+	way_back_note(&way, &turned);
+	turned.eye_m[0] = 50; /* a tour leads the eye: what was open there counts */
+	CHECK(way_back_take(&way, &turned, 0.1f, &back) && !back.on_tour);
 }
 
 static void the_oldest_steps_are_forgotten(void **state)
