@@ -14,10 +14,10 @@ make --no-print-directory -j"$(nproc)" SAN=1 BUILD=build/asan build/asan/tests/t
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 small_release
-# A weak board, so that its budgets have something to hold back; large enough for reach mode and tools.
+# A weak board, so that its budgets have something to hold back; large enough for reach mode, tools and languages on the bar.
 cat >"$work/board.ini" <<'I'
 [panel]
-width_mm = 230
+width_mm = 270
 [render]
 triangles = 12000
 texture_mib = 24
