@@ -145,8 +145,114 @@ static void draw_section(cairo_t *c)
 	cairo_fill(c);
 }
 
+static void draw_close(cairo_t *c)
+{
+	line(c, -0.85, -0.85, 0.85, 0.85);
+	line(c, -0.85, 0.85, 0.85, -0.85);
+}
+
+static void draw_forward(cairo_t *c)
+{
+	cairo_move_to(c, -0.4, -0.8);
+	cairo_line_to(c, 0.4, 0);
+	cairo_line_to(c, -0.4, 0.8);
+}
+
+static void draw_back(cairo_t *c)
+{
+	cairo_move_to(c, 0.4, -0.8);
+	cairo_line_to(c, -0.4, 0);
+	cairo_line_to(c, 0.4, 0.8);
+}
+
+static void draw_search(cairo_t *c)
+{
+	ring(c, -0.2, -0.2, 0.68);
+	line(c, 0.3, 0.3, 0.9, 0.9);
+}
+
+static void draw_space(cairo_t *c)
+{
+	cairo_move_to(c, -1, 0);
+	cairo_line_to(c, -1, 0.45);
+	cairo_line_to(c, 1, 0.45);
+	cairo_line_to(c, 1, 0);
+}
+
+static void draw_large(cairo_t *c)
+{
+	draw_letter(c, -0.66, 0.3, 0.8);
+	draw_letter(c, 0.36, 0.58, 1.65);
+}
+
+static void draw_tour(cairo_t *c)
+{
+	cairo_move_to(c, -0.6, 0.7);
+	cairo_curve_to(c, 1.5, 0.6, -1.5, -0.35, 0.3, -0.55);
+	cairo_stroke(c);
+	ring(c, 0.62, -0.6, 0.3);
+	dot(c, -0.75, 0.7, 0.26);
+}
+
+static void draw_push(cairo_t *c)
+{
+	line(c, 0, -0.95, 0, 0.95);
+	arrow_head(c, 0, -0.95, 0, -1);
+	arrow_head(c, 0, 0.95, 0, 1);
+}
+
+static void draw_widen(cairo_t *c)
+{
+	draw_corners(c, 0.15, 0.9);
+}
+
+static void draw_narrow(cairo_t *c)
+{
+	draw_corners(c, 0.9, 0.15);
+}
+
+static void draw_return(cairo_t *c)
+{
+	line(c, 0.9, 0, -0.9, 0);
+	cairo_move_to(c, -0.15, -0.75);
+	cairo_line_to(c, -0.9, 0);
+	cairo_line_to(c, -0.15, 0.75);
+}
+
+static void draw_pause(cairo_t *c)
+{
+	line(c, -0.4, -0.7, -0.4, 0.7);
+	line(c, 0.4, -0.7, 0.4, 0.7);
+}
+
+static void draw_backspace(cairo_t *c)
+{
+	cairo_move_to(c, -1.2, 0);
+	cairo_line_to(c, -0.5, -0.75);
+	cairo_line_to(c, 1.1, -0.75);
+	cairo_line_to(c, 1.1, 0.75);
+	cairo_line_to(c, -0.5, 0.75);
+	cairo_close_path(c);
+	line(c, -0.1, -0.3, 0.5, 0.3);
+	line(c, -0.1, 0.3, 0.5, -0.3);
+}
+
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
 {
+	static void (*const drawings[])(cairo_t *) = {
+		[ICON_CLOSE] = draw_close,     [ICON_FORWARD] = draw_forward,
+		[ICON_BACK] = draw_back,       [ICON_HOME] = draw_home,
+		[ICON_HELP] = draw_help,       [ICON_TURN] = draw_turn,
+		[ICON_ZOOM] = draw_zoom,       [ICON_TAP] = draw_tap,
+		[ICON_SEARCH] = draw_search,   [ICON_SPACE] = draw_space,
+		[ICON_LARGE] = draw_large,     [ICON_REACH] = draw_seated,
+		[ICON_TOUR] = draw_tour,       [ICON_LIGHT] = draw_light,
+		[ICON_SECTION] = draw_section, [ICON_PUSH] = draw_push,
+		[ICON_WIDEN] = draw_widen,     [ICON_NARROW] = draw_narrow,
+		[ICON_LANGUAGES] = draw_globe, [ICON_RETURN] = draw_return,
+		[ICON_PAUSE] = draw_pause,     [ICON_BACKSPACE] = draw_backspace,
+	};
+
 	cairo_save(context);
 	cairo_translate(context, x, y);
 	cairo_scale(context, size / 2, size / 2);
@@ -154,101 +260,7 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 	cairo_set_line_cap(context, CAIRO_LINE_CAP_ROUND);
 	cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
 	cairo_new_path(context);
-	switch (icon) {
-	case ICON_CLOSE:
-		line(context, -0.85, -0.85, 0.85, 0.85);
-		line(context, -0.85, 0.85, 0.85, -0.85);
-		break;
-	case ICON_FORWARD:
-		cairo_move_to(context, -0.4, -0.8);
-		cairo_line_to(context, 0.4, 0);
-		cairo_line_to(context, -0.4, 0.8);
-		break;
-	case ICON_BACK:
-		cairo_move_to(context, 0.4, -0.8);
-		cairo_line_to(context, -0.4, 0);
-		cairo_line_to(context, 0.4, 0.8);
-		break;
-	case ICON_HOME:
-		draw_home(context);
-		break;
-	case ICON_HELP:
-		draw_help(context);
-		break;
-	case ICON_TURN:
-		draw_turn(context);
-		break;
-	case ICON_ZOOM:
-		draw_zoom(context);
-		break;
-	case ICON_TAP:
-		draw_tap(context);
-		break;
-	case ICON_SEARCH:
-		ring(context, -0.2, -0.2, 0.68);
-		line(context, 0.3, 0.3, 0.9, 0.9);
-		break;
-	case ICON_SPACE:
-		cairo_move_to(context, -1, 0);
-		cairo_line_to(context, -1, 0.45);
-		cairo_line_to(context, 1, 0.45);
-		cairo_line_to(context, 1, 0);
-		break;
-	case ICON_LARGE:
-		draw_letter(context, -0.66, 0.3, 0.8);
-		draw_letter(context, 0.36, 0.58, 1.65);
-		break;
-	case ICON_REACH:
-		draw_seated(context);
-		break;
-	case ICON_TOUR:
-		cairo_move_to(context, -0.6, 0.7);
-		cairo_curve_to(context, 1.5, 0.6, -1.5, -0.35, 0.3, -0.55);
-		cairo_stroke(context);
-		ring(context, 0.62, -0.6, 0.3);
-		dot(context, -0.75, 0.7, 0.26);
-		break;
-	case ICON_LIGHT:
-		draw_light(context);
-		break;
-	case ICON_SECTION:
-		draw_section(context);
-		break;
-	case ICON_PUSH:
-		line(context, 0, -0.95, 0, 0.95);
-		arrow_head(context, 0, -0.95, 0, -1);
-		arrow_head(context, 0, 0.95, 0, 1);
-		break;
-	case ICON_WIDEN:
-		draw_corners(context, 0.15, 0.9);
-		break;
-	case ICON_NARROW:
-		draw_corners(context, 0.9, 0.15);
-		break;
-	case ICON_LANGUAGES:
-		draw_globe(context);
-		break;
-	case ICON_RETURN:
-		line(context, 0.9, 0, -0.9, 0);
-		cairo_move_to(context, -0.15, -0.75);
-		cairo_line_to(context, -0.9, 0);
-		cairo_line_to(context, -0.15, 0.75);
-		break;
-	case ICON_PAUSE:
-		line(context, -0.4, -0.7, -0.4, 0.7);
-		line(context, 0.4, -0.7, 0.4, 0.7);
-		break;
-	case ICON_BACKSPACE:
-		cairo_move_to(context, -1.2, 0);
-		cairo_line_to(context, -0.5, -0.75);
-		cairo_line_to(context, 1.1, -0.75);
-		cairo_line_to(context, 1.1, 0.75);
-		cairo_line_to(context, -0.5, 0.75);
-		cairo_close_path(context);
-		line(context, -0.1, -0.3, 0.5, 0.3);
-		line(context, -0.1, 0.3, 0.5, -0.3);
-		break;
-	}
+	drawings[icon](context);
 	cairo_stroke(context);
 	cairo_restore(context);
 }
