@@ -9,6 +9,7 @@
 #include "app/update.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/safe_open.h"
 
 /* Of a release; root zero: none. */
 struct place {
@@ -52,9 +53,9 @@ static int find_trust(struct follow *follow, struct state *state)
 		return 0;
 	}
 	buffer_init(&pinned, METADATA_FILE_BYTES_MOST);
-	rc = buffer_read_file(&pinned, follow->options.trust_path);
+	rc = buffer_read_foreign(&pinned, follow->options.trust_path);
 	if (rc < 0)
-		why = strerror(-rc);
+		why = open_problem(rc);
 	else
 		rc = update_pin(&follow->update, buffer_bytes(&pinned), &why);
 	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned)) < 0)
