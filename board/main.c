@@ -77,8 +77,19 @@ static void usage(const char *wrong)
 	exit(2);
 }
 
+/* A name that is passed on to other programs, and could say more to them than a name. */
+static void check_name(const char *name)
+{
+	for (const char *c = name; *c; c++)
+		if ((unsigned char)*c < 0x20 || *c == 0x7f || *c == '"' || *c == '\\')
+			usage("a folder's or file's name has quotes, backslashes or control "
+			      "characters; rename it");
+}
+
 static void take_option(struct command *command, int option)
 {
+	if (option == OPTION_CONF || option == OPTION_OUT || option == OPTION_BOARDS)
+		check_name(optarg);
 	switch (option) {
 	case OPTION_CONF:
 		if (command->count == CONFS_MOST)

@@ -44,7 +44,7 @@ enum {
 static const struct setting settings[] = {
 	{ .section = "terminal",
 	  .name = "name",
-	  .expects = "a name of up to 63 bytes, such as East gate",
+	  .expects = "a name of up to 63 bytes without control characters, such as East gate",
 	  .set = terminal_set_name,
 	  .free_text = true },
 	{ .section = "terminal",
@@ -140,7 +140,7 @@ static const struct setting settings[] = {
 	  .set = terminal_set_ntp },
 	[AT_SSID] = { .section = "wifi",
 		      .name = "ssid",
-		      .expects = "a network's name of 1 to 32 bytes",
+		      .expects = "a network's name of 1 to 32 bytes without control characters",
 		      .set = terminal_set_ssid,
 		      .free_text = true },
 	[AT_PASSPHRASE] = { .section = "wifi",

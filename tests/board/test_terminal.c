@@ -126,6 +126,8 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "terminal",
 		  "name = 0123456789012345678901234567890123456789012345678901234567890123",
 		  "up to 63 bytes" },
+		{ "terminal", "name = \"East\tgate\"", "without control characters" },
+		{ "terminal", "name = East\xc2\x85gate", "without control characters" },
 		{ "release", "ca = keys/ca.pem", "without folders" },
 		{ "release", "ca = ..", "without folders" },
 		{ "release", "ca = -x", "without folders" },
@@ -290,6 +292,8 @@ static void knows_names_and_passphrases_of_radio_networks(void **state)
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase="
 		      "0123456789abcdef0123456789ABCDEF0123456789abcdef0123456789abcdef\n");
 	CHECK(faults.count == 0 && strlen(terminal.passphrase) == 64);
+	parse(RELEASE "[wifi]\ncountry=DE\nssid = \"East\tgate\"\n");
+	says_only("line 6: ssid must be a network's name of 1 to 32 bytes without control");
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase = Straße 12\n");
 	says_only("line 7: passphrase must be 8 to 63");
 	CHECK(!strstr(faults.list[0].text, "Stra")); /* it goes to logs and onto the panel */
@@ -417,6 +421,8 @@ static void waits_for_no_pipe_and_follows_no_link(void **state)
 	FILE *file;
 
 	(void)state;
+	parse("[release]\nurl = https://a.example/\ntrust = ../../dev/zero\n");
+	says_only("line 3: trust must be the name of a file beside this one, without folders");
 	alarm(60); /* what hangs ends the test */
 	CHECK(mkdtemp(folder));
 	snprintf(path, sizeof(path), "%s/gopura.conf", folder);
