@@ -44,11 +44,11 @@ group=gopura-conf
 grep -q "^group=.*\^$group:" image/init || { echo "image/init: /efi is not of the group $group"; failed=1; }
 grep -q "^g $group " image/root/usr/lib/sysusers.d/gopura.conf || { echo "sysusers.d: no group $group"; failed=1; }
 ! grep -q "^m .* $group$" image/root/usr/lib/sysusers.d/gopura.conf || { echo "sysusers.d: $group is for units to name, not for users"; failed=1; }
-for unit in systemd/*.service; do
-	has=no
-	! grep -qE "^(Supplementary)?Groups?=.*\b$group\b" "$unit" || has=yes
-	case ${unit##*/} in gopura-kiosk.service | gopura-safe.service) wants=yes ;; *) wants=no ;; esac
-	[ "$has" = "$wants" ] || { echo "$unit: in the group $group: $has, not $wants"; failed=1; }
+for unit in kiosk safe fetch; do
+	has=no wants=yes
+	! grep -qE "^(Supplementary)?Groups?=.*\b$group\b" "systemd/gopura-$unit.service" || has=yes
+	[ "$unit" != fetch ] || wants=no
+	[ "$has" = "$wants" ] || { echo "gopura-$unit.service: in the group $group: $has, not $wants"; failed=1; }
 done
 grep -qE '^InaccessiblePaths=.*-?/efi( |$)' systemd/gopura-fetch.service || { echo "gopura-fetch.service: it sees /efi"; failed=1; }
 # The self-test looks at the terminal that will run: both have the same options.
