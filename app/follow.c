@@ -9,6 +9,7 @@
 #include "app/update.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/safe_open.h"
 
 /* Of a release; root zero: none. */
 struct place {
@@ -23,7 +24,8 @@ struct follow {
 	struct update update;
 	struct place shown, before; /* remembered; the one that worked before it */
 	bool on_trial;              /* shown was not seen to work yet */
-	int64_t time_floor_s;
+	struct buffer shown_file;   /* its release.json; empty: not known */
+	uint64_t writing;           /* sequence that the keeper was asked to write last; 0: done */
 	const char *said; /* of a refusal, in the log; static; "": none since a good release */
 	struct refusal refusal;
 	bool stamp_refused;  /* the last timestamp.json was: a refused release.json is a consequence
@@ -52,12 +54,12 @@ static int find_trust(struct follow *follow, struct state *state)
 		return 0;
 	}
 	buffer_init(&pinned, METADATA_FILE_BYTES_MOST);
-	rc = buffer_read_file(&pinned, follow->options.trust_path);
+	rc = buffer_read_foreign(&pinned, follow->options.trust_path);
 	if (rc < 0)
-		why = strerror(-rc);
+		why = open_problem(rc);
 	else
 		rc = update_pin(&follow->update, buffer_bytes(&pinned), &why);
-	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned)) < 0)
+	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned), STATE_CLEAR_NOTHING) < 0)
 		log_warn("app", "the trust root could not be remembered");
 	if (rc < 0)
 		log_error("app", "%s: %s", follow->options.trust_path, why);
@@ -103,9 +105,11 @@ static int read_state(struct follow *follow, struct state *state)
 
 	judge_trial(follow, state);
 	follow->update.sequence_floor = state_sequence_floor(state);
-	follow->time_floor_s = state_time_floor_s(state);
-	if (state_release(state, &release) == 0)
+	follow->update.time_floor_s = state_time_floor_s(state);
+	if (state_release(state, &release) == 0) {
 		follow->shown = place_of(&release);
+		buffer_put(&follow->shown_file, release.file.data, release.file.size);
+	}
 	if (state_previous(state, &release) == 0)
 		follow->before = place_of(&release);
 	follow->on_trial = state_tries(state) > 0;
@@ -128,6 +132,7 @@ int follow_create(struct follow **out, const struct follow_options *options)
 	follow->options = *options;
 	follow->said = "";
 	buffer_init(&follow->next_file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&follow->shown_file, METADATA_FILE_BYTES_MOST);
 	rc = state_create(&state, options->state_path);
 	if (rc == 0)
 		rc = read_state(follow, state);
@@ -150,6 +155,7 @@ void follow_destroy(struct follow *follow)
 		return;
 	keeper_destroy(follow->keeper);
 	buffer_finish(&follow->next_file);
+	buffer_finish(&follow->shown_file);
 	free(follow);
 }
 
@@ -164,7 +170,7 @@ void follow_start(struct follow *follow)
 /* The later of clock and floor; 0 where the clock is not known to be set. */
 static struct update_time time_now(const struct follow *follow)
 {
-	const int64_t now_s = clock_wall_s(), floor_s = follow->time_floor_s;
+	const int64_t now_s = clock_wall_s(), floor_s = follow->update.time_floor_s;
 
 	if (!clock_wall_is_set())
 		return (struct update_time){ 0 };
@@ -195,6 +201,47 @@ static void begin_next(struct follow *follow, const struct release *release, str
 	follow->options.begin(follow->options.data, release->root, release->root_bytes);
 }
 
+/* What was being brought was signed by a key that is trusted no more: back to what is shown. */
+static void drop_distrusted(struct follow *follow)
+{
+	struct release release;
+	const char *why = "";
+
+	if (follow->next.sequence == 0 ||
+	    release_decode(&release, &follow->update.trust, buffer_bytes(&follow->next_file),
+			   &why) == 0)
+		return;
+	note(follow, follow->next.sequence, why);
+	follow->next = (struct release){ 0 };
+	if (!hash_is_zero(follow->shown.root))
+		follow->options.begin(follow->options.data, follow->shown.root,
+				      follow->shown.root_bytes);
+}
+
+/* Root N+1. What was trusted under the keys that it takes away goes with them, in memory and, in
+ * one change with the root, on disk; what is shown stays. */
+static int take_root(struct follow *follow, struct bytes bytes, const char **why)
+{
+	const uint64_t sequence_floor = follow->update.sequence_floor;
+	const int64_t time_floor_s = follow->update.time_floor_s;
+	enum state_clear clear = STATE_CLEAR_NOTHING;
+	int rc = update_root(&follow->update, bytes, buffer_bytes(&follow->shown_file), why);
+
+	if (rc < 0)
+		return rc;
+	if (follow->update.sequence_floor < sequence_floor)
+		clear |= STATE_CLEAR_SEQUENCE_FLOOR;
+	if (follow->update.time_floor_s < time_floor_s)
+		clear |= STATE_CLEAR_TIME_FLOOR;
+	if (clear != STATE_CLEAR_NOTHING)
+		log_info("app", "root %u takes keys away: what they had set is cleared",
+			 follow->update.trust.version);
+	if (keeper_set_trust(follow->keeper, bytes, clear) < 0)
+		log_warn("app", "the new trust root could not be remembered");
+	drop_distrusted(follow);
+	return 0;
+}
+
 void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes,
 		 enum meta_source source)
 {
@@ -205,6 +252,7 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 	};
 	const char *const name = names[source][role];
 	const struct update_time time = time_now(follow);
+	const int64_t time_floor_s = follow->update.time_floor_s;
 	struct release release;
 	const char *why = "";
 	int rc = 0;
@@ -213,12 +261,14 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 	case META_ROOT:
 		if (version != follow->update.trust.version + 1)
 			return; /* known already, or not to be judged yet */
-		rc = update_root(&follow->update, bytes, &why);
-		if (rc == 0 && keeper_set_trust(follow->keeper, bytes) < 0)
-			log_warn("app", "the new trust root could not be remembered");
+		if (follow->writing)
+			return; /* asked for again; what is written now may be an old key's */
+		rc = take_root(follow, bytes, &why);
 		break;
 	case META_TIMESTAMP:
 		rc = update_timestamp(&follow->update, bytes, time, &why);
+		if (follow->update.time_floor_s > time_floor_s)
+			keeper_raise_time_floor(follow->keeper, follow->update.time_floor_s);
 		break;
 	case META_RELEASE:
 		rc = update_release(&follow->update, bytes, time, &release, &why);
@@ -236,10 +286,6 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 		follow->stamp_refused = rc < 0;
 	if (rc >= 0 && role == META_RELEASE)
 		follow->said = "";
-	if (rc >= 0 && time.now_s > follow->time_floor_s) {
-		follow->time_floor_s = time.now_s;
-		keeper_raise_time_floor(follow->keeper, time.now_s);
-	}
 }
 
 void follow_remember(struct follow *follow, struct hash root)
@@ -259,11 +305,15 @@ void follow_remember(struct follow *follow, struct hash root)
 	rc = keeper_activate(follow->keeper, &release);
 	if (rc < 0)
 		follow->options.remembered(follow->options.data, root, rc);
+	else
+		follow->writing = release.sequence;
 }
 
 uint64_t follow_sequence(const struct follow *follow)
 {
-	return follow->update.sequence_floor;
+	/* The floor may have been cleared since. */
+	return follow->update.sequence_floor > 0 ? follow->update.sequence_floor
+						 : follow->shown.sequence;
 }
 
 const struct refusal *follow_refusal(const struct follow *follow)
@@ -285,8 +335,11 @@ static void take_answer(struct follow *follow, const struct keeper_answer *answe
 		follow->on_trial = true;
 	}
 	follow->shown = (struct place){ answer->root, answer->root_bytes, answer->sequence };
-	if (follow->next.sequence == answer->sequence)
+	buffer_clear(&follow->shown_file);
+	if (follow->next.sequence == answer->sequence) {
+		buffer_put(&follow->shown_file, follow->next_file.data, follow->next_file.size);
 		follow->next = (struct release){ 0 };
+	}
 }
 
 bool follow_next_on_stick(const struct follow *follow)
@@ -318,6 +371,7 @@ void follow_fall_back(struct follow *follow, const char *why)
 		return;
 	note(follow, follow->shown.sequence, why);
 	follow->shown = follow->before;
+	buffer_clear(&follow->shown_file);
 	follow->before = (struct place){ 0 };
 	follow->on_trial = false;
 	follow->next = (struct release){ 0 }; /* it gives way */
@@ -337,6 +391,8 @@ int follow_dispatch(struct follow *follow)
 
 	if (!keeper_take(follow->keeper, &answer))
 		return 0;
+	if (answer.sequence == follow->writing)
+		follow->writing = 0;
 	if (answer.rc < 0) {
 		log_error("app", "release %llu could not be remembered: %s",
 			  (unsigned long long)answer.sequence, strerror(-answer.rc));

@@ -15,6 +15,7 @@ struct wish {
 	bool proof_wanted, return_wanted;
 	struct state_release release;      /* its file: release_file */
 	struct buffer release_file, trust; /* owned */
+	enum state_clear clear;            /* with the trust root */
 	int64_t time_floor_s;              /* 0: none */
 };
 
@@ -68,7 +69,8 @@ static void answer(struct keeper *keeper, const struct state_release *release, i
 /* The trust root first: the release may be signed by its keys. */
 static void fulfil(struct keeper *keeper, struct wish *wish)
 {
-	if (wish->trust_wanted && state_set_trust(keeper->state, buffer_bytes(&wish->trust)) < 0)
+	if (wish->trust_wanted &&
+	    state_set_trust(keeper->state, buffer_bytes(&wish->trust), wish->clear) < 0)
 		log_warn("app", "the trust root could not be remembered");
 	/* Both are about the release before the one that is wanted now. */
 	if (wish->proof_wanted && state_prove(keeper->state) < 0)
@@ -185,7 +187,7 @@ int keeper_activate(struct keeper *keeper, const struct state_release *release)
 	return rc;
 }
 
-int keeper_set_trust(struct keeper *keeper, struct bytes file)
+int keeper_set_trust(struct keeper *keeper, struct bytes file, enum state_clear clear)
 {
 	struct wish *wish = &keeper->wish;
 	int rc;
@@ -193,6 +195,9 @@ int keeper_set_trust(struct keeper *keeper, struct bytes file)
 	pthread_mutex_lock(&keeper->lock);
 	rc = copy_file(&wish->trust, file);
 	wish->trust_wanted = rc == 0;
+	wish->clear |= clear;
+	if (clear & STATE_CLEAR_TIME_FLOOR)
+		wish->time_floor_s = 0; /* what was asked for before was an old key's */
 	pthread_cond_signal(&keeper->asked);
 	pthread_mutex_unlock(&keeper->lock);
 	return rc;

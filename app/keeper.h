@@ -22,13 +22,15 @@ void keeper_destroy(struct keeper *keeper);
 
 /* Answered by keeper_take, unless a later release was asked for before this one was written. */
 must_check int keeper_activate(struct keeper *keeper, const struct state_release *release);
-/* Failures are logged: the trust root in use stays in use without a disk, too. */
-must_check int keeper_set_trust(struct keeper *keeper, struct bytes file);
+/* clear: which floors fall with the old root, in one change with it. Failures are logged: the trust
+ * root in use stays in use without a disk, too. Not while keeper_activate waits for its answer:
+ * that release would be written afterwards, and raise the floor once more. */
+must_check int keeper_set_trust(struct keeper *keeper, struct bytes file, enum state_clear clear);
 /* The release that was remembered last works, or does not: state_prove, state_fall_back. Failures
  * are logged: the next start then tries again. */
 void keeper_prove(struct keeper *keeper);
 void keeper_fall_back(struct keeper *keeper);
-/* Wall clock; never lowers it, and does not wait for the disk. */
+/* Never lowers it, and does not wait for the disk. */
 void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s);
 
 /* Readable when keeper_take has something. */

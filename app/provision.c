@@ -8,6 +8,7 @@
 
 #include "app/update.h"
 #include "base/log.h"
+#include "base/safe_open.h"
 
 /* ---- from the file */
 
@@ -46,11 +47,11 @@ static const char *checked_trust(struct provision *provision)
 	if (!path)
 		return NULL;
 	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	rc = buffer_read_file(&file, path);
+	rc = buffer_read_foreign(&file, path);
 	if (rc == 0)
 		rc = update_pin(&update, buffer_bytes(&file), &why);
 	else
-		why = strerror(-rc);
+		why = open_problem(rc);
 	buffer_finish(&file);
 	if (rc == 0)
 		return path;

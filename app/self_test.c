@@ -17,6 +17,7 @@
 #include "app/kiosk.h"
 #include "app/provision.h"
 #include "base/clock.h"
+#include "base/safe_open.h"
 #include "format/metadata.h"
 #include "render/gl.h"
 #include "storage/state.h"
@@ -368,10 +369,10 @@ static void check_trust(struct self_test *test)
 		return;
 	}
 	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	rc = buffer_read_file(&file, path);
+	rc = buffer_read_foreign(&file, path);
 	if (rc < 0)
 		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", path,
-		    strerror(-rc));
+		    open_problem(rc));
 	else
 		say_trust(test, path, buffer_bytes(&file));
 	buffer_finish(&file);

@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/safe_open.h"
+
 void buffer_init(struct buffer *buffer, size_t ceiling_bytes)
 {
 	*buffer = (struct buffer){ .ceiling = ceiling_bytes };
@@ -213,16 +215,20 @@ void reader_string(struct reader *reader, char *out, size_t out_bytes)
 	out[text.size] = '\0';
 }
 
-int buffer_read_file(struct buffer *out, const char *path)
+int buffer_read_fd(struct buffer *out, int fd)
 {
-	int fd = open(path, O_RDONLY | O_CLOEXEC);
 	uint8_t chunk[65536];
+	struct stat info;
 	ssize_t got;
 	int rc;
 
-	if (fd < 0)
-		return -errno;
 	buffer_clear(out);
+	if (fd < 0)
+		return fd;
+	if (fstat(fd, &info) == 0 && (uint64_t)info.st_size > out->ceiling) {
+		close(fd);
+		return -EFBIG;
+	}
 	while ((got = read(fd, chunk, sizeof(chunk))) != 0) {
 		if (got < 0 && errno == EINTR)
 			continue;
@@ -235,6 +241,29 @@ int buffer_read_file(struct buffer *out, const char *path)
 	rc = got < 0 ? -errno : out->error;
 	close(fd);
 	return rc;
+}
+
+int buffer_read_file(struct buffer *out, const char *path)
+{
+	return buffer_read_fd(out, open_regular(path));
+}
+
+int buffer_read_beneath(struct buffer *out, const char *folder, const char *name)
+{
+	return buffer_read_fd(out, open_beneath(folder, name));
+}
+
+int buffer_read_foreign(struct buffer *out, const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	char folder[BYTES_PATH_MOST];
+
+	if (!slash)
+		return buffer_read_beneath(out, "", path);
+	if (slash - path + 1 >= BYTES_PATH_MOST)
+		return -ENAMETOOLONG;
+	snprintf(folder, sizeof(folder), "%.*s", (int)(slash - path) + 1, path);
+	return buffer_read_beneath(out, folder, slash + 1);
 }
 
 static int write_all(int fd, struct bytes bytes)

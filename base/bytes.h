@@ -68,8 +68,16 @@ struct bytes reader_bytes(struct reader *reader, size_t size);
 /* Into out, terminated; fails where the text does not fit in out_bytes or holds a zero byte. */
 void reader_string(struct reader *reader, char *out, size_t out_bytes);
 
-/* Whole file into *out (cleared first). Negative errno, -EFBIG past the buffer's ceiling. */
+/* Whole file into *out (cleared first). Negative errno, -EFBIG past the buffer's ceiling. Only
+ * regular files are read (base/safe_open.h has the errors and their words): a path that we or the
+ * operator chose; */
 must_check int buffer_read_file(struct buffer *out, const char *path);
+/* a name from a foreign file or medium, below a folder that we trust, no links; */
+must_check int buffer_read_beneath(struct buffer *out, const char *folder, const char *name);
+/* a path whose folder we trust, and whose last component is foreign. */
+must_check int buffer_read_foreign(struct buffer *out, const char *path);
+/* As far as it reads; fd is taken, or a negative errno that is given back. */
+must_check int buffer_read_fd(struct buffer *out, int fd);
 /* size bytes at a place of a file; -EBADMSG: it ends before. */
 must_check int bytes_read_at(int fd, void *to, size_t size, uint64_t at);
 enum { BYTES_PATH_MOST = 4096 };

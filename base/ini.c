@@ -6,8 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include <ini.h>
+
+#include "base/safe_open.h"
 
 enum { KEYS_MOST = 128, LINE_MOST = 196 /* what inih of Debian holds, less its own bytes */ };
 
@@ -138,11 +141,16 @@ int ini_read(const char *path, const struct ini_key *keys, size_t key_count, voi
 		.target = target,
 		.fault = fault,
 	};
+	const int fd = open_regular(path);
 	int bad_line;
 
-	reading.file = fopen(path, "re");
-	if (!reading.file)
-		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
+	if (fd < 0)
+		return fault_set(fault, fd, "%s: %s", path, open_problem(fd));
+	reading.file = fdopen(fd, "r");
+	if (!reading.file) {
+		close(fd);
+		return fault_set(fault, -ENOMEM, "%s: %s", path, strerror(ENOMEM));
+	}
 	bad_line = ini_parse_stream(next_line, &reading, handle, &reading);
 	if (ferror(reading.file) && reading.rc == 0)
 		reading.rc = fault_set(fault, -EIO, "%s: it cannot be read", path);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "base/safe_open.h"
 #include "board/grow.h"
 #include "board/setup.h"
 
@@ -14,6 +15,7 @@ static const char help[] =
 	"\n"
 	"  gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
 	"  gopura-setup --check FILE [--boards DIR]\n"
+	"  gopura-setup --sum FILE\n"
 	"  gopura-setup --grow DISK --partition NAME --mounted DIR\n"
 	"\n"
 	"  --conf FILE    gopura.conf; given again: the first file that is there; where none is,\n"
@@ -22,6 +24,8 @@ static const char help[] =
 	"                 are written here, for units to link in\n"
 	"  --boards DIR   profiles that gopura.conf may name (/usr/share/gopura/board)\n"
 	"  --check FILE   only says what is wrong with the file, and ends with 1 if anything is\n"
+	"  --sum FILE     prints a checksum over the file and the files that it names: two that\n"
+	"                 have the same one mean the same\n"
 	"  --grow DISK    the partition NAME, the disk's last, becomes as large as the disk allows,\n"
 	"                 and so does its ext4 that is mounted at DIR\n"
 	"  --version, --help\n"
@@ -35,7 +39,7 @@ enum { CONFS_MOST = 4 };
 struct command {
 	const char *confs[CONFS_MOST];
 	unsigned count;
-	const char *out, *check, *boards;
+	const char *out, *check, *sum, *boards;
 	const char *grow, *partition, *mounted;
 	bool boards_asked;
 };
@@ -45,6 +49,7 @@ enum {
 	OPTION_OUT,
 	OPTION_BOARDS,
 	OPTION_CHECK,
+	OPTION_SUM,
 	OPTION_GROW,
 	OPTION_PARTITION,
 	OPTION_MOUNTED,
@@ -57,6 +62,7 @@ static const struct option long_options[] = {
 	{ "out", required_argument, NULL, OPTION_OUT },
 	{ "boards", required_argument, NULL, OPTION_BOARDS },
 	{ "check", required_argument, NULL, OPTION_CHECK },
+	{ "sum", required_argument, NULL, OPTION_SUM },
 	{ "grow", required_argument, NULL, OPTION_GROW },
 	{ "partition", required_argument, NULL, OPTION_PARTITION },
 	{ "mounted", required_argument, NULL, OPTION_MOUNTED },
@@ -71,8 +77,19 @@ static void usage(const char *wrong)
 	exit(2);
 }
 
+/* A name that is passed on to other programs, and could say more to them than a name. */
+static void check_name(const char *name)
+{
+	for (const char *c = name; *c; c++)
+		if ((unsigned char)*c < 0x20 || *c == 0x7f || *c == '"' || *c == '\\')
+			usage("a folder's or file's name has quotes, backslashes or control "
+			      "characters; rename it");
+}
+
 static void take_option(struct command *command, int option)
 {
+	if (option == OPTION_CONF || option == OPTION_OUT || option == OPTION_BOARDS)
+		check_name(optarg);
 	switch (option) {
 	case OPTION_CONF:
 		if (command->count == CONFS_MOST)
@@ -88,6 +105,9 @@ static void take_option(struct command *command, int option)
 		break;
 	case OPTION_CHECK:
 		command->check = optarg;
+		break;
+	case OPTION_SUM:
+		command->sum = optarg;
 		break;
 	case OPTION_GROW:
 		command->grow = optarg;
@@ -120,15 +140,18 @@ static void parse(struct command *command, int argc, char **argv)
 	if (command->grow || command->partition || command->mounted) {
 		if (!command->grow || !command->partition || !command->mounted)
 			usage("--grow, --partition and --mounted go together");
-		if (command->check || command->count > 0 || command->out)
+		if (command->check || command->sum || command->count > 0 || command->out)
 			usage("--grow stands alone");
 		return;
 	}
-	if (command->check && (command->count > 0 || command->out))
-		usage("--check stands alone");
-	if (!command->check && command->count == 0)
+	if (command->check || command->sum) {
+		if ((command->check && command->sum) || command->count > 0 || command->out)
+			usage(command->check ? "--check stands alone" : "--sum stands alone");
+		return;
+	}
+	if (command->count == 0)
 		usage("--conf is missing");
-	if (!command->check && !command->out)
+	if (!command->out)
 		usage("--out is missing");
 }
 
@@ -150,6 +173,18 @@ static int check(const struct command *command)
 	if (faults.count == 0)
 		printf("%s: no faults\n", command->check);
 	return faults.count > 0;
+}
+
+static int print_sum(const char *path)
+{
+	char sum[TERMINAL_SUM_BYTES];
+	const int rc = terminal_sum(path, sum);
+
+	if (rc < 0)
+		fprintf(stderr, "gopura-setup: %s: %s\n", path, open_problem(rc));
+	else
+		puts(sum);
+	return rc < 0;
 }
 
 static int apply(const struct command *command)
@@ -180,5 +215,7 @@ int main(int argc, char **argv)
 	parse(&command, argc, argv);
 	if (command.grow)
 		return grow(command.grow, command.partition, command.mounted) < 0;
+	if (command.sum)
+		return print_sum(command.sum);
 	return command.check ? check(&command) : apply(&command);
 }

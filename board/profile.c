@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "base/safe_open.h"
 #include "board/settings.h"
 
 const struct profile profile_default = {
@@ -84,7 +85,7 @@ int profile_read(struct profile *out, const char *path)
 		settings_read(buffer_bytes(&file), settings, ARRAY_COUNT(settings), out, NULL,
 			      &faults);
 	else
-		log_error("board", "board bug: %s: %s", path, strerror(-rc));
+		log_error("board", "board bug: %s: %s", path, open_problem(rc));
 	buffer_finish(&file);
 	for (unsigned i = 0; i < faults.count; i++)
 		log_error("board", "board bug: %s, %s (see docs/board.md)", path,

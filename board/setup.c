@@ -12,6 +12,7 @@
 
 #include "base/bytes.h"
 #include "base/log.h"
+#include "base/safe_open.h"
 
 enum { FILE_MOST = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
 
@@ -93,22 +94,50 @@ static void empty_folder(struct writing *writing, const char *name)
 
 /* ---- what the programs are started with */
 
-/* gopura.conf's folder, as a path that holds whatever folder a unit starts in. */
-static void conf_folder(const struct setup *setup, char out[PATH_MAX])
+/* May stand in a file of the service manager's, as one word and without an escape. */
+static bool is_plain_word(const char *text)
 {
-	char whole[PATH_MAX];
-	char *slash;
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				    "0123456789-_./+,:=@";
 
-	if (!realpath(setup->conf_path, whole))
-		snprintf(whole, sizeof(whole), "%s", setup->conf_path);
-	slash = strrchr(whole, '/');
-	snprintf(out, PATH_MAX, "%.*s", slash ? (int)(slash - whole) : 0, whole);
+	return text[strspn(text, plain)] == '\0';
+}
+
+/* The authority that gopura.conf names, copied: the stick that it came from may go. Its whole path,
+ * which holds whatever folder a unit starts in, into out. False: there is none. */
+static bool copy_authority(struct writing *writing, char out[PATH_MAX])
+{
+	const struct setup *setup = writing->setup;
+	struct buffer file;
+	char path[PATH_MAX];
+	int rc;
+
+	folder(writing, "conf", 0755);
+	path_of(writing, "conf/ca.pem", path);
+	if (!setup->terminal->ca[0] || !setup->conf_path) {
+		unlink(path);
+		return false;
+	}
+	buffer_init(&file, TERMINAL_FILE_BYTES_MAX);
+	rc = terminal_read_beside(&file, setup->conf_path, setup->terminal->ca);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	if (rc == 0 && !realpath(path, out))
+		rc = -errno;
+	/* Everything else of the set-up goes on: without it the fetcher trusts the system's. */
+	if (rc < 0)
+		log_error("setup", "%s: %s", setup->terminal->ca, open_problem(rc));
+	else if (!is_plain_word(out))
+		log_error("setup", "%s: choose an --out without spaces, quotes and the like", out);
+	return rc == 0 && is_plain_word(out);
 }
 
 static void write_fetcher(struct writing *writing)
 {
 	const struct terminal *t = writing->setup->terminal;
-	char beside[PATH_MAX];
+	char authority[PATH_MAX];
+	const bool has_authority = copy_authority(writing, authority);
 
 	if (t->release_url[0])
 		put(writing, "RELEASE_URL=\"%s\"\n", t->release_url);
@@ -117,10 +146,8 @@ static void write_fetcher(struct writing *writing)
 		put(writing, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)
 		put(writing, " --rate-limit %u", t->rate_limit_kib);
-	if (t->ca[0]) {
-		conf_folder(writing->setup, beside);
-		put(writing, " --ca %s/%s", beside, t->ca);
-	}
+	if (has_authority)
+		put(writing, " --ca %s", authority);
 	put(writing, "\"\n");
 	finish_file(writing, "fetch.env");
 }

@@ -11,6 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <sodium.h>
+
+#include "base/safe_open.h"
 #include "board/terminal_values.h"
 
 const struct terminal terminal_default = {
@@ -41,7 +44,7 @@ enum {
 static const struct setting settings[] = {
 	{ .section = "terminal",
 	  .name = "name",
-	  .expects = "a name of up to 63 bytes, such as East gate",
+	  .expects = "a name of up to 63 bytes without control characters, such as East gate",
 	  .set = terminal_set_name,
 	  .free_text = true },
 	{ .section = "terminal",
@@ -137,7 +140,7 @@ static const struct setting settings[] = {
 	  .set = terminal_set_ntp },
 	[AT_SSID] = { .section = "wifi",
 		      .name = "ssid",
-		      .expects = "a network's name of 1 to 32 bytes",
+		      .expects = "a network's name of 1 to 32 bytes without control characters",
 		      .set = terminal_set_ssid,
 		      .free_text = true },
 	[AT_PASSPHRASE] = { .section = "wifi",
@@ -241,17 +244,37 @@ void terminal_parse(struct terminal *out, struct bytes text, struct faults *faul
 	parse(out, text, lines, faults);
 }
 
-/* A file that is named and not there is as good as not named. */
-static void look_beside(const char *path, char *name, unsigned line, struct faults *faults)
+int terminal_read_beside(struct buffer *out, const char *path, const char *name)
 {
 	const char *slash = strrchr(path, '/');
-	char beside[PATH_MAX];
+	char folder[PATH_MAX];
 
-	snprintf(beside, sizeof(beside), "%.*s%s", slash ? (int)(slash - path) + 1 : 0, path, name);
-	if (!*name || access(beside, R_OK) == 0)
+	if (slash && slash - path + 1 >= PATH_MAX)
+		return -ENAMETOOLONG;
+	snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
+	return buffer_read_beneath(out, folder, name);
+}
+
+/* A file that is named and cannot be read is as good as not named. */
+static void look_beside(const char *path, char *name, unsigned line, struct faults *faults)
+{
+	const char *slash = strrchr(path, '/'), *conf = slash ? slash + 1 : path;
+	struct buffer file;
+	int rc;
+
+	if (!*name)
 		return;
-	faults_add(faults, line, "there is no file %s beside %s; copy it there", name,
-		   slash ? slash + 1 : path);
+	buffer_init(&file, TERMINAL_FILE_BYTES_MAX);
+	rc = terminal_read_beside(&file, path, name);
+	buffer_finish(&file);
+	if (rc == 0)
+		return;
+	if (rc == -ENOENT)
+		faults_add(faults, line, "there is no file %s beside %s; copy it there", name,
+			   conf);
+	else
+		faults_add(faults, line, "%s beside %s cannot be read: %s", name, conf,
+			   open_problem(rc));
 	*name = '\0';
 }
 
@@ -299,7 +322,7 @@ int terminal_read(struct terminal *out, const char *path, const char *boards, st
 
 	*out = terminal_default;
 	buffer_init(&file, SETTINGS_FILE_MOST);
-	rc = buffer_read_file(&file, path);
+	rc = buffer_read_foreign(&file, path);
 	if (rc == 0) {
 		parse(out, buffer_bytes(&file), lines, faults);
 		look_beside(path, out->trust, lines[AT_TRUST], faults);
@@ -307,10 +330,49 @@ int terminal_read(struct terminal *out, const char *path, const char *boards, st
 		if (boards)
 			look_for_profile(boards, out->board, lines[AT_BOARD], faults);
 	} else if (rc != -ENOENT) {
-		faults_add(faults, 0, "the file cannot be read: %s", strerror(-rc));
+		faults_add(faults, 0, "the file cannot be read: %s", open_problem(rc));
 	}
 	buffer_finish(&file);
 	return rc == -ENOENT ? rc : 0;
+}
+
+/* With its length in front, so that what moves from one file to the next changes the checksum. */
+static void sum_file(crypto_generichash_state *sum, const struct buffer *file)
+{
+	uint8_t length[8];
+
+	for (size_t i = 0; i < sizeof(length); i++)
+		length[i] = (uint8_t)((uint64_t)file->size >> 8 * i);
+	crypto_generichash_update(sum, length, sizeof(length));
+	crypto_generichash_update(sum, file->data, file->size);
+}
+
+int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES])
+{
+	struct terminal terminal;
+	struct faults faults = { .count = 0 };
+	const char *const names[] = { terminal.trust, terminal.ca };
+	uint8_t digest[(TERMINAL_SUM_BYTES - 1) / 2];
+	crypto_generichash_state sum;
+	struct buffer file;
+	int rc;
+
+	crypto_generichash_init(&sum, NULL, 0, sizeof(digest));
+	buffer_init(&file, TERMINAL_FILE_BYTES_MAX);
+	rc = buffer_read_foreign(&file, path);
+	if (rc == 0) {
+		sum_file(&sum, &file);
+		terminal_parse(&terminal, buffer_bytes(&file), &faults);
+		for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+			if (!*names[i] || terminal_read_beside(&file, path, names[i]) < 0)
+				buffer_clear(&file);
+			sum_file(&sum, &file);
+		}
+		crypto_generichash_final(&sum, digest, sizeof(digest));
+		sodium_bin2hex(out, TERMINAL_SUM_BYTES, digest, sizeof(digest));
+	}
+	buffer_finish(&file);
+	return rc;
 }
 
 void terminal_host_name(const struct terminal *terminal, char out[TERMINAL_NAME_BYTES])

@@ -7,12 +7,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/bytes.h"
 #include "base/compiler.h"
 #include "base/daily.h"
 #include "board/hours.h"
 #include "board/settings.h"
 
 enum { TERMINAL_SERVERS_MOST = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
+/* A file that gopura.conf names is no larger; all authorities of a system take a quarter of it. */
+enum { TERMINAL_FILE_BYTES_MAX = 1 << 20 };
 
 struct terminal_servers {
 	char names[TERMINAL_SERVERS_MOST][254]; /* addresses; of time servers names too */
@@ -68,6 +71,16 @@ void terminal_parse(struct terminal *out, struct bytes text, struct faults *faul
  * gopura.conf at path; that is not among the faults. What cannot be read is one. */
 must_check int terminal_read(struct terminal *out, const char *path, const char *boards,
 			     struct faults *faults);
+
+/* A file that the gopura.conf at path names, into *out (cleared first); nothing else than a regular
+ * file in the same folder is read. Errors: base/safe_open.h. */
+must_check int terminal_read_beside(struct buffer *out, const char *path, const char *name);
+
+/* A checksum over the gopura.conf at path and the files that it names, as hexadecimal text: the
+ * same for two that mean the same. A named file that cannot be read counts as empty. Errors:
+ * base/safe_open.h, of gopura.conf itself. */
+enum { TERMINAL_SUM_BYTES = 65 };
+must_check int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES]);
 
 /* The terminal's name as computers say it: letters, digits and dashes; "gopura" where nothing is
  * left of it. */

@@ -32,12 +32,22 @@ static bool only(const char *text, const char *chars)
 	return text[strspn(text, chars)] == '\0';
 }
 
+/* Tabs and, in UTF-8, U+0080 to U+009f; settings_read has refused the other ones. */
+static bool has_control(const char *text)
+{
+	for (; *text; text++)
+		if ((unsigned char)*text < 0x20 || *text == 0x7f ||
+		    ((unsigned char)*text == 0xc2 && (unsigned char)text[1] < 0xa0))
+			return true;
+	return false;
+}
+
 bool terminal_set_name(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
 
 	(void)setting;
-	return put(terminal->name, sizeof(terminal->name), value);
+	return !has_control(value) && put(terminal->name, sizeof(terminal->name), value);
 }
 
 /* km, pt-BR, zh_Hant */
@@ -273,7 +283,7 @@ bool terminal_set_ssid(const struct setting *setting, void *target, const char *
 	struct terminal *terminal = target;
 
 	(void)setting;
-	return put(terminal->ssid, sizeof(terminal->ssid), value);
+	return !has_control(value) && put(terminal->ssid, sizeof(terminal->ssid), value);
 }
 
 bool terminal_set_passphrase(const struct setting *setting, void *target, const char *value)

@@ -40,6 +40,7 @@ struct release {
 struct timestamp {
 	uint64_t sequence; /* of the release it names */
 	int64_t expires_s;
+	int64_t issued_s;    /* when it was signed, by the publisher's clock; 0: it does not say */
 	struct hash release; /* of release.json's bytes */
 };
 

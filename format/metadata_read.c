@@ -94,11 +94,11 @@ static bool whole_member(const cJSON *object, const char *name, uint64_t least, 
 	return *out >= least && *out <= most;
 }
 
-static bool time_member(const cJSON *object, int64_t *out)
+static bool time_member(const cJSON *object, const char *name, int64_t *out)
 {
 	uint64_t seconds;
 
-	if (!whole_member(object, "expires_s", 1, (uint64_t)WHOLE_MOST, &seconds))
+	if (!whole_member(object, name, 1, (uint64_t)WHOLE_MOST, &seconds))
 		return false;
 	*out = (int64_t)seconds;
 	return true;
@@ -254,7 +254,7 @@ static int read_root(struct trust_root *root, const cJSON *json)
 
 	*root = (struct trust_root){ 0 };
 	if (!whole_member(json, "version", 1, UINT32_MAX, &version) ||
-	    !time_member(json, &root->expires_s))
+	    !time_member(json, "expires_s", &root->expires_s))
 		return -EBADMSG;
 	root->version = (uint32_t)version;
 	for (int role = META_ROOT; role <= META_TIMESTAMP; role++)
@@ -335,7 +335,7 @@ static int read_release(struct release *release, const cJSON *json)
 	uint64_t root_bytes;
 
 	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &release->sequence) ||
-	    !time_member(json, &release->expires_s) || !root ||
+	    !time_member(json, "expires_s", &release->expires_s) || !root ||
 	    hash_from_hex(&release->root, root) < 0 || hash_is_zero(release->root) ||
 	    !whole_member(json, "root_bytes", 1, PAGE_BYTES_MOST, &root_bytes) || !comment ||
 	    strlen(comment) >= sizeof(release->comment))
@@ -363,22 +363,33 @@ int release_decode(struct release *out, const struct trust_root *trust, struct b
 	return 0;
 }
 
+static int read_timestamp(struct timestamp *timestamp, const cJSON *json)
+{
+	const char *name = text_member(json, "release");
+
+	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &timestamp->sequence) ||
+	    !time_member(json, "expires_s", &timestamp->expires_s) || !name ||
+	    hash_from_hex(&timestamp->release, name) < 0)
+		return -EBADMSG;
+	/* Publishers before this one did not write it. */
+	if (cJSON_GetObjectItemCaseSensitive(json, "issued_s") &&
+	    (!time_member(json, "issued_s", &timestamp->issued_s) ||
+	     timestamp->issued_s > timestamp->expires_s))
+		return -EBADMSG;
+	return 0;
+}
+
 int timestamp_decode(struct timestamp *out, const struct trust_root *trust, struct bytes file,
 		     const char **why)
 {
 	struct timestamp timestamp = { 0 };
-	const char *name;
 	cJSON *json;
 	int rc = open_signed(&json, META_TIMESTAMP, trust, file, why);
 
 	*out = timestamp;
 	if (rc < 0)
 		return rc;
-	name = text_member(json, "release");
-	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &timestamp.sequence) ||
-	    !time_member(json, &timestamp.expires_s) || !name ||
-	    hash_from_hex(&timestamp.release, name) < 0)
-		rc = -EBADMSG;
+	rc = read_timestamp(&timestamp, json);
 	cJSON_Delete(json);
 	if (rc < 0)
 		return refuse(why, rc, "the timestamp file lacks a member or has a bad one");

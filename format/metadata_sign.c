@@ -157,5 +157,7 @@ int timestamp_encode(struct buffer *out, const struct timestamp *timestamp,
 	hash_to_hex(timestamp->release, name);
 	complete = json && cJSON_AddNumberToObject(json, "sequence", (double)timestamp->sequence) &&
 		   cJSON_AddStringToObject(json, "release", name);
+	if (complete && timestamp->issued_s > 0)
+		complete = cJSON_AddNumberToObject(json, "issued_s", (double)timestamp->issued_s);
 	return sign_payload(out, META_TIMESTAMP, json, complete, keys, key_count);
 }

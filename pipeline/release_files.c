@@ -143,8 +143,10 @@ static int copy_roots(const char *release, const char *keys_folder, uint32_t new
 static int write_timestamp(const char *release, const struct publisher_keys *keys,
 			   uint64_t sequence, struct bytes release_file, int64_t life_s)
 {
+	const int64_t now_s = clock_wall_s();
 	struct timestamp timestamp = { .sequence = sequence,
-				       .expires_s = clock_wall_s() + life_s,
+				       .expires_s = now_s + life_s,
+				       .issued_s = now_s,
 				       .release = hash_of(release_file) };
 	struct buffer file;
 	int rc;

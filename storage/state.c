@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "format/metadata.h"
 #include "storage/db.h"
 #include "storage/state_record.h"
 
@@ -61,7 +62,7 @@ static int take_row(struct record *out, sqlite3_stmt *row)
 	struct hash check;
 
 	out->sequence_floor = (uint64_t)sqlite3_column_int64(row, 0);
-	out->time_floor_s = sqlite3_column_int64(row, 1);
+	out->stored_time_floor_s = sqlite3_column_int64(row, 1);
 	take_column(&out->trust, row, 6);
 	out->tries = (uint32_t)sqlite3_column_int64(row, 7);
 	if (take_release(&out->release, row, 2) < 0 || take_release(&out->previous, row, 8) < 0 ||
@@ -119,7 +120,7 @@ static int write_record(sqlite3 *db, const struct record *record)
 	if (rc < 0)
 		return rc;
 	sqlite3_bind_int64(insert, 1, (sqlite3_int64)record->sequence_floor);
-	sqlite3_bind_int64(insert, 2, record->time_floor_s);
+	sqlite3_bind_int64(insert, 2, record->stored_time_floor_s);
 	bind_release(insert, 3, &record->release);
 	sqlite3_bind_blob(insert, 7, record->trust.data, (int)record->trust.size, SQLITE_STATIC);
 	sqlite3_bind_int64(insert, 8, record->tries);
@@ -159,8 +160,30 @@ static void raise_floors(struct record *record, const struct record *other)
 {
 	if (other->sequence_floor > record->sequence_floor)
 		record->sequence_floor = other->sequence_floor;
-	if (other->time_floor_s > record->time_floor_s)
-		record->time_floor_s = other->time_floor_s;
+	if (record_time_floor_s(other) > record_time_floor_s(record))
+		record_set_time_floor(record, record_time_floor_s(other));
+}
+
+/* Its number; 0: none, or no root file. */
+static uint32_t root_version(const struct record *record)
+{
+	struct trust_root root;
+
+	return trust_root_first(&root, buffer_bytes(&record->trust), NULL) == 0 ? root.version : 0;
+}
+
+/* An older database put back in place must not lower the floors. But a second copy of before the
+ * trust root in use must not raise them: this root may have cleared them, and the power may have
+ * gone between the two files. */
+static void compare_with_second(struct state *state)
+{
+	struct record second;
+
+	record_init(&second);
+	if (record_read_second(&second, state->path) == 0 &&
+	    root_version(&second) >= root_version(&state->record))
+		raise_floors(&state->record, &second);
+	record_finish(&second);
 }
 
 /* The database told nothing (rc says why): take the second copy, if that is whole. */
@@ -199,7 +222,6 @@ static void recover(struct state *state, int rc)
 int state_create(struct state **out, const char *path)
 {
 	struct state *state = calloc(1, sizeof(*state));
-	struct record second;
 	int rc;
 
 	*out = NULL;
@@ -209,16 +231,11 @@ int state_create(struct state **out, const char *path)
 	record_init(&state->record);
 	record_drop_leftovers(path);
 	rc = open_db(state);
-	if (rc < 0) {
+	if (rc < 0)
 		recover(state, rc);
-	} else {
-		/* An older database put back in place must not lower the floors. */
-		record_init(&second);
-		if (record_read_second(&second, path) == 0)
-			raise_floors(&state->record, &second);
-		record_finish(&second);
-	}
-	state->written_time_floor_s = state->record.time_floor_s;
+	else
+		compare_with_second(state);
+	state->written_time_floor_s = record_time_floor_s(&state->record);
 	*out = state;
 	return 0;
 }
@@ -271,7 +288,7 @@ uint64_t state_sequence_floor(const struct state *state)
 
 int64_t state_time_floor_s(const struct state *state)
 {
-	return state->record.time_floor_s;
+	return record_time_floor_s(&state->record);
 }
 
 /* Writes next, which is taken: it becomes the record, or is finished on failure. */
@@ -287,7 +304,7 @@ static int change(struct state *state, struct record *next)
 	}
 	record_finish(&state->record);
 	state->record = *next;
-	state->written_time_floor_s = next->time_floor_s;
+	state->written_time_floor_s = record_time_floor_s(next);
 	/* The database has it: a failure here costs only the second copy. */
 	if (record_write_second(&state->record, state->path) < 0)
 		log_warn("storage", "%s.second could not be written", state->path);
@@ -359,13 +376,17 @@ int state_fall_back(struct state *state)
 	return change(state, &next);
 }
 
-int state_set_trust(struct state *state, struct bytes file)
+int state_set_trust(struct state *state, struct bytes file, enum state_clear clear)
 {
 	struct record next;
 
 	record_copy(&next, &state->record);
 	buffer_clear(&next.trust);
 	buffer_put(&next.trust, file.data, file.size);
+	if (clear & STATE_CLEAR_SEQUENCE_FLOOR)
+		next.sequence_floor = 0;
+	if (clear & STATE_CLEAR_TIME_FLOOR)
+		record_set_time_floor(&next, 0);
 	return change(state, &next);
 }
 
@@ -373,9 +394,9 @@ int state_raise_time_floor(struct state *state, int64_t at_least_s)
 {
 	struct record next;
 
-	if (at_least_s <= state->record.time_floor_s)
+	if (at_least_s <= record_time_floor_s(&state->record))
 		return 0;
-	state->record.time_floor_s = at_least_s;
+	record_set_time_floor(&state->record, at_least_s);
 	if (at_least_s - state->written_time_floor_s < TIME_STEP_S)
 		return 0;
 	record_copy(&next, &state->record);

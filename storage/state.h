@@ -1,5 +1,6 @@
 /* What the kiosk must not forget when the power goes: the release it shows, the trust root, the
- * floors that never fall. docs/cache.md tells what happens to it in an accident.
+ * floors that fall only with the keys that set them. docs/cache.md tells what happens to it in an
+ * accident.
  *
  * SQLite with synchronous=FULL at PATH; each change is one transaction, so after a power cut it is
  * wholly there or wholly not. A damaged file is set aside as PATH.broken and what matters comes
@@ -39,7 +40,7 @@ uint32_t state_tries(const struct state *state);
 must_check int state_trust(const struct state *state, struct bytes *out);
 /* No release below it may be activated; 0 at first. */
 uint64_t state_sequence_floor(const struct state *state);
-/* It is at least this late, seconds since 1970; 0 at first. */
+/* It is at least this late by signed metadata, seconds since 1970; 0 at first. */
 int64_t state_time_floor_s(const struct state *state);
 
 /* Copies what release says and raises the sequence floor to it; the one in use becomes the
@@ -52,8 +53,14 @@ must_check int state_try(struct state *state);
 must_check int state_prove(struct state *state);
 /* The previous release is in use again, and proven; floors stay. -ENOENT: there is none. */
 must_check int state_fall_back(struct state *state);
-/* Copies. Errors as state_activate. */
-must_check int state_set_trust(struct state *state, struct bytes file);
+/* Copies, and clears floors in the same transaction. Errors as state_activate. */
+enum state_clear {
+	STATE_CLEAR_NOTHING = 0,
+	STATE_CLEAR_SEQUENCE_FLOOR = 1,
+	STATE_CLEAR_TIME_FLOOR = 2,
+	STATE_CLEAR_BOTH_FLOORS = 3,
+};
+must_check int state_set_trust(struct state *state, struct bytes file, enum state_clear clear);
 /* Lower than the floor: nothing happens. Writes only when it rises by an hour or more, so that a
  * card does not wear; until then the higher floor holds in memory. */
 must_check int state_raise_time_floor(struct state *state, int64_t at_least_s);

@@ -29,6 +29,19 @@ int record_error(const struct record *record)
 					     : record->trust.error;
 }
 
+int64_t record_time_floor_s(const struct record *record)
+{
+	/* The least number has no positive counterpart. */
+	return record->stored_time_floor_s < 0 && record->stored_time_floor_s != INT64_MIN
+		       ? -record->stored_time_floor_s
+		       : 0;
+}
+
+void record_set_time_floor(struct record *record, int64_t floor_s)
+{
+	record->stored_time_floor_s = -floor_s;
+}
+
 static void copy_file(struct buffer *out, const struct buffer *from)
 {
 	buffer_init(out, STATE_FILE_BYTES_MOST);
@@ -57,7 +70,7 @@ static void record_encode(struct buffer *out, const struct record *record)
 	buffer_put(out, "GSta", 4);
 	buffer_put_u32(out, RECORD_VERSION);
 	buffer_put_u64(out, record->sequence_floor);
-	buffer_put_u64(out, (uint64_t)record->time_floor_s);
+	buffer_put_u64(out, (uint64_t)record->stored_time_floor_s);
 	release_encode(out, &record->release);
 	buffer_put_u32(out, (uint32_t)record->trust.size);
 	buffer_put(out, record->trust.data, record->trust.size);
@@ -105,7 +118,7 @@ static int record_decode(struct record *out, struct bytes file)
 	    version > RECORD_VERSION)
 		return -EBADMSG;
 	out->sequence_floor = reader_u64(&reader);
-	out->time_floor_s = (int64_t)reader_u64(&reader);
+	out->stored_time_floor_s = (int64_t)reader_u64(&reader);
 	release_decode(&out->release, &reader);
 	get_sized(&out->trust, &reader);
 	if (version > 1) {

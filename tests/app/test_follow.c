@@ -12,10 +12,27 @@
 #include "format/metadata.h"
 #include "tests/check.h"
 
-enum { DAY_S = 86400 };
+enum { DAY_S = 86400, TODAY_S = 1800000000 };
+
+#define LATE_S  ((int64_t)5000000000) /* the year 2128 */
+#define Y2099_S ((int64_t)4090000000)
+
+/* In place of the machine's: a clock that is set, by whomever. */
+static int64_t wall_s = TODAY_S;
+
+int64_t clock_wall_s(void)
+{
+	return wall_s;
+}
+
+bool clock_wall_is_set(void)
+{
+	return true;
+}
 
 static char folder[64], state_path[96], trust_path[96];
 static int64_t expires_in_s = DAY_S;
+static int64_t issued_s; /* of the timestamps that are published; 0: they do not say */
 static struct signing_key root_key, release_key, timestamp_key;
 
 /* What the kiosk was told. */
@@ -40,24 +57,36 @@ static void on_remembered(void *data, struct hash root, int rc)
 	told.remembered_root = root;
 }
 
-static void write_trust(void)
+/* Of the keys of now. */
+static void encode_root(struct buffer *file, uint32_t version)
 {
 	const struct signing_key *const keys[] = {
 		[META_ROOT] = &root_key,
 		[META_RELEASE] = &release_key,
 		[META_TIMESTAMP] = &timestamp_key,
 	};
-	struct trust_root root = { .version = 1, .expires_s = clock_wall_s() + 365 * DAY_S };
-	struct buffer file;
+	struct trust_root root = { .version = version, .expires_s = LATE_S };
 
 	for (int role = 0; role < 3; role++) {
 		memcpy(root.roles[role].keys[0], keys[role]->public_key, KEY_BYTES);
 		root.roles[role].key_count = root.roles[role].threshold = 1;
 	}
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
+	buffer_init(file, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(file, &root, &root_key, 1) == 0);
+}
+
+static void write_trust(void)
+{
+	struct buffer file;
+
+	encode_root(&file, 1);
 	CHECK(bytes_write_file(buffer_bytes(&file), trust_path) == 0);
 	buffer_finish(&file);
+}
+
+static void change_key(struct signing_key *key)
+{
+	CHECK(crypto_sign_keypair(key->public_key, key->secret) == 0);
 }
 
 static int enter_museum(void **unused)
@@ -66,8 +95,9 @@ static int enter_museum(void **unused)
 
 	(void)unused;
 	CHECK(sodium_init() >= 0);
+	wall_s = TODAY_S;
 	for (int i = 0; i < 3; i++)
-		CHECK(crypto_sign_keypair(keys[i]->public_key, keys[i]->secret) == 0);
+		change_key(keys[i]);
 	snprintf(folder, sizeof(folder), "/tmp/gopura-follow-XXXXXX");
 	CHECK(mkdtemp(folder));
 	snprintf(state_path, sizeof(state_path), "%s/state.db", folder);
@@ -117,7 +147,9 @@ static void offer(struct follow *follow, uint64_t sequence, uint8_t root, enum m
 					 .root = root_of(root),
 					 .root_bytes = 100,
 					 .expires_s = expires_s };
-	struct timestamp timestamp = { .sequence = sequence, .expires_s = expires_s };
+	struct timestamp timestamp = { .sequence = sequence,
+				       .expires_s = expires_s,
+				       .issued_s = issued_s };
 	struct buffer file, stamp;
 
 	buffer_init(&file, METADATA_FILE_BYTES_MOST);
@@ -338,14 +370,196 @@ static void keeps_showing_what_has_expired(void **unused)
 	expires_in_s = -DAY_S;
 	publish(follow, 2, 0x22);
 	expires_in_s = DAY_S;
-	if (clock_wall_is_set()) {
-		CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
-		CHECK(strstr(follow_refusal(follow)->why, "expired"));
-	}
+	CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
+	CHECK(strstr(follow_refusal(follow)->why, "expired"));
 	follow_destroy(follow);
 	told.begun = 0;
 	follow = open_follow();
 	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x11)));
+	follow_destroy(follow);
+}
+
+/* ---- the clock */
+
+static void reopen(struct follow **follow)
+{
+	follow_destroy(*follow);
+	*follow = open_follow();
+}
+
+/* Metadata that is good by any clock, taken while somebody on the network says it is 2099. */
+static void a_clock_that_is_wrong_for_a_day_spoils_nothing(void **unused)
+{
+	struct follow *follow = open_follow();
+	struct buffer root;
+
+	(void)unused;
+	wall_s = Y2099_S;
+	show_and_prove(follow, 1, 0x11);
+	encode_root(&root, 2);
+	follow_meta(follow, META_ROOT, 2, buffer_bytes(&root), META_FROM_SERVER);
+	buffer_finish(&root);
+	CHECK(follow_refusal(follow)->count == 0);
+	wall_s = TODAY_S;
+	for (int start = 0; start < 2; start++) {
+		told.begun = 0;
+		publish(follow, 2 + (uint64_t)start, 0x22 + (uint8_t)start);
+		CHECK(told.begun == 1 && follow_refusal(follow)->count == 0);
+		/* And what has expired has. */
+		expires_in_s = -DAY_S;
+		publish(follow, 9, 0x99);
+		expires_in_s = DAY_S;
+		CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
+		CHECK(strstr(follow_refusal(follow)->why, "expired"));
+		reopen(&follow);
+	}
+	follow_destroy(follow);
+}
+
+/* A clock that was set back a year, and a file that has expired since. */
+static void a_signed_time_stands_against_a_clock_that_was_set_back(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	issued_s = TODAY_S;
+	show_and_prove(follow, 1, 0x11);
+	issued_s = 0;
+	wall_s = TODAY_S - 365 * DAY_S;
+	expires_in_s = 30 * DAY_S;
+	for (int start = 0; start < 2; start++) {
+		told.begun = 0;
+		publish(follow, 2, 0x22);
+		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "expired"));
+		reopen(&follow);
+	}
+	expires_in_s = DAY_S;
+	follow_destroy(follow);
+}
+
+/* ---- keys that were stolen */
+
+#define THIEFS_SEQUENCE ((uint64_t)1 << 53)
+
+static void give_root(struct follow *follow, uint32_t version)
+{
+	struct buffer root;
+
+	encode_root(&root, version);
+	follow_meta(follow, META_ROOT, version, buffer_bytes(&root), META_FROM_SERVER);
+	buffer_finish(&root);
+}
+
+/* The museum's own, then a thief's who has both keys: the last sequence there is, and a time floor
+ * in the next century. */
+static struct follow *be_robbed(void)
+{
+	struct follow *follow = open_follow();
+
+	show_and_prove(follow, 7, 0x77);
+	issued_s = Y2099_S;
+	expires_in_s = LATE_S - TODAY_S;
+	show_and_prove(follow, THIEFS_SEQUENCE, 0xee);
+	issued_s = 0;
+	expires_in_s = DAY_S;
+	publish(follow, 8, 0x88);
+	CHECK(hash_equal(told.begun_root, root_of(0xee)) && follow_refusal(follow)->count == 1);
+	return follow;
+}
+
+static void publishes_again_after_a_theft_when_both_keys_are_changed(void **unused)
+{
+	const struct signing_key stolen[2] = { release_key, timestamp_key };
+	struct follow *follow = be_robbed();
+	struct signing_key own[2];
+
+	(void)unused;
+	change_key(&release_key);
+	change_key(&timestamp_key);
+	told.begun = 0;
+	give_root(follow, 2);
+	CHECK(told.begun == 0); /* what is shown stays, until the museum publishes */
+	reopen(&follow);
+	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0xee)));
+	/* Nothing of before comes back: neither the thief's nor an older one of the museum's. */
+	own[0] = release_key;
+	own[1] = timestamp_key;
+	release_key = stolen[0];
+	timestamp_key = stolen[1];
+	publish(follow, THIEFS_SEQUENCE, 0xef);
+	publish(follow, 7, 0x77);
+	CHECK(told.begun == 1);
+	release_key = own[0];
+	timestamp_key = own[1];
+	show_and_prove(follow, 8, 0x88);
+	CHECK(follow_sequence(follow) == 8);
+	reopen(&follow);
+	CHECK(hash_equal(told.begun_root, root_of(0x88)) && follow_sequence(follow) == 8);
+	told.begun = 0;
+	publish(follow, 7, 0x77); /* and the floor is there again */
+	CHECK(told.begun == 0);
+	follow_destroy(follow);
+}
+
+static void a_root_that_leaves_the_keys_leaves_the_floors(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	issued_s = TODAY_S;
+	show_and_prove(follow, 7, 0x77);
+	issued_s = 0;
+	give_root(follow, 2);
+	for (int start = 0; start < 2; start++) {
+		told.begun = 0;
+		publish(follow, 6, 0x66);
+		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "older"));
+		wall_s = TODAY_S - 365 * DAY_S;
+		publish(follow, 8, 0x88);
+		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "expired"));
+		wall_s = TODAY_S;
+		reopen(&follow);
+	}
+	follow_destroy(follow);
+}
+
+static void stops_bringing_what_a_key_signed_that_is_trusted_no_more(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 7, 0x77);
+	publish(follow, THIEFS_SEQUENCE, 0xee);
+	CHECK(hash_equal(told.begun_root, root_of(0xee)));
+	change_key(&release_key);
+	give_root(follow, 2);
+	CHECK(hash_equal(told.begun_root, root_of(0x77)));
+	/* It had come whole just now: it is not remembered. */
+	follow_remember(follow, root_of(0xee));
+	reopen(&follow);
+	CHECK(hash_equal(told.begun_root, root_of(0x77)));
+	show_and_prove(follow, 8, 0x88);
+	follow_destroy(follow);
+}
+
+/* The thief's release is being written when the root comes: the root is taken at the next round,
+ * else the release would raise the floor that the root had cleared. */
+static void takes_a_root_after_what_is_being_written(void **unused)
+{
+	struct follow *follow = open_follow();
+
+	(void)unused;
+	show_and_prove(follow, 7, 0x77);
+	publish(follow, THIEFS_SEQUENCE, 0xee);
+	follow_remember(follow, root_of(0xee));
+	change_key(&release_key);
+	change_key(&timestamp_key);
+	give_root(follow, 2);
+	dispatch(follow);
+	give_root(follow, 2);
+	show_and_prove(follow, 8, 0x88);
+	reopen(&follow);
+	CHECK(hash_equal(told.begun_root, root_of(0x88)) && follow_sequence(follow) == 8);
 	follow_destroy(follow);
 }
 
@@ -373,6 +587,21 @@ int main(void)
 						leave_museum),
 		cmocka_unit_test_setup_teardown(keeps_showing_what_has_expired, enter_museum,
 						leave_museum),
+		cmocka_unit_test_setup_teardown(a_clock_that_is_wrong_for_a_day_spoils_nothing,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(
+			a_signed_time_stands_against_a_clock_that_was_set_back, enter_museum,
+			leave_museum),
+		cmocka_unit_test_setup_teardown(
+			publishes_again_after_a_theft_when_both_keys_are_changed, enter_museum,
+			leave_museum),
+		cmocka_unit_test_setup_teardown(a_root_that_leaves_the_keys_leaves_the_floors,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(
+			stops_bringing_what_a_key_signed_that_is_trusted_no_more, enter_museum,
+			leave_museum),
+		cmocka_unit_test_setup_teardown(takes_a_root_after_what_is_being_written,
+						enter_museum, leave_museum),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -97,7 +97,8 @@ static void writes_what_was_asked_for_before_it_ends(void **unused)
 
 	(void)unused;
 	activate(keeper, 3);
-	CHECK(keeper_set_trust(keeper, (struct bytes){ trust, sizeof(trust) }) == 0);
+	CHECK(keeper_set_trust(keeper, (struct bytes){ trust, sizeof(trust) },
+			       STATE_CLEAR_NOTHING) == 0);
 	keeper_raise_time_floor(keeper, 2000000000);
 	activate(keeper, 4);
 	keeper_destroy(keeper);

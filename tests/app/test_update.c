@@ -7,9 +7,10 @@
 
 #include "tests/check.h"
 
-enum { NOW_S = 1700000000, DAY_S = 86400 };
+enum { NOW_S = 1700000000, DAY_S = 86400, POOL = 4 };
 
 static struct signing_key root_key, root_key_2, release_key, timestamp_key, stranger;
+static struct signing_key release_pool[POOL], timestamp_pool[POOL];
 static const struct update_time now = { NOW_S }, no_clock = { 0 };
 
 static void make_key(struct signing_key *key)
@@ -44,6 +45,10 @@ static int set_up(void **state)
 	make_key(&release_key);
 	make_key(&timestamp_key);
 	make_key(&stranger);
+	for (int i = 0; i < POOL; i++) {
+		make_key(&release_pool[i]);
+		make_key(&timestamp_pool[i]);
+	}
 	return 0;
 }
 
@@ -204,7 +209,7 @@ static int offer_root(struct update *update, uint32_t version, const struct sign
 
 	buffer_init(&file, METADATA_FILE_BYTES_MOST);
 	CHECK(trust_root_encode(&file, &root, signers, signer_count) == 0);
-	rc = update_root(update, buffer_bytes(&file), &why);
+	rc = update_root(update, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why);
 	buffer_finish(&file);
 	return rc;
 }
@@ -276,6 +281,136 @@ static void refuses_all_under_a_root_that_has_expired(void **state)
 	CHECK(take(&update, &offer, &why) == 1);
 }
 
+/* ---- a root that takes keys away */
+
+/* "ab 2": keys a and b of the pool, two of them needed. */
+static void give_keys(struct role_keys *role, const struct signing_key *pool, const char *keys)
+{
+	role->key_count = 0;
+	for (; *keys != ' '; keys++)
+		memcpy(role->keys[role->key_count++], pool[*keys - 'a'].public_key, KEY_BYTES);
+	role->threshold = (uint32_t)(keys[1] - '0');
+}
+
+static void encode_root(struct buffer *out, uint32_t version, const char *releases,
+			const char *timestamps)
+{
+	struct trust_root root = root_of(version, &root_key);
+
+	give_keys(&root.roles[META_RELEASE], release_pool, releases);
+	give_keys(&root.roles[META_TIMESTAMP], timestamp_pool, timestamps);
+	buffer_clear(out);
+	CHECK(trust_root_encode(out, &root, &root_key, 1) == 0);
+}
+
+static void a_root_that_takes_keys_away_clears_what_they_had_set(void **state)
+{
+	static const struct {
+		const char *releases, *timestamps;           /* of root 1 */
+		const char *next_releases, *next_timestamps; /* of root 2 */
+		char signer;                                 /* of the release in use */
+		bool sequence_stays, time_stays;
+	} roots[] = {
+		/* nothing changes, or a key is added: old files are as good as they were */
+		{ "a 1", "a 1", "a 1", "a 1", 'a', true, true },
+		{ "a 1", "a 1", "ab 1", "ab 1", 'a', true, true },
+		{ "ab 2", "ab 2", "abc 1", "abc 1", 'a', true, true },
+		/* one role's only key, or both */
+		{ "a 1", "a 1", "b 1", "a 1", 'a', false, true },
+		{ "a 1", "a 1", "a 1", "b 1", 'a', false, false },
+		{ "a 1", "a 1", "b 1", "b 1", 'a', false, false },
+		/* the threshold */
+		{ "ab 1", "a 1", "ab 2", "a 1", 'a', true, true },
+		{ "ab 1", "ab 1", "ab 2", "ab 2", 'a', false, false },
+		{ "a 1", "a 1", "ab 2", "a 1", 'a', false, true },
+		/* one of two keys in one role: the other role never lost a key, so no thief could
+		 * publish, and old files signed by the key that stays must not come back */
+		{ "ab 1", "a 1", "bc 1", "a 1", 'a', true, true },
+		{ "a 1", "ab 1", "a 1", "bc 1", 'a', true, false },
+		/* one of two keys in both roles: it depends on who signed the release in use */
+		{ "ab 1", "ab 1", "bc 1", "bc 1", 'b', true, false },
+		{ "ab 1", "ab 1", "bc 1", "bc 1", 'a', false, false },
+		{ "ab 1", "ab 1", "bc 1", "bc 1", ' ', false, false }, /* not known */
+	};
+	const uint64_t thief = (uint64_t)1 << 53;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(roots); i++) {
+		const struct release release = {
+			.sequence = thief, .expires_s = NOW_S, .root = { { 1 } }, .root_bytes = 100
+		};
+		struct buffer file, used;
+		struct update update = { 0 };
+		const char *why = "";
+
+		buffer_init(&file, METADATA_FILE_BYTES_MOST);
+		buffer_init(&used, METADATA_FILE_BYTES_MOST);
+		encode_root(&file, 1, roots[i].releases, roots[i].timestamps);
+		CHECK(update_pin(&update, buffer_bytes(&file), &why) == 0);
+		update.sequence_floor = thief;
+		update.time_floor_s = NOW_S;
+		update.have_timestamp = true;
+		if (roots[i].signer != ' ')
+			CHECK(release_encode(&used, &release, &release_pool[roots[i].signer - 'a'],
+					     1) == 0);
+		encode_root(&file, 2, roots[i].next_releases, roots[i].next_timestamps);
+		CHECK(update_root(&update, buffer_bytes(&file), buffer_bytes(&used), &why) == 0);
+		if (update.sequence_floor != (roots[i].sequence_stays ? thief : 0))
+			fail_msg("root %zu: the sequence floor is wrong", i);
+		if (update.time_floor_s != (roots[i].time_stays ? NOW_S : 0))
+			fail_msg("root %zu: the time floor is wrong", i);
+		CHECK(!update.have_timestamp);
+		buffer_finish(&file);
+		buffer_finish(&used);
+	}
+}
+
+static void a_root_that_is_refused_clears_nothing(void **state)
+{
+	struct update update;
+	struct buffer file;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	update.sequence_floor = 9;
+	update.time_floor_s = NOW_S;
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	encode_root(&file, 2, "a 1", "a 1");
+	file.data[file.size / 2] ^= 1;
+	CHECK(update_root(&update, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why) < 0);
+	CHECK(update.sequence_floor == 9 && update.time_floor_s == NOW_S);
+	buffer_finish(&file);
+}
+
+/* ---- the time floor */
+
+static void only_a_signed_timestamp_raises_the_time_floor(void **state)
+{
+	struct timestamp timestamp = { .sequence = 1, .expires_s = NOW_S + 900 * DAY_S };
+	struct update update;
+	struct buffer stamp;
+	const char *why;
+
+	(void)state;
+	pin(&update);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	for (int i = 0; i < 3; i++) {
+		/* none is said, then one, then an earlier one */
+		timestamp.issued_s = i == 0 ? 0 : NOW_S - i * DAY_S;
+		buffer_clear(&stamp);
+		CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
+		CHECK(update_timestamp(&update, buffer_bytes(&stamp), now, &why) == 0);
+		CHECK(update.time_floor_s == (i == 0 ? 0 : NOW_S - DAY_S));
+	}
+	timestamp.issued_s = NOW_S + DAY_S;
+	buffer_clear(&stamp);
+	CHECK(timestamp_encode(&stamp, &timestamp, &stranger, 1) == 0);
+	CHECK(update_timestamp(&update, buffer_bytes(&stamp), now, &why) == -EKEYREJECTED);
+	CHECK(update.time_floor_s == NOW_S - DAY_S);
+	buffer_finish(&stamp);
+}
+
 static void takes_nothing_without_a_trust_root(void **state)
 {
 	struct update update = { 0 };
@@ -296,6 +431,9 @@ int main(void)
 		cmocka_unit_test(follows_a_key_rotation_signed_by_old_and_new_keys),
 		cmocka_unit_test(refuses_a_release_below_the_threshold),
 		cmocka_unit_test(refuses_all_under_a_root_that_has_expired),
+		cmocka_unit_test(a_root_that_takes_keys_away_clears_what_they_had_set),
+		cmocka_unit_test(a_root_that_is_refused_clears_nothing),
+		cmocka_unit_test(only_a_signed_timestamp_raises_the_time_floor),
 		cmocka_unit_test(takes_nothing_without_a_trust_root),
 	};
 

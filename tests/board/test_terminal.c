@@ -126,6 +126,8 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "terminal",
 		  "name = 0123456789012345678901234567890123456789012345678901234567890123",
 		  "up to 63 bytes" },
+		{ "terminal", "name = \"East\tgate\"", "without control characters" },
+		{ "terminal", "name = East\xc2\x85gate", "without control characters" },
 		{ "release", "ca = keys/ca.pem", "without folders" },
 		{ "release", "ca = ..", "without folders" },
 		{ "release", "ca = -x", "without folders" },
@@ -290,6 +292,8 @@ static void knows_names_and_passphrases_of_radio_networks(void **state)
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase="
 		      "0123456789abcdef0123456789ABCDEF0123456789abcdef0123456789abcdef\n");
 	CHECK(faults.count == 0 && strlen(terminal.passphrase) == 64);
+	parse(RELEASE "[wifi]\ncountry=DE\nssid = \"East\tgate\"\n");
+	says_only("line 6: ssid must be a network's name of 1 to 32 bytes without control");
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase = Straße 12\n");
 	says_only("line 7: passphrase must be 8 to 63");
 	CHECK(!strstr(faults.list[0].text, "Stra")); /* it goes to logs and onto the panel */
@@ -376,7 +380,7 @@ static void looks_for_the_files_it_names(void **state)
 	CHECK(terminal_read(&terminal, path, NULL, &faults) == 0 && faults.count == 0);
 	memset(&faults, 0, sizeof(faults));
 	CHECK(terminal_read(&terminal, folder, NULL, &faults) == 0);
-	says_only("the file cannot be read: Is a directory");
+	says_only("the file cannot be read: it is a folder; put a file there");
 	file = fopen(path, "w");
 	CHECK(file && fputs("[terminal]\nboard = toaster\n" RELEASE, file) >= 0 &&
 	      fclose(file) == 0);
@@ -389,6 +393,97 @@ static void looks_for_the_files_it_names(void **state)
 	CHECK(terminal_read(&terminal, path, folder, &faults) == 0);
 	says_only("line 2: there is no board profile 'toaster', nor any other in /tmp/");
 	unlink(beside);
+	unlink(path);
+	rmdir(folder);
+}
+
+/* What is wrong with gopura.conf at path, or with what stands beside it. */
+static void read_and_find(const char *path, const char *text)
+{
+	memset(&faults, 0, sizeof(faults));
+	CHECK(terminal_read(&terminal, path, NULL, &faults) == 0);
+	says_only(text);
+}
+
+static void waits_for_no_pipe_and_follows_no_link(void **state)
+{
+	static const struct {
+		const char *target; /* of the link that is named; NULL: a pipe, "": a folder */
+		const char *why;
+	} beside[] = {
+		{ NULL, "no regular file but a pipe, a device or a socket; put a file there" },
+		{ "", "it is a folder; put a file there" },
+		{ "/dev/zero", "links are not followed; copy the file itself" },
+		{ "gopura.conf", "links are not followed; copy the file itself" },
+	};
+	char folder[] = "/tmp/gopura-terminal-XXXXXX", path[64], named[64], said[128];
+	char sum[TERMINAL_SUM_BYTES];
+	FILE *file;
+
+	(void)state;
+	parse("[release]\nurl = https://a.example/\ntrust = ../../dev/zero\n");
+	says_only("line 3: trust must be the name of a file beside this one, without folders");
+	alarm(60); /* what hangs ends the test */
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/gopura.conf", folder);
+	snprintf(named, sizeof(named), "%s/1.json", folder);
+	CHECK(mkfifo(path, 0600) == 0);
+	read_and_find(path, "the file cannot be read: it is no regular file but a pipe");
+	CHECK(terminal_sum(path, sum) < 0);
+	unlink(path);
+	CHECK(symlink("/dev/zero", path) == 0);
+	read_and_find(path, "the file cannot be read: it is a link");
+	unlink(path);
+	file = fopen(path, "w");
+	CHECK(file && fputs(RELEASE, file) >= 0 && fclose(file) == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(beside); i++) {
+		const char *target = beside[i].target;
+
+		CHECK((!target   ? mkfifo(named, 0600)
+		       : *target ? symlink(target, named)
+				 : mkdir(named, 0700)) == 0);
+		snprintf(said, sizeof(said),
+			 "line 3: 1.json beside gopura.conf cannot be read: it is");
+		read_and_find(path, said);
+		says(beside[i].why);
+		CHECK(terminal.trust[0] == '\0');
+		CHECK(terminal_sum(path, sum) == 0); /* counts as empty */
+		CHECK(remove(named) == 0);
+	}
+	unlink(path);
+	rmdir(folder);
+	alarm(0);
+}
+
+static void the_sum_tells_what_means_another_thing(void **state)
+{
+	static const char *const texts[][2] = {
+		{ RELEASE, "root" },
+		{ RELEASE "\n", "root" },
+		{ RELEASE, "other root" },
+		{ RELEASE, NULL },
+	};
+	char folder[] = "/tmp/gopura-terminal-XXXXXX", path[64], named[64];
+	char sums[ARRAY_COUNT(texts)][TERMINAL_SUM_BYTES], again[TERMINAL_SUM_BYTES];
+	FILE *file;
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/gopura.conf", folder);
+	snprintf(named, sizeof(named), "%s/1.json", folder);
+	CHECK(terminal_sum(path, again) == -ENOENT);
+	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
+		file = fopen(path, "w");
+		CHECK(file && fputs(texts[i][0], file) >= 0 && fclose(file) == 0);
+		unlink(named);
+		file = texts[i][1] ? fopen(named, "w") : NULL;
+		CHECK(!file || (fputs(texts[i][1], file) >= 0 && fclose(file) == 0));
+		CHECK(terminal_sum(path, sums[i]) == 0 && strlen(sums[i]) == 64);
+		CHECK(terminal_sum(path, again) == 0 && strcmp(again, sums[i]) == 0);
+		for (size_t j = 0; j < i; j++)
+			CHECK(strcmp(sums[i], sums[j]) != 0);
+	}
+	unlink(named);
 	unlink(path);
 	rmdir(folder);
 }
@@ -447,6 +542,8 @@ int main(void)
 		cmocka_unit_test(takes_files_as_windows_saves_them),
 		cmocka_unit_test(bounds_the_list_and_counts_the_rest),
 		cmocka_unit_test(looks_for_the_files_it_names),
+		cmocka_unit_test(waits_for_no_pipe_and_follows_no_link),
+		cmocka_unit_test(the_sum_tells_what_means_another_thing),
 		cmocka_unit_test(the_example_is_without_fault),
 		cmocka_unit_test(makes_a_host_name_of_any_name),
 	};

@@ -15,7 +15,7 @@ cat >"$work/set-up" <<END
 #!/bin/sh
 set -e
 "$PWD/build/gopura-setup" --conf "${conf[0]}" --conf "${conf[1]}" --boards "$PWD/board" --out "$work/out"
-"$script" note "${conf[0]}" "${conf[1]}" "$work/out"
+PATH=$work/bin:\$PATH "$script" note "${conf[0]}" "${conf[1]}" "$work/out"
 END
 cat >"$work/bin/systemctl" <<END
 #!/bin/sh
@@ -25,6 +25,7 @@ case "\$*" in
 *iwd*) exit 1 ;; # whoever fails
 esac
 END
+ln -s "$PWD/build/gopura-setup" "$work/bin/gopura-setup"
 chmod +x "$work/set-up" "$work/bin/systemctl"
 
 # plugged: as gopura-conf.service does when a stick came

@@ -29,8 +29,19 @@ grep -q "^line $line: rotation" "$work/out/faults" || fail "the faults are not w
 [ -z "$(find "$work/out" -name '*.[A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9][A-Za-z0-9]' -type f)" ] ||
 	fail "a temporary file is left"
 # What a unit reads of it is what systemd takes for words.
-sh -c '. "$1"; [ "$RELEASE_URL" = https://museum.example/temple/ ] && case $FETCH_OPTIONS in *"--ca $2/ca.pem"*) ;; *) exit 1 ;; esac' \
+sh -c '. "$1"; [ "$RELEASE_URL" = https://museum.example/temple/ ] && case $FETCH_OPTIONS in *"--ca $2/out/conf/ca.pem"*) ;; *) exit 1 ;; esac' \
 	sh "$work/out/fetch.env" "$(realpath "$work")" || fail "fetch.env: $(cat "$work/out/fetch.env")"
+cmp "$work/ca.pem" "$work/out/conf/ca.pem" || fail "the authority is gone with the stick that it came from"
+[ "$(stat -c %a "$work/out/iwd")" = 700 ] || fail "the Wi-Fi's passphrase is everybody's"
+
+# A folder whose name would say more to the service manager than a name.
+evil=$work/$(printf 'x"\nLD_PRELOAD=evil.so\n#"')
+mkdir -p "$evil"
+cp "$work/gopura.conf" "$work/1.json" "$work/ca.pem" "$evil/"
+[ "$(status $setup --conf "$evil/gopura.conf" --boards board --out "$work/out")" = 2 ] || fail "taken: a folder's name with quotes"
+grep -q 'rename it' "$work/said" || fail "said: $(cat "$work/said")"
+[ "$(status $setup --conf "$work/gopura.conf" --boards board --out "$evil/out")" = 2 ] || fail "taken: a folder's name with quotes"
+! grep -rq LD_PRELOAD "$work/out" || fail "a folder's name became a line of fetch.env"
 
 # No file: by DHCP, and it is told what to do. What was of an earlier file is gone.
 [ "$(status $setup --conf "$work/none" --out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
@@ -38,7 +49,7 @@ grep -q DHCP=yes "$work/out/network/10-wired.network" || fail "no DHCP without a
 grep -q "there is no $work/none; write one" "$work/out/faults" || fail "nobody is told"
 [ ! -e "$work/out/network/20-wifi.network" ] || fail "the radio network of an earlier file is left"
 
-for wrong in "" "--check a --conf b" "--conf a" "--out a" "--nonsense" "--check a b"; do
+for wrong in "" "--check a --conf b" "--conf a" "--out a" "--nonsense" "--check a b" "--sum a --conf b" "--sum a --check b"; do
 	# shellcheck disable=SC2086
 	[ "$(status $setup $wrong)" = 2 ] || fail "taken: '$wrong'"
 done

@@ -38,6 +38,19 @@ for unit in $(grep -l -e '--figures' systemd/*.service); do
 	grep -q '^RuntimeDirectoryPreserve=yes$' "$unit" ||
 		{ echo "$unit: without RuntimeDirectoryPreserve=yes its starts are not counted"; failed=1; }
 done
+# The Wi-Fi's passphrase in /efi/gopura.conf: the loader's partition is of a group of its own, which the kiosk has and the
+# fetcher has not, and the fetcher does not see the folder.
+group=gopura-conf
+grep -q "^group=.*\^$group:" image/init || { echo "image/init: /efi is not of the group $group"; failed=1; }
+grep -q "^g $group " image/root/usr/lib/sysusers.d/gopura.conf || { echo "sysusers.d: no group $group"; failed=1; }
+! grep -q "^m .* $group$" image/root/usr/lib/sysusers.d/gopura.conf || { echo "sysusers.d: $group is for units to name, not for users"; failed=1; }
+for unit in kiosk safe fetch; do
+	has=no wants=yes
+	! grep -qE "^(Supplementary)?Groups?=.*\b$group\b" "systemd/gopura-$unit.service" || has=yes
+	[ "$unit" != fetch ] || wants=no
+	[ "$has" = "$wants" ] || { echo "gopura-$unit.service: in the group $group: $has, not $wants"; failed=1; }
+done
+grep -qE '^InaccessiblePaths=.*-?/efi( |$)' systemd/gopura-fetch.service || { echo "gopura-fetch.service: it sees /efi"; failed=1; }
 # The self-test looks at the terminal that will run: both have the same options.
 options() { grep "^$1=" systemd/gopura-kiosk.service | grep -oE -e '--[a-z]+ [^ ]+' | grep -vE -e '--(figures|visits)'; }
 [ "$(options ExecStartPre)" = "$(options ExecStart)" ] ||

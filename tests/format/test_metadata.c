@@ -129,6 +129,30 @@ static void no_file_passes_for_another_roles(void **state)
 	buffer_finish(&file);
 }
 
+static void a_timestamp_may_say_when_it_was_signed(void **state)
+{
+	static const struct {
+		int64_t issued_s;
+		int rc;
+	} times[] = { { 0, 0 }, { 1, 0 }, { 9, 0 }, { 10, -EBADMSG } /* after it expires */ };
+	const struct trust_root trust = sample_root();
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(times); i++) {
+		const struct timestamp stamp = { .sequence = 3,
+						 .expires_s = 9,
+						 .issued_s = times[i].issued_s };
+		struct timestamp back;
+		struct buffer file;
+
+		buffer_init(&file, METADATA_FILE_BYTES_MOST);
+		CHECK(timestamp_encode(&file, &stamp, &keys[4], 1) == 0);
+		CHECK(timestamp_decode(&back, &trust, buffer_bytes(&file), NULL) == times[i].rc);
+		CHECK(times[i].rc < 0 || back.issued_s == times[i].issued_s);
+		buffer_finish(&file);
+	}
+}
+
 static void a_root_needs_its_threshold(void **state)
 {
 	struct trust_root root = sample_root(), back;
@@ -286,6 +310,7 @@ int main(void)
 		cmocka_unit_test(no_damage_gives_another_release),
 		cmocka_unit_test(a_wrong_or_missing_key_is_rejected),
 		cmocka_unit_test(no_file_passes_for_another_roles),
+		cmocka_unit_test(a_timestamp_may_say_when_it_was_signed),
 		cmocka_unit_test(a_root_needs_its_threshold),
 		cmocka_unit_test(the_next_root_is_signed_by_old_and_new),
 		cmocka_unit_test(even_a_signed_payload_is_read_strictly),

@@ -181,7 +181,8 @@ static void work(void)
 	const uint32_t three = object_number(3, OBJECTS);
 
 	promise(state, 0, 0);
-	CHECK(state_set_trust(state, (struct bytes){ (const uint8_t *)"root", 4 }) == 0);
+	CHECK(state_set_trust(state, (struct bytes){ (const uint8_t *)"root", 4 },
+			      STATE_CLEAR_NOTHING) == 0);
 	promise(state, 0, 0);
 	switch_to(cache, state, 1);
 	prove(state, 1);

@@ -3,8 +3,14 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
+#include <sodium.h>
+
+#include "format/metadata.h"
+#include "storage/db.h"
+#include "storage/state_record.h"
 #include "tests/check.h"
 #include "tests/storage/fault_vfs.h"
 
@@ -93,7 +99,8 @@ static void remembers_across_a_restart(void **unused)
 	(void)unused;
 	CHECK(active(state) == 0 && state_sequence_floor(state) == 0);
 	CHECK(state_trust(state, &trust) == -ENOENT);
-	CHECK(state_set_trust(state, (struct bytes){ (const uint8_t *)"root", 4 }) == 0);
+	CHECK(state_set_trust(state, (struct bytes){ (const uint8_t *)"root", 4 },
+			      STATE_CLEAR_NOTHING) == 0);
 	CHECK(activate(state, 3) == 0);
 	CHECK(state_raise_time_floor(state, 1700000000) == 0);
 	state_destroy(state);
@@ -148,7 +155,7 @@ static void refuses_a_file_past_its_ceiling(void **unused)
 	CHECK(activate(state, 1) == 0);
 	next.file = (struct bytes){ large, STATE_FILE_BYTES_MOST + 1 };
 	CHECK(state_activate(state, &next) == -EFBIG);
-	CHECK(state_set_trust(state, next.file) == -EFBIG);
+	CHECK(state_set_trust(state, next.file, STATE_CLEAR_NOTHING) == -EFBIG);
 	CHECK(active(state) == 1 && state_sequence_floor(state) == 1);
 	free(large);
 	state_destroy(state);
@@ -206,6 +213,169 @@ static void keeps_the_floor_when_an_old_database_is_put_back(void **unused)
 	CHECK(activate(state, 5) == -ESTALE);
 	buffer_finish(&old);
 	state_destroy(state);
+}
+
+/* ---- floors that fall with the keys that set them */
+
+static struct signing_key root_key;
+
+/* root/VERSION.json, as far as the state looks at it. */
+static void encode_root(struct buffer *out, uint32_t version)
+{
+	struct trust_root root = { .version = version, .expires_s = 2000000000 };
+
+	CHECK(sodium_init() >= 0);
+	if (version == 1)
+		CHECK(crypto_sign_keypair(root_key.public_key, root_key.secret) == 0);
+	for (int role = 0; role < 3; role++) {
+		memcpy(root.roles[role].keys[0], root_key.public_key, KEY_BYTES);
+		root.roles[role].key_count = root.roles[role].threshold = 1;
+	}
+	buffer_init(out, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(out, &root, &root_key, 1) == 0);
+}
+
+static int set_root(struct state *state, uint32_t version, enum state_clear clear)
+{
+	struct buffer root;
+	int rc;
+
+	encode_root(&root, version);
+	rc = state_set_trust(state, buffer_bytes(&root), clear);
+	buffer_finish(&root);
+	return rc;
+}
+
+static bool has_root(const struct state *state, uint32_t version)
+{
+	struct trust_root root = { 0 };
+	struct bytes file;
+
+	return state_trust(state, &file) == 0 && trust_root_first(&root, file, NULL) == 0 &&
+	       root.version == version;
+}
+
+static void clears_the_floors_that_it_is_told_to(void **unused)
+{
+	(void)unused;
+	for (int clear = STATE_CLEAR_NOTHING; clear <= STATE_CLEAR_BOTH_FLOORS; clear++) {
+		struct state *state = open_state();
+
+		CHECK(set_root(state, 1, STATE_CLEAR_BOTH_FLOORS) == 0);
+		CHECK(activate(state, 9) == 0);
+		CHECK(state_raise_time_floor(state, 1700000000) == 0);
+		CHECK(set_root(state, 2, (enum state_clear)clear) == 0);
+		for (int start = 0; start < 2; start++) {
+			CHECK(active(state) == 9 && has_root(state, 2));
+			CHECK(state_sequence_floor(state) ==
+			      (clear & STATE_CLEAR_SEQUENCE_FLOOR ? 0 : 9));
+			CHECK(state_time_floor_s(state) ==
+			      (clear & STATE_CLEAR_TIME_FLOOR ? 0 : 1700000000));
+			state_destroy(state);
+			state = open_state();
+		}
+		CHECK(activate(state, 3) == (clear & STATE_CLEAR_SEQUENCE_FLOOR ? 0 : -ESTALE));
+		state_destroy(state);
+	}
+}
+
+/* Power goes at every write in turn: the root and what it clears are both there or both not. */
+static void a_root_and_what_it_clears_are_one_change(void **unused)
+{
+	int olds = 0, news = 0;
+	char command[128];
+
+	(void)unused;
+	snprintf(command, sizeof(command), "rm -f %s*", path);
+	for (long at = 0; at < 40; at++) {
+		struct state *state;
+		bool is_new;
+		int rc;
+
+		CHECK(system(command) == 0);
+		state = open_state();
+		CHECK(set_root(state, 1, STATE_CLEAR_NOTHING) == 0 && activate(state, 9) == 0);
+		CHECK(state_raise_time_floor(state, 1700000000) == 0);
+		fault_set(FAULT_POWER_CUT, at, 0);
+		rc = set_root(state, 2, STATE_CLEAR_BOTH_FLOORS);
+		state_destroy(state);
+		fault_set(FAULT_NONE, 0, 0);
+		state = open_state();
+		is_new = has_root(state, 2);
+		CHECK(is_new || has_root(state, 1));
+		CHECK(rc < 0 || is_new);
+		CHECK(state_sequence_floor(state) == (is_new ? 0 : 9));
+		CHECK(state_time_floor_s(state) == (is_new ? 0 : 1700000000));
+		CHECK(active(state) == 9);
+		state_destroy(state);
+		olds += !is_new;
+		news += is_new;
+	}
+	CHECK(olds > 0 && news > 0);
+}
+
+/* The power went after the database was written and before PATH.second was. */
+static void a_second_copy_of_before_the_root_does_not_bring_the_floors_back(void **unused)
+{
+	struct state *state = open_state();
+	struct buffer second;
+	char name[128];
+
+	(void)unused;
+	snprintf(name, sizeof(name), "%s.second", path);
+	CHECK(set_root(state, 1, STATE_CLEAR_NOTHING) == 0 && activate(state, 9) == 0);
+	CHECK(state_raise_time_floor(state, 1700000000) == 0);
+	buffer_init(&second, 1 << 20);
+	CHECK(buffer_read_file(&second, name) == 0);
+	CHECK(set_root(state, 2, STATE_CLEAR_BOTH_FLOORS) == 0);
+	state_destroy(state);
+	CHECK(bytes_write_file(buffer_bytes(&second), name) == 0);
+	state = open_state();
+	CHECK(has_root(state, 2) && active(state) == 9);
+	CHECK(state_sequence_floor(state) == 0 && state_time_floor_s(state) == 0);
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	buffer_finish(&second);
+}
+
+/* Earlier programs wrote what the clock had said; there it was 2099 once. */
+static void write_an_earlier_programs_time_floor(const struct record *record)
+{
+	sqlite3_stmt *update = NULL;
+	struct hash check;
+	sqlite3 *db;
+
+	CHECK(record_write_second(record, path) == 0 && record_hash(&check, record) == 0);
+	CHECK(db_open(&db, path) == 0);
+	CHECK(sqlite3_prepare_v2(db, "UPDATE record SET time_floor_s = ?, check_hash = ?", -1,
+				 &update, NULL) == SQLITE_OK);
+	sqlite3_bind_int64(update, 1, record->stored_time_floor_s);
+	sqlite3_bind_blob(update, 2, check.bytes, HASH_BYTES, SQLITE_STATIC);
+	CHECK(sqlite3_step(update) == SQLITE_DONE && sqlite3_changes(db) == 1);
+	sqlite3_finalize(update);
+	sqlite3_close(db);
+}
+
+static void drops_a_time_floor_that_a_clock_had_set(void **unused)
+{
+	struct state *state = open_state();
+	struct record record;
+
+	(void)unused;
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	record_init(&record);
+	CHECK(record_read_second(&record, path) == 0);
+	record.stored_time_floor_s = 4090000000;
+	write_an_earlier_programs_time_floor(&record);
+	record_finish(&record);
+	for (int start = 0; start < 2; start++) {
+		state = open_state();
+		CHECK(active(state) == 3 && state_sequence_floor(state) == 3 && !exists(".broken"));
+		CHECK(state_time_floor_s(state) == (start ? 1700000000 : 0));
+		CHECK(state_raise_time_floor(state, 1700000000) == 0);
+		state_destroy(state);
+	}
 }
 
 static void survives_a_database_cut_anywhere(void **unused)
@@ -367,6 +537,10 @@ int main(void)
 		IN_A_FOLDER(comes_back_from_the_second_copy),
 		IN_A_FOLDER(begins_anew_when_both_copies_are_damaged),
 		IN_A_FOLDER(keeps_the_floor_when_an_old_database_is_put_back),
+		IN_A_FOLDER(clears_the_floors_that_it_is_told_to),
+		IN_A_FOLDER(a_root_and_what_it_clears_are_one_change),
+		IN_A_FOLDER(a_second_copy_of_before_the_root_does_not_bring_the_floors_back),
+		IN_A_FOLDER(drops_a_time_floor_that_a_clock_had_set),
 		IN_A_FOLDER(survives_a_database_cut_anywhere),
 		IN_A_FOLDER(keeps_the_last_release_that_worked),
 		IN_A_FOLDER(falls_back_without_lowering_the_floor),
