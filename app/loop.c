@@ -61,6 +61,7 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 	struct kiosk *kiosk = data;
 
 	follow_meta(kiosk->follow, role, version, bytes, source);
+	net_client_trust(kiosk->net, follow_root_version(kiosk->follow));
 	kiosk_redraw(kiosk);
 }
 
@@ -199,10 +200,11 @@ static int start_net(struct kiosk *kiosk)
 		fetch_beside(program);
 		net.program = program;
 	}
-	rc = net_client_create(&kiosk->net, &net);
+	rc = follow_create(&kiosk->follow, &follow);
 	if (rc < 0)
 		return rc;
-	return follow_create(&kiosk->follow, &follow);
+	net.root_version = follow_root_version(kiosk->follow);
+	return net_client_create(&kiosk->net, &net);
 }
 
 int kiosk_watch(struct kiosk *kiosk, int fd)

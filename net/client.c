@@ -118,6 +118,12 @@ static void say_releases(struct net_client *client)
 	}
 }
 
+static void say_trust(struct net_client *client)
+{
+	say(client, &(struct message){ .kind = MESSAGE_TRUST,
+				       .root_version = client->options.root_version });
+}
+
 static void say_everything(struct net_client *client)
 {
 	struct message message = { .kind = MESSAGE_ASK_META, .period_s = client->options.poll_s };
@@ -126,6 +132,7 @@ static void say_everything(struct net_client *client)
 	size_t at = 0;
 
 	say_releases(client);
+	say_trust(client);
 	say(client, &message);
 	message.kind = MESSAGE_KEEP;
 	while ((keep = by_hash_next(&client->keeps, &at))) {
@@ -377,6 +384,8 @@ static int obey(struct net_client *client, const struct message *message, int pa
 		if (events->meta)
 			events->meta(data, message->meta.role, message->meta.version,
 				     message->meta.bytes, message->meta.source);
+		if (message->meta.role == META_ROOT) /* taken or not, the fetcher waits for it */
+			say_trust(client);
 		return 0;
 	case MESSAGE_SYNCED:
 		if (events->synced)
@@ -619,6 +628,11 @@ void net_client_drop(struct net_client *client, struct hash hash)
 void net_client_sync(struct net_client *client)
 {
 	say(client, &(struct message){ .kind = MESSAGE_SYNC });
+}
+
+void net_client_trust(struct net_client *client, uint32_t root_version)
+{
+	client->options.root_version = root_version;
 }
 
 void net_client_keep(struct net_client *client, struct hash hash)

@@ -44,6 +44,7 @@ struct fetch {
 	struct poll *poll;
 	struct stick *stick;            /* NULL: none is looked for */
 	struct figures_socket *figures; /* NULL: not offered */
+	uint32_t root_version;          /* of the trust root that the kiosk has */
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
 	int64_t said_ms;             /* when the kiosk was last told the figures */
@@ -175,6 +176,13 @@ static int obey(struct fetch *fetch, const struct message *message)
 	case MESSAGE_ASK_META:
 		poll_ask(fetch->poll, message->period_s);
 		stick_forget(fetch->stick); /* it is told again */
+		return 0;
+	case MESSAGE_TRUST:
+		if (message->root_version != fetch->root_version)
+			stick_forget(fetch->stick); /* its release may be good under this root */
+		fetch->root_version = message->root_version;
+		stick_trust(fetch->stick, message->root_version);
+		poll_trust(fetch->poll, message->root_version);
 		return 0;
 	case MESSAGE_SYNC:
 		send_to_kiosk(fetch,

@@ -15,7 +15,7 @@
 
 enum {
 	LOOK_MS = 3000,
-	ROOTS_MOST = 64,
+	ROOTS_MOST = 64, /* told in one look; the kiosk's word on them begins the next */
 	LOCATOR_BYTES_MOST = 64 << 20,
 	NAME_BYTES = 64,
 };
@@ -30,8 +30,9 @@ struct stick {
 	struct stick_options options;
 	char folder[PATH_MAX]; /* of the release: the options' or release/ in it */
 	int64_t look_ms;
-	struct buffer stamp; /* timestamp.json as it was told; empty: no stick */
-	struct buffer file;  /* read last */
+	uint32_t root_version; /* that the kiosk has */
+	struct buffer stamp;   /* timestamp.json as it was told; empty: no stick */
+	struct buffer file;    /* read last */
 	struct stick_release releases[MESSAGE_RELEASES_MOST];
 	size_t next_release; /* to be overwritten */
 	struct hash pack;    /* that is open */
@@ -86,6 +87,12 @@ void stick_forget(struct stick *stick)
 		return;
 	buffer_clear(&stick->stamp);
 	stick->look_ms = 0;
+}
+
+void stick_trust(struct stick *stick, uint32_t root_version)
+{
+	if (stick)
+		stick->root_version = root_version;
 }
 
 /* ---- files */
@@ -150,11 +157,13 @@ static void say_all(struct stick *stick)
 {
 	char name[NAME_BYTES];
 
-	for (uint32_t n = 1; n <= ROOTS_MOST; n++) {
-		snprintf(name, sizeof(name), "root/%u.json", n);
+	for (uint32_t i = 1; i <= ROOTS_MOST; i++) {
+		const uint32_t version = stick->root_version + i;
+
+		snprintf(name, sizeof(name), "root/%u.json", version);
 		if (read_file(stick, name, MESSAGE_META_BYTES_MOST) < 0)
 			break;
-		say(stick, META_ROOT, n);
+		say(stick, META_ROOT, version);
 	}
 	stick->options.meta(stick->options.data, META_TIMESTAMP, 0, buffer_bytes(&stick->stamp));
 	if (read_file(stick, "release.json", MESSAGE_META_BYTES_MOST) == 0)

@@ -26,6 +26,9 @@ int64_t stick_due_ms(const struct stick *stick); /* of stick_work; INT64_MAX: ne
 /* At the next stick_work all is told again: another kiosk asks. */
 void stick_forget(struct stick *stick);
 
+/* The version of the trust root that the kiosk has: roots are told from the one after it on. */
+void stick_trust(struct stick *stick, uint32_t root_version);
+
 /* The bytes of a want, where the stick's locator of this release says; unchecked. -ENOENT: not
  * there. */
 must_check int stick_get(struct stick *stick, struct hash root, const struct message_want *want,

@@ -72,6 +72,7 @@ struct stage {
 	int objects, missing, metas, statuses, synced;
 	struct hash last;
 	enum missing_reason reason;
+	uint32_t root_version; /* that on_meta finds good; 0: none is */
 	uint64_t received_bytes;
 };
 
@@ -108,6 +109,8 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 	CHECK(role == META_ROOT && version == 4 && bytes.size == 9);
 	CHECK(source == META_FROM_STICK);
 	stage->metas++;
+	if (stage->root_version) /* it was good */
+		net_client_trust(stage->client, stage->root_version);
 }
 
 static void on_synced(void *data, bool done)
@@ -154,6 +157,7 @@ static int set_up(void **state)
 	struct net_client_options options = {
 		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = stage,
+		.root_version = 3,
 	};
 
 	*state = stage;
@@ -196,7 +200,12 @@ static void ring(struct stage *stage)
 	dispatch(stage);
 }
 
-/* The next message that the fetcher gets; MESSAGE_ASK_META of a connection's begin left out. */
+static bool is_of_the_begin(const struct message *message)
+{
+	return message->kind == MESSAGE_ASK_META || message->kind == MESSAGE_TRUST;
+}
+
+/* The next message that the fetcher gets; those of a connection's begin left out. */
 static struct message heard(struct stage *stage)
 {
 	struct message message;
@@ -204,7 +213,7 @@ static struct message heard(struct stage *stage)
 
 	do
 		rc = packets_receive(&stage->fetcher, &message, &passed);
-	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	while (rc == 0 && is_of_the_begin(&message));
 	CHECK(rc == 0);
 	return message;
 }
@@ -216,7 +225,7 @@ static bool hears_nothing(struct stage *stage)
 
 	do
 		rc = packets_receive(&stage->fetcher, &message, &passed);
-	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	while (rc == 0 && is_of_the_begin(&message));
 	return rc == -EAGAIN;
 }
 
@@ -279,6 +288,43 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	CHECK(stage->statuses == 1 && stage->received_bytes == 500);
 }
 
+/* Everything is said again; returns having seen the new connection. */
+static void reconnects(struct stage *stage)
+{
+	packets_finish(&stage->fetcher);
+	dispatch(stage);
+	accept_client(stage);
+	dispatch(stage);
+}
+
+/* The version in the next MESSAGE_TRUST, with whatever comes before it skipped. */
+static uint32_t heard_trust(struct stage *stage)
+{
+	struct message message;
+	int passed;
+
+	do
+		CHECK(packets_receive(&stage->fetcher, &message, &passed) == 0);
+	while (message.kind != MESSAGE_TRUST);
+	return message.root_version;
+}
+
+static void tells_after_every_root_which_one_it_has(void **state)
+{
+	struct stage *stage = *state;
+	struct message meta = { .kind = MESSAGE_META,
+				.meta = { META_ROOT, 4, of(stone), META_FROM_STICK } };
+
+	CHECK(heard_trust(stage) == 3); /* on connecting */
+	tell(stage, meta, -1);
+	CHECK(heard_trust(stage) == 3); /* refused */
+	stage->root_version = 4;
+	tell(stage, meta, -1);
+	CHECK(heard_trust(stage) == 4);
+	reconnects(stage);
+	CHECK(heard_trust(stage) == 4);
+}
+
 static void asks_for_what_came_to_be_safe(void **state)
 {
 	struct stage *stage = *state;
@@ -316,15 +362,6 @@ static void takes_large_objects_sealed(void **state)
 	message.object.bytes = (struct bytes){ NULL, 0 };
 	tell(stage, message, packets_seal(of(stone)));
 	CHECK(stage->objects == 1);
-}
-
-/* Everything is said again; returns having seen the new connection. */
-static void reconnects(struct stage *stage)
-{
-	packets_finish(&stage->fetcher);
-	dispatch(stage);
-	accept_client(stage);
-	dispatch(stage);
 }
 
 static void says_everything_again_after_the_fetcher_died(void **state)
@@ -486,6 +523,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		STAGED(brings_what_is_wanted_once),
 		STAGED(passes_on_what_is_missing_and_meta_and_status),
+		STAGED(tells_after_every_root_which_one_it_has),
 		STAGED(asks_for_what_came_to_be_safe),
 		STAGED(drops_and_forgets),
 		STAGED(takes_large_objects_sealed),

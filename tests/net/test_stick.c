@@ -152,6 +152,21 @@ static void tells_of_a_stick_once(void **state)
 	CHECK(look(stage) && strstr(stage->said, "timestamp0:U"));
 }
 
+static void tells_the_roots_after_the_one_that_the_kiosk_has(void **state)
+{
+	struct stage *stage = *state;
+
+	put_release(stage, "", "T");
+	put_text(stage, "root/71.json", "B");
+	put_text(stage, "root/72.json", "C");
+	stick_trust(stage->stick, 70);
+	CHECK(look(stage));
+	CHECK(strcmp(stage->said, "root71:B root72:C timestamp0:T release0:R ") == 0);
+	stick_trust(stage->stick, 72);
+	stick_forget(stage->stick);
+	CHECK(look(stage) && strcmp(stage->said, "timestamp0:T release0:R ") == 0);
+}
+
 static void finds_a_folder_named_release(void **state)
 {
 	struct stage *stage = *state;
@@ -241,6 +256,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(tells_of_a_stick_once),
+		STAGED(tells_the_roots_after_the_one_that_the_kiosk_has),
 		STAGED(finds_a_folder_named_release),
 		STAGED(gives_objects_by_the_locator),
 		STAGED(is_gone_when_it_is_pulled_out),
