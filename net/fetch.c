@@ -65,6 +65,8 @@ static void lose_kiosk(struct fetch *fetch, const char *why)
 		return;
 	log_info("net", "the kiosk is gone: %s", why);
 	fetch->has_kiosk = fetch->kiosk_waits = false;
+	if (watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, 0, EPOLL_CTL_DEL) < 0)
+		log_debug("net", "the kiosk's socket was not watched");
 	packets_finish(&fetch->kiosk);
 	bring_forget_all(fetch->bring);
 	poll_stop(fetch->poll);

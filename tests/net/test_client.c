@@ -16,6 +16,7 @@
 #include "base/clock.h"
 #include "net/packets.h"
 #include "tests/check.h"
+#include "tests/net/lingering.h"
 
 /* Time goes on by itself, and by what a test adds; timers ring when a test says so (ring). */
 static int64_t later_ms;
@@ -130,12 +131,14 @@ static void accept_client(struct stage *stage)
 {
 	struct pollfd ready = { .fd = stage->listener, .events = POLLIN };
 
-	for (int i = 0; i < 100 && poll(&ready, 1, 0) == 0; i++) {
+	/* It may take a while: threads that close what was before come to it when they come. */
+	for (int i = 0; i < 2000 && poll(&ready, 1, 10) == 0; i++) {
 		struct pollfd client = { .fd = net_client_fd(stage->client), .events = POLLIN };
 
-		if (poll(&client, 1, 100) > 0)
+		if (poll(&client, 1, 0) > 0)
 			CHECK(net_client_dispatch(stage->client) == 0);
 	}
+	CHECK(poll(&ready, 1, 0) == 1);
 	packets_finish(&stage->fetcher);
 	packets_init(&stage->fetcher, accept(stage->listener, NULL, NULL));
 	CHECK(stage->fetcher.fd >= 0);
@@ -435,6 +438,97 @@ static void leaves_a_fetcher_that_lies(void **state)
 	CHECK(heard(stage).kind == MESSAGE_WANT);
 }
 
+/* The kiosk has hung up, and comes again. */
+static void comes_again(struct stage *stage)
+{
+	dispatch(stage);
+	accept_client(stage);
+	dispatch(stage);
+}
+
+/* A captured fetcher passes what takes long to close, wanted or not. */
+static void is_not_held_up_by_a_socket_that_lingers(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	const struct message objects[] = { object_of(stone), object_of(brick) };
+
+	net_client_want(stage->client, &want);
+	for (size_t i = 0; i < ARRAY_COUNT(objects); i++) {
+		struct message message = objects[i];
+		int64_t began_ms;
+		struct buffer wire;
+		int peer, fd = lingering_socket(&peer);
+
+		message.object.bytes = (struct bytes){ NULL, 0 };
+		buffer_init(&wire, MESSAGE_BYTES_MOST);
+		message_encode(&wire, &message);
+		send_with(stage->fetcher.fd, wire.data, wire.size, &fd, 1);
+		buffer_finish(&wire);
+		began_ms = clock_now_ms();
+		comes_again(stage);
+		CHECK(clock_now_ms() - began_ms < LINGER_S * 1000 / 2);
+		close(peer);
+	}
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 1);
+}
+
+static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message message = object_of(brick);
+
+	net_client_want(stage->client, &want);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	/* Never hashed, so nobody sees that it is a lie. */
+	message.object.bytes = of(stone);
+	message.object.size = (uint32_t)of(stone).size;
+	for (int i = 0; i < 16; i++)
+		tell(stage, message, -1);
+	tell(stage, object_of(stone), -1); /* some may be an error */
+	CHECK(stage->objects == 1);
+	tell(stage, message, -1);
+	comes_again(stage);
+	net_client_want(stage->client, &want);
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 2);
+}
+
+/* Each want that was taken back or said again may have been on its way. */
+static void takes_what_was_on_its_way_for_no_crime(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	for (int i = 0; i < 500; i++) {
+		net_client_want(stage->client, &want);
+		net_client_drop(stage->client, want.hash);
+		net_client_want(stage->client, &want);
+		want.priority++;
+		net_client_want(stage->client, &want);
+		for (int sent = 0; sent < 3; sent++)
+			tell(stage, object_of(stone), -1);
+	}
+	CHECK(stage->objects == 500);
+	CHECK(heard(stage).kind == MESSAGE_WANT); /* on the first connection still */
+}
+
+static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	for (int i = 0; i < 2000000; i++) { /* some 300 MB, all in all */
+		want.priority++;
+		net_client_want(stage->client, &want);
+	}
+	ring(stage);
+	comes_again(stage);
+	CHECK(heard(stage).want.priority == want.priority);
+}
+
 static void does_not_block_on_a_fetcher_that_hangs(void **state)
 {
 	struct stage *stage = *state;
@@ -531,6 +625,10 @@ int main(void)
 		STAGED(begins_anew_with_another_release),
 		STAGED(leaves_a_fetcher_that_lies),
 		STAGED(leaves_a_fetcher_that_says_nothing),
+		STAGED(is_not_held_up_by_a_socket_that_lingers),
+		STAGED(leaves_a_fetcher_that_sends_what_nobody_wants),
+		STAGED(takes_what_was_on_its_way_for_no_crime),
+		STAGED(keeps_its_queue_to_a_fetcher_that_does_not_read_short),
 		STAGED(does_not_block_on_a_fetcher_that_hangs),
 		cmocka_unit_test(says_what_is_wrong_with_its_options),
 		cmocka_unit_test(survives_a_fetcher_that_cannot_start),
