@@ -174,6 +174,7 @@ static int start_net(struct kiosk *kiosk)
 		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
 		.ca_file = kiosk->options.ca_path,
+		.redirect_hosts = kiosk->options.redirect_hosts,
 		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = kiosk,
 	};

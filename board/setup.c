@@ -117,6 +117,8 @@ static void write_fetcher(struct writing *writing)
 		put(writing, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)
 		put(writing, " --rate-limit %u", t->rate_limit_kib);
+	if (t->redirect_hosts[0])
+		put(writing, " --redirect-hosts %s", t->redirect_hosts);
 	if (t->ca[0]) {
 		conf_folder(writing->setup, beside);
 		put(writing, " --ca %s/%s", beside, t->ca);

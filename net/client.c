@@ -224,7 +224,7 @@ static int start_fetcher(struct net_client *client)
 {
 	const struct net_client_options *options = &client->options;
 	char budget[32], fd[8];
-	const char *arguments[16] = {
+	const char *arguments[20] = {
 		options->program, "--release", options->release_url, "--cache", options->cache_path,
 		"--fd",           fd,          "--cache-budget",     budget
 	};
@@ -241,6 +241,10 @@ static int start_fetcher(struct net_client *client)
 	if (options->ca_file) {
 		arguments[count++] = "--ca";
 		arguments[count++] = options->ca_file;
+	}
+	if (options->redirect_hosts) {
+		arguments[count++] = "--redirect-hosts";
+		arguments[count++] = options->redirect_hosts;
 	}
 	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) < 0)
 		return -errno;
@@ -507,9 +511,10 @@ static int copy_text(const char **text)
 
 static int copy_options(struct net_client *client, const struct net_client_options *options)
 {
-	const char **const texts[] = { &client->options.socket_path, &client->options.program,
-				       &client->options.release_url, &client->options.cache_path,
-				       &client->options.ca_file,     &client->options.stick_path };
+	const char **const texts[] = { &client->options.socket_path,   &client->options.program,
+				       &client->options.release_url,   &client->options.cache_path,
+				       &client->options.ca_file,       &client->options.stick_path,
+				       &client->options.redirect_hosts };
 	int rc = 0;
 
 	client->options = *options;
@@ -594,6 +599,7 @@ void net_client_destroy(struct net_client *client)
 	free((char *)client->options.cache_path);
 	free((char *)client->options.ca_file);
 	free((char *)client->options.stick_path);
+	free((char *)client->options.redirect_hosts);
 	free(client);
 }
 

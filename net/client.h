@@ -31,6 +31,7 @@ struct net_client_options {
 	uint32_t poll_s;       /* between looks for a new release; 0: the fetcher's default */
 	uint32_t root_version; /* of the trust root that the kiosk has; 0: none */
 	const char *ca_file;   /* copied; certificate authority for https; NULL: the system's */
+	const char *redirect_hosts; /* copied; for a fetcher that is started; NULL: none */
 	struct net_client_events events;
 	void *data;
 };

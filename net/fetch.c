@@ -439,6 +439,7 @@ static int create_parts(struct fetch *fetch)
 	const struct fetch_options *options = fetch->options;
 	struct http_options http = { .url = options->release_url,
 				     .ca_file = options->ca_file,
+				     .redirect_hosts = options->redirect_hosts,
 				     .stall_s = options->stall_s };
 	struct cache_options cache = { .path = options->cache_path,
 				       .budget_bytes = options->cache_budget_bytes };
