@@ -28,7 +28,14 @@ enum {
 	ALIVE_MS = 30000,           /* while they do not: the kiosk shall know that we live */
 };
 
-enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL, SOURCE_FIGURES };
+enum source {
+	SOURCE_LISTENER,
+	SOURCE_KIOSK,
+	SOURCE_HTTP,
+	SOURCE_STICK,
+	SOURCE_SIGNAL,
+	SOURCE_FIGURES,
+};
 
 struct fetch {
 	const struct fetch_options *options;
@@ -134,11 +141,14 @@ static void on_missing(void *data, struct hash hash, enum missing_reason reason)
 	send_to_kiosk(data, &message, -1);
 }
 
+static bool kiosk_has_room(const struct fetch *fetch)
+{
+	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+}
+
 static bool has_room(void *data)
 {
-	const struct fetch *fetch = data;
-
-	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+	return kiosk_has_room(data);
 }
 
 static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
@@ -155,6 +165,20 @@ static void on_stick_meta(void *data, enum meta_role role, uint32_t version, str
 				   .meta = { role, version, bytes, META_FROM_STICK } };
 
 	send_to_kiosk(data, &message, -1);
+}
+
+static void on_stick_object(void *data, struct hash hash, int rc, struct bytes bytes)
+{
+	struct fetch *fetch = data;
+
+	bring_stick_answered(fetch->bring, hash, rc, bytes);
+}
+
+static bool is_wanted_of_stick(void *data, struct hash hash)
+{
+	const struct fetch *fetch = data;
+
+	return bring_wants_of_stick(fetch->bring, hash);
 }
 
 /* ---- what the kiosk says */
@@ -318,7 +342,7 @@ static void work(struct fetch *fetch)
 	bool waits;
 
 	if (fetch->has_kiosk) {
-		if (stick_work(fetch->stick))
+		if (stick_work(fetch->stick, kiosk_has_room(fetch)))
 			bring_ask_again(fetch->bring);
 		bring_work(fetch->bring);
 		poll_work(fetch->poll);
@@ -338,10 +362,11 @@ static int timeout_ms(const struct fetch *fetch)
 
 	if (fetch->has_kiosk) {
 		int64_t bring_ms = bring_due_ms(fetch->bring), poll_ms = poll_due_ms(fetch->poll);
+		int64_t stick_ms = stick_due_ms(fetch->stick, kiosk_has_room(fetch));
 
 		due_ms = bring_ms < due_ms ? bring_ms : due_ms;
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
-		due_ms = stick_due_ms(fetch->stick) < due_ms ? stick_due_ms(fetch->stick) : due_ms;
+		due_ms = stick_ms < due_ms ? stick_ms : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
 	}
 	due_ms = service_due_ms() < due_ms ? service_due_ms() : due_ms;
@@ -363,6 +388,9 @@ static int dispatch(struct fetch *fetch, enum source source)
 		return 0;
 	case SOURCE_HTTP:
 		return http_dispatch(fetch->http);
+	case SOURCE_STICK:
+		stick_heard(fetch->stick);
+		return 0;
 	case SOURCE_SIGNAL:
 		fetch->ends = true;
 		return 0;
@@ -452,6 +480,8 @@ static int create_parts(struct fetch *fetch)
 	};
 	struct stick_options stick = { .folder = options->stick_path,
 				       .meta = on_stick_meta,
+				       .object = on_stick_object,
+				       .is_wanted = is_wanted_of_stick,
 				       .data = fetch };
 	int rc = http_create(&fetch->http, &http);
 
@@ -470,6 +500,8 @@ static int create_parts(struct fetch *fetch)
 		rc = poll_create(&fetch->poll, &poll);
 	if (rc == 0)
 		rc = watch(fetch, http_fd(fetch->http), SOURCE_HTTP, EPOLLIN, EPOLL_CTL_ADD);
+	if (rc == 0 && fetch->stick)
+		rc = watch(fetch, stick_fd(fetch->stick), SOURCE_STICK, EPOLLIN, EPOLL_CTL_ADD);
 	return rc;
 }
 

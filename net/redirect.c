@@ -47,7 +47,7 @@ bool redirect_hosts_valid(const char *hosts)
 		return true;
 	if (strlen(hosts) >= sizeof(copy))
 		return false;
-	strcpy(copy, hosts);
+	memcpy(copy, hosts, strlen(hosts) + 1);
 	while ((host = next_host(&left))) {
 		if (!cut_port(host, &port) || !isalnum((unsigned char)host[0]) ||
 		    strlen(host) >= HOST_BYTES || ++count > REDIRECT_HOSTS_MAX)
@@ -85,7 +85,7 @@ static bool get_part(CURLU *url, CURLUPart part, char *out, size_t bytes)
 		return false;
 	fits = strlen(text) < bytes;
 	if (fits)
-		strcpy(out, text);
+		memcpy(out, text, strlen(text) + 1);
 	curl_free(text);
 	return fits;
 }
