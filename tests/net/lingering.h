@@ -4,6 +4,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -37,9 +38,10 @@ static inline int lingering_socket(int *peer)
 	return fd;
 }
 
-/* A packet with so many descriptors, which the sender then has no more. */
-static inline void send_with(int socket_fd, const void *bytes, size_t size, const int *fds,
-			     size_t count)
+/* A packet with so many descriptors, which the sender then has no more. false: the socket does not
+ * take it. */
+static inline bool try_send_with(int socket_fd, const void *bytes, size_t size, const int *fds,
+				 size_t count)
 {
 	union {
 		char bytes[CMSG_SPACE(253 * sizeof(int))];
@@ -51,14 +53,26 @@ static inline void send_with(int socket_fd, const void *bytes, size_t size, cons
 				 .msg_control = control.bytes,
 				 .msg_controllen = CMSG_SPACE(count * sizeof(int)) };
 	struct cmsghdr *rights = CMSG_FIRSTHDR(&header);
+	const struct linger none = { 0 };
+	ssize_t sent;
 
 	rights->cmsg_level = SOL_SOCKET;
 	rights->cmsg_type = SCM_RIGHTS;
 	rights->cmsg_len = CMSG_LEN(count * sizeof(int));
 	memcpy(CMSG_DATA(rights), fds, count * sizeof(int));
-	CHECK(sendmsg(socket_fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)size);
-	for (size_t i = 0; i < count; i++)
+	sent = sendmsg(socket_fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
+	for (size_t i = 0; i < count; i++) {
+		if (sent < 0) /* ours is the last one: it must not wait */
+			setsockopt(fds[i], SOL_SOCKET, SO_LINGER, &none, sizeof(none));
 		close(fds[i]);
+	}
+	return sent == (ssize_t)size;
+}
+
+static inline void send_with(int socket_fd, const void *bytes, size_t size, const int *fds,
+			     size_t count)
+{
+	CHECK(try_send_with(socket_fd, bytes, size, fds, count));
 }
 
 #endif
