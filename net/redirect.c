@@ -10,8 +10,8 @@
 enum { HOST_BYTES = 256 };
 
 struct place {
-	bool secret; /* https */
-	char host[HOST_BYTES];
+	bool secret;                             /* https */
+	char host[HOST_BYTES], user[HOST_BYTES]; /* user: "" where there is none */
 	unsigned port;
 };
 
@@ -90,16 +90,7 @@ static bool get_part(CURLU *url, CURLUPart part, char *out, size_t bytes)
 	return fits;
 }
 
-static bool has_user(CURLU *url)
-{
-	char *text = NULL;
-	const bool has = curl_url_get(url, CURLUPART_USER, &text, 0) == CURLUE_OK;
-
-	curl_free(text);
-	return has;
-}
-
-/* false: no url of http or https, or one that brings a password along. */
+/* false: no url of http or https. */
 static bool parse(struct place *out, const char *text)
 {
 	CURLU *url = curl_url();
@@ -108,11 +99,13 @@ static bool parse(struct place *out, const char *text)
 
 	if (!url)
 		return false;
-	good = curl_url_set(url, CURLUPART_URL, text, 0) == CURLUE_OK && !has_user(url) &&
+	good = curl_url_set(url, CURLUPART_URL, text, 0) == CURLUE_OK &&
 	       get_part(url, CURLUPART_SCHEME, scheme, sizeof(scheme)) &&
 	       get_part(url, CURLUPART_HOST, out->host, sizeof(out->host)) &&
 	       get_part(url, CURLUPART_PORT, port, sizeof(port));
 	if (good) {
+		if (!get_part(url, CURLUPART_USER, out->user, sizeof(out->user)))
+			out->user[0] = '\0';
 		out->secret = strcasecmp(scheme, "https") == 0;
 		out->port = (unsigned)strtoul(port, NULL, 10);
 		good = out->secret || strcasecmp(scheme, "http") == 0;
@@ -128,6 +121,8 @@ bool redirect_allowed(const char *server, const char *from, const char *to, cons
 	if (!parse(&home, server) || !parse(&now, from) || !parse(&next, to))
 		return false;
 	if (!next.secret && (home.secret || now.secret))
+		return false;
+	if (next.user[0] && strcmp(next.user, home.user) != 0) /* "museum.example@evil.example" */
 		return false;
 	if (strcasecmp(next.host, home.host) == 0 &&
 	    (next.port == home.port || (next.secret && !home.secret && next.port == 443)))

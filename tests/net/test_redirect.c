@@ -58,6 +58,18 @@ static void follows_hosts_that_were_named(void **state)
 	CHECK(!redirect_allowed(museum, museum, "https://a.cdn.example/x", named));
 }
 
+/* A server that is asked with a name and a password keeps them in a redirection of its own. */
+static void keeps_the_name_that_the_server_is_asked_with(void **state)
+{
+	static const char named[] = "https://guest:word@museum.example/temple";
+
+	(void)state;
+	CHECK(redirect_allowed(named, named, "https://guest:word@museum.example/x", NULL));
+	CHECK(redirect_allowed(named, named, "https://museum.example/x", NULL));
+	CHECK(!redirect_allowed(named, named, "https://other:word@museum.example/x", NULL));
+	CHECK(!redirect_allowed(named, named, "https://guest:word@evil.example/x", NULL));
+}
+
 static void refuses_lists_that_name_no_hosts(void **state)
 {
 	static const char *const good[] = { "", "cdn.example", "192.168.1.4:8443,a,b,c:1" };
@@ -81,6 +93,7 @@ int main(void)
 		cmocka_unit_test(follows_the_same_host_and_port_only),
 		cmocka_unit_test(goes_from_http_to_https_and_never_back),
 		cmocka_unit_test(follows_hosts_that_were_named),
+		cmocka_unit_test(keeps_the_name_that_the_server_is_asked_with),
 		cmocka_unit_test(refuses_lists_that_name_no_hosts),
 	};
 
