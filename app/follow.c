@@ -288,6 +288,11 @@ void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, s
 		follow->said = "";
 }
 
+uint32_t follow_root_version(const struct follow *follow)
+{
+	return follow->update.trusted ? follow->update.trust.version : 0;
+}
+
 void follow_remember(struct follow *follow, struct hash root)
 {
 	const struct state_release release = {

@@ -29,6 +29,8 @@ void follow_destroy(struct follow *follow); /* NULL is fine */
 void follow_start(struct follow *follow);
 void follow_meta(struct follow *follow, enum meta_role role, uint32_t version, struct bytes bytes,
 		 enum meta_source source);
+/* Of the trust root in use; 0: none. */
+uint32_t follow_root_version(const struct follow *follow);
 /* The release that is being brought was offered by a stick. */
 bool follow_next_on_stick(const struct follow *follow);
 /* The release with this root can be shown whole: has it remembered. `remembered` is called from

@@ -61,6 +61,7 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 	struct kiosk *kiosk = data;
 
 	follow_meta(kiosk->follow, role, version, bytes, source);
+	net_client_trust(kiosk->net, follow_root_version(kiosk->follow));
 	kiosk_redraw(kiosk);
 }
 
@@ -173,6 +174,7 @@ static int start_net(struct kiosk *kiosk)
 		.poll_s = kiosk->options.poll_s,
 		.cache_budget_bytes = (uint64_t)kiosk->profile.cache_mib << 20,
 		.ca_file = kiosk->options.ca_path,
+		.redirect_hosts = kiosk->options.redirect_hosts,
 		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = kiosk,
 	};
@@ -199,10 +201,11 @@ static int start_net(struct kiosk *kiosk)
 		fetch_beside(program);
 		net.program = program;
 	}
-	rc = net_client_create(&kiosk->net, &net);
+	rc = follow_create(&kiosk->follow, &follow);
 	if (rc < 0)
 		return rc;
-	return follow_create(&kiosk->follow, &follow);
+	net.root_version = follow_root_version(kiosk->follow);
+	return net_client_create(&kiosk->net, &net);
 }
 
 int kiosk_watch(struct kiosk *kiosk, int fd)

@@ -21,8 +21,9 @@ struct options {
 	const char *stick_dir;   /* a stick with a release may come to lie here; NULL: nowhere */
 	const char *trust_path;  /* root/1.json pinned at the first start; NULL: the state's */
 	const char *ca_path;
-	const char *state_dir;   /* state.db and cache.db */
-	const char *socket_path; /* of a fetcher that runs; NULL: one is started */
+	const char *redirect_hosts; /* that the server may redirect to; as gopura.conf has it */
+	const char *state_dir;      /* state.db and cache.db */
+	const char *socket_path;    /* of a fetcher that runs; NULL: one is started */
 	const char *fetch_program;
 	const char *visits_path;  /* a copy of the counts of what visitors look at; NULL: none */
 	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */

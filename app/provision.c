@@ -76,6 +76,7 @@ static void merge(struct provision *provision, struct options *options)
 		options->trust_path = checked_trust(provision);
 	if (!options->ca_path)
 		options->ca_path = beside(provision, terminal->ca, provision->ca_path);
+	options->redirect_hosts = text_or(options->redirect_hosts, terminal->redirect_hosts);
 	if (options->poll_s == 0)
 		options->poll_s = terminal->poll_s;
 	if (options->download.from_min == options->download.until_min)

@@ -146,6 +146,8 @@ static void write_fetcher(struct writing *writing)
 		put(writing, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)
 		put(writing, " --rate-limit %u", t->rate_limit_kib);
+	if (t->redirect_hosts[0])
+		put(writing, " --redirect-hosts %s", t->redirect_hosts);
 	if (has_authority)
 		put(writing, " --ca %s", authority);
 	put(writing, "\"\n");

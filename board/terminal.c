@@ -170,6 +170,10 @@ static const struct setting settings[] = {
 	  .offset = offsetof(struct terminal, idle_s),
 	  .least = 5,
 	  .most = 3600 },
+	{ .section = "release",
+	  .name = "redirect_hosts",
+	  .expects = "up to 4 hosts such as cdn.example, cdn2.example:8443",
+	  .set = terminal_set_redirect_hosts },
 };
 
 /* ---- the whole */

@@ -30,12 +30,13 @@ struct terminal {
 	char time_zone[64];             /* of /usr/share/zoneinfo */
 	char board[32];                 /* a profile's name, without .ini */
 	/* [release] */
-	char release_url[TERMINAL_URL_BYTES]; /* https://, http:// or an absolute folder */
-	char trust[TERMINAL_NAME_BYTES];      /* file beside gopura.conf, no slashes */
-	char ca[TERMINAL_NAME_BYTES];         /* the same */
-	uint32_t poll_s;                      /* 60 .. 86400; 0: not said */
-	struct daily download;                /* of the local day; its ends equal: always */
-	uint32_t rate_limit_kib;              /* a second; 0: none */
+	char release_url[TERMINAL_URL_BYTES];    /* https://, http:// or an absolute folder */
+	char trust[TERMINAL_NAME_BYTES];         /* file beside gopura.conf, no slashes */
+	char ca[TERMINAL_NAME_BYTES];            /* the same */
+	char redirect_hosts[TERMINAL_URL_BYTES]; /* "cdn.example,cdn2.example:8443" */
+	uint32_t poll_s;                         /* 60 .. 86400; 0: not said */
+	struct daily download;                   /* of the local day; its ends equal: always */
+	uint32_t rate_limit_kib;                 /* a second; 0: none */
 	/* [panel] */
 	int width_px, height_px; /* 0: what the panel prefers */
 	int hz;                  /* whole; 0: any */

@@ -278,6 +278,42 @@ bool terminal_set_ntp(const struct setting *setting, void *target, const char *v
 	return set_servers(&((struct terminal *)target)->ntp, value, is_host);
 }
 
+/* cdn.example, cdn.example:8443: as gopura-fetch takes them. */
+static bool is_host_with_port(const char *text)
+{
+	char host[254];
+	const size_t length = strcspn(text, ":");
+
+	if (length >= sizeof(host))
+		return false;
+	memcpy(host, text, length);
+	host[length] = '\0';
+	if (!only(host, LETTERS BIG_LETTERS DIGITS ".-") || !isalnum((unsigned char)*host) ||
+	    strstr(host, ".."))
+		return false;
+	if (!text[length])
+		return true;
+	return only(text + length + 1, DIGITS) && strlen(text + length + 1) <= 5 &&
+	       strtoul(text + length + 1, NULL, 10) - 1 < 65535;
+}
+
+/* They stand in a command line: with commas alone between them. */
+bool terminal_set_redirect_hosts(const struct setting *setting, void *target, const char *value)
+{
+	struct terminal *terminal = target;
+	struct terminal_servers hosts;
+	char list[sizeof(terminal->redirect_hosts)] = "";
+	size_t used = 0;
+
+	(void)setting;
+	if (!set_servers(&hosts, value, is_host_with_port))
+		return false;
+	for (uint32_t i = 0; i < hosts.count && used < sizeof(list); i++)
+		used += (size_t)snprintf(list + used, sizeof(list) - used, "%s%s", i ? "," : "",
+					 hosts.names[i]);
+	return used < sizeof(list) && put(terminal->redirect_hosts, sizeof(list), list);
+}
+
 bool terminal_set_ssid(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;

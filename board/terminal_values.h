@@ -19,6 +19,7 @@ bool terminal_set_yes_no(const struct setting *setting, void *target, const char
 bool terminal_set_address(const struct setting *setting, void *target, const char *value);
 bool terminal_set_gateway(const struct setting *setting, void *target, const char *value);
 bool terminal_set_dns(const struct setting *setting, void *target, const char *value);
+bool terminal_set_redirect_hosts(const struct setting *setting, void *target, const char *value);
 bool terminal_set_ntp(const struct setting *setting, void *target, const char *value);
 bool terminal_set_ssid(const struct setting *setting, void *target, const char *value);
 bool terminal_set_passphrase(const struct setting *setting, void *target, const char *value);

@@ -91,6 +91,9 @@ void message_encode(struct buffer *out, const struct message *message)
 		break;
 	case MESSAGE_SYNC:
 		break;
+	case MESSAGE_TRUST:
+		buffer_put_u32(out, message->root_version);
+		break;
 	case MESSAGE_SYNCED:
 		buffer_put_u8(out, message->synced);
 		break;
@@ -155,6 +158,9 @@ static bool get_fields(struct message *out, struct reader *reader)
 		out->period_s = reader_u32(reader);
 		return out->period_s <= MESSAGE_PERIOD_S_MOST;
 	case MESSAGE_SYNC:
+		return true;
+	case MESSAGE_TRUST:
+		out->root_version = reader_u32(reader);
 		return true;
 	case MESSAGE_SYNCED:
 		small = reader_u8(reader);

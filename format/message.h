@@ -9,6 +9,8 @@
  *   MESSAGE_KEEP     an object that must not leave the cache while its release is in use
  *   MESSAGE_ASK_META fetch the signed metadata now, and from now on as often as this says
  *   MESSAGE_SYNC     what was brought so far must survive a power cut: answered by MESSAGE_SYNCED
+ *   MESSAGE_TRUST    the version of the trust root that the kiosk has, on connecting and in answer
+ *                    to every root: the fetcher looks for the next one
  * Fetcher to kiosk
  *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MOST, else a sealed memfd
  *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
@@ -31,6 +33,7 @@ enum message_kind {
 	MESSAGE_KEEP,
 	MESSAGE_ASK_META,
 	MESSAGE_SYNC,
+	MESSAGE_TRUST,
 	MESSAGE_OBJECT = 64,
 	MESSAGE_MISSING,
 	MESSAGE_META,
@@ -83,7 +86,8 @@ struct message {
 		struct message_want want;
 		struct hash drop;
 		struct hash keep;
-		uint32_t period_s; /* of MESSAGE_ASK_META; 0: as the fetcher has it */
+		uint32_t period_s;     /* of MESSAGE_ASK_META; 0: as the fetcher has it */
+		uint32_t root_version; /* of MESSAGE_TRUST; 0: the kiosk has no trust root */
 		bool synced;
 		struct {
 			struct hash hash;

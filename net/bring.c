@@ -228,6 +228,14 @@ static int by_priority(const void *a, const void *b)
 	return left->order > right->order ? -1 : 1; /* the earlier one last: it is served first */
 }
 
+static void wait_for_server(struct bring *bring, struct want *want)
+{
+	want->state = WANT_WAITING;
+	bring->plan_changed = true;
+	if (link_is_down(bring->options.link))
+		report(bring, want, MISSING_OFFLINE);
+}
+
 static void ask_cache(struct bring *bring, struct want *want)
 {
 	int rc = cache_get(bring->options.cache, want->entry.key, want->asked.priority,
@@ -239,17 +247,48 @@ static void ask_cache(struct bring *bring, struct want *want)
 		pass_on(bring, want, buffer_bytes(&bring->scratch));
 		return;
 	}
-	if (bring_from_stick(bring, want)) {
-		bring->figures.from_stick++;
-		if (cache_put(bring->options.cache, want->entry.key, buffer_bytes(&bring->scratch),
-			      want->asked.priority) < 0)
-			log_debug("net", "an object did not get into the cache");
-		pass_on(bring, want, buffer_bytes(&bring->scratch));
+	if (bring_ask_stick(bring, want))
+		want->state = WANT_ON_STICK;
+	else
+		wait_for_server(bring, want);
+}
+
+/* ---- the stick */
+
+static void note_damage_on_stick(struct bring *bring, struct hash hash)
+{
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(hash, hex);
+	refusal_note(bring->options.link->refusal, hex,
+		     "the stick's bytes of this object are damaged");
+	if (bring->figures.stick_damaged++ == 0) /* of thousands, perhaps */
+		log_warn("net", "the stick's bytes of object %s are damaged", hex);
+}
+
+void bring_stick_answered(struct bring *bring, struct hash hash, int rc, struct bytes bytes)
+{
+	struct want *want = by_hash_find(&bring->wants, hash);
+
+	if (rc == -EBADMSG)
+		note_damage_on_stick(bring, hash);
+	if (!want || want->state != WANT_ON_STICK)
+		return;
+	if (rc < 0) {
+		wait_for_server(bring, want);
 		return;
 	}
-	bring->plan_changed = true;
-	if (link_is_down(bring->options.link))
-		report(bring, want, MISSING_OFFLINE);
+	bring->figures.from_stick++;
+	if (cache_put(bring->options.cache, hash, bytes, want->asked.priority) < 0)
+		log_debug("net", "an object did not get into the cache");
+	pass_on(bring, want, bytes);
+}
+
+bool bring_wants_of_stick(const struct bring *bring, struct hash hash)
+{
+	const struct want *want = by_hash_find(&bring->wants, hash);
+
+	return want && want->state == WANT_ON_STICK;
 }
 
 void bring_ask_again(struct bring *bring)
@@ -454,7 +493,7 @@ static void tell_of_the_line(struct bring *bring)
 	bring->was_down = is_down;
 	bring->plan_changed = true;
 	while ((want = by_hash_next(&bring->wants, &at))) {
-		if (want->state == WANT_FRESH)
+		if (want->state == WANT_FRESH || want->state == WANT_ON_STICK)
 			continue;
 		if (is_down)
 			report(bring, want, MISSING_OFFLINE);

@@ -56,6 +56,10 @@ void bring_want(struct bring *bring, const struct message_want *want);
 void bring_drop(struct bring *bring, struct hash hash);
 /* The cache lets it go last. */
 void bring_keep(struct bring *bring, struct hash hash);
+/* The stick's answer to a want, as stick_options.object has it. */
+void bring_stick_answered(struct bring *bring, struct hash hash, int rc, struct bytes bytes);
+/* The stick is still waited for with this want. */
+bool bring_wants_of_stick(const struct bring *bring, struct hash hash);
 /* A stick came: what is waited for may be there. */
 void bring_ask_again(struct bring *bring);
 void bring_forget_all(struct bring *bring); /* the kiosk is gone: wants and releases */

@@ -9,9 +9,10 @@
 #include "net/range_plan.h"
 
 enum want_state {
-	WANT_FRESH,   /* the cache was not asked yet; stands in bring.fresh */
-	WANT_WAITING, /* for a request, from retry_at_ms on */
-	WANT_FLYING,  /* in a range */
+	WANT_FRESH,    /* the cache was not asked yet; stands in bring.fresh */
+	WANT_WAITING,  /* for a request, from retry_at_ms on */
+	WANT_ON_STICK, /* the stick was asked, and will answer */
+	WANT_FLYING,   /* in a range */
 };
 
 struct want {
@@ -79,8 +80,8 @@ void bring_failed(struct bring *bring, struct want *want, int rc);
 /* The newest-first try'th release that knows the want's place (a want that failed tries them in
  * turn). -ENOENT: none has it. -EAGAIN: a locator is still to come. */
 must_check int bring_locate(struct bring *bring, const struct want *want, struct range_item *out);
-/* Into bring->scratch, its hash found right. */
-bool bring_from_stick(struct bring *bring, const struct want *want);
+/* The stick will answer, by bring_stick_answered. false: there is none. */
+bool bring_ask_stick(struct bring *bring, const struct want *want);
 void bring_work_releases(struct bring *bring);
 int64_t bring_releases_due_ms(const struct bring *bring);
 /* Objects were not where a locator said: bring_ask_suspects gets it anew (packs may have been

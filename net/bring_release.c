@@ -237,25 +237,15 @@ static bool locate_in(const struct bring_release *release, const struct want *wa
 	return true;
 }
 
-bool bring_from_stick(struct bring *bring, const struct want *want)
+bool bring_ask_stick(struct bring *bring, const struct want *want)
 {
-	struct stick *stick = bring->options.stick;
-	char hex[HASH_HEX_BYTES];
+	struct hash roots[MESSAGE_RELEASES_MOST];
+	size_t count = 0;
 
-	for (size_t i = 0; stick && i < MESSAGE_RELEASES_MOST; i++) {
-		const struct bring_release *release = bring->releases[i];
-
-		if (!release || stick_get(stick, release->root, &want->asked, &bring->scratch) < 0)
-			continue;
-		if (hash_equal(hash_of(buffer_bytes(&bring->scratch)), want->entry.key))
-			return true;
-		hash_to_hex(want->entry.key, hex);
-		refusal_note(bring->options.link->refusal, hex,
-			     "the stick's bytes of this object are damaged");
-		if (bring->figures.stick_damaged++ == 0) /* of thousands, perhaps */
-			log_warn("net", "the stick's bytes of object %s are damaged", hex);
-	}
-	return false;
+	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
+		if (bring->releases[i])
+			roots[count++] = bring->releases[i]->root;
+	return count > 0 && stick_ask(bring->options.stick, roots, count, &want->asked);
 }
 
 int bring_locate(struct bring *bring, const struct want *want, struct range_item *out)

@@ -19,6 +19,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "net/by_hash.h"
+#include "net/closer.h"
 #include "net/packets.h"
 
 extern char **environ;
@@ -28,10 +29,12 @@ enum {
 	DISPATCH_US = 3000,
 	PAUSE_MS = 100, /* before the first restart, then doubling */
 	PAUSE_MOST_MS = 10000,
-	STEADY_MS = 10000, /* a connection that lasted so long was a good one */
-	END_MS = 2000,     /* for the fetcher to end by itself */
-	SILENT_MS = 90000, /* without a word: it hangs (it speaks every 30 s at least) */
-	FETCHER_FD = 3,    /* of the socket, in the fetcher */
+	STEADY_MS = 10000,          /* a connection that lasted so long was a good one */
+	END_MS = 2000,              /* for the fetcher to end by itself */
+	SILENT_MS = 90000,          /* without a word: it hangs (it speaks every 30 s at least) */
+	UNWANTED_MAX = 16,          /* objects on one connection that were never wanted on it */
+	QUEUE_BYTES_MAX = 64 << 20, /* to the fetcher; every want of a large temple has room */
+	FETCHER_FD = 3,             /* of the socket, in the fetcher */
 };
 
 enum source { SOURCE_SOCKET, SOURCE_CHILD, SOURCE_TIMER };
@@ -51,7 +54,12 @@ struct net_client {
 	int epoll_fd, timer_fd;
 	struct packets packets; /* fd -1: not connected */
 	bool waits_to_send;
-	pid_t pid; /* of the fetcher we started; 0: none */
+	bool is_deaf; /* the queue is full: it does not read */
+	/* Objects that may come although nobody wants them: one for each want that was taken back
+	 * or said again on this connection, as the object may have been on its way. */
+	uint64_t late_count;
+	uint32_t unwanted_count; /* those beyond */
+	pid_t pid;               /* of the fetcher we started; 0: none */
 	int pid_fd;
 	uint32_t failures; /* connections that did not last, in a row */
 	int64_t connected_ms, heard_ms;
@@ -96,8 +104,13 @@ static void say(struct net_client *client, const struct message *message)
 {
 	int rc;
 
-	if (client->packets.fd < 0)
+	if (client->packets.fd < 0 || client->is_deaf)
 		return;
+	if (client->packets.queued_bytes > QUEUE_BYTES_MAX) {
+		client->is_deaf = true;
+		set_timer(client, 1); /* look_after hangs up: not here, in the midst of a message */
+		return;
+	}
 	rc = packets_send(&client->packets, message, -1);
 	if (rc < 0 && rc != -EPIPE && rc != -ECONNRESET)
 		log_error("net", "a message to the fetcher did not go out: %s", strerror(-rc));
@@ -118,6 +131,12 @@ static void say_releases(struct net_client *client)
 	}
 }
 
+static void say_trust(struct net_client *client)
+{
+	say(client, &(struct message){ .kind = MESSAGE_TRUST,
+				       .root_version = client->options.root_version });
+}
+
 static void say_everything(struct net_client *client)
 {
 	struct message message = { .kind = MESSAGE_ASK_META, .period_s = client->options.poll_s };
@@ -126,6 +145,7 @@ static void say_everything(struct net_client *client)
 	size_t at = 0;
 
 	say_releases(client);
+	say_trust(client);
 	say(client, &message);
 	message.kind = MESSAGE_KEEP;
 	while ((keep = by_hash_next(&client->keeps, &at))) {
@@ -143,7 +163,8 @@ static void say_everything(struct net_client *client)
 static int adopt_socket(struct net_client *client, int fd)
 {
 	packets_init(&client->packets, fd);
-	client->waits_to_send = false;
+	client->waits_to_send = client->is_deaf = false;
+	client->late_count = client->unwanted_count = 0;
 	client->connected_ms = client->heard_ms = clock_now_ms();
 	set_timer(client, SILENT_MS);
 	return watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
@@ -203,7 +224,7 @@ static int start_fetcher(struct net_client *client)
 {
 	const struct net_client_options *options = &client->options;
 	char budget[32], fd[8];
-	const char *arguments[16] = {
+	const char *arguments[20] = {
 		options->program, "--release", options->release_url, "--cache", options->cache_path,
 		"--fd",           fd,          "--cache-budget",     budget
 	};
@@ -220,6 +241,10 @@ static int start_fetcher(struct net_client *client)
 	if (options->ca_file) {
 		arguments[count++] = "--ca";
 		arguments[count++] = options->ca_file;
+	}
+	if (options->redirect_hosts) {
+		arguments[count++] = "--redirect-hosts";
+		arguments[count++] = options->redirect_hosts;
 	}
 	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) < 0)
 		return -errno;
@@ -249,9 +274,14 @@ static void connect_now(struct net_client *client)
 {
 	const char *what =
 		client->options.socket_path ? client->options.socket_path : client->options.program;
-	int rc = client->options.socket_path ? connect_to(client, client->options.socket_path)
-					     : start_fetcher(client);
+	int rc;
 
+	if (closer_is_full())
+		rc = -EBUSY; /* what earlier ones passed hangs in its close */
+	else if (client->options.socket_path)
+		rc = connect_to(client, client->options.socket_path);
+	else
+		rc = start_fetcher(client);
 	if (rc == 0) {
 		say_everything(client);
 		return;
@@ -268,6 +298,8 @@ static void disconnect(struct net_client *client, const char *why)
 	log_warn("net", "the fetcher is gone: %s", why);
 	client->received_before += client->received_now;
 	client->received_now = 0;
+	if (watch(client, client->packets.fd, SOURCE_SOCKET, 0, EPOLL_CTL_DEL) < 0)
+		log_debug("net", "the fetcher's socket was not watched");
 	packets_finish(&client->packets);
 	if (client->pid)
 		kill(client->pid, SIGTERM); /* it ends anyhow, its socket being closed */
@@ -290,6 +322,10 @@ static void look_after(struct net_client *client)
 {
 	int64_t silent_ms = clock_now_ms() - client->heard_ms;
 
+	if (client->is_deaf) {
+		disconnect(client, "it does not read what it is told");
+		return;
+	}
 	if (silent_ms < SILENT_MS) {
 		set_timer(client, SILENT_MS - silent_ms + 1);
 		return;
@@ -320,6 +356,16 @@ static void on_timer(struct net_client *client)
 
 /* ---- what the fetcher brings */
 
+/* An object that nobody waits for costs no more than this look. -EBADMSG: too many of them. */
+static int count_unwanted(struct net_client *client)
+{
+	if (client->late_count > 0) {
+		client->late_count--;
+		return 0;
+	}
+	return ++client->unwanted_count > UNWANTED_MAX ? -EBADMSG : 0;
+}
+
 /* -EBADMSG: not the bytes of that hash. */
 static int pass_on(struct net_client *client, struct hash hash, struct bytes bytes)
 {
@@ -327,8 +373,6 @@ static int pass_on(struct net_client *client, struct hash hash, struct bytes byt
 
 	if (!hash_equal(hash_of(bytes), hash))
 		return -EBADMSG;
-	if (!wanted) /* dropped meanwhile */
-		return 0;
 	by_hash_remove(&client->wants, hash);
 	free(wanted);
 	client->options.events.object(client->options.data, hash, bytes);
@@ -341,6 +385,11 @@ static int take_object(struct net_client *client, const struct message *message,
 	struct bytes mapped;
 	int rc;
 
+	if (!by_hash_find(&client->wants, message->object.hash)) {
+		if (passed >= 0)
+			close(passed);
+		return count_unwanted(client);
+	}
 	if (passed < 0)
 		return pass_on(client, message->object.hash, message->object.bytes);
 	rc = packets_map_sealed(&mapped, passed, message->object.size);
@@ -377,6 +426,8 @@ static int obey(struct net_client *client, const struct message *message, int pa
 		if (events->meta)
 			events->meta(data, message->meta.role, message->meta.version,
 				     message->meta.bytes, message->meta.source);
+		if (message->meta.role == META_ROOT) /* taken or not, the fetcher waits for it */
+			say_trust(client);
 		return 0;
 	case MESSAGE_SYNCED:
 		if (events->synced)
@@ -407,7 +458,8 @@ static void hear_fetcher(struct net_client *client)
 	}
 	watch_socket(client);
 	if (rc == -EBADMSG)
-		disconnect(client, "fetcher bug: it sent what is no message, or wrong bytes");
+		disconnect(client, "fetcher bug: it sent what is no message, wrong bytes, or what "
+				   "nobody wanted");
 	else if (rc < 0 && rc != -EAGAIN)
 		disconnect(client, rc == -EPIPE ? "it closed the socket" : strerror(-rc));
 }
@@ -459,9 +511,10 @@ static int copy_text(const char **text)
 
 static int copy_options(struct net_client *client, const struct net_client_options *options)
 {
-	const char **const texts[] = { &client->options.socket_path, &client->options.program,
-				       &client->options.release_url, &client->options.cache_path,
-				       &client->options.ca_file,     &client->options.stick_path };
+	const char **const texts[] = { &client->options.socket_path,   &client->options.program,
+				       &client->options.release_url,   &client->options.cache_path,
+				       &client->options.ca_file,       &client->options.stick_path,
+				       &client->options.redirect_hosts };
 	int rc = 0;
 
 	client->options = *options;
@@ -546,6 +599,7 @@ void net_client_destroy(struct net_client *client)
 	free((char *)client->options.cache_path);
 	free((char *)client->options.ca_file);
 	free((char *)client->options.stick_path);
+	free((char *)client->options.redirect_hosts);
 	free(client);
 }
 
@@ -569,6 +623,7 @@ void net_client_use_release(struct net_client *client, struct hash root, uint32_
 {
 	if (client->release_count == 1 && hash_equal(client->releases[0].root, root))
 		return;
+	client->late_count += client->wants.count;
 	forget_entries(&client->wants);
 	forget_entries(&client->keeps);
 	client->release_count = 0;
@@ -590,6 +645,8 @@ void net_client_want(struct net_client *client, const struct message_want *want)
 
 	if (wanted && wanted->want.priority == want->priority)
 		return;
+	if (wanted) /* it comes again where it was on its way */
+		client->late_count++;
 	if (!wanted) {
 		wanted = calloc(1, sizeof(*wanted));
 		if (!wanted)
@@ -613,12 +670,18 @@ void net_client_drop(struct net_client *client, struct hash hash)
 		return;
 	by_hash_remove(&client->wants, hash);
 	free(wanted);
+	client->late_count++;
 	say(client, &message);
 }
 
 void net_client_sync(struct net_client *client)
 {
 	say(client, &(struct message){ .kind = MESSAGE_SYNC });
+}
+
+void net_client_trust(struct net_client *client, uint32_t root_version)
+{
+	client->options.root_version = root_version;
 }
 
 void net_client_keep(struct net_client *client, struct hash hash)

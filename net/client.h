@@ -12,7 +12,8 @@ struct net_client_events {
 	/* Hashed and found right before it gets here. */
 	void (*object)(void *data, struct hash hash, struct bytes bytes);
 	void (*missing)(void *data, struct hash hash, enum missing_reason reason);
-	/* As received: the signature is not checked yet. */
+	/* As received: the signature is not checked yet. After a root the fetcher is told the
+	 * version that net_client_trust said last. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes,
 		     enum meta_source source);
 	/* Of net_client_sync; done: all that came before it survives a power cut. */
@@ -27,8 +28,10 @@ struct net_client_options {
 	const char *stick_path;  /* copied; for a fetcher that is started; NULL: none */
 	const char *cache_path;  /* copied; the fetcher's cache.db */
 	uint64_t cache_budget_bytes;
-	uint32_t poll_s;     /* between looks for a new release; 0: the fetcher's default */
-	const char *ca_file; /* copied; certificate authority for https; NULL: the system's */
+	uint32_t poll_s;       /* between looks for a new release; 0: the fetcher's default */
+	uint32_t root_version; /* of the trust root that the kiosk has; 0: none */
+	const char *ca_file;   /* copied; certificate authority for https; NULL: the system's */
+	const char *redirect_hosts; /* copied; for a fetcher that is started; NULL: none */
 	struct net_client_events events;
 	void *data;
 };
@@ -56,6 +59,9 @@ void net_client_want(struct net_client *client, const struct message_want *want)
 void net_client_drop(struct net_client *client, struct hash hash);
 /* Has what came so far written durably. The answer is lost with the fetcher: ask again then. */
 void net_client_sync(struct net_client *client);
+/* The kiosk has a later trust root now: to be called from the meta event, so that the fetcher looks
+ * for the one after it. */
+void net_client_trust(struct net_client *client, uint32_t root_version);
 /* Remembered until net_client_use_release, and said again when the fetcher was restarted. The cache
  * keeps up to three quarters of its budget this way. */
 void net_client_keep(struct net_client *client, struct hash hash);

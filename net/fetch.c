@@ -28,7 +28,14 @@ enum {
 	ALIVE_MS = 30000,           /* while they do not: the kiosk shall know that we live */
 };
 
-enum source { SOURCE_LISTENER, SOURCE_KIOSK, SOURCE_HTTP, SOURCE_SIGNAL, SOURCE_FIGURES };
+enum source {
+	SOURCE_LISTENER,
+	SOURCE_KIOSK,
+	SOURCE_HTTP,
+	SOURCE_STICK,
+	SOURCE_SIGNAL,
+	SOURCE_FIGURES,
+};
 
 struct fetch {
 	const struct fetch_options *options;
@@ -44,6 +51,7 @@ struct fetch {
 	struct poll *poll;
 	struct stick *stick;            /* NULL: none is looked for */
 	struct figures_socket *figures; /* NULL: not offered */
+	uint32_t root_version;          /* of the trust root that the kiosk has */
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
 	int64_t said_ms;             /* when the kiosk was last told the figures */
@@ -64,6 +72,8 @@ static void lose_kiosk(struct fetch *fetch, const char *why)
 		return;
 	log_info("net", "the kiosk is gone: %s", why);
 	fetch->has_kiosk = fetch->kiosk_waits = false;
+	if (watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, 0, EPOLL_CTL_DEL) < 0)
+		log_debug("net", "the kiosk's socket was not watched");
 	packets_finish(&fetch->kiosk);
 	bring_forget_all(fetch->bring);
 	poll_stop(fetch->poll);
@@ -131,11 +141,14 @@ static void on_missing(void *data, struct hash hash, enum missing_reason reason)
 	send_to_kiosk(data, &message, -1);
 }
 
+static bool kiosk_has_room(const struct fetch *fetch)
+{
+	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+}
+
 static bool has_room(void *data)
 {
-	const struct fetch *fetch = data;
-
-	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+	return kiosk_has_room(data);
 }
 
 static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
@@ -152,6 +165,20 @@ static void on_stick_meta(void *data, enum meta_role role, uint32_t version, str
 				   .meta = { role, version, bytes, META_FROM_STICK } };
 
 	send_to_kiosk(data, &message, -1);
+}
+
+static void on_stick_object(void *data, struct hash hash, int rc, struct bytes bytes)
+{
+	struct fetch *fetch = data;
+
+	bring_stick_answered(fetch->bring, hash, rc, bytes);
+}
+
+static bool is_wanted_of_stick(void *data, struct hash hash)
+{
+	const struct fetch *fetch = data;
+
+	return bring_wants_of_stick(fetch->bring, hash);
 }
 
 /* ---- what the kiosk says */
@@ -175,6 +202,13 @@ static int obey(struct fetch *fetch, const struct message *message)
 	case MESSAGE_ASK_META:
 		poll_ask(fetch->poll, message->period_s);
 		stick_forget(fetch->stick); /* it is told again */
+		return 0;
+	case MESSAGE_TRUST:
+		if (message->root_version != fetch->root_version)
+			stick_forget(fetch->stick); /* its release may be good under this root */
+		fetch->root_version = message->root_version;
+		stick_trust(fetch->stick, message->root_version);
+		poll_trust(fetch->poll, message->root_version);
 		return 0;
 	case MESSAGE_SYNC:
 		send_to_kiosk(fetch,
@@ -308,7 +342,7 @@ static void work(struct fetch *fetch)
 	bool waits;
 
 	if (fetch->has_kiosk) {
-		if (stick_work(fetch->stick))
+		if (stick_work(fetch->stick, kiosk_has_room(fetch)))
 			bring_ask_again(fetch->bring);
 		bring_work(fetch->bring);
 		poll_work(fetch->poll);
@@ -328,10 +362,11 @@ static int timeout_ms(const struct fetch *fetch)
 
 	if (fetch->has_kiosk) {
 		int64_t bring_ms = bring_due_ms(fetch->bring), poll_ms = poll_due_ms(fetch->poll);
+		int64_t stick_ms = stick_due_ms(fetch->stick, kiosk_has_room(fetch));
 
 		due_ms = bring_ms < due_ms ? bring_ms : due_ms;
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
-		due_ms = stick_due_ms(fetch->stick) < due_ms ? stick_due_ms(fetch->stick) : due_ms;
+		due_ms = stick_ms < due_ms ? stick_ms : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
 	}
 	due_ms = service_due_ms() < due_ms ? service_due_ms() : due_ms;
@@ -353,6 +388,9 @@ static int dispatch(struct fetch *fetch, enum source source)
 		return 0;
 	case SOURCE_HTTP:
 		return http_dispatch(fetch->http);
+	case SOURCE_STICK:
+		stick_heard(fetch->stick);
+		return 0;
 	case SOURCE_SIGNAL:
 		fetch->ends = true;
 		return 0;
@@ -429,6 +467,7 @@ static int create_parts(struct fetch *fetch)
 	const struct fetch_options *options = fetch->options;
 	struct http_options http = { .url = options->release_url,
 				     .ca_file = options->ca_file,
+				     .redirect_hosts = options->redirect_hosts,
 				     .stall_s = options->stall_s };
 	struct cache_options cache = { .path = options->cache_path,
 				       .budget_bytes = options->cache_budget_bytes };
@@ -441,6 +480,8 @@ static int create_parts(struct fetch *fetch)
 	};
 	struct stick_options stick = { .folder = options->stick_path,
 				       .meta = on_stick_meta,
+				       .object = on_stick_object,
+				       .is_wanted = is_wanted_of_stick,
 				       .data = fetch };
 	int rc = http_create(&fetch->http, &http);
 
@@ -459,6 +500,8 @@ static int create_parts(struct fetch *fetch)
 		rc = poll_create(&fetch->poll, &poll);
 	if (rc == 0)
 		rc = watch(fetch, http_fd(fetch->http), SOURCE_HTTP, EPOLLIN, EPOLL_CTL_ADD);
+	if (rc == 0 && fetch->stick)
+		rc = watch(fetch, stick_fd(fetch->stick), SOURCE_STICK, EPOLLIN, EPOLL_CTL_ADD);
 	return rc;
 }
 

@@ -12,7 +12,9 @@ struct fetch_options {
 	const char *stick_path;  /* a folder where a release may come to lie; NULL: none */
 	const char *cache_path;
 	uint64_t cache_budget_bytes;
-	const char *ca_file;      /* NULL: the system's */
+	const char *ca_file; /* NULL: the system's */
+	const char
+		*redirect_hosts;  /* that the server may redirect to (net/redirect.h); NULL: none */
 	const char *socket_path;  /* to listen on; NULL: fd */
 	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
 	int fd;                   /* connected already; the fetcher ends with it */

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "net/redirect.h"
 
 enum {
 	URL_BYTES_MOST = 4096,
@@ -25,6 +26,7 @@ enum {
 	PATIENCE_S = 60,
 	TRICKLE_BYTES_PER_S = 1024, /* of a whole request; less is no line but a trap */
 	TRICKLE_S_MOST = 900,
+	HEADER_BYTES_MAX = 64 * 1024,      /* of an answer, all its headers together */
 	ERROR_BODY_BYTES_MOST = 64 * 1024, /* read to its end, so that the connection can stay */
 	CONNECTIONS_MOST = 8,              /* with HTTP/1.1; HTTP/2 needs one */
 	SOCKETS_MOST = 64,
@@ -36,7 +38,7 @@ struct http {
 	int epoll_fd, timer_fd;
 	char url[URL_BYTES_MOST];
 	char folder[PATH_MAX]; /* as given, when local */
-	char *ca_file;
+	char *ca_file, *redirect_hosts;
 	long stall_s, patience_s;
 	bool is_local;
 	int sockets[SOCKETS_MOST]; /* open ones, for what they received */
@@ -53,11 +55,14 @@ struct http_request {
 	char error[CURL_ERROR_SIZE];
 	long status; /* known once the body begins; 0 before, and of a local folder */
 	bool body_began;
-	bool range_is_right;  /* the answer's Content-Range begins where we asked */
-	bool enough, refused; /* why the body was cut short */
-	uint64_t skip;        /* bytes of a whole file before those we asked for */
-	uint64_t given;       /* bytes given to the receiver */
-	uint64_t ignored;     /* bytes of an error's page */
+	bool range_is_right;   /* the answer's Content-Range begins where we asked */
+	uint32_t redirects;    /* followed so far */
+	bool went_astray;      /* the last one led where we do not go */
+	uint64_t header_bytes; /* of the answer */
+	bool enough, refused;  /* why the body was cut short */
+	uint64_t skip;         /* bytes of a whole file before those we asked for */
+	uint64_t given;        /* bytes given to the receiver */
+	uint64_t ignored;      /* bytes of an error's page */
 };
 
 /* ---- sockets: what they received, by the kernel's own count */
@@ -184,7 +189,12 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 	struct http_request *request = data;
 
 	(void)one;
-	if (header_is(line, size, "HTTP/")) { /* also of the answer after a redirection */
+	request->header_bytes += size;
+	if (request->header_bytes > HEADER_BYTES_MAX) { /* curl keeps them all */
+		request->refused = true;
+		return 0;
+	}
+	if (header_is(line, size, "HTTP/")) { /* also of the answer after a "100 Continue" */
 		request->range_is_right = false;
 		request->etag[0] = '\0';
 	} else if (header_is(line, size, "content-range:")) {
@@ -299,6 +309,8 @@ static int judge_code(struct http_request *request, CURLcode code)
 		return access(request->http->folder, F_OK) == 0 ? -ENOENT : -EHOSTUNREACH;
 	}
 	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
+	if (request->went_astray)
+		return -EHOSTUNREACH;
 	if (code == CURLE_WRITE_ERROR) /* an endless error page */
 		return judge_status(request->status) < 0 ? judge_status(request->status) : -EBADMSG;
 	if (code != CURLE_OK)
@@ -314,6 +326,35 @@ static void release_request(struct http_request *request)
 	free(request);
 }
 
+/* The request goes on where the answer sent it. false: it sent us nowhere, or where we do not go.
+ */
+static bool follow(struct http_request *request, CURLcode code)
+{
+	const struct http *http = request->http;
+	char *from = NULL, *to = NULL;
+
+	if (code != CURLE_OK || http->is_local)
+		return false;
+	curl_easy_getinfo(request->easy, CURLINFO_EFFECTIVE_URL, &from);
+	curl_easy_getinfo(request->easy, CURLINFO_REDIRECT_URL, &to);
+	if (!to)
+		return false;
+	request->went_astray = true;
+	if (request->redirects == REDIRECTS_MAX || !from ||
+	    !redirect_allowed(http->url, from, to, http->redirect_hosts))
+		return false;
+	curl_multi_remove_handle(http->multi, request->easy);
+	if (curl_easy_setopt(request->easy, CURLOPT_URL, to) != CURLE_OK)
+		return false;
+	request->redirects++;
+	request->status = 0;
+	request->body_began = request->range_is_right = false;
+	request->ignored = request->header_bytes = 0;
+	request->etag[0] = '\0';
+	request->went_astray = curl_multi_add_handle(http->multi, request->easy) != CURLM_OK;
+	return !request->went_astray;
+}
+
 static void finish_request(CURL *easy, CURLcode code)
 {
 	struct http_request *request = NULL;
@@ -321,11 +362,15 @@ static void finish_request(CURL *easy, CURLcode code)
 	char why[CURL_ERROR_SIZE + 32];
 
 	curl_easy_getinfo(easy, CURLINFO_PRIVATE, &request);
+	if (follow(request, code))
+		return;
 	result.rc = judge_code(request, code);
 	result.not_modified = result.rc == 0 && request->status == 304;
 	result.etag = request->etag;
 	result.why = why;
-	if (request->status >= 400)
+	if (request->went_astray)
+		snprintf(why, sizeof(why), "it redirects to another host, or too often");
+	else if (request->status >= 400)
 		snprintf(why, sizeof(why), "HTTP status %ld", request->status);
 	else if (code == CURLE_OK || request->enough)
 		snprintf(why, sizeof(why), "fine");
@@ -400,11 +445,7 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*"); /* the museum's server is reached directly */
 	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");
 	curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, http->is_local ? "file" : "http,https");
-	/* Who asks in secret is not answered in the open. */
-	curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS_STR,
-			 strncmp(http->url, "https:", 6) == 0 ? "https" : "http,https");
-	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, http->is_local ? 0L : 1L);
-	curl_easy_setopt(easy, CURLOPT_MAXREDIRS, 4L);
+	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 0L); /* follow() judges each */
 	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);
 	curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L); /* rather share a connection than open one */
 	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
@@ -560,6 +601,14 @@ static int open_loop(struct http *http)
 	return 0;
 }
 
+static int copy_text(char **out, const char *text)
+{
+	if (!text)
+		return 0;
+	*out = strdup(text);
+	return *out ? 0 : -ENOMEM;
+}
+
 int http_create(struct http **out, const struct http_options *options)
 {
 	struct http *http = calloc(1, sizeof(*http));
@@ -572,10 +621,12 @@ int http_create(struct http **out, const struct http_options *options)
 	http->stall_s = options->stall_s ? (long)options->stall_s : STALL_S;
 	http->patience_s = options->patience_s ? (long)options->patience_s : PATIENCE_S;
 	rc = take_url(http, options->url);
-	if (rc == 0 && options->ca_file) {
-		http->ca_file = strdup(options->ca_file);
-		rc = http->ca_file ? 0 : -ENOMEM;
-	}
+	if (rc == 0 && !redirect_hosts_valid(options->redirect_hosts))
+		rc = -EINVAL;
+	if (rc == 0)
+		rc = copy_text(&http->ca_file, options->ca_file);
+	if (rc == 0)
+		rc = copy_text(&http->redirect_hosts, options->redirect_hosts);
 	if (rc == 0 && curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK)
 		rc = -ENOMEM;
 	if (rc == 0)
@@ -598,5 +649,6 @@ void http_destroy(struct http *http)
 	if (http->epoll_fd >= 0)
 		close(http->epoll_fd);
 	free(http->ca_file);
+	free(http->redirect_hosts);
 	free(http);
 }

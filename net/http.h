@@ -16,6 +16,9 @@ struct http_options {
 	/* Before a request that trickles has failed: so long, and a second for each KiB it may
 	 * bring, a quarter of an hour beside at most. 0: 60. */
 	uint32_t patience_s;
+	/* Hosts that the server may redirect to beside itself (net/redirect.h); copied; NULL: none.
+	 * A redirection elsewhere is no answer. */
+	const char *redirect_hosts;
 };
 
 struct http_result {
@@ -42,7 +45,7 @@ struct http_ask {
 	void *data;
 };
 
-/* -EINVAL: the url is of no kind we know. */
+/* -EINVAL: the url is of no kind we know, or redirect_hosts are no hosts. */
 must_check int http_create(struct http **out, const struct http_options *options);
 void http_destroy(struct http *http); /* requests must have ended or been cancelled */
 

@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "net/fetch.h"
+#include "net/redirect.h"
 
 static const char help[] =
 	"gopura-fetch: brings the objects of a release to the kiosk, and keeps them in a cache\n"
@@ -22,6 +23,8 @@ static const char help[] =
 	"  --fd N              or talk to the kiosk over this connected descriptor, and end with it\n"
 	"  --cache-budget MIB  of the database and its log together (1024; at least 4)\n"
 	"  --ca FILE           certificate authority for https (the system's)\n"
+	"  --redirect-hosts A,B  hosts that the server may redirect to beside itself, as NAME or\n"
+	"                      NAME:PORT (none)\n"
 	"  --poll-s SECONDS    between looks for a new release (60)\n"
 	"  --rate-limit KIB    a second, in the mean, of a release that is not shown yet (none)\n"
 	"  --stall-s SECONDS   without a byte: a request has failed (15)\n"
@@ -42,6 +45,7 @@ enum {
 	OPTION_FD,
 	OPTION_CACHE_BUDGET,
 	OPTION_CA,
+	OPTION_REDIRECT_HOSTS,
 	OPTION_POLL,
 	OPTION_RATE_LIMIT,
 	OPTION_STALL,
@@ -59,6 +63,7 @@ static const struct option long_options[] = {
 	{ "fd", required_argument, NULL, OPTION_FD },
 	{ "cache-budget", required_argument, NULL, OPTION_CACHE_BUDGET },
 	{ "ca", required_argument, NULL, OPTION_CA },
+	{ "redirect-hosts", required_argument, NULL, OPTION_REDIRECT_HOSTS },
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
 	{ "rate-limit", required_argument, NULL, OPTION_RATE_LIMIT },
 	{ "stall-s", required_argument, NULL, OPTION_STALL },
@@ -111,6 +116,9 @@ static void take_option(struct fetch_options *options, int option)
 	case OPTION_CA:
 		options->ca_file = optarg;
 		break;
+	case OPTION_REDIRECT_HOSTS:
+		options->redirect_hosts = optarg;
+		break;
 	case OPTION_POLL:
 		options->poll_s = (uint32_t)number("poll-s", optarg, 1, 86400);
 		break;
@@ -152,6 +160,8 @@ static void parse(struct fetch_options *options, int argc, char **argv)
 		wrong = "--cache is missing";
 	else if (!options->socket_path == (options->fd < 0))
 		wrong = "either --socket or --fd";
+	else if (!redirect_hosts_valid(options->redirect_hosts))
+		wrong = "--redirect-hosts: not up to 4 names such as cdn.example or cdn.example:8443";
 	if (!wrong)
 		return;
 	fprintf(stderr, "gopura-fetch: %s; see gopura-fetch --help\n", wrong);

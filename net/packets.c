@@ -2,12 +2,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
+
+#include "net/closer.h"
 
 enum { SEALS = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL };
 
@@ -45,8 +49,10 @@ void packets_finish(struct packets *packets)
 	}
 	buffer_finish(&packets->in);
 	buffer_finish(&packets->out);
-	if (packets->last && packets->fd >= 0) /* not a zeroed one */
-		close(packets->fd);
+	if (packets->last && packets->fd >= 0) {  /* not a zeroed one */
+		shutdown(packets->fd, SHUT_RDWR); /* the other end hears of it now */
+		closer_close(packets->fd);
+	}
 	*packets = (struct packets){ .fd = -1 };
 }
 
@@ -88,7 +94,7 @@ static int enqueue(struct packets *packets, struct bytes bytes, int passed, size
 		return -ENOMEM;
 	*packet = (struct packet){ .passed = passed,
 				   .size = bytes.size,
-				   .weight = bytes.size + passed_bytes };
+				   .weight = sizeof(*packet) + bytes.size + passed_bytes };
 	memcpy(packet->bytes, bytes.data, bytes.size);
 	*packets->last = packet;
 	packets->last = &packet->next;
@@ -141,43 +147,60 @@ bool packets_wait(const struct packets *packets)
 	return packets->first != NULL;
 }
 
-/* The one descriptor of a packet; more than one is refused (and closed). */
-static int take_passed(struct msghdr *header, int *passed)
+/* ---- receiving
+ *
+ * Whoever is at the other end may pass any descriptor, and the last close of some of them waits (a
+ * TCP socket with SO_LINGER). So a message is only looked at first (MSG_PEEK): what is passed to us
+ * then is a second reference beside that of the queue, and no close of ours is the last one. It is
+ * taken out of the queue when its descriptor is known to be plain memory. Else it stays there, and
+ * goes with the socket, which is closed on a thread of its own. */
+
+/* A memfd sealed against every change: the one kind of descriptor that is taken. Asked for the
+ * seals first, as no other file's code answers that question: even fstat may wait. */
+static bool is_sealed_memory(int fd)
 {
-	struct cmsghdr *part;
-	int rc = header->msg_flags & (MSG_TRUNC | MSG_CTRUNC) ? -EBADMSG : 0;
+	const int seals = fcntl(fd, F_GET_SEALS);
+	struct statfs system;
 
-	for (part = CMSG_FIRSTHDR(header); part; part = CMSG_NXTHDR(header, part)) {
-		size_t count = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
-
-		if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS)
-			continue;
-		for (size_t i = 0; i < count; i++) {
-			int fd;
-
-			memcpy(&fd, CMSG_DATA(part) + i * sizeof(int), sizeof(int));
-			if (*passed < 0) {
-				*passed = fd;
-				continue;
-			}
-			close(fd);
-			rc = -EBADMSG;
-		}
-	}
-	return rc;
+	return seals >= 0 && (seals & SEALS) == SEALS && fstatfs(fd, &system) == 0 &&
+	       system.f_type == TMPFS_MAGIC; /* no huge pages, which may run out */
 }
 
-static int receive_packet(struct packets *packets, int *passed)
+/* The descriptor that came along, -1: none. */
+static int passed_in(struct msghdr *header)
+{
+	int passed = -1;
+
+	for (struct cmsghdr *part = CMSG_FIRSTHDR(header); part; part = CMSG_NXTHDR(header, part))
+		if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_RIGHTS &&
+		    part->cmsg_len == CMSG_LEN(sizeof(int)))
+			memcpy(&passed, CMSG_DATA(part), sizeof(int));
+	return passed;
+}
+
+/* recvmsg as it is meant here: at once or not at all. */
+static ssize_t receive_now(int fd, struct msghdr *header, int flags)
+{
+	ssize_t got;
+
+	do
+		got = recvmsg(fd, header, flags | MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+	while (got < 0 && errno == EINTR);
+	return got;
+}
+
+static int peek_packet(struct packets *packets, int *passed)
 {
 	union {
-		char bytes[CMSG_SPACE(4 * sizeof(int))];
+		char bytes[CMSG_SPACE(sizeof(int))];
 		struct cmsghdr aligned;
 	} control;
 	struct iovec part;
 	struct msghdr header = { .msg_iov = &part,
 				 .msg_iovlen = 1,
 				 .msg_control = control.bytes,
-				 .msg_controllen = sizeof(control.bytes) };
+				 /* without the padding, where a second one would find room */
+				 .msg_controllen = CMSG_LEN(sizeof(int)) };
 	ssize_t got;
 
 	if (packets->fd < 0)
@@ -187,34 +210,44 @@ static int receive_packet(struct packets *packets, int *passed)
 	part.iov_len = MESSAGE_BYTES_MOST + 1;
 	if (!part.iov_base)
 		return packets->in.error;
-	do
-		got = recvmsg(packets->fd, &header, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
-	while (got < 0 && errno == EINTR);
+	got = receive_now(packets->fd, &header, MSG_PEEK);
 	if (got < 0)
 		return errno == EAGAIN || errno == EWOULDBLOCK ? -EAGAIN
 		       : errno == ECONNRESET                   ? -EPIPE
 							       : -errno;
 	packets->in.size = (size_t)got;
+	*passed = passed_in(&header);
 	if (got == 0) /* no message is empty: it is the end */
 		return -EPIPE;
-	return take_passed(&header, passed);
+	return header.msg_flags & (MSG_TRUNC | MSG_CTRUNC) ? -EBADMSG : 0;
+}
+
+static int judge_packet(const struct packets *packets, struct message *out, int passed)
+{
+	bool needs_one;
+	int rc = message_decode(out, buffer_bytes(&packets->in));
+
+	if (rc < 0)
+		return rc;
+	needs_one = out->kind == MESSAGE_OBJECT && out->object.bytes.size == 0;
+	if (needs_one != (passed >= 0))
+		return -EBADMSG;
+	return passed < 0 || is_sealed_memory(passed) ? 0 : -EBADMSG;
 }
 
 int packets_receive(struct packets *packets, struct message *out, int *passed)
 {
-	bool needs_one;
+	struct msghdr nothing = { 0 };
 	int rc;
 
 	*passed = -1;
-	rc = receive_packet(packets, passed);
+	rc = peek_packet(packets, passed);
 	if (rc == 0)
-		rc = message_decode(out, buffer_bytes(&packets->in));
-	if (rc == 0) {
-		needs_one = out->kind == MESSAGE_OBJECT && out->object.bytes.size == 0;
-		rc = needs_one == (*passed >= 0) ? 0 : -EBADMSG;
-	}
-	if (rc < 0 && *passed >= 0) {
-		close(*passed);
+		rc = judge_packet(packets, out, *passed);
+	if (rc == 0 && receive_now(packets->fd, &nothing, 0) < 0) /* out of the queue */
+		rc = -errno;
+	if (rc < 0) {
+		closer_close(*passed);
 		*passed = -1;
 	}
 	return rc;
@@ -251,7 +284,7 @@ int packets_map_sealed(struct bytes *out, int fd, uint32_t size)
 	void *at;
 
 	/* Unsealed, the other end could change or shorten it under our eyes. */
-	if (fcntl(fd, F_GET_SEALS) < 0 || (fcntl(fd, F_GET_SEALS) & SEALS) != SEALS)
+	if (!is_sealed_memory(fd))
 		return -EBADMSG;
 	if (fstat(fd, &info) < 0 || info.st_size != (off_t)size || size == 0)
 		return -EBADMSG;

@@ -16,7 +16,10 @@ struct packets {
 
 /* fd is taken, and made non-blocking. */
 void packets_init(struct packets *packets, int fd);
-void packets_finish(struct packets *packets); /* closes; a zeroed or finished one is fine */
+/* A zeroed or finished one is fine. The other end is told at once; the close itself is left to
+ * net/closer.h, for what lies in the socket unread may be anything: until then an epoll set has it
+ * still, so take it out there first. */
+void packets_finish(struct packets *packets);
 
 /* passed (-1: none) is taken, even on failure. -EPIPE and kin: the other end is gone. -EFBIG: the
  * message keeps not to its limits. */
@@ -26,9 +29,9 @@ must_check int packets_flush(struct packets *packets);
 bool packets_wait(const struct packets *packets); /* something waits to be sent */
 
 /* The next message; its bytes are borrowed until the next call. *passed is the descriptor that came
- * along (owned by the caller) or -1.
- *   -EAGAIN none now   -EPIPE the other end closed   -EBADMSG not a message, or descriptors amiss
- */
+ * along (owned by the caller) or -1; it is a memfd sealed against every change.
+ *   -EAGAIN none now   -EPIPE the other end closed
+ *   -EBADMSG not a message, or descriptors amiss: it stays the next one, so hang up */
 must_check int packets_receive(struct packets *packets, struct message *out, int *passed);
 
 /* A sealed memfd with these bytes, owned by the caller; negative errno. */

@@ -8,9 +8,13 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { ROOTS_MOST = 64, ETAG_BYTES_MOST = 128, PATH_BYTES = 32 };
+enum {
+	ETAG_BYTES_MOST = 128,
+	PATH_BYTES = 32,
+	VERDICT_MS = 3000, /* for the kiosk to say whether it took a root */
+};
 
-enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_TIMESTAMP, STAGE_RELEASE };
+enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_VERDICT, STAGE_TIMESTAMP, STAGE_RELEASE };
 
 struct known {
 	struct buffer file; /* empty: none yet */
@@ -27,8 +31,9 @@ struct poll {
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
-	struct known roots[ROOTS_MOST]; /* [n - 1]: root/n.json */
-	uint32_t root_count;
+	uint32_t root_version; /* that the kiosk has */
+	struct known root;     /* the server's answer for the next one, which nobody checked yet */
+	int64_t verdict_ms;    /* of STAGE_VERDICT: how long the kiosk's word is waited for */
 	struct known timestamp, release;
 };
 
@@ -41,8 +46,7 @@ int poll_create(struct poll **out, const struct poll_options *options)
 		return -ENOMEM;
 	poll->options = *options;
 	buffer_init(&poll->body, MESSAGE_META_BYTES_MOST);
-	for (uint32_t i = 0; i < ROOTS_MOST; i++)
-		buffer_init(&poll->roots[i].file, MESSAGE_META_BYTES_MOST);
+	buffer_init(&poll->root.file, MESSAGE_META_BYTES_MOST);
 	buffer_init(&poll->timestamp.file, MESSAGE_META_BYTES_MOST);
 	buffer_init(&poll->release.file, MESSAGE_META_BYTES_MOST);
 	return 0;
@@ -54,7 +58,8 @@ static void forget(struct known *known)
 	known->etag[0] = '\0';
 }
 
-void poll_stop(struct poll *poll)
+/* The round ends, and what it knew is asked for anew in the next one. */
+static void begin_anew(struct poll *poll)
 {
 	if (poll->request) {
 		http_cancel(poll->request);
@@ -62,13 +67,17 @@ void poll_stop(struct poll *poll)
 	}
 	poll->request = NULL;
 	poll->stage = STAGE_IDLE;
-	poll->running = false;
-	for (uint32_t i = 0; i < ROOTS_MOST; i++)
-		forget(&poll->roots[i]);
-	poll->root_count = 0;
+	poll->next_ms = 0;
+	forget(&poll->root);
 	forget(&poll->timestamp);
 	forget(&poll->release);
 	poll->stamped = false;
+}
+
+void poll_stop(struct poll *poll)
+{
+	begin_anew(poll);
+	poll->running = false;
 }
 
 void poll_destroy(struct poll *poll)
@@ -90,8 +99,7 @@ void poll_ask(struct poll *poll, uint32_t period_s)
 {
 	if (period_s)
 		poll->options.period_s = period_s;
-	for (uint32_t i = 0; i < poll->root_count; i++)
-		say(poll, META_ROOT, i + 1, &poll->roots[i]);
+	say(poll, META_ROOT, poll->root_version + 1, &poll->root);
 	say(poll, META_TIMESTAMP, 0, &poll->timestamp);
 	say(poll, META_RELEASE, 0, &poll->release);
 	poll->running = true;
@@ -99,11 +107,21 @@ void poll_ask(struct poll *poll, uint32_t period_s)
 		poll->next_ms = 0;
 }
 
+void poll_trust(struct poll *poll, uint32_t root_version)
+{
+	if (root_version != poll->root_version) {
+		begin_anew(poll);
+		poll->root_version = root_version;
+	} else if (poll->stage == STAGE_VERDICT) {
+		poll->verdict_ms = 0; /* it was refused: poll_work goes on with the others */
+	}
+}
+
 static struct known *known_of_stage(struct poll *poll)
 {
 	switch (poll->stage) {
 	case STAGE_ROOT:
-		return &poll->roots[poll->root_count];
+		return &poll->root;
 	case STAGE_TIMESTAMP:
 		return &poll->timestamp;
 	default:
@@ -114,7 +132,7 @@ static struct known *known_of_stage(struct poll *poll)
 static const char *path_of_stage(const struct poll *poll, char out[PATH_BYTES])
 {
 	if (poll->stage == STAGE_ROOT)
-		snprintf(out, PATH_BYTES, "root/%u.json", poll->root_count + 1);
+		snprintf(out, PATH_BYTES, "root/%u.json", poll->root_version + 1);
 	else
 		snprintf(out, PATH_BYTES, "%s.json",
 			 poll->stage == STAGE_RELEASE ? "release" : "timestamp");
@@ -138,14 +156,18 @@ static void take_body(struct poll *poll, const char *etag)
 	bool same = known->file.size == poll->body.size && poll->body.size > 0 &&
 		    memcmp(known->file.data, poll->body.data, poll->body.size) == 0;
 
-	snprintf(known->etag, sizeof(known->etag), "%s", etag);
+	/* A root is asked for without: whoever can make an answer up can make its ETag up too, and
+	 * would have the server say "not modified" of a root that never came. */
+	if (poll->stage != STAGE_ROOT)
+		snprintf(known->etag, sizeof(known->etag), "%s", etag);
 	if (same || poll->body.size == 0)
 		return;
 	buffer_clear(&known->file);
 	buffer_put(&known->file, poll->body.data, poll->body.size);
 	if (poll->stage == STAGE_ROOT) {
-		poll->root_count++;
-		say(poll, META_ROOT, poll->root_count, known);
+		poll->stage = STAGE_VERDICT;
+		poll->verdict_ms = clock_now_ms() + VERDICT_MS;
+		say(poll, META_ROOT, poll->root_version + 1, known);
 	} else {
 		poll->stamped = poll->stage == STAGE_TIMESTAMP;
 		say(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0, known);
@@ -207,11 +229,9 @@ static void on_done(void *data, const struct http_result *result)
 		rest(poll, period_ms(poll));
 		return;
 	}
-	/* After a root, its successor; after the last one, the others. */
-	if (poll->stage == STAGE_TIMESTAMP)
-		poll->stage = STAGE_RELEASE;
-	else if (rc < 0 || poll->root_count == ROOTS_MOST || poll->body.size == 0)
-		poll->stage = STAGE_TIMESTAMP;
+	if (poll->stage == STAGE_VERDICT) /* a new root: the kiosk's word first */
+		return;
+	poll->stage = poll->stage == STAGE_ROOT ? STAGE_TIMESTAMP : STAGE_RELEASE;
 	ask(poll);
 }
 
@@ -237,10 +257,15 @@ static void ask(struct poll *poll)
 
 void poll_work(struct poll *poll)
 {
+	if (poll->stage == STAGE_VERDICT && clock_now_ms() >= poll->verdict_ms) {
+		poll->stage = STAGE_TIMESTAMP;
+		ask(poll);
+		return;
+	}
 	if (!poll->running || poll->stage != STAGE_IDLE || clock_now_ms() < poll->next_ms ||
 	    !link_may_ask(poll->options.link))
 		return;
-	poll->stage = poll->root_count < ROOTS_MOST ? STAGE_ROOT : STAGE_TIMESTAMP;
+	poll->stage = STAGE_ROOT;
 	ask(poll);
 }
 
@@ -248,6 +273,8 @@ int64_t poll_due_ms(const struct poll *poll)
 {
 	const struct link *link = poll->options.link;
 
+	if (poll->stage == STAGE_VERDICT)
+		return poll->verdict_ms;
 	if (!poll->running || poll->stage != STAGE_IDLE)
 		return INT64_MAX;
 	if (link->failures > 0 && link->in_flight > 0)

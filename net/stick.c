@@ -1,253 +1,475 @@
 #include "net/stick.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <stdio.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/eventfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "format/locator.h"
+#include "format/page.h"
+#include "net/stick_reader.h"
 
 enum {
 	LOOK_MS = 3000,
-	ROOTS_MOST = 64,
-	LOCATOR_BYTES_MOST = 64 << 20,
-	NAME_BYTES = 64,
+	PATIENCE_MS = 10000,
+	LEFT_ALONE_MS = 60000, /* after a job that hung */
+	END_S = 2,             /* for the thread to end with us; else it is left behind */
+	OBJECTS_MAX = 32,      /* of a job */
+	JOB_BYTES_MAX = 2 << 20,
 };
 
-struct stick_release {
-	struct hash root; /* zero: none */
-	struct locator locator;
-	bool readable; /* else there is none, or it is damaged */
+struct job_object {
+	struct message_want want;
+	int rc;
+	struct buffer bytes;
+};
+
+struct job {
+	bool looks; /* for a stick; else reads objects */
+	bool forgets;
+	uint32_t root_version;
+	enum stick_news news;
+	struct stick_file files[STICK_FILES_MAX];
+	size_t file_count;
+	struct hash roots[MESSAGE_RELEASES_MOST];
+	size_t root_count;
+	struct job_object objects[OBJECTS_MAX];
+	size_t object_count;
+};
+
+enum worker_state { WORKER_IDLE, WORKER_BUSY, WORKER_DONE };
+
+/* Outlives the stick where the thread hangs. While it is busy, job and reader are the thread's. */
+struct worker {
+	pthread_mutex_t lock;
+	pthread_cond_t changed;
+	enum worker_state state;
+	bool ends, ended, abandoned; /* abandoned: the thread frees it */
+	int event_fd;
+	struct stick_reader reader;
+	struct job job;
+};
+
+struct asked {
+	struct message_want want;
+	uint64_t order; /* of arrival */
 };
 
 struct stick {
 	struct stick_options options;
-	char folder[PATH_MAX]; /* of the release: the options' or release/ in it */
-	int64_t look_ms;
-	struct buffer stamp; /* timestamp.json as it was told; empty: no stick */
-	struct buffer file;  /* read last */
-	struct stick_release releases[MESSAGE_RELEASES_MOST];
-	size_t next_release; /* to be overwritten */
-	struct hash pack;    /* that is open */
-	int pack_fd;         /* -1: none */
+	struct worker *worker;
+	pthread_t thread;
+	int64_t look_ms, began_ms; /* the next look; the job under way */
+	bool forgets;              /* all is to be told again */
+	bool is_here;
+	bool hangs; /* the job under way was given up */
+	uint32_t root_version;
+	struct hash roots[MESSAGE_RELEASES_MOST];
+	size_t root_count;
+	struct asked *asked; /* owned; sorted by priority when not asked_changed, best last */
+	size_t asked_count, asked_capacity;
+	bool asked_changed;
+	uint64_t orders;
 };
+
+/* ---- the thread */
+
+static void do_job(struct worker *worker)
+{
+	struct job *job = &worker->job;
+
+	if (job->forgets)
+		stick_reader_forget(&worker->reader);
+	if (job->looks) {
+		job->news = stick_reader_look(&worker->reader, job->root_version, job->files,
+					      &job->file_count);
+		return;
+	}
+	for (size_t i = 0; i < job->object_count; i++) {
+		struct job_object *object = &job->objects[i];
+
+		buffer_init(&object->bytes, OBJECT_BYTES_MOST);
+		object->rc = stick_reader_get(&worker->reader, job->roots, job->root_count,
+					      &object->want, &object->bytes);
+	}
+}
+
+static void empty_job(struct job *job)
+{
+	for (size_t i = 0; i < job->file_count; i++)
+		buffer_finish(&job->files[i].bytes);
+	for (size_t i = 0; i < job->object_count; i++)
+		buffer_finish(&job->objects[i].bytes);
+	job->file_count = job->object_count = 0;
+}
+
+static void worker_free(struct worker *worker)
+{
+	empty_job(&worker->job);
+	stick_reader_finish(&worker->reader);
+	if (worker->event_fd >= 0)
+		close(worker->event_fd);
+	pthread_cond_destroy(&worker->changed);
+	pthread_mutex_destroy(&worker->lock);
+	free(worker);
+}
+
+static void *run(void *data)
+{
+	struct worker *worker = data;
+	bool abandoned;
+
+	pthread_mutex_lock(&worker->lock);
+	while (!worker->ends) {
+		if (worker->state != WORKER_BUSY) {
+			pthread_cond_wait(&worker->changed, &worker->lock);
+			continue;
+		}
+		pthread_mutex_unlock(&worker->lock);
+		do_job(worker);
+		pthread_mutex_lock(&worker->lock);
+		worker->state = WORKER_DONE;
+		if (eventfd_write(worker->event_fd, 1) < 0)
+			log_debug("net", "the loop was not woken for the stick");
+	}
+	worker->ended = true;
+	abandoned = worker->abandoned;
+	pthread_cond_signal(&worker->changed);
+	pthread_mutex_unlock(&worker->lock);
+	if (abandoned)
+		worker_free(worker);
+	return NULL;
+}
+
+static enum worker_state state_of(struct worker *worker)
+{
+	enum worker_state state;
+
+	pthread_mutex_lock(&worker->lock);
+	state = worker->state;
+	pthread_mutex_unlock(&worker->lock);
+	return state;
+}
+
+static void set_state(struct worker *worker, enum worker_state state)
+{
+	pthread_mutex_lock(&worker->lock);
+	worker->state = state;
+	pthread_cond_signal(&worker->changed);
+	pthread_mutex_unlock(&worker->lock);
+}
+
+/* ---- create, destroy */
+
+static int start_thread(struct stick *stick)
+{
+	sigset_t all, before;
+	int rc;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	rc = -pthread_create(&stick->thread, NULL, run, stick->worker);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return rc;
+}
+
+static int create_worker(struct worker **out, const char *folder)
+{
+	struct worker *worker = calloc(1, sizeof(*worker));
+	pthread_condattr_t attributes;
+	int rc;
+
+	*out = worker;
+	if (!worker)
+		return -ENOMEM;
+	pthread_mutex_init(&worker->lock, NULL);
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(&worker->changed, &attributes);
+	pthread_condattr_destroy(&attributes);
+	worker->event_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	rc = worker->event_fd < 0 ? -errno : 0;
+	return rc == 0 ? stick_reader_init(&worker->reader, folder) : rc;
+}
 
 int stick_create(struct stick **out, const struct stick_options *options)
 {
 	struct stick *stick = calloc(1, sizeof(*stick));
+	int rc;
 
-	*out = stick;
+	*out = NULL;
 	if (!stick)
 		return -ENOMEM;
 	stick->options = *options;
-	stick->options.folder = strdup(options->folder);
-	stick->pack_fd = -1;
-	buffer_init(&stick->stamp, MESSAGE_META_BYTES_MOST);
-	buffer_init(&stick->file, LOCATOR_BYTES_MOST);
-	if (stick->options.folder)
-		return 0;
-	stick_destroy(stick);
-	*out = NULL;
-	return -ENOMEM;
+	stick->options.folder = NULL; /* the reader's */
+	if (stick->options.patience_ms == 0)
+		stick->options.patience_ms = PATIENCE_MS;
+	rc = create_worker(&stick->worker, options->folder);
+	if (rc == 0)
+		rc = start_thread(stick);
+	if (rc < 0) {
+		if (stick->worker)
+			worker_free(stick->worker);
+		free(stick);
+		return rc;
+	}
+	*out = stick;
+	return 0;
 }
 
-/* What was read of the stick that was there. */
-static void close_files(struct stick *stick)
+/* A thread that hangs in the device is left behind, with what it works on. */
+static void end_thread(struct stick *stick)
 {
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		locator_finish(&stick->releases[i].locator);
-		stick->releases[i] = (struct stick_release){ 0 };
+	struct worker *worker = stick->worker;
+	struct timespec until;
+	bool ended;
+	int rc = 0;
+
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += END_S;
+	pthread_mutex_lock(&worker->lock);
+	worker->ends = true;
+	pthread_cond_signal(&worker->changed);
+	while (!worker->ended && rc == 0)
+		rc = pthread_cond_timedwait(&worker->changed, &worker->lock, &until);
+	ended = worker->ended;
+	worker->abandoned = !ended;
+	pthread_mutex_unlock(&worker->lock);
+	if (!ended) {
+		pthread_detach(stick->thread);
+		return;
 	}
-	if (stick->pack_fd >= 0)
-		close(stick->pack_fd);
-	stick->pack_fd = -1;
+	pthread_join(stick->thread, NULL);
+	worker_free(worker);
 }
 
 void stick_destroy(struct stick *stick)
 {
 	if (!stick)
 		return;
-	close_files(stick);
-	buffer_finish(&stick->stamp);
-	buffer_finish(&stick->file);
-	free((char *)stick->options.folder);
+	end_thread(stick);
+	free(stick->asked);
 	free(stick);
 }
+
+/* ---- what is asked for */
 
 void stick_forget(struct stick *stick)
 {
 	if (!stick)
 		return;
-	buffer_clear(&stick->stamp);
-	stick->look_ms = 0;
+	stick->forgets = true;
+	if (!stick->hangs)
+		stick->look_ms = 0;
 }
 
-/* ---- files */
-
-/* Not through a link, and not what would block: a stick may hold anything. */
-static int open_plain(const struct stick *stick, const char *name, struct stat *info)
+void stick_trust(struct stick *stick, uint32_t root_version)
 {
-	char path[PATH_MAX + NAME_BYTES + 1];
-	int fd;
-
-	snprintf(path, sizeof(path), "%s/%s", stick->folder, name);
-	fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
-	if (fd < 0)
-		return -errno;
-	if (fstat(fd, info) == 0 && S_ISREG(info->st_mode))
-		return fd;
-	close(fd);
-	return -ENOENT;
+	if (stick)
+		stick->root_version = root_version;
 }
 
-/* Into stick->file. */
-static int read_file(struct stick *stick, const char *name, size_t most)
+static bool grow(struct stick *stick)
 {
-	struct stat info;
-	int fd = open_plain(stick, name, &info), rc;
-	uint8_t *to;
+	size_t capacity = stick->asked_capacity ? stick->asked_capacity * 2 : 64;
+	struct asked *larger = realloc(stick->asked, capacity * sizeof(*larger));
 
-	if (fd < 0)
-		return fd;
-	buffer_clear(&stick->file);
-	rc = info.st_size <= 0 || (uint64_t)info.st_size > most ? -EFBIG : 0;
-	to = rc == 0 ? buffer_extend(&stick->file, (size_t)info.st_size) : NULL;
-	if (rc == 0)
-		rc = to ? bytes_read_at(fd, to, (size_t)info.st_size, 0) : stick->file.error;
-	if (rc == 0)
-		stick->file.size = (size_t)info.st_size;
-	close(fd);
-	return rc;
-}
-
-static int read_stamp(struct stick *stick)
-{
-	static const char *const below[] = { "", "/release" };
-	int rc = -ENOENT;
-
-	for (size_t i = 0; rc < 0 && i < ARRAY_COUNT(below); i++) {
-		snprintf(stick->folder, sizeof(stick->folder), "%s%s", stick->options.folder,
-			 below[i]);
-		rc = read_file(stick, "timestamp.json", MESSAGE_META_BYTES_MOST);
-	}
-	return rc;
-}
-
-/* ---- metadata */
-
-static void say(struct stick *stick, enum meta_role role, uint32_t version)
-{
-	stick->options.meta(stick->options.data, role, version, buffer_bytes(&stick->file));
-}
-
-static void say_all(struct stick *stick)
-{
-	char name[NAME_BYTES];
-
-	for (uint32_t n = 1; n <= ROOTS_MOST; n++) {
-		snprintf(name, sizeof(name), "root/%u.json", n);
-		if (read_file(stick, name, MESSAGE_META_BYTES_MOST) < 0)
-			break;
-		say(stick, META_ROOT, n);
-	}
-	stick->options.meta(stick->options.data, META_TIMESTAMP, 0, buffer_bytes(&stick->stamp));
-	if (read_file(stick, "release.json", MESSAGE_META_BYTES_MOST) == 0)
-		say(stick, META_RELEASE, 0);
-}
-
-bool stick_work(struct stick *stick)
-{
-	bool same;
-
-	if (!stick || clock_now_ms() < stick->look_ms)
+	if (!larger)
 		return false;
-	stick->look_ms = clock_now_ms() + LOOK_MS;
-	if (read_stamp(stick) < 0) {
-		if (stick->stamp.size > 0)
-			log_info("net", "the stick is gone");
-		close_files(stick); /* or it could not be unmounted */
-		buffer_clear(&stick->stamp);
-		return false;
-	}
-	same = stick->stamp.size == stick->file.size &&
-	       memcmp(stick->stamp.data, stick->file.data, stick->file.size) == 0;
-	if (same)
-		return false;
-	log_info("net", "a stick with a release is here: %s", stick->folder);
-	close_files(stick);
-	buffer_clear(&stick->stamp);
-	buffer_put(&stick->stamp, stick->file.data, stick->file.size);
-	say_all(stick);
+	stick->asked = larger;
+	stick->asked_capacity = capacity;
 	return true;
 }
 
-int64_t stick_due_ms(const struct stick *stick)
+bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
+	       const struct message_want *want)
 {
-	return stick ? stick->look_ms : INT64_MAX;
+	if (!stick || !stick->is_here || stick->hangs)
+		return false;
+	if (stick->asked_count == stick->asked_capacity && !grow(stick))
+		return false;
+	stick->root_count = count < MESSAGE_RELEASES_MOST ? count : MESSAGE_RELEASES_MOST;
+	memcpy(stick->roots, roots, stick->root_count * sizeof(*roots));
+	stick->asked[stick->asked_count++] = (struct asked){ *want, stick->orders++ };
+	stick->asked_changed = true;
+	return true;
 }
 
-/* ---- objects */
-
-static const struct stick_release *release_of(struct stick *stick, struct hash root)
+/* The best one last. */
+static int by_priority(const void *a, const void *b)
 {
-	char name[NAME_BYTES] = "locator/";
-	struct stick_release *release;
+	const struct asked *left = a, *right = b;
 
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
-		if (hash_equal(stick->releases[i].root, root))
-			return &stick->releases[i];
-	release = &stick->releases[stick->next_release++ % MESSAGE_RELEASES_MOST];
-	locator_finish(&release->locator);
-	*release = (struct stick_release){ .root = root };
-	hash_to_hex(root, name + strlen(name));
-	release->readable = read_file(stick, name, LOCATOR_BYTES_MOST) == 0 &&
-			    locator_decode(&release->locator, buffer_bytes(&stick->file)) == 0;
-	buffer_finish(&stick->file); /* it may have been large */
-	buffer_init(&stick->file, LOCATOR_BYTES_MOST);
-	return release;
+	if (left->want.priority != right->want.priority)
+		return left->want.priority < right->want.priority ? -1 : 1;
+	return left->order > right->order ? -1 : 1;
 }
 
-static int open_pack(struct stick *stick, struct hash pack)
+static void answer(struct stick *stick, struct hash hash, int rc, struct bytes bytes)
 {
-	char name[NAME_BYTES] = "packs/";
-	struct stat info;
-
-	if (stick->pack_fd >= 0 && hash_equal(stick->pack, pack))
-		return 0;
-	if (stick->pack_fd >= 0)
-		close(stick->pack_fd);
-	hash_to_hex(pack, name + strlen(name));
-	stick->pack = pack;
-	stick->pack_fd = open_plain(stick, name, &info);
-	return stick->pack_fd < 0 ? -ENOENT : 0;
+	stick->options.object(stick->options.data, hash, rc, bytes);
 }
 
-int stick_get(struct stick *stick, struct hash root, const struct message_want *want,
-	      struct buffer *out)
+/* There is no stick any more, or none that answers. */
+static void refuse_all(struct stick *stick)
 {
-	const struct stick_release *release;
-	const struct locator_block *block;
-	uint8_t *to;
+	size_t count = stick->asked_count;
 
-	if (!stick || stick->stamp.size == 0)
-		return -ENOENT;
-	release = release_of(stick, root);
-	block = release->readable ? locator_find(&release->locator, want->page) : NULL;
-	if (!block || (uint64_t)want->offset + want->size > block->size ||
-	    (hash_is_zero(want->page) && !hash_equal(want->hash, root)) ||
-	    open_pack(stick, release->locator.packs[block->pack]) < 0)
-		return -ENOENT;
-	buffer_clear(out);
-	to = buffer_extend(out, want->size);
-	if (!to || bytes_read_at(stick->pack_fd, to, want->size,
-				 (uint64_t)block->offset + want->offset) < 0)
-		return -ENOENT;
-	out->size = want->size;
-	return 0;
+	stick->is_here = false;
+	stick->asked_count = 0; /* an answer may ask for more, which is refused now */
+	for (size_t i = 0; i < count; i++)
+		answer(stick, stick->asked[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
+}
+
+/* ---- jobs */
+
+static void begin_look(struct stick *stick)
+{
+	struct job *job = &stick->worker->job;
+
+	job->looks = true;
+	job->forgets = stick->forgets;
+	job->root_version = stick->root_version;
+	stick->forgets = false;
+	stick->began_ms = clock_now_ms();
+	stick->look_ms = stick->began_ms + LOOK_MS;
+	set_state(stick->worker, WORKER_BUSY);
+}
+
+static void begin_read(struct stick *stick)
+{
+	struct job *job = &stick->worker->job;
+	size_t bytes = 0;
+
+	if (stick->asked_changed)
+		qsort(stick->asked, stick->asked_count, sizeof(stick->asked[0]), by_priority);
+	stick->asked_changed = false;
+	while (stick->asked_count > 0 && job->object_count < OBJECTS_MAX && bytes < JOB_BYTES_MAX) {
+		const struct message_want *want = &stick->asked[--stick->asked_count].want;
+
+		if (!stick->options.is_wanted(stick->options.data, want->hash))
+			continue;
+		job->objects[job->object_count++] = (struct job_object){ .want = *want };
+		bytes += want->size;
+	}
+	if (job->object_count == 0)
+		return;
+	job->looks = job->forgets = false;
+	memcpy(job->roots, stick->roots, sizeof(job->roots));
+	job->root_count = stick->root_count;
+	stick->began_ms = clock_now_ms();
+	set_state(stick->worker, WORKER_BUSY);
+}
+
+/* true: a stick came. */
+static bool take_look(struct stick *stick)
+{
+	const struct job *job = &stick->worker->job;
+
+	if (job->news == STICK_GONE) {
+		if (stick->is_here)
+			log_info("net", "the stick is gone");
+		refuse_all(stick);
+	}
+	if (job->news != STICK_CAME)
+		return false;
+	log_info("net", "a stick with a release is here: %s/%s", stick->worker->reader.folder,
+		 stick->worker->reader.below);
+	stick->is_here = true;
+	for (size_t i = 0; i < job->file_count; i++)
+		stick->options.meta(stick->options.data, job->files[i].role, job->files[i].version,
+				    buffer_bytes(&job->files[i].bytes));
+	return true;
+}
+
+static void take_objects(struct stick *stick)
+{
+	const struct job *job = &stick->worker->job;
+
+	for (size_t i = 0; i < job->object_count; i++) {
+		const struct job_object *object = &job->objects[i];
+
+		answer(stick, object->want.hash, object->rc, buffer_bytes(&object->bytes));
+	}
+}
+
+/* What a job brought that was given up is of no use: its stick may be another one by now. */
+static bool take_job(struct stick *stick)
+{
+	bool came = false;
+
+	if (stick->hangs) {
+		stick->hangs = false;
+		stick->forgets = true;
+		stick->look_ms = clock_now_ms() + LEFT_ALONE_MS;
+	} else if (stick->worker->job.looks) {
+		came = take_look(stick);
+	} else {
+		take_objects(stick);
+	}
+	empty_job(&stick->worker->job);
+	set_state(stick->worker, WORKER_IDLE);
+	return came;
+}
+
+/* The objects of the job are the thread's, but what was asked for is not touched by it. */
+static void give_up(struct stick *stick)
+{
+	const struct job *job = &stick->worker->job;
+
+	log_warn("net", "the stick does not answer: it is left alone");
+	stick->hangs = true;
+	for (size_t i = 0; !job->looks && i < job->object_count; i++)
+		answer(stick, job->objects[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
+	refuse_all(stick);
+}
+
+bool stick_work(struct stick *stick, bool has_room)
+{
+	enum worker_state state;
+	bool came = false;
+
+	if (!stick)
+		return false;
+	state = state_of(stick->worker);
+	if (state == WORKER_BUSY) {
+		if (!stick->hangs && clock_now_ms() >= stick->began_ms + stick->options.patience_ms)
+			give_up(stick);
+		return false;
+	}
+	if (state == WORKER_DONE)
+		came = take_job(stick);
+	if (clock_now_ms() >= stick->look_ms)
+		begin_look(stick);
+	else if (has_room && stick->asked_count > 0)
+		begin_read(stick);
+	return came;
+}
+
+void stick_heard(struct stick *stick)
+{
+	eventfd_t count;
+
+	if (stick && eventfd_read(stick->worker->event_fd, &count) < 0)
+		log_debug("net", "the stick's thread had nothing to say");
+}
+
+int stick_fd(const struct stick *stick)
+{
+	return stick ? stick->worker->event_fd : -1;
+}
+
+int64_t stick_due_ms(const struct stick *stick, bool has_room)
+{
+	if (!stick)
+		return INT64_MAX;
+	if (state_of(stick->worker) == WORKER_IDLE)
+		return has_room && stick->asked_count > 0 ? 0 : stick->look_ms;
+	/* The event tells of its end. */
+	return stick->hangs ? INT64_MAX : stick->began_ms + stick->options.patience_ms;
 }

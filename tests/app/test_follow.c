@@ -57,8 +57,8 @@ static void on_remembered(void *data, struct hash root, int rc)
 	told.remembered_root = root;
 }
 
-/* Of the keys of now. */
-static void encode_root(struct buffer *file, uint32_t version)
+/* With the keys of now. */
+static struct trust_root root_of_version(uint32_t version)
 {
 	const struct signing_key *const keys[] = {
 		[META_ROOT] = &root_key,
@@ -71,6 +71,13 @@ static void encode_root(struct buffer *file, uint32_t version)
 		memcpy(root.roles[role].keys[0], keys[role]->public_key, KEY_BYTES);
 		root.roles[role].key_count = root.roles[role].threshold = 1;
 	}
+	return root;
+}
+
+static void encode_root(struct buffer *file, uint32_t version)
+{
+	const struct trust_root root = root_of_version(version);
+
 	buffer_init(file, METADATA_FILE_BYTES_MOST);
 	CHECK(trust_root_encode(file, &root, &root_key, 1) == 0);
 }
@@ -360,6 +367,31 @@ static void takes_a_stick_by_the_same_rules(void **unused)
 	follow_destroy(follow);
 }
 
+/* As the fetcher is told: it looks for the next one. */
+static void says_which_root_it_has_verified(void **unused)
+{
+	static const uint8_t page[] = "<html>Please log in";
+	struct follow *follow = open_follow();
+	struct trust_root root = root_of_version(2);
+	struct buffer file;
+
+	(void)unused;
+	CHECK(follow_root_version(follow) == 1);
+	follow_meta(follow, META_ROOT, 2, (struct bytes){ page, sizeof(page) }, META_FROM_SERVER);
+	CHECK(follow_root_version(follow) == 1);
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
+	follow_meta(follow, META_ROOT, 3, buffer_bytes(&file), META_FROM_SERVER);
+	CHECK(follow_root_version(follow) == 1);
+	follow_meta(follow, META_ROOT, 2, buffer_bytes(&file), META_FROM_SERVER);
+	CHECK(follow_root_version(follow) == 2);
+	buffer_finish(&file);
+	follow_destroy(follow);
+	follow = open_follow();
+	CHECK(follow_root_version(follow) == 2); /* remembered */
+	follow_destroy(follow);
+}
+
 /* Expired while nobody looked: what is shown stays, only updates are refused. */
 static void keeps_showing_what_has_expired(void **unused)
 {
@@ -584,6 +616,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(begins_no_release_again_that_cannot_be_decoded,
 						enter_museum, leave_museum),
 		cmocka_unit_test_setup_teardown(takes_a_stick_by_the_same_rules, enter_museum,
+						leave_museum),
+		cmocka_unit_test_setup_teardown(says_which_root_it_has_verified, enter_museum,
 						leave_museum),
 		cmocka_unit_test_setup_teardown(keeps_showing_what_has_expired, enter_museum,
 						leave_museum),

@@ -112,10 +112,13 @@ static void the_fetcher_is_told_what_is_its(void **state)
 
 	(void)state;
 	apply(RELEASE
-	      "ca = ca.pem\npoll_s = 300\nrate_limit_kib = 2000\n[terminal]\n"
+	      "ca = ca.pem\npoll_s = 300\nrate_limit_kib = 2000\n"
+	      "redirect_hosts = cdn.example cdn2.example:8443\n[terminal]\n"
 	      "name = East gate\ntime_zone = Asia/Phnom_Penh\n[health]\nlisten = [::]:9200\n");
 	snprintf(options, sizeof(options),
-		 "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 --ca %s/conf/ca.pem\"\n", out);
+		 "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 "
+		 "--redirect-hosts cdn.example,cdn2.example:8443 --ca %s/conf/ca.pem\"\n",
+		 out);
 	has("fetch.env", options);
 	has("gopura-health.socket.d/listen.conf", "ListenStream=[::]:9200\n");
 	CHECK(strcmp(text_of("hostname"), "east-gate\n") == 0);

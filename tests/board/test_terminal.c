@@ -197,6 +197,30 @@ static void refuses_addresses_that_are_none(void **state)
 	}
 }
 
+static void takes_hosts_that_the_server_may_redirect_to(void **state)
+{
+	static const char *const bad[] = { "https://cdn.example/",
+					   "cdn.example:0",
+					   "cdn.example:65536",
+					   "cdn.example:",
+					   "a, b, c, d, e",
+					   "-c",
+					   "a..b",
+					   "a\"b" };
+	char text[256];
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
+		snprintf(text, sizeof(text), RELEASE "redirect_hosts = %s\n", bad[i]);
+		parse(text);
+		says_only("line 4: redirect_hosts must be up to 4 hosts such as cdn.example");
+		CHECK(terminal.redirect_hosts[0] == '\0');
+	}
+	parse(RELEASE "redirect_hosts = cdn.example, 192.168.1.4:8443\n");
+	CHECK(faults.count == 0);
+	CHECK(strcmp(terminal.redirect_hosts, "cdn.example,192.168.1.4:8443") == 0);
+}
+
 static void keeps_what_is_right_beside_what_is_wrong(void **state)
 {
 	(void)state;
@@ -533,6 +557,7 @@ int main(void)
 		cmocka_unit_test(keeps_defaults_where_nothing_is_said),
 		cmocka_unit_test(refuses_each_wrong_value_by_its_line_and_says_the_cure),
 		cmocka_unit_test(refuses_addresses_that_are_none),
+		cmocka_unit_test(takes_hosts_that_the_server_may_redirect_to),
 		cmocka_unit_test(keeps_what_is_right_beside_what_is_wrong),
 		cmocka_unit_test(names_what_was_meant),
 		cmocka_unit_test(says_what_a_line_lacks),

@@ -26,6 +26,7 @@ static const struct message samples[] = {
 	{ .kind = MESSAGE_MISSING, .missing = { some, MISSING_DAMAGED } },
 	{ .kind = MESSAGE_META, .meta = { META_ROOT, 7, { text, sizeof(text) }, META_FROM_STICK } },
 	{ .kind = MESSAGE_STATUS, .status = { 1, 12, 1ull << 40, 5, 6, 1700000000 } },
+	{ .kind = MESSAGE_TRUST, .root_version = 70 },
 };
 
 static struct buffer encoded(const struct message *message)

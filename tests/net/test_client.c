@@ -16,6 +16,7 @@
 #include "base/clock.h"
 #include "net/packets.h"
 #include "tests/check.h"
+#include "tests/net/lingering.h"
 
 /* Time goes on by itself, and by what a test adds; timers ring when a test says so (ring). */
 static int64_t later_ms;
@@ -72,6 +73,7 @@ struct stage {
 	int objects, missing, metas, statuses, synced;
 	struct hash last;
 	enum missing_reason reason;
+	uint32_t root_version; /* that on_meta finds good; 0: none is */
 	uint64_t received_bytes;
 };
 
@@ -108,6 +110,8 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 	CHECK(role == META_ROOT && version == 4 && bytes.size == 9);
 	CHECK(source == META_FROM_STICK);
 	stage->metas++;
+	if (stage->root_version) /* it was good */
+		net_client_trust(stage->client, stage->root_version);
 }
 
 static void on_synced(void *data, bool done)
@@ -127,12 +131,14 @@ static void accept_client(struct stage *stage)
 {
 	struct pollfd ready = { .fd = stage->listener, .events = POLLIN };
 
-	for (int i = 0; i < 100 && poll(&ready, 1, 0) == 0; i++) {
+	/* It may take a while: threads that close what was before come to it when they come. */
+	for (int i = 0; i < 2000 && poll(&ready, 1, 10) == 0; i++) {
 		struct pollfd client = { .fd = net_client_fd(stage->client), .events = POLLIN };
 
-		if (poll(&client, 1, 100) > 0)
+		if (poll(&client, 1, 0) > 0)
 			CHECK(net_client_dispatch(stage->client) == 0);
 	}
+	CHECK(poll(&ready, 1, 0) == 1);
 	packets_finish(&stage->fetcher);
 	packets_init(&stage->fetcher, accept(stage->listener, NULL, NULL));
 	CHECK(stage->fetcher.fd >= 0);
@@ -154,6 +160,7 @@ static int set_up(void **state)
 	struct net_client_options options = {
 		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = stage,
+		.root_version = 3,
 	};
 
 	*state = stage;
@@ -196,7 +203,12 @@ static void ring(struct stage *stage)
 	dispatch(stage);
 }
 
-/* The next message that the fetcher gets; MESSAGE_ASK_META of a connection's begin left out. */
+static bool is_of_the_begin(const struct message *message)
+{
+	return message->kind == MESSAGE_ASK_META || message->kind == MESSAGE_TRUST;
+}
+
+/* The next message that the fetcher gets; those of a connection's begin left out. */
 static struct message heard(struct stage *stage)
 {
 	struct message message;
@@ -204,7 +216,7 @@ static struct message heard(struct stage *stage)
 
 	do
 		rc = packets_receive(&stage->fetcher, &message, &passed);
-	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	while (rc == 0 && is_of_the_begin(&message));
 	CHECK(rc == 0);
 	return message;
 }
@@ -216,7 +228,7 @@ static bool hears_nothing(struct stage *stage)
 
 	do
 		rc = packets_receive(&stage->fetcher, &message, &passed);
-	while (rc == 0 && message.kind == MESSAGE_ASK_META);
+	while (rc == 0 && is_of_the_begin(&message));
 	return rc == -EAGAIN;
 }
 
@@ -279,6 +291,43 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	CHECK(stage->statuses == 1 && stage->received_bytes == 500);
 }
 
+/* Everything is said again; returns having seen the new connection. */
+static void reconnects(struct stage *stage)
+{
+	packets_finish(&stage->fetcher);
+	dispatch(stage);
+	accept_client(stage);
+	dispatch(stage);
+}
+
+/* The version in the next MESSAGE_TRUST, with whatever comes before it skipped. */
+static uint32_t heard_trust(struct stage *stage)
+{
+	struct message message;
+	int passed;
+
+	do
+		CHECK(packets_receive(&stage->fetcher, &message, &passed) == 0);
+	while (message.kind != MESSAGE_TRUST);
+	return message.root_version;
+}
+
+static void tells_after_every_root_which_one_it_has(void **state)
+{
+	struct stage *stage = *state;
+	struct message meta = { .kind = MESSAGE_META,
+				.meta = { META_ROOT, 4, of(stone), META_FROM_STICK } };
+
+	CHECK(heard_trust(stage) == 3); /* on connecting */
+	tell(stage, meta, -1);
+	CHECK(heard_trust(stage) == 3); /* refused */
+	stage->root_version = 4;
+	tell(stage, meta, -1);
+	CHECK(heard_trust(stage) == 4);
+	reconnects(stage);
+	CHECK(heard_trust(stage) == 4);
+}
+
 static void asks_for_what_came_to_be_safe(void **state)
 {
 	struct stage *stage = *state;
@@ -316,15 +365,6 @@ static void takes_large_objects_sealed(void **state)
 	message.object.bytes = (struct bytes){ NULL, 0 };
 	tell(stage, message, packets_seal(of(stone)));
 	CHECK(stage->objects == 1);
-}
-
-/* Everything is said again; returns having seen the new connection. */
-static void reconnects(struct stage *stage)
-{
-	packets_finish(&stage->fetcher);
-	dispatch(stage);
-	accept_client(stage);
-	dispatch(stage);
 }
 
 static void says_everything_again_after_the_fetcher_died(void **state)
@@ -396,6 +436,97 @@ static void leaves_a_fetcher_that_lies(void **state)
 	dispatch(stage);
 	accept_client(stage);
 	CHECK(heard(stage).kind == MESSAGE_WANT);
+}
+
+/* The kiosk has hung up, and comes again. */
+static void comes_again(struct stage *stage)
+{
+	dispatch(stage);
+	accept_client(stage);
+	dispatch(stage);
+}
+
+/* A captured fetcher passes what takes long to close, wanted or not. */
+static void is_not_held_up_by_a_socket_that_lingers(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	const struct message objects[] = { object_of(stone), object_of(brick) };
+
+	net_client_want(stage->client, &want);
+	for (size_t i = 0; i < ARRAY_COUNT(objects); i++) {
+		struct message message = objects[i];
+		int64_t began_ms;
+		struct buffer wire;
+		int peer, fd = lingering_socket(&peer);
+
+		message.object.bytes = (struct bytes){ NULL, 0 };
+		buffer_init(&wire, MESSAGE_BYTES_MOST);
+		message_encode(&wire, &message);
+		send_with(stage->fetcher.fd, wire.data, wire.size, &fd, 1);
+		buffer_finish(&wire);
+		began_ms = clock_now_ms();
+		comes_again(stage);
+		CHECK(clock_now_ms() - began_ms < LINGER_S * 1000 / 2);
+		close(peer);
+	}
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 1);
+}
+
+static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+	struct message message = object_of(brick);
+
+	net_client_want(stage->client, &want);
+	CHECK(heard(stage).kind == MESSAGE_WANT);
+	/* Never hashed, so nobody sees that it is a lie. */
+	message.object.bytes = of(stone);
+	message.object.size = (uint32_t)of(stone).size;
+	for (int i = 0; i < 16; i++)
+		tell(stage, message, -1);
+	tell(stage, object_of(stone), -1); /* some may be an error */
+	CHECK(stage->objects == 1);
+	tell(stage, message, -1);
+	comes_again(stage);
+	net_client_want(stage->client, &want);
+	tell(stage, object_of(stone), -1);
+	CHECK(stage->objects == 2);
+}
+
+/* Each want that was taken back or said again may have been on its way. */
+static void takes_what_was_on_its_way_for_no_crime(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	for (int i = 0; i < 500; i++) {
+		net_client_want(stage->client, &want);
+		net_client_drop(stage->client, want.hash);
+		net_client_want(stage->client, &want);
+		want.priority++;
+		net_client_want(stage->client, &want);
+		for (int sent = 0; sent < 3; sent++)
+			tell(stage, object_of(stone), -1);
+	}
+	CHECK(stage->objects == 500);
+	CHECK(heard(stage).kind == MESSAGE_WANT); /* on the first connection still */
+}
+
+static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(stone, 7);
+
+	for (int i = 0; i < 2000000; i++) { /* some 300 MB, all in all */
+		want.priority++;
+		net_client_want(stage->client, &want);
+	}
+	ring(stage);
+	comes_again(stage);
+	CHECK(heard(stage).want.priority == want.priority);
 }
 
 static void does_not_block_on_a_fetcher_that_hangs(void **state)
@@ -486,6 +617,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		STAGED(brings_what_is_wanted_once),
 		STAGED(passes_on_what_is_missing_and_meta_and_status),
+		STAGED(tells_after_every_root_which_one_it_has),
 		STAGED(asks_for_what_came_to_be_safe),
 		STAGED(drops_and_forgets),
 		STAGED(takes_large_objects_sealed),
@@ -493,6 +625,10 @@ int main(void)
 		STAGED(begins_anew_with_another_release),
 		STAGED(leaves_a_fetcher_that_lies),
 		STAGED(leaves_a_fetcher_that_says_nothing),
+		STAGED(is_not_held_up_by_a_socket_that_lingers),
+		STAGED(leaves_a_fetcher_that_sends_what_nobody_wants),
+		STAGED(takes_what_was_on_its_way_for_no_crime),
+		STAGED(keeps_its_queue_to_a_fetcher_that_does_not_read_short),
 		STAGED(does_not_block_on_a_fetcher_that_hangs),
 		cmocka_unit_test(says_what_is_wrong_with_its_options),
 		cmocka_unit_test(survives_a_fetcher_that_cannot_start),

@@ -66,6 +66,13 @@ static struct {
 	char request[2048]; /* the last one */
 } server;
 
+/* Another port of the same machine; only counts who comes. */
+static struct {
+	int listener, port;
+	pthread_t thread;
+	_Atomic int visitors;
+} neighbour;
+
 static const struct script *script_for(const char *request)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++) {
@@ -87,6 +94,38 @@ static void trickle(int fd)
 		nanosleep(&pause, NULL);
 }
 
+/* "/to/PLACE" redirects to http://PLACE, "/far" on and on. */
+static bool redirect(int fd)
+{
+	char place[256], answer[512];
+
+	if (sscanf(server.request, "GET /to/%255[^ ] ", place) != 1)
+		return false;
+	snprintf(answer, sizeof(answer),
+		 "HTTP/1.1 302 Found\r\nLocation: http://%s\r\nContent-Length: 3\r\n\r\nfar",
+		 place);
+	return write(fd, answer, strlen(answer)) > 0;
+}
+
+/* Headers without end, until the client has enough. */
+static bool send_headers(int fd)
+{
+	static const char begin[] = "HTTP/1.1 200 OK\r\n";
+	char line[1002];
+	bool open = true;
+
+	if (strncmp(server.request, "GET /headers ", 13) != 0)
+		return false;
+	memset(line, 'x', sizeof(line));
+	memcpy(line, "X-More: ", 8);
+	memcpy(line + sizeof(line) - 2, "\r\n", 2);
+	send(fd, begin, sizeof(begin) - 1, MSG_NOSIGNAL);
+	for (int i = 0; i < 100000 && open; i++)
+		open = send(fd, line, sizeof(line), MSG_NOSIGNAL) > 0;
+	CHECK(!open);
+	return true;
+}
+
 static void serve_one(int fd)
 {
 	const struct script *script;
@@ -98,7 +137,7 @@ static void serve_one(int fd)
 		used += got > 0 ? (size_t)got : 0;
 		server.request[used] = '\0';
 	} while (got > 0 && !strstr(server.request, "\r\n\r\n"));
-	script = script_for(server.request);
+	script = redirect(fd) || send_headers(fd) ? NULL : script_for(server.request);
 	if (script && write(fd, script->answer, strlen(script->answer)) > 0 &&
 	    script->then == STALLS)
 		while (read(fd, server.request, 1) > 0)
@@ -117,18 +156,41 @@ static void *serve(void *unused)
 	return unused;
 }
 
-static int begin_server(void **state)
+static void *count_visitors(void *unused)
+{
+	static const char answer[] = "HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nother";
+	char request[2048];
+	int fd;
+
+	while ((fd = accept(neighbour.listener, NULL, NULL)) >= 0) {
+		neighbour.visitors++;
+		if (read(fd, request, sizeof(request)) > 0)
+			send(fd, answer, sizeof(answer) - 1, MSG_NOSIGNAL);
+		close(fd);
+	}
+	return unused;
+}
+
+static int listen_on_loopback(int *port)
 {
 	struct sockaddr_in address = { .sin_family = AF_INET };
 	socklen_t size = sizeof(address);
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 
-	(void)state;
 	address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-	server.listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-	CHECK(bind(server.listener, (struct sockaddr *)&address, size) == 0);
-	CHECK(listen(server.listener, 8) == 0);
-	CHECK(getsockname(server.listener, (struct sockaddr *)&address, &size) == 0);
-	server.port = ntohs(address.sin_port);
+	CHECK(bind(fd, (struct sockaddr *)&address, size) == 0);
+	CHECK(listen(fd, 8) == 0);
+	CHECK(getsockname(fd, (struct sockaddr *)&address, &size) == 0);
+	*port = ntohs(address.sin_port);
+	return fd;
+}
+
+static int begin_server(void **state)
+{
+	(void)state;
+	server.listener = listen_on_loopback(&server.port);
+	neighbour.listener = listen_on_loopback(&neighbour.port);
+	CHECK(pthread_create(&neighbour.thread, NULL, count_visitors, NULL) == 0);
 	return pthread_create(&server.thread, NULL, serve, NULL);
 }
 
@@ -138,6 +200,9 @@ static int end_server(void **state)
 	shutdown(server.listener, SHUT_RDWR);
 	pthread_join(server.thread, NULL);
 	close(server.listener);
+	shutdown(neighbour.listener, SHUT_RDWR);
+	pthread_join(neighbour.thread, NULL);
+	close(neighbour.listener);
 	return 0;
 }
 
@@ -303,6 +368,78 @@ static void knows_a_bad_answer_from_no_answer(void **state)
 	}
 }
 
+static void follows_redirections_to_the_server_itself(void **state)
+{
+	struct outcome outcome;
+	char path[128];
+
+	(void)state;
+	snprintf(path, sizeof(path), "to/127.0.0.1:%d/whole", server.port);
+	outcome = fetch(path, 0, 0);
+	CHECK(gave(&outcome, letters) && strcmp(outcome.etag, "\"v1\"") == 0);
+	snprintf(path, sizeof(path), "to/127.0.0.1:%d/range", server.port);
+	outcome = fetch(path, 3, 5);
+	CHECK(gave(&outcome, "defgh"));
+	snprintf(path, sizeof(path), "to/127.0.0.1:%d/absent", server.port);
+	outcome = fetch(path, 0, 0);
+	CHECK(outcome.rc == -ENOENT);
+}
+
+static void follows_no_redirection_elsewhere(void **state)
+{
+	struct outcome outcome;
+	char path[128];
+
+	(void)state;
+	snprintf(path, sizeof(path), "to/127.0.0.1:%d/other", neighbour.port);
+	outcome = fetch(path, 0, 0);
+	CHECK(outcome.rc == -EHOSTUNREACH && outcome.size == 0);
+	CHECK(strcmp(outcome.why, "it redirects to another host, or too often") == 0);
+	snprintf(path, sizeof(path), "to/localhost:%d/whole", server.port);
+	outcome = fetch(path, 0, 0);
+	CHECK(outcome.rc == -EHOSTUNREACH && outcome.size == 0);
+	CHECK(neighbour.visitors == 0); /* not even a connection */
+}
+
+static void follows_redirections_to_hosts_that_were_named(void **state)
+{
+	char url[64], named[64], path[128];
+	const struct http_options options = { .url = url, .redirect_hosts = named };
+	struct outcome outcome;
+
+	(void)state;
+	snprintf(url, sizeof(url), "http://127.0.0.1:%d", server.port);
+	snprintf(named, sizeof(named), "127.0.0.1:%d", neighbour.port);
+	snprintf(path, sizeof(path), "to/127.0.0.1:%d/other", neighbour.port);
+	outcome = fetch_with(&options, path, 0, 0, NULL);
+	CHECK(gave(&outcome, "other") && neighbour.visitors == 1);
+}
+
+static void follows_a_few_redirections_only(void **state)
+{
+	struct outcome outcome;
+	char path[256] = "";
+
+	(void)state;
+	for (int i = 0; i < 4; i++)
+		snprintf(path + strlen(path), sizeof(path) - strlen(path), "to/127.0.0.1:%d/",
+			 server.port);
+	snprintf(path + strlen(path), sizeof(path) - strlen(path), "whole");
+	outcome = fetch(path, 0, 0);
+	CHECK(gave(&outcome, letters));
+	outcome = fetch("round", 0, 0);
+	CHECK(outcome.rc == -EHOSTUNREACH);
+}
+
+static void takes_no_headers_without_end(void **state)
+{
+	struct outcome outcome = fetch("headers", 0, 0);
+
+	(void)state;
+	CHECK(outcome.rc == -EBADMSG);
+	CHECK(outcome.received_bytes < 50000000);
+}
+
 static void refuses_slow_retrieval(void **state)
 {
 	char url[64];
@@ -376,6 +513,11 @@ int main(void)
 		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),
 		cmocka_unit_test(refuses_a_file_past_the_ceiling),
 		cmocka_unit_test(knows_a_bad_answer_from_no_answer),
+		cmocka_unit_test(follows_redirections_to_the_server_itself),
+		cmocka_unit_test(follows_no_redirection_elsewhere),
+		cmocka_unit_test(follows_redirections_to_hosts_that_were_named),
+		cmocka_unit_test(follows_a_few_redirections_only),
+		cmocka_unit_test(takes_no_headers_without_end),
 		cmocka_unit_test(refuses_slow_retrieval),
 		cmocka_unit_test(asks_conditionally),
 		cmocka_unit_test(reads_a_folder_like_a_server),

@@ -32,6 +32,7 @@ static int set_up(void **state)
 	link_init(&stage->link);
 	stage->link.refusal = &stage->refusal;
 	CHECK(poll_create(&stage->poll, &options) == 0);
+	poll_trust(stage->poll, 1);
 	return 0;
 }
 
@@ -63,11 +64,24 @@ static void look_once(struct stage *stage)
 {
 	poll_ask(stage->poll, 0);
 	poll_work(stage->poll);
-	answer("root/1.json", "A");
 	answer("root/2.json", "");
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "root1:A timestamp0:T release0:R ");
+	heard(stage, "timestamp0:T release0:R ");
+}
+
+/* The kiosk has checked what it was told last, and says which root it has now. */
+static void kiosk_says(struct stage *stage, uint32_t root_version)
+{
+	poll_trust(stage->poll, root_version);
+	poll_work(stage->poll);
+}
+
+static void next_round(struct stage *stage)
+{
+	server.count = 0; /* there is room for a few only */
+	server.now_ms += 66001;
+	poll_work(stage->poll);
 }
 
 static void says_each_file_once_roots_first(void **state)
@@ -78,16 +92,97 @@ static void says_each_file_once_roots_first(void **state)
 	CHECK(server.count == 0); /* nobody asked yet */
 	look_once(stage);
 	poll_work(stage->poll);
-	CHECK(server.count == 4); /* not before the minute is over */
+	CHECK(server.count == 3); /* not before the minute is over */
 	CHECK(poll_due_ms(stage->poll) >= server.now_ms + 54000);
 	CHECK(poll_due_ms(stage->poll) <= server.now_ms + 66000);
-	server.now_ms += 66001;
-	poll_work(stage->poll);
-	answer("root/2.json", "B");
-	answer("root/3.json", "");
+	next_round(stage);
+	answer("root/2.json", "");
 	answer("timestamp.json", "T"); /* the same again: not a word */
 	answer("release.json", "S");
-	heard(stage, "root2:B release0:S ");
+	heard(stage, "release0:S ");
+}
+
+static void follows_several_roots_in_one_round(void **state)
+{
+	struct stage *stage = *state;
+
+	look_once(stage);
+	next_round(stage);
+	answer("root/2.json", "B");
+	heard(stage, "root2:B ");
+	CHECK(server.count == 1); /* the kiosk has not said that it is good */
+	kiosk_says(stage, 2);
+	answer("root/3.json", "C");
+	kiosk_says(stage, 3);
+	answer("root/4.json", "");
+	answer("timestamp.json", "T"); /* the same again, but it may be good under the new root */
+	answer("release.json", "R");
+	heard(stage, "root3:C timestamp0:T release0:R ");
+}
+
+/* Whoever answers with what is no root (a captive portal) changes nothing. */
+static void asks_for_the_next_root_until_the_kiosk_has_it(void **state)
+{
+	struct stage *stage = *state;
+	char page[64];
+
+	poll_ask(stage->poll, 0);
+	poll_work(stage->poll);
+	for (int round = 0; round < 200; round++) {
+		snprintf(page, sizeof(page), "<html>Log in, guest %d", round);
+		answer("root/2.json", page);
+		kiosk_says(stage, 1); /* refused */
+		answer("timestamp.json", page);
+		answer("release.json", page);
+		stage->said[0] = '\0';
+		next_round(stage);
+	}
+	CHECK(asked(0)->ask.etag[0] == '\0'); /* the portal could have made one up */
+	answer("root/2.json", "B");
+	heard(stage, "root2:B ");
+	kiosk_says(stage, 2);
+	answer("root/3.json", "");
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	heard(stage, "timestamp0:T release0:R ");
+}
+
+static void says_what_was_refused_once_and_goes_on(void **state)
+{
+	struct stage *stage = *state;
+
+	poll_ask(stage->poll, 0);
+	poll_work(stage->poll);
+	answer("root/2.json", "bad");
+	heard(stage, "root2:bad ");
+	poll_work(stage->poll);
+	CHECK(server.count == 1 && poll_due_ms(stage->poll) == server.now_ms + 3000);
+	server.now_ms += 3000; /* a kiosk that says nothing does not stop it */
+	poll_work(stage->poll);
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	heard(stage, "timestamp0:T release0:R ");
+	next_round(stage);
+	answer("root/2.json", "bad");
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	heard(stage, "");
+}
+
+/* A stick had it. */
+static void begins_a_round_when_the_kiosk_has_another_root(void **state)
+{
+	struct stage *stage = *state;
+
+	poll_ask(stage->poll, 0);
+	poll_work(stage->poll);
+	answer("root/2.json", "");
+	kiosk_says(stage, 5);
+	CHECK(server.cancelled == 1);
+	answer("root/6.json", "");
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	heard(stage, "timestamp0:T release0:R ");
 }
 
 /* The publisher writes release.json, then the timestamp that names it; who looks in between has the
@@ -123,13 +218,13 @@ static void says_all_again_when_asked(void **state)
 
 	look_once(stage);
 	poll_ask(stage->poll, 0);
-	heard(stage, "root1:A timestamp0:T release0:R ");
+	heard(stage, "timestamp0:T release0:R ");
 	poll_work(stage->poll);
-	CHECK(server.count == 5); /* and looks at once */
+	CHECK(server.count == 4); /* and looks at once */
 	poll_stop(stage->poll);
 	CHECK(server.cancelled == 1);
 	poll_work(stage->poll);
-	CHECK(server.count == 5 && poll_due_ms(stage->poll) == INT64_MAX);
+	CHECK(server.count == 4 && poll_due_ms(stage->poll) == INT64_MAX);
 	look_once(stage); /* what was known before poll_stop is forgotten */
 }
 
@@ -148,9 +243,9 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 		server.now_ms = poll_due_ms(stage->poll);
 	}
 	poll_work(stage->poll);
-	answer("root/1.json", "A");
+	answer("root/2.json", "B");
 	CHECK(stage->link.online);
-	heard(stage, "root1:A ");
+	heard(stage, "root2:B ");
 }
 
 static void refuses_endless_data(void **state)
@@ -164,7 +259,7 @@ static void refuses_endless_data(void **state)
 	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MOST + 1 });
 	end(asked(0), 0);
 	CHECK(stage->said[0] == '\0');
-	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/1.json") == 0);
+	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/2.json") == 0);
 	CHECK(strcmp(stage->refusal.why, "larger than such a file may be") == 0);
 	answer("timestamp.json", ""); /* goes on with the others */
 	answer("release.json", "R");
@@ -178,6 +273,10 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(says_each_file_once_roots_first),
+		STAGED(follows_several_roots_in_one_round),
+		STAGED(asks_for_the_next_root_until_the_kiosk_has_it),
+		STAGED(says_what_was_refused_once_and_goes_on),
+		STAGED(begins_a_round_when_the_kiosk_has_another_root),
 		STAGED(says_a_release_again_under_its_timestamp),
 		STAGED(says_all_again_when_asked),
 		STAGED(tries_again_after_pauses_when_the_server_is_away),

@@ -1,10 +1,13 @@
 #include "net/stick.h"
 
 #include <errno.h>
+#include <poll.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -18,10 +21,38 @@ int64_t clock_now_ms(void)
 	return now_ms;
 }
 
+/* A device that hangs: reads of files wait until it is let go. */
+static struct {
+	pthread_mutex_t lock;
+	pthread_cond_t changed;
+	bool hangs;
+} device = { PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false };
+
+ssize_t pread(int fd, void *to, size_t size, off_t at)
+{
+	pthread_mutex_lock(&device.lock);
+	while (device.hangs)
+		pthread_cond_wait(&device.changed, &device.lock);
+	pthread_mutex_unlock(&device.lock);
+	return syscall(SYS_pread64, fd, to, size, at);
+}
+
+static void set_device(bool hangs)
+{
+	pthread_mutex_lock(&device.lock);
+	device.hangs = hangs;
+	pthread_cond_broadcast(&device.changed);
+	pthread_mutex_unlock(&device.lock);
+}
+
 struct stage {
 	char folder[64];
 	struct stick *stick;
 	char said[256];
+	/* the last answer */
+	int answers, rc;
+	char object[64];
+	bool nobody_wants;
 };
 
 static struct hash pack = { { 5 } };
@@ -38,11 +69,32 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 		 (int)bytes.size, (const char *)bytes.data);
 }
 
+static void on_object(void *data, struct hash hash, int rc, struct bytes bytes)
+{
+	struct stage *stage = data;
+
+	(void)hash;
+	stage->answers++;
+	stage->rc = rc;
+	snprintf(stage->object, sizeof(stage->object), "%.*s", (int)bytes.size,
+		 (const char *)bytes.data);
+}
+
+static bool is_wanted(void *data, struct hash hash)
+{
+	const struct stage *stage = data;
+
+	(void)hash;
+	return !stage->nobody_wants;
+}
+
 static int set_up(void **state)
 {
 	struct stage *stage = calloc(1, sizeof(*stage));
 	const struct stick_options options = { .folder = stage->folder,
 					       .meta = on_meta,
+					       .object = on_object,
+					       .is_wanted = is_wanted,
 					       .data = stage };
 
 	*state = stage;
@@ -113,27 +165,46 @@ static void put_release(const struct stage *stage, const char *prefix, const cha
 	put_text(stage, name, stamp);
 }
 
+/* Begins what there is to do, and takes what comes of it. true: a stick came. */
+static bool work(struct stage *stage)
+{
+	struct pollfd ready = { .fd = stick_fd(stage->stick), .events = POLLIN };
+	bool came = stick_work(stage->stick, true);
+
+	CHECK(poll(&ready, 1, 60000) == 1);
+	stick_heard(stage->stick);
+	return stick_work(stage->stick, true) || came;
+}
+
 static bool look(struct stage *stage)
 {
 	now_ms += 5000;
 	stage->said[0] = '\0';
-	return stick_work(stage->stick);
+	return work(stage);
+}
+
+static struct message_want want_of(uint32_t offset, uint32_t size)
+{
+	struct message_want want = { .page = page, .offset = offset, .size = size };
+
+	if (offset + size < sizeof(stones))
+		want.hash = hash_of((struct bytes){ (const uint8_t *)stones + offset, size });
+	return want;
 }
 
 /* What the stick has of the object at offset; its size, or the error. */
 static int get(struct stage *stage, struct hash of, uint32_t offset, uint32_t size,
 	       const char *text)
 {
-	const struct message_want want = { { { 1 } }, page, offset, size, 0 };
-	struct buffer out;
-	int rc;
+	const struct message_want want = want_of(offset, size);
 
-	buffer_init(&out, 1 << 20);
-	rc = stick_get(stage->stick, of, &want, &out);
-	if (rc == 0)
-		CHECK(out.size == strlen(text) && memcmp(out.data, text, out.size) == 0);
-	buffer_finish(&out);
-	return rc;
+	if (!stick_ask(stage->stick, &of, 1, &want))
+		return -ENOENT;
+	stage->answers = 0;
+	CHECK(!work(stage) && stage->answers == 1);
+	if (stage->rc == 0)
+		CHECK(strcmp(stage->object, text) == 0);
+	return stage->rc;
 }
 
 static void tells_of_a_stick_once(void **state)
@@ -150,6 +221,21 @@ static void tells_of_a_stick_once(void **state)
 	CHECK(strstr(stage->said, "timestamp0:U"));
 	stick_forget(stage->stick);
 	CHECK(look(stage) && strstr(stage->said, "timestamp0:U"));
+}
+
+static void tells_the_roots_after_the_one_that_the_kiosk_has(void **state)
+{
+	struct stage *stage = *state;
+
+	put_release(stage, "", "T");
+	put_text(stage, "root/71.json", "B");
+	put_text(stage, "root/72.json", "C");
+	stick_trust(stage->stick, 70);
+	CHECK(look(stage));
+	CHECK(strcmp(stage->said, "root71:B root72:C timestamp0:T release0:R ") == 0);
+	stick_trust(stage->stick, 72);
+	stick_forget(stage->stick);
+	CHECK(look(stage) && strcmp(stage->said, "timestamp0:T release0:R ") == 0);
 }
 
 static void finds_a_folder_named_release(void **state)
@@ -204,6 +290,100 @@ static void lives_with_damage(void **state)
 	put_text(stage, name, "sand"); /* cut short */
 	CHECK(look(stage) && get(stage, root, 0, 9, "") == -ENOENT);
 	CHECK(get(stage, root, 0, 4, "sand") == 0);
+	put_text(stage, name, "sandstOnelaterite");
+	CHECK(get(stage, root, 0, 4, "sand") == 0); /* the pack is open */
+	stick_forget(stage->stick);
+	CHECK(look(stage) && get(stage, root, 0, 9, "") == -EBADMSG);
+}
+
+/* The loop goes on without it, whatever it was asked for; when it comes back it is looked at again.
+ */
+static void leaves_a_device_that_hangs_alone(void **state)
+{
+	struct stage *stage = *state;
+	const struct message_want want = want_of(0, 9), other = want_of(9, 8);
+	struct pollfd ready = { .fd = stick_fd(stage->stick), .events = POLLIN };
+
+	put_release(stage, "", "T");
+	CHECK(look(stage));
+	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
+	set_device(true);
+	stage->answers = 0;
+	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(!stick_work(stage->stick, true)); /* the thread hangs, we do not */
+	CHECK(stick_ask(stage->stick, &root, 1, &other));
+	now_ms += 9000;
+	CHECK(!stick_work(stage->stick, true) && stage->answers == 0);
+	CHECK(stick_due_ms(stage->stick, true) == now_ms + 1000);
+	now_ms += 1000;
+	CHECK(!stick_work(stage->stick, true));
+	CHECK(stage->answers == 2 && stage->rc == -ENOENT); /* the server may have them */
+	CHECK(!stick_ask(stage->stick, &root, 1, &want));
+	CHECK(stick_due_ms(stage->stick, true) == INT64_MAX);
+	set_device(false);
+	CHECK(poll(&ready, 1, 60000) == 1);
+	stick_heard(stage->stick);
+	CHECK(!stick_work(stage->stick, true) && stage->answers == 2);
+	CHECK(stick_due_ms(stage->stick, true) == now_ms + 60000);
+	now_ms += 60000;
+	CHECK(work(stage));
+	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
+}
+
+static void ends_while_a_device_hangs(void **state)
+{
+	struct stage *stage = *state;
+	const struct message_want want = want_of(0, 9);
+
+	put_release(stage, "", "T");
+	CHECK(look(stage));
+	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
+	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	set_device(true);
+	CHECK(!stick_work(stage->stick, true));
+	stick_destroy(stage->stick); /* leaves the thread behind */
+	stage->stick = NULL;
+	set_device(false);
+}
+
+static void reads_the_best_first_and_nothing_that_is_not_wanted(void **state)
+{
+	struct stage *stage = *state;
+	struct message_want want = want_of(0, 9);
+
+	put_release(stage, "", "T");
+	CHECK(look(stage));
+	stage->answers = 0;
+	for (uint32_t i = 0; i < 40; i++) {
+		want.priority = i;
+		CHECK(stick_ask(stage->stick, &root, 1, &want));
+	}
+	want = want_of(9, 8);
+	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(!work(stage) && stage->answers == 32 && strcmp(stage->object, "sandstone") == 0);
+	CHECK(!work(stage) && stage->answers == 41 && strcmp(stage->object, "laterite") == 0);
+	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	stage->nobody_wants = true;
+	CHECK(!stick_work(stage->stick, true) && stage->answers == 41);
+	CHECK(stick_due_ms(stage->stick, true) > now_ms); /* nothing was begun */
+}
+
+static void follows_no_link_on_the_way_to_a_file(void **state)
+{
+	static const char *const folders[] = { "root", "packs", "locator" };
+	struct stage *stage = *state;
+	char path[192], moved[224];
+
+	put_release(stage, "", "T");
+	for (size_t i = 0; i < ARRAY_COUNT(folders); i++) {
+		in_folder(stage, path, folders[i]);
+		snprintf(moved, sizeof(moved), "%s.moved", path);
+		CHECK(rename(path, moved) == 0 && symlink(moved, path) == 0);
+		stick_forget(stage->stick);
+		CHECK(look(stage));
+		CHECK(!strstr(stage->said, "root")); /* the first of them */
+		CHECK((get(stage, root, 0, 9, "sandstone") == 0) == (i == 0));
+	}
 }
 
 static void opens_no_links_and_nothing_that_blocks(void **state)
@@ -241,12 +421,17 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(tells_of_a_stick_once),
+		STAGED(tells_the_roots_after_the_one_that_the_kiosk_has),
 		STAGED(finds_a_folder_named_release),
 		STAGED(gives_objects_by_the_locator),
 		STAGED(is_gone_when_it_is_pulled_out),
 		STAGED(lives_with_damage),
 		STAGED(opens_no_links_and_nothing_that_blocks),
 		STAGED(refuses_endless_files),
+		STAGED(follows_no_link_on_the_way_to_a_file),
+		STAGED(reads_the_best_first_and_nothing_that_is_not_wanted),
+		STAGED(leaves_a_device_that_hangs_alone),
+		STAGED(ends_while_a_device_hangs),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

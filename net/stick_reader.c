@@ -1,0 +1,217 @@
+#include "net/stick_reader.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/safe_open.h"
+
+enum {
+	LOCATOR_BYTES_MAX = 64 << 20,
+	NAME_BYTES = 96,
+};
+
+int stick_reader_init(struct stick_reader *reader, const char *folder)
+{
+	*reader = (struct stick_reader){ .folder = strdup(folder), .below = "", .pack_fd = -1 };
+	buffer_init(&reader->stamp, MESSAGE_META_BYTES_MOST);
+	buffer_init(&reader->file, LOCATOR_BYTES_MAX);
+	return reader->folder ? 0 : -ENOMEM;
+}
+
+/* What was read of the stick that was there. */
+static void close_files(struct stick_reader *reader)
+{
+	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
+		locator_finish(&reader->releases[i].locator);
+		reader->releases[i] = (struct stick_release){ 0 };
+	}
+	if (reader->pack_fd >= 0)
+		close(reader->pack_fd);
+	reader->pack_fd = -1;
+}
+
+void stick_reader_finish(struct stick_reader *reader)
+{
+	if (!reader->folder)
+		return;
+	close_files(reader);
+	buffer_finish(&reader->stamp);
+	buffer_finish(&reader->file);
+	free((char *)reader->folder);
+	*reader = (struct stick_reader){ .pack_fd = -1 };
+}
+
+void stick_reader_forget(struct stick_reader *reader)
+{
+	buffer_clear(&reader->stamp);
+}
+
+/* ---- files */
+
+static int open_file(const struct stick_reader *reader, const char *name)
+{
+	char whole[NAME_BYTES + 16];
+
+	snprintf(whole, sizeof(whole), "%s%s", reader->below, name);
+	return open_beneath(reader->folder, whole);
+}
+
+/* Into reader->file. */
+static int read_file(struct stick_reader *reader, const char *name, size_t ceiling)
+{
+	struct stat info;
+	int fd = open_file(reader, name), rc;
+	uint8_t *to;
+
+	if (fd < 0)
+		return fd;
+	buffer_clear(&reader->file);
+	rc = fstat(fd, &info) < 0 ? -errno : 0;
+	if (rc == 0 && (info.st_size <= 0 || (uint64_t)info.st_size > ceiling))
+		rc = -EFBIG;
+	to = rc == 0 ? buffer_extend(&reader->file, (size_t)info.st_size) : NULL;
+	if (rc == 0)
+		rc = to ? bytes_read_at(fd, to, (size_t)info.st_size, 0) : reader->file.error;
+	close(fd);
+	return rc;
+}
+
+static int read_stamp(struct stick_reader *reader)
+{
+	static const char *const below[] = { "", "release/" };
+	int rc = -ENOENT;
+
+	for (size_t i = 0; rc < 0 && i < ARRAY_COUNT(below); i++) {
+		reader->below = below[i];
+		rc = read_file(reader, "timestamp.json", MESSAGE_META_BYTES_MOST);
+	}
+	return rc;
+}
+
+/* ---- metadata */
+
+/* What was read last is told. */
+static void add_file(const struct stick_reader *reader, struct stick_file *files, size_t *count,
+		     enum meta_role role, uint32_t version)
+{
+	struct stick_file *file = &files[*count];
+
+	*file = (struct stick_file){ .role = role, .version = version };
+	buffer_init(&file->bytes, MESSAGE_META_BYTES_MOST);
+	buffer_put(&file->bytes, reader->file.data, reader->file.size);
+	if (!file->bytes.error)
+		++*count;
+}
+
+static void read_all(struct stick_reader *reader, uint32_t root_version, struct stick_file *files,
+		     size_t *count)
+{
+	char name[NAME_BYTES];
+
+	for (uint32_t i = 1; i <= STICK_ROOTS_MAX; i++) {
+		snprintf(name, sizeof(name), "root/%u.json", root_version + i);
+		if (read_file(reader, name, MESSAGE_META_BYTES_MOST) < 0)
+			break;
+		add_file(reader, files, count, META_ROOT, root_version + i);
+	}
+	buffer_clear(&reader->file);
+	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
+	add_file(reader, files, count, META_TIMESTAMP, 0);
+	if (read_file(reader, "release.json", MESSAGE_META_BYTES_MOST) == 0)
+		add_file(reader, files, count, META_RELEASE, 0);
+}
+
+enum stick_news stick_reader_look(struct stick_reader *reader, uint32_t root_version,
+				  struct stick_file files[STICK_FILES_MAX], size_t *count)
+{
+	*count = 0;
+	if (read_stamp(reader) < 0) {
+		close_files(reader); /* or it could not be unmounted */
+		buffer_clear(&reader->stamp);
+		return STICK_GONE;
+	}
+	if (reader->stamp.size == reader->file.size &&
+	    memcmp(reader->stamp.data, reader->file.data, reader->file.size) == 0)
+		return STICK_AS_BEFORE;
+	close_files(reader);
+	buffer_clear(&reader->stamp);
+	buffer_put(&reader->stamp, reader->file.data, reader->file.size);
+	read_all(reader, root_version, files, count);
+	return STICK_CAME;
+}
+
+/* ---- objects */
+
+static const struct stick_release *release_of(struct stick_reader *reader, struct hash root)
+{
+	char name[NAME_BYTES] = "locator/";
+	struct stick_release *release;
+
+	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
+		if (hash_equal(reader->releases[i].root, root))
+			return &reader->releases[i];
+	release = &reader->releases[reader->next_release++ % MESSAGE_RELEASES_MOST];
+	locator_finish(&release->locator);
+	*release = (struct stick_release){ .root = root };
+	hash_to_hex(root, name + strlen(name));
+	release->readable = read_file(reader, name, LOCATOR_BYTES_MAX) == 0 &&
+			    locator_decode(&release->locator, buffer_bytes(&reader->file)) == 0;
+	buffer_finish(&reader->file); /* it may have been large */
+	buffer_init(&reader->file, LOCATOR_BYTES_MAX);
+	return release;
+}
+
+static int open_pack(struct stick_reader *reader, struct hash pack)
+{
+	char name[NAME_BYTES] = "packs/";
+
+	if (reader->pack_fd >= 0 && hash_equal(reader->pack, pack))
+		return 0;
+	if (reader->pack_fd >= 0)
+		close(reader->pack_fd);
+	hash_to_hex(pack, name + strlen(name));
+	reader->pack = pack;
+	reader->pack_fd = open_file(reader, name);
+	return reader->pack_fd < 0 ? -ENOENT : 0;
+}
+
+static int get_of(struct stick_reader *reader, struct hash root, const struct message_want *want,
+		  struct buffer *out)
+{
+	const struct stick_release *release = release_of(reader, root);
+	const struct locator_block *block =
+		release->readable ? locator_find(&release->locator, want->page) : NULL;
+	uint8_t *to;
+
+	if (!block || (uint64_t)want->offset + want->size > block->size ||
+	    (hash_is_zero(want->page) && !hash_equal(want->hash, root)) ||
+	    open_pack(reader, release->locator.packs[block->pack]) < 0)
+		return -ENOENT;
+	buffer_clear(out);
+	to = buffer_extend(out, want->size);
+	if (!to || bytes_read_at(reader->pack_fd, to, want->size,
+				 (uint64_t)block->offset + want->offset) < 0)
+		return -ENOENT;
+	return hash_equal(hash_of(buffer_bytes(out)), want->hash) ? 0 : -EBADMSG;
+}
+
+int stick_reader_get(struct stick_reader *reader, const struct hash *roots, size_t count,
+		     const struct message_want *want, struct buffer *out)
+{
+	int rc = -ENOENT;
+
+	for (size_t i = 0; i < count && rc != 0; i++) {
+		const int now =
+			reader->stamp.size > 0 ? get_of(reader, roots[i], want, out) : -ENOENT;
+
+		if (now != -ENOENT)
+			rc = now;
+	}
+	if (rc != 0)
+		buffer_clear(out);
+	return rc;
+}
