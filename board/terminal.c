@@ -167,6 +167,11 @@ static const struct setting settings[] = {
 	  .offset = offsetof(struct terminal, idle_s),
 	  .least = 5,
 	  .most = 3600 },
+	{ .section = "usb",
+	  .name = "allow",
+	  .expects = "keyboard, network, wifi or panel, or several of them (storage and touch "
+		     "always work)",
+	  .set = terminal_set_usb },
 };
 
 /* ---- the whole */
