@@ -38,9 +38,8 @@ udl) echo /lib/modules/kernel/drivers/gpu/drm/udl/udl.ko ;;
 *) exit 1 ;;
 esac
 P
-printf '#!/bin/sh\necho "$*" >>"%s/said"\n' "$work" >"$work/bin/logger"
 chmod +x "$work"/bin/*
-export PATH=$work/bin:$PATH GOPURA_USB_ALLOWED=$work/allowed
+export PATH=$work/bin:$PATH GOPURA_USB_ALLOWED=$work/allowed GOPURA_USB_LOG=$work/said
 
 # device INTERFACE...: each "class subclass protocol" and, where it matters, the device's name
 devices=0
@@ -79,25 +78,26 @@ device "$stick"; judged "a stick" 1
 grep -q "1-1:1.0" "$work/sys/bus/usb/drivers_probe" || fail "a stick is authorized, but no driver is asked"
 device "09 00 00"; judged "a hub" 1
 device "$hid"; judged "a touchscreen" 1
-device "$hid" "$mouse" "ff 00 00"; judged "a touchscreen with a mouse and the maker's own" "1 1 0"
+device "$hid" "$mouse" "ff 00 00"; judged "a touchscreen with a mouse and the maker's own" "1 1 1"
 device "ff 00 00 touch"; judged "a touchscreen of the maker's own" 1
 device "$keyboard"; judged "a keyboard" 0
 device "$keyboard" "$mouse"; judged "a keyboard's radio" "0 1"
 device "$hid" "$keyboard"; judged "a touchscreen that types" "1 0"
 device "$stick" "$hid"; judged "a stick that types" "1 0"
 device "$hid" "$ether"; judged "a touchscreen with a network" "0 0"
-device "$ether" "$ether_data"; judged "a network" "0 0"
+device "$ether" "$ether_data"; judged "a network, whose data no driver takes up alone" "0 1"
 device "08 06 50 asix"; judged "a network that calls itself storage" 0
 device "ff 00 00 radio"; judged "a radio" 0
 device "ff 00 00 displaylink"; judged "a panel" 0
-device "0e 01 00"; judged "a camera" 0
+device "0e 01 00"; judged "a camera, for which there is no driver" 1
 device "08 06 50 strange" && sed -i s/ic08// "$folder"/*:*/modalias; judged "what only an unknown driver wants" 0
 grep -q "1-6:1.0 () is not taken up: keyboard; allow it in gopura.conf, under \[usb\]" "$work/said" || fail "nobody was told of the keyboard"
 
 # ---- what gopura.conf allows, and nothing else
 echo "keyboard network" >"$work/allowed"
 device "$keyboard"; judged "a keyboard that is allowed" 1
-device "$ether"; judged "a network that is allowed" 1
+device "$ether" "$ether_data"; judged "a network that is allowed" "1 1"
+[ "$(grep -c "1-$devices:1.0" "$work/sys/bus/usb/drivers_probe")" = 2 ] || fail "a network's driver is not asked again once its data may be had"
 device "08 06 50 asix"; judged "any network that is allowed" 1
 device "ff 00 00 radio"; judged "a radio beside networks by cable" 0
 "$policy" allows keyboard || fail "keyboards are allowed"
