@@ -97,8 +97,9 @@ powercut: all ## the power goes: at every write of cache and state (minutes), an
 	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
 	@CUTS=$(or $(CUTS),100) bash tests/qemu/powercut.sh system
 
-qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick
+qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick, which disk is started from
 	@bash tests/qemu/image.sh updates
+	@bash tests/qemu/disks.sh all
 
 qemu: all ## boot the image for a person: a window, or a VNC screen
 	@./deps.sh image/tools.txt

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/random.h>
 #include <unistd.h>
 
 #include "base/bytes.h"
@@ -16,6 +17,7 @@ enum {
 	HEADER_OTHER = 32,
 	HEADER_FIRST_USABLE = 40,
 	HEADER_LAST_USABLE = 48,
+	HEADER_IDENTITY = 56,
 	HEADER_ENTRIES = 72,
 	HEADER_ENTRY_COUNT = 80,
 	HEADER_ENTRY_BYTES = 84,
@@ -23,6 +25,7 @@ enum {
 	/* The entries */
 	ENTRY_COUNT = 128,
 	ENTRY_BYTES = 128,
+	ENTRY_IDENTITY = 16,
 	ENTRY_FIRST = 32,
 	ENTRY_LAST = 40,
 	ENTRY_NAME = 56,
@@ -32,7 +35,13 @@ enum {
 	PRIMARY = 1, /* the sector of the header */
 	PLACE_ONE = 2,
 	PLACE_TWO = PLACE_ONE + ENTRIES_SECTORS,
+	IDENTITY_BYTES = 16, /* a GUID, mixed-endian */
 };
+
+/* The disk's identity as image/assemble.sh writes it: 6F707572-6100-4000-8000-0000000000FF. */
+static const uint8_t image_identity[IDENTITY_BYTES] = { 0x72, 0x75, 0x70, 0x6f, 0x00, 0x61,
+							0x00, 0x40, 0x80, 0x00, 0x00, 0x00,
+							0x00, 0x00, 0x00, 0xff };
 
 struct table {
 	uint8_t header[SECTOR];
@@ -184,7 +193,7 @@ static int write_table(struct table *table, int fd, uint64_t sectors)
 int disk_table_grow(int fd, uint64_t disk_bytes, const char *name, struct disk_part *out)
 {
 	struct table table;
-	uint8_t *entry;
+	uint8_t *entry = NULL;
 	uint64_t first, last, behind, sectors = disk_bytes / SECTOR;
 	int rc = read_table(&table, fd);
 
@@ -206,5 +215,54 @@ int disk_table_grow(int fd, uint64_t disk_bytes, const char *name, struct disk_p
 		rc = write_table(&table, fd, sectors);
 	}
 	out->size_bytes = (last + 1 - first) * SECTOR;
+	return rc;
+}
+
+/* A random GUID, version 4. */
+static int new_identity(uint8_t out[IDENTITY_BYTES])
+{
+	if (getrandom(out, IDENTITY_BYTES, 0) != IDENTITY_BYTES)
+		return -EIO;
+	out[7] = (uint8_t)((out[7] & 0x0f) | 0x40);
+	out[8] = (uint8_t)((out[8] & 0x3f) | 0x80);
+	return 0;
+}
+
+/* Whether both places of the entries, and the copy at the disk's end, lie outside of every
+ * partition.
+ */
+static bool has_room(const struct table *table, uint64_t sectors)
+{
+	for (unsigned i = 0; i < ENTRY_COUNT; i++) {
+		const uint8_t *entry = table->entries + i * ENTRY_BYTES;
+		const uint64_t first = get(entry + ENTRY_FIRST, 8);
+
+		if (first > 0 && (first < PLACE_TWO + ENTRIES_SECTORS ||
+				  get(entry + ENTRY_LAST, 8) + 1 + ENTRIES_SECTORS >= sectors))
+			return false;
+	}
+	return true;
+}
+
+int disk_table_renew(int fd, uint64_t disk_bytes, const char *keep, bool *renewed)
+{
+	struct table table;
+	int rc = read_table(&table, fd);
+
+	*renewed = false;
+	if (rc < 0 || memcmp(table.header + HEADER_IDENTITY, image_identity, IDENTITY_BYTES) != 0)
+		return rc;
+	if (!has_room(&table, disk_bytes / SECTOR))
+		return -ENOTSUP;
+	rc = new_identity(table.header + HEADER_IDENTITY);
+	for (unsigned i = 0; i < ENTRY_COUNT && rc == 0; i++) {
+		uint8_t *entry = table.entries + i * ENTRY_BYTES;
+
+		if (get(entry + ENTRY_FIRST, 8) > 0 && !has_name(entry, keep))
+			rc = new_identity(entry + ENTRY_IDENTITY);
+	}
+	if (rc == 0)
+		rc = write_table(&table, fd, disk_bytes / SECTOR);
+	*renewed = rc == 0;
 	return rc;
 }

@@ -27,4 +27,11 @@ struct disk_part {
 must_check int disk_table_grow(int fd, uint64_t disk_bytes, const char *name,
 			       struct disk_part *out);
 
+/* Gives the disk and its partitions random identities (GUIDs) where the disk still has that of the
+ * image, which everybody knows: the loader names the partition to start from by its identity. The
+ * partition `keep` keeps its own, for firmware remembers the loader by it. *renewed: the table was
+ * written, in the same safe way. Results as above; -ENOTSUP: there is no room for a second table.
+ */
+must_check int disk_table_renew(int fd, uint64_t disk_bytes, const char *keep, bool *renewed);
+
 #endif

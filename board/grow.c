@@ -34,6 +34,19 @@ static int tell_kernel(int fd, const struct disk_part *part)
 	return ioctl(fd, BLKPG, &argument) < 0 ? -errno : 0;
 }
 
+/* A terminal that keeps the identity of the image starts all the same. */
+static void renew_table(int fd, uint64_t disk_bytes, const char *disk)
+{
+	bool renewed;
+	int rc = disk_table_renew(fd, disk_bytes, "gopura-esp", &renewed);
+
+	if (rc < 0)
+		log_warn("setup", "%s: the disk keeps the identity of its image: %s", disk,
+			 strerror(-rc));
+	else if (renewed)
+		log_info("setup", "%s: the disk has an identity of its own now", disk);
+}
+
 static int grow_table(const char *disk, const char *name, struct disk_part *part)
 {
 	uint64_t disk_bytes;
@@ -49,6 +62,8 @@ static int grow_table(const char *disk, const char *name, struct disk_part *part
 		rc = disk_table_grow(fd, disk_bytes, name, part);
 	if (rc == 0 && part->grown)
 		rc = tell_kernel(fd, part);
+	if (rc == 0)
+		renew_table(fd, disk_bytes, disk);
 	close(fd);
 	return rc;
 }

@@ -207,7 +207,11 @@ static void write_network(struct writing *writing, const char *file, const char 
 	char host[TERMINAL_NAME_BYTES];
 
 	terminal_host_name(t, host);
-	put(writing, "[Match]\nType=%s\n\n[Link]\nRequiredForOnline=no\n\n[Network]\n", type);
+	/* The mark is udev's (70-gopura-usb.rules): on the board, or allowed under [usb]. */
+	put(writing,
+	    "[Match]\nType=%s\nProperty=GOPURA_NETWORK=yes\n\n[Link]\nRequiredForOnline=no\n\n"
+	    "[Network]\n",
+	    type);
 	if (t->mdns)
 		put(writing, "MulticastDNS=yes\n");
 	if (!is_static)
@@ -302,6 +306,19 @@ static void write_networks(struct writing *writing)
 	write_wifi(writing);
 }
 
+/* ---- USB */
+
+/* For gopura-usb, which judges what is plugged in; empty: nothing but storage and touch. */
+static void write_usb(struct writing *writing)
+{
+	char words[TERMINAL_USB_WORDS_BYTES];
+
+	terminal_usb_words(writing->setup->terminal, words);
+	if (words[0])
+		put(writing, "%s\n", words);
+	finish_file(writing, "usb");
+}
+
 /* ---- the system */
 
 static void write_time_zone(struct writing *writing)
@@ -348,6 +365,7 @@ int setup_write(const struct setup *setup)
 	write_health(&writing);
 	write_announcement(&writing);
 	write_networks(&writing);
+	write_usb(&writing);
 	write_time_zone(&writing);
 	write_host_name(&writing);
 	buffer_finish(&writing.text);

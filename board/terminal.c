@@ -174,6 +174,11 @@ static const struct setting settings[] = {
 	  .name = "redirect_hosts",
 	  .expects = "up to 4 hosts such as cdn.example, cdn2.example:8443",
 	  .set = terminal_set_redirect_hosts },
+	{ .section = "usb",
+	  .name = "allow",
+	  .expects = "keyboard, network, wifi or panel, or several of them (storage and touch "
+		     "always work)",
+	  .set = terminal_set_usb },
 };
 
 /* ---- the whole */

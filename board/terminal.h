@@ -17,6 +17,15 @@ enum { TERMINAL_SERVERS_MOST = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES =
 /* A file that gopura.conf names is no larger; all authorities of a system take a quarter of it. */
 enum { TERMINAL_FILE_BYTES_MAX = 1 << 20 };
 
+/* Kinds of USB device that are taken up only where gopura.conf says so; storage and touch always
+ * are. As bits of usb_allow. */
+enum terminal_usb {
+	TERMINAL_USB_KEYBOARD = 1,
+	TERMINAL_USB_NETWORK = 2, /* by cable */
+	TERMINAL_USB_WIFI = 4,
+	TERMINAL_USB_PANEL = 8, /* DisplayLink */
+};
+
 struct terminal_servers {
 	char names[TERMINAL_SERVERS_MOST][254]; /* addresses; of time servers names too */
 	uint32_t count;
@@ -59,6 +68,8 @@ struct terminal {
 	char listen_address[INET6_ADDRSTRLEN];
 	uint32_t listen_port;
 	bool mdns; /* the network is told of it */
+	/* [usb] */
+	uint32_t usb_allow; /* enum terminal_usb */
 	/* [visit] */
 	uint32_t idle_s; /* without a touch until a visitor is asked; 5 .. 3600 */
 };
@@ -82,6 +93,9 @@ must_check int terminal_read_beside(struct buffer *out, const char *path, const 
  * base/safe_open.h, of gopura.conf itself. */
 enum { TERMINAL_SUM_BYTES = 65 };
 must_check int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES]);
+/* The kinds of usb_allow as gopura.conf calls them, with spaces between; "" where there is none. */
+enum { TERMINAL_USB_WORDS_BYTES = 64 };
+void terminal_usb_words(const struct terminal *terminal, char out[TERMINAL_USB_WORDS_BYTES]);
 
 /* The terminal's name as computers say it: letters, digits and dashes; "gopura" where nothing is
  * left of it. */

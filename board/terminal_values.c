@@ -381,3 +381,52 @@ bool terminal_set_listen(const struct setting *setting, void *target, const char
 	terminal->listen_port = (uint32_t)port;
 	return put(terminal->listen_address, sizeof(terminal->listen_address), address);
 }
+
+/* ---- USB */
+
+static const struct {
+	const char *word;
+	uint32_t bit;
+} usb_kinds[] = {
+	{ "keyboard", TERMINAL_USB_KEYBOARD },
+	{ "network", TERMINAL_USB_NETWORK },
+	{ "wifi", TERMINAL_USB_WIFI },
+	{ "panel", TERMINAL_USB_PANEL },
+};
+
+/* keyboard, network */
+bool terminal_set_usb(const struct setting *setting, void *target, const char *value)
+{
+	uint32_t allow = 0;
+
+	(void)setting;
+	for (;;) {
+		size_t length, i = 0;
+
+		value += strspn(value, " \t,");
+		length = strcspn(value, " \t,");
+		if (length == 0)
+			break;
+		while (i < ARRAY_COUNT(usb_kinds) &&
+		       (strlen(usb_kinds[i].word) != length ||
+			strncasecmp(usb_kinds[i].word, value, length) != 0))
+			i++;
+		if (i == ARRAY_COUNT(usb_kinds))
+			return false;
+		allow |= usb_kinds[i].bit;
+		value += length;
+	}
+	((struct terminal *)target)->usb_allow = allow;
+	return allow != 0;
+}
+
+void terminal_usb_words(const struct terminal *terminal, char out[TERMINAL_USB_WORDS_BYTES])
+{
+	size_t length = 0;
+
+	out[0] = '\0';
+	for (size_t i = 0; i < ARRAY_COUNT(usb_kinds); i++)
+		if (terminal->usb_allow & usb_kinds[i].bit)
+			length += (size_t)snprintf(out + length, TERMINAL_USB_WORDS_BYTES - length,
+						   "%s%s", length ? " " : "", usb_kinds[i].word);
+}

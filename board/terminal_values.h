@@ -25,5 +25,6 @@ bool terminal_set_ssid(const struct setting *setting, void *target, const char *
 bool terminal_set_passphrase(const struct setting *setting, void *target, const char *value);
 bool terminal_set_country(const struct setting *setting, void *target, const char *value);
 bool terminal_set_listen(const struct setting *setting, void *target, const char *value);
+bool terminal_set_usb(const struct setting *setting, void *target, const char *value);
 
 #endif

@@ -105,7 +105,7 @@ early=$out/early
 rm -rf "$early"
 mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
 cp /bin/busybox "$early/bin/"
-for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir switch_root basename readlink; do
+for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir ln hexdump switch_root basename readlink; do
 	ln -s busybox "$early/bin/$name"
 done
 install -m 755 "$here/init" "$early/init"
@@ -142,7 +142,7 @@ rm -f "$esp"
 truncate -s "${esp_mib}M" "$esp"
 mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
 grub-mkimage -O x86_64-efi -p /gopura -o "$out/BOOTX64.EFI" part_gpt fat ext2 normal configfile linux boot \
-	regexp loadenv test echo sleep reboot minicmd all_video
+	regexp loadenv probe test echo sleep reboot minicmd all_video
 grub-editenv "$out/grubenv" create
 grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0 KERNEL="${KERNEL:-}"
 mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura

@@ -81,7 +81,7 @@ if [ "$mode" = all ]; then
 	# none of them is left over in the end; those that compute alternate with those that mostly wait, and
 	# so there is one more at a time than there are cores.
 	{
-		echo qemu/kiosk qemu/image qemu/powercut
+		echo qemu/kiosk qemu/image qemu/disks qemu/powercut
 		printf '%s\n' e2e/weak e2e/switch e2e/golden e2e/tours qemu/arm64 e2e/tools e2e/pictures e2e/visit
 		find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' -printf '%P %h\n' |
 			sed 's/\(.*\)\.sh tests\/\(.*\)/\2\/\1/' | sort

@@ -91,11 +91,16 @@ static void entry(unsigned number, const char *name, uint64_t first_mib, uint64_
 	uint8_t *at = entries + (number - 1) * 128;
 
 	at[0] = 0xaf;
+	memset(at + 16, (int)(0x10 + number), 16);
 	put(at + 32, 8, first_mib * 2048);
 	put(at + 40, 8, behind_mib * 2048 - 1);
 	for (unsigned i = 0; name[i]; i++)
 		put(at + 56 + 2 * i, 2, (uint8_t)name[i]);
 }
+
+/* As image/assemble.sh has it: 6F707572-6100-4000-8000-0000000000FF. */
+static const uint8_t image_identity[16] = { 0x72, 0x75, 0x70, 0x6f, 0x00, 0x61, 0x00, 0x40,
+					    0x80, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xff };
 
 static void write_header(int fd, uint64_t own, uint64_t other, uint64_t entries_at)
 {
@@ -106,6 +111,7 @@ static void write_header(int fd, uint64_t own, uint64_t other, uint64_t entries_
 	put(header + 32, 8, other);
 	put(header + 40, 8, 2048);
 	put(header + 48, 8, IMAGE_MIB * 2048 - 34);
+	memcpy(header + 56, image_identity, 16);
 	put(header + 72, 8, entries_at);
 	put(header + 80, 4, 128);
 	put(header + 84, 4, 128);
@@ -278,6 +284,72 @@ static void leaves_a_card_that_is_smaller_than_its_table(void **state)
 	close(fd);
 }
 
+/* The identity of the disk (0) or of a partition, by the header in sector 1. */
+static void identity_of(int fd, unsigned number, uint8_t out[16])
+{
+	uint8_t head[SECTOR];
+	off_t at = SECTOR + 56;
+
+	CHECK(pread(fd, head, SECTOR, SECTOR) == SECTOR);
+	if (number > 0)
+		at = (off_t)get(head + 72, 8) * SECTOR + (number - 1) * 128 + 16;
+	CHECK(pread(fd, out, 16, at) == 16);
+}
+
+static void a_disk_gets_an_identity_of_its_own_once(void **state)
+{
+	uint8_t before[3][16], after[3][16], again[3][16];
+	bool renewed;
+	int fd = card();
+
+	(void)state;
+	for (unsigned i = 0; i < 3; i++)
+		identity_of(fd, i, before[i]);
+	CHECK(disk_table_renew(fd, CARD_MIB * (uint64_t)MIB, "gopura-esp", &renewed) == 0);
+	CHECK(renewed && data_mib(fd, 1) == IMAGE_MIB - 5);
+	CHECK(data_mib(fd, CARD_MIB * 2048 - 1) == IMAGE_MIB - 5);
+	for (unsigned i = 0; i < 3; i++)
+		identity_of(fd, i, after[i]);
+	CHECK(memcmp(before[0], after[0], 16) != 0); /* the disk */
+	CHECK(memcmp(before[1], after[1], 16) == 0); /* the loader's, which firmware remembers */
+	CHECK(memcmp(before[2], after[2], 16) != 0);
+	CHECK(memcmp(after[0], after[2], 16) != 0);
+	write_count = 0;
+	CHECK(disk_table_renew(fd, CARD_MIB * (uint64_t)MIB, "gopura-esp", &renewed) == 0);
+	CHECK(!renewed && write_count == 0);
+	for (unsigned i = 0; i < 3; i++) {
+		identity_of(fd, i, again[i]);
+		CHECK(memcmp(after[i], again[i], 16) == 0);
+	}
+	close(fd);
+}
+
+static void an_identity_is_left_where_a_second_table_has_no_room(void **state)
+{
+	bool renewed;
+	int fd = card();
+
+	(void)state;
+	CHECK(disk_table_renew(fd, 8 * (uint64_t)MIB, "gopura-esp", &renewed) == -ENOTSUP);
+	CHECK(!renewed && write_count == 0);
+	close(fd);
+}
+
+static void after_a_failed_write_the_identity_is_the_old_or_a_new_one(void **state)
+{
+	(void)state;
+	for (unsigned failing = 1; failing <= 6; failing++) {
+		int fd = card();
+		bool renewed;
+
+		fail_at = failing;
+		CHECK(disk_table_renew(fd, CARD_MIB * (uint64_t)MIB, "gopura-esp", &renewed) ==
+		      -EIO);
+		CHECK(!renewed && data_mib(fd, 1) == IMAGE_MIB - 5);
+		close(fd);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -289,6 +361,9 @@ int main(void)
 		cmocka_unit_test(refuses_a_damaged_table),
 		cmocka_unit_test(refuses_a_partition_that_is_not_there_or_not_last),
 		cmocka_unit_test(leaves_a_card_that_is_smaller_than_its_table),
+		cmocka_unit_test(a_disk_gets_an_identity_of_its_own_once),
+		cmocka_unit_test(an_identity_is_left_where_a_second_table_has_no_room),
+		cmocka_unit_test(after_a_failed_write_the_identity_is_the_old_or_a_new_one),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ static void without_a_word_the_cable_is_asked(void **state)
 
 	(void)state;
 	apply(RELEASE);
-	has("network/10-wired.network", "[Match]\nType=ether\n");
+	has("network/10-wired.network", "[Match]\nType=ether\nProperty=GOPURA_NETWORK=yes\n\n");
 	has("network/10-wired.network", "[Network]\nDHCP=yes\n");
 	has_not("network/10-wired.network", "UseDNS");
 	CHECK(!is_there("network/20-wifi.network") && !is_there("iwd/main.conf"));
@@ -166,7 +166,7 @@ static void the_radio_has_the_address_and_old_networks_go(void **state)
 		      "[network]\naddress = 192.168.1.20/24\n");
 	has("iwd/Museum.psk", "[Security]\nPassphrase=\\sstone\\\\water \n");
 	has("iwd/main.conf", "[General]\nCountry=KH\n");
-	has("network/20-wifi.network", "Type=wlan\n");
+	has("network/20-wifi.network", "Type=wlan\nProperty=GOPURA_NETWORK=yes\n\n");
 	has("network/20-wifi.network", "Address=192.168.1.20/24\n");
 	has("network/10-wired.network", "DHCP=yes\n");
 	path_of("iwd", path);
@@ -501,6 +501,26 @@ static void the_network_is_told_of_the_health_page_where_asked_for(void **state)
 	has_not("network/10-wired.network", "MulticastDNS");
 }
 
+static void what_usb_may_bring_is_nothing_unless_it_is_named(void **state)
+{
+	(void)state;
+	apply(RELEASE);
+	CHECK(strcmp(text_of("usb"), "") == 0);
+	apply(RELEASE "[usb]\nallow = WiFi, keyboard\n");
+	CHECK(strcmp(text_of("usb"), "keyboard wifi\n") == 0);
+	apply(RELEASE "[usb]\nallow = network panel\n");
+	CHECK(strcmp(text_of("usb"), "network panel\n") == 0);
+	apply(RELEASE "[usb]\nallow = keyboard, mouse\n");
+	CHECK(strcmp(text_of("usb"), "") == 0);
+	CHECK(strcmp(text_of("faults"),
+		     "line 5: allow must be keyboard, network, wifi or panel, or several of them "
+		     "(storage and touch always work), not 'keyboard, mouse'\n") == 0);
+	apply(RELEASE "[usb]\nallow = key\n");
+	CHECK(strcmp(text_of("usb"), "") == 0);
+	apply(RELEASE);
+	CHECK(strcmp(text_of("usb"), "") == 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -513,6 +533,7 @@ int main(void)
 		cmocka_unit_test(the_authority_outlives_its_stick),
 		cmocka_unit_test(no_value_says_more_than_its_own),
 		cmocka_unit_test(no_folders_name_says_more_than_its_own),
+		cmocka_unit_test(what_usb_may_bring_is_nothing_unless_it_is_named),
 		cmocka_unit_test(faults_are_written_a_line_each_and_the_rest_holds),
 		cmocka_unit_test(says_where_it_cannot_write),
 		cmocka_unit_test(every_profile_that_comes_along_is_right),

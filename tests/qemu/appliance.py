@@ -34,9 +34,9 @@ def table(image):
 
 
 class Appliance(Machine):
-    """A box with the disk's file; LOG: where what is written to the disk is noted too (writelog.py)."""
+    """A box with the disk's file; LOG: where what is written to the disk is noted too (writelog.py); MORE devices."""
 
-    def __init__(self, disk, work, case, log=None):
+    def __init__(self, disk, work, case, log=None, more=()):
         variables, self.disk = os.path.join(work, "variables.fd"), disk
         self.health = free_port()
         shutil.copy(f"{FIRMWARE}/OVMF_VARS_4M.fd", variables)
@@ -51,7 +51,7 @@ class Appliance(Machine):
             "-drive", f"if=pflash,format=raw,file={variables}",
             *drive, "-device", "virtio-blk-pci,drive=disk,bootindex=0",
             "-netdev", f"user,id=net,restrict=on,hostfwd=tcp:127.0.0.1:{self.health}-:9100", "-device", "virtio-net-pci,netdev=net,romfile=",
-            "-device", "virtio-keyboard-pci", "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset"])
+            "-device", "virtio-keyboard-pci,id=keys", "-device", "qemu-xhci", "-device", "i6300esb", "-action", "watchdog=reset", *more])
         self.seen = 0
 
     def since(self):
@@ -124,6 +124,36 @@ def keyboard(machine):
     print("a keyboard opens nothing")
 
 
+def own(machine):
+    """The system is that of the loader's disk, whose identities are no longer those of every image."""
+    if "the loader does not say" in machine.log() or not re.search("starting slot a of /dev/vda", machine.log()):
+        raise SystemExit("the loader did not name its disk:\n" + machine.log()[:3000])
+    identities = [part["uuid"] for part in table(machine.disk)]
+    known = [identity for identity in identities if identity.startswith("6F707572-6100-4000-8000")]
+    if known != identities[:1]:
+        raise SystemExit(f"partitions have the identities of the image: {identities}")
+
+
+def usb(machine):
+    """What is plugged in by USB is storage or touch, or it is not taken up."""
+    said = len(machine.log())
+    add = lambda driver, **rest: machine.qmp.command("device_add", driver=driver, id=driver, **rest)
+    add("usb-kbd")
+    machine.said("is not taken up: keyboard", ANSWER_S)
+    machine.qmp.command("netdev_add", type="user", id="gadget", restrict=True)
+    add("usb-net", netdev="gadget")
+    machine.said("is not taken up: network", ANSWER_S)
+    add("usb-tablet")
+    machine.said("QEMU USB Tablet", ANSWER_S)  # says the kiosk
+    time.sleep(10)  # in which an address would come
+    taken = re.search("QEMU USB Keyboard as|(usb|enx|enp)[^ ]*: (Gained carrier|DHCPv4 address)|register 'cdc_ether'", machine.log()[said:])
+    if taken:
+        raise SystemExit(f"by USB was taken up: '{taken.group(0)}'\n" + machine.log()[said:][-3000:])
+    for driver in ("usb-kbd", "usb-net", "usb-tablet"):
+        machine.qmp.command("device_del", id=driver)
+    print("by USB a touchscreen is taken up, a keyboard and a network are not")
+
+
 def visit(machine, began):
     while time.monotonic() - began < LOADER_S:
         machine.qmp.press(*"ce")  # GRUB's keys for its shell and its editor
@@ -144,7 +174,9 @@ def visit(machine, began):
     if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "stays as large" in machine.log():
         raise SystemExit(f"the data partition did not grow to the disk's {rest >> 20} MiB that are left:\n" + machine.log()[:3000])
     print(grown.group(0))
+    own(machine)
     keyboard(machine)
+    usb(machine)
     well(machine)
     for fault in ("crashed", "core dump", "Failed with result"):
         if fault in machine.log():

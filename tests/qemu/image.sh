@@ -16,4 +16,5 @@ if [ "${1:-}" = updates ]; then
 fi
 # shellcheck disable=SC2086
 python3 tests/qemu/appliance.py "$work/image/gopura.img" "$work" $sticks
+[ -z "$sticks" ] || python3 tests/qemu/usb.py "$work/image/gopura.img" "$work"
 [ -z "$sticks" ] || python3 tests/qemu/plugconf.py "$work/image/gopura.img" "$work"
