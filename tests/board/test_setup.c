@@ -82,8 +82,7 @@ static void without_a_word_the_cable_is_asked(void **state)
 	CHECK(!is_there("network/20-wifi.network") && !is_there("iwd/main.conf"));
 	CHECK(strcmp(text_of("fetch.env"), "RELEASE_URL=\"https://museum.example/temple/\"\n"
 					   "FETCH_OPTIONS=\"\"\n") == 0);
-	CHECK(strcmp(text_of("gopura-health.socket.d/listen.conf"),
-		     "[Socket]\nListenStream=\nListenStream=127.0.0.1:9100\n") == 0);
+	CHECK(strcmp(text_of("health-address"), "127.0.0.1:9100\n") == 0);
 	CHECK(strcmp(text_of("hostname"), "gopura\n") == 0);
 	CHECK(strcmp(text_of("faults"), "") == 0);
 	path_of("localtime", link);
@@ -112,7 +111,7 @@ static void the_fetcher_is_told_what_is_its(void **state)
 	      "ca = ca.pem\npoll_s = 300\nrate_limit_kib = 2000\n[terminal]\n"
 	      "name = East gate\ntime_zone = Asia/Phnom_Penh\n[health]\nlisten = [::]:9200\n");
 	has("fetch.env", "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 --ca /efi/ca.pem\"\n");
-	has("gopura-health.socket.d/listen.conf", "ListenStream=[::]:9200\n");
+	has("health-address", "[::]:9200\n");
 	CHECK(strcmp(text_of("hostname"), "east-gate\n") == 0);
 	has("network/10-wired.network", "UseHostname=no\nSendHostname=yes\nHostname=east-gate\n");
 }
