@@ -11,10 +11,9 @@ root=$work/root stick=$work/root/run/gopura-stick state=$work/root/var/lib/gopur
 mkdir -p "$work/bin" "$stick" "$state" "$root"/{run/gopura-bundle,run/gopura-kiosk,var/lib/rauc,efi/gopura,etc/rauc,proc,usr/lib/gopura}
 : >"$root/efi/gopura/grubenv"
 : >"$root/etc/rauc/system.conf"
-echo 0 >"$root/run/gopura-kiosk/self-test"
 echo "1000.0 1000.0" >"$root/proc/uptime"
 # The scripts as they are, but for the root of their paths.
-for script in floor.sh gopura-bundle gopura-firmware gopura-good; do
+for script in floor.sh gopura-bundle gopura-firmware gopura-good gopura-self-test; do
 	sed -E "s#/(run|var|efi|etc|proc|usr/lib/gopura)/#$root/\1/#g" "image/root/usr/lib/gopura/$script" >"$root/usr/lib/gopura/$script"
 done
 
@@ -48,6 +47,7 @@ esac
 END
 printf '#!/bin/sh\n[ "$2" != set ] || echo "loader $3 $4" >>%s\n' "$work/asked" >"$work/bin/grub-editenv"
 printf '#!/bin/sh\n' >"$work/bin/mount"
+printf '#!/bin/sh\n' >"$work/bin/gopura-kiosk"
 chmod +x "$work"/bin/*
 
 # runs SLOT VERSION SEQUENCE: what the terminal runs
@@ -76,6 +76,9 @@ nothing_asked() { [ ! -s "$work/asked" ] || fail "$1: $(cat "$work/asked")"; }
 
 # ---- a terminal on which nothing was found good yet: what runs is the floor
 runs A v100 100
+# gopura-good, root without privileges, must be able to read the answer of the kiosk's user.
+(umask 077 && script gopura-self-test)
+[ "$(stat -c %a "$root/run/gopura-kiosk/self-test")" = 644 ] || fail "gopura-good cannot read the self-test's answer"
 plugged "v90 90"
 nothing_asked "an older system was installed before the first was found good"
 found_good
