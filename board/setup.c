@@ -159,10 +159,9 @@ static void write_health(struct writing *writing)
 	const struct terminal *t = writing->setup->terminal;
 	const bool brackets = strchr(t->listen_address, ':');
 
-	folder(writing, "gopura-health.socket.d", 0755);
-	put(writing, "[Socket]\nListenStream=\nListenStream=%s%s%s:%u\n", brackets ? "[" : "",
-	    t->listen_address, brackets ? "]" : "", t->listen_port);
-	finish_file(writing, "gopura-health.socket.d/listen.conf");
+	put(writing, "%s%s%s:%u\n", brackets ? "[" : "", t->listen_address, brackets ? "]" : "",
+	    t->listen_port);
+	finish_file(writing, "health-address");
 }
 
 /* What systemd-resolved tells who asks by multicast for web pages (DNS-SD). */

@@ -77,7 +77,7 @@ mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura/board"
 install -m 644 board/*.ini "$tree/usr/share/gopura/board/"
 cp /usr/bin/grub-editenv "$tree/usr/lib/gopura/" # behind image/root/usr/bin/grub-editenv
 install -m 644 "$keys/cert.pem" "$tree/etc/rauc/keyring.pem"
-printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\n' "$version_text" >>"$tree/usr/lib/os-release"
+printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\nIMAGE_SEQUENCE=%s\n' "$version_text" "$sequence" >>"$tree/usr/lib/os-release"
 if [ -n "${RELEASE:-}" ]; then
 	cp -r "$RELEASE" "$tree/usr/share/gopura/release"
 fi

@@ -6,6 +6,8 @@
 #   RELEASE=FOLDER  lies in the image as well, for a terminal that never gets a network
 #   CONF=FILE       the gopura.conf of the image; the files that it names are taken from beside it
 #   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, made where missing)
+#   SEQUENCE=N      of this system and its update bundle: a terminal installs nothing with a lower one than it found good
+#                   (default: the time of the commit, in seconds since 1970)
 #   OUT=FOLDER      instead of build/image
 #
 # What is made: base.tar (the packages), tree/ (the root as it will be), root.squashfs and boot.img (a slot),
@@ -55,7 +57,8 @@ fi
 # ---- root, slot and disk, all files root's
 say "putting the root together"
 version_text=${VERSION:-$(git describe --always --dirty)}
-export here out keys version_text slot_mib boot_mib esp_mib data_mib
+sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
+export here out keys version_text sequence slot_mib boot_mib esp_mib data_mib
 fakeroot image/assemble.sh
 image/bundle.sh "$out"
 say "$(stat -c %s "$out/root.squashfs" | awk '{ printf "a slot has %.0f MB", $1 / 1e6 }'), the image $(du -m "$out/gopura.img" | cut -f1) MiB: $out/gopura.img"

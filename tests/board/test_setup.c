@@ -83,8 +83,7 @@ static void without_a_word_the_cable_is_asked(void **state)
 	CHECK(!is_there("network/20-wifi.network") && !is_there("iwd/main.conf"));
 	CHECK(strcmp(text_of("fetch.env"), "RELEASE_URL=\"https://museum.example/temple/\"\n"
 					   "FETCH_OPTIONS=\"\"\n") == 0);
-	CHECK(strcmp(text_of("gopura-health.socket.d/listen.conf"),
-		     "[Socket]\nListenStream=\nListenStream=127.0.0.1:9100\n") == 0);
+	CHECK(strcmp(text_of("health-address"), "127.0.0.1:9100\n") == 0);
 	CHECK(strcmp(text_of("hostname"), "gopura\n") == 0);
 	CHECK(strcmp(text_of("faults"), "") == 0);
 	path_of("localtime", link);
@@ -120,7 +119,7 @@ static void the_fetcher_is_told_what_is_its(void **state)
 		 "--redirect-hosts cdn.example,cdn2.example:8443 --ca %s/conf/ca.pem\"\n",
 		 out);
 	has("fetch.env", options);
-	has("gopura-health.socket.d/listen.conf", "ListenStream=[::]:9200\n");
+	has("health-address", "[::]:9200\n");
 	CHECK(strcmp(text_of("hostname"), "east-gate\n") == 0);
 	has("network/10-wired.network", "UseHostname=no\nSendHostname=yes\nHostname=east-gate\n");
 }
@@ -294,7 +293,8 @@ static const char *const settings[][2] = {
 	{ "network", "ntp" },        { "wifi", "ssid" },
 	{ "wifi", "passphrase" },    { "wifi", "country" },
 	{ "health", "listen" },      { "health", "mdns" },
-	{ "visit", "idle_s" },
+	{ "visit", "idle_s" },       { "release", "redirect_hosts" },
+	{ "usb", "allow" },
 };
 
 #define EVIL "LD_PRELOAD=/tmp/evil.so"
@@ -347,7 +347,8 @@ static const struct {
 	{ "hostname", { "" }, "abcdefghijklmnopqrstuvwxyz0123456789-" },
 	{ "network/",
 	  { "[Match]", "[Link]", "[Network]", "[Route]", "[DHCPv4]", "[DHCPv6]", "[IPv6AcceptRA]",
-	    "Type=", "RequiredForOnline=", "DHCP=", "Address=", "DNS=", "NTP=", "Gateway=" },
+	    "Type=", "RequiredForOnline=", "DHCP=", "Address=", "DNS=", "NTP=", "Gateway=",
+	    "Property=GOPURA_NETWORK=yes" },
 	  "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.:/" },
 	{ "iwd/main.conf", { "[General]", "Country=" }, "ABCDEFGHIJKLMNOPQRSTUVWXYZ" },
 	{ "iwd/",
@@ -356,9 +357,8 @@ static const struct {
 	{ "dnssd/gopura-health.dnssd",
 	  { "[Service]", "Name=%H", "Type=_http._tcp", "Port=", "TxtText=path=/" },
 	  "0123456789" },
-	{ "gopura-health.socket.d/listen.conf",
-	  { "[Socket]", "ListenStream=" },
-	  "0123456789abcdefABCDEF:.[]" },
+	{ "health-address", { "" }, "0123456789abcdefABCDEF:.[]" },
+	{ "usb", { "" }, "abcdefghijklmnopqrstuvwxyz " },
 	{ "faults", { "" }, NULL },
 	{ "conf/ca.pem", { "authority" }, "" },
 };

@@ -28,10 +28,13 @@ END
 ln -s "$PWD/build/gopura-setup" "$work/bin/gopura-setup"
 chmod +x "$work/set-up" "$work/bin/systemctl"
 
-# plugged: as gopura-conf.service does when a stick came
+# plugged: as gopura-conf.service does when a stick came, and gopura-apply.service after it where its condition holds
 plugged() {
 	: >"$work/asked"
 	PATH=$work/bin:$PATH "$script" apply "${conf[@]}" "$work/out" >"$work/said" 2>&1 || fail "apply: $(cat "$work/said")"
+	[ ! -s "$work/asked" ] || fail "who reads the stick's text gives orders to the service manager: $(cat "$work/asked")"
+	[ ! -e "$work/out/apply" ] || PATH=$work/bin:$PATH "${script%conf}apply" || fail "a new gopura.conf is not applied"
+	[ ! -e "$work/out/apply" ] || fail "it would be applied again and again"
 }
 asked() { grep -q -- "$1" "$work/asked"; }
 host() { cat "$work/out/hostname"; }

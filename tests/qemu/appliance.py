@@ -66,18 +66,18 @@ class Appliance(Machine):
 
     def installed(self, name):
         """Waits until the update of a stick is in the other slot and the machine starts again."""
-        self.said(f"installing .*{name}", INSTALL_S)
+        self.said(f"{name}.raucb: installing", INSTALL_S)
         if "GRUB" not in self.said("Welcome to GRUB|could not be installed", INSTALL_S):
             raise SystemExit(f"{name} was not installed:\n" + self.log()[-3000:])
 
-    def plug(self, stick):
-        self.qmp.command("blockdev-add", driver="raw", **{"node-name": "stick", "read-only": True, "file": {"driver": "file", "filename": stick}})
-        self.qmp.command("device_add", driver="usb-storage", id="stick", drive="stick")
+    def plug(self, stick, name="stick"):
+        self.qmp.command("blockdev-add", driver="raw", **{"node-name": name, "read-only": True, "file": {"driver": "file", "filename": stick}})
+        self.qmp.command("device_add", driver="usb-storage", id=name, drive=name)
 
-    def unplug(self):
-        self.qmp.command("device_del", id="stick")
+    def unplug(self, name="stick"):
+        self.qmp.command("device_del", id=name)
         time.sleep(2)
-        self.qmp.command("blockdev-del", **{"node-name": "stick"})
+        self.qmp.command("blockdev-del", **{"node-name": name})
 
     def asked(self, path):
         """What the health page answers to a question from outside, whatever its status."""
@@ -208,6 +208,10 @@ def updates(machine, sticks):
     machine.installed("next")
     print(machine.said("slot B, .*next, is good", BOOT_S))
     machine.temple("next")
+    machine.unplug()
+
+    machine.plug(stick("older"))
+    print(machine.said(r"older.raucb is refused: before \(sequence \d+\) is older than [^ ]*next \(sequence \d+\)", ANSWER_S))
     machine.unplug()
 
     for name in ("blank", "hangs"):

@@ -1,6 +1,7 @@
 #!/bin/bash
 # make-sticks.sh IMAGE_FOLDER WORK: update bundles on sticks, for appliance.py: next (the same, newer), tampered (one byte of next
-# is another), blank (boots, but its kiosk shows nothing), hangs (the kernel stops half a minute after the start).
+# is another), older (the image's own system, below what next makes the floor), blank (boots, but its kiosk shows nothing), hangs
+# (the kernel stops half a minute after the start).
 set -eu
 cd "$(dirname "$0")/../.."
 image=$1 work=$2
@@ -15,19 +16,23 @@ stick() {
 	mcopy -i "$work/$1.img@@1M" "$2" "::/$1.raucb"
 }
 
+# Each variant has a sequence one higher than the last.
+sequence=$(sed -n 's/^IMAGE_SEQUENCE=//p' "$image/tree/usr/lib/os-release")
+
 # variant NAME COMMAND...: the image's root, changed by a command that gets its folder
 variant() {
 	local name=$1 tree=$work/tree
+	sequence=$((sequence + 1))
 	shift
 	rm -rf "$tree"
 	cp -al "$image/tree" "$tree"
 	cp --remove-destination "$image/tree/usr/lib/os-release" "$tree/usr/lib/os-release"
-	sed -i "s/^IMAGE_VERSION=.*/&-$name/" "$tree/usr/lib/os-release"
+	sed -i "s/^IMAGE_VERSION=.*/&-$name/; s/^IMAGE_SEQUENCE=.*/IMAGE_SEQUENCE=$sequence/" "$tree/usr/lib/os-release"
 	"$@" "$tree"
 	rm -f "$work/root.squashfs"
 	mksquashfs "$tree" "$work/root.squashfs" -all-root -comp zstd -Xcompression-level 1 -quiet -no-progress
 	ln -f "$image/boot.img" "$work/boot.img"
-	VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$tree/usr/lib/os-release") image/bundle.sh "$work"
+	SEQUENCE=$sequence VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$tree/usr/lib/os-release") image/bundle.sh "$work"
 	rm -rf "$tree"
 	stick "$name" "$work/gopura.raucb"
 }
@@ -43,6 +48,8 @@ variant next unchanged
 cp "$work/gopura.raucb" "$work/tampered.raucb"
 printf 'x' | dd of="$work/tampered.raucb" bs=1 seek=$(($(stat -c %s "$work/tampered.raucb") / 2)) conv=notrunc status=none
 stick tampered "$work/tampered.raucb"
+VERSION=before SEQUENCE=$((sequence - 2)) image/bundle.sh "$work"
+stick older "$work/gopura.raucb"
 variant blank blank
 variant hangs hangs
 rm -f "$work"/*.squashfs "$work"/*.raucb "$work/boot.img" "$work/kiosk"

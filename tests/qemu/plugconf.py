@@ -14,6 +14,9 @@ def make_stick(work):
     with open(stick, "wb") as file:
         file.truncate(64 << 20)  # mformat -F takes no less
     subprocess.run(["mformat", "-i", stick, "-F", "::"], check=True)
+    with open(stick, "r+b") as file:  # mformat writes a table of partitions too, whose one lies over all
+        file.seek(446)
+        file.write(bytes(64))
     subprocess.run(["mcopy", "-i", stick, os.path.join(work, "gopura.conf"), os.path.join(work, "root.json"), "::/"], check=True)
     return stick
 

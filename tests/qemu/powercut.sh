@@ -46,7 +46,8 @@ if [ "${1:-}" = system ] && [ ! -f "$sticks/system.img" ]; then
 	# The same system under another version: what is written to the other slot, and when, does not depend on what is in it.
 	mkdir -p "$work/system"
 	ln -f "$image/root.squashfs" "$image/boot.img" "$work/system/"
-	VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$image/tree/usr/lib/os-release")-next image/bundle.sh "$work/system"
+	of_image() { sed -n "s/^IMAGE_$1=//p" "$image/tree/usr/lib/os-release"; }
+	VERSION=$(of_image VERSION)-next SEQUENCE=$(($(of_image SEQUENCE) + 1)) image/bundle.sh "$work/system"
 	stick system "$(($(stat -c %s "$work/system/gopura.raucb") / 1048576 + 40))" "$work/system/gopura.raucb"
 fi
 CUTS=${CUTS:-3} exec python3 tests/qemu/powercut.py "$image/gopura.img" "$sticks" "$work"

@@ -1,0 +1,29 @@
+# floor.sh: the version floor, for the scripts that source it. A slot that was found good raises it to its own sequence
+# (IMAGE_SEQUENCE of os-release, `build` of a bundle's manifest); no bundle below it is installed (docs/image.md).
+
+# is_sequence TEXT: digits, and few enough for the shell's arithmetic
+is_sequence() {
+	case $1 in '' | *[!0-9]*) return 1 ;; esac
+	[ ${#1} -le 12 ]
+}
+
+# read_floor FILE: sets floor and floor_version. Where no slot was ever found good, or the data partition was made anew, what
+# runs is the floor, and the status is 1.
+read_floor() {
+	floor='' floor_version=''
+	[ ! -f "$1" ] || read -r floor floor_version <"$1" || true
+	! is_sequence "$floor" || return 0
+	floor=${IMAGE_SEQUENCE:-0} floor_version=$IMAGE_VERSION
+	is_sequence "$floor" || floor=0
+	return 1
+}
+
+# raise_floor FILE: to what runs; never lower
+raise_floor() {
+	is_sequence "${IMAGE_SEQUENCE:-}" || return 0
+	! read_floor "$1" || [ "$IMAGE_SEQUENCE" -gt "$floor" ] || return 0
+	echo "$IMAGE_SEQUENCE $IMAGE_VERSION" >"$1.new"
+	sync "$1.new"
+	mv "$1.new" "$1"
+	sync "${1%/*}"
+}

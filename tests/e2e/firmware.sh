@@ -1,0 +1,143 @@
+#!/bin/bash
+# Updates from a stick: the appliance's own scripts, with RAUC, loader and service manager played. What is older than what was
+# good here is refused, whatever a hostile stick shows first; what was good raises the floor, and nothing lowers it. (The whole,
+# in a machine: tests/qemu/image.sh updates.)
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=$PWD/build/e2e/firmware
+rm -rf "$work"
+root=$work/root stick=$work/root/run/gopura-stick state=$work/root/var/lib/gopura-firmware
+mkdir -p "$work/bin" "$stick" "$state" "$root"/{run/gopura-bundle,run/gopura-kiosk,var/lib/rauc,efi/gopura,etc/rauc,proc,usr/lib/gopura}
+: >"$root/efi/gopura/grubenv"
+: >"$root/etc/rauc/system.conf"
+echo "1000.0 1000.0" >"$root/proc/uptime"
+# The scripts as they are, but for the root of their paths.
+for script in floor.sh gopura-bundle gopura-firmware gopura-good gopura-self-test; do
+	sed -E "s#/(run|var|efi|etc|proc|usr/lib/gopura)/#$root/\1/#g" "image/root/usr/lib/gopura/$script" >"$root/usr/lib/gopura/$script"
+done
+
+# A bundle is a line here: what is read of it at first (version, sequence), and what at the second reading.
+cat >"$work/bin/rauc" <<END
+#!/bin/sh
+case \$1 in
+info)
+	read -r version build then then_build <"\$3"
+	[ "\$version" != forged ] || { echo "signature verification failed"; exit 1; }
+	printf "RAUC_MF_COMPATIBLE='gopura-x86-64'\nRAUC_MF_VERSION='%s'\nRAUC_MF_BUILD='%s'\n" "\$version" "\$build"
+	;;
+install)
+	read -r version build then then_build <"\$2"
+	echo "install \$2" >>"$work/asked"
+	[ "\$version" != torn ] || exit 1
+	slot=\$(sed -n 's/.*=//p' "$root/proc/cmdline" | tr AB 10)
+	printf '[slot.rootfs.%s]\nbundle.version=%s\nbundle.build=%s\n[slot.boot.%s]\nbundle.build=999\n' \
+		"\$slot" "\${then:-\$version}" "\${then_build:-\$build}" "\$slot" >"$root/var/lib/rauc/status"
+	;;
+status) echo "\$2 \$3" >>"$work/asked" ;;
+esac
+END
+cat >"$work/bin/systemctl" <<END
+#!/bin/sh
+case \$1 in
+show) echo 0 ;;
+is-active) ;;
+*) echo "\$@" >>"$work/asked" ;;
+esac
+END
+printf '#!/bin/sh\n[ "$2" != set ] || echo "loader $3 $4" >>%s\n' "$work/asked" >"$work/bin/grub-editenv"
+printf '#!/bin/sh\n' >"$work/bin/mount"
+printf '#!/bin/sh\n' >"$work/bin/gopura-kiosk"
+chmod +x "$work"/bin/*
+
+# runs SLOT VERSION SEQUENCE: what the terminal runs
+runs() {
+	echo "quiet rauc.slot=$1" >"$root/proc/cmdline"
+	printf 'IMAGE_VERSION=%s\nIMAGE_SEQUENCE=%s\n' "$2" "$3" >"$root/etc/os-release"
+}
+script() { PATH=$work/bin:$PATH sh "$root/usr/lib/gopura/$1"; }
+found_good() { script gopura-good >"$work/said" || fail "gopura-good: $(cat "$work/said")"; }
+# plugged [NAME=]LINE...: a stick with these bundles, as gopura-bundle.service and gopura-firmware.service treat it
+plugged() {
+	rm -f "$stick"/* "$work/asked"
+	: >"$work/asked"
+	local n=0 bundle
+	for bundle; do
+		n=$((n + 1))
+		case $bundle in *=*) echo "${bundle#*=}" >"$stick/${bundle%%=*}.raucb" ;; *) echo "$bundle" >"$stick/bundle$n.raucb" ;; esac
+	done
+	script gopura-bundle >"$work/said" || fail "gopura-bundle: $(cat "$work/said")"
+	[ ! -s "$work/asked" ] || fail "who reads the stick gives orders: $(cat "$work/asked")"
+	[ ! -e "$root/run/gopura-bundle/chosen" ] || script gopura-firmware >>"$work/said" || fail "gopura-firmware: $(cat "$work/said")"
+}
+said() { grep -q -- "$1" "$work/said"; }
+asked() { grep -qx -- "$1" "$work/asked"; }
+nothing_asked() { [ ! -s "$work/asked" ] || fail "$1: $(cat "$work/asked")"; }
+
+# ---- a terminal on which nothing was found good yet: what runs is the floor
+runs A v100 100
+# gopura-good, root without privileges, must be able to read the answer of the kiosk's user.
+(umask 077 && script gopura-self-test)
+[ "$(stat -c %a "$root/run/gopura-kiosk/self-test")" = 644 ] || fail "gopura-good cannot read the self-test's answer"
+plugged "v90 90"
+nothing_asked "an older system was installed before the first was found good"
+found_good
+[ "$(cat "$state/floor")" = "100 v100" ] || fail "the floor is $(cat "$state/floor")"
+
+# ---- newer: installed, made active, two starts, restart
+plugged "v120 120"
+asked "install $stick/bundle1.raucb" && asked "mark-active other" && asked "loader B_TRY=1 " && asked "--no-block reboot" ||
+	fail "a newer system is not installed: $(cat "$work/said" "$work/asked")"
+[ "$(cat "$state/floor")" = "100 v100" ] || fail "the floor rose before anything was found good"
+plugged "v120 120"
+nothing_asked "what was tried and went back was tried again"
+said 'v120 was tried before' || fail "nobody is told: $(cat "$work/said")"
+
+# ---- found good: the floor rises, and an older signed bundle is refused, with both versions and a cure
+runs B v120 120
+found_good
+[ "$(cat "$state/floor")" = "120 v120" ] || fail "the floor is $(cat "$state/floor")"
+plugged "old=v110 110"
+nothing_asked "an older system was installed"
+said 'old.raucb is refused: v110 (sequence 110) is older than v120 (sequence 120).*SEQUENCE=' || fail "said: $(cat "$work/said")"
+plugged "without="v7
+nothing_asked "a bundle of before there were sequences was installed"
+said 'v7 (sequence 0)' || fail "said: $(cat "$work/said")"
+plugged "v120 120" "twin 120"
+nothing_asked "what has the sequence of what runs was installed"
+plugged "v999 99999999999999999999999"
+nothing_asked "a sequence that no shell can count was taken"
+plugged "forged 130"
+nothing_asked "a bundle with a wrong signature was installed"
+said 'bundle1.raucb is refused: signature verification failed' || fail "said: $(cat "$work/said")"
+
+# ---- a stick that shows a newer manifest at the first reading, and an older system at the second
+plugged "v130 130 v110 110"
+asked "install $stick/bundle1.raucb" || fail "the test tests nothing: $(cat "$work/said")"
+! asked "mark-active other" && ! asked "--no-block reboot" || fail "an older system is started: $(cat "$work/asked")"
+said 'it holds v110 (sequence 110), which is older than v120' || fail "said: $(cat "$work/said")"
+asked "stop rauc.service" || fail "the loader's partition stays open for writing"
+
+# ---- one bundle that cannot be installed does not keep the next from it; strange names are left alone
+plugged "a=torn 140" "b (1)=v140 140" "c;d=v150 150"
+asked "install $stick/b (1).raucb" && asked "mark-active other" || fail "the second bundle is not installed: $(cat "$work/said")"
+! grep -q ';' "$work/asked" && said 'a bundle is left alone: rename it' || fail "a strange name: $(cat "$work/said" "$work/asked")"
+
+# ---- the loader went back to the older slot: it runs, is good, and lowers nothing
+runs A v100 100
+found_good
+asked "loader A_OK=1 A_TRY=0" || fail "an older slot that the loader went back to is not good any more"
+[ "$(cat "$state/floor")" = "120 v120" ] || fail "the older slot lowered the floor to $(cat "$state/floor")"
+plugged "v110 110"
+nothing_asked "the older slot took an older system"
+# To go back on purpose: the older code with a higher sequence.
+plugged "v110-again 160"
+asked "mark-active other" || fail "there is no way back: $(cat "$work/said")"
+
+# ---- damaged notes
+echo "12x" >"$state/floor"
+plugged "v90 90"
+nothing_asked "a damaged floor let an older system in"
+found_good
+[ "$(cat "$state/floor")" = "100 v100" ] || fail "a damaged floor stays: $(cat "$state/floor")"
+echo "updates: newer ones only, by what was installed and not by what was shown"
