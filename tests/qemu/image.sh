@@ -1,7 +1,7 @@
 #!/bin/bash
 # The appliance's own image, started as a box would start it, in QEMU without KVM: the loader, the slot, systemd, the temple on the
 # panel, a tap and its card. With "updates" also what happens to updates from sticks: one that is good, one that was tampered with,
-# one that shows nothing and one that hangs; then to a gopura.conf on a stick. Pictures and the journal: build/qemu-image.
+# one that shows nothing and one that hangs; then to a network by USB, and to a gopura.conf on a stick. Pictures and the journal: build/qemu-image.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }
