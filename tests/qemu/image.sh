@@ -1,7 +1,7 @@
 #!/bin/bash
 # The appliance's own image, started as a box would start it, in QEMU without KVM: the loader, the slot, systemd, the temple on the
 # panel, a tap and its card. With "updates" also what happens to updates from sticks: one that is good, one that was tampered with,
-# one that is older, one that shows nothing and one that hangs; to sticks with other file systems, and to two at once; then to a
+# one that is older, one that shows nothing and one that hangs; to sticks with other file systems, and to two at once; then to a network by USB, and to a
 # gopura.conf on a stick. Pictures and the journal: build/qemu-image.
 set -eu
 cd "$(dirname "$0")/../.."
