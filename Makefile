@@ -34,6 +34,17 @@ OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -
            -ftrivial-auto-var-init=pattern
 endif
 
+# A fuzz target by itself is driven over its corpus by tests/fuzz/main.c; FUZZER=yes links it to clang's libFuzzer.
+FUZZ_MAIN = $(BUILD)/obj/tests/fuzz/main.o
+ifneq ($(FUZZER),)
+CC      := $(if $(shell command -v ccache),ccache )clang
+WARN    := $(filter-out -Werror,$(WARN)) # clang's warnings are not gcc's, which keeps the code clean
+OPT     := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
+           -ftrivial-auto-var-init=pattern
+FUZZ_MAIN =
+$(BUILD)/tests/fuzz/fuzz_%: EXTRA += -fsanitize=fuzzer
+endif
+
 MAINS    := app/main.c net/main.c pipeline/main.c health/main.c board/main.c
 SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
@@ -53,7 +64,7 @@ TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tes
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check soak golden powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check soak golden fuzz powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) ## build the programs into build/
@@ -91,6 +102,10 @@ image: all ## the bootable disk image of a terminal, build/image/gopura.img
 image-check: all ## two images from nothing have the same slots
 	@./deps.sh image/tools.txt
 	@image/check.sh
+
+fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each; TARGET=NAME for one; KEEP=yes adds what it found to the corpora
+	@./deps.sh tests/fuzz/tools.txt
+	@TIME="$(TIME)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
 
 powercut: all ## the power goes: at every write of cache and state (minutes), and 100 times in the appliance (hours); CUTS=N, SEED=N
 	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
@@ -151,7 +166,7 @@ $(BUILD)/gopura-setup: $(BUILD)/obj/board/main.o $(ARCHIVE)
 	$(LINK)
 
 # A test may define a function of the archive itself: its own object wins.
-$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(BUILD)/obj/tests/fuzz/main.o $(ARCHIVE)
+$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
@@ -172,8 +187,9 @@ $(SHIMS:%=$(BUILD)/%.so): $(BUILD)/%.so: %.c | $(BUILD)/.deps
 	@echo '  link  $@'
 	@$(CC) $(CFLAGS) -shared -fPIC $< -o $@ -ldl
 
+fuzzers: $(FUZZ)
 tests: $(TESTS) $(FUZZ) $(TOOLS) $(SHIMS:%=$(BUILD)/%.so)
 benches: $(BENCHES)
-.PHONY: tests benches
+.PHONY: tests fuzzers benches
 
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

@@ -27,15 +27,15 @@ static const char *reason(int status)
 	}
 }
 
-static void put_head(struct buffer *out, int status, const char *type, size_t body_bytes)
+static void put_head(struct buffer *out, int status, const char *type, uint64_t body_bytes)
 {
 	text_format(
 		out,
-		"HTTP/1.1 %d %s\r\nContent-Type: %s; charset=utf-8\r\nContent-Length: %zu\r\n"
+		"HTTP/1.1 %d %s\r\nContent-Type: %s; charset=utf-8\r\nContent-Length: %llu\r\n"
 		"Connection: close\r\nCache-Control: no-store\r\n"
 		"X-Content-Type-Options: nosniff\r\n"
 		"Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'\r\n%s\r\n",
-		status, reason(status), type, body_bytes,
+		status, reason(status), type, (unsigned long long)body_bytes,
 		status == 405 ? "Allow: GET, HEAD\r\n" : "");
 }
 
@@ -126,9 +126,9 @@ void page_answer(struct buffer *out, const struct request *request, const struct
 	buffer_finish(&body);
 }
 
-void page_visits(struct buffer *out, const struct request *request, const struct buffer *csv)
+void page_visits_head(struct buffer *out, uint64_t file_bytes)
 {
-	answer(out, 200, "text/csv", csv, request->head);
+	put_head(out, 200, "text/csv", file_bytes);
 }
 
 void page_refuse(struct buffer *out, int status)

@@ -12,9 +12,10 @@ enum { PAGE_BYTES_MOST = 128 * 1024 };
  * PAGE_BYTES_MOST at least. */
 void page_answer(struct buffer *out, const struct request *request, const struct snapshot *snapshot,
 		 const struct verdict *verdict);
-/* To REQUEST_VISITS: the counts of what visitors look at (storage/tally.h), as they are. */
-void page_visits(struct buffer *out, const struct request *request, const struct buffer *csv);
-/* To what is none of ours: status as by request_parse. */
+/* The head of the answer to REQUEST_VISITS: the counts of what visitors look at (storage/tally.h)
+ * follow as they are, in a file of so many bytes. */
+void page_visits_head(struct buffer *out, uint64_t file_bytes);
+/* The answer to what cannot be served: status as by request_parse, or 503. */
 void page_refuse(struct buffer *out, int status);
 
 #endif

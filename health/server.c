@@ -11,8 +11,10 @@
 #include "base/log.h"
 
 enum {
-	ANSWER_BYTES_MOST = 9 << 20, /* the counts of 400 days; others have some kilobytes */
-	PAUSE_MS = 100,              /* when the system has no descriptors left */
+	/* Of the kernel's memory for each client; by itself it would grow to megabytes. */
+	SEND_BUFFER_BYTES = 64 * 1024,
+	FILE_PIECE_BYTES = 32 * 1024,
+	PAUSE_MS = 100, /* when the system has no descriptors left */
 };
 
 enum stage { STAGE_FREE, STAGE_HEARS, STAGE_ANSWERS, STAGE_LEAVES };
@@ -23,22 +25,33 @@ struct client {
 	int64_t until_ms;
 	uint8_t head[REQUEST_BYTES_MOST];
 	size_t head_bytes;
-	struct buffer answer;
-	size_t sent_bytes;
+	struct reply reply;
+	size_t sent_bytes; /* of reply.text */
+	uint64_t file_at;  /* what was sent of reply.file */
 };
 
 struct server {
 	const struct server_options *options;
 	struct client clients[SERVER_CLIENTS_MOST];
-	size_t busy;
+	size_t busy, files; /* connections; of them, that get a file */
 	int64_t idle_since_ms;
 	int64_t accept_at_ms; /* not before */
 };
 
+static void drop_reply(struct server *server, struct client *client)
+{
+	buffer_finish(&client->reply.text);
+	if (client->reply.file < 0)
+		return;
+	close(client->reply.file);
+	client->reply.file = -1;
+	server->files--;
+}
+
 static void part(struct server *server, struct client *client)
 {
 	close(client->fd);
-	buffer_finish(&client->answer);
+	drop_reply(server, client);
 	client->stage = STAGE_FREE;
 	server->busy--;
 	server->idle_since_ms = clock_now_ms();
@@ -46,13 +59,15 @@ static void part(struct server *server, struct client *client)
 
 static void meet(struct server *server, int fd)
 {
+	const int send_buffer_bytes = SEND_BUFFER_BYTES;
 	struct client *client = server->clients;
 
 	while (client->stage != STAGE_FREE) /* one is: more are not let in */
 		client++;
-	*client = (struct client){ .stage = STAGE_HEARS, .fd = fd };
+	*client = (struct client){ .stage = STAGE_HEARS, .fd = fd, .reply = { .file = -1 } };
 	client->until_ms = clock_now_ms() + server->options->patience_ms;
-	buffer_init(&client->answer, ANSWER_BYTES_MOST);
+	if (setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes, sizeof(int)) < 0)
+		log_warn("health", "a send buffer keeps its size: %s", strerror(errno));
 	server->busy++;
 }
 
@@ -87,26 +102,103 @@ static void see_off(struct server *server, struct client *client)
 		part(server, client);
 }
 
+/* 0 too where the client takes no more for the moment; negative errno. */
+static int send_piece(int fd, const void *data, size_t size, size_t *sent)
+{
+	const ssize_t rc = send(fd, data, size, MSG_NOSIGNAL);
+
+	*sent = rc > 0 ? (size_t)rc : 0;
+	return rc < 0 && errno != EAGAIN && errno != EINTR ? -errno : 0;
+}
+
+/* Not sendfile, which raises SIGPIPE where the client is gone. What the client did not take is
+ * read again. */
+static int send_file_piece(struct client *client)
+{
+	const uint64_t left = client->reply.file_bytes - client->file_at;
+	uint8_t piece[FILE_PIECE_BYTES];
+	const size_t wanted = left < sizeof(piece) ? (size_t)left : sizeof(piece);
+	const ssize_t size = pread(client->reply.file, piece, wanted, (off_t)client->file_at);
+	size_t sent;
+	int rc;
+
+	if (size < 0 && errno == EINTR)
+		return 0;
+	if (size <= 0)
+		return size < 0 ? -errno : -ENODATA; /* the file has become shorter */
+	rc = send_piece(client->fd, piece, (size_t)size, &sent);
+	client->file_at += sent;
+	return rc;
+}
+
+static int send_text_piece(struct client *client)
+{
+	const struct buffer *text = &client->reply.text;
+	size_t sent;
+	const int rc = send_piece(client->fd, text->data + client->sent_bytes,
+				  text->size - client->sent_bytes, &sent);
+
+	client->sent_bytes += sent;
+	return rc;
+}
+
+static bool is_sent(const struct client *client)
+{
+	return client->sent_bytes == client->reply.text.size &&
+	       (client->reply.file < 0 || client->file_at == client->reply.file_bytes);
+}
+
 static void send_answer(struct server *server, struct client *client)
 {
-	const struct buffer *answer = &client->answer;
-	ssize_t size = send(client->fd, answer->data + client->sent_bytes,
-			    answer->size - client->sent_bytes, MSG_NOSIGNAL);
+	int rc = 0;
 
-	if (size < 0 && errno != EAGAIN && errno != EINTR) {
+	if (client->sent_bytes < client->reply.text.size)
+		rc = send_text_piece(client);
+	else if (!is_sent(client))
+		rc = send_file_piece(client);
+	if (rc < 0) {
 		part(server, client);
 		return;
 	}
-	client->sent_bytes += size > 0 ? (size_t)size : 0;
-	if (client->sent_bytes < answer->size)
+	if (!is_sent(client))
 		return;
+	if (client->reply.file >= 0) /* its time was for the file */
+		client->until_ms = clock_now_ms() + server->options->patience_ms;
+	drop_reply(server, client);
 	shutdown(client->fd, SHUT_WR);
 	client->stage = STAGE_LEAVES;
 }
 
-static void hear(struct server *server, struct client *client)
+/* The time that a reader of so many bytes is given beside patience_ms. */
+static int64_t file_ms(const struct server_options *options, uint64_t bytes)
+{
+	const uint64_t seconds = bytes / options->file_bytes_per_s;
+
+	return seconds < SERVER_FILE_MS_MAX / 1000 ? (int64_t)seconds * 1000 : SERVER_FILE_MS_MAX;
+}
+
+static void make_reply(struct server *server, struct client *client, int status,
+		       const struct request *request)
 {
 	const struct server_options *options = server->options;
+	struct reply *reply = &client->reply;
+
+	buffer_init(&reply->text, SERVER_TEXT_BYTES_MAX);
+	options->answer(options->data, status, request, reply);
+	if (reply->file >= 0 && server->files == SERVER_FILES_MAX) {
+		close(reply->file);
+		reply->file = -1;
+		buffer_clear(&reply->text);
+		options->answer(options->data, 503, request, reply);
+	}
+	if (reply->file < 0)
+		return;
+	server->files++;
+	client->until_ms += file_ms(options, reply->file_bytes);
+}
+
+static void hear(struct server *server, struct client *client)
+{
 	ssize_t size = read(client->fd, client->head + client->head_bytes,
 			    sizeof(client->head) - client->head_bytes);
 	struct request request = { 0 };
@@ -122,9 +214,10 @@ static void hear(struct server *server, struct client *client)
 	status = request_parse(&request, (struct bytes){ client->head, client->head_bytes });
 	if (status == 0)
 		return;
-	options->answer(options->data, status, &request, &client->answer);
-	if (client->answer.error) {
-		log_warn("health", "an answer did not fit: %s", strerror(-client->answer.error));
+	make_reply(server, client, status, &request);
+	if (client->reply.text.error) {
+		log_warn("health", "an answer did not fit: %s",
+			 strerror(-client->reply.text.error));
 		part(server, client);
 		return;
 	}
@@ -207,7 +300,8 @@ int server_run(const struct server_options *options)
 	struct server server = { .options = options, .idle_since_ms = clock_now_ms() };
 	int rc = 0;
 
-	if (options->listener_count == 0 || options->listener_count > SERVER_LISTENERS_MOST)
+	if (options->listener_count == 0 || options->listener_count > SERVER_LISTENERS_MOST ||
+	    options->file_bytes_per_s == 0)
 		return -EINVAL;
 	for (size_t i = 0; i < options->listener_count; i++)
 		if (fcntl(options->listeners[i], F_SETFL, O_NONBLOCK) < 0)

@@ -180,6 +180,10 @@ static void take_etag(struct http_request *request, const char *text, size_t siz
 		text++;
 		size--;
 	}
+	/* It goes back to the server in a header of ours, where a control would begin another. */
+	for (size_t i = 0; i < size; i++)
+		if ((unsigned char)text[i] < ' ' || text[i] == 0x7f)
+			return;
 	if (size < sizeof(request->etag)) /* a longer one would be another one when cut */
 		snprintf(request->etag, sizeof(request->etag), "%.*s", (int)size, text);
 }

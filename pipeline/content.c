@@ -1,6 +1,7 @@
 #include "pipeline/content.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,6 +119,9 @@ static bool set_start(void *target, const char *value)
 	if (!ini_numbers(numbers, v, 6, &count) || count != 6 ||
 	    (v[0] == v[3] && v[1] == v[4] && v[2] == v[5]))
 		return false;
+	for (int k = 0; k < 6; k++)
+		if (!(fabs(v[k]) <= FLT_MAX))
+			return false;
 	for (int k = 0; k < 3; k++) {
 		content->start_eye_m[k] = (float)v[k];
 		content->start_target_m[k] = (float)v[3 + k];

@@ -347,7 +347,7 @@ static int read_array(struct content *content, const cJSON *json, const char *te
 
 static int parse_parts(struct content *content, struct buffer *text)
 {
-	const char *end = NULL;
+	const char *end = NULL, *bad;
 	const cJSON *array;
 	cJSON *json;
 	int rc = 0;
@@ -355,6 +355,12 @@ static int parse_parts(struct content *content, struct buffer *text)
 	buffer_put_u8(text, 0);
 	if (text->error)
 		return text->error;
+	bad = json_not_utf8((char *)text->data);
+	if (bad) {
+		content_complain(content, true, parts_file, json_line_of((char *)text->data, bad),
+				 "is not UTF-8 here: save it with that encoding");
+		return 0;
+	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
 	if (!json)

@@ -318,7 +318,7 @@ static int read_array(struct content *content, const cJSON *array, const char *t
 
 static int parse(struct content *content, struct buffer *text)
 {
-	const char *end = NULL;
+	const char *end = NULL, *bad;
 	const cJSON *array;
 	cJSON *json;
 	int rc = 0;
@@ -326,6 +326,12 @@ static int parse(struct content *content, struct buffer *text)
 	buffer_put_u8(text, 0);
 	if (text->error)
 		return text->error;
+	bad = json_not_utf8((char *)text->data);
+	if (bad) {
+		content_complain(content, true, tours_file, json_line_of((char *)text->data, bad),
+				 "is not UTF-8 here: save it with that encoding");
+		return 0;
+	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "tours");
 	if (!json)

@@ -1,5 +1,6 @@
 #include "storage/json_lines.h"
 
+#include <glib.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -10,6 +11,13 @@ unsigned json_line_of(const char *text, const char *at)
 	for (; text < at && *text; text++)
 		line += *text == '\n';
 	return line;
+}
+
+const char *json_not_utf8(const char *text)
+{
+	const char *end;
+
+	return g_utf8_validate(text, -1, &end) ? NULL : end;
 }
 
 /* The end of the string that begins at its quote, on its closing one. */

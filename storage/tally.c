@@ -134,7 +134,7 @@ static size_t count_lines(struct bytes text)
 /* The whole lines of text, which is spoilt; *bad: how many were none of ours. */
 static size_t parse(struct buffer *text, struct entry *entries, size_t *bad)
 {
-	char *line = (char *)text->data, *limit = line + text->size;
+	char *line = (char *)text->data, *limit = text->size ? line + text->size : line;
 	size_t count = 0;
 
 	*bad = 0;

@@ -25,13 +25,14 @@ start_kiosk() {
 }
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
 url=http://127.0.0.1:$port
-options=(--kiosk "$work/kiosk" --fetch "$work/fetch" --faults "$work/faults" --data "$work")
+options=(--kiosk "$work/kiosk" --fetch "$work/fetch" --faults "$work/faults" --data "$work"
+	--visits "$work/visits.csv")
 
 # says STATUS PATTERN PATH...: what is answered to it now.
 says() {
 	local want=$1 pattern=$2
 	shift 2
-	[ "$(curl -s -o "$work/answer" -w '%{http_code}' "$@")" = "$want" ] || return 1
+	[ "$(curl -s --max-time 60 -o "$work/answer" -w '%{http_code}' "$@")" = "$want" ] || return 1
 	grep -qE -- "$pattern" "$work/answer"
 }
 becomes() { wait_for 60 "'$2' with $1 from $3" says "$@"; }
@@ -100,6 +101,51 @@ s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
 s.sendall(sys.stdin.buffer.read())
 assert s.recv(4096).startswith(b"HTTP/1.1 505 ")' "$port" || fail "another protocol"
 [ "$(curl -s -I "$url/health" | head -c 12)" = 'HTTP/1.1 200' ] || fail "HEAD"
+
+# ---- the counts of visitors: a file of any size, to slow readers too, without memory for it
+says 404 '^404' "$url/visits.csv" || fail "counts that are not there"
+mkfifo "$work/visits.csv"
+says 404 '^404' "$url/visits.csv" || fail "a pipe as counts"
+rm "$work/visits.csv"
+head -c 40000000 /dev/urandom >"$work/counts"
+cp "$work/counts" "$work/visits.csv"
+python3 - "$port" "/proc/$health/status" <<'P' || fail "slow readers of the counts"
+# Sixteen readers ask for 40 MB and take nothing; MemoryMax= of the unit is 32 MB. Some are refused,
+# so that there is room for those who ask whether the terminal is well.
+import re, socket, sys
+address = ("127.0.0.1", int(sys.argv[1]))
+slow = []
+for _ in range(16):
+    s = socket.socket()
+    s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    s.settimeout(60)
+    s.connect(address)
+    s.sendall(b"GET /visits.csv HTTP/1.1\r\n\r\n")
+    slow.append(s)
+statuses = sorted(s.recv(12)[9:] for s in slow)
+memory = int(re.search(r"VmHWM:\s*(\d+) kB", open(sys.argv[2]).read())[1])
+print(statuses, memory, "kB at most")
+assert set(statuses) == {b"200", b"503"}, statuses
+assert memory < 12000, memory
+for s in slow:
+    s.close()
+with socket.create_connection(address, 60) as s:
+    s.sendall(b"GET /metrics HTTP/1.1\r\n\r\n")
+    assert s.recv(12) == b"HTTP/1.1 200"
+P
+says 200 '' "$url/visits.csv" || fail "no counts"
+cmp "$work/answer" "$work/counts" || fail "the counts did not arrive as they are"
+[ "$(curl -sI "$url/visits.csv" | grep -i '^content-length' | tr -dc 0-9)" = 40000000 ] || fail "HEAD of the counts"
+# The kiosk puts another file there while somebody reads: the reader gets the one before, whole.
+rm "$work/answer"
+curl -s --max-time 60 --limit-rate 20M -o "$work/answer" "$url/visits.csv" &
+reader=$!
+wait_for 60 "beginning of the counts" test -s "$work/answer"
+echo other >"$work/fresh"
+mv "$work/fresh" "$work/visits.csv"
+wait "$reader" || fail "the counts were cut when the file was replaced"
+cmp "$work/answer" "$work/counts" || fail "the counts changed when the file was replaced"
+rm "$work/visits.csv" "$work/answer" "$work/counts"
 
 # ---- what was provisioned in vain
 echo "gopura.conf, line 4: [panel] mode <big> is no mode" >"$work/faults"

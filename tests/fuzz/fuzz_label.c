@@ -4,6 +4,8 @@
 
 #include <stdlib.h>
 
+#include "tests/fuzz/repack.h"
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void ask(const struct label_group *group)
@@ -19,7 +21,7 @@ static void ask(const struct label_group *group)
 			}
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void decode(const uint8_t *data, size_t size)
 {
 	struct label_group group, back;
 	struct buffer again;
@@ -30,7 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		if (label_page_decode(&children, data[1], count, (struct bytes){ data, size }) == 0)
 			free(children);
 	if (label_group_decode(&group, (struct bytes){ data, size }) < 0)
-		return 0;
+		return;
 	ask(&group);
 	buffer_init(&again, 64 << 20);
 	if (label_group_encode(&again, &group) < 0 ||
@@ -40,5 +42,29 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	buffer_finish(&again);
 	label_group_finish(&group);
 	label_group_finish(&back);
+}
+
+/* 'R', the number of patches, and what the frame holds. */
+static void pack_and_decode(const uint8_t *data, size_t size)
+{
+	struct buffer object;
+	struct reader in;
+
+	reader_init(&in, (struct bytes){ data + 1, size - 1 });
+	buffer_init(&object, REPACK_BYTES_MAX);
+	buffer_put(&object, "GPlb\1", 5);
+	buffer_put_u8(&object, reader_u8(&in));
+	buffer_put_u32(&object, (uint32_t)reader_left(&in));
+	repack_put(&object, &in, reader_left(&in));
+	decode(object.data, object.size);
+	buffer_finish(&object);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	if (repack_is_raw(data, size))
+		pack_and_decode(data, size);
+	else
+		decode(data, size);
 	return 0;
 }

@@ -1,5 +1,6 @@
-/* Runs a fuzz target over its corpus without a fuzzing engine: each file as it is, every
- * truncation of small files, and seeded mutations. The same target links to libFuzzer as it is. */
+/* Runs a fuzz target over its corpus without a fuzzing engine: each file as it is, truncations of
+ * it, and seeded mutations; of a large corpus fewer of both. The same target links to libFuzzer as
+ * it is (make fuzz). */
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
@@ -12,7 +13,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { MUTATIONS_PER_FILE = 200, TRUNCATIONS_MOST = 600 };
+enum { MUTATIONS_PER_FILE = 200, TRUNCATIONS_MOST = 600, RUNS_MAX = 4000 };
+
+static size_t mutations = MUTATIONS_PER_FILE, truncations = TRUNCATIONS_MOST, runs;
 
 static uint32_t random_state = 1;
 
@@ -34,6 +37,7 @@ static void run_exact(const uint8_t *data, size_t size)
 	if (size)
 		memcpy(exact, data, size);
 	LLVMFuzzerTestOneInput(exact, size);
+	runs++;
 	free(exact);
 }
 
@@ -67,41 +71,69 @@ static void run_file(const char *path)
 		exit(1);
 	}
 	run_exact(file.data, file.size);
-	for (size_t n = 0; n < file.size && n < TRUNCATIONS_MOST; n++)
-		run_exact(file.data, file.size <= TRUNCATIONS_MOST ? n : random_next() % file.size);
-	for (int n = 0; n < MUTATIONS_PER_FILE && file.size; n++)
+	for (size_t n = 0; n < file.size && n < truncations; n++)
+		run_exact(file.data, file.size <= truncations ? n : random_next() % file.size);
+	for (size_t n = 0; n < mutations && file.size; n++)
 		run_mutated(file.data, file.size);
 	buffer_finish(&file);
 }
 
+static void run_folder(DIR *folder, const char *name)
+{
+	struct dirent *entry;
+
+	while ((entry = readdir(folder))) {
+		char path[PATH_MAX];
+
+		if (entry->d_name[0] == '.')
+			continue;
+		snprintf(path, sizeof(path), "%s/%s", name, entry->d_name);
+		run_file(path);
+	}
+}
+
+static size_t count_files(DIR *folder)
+{
+	struct dirent *entry;
+	size_t count = 0;
+
+	while ((entry = readdir(folder)))
+		count += entry->d_name[0] != '.';
+	rewinddir(folder);
+	return count;
+}
+
+/* Shared fairly among the files of a folder. */
+static void limit_runs(size_t files)
+{
+	const size_t each = RUNS_MAX / (files ? files : 1);
+
+	mutations = each / 4 < MUTATIONS_PER_FILE ? each / 4 + 1 : MUTATIONS_PER_FILE;
+	truncations = each * 3 / 4 < TRUNCATIONS_MOST ? each * 3 / 4 + 1 : TRUNCATIONS_MOST;
+}
+
 int main(int argc, char **argv)
 {
-	int files = 0;
+	size_t files = 0;
 
 	for (int i = 1; i < argc; i++) {
 		DIR *folder = opendir(argv[i]);
-		struct dirent *entry;
 
-		if (!folder) {
-			if (errno != ENOTDIR) {
-				fprintf(stderr, "%s: %s\n", argv[i], strerror(errno));
-				return 1;
-			}
+		if (!folder && errno != ENOTDIR) {
+			fprintf(stderr, "%s: %s\n", argv[i], strerror(errno));
+			return 1;
+		}
+		if (!folder) { /* a single file is to be reproduced: as it is */
+			mutations = truncations = 0;
 			run_file(argv[i]);
 			files++;
 			continue;
 		}
-		while ((entry = readdir(folder))) {
-			char path[PATH_MAX];
-
-			if (entry->d_name[0] == '.')
-				continue;
-			snprintf(path, sizeof(path), "%s/%s", argv[i], entry->d_name);
-			run_file(path);
-			files++;
-		}
+		files += count_files(folder);
+		limit_runs(count_files(folder));
+		run_folder(folder, argv[i]);
 		closedir(folder);
 	}
-	printf("%d corpus files\n", files);
+	printf("%zu corpus files, %zu runs\n", files, runs);
 	return files > 0 ? 0 : 1;
 }

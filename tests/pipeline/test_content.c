@@ -109,6 +109,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "points-text", "[grid]\npoints = 8x\n", "from 4 to 32" },
 		{ "face", "[grid]\nface_px = 500\n", "512" },
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
+		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },
 		{ "tools", "[view]\n\ntools = light, lens\n",
 		  "temple.ini:3: tools = light, lens: it must be light, section" },
 		{ "tools-twice", "[view]\ntools = light light\n", "each once" },

@@ -128,6 +128,9 @@ static void names_the_line_of_a_bad_part(void **state)
 	} cases[] = {
 		{ "{\"parts\": [\n{\"id\": \"a\"\n\"title\"}]}", "not JSON", 3 },
 		{ "[1, 2]", "at the outside", 1 },
+		{ "{\"parts\": [\n{\"id\": \"a\", \"anchor\": [0,0,0], \"page\": false,\n"
+		  "\"title\": {\"en\": \"caf\xe9\"}}]}",
+		  "not UTF-8", 3 },
 		{ "{\"parts\": [\n\n {\"id\": \"A b\", \"anchor\": [0,0,0], \"page\": false,"
 		  "\"title\": {\"en\": \"x\"}}]}",
 		  "use 1 to", 3 },

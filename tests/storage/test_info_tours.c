@@ -192,6 +192,7 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		{ TOUR(STOP ",\n{\"part\": \"naga\", \"caption\": {\"km\": \"នាគ\"}}"),
 		  "no caption in \"en\"", 4 },
 		{ TOUR(STOP ",\n7"), "stop 2: must be an object", 1 },
+		{ TOUR(STOP ",\n" STOP ",\n{\"part\": \"caf\xe9\"}"), "not UTF-8", 5 },
 	};
 
 	(void)state;
