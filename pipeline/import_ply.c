@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/progress.h"
 #include "pipeline/ply.h"
@@ -172,6 +173,7 @@ static int load_textures(struct collector *collector, const char *path,
 			 struct import_report *report)
 {
 	static const uint8_t plain[3] = { 255, 255, 255 };
+	struct import_files files = { .scan_path = path };
 	struct mesh *mesh = &collector->mesh;
 	uint32_t count = collector->summary->texture_count;
 	int rc = 0;
@@ -182,9 +184,13 @@ static int load_textures(struct collector *collector, const char *path,
 	if (!mesh->textures)
 		return -ENOMEM;
 	mesh->texture_count = count;
+	files.folder_fd = import_files_open_folder(path);
+	if (files.folder_fd < 0)
+		return files.folder_fd;
 	for (uint32_t i = 0; i < count && rc == 0; i++)
-		rc = import_texture(&mesh->textures[i], path, collector->summary->textures[i],
+		rc = import_texture(&mesh->textures[i], &files, collector->summary->textures[i],
 				    plain, report);
+	close(files.folder_fd);
 	return rc;
 }
 
@@ -205,8 +211,9 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 		rc = load_textures(collector, path, report);
 	if (rc < 0)
 		return fault_set(fault, rc, "%s: %s", path,
-				 rc == -ENOMEM ? "too large for this machine's memory"
-					       : "too many triangles; split it into several files");
+				 rc == -ENOMEM  ? "too large for this machine's memory"
+				 : rc == -EFBIG ? "too many triangles; split it into several files"
+						: strerror(-rc));
 	return 0;
 }
 
