@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/html_tags.h"
 #include "storage/info_content.h"
 
 struct page_check {
@@ -181,6 +182,25 @@ static void hear_parser(void *data, xmlError *error)
 			 "%s: check that every tag is closed in order", text);
 }
 
+/* Before the parser, which would take long over it. */
+static bool check_tags(struct page_check *check)
+{
+	const struct bytes html = { (const uint8_t *)check->page->html, check->page->size };
+	struct html_tags found = { 0 };
+	struct buffer reduced;
+	int rc;
+
+	buffer_init(&reduced, HTML_TAGS_GROWTH * html.size + 64);
+	rc = html_tags_reduce(&reduced, html, &found);
+	buffer_finish(&reduced);
+	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
+		content_complain(check->content, true, check->file, found.line,
+				 "a tag with %u attributes: at most %d are read, and the kiosk "
+				 "shows none but src and href; remove the others",
+				 found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
+	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
+}
+
 static int parse_page(struct page_check *check)
 {
 	htmlParserCtxt *parser = htmlNewParserCtxt();
@@ -252,7 +272,7 @@ static int read_part_pages(struct content *content, struct content_part *part)
 			 options->languages[i]);
 		rc = read_page_file(&check);
 		if (rc == 0 && part->pages[i].html)
-			rc = parse_page(&check);
+			rc = check_tags(&check) ? parse_page(&check) : 0;
 		else if (rc == 0 && !part->without_page)
 			content_complain(content, i == 0, file, 0,
 					 i == 0 ? "is missing: write it, or give the part "

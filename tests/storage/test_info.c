@@ -170,6 +170,8 @@ static void names_the_line_of_a_bad_part(void **state)
 	}
 }
 
+#define TEN "k0 k1=1 k2='2' k3=\"3\" k4 k5 k6 k7=<b k8 = x k9 "
+
 static void names_the_line_of_a_bad_page(void **state)
 {
 	static const struct {
@@ -186,6 +188,8 @@ static void names_the_line_of_a_bad_page(void **state)
 		{ "<p>x</p>\n<script>alert(1)</script>", "<script>", 2 },
 		{ "<p>x</p>\n<p onclick=\"go()\">y</p>", "onclick", 2 },
 		{ "<p>x</p>\n\n\n<iframe></iframe>", "<iframe>", 4 },
+		{ "<p>x</p>\n<b\nclass=y " TEN TEN TEN TEN TEN TEN "a b c d>z</b>",
+		  "a tag with 65 attributes", 2 },
 		{ "  \n <p> </p>", "no text", 1 },
 		{ "<p>\xff\xfe</p>", "UTF-8", 0 },
 	};
