@@ -243,6 +243,11 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
+uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes)
+{
+	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
+}
+
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
 		     struct fault *fault)
@@ -255,7 +260,7 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 	};
 
 	if (format == SCAN_PLY)
-		return import_ply(out, path, report, fault);
+		return import_ply(out, path, options, report, fault);
 	return import_foreign(out, path, foreign, options, report, fault);
 }
 

@@ -164,7 +164,7 @@ static int load_embedded(struct builder *builder, const struct aiTexture *pictur
 static int load_texture(struct builder *builder, const struct aiMaterial *material,
 			struct mesh_texture *out)
 {
-	const struct import_files files = { .scan_path = builder->job->path, .in_sandbox = true };
+	struct import_files files = { .scan_path = builder->job->path, .in_sandbox = true };
 	const struct aiTexture *embedded;
 	char name[MAXLEN];
 	uint8_t plain[3];
@@ -430,8 +430,7 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 	const struct sandbox_options limits = {
 		.timeout_s = options->timeout_s ? options->timeout_s
 						: (uint32_t)(6 + (file_bytes >> 18)),
-		.memory_bytes = options->memory_bytes ? options->memory_bytes
-						      : (1ull << 30) + 64 * file_bytes,
+		.memory_bytes = import_memory_bytes(options, file_bytes),
 		.result_fd = parent->result_fd,
 		.open = open_for_child,
 		.open_data = parent,

@@ -6,8 +6,10 @@
 #include "pipeline/import.h"
 
 /* Readers give the mesh in the file's unit and axes, indices in range, not repaired. */
-must_check int import_ply(struct mesh *out, const char *path, struct import_report *report,
-			  struct fault *fault);
+must_check int import_ply(struct mesh *out, const char *path, const struct import_options *options,
+			  struct import_report *report, struct fault *fault);
+/* What decoding may take, unless options say so: a small file cannot be a scan that needs much. */
+uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes);
 
 /* ---- files that a scan names */
 
@@ -21,9 +23,10 @@ must_check int import_files_open_at(int folder_fd, const char *name);
 must_check int import_files_open_folder(const char *scan_path);
 
 struct import_files {
-	const char *scan_path; /* borrowed; for messages */
-	int folder_fd;         /* borrowed; not used in the sandbox */
-	bool in_sandbox;       /* whose parent opens */
+	const char *scan_path;       /* borrowed; for messages */
+	int folder_fd;               /* borrowed; not used in the sandbox */
+	bool in_sandbox;             /* whose parent opens, and whose limits hold for pictures */
+	uint64_t picture_bytes_left; /* outside of it: for all decoded pictures together */
 };
 
 must_check int import_files_open(const struct import_files *files, const char *name);
@@ -53,7 +56,7 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 
 /* The picture that a scan names. One that is missing, elsewhere or damaged is tolerated: a warning,
  * and one pixel of the plain colour. -ENOMEM. */
-must_check int import_texture(struct mesh_texture *out, const struct import_files *files,
+must_check int import_texture(struct mesh_texture *out, struct import_files *files,
 			      const char *name, const uint8_t plain[3],
 			      struct import_report *report);
 /* The same for a picture that lies in the scan itself. */

@@ -170,10 +170,13 @@ static int split_corners(struct collector *collector)
 }
 
 static int load_textures(struct collector *collector, const char *path,
-			 struct import_report *report)
+			 const struct import_options *options, struct import_report *report)
 {
 	static const uint8_t plain[3] = { 255, 255, 255 };
-	struct import_files files = { .scan_path = path };
+	struct import_files files = {
+		.scan_path = path,
+		.picture_bytes_left = import_memory_bytes(options, report->file_bytes),
+	};
 	struct mesh *mesh = &collector->mesh;
 	uint32_t count = collector->summary->texture_count;
 	int rc = 0;
@@ -195,7 +198,8 @@ static int load_textures(struct collector *collector, const char *path,
 }
 
 static int read_body(struct ply *ply, struct collector *collector, const char *path,
-		     struct import_report *report, struct fault *fault)
+		     const struct import_options *options, struct import_report *report,
+		     struct fault *fault)
 {
 	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
 	int rc = allocate(collector);
@@ -208,7 +212,7 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	if (rc == 0 && collector->corner_uvs)
 		rc = split_corners(collector);
 	if (rc == 0)
-		rc = load_textures(collector, path, report);
+		rc = load_textures(collector, path, options, report);
 	if (rc < 0)
 		return fault_set(fault, rc, "%s: %s", path,
 				 rc == -ENOMEM  ? "too large for this machine's memory"
@@ -217,8 +221,8 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	return 0;
 }
 
-int import_ply(struct mesh *out, const char *path, struct import_report *report,
-	       struct fault *fault)
+int import_ply(struct mesh *out, const char *path, const struct import_options *options,
+	       struct import_report *report, struct fault *fault)
 {
 	struct collector collector = { 0 };
 	struct ply *ply;
@@ -235,7 +239,7 @@ int import_ply(struct mesh *out, const char *path, struct import_report *report,
 	else if (collector.summary->points_only)
 		rc = fault_set(fault, -EBADMSG, "%s: %s", path, collector.summary->points_only);
 	if (rc == 0)
-		rc = read_body(ply, &collector, path, report, fault);
+		rc = read_body(ply, &collector, path, options, report, fault);
 	report->trailing_bytes = ply_bytes_trailing(ply);
 	if (rc == 0) {
 		*out = collector.mesh;

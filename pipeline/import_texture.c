@@ -9,6 +9,8 @@
 
 enum { PICTURE_FILE_MOST = 1 << 29 };
 
+static const char too_much[] = "makes its pictures too large together";
+
 int import_texture_plain(struct mesh_texture *out, const uint8_t plain[3])
 {
 	out->rgb = malloc(3);
@@ -75,13 +77,35 @@ static int read_picture(struct buffer *file, int fd)
 	return 0;
 }
 
-int import_texture(struct mesh_texture *out, const struct import_files *files, const char *name,
+/* One name may stand many times in a scan, and a picture of a few bytes be very large. */
+static int charge(struct mesh_texture *out, struct import_files *files, const char *name,
+		  const uint8_t plain[3], struct import_report *report)
+{
+	const uint64_t bytes = (uint64_t)out->width * out->height * 3;
+
+	if (files->in_sandbox)
+		return 0;
+	if (bytes <= files->picture_bytes_left) {
+		files->picture_bytes_left -= bytes;
+		return 0;
+	}
+	files->picture_bytes_left = 0; /* and none is decoded any more */
+	report->textures--;
+	free(out->rgb);
+	return tolerate(out, files->scan_path, name, too_much, plain, report);
+}
+
+int import_texture(struct mesh_texture *out, struct import_files *files, const char *name,
 		   const uint8_t plain[3], struct import_report *report)
 {
-	int fd = import_files_open(files, name);
+	const uint32_t textures = report->textures;
 	struct buffer file;
-	int rc = fd < 0 ? fd : 0;
+	int fd, rc;
 
+	if (!files->in_sandbox && files->picture_bytes_left == 0)
+		return tolerate(out, files->scan_path, name, too_much, plain, report);
+	fd = import_files_open(files, name);
+	rc = fd < 0 ? fd : 0;
 	buffer_init(&file, PICTURE_FILE_MOST);
 	if (fd >= 0) {
 		rc = read_picture(&file, fd);
@@ -92,6 +116,8 @@ int import_texture(struct mesh_texture *out, const struct import_files *files, c
 	else if (rc == 0)
 		rc = import_texture_bytes(out, files->scan_path, name, buffer_bytes(&file), plain,
 					  report);
+	if (rc == 0 && report->textures > textures)
+		rc = charge(out, files, name, plain, report);
 	buffer_finish(&file);
 	return rc;
 }

@@ -262,6 +262,41 @@ static void pictures_from_elsewhere_are_not_read(void **state)
 	}
 }
 
+/* One picture that a scan names again and again, each time decoded. */
+static void pictures_have_a_limit_together(void **state)
+{
+	const struct import_options options = { .memory_bytes = 100 };
+	uint8_t grey[5 * 5 * 4];
+	struct picture picture = { 5, 5, grey };
+	struct import_report report;
+	struct fault fault = { "" };
+	struct buffer png;
+	struct mesh mesh;
+	char path[PATH_MAX];
+	(void)state;
+
+	memset(grey, 99, sizeof(grey));
+	buffer_init(&png, 1 << 16);
+	CHECK(picture_encode_png(&png, &picture) == 0);
+	at(path, "scans/five.png");
+	CHECK(bytes_write_file(buffer_bytes(&png), path) == 0);
+	buffer_finish(&png);
+	put("scans/f.ply",
+	    "ply\nformat ascii 1.0\ncomment TextureFile five.png\n"
+	    "comment TextureFile five.png\ncomment TextureFile five.png\n"
+	    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+	    "property float s\nproperty float t\nelement face 1\n"
+	    "property list uchar int vertex_indices\nend_header\n"
+	    "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+	at(path, "scans/f.ply");
+	CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
+	CHECK(report.textures == 1 && mesh.texture_count == 3);
+	CHECK(mesh.textures[0].width == 5 && mesh.textures[1].width == 1 &&
+	      mesh.textures[2].width == 1);
+	CHECK(strstr(report.warning.text, "too large together"));
+	mesh_finish(&mesh);
+}
+
 static void a_fifo_is_no_scan(void **state)
 {
 	struct fault fault;
@@ -327,6 +362,7 @@ int main(void)
 		cmocka_unit_test(reads_a_buffer_below_and_one_that_was_copied_beside),
 		cmocka_unit_test(a_missing_file_is_told_as_missing),
 		cmocka_unit_test(pictures_from_elsewhere_are_not_read),
+		cmocka_unit_test(pictures_have_a_limit_together),
 		cmocka_unit_test(a_fifo_is_no_scan),
 		cmocka_unit_test(the_name_does_not_choose_another_reader),
 		cmocka_unit_test(opens_only_plain_names),
