@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "format/html_tags.h"
 #include "storage/info_content.h"
@@ -224,6 +225,15 @@ static int parse_page(struct page_check *check)
 	return rc;
 }
 
+/* What a page holds is shown to everybody. A link could lead to a file that nobody meant to show,
+ * and whoever reads a FIFO waits. */
+static bool is_plain_file(const char *path)
+{
+	struct stat status;
+
+	return lstat(path, &status) < 0 || S_ISREG(status.st_mode);
+}
+
 /* 0 and page->html NULL where the file is missing. */
 static int read_page_file(struct page_check *check)
 {
@@ -233,7 +243,7 @@ static int read_page_file(struct page_check *check)
 
 	buffer_init(&bytes, INFO_PAGE_BYTES_MOST + 1);
 	if (content_path(check->content, path, sizeof(path), check->file))
-		rc = buffer_read_file(&bytes, path);
+		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
 	if (rc == 0) {
 		buffer_put_u8(&bytes, 0);
 		rc = bytes.error;
@@ -242,7 +252,10 @@ static int read_page_file(struct page_check *check)
 		buffer_finish(&bytes);
 		return rc == -ENOMEM ? rc : 0;
 	}
-	if (rc < 0) {
+	if (rc == -ELOOP) {
+		content_complain(check->content, true, check->file, 0,
+				 "is a link or no regular file: put the page itself there");
+	} else if (rc < 0) {
 		content_complain(check->content, true, check->file, 0,
 				 rc == -EFBIG ? "page is larger than %d KB: split it"
 					      : "cannot be read (at most %d KB)",

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "tests/storage/info_folder.h"
@@ -206,6 +207,26 @@ static void names_the_line_of_a_bad_page(void **state)
 	}
 }
 
+/* A page is published: the file of a link, a key perhaps, would be shown to everybody. */
+static void refuses_a_page_that_is_a_link_or_a_fifo(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+	char path[100], target[100];
+
+	(void)state;
+	snprintf(path, sizeof(path), "%s/pages/gate.en.html", folder);
+	snprintf(target, sizeof(target), "%s/elsewhere.html", folder);
+	write_text("elsewhere.html", "<p>One enters here.</p>");
+	for (int i = 0; i < 2; i++) {
+		unlink(path);
+		CHECK((i ? mkfifo(path, 0600) : symlink(target, path)) == 0);
+		CHECK(build(&built, &complaints) == -EINVAL);
+		CHECK(was_told(&complaints, "pages/gate.en.html", 0, "put the page itself there"));
+	}
+	unlink(path);
+}
+
 static void wants_the_page_in_the_first_language(void **state)
 {
 	struct complaints complaints;
@@ -343,6 +364,8 @@ int main(void)
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_part, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_page, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(refuses_a_page_that_is_a_link_or_a_fifo, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(wants_the_page_in_the_first_language, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(refuses_a_picture_too_large_for_a_terminal, set_up,
