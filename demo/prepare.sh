@@ -9,4 +9,4 @@ demo=build/demo
 triangles=${1:-$(cat "$demo/triangles" 2>/dev/null || echo 2000000)}
 demo/make-content.sh "$demo/content" "$triangles"
 echo "$triangles" >"$demo/triangles"
-build/gopura-content build "$demo/content" --out "$demo/release"
+build/gopura-content build "$demo/content" --out "$demo/release" --keys "$demo/keys"

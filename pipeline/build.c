@@ -235,6 +235,7 @@ int build_content(struct build_report *report, const struct content *content,
 {
 	const struct publish_content_options publish = { .content = content,
 							 .out = options->out,
+							 .keys = options->keys,
 							 .comment = options->comment };
 	int64_t start = clock_now_ms();
 	char stamp_path[CONTENT_PATH_BYTES];

@@ -20,10 +20,11 @@ static const char help[] =
 	"  --jobs N          threads and processes; by default one a core. The result is the same.\n"
 	"  --hierarchy KIND  groups or tree; by default as temple.ini says\n"
 	"  --comment TEXT    what is new, for people\n"
+	"  --keys FOLDER     the signing keys; by default ~/.config/gopura/keys/NAME of DIR (see keys)\n"
 	"\n"
 	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. What is made on the\n"
 	"way stays in DIR/.work, so that an interrupted build goes on where it stopped, and the next\n"
-	"one does only what changed. Signing keys are made in DIR/keys at the first build.\n"
+	"one does only what changed. Signing keys are made at the first build (see keys).\n"
 	"Exit status: 0 done, 1 failed (the reason is printed), 2 the command line is wrong.\n"
 	"\n"
 	"examples: gopura-content build temple\n"
@@ -85,6 +86,7 @@ int command_build(int argc, char **argv)
 		{ "jobs", required_argument, NULL, 'j' },
 		{ "hierarchy", required_argument, NULL, 'k' },
 		{ "comment", required_argument, NULL, 'c' },
+		{ "keys", required_argument, NULL, 'K' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -113,6 +115,9 @@ int command_build(int argc, char **argv)
 			break;
 		case 'c':
 			build.comment = optarg;
+			break;
+		case 'K':
+			build.keys = optarg;
 			break;
 		case 'h':
 			fputs(help, stdout);

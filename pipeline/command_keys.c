@@ -1,25 +1,30 @@
 #include "pipeline/commands.h"
 
-#include <errno.h>
+#include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 
-#include "pipeline/keys.h"
+#include "pipeline/keys_place.h"
 
 static const char help[] =
-	"gopura-content keys: make the signing keys of a content folder\n"
+	"gopura-content keys: make the signing keys of a content folder, or say where they are\n"
 	"\n"
-	"usage: gopura-content keys DIR\n"
+	"usage: gopura-content keys DIR [OPTIONS]\n"
 	"\n"
-	"Makes DIR/keys/root.key, release.key and timestamp.key (ed25519, readable by you alone) and\n"
-	"DIR/keys/root/1.json, which names them and which every terminal is given. Keys that are there\n"
-	"are never replaced. `build` and `publish` make them too when there are none.\n"
+	"  --keys FOLDER   where they are; by default $XDG_CONFIG_HOME/gopura/keys/NAME with DIR's own\n"
+	"                  name, and ~/.config where XDG_CONFIG_HOME is not set\n"
+	"\n"
+	"Makes root.key, release.key and timestamp.key (ed25519, readable by you alone) and root/1.json,\n"
+	"which names them and which every terminal is given. Keys that are there are never replaced.\n"
+	"`build` and `publish` make them too when there are none. Keys that an earlier program made in\n"
+	"DIR/keys are moved out of it.\n"
 	"\n"
 	"Keep a copy of root.key in a safe place, off this machine; publishing needs only the other\n"
 	"two. Who has release.key can publish to every terminal.\n"
 	"\n"
-	"example: gopura-content keys temple\n";
+	"examples: gopura-content keys temple\n"
+	"          gopura-content keys temple --keys /media/safe/temple\n";
 
 static void print_key(const char *what, const uint8_t key[KEY_BYTES])
 {
@@ -29,37 +34,46 @@ static void print_key(const char *what, const uint8_t key[KEY_BYTES])
 	printf("  %-10s %s\n", what, hex);
 }
 
-int command_keys(int argc, char **argv)
+static int run(const char *content_folder, const char *given)
 {
 	struct publisher_keys keys;
 	char folder[PATH_MAX];
-	int rc;
+	bool made;
 
-	if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-		fputs(help, stdout);
-		return 0;
-	}
-	if (argc != 2 || argv[1][0] == '-') {
-		fputs("gopura-content keys: name one content folder; see gopura-content keys --help\n",
-		      stderr);
-		return 2;
-	}
-	if (snprintf(folder, sizeof(folder), "%s/keys", argv[1]) >= (int)sizeof(folder))
-		return 1;
-	rc = keys_load(&keys, folder);
-	if (rc == -ENOENT) {
-		if (keys_make(folder) < 0 || keys_load(&keys, folder) < 0)
-			return 1;
-		printf("made keys in %s\n", folder);
-	} else if (rc < 0) {
-		return 1;
-	} else {
-		printf("keys in %s\n", folder);
-	}
+	if (keys_open(&keys, folder, content_folder, given, &made) < 0)
+		return EXIT_FAILURE;
+	printf("%s %s\n", made ? "made keys in" : "keys in", folder);
 	print_key("root", keys.trust.roles[META_ROOT].keys[0]);
 	print_key("release", keys.release.public_key);
 	print_key("timestamp", keys.timestamp.public_key);
 	printf("give terminals %s/root/1.json\n", folder);
 	keys_finish(&keys);
-	return 0;
+	return EXIT_SUCCESS;
+}
+
+int command_keys(int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "keys", required_argument, NULL, 'K' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	const char *given = NULL;
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+		switch (option) {
+		case 'K':
+			given = optarg;
+			break;
+		case 'h':
+			fputs(help, stdout);
+			return EXIT_SUCCESS;
+		default:
+			return 2;
+		}
+	}
+	if (optind + 1 != argc)
+		return command_wrong(argv[0], "name one content folder", "");
+	return run(argv[optind], given);
 }

@@ -17,6 +17,7 @@ static const char help[] =
 	"\n"
 	"  --out RELEASE    the release folder; by default DIR/../release\n"
 	"  --comment TEXT   what is new, for people; at most 255 bytes\n"
+	"  --keys FOLDER    the signing keys; by default ~/.config/gopura/keys/NAME of DIR (see keys)\n"
 	"  --expires DAYS   how long terminals may take up this release; 1825 by default\n"
 	"  --undo           show the release before the current one again, under a new number\n"
 	"  --sequence N     show release N again, under a new number\n"
@@ -24,7 +25,7 @@ static const char help[] =
 	"\n"
 	"Hierarchy and samples must be made (see build, which does all). Objects are written first and\n"
 	"the signed files last, so terminals see the old release or the new one, whole. Nothing old is\n"
-	"rewritten or removed. Keys are in DIR/keys (see keys).\n"
+	"rewritten or removed.\n"
 	"\n"
 	"examples: gopura-content publish temple --comment 'new pages of the east gate'\n"
 	"          gopura-content publish temple --undo\n";
@@ -77,6 +78,7 @@ int command_publish(int argc, char **argv)
 	static const struct option options[] = {
 		{ "out", required_argument, NULL, 'o' },
 		{ "comment", required_argument, NULL, 'c' },
+		{ "keys", required_argument, NULL, 'K' },
 		{ "expires", required_argument, NULL, 'e' },
 		{ "undo", no_argument, NULL, 'u' },
 		{ "sequence", required_argument, NULL, 's' },
@@ -95,6 +97,9 @@ int command_publish(int argc, char **argv)
 			break;
 		case 'c':
 			settings.publish.comment = optarg;
+			break;
+		case 'K':
+			settings.publish.keys = optarg;
 			break;
 		case 'e':
 			if (!command_number(optarg, 1, 36500, &days))

@@ -23,7 +23,7 @@ static const char help[] =
 	"patch group, tile and the information database decodes, and that pages say the truth about\n"
 	"their children. Exit status 1 and one line that says what is wrong and where otherwise.\n"
 	"\n"
-	"examples: gopura-content verify release --trust temple/keys/root/1.json\n"
+	"examples: gopura-content verify release --trust ~/.config/gopura/keys/temple/root/1.json\n"
 	"          gopura-content verify https://museum.example/ --ca ca.pem\n";
 
 static void print_day(const char *what, int64_t seconds)

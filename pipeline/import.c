@@ -60,7 +60,7 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	char head[64];
 	struct stat status;
 	ssize_t got = -1;
-	int fd = open(path, O_RDONLY | O_CLOEXEC);
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* of a FIFO, too */
 
 	if (fd < 0)
 		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
@@ -243,17 +243,24 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
+uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes)
+{
+	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
+}
+
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
 		     struct fault *fault)
 {
+	static const char *const extensions[] = { ".ply", ".stl", ".off", ".obj", ".gltf", ".glb" };
 	const struct import_foreign_format foreign = {
+		.extension = extensions[format],
 		.is_linear = format == SCAN_GLTF || format == SCAN_GLB,
 		.has_materials = format != SCAN_STL && format != SCAN_OFF,
 	};
 
 	if (format == SCAN_PLY)
-		return import_ply(out, path, report, fault);
+		return import_ply(out, path, options, report, fault);
 	return import_foreign(out, path, foreign, options, report, fault);
 }
 

@@ -19,7 +19,7 @@ struct import_options {
 	uint8_t default_colour[3]; /* of a scan without colours; all 0: sandstone */
 	bool override_colour;      /* default_colour also where the scan has its own */
 	uint32_t timeout_s;        /* wall clock of a foreign parser; 0: by the file's size */
-	uint64_t memory_bytes;     /* of a foreign parser; 0: 8 GiB */
+	uint64_t memory_bytes;     /* of a foreign parser, of PLY pictures; 0: by the file's size */
 };
 
 struct import_report {

@@ -3,15 +3,18 @@
 #include "pipeline/import_parts.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <assimp/cimport.h>
 #include <assimp/material.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include "pipeline/mesh_file.h"
@@ -24,7 +27,8 @@ static const struct hash no_key;
 
 /* In shared memory; the child reads the first part and fills the second. */
 struct job {
-	char path[4096];
+	char path[PATH_MAX]; /* with the format's own extension: by that assimp chooses its reader
+			      */
 	struct import_foreign_format format;
 	int result_fd; /* the mesh, as a mesh file */
 	struct import_report report;
@@ -160,6 +164,7 @@ static int load_embedded(struct builder *builder, const struct aiTexture *pictur
 static int load_texture(struct builder *builder, const struct aiMaterial *material,
 			struct mesh_texture *out)
 {
+	struct import_files files = { .scan_path = builder->job->path, .in_sandbox = true };
 	const struct aiTexture *embedded;
 	char name[MAXLEN];
 	uint8_t plain[3];
@@ -170,7 +175,7 @@ static int load_texture(struct builder *builder, const struct aiMaterial *materi
 	embedded = embedded_texture(builder->scene, name);
 	if (embedded)
 		return load_embedded(builder, embedded, name, plain, out);
-	return import_texture(out, builder->job->path, name, plain, &builder->job->report);
+	return import_texture(out, &files, name, plain, &builder->job->report);
 }
 
 /* One texture a material, pictures and plain colours alike. */
@@ -336,10 +341,9 @@ static int read_scene(void *shared, struct fault *fault)
 	struct builder builder = { .job = job, .fault = fault };
 	int rc;
 
-	builder.scene = aiImportFile(job->path, aiProcess_Triangulate);
-	if (!builder.scene || !builder.scene->mRootNode)
-		return fault_set(fault, -EBADMSG, "%s: its %s reader says: %s; export it again",
-				 job->path, job->report.format, aiGetErrorString());
+	builder.scene = import_scene(job->path, job->report.format, fault);
+	if (!builder.scene)
+		return -EBADMSG;
 	rc = build(&builder);
 	if (rc == 0)
 		rc = mesh_file_write(job->result_fd, &builder.mesh, no_key);
@@ -350,28 +354,107 @@ static int read_scene(void *shared, struct fault *fault)
 
 /* ---- in the parent */
 
-static int run_job(struct mesh *out, struct job *job, const struct import_options *options,
-		   uint64_t file_bytes, struct fault *fault)
+/* What the child may have: the scan, and what lies below its folder. The job is not asked, once
+ * foreign code has run. */
+struct parent {
+	const char *path; /* borrowed, as given */
+	char seen_path[PATH_MAX];
+	int scan_fd, folder_fd, result_fd;
+};
+
+static int open_for_child(void *data, const char *name)
+{
+	const struct parent *parent = data;
+	int fd;
+
+	if (strcmp(name, parent->seen_path) != 0)
+		return import_files_open_at(parent->folder_fd, name);
+	fd = fcntl(parent->scan_fd, F_DUPFD_CLOEXEC, 0);
+	return fd < 0 ? -errno : fd;
+}
+
+/* The path, where its extension is another or none with the format's behind it. */
+static int make_seen_path(char seen[PATH_MAX], const char *path, const char *extension)
+{
+	size_t length = strlen(path), extension_length = strlen(extension);
+	bool has = length > extension_length &&
+		   strcasecmp(path + length - extension_length, extension) == 0;
+
+	return snprintf(seen, PATH_MAX, "%s%s", path, has ? "" : extension) < PATH_MAX
+		       ? 0
+		       : -ENAMETOOLONG;
+}
+
+static int open_scan(const char *path)
+{
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	struct stat status;
+
+	if (fd < 0)
+		return -errno;
+	if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
+		return fd;
+	close(fd);
+	return -EINVAL;
+}
+
+static int parent_init(struct parent *parent, const char *path, const char *extension)
+{
+	int rc;
+
+	*parent = (struct parent){ path, "", -1, -1, -1 };
+	rc = make_seen_path(parent->seen_path, path, extension);
+	if (rc == 0)
+		rc = parent->scan_fd = open_scan(path);
+	if (rc >= 0)
+		rc = parent->folder_fd = import_files_open_folder(path);
+	if (rc < 0)
+		return rc;
+	parent->result_fd = memfd_create("gopura-import", MFD_CLOEXEC);
+	return parent->result_fd < 0 ? -errno : 0;
+}
+
+static void parent_finish(struct parent *parent)
+{
+	const int fds[] = { parent->scan_fd, parent->folder_fd, parent->result_fd };
+
+	for (size_t i = 0; i < ARRAY_COUNT(fds); i++)
+		if (fds[i] >= 0)
+			close(fds[i]);
+}
+
+static int run_job(struct mesh *out, struct job *job, struct parent *parent,
+		   const struct import_options *options, uint64_t file_bytes, struct fault *fault)
 {
 	/* Two hundred times what a sound file of that size takes on an idle machine. */
 	const struct sandbox_options limits = {
 		.timeout_s = options->timeout_s ? options->timeout_s
 						: (uint32_t)(6 + (file_bytes >> 18)),
-		.memory_bytes = options->memory_bytes ? options->memory_bytes
-						      : (1ull << 30) + 64 * file_bytes,
+		.memory_bytes = import_memory_bytes(options, file_bytes),
+		.result_fd = parent->result_fd,
+		.open = open_for_child,
+		.open_data = parent,
 	};
-	int rc = sandbox_run(read_scene, job, &limits, job->path, fault);
+	int rc = sandbox_run(read_scene, job, &limits, parent->path, fault);
 
 	if (rc < 0)
 		return rc;
-	if (lseek(job->result_fd, 0, SEEK_SET) < 0)
-		return fault_set(fault, -errno, "%s: %s", job->path, strerror(errno));
-	rc = mesh_file_read(out, no_key, job->result_fd);
+	if (lseek(parent->result_fd, 0, SEEK_SET) < 0)
+		return fault_set(fault, -errno, "%s: %s", parent->path, strerror(errno));
+	rc = mesh_file_read(out, no_key, parent->result_fd);
 	if (rc < 0)
 		return fault_set(fault, rc,
 				 "%s: its reader gave back nonsense: %s; export it again",
-				 job->path, strerror(-rc));
+				 parent->path, strerror(-rc));
 	return 0;
+}
+
+/* Only what a child fills, and no string of it unended. */
+static void take_report(struct import_report *report, const struct import_report *told)
+{
+	report->had_colours = told->had_colours;
+	report->textures = told->textures;
+	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
 }
 
 int import_foreign(struct mesh *out, const char *path, struct import_foreign_format format,
@@ -379,22 +462,22 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 		   struct fault *fault)
 {
 	struct job *job = sandbox_shared_create(sizeof(*job));
-	int rc;
+	struct parent parent;
+	int rc = parent_init(&parent, path, format.extension);
 
-	if (!job || strlen(path) >= sizeof(job->path)) {
-		sandbox_shared_destroy(job, sizeof(*job));
-		return fault_set(fault, -ENAMETOOLONG, "%s: its path is too long", path);
+	if (!job && rc == 0)
+		rc = -ENOMEM;
+	if (rc < 0) {
+		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+	} else {
+		memcpy(job->path, parent.seen_path, sizeof(job->path));
+		job->format = format;
+		job->report = *report;
+		job->result_fd = parent.result_fd;
+		rc = run_job(out, job, &parent, options, report->file_bytes, fault);
+		take_report(report, &job->report);
 	}
-	snprintf(job->path, sizeof(job->path), "%s", path);
-	job->format = format;
-	job->report = *report;
-	job->result_fd = memfd_create("gopura-import", MFD_CLOEXEC);
-	rc = job->result_fd < 0 ? fault_set(fault, -errno, "%s: %s", path, strerror(errno))
-				: run_job(out, job, options, report->file_bytes, fault);
-	*report = job->report;
-	report->warning.text[FAULT_BYTES - 1] = '\0';
-	if (job->result_fd >= 0)
-		close(job->result_fd);
+	parent_finish(&parent);
 	sandbox_shared_destroy(job, sizeof(*job));
 	return rc;
 }

@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/progress.h"
 #include "pipeline/ply.h"
@@ -169,9 +170,13 @@ static int split_corners(struct collector *collector)
 }
 
 static int load_textures(struct collector *collector, const char *path,
-			 struct import_report *report)
+			 const struct import_options *options, struct import_report *report)
 {
 	static const uint8_t plain[3] = { 255, 255, 255 };
+	struct import_files files = {
+		.scan_path = path,
+		.picture_bytes_left = import_memory_bytes(options, report->file_bytes),
+	};
 	struct mesh *mesh = &collector->mesh;
 	uint32_t count = collector->summary->texture_count;
 	int rc = 0;
@@ -182,14 +187,19 @@ static int load_textures(struct collector *collector, const char *path,
 	if (!mesh->textures)
 		return -ENOMEM;
 	mesh->texture_count = count;
+	files.folder_fd = import_files_open_folder(path);
+	if (files.folder_fd < 0)
+		return files.folder_fd;
 	for (uint32_t i = 0; i < count && rc == 0; i++)
-		rc = import_texture(&mesh->textures[i], path, collector->summary->textures[i],
+		rc = import_texture(&mesh->textures[i], &files, collector->summary->textures[i],
 				    plain, report);
+	close(files.folder_fd);
 	return rc;
 }
 
 static int read_body(struct ply *ply, struct collector *collector, const char *path,
-		     struct import_report *report, struct fault *fault)
+		     const struct import_options *options, struct import_report *report,
+		     struct fault *fault)
 {
 	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
 	int rc = allocate(collector);
@@ -202,16 +212,17 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	if (rc == 0 && collector->corner_uvs)
 		rc = split_corners(collector);
 	if (rc == 0)
-		rc = load_textures(collector, path, report);
+		rc = load_textures(collector, path, options, report);
 	if (rc < 0)
 		return fault_set(fault, rc, "%s: %s", path,
-				 rc == -ENOMEM ? "too large for this machine's memory"
-					       : "too many triangles; split it into several files");
+				 rc == -ENOMEM  ? "too large for this machine's memory"
+				 : rc == -EFBIG ? "too many triangles; split it into several files"
+						: strerror(-rc));
 	return 0;
 }
 
-int import_ply(struct mesh *out, const char *path, struct import_report *report,
-	       struct fault *fault)
+int import_ply(struct mesh *out, const char *path, const struct import_options *options,
+	       struct import_report *report, struct fault *fault)
 {
 	struct collector collector = { 0 };
 	struct ply *ply;
@@ -228,7 +239,7 @@ int import_ply(struct mesh *out, const char *path, struct import_report *report,
 	else if (collector.summary->points_only)
 		rc = fault_set(fault, -EBADMSG, "%s: %s", path, collector.summary->points_only);
 	if (rc == 0)
-		rc = read_body(ply, &collector, path, report, fault);
+		rc = read_body(ply, &collector, path, options, report, fault);
 	report->trailing_bytes = ply_bytes_trailing(ply);
 	if (rc == 0) {
 		*out = collector.mesh;

@@ -1,13 +1,15 @@
 #include "pipeline/import_parts.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "format/picture.h"
 
 enum { PICTURE_FILE_MOST = 1 << 29 };
+
+static const char too_much[] = "makes its pictures too large together";
 
 int import_texture_plain(struct mesh_texture *out, const uint8_t plain[3])
 {
@@ -60,68 +62,62 @@ int import_texture_bytes(struct mesh_texture *out, const char *scan_path, const 
 	return rc;
 }
 
-/* Relative, and never above the folder it starts in. */
-static bool stays_below(const char *name)
+static int read_picture(struct buffer *file, int fd)
 {
-	if (name[0] == '/' || strchr(name, ':'))
-		return false;
-	for (const char *c = name; *c;) {
-		size_t length = strcspn(c, "/");
+	uint8_t chunk[65536];
+	ssize_t got;
 
-		if (length == 2 && c[0] == '.' && c[1] == '.')
-			return false;
-		c += length;
-		c += *c == '/';
+	while ((got = read(fd, chunk, sizeof(chunk))) != 0) {
+		if (got < 0)
+			return -errno;
+		buffer_put(file, chunk, (size_t)got);
+		if (file->error)
+			return file->error;
 	}
-	return true;
+	return 0;
 }
 
-/* The scan's folder, then name. */
-static int path_beside(char out[PATH_MAX], const char *scan_path, const char *name)
+/* One name may stand many times in a scan, and a picture of a few bytes be very large. */
+static int charge(struct mesh_texture *out, struct import_files *files, const char *name,
+		  const uint8_t plain[3], struct import_report *report)
 {
-	const char *slash = strrchr(scan_path, '/');
-	int folder = slash ? (int)(slash - scan_path) + 1 : 0;
+	const uint64_t bytes = (uint64_t)out->width * out->height * 3;
 
-	return snprintf(out, PATH_MAX, "%.*s%s", folder, scan_path, name) < PATH_MAX
-		       ? 0
-		       : -ENAMETOOLONG;
+	if (files->in_sandbox)
+		return 0;
+	if (bytes <= files->picture_bytes_left) {
+		files->picture_bytes_left -= bytes;
+		return 0;
+	}
+	files->picture_bytes_left = 0; /* and none is decoded any more */
+	report->textures--;
+	free(out->rgb);
+	return tolerate(out, files->scan_path, name, too_much, plain, report);
 }
 
-static int find_picture(struct buffer *file, const char *scan_path, const char *name)
-{
-	char clean[PATH_MAX], path[PATH_MAX];
-	const char *last;
-	int rc = -ENOENT;
-
-	if (strlen(name) >= sizeof(clean) || name[0] == '\0')
-		return -ENOENT;
-	snprintf(clean, sizeof(clean), "%s", name);
-	for (char *c = clean; *c; c++)
-		if (*c == '\\')
-			*c = '/';
-	if (stays_below(clean) && path_beside(path, scan_path, clean) == 0)
-		rc = buffer_read_file(file, path);
-	last = strrchr(clean, '/');
-	if (rc < 0 && rc != -ENOMEM && last && last[1] && strcmp(last, "/..") != 0 &&
-	    path_beside(path, scan_path, last + 1) == 0)
-		rc = buffer_read_file(file, path);
-	return rc;
-}
-
-int import_texture(struct mesh_texture *out, const char *scan_path, const char *name,
+int import_texture(struct mesh_texture *out, struct import_files *files, const char *name,
 		   const uint8_t plain[3], struct import_report *report)
 {
+	const uint32_t textures = report->textures;
 	struct buffer file;
-	int rc;
+	int fd, rc;
 
+	if (!files->in_sandbox && files->picture_bytes_left == 0)
+		return tolerate(out, files->scan_path, name, too_much, plain, report);
+	fd = import_files_open(files, name);
+	rc = fd < 0 ? fd : 0;
 	buffer_init(&file, PICTURE_FILE_MOST);
-	rc = find_picture(&file, scan_path, name);
-	if (rc == -ENOENT)
-		rc = tolerate(out, scan_path, name, "is not beside it", plain, report);
-	else if (rc < 0 && rc != -ENOMEM)
-		rc = tolerate(out, scan_path, name, strerror(-rc), plain, report);
+	if (fd >= 0) {
+		rc = read_picture(&file, fd);
+		close(fd);
+	}
+	if (rc < 0 && rc != -ENOMEM)
+		rc = tolerate(out, files->scan_path, name, import_files_why(rc), plain, report);
 	else if (rc == 0)
-		rc = import_texture_bytes(out, scan_path, name, buffer_bytes(&file), plain, report);
+		rc = import_texture_bytes(out, files->scan_path, name, buffer_bytes(&file), plain,
+					  report);
+	if (rc == 0 && report->textures > textures)
+		rc = charge(out, files, name, plain, report);
 	buffer_finish(&file);
 	return rc;
 }

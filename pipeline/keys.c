@@ -24,19 +24,70 @@ static int key_path(char path[PATH_MAX], const char *folder, enum meta_role role
 		       : -ENAMETOOLONG;
 }
 
+static const char key_mark[] = "gopura-key-1 ";
+
 static int complain(const char *path, int rc)
 {
 	log_error("pipeline", "%s: %s", path, strerror(-rc));
 	return rc;
 }
 
-/* Never readable by others, not even for a moment. */
+bool keys_is_key_file(int fd)
+{
+	char start[sizeof(key_mark) - 1];
+
+	return pread(fd, start, sizeof(start), 0) == (ssize_t)sizeof(start) &&
+	       memcmp(start, key_mark, sizeof(start)) == 0;
+}
+
+/* An empty one is what a power cut left: nothing. */
+static bool has_key(const char *folder, enum meta_role role)
+{
+	char path[PATH_MAX];
+	struct stat status;
+
+	return key_path(path, folder, role) == 0 && lstat(path, &status) == 0 &&
+	       !(S_ISREG(status.st_mode) && status.st_size == 0);
+}
+
+static bool has_root(const char *folder)
+{
+	char path[PATH_MAX];
+
+	return snprintf(path, sizeof(path), "%s/root/1.json", folder) < PATH_MAX &&
+	       access(path, F_OK) == 0;
+}
+
+bool keys_are_in(const char *folder)
+{
+	return has_root(folder) || has_key(folder, META_ROOT) || has_key(folder, META_RELEASE) ||
+	       has_key(folder, META_TIMESTAMP);
+}
+
+/* ---- making them */
+
+/* What is in it is there after a power cut. */
+int keys_sync_folder(const char *path)
+{
+	int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int rc = fd < 0 || fsync(fd) < 0 ? -errno : 0;
+
+	if (fd >= 0)
+		close(fd);
+	return rc < 0 ? complain(path, rc) : 0;
+}
+
+/* A new file or none. Never readable by others, not even for a moment. */
 static int write_private(const char *path, const char *text)
 {
-	int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	char aside[PATH_MAX + 8];
 	ssize_t put;
-	int rc = 0;
+	int fd, rc = 0;
 
+	snprintf(aside, sizeof(aside), "%s.part", path);
+	if (unlink(aside) < 0 && errno != ENOENT)
+		return -errno;
+	fd = open(aside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
 	if (fd < 0)
 		return -errno;
 	put = write(fd, text, strlen(text));
@@ -46,8 +97,10 @@ static int write_private(const char *path, const char *text)
 		rc = -ENOSPC;
 	if (close(fd) < 0 && rc == 0)
 		rc = -errno;
+	if (rc == 0 && rename(aside, path) < 0)
+		rc = -errno;
 	if (rc < 0)
-		unlink(path);
+		unlink(aside);
 	return rc;
 }
 
@@ -59,7 +112,7 @@ static int write_key(const char *folder, enum meta_role role, const uint8_t *see
 	if (rc < 0)
 		return rc;
 	sodium_bin2hex(hex, sizeof(hex), seed, crypto_sign_SEEDBYTES);
-	snprintf(text, sizeof(text), "gopura-key-1 %s %s\n", role_names[role], hex);
+	snprintf(text, sizeof(text), "%s%s %s\n", key_mark, role_names[role], hex);
 	rc = write_private(path, text);
 	sodium_memzero(text, sizeof(text));
 	sodium_memzero(hex, sizeof(hex));
@@ -111,29 +164,6 @@ static int make_folders(const char *folder)
 	return 0;
 }
 
-int keys_make(const char *folder)
-{
-	struct signing_key keys[3];
-	int rc = make_folders(folder);
-
-	if (sodium_init() < 0)
-		return -EIO;
-	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++) {
-		char path[PATH_MAX];
-
-		rc = key_path(path, folder, (enum meta_role)role);
-		if (rc == 0 && access(path, F_OK) == 0)
-			rc = complain(path, -EEXIST);
-	}
-	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++)
-		rc = make_role(&keys[role], folder, (enum meta_role)role);
-	/* Last: without root/1.json there are no keys. */
-	if (rc == 0)
-		rc = write_root(folder, keys);
-	sodium_memzero(keys, sizeof(keys));
-	return rc;
-}
-
 static int read_key(struct signing_key *key, const char *folder, enum meta_role role)
 {
 	uint8_t seed[crypto_sign_SEEDBYTES];
@@ -154,7 +184,7 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 	}
 	if (rc == 0) {
 		memcpy(text, file.data, file.size);
-		skip = (size_t)snprintf(start, sizeof(start), "gopura-key-1 %s ", role_names[role]);
+		skip = (size_t)snprintf(start, sizeof(start), "%s%s ", key_mark, role_names[role]);
 		if (strncmp(text, start, skip) != 0 ||
 		    sodium_hex2bin(seed, sizeof(seed), text + skip, strcspn(text + skip, "\n"),
 				   NULL, &got, NULL) != 0 ||
@@ -170,6 +200,75 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 	buffer_finish(&file);
 	return rc < 0 ? complain(path, rc) : 0;
 }
+
+/* Made in this order: a folder that has a later key without an earlier one is no interrupted run,
+ * somebody has taken the earlier one away. */
+static int judge_order(const char *folder)
+{
+	for (int role = META_RELEASE; role <= META_TIMESTAMP; role++)
+		if (has_key(folder, (enum meta_role)role) &&
+		    !has_key(folder, (enum meta_role)(role - 1))) {
+			log_error("pipeline",
+				  "%s: %s.key is here, but %s.key and root/1.json are not: bring "
+				  "them back from your copy, or begin with an empty folder",
+				  folder, role_names[role], role_names[role - 1]);
+			return -EEXIST;
+		}
+	return 0;
+}
+
+/* All that is missing, and root/1.json last: without it there are no keys. */
+static int complete(const char *folder)
+{
+	struct signing_key keys[3];
+	int rc = judge_order(folder);
+
+	if (rc == 0)
+		rc = make_folders(folder);
+	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++)
+		rc = has_key(folder, (enum meta_role)role)
+			     ? read_key(&keys[role], folder, (enum meta_role)role)
+			     : make_role(&keys[role], folder, (enum meta_role)role);
+	if (rc == 0)
+		rc = keys_sync_folder(folder);
+	if (rc == 0)
+		rc = write_root(folder, keys);
+	sodium_memzero(keys, sizeof(keys));
+	return rc;
+}
+
+int keys_sync_parent(const char *folder)
+{
+	char parent[PATH_MAX];
+	char *slash;
+
+	snprintf(parent, sizeof(parent), "%s", folder);
+	slash = strrchr(parent, '/');
+	if (slash && slash != parent)
+		*slash = '\0';
+	return keys_sync_folder(!slash ? "." : slash == parent ? "/" : parent);
+}
+
+int keys_make(const char *folder)
+{
+	char aside[PATH_MAX];
+	int rc;
+
+	if (sodium_init() < 0)
+		return -EIO;
+	if (has_root(folder))
+		return complain(folder, -EEXIST);
+	if (access(folder, F_OK) == 0)
+		return complete(folder);
+	if (snprintf(aside, sizeof(aside), "%s.part", folder) >= PATH_MAX)
+		return complain(folder, -ENAMETOOLONG);
+	rc = has_root(aside) ? 0 : complete(aside);
+	if (rc == 0 && rename(aside, folder) < 0)
+		rc = complain(folder, -errno);
+	return rc < 0 ? rc : keys_sync_parent(folder);
+}
+
+/* ---- using them */
 
 int keys_read_root(struct buffer *out, const char *folder, uint32_t version)
 {

@@ -1,4 +1,5 @@
-/* The publisher's signing keys: a folder beside the content, never inside the release.
+/* The publisher's signing keys: a folder of their own, never inside a release, and by default not
+ * inside the content either (pipeline/keys_place.h).
  *
  *   root.key release.key timestamp.key   "gopura-key-1 ROLE HEX", an ed25519 seed; mode 0600
  *   root/1.json ... root/N.json          the signed roots, as published
@@ -15,8 +16,18 @@ struct publisher_keys {
 	struct trust_root trust; /* the newest root */
 };
 
-/* Makes three keys and root/1.json. -EEXIST: some are there already. Errors are logged. */
+/* Makes three keys and root/1.json. A folder that does not exist is made aside, as FOLDER.part, and
+ * renamed when it is whole. What an interrupted run left is used and completed. Nobody else may
+ * work on folder meanwhile. -EEXIST: it has keys already. Errors are logged. */
 must_check int keys_make(const char *folder);
+/* Whether a key or root/1.json is there. */
+bool keys_are_in(const char *folder);
+/* Whether an open file is one of these keys. */
+bool keys_is_key_file(int fd);
+/* What was made or renamed in a folder, or in the one that folder lies in, outlives a power cut.
+ * Errors are logged. */
+must_check int keys_sync_folder(const char *folder);
+must_check int keys_sync_parent(const char *folder);
 /* Reads what publishing needs, and checks that the newest root names both keys. -ENOENT: no keys.
  * -EPERM: others may read a key. -EBADMSG, -EKEYREJECTED: damaged, or not the root's keys. Errors
  * but -ENOENT are logged. */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "pipeline/keys_place.h"
 #include "pipeline/master.h"
 #include "pipeline/publish_sources.h"
 #include "pipeline/start_view.h"
@@ -19,19 +20,13 @@ struct setting {
 	struct publish_target target;
 };
 
-static int open_keys(struct setting *setting, const char *content_folder)
+static int open_keys(struct setting *setting, const struct publish_content_options *options)
 {
-	int rc;
+	bool made;
+	int rc = keys_open(&setting->keys, setting->keys_folder, options->content->folder,
+			   options->keys, &made);
 
-	if (snprintf(setting->keys_folder, PATH_MAX, "%s/keys", content_folder) >= PATH_MAX)
-		return -ENAMETOOLONG;
-	rc = keys_load(&setting->keys, setting->keys_folder);
-	if (rc != -ENOENT)
-		return rc;
-	rc = keys_make(setting->keys_folder);
-	if (rc == 0)
-		rc = keys_load(&setting->keys, setting->keys_folder);
-	if (rc == 0)
+	if (rc == 0 && made)
 		log_info(
 			"pipeline",
 			"made signing keys in %s: keep a copy of root.key in a safe place, and give "
@@ -54,7 +49,7 @@ static int setting_init(struct setting *setting, char release[PATH_MAX],
 						   .keys = &setting->keys,
 						   .comment = options->comment,
 						   .release_life_s = options->release_life_s };
-	return open_keys(setting, folder);
+	return open_keys(setting, options);
 }
 
 /* How much the current release is, by its locator. -ENOENT: a pack is gone. */

@@ -16,7 +16,7 @@ enum {
 	INFO_CORNERS_MOST = 16,
 	INFO_LANGUAGES_MOST = 64,
 	INFO_PARTS_MOST = 1000,
-	INFO_PAGE_BYTES_MOST = 1 << 20, /* one HTML page */
+	INFO_PAGE_BYTES_MOST = 256 << 10, /* one HTML page; what ui/html.h takes */
 	INFO_PAGE_PICTURES_MOST = 64,
 	INFO_TOURS_MOST = 8,
 	INFO_STOPS_MOST = 64, /* of a tour */

@@ -5,10 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "format/html_tags.h"
 #include "storage/info.h"
 #include "storage/words.h"
 
-enum { WORDS_BYTES_MOST = 8 * INFO_PAGE_BYTES_MOST };
+enum { WORDS_BYTES_MOST = 32 * INFO_PAGE_BYTES_MOST };
 
 /* ---- a page's words ---- */
 
@@ -57,10 +58,16 @@ static const xmlNode *next_node(const xmlNode *node, struct buffer *text)
 
 static int read_text(struct buffer *text, const char *html)
 {
-	xmlDoc *doc = htmlReadMemory(html, (int)strlen(html), NULL, "UTF-8",
+	const struct bytes page = { (const uint8_t *)html, strlen(html) };
+	struct buffer reduced;
+	xmlDoc *doc = NULL;
+
+	buffer_init(&reduced, HTML_TAGS_GROWTH * page.size + 64);
+	if (html_tags_reduce(&reduced, page, NULL) == 0 && reduced.size > 0)
+		doc = htmlReadMemory((const char *)reduced.data, (int)reduced.size, NULL, "UTF-8",
 				     HTML_PARSE_RECOVER | HTML_PARSE_NOERROR |
 					     HTML_PARSE_NOWARNING | HTML_PARSE_NONET);
-
+	buffer_finish(&reduced);
 	for (const xmlNode *node = doc ? xmlDocGetRootElement(doc) : NULL; node;
 	     node = next_node(node, text))
 		if (node->type == XML_TEXT_NODE && node->content)

@@ -7,7 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+#include "format/html_tags.h"
 #include "storage/info_content.h"
 
 struct page_check {
@@ -181,6 +183,25 @@ static void hear_parser(void *data, xmlError *error)
 			 "%s: check that every tag is closed in order", text);
 }
 
+/* Before the parser, which would take long over it. */
+static bool check_tags(struct page_check *check)
+{
+	const struct bytes html = { (const uint8_t *)check->page->html, check->page->size };
+	struct html_tags found = { 0 };
+	struct buffer reduced;
+	int rc;
+
+	buffer_init(&reduced, HTML_TAGS_GROWTH * html.size + 64);
+	rc = html_tags_reduce(&reduced, html, &found);
+	buffer_finish(&reduced);
+	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
+		content_complain(check->content, true, check->file, found.line,
+				 "a tag with %u attributes: at most %d are read, and the kiosk "
+				 "shows none but src and href; remove the others",
+				 found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
+	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
+}
+
 static int parse_page(struct page_check *check)
 {
 	htmlParserCtxt *parser = htmlNewParserCtxt();
@@ -204,6 +225,15 @@ static int parse_page(struct page_check *check)
 	return rc;
 }
 
+/* What a page holds is shown to everybody. A link could lead to a file that nobody meant to show,
+ * and whoever reads a FIFO waits. */
+static bool is_plain_file(const char *path)
+{
+	struct stat status;
+
+	return lstat(path, &status) < 0 || S_ISREG(status.st_mode);
+}
+
 /* 0 and page->html NULL where the file is missing. */
 static int read_page_file(struct page_check *check)
 {
@@ -213,7 +243,7 @@ static int read_page_file(struct page_check *check)
 
 	buffer_init(&bytes, INFO_PAGE_BYTES_MOST + 1);
 	if (content_path(check->content, path, sizeof(path), check->file))
-		rc = buffer_read_file(&bytes, path);
+		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
 	if (rc == 0) {
 		buffer_put_u8(&bytes, 0);
 		rc = bytes.error;
@@ -222,7 +252,10 @@ static int read_page_file(struct page_check *check)
 		buffer_finish(&bytes);
 		return rc == -ENOMEM ? rc : 0;
 	}
-	if (rc < 0) {
+	if (rc == -ELOOP) {
+		content_complain(check->content, true, check->file, 0,
+				 "is a link or no regular file: put the page itself there");
+	} else if (rc < 0) {
 		content_complain(check->content, true, check->file, 0,
 				 rc == -EFBIG ? "page is larger than %d KB: split it"
 					      : "cannot be read (at most %d KB)",
@@ -252,7 +285,7 @@ static int read_part_pages(struct content *content, struct content_part *part)
 			 options->languages[i]);
 		rc = read_page_file(&check);
 		if (rc == 0 && part->pages[i].html)
-			rc = parse_page(&check);
+			rc = check_tags(&check) ? parse_page(&check) : 0;
 		else if (rc == 0 && !part->without_page)
 			content_complain(content, i == 0, file, 0,
 					 i == 0 ? "is missing: write it, or give the part "

@@ -6,160 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_MOST = 200 };
+#include "format/html_tags.h"
+#include "ui/html_parts.h"
 
-/* What the elements around a text say about it. Copied on the way down. */
-struct inherited {
-	uint32_t flags, indent, row, column;
-	int link;
-	int list_number; /* of an ol's next item; -1: bullets */
-	bool quote, heading_cell;
-	enum text_style style;
-};
-
-struct parser {
-	struct html *html;
-	struct html_block *open; /* text is being appended; NULL: none */
-	size_t open_bytes, open_room;
-	const char *marker_wanted; /* of the list item whose first block has not come */
-	char marker[16];
-	uint32_t row_count;
-	bool space, space_had_newline; /* white space waits for the next word */
-	struct inherited space_in;     /* and looks as what it stood in: no link begins with it */
-	int error;
-};
-
-static void *grow(struct parser *p, void *array, uint32_t count, size_t item_bytes)
-{
-	void *grown = array;
-
-	if ((count & (count - 1)) == 0)
-		grown = realloc(array, (count ? 2 * (size_t)count : 1) * item_bytes);
-	if (!grown)
-		p->error = -ENOMEM;
-	return grown;
-}
-
-static char *copy(struct parser *p, const char *text)
-{
-	char *made = strdup(text);
-
-	if (!made)
-		p->error = -ENOMEM;
-	return made;
-}
-
-/* ---- blocks ---- */
-
-/* Takes a trailing line break or space off; an empty block goes altogether. */
-static void close_block(struct parser *p)
-{
-	struct html_block *block = p->open;
-
-	p->open = NULL;
-	p->space = false;
-	p->space_had_newline = false;
-	if (!block)
-		return;
-	while (p->open_bytes > 0 && strchr("\n ", block->text[p->open_bytes - 1]))
-		block->text[--p->open_bytes] = 0;
-	for (uint32_t i = 0; i < block->span_count; i++)
-		if (block->spans[i].end > p->open_bytes)
-			block->spans[i].end = (uint32_t)p->open_bytes;
-	if (p->open_bytes == 0) {
-		free(block->text);
-		free(block->marker);
-		free(block->spans);
-		p->html->block_count--;
-	}
-}
-
-static struct html_block *add_block(struct parser *p, enum html_block_kind kind,
-				    const struct inherited *in)
-{
-	struct html *html = p->html;
-	struct html_block *grown, *block;
-
-	close_block(p);
-	if (p->error == 0 && html->block_count == HTML_BLOCKS_MOST)
-		p->error = -EFBIG;
-	if (p->error)
-		return NULL;
-	grown = grow(p, html->blocks, html->block_count, sizeof(*grown));
-	if (!grown)
-		return NULL;
-	html->blocks = grown;
-	block = &grown[html->block_count++];
-	*block = (struct html_block){ .kind = kind,
-				      .style = in->style,
-				      .indent = in->indent,
-				      .quote = in->quote,
-				      .row = in->row,
-				      .column = in->column,
-				      .heading_cell = in->heading_cell };
-	if (p->marker_wanted) {
-		block->marker = copy(p, p->marker_wanted);
-		p->marker_wanted = NULL;
-	}
-	return block;
-}
-
-static void open_text(struct parser *p, const struct inherited *in)
-{
-	p->open = add_block(p, HTML_TEXT, in);
-	if (!p->open)
-		return;
-	p->open_bytes = 0;
-	p->open_room = 64;
-	p->open->text = calloc(1, p->open_room);
-	if (!p->open->text) {
-		p->error = -ENOMEM;
-		p->open = NULL;
-		p->html->block_count--;
-	}
-}
-
-static void mark_span(struct parser *p, uint32_t start, uint32_t end, const struct inherited *in)
-{
-	struct html_block *block = p->open;
-	struct html_span *last = block->span_count ? &block->spans[block->span_count - 1] : NULL;
-	struct html_span *grown;
-
-	if (in->flags == 0 && in->link < 0)
-		return;
-	if (last && last->end == start && last->flags == in->flags && last->link == in->link) {
-		last->end = end;
-		return;
-	}
-	grown = grow(p, block->spans, block->span_count, sizeof(*grown));
-	if (!grown)
-		return;
-	block->spans = grown;
-	grown[block->span_count++] = (struct html_span){ start, end, in->flags, in->link };
-}
-
-static void append(struct parser *p, const char *text, size_t size, const struct inherited *in)
-{
-	uint32_t start = (uint32_t)p->open_bytes;
-
-	if (p->error)
-		return;
-	if (p->open_bytes + size + 1 > p->open_room) {
-		size_t room = 2 * (p->open_bytes + size + 1);
-		char *grown = realloc(p->open->text, room);
-
-		if (!grown) {
-			p->error = -ENOMEM;
-			return;
-		}
-		p->open->text = grown;
-		p->open_room = room;
-	}
-	memcpy(p->open->text + p->open_bytes, text, size);
-	p->open_bytes += size;
-	p->open->text[p->open_bytes] = 0;
-	mark_span(p, start, (uint32_t)p->open_bytes, in);
-}
+/* Lines are broken one paragraph at a time, which takes longer than in proportion to its length: a
+ * quarter of a megabyte without a space took 20 s. Some pages of a book are enough for one. */
+enum { DEPTH_MOST = 200, BLOCK_TEXT_BYTES_MAX = 8192 };
 
 /* ---- text ---- */
 
@@ -175,7 +27,7 @@ static bool is_wide(const unsigned char *c, size_t left)
 	return left >= 3 && ((c[0] >= 0xe3 && c[0] <= 0xe9) || c[0] == 0xef);
 }
 
-static void put_space(struct parser *p, const unsigned char *next, size_t left)
+static void put_space(struct html_parser *p, const unsigned char *next, size_t left)
 {
 	const char *text = p->open->text;
 	size_t size = p->open_bytes;
@@ -185,17 +37,33 @@ static void put_space(struct parser *p, const unsigned char *next, size_t left)
 	    is_wide((const unsigned char *)text + size - 3, 3))
 		none = true;
 	if (!none)
-		append(p, " ", 1, &p->space_in);
+		html_append(p, " ", 1, &p->space_in);
 	p->space = false;
 	p->space_had_newline = false;
 }
 
-static void put_text(struct parser *p, const unsigned char *text, const struct inherited *in)
+/* To the next white space; of a word without an end a piece, of whole characters. */
+static size_t word_bytes(const unsigned char *text, size_t left)
+{
+	size_t size = 0;
+
+	while (size < left && !is_space(text[size]))
+		size++;
+	if (size < BLOCK_TEXT_BYTES_MAX / 2)
+		return size;
+	size = BLOCK_TEXT_BYTES_MAX / 2;
+	while ((text[size] & 0xc0) == 0x80)
+		size--;
+	return size;
+}
+
+static void put_text(struct html_parser *p, const unsigned char *text,
+		     const struct html_inherited *in)
 {
 	size_t left = strlen((const char *)text);
 
 	while (left > 0 && !p->error) {
-		size_t word = 0;
+		size_t word;
 
 		while (left > 0 && is_space(*text)) {
 			if (!p->space)
@@ -205,16 +73,17 @@ static void put_text(struct parser *p, const unsigned char *text, const struct i
 			text++;
 			left--;
 		}
-		while (word < left && !is_space(text[word]))
-			word++;
+		word = word_bytes(text, left);
 		if (word == 0)
 			break;
+		if (p->open_bytes + word + 1 > BLOCK_TEXT_BYTES_MAX)
+			html_close_block(p);
 		if (!p->open)
-			open_text(p, in);
+			html_open_text(p, in);
 		if (p->open && p->space)
 			put_space(p, text, left);
 		if (p->open)
-			append(p, (const char *)text, word, in);
+			html_append(p, (const char *)text, word, in);
 		text += word;
 		left -= word;
 	}
@@ -284,19 +153,19 @@ static const struct {
 	{ "template", ROLE_SKIP, -1, 0 },
 };
 
-static void walk(struct parser *p, const xmlNode *node, struct inherited *in, int depth);
+static void walk(struct html_parser *p, const xmlNode *node, struct html_inherited *in, int depth);
 
-static void put_image(struct parser *p, const xmlNode *node, const struct inherited *in)
+static void put_image(struct html_parser *p, const xmlNode *node, const struct html_inherited *in)
 {
 	char *name = (char *)xmlGetProp((xmlNode *)node, BAD_CAST "src");
-	struct html_block *block = name ? add_block(p, HTML_IMAGE, in) : NULL;
+	struct html_block *block = name ? html_add_block(p, HTML_IMAGE, in) : NULL;
 
 	if (block)
-		block->text = copy(p, name);
+		block->text = html_copy(p, name);
 	xmlFree(name);
 }
 
-static int add_link(struct parser *p, const xmlNode *node)
+static int add_link(struct html_parser *p, const xmlNode *node)
 {
 	char *href = (char *)xmlGetProp((xmlNode *)node, BAD_CAST "href");
 	struct html *html = p->html;
@@ -306,8 +175,8 @@ static int add_link(struct parser *p, const xmlNode *node)
 
 	if (href && (to_tour || strncmp(href, "part:", 5) == 0 || strncmp(href, "page:", 5) == 0) &&
 	    href[5]) {
-		char **grown = grow(p, html->links, html->link_count, sizeof(*grown));
-		char *id = grown ? copy(p, to_tour ? href : href + 5) : NULL;
+		char **grown = html_grow(p, html->links, html->link_count, sizeof(*grown));
+		char *id = grown ? html_copy(p, to_tour ? href : href + 5) : NULL;
 
 		if (grown)
 			html->links = grown;
@@ -331,18 +200,20 @@ static uint32_t count_cells(const xmlNode *row)
 	return cells < HTML_COLUMNS_MOST ? cells : HTML_COLUMNS_MOST;
 }
 
-static void walk_cell(struct parser *p, const xmlNode *node, struct inherited in, int depth)
+static void walk_cell(struct html_parser *p, const xmlNode *node, struct html_inherited in,
+		      int depth)
 {
-	close_block(p);
+	html_close_block(p);
 	walk(p, node->children, &in, depth);
-	close_block(p);
+	html_close_block(p);
 }
 
-static void walk_row(struct parser *p, const xmlNode *node, struct inherited in, int depth)
+static void walk_row(struct html_parser *p, const xmlNode *node, struct html_inherited in,
+		     int depth)
 {
 	uint32_t first, cells = count_cells(node);
 
-	close_block(p);
+	html_close_block(p);
 	first = p->html->block_count;
 	if (in.row > 0 || cells == 0) { /* a table in a cell: its text only */
 		walk(p, node->children, &in, depth);
@@ -367,17 +238,18 @@ static void walk_row(struct parser *p, const xmlNode *node, struct inherited in,
 		p->html->blocks[i].column_count = cells;
 }
 
-static void walk_block(struct parser *p, const xmlNode *node, struct inherited *in, int depth)
+static void walk_block(struct html_parser *p, const xmlNode *node, struct html_inherited *in,
+		       int depth)
 {
-	close_block(p);
+	html_close_block(p);
 	walk(p, node->children, in, depth);
-	close_block(p);
+	html_close_block(p);
 }
 
-static void walk_item(struct parser *p, const xmlNode *node, struct inherited *in,
-		      struct inherited *list, int depth)
+static void walk_item(struct html_parser *p, const xmlNode *node, struct html_inherited *in,
+		      struct html_inherited *list, int depth)
 {
-	close_block(p);
+	html_close_block(p);
 	if (list->list_number > 0)
 		snprintf(p->marker, sizeof(p->marker), "%d.", list->list_number++);
 	else
@@ -386,13 +258,14 @@ static void walk_item(struct parser *p, const xmlNode *node, struct inherited *i
 	if (in->indent == 0)
 		in->indent = 1;
 	walk(p, node->children, in, depth);
-	close_block(p);
+	html_close_block(p);
 	p->marker_wanted = NULL;
 }
 
-static void walk_element(struct parser *p, const xmlNode *node, struct inherited *parent, int depth)
+static void walk_element(struct html_parser *p, const xmlNode *node, struct html_inherited *parent,
+			 int depth)
 {
-	struct inherited in = *parent;
+	struct html_inherited in = *parent;
 	enum role role = ROLE_INLINE;
 
 	for (size_t i = 0; i < ARRAY_COUNT(elements); i++) {
@@ -407,11 +280,13 @@ static void walk_element(struct parser *p, const xmlNode *node, struct inherited
 	case ROLE_SKIP:
 		return;
 	case ROLE_BREAK:
+		if (p->open_bytes >= BLOCK_TEXT_BYTES_MAX)
+			html_close_block(p);
 		if (p->open)
-			append(p, "\n", 1, &in);
+			html_append(p, "\n", 1, &in);
 		return;
 	case ROLE_RULE:
-		add_block(p, HTML_RULE, &in);
+		html_add_block(p, HTML_RULE, &in);
 		return;
 	case ROLE_IMAGE:
 		put_image(p, node, &in);
@@ -444,7 +319,7 @@ static void walk_element(struct parser *p, const xmlNode *node, struct inherited
 	}
 }
 
-static void walk(struct parser *p, const xmlNode *node, struct inherited *in, int depth)
+static void walk(struct html_parser *p, const xmlNode *node, struct html_inherited *in, int depth)
 {
 	if (depth > DEPTH_MOST)
 		return;
@@ -456,10 +331,25 @@ static void walk(struct parser *p, const xmlNode *node, struct inherited *in, in
 	}
 }
 
+/* NULL: no memory, or nothing in it. */
+static xmlDoc *read_tree(struct bytes source)
+{
+	struct buffer reduced;
+	xmlDoc *doc = NULL;
+
+	buffer_init(&reduced, HTML_TAGS_GROWTH * source.size + 64);
+	if (html_tags_reduce(&reduced, source, NULL) == 0 && reduced.size > 0)
+		doc = htmlReadMemory((const char *)reduced.data, (int)reduced.size, NULL, "UTF-8",
+				     HTML_PARSE_RECOVER | HTML_PARSE_NOERROR |
+					     HTML_PARSE_NOWARNING | HTML_PARSE_NONET);
+	buffer_finish(&reduced);
+	return doc;
+}
+
 int html_parse(struct html *out, struct bytes source)
 {
-	struct parser parser = { .html = out };
-	struct inherited in = { .link = -1, .list_number = -1, .style = TEXT_BODY };
+	struct html_parser parser = { .html = out };
+	struct html_inherited in = { .link = -1, .list_number = -1, .style = TEXT_BODY };
 	xmlDoc *doc;
 
 	memset(out, 0, sizeof(*out));
@@ -468,13 +358,11 @@ int html_parse(struct html *out, struct bytes source)
 	if (source.size == 0 ||
 	    !g_utf8_validate((const char *)source.data, (gssize)source.size, NULL))
 		return -EBADMSG;
-	doc = htmlReadMemory((const char *)source.data, (int)source.size, NULL, "UTF-8",
-			     HTML_PARSE_RECOVER | HTML_PARSE_NOERROR | HTML_PARSE_NOWARNING |
-				     HTML_PARSE_NONET);
+	doc = read_tree(source);
 	if (!doc)
 		return -EBADMSG;
 	walk(&parser, xmlDocGetRootElement(doc), &in, 0);
-	close_block(&parser);
+	html_close_block(&parser);
 	xmlFreeDoc(doc);
 	if (parser.error == 0 && out->block_count == 0)
 		parser.error = -EBADMSG;
@@ -485,12 +373,12 @@ int html_parse(struct html *out, struct bytes source)
 
 int html_add_note(struct html *html, const char *text)
 {
-	const struct inherited in = { .link = -1, .list_number = -1, .style = TEXT_FIGURE };
-	struct parser parser = { .html = html };
+	const struct html_inherited in = { .link = -1, .list_number = -1, .style = TEXT_FIGURE };
+	struct html_parser parser = { .html = html };
 
-	add_block(&parser, HTML_RULE, &in);
+	html_add_block(&parser, HTML_RULE, &in);
 	put_text(&parser, (const unsigned char *)text, &in);
-	close_block(&parser);
+	html_close_block(&parser);
 	return parser.error;
 }
 

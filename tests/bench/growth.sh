@@ -31,7 +31,7 @@ build() {
 		build/gopura-content temple --triangles "${1}000000" --out "$work/scan.part" >&2
 		mv "$work/scan.part" "$content/scan.ply"
 	fi
-	build/gopura-content build "$content" --out "$work/$1/release" >&2
+	build/gopura-content build "$content" --out "$work/$1/release" --keys "$work/$1/keys" >&2
 	build/gopura-content inspect "$work/$1/release" >"$work/$1/inspect"
 }
 
@@ -43,7 +43,7 @@ build_18s() {
 	cp -rl "$work/18/content" "$work/18s/content"
 	cp --remove-destination "$work/18/content/temple.ini" "$work/18s/content/"
 	printf '%s\n' '[release]' 'publish_share = 0.0333' >>"$work/18s/content/temple.ini"
-	build/gopura-content publish "$work/18s/content" --out "$work/18s/release" >&2
+	build/gopura-content publish "$work/18s/content" --out "$work/18s/release" --keys "$work/18/keys" >&2
 	build/gopura-content inspect "$work/18s/release" >"$work/18s/inspect"
 	ln -sfn ../18/truth "$work/18s/truth"
 }

@@ -83,7 +83,7 @@ temple() {
 
 build_temple() {
 	temple temple 93 'colours = scan'
-	build/gopura-content build "$work/temple/content" --out "$work/temple/release" >&2
+	build/gopura-content build "$work/temple/content" --out "$work/temple/release" --keys "$work/temple/keys" >&2
 }
 
 row_temple_300() {
@@ -98,7 +98,7 @@ row_temple_300() {
 # The same scan in fewer bytes: what is fetched seldom need not be told so exactly.
 row_temple_100() {
 	temple temple-84 84 'colours = scan'
-	build/gopura-content build "$work/temple-84/content" --out "$work/temple-84/release" >&2
+	build/gopura-content build "$work/temple-84/content" --out "$work/temple-84/release" --keys "$work/temple-84/keys" >&2
 	ln -sfn ../temple/truth "$work/temple-84/truth"
 	draw temple-100 "$work/temple-84/content" "$work/temple-84/release" 57 "$visitor" <tests/bench/path.txt
 }
@@ -112,14 +112,14 @@ row_temple_open_300() {
 	cp -rl "$work/temple/content" "$open/content"
 	cp --remove-destination "$work/temple/content/temple.ini" "$open/content/"
 	printf '%s\n' '[release]' 'publish_share = 1' >>"$open/content/temple.ini"
-	build/gopura-content publish "$open/content" --out "$open/release" >&2
+	build/gopura-content publish "$open/content" --out "$open/release" --keys "$work/temple/keys" >&2
 	ln -sfn ../temple/truth "$open/truth"
 	draw temple-open-300 "$open/content" "$open/release" 6 "$visitor" <tests/bench/path.txt
 }
 
 row_fine_250() {
 	temple fine 84 'colours = procedural'
-	build/gopura-content build "$work/fine/content" --out "$work/fine/release" >&2
+	build/gopura-content build "$work/fine/content" --out "$work/fine/release" --keys "$work/fine/keys" >&2
 	draw fine-250 "$work/fine/content" "$work/fine/release" 4 "$visitor" <tests/bench/path.txt
 }
 
@@ -128,8 +128,8 @@ scan() {
 	local file
 	[ -d "$scans" ] || { echo "skipped: $1, no $scans" >&2; return; }
 	folder "$1" "${@:3}"
-	for file in $2; do ln -sf "$(realpath "$file")" "$work/$1/content/"; done
-	build/gopura-content build "$work/$1/content" --out "$work/$1/release" >&2
+	for file in $2; do cp -p --remove-destination "$file" "$work/$1/content/"; done
+	build/gopura-content build "$work/$1/content" --out "$work/$1/release" --keys "$work/$1/keys" >&2
 	around "$work/$1/release" | draw "$1-70" "$work/$1/content" "$work/$1/release" 0 \
 		"orbit=24 nearer=20 close=16"
 }

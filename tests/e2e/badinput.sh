@@ -43,7 +43,7 @@ meet() {
 	judge $status "$log" "$file" inspect
 	case $file in *.jpg | *.jpeg | *.png | *.gif)
 		picture=$(mktemp -d "$folder/scan-XXXXXX")
-		ln -s "$(realpath "$file")" "$picture/skin"
+		cp "$file" "$picture/skin" # links are not followed
 		cat >"$picture/square.ply" <<-END
 			ply
 			format ascii 1.0

@@ -29,7 +29,7 @@ says() { grep -qE "$1" "$log" 2>/dev/null; }
 health_says() { curl -s "http://127.0.0.1:$port$1" | grep -qE -- "$2"; }
 publish() { # WORD: another heading on each page
 	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
 }
 end_kiosk() {
 	kill "$pid"
@@ -61,7 +61,7 @@ end_kiosk
 rm -f "$work"/state/cache.db*
 mkdir "$work/aside"
 mv "$work"/release/locator/* "$work/aside/"
-build/tests/tools/spoiled_release "$work/content/keys" "$work/release"
+build/tests/tools/spoiled_release "$small_keys" "$work/release"
 start_kiosk "$work/spoiled.log"
 wait_for 60 "release 2" says 'release 2 is shown'
 wait_for 60 "refusal of release 2" says 'refused release 2: objects of it cannot be decoded'

@@ -17,7 +17,7 @@ cp -ru "$small/content/." "$work/content/"
 rm -rf "$work/content/pages" "$work/differ"
 cp -r demo/content/pages demo/content/parts.json demo/content/tours.json "$work/content/"
 python3 tests/golden/content.py "$work/content"
-build/gopura-content build "$work/content" --out "$work/release" >"$work/log" 2>&1 ||
+build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >"$work/log" 2>&1 ||
 	{ cat "$work/log"; fail "no release for the pictures"; }
 python3 tests/golden/visit.py "$work"
 mkdir -p "$work/differ"

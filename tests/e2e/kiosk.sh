@@ -86,9 +86,9 @@ starts() {
 starts untrusting 'refused .*: no trust root: start once with --trust' --state "$work/trust" \
 	--release "$release"
 mkdir -p "$work/other"
-build/gopura-content keys "$work/other" >/dev/null
+build/gopura-content keys "$work/other" --keys "$work/other-keys" >/dev/null
 starts stranger 'refused timestamp.json: .*signature' --state "$work/trust" --release "$release" \
-	--trust "$work/other/keys/root/1.json"
+	--trust "$work/other-keys/root/1.json"
 ! grep -q 'app: showing' "$work/untrusting.log" "$work/stranger.log" || fail "an unknown museum was shown"
 
 # ---- a start, and what must come out of every later one

@@ -11,18 +11,20 @@ fail() {
 	exit 1
 }
 
-# A small temple and its release, built once for all tests: build/e2e/small/{content,release}.
-small=build/e2e/small
+# A small temple and its release, built once for all tests: build/e2e/small/{content,release}. Who publishes
+# to a copy of that release signs with its keys: --keys "$small_keys".
+small=build/e2e/small small_keys=build/e2e/small/keys
+export XDG_CONFIG_HOME=$PWD/build/e2e/config # nothing is written into the home
 small_release() {
 	[ -z "${RELEASES_MADE:-}" ] || return 0 # by the runner, whose tests run beside one another
 	demo/make-content.sh "$small/content" 200000
 	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' \
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
-	build/gopura-content build "$small/content" --out "$small/release" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
+	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
 	# The tests count from 1; a program that makes other bytes of the same content has made a second one.
 	grep -q '^release 1 ' "$small/log" && return 0
 	rm -rf "$small/release"
-	build/gopura-content build "$small/content" --out "$small/release"
+	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys"
 }
 
 # The temple of make demo, and its release: build/demo/{content,release}.

@@ -27,7 +27,7 @@ bytes=$(cat "$work"/cache.db* | wc -c)
 [ "$bytes" -gt $((60 * 4 * 1024 * 2)) ] || fail "the picture took $bytes bytes: too few for this test to tell anything"
 
 sed -i 's/<h1>/<h1>New: /' "$work"/content/pages/*.en.html
-build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
 wait_for 30 "the next release" says 'release 2 is published'
 sleep 10
 ! says 'release 2 is shown' || fail "the limit does not hold the release that is not shown yet"

@@ -10,6 +10,8 @@ content=$PWD/build/gopura-content
 folder=$(mktemp -d)
 trap 'stop_server; rm -rf "$folder"' EXIT
 dir=$folder/content release=$folder/release run=$folder/run
+export XDG_CONFIG_HOME=$folder/config
+keys=$XDG_CONFIG_HOME/gopura/keys
 fail() { echo "FAIL: $*" >&2; exit 1; }
 
 mkdir -p "$dir/pages"
@@ -51,32 +53,36 @@ done
 "$content" build "$dir" --out "$release" >"$folder/first" 2>&1 || { cat "$folder/first"; fail "build"; }
 first=$(root_of "$folder/first")
 [ -n "$first" ] || fail "build does not say its root"
+[ -f "$keys/content/release.key" ] && [ ! -e "$dir/keys" ] || fail "the keys are not where they belong"
 cp -r "$dir" "$folder/again" && rm -rf "$folder/again/.work"
-"$content" build "$folder/again" --jobs 1 --out "$folder/release-again" >"$folder/log" 2>&1
+cp -r "$keys/content" "$folder/keys-again"
+"$content" build "$folder/again" --jobs 1 --out "$folder/release-again" --keys "$folder/keys-again" >"$folder/log" 2>&1
 [ "$(root_of "$folder/log")" = "$first" ] || fail "the same content gave another root"
 diff <(files) <(cd "$folder/release-again" && find packs locator -type f | sort) || fail "other packs"
 
 # ---- over TLS
 start_server "$release" "$run"
-"$content" verify "$server_url" --ca "$server_ca" --trust "$dir/keys/root/1.json" >"$folder/verified" ||
+"$content" verify "$server_url" --ca "$server_ca" --trust "$keys/content/root/1.json" >"$folder/verified" ||
 	fail "verify over TLS"
 cat "$folder/verified"
 grep -qE '^  labels +[1-9]' "$folder/verified" || fail "parts have regions, and nothing is labelled"
 share=$(sed -nE 's/.*published share: ([0-9]+) of ([0-9]+) .*/\1 \2/p' "$folder/verified")
 [ -n "$share" ] && [ $((10 * ${share% *})) -le "${share#* }" ] || fail "the published share passes a tenth: $share"
 "$content" verify "$server_url" >/dev/null 2>&1 && fail "an unknown authority was trusted"
-"$content" verify "$server_url" --ca "$server_ca" --trust "$folder/again/keys/root/1.json" >/dev/null ||
+"$content" verify "$server_url" --ca "$server_ca" --trust "$folder/keys-again/root/1.json" >/dev/null ||
 	fail "copied keys are the same keys"
 mkdir "$folder/others"
 "$content" keys "$folder/others" >/dev/null
-"$content" verify "$server_url" --ca "$server_ca" --trust "$folder/others/keys/root/1.json" >/dev/null 2>"$folder/log" &&
+"$content" verify "$server_url" --ca "$server_ca" --trust "$keys/others/root/1.json" >/dev/null 2>"$folder/log" &&
 	fail "another publisher's root was enough"
 grep -q 'signatures' "$folder/log" || fail "the message does not speak of signatures: $(cat "$folder/log")"
 
-# ---- nothing changed: nothing is written but the timestamp
+# ---- nothing changed: nothing is written but the timestamp; keys that an earlier program made in the content are taken out
+mv "$keys/content" "$dir/keys"
 files >"$folder/before"
 "$content" build "$dir" --out "$release" | grep -q 'nothing changed' || fail "something was made anew"
 files | diff "$folder/before" - || fail "files were written for nothing"
+[ -f "$keys/content/release.key" ] && [ ! -e "$dir/keys" ] || fail "the keys stayed among the content"
 
 # ---- a new title: a few small blocks, samples untouched
 parts 'High tower'

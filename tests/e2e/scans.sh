@@ -11,11 +11,11 @@ scans=../shared/scans
 work=build/e2e/scans
 views=tests/e2e/scans
 
-# content NAME FILES MODEL...: a content folder; the scan's files are linked into it.
+# content NAME FILES MODEL...: a content folder; the scan's files are copied into it, for links are not followed.
 content() {
 	local folder=$work/$1/content file
 	mkdir -p "$folder"
-	for file in $2; do ln -sf "$(realpath "$file")" "$folder/"; done
+	for file in $2; do cp -p --remove-destination "$file" "$folder/"; done
 	{
 		printf '[model]\nname = %s\n' "$1"
 		printf '%s\n' "${@:3}"
@@ -38,7 +38,7 @@ draw() { # NAME MODE
 # check NAME MEAN_DB WORST_DB SSIM GAIN_DB: at least so near to the reference, and so much nearer
 # than polygons alone.
 check() {
-	build/gopura-content build "$work/$1/content" --out "$work/$1/release" >"$work/$1/build.log" 2>&1 ||
+	build/gopura-content build "$work/$1/content" --out "$work/$1/release" --keys "$work/$1/keys" >"$work/$1/build.log" 2>&1 ||
 		{ tail -5 "$work/$1/build.log"; fail "$1 was not built"; }
 	build/gopura-content render "$work/$1/content" --views "$views/$1.txt" --size 640x360 \
 		--supersample 2 --out "$work/$1/truth" >/dev/null

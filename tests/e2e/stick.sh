@@ -28,7 +28,7 @@ end_kiosk() {
 says() { grep -qE "$1" "$log" 2>/dev/null; }
 publish() {
 	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
 }
 plug() { # RELEASE [BELOW]: whole at once, as a mount is: what is looked for comes last
 	local to=$work/mount${2:-}

@@ -25,7 +25,7 @@ start_kiosk() { # LOG OPTION...
 says() { grep -qE "$1" "$log" 2>/dev/null; }
 publish() { # WORD: another heading on each page
 	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" >/dev/null
+	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
 }
 end_kiosk() {
 	kill "$pid"
@@ -48,7 +48,7 @@ make --no-print-directory build/tests/tools/spoiled_release >/dev/null
 start_kiosk "$work/spoiled.log"
 wait_for 60 "first release" says 'release 1 is shown'
 prove
-build/tests/tools/spoiled_release "$work/content/keys" "$work/release"
+build/tests/tools/spoiled_release "$small_keys" "$work/release"
 wait_for 60 "refusal of what cannot be decoded" says 'refused release 2: objects of it cannot be decoded'
 ! says 'release 2 is shown' || fail "what cannot be decoded was shown"
 publish Mended

@@ -13,7 +13,7 @@ small_release
 mkdir "$work/bad"
 cp -r "$small/content/." "$work/bad/"
 sed -i 's/^tools *=.*/tools = light, lens/' "$work/bad/temple.ini"
-if build/gopura-content publish "$work/bad" --out "$work/release" 2>"$work/bad.log"; then
+if build/gopura-content publish "$work/bad" --out "$work/release" --keys "$small_keys" 2>"$work/bad.log"; then
 	fail "a tool that does not exist was published"
 fi
 grep -q 'temple.ini:[0-9]*: tools = light, lens: it must be light, section' "$work/bad.log" ||

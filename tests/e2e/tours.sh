@@ -14,7 +14,7 @@ small_release
 mkdir "$work/bad"
 cp -r "$small/content/." "$work/bad/"
 sed -i 's/"eye": \[22.4, -0.7, 4.5\]/"eye": [14, -0.7, 4.5]/' "$work/bad/tours.json"
-if build/gopura-content publish "$work/bad" --out "$work/release" 2>"$work/bad.log"; then
+if build/gopura-content publish "$work/bad" --out "$work/release" --keys "$small_keys" 2>"$work/bad.log"; then
 	fail "a tour through a wall was published"
 fi
 cat "$work/bad.log"

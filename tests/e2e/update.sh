@@ -38,7 +38,7 @@ cp "$work/good.json" "$work/release/release.json"
 
 # ---- version 2: a page says something else
 sed -i 's/<h1>/<h1>New: /' "$work"/content/pages/*.en.html
-build/gopura-content build "$work/content" --out "$work/release"
+build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys"
 wait_for 90 "version 2" shown 2
 on_panel() { [ "$(grep -c 'app: showing' "$work/kiosk.log")" = "$1" ]; }
 wait_for 20 "version 2 on the panel" on_panel 2 # remembered first, then shown, by two threads
@@ -70,7 +70,7 @@ find "$work/release/locator" -type f -delete
 rm -f "$work"/state/cache.db*
 cp "$work/release.json" "$work/timestamp.json" "$work/release/"
 sed -i 's/<h1>/<h1>Newer: /' "$work"/content/pages/*.en.html
-build/gopura-content build "$work/content" --out "$work/release"
+build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys"
 serve "$work/release" "$work/server"
 start_kiosk "$work/kiosk3.log"
 wait_for 60 "version 3 in place of one that is gone" grep -q 'release .* is shown' "$work/kiosk3.log"

@@ -5,4 +5,4 @@ work=$1
 demo/make-content.sh "$work/content" 60000
 sed -i -e 's/^points *=.*/points = 4/' -e 's/^face_px *=.*/face_px = 256/' \
 	-e 's/^publish_share *=.*/publish_share = 0.5/' "$work/content/temple.ini"
-build/gopura-content build "$work/content" --out "$work/release"
+build/gopura-content build "$work/content" --out "$work/release" --keys "$work/keys"

@@ -32,7 +32,7 @@ if [ ! -f "$work/next/release/release.json" ] || [ build/qemu/release/release.js
 	cp -r build/qemu/release "$work/next/release"
 	sed -i -e 's/^background *=.*/background = #503018/' "$content/temple.ini"
 	build/gopura-content temple --triangles 50000 --seed 2 --regions "$content/regions" --out "$content/scan.ply"
-	build/gopura-content build "$content" --out "$work/next/release"
+	build/gopura-content build "$content" --out "$work/next/release" --keys build/qemu/keys
 fi
 # release NAME FOLDER: on a stick, and its sequence beside it
 release() {

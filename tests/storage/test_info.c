@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "tests/storage/info_folder.h"
@@ -173,6 +174,8 @@ static void names_the_line_of_a_bad_part(void **state)
 	}
 }
 
+#define TEN "k0 k1=1 k2='2' k3=\"3\" k4 k5 k6 k7=<b k8 = x k9 "
+
 static void names_the_line_of_a_bad_page(void **state)
 {
 	static const struct {
@@ -189,6 +192,8 @@ static void names_the_line_of_a_bad_page(void **state)
 		{ "<p>x</p>\n<script>alert(1)</script>", "<script>", 2 },
 		{ "<p>x</p>\n<p onclick=\"go()\">y</p>", "onclick", 2 },
 		{ "<p>x</p>\n\n\n<iframe></iframe>", "<iframe>", 4 },
+		{ "<p>x</p>\n<b\nclass=y " TEN TEN TEN TEN TEN TEN "a b c d>z</b>",
+		  "a tag with 65 attributes", 2 },
 		{ "  \n <p> </p>", "no text", 1 },
 		{ "<p>\xff\xfe</p>", "UTF-8", 0 },
 	};
@@ -203,6 +208,26 @@ static void names_the_line_of_a_bad_page(void **state)
 			fail_msg("case %zu: \"%s\" at line %u, not \"%s\"", i,
 				 complaints.list[0].text, complaints.list[0].line, cases[i].words);
 	}
+}
+
+/* A page is published: the file of a link, a key perhaps, would be shown to everybody. */
+static void refuses_a_page_that_is_a_link_or_a_fifo(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+	char path[100], target[100];
+
+	(void)state;
+	snprintf(path, sizeof(path), "%s/pages/gate.en.html", folder);
+	snprintf(target, sizeof(target), "%s/elsewhere.html", folder);
+	write_text("elsewhere.html", "<p>One enters here.</p>");
+	for (int i = 0; i < 2; i++) {
+		unlink(path);
+		CHECK((i ? mkfifo(path, 0600) : symlink(target, path)) == 0);
+		CHECK(build(&built, &complaints) == -EINVAL);
+		CHECK(was_told(&complaints, "pages/gate.en.html", 0, "put the page itself there"));
+	}
+	unlink(path);
 }
 
 static void wants_the_page_in_the_first_language(void **state)
@@ -342,6 +367,8 @@ int main(void)
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_part, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_page, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(refuses_a_page_that_is_a_link_or_a_fifo, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(wants_the_page_in_the_first_language, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(refuses_a_picture_too_large_for_a_terminal, set_up,

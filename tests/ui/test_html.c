@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "tests/check.h"
 
@@ -105,6 +106,151 @@ static void refuses_what_says_nothing(void **state)
 	html_finish(NULL);
 }
 
+/* ---- spans */
+
+/* Every span holds text, lies in its block, and begins where the one before has ended or later. */
+static bool spans_are_sound(void)
+{
+	for (uint32_t i = 0; i < html.block_count; i++) {
+		const struct html_block *block = &html.blocks[i];
+		uint32_t from = 0;
+
+		for (uint32_t k = 0; k < block->span_count; k++) {
+			const struct html_span *span = &block->spans[k];
+
+			if (span->start < from || span->end <= span->start ||
+			    span->end > strlen(block->text) || span->link >= (int)html.link_count)
+				return false;
+			from = span->end;
+		}
+	}
+	return true;
+}
+
+static void a_break_at_the_end_leaves_no_span(void **state)
+{
+	static const char *const pages[] = {
+		"<p>word<br><b><br></b></p>",
+		"<p>word<b><br></b></p>",
+		"<p>word<b> <br></b><i> </i></p>",
+		"<p>word<br><a href=part:x><br></a><b><br></b>",
+		"<p><b>word<br></b><br><i><br><br></i></p>",
+	};
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(pages); i++) {
+		CHECK(parse(pages[i]) == 0);
+		if (html.block_count != 1 || strcmp(html.blocks[0].text, "word") != 0 ||
+		    !spans_are_sound() || html.blocks[0].span_count > 1)
+			fail_msg("%s: '%s', %u spans", pages[i], html.blocks[0].text,
+				 html.blocks[0].span_count);
+		html_finish(&html);
+	}
+}
+
+/* Random pages of inline elements, empty ones too, breaks and white space, nested and side by side.
+ */
+static void spans_are_sound_on_any_page(void **state)
+{
+	static const char *const pieces[] = { "<b>",
+					      "</b>",
+					      "<i>",
+					      "</i>",
+					      "<a href=part:x>",
+					      "</a>",
+					      "<small>",
+					      "</small>",
+					      "<sup>",
+					      "</sup>",
+					      "<br>",
+					      "<br>",
+					      " ",
+					      "\n",
+					      "w",
+					      "é",
+					      "塔",
+					      "<p>",
+					      "</p>",
+					      "<hr>",
+					      "<li>",
+					      "<td>",
+					      "<span>",
+					      "</span>",
+					      "<img src=x>",
+					      "<h1>",
+					      "</h1>",
+					      "<table><tr><th>",
+					      "</table>" };
+	uint32_t random = 1;
+	char page[400];
+	(void)state;
+
+	for (int n = 0; n < 20000; n++) {
+		size_t at = 0;
+
+		for (int k = 0; k < 1 + n % 24; k++) {
+			random = random * 1664525 + 1013904223;
+			at += (size_t)snprintf(page + at, sizeof(page) - at, "%s",
+					       pieces[(random >> 16) % ARRAY_COUNT(pieces)]);
+		}
+		if (parse(page) == 0) {
+			if (!spans_are_sound())
+				fail_msg("%s", page);
+			html_finish(&html);
+		}
+	}
+}
+
+/* ---- what is large */
+
+/* A second of the processor for what takes a hundredth: it once took as long as the square of it.
+ */
+static void many_attributes_take_no_time(void **state)
+{
+	char *page = malloc(HTML_BYTES_MOST);
+	clock_t began = clock();
+	size_t at = 0;
+	(void)state;
+
+	CHECK(page);
+	for (int k = 0; at < HTML_BYTES_MOST - 40; k++)
+		at += (size_t)snprintf(page + at, 20, k ? " a%d" : "<p", k);
+	at += (size_t)snprintf(page + at, 20, ">x</p>");
+	CHECK(html_parse(&html, (struct bytes){ (uint8_t *)page, at }) == 0);
+	CHECK(html.block_count == 1 && strcmp(html.blocks[0].text, "x") == 0);
+	CHECK(clock() - began < CLOCKS_PER_SEC);
+	html_finish(&html);
+	free(page);
+}
+
+/* Breaking lines of one endless paragraph takes as long as the square of it, too. */
+static void an_endless_paragraph_becomes_several(void **state)
+{
+	static const char *const words[] = { "a", "word ", "é", "ក", "<br>x", "<b>塔</b>" };
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(words); i++) {
+		size_t size = strlen(words[i]), text_bytes = 0;
+		char *page = malloc(100000);
+
+		CHECK(page);
+		for (size_t at = 0; at < 100000 - size; at += size)
+			memcpy(page + at, words[i], size);
+		CHECK(html_parse(&html, (struct bytes){ (uint8_t *)page,
+							100000 / size * size - size }) == 0);
+		CHECK(html.block_count > 1 && spans_are_sound());
+		for (uint32_t k = 0; k < html.block_count; k++) {
+			CHECK(strlen(html.blocks[k].text) <= 8200);
+			CHECK(g_utf8_validate(html.blocks[k].text, -1, NULL));
+			text_bytes += strlen(html.blocks[k].text);
+		}
+		if (i == 0)
+			CHECK(text_bytes == 99999); /* nothing is lost */
+		html_finish(&html);
+		free(page);
+	}
+}
+
 /* Deep, wide, unclosed, many: in bounded time and memory, without a crash. */
 static void survives_nasty_pages(void **state)
 {
@@ -160,6 +306,10 @@ int main(void)
 		cmocka_unit_test(drops_scripts_styles_and_foreign_links),
 		cmocka_unit_test(marks_rows_columns_and_looks),
 		cmocka_unit_test(refuses_what_says_nothing),
+		cmocka_unit_test(a_break_at_the_end_leaves_no_span),
+		cmocka_unit_test(spans_are_sound_on_any_page),
+		cmocka_unit_test(many_attributes_take_no_time),
+		cmocka_unit_test(an_endless_paragraph_becomes_several),
 		cmocka_unit_test(survives_nasty_pages),
 	};
 
