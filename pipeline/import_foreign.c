@@ -452,7 +452,7 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 /* Only what a child fills, and no string of it unended. */
 static void take_report(struct import_report *report, const struct import_report *told)
 {
-	report->had_colours = told->had_colours;
+	report->had_colours = *(const uint8_t *)&told->had_colours != 0; /* any byte may be there */
 	report->textures = told->textures;
 	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
 }
