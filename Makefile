@@ -1,8 +1,8 @@
 # Gopura: one entry. `make help` lists the targets.
 #
-# The folders are the architecture, so the build is read off them: every C file of a folder goes
-# into one archive, each program is its main file plus what it pulls from that archive, and each
-# tests/FOLDER/test_*.c is a program of its own.
+# The folders are the architecture, so the build is read off them: every C file of a folder and its rooms
+# goes into one archive, each program is its main file plus what it pulls from that archive, and each
+# test_*.c below tests/ is a program of its own.
 
 BUILD   ?= build
 SAN     ?=
@@ -11,7 +11,7 @@ WINDOW  ?= yes
 MAKEFLAGS += --no-builtin-rules
 comma   := ,
 
-FOLDERS := base format board render ui input storage net app pipeline health
+FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd
 # METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
@@ -45,10 +45,10 @@ FUZZ_MAIN =
 $(BUILD)/tests/fuzz/fuzz_%: EXTRA += -fsanitize=fuzzer
 endif
 
-MAINS    := app/main.c net/main.c pipeline/main.c health/main.c board/main.c
-SOURCES  := $(filter-out $(MAINS),$(wildcard $(addsuffix /*.c,$(FOLDERS))))
+MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c
+SOURCES  := $(filter-out $(MAINS),$(shell find $(FOLDERS) -name '*.c' | sort))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
-SOURCES  := $(filter-out render/display_window.c,$(SOURCES))
+SOURCES  := $(filter-out render/display/display_window.c,$(SOURCES))
 LIBS     := $(filter-out sdl2,$(LIBS))
 CFLAGS   += -DGOPURA_NO_WINDOW
 endif
@@ -56,7 +56,7 @@ OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 ARCHIVE  := $(BUILD)/libgopura.a
 PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health \
             $(BUILD)/gopura-setup
-TEST_SOURCES := $(wildcard tests/*/test_*.c)
+TEST_SOURCES := $(shell find tests -name 'test_*.c' | sort)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
 SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick
@@ -162,7 +162,7 @@ $(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
 	$(LINK)
 $(BUILD)/gopura-health: $(BUILD)/obj/health/main.o $(ARCHIVE)
 	$(LINK)
-$(BUILD)/gopura-setup: $(BUILD)/obj/board/main.o $(ARCHIVE)
+$(BUILD)/gopura-setup: $(BUILD)/obj/system/main.o $(ARCHIVE)
 	$(LINK)
 
 # A test may define a function of the archive itself: its own object wins.
@@ -175,9 +175,9 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/st
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
-$(BUILD)/tests/pipeline/test_keys: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
+$(BUILD)/tests/pipeline/release/test_keys: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
 $(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw fingers_on_touch)
-$(BUILD)/tests/board/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
+$(BUILD)/tests/system/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka

@@ -10,8 +10,8 @@
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "render/context.h"
-#include "render/gl.h"
+#include "render/display/context.h"
+#include "render/display/gl.h"
 #include "storage/info_view.h"
 
 enum {

@@ -8,13 +8,13 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include "app/capture.h"
 #include "app/folder.h"
-#include "app/follow.h"
 #include "app/kiosk.h"
+#include "app/modes/capture.h"
+#include "app/release/updater.h"
 #include "base/clock.h"
-#include "base/figures_socket.h"
 #include "base/log.h"
+#include "base/metrics_socket.h"
 #include "base/service.h"
 
 enum {

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "app/kiosk.h"
+#include "app/modes/safe_mode.h"
+#include "app/modes/self_test.h"
 #include "app/options.h"
-#include "app/safe_mode.h"
-#include "app/self_test.h"
 
 int main(int argc, char **argv)
 {

@@ -8,7 +8,7 @@
 #define GOPURA_APP_NAVIGATOR_H
 
 #include "app/flight_way.h"
-#include "render/camera.h"
+#include "geometry/camera.h"
 
 #include <stdbool.h>
 

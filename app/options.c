@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/visit.h"
+#include "app/visit/presence.h"
 #include "base/log.h"
 
 static const char help_text[] =

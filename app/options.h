@@ -6,9 +6,9 @@
 #include <stdint.h>
 
 #include "base/daily.h"
-#include "board/hours.h"
-#include "render/display.h"
-#include "render/scene.h"
+#include "render/display/display.h"
+#include "render/scene/scene.h"
+#include "system/hours.h"
 
 enum { OPTIONS_CONFS_MOST = 4 };
 

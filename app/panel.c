@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/service.h"
-#include "render/shift.h"
+#include "render/display/shift.h"
 
 enum {
 	LOOK_MS = 30000, /* somebody may set the clock, or the time zone */

@@ -1,10 +1,10 @@
 /* How the terminal is, told to whoever looks after it: docs/health.md has the figures as a table.
  * Written on demand, by the thread of the loop: every one of them is at hand. */
-#include "app/follow.h"
 #include "app/kiosk.h"
+#include "app/release/updater.h"
 #include "base/clock.h"
-#include "base/figures_socket.h"
-#include "render/gl.h"
+#include "base/metrics_socket.h"
+#include "render/display/gl.h"
 
 static void write_frames(const struct kiosk *kiosk, struct buffer *out)
 {

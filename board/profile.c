@@ -7,7 +7,7 @@
 
 #include "base/log.h"
 #include "base/safe_open.h"
-#include "board/settings.h"
+#include "base/settings.h"
 
 const struct profile profile_default = {
 	.triangles = 400000,

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 content=$1 triangles=$2
 mkdir -p "$content"
 cp -ru demo/content/. "$content/"
-temple="$triangles $(cat pipeline/temple*.[ch] format/stone.[ch] | cksum)"
+temple="$triangles $(cat pipeline/temple/temple*.[ch] pipeline/material/material.[ch] | cksum)"
 # Of what the scan was made, beside the folder: in it lies only content.
 made=${content%/}.scan
 if [ ! -f "$content/scan.ply" ] || [ "$(cat "$made" 2>/dev/null)" != "$temple" ]; then

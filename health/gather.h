@@ -3,7 +3,7 @@
 #ifndef GOPURA_HEALTH_GATHER_H
 #define GOPURA_HEALTH_GATHER_H
 
-#include "base/figures.h"
+#include "base/metrics.h"
 #include "health/machine.h"
 
 enum program { PROGRAM_KIOSK, PROGRAM_FETCH, PROGRAM_COUNT };

@@ -160,7 +160,7 @@ if [ -n "$conf" ]; then
 		mcopy -i "$esp" "$(dirname "$conf")/$file" "::/$file"
 	done
 fi
-mcopy -i "$esp" board/gopura.conf.example ::/gopura.conf.example
+mcopy -i "$esp" system/gopura.conf.example ::/gopura.conf.example
 
 # ---- the disk
 disk=$out/gopura.img

@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/figures_socket.h"
 #include "base/log.h"
+#include "base/metrics_socket.h"
 #include "base/service.h"
-#include "net/bring.h"
+#include "net/downloader.h"
 #include "net/packets.h"
 #include "net/poll.h"
 

@@ -10,8 +10,8 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "pipeline/master.h"
-#include "pipeline/sampler.h"
+#include "pipeline/hierarchy/master.h"
+#include "pipeline/samples/sampler.h"
 
 enum { STAMP_TEXT_BYTES_MOST = 4 << 20, PROGRAM_BYTES_MOST = 256 << 20 };
 

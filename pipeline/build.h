@@ -3,7 +3,7 @@
 #ifndef GOPURA_PIPELINE_BUILD_H
 #define GOPURA_PIPELINE_BUILD_H
 
-#include "pipeline/publish_content.h"
+#include "pipeline/release/publish_content.h"
 
 struct build_options {
 	const char *out;     /* the release folder; NULL: "release" beside the content folder */

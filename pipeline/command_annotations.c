@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "storage/annotations.h"
+#include "pipeline/content/annotations.h"
 
 static const char help[] =
 	"gopura-content annotations: parts and pages to and from W3C Web Annotations (JSON-LD)\n"

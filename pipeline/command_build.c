@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "pipeline/build.h"
-#include "pipeline/work_lock.h"
+#include "pipeline/content/work_lock.h"
 
 static const char help[] =
 	"gopura-content build: from a content folder to a signed release, all that is needed\n"

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "pipeline/build.h"
-#include "pipeline/content.h"
-#include "pipeline/master.h"
+#include "pipeline/content/content.h"
+#include "pipeline/hierarchy/master.h"
 
 static const char help[] =
 	"gopura-content hierarchy: make the multiresolution hierarchy of a content folder\n"

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/import.h"
-#include "pipeline/mesh_file.h"
+#include "pipeline/import/import.h"
+#include "pipeline/import/mesh_file.h"
 
 static const char help[] =
 	"gopura-content import: read scans, say what was found and what was repaired\n"

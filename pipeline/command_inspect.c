@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "pipeline/inspect.h"
+#include "pipeline/release/inspect.h"
 
 static const char help[] =
 	"gopura-content inspect: say what an object, a file or a release holds\n"

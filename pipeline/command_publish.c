@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "pipeline/publish_content.h"
-#include "pipeline/work_lock.h"
+#include "pipeline/content/work_lock.h"
+#include "pipeline/release/publish_content.h"
 
 static const char help[] =
 	"gopura-content publish: make a signed release of a content folder\n"

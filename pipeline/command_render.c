@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/reference.h"
+#include "pipeline/samples/reference.h"
 
 static const char help[] =
 	"gopura-content render: reference pictures of a content folder's scan at its finest\n"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/sampler.h"
+#include "pipeline/samples/sampler.h"
 
 static const char help[] =
 	"gopura-content sample: render the sampling images of a content folder\n"

@@ -2,7 +2,7 @@
 #include "pipeline/commands.h"
 
 #include "base/progress.h"
-#include "pipeline/temple.h"
+#include "pipeline/temple/temple.h"
 
 #include <errno.h>
 #include <getopt.h>

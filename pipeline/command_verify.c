@@ -8,7 +8,7 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "pipeline/verify.h"
+#include "pipeline/release/verify.h"
 
 static const char help[] =
 	"gopura-content verify: walk a whole release and check everything in it\n"

@@ -6,7 +6,7 @@
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/service.h"
-#include "render/shift.h"
+#include "render/display/shift.h"
 #include "tests/check.h"
 
 enum { MONDAY_NOON_S = 1719835200, HOUR_S = 3600, NEVER = -1 };

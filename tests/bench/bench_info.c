@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "storage/info.h"
+#include "pipeline/content/info_build.h"
 
 enum { ROUNDS = 50, FOUND_MOST = 100 };
 

@@ -13,7 +13,7 @@
 
 #include "app/kiosk.h"
 #include "base/clock.h"
-#include "render/scene_parts.h"
+#include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
 enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 120000 };

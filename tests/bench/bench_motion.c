@@ -22,8 +22,8 @@
 
 #include "app/kiosk.h"
 #include "base/clock.h"
-#include "render/scene_parts.h"
-#include "render/vec.h"
+#include "geometry/vec.h"
+#include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
 enum { FRAMES_MOST = 6000, LEGS_MOST = 2000, BLOCK = 8, POP = 16, HOLE = 16 };

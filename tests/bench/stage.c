@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 #include "format/picture.h"
-#include "render/vec.h"
+#include "geometry/vec.h"
 
 /* ---- clock: the linker wraps base/clock's in these (Makefile) */
 

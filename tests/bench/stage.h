@@ -5,11 +5,11 @@
 #define GOPURA_TESTS_BENCH_STAGE_H
 
 #include "format/locator.h"
-#include "pipeline/release_reader.h"
-#include "render/gl.h"
-#include "render/headless.h"
-#include "render/map.h"
-#include "render/scene.h"
+#include "pipeline/release/release_reader.h"
+#include "render/display/gl.h"
+#include "render/display/headless.h"
+#include "render/plan/cell_map.h"
+#include "render/scene/scene.h"
 
 enum {
 	STAGE_IN_FLIGHT = 64,

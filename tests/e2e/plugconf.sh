@@ -42,7 +42,7 @@ host() { cat "$work/out/hostname"; }
 "$work/set-up" 2>"$work/log"
 [ "$(host)" = gopura ] || fail "a terminal without a gopura.conf is called $(host)"
 
-cp board/gopura.conf.example "$work/stick/gopura.conf"
+cp system/gopura.conf.example "$work/stick/gopura.conf"
 echo root >"$work/stick/1.json"
 echo authority >"$work/stick/ca.pem"
 plugged

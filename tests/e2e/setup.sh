@@ -11,7 +11,7 @@ setup=build/gopura-setup
 # status COMMAND...: its exit status; what it says is in $work/said.
 status() { "$@" >"$work/said" 2>&1 && echo 0 || echo $?; }
 
-cp board/gopura.conf.example "$work/gopura.conf"
+cp system/gopura.conf.example "$work/gopura.conf"
 touch "$work/1.json" "$work/ca.pem"
 [ "$(status $setup --check "$work/gopura.conf" --boards board)" = 0 ] || fail "the example has faults: $(cat "$work/said")"
 sed -i 's/^rotation.*/rotation = 45/' "$work/gopura.conf"

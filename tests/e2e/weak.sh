@@ -72,7 +72,7 @@ P
 # by 0.6 dB, so the best of three runs counts; a limit gets no more of them than it takes.
 # little LIMITS: the dB of a run
 little() {
-	WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/test_scene \
+	WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/scene/test_scene \
 		>"$work/little.log" 2>&1 || { cat "$work/little.log" >&2; fail "the little scene, without $1"; }
 	grep -q '"refusals": 0,' "$work/little.json" || fail "$1: the little scene was refused something"
 	sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"

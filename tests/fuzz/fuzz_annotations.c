@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "storage/annotations.h"
+#include "pipeline/content/annotations.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <sys/mman.h>
 
-#include "pipeline/import.h"
-#include "pipeline/sandbox.h"
+#include "pipeline/import/import.h"
+#include "pipeline/import/sandbox.h"
 #include "tests/fuzz/scratch.h"
 
 int sandbox_open(const char *name);

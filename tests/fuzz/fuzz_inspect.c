@@ -1,5 +1,5 @@
 /* Any file at all, as whoever is curious would give it to `gopura-content inspect`. */
-#include "pipeline/inspect.h"
+#include "pipeline/release/inspect.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

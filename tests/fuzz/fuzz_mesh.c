@@ -2,7 +2,7 @@
  * taken up is written and read again. */
 #include <sys/mman.h>
 
-#include "pipeline/mesh_file.h"
+#include "pipeline/import/mesh_file.h"
 #include "tests/fuzz/scratch.h"
 
 enum { KEY_AT = 12 };

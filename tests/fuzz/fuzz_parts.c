@@ -2,7 +2,7 @@
  * complaints, or a database that opens and has as many parts and tours. */
 #include <errno.h>
 
-#include "storage/info.h"
+#include "pipeline/content/info_build.h"
 #include "tests/fuzz/scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

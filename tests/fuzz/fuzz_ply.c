@@ -1,4 +1,4 @@
-#include "pipeline/ply.h"
+#include "pipeline/import/ply.h"
 
 #include <stdio.h>
 #include <stdlib.h>

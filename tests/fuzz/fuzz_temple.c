@@ -2,7 +2,7 @@
  * limits. */
 #include <math.h>
 
-#include "pipeline/content.h"
+#include "pipeline/content/content.h"
 #include "tests/fuzz/scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

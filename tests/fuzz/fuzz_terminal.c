@@ -1,7 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "board/terminal.h"
+#include "system/terminal.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/mesh.h"
+#include "pipeline/import/mesh.h"
 
 static inline void shape_room(struct mesh *mesh, uint32_t vertices, uint32_t triangles)
 {

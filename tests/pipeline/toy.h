@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/mesh.h"
+#include "pipeline/import/mesh.h"
 
 /* Room for that much; counts start at 0. */
 static inline struct mesh toy_empty(uint32_t vertices, uint32_t triangles)

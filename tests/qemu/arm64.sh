@@ -17,7 +17,7 @@ mkdir -p "$work"
 declare -A left_out=(
 	[input/test_touch_devices]="umockdev is of this machine's kind"
 	[net/test_http]="qemu-user tells no TCP_INFO"
-	[pipeline/test_sandbox]="qemu-user holds no child to its memory"
+	[pipeline/import/test_sandbox]="qemu-user holds no child to its memory"
 )
 for name in pipeline/{demo_content,hierarchy,master,publish_labels,reference,sampler,shading,temple} render/{mediump,scene,scene_labels,scene_tools} \
 	storage/{cache,powercut} ui/{comfort,tools}; do

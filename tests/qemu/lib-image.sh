@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 out=$1
 tests/qemu/make-release.sh build/qemu
-made_of=(image systemd board/*.ini board/gopura.conf.example build/gopura-{kiosk,fetch,setup,health} build/qemu/release/release.json tests/qemu/lib-image.sh)
+made_of=(image systemd board/*.ini system/gopura.conf.example build/gopura-{kiosk,fetch,setup,health} build/qemu/release/release.json tests/qemu/lib-image.sh)
 if [ -f "$out/gopura.raucb" ] && [ -z "$(find "${made_of[@]}" -newer "$out/gopura.img" -print -quit)" ]; then
 	echo "image: $out/gopura.img is there"
 	exit 0

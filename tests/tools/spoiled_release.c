@@ -2,7 +2,8 @@
  * release whose patches are none. All hashes hold: only who decodes them finds out. */
 #include <stdio.h>
 
-#include "tests/pipeline/tiny_release.h"
+#include "pipeline/content/info_build.h"
+#include "tests/pipeline/release/tiny_release.h"
 
 static void spoiled_hierarchy(struct object_store *objects, struct page_child *out)
 {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/gl.h"
-#include "render/headless.h"
+#include "render/display/gl.h"
+#include "render/display/headless.h"
 
 enum { LARGE_PX = 2049, UNITS = 9 };
 

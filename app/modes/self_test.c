@@ -1,0 +1,393 @@
+#include "app/modes/self_test.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "app/folder.h"
+#include "app/kiosk.h"
+#include "app/release/provision.h"
+#include "base/clock.h"
+#include "base/safe_open.h"
+#include "format/metadata.h"
+#include "render/display/gl.h"
+#include "storage/state.h"
+
+enum {
+	FLIP_MOST_MS = 3000, /* a first mode set takes its time */
+	STATE_ROOM_MIB = 16, /* state.db, its journal and its second copy, many times over */
+	PROBE_BYTES = 4096,
+};
+
+struct self_test {
+	const struct options *options;
+	struct profile profile;
+	struct display *display; /* NULL: there is none */
+	char folder[PATH_MAX];   /* of the state; "": there is none */
+	bool failed;
+};
+
+static void say(struct self_test *test, bool good, const char *what, const char *text, ...)
+	printf_like(4, 5);
+
+static void say(struct self_test *test, bool good, const char *what, const char *text, ...)
+{
+	va_list args;
+
+	va_start(args, text);
+	printf("%-5s %-8s ", good ? "ok" : "fail", what);
+	vprintf(text, args);
+	putchar('\n');
+	fflush(stdout);
+	va_end(args);
+	test->failed |= !good;
+}
+
+/* ---- settings */
+
+static void check_settings(struct self_test *test, struct options *options)
+{
+	static struct provision own; /* the options borrow from it */
+	const struct provision *provision = &own;
+	const int rc = provision_read(&own, options, &test->profile);
+	const unsigned faults = provision->faults.count + provision->faults.dropped;
+
+	if (rc < 0)
+		say(test, false, "settings", "%s cannot be used: mend what the log says of it",
+		    test->options->board_path);
+	else if (faults > 0)
+		say(test, false, "settings", "%s: %u to mend, see the log", provision->path,
+		    faults);
+	else if (test->options->conf_count > 0 && !provision->path)
+		say(test, false, "settings", "there is no %s: write it (docs/terminal.md)",
+		    test->options->conf_paths[0]);
+	else
+		say(test, true, "settings", "%s",
+		    provision->path ? provision->path : "of the command line");
+}
+
+/* ---- panel and GPU */
+
+/* One picture, until it is on the panel. */
+static int flip(struct display *display)
+{
+	const int64_t until_ms = clock_now_ms() + FLIP_MOST_MS;
+	int rc;
+
+	display_begin(display);
+	glClearColor(0, 0, 0, 1);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	rc = display_present(display);
+	while (rc == 0 && !display_ready(display) && !display_is_dark(display)) {
+		struct pollfd wait = { .fd = display_fd(display), .events = POLLIN };
+
+		if (clock_now_ms() > until_ms)
+			return -ETIMEDOUT;
+		if (poll(&wait, 1, 100) >= 0)
+			rc = display_dispatch(display);
+	}
+	return rc;
+}
+
+static void check_panel(struct self_test *test)
+{
+	static const char *const kinds[] = {
+		[DISPLAY_DRM] = "KMS",
+		[DISPLAY_WINDOW] = "a window",
+		[DISPLAY_HEADLESS] = "memory alone",
+	};
+	const struct options *o = test->options;
+	const struct display_options options = {
+		.kind = o->display,
+		.width_px = o->width_px,
+		.height_px = o->height_px,
+		.hz = o->hz,
+		.device = o->device,
+		.title = "Gopura",
+	};
+	int rc = display_create(&test->display, &options);
+
+	if (rc < 0) {
+		say(test, false, "panel",
+		    "none can be opened: see what the log says; is the kiosk running, is the user in "
+		    "the groups video and render?");
+		return;
+	}
+	if (!display_is_dark(test->display))
+		rc = flip(test->display);
+	if (display_is_dark(test->display))
+		say(test, false, "panel",
+		    "none is connected, or another program has it: see to cable and power");
+	else if (rc < 0)
+		say(test, false, "panel",
+		    "no picture came onto it (%s): try another mode by --size, then another cable",
+		    strerror(-rc));
+	else
+		say(test, true, "panel", "%d x %d, a picture came onto it (%s)",
+		    display_width_px(test->display), display_height_px(test->display),
+		    kinds[display_kind(test->display)]);
+}
+
+static bool has_limit(struct self_test *test, GLenum name, int needed, const char *what)
+{
+	GLint has[2] = { 0, 0 };
+
+	glGetIntegerv(name, has); /* of two, as for viewports, the smaller counts */
+	if (name == GL_MAX_VIEWPORT_DIMS && has[1] < has[0])
+		has[0] = has[1];
+	if (has[0] >= needed)
+		return true;
+	say(test, false, "gpu", "%d %s, the kiosk needs %d: choose %s", has[0], what, needed,
+	    needed > GL_LIMIT_VERTEX_UNIFORMS ? "a smaller mode by --size, or another board"
+					      : "another board or driver");
+	return false;
+}
+
+/* All shaders compile and the budgets of the profile can be had. */
+static bool has_scene(const struct self_test *test)
+{
+	struct scene_options options = kiosk_scene_options(&test->profile, test->options->mode);
+	struct quads *quads = NULL;
+	struct scene *scene = NULL;
+	int rc = quads_create(&quads);
+
+	if (rc == 0)
+		rc = scene_create(&scene, &options);
+	scene_destroy(scene);
+	quads_destroy(quads);
+	return rc == 0 && gl_check("trying the GPU") == 0;
+}
+
+static void check_gpu(struct self_test *test)
+{
+	int width, height, side;
+	bool good;
+
+	if (!test->display) {
+		say(test, false, "gpu", "not tried, for want of a panel");
+		return;
+	}
+	width = display_width_px(test->display);
+	height = display_height_px(test->display);
+	side = width > height ? width : height;
+	good = has_limit(test, GL_MAX_TEXTURE_SIZE,
+			 side > GL_LIMIT_MEDIUMP_PX ? side : GL_LIMIT_MEDIUMP_PX,
+			 "pixels a side of a texture") &&
+	       has_limit(test, GL_MAX_VIEWPORT_DIMS, side, "pixels of a picture") &&
+	       has_limit(test, GL_MAX_TEXTURE_IMAGE_UNITS, GL_LIMIT_UNITS, "texture units") &&
+	       has_limit(test, GL_MAX_VERTEX_ATTRIBS, GL_LIMIT_ATTRIBUTES, "vertex attributes") &&
+	       has_limit(test, GL_MAX_FRAGMENT_UNIFORM_VECTORS, GL_LIMIT_FRAGMENT_UNIFORMS,
+			 "uniforms of a fragment") &&
+	       has_limit(test, GL_MAX_VERTEX_UNIFORM_VECTORS, GL_LIMIT_VERTEX_UNIFORMS,
+			 "uniforms of a vertex");
+	if (good && has_scene(test))
+		say(test, true, "gpu", "%s", (const char *)glGetString(GL_RENDERER));
+	else if (good)
+		say(test, false, "gpu",
+		    "%s cannot draw the scene (see the log): less texture_mib in the profile, or another "
+		    "driver",
+		    (const char *)glGetString(GL_RENDERER));
+}
+
+/* ---- touch */
+
+/* A node that is there and may not be opened: its path in out. */
+static bool is_locked_out(char *out, size_t bytes)
+{
+	DIR *folder = opendir("/dev/input");
+	struct dirent *entry;
+	bool locked = false;
+
+	while (folder && !locked && (entry = readdir(folder))) {
+		if (strncmp(entry->d_name, "event", 5) != 0)
+			continue;
+		snprintf(out, bytes, "/dev/input/%s", entry->d_name);
+		locked = access(out, R_OK) < 0 && errno == EACCES;
+	}
+	if (folder)
+		closedir(folder);
+	return locked;
+}
+
+static void say_no_touch(struct self_test *test)
+{
+	char path[300], name[128];
+	const bool had = test->folder[0] && folder_had_touch(test->folder, name);
+
+	if (!had)
+		say(test, true, "touch", "none, and there never was one here");
+	else if (is_locked_out(path, sizeof(path)))
+		say(test, false, "touch",
+		    "%s may not be read: put the user into the group input, and see the unit's "
+		    "DeviceAllow",
+		    path);
+	else
+		say(test, false, "touch",
+		    "none that can be used (see the log), where there was '%s': see to its cable and "
+		    "power; if the terminal is to be without, remove %s/touch.seen",
+		    name, test->folder);
+}
+
+static void check_touch(struct self_test *test)
+{
+	const struct touch_options options = { .width_px = 100, .height_px = 100 };
+	struct touch *touch = NULL;
+
+	if (touch_create(&touch, &options) < 0) {
+		say(test, false, "touch", "cannot be waited for: see the log");
+		return;
+	}
+	for (uint32_t i = 0; i < touch_device_count(touch); i++) {
+		say(test, true, "touch", "%s", touch_device_text(touch, i));
+		if (test->folder[0])
+			folder_remember_touch(test->folder, touch_device_text(touch, i));
+	}
+	if (touch_device_count(touch) == 0)
+		say_no_touch(test);
+	touch_destroy(touch);
+}
+
+/* ---- storage */
+
+static int write_probe(const char *folder)
+{
+	static const char zeros[PROBE_BYTES];
+	char path[PATH_MAX + 16];
+	int fd, rc = 0;
+
+	snprintf(path, sizeof(path), "%s/probe", folder);
+	fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+	if (fd < 0)
+		return -errno;
+	if (write(fd, zeros, sizeof(zeros)) != (ssize_t)sizeof(zeros) || fsync(fd) < 0)
+		rc = errno ? -errno : -EIO;
+	close(fd);
+	unlink(path);
+	return rc;
+}
+
+/* What is needed beside what lies there already: the cache only where this kiosk starts the
+ * fetcher. */
+static uint64_t room_needed_mib(const struct self_test *test)
+{
+	char path[PATH_MAX + 16];
+	struct stat cache;
+	uint64_t has_mib = 0;
+
+	if (test->options->socket_path)
+		return STATE_ROOM_MIB;
+	snprintf(path, sizeof(path), "%s/cache.db", test->folder);
+	if (stat(path, &cache) == 0)
+		has_mib = (uint64_t)cache.st_size >> 20;
+	return STATE_ROOM_MIB +
+	       (test->profile.cache_mib > has_mib ? test->profile.cache_mib - has_mib : 0);
+}
+
+static void check_storage(struct self_test *test)
+{
+	struct statvfs disk;
+	uint64_t free_mib, needed_mib;
+	int rc = folder_of_state(test->options->state_dir, test->folder);
+
+	if (rc == 0)
+		rc = write_probe(test->folder);
+	if (rc == 0 && statvfs(test->folder, &disk) < 0)
+		rc = -errno;
+	if (rc < 0) {
+		say(test, false, "storage",
+		    "%s cannot be written (%s): is it the user's, is its disk mounted and whole?",
+		    test->folder, strerror(-rc));
+		test->folder[0] = '\0';
+		return;
+	}
+	free_mib = (uint64_t)disk.f_bavail * disk.f_frsize >> 20;
+	needed_mib = room_needed_mib(test);
+	if (free_mib < needed_mib)
+		say(test, false, "storage",
+		    "%s: %" PRIu64 " MiB free, %" PRIu64
+		    " needed: make room, or less mib under [cache] of the profile",
+		    test->folder, free_mib, needed_mib);
+	else
+		say(test, true, "storage", "%s: %" PRIu64 " MiB free", test->folder, free_mib);
+}
+
+/* ---- trust */
+
+static void say_trust(struct self_test *test, const char *whose, struct bytes file)
+{
+	struct trust_root root;
+	const char *why = "";
+
+	if (trust_root_first(&root, file, &why) < 0)
+		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", whose, why);
+	else if (clock_wall_is_set() && root.expires_s < clock_wall_s())
+		say(test, false, "trust",
+		    "%s has expired: who publishes must sign a new root, then give it by --trust",
+		    whose);
+	else
+		say(test, true, "trust", "%s, version %" PRIu32, whose, root.version);
+}
+
+/* The state's, if it has one. */
+static bool check_remembered_trust(struct self_test *test)
+{
+	char path[PATH_MAX + 16];
+	struct state *state;
+	struct bytes file;
+	bool has;
+
+	snprintf(path, sizeof(path), "%s/state.db", test->folder);
+	if (!test->folder[0] || access(path, F_OK) < 0 || state_create(&state, path) < 0)
+		return false;
+	has = state_trust(state, &file) == 0;
+	if (has)
+		say_trust(test, "the remembered trust root", file);
+	state_destroy(state);
+	return has;
+}
+
+static void check_trust(struct self_test *test)
+{
+	const char *path = test->options->trust_path;
+	struct buffer file;
+	int rc;
+
+	if (check_remembered_trust(test))
+		return;
+	if (!path) {
+		say(test, false, "trust",
+		    "no trust root is remembered: give the museum's root/1.json by --trust once");
+		return;
+	}
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = buffer_read_foreign(&file, path);
+	if (rc < 0)
+		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", path,
+		    open_problem(rc));
+	else
+		say_trust(test, path, buffer_bytes(&file));
+	buffer_finish(&file);
+}
+
+bool self_test_run(struct options *options)
+{
+	struct self_test test = { .options = options };
+
+	check_settings(&test, options);
+	check_storage(&test); /* which says whether there was a touchscreen */
+	check_trust(&test);
+	check_touch(&test);
+	check_panel(&test);
+	check_gpu(&test);
+	display_destroy(test.display);
+	return !test.failed;
+}

@@ -1,0 +1,319 @@
+/* What is shown, and what comes next. A new release is drawn small and unseen, with the visitor's
+ * own camera, until nothing of it is missing; it is written down, and then the two change places
+ * between two frames. */
+#include <errno.h>
+#include <string.h>
+
+#include "app/kiosk.h"
+#include "app/release/updater.h"
+#include "base/clock.h"
+#include "base/log.h"
+
+enum {
+	WARM_PERIOD_MS = 100,
+	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
+	WARM_WIDTH_PX = 320,
+	FORGETFUL_MS = 30000,  /* until what could not be written is tried again */
+	HELD_MS = 60000,       /* between looks at the clock */
+	WHOLE_MOST_MS = 20000, /* that a first picture has until it is kept as far as it came */
+	FOV_DEG = 45,
+};
+
+static float free_ahead(void *data, const float from_m[3], const float direction[3], float most_m)
+{
+	struct kiosk *kiosk = data;
+
+	return scene_clearance(kiosk->shown.scene, from_m, direction, most_m);
+}
+
+struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode)
+{
+	return (struct scene_options){
+		.mode = mode,
+		.texture_budget_bytes = (uint64_t)profile->texture_mib << 20,
+		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
+		.triangle_budget = profile->triangles,
+		.patch_error_px = profile->error_px,
+		.thrift_px_per_kb = profile->thrift,
+		.upload_budget_us = profile->upload_us,
+		.worker_count = profile->workers,
+	};
+}
+
+static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+			uint32_t root_bytes)
+{
+	const struct profile *profile = &kiosk->profile;
+	const struct scene_options scene = kiosk_scene_options(profile, kiosk->options.mode);
+	const struct story_options story = {
+		.width_px = kiosk_width_px(kiosk),
+		.height_px = kiosk_height_px(kiosk),
+		.px_per_mm = kiosk->px_per_mm,
+		.language = kiosk->options.language,
+	};
+	int rc;
+
+	*exhibit = (struct exhibit){ .root = root, .root_bytes = root_bytes };
+	rc = scene_create(&exhibit->scene, &scene);
+	if (rc == 0)
+		rc = story_create(&exhibit->story, &story);
+	if (rc == 0)
+		rc = scene_open(exhibit->scene, root, root_bytes);
+	if (rc == 0)
+		rc = kiosk_watch(kiosk, scene_fd(exhibit->scene));
+	if (rc < 0)
+		exhibit_close(exhibit);
+	return rc;
+}
+
+void exhibit_close(struct exhibit *exhibit)
+{
+	story_destroy(exhibit->story);
+	scene_destroy(exhibit->scene);
+	*exhibit = (struct exhibit){ 0 };
+}
+
+static void open_root(struct exhibit *exhibit, struct hash hash, struct bytes object)
+{
+	struct page page;
+
+	if (page_decode(&page, object) == 0) {
+		story_open(exhibit->story, hash, &page);
+		page_finish(&page);
+		exhibit->root_here = true;
+	}
+}
+
+bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+{
+	bool kept;
+
+	if (!exhibit->scene)
+		return false;
+	exhibit->was_settled = exhibit->was_settled || exhibit->frame.settled;
+	kept = page_is(object) || !exhibit->was_settled;
+	if (kept && exhibit->kept_count < EXHIBIT_KEPT_MOST)
+		exhibit->kept[exhibit->kept_count++] = hash;
+	if (!story_give(exhibit->story, hash, object))
+		scene_give(exhibit->scene, hash, object);
+	if (!exhibit->root_here && hash_equal(hash, exhibit->root) && scene_root(exhibit->scene))
+		open_root(exhibit, hash, object);
+	return kept;
+}
+
+/* The eye's bounds are the release's. At the first release it goes to its start; at an update it
+ * stays where the visitor has it. */
+static void set_bounds(struct kiosk *kiosk)
+{
+	const struct root_page *root = scene_root(kiosk->shown.scene);
+	struct navigator_options options = {
+		.fov_deg = FOV_DEG,
+		.clearance = free_ahead,
+		.data = kiosk,
+	};
+
+	memcpy(options.box_min_m, root->box_min_m, sizeof(options.box_min_m));
+	memcpy(options.box_max_m, root->box_max_m, sizeof(options.box_max_m));
+	memcpy(options.home_eye_m, root->start_eye_m, sizeof(options.home_eye_m));
+	memcpy(options.home_target_m, root->start_target_m, sizeof(options.home_target_m));
+	if (kiosk->navigator_ready)
+		kiosk->navigator.options = options;
+	else
+		navigator_init(&kiosk->navigator, &options);
+	kiosk->navigator_ready = true;
+	log_info("app", "showing %s: %llu of %llu triangles published", root->name,
+		 (unsigned long long)root->published_triangles,
+		 (unsigned long long)root->source_triangles);
+}
+
+/* The fetcher forgets all wants of other releases; the next frame says ours again. */
+static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
+{
+	net_client_use_release(kiosk->net, root, root_bytes);
+	wants_clear(&kiosk->wants);
+}
+
+void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
+{
+	/* What has not even its root page shows nothing: no reason to wait for its end. */
+	const bool unseen = kiosk->shown.root_here;
+	struct exhibit *exhibit = unseen ? &kiosk->coming : &kiosk->shown;
+	int rc;
+
+	exhibit_close(&kiosk->coming);
+	if (kiosk->shown.scene && hash_equal(kiosk->shown.root, root))
+		return; /* back to the pictures that are on the panel */
+	exhibit_close(exhibit);
+	kiosk->coming_held = false;
+	if (unseen)
+		net_client_add_release(kiosk->net, root, root_bytes);
+	else
+		use_release(kiosk, root, root_bytes);
+	rc = open_exhibit(kiosk, exhibit, root, root_bytes);
+	if (rc < 0)
+		log_error("app", "cannot open the release: %s", strerror(-rc));
+	kiosk->coming_since_ms = clock_now_ms();
+	kiosk->coming_drawn_ms = 0;
+	kiosk->shown.shown_ms = unseen ? kiosk->shown.shown_ms : clock_now_ms();
+	kiosk_redraw(kiosk);
+}
+
+bool exhibit_may_load(const struct kiosk *kiosk)
+{
+	/* A clock that nobody set would hold it back for ever. */
+	return follow_next_on_stick(kiosk->follow) || !clock_wall_is_set() ||
+	       daily_holds(&kiosk->options.download, clock_wall_s());
+}
+
+static bool is_ready(const struct kiosk *kiosk)
+{
+	const struct exhibit *coming = &kiosk->coming;
+	const bool waited = clock_now_ms() - kiosk->coming_since_ms > WARM_MOST_MS;
+
+	return !coming->syncing && !coming->remembering && coming->frame.patches > 0 &&
+	       story_info(coming->story) && (coming->frame.settled || waited);
+}
+
+static void take_over(struct kiosk *kiosk)
+{
+	struct exhibit before = kiosk->shown;
+	struct overlay *overlay = story_overlay(kiosk->coming.story);
+
+	kiosk->shown = kiosk->coming;
+	kiosk->shown.synced = true;
+	kiosk->coming = (struct exhibit){ 0 };
+	kiosk->shown.shown_ms = clock_now_ms();
+	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
+	for (uint32_t i = 0; i < kiosk->shown.kept_count; i++)
+		net_client_keep(kiosk->net, kiosk->shown.kept[i]);
+	if (story_language(before.story))
+		story_set_language(kiosk->shown.story, story_language(before.story));
+	if (overlay) /* a panel too small for words has none */
+		overlay_show_help(overlay, false);
+	guide_end(kiosk);              /* its tours are others */
+	back_forget(kiosk);            /* and its parts */
+	kiosk->looked_triangles = 0;   /* its anchors are others */
+	if (before.frame.patches == 0) /* nobody has the eye anywhere */
+		kiosk->navigator_ready = false;
+	quads_forget(kiosk->quads);
+	exhibit_close(&before);
+	set_bounds(kiosk);
+	kiosk_redraw(kiosk);
+}
+
+static void draw_small(struct kiosk *kiosk)
+{
+	struct camera camera = kiosk->camera;
+
+	camera.height_px = camera.height_px * WARM_WIDTH_PX / camera.width_px;
+	camera.width_px = WARM_WIDTH_PX;
+	camera.shift_px[0] = camera.shift_px[1] = 0;
+	if (!kiosk->warm_target.framebuffer &&
+	    gl_target_create(&kiosk->warm_target, camera.width_px, camera.height_px) < 0)
+		return;
+	gl_target_bind(&kiosk->warm_target);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	scene_draw(kiosk->coming.scene, &camera, NULL, &kiosk->coming.frame);
+}
+
+static void wait_for_disk(struct kiosk *kiosk)
+{
+	kiosk->coming_drawn_ms = clock_now_ms() + FORGETFUL_MS;
+	kiosk->coming_waits = true;
+}
+
+void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
+{
+	if (!kiosk->coming.scene || !hash_equal(kiosk->coming.root, root))
+		return;
+	if (rc == 0) {
+		take_over(kiosk);
+		return;
+	}
+	/* What is remembered stays on the panel; the disk is asked again later. */
+	kiosk->coming.remembering = false;
+	wait_for_disk(kiosk);
+}
+
+/* A release that came after another was made durable before it was shown. The first one is shown as
+ * it comes, and nobody else syncs what the cache has of it: a power cut minutes later would lose
+ * it. On a slow machine the eye is sent round before its picture is whole, and then it never is. */
+void exhibit_keep_first(struct kiosk *kiosk)
+{
+	struct exhibit *shown = &kiosk->shown;
+
+	if (shown->synced || shown->frame.patches == 0 || kiosk->coming.syncing)
+		return;
+	if (!shown->frame.settled &&
+	    (shown->pictured_ms == 0 || clock_now_ms() < shown->pictured_ms + WHOLE_MOST_MS))
+		return;
+	shown->synced = shown->syncing = true;
+	net_client_sync(kiosk->net);
+}
+
+/* Objects first, then the state that names them: a power cut between the two costs nothing. */
+void exhibit_synced(struct kiosk *kiosk, bool done)
+{
+	struct exhibit *coming = &kiosk->coming;
+
+	if (kiosk->shown.syncing) { /* answers come in order */
+		kiosk->shown.syncing = false;
+		if (done)
+			log_info("app", "the picture is safe on the disk");
+		return;
+	}
+	if (!coming->scene || !coming->syncing)
+		return;
+	coming->syncing = false;
+	if (!done) {
+		log_warn("app", "the new release is not safe on the disk yet: the old one stays");
+		return;
+	}
+	coming->remembering = true;
+	follow_remember(kiosk->follow, coming->root);
+}
+
+void exhibit_warm(struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+
+	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
+		set_bounds(kiosk);
+		follow_remember(kiosk->follow, kiosk->shown.root);
+	}
+	if (trial_is_broken(&kiosk->coming)) {
+		follow_refuse(kiosk->follow, kiosk->coming.root, "objects of it cannot be decoded");
+		exhibit_close(&kiosk->coming);
+	}
+	kiosk->coming_waits = kiosk->coming.root_here;
+	if (!kiosk->coming.root_here || kiosk->camera.width_px == 0 ||
+	    now_ms < kiosk->coming_drawn_ms + WARM_PERIOD_MS)
+		return;
+	kiosk->coming_drawn_ms = now_ms;
+	draw_small(kiosk);
+	kiosk->coming_waits = kiosk->coming.frame.moving;
+	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was another one */
+	if (is_ready(kiosk) && guest_left_ms(kiosk) == 0) {
+		kiosk->coming.syncing = true;
+		net_client_sync(kiosk->net);
+		wait_for_disk(kiosk);
+	}
+}
+
+int exhibit_wait_ms(const struct kiosk *kiosk)
+{
+	const int64_t now_ms = clock_now_ms();
+	int64_t due_ms = kiosk->coming_since_ms + WARM_MOST_MS + 1;
+
+	if (kiosk->coming_held)
+		return exhibit_may_load(kiosk) ? 0 : HELD_MS;
+	if (!kiosk->coming.root_here)
+		return -1;
+	if (kiosk->coming_waits)
+		due_ms = kiosk->coming_drawn_ms + WARM_PERIOD_MS;
+	else if (is_ready(kiosk))
+		return guest_left_ms(kiosk);
+	else if (due_ms <= now_ms)
+		return -1; /* until something of it arrives */
+	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;
+}

@@ -1,0 +1,63 @@
+/* A new release changes places with the old one between two visitors, and is on trial then: what is
+ * not seen to work goes back. */
+#include "app/kiosk.h"
+#include "app/release/updater.h"
+#include "base/clock.h"
+
+enum {
+	PROVEN_MS = 10000, /* to be seen for so long without a crash: it works */
+	BLANK_MS = 60000,  /* all that was wanted is here, and there is nothing to be seen */
+};
+
+static int left_ms(int64_t since_ms, int64_t most_ms)
+{
+	const int64_t left = since_ms + most_ms - clock_now_ms();
+
+	return left > 0 ? (int)left : 0;
+}
+
+bool trial_is_broken(const struct exhibit *exhibit)
+{
+	return exhibit->scene &&
+	       (scene_refused(exhibit->scene) > 0 || story_broken(exhibit->story));
+}
+
+/* It hangs in the air: nothing is wanted, nothing is shown. A network that is away is no fault of
+ * the release. */
+static bool is_blank(const struct kiosk *kiosk)
+{
+	return kiosk->shown.scene && kiosk->shown.frame.patches == 0 && kiosk->shown.root_here &&
+	       kiosk->wants.said_count == 0;
+}
+
+void trial_watch(struct kiosk *kiosk)
+{
+	struct exhibit *shown = &kiosk->shown;
+
+	if (!follow_on_trial(kiosk->follow) || shown->shown_ms == 0)
+		return;
+	if (shown->frame.patches > 0 && shown->pictured_ms == 0 &&
+	    kiosk->last_frame_ms >= shown->shown_ms && !display_is_dark(kiosk->display))
+		shown->pictured_ms = kiosk->last_frame_ms;
+	if (shown->pictured_ms > 0 && left_ms(shown->pictured_ms, PROVEN_MS) == 0)
+		follow_prove(kiosk->follow);
+	else if (!follow_has_before(kiosk->follow) || kiosk->coming.scene)
+		return;
+	else if (shown->frame.patches == 0 && trial_is_broken(shown))
+		follow_fall_back(kiosk->follow, "objects of it cannot be decoded");
+	else if (is_blank(kiosk) && left_ms(shown->shown_ms, BLANK_MS) == 0)
+		follow_fall_back(kiosk->follow, "nothing of it was to be seen for a minute");
+}
+
+int trial_wait_ms(const struct kiosk *kiosk)
+{
+	const struct exhibit *shown = &kiosk->shown;
+
+	if (!follow_on_trial(kiosk->follow) || shown->shown_ms == 0)
+		return -1;
+	if (shown->pictured_ms > 0)
+		return left_ms(shown->pictured_ms, PROVEN_MS);
+	if (follow_has_before(kiosk->follow) && !kiosk->coming.scene && is_blank(kiosk))
+		return left_ms(shown->shown_ms, BLANK_MS);
+	return -1;
+}

@@ -1,0 +1,454 @@
+#include "base/settings.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LINE_MOST = 1000, NAME_MOST = 32, QUOTED_MOST = 60 };
+
+struct reading {
+	const struct setting *settings;
+	size_t count;
+	void *target;
+	struct faults *faults;
+	unsigned line;
+	char section[NAME_MOST]; /* as the table has it; "": none yet */
+	bool skipping;           /* the section is not known, which was said */
+	unsigned seen[SETTINGS_MOST];
+};
+
+/* ---- faults */
+
+/* Bytes of the character at text, 0: it is none that can be shown. */
+static size_t utf8_bytes(const char *text)
+{
+	static const uint32_t least[] = { 0, 0, 0x80, 0x800, 0x10000 };
+	const uint8_t first = (uint8_t)*text;
+	const size_t n = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : 4;
+	uint32_t code = n == 1 ? first : first & (0xffu >> (n + 1));
+
+	if (first < 0x20 || first == 0x7f || (n == 4 && first >> 3 != 30))
+		return 0;
+	for (size_t i = 1; i < n; i++) {
+		if (((uint8_t)text[i] & 0xc0) != 0x80)
+			return 0;
+		code = code << 6 | ((uint8_t)text[i] & 0x3f);
+	}
+	return n > 1 && (code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
+		       ? 0
+		       : n;
+}
+
+static void make_printable(char *text)
+{
+	while (*text) {
+		const size_t n = utf8_bytes(text);
+
+		if (n == 0)
+			*text = '?';
+		text += n > 0 ? n : 1;
+	}
+}
+
+/* No character is cut in two. */
+static void cut(char *text, size_t bytes)
+{
+	size_t at = 0;
+
+	while (text[at]) {
+		const size_t n = utf8_bytes(text + at);
+
+		if (at + (n > 0 ? n : 1) > bytes)
+			break;
+		at += n > 0 ? n : 1;
+	}
+	text[at] = '\0';
+}
+
+void faults_add(struct faults *faults, unsigned line, const char *text, ...)
+{
+	char sentence[2 * LINE_MOST];
+	unsigned at = faults->count;
+	size_t length = 0;
+	va_list args;
+
+	if (faults->count == FAULTS_MOST) {
+		faults->dropped++;
+		return;
+	}
+	if (line > 0)
+		length = (size_t)snprintf(sentence, sizeof(sentence), "line %u: ", line);
+	va_start(args, text);
+	vsnprintf(sentence + length, sizeof(sentence) - length, text, args);
+	va_end(args);
+	while (at > 0 && line > 0 &&
+	       (faults->list[at - 1].line == 0 || faults->list[at - 1].line > line))
+		at--;
+	memmove(&faults->list[at + 1], &faults->list[at],
+		(faults->count - at) * sizeof(faults->list[0]));
+	make_printable(sentence);
+	cut(sentence, FAULT_TEXT_BYTES - 1);
+	faults->list[at].line = line;
+	memcpy(faults->list[at].text, sentence, strlen(sentence) + 1);
+	faults->count++;
+}
+
+/* ---- what was meant by what is not known */
+
+static int smaller(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+/* Letters to add, drop or change to come from one word to the other. */
+static int distance(const char *a, const char *b)
+{
+	int row[NAME_MOST + 1];
+	const int width = (int)strlen(b);
+
+	for (int i = 0; i <= width; i++)
+		row[i] = i;
+	for (int y = 1; a[y - 1]; y++) {
+		int corner = row[0];
+
+		row[0] = y;
+		for (int x = 1; x <= width; x++) {
+			int changed = corner + (strncasecmp(&a[y - 1], &b[x - 1], 1) != 0);
+
+			corner = row[x];
+			row[x] = smaller(smaller(row[x], row[x - 1]) + 1, changed);
+		}
+	}
+	return row[width];
+}
+
+static bool is_near(int letters, const char *word)
+{
+	return letters <= 1 + (int)strlen(word) / 4;
+}
+
+static bool section_begins(const struct reading *reading, size_t i)
+{
+	return i == 0 ||
+	       strcmp(reading->settings[i - 1].section, reading->settings[i].section) != 0;
+}
+
+static void unknown_section(struct reading *reading, const char *name)
+{
+	char known[LINE_MOST] = "";
+	const char *best = NULL;
+	int nearest = INT32_MAX;
+
+	for (size_t i = 0; i < reading->count; i++) {
+		const char *section = reading->settings[i].section;
+		const size_t length = strlen(known);
+
+		if (!section_begins(reading, i))
+			continue;
+		snprintf(known + length, sizeof(known) - length, "%s[%s]", length ? ", " : "",
+			 section);
+		if (distance(name, section) < nearest) {
+			nearest = distance(name, section);
+			best = section;
+		}
+	}
+	if (best && is_near(nearest, name))
+		faults_add(reading->faults, reading->line,
+			   "there is no section [%s]; did you mean [%s]?", name, best);
+	else
+		faults_add(reading->faults, reading->line, "there is no section [%s]; there are %s",
+			   name, known);
+}
+
+static void unknown_name(struct reading *reading, const char *name)
+{
+	char known[LINE_MOST] = "";
+	const char *best = NULL;
+	int nearest = INT32_MAX;
+
+	for (size_t i = 0; i < reading->count; i++) {
+		const struct setting *setting = &reading->settings[i];
+		const size_t length = strlen(known);
+		const int letters = distance(name, setting->name);
+
+		if (letters == 0) {
+			faults_add(reading->faults, reading->line,
+				   "%s belongs under [%s]; move it there", setting->name,
+				   setting->section);
+			return;
+		}
+		if (strcmp(setting->section, reading->section) != 0)
+			continue;
+		snprintf(known + length, sizeof(known) - length, "%s%s", length ? ", " : "",
+			 setting->name);
+		if (letters < nearest) {
+			nearest = letters;
+			best = setting->name;
+		}
+	}
+	if (best && is_near(nearest, name))
+		faults_add(reading->faults, reading->line, "[%s] has no '%s'; did you mean '%s'?",
+			   reading->section, name, best);
+	else if (best)
+		faults_add(reading->faults, reading->line, "[%s] has no '%s'; it has %s",
+			   reading->section, name, known);
+	else
+		faults_add(reading->faults, reading->line,
+			   "'%s' stands before the first [section]; write its section above it",
+			   name);
+}
+
+/* ---- lines */
+
+static char *skip_space(char *text)
+{
+	return text + strspn(text, " \t");
+}
+
+static void cut_space(char *text)
+{
+	size_t length = strlen(text);
+
+	while (length > 0 && strchr(" \t\r", text[length - 1]))
+		text[--length] = '\0';
+}
+
+/* Where a remark begins behind a value, with the space before it; NULL: nowhere. */
+static char *find_remark(char *text)
+{
+	for (char *at = text; (at = strpbrk(at, "#;")); at++)
+		if (at > text && (at[-1] == ' ' || at[-1] == '\t'))
+			return at - 1;
+	return NULL;
+}
+
+/* The value without its quotes or the remark behind it; NULL: at fault, which was said. */
+static char *bare_value(struct reading *reading, const struct setting *setting, char *text)
+{
+	char *remark;
+
+	if (*text == '"') {
+		for (char *end = text + 1; (end = strchr(end, '"')); end++) {
+			char *rest = skip_space(end + 1);
+
+			if (*rest && (rest == end + 1 || !strchr("#;", *rest)))
+				continue;
+			*end = '\0';
+			return text + 1;
+		}
+		faults_add(reading->faults, reading->line,
+			   "%s begins with quotes that do not end; write \" behind the value too",
+			   setting->name);
+		return NULL;
+	}
+	remark = find_remark(text);
+	if (remark && setting->free_text) {
+		faults_add(reading->faults, reading->line,
+			   "%s holds '%.2s': put the value in double quotes if that belongs to it, "
+			   "or write the remark on a line of its own",
+			   setting->name, remark);
+		return NULL;
+	}
+	if (remark)
+		*remark = '\0';
+	cut_space(text);
+	return text;
+}
+
+static void refuse(struct reading *reading, const struct setting *setting, char *value)
+{
+	char expects[128];
+
+	if (setting->expects)
+		snprintf(expects, sizeof(expects), "%s", setting->expects);
+	else
+		snprintf(expects, sizeof(expects), "a %snumber from %.10g to %.10g",
+			 setting->set == settings_whole ? "whole " : "", setting->least,
+			 setting->most);
+	cut(value, QUOTED_MOST);
+	if (!*value)
+		faults_add(reading->faults, reading->line,
+			   "%s is empty; it must be %s, or take the line out", setting->name,
+			   expects);
+	else if (setting->secret)
+		faults_add(reading->faults, reading->line, "%s must be %s", setting->name, expects);
+	else
+		faults_add(reading->faults, reading->line, "%s must be %s, not '%s'", setting->name,
+			   expects, value);
+}
+
+static void take(struct reading *reading, size_t index, char *text)
+{
+	const struct setting *setting = &reading->settings[index];
+	char *value;
+
+	if (reading->seen[index]) {
+		faults_add(reading->faults, reading->line,
+			   "%s stands in line %u already; take one of the two out", setting->name,
+			   reading->seen[index]);
+		return;
+	}
+	reading->seen[index] = reading->line;
+	value = bare_value(reading, setting, text);
+	if (value && (!*value || !setting->set(setting, reading->target, value)))
+		refuse(reading, setting, value);
+}
+
+static void on_entry(struct reading *reading, char *name, char *value)
+{
+	cut_space(name);
+	if (strlen(name) >= NAME_MOST)
+		cut(name, NAME_MOST - 1);
+	for (size_t i = 0; i < reading->count; i++)
+		if (strcmp(reading->settings[i].section, reading->section) == 0 &&
+		    strcasecmp(reading->settings[i].name, name) == 0) {
+			take(reading, i, skip_space(value));
+			return;
+		}
+	unknown_name(reading, name);
+}
+
+static void on_section(struct reading *reading, char *text)
+{
+	char *end = strchr(text, ']');
+
+	reading->skipping = true;
+	if (!end) {
+		faults_add(reading->faults, reading->line,
+			   "the section's name has no end; write ] behind it");
+		return;
+	}
+	*end = '\0';
+	text = skip_space(text);
+	cut_space(text);
+	cut(text, NAME_MOST - 1);
+	for (size_t i = 0; i < reading->count; i++)
+		if (strcasecmp(reading->settings[i].section, text) == 0) {
+			snprintf(reading->section, NAME_MOST, "%s", reading->settings[i].section);
+			reading->skipping = false;
+			return;
+		}
+	unknown_section(reading, text);
+}
+
+static bool is_utf8(const char *text)
+{
+	while (*text) {
+		const size_t n = *text == '\t' ? 1 : utf8_bytes(text);
+
+		if (n == 0)
+			return false;
+		text += n;
+	}
+	return true;
+}
+
+static void on_line(struct reading *reading, char *line)
+{
+	char *equals;
+
+	line = skip_space(line);
+	cut_space(line);
+	if (!*line || *line == '#' || *line == ';')
+		return;
+	equals = strchr(line, '=');
+	if (!is_utf8(line)) {
+		faults_add(reading->faults, reading->line,
+			   "there are bytes that are no UTF-8 text; save the file as UTF-8 (in "
+			   "Notepad: Save as, Encoding: UTF-8)");
+	} else if (*line == '[') {
+		on_section(reading, line + 1);
+	} else if (reading->skipping) {
+		return;
+	} else if (!equals) {
+		cut(line, QUOTED_MOST);
+		faults_add(reading->faults, reading->line,
+			   "'%s' is neither a [section] nor name = value; write # before it if it "
+			   "is a remark",
+			   line);
+	} else {
+		*equals = '\0';
+		on_entry(reading, line, equals + 1);
+	}
+}
+
+/* As Notepad once saved what it called Unicode; or no text at all. */
+static bool is_text(struct bytes text, struct faults *faults)
+{
+	if (text.size > SETTINGS_FILE_MOST)
+		faults_add(faults, 0, "the file is larger than %d bytes: this is another file",
+			   SETTINGS_FILE_MOST);
+	else if (text.size >= 2 &&
+		 (memcmp(text.data, "\xff\xfe", 2) == 0 || memcmp(text.data, "\xfe\xff", 2) == 0))
+		faults_add(faults, 0,
+			   "the file is saved as UTF-16; save it as UTF-8 (in Notepad: Save as, "
+			   "Encoding: UTF-8)");
+	else if (text.size > 0 && memchr(text.data, 0, text.size))
+		faults_add(faults, 0, "the file is no text; save it as plain text, in UTF-8");
+	else
+		return true;
+	return false;
+}
+
+void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
+		   unsigned *lines, struct faults *faults)
+{
+	struct reading reading = {
+		.settings = settings, .count = count, .target = target, .faults = faults
+	};
+	size_t at = 0;
+
+	if (is_text(text, faults)) {
+		if (text.size >= 3 && memcmp(text.data, "\xef\xbb\xbf", 3) == 0)
+			at = 3;
+		while (at < text.size) {
+			const uint8_t *end = memchr(text.data + at, '\n', text.size - at);
+			const size_t size = end ? (size_t)(end - text.data) - at : text.size - at;
+			char line[LINE_MOST + 1];
+
+			reading.line++;
+			if (size > LINE_MOST) {
+				faults_add(faults, reading.line,
+					   "the line is longer than %d bytes; shorten it",
+					   LINE_MOST);
+			} else {
+				memcpy(line, text.data + at, size);
+				line[size] = '\0';
+				on_line(&reading, line);
+			}
+			at += size + 1;
+		}
+	}
+	if (lines)
+		memcpy(lines, reading.seen, count * sizeof(*lines));
+}
+
+/* ---- values */
+
+bool settings_numbers(const struct setting *setting, const char *value, double *out, int wanted)
+{
+	for (int i = 0; i < wanted; i++) {
+		char *end;
+
+		out[i] = strtod(value, &end);
+		if (end == value || !(out[i] >= setting->least && out[i] <= setting->most))
+			return false;
+		value = end + strspn(end, " \t,");
+	}
+	return *value == '\0';
+}
+
+bool settings_whole(const struct setting *setting, void *target, const char *value)
+{
+	double number;
+
+	if (!settings_numbers(setting, value, &number, 1) || number != floor(number))
+		return false;
+	*(int *)((char *)target + setting->offset) = (int)number;
+	return true;
+}

@@ -1,0 +1,436 @@
+#include "geometry/patch_bvh.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+
+enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
+
+static const float flat_enough = 0.8f;
+
+static void vertex_m(const struct solid *solid, uint32_t vertex, float out[3])
+{
+	const uint16_t *at = solid->positions[vertex];
+	for (int i = 0; i < 3; i++)
+		out[i] = (float)(solid->lattice.origin_m[i] + solid->lattice.step_m * at[i]);
+}
+
+/* ---- building */
+
+struct builder {
+	struct solid *solid;
+	uint16_t *indices; /* of the mesh, being sorted */
+	/* Per triangle, sorted along: three times the centre, and the unit normal. */
+	float (*key)[6];
+};
+
+static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
+{
+	for (int k = 0; k < 3; k++) {
+		uint16_t index = b->indices[3 * i + k];
+		b->indices[3 * i + k] = b->indices[3 * j + k];
+		b->indices[3 * j + k] = index;
+	}
+	uint16_t number = b->solid->order[i];
+	b->solid->order[i] = b->solid->order[j];
+	b->solid->order[j] = number;
+	for (int k = 0; k < 6; k++) {
+		float key = b->key[i][k];
+		b->key[i][k] = b->key[j][k];
+		b->key[j][k] = key;
+	}
+}
+
+/* Wirth's selection: the middle triangle along an axis comes to the middle of the run. */
+static void split_at_median(struct builder *b, uint32_t first, uint32_t count, int axis)
+{
+	int64_t low = first, high = first + count - 1, middle = first + count / 2;
+	while (low < high) {
+		float pivot = b->key[middle][axis];
+		int64_t i = low, j = high;
+		while (i <= j) {
+			while (b->key[i][axis] < pivot)
+				i++;
+			while (b->key[j][axis] > pivot)
+				j--;
+			if (i <= j)
+				swap_triangles(b, (uint32_t)i++, (uint32_t)j--);
+		}
+		if (j < middle)
+			low = i;
+		if (middle < i)
+			high = j;
+	}
+}
+
+static void bound(const struct builder *b, struct solid_node *node)
+{
+	for (int i = 0; i < 3; i++) {
+		node->low[i] = UINT16_MAX;
+		node->high[i] = 0;
+	}
+	const uint32_t first = 3u * node->first, end = first + 3u * node->count;
+	for (uint32_t k = first; k < end; k++) {
+		const uint16_t *at = b->solid->positions[b->indices[k]];
+		for (int i = 0; i < 3; i++) {
+			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
+			node->high[i] = at[i] > node->high[i] ? at[i] : node->high[i];
+		}
+	}
+}
+
+/* Length of the mean normal of a run: 1 flat, 0 all around. */
+static float flatness_of(const struct builder *b, uint32_t first, uint32_t count)
+{
+	float sum[3] = { 0 };
+	for (uint32_t t = first; t < first + count; t++)
+		for (int i = 0; i < 3; i++)
+			sum[i] += b->key[t][3 + i];
+	return vec_length(sum) / (float)count;
+}
+
+/* The axis along which a run is longest; where it is larger than a piece, bends count too, so that
+ * the sides of a pillar come into different pieces. */
+static int longest_axis(const struct builder *b, const struct solid_node *node)
+{
+	float least[6], most[6], longest = 0;
+	int axis = 0;
+	bool bends = node->count > PIECE_TRIANGLES_BENT &&
+		     flatness_of(b, node->first, node->count) < flat_enough;
+	for (int k = 0; k < 6; k++) {
+		least[k] = INFINITY;
+		most[k] = -INFINITY;
+		for (uint32_t t = node->first; t < (uint32_t)node->first + node->count; t++) {
+			least[k] = vec_least(least[k], b->key[t][k]);
+			most[k] = vec_most(most[k], b->key[t][k]);
+		}
+		if (k < 3 && most[k] - least[k] > longest) {
+			longest = most[k] - least[k];
+			axis = k;
+		}
+	}
+	/* A bend of a right angle counts for as much as the run is long. */
+	float scale = longest / 1.4f;
+	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MOST; k++) {
+		if ((most[k] - least[k]) * scale > longest) {
+			longest = (most[k] - least[k]) * scale;
+			axis = k;
+		}
+	}
+	return axis;
+}
+
+static uint32_t build_node(struct builder *b, uint32_t first, uint32_t count)
+{
+	uint32_t self = b->solid->node_count++;
+	struct solid_node *node = &b->solid->nodes[self];
+	*node = (struct solid_node){ .first = (uint16_t)first, .count = (uint16_t)count };
+	bound(b, node);
+	if (count <= LEAF_TRIANGLES)
+		return self;
+	split_at_median(b, first, count, longest_axis(b, node));
+	build_node(b, first, count / 2);
+	uint32_t right = build_node(b, first + count / 2, count - count / 2);
+	b->solid->nodes[self].right = (uint16_t)right;
+	return self;
+}
+
+/* ---- pieces */
+
+static void measure_piece(const struct solid *solid, struct piece *piece)
+{
+	float area2 = 0;
+	for (uint32_t t = piece->first_triangle; t < piece->first_triangle + piece->triangle_count;
+	     t++) {
+		float a[3], b[3], c[3], n[3];
+		vertex_m(solid, solid->indices[3 * t], a);
+		vertex_m(solid, solid->indices[3 * t + 1], b);
+		vertex_m(solid, solid->indices[3 * t + 2], c);
+		vec_sub(b, b, a);
+		vec_sub(c, c, a);
+		vec_cross(n, b, c);
+		for (int i = 0; i < 3; i++)
+			piece->normal[i] += n[i];
+		area2 += vec_length(n);
+	}
+	/* Two triangles a vertex, each vertex a cell of spacing squared. */
+	piece->spacing_m = sqrtf(area2 / (float)piece->triangle_count);
+	vec_normalise(piece->normal);
+}
+
+struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe)
+{
+	struct piece_probe out;
+	/* Triangles of a piece are sorted in space: even steps are spread well. */
+	uint32_t t = piece->first_triangle +
+		     (2 * (uint32_t)probe + 1) * piece->triangle_count / (2 * PIECE_PROBES);
+	float corner[3][3], ab[3], ac[3];
+	for (int c = 0; c < 3; c++)
+		vertex_m(solid, solid->indices[3 * t + c], corner[c]);
+	for (int i = 0; i < 3; i++)
+		out.at_m[i] = (corner[0][i] + corner[1][i] + corner[2][i]) / 3;
+	vec_sub(ab, corner[1], corner[0]);
+	vec_sub(ac, corner[2], corner[0]);
+	vec_cross(out.normal, ab, ac);
+	if (vec_normalise(out.normal) <= 0)
+		memcpy(out.normal, piece->normal, sizeof(piece->normal));
+	return out;
+}
+
+static void set_extents(const struct solid *solid, struct piece *piece)
+{
+	uint32_t first = 3 * piece->first_triangle, end = first + 3 * piece->triangle_count;
+	for (uint32_t k = first; k < end; k++) {
+		float at[3];
+		vertex_m(solid, solid->indices[k], at);
+		for (int i = 0; i < 6; i++) {
+			const float *was = piece->extent_m[i];
+			bool farther = i & 1 ? at[i / 2] > was[i / 2] : at[i / 2] < was[i / 2];
+			if (k == first || farther)
+				memcpy(piece->extent_m[i], at, sizeof(at));
+		}
+	}
+}
+
+/* Whether one choice of samples may suit a run of triangles. */
+static bool is_one_piece(const struct builder *b, const struct solid_node *node)
+{
+	if (!node->right || node->count <= PIECE_TRIANGLES_LEAST)
+		return true;
+	bool wide = false;
+	for (int i = 0; i < 3; i++)
+		wide |= node->high[i] - node->low[i] > UINT16_MAX / PIECES_ACROSS;
+	if (node->count > PIECE_TRIANGLES_MOST || wide)
+		return false;
+	return node->count <= PIECE_TRIANGLES_BENT ||
+	       flatness_of(b, node->first, node->count) >= flat_enough;
+}
+
+static void collect_pieces(const struct builder *b, uint32_t at)
+{
+	struct solid *solid = b->solid;
+	const struct solid_node *node = &solid->nodes[at];
+	if (!is_one_piece(b, node)) {
+		collect_pieces(b, at + 1);
+		collect_pieces(b, node->right);
+		return;
+	}
+	struct piece *piece = &solid->pieces[solid->piece_count++];
+	*piece = (struct piece){ .first_triangle = node->first,
+				 .triangle_count = node->count,
+				 .flatness = flatness_of(b, node->first, node->count) };
+	float diagonal[3];
+	for (int i = 0; i < 3; i++) {
+		float middle = (float)(node->low[i] + node->high[i]) / 2;
+		piece->centre_m[i] =
+			(float)(solid->lattice.origin_m[i] + solid->lattice.step_m * middle);
+		diagonal[i] = (float)(node->high[i] - node->low[i]);
+	}
+	piece->radius_m = vec_length(diagonal) / 2 * (float)solid->lattice.step_m;
+	measure_piece(solid, piece);
+	set_extents(solid, piece);
+}
+
+static void set_key(const struct solid *solid, const uint16_t index[3], float key[6])
+{
+	float corner[3][3], ab[3], ac[3];
+	for (int c = 0; c < 3; c++)
+		vertex_m(solid, index[c], corner[c]);
+	for (int i = 0; i < 3; i++)
+		key[i] = corner[0][i] + corner[1][i] + corner[2][i];
+	vec_sub(ab, corner[1], corner[0]);
+	vec_sub(ac, corner[2], corner[0]);
+	vec_cross(&key[3], ab, ac);
+	vec_normalise(&key[3]);
+}
+
+/* To what was used of the most that could have been; where that fails the block stays as it is. */
+static void *shrink(void *block, size_t bytes)
+{
+	void *smaller = realloc(block, bytes);
+
+	return smaller ? smaller : block;
+}
+
+int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice *lattice)
+{
+	*out = (struct solid){ .indices = mesh->indices, .lattice = *lattice };
+	uint32_t count = mesh->triangle_count;
+	if (count == 0)
+		return 0;
+	struct builder builder = { .solid = out, .indices = mesh->indices };
+	builder.key = malloc(count * sizeof(*builder.key));
+	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
+	out->pieces = calloc(count / (PIECE_TRIANGLES_LEAST / 2) + 1, sizeof(*out->pieces));
+	out->positions = malloc(mesh->vertex_count * sizeof(*out->positions));
+	out->order = malloc(count * sizeof(*out->order));
+	if (!builder.key || !out->nodes || !out->pieces || !out->positions || !out->order) {
+		free(builder.key);
+		solid_finish(out);
+		return -ENOMEM;
+	}
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		memcpy(out->positions[v], mesh->vertices[v].position, sizeof(*out->positions));
+	out->vertex_count = mesh->vertex_count;
+	for (uint32_t t = 0; t < count; t++) {
+		set_key(out, &mesh->indices[3 * t], builder.key[t]);
+		out->order[t] = (uint16_t)t;
+	}
+	build_node(&builder, 0, count);
+	collect_pieces(&builder, 0);
+	free(builder.key);
+	out->nodes = shrink(out->nodes, out->node_count * sizeof(*out->nodes));
+	out->pieces = shrink(out->pieces, out->piece_count * sizeof(*out->pieces));
+	return 0;
+}
+
+void solid_finish(struct solid *solid)
+{
+	free(solid->nodes);
+	free(solid->pieces);
+	free(solid->positions);
+	free(solid->order);
+	memset(solid, 0, sizeof(*solid));
+}
+
+size_t solid_bytes(const struct solid *solid)
+{
+	return solid->node_count * sizeof(*solid->nodes) +
+	       solid->piece_count * sizeof(*solid->pieces) +
+	       solid->vertex_count * sizeof(*solid->positions) +
+	       (solid->node_count ? solid->nodes[0].count * sizeof(*solid->order) : 0);
+}
+
+/* ---- rays */
+
+bool ray_meets_sphere(const float from_m[3], const float direction[3], float most_m,
+		      const float centre_m[3], float radius_m)
+{
+	float to[3];
+	vec_sub(to, centre_m, from_m);
+	float along = vec_dot(to, direction);
+	float nearest = vec_least(vec_most(along, 0), most_m);
+	float off[3];
+	vec_add_scaled(off, to, -nearest, direction);
+	return vec_dot(off, off) <= radius_m * radius_m;
+}
+
+/* A ray in units of the lattice, where vertices are whole numbers. */
+struct cast {
+	const struct solid *solid;
+	float from[3], direction[3], inverse[3];
+	float least, distance;
+	struct solid_hit hit;
+};
+
+static bool meets_box(const struct cast *cast, const struct solid_node *node)
+{
+	float low = 0, high = cast->distance;
+	for (int i = 0; i < 3; i++) {
+		float a = ((float)node->low[i] - cast->from[i]) * cast->inverse[i];
+		float b = ((float)node->high[i] - cast->from[i]) * cast->inverse[i];
+		low = vec_most(low, vec_least(a, b));
+		high = vec_least(high, vec_most(a, b));
+	}
+	return low <= high;
+}
+
+static void corner_of(const struct cast *cast, uint16_t index, float out[3])
+{
+	const uint16_t *at = cast->solid->positions[index];
+	for (int i = 0; i < 3; i++)
+		out[i] = at[i];
+}
+
+/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
+static bool meets_triangle(struct cast *cast, uint32_t triangle)
+{
+	const uint16_t *index = &cast->solid->indices[3 * triangle];
+	float a[3], ab[3], ac[3], p[3], t[3], q[3];
+	corner_of(cast, index[0], a);
+	corner_of(cast, index[1], ab);
+	corner_of(cast, index[2], ac);
+	vec_sub(ab, ab, a);
+	vec_sub(ac, ac, a);
+	vec_cross(p, cast->direction, ac);
+	float determinant = vec_dot(ab, p);
+	if (fabsf(determinant) < 1e-6f)
+		return false;
+	float inverse = 1 / determinant;
+	vec_sub(t, cast->from, a);
+	float u = vec_dot(t, p) * inverse;
+	if (u < 0 || u > 1)
+		return false;
+	vec_cross(q, t, ab);
+	float v = vec_dot(cast->direction, q) * inverse;
+	if (v < 0 || u + v > 1)
+		return false;
+	float at = vec_dot(ac, q) * inverse;
+	if (at < cast->least || at >= cast->distance)
+		return false;
+	cast->distance = at;
+	cast->hit = (struct solid_hit){ triangle, u, v };
+	return true;
+}
+
+static bool run_cast(struct cast *cast, bool any)
+{
+	const struct solid *solid = cast->solid;
+	uint32_t stack[DEPTH_MOST], depth = 0;
+	bool hit = false;
+	if (solid->node_count > 0)
+		stack[depth++] = 0;
+	while (depth > 0 && !(hit && any)) {
+		uint32_t at = stack[--depth];
+		const struct solid_node *node = &solid->nodes[at];
+		if (!meets_box(cast, node))
+			continue;
+		if (!node->right) {
+			for (uint32_t t = node->first; t < (uint32_t)node->first + node->count; t++)
+				hit |= meets_triangle(cast, t);
+			continue;
+		}
+		stack[depth++] = node->right;
+		stack[depth++] = at + 1;
+	}
+	return hit;
+}
+
+static struct cast begin_cast(const struct solid *solid, const float from_m[3],
+			      const float direction[3])
+{
+	struct cast cast = { .solid = solid };
+	for (int i = 0; i < 3; i++) {
+		cast.from[i] =
+			(float)((from_m[i] - solid->lattice.origin_m[i]) / solid->lattice.step_m);
+		cast.direction[i] = direction[i];
+		cast.inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
+	}
+	return cast;
+}
+
+bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
+	       float least_m, float *distance_m, struct solid_hit *hit)
+{
+	float step = (float)solid->lattice.step_m;
+	struct cast cast = begin_cast(solid, from_m, direction);
+	cast.least = least_m / step;
+	cast.distance = *distance_m / step;
+	if (!run_cast(&cast, false))
+		return false;
+	*distance_m = cast.distance * step;
+	if (hit)
+		*hit = cast.hit;
+	return true;
+}
+
+bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
+		  float most_m)
+{
+	struct cast cast = begin_cast(solid, from_m, direction);
+	cast.distance = most_m / (float)solid->lattice.step_m;
+	return run_cast(&cast, true);
+}

@@ -1,0 +1,208 @@
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "net/downloader_private.h"
+
+/* A range is one request: objects of a pack in the order of their places, with small gaps. Bytes go
+ * into one object at a time; each is passed on when it is complete. */
+
+struct slot {
+	struct hash hash;
+	uint64_t place;
+	uint32_t size;
+	struct want *want; /* NULL: dropped meanwhile; its bytes still go into the cache */
+};
+
+struct range {
+	struct range *next, **link;
+	struct bring *bring;
+	struct http_request *request;
+	uint32_t wanted;   /* slots with a want that are still to come */
+	size_t count, now; /* slots; the one whose bytes come */
+	uint64_t at;       /* place in the pack of the next byte */
+	uint64_t bytes;    /* of the whole range */
+	int64_t began_ms;
+	struct buffer object; /* of the slot that comes, so far */
+	struct slot slots[];
+};
+
+static void unlink_range(struct range *range)
+{
+	*range->link = range->next;
+	if (range->next)
+		range->next->link = range->link;
+	range->bring->range_count--;
+	range->bring->flying_bytes -= range->bytes;
+	range->bring->options.link->in_flight--;
+	range->bring->plan_changed = true;
+	buffer_finish(&range->object);
+	free(range);
+}
+
+/* All bytes of the slot have come. */
+static void finish_slot(struct range *range, struct slot *slot)
+{
+	struct bytes bytes = buffer_bytes(&range->object);
+	struct want *want = slot->want;
+
+	slot->want = NULL;
+	if (want) {
+		range->wanted--;
+		want->range = NULL;
+		bring_arrived(range->bring, want, bytes);
+	} else if (hash_equal(hash_of(bytes), slot->hash)) {
+		/* Paid for: the cache may as well have it. A failure is the cache's to tell. */
+		if (cache_put(range->bring->options.cache, slot->hash, bytes, 0) == 0)
+			range->bring->figures.from_server++;
+	}
+	buffer_clear(&range->object);
+	range->now++;
+}
+
+/* Takes what the slot lacks, or skips the gap before it. Gives the bytes used. */
+static size_t feed_slot(struct range *range, struct slot *slot, struct bytes piece)
+{
+	uint64_t gap = slot->place > range->at ? slot->place - range->at : 0;
+	size_t lacking = slot->size - range->object.size;
+
+	if (gap > 0)
+		return gap < piece.size ? (size_t)gap : piece.size;
+	if (lacking > piece.size)
+		lacking = piece.size;
+	buffer_put(&range->object, piece.data, lacking);
+	if (range->object.size == slot->size)
+		finish_slot(range, slot);
+	return lacking;
+}
+
+static bool on_piece(void *data, struct bytes piece)
+{
+	struct range *range = data;
+
+	while (piece.size > 0 && range->now < range->count && !range->object.error) {
+		size_t used = feed_slot(range, &range->slots[range->now], piece);
+
+		range->at += used;
+		piece.data += used;
+		piece.size -= used;
+	}
+	return !range->object.error; /* the range ends with its last slot by itself */
+}
+
+/* A moving picture of what the line carries; short ranges tell more of its delay than its width. */
+static void measure(struct range *range)
+{
+	int64_t took_ms = clock_now_ms() - range->began_ms;
+	uint64_t bytes = range->at - range->slots[0].place;
+	uint64_t rate = bytes * 1000 / (uint64_t)(took_ms > 0 ? took_ms : 1);
+
+	range->bring->bytes_per_s = (range->bring->bytes_per_s * 7 + rate) / 8;
+}
+
+static void on_done(void *data, const struct http_result *result)
+{
+	struct range *range = data;
+	struct bring *bring = range->bring;
+	struct link *link = bring->options.link;
+	/* An answer that ended early (a pack cut short) has not what was asked for. */
+	int rc = result->rc == 0 ? -ENOENT : result->rc;
+
+	if (rc == -EHOSTUNREACH)
+		link_failed(link, http_url(bring->options.http), result->why);
+	else
+		link_answered(link);
+	if (range->now == range->count)
+		measure(range);
+	for (size_t i = 0; i < range->count; i++) {
+		struct want *want = range->slots[i].want;
+
+		range->slots[i].want = NULL;
+		if (want) {
+			want->range = NULL;
+			bring_failed(bring, want, rc);
+		}
+	}
+	unlink_range(range);
+}
+
+static void fill_slots(struct range *range, const struct range_item *items, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		struct want *want = items[i].want;
+
+		range->slots[i] =
+			(struct slot){ want->entry.key, items[i].place, items[i].size, want };
+		want->range = range;
+		want->state = WANT_FLYING;
+	}
+	range->count = count;
+	range->wanted = (uint32_t)count;
+	range->at = items[0].place;
+	range->began_ms = clock_now_ms();
+}
+
+int64_t bring_ask_range(struct bring *bring, const struct range_item *items, size_t count)
+{
+	struct range *range = calloc(1, sizeof(*range) + count * sizeof(range->slots[0]));
+	char path[64], hex[HASH_HEX_BYTES];
+	struct http_ask ask = { .path = path, .receive = on_piece, .done = on_done };
+
+	if (!range)
+		return 0;
+	hash_to_hex(items[0].pack, hex);
+	snprintf(path, sizeof(path), "packs/%s", hex);
+	ask.first = items[0].place;
+	ask.size = items[count - 1].place + items[count - 1].size - ask.first;
+	ask.data = range;
+	if (http_ask(bring->options.http, &ask, &range->request) < 0) {
+		free(range);
+		return 0;
+	}
+	range->bring = bring;
+	buffer_init(&range->object, UINT32_MAX);
+	range->bytes = ask.size;
+	fill_slots(range, items, count);
+	range->next = bring->ranges;
+	range->link = &bring->ranges;
+	if (range->next)
+		range->next->link = &range->next;
+	bring->ranges = range;
+	bring->range_count++;
+	bring->flying_bytes += range->bytes;
+	bring->figures.ranges++;
+	bring->options.link->in_flight++;
+	return (int64_t)range->bytes;
+}
+
+void bring_leave_range(struct bring *bring, struct want *want)
+{
+	struct range *range = want->range;
+
+	if (!range)
+		return;
+	for (size_t i = range->now; i < range->count; i++)
+		if (range->slots[i].want == want)
+			range->slots[i].want = NULL;
+	want->range = NULL;
+	if (--range->wanted > 0)
+		return;
+	bring->figures.cancelled++;
+	http_cancel(range->request);
+	unlink_range(range);
+}
+
+void bring_cancel_ranges(struct bring *bring)
+{
+	while (bring->ranges) {
+		struct range *range = bring->ranges;
+
+		http_cancel(range->request);
+		for (size_t i = 0; i < range->count; i++)
+			if (range->slots[i].want)
+				range->slots[i].want->range = NULL;
+		unlink_range(range);
+	}
+}

@@ -1,0 +1,378 @@
+/* parts.json and pages/ into one annotation collection. What the folder says goes through as it is
+ * written (numbers keep their digits); that it is right is checked by info_build's own readers. */
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/content/annotations.h"
+#include "pipeline/content/annotations_private.h"
+
+/* The terms that the W3C's context has not; docs/annotations.md. */
+static const char context[] =
+	"[\"http://www.w3.org/ns/anno.jsonld\", {\"gopura\": \"https://gopura.example/ns#\","
+	"\"Model\": \"gopura:Model\", \"reading\": \"gopura:reading\","
+	"\"PointSelector\": \"gopura:PointSelector\","
+	"\"SphereSelector\": \"gopura:SphereSelector\", \"BoxSelector\": \"gopura:BoxSelector\","
+	"\"PrismSelector\": \"gopura:PrismSelector\","
+	"\"FaceListSelector\": \"gopura:FaceListSelector\","
+	"\"x\": \"gopura:x\", \"y\": \"gopura:y\", \"z\": \"gopura:z\","
+	"\"centre\": {\"@id\": \"gopura:centre\", \"@container\": \"@list\"},"
+	"\"half\": {\"@id\": \"gopura:half\", \"@container\": \"@list\"},"
+	"\"corners\": {\"@id\": \"gopura:corners\", \"@container\": \"@list\"},"
+	"\"radius\": \"gopura:radius\", \"turn\": \"gopura:turn\", \"floor\": \"gopura:floor\","
+	"\"roof\": \"gopura:roof\", \"file\": \"gopura:file\", \"scan\": \"gopura:scan\","
+	"\"tours\": {\"@id\": \"gopura:tours\", \"@type\": \"@json\"}}]";
+
+/* cJSON's adders return NULL where memory ran out: sticky, judged once. */
+struct exporter {
+	const struct content *content;
+	bool failed;
+};
+
+static void add(struct exporter *e, cJSON *object, const char *key, cJSON *value)
+{
+	if (!value || !cJSON_AddItemToObject(object, key, value)) {
+		cJSON_Delete(value);
+		e->failed = true;
+	}
+}
+
+static void append(struct exporter *e, cJSON *array, cJSON *value)
+{
+	if (!value || !cJSON_AddItemToArray(array, value)) {
+		cJSON_Delete(value);
+		e->failed = true;
+	}
+}
+
+static void add_text(struct exporter *e, cJSON *object, const char *key, const char *text)
+{
+	add(e, object, key, cJSON_CreateString(text));
+}
+
+/* An empty object that its parent owns; NULL after a failure, which every adder takes. */
+static cJSON *add_object(struct exporter *e, cJSON *parent, const char *key)
+{
+	cJSON *made = cJSON_CreateObject();
+
+	if (key)
+		add(e, parent, key, made);
+	else
+		append(e, parent, made);
+	return e->failed ? NULL : made;
+}
+
+/* ---- credits */
+
+/* Texts by language are language-tagged strings. */
+static cJSON *tagged(struct exporter *e, const cJSON *said)
+{
+	cJSON *array;
+
+	if (!cJSON_IsObject(said))
+		return cJSON_Duplicate(said, true);
+	array = cJSON_CreateArray();
+	for (const cJSON *one = said->child; one && array; one = one->next) {
+		cJSON *value = add_object(e, array, NULL);
+
+		if (value) {
+			add_text(e, value, "@value", one->valuestring);
+			add_text(e, value, "@language", one->string);
+		}
+	}
+	return array;
+}
+
+static void add_credits(struct exporter *e, cJSON *to, const cJSON *from)
+{
+	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(from, "credits");
+
+	for (size_t i = 0; i < ANNOTATION_ELEMENTS; i++) {
+		const cJSON *said =
+			cJSON_GetObjectItemCaseSensitive(credits, annotation_elements[i]);
+		char term[40] = "dcterms:";
+
+		strncat(term, annotation_elements[i], sizeof(term) - strlen(term) - 1);
+		if (said)
+			add(e, to, term, tagged(e, said));
+	}
+}
+
+/* ---- the body */
+
+static void add_body(struct exporter *e, cJSON *bodies, const char *purpose, const char *format,
+		     const char *language, const char *text)
+{
+	cJSON *body = add_object(e, bodies, NULL);
+
+	if (!body)
+		return;
+	add_text(e, body, "type", "TextualBody");
+	add_text(e, body, "purpose", purpose);
+	add_text(e, body, "format", format);
+	add_text(e, body, "language", language);
+	add_text(e, body, "value", text);
+}
+
+static void add_bodies(struct exporter *e, cJSON *item, const cJSON *part, uint32_t index)
+{
+	const struct info_build_options *options = e->content->options;
+	cJSON *bodies = cJSON_CreateArray();
+
+	add(e, item, "body", bodies);
+	for (uint32_t i = 0; i < options->language_count && !e->failed; i++) {
+		const char *language = options->languages[i];
+
+		for (size_t t = 0; t < ANNOTATION_TEXTS; t++) {
+			const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(
+				cJSON_GetObjectItemCaseSensitive(part, annotation_texts[t].key),
+				language));
+
+			if (text)
+				add_body(e, bodies, annotation_texts[t].purpose, "text/plain",
+					 language, text);
+		}
+		if (e->content->parts[index].pages[i].html)
+			add_body(e, bodies, "describing", "text/html", language,
+				 e->content->parts[index].pages[i].html);
+	}
+}
+
+/* ---- the target */
+
+static void add_point(struct exporter *e, cJSON *selectors, const cJSON *xyz)
+{
+	static const char *const axes[] = { "x", "y", "z" };
+	cJSON *selector = add_object(e, selectors, NULL);
+
+	if (!selector)
+		return;
+	add_text(e, selector, "type", "PointSelector");
+	for (int i = 0; i < 3; i++)
+		add(e, selector, axes[i], cJSON_Duplicate(cJSON_GetArrayItem(xyz, i), true));
+}
+
+/* false: no selector of ours says such a region. */
+static bool add_region(struct exporter *e, cJSON *selectors, const cJSON *region)
+{
+	const char *kind = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(region, "kind"));
+	cJSON *selector;
+
+	if (!region)
+		return true;
+	if (kind && strcmp(kind, "point") == 0) {
+		add_point(e, selectors, cJSON_GetObjectItemCaseSensitive(region, "centre"));
+		return true;
+	}
+	for (size_t i = 0; kind && i < ANNOTATION_SELECTORS; i++) {
+		const struct annotation_selector *ours = &annotation_selectors[i];
+
+		if (strcmp(kind, ours->kind) != 0)
+			continue;
+		selector = add_object(e, selectors, NULL);
+		if (selector)
+			add_text(e, selector, "type", ours->type);
+		for (size_t m = 0; selector && m < ANNOTATION_MEMBERS_MOST && ours->members[m];
+		     m++) {
+			const cJSON *member =
+				cJSON_GetObjectItemCaseSensitive(region, ours->members[m]);
+
+			if (member)
+				add(e, selector, ours->members[m], cJSON_Duplicate(member, true));
+		}
+		return true;
+	}
+	return false;
+}
+
+static bool add_target(struct exporter *e, cJSON *item, const cJSON *part)
+{
+	const cJSON *anchor = cJSON_GetObjectItemCaseSensitive(part, "anchor");
+	cJSON *target = add_object(e, item, "target"), *source, *selectors;
+	bool known;
+
+	if (!target)
+		return true;
+	add_text(e, target, "type", "SpecificResource");
+	source = add_object(e, target, "source");
+	if (source) {
+		add_text(e, source, "id", "#model");
+		add_text(e, source, "type", "Model");
+	}
+	selectors = cJSON_CreateArray();
+	add(e, target, "selector", selectors);
+	if (e->failed)
+		return true;
+	known = add_region(e, selectors, cJSON_GetObjectItemCaseSensitive(part, "region"));
+	if (anchor)
+		add_point(e, selectors, anchor);
+	return known;
+}
+
+/* ---- the collection */
+
+static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32_t index)
+{
+	const struct content_part *read = &e->content->parts[index];
+	cJSON *item = add_object(e, items, NULL), *thumbnail;
+	char id[INFO_ID_BYTES_MOST + 2] = "#";
+
+	if (!item)
+		return;
+	strncat(id, read->id, sizeof(id) - 2);
+	add_text(e, item, "id", id);
+	add_text(e, item, "type", "Annotation");
+	add_text(e, item, "motivation", "describing");
+	add_credits(e, item, part);
+	if (read->thumbnail) {
+		thumbnail = add_object(e, item, "schema:thumbnailUrl");
+		if (thumbnail)
+			add_text(e, thumbnail, "id", read->thumbnail);
+	}
+	add_bodies(e, item, part, index);
+	if (!e->failed && !add_target(e, item, part))
+		content_complain((struct content *)e->content, true, "parts.json", read->line,
+				 "part \"%s\": no selector says a region of its kind, see "
+				 "docs/annotations.md; give it a box, sphere or prism",
+				 read->id);
+}
+
+/* tours: as tours.json has them, which no other tool reads; NULL: none. */
+static cJSON *make_collection(struct exporter *e, const cJSON *json, const cJSON *tours)
+{
+	cJSON *collection = cJSON_CreateObject(), *page, *items;
+	const cJSON *part;
+	uint32_t index = 0;
+
+	if (!collection)
+		return NULL;
+	add(e, collection, "@context", cJSON_Parse(context));
+	add_text(e, collection, "id", "#parts");
+	add_text(e, collection, "type", "AnnotationCollection");
+	add(e, collection, "total", cJSON_CreateNumber(e->content->part_count));
+	add_credits(e, collection, json);
+	if (e->content->tour_count > 0)
+		add(e, collection, "tours", cJSON_Duplicate(tours, true));
+	page = add_object(e, collection, "first");
+	items = cJSON_CreateArray();
+	if (page) {
+		add_text(e, page, "id", "#page");
+		add_text(e, page, "type", "AnnotationPage");
+		add(e, page, "startIndex", cJSON_CreateNumber(0));
+		add(e, page, "items", items);
+	} else {
+		cJSON_Delete(items);
+	}
+	cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(json, "parts"))
+	{
+		if (e->failed)
+			break;
+		add_part(e, items, part, index++);
+	}
+	if (e->failed) {
+		cJSON_Delete(collection);
+		return NULL;
+	}
+	return collection;
+}
+
+static int list_pictures(struct annotations *out, const struct content *content)
+{
+	out->pictures = calloc((size_t)content->picture_count + 1, sizeof(*out->pictures));
+	if (!out->pictures)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < content->picture_count; i++) {
+		out->pictures[i] = strdup(content->pictures[i].name);
+		if (!out->pictures[i])
+			return -ENOMEM;
+		out->picture_count++;
+	}
+	return 0;
+}
+
+static int write_collection(struct annotations *out, struct content *content, const cJSON *json,
+			    const cJSON *tours)
+{
+	struct exporter exporter = { .content = content };
+	cJSON *collection = make_collection(&exporter, json, tours);
+	char *text = collection ? cJSON_Print(collection) : NULL;
+	int rc = text ? 0 : -ENOMEM;
+
+	if (text) {
+		buffer_put(&out->json, text, strlen(text));
+		buffer_put_u8(&out->json, '\n');
+		rc = out->json.error;
+	}
+	cJSON_free(text);
+	cJSON_Delete(collection);
+	out->count = content->part_count;
+	return rc == 0 && content->error_count > 0 ? -EINVAL : rc;
+}
+
+/* A file's text again as JSON: the folder's own readers have judged it, or will. */
+static int read_json(cJSON **out, struct content *content, const char *name)
+{
+	struct buffer text;
+	char path[PATH_MAX];
+	int rc = -ENAMETOOLONG;
+
+	*out = NULL;
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	if (content_path(content, path, sizeof(path), name))
+		rc = buffer_read_file(&text, path);
+	if (rc == 0)
+		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
+	buffer_finish(&text);
+	return rc;
+}
+
+int annotations_export(struct annotations *out, const struct annotations_export_options *options)
+{
+	const char *languages[INFO_LANGUAGES_MOST] = { "en" };
+	struct info_build_options build = { .folder = options->folder,
+					    .languages = options->languages,
+					    .language_count = options->language_count,
+					    .complaint = options->complaint,
+					    .complaint_data = options->complaint_data };
+	struct content content = { .options = &build };
+	cJSON *json, *tours = NULL;
+	int rc = read_json(&json, &content, "parts.json");
+
+	*out = (struct annotations){ 0 };
+	buffer_init(&out->json, ANNOTATIONS_BYTES_MOST);
+	if (rc == 0 && !build.languages) {
+		build.languages = languages;
+		build.language_count = annotation_languages(json, languages);
+		if (build.language_count == 0) /* nothing but faults, or no parts */
+			build.language_count = 1;
+	}
+	if (rc == 0 && !content_languages_are_sane(&build)) {
+		content_complain(&content, true, "parts.json", 0,
+				 "titles are in more than %d languages, or in what is no "
+				 "language's code: name those to take",
+				 INFO_LANGUAGES_MOST);
+		rc = -EINVAL;
+	}
+	if (rc == 0)
+		rc = content_read_parts(&content);
+	if (rc == 0)
+		rc = content_read_tours(&content);
+	if (rc == 0 && content.tour_count > 0)
+		rc = read_json(&tours, &content, "tours.json");
+	if (rc == 0 && content.part_count > 0)
+		rc = content_read_pages(&content);
+	if (rc == 0 && content.error_count > 0)
+		rc = -EINVAL;
+	if (rc == 0)
+		rc = write_collection(out, &content, json,
+				      cJSON_GetObjectItemCaseSensitive(tours, "tours"));
+	if (rc == 0)
+		rc = list_pictures(out, &content);
+	if (rc < 0)
+		annotations_finish(out);
+	cJSON_Delete(json);
+	cJSON_Delete(tours);
+	content_finish(&content);
+	return rc;
+}

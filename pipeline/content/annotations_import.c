@@ -1,0 +1,526 @@
+/* A file of annotations, ours or another tool's, into parts.json, pages/ and pictures/. All of it
+ * is read and judged before anything is written; what came of it is then checked by info_build's
+ * own readers, and taken away again where they refuse it. */
+#include <errno.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "pipeline/content/annotations_private.h"
+#include "pipeline/content/json_lines.h"
+
+void importer_complain(struct importer *im, bool is_error, unsigned line, const char *text, ...)
+{
+	const struct annotations_import_options *options = im->options;
+	char message[512];
+	va_list args;
+
+	va_start(args, text);
+	vsnprintf(message, sizeof(message), text, args);
+	va_end(args);
+	im->error_count += is_error;
+	if (options->complaint)
+		options->complaint(options->complaint_data, is_error, options->file, line, message);
+	else if (is_error)
+		log_error("storage", "%s:%u: %s", options->file, line, message);
+	else
+		log_warn("storage", "%s:%u: %s", options->file, line, message);
+}
+
+static const char *string_of(const cJSON *object, const char *key)
+{
+	return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
+}
+
+static const char *item_id(const struct importer *im)
+{
+	const char *id = string_of(im->item, "id");
+
+	return id ? id : "without id";
+}
+
+static void add(struct importer *im, cJSON *object, const char *key, cJSON *value)
+{
+	if (!value || !cJSON_AddItemToObject(object, key, value)) {
+		cJSON_Delete(value);
+		im->failed = true;
+	}
+}
+
+/* The object of that key, made where it is missing; NULL: no memory. */
+static cJSON *object_of(struct importer *im, cJSON *parent, const char *key)
+{
+	cJSON *found = cJSON_GetObjectItemCaseSensitive(parent, key);
+
+	if (found)
+		return found;
+	add(im, parent, key, cJSON_CreateObject());
+	return cJSON_GetObjectItemCaseSensitive(parent, key);
+}
+
+/* One thing or a list of things: the first; the next is ->next of what a list gives. */
+static const cJSON *first_of(const cJSON *one_or_many)
+{
+	return cJSON_IsArray(one_or_many) ? one_or_many->child : one_or_many;
+}
+
+static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
+{
+	return cJSON_IsArray(one_or_many) ? at->next : NULL;
+}
+
+/* ---- the id */
+
+/* What stands behind the last # or / of an IRI, in the letters of an id. */
+static void read_id(struct importer *im)
+{
+	const char *iri = string_of(im->item, "id");
+	char id[INFO_ID_BYTES_MOST + 1];
+	size_t size = 0;
+
+	for (const char *p = iri; p && *p; p++) {
+		if (*p == '#' || *p == '/' || *p == ':')
+			size = 0;
+		else if (size < INFO_ID_BYTES_MOST)
+			id[size++] = *p >= 'A' && *p <= 'Z' ? (char)(*p + 32) : *p;
+	}
+	id[size] = 0;
+	for (size_t i = 0; i < size; i++)
+		if (!strchr("abcdefghijklmnopqrstuvwxyz0123456789-_", id[i]))
+			id[i] = '-';
+	if (size == 0)
+		importer_complain(
+			im, true, im->line,
+			"annotation without an id that can name a part: give it an \"id\" such as "
+			"\"#gate\"");
+	for (const cJSON *other = im->parts->child; other; other = other->next)
+		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
+			importer_complain(
+				im, true, im->line,
+				"annotation \"%.80s\": another one is part \"%s\" already: give it "
+				"another \"id\"",
+				iri, id);
+	add(im, im->part, "id", cJSON_CreateString(id));
+}
+
+/* ---- credits */
+
+static bool is_tagged(const cJSON *value)
+{
+	return string_of(value, "@value") && string_of(value, "@language");
+}
+
+/* {"@value": ..., "@language": ...}, or a list of them, into texts by language. */
+static cJSON *untagged(struct importer *im, const cJSON *said)
+{
+	cJSON *texts = cJSON_CreateObject();
+
+	for (const cJSON *one = first_of(said); one && texts; one = next_of(said, one))
+		if (is_tagged(one))
+			add(im, texts, string_of(one, "@language"),
+			    cJSON_CreateString(string_of(one, "@value")));
+	return texts;
+}
+
+static cJSON *credit_of(struct importer *im, const cJSON *said)
+{
+	const cJSON *first = first_of(said);
+	const char *name = string_of(first, "name"); /* of an agent, as the W3C's creator is */
+
+	if (first && is_tagged(first))
+		return untagged(im, said);
+	if (name)
+		return cJSON_CreateString(name);
+	if (string_of(first, "id"))
+		return cJSON_CreateString(string_of(first, "id"));
+	return cJSON_Duplicate(said, true);
+}
+
+/* dcterms:..., else dc:..., else the W3C's own creator and rights. */
+static void read_credits(struct importer *im, const cJSON *from, cJSON *to)
+{
+	static const char *const prefixes[] = { "dcterms:", "dc:", "" };
+
+	for (size_t i = 0; i < ANNOTATION_ELEMENTS; i++) {
+		const char *element = annotation_elements[i];
+		const cJSON *said = NULL;
+
+		for (size_t p = 0; p < ARRAY_COUNT(prefixes) && !said; p++) {
+			char term[40];
+
+			if (p == 2 && strcmp(element, "creator") != 0 &&
+			    strcmp(element, "rights") != 0)
+				continue;
+			snprintf(term, sizeof(term), "%s%s", prefixes[p], element);
+			said = cJSON_GetObjectItemCaseSensitive(from, term);
+		}
+		if (said)
+			add(im, object_of(im, to, "credits"), element, credit_of(im, said));
+	}
+}
+
+/* ---- the body */
+
+static void add_page(struct importer *im, const char *language, const char *html)
+{
+	struct page_file *grown = realloc(im->pages, (im->page_count + 1) * sizeof(*im->pages));
+	struct page_file page = { .html = html };
+
+	if (!grown) {
+		im->failed = true;
+		return;
+	}
+	im->pages = grown;
+	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", string_of(im->part, "id"),
+		 language);
+	for (uint32_t i = 0; i < im->page_count; i++)
+		if (strcmp(grown[i].name, page.name) == 0) {
+			importer_complain(im, true, im->line,
+					  "annotation \"%.80s\": two pages in \"%.16s\": leave one",
+					  item_id(im), language);
+			return;
+		}
+	grown[im->page_count++] = page;
+}
+
+static const char *key_of_purpose(const char *purpose)
+{
+	for (size_t i = 0; i < ANNOTATION_TEXTS; i++)
+		if (strcmp(purpose, annotation_texts[i].purpose) == 0)
+			return annotation_texts[i].key;
+	if (strcmp(purpose, "tagging") == 0)
+		return "title";
+	return strcmp(purpose, "commenting") == 0 ? "caption" : NULL;
+}
+
+static bool is_language(const char *code)
+{
+	const struct info_build_options one = { .languages = &code, .language_count = 1 };
+
+	return content_languages_are_sane(&one);
+}
+
+static void read_body(struct importer *im, const cJSON *body)
+{
+	const char *value = cJSON_IsString(body) ? NULL : string_of(body, "value");
+	const char *language =
+		cJSON_GetStringValue(first_of(cJSON_GetObjectItemCaseSensitive(body, "language")));
+	const char *purpose =
+		cJSON_GetStringValue(first_of(cJSON_GetObjectItemCaseSensitive(body, "purpose")));
+	const char *format = string_of(body, "format");
+	const char *key = key_of_purpose(purpose ? purpose : "describing");
+
+	if (!language)
+		language = im->language;
+	if (!value || !key) {
+		importer_complain(
+			im, false, im->line,
+			"annotation \"%.80s\": a body %s is left out: what is kept are "
+			"TextualBody with purpose identifying, describing, commenting or tagging",
+			item_id(im), value ? "of another purpose" : "without \"value\"");
+		return;
+	}
+	if (!is_language(language)) {
+		importer_complain(
+			im, true, im->line,
+			"annotation \"%.80s\": \"%.40s\" is no language's code: write such as \"en\"",
+			item_id(im), language);
+		return;
+	}
+	if (format && strcmp(format, "text/html") == 0) {
+		add_page(im, language, value);
+		return;
+	}
+	if (cJSON_HasObjectItem(object_of(im, im->part, key), language))
+		importer_complain(im, true, im->line,
+				  "annotation \"%.80s\": two %ss in \"%.16s\": leave one",
+				  item_id(im), key, language);
+	else
+		add(im, object_of(im, im->part, key), language, cJSON_CreateString(value));
+}
+
+static void read_bodies(struct importer *im)
+{
+	const cJSON *bodies = cJSON_GetObjectItemCaseSensitive(im->item, "body");
+	const uint32_t pages_before = im->page_count;
+
+	for (const cJSON *body = first_of(bodies); body && !im->failed;
+	     body = next_of(bodies, body))
+		read_body(im, body);
+	if (string_of(im->item, "bodyValue") && !bodies)
+		importer_complain(
+			im, false, im->line,
+			"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
+			item_id(im));
+	if (!cJSON_HasObjectItem(im->part, "title"))
+		importer_complain(
+			im, true, im->line,
+			"annotation \"%.80s\" has no title: add a TextualBody with \"purpose\": "
+			"\"identifying\"",
+			item_id(im));
+	if (im->page_count == pages_before)
+		add(im, im->part, "page", cJSON_CreateFalse());
+}
+
+static void read_thumbnail(struct importer *im)
+{
+	const cJSON *said = cJSON_GetObjectItemCaseSensitive(im->item, "schema:thumbnailUrl");
+	const char *name = cJSON_IsObject(said) ? string_of(said, "id") : NULL;
+
+	if (name)
+		add(im, im->part, "thumbnail", cJSON_CreateString(name));
+	else if (said)
+		importer_complain(im, false, im->line,
+				  "annotation \"%.80s\": its thumbnail is left out: "
+				  "write {\"id\": \"pictures/NAME\"}",
+				  item_id(im));
+}
+
+/* ---- the target */
+
+static cJSON *point_of(const struct importer *im, const cJSON *selector)
+{
+	const cJSON *x = cJSON_GetObjectItemCaseSensitive(selector, "x");
+	const cJSON *y = cJSON_GetObjectItemCaseSensitive(selector, "y");
+	const cJSON *z = cJSON_GetObjectItemCaseSensitive(selector, "z");
+	double values[3];
+
+	if (!cJSON_IsNumber(x) || !cJSON_IsNumber(y) || !cJSON_IsNumber(z))
+		return NULL;
+	values[0] = x->valuedouble;
+	values[1] = im->options->y_is_up ? -z->valuedouble : y->valuedouble;
+	values[2] = im->options->y_is_up ? y->valuedouble : z->valuedouble;
+	return cJSON_CreateDoubleArray(values, 3);
+}
+
+static cJSON *region_of(struct importer *im, const cJSON *selector)
+{
+	const char *type = string_of(selector, "type");
+
+	for (size_t i = 0; type && i < ANNOTATION_SELECTORS; i++) {
+		const struct annotation_selector *ours = &annotation_selectors[i];
+		cJSON *region;
+
+		if (strcmp(type, ours->type) != 0)
+			continue;
+		region = cJSON_CreateObject();
+		if (!region)
+			return NULL;
+		add(im, region, "kind", cJSON_CreateString(ours->kind));
+		for (size_t m = 0; m < ANNOTATION_MEMBERS_MOST && ours->members[m]; m++) {
+			const cJSON *member =
+				cJSON_GetObjectItemCaseSensitive(selector, ours->members[m]);
+
+			if (member)
+				add(im, region, ours->members[m], cJSON_Duplicate(member, true));
+		}
+		return region;
+	}
+	return NULL;
+}
+
+/* Of two points the first is the region, the last the anchor. */
+static void take_point(struct importer *im, cJSON *point)
+{
+	cJSON *anchor = cJSON_DetachItemFromObjectCaseSensitive(im->part, "anchor");
+
+	if (anchor && !cJSON_HasObjectItem(im->part, "region")) {
+		cJSON *region = object_of(im, im->part, "region");
+
+		add(im, region, "kind", cJSON_CreateString("point"));
+		add(im, region, "centre", anchor);
+	} else {
+		cJSON_Delete(anchor);
+	}
+	add(im, im->part, "anchor", point);
+}
+
+static void read_selector(struct importer *im, const cJSON *selector)
+{
+	const char *type = string_of(selector, "type");
+	cJSON *found;
+
+	if (type && strcmp(type, "PointSelector") == 0) {
+		found = point_of(im, selector);
+		if (found)
+			take_point(im, found);
+		return;
+	}
+	found = region_of(im, selector);
+	if (found && !cJSON_HasObjectItem(im->part, "region"))
+		add(im, im->part, "region", found);
+	else
+		cJSON_Delete(found);
+}
+
+/* false: nothing there says where on a model the part is. */
+static bool read_target(struct importer *im)
+{
+	const cJSON *target = first_of(cJSON_GetObjectItemCaseSensitive(im->item, "target"));
+	const cJSON *selectors = cJSON_GetObjectItemCaseSensitive(target, "selector");
+
+	for (const cJSON *s = first_of(selectors); s && !im->failed; s = next_of(selectors, s))
+		read_selector(im, s);
+	if (cJSON_HasObjectItem(im->part, "region") || cJSON_HasObjectItem(im->part, "anchor"))
+		return true;
+	selectors = first_of(selectors);
+	im->report->skipped_count += im->options->skip_unknown;
+	importer_complain(
+		im, !im->options->skip_unknown, im->line,
+		"annotation \"%.80s\": %s%.40s%s says no place on a model%s: use PointSelector with "
+		"x, y and z, SphereSelector, BoxSelector, PrismSelector or FaceListSelector",
+		item_id(im), selectors ? "selector \"" : "a target without selector",
+		selectors && string_of(selectors, "type") ? string_of(selectors, "type") : "",
+		selectors ? "\"" : "", im->options->skip_unknown ? ", left out" : "");
+	return false;
+}
+
+/* ---- annotations */
+
+static void read_item(struct importer *im, const cJSON *item, unsigned line)
+{
+	im->item = item;
+	im->line = line;
+	im->part = cJSON_CreateObject();
+	if (!im->part || !cJSON_AddItemToArray(im->parts, im->part)) {
+		cJSON_Delete(im->part);
+		im->failed = true;
+		return;
+	}
+	read_id(im);
+	if (im->failed || !read_target(im)) {
+		cJSON_DetachItemViaPointer(im->parts, im->part);
+		cJSON_Delete(im->part);
+		return;
+	}
+	read_bodies(im);
+	read_thumbnail(im);
+	read_credits(im, item, im->part);
+	im->report->part_count++;
+}
+
+/* The annotations of a collection, a page, a list, or one alone. NULL after a complaint. */
+static const cJSON *find_items(struct importer *im, const cJSON *json)
+{
+	const cJSON *page = cJSON_GetObjectItemCaseSensitive(json, "first");
+
+	if (cJSON_IsArray(json))
+		return json;
+	if (cJSON_IsString(page)) {
+		importer_complain(
+			im, true, 1,
+			"the collection's first page is elsewhere (\"%.80s\"): fetch it and import "
+			"that file",
+			page->valuestring);
+		return NULL;
+	}
+	page = page ? page : json;
+	if (cJSON_HasObjectItem(page, "next")) {
+		importer_complain(
+			im, true, 1,
+			"there are more pages than the first: put all \"items\" into one");
+		return NULL;
+	}
+	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(page, "items")))
+		return cJSON_GetObjectItemCaseSensitive(page, "items");
+	if (cJSON_HasObjectItem(json, "target"))
+		return json;
+	importer_complain(
+		im, true, 1,
+		"holds no annotations: write an AnnotationCollection whose \"first\" page has "
+		"\"items\"");
+	return NULL;
+}
+
+static void read_items(struct importer *im, const cJSON *json, const char *text)
+{
+	const cJSON *items = find_items(im, json);
+	size_t count = cJSON_IsArray(items) ? (size_t)cJSON_GetArraySize(items) : 1, at = 0;
+	unsigned *lines;
+
+	if (!items)
+		return;
+	lines = calloc(count + 1, sizeof(*lines));
+	if (!lines) {
+		im->failed = true;
+		return;
+	}
+	json_item_lines(text, "items", lines, count);
+	read_credits(im, json, im->parts_file);
+	for (const cJSON *item = first_of(items); item && !im->failed; item = next_of(items, item))
+		read_item(im, item, lines[at++]);
+	free(lines);
+}
+
+/* ---- the whole */
+
+static int read_file(struct importer *im, cJSON **json, struct buffer *text)
+{
+	const char *end = NULL;
+	int rc = buffer_read_file(text, im->options->file);
+
+	if (rc == 0)
+		buffer_put_u8(text, 0);
+	if (rc == 0 && text->error)
+		rc = text->error;
+	if (rc == -ENOMEM)
+		return rc;
+	if (rc < 0) {
+		importer_complain(im, true, 0, "cannot be read: %s", strerror(-rc));
+		return -EINVAL;
+	}
+	*json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
+	if (*json)
+		return 0;
+	importer_complain(im, true, json_line_of((char *)text->data, end),
+			  "is not JSON from here on: look for a missing comma, quote or bracket");
+	return -EINVAL;
+}
+
+static int import(struct importer *im)
+{
+	struct buffer text;
+	cJSON *json = NULL;
+	int rc;
+
+	buffer_init(&text, ANNOTATIONS_BYTES_MOST);
+	rc = read_file(im, &json, &text);
+	if (rc == 0 && importer_has_room(im)) {
+		im->parts_file = cJSON_CreateObject();
+		add(im, im->parts_file, "parts", cJSON_CreateArray());
+		im->parts = cJSON_GetObjectItemCaseSensitive(im->parts_file, "parts");
+		if (im->parts)
+			read_items(im, json, (const char *)text.data);
+		im->tours = cJSON_GetObjectItemCaseSensitive(json, "tours");
+		if (im->failed)
+			rc = -ENOMEM;
+	}
+	if (rc == 0 && im->error_count > 0)
+		rc = -EINVAL;
+	if (rc == 0)
+		rc = importer_write(im);
+	buffer_finish(&text);
+	cJSON_Delete(json);
+	return rc;
+}
+
+int annotations_import(struct annotations_imported *out,
+		       const struct annotations_import_options *options)
+{
+	struct importer im = { .options = options,
+			       .report = out,
+			       .language = options->language ? options->language : "en" };
+	int rc;
+
+	*out = (struct annotations_imported){ 0 };
+	rc = import(&im);
+	cJSON_Delete(im.parts_file);
+	free(im.pages);
+	for (size_t i = 0; i < im.written_count; i++)
+		free(im.written[i]);
+	free(im.written);
+	return rc;
+}

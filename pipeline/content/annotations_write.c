@@ -1,0 +1,209 @@
+/* What an import has read into a content folder, and out of it again where the folder's own readers
+ * refuse it. */
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pipeline/content/annotations_private.h"
+
+static int note_written(struct importer *im, const char *path)
+{
+	char **grown = realloc(im->written, (im->written_count + 1) * sizeof(*grown));
+
+	if (!grown)
+		return -ENOMEM;
+	im->written = grown;
+	grown[im->written_count] = strdup(path);
+	return grown[im->written_count] ? (im->written_count++, 0) : -ENOMEM;
+}
+
+static int write_file(struct importer *im, const char *name, struct bytes bytes)
+{
+	char path[PATH_MAX];
+	int rc;
+
+	if (snprintf(path, sizeof(path), "%s/%s", im->options->folder, name) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	rc = note_written(im, path);
+	if (rc == 0)
+		rc = bytes_write_file(bytes, path);
+	if (rc < 0)
+		importer_complain(im, true, 0, "%s cannot be written: %s", path, strerror(-rc));
+	return rc;
+}
+
+static int make_folder(struct importer *im, const char *name)
+{
+	char path[PATH_MAX];
+
+	if (snprintf(path, sizeof(path), "%s/%s", im->options->folder, name) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	if (mkdir(path, 0755) == 0)
+		return note_written(im, path);
+	if (errno == EEXIST)
+		return 0;
+	importer_complain(im, true, 0, "%s cannot be made: %s", path, strerror(errno));
+	return -EIO;
+}
+
+static int copy_picture(struct importer *im, const char *from, const char *name)
+{
+	char to[PATH_MAX], relative[300];
+	struct buffer file;
+	int rc;
+
+	snprintf(relative, sizeof(relative), "pictures/%s", name);
+	if (snprintf(to, sizeof(to), "%s/%s", im->options->folder, relative) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	if (access(to, F_OK) == 0) /* the folder's own, or the same one */
+		return 0;
+	buffer_init(&file, 64 << 20);
+	rc = buffer_read_file(&file, from);
+	if (rc < 0)
+		importer_complain(im, true, 0, "%s cannot be read: %s", from, strerror(-rc));
+	else
+		rc = write_file(im, relative, buffer_bytes(&file));
+	buffer_finish(&file);
+	im->report->picture_count += rc == 0;
+	return rc;
+}
+
+/* PATH_MAX bytes: of a file, or ".". */
+static void folder_of(const char *file, char *folder)
+{
+	char *slash;
+
+	snprintf(folder, PATH_MAX, "%s", file);
+	slash = strrchr(folder, '/');
+	if (!slash)
+		snprintf(folder, PATH_MAX, ".");
+	else
+		slash[slash == folder] = 0;
+}
+
+/* All that lie beside the file: which of them the pages show is not known yet. */
+static int copy_pictures(struct importer *im)
+{
+	char folder[PATH_MAX], from[2 * PATH_MAX];
+	struct dirent **entries = NULL;
+	int count, rc = 0;
+
+	folder_of(im->options->file, folder);
+	snprintf(from, sizeof(from), "%s/pictures", folder);
+	count = scandir(from, &entries, NULL, alphasort);
+	if (count > 0)
+		rc = make_folder(im, "pictures");
+	for (int i = 0; i < count; i++) {
+		struct stat info;
+
+		snprintf(from, sizeof(from), "%s/pictures/%s", folder, entries[i]->d_name);
+		if (rc == 0 && entries[i]->d_name[0] != '.' && stat(from, &info) == 0 &&
+		    S_ISREG(info.st_mode))
+			rc = copy_picture(im, from, entries[i]->d_name);
+		free(entries[i]);
+	}
+	free(entries);
+	return rc;
+}
+
+/* tours.json around what the file has of it. */
+static int write_tours(struct importer *im)
+{
+	cJSON *file = cJSON_CreateObject();
+	char *text = NULL;
+	int rc = -ENOMEM;
+
+	if (file && cJSON_AddItemToObject(file, "tours", cJSON_Duplicate(im->tours, true)))
+		text = cJSON_Print(file);
+	if (text)
+		rc = write_file(im, "tours.json",
+				(struct bytes){ (const uint8_t *)text, strlen(text) });
+	cJSON_free(text);
+	cJSON_Delete(file);
+	return rc;
+}
+
+static int write_all(struct importer *im)
+{
+	char *text = cJSON_Print(im->parts_file);
+	int rc = text ? make_folder(im, "") : -ENOMEM;
+
+	if (rc == 0)
+		rc = write_file(im, "parts.json",
+				(struct bytes){ (const uint8_t *)text, strlen(text) });
+	if (rc == 0 && im->tours)
+		rc = write_tours(im);
+	if (rc == 0)
+		rc = make_folder(im, "pages");
+	for (uint32_t i = 0; i < im->page_count && rc == 0; i++)
+		rc = write_file(im, im->pages[i].name,
+				(struct bytes){ (const uint8_t *)im->pages[i].html,
+						strlen(im->pages[i].html) });
+	if (rc == 0)
+		rc = copy_pictures(im);
+	im->report->page_count = im->page_count;
+	cJSON_free(text);
+	return rc;
+}
+
+/* As a release of all its languages would be. */
+static int check_written(struct importer *im)
+{
+	const char *languages[INFO_LANGUAGES_MOST] = { "en" };
+	struct info_build_options build = { .folder = im->options->folder,
+					    .languages = languages,
+					    .complaint = im->options->complaint,
+					    .complaint_data = im->options->complaint_data };
+	struct info_built built;
+	int rc;
+
+	build.language_count = annotation_languages(im->parts_file, languages);
+	if (build.language_count == 0)
+		build.language_count = 1;
+	rc = info_build(&built, &build);
+	if (rc == 0)
+		info_built_finish(&built);
+	return rc;
+}
+
+static void take_away(struct importer *im)
+{
+	for (size_t i = im->written_count; i-- > 0;)
+		remove(im->written[i]); /* folders are empty by then, or not ours */
+}
+
+bool importer_has_room(struct importer *im)
+{
+	static const char *const names[] = { "parts.json", "pages", "tours.json" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		char path[PATH_MAX];
+
+		snprintf(path, sizeof(path), "%s/%s", im->options->folder, names[i]);
+		if (i == 1 && rmdir(path) == 0) /* an empty one is as good as none */
+			continue;
+		if (access(path, F_OK) < 0)
+			continue;
+		importer_complain(
+			im, true, 0,
+			"%s is there already: import into a folder without parts and pages", path);
+		return false;
+	}
+	return true;
+}
+
+int importer_write(struct importer *im)
+{
+	int rc = write_all(im);
+
+	if (rc == 0)
+		rc = check_written(im);
+	if (rc < 0)
+		take_away(im);
+	return rc;
+}

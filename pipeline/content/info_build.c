@@ -1,0 +1,471 @@
+/* Content in memory into the SQLite image. Everything is inserted in one fixed order into a fresh
+ * database with nothing of the clock, the machine or the folder's path in it, and the result is
+ * vacuumed, so the same content gives the same bytes. */
+#include <errno.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "format/page.h"
+#include "pipeline/content/info_content.h"
+#include "storage/info_index.h"
+#include "storage/info_schema.h"
+
+/* The paper's three tables, and what relational honesty adds: the identity of an information
+ * (one may be assigned to several parts and exists in several languages), corners, pictures and
+ * languages. docs/information.md explains each. */
+static const char schema[] =
+	"PRAGMA page_size = 4096;"
+	"PRAGMA foreign_keys = ON;"
+	"CREATE TABLE language(position INTEGER PRIMARY KEY, code TEXT NOT NULL UNIQUE);"
+	"CREATE TABLE picture(picture_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
+	" hash BLOB NOT NULL CHECK(length(hash) = 16), bytes INTEGER NOT NULL,"
+	" media_type TEXT NOT NULL CHECK(media_type IN ('image/jpeg','image/png')),"
+	" width_px INTEGER NOT NULL, height_px INTEGER NOT NULL);"
+	"CREATE TABLE identified_part(part_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
+	" region_kind TEXT NOT NULL CHECK(region_kind IN ('point','sphere','box','prism')),"
+	" centre_x REAL NOT NULL, centre_y REAL NOT NULL, centre_z REAL NOT NULL,"
+	" anchor_x REAL NOT NULL, anchor_y REAL NOT NULL, anchor_z REAL NOT NULL,"
+	" radius REAL, half_x REAL, half_y REAL, half_z REAL, turn_deg REAL, floor REAL, roof REAL);"
+	"CREATE TABLE part_corner(part_id INTEGER NOT NULL REFERENCES identified_part,"
+	" position INTEGER NOT NULL, x REAL NOT NULL, y REAL NOT NULL,"
+	" PRIMARY KEY(part_id, position)) WITHOUT ROWID;"
+	"CREATE TABLE information(information_id INTEGER PRIMARY KEY,"
+	" kind TEXT NOT NULL CHECK(kind IN ('card','page')),"
+	" thumbnail INTEGER REFERENCES picture);"
+	"CREATE TABLE assigned_information(part_id INTEGER NOT NULL REFERENCES identified_part,"
+	" information_id INTEGER NOT NULL REFERENCES information, position INTEGER NOT NULL,"
+	" PRIMARY KEY(part_id, information_id)) WITHOUT ROWID;"
+	"CREATE TABLE information_contents(content_id INTEGER PRIMARY KEY,"
+	" information_id INTEGER NOT NULL REFERENCES information,"
+	" language INTEGER NOT NULL REFERENCES language, title TEXT, reading TEXT, caption TEXT,"
+	" body TEXT, UNIQUE(information_id, language));"
+	"CREATE TABLE dublin_core(information_id INTEGER NOT NULL REFERENCES information,"
+	" position INTEGER NOT NULL, element TEXT NOT NULL, language INTEGER REFERENCES language,"
+	" value TEXT NOT NULL, PRIMARY KEY(information_id, position)) WITHOUT ROWID;"
+	"CREATE TABLE content_picture(content_id INTEGER NOT NULL REFERENCES information_contents,"
+	" position INTEGER NOT NULL, picture_id INTEGER NOT NULL REFERENCES picture,"
+	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
+
+/* Where there are tours: an image of a folder without them is of the version before, for programs
+ * that know no later one. */
+static const char tour_schema[] =
+	"CREATE TABLE tour(tour_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
+	" attract INTEGER NOT NULL, thumbnail INTEGER REFERENCES picture);"
+	"CREATE TABLE tour_contents(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" language INTEGER NOT NULL REFERENCES language, title TEXT, caption TEXT,"
+	" PRIMARY KEY(tour_id, language)) WITHOUT ROWID;"
+	"CREATE TABLE tour_stop(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" position INTEGER NOT NULL, eye_x REAL NOT NULL, eye_y REAL NOT NULL,"
+	" eye_z REAL NOT NULL, target_x REAL NOT NULL, target_y REAL NOT NULL,"
+	" target_z REAL NOT NULL, stay_s REAL NOT NULL, travel_s REAL NOT NULL,"
+	" part_id INTEGER REFERENCES identified_part, PRIMARY KEY(tour_id, position))"
+	" WITHOUT ROWID;"
+	"CREATE TABLE tour_stop_contents(tour_id INTEGER NOT NULL REFERENCES tour,"
+	" position INTEGER NOT NULL, language INTEGER NOT NULL REFERENCES language,"
+	" caption TEXT NOT NULL, PRIMARY KEY(tour_id, position, language)) WITHOUT ROWID;";
+
+/* Sticky: after the first failure nothing happens any more; judged once. */
+struct writer {
+	sqlite3 *db;
+	sqlite3_stmt *statement;
+	int bound;
+	int code; /* SQLITE_OK or the first failure */
+};
+
+static void run(struct writer *w, const char *sql)
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_exec(w->db, sql, NULL, NULL, NULL);
+}
+
+static void prepare(struct writer *w, const char *sql)
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_prepare_v2(w->db, sql, -1, &w->statement, NULL);
+	w->bound = 0;
+}
+
+static void bind_int(struct writer *w, int64_t value)
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_bind_int64(w->statement, ++w->bound, value);
+}
+
+static void bind_real(struct writer *w, double value)
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_bind_double(w->statement, ++w->bound, value);
+}
+
+static void bind_text(struct writer *w, const char *text) /* NULL is NULL */
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_bind_text(w->statement, ++w->bound, text, -1, SQLITE_STATIC);
+}
+
+static void insert(struct writer *w)
+{
+	int code;
+
+	if (w->code == SQLITE_OK) {
+		code = sqlite3_step(w->statement);
+		w->code = code == SQLITE_DONE ? SQLITE_OK : code;
+	}
+	sqlite3_finalize(w->statement);
+	w->statement = NULL;
+}
+
+static void write_languages(struct writer *w, const struct info_build_options *options)
+{
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		prepare(w, "INSERT INTO language VALUES(?, ?)");
+		bind_int(w, i);
+		bind_text(w, options->languages[i]);
+		insert(w);
+	}
+}
+
+static void write_pictures(struct writer *w, const struct content *content)
+{
+	for (uint32_t i = 0; i < content->picture_count; i++) {
+		const struct content_picture *picture = &content->pictures[i];
+
+		prepare(w, "INSERT INTO picture VALUES(?, ?, ?, ?, ?, ?, ?)");
+		bind_int(w, i);
+		bind_text(w, picture->name);
+		if (w->code == SQLITE_OK)
+			w->code = sqlite3_bind_blob(w->statement, ++w->bound, picture->hash.bytes,
+						    HASH_BYTES, SQLITE_STATIC);
+		bind_int(w, picture->size);
+		bind_text(w, picture->media_type);
+		bind_int(w, picture->width_px);
+		bind_int(w, picture->height_px);
+		insert(w);
+	}
+}
+
+static void bind_vector(struct writer *w, const float v[3])
+{
+	for (int i = 0; i < 3; i++)
+		bind_real(w, v[i]);
+}
+
+static void write_part(struct writer *w, int64_t id, const struct content_part *part)
+{
+	static const char *const kinds[] = { "point", "sphere", "box", "prism" };
+	const struct info_region *region = &part->region;
+
+	prepare(w, "INSERT INTO identified_part VALUES(?,?,?, ?,?,?, ?,?,?, ?, ?,?,?, ?, ?,?)");
+	bind_int(w, id);
+	bind_text(w, part->id);
+	bind_text(w, kinds[region->kind]);
+	bind_vector(w, region->centre_m);
+	bind_vector(w, part->anchor_m);
+	bind_real(w, region->radius_m);
+	bind_vector(w, region->half_m);
+	bind_real(w, region->turn_deg);
+	bind_real(w, region->floor_m);
+	bind_real(w, region->roof_m);
+	insert(w);
+	for (uint32_t i = 0; i < region->corner_count; i++) {
+		prepare(w, "INSERT INTO part_corner VALUES(?,?,?,?)");
+		bind_int(w, id);
+		bind_int(w, i);
+		bind_real(w, region->corners_m[i][0]);
+		bind_real(w, region->corners_m[i][1]);
+		insert(w);
+	}
+}
+
+static void write_content(struct writer *w, int64_t information, uint32_t language,
+			  const struct content_part *part)
+{
+	const struct content_page *page = &part->pages[language];
+	int64_t content_id = information * INFO_LANGUAGES_MOST + language;
+
+	if (!part->titles[language] && !part->captions[language] && !page->html)
+		return;
+	prepare(w, "INSERT INTO information_contents VALUES(?,?,?, ?,?,?,?)");
+	bind_int(w, content_id);
+	bind_int(w, information);
+	bind_int(w, language);
+	bind_text(w, part->titles[language]);
+	bind_text(w, part->readings[language]);
+	bind_text(w, part->captions[language]);
+	bind_text(w, page->html);
+	insert(w);
+	for (uint32_t i = 0; i < page->picture_count; i++) {
+		prepare(w, "INSERT INTO content_picture VALUES(?,?,?)");
+		bind_int(w, content_id);
+		bind_int(w, i);
+		bind_int(w, page->pictures[i]);
+		insert(w);
+	}
+}
+
+/* Whole: what is said of all parts as well. */
+static void write_credits(struct writer *w, int64_t information, const struct content_part *part)
+{
+	for (uint32_t i = 0; i < part->credit_count; i++) {
+		const struct content_credit *credit = &part->credits[i];
+
+		prepare(w, "INSERT INTO dublin_core VALUES(?,?,?,?,?)");
+		bind_int(w, information);
+		bind_int(w, i);
+		bind_text(w, credit->element);
+		if (credit->language >= 0)
+			bind_int(w, credit->language);
+		else
+			w->bound++; /* NULL */
+		bind_text(w, credit->value);
+		insert(w);
+	}
+}
+
+static void write_information(struct writer *w, int64_t id, const struct content_part *part,
+			      uint32_t language_count)
+{
+	bool has_page = false;
+
+	for (uint32_t i = 0; i < language_count; i++)
+		has_page |= part->pages[i].html != NULL;
+	prepare(w, "INSERT INTO information VALUES(?,?,?)");
+	bind_int(w, id);
+	bind_text(w, has_page ? "page" : "card");
+	if (part->thumbnail_picture >= 0)
+		bind_int(w, part->thumbnail_picture);
+	insert(w);
+	prepare(w, "INSERT INTO assigned_information VALUES(?,?,0)");
+	bind_int(w, id);
+	bind_int(w, id);
+	insert(w);
+	for (uint32_t i = 0; i < language_count; i++)
+		write_content(w, id, i, part);
+	write_credits(w, id, part);
+}
+
+static void write_stop(struct writer *w, int64_t tour, int64_t position,
+		       const struct content_stop *stop)
+{
+	prepare(w, "INSERT INTO tour_stop VALUES(?,?, ?,?,?, ?,?,?, ?,?,?)");
+	bind_int(w, tour);
+	bind_int(w, position);
+	bind_vector(w, stop->view.eye_m);
+	bind_vector(w, stop->view.target_m);
+	bind_real(w, stop->view.stay_s);
+	bind_real(w, stop->view.travel_s);
+	if (stop->view.part >= 0)
+		bind_int(w, stop->view.part);
+	insert(w);
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		if (!stop->captions[i])
+			continue;
+		prepare(w, "INSERT INTO tour_stop_contents VALUES(?,?,?,?)");
+		bind_int(w, tour);
+		bind_int(w, position);
+		bind_int(w, i);
+		bind_text(w, stop->captions[i]);
+		insert(w);
+	}
+}
+
+static void write_tour(struct writer *w, int64_t id, const struct content_tour *tour)
+{
+	prepare(w, "INSERT INTO tour VALUES(?,?,?,?)");
+	bind_int(w, id);
+	bind_text(w, tour->id);
+	bind_int(w, tour->attract);
+	if (tour->thumbnail_picture >= 0)
+		bind_int(w, tour->thumbnail_picture);
+	insert(w);
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		if (!tour->titles[i] && !tour->captions[i])
+			continue;
+		prepare(w, "INSERT INTO tour_contents VALUES(?,?,?,?)");
+		bind_int(w, id);
+		bind_int(w, i);
+		bind_text(w, tour->titles[i]);
+		bind_text(w, tour->captions[i]);
+		insert(w);
+	}
+	for (uint32_t i = 0; i < tour->stop_count; i++)
+		write_stop(w, id, i, &tour->stops[i]);
+}
+
+static void write_tools(struct writer *w, unsigned tools)
+{
+	if (tools)
+		run(w, "CREATE TABLE tool(name TEXT PRIMARY KEY) WITHOUT ROWID");
+	for (unsigned i = 0; i < INFO_TOOL_NAMES; i++) {
+		if (!(tools & 1u << i))
+			continue;
+		prepare(w, "INSERT INTO tool VALUES(?)");
+		bind_text(w, info_tool_names[i]);
+		insert(w);
+	}
+}
+
+static void write_database(struct writer *w, const struct content *content)
+{
+	char pragmas[100];
+
+	snprintf(pragmas, sizeof(pragmas), "PRAGMA application_id = %d; PRAGMA user_version = %d;",
+		 INFO_APPLICATION_ID,
+		 content->tour_count > 0 ? INFO_SCHEMA_VERSION : INFO_SCHEMA_TOURLESS);
+	run(w, schema);
+	if (content->tour_count > 0)
+		run(w, tour_schema);
+	run(w, pragmas);
+	run(w, "BEGIN");
+	write_languages(w, content->options);
+	write_pictures(w, content);
+	for (uint32_t i = 0; i < content->part_count; i++) {
+		write_part(w, i, &content->parts[i]);
+		write_information(w, i, &content->parts[i], content->options->language_count);
+	}
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		write_tour(w, i, &content->tours[i]);
+	write_tools(w, content->options->tools);
+	if (w->code == SQLITE_OK)
+		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
+	run(w, "COMMIT");
+	run(w, "VACUUM");
+}
+
+static int encode(struct buffer *out, struct content *content)
+{
+	struct writer w = { 0 };
+	sqlite3_int64 size = 0;
+	unsigned char *image = NULL;
+	int rc = 0;
+
+	w.code = sqlite3_open(":memory:", &w.db);
+	write_database(&w, content);
+	if (w.code == SQLITE_OK) {
+		image = sqlite3_serialize(w.db, "main", &size, 0);
+		if (image)
+			buffer_put(out, image, (size_t)size);
+		rc = image ? out->error : -ENOMEM;
+	} else {
+		rc = w.code == SQLITE_NOMEM ? -ENOMEM : -EIO;
+		log_error("storage", "information database: %s", sqlite3_errmsg(w.db));
+	}
+	sqlite3_free(image);
+	sqlite3_close(w.db);
+	if (rc != -EFBIG)
+		return rc;
+	content_complain(content, true, "parts.json", 0,
+			 "titles and pages together are larger than %d MB: shorten the pages",
+			 OBJECT_BYTES_MOST >> 20);
+	return -EINVAL;
+}
+
+static int by_hash(const void *a, const void *b)
+{
+	const struct info_picture_file *left = a, *right = b;
+
+	return hash_compare(left->hash, right->hash);
+}
+
+/* Two names may hold the same bytes: one object. */
+static int list_pictures(struct info_built *out, struct content *content)
+{
+	uint32_t kept = 0;
+
+	out->pictures = calloc(content->picture_count + 1, sizeof(*out->pictures));
+	if (!out->pictures)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < content->picture_count; i++) {
+		struct content_picture *picture = &content->pictures[i];
+
+		out->pictures[i] = (struct info_picture_file){ picture->hash, picture->size,
+							       strdup(picture->name) };
+		out->picture_count = i + 1;
+		if (!out->pictures[i].name)
+			return -ENOMEM;
+	}
+	qsort(out->pictures, out->picture_count, sizeof(*out->pictures), by_hash);
+	for (uint32_t i = 0; i < out->picture_count; i++) {
+		if (kept > 0 && hash_equal(out->pictures[kept - 1].hash, out->pictures[i].hash))
+			free(out->pictures[i].name);
+		else
+			out->pictures[kept++] = out->pictures[i];
+	}
+	out->picture_count = kept;
+	return 0;
+}
+
+static void count(struct info_built *out, const struct content *content)
+{
+	out->part_count = content->part_count;
+	out->tour_count = content->tour_count;
+	for (uint32_t t = 0; t < content->tour_count; t++) {
+		out->tour_lines[t].tour = content->tours[t].line;
+		for (uint32_t i = 0; i < content->tours[t].stop_count; i++)
+			out->tour_lines[t].stops[i] = content->tours[t].stops[i].line;
+	}
+	for (uint32_t p = 0; p < content->part_count; p++)
+		for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++)
+			out->page_count += content->parts[p].pages[i].html != NULL;
+}
+
+bool content_languages_are_sane(const struct info_build_options *options)
+{
+	if (options->language_count < 1 || options->language_count > INFO_LANGUAGES_MOST)
+		return false;
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		const char *code = options->languages[i];
+		size_t size = strlen(code);
+
+		if (size < 2 || size > 16 ||
+		    strspn(code, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-") != size)
+			return false;
+		for (uint32_t k = 0; k < i; k++)
+			if (strcmp(code, options->languages[k]) == 0)
+				return false;
+	}
+	return true;
+}
+
+int info_build(struct info_built *out, const struct info_build_options *options)
+{
+	struct content content = { .options = options };
+	int rc = 0;
+
+	*out = (struct info_built){ 0 };
+	buffer_init(&out->database, OBJECT_BYTES_MOST);
+	if (!content_languages_are_sane(options))
+		content_complain(&content, true, "temple.ini", 0,
+				 "languages: give 1 to %d codes such as \"en fr km\", each once",
+				 INFO_LANGUAGES_MOST);
+	else if ((rc = content_read_parts(&content)) == 0)
+		rc = content_read_tours(&content);
+	if (rc == 0 && content.part_count > 0)
+		rc = content_read_pages(&content);
+	if (rc == 0 && content.error_count > 0)
+		rc = -EINVAL;
+	if (rc == 0)
+		rc = encode(&out->database, &content);
+	if (rc == 0)
+		rc = list_pictures(out, &content);
+	if (rc == 0)
+		count(out, &content);
+	else
+		info_built_finish(out);
+	content_finish(&content);
+	return rc;
+}
+
+void info_built_finish(struct info_built *built)
+{
+	if (!built)
+		return;
+	buffer_finish(&built->database);
+	for (uint32_t i = 0; i < built->picture_count; i++)
+		free(built->pictures[i].name);
+	free(built->pictures);
+	*built = (struct info_built){ 0 };
+}

@@ -1,0 +1,178 @@
+#include "pipeline/content/info_content.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "format/page.h"
+#include "format/picture.h"
+
+void content_complain(struct content *content, bool is_error, const char *file, unsigned line,
+		      const char *text, ...)
+{
+	const struct info_build_options *options = content->options;
+	char message[512];
+	va_list args;
+
+	va_start(args, text);
+	vsnprintf(message, sizeof(message), text, args);
+	va_end(args);
+	content->error_count += is_error;
+	if (options->complaint) {
+		options->complaint(options->complaint_data, is_error, file, line, message);
+		return;
+	}
+	if (is_error)
+		log_error("storage", "%s/%s:%u: %s", options->folder, file, line, message);
+	else
+		log_warn("storage", "%s/%s:%u: %s", options->folder, file, line, message);
+}
+
+static void part_finish(struct content_part *part)
+{
+	free(part->id);
+	free(part->thumbnail);
+	for (uint32_t i = 0; i < part->credit_count; i++)
+		free(part->credits[i].value);
+	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		free(part->titles[i]);
+		free(part->captions[i]);
+		free(part->readings[i]);
+		free(part->pages[i].html);
+		free(part->pages[i].pictures);
+	}
+}
+
+static void tour_finish(struct content_tour *tour)
+{
+	free(tour->id);
+	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+		free(tour->titles[i]);
+		free(tour->captions[i]);
+		for (uint32_t s = 0; s < tour->stop_count; s++)
+			free(tour->stops[s].captions[i]);
+	}
+	free(tour->stops);
+}
+
+void content_finish(struct content *content)
+{
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		tour_finish(&content->tours[i]);
+	free(content->tours);
+	for (uint32_t i = 0; i < content->part_count; i++)
+		part_finish(&content->parts[i]);
+	for (uint32_t i = 0; i < content->picture_count; i++)
+		free(content->pictures[i].name);
+	free(content->parts);
+	free(content->pictures);
+	*content = (struct content){ .options = content->options };
+}
+
+int content_find_part(const struct content *content, const char *id)
+{
+	for (uint32_t i = 0; i < content->part_count; i++)
+		if (strcmp(content->parts[i].id, id) == 0)
+			return (int)i;
+	return -1;
+}
+
+int content_find_tour(const struct content *content, const char *id)
+{
+	for (uint32_t i = 0; i < content->tour_count; i++)
+		if (strcmp(content->tours[i].id, id) == 0)
+			return (int)i;
+	return -1;
+}
+
+bool content_path(const struct content *content, char *path, size_t path_bytes, const char *name)
+{
+	int n = snprintf(path, path_bytes, "%s/%s", content->options->folder, name);
+
+	return n > 0 && (size_t)n < path_bytes;
+}
+
+/* Names stay inside the folder by construction: no way up, no sub-folder, no hidden file. */
+static bool is_picture_name(const char *name)
+{
+	static const char folder[] = "pictures/";
+	const char *rest = name + sizeof(folder) - 1;
+
+	if (strncmp(name, folder, sizeof(folder) - 1) != 0)
+		return false;
+	return *rest && *rest != '.' && strlen(rest) <= 200 && !strpbrk(rest, "/\\\"<>?#%");
+}
+
+static void measure_picture(struct content *content, struct content_picture *picture,
+			    const char *file, unsigned line)
+{
+	struct picture decoded = { 0 };
+	struct buffer bytes;
+	char path[PATH_MAX];
+	int rc = -ENAMETOOLONG;
+
+	picture->damaged = true; /* until it proves good */
+	buffer_init(&bytes, OBJECT_BYTES_MOST);
+	if (content_path(content, path, sizeof(path), picture->name))
+		rc = buffer_read_file(&bytes, path);
+	if (rc == -ENOENT) {
+		content_complain(content, true, file, line,
+				 "picture \"%s\" is not there: add the file, or mend the name",
+				 picture->name);
+	} else if (rc == -EFBIG) {
+		content_complain(content, true, picture->name, 0,
+				 "picture is larger than %u MB: save it smaller",
+				 OBJECT_BYTES_MOST >> 20);
+	} else if (rc < 0) {
+		content_complain(content, true, picture->name, 0, "cannot be read: %s",
+				 strerror(-rc));
+	} else if ((rc = picture_decode_for_page(&decoded, buffer_bytes(&bytes))) == -EFBIG) {
+		content_complain(content, true, picture->name, 0,
+				 "picture is larger than %d pixels a side, which terminals do not "
+				 "show: save it smaller",
+				 PICTURE_PAGE_SIDE_MOST_PX);
+	} else if (rc < 0) {
+		content_complain(content, true, picture->name, 0,
+				 "is no whole JPEG or PNG picture: save it anew as one");
+	} else {
+		picture->damaged = false;
+		picture->media_type = bytes.data[0] == 0x89 ? "image/png" : "image/jpeg";
+		picture->hash = hash_of(buffer_bytes(&bytes));
+		picture->size = (uint32_t)bytes.size;
+		picture->width_px = decoded.width;
+		picture->height_px = decoded.height;
+	}
+	picture_finish(&decoded);
+	buffer_finish(&bytes);
+}
+
+int content_add_picture(struct content *content, const char *name, const char *file, unsigned line)
+{
+	struct content_picture *grown, *picture;
+
+	for (uint32_t i = 0; i < content->picture_count; i++)
+		if (strcmp(content->pictures[i].name, name) == 0)
+			return content->pictures[i].damaged ? -1 : (int)i;
+	if (!is_picture_name(name)) {
+		content_complain(content, true, file, line,
+				 "picture \"%.80s\": write it as \"pictures/NAME\", a file of the "
+				 "content folder; nothing is loaded from elsewhere",
+				 name);
+		return -1;
+	}
+	grown = realloc(content->pictures, (content->picture_count + 1) * sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	content->pictures = grown;
+	picture = &grown[content->picture_count];
+	*picture = (struct content_picture){ .name = strdup(name) };
+	if (!picture->name)
+		return -ENOMEM;
+	content->picture_count++;
+	measure_picture(content, picture, file, line);
+	return picture->damaged ? -1 : (int)content->picture_count - 1;
+}

@@ -1,0 +1,106 @@
+/* Private to storage: a content folder's parts, pages and pictures in memory, as info_build reads
+ * and checks them before anything is written. */
+#ifndef GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
+#define GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
+
+#include "pipeline/content/info_build.h"
+
+struct cJSON;
+
+enum { INFO_ID_BYTES_MOST = 64, INFO_PARTS_FILE_BYTES_MOST = 16 << 20 };
+
+struct content_page {
+	char *html; /* owned, terminated; NULL: none */
+	size_t size;
+	uint32_t *pictures; /* owned; indices into content.pictures, in order, each once */
+	uint32_t picture_count;
+};
+
+/* A statement in Dublin Core's terms. */
+struct content_credit {
+	const char *element; /* borrowed from a constant table */
+	int language;        /* index into the release's languages; -1: of none */
+	char *value;         /* owned */
+};
+
+enum { CONTENT_CREDITS_MOST = 64 };
+
+struct content_part {
+	char *id;
+	unsigned line; /* of parts.json */
+	bool without_page;
+	struct info_region region;
+	float anchor_m[3];
+	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	char *readings[INFO_LANGUAGES_MOST];                               /* the same */
+	struct content_credit credits[CONTENT_CREDITS_MOST]; /* in the order of the elements */
+	uint32_t credit_count;
+	char *thumbnail;       /* owned, a name; NULL: none */
+	int thumbnail_picture; /* index into content.pictures, or -1 */
+	struct content_page pages[INFO_LANGUAGES_MOST];
+};
+
+struct content_stop {
+	struct info_stop view;
+	unsigned line;                       /* of tours.json */
+	char *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+};
+
+struct content_tour {
+	char *id;
+	unsigned line;
+	bool attract;
+	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	int thumbnail_picture;      /* index into content.pictures, or -1 */
+	struct content_stop *stops; /* owned */
+	uint32_t stop_count;
+};
+
+struct content_picture {
+	char *name;
+	const char *media_type;
+	struct hash hash;
+	uint32_t size, width_px, height_px;
+	bool damaged; /* complained about once */
+};
+
+struct content {
+	const struct info_build_options *options;
+	struct content_part *parts;
+	uint32_t part_count;
+	struct content_tour *tours;
+	uint32_t tour_count;
+	struct content_picture *pictures;
+	uint32_t picture_count;
+	uint32_t error_count; /* complaints that are errors */
+};
+
+/* file as in info_complaint. */
+void content_complain(struct content *content, bool is_error, const char *file, unsigned line,
+		      const char *text, ...) printf_like(5, 6);
+void content_finish(struct content *content);
+
+/* Each returns 0 even where it complained; negative errno only where it cannot go on. */
+must_check int content_read_parts(struct content *content);
+must_check int content_read_pages(struct content *content);
+/* After the parts: stops may name them. */
+must_check int content_read_tours(struct content *content);
+/* Adds what json, the "credits" of a part, and, where that lacks an element, all, those of all
+ * parts, say. Either may be NULL. Complains as of the part's line. */
+must_check int content_read_credits(struct content *content, struct content_part *part,
+				    const struct cJSON *json, const struct cJSON *all);
+/* Reads and checks a picture that file:line refers to. Its index, or -1 after a complaint, or
+ * -ENOMEM. */
+int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);
+/* 1 to INFO_LANGUAGES_MOST codes, each once. */
+bool content_languages_are_sane(const struct info_build_options *options);
+/* The part's index or -1. */
+int content_find_part(const struct content *content, const char *id);
+int content_find_tour(const struct content *content, const char *id);
+/* May name a part or a tour. */
+bool content_is_id(const char *id);
+
+/* The path of a file of the folder; false where it does not fit. */
+bool content_path(const struct content *content, char *path, size_t path_bytes, const char *name);
+
+#endif

@@ -1,0 +1,356 @@
+/* pages/ID.LANG.html: read by libxml2's HTML parser, which forgives, and then checked by rules that
+ * do not: what the kiosk cannot show, or must not load, is refused here with its line. */
+#include <dirent.h>
+#include <errno.h>
+#include <libxml/HTMLparser.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "format/html_tags.h"
+#include "pipeline/content/info_content.h"
+
+struct page_check {
+	struct content *content;
+	struct content_page *page;
+	const char *file;
+	uint32_t text_bytes; /* outside of white space */
+};
+
+/* What ui/page.c draws or rightly ignores. */
+static const char *const allowed_elements[] = {
+	"html",    "head",   "title",  "meta",       "body",       "main", "section", "article",
+	"header",  "footer", "div",    "h1",         "h2",         "h3",   "p",       "br",
+	"hr",      "ul",     "ol",     "li",         "a",          "img",  "em",      "i",
+	"strong",  "b",      "figure", "span",       "sub",        "sup",  "small",   "table",
+	"caption", "thead",  "tbody",  "tr",         "th",         "td",   "cite",    "q",
+	"abbr",    "time",   "dfn",    "blockquote", "figcaption",
+};
+
+static bool is_allowed(const char *name)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(allowed_elements); i++)
+		if (strcmp(name, allowed_elements[i]) == 0)
+			return true;
+	return false;
+}
+
+static unsigned node_line(xmlNode *node)
+{
+	long line = xmlGetLineNo(node);
+
+	return line > 0 ? (unsigned)line : 0;
+}
+
+static int note_picture(struct page_check *check, int picture)
+{
+	struct content_page *page = check->page;
+	uint32_t *grown;
+
+	for (uint32_t i = 0; i < page->picture_count; i++)
+		if (page->pictures[i] == (uint32_t)picture)
+			return 0;
+	grown = realloc(page->pictures, (page->picture_count + 1) * sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	page->pictures = grown;
+	page->pictures[page->picture_count++] = (uint32_t)picture;
+	return 0;
+}
+
+static int check_image(struct page_check *check, xmlNode *node)
+{
+	char *src = (char *)xmlGetProp(node, BAD_CAST "src");
+	unsigned line = node_line(node);
+	int picture = -1;
+
+	if (!src)
+		content_complain(check->content, true, check->file, line,
+				 "<img> without src: write src=\"pictures/NAME\"");
+	else
+		picture = content_add_picture(check->content, src, check->file, line);
+	xmlFree(src);
+	if (picture == -ENOMEM)
+		return -ENOMEM;
+	if (picture >= 0 && check->page->picture_count == INFO_PAGE_PICTURES_MOST) {
+		content_complain(check->content, true, check->file, line,
+				 "more than %d pictures on a page: split it",
+				 INFO_PAGE_PICTURES_MOST);
+		return 0;
+	}
+	return picture >= 0 ? note_picture(check, picture) : 0;
+}
+
+static void check_link(struct page_check *check, xmlNode *node)
+{
+	char *href = (char *)xmlGetProp(node, BAD_CAST "href");
+	bool to_page = href && strncmp(href, "page:", 5) == 0;
+	bool to_part = href && strncmp(href, "part:", 5) == 0;
+	bool to_tour = href && strncmp(href, "tour:", 5) == 0;
+	int part = to_page || to_part ? content_find_part(check->content, href + 5) : -1;
+	unsigned line = node_line(node);
+
+	if (!href)
+		content_complain(check->content, true, check->file, line,
+				 "<a> without href: write href=\"part:ID\", or remove it");
+	else if (to_tour && content_find_tour(check->content, href + 5) < 0)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": no tour has that id; see tours.json", href);
+	else if (!to_page && !to_part && !to_tour)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": a kiosk leads nowhere outside; link to "
+				 "\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
+				 "text",
+				 href);
+	else if (!to_tour && part < 0)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": no part has that id; see parts.json", href);
+	else if (to_page && check->content->parts[part].without_page)
+		content_complain(check->content, true, check->file, line,
+				 "link to \"%.80s\": that part has no page; write \"part:%.64s\", "
+				 "which shows it on the model",
+				 href, href + 5);
+	xmlFree(href);
+}
+
+static void check_attributes(struct page_check *check, xmlNode *node)
+{
+	for (xmlAttr *a = node->properties; a; a = a->next) {
+		const char *name = (const char *)a->name;
+
+		if (strncmp(name, "on", 2) == 0)
+			content_complain(check->content, true, check->file, node_line(node),
+					 "attribute %.40s: pages run no scripts; remove it", name);
+		else if (strcmp(name, "style") == 0)
+			content_complain(check->content, false, check->file, node_line(node),
+					 "style is ignored: the kiosk has one look for all pages");
+	}
+}
+
+static int check_element(struct page_check *check, xmlNode *node)
+{
+	const char *name = (const char *)node->name;
+
+	if (!is_allowed(name))
+		content_complain(check->content, true, check->file, node_line(node),
+				 "<%.40s> cannot be shown: see docs/information.md for the "
+				 "elements that can",
+				 name);
+	check_attributes(check, node);
+	if (strcmp(name, "a") == 0)
+		check_link(check, node);
+	return strcmp(name, "img") == 0 ? check_image(check, node) : 0;
+}
+
+/* Without recursion, whatever the depth. */
+static xmlNode *next_node(xmlNode *node)
+{
+	if (node->children && node->type == XML_ELEMENT_NODE)
+		return node->children;
+	while (node && !node->next)
+		node = node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
+	return node ? node->next : NULL;
+}
+
+static int check_tree(struct page_check *check, xmlDoc *doc)
+{
+	int rc = 0;
+
+	for (xmlNode *node = doc->children; node && rc == 0; node = next_node(node)) {
+		if (node->type == XML_ELEMENT_NODE)
+			rc = check_element(check, node);
+		else if (node->type == XML_TEXT_NODE && node->content)
+			for (const xmlChar *c = node->content; *c; c++)
+				check->text_bytes += !strchr(" \t\r\n", *c);
+	}
+	return rc;
+}
+
+static void hear_parser(void *data, xmlError *error)
+{
+	xmlParserCtxt *parser = data;
+	struct page_check *check = parser->_private;
+	char text[200];
+
+	/* libxml2 knows HTML 4: figure and its kin are judged by our own list. */
+	if (error->code == XML_HTML_UNKNOWN_TAG)
+		return;
+	snprintf(text, sizeof(text), "%s", error->message ? error->message : "malformed HTML");
+	text[strcspn(text, "\n")] = 0;
+	content_complain(check->content, false, check->file, (unsigned)error->line,
+			 "%s: check that every tag is closed in order", text);
+}
+
+/* Before the parser, which would take long over it. */
+static bool check_tags(struct page_check *check)
+{
+	const struct bytes html = { (const uint8_t *)check->page->html, check->page->size };
+	struct html_tags found = { 0 };
+	struct buffer reduced;
+	int rc;
+
+	buffer_init(&reduced, HTML_TAGS_GROWTH * html.size + 64);
+	rc = html_tags_reduce(&reduced, html, &found);
+	buffer_finish(&reduced);
+	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
+		content_complain(check->content, true, check->file, found.line,
+				 "a tag with %u attributes: at most %d are read, and the kiosk "
+				 "shows none but src and href; remove the others",
+				 found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
+	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
+}
+
+static int parse_page(struct page_check *check)
+{
+	htmlParserCtxt *parser = htmlNewParserCtxt();
+	xmlDoc *doc;
+	int rc = 0;
+
+	if (!parser)
+		return -ENOMEM;
+	parser->_private = check;
+	parser->sax->initialized = XML_SAX2_MAGIC;
+	parser->sax->serror = hear_parser;
+	doc = htmlCtxtReadMemory(parser, check->page->html, (int)check->page->size, NULL, "UTF-8",
+				 HTML_PARSE_RECOVER | HTML_PARSE_NONET);
+	if (doc)
+		rc = check_tree(check, doc);
+	if (rc == 0 && check->text_bytes == 0)
+		content_complain(check->content, true, check->file, 1,
+				 "there is no text on this page: write some, or remove the file");
+	xmlFreeDoc(doc);
+	htmlFreeParserCtxt(parser);
+	return rc;
+}
+
+/* What a page holds is shown to everybody. A link could lead to a file that nobody meant to show,
+ * and whoever reads a FIFO waits. */
+static bool is_plain_file(const char *path)
+{
+	struct stat status;
+
+	return lstat(path, &status) < 0 || S_ISREG(status.st_mode);
+}
+
+/* 0 and page->html NULL where the file is missing. */
+static int read_page_file(struct page_check *check)
+{
+	struct buffer bytes;
+	char path[PATH_MAX];
+	int rc = -ENAMETOOLONG;
+
+	buffer_init(&bytes, INFO_PAGE_BYTES_MOST + 1);
+	if (content_path(check->content, path, sizeof(path), check->file))
+		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
+	if (rc == 0) {
+		buffer_put_u8(&bytes, 0);
+		rc = bytes.error;
+	}
+	if (rc == -ENOENT || rc == -ENOMEM) {
+		buffer_finish(&bytes);
+		return rc == -ENOMEM ? rc : 0;
+	}
+	if (rc == -ELOOP) {
+		content_complain(check->content, true, check->file, 0,
+				 "is a link or no regular file: put the page itself there");
+	} else if (rc < 0) {
+		content_complain(check->content, true, check->file, 0,
+				 rc == -EFBIG ? "page is larger than %d KB: split it"
+					      : "cannot be read (at most %d KB)",
+				 INFO_PAGE_BYTES_MOST >> 10);
+	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
+		content_complain(check->content, true, check->file, 0,
+				 "is not UTF-8: save it with that encoding");
+	} else {
+		check->page->html = (char *)bytes.data; /* taken */
+		check->page->size = bytes.size - 1;
+		return 0;
+	}
+	buffer_finish(&bytes);
+	return 0;
+}
+
+static int read_part_pages(struct content *content, struct content_part *part)
+{
+	const struct info_build_options *options = content->options;
+
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		char file[INFO_ID_BYTES_MOST + 40];
+		struct page_check check = { content, &part->pages[i], file, 0 };
+		int rc;
+
+		snprintf(file, sizeof(file), "pages/%.64s.%.16s.html", part->id,
+			 options->languages[i]);
+		rc = read_page_file(&check);
+		if (rc == 0 && part->pages[i].html)
+			rc = check_tags(&check) ? parse_page(&check) : 0;
+		else if (rc == 0 && !part->without_page)
+			content_complain(content, i == 0, file, 0,
+					 i == 0 ? "is missing: write it, or give the part "
+						  "\"page\": false in parts.json"
+						: "is missing: the page in another language is "
+						  "shown instead");
+		if (rc < 0)
+			return rc;
+	}
+	return 0;
+}
+
+static bool is_expected(const struct content *content, const char *name)
+{
+	const struct info_build_options *options = content->options;
+
+	for (uint32_t p = 0; p < content->part_count; p++) {
+		size_t size = strlen(content->parts[p].id);
+
+		if (strncmp(name, content->parts[p].id, size) != 0 || name[size] != '.')
+			continue;
+		for (uint32_t i = 0; i < options->language_count; i++) {
+			size_t n = strlen(options->languages[i]);
+
+			if (strncmp(name + size + 1, options->languages[i], n) == 0 &&
+			    strcmp(name + size + 1 + n, ".html") == 0)
+				return true;
+		}
+	}
+	return false;
+}
+
+/* A page that nobody can reach is most often a misspelt id. */
+static void find_stray_pages(struct content *content)
+{
+	struct dirent **entries = NULL;
+	char path[PATH_MAX];
+	int count;
+
+	if (!content_path(content, path, sizeof(path), "pages"))
+		return;
+	count = scandir(path, &entries, NULL, alphasort);
+	for (int i = 0; i < count; i++) {
+		const char *name = entries[i]->d_name;
+		char file[300];
+
+		if (name[0] != '.' && !is_expected(content, name)) {
+			snprintf(file, sizeof(file), "pages/%s", name);
+			content_complain(content, false, file, 0,
+					 "belongs to no part and language of this release: name it "
+					 "ID.LANGUAGE.html after a part of parts.json");
+		}
+		free(entries[i]);
+	}
+	free(entries);
+}
+
+int content_read_pages(struct content *content)
+{
+	for (uint32_t i = 0; i < content->part_count; i++) {
+		int rc = read_part_pages(content, &content->parts[i]);
+
+		if (rc < 0)
+			return rc;
+	}
+	find_stray_pages(content);
+	return 0;
+}

@@ -1,0 +1,399 @@
+/* parts.json into parts. */
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/content/info_content.h"
+#include "pipeline/content/json_lines.h"
+
+static const char parts_file[] = "parts.json";
+
+/* ---- pieces of a part ---- */
+
+/* What one part's readers share. */
+struct part_reader {
+	struct content *content;
+	struct content_part *part;
+	const cJSON *json;
+};
+
+#define complain_part(reader, ...)                                                                 \
+	content_complain((reader)->content, true, parts_file, (reader)->part->line, __VA_ARGS__)
+
+static const char *part_name(const struct part_reader *r)
+{
+	return r->part->id ? r->part->id : "?";
+}
+
+static bool read_numbers(const cJSON *array, float *out, int count)
+{
+	if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != count)
+		return false;
+	for (int i = 0; i < count; i++) {
+		const cJSON *item = cJSON_GetArrayItem(array, i);
+
+		if (!cJSON_IsNumber(item) || !isfinite((float)item->valuedouble))
+			return false;
+		out[i] = (float)item->valuedouble;
+	}
+	return true;
+}
+
+static bool read_number(const cJSON *object, const char *key, float *out)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+
+	if (!cJSON_IsNumber(item) || !isfinite((float)item->valuedouble))
+		return false;
+	*out = (float)item->valuedouble;
+	return true;
+}
+
+static bool read_vector(const struct part_reader *r, const cJSON *object, const char *key,
+			float out[3])
+{
+	if (read_numbers(cJSON_GetObjectItemCaseSensitive(object, key), out, 3))
+		return true;
+	complain_part(r, "part \"%s\": \"%s\" must be three numbers, metres: [x, y, z]",
+		      part_name(r), key);
+	return false;
+}
+
+static void read_sphere(struct part_reader *r, const cJSON *json)
+{
+	struct info_region *region = &r->part->region;
+
+	region->kind = INFO_REGION_SPHERE;
+	read_vector(r, json, "centre", region->centre_m);
+	if (!read_number(json, "radius", &region->radius_m) || region->radius_m <= 0)
+		complain_part(r, "part \"%s\": \"radius\" must be a positive number of metres",
+			      part_name(r));
+}
+
+static void read_box(struct part_reader *r, const cJSON *json)
+{
+	struct info_region *region = &r->part->region;
+
+	region->kind = INFO_REGION_BOX;
+	read_vector(r, json, "centre", region->centre_m);
+	if (read_vector(r, json, "half", region->half_m) &&
+	    !(region->half_m[0] > 0 && region->half_m[1] > 0 && region->half_m[2] > 0))
+		complain_part(r, "part \"%s\": \"half\" must be positive: half the box's sides",
+			      part_name(r));
+	if (cJSON_HasObjectItem(json, "turn") && !read_number(json, "turn", &region->turn_deg))
+		complain_part(r, "part \"%s\": \"turn\" must be a number of degrees", part_name(r));
+}
+
+/* Twice the area, positive when counter-clockwise. */
+static double area_twice(const struct info_region *region)
+{
+	double sum = 0;
+
+	for (uint32_t i = 0; i < region->corner_count; i++) {
+		const float *a = region->corners_m[i];
+		const float *b = region->corners_m[(i + 1) % region->corner_count];
+
+		sum += (double)a[0] * b[1] - (double)b[0] * a[1];
+	}
+	return sum;
+}
+
+static void make_counter_clockwise(struct info_region *region)
+{
+	if (area_twice(region) >= 0)
+		return;
+	for (uint32_t i = 0, j = region->corner_count - 1; i < j; i++, j--) {
+		float swap[2];
+
+		memcpy(swap, region->corners_m[i], sizeof(swap));
+		memcpy(region->corners_m[i], region->corners_m[j], sizeof(swap));
+		memcpy(region->corners_m[j], swap, sizeof(swap));
+	}
+}
+
+static bool read_corners(struct part_reader *r, const cJSON *corners)
+{
+	struct info_region *region = &r->part->region;
+	int count = cJSON_IsArray(corners) ? cJSON_GetArraySize(corners) : 0;
+
+	if (count < 3 || count > INFO_CORNERS_MOST) {
+		complain_part(r, "part \"%s\": a prism needs 3 to %d \"corners\", it has %d",
+			      part_name(r), INFO_CORNERS_MOST, count);
+		return false;
+	}
+	for (int i = 0; i < count; i++) {
+		if (!read_numbers(cJSON_GetArrayItem(corners, i), region->corners_m[i], 2)) {
+			complain_part(r, "part \"%s\": corner %d must be two numbers: [x, y]",
+				      part_name(r), i + 1);
+			return false;
+		}
+		region->centre_m[0] += region->corners_m[i][0] / (float)count;
+		region->centre_m[1] += region->corners_m[i][1] / (float)count;
+	}
+	region->corner_count = (uint32_t)count;
+	return true;
+}
+
+static void read_prism(struct part_reader *r, const cJSON *json)
+{
+	struct info_region *region = &r->part->region;
+
+	region->kind = INFO_REGION_PRISM;
+	if (!read_number(json, "floor", &region->floor_m) ||
+	    !read_number(json, "roof", &region->roof_m) || region->roof_m <= region->floor_m)
+		complain_part(r, "part \"%s\": \"floor\" and \"roof\" must be heights, roof above",
+			      part_name(r));
+	region->centre_m[2] = (region->floor_m + region->roof_m) / 2;
+	if (!read_corners(r, cJSON_GetObjectItemCaseSensitive(json, "corners")))
+		return;
+	make_counter_clockwise(region);
+	if (area_twice(region) == 0)
+		complain_part(r, "part \"%s\": the corners enclose no area", part_name(r));
+}
+
+/* What knows the scan places it; without an anchor a leader line ends where it says. */
+static int read_faces(struct part_reader *r, const cJSON *json)
+{
+	const struct info_build_options *options = r->content->options;
+	struct info_faces faces = {
+		.part = part_name(r),
+		.file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file")),
+		.scan = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "scan")),
+	};
+	struct fault fault = { "" };
+	int rc;
+
+	if (!faces.file)
+		complain_part(
+			r,
+			"part \"%s\": a region of faces needs a \"file\" that lists them, such "
+			"as \"regions/lintel.faces\"",
+			part_name(r));
+	if (!faces.file || !options->place_faces)
+		return 0;
+	rc = options->place_faces(options->place_faces_data, &faces, &fault);
+	if (rc == -EINVAL)
+		complain_part(r, "part \"%s\": %s", part_name(r), fault.text);
+	memcpy(r->part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));
+	memcpy(r->part->anchor_m, faces.anchor_m, sizeof(faces.anchor_m));
+	r->part->region.radius_m = faces.radius_m;
+	return rc == -EINVAL ? 0 : rc;
+}
+
+static int read_region(struct part_reader *r)
+{
+	const cJSON *json = cJSON_GetObjectItemCaseSensitive(r->json, "region");
+	const cJSON *anchor = cJSON_GetObjectItemCaseSensitive(r->json, "anchor");
+	const char *kind = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "kind"));
+	bool has_faces = kind && strcmp(kind, "faces") == 0;
+	int rc = 0;
+
+	if (has_faces)
+		rc = read_faces(r, json);
+	else if (!json && anchor)
+		r->part->region.kind = INFO_REGION_POINT;
+	else if (kind && strcmp(kind, "sphere") == 0)
+		read_sphere(r, json);
+	else if (kind && strcmp(kind, "box") == 0)
+		read_box(r, json);
+	else if (kind && strcmp(kind, "prism") == 0)
+		read_prism(r, json);
+	else if (kind && strcmp(kind, "point") == 0)
+		read_vector(r, json, "centre", r->part->region.centre_m);
+	else
+		complain_part(r,
+			      "part \"%s\": region kind \"%.40s\" is none of point, sphere, box, "
+			      "prism, faces",
+			      part_name(r), kind ? kind : "");
+	if (!has_faces)
+		memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
+	if (anchor)
+		read_vector(r, r->json, "anchor", r->part->anchor_m);
+	if (!json)
+		memcpy(r->part->region.centre_m, r->part->anchor_m, sizeof(r->part->anchor_m));
+	return rc;
+}
+
+/* {"en": "...", "fr": "..."} into texts by the release's languages. */
+static int read_texts(struct part_reader *r, const char *key, char *texts[], bool needed)
+{
+	const struct info_build_options *options = r->content->options;
+	const cJSON *object = cJSON_GetObjectItemCaseSensitive(r->json, key);
+
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		const char *language = options->languages[i];
+		const char *text =
+			cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, language));
+
+		if (text && strspn(text, " \t\r\n") == strlen(text))
+			text = NULL;
+		if (text && !(texts[i] = strdup(text)))
+			return -ENOMEM;
+		if (!text && needed)
+			content_complain(r->content, i == 0, parts_file, r->part->line,
+					 "part \"%s\" has no %s in \"%s\"%s: add \"%s\": {\"%s\": "
+					 "\"...\"}",
+					 part_name(r), key, language,
+					 i == 0 ? ", the first language" : "", key, language);
+	}
+	return 0;
+}
+
+bool content_is_id(const char *id)
+{
+	size_t size = strlen(id);
+
+	return size > 0 && size <= INFO_ID_BYTES_MOST &&
+	       strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-_") == size;
+}
+
+static int read_id(struct part_reader *r)
+{
+	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r->json, "id"));
+
+	if (!id || !content_is_id(id))
+		complain_part(r,
+			      "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
+			      "page's file)",
+			      id ? id : "", INFO_ID_BYTES_MOST);
+	else if (content_find_part(r->content, id) >= 0)
+		complain_part(r, "part \"%s\" is there twice: rename or remove one", id);
+	r->part->id = strdup(id ? id : "");
+	return r->part->id ? 0 : -ENOMEM;
+}
+
+static int read_thumbnail(struct part_reader *r)
+{
+	const char *name =
+		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r->json, "thumbnail"));
+
+	r->part->thumbnail_picture = -1;
+	if (!name)
+		return 0;
+	r->part->thumbnail = strdup(name);
+	if (!r->part->thumbnail)
+		return -ENOMEM;
+	r->part->thumbnail_picture =
+		content_add_picture(r->content, name, parts_file, r->part->line);
+	return r->part->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
+}
+
+static int read_part(struct content *content, const cJSON *json, unsigned line,
+		     const cJSON *credits)
+{
+	struct content_part *part = &content->parts[content->part_count];
+	struct part_reader reader = { .content = content, .part = part, .json = json };
+	int rc;
+
+	part->line = line;
+	rc = read_id(&reader);
+	if (rc < 0)
+		return rc;
+	content->part_count++; /* now content_finish releases it */
+	part->without_page = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
+	rc = read_region(&reader);
+	if (rc == 0)
+		rc = read_texts(&reader, "title", part->titles, true);
+	if (rc == 0)
+		rc = read_texts(&reader, "caption", part->captions, false);
+	if (rc == 0)
+		rc = read_texts(&reader, "reading", part->readings, false);
+	if (rc == 0)
+		rc = content_read_credits(
+			content, part, cJSON_GetObjectItemCaseSensitive(json, "credits"), credits);
+	if (rc == 0)
+		rc = read_thumbnail(&reader);
+	return rc;
+}
+
+static int read_array(struct content *content, const cJSON *json, const char *text)
+{
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "parts");
+	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(json, "credits");
+	int count = cJSON_GetArraySize(array);
+	unsigned *lines;
+	const cJSON *item;
+	int rc = 0, i = 0;
+
+	if (count > INFO_PARTS_MOST) {
+		content_complain(content, true, parts_file, 0, "%d parts: at most %d are possible",
+				 count, INFO_PARTS_MOST);
+		return 0;
+	}
+	lines = calloc((size_t)count + 1, sizeof(*lines));
+	content->parts = calloc((size_t)count + 1, sizeof(*content->parts));
+	if (!lines || !content->parts)
+		rc = -ENOMEM;
+	else
+		json_item_lines(text, "parts", lines, (size_t)count);
+	cJSON_ArrayForEach(item, array)
+	{
+		if (rc < 0)
+			break;
+		if (cJSON_IsObject(item))
+			rc = read_part(content, item, lines[i], credits);
+		else
+			content_complain(content, true, parts_file, 0,
+					 "entry %d of \"parts\" is no object: write {\"id\": ...}",
+					 i + 1);
+		i++;
+	}
+	free(lines);
+	return rc;
+}
+
+static int parse_parts(struct content *content, struct buffer *text)
+{
+	const char *end = NULL, *bad;
+	const cJSON *array;
+	cJSON *json;
+	int rc = 0;
+
+	buffer_put_u8(text, 0);
+	if (text->error)
+		return text->error;
+	bad = json_not_utf8((char *)text->data);
+	if (bad) {
+		content_complain(content, true, parts_file, json_line_of((char *)text->data, bad),
+				 "is not UTF-8 here: save it with that encoding");
+		return 0;
+	}
+	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
+	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
+	if (!json)
+		content_complain(content, true, parts_file, json_line_of((char *)text->data, end),
+				 "is not JSON from here on: look for a missing comma, quote or "
+				 "bracket");
+	else if (!cJSON_IsArray(array))
+		content_complain(content, true, parts_file, 1,
+				 "must be {\"parts\": [...]} at the outside");
+	else
+		rc = read_array(content, json, (const char *)text->data);
+	cJSON_Delete(json);
+	return rc;
+}
+
+int content_read_parts(struct content *content)
+{
+	struct buffer text;
+	char path[PATH_MAX];
+	int rc;
+
+	if (!content_path(content, path, sizeof(path), parts_file))
+		return -ENAMETOOLONG;
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	rc = buffer_read_file(&text, path);
+	if (rc == 0) {
+		rc = parse_parts(content, &text);
+	} else if (rc == -ENOENT) {
+		rc = 0; /* a model about which nothing is written yet */
+	} else if (rc != -ENOMEM) {
+		content_complain(content, true, parts_file, 0, "cannot be read: %s", strerror(-rc));
+		rc = 0;
+	}
+	buffer_finish(&text);
+	return rc;
+}

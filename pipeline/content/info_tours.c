@@ -1,0 +1,370 @@
+/* tours.json into tours. Whether a way leads through a wall is judged where the scan is:
+ * pipeline/tour_check. */
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/content/info_content.h"
+#include "pipeline/content/json_lines.h"
+#include "storage/info_view.h"
+
+static const char tours_file[] = "tours.json";
+
+#define STAY_S       6.0f
+#define SECONDS_MOST 120.0f
+#define PART_LEAST_M 0.5f /* a part without a size, as a stop sees it */
+
+/* What the readers of a tour share; stop: the one that is read, from 1. */
+struct tour_reader {
+	struct content *content;
+	struct content_tour *tour;
+	unsigned line;
+	uint32_t stop;
+};
+
+static void complain(const struct tour_reader *r, const char *text, ...) printf_like(2, 3);
+
+static void complain(const struct tour_reader *r, const char *text, ...)
+{
+	char message[400], where[120] = "";
+	va_list args;
+
+	va_start(args, text);
+	vsnprintf(message, sizeof(message), text, args);
+	va_end(args);
+	if (r->stop > 0)
+		snprintf(where, sizeof(where), ", stop %u", r->stop);
+	content_complain(r->content, true, tours_file, r->line, "tour \"%.64s\"%s: %s",
+			 r->tour->id ? r->tour->id : "?", where, message);
+}
+
+/* A key that nobody reads is most often misspelt. */
+static void check_keys(const struct tour_reader *r, const cJSON *json, const char *known)
+{
+	for (const cJSON *item = json->child; item; item = item->next) {
+		char key[40];
+
+		snprintf(key, sizeof(key), " %.36s ", item->string);
+		if (!strstr(known, key))
+			complain(r, "\"%.40s\" is no key of it; it has:%s", item->string, known);
+	}
+}
+
+static bool read_vector(const struct tour_reader *r, const cJSON *json, const char *key,
+			float out[3])
+{
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, key);
+	bool is_vector = cJSON_IsArray(array) && cJSON_GetArraySize(array) == 3;
+
+	for (int i = 0; is_vector && i < 3; i++) {
+		const cJSON *item = cJSON_GetArrayItem(array, i);
+
+		out[i] = cJSON_IsNumber(item) ? (float)item->valuedouble : NAN;
+		is_vector = isfinite(out[i]);
+	}
+	if (!is_vector)
+		complain(r, "\"%s\" must be three numbers, metres: [x, y, z]", key);
+	return is_vector;
+}
+
+/* `usual` where the key is not there. */
+static float read_seconds(const struct tour_reader *r, const cJSON *json, const char *key,
+			  float usual, bool may_be_none)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, key);
+	double seconds = cJSON_IsNumber(item) ? item->valuedouble : -1;
+
+	if (!item)
+		return usual;
+	if (seconds >= 1 && seconds <= SECONDS_MOST)
+		return (float)seconds;
+	if (seconds != 0 || !may_be_none)
+		complain(r, "\"%s\" must be %s1 to %.0f seconds", key, may_be_none ? "0 or " : "",
+			 (double)SECONDS_MOST);
+	return 0;
+}
+
+/* {"en": "...", "fr": "..."}; the first language must be there where any is, or where needed. */
+static int read_texts(const struct tour_reader *r, const cJSON *json, const char *key,
+		      char *texts[], bool needed)
+{
+	const struct info_build_options *options = r->content->options;
+	const cJSON *object = cJSON_GetObjectItemCaseSensitive(json, key);
+
+	if (object && !cJSON_IsObject(object))
+		complain(r, "\"%s\" must be texts by language: {\"%s\": \"...\"}", key,
+			 options->languages[0]);
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		const char *text = cJSON_GetStringValue(
+			cJSON_GetObjectItemCaseSensitive(object, options->languages[i]));
+
+		if (text && strspn(text, " \t\r\n") < strlen(text)) {
+			texts[i] = strdup(text);
+			if (!texts[i])
+				return -ENOMEM;
+		} else if (i == 0 && (needed || object)) {
+			complain(
+				r,
+				"no %s in \"%s\", the first language: add \"%s\": {\"%s\": \"...\"}",
+				key, options->languages[i], key, options->languages[i]);
+		} else if (object) {
+			content_complain(
+				r->content, false, tours_file, r->line,
+				"tour \"%.64s\": no %s in \"%s\": that of another language is "
+				"shown instead",
+				r->tour->id, key, options->languages[i]);
+		}
+	}
+	return 0;
+}
+
+/* ---- stops ---- */
+
+static void read_part(const struct tour_reader *r, const cJSON *json, struct info_stop *stop)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, "part");
+	const char *id = cJSON_GetStringValue(item);
+
+	stop->part = -1;
+	if (!item)
+		return;
+	stop->part = id ? content_find_part(r->content, id) : -1;
+	if (stop->part < 0)
+		complain(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
+}
+
+/* Its own eye and target, or the part as a visitor is brought before it: from where the stop before
+ * stands. */
+static void read_view(const struct tour_reader *r, const cJSON *json, struct info_stop *stop,
+		      const struct info_stop *before)
+{
+	const struct content_part *part = stop->part >= 0 ? &r->content->parts[stop->part] : NULL;
+	const bool has_eye = cJSON_HasObjectItem(json, "eye");
+	const bool has_target = cJSON_HasObjectItem(json, "target");
+
+	if (part)
+		memcpy(stop->target_m, part->anchor_m, sizeof(stop->target_m));
+	if (has_eye && (has_target || part)) {
+		float apart = 0;
+		bool is_view = read_vector(r, json, "eye", stop->eye_m);
+
+		if (has_target)
+			is_view &= read_vector(r, json, "target", stop->target_m);
+		for (int i = 0; i < 3; i++)
+			apart = fmaxf(apart, fabsf(stop->eye_m[i] - stop->target_m[i]));
+		if (is_view && apart < 0.01f)
+			complain(r, "\"eye\" and \"target\" are one place: move the target to "
+				    "what is to be seen");
+	} else if (has_eye || has_target) {
+		complain(r, "\"%s\" alone is no view: add \"%s\": [x, y, z]",
+			 has_eye ? "eye" : "target", has_eye ? "target" : "eye");
+	} else if (part && before) {
+		info_view(&part->region, part->anchor_m, PART_LEAST_M, before->eye_m, stop->eye_m,
+			  stop->target_m);
+	} else if (part) {
+		complain(r, "a part is shown from where the stop before stands, and the first has "
+			    "none: add \"eye\": [x, y, z]");
+	} else if (!cJSON_HasObjectItem(json, "part")) {
+		complain(r, "what does it look at? Add \"eye\" and \"target\": [x, y, z], or "
+			    "\"part\": \"ID\"");
+	}
+}
+
+static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
+{
+	struct content_stop *stop = &r->tour->stops[r->tour->stop_count];
+	const struct info_stop *before = r->tour->stop_count > 0 ? &stop[-1].view : NULL;
+
+	stop->line = r->line;
+	r->stop = ++r->tour->stop_count; /* now content_finish releases it */
+	stop->view.part = -1;
+	if (!cJSON_IsObject(json)) {
+		complain(r, "must be an object: {\"eye\": [x, y, z], \"target\": [x, y, z]}");
+		return 0;
+	}
+	check_keys(r, json, " eye target part stay travel caption ");
+	read_part(r, json, &stop->view);
+	read_view(r, json, &stop->view, before);
+	stop->view.stay_s = read_seconds(r, json, "stay", STAY_S, !is_end);
+	stop->view.travel_s = read_seconds(r, json, "travel", 0, false);
+	return read_texts(r, json, "caption", stop->captions, false);
+}
+
+static int read_stops(struct tour_reader *r, const cJSON *json, const char *text, unsigned line)
+{
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "stops");
+	int count = cJSON_IsArray(array) ? cJSON_GetArraySize(array) : 0, i = 0, rc = 0;
+	unsigned lines[INFO_STOPS_MOST] = { 0 };
+	const cJSON *item;
+
+	if (count < 2 || count > INFO_STOPS_MOST) {
+		complain(r, "a tour needs 2 to %d \"stops\", it has %d", INFO_STOPS_MOST, count);
+		return 0;
+	}
+	r->tour->stops = calloc((size_t)count, sizeof(*r->tour->stops));
+	if (!r->tour->stops)
+		return -ENOMEM;
+	json_item_lines(text, "stops", lines, (size_t)count);
+	cJSON_ArrayForEach(item, array)
+	{
+		r->line = lines[i] > 0 ? line + lines[i] - 1 : line;
+		if (rc == 0)
+			rc = read_stop(r, item, i == 0 || i == count - 1);
+		i++;
+	}
+	r->stop = 0;
+	r->line = line;
+	return rc;
+}
+
+/* ---- tours ---- */
+
+static int read_thumbnail(const struct tour_reader *r, const cJSON *json)
+{
+	const char *name =
+		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "thumbnail"));
+
+	r->tour->thumbnail_picture =
+		name ? content_add_picture(r->content, name, tours_file, r->line) : -1;
+	return r->tour->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
+}
+
+static void check_attract(const struct tour_reader *r, const cJSON *json)
+{
+	const cJSON *attract = cJSON_GetObjectItemCaseSensitive(json, "attract");
+
+	if (attract && !cJSON_IsBool(attract))
+		complain(r, "\"attract\" must be true or false");
+	r->tour->attract = cJSON_IsTrue(attract);
+	for (uint32_t i = 0; r->tour->attract && i + 1 < r->content->tour_count; i++)
+		if (r->content->tours[i].attract)
+			complain(r,
+				 "tour \"%s\" has \"attract\" too: only one can be shown while "
+				 "nobody is there",
+				 r->content->tours[i].id);
+}
+
+/* text begins at the tour. */
+static int read_tour(struct content *content, const cJSON *json, const char *text, unsigned line)
+{
+	struct content_tour *tour = &content->tours[content->tour_count];
+	struct tour_reader r = { .content = content, .tour = tour, .line = line };
+	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "id"));
+	const bool is_twice = id && content_find_tour(content, id) >= 0;
+	int rc;
+
+	tour->line = line;
+	tour->thumbnail_picture = -1;
+	tour->id = strdup(id ? id : "");
+	if (!tour->id)
+		return -ENOMEM;
+	content->tour_count++; /* now content_finish releases it */
+	if (!content_is_id(tour->id))
+		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MOST);
+	if (is_twice)
+		complain(&r, "is there twice: rename or remove one");
+	check_keys(&r, json, " id title caption thumbnail attract stops ");
+	check_attract(&r, json);
+	rc = read_texts(&r, json, "title", tour->titles, true);
+	if (rc == 0)
+		rc = read_texts(&r, json, "caption", tour->captions, false);
+	if (rc == 0)
+		rc = read_thumbnail(&r, json);
+	return rc == 0 ? read_stops(&r, json, text, line) : rc;
+}
+
+/* Where line begins. */
+static const char *line_at(const char *text, unsigned line)
+{
+	for (; line > 1 && *text; text++)
+		line -= *text == '\n';
+	return text;
+}
+
+static int read_array(struct content *content, const cJSON *array, const char *text)
+{
+	unsigned lines[INFO_TOURS_MOST] = { 0 };
+	const cJSON *item;
+	int count = cJSON_GetArraySize(array), rc = 0, i = 0;
+
+	if (count > INFO_TOURS_MOST) {
+		content_complain(content, true, tours_file, 0, "%d tours: at most %d are possible",
+				 count, INFO_TOURS_MOST);
+		return 0;
+	}
+	content->tours = calloc((size_t)count + 1, sizeof(*content->tours));
+	if (!content->tours)
+		return -ENOMEM;
+	json_item_lines(text, "tours", lines, (size_t)count);
+	cJSON_ArrayForEach(item, array)
+	{
+		if (rc < 0)
+			break;
+		if (cJSON_IsObject(item))
+			rc = read_tour(content, item, line_at(text, lines[i]), lines[i]);
+		else
+			content_complain(content, true, tours_file, 0,
+					 "entry %d of \"tours\" is no object: write {\"id\": ...}",
+					 i + 1);
+		i++;
+	}
+	return rc;
+}
+
+static int parse(struct content *content, struct buffer *text)
+{
+	const char *end = NULL, *bad;
+	const cJSON *array;
+	cJSON *json;
+	int rc = 0;
+
+	buffer_put_u8(text, 0);
+	if (text->error)
+		return text->error;
+	bad = json_not_utf8((char *)text->data);
+	if (bad) {
+		content_complain(content, true, tours_file, json_line_of((char *)text->data, bad),
+				 "is not UTF-8 here: save it with that encoding");
+		return 0;
+	}
+	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
+	array = cJSON_GetObjectItemCaseSensitive(json, "tours");
+	if (!json)
+		content_complain(content, true, tours_file, json_line_of((char *)text->data, end),
+				 "is not JSON from here on: look for a missing comma, quote or "
+				 "bracket");
+	else if (!cJSON_IsArray(array))
+		content_complain(content, true, tours_file, 1,
+				 "must be {\"tours\": [...]} at the outside");
+	else
+		rc = read_array(content, array, (const char *)text->data);
+	cJSON_Delete(json);
+	return rc;
+}
+
+int content_read_tours(struct content *content)
+{
+	struct buffer text;
+	char path[PATH_MAX];
+	int rc;
+
+	if (!content_path(content, path, sizeof(path), tours_file))
+		return -ENAMETOOLONG;
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	rc = buffer_read_file(&text, path);
+	if (rc == 0) {
+		rc = parse(content, &text);
+	} else if (rc == -ENOENT) {
+		rc = 0; /* a model round which nobody is led */
+	} else if (rc != -ENOMEM) {
+		content_complain(content, true, tours_file, 0, "cannot be read: %s", strerror(-rc));
+		rc = 0;
+	}
+	buffer_finish(&text);
+	return rc;
+}

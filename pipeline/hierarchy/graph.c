@@ -1,0 +1,378 @@
+#include "pipeline/hierarchy/graph.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <metis.h>
+
+enum { PARTS_BY_BISECTION_MOST = 8, NODES_A_PART = 64 };
+
+/* Thousandths that a part may be too heavy, so that a cut can follow what it is to follow. */
+enum { IMBALANCE = 40, TRIES = 8 /* of halving, the best is taken */ };
+
+static pthread_mutex_t metis_lock = PTHREAD_MUTEX_INITIALIZER;
+
+int graph_init(struct graph *graph, uint32_t node_count)
+{
+	*graph = (struct graph){ .node_count = node_count };
+	graph->node_weights = malloc((node_count + 1) * sizeof(*graph->node_weights));
+	if (!graph->node_weights)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < node_count; i++)
+		graph->node_weights[i] = 1;
+	return 0;
+}
+
+void graph_finish(struct graph *graph)
+{
+	if (!graph)
+		return;
+	free(graph->node_weights);
+	free(graph->edges);
+	*graph = (struct graph){ 0 };
+}
+
+int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight)
+{
+	if (a == b)
+		return 0;
+	if (graph->edge_count == graph->edge_room) {
+		size_t room = graph->edge_room ? 2 * graph->edge_room : 256;
+		struct graph_edge *grown = realloc(graph->edges, room * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		graph->edges = grown;
+		graph->edge_room = room;
+	}
+	graph->edges[graph->edge_count++] = (struct graph_edge){ a, b, weight };
+	return 0;
+}
+
+/* ---- joining what is near */
+
+static uint32_t find_root(uint32_t *parents, uint32_t node)
+{
+	while (parents[node] != node) {
+		parents[node] = parents[parents[node]];
+		node = parents[node];
+	}
+	return node;
+}
+
+static bool unite(uint32_t *parents, uint32_t a, uint32_t b)
+{
+	a = find_root(parents, a);
+	b = find_root(parents, b);
+	if (a == b)
+		return false;
+	parents[a > b ? a : b] = a > b ? b : a;
+	return true;
+}
+
+/* Bits of a lattice coordinate spread out, two zeros after each. */
+static uint64_t spread(uint64_t bits)
+{
+	bits &= 0xffff;
+	bits = (bits | bits << 16) & 0x0000ff0000ffu;
+	bits = (bits | bits << 8) & 0x00f00f00f00fu;
+	bits = (bits | bits << 4) & 0x0c30c30c30c3u;
+	return (bits | bits << 2) & 0x249249249249u;
+}
+
+/* Along the curve of Morton (1966) a cell of any size is one run. */
+static uint64_t place_on_curve(const float at[3])
+{
+	uint64_t place = 0;
+
+	for (int i = 0; i < 3; i++)
+		place |= spread((uint64_t)fminf(fmaxf(at[i], 0.0f), 65535.0f)) << i;
+	return place;
+}
+
+struct placed {
+	uint64_t place;
+	uint32_t node;
+};
+
+static int compare_placed(const void *left, const void *right)
+{
+	const struct placed *a = left, *b = right;
+
+	if (a->place != b->place)
+		return a->place < b->place ? -1 : 1;
+	return a->node < b->node ? -1 : a->node > b->node;
+}
+
+/* Nodes of one cell are near: the parts among them are joined, in ever larger cells; at the last
+ * all nodes lie in one. */
+static int connect_runs(struct graph *graph, uint32_t *parents, const struct placed *placed,
+			int32_t weight, uint32_t part_count)
+{
+	for (int bits = 15; part_count > 1 && bits <= 48; bits += 3)
+		for (uint32_t i = 1; part_count > 1 && i < graph->node_count; i++) {
+			uint32_t a = placed[i - 1].node, b = placed[i].node;
+
+			if (placed[i - 1].place >> bits != placed[i].place >> bits ||
+			    !unite(parents, a, b))
+				continue;
+			part_count--;
+			if (graph_add(graph, a, b, weight) < 0)
+				return -ENOMEM;
+		}
+	return 0;
+}
+
+int graph_connect(struct graph *graph, float (*at)[3], int32_t weight)
+{
+	uint32_t *parents = malloc((graph->node_count + 1) * sizeof(*parents));
+	struct placed *placed = NULL;
+	uint32_t part_count = graph->node_count;
+	int rc = parents ? 0 : -ENOMEM;
+
+	for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+		parents[i] = i;
+	for (size_t e = 0; rc == 0 && e < graph->edge_count; e++)
+		part_count -= unite(parents, graph->edges[e].a, graph->edges[e].b);
+	if (rc == 0 && part_count > 1) {
+		placed = malloc(graph->node_count * sizeof(*placed));
+		rc = placed ? 0 : -ENOMEM;
+		for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+			placed[i] = (struct placed){ place_on_curve(at[i]), i };
+		if (rc == 0) {
+			qsort(placed, graph->node_count, sizeof(*placed), compare_placed);
+			rc = connect_runs(graph, parents, placed, weight, part_count);
+		}
+	}
+	free(placed);
+	free(parents);
+	return rc;
+}
+
+/* ---- division */
+
+struct rows {
+	idx_t *first, *to, *weights, *node_weights;
+};
+
+static void rows_finish(struct rows *rows)
+{
+	free(rows->first);
+	free(rows->to);
+	free(rows->weights);
+	free(rows->node_weights);
+}
+
+/* Entries of a row in the order of their node, the weights of equal ones summed: METIS wants no
+ * edge twice. Rows are short, so insertion will do. Returns the entries left. */
+static idx_t tidy_row(idx_t *to, idx_t *weights, idx_t count)
+{
+	idx_t kept = 0;
+
+	for (idx_t i = 0; i < count; i++) {
+		idx_t node = to[i], weight = weights[i], at = kept;
+
+		while (at > 0 && to[at - 1] > node)
+			at--;
+		if (at > 0 && to[at - 1] == node) {
+			weights[at - 1] += weight;
+			continue;
+		}
+		memmove(to + at + 1, to + at, (size_t)(kept - at) * sizeof(*to));
+		memmove(weights + at + 1, weights + at, (size_t)(kept - at) * sizeof(*weights));
+		to[at] = node;
+		weights[at] = weight;
+		kept++;
+	}
+	return kept;
+}
+
+static int rows_init(struct rows *rows, const struct graph *graph)
+{
+	uint32_t nodes = graph->node_count;
+	idx_t kept = 0;
+
+	*rows = (struct rows){
+		.first = calloc((size_t)nodes + 2, sizeof(*rows->first)),
+		.to = malloc((2 * graph->edge_count + 1) * sizeof(*rows->to)),
+		.weights = malloc((2 * graph->edge_count + 1) * sizeof(*rows->weights)),
+		.node_weights = malloc((nodes + 1) * sizeof(*rows->node_weights)),
+	};
+	if (!rows->first || !rows->to || !rows->weights || !rows->node_weights)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < nodes; i++)
+		rows->node_weights[i] = graph->node_weights[i];
+	for (size_t e = 0; e < graph->edge_count; e++) {
+		rows->first[graph->edges[e].a + 2]++;
+		rows->first[graph->edges[e].b + 2]++;
+	}
+	for (uint32_t i = 2; i < nodes + 2; i++)
+		rows->first[i] += rows->first[i - 1];
+	for (size_t e = 0; e < graph->edge_count; e++) {
+		const struct graph_edge *edge = &graph->edges[e];
+		idx_t at_a = rows->first[edge->a + 1]++, at_b = rows->first[edge->b + 1]++;
+
+		rows->to[at_a] = (idx_t)edge->b;
+		rows->to[at_b] = (idx_t)edge->a;
+		rows->weights[at_a] = rows->weights[at_b] = edge->weight;
+	}
+	for (uint32_t i = 0; i < nodes; i++) {
+		idx_t first = rows->first[i], count = rows->first[i + 1] - first;
+
+		count = tidy_row(rows->to + first, rows->weights + first, count);
+		memmove(rows->to + kept, rows->to + first, (size_t)count * sizeof(*rows->to));
+		memmove(rows->weights + kept, rows->weights + first,
+			(size_t)count * sizeof(*rows->weights));
+		rows->first[i] = kept;
+		kept += count;
+	}
+	rows->first[nodes] = kept;
+	return 0;
+}
+
+static int run_metis(idx_t *parts, struct rows *rows, const struct graph *graph,
+		     uint32_t part_count, const float *shares)
+{
+	idx_t nodes = (idx_t)graph->node_count, constraints = 1, count = (idx_t)part_count, cut;
+	idx_t options[METIS_NOPTIONS];
+	real_t wanted[2];
+	int code;
+
+	METIS_SetDefaultOptions(options);
+	options[METIS_OPTION_SEED] = 1;
+	options[METIS_OPTION_NUMBERING] = 0;
+	options[METIS_OPTION_UFACTOR] = IMBALANCE;
+	if (part_count == 2)
+		options[METIS_OPTION_NCUTS] = TRIES;
+	if (shares && part_count == 2) {
+		wanted[0] = shares[0];
+		wanted[1] = shares[1];
+	}
+	pthread_mutex_lock(&metis_lock);
+	if (part_count <= PARTS_BY_BISECTION_MOST)
+		code = METIS_PartGraphRecursive(&nodes, &constraints, rows->first, rows->to,
+						rows->node_weights, NULL, rows->weights, &count,
+						shares && part_count == 2 ? wanted : NULL, NULL,
+						options, &cut, parts);
+	else
+		code = METIS_PartGraphKway(&nodes, &constraints, rows->first, rows->to,
+					   rows->node_weights, NULL, rows->weights, &count, NULL,
+					   NULL, options, &cut, parts);
+	pthread_mutex_unlock(&metis_lock);
+	return code == METIS_OK ? 0 : code == METIS_ERROR_MEMORY ? -ENOMEM : -EINVAL;
+}
+
+/* METIS may leave a part empty on graphs that are tiny or strange; runs of nodes will do then. */
+static void divide_in_runs(uint32_t *labels, const struct graph *graph, uint32_t part_count)
+{
+	for (uint32_t i = 0; i < graph->node_count; i++)
+		labels[i] = (uint32_t)((uint64_t)i * part_count / graph->node_count);
+}
+
+static bool all_parts_used(const idx_t *parts, uint32_t node_count, uint32_t part_count)
+{
+	uint32_t used = 0;
+	bool *seen = calloc(part_count, sizeof(*seen));
+
+	for (uint32_t i = 0; seen && i < node_count; i++) {
+		used += !seen[parts[i]];
+		seen[parts[i]] = true;
+	}
+	free(seen);
+	return used == part_count;
+}
+
+static int divide_at_once(uint32_t *labels, const struct graph *graph, uint32_t part_count,
+			  const float *shares)
+{
+	struct rows rows;
+	idx_t *parts = calloc(graph->node_count, sizeof(*parts));
+	int rc = rows_init(&rows, graph);
+
+	if (!parts)
+		rc = -ENOMEM;
+	if (rc == 0)
+		rc = run_metis(parts, &rows, graph, part_count, shares);
+	if (rc == 0 && all_parts_used(parts, graph->node_count, part_count))
+		for (uint32_t i = 0; i < graph->node_count; i++)
+			labels[i] = (uint32_t)parts[i];
+	else if (rc == 0)
+		divide_in_runs(labels, graph, part_count);
+	rows_finish(&rows);
+	free(parts);
+	return rc;
+}
+
+/* The nodes with one of two labels as a graph of their own; names[node] is its place there. */
+static int half_of_graph(struct graph *half, uint32_t *names, const struct graph *graph,
+			 const uint32_t *labels, uint32_t label)
+{
+	uint32_t count = 0;
+	int rc;
+
+	for (uint32_t i = 0; i < graph->node_count; i++)
+		if (labels[i] == label)
+			names[i] = count++;
+	rc = graph_init(half, count);
+	for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+		if (labels[i] == label)
+			half->node_weights[names[i]] = graph->node_weights[i];
+	for (size_t e = 0; rc == 0 && e < graph->edge_count; e++) {
+		const struct graph_edge *edge = &graph->edges[e];
+
+		if (labels[edge->a] == label && labels[edge->b] == label)
+			rc = graph_add(half, names[edge->a], names[edge->b], edge->weight);
+	}
+	return rc;
+}
+
+/* Few heavy nodes: METIS on many parts at once would find nothing left to divide, so halve it
+ * step by step and look. */
+static int divide_by_halves(uint32_t *labels, const struct graph *graph, uint32_t part_count)
+{
+	uint32_t parts[2] = { part_count / 2, part_count - part_count / 2 }, counts[2] = { 0, 0 };
+	const float shares[2] = { (float)parts[0] / (float)part_count,
+				  (float)parts[1] / (float)part_count };
+	uint32_t *names = malloc((graph->node_count + 1) * sizeof(*names));
+	uint32_t *halves = malloc((graph->node_count + 1) * sizeof(*halves));
+	uint32_t *inner = malloc((graph->node_count + 1) * sizeof(*inner));
+	int rc = names && halves && inner ? divide_at_once(halves, graph, 2, shares) : -ENOMEM;
+
+	for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+		counts[halves[i]]++;
+	if (rc == 0 && (counts[0] < parts[0] || counts[1] < parts[1])) {
+		divide_in_runs(labels, graph, part_count);
+		parts[0] = parts[1] = 0;
+	}
+	for (uint32_t side = 0; rc == 0 && side < 2 && parts[side] > 0; side++) {
+		struct graph half;
+
+		rc = half_of_graph(&half, names, graph, halves, side);
+		if (rc == 0)
+			rc = graph_divide(inner, &half, parts[side], NULL);
+		for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+			if (halves[i] == side)
+				labels[i] = inner[names[i]] + (side ? parts[0] : 0);
+		graph_finish(&half);
+	}
+	free(names);
+	free(halves);
+	free(inner);
+	return rc;
+}
+
+int graph_divide(uint32_t *labels, const struct graph *graph, uint32_t part_count,
+		 const float *shares)
+{
+	if (part_count <= 1 || graph->node_count <= part_count) {
+		for (uint32_t i = 0; i < graph->node_count; i++)
+			labels[i] = part_count <= 1 ? 0 : i;
+		return 0;
+	}
+	if (part_count > 2 && graph->node_count < NODES_A_PART * part_count)
+		return divide_by_halves(labels, graph, part_count);
+	return divide_at_once(labels, graph, part_count, shares);
+}

@@ -1,0 +1,335 @@
+#include "pipeline/hierarchy/lattice_mesh.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 65535 };
+
+static int find_lattice(struct lattice_mesh *out, const struct mesh *mesh)
+{
+	double longest = 0.0;
+
+	for (int i = 0; i < 3; i++) {
+		out->box_min_m[i] = INFINITY;
+		out->box_max_m[i] = -INFINITY;
+	}
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
+			float at = mesh->positions[v][i];
+
+			if (!isfinite(at))
+				return -EINVAL;
+			out->box_min_m[i] = fminf(out->box_min_m[i], at);
+			out->box_max_m[i] = fmaxf(out->box_max_m[i], at);
+		}
+	for (int i = 0; i < 3; i++) {
+		out->lattice.origin_m[i] = out->box_min_m[i];
+		longest = fmax(longest, (double)out->box_max_m[i] - out->box_min_m[i]);
+	}
+	out->lattice.step_m = longest / STEPS;
+	return longest > 0.0 && isfinite(longest) ? 0 : -EINVAL;
+}
+
+static void to_lattice(uint16_t out[3], const struct lattice *lattice, const float at_m[3])
+{
+	for (int i = 0; i < 3; i++) {
+		double steps = round((at_m[i] - lattice->origin_m[i]) / lattice->step_m);
+
+		out[i] = (uint16_t)(steps < 0 ? 0 : steps > STEPS ? STEPS : steps);
+	}
+}
+
+static uint64_t mix(uint64_t key)
+{
+	key ^= key >> 31;
+	key *= 0x9e3779b97f4a7c15u;
+	key ^= key >> 29;
+	key *= 0xbf58476d1ce4e5b9u;
+	return key ^ key >> 32;
+}
+
+/* Open addressing over indices plus one; 0 is free. */
+static uint32_t *table_create(uint32_t *mask, uint32_t count)
+{
+	uint64_t size = 64;
+
+	while (size < 2 * (uint64_t)count)
+		size *= 2;
+	*mask = (uint32_t)(size - 1);
+	return calloc(size, sizeof(uint32_t));
+}
+
+struct merged {
+	uint32_t *to;       /* of each vertex of the scan, its vertex on the lattice */
+	uint32_t (*sum)[4]; /* colours */
+	uint32_t *count;
+};
+
+/* Vertices at one place become one, in the order of their first appearance. */
+static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const struct mesh *mesh,
+			  const uint8_t colour[3])
+{
+	uint32_t mask, *table = table_create(&mask, mesh->vertex_count);
+	const uint8_t plain[4] = { colour[0], colour[1], colour[2], 255 };
+
+	if (!table)
+		return -ENOMEM;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		const uint8_t *own = mesh->colours ? mesh->colours[v] : plain;
+		uint16_t position[3];
+		uint32_t at, id;
+
+		to_lattice(position, &out->lattice, mesh->positions[v]);
+		at = (uint32_t)mix(position[0] | (uint64_t)position[1] << 16 |
+				   (uint64_t)position[2] << 32) &
+		     mask;
+		while (table[at] && memcmp(out->vertices[table[at] - 1].position, position,
+					   sizeof(position)) != 0)
+			at = (at + 1) & mask;
+		if (!table[at]) {
+			table[at] = ++out->vertex_count;
+			memcpy(out->vertices[table[at] - 1].position, position, sizeof(position));
+		}
+		id = table[at] - 1;
+		merged->to[v] = id;
+		merged->count[id]++;
+		for (int i = 0; i < 4; i++)
+			merged->sum[id][i] += own[i];
+	}
+	free(table);
+	for (uint32_t v = 0; v < out->vertex_count; v++) {
+		out->vertices[v].seen = 255;
+		for (int i = 0; i < 4; i++)
+			out->vertices[v].colour[i] =
+				(uint8_t)((merged->sum[v][i] + merged->count[v] / 2) /
+					  merged->count[v]);
+	}
+	return 0;
+}
+
+static void turn_smallest_first(uint32_t triangle[3])
+{
+	while (triangle[0] > triangle[1] || triangle[0] > triangle[2]) {
+		uint32_t first = triangle[0];
+
+		triangle[0] = triangle[1];
+		triangle[1] = triangle[2];
+		triangle[2] = first;
+	}
+}
+
+static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *counts,
+			  const struct mesh *mesh, const uint32_t *to)
+{
+	uint32_t mask, *table = table_create(&mask, mesh->triangle_count);
+
+	for (uint32_t t = 0; table && t < mesh->triangle_count; t++) {
+		uint32_t *kept = out->triangles[out->triangle_count], at;
+
+		for (int corner = 0; corner < 3; corner++) {
+			if (mesh->triangles[t][corner] >= mesh->vertex_count) {
+				free(table);
+				return -EINVAL;
+			}
+			kept[corner] = to[mesh->triangles[t][corner]];
+		}
+		if (kept[0] == kept[1] || kept[1] == kept[2] || kept[2] == kept[0]) {
+			counts->degenerate_triangles++;
+			continue;
+		}
+		turn_smallest_first(kept);
+		at = (uint32_t)mix(mix(kept[0] | (uint64_t)kept[1] << 32) + kept[2]) & mask;
+		while (table[at] &&
+		       memcmp(out->triangles[table[at] - 1], kept, sizeof(*out->triangles)) != 0)
+			at = (at + 1) & mask;
+		if (table[at]) {
+			counts->duplicate_triangles++;
+			continue;
+		}
+		table[at] = ++out->triangle_count;
+	}
+	free(table);
+	if (!table)
+		return -ENOMEM;
+	return out->triangle_count > 0 ? 0 : -EINVAL;
+}
+
+/* A vertex without triangles would be in no patch; drop it so that ids are dense. */
+static int drop_unused(struct lattice_mesh *mesh)
+{
+	uint32_t *to = calloc(mesh->vertex_count, sizeof(*to)), kept = 0;
+
+	if (!to)
+		return -ENOMEM;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int corner = 0; corner < 3; corner++)
+			to[mesh->triangles[t][corner]] = 1;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		if (to[v]) {
+			mesh->vertices[kept] = mesh->vertices[v];
+			to[v] = kept++;
+		}
+	mesh->vertex_count = kept;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int corner = 0; corner < 3; corner++)
+			mesh->triangles[t][corner] = to[mesh->triangles[t][corner]];
+	free(to);
+	return 0;
+}
+
+static void add_normals(struct lattice_mesh *mesh)
+{
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		const uint32_t *triangle = mesh->triangles[t];
+		double u[3], v[3];
+
+		for (int i = 0; i < 3; i++) {
+			double a = mesh->vertices[triangle[0]].position[i];
+
+			u[i] = mesh->vertices[triangle[1]].position[i] - a;
+			v[i] = mesh->vertices[triangle[2]].position[i] - a;
+		}
+		for (int i = 0; i < 3; i++) {
+			double cross =
+				u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+
+			for (int corner = 0; corner < 3; corner++)
+				mesh->vertices[triangle[corner]].normal[i] += (float)cross;
+		}
+	}
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		float *n = mesh->vertices[v].normal;
+		float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+
+		for (int i = 0; i < 3; i++)
+			n[i] = length > 0.0f ? n[i] / length : (i == 2);
+	}
+}
+
+static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts)
+{
+	struct incidence incidence;
+	double crowded = 0.0;
+	int rc = incidence_create(&incidence, mesh->triangles, mesh->triangle_count,
+				  mesh->vertex_count);
+
+	if (rc < 0)
+		return rc;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int corner = 0; corner < 3; corner++) {
+			uint32_t a = mesh->triangles[t][corner];
+			uint32_t b = mesh->triangles[t][(corner + 1) % 3];
+			uint32_t runs[2];
+
+			incidence_edge(runs, &incidence, mesh->triangles, a, b);
+			/* Met once from each of its triangles, it counts as one. */
+			if (runs[0] + runs[1] > 2)
+				crowded += 1.0 / (runs[0] + runs[1]);
+			if (runs[0] == runs[1])
+				continue;
+			counts->border_edges++;
+			mesh->vertices[a].border = mesh->vertices[b].border = 1;
+		}
+	counts->crowded_edges = (uint32_t)lrint(crowded);
+	incidence_finish(&incidence);
+	return 0;
+}
+
+static int build(struct lattice_mesh *out, struct lattice_counts *counts, const struct mesh *mesh,
+		 const uint8_t colour[3])
+{
+	struct merged merged = {
+		.to = malloc((mesh->vertex_count + 1) * sizeof(*merged.to)),
+		.sum = calloc(mesh->vertex_count + 1, sizeof(*merged.sum)),
+		.count = calloc(mesh->vertex_count + 1, sizeof(*merged.count)),
+	};
+	int rc = -ENOMEM;
+
+	out->vertices = calloc(mesh->vertex_count + 1, sizeof(*out->vertices));
+	out->triangles = malloc((mesh->triangle_count + 1) * sizeof(*out->triangles));
+	if (merged.to && merged.sum && merged.count && out->vertices && out->triangles)
+		rc = find_lattice(out, mesh);
+	if (rc == 0)
+		rc = merge_vertices(out, &merged, mesh, colour);
+	if (rc == 0) {
+		counts->merged_vertices = mesh->vertex_count - out->vertex_count;
+		rc = keep_triangles(out, counts, mesh, merged.to);
+	}
+	free(merged.to);
+	free(merged.sum);
+	free(merged.count);
+	if (rc == 0)
+		rc = drop_unused(out);
+	if (rc < 0)
+		return rc;
+	add_normals(out);
+	return find_borders(out, counts);
+}
+
+int lattice_mesh_create(struct lattice_mesh *out, struct lattice_counts *counts,
+			const struct mesh *mesh, const uint8_t colour[3])
+{
+	int rc;
+
+	*out = (struct lattice_mesh){ 0 };
+	*counts = (struct lattice_counts){ 0 };
+	rc = build(out, counts, mesh, colour);
+	if (rc < 0)
+		lattice_mesh_finish(out);
+	return rc;
+}
+
+void lattice_mesh_finish(struct lattice_mesh *mesh)
+{
+	if (!mesh)
+		return;
+	free(mesh->vertices);
+	free(mesh->triangles);
+	*mesh = (struct lattice_mesh){ 0 };
+}
+
+int incidence_create(struct incidence *out, uint32_t (*triangles)[3], uint32_t triangle_count,
+		     uint32_t vertex_count)
+{
+	out->first = calloc((size_t)vertex_count + 2, sizeof(*out->first));
+	out->items = malloc(3 * (size_t)triangle_count * sizeof(*out->items) + 1);
+	if (!out->first || !out->items) {
+		incidence_finish(out);
+		return -ENOMEM;
+	}
+	/* Counted two places on, so that filling leaves the starts one place on: no second array.
+	 */
+	for (uint32_t t = 0; t < triangle_count; t++)
+		for (int corner = 0; corner < 3; corner++)
+			out->first[triangles[t][corner] + 2]++;
+	for (uint32_t v = 2; v < vertex_count + 2; v++)
+		out->first[v] += out->first[v - 1];
+	for (uint32_t t = 0; t < triangle_count; t++)
+		for (int corner = 0; corner < 3; corner++)
+			out->items[out->first[triangles[t][corner] + 1]++] = t;
+	return 0;
+}
+
+void incidence_finish(struct incidence *incidence)
+{
+	if (!incidence)
+		return;
+	free(incidence->first);
+	free(incidence->items);
+	*incidence = (struct incidence){ 0 };
+}
+
+void incidence_edge(uint32_t counts[2], const struct incidence *incidence, uint32_t (*triangles)[3],
+		    uint32_t a, uint32_t b)
+{
+	counts[0] = counts[1] = 0;
+	for (uint32_t i = incidence->first[a]; i < incidence->first[a + 1]; i++) {
+		const uint32_t *triangle = triangles[incidence->items[i]];
+		int corner = triangle[0] == a ? 0 : triangle[1] == a ? 1 : 2;
+
+		counts[0] += triangle[(corner + 1) % 3] == b;
+		counts[1] += triangle[(corner + 2) % 3] == b;
+	}
+}

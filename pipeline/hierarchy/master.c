@@ -1,0 +1,375 @@
+#include "pipeline/hierarchy/master.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "pipeline/material/material.h"
+
+/* Raised whenever the same scan would give other bytes. */
+enum { BUILD_VERSION = 6, INDEX_VERSION = 2, INDEX_BYTES_MOST = 256 << 20 };
+
+static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
+
+struct hash master_stamp(struct hash scans_key, const struct master_options *options)
+{
+	struct buffer text;
+	struct hash stamp;
+
+	buffer_init(&text, 4096);
+	buffer_put_u32(&text, BUILD_VERSION);
+	buffer_put(&text, scans_key.bytes, sizeof(scans_key.bytes));
+	buffer_put_u32(&text, options->multires.kind);
+	buffer_put_u32(&text, options->multires.patch_triangles);
+	buffer_put_u32(&text, options->multires.group_patches);
+	buffer_put_u32(&text, options->multires.top_triangles);
+	buffer_put_u8(&text, options->stone_colours);
+	stamp = hash_of(buffer_bytes(&text));
+	buffer_finish(&text);
+	return stamp;
+}
+
+static int path_in(char out[PATH_MAX], const char *folder, const char *name)
+{
+	return snprintf(out, PATH_MAX, "%s/%s", folder, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
+}
+
+static int groups_path(char out[PATH_MAX], const char *folder, struct hash stamp)
+{
+	char hex[HASH_HEX_BYTES], name[HASH_HEX_BYTES + 16];
+
+	hash_to_hex(stamp, hex);
+	snprintf(name, sizeof(name), "groups-%s", hex);
+	return path_in(out, folder, name);
+}
+
+/* ---- building */
+
+struct written {
+	uint32_t size;
+	float loss_m4;
+};
+
+struct writer {
+	int fd;
+	struct written *objects; /* owned; in the order they are made */
+	uint32_t count, room;
+};
+
+static int write_object(void *user, struct bytes object, float loss_m4)
+{
+	struct writer *writer = user;
+	size_t done = 0;
+
+	if (writer->count == writer->room) {
+		uint32_t room = writer->room ? 2 * writer->room : 256;
+		struct written *grown = realloc(writer->objects, room * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		writer->objects = grown;
+		writer->room = room;
+	}
+	writer->objects[writer->count++] = (struct written){ (uint32_t)object.size, loss_m4 };
+	while (done < object.size) {
+		ssize_t put = write(writer->fd, object.data + done, object.size - done);
+
+		if (put < 0 && errno != EINTR)
+			return -errno;
+		if (put > 0)
+			done += (size_t)put;
+	}
+	return 0;
+}
+
+static void colour_as_stone(struct lattice_mesh *mesh)
+{
+	const struct lattice *lattice = &mesh->lattice;
+	double length = 0.0;
+	float footprint;
+
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int i = 0; i < 3; i++) {
+			const uint32_t *triangle = mesh->triangles[t];
+
+			length += abs(mesh->vertices[triangle[0]].position[i] -
+				      mesh->vertices[triangle[1]].position[i]);
+		}
+	footprint = (float)(length / mesh->triangle_count * lattice->step_m);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		struct lattice_vertex *vertex = &mesh->vertices[v];
+		float at[3], rgb[3];
+
+		for (int i = 0; i < 3; i++)
+			at[i] = (float)(lattice->origin_m[i] +
+					lattice->step_m * vertex->position[i]);
+		stone_colour(rgb, at, vertex->normal, footprint);
+		for (int i = 0; i < 3; i++)
+			vertex->colour[i] = (uint8_t)(255.0f * (rgb[i] < 0.0f   ? 0.0f
+								: rgb[i] > 1.0f ? 1.0f
+										: rgb[i]) +
+						      0.5f);
+	}
+}
+
+static int put_index(struct buffer *out, const struct master *head,
+		     const struct hierarchy *hierarchy, const struct writer *writer)
+{
+	struct buffer payload;
+	struct hash hash;
+	int rc;
+
+	buffer_put(out, magic, sizeof(magic));
+	buffer_put_u32(out, INDEX_VERSION);
+	buffer_put(out, head->stamp.bytes, sizeof(head->stamp.bytes));
+	for (int i = 0; i < 3; i++)
+		buffer_put_f64(out, head->lattice.origin_m[i]);
+	buffer_put_f64(out, head->lattice.step_m);
+	for (int i = 0; i < 3; i++)
+		buffer_put_f32(out, head->box_min_m[i]);
+	for (int i = 0; i < 3; i++)
+		buffer_put_f32(out, head->box_max_m[i]);
+	buffer_put_u64(out, head->source_triangles);
+	buffer_init(&payload, INDEX_BYTES_MOST);
+	rc = hierarchy_encode(&payload, hierarchy);
+	buffer_put_u32(out, (uint32_t)payload.size);
+	buffer_put(out, payload.data, payload.size);
+	buffer_finish(&payload);
+	/* In the order they lie in the file: made finest first. */
+	for (uint32_t i = 0; i < writer->count; i++) {
+		buffer_put_u32(out, writer->objects[i].size);
+		buffer_put_f32(out, writer->objects[i].loss_m4);
+	}
+	hash = hash_of(buffer_bytes(out));
+	buffer_put(out, hash.bytes, sizeof(hash.bytes));
+	return rc < 0 ? rc : out->error;
+}
+
+static int write_index(const char *folder, const struct master *head,
+		       const struct hierarchy *hierarchy, const struct writer *writer)
+{
+	char path[PATH_MAX];
+	struct buffer index;
+	int rc = path_in(path, folder, "index");
+
+	buffer_init(&index, INDEX_BYTES_MOST);
+	if (rc == 0)
+		rc = put_index(&index, head, hierarchy, writer);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&index), path);
+	buffer_finish(&index);
+	return rc;
+}
+
+/* Of earlier builds, whole or not. */
+static void remove_other_files(const char *folder, const char *keep)
+{
+	DIR *entries = opendir(folder);
+	struct dirent *entry;
+	char path[PATH_MAX];
+
+	while (entries && (entry = readdir(entries))) {
+		if (entry->d_name[0] == '.' || strcmp(entry->d_name, "index") == 0 ||
+		    path_in(path, folder, entry->d_name) < 0 || strcmp(path, keep) == 0)
+			continue;
+		unlink(path);
+	}
+	if (entries)
+		closedir(entries);
+}
+
+static int build_into(struct writer *writer, const char *folder, const struct mesh *mesh,
+		      struct hash stamp, const struct master_options *options,
+		      struct master_report *report)
+{
+	static const uint8_t plain[3] = { 184, 172, 150 };
+	const struct multires_sink sink = { write_object, writer };
+	struct lattice_mesh lattice_mesh;
+	struct hierarchy hierarchy = { 0 };
+	struct master head = { .stamp = stamp, .source_triangles = mesh->triangle_count };
+	int rc = lattice_mesh_create(&lattice_mesh, &report->counts, mesh, plain);
+
+	if (rc < 0)
+		return rc;
+	if (options->stone_colours)
+		colour_as_stone(&lattice_mesh);
+	head.lattice = lattice_mesh.lattice;
+	memcpy(head.box_min_m, lattice_mesh.box_min_m, sizeof(head.box_min_m));
+	memcpy(head.box_max_m, lattice_mesh.box_max_m, sizeof(head.box_max_m));
+	rc = multires_build(&hierarchy, &report->stats, &lattice_mesh, &options->multires, &sink);
+	if (rc == 0 && fsync(writer->fd) < 0)
+		rc = -errno;
+	if (rc == 0)
+		rc = write_index(folder, &head, &hierarchy, writer);
+	hierarchy_finish(&hierarchy);
+	lattice_mesh_finish(&lattice_mesh);
+	return rc;
+}
+
+int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
+		 const struct master_options *options, struct master_report *report)
+{
+	struct writer writer = { .fd = -1 };
+	int64_t start_ms = clock_now_ms();
+	char path[PATH_MAX];
+	int rc = groups_path(path, folder, stamp);
+
+	*report = (struct master_report){ 0 };
+	if (rc < 0)
+		return rc;
+	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
+		return -errno;
+	/* A new file even where one has this name: an index may still point into the old one. */
+	if (unlink(path) < 0 && errno != ENOENT)
+		return -errno;
+	writer.fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	if (writer.fd < 0)
+		return -errno;
+	rc = build_into(&writer, folder, mesh, stamp, options, report);
+	close(writer.fd);
+	free(writer.objects);
+	if (rc < 0)
+		unlink(path);
+	else
+		remove_other_files(folder, path);
+	report->duration_ms = clock_now_ms() - start_ms;
+	return rc;
+}
+
+/* ---- opening */
+
+static int get_head(struct master *master, struct reader *reader, const struct hash *stamp)
+{
+	struct bytes start = reader_bytes(reader, sizeof(magic)), name;
+
+	if (reader->failed || memcmp(start.data, magic, sizeof(magic)) != 0)
+		return -EBADMSG;
+	if (reader_u32(reader) != INDEX_VERSION)
+		return -ESTALE;
+	name = reader_bytes(reader, HASH_BYTES);
+	if (reader->failed)
+		return -EBADMSG;
+	memcpy(master->stamp.bytes, name.data, HASH_BYTES);
+	if (stamp && !hash_equal(*stamp, master->stamp))
+		return -ESTALE;
+	for (int i = 0; i < 3; i++)
+		master->lattice.origin_m[i] = reader_f64(reader);
+	master->lattice.step_m = reader_f64(reader);
+	for (int i = 0; i < 3; i++)
+		master->box_min_m[i] = reader_f32(reader);
+	for (int i = 0; i < 3; i++)
+		master->box_max_m[i] = reader_f32(reader);
+	master->source_triangles = reader_u64(reader);
+	return reader->failed ? -EBADMSG : 0;
+}
+
+static int get_index(struct master *master, struct bytes index, const struct hash *stamp)
+{
+	struct reader reader;
+	struct hash hash;
+	uint32_t count;
+	int rc;
+
+	if (index.size < HASH_BYTES)
+		return -EBADMSG;
+	index.size -= HASH_BYTES;
+	hash = hash_of(index);
+	if (memcmp(hash.bytes, index.data + index.size, HASH_BYTES) != 0)
+		return -EBADMSG;
+	reader_init(&reader, index);
+	rc = get_head(master, &reader, stamp);
+	if (rc == 0)
+		rc = hierarchy_decode(&master->hierarchy,
+				      reader_bytes(&reader, reader_u32(&reader)));
+	if (rc < 0)
+		return rc;
+	count = master->hierarchy.group_count;
+	master->places = calloc(count, sizeof(*master->places));
+	master->sizes = calloc(count, sizeof(*master->sizes));
+	master->losses_m4 = calloc(count, sizeof(*master->losses_m4));
+	if (!master->places || !master->sizes || !master->losses_m4)
+		return -ENOMEM;
+	/* Group 0 was made last and lies last. */
+	for (uint32_t g = count; g-- > 0;) {
+		master->sizes[g] = reader_u32(&reader);
+		master->losses_m4[g] = reader_f32(&reader);
+		master->places[g] =
+			g + 1 < count ? master->places[g + 1] + master->sizes[g + 1] : 0;
+	}
+	return reader.failed || reader_left(&reader) > 0 ? -EBADMSG : 0;
+}
+
+static int open_groups(struct master *master, const char *path)
+{
+	struct stat file;
+
+	master->fd = open(path, O_RDONLY | O_CLOEXEC);
+	if (master->fd < 0 || fstat(master->fd, &file) < 0)
+		return -errno;
+	/* Group 0 is the last. */
+	return (uint64_t)file.st_size == master->places[0] + master->sizes[0] ? 0 : -EBADMSG;
+}
+
+int master_open(struct master **out, const char *folder, const struct hash *stamp)
+{
+	struct master *master = calloc(1, sizeof(*master));
+	char path[PATH_MAX];
+	struct buffer index;
+	int rc = master ? path_in(path, folder, "index") : -ENOMEM;
+
+	*out = NULL;
+	if (!master)
+		return rc;
+	master->fd = -1;
+	buffer_init(&index, INDEX_BYTES_MOST);
+	if (rc == 0)
+		rc = buffer_read_file(&index, path);
+	if (rc == 0)
+		rc = get_index(master, buffer_bytes(&index), stamp);
+	buffer_finish(&index);
+	if (rc == 0)
+		rc = groups_path(path, folder, master->stamp);
+	if (rc == 0)
+		rc = open_groups(master, path);
+	if (rc < 0) {
+		master_destroy(master);
+		return rc;
+	}
+	*out = master;
+	return 0;
+}
+
+void master_destroy(struct master *master)
+{
+	if (!master)
+		return;
+	if (master->fd >= 0)
+		close(master->fd);
+	free(master->places);
+	free(master->sizes);
+	free(master->losses_m4);
+	hierarchy_finish(&master->hierarchy);
+	free(master);
+}
+
+int master_read_group(const struct master *master, uint32_t group, struct buffer *out)
+{
+	uint64_t at, size;
+	uint8_t *to;
+
+	if (group >= master->hierarchy.group_count)
+		return -EINVAL;
+	at = master->places[group];
+	size = master->sizes[group];
+	to = buffer_extend(out, size);
+	if (!to)
+		return out->error;
+	return bytes_read_at(master->fd, to, size, at);
+}

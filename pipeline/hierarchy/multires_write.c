@@ -1,0 +1,252 @@
+/* Patches of a group into its object and its rows of the hierarchy. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <meshoptimizer.h>
+
+#include "format/normal.h"
+#include "format/patch.h"
+#include "pipeline/hierarchy/multires_parts.h"
+
+static void to_metres(double out[3], const struct lattice *lattice, const uint16_t position[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = lattice->origin_m[i] + lattice->step_m * position[i];
+}
+
+static double distance(const double a[3], const double b[3])
+{
+	double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+
+	return sqrt(x * x + y * y + z * z);
+}
+
+/* Local names in the order of the triangles, which go into the cache's order first. */
+static int name_vertices(unsigned int *indices, unsigned int **globals, uint32_t *vertex_count,
+			 const struct live_patch *patch, uint32_t *local_of)
+{
+	size_t count = 3 * (size_t)patch->triangle_count;
+	unsigned int *order = malloc(count * sizeof(*order)), *named;
+
+	*vertex_count = 0;
+	*globals = named = malloc(count * sizeof(*named));
+	if (!order || !named) {
+		free(order);
+		return -ENOMEM;
+	}
+	for (size_t i = 0; i < count; i++) {
+		uint32_t *name = &local_of[patch->triangles[i / 3][i % 3]];
+
+		if (*name == NO_GROUP) {
+			named[*vertex_count] = patch->triangles[i / 3][i % 3];
+			*name = (*vertex_count)++;
+		}
+		order[i] = *name;
+	}
+	for (uint32_t v = 0; v < *vertex_count; v++)
+		local_of[named[v]] = NO_GROUP;
+	meshopt_optimizeVertexCache(indices, order, count, *vertex_count);
+	/* Again in the new order, so that vertices come as they are first used. */
+	for (size_t i = 0; i < count; i++)
+		order[i] = named[indices[i]];
+	*vertex_count = 0;
+	for (size_t i = 0; i < count; i++) {
+		uint32_t *name = &local_of[order[i]];
+
+		if (*name == NO_GROUP) {
+			named[*vertex_count] = order[i];
+			*name = (*vertex_count)++;
+		}
+		indices[i] = *name;
+	}
+	for (uint32_t v = 0; v < *vertex_count; v++)
+		local_of[named[v]] = NO_GROUP;
+	free(order);
+	return 0;
+}
+
+static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
+		     const struct live_patch *patch, uint32_t *local_of)
+{
+	size_t count = 3 * (size_t)patch->triangle_count;
+	unsigned int *indices = malloc(count * sizeof(*indices)), *globals = NULL;
+	int rc = -ENOMEM;
+
+	*out = (struct patch_mesh){ .triangle_count = patch->triangle_count };
+	if (indices)
+		rc = name_vertices(indices, &globals, &out->vertex_count, patch, local_of);
+	if (rc == 0) {
+		out->vertices = malloc(out->vertex_count * sizeof(*out->vertices));
+		out->indices = malloc(count * sizeof(*out->indices));
+		rc = out->vertices && out->indices ? 0 : -ENOMEM;
+	}
+	for (uint32_t v = 0; rc == 0 && v < out->vertex_count; v++) {
+		const struct lattice_vertex *from = &mesh->vertices[globals[v]];
+		struct patch_vertex *to = &out->vertices[v];
+
+		memcpy(to->position, from->position, sizeof(to->position));
+		memcpy(to->colour, from->colour, sizeof(to->colour));
+		normal_encode(to->normal, from->normal);
+	}
+	for (size_t i = 0; rc == 0 && i < count; i++)
+		out->indices[i] = (uint16_t)indices[i];
+	free(indices);
+	free(globals);
+	return rc;
+}
+
+static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *patch,
+			const struct lattice *lattice)
+{
+	uint16_t low[3] = { UINT16_MAX, UINT16_MAX, UINT16_MAX }, high[3] = { 0 };
+	double centre[3], at[3], radius = 0.0;
+
+	for (uint32_t v = 0; v < patch->vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
+			uint16_t p = patch->vertices[v].position[i];
+
+			low[i] = p < low[i] ? p : low[i];
+			high[i] = p > high[i] ? p : high[i];
+		}
+	for (int i = 0; i < 3; i++) {
+		out->centre_m[i] =
+			(float)(lattice->origin_m[i] + lattice->step_m * (low[i] + high[i]) / 2.0);
+		centre[i] = out->centre_m[i];
+	}
+	for (uint32_t v = 0; v < patch->vertex_count; v++) {
+		to_metres(at, lattice, patch->vertices[v].position);
+		radius = fmax(radius, distance(at, centre));
+	}
+	out->radius_m = nextafterf((float)radius, INFINITY);
+}
+
+static void triangle_normal(double out[3], const struct patch_mesh *patch, uint32_t t)
+{
+	const uint16_t *at[3];
+	double u[3], v[3], length;
+
+	for (int corner = 0; corner < 3; corner++)
+		at[corner] = patch->vertices[patch->indices[3 * t + (uint32_t)corner]].position;
+	for (int i = 0; i < 3; i++) {
+		u[i] = at[1][i] - at[0][i];
+		v[i] = at[2][i] - at[0][i];
+	}
+	for (int i = 0; i < 3; i++)
+		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+	length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+	for (int i = 0; i < 3; i++)
+		out[i] = length > 0.0 ? out[i] / length : 0.0;
+}
+
+/* The normals of the triangles, since they decide what faces the eye. */
+static void bound_normals(struct hierarchy_patch *out, const struct patch_mesh *patch)
+{
+	double axis[3] = { 0.0, 0.0, 0.0 }, normal[3], length, least = 1.0;
+
+	for (uint32_t t = 0; t < patch->triangle_count; t++) {
+		triangle_normal(normal, patch, t);
+		for (int i = 0; i < 3; i++)
+			axis[i] += normal[i];
+	}
+	length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+	for (int i = 0; i < 3; i++)
+		out->cone_axis[i] = length > 1e-9 ? (float)(axis[i] / length) : (i == 2);
+	for (uint32_t t = 0; t < patch->triangle_count; t++) {
+		double dot = 0.0;
+
+		triangle_normal(normal, patch, t);
+		for (int i = 0; i < 3; i++)
+			dot += out->cone_axis[i] * normal[i];
+		least = fmin(least, dot);
+	}
+	out->cone_cos = length > 1e-9 ? (float)fmax(-1.0, least - 1e-6) : -1.0f;
+}
+
+/* The farthest point of all the spheres that the group's has to enclose. */
+static double farthest(double out[3], const struct group_job *job, const double centre[3])
+{
+	double most = -1.0;
+
+	for (uint32_t p = 0; p < job->patch_count; p++) {
+		const struct live_patch *patch = &job->patches[p];
+		const struct hierarchy_patch *made = &job->made[p];
+		struct sphere spheres[2] = {
+			{ { made->centre_m[0], made->centre_m[1], made->centre_m[2] },
+			  made->radius_m },
+			patch->finer_sphere,
+		};
+
+		for (int s = 0; s < (patch->finer == NO_GROUP ? 1 : 2); s++) {
+			double away = distance(spheres[s].centre, centre);
+			double reach = away + spheres[s].radius;
+
+			if (reach <= most)
+				continue;
+			most = reach;
+			for (int i = 0; i < 3; i++)
+				out[i] = away > 0.0
+						 ? centre[i] + (spheres[s].centre[i] - centre[i]) *
+								       reach / away
+						 : centre[i];
+		}
+	}
+	return most;
+}
+
+/* Nearly the smallest sphere, by steps towards what is farthest (Badoiu and Clarkson 2003): spheres
+ * nest over many levels, so slack would add up. */
+static void bound_group(struct group_job *job)
+{
+	double centre[3] = { job->made[0].centre_m[0], job->made[0].centre_m[1],
+			     job->made[0].centre_m[2] };
+	double best = INFINITY, reach, far[3], rounded[3];
+
+	for (int step = 1; step <= 100; step++) {
+		for (int i = 0; i < 3; i++)
+			rounded[i] = (float)centre[i];
+		reach = farthest(far, job, rounded);
+		if (reach < best) {
+			best = reach;
+			for (int i = 0; i < 3; i++)
+				job->group.centre_m[i] = (float)centre[i];
+		}
+		for (int i = 0; i < 3; i++)
+			centre[i] += (far[i] - centre[i]) / (step + 1);
+	}
+	/* A hair more, so that what is nested stays nested in single precision. */
+	job->group.radius_m = (float)(best * (1.0 + 1e-6));
+}
+
+int group_job_write(const struct job_site *site, struct group_job *job, uint32_t *local_of)
+{
+	struct patch_mesh *meshes = calloc(job->patch_count, sizeof(*meshes));
+	int rc = meshes ? 0 : -ENOMEM;
+
+	job->made = calloc(job->patch_count, sizeof(*job->made));
+	if (!job->made)
+		rc = -ENOMEM;
+	for (uint32_t p = 0; rc == 0 && p < job->patch_count; p++) {
+		struct hierarchy_patch *made = &job->made[p];
+
+		rc = fill_mesh(&meshes[p], site->mesh, &job->patches[p], local_of);
+		if (rc < 0)
+			break;
+		made->finer = job->patches[p].finer;
+		made->triangle_count = (uint16_t)meshes[p].triangle_count;
+		made->vertex_count = (uint16_t)meshes[p].vertex_count;
+		job->vertex_count += meshes[p].vertex_count;
+		bound_patch(made, &meshes[p], &site->mesh->lattice);
+		bound_normals(made, &meshes[p]);
+	}
+	buffer_init(&job->object, OBJECT_BYTES_MOST);
+	if (rc == 0) {
+		bound_group(job);
+		rc = patch_group_encode(&job->object, meshes, job->patch_count);
+	}
+	for (uint32_t p = 0; meshes && p < job->patch_count; p++)
+		patch_mesh_finish(&meshes[p]);
+	free(meshes);
+	return rc;
+}

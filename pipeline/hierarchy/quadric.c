@@ -1,0 +1,64 @@
+#include "pipeline/hierarchy/quadric.h"
+
+/* Of the matrix's trace: how much a flat direction is held near the guess. */
+#define HOLD 1e-3
+
+void quadric_add_plane(struct quadric *quadric, const double normal[3], const double point[3],
+		       double weight)
+{
+	double x = normal[0], y = normal[1], z = normal[2];
+	double offset = -(x * point[0] + y * point[1] + z * point[2]);
+
+	quadric->xx += weight * x * x;
+	quadric->xy += weight * x * y;
+	quadric->xz += weight * x * z;
+	quadric->yy += weight * y * y;
+	quadric->yz += weight * y * z;
+	quadric->zz += weight * z * z;
+	quadric->x += weight * x * offset;
+	quadric->y += weight * y * offset;
+	quadric->z += weight * z * offset;
+	quadric->constant += weight * offset * offset;
+	quadric->weight += weight;
+}
+
+void quadric_add(struct quadric *quadric, const struct quadric *other)
+{
+	quadric->xx += other->xx;
+	quadric->xy += other->xy;
+	quadric->xz += other->xz;
+	quadric->yy += other->yy;
+	quadric->yz += other->yz;
+	quadric->zz += other->zz;
+	quadric->x += other->x;
+	quadric->y += other->y;
+	quadric->z += other->z;
+	quadric->constant += other->constant;
+	quadric->weight += other->weight;
+}
+
+double quadric_at(const struct quadric *q, const double point[3])
+{
+	double x = point[0], y = point[1], z = point[2];
+	double value = x * (q->xx * x + 2.0 * (q->xy * y + q->xz * z + q->x)) +
+		       y * (q->yy * y + 2.0 * (q->yz * z + q->y)) + z * (q->zz * z + 2.0 * q->z) +
+		       q->constant;
+
+	return value > 0.0 ? value : 0.0;
+}
+
+void quadric_least(double out[3], const struct quadric *q, const double near[3])
+{
+	double hold = HOLD * (q->xx + q->yy + q->zz) + 1e-9;
+	double xx = q->xx + hold, yy = q->yy + hold, zz = q->zz + hold;
+	double x = hold * near[0] - q->x, y = hold * near[1] - q->y, z = hold * near[2] - q->z;
+	/* Cofactors of the symmetric matrix; the hold makes it definite. */
+	double cxx = yy * zz - q->yz * q->yz, cxy = q->xz * q->yz - q->xy * zz;
+	double cxz = q->xy * q->yz - q->xz * yy, cyy = xx * zz - q->xz * q->xz;
+	double cyz = q->xy * q->xz - xx * q->yz, czz = xx * yy - q->xy * q->xy;
+	double determinant = xx * cxx + q->xy * cxy + q->xz * cxz;
+
+	out[0] = (cxx * x + cxy * y + cxz * z) / determinant;
+	out[1] = (cxy * x + cyy * y + cyz * z) / determinant;
+	out[2] = (cxz * x + cyz * y + czz * z) / determinant;
+}

@@ -1,0 +1,288 @@
+#include "pipeline/import/import_parts.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "pipeline/import/mesh_colour.h"
+
+static const uint8_t sandstone[3] = { 186, 166, 136 };
+
+/* ---- which reader */
+
+enum scan_format { SCAN_PLY, SCAN_STL, SCAN_OFF, SCAN_OBJ, SCAN_GLTF, SCAN_GLB, SCAN_UNKNOWN };
+
+static const char *const format_names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB" };
+
+static bool has_extension(const char *path, const char *extension)
+{
+	size_t length = strlen(path), extension_length = strlen(extension);
+
+	return length > extension_length &&
+	       strcasecmp(path + length - extension_length, extension) == 0;
+}
+
+/* By the file's first bytes where they say it, else by its name: OBJ and binary STL have no mark.
+ */
+static enum scan_format sniff(const char *path, const char *head, size_t size)
+{
+	static const struct {
+		const char *extension;
+		enum scan_format format;
+	} names[] = {
+		{ ".ply", SCAN_PLY }, { ".stl", SCAN_STL },   { ".off", SCAN_OFF },
+		{ ".obj", SCAN_OBJ }, { ".gltf", SCAN_GLTF }, { ".glb", SCAN_GLB },
+	};
+
+	if (size >= 4 && memcmp(head, "ply", 3) == 0 && isspace((unsigned char)head[3]))
+		return SCAN_PLY;
+	if (size >= 4 && memcmp(head, "glTF", 4) == 0)
+		return SCAN_GLB;
+	if (size >= 3 && memcmp(head, "OFF", 3) == 0)
+		return SCAN_OFF;
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (has_extension(path, names[i].extension))
+			return names[i].format;
+	return size >= 6 && memcmp(head, "solid ", 6) == 0 ? SCAN_STL : SCAN_UNKNOWN;
+}
+
+static int look(const char *path, enum scan_format *format, struct import_report *report,
+		struct fault *fault)
+{
+	char head[64];
+	struct stat status;
+	ssize_t got = -1;
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* of a FIFO, too */
+
+	if (fd < 0)
+		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
+	if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
+		got = read(fd, head, sizeof(head));
+	close(fd);
+	if (got < 0)
+		return fault_set(fault, -EINVAL, "%s: not a regular file that can be read", path);
+	if (got == 0)
+		return fault_set(fault, -EBADMSG,
+				 "%s: the file is empty; copy it again from the source", path);
+	report->file_bytes = (uint64_t)status.st_size;
+	*format = sniff(path, head, (size_t)got);
+	if (*format == SCAN_UNKNOWN)
+		return fault_set(fault, -EINVAL,
+				 "%s: no scan that is read here; give PLY, OBJ, STL, OFF, glTF or "
+				 "GLB",
+				 path);
+	snprintf(report->format, sizeof(report->format), "%s", format_names[*format]);
+	return 0;
+}
+
+/* ---- from the file's axes, unit and colours to ours */
+
+/* Right-handed stays right-handed: only turns. */
+static void turn_up(const float from[3], enum import_axis up, double to[3])
+{
+	static const int axis[3][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 2, 0 } };
+
+	for (int k = 0; k < 3; k++)
+		to[k] = from[axis[up][k]];
+	if (up == IMPORT_Y_UP)
+		to[1] = -to[1];
+}
+
+static void to_metres(struct mesh *mesh, const struct import_options *options)
+{
+	double scale = options->metres_per_unit > 0 ? options->metres_per_unit : 1;
+	double turned[3];
+
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		turn_up(mesh->positions[i], options->up, turned);
+		for (int k = 0; k < 3; k++)
+			mesh->positions[i][k] = (float)(turned[k] * scale);
+	}
+}
+
+static void drop_textures(struct mesh *mesh)
+{
+	for (uint32_t i = 0; i < mesh->texture_count; i++)
+		free(mesh->textures[i].rgb);
+	free(mesh->textures);
+	free(mesh->uvs);
+	free(mesh->materials);
+	mesh->textures = NULL;
+	mesh->uvs = NULL;
+	mesh->materials = NULL;
+	mesh->texture_count = 0;
+}
+
+static void default_colour_of(const struct import_options *options, uint8_t rgb[3])
+{
+	static const uint8_t none[3] = { 0 };
+	bool given = memcmp(options->default_colour, none, 3) != 0 || options->override_colour;
+
+	memcpy(rgb, given ? options->default_colour : sandstone, 3);
+}
+
+/* Before vertices are merged: colours that will not be shown must not part them. */
+static void drop_colours(struct mesh *mesh, const struct import_options *options)
+{
+	if (options->override_colour)
+		drop_textures(mesh);
+	else if (!mesh->textures)
+		return;
+	for (uint32_t i = 0; mesh->colours && i < mesh->vertex_count; i++)
+		memset(mesh->colours[i], 255, 3);
+}
+
+/* Afterwards every vertex has a colour. */
+static int settle_colours(struct mesh *mesh, const struct import_options *options,
+			  const struct import_report *report)
+{
+	uint8_t rgb[3];
+
+	if (mesh->textures)
+		return mesh_colours_from_textures(mesh);
+	if (report->had_colours && !options->override_colour)
+		return 0;
+	if (!mesh->colours) {
+		mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
+		if (!mesh->colours)
+			return -ENOMEM;
+		memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
+	}
+	default_colour_of(options, rgb);
+	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+		memcpy(mesh->colours[i], rgb, 3);
+	return 0;
+}
+
+/* A float has 24 bits: far from the origin they are spent on the way there. */
+static void judge_box(struct mesh *mesh, const char *path, struct import_report *report)
+{
+	float far_m = 0, size_m = 0;
+
+	mesh_box(mesh, report->low_m, report->high_m);
+	for (int k = 0; k < 3; k++) {
+		far_m = fmaxf(far_m, fmaxf(fabsf(report->low_m[k]), fabsf(report->high_m[k])));
+		size_m = fmaxf(size_m, report->high_m[k] - report->low_m[k]);
+	}
+	if (far_m > 1000 * size_m)
+		fault_set(&report->warning, 0,
+			  "%s: it lies %.0f m from the origin but is only %.2f m large, so places "
+			  "are known to %.1f mm; move it to the origin before export",
+			  path, far_m, size_m, 1000 * far_m * 6e-8);
+}
+
+static int finish(struct mesh *mesh, const char *path, bool is_indexed,
+		  const struct import_options *options, struct import_report *report,
+		  struct fault *fault)
+{
+	int rc;
+
+	to_metres(mesh, options);
+	drop_colours(mesh, options);
+	rc = mesh_repair(mesh, &report->repairs);
+	if (rc == 0)
+		rc = settle_colours(mesh, options, report);
+	if (rc < 0)
+		return fault_set(fault, rc, "%s: too large for this machine's memory", path);
+	if (mesh->triangle_count == 0)
+		return fault_set(fault, -EBADMSG,
+				 "%s: none of its faces is usable (%" PRIu32 " degenerate, %" PRIu32
+				 " with a corner that is no number); export it again",
+				 path, report->repairs.degenerate_faces,
+				 report->repairs.lost_faces);
+	/* Those of assimp's corners are no fault of the scan: it parts every face from the others.
+	 */
+	if (!is_indexed)
+		report->repairs.merged_vertices = 0;
+	mesh->scan_count = 1;
+	mesh->scans[0].triangle_count = mesh->triangle_count;
+	report->vertices = mesh->vertex_count;
+	report->triangles = mesh->triangle_count;
+	judge_box(mesh, path, report);
+	return 0;
+}
+
+bool import_axis_named(const char *name, enum import_axis *out)
+{
+	static const char *const names[] = { "z", "y", "x" };
+
+	for (int i = 0; i < 3; i++)
+		if (strcmp(name, names[i]) == 0) {
+			*out = (enum import_axis)i;
+			return true;
+		}
+	return false;
+}
+
+bool import_unit_named(const char *name, double *out_metres)
+{
+	static const struct {
+		const char *name;
+		double metres;
+	} units[] = { { "m", 1 }, { "cm", 0.01 }, { "mm", 0.001 }, { "in", 0.0254 } };
+	char *end;
+	double metres;
+
+	for (size_t i = 0; i < ARRAY_COUNT(units); i++)
+		if (strcmp(name, units[i].name) == 0) {
+			*out_metres = units[i].metres;
+			return true;
+		}
+	metres = strtod(name, &end);
+	if (end == name || *end || !(metres > 0) || metres > 1e9)
+		return false;
+	*out_metres = metres;
+	return true;
+}
+
+uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes)
+{
+	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
+}
+
+static int read_scan(struct mesh *out, const char *path, enum scan_format format,
+		     const struct import_options *options, struct import_report *report,
+		     struct fault *fault)
+{
+	static const char *const extensions[] = { ".ply", ".stl", ".off", ".obj", ".gltf", ".glb" };
+	const struct import_foreign_format foreign = {
+		.extension = extensions[format],
+		.is_linear = format == SCAN_GLTF || format == SCAN_GLB,
+		.has_materials = format != SCAN_STL && format != SCAN_OFF,
+	};
+
+	if (format == SCAN_PLY)
+		return import_ply(out, path, options, report, fault);
+	return import_foreign(out, path, foreign, options, report, fault);
+}
+
+int import_scan(struct mesh *out, const char *path, const struct import_options *options,
+		struct import_report *report, struct fault *fault)
+{
+	struct import_report unwanted;
+	int64_t began_ms = clock_now_ms();
+	enum scan_format format = SCAN_UNKNOWN;
+	int rc;
+
+	*out = (struct mesh){ 0 };
+	if (!report)
+		report = &unwanted;
+	*report = (struct import_report){ 0 };
+	rc = look(path, &format, report, fault);
+	if (rc == 0)
+		rc = read_scan(out, path, format, options, report, fault);
+	if (rc == 0)
+		rc = finish(out, path, format == SCAN_PLY, options, report, fault);
+	if (rc < 0)
+		mesh_finish(out);
+	report->duration_ms = clock_now_ms() - began_ms;
+	return rc;
+}

@@ -1,0 +1,167 @@
+/* Files that a scan names, which whoever made the scan has chosen: opened one folder at a time from
+ * the scan's own, so that neither "..", nor a link, nor an absolute name leads out of it. */
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pipeline/import/import_parts.h"
+#include "pipeline/import/sandbox.h"
+#include "pipeline/release/keys.h"
+
+int import_files_open_folder(const char *scan_path)
+{
+	char folder[PATH_MAX];
+	const char *slash = strrchr(scan_path, '/');
+	int length = slash ? (int)(slash - scan_path) + 1 : 0;
+	int fd;
+
+	if (snprintf(folder, sizeof(folder), "%.*s", length, scan_path) >= (int)sizeof(folder))
+		return -ENAMETOOLONG;
+	fd = open(length ? folder : ".", O_PATH | O_DIRECTORY | O_CLOEXEC);
+	return fd < 0 ? -errno : fd;
+}
+
+const char *import_files_why(int rc)
+{
+	switch (rc) {
+	case -ENOENT:
+		return "is not beside it";
+	case -EXDEV:
+		return "lies outside the scan's folder";
+	case -ELOOP:
+		return "is a link, or lies behind one";
+	case -EINVAL:
+		return "is no regular file";
+	case -EKEYREJECTED:
+		return "is a signing key";
+	default:
+		return strerror(-rc);
+	}
+}
+
+/* Neither absolute, nor with "..", nor hidden: settings and secrets lie in folders whose names
+ * begin with a dot. */
+static bool stays_below(const char *name)
+{
+	if (name[0] == '/')
+		return false;
+	for (const char *c = name; *c;) {
+		size_t length = strcspn(c, "/");
+
+		if (c[0] == '.' && length > 1)
+			return false;
+		c += length;
+		c += *c == '/';
+	}
+	return true;
+}
+
+/* Why the last call failed on name: a link says so in its own way. */
+static int failed(int folder, const char *name)
+{
+	int rc = -errno;
+	struct stat status;
+
+	if (fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(status.st_mode))
+		return -ELOOP;
+	return rc;
+}
+
+/* A FIFO would wait, a device may act when it is opened: looked at first, and once more after. */
+static int open_regular(int folder, const char *name)
+{
+	struct stat status;
+	int fd;
+
+	if (fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) < 0)
+		return -errno;
+	if (!S_ISREG(status.st_mode))
+		return S_ISLNK(status.st_mode) ? -ELOOP : -EINVAL;
+	fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	if (fd < 0)
+		return failed(folder, name);
+	if (fstat(fd, &status) < 0 || !S_ISREG(status.st_mode)) {
+		close(fd);
+		return -EINVAL;
+	}
+	if (keys_is_key_file(fd)) {
+		close(fd);
+		return -EKEYREJECTED;
+	}
+	return fd;
+}
+
+/* The folder of that name in the folder at, which is closed. */
+static int step_into(int at, const char *name, size_t length)
+{
+	char part[NAME_MAX + 1];
+	int next = -ENAMETOOLONG;
+
+	if (length <= NAME_MAX) {
+		memcpy(part, name, length);
+		part[length] = '\0';
+		next = openat(at, part, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+		if (next < 0)
+			next = failed(at, part);
+	}
+	close(at);
+	return next;
+}
+
+/* name stays below: see above. */
+static int open_below(int folder, const char *name)
+{
+	int at = fcntl(folder, F_DUPFD_CLOEXEC, 0);
+	int fd;
+
+	if (at < 0)
+		return -errno;
+	for (const char *slash; at >= 0 && (slash = strchr(name, '/')); name = slash + 1) {
+		size_t length = (size_t)(slash - name);
+
+		if (length > 0 && !(length == 1 && name[0] == '.'))
+			at = step_into(at, name, length);
+	}
+	if (at < 0)
+		return at;
+	fd = open_regular(at, name);
+	close(at);
+	return fd;
+}
+
+int import_files_open_at(int folder_fd, const char *name)
+{
+	char clean[PATH_MAX];
+	const char *last;
+	int rc, beside;
+
+	if (strlen(name) >= sizeof(clean))
+		return -ENAMETOOLONG;
+	if (name[0] == '\0')
+		return -ENOENT;
+	memcpy(clean, name, strlen(name) + 1);
+	for (char *c = clean; *c; c++)
+		if (*c == '\\')
+			*c = '/';
+	if (strchr(clean, ':'))
+		rc = -ENOENT; /* C:/... and http://... are no files of this machine */
+	else
+		rc = stays_below(clean) ? open_below(folder_fd, clean) : -EXDEV;
+	if (rc >= 0)
+		return rc;
+	last = strrchr(clean, '/');
+	if (!last || !last[1] || strchr(last, ':') || !stays_below(last + 1))
+		return rc;
+	beside = open_below(folder_fd, last + 1);
+	return beside == -ENOENT ? rc : beside;
+}
+
+int import_files_open(const struct import_files *files, const char *name)
+{
+	return files->in_sandbox ? sandbox_open(name)
+				 : import_files_open_at(files->folder_fd, name);
+}

@@ -1,0 +1,483 @@
+/* OBJ, STL, OFF and glTF by assimp, in a child process. What assimp gives is not believed either:
+ * every index is checked. */
+#include "pipeline/import/import_parts.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <assimp/cimport.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+#include "pipeline/import/mesh_file.h"
+#include "pipeline/import/sandbox.h"
+
+/* MAXLEN is assimp's: what a name can hold. */
+enum { NODE_DEPTH_MOST = 256 };
+
+static const struct hash no_key;
+
+/* In shared memory; the child reads the first part and fills the second. */
+struct job {
+	char path[PATH_MAX]; /* with the format's own extension: by that assimp chooses its reader
+			      */
+	struct import_foreign_format format;
+	int result_fd; /* the mesh, as a mesh file */
+	struct import_report report;
+};
+
+/* ---- in the child: an assimp scene into a mesh */
+
+struct builder {
+	const struct aiScene *scene;
+	struct job *job;
+	struct fault *fault;
+	struct mesh mesh;
+	uint64_t vertices, triangles; /* of all instances, counted first */
+	uint64_t skipped;             /* points and lines */
+	bool has_colours, has_textures;
+};
+
+/* sRGB transfer function, IEC 61966-2-1. */
+static uint8_t colour_byte(float value, bool is_linear)
+{
+	if (!(value > 0))
+		return 0;
+	if (value >= 1)
+		return 255;
+	if (is_linear)
+		value = value <= 0.0031308f ? 12.92f * value
+					    : 1.055f * powf(value, 1 / 2.4f) - 0.055f;
+	return (uint8_t)(value * 255 + 0.5f);
+}
+
+/* Name of a material's picture; false: it has none. */
+static bool picture_of(const struct aiMaterial *material, char name[MAXLEN])
+{
+	static const enum aiTextureType types[] = { aiTextureType_BASE_COLOR,
+						    aiTextureType_DIFFUSE };
+	struct aiString path;
+
+	for (size_t i = 0; i < ARRAY_COUNT(types); i++)
+		if (aiGetMaterialTexture(material, types[i], 0, &path, NULL, NULL, NULL, NULL, NULL,
+					 NULL) == aiReturn_SUCCESS) {
+			snprintf(name, MAXLEN, "%s", path.data);
+			return true;
+		}
+	return false;
+}
+
+/* False: it has none worth the name (assimp's own default, or the formats' default, white). */
+static bool plain_colour_of(const struct aiMaterial *material, struct import_foreign_format format,
+			    uint8_t rgb[3])
+{
+	struct aiColor4D colour;
+	struct aiString name;
+
+	memset(rgb, 255, 3);
+	if (!format.has_materials)
+		return false;
+	if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS &&
+	    strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0)
+		return false;
+	if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) != aiReturn_SUCCESS &&
+	    aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &colour) != aiReturn_SUCCESS)
+		return false;
+	rgb[0] = colour_byte(colour.r, format.is_linear);
+	rgb[1] = colour_byte(colour.g, format.is_linear);
+	rgb[2] = colour_byte(colour.b, format.is_linear);
+	return rgb[0] != 255 || rgb[1] != 255 || rgb[2] != 255;
+}
+
+static int count_mesh(struct builder *builder, uint32_t index)
+{
+	const struct aiMesh *mesh;
+	char name[MAXLEN];
+	uint8_t rgb[3];
+
+	if (index >= builder->scene->mNumMeshes)
+		return -EBADMSG;
+	mesh = builder->scene->mMeshes[index];
+	if (mesh->mMaterialIndex >= builder->scene->mNumMaterials)
+		return -EBADMSG;
+	builder->vertices += mesh->mNumVertices;
+	builder->triangles += mesh->mNumFaces;
+	if (builder->vertices >= UINT32_MAX || builder->triangles >= UINT32_MAX)
+		return -EFBIG;
+	builder->has_colours |= mesh->mColors[0] ||
+				plain_colour_of(builder->scene->mMaterials[mesh->mMaterialIndex],
+						builder->job->format, rgb);
+	builder->has_textures |= mesh->mTextureCoords[0] &&
+				 picture_of(builder->scene->mMaterials[mesh->mMaterialIndex], name);
+	return 0;
+}
+
+/* "*3" is the fourth picture that lies in the file; NULL: name is a file's. */
+static const struct aiTexture *embedded_texture(const struct aiScene *scene, const char *name)
+{
+	char *end;
+	unsigned long index;
+
+	for (uint32_t i = 0; i < scene->mNumTextures; i++)
+		if (name[0] && strcmp(scene->mTextures[i]->mFilename.data, name) == 0)
+			return scene->mTextures[i];
+	if (name[0] != '*')
+		return NULL;
+	index = strtoul(name + 1, &end, 10);
+	return *end == '\0' && end != name + 1 && index < scene->mNumTextures
+		       ? scene->mTextures[index]
+		       : NULL;
+}
+
+static int load_embedded(struct builder *builder, const struct aiTexture *picture, const char *name,
+			 const uint8_t plain[3], struct mesh_texture *out)
+{
+	const struct bytes file = { (const uint8_t *)picture->pcData, picture->mWidth };
+
+	if (picture->mHeight == 0)
+		return import_texture_bytes(out, builder->job->path, name, file, plain,
+					    &builder->job->report);
+	if (picture->mWidth == 0 || picture->mWidth > 16384 || picture->mHeight > 16384)
+		return import_texture_plain(out, plain);
+	out->rgb = malloc((size_t)picture->mWidth * picture->mHeight * 3);
+	if (!out->rgb)
+		return -ENOMEM;
+	out->width = picture->mWidth;
+	out->height = picture->mHeight;
+	for (size_t i = 0; i < (size_t)out->width * out->height; i++) {
+		out->rgb[3 * i] = picture->pcData[i].r;
+		out->rgb[3 * i + 1] = picture->pcData[i].g;
+		out->rgb[3 * i + 2] = picture->pcData[i].b;
+	}
+	builder->job->report.textures++;
+	return 0;
+}
+
+static int load_texture(struct builder *builder, const struct aiMaterial *material,
+			struct mesh_texture *out)
+{
+	struct import_files files = { .scan_path = builder->job->path, .in_sandbox = true };
+	const struct aiTexture *embedded;
+	char name[MAXLEN];
+	uint8_t plain[3];
+
+	plain_colour_of(material, builder->job->format, plain);
+	if (!picture_of(material, name))
+		return import_texture_plain(out, plain);
+	embedded = embedded_texture(builder->scene, name);
+	if (embedded)
+		return load_embedded(builder, embedded, name, plain, out);
+	return import_texture(out, &files, name, plain, &builder->job->report);
+}
+
+/* One texture a material, pictures and plain colours alike. */
+static int load_textures(struct builder *builder)
+{
+	uint32_t count = builder->scene->mNumMaterials;
+	struct mesh *mesh = &builder->mesh;
+	int rc = 0;
+
+	if (count > MESH_TEXTURES_MOST)
+		return -EFBIG;
+	mesh->textures = calloc(count, sizeof(*mesh->textures));
+	if (!mesh->textures)
+		return -ENOMEM;
+	mesh->texture_count = count;
+	for (uint32_t i = 0; i < count && rc == 0; i++)
+		rc = load_texture(builder, builder->scene->mMaterials[i], &mesh->textures[i]);
+	return rc;
+}
+
+static int allocate(struct builder *builder)
+{
+	struct mesh *mesh = &builder->mesh;
+
+	mesh->positions = malloc((builder->vertices + 1) * sizeof(*mesh->positions));
+	mesh->triangles = malloc((builder->triangles + 1) * sizeof(*mesh->triangles));
+	if (!mesh->positions || !mesh->triangles)
+		return -ENOMEM;
+	if (builder->has_textures) {
+		mesh->uvs = calloc(builder->vertices + 1, sizeof(*mesh->uvs));
+		mesh->materials = malloc((builder->triangles + 1) * sizeof(*mesh->materials));
+		return mesh->uvs && mesh->materials ? load_textures(builder) : -ENOMEM;
+	}
+	if (builder->has_colours) {
+		mesh->colours = malloc((builder->vertices + 1) * sizeof(*mesh->colours));
+		return mesh->colours ? 0 : -ENOMEM;
+	}
+	return 0;
+}
+
+static void add_vertices(struct builder *builder, const struct aiMesh *from,
+			 const struct aiMatrix4x4 *place)
+{
+	struct mesh *mesh = &builder->mesh;
+	bool is_linear = builder->job->format.is_linear;
+	uint8_t plain[3];
+
+	plain_colour_of(builder->scene->mMaterials[from->mMaterialIndex], builder->job->format,
+			plain);
+	for (uint32_t i = 0; i < from->mNumVertices; i++) {
+		uint32_t at = mesh->vertex_count++;
+		struct aiVector3D v = from->mVertices[i];
+
+		aiTransformVecByMatrix4(&v, place);
+		memcpy(mesh->positions[at], (float[3]){ v.x, v.y, v.z }, 12);
+		if (mesh->uvs && from->mTextureCoords[0]) {
+			mesh->uvs[at][0] = from->mTextureCoords[0][i].x;
+			mesh->uvs[at][1] = from->mTextureCoords[0][i].y;
+		}
+		if (!mesh->colours)
+			continue;
+		memcpy(mesh->colours[at], plain, 3);
+		mesh->colours[at][3] = 255;
+		if (from->mColors[0]) {
+			mesh->colours[at][0] = colour_byte(from->mColors[0][i].r, is_linear);
+			mesh->colours[at][1] = colour_byte(from->mColors[0][i].g, is_linear);
+			mesh->colours[at][2] = colour_byte(from->mColors[0][i].b, is_linear);
+		}
+	}
+}
+
+/* A mirrored instance turns its faces inside out; turned back here. */
+static int add_mesh(struct builder *builder, uint32_t index, const struct aiMatrix4x4 *place)
+{
+	const struct aiMesh *from = builder->scene->mMeshes[index];
+	struct mesh *mesh = &builder->mesh;
+	uint32_t base = mesh->vertex_count;
+	bool mirrored = aiMatrix4Determinant(place) < 0;
+
+	add_vertices(builder, from, place);
+	for (uint32_t i = 0; i < from->mNumFaces; i++) {
+		const struct aiFace *face = &from->mFaces[i];
+		uint32_t *triangle = mesh->triangles[mesh->triangle_count];
+
+		if (face->mNumIndices != 3) {
+			builder->skipped++;
+			continue;
+		}
+		for (int k = 0; k < 3; k++) {
+			uint32_t corner = face->mIndices[mirrored ? 2 - k : k];
+
+			if (corner >= from->mNumVertices)
+				return fault_set(builder->fault, -EBADMSG,
+						 "%s: face %u of its part %u names vertex %u, but "
+						 "the part has %u; mend or remove it",
+						 builder->job->path, i, index, corner,
+						 from->mNumVertices);
+			triangle[k] = base + corner;
+		}
+		if (mesh->materials)
+			mesh->materials[mesh->triangle_count] = (uint16_t)from->mMaterialIndex;
+		mesh->triangle_count++;
+	}
+	return 0;
+}
+
+/* Twice over the nodes: first count, then build. */
+static int walk(struct builder *builder, const struct aiNode *node,
+		const struct aiMatrix4x4 *parent, int depth, bool build)
+{
+	struct aiMatrix4x4 place = *parent;
+	int rc = 0;
+
+	if (depth > NODE_DEPTH_MOST)
+		return fault_set(builder->fault, -EBADMSG, "%s: its nodes are nested over %d deep",
+				 builder->job->path, NODE_DEPTH_MOST);
+	aiMultiplyMatrix4(&place, &node->mTransformation);
+	for (uint32_t i = 0; i < node->mNumMeshes && rc == 0; i++)
+		rc = build ? add_mesh(builder, node->mMeshes[i], &place)
+			   : count_mesh(builder, node->mMeshes[i]);
+	for (uint32_t i = 0; i < node->mNumChildren && rc == 0; i++)
+		rc = walk(builder, node->mChildren[i], &place, depth + 1, build);
+	return rc;
+}
+
+static int build(struct builder *builder)
+{
+	const char *path = builder->job->path;
+	struct aiMatrix4x4 identity;
+	int rc;
+
+	aiIdentityMatrix4(&identity);
+	rc = walk(builder, builder->scene->mRootNode, &identity, 0, false);
+	if (rc == 0)
+		rc = allocate(builder);
+	if (rc == 0)
+		rc = walk(builder, builder->scene->mRootNode, &identity, 0, true);
+	if (rc == -ENOMEM)
+		return fault_set(builder->fault, rc, "%s: too large for this machine's memory",
+				 path);
+	if (rc == -EFBIG)
+		return fault_set(builder->fault, rc,
+				 "%s: too many triangles or materials; split it into several files",
+				 path);
+	if (rc < 0)
+		return fault_set(builder->fault, rc, "%s: it contradicts itself; export it again",
+				 path);
+	if (builder->mesh.triangle_count == 0)
+		return fault_set(builder->fault, -EBADMSG,
+				 "%s: it holds no faces%s; export a surface", path,
+				 builder->skipped ? ", only points or lines" : "");
+	if (builder->skipped)
+		fault_set(&builder->job->report.warning, 0,
+			  "%s: %llu points or lines in it were left out", path,
+			  (unsigned long long)builder->skipped);
+	builder->job->report.had_colours = builder->has_colours && !builder->has_textures;
+	return 0;
+}
+
+static int read_scene(void *shared, struct fault *fault)
+{
+	struct job *job = shared;
+	struct builder builder = { .job = job, .fault = fault };
+	int rc;
+
+	builder.scene = import_scene(job->path, job->report.format, fault);
+	if (!builder.scene)
+		return -EBADMSG;
+	rc = build(&builder);
+	if (rc == 0)
+		rc = mesh_file_write(job->result_fd, &builder.mesh, no_key);
+	if (rc < 0)
+		fault_set(fault, rc, "%s: %s", job->path, strerror(-rc));
+	return rc; /* the process ends, and everything with it */
+}
+
+/* ---- in the parent */
+
+/* What the child may have: the scan, and what lies below its folder. The job is not asked, once
+ * foreign code has run. */
+struct parent {
+	const char *path; /* borrowed, as given */
+	char seen_path[PATH_MAX];
+	int scan_fd, folder_fd, result_fd;
+};
+
+static int open_for_child(void *data, const char *name)
+{
+	const struct parent *parent = data;
+	int fd;
+
+	if (strcmp(name, parent->seen_path) != 0)
+		return import_files_open_at(parent->folder_fd, name);
+	fd = fcntl(parent->scan_fd, F_DUPFD_CLOEXEC, 0);
+	return fd < 0 ? -errno : fd;
+}
+
+/* The path, where its extension is another or none with the format's behind it. */
+static int make_seen_path(char seen[PATH_MAX], const char *path, const char *extension)
+{
+	size_t length = strlen(path), extension_length = strlen(extension);
+	bool has = length > extension_length &&
+		   strcasecmp(path + length - extension_length, extension) == 0;
+
+	return snprintf(seen, PATH_MAX, "%s%s", path, has ? "" : extension) < PATH_MAX
+		       ? 0
+		       : -ENAMETOOLONG;
+}
+
+static int open_scan(const char *path)
+{
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	struct stat status;
+
+	if (fd < 0)
+		return -errno;
+	if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
+		return fd;
+	close(fd);
+	return -EINVAL;
+}
+
+static int parent_init(struct parent *parent, const char *path, const char *extension)
+{
+	int rc;
+
+	*parent = (struct parent){ path, "", -1, -1, -1 };
+	rc = make_seen_path(parent->seen_path, path, extension);
+	if (rc == 0)
+		rc = parent->scan_fd = open_scan(path);
+	if (rc >= 0)
+		rc = parent->folder_fd = import_files_open_folder(path);
+	if (rc < 0)
+		return rc;
+	parent->result_fd = memfd_create("gopura-import", MFD_CLOEXEC);
+	return parent->result_fd < 0 ? -errno : 0;
+}
+
+static void parent_finish(struct parent *parent)
+{
+	const int fds[] = { parent->scan_fd, parent->folder_fd, parent->result_fd };
+
+	for (size_t i = 0; i < ARRAY_COUNT(fds); i++)
+		if (fds[i] >= 0)
+			close(fds[i]);
+}
+
+static int run_job(struct mesh *out, struct job *job, struct parent *parent,
+		   const struct import_options *options, uint64_t file_bytes, struct fault *fault)
+{
+	/* Two hundred times what a sound file of that size takes on an idle machine. */
+	const struct sandbox_options limits = {
+		.timeout_s = options->timeout_s ? options->timeout_s
+						: (uint32_t)(6 + (file_bytes >> 18)),
+		.memory_bytes = import_memory_bytes(options, file_bytes),
+		.result_fd = parent->result_fd,
+		.open = open_for_child,
+		.open_data = parent,
+	};
+	int rc = sandbox_run(read_scene, job, &limits, parent->path, fault);
+
+	if (rc < 0)
+		return rc;
+	if (lseek(parent->result_fd, 0, SEEK_SET) < 0)
+		return fault_set(fault, -errno, "%s: %s", parent->path, strerror(errno));
+	rc = mesh_file_read(out, no_key, parent->result_fd);
+	if (rc < 0)
+		return fault_set(fault, rc,
+				 "%s: its reader gave back nonsense: %s; export it again",
+				 parent->path, strerror(-rc));
+	return 0;
+}
+
+/* Only what a child fills, and no string of it unended. */
+static void take_report(struct import_report *report, const struct import_report *told)
+{
+	report->had_colours = *(const uint8_t *)&told->had_colours != 0; /* any byte may be there */
+	report->textures = told->textures;
+	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
+}
+
+int import_foreign(struct mesh *out, const char *path, struct import_foreign_format format,
+		   const struct import_options *options, struct import_report *report,
+		   struct fault *fault)
+{
+	struct job *job = sandbox_shared_create(sizeof(*job));
+	struct parent parent;
+	int rc = parent_init(&parent, path, format.extension);
+
+	if (!job && rc == 0)
+		rc = -ENOMEM;
+	if (rc < 0) {
+		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+	} else {
+		memcpy(job->path, parent.seen_path, sizeof(job->path));
+		job->format = format;
+		job->report = *report;
+		job->result_fd = parent.result_fd;
+		rc = run_job(out, job, &parent, options, report->file_bytes, fault);
+		take_report(report, &job->report);
+	}
+	parent_finish(&parent);
+	sandbox_shared_destroy(job, sizeof(*job));
+	return rc;
+}

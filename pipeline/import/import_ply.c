@@ -1,0 +1,253 @@
+#include "pipeline/import/import_parts.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "pipeline/import/ply.h"
+
+/* Collects what the reader gives. */
+struct collector {
+	const struct ply_summary *summary;
+	struct mesh mesh;
+	float (*corner_uvs)[3][2]; /* of each triangle, where the file has them; owned */
+	size_t triangle_capacity;
+	const struct ply *ply;
+	struct progress *progress; /* in KiB of the file */
+	uint64_t shown_kib;
+};
+
+enum { ITEMS_PER_LOOK = 1 << 14 };
+
+static void show_progress(struct collector *collector, uint32_t items)
+{
+	uint64_t kib;
+
+	if (items % ITEMS_PER_LOOK != 0)
+		return;
+	kib = ply_bytes_read(collector->ply) >> 10;
+	progress_add(collector->progress, kib - collector->shown_kib);
+	collector->shown_kib = kib;
+}
+
+static int take_vertex(void *data, const struct ply_vertex *vertex)
+{
+	struct collector *collector = data;
+	struct mesh *mesh = &collector->mesh;
+	uint32_t i = mesh->vertex_count++;
+
+	for (int k = 0; k < 3; k++)
+		mesh->positions[i][k] = (float)vertex->position[k];
+	if (mesh->colours)
+		memcpy(mesh->colours[i], vertex->colour, sizeof(mesh->colours[i]));
+	if (mesh->uvs)
+		memcpy(mesh->uvs[i], vertex->uv, sizeof(mesh->uvs[i]));
+	show_progress(collector, i);
+	return 0;
+}
+
+/* Polygons are fans: there may be more triangles than the header counts faces. */
+static int grow_triangles(struct collector *collector)
+{
+	struct mesh *mesh = &collector->mesh;
+	size_t capacity = collector->triangle_capacity + collector->triangle_capacity / 2 + 64;
+	void *grown;
+
+	if (mesh->triangle_count == UINT32_MAX - 1)
+		return -EFBIG;
+	grown = realloc(mesh->triangles, capacity * sizeof(*mesh->triangles));
+	if (!grown)
+		return -ENOMEM;
+	mesh->triangles = grown;
+	grown = realloc(mesh->faces, capacity * sizeof(*mesh->faces));
+	if (!grown)
+		return -ENOMEM;
+	mesh->faces = grown;
+	if (mesh->materials) {
+		grown = realloc(mesh->materials, capacity * sizeof(*mesh->materials));
+		if (!grown)
+			return -ENOMEM;
+		mesh->materials = grown;
+	}
+	if (collector->corner_uvs) {
+		grown = realloc(collector->corner_uvs, capacity * sizeof(*collector->corner_uvs));
+		if (!grown)
+			return -ENOMEM;
+		collector->corner_uvs = grown;
+	}
+	collector->triangle_capacity = capacity;
+	return 0;
+}
+
+static int take_triangle(void *data, const struct ply_triangle *triangle)
+{
+	struct collector *collector = data;
+	struct mesh *mesh = &collector->mesh;
+	uint32_t i = mesh->triangle_count;
+
+	if (i == collector->triangle_capacity) {
+		int rc = grow_triangles(collector);
+
+		if (rc < 0)
+			return rc;
+	}
+	memcpy(mesh->triangles[i], triangle->corner, sizeof(mesh->triangles[i]));
+	mesh->faces[i] = triangle->face;
+	if (mesh->materials)
+		mesh->materials[i] =
+			(uint16_t)(triangle->texture < collector->summary->texture_count
+					   ? triangle->texture
+					   : 0);
+	if (collector->corner_uvs)
+		memcpy(collector->corner_uvs[i], triangle->uv, sizeof(triangle->uv));
+	mesh->triangle_count++;
+	show_progress(collector, i);
+	return 0;
+}
+
+/* The header was judged against the file's length, so its counts can be believed. */
+static int allocate(struct collector *collector)
+{
+	const struct ply_summary *summary = collector->summary;
+	struct mesh *mesh = &collector->mesh;
+	size_t vertices = summary->vertex_count + 1, triangles = summary->face_count + 1;
+	bool has_picture =
+		summary->texture_count > 0 && (summary->has_uv || summary->has_corner_uv);
+
+	mesh->positions = malloc(vertices * sizeof(*mesh->positions));
+	mesh->triangles = malloc(triangles * sizeof(*mesh->triangles));
+	mesh->faces = malloc(triangles * sizeof(*mesh->faces));
+	if (summary->has_colour || summary->has_open_sky)
+		mesh->colours = malloc(vertices * sizeof(*mesh->colours));
+	if (has_picture && !summary->has_corner_uv)
+		mesh->uvs = malloc(vertices * sizeof(*mesh->uvs));
+	if (has_picture)
+		mesh->materials = malloc(triangles * sizeof(*mesh->materials));
+	if (has_picture && summary->has_corner_uv)
+		collector->corner_uvs = malloc(triangles * sizeof(*collector->corner_uvs));
+	collector->triangle_capacity = triangles;
+	if (!mesh->positions || !mesh->triangles || !mesh->faces ||
+	    ((summary->has_colour || summary->has_open_sky) && !mesh->colours) ||
+	    (has_picture && (!mesh->materials || (!mesh->uvs && !collector->corner_uvs))))
+		return -ENOMEM;
+	return 0;
+}
+
+/* Every corner becomes a vertex of its own; the repair merges what is equal again. */
+static int split_corners(struct collector *collector)
+{
+	struct mesh *mesh = &collector->mesh;
+	size_t count = (size_t)mesh->triangle_count * 3;
+	float(*positions)[3] = malloc((count + 1) * sizeof(*positions));
+	float(*uvs)[2] = malloc((count + 1) * sizeof(*uvs));
+	uint8_t(*colours)[4] = mesh->colours ? malloc((count + 1) * sizeof(*colours)) : NULL;
+
+	if (count >= UINT32_MAX || !positions || !uvs || (mesh->colours && !colours)) {
+		free(positions);
+		free(uvs);
+		free(colours);
+		return count >= UINT32_MAX ? -EFBIG : -ENOMEM;
+	}
+	for (size_t i = 0; i < count; i++) {
+		uint32_t *corner = &mesh->triangles[i / 3][i % 3];
+
+		memcpy(positions[i], mesh->positions[*corner], sizeof(positions[i]));
+		memcpy(uvs[i], collector->corner_uvs[i / 3][i % 3], sizeof(uvs[i]));
+		if (colours)
+			memcpy(colours[i], mesh->colours[*corner], sizeof(colours[i]));
+		*corner = (uint32_t)i;
+	}
+	free(mesh->positions);
+	free(mesh->colours);
+	mesh->positions = positions;
+	mesh->colours = colours;
+	mesh->uvs = uvs;
+	mesh->vertex_count = (uint32_t)count;
+	return 0;
+}
+
+static int load_textures(struct collector *collector, const char *path,
+			 const struct import_options *options, struct import_report *report)
+{
+	static const uint8_t plain[3] = { 255, 255, 255 };
+	struct import_files files = {
+		.scan_path = path,
+		.picture_bytes_left = import_memory_bytes(options, report->file_bytes),
+	};
+	struct mesh *mesh = &collector->mesh;
+	uint32_t count = collector->summary->texture_count;
+	int rc = 0;
+
+	if (!mesh->materials)
+		return 0;
+	mesh->textures = calloc(count, sizeof(*mesh->textures));
+	if (!mesh->textures)
+		return -ENOMEM;
+	mesh->texture_count = count;
+	files.folder_fd = import_files_open_folder(path);
+	if (files.folder_fd < 0)
+		return files.folder_fd;
+	for (uint32_t i = 0; i < count && rc == 0; i++)
+		rc = import_texture(&mesh->textures[i], &files, collector->summary->textures[i],
+				    plain, report);
+	close(files.folder_fd);
+	return rc;
+}
+
+static int read_body(struct ply *ply, struct collector *collector, const char *path,
+		     const struct import_options *options, struct import_report *report,
+		     struct fault *fault)
+{
+	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
+	int rc = allocate(collector);
+
+	collector->ply = ply;
+	collector->progress = progress_start("reading the scan", "KiB", ply_bytes_total(ply) >> 10);
+	if (rc == 0)
+		rc = ply_read(ply, &visitor, fault);
+	progress_end(collector->progress);
+	if (rc == 0 && collector->corner_uvs)
+		rc = split_corners(collector);
+	if (rc == 0)
+		rc = load_textures(collector, path, options, report);
+	if (rc < 0)
+		return fault_set(fault, rc, "%s: %s", path,
+				 rc == -ENOMEM  ? "too large for this machine's memory"
+				 : rc == -EFBIG ? "too many triangles; split it into several files"
+						: strerror(-rc));
+	return 0;
+}
+
+int import_ply(struct mesh *out, const char *path, const struct import_options *options,
+	       struct import_report *report, struct fault *fault)
+{
+	struct collector collector = { 0 };
+	struct ply *ply;
+	int rc = ply_open(&ply, path, fault);
+
+	if (rc < 0)
+		return rc;
+	collector.summary = ply_summary(ply);
+	report->had_colours = collector.summary->has_colour;
+	report->had_open_sky = collector.summary->has_open_sky;
+	report->strange_lines = collector.summary->strange_lines;
+	if (collector.summary->vertex_count == 0)
+		rc = fault_set(fault, -EBADMSG, "%s: it holds no vertices; export it again", path);
+	else if (collector.summary->points_only)
+		rc = fault_set(fault, -EBADMSG, "%s: %s", path, collector.summary->points_only);
+	if (rc == 0)
+		rc = read_body(ply, &collector, path, options, report, fault);
+	report->trailing_bytes = ply_bytes_trailing(ply);
+	if (rc == 0) {
+		*out = collector.mesh;
+		out->scans[0].face_count = (uint32_t)collector.summary->face_count;
+		collector.mesh = (struct mesh){ 0 };
+	}
+	mesh_finish(&collector.mesh);
+	free(collector.corner_uvs);
+	ply_close(ply);
+	return rc;
+}

@@ -1,0 +1,202 @@
+/* assimp in the sandbox: it reads through our own file functions, which ask the parent for every
+ * file (pipeline/sandbox.h). */
+#include <errno.h>
+#include <limits.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "pipeline/import/import_parts.h"
+#include "pipeline/import/sandbox.h"
+
+struct file {
+	struct aiFile functions; /* first: assimp gives back its address */
+	int fd;
+	uint64_t at, size;
+};
+
+struct files {
+	struct aiFileIO functions; /* first, as above */
+	const char *seen_path;
+	size_t folder_bytes; /* of seen_path, the slash included */
+	int refused;         /* why the first file was not given; 0: none was refused */
+	char refused_name[256];
+	char missing[PATH_MAX]; /* path of the file that was looked for last, and was not there */
+};
+
+/* ---- one file */
+
+static size_t file_read(struct aiFile *handle, char *to, size_t size, size_t count)
+{
+	struct file *file = (struct file *)handle;
+	uint64_t left = file->at < file->size ? file->size - file->at : 0;
+	uint64_t items = size ? left / size : 0;
+	size_t wanted, done = 0;
+
+	wanted = (items < count ? (size_t)items : count) * size;
+	while (done < wanted) {
+		ssize_t got = pread(file->fd, to + done, wanted - done, (off_t)(file->at + done));
+
+		if (got <= 0)
+			break;
+		done += (size_t)got;
+	}
+	file->at += done;
+	return size ? done / size : 0;
+}
+
+static size_t file_write(struct aiFile *handle, const char *from, size_t size, size_t count)
+{
+	(void)handle;
+	(void)from;
+	(void)size;
+	(void)count;
+	return 0;
+}
+
+static size_t file_tell(struct aiFile *handle)
+{
+	return (size_t)((struct file *)handle)->at;
+}
+
+static size_t file_size(struct aiFile *handle)
+{
+	return (size_t)((struct file *)handle)->size;
+}
+
+/* offset is signed in all but its type. */
+static enum aiReturn file_seek(struct aiFile *handle, size_t offset, enum aiOrigin origin)
+{
+	struct file *file = (struct file *)handle;
+	uint64_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? file->at : file->size;
+	uint64_t at = from + offset;
+
+	if (at > file->size)
+		return aiReturn_FAILURE;
+	file->at = at;
+	return aiReturn_SUCCESS;
+}
+
+static void file_flush(struct aiFile *handle)
+{
+	(void)handle;
+}
+
+/* ---- opening */
+
+static void with_slashes(char out[PATH_MAX], const char *folder, size_t folder_bytes,
+			 const char *name)
+{
+	snprintf(out, PATH_MAX, "%.*s%s", (int)folder_bytes, folder, name);
+	for (char *c = out; *c; c++)
+		if (*c == '\\')
+			*c = '/';
+}
+
+/* What assimp cannot open it tries again under other names: with and without the scan's folder,
+ * with other slashes, and with pieces of the path. Of a file that is missing these are no names
+ * that the scan has. */
+static bool is_another_try(const struct files *files, const char *asked, const char *name)
+{
+	char clean[PATH_MAX];
+
+	with_slashes(clean, "", 0, asked);
+	if (strstr(files->missing, clean))
+		return true;
+	with_slashes(clean, "", 0, name);
+	return strstr(files->missing, clean);
+}
+
+static void note_failure(struct files *files, const char *asked, const char *name, int rc)
+{
+	if (rc == -ENOENT)
+		with_slashes(files->missing, files->seen_path, files->folder_bytes, name);
+	if (files->refused || is_another_try(files, asked, name))
+		return;
+	if (rc == -EXDEV || rc == -ELOOP || rc == -EINVAL || rc == -EKEYREJECTED) {
+		files->refused = rc;
+		snprintf(files->refused_name, sizeof(files->refused_name), "%s", name);
+	}
+}
+
+/* assimp puts the scan's folder before the names that it finds in the scan. */
+static const char *as_named_in_the_scan(const struct files *files, const char *name)
+{
+	bool is_scan = strcmp(name, files->seen_path) == 0;
+	bool has_folder = strncmp(name, files->seen_path, files->folder_bytes) == 0;
+
+	return has_folder && !is_scan ? name + files->folder_bytes : name;
+}
+
+static struct aiFile *files_open(struct aiFileIO *handle, const char *asked, const char *mode)
+{
+	struct files *files = (struct files *)handle;
+	const char *name = as_named_in_the_scan(files, asked);
+	struct file *file;
+	off_t size;
+	int fd;
+
+	if (mode[0] != 'r' || strchr(mode, '+'))
+		return NULL;
+	fd = sandbox_open(name);
+	if (fd < 0) {
+		note_failure(files, asked, name, fd);
+		return NULL;
+	}
+	size = lseek(fd, 0, SEEK_END);
+	file = calloc(1, sizeof(*file));
+	if (!file || size < 0) {
+		free(file);
+		close(fd);
+		return NULL;
+	}
+	*file = (struct file){ .functions = { .ReadProc = file_read,
+					      .WriteProc = file_write,
+					      .TellProc = file_tell,
+					      .FileSizeProc = file_size,
+					      .SeekProc = file_seek,
+					      .FlushProc = file_flush },
+			       .fd = fd,
+			       .size = (uint64_t)size };
+	return &file->functions;
+}
+
+static void files_close(struct aiFileIO *handle, struct aiFile *file)
+{
+	(void)handle;
+	if (!file)
+		return;
+	close(((struct file *)file)->fd);
+	free(file);
+}
+
+const struct aiScene *import_scene(const char *seen_path, const char *format_name,
+				   struct fault *fault)
+{
+	const char *slash = strrchr(seen_path, '/');
+	struct files files = { .functions = { .OpenProc = files_open, .CloseProc = files_close },
+			       .seen_path = seen_path,
+			       .folder_bytes = slash ? (size_t)(slash - seen_path) + 1 : 0 };
+	const struct aiScene *scene =
+		aiImportFileEx(seen_path, aiProcess_Triangulate, &files.functions);
+
+	if (files.refused) {
+		fault_set(fault, -EPERM, "%s: it names '%.200s', which %s; %s", seen_path,
+			  files.refused_name, import_files_why(files.refused),
+			  files.refused == -EKEYREJECTED
+				  ? "no scan needs one: do not trust whoever made it"
+				  : "copy that file beside the scan");
+		return NULL;
+	}
+	if (!scene || !scene->mRootNode)
+		fault_set(fault, -EBADMSG, "%s: its %s reader says: %s; export it again", seen_path,
+			  format_name, aiGetErrorString());
+	return scene && scene->mRootNode ? scene : NULL;
+}

@@ -1,0 +1,107 @@
+#include "pipeline/import/mesh_colour.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/import/mesh_places.h"
+
+enum { CELLS_LEAST = 2, CELLS_MOST = 8 };
+
+/* Weighted colours of a place. */
+struct sum {
+	float rgb[3], weight;
+};
+
+/* Cells along an edge of the face: about one for two pixels. */
+static int cells_of(const struct mesh *mesh, const uint32_t t[3],
+		    const struct mesh_texture *texture)
+{
+	const float *a = mesh->uvs[t[0]], *b = mesh->uvs[t[1]], *c = mesh->uvs[t[2]];
+	float area = fabsf((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+	float side_px = sqrtf(area * (float)texture->width * (float)texture->height);
+
+	if (!(side_px > 2 * CELLS_LEAST))
+		return CELLS_LEAST;
+	return side_px < 2 * CELLS_MOST ? (int)(side_px / 2) : CELLS_MOST;
+}
+
+static void add_sample(const struct mesh *mesh, const uint32_t t[3],
+		       const struct mesh_texture *texture, const float weights[3],
+		       const uint32_t places[3], float share, struct sum *sums)
+{
+	float uv[2] = { 0, 0 };
+	uint8_t rgb[3];
+
+	for (int k = 0; k < 3; k++)
+		for (int axis = 0; axis < 2; axis++)
+			uv[axis] += weights[k] * mesh->uvs[t[k]][axis];
+	mesh_texel(texture, uv, rgb);
+	for (int k = 0; k < 3; k++) {
+		struct sum *sum = &sums[places[k]];
+		float weight = weights[k] * weights[k] * share;
+
+		for (int channel = 0; channel < 3; channel++)
+			sum->rgb[channel] += weight * (float)rgb[channel];
+		sum->weight += weight;
+	}
+}
+
+/* At the centres of the cells of a regular division, those that point up and those that point
+ * down. */
+static void add_face(const struct mesh *mesh, uint32_t face, const uint32_t *place,
+		     struct sum *sums)
+{
+	const uint32_t *t = mesh->triangles[face];
+	const struct mesh_texture *texture = &mesh->textures[mesh->materials[face]];
+	const uint32_t places[3] = { place[t[0]], place[t[1]], place[t[2]] };
+	int cells = cells_of(mesh, t, texture);
+	float share = 1 / (float)(cells * cells); /* every face counts the same */
+
+	for (int i = 0; i < cells; i++)
+		for (int j = 0; i + j < cells; j++)
+			for (int down = 0; down < (i + j + 1 < cells ? 2 : 1); down++) {
+				float centre = down ? 2.0f / 3 : 1.0f / 3;
+				float u = ((float)i + centre) / (float)cells;
+				float v = ((float)j + centre) / (float)cells;
+
+				add_sample(mesh, t, texture, (float[3]){ 1 - u - v, u, v }, places,
+					   share, sums);
+			}
+}
+
+static int give_colours(struct mesh *mesh)
+{
+	if (mesh->colours)
+		return 0;
+	mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
+	if (!mesh->colours)
+		return -ENOMEM;
+	memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
+	return 0;
+}
+
+int mesh_colours_from_textures(struct mesh *mesh)
+{
+	uint32_t *place;
+	struct sum *sums;
+	int rc;
+
+	if (!mesh->textures || !mesh->uvs || !mesh->materials)
+		return 0;
+	place = mesh_places(mesh);
+	sums = calloc((size_t)mesh->vertex_count + 1, sizeof(*sums));
+	rc = place && sums ? give_colours(mesh) : -ENOMEM;
+	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++)
+		add_face(mesh, i, place, sums);
+	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
+		const struct sum *sum = &sums[place[i]];
+
+		for (int k = 0; k < 3 && sum->weight > 0; k++)
+			mesh->colours[i][k] = (uint8_t)(sum->rgb[k] / sum->weight + 0.5f);
+	}
+	free(place);
+	free(sums);
+	return rc;
+}

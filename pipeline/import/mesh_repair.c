@@ -1,0 +1,149 @@
+#include "pipeline/import/mesh_repair.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/import/mesh_edges.h"
+#include "pipeline/import/mesh_orient.h"
+#include "pipeline/import/mesh_places.h"
+
+#define NO_VERTEX UINT32_MAX
+
+/* Minus zero is zero, or equal places would differ in their bytes. */
+static void settle_zeros(struct mesh *mesh)
+{
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		for (int k = 0; k < 3; k++)
+			mesh->positions[i][k] += 0.0f;
+		for (int k = 0; k < 2 && mesh->uvs; k++)
+			mesh->uvs[i][k] += 0.0f;
+	}
+}
+
+/* ---- faces */
+
+static bool is_finite_vertex(const struct mesh *mesh, uint32_t i)
+{
+	return isfinite(mesh->positions[i][0]) && isfinite(mesh->positions[i][1]) &&
+	       isfinite(mesh->positions[i][2]);
+}
+
+static bool same_place(const struct mesh *mesh, uint32_t a, uint32_t b)
+{
+	return memcmp(mesh->positions[a], mesh->positions[b], sizeof(mesh->positions[a])) == 0;
+}
+
+static bool is_degenerate(const struct mesh *mesh, const uint32_t t[3])
+{
+	return same_place(mesh, t[0], t[1]) || same_place(mesh, t[1], t[2]) ||
+	       same_place(mesh, t[2], t[0]);
+}
+
+static void filter_faces(struct mesh *mesh, const uint32_t *first, struct mesh_repairs *repairs)
+{
+	uint32_t kept = 0;
+
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+		const uint32_t *t = mesh->triangles[i];
+		uint32_t merged[3] = { first[t[0]], first[t[1]], first[t[2]] };
+
+		if (!is_finite_vertex(mesh, t[0]) || !is_finite_vertex(mesh, t[1]) ||
+		    !is_finite_vertex(mesh, t[2])) {
+			repairs->lost_faces++;
+			continue;
+		}
+		if (is_degenerate(mesh, merged)) {
+			repairs->degenerate_faces++;
+			continue;
+		}
+		memcpy(mesh->triangles[kept], merged, sizeof(merged));
+		if (mesh->materials)
+			mesh->materials[kept] = mesh->materials[i];
+		if (mesh->faces)
+			mesh->faces[kept] = mesh->faces[i];
+		kept++;
+	}
+	mesh->triangle_count = kept;
+}
+
+/* Moves the used vertices to the front; first becomes the map from old to new. */
+static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh_repairs *repairs)
+{
+	uint32_t kept = 0;
+
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		if (first[i] != i)
+			repairs->merged_vertices++;
+		first[i] = NO_VERTEX;
+	}
+	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+		for (int k = 0; k < 3; k++)
+			first[mesh->triangles[i][k]] = 0;
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		if (first[i] == NO_VERTEX)
+			continue;
+		memmove(mesh->positions[kept], mesh->positions[i], sizeof(mesh->positions[i]));
+		if (mesh->colours)
+			memmove(mesh->colours[kept], mesh->colours[i], sizeof(mesh->colours[i]));
+		if (mesh->uvs)
+			memmove(mesh->uvs[kept], mesh->uvs[i], sizeof(mesh->uvs[i]));
+		first[i] = kept++;
+	}
+	repairs->unused_vertices = mesh->vertex_count - kept - repairs->merged_vertices;
+	mesh->vertex_count = kept;
+	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+		for (int k = 0; k < 3; k++)
+			mesh->triangles[i][k] = first[mesh->triangles[i][k]];
+}
+
+/* ---- edges */
+
+static void count_edge(void *data, const struct mesh_edge *edge)
+{
+	struct mesh_repairs *repairs = data;
+
+	repairs->border_edges += edge->face_count == 1;
+	repairs->non_manifold_edges += edge->face_count > 2;
+	repairs->turned_edges += edge->turned;
+}
+
+/* Only edges whose faces disagree need the work of finding out who is right. */
+static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
+{
+	struct mesh_edges edges;
+	int rc = mesh_edges_init(&edges, mesh);
+
+	if (rc < 0)
+		return rc;
+	mesh_edges_each(&edges, count_edge, repairs);
+	if (repairs->turned_edges > 0)
+		rc = mesh_orient(mesh, &edges, &repairs->turned_faces);
+	mesh_edges_finish(&edges);
+	if (rc < 0 || repairs->turned_faces == 0)
+		return rc;
+	rc = mesh_edges_init(&edges, mesh);
+	if (rc < 0)
+		return rc;
+	repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
+	mesh_edges_each(&edges, count_edge, repairs);
+	mesh_edges_finish(&edges);
+	return 0;
+}
+
+int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
+{
+	uint32_t *first;
+
+	*repairs = (struct mesh_repairs){ 0 };
+	settle_zeros(mesh);
+	first = mesh_equals(mesh);
+	if (!first)
+		return -ENOMEM;
+	filter_faces(mesh, first, repairs);
+	drop_unused_vertices(mesh, first, repairs);
+	free(first);
+	return mesh->vertex_count >> 31 ? 0 : settle_edges(mesh, repairs);
+}

@@ -1,0 +1,454 @@
+/* The body of a PLY: elements one after another, each property decoded, kept or skipped. */
+#include "pipeline/import/ply_parts.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* One pass over the body. */
+struct pass {
+	struct ply *ply;
+	const struct ply_visitor *visitor;
+	struct fault *fault;
+	const struct ply_element *element;
+	uint64_t index; /* of the element at hand */
+	uint64_t faces; /* and strips, of the elements before */
+	double values[PLY_SLOT_NONE];
+	struct ply_triangle triangle;
+	uint32_t strip[2], strip_length; /* the last corners of the strip at hand */
+};
+
+static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)
+{
+	uint64_t word = 0;
+	size_t size = ply_type_bytes(type);
+	double wide;
+	float narrow;
+	uint32_t half;
+
+	for (size_t i = 0; i < size; i++)
+		word |= (uint64_t)bytes[big ? size - 1 - i : i] << (8 * i);
+	switch (type) {
+	case PLY_INT8:
+		return (int8_t)word;
+	case PLY_INT16:
+		return (int16_t)word;
+	case PLY_INT32:
+		return (int32_t)word;
+	case PLY_FLOAT32:
+		half = (uint32_t)word;
+		memcpy(&narrow, &half, sizeof(narrow));
+		return narrow;
+	case PLY_FLOAT64:
+		memcpy(&wide, &word, sizeof(wide));
+		return wide;
+	default:
+		return (double)word;
+	}
+}
+
+/* "file.ply: face 12 (line 40)" */
+static int element_fault(const struct pass *pass, int error, const char *what)
+{
+	struct ply *ply = pass->ply;
+
+	if (ply->encoding == PLY_ASCII)
+		return fault_set(pass->fault, error, "%s:%" PRIu64 ": %s %" PRIu64 ": %s",
+				 ply->name, ply->input.line, pass->element->name, pass->index,
+				 what);
+	return fault_set(pass->fault, error, "%s: %s %" PRIu64 " (at byte %" PRIu64 "): %s",
+			 ply->name, pass->element->name, pass->index, ply_input_offset(&ply->input),
+			 what);
+}
+
+static int ends_early(const struct pass *pass)
+{
+	if (pass->ply->input.error)
+		return fault_set(pass->fault, pass->ply->input.error, "%s: reading it fails: %s",
+				 pass->ply->name, strerror(-pass->ply->input.error));
+	return element_fault(pass, -EBADMSG,
+			     "the file ends here, short of what its header promises; copy it again "
+			     "from the source");
+}
+
+static int next_number(struct pass *pass, enum ply_type type, bool cross_lines, double *out)
+{
+	struct ply *ply = pass->ply;
+	char text[PLY_TOKEN_BYTES], what[PLY_TOKEN_BYTES + 64];
+	const uint8_t *bytes;
+
+	if (ply->encoding != PLY_ASCII) {
+		bytes = ply_input_take(&ply->input, ply_type_bytes(type));
+		if (!bytes)
+			return ends_early(pass);
+		*out = decode_number(bytes, type, ply->encoding == PLY_BIG);
+		return 0;
+	}
+	switch (ply_input_number(&ply->input, cross_lines, out, text)) {
+	case PLY_TOKEN_NUMBER:
+		return 0;
+	case PLY_TOKEN_LINE_END:
+		return element_fault(pass, -EBADMSG,
+				     "its line has fewer numbers than its properties need; mend or "
+				     "remove it");
+	case PLY_TOKEN_BAD:
+		snprintf(what, sizeof(what), "'%.40s' is not a number; mend or remove it", text);
+		return element_fault(pass, -EBADMSG, what);
+	default:
+		return ends_early(pass);
+	}
+}
+
+/* ---- corners into triangles */
+
+static int emit(struct pass *pass, uint32_t a, uint32_t b, uint32_t c)
+{
+	pass->triangle.corner[0] = a;
+	pass->triangle.corner[1] = b;
+	pass->triangle.corner[2] = c;
+	pass->triangle.face = (uint32_t)(pass->faces + pass->index);
+	return pass->visitor->triangle(pass->visitor->data, &pass->triangle);
+}
+
+static int check_corner(struct pass *pass, double value)
+{
+	char what[160];
+
+	if (value >= 0 && value < (double)pass->ply->summary.vertex_count && value == floor(value))
+		return 0;
+	snprintf(what, sizeof(what),
+		 "names vertex %.10g, but the file has %" PRIu64
+		 " (the first is 0); mend or remove "
+		 "it",
+		 value, pass->ply->summary.vertex_count);
+	return element_fault(pass, -EBADMSG, what);
+}
+
+/* Every other triangle of a strip turns the other way. */
+static int strip_corner(struct pass *pass, double value)
+{
+	uint32_t corner, a = pass->strip[0], b = pass->strip[1];
+	int rc;
+
+	if (value == -1) {
+		pass->strip_length = 0;
+		return 0;
+	}
+	rc = check_corner(pass, value);
+	if (rc < 0)
+		return rc;
+	corner = (uint32_t)value;
+	pass->strip[0] = b;
+	pass->strip[1] = corner;
+	pass->strip_length++;
+	if (pass->strip_length < 3)
+		return 0;
+	return pass->strip_length % 2 ? emit(pass, a, b, corner) : emit(pass, b, a, corner);
+}
+
+static int face_corner(struct pass *pass, double value)
+{
+	struct ply *ply = pass->ply;
+	int rc = check_corner(pass, value);
+
+	if (rc < 0)
+		return rc;
+	if (ply->corner_count == PLY_CORNERS_MOST)
+		return element_fault(pass, -EFBIG, "over 65536 corners; triangulate it");
+	ply->corners[ply->corner_count++] = (uint32_t)value;
+	return 0;
+}
+
+static int end_face(struct pass *pass)
+{
+	struct ply *ply = pass->ply;
+	bool has_uv = ply->corner_uv_floats > 0;
+	double texture = pass->values[PLY_SLOT_TEXTURE];
+
+	if (has_uv && ply->corner_uv_floats != 2 * ply->corner_count)
+		return element_fault(
+			pass, -EBADMSG,
+			"its texcoord list must hold two numbers a corner; export it again");
+	pass->triangle.texture = texture > 0 && texture < PLY_TEXTURES_MOST ? (uint32_t)texture : 0;
+	for (uint32_t i = 2; i < ply->corner_count; i++) {
+		const uint32_t at[3] = { 0, i - 1, i };
+		int rc;
+
+		for (int k = 0; k < 3; k++)
+			memcpy(pass->triangle.uv[k],
+			       has_uv ? ply->corner_uvs[at[k]] : (float[2]){ 0, 0 },
+			       sizeof(pass->triangle.uv[k]));
+		rc = emit(pass, ply->corners[0], ply->corners[i - 1], ply->corners[i]);
+		if (rc)
+			return rc;
+	}
+	return 0;
+}
+
+/* ---- elements */
+
+static int list_item(struct pass *pass, enum ply_slot slot, double value)
+{
+	struct ply *ply = pass->ply;
+
+	if (slot == PLY_SLOT_CORNERS)
+		return pass->element->kind == PLY_KIND_STRIP ? strip_corner(pass, value)
+							     : face_corner(pass, value);
+	if (slot != PLY_SLOT_CORNER_UVS || pass->element->kind != PLY_KIND_FACE)
+		return 0;
+	if (ply->corner_uv_floats == 2 * PLY_CORNERS_MOST)
+		return element_fault(pass, -EFBIG, "over 65536 corners; triangulate it");
+	((float *)ply->corner_uvs)[ply->corner_uv_floats++] = (float)value;
+	return 0;
+}
+
+static int read_list(struct pass *pass, const struct ply_property *property, bool is_first)
+{
+	double count, value;
+	int rc = next_number(pass, property->count_type, is_first, &count);
+
+	if (rc < 0)
+		return rc;
+	if (!(count >= 0 && count <= UINT32_MAX) || count != floor(count))
+		return element_fault(pass, -EBADMSG,
+				     "the length of its list is not a count; mend or remove it");
+	for (uint64_t i = 0; i < (uint64_t)count; i++) {
+		rc = next_number(pass, property->type, true, &value);
+		if (rc == 0)
+			rc = list_item(pass, property->slot, value);
+		if (rc)
+			return rc;
+	}
+	return 0;
+}
+
+/* 0..255 from whatever type a colour has: floats run 0..1, shorts to 65535. */
+static uint8_t colour_byte(double value, enum ply_type type)
+{
+	if (type >= PLY_FLOAT32)
+		value *= 255;
+	else if (type == PLY_UINT16 || type == PLY_INT16)
+		value /= 257;
+	if (!(value > 0))
+		return 0;
+	return value < 255 ? (uint8_t)(value + 0.5) : 255;
+}
+
+static int end_vertex(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE])
+{
+	const struct ply_summary *summary = &pass->ply->summary;
+	struct ply_vertex vertex = { .colour = { 255, 255, 255, 255 } };
+
+	for (int k = 0; k < 3; k++)
+		vertex.position[k] = pass->values[PLY_SLOT_X + k];
+	for (int k = 0; k < 3 && summary->has_colour; k++)
+		vertex.colour[k] =
+			colour_byte(pass->values[PLY_SLOT_RED + k], types[PLY_SLOT_RED + k]);
+	if (summary->has_open_sky)
+		vertex.colour[3] = colour_byte(pass->values[PLY_SLOT_ALPHA], types[PLY_SLOT_ALPHA]);
+	for (int k = 0; k < 2 && summary->has_uv; k++)
+		vertex.uv[k] = (float)pass->values[PLY_SLOT_U + k];
+	return pass->visitor->vertex(pass->visitor->data, &vertex);
+}
+
+/* An element without lists, in binary: only what means something is decoded. */
+static int read_packed(struct pass *pass)
+{
+	const struct ply_element *element = pass->element;
+	const uint8_t *bytes = ply_input_take(&pass->ply->input, element->stride);
+
+	if (!bytes)
+		return ends_early(pass);
+	for (uint32_t i = 0; i < element->property_count; i++) {
+		const struct ply_property *property = &element->properties[i];
+
+		if (property->slot != PLY_SLOT_NONE)
+			pass->values[property->slot] =
+				decode_number(bytes + property->offset, property->type,
+					      pass->ply->encoding == PLY_BIG);
+	}
+	return 0;
+}
+
+static int read_properties(struct pass *pass)
+{
+	for (uint32_t i = 0; i < pass->element->property_count; i++) {
+		const struct ply_property *property = &pass->element->properties[i];
+		double value;
+		int rc;
+
+		if (property->count_type != PLY_TYPE_NONE) {
+			rc = read_list(pass, property, i == 0);
+		} else {
+			/* Elements may share a line's break only at their own start. */
+			rc = next_number(pass, property->type, i == 0, &value);
+			if (rc == 0 && property->slot != PLY_SLOT_NONE)
+				pass->values[property->slot] = value;
+		}
+		if (rc)
+			return rc;
+	}
+	return 0;
+}
+
+/* Behind the last number of an element only its line's end may stand. */
+static int end_line(struct pass *pass)
+{
+	struct ply_input *input = &pass->ply->input;
+	double ignored;
+	char text[PLY_TOKEN_BYTES];
+
+	if (pass->ply->encoding != PLY_ASCII)
+		return 0;
+	switch (ply_input_number(input, false, &ignored, text)) {
+	case PLY_TOKEN_LINE_END:
+	case PLY_TOKEN_FILE_END:
+		return 0;
+	default:
+		return element_fault(pass, -EBADMSG,
+				     "its line has more than its properties; mend or remove it");
+	}
+}
+
+static int read_one(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE])
+{
+	struct ply *ply = pass->ply;
+	int rc;
+
+	ply->corner_count = ply->corner_uv_floats = 0;
+	pass->strip_length = 0;
+	rc = pass->element->stride ? read_packed(pass) : read_properties(pass);
+	if (rc == 0)
+		rc = end_line(pass);
+	if (rc == 0 && pass->element->kind == PLY_KIND_VERTEX)
+		rc = end_vertex(pass, types);
+	if (rc == 0 && pass->element->kind == PLY_KIND_FACE)
+		rc = end_face(pass);
+	return rc;
+}
+
+static int read_element(struct pass *pass, const struct ply_element *element)
+{
+	enum ply_type types[PLY_SLOT_NONE] = { 0 };
+	int rc = 0;
+
+	pass->element = element;
+	memset(pass->values, 0, sizeof(pass->values));
+	memset(&pass->triangle, 0, sizeof(pass->triangle));
+	for (uint32_t i = 0; i < element->property_count; i++)
+		if (element->properties[i].slot != PLY_SLOT_NONE)
+			types[element->properties[i].slot] = element->properties[i].type;
+	for (pass->index = 0; pass->index < element->count && rc == 0; pass->index++)
+		rc = read_one(pass, types);
+	if (element->kind == PLY_KIND_FACE || element->kind == PLY_KIND_STRIP)
+		pass->faces += element->count;
+	return rc;
+}
+
+int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct fault *fault)
+{
+	struct pass pass = { .ply = ply, .visitor = visitor, .fault = fault };
+
+	for (uint32_t i = 0; i < ply->element_count; i++) {
+		int rc = read_element(&pass, &ply->elements[i]);
+
+		if (rc)
+			return rc;
+	}
+	while (ply->encoding == PLY_ASCII && isspace(ply_input_peek(&ply->input)))
+		ply_input_take(&ply->input, 1);
+	ply->trailing = ply->input.file_bytes > ply_input_offset(&ply->input)
+				? ply->input.file_bytes - ply_input_offset(&ply->input)
+				: 0;
+	return 0;
+}
+
+/* ---- opening */
+
+static int start(struct ply *ply, int fd, struct fault *fault)
+{
+	int rc = ply_input_init(&ply->input, fd);
+
+	if (rc == -EISDIR || rc == -ESPIPE)
+		return fault_set(fault, rc, "%s: not a regular file; give a PLY file", ply->name);
+	ply->corners = malloc(PLY_CORNERS_MOST * sizeof(*ply->corners));
+	ply->corner_uvs = malloc(PLY_CORNERS_MOST * sizeof(*ply->corner_uvs));
+	if (rc == 0 && (!ply->corners || !ply->corner_uvs))
+		rc = -ENOMEM;
+	if (rc < 0)
+		return fault_set(fault, rc, "%s: %s", ply->name, strerror(-rc));
+	rc = ply_read_header(ply, fault);
+	if (rc == 0)
+		rc = ply_judge_header(ply, fault);
+	ply->summary.textures = (const char *const *)ply->textures;
+	ply->summary.is_ascii = ply->encoding == PLY_ASCII;
+	return rc;
+}
+
+int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault)
+{
+	struct ply *ply = calloc(1, sizeof(*ply));
+	int rc;
+
+	*out = NULL;
+	if (!ply) {
+		close(fd);
+		return fault_set(fault, -ENOMEM, "%s: %s", name, strerror(ENOMEM));
+	}
+	snprintf(ply->name, sizeof(ply->name), "%s", name);
+	rc = start(ply, fd, fault);
+	if (rc < 0) {
+		ply_close(ply);
+		return rc;
+	}
+	*out = ply;
+	return 0;
+}
+
+int ply_open(struct ply **out, const char *path, struct fault *fault)
+{
+	int fd = open(path, O_RDONLY | O_CLOEXEC);
+
+	*out = NULL;
+	if (fd < 0)
+		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
+	return ply_open_fd(out, fd, path, fault);
+}
+
+void ply_close(struct ply *ply)
+{
+	if (!ply)
+		return;
+	ply_input_finish(&ply->input);
+	for (uint32_t i = 0; i < PLY_TEXTURES_MOST; i++)
+		free(ply->textures[i]);
+	free(ply->corners);
+	free(ply->corner_uvs);
+	free(ply);
+}
+
+const struct ply_summary *ply_summary(const struct ply *ply)
+{
+	return &ply->summary;
+}
+
+uint64_t ply_bytes_read(const struct ply *ply)
+{
+	return ply_input_offset(&ply->input);
+}
+
+uint64_t ply_bytes_total(const struct ply *ply)
+{
+	return ply->input.file_bytes;
+}
+
+uint64_t ply_bytes_trailing(const struct ply *ply)
+{
+	return ply->trailing;
+}

@@ -1,0 +1,348 @@
+#include "pipeline/import/sandbox.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/pidfd.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "pipeline/import/lockdown.h"
+
+#ifdef __SANITIZE_ADDRESS__
+enum { ADDRESS_SPACE_IS_COUNTED = 0 };
+#else
+enum { ADDRESS_SPACE_IS_COUNTED = 1 };
+#endif
+
+enum {
+	LOOK_EVERY_MS = 50,
+	NAME_BYTES_MAX = 4096,
+	OPENS_MAX = 10000, /* of one child, over its life */
+	DESCRIPTORS_MAX = 64,
+};
+
+/* In shared memory: how the child ended, if it got there. The walls are told before foreign code
+ * runs. */
+struct outcome {
+	bool finished;
+	int rc;
+	int files_wall, calls_wall; /* of pipeline/lockdown.h: 0, or why it does not stand */
+	struct fault fault;
+};
+
+/* In the child: where it asks for files. */
+static int asking_fd = -1;
+
+void *sandbox_shared_create(size_t size)
+{
+	void *shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+
+	return shared == MAP_FAILED ? NULL : shared;
+}
+
+void sandbox_shared_destroy(void *shared, size_t size)
+{
+	if (shared)
+		munmap(shared, size);
+}
+
+static void limit(int resource, rlim_t most)
+{
+	const struct rlimit both = { most, most };
+
+	setrlimit((__rlimit_resource_t)resource, &both);
+}
+
+/* ---- files that the parent opens for the child: a name one way, a descriptor the other */
+
+union descriptor_room {
+	struct cmsghdr align;
+	char bytes[CMSG_SPACE(sizeof(int))];
+};
+
+/* fd: what was opened, or a negative errno. */
+static void send_opened(int socket, int fd)
+{
+	union descriptor_room room = { .bytes = { 0 } };
+	struct iovec answer = { &fd, sizeof(fd) };
+	struct msghdr message = { .msg_iov = &answer, .msg_iovlen = 1 };
+
+	if (fd >= 0) {
+		struct cmsghdr *control;
+
+		message.msg_control = room.bytes;
+		message.msg_controllen = sizeof(room.bytes);
+		control = CMSG_FIRSTHDR(&message);
+		control->cmsg_level = SOL_SOCKET;
+		control->cmsg_type = SCM_RIGHTS;
+		control->cmsg_len = CMSG_LEN(sizeof(int));
+		memcpy(CMSG_DATA(control), &fd, sizeof(fd));
+	}
+	/* A child that does not listen any more is judged by how it ends. */
+	if (sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
+		log_debug("pipeline", "a parser did not wait for its file: %s", strerror(errno));
+}
+
+/* In the parent. False: the child will not ask again. */
+static bool answer_one(int socket, const struct sandbox_options *options, uint32_t *opens)
+{
+	char name[NAME_BYTES_MAX + 1];
+	ssize_t size = recv(socket, name, sizeof(name), MSG_DONTWAIT);
+	int fd = -EACCES;
+
+	if (size < 0)
+		return errno == EAGAIN || errno == EINTR;
+	if (size == 0)
+		return false;
+	if (size > NAME_BYTES_MAX)
+		fd = -ENAMETOOLONG;
+	else if (memchr(name, 0, (size_t)size))
+		fd = -EINVAL;
+	else if (++*opens > OPENS_MAX)
+		fd = -EMFILE;
+	else if (options->open) {
+		name[size] = '\0';
+		fd = options->open(options->open_data, name);
+	}
+	send_opened(socket, fd);
+	if (fd >= 0)
+		close(fd);
+	return true;
+}
+
+int sandbox_open(const char *name)
+{
+	size_t size = strlen(name);
+	union descriptor_room room;
+	int fd = -EIO;
+	struct iovec answer = { &fd, sizeof(fd) };
+	struct msghdr message = { .msg_iov = &answer,
+				  .msg_iovlen = 1,
+				  .msg_control = room.bytes,
+				  .msg_controllen = sizeof(room.bytes) };
+	const struct cmsghdr *control;
+
+	if (size == 0 || size > NAME_BYTES_MAX)
+		return size ? -ENAMETOOLONG : -ENOENT;
+	if (write(asking_fd, name, size) != (ssize_t)size ||
+	    recvmsg(asking_fd, &message, MSG_CMSG_CLOEXEC) != (ssize_t)sizeof(fd))
+		return -EIO;
+	control = CMSG_FIRSTHDR(&message);
+	if (fd < 0)
+		return fd;
+	if (!control || control->cmsg_type != SCM_RIGHTS)
+		return -EIO;
+	memcpy(&fd, CMSG_DATA(control), sizeof(fd));
+	return fd;
+}
+
+/* ---- the child */
+
+/* Foreign code likes to talk; what matters comes back as a fault. */
+static void silence(void)
+{
+	int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+
+	if (nowhere < 0)
+		return;
+	dup2(nowhere, STDIN_FILENO);
+	dup2(nowhere, STDOUT_FILENO);
+	if (ADDRESS_SPACE_IS_COUNTED) /* else the sanitizer may have to say something */
+		dup2(nowhere, STDERR_FILENO);
+}
+
+/* All but the standard ones and these two. */
+static void close_others(int a, int b)
+{
+	const int low = a < b ? a : b, high = a < b ? b : a;
+	unsigned from = STDERR_FILENO + 1;
+
+	if (low >= (int)from) {
+		if (low > (int)from)
+			close_range(from, (unsigned)low - 1, 0);
+		from = (unsigned)low + 1;
+	}
+	if (high >= (int)from) {
+		if (high > (int)from)
+			close_range(from, (unsigned)high - 1, 0);
+		from = (unsigned)high + 1;
+	}
+	close_range(from, ~0u, 0);
+}
+
+static void set_limits(const struct sandbox_options *options)
+{
+	limit(RLIMIT_CORE, 0);
+	limit(RLIMIT_CPU, options->timeout_s);
+	limit(RLIMIT_NPROC, 0);
+	limit(RLIMIT_NOFILE, DESCRIPTORS_MAX);
+	limit(RLIMIT_FSIZE, options->memory_bytes); /* its result is a file, in memory */
+	if (ADDRESS_SPACE_IS_COUNTED)
+		limit(RLIMIT_AS, options->memory_bytes);
+}
+
+_Noreturn static void child(sandbox_work work, void *shared, const struct sandbox_options *options,
+			    pid_t parent, struct outcome *outcome)
+{
+	struct fault fault = { "" };
+
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (getppid() != parent)
+		_exit(1);
+	silence();
+	close_others(options->result_fd, asking_fd);
+	set_limits(options);
+	outcome->files_wall = lockdown_files();
+	outcome->calls_wall = lockdown_calls();
+	outcome->rc = work(shared, &fault);
+	outcome->fault = fault;
+	outcome->finished = true;
+	_exit(0); /* no destructors, no leak report: the process is thrown away */
+}
+
+/* ---- the parent */
+
+static uint64_t resident_bytes(pid_t pid)
+{
+	char path[64];
+	uint64_t size = 0, resident = 0;
+	FILE *statm;
+
+	snprintf(path, sizeof(path), "/proc/%d/statm", (int)pid);
+	statm = fopen(path, "re");
+	if (!statm)
+		return 0;
+	if (fscanf(statm, "%" SCNu64 " %" SCNu64, &size, &resident) != 2)
+		resident = 0;
+	fclose(statm);
+	return resident * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Until the child ends, or has to be ended: 0, -ETIMEDOUT, -ENOMEM. */
+static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options *options)
+{
+	int64_t end_ms = clock_now_ms() + (int64_t)options->timeout_s * 1000;
+	uint32_t opens = 0;
+
+	for (;;) {
+		struct pollfd news[] = { { .fd = pid_fd, .events = POLLIN },
+					 { .fd = socket, .events = POLLIN } };
+		int64_t left_ms = end_ms - clock_now_ms();
+
+		if (left_ms <= 0)
+			return -ETIMEDOUT;
+		if (!ADDRESS_SPACE_IS_COUNTED && left_ms > LOOK_EVERY_MS)
+			left_ms = LOOK_EVERY_MS;
+		if (poll(news, ARRAY_COUNT(news), (int)left_ms) > 0) {
+			if (news[0].revents)
+				return 0;
+			if (news[1].revents && !answer_one(socket, options, &opens))
+				socket = -1; /* poll passes over it */
+		}
+		if (!ADDRESS_SPACE_IS_COUNTED && resident_bytes(pid) > options->memory_bytes)
+			return -ENOMEM;
+	}
+}
+
+/* Once in a process: it is the kernel that lacks it, not the scan. */
+static void tell_walls(const struct outcome *outcome, const char *name)
+{
+	static bool was_told;
+
+	log_debug("pipeline", "%s: its reader's walls: seccomp %s, Landlock %s", name,
+		  outcome->calls_wall ? "absent" : "stands",
+		  outcome->files_wall ? "absent" : "stands");
+	if (outcome->calls_wall == 0 || was_told)
+		return;
+	was_told = true;
+	log_warn("pipeline",
+		 "this kernel filters no system calls (seccomp: %s): foreign scans are read with "
+		 "less protection",
+		 strerror(-outcome->calls_wall));
+}
+
+static int judge(int watched, int status, struct outcome *outcome,
+		 const struct sandbox_options *options, const char *name, struct fault *fault)
+{
+	if (watched == -ETIMEDOUT || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
+		return fault_set(fault, -ETIMEDOUT,
+				 "%s: reading it took over %" PRIu32
+				 " s, so it was given up; it is "
+				 "damaged or too large: export it as PLY",
+				 name, options->timeout_s);
+	if (watched == -ENOMEM)
+		return fault_set(fault, -ENOMEM,
+				 "%s: reading it took over %" PRIu64 " MiB, so it was given up; it "
+				 "is damaged or too large: export it as PLY",
+				 name, options->memory_bytes >> 20);
+	if (watched < 0)
+		return fault_set(fault, watched, "%s: %s", name, strerror(-watched));
+	if (!outcome->finished)
+		return fault_set(fault, -EBADMSG,
+				 "%s: its reader crashed on it (%s); it is damaged: export it "
+				 "again, or as PLY",
+				 name,
+				 WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it gave up");
+	outcome->fault.text[FAULT_BYTES - 1] = '\0';
+	if (outcome->rc < 0)
+		return fault_set(fault, outcome->rc, "%s", outcome->fault.text);
+	return outcome->rc;
+}
+
+static int start_and_watch(sandbox_work work, void *shared, const struct sandbox_options *options,
+			   struct outcome *outcome, int *status)
+{
+	pid_t parent = getpid(), pid;
+	int sockets[2], pid_fd, rc;
+
+	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) < 0)
+		return -errno;
+	fflush(NULL); /* or the child holds a copy of what is not yet written */
+	pid = fork();
+	if (pid == 0) {
+		asking_fd = sockets[1];
+		child(work, shared, options, parent, outcome);
+	}
+	close(sockets[1]);
+	pid_fd = pid > 0 ? pidfd_open(pid, 0) : -1;
+	rc = pid_fd < 0 ? -errno : watch(pid, pid_fd, sockets[0], options);
+	if (pid > 0) {
+		if (rc < 0)
+			kill(pid, SIGKILL);
+		while (waitpid(pid, status, 0) < 0 && errno == EINTR)
+			;
+	}
+	if (pid_fd >= 0)
+		close(pid_fd);
+	close(sockets[0]);
+	return rc;
+}
+
+int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
+		const char *name, struct fault *fault)
+{
+	struct outcome *outcome = sandbox_shared_create(sizeof(*outcome));
+	int status = 0, rc;
+
+	if (!outcome)
+		return fault_set(fault, -ENOMEM, "%s: %s", name, strerror(ENOMEM));
+	rc = start_and_watch(work, shared, options, outcome, &status);
+	if (rc == 0)
+		tell_walls(outcome, name);
+	rc = judge(rc, status, outcome, options, name, fault);
+	sandbox_shared_destroy(outcome, sizeof(*outcome));
+	return rc;
+}

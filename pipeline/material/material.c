@@ -1,0 +1,267 @@
+/* The C text below and the GLSL text at the end are the same function, line for line: a change of
+ * one is a change of both. The hash is a permutation polynomial modulo 289, whose every
+ * intermediate is an integer below 2^24. A quarter, not a half, is added before the floor: past
+ * 2^23 floats have no halves. */
+#include "pipeline/material/material.h"
+
+#include <math.h>
+
+static float mod289(float x)
+{
+	return x - floorf((x + 0.25f) * (1.0f / 289.0f)) * 289.0f;
+}
+
+/* Of an integer 0..577, the sum of two remainders. */
+static float permute(float x)
+{
+	return mod289((34.0f * x + 1.0f) * x);
+}
+
+static float hash(float i, float j, float k)
+{
+	return permute(permute(permute(mod289(i)) + mod289(j)) + mod289(k)) * (1.0f / 289.0f);
+}
+
+static float blend(float a, float b, float t)
+{
+	return a + (b - a) * t;
+}
+
+static float ramp(float from, float to, float x)
+{
+	float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
+
+	return t * t * (3.0f - 2.0f * t);
+}
+
+/* Value noise, 0..1; cells of 1 / (fx, fy, fz) metres. */
+static float noise(const float p[3], float fx, float fy, float fz)
+{
+	float x = p[0] * fx, y = p[1] * fy, z = p[2] * fz;
+	float i = floorf(x), j = floorf(y), k = floorf(z);
+	float u = x - i, v = y - j, w = z - k;
+
+	u = u * u * (3.0f - 2.0f * u);
+	v = v * v * (3.0f - 2.0f * v);
+	w = w * w * (3.0f - 2.0f * w);
+	float a = permute(mod289(i)), b = permute(mod289(i + 1.0f));
+	float m = mod289(j), n = mod289(j + 1.0f);
+	float aa = permute(a + m), ba = permute(b + m), ab = permute(a + n), bb = permute(b + n);
+	float lo = mod289(k), hi = mod289(k + 1.0f);
+	float low = blend(blend(permute(aa + lo), permute(ba + lo), u),
+			  blend(permute(ab + lo), permute(bb + lo), u), v);
+	float high = blend(blend(permute(aa + hi), permute(ba + hi), u),
+			   blend(permute(ab + hi), permute(bb + hi), u), v);
+
+	return blend(low, high, w) * (1.0f / 288.0f);
+}
+
+/* Detail of size 1 / frequency fades out as the footprint grows to it. */
+static float kept(float frequency, float footprint_m)
+{
+	return fminf(fmaxf(1.6f - 1.6f * frequency * footprint_m, 0.0f), 1.0f);
+}
+
+static void mix3(float rgb[3], float r, float g, float b, float t)
+{
+	rgb[0] = blend(rgb[0], r, t);
+	rgb[1] = blend(rgb[1], g, t);
+	rgb[2] = blend(rgb[2], b, t);
+}
+
+/* Noise of one frequency, which fades to its mean where the footprint is too coarse for it. */
+static float detail(const float p[3], float frequency, float footprint_m)
+{
+	float share = kept(frequency, footprint_m);
+
+	if (share <= 0.0f)
+		return 0.5f;
+	return blend(0.5f, noise(p, frequency, frequency, frequency), share);
+}
+
+/* Courses of blocks: along the wall and up it; on a floor, both ways along it. Of the block: tone,
+ * tint, how much of a joint this is, and how far from the joint's middle (metres or more). */
+static void block_at(float block[4], const float p[3], const float n[3], float footprint_m)
+{
+	float along = fabsf(n[0]) > fabsf(n[1]) ? p[1] : p[0], up = p[2] * 2.3f;
+	if (fabsf(n[2]) > 0.75f) {
+		along = p[0];
+		up = p[1] * 1.3f;
+	}
+	float row = floorf(up);
+	float across = along * 1.17f + hash(row, 5.0f, 1.0f);
+	float stone = floorf(across);
+	float edge = fminf(fminf(across - stone, stone + 1.0f - across) * 0.85f,
+			   fminf(up - row, row + 1.0f - up) * 0.43f);
+
+	block[0] = hash(stone, row, 9.0f);
+	block[1] = hash(row, stone, 23.0f);
+	block[2] = (1.0f - ramp(0.003f, 0.014f, edge)) * kept(30.0f, footprint_m);
+	block[3] = edge;
+}
+
+/* All but the finest: inch and grain are the noises of that detail. */
+static void paint(float rgb[3], const float p[3], const float n[3], float footprint_m,
+		  const float block[4], float inch, float grain)
+{
+	float wide = noise(p, 0.31f, 0.31f, 0.31f), metre = noise(p, 1.3f, 1.3f, 1.3f);
+	float hand = detail(p, 6.1f, footprint_m), tone = block[0], tint = block[1];
+	float upward = ramp(0.35f, 0.85f, n[2]), upright = 1.0f - fminf(fabsf(n[2]), 1.0f);
+
+	/* Sandstone: ochre grey, some blocks pinker, some greyer. */
+	rgb[0] = 0.90f, rgb[1] = 0.785f, rgb[2] = 0.61f;
+	mix3(rgb, 0.90f, 0.72f, 0.565f, ramp(0.60f, 0.95f, tint) * 0.6f);
+	mix3(rgb, 0.77f, 0.735f, 0.62f, ramp(0.45f, 0.05f, tint) * 0.6f);
+	mix3(rgb, 0.97f, 0.88f, 0.70f, ramp(0.45f, 0.75f, wide) * 0.6f);
+	/* Laterite: the wall of the lowest terrace, red brown and full of holes. */
+	float far = fmaxf(fabsf(p[0]), fabsf(p[1]));
+	float red = ramp(17.4f, 17.6f, far) * ramp(2.05f, 1.95f, p[2] + 0.1f * hand) * upright;
+	mix3(rgb, 0.68f, 0.41f, 0.26f, red * 0.85f);
+	mix3(rgb, 0.27f, 0.15f, 0.10f, red * ramp(0.60f, 0.72f, inch) * 0.7f);
+
+	float shade = 0.94f + 0.11f * tone + 0.14f * (metre - 0.5f) + 0.16f * (hand - 0.5f) +
+		      0.15f * (inch - 0.5f) + 0.15f * (grain - 0.5f) + 0.08f * wide;
+	rgb[0] *= shade, rgb[1] *= shade, rgb[2] *= shade;
+
+	/* Black crust where water stands, dark runs where it falls. */
+	float run = noise(p, 2.6f, 2.6f, 0.23f), thin = noise(p, 9.0f, 9.0f, 0.5f);
+	float fine = kept(9.0f, footprint_m);
+	float flow = run * 0.65f + blend(0.5f, thin, fine) * 0.35f;
+	mix3(rgb, 0.23f, 0.205f, 0.175f, ramp(0.52f, 0.80f, flow) * upright * 0.60f);
+	float crust = upward * ramp(0.30f, 0.74f, metre * 0.6f + hand * 0.4f);
+	mix3(rgb, 0.33f, 0.31f, 0.26f, crust * 0.46f);
+	/* Lichen: grey green sheets, pale coins, a little orange. */
+	float sheet = wide * 0.35f + metre * 0.35f + hand * 0.3f;
+	mix3(rgb, 0.62f, 0.63f, 0.50f, ramp(0.52f, 0.72f, sheet) * 0.50f);
+	float coin = noise(p, 4.3f, 4.7f, 4.1f) * 0.75f + inch * 0.25f;
+	float seen = kept(4.3f, footprint_m);
+	mix3(rgb, 0.86f, 0.84f, 0.73f, ramp(0.71f, 0.77f, coin) * 0.5f * seen);
+	mix3(rgb, 0.76f, 0.50f, 0.21f, ramp(0.24f, 0.20f, coin) * 0.4f * seen);
+	/* Moss and earth near the ground. */
+	float low = ramp(1.3f, 0.0f, p[2] - 0.7f * metre);
+	mix3(rgb, 0.36f, 0.38f, 0.20f, low * 0.35f * ramp(0.35f, 0.65f, hand));
+	float earth = ramp(0.14f, 0.07f, p[2]) * ramp(0.3f, 0.6f, n[2]);
+	mix3(rgb, 0.72f, 0.59f, 0.42f, earth * (0.35f + 0.45f * metre));
+	float grass = ramp(0.46f, 0.60f, wide * 0.5f + metre * 0.35f + hand * 0.15f);
+	mix3(rgb, 0.40f + 0.1f * inch, 0.44f + 0.1f * inch, 0.21f, earth * grass * 0.8f);
+
+	float dark = 1.0f - (0.12f + 0.5f * metre * tone) * block[2];
+	rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;
+}
+
+void stone_colour(float rgb[3], const float p[3], const float n[3], float footprint_m)
+{
+	float block[4];
+
+	block_at(block, p, n, footprint_m);
+	paint(rgb, p, n, footprint_m, block, detail(p, 23.0f, footprint_m),
+	      detail(p, 97.0f, footprint_m));
+}
+
+const char stone_glsl[] =
+	"float stone_mod289(float x) {\n"
+	"return x - floor((x + 0.25) * (1.0 / 289.0)) * 289.0;\n"
+	"}\n"
+	"float stone_permute(float x) {\n"
+	"return stone_mod289((34.0 * x + 1.0) * x);\n"
+	"}\n"
+	"float stone_hash(float i, float j, float k) {\n"
+	"return stone_permute(stone_permute(stone_permute(stone_mod289(i)) + stone_mod289(j)) +"
+	" stone_mod289(k)) * (1.0 / 289.0);\n"
+	"}\n"
+	"float stone_blend(float a, float b, float t) {\n"
+	"return a + (b - a) * t;\n"
+	"}\n"
+	"float stone_ramp(float from, float to, float x) {\n"
+	"float t = min(max((x - from) / (to - from), 0.0), 1.0);\n"
+	"return t * t * (3.0 - 2.0 * t);\n"
+	"}\n"
+	"float stone_noise(vec3 p, float fx, float fy, float fz) {\n"
+	"float x = p[0] * fx, y = p[1] * fy, z = p[2] * fz;\n"
+	"float i = floor(x), j = floor(y), k = floor(z);\n"
+	"float u = x - i, v = y - j, w = z - k;\n"
+	"u = u * u * (3.0 - 2.0 * u);\n"
+	"v = v * v * (3.0 - 2.0 * v);\n"
+	"w = w * w * (3.0 - 2.0 * w);\n"
+	"float a = stone_permute(stone_mod289(i)), b = stone_permute(stone_mod289(i + 1.0));\n"
+	"float m = stone_mod289(j), n = stone_mod289(j + 1.0);\n"
+	"float aa = stone_permute(a + m), ba = stone_permute(b + m), ab = stone_permute(a +"
+	" n), bb = stone_permute(b + n);\n"
+	"float lo = stone_mod289(k), hi = stone_mod289(k + 1.0);\n"
+	"float low = stone_blend(stone_blend(stone_permute(aa + lo), stone_permute(ba + lo),"
+	" u), stone_blend(stone_permute(ab + lo), stone_permute(bb + lo), u), v);\n"
+	"float high = stone_blend(stone_blend(stone_permute(aa + hi), stone_permute(ba +"
+	" hi), u), stone_blend(stone_permute(ab + hi), stone_permute(bb + hi), u), v);\n"
+	"return stone_blend(low, high, w) * (1.0 / 288.0);\n"
+	"}\n"
+	"float stone_kept(float frequency, float footprint_m) {\n"
+	"return min(max(1.6 - 1.6 * frequency * footprint_m, 0.0), 1.0);\n"
+	"}\n"
+	"void stone_mix3(inout vec3 rgb, float r, float g, float b, float t) {\n"
+	"rgb[0] = stone_blend(rgb[0], r, t);\n"
+	"rgb[1] = stone_blend(rgb[1], g, t);\n"
+	"rgb[2] = stone_blend(rgb[2], b, t);\n"
+	"}\n"
+	"float stone_detail(vec3 p, float frequency, float footprint_m) {\n"
+	"float share = stone_kept(frequency, footprint_m);\n"
+	"if (share <= 0.0) return 0.5;\n"
+	"return stone_blend(0.5, stone_noise(p, frequency, frequency, frequency), share);\n"
+	"}\n"
+	"vec4 stone_block(vec3 p, vec3 n, float footprint_m) {\n"
+	"float along = abs(n[0]) > abs(n[1]) ? p[1] : p[0], up = p[2] * 2.3;\n"
+	"if (abs(n[2]) > 0.75) {\n"
+	"along = p[0];\n"
+	"up = p[1] * 1.3;\n"
+	"}\n"
+	"float row = floor(up);\n"
+	"float across = along * 1.17 + stone_hash(row, 5.0, 1.0);\n"
+	"float stone = floor(across);\n"
+	"float edge = min(min(across - stone, stone + 1.0 - across) * 0.85, min(up - row,"
+	" row + 1.0 - up) * 0.43);\n"
+	"return vec4(stone_hash(stone, row, 9.0), stone_hash(row, stone, 23.0), (1.0 -"
+	" stone_ramp(0.003, 0.014, edge)) * stone_kept(30.0, footprint_m), edge);\n"
+	"}\n"
+	"vec3 stone_paint(vec3 p, vec3 n, float footprint_m, vec4 block, float inch, float grain) {\n"
+	"vec3 rgb;\n"
+	"float wide = stone_noise(p, 0.31, 0.31, 0.31), metre = stone_noise(p, 1.3, 1.3,"
+	" 1.3);\n"
+	"float hand = stone_detail(p, 6.1, footprint_m), tone = block[0], tint = block[1];\n"
+	"float upward = stone_ramp(0.35, 0.85, n[2]), upright = 1.0 - min(abs(n[2]), 1.0);\n"
+	"rgb[0] = 0.90, rgb[1] = 0.785, rgb[2] = 0.61;\n"
+	"stone_mix3(rgb, 0.90, 0.72, 0.565, stone_ramp(0.60, 0.95, tint) * 0.6);\n"
+	"stone_mix3(rgb, 0.77, 0.735, 0.62, stone_ramp(0.45, 0.05, tint) * 0.6);\n"
+	"stone_mix3(rgb, 0.97, 0.88, 0.70, stone_ramp(0.45, 0.75, wide) * 0.6);\n"
+	"float far = max(abs(p[0]), abs(p[1]));\n"
+	"float red = stone_ramp(17.4, 17.6, far) * stone_ramp(2.05, 1.95, p[2] + 0.1 * hand)"
+	" * upright;\n"
+	"stone_mix3(rgb, 0.68, 0.41, 0.26, red * 0.85);\n"
+	"stone_mix3(rgb, 0.27, 0.15, 0.10, red * stone_ramp(0.60, 0.72, inch) * 0.7);\n"
+	"float shade = 0.94 + 0.11 * tone + 0.14 * (metre - 0.5) + 0.16 * (hand - 0.5) +"
+	" 0.15 * (inch - 0.5) + 0.15 * (grain - 0.5) + 0.08 * wide;\n"
+	"rgb[0] *= shade, rgb[1] *= shade, rgb[2] *= shade;\n"
+	"float run = stone_noise(p, 2.6, 2.6, 0.23), thin = stone_noise(p, 9.0, 9.0, 0.5);\n"
+	"float fine = stone_kept(9.0, footprint_m);\n"
+	"float flow = run * 0.65 + stone_blend(0.5, thin, fine) * 0.35;\n"
+	"stone_mix3(rgb, 0.23, 0.205, 0.175, stone_ramp(0.52, 0.80, flow) * upright * 0.60);\n"
+	"float crust = upward * stone_ramp(0.30, 0.74, metre * 0.6 + hand * 0.4);\n"
+	"stone_mix3(rgb, 0.33, 0.31, 0.26, crust * 0.46);\n"
+	"float sheet = wide * 0.35 + metre * 0.35 + hand * 0.3;\n"
+	"stone_mix3(rgb, 0.62, 0.63, 0.50, stone_ramp(0.52, 0.72, sheet) * 0.50);\n"
+	"float coin = stone_noise(p, 4.3, 4.7, 4.1) * 0.75 + inch * 0.25;\n"
+	"float seen = stone_kept(4.3, footprint_m);\n"
+	"stone_mix3(rgb, 0.86, 0.84, 0.73, stone_ramp(0.71, 0.77, coin) * 0.5 * seen);\n"
+	"stone_mix3(rgb, 0.76, 0.50, 0.21, stone_ramp(0.24, 0.20, coin) * 0.4 * seen);\n"
+	"float low = stone_ramp(1.3, 0.0, p[2] - 0.7 * metre);\n"
+	"stone_mix3(rgb, 0.36, 0.38, 0.20, low * 0.35 * stone_ramp(0.35, 0.65, hand));\n"
+	"float earth = stone_ramp(0.14, 0.07, p[2]) * stone_ramp(0.3, 0.6, n[2]);\n"
+	"stone_mix3(rgb, 0.72, 0.59, 0.42, earth * (0.35 + 0.45 * metre));\n"
+	"float grass = stone_ramp(0.46, 0.60, wide * 0.5 + metre * 0.35 + hand * 0.15);\n"
+	"stone_mix3(rgb, 0.40 + 0.1 * inch, 0.44 + 0.1 * inch, 0.21, earth * grass * 0.8);\n"
+	"float dark = 1.0 - (0.12 + 0.5 * metre * tone) * block[2];\n"
+	"rgb[0] *= dark, rgb[1] *= dark, rgb[2] *= dark;\n"
+	"return rgb;\n"
+	"}\n"
+	"vec3 stone_colour(vec3 p, vec3 n, float footprint_m) {\n"
+	"return stone_paint(p, n, footprint_m, stone_block(p, n, footprint_m), stone_detail(p,"
+	" 23.0, footprint_m), stone_detail(p, 97.0, footprint_m));\n"
+	"}\n";

@@ -1,0 +1,232 @@
+#include "pipeline/release/inspect.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/metadata.h"
+#include "pipeline/release/object_map.h"
+
+enum { LOCATOR_BYTES_MOST = 256 << 20 };
+
+/* A page on the way through the release. */
+struct place {
+	struct hash parent; /* zero for the root */
+	uint64_t offset;
+	struct page_child child;
+};
+
+struct walk {
+	FILE *to;
+	struct release_reader *reader;
+	struct locator locator;
+	struct release release;
+	struct place *places; /* breadth first; owned */
+	size_t count, room;
+	struct hash_map seen;
+};
+
+static int complain(struct walk *walk, int rc, const char *text)
+{
+	fprintf(walk->to, "%s\n", text);
+	return rc;
+}
+
+/* By the release's own first root: to look, not to trust. */
+static int read_release(struct walk *walk, bool show)
+{
+	struct buffer root, file;
+	struct trust_root trust;
+	const char *why = NULL;
+	int rc;
+
+	buffer_init(&root, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = release_reader_file(walk->reader, "root/1.json", &root);
+	if (rc == 0)
+		rc = trust_root_first(&trust, buffer_bytes(&root), &why);
+	for (uint32_t n = 2; rc == 0; n++) {
+		char name[32];
+
+		snprintf(name, sizeof(name), "root/%u.json", n);
+		if (release_reader_file(walk->reader, name, &root) < 0)
+			break;
+		rc = trust_root_next(&trust, buffer_bytes(&root), &why);
+	}
+	if (rc == 0)
+		rc = release_reader_file(walk->reader, "release.json", &file);
+	if (rc == 0)
+		rc = release_decode(&walk->release, &trust, buffer_bytes(&file), &why);
+	if (rc < 0)
+		complain(walk, rc, why ? why : release_reader_why(walk->reader));
+	else if (show)
+		rc = inspect_bytes(walk->to, buffer_bytes(&file));
+	buffer_finish(&root);
+	buffer_finish(&file);
+	return rc;
+}
+
+static int read_locator(struct walk *walk, bool show)
+{
+	char name[64] = "locator/";
+	struct buffer file;
+	int rc;
+
+	hash_to_hex(walk->release.root, name + strlen(name));
+	buffer_init(&file, LOCATOR_BYTES_MOST);
+	rc = release_reader_file(walk->reader, name, &file);
+	if (rc < 0)
+		complain(walk, rc, release_reader_why(walk->reader));
+	if (rc == 0)
+		rc = locator_decode(&walk->locator, buffer_bytes(&file));
+	if (rc == -EBADMSG)
+		complain(walk, rc, "the locator is damaged");
+	if (rc == 0 && show)
+		rc = inspect_bytes(walk->to, buffer_bytes(&file));
+	buffer_finish(&file);
+	return rc;
+}
+
+static int add_place(struct walk *walk, const struct place *place)
+{
+	int rc = hash_map_put(&walk->seen, place->child.hash, 0);
+
+	if (rc <= 0)
+		return rc;
+	if (walk->count == walk->room) {
+		size_t room = walk->room ? walk->room * 2 : 64;
+		struct place *grown = realloc(walk->places, room * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		walk->places = grown;
+		walk->room = room;
+	}
+	walk->places[walk->count++] = *place;
+	return 0;
+}
+
+static int start(struct walk *walk, bool show)
+{
+	struct place root = { 0 };
+	int rc = read_release(walk, show);
+
+	if (rc == 0)
+		rc = read_locator(walk, show);
+	root.child = (struct page_child){ .hash = walk->release.root,
+					  .size = walk->release.root_bytes,
+					  .is_page = true };
+	return rc < 0 ? rc : add_place(walk, &root);
+}
+
+static void finish(struct walk *walk)
+{
+	locator_finish(&walk->locator);
+	hash_map_finish(&walk->seen);
+	free(walk->places);
+}
+
+/* The object's bytes, borrowed until the next call. */
+static int read_place(struct walk *walk, const struct place *place, struct bytes *out)
+{
+	int rc = release_reader_child(walk->reader, &walk->locator, place->parent, place->offset,
+				      &place->child, out);
+
+	return rc < 0 ? complain(walk, rc, release_reader_why(walk->reader)) : 0;
+}
+
+static int show_found(struct walk *walk, const struct place *place, uint32_t child)
+{
+	const struct locator_block *block = locator_find(&walk->locator, place->parent);
+	char hex[HASH_HEX_BYTES], pack[HASH_HEX_BYTES];
+	struct bytes bytes;
+	int rc = read_place(walk, place, &bytes);
+
+	if (rc < 0)
+		return rc;
+	hash_to_hex(place->parent, hex);
+	hash_to_hex(walk->locator.packs[block->pack], pack);
+	if (hash_is_zero(place->parent))
+		fprintf(walk->to, "the root page of the release\n");
+	else
+		fprintf(walk->to, "child %u of page %s\n", child, hex);
+	fprintf(walk->to, "in packs/%s at byte %" PRIu64 "\n", pack, block->offset + place->offset);
+	return inspect_bytes(walk->to, bytes);
+}
+
+/* 1: found among the page's children. */
+static int look_among(struct walk *walk, const struct place *at, struct hash object)
+{
+	struct place child = { .parent = at->child.hash };
+	struct bytes bytes;
+	struct page page;
+	int rc = read_place(walk, at, &bytes);
+
+	if (rc == 0)
+		rc = page_decode(&page, bytes);
+	if (rc < 0)
+		return rc;
+	for (uint32_t i = 0; rc == 0 && i < page.child_count; i++) {
+		child.child = page.children[i];
+		if (hash_equal(child.child.hash, object)) {
+			rc = show_found(walk, &child, i);
+			rc = rc < 0 ? rc : 1;
+		} else if (child.child.is_page) {
+			rc = add_place(walk, &child);
+		}
+		child.offset += page.children[i].size;
+	}
+	page_finish(&page);
+	return rc;
+}
+
+int inspect_object(FILE *to, struct release_reader *reader, struct hash object)
+{
+	struct walk walk = { .to = to, .reader = reader };
+	int rc = start(&walk, false);
+
+	if (rc == 0 && hash_equal(object, walk.release.root)) {
+		rc = show_found(&walk, &walk.places[0], 0);
+		finish(&walk);
+		return rc;
+	}
+	for (size_t i = 0; rc == 0 && i < walk.count; i++) {
+		struct place at = walk.places[i]; /* the array may move */
+
+		rc = look_among(&walk, &at, object);
+	}
+	if (rc == 0)
+		rc = complain(&walk, -ENOENT, "the current release has no object of that name");
+	finish(&walk);
+	return rc == 1 ? 0 : rc;
+}
+
+int inspect_release(FILE *to, struct release_reader *reader)
+{
+	struct walk walk = { .to = to, .reader = reader };
+	int rc = start(&walk, true);
+
+	for (size_t i = 0; rc == 0 && i < walk.count; i++) {
+		struct place at = walk.places[i], child = { .parent = at.child.hash };
+		struct bytes bytes;
+		struct page page;
+
+		rc = read_place(&walk, &at, &bytes);
+		if (rc == 0)
+			rc = page_decode(&page, bytes);
+		if (rc < 0)
+			break;
+		/* The root and its children; bricks by the hundred are asked for by name. */
+		if (i < 4)
+			rc = inspect_bytes(to, bytes);
+		for (uint32_t c = 0; rc == 0 && i == 0 && c < page.child_count; c++) {
+			child.child = page.children[c];
+			rc = add_place(&walk, &child);
+			child.offset += page.children[c].size;
+		}
+		page_finish(&page);
+	}
+	finish(&walk);
+	return rc;
+}

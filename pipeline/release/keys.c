@@ -1,0 +1,346 @@
+#include "pipeline/release/keys.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+
+/* A root outlives the terminals that were shipped with it. */
+#define ROOT_LIFE_S (20ll * 365 * 86400)
+
+static const char *const role_names[] = { "root", "release", "timestamp" };
+
+static int key_path(char path[PATH_MAX], const char *folder, enum meta_role role)
+{
+	return snprintf(path, PATH_MAX, "%s/%s.key", folder, role_names[role]) < PATH_MAX
+		       ? 0
+		       : -ENAMETOOLONG;
+}
+
+static const char key_mark[] = "gopura-key-1 ";
+
+static int complain(const char *path, int rc)
+{
+	log_error("pipeline", "%s: %s", path, strerror(-rc));
+	return rc;
+}
+
+bool keys_is_key_file(int fd)
+{
+	char start[sizeof(key_mark) - 1];
+
+	return pread(fd, start, sizeof(start), 0) == (ssize_t)sizeof(start) &&
+	       memcmp(start, key_mark, sizeof(start)) == 0;
+}
+
+/* An empty one is what a power cut left: nothing. */
+static bool has_key(const char *folder, enum meta_role role)
+{
+	char path[PATH_MAX];
+	struct stat status;
+
+	return key_path(path, folder, role) == 0 && lstat(path, &status) == 0 &&
+	       !(S_ISREG(status.st_mode) && status.st_size == 0);
+}
+
+static bool has_root(const char *folder)
+{
+	char path[PATH_MAX];
+
+	return snprintf(path, sizeof(path), "%s/root/1.json", folder) < PATH_MAX &&
+	       access(path, F_OK) == 0;
+}
+
+bool keys_are_in(const char *folder)
+{
+	return has_root(folder) || has_key(folder, META_ROOT) || has_key(folder, META_RELEASE) ||
+	       has_key(folder, META_TIMESTAMP);
+}
+
+/* ---- making them */
+
+/* What is in it is there after a power cut. */
+int keys_sync_folder(const char *path)
+{
+	int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int rc = fd < 0 || fsync(fd) < 0 ? -errno : 0;
+
+	if (fd >= 0)
+		close(fd);
+	return rc < 0 ? complain(path, rc) : 0;
+}
+
+/* A new file or none. Never readable by others, not even for a moment. */
+static int write_private(const char *path, const char *text)
+{
+	char aside[PATH_MAX + 8];
+	ssize_t put;
+	int fd, rc = 0;
+
+	snprintf(aside, sizeof(aside), "%s.part", path);
+	if (unlink(aside) < 0 && errno != ENOENT)
+		return -errno;
+	fd = open(aside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	if (fd < 0)
+		return -errno;
+	put = write(fd, text, strlen(text));
+	if (put < 0 || fsync(fd) < 0)
+		rc = -errno;
+	else if ((size_t)put != strlen(text))
+		rc = -ENOSPC;
+	if (close(fd) < 0 && rc == 0)
+		rc = -errno;
+	if (rc == 0 && rename(aside, path) < 0)
+		rc = -errno;
+	if (rc < 0)
+		unlink(aside);
+	return rc;
+}
+
+static int write_key(const char *folder, enum meta_role role, const uint8_t *seed)
+{
+	char path[PATH_MAX], text[128], hex[2 * crypto_sign_SEEDBYTES + 1];
+	int rc = key_path(path, folder, role);
+
+	if (rc < 0)
+		return rc;
+	sodium_bin2hex(hex, sizeof(hex), seed, crypto_sign_SEEDBYTES);
+	snprintf(text, sizeof(text), "%s%s %s\n", key_mark, role_names[role], hex);
+	rc = write_private(path, text);
+	sodium_memzero(text, sizeof(text));
+	sodium_memzero(hex, sizeof(hex));
+	return rc < 0 ? complain(path, rc) : 0;
+}
+
+static int make_role(struct signing_key *key, const char *folder, enum meta_role role)
+{
+	uint8_t seed[crypto_sign_SEEDBYTES];
+	int rc;
+
+	randombytes_buf(seed, sizeof(seed));
+	crypto_sign_seed_keypair(key->public_key, key->secret, seed);
+	rc = write_key(folder, role, seed);
+	sodium_memzero(seed, sizeof(seed));
+	return rc;
+}
+
+static int write_root(const char *folder, const struct signing_key keys[3])
+{
+	struct trust_root root = { .version = 1, .expires_s = clock_wall_s() + ROOT_LIFE_S };
+	char path[PATH_MAX];
+	struct buffer file;
+	int rc;
+
+	for (int role = META_ROOT; role <= META_TIMESTAMP; role++) {
+		root.roles[role].threshold = root.roles[role].key_count = 1;
+		memcpy(root.roles[role].keys[0], keys[role].public_key, KEY_BYTES);
+	}
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = trust_root_encode(&file, &root, &keys[META_ROOT], 1);
+	snprintf(path, sizeof(path), "%s/root/1.json", folder);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	return rc < 0 ? complain(path, rc) : 0;
+}
+
+static int make_folders(const char *folder)
+{
+	char path[PATH_MAX];
+
+	if (snprintf(path, sizeof(path), "%s/root", folder) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	if (mkdir(folder, 0700) < 0 && errno != EEXIST)
+		return complain(folder, -errno);
+	if (mkdir(path, 0755) < 0 && errno != EEXIST)
+		return complain(path, -errno);
+	return 0;
+}
+
+static int read_key(struct signing_key *key, const char *folder, enum meta_role role)
+{
+	uint8_t seed[crypto_sign_SEEDBYTES];
+	char path[PATH_MAX], text[256] = { 0 }, start[64];
+	struct buffer file;
+	struct stat stat_of;
+	size_t got = 0, skip;
+	int rc = key_path(path, folder, role);
+
+	if (rc < 0)
+		return rc;
+	buffer_init(&file, sizeof(text) - 1);
+	rc = buffer_read_file(&file, path);
+	if (rc == 0 && stat(path, &stat_of) == 0 && (stat_of.st_mode & 077)) {
+		log_error("pipeline", "%s: others may read this key; chmod 600 it", path);
+		buffer_finish(&file);
+		return -EPERM;
+	}
+	if (rc == 0) {
+		memcpy(text, file.data, file.size);
+		skip = (size_t)snprintf(start, sizeof(start), "%s%s ", key_mark, role_names[role]);
+		if (strncmp(text, start, skip) != 0 ||
+		    sodium_hex2bin(seed, sizeof(seed), text + skip, strcspn(text + skip, "\n"),
+				   NULL, &got, NULL) != 0 ||
+		    got != sizeof(seed))
+			rc = -EBADMSG;
+		else
+			crypto_sign_seed_keypair(key->public_key, key->secret, seed);
+	}
+	if (file.data)
+		sodium_memzero(file.data, file.size);
+	sodium_memzero(text, sizeof(text));
+	sodium_memzero(seed, sizeof(seed));
+	buffer_finish(&file);
+	return rc < 0 ? complain(path, rc) : 0;
+}
+
+/* Made in this order: a folder that has a later key without an earlier one is no interrupted run,
+ * somebody has taken the earlier one away. */
+static int judge_order(const char *folder)
+{
+	for (int role = META_RELEASE; role <= META_TIMESTAMP; role++)
+		if (has_key(folder, (enum meta_role)role) &&
+		    !has_key(folder, (enum meta_role)(role - 1))) {
+			log_error("pipeline",
+				  "%s: %s.key is here, but %s.key and root/1.json are not: bring "
+				  "them back from your copy, or begin with an empty folder",
+				  folder, role_names[role], role_names[role - 1]);
+			return -EEXIST;
+		}
+	return 0;
+}
+
+/* All that is missing, and root/1.json last: without it there are no keys. */
+static int complete(const char *folder)
+{
+	struct signing_key keys[3];
+	int rc = judge_order(folder);
+
+	if (rc == 0)
+		rc = make_folders(folder);
+	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++)
+		rc = has_key(folder, (enum meta_role)role)
+			     ? read_key(&keys[role], folder, (enum meta_role)role)
+			     : make_role(&keys[role], folder, (enum meta_role)role);
+	if (rc == 0)
+		rc = keys_sync_folder(folder);
+	if (rc == 0)
+		rc = write_root(folder, keys);
+	sodium_memzero(keys, sizeof(keys));
+	return rc;
+}
+
+int keys_sync_parent(const char *folder)
+{
+	char parent[PATH_MAX];
+	char *slash;
+
+	snprintf(parent, sizeof(parent), "%s", folder);
+	slash = strrchr(parent, '/');
+	if (slash && slash != parent)
+		*slash = '\0';
+	return keys_sync_folder(!slash ? "." : slash == parent ? "/" : parent);
+}
+
+int keys_make(const char *folder)
+{
+	char aside[PATH_MAX];
+	int rc;
+
+	if (sodium_init() < 0)
+		return -EIO;
+	if (has_root(folder))
+		return complain(folder, -EEXIST);
+	if (access(folder, F_OK) == 0)
+		return complete(folder);
+	if (snprintf(aside, sizeof(aside), "%s.part", folder) >= PATH_MAX)
+		return complain(folder, -ENAMETOOLONG);
+	rc = has_root(aside) ? 0 : complete(aside);
+	if (rc == 0 && rename(aside, folder) < 0)
+		rc = complain(folder, -errno);
+	return rc < 0 ? rc : keys_sync_parent(folder);
+}
+
+/* ---- using them */
+
+int keys_read_root(struct buffer *out, const char *folder, uint32_t version)
+{
+	char path[PATH_MAX];
+
+	if (snprintf(path, sizeof(path), "%s/root/%u.json", folder, version) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	return buffer_read_file(out, path);
+}
+
+int keys_follow_roots(struct trust_root *trust, const char *folder, const char **why)
+{
+	struct buffer file;
+	int rc = 0;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	while (rc == 0 && keys_read_root(&file, folder, trust->version + 1) == 0)
+		rc = trust_root_next(trust, buffer_bytes(&file), why);
+	buffer_finish(&file);
+	return rc;
+}
+
+static bool role_has(const struct role_keys *role, const struct signing_key *key)
+{
+	for (uint32_t i = 0; i < role->key_count; i++)
+		if (memcmp(role->keys[i], key->public_key, KEY_BYTES) == 0)
+			return true;
+	return false;
+}
+
+static int load_root(struct trust_root *trust, const char *folder)
+{
+	const char *why = "unreadable";
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = keys_read_root(&file, folder, 1);
+	if (rc == 0)
+		rc = trust_root_first(trust, buffer_bytes(&file), &why);
+	if (rc == 0)
+		rc = keys_follow_roots(trust, folder, &why);
+	if (rc < 0 && rc != -ENOENT)
+		log_error("pipeline", "%s/root: %s", folder, why);
+	buffer_finish(&file);
+	return rc;
+}
+
+int keys_load(struct publisher_keys *out, const char *folder)
+{
+	int rc;
+
+	*out = (struct publisher_keys){ 0 };
+	if (sodium_init() < 0)
+		return -EIO;
+	rc = load_root(&out->trust, folder);
+	if (rc == 0)
+		rc = read_key(&out->release, folder, META_RELEASE);
+	if (rc == 0)
+		rc = read_key(&out->timestamp, folder, META_TIMESTAMP);
+	if (rc == 0 && (!role_has(&out->trust.roles[META_RELEASE], &out->release) ||
+			!role_has(&out->trust.roles[META_TIMESTAMP], &out->timestamp))) {
+		log_error("pipeline", "%s: the newest root does not name these keys", folder);
+		rc = -EKEYREJECTED;
+	}
+	if (rc < 0)
+		keys_finish(out);
+	return rc;
+}
+
+void keys_finish(struct publisher_keys *keys)
+{
+	if (keys)
+		sodium_memzero(keys, sizeof(*keys));
+}

@@ -1,0 +1,109 @@
+#include "pipeline/release/label_cache.h"
+
+#include <errno.h>
+#include <string.h>
+
+enum {
+	LABELLING_VERSION =
+		1, /* raised when the same parts of the same scan are labelled otherwise */
+	KEY_TEXT_MOST = 1 << 20,
+	FILE_BYTES_MOST = 256 << 20,
+};
+
+int label_cache_key(struct hash *out, const struct content *content, struct hash hierarchy,
+		    const struct label_source_part *parts, uint32_t part_count, struct fault *fault)
+{
+	struct buffer text;
+	struct hash scans, faces;
+	int rc = content_scans_key(content, &scans, fault);
+
+	if (rc < 0)
+		return rc;
+	buffer_init(&text, KEY_TEXT_MOST);
+	buffer_put_u32(&text, LABELLING_VERSION);
+	buffer_put(&text, scans.bytes, HASH_BYTES);
+	buffer_put(&text, hierarchy.bytes, HASH_BYTES);
+	for (uint32_t i = 0; i < part_count; i++) {
+		buffer_put_string(&text, parts[i].id);
+		buffer_put(&text, &parts[i].region, sizeof(parts[i].region));
+		faces = hash_of(
+			(struct bytes){ (const uint8_t *)parts[i].triangles,
+					parts[i].triangle_count * sizeof(*parts[i].triangles) });
+		buffer_put(&text, faces.bytes, HASH_BYTES);
+	}
+	rc = text.error;
+	*out = hash_of(buffer_bytes(&text));
+	buffer_finish(&text);
+	return rc;
+}
+
+static struct hash read_hash(struct reader *reader)
+{
+	const struct bytes bytes = reader_bytes(reader, HASH_BYTES);
+	struct hash hash = { 0 };
+
+	if (bytes.size == HASH_BYTES)
+		memcpy(hash.bytes, bytes.data, HASH_BYTES);
+	return hash;
+}
+
+/* The file: the hash of all behind it; the key; the count; each object after its size. */
+static int read_file(struct buffer *labels, uint32_t count, struct hash key, struct bytes file)
+{
+	struct reader reader;
+	struct hash whole;
+
+	if (file.size < HASH_BYTES)
+		return -ENOENT;
+	whole = hash_of((struct bytes){ file.data + HASH_BYTES, file.size - HASH_BYTES });
+	reader_init(&reader, file);
+	if (!hash_equal(whole, read_hash(&reader)) || !hash_equal(key, read_hash(&reader)) ||
+	    reader_u32(&reader) != count)
+		return -ENOENT;
+	for (uint32_t i = 0; i < count; i++) {
+		struct bytes object = reader_bytes(&reader, reader_u32(&reader));
+
+		buffer_put(&labels[i], object.data, object.size);
+		if (labels[i].error)
+			return labels[i].error;
+	}
+	return reader.failed ? -ENOENT : 0;
+}
+
+int label_cache_load(struct buffer *labels, uint32_t count, struct hash key, const char *path)
+{
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, FILE_BYTES_MOST);
+	rc = buffer_read_file(&file, path);
+	rc = rc < 0 ? -ENOENT : read_file(labels, count, key, buffer_bytes(&file));
+	buffer_finish(&file);
+	for (uint32_t i = 0; rc < 0 && i < count; i++)
+		buffer_clear(&labels[i]);
+	return rc;
+}
+
+int label_cache_save(const struct buffer *labels, uint32_t count, struct hash key, const char *path)
+{
+	struct buffer file;
+	struct hash whole = { 0 };
+	int rc;
+
+	buffer_init(&file, FILE_BYTES_MOST);
+	buffer_put(&file, whole.bytes, HASH_BYTES);
+	buffer_put(&file, key.bytes, HASH_BYTES);
+	buffer_put_u32(&file, count);
+	for (uint32_t i = 0; i < count; i++) {
+		buffer_put_u32(&file, (uint32_t)labels[i].size);
+		buffer_put(&file, labels[i].data, labels[i].size);
+	}
+	rc = file.error;
+	if (rc == 0) {
+		whole = hash_of((struct bytes){ file.data + HASH_BYTES, file.size - HASH_BYTES });
+		memcpy(file.data, whole.bytes, HASH_BYTES);
+		rc = bytes_write_file(buffer_bytes(&file), path);
+	}
+	buffer_finish(&file);
+	return rc;
+}

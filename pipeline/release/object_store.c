@@ -1,0 +1,192 @@
+#include "pipeline/release/object_store.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "pipeline/release/object_map.h"
+
+struct stored {
+	uint8_t *memory; /* owned; NULL: in a file */
+	uint32_t size;
+	uint32_t file; /* index into paths */
+	uint64_t offset;
+};
+
+struct object_store {
+	struct hash_map index; /* hash to index into objects */
+	struct stored *objects;
+	size_t count, capacity;
+	char **paths;
+	uint32_t path_count;
+	int open_fd; /* of paths[open_file]; -1: none */
+	uint32_t open_file;
+};
+
+int object_store_create(struct object_store **out)
+{
+	*out = calloc(1, sizeof(**out));
+	if (!*out)
+		return -ENOMEM;
+	(*out)->open_fd = -1;
+	return 0;
+}
+
+void object_store_destroy(struct object_store *store)
+{
+	if (!store)
+		return;
+	for (size_t i = 0; i < store->count; i++)
+		free(store->objects[i].memory);
+	for (uint32_t i = 0; i < store->path_count; i++)
+		free(store->paths[i]);
+	if (store->open_fd >= 0)
+		close(store->open_fd);
+	free(store->paths);
+	free(store->objects);
+	hash_map_finish(&store->index);
+	free(store);
+}
+
+/* 1: *object was taken. 0: there already. */
+static int insert(struct object_store *store, struct hash hash, const struct stored *object)
+{
+	int rc;
+
+	if (store->count == store->capacity) {
+		size_t capacity = store->capacity ? store->capacity * 2 : 256;
+		struct stored *grown = realloc(store->objects, capacity * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		store->objects = grown;
+		store->capacity = capacity;
+	}
+	rc = hash_map_put(&store->index, hash, store->count);
+	if (rc == 1)
+		store->objects[store->count++] = *object;
+	return rc;
+}
+
+int object_store_add(struct object_store *store, struct bytes bytes, struct page_child *child)
+{
+	struct stored object = { .size = (uint32_t)bytes.size };
+	struct hash hash;
+	int rc;
+
+	if (bytes.size == 0 || bytes.size > OBJECT_BYTES_MOST)
+		return -EFBIG;
+	hash = hash_of(bytes);
+	if (child)
+		*child = (struct page_child){ .hash = hash, .size = object.size };
+	if (hash_map_get(&store->index, hash, NULL))
+		return 0;
+	object.memory = malloc(bytes.size);
+	if (!object.memory)
+		return -ENOMEM;
+	memcpy(object.memory, bytes.data, bytes.size);
+	rc = insert(store, hash, &object);
+	if (rc < 0)
+		free(object.memory);
+	return rc < 0 ? rc : 0;
+}
+
+int object_store_add_page(struct object_store *store, const struct page *page,
+			  struct page_child *child)
+{
+	struct page_child made = { 0 };
+	struct buffer buffer;
+	int rc;
+
+	buffer_init(&buffer, PAGE_BYTES_MOST);
+	page_encode(&buffer, page);
+	rc = buffer.error;
+	if (rc == 0)
+		rc = object_store_add(store, buffer_bytes(&buffer), &made);
+	made.is_page = true;
+	if (rc == 0 && child)
+		*child = made;
+	buffer_finish(&buffer);
+	return rc;
+}
+
+static int path_index(struct object_store *store, const char *path, uint32_t *index)
+{
+	char **grown;
+
+	if (store->path_count > 0 && strcmp(store->paths[store->path_count - 1], path) == 0) {
+		*index = store->path_count - 1;
+		return 0;
+	}
+	grown = realloc(store->paths, (store->path_count + 1) * sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	store->paths = grown;
+	store->paths[store->path_count] = strdup(path);
+	if (!store->paths[store->path_count])
+		return -ENOMEM;
+	*index = store->path_count++;
+	return 0;
+}
+
+int object_store_add_stretch(struct object_store *store, const char *path, uint64_t offset,
+			     const struct page_child *child)
+{
+	struct stored object = { .size = child->size, .offset = offset };
+	int rc;
+
+	if (child->size == 0 || child->size > OBJECT_BYTES_MOST)
+		return -EFBIG;
+	rc = path_index(store, path, &object.file);
+	if (rc == 0)
+		rc = insert(store, child->hash, &object);
+	return rc < 0 ? rc : 0;
+}
+
+static int read_stretch(struct object_store *store, const struct stored *object, uint8_t *to)
+{
+	if (store->open_fd < 0 || store->open_file != object->file) {
+		if (store->open_fd >= 0)
+			close(store->open_fd);
+		store->open_fd = open(store->paths[object->file], O_RDONLY | O_CLOEXEC);
+		store->open_file = object->file;
+	}
+	if (store->open_fd < 0)
+		return -errno;
+	return bytes_read_at(store->open_fd, to, object->size, object->offset);
+}
+
+int object_store_read(struct object_store *store, struct hash hash, struct buffer *out)
+{
+	const struct stored *object;
+	uint64_t index;
+	uint8_t *to;
+	int rc;
+
+	if (!hash_map_get(&store->index, hash, &index))
+		return -ENOENT;
+	object = &store->objects[index];
+	if (object->memory) {
+		buffer_put(out, object->memory, object->size);
+		return out->error;
+	}
+	to = buffer_extend(out, object->size);
+	if (!to)
+		return out->error;
+	rc = read_stretch(store, object, to);
+	if (rc == 0 && !hash_equal(hash_of((struct bytes){ to, object->size }), hash))
+		rc = -EBADMSG;
+	if (rc < 0)
+		log_error("pipeline", "%s: %s", store->paths[object->file],
+			  rc == -EBADMSG ? "changed while it was published; run the command again"
+					 : strerror(-rc));
+	return rc;
+}
+
+bool object_store_has(const struct object_store *store, struct hash hash)
+{
+	return hash_map_get(&store->index, hash, NULL);
+}

@@ -1,0 +1,340 @@
+#include "pipeline/release/pack.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "pipeline/release/object_map.h"
+
+/* Which pack a block lies in, until the names of new packs are known. */
+#define NEW_PACK (1u << 31)
+
+struct packer {
+	const struct pack_options *options;
+	struct pack_result *result;
+	struct hash_map seen;     /* pages that are queued or done */
+	struct page_child *queue; /* pages, breadth first; owned */
+	size_t queue_count, queue_room;
+	struct locator_block *blocks; /* owned; pack is an index into before, or NEW_PACK | index */
+	uint32_t block_count, block_room;
+	struct hash *packs; /* new ones; owned */
+	uint32_t pack_count;
+	struct buffer pack;  /* the one being filled */
+	bool *before_exists; /* a pack of before; owned */
+};
+
+static int path_of(char path[PATH_MAX], const char *release, const char *folder, struct hash name)
+{
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(name, hex);
+	return snprintf(path, PATH_MAX, "%s/%s/%s", release, folder, hex) < PATH_MAX
+		       ? 0
+		       : -ENAMETOOLONG;
+}
+
+/* *items has room for one more afterwards. */
+static int make_room(void **items, size_t count, size_t *room, size_t item_bytes)
+{
+	size_t more = *room ? *room * 2 : 64;
+	void *grown;
+
+	if (count < *room)
+		return 0;
+	grown = realloc(*items, more * item_bytes);
+	if (!grown)
+		return -ENOMEM;
+	*items = grown;
+	*room = more;
+	return 0;
+}
+
+static int queue_page(struct packer *packer, const struct page_child *page)
+{
+	int rc = hash_map_put(&packer->seen, page->hash, 0);
+
+	if (rc <= 0)
+		return rc;
+	rc = make_room((void **)&packer->queue, packer->queue_count, &packer->queue_room,
+		       sizeof(*packer->queue));
+	if (rc == 0)
+		packer->queue[packer->queue_count++] = *page;
+	return rc;
+}
+
+static int add_block(struct packer *packer, const struct locator_block *block)
+{
+	size_t room = packer->block_room;
+	int rc = make_room((void **)&packer->blocks, packer->block_count, &room,
+			   sizeof(*packer->blocks));
+
+	packer->block_room = (uint32_t)room;
+	if (rc == 0)
+		packer->blocks[packer->block_count++] = *block;
+	return rc;
+}
+
+static int end_pack(struct packer *packer)
+{
+	struct bytes bytes = buffer_bytes(&packer->pack);
+	struct hash name, *grown;
+	char path[PATH_MAX];
+	int rc;
+
+	if (bytes.size == 0)
+		return 0;
+	grown = realloc(packer->packs, (packer->pack_count + 1) * sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	packer->packs = grown;
+	name = hash_of(bytes);
+	rc = path_of(path, packer->options->release, "packs", name);
+	/* The same pack may stand there from a run that was cut off later on: whole, by its name.
+	 */
+	if (rc == 0)
+		rc = bytes_write_file(bytes, path);
+	if (rc < 0) {
+		log_error("pipeline", "%s: %s", path, strerror(-rc));
+		return rc;
+	}
+	packer->packs[packer->pack_count++] = name;
+	packer->result->packs_written++;
+	packer->result->written_bytes += bytes.size;
+	buffer_clear(&packer->pack);
+	return 0;
+}
+
+/* The block of an earlier release, if its pack is there. */
+static const struct locator_block *block_before(const struct packer *packer, struct hash page,
+						uint64_t size)
+{
+	const struct locator *before = packer->options->before;
+	const struct locator_block *block = before ? locator_find(before, page) : NULL;
+
+	return block && block->size == size && packer->before_exists[block->pack] ? block : NULL;
+}
+
+static int write_block(struct packer *packer, struct hash page, const struct page_child *children,
+		       uint32_t child_count, uint64_t size)
+{
+	uint64_t most = packer->options->pack_bytes ? packer->options->pack_bytes : PACK_BYTES;
+	struct locator_block block = { .page = page, .size = (uint32_t)size };
+	int rc = size > PACK_BYTES_MOST ? -EFBIG : 0;
+
+	if (rc == 0 && packer->pack.size > 0 && packer->pack.size + size > most)
+		rc = end_pack(packer);
+	block.pack = NEW_PACK | packer->pack_count;
+	block.offset = (uint32_t)packer->pack.size;
+	for (uint32_t i = 0; rc == 0 && i < child_count; i++) {
+		rc = object_store_read(packer->options->objects, children[i].hash, &packer->pack);
+		if (rc < 0) {
+			char hex[HASH_HEX_BYTES];
+
+			hash_to_hex(children[i].hash, hex);
+			log_error("pipeline", "object %s: %s", hex, strerror(-rc));
+		}
+	}
+	packer->result->blocks_written++;
+	return rc < 0 ? rc : add_block(packer, &block);
+}
+
+static int place_block(struct packer *packer, struct hash page, const struct page_child *children,
+		       uint32_t child_count)
+{
+	const struct locator_block *before;
+	uint64_t size = 0;
+
+	for (uint32_t i = 0; i < child_count; i++)
+		size += children[i].size;
+	if (size == 0)
+		return 0;
+	/* The zero hash is another root's block in another release. */
+	before = hash_is_zero(page) ? NULL : block_before(packer, page, size);
+	if (!before)
+		return write_block(packer, page, children, child_count, size);
+	packer->result->blocks_reused++;
+	packer->result->reused_bytes += size;
+	return add_block(packer, before);
+}
+
+static int place_page(struct packer *packer, struct hash name)
+{
+	struct buffer object;
+	struct page page = { 0 };
+	int rc;
+
+	buffer_init(&object, PAGE_BYTES_MOST);
+	rc = object_store_read(packer->options->objects, name, &object);
+	if (rc == 0)
+		rc = page_decode(&page, buffer_bytes(&object));
+	if (rc == 0)
+		rc = place_block(packer, name, page.children, page.child_count);
+	for (uint32_t i = 0; rc == 0 && i < page.child_count; i++)
+		if (page.children[i].is_page)
+			rc = queue_page(packer, &page.children[i]);
+	page_finish(&page);
+	buffer_finish(&object);
+	return rc;
+}
+
+static int place_all(struct packer *packer)
+{
+	int rc = place_block(packer, (struct hash){ 0 }, &packer->options->root, 1);
+
+	if (rc == 0)
+		rc = queue_page(packer, &packer->options->root);
+	for (size_t i = 0; rc == 0 && i < packer->queue_count; i++) {
+		rc = place_page(packer, packer->queue[i].hash);
+		if (packer->options->progress)
+			packer->options->progress(packer->options->progress_data,
+						  packer->result->written_bytes +
+							  packer->pack.size +
+							  packer->result->reused_bytes);
+	}
+	return rc < 0 ? rc : end_pack(packer);
+}
+
+static int look_for_packs_before(struct packer *packer)
+{
+	const struct locator *before = packer->options->before;
+
+	if (!before)
+		return 0;
+	packer->before_exists = calloc(before->pack_count + 1, sizeof(bool));
+	if (!packer->before_exists)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < before->pack_count; i++) {
+		char path[PATH_MAX];
+
+		packer->before_exists[i] =
+			path_of(path, packer->options->release, "packs", before->packs[i]) == 0 &&
+			access(path, R_OK) == 0;
+	}
+	return 0;
+}
+
+static int compare_blocks(const void *a, const void *b)
+{
+	return hash_compare(((const struct locator_block *)a)->page,
+			    ((const struct locator_block *)b)->page);
+}
+
+/* Numbers the packs: those of before that are used, in their order, then the new ones. */
+static int make_locator(struct packer *packer, struct locator *locator)
+{
+	uint32_t count = packer->options->before ? packer->options->before->pack_count : 0;
+	uint32_t *number = calloc(count + 1, sizeof(*number)), reused = 0;
+
+	locator->packs = calloc(count + packer->pack_count + 1, sizeof(*locator->packs));
+	if (!number || !locator->packs) {
+		free(number);
+		return -ENOMEM;
+	}
+	for (uint32_t i = 0; i < packer->block_count; i++)
+		if (!(packer->blocks[i].pack & NEW_PACK))
+			number[packer->blocks[i].pack] = 1;
+	for (uint32_t i = 0; i < count; i++) {
+		if (!number[i])
+			continue;
+		number[i] = reused;
+		locator->packs[reused++] = packer->options->before->packs[i];
+	}
+	for (uint32_t i = 0; i < packer->pack_count; i++)
+		locator->packs[reused + i] = packer->packs[i];
+	for (uint32_t i = 0; i < packer->block_count; i++) {
+		uint32_t pack = packer->blocks[i].pack;
+
+		packer->blocks[i].pack =
+			pack & NEW_PACK ? reused + (pack & ~NEW_PACK) : number[pack];
+	}
+	free(number);
+	packer->result->packs_reused = reused;
+	locator->pack_count = reused + packer->pack_count;
+	qsort(packer->blocks, packer->block_count, sizeof(*packer->blocks), compare_blocks);
+	locator->block_count = packer->block_count;
+	locator->blocks = packer->blocks;
+	return 0;
+}
+
+static int write_locator(struct packer *packer)
+{
+	struct locator locator = { 0 };
+	struct buffer file;
+	char path[PATH_MAX];
+	int rc = make_locator(packer, &locator);
+
+	buffer_init(&file, 256 << 20);
+	if (rc == 0) {
+		locator_encode(&file, &locator);
+		rc = file.error;
+	}
+	if (rc == 0)
+		rc = path_of(path, packer->options->release, "locator", packer->options->root.hash);
+	if (rc == 0) {
+		rc = bytes_write_file(buffer_bytes(&file), path);
+		if (rc < 0)
+			log_error("pipeline", "%s: %s", path, strerror(-rc));
+	}
+	packer->result->locator_bytes = file.size;
+	buffer_finish(&file);
+	free(locator.packs);
+	return rc;
+}
+
+static int make_folder(const char *release, const char *name)
+{
+	char path[PATH_MAX];
+
+	if (snprintf(path, sizeof(path), "%s/%s", release, name) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	if (mkdir(path, 0755) == 0 || errno == EEXIST)
+		return 0;
+	log_error("pipeline", "%s: %s", path, strerror(errno));
+	return -errno;
+}
+
+int pack_release(const struct pack_options *options, struct pack_result *result)
+{
+	struct packer packer = { .options = options, .result = result };
+	int rc;
+
+	*result = (struct pack_result){ 0 };
+	buffer_init(&packer.pack, (size_t)PACK_BYTES_MOST + PACK_BYTES);
+	rc = make_folder(options->release, "packs");
+	if (rc == 0)
+		rc = make_folder(options->release, "locator");
+	if (rc == 0)
+		rc = look_for_packs_before(&packer);
+	if (rc == 0)
+		rc = place_all(&packer);
+	if (rc == 0)
+		rc = write_locator(&packer);
+	buffer_finish(&packer.pack);
+	hash_map_finish(&packer.seen);
+	free(packer.queue);
+	free(packer.blocks);
+	free(packer.packs);
+	free(packer.before_exists);
+	return rc;
+}
+
+int pack_read_locator(struct locator *out, const char *release, struct hash root)
+{
+	struct buffer file;
+	char path[PATH_MAX];
+	int rc = path_of(path, release, "locator", root);
+
+	*out = (struct locator){ 0 };
+	buffer_init(&file, 256 << 20);
+	if (rc == 0)
+		rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		rc = locator_decode(out, buffer_bytes(&file));
+	buffer_finish(&file);
+	return rc;
+}

@@ -1,0 +1,206 @@
+#include "pipeline/release/publish.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/progress.h"
+
+enum { DAY_S = 86400 };
+
+int publish_make_folder(const char *path)
+{
+	char copy[PATH_MAX];
+	size_t length = strlen(path);
+
+	if (length == 0 || length >= sizeof(copy))
+		return -ENAMETOOLONG;
+	memcpy(copy, path, length + 1);
+	for (char *at = copy + 1; at <= copy + length; at++) {
+		if (*at != '/' && *at != '\0')
+			continue;
+		char kept = *at;
+
+		*at = '\0';
+		if (mkdir(copy, 0755) < 0 && errno != EEXIST) {
+			log_error("pipeline", "%s: %s", copy, strerror(errno));
+			return -errno;
+		}
+		*at = kept;
+	}
+	return 0;
+}
+
+static int64_t life_or(int64_t life_s, int days)
+{
+	return life_s > 0 ? life_s : (int64_t)days * DAY_S;
+}
+
+/* The next release: signs and writes. */
+static int sign(struct publish_report *report, const struct publish_target *target,
+		const struct page_child *root, uint64_t sequence)
+{
+	struct release release = {
+		.sequence = sequence,
+		.expires_s = clock_wall_s() + life_or(target->release_life_s, RELEASE_LIFE_DAYS),
+		.root = root->hash,
+		.root_bytes = root->size,
+	};
+	int rc;
+
+	if (target->comment && snprintf(release.comment, sizeof(release.comment), "%s",
+					target->comment) >= (int)sizeof(release.comment)) {
+		log_error("pipeline", "the comment is longer than %zu bytes",
+			  sizeof(release.comment) - 1);
+		return -EINVAL;
+	}
+	rc = release_files_write(target->release, target->keys_folder, target->keys, &release,
+				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+	if (rc == 0) {
+		report->release = release;
+		report->changed = true;
+	}
+	return rc;
+}
+
+int publish_renew(const struct publish_target *target)
+{
+	return release_files_renew(target->release, target->keys,
+				   life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+}
+
+static int make_root(struct page_child *out, struct object_store *objects,
+		     const struct root_page *root, const struct page_child *children,
+		     uint32_t child_count)
+{
+	struct page_child copy[ROOT_CHILDREN_MOST];
+	struct page page = { .kind = PAGE_ROOT, .child_count = child_count, .children = copy };
+	struct buffer payload;
+	int rc;
+
+	assert(child_count >= ROOT_CHILD_COUNT && child_count <= ROOT_CHILDREN_MOST);
+	memcpy(copy, children, child_count * sizeof(*copy));
+	buffer_init(&payload, PAGE_BYTES_MOST);
+	root_page_encode(&payload, root);
+	page.payload = buffer_bytes(&payload);
+	rc = payload.error ? payload.error : object_store_add_page(objects, &page, out);
+	buffer_finish(&payload);
+	return rc;
+}
+
+struct pack_bar {
+	struct progress *progress;
+	uint64_t done;
+};
+
+static void show_packing(void *data, uint64_t done_bytes)
+{
+	struct pack_bar *bar = data;
+
+	progress_add(bar->progress, done_bytes - bar->done);
+	bar->done = done_bytes;
+}
+
+/* Packs against the locator of the release before, where it can be read. */
+static int pack(struct publish_report *report, const struct publish_target *target,
+		struct object_store *objects, const struct page_child *root,
+		const struct release *before)
+{
+	struct pack_bar bar = { .progress = progress_start("packing", "bytes", 0) };
+	struct pack_options options = { .release = target->release,
+					.objects = objects,
+					.root = *root,
+					.pack_bytes = target->pack_bytes,
+					.progress = show_packing,
+					.progress_data = &bar };
+	struct locator locator = { 0 };
+	int rc = 0;
+
+	if (before && before->sequence > 0)
+		rc = pack_read_locator(&locator, target->release, before->root);
+	if (rc == 0 && locator.block_count > 0)
+		options.before = &locator;
+	else if (rc < 0)
+		log_warn("pipeline",
+			 "the locator of release %" PRIu64 " cannot be read (%s): everything is "
+			 "packed anew",
+			 before->sequence, strerror(-rc));
+	rc = pack_release(&options, &report->packs);
+	progress_end(bar.progress);
+	locator_finish(&locator);
+	return rc;
+}
+
+int publish_parts(struct publish_report *report, const struct publish_target *target,
+		  struct object_store *objects, const struct root_page *root,
+		  const struct page_child *children, uint32_t child_count)
+{
+	struct release before;
+	struct page_child page;
+	struct locator whole = { 0 };
+	bool same;
+	int rc = publish_make_folder(target->release);
+
+	*report = (struct publish_report){ 0 };
+	if (rc == 0)
+		rc = make_root(&page, objects, root, children, child_count);
+	if (rc < 0)
+		return rc;
+	rc = release_files_current(&before, target->release, target->keys);
+	if (rc < 0 && rc != -ENOENT)
+		return rc;
+	report->release = before;
+	same = rc == 0 && hash_equal(before.root, page.hash) &&
+	       pack_read_locator(&whole, target->release, page.hash) == 0;
+	locator_finish(&whole);
+	if (!same)
+		rc = pack(report, target, objects, &page, &before);
+	if (rc < 0)
+		return rc;
+	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
+		return publish_renew(target);
+	return sign(report, target, &page, before.sequence + 1);
+}
+
+int publish_again(struct publish_report *report, const struct publish_target *target,
+		  uint64_t sequence)
+{
+	struct release current, again;
+	struct page_child root;
+	struct locator locator;
+	int rc = release_files_current(&current, target->release, target->keys);
+
+	*report = (struct publish_report){ 0 };
+	if (rc < 0) {
+		if (rc == -ENOENT)
+			log_error("pipeline", "%s: nothing was published there yet",
+				  target->release);
+		return rc;
+	}
+	rc = sequence ? release_files_at(&again, target->release, target->keys, sequence)
+		      : release_files_before(&again, target->release, target->keys, &current);
+	if (rc == -ENOENT && sequence)
+		log_error("pipeline", "%s: there was no release %" PRIu64, target->release,
+			  sequence);
+	else if (rc == -ENOENT)
+		log_error("pipeline", "%s: there is no earlier release to go back to",
+			  target->release);
+	if (rc < 0)
+		return rc;
+	rc = pack_read_locator(&locator, target->release, again.root);
+	locator_finish(&locator);
+	if (rc < 0) {
+		log_error("pipeline", "release %" PRIu64 " has no locator any more: %s",
+			  again.sequence, strerror(-rc));
+		return rc;
+	}
+	root = (struct page_child){ .hash = again.root, .size = again.root_bytes };
+	return sign(report, target, &root, current.sequence + 1);
+}

@@ -1,0 +1,325 @@
+#include "pipeline/release/publish_content.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "pipeline/content/tour_check.h"
+#include "pipeline/hierarchy/master.h"
+#include "pipeline/release/keys_place.h"
+#include "pipeline/release/publish_sources.h"
+#include "pipeline/release/start_view.h"
+
+/* Where the release goes and who signs it. */
+struct setting {
+	char keys_folder[PATH_MAX];
+	struct publisher_keys keys;
+	struct publish_target target;
+};
+
+static int open_keys(struct setting *setting, const struct publish_content_options *options)
+{
+	bool made;
+	int rc = keys_open(&setting->keys, setting->keys_folder, options->content->folder,
+			   options->keys, &made);
+
+	if (rc == 0 && made)
+		log_info(
+			"pipeline",
+			"made signing keys in %s: keep a copy of root.key in a safe place, and give "
+			"terminals root/1.json",
+			setting->keys_folder);
+	return rc;
+}
+
+static int setting_init(struct setting *setting, char release[PATH_MAX],
+			const struct publish_content_options *options)
+{
+	const char *folder = options->content->folder;
+	int size = options->out ? snprintf(release, PATH_MAX, "%s", options->out)
+				: snprintf(release, PATH_MAX, "%s/../release", folder);
+
+	if (size >= PATH_MAX)
+		return -ENAMETOOLONG;
+	setting->target = (struct publish_target){ .release = release,
+						   .keys_folder = setting->keys_folder,
+						   .keys = &setting->keys,
+						   .comment = options->comment,
+						   .release_life_s = options->release_life_s };
+	return open_keys(setting, options);
+}
+
+/* How much the current release is, by its locator. -ENOENT: a pack is gone. */
+static int measure(struct publish_content_report *report)
+{
+	struct locator locator;
+	int rc = pack_read_locator(&locator, report->release, report->publish.release.root);
+
+	for (uint32_t i = 0; rc == 0 && i < locator.pack_count; i++) {
+		char path[PATH_MAX + 64], hex[HASH_HEX_BYTES];
+
+		hash_to_hex(locator.packs[i], hex);
+		snprintf(path, sizeof(path), "%s/packs/%s", report->release, hex);
+		if (access(path, R_OK) < 0)
+			rc = -ENOENT;
+	}
+	for (uint32_t i = 0; rc == 0 && i < locator.block_count; i++)
+		report->release_bytes += locator.blocks[i].size;
+	report->release_packs = locator.pack_count;
+	locator_finish(&locator);
+	return rc;
+}
+
+/* ---- the root page */
+
+/* Only "auto" needs the mesh, to see whether it has pictures. */
+static int judge_light(bool *lit, const struct content *content)
+{
+	struct fault fault = { "" };
+	struct mesh mesh = { 0 };
+	int rc = 0;
+
+	if (content->lit == CONTENT_LIT_AUTO)
+		rc = content_import(&mesh, content, NULL, &fault);
+	if (rc < 0)
+		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
+	else
+		*lit = content_is_lit(content, &mesh);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+static int fill_root(struct root_page *root, const struct content *content,
+		     const struct master *master)
+{
+	bool lit = false;
+	int rc = judge_light(&lit, content);
+
+	snprintf(root->name, sizeof(root->name), "%s", content->name);
+	root->lattice = master->lattice;
+	memcpy(root->box_min_m, master->box_min_m, sizeof(root->box_min_m));
+	memcpy(root->box_max_m, master->box_max_m, sizeof(root->box_max_m));
+	memcpy(root->sun, content->sun, sizeof(root->sun));
+	memcpy(root->background, content->background, sizeof(root->background));
+	root->source_triangles = master->source_triangles;
+	root->lit = lit;
+	start_view(root->start_eye_m, root->start_target_m, root->box_min_m, root->box_max_m);
+	if (content->has_start) {
+		memcpy(root->start_eye_m, content->start_eye_m, sizeof(root->start_eye_m));
+		memcpy(root->start_target_m, content->start_target_m, sizeof(root->start_target_m));
+	}
+	return rc;
+}
+
+/* ---- the parts */
+
+static struct info_build_options info_options(const struct content *content,
+					      const char *languages[CONTENT_LANGUAGES_MOST],
+					      struct part_faces_all *faces)
+{
+	faces->content = content;
+	for (uint32_t i = 0; i < content->language_count; i++)
+		languages[i] = content->languages[i];
+	return (struct info_build_options){ .folder = content->folder,
+					    .languages = languages,
+					    .language_count = content->language_count,
+					    .tools = content->tools,
+					    .place_faces = part_faces_place,
+					    .place_faces_data = faces };
+}
+
+static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	(void)data;
+	if (is_error && line > 0)
+		log_error("pipeline", "%s:%u: %s", file, line, text);
+	else if (is_error)
+		log_error("pipeline", "%s: %s", file, text);
+}
+
+static int check_ways(const struct info_built *built, const struct content *content)
+{
+	struct tour_check_options options = { .complaint = complain };
+	struct fault fault = { "" };
+	struct mesh mesh = { 0 };
+	int rc = content_import(&mesh, content, NULL, &fault);
+
+	options.mesh = &mesh;
+	if (rc < 0)
+		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
+	else
+		rc = tour_check(built, &options);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+/* Every fault of what is told; the scan is read only where there are tours. Their stops need the
+ * anchors of lists of faces. */
+static int check_tours(const struct info_build_options *options, const struct content *content)
+{
+	struct info_build_options quiet = *options;
+	struct part_faces_all *faces = options->place_faces_data;
+	struct info_built built;
+	int rc;
+
+	quiet.complaint = complain; /* warnings are publish_info's */
+	rc = info_build(&built, &quiet);
+	if (rc == 0 && built.tour_count > 0 && faces->only_judge) {
+		info_built_finish(&built);
+		faces->only_judge = false;
+		rc = info_build(&built, &quiet);
+	}
+	if (rc == 0 && built.tour_count > 0)
+		rc = check_ways(&built, content);
+	info_built_finish(&built);
+	return rc;
+}
+
+int publish_content_check(const struct content *content)
+{
+	const char *languages[CONTENT_LANGUAGES_MOST];
+	struct part_faces_all faces = { .only_judge = true };
+	const struct info_build_options options = info_options(content, languages, &faces);
+	int rc = check_tours(&options, content);
+
+	part_faces_finish(&faces);
+	return rc;
+}
+
+static int add_info(struct object_store *objects, const struct content *content,
+		    struct part_faces_all *faces, struct page_child *out)
+{
+	const char *languages[CONTENT_LANGUAGES_MOST];
+	const struct info_build_options options = info_options(content, languages, faces);
+
+	const int rc = check_tours(&options, content);
+
+	return rc < 0 ? rc : publish_info(objects, &options, out);
+}
+
+static int open_master(struct master **master, const struct content *content)
+{
+	char folder[CONTENT_PATH_BYTES];
+	int rc = content_work_path(content, "master", folder);
+
+	*master = NULL;
+	if (rc == 0)
+		rc = master_open(master, folder, NULL);
+	if (rc < 0)
+		log_error("pipeline", "%s: %s; run 'gopura-content build' or 'hierarchy' first",
+			  folder, strerror(-rc));
+	return rc;
+}
+
+static int publish_objects(struct publish_content_report *report,
+			   const struct publish_target *target, struct object_store *objects,
+			   const struct content *content)
+{
+	struct page_child children[ROOT_CHILDREN_MOST];
+	uint32_t child_count = ROOT_CHILD_COUNT;
+	struct part_faces_all faces = { 0 };
+	struct root_page root = { 0 };
+	struct master *master;
+	int rc = open_master(&master, content);
+
+	if (rc == 0)
+		rc = fill_root(&root, content, master);
+	if (rc == 0)
+		rc = publish_hierarchy(objects, master, content->publish_share,
+				       &children[ROOT_CHILD_HIERARCHY], &root.published_triangles);
+	master_destroy(master);
+	if (rc == 0)
+		rc = publish_samples(objects, content->folder, &children[ROOT_CHILD_SAMPLES]);
+	if (rc == 0)
+		rc = add_info(objects, content, &faces, &children[ROOT_CHILD_INFO]);
+	if (rc == 0)
+		rc = publish_labels(objects, &root, &faces, children, &children[ROOT_CHILD_LABELS]);
+	if (rc > 0)
+		child_count = ROOT_CHILD_LABELS + 1;
+	part_faces_finish(&faces);
+	if (rc >= 0)
+		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
+	report->published_triangles = root.published_triangles;
+	return rc;
+}
+
+int publish_content(struct publish_content_report *report,
+		    const struct publish_content_options *options)
+{
+	struct object_store *objects = NULL;
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = object_store_create(&objects);
+	if (rc == 0)
+		rc = publish_objects(report, &setting.target, objects, options->content);
+	object_store_destroy(objects);
+	keys_finish(&setting.keys);
+	return rc < 0 ? rc : measure(report);
+}
+
+int publish_content_again(struct publish_content_report *report,
+			  const struct publish_content_options *options, uint64_t sequence)
+{
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = publish_again(&report->publish, &setting.target, sequence);
+	keys_finish(&setting.keys);
+	return rc < 0 ? rc : measure(report);
+}
+
+static int look_at_current(struct publish_content_report *report,
+			   const struct publish_content_options *options, bool renew)
+{
+	struct setting setting = { 0 };
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = setting_init(&setting, report->release, options);
+	if (rc == 0)
+		rc = release_files_current(&report->publish.release, report->release,
+					   &setting.keys);
+	if (rc == 0)
+		rc = measure(report);
+	if (rc == 0 && renew)
+		rc = publish_renew(&setting.target);
+	keys_finish(&setting.keys);
+	return rc;
+}
+
+int publish_content_current(struct publish_content_report *report,
+			    const struct publish_content_options *options)
+{
+	return look_at_current(report, options, false);
+}
+
+int publish_content_renew(struct publish_content_report *report,
+			  const struct publish_content_options *options)
+{
+	return look_at_current(report, options, true);
+}
+
+void publish_content_print(FILE *to, const struct publish_content_report *report)
+{
+	const struct publish_report *publish = &report->publish;
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(publish->release.root, hex);
+	fprintf(to, "release %" PRIu64 "%s in %s: %.1f MB in %u packs, root %s\n",
+		publish->release.sequence, publish->changed ? "" : " (nothing changed)",
+		report->release, (double)report->release_bytes / 1e6, report->release_packs, hex);
+	if (publish->packs.blocks_written > 0)
+		fprintf(to, "written %.1f MB in %u new packs, reused %.1f MB\n",
+			(double)publish->packs.written_bytes / 1e6, publish->packs.packs_written,
+			(double)publish->packs.reused_bytes / 1e6);
+}

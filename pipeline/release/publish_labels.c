@@ -1,0 +1,295 @@
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "format/hierarchy.h"
+#include "geometry/vec.h"
+#include "pipeline/release/label_cache.h"
+#include "pipeline/release/label_patch.h"
+#include "pipeline/release/publish_sources.h"
+
+/* The groups as published, and what comes of each. */
+struct labelling {
+	struct object_store *objects;
+	struct page page; /* of the hierarchy; page_bytes hold its payload */
+	struct buffer page_bytes;
+	struct hierarchy hierarchy;
+	const struct label_source *source;
+	struct lattice lattice;
+	struct buffer *groups; /* objects; owned */
+	struct buffer *labels; /* of each; empty: none; owned */
+	struct progress *progress;
+};
+
+static int read_page(struct object_store *objects, const struct page_child *child,
+		     struct page *page, struct buffer *bytes)
+{
+	int rc;
+
+	buffer_init(bytes, PAGE_BYTES_MOST);
+	rc = object_store_read(objects, child->hash, bytes);
+	return rc < 0 ? rc : page_decode(page, buffer_bytes(bytes));
+}
+
+/* ---- the parts */
+
+static void region_of(const struct info_region *from, struct region *out)
+{
+	static const enum region_kind kinds[] = {
+		[INFO_REGION_POINT] = REGION_NONE,
+		[INFO_REGION_SPHERE] = REGION_SPHERE,
+		[INFO_REGION_BOX] = REGION_BOX,
+		[INFO_REGION_PRISM] = REGION_PRISM,
+	};
+
+	*out = (struct region){
+		.kind = kinds[from->kind],
+		.radius_m = from->radius_m,
+		.turn_deg = from->turn_deg,
+		.floor_m = from->floor_m,
+		.roof_m = from->roof_m,
+		.corner_count = from->corner_count,
+	};
+	memcpy(out->centre_m, from->centre_m, sizeof(out->centre_m));
+	memcpy(out->half_m, from->half_m, sizeof(out->half_m));
+	memcpy(out->corners_m, from->corners_m, sizeof(out->corners_m));
+}
+
+/* Those that have a surface. */
+static uint32_t list_parts(struct label_source_part *parts, const struct info *info,
+			   const struct part_faces_all *faces)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = 0; i < info_part_count(info); i++) {
+		const struct info_part *from = info_part(info, i);
+		const struct part_faces *list = part_faces_find(faces, from->id);
+		struct label_source_part *part = &parts[count];
+
+		*part = (struct label_source_part){ .id = from->id };
+		region_of(&from->region, &part->region);
+		if (list) {
+			part->triangles = list->triangles;
+			part->triangle_count = list->count;
+		}
+		count += list || part->region.kind != REGION_NONE;
+	}
+	return count;
+}
+
+static int open_info(struct object_store *objects, const struct page_child *child,
+		     struct info **info)
+{
+	struct buffer page_bytes, image;
+	struct page page = { 0 };
+	int rc = read_page(objects, child, &page, &page_bytes);
+
+	buffer_init(&image, OBJECT_BYTES_MOST);
+	if (rc == 0)
+		rc = object_store_read(objects, page.children[0].hash, &image);
+	if (rc == 0)
+		rc = info_open(info, buffer_bytes(&image));
+	page_finish(&page);
+	buffer_finish(&page_bytes);
+	buffer_finish(&image);
+	return rc;
+}
+
+/* ---- the groups */
+
+/* How finely outlines are told: as the scan's faces, and on coarser patches, which are seen from
+ * afar, as what those are wrong by: the least of them. */
+static float cell_of(const struct labelling *l, uint32_t group)
+{
+	const struct hierarchy_group *g = &l->hierarchy.groups[group];
+	float error_m = INFINITY;
+
+	for (uint32_t p = g->first_patch; p < g->first_patch + g->patch_count; p++) {
+		uint32_t finer = l->hierarchy.patches[p].finer;
+
+		error_m = vec_least(
+			error_m, finer == HIERARCHY_NONE ? 0 : l->hierarchy.groups[finer].error_m);
+	}
+	return vec_most(label_source_spacing_m(l->source), error_m);
+}
+
+static int label_one(void *user, uint32_t piece, uint32_t worker)
+{
+	struct labelling *l = user;
+	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct label_group labels = { 0 };
+	uint32_t count = 0;
+	int rc = patch_group_decode(meshes, &count, buffer_bytes(&l->groups[piece]));
+
+	(void)worker;
+	if (rc < 0)
+		return rc;
+	rc = label_patch_group(&labels, l->source, &l->lattice, meshes, count, cell_of(l, piece));
+	if (rc == 0 && labels.part_count > 0)
+		rc = label_group_encode(&l->labels[piece], &labels);
+	label_group_finish(&labels);
+	for (uint32_t p = 0; p < count; p++)
+		patch_mesh_finish(&meshes[p]);
+	progress_add(l->progress, 1);
+	return rc;
+}
+
+static int open_groups(struct labelling *l, const struct page_child *hierarchy)
+{
+	int rc = read_page(l->objects, hierarchy, &l->page, &l->page_bytes);
+
+	if (rc == 0)
+		rc = hierarchy_decode(&l->hierarchy, l->page.payload);
+	if (rc < 0)
+		return rc;
+	l->groups = calloc(l->page.child_count + 1, sizeof(*l->groups));
+	l->labels = calloc(l->page.child_count + 1, sizeof(*l->labels));
+	if (!l->groups || !l->labels)
+		return -ENOMEM;
+	for (uint32_t g = 0; g < l->page.child_count; g++) {
+		buffer_init(&l->groups[g], OBJECT_BYTES_MOST);
+		buffer_init(&l->labels[g], OBJECT_BYTES_MOST);
+	}
+	return rc;
+}
+
+static int read_groups(struct labelling *l)
+{
+	int rc = 0;
+
+	for (uint32_t g = 0; rc == 0 && g < l->page.child_count; g++)
+		rc = object_store_read(l->objects, l->page.children[g].hash, &l->groups[g]);
+	return rc;
+}
+
+static int label_all(struct labelling *l)
+{
+	long processors = sysconf(_SC_NPROCESSORS_ONLN);
+	int rc;
+
+	l->progress = progress_start("labelling", "groups", l->page.child_count);
+	rc = parallel_run(processors > 0 ? (uint32_t)processors : 1, l->page.child_count, label_one,
+			  l);
+	progress_end(l->progress);
+	return rc;
+}
+
+static void labelling_finish(struct labelling *l)
+{
+	for (uint32_t g = 0; l->groups && l->labels && g < l->page.child_count; g++) {
+		buffer_finish(&l->groups[g]);
+		buffer_finish(&l->labels[g]);
+	}
+	free(l->groups);
+	free(l->labels);
+	hierarchy_finish(&l->hierarchy);
+	page_finish(&l->page);
+	buffer_finish(&l->page_bytes);
+}
+
+/* ---- the page */
+
+static int add_page(struct labelling *l, struct page_child *out)
+{
+	const uint32_t groups = l->page.child_count;
+	uint32_t *child_of_group = calloc(groups + 1, sizeof(*child_of_group));
+	struct page page = { .kind = PAGE_LABELS };
+	struct buffer payload;
+	int rc = 0;
+
+	buffer_init(&payload, PAGE_BYTES_MOST);
+	page.children = calloc(groups + 1, sizeof(*page.children));
+	if (!child_of_group || !page.children)
+		rc = -ENOMEM;
+	for (uint32_t g = 0; rc == 0 && g < groups; g++) {
+		child_of_group[g] = LABEL_NONE;
+		if (l->labels[g].size == 0)
+			continue;
+		child_of_group[g] = page.child_count;
+		rc = object_store_add(l->objects, buffer_bytes(&l->labels[g]),
+				      &page.children[page.child_count++]);
+	}
+	if (rc == 0) {
+		label_page_encode(&payload, child_of_group, groups);
+		page.payload = buffer_bytes(&payload);
+		rc = payload.error;
+	}
+	if (rc == 0)
+		rc = object_store_add_page(l->objects, &page, out);
+	buffer_finish(&payload);
+	free(page.children);
+	free(child_of_group);
+	return rc;
+}
+
+static int label_by_scan(struct labelling *l, const struct label_source_part *parts, uint32_t count,
+			 struct part_faces_all *faces, struct fault *fault)
+{
+	struct label_source *source = NULL;
+	int rc = part_faces_mesh(faces, fault);
+
+	if (rc == 0)
+		rc = label_source_create(&source, &faces->mesh, parts, count);
+	l->source = source;
+	if (rc == 0)
+		rc = read_groups(l);
+	if (rc == 0)
+		rc = label_all(l);
+	label_source_destroy(source);
+	return rc;
+}
+
+static int make_labels(struct labelling *l, const struct label_source_part *parts, uint32_t count,
+		       struct part_faces_all *faces, const struct page_child *hierarchy,
+		       struct page_child *out)
+{
+	char path[CONTENT_PATH_BYTES];
+	struct fault fault = { "" };
+	struct hash key;
+	int rc = open_groups(l, hierarchy);
+
+	if (rc == 0)
+		rc = label_cache_key(&key, faces->content, hierarchy->hash, parts, count, &fault);
+	if (rc == 0)
+		rc = content_work_path(faces->content, "labels", path);
+	if (rc == 0 && label_cache_load(l->labels, l->page.child_count, key, path) < 0) {
+		rc = label_by_scan(l, parts, count, faces, &fault);
+		if (rc == 0)
+			rc = label_cache_save(l->labels, l->page.child_count, key, path);
+	}
+	if (rc == 0)
+		rc = add_page(l, out);
+	if (fault.text[0])
+		log_error("pipeline", "%s", fault.text);
+	labelling_finish(l);
+	return rc;
+}
+
+int publish_labels(struct object_store *objects, const struct root_page *root,
+		   struct part_faces_all *faces, const struct page_child children[ROOT_CHILD_COUNT],
+		   struct page_child *out)
+{
+	struct labelling l = { .objects = objects, .lattice = root->lattice };
+	struct label_source_part *parts = NULL;
+	struct info *info = NULL;
+	uint32_t count = 0;
+	int rc = open_info(objects, &children[ROOT_CHILD_INFO], &info);
+
+	if (rc == 0) {
+		parts = calloc(info_part_count(info) + 1, sizeof(*parts));
+		rc = parts ? 0 : -ENOMEM;
+	}
+	if (rc == 0)
+		count = list_parts(parts, info, faces);
+	if (rc == 0 && count > 0)
+		rc = make_labels(&l, parts, count, faces, &children[ROOT_CHILD_HIERARCHY], out);
+	if (rc < 0)
+		log_error("pipeline", "the labels: %s", strerror(-rc));
+	free(parts);
+	info_close(info);
+	return rc < 0 ? rc : count > 0;
+}

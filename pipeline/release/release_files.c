@@ -1,0 +1,205 @@
+#include "pipeline/release/release_files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+
+static int make_path(char path[PATH_MAX], const char *release, const char *name)
+{
+	return snprintf(path, PATH_MAX, "%s/%s", release, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
+}
+
+/* Servers tell versions of a file apart by its size and the second it was written in (ETag,
+ * Last-Modified). Two within one second would be one to them, and who has the first would be told
+ * for ever that it is current. */
+static int make_later(const char *path, time_t than_s)
+{
+	struct timespec times[2] = { { .tv_nsec = UTIME_OMIT } };
+	struct stat now;
+
+	if (stat(path, &now) < 0)
+		return -errno;
+	if (now.st_mtim.tv_sec > than_s)
+		return 0;
+	times[1].tv_sec = than_s + 1;
+	return utimensat(AT_FDCWD, path, times, 0) < 0 ? -errno : 0;
+}
+
+static int write_file(const char *release, const char *name, struct bytes bytes)
+{
+	char path[PATH_MAX];
+	struct stat before;
+	int rc = make_path(path, release, name);
+	const bool again = rc == 0 && stat(path, &before) == 0;
+
+	if (rc == 0)
+		rc = bytes_write_file(bytes, path);
+	if (rc == 0 && again)
+		rc = make_later(path, before.st_mtim.tv_sec);
+	if (rc < 0)
+		log_error("pipeline", "%s/%s: %s", release, name, strerror(-rc));
+	return rc;
+}
+
+static int read_release(struct release *out, const char *release, const char *name,
+			const struct publisher_keys *keys)
+{
+	const char *why = "cannot be read";
+	char path[PATH_MAX];
+	struct buffer file;
+	int rc = make_path(path, release, name);
+
+	*out = (struct release){ 0 };
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	if (rc == 0)
+		rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		rc = release_decode(out, &keys->trust, buffer_bytes(&file), &why);
+	buffer_finish(&file);
+	if (rc == -EKEYREJECTED)
+		log_error(
+			"pipeline",
+			"%s: not signed with the keys of this content folder; publish into another "
+			"folder (--out), or bring the keys it was made with",
+			path);
+	else if (rc < 0 && rc != -ENOENT)
+		log_error("pipeline", "%s: %s", path, why);
+	return rc;
+}
+
+int release_files_current(struct release *out, const char *release,
+			  const struct publisher_keys *keys)
+{
+	return read_release(out, release, "release.json", keys);
+}
+
+int release_files_at(struct release *out, const char *release, const struct publisher_keys *keys,
+		     uint64_t sequence)
+{
+	char name[64];
+
+	snprintf(name, sizeof(name), "history/%" PRIu64 ".json", sequence);
+	return read_release(out, release, name, keys);
+}
+
+int release_files_before(struct release *out, const char *release,
+			 const struct publisher_keys *keys, const struct release *current)
+{
+	for (uint64_t sequence = current->sequence; sequence-- > 1;) {
+		int rc = release_files_at(out, release, keys, sequence);
+
+		if (rc == 0 && !hash_equal(out->root, current->root))
+			return 0;
+		if (rc < 0 && rc != -ENOENT)
+			return rc;
+	}
+	return -ENOENT;
+}
+
+static int make_folders(const char *release)
+{
+	static const char *const names[] = { "root", "history" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		char path[PATH_MAX];
+		int rc = make_path(path, release, names[i]);
+
+		if (rc == 0 && mkdir(path, 0755) < 0 && errno != EEXIST)
+			rc = -errno;
+		if (rc < 0) {
+			log_error("pipeline", "%s/%s: %s", release, names[i], strerror(-rc));
+			return rc;
+		}
+	}
+	return 0;
+}
+
+static int copy_roots(const char *release, const char *keys_folder, uint32_t newest)
+{
+	struct buffer file;
+	int rc = 0;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	for (uint32_t version = 1; rc == 0 && version <= newest; version++) {
+		char name[32];
+
+		snprintf(name, sizeof(name), "root/%u.json", version);
+		rc = keys_read_root(&file, keys_folder, version);
+		if (rc == 0)
+			rc = write_file(release, name, buffer_bytes(&file));
+	}
+	buffer_finish(&file);
+	return rc;
+}
+
+static int write_timestamp(const char *release, const struct publisher_keys *keys,
+			   uint64_t sequence, struct bytes release_file, int64_t life_s)
+{
+	const int64_t now_s = clock_wall_s();
+	struct timestamp timestamp = { .sequence = sequence,
+				       .expires_s = now_s + life_s,
+				       .issued_s = now_s,
+				       .release = hash_of(release_file) };
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = timestamp_encode(&file, &timestamp, &keys->timestamp, 1);
+	if (rc == 0)
+		rc = write_file(release, "timestamp.json", buffer_bytes(&file));
+	buffer_finish(&file);
+	return rc;
+}
+
+int release_files_write(const char *release, const char *keys_folder,
+			const struct publisher_keys *keys, const struct release *what,
+			int64_t timestamp_life_s)
+{
+	struct buffer file;
+	char name[64];
+	int rc = make_folders(release);
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	if (rc == 0)
+		rc = copy_roots(release, keys_folder, keys->trust.version);
+	if (rc == 0)
+		rc = release_encode(&file, what, &keys->release, 1);
+	snprintf(name, sizeof(name), "history/%" PRIu64 ".json", what->sequence);
+	if (rc == 0)
+		rc = write_file(release, name, buffer_bytes(&file));
+	if (rc == 0)
+		rc = write_file(release, "release.json", buffer_bytes(&file));
+	if (rc == 0)
+		rc = write_timestamp(release, keys, what->sequence, buffer_bytes(&file),
+				     timestamp_life_s);
+	buffer_finish(&file);
+	return rc;
+}
+
+int release_files_renew(const char *release, const struct publisher_keys *keys,
+			int64_t timestamp_life_s)
+{
+	struct release current;
+	char path[PATH_MAX];
+	struct buffer file;
+	int rc = release_files_current(&current, release, keys);
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	if (rc == 0)
+		rc = make_path(path, release, "release.json");
+	if (rc == 0)
+		rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		rc = write_timestamp(release, keys, current.sequence, buffer_bytes(&file),
+				     timestamp_life_s);
+	buffer_finish(&file);
+	return rc;
+}

@@ -1,0 +1,336 @@
+#include "pipeline/release/verify.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "pipeline/release/verify_parts.h"
+
+enum { ROOTS_MOST = 1000, LOCATOR_BYTES_MOST = 256 << 20 };
+
+int verify_blame(struct verify_report *report, int rc, const char *text, ...)
+{
+	va_list args;
+
+	if (report->why[0] == '\0') {
+		va_start(args, text);
+		vsnprintf(report->why, sizeof(report->why), text, args);
+		va_end(args);
+	}
+	return rc;
+}
+
+static int blame_reader(struct verify_walk *walk, int rc)
+{
+	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->options->reader));
+}
+
+/* ---- signed metadata ---- */
+
+static int read_roots(struct verify_walk *walk, struct buffer *file)
+{
+	struct verify_report *report = walk->report;
+	struct bytes first = walk->options->trusted_root;
+	const char *why = "";
+	int rc = 0;
+
+	if (first.size == 0) {
+		rc = release_reader_file(walk->options->reader, "root/1.json", file);
+		if (rc < 0)
+			return blame_reader(walk, rc);
+		first = buffer_bytes(file);
+	}
+	rc = trust_root_first(&report->trust, first, &why);
+	if (rc < 0)
+		return verify_blame(report, rc, "the first root: %s", why);
+	while (report->trust.version < ROOTS_MOST) {
+		char name[32];
+
+		snprintf(name, sizeof(name), "root/%u.json", report->trust.version + 1);
+		rc = release_reader_file(walk->options->reader, name, file);
+		if (rc == -ENOENT)
+			return 0;
+		if (rc < 0)
+			return blame_reader(walk, rc);
+		rc = trust_root_next(&report->trust, buffer_bytes(file), &why);
+		if (rc < 0)
+			return verify_blame(report, rc, "%s: %s", name, why);
+	}
+	return verify_blame(report, -EBADMSG, "more than %d roots", ROOTS_MOST);
+}
+
+static int check_expiry(struct verify_walk *walk, const char *name, int64_t expires_s)
+{
+	if (walk->options->now_s == 0 || walk->options->now_s < expires_s)
+		return 0;
+	return verify_blame(walk->report, -EKEYEXPIRED, "%s: expired %" PRId64 " days ago", name,
+			    (walk->options->now_s - expires_s) / 86400);
+}
+
+static int read_release(struct verify_walk *walk, struct buffer *file)
+{
+	struct verify_report *report = walk->report;
+	const char *why = "";
+	struct hash name;
+	int rc = release_reader_file(walk->options->reader, "timestamp.json", file);
+
+	if (rc < 0)
+		return blame_reader(walk, rc);
+	rc = timestamp_decode(&report->timestamp, &report->trust, buffer_bytes(file), &why);
+	if (rc < 0)
+		return verify_blame(report, rc, "timestamp.json: %s", why);
+	rc = release_reader_file(walk->options->reader, "release.json", file);
+	if (rc < 0)
+		return blame_reader(walk, rc);
+	rc = release_decode(&report->release, &report->trust, buffer_bytes(file), &why);
+	if (rc < 0)
+		return verify_blame(report, rc, "release.json: %s", why);
+	name = hash_of(buffer_bytes(file));
+	if (!hash_equal(name, report->timestamp.release) ||
+	    report->release.sequence != report->timestamp.sequence)
+		return verify_blame(report, -EBADMSG, "timestamp.json names another release.json");
+	return 0;
+}
+
+static int read_metadata(struct verify_walk *walk)
+{
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	rc = read_roots(walk, &file);
+	if (rc == 0)
+		rc = check_expiry(walk, "the newest root", walk->report->trust.expires_s);
+	if (rc == 0)
+		rc = read_release(walk, &file);
+	if (rc == 0)
+		rc = check_expiry(walk, "release.json", walk->report->release.expires_s);
+	if (rc == 0)
+		rc = check_expiry(walk, "timestamp.json", walk->report->timestamp.expires_s);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* ---- the locator ---- */
+
+static int read_locator(struct verify_walk *walk)
+{
+	char name[64] = "locator/";
+	struct buffer file;
+	int rc;
+
+	hash_to_hex(walk->report->release.root, name + strlen(name));
+	buffer_init(&file, LOCATOR_BYTES_MOST);
+	rc = release_reader_file(walk->options->reader, name, &file);
+	if (rc < 0) {
+		blame_reader(walk, rc);
+	} else {
+		rc = locator_decode(&walk->locator, buffer_bytes(&file));
+		if (rc < 0)
+			verify_blame(walk->report, rc, "%s: damaged, or not a locator", name);
+	}
+	walk->report->locator_bytes = (uint32_t)file.size;
+	walk->report->pack_count = walk->locator.pack_count;
+	buffer_finish(&file);
+	return rc;
+}
+
+/* Packs that no block is in would be no part of the walk. */
+static int check_packs_used(struct verify_walk *walk)
+{
+	bool *used = calloc(walk->locator.pack_count + 1, sizeof(*used));
+	uint32_t count = 0;
+
+	if (!used)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < walk->locator.block_count; i++) {
+		count += !used[walk->locator.blocks[i].pack];
+		used[walk->locator.blocks[i].pack] = true;
+	}
+	free(used);
+	return count == walk->locator.pack_count
+		       ? 0
+		       : verify_blame(walk->report, -EBADMSG,
+				      "the locator names %u packs that hold nothing of the release",
+				      walk->locator.pack_count - count);
+}
+
+/* ---- the walk ---- */
+
+int verify_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+		 struct bytes *out)
+{
+	int rc = release_reader_child(walk->options->reader, &walk->locator, page->name,
+				      page_child_offset(&page->page, child),
+				      &page->page.children[child], out);
+
+	progress_add(walk->progress, page->page.children[child].size);
+	return rc < 0 ? blame_reader(walk, rc) : 0;
+}
+
+static int queue_task(struct verify_walk *walk, const struct verify_task *task)
+{
+	int rc = hash_map_put(&walk->seen, task->child.hash, task->kind);
+
+	if (rc <= 0)
+		return rc;
+	if (walk->task_count == walk->task_room) {
+		size_t room = walk->task_room ? walk->task_room * 2 : 256;
+		struct verify_task *grown = realloc(walk->tasks, room * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		walk->tasks = grown;
+		walk->task_room = room;
+	}
+	walk->tasks[walk->task_count++] = *task;
+	return 0;
+}
+
+int verify_later(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+		 enum page_kind kind)
+{
+	struct verify_task task = { .parent = page->name,
+				    .offset = page_child_offset(&page->page, child),
+				    .child = page->page.children[child],
+				    .kind = kind };
+	char hex[HASH_HEX_BYTES];
+
+	if (task.child.is_page)
+		return queue_task(walk, &task);
+	hash_to_hex(page->name, hex);
+	return verify_blame(walk->report, -EBADMSG, "page %s: child %u is not a page", hex, child);
+}
+
+static int check_block(struct verify_walk *walk, const struct verify_page *page)
+{
+	const struct locator_block *block = locator_find(&walk->locator, page->name);
+	uint64_t size = page_child_offset(&page->page, page->page.child_count);
+	char hex[HASH_HEX_BYTES];
+
+	if (!block && size == 0)
+		return 0;
+	hash_to_hex(page->name, hex);
+	if (!block)
+		return verify_blame(walk->report, -ENOENT, "the locator has no block of page %s",
+				    hex);
+	if (block->size != size)
+		return verify_blame(walk->report, -EBADMSG,
+				    "the block of page %s has %u bytes, its children %" PRIu64, hex,
+				    block->size, size);
+	walk->blocks_used++;
+	return 0;
+}
+
+static int look_into(struct verify_walk *walk, enum page_kind kind, const struct verify_page *page)
+{
+	static int (*const looks[])(struct verify_walk *, const struct verify_page *) = {
+		[PAGE_ROOT] = verify_root_page,       [PAGE_HIERARCHY] = verify_hierarchy_page,
+		[PAGE_SAMPLES] = verify_samples_page, [PAGE_BRICK] = verify_brick_page,
+		[PAGE_FACE] = verify_face_page,       [PAGE_INFO] = verify_info_page,
+		[PAGE_LABELS] = verify_labels_page,
+	};
+	char hex[HASH_HEX_BYTES];
+	int rc;
+
+	hash_to_hex(page->name, hex);
+	if (page->page.kind != kind)
+		return verify_blame(walk->report, -EBADMSG,
+				    "page %s is of kind %d where kind %d belongs", hex,
+				    page->page.kind, kind);
+	rc = check_block(walk, page);
+	if (rc == 0)
+		rc = looks[kind](walk, page);
+	if (rc < 0)
+		verify_blame(walk->report, rc, "page %s: %s", hex,
+			     rc == -EBADMSG ? "its payload does not decode" : strerror(-rc));
+	return rc;
+}
+
+static int do_task(struct verify_walk *walk, const struct verify_task *task)
+{
+	struct verify_page page = { .name = task->child.hash };
+	struct buffer copy;
+	struct bytes bytes;
+	int rc = release_reader_child(walk->options->reader, &walk->locator, task->parent,
+				      task->offset, &task->child, &bytes);
+
+	if (rc < 0)
+		return blame_reader(walk, rc);
+	progress_add(walk->progress, bytes.size);
+	buffer_init(&copy, PAGE_BYTES_MOST);
+	buffer_put(&copy, bytes.data, bytes.size);
+	rc = copy.error ? copy.error : page_decode(&page.page, buffer_bytes(&copy));
+	if (rc < 0) {
+		char hex[HASH_HEX_BYTES];
+
+		hash_to_hex(page.name, hex);
+		verify_blame(walk->report, rc, "object %s is not a page", hex);
+	} else {
+		walk->report->pages[page.page.kind].count++;
+		walk->report->pages[page.page.kind].bytes += bytes.size;
+		rc = look_into(walk, task->kind, &page);
+	}
+	page_finish(&page.page);
+	buffer_finish(&copy);
+	return rc;
+}
+
+static int walk_all(struct verify_walk *walk)
+{
+	struct verify_task root = { .child = { .hash = walk->report->release.root,
+					       .size = walk->report->release.root_bytes,
+					       .is_page = true },
+				    .kind = PAGE_ROOT };
+	int rc = queue_task(walk, &root);
+
+	walk->blocks_used = 1; /* the root's own */
+	for (size_t i = 0; rc == 0 && i < walk->task_count; i++) {
+		struct verify_task task = walk->tasks[i]; /* the array may move */
+
+		rc = do_task(walk, &task);
+	}
+	if (rc == 0 && walk->blocks_used != walk->locator.block_count)
+		rc = verify_blame(walk->report, -EBADMSG,
+				  "the locator has %u blocks, the release has %u",
+				  walk->locator.block_count, walk->blocks_used);
+	if (rc == 0 && walk->report->hierarchy_triangles != walk->report->root.published_triangles)
+		rc = verify_blame(
+			walk->report, -EBADMSG,
+			"the root page says %" PRIu64 " published triangles, there are %" PRIu64,
+			walk->report->root.published_triangles, walk->report->hierarchy_triangles);
+	return rc;
+}
+
+int verify_release(struct verify_report *report, const struct verify_options *options)
+{
+	struct verify_walk walk = { .options = options, .report = report };
+	uint64_t bytes = 0;
+	int rc;
+
+	*report = (struct verify_report){ 0 };
+	rc = read_metadata(&walk);
+	if (rc == 0)
+		rc = read_locator(&walk);
+	if (rc == 0)
+		rc = check_packs_used(&walk);
+	for (uint32_t i = 0; rc == 0 && i < walk.locator.block_count; i++)
+		bytes += walk.locator.blocks[i].size;
+	walk.progress = progress_start("verifying", "bytes", bytes);
+	if (rc == 0)
+		rc = walk_all(&walk);
+	progress_end(walk.progress);
+	if (rc < 0)
+		verify_blame(report, rc, "%s", strerror(-rc));
+	report->read_bytes = release_reader_bytes(options->reader);
+	samples_page_finish(&walk.samples);
+	hierarchy_finish(&walk.hierarchy);
+	info_close(walk.info);
+	locator_finish(&walk.locator);
+	hash_map_finish(&walk.seen);
+	free(walk.tasks);
+	return rc;
+}

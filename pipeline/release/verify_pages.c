@@ -1,0 +1,296 @@
+/* What must be true of the pages of each kind and of their children. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/label.h"
+#include "pipeline/release/verify_parts.h"
+
+static int blame_page(struct verify_walk *walk, const struct verify_page *page, const char *text)
+{
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(page->name, hex);
+	return verify_blame(walk->report, -EBADMSG, "page %s: %s", hex, text);
+}
+
+static int blame_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+		       const char *what, const char *text)
+{
+	char hex[HASH_HEX_BYTES], child_hex[HASH_HEX_BYTES];
+
+	hash_to_hex(page->name, hex);
+	hash_to_hex(page->page.children[child].hash, child_hex);
+	return verify_blame(walk->report, -EBADMSG, "%s %s (child %u of page %s): %s", what,
+			    child_hex, child, hex, text);
+}
+
+static void count(struct verify_sum *sum, struct bytes object)
+{
+	sum->count++;
+	sum->bytes += object.size;
+}
+
+int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	static const enum page_kind kinds[ROOT_CHILDREN_MOST] = {
+		[ROOT_CHILD_HIERARCHY] = PAGE_HIERARCHY,
+		[ROOT_CHILD_SAMPLES] = PAGE_SAMPLES,
+		[ROOT_CHILD_INFO] = PAGE_INFO,
+		[ROOT_CHILD_LABELS] = PAGE_LABELS,
+	};
+	int rc = root_page_decode(&walk->report->root, page->page.payload);
+
+	if (rc < 0)
+		return rc;
+	if (page->page.child_count < ROOT_CHILD_COUNT ||
+	    page->page.child_count > ROOT_CHILDREN_MOST)
+		return blame_page(walk, page,
+				  "a root page has three children, or four with labels");
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
+		rc = verify_later(walk, page, i, kinds[i]);
+	return rc;
+}
+
+/* ---- the hierarchy ---- */
+
+static const char *compare_group(const struct hierarchy *hierarchy, uint32_t index,
+				 const struct patch_mesh *meshes, uint32_t mesh_count)
+{
+	const struct hierarchy_group *group = &hierarchy->groups[index];
+
+	if (mesh_count != group->patch_count)
+		return "holds another number of patches than the page says";
+	for (uint32_t i = 0; i < mesh_count; i++) {
+		const struct hierarchy_patch *patch = &hierarchy->patches[group->first_patch + i];
+
+		if (patch->triangle_count != meshes[i].triangle_count ||
+		    patch->vertex_count != meshes[i].vertex_count)
+			return "a patch has other counts than the page says";
+	}
+	return NULL;
+}
+
+static int check_group(struct verify_walk *walk, const struct verify_page *page,
+		       const struct hierarchy *hierarchy, uint32_t index)
+{
+	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	const char *wrong = "does not decode";
+	uint32_t mesh_count = 0;
+	struct bytes object;
+	int rc = verify_child(walk, page, index, &object);
+
+	if (rc < 0)
+		return rc;
+	rc = patch_group_decode(meshes, &mesh_count, object);
+	if (rc == 0)
+		wrong = compare_group(hierarchy, index, meshes, mesh_count);
+	for (uint32_t i = 0; rc == 0 && i < mesh_count; i++)
+		patch_mesh_finish(&meshes[i]);
+	count(&walk->report->groups, object);
+	return wrong ? blame_child(walk, page, index, "patch group", wrong) : 0;
+}
+
+int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct hierarchy *hierarchy = &walk->hierarchy;
+	int rc = hierarchy_decode(hierarchy, page->page.payload);
+
+	if (rc < 0)
+		return rc;
+	if (hierarchy->group_count != page->page.child_count)
+		rc = blame_page(walk, page, "has another number of children than of patch groups");
+	for (uint32_t i = 0; rc == 0 && i < hierarchy->group_count; i++)
+		rc = check_group(walk, page, hierarchy, i);
+	for (uint32_t i = 0; i < hierarchy->patch_count; i++)
+		walk->report->hierarchy_triangles += hierarchy->patches[i].triangle_count;
+	walk->report->patches = hierarchy->patch_count;
+	return rc;
+}
+
+/* ---- samples ---- */
+
+/* Children are numbered in order: the last number tells how many there must be. */
+static uint32_t children_named(const uint32_t *children, uint32_t length)
+{
+	uint32_t named = 0;
+
+	for (uint32_t i = 0; i < length; i++)
+		if (children[i] != SAMPLE_NONE && children[i] + 1 > named)
+			named = children[i] + 1;
+	return named;
+}
+
+int verify_samples_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct samples_page *samples = &walk->samples;
+	int rc = samples_page_decode(samples, page->page.payload);
+
+	if (rc < 0)
+		return rc;
+	if (children_named(samples->brick_child,
+			   samples->bricks[0] * samples->bricks[1] * samples->bricks[2]) !=
+	    page->page.child_count)
+		return blame_page(walk, page, "has another number of children than of bricks");
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
+		rc = verify_later(walk, page, i, PAGE_BRICK);
+	return rc;
+}
+
+int verify_brick_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct brick_page *brick = malloc(sizeof(*brick));
+	int rc = brick ? brick_page_decode(brick, page->page.payload) : -ENOMEM;
+
+	if (rc == 0 && children_named(&brick->face_child[0][0], BRICK_POINTS * CUBE_FACES) !=
+			       page->page.child_count)
+		rc = blame_page(walk, page, "has another number of children than of faces");
+	for (uint32_t p = 0; rc == 0 && p < BRICK_POINTS; p++) {
+		uint32_t faces = 0;
+
+		for (int f = 0; f < CUBE_FACES; f++)
+			faces += brick->face_child[p][f] != SAMPLE_NONE;
+		walk->report->points += faces > 0;
+		walk->report->faces += faces;
+	}
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
+		rc = verify_later(walk, page, i, PAGE_FACE);
+	free(brick);
+	return rc;
+}
+
+static int check_tile(struct verify_walk *walk, const struct verify_page *page, uint32_t child)
+{
+	uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
+	struct bytes object;
+	int rc = verify_child(walk, page, child, &object);
+
+	if (rc < 0)
+		return rc;
+	count(&walk->report->tiles, object);
+	rc = tile_decode(rgb, SAMPLE_IMAGE_PX, object);
+	return rc == -EBADMSG ? blame_child(walk, page, child, "tile", "does not decode") : rc;
+}
+
+int verify_face_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct face_page face;
+	int rc = face_page_decode(&face, page->page.payload);
+
+	if (rc < 0)
+		return rc;
+	if (face.level_count > walk->samples.level_count)
+		return blame_page(walk, page, "is finer than the samples page says");
+	if (children_named(face.tile_child, face_tile_index(face.level_count, 0, 0)) !=
+	    page->page.child_count)
+		return blame_page(walk, page, "has another number of children than of tiles");
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
+		rc = check_tile(walk, page, i);
+	return rc;
+}
+
+/* ---- information ---- */
+
+static int check_pictures(struct verify_walk *walk, const struct verify_page *page,
+			  const struct info *info)
+{
+	struct hash_map children = { 0 };
+	struct bytes object;
+	int rc = 0;
+
+	for (uint32_t i = 1; rc >= 0 && i < page->page.child_count; i++) {
+		rc = verify_child(walk, page, i, &object);
+		if (rc == 0) {
+			count(&walk->report->pictures, object);
+			rc = hash_map_put(&children, page->page.children[i].hash, i);
+		}
+		if (rc == 0)
+			rc = blame_child(walk, page, i, "picture", "is there twice");
+	}
+	for (uint32_t i = 0; rc >= 0 && i < info_picture_count(info); i++) {
+		const struct info_picture *picture = info_picture(info, i);
+
+		if (!hash_map_get(&children, picture->hash, NULL))
+			rc = verify_blame(walk->report, -EBADMSG,
+					  "the information names %s, which is not in the release",
+					  picture->name);
+	}
+	hash_map_finish(&children);
+	return rc < 0 ? rc : 0;
+}
+
+int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct bytes image;
+	int rc;
+
+	if (page->page.child_count < 1)
+		return blame_page(walk, page, "has no information database");
+	rc = verify_child(walk, page, 0, &image);
+	if (rc < 0)
+		return rc;
+	count(&walk->report->database, image);
+	rc = info_open(&walk->info, image);
+	if (rc < 0)
+		return rc == -EBADMSG ? blame_child(walk, page, 0, "information database",
+						    "is damaged or of another version")
+				      : rc;
+	walk->report->parts = info_part_count(walk->info);
+	return check_pictures(walk, page, walk->info);
+}
+
+/* ---- labels ---- */
+
+static const char *compare_labels(const struct verify_walk *walk, uint32_t index,
+				  const struct label_group *labels)
+{
+	const struct hierarchy_group *group = &walk->hierarchy.groups[index];
+
+	if (labels->patch_count != group->patch_count)
+		return "are of another number of patches than their group";
+	for (uint32_t p = 0; p < labels->patch_count; p++)
+		if (labels->patches[p].triangle_count !=
+		    walk->hierarchy.patches[group->first_patch + p].triangle_count)
+			return "are of another number of triangles than a patch of their group";
+	for (uint32_t p = 0; p < labels->part_count; p++)
+		if (info_find(walk->info, labels->parts[p].id) < 0)
+			return "name a part of which the information knows nothing";
+	return NULL;
+}
+
+static int check_labels(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+			uint32_t group)
+{
+	struct label_group labels;
+	const char *wrong = "do not decode";
+	struct bytes object;
+	int rc = verify_child(walk, page, child, &object);
+
+	if (rc < 0)
+		return rc;
+	count(&walk->report->labels, object);
+	rc = label_group_decode(&labels, object);
+	if (rc == -ENOMEM)
+		return rc;
+	if (rc == 0)
+		wrong = compare_labels(walk, group, &labels);
+	label_group_finish(&labels);
+	return wrong ? blame_child(walk, page, child, "labels", wrong) : 0;
+}
+
+int verify_labels_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	uint32_t *child_of_group;
+	int rc;
+
+	if (!walk->info || walk->hierarchy.group_count == 0)
+		return blame_page(walk, page, "comes before what it labels");
+	rc = label_page_decode(&child_of_group, walk->hierarchy.group_count, page->page.child_count,
+			       page->page.payload);
+	for (uint32_t g = 0; rc == 0 && g < walk->hierarchy.group_count; g++)
+		if (child_of_group[g] != LABEL_NONE)
+			rc = check_labels(walk, page, child_of_group[g], g);
+	free(child_of_group);
+	return rc;
+}

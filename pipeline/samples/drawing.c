@@ -1,0 +1,395 @@
+#include "pipeline/samples/drawing.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "geometry/light.h"
+#include "pipeline/material/material.h"
+#include "render/display/gl.h"
+
+enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
+
+struct order {
+	float distance;
+	uint32_t chunk;
+};
+
+struct drawing {
+	const struct chunks *chunks; /* borrowed */
+	GLuint program, vertices, uvs, indices;
+	GLint matrix_at, eye_at, px_at;
+	uint32_t texture_count;
+	GLuint *textures;    /* owned */
+	struct order *order; /* room for every chunk; owned */
+};
+
+static const char *const attributes[] = { "position", "normal", "colour", "uv", NULL };
+
+static const char vertex_text[] =
+	"uniform mat4 matrix;\n"
+	"attribute vec3 position; attribute vec4 normal; attribute vec4 colour; attribute vec2 uv;\n"
+	"varying vec3 v_at; varying vec3 v_normal; varying vec4 v_colour; varying vec2 v_uv;\n"
+	"void main() {\n"
+	"	v_at = position; v_normal = normal.xyz; v_colour = colour; v_uv = uv;\n"
+	"	gl_Position = matrix * vec4(position, 1.0);\n"
+	"}\n";
+
+static const char fragment_head[] =
+	"precision highp float;\n"
+	"uniform vec3 sun; uniform vec3 eye; uniform float px_radians; uniform sampler2D image;\n"
+	"varying vec3 v_at; varying vec3 v_normal; varying vec4 v_colour; varying vec2 v_uv;\n";
+
+static const char scan_colour[] = "vec3 base() { return v_colour.rgb; }\n";
+/* Row 0 of a picture is its top, where v is 1. */
+static const char image_colour[] =
+	"vec3 base() { return texture2D(image, vec2(v_uv.x, 1.0 - v_uv.y)).rgb; }\n";
+static const char stone[] =
+	"vec3 base() {\n"
+	"	return stone_colour(v_at, normalize(v_normal), distance(v_at, eye) * px_radians);\n"
+	"}\n";
+static const char no_light[] = "float shade() { return 1.0; }\n";
+static const char sun_light[] =
+	"float shade() { return light(normalize(v_normal), v_colour.a, sun); }\n";
+
+static const char fragment_main[] =
+	"void main() {\n"
+	"	gl_FragColor = vec4(min(vec3(1.0), base() * shade()),\n"
+	"			    gl_FrontFacing ? 1.0 : 254.0 / 255.0);\n"
+	"}\n";
+
+/* Normal, and in alpha the share of open sky: 1..127 of a back, 128..255 of a front. Nothing is 0.
+ * Eight bits do: vertices have no more. Little is done on purpose, where triangles are small this
+ * runs several times a pixel. */
+static const char surface_main[] =
+	"void main() {\n"
+	"	float open = gl_FrontFacing ? 128.0 + 127.0 * v_colour.a : 1.0 + 126.0 * v_colour.a;\n"
+	"	gl_FragColor = vec4(v_normal * 0.5 + 0.5, open / 255.0);\n"
+	"}\n";
+
+static int build_program(struct drawing *drawing, const struct drawing_options *options)
+{
+	const char *colour = options->procedural      ? stone
+			     : drawing->texture_count ? image_colour
+						      : scan_colour;
+	const char *const vertex[] = { vertex_text, NULL };
+	const char *const fragment[] = { fragment_head,
+					 options->procedural ? stone_glsl : "",
+					 options->lit ? light_glsl : "",
+					 colour,
+					 options->lit ? sun_light : no_light,
+					 fragment_main,
+					 NULL };
+	const char *const surface[] = { fragment_head, surface_main, NULL };
+	const struct gl_program_source source = { "drawing", vertex,
+						  options->surfaces ? surface : fragment,
+						  attributes };
+	int rc = gl_program_build(&drawing->program, &source);
+
+	if (rc < 0)
+		return rc;
+	drawing->matrix_at = glGetUniformLocation(drawing->program, "matrix");
+	drawing->eye_at = glGetUniformLocation(drawing->program, "eye");
+	drawing->px_at = glGetUniformLocation(drawing->program, "px_radians");
+	glUseProgram(drawing->program);
+	glUniform3fv(glGetUniformLocation(drawing->program, "sun"), 1, options->sun);
+	glUniform1i(glGetUniformLocation(drawing->program, "image"), 0);
+	return 0;
+}
+
+/* Half as wide and high, by box; a new array, or NULL. */
+static uint8_t *halve(const uint8_t *rgb, uint32_t *width, uint32_t *height)
+{
+	uint32_t w = *width > 1 ? *width / 2 : 1, h = *height > 1 ? *height / 2 : 1;
+	uint8_t *out = malloc((size_t)w * h * 3);
+
+	for (size_t i = 0; out && i < (size_t)w * h * 3; i++) {
+		size_t x = i / 3 % w, y = i / 3 / w, c = i % 3;
+		size_t right = 2 * x + 1 < *width ? 3 : 0;
+		size_t down = 2 * y + 1 < *height ? 3 * (size_t)*width : 0;
+		const uint8_t *p = rgb + (2 * y * *width + 2 * x) * 3 + c;
+
+		out[i] = (uint8_t)((p[0] + p[right] + p[down] + p[right + down] + 2) / 4);
+	}
+	*width = w;
+	*height = h;
+	return out;
+}
+
+/* Scan pictures keep their size where the driver bears it: pipeline machines are ours to choose,
+ * so the kiosk's limit (gl_texture_create) does not hold here. */
+static int upload_texture(GLuint texture, const struct mesh_texture *source)
+{
+	uint32_t width = source->width, height = source->height;
+	bool any_size = gl_has_extension("GL_OES_texture_npot");
+	const uint8_t *rgb = source->rgb;
+	uint8_t *owned = NULL;
+	GLint most = 0;
+
+	glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+	while (width > (uint32_t)most || height > (uint32_t)most) {
+		uint8_t *half = halve(rgb, &width, &height);
+
+		free(owned);
+		if (!half)
+			return -ENOMEM;
+		rgb = owned = half;
+	}
+	if ((width & (width - 1)) == 0 && (height & (height - 1)) == 0)
+		any_size = true;
+	glBindTexture(GL_TEXTURE_2D, texture);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
+			any_size ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, any_size ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, any_size ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, (GLsizei)width, (GLsizei)height, 0, GL_RGB,
+		     GL_UNSIGNED_BYTE, rgb);
+	if (any_size)
+		glGenerateMipmap(GL_TEXTURE_2D);
+	free(owned);
+	return gl_check("uploading a scan's picture");
+}
+
+static int upload(struct drawing *drawing, const struct mesh *mesh)
+{
+	const struct chunks *chunks = drawing->chunks;
+	int rc = 0;
+
+	glGenBuffers(1, &drawing->vertices);
+	glBindBuffer(GL_ARRAY_BUFFER, drawing->vertices);
+	glBufferData(GL_ARRAY_BUFFER,
+		     (GLsizeiptr)(chunks->vertex_count * sizeof(*chunks->vertices)),
+		     chunks->vertices, GL_STATIC_DRAW);
+	glGenBuffers(1, &drawing->indices);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
+	glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+		     (GLsizeiptr)(chunks->index_count * sizeof(*chunks->indices)), chunks->indices,
+		     GL_STATIC_DRAW);
+	if (drawing->texture_count) {
+		glGenBuffers(1, &drawing->uvs);
+		glBindBuffer(GL_ARRAY_BUFFER, drawing->uvs);
+		glBufferData(GL_ARRAY_BUFFER,
+			     (GLsizeiptr)(chunks->vertex_count * sizeof(*chunks->uvs)), chunks->uvs,
+			     GL_STATIC_DRAW);
+		glGenTextures((GLsizei)drawing->texture_count, drawing->textures);
+	}
+	for (uint32_t i = 0; rc == 0 && i < drawing->texture_count; i++)
+		rc = upload_texture(drawing->textures[i], &mesh->textures[i]);
+	return rc == 0 ? gl_check("uploading the model") : rc;
+}
+
+int drawing_create(struct drawing **out, const struct chunks *chunks, const struct mesh *mesh,
+		   const struct drawing_options *options)
+{
+	struct drawing *drawing = calloc(1, sizeof(*drawing));
+	int rc;
+
+	*out = NULL;
+	if (!drawing)
+		return -ENOMEM;
+	drawing->chunks = chunks;
+	drawing->order = malloc(chunks->count * sizeof(*drawing->order));
+	if (!drawing->order) {
+		free(drawing);
+		return -ENOMEM;
+	}
+	if (chunks->uvs && mesh->texture_count) {
+		drawing->textures = calloc(mesh->texture_count, sizeof(*drawing->textures));
+		if (!drawing->textures) {
+			free(drawing->order);
+			free(drawing);
+			return -ENOMEM;
+		}
+		drawing->texture_count = mesh->texture_count;
+	}
+	rc = build_program(drawing, options);
+	if (rc == 0)
+		rc = upload(drawing, mesh);
+	if (rc < 0) {
+		drawing_destroy(drawing);
+		return rc;
+	}
+	*out = drawing;
+	return 0;
+}
+
+void drawing_destroy(struct drawing *drawing)
+{
+	if (!drawing)
+		return;
+	glDeleteProgram(drawing->program);
+	glDeleteBuffers(1, &drawing->vertices);
+	glDeleteBuffers(1, &drawing->uvs);
+	glDeleteBuffers(1, &drawing->indices);
+	glDeleteTextures((GLsizei)drawing->texture_count, drawing->textures);
+	free(drawing->textures);
+	free(drawing->order);
+	free(drawing);
+}
+
+/* Farthest point of the box along direction, sign +1; nearest, sign -1. */
+static float reach(const struct chunk *chunk, const float eye_m[3], const float direction[3],
+		   float sign)
+{
+	float sum = 0;
+
+	for (int i = 0; i < 3; i++) {
+		float low = (chunk->low_m[i] - eye_m[i]) * direction[i];
+		float high = (chunk->high_m[i] - eye_m[i]) * direction[i];
+
+		sum += sign > 0 ? fmaxf(low, high) : fminf(low, high);
+	}
+	return sum;
+}
+
+bool drawing_range(const struct drawing *drawing, const float eye_m[3], const float forward[3],
+		   float *near_m, float *far_m)
+{
+	const struct chunks *chunks = drawing->chunks;
+	float diagonal = 0, least, nearest = INFINITY, farthest = 0;
+
+	for (int i = 0; i < 3; i++) {
+		float side = chunks->high_m[i] - chunks->low_m[i];
+
+		diagonal += side * side;
+	}
+	least = fminf(0.02f, sqrtf(diagonal) / 4000);
+	for (uint32_t n = 0; n < chunks->count; n++) {
+		float far = reach(&chunks->items[n], eye_m, forward, 1);
+
+		if (far <= 0)
+			continue;
+		farthest = fmaxf(farthest, far);
+		nearest = fminf(nearest, reach(&chunks->items[n], eye_m, forward, -1));
+	}
+	if (farthest <= 0)
+		return false;
+	*near_m = fmaxf(nearest * 0.999f, least);
+	*far_m = fmaxf(farthest * 1.001f, *near_m * 2);
+	return true;
+}
+
+/* Outside one of clip space's planes with all its corners? */
+static bool is_outside(const struct chunk *chunk, const float m[16])
+{
+	for (int plane = 0; plane < 6; plane++) {
+		float sign = plane % 2 ? -1.0f : 1.0f, most = 0, c[4];
+
+		for (int column = 0; column < 4; column++)
+			c[column] = m[4 * column + 3] + sign * m[4 * column + plane / 2];
+		most = c[3];
+		for (int i = 0; i < 3; i++)
+			most += fmaxf(c[i] * chunk->low_m[i], c[i] * chunk->high_m[i]);
+		if (most < 0)
+			return true;
+	}
+	return false;
+}
+
+uint32_t drawing_visible(const struct drawing *drawing, const float matrix[16])
+{
+	uint32_t count = 0;
+
+	for (uint32_t n = 0; n < drawing->chunks->count; n++)
+		count += !is_outside(&drawing->chunks->items[n], matrix);
+	return count;
+}
+
+static void point_at(const struct drawing *drawing, const struct chunk *chunk)
+{
+	const GLsizei stride = sizeof(struct chunk_vertex);
+	const char *base =
+		(const char *)0 + (size_t)chunk->first_vertex * sizeof(struct chunk_vertex);
+
+	glBindBuffer(GL_ARRAY_BUFFER, drawing->vertices);
+	glVertexAttribPointer(AT_POSITION, 3, GL_FLOAT, GL_FALSE, stride, base);
+	glVertexAttribPointer(AT_NORMAL, 4, GL_BYTE, GL_TRUE, stride,
+			      base + offsetof(struct chunk_vertex, normal));
+	glVertexAttribPointer(AT_COLOUR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
+			      base + offsetof(struct chunk_vertex, colour));
+	if (!drawing->texture_count)
+		return;
+	glBindBuffer(GL_ARRAY_BUFFER, drawing->uvs);
+	glVertexAttribPointer(AT_UV, 2, GL_FLOAT, GL_FALSE, 0,
+			      (const char *)0 + (size_t)chunk->first_vertex * 2 * sizeof(float));
+	glBindTexture(GL_TEXTURE_2D, drawing->textures[chunk->texture]);
+}
+
+static int compare_order(const void *a, const void *b)
+{
+	const struct order *x = a, *y = b;
+
+	if (x->distance != y->distance)
+		return x->distance < y->distance ? -1 : 1;
+	return x->chunk < y->chunk ? -1 : x->chunk > y->chunk;
+}
+
+/* Nearest first, so that the depth test spares the shading of what is hidden. */
+static uint32_t sort_visible(struct drawing *drawing, const float matrix[16], const float eye_m[3])
+{
+	uint32_t count = 0;
+
+	for (uint32_t n = 0; n < drawing->chunks->count; n++) {
+		const struct chunk *chunk = &drawing->chunks->items[n];
+		float square = 0;
+
+		if (is_outside(chunk, matrix))
+			continue;
+		for (int i = 0; i < 3; i++) {
+			float away = fmaxf(
+				fmaxf(chunk->low_m[i] - eye_m[i], eye_m[i] - chunk->high_m[i]), 0);
+
+			square += away * away;
+		}
+		drawing->order[count++] = (struct order){ square, n };
+	}
+	qsort(drawing->order, count, sizeof(*drawing->order), compare_order);
+	return count;
+}
+
+static void set_up(struct drawing *drawing)
+{
+	glClearColor(0, 0, 0, 0);
+	glClearDepthf(1);
+	glDepthMask(GL_TRUE);
+	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_LESS);
+	glDisable(GL_CULL_FACE);
+	glDisable(GL_BLEND);
+	glDisable(GL_DITHER);
+	glUseProgram(drawing->program);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
+	glActiveTexture(GL_TEXTURE0);
+	for (GLuint i = AT_POSITION; i <= (drawing->texture_count ? AT_UV : AT_COLOUR); i++)
+		glEnableVertexAttribArray(i);
+}
+
+uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
+		      float px_radians)
+{
+	uint32_t count = sort_visible(drawing, matrix, eye_m);
+	uint64_t triangles = 0;
+
+	set_up(drawing);
+	glUniformMatrix4fv(drawing->matrix_at, 1, GL_FALSE, matrix);
+	glUniform3fv(drawing->eye_at, 1, eye_m);
+	glUniform1f(drawing->px_at, px_radians);
+	for (uint32_t n = 0; n < count; n++) {
+		const struct chunk *chunk = &drawing->chunks->items[drawing->order[n].chunk];
+
+		point_at(drawing, chunk);
+		glDrawElements(GL_TRIANGLES, (GLsizei)chunk->index_count, GL_UNSIGNED_SHORT,
+			       (const char *)0 + (size_t)chunk->first_index * sizeof(uint16_t));
+		triangles += chunk->index_count / 3;
+	}
+	for (GLuint i = AT_POSITION; i <= AT_UV; i++)
+		glDisableVertexAttribArray(i);
+	return triangles;
+}

@@ -1,0 +1,207 @@
+#include "pipeline/samples/face_renderer.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/camera.h"
+#include "pipeline/samples/cube_frame.h"
+#include "pipeline/samples/shading.h"
+
+enum { OBJECTS_BYTES_MOST = 128 << 20 };
+
+struct shooter {
+	struct shooter_options options;
+	struct frame *frame;
+	struct shading *shading;
+	struct pyramid pyramid;
+	int frame_px;
+	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
+};
+
+/* A level's picture is wider than its face by the aprons that its coarsest level needs. */
+static uint32_t level_px(uint32_t level)
+{
+	return (uint32_t)SAMPLE_IMAGE_PX << level;
+}
+
+int shooter_create(struct shooter **out, const struct shooter_options *options)
+{
+	struct shooter *shooter = calloc(1, sizeof(*shooter));
+	uint32_t side = level_px(options->level_count - 1);
+	int rc;
+
+	*out = NULL;
+	if (!shooter)
+		return -ENOMEM;
+	shooter->options = *options;
+	int samples = options->level_count < SAMPLE_LEVELS_MOST ? 2 : 1;
+	shooter->frame_px = (int)side * samples;
+	rc = pyramid_init(&shooter->pyramid, side);
+	if (rc == 0)
+		rc = frame_create(&shooter->frame, shooter->frame_px, shooter->frame_px);
+	if (rc == 0)
+		rc = shading_create(&shooter->shading, shooter->frame, shooter->frame_px,
+				    shooter->frame_px, samples, &options->drawn);
+	if (rc < 0) {
+		shooter_destroy(shooter);
+		return rc;
+	}
+	*out = shooter;
+	return 0;
+}
+
+void shooter_destroy(struct shooter *shooter)
+{
+	if (!shooter)
+		return;
+	shading_destroy(shooter->shading);
+	frame_destroy(shooter->frame);
+	pyramid_finish(&shooter->pyramid);
+	free(shooter);
+}
+
+void shot_init(struct shot *shot)
+{
+	memset(shot, 0, sizeof(*shot));
+	buffer_init(&shot->objects, OBJECTS_BYTES_MOST);
+}
+
+void shot_finish(struct shot *shot)
+{
+	buffer_finish(&shot->objects);
+}
+
+static struct camera face_camera(const struct shooter *shooter, const float point_m[3], int face)
+{
+	struct camera camera = { .width_px = shooter->frame_px, .height_px = shooter->frame_px };
+	double tangent = (double)SAMPLE_IMAGE_PX / SAMPLE_TILE_PX;
+
+	camera.fov_deg = (float)(2 * atan(tangent) * 180 / M_PI);
+	for (int i = 0; i < 3; i++) {
+		camera.eye_m[i] = point_m[i];
+		camera.target_m[i] = point_m[i] + cube_axes[face].forward[i];
+		camera.up[i] = cube_axes[face].up[i];
+	}
+	return camera;
+}
+
+/* Does anything show in a square of the level's picture, or within a pixel of it? */
+static bool shows(const struct shooter *shooter, uint32_t level, uint32_t x, uint32_t y,
+		  uint32_t side)
+{
+	uint32_t k = shooter->options.level_count - 1 - level, width = level_px(level);
+	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])shooter->pyramid.levels[k];
+
+	for (uint32_t row = y - 1; row < y + side + 1; row++)
+		for (uint32_t column = x - 1; column < x + side + 1; column++)
+			if (pixels[(size_t)row * width + column][3])
+				return true;
+	return false;
+}
+
+static uint16_t find_coverage(const struct shooter *shooter)
+{
+	uint32_t level = shooter->options.level_count - 1;
+	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
+	uint32_t width = (uint32_t)SAMPLE_TILE_PX << level, side = (width + 3) / 4;
+	uint16_t coverage = 0;
+
+	for (uint32_t i = 0; i < 16; i++)
+		if (shows(shooter, level, apron + i % 4 * width / 4, apron + i / 4 * width / 4,
+			  side))
+			coverage |= (uint16_t)(1u << i);
+	return coverage;
+}
+
+static int encode_tile(struct shooter *shooter, struct shot *shot, uint32_t level, uint32_t x,
+		       uint32_t y)
+{
+	uint32_t k = shooter->options.level_count - 1 - level, width = level_px(level);
+	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])shooter->pyramid.levels[k];
+	uint8_t *to = shooter->tile;
+
+	for (uint32_t row = 0; row < SAMPLE_IMAGE_PX; row++)
+		for (uint32_t column = 0; column < SAMPLE_IMAGE_PX; column++, to += 3)
+			memcpy(to, pixels[(size_t)(y + row) * width + x + column], 3);
+	return tile_encode(&shot->objects, shooter->tile, SAMPLE_IMAGE_PX,
+			   shooter->options.quality);
+}
+
+static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)
+{
+	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
+
+	uint32_t end = face_tile_index(level + 1, 0, 0);
+
+	for (uint32_t index = face_tile_index(level, 0, 0); index < end; index++) {
+		uint32_t row, column, n = shot->tile_count;
+		int rc;
+
+		face_tile_place(level, index, &row, &column);
+		uint32_t x = apron + column * SAMPLE_TILE_PX, y = apron + row * SAMPLE_TILE_PX;
+		if (!shows(shooter, level, x, y, SAMPLE_TILE_PX))
+			continue;
+		rc = encode_tile(shooter, shot, level, x - SAMPLE_APRON_PX, y - SAMPLE_APRON_PX);
+		if (rc < 0)
+			return rc;
+		shot->tiles[n] = (uint16_t)index;
+		shot->end_of[n] = (uint32_t)shot->objects.size;
+		shot->tile_count++;
+	}
+	return 0;
+}
+
+/* Into the pyramid's finest level. found: something shows. */
+static int render(struct shooter *shooter, struct shot *shot, const float point_m[3], int face,
+		  bool *found)
+{
+	struct camera camera = face_camera(shooter, point_m, face);
+	const uint8_t *rgba;
+	float matrix[16];
+	int rc;
+
+	*found = drawing_range(shooter->options.drawing, point_m, cube_axes[face].forward,
+			       &camera.near_m, &camera.far_m);
+	if (!*found)
+		return 0;
+	camera_matrix(&camera, matrix);
+	*found = drawing_visible(shooter->options.drawing, matrix) > 0;
+	if (!*found)
+		return 0;
+	frame_bind(shooter->frame);
+	drawing_draw(shooter->options.drawing, matrix, point_m, 1 / camera_px_per_radian(&camera));
+	rc = frame_range(shooter->frame, camera.near_m, camera.far_m, found, &shot->near_m,
+			 &shot->far_m);
+	if (rc < 0 || !*found)
+		return rc;
+	rc = shading_take(shooter->shading, &camera, &rgba);
+	if (rc < 0)
+		return rc;
+	pyramid_set(&shooter->pyramid, rgba, &shot->covered, &shot->backs);
+	return 0;
+}
+
+int shooter_take(struct shooter *shooter, struct shot *shot, const float point_m[3], int face)
+{
+	bool found;
+	int rc;
+
+	shot->covered = shot->backs = 0;
+	shot->coverage = 0;
+	shot->tile_count = 0;
+	buffer_clear(&shot->objects);
+	rc = render(shooter, shot, point_m, face, &found);
+	if (rc < 0 || !found || !shot->covered)
+		return rc;
+	shot->coverage = find_coverage(shooter);
+	if (!shot->coverage) /* only the aprons show anything */
+		return 0;
+	pyramid_reduce(&shooter->pyramid);
+	pyramid_fill(&shooter->pyramid);
+	rc = pyramid_sharpen(&shooter->pyramid);
+	for (uint32_t level = 0; rc == 0 && level < shooter->options.level_count; level++)
+		rc = cut_level(shooter, shot, level);
+	return rc;
+}

@@ -1,0 +1,371 @@
+#include "pipeline/samples/sampler.h"
+
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "base/progress.h"
+#include "format/tile.h"
+#include "pipeline/samples/chunks.h"
+#include "pipeline/samples/drawing.h"
+#include "pipeline/samples/face_renderer.h"
+#include "render/display/headless.h"
+
+enum { SAMPLER_VERSION = 7, JOBS_MOST = 64 };
+
+/* The grid's box, in sizes of the model: docs/samples.md. */
+static const float grid_reach = 1.5f;
+/* Solid where the surface winds around the point at least this often; and, for scans that are open
+ * towards the point, where more than this share of what it sees are backs. */
+static const double winding_solid = 0.5, backs_solid = 0.5;
+
+/* What a child process takes from; shared memory. */
+struct queue {
+	atomic_uint next;
+};
+
+struct sampling {
+	const struct content *content;
+	const struct mesh *mesh;
+	struct chunks chunks;
+	struct sample_grid grid;
+	struct drawing_options drawing;
+	struct hash key;
+	bool below_ground;
+	uint32_t (*points)[3]; /* still to be made; owned */
+	uint32_t point_count;
+	struct queue *queue;
+};
+
+void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
+		  uint32_t points, uint32_t face_px, bool below_ground)
+{
+	float longest = 0, spacing;
+
+	for (int i = 0; i < 3; i++)
+		longest = fmaxf(longest, grid_reach * (high_m[i] - low_m[i]));
+	spacing = longest / (float)(points - 1);
+	*out = (struct sample_grid){ 0 };
+	while (((uint32_t)SAMPLE_TILE_PX << out->level_count) <= face_px)
+		out->level_count++;
+	for (int i = 0; i < 3; i++) {
+		float middle = (low_m[i] + high_m[i]) / 2,
+		      half = grid_reach / 2 * (high_m[i] - low_m[i]);
+		float from = middle - half, side = 2 * half;
+		uint32_t steps = (uint32_t)lrintf(side / spacing);
+
+		if (i == 2 && !below_ground) {
+			/* The lowest layer stands half a step above the ground, where eyes are. */
+			side = middle + half - low_m[i];
+			steps = (uint32_t)lrintf(side / spacing);
+			steps = steps < 1 ? 1 : steps;
+			out->spacing_m[i] = fmaxf(side / (float)steps, spacing * 0.05f);
+			out->origin_m[i] = low_m[i] + out->spacing_m[i] / 2;
+			out->count[i] = steps;
+			continue;
+		}
+		steps = steps < 1 ? 1 : steps;
+		out->spacing_m[i] = fmaxf(side / (float)steps, spacing * 0.05f);
+		out->origin_m[i] = from;
+		out->count[i] = steps + 1;
+	}
+}
+
+void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = grid->origin_m[i] + grid->spacing_m[i] * (float)point[i];
+}
+
+static struct hash make_key(const struct sampling *sampling, struct hash mesh_key)
+{
+	const struct drawing_options *drawing = &sampling->drawing;
+	const struct sample_grid *grid = &sampling->grid;
+	struct buffer text;
+	struct hash key;
+
+	buffer_init(&text, 4096);
+	buffer_put_u32(&text, SAMPLER_VERSION);
+	buffer_put(&text, mesh_key.bytes, HASH_BYTES);
+	buffer_put_u8(&text, drawing->lit);
+	buffer_put_u8(&text, drawing->procedural);
+	for (int i = 0; i < 3; i++) {
+		buffer_put_f32(&text, drawing->lit ? drawing->sun[i] : 0);
+		buffer_put_f32(&text, grid->origin_m[i]);
+		buffer_put_f32(&text, grid->spacing_m[i]);
+		buffer_put_u32(&text, grid->count[i]);
+	}
+	buffer_put_u32(&text, grid->level_count);
+	buffer_put_u32(&text, sampling->content->quality);
+	key = hash_of(buffer_bytes(&text));
+	buffer_finish(&text);
+	return key;
+}
+
+/* Points of the shard that are not there yet. */
+static int list_points(struct sampling *sampling, const struct sampler_options *options)
+{
+	const uint32_t *count = sampling->grid.count;
+	uint32_t total = count[0] * count[1] * count[2];
+
+	sampling->points = malloc(total * sizeof(*sampling->points));
+	if (!sampling->points)
+		return -ENOMEM;
+	for (uint32_t n = 0; n < total; n++) {
+		uint32_t *point = sampling->points[sampling->point_count];
+
+		if (options->shard_count > 1 && n % options->shard_count != options->shard)
+			continue;
+		point[0] = n % count[0];
+		point[1] = n / count[0] % count[1];
+		point[2] = n / count[0] / count[1];
+		if (!samples_store_has(sampling->content->folder, point, sampling->key))
+			sampling->point_count++;
+	}
+	return 0;
+}
+
+/* Before anything is rendered: can the point be left out? */
+static bool is_hopeless(const struct sampling *sampling, const float point_m[3],
+			enum sample_state *state)
+{
+	if (!sampling->below_ground && point_m[2] < sampling->chunks.low_m[2]) {
+		*state = SAMPLE_GROUND;
+		return true;
+	}
+	*state = SAMPLE_INSIDE;
+	return chunks_winding(&sampling->chunks, point_m) > winding_solid;
+}
+
+/* A face of the six as the store wants it. */
+struct taken {
+	struct shot shots[CUBE_FACES];
+	struct sample_face faces[CUBE_FACES];
+	struct bytes objects[CUBE_FACES][FACE_TILES_MOST];
+};
+
+static void describe_face(struct taken *taken, uint32_t n, int face, uint32_t level_count)
+{
+	const struct shot *shot = &taken->shots[face];
+	uint32_t start = 0;
+
+	for (uint32_t i = 0; i < shot->tile_count; i++) {
+		taken->objects[face][i] =
+			(struct bytes){ shot->objects.data + start, shot->end_of[i] - start };
+		start = shot->end_of[i];
+	}
+	taken->faces[n] = (struct sample_face){ .face = face,
+						.level_count = level_count,
+						.coverage = shot->coverage,
+						.near_m = shot->near_m,
+						.far_m = shot->far_m,
+						.tile_count = shot->tile_count,
+						.tiles = shot->tiles,
+						.objects = taken->objects[face] };
+}
+
+static int take_point(const struct sampling *sampling, struct shooter *shooter, struct taken *taken,
+		      const uint32_t point[3])
+{
+	enum sample_state state = SAMPLE_EMPTY;
+	uint64_t covered = 0, backs = 0;
+	uint32_t count = 0;
+	float place[3];
+
+	sampler_point(place, &sampling->grid, point);
+	if (is_hopeless(sampling, place, &state))
+		return samples_store_put(sampling->content->folder, sampling->key, state, point,
+					 NULL, 0);
+	for (int face = 0; face < CUBE_FACES; face++) {
+		int rc = shooter_take(shooter, &taken->shots[face], place, face);
+
+		if (rc < 0)
+			return rc;
+		covered += taken->shots[face].covered;
+		backs += taken->shots[face].backs;
+		if (taken->shots[face].tile_count)
+			describe_face(taken, count++, face, sampling->grid.level_count);
+	}
+	state = count ? SAMPLE_RENDERED : SAMPLE_EMPTY;
+	if ((double)backs > backs_solid * (double)covered) {
+		state = SAMPLE_INSIDE;
+		count = 0;
+	}
+	return samples_store_put(sampling->content->folder, sampling->key, state, point,
+				 taken->faces, count);
+}
+
+/* Takes points off the queue; a byte into the pipe for each. */
+static int work(const struct sampling *sampling, struct shooter *shooter, int done_fd)
+{
+	struct taken *taken = calloc(1, sizeof(*taken));
+	int rc = 0;
+
+	if (!taken)
+		return -ENOMEM;
+	for (int face = 0; face < CUBE_FACES; face++)
+		shot_init(&taken->shots[face]);
+	while (rc == 0) {
+		uint32_t n = atomic_fetch_add(&sampling->queue->next, 1);
+
+		if (n >= sampling->point_count)
+			break;
+		rc = take_point(sampling, shooter, taken, sampling->points[n]);
+		if (rc == 0 && write(done_fd, "", 1) != 1)
+			rc = -EPIPE;
+	}
+	for (int face = 0; face < CUBE_FACES; face++)
+		shot_finish(&taken->shots[face]);
+	free(taken);
+	return rc;
+}
+
+/* All of a child process. */
+static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd)
+{
+	struct shooter_options options = { .drawn = sampling->drawing,
+					   .level_count = sampling->grid.level_count,
+					   .quality = (int)sampling->content->quality };
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	struct headless *headless = NULL;
+	struct shooter *shooter = NULL;
+	char threads[24];
+	int rc;
+
+	/* A software rasteriser otherwise starts a thread a core in every process. */
+	snprintf(threads, sizeof(threads), "%ld", cores > (long)jobs ? cores / (long)jobs : 1);
+	setenv("LP_NUM_THREADS", threads, 0);
+	rc = headless_create(&headless);
+	if (rc == 0)
+		rc = drawing_create(&options.drawing, &sampling->chunks, sampling->mesh,
+				    &options.drawn);
+	if (rc == 0)
+		rc = shooter_create(&shooter, &options);
+	if (rc == 0)
+		rc = work(sampling, shooter, done_fd);
+	if (rc < 0)
+		log_error("pipeline", "a process of the sampler ended: %s", strerror(-rc));
+	shooter_destroy(shooter);
+	drawing_destroy(options.drawing);
+	headless_destroy(headless);
+	return rc;
+}
+
+static int start_children(const struct sampling *sampling, uint32_t jobs, pid_t *children,
+			  const int done[2])
+{
+	pid_t parent = getpid();
+
+	for (uint32_t i = 0; i < jobs; i++) {
+		children[i] = fork();
+		if (children[i] < 0)
+			return -errno;
+		if (children[i] > 0)
+			continue;
+		prctl(PR_SET_PDEATHSIG, SIGTERM);
+		close(done[0]);
+		if (getppid() != parent)
+			_exit(1);
+		_exit(run_child(sampling, jobs, done[1]) < 0);
+	}
+	return 0;
+}
+
+/* Until every child has closed its end of the pipe. */
+static void watch(int done_fd, uint32_t total)
+{
+	struct progress *progress = progress_start("sampling", "points", total);
+	char bytes[64];
+	ssize_t n;
+
+	while ((n = read(done_fd, bytes, sizeof(bytes))) > 0 || (n < 0 && errno == EINTR))
+		progress_add(progress, n > 0 ? (uint64_t)n : 0);
+	progress_end(progress);
+}
+
+static int run_children(struct sampling *sampling, uint32_t jobs)
+{
+	pid_t children[JOBS_MOST] = { 0 };
+	int done[2], rc;
+
+	if (pipe(done) < 0)
+		return -errno;
+	fflush(NULL);
+	rc = start_children(sampling, jobs, children, done);
+	close(done[1]);
+	watch(done[0], sampling->point_count);
+	close(done[0]);
+	for (uint32_t i = 0; i < jobs; i++) {
+		int status = 1;
+
+		if (children[i] <= 0)
+			continue;
+		while (waitpid(children[i], &status, 0) < 0 && errno == EINTR)
+			;
+		if (rc == 0 && status != 0)
+			rc = -EIO;
+	}
+	return rc;
+}
+
+static int sample(struct sampling *sampling, const struct sampler_options *options)
+{
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	uint32_t jobs = options->jobs ? options->jobs : (uint32_t)(cores > 0 ? cores : 1);
+	int rc = samples_store_begin(sampling->content->folder, &sampling->grid, sampling->key);
+
+	if (rc == 0)
+		rc = list_points(sampling, options);
+	if (rc < 0 || sampling->point_count == 0)
+		return rc;
+	jobs = jobs < sampling->point_count ? jobs : sampling->point_count;
+	jobs = jobs < JOBS_MOST ? jobs : JOBS_MOST;
+	sampling->queue = mmap(NULL, sizeof(*sampling->queue), PROT_READ | PROT_WRITE,
+			       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (sampling->queue == MAP_FAILED)
+		return -ENOMEM;
+	rc = run_children(sampling, jobs);
+	munmap(sampling->queue, sizeof(*sampling->queue));
+	return rc;
+}
+
+int sampler_run(const struct content *content, const struct sampler_options *options,
+		struct fault *fault)
+{
+	struct sampling sampling = { .content = content, .below_ground = options->below_ground };
+	struct mesh mesh = { 0 };
+	struct hash mesh_key;
+	int rc = content_scans_key(content, &mesh_key, fault);
+
+	if (rc == 0)
+		rc = content_import(&mesh, content, NULL, fault);
+	if (rc < 0)
+		return rc;
+	sampling.mesh = &mesh;
+	sampling.drawing.lit = content_is_lit(content, &mesh);
+	sampling.drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
+	sampling.drawing.surfaces = sampling.drawing.procedural;
+	memcpy(sampling.drawing.sun, content->sun, sizeof(content->sun));
+	rc = chunks_init(&sampling.chunks, &mesh, content->import.default_colour);
+	if (rc == 0) {
+		sampler_grid(&sampling.grid, sampling.chunks.low_m, sampling.chunks.high_m,
+			     content->grid_points, content->face_px, options->below_ground);
+		sampling.key = make_key(&sampling, mesh_key);
+		rc = sample(&sampling, options);
+	}
+	free(sampling.points);
+	chunks_finish(&sampling.chunks);
+	mesh_finish(&mesh);
+	if (rc < 0)
+		fault_set(fault, rc, "%s: sampling failed: %s", content->folder, strerror(-rc));
+	return rc;
+}

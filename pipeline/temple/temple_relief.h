@@ -1,0 +1,59 @@
+/* Carving: how far a stone surface stands out at a place, metres. Pure functions of the place, the
+ * style and its seed. */
+#ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_RELIEF_H
+#define GOPURA_PIPELINE_TEMPLE_TEMPLE_RELIEF_H
+
+#include "base/compiler.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum relief {
+	RELIEF_PLAIN,
+	RELIEF_SHEET,     /* what the sheet says (profiles only) */
+	RELIEF_ROUND,     /* a torus moulding */
+	RELIEF_HOLLOW,    /* a cavetto */
+	RELIEF_PETALS,    /* a row of lotus petals, tips up */
+	RELIEF_DROPS,     /* the same, tips down */
+	RELIEF_BEADS,     /* a row of half spheres */
+	RELIEF_FLOWERS,   /* a field of four-petalled flowers in lozenges */
+	RELIEF_SCROLL,    /* foliage scrolls along a band */
+	RELIEF_SCROLL_UP, /* foliage scrolls climbing a pilaster */
+	RELIEF_DEVATA,    /* a standing goddess in her niche */
+	RELIEF_MARCH,     /* rows of walking figures, as on gallery walls */
+	RELIEF_LINTEL,    /* a kala's head over a garland */
+	RELIEF_TYMPANUM,  /* a pediment: naga arch, deity, worshippers */
+	RELIEF_DOOR,      /* a false door */
+	RELIEF_WINDOW,    /* a window closed by turned balusters */
+	RELIEF_FACE,      /* a great smiling face */
+	RELIEF_LION,      /* the mask of a guardian lion */
+	RELIEF_TILES,     /* roof stones carved as tiles */
+	RELIEF_FLAME,     /* an antefix */
+	RELIEF_HOOD,      /* the seven heads of a naga */
+	RELIEF_SCALES,    /* a naga's body */
+	RELIEF_BLOCKS,    /* rough masonry, open joints */
+};
+
+struct relief_style {
+	enum relief kind;
+	float depth_m;
+	float period_m;
+	uint32_t seed;
+};
+
+struct relief_place {
+	float x_m, y_m;          /* from the lower left corner of the field */
+	float width_m, height_m; /* of the field */
+	float shape;             /* share of the width that is left at this height */
+	float step_m;            /* between vertices: finer motifs fade away */
+	uint32_t segment;        /* of the outline, so that neighbours differ */
+};
+
+/* Whether it changes along the outline and so needs dividing there. */
+bool relief_varies_across(enum relief kind);
+float relief_height(const struct relief_style *style, const struct relief_place *place);
+
+/* 0..1 from three numbers and a seed; the temple's only source of chance. */
+float temple_chance(uint32_t seed, uint32_t a, uint32_t b);
+
+#endif

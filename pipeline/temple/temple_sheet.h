@@ -1,0 +1,85 @@
+/* The building stone of the demo temple: a sheet, one profile swept along one outline.
+ *
+ * A terrace is a moulding swept round a square, a column a moulding swept round a circle, a roof an
+ * arch swept along a line, a relief a flat upright sheet whose surface is pushed out. Each sheet is
+ * a grid of vertices shared by its triangles. How many rows and columns the grid has follows from
+ * the density asked for, so that the same sheets give ten thousand triangles or a hundred million:
+ * parts that carry relief are divided, plain ones never are, and edges too small for the density
+ * are left out.
+ *
+ * Local axes: an outline runs counter-clockwise, its outside to the right; a line runs along +x and
+ * faces -y (south). Metres, z up. */
+#ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_SHEET_H
+#define GOPURA_PIPELINE_TEMPLE_TEMPLE_SHEET_H
+
+#include "base/compiler.h"
+#include "pipeline/temple/temple_relief.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum outline_kind { OUTLINE_LINE, OUTLINE_CLOSED, OUTLINE_ROUND };
+enum { OUTLINE_CORNERS_MOST = 28 };
+
+/* Of half size 1 (a line: from -0.5 to 0.5); sheets scale it. */
+struct outline {
+	enum outline_kind kind;
+	uint32_t count; /* corners; 1 for a round one */
+	float corners[OUTLINE_CORNERS_MOST][2];
+};
+
+/* A point of a profile, and what lies between it and the next one. */
+struct profile_point {
+	float out, z; /* times the sheet's reach_m and height_m */
+	enum relief relief;
+	float depth_m;
+	float period_m; /* width of one motif */
+};
+
+struct profile {
+	uint32_t count;
+	const struct profile_point *points; /* borrowed */
+};
+
+/* How the width of a sheet on a line changes with its height. */
+enum sheet_shape { SHAPE_FULL, SHAPE_PEDIMENT, SHAPE_LEAF, SHAPE_HOOD };
+
+struct sheet {
+	const struct outline *outline; /* borrowed, lives as long as the plan */
+	const struct profile *profile; /* the same */
+	float origin_m[3];
+	float turn[2];           /* cosine and sine of the turn about the vertical */
+	float size_m;            /* scale of the outline */
+	float stretch;           /* the outline's y over its x */
+	float reach_m, height_m; /* scales of the profile */
+	float lean;              /* metres the top leans outwards per metre of height */
+	float rim_m;             /* > 0: a line's sheet whose edges are bent back this far */
+	enum sheet_shape shape;
+	struct relief_style relief; /* for profile segments of RELIEF_SHEET */
+	float interest;             /* divisions per metre, relative to the temple's density */
+	bool optional;              /* left out where the density cannot show it */
+};
+
+/* One line of the grid, across or along. */
+struct station {
+	uint16_t segment;
+	int8_t rim;   /* -1, 1: bent back at the low or high end */
+	float at;     /* 0..1 in the segment */
+	float step_m; /* to the next one: carving finer than that is left away */
+};
+
+/* Stations of a sheet at a density (divisions per metre at interest 1): *columns along the outline,
+ * *rows along the profile. Where the lists are not NULL they are filled, at most `most` each. A
+ * sheet that is left out has no columns. */
+void sheet_stations(const struct sheet *sheet, float density, struct station *across,
+		    uint32_t *columns, struct station *up, uint32_t *rows, uint32_t most);
+/* Columns close on themselves. */
+bool sheet_wraps(const struct sheet *sheet);
+uint64_t sheet_vertices(const struct sheet *sheet, uint32_t columns, uint32_t rows);
+uint64_t sheet_triangles(const struct sheet *sheet, uint32_t columns, uint32_t rows);
+
+/* Where a crossing lies, metres; *hollow: 0 on the crests of the relief, 1 at its bottom. */
+void sheet_at(const struct sheet *sheet, const struct station *across, const struct station *up,
+	      float position_m[3], float *hollow);
+
+#endif

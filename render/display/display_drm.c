@@ -1,0 +1,277 @@
+/* A KMS panel through GBM and EGL. Mesa finds the GPU that renders for the card, so display and
+ * render nodes may differ. */
+#include <errno.h>
+#include <stdlib.h>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <drm_fourcc.h>
+#include <gbm.h>
+
+#include "base/log.h"
+#include "render/display/context.h"
+#include "render/display/display.h"
+#include "render/display/display_backend.h"
+#include "render/display/drm_panel.h"
+#include "render/display/gl.h"
+
+struct drm_display {
+	struct drm_panel panel;
+	struct gbm_device *gbm;
+	struct gbm_surface *surface;
+	EGLDisplay egl;
+	EGLContext context;
+	EGLSurface egl_surface;
+	struct gbm_bo *shown, *next; /* borrowed from the surface until released */
+};
+
+static int create_surface(struct drm_display *drm)
+{
+	const uint32_t width = drm->panel.card.mode.hdisplay,
+		       height = drm->panel.card.mode.vdisplay;
+	const uint64_t linear = DRM_FORMAT_MOD_LINEAR;
+
+	if (drm->panel.card.modifier_count > 0)
+		drm->surface = gbm_surface_create_with_modifiers(
+			drm->gbm, width, height, GBM_FORMAT_XRGB8888, drm->panel.card.modifiers,
+			drm->panel.card.modifier_count);
+	if (!drm->surface)
+		drm->surface = gbm_surface_create_with_modifiers(drm->gbm, width, height,
+								 GBM_FORMAT_XRGB8888, &linear, 1);
+	if (!drm->surface)
+		drm->surface = gbm_surface_create(drm->gbm, width, height, GBM_FORMAT_XRGB8888,
+						  GBM_BO_USE_SCANOUT | GBM_BO_USE_RENDERING);
+	return drm->surface ? 0 : -ENODEV;
+}
+
+/* The EGL configuration whose pixels are what the plane scans out. */
+static EGLConfig choose_config(EGLDisplay egl)
+{
+	static const EGLint wanted[] = { EGL_SURFACE_TYPE,
+					 EGL_WINDOW_BIT,
+					 EGL_RENDERABLE_TYPE,
+					 EGL_OPENGL_ES2_BIT,
+					 EGL_RED_SIZE,
+					 8,
+					 EGL_GREEN_SIZE,
+					 8,
+					 EGL_BLUE_SIZE,
+					 8,
+					 EGL_DEPTH_SIZE,
+					 24,
+					 EGL_NONE };
+	EGLConfig configs[64];
+	EGLint count = 0, visual;
+
+	if (!eglChooseConfig(egl, wanted, configs, ARRAY_COUNT(configs), &count))
+		return NULL;
+	for (EGLint i = 0; i < count; i++)
+		if (eglGetConfigAttrib(egl, configs[i], EGL_NATIVE_VISUAL_ID, &visual) &&
+		    visual == GBM_FORMAT_XRGB8888)
+			return configs[i];
+	return NULL;
+}
+
+static int create_context(struct drm_display *drm)
+{
+	EGLConfig config;
+
+	drm->egl = eglGetPlatformDisplay(EGL_PLATFORM_GBM_KHR, drm->gbm, NULL);
+	if (drm->egl == EGL_NO_DISPLAY || !eglInitialize(drm->egl, NULL, NULL))
+		return -ENODEV;
+	eglBindAPI(EGL_OPENGL_ES_API);
+	config = choose_config(drm->egl);
+	if (!config)
+		return -ENODEV;
+	drm->context = context_create(drm->egl, config);
+	drm->egl_surface = eglCreatePlatformWindowSurface(drm->egl, config, drm->surface, NULL);
+	if (drm->context == EGL_NO_CONTEXT || drm->egl_surface == EGL_NO_SURFACE ||
+	    !eglMakeCurrent(drm->egl, drm->egl_surface, drm->egl_surface, drm->context))
+		return -ENODEV;
+	return 0;
+}
+
+static int create(struct display *display, const struct display_options *options)
+{
+	struct drm_display *drm = calloc(1, sizeof(*drm));
+	int rc;
+
+	if (!drm)
+		return -ENOMEM;
+	display->state = drm;
+	rc = drm_panel_open(&drm->panel,
+			    &(struct drm_card_options){
+				    .device = options->device,
+				    .connector = options->connector,
+				    .mode = { options->width_px, options->height_px, options->hz },
+				    .may_wait = options->kind == DISPLAY_DRM,
+			    });
+	if (rc < 0)
+		return rc;
+	drm->gbm = gbm_create_device(drm->panel.card.fd);
+	rc = drm->gbm ? create_surface(drm) : -ENODEV;
+	if (rc == 0)
+		rc = create_context(drm);
+	if (rc < 0) {
+		log_error("render", "board bug: no GLES2 context on the card (%s, EGL 0x%x)",
+			  drm->gbm ? gbm_device_get_backend_name(drm->gbm) : "no GBM",
+			  (unsigned)eglGetError());
+		return rc;
+	}
+	display->width_px = drm->panel.card.mode.hdisplay;
+	display->height_px = drm->panel.card.mode.vdisplay;
+	display->width_mm = drm->panel.card.width_mm;
+	display->fd = drm_panel_fd(&drm->panel);
+	return 0;
+}
+
+static void destroy(struct display *display)
+{
+	struct drm_display *drm = display->state;
+
+	if (!drm)
+		return;
+	if (drm->egl != EGL_NO_DISPLAY) {
+		eglMakeCurrent(drm->egl, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+		if (drm->egl_surface != EGL_NO_SURFACE)
+			eglDestroySurface(drm->egl, drm->egl_surface);
+		if (drm->context != EGL_NO_CONTEXT)
+			eglDestroyContext(drm->egl, drm->context);
+		eglTerminate(drm->egl);
+	}
+	if (drm->shown)
+		gbm_surface_release_buffer(drm->surface, drm->shown);
+	if (drm->next)
+		gbm_surface_release_buffer(drm->surface, drm->next);
+	if (drm->surface)
+		gbm_surface_destroy(drm->surface);
+	if (drm->gbm)
+		gbm_device_destroy(drm->gbm);
+	drm_panel_close(&drm->panel);
+	free(drm);
+	display->state = NULL;
+}
+
+static int dispatch(struct display *display)
+{
+	struct drm_display *drm = display->state;
+	bool flipped;
+	const int rc = drm_panel_dispatch(&drm->panel, &flipped);
+
+	if (flipped) {
+		if (drm->shown)
+			gbm_surface_release_buffer(drm->surface, drm->shown);
+		drm->shown = drm->next;
+		drm->next = NULL;
+	}
+	return rc;
+}
+
+static void begin(struct display *display)
+{
+	(void)display;
+	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the surface's own */
+}
+
+static void forget_framebuffer(struct gbm_bo *bo, void *data)
+{
+	drmModeRmFB(gbm_device_get_fd(gbm_bo_get_device(bo)), (uint32_t)(uintptr_t)data);
+}
+
+/* The KMS framebuffer of a buffer, made once and kept with it; 0: refused. */
+static uint32_t framebuffer_of(struct drm_display *drm, struct gbm_bo *bo)
+{
+	const uint32_t width = gbm_bo_get_width(bo), height = gbm_bo_get_height(bo);
+	const uint64_t modifier = gbm_bo_get_modifier(bo);
+	uint32_t handles[4] = { gbm_bo_get_handle(bo).u32 };
+	uint32_t strides[4] = { gbm_bo_get_stride(bo) };
+	uint32_t offsets[4] = { 0 };
+	uint64_t modifiers[4] = { modifier };
+	uint32_t fb = (uint32_t)(uintptr_t)gbm_bo_get_user_data(bo);
+	int rc = -1;
+
+	if (fb)
+		return fb;
+	if (drm->panel.card.modifier_count > 0 && modifier != DRM_FORMAT_MOD_INVALID &&
+	    gbm_bo_get_plane_count(bo) == 1)
+		rc = drmModeAddFB2WithModifiers(drm->panel.card.fd, width, height,
+						DRM_FORMAT_XRGB8888, handles, strides, offsets,
+						modifiers, &fb, DRM_MODE_FB_MODIFIERS);
+	if (rc < 0)
+		rc = drmModeAddFB2(drm->panel.card.fd, width, height, DRM_FORMAT_XRGB8888, handles,
+				   strides, offsets, &fb, 0);
+	if (rc < 0)
+		return 0;
+	gbm_bo_set_user_data(bo, (void *)(uintptr_t)fb, forget_framebuffer);
+	return fb;
+}
+
+static int present(struct display *display)
+{
+	struct drm_display *drm = display->state;
+	bool shown = false;
+	uint32_t fb;
+	int rc;
+
+	if (!eglSwapBuffers(drm->egl, drm->egl_surface))
+		return eglGetError() == EGL_CONTEXT_LOST ? -ENOTRECOVERABLE : -EIO;
+	drm->next = gbm_surface_lock_front_buffer(drm->surface);
+	if (!drm->next)
+		return -EIO;
+	fb = framebuffer_of(drm, drm->next);
+	rc = fb ? drm_panel_show(&drm->panel, fb, &shown) : -EIO;
+	if (!shown) {
+		gbm_surface_release_buffer(drm->surface, drm->next);
+		drm->next = NULL;
+	}
+	return rc;
+}
+
+static bool is_ready(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_ready(&drm->panel);
+}
+
+static bool is_dark(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_dark(&drm->panel);
+}
+
+static int wait_ms(const struct display *display)
+{
+	const struct drm_display *drm = display->state;
+
+	return drm_panel_wait_ms(&drm->panel);
+}
+
+static bool take_stale(struct display *display)
+{
+	struct drm_display *drm = display->state;
+
+	return drm_panel_take_stale(&drm->panel);
+}
+
+static int sleep_or_wake(struct display *display, bool asleep)
+{
+	struct drm_display *drm = display->state;
+
+	return drm_panel_sleep(&drm->panel, asleep);
+}
+
+const struct display_backend display_drm = {
+	.name = "KMS",
+	.create = create,
+	.destroy = destroy,
+	.dispatch = dispatch,
+	.begin = begin,
+	.present = present,
+	.ready = is_ready,
+	.dark = is_dark,
+	.wait_ms = wait_ms,
+	.take_stale = take_stale,
+	.sleep = sleep_or_wake,
+};

@@ -1,0 +1,395 @@
+#include "render/display/drm_card.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <drm_fourcc.h>
+#include <xf86drm.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+
+enum {
+	CARDS_MOST = 8,
+	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk, a boot splash go later */
+	CARD_LOOK_MS = 500,
+};
+
+/* ---- properties */
+
+/* Id of a property of an object, and its value where value is not NULL; 0: there is none. */
+static uint32_t property_id(int fd, uint32_t object, uint32_t type, const char *name,
+			    uint64_t *value)
+{
+	drmModeObjectProperties *list = drmModeObjectGetProperties(fd, object, type);
+	uint32_t id = 0;
+
+	for (uint32_t i = 0; list && id == 0 && i < list->count_props; i++) {
+		drmModePropertyRes *property = drmModeGetProperty(fd, list->props[i]);
+
+		if (property && strcmp(property->name, name) == 0) {
+			id = property->prop_id;
+			if (value)
+				*value = list->prop_values[i];
+		}
+		drmModeFreeProperty(property);
+	}
+	drmModeFreeObjectProperties(list);
+	return id;
+}
+
+static bool find_properties(struct drm_card *card)
+{
+	const uint32_t crtc = DRM_MODE_OBJECT_CRTC, plane = DRM_MODE_OBJECT_PLANE;
+	struct drm_card_properties *p = &card->properties;
+	const struct {
+		uint32_t *id;
+		uint32_t object, type;
+		const char *name;
+	} wanted[] = {
+		{ &p->connector_crtc, card->connector, DRM_MODE_OBJECT_CONNECTOR, "CRTC_ID" },
+		{ &p->crtc_mode, card->crtc, crtc, "MODE_ID" },
+		{ &p->crtc_active, card->crtc, crtc, "ACTIVE" },
+		{ &p->plane_fb, card->plane, plane, "FB_ID" },
+		{ &p->plane_crtc, card->plane, plane, "CRTC_ID" },
+		{ &p->plane_src_x, card->plane, plane, "SRC_X" },
+		{ &p->plane_src_y, card->plane, plane, "SRC_Y" },
+		{ &p->plane_src_w, card->plane, plane, "SRC_W" },
+		{ &p->plane_src_h, card->plane, plane, "SRC_H" },
+		{ &p->plane_crtc_x, card->plane, plane, "CRTC_X" },
+		{ &p->plane_crtc_y, card->plane, plane, "CRTC_Y" },
+		{ &p->plane_crtc_w, card->plane, plane, "CRTC_W" },
+		{ &p->plane_crtc_h, card->plane, plane, "CRTC_H" },
+	};
+
+	p->connector_link = property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR,
+					"link-status", NULL);
+
+	for (size_t i = 0; i < ARRAY_COUNT(wanted); i++) {
+		*wanted[i].id = property_id(card->fd, wanted[i].object, wanted[i].type,
+					    wanted[i].name, NULL);
+		if (*wanted[i].id == 0)
+			return false;
+	}
+	return true;
+}
+
+/* ---- choosing */
+
+static bool connector_has_name(const drmModeConnector *connector, const char *name)
+{
+	char own_name[64];
+
+	if (connector->connector_type == DRM_MODE_CONNECTOR_WRITEBACK)
+		return false; /* writes into memory */
+	if (!name)
+		return true;
+	snprintf(own_name, sizeof(own_name), "%s-%u",
+		 drmModeGetConnectorTypeName(connector->connector_type),
+		 connector->connector_type_id);
+	return strcmp(name, own_name) == 0;
+}
+
+static void choose_mode(struct drm_card *card, const drmModeConnector *connector,
+			const struct drm_mode_wish *wish)
+{
+	uint64_t edid = 0;
+	enum drm_mode_reason reason;
+
+	property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR, "EDID", &edid);
+	reason = drm_mode_choose(&card->mode, connector->modes, connector->count_modes, edid != 0,
+				 wish);
+	if (!card->connected)
+		log_warn("render", "no panel is connected: going on unseen");
+	else if (reason == DRM_MODE_UNKNOWN)
+		log_warn("render", "board bug: the panel has no mode %d x %d, taking %d x %d",
+			 wish->width_px, wish->height_px, card->mode.hdisplay, card->mode.vdisplay);
+	else if (reason == DRM_MODE_OTHER_RATE)
+		log_warn("render", "board bug: the panel has %d x %d not at %d Hz, taking %u",
+			 wish->width_px, wish->height_px, wish->hz, card->mode.vrefresh);
+	else if (reason == DRM_MODE_MADE)
+		log_info("render", "the panel does not say what it can: taking %d x %d at %u Hz",
+			 card->mode.hdisplay, card->mode.vdisplay, card->mode.vrefresh);
+}
+
+/* Bits of the CRTCs that the connector can be driven by. */
+static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
+{
+	uint32_t bits = 0;
+
+	for (int i = 0; i < connector->count_encoders; i++) {
+		drmModeEncoder *encoder = drmModeGetEncoder(fd, connector->encoders[i]);
+
+		if (encoder)
+			bits |= encoder->possible_crtcs;
+		drmModeFreeEncoder(encoder);
+	}
+	return bits;
+}
+
+/* The first connector of that name with a panel; where there is none and connected is false, the
+ * first of that name. */
+static bool choose_connector(struct drm_card *card, const drmModeRes *resources, bool connected,
+			     const struct drm_card_options *options, uint32_t *crtc_bits)
+{
+	for (int i = 0; i < resources->count_connectors; i++) {
+		drmModeConnector *connector =
+			drmModeGetConnector(card->fd, resources->connectors[i]);
+		const bool fits = connector && connector_has_name(connector, options->connector) &&
+				  (!connected || connector->connection == DRM_MODE_CONNECTED);
+
+		if (fits) {
+			card->connector = connector->connector_id;
+			card->connected = connector->connection == DRM_MODE_CONNECTED;
+			card->width_mm = (int)connector->mmWidth;
+			choose_mode(card, connector, &options->mode);
+			*crtc_bits = possible_crtcs(card->fd, connector);
+		}
+		drmModeFreeConnector(connector);
+		if (fits)
+			return true;
+	}
+	return false;
+}
+
+/* Modifiers the plane takes for XRGB8888, from its IN_FORMATS blob. */
+static void read_modifiers(struct drm_card *card)
+{
+	uint64_t blob_id = 0;
+	drmModePropertyBlobRes *blob;
+	drmModeFormatModifierIterator at = { 0 };
+
+	if (!property_id(card->fd, card->plane, DRM_MODE_OBJECT_PLANE, "IN_FORMATS", &blob_id))
+		return;
+	blob = drmModeGetPropertyBlob(card->fd, (uint32_t)blob_id);
+	if (!blob)
+		return;
+	while (drmModeFormatModifierBlobIterNext(blob, &at))
+		if (at.fmt == DRM_FORMAT_XRGB8888 && card->modifier_count < DRM_MODIFIERS_MOST)
+			card->modifiers[card->modifier_count++] = at.mod;
+	drmModeFreePropertyBlob(blob);
+}
+
+/* The primary plane of the CRTC with the given index; 0: none. */
+static uint32_t primary_plane(int fd, int crtc_index)
+{
+	drmModePlaneRes *planes = drmModeGetPlaneResources(fd);
+	uint32_t found = 0;
+
+	for (uint32_t i = 0; planes && found == 0 && i < planes->count_planes; i++) {
+		drmModePlane *plane = drmModeGetPlane(fd, planes->planes[i]);
+		uint64_t type = DRM_PLANE_TYPE_OVERLAY;
+
+		if (plane && (plane->possible_crtcs & 1u << crtc_index) &&
+		    property_id(fd, plane->plane_id, DRM_MODE_OBJECT_PLANE, "type", &type) &&
+		    type == DRM_PLANE_TYPE_PRIMARY)
+			found = plane->plane_id;
+		drmModeFreePlane(plane);
+	}
+	drmModeFreePlaneResources(planes);
+	return found;
+}
+
+static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint32_t crtc_bits)
+{
+	for (int i = 0; i < resources->count_crtcs; i++) {
+		if (!(crtc_bits & 1u << i))
+			continue;
+		card->crtc = resources->crtcs[i];
+		card->crtc_before = drmModeGetCrtc(card->fd, card->crtc);
+		if (card->atomic) {
+			card->plane = primary_plane(card->fd, i);
+			card->atomic = card->plane != 0 && find_properties(card);
+		}
+		if (card->atomic)
+			read_modifiers(card);
+		return 0;
+	}
+	return -ENODEV;
+}
+
+static int open_card(struct drm_card *card, const char *device, bool connected,
+		     const struct drm_card_options *options)
+{
+	drmModeRes *resources;
+	uint32_t crtc_bits = 0;
+	int rc;
+
+	*card = (struct drm_card){ .fd = open(device, O_RDWR | O_CLOEXEC | O_NONBLOCK) };
+	if (card->fd < 0)
+		return -errno;
+	drmSetClientCap(card->fd, DRM_CLIENT_CAP_UNIVERSAL_PLANES, 1);
+	card->atomic = drmSetClientCap(card->fd, DRM_CLIENT_CAP_ATOMIC, 1) == 0 &&
+		       !getenv("GOPURA_DRM_LEGACY");
+	resources = drmModeGetResources(card->fd);
+	if (!resources)
+		rc = -ENODEV; /* renders, but shows nothing: another card drives the panel */
+	else if (!choose_connector(card, resources, connected, options, &crtc_bits))
+		rc = -ENXIO;
+	else if (!drmIsMaster(card->fd) && drmSetMaster(card->fd) < 0)
+		rc = -EBUSY;
+	else
+		rc = choose_crtc(card, resources, crtc_bits);
+	drmModeFreeResources(resources);
+	if (rc < 0)
+		drm_card_close(card);
+	return rc;
+}
+
+static const char *why_not(int rc)
+{
+	switch (rc) {
+	case -ENXIO:
+		return "no connected panel that fits";
+	case -EBUSY:
+		return "another program shows pictures on it";
+	case -ENODEV:
+		return "it drives no panel";
+	default:
+		return strerror(-rc);
+	}
+}
+
+/* -EBUSY, where another program has one that would do: *taken is its number. */
+static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
+		    const struct drm_card_options *options)
+{
+	char path[32];
+	int result = -ENODEV;
+
+	for (int i = 0; i < CARDS_MOST; i++) {
+		int rc;
+
+		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
+		rc = open_card(out, options->device ? options->device : path, connected, options);
+		if (rc == 0)
+			return 0;
+		if (rc == -EBUSY && result != -EBUSY) {
+			result = -EBUSY;
+			*taken = i;
+		}
+		if (options->device) {
+			/* What is waited for, or looked at again without a panel, is no fault. */
+			if (!options->may_wait || (rc != -EBUSY && (rc != -ENXIO || !connected)))
+				log_error("render", "%s: %s", options->device, why_not(rc));
+			return result;
+		}
+		if (rc != -ENOENT && connected && !told)
+			log_info("render", "%s: %s", path, why_not(rc));
+	}
+	return result;
+}
+
+static int open_once(struct drm_card *out, bool told, int *taken,
+		     const struct drm_card_options *options)
+{
+	int rc = open_any(out, true, told, taken, options);
+
+	/* A panel that another program has is worth more than a card without one. */
+	if (rc == -ENODEV && options->may_wait)
+		rc = open_any(out, false, told, taken, options);
+	return rc;
+}
+
+/* A card is given up with its descriptor, so it is opened anew each time: the first to open it when
+ * nobody has it is its master, and no other call needs no privilege. */
+static int open_when_free(struct drm_card *out, const struct drm_card_options *options)
+{
+	const struct timespec pause = { .tv_nsec = CARD_LOOK_MS * 1000000l };
+	const int64_t until_ms = clock_now_ms() + CARD_WAIT_MS;
+	char path[32];
+	const char *name = options->device ? options->device : path;
+	int taken, rc = open_once(out, false, &taken, options);
+
+	if (rc != -EBUSY || !options->may_wait)
+		return rc < 0 ? -ENODEV : 0;
+	snprintf(path, sizeof(path), "/dev/dri/card%d", taken);
+	log_warn("render", "another program shows pictures on %s: waiting until it ends", name);
+	while (rc == -EBUSY && clock_now_ms() < until_ms) {
+		nanosleep(&pause, NULL);
+		rc = open_once(out, true, &taken, options);
+	}
+	if (rc == -EBUSY)
+		log_error("render",
+			  "another program still shows pictures on %s: end it (a desktop, a boot "
+			  "splash, another kiosk), or name another card by --device",
+			  name);
+	return rc < 0 ? -ENODEV : 0;
+}
+
+/* Is there none at all, or none that we may open yet? */
+static bool is_late(const struct drm_card_options *options)
+{
+	char path[32];
+
+	if (options->device)
+		return false;
+	for (int i = 0; i < CARDS_MOST; i++) {
+		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
+		if (access(path, R_OK | W_OK) == 0)
+			return false;
+	}
+	return true;
+}
+
+int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
+{
+	const struct timespec pause = { .tv_nsec = CARD_LOOK_MS * 1000000l };
+	const int64_t until_ms = clock_now_ms() + CARD_WAIT_MS;
+
+	if (options->may_wait && is_late(options)) {
+		log_warn("render", "no graphics card yet: waiting for one");
+		while (is_late(options) && clock_now_ms() < until_ms)
+			nanosleep(&pause, NULL);
+		if (is_late(options)) {
+			log_error("render",
+				  "no graphics card under /dev/dri that may be opened: has the "
+				  "system a driver for it, and is this user in the group video?");
+			return -ENODEV;
+		}
+	}
+	return open_when_free(out, options);
+}
+
+enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)
+{
+	drmModeRes *resources = drmModeGetResources(card->fd);
+	struct drm_card now = *card;
+	uint32_t crtc_bits;
+	uint64_t link = DRM_MODE_LINK_STATUS_GOOD;
+	bool there, same;
+
+	there = resources && choose_connector(&now, resources, true, options, &crtc_bits);
+	drmModeFreeResources(resources);
+	if (!there) {
+		card->connected = false;
+		return DRM_CARD_NO_PANEL;
+	}
+	same = now.connector == card->connector && now.mode.hdisplay == card->mode.hdisplay &&
+	       now.mode.vdisplay == card->mode.vdisplay;
+	if (!same)
+		return DRM_CARD_OTHER_PANEL;
+	property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR, "link-status", &link);
+	card->link_is_bad = link == DRM_MODE_LINK_STATUS_BAD;
+	card->connected = true;
+	card->mode = now.mode;
+	return DRM_CARD_SAME_PANEL;
+}
+
+void drm_card_close(struct drm_card *card)
+{
+	drmModeCrtc *before = card->crtc_before;
+
+	if (before && before->buffer_id)
+		drmModeSetCrtc(card->fd, before->crtc_id, before->buffer_id, before->x, before->y,
+			       &card->connector, 1, &before->mode);
+	drmModeFreeCrtc(before);
+	if (card->fd >= 0)
+		close(card->fd);
+	*card = (struct drm_card){ .fd = -1 };
+}

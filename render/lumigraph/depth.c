@@ -1,0 +1,295 @@
+#include "render/lumigraph/depth.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+#include "render/lumigraph/aim.h"
+
+static const char draw_vertex[] =
+	"attribute vec3 a_position;\n"
+	"uniform vec4 u_lattice;\n" /* of the lattice's origin from the point, metres; step */
+	"uniform mat3 u_axes;\n"
+	"uniform float u_far;\n"
+	"uniform vec4 u_window;\n"
+	"uniform vec2 u_base;\n" /* depth to count from, in units; a unit's metres */
+	"varying float v_depth;\n"
+	"void main() {\n"
+	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
+	/* Sampling points lie as far apart as the model is large, and as far from it. */
+	"	float n = u_far * 0.0007;\n"
+	/* Row 0 of a face is its top and row 0 of a texture its bottom: y is turned over. */
+	"	vec2 at = (q.xy - u_window.xy * q.z) / u_window.zw;\n"
+	"	gl_Position = vec4(at.x, -at.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
+	"			   q.z);\n"
+	"	v_depth = q.z / u_base.y - u_base.x;\n"
+	"}\n";
+
+/* Two bytes: a unit (32 steps) has eight of the lower one's. */
+static const char draw_fragment[] =
+	"uniform float u_high;\n"
+	"varying float v_depth;\n"
+	"void main() {\n"
+	"	float high = floor(v_depth / 8.0);\n"
+	"	float low = floor((v_depth - 8.0 * high) * 32.0);\n"
+	"	gl_FragColor = vec4(clamp(u_high + high, 0.0, 255.0), low, 0.0, 255.0) / 255.0;\n"
+	"}\n";
+
+/* Bytes stay apart, as mediump holds no sixteen bits; what is near is told by eleven of them. */
+static const char grow_fragment[] =
+	"uniform FINE sampler2D u_raw;\n" /* by default lowp */
+	"uniform float u_texel;\n"
+	"varying vec2 v_at;\n"
+	"vec3 depth_at(vec2 at) {\n" /* bytes; both as one number */
+	"	vec4 t = texture2D(u_raw, at);\n"
+	"	vec2 d = t.a < 0.5 ? vec2(255.0) : floor(t.rg * 255.0 + 0.5);\n"
+	"	return vec3(d, d.x + d.y / 256.0);\n"
+	"}\n"
+	"void main() {\n"
+	"	vec3 own = depth_at(v_at), nearest = own;\n"
+	"	for (int y = -1; y <= 1; y++)\n"
+	"		for (int x = -1; x <= 1; x++) {\n"
+	"			vec3 d = depth_at(v_at + u_texel * vec2(float(x), float(y)));\n"
+	"			nearest = d.z < nearest.z ? d : nearest;\n"
+	"		}\n"
+	/* A step: more than a surface seen at a grazing angle climbs in a texel. */
+	"	vec2 d = own.z - nearest.z > 0.06 * own.z ? nearest.xy : own.xy;\n"
+	"	float high = floor(d.x / 8.0), middle = floor(d.y / 32.0);\n"
+	"	gl_FragColor = vec4(high / 31.0, ((d.x - 8.0 * high) * 8.0 + middle) / 63.0,\n"
+	"			    (d.y - 32.0 * middle) / 31.0, 1.0);\n"
+	"}\n";
+
+static int build_programs(struct depth *depth)
+{
+	const struct gl_program_source draw = {
+		.name = "face depth",
+		.vertex = (const char *const[]){ draw_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, draw_fragment, NULL },
+		.attributes = (const char *const[]){ "a_position", NULL },
+	};
+	const struct gl_program_source grow = {
+		.name = "face depth, grown",
+		.vertex = (const char *const[]){ gl_square_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, grow_fragment, NULL },
+		.attributes = gl_square_attributes,
+	};
+	int rc = gl_program_build(&depth->draw_program, &draw);
+	if (rc == 0)
+		rc = gl_program_build(&depth->grow_program, &grow);
+	if (rc < 0)
+		return rc;
+	depth->lattice = glGetUniformLocation(depth->draw_program, "u_lattice");
+	depth->axes = glGetUniformLocation(depth->draw_program, "u_axes");
+	depth->far_m = glGetUniformLocation(depth->draw_program, "u_far");
+	depth->window = glGetUniformLocation(depth->draw_program, "u_window");
+	depth->base = glGetUniformLocation(depth->draw_program, "u_base");
+	depth->high = glGetUniformLocation(depth->draw_program, "u_high");
+	glUseProgram(depth->grow_program);
+	glUniform1i(glGetUniformLocation(depth->grow_program, "u_raw"), 0);
+	glUniform1f(glGetUniformLocation(depth->grow_program, "u_texel"),
+		    1.0f / (float)depth->layout.face_px);
+	return 0;
+}
+
+static int make_sheet_of(struct depth *depth, int at, GLenum format, GLenum type, bool *complete)
+{
+	const struct depth_layout *layout = &depth->layout;
+	const struct gl_texture_options sheet = { .width_px = layout->across * layout->face_px,
+						  .height_px = layout->rows * layout->face_px,
+						  .format = format,
+						  .type = type,
+						  .filter = GL_NEAREST,
+						  .repeat = depth->repeats };
+	int rc = gl_texture_create(&depth->sheet[at], &sheet);
+	if (rc < 0)
+		return rc;
+	glGenFramebuffers(1, &depth->framebuffer[at]);
+	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[at]);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+			       depth->sheet[at], 0);
+	*complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+	return gl_check("making a sheet of depths");
+}
+
+static int make_sheet(struct depth *depth, int at)
+{
+	bool complete;
+	int rc = make_sheet_of(depth, at, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, &complete);
+	if (rc < 0 || complete)
+		return rc;
+	/* GLES2 leaves open what can be drawn into; 5, 6 and 5 bits survive in 8 as well. */
+	glDeleteFramebuffers(1, &depth->framebuffer[at]);
+	glDeleteTextures(1, &depth->sheet[at]);
+	rc = make_sheet_of(depth, at, GL_RGBA, GL_UNSIGNED_BYTE, &complete);
+	return rc < 0 || complete ? rc : -ENOTSUP;
+}
+
+int depth_init(struct depth *depth, const struct depth_layout *layout)
+{
+	memset(depth, 0, sizeof(*depth));
+	depth->layout = *layout;
+	depth->repeats = !gl_has_highp();
+	depth->far_limit_m = 1;
+	int rc = build_programs(depth);
+	if (rc == 0)
+		rc = gl_target_create(&depth->raw, layout->face_px, layout->face_px);
+	for (int i = 0; i < layout->sheets && rc == 0; i++)
+		rc = make_sheet(depth, i);
+	if (rc < 0)
+		depth_finish(depth);
+	return rc;
+}
+
+void depth_finish(struct depth *depth)
+{
+	gl_target_destroy(&depth->raw);
+	if (depth->sheet[0]) { /* else there may be no context */
+		glDeleteFramebuffers(DEPTH_SHEETS_MOST, depth->framebuffer);
+		glDeleteTextures(DEPTH_SHEETS_MOST, depth->sheet);
+	}
+	if (depth->draw_program)
+		glDeleteProgram(depth->draw_program);
+	if (depth->grow_program)
+		glDeleteProgram(depth->grow_program);
+	memset(depth, 0, sizeof(*depth));
+}
+
+void depth_clear(struct depth *depth, float far_m)
+{
+	memset(depth->face, 0, sizeof(depth->face));
+	depth->far_limit_m = far_m;
+}
+
+float depth_slack_m(const struct depth *depth)
+{
+	return depth->far_limit_m / 6800;
+}
+
+/* ---- windows */
+
+struct rectangle {
+	float low[2], high[2];
+};
+
+/* What shows of an edge in a face's plane; nothing behind the point. */
+static void add_edge(struct rectangle *out, const float a[3], const float b[3])
+{
+	const float least = 1e-3f, *ends[2] = { a, b };
+	for (int i = 0; i < 2; i++) {
+		const float *p = ends[i], *q = ends[1 - i];
+		float part = p[2] >= least ? 0 : (least - p[2]) / (q[2] - p[2]);
+		if (p[2] < least && q[2] < least)
+			return;
+		float z = p[2] + part * (q[2] - p[2]);
+		for (int k = 0; k < 2; k++) {
+			float at = (p[k] + part * (q[k] - p[k])) / z;
+			out->low[k] = vec_least(out->low[k], at);
+			out->high[k] = vec_most(out->high[k], at);
+		}
+	}
+}
+
+/* Of the face that part in which the box shows, with a texel around it. */
+static void find_window(float window[4], const struct cube_axes *axes, const float sample_m[3],
+			const struct root_page *root, int face_px)
+{
+	struct rectangle r = { { 1, 1 }, { -1, -1 } };
+	float corner[8][3];
+	for (int c = 0; c < 8; c++) {
+		float to[3];
+		for (int i = 0; i < 3; i++)
+			to[i] = (c >> i & 1 ? root->box_max_m[i] : root->box_min_m[i]) -
+				sample_m[i];
+		corner[c][0] = vec_dot(to, axes->right);
+		corner[c][1] = vec_dot(to, axes->up);
+		corner[c][2] = vec_dot(to, axes->forward);
+	}
+	for (int c = 0; c < 8; c++)
+		for (int i = 0; i < 3; i++)
+			if (!(c >> i & 1))
+				add_edge(&r, corner[c], corner[c | 1 << i]);
+	for (int k = 0; k < 2; k++) {
+		float texel = 4 / (float)face_px;
+		float low = vec_most(r.low[k] - texel, -1), high = vec_least(r.high[k] + texel, 1);
+		if (high - low < texel) {
+			low = -1;
+			high = 1;
+		}
+		window[k] = (low + high) / 2;
+		window[2 + k] = (high - low) / 2;
+	}
+}
+
+/* ---- faces */
+
+void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
+		 const struct root_page *root)
+{
+	const struct lattice *lattice = &root->lattice;
+	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
+	float columns[9];
+	for (int i = 0; i < 3; i++) {
+		columns[3 * i + 0] = axes->right[i];
+		columns[3 * i + 1] = axes->up[i];
+		columns[3 * i + 2] = axes->forward[i];
+	}
+	find_window(depth->begun, axes, sample_m, root, depth->layout.face_px);
+	gl_target_bind(&depth->raw);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	glUseProgram(depth->draw_program);
+	glUniform4f(depth->lattice, (float)(lattice->origin_m[0] - sample_m[0]),
+		    (float)(lattice->origin_m[1] - sample_m[1]),
+		    (float)(lattice->origin_m[2] - sample_m[2]), (float)lattice->step_m);
+	glUniformMatrix3fv(depth->axes, 1, GL_FALSE, columns);
+	glUniform1f(depth->far_m, depth->far_limit_m);
+	glUniform4fv(depth->window, 1, depth->begun);
+	memcpy(depth->forward, axes->forward, sizeof(depth->forward));
+	depth->point_m = vec_dot(axes->forward, sample_m);
+}
+
+void depth_patch(const struct depth *depth, const float centre_m[3])
+{
+	float unit_m = aim_unit_m(depth->far_limit_m);
+	float units = (vec_dot(depth->forward, centre_m) - depth->point_m) / unit_m;
+	float high = floorf(units / 8);
+	glUniform2f(depth->base, 8 * high, unit_m);
+	glUniform1f(depth->high, high);
+}
+
+void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
+{
+	struct depth_place place = depth_place(depth, slot);
+	int side_px = depth->layout.face_px;
+	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[place.sheet]);
+	glViewport(place.column * side_px, place.row * side_px, side_px, side_px);
+	glDisable(GL_DEPTH_TEST);
+	glDisable(GL_DITHER); /* its bits are no colour's */
+	glUseProgram(depth->grow_program);
+	gl_bind_texture(0, depth->raw.colour);
+	gl_draw_square();
+	glEnable(GL_DEPTH_TEST);
+	struct depth_face *drawn = &depth->face[slot];
+	*drawn = (struct depth_face){ .ready = true, .key = face, .cut = cut };
+	memcpy(drawn->window, depth->begun, sizeof(drawn->window));
+}
+
+struct depth_place depth_place(const struct depth *depth, int slot)
+{
+	const struct depth_layout *layout = &depth->layout;
+	int row = slot / layout->across;
+	return (struct depth_place){ .sheet = row / layout->rows,
+				     .column = slot % layout->across,
+				     .row = row % layout->rows };
+}
+
+bool depth_ready(const struct depth *depth, int slot, face_key face)
+{
+	return depth->face[slot].ready && depth->face[slot].key == face;
+}

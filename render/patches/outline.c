@@ -1,0 +1,177 @@
+#include "render/patches/outline.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+
+/* Room for more items behind count; doubles. */
+static bool make_room(void *items, uint32_t *room, uint32_t needed, size_t item_bytes)
+{
+	uint32_t larger = *room ? *room : 64;
+	void *old, *grown;
+
+	if (needed <= *room)
+		return true;
+	while (larger < needed)
+		larger *= 2;
+	memcpy(&old, items, sizeof(old));
+	grown = realloc(old, larger * item_bytes);
+	if (!grown)
+		return false;
+	memcpy(items, &grown, sizeof(grown));
+	*room = larger;
+	return true;
+}
+
+/* A corner of a small triangle: where, and how far within. */
+struct corner {
+	float at[3];
+	int value;
+};
+
+/* Where the outline crosses from a to b, which lie on its two sides. */
+static void cross(float out[3], const struct corner *a, const struct corner *b)
+{
+	/* From the one within, so that neighbours agree bit for bit. */
+	const struct corner *in = a->value > 0 ? a : b, *off = a->value > 0 ? b : a;
+	float share = (float)in->value / (float)(in->value - off->value);
+
+	for (int i = 0; i < 3; i++)
+		out[i] = in->at[i] + share * (off->at[i] - in->at[i]);
+}
+
+static void add_triangle(struct outline *o, const float a[3], const float b[3], const float c[3])
+{
+	memcpy(o->within[o->within_count++], a, sizeof(*o->within));
+	memcpy(o->within[o->within_count++], b, sizeof(*o->within));
+	memcpy(o->within[o->within_count++], c, sizeof(*o->within));
+}
+
+/* A small triangle; at most one line and two triangles of it. */
+static bool add_small(struct outline *o, const struct corner *corner[3], const float normal[3])
+{
+	float ab[3], ac[3];
+	int within = 0, alone = 0;
+
+	for (int k = 0; k < 3; k++)
+		within += corner[k]->value > 0;
+	if (within == 0)
+		return true;
+	if (!make_room(&o->lines, &o->line_room, o->line_count + 1, sizeof(*o->lines)) ||
+	    !make_room(&o->within, &o->within_room, o->within_count + 6, sizeof(*o->within)))
+		return false;
+	if (within == 3) {
+		add_triangle(o, corner[0]->at, corner[1]->at, corner[2]->at);
+		return true;
+	}
+	/* The corner that is alone on its side. */
+	while ((corner[alone]->value > 0) != (within == 1))
+		alone++;
+	const struct corner *a = corner[alone], *b = corner[(alone + 1) % 3],
+			    *c = corner[(alone + 2) % 3];
+	cross(ab, a, b);
+	cross(ac, a, c);
+	if (within == 1) {
+		add_triangle(o, a->at, ab, ac);
+	} else {
+		add_triangle(o, ab, b->at, c->at);
+		add_triangle(o, ab, c->at, ac);
+	}
+	struct outline_line *line = &o->lines[o->line_count++];
+	memcpy(line->at[0], ab, sizeof(ab));
+	memcpy(line->at[1], ac, sizeof(ac));
+	memcpy(line->normal, normal, sizeof(line->normal));
+	return true;
+}
+
+static void place_corner(struct corner *out, float at[3][3], int level, const int8_t *values, int i,
+			 int j)
+{
+	const float n = (float)(1 << level), v = (float)i / n, w = (float)j / n;
+
+	out->value = values[label_value_at(level, i, j)];
+	for (int x = 0; x < 3; x++)
+		out->at[x] = at[0][x] + v * (at[1][x] - at[0][x]) + w * (at[2][x] - at[0][x]);
+}
+
+/* A triangle that the outline crosses. */
+static bool add_divided(struct outline *o, const struct solid *solid, uint32_t triangle,
+			const int8_t *values, int level)
+{
+	const uint16_t *index = &solid->indices[3 * triangle];
+	float at[3][3], ab[3], ac[3], normal[3];
+	const int n = 1 << level;
+
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			at[k][i] = solid->positions[index[k]][i];
+	vec_sub(ab, at[1], at[0]);
+	vec_sub(ac, at[2], at[0]);
+	vec_cross(normal, ab, ac);
+	vec_normalise(normal);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n - i; j++) {
+			struct corner corner[4];
+			const struct corner *up[3] = { &corner[0], &corner[1], &corner[2] };
+			const struct corner *down[3] = { &corner[1], &corner[3], &corner[2] };
+
+			place_corner(&corner[0], at, level, values, i, j);
+			place_corner(&corner[1], at, level, values, i + 1, j);
+			place_corner(&corner[2], at, level, values, i, j + 1);
+			if (!add_small(o, up, normal))
+				return false;
+			if (i + j + 2 > n)
+				continue;
+			place_corner(&corner[3], at, level, values, i + 1, j + 1);
+			if (!add_small(o, down, normal))
+				return false;
+		}
+	return true;
+}
+
+static bool add_of(struct outline *o, const struct solid *solid, uint32_t triangle,
+		   const struct label_group *labels, uint32_t patch, uint32_t part)
+{
+	const struct label_patch *of = &labels->patches[patch];
+	const uint32_t known_as = solid->order[triangle];
+	uint32_t first, count;
+
+	if (label_holds(labels, patch, known_as, part)) {
+		if (!make_room(&o->whole, &o->whole_room, o->whole_count + 3, sizeof(*o->whole)))
+			return false;
+		memcpy(&o->whole[o->whole_count], &solid->indices[3 * triangle],
+		       3 * sizeof(*o->whole));
+		o->whole_count += 3;
+		return true;
+	}
+	count = label_borders(of, known_as, &first);
+	for (uint32_t b = first; b < first + count; b++)
+		if (of->borders[b].part == part)
+			return add_divided(o, solid, triangle,
+					   &labels->values[of->borders[b].first],
+					   of->borders[b].level);
+	return true;
+}
+
+int outline_create(struct outline *out, const struct solid *solid, const struct label_group *labels,
+		   uint32_t patch, uint32_t part)
+{
+	*out = (struct outline){ 0 };
+	for (uint32_t t = 0; t < labels->patches[patch].triangle_count; t++) {
+		if (add_of(out, solid, t, labels, patch, part))
+			continue;
+		outline_finish(out);
+		return -ENOMEM;
+	}
+	return 0;
+}
+
+void outline_finish(struct outline *outline)
+{
+	free(outline->lines);
+	free(outline->whole);
+	free(outline->within);
+	*outline = (struct outline){ 0 };
+}

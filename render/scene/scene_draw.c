@@ -1,0 +1,340 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "geometry/vec.h"
+#include "render/scene/scene_parts.h"
+
+enum {
+	PLAN_BUDGET_US = 5000,
+	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
+	SEASON_US = 1000000,         /* a view for which it is known what there is no room for */
+	SHARE_PX_MOST = 320,         /* the picture from which image_share is counted */
+};
+
+/* ---- depth of faces */
+
+/* What the eye sees is tested against these depths: a surface that is drawn but simplified away
+ * here would take the colours of what lies before it. */
+static const float depth_error_px = 0.25f;
+
+/* Whether a sphere can be in a face's quarter of space. */
+static bool face_sees(const struct cube_axes *axes, const float sample[3], const float centre[3],
+		      float radius)
+{
+	float to[3];
+	vec_sub(to, centre, sample);
+	float depth = vec_dot(to, axes->forward), reach = radius * 1.4143f;
+	return depth > -radius && fabsf(vec_dot(to, axes->right)) < depth + reach &&
+	       fabsf(vec_dot(to, axes->up)) < depth + reach;
+}
+
+static void draw_depth_face(struct scene *scene, int slot, face_key face)
+{
+	const struct cut_options options = { .error_px = depth_error_px,
+					     .triangle_budget = scene->options.triangle_budget };
+	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
+	float sample[3];
+	repository_point_m(&scene->repository, face / CUBE_FACES, sample);
+	cut_update_around(&scene->around, sample, (float)scene->depth.layout.face_px / 2,
+			  scene->geometry.loaded, &options);
+	depth_begin(&scene->depth, face, sample, &scene->root);
+	glEnableVertexAttribArray(0);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	for (uint32_t i = 0; i < scene->around.patch_count; i++) {
+		uint32_t p = scene->around.patches[i];
+		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
+		if (!face_sees(axes, sample, patch->centre_m, patch->radius_m))
+			continue;
+		geometry_bind(&scene->geometry, p);
+		depth_patch(&scene->depth, patch->centre_m);
+		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
+	}
+	depth_end(&scene->depth, slot, face, scene->cut_signature);
+}
+
+/* Faces without depth first, within the time; then one that knew a coarser mesh. */
+void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
+{
+	int outdated = -1;
+	scene->depth_is_stale = false;
+	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
+		const struct tiles_face *face = &scene->tiles.faces[i];
+		if (!face->used || face->stamp != scene->tiles.stamp)
+			continue;
+		if (depth_ready(&scene->depth, i, face->key)) {
+			if (scene->depth.face[i].cut != scene->cut_signature)
+				outdated = i;
+			continue;
+		}
+		if (out->depth_faces_drawn > 0 && clock_now_us() >= until_us) {
+			scene->depth_is_stale = true;
+			return;
+		}
+		draw_depth_face(scene, i, face->key);
+		out->depth_faces_drawn++;
+	}
+	if (outdated < 0)
+		return;
+	scene->depth_is_stale = true;
+	if (out->depth_faces_drawn > 0)
+		return;
+	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key);
+	out->depth_faces_drawn++;
+}
+
+/* ---- pictures */
+
+/* A run of triangles of the patch that is bound, not drawn yet: pieces that need no uniforms of
+ * their own are drawn at once. */
+struct run {
+	uint32_t patch, first, count;
+};
+
+static void end_run(struct run *run)
+{
+	if (run->count > 0)
+		geometry_draw(run->first, run->count);
+	run->count = 0;
+}
+
+static void draw_piece(struct scene *scene, const struct surface_frame *frame,
+		       const struct visible_piece *v, struct run *run)
+{
+	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+	const struct piece *piece = &patch->content.solid.pieces[v->piece];
+	bool joins = surface_faces(v->program) == 0 && v->patch == run->patch &&
+		     piece->first_triangle == run->first + run->count;
+	if (!joins)
+		end_run(run);
+	if (v->patch != run->patch) {
+		geometry_bind(&scene->geometry, v->patch);
+		if (!view_is_cut(frame->view))
+			geometry_cull(&scene->geometry, v->patch);
+		surface_dissolve(&scene->surface, v->range);
+	}
+	run->patch = v->patch;
+	if (surface_faces(v->program) > 0)
+		surface_blend(&scene->surface, frame, v->program, patch->pieces[v->piece].blend,
+			      piece, scene_patch_error_m(scene, v->patch));
+	if (run->count == 0)
+		run->first = piece->first_triangle;
+	run->count += piece->triangle_count;
+}
+
+/* Program by program, so that each sets its uniforms once. */
+static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
+{
+	const uint32_t count = scene->visible_count + scene->leaving_count;
+	uint32_t with[SURFACE_PROGRAMS] = { 0 };
+	for (uint32_t i = 0; i < count; i++) {
+		struct visible_piece *v = &scene->visible[i];
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		v->program = surface_choose(frame, state->blend, v->range);
+		if (v->program >= 0)
+			with[v->program]++;
+	}
+	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
+		struct run run = { .patch = HIERARCHY_NONE };
+		if (with[program] == 0)
+			continue;
+		surface_begin(&scene->surface, frame, program);
+		for (uint32_t i = 0; i < count; i++)
+			if (scene->visible[i].program == program)
+				draw_piece(scene, frame, &scene->visible[i], &run);
+		end_run(&run);
+	}
+	geometry_cull_none();
+}
+
+/* What it is drawn into is bound. */
+static void begin_picture(const struct scene *scene)
+{
+	const uint8_t *sky = scene->root.background;
+	glDisable(GL_BLEND);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+static void draw_picture(struct scene *scene, const struct view *view, bool shares)
+{
+	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
+	const struct surface_frame frame = {
+		.view = view,
+		.root = &scene->root,
+		.tiles = images ? &scene->tiles : NULL,
+		.depth = &scene->depth,
+		.repository = &scene->repository,
+		.rake = scene->tools.rake,
+		.even = scene->options.mode == SCENE_CORNERS,
+		.shares = shares,
+	};
+	draw_pieces(scene, &frame);
+	if (!shares)
+		scene_draw_mark(scene, view);
+}
+
+/* How much of the model's pixels images colour, from a small picture. */
+static float count_share(struct scene *scene)
+{
+	struct gl_target small;
+	int width = scene->view.width_px, height = scene->view.height_px;
+	while (width > SHARE_PX_MOST) {
+		width /= 2;
+		height /= 2;
+	}
+	if (gl_target_create(&small, width, height > 0 ? height : 1) < 0)
+		return -1;
+	begin_picture(scene);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT);
+	draw_picture(scene, &scene->view, true);
+	size_t pixels = (size_t)small.width_px * (size_t)small.height_px;
+	uint8_t *rgba = malloc(4 * pixels);
+	double shares = 0, covered = 0;
+	if (rgba && gl_target_read(&small, rgba) == 0) {
+		for (size_t i = 0; i < pixels; i++) {
+			covered += rgba[4 * i + 3] > 127;
+			shares += rgba[4 * i + 3] > 127 ? rgba[4 * i] / 255.0 : 0;
+		}
+	}
+	free(rgba);
+	gl_target_destroy(&small);
+	return covered > 0 ? (float)(shares / covered) : 0;
+}
+
+/* ---- the frame */
+
+static bool is_busy(const struct scene *scene)
+{
+	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
+	       scene->depth_is_stale || pool_busy(scene->pool) > 0;
+}
+
+static bool view_changed(const struct scene *scene, const struct view *view)
+{
+	const struct view *was = &scene->view;
+	return !scene->has_view || memcmp(was->eye_m, view->eye_m, sizeof(was->eye_m)) != 0 ||
+	       memcmp(was->clip, view->clip, sizeof(was->clip)) != 0 ||
+	       memcmp(was->cut, view->cut, sizeof(was->cut)) != 0 ||
+	       was->width_px != view->width_px || was->height_px != view->height_px;
+}
+
+/* Another view may have room for other tiles. */
+static void keep_season(struct scene *scene, bool moved, int64_t now_us)
+{
+	bool came_to_rest = scene->was_moving && !moved;
+	scene->was_moving = moved;
+	if (!came_to_rest && (!moved || now_us - scene->season_us < SEASON_US))
+		return;
+	tiles_begin_season(&scene->tiles);
+	scene->season_us = now_us;
+}
+
+static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
+{
+	int64_t now_us = clock_now_us();
+	/* A hiccup is not a jump. */
+	float passed_ms =
+		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
+	scene->frame_us = now_us;
+	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
+	scene_update_cut(scene, passed_ms);
+	scene_list_pieces(scene);
+	bool counted = scene_take_census(scene, moved);
+	scene_desire(scene);
+	if (scene->options.mode == SCENE_POLYGONS) {
+		scene->plans_are_stale = scene->depth_is_stale = false;
+		scene->fading = scene->dissolve.moving;
+		return;
+	}
+	keep_season(scene, moved, now_us);
+	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
+	scene_fade_blends(scene, passed_ms);
+	if (moved && counted)
+		scene->depth_is_stale = true; /* one pass more than the picture's is enough */
+	else
+		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
+}
+
+/* Draws to the place given: at rest by way of the sum, moving at once. */
+static void show(struct scene *scene, const struct gl_place *place, bool moved, bool changed)
+{
+	const struct view *view = &scene->view;
+	if (moved)
+		rest_break(&scene->rest);
+	const bool draws = changed || !rest_is_done(&scene->rest);
+	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px, draws) < 0) {
+		gl_place_bind(place, view->width_px, view->height_px);
+		begin_picture(scene);
+		draw_picture(scene, view, false);
+		return;
+	}
+	if (draws) {
+		struct view jittered = *view;
+		float x, y;
+		rest_offset(&scene->rest, changed, &x, &y);
+		view_jitter(&jittered, x, y);
+		gl_target_bind(&scene->rest.frame);
+		begin_picture(scene);
+		draw_picture(scene, &jittered, false);
+	}
+	rest_add(&scene->rest, place, changed);
+}
+
+static void draw_nothing(const struct camera *camera)
+{
+	glViewport(0, 0, camera->width_px, camera->height_px);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
+		struct scene_frame *out)
+{
+	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
+	GLint framebuffer = 0;
+	*out = (struct scene_frame){ .image_share = -1 };
+	if (!scene->has_hierarchy) {
+		draw_nothing(camera);
+		scene->frame_us = clock_now_us();
+		return;
+	}
+	glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
+	place.framebuffer = (GLuint)framebuffer;
+	struct view view;
+	view_from_camera(&view, camera);
+	section_cut(&scene->tools.section, view.eye_m, view.cut);
+	bool moved = view_changed(scene, &view) || scene->tools_moved;
+	scene->tools_moved = false;
+	scene->view = view;
+	scene->has_view = true;
+	prepare(scene, moved, out);
+	if (scene_note_mark(scene, mark))
+		rest_break(&scene->rest); /* an answer to a touch: at once */
+	bool changed = is_busy(scene);
+	show(scene, &place, moved, changed);
+	out->triangles = scene->cut.triangle_count;
+	out->patches = scene->cut.patch_count;
+	scene_list_wants(scene);
+	/* What is wanted may never come: memory is given back without it. */
+	bool still = !moved && !changed && rest_is_done(&scene->rest);
+	out->settled = still && scene->want_count == 0;
+	out->moving = is_busy(scene) || moved || !rest_is_done(&scene->rest);
+	if (!out->settled)
+		scene->image_share = -1;
+	else if (scene->image_share < 0)
+		scene->image_share = count_share(scene);
+	out->image_share = scene->image_share;
+	if (!still)
+		return;
+	rest_let_go(&scene->rest, &place);
+	gl_place_bind(&place, camera->width_px, camera->height_px);
+}

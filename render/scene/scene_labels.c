@@ -1,0 +1,106 @@
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/scene/scene_parts.h"
+
+bool scene_has_labels(const struct scene *scene)
+{
+	return scene->has_root && scene->root_child_count > ROOT_CHILD_LABELS;
+}
+
+void scene_drop_labels(struct scene *scene)
+{
+	free(scene->labels);
+	free(scene->labels_offset);
+	free(scene->labels_of);
+	scene->labels = NULL;
+	scene->labels_offset = scene->labels_of = NULL;
+}
+
+static int take_children(struct scene *scene, struct page *page)
+{
+	scene->labels_offset = calloc((size_t)page->child_count + 1, sizeof(uint32_t));
+	if (!scene->labels_offset)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < page->child_count; i++)
+		scene->labels_offset[i + 1] = scene->labels_offset[i] + page->children[i].size;
+	scene->labels = page->children;
+	page->children = NULL;
+	page->child_count = 0;
+	return 0;
+}
+
+int scene_open_labels(struct scene *scene, struct bytes bytes)
+{
+	struct page page;
+	int rc = page_decode(&page, bytes);
+	if (rc < 0)
+		return rc;
+	rc = page.kind == PAGE_LABELS && page.child_count > 0 ? 0 : -EBADMSG;
+	if (rc == 0)
+		rc = label_page_decode(&scene->labels_of, scene->hierarchy.group_count,
+				       page.child_count, page.payload);
+	if (rc == 0)
+		rc = take_children(scene, &page);
+	page_finish(&page);
+	if (rc < 0)
+		scene_drop_labels(scene);
+	return rc;
+}
+
+const char *scene_part(struct scene *scene, const struct camera *camera, float x_px, float y_px)
+{
+	float direction[3], distance = INFINITY, least = camera->near_m;
+	struct geometry_hit hit;
+	if (!scene->has_hierarchy || !scene->labels)
+		return NULL;
+	camera_ray(camera, x_px, y_px, direction);
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
+	    !geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
+			  &hit))
+		return NULL;
+	const uint32_t group = scene->hierarchy.patches[hit.patch].group;
+	const struct label_group *labels = &scene->geometry.labels[group];
+	if (scene->labels_of[group] == LABEL_NONE)
+		return "";
+	if (labels->patch_count == 0)
+		return NULL;
+	int part = label_part_at(
+		labels, hit.patch - scene->hierarchy.groups[group].first_patch,
+		scene->geometry.patches[hit.patch].content.solid.order[hit.on.triangle], hit.on.u,
+		hit.on.v);
+	return part < 0 ? "" : labels->parts[part].id;
+}
+
+static int make_ribbon(struct scene *scene, uint32_t patch, const struct label_group *labels)
+{
+	const struct hierarchy_patch *known = &scene->hierarchy.patches[patch];
+	struct geometry_patch *out = &scene->geometry.patches[patch];
+	struct outline outline = { 0 };
+	int part = label_find(labels, scene->marked_part), rc = 0;
+	if (part >= 0)
+		rc = outline_create(&outline, &out->content.solid, labels,
+				    patch - scene->hierarchy.groups[known->group].first_patch,
+				    (uint32_t)part);
+	if (rc == 0)
+		rc = ribbon_make(&out->ribbon, &outline, scene->mark_serial);
+	outline_finish(&outline);
+	return rc;
+}
+
+bool scene_outline(struct scene *scene, uint32_t patch)
+{
+	const uint32_t group = scene->hierarchy.patches[patch].group;
+	const struct label_group *labels = &scene->geometry.labels[group];
+	if (!scene->labels || !scene->marked_part[0])
+		return false;
+	if (scene->labels_of[group] == LABEL_NONE) /* nothing of any part is on it */
+		return true;
+	if (labels->patch_count == 0)
+		return false;
+	if (scene->geometry.patches[patch].ribbon.serial == scene->mark_serial)
+		return true;
+	return make_ribbon(scene, patch, labels) == 0;
+}

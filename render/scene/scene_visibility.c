@@ -1,0 +1,214 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "geometry/vec.h"
+#include "render/scene/scene_parts.h"
+
+enum {
+	MOVING_US = 120000, /* between two censuses of a moving eye */
+	PROBE_MOVES = 2,    /* rounds of a census */
+};
+
+/* A view that differs by less than this is counted as the same. */
+static const float moved_m = 0.05f, turned = 0.01f;
+/* What shows farther than this share of a piece's radius from a probe deserves one. */
+static const float stray_share = 0.2f;
+
+static bool is_due(const struct scene *scene, bool moved)
+{
+	if (scene->census_us == 0 || scene->census_cut != scene->cut_signature)
+		return true;
+	if (!moved && memcmp(scene->census_section, scene->view.cut, sizeof(scene->view.cut)) != 0)
+		return true;
+	if (moved && clock_now_us() - scene->census_us < MOVING_US)
+		return false;
+	float limit = moved ? 1 : 0.2f; /* at rest it must be right */
+	return (moved && view_is_cut(&scene->view)) ||
+	       vec_distance(scene->census_eye_m, scene->view.eye_m) > limit * moved_m ||
+	       vec_distance(scene->census_forward, scene->view.forward) > limit * turned;
+}
+
+/* Of the pieces in the list, numbers `from` up to `to`. */
+static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
+{
+	uint32_t bound = HIERARCHY_NONE;
+	for (uint32_t i = from; i < to; i++) {
+		const struct visible_piece *v = &scene->counted[i];
+		const struct piece *piece =
+			&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
+		if (v->patch != bound)
+			geometry_bind(&scene->geometry, v->patch);
+		bound = v->patch;
+		census_number(&scene->census, i);
+		geometry_draw(piece->first_triangle, piece->triangle_count);
+	}
+}
+
+/* What is in sight now will be counted. */
+static bool begin(struct scene *scene)
+{
+	if (scene->counted_capacity < scene->visible_count) {
+		struct visible_piece *larger =
+			realloc(scene->counted, scene->visible_count * sizeof(*larger));
+		if (!larger)
+			return false;
+		scene->counted = larger;
+		scene->counted_capacity = scene->visible_count;
+	}
+	scene->counted_count = scene->visible_count < CENSUS_PIECES_MOST ? scene->visible_count
+									 : CENSUS_PIECES_MOST;
+	if (scene->counted_count > 0)
+		memcpy(scene->counted, scene->visible,
+		       scene->counted_count * sizeof(*scene->counted));
+	scene->counting_cut = scene->cut_signature;
+	census_begin(&scene->census, &scene->view, &scene->root);
+	return true;
+}
+
+/* A moving eye's is drawn in two frames, so that neither takes much longer than the others. Returns
+ * whether it is drawn. */
+static bool draw(struct scene *scene, bool moved)
+{
+	if (scene->counting && moved && scene->counting_cut == scene->cut_signature) {
+		scene->counting = false;
+		census_resume(&scene->census, &scene->root);
+		draw_numbers(scene, scene->counted_count / 2, scene->counted_count);
+		return true;
+	}
+	if (!begin(scene))
+		return false;
+	scene->counting = moved;
+	draw_numbers(scene, 0, moved ? scene->counted_count / 2 : scene->counted_count);
+	return !moved;
+}
+
+static int nearest_probe(const struct piece_state *state, const float at_m[3])
+{
+	int nearest = 0;
+	for (int k = 1; k < PIECE_PROBES; k++)
+		if (vec_distance(state->probe[k].at_m, at_m) <
+		    vec_distance(state->probe[nearest].at_m, at_m))
+			nearest = k;
+	return nearest;
+}
+
+static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
+{
+	if (visible >= scene->counted_count)
+		return NULL;
+	const struct visible_piece *v = &scene->counted[visible];
+	return &scene->geometry.patches[v->patch].pieces[v->piece];
+}
+
+/* What shows far from every probe: the farthest of a piece, in stray_m and stray. */
+static void count_point(struct scene *scene, const struct census_point *point)
+{
+	struct piece_state *state = state_of(scene, point->piece);
+	if (!state)
+		return;
+	if (point->back && !view_is_cut(&scene->census.view)) /* a section shows many for once */
+		scene->geometry.patches[scene->counted[point->piece].patch].sides = SIDES_BOTH;
+	int nearest = nearest_probe(state, point->at_m);
+	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
+	state->weight[nearest] += 1;
+	state->seen_px += 1;
+	if (off > state->stray_off_m) {
+		state->stray_off_m = off;
+		memcpy(state->stray_m, point->at_m, sizeof(state->stray_m));
+	}
+}
+
+static void count_all(struct scene *scene)
+{
+	struct census_point point;
+	for (uint32_t i = 0; i < scene->counted_count; i++) {
+		struct piece_state *state = state_of(scene, i);
+		state->seen_px = state->stray_off_m = 0;
+		memset(state->weight, 0, sizeof(state->weight));
+	}
+	for (int y = 0; y < CENSUS_HEIGHT; y++)
+		for (int x = 0; x < CENSUS_WIDTH; x++)
+			if (census_at(&scene->census, x, y, &point))
+				count_point(scene, &point);
+}
+
+/* A probe that shows nothing moves to the place that is farthest from any. */
+static void move_probe(struct scene *scene, uint32_t visible)
+{
+	struct piece_state *state = state_of(scene, visible);
+	const struct visible_piece *v = &scene->counted[visible];
+	const struct solid *solid = &scene->geometry.patches[v->patch].content.solid;
+	const struct piece *piece = &solid->pieces[v->piece];
+	if (state->stray_off_m < stray_share * piece->radius_m)
+		return;
+	int idle = 0;
+	while (idle < PIECE_PROBES && state->weight[idle] > 0)
+		idle++;
+	if (idle == PIECE_PROBES)
+		return;
+	/* Of the piece's own places the nearest lends its normal. */
+	struct piece_probe like = solid_probe(solid, piece, 0);
+	for (int k = 1; k < PIECE_PROBES; k++) {
+		struct piece_probe other = solid_probe(solid, piece, k);
+		if (vec_distance(other.at_m, state->stray_m) <
+		    vec_distance(like.at_m, state->stray_m))
+			like = other;
+	}
+	memcpy(like.at_m, state->stray_m, sizeof(like.at_m));
+	state->probe[idle] = like;
+	plan_forget_probe(&state->choice, idle);
+}
+
+/* Weights that sum to one; pixels of the screen; a new judgement where what shows has changed. */
+static void conclude(struct scene *scene, const struct visible_piece *visible)
+{
+	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
+	struct piece_state *state = &patch->pieces[visible->piece];
+	if (patch->sides == SIDES_UNKNOWN && !view_is_cut(&scene->census.view))
+		patch->sides = SIDES_FRONT;
+	for (int k = 0; k < PIECE_PROBES && state->seen_px > 0; k++)
+		state->weight[k] /= state->seen_px;
+	state->seen_px *= scene->view.picture_px / (CENSUS_WIDTH * CENSUS_HEIGHT);
+	state->counted = true;
+	state->planned = false;
+}
+
+/* Of the patches that are shown now; nobody looked at the others. */
+static void sum_patches(struct scene *scene)
+{
+	for (uint32_t p = 0; p < scene->hierarchy.patch_count; p++)
+		scene->seen_px[p] = -1;
+	for (uint32_t i = 0; i < scene->cut.patch_count; i++)
+		scene->seen_px[scene->cut.patches[i]] = 0;
+	float all_px = 0;
+	for (uint32_t i = 0; i < scene->counted_count; i++) {
+		float seen_px = state_of(scene, i)->seen_px;
+		scene->seen_px[scene->counted[i].patch] += seen_px;
+		all_px += seen_px;
+	}
+	scene->filled = all_px / scene->view.picture_px;
+}
+
+bool scene_take_census(struct scene *scene, bool moved)
+{
+	if (!scene->counting && !is_due(scene, moved))
+		return false;
+	if (!draw(scene, moved) || census_end(&scene->census) < 0)
+		return true;
+	count_all(scene);
+	for (int round = 0; round < PROBE_MOVES; round++) {
+		for (uint32_t i = 0; i < scene->counted_count; i++)
+			move_probe(scene, i);
+		count_all(scene);
+	}
+	for (uint32_t i = 0; i < scene->counted_count; i++)
+		conclude(scene, &scene->counted[i]);
+	sum_patches(scene);
+	scene->census_us = clock_now_us();
+	scene->census_cut = scene->cut_signature;
+	memcpy(scene->census_section, scene->census.view.cut, sizeof(scene->census_section));
+	memcpy(scene->census_eye_m, scene->census.view.eye_m, sizeof(scene->census_eye_m));
+	memcpy(scene->census_forward, scene->census.view.forward, sizeof(scene->census_forward));
+	return true;
+}

@@ -1,0 +1,330 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/scene/scene_parts.h"
+
+/* A coarse tile stands in for sixteen fine ones: it comes first where no image shows yet. */
+enum { COARSER_FIRST = 2 };
+
+static void want(struct scene *scene, enum object_kind kind, uint64_t id,
+		 const struct message_want *place, uint32_t priority)
+{
+	const struct object *object = scene_expect(scene, place->hash, kind, id);
+	if (!object || object->state != OBJECT_WANTED)
+		return;
+	if (scene->want_count == scene->want_capacity) {
+		uint32_t capacity = scene->want_capacity ? 2 * scene->want_capacity : 256;
+		struct message_want *larger =
+			realloc(scene->wants, capacity * sizeof(*scene->wants));
+		if (!larger)
+			return;
+		scene->wants = larger;
+		scene->want_capacity = capacity;
+	}
+	struct message_want *out = &scene->wants[scene->want_count++];
+	*out = *place;
+	out->priority = priority;
+}
+
+static void want_child_of_root(struct scene *scene, enum object_kind kind, uint32_t child,
+			       uint32_t priority)
+{
+	struct message_want place = { .hash = scene->root_child[child].hash,
+				      .page = scene->root_hash,
+				      .size = scene->root_child[child].size };
+	for (uint32_t i = 0; i < child; i++)
+		place.offset += scene->root_child[i].size;
+	want(scene, kind, 0, &place, priority);
+}
+
+/* Geometry stays good for every view after, an image for those from near where it was taken. */
+static const float lasting = 4;
+
+/* What is worth less is not fetched. A model that fills a third of the picture is not worth less
+ * than one that fills it: it is what there is to see. */
+static uint32_t least_priority(const struct scene *scene, float lasts)
+{
+	float filled = scene->census_us ? scene->filled : 1;
+	return plan_priority(scene->options.thrift_px_per_kb * filled / lasts, 1000);
+}
+
+/* ---- geometry */
+
+static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
+{
+	struct message_want place = { .hash = scene->groups[group].hash,
+				      .page = scene->hierarchy_hash,
+				      .offset = scene->group_offset[group],
+				      .size = scene->groups[group].size };
+	want(scene, OBJECT_GROUP, group, &place, priority);
+}
+
+/* What surfaces that are off by so many pixels cost the picture, on plan_worth's scale: an image
+ * brings octaves of detail even to a rough surface, a finer surface puts them into place. */
+static float misplaced(float error_px)
+{
+	return 0.1f * (isfinite(error_px) ? error_px / (error_px + 8) : 1);
+}
+
+/* What a group is worth, and what others need it for. */
+static void want_groups(struct scene *scene)
+{
+	const struct cut *cut = &scene->cut;
+	if (!scene->geometry.loaded[0]) {
+		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
+		return;
+	}
+	uint32_t least = least_priority(scene, lasting), *priority = scene->group_priority;
+	memset(priority, 0, scene->hierarchy.group_count * sizeof(*priority));
+	for (uint32_t i = cut->want_count; i-- > 0;) {
+		const struct cut_want *w = &cut->wants[i];
+		uint32_t own = plan_priority(w->seen_px * misplaced(w->error_px),
+					     scene->groups[w->group].size);
+		if (priority[w->group] < own)
+			priority[w->group] = own;
+		uint32_t count;
+		const uint32_t *replaced = cut_replaced(cut, w->group, &count);
+		for (uint32_t k = 0; k < count; k++) {
+			uint32_t on = scene->hierarchy.patches[replaced[k]].group;
+			if (priority[on] <= priority[w->group])
+				priority[on] = priority[w->group] + 1;
+		}
+		if (priority[w->group] >= least)
+			want_group(scene, w->group, priority[w->group]);
+	}
+}
+
+/* ---- labels */
+
+/* After all that is to be seen: a touch is answered by regions until then. */
+enum { LABELS_PRIORITY = 1 };
+
+static void want_labels_of(struct scene *scene, uint32_t group)
+{
+	const uint32_t child = scene->labels_of[group];
+	struct message_want place = { .page = scene->root_child[ROOT_CHILD_LABELS].hash };
+	if (child == LABEL_NONE || scene->geometry.labels[group].patch_count > 0)
+		return;
+	place.hash = scene->labels[child].hash;
+	place.size = scene->labels[child].size;
+	place.offset = scene->labels_offset[child];
+	want(scene, OBJECT_LABELS, group, &place, LABELS_PRIORITY);
+}
+
+/* Of what is in sight. */
+static void want_labels(struct scene *scene)
+{
+	uint8_t *asked = scene->labels ? calloc(scene->hierarchy.group_count, 1) : NULL;
+	if (!scene->labels)
+		want_child_of_root(scene, OBJECT_LABELS_PAGE, ROOT_CHILD_LABELS, LABELS_PRIORITY);
+	for (uint32_t i = 0; asked && i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		uint32_t group = scene->hierarchy.patches[v->patch].group;
+		if (asked[group] || (state->counted && state->seen_px <= 0))
+			continue;
+		asked[group] = 1;
+		want_labels_of(scene, group);
+	}
+	free(asked);
+}
+
+/* ---- images */
+
+/* A tile or face page that pieces want, with the sum of what they would win. */
+struct gain {
+	uint64_t id;
+	float pixels;
+	enum object_kind kind;
+};
+
+struct gains {
+	struct gain *list; /* owned */
+	uint32_t count, capacity;
+	struct map of; /* id and kind -> index */
+};
+
+static void gain_add(struct gains *gains, enum object_kind kind, uint64_t id, float pixels)
+{
+	uint64_t key = id << 3 | kind;
+	uint32_t at = map_get(&gains->of, key);
+	if (at != MAP_NONE) {
+		gains->list[at].pixels += pixels;
+		return;
+	}
+	if (gains->count == gains->capacity) {
+		uint32_t capacity = gains->capacity ? 2 * gains->capacity : 256;
+		struct gain *larger = realloc(gains->list, capacity * sizeof(*gains->list));
+		if (!larger)
+			return;
+		gains->list = larger;
+		gains->capacity = capacity;
+	}
+	if (map_set(&gains->of, key, gains->count) == 0)
+		gains->list[gains->count++] = (struct gain){ id, pixels, kind };
+}
+
+static int place_of(float at, int count)
+{
+	int place = (int)((at + 1) / 2 * (float)count);
+	return place < 0 ? 0 : place >= count ? count - 1 : place;
+}
+
+static void add_level(const struct scene *scene, struct gains *gains, const struct plan_want *w,
+		      uint32_t level, float pixels)
+{
+	int count = 1 << level;
+	int x0 = place_of(w->area.u0, count), x1 = place_of(w->area.u1, count);
+	int y0 = place_of(-w->area.v1, count), y1 = place_of(-w->area.v0, count);
+	float each = pixels / (float)((x1 - x0 + 1) * (y1 - y0 + 1));
+	for (int y = y0; y <= y1; y++) {
+		for (int x = x0; x <= x1; x++) {
+			struct tile_name name = { .face = w->face,
+						  .level = (uint8_t)level,
+						  .row = (uint8_t)y,
+						  .column = (uint8_t)x };
+			if (!tiles_has(&scene->tiles, name) &&
+			    !tiles_is_declined(&scene->tiles, name))
+				gain_add(gains, OBJECT_TILE, tile_name_pack(name), each);
+		}
+	}
+}
+
+static void add_want(const struct scene *scene, struct gains *gains, const struct plan_want *w,
+		     float pixels, bool bare)
+{
+	uint32_t brick = 0;
+	switch (repository_face(&scene->repository, w->face, NULL, &brick)) {
+	case REPOSITORY_EMPTY:
+		return;
+	case REPOSITORY_UNKNOWN:
+		gain_add(gains, OBJECT_BRICK, brick, pixels);
+		return;
+	case REPOSITORY_PAGE:
+		gain_add(gains, OBJECT_FACE, w->face, pixels);
+		return;
+	case REPOSITORY_READY:
+		break;
+	}
+	if (bare && w->level >= COARSER_FIRST) {
+		add_level(scene, gains, w, w->level - COARSER_FIRST, 0.6f * pixels);
+		pixels *= 0.4f;
+	}
+	add_level(scene, gains, w, w->level, pixels);
+}
+
+static bool place_gain(const struct scene *scene, const struct gain *gain,
+		       struct message_want *place)
+{
+	switch (gain->kind) {
+	case OBJECT_BRICK:
+		return repository_brick(&scene->repository, (uint32_t)gain->id, place);
+	case OBJECT_FACE:
+		return repository_face(&scene->repository, (face_key)gain->id, place, NULL) ==
+		       REPOSITORY_PAGE;
+	default:
+		return repository_tile(&scene->repository, tile_name_unpack(gain->id), place);
+	}
+}
+
+/* Pages of what matters come before pictures: without them nothing can be judged. 0: not worth it.
+ */
+static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
+{
+	uint32_t priority = plan_priority(gain->pixels, bytes);
+	if (priority < least_priority(scene, 1))
+		return 0;
+	return gain->kind == OBJECT_TILE ? priority : MESSAGE_PRIORITY_INDEX + priority / 2;
+}
+
+static void want_images(struct scene *scene)
+{
+	struct gains gains = { 0 };
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct piece_state *state =
+			&scene->geometry.patches[v->patch].pieces[v->piece];
+		const struct plan_choice *choice = &state->choice;
+		float pixels = state->counted ? state->seen_px : v->pixels / 8;
+		for (uint32_t k = 0; k < choice->want_count && pixels > 0; k++)
+			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * pixels,
+				 choice->entry_count == 0);
+	}
+	for (uint32_t i = 0; i < gains.count; i++) {
+		struct message_want place;
+		if (!place_gain(scene, &gains.list[i], &place))
+			continue;
+		uint32_t priority = gain_priority(scene, &gains.list[i], place.size);
+		if (priority > 0)
+			want(scene, gains.list[i].kind, gains.list[i].id, &place, priority);
+	}
+	free(gains.list);
+	map_finish(&gains.of);
+}
+
+/* ---- the list */
+
+static int by_priority(const void *a, const void *b)
+{
+	const struct message_want *left = a, *right = b;
+	if (left->priority != right->priority)
+		return left->priority < right->priority ? 1 : -1;
+	return hash_compare(left->hash, right->hash);
+}
+
+/* No more tiles than the atlas can take without dropping one that is in use. */
+static void limit_to_room(struct scene *scene)
+{
+	uint32_t room = tiles_room(&scene->tiles), busy = pool_busy(scene->pool), kept = 0;
+	room = room > busy ? room - busy : 0;
+	for (uint32_t i = 0; i < scene->want_count; i++) {
+		const struct object *object = scene_object(scene, scene->wants[i].hash);
+		if (object && object->kind == OBJECT_TILE && room-- == 0) {
+			room = 0;
+			continue;
+		}
+		scene->wants[kept++] = scene->wants[i];
+	}
+	scene->want_count = kept;
+}
+
+void scene_list_wants(struct scene *scene)
+{
+	scene->wants_are_stale = false;
+	scene->want_count = 0;
+	if (!scene->has_root) {
+		const struct message_want place = { .hash = scene->root_hash,
+						    .size = scene->root_bytes };
+		if (scene->root_bytes > 0)
+			want(scene, OBJECT_ROOT, 0, &place, 2 * MESSAGE_PRIORITY_INDEX);
+		return;
+	}
+	bool images = scene->options.mode != SCENE_POLYGONS;
+	if (!scene->has_hierarchy)
+		want_child_of_root(scene, OBJECT_HIERARCHY, ROOT_CHILD_HIERARCHY,
+				   2 * MESSAGE_PRIORITY_INDEX);
+	if (!scene->repository.ready && images)
+		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
+				   2 * MESSAGE_PRIORITY_INDEX - 1);
+	if (scene->has_hierarchy)
+		want_groups(scene);
+	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))
+		want_labels(scene);
+	if (scene->repository.ready && scene->has_hierarchy && images)
+		want_images(scene);
+	if (scene->want_count > 0)
+		qsort(scene->wants, scene->want_count, sizeof(*scene->wants), by_priority);
+	limit_to_room(scene);
+}
+
+size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most)
+{
+	if (scene->wants_are_stale)
+		scene_list_wants(scene);
+	size_t count = scene->want_count < most ? scene->want_count : most;
+	if (count > 0)
+		memcpy(wants, scene->wants, count * sizeof(*wants));
+	return count;
+}

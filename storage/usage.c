@@ -1,0 +1,321 @@
+#include "storage/usage.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/bytes.h"
+#include "base/log.h"
+
+enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MOST = 256, DAY_S = 86400 };
+
+static const char header[] = "hour,kind,what,language,count\n";
+static const char *const kind_names[] = { "visit", "part", "page", "language", "search", "tour" };
+/* Of a terminal whose clock nobody set; after every date, so never too old. */
+static const char unset_hour[] = "unset";
+
+struct entry {
+	char hour[HOUR_BYTES]; /* 2026-11-23T10, by the clock on the wall */
+	enum tally_kind kind;
+	char what[WHAT_BYTES], language[LANGUAGE_BYTES];
+	uint64_t count;
+};
+
+struct tally {
+	char *path, *copy_path;
+	struct entry pending[PENDING_MOST];
+	size_t pending_count;
+	bool complained;
+};
+
+static void hour_of(int64_t now_s, char out[HOUR_BYTES])
+{
+	const time_t time = (time_t)now_s;
+	struct tm local;
+
+	if (now_s == 0 || !localtime_r(&time, &local) ||
+	    strftime(out, HOUR_BYTES, "%Y-%m-%dT%H", &local) == 0)
+		snprintf(out, HOUR_BYTES, "%s", unset_hour);
+}
+
+/* ---- lines */
+
+static void put_line(struct buffer *out, const struct entry *entry)
+{
+	char line[HOUR_BYTES + WHAT_BYTES + LANGUAGE_BYTES + 40];
+
+	snprintf(line, sizeof(line), "%s,%s,%s,%s,%llu\n", entry->hour, kind_names[entry->kind],
+		 entry->what, entry->language, (unsigned long long)entry->count);
+	buffer_put(out, line, strlen(line));
+}
+
+static bool is_word(const char *text)
+{
+	for (; *text; text++)
+		if (!isalnum((unsigned char)*text) && *text != '-' && *text != '_')
+			return false;
+	return true;
+}
+
+static bool is_hour(const char *text)
+{
+	static const char shape[] = "dddd-dd-ddTdd";
+
+	if (strcmp(text, unset_hour) == 0)
+		return true;
+	for (size_t i = 0; i < sizeof(shape); i++)
+		if (shape[i] == 'd' ? !isdigit((unsigned char)text[i]) : text[i] != shape[i])
+			return false;
+	return true;
+}
+
+/* The next field, cut off at its comma; NULL: it is too long, or there is none. */
+static const char *take_field(char **rest, size_t bytes_most)
+{
+	char *field = *rest, *end = field ? strchr(field, ',') : NULL;
+
+	*rest = end ? end + 1 : NULL;
+	if (end)
+		*end = '\0';
+	return field && strlen(field) < bytes_most ? field : NULL;
+}
+
+static bool parse_line(char *line, struct entry *out)
+{
+	const char *hour = take_field(&line, HOUR_BYTES), *kind = take_field(&line, 16);
+	const char *what = take_field(&line, WHAT_BYTES);
+	const char *language = take_field(&line, LANGUAGE_BYTES), *count = take_field(&line, 20);
+	char *end;
+	size_t k = 0;
+
+	if (!hour || !kind || !what || !language || !count || line || !is_hour(hour) ||
+	    !is_word(what) || !is_word(language) || !isdigit((unsigned char)count[0]))
+		return false;
+	while (k < ARRAY_COUNT(kind_names) && strcmp(kind_names[k], kind) != 0)
+		k++;
+	if (k == ARRAY_COUNT(kind_names))
+		return false;
+	*out = (struct entry){ .kind = (enum tally_kind)k, .count = strtoull(count, &end, 10) };
+	snprintf(out->hour, sizeof(out->hour), "%s", hour);
+	snprintf(out->what, sizeof(out->what), "%s", what);
+	snprintf(out->language, sizeof(out->language), "%s", language);
+	return *end == '\0';
+}
+
+/* ---- the file, at the start */
+
+static int compare(const void *a, const void *b)
+{
+	const struct entry *x = a, *y = b;
+	int order = strcmp(x->hour, y->hour);
+
+	if (order == 0)
+		order = (int)x->kind - (int)y->kind;
+	if (order == 0)
+		order = strcmp(x->what, y->what);
+	return order ? order : strcmp(x->language, y->language);
+}
+
+static size_t count_lines(struct bytes text)
+{
+	size_t count = 0;
+
+	for (size_t i = 0; i < text.size; i++)
+		count += text.data[i] == '\n';
+	return count;
+}
+
+/* The whole lines of text, which is spoilt; *bad: how many were none of ours. */
+static size_t parse(struct buffer *text, struct entry *entries, size_t *bad)
+{
+	char *line = (char *)text->data, *limit = text->size ? line + text->size : line;
+	size_t count = 0;
+
+	*bad = 0;
+	while (line < limit) {
+		char *end = memchr(line, '\n', (size_t)(limit - line));
+
+		if (!end) {
+			++*bad; /* torn by a power cut */
+			break;
+		}
+		*end = '\0';
+		if (strncmp(line, header, sizeof(header) - 2) == 0)
+			; /* nothing to count */
+		else if (parse_line(line, &entries[count]))
+			count++;
+		else
+			++*bad;
+		line = end + 1;
+	}
+	return count;
+}
+
+static size_t sum_up(struct entry *entries, size_t count, const char *oldest)
+{
+	size_t kept = 0;
+
+	qsort(entries, count, sizeof(*entries), compare);
+	for (size_t i = 0; i < count; i++) {
+		if (strcmp(entries[i].hour, oldest) < 0)
+			continue;
+		if (kept > 0 && compare(&entries[kept - 1], &entries[i]) == 0)
+			entries[kept - 1].count += entries[i].count;
+		else
+			entries[kept++] = entries[i];
+	}
+	return kept;
+}
+
+static void complain(struct tally *tally, const char *path, int rc)
+{
+	if (!tally->complained)
+		log_warn("storage", "%s: counts of what visitors look at: %s; going on without",
+			 path, strerror(-rc));
+	tally->complained = true;
+}
+
+/* text: what the file says now; it becomes what it should say. */
+static int tidy(struct buffer *text, const char *path, int64_t now_s)
+{
+	char oldest[HOUR_BYTES] = "";
+	struct entry *entries = calloc(count_lines(buffer_bytes(text)) + 1, sizeof(*entries));
+	size_t count, bad;
+
+	if (!entries)
+		return -ENOMEM;
+	if (now_s > 0)
+		hour_of(now_s - (int64_t)TALLY_KEPT_DAYS * DAY_S, oldest);
+	count = sum_up(entries, parse(text, entries, &bad), oldest);
+	if (bad > 0)
+		log_warn("storage", "%s: %zu lines are no counts and were left out", path, bad);
+	buffer_clear(text);
+	buffer_put(text, header, sizeof(header) - 1);
+	for (size_t i = 0; i < count; i++)
+		put_line(text, &entries[i]);
+	free(entries);
+	return text->error;
+}
+
+static int begin_files(struct tally *tally, int64_t now_s)
+{
+	struct buffer text;
+	int rc;
+
+	buffer_init(&text, TALLY_FILE_MOST);
+	rc = buffer_read_file(&text, tally->path);
+	if (rc == -ENOENT)
+		rc = 0;
+	if (rc == 0)
+		rc = tidy(&text, tally->path, now_s);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&text), tally->path);
+	if (rc < 0 && rc != -ENOMEM)
+		complain(tally, tally->path, rc);
+	if (rc == 0 && tally->copy_path) {
+		int copied = bytes_write_file(buffer_bytes(&text), tally->copy_path);
+
+		if (copied == 0 && chmod(tally->copy_path, 0644) < 0)
+			copied = -errno;
+		if (copied < 0)
+			complain(tally, tally->copy_path, copied);
+	}
+	buffer_finish(&text);
+	return rc == -ENOMEM ? rc : 0;
+}
+
+/* ---- life */
+
+int tally_create(struct tally **out, const char *path, const char *copy_path, int64_t now_s)
+{
+	struct tally *tally = calloc(1, sizeof(*tally));
+	int rc;
+
+	*out = NULL;
+	if (!tally)
+		return -ENOMEM;
+	tally->path = strdup(path);
+	tally->copy_path = copy_path ? strdup(copy_path) : NULL;
+	rc = tally->path && (tally->copy_path || !copy_path) ? begin_files(tally, now_s) : -ENOMEM;
+	if (rc < 0) {
+		tally_destroy(tally);
+		return rc;
+	}
+	*out = tally;
+	return 0;
+}
+
+void tally_destroy(struct tally *tally)
+{
+	if (!tally)
+		return;
+	tally_write(tally);
+	free(tally->path);
+	free(tally->copy_path);
+	free(tally);
+}
+
+/* ---- counting */
+
+void tally_add(struct tally *tally, enum tally_kind kind, const char *what, const char *language,
+	       int64_t now_s)
+{
+	struct entry entry = { .kind = kind, .count = 1 };
+
+	hour_of(now_s, entry.hour);
+	snprintf(entry.what, sizeof(entry.what), "%s", is_word(what) ? what : "");
+	snprintf(entry.language, sizeof(entry.language), "%s", is_word(language) ? language : "");
+	for (size_t i = 0; i < tally->pending_count; i++) {
+		if (compare(&tally->pending[i], &entry) == 0) {
+			tally->pending[i].count++;
+			return;
+		}
+	}
+	if (tally->pending_count == PENDING_MOST)
+		tally_write(tally);
+	if (tally->pending_count < PENDING_MOST)
+		tally->pending[tally->pending_count++] = entry;
+}
+
+static int append(const char *path, struct bytes lines)
+{
+	int rc = 0, fd = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+
+	if (fd < 0)
+		return -errno;
+	if (write(fd, lines.data, lines.size) != (ssize_t)lines.size)
+		rc = errno ? -errno : -EIO;
+	close(fd);
+	return rc;
+}
+
+void tally_write(struct tally *tally)
+{
+	struct buffer lines;
+	int rc;
+
+	if (tally->pending_count == 0)
+		return;
+	buffer_init(&lines, TALLY_FILE_MOST);
+	for (size_t i = 0; i < tally->pending_count; i++)
+		put_line(&lines, &tally->pending[i]);
+	rc = lines.error;
+	if (rc == 0)
+		rc = append(tally->path, buffer_bytes(&lines));
+	if (rc == 0) /* else they are counted on, and tried again */
+		tally->pending_count = 0;
+	else
+		complain(tally, tally->path, rc);
+	if (rc == 0 && tally->copy_path) {
+		rc = append(tally->copy_path, buffer_bytes(&lines));
+		if (rc < 0)
+			complain(tally, tally->copy_path, rc);
+	}
+	buffer_finish(&lines);
+}

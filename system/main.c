@@ -1,0 +1,221 @@
+/* gopura-setup: makes gopura.conf hold for the system, or tells what is wrong with it. */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/safe_open.h"
+#include "system/grow.h"
+#include "system/setup.h"
+
+static const char help[] =
+	"gopura-setup: makes a terminal's gopura.conf hold for the system (docs/terminal.md)\n"
+	"\n"
+	"  gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
+	"  gopura-setup --check FILE [--boards DIR]\n"
+	"  gopura-setup --sum FILE\n"
+	"  gopura-setup --grow DISK --partition NAME --mounted DIR\n"
+	"\n"
+	"  --conf FILE    gopura.conf; given again: the first file that is there; where none is,\n"
+	"                 the terminal goes by what a network offers (DHCP)\n"
+	"  --out DIR      network, Wi-Fi, fetcher, health page, host name, time zone and faults\n"
+	"                 are written here, for units to link in\n"
+	"  --boards DIR   profiles that gopura.conf may name (/usr/share/gopura/board)\n"
+	"  --check FILE   only says what is wrong with the file, and ends with 1 if anything is\n"
+	"  --sum FILE     prints a checksum over the file and the files that it names: two that\n"
+	"                 have the same one mean the same\n"
+	"  --grow DISK    the partition NAME, the disk's last, becomes as large as the disk allows,\n"
+	"                 and so does its ext4 that is mounted at DIR\n"
+	"  --version, --help\n"
+	"\n"
+	"Examples\n"
+	"  gopura-setup --check gopura.conf\n"
+	"  gopura-setup --conf /efi/gopura.conf --conf /media/usb/gopura.conf --out /run/gopura\n";
+
+enum { CONFS_MOST = 4 };
+
+struct command {
+	const char *confs[CONFS_MOST];
+	unsigned count;
+	const char *out, *check, *sum, *boards;
+	const char *grow, *partition, *mounted;
+	bool boards_asked;
+};
+
+enum {
+	OPTION_CONF = 256,
+	OPTION_OUT,
+	OPTION_BOARDS,
+	OPTION_CHECK,
+	OPTION_SUM,
+	OPTION_GROW,
+	OPTION_PARTITION,
+	OPTION_MOUNTED,
+	OPTION_VERSION,
+	OPTION_HELP,
+};
+
+static const struct option long_options[] = {
+	{ "conf", required_argument, NULL, OPTION_CONF },
+	{ "out", required_argument, NULL, OPTION_OUT },
+	{ "boards", required_argument, NULL, OPTION_BOARDS },
+	{ "check", required_argument, NULL, OPTION_CHECK },
+	{ "sum", required_argument, NULL, OPTION_SUM },
+	{ "grow", required_argument, NULL, OPTION_GROW },
+	{ "partition", required_argument, NULL, OPTION_PARTITION },
+	{ "mounted", required_argument, NULL, OPTION_MOUNTED },
+	{ "version", no_argument, NULL, OPTION_VERSION },
+	{ "help", no_argument, NULL, OPTION_HELP },
+	{ 0 },
+};
+
+static void usage(const char *wrong)
+{
+	fprintf(stderr, "gopura-setup: %s; see gopura-setup --help\n", wrong);
+	exit(2);
+}
+
+/* A name that is passed on to other programs, and could say more to them than a name. */
+static void check_name(const char *name)
+{
+	for (const char *c = name; *c; c++)
+		if ((unsigned char)*c < 0x20 || *c == 0x7f || *c == '"' || *c == '\\')
+			usage("a folder's or file's name has quotes, backslashes or control "
+			      "characters; rename it");
+}
+
+static void take_option(struct command *command, int option)
+{
+	if (option == OPTION_CONF || option == OPTION_OUT || option == OPTION_BOARDS)
+		check_name(optarg);
+	switch (option) {
+	case OPTION_CONF:
+		if (command->count == CONFS_MOST)
+			usage("--conf stands there too often");
+		command->confs[command->count++] = optarg;
+		break;
+	case OPTION_OUT:
+		command->out = optarg;
+		break;
+	case OPTION_BOARDS:
+		command->boards = optarg;
+		command->boards_asked = true;
+		break;
+	case OPTION_CHECK:
+		command->check = optarg;
+		break;
+	case OPTION_SUM:
+		command->sum = optarg;
+		break;
+	case OPTION_GROW:
+		command->grow = optarg;
+		break;
+	case OPTION_PARTITION:
+		command->partition = optarg;
+		break;
+	case OPTION_MOUNTED:
+		command->mounted = optarg;
+		break;
+	case OPTION_VERSION:
+		puts("gopura-setup " GOPURA_VERSION);
+		exit(0);
+	case OPTION_HELP:
+		fputs(help, stdout);
+		exit(0);
+	default: /* getopt has said what is wrong */
+		usage("wrong options");
+	}
+}
+
+static void parse(struct command *command, int argc, char **argv)
+{
+	int option;
+
+	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
+		take_option(command, option);
+	if (optind < argc)
+		usage(argv[optind]);
+	if (command->grow || command->partition || command->mounted) {
+		if (!command->grow || !command->partition || !command->mounted)
+			usage("--grow, --partition and --mounted go together");
+		if (command->check || command->sum || command->count > 0 || command->out)
+			usage("--grow stands alone");
+		return;
+	}
+	if (command->check || command->sum) {
+		if ((command->check && command->sum) || command->count > 0 || command->out)
+			usage(command->check ? "--check stands alone" : "--sum stands alone");
+		return;
+	}
+	if (command->count == 0)
+		usage("--conf is missing");
+	if (!command->out)
+		usage("--out is missing");
+}
+
+/* On a desk the terminal's profiles are not there unless somebody says where. */
+static int check(const struct command *command)
+{
+	static struct terminal terminal;
+	static struct faults faults;
+
+	if (terminal_read(&terminal, command->check, command->boards_asked ? command->boards : NULL,
+			  &faults) < 0) {
+		fprintf(stderr, "gopura-setup: there is no file %s\n", command->check);
+		return 1;
+	}
+	for (unsigned i = 0; i < faults.count; i++)
+		printf("%s: %s\n", command->check, faults.list[i].text);
+	if (faults.dropped > 0)
+		printf("%s: and %u more\n", command->check, faults.dropped);
+	if (faults.count == 0)
+		printf("%s: no faults\n", command->check);
+	return faults.count > 0;
+}
+
+static int print_sum(const char *path)
+{
+	char sum[TERMINAL_SUM_BYTES];
+	const int rc = terminal_sum(path, sum);
+
+	if (rc < 0)
+		fprintf(stderr, "gopura-setup: %s: %s\n", path, open_problem(rc));
+	else
+		puts(sum);
+	return rc < 0;
+}
+
+static int apply(const struct command *command)
+{
+	static struct terminal terminal;
+	static struct faults faults;
+	struct setup setup = { .terminal = &terminal, .faults = &faults, .out = command->out };
+
+	for (unsigned i = 0; i < command->count && !setup.conf_path; i++)
+		if (terminal_read(&terminal, command->confs[i], command->boards, &faults) == 0)
+			setup.conf_path = command->confs[i];
+	if (setup.conf_path)
+		log_info("setup", "%s: %u faults", setup.conf_path, faults.count + faults.dropped);
+	else
+		faults_add(&faults, 0,
+			   "there is no %s; write one (docs/terminal.md). Until then the terminal "
+			   "takes the network as it is offered",
+			   command->confs[0]);
+	for (unsigned i = 0; i < faults.count; i++)
+		log_warn("setup", "%s", faults.list[i].text);
+	return setup_write(&setup) < 0;
+}
+
+int main(int argc, char **argv)
+{
+	struct command command = { .boards = "/usr/share/gopura/board" };
+
+	parse(&command, argc, argv);
+	if (command.grow)
+		return grow(command.grow, command.partition, command.mounted) < 0;
+	if (command.sum)
+		return print_sum(command.sum);
+	return command.check ? check(&command) : apply(&command);
+}

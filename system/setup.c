@@ -1,0 +1,372 @@
+#include "system/setup.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/bytes.h"
+#include "base/log.h"
+#include "base/safe_open.h"
+
+enum { FILE_MOST = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
+
+/* ---- files: the first failure is kept, and what follows it does nothing */
+
+struct writing {
+	const struct setup *setup;
+	struct buffer text;
+	int rc;
+};
+
+static void put(struct writing *writing, const char *text, ...) printf_like(2, 3);
+static void put(struct writing *writing, const char *text, ...)
+{
+	char line[2048];
+	va_list args;
+	int length;
+
+	va_start(args, text);
+	length = vsnprintf(line, sizeof(line), text, args);
+	va_end(args);
+	if (length < 0 || (size_t)length >= sizeof(line))
+		writing->text.error = -EMSGSIZE;
+	else
+		buffer_put(&writing->text, line, (size_t)length);
+}
+
+static void path_of(const struct writing *writing, const char *name, char out[PATH_MAX])
+{
+	snprintf(out, PATH_MAX, "%s/%s", writing->setup->out, name);
+}
+
+static void failed(struct writing *writing, const char *path, int rc)
+{
+	if (writing->rc < 0)
+		return;
+	log_error("setup", "%s: %s", path, strerror(-rc));
+	writing->rc = rc;
+}
+
+static void folder(struct writing *writing, const char *name, mode_t mode)
+{
+	char path[PATH_MAX];
+
+	path_of(writing, name, path);
+	if (writing->rc == 0 && mkdir(path, mode) < 0 && errno != EEXIST)
+		failed(writing, path, -errno);
+}
+
+/* What was put since the last file. */
+static void finish_file(struct writing *writing, const char *name)
+{
+	char path[PATH_MAX];
+	int rc = writing->text.error;
+
+	path_of(writing, name, path);
+	if (writing->rc == 0 && rc == 0)
+		rc = bytes_write_file(buffer_bytes(&writing->text), path);
+	if (rc < 0)
+		failed(writing, path, rc);
+	buffer_clear(&writing->text);
+}
+
+/* What an earlier gopura.conf said is said no more. */
+static void empty_folder(struct writing *writing, const char *name)
+{
+	char path[PATH_MAX];
+	struct dirent *entry;
+	DIR *files;
+
+	path_of(writing, name, path);
+	files = opendir(path);
+	while (files && (entry = readdir(files)))
+		if (entry->d_name[0] != '.')
+			unlinkat(dirfd(files), entry->d_name, 0);
+	if (files)
+		closedir(files);
+}
+
+/* ---- what the programs are started with */
+
+/* May stand in a file of the service manager's, as one word and without an escape. */
+static bool is_plain_word(const char *text)
+{
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				    "0123456789-_./+,:=@";
+
+	return text[strspn(text, plain)] == '\0';
+}
+
+/* The authority that gopura.conf names, copied: the stick that it came from may go. Its whole path,
+ * which holds whatever folder a unit starts in, into out. False: there is none. */
+static bool copy_authority(struct writing *writing, char out[PATH_MAX])
+{
+	const struct setup *setup = writing->setup;
+	struct buffer file;
+	char path[PATH_MAX];
+	int rc;
+
+	folder(writing, "conf", 0755);
+	path_of(writing, "conf/ca.pem", path);
+	if (!setup->terminal->ca[0] || !setup->conf_path) {
+		unlink(path);
+		return false;
+	}
+	buffer_init(&file, TERMINAL_FILE_BYTES_MAX);
+	rc = terminal_read_beside(&file, setup->conf_path, setup->terminal->ca);
+	if (rc == 0)
+		rc = bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	if (rc == 0 && !realpath(path, out))
+		rc = -errno;
+	/* Everything else of the set-up goes on: without it the fetcher trusts the system's. */
+	if (rc < 0)
+		log_error("setup", "%s: %s", setup->terminal->ca, open_problem(rc));
+	else if (!is_plain_word(out))
+		log_error("setup", "%s: choose an --out without spaces, quotes and the like", out);
+	return rc == 0 && is_plain_word(out);
+}
+
+static void write_fetcher(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+	char authority[PATH_MAX];
+	const bool has_authority = copy_authority(writing, authority);
+
+	if (t->release_url[0])
+		put(writing, "RELEASE_URL=\"%s\"\n", t->release_url);
+	put(writing, "FETCH_OPTIONS=\"");
+	if (t->poll_s > 0)
+		put(writing, " --poll-s %u", t->poll_s);
+	if (t->rate_limit_kib > 0)
+		put(writing, " --rate-limit %u", t->rate_limit_kib);
+	if (t->redirect_hosts[0])
+		put(writing, " --redirect-hosts %s", t->redirect_hosts);
+	if (has_authority)
+		put(writing, " --ca %s", authority);
+	put(writing, "\"\n");
+	finish_file(writing, "fetch.env");
+}
+
+static void write_health(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+	const bool brackets = strchr(t->listen_address, ':');
+
+	put(writing, "%s%s%s:%u\n", brackets ? "[" : "", t->listen_address, brackets ? "]" : "",
+	    t->listen_port);
+	finish_file(writing, "health-address");
+}
+
+/* What systemd-resolved tells who asks by multicast for web pages (DNS-SD). */
+static void write_announcement(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+
+	folder(writing, "dnssd", 0755);
+	empty_folder(writing, "dnssd");
+	if (!t->mdns)
+		return;
+	put(writing, "[Service]\nName=%%H\nType=_http._tcp\nPort=%u\nTxtText=path=/\n",
+	    t->listen_port);
+	finish_file(writing, "dnssd/gopura-health.dnssd");
+}
+
+/* ---- networks */
+
+static void put_servers(struct writing *writing, const char *name,
+			const struct terminal_servers *servers)
+{
+	for (uint32_t i = 0; i < servers->count; i++)
+		put(writing, "%s=%s\n", name, servers->names[i]);
+}
+
+/* What gopura.conf names takes the place of what the network offers. */
+static void put_uses(struct writing *writing, const char *section, bool has_ntp)
+{
+	const struct terminal *t = writing->setup->terminal;
+
+	put(writing, "\n[%s]\n", section);
+	if (t->dns.count > 0)
+		put(writing, "UseDNS=no\n");
+	if (t->ntp.count > 0 && has_ntp)
+		put(writing, "UseNTP=no\n");
+}
+
+static void write_network(struct writing *writing, const char *file, const char *type, int metric,
+			  bool is_static)
+{
+	const struct terminal *t = writing->setup->terminal;
+	char host[TERMINAL_NAME_BYTES];
+
+	terminal_host_name(t, host);
+	/* The mark is udev's (70-gopura-usb.rules): on the board, or allowed under [usb]. */
+	put(writing,
+	    "[Match]\nType=%s\nProperty=GOPURA_NETWORK=yes\n\n[Link]\nRequiredForOnline=no\n\n"
+	    "[Network]\n",
+	    type);
+	if (t->mdns)
+		put(writing, "MulticastDNS=yes\n");
+	if (!is_static)
+		put(writing, "DHCP=yes\n");
+	else
+		put(writing, "DHCP=no\nAddress=%s/%u\n", t->address, t->prefix_bits);
+	put_servers(writing, "DNS", &t->dns);
+	put_servers(writing, "NTP", &t->ntp);
+	if (is_static && t->gateway[0])
+		put(writing, "\n[Route]\nGateway=%s\nMetric=%d\n", t->gateway, metric);
+	if (!is_static) {
+		put_uses(writing, "DHCPv4", true);
+		put(writing, "RouteMetric=%d\nUseHostname=no\nSendHostname=yes\nHostname=%s\n",
+		    metric, host);
+		put_uses(writing, "DHCPv6", true);
+		put_uses(writing, "IPv6AcceptRA", false);
+		put(writing, "RouteMetric=%d\n", metric);
+	}
+	finish_file(writing, file);
+}
+
+void setup_wifi_name(const struct terminal *terminal, char out[SETUP_WIFI_NAME_BYTES])
+{
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				    "0123456789-_ ";
+	const char *kind = terminal->passphrase[0] ? "psk" : "open";
+	const char *ssid = terminal->ssid;
+	size_t length = 1;
+
+	if (ssid[strspn(ssid, plain)] == '\0') {
+		snprintf(out, SETUP_WIFI_NAME_BYTES, "%s.%s", ssid, kind);
+		return;
+	}
+	out[0] = '=';
+	for (; *ssid; ssid++, length += 2)
+		snprintf(out + length, SETUP_WIFI_NAME_BYTES - length, "%02x",
+			 (unsigned char)*ssid);
+	snprintf(out + length, SETUP_WIFI_NAME_BYTES - length, ".%s", kind);
+}
+
+/* iwd's texts escape a backslash, and a space where it is the first. */
+static void put_escaped(struct writing *writing, const char *text)
+{
+	if (*text == ' ') {
+		put(writing, "\\s");
+		text++;
+	}
+	for (; *text; text++)
+		put(writing, "%s%c", *text == '\\' ? "\\" : "", *text);
+}
+
+static void write_wifi(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+	char name[SETUP_WIFI_NAME_BYTES], path[sizeof("iwd/") + SETUP_WIFI_NAME_BYTES];
+	char network[PATH_MAX];
+
+	folder(writing, "iwd", 0700); /* passphrases are root's */
+	empty_folder(writing, "iwd");
+	if (!t->ssid[0]) {
+		path_of(writing, "network/20-wifi.network", network);
+		unlink(network);
+		return;
+	}
+	if (strlen(t->passphrase) == 64) {
+		put(writing, "[Security]\nPreSharedKey=%s\n", t->passphrase);
+	} else if (t->passphrase[0]) {
+		put(writing, "[Security]\nPassphrase=");
+		put_escaped(writing, t->passphrase);
+		put(writing, "\n");
+	} else {
+		put(writing, "[Settings]\nAutoConnect=true\n");
+	}
+	setup_wifi_name(t, name);
+	snprintf(path, sizeof(path), "iwd/%s", name);
+	finish_file(writing, path);
+	if (t->country[0]) {
+		put(writing, "[General]\nCountry=%s\n", t->country);
+		finish_file(writing, "iwd/main.conf");
+	}
+	write_network(writing, "network/20-wifi.network", "wlan", WIFI_METRIC, t->is_static);
+}
+
+/* The address is the radio's where there is one: two cards with one address reach nobody. */
+static void write_networks(struct writing *writing)
+{
+	const struct terminal *t = writing->setup->terminal;
+
+	folder(writing, "network", 0755);
+	write_network(writing, "network/10-wired.network", "ether", WIRED_METRIC,
+		      t->is_static && !t->ssid[0]);
+	write_wifi(writing);
+}
+
+/* ---- USB */
+
+/* For gopura-usb, which judges what is plugged in; empty: nothing but storage and touch. */
+static void write_usb(struct writing *writing)
+{
+	char words[TERMINAL_USB_WORDS_BYTES];
+
+	terminal_usb_words(writing->setup->terminal, words);
+	if (words[0])
+		put(writing, "%s\n", words);
+	finish_file(writing, "usb");
+}
+
+/* ---- the system */
+
+static void write_time_zone(struct writing *writing)
+{
+	const char *zone = writing->setup->terminal->time_zone;
+	char path[PATH_MAX], temporary[PATH_MAX + 8], target[PATH_MAX];
+
+	snprintf(target, sizeof(target), "/usr/share/zoneinfo/%s", zone[0] ? zone : "Etc/UTC");
+	path_of(writing, "localtime", path);
+	snprintf(temporary, sizeof(temporary), "%s.new", path);
+	unlink(temporary);
+	if (writing->rc == 0 && (symlink(target, temporary) < 0 || rename(temporary, path) < 0))
+		failed(writing, path, -errno);
+}
+
+static void write_host_name(struct writing *writing)
+{
+	char host[TERMINAL_NAME_BYTES];
+
+	terminal_host_name(writing->setup->terminal, host);
+	put(writing, "%s\n", host);
+	finish_file(writing, "hostname");
+}
+
+static void write_faults(struct writing *writing)
+{
+	const struct faults *faults = writing->setup->faults;
+
+	for (unsigned i = 0; i < faults->count; i++)
+		put(writing, "%s\n", faults->list[i].text);
+	if (faults->dropped > 0)
+		put(writing, "and %u more\n", faults->dropped);
+	finish_file(writing, "faults");
+}
+
+int setup_write(const struct setup *setup)
+{
+	struct writing writing = { .setup = setup };
+
+	buffer_init(&writing.text, FILE_MOST);
+	folder(&writing, "", 0755);
+	write_faults(&writing); /* first: whatever fails then, they are told */
+	write_fetcher(&writing);
+	write_health(&writing);
+	write_announcement(&writing);
+	write_networks(&writing);
+	write_usb(&writing);
+	write_time_zone(&writing);
+	write_host_name(&writing);
+	buffer_finish(&writing.text);
+	return writing.rc;
+}

@@ -1,0 +1,386 @@
+/* What a kiosk says and a server answers, in any order: the bytes are a sequence of both, for the
+ * fetcher's bringer with a server that is this file. What is passed on has the right hash, requests
+ * stay within their number, and none is left at the end. */
+#include <errno.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "format/locator.h"
+#include "net/downloader.h"
+
+enum { OBJECTS = 6, OBJECT_BYTES = 300, ROOTS = 3, ASKED_MAX = 64, EVENTS_MAX = 60 };
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+struct http_request {
+	struct http_ask ask;
+	bool open, enough, is_locator;
+	uint64_t given;
+};
+
+static struct {
+	struct http_request asked[ASKED_MAX];
+	size_t count, open;
+	int64_t now_ms;
+	bool is_giving, is_full;
+	bool cached[OBJECTS], locator_cached; /* what the cache has */
+	struct link link;
+	struct refusal refusal;
+} world;
+
+static uint8_t pack[OBJECTS * OBJECT_BYTES];
+static struct hash names[OBJECTS];
+static const struct hash page = { { 9 } }, pack_name = { { 0xaa } };
+static struct buffer locator;
+
+/* ---- in place of base/clock.c and net/http.c */
+
+int64_t clock_now_ms(void)
+{
+	return world.now_ms;
+}
+
+int64_t clock_now_us(void)
+{
+	return world.now_ms * 1000;
+}
+
+int64_t clock_thread_us(void)
+{
+	return 0;
+}
+
+int64_t clock_wall_s(void)
+{
+	return 1790000000 + world.now_ms / 1000;
+}
+
+int http_create(struct http **out, const struct http_options *options)
+{
+	(void)options;
+	*out = NULL;
+	return 0;
+}
+
+void http_destroy(struct http *http)
+{
+	(void)http;
+}
+
+int http_fd(const struct http *http)
+{
+	(void)http;
+	return -1;
+}
+
+int http_dispatch(struct http *http)
+{
+	(void)http;
+	return 0;
+}
+
+uint64_t http_received_bytes(const struct http *http)
+{
+	(void)http;
+	return 0;
+}
+
+const char *http_url(const struct http *http)
+{
+	(void)http;
+	return "fuzz:";
+}
+
+int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out)
+{
+	struct http_request *request = &world.asked[world.count];
+
+	(void)http;
+	if (world.is_giving)
+		abort();
+	if (world.count == ASKED_MAX)
+		return -ENOMEM;
+	*request = (struct http_request){ .ask = *ask,
+					  .open = true,
+					  .is_locator = strncmp(ask->path, "locator/", 8) == 0 };
+	request->ask.path = request->ask.etag = NULL;
+	world.count++;
+	world.open++;
+	*out = request;
+	return 0;
+}
+
+void http_cancel(struct http_request *request)
+{
+	if (!request->open || world.is_giving)
+		abort();
+	request->open = false;
+	world.open--;
+}
+
+/* ---- in place of storage/cache.c: a SQLite file each time would be all that is done */
+
+/* Which of our objects; -1: none. */
+static int object_named(struct hash name)
+{
+	for (int i = 0; i < OBJECTS; i++)
+		if (hash_equal(names[i], name))
+			return i;
+	return -1;
+}
+
+int cache_get(struct cache *cache, struct hash hash, uint32_t priority, struct buffer *out)
+{
+	const int n = object_named(hash);
+
+	(void)cache, (void)priority;
+	buffer_clear(out);
+	if (n < 0 || !world.cached[n])
+		return -ENOENT;
+	buffer_put(out, pack + n * OBJECT_BYTES, OBJECT_BYTES);
+	return out->error;
+}
+
+int cache_put(struct cache *cache, struct hash hash, struct bytes object, uint32_t priority)
+{
+	const int n = object_named(hash);
+
+	(void)cache, (void)priority;
+	if (!hash_equal(hash_of(object), hash))
+		abort();
+	if (n >= 0)
+		world.cached[n] = true;
+	return 0;
+}
+
+int cache_keep(struct cache *cache, struct hash hash)
+{
+	(void)cache, (void)hash;
+	return 0;
+}
+
+int cache_use_release(struct cache *cache, struct hash root)
+{
+	(void)cache, (void)root;
+	return 0;
+}
+
+int cache_get_file(struct cache *cache, struct hash name, struct buffer *out)
+{
+	(void)cache, (void)name;
+	buffer_clear(out);
+	if (!world.locator_cached)
+		return -ENOENT;
+	buffer_put(out, locator.data, locator.size);
+	return out->error;
+}
+
+int cache_put_file(struct cache *cache, struct hash name, struct bytes file)
+{
+	(void)cache, (void)name, (void)file;
+	return 0;
+}
+
+/* ---- the server answers */
+
+/* The n-th of the open ones; NULL: none. */
+static struct http_request *open_request(uint8_t n)
+{
+	size_t skip = world.open ? n % world.open : 0;
+
+	for (size_t i = 0; i < world.count; i++)
+		if (world.asked[i].open && skip-- == 0)
+			return &world.asked[i];
+	return NULL;
+}
+
+/* As net/http.h promises: never past what was asked for, and nothing after the receiver had enough.
+ */
+static void give(struct http_request *request, struct bytes bytes)
+{
+	const uint64_t most = request->ask.size ? request->ask.size : request->ask.ceiling;
+	const uint64_t room = most - request->given;
+
+	if (bytes.size > room)
+		bytes.size = (size_t)room;
+	if (bytes.size == 0 || request->enough)
+		return;
+	request->given += bytes.size;
+	world.is_giving = true;
+	request->enough = !request->ask.receive(request->ask.data, bytes);
+	world.is_giving = false;
+}
+
+/* The bytes that stand where they were asked for. */
+static void give_right(struct http_request *request, size_t size)
+{
+	struct bytes from = buffer_bytes(&locator);
+	const uint64_t at =
+		request->is_locator ? request->given : request->ask.first + request->given;
+
+	if (!request->is_locator)
+		from = (struct bytes){ pack, sizeof(pack) };
+	if (at < from.size)
+		give(request, (struct bytes){ from.data + at,
+					      size < from.size - at ? size : from.size - at });
+}
+
+static void end(struct http_request *request, uint8_t how)
+{
+	static const int results[] = { 0, 0, 0, -ENOENT, -EBADMSG, -EHOSTUNREACH };
+	const struct http_result result = { .rc = results[how % ARRAY_COUNT(results)],
+					    .etag = "",
+					    .why = "the fuzzer says so" };
+
+	request->open = false;
+	world.open--;
+	request->ask.done(request->ask.data, &result);
+}
+
+static void answer(struct reader *in)
+{
+	struct http_request *request = open_request(reader_u8(in));
+	const uint8_t what = reader_u8(in), size = reader_u8(in);
+
+	if (!request)
+		return;
+	switch (what % 4) {
+	case 0:
+		give_right(request, (size_t)size * 16);
+		break;
+	case 1:
+		give(request, reader_bytes(in, size < reader_left(in) ? size : reader_left(in)));
+		break;
+	case 2:
+		give_right(request, SIZE_MAX);
+		end(request, 0);
+		break;
+	case 3:
+		end(request, size);
+		break;
+	}
+}
+
+/* ---- the kiosk says */
+
+static void on_object(void *data, struct hash hash, struct bytes bytes)
+{
+	(void)data;
+	if (!hash_equal(hash_of(bytes), hash))
+		abort();
+}
+
+static void on_missing(void *data, struct hash hash, enum missing_reason reason)
+{
+	(void)data, (void)hash;
+	if (reason < MISSING_OFFLINE || reason > MISSING_DAMAGED)
+		abort();
+}
+
+static bool has_room(void *data)
+{
+	(void)data;
+	return !world.is_full;
+}
+
+/* As a message can say it (format/message.h): one of our objects, or one at any place. */
+static void want(struct bring *bring, struct reader *in)
+{
+	const uint8_t n = reader_u8(in);
+	struct message_want want = { .hash = names[n % OBJECTS],
+				     .page = page,
+				     .offset = n % OBJECTS * OBJECT_BYTES,
+				     .size = OBJECT_BYTES,
+				     .priority = reader_u16(in) * 20u };
+
+	if (n & 0x80) {
+		want.hash.bytes[0] ^= n;
+		want.offset = reader_u16(in);
+		want.size = 1 + reader_u16(in) % (OBJECT_BYTES * 4);
+	}
+	if ((n & 0xc0) == 0x40)
+		want.page = (struct hash){ { 0 } };
+	bring_want(bring, &want);
+}
+
+static void event(struct bring *bring, struct reader *in)
+{
+	const uint8_t what = reader_u8(in);
+
+	switch (what % 10) {
+	case 0:
+		bring_use_release(bring, (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } }, 100,
+				  what & 0x80);
+		break;
+	case 1:
+	case 2:
+		want(bring, in);
+		break;
+	case 3:
+		bring_drop(bring, names[what / 10 % OBJECTS]);
+		break;
+	case 4:
+		bring_keep(bring, names[what / 10 % OBJECTS]);
+		break;
+	case 5:
+	case 6:
+		answer(in);
+		break;
+	case 7:
+		world.now_ms += (int64_t)reader_u16(in) * 10;
+		break;
+	case 8:
+		world.is_full = what & 0x80;
+		bring_ask_again(bring);
+		break;
+	case 9:
+		if (what & 0x80)
+			bring_forget_all(bring);
+		else
+			world.locator_cached = what & 0x40;
+		break;
+	}
+	bring_work(bring);
+	(void)bring_due_ms(bring);
+}
+
+static void begin(void)
+{
+	struct locator_block block = { page, 0, 0, sizeof(pack) };
+	struct hash pack_hash = pack_name;
+	struct locator about = { 1, 1, &pack_hash, &block };
+
+	if (locator.size)
+		return;
+	for (size_t i = 0; i < sizeof(pack); i++)
+		pack[i] = (uint8_t)(i * i / 7 + i / OBJECT_BYTES);
+	for (int i = 0; i < OBJECTS; i++)
+		names[i] = hash_of((struct bytes){ pack + i * OBJECT_BYTES, OBJECT_BYTES });
+	buffer_init(&locator, 1 << 20);
+	locator_encode(&locator, &about);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	struct bring_options options = { .link = &world.link,
+					 .events = { on_object, on_missing, has_room } };
+	struct bring *bring;
+	struct reader in;
+
+	begin();
+	memset(&world, 0, sizeof(world));
+	world.now_ms = 1000;
+	link_init(&world.link);
+	world.link.refusal = &world.refusal;
+	if (bring_create(&bring, &options) < 0)
+		abort();
+	reader_init(&in, (struct bytes){ data, size });
+	for (int i = 0; i < EVENTS_MAX && reader_left(&in) > 0; i++)
+		event(bring, &in);
+	bring_destroy(bring);
+	if (world.open > 0 || world.link.in_flight > 0)
+		abort();
+	return 0;
+}

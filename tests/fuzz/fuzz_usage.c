@@ -1,0 +1,34 @@
+/* The counts of visitors, as a disk may give them back: read, put in order and written; what comes
+ * out is in order already. */
+#include "base/bytes.h"
+#include "storage/usage.h"
+#include "tests/fuzz/scratch.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void put_in_order(struct buffer *out)
+{
+	struct tally *tally;
+
+	if (tally_create(&tally, scratch_path("visits.csv"), NULL, 1795000000) < 0)
+		abort();
+	tally_destroy(tally);
+	buffer_init(out, TALLY_FILE_MOST);
+	if (buffer_read_file(out, scratch_path("visits.csv")) < 0)
+		abort();
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	struct buffer once, twice;
+
+	scratch_begin();
+	scratch_write("visits.csv", data, size);
+	put_in_order(&once);
+	put_in_order(&twice);
+	if (once.size != twice.size || memcmp(once.data, twice.data, once.size) != 0)
+		abort();
+	buffer_finish(&once);
+	buffer_finish(&twice);
+	return 0;
+}

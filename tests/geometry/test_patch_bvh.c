@@ -1,0 +1,157 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/patch_bvh.h"
+#include "geometry/vec.h"
+#include "tests/check.h"
+
+enum { SIDE = 30 }; /* vertices a side of a bumpy square */
+
+static const struct lattice lattice = { { -10, -10, -10 }, 0.001 };
+
+static void make_bumps(struct patch_mesh *mesh)
+{
+	memset(mesh, 0, sizeof(*mesh));
+	mesh->vertices = calloc(SIDE * SIDE, sizeof(*mesh->vertices));
+	mesh->indices = calloc(6 * SIDE * SIDE, sizeof(*mesh->indices));
+	for (int y = 0; y < SIDE; y++) {
+		for (int x = 0; x < SIDE; x++) {
+			float z = 10 + 0.8f * sinf((float)x) * cosf((float)y * 0.7f);
+			uint16_t *at = mesh->vertices[mesh->vertex_count++].position;
+			at[0] = (uint16_t)(5000 + 300 * x);
+			at[1] = (uint16_t)(5000 + 300 * y);
+			at[2] = (uint16_t)(1000 * z);
+		}
+	}
+	for (int y = 0; y + 1 < SIDE; y++) {
+		for (int x = 0; x + 1 < SIDE; x++) {
+			int a = y * SIDE + x,
+			    corner[6] = { a, a + 1, a + SIDE + 1, a, a + SIDE + 1, a + SIDE };
+			for (int k = 0; k < 6; k++)
+				mesh->indices[3 * mesh->triangle_count + (uint32_t)k] =
+					(uint16_t)corner[k];
+			mesh->triangle_count += 2;
+		}
+	}
+}
+
+static float uniform(uint32_t *seed)
+{
+	*seed = *seed * 1664525u + 1013904223u;
+	return (float)(*seed >> 8) / 16777216.0f;
+}
+
+/* The place on the triangle, by its corners as the mesh came, is the one along the ray. */
+static bool is_where_it_says(const struct solid *solid, const float from[3],
+			     const float direction[3], float distance, const struct solid_hit *hit,
+			     const uint16_t *came)
+{
+	const uint16_t *corner = &came[3 * solid->order[hit->triangle]];
+	const float share[3] = { 1 - hit->u - hit->v, hit->u, hit->v };
+	float on_ray[3], on_triangle[3] = { 0 };
+	vec_add_scaled(on_ray, from, distance, direction);
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			on_triangle[i] +=
+				share[k] * (float)(lattice.origin_m[i] +
+						   lattice.step_m * solid->positions[corner[k]][i]);
+	return vec_distance(on_ray, on_triangle) < 1e-3f;
+}
+
+static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
+{
+	(void)state;
+	struct patch_mesh mesh;
+	struct solid solid;
+	uint32_t seed = 1, hits = 0;
+	make_bumps(&mesh);
+	uint16_t *came = malloc(3 * mesh.triangle_count * sizeof(*came));
+	memcpy(came, mesh.indices, 3 * mesh.triangle_count * sizeof(*came));
+	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	for (int i = 0; i < 2000; i++) {
+		float from[3], direction[3];
+		for (int k = 0; k < 3; k++) {
+			from[k] = 12 * uniform(&seed) - 6;
+			direction[k] = 2 * uniform(&seed) - 1;
+		}
+		vec_normalise(direction);
+		float found = INFINITY, nearest = INFINITY;
+		struct solid_hit where;
+		bool hit = solid_ray(&solid, from, direction, 0, &found, &where);
+		/* One leaf of everything: the same test without the tree. */
+		struct solid flat = solid;
+		struct solid_node all = solid.nodes[0];
+		all.right = 0;
+		flat.nodes = &all;
+		flat.node_count = 1;
+		CHECK(solid_ray(&flat, from, direction, 0, &nearest, NULL) == hit);
+		CHECK(found == nearest);
+		hits += hit;
+		if (hit)
+			CHECK(is_where_it_says(&solid, from, direction, found, &where, came));
+	}
+	CHECK(hits > 100 && hits < 1900);
+	free(came);
+	solid_finish(&solid);
+	patch_mesh_finish(&mesh);
+}
+
+static void pieces_hold_every_triangle_once(void **state)
+{
+	(void)state;
+	struct patch_mesh mesh;
+	struct solid solid;
+	make_bumps(&mesh);
+	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	uint32_t next = 0;
+	for (uint32_t i = 0; i < solid.piece_count; i++) {
+		const struct piece *piece = &solid.pieces[i];
+		CHECK(piece->first_triangle == next && piece->triangle_count > 0);
+		CHECK(piece->triangle_count <= PIECE_TRIANGLES_MOST);
+		for (int k = 0; k < PIECE_PROBES; k++)
+			CHECK(vec_distance(solid_probe(&solid, piece, k).at_m, piece->centre_m) <=
+			      piece->radius_m * 1.001f);
+		next += piece->triangle_count;
+	}
+	CHECK(next == mesh.triangle_count);
+	solid_finish(&solid);
+	patch_mesh_finish(&mesh);
+}
+
+static void an_empty_patch_is_met_by_nothing(void **state)
+{
+	(void)state;
+	struct patch_mesh mesh = { 0 };
+	struct solid solid;
+	const float from[3] = { 0 }, up[3] = { 0, 0, 1 };
+	float distance = INFINITY;
+	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	CHECK(!solid_ray(&solid, from, up, 0, &distance, NULL));
+	solid_finish(&solid);
+}
+
+static void triangles_in_one_place_do_not_hang_the_split(void **state)
+{
+	(void)state;
+	struct patch_mesh mesh;
+	struct solid solid;
+	make_bumps(&mesh);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++)
+		memset(mesh.vertices[i].position, 0, sizeof(mesh.vertices[i].position));
+	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	CHECK(solid.piece_count >= 1);
+	solid_finish(&solid);
+	patch_mesh_finish(&mesh);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_ray_meets_what_every_triangle_tried_alone_says),
+		cmocka_unit_test(pieces_hold_every_triangle_once),
+		cmocka_unit_test(an_empty_patch_is_met_by_nothing),
+		cmocka_unit_test(triangles_in_one_place_do_not_hang_the_split),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,402 @@
+/* Parts as W3C Web Annotations and back: nothing is lost on the way, and what other tools write is
+ * taken where it can be and refused by name where it cannot. */
+#include "pipeline/content/annotations.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <limits.h>
+#include <unistd.h>
+
+#include "pipeline/content/json_lines.h"
+#include "tests/pipeline/content/info_folder.h"
+
+static struct complaints complaints;
+static char copy[100], file[100]; /* where imports go, and what they read */
+
+static int set_up_exchange(void **state)
+{
+	int rc = set_up(state);
+
+	write_text(
+		"parts.json",
+		"{\"credits\": {\"rights\": {\"en\": \"© The museum\", \"km\": \"© សារមន្ទីរ\"}},\n"
+		"\"parts\": [\n"
+		"{\"id\": \"tower\", \"region\": {\"kind\": \"box\", \"centre\": [0, 1.1, 20],\n"
+		" \"half\": [3, 4, 5], \"turn\": 45}, \"anchor\": [0.1, 1e-7, 25],\n"
+		" \"title\": {\"en\": \"Tower\", \"km\": \"ប្រាង្គ\"}, \"reading\": {\"km\": \"prang\"},\n"
+		" \"caption\": {\"en\": \"\\\"High\\\"\"}, \"thumbnail\": \"pictures/a.png\",\n"
+		" \"credits\": {\"creator\": [\"A\", \"B\"], \"date\": \"1150\"}},\n"
+		"{\"id\": \"gate\", \"region\": {\"kind\": \"prism\", \"floor\": 0, \"roof\": 4,\n"
+		" \"corners\": [[0, 0], [0, 2], [2, 2], [2, 0]]}, \"title\": {\"en\": \"Gate\"}},\n"
+		"{\"id\": \"bud\", \"region\": {\"kind\": \"sphere\", \"centre\": [1, 2, 3],\n"
+		" \"radius\": 0.5}, \"page\": false, \"title\": {\"en\": \"Bud\"}},\n"
+		"{\"id\": \"spot\", \"region\": {\"kind\": \"point\", \"centre\": [1, 2, 3]},\n"
+		" \"anchor\": [4, 5, 6], \"page\": false, \"title\": {\"en\": \"Spot\"}},\n"
+		"{\"id\": \"naga\", \"anchor\": [5, 6, 7], \"page\": false,\n"
+		" \"title\": {\"en\": \"Naga\"}},\n"
+		"{\"id\": \"lintel\", \"region\": {\"kind\": \"faces\", \"file\":\n"
+		" \"regions/lintel.faces\", \"scan\": \"gate.ply\"}, \"anchor\": [6, 7, 8],\n"
+		" \"page\": false, \"title\": {\"en\": \"Lintel\"}}\n"
+		"]}\n");
+	snprintf(copy, sizeof(copy), "%s/copy", folder);
+	snprintf(file, sizeof(file), "%s/exchange.jsonld", folder);
+	return rc;
+}
+
+static int export_from(struct annotations *out, const char *from)
+{
+	const struct annotations_export_options options = { .folder = from,
+							    .complaint = note,
+							    .complaint_data = &complaints };
+
+	complaints.count = 0;
+	return annotations_export(out, &options);
+}
+
+static int import_with(struct annotations_imported *report, bool y_is_up, bool skip_unknown)
+{
+	const struct annotations_import_options options = { .file = file,
+							    .folder = copy,
+							    .y_is_up = y_is_up,
+							    .skip_unknown = skip_unknown,
+							    .complaint = note,
+							    .complaint_data = &complaints };
+
+	complaints.count = 0;
+	return annotations_import(report, &options);
+}
+
+static void read_copy(struct buffer *out, const char *name)
+{
+	char path[200];
+
+	snprintf(path, sizeof(path), "%s/%s", copy, name);
+	buffer_init(out, 1 << 20);
+	if (buffer_read_file(out, path) < 0)
+		fail_msg("%s is not there", path);
+	buffer_put_u8(out, 0);
+}
+
+static bool copy_says(const char *name, const char *words)
+{
+	struct buffer text;
+	bool found;
+
+	read_copy(&text, name);
+	found = strstr((char *)text.data, words) != NULL;
+	buffer_finish(&text);
+	return found;
+}
+
+static void comes_back_byte_for_byte(void **state)
+{
+	struct annotations first, second;
+	struct annotations_imported report;
+	struct buffer page;
+
+	(void)state;
+	CHECK(export_from(&first, folder) == 0);
+	CHECK(first.count == 6 && first.picture_count == 2);
+	write_file("exchange.jsonld", first.json.data, first.json.size);
+	if (import_with(&report, false, false) != 0)
+		fail_msg("%s", complaints.list[0].text);
+	CHECK(report.part_count == 6 && report.page_count == 3 && report.picture_count == 2);
+	CHECK(export_from(&second, copy) == 0);
+	CHECK(second.json.size == first.json.size);
+	CHECK(memcmp(second.json.data, first.json.data, first.json.size) == 0);
+	read_copy(&page, "pages/tower.en.html");
+	CHECK(strstr((char *)page.data, "<h1>Central tower</h1>\n<p>Above the <a"));
+	buffer_finish(&page);
+	CHECK(strstr((char *)first.json.data, "FaceListSelector"));
+	CHECK(copy_says("parts.json", "\"regions/lintel.faces\""));
+	annotations_finish(&first);
+	annotations_finish(&second);
+	annotations_finish(NULL);
+}
+
+/* And the links to them, which are faults where they are not there. */
+static void tours_come_back_with_the_parts(void **state)
+{
+	static const char tours[] =
+		"{\"tours\": [{\"id\": \"walk\", \"title\": {\"en\": \"A walk\"},\n"
+		"\"thumbnail\": \"pictures/b.png\", \"stops\": [\n"
+		"{\"eye\": [1, 2.5, 3], \"target\": [4, 5, 6]}, {\"part\": \"tower\"}]}]}";
+	struct annotations first, second;
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("tours.json", tours);
+	write_text("pages/tower.en.html", "<p>Take <a href=\"tour:walk\">a walk</a>.</p>");
+	CHECK(export_from(&first, folder) == 0);
+	CHECK(first.picture_count == 2); /* one that only the tour shows */
+	write_file("exchange.jsonld", first.json.data, first.json.size);
+	if (import_with(&report, false, false) != 0)
+		fail_msg("%s", complaints.list[0].text);
+	CHECK(copy_says("tours.json", "2.5"));
+	CHECK(export_from(&second, copy) == 0);
+	CHECK(second.json.size == first.json.size);
+	CHECK(memcmp(second.json.data, first.json.data, first.json.size) == 0);
+	annotations_finish(&first);
+	annotations_finish(&second);
+	write_text("tours.json", "{\"tours\": [{\"id\": \"walk\"}]}");
+	CHECK(export_from(&first, folder) == -EINVAL);
+	CHECK(was_told(&complaints, "tours.json", 1, "no title in"));
+}
+
+/* What the standards ask for, and where our own terms are used. */
+static void writes_what_the_standards_name(void **state)
+{
+	struct annotations annotations;
+	const cJSON *item, *context, *selector;
+	cJSON *json;
+
+	(void)state;
+	CHECK(export_from(&annotations, folder) == 0);
+	json = cJSON_ParseWithLength((char *)annotations.json.data, annotations.json.size);
+	context = cJSON_GetObjectItem(json, "@context");
+	CHECK(strcmp(cJSON_GetArrayItem(context, 0)->valuestring,
+		     "http://www.w3.org/ns/anno.jsonld") == 0);
+	CHECK(strcmp(cJSON_GetObjectItem(json, "type")->valuestring, "AnnotationCollection") == 0);
+	CHECK(cJSON_GetObjectItem(json, "total")->valueint == 6);
+	item = cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetObjectItem(json, "first"), "items"),
+				  0);
+	CHECK(strcmp(cJSON_GetObjectItem(item, "type")->valuestring, "Annotation") == 0);
+	CHECK(cJSON_GetArraySize(cJSON_GetObjectItem(item, "dcterms:creator")) == 2);
+	selector = cJSON_GetObjectItem(cJSON_GetObjectItem(item, "target"), "selector");
+	CHECK(strcmp(cJSON_GetObjectItem(cJSON_GetArrayItem(selector, 0), "type")->valuestring,
+		     "BoxSelector") == 0);
+	CHECK(cJSON_GetObjectItem(cJSON_GetArrayItem(selector, 1), "x")->valuedouble == 0.1);
+	/* Every term of ours that is used is in the context. */
+	for (const cJSON *s = selector->child; s; s = s->next)
+		for (const cJSON *member = s->child; member; member = member->next)
+			CHECK(strcmp(member->string, "type") == 0 ||
+			      cJSON_HasObjectItem(cJSON_GetArrayItem(context, 1), member->string));
+	cJSON_Delete(json);
+	annotations_finish(&annotations);
+}
+
+static void refuses_a_folder_that_is_at_fault(void **state)
+{
+	struct annotations annotations;
+	char path[200];
+
+	(void)state;
+	write_text("pages/gate.en.html", "<p>x</p>\n<script></script>");
+	CHECK(export_from(&annotations, folder) == -EINVAL);
+	CHECK(was_told(&complaints, "pages/gate.en.html", 2, "<script>"));
+	write_text("parts.json", "{\"parts\": [\n,]}");
+	CHECK(export_from(&annotations, folder) == -EINVAL);
+	CHECK(was_told(&complaints, "parts.json", 2, "not JSON"));
+	snprintf(path, sizeof(path), "%s/parts.json", folder);
+	unlink(path);
+	CHECK(export_from(&annotations, folder) == -ENOENT);
+}
+
+/* As an IIIF viewer writes: y up, an agent as creator, HTML as a comment. */
+static void takes_what_another_tool_wrote(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text(
+		"exchange.jsonld",
+		"{\"@context\": \"http://iiif.io/api/presentation/4/context.json\",\n"
+		"\"id\": \"https://example.org/page/1\", \"type\": \"AnnotationPage\",\n"
+		"\"items\": [\n"
+		"{\"id\": \"https://example.org/Anno/East Gate\", \"type\": \"Annotation\",\n"
+		" \"motivation\": [\"commenting\"],\n"
+		" \"creator\": {\"type\": \"Person\", \"name\": \"A. Scholar\"},\n"
+		" \"rights\": \"https://creativecommons.org/licenses/by/4.0/\",\n"
+		" \"body\": [{\"type\": \"TextualBody\", \"purpose\": \"tagging\",\n"
+		"  \"value\": \"East gate\"},\n"
+		"  {\"type\": \"TextualBody\", \"purpose\": \"commenting\", \"language\": [\"en\"],\n"
+		"  \"format\": \"text/html\", \"value\": \"<p>One enters here.</p>\"},\n"
+		"  {\"type\": \"Image\", \"id\": \"https://example.org/a.jpg\"}],\n"
+		" \"target\": {\"source\": [{\"id\": \"https://example.org/scene\", \"type\":\n"
+		"  \"Scene\"}], \"selector\": [{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2,\n"
+		"  \"z\": 3}]}}]}\n");
+	if (import_with(&report, true, false) != 0)
+		fail_msg("%s", complaints.list[complaints.count - 1].text);
+	CHECK(report.part_count == 1 && report.page_count == 1);
+	CHECK(complaints.count >= 1 && !complaints.list[0].is_error); /* the image */
+	CHECK(copy_says("parts.json", "\"id\":\t\"east-gate\""));
+	CHECK(copy_says("parts.json", "[1, -3, 2]"));
+	CHECK(copy_says("parts.json", "\"creator\":\t\"A. Scholar\""));
+	CHECK(copy_says("parts.json", "licenses/by/4.0"));
+	CHECK(copy_says("pages/east-gate.en.html", "<p>One enters here.</p>"));
+}
+
+#define ITEM(id, selector)                                                                         \
+	"{\"id\": \"" id "\", \"type\": \"Annotation\", \"body\": {\"type\": \"TextualBody\","     \
+	" \"purpose\": \"identifying\", \"value\": \"x\"}, \"target\": {\"selector\": " selector   \
+	"}}"
+#define POINT "{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2, \"z\": 3}"
+#define SVG   "{\"type\": \"SvgSelector\", \"value\": \"<svg/>\"}"
+
+static bool nothing_is_left(void)
+{
+	return access(copy, F_OK) < 0;
+}
+
+static void names_the_place_of_what_it_refuses(void **state)
+{
+	static const struct {
+		const char *text, *words;
+		unsigned line;
+	} cases[] = {
+		{ "{\"items\": [\n", "not JSON", 2 },
+		{ "{\"type\": \"Manifest\"}", "holds no annotations", 1 },
+		{ "{\"first\": \"https://example.org/1\"}", "is elsewhere", 1 },
+		{ "{\"first\": {\"items\": [], \"next\": \"x\"}}", "more pages", 1 },
+		{ "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("#b", SVG) "]}", "SvgSelector",
+		  3 },
+		{ "{\"items\": [\n{\"id\": \"#a\", \"target\": \"https://example.org/x\"}]}",
+		  "without selector", 2 },
+		{ "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("x/A", POINT) "]}",
+		  "part \"a\" already", 3 },
+		{ "{\"items\": [\n" ITEM("", POINT) "]}", "without an id", 2 },
+		{ "{\"items\": [\n\n{\"id\": \"#a\", \"target\": {\"selector\": " POINT "}}]}",
+		  "has no title", 3 },
+		{ "{\"items\": [\n{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": "
+		  "\"tagging\", \"language\": \"../x\"}], \"target\": {\"selector\": " POINT "}}]}",
+		  "no language's code", 2 },
+		{ "{\"items\": [\n{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": "
+		  "\"tagging\"}, {\"value\": \"y\", \"purpose\": \"identifying\"}], \"target\": "
+		  "{\"selector\": " POINT "}}]}",
+		  "two titles", 2 },
+	};
+	struct annotations_imported report;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		write_text("exchange.jsonld", cases[i].text);
+		if (import_with(&report, false, false) != -EINVAL)
+			fail_msg("case %zu was taken", i);
+		if (!was_told(&complaints, file, cases[i].line, cases[i].words))
+			fail_msg("case %zu: \"%s\" at line %u", i, complaints.list[0].text,
+				 complaints.list[0].line);
+		CHECK(nothing_is_left());
+	}
+}
+
+static void leaves_unknown_selectors_out_where_told_to(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("exchange.jsonld",
+		   "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("#b", SVG) "]}");
+	CHECK(import_with(&report, false, true) == 0);
+	CHECK(report.part_count == 1 && report.skipped_count == 1);
+	CHECK(complaints.list[0].line == 3 && strstr(complaints.list[0].text, "left out"));
+	CHECK(copy_says("parts.json", "\"a\"") && !copy_says("parts.json", "\"b\""));
+}
+
+/* Of several selectors the one that is known counts. */
+static void takes_the_selector_that_it_knows(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("exchange.jsonld",
+		   "[" ITEM("#a", "[" SVG ", {\"type\": \"SphereSelector\", \"centre\": [1, 2, 3], "
+				  "\"radius\": 2}]") "]");
+	CHECK(import_with(&report, false, false) == 0);
+	CHECK(copy_says("parts.json", "\"sphere\""));
+}
+
+/* A page that no terminal may show, a region that is none, a picture that is nowhere: refused by
+ * the folder's own readers, and taken away again. */
+static void takes_away_what_the_folder_cannot_be(void **state)
+{
+	static const struct {
+		const char *text, *file, *words;
+	} cases[] = {
+		{ ITEM("#a",
+		       "{\"type\": \"SphereSelector\", \"centre\": [1, 2, 3], \"radius\": -2}"),
+		  "parts.json", "radius" },
+		{ "{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": \"tagging\"}, "
+		  "{\"format\": \"text/html\", \"value\": \"<p>y</p><script></script>\"}], "
+		  "\"target\": {\"selector\": " POINT "}}",
+		  "pages/a.en.html", "<script>" },
+		{ "{\"id\": \"#a\", \"schema:thumbnailUrl\": {\"id\": \"pictures/z.png\"}, \"body\": "
+		  "[{\"value\": \"x\", \"purpose\": \"tagging\"}], \"target\": {\"selector\": " POINT
+		  "}}",
+		  "parts.json", "z.png" },
+	};
+	struct annotations_imported report;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		bool told = false;
+
+		write_text("exchange.jsonld", cases[i].text);
+		CHECK(import_with(&report, false, false) == -EINVAL);
+		for (uint32_t k = 0; k < complaints.count; k++)
+			told |= strcmp(complaints.list[k].file, cases[i].file) == 0 &&
+				strstr(complaints.list[k].text, cases[i].words);
+		if (!told)
+			fail_msg("case %zu: %s", i, complaints.list[0].text);
+		CHECK(nothing_is_left());
+	}
+}
+
+static void writes_over_nothing(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("exchange.jsonld", ITEM("#a", POINT));
+	CHECK(import_with(&report, false, false) == 0);
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(&complaints, file, 0, "is there already"));
+	CHECK(copy_says("parts.json", "\"a\""));
+}
+
+static void refuses_every_truncation(void **state)
+{
+	struct annotations_imported report;
+	struct annotations annotations;
+
+	(void)state;
+	CHECK(export_from(&annotations, folder) == 0);
+	for (size_t size = 0; size + 2 < annotations.json.size; size += 61) {
+		write_file("exchange.jsonld", annotations.json.data, size);
+		CHECK(import_with(&report, false, false) == -EINVAL);
+		CHECK(nothing_is_left());
+	}
+	annotations_finish(&annotations);
+}
+
+static void finds_the_lines_of_a_lists_objects(void **state)
+{
+	unsigned lines[4] = { 0 };
+
+	(void)state;
+	json_item_lines(
+		"{\"a\": {\"b\": \"parts [{\"},\n\"credits\": [{}],\n\"parts\": [{\"c\": [{}]},\n\n"
+		"{\"d\": \"]\\\"\"}, [{}],\n{}], \"e\": [\n{}]}",
+		"parts", lines, 4);
+	CHECK(lines[0] == 3 && lines[1] == 5 && lines[2] == 6 && lines[3] == 0);
+}
+
+int main(void)
+{
+#define IN_A_FOLDER(claim) cmocka_unit_test_setup_teardown(claim, set_up_exchange, tear_down)
+	const struct CMUnitTest tests[] = {
+		IN_A_FOLDER(comes_back_byte_for_byte),
+		IN_A_FOLDER(tours_come_back_with_the_parts),
+		IN_A_FOLDER(writes_what_the_standards_name),
+		IN_A_FOLDER(refuses_a_folder_that_is_at_fault),
+		IN_A_FOLDER(takes_what_another_tool_wrote),
+		IN_A_FOLDER(names_the_place_of_what_it_refuses),
+		IN_A_FOLDER(leaves_unknown_selectors_out_where_told_to),
+		IN_A_FOLDER(takes_the_selector_that_it_knows),
+		IN_A_FOLDER(takes_away_what_the_folder_cannot_be),
+		IN_A_FOLDER(writes_over_nothing),
+		IN_A_FOLDER(refuses_every_truncation),
+		cmocka_unit_test(finds_the_lines_of_a_lists_objects),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

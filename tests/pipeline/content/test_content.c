@@ -1,0 +1,241 @@
+#include "pipeline/content/content.h"
+#include "storage/info.h"
+
+#include <errno.h>
+#include <math.h>
+#include <sys/stat.h>
+
+#include "tests/check.h"
+#include "tests/pipeline/import/scan_text.h"
+
+static const char triangle[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+			       "property float y\nproperty float z\nelement face 1\n"
+			       "property list uchar int vertex_indices\nend_header\n"
+			       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/* folder is filled with the name of a new content folder: temple.ini and one scan, tower.ply. */
+static void make_folder(char folder[256], const char *ini)
+{
+	scan_write(folder, "temple.ini", ini, strlen(ini));
+	scan_write_beside(folder, "tower.ply", triangle, strlen(triangle));
+	*strrchr(folder, '/') = '\0';
+}
+
+static void remove_folder(const char *folder)
+{
+	char inside[300];
+
+	snprintf(inside, sizeof(inside), "%s/temple.ini", folder);
+	scan_remove(inside);
+}
+
+static void defaults_need_only_a_scan(void **state)
+{
+	char folder[256];
+	struct content content;
+	struct fault fault = { "" };
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply\n");
+	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
+	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
+	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 80);
+	CHECK(content.patch_triangles == 0 && content.publish_share == 0.10);
+	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
+	CHECK(content.lit == CONTENT_LIT_AUTO && !content.has_start && !content.binary_tree);
+	CHECK(content.tools == 0);
+	CHECK(fabs(content.sun[0] * content.sun[0] + content.sun[1] * content.sun[1] +
+		   content.sun[2] * content.sun[2] - 1) < 1e-3);
+	content_release(&content);
+	remove_folder(folder);
+}
+
+static void every_key_is_read(void **state)
+{
+	static const char ini[] =
+		"# a comment\n[model]\nname = Banteay of the Test\nscans = tower.ply, tower.ply\n"
+		"up = y\nunit = mm\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
+		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
+		"tools = section, light\n[grid]\n"
+		"points = 32\nface_px = 1024\nquality = 90\n[hierarchy]\nkind = tree\n"
+		"patch_triangles = 1000\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
+	char folder[256];
+	struct content content;
+	struct fault fault = { "" };
+	(void)state;
+
+	make_folder(folder, ini);
+	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(strcmp(content.name, "Banteay of the Test") == 0 && content.scan_count == 2);
+	CHECK(content.import.up == IMPORT_Y_UP && content.import.metres_per_unit == 0.001);
+	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
+	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
+	CHECK(content.background[0] == 255 && content.has_start);
+	CHECK(content.tools == (INFO_TOOL_LIGHT | INFO_TOOL_SECTION));
+	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
+	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
+	CHECK(content.binary_tree && content.patch_triangles == 1000);
+	CHECK(content.publish_share == 0.5 && content.language_count == 4);
+	CHECK(strcmp(content.languages[3], "pt-BR") == 0);
+	content_release(&content);
+	remove_folder(folder);
+}
+
+static void faults_name_file_line_and_cure(void **state)
+{
+	static const struct {
+		const char *name, *ini, *says;
+	} cases[] = {
+		{ "no-scan", "[model]\nname = x\n", "scans = FILE" },
+		{ "missing", "[model]\nscans = tower.ply gone.ply\n", "gone.ply: No such file" },
+		{ "folder", "[model]\nscans = .work\n", "No such file" },
+		{ "outside", "[model]\nscans = ../tower.ply\n", "temple.ini:2: scans" },
+		{ "absolute", "[model]\nscans = /etc/passwd\n", "inside it" },
+		{ "typo", "[model]\nscans = tower.ply\ncolors = scan\n", "temple.ini:3: 'colors'" },
+		{ "typo-cure", "[model]\ncolors = scan\n", "colours" },
+		{ "section", "[modle]\nscans = tower.ply\n", "[model]" },
+		{ "no-section", "scans = tower.ply\n", "temple.ini:1:" },
+		{ "twice", "[model]\nup = z\n\nup = y\n", "temple.ini:4: 'up' stands in line 2" },
+		{ "not-a-line", "[model]\nscans tower.ply\n", "temple.ini:2: this is neither" },
+		{ "up", "[model]\nup = w\n", "temple.ini:2: up = w: it must be z, y or x" },
+		{ "unit", "[model]\nunit = yard\n", "metres in one unit" },
+		{ "unit-zero", "[model]\nunit = 0\n", "metres in one unit" },
+		{ "sun", "[model]\nsun = 0 0 0\n", "three numbers" },
+		{ "sun-nan", "[model]\nsun = nan 0 1\n", "three numbers" },
+		{ "colour", "[model]\ncolours = #12345\n", "#rrggbb" },
+		{ "lit", "[model]\nlit = perhaps\n", "yes or no" },
+		{ "points", "[grid]\npoints = 33\n", "from 4 to 32" },
+		{ "points-text", "[grid]\npoints = 8x\n", "from 4 to 32" },
+		{ "face", "[grid]\nface_px = 500\n", "512" },
+		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
+		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },
+		{ "tools", "[view]\n\ntools = light, lens\n",
+		  "temple.ini:3: tools = light, lens: it must be light, section" },
+		{ "tools-twice", "[view]\ntools = light light\n", "each once" },
+		{ "share", "[release]\npublish_share = 0\n", "above 0" },
+		{ "languages", "[release]\nlanguages = en f\n", "language tags" },
+	};
+	char folder[256];
+	struct content content;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct fault fault = { "" };
+
+		make_folder(folder, cases[i].ini);
+		if (content_read(&content, folder, &fault) >= 0 ||
+		    !strstr(fault.text, cases[i].says) || !strstr(fault.text, "temple.ini"))
+			fail_msg("%s: '%s'", cases[i].name, fault.text);
+		remove_folder(folder);
+	}
+}
+
+static void says_what_is_no_content_folder(void **state)
+{
+	struct content content;
+	struct fault fault = { "" };
+	(void)state;
+
+	CHECK(content_read(&content, "/nowhere/at/all", &fault) == -ENOENT);
+	CHECK(strstr(fault.text, "/nowhere/at/all/temple.ini"));
+	fault.text[0] = '\0';
+	CHECK(content_read(&content, "", &fault) == -EINVAL && fault.text[0]);
+}
+
+static void a_line_longer_than_inih_holds_is_a_fault(void **state)
+{
+	char ini[256], folder[256];
+	struct content content;
+	struct fault fault = { "" };
+	(void)state;
+
+	snprintf(ini, sizeof(ini), "[model]\nscans = tower.ply\nname = %0200d\n", 7);
+	make_folder(folder, ini);
+	CHECK(content_read(&content, folder, &fault) == -EBADMSG);
+	CHECK(strstr(fault.text, "temple.ini:3: the line is too long"));
+	remove_folder(folder);
+}
+
+static void names_stay_inside_the_folder(void **state)
+{
+	static const char *const bad[] = { "",  "/",   "/a",   "..", "../a", "a/..", "a/../b",
+					   ".", "./a", "a//b", "a/", "a\\b", "a\nb" };
+	static const char *const good[] = { "a",   "a b.ply", "a/b",         "..a",
+					    "a..", ".work",   "\xe1\x9e\x80" };
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++)
+		if (content_name_is_safe(bad[i]))
+			fail_msg("taken for safe: '%s'", bad[i]);
+	for (size_t i = 0; i < ARRAY_COUNT(good); i++)
+		if (!content_name_is_safe(good[i]))
+			fail_msg("taken for unsafe: '%s'", good[i]);
+}
+
+static void import_of(const char *folder, bool *from_cache, uint32_t *triangles)
+{
+	static struct content_scans scans;
+	struct content content;
+	struct fault fault = { "" };
+	struct mesh mesh;
+
+	CHECK(content_read(&content, folder, &fault) == 0);
+	if (content_import(&mesh, &content, &scans, &fault) < 0)
+		fail_msg("%s", fault.text);
+	*from_cache = scans.from_cache;
+	*triangles = mesh.triangle_count;
+	CHECK(content_is_lit(&content, &mesh));
+	mesh_finish(&mesh);
+	content_release(&content);
+}
+
+static void a_second_import_comes_from_the_cache_until_something_changes(void **state)
+{
+	char folder[256], path[512];
+	bool from_cache;
+	uint32_t triangles;
+	FILE *file;
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply tower.ply\n");
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache && triangles == 2);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(from_cache && triangles == 2);
+
+	/* a damaged cache is made anew */
+	snprintf(path, sizeof(path), "%s/.work/mesh", folder);
+	file = fopen(path, "r+b");
+	CHECK(file && fseek(file, 80, SEEK_SET) == 0 && fputc(0x55, file) != EOF &&
+	      fclose(file) == 0);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache && triangles == 2);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(from_cache);
+
+	/* so is one of other options, and one of other scans */
+	snprintf(path, sizeof(path), "%s/temple.ini", folder);
+	scan_write_beside(path, "temple.ini", "[model]\nscans = tower.ply\n", 26);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache && triangles == 1);
+	scan_write_beside(path, "tower.mtl", "x", 1);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache);
+	remove_folder(folder);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(defaults_need_only_a_scan),
+		cmocka_unit_test(every_key_is_read),
+		cmocka_unit_test(faults_name_file_line_and_cure),
+		cmocka_unit_test(says_what_is_no_content_folder),
+		cmocka_unit_test(a_line_longer_than_inih_holds_is_a_fault),
+		cmocka_unit_test(names_stay_inside_the_folder),
+		cmocka_unit_test(a_second_import_comes_from_the_cache_until_something_changes),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,261 @@
+/* Tours from tours.json to what the kiosk reads; what is said of one that is at fault; and images
+ * of before there were tours. */
+#include <errno.h>
+#include <math.h>
+#include <unistd.h>
+
+#include "storage/info_schema.h"
+#include "storage/info_view.h"
+#include "tests/pipeline/content/info_folder.h"
+
+static const char good_tours[] =
+	"{\"tours\": [\n"
+	"  {\"id\": \"short\", \"title\": {\"en\": \"Short\", \"km\": \"ខ្លី\"},\n"
+	"   \"stops\": [\n"
+	"    {\"eye\": [1, 2, 3], \"target\": [4, 5, 6], \"stay\": 3},\n"
+	"    {\"part\": \"naga\", \"stay\": 4, \"travel\": 7.5}]},\n"
+	"  {\"id\": \"round\", \"attract\": true, \"title\": {\"en\": \"All\"},\n"
+	"   \"caption\": {\"en\": \"Four minutes\", \"km\": \"បួននាទី\"}, \"thumbnail\": "
+	"\"pictures/b.png\",\n"
+	"   \"stops\": [\n"
+	"    {\"eye\": [0, -50, 20], \"part\": \"tower\", \"caption\": {\"en\": \"See\", "
+	"\"km\": \"មើល\"}},\n"
+	"    {\"eye\": [9, -40, 20], \"target\": [0, 1, 5], \"stay\": 0},\n"
+	"    {\"eye\": [20, -30, 20], \"target\": [0, 1, 25],\n"
+	"     \"caption\": {\"en\": \"There\"}}\n"
+	"   ]}\n"
+	"]}\n";
+
+static uint32_t version_of(const struct info_built *built)
+{
+	return built->database.data[63]; /* user_version, big endian at 60 */
+}
+
+static void gives_back_the_tours_of_the_folder(void **state)
+{
+	struct complaints complaints;
+	const struct info_tour *tour;
+	struct info_built built;
+	struct info_text text;
+	struct info *info;
+
+	(void)state;
+	write_text("tours.json", good_tours);
+	CHECK(build(&built, &complaints) == 0);
+	CHECK(built.tour_count == 2 && version_of(&built) == INFO_SCHEMA_VERSION);
+	CHECK(built.tour_lines[0].tour == 2 && built.tour_lines[0].stops[1] == 5);
+	CHECK(built.tour_lines[1].tour == 6 && built.tour_lines[1].stops[2] == 11);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	CHECK(info_tour_count(info) == 2 && info_find_tour(info, "round") == 1);
+	CHECK(info_find_tour(info, "long") == -ENOENT);
+
+	tour = info_tour(info, 0);
+	CHECK(!tour->attract && tour->stop_count == 2);
+	CHECK(tour->stops[0].eye_m[1] == 2 && tour->stops[0].target_m[2] == 6);
+	CHECK(tour->stops[0].stay_s == 3 && tour->stops[0].travel_s == 0);
+	CHECK(tour->stops[0].part == -1 && tour->stops[1].part == info_find(info, "naga"));
+	CHECK(tour->stops[1].stay_s == 4 && tour->stops[1].travel_s == 7.5f);
+
+	tour = info_tour(info, 1);
+	CHECK(tour->attract && tour->stop_count == 3 && tour->stops[1].stay_s == 0);
+	CHECK(tour->stops[0].stay_s == 6 && tour->stops[0].target_m[2] == 25); /* the anchor */
+
+	text = info_tour_text(info, 1, "km");
+	CHECK(strcmp(text.title, "All") == 0 && strcmp(text.caption, "បួននាទី") == 0);
+	CHECK(strcmp(text.thumbnail, "pictures/b.png") == 0);
+	CHECK(strcmp(info_tour_text(info, 0, "km").title, "ខ្លី") == 0);
+	CHECK(strcmp(info_stop_caption(info, 1, 0, "km"), "មើល") == 0);
+	CHECK(strcmp(info_stop_caption(info, 1, 2, "km"), "There") == 0);
+	CHECK(strcmp(info_stop_caption(info, 1, 1, "en"), "") == 0);
+	info_close(info);
+	info_built_finish(&built);
+}
+
+/* As the kiosk flies to a part: from where the eye stands, but nearer. */
+static void a_stop_that_names_a_part_alone_is_the_view_of_it(void **state)
+{
+	struct complaints complaints;
+	const struct info_stop *stops;
+	float eye[3], target[3];
+	struct info_built built;
+	struct info *info;
+
+	(void)state;
+	write_text("tours.json", good_tours);
+	CHECK(build(&built, &complaints) == 0);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	stops = info_tour(info, 0)->stops;
+	info_view(&info_part(info, 2)->region, info_part(info, 2)->anchor_m, 0.5f, stops[0].eye_m,
+		  eye, target);
+	for (int i = 0; i < 3; i++)
+		CHECK(stops[1].eye_m[i] == eye[i] && stops[1].target_m[i] == target[i]);
+	CHECK(target[0] == 5 && target[2] == 7);
+	CHECK(fabsf(hypotf(hypotf(eye[0] - 5, eye[1] - 6), eye[2] - 7) - 2.5f) < 1e-4f);
+	info_close(info);
+	info_built_finish(&built);
+}
+
+/* Terminals that were not updated read on what they always read. */
+static void a_folder_without_tours_gives_the_version_before(void **state)
+{
+	struct info_built built, empty;
+	struct complaints complaints;
+	struct info *info;
+
+	(void)state;
+	CHECK(build(&built, &complaints) == 0);
+	CHECK(built.tour_count == 0 && version_of(&built) == INFO_SCHEMA_TOURLESS);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	CHECK(info_tour_count(info) == 0 && info_find_tour(info, "round") == -ENOENT);
+	info_close(info);
+	write_text("tours.json", "{\"tours\": []}");
+	CHECK(build(&empty, &complaints) == 0);
+	CHECK(empty.database.size == built.database.size &&
+	      memcmp(empty.database.data, built.database.data, built.database.size) == 0);
+	info_built_finish(&built);
+	info_built_finish(&empty);
+}
+
+static void links_lead_to_tours_that_are_there(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+
+	(void)state;
+	write_text("tours.json", good_tours);
+	write_text("pages/gate.en.html", "<p>See <a href=\"tour:round\">all of it</a>.</p>");
+	CHECK(build(&built, &complaints) == 0);
+	info_built_finish(&built);
+	write_text("pages/gate.en.html", "<p>See\n<a href=\"tour:rund\">all of it</a>.</p>");
+	CHECK(build(&built, &complaints) == -EINVAL);
+	CHECK(was_told(&complaints, "pages/gate.en.html", 2, "no tour has that id"));
+}
+
+#define TOUR(stops)                                                                                \
+	"{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"},\n\"stops\": [\n" stops "]}]}"
+#define STOP "{\"eye\": [1, 2, 3], \"target\": [4, 5, 6]}"
+
+static void faults_are_named_with_file_line_and_cure(void **state)
+{
+	static const struct {
+		const char *json, *words;
+		unsigned line;
+	} cases[] = {
+		{ "{\"tours\": [\n{]}", "is not JSON from here on", 2 },
+		{ "[]", "must be {\"tours\": [...]} at the outside", 1 },
+		{ "{\"tours\": [7]}", "entry 1 of \"tours\" is no object", 0 },
+		{ "{\"tours\": [\n{\"id\": \"A b\", \"title\": {\"en\": \"A\"}, \"stops\": [" STOP
+		  ", " STOP "]}]}",
+		  "use 1 to 64 of a-z", 2 },
+		{ "{\"tours\": [{\"id\": \"a\", \"stops\": [" STOP "," STOP "]}]}",
+		  "no title in \"en\", the first language", 1 },
+		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"stops\": [" STOP
+		  "]}]}",
+		  "needs 2 to 64 \"stops\", it has 1", 1 },
+		{ "{\"tours\": [{\"id\": \"a\", \"titel\": 1, \"title\": {\"en\": \"A\"}, "
+		  "\"stops\": [" STOP "," STOP "]}]}",
+		  "\"titel\" is no key of it", 1 },
+		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"attract\": 1, "
+		  "\"stops\": [" STOP "," STOP "]}]}",
+		  "\"attract\" must be true or false", 1 },
+		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"attract\": true, "
+		  "\"stops\": [" STOP "," STOP "]},\n{\"id\": \"b\", \"title\": {\"en\": \"B\"}, "
+		  "\"attract\": true, \"stops\": [" STOP "," STOP "]}]}",
+		  "only one can be shown", 2 },
+		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"stops\": [" STOP
+		  "," STOP "]},\n{\"id\": \"a\", \"title\": {\"en\": \"B\"}, \"stops\": [" STOP
+		  "," STOP "]}]}",
+		  "is there twice", 2 },
+		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"thumbnail\": "
+		  "\"pictures/none.jpg\", \"stops\": [" STOP "," STOP "]}]}",
+		  "is not there", 1 },
+		{ TOUR(STOP ",\n{\"eye\": [1, 2], \"target\": [4, 5, 6]}"),
+		  "stop 2: \"eye\" must be three numbers", 4 },
+		{ TOUR(STOP ",\n{\"eye\": [1, 2, 1e99], \"target\": [4, 5, 6]}"),
+		  "\"eye\" must be three numbers", 4 },
+		{ TOUR(STOP ",\n{\"eye\": [4, 5, 6], \"target\": [4, 5, 6]}"), "are one place", 4 },
+		{ TOUR(STOP ",\n{\"eye\": [1, 2, 3]}"), "\"eye\" alone is no view", 4 },
+		{ TOUR(STOP ",\n{\"target\": [1, 2, 3]}"), "\"target\" alone is no view", 4 },
+		{ TOUR(STOP ",\n{\"stay\": 3}"), "what does it look at?", 4 },
+		{ TOUR(STOP ",\n{\"part\": \"gat\"}"), "part \"gat\": no part has that id", 4 },
+		{ TOUR("{\"part\": \"gate\"},\n" STOP), "stop 1: a part is shown from where", 3 },
+		{ TOUR(STOP ",\n" STOP ",\n{\"part\": \"naga\", \"stay\": 121}"),
+		  "stop 3: \"stay\" must be 1 to 120 seconds", 5 },
+		{ TOUR(STOP ",\n{\"part\": \"naga\", \"stay\": 0}"), "\"stay\" must be 1 to 120",
+		  4 },
+		{ TOUR(STOP ",\n{\"part\": \"naga\", \"stay\": \"a\"},\n" STOP),
+		  "\"stay\" must be 0 or 1 to 120", 4 },
+		{ TOUR(STOP ",\n{\"part\": \"naga\", \"travel\": 0}"), "\"travel\" must be 1 to",
+		  4 },
+		{ TOUR(STOP ",\n{\"part\": \"naga\", \"caption\": \"Naga\"}"),
+		  "\"caption\" must be texts by language", 4 },
+		{ TOUR(STOP ",\n{\"part\": \"naga\", \"caption\": {\"km\": \"នាគ\"}}"),
+		  "no caption in \"en\"", 4 },
+		{ TOUR(STOP ",\n7"), "stop 2: must be an object", 1 },
+		{ TOUR(STOP ",\n" STOP ",\n{\"part\": \"caf\xe9\"}"), "not UTF-8", 5 },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct complaints complaints;
+		struct info_built built;
+
+		write_text("tours.json", cases[i].json);
+		CHECK(build(&built, &complaints) == -EINVAL);
+		if (!was_told(&complaints, "tours.json", cases[i].line, cases[i].words))
+			fail_msg("case %zu: %s:%u: %s", i, complaints.list[0].file,
+				 complaints.list[0].line, complaints.list[0].text);
+	}
+}
+
+/* What is read of a damaged image is within bounds, or refused; sanitizers look on. */
+static void a_damaged_image_breaks_nothing(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+	uint32_t random = 3, opened = 0;
+
+	(void)state;
+	write_text("tours.json", good_tours);
+	CHECK(build(&built, &complaints) == 0);
+	for (int i = 0; i < 1500; i++) {
+		struct buffer *image = &built.database;
+		size_t at = (random = random * 1664525u + 1013904223u) % image->size;
+		uint8_t before = image->data[at];
+		struct info *info;
+
+		image->data[at] ^= (uint8_t)(1 + (random >> 24) % 255);
+		if (info_open(&info, buffer_bytes(image)) == 0) {
+			for (uint32_t t = 0; t < info_tour_count(info); t++) {
+				const struct info_tour *tour = info_tour(info, t);
+
+				CHECK(info_tour_text(info, t, "km").title && tour->stop_count >= 2);
+				for (uint32_t s = 0; s < tour->stop_count; s++) {
+					CHECK(info_stop_caption(info, t, s, "km"));
+					CHECK(tour->stops[s].part < (int)info_part_count(info));
+					CHECK(isfinite(tour->stops[s].eye_m[0]));
+				}
+			}
+			opened++;
+		}
+		info_close(info);
+		image->data[at] = before;
+	}
+	CHECK(opened > 0 && opened < 1500);
+	info_built_finish(&built);
+}
+
+int main(void)
+{
+#define IN_A_FOLDER(claim) cmocka_unit_test_setup_teardown(claim, set_up, tear_down)
+	const struct CMUnitTest tests[] = {
+		IN_A_FOLDER(gives_back_the_tours_of_the_folder),
+		IN_A_FOLDER(a_stop_that_names_a_part_alone_is_the_view_of_it),
+		IN_A_FOLDER(a_folder_without_tours_gives_the_version_before),
+		IN_A_FOLDER(links_lead_to_tours_that_are_there),
+		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
+		IN_A_FOLDER(a_damaged_image_breaks_nothing),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

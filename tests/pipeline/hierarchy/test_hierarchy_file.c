@@ -1,0 +1,596 @@
+/* The promise of the hierarchy: no cut has a crack. */
+#include "pipeline/hierarchy/multires.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/patch.h"
+#include "pipeline/import/import.h"
+#include "tests/check.h"
+#include "tests/pipeline/shapes.h"
+
+enum { CUTS = 1000 };
+
+struct objects {
+	struct buffer *items;
+	uint32_t count;
+};
+
+static int keep_object(void *user, struct bytes object, float loss_m4)
+{
+	struct objects *objects = user;
+
+	CHECK(loss_m4 >= 0);
+	objects->items = realloc(objects->items, (objects->count + 1) * sizeof(*objects->items));
+	buffer_init(&objects->items[objects->count], 64 << 20);
+	buffer_put(&objects->items[objects->count++], object.data, object.size);
+	return 0;
+}
+
+static void objects_finish(struct objects *objects)
+{
+	for (uint32_t i = 0; i < objects->count; i++)
+		buffer_finish(&objects->items[i]);
+	free(objects->items);
+}
+
+/* An edge of a patch's border; net: how often it runs from the smaller to the greater end, less the
+ * other way. An edge inside the patch cancels. */
+struct border {
+	uint32_t edge;
+	int32_t net;
+};
+
+struct patch_border {
+	struct border *items;
+	uint32_t count;
+};
+
+/* Everything the walk over cuts needs, and nothing of how it was built. */
+struct model {
+	struct hierarchy hierarchy;
+	struct patch_mesh *patches; /* in the order of the hierarchy */
+	struct patch_border *borders;
+	uint64_t *edges; /* sorted, distinct */
+	size_t edge_count;
+	struct patch_vertex *vertices; /* sorted, distinct */
+	size_t vertex_count;
+	uint64_t *open; /* places on the scan's open edges, sorted */
+	size_t open_count;
+	int32_t *nets, *uses; /* of each edge, in the cut at hand */
+};
+
+static uint64_t place_key(const uint16_t position[3])
+{
+	return position[0] | (uint64_t)position[1] << 16 | (uint64_t)position[2] << 32;
+}
+
+static int compare_vertices(const void *a, const void *b)
+{
+	return memcmp(a, b, sizeof(struct patch_vertex));
+}
+
+static int compare_keys(const void *left, const void *right)
+{
+	uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+
+	return a < b ? -1 : a > b;
+}
+
+static size_t sort_distinct(void *items, size_t count, size_t size,
+			    int (*compare)(const void *, const void *))
+{
+	char *at = items;
+	size_t kept = 0;
+
+	qsort(items, count, size, compare);
+	for (size_t i = 0; i < count; i++)
+		if (kept == 0 || compare(at + (kept - 1) * size, at + i * size) != 0)
+			memmove(at + kept++ * size, at + i * size, size);
+	return kept;
+}
+
+/* Vertices are the same when every bit is: place, normal and colour. */
+static uint32_t name_of(const struct model *model, const struct patch_vertex *vertex)
+{
+	const struct patch_vertex *found = bsearch(vertex, model->vertices, model->vertex_count,
+						   sizeof(*vertex), compare_vertices);
+
+	return (uint32_t)(found - model->vertices);
+}
+
+static uint64_t edge_between(uint32_t a, uint32_t b)
+{
+	return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+static void collect_vertices(struct model *model)
+{
+	size_t total = 0, at = 0;
+
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
+		total += model->patches[p].vertex_count;
+	model->vertices = malloc(total * sizeof(*model->vertices));
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++) {
+		memcpy(model->vertices + at, model->patches[p].vertices,
+		       model->patches[p].vertex_count * sizeof(*model->vertices));
+		at += model->patches[p].vertex_count;
+	}
+	model->vertex_count =
+		sort_distinct(model->vertices, total, sizeof(*model->vertices), compare_vertices);
+}
+
+struct directed {
+	uint64_t edge;
+	int32_t net;
+};
+
+static int compare_directed(const void *left, const void *right)
+{
+	return compare_keys(&((const struct directed *)left)->edge,
+			    &((const struct directed *)right)->edge);
+}
+
+/* Distinct edges whose runs do not cancel; edge is the pair of names here. */
+static uint32_t border_of(struct directed **out, const struct model *model,
+			  const struct patch_mesh *patch)
+{
+	uint32_t count = 3 * patch->triangle_count, kept = 0;
+	struct directed *edges = malloc(count * sizeof(*edges));
+
+	for (uint32_t i = 0; i < count; i++) {
+		uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+		uint32_t a = name_of(model, &patch->vertices[patch->indices[i]]);
+		uint32_t b = name_of(model, &patch->vertices[patch->indices[next]]);
+
+		edges[i] = (struct directed){ edge_between(a, b), a == b ? 0 : a < b ? 1 : -1 };
+	}
+	qsort(edges, count, sizeof(*edges), compare_directed);
+	for (uint32_t i = 0; i < count;) {
+		struct directed sum = edges[i++];
+
+		while (i < count && edges[i].edge == sum.edge)
+			sum.net += edges[i++].net;
+		if (sum.net != 0)
+			edges[kept++] = sum;
+	}
+	*out = edges;
+	return kept;
+}
+
+static void find_borders(struct model *model)
+{
+	uint32_t patch_count = model->hierarchy.patch_count;
+	struct directed **directed = calloc(patch_count, sizeof(*directed));
+	uint32_t *counts = calloc(patch_count, sizeof(*counts));
+	size_t total = 0, at = 0;
+
+	for (uint32_t p = 0; p < patch_count; p++)
+		total += counts[p] = border_of(&directed[p], model, &model->patches[p]);
+	model->edges = malloc((total + 1) * sizeof(*model->edges));
+	for (uint32_t p = 0; p < patch_count; p++)
+		for (uint32_t i = 0; i < counts[p]; i++)
+			model->edges[at++] = directed[p][i].edge;
+	model->edge_count = sort_distinct(model->edges, total, sizeof(*model->edges), compare_keys);
+	model->borders = calloc(patch_count, sizeof(*model->borders));
+	for (uint32_t p = 0; p < patch_count; p++) {
+		model->borders[p].count = counts[p];
+		model->borders[p].items = malloc((counts[p] + 1) * sizeof(struct border));
+		for (uint32_t i = 0; i < counts[p]; i++) {
+			const uint64_t *found =
+				bsearch(&directed[p][i].edge, model->edges, model->edge_count,
+					sizeof(*model->edges), compare_keys);
+
+			model->borders[p].items[i] =
+				(struct border){ (uint32_t)(found - model->edges),
+						 directed[p][i].net };
+		}
+		free(directed[p]);
+	}
+	free(directed);
+	free(counts);
+	model->nets = calloc(model->edge_count + 1, sizeof(*model->nets));
+	model->uses = calloc(model->edge_count + 1, sizeof(*model->uses));
+}
+
+static void forget_borders(struct model *model)
+{
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
+		free(model->borders[p].items);
+	free(model->borders);
+	free(model->vertices);
+	free(model->edges);
+	free(model->nets);
+	free(model->uses);
+}
+
+static void model_finish(struct model *model)
+{
+	forget_borders(model);
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
+		patch_mesh_finish(&model->patches[p]);
+	free(model->patches);
+	free(model->open);
+	hierarchy_finish(&model->hierarchy);
+}
+
+static void find_open_places(struct model *model, const struct lattice_mesh *mesh)
+{
+	model->open = malloc((mesh->vertex_count + 1) * sizeof(*model->open));
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		if (mesh->vertices[v].border)
+			model->open[model->open_count++] = place_key(mesh->vertices[v].position);
+	qsort(model->open, model->open_count, sizeof(*model->open), compare_keys);
+}
+
+static void take_patches(struct model *model, const struct objects *objects)
+{
+	struct patch_mesh group[GROUP_PATCHES_MOST];
+
+	model->patches = calloc(model->hierarchy.patch_count, sizeof(*model->patches));
+	for (uint32_t g = 0; g < model->hierarchy.group_count; g++) {
+		const struct hierarchy_group *row = &model->hierarchy.groups[g];
+		uint32_t count;
+
+		CHECK(patch_group_decode(group, &count,
+					 buffer_bytes(&objects->items[objects->count - 1 - g])) ==
+		      0);
+		CHECK(count == row->patch_count);
+		memcpy(model->patches + row->first_patch, group, count * sizeof(*group));
+	}
+}
+
+static struct multires_stats model_build(struct model *model, struct mesh mesh,
+					 const struct multires_options *options)
+{
+	static const uint8_t grey[3] = { 128, 128, 128 };
+	struct objects objects = { 0 };
+	const struct multires_sink sink = { keep_object, &objects };
+	struct lattice_mesh lattice_mesh;
+	struct lattice_counts counts;
+	struct multires_stats stats;
+	uint32_t triangle_count, finest = 0;
+
+	memset(model, 0, sizeof(*model));
+	CHECK(lattice_mesh_create(&lattice_mesh, &counts, &mesh, grey) == 0);
+	triangle_count = lattice_mesh.triangle_count;
+	find_open_places(model, &lattice_mesh);
+	CHECK(multires_build(&model->hierarchy, &stats, &lattice_mesh, options, &sink) == 0);
+	CHECK(hierarchy_check(&model->hierarchy) == 0);
+	CHECK(objects.count == model->hierarchy.group_count);
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
+		if (model->hierarchy.patches[p].finer == HIERARCHY_NONE)
+			finest += model->hierarchy.patches[p].triangle_count;
+	CHECK(finest == triangle_count);
+	take_patches(model, &objects);
+	collect_vertices(model);
+	find_borders(model);
+	objects_finish(&objects);
+	lattice_mesh_finish(&lattice_mesh);
+	mesh_finish(&mesh);
+	return stats;
+}
+
+/* ---- cuts */
+
+static uint32_t random_state = 1;
+
+static uint32_t random_below(uint32_t end)
+{
+	random_state ^= random_state << 13;
+	random_state ^= random_state >> 17;
+	random_state ^= random_state << 5;
+	return random_state % end;
+}
+
+/* Refines a group and all it depends on: groups that hold a patch it replaces come before it. */
+static void refine(const struct hierarchy *hierarchy, bool *refined, uint32_t group)
+{
+	refined[group] = true;
+	for (uint32_t p = 0; p < hierarchy->groups[group].first_patch; p++)
+		if (hierarchy->patches[p].finer == group && !refined[hierarchy->patches[p].group])
+			refine(hierarchy, refined, hierarchy->patches[p].group);
+}
+
+/* By turns: one group to the bottom with nothing else (neighbours as far apart as they can be), a
+ * few, and everything with gaps. */
+static void choose_cut(const struct hierarchy *hierarchy, bool *refined, uint32_t cut)
+{
+	uint32_t count = hierarchy->group_count, wanted = 1;
+
+	memset(refined, 0, count);
+	refined[0] = true;
+	if (cut % 3 == 1)
+		wanted = 1 + random_below(5);
+	if (cut % 3 == 2)
+		wanted = random_below(count);
+	if (cut % 3 == 0 && count > 1) {
+		refine(hierarchy, refined, count - 1 - random_below((count + 1) / 2));
+		return;
+	}
+	for (uint32_t i = 0; i < wanted; i++)
+		refine(hierarchy, refined, random_below(count));
+}
+
+static bool is_shown(const struct hierarchy *hierarchy, const bool *refined, uint32_t p)
+{
+	const struct hierarchy_patch *patch = &hierarchy->patches[p];
+
+	return refined[patch->group] && (patch->finer == HIERARCHY_NONE || !refined[patch->finer]);
+}
+
+struct verdict {
+	uint32_t cracks;  /* border edges that nothing meets and that are no border of the scan */
+	uint32_t crowded; /* met by more than one */
+	uint32_t shared;  /* met by exactly one, as it should be */
+	uint32_t open;    /* borders of the scan */
+};
+
+static bool is_open_place(const struct model *model, uint32_t vertex)
+{
+	uint64_t key = place_key(model->vertices[vertex].position);
+
+	return bsearch(&key, model->open, model->open_count, sizeof(key), compare_keys) != NULL;
+}
+
+static struct verdict judge_cut(struct model *model, const bool *refined)
+{
+	const struct hierarchy *hierarchy = &model->hierarchy;
+	struct verdict verdict = { 0 };
+
+	memset(model->nets, 0, model->edge_count * sizeof(*model->nets));
+	memset(model->uses, 0, model->edge_count * sizeof(*model->uses));
+	for (uint32_t p = 0; p < hierarchy->patch_count; p++) {
+		const struct patch_border *border = &model->borders[p];
+
+		for (uint32_t i = 0; is_shown(hierarchy, refined, p) && i < border->count; i++) {
+			model->nets[border->items[i].edge] += border->items[i].net;
+			model->uses[border->items[i].edge]++;
+		}
+	}
+	for (size_t e = 0; e < model->edge_count; e++) {
+		if (model->uses[e] == 0)
+			continue;
+		if (model->nets[e] != 0) {
+			bool open = is_open_place(model, (uint32_t)(model->edges[e] >> 32)) &&
+				    is_open_place(model, (uint32_t)model->edges[e]);
+
+			verdict.open += open;
+			verdict.cracks += !open;
+		} else if (model->uses[e] == 2) {
+			verdict.shared++;
+		} else {
+			verdict.crowded++;
+		}
+	}
+	return verdict;
+}
+
+static struct verdict walk_cuts(struct model *model, uint32_t cuts)
+{
+	bool *refined = calloc(model->hierarchy.group_count, sizeof(*refined));
+	struct verdict sum = { 0 };
+
+	random_state = 1;
+	for (uint32_t cut = 0; cut < cuts; cut++) {
+		struct verdict verdict;
+
+		choose_cut(&model->hierarchy, refined, cut);
+		verdict = judge_cut(model, refined);
+		sum.cracks += verdict.cracks;
+		sum.crowded += verdict.crowded;
+		sum.shared += verdict.shared;
+		sum.open += verdict.open;
+	}
+	free(refined);
+	return sum;
+}
+
+static const struct multires_options small_groups = {
+	.kind = MULTIRES_GROUPS,
+	.patch_triangles = 256,
+	.group_patches = 4,
+	.top_triangles = 600,
+	.jobs = 2,
+};
+
+static void no_cut_of_the_temple_has_a_crack(void **state)
+{
+	struct model model;
+	struct verdict verdict;
+	struct multires_stats stats = model_build(&model, shape_temple(90), &small_groups);
+
+	(void)state;
+	CHECK(stats.level_count >= 4);
+	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);
+	CHECK(model.open_count == 0);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.shared > 100 * CUTS);
+	CHECK(verdict.cracks == 0);
+	CHECK(verdict.crowded == 0);
+	model_finish(&model);
+}
+
+static void no_cut_of_an_open_scan_has_a_crack(void **state)
+{
+	struct model model;
+	struct verdict verdict;
+	struct multires_stats stats = model_build(&model, shape_relief(120), &small_groups);
+
+	(void)state;
+	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.shared > 100 * CUTS && verdict.open > 10 * CUTS);
+	CHECK(verdict.cracks == 0);
+	CHECK(verdict.crowded == 0);
+	model_finish(&model);
+}
+
+/* Real scans, where they lie beside the tree: open, with holes and with what scanners make. */
+static void no_cut_of_a_real_scan_has_a_crack(void **state)
+{
+	static const char *const paths[] = {
+		"../shared/scans/lionstatue/lionstatue.obj",
+		"../shared/scans/stanford-bunny/reconstruction/bun_zipper.ply",
+	};
+	uint32_t seen = 0;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(paths); i++) {
+		const struct import_options options = { .up = IMPORT_Y_UP };
+		struct fault fault = { "" };
+		struct verdict verdict;
+		struct model model;
+		struct mesh mesh;
+
+		if (import_scan(&mesh, paths[i], &options, NULL, &fault) < 0)
+			continue;
+		seen++;
+		model_build(&model, mesh, &small_groups);
+		verdict = walk_cuts(&model, CUTS);
+		CHECK(verdict.shared > 100 * CUTS);
+		CHECK(verdict.cracks == 0);
+		print_message("%s: %u edges shared by two patches, %u by more, %u open\n", paths[i],
+			      verdict.shared, verdict.crowded, verdict.open);
+		model_finish(&model);
+	}
+	if (seen == 0)
+		skip();
+}
+
+static void no_cut_of_the_binary_tree_has_a_crack(void **state)
+{
+	const struct multires_options options = { .kind = MULTIRES_TREE,
+						  .patch_triangles = 400,
+						  .jobs = 2 };
+	struct model model;
+	struct verdict verdict;
+
+	(void)state;
+	model_build(&model, shape_temple(60), &options);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.shared > 100 * CUTS);
+	CHECK(verdict.cracks == 0);
+	CHECK(verdict.crowded == 0);
+	model_finish(&model);
+}
+
+static void loose_stones_become_few(void **state)
+{
+	struct model model;
+	struct verdict verdict;
+	struct multires_stats stats = model_build(&model, shape_stones(2000), &small_groups);
+
+	(void)state;
+	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.cracks == 0);
+	model_finish(&model);
+}
+
+/* A cut that shows the patch: its group with all it depends on. */
+static void show_patch(const struct hierarchy *hierarchy, bool *refined, uint32_t p)
+{
+	memset(refined, 0, hierarchy->group_count);
+	refined[0] = true;
+	refine(hierarchy, refined, hierarchy->patches[p].group);
+}
+
+static uint32_t vertex_on_border(const struct model *model, uint32_t p)
+{
+	uint32_t name = (uint32_t)model->edges[model->borders[p].items[0].edge];
+
+	for (uint32_t v = 0; v < model->patches[p].vertex_count; v++)
+		if (compare_vertices(&model->patches[p].vertices[v], &model->vertices[name]) == 0)
+			return v;
+	fail_msg("the border has no vertex");
+	return 0;
+}
+
+static uint32_t cracks_after(struct model *model, const bool *refined)
+{
+	uint32_t cracks;
+
+	forget_borders(model);
+	collect_vertices(model);
+	find_borders(model);
+	cracks = judge_cut(model, refined).cracks;
+	return cracks;
+}
+
+static void one_lattice_step_is_found(void **state)
+{
+	struct model model;
+	bool *refined;
+
+	(void)state;
+	model_build(&model, shape_temple(40), &small_groups);
+	refined = calloc(model.hierarchy.group_count, sizeof(*refined));
+	for (uint32_t p = 0; p < model.hierarchy.patch_count; p += 3) {
+		struct patch_vertex *vertex, before;
+
+		show_patch(&model.hierarchy, refined, p);
+		CHECK(judge_cut(&model, refined).cracks == 0);
+		if (model.borders[p].count == 0)
+			continue;
+		vertex = &model.patches[p].vertices[vertex_on_border(&model, p)];
+		before = *vertex;
+		vertex->position[p % 3] ^= 1;
+		CHECK(cracks_after(&model, refined) > 0);
+		*vertex = before;
+		vertex->colour[p % 4] ^= 1; /* a seam of colour is one too */
+		CHECK(cracks_after(&model, refined) > 0);
+		*vertex = before;
+		CHECK(cracks_after(&model, refined) == 0);
+	}
+	free(refined);
+	model_finish(&model);
+}
+
+static void any_number_of_jobs_makes_the_same_bytes(void **state)
+{
+	struct objects objects[2] = { 0 };
+
+	(void)state;
+	for (uint32_t run = 0; run < 2; run++) {
+		static const uint8_t grey[3] = { 128, 128, 128 };
+		const struct multires_sink sink = { keep_object, &objects[run] };
+		struct multires_options options = small_groups;
+		struct mesh mesh = shape_temple(40);
+		struct lattice_mesh lattice_mesh;
+		struct lattice_counts counts;
+		struct multires_stats stats;
+		struct hierarchy hierarchy;
+
+		options.jobs = run == 0 ? 1 : 5;
+		CHECK(lattice_mesh_create(&lattice_mesh, &counts, &mesh, grey) == 0);
+		CHECK(multires_build(&hierarchy, &stats, &lattice_mesh, &options, &sink) == 0);
+		hierarchy_finish(&hierarchy);
+		lattice_mesh_finish(&lattice_mesh);
+		mesh_finish(&mesh);
+	}
+	CHECK(objects[0].count == objects[1].count);
+	for (uint32_t i = 0; i < objects[0].count; i++)
+		CHECK(objects[0].items[i].size == objects[1].items[i].size &&
+		      memcmp(objects[0].items[i].data, objects[1].items[i].data,
+			     objects[0].items[i].size) == 0);
+	objects_finish(&objects[0]);
+	objects_finish(&objects[1]);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(no_cut_of_the_temple_has_a_crack),
+		cmocka_unit_test(no_cut_of_an_open_scan_has_a_crack),
+		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
+		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
+		cmocka_unit_test(loose_stones_become_few),
+		cmocka_unit_test(one_lattice_step_is_found),
+		cmocka_unit_test(any_number_of_jobs_makes_the_same_bytes),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

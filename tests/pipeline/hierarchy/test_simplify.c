@@ -1,0 +1,363 @@
+#include "pipeline/hierarchy/simplify.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+#include "tests/pipeline/shapes.h"
+
+static const uint8_t grey[3] = { 128, 128, 128 };
+
+struct subject {
+	struct lattice_mesh mesh;
+	struct surface surface;
+};
+
+/* The mesh is taken. */
+static void subject_init(struct subject *subject, struct mesh mesh)
+{
+	struct lattice_counts counts;
+
+	CHECK(lattice_mesh_create(&subject->mesh, &counts, &mesh, grey) == 0);
+	mesh_finish(&mesh);
+	subject->surface = (struct surface){
+		.vertex_count = subject->mesh.vertex_count,
+		.triangle_count = subject->mesh.triangle_count,
+		.vertices = subject->mesh.vertices,
+		.locked = calloc(subject->mesh.vertex_count, 1),
+		.triangles = subject->mesh.triangles,
+	};
+}
+
+static void subject_finish(struct subject *subject)
+{
+	free(subject->surface.locked);
+	lattice_mesh_finish(&subject->mesh);
+}
+
+static void place(double out[3], const struct surface *surface, uint32_t t, int corner)
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = surface->vertices[surface->triangles[t][corner]].position[i];
+}
+
+static void cross(double out[3], const struct surface *surface, uint32_t t)
+{
+	double at[3][3], u[3], v[3];
+
+	for (int corner = 0; corner < 3; corner++)
+		place(at[corner], surface, t, corner);
+	for (int i = 0; i < 3; i++) {
+		u[i] = at[1][i] - at[0][i];
+		v[i] = at[2][i] - at[0][i];
+	}
+	for (int i = 0; i < 3; i++)
+		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+}
+
+static double area(const struct surface *surface)
+{
+	double sum = 0.0, n[3];
+
+	for (uint32_t t = 0; t < surface->triangle_count; t++) {
+		cross(n, surface, t);
+		sum += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2.0;
+	}
+	return sum;
+}
+
+static struct mesh flat(uint32_t n)
+{
+	struct mesh mesh = shape_relief(n);
+
+	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+		mesh.positions[v][2] = 0.0f;
+		memset(mesh.colours[v], 200, 4);
+	}
+	return mesh;
+}
+
+static void a_flat_sheet_needs_few_triangles(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+	double before;
+
+	(void)state;
+	subject_init(&subject, flat(32));
+	before = area(&subject.surface);
+	CHECK(simplify(&subject.surface, 60, INFINITY, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 60);
+	CHECK(result.error_steps < 3.0);
+	CHECK(result.collapse_count > 900);
+	/* Outline and hole are where they were. */
+	CHECK(fabs(area(&subject.surface) - before) < 1e-3 * before);
+	subject_finish(&subject);
+}
+
+static int compare_keys(const void *left, const void *right)
+{
+	uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+
+	return a < b ? -1 : a > b;
+}
+
+/* The directed edges without another the other way, sorted; returns how many. */
+static uint32_t open_edges(uint64_t **out, const struct surface *surface)
+{
+	uint32_t count = 3 * surface->triangle_count, kept = 0;
+	uint64_t *edges = malloc(count * sizeof(*edges)), *open = malloc(count * sizeof(*open));
+
+	for (uint32_t c = 0; c < count; c++)
+		edges[c] = (uint64_t)surface->triangles[c / 3][c % 3] << 32 |
+			   surface->triangles[c / 3][(c % 3 + 1) % 3];
+	qsort(edges, count, sizeof(*edges), compare_keys);
+	for (uint32_t c = 0; c < count; c++) {
+		uint64_t back = edges[c] << 32 | edges[c] >> 32;
+
+		if (!bsearch(&back, edges, count, sizeof(*edges), compare_keys))
+			open[kept++] = edges[c];
+	}
+	free(edges);
+	*out = open;
+	return kept;
+}
+
+/* What a group promises to its neighbours: border edges as they were, ends and all. */
+static void a_locked_border_stays_edge_by_edge(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+	struct lattice_vertex *before;
+	uint64_t *border, *after;
+	uint32_t count;
+
+	(void)state;
+	subject_init(&subject, shape_relief(40));
+	before = malloc(subject.surface.vertex_count * sizeof(*before));
+	memcpy(before, subject.surface.vertices, subject.surface.vertex_count * sizeof(*before));
+	for (uint32_t v = 0; v < subject.surface.vertex_count; v++) {
+		subject.surface.locked[v] = subject.surface.vertices[v].border;
+		/* As between two groups: locked, and no border of the scan. */
+		subject.surface.vertices[v].border = before[v].border = 0;
+	}
+	count = open_edges(&border, &subject.surface);
+	CHECK(count > 160);
+	CHECK(simplify(&subject.surface, 1, INFINITY, &result) == 0);
+	CHECK(result.collapse_count > 1000);
+	CHECK(open_edges(&after, &subject.surface) == count);
+	CHECK(memcmp(border, after, count * sizeof(*border)) == 0);
+	for (uint32_t v = 0; v < subject.surface.vertex_count; v++)
+		CHECK(!subject.surface.locked[v] ||
+		      memcmp(&before[v], &subject.surface.vertices[v], sizeof(*before)) == 0);
+	free(before);
+	free(border);
+	free(after);
+	subject_finish(&subject);
+}
+
+static void nothing_folds_over(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+	double n[3];
+
+	(void)state;
+	subject_init(&subject, shape_relief(60));
+	CHECK(simplify(&subject.surface, 300, INFINITY, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 300);
+	for (uint32_t t = 0; t < subject.surface.triangle_count; t++) {
+		cross(n, &subject.surface, t);
+		CHECK(n[2] > 0.0);
+	}
+	subject_finish(&subject);
+}
+
+/* Vertices less edges plus triangles; every edge must have two triangles. */
+static int euler(const struct surface *surface)
+{
+	uint32_t corners = 3 * surface->triangle_count;
+	uint64_t *edges = malloc(corners * sizeof(*edges));
+	uint8_t *used = calloc(surface->vertex_count, 1);
+	int vertices = 0, distinct = 0;
+
+	for (uint32_t c = 0; c < corners; c++) {
+		uint64_t a = surface->triangles[c / 3][c % 3];
+		uint64_t b = surface->triangles[c / 3][(c % 3 + 1) % 3];
+
+		vertices += !used[a];
+		used[a] = 1;
+		edges[c] = a < b ? a << 32 | b : b << 32 | a;
+	}
+	qsort(edges, corners, sizeof(*edges), compare_keys);
+	for (uint32_t c = 0; c < corners; c += 2) {
+		CHECK(edges[c] == edges[c + 1]);
+		CHECK(c == 0 || edges[c] != edges[c - 1]);
+		distinct++;
+	}
+	free(edges);
+	free(used);
+	return vertices - distinct + (int)surface->triangle_count;
+}
+
+static struct mesh ring(uint32_t n)
+{
+	struct mesh mesh;
+
+	shape_room(&mesh, n * n, 2 * n * n);
+	for (uint32_t y = 0; y < n; y++)
+		for (uint32_t x = 0; x < n; x++) {
+			float u = 6.2831853f * (float)x / (float)n;
+			float v = 6.2831853f * (float)y / (float)n, r = 2.0f + 0.7f * cosf(v);
+
+			shape_vertex(&mesh, r * cosf(u), r * sinf(u), 0.7f * sinf(v));
+		}
+	for (uint32_t y = 0; y < n; y++)
+		for (uint32_t x = 0; x < n; x++) {
+			uint32_t right = (x + 1) % n, up = (y + 1) % n;
+
+			shape_triangle(&mesh, y * n + x, y * n + right, up * n + x);
+			shape_triangle(&mesh, up * n + x, y * n + right, up * n + right);
+		}
+	return mesh;
+}
+
+static void a_ring_stays_a_ring(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+
+	(void)state;
+	subject_init(&subject, ring(48));
+	CHECK(euler(&subject.surface) == 0);
+	CHECK(simplify(&subject.surface, 120, INFINITY, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 120);
+	CHECK(euler(&subject.surface) == 0);
+	subject_finish(&subject);
+}
+
+/* Squared distance from p to the triangle: to its edges, and to its plane above it. */
+static double distance_to_triangle(const double p[3], const struct surface *surface, uint32_t t)
+{
+	double best = INFINITY, at[3][3], n[3], length;
+
+	for (int corner = 0; corner < 3; corner++)
+		place(at[corner], surface, t, corner);
+	for (int e = 0; e < 3; e++) {
+		const double *a = at[e], *b = at[(e + 1) % 3];
+		double along = 0.0, square = 0.0, rest = 0.0, s;
+
+		for (int i = 0; i < 3; i++) {
+			along += (p[i] - a[i]) * (b[i] - a[i]);
+			square += (b[i] - a[i]) * (b[i] - a[i]);
+		}
+		s = square > 0.0 ? fmin(fmax(along / square, 0.0), 1.0) : 0.0;
+		for (int i = 0; i < 3; i++) {
+			double d = p[i] - a[i] - s * (b[i] - a[i]);
+
+			rest += d * d;
+		}
+		best = fmin(best, rest);
+	}
+	cross(n, surface, t);
+	length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+	if (length > 0.0) {
+		bool inside = true;
+		double off = 0.0;
+
+		for (int e = 0; e < 3; e++) {
+			const double *a = at[e], *b = at[(e + 1) % 3];
+			double u[3], v[3], side = 0.0;
+
+			for (int i = 0; i < 3; i++) {
+				u[i] = b[i] - a[i];
+				v[i] = p[i] - a[i];
+			}
+			for (int i = 0; i < 3; i++)
+				side += n[i] * (u[(i + 1) % 3] * v[(i + 2) % 3] -
+						u[(i + 2) % 3] * v[(i + 1) % 3]);
+			inside = inside && side >= 0.0;
+		}
+		for (int i = 0; i < 3; i++)
+			off += n[i] / length * (p[i] - at[0][i]);
+		if (inside)
+			best = fmin(best, off * off);
+	}
+	return best;
+}
+
+static void the_error_is_honest(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+	struct lattice_vertex *before;
+	uint32_t beyond = 0;
+	double worst = 0.0;
+
+	(void)state;
+	subject_init(&subject, shape_temple(40));
+	before = malloc(subject.surface.vertex_count * sizeof(*before));
+	memcpy(before, subject.surface.vertices, subject.surface.vertex_count * sizeof(*before));
+	CHECK(simplify(&subject.surface, subject.surface.triangle_count / 8, INFINITY, &result) ==
+	      0);
+	for (uint32_t v = 0; v < subject.surface.vertex_count; v++) {
+		double at[3] = { before[v].position[0], before[v].position[1],
+				 before[v].position[2] };
+		double best = INFINITY;
+
+		for (uint32_t t = 0; t < subject.surface.triangle_count; t++)
+			best = fmin(best, distance_to_triangle(at, &subject.surface, t));
+		worst = fmax(worst, sqrt(best));
+		beyond += sqrt(best) > result.error_steps;
+	}
+	print_message("error %.1f steps; %.2f %% of the vertices are farther, at most %.1f\n",
+		      result.error_steps, 100.0 * beyond / subject.surface.vertex_count, worst);
+	CHECK(beyond < subject.surface.vertex_count / 50);
+	CHECK(worst < 4.0 * result.error_steps);
+	CHECK(worst > 0.25 * result.error_steps);
+	free(before);
+	subject_finish(&subject);
+}
+
+static void pebbles_vanish_but_something_stays(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+
+	(void)state;
+	subject_init(&subject, shape_stones(100));
+	CHECK(simplify(&subject.surface, 300, INFINITY, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 300);
+	CHECK(simplify(&subject.surface, 1, INFINITY, &result) == 0);
+	CHECK(subject.surface.triangle_count >= 1 && subject.surface.triangle_count <= 8);
+	subject_finish(&subject);
+}
+
+static void stops_at_the_error_it_may_make(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+
+	(void)state;
+	subject_init(&subject, shape_temple(40));
+	CHECK(simplify(&subject.surface, 1, 40.0, &result) == 0);
+	CHECK(result.error_steps <= 40.0 && result.error_steps > 20.0);
+	CHECK(subject.surface.triangle_count > 100);
+	subject_finish(&subject);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_flat_sheet_needs_few_triangles),
+		cmocka_unit_test(a_locked_border_stays_edge_by_edge),
+		cmocka_unit_test(nothing_folds_over),
+		cmocka_unit_test(a_ring_stays_a_ring),
+		cmocka_unit_test(the_error_is_honest),
+		cmocka_unit_test(pebbles_vanish_but_something_stays),
+		cmocka_unit_test(stops_at_the_error_it_may_make),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,435 @@
+#include "pipeline/import/import.h"
+
+#include <errno.h>
+#include <math.h>
+
+#include "base/bytes.h"
+#include "format/picture.h"
+#include "tests/check.h"
+#include "tests/pipeline/import/scan_text.h"
+
+/* Imports text as a file of that name; a fault must name the file. */
+static int import_text(struct mesh *mesh, struct import_report *report, const char *name,
+		       const char *text, const struct import_options *options, struct fault *fault)
+{
+	char path[256];
+	int rc;
+
+	*fault = (struct fault){ "" };
+	scan_write(path, name, text, strlen(text));
+	rc = import_scan(mesh, path, options, report, fault);
+	if (rc < 0 && !strstr(fault->text, name))
+		fail_msg("the fault does not name %s: '%s'", name, fault->text);
+	scan_remove(path);
+	return rc;
+}
+
+static bool is_near(const float a[3], float x, float y, float z)
+{
+	return fabsf(a[0] - x) < 1e-5f && fabsf(a[1] - y) < 1e-5f && fabsf(a[2] - z) < 1e-5f;
+}
+
+static void repairs_and_counts(void **state)
+{
+	static const char text[] =
+		"ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\n"
+		"property float z\nelement face 6\nproperty list uchar int vertex_indices\n"
+		"end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n-0 0 0\nnan 0 0\n5 5 5\n0 -1 0\n"
+		"3 0 1 2\n" /* kept */
+		"3 5 3 4\n" /* kept, on merged vertices */
+		"3 0 1 4\n" /* degenerate: 1 and 4 are one place */
+		"3 2 2 3\n" /* degenerate */
+		"3 6 1 2\n" /* not finite */
+		"3 4 0 8\n" /* kept: the third on the edge 0-1 */;
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "odd.ply", text, &options, &fault) == 0);
+	CHECK(mesh.triangle_count == 3 && mesh.vertex_count == 5);
+	CHECK(report.repairs.degenerate_faces == 2 && report.repairs.lost_faces == 1);
+	CHECK(report.repairs.merged_vertices == 2 && report.repairs.unused_vertices == 2);
+	CHECK(report.repairs.non_manifold_edges == 1 && report.repairs.border_edges == 6);
+	CHECK(report.repairs.turned_edges == 0);
+	CHECK(mesh.triangles[1][0] == 0 && mesh.triangles[1][2] == 1);
+	/* Lists of faces count as the file does. */
+	CHECK(mesh.scan_count == 1 && mesh.scans[0].triangle_count == 3);
+	CHECK(mesh.scans[0].face_count == 6);
+	CHECK(mesh.faces[0] == 0 && mesh.faces[1] == 1 && mesh.faces[2] == 5);
+	CHECK(mesh.colours && mesh.colours[0][0] == 186 && mesh.colours[0][3] == 255);
+	CHECK(!report.had_colours && strcmp(report.format, "PLY") == 0);
+	mesh_finish(&mesh);
+}
+
+/* A strip of five squares, its first face (and the last square) showing the other side. */
+static void turns_the_smaller_part_to_the_side_of_the_larger(void **state)
+{
+	static const char off[] =
+		"OFF\n12 10 0\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n3 0 0\n3 1 0\n4 0 0\n"
+		"4 1 0\n5 0 0\n5 1 0\n3 1 2 0\n3 1 2 3\n3 2 4 3\n3 3 4 5\n3 4 6 5\n3 5 6 7\n"
+		"3 6 8 7\n3 7 8 9\n3 9 10 8\n3 9 11 10\n";
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "strip.off", off, &options, &fault) == 0);
+	CHECK(report.repairs.turned_faces == 3 && report.repairs.turned_edges == 0);
+	CHECK(report.repairs.border_edges == 12 && mesh.triangle_count == 10);
+	for (uint32_t i = 0; i < mesh.triangle_count; i++) {
+		const float *a = mesh.positions[mesh.triangles[i][0]];
+		const float *b = mesh.positions[mesh.triangles[i][1]];
+		const float *c = mesh.positions[mesh.triangles[i][2]];
+		float up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+
+		if (!(up > 0))
+			fail_msg("face %u shows the wrong side", i);
+	}
+	mesh_finish(&mesh);
+}
+
+/* Five triangles around: a band with half a twist, which has one side only. */
+static void a_surface_with_one_side_stays_as_it_is(void **state)
+{
+	static const char off[] = "OFF\n5 5 0\n0 0 0\n2 0 1\n2 2 0\n1 3 1\n-1 2 2\n3 0 1 2\n"
+				  "3 1 3 2\n3 2 3 4\n3 3 0 4\n3 4 0 1\n";
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "band.off", off, &options, &fault) == 0);
+	CHECK(report.repairs.turned_faces == 0 && report.repairs.turned_edges == 1);
+	mesh_finish(&mesh);
+}
+
+static void colours_part_what_is_at_one_place(void **state)
+{
+	static const char text[] =
+		"ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+		"property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+		"element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+		"0 0 0 1 1 1\n1 0 0 1 1 1\n0 1 0 1 1 1\n1 0 0 1 1 1\n0 0 0 9 9 9\n0 -1 0 1 1 1\n"
+		"3 0 1 2\n3 3 4 5\n";
+	struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &fault) == 0);
+	/* 1 and 3 are one; 0 and 4 differ in colour, but the edge between is no border. */
+	CHECK(mesh.vertex_count == 5 && report.repairs.merged_vertices == 1);
+	CHECK(report.repairs.border_edges == 4 && report.had_colours);
+	mesh_finish(&mesh);
+
+	options.override_colour = true;
+	options.default_colour[0] = 200;
+	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &fault) == 0);
+	CHECK(mesh.vertex_count == 4 && mesh.colours[3][0] == 200 && mesh.colours[3][1] == 0);
+	mesh_finish(&mesh);
+}
+
+static void turns_up_and_scales_to_metres(void **state)
+{
+	static const char obj[] = "v 1 2 3\nv 4 2 3\nv 1 5 3\nf 1 2 3\n";
+	static const struct {
+		enum import_axis up;
+		float first[3], normal[3];
+	} cases[] = {
+		{ IMPORT_Z_UP, { 1, 2, 3 }, { 0, 0, 1 } },
+		{ IMPORT_Y_UP, { 1, -3, 2 }, { 0, -1, 0 } },
+		{ IMPORT_X_UP, { 2, 3, 1 }, { 0, 1, 0 } },
+	};
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		const struct import_options options = { .up = cases[i].up,
+							.metres_per_unit = 0.01 };
+		const float *n = cases[i].normal, *f = cases[i].first;
+		float a[3], b[3], cross[3];
+
+		CHECK(import_text(&mesh, NULL, "t.obj", obj, &options, &fault) == 0);
+		CHECK(mesh.triangle_count == 1 && mesh.vertex_count == 3);
+		CHECK(is_near(mesh.positions[0], f[0] / 100, f[1] / 100, f[2] / 100));
+		for (int k = 0; k < 3; k++) {
+			a[k] = mesh.positions[1][k] - mesh.positions[0][k];
+			b[k] = mesh.positions[2][k] - mesh.positions[0][k];
+		}
+		for (int k = 0; k < 3; k++)
+			cross[k] =
+				a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+		/* still counter-clockwise: nothing was mirrored */
+		CHECK(is_near(cross, n[0] * 9e-4f, n[1] * 9e-4f, n[2] * 9e-4f));
+		mesh_finish(&mesh);
+	}
+}
+
+/* Two by two: red green on top, blue white at the bottom. */
+static void write_picture(const char *path, const char *name)
+{
+	uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 };
+	const struct picture picture = { 2, 2, rgba };
+	struct buffer png;
+
+	buffer_init(&png, 1 << 16);
+	CHECK(picture_encode_png(&png, &picture) == 0);
+	scan_write_beside(path, name, png.data, png.size);
+	buffer_finish(&png);
+}
+
+static uint32_t vertex_at(const struct mesh *mesh, float x, float y)
+{
+	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+		if (is_near(mesh->positions[i], x, y, 0))
+			return i;
+	fail_msg("no vertex at %g %g", x, y);
+	return 0;
+}
+
+static int distance(const uint8_t a[3], const uint8_t b[3])
+{
+	return abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]);
+}
+
+/* A square whose corners have the picture's corners, x as u and y as v from the bottom. */
+static void check_square(const struct mesh *mesh, const struct import_report *report)
+{
+	static const uint8_t corner[4][3] = {
+		{ 0, 0, 255 }, { 255, 255, 255 }, { 255, 0, 0 }, { 0, 255, 0 }
+	};
+
+	CHECK(report->textures == 1 && report->warning.text[0] == '\0');
+	CHECK(mesh->triangle_count == 2 && mesh->vertex_count == 4);
+	CHECK(mesh->texture_count > 0 && mesh->textures[mesh->materials[0]].width == 2);
+	for (int i = 0; i < 4; i++) {
+		uint32_t vertex = vertex_at(mesh, i % 2 ? 1.0f : 0.0f, i / 2 ? 1.0f : 0.0f);
+
+		CHECK(fabsf(mesh->uvs[vertex][1] - (i / 2 ? 0.9f : 0.1f)) < 1e-5f);
+		for (int other = 0; other < 4; other++)
+			CHECK(other == i || distance(mesh->colours[vertex], corner[i]) <
+						    distance(mesh->colours[vertex], corner[other]));
+	}
+}
+
+static void obj_pictures_are_upright_and_found_past_foreign_paths(void **state)
+{
+	static const char obj[] = "mtllib skin.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+				  "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\nusemtl skin\n"
+				  "f 1/1 2/2 3/3 4/4\n";
+	static const char *const names[] = { "skin.png", "./skin.png", "C:\\Users\\eng\\skin.png",
+					     "/home/eng/skin.png", "../../skin.png" };
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		const struct import_options options = { 0 };
+		struct import_report report;
+		struct fault fault = { "" };
+		struct mesh mesh;
+		char path[256], mtl[256];
+
+		snprintf(mtl, sizeof(mtl), "newmtl skin\nKd 1 1 1\nmap_Kd %s\n", names[i]);
+		scan_write(path, "square.obj", obj, strlen(obj));
+		scan_write_beside(path, "skin.mtl", mtl, strlen(mtl));
+		write_picture(path, "skin.png");
+		if (import_scan(&mesh, path, &options, &report, &fault) < 0)
+			fail_msg("%s: %s", names[i], fault.text);
+		check_square(&mesh, &report);
+		mesh_finish(&mesh);
+		scan_remove(path);
+	}
+}
+
+static void ply_pictures_are_upright_by_vertex_and_by_corner(void **state)
+{
+	static const char *const texts[] = {
+		"ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 4\n"
+		"property float x\nproperty float y\nproperty float z\nproperty float s\n"
+		"property float t\nelement face 1\nproperty list uchar int vertex_indices\n"
+		"end_header\n0 0 0 .1 .1\n1 0 0 .9 .1\n1 1 0 .9 .9\n0 1 0 .1 .9\n4 0 1 2 3\n",
+		"ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 4\n"
+		"property float x\nproperty float y\nproperty float z\n"
+		"element face 1\nproperty list uchar int vertex_indices\n"
+		"property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+		"4 0 1 2 3 8 .1 .1 .9 .1 .9 .9 .1 .9\n",
+	};
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
+		const struct import_options options = { 0 };
+		struct import_report report;
+		struct fault fault = { "" };
+		struct mesh mesh;
+		char path[256];
+
+		scan_write(path, "square.ply", texts[i], strlen(texts[i]));
+		write_picture(path, "skin.png");
+		CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
+		check_square(&mesh, &report);
+		mesh_finish(&mesh);
+		scan_remove(path);
+	}
+}
+
+/* glTF counts v from the top: 0.1 there is 0.9 here. */
+static void gltf_pictures_are_upright(void **state)
+{
+	static const char gltf[] =
+		"{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+		"\"nodes\":[{\"mesh\":0,\"translation\":[-2,0,0]}],"
+		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},"
+		"\"indices\":2,\"material\":0}]}],"
+		"\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+		"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"skin.png\"}],"
+		"\"buffers\":[{\"uri\":\"square.bin\",\"byteLength\":92}],"
+		"\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
+		"{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},"
+		"{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}],"
+		"\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
+		"\"type\":\"VEC3\",\"min\":[2,0,0],\"max\":[3,1,0]},"
+		"{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
+		"{\"bufferView\":2,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}";
+	const struct {
+		float positions[4][3], uvs[4][2];
+		uint16_t indices[6];
+	} data = { { { 2, 0, 0 }, { 3, 0, 0 }, { 3, 1, 0 }, { 2, 1, 0 } },
+		   { { .1f, .9f }, { .9f, .9f }, { .9f, .1f }, { .1f, .1f } },
+		   { 0, 1, 2, 0, 2, 3 } };
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault = { "" };
+	struct mesh mesh;
+	char path[256];
+	(void)state;
+
+	scan_write(path, "square.gltf", gltf, strlen(gltf));
+	scan_write_beside(path, "square.bin", &data, 92);
+	write_picture(path, "skin.png");
+	if (import_scan(&mesh, path, &options, &report, &fault) < 0)
+		fail_msg("%s", fault.text);
+	check_square(&mesh, &report);
+	mesh_finish(&mesh);
+	scan_remove(path);
+}
+
+static void a_missing_or_damaged_picture_is_a_warning(void **state)
+{
+	static const char obj[] = "mtllib skin.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\n"
+				  "usemtl skin\nf 1/1 2/1 3/1\n";
+	static const char mtl[] = "newmtl skin\nKd 0.2 0.4 0.6\nmap_Kd skin.jpg\n";
+	static const char *const says[] = { "'skin.jpg' is not beside it",
+					    "'skin.jpg' is damaged" };
+	(void)state;
+
+	for (int damaged = 0; damaged < 2; damaged++) {
+		const struct import_options options = { 0 };
+		struct import_report report;
+		struct fault fault = { "" };
+		struct mesh mesh;
+		char path[256];
+
+		scan_write(path, "plain.obj", obj, strlen(obj));
+		scan_write_beside(path, "skin.mtl", mtl, strlen(mtl));
+		if (damaged)
+			scan_write_beside(path, "skin.jpg", "\xff\xd8\xff\xe0 no more", 12);
+		CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
+		CHECK(strstr(report.warning.text, says[damaged]));
+		CHECK(strstr(report.warning.text, "plain.obj"));
+		CHECK(mesh.colours[0][0] == 51 && mesh.colours[0][1] == 102);
+		mesh_finish(&mesh);
+		scan_remove(path);
+	}
+}
+
+static void reads_stl_and_off(void **state)
+{
+	static const char stl[] = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+				  "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+	static const char off[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+	const struct import_options options = { 0 };
+	struct import_report report;
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "a.stl", stl, &options, &fault) == 0);
+	CHECK(mesh.triangle_count == 1 && strcmp(report.format, "STL") == 0);
+	mesh_finish(&mesh);
+	CHECK(import_text(&mesh, &report, "a.off", off, &options, &fault) == 0);
+	CHECK(mesh.triangle_count == 2 && mesh.vertex_count == 4 && !report.had_colours);
+	mesh_finish(&mesh);
+}
+
+static void refuses_what_is_no_surface(void **state)
+{
+	static const struct {
+		const char *name, *text, *says;
+	} cases[] = {
+		{ "empty.obj", "", "empty" },
+		{ "scan.txt", "hello", "no scan that is read here" },
+		{ "nan.ply",
+		  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+		  "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+		  "end_header\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+		  "none of its faces is usable" },
+		{ "line.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 2 2\nl 1 2\nl 3 4\n", "no faces" },
+		{ "index.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", "OBJ reader says" },
+		{ "half.gltf", "{\"asset\":{\"version\":\"2.0\"},", "glTF reader says" },
+		{ "half.glb", "glTF\2\0\0\0", "GLB reader says" },
+	};
+	const struct import_options options = { 0 };
+	struct fault fault;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		int rc = import_text(&mesh, NULL, cases[i].name, cases[i].text, &options, &fault);
+
+		if (rc >= 0 || !strstr(fault.text, cases[i].says) || mesh.positions)
+			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, fault.text);
+	}
+	fault.text[0] = '\0';
+	CHECK(import_scan(&mesh, "/nowhere.ply", &options, NULL, &fault) == -ENOENT);
+	CHECK(import_scan(&mesh, "/tmp", &options, NULL, &fault) == -EINVAL);
+}
+
+static void names_of_axes_and_units(void **state)
+{
+	enum import_axis axis = IMPORT_Z_UP;
+	double unit = 0;
+	(void)state;
+
+	CHECK(import_axis_named("x", &axis) && axis == IMPORT_X_UP &&
+	      !import_axis_named("w", &axis));
+	CHECK(import_unit_named("in", &unit) && unit == 0.0254);
+	CHECK(import_unit_named("0.3048", &unit) && unit == 0.3048);
+	CHECK(!import_unit_named("-1", &unit) && !import_unit_named("nan", &unit) &&
+	      !import_unit_named("inf", &unit) && !import_unit_named("1m", &unit));
+	CHECK(unit == 0.3048);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(repairs_and_counts),
+		cmocka_unit_test(turns_the_smaller_part_to_the_side_of_the_larger),
+		cmocka_unit_test(a_surface_with_one_side_stays_as_it_is),
+		cmocka_unit_test(colours_part_what_is_at_one_place),
+		cmocka_unit_test(turns_up_and_scales_to_metres),
+		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
+		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
+		cmocka_unit_test(gltf_pictures_are_upright),
+		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
+		cmocka_unit_test(reads_stl_and_off),
+		cmocka_unit_test(refuses_what_is_no_surface),
+		cmocka_unit_test(names_of_axes_and_units),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

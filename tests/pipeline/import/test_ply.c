@@ -1,0 +1,354 @@
+#include "pipeline/import/ply.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+enum { MOST = 64 };
+
+/* What a visitor saw. */
+struct seen {
+	uint32_t vertices, triangles;
+	struct ply_vertex vertex[MOST];
+	struct ply_triangle triangle[MOST];
+	struct ply_summary summary;
+	char texture[64];
+	uint64_t trailing;
+	struct fault fault;
+};
+
+static int see_vertex(void *data, const struct ply_vertex *vertex)
+{
+	struct seen *seen = data;
+
+	if (seen->vertices < MOST)
+		seen->vertex[seen->vertices] = *vertex;
+	seen->vertices++;
+	return 0;
+}
+
+static int see_triangle(void *data, const struct ply_triangle *triangle)
+{
+	struct seen *seen = data;
+
+	if (seen->triangles < MOST)
+		seen->triangle[seen->triangles] = *triangle;
+	seen->triangles++;
+	return 0;
+}
+
+static int read_bytes(struct seen *seen, const void *data, size_t size)
+{
+	const struct ply_visitor visitor = { seen, see_vertex, see_triangle };
+	int fd = memfd_create("ply", MFD_CLOEXEC);
+	struct ply *ply;
+	int rc;
+
+	*seen = (struct seen){ 0 };
+	CHECK(fd >= 0 && write(fd, data, size) == (ssize_t)size && lseek(fd, 0, SEEK_SET) == 0);
+	rc = ply_open_fd(&ply, fd, "scan.ply", &seen->fault);
+	if (rc < 0)
+		return rc;
+	seen->summary = *ply_summary(ply);
+	if (seen->summary.texture_count > 0)
+		snprintf(seen->texture, sizeof(seen->texture), "%s", seen->summary.textures[0]);
+	rc = ply_read(ply, &visitor, &seen->fault);
+	seen->trailing = ply_bytes_trailing(ply);
+	ply_close(ply);
+	return rc;
+}
+
+static int read_text(struct seen *seen, const char *text)
+{
+	return read_bytes(seen, text, strlen(text));
+}
+
+static bool corners_are(const struct ply_triangle *triangle, uint32_t a, uint32_t b, uint32_t c)
+{
+	return triangle->corner[0] == a && triangle->corner[1] == b && triangle->corner[2] == c;
+}
+
+#define XYZ   "property float x\nproperty float y\nproperty float z\n"
+#define FACES "property list uchar int vertex_indices\nend_header\n"
+
+static void reads_ascii_and_fans_polygons(void **state)
+{
+	static const char text[] = "ply\nformat ascii 1.0\nelement vertex 5\n" XYZ
+				   "element face 2\n" FACES "0 0 0\n1 0 0\n1 1.5e0 0\n0 1 -0.25\n"
+				   "nan 5 5\n5 0 1 2 3 4\n3 2 1 0\n";
+	struct seen seen;
+	(void)state;
+
+	CHECK(read_text(&seen, text) == 0);
+	CHECK(seen.vertices == 5 && seen.triangles == 4);
+	CHECK(seen.vertex[2].position[1] == 1.5 && seen.vertex[3].position[2] == -0.25);
+	CHECK(isnan(seen.vertex[4].position[0]));
+	CHECK(corners_are(&seen.triangle[0], 0, 1, 2) && corners_are(&seen.triangle[1], 0, 2, 3));
+	CHECK(corners_are(&seen.triangle[2], 0, 3, 4) && corners_are(&seen.triangle[3], 2, 1, 0));
+	CHECK(seen.summary.is_ascii && !seen.summary.has_colour && seen.trailing == 0);
+}
+
+/* The same little scan in any encoding: types and order unlike the usual, strange properties
+ * between, an element that nobody knows, a list in the vertices. */
+static size_t write_odd_scan(uint8_t *out, bool big)
+{
+	size_t n = (size_t)snprintf(
+		(char *)out, 1024,
+		"ply\r\nformat binary_%s_endian 1.0\r\ncomment x\r\nelement stray 2\r\n"
+		"property list uint16 double junk\r\nproperty char more\r\n"
+		"element vertex 3\r\nproperty ushort red\r\nproperty double z\r\n"
+		"property short y\r\nproperty float green\r\nproperty list uchar short tags\r\n"
+		"property uchar blue\r\nproperty int x\r\n"
+		"element face 1\r\nproperty float quality\r\n"
+		"property list int ushort vertex_index\r\nend_header\r\n",
+		big ? "big" : "little");
+
+#define PUT(type, value)                                                                           \
+	do {                                                                                       \
+		type v_ = (value);                                                                 \
+		for (size_t b_ = 0; b_ < sizeof(v_); b_++)                                         \
+			out[n + b_] = ((uint8_t *)&v_)[big ? sizeof(v_) - 1 - b_ : b_];            \
+		n += sizeof(v_);                                                                   \
+	} while (0)
+	for (int i = 0; i < 2; i++) {
+		PUT(uint16_t, (uint16_t)i);
+		for (int k = 0; k < i; k++)
+			PUT(double, 0.5);
+		PUT(int8_t, -3);
+	}
+	for (int i = 0; i < 3; i++) {
+		PUT(uint16_t, 65535);
+		PUT(double, 1e-3 * i);
+		PUT(int16_t, (int16_t)(-300 * i));
+		PUT(float, 0.5f);
+		PUT(uint8_t, (uint8_t)i);
+		for (int k = 0; k < i; k++)
+			PUT(int16_t, 7);
+		PUT(uint8_t, 9);
+		PUT(int32_t, 100000 * i);
+	}
+	PUT(float, 1);
+	PUT(int32_t, 3);
+	for (int i = 0; i < 3; i++)
+		PUT(uint16_t, (uint16_t)(2 - i));
+#undef PUT
+	return n;
+}
+
+static void reads_both_byte_orders_any_type_and_skips_strangers(void **state)
+{
+	uint8_t bytes[2048];
+	struct seen seen;
+	(void)state;
+
+	for (int big = 0; big < 2; big++) {
+		size_t size = write_odd_scan(bytes, big);
+
+		CHECK(read_bytes(&seen, bytes, size) == 0);
+		CHECK(seen.vertices == 3 && seen.triangles == 1 && seen.summary.has_colour);
+		CHECK(seen.vertex[2].position[0] == 200000 && seen.vertex[2].position[1] == -600);
+		CHECK(seen.vertex[2].position[2] == 2e-3);
+		CHECK(seen.vertex[1].colour[0] == 255 && seen.vertex[1].colour[1] == 128);
+		CHECK(seen.vertex[1].colour[2] == 9 && seen.vertex[1].colour[3] == 255);
+		CHECK(corners_are(&seen.triangle[0], 2, 1, 0));
+	}
+}
+
+static void refuses_every_truncation(void **state)
+{
+	uint8_t bytes[2048];
+	size_t size = write_odd_scan(bytes, false);
+	struct seen seen;
+	(void)state;
+
+	for (size_t n = 0; n < size; n++) {
+		CHECK(read_bytes(&seen, bytes, n) == -EBADMSG);
+		CHECK(strstr(seen.fault.text, "scan.ply"));
+	}
+}
+
+static void strips_turn_every_other_triangle_and_start_anew(void **state)
+{
+	static const char text[] = "ply\nformat ascii 1.0\nelement vertex 6\n" XYZ
+				   "element tristrips 1\nproperty list int int vertex_indices\n"
+				   "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n"
+				   "9 0 1 2 3 -1\n3 2 5 4\n";
+	struct seen seen;
+	(void)state;
+
+	CHECK(read_text(&seen, text) == 0);
+	CHECK(seen.triangles == 4);
+	CHECK(corners_are(&seen.triangle[0], 0, 1, 2) && corners_are(&seen.triangle[1], 2, 1, 3));
+	CHECK(corners_are(&seen.triangle[2], 3, 2, 5) && corners_are(&seen.triangle[3], 5, 2, 4));
+}
+
+static void alpha_is_open_sky_only_by_our_comment(void **state)
+{
+	static const char body[] = "element vertex 3\n" XYZ
+				   "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+				   "property uchar alpha\nelement face 1\n" FACES
+				   "0 0 0 1 2 3 40\n1 0 0 1 2 3 40\n0 1 0 1 2 3 40\n3 0 1 2\n";
+	char text[1024];
+	struct seen seen;
+	(void)state;
+
+	snprintf(text, sizeof(text), "ply\nformat ascii 1.0\n%s", body);
+	CHECK(read_text(&seen, text) == 0 && seen.vertex[0].colour[3] == 255);
+	snprintf(text, sizeof(text), "ply\nformat ascii 1.0\ncomment gopura open\n%s", body);
+	CHECK(read_text(&seen, text) == 0 && seen.vertex[0].colour[3] == 40);
+	CHECK(seen.summary.has_open_sky && seen.vertex[0].colour[2] == 3);
+}
+
+static void reads_places_in_pictures(void **state)
+{
+	static const char corners[] =
+		"ply\nformat ascii 1.0\ncomment TextureFile skin one.png\nelement vertex 3\n" XYZ
+		"element face 1\nproperty list uchar int vertex_indices\n"
+		"property list uchar float texcoord\nproperty int texnumber\nend_header\n"
+		"0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0.25 1 0\n";
+	static const char vertices[] =
+		"ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 3\n" XYZ
+		"property float texture_u\nproperty float texture_v\nelement face 1\n" FACES
+		"0 0 0 0.5 0.75\n1 0 0 0 0\n0 1 0 1 1\n3 0 1 2\n";
+	struct seen seen;
+	(void)state;
+
+	CHECK(read_text(&seen, corners) == 0 && seen.summary.has_corner_uv);
+	CHECK(strcmp(seen.texture, "skin one.png") == 0 && seen.triangle[0].uv[2][0] == 0.25f);
+	CHECK(read_text(&seen, vertices) == 0 && seen.summary.has_uv);
+	CHECK(seen.vertex[0].uv[0] == 0.5f && seen.vertex[0].uv[1] == 0.75f);
+}
+
+static void ends_of_header_lines_do_not_eat_data(void **state)
+{
+	/* x of the first vertex begins with the byte 0x0a. */
+	static const struct {
+		const char *line_end, *last_end;
+	} cases[] = { { "\n", "\n" }, { "\r\n", "\r\n" }, { "\r", "\r" }, { "\n", "\r\n" } };
+	uint8_t bytes[512];
+	struct seen seen;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		const char *e = cases[i].line_end;
+		size_t n =
+			(size_t)snprintf((char *)bytes, 200,
+					 "ply%sformat binary_little_endian 1.0%selement vertex 1%s"
+					 "property uchar x%sproperty uchar y%sproperty uchar z%s"
+					 "end_header%s",
+					 e, e, e, e, e, e, cases[i].last_end);
+
+		memcpy(bytes + n, "\n\r\n", 3);
+		CHECK(read_bytes(&seen, bytes, n + 3) == 0);
+		CHECK(seen.vertex[0].position[0] == 10 && seen.vertex[0].position[1] == 13);
+		CHECK(seen.vertex[0].position[2] == 10 && seen.trailing == 0);
+	}
+}
+
+/* Each is refused, with words that say where and what. */
+static void refuses_what_cannot_be_right(void **state)
+{
+#define HEAD     "ply\nformat ascii 1.0\n"
+#define TRIANGLE HEAD "element vertex 3\n" XYZ "element face 1\n" FACES
+	static const struct {
+		const char *name, *text, *says;
+	} cases[] = {
+		{ "empty", "", "empty" },
+		{ "no-magic", "solid\n", ":1: not a PLY" },
+		{ "version", "ply\nformat ascii 2.0\nend_header\n", ":2:" },
+		{ "encoding", "ply\nformat morse 1.0\nend_header\n", ":2: format must be" },
+		{ "no-format", "ply\nend_header\n", "no 'format'" },
+		{ "type", HEAD "element vertex 1\nproperty quad x\n", ":4: unknown type" },
+		{ "count", HEAD "element vertex many\n", ":3: the element's count" },
+		{ "negative-count", HEAD "element vertex -1\n", ":3: the element's count" },
+		{ "twice", HEAD "element vertex 1\nelement vertex 1\n", ":4: this element" },
+		{ "orphan", HEAD "property float x\n", ":3: a property before" },
+		{ "no-z",
+		  HEAD "element vertex 1\nproperty float x\nproperty float y\nend_header\n1 1\n",
+		  "no property z" },
+		{ "no-property", HEAD "element vertex 4000000000\nend_header\n", "no property" },
+		{ "promise", HEAD "element vertex 4000000000\n" XYZ "end_header\n0 0 0\n",
+		  "promises 4000000000" },
+		{ "huge", HEAD "element vertex 18446744073709551615\n" XYZ "end_header\n",
+		  "promises 18446744073709551615" },
+		{ "index", TRIANGLE "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "face 0: names vertex 3" },
+		{ "negative-index", TRIANGLE "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "names vertex -1" },
+		{ "fraction", TRIANGLE "0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n", "names vertex 1.5" },
+		{ "no-count", TRIANGLE "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "length of its list" },
+		{ "short-line", TRIANGLE "0 0 0\n1 0\n0 1 0\n3 0 1 2\n",
+		  ":11: vertex 1: its line has fewer" },
+		{ "long-line", TRIANGLE "0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2\n",
+		  "vertex 1: its line has more" },
+		{ "word", TRIANGLE "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "'zero' is not a number" },
+		{ "float-index", HEAD "element face 1\nproperty list uchar float vertex_indices\n",
+		  "integer type" },
+		{ "ends-in-body", TRIANGLE "0 0 0\n1 0 0\n0 1 0\n9 0 1 2 0\n", "ends here" },
+	};
+	struct seen seen;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		int rc = read_text(&seen, cases[i].text);
+
+		if (rc != -EBADMSG || !strstr(seen.fault.text, cases[i].says) ||
+		    strncmp(seen.fault.text, "scan.ply", 8) != 0)
+			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, seen.fault.text);
+	}
+}
+
+static void says_why_a_scan_has_no_surface(void **state)
+{
+	struct seen seen;
+	(void)state;
+
+	CHECK(read_text(&seen, HEAD "element vertex 1\n" XYZ "end_header\n0 0 0\n") == 0);
+	CHECK(seen.summary.points_only && strstr(seen.summary.points_only, "points"));
+	CHECK(read_text(&seen, HEAD "bye\nelement vertex 1\n" XYZ "element range_grid 1\n" FACES
+				    "0 0 0\n1 0\n") == 0);
+	CHECK(strstr(seen.summary.points_only, "range image") && seen.summary.strange_lines == 1);
+}
+
+static void refills_its_buffer_without_losing_its_place(void **state)
+{
+	struct seen seen;
+	(void)state;
+
+	enum { VERTICES = 40000 }; /* more than the buffer holds */
+	static uint8_t bytes[200 + VERTICES * 12];
+	size_t n = (size_t)snprintf((char *)bytes, 200,
+				    "ply\nformat binary_little_endian 1.0\nelement vertex %d\n" XYZ
+				    "end_header\n",
+				    VERTICES);
+
+	for (int i = 0; i < VERTICES; i++)
+		for (int k = 0; k < 3; k++) {
+			float value = (float)(3 * i + k);
+
+			memcpy(bytes + n + 12 * (size_t)i + 4 * (size_t)k, &value, 4);
+		}
+	CHECK(read_bytes(&seen, bytes, n + VERTICES * 12) == 0);
+	CHECK(seen.vertices == VERTICES && seen.vertex[63].position[2] == 191);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(reads_ascii_and_fans_polygons),
+		cmocka_unit_test(reads_both_byte_orders_any_type_and_skips_strangers),
+		cmocka_unit_test(refuses_every_truncation),
+		cmocka_unit_test(strips_turn_every_other_triangle_and_start_anew),
+		cmocka_unit_test(alpha_is_open_sky_only_by_our_comment),
+		cmocka_unit_test(reads_places_in_pictures),
+		cmocka_unit_test(ends_of_header_lines_do_not_eat_data),
+		cmocka_unit_test(refuses_what_cannot_be_right),
+		cmocka_unit_test(says_why_a_scan_has_no_surface),
+		cmocka_unit_test(refills_its_buffer_without_losing_its_place),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

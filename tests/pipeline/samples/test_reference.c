@@ -1,0 +1,230 @@
+/* Reference pictures of a square whose pixels can be worked out by hand. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "format/picture.h"
+#include "pipeline/samples/reference.h"
+#include "tests/check.h"
+
+static char dir[64];
+
+static void put(const char *name, const char *text)
+{
+	char path[128];
+
+	snprintf(path, sizeof(path), "%s/%s", dir, name);
+	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)text, strlen(text) }, path) == 0);
+}
+
+/* A square -1..1 at y = 0 that looks towards -y: left half red, right half blue. */
+static int make_dir(void **state)
+{
+	(void)state;
+	snprintf(dir, sizeof(dir), "/tmp/gopura-reference-XXXXXX");
+	if (!mkdtemp(dir))
+		return -1;
+	put("scan.ply", "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\n"
+			"property float y\nproperty float z\nproperty uchar red\n"
+			"property uchar green\nproperty uchar blue\nelement face 2\n"
+			"property list uchar int vertex_indices\nend_header\n"
+			"-1 0 -1 200 0 0\n0 0 -1 200 0 0\n0 0 1 200 0 0\n-1 0 1 200 0 0\n"
+			"0 0 -1 0 0 100\n1 0 -1 0 0 100\n1 0 1 0 0 100\n0 0 1 0 0 100\n"
+			"4 0 1 2 3\n4 4 5 6 7\n");
+	put("temple.ini", "[model]\nscans = scan.ply\nlit = no\n");
+	return 0;
+}
+
+static int remove_dir(void **state)
+{
+	char command[128];
+
+	(void)state;
+	snprintf(command, sizeof(command), "rm -rf %s", dir);
+	return system(command);
+}
+
+static int read_views(struct camera **views, uint32_t *count, const char *text, struct fault *fault)
+{
+	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
+
+	return reference_views(views, count, bytes, "views.txt", fault);
+}
+
+static void reads_views(void **state)
+{
+	struct fault fault = { "" };
+	struct camera *views;
+	uint32_t count;
+
+	(void)state;
+	CHECK(read_views(&views, &count,
+			 "# a path\n\neye 1 2 3 target 4 5 6 45 # first\n1,2,3  4,5,7  60",
+			 &fault) == 0);
+	CHECK(count == 2 && views[0].fov_deg == 45 && views[1].target_m[2] == 7);
+	CHECK(views[1].eye_m[1] == 2 && views[0].up[2] == 1);
+	free(views);
+}
+
+static void refuses_bad_views(void **state)
+{
+	static const char *const bad[] = { "# x\n1 2 3 4 5 6\n",        "# x\n1 2 3 4 5 6 7 8\n",
+					   "# x\n1 2 3 1 2 3 45\n",     "# x\n1 2 3 4 5 6 0.1\n",
+					   "# x\n1 2 three 4 5 6 45\n", "# x\nnan 2 3 4 5 6 45\n" };
+	struct camera *views;
+	uint32_t count;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
+		struct fault fault = { "" };
+
+		CHECK(read_views(&views, &count, bad[i], &fault) == -EINVAL && !views);
+		CHECK(strstr(fault.text, "views.txt, line 2:"));
+	}
+	CHECK(read_views(&views, &count, "# nothing\n", NULL) == -EINVAL && !views);
+}
+
+static void draw(struct picture *out, const char *views_text, int side, uint32_t supersample,
+		 uint32_t expected_drawn)
+{
+	struct reference_options options = { .width_px = side,
+					     .height_px = side,
+					     .supersample = supersample };
+	struct reference_report report;
+	struct fault fault = { "" };
+	struct content content;
+	struct camera *views;
+	char out_dir[128], path[160];
+	struct buffer file;
+	uint32_t count;
+
+	snprintf(out_dir, sizeof(out_dir), "%s/out", dir);
+	options.out_dir = out_dir;
+	CHECK(read_views(&views, &count, views_text, &fault) == 0);
+	CHECK(content_read(&content, dir, &fault) == 0);
+	CHECK(reference_draw(&content, views, count, &options, &report, &fault) == 0);
+	CHECK(report.drawn == expected_drawn && report.kept == count - expected_drawn);
+	snprintf(path, sizeof(path), "%s/view-%04u.png", out_dir, count - 1);
+	buffer_init(&file, 1 << 20);
+	CHECK(buffer_read_file(&file, path) == 0);
+	CHECK(picture_decode(out, buffer_bytes(&file)) == 0);
+	CHECK(out->width == (uint32_t)side && out->height == (uint32_t)side);
+	buffer_finish(&file);
+	content_release(&content);
+	free(views);
+}
+
+/* From 2 m at 90 degrees a pixel of 16 is a quarter of a metre: the square fills 4..11. */
+static const char front[] = "0 -2 0  0 0 0  90\n";
+
+static void draws_what_analysis_says(void **state)
+{
+	(void)state;
+	for (uint32_t n = 1; n <= 4; n++) {
+		struct picture picture;
+
+		draw(&picture, front, 16, n, 1);
+		for (int i = 0; i < 16 * 16; i++) {
+			int x = i % 16, y = i / 16;
+			bool there = x >= 4 && x < 12 && y >= 4 && y < 12;
+			const uint8_t *p = picture.rgba + 4 * i;
+
+			CHECK(p[3] == (there ? 255 : 0));
+			CHECK(p[0] == (there && x < 8 ? 200 : 0) && p[1] == 0);
+			CHECK(p[2] == (there && x >= 8 ? 100 : 0));
+		}
+		picture_finish(&picture);
+	}
+}
+
+/* In 5 pixels the middle one holds both halves, and rims are covered by a part. */
+static void averages_colour_apart_from_coverage(void **state)
+{
+	struct picture picture;
+	const uint8_t *p;
+
+	(void)state;
+	draw(&picture, front, 5, 8, 1);
+	p = picture.rgba + 4 * (2 * 5 + 2);
+	CHECK(p[3] == 255 && p[0] == 100 && p[2] == 50);
+	p = picture.rgba + 4 * (2 * 5 + 1); /* -1.2 .. -0.4: 0.6 of 0.8 m */
+	CHECK(p[3] > 184 && p[3] < 198 && p[0] == 200 && p[2] == 0);
+	CHECK(picture.rgba[4 * (2 * 5) + 3] == 0);
+	picture_finish(&picture);
+}
+
+/* At 2048 pixels and 4 x 4 samples the frame holds 2 x 2 and the rest is jitter; at 512 all fit
+ * into one frame. Seen from four times nearer by field of view, pixel by pixel the same. */
+static void jitter_equals_a_larger_frame(void **state)
+{
+	struct picture large;
+	long red = 0, blue = 0, all = 0;
+
+	(void)state;
+	draw(&large, "0.3 -2 0.1  0 0 0  90\n", 2048, 4, 1);
+	for (size_t i = 0; i < (size_t)2048 * 2048; i++) {
+		const uint8_t *p = large.rgba + 4 * i;
+
+		all += p[3];
+		red += p[3] * (p[0] == 200);
+		blue += p[3] * (p[2] == 100);
+	}
+	picture_finish(&large);
+	draw(&large, "0.3 -2 0.1  0 0 0  90\n", 512, 4, 1);
+	for (size_t i = 0; i < (size_t)512 * 512; i++) {
+		const uint8_t *p = large.rgba + 4 * i;
+
+		all -= 16L * p[3];
+		red -= 16L * p[3] * (p[0] == 200);
+		blue -= 16L * p[3] * (p[2] == 100);
+	}
+	picture_finish(&large);
+	/* Of 67 million quarter parts; a rim shifted by half a pixel would be half a million. */
+	CHECK(labs(all) < 60000);
+	CHECK(labs(red) < 400000 && labs(blue) < 400000); /* less the mixed pixels in the middle */
+}
+
+static void keeps_what_is_there(void **state)
+{
+	struct picture picture;
+
+	(void)state;
+	draw(&picture, front, 16, 2, 1);
+	picture_finish(&picture);
+	draw(&picture, front, 16, 2, 0);
+	picture_finish(&picture);
+	draw(&picture, "0 -2 0  0 0 0  90\n0 -3 0 0 0 0 90\n", 16, 2, 1);
+	CHECK(picture.rgba[4 * (8 * 16 + 4) + 3] == 0); /* farther, so smaller */
+	picture_finish(&picture);
+	put("temple.ini", "[model]\nscans = scan.ply\nlit = yes\nsun = 0 -1 0\n");
+	draw(&picture, front, 16, 2, 1);
+	picture_finish(&picture);
+}
+
+static void shows_nothing_behind_the_eye(void **state)
+{
+	struct picture picture;
+
+	(void)state;
+	draw(&picture, "0 -2 0  0 -3 0  90\n", 16, 1, 1);
+	for (int i = 0; i < 16 * 16 * 4; i++)
+		CHECK(picture.rgba[i] == 0);
+	picture_finish(&picture);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(reads_views),
+		cmocka_unit_test(refuses_bad_views),
+		cmocka_unit_test(draws_what_analysis_says),
+		cmocka_unit_test(averages_colour_apart_from_coverage),
+		cmocka_unit_test(jitter_equals_a_larger_frame),
+		cmocka_unit_test(keeps_what_is_there),
+		cmocka_unit_test(shows_nothing_behind_the_eye),
+	};
+
+	return cmocka_run_group_tests(tests, make_dir, remove_dir);
+}

@@ -1,0 +1,170 @@
+/* Counts of what visitors look at. */
+#include "storage/usage.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/bytes.h"
+#include "tests/check.h"
+
+enum { HOUR_S = 3600, DAY_S = 24 * HOUR_S };
+
+static const int64_t noon = 1795953600; /* 2026-11-29T12:00 UTC */
+static char folder[] = "/tmp/gopura-tally-XXXXXX", path[64], copy[64];
+
+static int set_up(void **state)
+{
+	(void)state;
+	memcpy(folder + strlen(folder) - 6, "XXXXXX", 6);
+	CHECK(mkdtemp(folder) != NULL);
+	snprintf(path, sizeof(path), "%s/visits.csv", folder);
+	snprintf(copy, sizeof(copy), "%s/copy.csv", folder);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	unlink(path);
+	unlink(copy);
+	return rmdir(folder);
+}
+
+static void says(const char *file, const char *expected)
+{
+	struct buffer text;
+
+	buffer_init(&text, 1 << 20);
+	CHECK(buffer_read_file(&text, file) == 0);
+	buffer_put_u8(&text, 0);
+	if (strcmp((char *)text.data, expected) != 0)
+		fail_msg("%s says\n%s", file, text.data);
+	buffer_finish(&text);
+}
+
+static void write_text(const char *text)
+{
+	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)text, strlen(text) }, path) == 0);
+}
+
+static struct tally *begin(int64_t now_s)
+{
+	struct tally *tally;
+
+	CHECK(tally_create(&tally, path, copy, now_s) == 0);
+	return tally;
+}
+
+#define HEADER "hour,kind,what,language,count\n"
+
+static void counts_by_hour_kind_part_and_language(void **state)
+{
+	struct tally *tally = begin(noon);
+
+	(void)state;
+	says(path, HEADER);
+	tally_add(tally, TALLY_VISIT, "", "en", noon);
+	tally_add(tally, TALLY_PART, "gate", "en", noon + 10);
+	tally_add(tally, TALLY_PART, "gate", "en", noon + 20);
+	tally_add(tally, TALLY_PART, "gate", "km", noon + 20);
+	tally_add(tally, TALLY_PAGE, "gate", "en", noon + HOUR_S);
+	says(path, HEADER); /* the disk is left alone until then */
+	tally_write(tally);
+	says(path, HEADER "2026-11-29T12,visit,,en,1\n2026-11-29T12,part,gate,en,2\n"
+			  "2026-11-29T12,part,gate,km,1\n2026-11-29T13,page,gate,en,1\n");
+	tally_destroy(tally);
+}
+
+static void sums_up_at_the_next_start(void **state)
+{
+	struct tally *tally = begin(noon);
+
+	(void)state;
+	for (int i = 0; i < 3; i++) {
+		tally_add(tally, TALLY_LANGUAGE, "", "ja", noon);
+		tally_add(tally, TALLY_SEARCH, "", "ja", noon);
+		tally_write(tally);
+	}
+	tally_destroy(tally);
+	tally = begin(noon);
+	says(path, HEADER "2026-11-29T12,language,,ja,3\n2026-11-29T12,search,,ja,3\n");
+	tally_add(tally, TALLY_SEARCH, "", "ja", noon);
+	tally_destroy(tally);
+	tally_destroy(begin(noon));
+	says(path, HEADER "2026-11-29T12,language,,ja,3\n2026-11-29T12,search,,ja,4\n");
+}
+
+static void keeps_four_hundred_days(void **state)
+{
+	(void)state;
+	write_text(HEADER "2025-10-25T11,visit,,en,5\n2025-10-25T12,visit,,en,6\n"
+			  "unset,visit,,en,7\n2026-11-29T11,visit,,en,8\n");
+	tally_destroy(begin(0)); /* a clock that nobody set forgets nothing */
+	says(path, HEADER "2025-10-25T11,visit,,en,5\n2025-10-25T12,visit,,en,6\n"
+			  "2026-11-29T11,visit,,en,8\nunset,visit,,en,7\n");
+	tally_destroy(begin(noon));
+	says(path, HEADER "2025-10-25T12,visit,,en,6\n2026-11-29T11,visit,,en,8\n"
+			  "unset,visit,,en,7\n");
+}
+
+static void leaves_out_what_is_no_count(void **state)
+{
+	(void)state;
+	write_text(HEADER "2026-11-29T11,visit,,en,8\n2026-11-29T11,visit,,en\n"
+			  "2026-11-29T1x,visit,,en,1\n2026-11-29T11,stroll,,en,1\n"
+			  "2026-11-29T11,part,\"=cmd()\",en,1\n2026-11-29T11,part,a,en,-1\n"
+			  "2026-11-29T11,part,a,en,1,1\n\n2026-11-29T11,part,a,en,1\n"
+			  "2026-11-29T11,pa");
+	tally_destroy(begin(noon));
+	says(path, HEADER "2026-11-29T11,visit,,en,8\n2026-11-29T11,part,a,en,1\n");
+}
+
+static void the_copy_says_the_same_to_everybody(void **state)
+{
+	struct tally *tally;
+	struct stat status;
+
+	(void)state;
+	write_text(HEADER "2026-11-29T11,visit,,en,8\n");
+	tally = begin(noon);
+	tally_add(tally, TALLY_PART, "gate", "en", noon);
+	tally_write(tally);
+	says(copy, HEADER "2026-11-29T11,visit,,en,8\n2026-11-29T12,part,gate,en,1\n");
+	CHECK(stat(copy, &status) == 0 && (status.st_mode & 0777) == 0644);
+	tally_destroy(tally);
+}
+
+static void goes_on_without_a_disk(void **state)
+{
+	struct tally *tally;
+
+	(void)state;
+	CHECK(tally_create(&tally, "/proc/nowhere/visits.csv", NULL, noon) == 0);
+	for (int i = 0; i < 2000; i++) {
+		char part[24];
+
+		snprintf(part, sizeof(part), "part-%d", i);
+		tally_add(tally, TALLY_PART, part, "en", noon);
+	}
+	tally_destroy(tally);
+}
+
+#define FILED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		FILED(counts_by_hour_kind_part_and_language),
+		FILED(sums_up_at_the_next_start),
+		FILED(keeps_four_hundred_days),
+		FILED(leaves_out_what_is_no_count),
+		FILED(the_copy_says_the_same_to_everybody),
+		FILED(goes_on_without_a_disk),
+	};
+
+	setenv("TZ", "UTC", 1);
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
