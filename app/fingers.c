@@ -48,7 +48,7 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 {
 	float pivot[3];
 
-	guide_halt(kiosk);
+	tour_player_halt(kiosk);
 	pick(kiosk, x_px, y_px, pivot);
 	navigator_grab(&kiosk->navigator, pivot);
 }
@@ -58,7 +58,8 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 /* Flies to where the part stands in the middle of what the words leave of the panel. */
 static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 {
-	const struct overlay_rect rect = overlay_scene_rect(story_overlay(kiosk->shown.story));
+	const struct overlay_rect rect =
+		overlay_scene_rect(information_view_overlay(kiosk->shown.view));
 	const float w = (float)kiosk_width_px(kiosk), h = (float)kiosk_height_px(kiosk);
 	const float tangent = tanf(glm_rad(kiosk->navigator.options.fov_deg) / 2);
 	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;
@@ -67,7 +68,8 @@ static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 		fminf(PART_LEAST_M, PART_LEAST_SHARE * navigator_diagonal_m(&kiosk->navigator));
 	float eye[3], target[3], forward[3], right[3], up[3], distance;
 
-	story_viewpoint(kiosk->shown.story, part, least, kiosk->navigator.eye_m, eye, target);
+	information_view_viewpoint(kiosk->shown.view, part, least, kiosk->navigator.eye_m, eye,
+				   target);
 	glm_vec3_sub(target, eye, forward);
 	distance = glm_vec3_norm(forward);
 	glm_vec3_cross(forward, (vec3){ 0, 0, 1 }, right);
@@ -90,18 +92,18 @@ static void show_card(struct kiosk *kiosk, int part)
 {
 	if (part >= 0) {
 		log_debug("app", "card of %s",
-			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
-		guest_count(kiosk, TALLY_PART, part);
+			  info_part(information_view_info(kiosk->shown.view), (uint32_t)part)->id);
+		visitor_count(kiosk, USAGE_PART, part);
 	}
-	overlay_show_card(story_overlay(kiosk->shown.story), part);
+	overlay_show_card(information_view_overlay(kiosk->shown.view), part);
 }
 
 static void open_page(struct kiosk *kiosk, int part)
 {
-	if (part >= 0 && story_open_page(kiosk->shown.story, (uint32_t)part)) {
+	if (part >= 0 && information_view_open_page(kiosk->shown.view, (uint32_t)part)) {
 		log_debug("app", "page of %s",
-			  info_part(story_info(kiosk->shown.story), (uint32_t)part)->id);
-		guest_count(kiosk, TALLY_PAGE, part);
+			  info_part(information_view_info(kiosk->shown.view), (uint32_t)part)->id);
+		visitor_count(kiosk, USAGE_PAGE, part);
 		show_card(kiosk, -1);
 		fly_to_part(kiosk, (uint32_t)part);
 	}
@@ -111,7 +113,7 @@ static void open_page(struct kiosk *kiosk, int part)
  * looked elsewhere. */
 static void close_page(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	const int part = overlay_page(overlay);
 
 	overlay_close_page(overlay);
@@ -124,7 +126,7 @@ static void close_page(struct kiosk *kiosk)
 /* By the release's labels; by the regions themselves where those are not here. */
 static int part_under(struct kiosk *kiosk, float x_px, float y_px)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 	float point[3];
 	const char *id;
 
@@ -133,7 +135,7 @@ static int part_under(struct kiosk *kiosk, float x_px, float y_px)
 	frame_to_panel(kiosk, &x_px, &y_px);
 	id = scene_part(kiosk->shown.scene, &kiosk->camera, x_px, y_px);
 	if (!id)
-		return story_part_at(kiosk->shown.story, point);
+		return information_view_part_at(kiosk->shown.view, point);
 	return *id ? info_find(info, id) : -1;
 }
 
@@ -141,7 +143,7 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 {
 	const int part = part_under(kiosk, x_px, y_px);
 
-	if (part >= 0 && part != overlay_card(story_overlay(kiosk->shown.story)))
+	if (part >= 0 && part != overlay_card(information_view_overlay(kiosk->shown.view)))
 		back_note(kiosk);
 	show_card(kiosk, part);
 }
@@ -150,11 +152,11 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
  */
 static void follow_link(struct kiosk *kiosk, const char *link)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 	int part;
 
 	if (strncmp(link, "tour:", 5) == 0) {
-		guide_start(kiosk, info_find_tour(info, link + 5));
+		tour_player_start(kiosk, info_find_tour(info, link + 5));
 		return;
 	}
 	part = info_find(info, link);
@@ -169,18 +171,18 @@ static void follow_link(struct kiosk *kiosk, const char *link)
 /* What is typed is nobody's business: a number is said, for whoever tests keyboards. */
 static void press_key(struct kiosk *kiosk, int key)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	if (!overlay_press(overlay, key))
 		return;
-	story_search(kiosk->shown.story);
+	information_view_search(kiosk->shown.view);
 	log_debug("app", "search: %zu bytes typed", strlen(overlay_query(overlay)));
 }
 
 /* What a page leaves for the model may be another piece of the panel then. */
 static void change_comfort(struct kiosk *kiosk, enum overlay_action_kind which)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct overlay_comfort comfort = overlay_comfort(overlay);
 
 	if (which == OVERLAY_LARGE)
@@ -204,7 +206,7 @@ static bool halts_tour(enum overlay_action_kind kind)
 /* The way back leads to before it. What only closes something is none. */
 static bool is_step(const struct kiosk *kiosk, enum overlay_action_kind kind)
 {
-	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	switch (kind) {
 	case OVERLAY_OPEN_CARD:
@@ -226,13 +228,13 @@ static bool is_step(const struct kiosk *kiosk, enum overlay_action_kind kind)
 
 static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	const bool chose_language = overlay_choosing_language(overlay);
 
 	if (is_step(kiosk, action->kind))
 		back_note(kiosk);
 	if (halts_tour(action->kind))
-		guide_halt(kiosk);
+		tour_player_halt(kiosk);
 	if (action->kind != OVERLAY_LANGUAGES && action->kind != OVERLAY_NONE)
 		overlay_show_languages(overlay, false);
 	switch (action->kind) {
@@ -258,8 +260,8 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 							: "beside the model");
 		break;
 	case OVERLAY_LANGUAGE:
-		story_set_language(kiosk->shown.story, action->language);
-		guest_count(kiosk, TALLY_LANGUAGE, -1);
+		information_view_set_language(kiosk->shown.view, action->language);
+		visitor_count(kiosk, USAGE_LANGUAGE, -1);
 		break;
 	case OVERLAY_LANGUAGES:
 		overlay_show_languages(overlay, !overlay_choosing_language(overlay));
@@ -268,19 +270,19 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		follow_link(kiosk, action->link);
 		break;
 	case OVERLAY_TOURS:
-		guide_press(kiosk);
+		tour_player_press(kiosk);
 		break;
 	case OVERLAY_TOUR:
-		guide_start(kiosk, action->tour);
+		tour_player_start(kiosk, action->tour);
 		break;
 	case OVERLAY_TOUR_PAUSE:
-		guide_press(kiosk);
+		tour_player_press(kiosk);
 		break;
 	case OVERLAY_TOUR_CLOSE:
-		guide_end(kiosk);
+		tour_player_end(kiosk);
 		break;
 	case OVERLAY_HOME:
-		guide_end(kiosk);
+		tour_player_end(kiosk);
 		overlay_show_tours(overlay, false);
 		overlay_close_page(overlay);
 		overlay_show_search(overlay, false);
@@ -297,7 +299,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_SEARCH:
 		overlay_show_search(overlay, !overlay_searching(overlay));
 		if (overlay_searching(overlay))
-			guest_count(kiosk, TALLY_SEARCH, -1);
+			visitor_count(kiosk, USAGE_SEARCH, -1);
 		break;
 	case OVERLAY_LARGE:
 	case OVERLAY_REACH:
@@ -326,14 +328,14 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 
 static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 {
-	const struct overlay_action action =
-		overlay_tap(story_overlay(kiosk->shown.story), gesture->x_px, gesture->y_px);
+	const struct overlay_action action = overlay_tap(
+		information_view_overlay(kiosk->shown.view), gesture->x_px, gesture->y_px);
 	int part;
 
 	if (action.kind == OVERLAY_SWALLOWED && gesture->kind == GESTURE_DOUBLE_TAP &&
-	    overlay_picture(story_overlay(kiosk->shown.story)) >= 0)
-		overlay_picture_double_tap(story_overlay(kiosk->shown.story), gesture->x_px,
-					   gesture->y_px);
+	    overlay_picture(information_view_overlay(kiosk->shown.view)) >= 0)
+		overlay_picture_double_tap(information_view_overlay(kiosk->shown.view),
+					   gesture->x_px, gesture->y_px);
 	else if (action.kind != OVERLAY_NONE)
 		carry_out(kiosk, &action);
 	else if (gesture->kind == GESTURE_TAP)
@@ -348,7 +350,7 @@ static void on_tap(struct kiosk *kiosk, const struct gesture *gesture)
 
 static void on_press(struct kiosk *kiosk, const struct gesture *gesture)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	kiosk->finger_on_words = overlay && overlay_covers(overlay, gesture->x_px, gesture->y_px);
 	if (!kiosk->finger_on_words)
@@ -376,7 +378,7 @@ static void on_picture(struct overlay *overlay, const struct gesture *gesture)
 
 static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	if (overlay_picture(overlay) >= 0) {
 		on_picture(overlay, gesture);
@@ -400,7 +402,7 @@ static void say_eye(const struct kiosk *kiosk, const char *when)
 static void on_model(struct kiosk *kiosk, const struct gesture *gesture)
 {
 	const float height = (float)kiosk_height_px(kiosk);
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	switch (gesture->kind) {
 	case GESTURE_DRAG_BEGIN:
@@ -440,7 +442,7 @@ static void on_gesture(void *data, const struct gesture *gesture)
 	if (gesture->kind == GESTURE_PRESS)
 		on_press(kiosk, gesture);
 	else if (gesture->kind == GESTURE_TAP || gesture->kind == GESTURE_DOUBLE_TAP) {
-		if (story_overlay(kiosk->shown.story))
+		if (information_view_overlay(kiosk->shown.view))
 			on_tap(kiosk, gesture);
 	} else if (kiosk->finger_on_words)
 		on_words(kiosk, gesture);
@@ -466,7 +468,7 @@ void fingers_init(struct kiosk *kiosk)
  * lifts. */
 static bool types(struct kiosk *kiosk, const struct touch_event *event)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	const uint32_t finger = 1u << event->contact;
 	struct overlay_action action;
 
@@ -495,7 +497,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 
 	if (panel_takes_touch(kiosk, event) || setup_page_covers(kiosk))
 		return; /* for the panel alone, or a page without anything to touch */
-	if (guest_takes_touch(kiosk, event))
+	if (visitor_takes_touch(kiosk, event))
 		return;
 	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
 	if (!tools_take_touch(kiosk, &seen) && !types(kiosk, &seen))
@@ -505,7 +507,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 /* The wheel is a pinch: of the picture that is shown, else of the model. */
 static void turn_wheel(struct kiosk *kiosk, float x_px, float y_px, float scale)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	if (overlay && overlay_picture(overlay) >= 0) {
 		overlay_picture_pinch(overlay, x_px, y_px, scale, 0, 0);
@@ -529,7 +531,7 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 		return;
 	frame_from_panel(kiosk, &x_px, &y_px);
 	if (kind == POINTER_WHEEL) {
-		visit_touch(&kiosk->visit, clock_now_ms());
+		presence_touch(&kiosk->presence, clock_now_ms());
 		if (kiosk->navigator_ready)
 			turn_wheel(kiosk, x_px, y_px, powf(WHEEL_STEP, steps));
 		return;

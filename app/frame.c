@@ -117,7 +117,7 @@ static bool anchor_is_hidden(struct kiosk *kiosk, const float anchor_m[3])
 /* A few rays a frame: stone in front of an anchor changes slowly. */
 static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
 	/* Not while something is merely missing: a kiosk without a network rests too. */
 	if (kiosk->eye_moves || kiosk->shown.frame.moving ||
@@ -146,12 +146,12 @@ static float size_on_panel(const struct kiosk *kiosk, const struct info_part *pa
 
 static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 {
-	static struct overlay_anchor anchors[OVERLAY_PARTS_MOST];
-	const struct info *info = story_info(kiosk->shown.story);
+	static struct overlay_anchor anchors[OVERLAY_PARTS_MAX];
+	const struct info *info = information_view_info(kiosk->shown.view);
 	const struct overlay_rect rect = overlay_scene_rect(overlay);
 	const uint32_t count = info_part_count(info);
 
-	if (count == 0 || count > OVERLAY_PARTS_MOST)
+	if (count == 0 || count > OVERLAY_PARTS_MAX)
 		return;
 	look_at_anchors(kiosk, count);
 	for (uint32_t i = 0; i < count; i++) {
@@ -174,13 +174,13 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 
 static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_ms)
 {
-	static struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	static struct overlay_layer layers[OVERLAY_LAYERS_MAX];
 	uint32_t count;
 	int rc = 0;
 
 	place_anchors(kiosk, overlay);
 	kiosk->words_move = overlay_update(overlay, now_ms);
-	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 	quads_begin(kiosk->quads, kiosk->panel.shift_px, display_width_px(kiosk->display),
 		    display_height_px(kiosk->display), kiosk->profile.rotation_deg);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
@@ -206,19 +206,19 @@ static int draw_words(struct kiosk *kiosk, struct overlay *overlay, int64_t now_
 
 static const struct scene_mark *marked_part(struct kiosk *kiosk, struct scene_mark *out)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	int part = -1;
 
 	if (overlay)
 		part = overlay_page(overlay) >= 0 ? overlay_page(overlay) : overlay_card(overlay);
 	if (part < 0)
-		part = guide_part(kiosk);
+		part = tour_player_part(kiosk);
 	if (part < 0)
 		return NULL;
 	*out = (struct scene_mark){
-		.part = info_part(story_info(kiosk->shown.story), (uint32_t)part)->id
+		.part = info_part(information_view_info(kiosk->shown.view), (uint32_t)part)->id
 	};
-	story_region(kiosk->shown.story, (uint32_t)part, &out->region);
+	information_view_region(kiosk->shown.view, (uint32_t)part, &out->region);
 	return out;
 }
 
@@ -239,15 +239,15 @@ static void draw_scene(struct kiosk *kiosk, bool words)
 			   &kiosk->shown.frame);
 }
 
-static void add_wants(struct kiosk *kiosk, struct exhibit *exhibit)
+static void add_wants(struct kiosk *kiosk, struct session *session)
 {
-	static struct message_want list[WANTS_MOST];
+	static struct message_want list[WANTS_MAX];
 	size_t count;
 
-	if (!exhibit->scene)
+	if (!session->scene)
 		return;
-	story_wants(exhibit->story, &kiosk->wants);
-	count = scene_wants(exhibit->scene, list, WANTS_MOST / 2);
+	information_view_wants(session->view, &kiosk->wants);
+	count = scene_wants(session->scene, list, WANTS_MAX / 2);
 	for (size_t i = 0; i < count; i++)
 		wants_add(&kiosk->wants, &list[i]);
 }
@@ -257,7 +257,7 @@ static void say_wants(struct kiosk *kiosk)
 {
 	wants_begin(&kiosk->wants);
 	add_wants(kiosk, &kiosk->shown);
-	kiosk->coming_held = kiosk->coming.scene && !exhibit_may_load(kiosk);
+	kiosk->coming_held = kiosk->coming.scene && !session_may_load(kiosk);
 	wants_later(&kiosk->wants);
 	if (!kiosk->coming_held)
 		add_wants(kiosk, &kiosk->coming);
@@ -306,7 +306,7 @@ int frame_unseen(struct kiosk *kiosk)
 	if (context_is_lost())
 		return -ENOTRECOVERABLE;
 	kiosk->frame_wanted = false;
-	exhibit_warm(kiosk);
+	session_warm(kiosk);
 	say_wants(kiosk);
 	return 0;
 }
@@ -327,16 +327,17 @@ int frame_draw(struct kiosk *kiosk)
 	if (kiosk->navigator_ready && !kiosk->options.views_path) {
 		kiosk->eye_moves =
 			navigator_step(&kiosk->navigator, dt_ms, (float)kiosk_height_px(kiosk));
-		kiosk->eye_moves |= guest_leads_eye(kiosk, now_ms);
+		kiosk->eye_moves |= visitor_leads_eye(kiosk, now_ms);
 		frame_camera(kiosk, &kiosk->camera);
 		say_eye(kiosk, now_ms);
 	}
 	tools_say(kiosk);
 	back_say(kiosk);
-	exhibit_warm(kiosk);
+	session_warm(kiosk);
 	display_begin(kiosk->display);
 	draw_scene(kiosk, words);
-	overlay = story_overlay(kiosk->shown.story); /* another one after a change of release */
+	overlay = information_view_overlay(
+		kiosk->shown.view); /* another one after a change of release */
 	if (overlay && words)
 		rc = draw_words(kiosk, overlay, now_ms);
 	if (rc == 0)
@@ -349,7 +350,7 @@ int frame_draw(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = display_present(kiosk->display);
 	say_first_picture(kiosk);
-	exhibit_keep_first(kiosk);
+	session_keep_first(kiosk);
 	say_wants(kiosk);
 	if (kiosk->shown.frame.moving || kiosk->words_move || kiosk->eye_moves ||
 	    kiosk->anchors_to_look > 0)

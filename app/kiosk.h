@@ -25,8 +25,8 @@
 #include "ui/overlay.h"
 
 struct capture;
-struct figures_socket;
-struct follow;
+struct metrics_socket;
+struct updater;
 
 /* Of the program, beside success and failure: it is well, but must begin anew, from what it has
  * cached, for another panel or since the GPU lost its context. The service manager is to start it
@@ -34,14 +34,14 @@ struct follow;
 enum { KIOSK_STATUS_ANEW = 75, KIOSK_STATUS_LOST_GPU = 76 };
 
 enum {
-	EXHIBIT_KEPT_MOST = 4096,
+	SESSION_KEPT_MAX = 4096,
 	FRAME_BUDGET_US = 16667, /* what a panel of 60 Hz leaves */
 };
 
 /* One release as it is shown: its pictures and its words. */
-struct exhibit {
+struct session {
 	struct scene *scene;
-	struct story *story;
+	struct information_view *view;
 	struct hash root;
 	uint32_t root_bytes;
 	bool root_here;
@@ -49,7 +49,7 @@ struct exhibit {
 	bool synced;                   /* that was asked for, for its first whole picture */
 	bool remembering;              /* it is being written down itself, to be shown then */
 	int64_t shown_ms, pictured_ms; /* since it is on the panel, and to be seen there; 0: not */
-	struct hash kept[EXHIBIT_KEPT_MOST]; /* the fetcher is to keep these */
+	struct hash kept[SESSION_KEPT_MAX]; /* the fetcher is to keep these */
 	uint32_t kept_count;
 	bool was_settled;         /* what came since its first whole picture may go again */
 	struct scene_frame frame; /* of the last time it was drawn */
@@ -92,8 +92,8 @@ struct kiosk {
 
 	int epoll_fd, signal_fd;
 	struct display *display;
-	struct exhibit shown;  /* its scene and story are NULL before the first release */
-	struct exhibit coming; /* the next release, warming up unseen; NULL: none */
+	struct session shown;  /* its scene and story are NULL before the first release */
+	struct session coming; /* the next release, warming up unseen; NULL: none */
 	int64_t coming_since_ms, coming_drawn_ms;
 	bool coming_held;  /* its objects are not asked for at this time of day */
 	bool coming_waits; /* to be drawn again by itself, not only when something arrives */
@@ -101,9 +101,9 @@ struct kiosk {
 	struct quads *quads;
 	struct touch *touch;
 	struct net_client *net;
-	struct follow *follow;          /* of releases */
-	struct figures_socket *figures; /* NULL: not offered */
-	struct tally *tally;            /* of what visitors look at */
+	struct updater *updater;        /* of releases */
+	struct metrics_socket *metrics; /* NULL: not offered */
+	struct usage *usage;            /* of what visitors look at */
 	struct capture *capture;        /* NULL: a kiosk, not a measurement */
 
 	struct wants wants;
@@ -113,14 +113,14 @@ struct kiosk {
 	bool finger_on_words;     /* the gesture began on a page or card */
 	uint32_t fingers_on_keys; /* a bit a contact */
 	uint32_t answers;         /* contacts, a bit each, that only said that somebody is there */
-	struct visit visit;
-	enum visit_state visit_said; /* as the log has it */
-	int asked_s;                 /* as the words have it */
-	struct tour tour;            /* a visitor's, or nobody's */
-	struct tools tools;          /* a visitor's */
-	struct way_back way_back;    /* the same */
-	struct roam roam;
-	int64_t roam_since_ms; /* the eye's way without a visitor began, or will */
+	struct presence presence;
+	enum presence_state presence_said; /* as the log has it */
+	int asked_s;                       /* as the words have it */
+	struct tour tour;                  /* a visitor's, or nobody's */
+	struct tools tools;                /* a visitor's */
+	struct way_back way_back;          /* the same */
+	struct attract_camera attract;
+	int64_t attract_camera_since_ms; /* the eye's way without a visitor began, or will */
 
 	float px_per_mm;      /* of the panel; 0: not known */
 	struct camera camera; /* of the last frame */
@@ -128,16 +128,16 @@ struct kiosk {
 	int64_t started_ms, last_frame_ms;
 	struct panel panel;
 	bool frame_wanted, words_move, eye_moves;
-	uint32_t frame_us;               /* work of the last frame, this thread */
-	uint64_t frames, late_frames;    /* drawn; of them with more work than a frame may take */
-	uint64_t object_count;           /* given to the scene since start */
-	bool hidden[OVERLAY_PARTS_MOST]; /* anchors behind stone, as last looked at */
-	uint32_t next_anchor;            /* to look at */
-	uint32_t anchors_to_look;        /* at, before a picture at rest is right */
-	uint32_t looked_triangles;       /* drawn when the anchors were looked at */
-	bool pictured;                   /* the model was on the panel */
-	bool memory_given_back;          /* since the picture settled last */
-	struct camera said;              /* the eye, as the log has it last */
+	uint32_t frame_us;              /* work of the last frame, this thread */
+	uint64_t frames, late_frames;   /* drawn; of them with more work than a frame may take */
+	uint64_t object_count;          /* given to the scene since start */
+	bool hidden[OVERLAY_PARTS_MAX]; /* anchors behind stone, as last looked at */
+	uint32_t next_anchor;           /* to look at */
+	uint32_t anchors_to_look;       /* at, before a picture at rest is right */
+	uint32_t looked_triangles;      /* drawn when the anchors were looked at */
+	bool pictured;                  /* the model was on the panel */
+	bool memory_given_back;         /* since the picture settled last */
+	struct camera said;             /* the eye, as the log has it last */
 	int64_t said_ms;
 	bool quit;
 };
@@ -166,23 +166,23 @@ int kiosk_height_px(const struct kiosk *kiosk);
 /* exhibit.c: what is shown, and what comes next. */
 /* What a board's profile asks of a scene. */
 struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode);
-void exhibit_close(struct exhibit *exhibit);
+void session_close(struct session *session);
 /* An object came. true: without it what is cached could not be found, or would be no picture. */
-bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object);
+bool session_give(struct session *session, struct hash hash, struct bytes object);
 /* Begins with the release, in the background where another one is shown. What was coming before is
  * given up; the release that is on the panel just stays there. */
-void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
+void session_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes);
 /* Draws a little of what is coming, and has it remembered once it can be shown whole. */
-void exhibit_warm(struct kiosk *kiosk);
+void session_warm(struct kiosk *kiosk);
 /* Its objects survive a power cut now (done), or the disk failed: net_client_sync's answer. */
-void exhibit_synced(struct kiosk *kiosk, bool done);
-void exhibit_keep_first(struct kiosk *kiosk); /* after each frame */
+void session_synced(struct kiosk *kiosk, bool done);
+void session_keep_first(struct kiosk *kiosk); /* after each frame */
 /* The objects of what is coming may be asked for: the network's time of day, or a stick's. */
-bool exhibit_may_load(const struct kiosk *kiosk);
+bool session_may_load(const struct kiosk *kiosk);
 /* The release was written down, or could not be: shows it, if it is what is coming. */
-void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc);
+void session_remembered(struct kiosk *kiosk, struct hash root, int rc);
 /* When what is coming is to be drawn again, milliseconds from now; -1: when something arrives. */
-int exhibit_wait_ms(const struct kiosk *kiosk);
+int session_wait_ms(const struct kiosk *kiosk);
 
 /* panel.c */
 /* Once a turn of the loop. Negative errno as of display_dispatch and display_sleep. */
@@ -210,37 +210,37 @@ must_check int vitals_offer(struct kiosk *kiosk);
 
 /* guest.c: whether a visitor is there. */
 /* The clock on the wall, seconds since 1970; 0: nobody set it. */
-int64_t guest_clock_s(void);
+int64_t visitor_clock_s(void);
 /* Once a turn: asks, begins anew, shows the model. */
-void guest_watch(struct kiosk *kiosk);
-/* When guest_watch has something to do by time alone, milliseconds; -1: never. */
-int guest_wait_ms(const struct kiosk *kiosk);
+void visitor_watch(struct kiosk *kiosk);
+/* When visitor_watch has something to do by time alone, milliseconds; -1: never. */
+int visitor_wait_ms(const struct kiosk *kiosk);
 /* Moves the eye where nobody else does. true: it moves on. */
-bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms);
-/* A visitor looked at something: storage/tally.h. part: -1 for what is of none. */
-void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part);
+bool visitor_leads_eye(struct kiosk *kiosk, int64_t now_ms);
+/* A visitor looked at something: storage/usage.h. part: -1 for what is of none. */
+void visitor_count(struct kiosk *kiosk, enum usage_kind kind, int part);
 /* The same of what has that id. */
-void guest_count_id(struct kiosk *kiosk, enum tally_kind kind, const char *id);
+void visitor_count_id(struct kiosk *kiosk, enum usage_kind kind, const char *id);
 /* A finger does something. true: it is the answer to the question, and means nothing else. */
-bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
+bool visitor_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Until the panel counts as left alone, milliseconds; 0: it is. */
-int guest_left_ms(const struct kiosk *kiosk);
+int visitor_left_ms(const struct kiosk *kiosk);
 
 /* guide.c: guided tours. */
-void guide_start(struct kiosk *kiosk, int which); /* a visitor's; -1: none */
-void guide_halt(struct kiosk *kiosk);
-void guide_go_on(struct kiosk *kiosk);
-void guide_end(struct kiosk *kiosk);
+void tour_player_start(struct kiosk *kiosk, int which); /* a visitor's; -1: none */
+void tour_player_halt(struct kiosk *kiosk);
+void tour_player_go_on(struct kiosk *kiosk);
+void tour_player_end(struct kiosk *kiosk);
 /* The bar's control: halts one, has it go on, starts the only one, or has the visitor choose. */
-void guide_press(struct kiosk *kiosk);
+void tour_player_press(struct kiosk *kiosk);
 /* The tour of who is not there. false: the release has none. */
-bool guide_go_round(struct kiosk *kiosk);
+bool tour_player_go_round(struct kiosk *kiosk);
 /* Moves the eye along the way, if one is flown. true: it moves on. */
-bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms);
+bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms);
 /* What the words have of it. */
-void guide_say(struct kiosk *kiosk);
+void tour_player_say(struct kiosk *kiosk);
 /* The part that is lit, or -1. */
-int guide_part(const struct kiosk *kiosk);
+int tour_player_part(const struct kiosk *kiosk);
 
 /* back.c: what the bar's way back undoes. */
 /* A step begins that leads elsewhere. */
@@ -265,7 +265,7 @@ void trial_watch(struct kiosk *kiosk);
 /* When trial_watch has something to do by time alone, milliseconds; -1: never. */
 int trial_wait_ms(const struct kiosk *kiosk);
 /* The exhibit has an object that cannot be decoded. */
-bool trial_is_broken(const struct exhibit *exhibit);
+bool trial_is_broken(const struct session *session);
 
 /* frame.c */
 must_check int frame_draw(struct kiosk *kiosk);

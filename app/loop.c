@@ -37,8 +37,8 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 	bool kept;
 
 	wants_arrived(&kiosk->wants, hash);
-	kept = exhibit_give(&kiosk->shown, hash, bytes);
-	if (exhibit_give(&kiosk->coming, hash, bytes) || kept)
+	kept = session_give(&kiosk->shown, hash, bytes);
+	if (session_give(&kiosk->coming, hash, bytes) || kept)
 		net_client_keep(kiosk->net, hash);
 	if (kiosk->capture)
 		capture_object(kiosk->capture);
@@ -60,14 +60,14 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 {
 	struct kiosk *kiosk = data;
 
-	follow_meta(kiosk->follow, role, version, bytes, source);
-	net_client_trust(kiosk->net, follow_root_version(kiosk->follow));
+	updater_meta(kiosk->updater, role, version, bytes, source);
+	net_client_trust(kiosk->net, updater_root_version(kiosk->updater));
 	kiosk_redraw(kiosk);
 }
 
 static void on_synced(void *data, bool done)
 {
-	exhibit_synced(data, done);
+	session_synced(data, done);
 }
 
 static void on_status(void *data, const struct message_status *status)
@@ -84,12 +84,12 @@ static void on_status(void *data, const struct message_status *status)
 
 static void begin_release(void *data, struct hash root, uint32_t root_bytes)
 {
-	exhibit_begin(data, root, root_bytes);
+	session_begin(data, root, root_bytes);
 }
 
 static void release_remembered(void *data, struct hash root, int rc)
 {
-	exhibit_remembered(data, root, rc);
+	session_remembered(data, root, rc);
 }
 
 /* ---- start */
@@ -178,7 +178,7 @@ static int start_net(struct kiosk *kiosk)
 		.events = { on_object, on_missing, on_meta, on_synced, on_status },
 		.data = kiosk,
 	};
-	struct follow_options follow = {
+	struct updater_options updater = {
 		.state_path = state,
 		.trust_path = kiosk->options.trust_path,
 		.begin = begin_release,
@@ -194,17 +194,17 @@ static int start_net(struct kiosk *kiosk)
 	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
 	snprintf(state, sizeof(state), "%s/state.db", folder);
 	snprintf(visits, sizeof(visits), "%s/visits.csv", folder);
-	rc = tally_create(&kiosk->tally, visits, kiosk->options.visits_path, guest_clock_s());
+	rc = usage_create(&kiosk->usage, visits, kiosk->options.visits_path, visitor_clock_s());
 	if (rc < 0)
 		return rc;
 	if (!net.program) {
 		fetch_beside(program);
 		net.program = program;
 	}
-	rc = follow_create(&kiosk->follow, &follow);
+	rc = updater_create(&kiosk->updater, &updater);
 	if (rc < 0)
 		return rc;
-	net.root_version = follow_root_version(kiosk->follow);
+	net.root_version = updater_root_version(kiosk->updater);
 	return net_client_create(&kiosk->net, &net);
 }
 
@@ -236,7 +236,7 @@ static int start_loop(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = kiosk_watch(kiosk, net_client_fd(kiosk->net));
 	if (rc == 0)
-		rc = kiosk_watch(kiosk, follow_fd(kiosk->follow));
+		rc = kiosk_watch(kiosk, updater_fd(kiosk->updater));
 	if (rc == 0 && kiosk->touch)
 		rc = kiosk_watch(kiosk, touch_fd(kiosk->touch));
 	return rc;
@@ -247,8 +247,8 @@ int kiosk_start(struct kiosk *kiosk)
 	int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
 
 	kiosk->started_ms = clock_now_ms();
-	visit_init(&kiosk->visit, kiosk->options.idle_s, kiosk->started_ms);
-	kiosk->visit_said = kiosk->visit.state;
+	presence_init(&kiosk->presence, kiosk->options.idle_s, kiosk->started_ms);
+	kiosk->presence_said = kiosk->presence.state;
 	if (rc == 0)
 		rc = start_display(kiosk);
 	if (rc == 0)
@@ -262,7 +262,7 @@ int kiosk_start(struct kiosk *kiosk)
 	if (rc == 0)
 		rc = vitals_offer(kiosk);
 	if (rc == 0)
-		follow_start(kiosk->follow);
+		updater_start(kiosk->updater);
 	if (rc == 0)
 		rc = setup_page_show(kiosk);
 	kiosk->frame_wanted = true;
@@ -271,18 +271,18 @@ int kiosk_start(struct kiosk *kiosk)
 
 void kiosk_stop(struct kiosk *kiosk)
 {
-	figures_socket_destroy(kiosk->figures);
-	tally_destroy(kiosk->tally);
+	metrics_socket_destroy(kiosk->metrics);
+	usage_destroy(kiosk->usage);
 	capture_destroy(kiosk->capture);
 	if (kiosk->epoll_fd >= 0)
 		close(kiosk->epoll_fd);
 	if (kiosk->signal_fd >= 0)
 		close(kiosk->signal_fd);
-	follow_destroy(kiosk->follow);
+	updater_destroy(kiosk->updater);
 	net_client_destroy(kiosk->net);
 	touch_destroy(kiosk->touch);
-	exhibit_close(&kiosk->coming);
-	exhibit_close(&kiosk->shown);
+	session_close(&kiosk->coming);
+	session_close(&kiosk->shown);
 	setup_page_finish(kiosk);
 	if (kiosk->warm_target.framebuffer)
 		gl_target_destroy(&kiosk->warm_target);
@@ -302,12 +302,12 @@ static int dispatch(struct kiosk *kiosk, int fd)
 		return display_dispatch(kiosk->display);
 	if (fd == net_client_fd(kiosk->net))
 		return net_client_dispatch(kiosk->net);
-	if (fd == follow_fd(kiosk->follow))
-		return follow_dispatch(kiosk->follow);
+	if (fd == updater_fd(kiosk->updater))
+		return updater_dispatch(kiosk->updater);
 	if (kiosk->touch && fd == touch_fd(kiosk->touch))
 		return touch_dispatch(kiosk->touch);
-	if (kiosk->figures && fd == figures_socket_fd(kiosk->figures)) {
-		figures_socket_dispatch(kiosk->figures);
+	if (kiosk->metrics && fd == metrics_socket_fd(kiosk->metrics)) {
+		metrics_socket_dispatch(kiosk->metrics);
 		return 0;
 	}
 	if (kiosk->shown.scene && fd == scene_fd(kiosk->shown.scene)) {
@@ -326,14 +326,14 @@ static int wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t since = clock_now_ms() - kiosk->last_frame_ms;
 	const bool paced = display_kind(kiosk->display) == DISPLAY_DRM;
-	const int coming_ms = exhibit_wait_ms(kiosk);
+	const int coming_ms = session_wait_ms(kiosk);
 	const int capture_ms = kiosk->capture ? capture_wait_ms(kiosk->capture) : -1;
 
 	if (!display_ready(kiosk->display))
 		return panel_wait_ms(kiosk);
 	if (kiosk->frame_wanted)
 		return paced || since >= FRAME_MS ? 0 : (int)(FRAME_MS - since);
-	return sooner(sooner(sooner(coming_ms, capture_ms), guest_wait_ms(kiosk)),
+	return sooner(sooner(sooner(coming_ms, capture_ms), visitor_wait_ms(kiosk)),
 		      sooner(sooner(trial_wait_ms(kiosk), setup_page_wait_ms(kiosk)),
 			     panel_wait_ms(kiosk)));
 }
@@ -350,14 +350,14 @@ static int turn(struct kiosk *kiosk)
 		rc = dispatch(kiosk, ready[i].data.fd);
 	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
 	if (count == 0 &&
-	    (kiosk->capture || exhibit_wait_ms(kiosk) == 0 || setup_page_wait_ms(kiosk) == 0))
+	    (kiosk->capture || session_wait_ms(kiosk) == 0 || setup_page_wait_ms(kiosk) == 0))
 		kiosk_redraw(kiosk);
 	if (rc == 0 && !kiosk->quit)
 		rc = panel_turn(kiosk);
 	if (rc < 0 || kiosk->quit)
 		return rc;
 	trial_watch(kiosk);
-	guest_watch(kiosk);
+	visitor_watch(kiosk);
 	if (kiosk->options.quit_after_replay && touch_replay_ended(kiosk->touch) &&
 	    (!kiosk->capture || capture_wait_ms(kiosk->capture) < 0))
 		kiosk->quit = true;

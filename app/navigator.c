@@ -4,15 +4,15 @@
 
 #include <cglm/cglm.h>
 
-#define PITCH_MOST     1.45f /* radians; past it "up" on the panel would jump */
+#define PITCH_MAX      1.45f /* radians; past it "up" on the panel would jump */
 #define FLING_DECAY_MS 325.0f
-#define FLING_LEAST    8.0f /* px/s; slower is rest */
+#define FLING_MIN      8.0f /* px/s; slower is rest */
 /* Of a temple, in a visitor's measure; of what is smaller than a house, a share of its diagonal. */
 #define GROUND_LEAST_M     0.25f /* eye above the bottom of the box */
 #define GROUND_LEAST_SHARE 0.005f
 #define KEEP_OFF_M         0.35f /* eye to a wall */
 #define KEEP_OFF_SHARE     0.02f
-#define BOW_MOST           2.0f /* times as long as straight on: a flight takes no longer */
+#define BOW_MAX            2.0f /* times as long as straight on: a flight takes no longer */
 #define FAR_SHARE          2.5f /* eye to the model's middle, in half diagonals */
 #define FAR_OVER_HOME      1.1f /* or as far as it begins, and a little more */
 
@@ -104,7 +104,7 @@ static void angles_of(const float from[3], const float to[3], float *yaw, float 
 	const float dx = to[0] - from[0], dy = to[1] - from[1], dz = to[2] - from[2];
 
 	*yaw = atan2f(dy, dx);
-	*pitch = glm_clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MOST, PITCH_MOST);
+	*pitch = glm_clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MAX, PITCH_MAX);
 }
 
 void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3])
@@ -131,7 +131,7 @@ void navigator_grab(struct navigator *nav, const float pivot_m[3])
  * Where a wall or the ground holds the eye, the view does not turn either. */
 static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
 {
-	const float pitch = glm_clamp(nav->pitch + pitch_by, -PITCH_MOST, PITCH_MOST);
+	const float pitch = glm_clamp(nav->pitch + pitch_by, -PITCH_MAX, PITCH_MAX);
 	const struct navigator before = *nav;
 	float arm[3], right[3], eye[3];
 	float up[3] = { 0, 0, 1 };
@@ -237,7 +237,7 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
 	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the short way round */
 	nav->to_yaw = nav->from_yaw + turn;
-	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MOST), 1);
+	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MAX), 1);
 }
 
 void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3])
@@ -288,7 +288,7 @@ bool navigator_step(struct navigator *nav, float dt_ms, float height_px)
 		step_flight(nav, dt_ms);
 		return true;
 	}
-	if (hypotf(nav->fling_px_s[0], nav->fling_px_s[1]) < FLING_LEAST) {
+	if (hypotf(nav->fling_px_s[0], nav->fling_px_s[1]) < FLING_MIN) {
 		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
 		return false;
 	}

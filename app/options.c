@@ -214,7 +214,7 @@ static bool set_text(struct options *o, int option, const char *text)
 		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
 		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
 		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->figures_path },
+		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->metrics_path },
 		{ OPTION_VISITS, &o->visits_path },
 	};
 
@@ -250,7 +250,7 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_POLL:
 		return parse_seconds(text, &o->poll_s);
 	case OPTION_CONF:
-		if (o->conf_count == OPTIONS_CONFS_MOST)
+		if (o->conf_count == OPTIONS_CONFS_MAX)
 			return false;
 		o->conf_paths[o->conf_count++] = text;
 		return true;
@@ -264,7 +264,7 @@ static bool set_value(struct options *o, int option, const char *text)
 	case OPTION_WAKE:
 		return parse_whole(text, 0, 24 * 60, &o->wake_min);
 	case OPTION_IDLE:
-		return parse_whole(text, VISIT_IDLE_LEAST_S, VISIT_IDLE_MOST_S, &o->idle_s);
+		return parse_whole(text, PRESENCE_IDLE_LEAST_S, PRESENCE_IDLE_MOST_S, &o->idle_s);
 	case OPTION_SHIFT:
 		o->shift = true;
 		return true;

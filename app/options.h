@@ -10,11 +10,11 @@
 #include "render/scene/scene.h"
 #include "system/hours.h"
 
-enum { OPTIONS_CONFS_MOST = 4 };
+enum { OPTIONS_CONFS_MAX = 4 };
 
 /* Strings are borrowed from argv or static. */
 struct options {
-	const char *conf_paths[OPTIONS_CONFS_MOST]; /* gopura.conf: the first that is there */
+	const char *conf_paths[OPTIONS_CONFS_MAX]; /* gopura.conf: the first that is there */
 	uint32_t conf_count;
 	const char *boards_dir;  /* of the profiles that gopura.conf names */
 	const char *release_url; /* NULL: whatever the state remembers, from the cache */
@@ -26,7 +26,7 @@ struct options {
 	const char *socket_path;    /* of a fetcher that runs; NULL: one is started */
 	const char *fetch_program;
 	const char *visits_path;  /* a copy of the counts of what visitors look at; NULL: none */
-	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
+	const char *metrics_path; /* to offer figures on (docs/health.md); NULL: none */
 	enum display_kind display;
 	const char *device;      /* /dev/dri/cardN */
 	int width_px, height_px; /* 0: what the panel prefers */
@@ -47,8 +47,8 @@ struct options {
 	int idle_s; /* without a touch until a visitor is asked; 0: as gopura.conf has it */
 	bool shift; /* the picture moves by a pixel now and then */
 	bool quit_after_replay;
-	bool safe_page; /* no kiosk: app/safe_mode.h */
-	bool self_test; /* likewise: app/self_test.h */
+	bool safe_page; /* no kiosk: app/modes/safe_mode.h */
+	bool self_test; /* likewise: app/modes/self_test.h */
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_BAD };

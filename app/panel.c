@@ -167,6 +167,6 @@ int panel_wait_ms(const struct kiosk *kiosk)
 	const int due_ms = sooner(display_ms, sooner(manager_wait_ms(), day_wait_ms(kiosk)));
 
 	if (display_is_dark(kiosk->display))
-		return sooner(due_ms, exhibit_wait_ms(kiosk));
+		return sooner(due_ms, session_wait_ms(kiosk));
 	return display_ready(kiosk->display) ? due_ms : display_ms;
 }

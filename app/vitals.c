@@ -9,16 +9,16 @@
 static void write_frames(const struct kiosk *kiosk, struct buffer *out)
 {
 	if (kiosk->last_frame_ms > 0)
-		figures_gauge(out, "gopura_kiosk_last_frame_age_seconds",
+		metrics_gauge(out, "gopura_kiosk_last_frame_age_seconds",
 			      "Since a frame was drawn; at rest none is.",
 			      (double)(clock_now_ms() - kiosk->last_frame_ms) / 1000);
-	figures_counter(out, "gopura_kiosk_frames_total", "Frames drawn.", (double)kiosk->frames);
-	figures_counter(out, "gopura_kiosk_late_frames_total",
+	metrics_counter(out, "gopura_kiosk_frames_total", "Frames drawn.", (double)kiosk->frames);
+	metrics_counter(out, "gopura_kiosk_late_frames_total",
 			"Of them with more work than a panel of 60 Hz leaves.",
 			(double)kiosk->late_frames);
-	figures_gauge(out, "gopura_kiosk_frame_work_seconds", "Work of the last frame.",
+	metrics_gauge(out, "gopura_kiosk_frame_work_seconds", "Work of the last frame.",
 		      (double)kiosk->frame_us / 1e6);
-	figures_gauge(out, "gopura_kiosk_picture", "Whether the model was drawn since the start.",
+	metrics_gauge(out, "gopura_kiosk_picture", "Whether the model was drawn since the start.",
 		      kiosk->pictured);
 }
 
@@ -28,30 +28,30 @@ static void write_release(const struct kiosk *kiosk, struct buffer *out)
 	const struct root_page *root = scene ? scene_root(scene) : NULL;
 	char hex[HASH_HEX_BYTES];
 
-	figures_gauge(out, "gopura_kiosk_release_sequence",
+	metrics_gauge(out, "gopura_kiosk_release_sequence",
 		      "Of the release that is remembered, 0: none yet.",
-		      (double)follow_sequence(kiosk->follow));
-	figures_gauge(out, "gopura_kiosk_clock_trusted",
+		      (double)updater_sequence(kiosk->updater));
+	metrics_gauge(out, "gopura_kiosk_clock_trusted",
 		      "Whether the clock is known to be set, so that expiry is judged.",
 		      clock_wall_is_set());
 	if (!root)
 		return;
 	hash_to_hex(kiosk->shown.root, hex);
-	figures_info(out, "gopura_kiosk_release_info", "The release that is shown.",
+	metrics_info(out, "gopura_kiosk_release_info", "The release that is shown.",
 		     (const struct figure_label[]){ { "root", hex }, { "name", root->name } }, 2);
 }
 
 static void write_refusal(const struct kiosk *kiosk, struct buffer *out)
 {
-	const struct refusal *refusal = follow_refusal(kiosk->follow);
+	const struct refusal *refusal = updater_refusal(kiosk->updater);
 
-	figures_counter(out, "gopura_kiosk_refusals_total", "Releases and their files refused.",
+	metrics_counter(out, "gopura_kiosk_refusals_total", "Releases and their files refused.",
 			(double)refusal->count);
 	if (refusal->count == 0)
 		return;
-	figures_gauge(out, "gopura_kiosk_refused_at_seconds", "When the last one was.",
+	metrics_gauge(out, "gopura_kiosk_refused_at_seconds", "When the last one was.",
 		      (double)refusal->at_s);
-	figures_info(
+	metrics_info(
 		out, "gopura_kiosk_refusal_info", "What it was, and why.",
 		(const struct figure_label[]){ { "what", refusal->what }, { "why", refusal->why } },
 		2);
@@ -65,13 +65,13 @@ static void write_memory(const struct kiosk *kiosk, struct buffer *out)
 
 	if (kiosk->shown.scene)
 		scene_memory(kiosk->shown.scene, &memory);
-	figures_gauge(out, "gopura_kiosk_texture_bytes", "Tiles and depths that are held.",
+	metrics_gauge(out, "gopura_kiosk_texture_bytes", "Tiles and depths that are held.",
 		      (double)memory.texture_bytes);
-	figures_gauge(out, "gopura_kiosk_texture_budget_bytes", "What they may take.",
+	metrics_gauge(out, "gopura_kiosk_texture_budget_bytes", "What they may take.",
 		      (double)budget.texture_budget_bytes);
-	figures_gauge(out, "gopura_kiosk_geometry_bytes", "Patches that are held.",
+	metrics_gauge(out, "gopura_kiosk_geometry_bytes", "Patches that are held.",
 		      (double)memory.geometry_bytes);
-	figures_gauge(out, "gopura_kiosk_geometry_budget_bytes", "What they may take.",
+	metrics_gauge(out, "gopura_kiosk_geometry_budget_bytes", "What they may take.",
 		      (double)budget.geometry_budget_bytes);
 }
 
@@ -79,13 +79,13 @@ static void write_board(const struct kiosk *kiosk, struct buffer *out)
 {
 	const char *renderer = (const char *)glGetString(GL_RENDERER);
 
-	figures_info(out, "gopura_kiosk_gl_info", "What draws.",
+	metrics_info(out, "gopura_kiosk_gl_info", "What draws.",
 		     (const struct figure_label[]){ { "renderer", renderer ? renderer : "" } }, 1);
-	figures_gauge(out, "gopura_kiosk_wanted", "Objects asked of the fetcher and not yet here.",
+	metrics_gauge(out, "gopura_kiosk_wanted", "Objects asked of the fetcher and not yet here.",
 		      kiosk->wants.said_count);
 	/* A replayed file and a window's mouse are no devices that could be missed. */
 	if (kiosk->touch && !kiosk->options.touch_replay_path)
-		figures_gauge(out, "gopura_kiosk_touch_devices", "Touch devices that are open.",
+		metrics_gauge(out, "gopura_kiosk_touch_devices", "Touch devices that are open.",
 			      touch_device_count(kiosk->touch));
 }
 
@@ -102,8 +102,8 @@ static void write_figures(void *data, struct buffer *out)
 
 int vitals_offer(struct kiosk *kiosk)
 {
-	const struct figures_socket_options options = {
-		.path = kiosk->options.figures_path,
+	const struct metrics_socket_options options = {
+		.path = kiosk->options.metrics_path,
 		.prefix = "gopura_kiosk",
 		.write = write_figures,
 		.data = kiosk,
@@ -111,8 +111,8 @@ int vitals_offer(struct kiosk *kiosk)
 	int rc = 0;
 
 	if (options.path)
-		rc = figures_socket_create(&kiosk->figures, &options);
+		rc = metrics_socket_create(&kiosk->metrics, &options);
 	if (rc == 0)
-		rc = kiosk_watch(kiosk, figures_socket_fd(kiosk->figures));
+		rc = kiosk_watch(kiosk, metrics_socket_fd(kiosk->metrics));
 	return rc;
 }

@@ -23,7 +23,7 @@ void wants_begin(struct wants *wants)
 
 void wants_add(struct wants *wants, const struct message_want *want)
 {
-	if (wants->next_count == WANTS_MOST)
+	if (wants->next_count == WANTS_MAX)
 		return;
 	wants->next[wants->next_count] = *want;
 	if (wants->later)

@@ -4,18 +4,18 @@
 
 #include "net/client.h"
 
-enum { WANTS_MOST = 512 };
+enum { WANTS_MAX = 512 };
 
 struct wants {
-	struct message_want said[WANTS_MOST]; /* sorted by hash */
+	struct message_want said[WANTS_MAX]; /* sorted by hash */
 	uint32_t said_count;
-	struct message_want next[WANTS_MOST];
+	struct message_want next[WANTS_MAX];
 	uint32_t next_count;
 	bool later;
 };
 
 /* A turn: wants_begin, wants_add for each (wants_later between them), wants_say. What was said
- * before and is not added any more is dropped. Past WANTS_MOST, later ones are ignored: add what
+ * before and is not added any more is dropped. Past WANTS_MAX, later ones are ignored: add what
  * matters first. */
 void wants_begin(struct wants *wants);
 void wants_add(struct wants *wants, const struct message_want *want);

@@ -256,11 +256,11 @@ int buffer_read_beneath(struct buffer *out, const char *folder, const char *name
 int buffer_read_foreign(struct buffer *out, const char *path)
 {
 	const char *slash = strrchr(path, '/');
-	char folder[BYTES_PATH_MOST];
+	char folder[BYTES_PATH_MAX];
 
 	if (!slash)
 		return buffer_read_beneath(out, "", path);
-	if (slash - path + 1 >= BYTES_PATH_MOST)
+	if (slash - path + 1 >= BYTES_PATH_MAX)
 		return -ENAMETOOLONG;
 	snprintf(folder, sizeof(folder), "%.*s", (int)(slash - path) + 1, path);
 	return buffer_read_beneath(out, folder, slash + 1);
@@ -311,11 +311,11 @@ int bytes_read_at(int fd, void *to, size_t size, uint64_t at)
 	return 0;
 }
 
-int bytes_begin_file(char temporary[BYTES_PATH_MOST], const char *path)
+int bytes_begin_file(char temporary[BYTES_PATH_MAX], const char *path)
 {
 	int fd;
 
-	if (snprintf(temporary, BYTES_PATH_MOST, "%s.XXXXXX", path) >= BYTES_PATH_MOST)
+	if (snprintf(temporary, BYTES_PATH_MAX, "%s.XXXXXX", path) >= BYTES_PATH_MAX)
 		return -ENAMETOOLONG;
 	fd = mkostemp(temporary, O_CLOEXEC);
 	return fd < 0 ? -errno : fd;
@@ -336,7 +336,7 @@ int bytes_end_file(int fd, const char *temporary, const char *path, int rc)
 
 int bytes_write_file(struct bytes bytes, const char *path)
 {
-	char temporary[BYTES_PATH_MOST];
+	char temporary[BYTES_PATH_MAX];
 	int fd = bytes_begin_file(temporary, path), rc;
 
 	if (fd < 0)
@@ -360,7 +360,7 @@ static bool is_leftover(const char *entry, const char *name)
 
 void bytes_drop_leftovers(const char *path)
 {
-	char folder[BYTES_PATH_MOST];
+	char folder[BYTES_PATH_MAX];
 	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
 	struct dirent *entry;
 	DIR *entries;

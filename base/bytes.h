@@ -80,11 +80,11 @@ must_check int buffer_read_foreign(struct buffer *out, const char *path);
 must_check int buffer_read_fd(struct buffer *out, int fd);
 /* size bytes at a place of a file; -EBADMSG: it ends before. */
 must_check int bytes_read_at(int fd, void *to, size_t size, uint64_t at);
-enum { BYTES_PATH_MOST = 4096 };
+enum { BYTES_PATH_MAX = 4096 };
 /* A file that takes the place of another only when it is whole: bytes_begin_file gives a descriptor
  * of a temporary file beside path and its name; bytes_end_file closes it, and renames it, or
  * removes it where rc, which it gives back, tells that writing failed. */
-must_check int bytes_begin_file(char temporary[BYTES_PATH_MOST], const char *path);
+must_check int bytes_begin_file(char temporary[BYTES_PATH_MAX], const char *path);
 must_check int bytes_end_file(int fd, const char *temporary, const char *path, int rc);
 /* Atomically: a temporary file beside it, fsync, rename, fsync of the folder. */
 must_check int bytes_write_file(struct bytes bytes, const char *path);

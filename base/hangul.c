@@ -83,7 +83,7 @@ static size_t put_keys(uint32_t *letters, size_t count, uint32_t c)
 	return count;
 }
 
-size_t hangul_letters(uint32_t c, uint32_t letters[HANGUL_LETTERS_MOST])
+size_t hangul_letters(uint32_t c, uint32_t letters[HANGUL_LETTERS_MAX])
 {
 	const uint32_t index = c - SYLLABLE_FIRST;
 	size_t count = 0;

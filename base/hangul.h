@@ -7,11 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { HANGUL_LETTERS_MOST = 5 }; /* of a syllable: 뷁 is ㅂ ㅜ ㅔ ㄹ ㄱ */
+enum { HANGUL_LETTERS_MAX = 5 }; /* of a syllable: 뷁 is ㅂ ㅜ ㅔ ㄹ ㄱ */
 
 /* The letters that a syllable or letter is typed with, in their order; 0 where c is neither. The
  * letters of normalization forms (U+1100 on) count as those of keys. */
-size_t hangul_letters(uint32_t c, uint32_t letters[HANGUL_LETTERS_MOST]);
+size_t hangul_letters(uint32_t c, uint32_t letters[HANGUL_LETTERS_MAX]);
 
 /* Letters into as few syllables as they make, as Korean keyboards do: a consonant before a vowel
  * begins a syllable. What makes none stays a letter, and so does what is no letter. In place;

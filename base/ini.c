@@ -12,7 +12,7 @@
 
 #include "base/safe_open.h"
 
-enum { KEYS_MOST = 128, LINE_MOST = 196 /* what inih of Debian holds, less its own bytes */ };
+enum { KEYS_MAX = 128, LINE_BYTES_MAX = 196 /* what inih of Debian holds, less its own bytes */ };
 
 struct reading {
 	const char *path;
@@ -20,7 +20,7 @@ struct reading {
 	unsigned line;
 	const struct ini_key *keys;
 	size_t key_count;
-	unsigned seen_line[KEYS_MOST]; /* of each key; 0: not yet */
+	unsigned seen_line[KEYS_MAX]; /* of each key; 0: not yet */
 	void *target;
 	struct fault *fault;
 	int rc;
@@ -38,12 +38,12 @@ static char *next_line(char *text, int size, void *data)
 	if (!line)
 		return NULL;
 	reading->line++;
-	if (strlen(line) > LINE_MOST || (!strchr(line, '\n') && !feof(reading->file))) {
+	if (strlen(line) > LINE_BYTES_MAX || (!strchr(line, '\n') && !feof(reading->file))) {
 		reading->rc =
 			fault_set(reading->fault, -EBADMSG,
 				  "%s:%u: the line is too long; keep it under %d bytes (spread "
 				  "a list over fewer or shorter names)",
-				  reading->path, reading->line, LINE_MOST);
+				  reading->path, reading->line, LINE_BYTES_MAX);
 		return NULL;
 	}
 	return line;
@@ -137,7 +137,7 @@ int ini_read(const char *path, const struct ini_key *keys, size_t key_count, voi
 	struct reading reading = {
 		.path = path,
 		.keys = keys,
-		.key_count = key_count < KEYS_MOST ? key_count : KEYS_MOST,
+		.key_count = key_count < KEYS_MAX ? key_count : KEYS_MAX,
 		.target = target,
 		.fault = fault,
 	};

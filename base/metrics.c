@@ -78,19 +78,19 @@ static void put_escaped(struct buffer *out, const char *value)
 	}
 }
 
-void figures_gauge(struct buffer *out, const char *name, const char *help, double value)
+void metrics_gauge(struct buffer *out, const char *name, const char *help, double value)
 {
 	put_head(out, name, "gauge", help);
 	put_value(out, value);
 }
 
-void figures_counter(struct buffer *out, const char *name, const char *help, double value)
+void metrics_counter(struct buffer *out, const char *name, const char *help, double value)
 {
 	put_head(out, name, "counter", help);
 	put_value(out, value);
 }
 
-void figures_info(struct buffer *out, const char *name, const char *help,
+void metrics_info(struct buffer *out, const char *name, const char *help,
 		  const struct figure_label *labels, size_t count)
 {
 	put_head(out, name, "gauge", help);
@@ -149,7 +149,7 @@ static bool take_name(struct cursor *line, struct bytes *out)
 	while (line->at < line->end && is_name_byte(*line->at, line->at == out->data))
 		line->at++;
 	out->size = (size_t)(line->at - out->data);
-	return out->size > 0 && out->size < FIGURES_NAME_MOST;
+	return out->size > 0 && out->size < METRICS_NAME_MAX;
 }
 
 /* What stands between quotes, escapes and all. */
@@ -248,7 +248,7 @@ static bool is_comment(struct cursor line, const char *prefix)
 	       line.at == line.end;
 }
 
-bool figures_valid(struct bytes text, const char *prefix)
+bool metrics_valid(struct bytes text, const char *prefix)
 {
 	struct cursor line;
 	bool any = false;
@@ -276,7 +276,7 @@ static bool find(struct bytes text, const char *name, struct sample *out)
 	return false;
 }
 
-bool figures_find(struct bytes text, const char *name, double *out)
+bool metrics_find(struct bytes text, const char *name, double *out)
 {
 	struct sample sample;
 
@@ -299,7 +299,7 @@ static void unescape(struct bytes value, char *out, size_t out_bytes)
 	out[used] = '\0';
 }
 
-bool figures_label(struct bytes text, const char *name, const char *label, char *out,
+bool metrics_label(struct bytes text, const char *name, const char *label, char *out,
 		   size_t out_bytes)
 {
 	struct sample sample;

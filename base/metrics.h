@@ -9,8 +9,8 @@
 #include "base/bytes.h"
 
 enum {
-	FIGURES_BYTES_MOST = 16 * 1024, /* of one program */
-	FIGURES_NAME_MOST = 128,        /* bytes, the end included */
+	METRICS_BYTES_MAX = 16 * 1024, /* of one program */
+	METRICS_NAME_MAX = 128,        /* bytes, the end included */
 };
 
 struct figure_label {
@@ -19,22 +19,22 @@ struct figure_label {
 
 /* ---- writing: HELP, TYPE and one sample. name and help are literals. */
 
-void figures_gauge(struct buffer *out, const char *name, const char *help, double value);
-void figures_counter(struct buffer *out, const char *name, const char *help, double value);
+void metrics_gauge(struct buffer *out, const char *name, const char *help, double value);
+void metrics_counter(struct buffer *out, const char *name, const char *help, double value);
 /* What is no number: labels, and the value 1. */
-void figures_info(struct buffer *out, const char *name, const char *help,
+void metrics_info(struct buffer *out, const char *name, const char *help,
 		  const struct figure_label *labels, size_t count);
 
 /* ---- reading */
 
 /* The whole text is lines of the format, at least one, each of them about a name that begins with
  * prefix. Nothing else of a program that was captured may be passed on. */
-bool figures_valid(struct bytes text, const char *prefix);
+bool metrics_valid(struct bytes text, const char *prefix);
 /* The first sample of that name; false: there is none, *out stays. Text that is not valid is fine.
  */
-bool figures_find(struct bytes text, const char *name, double *out);
+bool metrics_find(struct bytes text, const char *name, double *out);
 /* A label of that sample, cut where it does not fit; false: there is none, and out is "". */
-bool figures_label(struct bytes text, const char *name, const char *label, char *out,
+bool metrics_label(struct bytes text, const char *name, const char *label, char *out,
 		   size_t out_bytes);
 
 #endif

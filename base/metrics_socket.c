@@ -12,10 +12,10 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { WAIT_MOST = 8 /* connections that may wait for an answer */ };
+enum { WAIT_MAX = 8 /* connections that may wait for an answer */ };
 
-struct figures_socket {
-	struct figures_socket_options options;
+struct metrics_socket {
+	struct metrics_socket_options options;
 	struct sockaddr_un address;
 	int fd;
 	bool bound; /* the name is ours to remove */
@@ -48,68 +48,68 @@ static uint64_t count_start(const char *path)
 	return starts + 1;
 }
 
-static int listen_on(struct figures_socket *figures)
+static int listen_on(struct metrics_socket *metrics)
 {
-	const char *path = figures->address.sun_path;
+	const char *path = metrics->address.sun_path;
 
-	figures->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	if (figures->fd < 0)
+	metrics->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (metrics->fd < 0)
 		return -errno;
 	unlink(path); /* of the program before us */
-	if (bind(figures->fd, (struct sockaddr *)&figures->address, sizeof(figures->address)) < 0)
+	if (bind(metrics->fd, (struct sockaddr *)&metrics->address, sizeof(metrics->address)) < 0)
 		return -errno;
-	figures->bound = true;
-	if (chmod(path, 0666) < 0 || listen(figures->fd, WAIT_MOST) < 0)
+	metrics->bound = true;
+	if (chmod(path, 0666) < 0 || listen(metrics->fd, WAIT_MAX) < 0)
 		return -errno;
 	return 0;
 }
 
-int figures_socket_create(struct figures_socket **out, const struct figures_socket_options *options)
+int metrics_socket_create(struct metrics_socket **out, const struct metrics_socket_options *options)
 {
-	struct figures_socket *figures = calloc(1, sizeof(*figures));
+	struct metrics_socket *metrics = calloc(1, sizeof(*metrics));
 	int rc;
 
 	*out = NULL;
-	if (!figures)
+	if (!metrics)
 		return -ENOMEM;
-	figures->options = *options;
-	figures->options.path = NULL; /* borrowed */
-	figures->fd = -1;
-	figures->started_ms = clock_now_ms();
-	figures->address.sun_family = AF_UNIX;
-	buffer_init(&figures->text, FIGURES_BYTES_MOST);
-	if (strlen(options->path) < sizeof(figures->address.sun_path)) {
-		memcpy(figures->address.sun_path, options->path, strlen(options->path) + 1);
-		rc = listen_on(figures);
+	metrics->options = *options;
+	metrics->options.path = NULL; /* borrowed */
+	metrics->fd = -1;
+	metrics->started_ms = clock_now_ms();
+	metrics->address.sun_family = AF_UNIX;
+	buffer_init(&metrics->text, METRICS_BYTES_MAX);
+	if (strlen(options->path) < sizeof(metrics->address.sun_path)) {
+		memcpy(metrics->address.sun_path, options->path, strlen(options->path) + 1);
+		rc = listen_on(metrics);
 	} else {
 		rc = -ENAMETOOLONG;
 	}
 	if (rc < 0) {
 		log_error("base", "%s: %s (choose another with --figures)", options->path,
 			  strerror(-rc));
-		figures_socket_destroy(figures);
+		metrics_socket_destroy(metrics);
 		return rc;
 	}
-	figures->starts = count_start(options->path);
-	*out = figures;
+	metrics->starts = count_start(options->path);
+	*out = metrics;
 	return 0;
 }
 
-void figures_socket_destroy(struct figures_socket *figures)
+void metrics_socket_destroy(struct metrics_socket *metrics)
 {
-	if (!figures)
+	if (!metrics)
 		return;
-	if (figures->fd >= 0)
-		close(figures->fd);
-	if (figures->bound)
-		unlink(figures->address.sun_path);
-	buffer_finish(&figures->text);
-	free(figures);
+	if (metrics->fd >= 0)
+		close(metrics->fd);
+	if (metrics->bound)
+		unlink(metrics->address.sun_path);
+	buffer_finish(&metrics->text);
+	free(metrics);
 }
 
-int figures_socket_fd(const struct figures_socket *figures)
+int metrics_socket_fd(const struct metrics_socket *metrics)
 {
-	return figures ? figures->fd : -1;
+	return metrics ? metrics->fd : -1;
 }
 
 /* ---- what every program tells */
@@ -137,49 +137,49 @@ struct common {
 	double value;
 };
 
-static void put_common(struct figures_socket *figures, const struct common *figure)
+static void put_common(struct metrics_socket *metrics, const struct common *figure)
 {
-	char name[FIGURES_NAME_MOST];
+	char name[METRICS_NAME_MAX];
 
-	snprintf(name, sizeof(name), "%s_%s", figures->options.prefix, figure->name);
+	snprintf(name, sizeof(name), "%s_%s", metrics->options.prefix, figure->name);
 	if (figure->counts)
-		figures_counter(&figures->text, name, figure->help, figure->value);
+		metrics_counter(&metrics->text, name, figure->help, figure->value);
 	else
-		figures_gauge(&figures->text, name, figure->help, figure->value);
+		metrics_gauge(&metrics->text, name, figure->help, figure->value);
 }
 
-static void write_common(struct figures_socket *figures)
+static void write_common(struct metrics_socket *metrics)
 {
-	const double uptime_s = (double)(clock_now_ms() - figures->started_ms) / 1000;
+	const double uptime_s = (double)(clock_now_ms() - metrics->started_ms) / 1000;
 	unsigned long long pages, bytes;
 
-	put_common(figures, &(struct common){ "uptime_seconds", "Since the program began.", false,
+	put_common(metrics, &(struct common){ "uptime_seconds", "Since the program began.", false,
 					      uptime_s });
-	put_common(figures, &(struct common){ "starts_total",
+	put_common(metrics, &(struct common){ "starts_total",
 					      "How often the program began since the machine did.",
-					      true, (double)figures->starts });
+					      true, (double)metrics->starts });
 	if (proc_number("/proc/self/statm", "%*u %llu", &pages))
-		put_common(figures, &(struct common){
+		put_common(metrics, &(struct common){
 					    "resident_bytes", "Memory that the program holds.",
 					    false, (double)pages * (double)sysconf(_SC_PAGESIZE) });
 	if (proc_number("/proc/self/io", "write_bytes: %llu", &bytes))
-		put_common(figures, &(struct common){ "written_bytes_total",
+		put_common(metrics, &(struct common){ "written_bytes_total",
 						      "What the program had written to disks.",
 						      true, (double)bytes });
 }
 
-void figures_socket_dispatch(struct figures_socket *figures)
+void metrics_socket_dispatch(struct metrics_socket *metrics)
 {
-	const int fd = accept4(figures->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+	const int fd = accept4(metrics->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 
 	if (fd < 0)
 		return; /* it went away meanwhile */
-	buffer_clear(&figures->text);
-	figures->options.write(figures->options.data, &figures->text);
-	write_common(figures);
-	if (figures->text.error)
-		log_warn("base", "kiosk bug: figures of more than %d bytes", FIGURES_BYTES_MOST);
-	else if (send(fd, figures->text.data, figures->text.size, MSG_NOSIGNAL) < 0)
+	buffer_clear(&metrics->text);
+	metrics->options.write(metrics->options.data, &metrics->text);
+	write_common(metrics);
+	if (metrics->text.error)
+		log_warn("base", "kiosk bug: figures of more than %d bytes", METRICS_BYTES_MAX);
+	else if (send(fd, metrics->text.data, metrics->text.size, MSG_NOSIGNAL) < 0)
 		log_debug("base", "figures did not go out: %s", strerror(errno));
 	close(fd);
 }

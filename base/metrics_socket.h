@@ -1,5 +1,5 @@
 /* Offers a program's figures over a Unix stream socket: whoever connects gets them as text
- * (base/figures.h) and is let go at once. Nobody is waited for: what the kernel does not take in
+ * (base/metrics.h) and is let go at once. Nobody is waited for: what the kernel does not take in
  * one call is not said, so a slow reader costs nothing, and no connection outlives a call.
  *
  * Anyone on the machine may read them: they say nothing that the health page does not. One thread.
@@ -9,9 +9,9 @@
 
 #include "base/metrics.h"
 
-struct figures_socket;
+struct metrics_socket;
 
-struct figures_socket_options {
+struct metrics_socket_options {
 	const char *path;   /* copied; PATH.starts beside it counts how often this was created */
 	const char *prefix; /* of the figures' names, such as "gopura_kiosk"; a literal */
 	void (*write)(void *data, struct buffer *out); /* the program's own figures */
@@ -19,14 +19,14 @@ struct figures_socket_options {
 };
 
 /* *out is owned by the caller; NULL on failure, which is logged. -ENAMETOOLONG, and as bind. */
-must_check int figures_socket_create(struct figures_socket **out,
-				     const struct figures_socket_options *options);
-void figures_socket_destroy(struct figures_socket *socket); /* NULL is fine */
+must_check int metrics_socket_create(struct metrics_socket **out,
+				     const struct metrics_socket_options *options);
+void metrics_socket_destroy(struct metrics_socket *socket); /* NULL is fine */
 
 /* Readable when somebody wants the figures; -1 of NULL. */
-int figures_socket_fd(const struct figures_socket *socket);
+int metrics_socket_fd(const struct metrics_socket *socket);
 /* Answers one of them. Calls write, then appends what every program tells: uptime, starts, memory,
  * bytes written. */
-void figures_socket_dispatch(struct figures_socket *socket);
+void metrics_socket_dispatch(struct metrics_socket *socket);
 
 #endif

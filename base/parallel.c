@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-enum { WORKERS_MOST = 64 };
+enum { WORKERS_MAX = 64 };
 
 struct crew {
 	parallel_work work;
@@ -58,10 +58,10 @@ static void *run_worker(void *user)
 int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work, void *user)
 {
 	struct crew crew = { .work = work, .user = user, .piece_count = piece_count };
-	struct worker workers[WORKERS_MOST];
+	struct worker workers[WORKERS_MAX];
 
-	if (worker_count > WORKERS_MOST)
-		worker_count = WORKERS_MOST;
+	if (worker_count > WORKERS_MAX)
+		worker_count = WORKERS_MAX;
 	if (worker_count > piece_count)
 		worker_count = piece_count;
 	pthread_mutex_init(&crew.lock, NULL);

@@ -16,8 +16,8 @@ enum {
 	BAR_EVERY_MS = 100,
 	LOG_EVERY_MS = 15000,
 	COLUMNS_DEFAULT = 80,
-	COLUMNS_MOST = 160,
-	BAR_MOST = 30
+	COLUMNS_MAX = 160,
+	BAR_MAX = 30
 };
 
 struct progress {
@@ -69,7 +69,7 @@ static void print_time(char out[16], double seconds)
 		snprintf(out, 16, "%u:%02u h", s / 3600, s / 60 % 60);
 }
 
-static void print_bar(char out[BAR_MOST + 3], double share, int width)
+static void print_bar(char out[BAR_MAX + 3], double share, int width)
 {
 	int full = (int)(share * width);
 
@@ -85,8 +85,8 @@ void progress_line(const struct progress *progress, char *out, size_t out_bytes,
 {
 	double seconds = (double)elapsed_ms / 1000, done = (double)progress->done;
 	double rate = seconds > 0 ? done / seconds : 0, total = (double)progress->total;
-	char count[16], of[16], per[16], left[16] = "", bar[BAR_MOST + 3] = "";
-	int width = columns - 56 < BAR_MOST ? columns - 56 : BAR_MOST;
+	char count[16], of[16], per[16], left[16] = "", bar[BAR_MAX + 3] = "";
+	int width = columns - 56 < BAR_MAX ? columns - 56 : BAR_MAX;
 
 	print_count(count, done);
 	print_count(per, rate);
@@ -111,13 +111,13 @@ static int terminal_columns(void)
 
 	if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) < 0 || size.ws_col == 0)
 		return COLUMNS_DEFAULT;
-	return size.ws_col < COLUMNS_MOST ? size.ws_col : COLUMNS_MOST;
+	return size.ws_col < COLUMNS_MAX ? size.ws_col : COLUMNS_MAX;
 }
 
 /* With the lock held. */
 static void show(struct progress *progress, int64_t elapsed_ms)
 {
-	char line[COLUMNS_MOST + 1];
+	char line[COLUMNS_MAX + 1];
 	int columns = terminal_columns();
 
 	progress_line(progress, line, sizeof(line), columns, elapsed_ms);

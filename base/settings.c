@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LINE_MOST = 1000, NAME_MOST = 32, QUOTED_MOST = 60 };
+enum { LINE_BYTES_MAX = 1000, NAME_MAX = 32, QUOTED_MAX = 60 };
 
 struct reading {
 	const struct setting *settings;
@@ -17,9 +17,9 @@ struct reading {
 	void *target;
 	struct faults *faults;
 	unsigned line;
-	char section[NAME_MOST]; /* as the table has it; "": none yet */
-	bool skipping;           /* the section is not known, which was said */
-	unsigned seen[SETTINGS_MOST];
+	char section[NAME_MAX]; /* as the table has it; "": none yet */
+	bool skipping;          /* the section is not known, which was said */
+	unsigned seen[SETTINGS_MAX];
 };
 
 /* ---- faults */
@@ -72,12 +72,12 @@ static void cut(char *text, size_t bytes)
 
 void faults_add(struct faults *faults, unsigned line, const char *text, ...)
 {
-	char sentence[2 * LINE_MOST];
+	char sentence[2 * LINE_BYTES_MAX];
 	unsigned at = faults->count;
 	size_t length = 0;
 	va_list args;
 
-	if (faults->count == FAULTS_MOST) {
+	if (faults->count == FAULTS_MAX) {
 		faults->dropped++;
 		return;
 	}
@@ -108,7 +108,7 @@ static int smaller(int a, int b)
 /* Letters to add, drop or change to come from one word to the other. */
 static int distance(const char *a, const char *b)
 {
-	int row[NAME_MOST + 1];
+	int row[NAME_MAX + 1];
 	const int width = (int)strlen(b);
 
 	for (int i = 0; i <= width; i++)
@@ -140,7 +140,7 @@ static bool section_begins(const struct reading *reading, size_t i)
 
 static void unknown_section(struct reading *reading, const char *name)
 {
-	char known[LINE_MOST] = "";
+	char known[LINE_BYTES_MAX] = "";
 	const char *best = NULL;
 	int nearest = INT32_MAX;
 
@@ -167,7 +167,7 @@ static void unknown_section(struct reading *reading, const char *name)
 
 static void unknown_name(struct reading *reading, const char *name)
 {
-	char known[LINE_MOST] = "";
+	char known[LINE_BYTES_MAX] = "";
 	const char *best = NULL;
 	int nearest = INT32_MAX;
 
@@ -270,7 +270,7 @@ static void refuse(struct reading *reading, const struct setting *setting, char 
 		snprintf(expects, sizeof(expects), "a %snumber from %.10g to %.10g",
 			 setting->set == settings_whole ? "whole " : "", setting->least,
 			 setting->most);
-	cut(value, QUOTED_MOST);
+	cut(value, QUOTED_MAX);
 	if (!*value)
 		faults_add(reading->faults, reading->line,
 			   "%s is empty; it must be %s, or take the line out", setting->name,
@@ -302,8 +302,8 @@ static void take(struct reading *reading, size_t index, char *text)
 static void on_entry(struct reading *reading, char *name, char *value)
 {
 	cut_space(name);
-	if (strlen(name) >= NAME_MOST)
-		cut(name, NAME_MOST - 1);
+	if (strlen(name) >= NAME_MAX)
+		cut(name, NAME_MAX - 1);
 	for (size_t i = 0; i < reading->count; i++)
 		if (strcmp(reading->settings[i].section, reading->section) == 0 &&
 		    strcasecmp(reading->settings[i].name, name) == 0) {
@@ -326,10 +326,10 @@ static void on_section(struct reading *reading, char *text)
 	*end = '\0';
 	text = skip_space(text);
 	cut_space(text);
-	cut(text, NAME_MOST - 1);
+	cut(text, NAME_MAX - 1);
 	for (size_t i = 0; i < reading->count; i++)
 		if (strcasecmp(reading->settings[i].section, text) == 0) {
-			snprintf(reading->section, NAME_MOST, "%s", reading->settings[i].section);
+			snprintf(reading->section, NAME_MAX, "%s", reading->settings[i].section);
 			reading->skipping = false;
 			return;
 		}
@@ -366,7 +366,7 @@ static void on_line(struct reading *reading, char *line)
 	} else if (reading->skipping) {
 		return;
 	} else if (!equals) {
-		cut(line, QUOTED_MOST);
+		cut(line, QUOTED_MAX);
 		faults_add(reading->faults, reading->line,
 			   "'%s' is neither a [section] nor name = value; write # before it if it "
 			   "is a remark",
@@ -380,9 +380,9 @@ static void on_line(struct reading *reading, char *line)
 /* As Notepad once saved what it called Unicode; or no text at all. */
 static bool is_text(struct bytes text, struct faults *faults)
 {
-	if (text.size > SETTINGS_FILE_MOST)
+	if (text.size > SETTINGS_FILE_MAX)
 		faults_add(faults, 0, "the file is larger than %d bytes: this is another file",
-			   SETTINGS_FILE_MOST);
+			   SETTINGS_FILE_MAX);
 	else if (text.size >= 2 &&
 		 (memcmp(text.data, "\xff\xfe", 2) == 0 || memcmp(text.data, "\xfe\xff", 2) == 0))
 		faults_add(faults, 0,
@@ -409,13 +409,13 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 		while (at < text.size) {
 			const uint8_t *end = memchr(text.data + at, '\n', text.size - at);
 			const size_t size = end ? (size_t)(end - text.data) - at : text.size - at;
-			char line[LINE_MOST + 1];
+			char line[LINE_BYTES_MAX + 1];
 
 			reading.line++;
-			if (size > LINE_MOST) {
+			if (size > LINE_BYTES_MAX) {
 				faults_add(faults, reading.line,
 					   "the line is longer than %d bytes; shorten it",
-					   LINE_MOST);
+					   LINE_BYTES_MAX);
 			} else {
 				memcpy(line, text.data + at, size);
 				line[size] = '\0';

@@ -14,14 +14,14 @@
 #include "base/bytes.h"
 #include "base/compiler.h"
 
-enum { FAULTS_MOST = 32, FAULT_TEXT_BYTES = 280, SETTINGS_MOST = 48, SETTINGS_FILE_MOST = 65536 };
+enum { FAULTS_MAX = 32, FAULT_TEXT_BYTES = 280, SETTINGS_MAX = 48, SETTINGS_FILE_MAX = 65536 };
 
 /* In the order of their lines; what is of no line in particular comes last. */
 struct faults {
 	struct {
 		unsigned line;               /* 0: of the file as a whole */
 		char text[FAULT_TEXT_BYTES]; /* "line 7: ...": a sentence, printable UTF-8 */
-	} list[FAULTS_MOST];
+	} list[FAULTS_MAX];
 	unsigned count;   /* in the list */
 	unsigned dropped; /* more there would be */
 };

@@ -79,7 +79,7 @@ int profile_read(struct profile *out, const char *path)
 	*out = profile_default;
 	if (!path)
 		return 0;
-	buffer_init(&file, SETTINGS_FILE_MOST);
+	buffer_init(&file, SETTINGS_FILE_MAX);
 	rc = buffer_read_file(&file, path);
 	if (rc == 0)
 		settings_read(buffer_bytes(&file), settings, ARRAY_COUNT(settings), out, NULL,

@@ -14,7 +14,7 @@ enum {
 	ZSTD_LEVEL = 19,
 	GROUP_BYTES = 1 + 5 * 4,
 	PATCH_BYTES = 4 + 2 + 2 + 8 * 4,
-	PATCHES_MOST = 1 << 20
+	PATCHES_MAX = 1 << 20
 };
 
 static bool numbers_are_finite(const float *numbers, int count)
@@ -30,15 +30,15 @@ static bool group_is_sane(const struct hierarchy_group *group, uint32_t index)
 	bool error_fits = index == 0 ? isinf(group->error_m) && group->error_m > 0.0f
 				     : isfinite(group->error_m) && group->error_m >= 0.0f;
 
-	return error_fits && group->patch_count >= 1 && group->patch_count <= GROUP_PATCHES_MOST &&
+	return error_fits && group->patch_count >= 1 && group->patch_count <= GROUP_PATCHES_MAX &&
 	       numbers_are_finite(group->centre_m, 3) && isfinite(group->radius_m) &&
 	       group->radius_m >= 0.0f;
 }
 
 static bool patch_is_sane(const struct hierarchy_patch *patch)
 {
-	return patch->triangle_count >= 1 && patch->triangle_count <= PATCH_TRIANGLES_MOST &&
-	       patch->vertex_count >= 1 && patch->vertex_count <= PATCH_VERTICES_MOST &&
+	return patch->triangle_count >= 1 && patch->triangle_count <= PATCH_TRIANGLES_MAX &&
+	       patch->vertex_count >= 1 && patch->vertex_count <= PATCH_VERTICES_MAX &&
 	       numbers_are_finite(patch->centre_m, 3) && isfinite(patch->radius_m) &&
 	       patch->radius_m >= 0.0f && numbers_are_finite(patch->cone_axis, 3) &&
 	       patch->cone_cos >= -1.0f && patch->cone_cos <= 1.0f;
@@ -82,8 +82,8 @@ int hierarchy_check(const struct hierarchy *hierarchy)
 	bool *replaces;
 	int rc = 0;
 
-	if (hierarchy->group_count < 1 || hierarchy->group_count > HIERARCHY_GROUPS_MOST ||
-	    hierarchy->patch_count > PATCHES_MOST)
+	if (hierarchy->group_count < 1 || hierarchy->group_count > HIERARCHY_GROUPS_MAX ||
+	    hierarchy->patch_count > PATCHES_MAX)
 		return -EINVAL;
 	replaces = calloc(hierarchy->group_count, sizeof(*replaces));
 	if (!replaces)
@@ -271,7 +271,7 @@ int hierarchy_decode(struct hierarchy *out, struct bytes payload)
 	/* A group holds at least one patch, and zstd packs at most some thousand to one, so
 	 * this bounds what a few bytes can make us allocate. */
 	if (!reader.failed && version == VERSION && out->group_count >= 1 &&
-	    out->group_count <= HIERARCHY_GROUPS_MOST && out->patch_count <= PATCHES_MOST &&
+	    out->group_count <= HIERARCHY_GROUPS_MAX && out->patch_count <= PATCHES_MAX &&
 	    out->patch_count >= out->group_count)
 		rc = decode_packed(out, reader_bytes(&reader, reader_left(&reader)));
 	if (rc < 0)

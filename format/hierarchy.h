@@ -45,7 +45,7 @@ struct hierarchy {
 	struct hierarchy_patch *patches; /* owned; sorted by group */
 };
 
-enum { HIERARCHY_GROUPS_MOST = 1 << 20 };
+enum { HIERARCHY_GROUPS_MAX = 1 << 20 };
 
 /* 0, or -EINVAL where a rule above is broken. Spheres are compared with a tolerance of 1e-5 of the
  * outer one, which is what single precision loses. */

@@ -12,8 +12,8 @@ enum {
 	PAGE_VERSION = 1,
 	ZSTD_LEVEL = 19,
 	HEADER_BYTES = 10,
-	RAW_BYTES_MOST = 16 << 20,
-	OBJECT_MOST = 16 << 20,
+	RAW_BYTES_MAX = 16 << 20,
+	OBJECT_MAX = 16 << 20,
 };
 
 static const char magic[4] = { 'G', 'P', 'l', 'b' };
@@ -46,7 +46,7 @@ static bool is_id(const char *id)
 
 static bool parts_are_sane(const struct label_group *group)
 {
-	if (group->part_count < 1 || group->part_count > LABEL_PARTS_MOST)
+	if (group->part_count < 1 || group->part_count > LABEL_PARTS_MAX)
 		return false;
 	for (uint32_t p = 0; p < group->part_count; p++)
 		if (!is_id(group->parts[p].id) || !isfinite(group->parts[p].area_m2) ||
@@ -59,7 +59,7 @@ static bool sets_are_sane(const struct label_group *group)
 {
 	uint32_t next = 0;
 
-	if (group->set_count < 1 || group->set_count > LABEL_SETS_MOST || group->sets[0].count > 0)
+	if (group->set_count < 1 || group->set_count > LABEL_SETS_MAX || group->sets[0].count > 0)
 		return false;
 	for (uint32_t s = 0; s < group->set_count; s++) {
 		const struct label_set *set = &group->sets[s];
@@ -81,7 +81,7 @@ static bool values_are_sane(const int8_t *values, uint32_t count)
 	bool within = false, without = false;
 
 	for (uint32_t i = 0; i < count; i++) {
-		if (values[i] % 2 == 0 || abs(values[i]) > LABEL_VALUE_MOST)
+		if (values[i] % 2 == 0 || abs(values[i]) > LABEL_VALUE_MAX)
 			return false;
 		within = within || values[i] > 0;
 		without = without || values[i] < 0;
@@ -106,8 +106,8 @@ static bool borders_are_sane(const struct label_group *group, const struct label
 		const struct label_border *border = &patch->borders[b], *before = border - 1;
 
 		if (border->triangle >= patch->triangle_count ||
-		    border->part >= group->part_count || border->level < LABEL_LEVEL_LEAST ||
-		    border->level > LABEL_LEVEL_MOST || border->first != *next ||
+		    border->part >= group->part_count || border->level < LABEL_LEVEL_MIN ||
+		    border->level > LABEL_LEVEL_MAX || border->first != *next ||
 		    label_values(border->level) > group->value_count - *next ||
 		    set_has(group, patch->sets[border->triangle], border->part))
 			return false;
@@ -126,12 +126,12 @@ static bool patches_are_sane(const struct label_group *group)
 {
 	uint32_t values = 0;
 
-	if (group->patch_count < 1 || group->patch_count > GROUP_PATCHES_MOST)
+	if (group->patch_count < 1 || group->patch_count > GROUP_PATCHES_MAX)
 		return false;
 	for (uint32_t p = 0; p < group->patch_count; p++) {
 		const struct label_patch *patch = &group->patches[p];
 
-		if (patch->triangle_count > PATCH_TRIANGLES_MOST)
+		if (patch->triangle_count > PATCH_TRIANGLES_MAX)
 			return false;
 		for (uint32_t t = 0; t < patch->triangle_count; t++)
 			if (patch->sets[t] >= group->set_count)
@@ -199,7 +199,7 @@ int label_group_encode(struct buffer *out, const struct label_group *group)
 
 	if (!is_sane(group))
 		return -EINVAL;
-	buffer_init(&raw, RAW_BYTES_MOST);
+	buffer_init(&raw, RAW_BYTES_MAX);
 	put_parts(&raw, group);
 	put_patches(&raw, group);
 	rc = raw.error;
@@ -234,7 +234,7 @@ static int read_parts(struct label_group *out, struct reader *reader)
 	void *shrunk;
 
 	out->part_count = reader_u16(reader);
-	if (out->part_count > LABEL_PARTS_MOST)
+	if (out->part_count > LABEL_PARTS_MAX)
 		return -EBADMSG;
 	out->parts = take(out->part_count, sizeof(*out->parts));
 	if (!out->parts)
@@ -244,7 +244,7 @@ static int read_parts(struct label_group *out, struct reader *reader)
 		out->parts[p].area_m2 = reader_f32(reader);
 	}
 	out->set_count = reader_u16(reader);
-	if (reader->failed || out->set_count > LABEL_SETS_MOST)
+	if (reader->failed || out->set_count > LABEL_SETS_MAX)
 		return -EBADMSG;
 	out->sets = take(out->set_count, sizeof(*out->sets));
 	out->members = take(most, sizeof(*out->members));
@@ -272,7 +272,7 @@ static int read_sets(struct label_group *out, struct reader *reader)
 		patch->triangle_count = reader_u16(reader);
 		patch->border_count = reader_u32(reader);
 		/* What the bytes cannot hold is not allocated. */
-		if (reader->failed || patch->triangle_count > PATCH_TRIANGLES_MOST ||
+		if (reader->failed || patch->triangle_count > PATCH_TRIANGLES_MAX ||
 		    patch->border_count > reader_left(reader) / 5)
 			return -EBADMSG;
 		patch->sets = take(patch->triangle_count, sizeof(*patch->sets));
@@ -302,7 +302,7 @@ static int read_borders(struct label_group *out, struct reader *reader)
 			border->part = reader_u16(reader);
 			border->level = reader_u8(reader);
 			if (reader->failed || triangle >= out->patches[p].triangle_count ||
-			    border->level > LABEL_LEVEL_MOST)
+			    border->level > LABEL_LEVEL_MAX)
 				return -EBADMSG;
 			border->first = out->value_count;
 			out->value_count += label_values(border->level);
@@ -351,8 +351,8 @@ int label_group_decode(struct label_group *out, struct bytes object)
 	raw_size = reader_u32(&reader);
 	packed = reader_bytes(&reader, reader_left(&reader));
 	if (reader.failed || memcmp(head.data, magic, sizeof(magic)) != 0 || version != VERSION ||
-	    out->patch_count > GROUP_PATCHES_MOST || raw_size > RAW_BYTES_MOST ||
-	    packed.size == 0 || ZSTD_getFrameContentSize(packed.data, packed.size) != raw_size ||
+	    out->patch_count > GROUP_PATCHES_MAX || raw_size > RAW_BYTES_MAX || packed.size == 0 ||
+	    ZSTD_getFrameContentSize(packed.data, packed.size) != raw_size ||
 	    ZSTD_findFrameCompressedSize(packed.data, packed.size) != packed.size) {
 		out->patch_count = 0;
 		return -EBADMSG;

@@ -12,12 +12,12 @@
 #include "format/patch.h"
 
 enum {
-	LABEL_ID_BYTES = 65,     /* of a part, the zero at its end included */
-	LABEL_PARTS_MOST = 1000, /* in a group, as in a release */
-	LABEL_SETS_MOST = 4096,
-	LABEL_LEVEL_LEAST = 2,
-	LABEL_LEVEL_MOST = 5,
-	LABEL_VALUE_MOST = 7,
+	LABEL_ID_BYTES = 65,    /* of a part, the zero at its end included */
+	LABEL_PARTS_MAX = 1000, /* in a group, as in a release */
+	LABEL_SETS_MAX = 4096,
+	LABEL_LEVEL_MIN = 2,
+	LABEL_LEVEL_MAX = 5,
+	LABEL_VALUE_MAX = 7,
 };
 
 struct label_part {
@@ -32,7 +32,7 @@ struct label_set {
 
 struct label_border {
 	uint16_t triangle, part;
-	uint8_t level;  /* LABEL_LEVEL_LEAST..LABEL_LEVEL_MOST */
+	uint8_t level;  /* LABEL_LEVEL_MIN..LABEL_LEVEL_MAX */
 	uint32_t first; /* in values: label_values(level) of them */
 };
 
@@ -49,7 +49,7 @@ struct label_group {
 	struct label_set *sets;      /* [0] is empty */
 	uint16_t *members;           /* of sets: index of a part */
 	struct label_patch *patches; /* as many as the group has */
-	int8_t *values; /* odd, -LABEL_VALUE_MOST..LABEL_VALUE_MOST; above 0 is within */
+	int8_t *values;              /* odd, -LABEL_VALUE_MAX..LABEL_VALUE_MAX; above 0 is within */
 };
 
 /* Corners of a triangle that is divided so often. */

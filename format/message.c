@@ -100,7 +100,7 @@ void message_encode(struct buffer *out, const struct message *message)
 	case MESSAGE_OBJECT:
 		put_hash(out, message->object.hash);
 		buffer_put_u32(out, message->object.size);
-		put_rest(out, message->object.bytes, MESSAGE_INLINE_MOST);
+		put_rest(out, message->object.bytes, MESSAGE_INLINE_MAX);
 		break;
 	case MESSAGE_MISSING:
 		put_hash(out, message->missing.hash);
@@ -110,7 +110,7 @@ void message_encode(struct buffer *out, const struct message *message)
 		buffer_put_u8(out, (uint8_t)message->meta.role);
 		buffer_put_u8(out, (uint8_t)message->meta.source);
 		buffer_put_u32(out, message->meta.version);
-		put_rest(out, message->meta.bytes, MESSAGE_META_BYTES_MOST);
+		put_rest(out, message->meta.bytes, MESSAGE_META_BYTES_MAX);
 		break;
 	case MESSAGE_STATUS:
 		put_status(out, &message->status);
@@ -120,14 +120,14 @@ void message_encode(struct buffer *out, const struct message *message)
 
 static bool size_in_range(uint32_t size)
 {
-	return size > 0 && size <= OBJECT_BYTES_MOST;
+	return size > 0 && size <= OBJECT_BYTES_MAX;
 }
 
 static bool object_in_range(const struct message *message)
 {
 	size_t inlined = message->object.bytes.size;
 
-	if (inlined > MESSAGE_INLINE_MOST || !size_in_range(message->object.size))
+	if (inlined > MESSAGE_INLINE_MAX || !size_in_range(message->object.size))
 		return false;
 	return inlined == 0 || inlined == message->object.size;
 }
@@ -156,7 +156,7 @@ static bool get_fields(struct message *out, struct reader *reader)
 		return !hash_is_zero(out->keep);
 	case MESSAGE_ASK_META:
 		out->period_s = reader_u32(reader);
-		return out->period_s <= MESSAGE_PERIOD_S_MOST;
+		return out->period_s <= MESSAGE_PERIOD_S_MAX;
 	case MESSAGE_SYNC:
 		return true;
 	case MESSAGE_TRUST:
@@ -184,7 +184,7 @@ static bool get_fields(struct message *out, struct reader *reader)
 		out->meta.version = reader_u32(reader);
 		out->meta.bytes = reader_bytes(reader, reader_left(reader));
 		return small <= META_TIMESTAMP && source <= META_FROM_STICK &&
-		       out->meta.bytes.size > 0 && out->meta.bytes.size <= MESSAGE_META_BYTES_MOST;
+		       out->meta.bytes.size > 0 && out->meta.bytes.size <= MESSAGE_META_BYTES_MAX;
 	case MESSAGE_STATUS:
 		get_status(&out->status, reader);
 		return out->status.online <= 1;

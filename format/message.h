@@ -12,7 +12,7 @@
  *   MESSAGE_TRUST    the version of the trust root that the kiosk has, on connecting and in answer
  *                    to every root: the fetcher looks for the next one
  * Fetcher to kiosk
- *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MOST, else a sealed memfd
+ *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MAX, else a sealed memfd
  *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
  *                    fetcher goes on trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
@@ -42,11 +42,11 @@ enum message_kind {
 };
 
 enum {
-	MESSAGE_INLINE_MOST = 96 * 1024,
-	MESSAGE_BYTES_MOST = MESSAGE_INLINE_MOST + 1024,
-	MESSAGE_META_BYTES_MOST = 64 * 1024,
-	MESSAGE_RELEASES_MOST = 4, /* in use at once */
-	MESSAGE_PERIOD_S_MOST = 86400,
+	MESSAGE_INLINE_MAX = 96 * 1024,
+	MESSAGE_BYTES_MAX = MESSAGE_INLINE_MAX + 1024,
+	MESSAGE_META_BYTES_MAX = 64 * 1024,
+	MESSAGE_RELEASES_MAX = 4, /* in use at once */
+	MESSAGE_PERIOD_S_MAX = 86400,
 };
 
 enum meta_role { META_ROOT, META_RELEASE, META_TIMESTAMP };
@@ -109,7 +109,7 @@ struct message {
 };
 
 /* Appends one packet. Encodes what it is given: what does not keep to the limits above (an inline
- * object larger than MESSAGE_INLINE_MOST) sets out's error to -EFBIG. */
+ * object larger than MESSAGE_INLINE_MAX) sets out's error to -EFBIG. */
 void message_encode(struct buffer *out, const struct message *message);
 /* Bytes in *out are borrowed from packet. -EBADMSG: truncated, trailing bytes, an unknown kind, or
  * a size, role or reason out of range. Whether a descriptor came along is the caller's to check

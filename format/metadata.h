@@ -14,12 +14,12 @@
 
 #include "format/message.h"
 
-enum { KEY_BYTES = 32, KEYS_MOST = 8, METADATA_FILE_BYTES_MOST = MESSAGE_META_BYTES_MOST };
+enum { KEY_BYTES = 32, KEYS_MAX = 8, METADATA_FILE_BYTES_MAX = MESSAGE_META_BYTES_MAX };
 
 struct role_keys {
 	uint32_t threshold;
 	uint32_t key_count;
-	uint8_t keys[KEYS_MOST][KEY_BYTES];
+	uint8_t keys[KEYS_MAX][KEY_BYTES];
 };
 
 /* What root/N.json says. */

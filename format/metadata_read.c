@@ -9,7 +9,7 @@
 #include "format/page.h"
 
 /* Integers must survive a double, which is what JSON numbers are to most readers. */
-#define WHOLE_MOST 9007199254740992.0
+#define WHOLE_MAX 9007199254740992.0
 
 struct signature {
 	struct hash key;
@@ -17,11 +17,11 @@ struct signature {
 };
 
 /* At most a signature of every old and every new key; more is nobody's honest file. */
-enum { SIGNATURES_MOST = 2 * KEYS_MOST };
+enum { SIGNATURES_MAX = 2 * KEYS_MAX };
 
 struct envelope {
 	struct buffer payload; /* owned */
-	struct signature signatures[SIGNATURES_MOST];
+	struct signature signatures[SIGNATURES_MAX];
 	int signature_count;
 };
 
@@ -47,7 +47,7 @@ static cJSON *parse_object(struct bytes text)
 	const char *start = (const char *)text.data, *end = NULL;
 	cJSON *json;
 
-	if (text.size == 0 || text.size > METADATA_FILE_BYTES_MOST)
+	if (text.size == 0 || text.size > METADATA_FILE_BYTES_MAX)
 		return NULL;
 	json = cJSON_ParseWithLengthOpts(start, text.size, &end, 0);
 	if (json && cJSON_IsObject(json) && only_space_after(end, start + text.size))
@@ -88,7 +88,7 @@ static bool whole_member(const cJSON *object, const char *name, uint64_t least, 
 	if (!cJSON_IsNumber(item))
 		return false;
 	value = item->valuedouble;
-	if (!(value >= 0 && value <= WHOLE_MOST) || floor(value) != value)
+	if (!(value >= 0 && value <= WHOLE_MAX) || floor(value) != value)
 		return false;
 	*out = (uint64_t)value;
 	return *out >= least && *out <= most;
@@ -98,7 +98,7 @@ static bool time_member(const cJSON *object, const char *name, int64_t *out)
 {
 	uint64_t seconds;
 
-	if (!whole_member(object, name, 1, (uint64_t)WHOLE_MOST, &seconds))
+	if (!whole_member(object, name, 1, (uint64_t)WHOLE_MAX, &seconds))
 		return false;
 	*out = (int64_t)seconds;
 	return true;
@@ -137,7 +137,7 @@ static int read_signatures(struct envelope *envelope, const cJSON *list)
 		struct signature *signature = &envelope->signatures[envelope->signature_count];
 		const char *key = text_member(item, "key");
 
-		if (envelope->signature_count == SIGNATURES_MOST || !cJSON_IsObject(item) || !key ||
+		if (envelope->signature_count == SIGNATURES_MAX || !cJSON_IsObject(item) || !key ||
 		    hash_from_hex(&signature->key, key) < 0 ||
 		    !base64_exact(text_member(item, "signature"), signature->bytes,
 				  sizeof(signature->bytes)))
@@ -166,7 +166,7 @@ static int envelope_open(struct envelope *envelope, struct bytes file)
 	int rc;
 
 	envelope->signature_count = 0;
-	buffer_init(&envelope->payload, METADATA_FILE_BYTES_MOST);
+	buffer_init(&envelope->payload, METADATA_FILE_BYTES_MAX);
 	if (!json)
 		return -EBADMSG;
 	rc = cJSON_GetArraySize(json) == 2 ? read_payload(envelope, text_member(json, "payload"))
@@ -232,7 +232,7 @@ static int read_role(struct role_keys *role, const cJSON *json)
 	{
 		uint8_t *key = role->keys[role->key_count];
 
-		if (role->key_count == KEYS_MOST || !cJSON_IsString(item) ||
+		if (role->key_count == KEYS_MAX || !cJSON_IsString(item) ||
 		    !base64_exact(item->valuestring, key, KEY_BYTES))
 			return -EBADMSG;
 		/* A key named twice would count twice towards the threshold. */
@@ -334,10 +334,10 @@ static int read_release(struct release *release, const cJSON *json)
 	const char *root = text_member(json, "root"), *comment = text_member(json, "comment");
 	uint64_t root_bytes;
 
-	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &release->sequence) ||
+	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MAX, &release->sequence) ||
 	    !time_member(json, "expires_s", &release->expires_s) || !root ||
 	    hash_from_hex(&release->root, root) < 0 || hash_is_zero(release->root) ||
-	    !whole_member(json, "root_bytes", 1, PAGE_BYTES_MOST, &root_bytes) || !comment ||
+	    !whole_member(json, "root_bytes", 1, PAGE_BYTES_MAX, &root_bytes) || !comment ||
 	    strlen(comment) >= sizeof(release->comment))
 		return -EBADMSG;
 	release->root_bytes = (uint32_t)root_bytes;
@@ -367,7 +367,7 @@ static int read_timestamp(struct timestamp *timestamp, const cJSON *json)
 {
 	const char *name = text_member(json, "release");
 
-	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MOST, &timestamp->sequence) ||
+	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MAX, &timestamp->sequence) ||
 	    !time_member(json, "expires_s", &timestamp->expires_s) || !name ||
 	    hash_from_hex(&timestamp->release, name) < 0)
 		return -EBADMSG;

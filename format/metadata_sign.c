@@ -13,7 +13,7 @@ const char *const metadata_role_names[] = { "root", "release", "timestamp" };
 /* What is signed: the role's name too, so that no file can pass for another role's. */
 int metadata_message(struct buffer *out, enum meta_role role, struct bytes payload)
 {
-	buffer_init(out, METADATA_FILE_BYTES_MOST + 64);
+	buffer_init(out, METADATA_FILE_BYTES_MAX + 64);
 	buffer_put(out, "gopura-", 7);
 	buffer_put(out, metadata_role_names[role], strlen(metadata_role_names[role]));
 	buffer_put(out, "-v1\n", 4);

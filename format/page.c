@@ -22,7 +22,7 @@ void page_encode(struct buffer *out, const struct page *page)
 			page->payload.size;
 
 	assert(page->kind >= PAGE_ROOT && page->kind <= PAGE_LABELS);
-	if (size > PAGE_BYTES_MOST) {
+	if (size > PAGE_BYTES_MAX) {
 		out->error = out->error ? out->error : -EFBIG;
 		return;
 	}
@@ -34,7 +34,7 @@ void page_encode(struct buffer *out, const struct page *page)
 	for (uint32_t i = 0; i < page->child_count; i++) {
 		const struct page_child *child = &page->children[i];
 
-		assert(child->size > 0 && child->size <= OBJECT_BYTES_MOST);
+		assert(child->size > 0 && child->size <= OBJECT_BYTES_MAX);
 		buffer_put_u32(out, child->size | (child->is_page ? CHILD_IS_A_PAGE : 0));
 		buffer_put(out, child->hash.bytes, HASH_BYTES);
 	}
@@ -52,7 +52,7 @@ static bool read_child(struct reader *reader, struct page_child *child)
 	child->size = size_and_flag & ~CHILD_IS_A_PAGE;
 	child->is_page = (size_and_flag & CHILD_IS_A_PAGE) != 0;
 	return child->size > 0 && !hash_is_zero(child->hash) &&
-	       child->size <= (child->is_page ? PAGE_BYTES_MOST : OBJECT_BYTES_MOST);
+	       child->size <= (child->is_page ? PAGE_BYTES_MAX : OBJECT_BYTES_MAX);
 }
 
 static int read_children(struct reader *reader, struct page *page)
@@ -77,7 +77,7 @@ int page_decode(struct page *out, struct bytes object)
 	int rc = -EBADMSG;
 
 	*out = page;
-	if (object.size < PAGE_HEADER_BYTES || object.size > PAGE_BYTES_MOST)
+	if (object.size < PAGE_HEADER_BYTES || object.size > PAGE_BYTES_MAX)
 		return rc;
 	reader_init(&reader, object);
 	magic = reader_bytes(&reader, sizeof(page_magic));

@@ -28,8 +28,8 @@ enum page_kind {
 enum {
 	PAGE_HEADER_BYTES = 16,
 	PAGE_CHILD_BYTES = 4 + HASH_BYTES,
-	PAGE_BYTES_MOST = 4 << 20,   /* an encoded page; larger ones are refused */
-	OBJECT_BYTES_MOST = 16 << 20 /* any object */
+	PAGE_BYTES_MAX = 4 << 20,   /* an encoded page; larger ones are refused */
+	OBJECT_BYTES_MAX = 16 << 20 /* any object */
 };
 
 struct page_child {
@@ -48,7 +48,7 @@ struct page {
 /* Appends the encoded page. */
 void page_encode(struct buffer *out, const struct page *page);
 /* *out is finished by the caller; on failure it is zeroed. -EBADMSG: not a page, truncated, has
- * trailing bytes, an unknown kind or version, a child larger than OBJECT_BYTES_MOST or empty.
+ * trailing bytes, an unknown kind or version, a child larger than OBJECT_BYTES_MAX or empty.
  * -ENOMEM. */
 must_check int page_decode(struct page *out, struct bytes object);
 void page_finish(struct page *page);

@@ -25,9 +25,9 @@ enum stream {
 enum {
 	VERSION = 2,
 	ZSTD_LEVEL = 12,
-	INDEX_BYTES_MOST = 8 * PATCH_TRIANGLES_MOST,
-	NORMAL_ZEROS_MOST = 6,
-	BITS_LEAST = 4 /* fewer do not fill eight by one repetition */
+	INDEX_BYTES_MAX = 8 * PATCH_TRIANGLES_MAX,
+	NORMAL_ZEROS_MAX = 6,
+	BITS_MIN = 4 /* fewer do not fill eight by one repetition */
 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
@@ -216,8 +216,8 @@ static int code_vertices(struct streams *streams, struct patch_mesh *mesh,
 
 static bool counts_fit(uint32_t vertex_count, uint32_t triangle_count)
 {
-	return vertex_count >= 1 && vertex_count <= PATCH_VERTICES_MOST && triangle_count >= 1 &&
-	       triangle_count <= PATCH_TRIANGLES_MOST;
+	return vertex_count >= 1 && vertex_count <= PATCH_VERTICES_MAX && triangle_count >= 1 &&
+	       triangle_count <= PATCH_TRIANGLES_MAX;
 }
 
 static bool indices_fit(const struct patch_mesh *mesh)
@@ -234,7 +234,7 @@ static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
 			  const struct patch_mesh *mesh)
 {
 	size_t count = 3 * (size_t)mesh->triangle_count, size;
-	uint32_t wide[3 * PATCH_TRIANGLES_MOST];
+	uint32_t wide[3 * PATCH_TRIANGLES_MAX];
 	uint8_t *packed;
 
 	for (size_t i = 0; i < count; i++)
@@ -298,7 +298,7 @@ static void tell_vertex(struct precision *precision, const struct patch_vertex *
 
 static struct precision precision_of(const struct patch_mesh *patches, uint32_t patch_count)
 {
-	struct precision precision = { NORMAL_ZEROS_MOST, BITS_LEAST, BITS_LEAST };
+	struct precision precision = { NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN };
 
 	for (uint32_t p = 0; p < patch_count; p++)
 		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
@@ -340,18 +340,18 @@ static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t pa
 
 int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count)
 {
-	struct patch_mesh decoded[GROUP_PATCHES_MOST] = { 0 };
-	uint32_t index_bytes[GROUP_PATCHES_MOST];
+	struct patch_mesh decoded[GROUP_PATCHES_MAX] = { 0 };
+	uint32_t index_bytes[GROUP_PATCHES_MAX];
 	struct buffer indices;
 	int rc = 0;
 
-	if (patch_count < 1 || patch_count > GROUP_PATCHES_MOST)
+	if (patch_count < 1 || patch_count > GROUP_PATCHES_MAX)
 		return -EINVAL;
 	for (uint32_t p = 0; p < patch_count; p++)
 		if (!counts_fit(patches[p].vertex_count, patches[p].triangle_count) ||
 		    !indices_fit(&patches[p]))
 			return -EINVAL;
-	buffer_init(&indices, GROUP_PATCHES_MOST * INDEX_BYTES_MOST);
+	buffer_init(&indices, GROUP_PATCHES_MAX * INDEX_BYTES_MAX);
 	for (uint32_t p = 0; rc == 0 && p < patch_count; p++) {
 		size_t before = indices.size;
 
@@ -373,8 +373,8 @@ static bool get_precision(struct reader *reader, struct precision *out)
 	out->normal_zeros = reader_u8(reader);
 	out->colour_bits = reader_u8(reader);
 	out->open_bits = reader_u8(reader);
-	return out->normal_zeros <= NORMAL_ZEROS_MOST && out->colour_bits >= BITS_LEAST &&
-	       out->colour_bits <= 8 && out->open_bits >= BITS_LEAST && out->open_bits <= 8;
+	return out->normal_zeros <= NORMAL_ZEROS_MAX && out->colour_bits >= BITS_MIN &&
+	       out->colour_bits <= 8 && out->open_bits >= BITS_MIN && out->open_bits <= 8;
 }
 
 static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_t *patch_count,
@@ -386,7 +386,7 @@ static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_
 	    reader_u8(reader) != VERSION)
 		return -EBADMSG;
 	*patch_count = reader_u8(reader);
-	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MOST ||
+	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MAX ||
 	    !get_precision(reader, precision))
 		return -EBADMSG;
 	for (uint32_t p = 0; p < *patch_count; p++) {
@@ -431,17 +431,17 @@ static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32
 	return code_vertices(streams, mesh, precision, false);
 }
 
-int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *patch_count,
+int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MAX], uint32_t *patch_count,
 		       struct bytes object)
 {
-	uint32_t index_bytes[GROUP_PATCHES_MOST];
+	uint32_t index_bytes[GROUP_PATCHES_MAX];
 	size_t index_total = 0, vertex_total = 0;
 	struct precision precision = { 0 };
 	struct streams streams = { 0 };
 	struct reader reader;
 	int rc;
 
-	memset(patches, 0, GROUP_PATCHES_MOST * sizeof(*patches));
+	memset(patches, 0, GROUP_PATCHES_MAX * sizeof(*patches));
 	reader_init(&reader, object);
 	rc = get_header(&reader, patches, patch_count, index_bytes, &precision);
 	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++) {
@@ -456,7 +456,7 @@ int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MOST], uint32_t *
 		rc = decode_patch(&patches[p], &streams, index_bytes[p], &precision);
 	streams_finish(&streams);
 	if (rc < 0) {
-		for (uint32_t p = 0; p < GROUP_PATCHES_MOST; p++)
+		for (uint32_t p = 0; p < GROUP_PATCHES_MAX; p++)
 			patch_mesh_finish(&patches[p]);
 		*patch_count = 0;
 	}

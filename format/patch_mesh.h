@@ -5,8 +5,8 @@
 #include <stdint.h>
 
 enum {
-	PATCH_TRIANGLES_MOST = 4000,
-	PATCH_VERTICES_MOST = 3 * PATCH_TRIANGLES_MOST,
+	PATCH_TRIANGLES_MAX = 4000,
+	PATCH_VERTICES_MAX = 3 * PATCH_TRIANGLES_MAX,
 };
 
 /* As uploaded to the GPU: 12 bytes. */

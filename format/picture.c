@@ -15,7 +15,7 @@ static int allocate(struct picture *out, uint32_t width, uint32_t height, uint32
 	if (width == 0 || height == 0)
 		return -EBADMSG;
 	if (width > side_most_px || height > side_most_px ||
-	    (uint64_t)width * height > PICTURE_PIXELS_MOST)
+	    (uint64_t)width * height > PICTURE_PIXELS_MAX)
 		return -EFBIG;
 	out->rgba = malloc((size_t)width * height * 4);
 	if (!out->rgba)
@@ -75,7 +75,7 @@ int picture_encode_png(struct buffer *out, const struct picture *picture)
 
 /* ---- JPEG */
 
-enum { SCANS_MOST = 64 /* of a progressive file; encoders write about ten */ };
+enum { SCANS_MAX = 64 /* of a progressive file; encoders write about ten */ };
 
 struct jpeg_failure {
 	struct jpeg_error_mgr manager;
@@ -109,7 +109,7 @@ static struct jpeg_error_mgr *jpeg_errors(struct jpeg_failure *failure)
 static void jpeg_count_scans(j_common_ptr codec)
 {
 	if (codec->is_decompressor &&
-	    ((struct jpeg_decompress_struct *)codec)->input_scan_number > SCANS_MOST)
+	    ((struct jpeg_decompress_struct *)codec)->input_scan_number > SCANS_MAX)
 		jpeg_fail(codec);
 }
 

@@ -7,7 +7,7 @@
 
 enum {
 	PICTURE_SIDE_MOST_PX = 16384,
-	PICTURE_PIXELS_MOST = 1 << 28,
+	PICTURE_PIXELS_MAX = 1 << 28,
 	/* Of pages and cards: a terminal decodes these between two frames. */
 	PICTURE_PAGE_SIDE_MOST_PX = 4096,
 };

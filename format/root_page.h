@@ -12,7 +12,7 @@ enum {
 	ROOT_CHILD_INFO,
 	ROOT_CHILD_COUNT, /* that every root page has */
 	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
-	ROOT_CHILDREN_MOST
+	ROOT_CHILDREN_MAX
 };
 
 /* The one quantisation lattice of a model: metres = origin + step * lattice, lattice in 0..65535
@@ -28,7 +28,7 @@ struct root_page {
 	float box_min_m[3], box_max_m[3]; /* of the model; z is up */
 	float start_eye_m[3], start_target_m[3];
 	float sun[3]; /* unit vector towards the light */
-	uint8_t lit;  /* 1: colour times light (format/light.h); 0: the scan's own colours */
+	uint8_t lit;  /* 1: colour times light (geometry/light.h); 0: the scan's own colours */
 	uint8_t background[3];     /* sRGB behind the model */
 	uint64_t source_triangles; /* of the scan, at home */
 	uint64_t published_triangles;

@@ -75,11 +75,11 @@ static bool read_grid(struct reader *reader, struct samples_page *out)
 	}
 	for (int i = 0; i < 3; i++) {
 		out->count[i] = reader_u8(reader);
-		good = good && out->count[i] >= 1 && out->count[i] <= SAMPLE_GRID_MOST;
+		good = good && out->count[i] >= 1 && out->count[i] <= SAMPLE_GRID_MAX;
 		out->bricks[i] = (out->count[i] + BRICK_SIDE - 1u) / BRICK_SIDE;
 	}
 	out->level_count = reader_u8(reader);
-	good = good && out->level_count >= 1 && out->level_count <= SAMPLE_LEVELS_MOST;
+	good = good && out->level_count >= 1 && out->level_count <= SAMPLE_LEVELS_MAX;
 	return good && !reader->failed;
 }
 
@@ -187,7 +187,7 @@ int face_page_decode(struct face_page *out, struct bytes payload)
 	memset(out->tile_child, 0xff, sizeof(out->tile_child));
 	reader_init(&reader, payload);
 	out->level_count = reader_u8(&reader);
-	if (out->level_count < 1 || out->level_count > SAMPLE_LEVELS_MOST)
+	if (out->level_count < 1 || out->level_count > SAMPLE_LEVELS_MAX)
 		return -EBADMSG;
 	if (!read_presence(&reader, out->tile_child, tiles_of(out->level_count)))
 		return -EBADMSG;

@@ -22,11 +22,11 @@ enum {
 	SAMPLE_TILE_PX = 126,
 	SAMPLE_APRON_PX = 1,
 	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile holds: 128 */
-	SAMPLE_LEVELS_MOST = 6, /* 126, 252, 504, 1008, 2016, 4032 pixels a side */
-	SAMPLE_GRID_MOST = 64,  /* points a side */
-	BRICK_SIDE = 4,         /* points */
+	SAMPLE_LEVELS_MAX = 6, /* 126, 252, 504, 1008, 2016, 4032 pixels a side */
+	SAMPLE_GRID_MAX = 64,  /* points a side */
+	BRICK_SIDE = 4,        /* points */
 	BRICK_POINTS = BRICK_SIDE * BRICK_SIDE * BRICK_SIDE,
-	FACE_TILES_MOST = 1 + 4 + 16 + 64 + 256 + 1024
+	FACE_TILES_MAX = 1 + 4 + 16 + 64 + 256 + 1024
 };
 
 struct samples_page {
@@ -69,7 +69,7 @@ must_check int brick_page_decode(struct brick_page *out, struct bytes payload);
 struct face_page {
 	uint8_t level_count;
 	/* Child that is the tile, or SAMPLE_NONE; index face_tile_index(). */
-	uint32_t tile_child[FACE_TILES_MOST];
+	uint32_t tile_child[FACE_TILES_MAX];
 };
 
 void face_page_encode(struct buffer *out, const struct face_page *face);

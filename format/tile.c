@@ -7,7 +7,7 @@
 #include <webp/encode.h>
 
 enum {
-	SIDE_PX_MOST = 4096,
+	SIDE_PX_MAX = 4096,
 	CONTAINER_BYTES = 20, /* "RIFF" size "WEBP" "VP8 " size */
 	FRAME_HEADER_BYTES = 10
 };
@@ -42,7 +42,7 @@ int tile_encode(struct buffer *out, const uint8_t *rgb, uint32_t side_px, int qu
 	WebPMemoryWriter file;
 	int rc = -ENOMEM;
 
-	if (side_px == 0 || side_px > SIDE_PX_MOST || !set_up(&config, quality) ||
+	if (side_px == 0 || side_px > SIDE_PX_MAX || !set_up(&config, quality) ||
 	    !WebPPictureInit(&picture))
 		return -EINVAL;
 	picture.width = picture.height = (int)side_px;
@@ -77,7 +77,7 @@ int tile_decode(uint8_t *rgb, uint32_t side_px, struct bytes object)
 {
 	size_t stride = (size_t)side_px * 3;
 
-	if (side_px == 0 || side_px > SIDE_PX_MOST)
+	if (side_px == 0 || side_px > SIDE_PX_MAX)
 		return -EINVAL;
 	if (!acceptable(object, side_px) ||
 	    !WebPDecodeRGBInto(object.data, object.size, rgb, stride * side_px, (int)stride))

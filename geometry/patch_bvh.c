@@ -7,21 +7,21 @@
 
 #include "geometry/vec.h"
 
-enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 48 };
+enum { LEAF_TRIANGLES = 8, DEPTH_MAX = 48 };
 
 static const float flat_enough = 0.8f;
 
-static void vertex_m(const struct solid *solid, uint32_t vertex, float out[3])
+static void vertex_m(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
 {
-	const uint16_t *at = solid->positions[vertex];
+	const uint16_t *at = bvh->positions[vertex];
 	for (int i = 0; i < 3; i++)
-		out[i] = (float)(solid->lattice.origin_m[i] + solid->lattice.step_m * at[i]);
+		out[i] = (float)(bvh->lattice.origin_m[i] + bvh->lattice.step_m * at[i]);
 }
 
 /* ---- building */
 
 struct builder {
-	struct solid *solid;
+	struct patch_bvh *bvh;
 	uint16_t *indices; /* of the mesh, being sorted */
 	/* Per triangle, sorted along: three times the centre, and the unit normal. */
 	float (*key)[6];
@@ -34,9 +34,9 @@ static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
 		b->indices[3 * i + k] = b->indices[3 * j + k];
 		b->indices[3 * j + k] = index;
 	}
-	uint16_t number = b->solid->order[i];
-	b->solid->order[i] = b->solid->order[j];
-	b->solid->order[j] = number;
+	uint16_t number = b->bvh->order[i];
+	b->bvh->order[i] = b->bvh->order[j];
+	b->bvh->order[j] = number;
 	for (int k = 0; k < 6; k++) {
 		float key = b->key[i][k];
 		b->key[i][k] = b->key[j][k];
@@ -66,7 +66,7 @@ static void split_at_median(struct builder *b, uint32_t first, uint32_t count, i
 	}
 }
 
-static void bound(const struct builder *b, struct solid_node *node)
+static void bound(const struct builder *b, struct patch_bvh_node *node)
 {
 	for (int i = 0; i < 3; i++) {
 		node->low[i] = UINT16_MAX;
@@ -74,7 +74,7 @@ static void bound(const struct builder *b, struct solid_node *node)
 	}
 	const uint32_t first = 3u * node->first, end = first + 3u * node->count;
 	for (uint32_t k = first; k < end; k++) {
-		const uint16_t *at = b->solid->positions[b->indices[k]];
+		const uint16_t *at = b->bvh->positions[b->indices[k]];
 		for (int i = 0; i < 3; i++) {
 			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
 			node->high[i] = at[i] > node->high[i] ? at[i] : node->high[i];
@@ -94,7 +94,7 @@ static float flatness_of(const struct builder *b, uint32_t first, uint32_t count
 
 /* The axis along which a run is longest; where it is larger than a piece, bends count too, so that
  * the sides of a pillar come into different pieces. */
-static int longest_axis(const struct builder *b, const struct solid_node *node)
+static int longest_axis(const struct builder *b, const struct patch_bvh_node *node)
 {
 	float least[6], most[6], longest = 0;
 	int axis = 0;
@@ -114,7 +114,7 @@ static int longest_axis(const struct builder *b, const struct solid_node *node)
 	}
 	/* A bend of a right angle counts for as much as the run is long. */
 	float scale = longest / 1.4f;
-	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MOST; k++) {
+	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MAX; k++) {
 		if ((most[k] - least[k]) * scale > longest) {
 			longest = (most[k] - least[k]) * scale;
 			axis = k;
@@ -125,30 +125,30 @@ static int longest_axis(const struct builder *b, const struct solid_node *node)
 
 static uint32_t build_node(struct builder *b, uint32_t first, uint32_t count)
 {
-	uint32_t self = b->solid->node_count++;
-	struct solid_node *node = &b->solid->nodes[self];
-	*node = (struct solid_node){ .first = (uint16_t)first, .count = (uint16_t)count };
+	uint32_t self = b->bvh->node_count++;
+	struct patch_bvh_node *node = &b->bvh->nodes[self];
+	*node = (struct patch_bvh_node){ .first = (uint16_t)first, .count = (uint16_t)count };
 	bound(b, node);
 	if (count <= LEAF_TRIANGLES)
 		return self;
 	split_at_median(b, first, count, longest_axis(b, node));
 	build_node(b, first, count / 2);
 	uint32_t right = build_node(b, first + count / 2, count - count / 2);
-	b->solid->nodes[self].right = (uint16_t)right;
+	b->bvh->nodes[self].right = (uint16_t)right;
 	return self;
 }
 
 /* ---- pieces */
 
-static void measure_piece(const struct solid *solid, struct piece *piece)
+static void measure_piece(const struct patch_bvh *bvh, struct piece *piece)
 {
 	float area2 = 0;
 	for (uint32_t t = piece->first_triangle; t < piece->first_triangle + piece->triangle_count;
 	     t++) {
 		float a[3], b[3], c[3], n[3];
-		vertex_m(solid, solid->indices[3 * t], a);
-		vertex_m(solid, solid->indices[3 * t + 1], b);
-		vertex_m(solid, solid->indices[3 * t + 2], c);
+		vertex_m(bvh, bvh->indices[3 * t], a);
+		vertex_m(bvh, bvh->indices[3 * t + 1], b);
+		vertex_m(bvh, bvh->indices[3 * t + 2], c);
 		vec_sub(b, b, a);
 		vec_sub(c, c, a);
 		vec_cross(n, b, c);
@@ -161,7 +161,8 @@ static void measure_piece(const struct solid *solid, struct piece *piece)
 	vec_normalise(piece->normal);
 }
 
-struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe)
+struct piece_probe patch_bvh_probe(const struct patch_bvh *bvh, const struct piece *piece,
+				   int probe)
 {
 	struct piece_probe out;
 	/* Triangles of a piece are sorted in space: even steps are spread well. */
@@ -169,7 +170,7 @@ struct piece_probe solid_probe(const struct solid *solid, const struct piece *pi
 		     (2 * (uint32_t)probe + 1) * piece->triangle_count / (2 * PIECE_PROBES);
 	float corner[3][3], ab[3], ac[3];
 	for (int c = 0; c < 3; c++)
-		vertex_m(solid, solid->indices[3 * t + c], corner[c]);
+		vertex_m(bvh, bvh->indices[3 * t + c], corner[c]);
 	for (int i = 0; i < 3; i++)
 		out.at_m[i] = (corner[0][i] + corner[1][i] + corner[2][i]) / 3;
 	vec_sub(ab, corner[1], corner[0]);
@@ -180,12 +181,12 @@ struct piece_probe solid_probe(const struct solid *solid, const struct piece *pi
 	return out;
 }
 
-static void set_extents(const struct solid *solid, struct piece *piece)
+static void set_extents(const struct patch_bvh *bvh, struct piece *piece)
 {
 	uint32_t first = 3 * piece->first_triangle, end = first + 3 * piece->triangle_count;
 	for (uint32_t k = first; k < end; k++) {
 		float at[3];
-		vertex_m(solid, solid->indices[k], at);
+		vertex_m(bvh, bvh->indices[k], at);
 		for (int i = 0; i < 6; i++) {
 			const float *was = piece->extent_m[i];
 			bool farther = i & 1 ? at[i / 2] > was[i / 2] : at[i / 2] < was[i / 2];
@@ -196,14 +197,14 @@ static void set_extents(const struct solid *solid, struct piece *piece)
 }
 
 /* Whether one choice of samples may suit a run of triangles. */
-static bool is_one_piece(const struct builder *b, const struct solid_node *node)
+static bool is_one_piece(const struct builder *b, const struct patch_bvh_node *node)
 {
-	if (!node->right || node->count <= PIECE_TRIANGLES_LEAST)
+	if (!node->right || node->count <= PIECE_TRIANGLES_MIN)
 		return true;
 	bool wide = false;
 	for (int i = 0; i < 3; i++)
 		wide |= node->high[i] - node->low[i] > UINT16_MAX / PIECES_ACROSS;
-	if (node->count > PIECE_TRIANGLES_MOST || wide)
+	if (node->count > PIECE_TRIANGLES_MAX || wide)
 		return false;
 	return node->count <= PIECE_TRIANGLES_BENT ||
 	       flatness_of(b, node->first, node->count) >= flat_enough;
@@ -211,14 +212,14 @@ static bool is_one_piece(const struct builder *b, const struct solid_node *node)
 
 static void collect_pieces(const struct builder *b, uint32_t at)
 {
-	struct solid *solid = b->solid;
-	const struct solid_node *node = &solid->nodes[at];
+	struct patch_bvh *bvh = b->bvh;
+	const struct patch_bvh_node *node = &bvh->nodes[at];
 	if (!is_one_piece(b, node)) {
 		collect_pieces(b, at + 1);
 		collect_pieces(b, node->right);
 		return;
 	}
-	struct piece *piece = &solid->pieces[solid->piece_count++];
+	struct piece *piece = &bvh->pieces[bvh->piece_count++];
 	*piece = (struct piece){ .first_triangle = node->first,
 				 .triangle_count = node->count,
 				 .flatness = flatness_of(b, node->first, node->count) };
@@ -226,19 +227,19 @@ static void collect_pieces(const struct builder *b, uint32_t at)
 	for (int i = 0; i < 3; i++) {
 		float middle = (float)(node->low[i] + node->high[i]) / 2;
 		piece->centre_m[i] =
-			(float)(solid->lattice.origin_m[i] + solid->lattice.step_m * middle);
+			(float)(bvh->lattice.origin_m[i] + bvh->lattice.step_m * middle);
 		diagonal[i] = (float)(node->high[i] - node->low[i]);
 	}
-	piece->radius_m = vec_length(diagonal) / 2 * (float)solid->lattice.step_m;
-	measure_piece(solid, piece);
-	set_extents(solid, piece);
+	piece->radius_m = vec_length(diagonal) / 2 * (float)bvh->lattice.step_m;
+	measure_piece(bvh, piece);
+	set_extents(bvh, piece);
 }
 
-static void set_key(const struct solid *solid, const uint16_t index[3], float key[6])
+static void set_key(const struct patch_bvh *bvh, const uint16_t index[3], float key[6])
 {
 	float corner[3][3], ab[3], ac[3];
 	for (int c = 0; c < 3; c++)
-		vertex_m(solid, index[c], corner[c]);
+		vertex_m(bvh, index[c], corner[c]);
 	for (int i = 0; i < 3; i++)
 		key[i] = corner[0][i] + corner[1][i] + corner[2][i];
 	vec_sub(ab, corner[1], corner[0]);
@@ -255,21 +256,21 @@ static void *shrink(void *block, size_t bytes)
 	return smaller ? smaller : block;
 }
 
-int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice *lattice)
+int patch_bvh_init(struct patch_bvh *out, struct patch_mesh *mesh, const struct lattice *lattice)
 {
-	*out = (struct solid){ .indices = mesh->indices, .lattice = *lattice };
+	*out = (struct patch_bvh){ .indices = mesh->indices, .lattice = *lattice };
 	uint32_t count = mesh->triangle_count;
 	if (count == 0)
 		return 0;
-	struct builder builder = { .solid = out, .indices = mesh->indices };
+	struct builder builder = { .bvh = out, .indices = mesh->indices };
 	builder.key = malloc(count * sizeof(*builder.key));
 	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
-	out->pieces = calloc(count / (PIECE_TRIANGLES_LEAST / 2) + 1, sizeof(*out->pieces));
+	out->pieces = calloc(count / (PIECE_TRIANGLES_MIN / 2) + 1, sizeof(*out->pieces));
 	out->positions = malloc(mesh->vertex_count * sizeof(*out->positions));
 	out->order = malloc(count * sizeof(*out->order));
 	if (!builder.key || !out->nodes || !out->pieces || !out->positions || !out->order) {
 		free(builder.key);
-		solid_finish(out);
+		patch_bvh_finish(out);
 		return -ENOMEM;
 	}
 	for (uint32_t v = 0; v < mesh->vertex_count; v++)
@@ -287,21 +288,20 @@ int solid_init(struct solid *out, struct patch_mesh *mesh, const struct lattice 
 	return 0;
 }
 
-void solid_finish(struct solid *solid)
+void patch_bvh_finish(struct patch_bvh *bvh)
 {
-	free(solid->nodes);
-	free(solid->pieces);
-	free(solid->positions);
-	free(solid->order);
-	memset(solid, 0, sizeof(*solid));
+	free(bvh->nodes);
+	free(bvh->pieces);
+	free(bvh->positions);
+	free(bvh->order);
+	memset(bvh, 0, sizeof(*bvh));
 }
 
-size_t solid_bytes(const struct solid *solid)
+size_t patch_bvh_bytes(const struct patch_bvh *bvh)
 {
-	return solid->node_count * sizeof(*solid->nodes) +
-	       solid->piece_count * sizeof(*solid->pieces) +
-	       solid->vertex_count * sizeof(*solid->positions) +
-	       (solid->node_count ? solid->nodes[0].count * sizeof(*solid->order) : 0);
+	return bvh->node_count * sizeof(*bvh->nodes) + bvh->piece_count * sizeof(*bvh->pieces) +
+	       bvh->vertex_count * sizeof(*bvh->positions) +
+	       (bvh->node_count ? bvh->nodes[0].count * sizeof(*bvh->order) : 0);
 }
 
 /* ---- rays */
@@ -320,13 +320,13 @@ bool ray_meets_sphere(const float from_m[3], const float direction[3], float mos
 
 /* A ray in units of the lattice, where vertices are whole numbers. */
 struct cast {
-	const struct solid *solid;
+	const struct patch_bvh *bvh;
 	float from[3], direction[3], inverse[3];
 	float least, distance;
-	struct solid_hit hit;
+	struct patch_bvh_hit hit;
 };
 
-static bool meets_box(const struct cast *cast, const struct solid_node *node)
+static bool meets_box(const struct cast *cast, const struct patch_bvh_node *node)
 {
 	float low = 0, high = cast->distance;
 	for (int i = 0; i < 3; i++) {
@@ -340,7 +340,7 @@ static bool meets_box(const struct cast *cast, const struct solid_node *node)
 
 static void corner_of(const struct cast *cast, uint16_t index, float out[3])
 {
-	const uint16_t *at = cast->solid->positions[index];
+	const uint16_t *at = cast->bvh->positions[index];
 	for (int i = 0; i < 3; i++)
 		out[i] = at[i];
 }
@@ -348,7 +348,7 @@ static void corner_of(const struct cast *cast, uint16_t index, float out[3])
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
 static bool meets_triangle(struct cast *cast, uint32_t triangle)
 {
-	const uint16_t *index = &cast->solid->indices[3 * triangle];
+	const uint16_t *index = &cast->bvh->indices[3 * triangle];
 	float a[3], ab[3], ac[3], p[3], t[3], q[3];
 	corner_of(cast, index[0], a);
 	corner_of(cast, index[1], ab);
@@ -372,20 +372,20 @@ static bool meets_triangle(struct cast *cast, uint32_t triangle)
 	if (at < cast->least || at >= cast->distance)
 		return false;
 	cast->distance = at;
-	cast->hit = (struct solid_hit){ triangle, u, v };
+	cast->hit = (struct patch_bvh_hit){ triangle, u, v };
 	return true;
 }
 
 static bool run_cast(struct cast *cast, bool any)
 {
-	const struct solid *solid = cast->solid;
-	uint32_t stack[DEPTH_MOST], depth = 0;
+	const struct patch_bvh *bvh = cast->bvh;
+	uint32_t stack[DEPTH_MAX], depth = 0;
 	bool hit = false;
-	if (solid->node_count > 0)
+	if (bvh->node_count > 0)
 		stack[depth++] = 0;
 	while (depth > 0 && !(hit && any)) {
 		uint32_t at = stack[--depth];
-		const struct solid_node *node = &solid->nodes[at];
+		const struct patch_bvh_node *node = &bvh->nodes[at];
 		if (!meets_box(cast, node))
 			continue;
 		if (!node->right) {
@@ -399,24 +399,24 @@ static bool run_cast(struct cast *cast, bool any)
 	return hit;
 }
 
-static struct cast begin_cast(const struct solid *solid, const float from_m[3],
+static struct cast begin_cast(const struct patch_bvh *bvh, const float from_m[3],
 			      const float direction[3])
 {
-	struct cast cast = { .solid = solid };
+	struct cast cast = { .bvh = bvh };
 	for (int i = 0; i < 3; i++) {
 		cast.from[i] =
-			(float)((from_m[i] - solid->lattice.origin_m[i]) / solid->lattice.step_m);
+			(float)((from_m[i] - bvh->lattice.origin_m[i]) / bvh->lattice.step_m);
 		cast.direction[i] = direction[i];
 		cast.inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
 	}
 	return cast;
 }
 
-bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
-	       float least_m, float *distance_m, struct solid_hit *hit)
+bool patch_bvh_ray(const struct patch_bvh *bvh, const float from_m[3], const float direction[3],
+		   float least_m, float *distance_m, struct patch_bvh_hit *hit)
 {
-	float step = (float)solid->lattice.step_m;
-	struct cast cast = begin_cast(solid, from_m, direction);
+	float step = (float)bvh->lattice.step_m;
+	struct cast cast = begin_cast(bvh, from_m, direction);
 	cast.least = least_m / step;
 	cast.distance = *distance_m / step;
 	if (!run_cast(&cast, false))
@@ -427,10 +427,10 @@ bool solid_ray(const struct solid *solid, const float from_m[3], const float dir
 	return true;
 }
 
-bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
-		  float most_m)
+bool patch_bvh_blocks(const struct patch_bvh *bvh, const float from_m[3], const float direction[3],
+		      float most_m)
 {
-	struct cast cast = begin_cast(solid, from_m, direction);
-	cast.distance = most_m / (float)solid->lattice.step_m;
+	struct cast cast = begin_cast(bvh, from_m, direction);
+	cast.distance = most_m / (float)bvh->lattice.step_m;
 	return run_cast(&cast, true);
 }

@@ -15,9 +15,9 @@ enum {
 	/* Small enough that one choice of samples suits all of it; a piece that bends is split
 	 * further, down to the second number; one that is wide (in parts of the lattice, as wide as
 	 * the model), down to the third. */
-	PIECE_TRIANGLES_MOST = 256,
+	PIECE_TRIANGLES_MAX = 256,
 	PIECE_TRIANGLES_BENT = 96,
-	PIECE_TRIANGLES_LEAST = 32,
+	PIECE_TRIANGLES_MIN = 32,
 	PIECES_ACROSS = 8,
 	PIECE_PROBES = 8
 };
@@ -38,14 +38,14 @@ struct piece_probe {
 };
 
 /* Small, as there is one for every three triangles that are held. */
-struct solid_node {
+struct patch_bvh_node {
 	uint16_t low[3], high[3]; /* on the lattice */
 	uint16_t first, count;    /* triangles; an inner node's children are node + 1 and right */
 	uint16_t right;           /* 0: a leaf */
 };
 
-struct solid {
-	struct solid_node *nodes; /* owned */
+struct patch_bvh {
+	struct patch_bvh_node *nodes; /* owned */
 	uint32_t node_count;
 	struct piece *pieces; /* owned */
 	uint32_t piece_count;
@@ -56,30 +56,31 @@ struct solid {
 	struct lattice lattice;
 };
 
-/* Reorders the mesh's triangles, of which a patch has at most PATCH_TRIANGLES_MOST. *out is
+/* Reorders the mesh's triangles, of which a patch has at most PATCH_TRIANGLES_MAX. *out is
  * finished by the caller. -ENOMEM. */
-must_check int solid_init(struct solid *out, struct patch_mesh *mesh,
-			  const struct lattice *lattice);
-void solid_finish(struct solid *solid);
+must_check int patch_bvh_init(struct patch_bvh *out, struct patch_mesh *mesh,
+			      const struct lattice *lattice);
+void patch_bvh_finish(struct patch_bvh *bvh);
 /* Of memory it holds. */
-size_t solid_bytes(const struct solid *solid);
+size_t patch_bvh_bytes(const struct patch_bvh *bvh);
 
 /* One of PIECE_PROBES places of a piece, spread over it. */
-struct piece_probe solid_probe(const struct solid *solid, const struct piece *piece, int probe);
+struct piece_probe patch_bvh_probe(const struct patch_bvh *bvh, const struct piece *piece,
+				   int probe);
 
 /* Where a triangle was met: at (1 - u - v) a + u b + v c. */
-struct solid_hit {
+struct patch_bvh_hit {
 	uint32_t triangle;
 	float u, v;
 };
 
 /* Nearest hit between *distance_m and least_m along the (unit) direction, either side of a
  * triangle; then *distance_m becomes it, and *hit (may be NULL) says where. */
-bool solid_ray(const struct solid *solid, const float from_m[3], const float direction[3],
-	       float least_m, float *distance_m, struct solid_hit *hit);
+bool patch_bvh_ray(const struct patch_bvh *bvh, const float from_m[3], const float direction[3],
+		   float least_m, float *distance_m, struct patch_bvh_hit *hit);
 /* Whether anything is met before most_m. */
-bool solid_blocks(const struct solid *solid, const float from_m[3], const float direction[3],
-		  float most_m);
+bool patch_bvh_blocks(const struct patch_bvh *bvh, const float from_m[3], const float direction[3],
+		      float most_m);
 /* Whether a ray meets the sphere before most_m. */
 bool ray_meets_sphere(const float from_m[3], const float direction[3], float most_m,
 		      const float centre_m[3], float radius_m);

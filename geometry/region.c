@@ -39,7 +39,7 @@ float region_distance(const struct region *region, const float point_m[3])
 	case REGION_BOX:
 		return box_distance(region, point_m);
 	case REGION_PRISM:
-		if (region->corner_count < 3 || region->corner_count > REGION_CORNERS_MOST)
+		if (region->corner_count < 3 || region->corner_count > REGION_CORNERS_MAX)
 			return INFINITY;
 		return fmaxf(polygon_distance(region, point_m[0], point_m[1]),
 			     fmaxf(region->floor_m - point_m[2], point_m[2] - region->roof_m));

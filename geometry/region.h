@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 enum region_kind { REGION_NONE, REGION_SPHERE, REGION_BOX, REGION_PRISM };
-enum { REGION_CORNERS_MOST = 16 };
+enum { REGION_CORNERS_MAX = 16 };
 struct region {
 	enum region_kind kind;
 	float centre_m[3];
@@ -16,7 +16,7 @@ struct region {
 	float turn_deg;        /* box: about the vertical */
 	float floor_m, roof_m; /* prism */
 	uint32_t corner_count;
-	float corners_m[REGION_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
+	float corners_m[REGION_CORNERS_MAX][2]; /* prism: x, y, counter-clockwise */
 };
 
 /* The boundary belongs to it. */

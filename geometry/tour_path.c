@@ -9,8 +9,8 @@
 #define SPEED_SHARE     0.05f /* of the diagonal, a second */
 #define RADIAN_SHARE    0.1f  /* of the diagonal: 0.5 radians, 29 degrees, a second */
 #define TRAVEL_LEAST_S  3.0f
-#define PITCH_MOST      1.45f /* the kiosk's eye looks no steeper */
-#define KNOT_LEAST      1e-3f /* of two poses that are one */
+#define PITCH_MAX       1.45f /* the kiosk's eye looks no steeper */
+#define KNOT_MIN        1e-3f /* of two poses that are one */
 #define CLEARANCE_M     0.175f
 #define CLEARANCE_SHARE 0.01f
 #define MS              1000.0f
@@ -29,7 +29,7 @@ static void set_pose(float pose[TOUR_AXES], const struct tour_view *stop, float 
 	vec_sub(to, stop->target_m, stop->eye_m);
 	memcpy(pose, stop->eye_m, sizeof(stop->eye_m));
 	pose[3] = atan2f(to[1], to[0]) * metres_a_radian;
-	pose[4] = fminf(fmaxf(atan2f(to[2], hypotf(to[0], to[1])), -PITCH_MOST), PITCH_MOST) *
+	pose[4] = fminf(fmaxf(atan2f(to[2], hypotf(to[0], to[1])), -PITCH_MAX), PITCH_MAX) *
 		  metres_a_radian;
 }
 
@@ -56,7 +56,7 @@ static void set_knots(struct tour_leg *leg)
 	leg->knots[0] = 0;
 	for (int i = 1; i < 4; i++)
 		leg->knots[i] = leg->knots[i - 1] +
-				fmaxf(sqrtf(apart(leg->poses[i - 1], leg->poses[i])), KNOT_LEAST);
+				fmaxf(sqrtf(apart(leg->poses[i - 1], leg->poses[i])), KNOT_MIN);
 }
 
 /* The pyramid of Barry and Goldman; u from 0 to 1 of the leg. */
@@ -160,7 +160,7 @@ static void set_runs(struct tour_path *path, const struct tour_view *stops, floa
 void tour_path_init(struct tour_path *path, const struct tour_view *stops, uint32_t count,
 		    bool closed, float diagonal_m)
 {
-	assert(count >= 2 && count <= TOUR_STOPS_MOST && diagonal_m > 0);
+	assert(count >= 2 && count <= TOUR_STOPS_MAX && diagonal_m > 0);
 	*path = (struct tour_path){ .stop_count = count,
 				    .leg_count = closed ? count : count - 1,
 				    .metres_a_radian = RADIAN_SHARE * diagonal_m };
@@ -196,7 +196,7 @@ static void set_out(const struct tour_path *path, const float pose[TOUR_AXES],
 		    struct tour_pose *out)
 {
 	const float yaw = pose[3] / path->metres_a_radian;
-	const float pitch = fminf(fmaxf(pose[4] / path->metres_a_radian, -PITCH_MOST), PITCH_MOST);
+	const float pitch = fminf(fmaxf(pose[4] / path->metres_a_radian, -PITCH_MAX), PITCH_MAX);
 
 	memcpy(out->eye_m, pose, sizeof(out->eye_m));
 	out->target_m[0] = pose[0] + cosf(pitch) * cosf(yaw);

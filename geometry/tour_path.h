@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 enum {
-	TOUR_STOPS_MOST = 64,
+	TOUR_STOPS_MAX = 64,
 	TOUR_AXES = 5,
 	TOUR_PIECES = 64 /* of a leg, by which it is measured */
 };
@@ -41,12 +41,12 @@ struct tour_run {
 struct tour_path {
 	uint32_t stop_count, leg_count, run_count;
 	float metres_a_radian;
-	struct tour_leg legs[TOUR_STOPS_MOST];
-	struct tour_run runs[TOUR_STOPS_MOST];
+	struct tour_leg legs[TOUR_STOPS_MAX];
+	struct tour_run runs[TOUR_STOPS_MAX];
 	int64_t duration_ms; /* of all; of a closed one until it begins anew */
 };
 
-/* A tour's count of stops is 2 to TOUR_STOPS_MOST. closed: a last leg leads back to the first stop.
+/* A tour's count of stops is 2 to TOUR_STOPS_MAX. closed: a last leg leads back to the first stop.
  * diagonal_m: of the model's box, to which speed is in proportion. */
 void tour_path_init(struct tour_path *path, const struct tour_view *stops, uint32_t count,
 		    bool closed, float diagonal_m);

@@ -15,7 +15,7 @@ void snapshot_init(struct snapshot *snapshot)
 {
 	memset(snapshot, 0, sizeof(*snapshot));
 	for (int i = 0; i < PROGRAM_COUNT; i++)
-		buffer_init(&snapshot->answers[i].text, FIGURES_BYTES_MOST);
+		buffer_init(&snapshot->answers[i].text, METRICS_BYTES_MAX);
 }
 
 void snapshot_finish(struct snapshot *snapshot)
@@ -62,7 +62,7 @@ static void end(struct answer *answer, struct pollfd *waiting, int rc, const cha
 {
 	close(waiting->fd);
 	waiting->fd = -1;
-	if (rc == 0 && !figures_valid(buffer_bytes(&answer->text), prefix))
+	if (rc == 0 && !metrics_valid(buffer_bytes(&answer->text), prefix))
 		rc = -EBADMSG;
 	answer->rc = rc;
 	if (rc < 0)

@@ -1,4 +1,4 @@
-/* Asks the terminal's programs for their figures (base/figures_socket.h) and the machine for its
+/* Asks the terminal's programs for their figures (base/metrics_socket.h) and the machine for its
  * own. */
 #ifndef GOPURA_HEALTH_GATHER_H
 #define GOPURA_HEALTH_GATHER_H
@@ -8,7 +8,7 @@
 
 enum program { PROGRAM_KIOSK, PROGRAM_FETCH, PROGRAM_COUNT };
 
-/* What a program answered. text is valid by figures_valid, and empty unless rc is 0. */
+/* What a program answered. text is valid by metrics_valid, and empty unless rc is 0. */
 struct answer {
 	/* -ENOENT, -ECONNREFUSED: it does not run   -ETIMEDOUT: it hangs
 	 * -EBADMSG: it answers nonsense             others: as connect */

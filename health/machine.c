@@ -9,7 +9,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-enum { ZONES_MOST = 64, SECTOR_BYTES = 512 };
+enum { ZONES_MAX = 64, SECTOR_BYTES = 512 };
 
 /* The beginning of a file, terminated; "" where it cannot be read. */
 static void read_text(char *out, size_t out_bytes, const char *root, const char *path)
@@ -61,7 +61,7 @@ static double hottest_c(const char *root)
 {
 	double hottest = NAN;
 
-	for (int i = 0; i < ZONES_MOST; i++) {
+	for (int i = 0; i < ZONES_MAX; i++) {
 		char path[64], text[32];
 		int milli;
 

@@ -4,7 +4,7 @@
 
 #include "base/bytes.h"
 
-enum { MACHINE_FAULTS_BYTES_MOST = 4096 };
+enum { MACHINE_FAULTS_BYTES_MAX = 4096 };
 
 struct machine_options {
 	const char *root;   /* before /proc and /sys: "" but in tests */
@@ -20,7 +20,7 @@ struct machine {
 	double memory_bytes, memory_free_bytes;
 	double data_bytes, data_free_bytes; /* of the data partition, as a user sees it */
 	double written_bytes;               /* to all disks since the machine began */
-	char faults[MACHINE_FAULTS_BYTES_MOST];
+	char faults[MACHINE_FAULTS_BYTES_MAX];
 };
 
 void machine_read(struct machine *out, const struct machine_options *options);

@@ -186,11 +186,11 @@ static int listen_on(const char *text)
 }
 
 /* How many of systemd's sockets are in fds; negative errno. */
-static int passed_sockets(int fds[SERVER_LISTENERS_MOST])
+static int passed_sockets(int fds[SERVER_LISTENERS_MAX])
 {
 	const int count = sd_listen_fds(1);
 
-	if (count <= 0 || count > SERVER_LISTENERS_MOST)
+	if (count <= 0 || count > SERVER_LISTENERS_MAX)
 		return count < 0 ? count : -EINVAL;
 	for (int i = 0; i < count; i++) {
 		fds[i] = SD_LISTEN_FDS_START + i;
@@ -257,7 +257,7 @@ static void answer(void *data, int status, const struct request *request, struct
 
 static int run(struct health *health)
 {
-	int fds[SERVER_LISTENERS_MOST];
+	int fds[SERVER_LISTENERS_MAX];
 	struct server_options server = {
 		.listeners = fds,
 		.patience_ms = PATIENCE_MS,

@@ -54,7 +54,7 @@ static double figure(const struct facts *facts, enum program program, const char
 {
 	double value = NAN;
 
-	figures_find(buffer_bytes(&facts->snapshot->answers[program].text), name, &value);
+	metrics_find(buffer_bytes(&facts->snapshot->answers[program].text), name, &value);
 	return value;
 }
 
@@ -103,11 +103,11 @@ static void write_release(const struct facts *facts)
 	char name[200], root[80];
 
 	row(facts, "Release");
-	if (!figures_label(kiosk, "gopura_kiosk_release_info", "root", root, sizeof(root))) {
+	if (!metrics_label(kiosk, "gopura_kiosk_release_info", "root", root, sizeof(root))) {
 		text_put(facts->out, kiosk.size ? "none is shown" : "not known");
 		return;
 	}
-	figures_label(kiosk, "gopura_kiosk_release_info", "name", name, sizeof(name));
+	metrics_label(kiosk, "gopura_kiosk_release_info", "name", name, sizeof(name));
 	text_put_html(facts->out, name);
 	if (sequence > 0)
 		text_format(facts->out, ", number %.0f", sequence);
@@ -144,9 +144,9 @@ static void write_refusal(const struct facts *facts, enum program program, const
 	const struct bytes text = buffer_bytes(&facts->snapshot->answers[program].text);
 	char what[120], why[200];
 
-	if (!figures_label(text, info, "what", what, sizeof(what)))
+	if (!metrics_label(text, info, "what", what, sizeof(what)))
 		return;
-	figures_label(text, info, "why", why, sizeof(why));
+	metrics_label(text, info, "why", why, sizeof(why));
 	row(facts, name);
 	text_put_html(facts->out, what);
 	text_put(facts->out, ", ");
@@ -172,7 +172,7 @@ static void write_panel(const struct facts *facts)
 		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_last_frame_age_seconds"));
 	text_put(facts->out, " ago (at rest none is drawn)");
 	row(facts, "Drawn by");
-	figures_label(kiosk, "gopura_kiosk_gl_info", "renderer", renderer, sizeof(renderer));
+	metrics_label(kiosk, "gopura_kiosk_gl_info", "renderer", renderer, sizeof(renderer));
 	text_put_html(facts->out, renderer);
 	if (!isnan(touch)) {
 		row(facts, "Touchscreens");

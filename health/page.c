@@ -56,7 +56,7 @@ static int write_word(struct buffer *out, const struct verdict *verdict)
 static void gauge(struct buffer *out, const char *name, const char *help, double value)
 {
 	if (!isnan(value))
-		figures_gauge(out, name, help, value);
+		metrics_gauge(out, name, help, value);
 }
 
 static void write_metrics(struct buffer *out, const struct snapshot *snapshot,
@@ -81,9 +81,9 @@ static void write_metrics(struct buffer *out, const struct snapshot *snapshot,
 	gauge(out, "gopura_terminal_data_bytes", "Of the data partition.", m->data_bytes);
 	gauge(out, "gopura_terminal_data_free_bytes", "Of them, free.", m->data_free_bytes);
 	if (!isnan(m->written_bytes))
-		figures_counter(out, "gopura_terminal_written_bytes_total",
+		metrics_counter(out, "gopura_terminal_written_bytes_total",
 				"To all disks since the machine began.", m->written_bytes);
-	figures_info(out, "gopura_terminal_info", "Name, and the firmware's slot.",
+	metrics_info(out, "gopura_terminal_info", "Name, and the firmware's slot.",
 		     (const struct figure_label[]){ { "name", m->name }, { "slot", m->slot } }, 2);
 }
 
@@ -105,7 +105,7 @@ void page_answer(struct buffer *out, const struct request *request, const struct
 	struct buffer body;
 	int status = 200;
 
-	buffer_init(&body, PAGE_BYTES_MOST - REQUEST_BYTES_MOST);
+	buffer_init(&body, PAGE_BYTES_MAX - REQUEST_BYTES_MAX);
 	switch (request->page) {
 	case REQUEST_OVERVIEW:
 		type = "text/html";
@@ -135,7 +135,7 @@ void page_refuse(struct buffer *out, int status)
 {
 	struct buffer body;
 
-	buffer_init(&body, REQUEST_BYTES_MOST);
+	buffer_init(&body, REQUEST_BYTES_MAX);
 	text_format(&body, "%d %s\n", status, reason(status));
 	answer(out, status, "text/plain", &body, false);
 	buffer_finish(&body);

@@ -6,13 +6,13 @@
 #include "health/request.h"
 #include "health/verdict.h"
 
-enum { PAGE_BYTES_MOST = 128 * 1024 };
+enum { PAGE_BYTES_MAX = 128 * 1024 };
 
 /* To all requests but REQUEST_VISITS. out is written from its beginning; its ceiling is
- * PAGE_BYTES_MOST at least. */
+ * PAGE_BYTES_MAX at least. */
 void page_answer(struct buffer *out, const struct request *request, const struct snapshot *snapshot,
 		 const struct verdict *verdict);
-/* The head of the answer to REQUEST_VISITS: the counts of what visitors look at (storage/tally.h)
+/* The head of the answer to REQUEST_VISITS: the counts of what visitors look at (storage/usage.h)
  * follow as they are, in a file of so many bytes. */
 void page_visits_head(struct buffer *out, uint64_t file_bytes);
 /* The answer to what cannot be served: status as by request_parse, or 503. */

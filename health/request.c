@@ -86,9 +86,9 @@ int request_parse(struct request *out, struct bytes received)
 	int status;
 
 	if (!take_until(&rest, "\r\n\r\n", &head))
-		return received.size >= REQUEST_BYTES_MOST ? 431 : 0;
+		return received.size >= REQUEST_BYTES_MAX ? 431 : 0;
 	head.size += 2; /* the end of the last line */
-	if (head.size > REQUEST_BYTES_MOST || !take_until(&head, "\r\n", &line))
+	if (head.size > REQUEST_BYTES_MAX || !take_until(&head, "\r\n", &line))
 		return 431;
 	status = parse_line(out, line);
 	while (status != 400 && take_until(&head, "\r\n", &line))

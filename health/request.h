@@ -4,7 +4,7 @@
 
 #include "base/bytes.h"
 
-enum { REQUEST_BYTES_MOST = 4096 /* of a head */ };
+enum { REQUEST_BYTES_MAX = 4096 /* of a head */ };
 
 enum request_page {
 	REQUEST_OVERVIEW, /* / */
@@ -20,7 +20,7 @@ struct request {
 
 /* received is what came so far. 0: the head is not whole yet. Else an HTTP status: 200 with *out,
  * or what is wrong: 400 not HTTP, 404 no such page, 405 neither GET nor HEAD, 431 longer than
- * REQUEST_BYTES_MOST, 505 neither HTTP/1.0 nor 1.1. */
+ * REQUEST_BYTES_MAX, 505 neither HTTP/1.0 nor 1.1. */
 must_check int request_parse(struct request *out, struct bytes received);
 
 #endif

@@ -23,7 +23,7 @@ struct client {
 	enum stage stage;
 	int fd;
 	int64_t until_ms;
-	uint8_t head[REQUEST_BYTES_MOST];
+	uint8_t head[REQUEST_BYTES_MAX];
 	size_t head_bytes;
 	struct reply reply;
 	size_t sent_bytes; /* of reply.text */
@@ -32,7 +32,7 @@ struct client {
 
 struct server {
 	const struct server_options *options;
-	struct client clients[SERVER_CLIENTS_MOST];
+	struct client clients[SERVER_CLIENTS_MAX];
 	size_t busy, files; /* connections; of them, that get a file */
 	int64_t idle_since_ms;
 	int64_t accept_at_ms; /* not before */
@@ -75,7 +75,7 @@ static void accept_from(struct server *server, int listener)
 {
 	int fd;
 
-	while (server->busy < SERVER_CLIENTS_MOST) {
+	while (server->busy < SERVER_CLIENTS_MAX) {
 		fd = accept4(listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 		if (fd >= 0) {
 			meet(server, fd);
@@ -253,7 +253,7 @@ static int wait_ms(const struct server *server)
 		due_ms = server->idle_since_ms + server->options->idle_ms;
 	if (server->accept_at_ms > now_ms && server->accept_at_ms < due_ms)
 		due_ms = server->accept_at_ms;
-	for (size_t i = 0; i < SERVER_CLIENTS_MOST; i++)
+	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++)
 		if (server->clients[i].stage != STAGE_FREE && server->clients[i].until_ms < due_ms)
 			due_ms = server->clients[i].until_ms;
 	if (due_ms == INT64_MAX)
@@ -264,14 +264,14 @@ static int wait_ms(const struct server *server)
 static int turn(struct server *server)
 {
 	const size_t count = server->options->listener_count;
-	struct pollfd ready[SERVER_LISTENERS_MOST + SERVER_CLIENTS_MOST];
+	struct pollfd ready[SERVER_LISTENERS_MAX + SERVER_CLIENTS_MAX];
 	const bool full =
-		server->busy == SERVER_CLIENTS_MOST || clock_now_ms() < server->accept_at_ms;
+		server->busy == SERVER_CLIENTS_MAX || clock_now_ms() < server->accept_at_ms;
 
 	for (size_t i = 0; i < count; i++)
 		ready[i] = (struct pollfd){ .fd = full ? -1 : server->options->listeners[i],
 					    .events = POLLIN };
-	for (size_t i = 0; i < SERVER_CLIENTS_MOST; i++) {
+	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++) {
 		const struct client *client = &server->clients[i];
 
 		ready[count + i] = (struct pollfd){
@@ -279,9 +279,9 @@ static int turn(struct server *server)
 			.events = client->stage == STAGE_ANSWERS ? POLLOUT : POLLIN,
 		};
 	}
-	if (poll(ready, count + SERVER_CLIENTS_MOST, wait_ms(server)) < 0)
+	if (poll(ready, count + SERVER_CLIENTS_MAX, wait_ms(server)) < 0)
 		return errno == EINTR ? 0 : -errno;
-	for (size_t i = 0; i < SERVER_CLIENTS_MOST; i++) {
+	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++) {
 		struct client *client = &server->clients[i];
 
 		if (client->stage != STAGE_FREE && ready[count + i].revents)
@@ -300,7 +300,7 @@ int server_run(const struct server_options *options)
 	struct server server = { .options = options, .idle_since_ms = clock_now_ms() };
 	int rc = 0;
 
-	if (options->listener_count == 0 || options->listener_count > SERVER_LISTENERS_MOST ||
+	if (options->listener_count == 0 || options->listener_count > SERVER_LISTENERS_MAX ||
 	    options->file_bytes_per_s == 0)
 		return -EINVAL;
 	for (size_t i = 0; i < options->listener_count; i++)
@@ -310,7 +310,7 @@ int server_run(const struct server_options *options)
 		rc = turn(&server);
 	while (rc == 0 && (server.busy > 0 || options->idle_ms == 0 ||
 			   clock_now_ms() < server.idle_since_ms + options->idle_ms));
-	for (size_t i = 0; i < SERVER_CLIENTS_MOST; i++)
+	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++)
 		if (server.clients[i].stage != STAGE_FREE)
 			part(&server, &server.clients[i]);
 	return rc;

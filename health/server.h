@@ -1,6 +1,6 @@
 /* HTTP/1.1 for a handful of clients on one thread: a request, its answer, the end of the
- * connection. What clients can take of us is bounded: SERVER_CLIENTS_MOST connections, of each
- * REQUEST_BYTES_MOST bytes of request, SERVER_TEXT_BYTES_MAX bytes of answer in memory and
+ * connection. What clients can take of us is bounded: SERVER_CLIENTS_MAX connections, of each
+ * REQUEST_BYTES_MAX bytes of request, SERVER_TEXT_BYTES_MAX bytes of answer in memory and
  * patience_ms of time. A file goes from the disk to the socket and takes no memory of ours; its
  * reader has more time, by the file's size, and SERVER_FILES_MAX of them are served at once. */
 #ifndef GOPURA_HEALTH_SERVER_H
@@ -9,8 +9,8 @@
 #include "health/request.h"
 
 enum {
-	SERVER_CLIENTS_MOST = 16,
-	SERVER_LISTENERS_MOST = 4,
+	SERVER_CLIENTS_MAX = 16,
+	SERVER_LISTENERS_MAX = 4,
 	SERVER_FILES_MAX = 4, /* slow readers of files leave room for other questions */
 	SERVER_TEXT_BYTES_MAX = 132 * 1024,
 	SERVER_FILE_MS_MAX = 600000, /* for a file of any size */
@@ -37,7 +37,7 @@ struct server_options {
 	void *data;
 };
 
-/* 0 when it was idle for idle_ms. -EINVAL: more listeners than SERVER_LISTENERS_MOST, or none;
+/* 0 when it was idle for idle_ms. -EINVAL: more listeners than SERVER_LISTENERS_MAX, or none;
  * file_bytes_per_s is 0. */
 must_check int server_run(const struct server_options *options);
 

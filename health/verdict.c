@@ -14,7 +14,7 @@ enum {
 	CLOCK_S = 900,      /* of the machine, until its clock must be set */
 	RESTARTED_S = 3600, /* a restart is told that long */
 	REFUSED_S = 86400,
-	FRAMES_LEAST = 500, /* before late ones are judged */
+	FRAMES_MIN = 500, /* before late ones are judged */
 	HOT_C = 80,
 	BURNING_C = 95,
 };
@@ -32,7 +32,7 @@ static void add(struct verdict *verdict, enum level level, const char *what, con
 	size_t at = 0;
 	va_list args;
 
-	if (verdict->count == FINDINGS_MOST)
+	if (verdict->count == FINDINGS_MAX)
 		return;
 	while (at < verdict->count && finding[at].level >= level)
 		at++;
@@ -68,7 +68,7 @@ static double figure(const struct snapshot *snapshot, enum program program, cons
 {
 	double value = NAN;
 
-	figures_find(buffer_bytes(&snapshot->answers[program].text), name, &value);
+	metrics_find(buffer_bytes(&snapshot->answers[program].text), name, &value);
 	return value;
 }
 
@@ -146,14 +146,14 @@ static void judge_picture(struct verdict *verdict, const struct snapshot *snapsh
 		    "No touchscreen answers. Check the cable between panel and computer (USB, mostly), "
 		    "then the panel's supply.",
 		    "%s", "");
-	figures_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text), "gopura_kiosk_gl_info",
+	metrics_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text), "gopura_kiosk_gl_info",
 		      "renderer", renderer, sizeof(renderer));
 	if (strstr(renderer, "llvmpipe") || strstr(renderer, "softpipe"))
 		add(verdict, LEVEL_REMARK, "No graphics driver: the processor draws",
 		    "Pictures come slowly and the machine runs hot. This board's GPU needs a driver "
 		    "that the image does not have, or its kernel module did not load.",
 		    "%s", renderer);
-	else if (frames >= FRAMES_LEAST && late > late_most * frames)
+	else if (frames >= FRAMES_MIN && late > late_most * frames)
 		add(verdict, LEVEL_REMARK, "Pictures come late",
 		    "The board is too slow for what is asked of it: a smaller mode in gopura.conf "
 		    "or fewer triangles in the board's profile (docs/board.md).",
@@ -171,8 +171,8 @@ static void judge_refusal(struct verdict *verdict, const struct snapshot *snapsh
 
 	if (!(ago_s < REFUSED_S))
 		return;
-	figures_label(kiosk, "gopura_kiosk_refusal_info", "what", what, sizeof(what));
-	figures_label(kiosk, "gopura_kiosk_refusal_info", "why", why, sizeof(why));
+	metrics_label(kiosk, "gopura_kiosk_refusal_info", "what", what, sizeof(what));
+	metrics_label(kiosk, "gopura_kiosk_refusal_info", "why", why, sizeof(why));
 	verdict_duration(ago, sizeof(ago), ago_s);
 	add(verdict, LEVEL_REMARK, "A new release was refused",
 	    "The one before is shown. Publish anew, or sign what has expired (docs/release.md).",

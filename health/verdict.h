@@ -12,7 +12,7 @@ enum level {
 	LEVEL_COUNT
 };
 
-enum { FINDINGS_MOST = 24 };
+enum { FINDINGS_MAX = 24 };
 
 struct finding {
 	enum level level;
@@ -23,7 +23,7 @@ struct finding {
 
 struct verdict {
 	enum level level; /* the worst */
-	struct finding findings[FINDINGS_MOST];
+	struct finding findings[FINDINGS_MAX];
 	size_t count;
 };
 

@@ -47,7 +47,7 @@ static bool is_palm(const struct contacts *contacts, const struct touch_raw *raw
 /* -1: more are down than anybody has fingers. */
 static int take_contact(struct contacts *contacts)
 {
-	for (int i = 0; i < TOUCH_CONTACTS_MOST; i++) {
+	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++) {
 		if (!contacts->used[i]) {
 			contacts->used[i] = true;
 			return i;
@@ -106,19 +106,19 @@ static void move(struct contacts *contacts, const float matrix[6], struct contac
 	report(contacts, TOUCH_MOVE, slot, time_us);
 }
 
-bool contacts_any_down(const struct contact_slot slots[TOUCH_SLOTS_MOST])
+bool contacts_any_down(const struct contact_slot slots[TOUCH_SLOTS_MAX])
 {
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++)
+	for (int i = 0; i < TOUCH_SLOTS_MAX; i++)
 		if (slots[i].down)
 			return true;
 	return false;
 }
 
-void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MOST],
-		   const struct touch_raw raws[TOUCH_SLOTS_MOST], const float matrix[6],
+void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
+		   const struct touch_raw raws[TOUCH_SLOTS_MAX], const float matrix[6],
 		   int64_t time_us)
 {
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++) {
+	for (int i = 0; i < TOUCH_SLOTS_MAX; i++) {
 		struct contact_slot *slot = &slots[i];
 		const struct touch_raw *raw = &raws[i];
 
@@ -133,10 +133,10 @@ void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SL
 	}
 }
 
-void contacts_cancel(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MOST],
+void contacts_cancel(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
 		     int64_t time_us)
 {
-	for (int i = 0; i < TOUCH_SLOTS_MOST; i++)
+	for (int i = 0; i < TOUCH_SLOTS_MAX; i++)
 		if (slots[i].down)
 			lift(contacts, &slots[i], TOUCH_CANCEL, time_us);
 }

@@ -12,7 +12,7 @@ struct contacts {
 	float edge_px, palm_px;
 	void (*event)(void *data, const struct touch_event *event); /* NULL is fine */
 	void *data;
-	bool used[TOUCH_CONTACTS_MOST];
+	bool used[TOUCH_CONTACTS_MAX];
 };
 
 /* What a slot of a device is on the panel. */
@@ -25,12 +25,12 @@ struct contact_slot {
 
 /* A frame of a device against what was known of its slots. A finger whose lift was lost shows as a
  * changed id. Calls event. */
-void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MOST],
-		   const struct touch_raw raws[TOUCH_SLOTS_MOST], const float matrix[6],
+void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
+		   const struct touch_raw raws[TOUCH_SLOTS_MAX], const float matrix[6],
 		   int64_t time_us);
-bool contacts_any_down(const struct contact_slot slots[TOUCH_SLOTS_MOST]);
+bool contacts_any_down(const struct contact_slot slots[TOUCH_SLOTS_MAX]);
 /* The device went away: all its fingers are cancelled. */
-void contacts_cancel(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MOST],
+void contacts_cancel(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
 		     int64_t time_us);
 
 #endif

@@ -7,7 +7,7 @@ enum {
 	TAP_US = 500 * 1000,
 	AGAIN_US = 400 * 1000,
 	VELOCITY_WINDOW_US = 100 * 1000, /* a fling is measured over the last of it */
-	REST_US = 60 * 1000,             /* a finger that rested this long flings nothing */
+	ACCUMULATION_US = 60 * 1000,     /* a finger that rested this long flings nothing */
 };
 
 #define PINCH_LEAST_PX 8.0f /* nearer fingers count as this far apart */
@@ -110,7 +110,7 @@ static void end(struct gesture_recogniser *r, enum gesture_kind kind, int64_t ti
 		if (time_us - r->history[i].time_us <= VELOCITY_WINDOW_US)
 			first = &r->history[i];
 	seconds = (float)(last->time_us - first->time_us) / 1e6f;
-	if (seconds > 0 && time_us - last->time_us <= REST_US) {
+	if (seconds > 0 && time_us - last->time_us <= ACCUMULATION_US) {
 		gesture.vx_px_per_s = (last->x_px - first->x_px) / seconds;
 		gesture.vy_px_per_s = (last->y_px - first->y_px) / seconds;
 		gesture.scale_per_s = (last->log_distance - first->log_distance) / seconds;
@@ -121,20 +121,20 @@ static void end(struct gesture_recogniser *r, enum gesture_kind kind, int64_t ti
 
 /* ---- fingers ---- */
 
-/* Any finger but that one that is down, or TOUCH_CONTACTS_MOST. */
+/* Any finger but that one that is down, or TOUCH_CONTACTS_MAX. */
 static uint32_t other_finger(const struct gesture_recogniser *r, uint32_t but)
 {
-	for (uint32_t i = 0; i < TOUCH_CONTACTS_MOST; i++)
+	for (uint32_t i = 0; i < TOUCH_CONTACTS_MAX; i++)
 		if (i != but && r->fingers[i].down)
 			return i;
-	return TOUCH_CONTACTS_MOST;
+	return TOUCH_CONTACTS_MAX;
 }
 
 /* A finger that stays after a pinch may go on to drag, but is no tap. */
 static void hand_over(struct gesture_recogniser *r, uint32_t finger)
 {
 	r->state = GESTURE_IDLE;
-	if (finger == TOUCH_CONTACTS_MOST)
+	if (finger == TOUCH_CONTACTS_MAX)
 		return;
 	r->state = GESTURE_SPENT;
 	r->first = finger;
@@ -238,7 +238,7 @@ static void on_up(struct gesture_recogniser *r, const struct touch_event *event)
 
 void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_event *event)
 {
-	if (event->contact >= TOUCH_CONTACTS_MOST)
+	if (event->contact >= TOUCH_CONTACTS_MAX)
 		return;
 	switch (event->phase) {
 	case TOUCH_DOWN:

@@ -62,7 +62,7 @@ struct gesture_sample {
 
 struct gesture_recogniser {
 	struct gesture_options options;
-	struct gesture_finger fingers[TOUCH_CONTACTS_MOST];
+	struct gesture_finger fingers[TOUCH_CONTACTS_MAX];
 	enum {
 		GESTURE_IDLE,
 		GESTURE_PRESSED,
@@ -80,7 +80,7 @@ struct gesture_recogniser {
 };
 
 void gesture_init(struct gesture_recogniser *recogniser, const struct gesture_options *options);
-/* Emits what the event leads to before it returns. Contacts past TOUCH_CONTACTS_MOST are ignored.
+/* Emits what the event leads to before it returns. Contacts past TOUCH_CONTACTS_MAX are ignored.
  */
 void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_event *event);
 

@@ -20,16 +20,16 @@
 #include "input/touch_replay.h"
 
 enum {
-	DEVICES_MOST = 8,
-	READY_MOST = 16,
-	REPLAY_BYTES_MOST = 16 << 20,
+	DEVICES_MAX = 8,
+	READY_MAX = 16,
+	REPLAY_BYTES_MAX = 16 << 20,
 };
 
 struct source {
 	struct touch_device *device; /* NULL: free */
 	float matrix[6];             /* calibration */
 	bool matrix_is_known;        /* udev need not be asked again */
-	struct contact_slot slots[TOUCH_SLOTS_MOST];
+	struct contact_slot slots[TOUCH_SLOTS_MAX];
 };
 
 struct touch {
@@ -38,7 +38,7 @@ struct touch {
 	bool is_calibrated; /* by the options: udev is not asked */
 	int epoll_fd, inotify_fd, timer_fd;
 	int parent_watch; /* of the folder's own folder while it is missing, else -1 */
-	struct source sources[DEVICES_MOST];
+	struct source sources[DEVICES_MAX];
 	struct contacts contacts;
 	struct touch_replay replay;
 	size_t replayed; /* events */
@@ -86,7 +86,7 @@ static void remove_source(struct touch *touch, struct source *source)
 
 static bool is_open(const struct touch *touch, const char *path)
 {
-	for (int i = 0; i < DEVICES_MOST; i++)
+	for (int i = 0; i < DEVICES_MAX; i++)
 		if (touch->sources[i].device &&
 		    strcmp(touch_device_path(touch->sources[i].device), path) == 0)
 			return true;
@@ -104,7 +104,7 @@ static void try_device(struct touch *touch, const char *name)
 	    snprintf(path, sizeof(path), "%s/%s", touch->folder, name) >= (int)sizeof(path) ||
 	    is_open(touch, path))
 		return;
-	for (int i = 0; i < DEVICES_MOST && !source; i++)
+	for (int i = 0; i < DEVICES_MAX && !source; i++)
 		if (!touch->sources[i].device)
 			source = &touch->sources[i];
 	if (!source || touch_device_open(&source->device, path) < 0)
@@ -155,7 +155,7 @@ static void watch_folder(struct touch *touch)
 
 static void read_source(struct touch *touch, struct source *source)
 {
-	struct touch_raw slots[TOUCH_SLOTS_MOST];
+	struct touch_raw slots[TOUCH_SLOTS_MAX];
 	int64_t time_us = clock_now_us(); /* of a frame that only a resync made */
 	int rc;
 
@@ -235,7 +235,7 @@ static int open_replay(struct touch *touch)
 	unsigned line = 0;
 	int rc;
 
-	buffer_init(&text, REPLAY_BYTES_MOST);
+	buffer_init(&text, REPLAY_BYTES_MAX);
 	rc = buffer_read_file(&text, touch->replay_path);
 	if (rc < 0)
 		log_error("input", "%s: %s", touch->replay_path, strerror(-rc));
@@ -321,7 +321,7 @@ void touch_destroy(struct touch *touch)
 {
 	if (!touch)
 		return;
-	for (int i = 0; i < DEVICES_MOST; i++)
+	for (int i = 0; i < DEVICES_MAX; i++)
 		touch_device_close(touch->sources[i].device);
 	if (touch->inotify_fd >= 0)
 		close(touch->inotify_fd);
@@ -342,8 +342,8 @@ int touch_fd(const struct touch *touch)
 
 int touch_dispatch(struct touch *touch)
 {
-	struct epoll_event ready[READY_MOST];
-	int count = epoll_wait(touch->epoll_fd, ready, READY_MOST, 0);
+	struct epoll_event ready[READY_MAX];
+	int count = epoll_wait(touch->epoll_fd, ready, READY_MAX, 0);
 
 	if (count < 0)
 		return errno == EINTR ? 0 : -errno;
@@ -362,14 +362,14 @@ uint32_t touch_device_count(const struct touch *touch)
 {
 	uint32_t count = 0;
 
-	for (int i = 0; touch && i < DEVICES_MOST; i++)
+	for (int i = 0; touch && i < DEVICES_MAX; i++)
 		count += touch->sources[i].device != NULL;
 	return count;
 }
 
 const char *touch_device_text(const struct touch *touch, uint32_t index)
 {
-	for (int i = 0; i < DEVICES_MOST; i++)
+	for (int i = 0; i < DEVICES_MAX; i++)
 		if (touch->sources[i].device && index-- == 0)
 			return touch_device_describe(touch->sources[i].device);
 	return "";

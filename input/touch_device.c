@@ -65,8 +65,8 @@ static int recognise(struct touch_device *device)
 	if (device->slot_count > 0 && read_axis(device, ABS_MT_POSITION_X, &device->x) &&
 	    read_axis(device, ABS_MT_POSITION_Y, &device->y)) {
 		device->multitouch = true;
-		if (device->slot_count > TOUCH_SLOTS_MOST)
-			device->slot_count = TOUCH_SLOTS_MOST;
+		if (device->slot_count > TOUCH_SLOTS_MAX)
+			device->slot_count = TOUCH_SLOTS_MAX;
 		return 0;
 	}
 	if (!read_axis(device, ABS_X, &device->x) || !read_axis(device, ABS_Y, &device->y))
@@ -208,14 +208,14 @@ static void take_single(struct touch_device *device, struct touch_raw *slots)
 
 static void take_frame(struct touch_device *device, struct touch_raw *slots)
 {
-	memset(slots, 0, TOUCH_SLOTS_MOST * sizeof(*slots));
+	memset(slots, 0, TOUCH_SLOTS_MAX * sizeof(*slots));
 	if (device->multitouch)
 		take_slots(device, slots);
 	else
 		take_single(device, slots);
 }
 
-int touch_device_read(struct touch_device *device, struct touch_raw slots[TOUCH_SLOTS_MOST],
+int touch_device_read(struct touch_device *device, struct touch_raw slots[TOUCH_SLOTS_MAX],
 		      int64_t *time_us)
 {
 	struct input_event event;

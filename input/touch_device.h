@@ -7,7 +7,7 @@
 
 #include "base/compiler.h"
 
-enum { TOUCH_SLOTS_MOST = 10 };
+enum { TOUCH_SLOTS_MAX = 10 };
 
 struct touch_device;
 
@@ -31,6 +31,6 @@ const char *touch_device_describe(const struct touch_device *device);
 
 /* One frame: 1 and the slots filled in; 0: nothing (more) to read; -ENODEV: it is gone. */
 must_check int touch_device_read(struct touch_device *device,
-				 struct touch_raw slots[TOUCH_SLOTS_MOST], int64_t *time_us);
+				 struct touch_raw slots[TOUCH_SLOTS_MAX], int64_t *time_us);
 
 #endif

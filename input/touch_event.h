@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { TOUCH_CONTACTS_MOST = 10 };
+enum { TOUCH_CONTACTS_MAX = 10 };
 
 enum touch_phase {
 	TOUCH_DOWN,
@@ -15,7 +15,7 @@ enum touch_phase {
 
 struct touch_event {
 	enum touch_phase phase;
-	uint32_t contact; /* 0 .. TOUCH_CONTACTS_MOST-1; unique among the fingers that are down */
+	uint32_t contact; /* 0 .. TOUCH_CONTACTS_MAX-1; unique among the fingers that are down */
 	float x_px, y_px; /* of the picture as the visitor sees it: x right, y down */
 	int64_t time_us;  /* CLOCK_MONOTONIC of the kernel's event; 0-based in a replay */
 };

@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_BYTES_MOST = 200, EVENTS_MOST = 1000000 };
+enum { LINE_BYTES_MAX = 200, EVENTS_MAX = 1000000 };
 
 struct parser {
 	struct touch_replay *replay;
 	float width_px, height_px, scale_x, scale_y;
-	bool down[TOUCH_CONTACTS_MOST];
-	struct touch_event last[TOUCH_CONTACTS_MOST];
+	bool down[TOUCH_CONTACTS_MAX];
+	struct touch_event last[TOUCH_CONTACTS_MAX];
 };
 
 static int add_event(struct parser *p, const struct touch_event *event)
@@ -20,7 +20,7 @@ static int add_event(struct parser *p, const struct touch_event *event)
 	struct touch_replay *replay = p->replay;
 	struct touch_event *grown = replay->events;
 
-	if (replay->count == EVENTS_MOST)
+	if (replay->count == EVENTS_MAX)
 		return -EINVAL;
 	if ((replay->count & (replay->count - 1)) == 0)
 		grown = realloc(grown, (replay->count ? 2 * replay->count : 1) * sizeof(*grown));
@@ -56,7 +56,7 @@ static int parse_event(struct parser *p, const char *line)
 	fields = sscanf(line, "%lf %15s %d %f %f %1s", &t_ms, word, &slot, &x, &y, rest);
 	if (fields < 3 || fields == 4 || fields > 5 || find_phase(word, &event.phase) < 0)
 		return -EINVAL;
-	if (slot < 0 || slot >= TOUCH_CONTACTS_MOST || !(t_ms >= 0 && t_ms < 1e9))
+	if (slot < 0 || slot >= TOUCH_CONTACTS_MAX || !(t_ms >= 0 && t_ms < 1e9))
 		return -EINVAL;
 	if (p->down[slot] == (event.phase == TOUCH_DOWN))
 		return -EINVAL; /* down twice, or moved and lifted without having come */
@@ -112,7 +112,7 @@ int touch_replay_parse(struct touch_replay *out, struct bytes text, int width_px
 	while (at < text.size && rc == 0) {
 		const uint8_t *end = memchr(text.data + at, '\n', text.size - at);
 		size_t size = end ? (size_t)(end - text.data) - at : text.size - at;
-		char copy[LINE_BYTES_MOST];
+		char copy[LINE_BYTES_MAX];
 
 		number++;
 		if (size >= sizeof(copy)) {

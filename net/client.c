@@ -25,7 +25,7 @@
 extern char **environ;
 
 enum {
-	MESSAGES_MOST = 64, /* in one dispatch: the frame path has other guests */
+	MESSAGES_MAX = 64, /* in one dispatch: the frame path has other guests */
 	DISPATCH_US = 3000,
 	PAUSE_MS = 100, /* before the first restart, then doubling */
 	PAUSE_MOST_MS = 10000,
@@ -67,7 +67,7 @@ struct net_client {
 		received_now; /* bytes, of the fetchers that died and of this one */
 	struct by_hash wants; /* struct wanted, owned */
 	struct by_hash keeps; /* struct hash_entry, owned */
-	struct in_use releases[MESSAGE_RELEASES_MOST];
+	struct in_use releases[MESSAGE_RELEASES_MAX];
 	size_t release_count;
 };
 
@@ -446,7 +446,7 @@ static void hear_fetcher(struct net_client *client)
 	int64_t until_us = clock_now_us() + DISPATCH_US;
 	int rc = packets_flush(&client->packets);
 
-	for (int i = 0; rc == 0 && i < MESSAGES_MOST && clock_now_us() < until_us; i++) {
+	for (int i = 0; rc == 0 && i < MESSAGES_MAX && clock_now_us() < until_us; i++) {
 		struct message message;
 		int passed;
 
@@ -610,9 +610,9 @@ static void use(struct net_client *client, struct hash root, uint32_t root_bytes
 	struct message message = { .kind = MESSAGE_RELEASE, .release = { root, root_bytes, also } };
 
 	/* The one in use stays first; of the others the oldest goes. */
-	if (client->release_count == MESSAGE_RELEASES_MOST) {
+	if (client->release_count == MESSAGE_RELEASES_MAX) {
 		memmove(&client->releases[1], &client->releases[2],
-			(MESSAGE_RELEASES_MOST - 2) * sizeof(client->releases[0]));
+			(MESSAGE_RELEASES_MAX - 2) * sizeof(client->releases[0]));
 		client->release_count--;
 	}
 	client->releases[client->release_count++] = (struct in_use){ root, root_bytes };

@@ -51,7 +51,7 @@ must_check int net_client_dispatch(struct net_client *client);
 void net_client_use_release(struct net_client *client, struct hash root, uint32_t root_bytes);
 /* Also this release, beside the one in use, so that the next one comes while this one is shown:
  * wants and keeps of both are served. net_client_use_release ends it. At most
- * MESSAGE_RELEASES_MOST in use; the oldest added goes. */
+ * MESSAGE_RELEASES_MAX in use; the oldest added goes. */
 void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes);
 /* Said again with another priority, only that changes. Forgotten once the object event came. */
 void net_client_want(struct net_client *client, const struct message_want *want);

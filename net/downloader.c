@@ -9,72 +9,72 @@
 #include "net/downloader_private.h"
 
 enum {
-	WANTS_MOST = 1 << 18,
-	RANGES_MOST = 8,
-	SMALL_RANGES_MOST = 32, /* as long as all together stay small: the line's delay */
+	WANTS_MAX = 1 << 18,
+	RANGES_MAX = 8,
+	SMALL_RANGES_MAX = 32, /* as long as all together stay small: the line's delay */
 	SMALL_BYTES = 256 << 10,
 	RANGES_FOR_PAGES = 2, /* beside those: nothing can be judged without pages */
 	GAP_BYTES = 512, /* what a request of its own would cost on the line, and a little more */
-	RANGE_BYTES_LEAST = 64 << 10,
-	RANGE_BYTES_MOST = 1 << 20,
+	RANGE_BYTES_MIN = 64 << 10,
+	RANGE_BYTES_MAX = 1 << 20,
 	RANGE_MS = 250, /* of the line: what comes later in it should not wait longer */
 	BYTES_PER_S_FIRST = 1 << 20,
-	CACHE_READS_MOST = 64, /* in one go: the loop has other guests */
+	CACHE_READS_MAX = 64, /* in one go: the loop has other guests */
 };
 
 /* ---- create, destroy */
 
-int bring_create(struct bring **out, const struct bring_options *options)
+int downloader_create(struct downloader **out, const struct downloader_options *options)
 {
-	struct bring *bring = calloc(1, sizeof(*bring));
+	struct downloader *downloader = calloc(1, sizeof(*downloader));
 
-	*out = bring;
-	if (!bring)
+	*out = downloader;
+	if (!downloader)
 		return -ENOMEM;
-	bring->options = *options;
-	bring->bytes_per_s = BYTES_PER_S_FIRST;
-	bring->plan_due_ms = INT64_MAX;
-	buffer_init(&bring->scratch, OBJECT_BYTES_MOST);
+	downloader->options = *options;
+	downloader->bytes_per_s = BYTES_PER_S_FIRST;
+	downloader->plan_due_ms = INT64_MAX;
+	buffer_init(&downloader->scratch, OBJECT_BYTES_MAX);
 	return 0;
 }
 
-void bring_destroy(struct bring *bring)
+void downloader_destroy(struct downloader *downloader)
 {
-	if (!bring)
+	if (!downloader)
 		return;
-	bring_forget_all(bring);
-	by_hash_finish(&bring->wants);
-	buffer_finish(&bring->scratch);
-	free(bring->fresh);
-	free(bring->items);
-	free(bring);
+	downloader_forget_all(downloader);
+	by_hash_finish(&downloader->wants);
+	buffer_finish(&downloader->scratch);
+	free(downloader->fresh);
+	free(downloader->items);
+	free(downloader);
 }
 
 /* ---- wants come and go */
 
-static int add_fresh(struct bring *bring, struct want *want)
+static int add_fresh(struct downloader *downloader, struct want *want)
 {
-	if (bring->fresh_count == bring->fresh_capacity) {
-		size_t capacity = bring->fresh_capacity ? bring->fresh_capacity * 2 : 256;
-		struct want **larger = realloc(bring->fresh, capacity * sizeof(*larger));
+	if (downloader->fresh_count == downloader->fresh_capacity) {
+		size_t capacity = downloader->fresh_capacity ? downloader->fresh_capacity * 2 : 256;
+		struct want **larger = realloc(downloader->fresh, capacity * sizeof(*larger));
 
 		if (!larger)
 			return -ENOMEM;
-		bring->fresh = larger;
-		bring->fresh_capacity = capacity;
+		downloader->fresh = larger;
+		downloader->fresh_capacity = capacity;
 	}
 	want->state = WANT_FRESH;
-	bring->fresh[bring->fresh_count++] = want;
-	bring->fresh_changed = true;
+	downloader->fresh[downloader->fresh_count++] = want;
+	downloader->fresh_changed = true;
 	return 0;
 }
 
-static void report(struct bring *bring, struct want *want, enum missing_reason reason)
+static void report(struct downloader *downloader, struct want *want, enum missing_reason reason)
 {
 	if (want->reported == (int)reason)
 		return;
 	want->reported = (int)reason;
-	bring->options.events.missing(bring->options.data, want->entry.key, reason);
+	downloader->options.events.missing(downloader->options.data, want->entry.key, reason);
 }
 
 /* Of a release that is not shown yet: the rate limit is for that, no visitor waits for it. */
@@ -83,138 +83,138 @@ static bool is_for_later(uint32_t priority)
 	return priority < MESSAGE_PRIORITY_PICTURE;
 }
 
-void bring_want(struct bring *bring, const struct message_want *asked)
+void downloader_want(struct downloader *downloader, const struct message_want *asked)
 {
-	struct want *want = by_hash_find(&bring->wants, asked->hash);
+	struct want *want = by_hash_find(&downloader->wants, asked->hash);
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
-			bring->plan_changed = true; /* it waits for the rate no more */
+			downloader->plan_changed = true; /* it waits for the rate no more */
 		want->asked.priority = asked->priority;
-		bring->fresh_changed = true;
+		downloader->fresh_changed = true;
 		return;
 	}
 	want = calloc(1, sizeof(*want));
-	if (want && bring->wants.count < WANTS_MOST) {
+	if (want && downloader->wants.count < WANTS_MAX) {
 		want->entry.key = asked->hash;
 		want->asked = *asked;
-		want->order = bring->orders++;
+		want->order = downloader->orders++;
 		want->reported = -1;
-		if (add_fresh(bring, want) == 0) {
-			if (by_hash_add(&bring->wants, &want->entry) == 0)
+		if (add_fresh(downloader, want) == 0) {
+			if (by_hash_add(&downloader->wants, &want->entry) == 0)
 				return;
-			bring->fresh_count--;
+			downloader->fresh_count--;
 		}
 	}
 	free(want);
-	bring->options.events.missing(bring->options.data, asked->hash, MISSING_OFFLINE);
+	downloader->options.events.missing(downloader->options.data, asked->hash, MISSING_OFFLINE);
 }
 
 /* Out of the map; freed unless it still stands among the fresh. */
-static void forget(struct bring *bring, struct want *want)
+static void forget(struct downloader *downloader, struct want *want)
 {
-	by_hash_remove(&bring->wants, want->entry.key);
+	by_hash_remove(&downloader->wants, want->entry.key);
 	if (want->state == WANT_FRESH)
 		want->dropped = true;
 	else
 		free(want);
 }
 
-void bring_drop(struct bring *bring, struct hash hash)
+void downloader_drop(struct downloader *downloader, struct hash hash)
 {
-	struct want *want = by_hash_find(&bring->wants, hash);
+	struct want *want = by_hash_find(&downloader->wants, hash);
 
 	if (!want)
 		return;
-	bring_leave_range(bring, want);
-	forget(bring, want);
+	downloader_leave_range(downloader, want);
+	forget(downloader, want);
 }
 
-void bring_keep(struct bring *bring, struct hash hash)
+void downloader_keep(struct downloader *downloader, struct hash hash)
 {
-	int rc = cache_keep(bring->options.cache, hash);
+	int rc = cache_keep(downloader->options.cache, hash);
 
 	if (rc == -ENOSPC)
 		log_debug("net", "the cache keeps as much as it may");
 }
 
-void bring_forget_all(struct bring *bring)
+void downloader_forget_all(struct downloader *downloader)
 {
 	struct want *want;
 	size_t at = 0;
 
-	bring_cancel_ranges(bring);
-	while ((want = by_hash_next(&bring->wants, &at)))
+	downloader_cancel_ranges(downloader);
+	while ((want = by_hash_next(&downloader->wants, &at)))
 		if (want->state != WANT_FRESH)
 			free(want);
-	for (size_t i = 0; i < bring->fresh_count; i++)
-		free(bring->fresh[i]);
-	bring->fresh_count = 0;
-	by_hash_finish(&bring->wants);
-	bring_forget_releases(bring);
+	for (size_t i = 0; i < downloader->fresh_count; i++)
+		free(downloader->fresh[i]);
+	downloader->fresh_count = 0;
+	by_hash_finish(&downloader->wants);
+	downloader_forget_releases(downloader);
 }
 
 /* ---- what comes */
 
-static void pass_on(struct bring *bring, struct want *want, struct bytes bytes)
+static void pass_on(struct downloader *downloader, struct want *want, struct bytes bytes)
 {
 	struct hash hash = want->entry.key;
 
 	want->state = WANT_WAITING; /* among the fresh no longer: forget frees it */
-	forget(bring, want);
-	bring->options.events.object(bring->options.data, hash, bytes);
+	forget(downloader, want);
+	downloader->options.events.object(downloader->options.data, hash, bytes);
 }
 
 /* Wrong bytes: once more at once (a flipped bit on the way), then it is damage and told. */
-static void note_damage(struct bring *bring, struct want *want)
+static void note_damage(struct downloader *downloader, struct want *want)
 {
 	char hex[HASH_HEX_BYTES];
 
-	bring->figures.damaged++;
+	downloader->metrics.damaged++;
 	want->state = WANT_WAITING;
 	want->damages++;
 	want->failures++;
 	want->retry_at_ms = clock_now_ms();
-	bring->plan_changed = true;
+	downloader->plan_changed = true;
 	if (want->damages < 2)
 		return;
 	hash_to_hex(want->entry.key, hex);
 	if (want->reported != MISSING_DAMAGED) {
 		log_warn("net", "content bug: the server's bytes of object %s are damaged", hex);
-		refusal_note(bring->options.link->refusal, hex,
+		refusal_note(downloader->options.link->refusal, hex,
 			     "the server's bytes of this object are damaged");
 	}
 	want->retry_at_ms += link_pause_ms(want->failures);
-	report(bring, want, MISSING_DAMAGED);
-	bring_suspect_locators(bring);
+	report(downloader, want, MISSING_DAMAGED);
+	downloader_suspect_locators(downloader);
 }
 
-void bring_arrived(struct bring *bring, struct want *want, struct bytes bytes)
+void downloader_arrived(struct downloader *downloader, struct want *want, struct bytes bytes)
 {
 	int rc;
 
 	if (!hash_equal(hash_of(bytes), want->entry.key)) {
-		note_damage(bring, want);
+		note_damage(downloader, want);
 		return;
 	}
-	bring->figures.from_server++;
-	rc = cache_put(bring->options.cache, want->entry.key, bytes, want->asked.priority);
+	downloader->metrics.from_server++;
+	rc = cache_put(downloader->options.cache, want->entry.key, bytes, want->asked.priority);
 	if (rc < 0)
 		log_debug("net", "an object did not get into the cache (%d)", rc);
-	pass_on(bring, want, bytes);
+	pass_on(downloader, want, bytes);
 }
 
-void bring_failed(struct bring *bring, struct want *want, int rc)
+void downloader_failed(struct downloader *downloader, struct want *want, int rc)
 {
 	want->state = WANT_WAITING;
 	want->retry_at_ms = 0; /* the line's pause is pause enough */
-	bring->plan_changed = true;
+	downloader->plan_changed = true;
 	if (rc == -EHOSTUNREACH)
 		return;
 	want->failures++;
 	want->retry_at_ms = clock_now_ms() + link_pause_ms(want->failures);
-	report(bring, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
-	bring_suspect_locators(bring);
+	report(downloader, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
+	downloader_suspect_locators(downloader);
 }
 
 /* ---- the cache */
@@ -228,168 +228,171 @@ static int by_priority(const void *a, const void *b)
 	return left->order > right->order ? -1 : 1; /* the earlier one last: it is served first */
 }
 
-static void wait_for_server(struct bring *bring, struct want *want)
+static void wait_for_server(struct downloader *downloader, struct want *want)
 {
 	want->state = WANT_WAITING;
-	bring->plan_changed = true;
-	if (link_is_down(bring->options.link))
-		report(bring, want, MISSING_OFFLINE);
+	downloader->plan_changed = true;
+	if (link_is_down(downloader->options.link))
+		report(downloader, want, MISSING_OFFLINE);
 }
 
-static void ask_cache(struct bring *bring, struct want *want)
+static void ask_cache(struct downloader *downloader, struct want *want)
 {
-	int rc = cache_get(bring->options.cache, want->entry.key, want->asked.priority,
-			   &bring->scratch);
+	int rc = cache_get(downloader->options.cache, want->entry.key, want->asked.priority,
+			   &downloader->scratch);
 
 	want->state = WANT_WAITING;
 	if (rc == 0) {
-		bring->figures.from_cache++;
-		pass_on(bring, want, buffer_bytes(&bring->scratch));
+		downloader->metrics.from_cache++;
+		pass_on(downloader, want, buffer_bytes(&downloader->scratch));
 		return;
 	}
-	if (bring_ask_stick(bring, want))
+	if (downloader_ask_stick(downloader, want))
 		want->state = WANT_ON_STICK;
 	else
-		wait_for_server(bring, want);
+		wait_for_server(downloader, want);
 }
 
 /* ---- the stick */
 
-static void note_damage_on_stick(struct bring *bring, struct hash hash)
+static void note_damage_on_stick(struct downloader *downloader, struct hash hash)
 {
 	char hex[HASH_HEX_BYTES];
 
 	hash_to_hex(hash, hex);
-	refusal_note(bring->options.link->refusal, hex,
+	refusal_note(downloader->options.link->refusal, hex,
 		     "the stick's bytes of this object are damaged");
-	if (bring->figures.stick_damaged++ == 0) /* of thousands, perhaps */
+	if (downloader->metrics.stick_damaged++ == 0) /* of thousands, perhaps */
 		log_warn("net", "the stick's bytes of object %s are damaged", hex);
 }
 
-void bring_stick_answered(struct bring *bring, struct hash hash, int rc, struct bytes bytes)
+void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,
+			       struct bytes bytes)
 {
-	struct want *want = by_hash_find(&bring->wants, hash);
+	struct want *want = by_hash_find(&downloader->wants, hash);
 
 	if (rc == -EBADMSG)
-		note_damage_on_stick(bring, hash);
+		note_damage_on_stick(downloader, hash);
 	if (!want || want->state != WANT_ON_STICK)
 		return;
 	if (rc < 0) {
-		wait_for_server(bring, want);
+		wait_for_server(downloader, want);
 		return;
 	}
-	bring->figures.from_stick++;
-	if (cache_put(bring->options.cache, hash, bytes, want->asked.priority) < 0)
+	downloader->metrics.from_stick++;
+	if (cache_put(downloader->options.cache, hash, bytes, want->asked.priority) < 0)
 		log_debug("net", "an object did not get into the cache");
-	pass_on(bring, want, bytes);
+	pass_on(downloader, want, bytes);
 }
 
-bool bring_wants_of_stick(const struct bring *bring, struct hash hash)
+bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash)
 {
-	const struct want *want = by_hash_find(&bring->wants, hash);
+	const struct want *want = by_hash_find(&downloader->wants, hash);
 
 	return want && want->state == WANT_ON_STICK;
 }
 
-void bring_ask_again(struct bring *bring)
+void downloader_ask_again(struct downloader *downloader)
 {
 	struct want *want;
 	size_t at = 0;
 
-	while ((want = by_hash_next(&bring->wants, &at)))
-		if (want->state == WANT_WAITING && add_fresh(bring, want) < 0)
+	while ((want = by_hash_next(&downloader->wants, &at)))
+		if (want->state == WANT_WAITING && add_fresh(downloader, want) < 0)
 			return; /* the server may have it */
 }
 
-static void work_fresh(struct bring *bring)
+static void work_fresh(struct downloader *downloader)
 {
-	const struct bring_events *events = &bring->options.events;
+	const struct downloader_events *events = &downloader->options.events;
 
-	if (bring->fresh_changed && bring->fresh_count > 1)
-		qsort(bring->fresh, bring->fresh_count, sizeof(bring->fresh[0]), by_priority);
-	bring->fresh_changed = false;
-	for (int i = 0; i < CACHE_READS_MOST && bring->fresh_count > 0 &&
-			events->has_room(bring->options.data);
+	if (downloader->fresh_changed && downloader->fresh_count > 1)
+		qsort(downloader->fresh, downloader->fresh_count, sizeof(downloader->fresh[0]),
+		      by_priority);
+	downloader->fresh_changed = false;
+	for (int i = 0; i < CACHE_READS_MAX && downloader->fresh_count > 0 &&
+			events->has_room(downloader->options.data);
 	     i++) {
-		struct want *want = bring->fresh[--bring->fresh_count];
+		struct want *want = downloader->fresh[--downloader->fresh_count];
 
 		if (want->dropped)
 			free(want);
 		else
-			ask_cache(bring, want);
+			ask_cache(downloader, want);
 	}
 }
 
 /* ---- the server */
 
 /* What the rate limit allows now; half a second of it is saved up at most. */
-static void refill_allowance(struct bring *bring)
+static void refill_allowance(struct downloader *downloader)
 {
-	int64_t rate = (int64_t)bring->options.rate_limit;
+	int64_t rate = (int64_t)downloader->options.rate_limit;
 	int64_t now_ms = clock_now_ms(), most = rate / 2;
 
-	bring->allowance_bytes += (now_ms - bring->allowance_ms) * rate / 1000;
-	if (bring->allowance_bytes > most)
-		bring->allowance_bytes = most;
-	bring->allowance_ms = now_ms;
+	downloader->allowance_bytes += (now_ms - downloader->allowance_ms) * rate / 1000;
+	if (downloader->allowance_bytes > most)
+		downloader->allowance_bytes = most;
+	downloader->allowance_ms = now_ms;
 }
 
-static bool is_overdrawn(const struct bring *bring)
+static bool is_overdrawn(const struct downloader *downloader)
 {
-	return bring->options.rate_limit > 0 && bring->allowance_bytes <= 0;
+	return downloader->options.rate_limit > 0 && downloader->allowance_bytes <= 0;
 }
 
 /* When what is for later may be asked for again. */
-static int64_t allowance_due_ms(const struct bring *bring)
+static int64_t allowance_due_ms(const struct downloader *downloader)
 {
-	if (!is_overdrawn(bring))
+	if (!is_overdrawn(downloader))
 		return 0;
-	return bring->allowance_ms + 1 +
-	       -bring->allowance_bytes * 1000 / (int64_t)bring->options.rate_limit;
+	return downloader->allowance_ms + 1 +
+	       -downloader->allowance_bytes * 1000 / (int64_t)downloader->options.rate_limit;
 }
 
-static bool reserve_items(struct bring *bring)
+static bool reserve_items(struct downloader *downloader)
 {
-	size_t needed = bring->wants.count;
+	size_t needed = downloader->wants.count;
 	struct range_item *larger;
 
-	if (needed <= bring->item_capacity)
+	if (needed <= downloader->item_capacity)
 		return true;
 	needed += needed / 2;
-	larger = realloc(bring->items, needed * sizeof(*larger));
+	larger = realloc(downloader->items, needed * sizeof(*larger));
 	if (!larger)
 		return false;
-	bring->items = larger;
-	bring->item_capacity = needed;
+	downloader->items = larger;
+	downloader->item_capacity = needed;
 	return true;
 }
 
 /* All wants that could be asked for now, sorted by place. */
-static size_t gather(struct bring *bring)
+static size_t gather(struct downloader *downloader)
 {
 	int64_t now_ms = clock_now_ms();
 	struct want *want;
 	size_t at = 0, count = 0;
 
-	bring->plan_due_ms = INT64_MAX;
-	bring->later_waits = false;
-	if (!reserve_items(bring))
+	downloader->plan_due_ms = INT64_MAX;
+	downloader->later_waits = false;
+	if (!reserve_items(downloader))
 		return 0;
-	while ((want = by_hash_next(&bring->wants, &at))) {
-		struct range_item *item = &bring->items[count];
+	while ((want = by_hash_next(&downloader->wants, &at))) {
+		struct range_item *item = &downloader->items[count];
 		int rc;
 
 		if (want->state != WANT_WAITING)
 			continue;
-		if (is_overdrawn(bring) && is_for_later(want->asked.priority)) {
-			bring->later_waits = true;
+		if (is_overdrawn(downloader) && is_for_later(want->asked.priority)) {
+			downloader->later_waits = true;
 			continue;
 		}
-		rc = want->retry_at_ms > now_ms ? -EBUSY : bring_locate(bring, want, item);
+		rc = want->retry_at_ms > now_ms ? -EBUSY
+						: downloader_locate(downloader, want, item);
 		if (rc == -ENOENT)
-			bring_failed(bring, want, rc);
-		if (want->retry_at_ms > now_ms && want->retry_at_ms < bring->plan_due_ms)
-			bring->plan_due_ms = want->retry_at_ms;
+			downloader_failed(downloader, want, rc);
+		if (want->retry_at_ms > now_ms && want->retry_at_ms < downloader->plan_due_ms)
+			downloader->plan_due_ms = want->retry_at_ms;
 		if (rc < 0)
 			continue;
 		item->priority = want->asked.priority;
@@ -397,22 +400,22 @@ static size_t gather(struct bring *bring)
 		item->want = want;
 		count++;
 	}
-	range_sort(bring->items, count);
+	range_sort(downloader->items, count);
 	return count;
 }
 
-static uint32_t ranges_most(const struct bring *bring)
+static uint32_t ranges_most(const struct downloader *downloader)
 {
-	return bring->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MOST : RANGES_MOST;
+	return downloader->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MAX : RANGES_MAX;
 }
 
-static bool may_ask_for(const struct bring *bring, uint32_t priority)
+static bool may_ask_for(const struct downloader *downloader, uint32_t priority)
 {
-	uint32_t most = ranges_most(bring);
+	uint32_t most = ranges_most(downloader);
 
 	if (priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
-	return bring->range_count < most && link_may_ask(bring->options.link);
+	return downloader->range_count < most && link_may_ask(downloader->options.link);
 }
 
 /* Of those that no range has taken; 0 where all are. */
@@ -437,80 +440,84 @@ static uint32_t later_bytes(const struct range_item *items, size_t count)
 }
 
 /* Of a range whose best one has this priority. */
-static struct range_limits limits_now(const struct bring *bring, uint32_t priority)
+static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
 {
-	uint64_t rate = is_for_later(priority) ? bring->options.rate_limit : 0;
-	uint64_t most = bring->bytes_per_s;
+	uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
+	uint64_t most = downloader->bytes_per_s;
 
 	most = (rate > 0 && rate < most ? rate : most) * RANGE_MS / 1000;
-	if (most < RANGE_BYTES_LEAST)
-		most = RANGE_BYTES_LEAST;
-	if (most > RANGE_BYTES_MOST)
-		most = RANGE_BYTES_MOST;
+	if (most < RANGE_BYTES_MIN)
+		most = RANGE_BYTES_MIN;
+	if (most > RANGE_BYTES_MAX)
+		most = RANGE_BYTES_MAX;
 	return (struct range_limits){ .gap_bytes = GAP_BYTES, .most_bytes = (uint32_t)most };
 }
 
-static void work_ranges(struct bring *bring)
+static void work_ranges(struct downloader *downloader)
 {
 	size_t count, first, taken;
 	uint32_t best;
 
-	if (bring->options.rate_limit)
-		refill_allowance(bring);
-	if (bring->later_waits && !is_overdrawn(bring))
-		bring->plan_changed = true;
-	if (!bring->plan_changed || bring->range_count >= ranges_most(bring) + RANGES_FOR_PAGES ||
-	    !link_may_ask(bring->options.link) ||
-	    !bring->options.events.has_room(bring->options.data))
+	if (downloader->options.rate_limit)
+		refill_allowance(downloader);
+	if (downloader->later_waits && !is_overdrawn(downloader))
+		downloader->plan_changed = true;
+	if (!downloader->plan_changed ||
+	    downloader->range_count >= ranges_most(downloader) + RANGES_FOR_PAGES ||
+	    !link_may_ask(downloader->options.link) ||
+	    !downloader->options.events.has_room(downloader->options.data))
 		return;
-	count = gather(bring);
-	bring->plan_changed = false;
+	count = gather(downloader);
+	downloader->plan_changed = false;
 	/* The best one decides whether there is a place for its range. */
-	while (best = best_priority(bring->items, count),
-	       (taken = range_plan(bring->items, count, limits_now(bring, best), &first)) > 0) {
-		if (is_for_later(best) && is_overdrawn(bring)) {
-			bring->later_waits = true;
+	while (best = best_priority(downloader->items, count),
+	       (taken = range_plan(downloader->items, count, limits_now(downloader, best),
+				   &first)) > 0) {
+		if (is_for_later(best) && is_overdrawn(downloader)) {
+			downloader->later_waits = true;
 			return;
 		}
-		if (!may_ask_for(bring, best)) {
-			bring->plan_changed = true;
+		if (!may_ask_for(downloader, best)) {
+			downloader->plan_changed = true;
 			return;
 		}
-		if (bring_ask_range(bring, &bring->items[first], taken) > 0)
-			bring->allowance_bytes -= later_bytes(&bring->items[first], taken);
+		if (downloader_ask_range(downloader, &downloader->items[first], taken) > 0)
+			downloader->allowance_bytes -=
+				later_bytes(&downloader->items[first], taken);
 	}
 }
 
 /* The line is down: who waits is told, once. */
-static void tell_of_the_line(struct bring *bring)
+static void tell_of_the_line(struct downloader *downloader)
 {
-	bool is_down = link_is_down(bring->options.link);
+	bool is_down = link_is_down(downloader->options.link);
 	struct want *want;
 	size_t at = 0;
 
-	if (is_down == bring->was_down)
+	if (is_down == downloader->was_down)
 		return;
-	bring->was_down = is_down;
-	bring->plan_changed = true;
-	while ((want = by_hash_next(&bring->wants, &at))) {
+	downloader->was_down = is_down;
+	downloader->plan_changed = true;
+	while ((want = by_hash_next(&downloader->wants, &at))) {
 		if (want->state == WANT_FRESH || want->state == WANT_ON_STICK)
 			continue;
 		if (is_down)
-			report(bring, want, MISSING_OFFLINE);
+			report(downloader, want, MISSING_OFFLINE);
 		else if (want->reported == MISSING_OFFLINE)
 			want->reported = -1;
 	}
 }
 
-void bring_work(struct bring *bring)
+void downloader_work(struct downloader *downloader)
 {
-	work_fresh(bring);
-	bring_work_releases(bring);
-	tell_of_the_line(bring);
-	if (bring->plan_due_ms <= clock_now_ms())
-		bring->plan_changed = true; /* a want's pause is over */
-	work_ranges(bring);
-	bring_ask_suspects(bring); /* last: planning, too, finds objects without a place */
+	work_fresh(downloader);
+	downloader_work_releases(downloader);
+	tell_of_the_line(downloader);
+	if (downloader->plan_due_ms <= clock_now_ms())
+		downloader->plan_changed = true; /* a want's pause is over */
+	work_ranges(downloader);
+	downloader_ask_suspects(
+		downloader); /* last: planning, too, finds objects without a place */
 }
 
 /* When what is due may go out, the line considered: an answer wakes us anyhow. */
@@ -523,31 +530,31 @@ static int64_t line_due_ms(const struct link *link, int64_t due_ms)
 	return due_ms > link->retry_at_ms ? due_ms : link->retry_at_ms;
 }
 
-int64_t bring_due_ms(const struct bring *bring)
+int64_t downloader_due_ms(const struct downloader *downloader)
 {
-	const struct link *link = bring->options.link;
-	int64_t due_ms = bring_releases_due_ms(bring);
+	const struct link *link = downloader->options.link;
+	int64_t due_ms = downloader_releases_due_ms(downloader);
 
-	if (!bring->options.events.has_room(bring->options.data))
+	if (!downloader->options.events.has_room(downloader->options.data))
 		return line_due_ms(link, due_ms); /* the kiosk will wake us */
-	if (bring->fresh_count > 0)
+	if (downloader->fresh_count > 0)
 		return 0;
-	if (bring->range_count < ranges_most(bring)) {
-		int64_t plan_ms = bring->plan_changed ? 0 : bring->plan_due_ms;
+	if (downloader->range_count < ranges_most(downloader)) {
+		int64_t plan_ms = downloader->plan_changed ? 0 : downloader->plan_due_ms;
 
-		if (bring->later_waits && allowance_due_ms(bring) < plan_ms)
-			plan_ms = allowance_due_ms(bring);
+		if (downloader->later_waits && allowance_due_ms(downloader) < plan_ms)
+			plan_ms = allowance_due_ms(downloader);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}
 	return line_due_ms(link, due_ms);
 }
 
-uint32_t bring_wanted(const struct bring *bring)
+uint32_t downloader_wanted(const struct downloader *downloader)
 {
-	return (uint32_t)bring->wants.count;
+	return (uint32_t)downloader->wants.count;
 }
 
-void bring_figures(const struct bring *bring, struct bring_figures *out)
+void downloader_figures(const struct downloader *downloader, struct downloader_figures *out)
 {
-	*out = bring->figures;
+	*out = downloader->metrics;
 }

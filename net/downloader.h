@@ -14,9 +14,9 @@
 #include "net/stick.h"
 #include "storage/cache.h"
 
-struct bring; /* private to bring*.c */
+struct downloader; /* private to bring*.c */
 
-struct bring_events {
+struct downloader_events {
 	/* Bytes are borrowed for the call; their hash is right. The want is forgotten then. */
 	void (*object)(void *data, struct hash hash, struct bytes bytes);
 	/* The want stays; said again only when the reason changes. */
@@ -25,18 +25,18 @@ struct bring_events {
 	bool (*has_room)(void *data);
 };
 
-struct bring_options {
+struct downloader_options {
 	struct http *http; /* borrowed, as all that follow */
 	struct cache *cache;
 	struct link *link;
 	struct stick *stick; /* asked before the server; NULL: none */
 	uint64_t rate_limit; /* bytes a second of what is for later, in the mean; 0: none */
-	struct bring_events events;
+	struct downloader_events events;
 	void *data;
 };
 
 /* Since create. */
-struct bring_figures {
+struct downloader_figures {
 	uint64_t from_cache, from_server, from_stick; /* objects */
 	uint64_t ranges;                              /* requests for objects */
 	uint64_t damaged;       /* objects whose bytes were not of their hash */
@@ -45,33 +45,36 @@ struct bring_figures {
 };
 
 /* *out is owned by the caller. -ENOMEM. */
-must_check int bring_create(struct bring **out, const struct bring_options *options);
-void bring_destroy(struct bring *bring);
+must_check int downloader_create(struct downloader **out, const struct downloader_options *options);
+void downloader_destroy(struct downloader *downloader);
 
 /* Alone: drops every want, forgets other releases. Also: beside them. */
-void bring_use_release(struct bring *bring, struct hash root, uint32_t root_bytes, bool also);
+void downloader_use_release(struct downloader *downloader, struct hash root, uint32_t root_bytes,
+			    bool also);
 /* Copied. Wanted already: only its priority changes. */
-void bring_want(struct bring *bring, const struct message_want *want);
+void downloader_want(struct downloader *downloader, const struct message_want *want);
 /* No event follows; a request that brings nothing else is cancelled. */
-void bring_drop(struct bring *bring, struct hash hash);
+void downloader_drop(struct downloader *downloader, struct hash hash);
 /* The cache lets it go last. */
-void bring_keep(struct bring *bring, struct hash hash);
+void downloader_keep(struct downloader *downloader, struct hash hash);
 /* The stick's answer to a want, as stick_options.object has it. */
-void bring_stick_answered(struct bring *bring, struct hash hash, int rc, struct bytes bytes);
+void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,
+			       struct bytes bytes);
 /* The stick is still waited for with this want. */
-bool bring_wants_of_stick(const struct bring *bring, struct hash hash);
+bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash);
 /* A stick came: what is waited for may be there. */
-void bring_ask_again(struct bring *bring);
-void bring_forget_all(struct bring *bring); /* the kiosk is gone: wants and releases */
+void downloader_ask_again(struct downloader *downloader);
+void downloader_forget_all(
+	struct downloader *downloader); /* the kiosk is gone: wants and releases */
 
 /* Does what can be done now. Call after dispatching http and after each of the calls above. */
-void bring_work(struct bring *bring);
-/* When bring_work has something to do by time alone (clock_now_ms); INT64_MAX: never. Now or
+void downloader_work(struct downloader *downloader);
+/* When downloader_work has something to do by time alone (clock_now_ms); INT64_MAX: never. Now or
  * earlier: at once. */
-int64_t bring_due_ms(const struct bring *bring);
+int64_t downloader_due_ms(const struct downloader *downloader);
 
 /* Wants that were neither brought nor dropped. */
-uint32_t bring_wanted(const struct bring *bring);
-void bring_figures(const struct bring *bring, struct bring_figures *out);
+uint32_t downloader_wanted(const struct downloader *downloader);
+void downloader_figures(const struct downloader *downloader, struct downloader_figures *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* What the parts of the bringer share: bring.c has the wants, bring_release.c the locators,
- * bring_range.c a request for a range of a pack. */
+/* What the parts of the bringer share: bring.c has the wants, downloader_release.c the locators,
+ * downloader_range.c a request for a range of a pack. */
 #ifndef GOPURA_NET_DOWNLOADER_PRIVATE_H
 #define GOPURA_NET_DOWNLOADER_PRIVATE_H
 
@@ -28,22 +28,22 @@ struct want {
 	struct range *range; /* of WANT_FLYING */
 };
 
-struct bring_release {
+struct downloader_release {
 	struct hash root;
 	uint32_t root_bytes;
 	struct locator locator;
 	bool has_locator, from_server; /* where it came from: the cache's may be outdated */
 	bool asked_cache;
 	bool missing; /* the server has no locator of this name (so far) */
-	struct bring *bring;
+	struct downloader *downloader;
 	struct http_request *request;
 	struct buffer file;
 	uint32_t failures;
 	int64_t retry_at_ms;
 };
 
-struct bring {
-	struct bring_options options;
+struct downloader {
+	struct downloader_options options;
 	struct by_hash wants;
 	struct want **fresh; /* owned array; sorted by priority when not fresh_changed, best last */
 	size_t fresh_count, fresh_capacity;
@@ -51,52 +51,54 @@ struct bring {
 	bool plan_changed;   /* something may be asked for that could not before */
 	int64_t plan_due_ms; /* when the first pause of a want is over; INT64_MAX: none waits */
 	uint64_t orders;
-	struct bring_release *releases[MESSAGE_RELEASES_MOST]; /* newest first */
-	struct range *ranges;                                  /* in flight */
+	struct downloader_release *releases[MESSAGE_RELEASES_MAX]; /* newest first */
+	struct range *ranges;                                      /* in flight */
 	uint32_t range_count;
 	uint64_t flying_bytes;    /* that the ranges in flight asked for */
 	struct range_item *items; /* scratch of planning */
 	size_t item_capacity;
 	struct buffer scratch;   /* an object from the cache */
-	bool suspicious;         /* bring_suspect_locators, for bring_work to act on */
+	bool suspicious;         /* downloader_suspect_locators, for downloader_work to act on */
 	bool was_down;           /* all wants were told of being offline */
 	uint64_t bytes_per_s;    /* lately */
 	int64_t allowance_bytes; /* with a rate limit: what may be asked for of what is for later;
 				  * below 0: overdrawn */
 	int64_t allowance_ms;    /* as of then */
 	bool later_waits;        /* for the rate limit alone */
-	struct bring_figures figures;
+	struct downloader_figures metrics;
 };
 
 /* -- bring.c */
 
 /* Bytes of the want's size have come: checks and passes them on, or notes the damage. */
-void bring_arrived(struct bring *bring, struct want *want, struct bytes bytes);
+void downloader_arrived(struct downloader *downloader, struct want *want, struct bytes bytes);
 /* The want was not brought: rc as http_result. */
-void bring_failed(struct bring *bring, struct want *want, int rc);
+void downloader_failed(struct downloader *downloader, struct want *want, int rc);
 
-/* -- bring_release.c */
+/* -- downloader_release.c */
 
 /* The newest-first try'th release that knows the want's place (a want that failed tries them in
  * turn). -ENOENT: none has it. -EAGAIN: a locator is still to come. */
-must_check int bring_locate(struct bring *bring, const struct want *want, struct range_item *out);
-/* The stick will answer, by bring_stick_answered. false: there is none. */
-bool bring_ask_stick(struct bring *bring, const struct want *want);
-void bring_work_releases(struct bring *bring);
-int64_t bring_releases_due_ms(const struct bring *bring);
-/* Objects were not where a locator said: bring_ask_suspects gets it anew (packs may have been
+must_check int downloader_locate(struct downloader *downloader, const struct want *want,
+				 struct range_item *out);
+/* The stick will answer, by downloader_stick_answered. false: there is none. */
+bool downloader_ask_stick(struct downloader *downloader, const struct want *want);
+void downloader_work_releases(struct downloader *downloader);
+int64_t downloader_releases_due_ms(const struct downloader *downloader);
+/* Objects were not where a locator said: downloader_ask_suspects gets it anew (packs may have been
  * packed anew). Only notes it, as it is called while bytes arrive, where nothing may be asked. */
-void bring_suspect_locators(struct bring *bring);
-void bring_ask_suspects(struct bring *bring);
-void bring_forget_releases(struct bring *bring);
+void downloader_suspect_locators(struct downloader *downloader);
+void downloader_ask_suspects(struct downloader *downloader);
+void downloader_forget_releases(struct downloader *downloader);
 
-/* -- bring_range.c */
+/* -- downloader_range.c */
 
 /* Asks for items[0 .. count), in order, of one pack, each a struct want. Gives the bytes asked
  * for; 0: no memory, and the wants wait on. */
-int64_t bring_ask_range(struct bring *bring, const struct range_item *items, size_t count);
+int64_t downloader_ask_range(struct downloader *downloader, const struct range_item *items,
+			     size_t count);
 /* The want leaves its range; a range nobody wants is cancelled. */
-void bring_leave_range(struct bring *bring, struct want *want);
-void bring_cancel_ranges(struct bring *bring);
+void downloader_leave_range(struct downloader *downloader, struct want *want);
+void downloader_cancel_ranges(struct downloader *downloader);
 
 #endif

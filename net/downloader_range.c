@@ -18,7 +18,7 @@ struct slot {
 
 struct range {
 	struct range *next, **link;
-	struct bring *bring;
+	struct downloader *downloader;
 	struct http_request *request;
 	uint32_t wanted;   /* slots with a want that are still to come */
 	size_t count, now; /* slots; the one whose bytes come */
@@ -34,10 +34,10 @@ static void unlink_range(struct range *range)
 	*range->link = range->next;
 	if (range->next)
 		range->next->link = range->link;
-	range->bring->range_count--;
-	range->bring->flying_bytes -= range->bytes;
-	range->bring->options.link->in_flight--;
-	range->bring->plan_changed = true;
+	range->downloader->range_count--;
+	range->downloader->flying_bytes -= range->bytes;
+	range->downloader->options.link->in_flight--;
+	range->downloader->plan_changed = true;
 	buffer_finish(&range->object);
 	free(range);
 }
@@ -52,11 +52,11 @@ static void finish_slot(struct range *range, struct slot *slot)
 	if (want) {
 		range->wanted--;
 		want->range = NULL;
-		bring_arrived(range->bring, want, bytes);
+		downloader_arrived(range->downloader, want, bytes);
 	} else if (hash_equal(hash_of(bytes), slot->hash)) {
 		/* Paid for: the cache may as well have it. A failure is the cache's to tell. */
-		if (cache_put(range->bring->options.cache, slot->hash, bytes, 0) == 0)
-			range->bring->figures.from_server++;
+		if (cache_put(range->downloader->options.cache, slot->hash, bytes, 0) == 0)
+			range->downloader->metrics.from_server++;
 	}
 	buffer_clear(&range->object);
 	range->now++;
@@ -99,19 +99,19 @@ static void measure(struct range *range)
 	uint64_t bytes = range->at - range->slots[0].place;
 	uint64_t rate = bytes * 1000 / (uint64_t)(took_ms > 0 ? took_ms : 1);
 
-	range->bring->bytes_per_s = (range->bring->bytes_per_s * 7 + rate) / 8;
+	range->downloader->bytes_per_s = (range->downloader->bytes_per_s * 7 + rate) / 8;
 }
 
 static void on_done(void *data, const struct http_result *result)
 {
 	struct range *range = data;
-	struct bring *bring = range->bring;
-	struct link *link = bring->options.link;
+	struct downloader *downloader = range->downloader;
+	struct link *link = downloader->options.link;
 	/* An answer that ended early (a pack cut short) has not what was asked for. */
 	int rc = result->rc == 0 ? -ENOENT : result->rc;
 
 	if (rc == -EHOSTUNREACH)
-		link_failed(link, http_url(bring->options.http), result->why);
+		link_failed(link, http_url(downloader->options.http), result->why);
 	else
 		link_answered(link);
 	if (range->now == range->count)
@@ -122,7 +122,7 @@ static void on_done(void *data, const struct http_result *result)
 		range->slots[i].want = NULL;
 		if (want) {
 			want->range = NULL;
-			bring_failed(bring, want, rc);
+			downloader_failed(downloader, want, rc);
 		}
 	}
 	unlink_range(range);
@@ -144,7 +144,8 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 	range->began_ms = clock_now_ms();
 }
 
-int64_t bring_ask_range(struct bring *bring, const struct range_item *items, size_t count)
+int64_t downloader_ask_range(struct downloader *downloader, const struct range_item *items,
+			     size_t count)
 {
 	struct range *range = calloc(1, sizeof(*range) + count * sizeof(range->slots[0]));
 	char path[64], hex[HASH_HEX_BYTES];
@@ -157,27 +158,27 @@ int64_t bring_ask_range(struct bring *bring, const struct range_item *items, siz
 	ask.first = items[0].place;
 	ask.size = items[count - 1].place + items[count - 1].size - ask.first;
 	ask.data = range;
-	if (http_ask(bring->options.http, &ask, &range->request) < 0) {
+	if (http_ask(downloader->options.http, &ask, &range->request) < 0) {
 		free(range);
 		return 0;
 	}
-	range->bring = bring;
+	range->downloader = downloader;
 	buffer_init(&range->object, UINT32_MAX);
 	range->bytes = ask.size;
 	fill_slots(range, items, count);
-	range->next = bring->ranges;
-	range->link = &bring->ranges;
+	range->next = downloader->ranges;
+	range->link = &downloader->ranges;
 	if (range->next)
 		range->next->link = &range->next;
-	bring->ranges = range;
-	bring->range_count++;
-	bring->flying_bytes += range->bytes;
-	bring->figures.ranges++;
-	bring->options.link->in_flight++;
+	downloader->ranges = range;
+	downloader->range_count++;
+	downloader->flying_bytes += range->bytes;
+	downloader->metrics.ranges++;
+	downloader->options.link->in_flight++;
 	return (int64_t)range->bytes;
 }
 
-void bring_leave_range(struct bring *bring, struct want *want)
+void downloader_leave_range(struct downloader *downloader, struct want *want)
 {
 	struct range *range = want->range;
 
@@ -189,15 +190,15 @@ void bring_leave_range(struct bring *bring, struct want *want)
 	want->range = NULL;
 	if (--range->wanted > 0)
 		return;
-	bring->figures.cancelled++;
+	downloader->metrics.cancelled++;
 	http_cancel(range->request);
 	unlink_range(range);
 }
 
-void bring_cancel_ranges(struct bring *bring)
+void downloader_cancel_ranges(struct downloader *downloader)
 {
-	while (bring->ranges) {
-		struct range *range = bring->ranges;
+	while (downloader->ranges) {
+		struct range *range = downloader->ranges;
 
 		http_cancel(range->request);
 		for (size_t i = 0; i < range->count; i++)

@@ -7,32 +7,32 @@
 #include "net/downloader_private.h"
 
 enum {
-	LOCATOR_BYTES_MOST = 64 << 20,
+	LOCATOR_BYTES_MAX = 64 << 20,
 	SUSPECT_MS = 60000, /* a locator is not got anew more often */
 };
 
-static void release_destroy(struct bring_release *release)
+static void release_destroy(struct downloader_release *release)
 {
 	if (!release)
 		return;
 	if (release->request) {
 		http_cancel(release->request);
-		release->bring->options.link->in_flight--;
+		release->downloader->options.link->in_flight--;
 	}
 	locator_finish(&release->locator);
 	buffer_finish(&release->file);
 	free(release);
 }
 
-void bring_forget_releases(struct bring *bring)
+void downloader_forget_releases(struct downloader *downloader)
 {
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		release_destroy(bring->releases[i]);
-		bring->releases[i] = NULL;
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
+		release_destroy(downloader->releases[i]);
+		downloader->releases[i] = NULL;
 	}
 }
 
-static int take_locator(struct bring_release *release, struct bytes file)
+static int take_locator(struct downloader_release *release, struct bytes file)
 {
 	struct locator locator;
 	int rc = locator_decode(&locator, file);
@@ -44,7 +44,7 @@ static int take_locator(struct bring_release *release, struct bytes file)
 	release->has_locator = true;
 	release->missing = false;
 	release->failures = 0;
-	release->bring->plan_changed = true;
+	release->downloader->plan_changed = true;
 	return 0;
 }
 
@@ -52,13 +52,13 @@ static int take_locator(struct bring_release *release, struct bytes file)
 
 static bool on_piece(void *data, struct bytes piece)
 {
-	struct bring_release *release = data;
+	struct downloader_release *release = data;
 
 	buffer_put(&release->file, piece.data, piece.size);
 	return !release->file.error;
 }
 
-static void note_failure(struct bring_release *release, int rc, const char *why)
+static void note_failure(struct downloader_release *release, int rc, const char *why)
 {
 	char hex[HASH_HEX_BYTES];
 
@@ -68,25 +68,26 @@ static void note_failure(struct bring_release *release, int rc, const char *why)
 	if (rc == -EHOSTUNREACH)
 		return;
 	release->missing = !release->has_locator;
-	release->bring->plan_changed = true;
+	release->downloader->plan_changed = true;
 	if (release->failures > 1)
 		return;
 	log_warn("net", "content bug: locator/%s: %s", hex, why);
-	refusal_note(release->bring->options.link->refusal, hex, why);
+	refusal_note(release->downloader->options.link->refusal, hex, why);
 }
 
 static void on_done(void *data, const struct http_result *result)
 {
-	struct bring_release *release = data;
-	struct bring *bring = release->bring;
+	struct downloader_release *release = data;
+	struct downloader *downloader = release->downloader;
 	int rc = result->rc ? result->rc : release->file.error;
 
 	release->request = NULL;
-	bring->options.link->in_flight--;
+	downloader->options.link->in_flight--;
 	if (rc == -EHOSTUNREACH)
-		link_failed(bring->options.link, http_url(bring->options.http), result->why);
+		link_failed(downloader->options.link, http_url(downloader->options.http),
+			    result->why);
 	else
-		link_answered(bring->options.link);
+		link_answered(downloader->options.link);
 	if (rc == 0)
 		rc = take_locator(release, buffer_bytes(&release->file));
 	if (rc < 0) {
@@ -94,41 +95,41 @@ static void on_done(void *data, const struct http_result *result)
 	} else {
 		release->from_server = true;
 		release->retry_at_ms = clock_now_ms() + SUSPECT_MS;
-		if (cache_put_file(bring->options.cache, release->root,
+		if (cache_put_file(downloader->options.cache, release->root,
 				   buffer_bytes(&release->file)) < 0)
 			log_debug("net", "the locator is not in the cache");
 	}
 	buffer_finish(&release->file);
 }
 
-static void ask_server(struct bring_release *release)
+static void ask_server(struct downloader_release *release)
 {
 	char path[64], hex[HASH_HEX_BYTES];
 	struct http_ask ask = { .path = path,
-				.ceiling = LOCATOR_BYTES_MOST,
+				.ceiling = LOCATOR_BYTES_MAX,
 				.receive = on_piece,
 				.done = on_done,
 				.data = release };
 
 	hash_to_hex(release->root, hex);
 	snprintf(path, sizeof(path), "locator/%s", hex);
-	buffer_init(&release->file, LOCATOR_BYTES_MOST);
-	if (http_ask(release->bring->options.http, &ask, &release->request) < 0)
+	buffer_init(&release->file, LOCATOR_BYTES_MAX);
+	if (http_ask(release->downloader->options.http, &ask, &release->request) < 0)
 		release->retry_at_ms = clock_now_ms() + 1000;
 	else
-		release->bring->options.link->in_flight++;
+		release->downloader->options.link->in_flight++;
 }
 
 /* ---- from the cache */
 
-static void ask_cache(struct bring_release *release)
+static void ask_cache(struct downloader_release *release)
 {
 	struct buffer file;
 	int rc;
 
 	release->asked_cache = true;
-	buffer_init(&file, LOCATOR_BYTES_MOST);
-	rc = cache_get_file(release->bring->options.cache, release->root, &file);
+	buffer_init(&file, LOCATOR_BYTES_MAX);
+	rc = cache_get_file(release->downloader->options.cache, release->root, &file);
 	if (rc == 0)
 		rc = take_locator(release, buffer_bytes(&file));
 	if (rc < 0 && rc != -ENOENT)
@@ -138,56 +139,57 @@ static void ask_cache(struct bring_release *release)
 
 /* ---- what bring.c asks */
 
-void bring_use_release(struct bring *bring, struct hash root, uint32_t root_bytes, bool also)
+void downloader_use_release(struct downloader *downloader, struct hash root, uint32_t root_bytes,
+			    bool also)
 {
-	struct bring_release *release = NULL;
+	struct downloader_release *release = NULL;
 
 	if (!also)
-		bring_forget_all(bring);
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
-		if (bring->releases[i] && hash_equal(bring->releases[i]->root, root))
+		downloader_forget_all(downloader);
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++)
+		if (downloader->releases[i] && hash_equal(downloader->releases[i]->root, root))
 			return;
 	release = calloc(1, sizeof(*release));
 	if (!release)
 		return; /* its wants are reported missing */
 	release->root = root;
 	release->root_bytes = root_bytes;
-	release->bring = bring;
-	release_destroy(bring->releases[MESSAGE_RELEASES_MOST - 1]);
-	for (size_t i = MESSAGE_RELEASES_MOST - 1; i > 0; i--)
-		bring->releases[i] = bring->releases[i - 1];
-	bring->releases[0] = release;
-	if (!also && cache_use_release(bring->options.cache, root) < 0)
+	release->downloader = downloader;
+	release_destroy(downloader->releases[MESSAGE_RELEASES_MAX - 1]);
+	for (size_t i = MESSAGE_RELEASES_MAX - 1; i > 0; i--)
+		downloader->releases[i] = downloader->releases[i - 1];
+	downloader->releases[0] = release;
+	if (!also && cache_use_release(downloader->options.cache, root) < 0)
 		log_warn("net", "the cache cannot note which release is in use");
-	bring->plan_changed = true;
+	downloader->plan_changed = true;
 }
 
-static bool needs_server(const struct bring_release *release)
+static bool needs_server(const struct downloader_release *release)
 {
 	return !release->has_locator && release->asked_cache && !release->request;
 }
 
-void bring_work_releases(struct bring *bring)
+void downloader_work_releases(struct downloader *downloader)
 {
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		struct bring_release *release = bring->releases[i];
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
+		struct downloader_release *release = downloader->releases[i];
 
 		if (!release)
 			continue;
 		if (!release->asked_cache)
 			ask_cache(release);
 		if (needs_server(release) && clock_now_ms() >= release->retry_at_ms &&
-		    link_may_ask(bring->options.link))
+		    link_may_ask(downloader->options.link))
 			ask_server(release);
 	}
 }
 
-int64_t bring_releases_due_ms(const struct bring *bring)
+int64_t downloader_releases_due_ms(const struct downloader *downloader)
 {
 	int64_t due_ms = INT64_MAX;
 
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		const struct bring_release *release = bring->releases[i];
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
+		const struct downloader_release *release = downloader->releases[i];
 
 		if (!release)
 			continue;
@@ -199,21 +201,22 @@ int64_t bring_releases_due_ms(const struct bring *bring)
 	return due_ms;
 }
 
-void bring_suspect_locators(struct bring *bring)
+void downloader_suspect_locators(struct downloader *downloader)
 {
-	bring->suspicious = true;
+	downloader->suspicious = true;
 }
 
-void bring_ask_suspects(struct bring *bring)
+void downloader_ask_suspects(struct downloader *downloader)
 {
-	if (!bring->suspicious)
+	if (!downloader->suspicious)
 		return;
-	bring->suspicious = false;
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		struct bring_release *release = bring->releases[i];
+	downloader->suspicious = false;
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
+		struct downloader_release *release = downloader->releases[i];
 
 		if (!release || !release->has_locator || release->request ||
-		    clock_now_ms() < release->retry_at_ms || !link_may_ask(bring->options.link))
+		    clock_now_ms() < release->retry_at_ms ||
+		    !link_may_ask(downloader->options.link))
 			continue;
 		release->retry_at_ms = clock_now_ms() + SUSPECT_MS;
 		ask_server(release); /* until it came the old one serves */
@@ -221,7 +224,7 @@ void bring_ask_suspects(struct bring *bring)
 }
 
 /* Into *out where this release says; false: it does not. */
-static bool locate_in(const struct bring_release *release, const struct want *want,
+static bool locate_in(const struct downloader_release *release, const struct want *want,
 		      struct range_item *out)
 {
 	const struct locator_block *block = locator_find(&release->locator, want->asked.page);
@@ -237,25 +240,26 @@ static bool locate_in(const struct bring_release *release, const struct want *wa
 	return true;
 }
 
-bool bring_ask_stick(struct bring *bring, const struct want *want)
+bool downloader_ask_stick(struct downloader *downloader, const struct want *want)
 {
-	struct hash roots[MESSAGE_RELEASES_MOST];
+	struct hash roots[MESSAGE_RELEASES_MAX];
 	size_t count = 0;
 
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
-		if (bring->releases[i])
-			roots[count++] = bring->releases[i]->root;
-	return count > 0 && stick_ask(bring->options.stick, roots, count, &want->asked);
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++)
+		if (downloader->releases[i])
+			roots[count++] = downloader->releases[i]->root;
+	return count > 0 && stick_ask(downloader->options.stick, roots, count, &want->asked);
 }
 
-int bring_locate(struct bring *bring, const struct want *want, struct range_item *out)
+int downloader_locate(struct downloader *downloader, const struct want *want,
+		      struct range_item *out)
 {
-	struct range_item found[MESSAGE_RELEASES_MOST];
+	struct range_item found[MESSAGE_RELEASES_MAX];
 	size_t count = 0;
 	bool to_come = false;
 
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
-		const struct bring_release *release = bring->releases[i];
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
+		const struct downloader_release *release = downloader->releases[i];
 
 		if (!release)
 			continue;

@@ -21,11 +21,11 @@
 #include "net/poll.h"
 
 enum {
-	QUEUE_BYTES_MOST = 8 << 20, /* to the kiosk; past it nothing more is brought */
-	PACKETS_MOST = 512,         /* read in one go */
-	FLUSH_MS = 500,             /* what is in the cache's transaction is at most that old */
-	STATUS_MS = 1000,           /* while figures change */
-	ALIVE_MS = 30000,           /* while they do not: the kiosk shall know that we live */
+	QUEUE_BYTES_MAX = 8 << 20, /* to the kiosk; past it nothing more is brought */
+	PACKETS_MAX = 512,         /* read in one go */
+	FLUSH_MS = 500,            /* what is in the cache's transaction is at most that old */
+	STATUS_MS = 1000,          /* while figures change */
+	ALIVE_MS = 30000,          /* while they do not: the kiosk shall know that we live */
 };
 
 enum source {
@@ -47,10 +47,10 @@ struct fetch {
 	struct cache *cache;
 	struct link link;
 	struct refusal refusal; /* the last one, of the server's */
-	struct bring *bring;
+	struct downloader *downloader;
 	struct poll *poll;
 	struct stick *stick;            /* NULL: none is looked for */
-	struct figures_socket *figures; /* NULL: not offered */
+	struct metrics_socket *metrics; /* NULL: not offered */
 	uint32_t root_version;          /* of the trust root that the kiosk has */
 	struct message_status said;
 	int64_t flush_ms, status_ms; /* when due */
@@ -75,7 +75,7 @@ static void lose_kiosk(struct fetch *fetch, const char *why)
 	if (watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, 0, EPOLL_CTL_DEL) < 0)
 		log_debug("net", "the kiosk's socket was not watched");
 	packets_finish(&fetch->kiosk);
-	bring_forget_all(fetch->bring);
+	downloader_forget_all(fetch->downloader);
 	poll_stop(fetch->poll);
 	if (fetch->listen_fd < 0)
 		fetch->ends = true;
@@ -123,7 +123,7 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 				   .object = { hash, bytes, (uint32_t)bytes.size } };
 	int passed = -1;
 
-	if (bytes.size > MESSAGE_INLINE_MOST) {
+	if (bytes.size > MESSAGE_INLINE_MAX) {
 		passed = packets_seal(bytes);
 		if (passed < 0) {
 			log_error("net", "no memory for an object: %s", strerror(-passed));
@@ -143,7 +143,7 @@ static void on_missing(void *data, struct hash hash, enum missing_reason reason)
 
 static bool kiosk_has_room(const struct fetch *fetch)
 {
-	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MOST;
+	return fetch->has_kiosk && fetch->kiosk.queued_bytes < QUEUE_BYTES_MAX;
 }
 
 static bool has_room(void *data)
@@ -171,14 +171,14 @@ static void on_stick_object(void *data, struct hash hash, int rc, struct bytes b
 {
 	struct fetch *fetch = data;
 
-	bring_stick_answered(fetch->bring, hash, rc, bytes);
+	downloader_stick_answered(fetch->downloader, hash, rc, bytes);
 }
 
 static bool is_wanted_of_stick(void *data, struct hash hash)
 {
 	const struct fetch *fetch = data;
 
-	return bring_wants_of_stick(fetch->bring, hash);
+	return downloader_wants_of_stick(fetch->downloader, hash);
 }
 
 /* ---- what the kiosk says */
@@ -187,17 +187,17 @@ static int obey(struct fetch *fetch, const struct message *message)
 {
 	switch (message->kind) {
 	case MESSAGE_RELEASE:
-		bring_use_release(fetch->bring, message->release.root, message->release.root_bytes,
-				  message->release.also);
+		downloader_use_release(fetch->downloader, message->release.root,
+				       message->release.root_bytes, message->release.also);
 		return 0;
 	case MESSAGE_WANT:
-		bring_want(fetch->bring, &message->want);
+		downloader_want(fetch->downloader, &message->want);
 		return 0;
 	case MESSAGE_DROP:
-		bring_drop(fetch->bring, message->drop);
+		downloader_drop(fetch->downloader, message->drop);
 		return 0;
 	case MESSAGE_KEEP:
-		bring_keep(fetch->bring, message->keep);
+		downloader_keep(fetch->downloader, message->keep);
 		return 0;
 	case MESSAGE_ASK_META:
 		poll_ask(fetch->poll, message->period_s);
@@ -225,7 +225,7 @@ static void hear_kiosk(struct fetch *fetch)
 {
 	int rc = packets_flush(&fetch->kiosk);
 
-	for (int i = 0; rc == 0 && i < PACKETS_MOST; i++) {
+	for (int i = 0; rc == 0 && i < PACKETS_MAX; i++) {
 		struct message message;
 		int passed;
 
@@ -247,7 +247,7 @@ static void tell_status(struct fetch *fetch)
 	if (!fetch->has_kiosk || clock_now_ms() < fetch->status_ms)
 		return;
 	status->online = fetch->link.online;
-	status->wanted = bring_wanted(fetch->bring);
+	status->wanted = downloader_wanted(fetch->downloader);
 	status->received_bytes = http_received_bytes(fetch->http);
 	status->cache_bytes = cache_file_bytes(fetch->cache);
 	status->cache_budget_bytes = fetch->options->cache_budget_bytes;
@@ -267,13 +267,13 @@ static void tell_status(struct fetch *fetch)
 
 static void write_refusal(const struct refusal *refusal, struct buffer *out)
 {
-	figures_counter(out, "gopura_fetch_refusals_total",
+	metrics_counter(out, "gopura_fetch_refusals_total",
 			"Files, objects and connections given up.", (double)refusal->count);
 	if (refusal->count == 0)
 		return;
-	figures_gauge(out, "gopura_fetch_refused_at_seconds", "When the last one was.",
+	metrics_gauge(out, "gopura_fetch_refused_at_seconds", "When the last one was.",
 		      (double)refusal->at_s);
-	figures_info(
+	metrics_info(
 		out, "gopura_fetch_refusal_info", "What it was, and why.",
 		(const struct figure_label[]){ { "what", refusal->what }, { "why", refusal->why } },
 		2);
@@ -283,38 +283,38 @@ static void write_figures(void *data, struct buffer *out)
 {
 	const struct fetch *fetch = data;
 	const struct link *link = &fetch->link;
-	struct bring_figures objects;
+	struct downloader_figures objects;
 
-	bring_figures(fetch->bring, &objects);
-	figures_gauge(out, "gopura_fetch_online", "Whether the last request was answered.",
+	downloader_figures(fetch->downloader, &objects);
+	metrics_gauge(out, "gopura_fetch_online", "Whether the last request was answered.",
 		      link->online);
-	figures_gauge(out, "gopura_fetch_offline_since_seconds",
+	metrics_gauge(out, "gopura_fetch_offline_since_seconds",
 		      "When it was found offline (1970 is 0); 0 while online.",
 		      (double)link->offline_since_s);
-	figures_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is here.",
+	metrics_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is here.",
 		      fetch->has_kiosk);
-	figures_gauge(out, "gopura_fetch_wanted", "Objects that the kiosk waits for.",
-		      bring_wanted(fetch->bring));
-	figures_counter(out, "gopura_fetch_received_bytes_total",
+	metrics_gauge(out, "gopura_fetch_wanted", "Objects that the kiosk waits for.",
+		      downloader_wanted(fetch->downloader));
+	metrics_counter(out, "gopura_fetch_received_bytes_total",
 			"From the network, TLS and headers too.",
 			(double)http_received_bytes(fetch->http));
-	figures_counter(out, "gopura_fetch_requests_total", "Requests that ended, well or not.",
+	metrics_counter(out, "gopura_fetch_requests_total", "Requests that ended, well or not.",
 			(double)(link->answers + link->errors));
-	figures_counter(out, "gopura_fetch_errors_total", "Requests without an answer.",
+	metrics_counter(out, "gopura_fetch_errors_total", "Requests without an answer.",
 			(double)link->errors);
-	figures_counter(out, "gopura_fetch_damaged_total", "Objects with wrong bytes, refused.",
+	metrics_counter(out, "gopura_fetch_damaged_total", "Objects with wrong bytes, refused.",
 			(double)objects.damaged);
-	figures_counter(out, "gopura_fetch_from_cache_total", "Objects that the cache had.",
+	metrics_counter(out, "gopura_fetch_from_cache_total", "Objects that the cache had.",
 			(double)objects.from_cache);
-	figures_counter(out, "gopura_fetch_from_server_total", "Objects that the server sent.",
+	metrics_counter(out, "gopura_fetch_from_server_total", "Objects that the server sent.",
 			(double)objects.from_server);
-	figures_counter(out, "gopura_fetch_from_stick_total", "Objects that a stick had.",
+	metrics_counter(out, "gopura_fetch_from_stick_total", "Objects that a stick had.",
 			(double)objects.from_stick);
-	figures_gauge(out, "gopura_fetch_cache_bytes", "The cache on disk.",
+	metrics_gauge(out, "gopura_fetch_cache_bytes", "The cache on disk.",
 		      (double)cache_file_bytes(fetch->cache));
-	figures_gauge(out, "gopura_fetch_cache_budget_bytes", "What it may grow to.",
+	metrics_gauge(out, "gopura_fetch_cache_budget_bytes", "What it may grow to.",
 		      (double)fetch->options->cache_budget_bytes);
-	figures_counter(out, "gopura_fetch_cache_refused_total",
+	metrics_counter(out, "gopura_fetch_cache_refused_total",
 			"Writes that the cache's disk did not take.",
 			(double)cache_refused_writes(fetch->cache));
 	write_refusal(&fetch->refusal, out);
@@ -343,8 +343,8 @@ static void work(struct fetch *fetch)
 
 	if (fetch->has_kiosk) {
 		if (stick_work(fetch->stick, kiosk_has_room(fetch)))
-			bring_ask_again(fetch->bring);
-		bring_work(fetch->bring);
+			downloader_ask_again(fetch->downloader);
+		downloader_work(fetch->downloader);
 		poll_work(fetch->poll);
 		tell_status(fetch);
 	}
@@ -361,10 +361,11 @@ static int timeout_ms(const struct fetch *fetch)
 	int64_t now_ms = clock_now_ms(), due_ms = fetch->flush_ms;
 
 	if (fetch->has_kiosk) {
-		int64_t bring_ms = bring_due_ms(fetch->bring), poll_ms = poll_due_ms(fetch->poll);
+		int64_t downloader_ms = downloader_due_ms(fetch->downloader),
+			poll_ms = poll_due_ms(fetch->poll);
 		int64_t stick_ms = stick_due_ms(fetch->stick, kiosk_has_room(fetch));
 
-		due_ms = bring_ms < due_ms ? bring_ms : due_ms;
+		due_ms = downloader_ms < due_ms ? downloader_ms : due_ms;
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
 		due_ms = stick_ms < due_ms ? stick_ms : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
@@ -395,7 +396,7 @@ static int dispatch(struct fetch *fetch, enum source source)
 		fetch->ends = true;
 		return 0;
 	case SOURCE_FIGURES:
-		figures_socket_dispatch(fetch->figures);
+		metrics_socket_dispatch(fetch->metrics);
 		return 0;
 	}
 	return 0;
@@ -471,10 +472,10 @@ static int create_parts(struct fetch *fetch)
 				     .stall_s = options->stall_s };
 	struct cache_options cache = { .path = options->cache_path,
 				       .budget_bytes = options->cache_budget_bytes };
-	struct bring_options bring = { .link = &fetch->link,
-				       .rate_limit = options->rate_limit,
-				       .events = { on_object, on_missing, has_room },
-				       .data = fetch };
+	struct downloader_options downloader = { .link = &fetch->link,
+						 .rate_limit = options->rate_limit,
+						 .events = { on_object, on_missing, has_room },
+						 .data = fetch };
 	struct poll_options poll = {
 		.link = &fetch->link, .period_s = options->poll_s, .meta = on_meta, .data = fetch
 	};
@@ -487,15 +488,15 @@ static int create_parts(struct fetch *fetch)
 
 	if (rc == 0 && options->stick_path)
 		rc = stick_create(&fetch->stick, &stick);
-	bring.stick = fetch->stick;
+	downloader.stick = fetch->stick;
 	if (rc == 0)
 		rc = cache_create(&fetch->cache, &cache);
-	bring.http = poll.http = fetch->http;
-	bring.cache = fetch->cache;
+	downloader.http = poll.http = fetch->http;
+	downloader.cache = fetch->cache;
 	link_init(&fetch->link);
 	fetch->link.refusal = &fetch->refusal;
 	if (rc == 0)
-		rc = bring_create(&fetch->bring, &bring);
+		rc = downloader_create(&fetch->downloader, &downloader);
 	if (rc == 0)
 		rc = poll_create(&fetch->poll, &poll);
 	if (rc == 0)
@@ -507,16 +508,16 @@ static int create_parts(struct fetch *fetch)
 
 static int offer_figures(struct fetch *fetch)
 {
-	const struct figures_socket_options options = { .path = fetch->options->figures_path,
+	const struct metrics_socket_options options = { .path = fetch->options->metrics_path,
 							.prefix = "gopura_fetch",
 							.write = write_figures,
 							.data = fetch };
 	int rc = 0;
 
 	if (options.path)
-		rc = figures_socket_create(&fetch->figures, &options);
-	if (rc == 0 && fetch->figures)
-		rc = watch(fetch, figures_socket_fd(fetch->figures), SOURCE_FIGURES, EPOLLIN,
+		rc = metrics_socket_create(&fetch->metrics, &options);
+	if (rc == 0 && fetch->metrics)
+		rc = watch(fetch, metrics_socket_fd(fetch->metrics), SOURCE_FIGURES, EPOLLIN,
 			   EPOLL_CTL_ADD);
 	return rc;
 }
@@ -543,9 +544,9 @@ static int start(struct fetch *fetch)
 
 static void stop(struct fetch *fetch)
 {
-	figures_socket_destroy(fetch->figures);
+	metrics_socket_destroy(fetch->metrics);
 	poll_destroy(fetch->poll);
-	bring_destroy(fetch->bring);
+	downloader_destroy(fetch->downloader);
 	packets_finish(&fetch->kiosk);
 	stick_destroy(fetch->stick);
 	cache_destroy(fetch->cache);

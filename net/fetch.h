@@ -16,7 +16,7 @@ struct fetch_options {
 	const char
 		*redirect_hosts;  /* that the server may redirect to (net/redirect.h); NULL: none */
 	const char *socket_path;  /* to listen on; NULL: fd */
-	const char *figures_path; /* to offer figures on (docs/health.md); NULL: none */
+	const char *metrics_path; /* to offer figures on (docs/health.md); NULL: none */
 	int fd;                   /* connected already; the fetcher ends with it */
 	uint32_t poll_s;
 	uint64_t rate_limit; /* bytes a second of a release that is not shown yet; 0: none */

@@ -18,30 +18,30 @@
 #include "net/redirect.h"
 
 enum {
-	URL_BYTES_MOST = 4096,
-	ETAG_BYTES_MOST = 128,
+	URL_BYTES_MAX = 4096,
+	ETAG_BYTES_MAX = 128,
 	CONNECT_MS = 8000,
 	STALL_S = 15,
 	STALL_BYTES_PER_S = 64,
 	PATIENCE_S = 60,
 	TRICKLE_BYTES_PER_S = 1024, /* of a whole request; less is no line but a trap */
-	TRICKLE_S_MOST = 900,
-	HEADER_BYTES_MAX = 64 * 1024,      /* of an answer, all its headers together */
-	ERROR_BODY_BYTES_MOST = 64 * 1024, /* read to its end, so that the connection can stay */
-	CONNECTIONS_MOST = 8,              /* with HTTP/1.1; HTTP/2 needs one */
-	SOCKETS_MOST = 64,
+	TRICKLE_S_MAX = 900,
+	HEADER_BYTES_MAX = 64 * 1024,     /* of an answer, all its headers together */
+	ERROR_BODY_BYTES_MAX = 64 * 1024, /* read to its end, so that the connection can stay */
+	CONNECTIONS_MAX = 8,              /* with HTTP/1.1; HTTP/2 needs one */
+	SOCKETS_MAX = 64,
 	EVENTS = 16,
 };
 
 struct http {
 	CURLM *multi;
 	int epoll_fd, timer_fd;
-	char url[URL_BYTES_MOST];
+	char url[URL_BYTES_MAX];
 	char folder[PATH_MAX]; /* as given, when local */
 	char *ca_file, *redirect_hosts;
 	long stall_s, patience_s;
 	bool is_local;
-	int sockets[SOCKETS_MOST]; /* open ones, for what they received */
+	int sockets[SOCKETS_MAX]; /* open ones, for what they received */
 	size_t socket_count;
 	uint64_t received_bytes; /* by sockets that were closed, and from a local folder */
 };
@@ -51,7 +51,7 @@ struct http_request {
 	CURL *easy;
 	struct curl_slist *headers;
 	struct http_ask ask;
-	char etag[ETAG_BYTES_MOST]; /* of the answer */
+	char etag[ETAG_BYTES_MAX]; /* of the answer */
 	char error[CURL_ERROR_SIZE];
 	long status; /* known once the body begins; 0 before, and of a local folder */
 	bool body_began;
@@ -83,7 +83,7 @@ static curl_socket_t on_open(void *data, curlsocktype purpose, struct curl_socka
 	int fd = socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
 
 	(void)purpose;
-	if (fd >= 0 && http->socket_count < SOCKETS_MOST)
+	if (fd >= 0 && http->socket_count < SOCKETS_MAX)
 		http->sockets[http->socket_count++] = fd;
 	return fd < 0 ? CURL_SOCKET_BAD : fd;
 }
@@ -266,7 +266,7 @@ static size_t on_body(char *data, size_t one, size_t size, void *user)
 	}
 	if (!has_body_for_us(request)) {
 		request->ignored += size;
-		return request->ignored > ERROR_BODY_BYTES_MOST ? 0 : size;
+		return request->ignored > ERROR_BODY_BYTES_MAX ? 0 : size;
 	}
 	if (request->skip >= piece.size) {
 		request->skip -= piece.size;
@@ -473,15 +473,15 @@ static long time_limit_s(const struct http_request *request)
 	const struct http_ask *ask = &request->ask;
 	uint64_t for_bytes_s = (ask->size ? ask->size : ask->ceiling) / TRICKLE_BYTES_PER_S;
 
-	if (for_bytes_s > TRICKLE_S_MOST)
-		for_bytes_s = TRICKLE_S_MOST;
+	if (for_bytes_s > TRICKLE_S_MAX)
+		for_bytes_s = TRICKLE_S_MAX;
 	return request->http->patience_s + (long)for_bytes_s;
 }
 
 static void set_ask(struct http_request *request)
 {
 	const struct http_ask *ask = &request->ask;
-	char text[URL_BYTES_MOST + 256];
+	char text[URL_BYTES_MAX + 256];
 
 	curl_easy_setopt(request->easy, CURLOPT_TIMEOUT, time_limit_s(request));
 	snprintf(text, sizeof(text), "%s/%s", request->http->url, ask->path);
@@ -601,7 +601,7 @@ static int open_loop(struct http *http)
 	curl_multi_setopt(http->multi, CURLMOPT_TIMERFUNCTION, on_timer);
 	curl_multi_setopt(http->multi, CURLMOPT_TIMERDATA, http);
 	curl_multi_setopt(http->multi, CURLMOPT_PIPELINING, (long)CURLPIPE_MULTIPLEX);
-	curl_multi_setopt(http->multi, CURLMOPT_MAX_HOST_CONNECTIONS, (long)CONNECTIONS_MOST);
+	curl_multi_setopt(http->multi, CURLMOPT_MAX_HOST_CONNECTIONS, (long)CONNECTIONS_MAX);
 	return 0;
 }
 

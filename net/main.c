@@ -105,7 +105,7 @@ static void take_option(struct fetch_options *options, int option)
 		options->socket_path = optarg;
 		break;
 	case OPTION_FIGURES:
-		options->figures_path = optarg;
+		options->metrics_path = optarg;
 		break;
 	case OPTION_FD:
 		options->fd = (int)number("fd", optarg, 0, 65535);

@@ -27,8 +27,8 @@ void packets_init(struct packets *packets, int fd)
 {
 	*packets = (struct packets){ .fd = fd };
 	packets->last = &packets->first;
-	buffer_init(&packets->in, MESSAGE_BYTES_MOST + 1);
-	buffer_init(&packets->out, MESSAGE_BYTES_MOST);
+	buffer_init(&packets->in, MESSAGE_BYTES_MAX + 1);
+	buffer_init(&packets->out, MESSAGE_BYTES_MAX);
 	fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
 }
 
@@ -206,8 +206,8 @@ static int peek_packet(struct packets *packets, int *passed)
 	if (packets->fd < 0)
 		return -EPIPE;
 	buffer_clear(&packets->in);
-	part.iov_base = buffer_extend(&packets->in, MESSAGE_BYTES_MOST + 1);
-	part.iov_len = MESSAGE_BYTES_MOST + 1;
+	part.iov_base = buffer_extend(&packets->in, MESSAGE_BYTES_MAX + 1);
+	part.iov_len = MESSAGE_BYTES_MAX + 1;
 	if (!part.iov_base)
 		return packets->in.error;
 	got = receive_now(packets->fd, &header, MSG_PEEK);

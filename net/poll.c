@@ -9,7 +9,7 @@
 #include "base/log.h"
 
 enum {
-	ETAG_BYTES_MOST = 128,
+	ETAG_BYTES_MAX = 128,
 	PATH_BYTES = 32,
 	VERDICT_MS = 3000, /* for the kiosk to say whether it took a root */
 };
@@ -18,7 +18,7 @@ enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_VERDICT, STAGE_TIMESTAMP, STAGE_RELEA
 
 struct known {
 	struct buffer file; /* empty: none yet */
-	char etag[ETAG_BYTES_MOST];
+	char etag[ETAG_BYTES_MAX];
 };
 
 struct poll {
@@ -45,10 +45,10 @@ int poll_create(struct poll **out, const struct poll_options *options)
 	if (!poll)
 		return -ENOMEM;
 	poll->options = *options;
-	buffer_init(&poll->body, MESSAGE_META_BYTES_MOST);
-	buffer_init(&poll->root.file, MESSAGE_META_BYTES_MOST);
-	buffer_init(&poll->timestamp.file, MESSAGE_META_BYTES_MOST);
-	buffer_init(&poll->release.file, MESSAGE_META_BYTES_MOST);
+	buffer_init(&poll->body, MESSAGE_META_BYTES_MAX);
+	buffer_init(&poll->root.file, MESSAGE_META_BYTES_MAX);
+	buffer_init(&poll->timestamp.file, MESSAGE_META_BYTES_MAX);
+	buffer_init(&poll->release.file, MESSAGE_META_BYTES_MAX);
 	return 0;
 }
 
@@ -242,7 +242,7 @@ static void ask(struct poll *poll)
 	const struct known *known = known_of_stage(poll);
 	char path[PATH_BYTES];
 	struct http_ask question = { .path = path_of_stage(poll, path),
-				     .ceiling = MESSAGE_META_BYTES_MOST,
+				     .ceiling = MESSAGE_META_BYTES_MAX,
 				     .etag = known->file.size ? known->etag : NULL,
 				     .receive = on_piece,
 				     .done = on_done,

@@ -31,6 +31,6 @@ void poll_ask(struct poll *poll, uint32_t period_s);
 void poll_trust(struct poll *poll, uint32_t root_version);
 void poll_stop(struct poll *poll); /* until poll_ask; what is known is forgotten */
 void poll_work(struct poll *poll);
-int64_t poll_due_ms(const struct poll *poll); /* as bring_due_ms */
+int64_t poll_due_ms(const struct poll *poll); /* as downloader_due_ms */
 
 #endif

@@ -36,7 +36,7 @@ struct job {
 	enum stick_news news;
 	struct stick_file files[STICK_FILES_MAX];
 	size_t file_count;
-	struct hash roots[MESSAGE_RELEASES_MOST];
+	struct hash roots[MESSAGE_RELEASES_MAX];
 	size_t root_count;
 	struct job_object objects[OBJECTS_MAX];
 	size_t object_count;
@@ -69,7 +69,7 @@ struct stick {
 	bool is_here;
 	bool hangs; /* the job under way was given up */
 	uint32_t root_version;
-	struct hash roots[MESSAGE_RELEASES_MOST];
+	struct hash roots[MESSAGE_RELEASES_MAX];
 	size_t root_count;
 	struct asked *asked; /* owned; sorted by priority when not asked_changed, best last */
 	size_t asked_count, asked_capacity;
@@ -93,7 +93,7 @@ static void do_job(struct worker *worker)
 	for (size_t i = 0; i < job->object_count; i++) {
 		struct job_object *object = &job->objects[i];
 
-		buffer_init(&object->bytes, OBJECT_BYTES_MOST);
+		buffer_init(&object->bytes, OBJECT_BYTES_MAX);
 		object->rc = stick_reader_get(&worker->reader, job->roots, job->root_count,
 					      &object->want, &object->bytes);
 	}
@@ -293,7 +293,7 @@ bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
 		return false;
 	if (stick->asked_count == stick->asked_capacity && !grow(stick))
 		return false;
-	stick->root_count = count < MESSAGE_RELEASES_MOST ? count : MESSAGE_RELEASES_MOST;
+	stick->root_count = count < MESSAGE_RELEASES_MAX ? count : MESSAGE_RELEASES_MAX;
 	memcpy(stick->roots, roots, stick->root_count * sizeof(*roots));
 	stick->asked[stick->asked_count++] = (struct asked){ *want, stick->orders++ };
 	stick->asked_changed = true;

@@ -17,7 +17,7 @@ enum {
 int stick_reader_init(struct stick_reader *reader, const char *folder)
 {
 	*reader = (struct stick_reader){ .folder = strdup(folder), .below = "", .pack_fd = -1 };
-	buffer_init(&reader->stamp, MESSAGE_META_BYTES_MOST);
+	buffer_init(&reader->stamp, MESSAGE_META_BYTES_MAX);
 	buffer_init(&reader->file, LOCATOR_BYTES_MAX);
 	return reader->folder ? 0 : -ENOMEM;
 }
@@ -25,7 +25,7 @@ int stick_reader_init(struct stick_reader *reader, const char *folder)
 /* What was read of the stick that was there. */
 static void close_files(struct stick_reader *reader)
 {
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++) {
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
 		locator_finish(&reader->releases[i].locator);
 		reader->releases[i] = (struct stick_release){ 0 };
 	}
@@ -87,7 +87,7 @@ static int read_stamp(struct stick_reader *reader)
 
 	for (size_t i = 0; rc < 0 && i < ARRAY_COUNT(below); i++) {
 		reader->below = below[i];
-		rc = read_file(reader, "timestamp.json", MESSAGE_META_BYTES_MOST);
+		rc = read_file(reader, "timestamp.json", MESSAGE_META_BYTES_MAX);
 	}
 	return rc;
 }
@@ -101,7 +101,7 @@ static void add_file(const struct stick_reader *reader, struct stick_file *files
 	struct stick_file *file = &files[*count];
 
 	*file = (struct stick_file){ .role = role, .version = version };
-	buffer_init(&file->bytes, MESSAGE_META_BYTES_MOST);
+	buffer_init(&file->bytes, MESSAGE_META_BYTES_MAX);
 	buffer_put(&file->bytes, reader->file.data, reader->file.size);
 	if (!file->bytes.error)
 		++*count;
@@ -114,14 +114,14 @@ static void read_all(struct stick_reader *reader, uint32_t root_version, struct 
 
 	for (uint32_t i = 1; i <= STICK_ROOTS_MAX; i++) {
 		snprintf(name, sizeof(name), "root/%u.json", root_version + i);
-		if (read_file(reader, name, MESSAGE_META_BYTES_MOST) < 0)
+		if (read_file(reader, name, MESSAGE_META_BYTES_MAX) < 0)
 			break;
 		add_file(reader, files, count, META_ROOT, root_version + i);
 	}
 	buffer_clear(&reader->file);
 	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
 	add_file(reader, files, count, META_TIMESTAMP, 0);
-	if (read_file(reader, "release.json", MESSAGE_META_BYTES_MOST) == 0)
+	if (read_file(reader, "release.json", MESSAGE_META_BYTES_MAX) == 0)
 		add_file(reader, files, count, META_RELEASE, 0);
 }
 
@@ -151,10 +151,10 @@ static const struct stick_release *release_of(struct stick_reader *reader, struc
 	char name[NAME_BYTES] = "locator/";
 	struct stick_release *release;
 
-	for (size_t i = 0; i < MESSAGE_RELEASES_MOST; i++)
+	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++)
 		if (hash_equal(reader->releases[i].root, root))
 			return &reader->releases[i];
-	release = &reader->releases[reader->next_release++ % MESSAGE_RELEASES_MOST];
+	release = &reader->releases[reader->next_release++ % MESSAGE_RELEASES_MAX];
 	locator_finish(&release->locator);
 	*release = (struct stick_release){ .root = root };
 	hash_to_hex(root, name + strlen(name));

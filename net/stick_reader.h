@@ -23,7 +23,7 @@ struct stick_reader {
 	const char *below;   /* in it lies the release: "" or "release/" */
 	struct buffer stamp; /* timestamp.json as it was told; empty: no stick */
 	struct buffer file;  /* read last */
-	struct stick_release releases[MESSAGE_RELEASES_MOST];
+	struct stick_release releases[MESSAGE_RELEASES_MAX];
 	size_t next_release; /* to be overwritten */
 	struct hash pack;    /* that is open */
 	int pack_fd;         /* -1: none */

@@ -13,7 +13,7 @@
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sampler.h"
 
-enum { STAMP_TEXT_BYTES_MOST = 4 << 20, PROGRAM_BYTES_MOST = 256 << 20 };
+enum { STAMP_TEXT_BYTES_MAX = 4 << 20, PROGRAM_BYTES_MAX = 256 << 20 };
 
 /* ---- has anything changed since the last build? */
 
@@ -63,7 +63,7 @@ static int put_program(struct buffer *text)
 	struct hash hash;
 	int rc;
 
-	buffer_init(&program, PROGRAM_BYTES_MOST);
+	buffer_init(&program, PROGRAM_BYTES_MAX);
 	rc = buffer_read_file(&program, "/proc/self/exe");
 	hash = hash_of(buffer_bytes(&program));
 	buffer_put(text, hash.bytes, HASH_BYTES);
@@ -83,7 +83,7 @@ static int make_stamp(struct hash *out, const struct content *content,
 
 	if (rc < 0)
 		return fail(&fault, rc, strerror(-rc));
-	buffer_init(&text, STAMP_TEXT_BYTES_MOST);
+	buffer_init(&text, STAMP_TEXT_BYTES_MAX);
 	rc = put_program(&text);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
 	buffer_put_u8(&text, content->binary_tree);
@@ -147,7 +147,7 @@ void build_master_options(struct master_options *out, const struct content *cont
 		.multires = { .kind = content->binary_tree ? MULTIRES_TREE : MULTIRES_GROUPS,
 			      .patch_triangles = content->patch_triangles,
 			      .jobs = jobs },
-		.stone_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
+		.material_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
 	};
 }
 

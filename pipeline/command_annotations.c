@@ -42,12 +42,12 @@ static void say(void *data, bool is_error, const char *file, unsigned line, cons
 }
 
 /* "en,fr" in place. 0: it is no such list. */
-static uint32_t split_languages(char *list, const char *languages[INFO_LANGUAGES_MOST])
+static uint32_t split_languages(char *list, const char *languages[INFO_LANGUAGES_MAX])
 {
 	uint32_t count = 0;
 
 	for (char *code; (code = strsep(&list, ",")); count++) {
-		if (!*code || count == INFO_LANGUAGES_MOST)
+		if (!*code || count == INFO_LANGUAGES_MAX)
 			return 0;
 		languages[count] = code;
 	}
@@ -105,7 +105,7 @@ static int write_export(const struct annotations *annotations, const char *conte
 
 static int run_export(const char *content, const char *out, char *language_list)
 {
-	const char *languages[INFO_LANGUAGES_MOST];
+	const char *languages[INFO_LANGUAGES_MAX];
 	struct annotations_export_options options = { .folder = content, .complaint = say };
 	struct annotations annotations;
 	int rc;

@@ -33,8 +33,8 @@ static bool read_size(const char *text, struct reference_options *out)
 	char rest;
 
 	return sscanf(text, "%dx%d%c", &out->width_px, &out->height_px, &rest) == 2 &&
-	       out->width_px > 0 && out->width_px <= REFERENCE_SIDE_PX_MOST && out->height_px > 0 &&
-	       out->height_px <= REFERENCE_SIDE_PX_MOST;
+	       out->width_px > 0 && out->width_px <= REFERENCE_SIDE_PX_MAX && out->height_px > 0 &&
+	       out->height_px <= REFERENCE_SIDE_PX_MAX;
 }
 
 static bool read_supersample(const char *text, struct reference_options *out)
@@ -42,7 +42,7 @@ static bool read_supersample(const char *text, struct reference_options *out)
 	char rest;
 
 	return sscanf(text, "%u%c", &out->supersample, &rest) == 1 && out->supersample >= 1 &&
-	       out->supersample <= REFERENCE_SUPERSAMPLE_MOST;
+	       out->supersample <= REFERENCE_SUPERSAMPLE_MAX;
 }
 
 static bool read_options(int argc, char **argv, struct settings *settings)

@@ -98,8 +98,8 @@ static int read_options(int argc, char **argv, struct request *request)
 			fputs(help, stdout);
 			return 1;
 		} else if (c == 't') {
-			good = good && command_number(optarg, 0, TEMPLE_TRIANGLES_MOST,
-						      &request->triangles);
+			good = good &&
+			       command_number(optarg, 0, TEMPLE_TRIANGLES_MAX, &request->triangles);
 		} else if (c == 's') {
 			good = good && command_number(optarg, 0, UINT32_MAX, &request->seed);
 		} else if (c == 'o') {
@@ -110,12 +110,12 @@ static int read_options(int argc, char **argv, struct request *request)
 			return 3;
 		}
 	}
-	if (good && optind == argc && request->path && request->triangles >= TEMPLE_TRIANGLES_LEAST)
+	if (good && optind == argc && request->path && request->triangles >= TEMPLE_TRIANGLES_MIN)
 		return 0;
 	fprintf(stderr,
 		"gopura-content temple: --triangles from %d to %d and --out FILE are needed; see "
 		"--help\n",
-		TEMPLE_TRIANGLES_LEAST, TEMPLE_TRIANGLES_MOST);
+		TEMPLE_TRIANGLES_MIN, TEMPLE_TRIANGLES_MAX);
 	return 3;
 }
 

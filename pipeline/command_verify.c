@@ -99,7 +99,7 @@ static int verify(const char *place, const char *ca_file, const char *trust)
 	struct buffer root;
 	int rc;
 
-	buffer_init(&root, METADATA_FILE_BYTES_MOST);
+	buffer_init(&root, METADATA_FILE_BYTES_MAX);
 	if (trust && (rc = buffer_read_file(&root, trust)) < 0) {
 		fprintf(stderr, "gopura-content verify: %s: %s\n", trust, strerror(-rc));
 		buffer_finish(&root);

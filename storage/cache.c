@@ -10,7 +10,7 @@
 #include "storage/cache_private.h"
 
 enum {
-	LOG_BYTES_MOST = 64 << 20,
+	LOG_BYTES_MAX = 64 << 20,
 	TOUCH_S = 600, /* a want moves an object up at most this often: it costs a write */
 	EVICT_TRIES = 8,
 	KEPT_NOW = 1, /* in keeps.releases */
@@ -56,11 +56,11 @@ int cache_create(struct cache **out, const struct cache_options *options)
 		free(cache);
 		return -ENOMEM;
 	}
-	cache->budget_bytes = options->budget_bytes < CACHE_BUDGET_LEAST ? CACHE_BUDGET_LEAST
-									 : options->budget_bytes;
+	cache->budget_bytes =
+		options->budget_bytes < CACHE_BUDGET_MIN ? CACHE_BUDGET_MIN : options->budget_bytes;
 	cache->log_bytes = cache->budget_bytes / 8;
-	if (cache->log_bytes > LOG_BYTES_MOST)
-		cache->log_bytes = LOG_BYTES_MOST;
+	if (cache->log_bytes > LOG_BYTES_MAX)
+		cache->log_bytes = LOG_BYTES_MAX;
 	if (cache_ready(cache))
 		cache_shrink(cache);
 	*out = cache;

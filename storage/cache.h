@@ -16,7 +16,7 @@
 
 struct cache; /* private to cache.c */
 
-enum { CACHE_BUDGET_LEAST = 4 << 20 /* bytes; a smaller budget is raised to this */ };
+enum { CACHE_BUDGET_MIN = 4 << 20 /* bytes; a smaller budget is raised to this */ };
 
 struct cache_options {
 	const char *path;      /* copied; its folder must exist */

@@ -11,8 +11,8 @@
 enum {
 	RETRY_MS = 30000,
 	COMPLAIN_MS = 60000,
-	FAULTS_MOST = 16,            /* failed reads in a row: the file is as good as damaged */
-	BROKEN_BYTES_MOST = 1 << 20, /* of a damaged file: its header and schema, for who looks */
+	FAULTS_MAX = 16,            /* failed reads in a row: the file is as good as damaged */
+	BROKEN_BYTES_MAX = 1 << 20, /* of a damaged file: its header and schema, for who looks */
 	SCHEMA_VERSION = 2,
 };
 
@@ -24,8 +24,7 @@ static const char *const statement_sql[STATEMENT_COUNT] = {
 	[STATEMENT_PUT] = "INSERT OR REPLACE INTO objects (hash, rank, kept, size, bytes)"
 			  " VALUES (?1, ?2, ?3, ?4, ?5)",
 	[STATEMENT_DROP] = "DELETE FROM objects WHERE id = ?1",
-	[STATEMENT_LEAST] =
-		"SELECT id, size FROM objects WHERE kept = 0 ORDER BY rank, size LIMIT 1",
+	[STATEMENT_MIN] = "SELECT id, size FROM objects WHERE kept = 0 ORDER BY rank, size LIMIT 1",
 	[STATEMENT_IS_KEPT] = "SELECT releases FROM keeps WHERE hash = ?1",
 	[STATEMENT_KEEP] = "INSERT INTO keeps (hash, releases) VALUES (?1, 1)"
 			   " ON CONFLICT (hash) DO UPDATE SET releases = releases | 1",
@@ -173,7 +172,7 @@ static void start_over(struct cache *cache)
 
 	cache_close(cache);
 	cache->figures.set_aside++;
-	rc = db_set_aside(cache->path, BROKEN_BYTES_MOST);
+	rc = db_set_aside(cache->path, BROKEN_BYTES_MAX);
 	log_warn("storage", "%s was damaged: set aside as %s.broken, filling a new one",
 		 cache->path, cache->path);
 	if (rc == 0)
@@ -196,7 +195,7 @@ int cache_judge(struct cache *cache, int rc, const char *doing)
 		cache->in_batch = false;
 		cache->batch_pages = 0;
 	}
-	if (rc == -EBADMSG || (rc == -EIO && ++cache->faults >= FAULTS_MOST)) {
+	if (rc == -EBADMSG || (rc == -EIO && ++cache->faults >= FAULTS_MAX)) {
 		start_over(cache);
 		return -EIO;
 	}

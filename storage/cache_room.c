@@ -7,7 +7,7 @@
 
 /* How the budget holds. It is split into the database file and its write-ahead log, once:
  *
- *   log       an eighth, at most LOG_BYTES_MOST. A transaction is ended when the pages it dirtied,
+ *   log       an eighth, at most LOG_BYTES_MAX. A transaction is ended when the pages it dirtied,
  *             overestimated, reach a quarter of that; the log is written back into the database as
  *             soon as it is past half, and no further write is taken while that fails.
  *   database  the rest, as SQLite's own max_page_count: it cannot grow past it. Pages of evicted
@@ -16,7 +16,7 @@
  *
  * Exclusive locking keeps the log's index in memory, so there is no third file. */
 
-enum { BATCH_BYTES_MOST = 2 << 20 };
+enum { BATCH_BYTES_MAX = 2 << 20 };
 
 int64_t cache_tick(const struct cache *cache)
 {
@@ -108,8 +108,8 @@ static bool is_too_long(const struct cache *cache, int64_t pages)
 {
 	uint64_t most = cache->log_bytes / 4;
 
-	if (most > BATCH_BYTES_MOST)
-		most = BATCH_BYTES_MOST;
+	if (most > BATCH_BYTES_MAX)
+		most = BATCH_BYTES_MAX;
 	return (cache->batch_pages + (uint64_t)pages) * CACHE_PAGE_BYTES >= most;
 }
 
@@ -129,7 +129,7 @@ int cache_count_pages(struct cache *cache, int64_t pages)
 /* Drops the least useful object. -ENOSPC: all that is left is kept. */
 static int evict_one(struct cache *cache)
 {
-	sqlite3_stmt *least = cache->statements[STATEMENT_LEAST];
+	sqlite3_stmt *least = cache->statements[STATEMENT_MIN];
 	sqlite3_stmt *drop = cache->statements[STATEMENT_DROP];
 	int code = sqlite3_step(least);
 	sqlite3_int64 id = code == SQLITE_ROW ? sqlite3_column_int64(least, 0) : 0;

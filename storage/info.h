@@ -12,13 +12,13 @@
 #include "format/hash.h"
 
 enum {
-	INFO_CORNERS_MOST = 16,
-	INFO_LANGUAGES_MOST = 64,
-	INFO_PARTS_MOST = 1000,
-	INFO_PAGE_BYTES_MOST = 256 << 10, /* one HTML page; what ui/html.h takes */
-	INFO_PAGE_PICTURES_MOST = 64,
-	INFO_TOURS_MOST = 8,
-	INFO_STOPS_MOST = 64, /* of a tour */
+	INFO_CORNERS_MAX = 16,
+	INFO_LANGUAGES_MAX = 64,
+	INFO_PARTS_MAX = 1000,
+	INFO_PAGE_BYTES_MAX = 256 << 10, /* one HTML page; what ui/html.h takes */
+	INFO_PAGE_PICTURES_MAX = 64,
+	INFO_TOURS_MAX = 8,
+	INFO_STOPS_MAX = 64, /* of a tour */
 };
 
 enum info_region_kind { INFO_REGION_POINT, INFO_REGION_SPHERE, INFO_REGION_BOX, INFO_REGION_PRISM };
@@ -34,7 +34,7 @@ struct info_region {
 	float turn_deg;        /* box: about the vertical */
 	float floor_m, roof_m; /* prism */
 	uint32_t corner_count;
-	float corners_m[INFO_CORNERS_MOST][2]; /* prism: x, y, counter-clockwise */
+	float corners_m[INFO_CORNERS_MAX][2]; /* prism: x, y, counter-clockwise */
 };
 
 /* Ways of looking that the content gives visitors, a bit each: docs/tools.md. */
@@ -117,7 +117,7 @@ struct info_tour {
 	const char *id;
 	bool attract; /* flown round while nobody is there; its way is closed */
 	uint32_t stop_count;
-	struct info_stop stops[INFO_STOPS_MOST];
+	struct info_stop stops[INFO_STOPS_MAX];
 };
 
 /* None in images before version 3. Borrowed until info_close; texts as info_text gives them. */

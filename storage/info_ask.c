@@ -89,7 +89,7 @@ struct search {
 	struct info *info;
 	uint32_t language;
 	uint32_t *parts, count, most;
-	uint32_t others[INFO_PARTS_MOST], other_count;
+	uint32_t others[INFO_PARTS_MAX], other_count;
 };
 
 static bool is_listed(const uint32_t *parts, uint32_t count, uint32_t part)
@@ -110,7 +110,7 @@ static bool on_hit(void *data, int64_t content_id)
 	if (!hit)
 		return true;
 	if (hit->language != search->language) {
-		if (search->other_count < search->most && search->other_count < INFO_PARTS_MOST &&
+		if (search->other_count < search->most && search->other_count < INFO_PARTS_MAX &&
 		    !is_listed(search->others, search->other_count, hit->part))
 			search->others[search->other_count++] = hit->part;
 		return true;
@@ -134,7 +134,7 @@ uint32_t info_search(struct info *info, const char *query, const char *language,
 	info->calls = 0;
 	info->calls_most = CALLS_OF_A_SEARCH;
 	code = info_index_find(info->db, query, on_hit, &search);
-	info->calls_most = INFO_CALLS_MOST;
+	info->calls_most = INFO_CALLS_MAX;
 	/* What was found before the bound or the damage is found all the same. */
 	if (code != SQLITE_OK)
 		log_warn("storage", "search in the information database: %s",

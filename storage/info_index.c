@@ -9,7 +9,7 @@
 #include "storage/info.h"
 #include "storage/words.h"
 
-enum { WORDS_BYTES_MOST = 32 * INFO_PAGE_BYTES_MOST };
+enum { WORDS_BYTES_MAX = 32 * INFO_PAGE_BYTES_MAX };
 
 /* ---- a page's words ---- */
 
@@ -89,7 +89,7 @@ static int bind_words(sqlite3_stmt *to, int column, const char *text, const char
 	struct buffer words;
 	int code = SQLITE_NOMEM;
 
-	buffer_init(&words, WORDS_BYTES_MOST);
+	buffer_init(&words, WORDS_BYTES_MAX);
 	if ((!text || words_of(&words, text) == 0) && (!more || words_of(&words, more) == 0))
 		code = sqlite3_bind_text64(to, column, words.data ? (char *)words.data : "",
 					   words.size, SQLITE_TRANSIENT, SQLITE_UTF8);
@@ -102,7 +102,7 @@ static int bind_page(sqlite3_stmt *to, int column, const char *html)
 	struct buffer text;
 	int code = SQLITE_NOMEM;
 
-	buffer_init(&text, WORDS_BYTES_MOST);
+	buffer_init(&text, WORDS_BYTES_MAX);
 	if (!html)
 		code = bind_words(to, column, NULL, NULL);
 	else if (read_text(&text, html) == 0)
@@ -205,7 +205,7 @@ int info_index_find(sqlite3 *db, const char *text, info_index_hit *hit, void *da
 	bool more = true;
 	int code = SQLITE_NOMEM;
 
-	buffer_init(&words, 16 * WORDS_QUERY_BYTES_MOST);
+	buffer_init(&words, 16 * WORDS_QUERY_BYTES_MAX);
 	if (words_query(&words, text) == 0)
 		code = sqlite3_prepare_v2(
 			db, "SELECT rowid FROM search WHERE search MATCH ? ORDER BY rank, rowid",

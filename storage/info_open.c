@@ -17,7 +17,7 @@
 
 enum {
 	STEPS_PER_CALL = 1000,
-	PICTURES_MOST = 100000,
+	PICTURES_MAX = 100000,
 };
 
 int info_from_sqlite(sqlite3 *db, int code, const char *doing)
@@ -90,7 +90,7 @@ static int read_language(struct info *info, sqlite3_stmt *row)
 {
 	int rc;
 
-	if (info->language_count == INFO_LANGUAGES_MOST ||
+	if (info->language_count == INFO_LANGUAGES_MAX ||
 	    sqlite3_column_int64(row, 0) != info->language_count)
 		return -EBADMSG;
 	rc = info_copy_text(row, 1, &info->languages[info->language_count]);
@@ -115,7 +115,7 @@ static int read_picture(struct info *info, sqlite3_stmt *row)
 	char *name = NULL;
 	int rc;
 
-	if (info->picture_count == PICTURES_MOST || sqlite3_column_bytes(row, 1) != HASH_BYTES)
+	if (info->picture_count == PICTURES_MAX || sqlite3_column_bytes(row, 1) != HASH_BYTES)
 		return -EBADMSG;
 	rc = info_copy_text(row, 0, &name);
 	if (rc < 0 || !name)
@@ -166,7 +166,7 @@ static int read_part(struct info *info, sqlite3_stmt *row)
 	char *id = NULL;
 	int rc;
 
-	if (info->part_count == INFO_PARTS_MOST || sqlite3_column_int64(row, 0) != info->part_count)
+	if (info->part_count == INFO_PARTS_MAX || sqlite3_column_int64(row, 0) != info->part_count)
 		return -EBADMSG;
 	rc = info_copy_text(row, 1, &id);
 	if (rc < 0 || !id)
@@ -194,7 +194,7 @@ static int read_corner(struct info *info, sqlite3_stmt *row)
 	if (id < 0 || id >= info->part_count)
 		return -EBADMSG;
 	region = &info->parts[id].public.region;
-	if (region->corner_count == INFO_CORNERS_MOST)
+	if (region->corner_count == INFO_CORNERS_MAX)
 		return -EBADMSG;
 	return info_read_floats(row, 1, region->corners_m[region->corner_count++], 2);
 }
@@ -267,7 +267,7 @@ static int attach_image(struct info *info, struct bytes image)
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
 	sqlite3_db_config(info->db, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
 	sqlite3_limit(info->db, SQLITE_LIMIT_LENGTH, 16 << 20);
-	info->calls_most = INFO_CALLS_MOST;
+	info->calls_most = INFO_CALLS_MAX;
 	sqlite3_progress_handler(info->db, STEPS_PER_CALL, bound_work, info);
 	return 0;
 }
@@ -394,7 +394,7 @@ int info_open(struct info **out, struct bytes image)
 	*out = NULL;
 	if (!info)
 		return -ENOMEM;
-	buffer_init(&info->credits, INFO_CREDITS_BYTES_MOST);
+	buffer_init(&info->credits, INFO_CREDITS_BYTES_MAX);
 	rc = open_image(info, image);
 	if (rc < 0) {
 		info_close(info);
@@ -415,14 +415,14 @@ void info_close(struct info *info)
 	info_drop_tours(info);
 	for (uint32_t i = 0; i < info->part_count; i++) {
 		free((char *)info->parts[i].public.id);
-		for (size_t k = 0; k < INFO_LANGUAGES_MOST; k++) {
+		for (size_t k = 0; k < INFO_LANGUAGES_MAX; k++) {
 			free(info->parts[i].texts[k].title);
 			free(info->parts[i].texts[k].caption);
 		}
 	}
 	for (uint32_t i = 0; i < info->picture_count; i++)
 		free((char *)info->pictures[i].name);
-	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++)
+	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++)
 		free(info->languages[i]);
 	free(info->parts);
 	free(info->pictures);

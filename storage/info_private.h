@@ -7,8 +7,8 @@
 #include "storage/info.h"
 
 enum {
-	INFO_CALLS_MOST = 100000, /* 10^8 steps of SQLite's machine while opening */
-	INFO_CREDITS_BYTES_MOST = 8 << 10,
+	INFO_CALLS_MAX = 100000, /* 10^8 steps of SQLite's machine while opening */
+	INFO_CREDITS_BYTES_MAX = 8 << 10,
 };
 
 /* A row of information_contents. */
@@ -26,14 +26,14 @@ struct text {
 struct part {
 	struct info_part public; /* id owned */
 	uint32_t thumbnail;      /* picture index + 1; 0: none */
-	struct text texts[INFO_LANGUAGES_MOST];
+	struct text texts[INFO_LANGUAGES_MAX];
 };
 
 struct tour {
-	struct info_tour public;                                           /* id owned */
-	uint32_t thumbnail;                                                /* as a part's */
-	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
-	char *stop_captions[INFO_STOPS_MOST][INFO_LANGUAGES_MOST];         /* the same */
+	struct info_tour public;                                         /* id owned */
+	uint32_t thumbnail;                                              /* as a part's */
+	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
+	char *stop_captions[INFO_STOPS_MAX][INFO_LANGUAGES_MAX];         /* the same */
 };
 
 struct info {
@@ -43,7 +43,7 @@ struct info {
 	uint32_t calls, calls_most;
 	struct info_hit *contents; /* by id; made by the first search */
 	uint32_t content_count;
-	char *languages[INFO_LANGUAGES_MOST];
+	char *languages[INFO_LANGUAGES_MAX];
 	uint32_t language_count;
 	struct part *parts;
 	uint32_t part_count;
@@ -71,7 +71,7 @@ void info_drop_tours(struct info *info);
 /* All languages, in the order in which they stand in for one another: the one asked for, those of
  * its kind ("pt" for "pt-BR", and the other way round), then as the release has them. */
 struct info_order {
-	uint32_t languages[INFO_LANGUAGES_MOST], count;
+	uint32_t languages[INFO_LANGUAGES_MAX], count;
 };
 struct info_order info_order_of(const struct info *info, const char *language);
 /* The first that has a text; NULL: none has. found may be NULL. */

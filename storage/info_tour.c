@@ -18,7 +18,7 @@ static int read_tour(struct info *info, sqlite3_stmt *row)
 	struct tour *grown, *tour;
 	int rc;
 
-	if (info->tour_count == INFO_TOURS_MOST || sqlite3_column_int64(row, 0) != info->tour_count)
+	if (info->tour_count == INFO_TOURS_MAX || sqlite3_column_int64(row, 0) != info->tour_count)
 		return -EBADMSG;
 	grown = realloc(info->tours, (info->tour_count + 1) * sizeof(*grown));
 	if (!grown)
@@ -69,7 +69,7 @@ static int read_stop(struct info *info, sqlite3_stmt *row)
 	if (id == info->tour_count)
 		return -EBADMSG;
 	tour = &info->tours[id].public;
-	if (tour->stop_count == INFO_STOPS_MOST || sqlite3_column_int64(row, 1) != tour->stop_count)
+	if (tour->stop_count == INFO_STOPS_MAX || sqlite3_column_int64(row, 1) != tour->stop_count)
 		return -EBADMSG;
 	stop = &tour->stops[tour->stop_count++];
 	rc = info_read_floats(row, 2, stop->eye_m, 3);
@@ -127,7 +127,7 @@ int info_load_tours(struct info *info)
 	for (uint32_t i = 0; i < info->tour_count && rc == 0; i++) {
 		const struct info_tour *tour = &info->tours[i].public;
 
-		/* Ends that stay are what its way's moves lie between: render/tour_path.h. */
+		/* Ends that stay are what its way's moves lie between: geometry/tour_path.h. */
 		if (!info->tours[i].titles[0] || tour->stop_count < 2 ||
 		    tour->stops[0].stay_s == 0 || tour->stops[tour->stop_count - 1].stay_s == 0)
 			rc = -EBADMSG;
@@ -139,10 +139,10 @@ void info_drop_tours(struct info *info)
 {
 	for (uint32_t i = 0; i < info->tour_count; i++) {
 		free((char *)info->tours[i].public.id);
-		for (size_t k = 0; k < INFO_LANGUAGES_MOST; k++) {
+		for (size_t k = 0; k < INFO_LANGUAGES_MAX; k++) {
 			free(info->tours[i].titles[k]);
 			free(info->tours[i].captions[k]);
-			for (size_t s = 0; s < INFO_STOPS_MOST; s++)
+			for (size_t s = 0; s < INFO_STOPS_MAX; s++)
 				free(info->tours[i].stop_captions[s][k]);
 		}
 	}

@@ -3,8 +3,8 @@
 #include <math.h>
 
 #define DISTANCE_SIZES 5 /* of the part, from it */
-#define STEEP_LEAST    0.05f
-#define STEEP_MOST     0.7f
+#define STEEP_MIN      0.05f
+#define STEEP_MAX      0.7f
 
 float info_region_size_m(const struct info_region *region)
 {
@@ -53,7 +53,7 @@ void info_view(const struct info_region *region, const float anchor_m[3], float 
 		away[2] = 0.3f;
 		make_unit(away);
 	}
-	away[2] = fminf(fmaxf(away[2], STEEP_LEAST), STEEP_MOST);
+	away[2] = fminf(fmaxf(away[2], STEEP_MIN), STEEP_MAX);
 	make_unit(away);
 	distance = fminf(distance, DISTANCE_SIZES * size);
 	for (int i = 0; i < 3; i++)

@@ -13,7 +13,7 @@
 #include "storage/state_record.h"
 
 enum {
-	BROKEN_BYTES_MOST = 1 << 20,
+	BROKEN_BYTES_MAX = 1 << 20,
 	TIME_STEP_S = 3600,
 };
 
@@ -197,7 +197,7 @@ static void recover(struct state *state, int rc)
 		close_db(state);
 		log_error("storage", "%s is damaged: set aside as %s.broken", state->path,
 			  state->path);
-		rc = db_set_aside(state->path, BROKEN_BYTES_MOST);
+		rc = db_set_aside(state->path, BROKEN_BYTES_MAX);
 		if (rc == 0)
 			rc = open_db(state);
 	}
@@ -317,7 +317,7 @@ static void make_previous(struct record *record)
 	buffer_finish(&record->previous.file);
 	record->previous = record->release;
 	record->release = (struct kept_release){ 0 };
-	buffer_init(&record->release.file, STATE_FILE_BYTES_MOST);
+	buffer_init(&record->release.file, STATE_FILE_BYTES_MAX);
 }
 
 int state_activate(struct state *state, const struct state_release *release)
@@ -371,7 +371,7 @@ int state_fall_back(struct state *state)
 	buffer_finish(&next.release.file);
 	next.release = next.previous;
 	next.previous = (struct kept_release){ 0 };
-	buffer_init(&next.previous.file, STATE_FILE_BYTES_MOST);
+	buffer_init(&next.previous.file, STATE_FILE_BYTES_MAX);
 	next.tries = 0;
 	return change(state, &next);
 }

@@ -14,8 +14,8 @@
 struct state; /* private to state.c */
 
 enum {
-	STATE_FILE_BYTES_MOST = 64 * 1024, /* a metadata file */
-	STATE_TRIES_MOST = 3,              /* of a release that was never seen to work */
+	STATE_FILE_BYTES_MAX = 64 * 1024, /* a metadata file */
+	STATE_TRIES_MAX = 3,              /* of a release that was never seen to work */
 };
 
 struct state_release {
@@ -45,7 +45,7 @@ int64_t state_time_floor_s(const struct state *state);
 
 /* Copies what release says and raises the sequence floor to it; the one in use becomes the
  * previous one where it is proven. The first try begins, unless it is the same root. -ESTALE: below
- * the floor. -EFBIG: file past STATE_FILE_BYTES_MOST. -EIO, -ENOSPC: the old one stays in use. */
+ * the floor. -EFBIG: file past STATE_FILE_BYTES_MAX. -EIO, -ENOSPC: the old one stays in use. */
 must_check int state_activate(struct state *state, const struct state_release *release);
 /* Another try of a release that is not proven; nothing where there is no other. */
 must_check int state_try(struct state *state);

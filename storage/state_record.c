@@ -5,14 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { RECORD_BYTES_MOST = 3 * STATE_FILE_BYTES_MOST + 256, RECORD_VERSION = 2 };
+enum { RECORD_BYTES_MAX = 3 * STATE_FILE_BYTES_MAX + 256, RECORD_VERSION = 2 };
 
 void record_init(struct record *record)
 {
 	*record = (struct record){ 0 };
-	buffer_init(&record->release.file, STATE_FILE_BYTES_MOST);
-	buffer_init(&record->previous.file, STATE_FILE_BYTES_MOST);
-	buffer_init(&record->trust, STATE_FILE_BYTES_MOST);
+	buffer_init(&record->release.file, STATE_FILE_BYTES_MAX);
+	buffer_init(&record->previous.file, STATE_FILE_BYTES_MAX);
+	buffer_init(&record->trust, STATE_FILE_BYTES_MAX);
 }
 
 void record_finish(struct record *record)
@@ -44,7 +44,7 @@ void record_set_time_floor(struct record *record, int64_t floor_s)
 
 static void copy_file(struct buffer *out, const struct buffer *from)
 {
-	buffer_init(out, STATE_FILE_BYTES_MOST);
+	buffer_init(out, STATE_FILE_BYTES_MAX);
 	buffer_put(out, from->data, from->size);
 }
 
@@ -133,7 +133,7 @@ int record_hash(struct hash *out, const struct record *record)
 	struct buffer encoded;
 	int rc;
 
-	buffer_init(&encoded, RECORD_BYTES_MOST);
+	buffer_init(&encoded, RECORD_BYTES_MAX);
 	record_encode(&encoded, record);
 	rc = encoded.error;
 	*out = hash_of(buffer_bytes(&encoded));
@@ -150,7 +150,7 @@ int record_read_second(struct record *out, const char *path)
 	int rc;
 
 	snprintf(name, sizeof(name), "%s.second", path);
-	buffer_init(&file, RECORD_BYTES_MOST);
+	buffer_init(&file, RECORD_BYTES_MAX);
 	rc = buffer_read_file(&file, name);
 	if (rc == 0)
 		rc = record_decode(out, buffer_bytes(&file));
@@ -166,7 +166,7 @@ int record_write_second(const struct record *record, const char *path)
 	int rc;
 
 	snprintf(name, sizeof(name), "%s.second", path);
-	buffer_init(&file, RECORD_BYTES_MOST);
+	buffer_init(&file, RECORD_BYTES_MAX);
 	record_encode(&file, record);
 	check = hash_of(buffer_bytes(&file));
 	buffer_put(&file, check.bytes, HASH_BYTES);

@@ -13,7 +13,7 @@
 #include "base/bytes.h"
 #include "base/log.h"
 
-enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MOST = 256, DAY_S = 86400 };
+enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MAX = 256, DAY_S = 86400 };
 
 static const char header[] = "hour,kind,what,language,count\n";
 static const char *const kind_names[] = { "visit", "part", "page", "language", "search", "tour" };
@@ -22,14 +22,14 @@ static const char unset_hour[] = "unset";
 
 struct entry {
 	char hour[HOUR_BYTES]; /* 2026-11-23T10, by the clock on the wall */
-	enum tally_kind kind;
+	enum usage_kind kind;
 	char what[WHAT_BYTES], language[LANGUAGE_BYTES];
 	uint64_t count;
 };
 
-struct tally {
+struct usage {
 	char *path, *copy_path;
-	struct entry pending[PENDING_MOST];
+	struct entry pending[PENDING_MAX];
 	size_t pending_count;
 	bool complained;
 };
@@ -101,7 +101,7 @@ static bool parse_line(char *line, struct entry *out)
 		k++;
 	if (k == ARRAY_COUNT(kind_names))
 		return false;
-	*out = (struct entry){ .kind = (enum tally_kind)k, .count = strtoull(count, &end, 10) };
+	*out = (struct entry){ .kind = (enum usage_kind)k, .count = strtoull(count, &end, 10) };
 	snprintf(out->hour, sizeof(out->hour), "%s", hour);
 	snprintf(out->what, sizeof(out->what), "%s", what);
 	snprintf(out->language, sizeof(out->language), "%s", language);
@@ -173,12 +173,12 @@ static size_t sum_up(struct entry *entries, size_t count, const char *oldest)
 	return kept;
 }
 
-static void complain(struct tally *tally, const char *path, int rc)
+static void complain(struct usage *usage, const char *path, int rc)
 {
-	if (!tally->complained)
+	if (!usage->complained)
 		log_warn("storage", "%s: counts of what visitors look at: %s; going on without",
 			 path, strerror(-rc));
-	tally->complained = true;
+	usage->complained = true;
 }
 
 /* text: what the file says now; it becomes what it should say. */
@@ -191,7 +191,7 @@ static int tidy(struct buffer *text, const char *path, int64_t now_s)
 	if (!entries)
 		return -ENOMEM;
 	if (now_s > 0)
-		hour_of(now_s - (int64_t)TALLY_KEPT_DAYS * DAY_S, oldest);
+		hour_of(now_s - (int64_t)USAGE_KEPT_DAYS * DAY_S, oldest);
 	count = sum_up(entries, parse(text, entries, &bad), oldest);
 	if (bad > 0)
 		log_warn("storage", "%s: %zu lines are no counts and were left out", path, bad);
@@ -203,28 +203,28 @@ static int tidy(struct buffer *text, const char *path, int64_t now_s)
 	return text->error;
 }
 
-static int begin_files(struct tally *tally, int64_t now_s)
+static int begin_files(struct usage *usage, int64_t now_s)
 {
 	struct buffer text;
 	int rc;
 
-	buffer_init(&text, TALLY_FILE_MOST);
-	rc = buffer_read_file(&text, tally->path);
+	buffer_init(&text, USAGE_FILE_MAX);
+	rc = buffer_read_file(&text, usage->path);
 	if (rc == -ENOENT)
 		rc = 0;
 	if (rc == 0)
-		rc = tidy(&text, tally->path, now_s);
+		rc = tidy(&text, usage->path, now_s);
 	if (rc == 0)
-		rc = bytes_write_file(buffer_bytes(&text), tally->path);
+		rc = bytes_write_file(buffer_bytes(&text), usage->path);
 	if (rc < 0 && rc != -ENOMEM)
-		complain(tally, tally->path, rc);
-	if (rc == 0 && tally->copy_path) {
-		int copied = bytes_write_file(buffer_bytes(&text), tally->copy_path);
+		complain(usage, usage->path, rc);
+	if (rc == 0 && usage->copy_path) {
+		int copied = bytes_write_file(buffer_bytes(&text), usage->copy_path);
 
-		if (copied == 0 && chmod(tally->copy_path, 0644) < 0)
+		if (copied == 0 && chmod(usage->copy_path, 0644) < 0)
 			copied = -errno;
 		if (copied < 0)
-			complain(tally, tally->copy_path, copied);
+			complain(usage, usage->copy_path, copied);
 	}
 	buffer_finish(&text);
 	return rc == -ENOMEM ? rc : 0;
@@ -232,38 +232,38 @@ static int begin_files(struct tally *tally, int64_t now_s)
 
 /* ---- life */
 
-int tally_create(struct tally **out, const char *path, const char *copy_path, int64_t now_s)
+int usage_create(struct usage **out, const char *path, const char *copy_path, int64_t now_s)
 {
-	struct tally *tally = calloc(1, sizeof(*tally));
+	struct usage *usage = calloc(1, sizeof(*usage));
 	int rc;
 
 	*out = NULL;
-	if (!tally)
+	if (!usage)
 		return -ENOMEM;
-	tally->path = strdup(path);
-	tally->copy_path = copy_path ? strdup(copy_path) : NULL;
-	rc = tally->path && (tally->copy_path || !copy_path) ? begin_files(tally, now_s) : -ENOMEM;
+	usage->path = strdup(path);
+	usage->copy_path = copy_path ? strdup(copy_path) : NULL;
+	rc = usage->path && (usage->copy_path || !copy_path) ? begin_files(usage, now_s) : -ENOMEM;
 	if (rc < 0) {
-		tally_destroy(tally);
+		usage_destroy(usage);
 		return rc;
 	}
-	*out = tally;
+	*out = usage;
 	return 0;
 }
 
-void tally_destroy(struct tally *tally)
+void usage_destroy(struct usage *usage)
 {
-	if (!tally)
+	if (!usage)
 		return;
-	tally_write(tally);
-	free(tally->path);
-	free(tally->copy_path);
-	free(tally);
+	usage_write(usage);
+	free(usage->path);
+	free(usage->copy_path);
+	free(usage);
 }
 
 /* ---- counting */
 
-void tally_add(struct tally *tally, enum tally_kind kind, const char *what, const char *language,
+void usage_add(struct usage *usage, enum usage_kind kind, const char *what, const char *language,
 	       int64_t now_s)
 {
 	struct entry entry = { .kind = kind, .count = 1 };
@@ -271,16 +271,16 @@ void tally_add(struct tally *tally, enum tally_kind kind, const char *what, cons
 	hour_of(now_s, entry.hour);
 	snprintf(entry.what, sizeof(entry.what), "%s", is_word(what) ? what : "");
 	snprintf(entry.language, sizeof(entry.language), "%s", is_word(language) ? language : "");
-	for (size_t i = 0; i < tally->pending_count; i++) {
-		if (compare(&tally->pending[i], &entry) == 0) {
-			tally->pending[i].count++;
+	for (size_t i = 0; i < usage->pending_count; i++) {
+		if (compare(&usage->pending[i], &entry) == 0) {
+			usage->pending[i].count++;
 			return;
 		}
 	}
-	if (tally->pending_count == PENDING_MOST)
-		tally_write(tally);
-	if (tally->pending_count < PENDING_MOST)
-		tally->pending[tally->pending_count++] = entry;
+	if (usage->pending_count == PENDING_MAX)
+		usage_write(usage);
+	if (usage->pending_count < PENDING_MAX)
+		usage->pending[usage->pending_count++] = entry;
 }
 
 static int append(const char *path, struct bytes lines)
@@ -295,27 +295,27 @@ static int append(const char *path, struct bytes lines)
 	return rc;
 }
 
-void tally_write(struct tally *tally)
+void usage_write(struct usage *usage)
 {
 	struct buffer lines;
 	int rc;
 
-	if (tally->pending_count == 0)
+	if (usage->pending_count == 0)
 		return;
-	buffer_init(&lines, TALLY_FILE_MOST);
-	for (size_t i = 0; i < tally->pending_count; i++)
-		put_line(&lines, &tally->pending[i]);
+	buffer_init(&lines, USAGE_FILE_MAX);
+	for (size_t i = 0; i < usage->pending_count; i++)
+		put_line(&lines, &usage->pending[i]);
 	rc = lines.error;
 	if (rc == 0)
-		rc = append(tally->path, buffer_bytes(&lines));
+		rc = append(usage->path, buffer_bytes(&lines));
 	if (rc == 0) /* else they are counted on, and tried again */
-		tally->pending_count = 0;
+		usage->pending_count = 0;
 	else
-		complain(tally, tally->path, rc);
-	if (rc == 0 && tally->copy_path) {
-		rc = append(tally->copy_path, buffer_bytes(&lines));
+		complain(usage, usage->path, rc);
+	if (rc == 0 && usage->copy_path) {
+		rc = append(usage->copy_path, buffer_bytes(&lines));
 		if (rc < 0)
-			complain(tally, tally->copy_path, rc);
+			complain(usage, usage->copy_path, rc);
 	}
 	buffer_finish(&lines);
 }

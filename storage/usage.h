@@ -12,24 +12,24 @@
 
 #include "base/compiler.h"
 
-enum tally_kind { TALLY_VISIT, TALLY_PART, TALLY_PAGE, TALLY_LANGUAGE, TALLY_SEARCH, TALLY_TOUR };
+enum usage_kind { USAGE_VISIT, USAGE_PART, USAGE_PAGE, USAGE_LANGUAGE, USAGE_SEARCH, USAGE_TOUR };
 
-enum { TALLY_KEPT_DAYS = 400, TALLY_FILE_MOST = 32 << 20 };
+enum { USAGE_KEPT_DAYS = 400, USAGE_FILE_MAX = 32 << 20 };
 
-struct tally;
+struct usage;
 
 /* The file at path is read, summed up and freed of what is too old and of what is no line of ours.
  * copy_path (NULL: none) gets the same and is kept like it: for those who must not see into path's
  * folder. now_s: wall clock, 0 where it is not known to be set. *out is owned by the caller.
  * -ENOMEM alone: what the disk refuses is logged, and counts are gathered all the same. */
-must_check int tally_create(struct tally **out, const char *path, const char *copy_path,
+must_check int usage_create(struct usage **out, const char *path, const char *copy_path,
 			    int64_t now_s);
-void tally_destroy(struct tally *tally); /* writes; NULL is fine */
+void usage_destroy(struct usage *usage); /* writes; NULL is fine */
 
 /* what: a part's or tour's id, or ""; letters, digits, - and _ alone. language: likewise. */
-void tally_add(struct tally *tally, enum tally_kind kind, const char *what, const char *language,
+void usage_add(struct usage *usage, enum usage_kind kind, const char *what, const char *language,
 	       int64_t now_s);
 /* What was counted since goes to the file. */
-void tally_write(struct tally *tally);
+void usage_write(struct usage *usage);
 
 #endif

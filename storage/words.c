@@ -66,7 +66,7 @@ static gunichar fold(gunichar c)
 /* Korean by its letters, so that half a syllable finds what it may become. */
 static void put_char(struct buffer *out, gunichar c)
 {
-	uint32_t letters[HANGUL_LETTERS_MOST];
+	uint32_t letters[HANGUL_LETTERS_MAX];
 	const size_t count = hangul_letters(c, letters);
 	char utf8[6];
 
@@ -116,7 +116,7 @@ static int put_phrase(struct buffer *out, const char *piece, bool *is_first)
 	struct buffer words;
 	int rc;
 
-	buffer_init(&words, 8 * WORDS_QUERY_BYTES_MOST);
+	buffer_init(&words, 8 * WORDS_QUERY_BYTES_MAX);
 	rc = words_of(&words, piece);
 	if (rc == 0 && words.size > 0) {
 		buffer_put(out, *is_first ? "\"" : " AND \"", *is_first ? 1 : 6);
@@ -131,11 +131,11 @@ static int put_phrase(struct buffer *out, const char *piece, bool *is_first)
 
 int words_query(struct buffer *out, const char *text)
 {
-	char *copy = strndup(text, WORDS_QUERY_BYTES_MOST), *rest = copy, *piece;
+	char *copy = strndup(text, WORDS_QUERY_BYTES_MAX), *rest = copy, *piece;
 	bool is_first = true;
 	int rc = copy ? 0 : -ENOMEM;
 
-	for (int i = 0; rc == 0 && i < WORDS_QUERY_MOST;) {
+	for (int i = 0; rc == 0 && i < WORDS_QUERY_MAX;) {
 		piece = strsep(&rest, " \t\r\n");
 		if (!piece)
 			break;

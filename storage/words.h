@@ -9,8 +9,8 @@
 #include "base/bytes.h"
 
 enum {
-	WORDS_QUERY_BYTES_MOST = 256, /* of a query that is looked at */
-	WORDS_QUERY_MOST = 16,        /* words of it */
+	WORDS_QUERY_BYTES_MAX = 256, /* of a query that is looked at */
+	WORDS_QUERY_MAX = 16,        /* words of it */
 };
 
 /* Appends the words with a space before each. What is not UTF-8 ends the text. -ENOMEM, -EFBIG. */

@@ -29,7 +29,7 @@ enum {
 	ENTRY_FIRST = 32,
 	ENTRY_LAST = 40,
 	ENTRY_NAME = 56,
-	NAME_MOST = 36, /* UTF-16 */
+	NAME_MAX = 36, /* UTF-16 */
 	ENTRIES_BYTES = ENTRY_COUNT * ENTRY_BYTES,
 	ENTRIES_SECTORS = ENTRIES_BYTES / SECTOR,
 	PRIMARY = 1, /* the sector of the header */
@@ -125,7 +125,7 @@ static int read_table(struct table *table, int fd)
 
 static bool has_name(const uint8_t *entry, const char *name)
 {
-	for (unsigned i = 0; i < NAME_MOST; i++) {
+	for (unsigned i = 0; i < NAME_MAX; i++) {
 		if (get(entry + ENTRY_NAME + 2 * i, 2) != (uint8_t)name[i])
 			return false;
 		if (!name[i])

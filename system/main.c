@@ -34,10 +34,10 @@ static const char help[] =
 	"  gopura-setup --check gopura.conf\n"
 	"  gopura-setup --conf /efi/gopura.conf --conf /media/usb/gopura.conf --out /run/gopura\n";
 
-enum { CONFS_MOST = 4 };
+enum { CONFS_MAX = 4 };
 
 struct command {
-	const char *confs[CONFS_MOST];
+	const char *confs[CONFS_MAX];
 	unsigned count;
 	const char *out, *check, *sum, *boards;
 	const char *grow, *partition, *mounted;
@@ -92,7 +92,7 @@ static void take_option(struct command *command, int option)
 		check_name(optarg);
 	switch (option) {
 	case OPTION_CONF:
-		if (command->count == CONFS_MOST)
+		if (command->count == CONFS_MAX)
 			usage("--conf stands there too often");
 		command->confs[command->count++] = optarg;
 		break;

@@ -14,7 +14,7 @@
 #include "base/log.h"
 #include "base/safe_open.h"
 
-enum { FILE_MOST = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
+enum { FILE_MAX = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
 
 /* ---- files: the first failure is kept, and what follows it does nothing */
 
@@ -357,7 +357,7 @@ int setup_write(const struct setup *setup)
 {
 	struct writing writing = { .setup = setup };
 
-	buffer_init(&writing.text, FILE_MOST);
+	buffer_init(&writing.text, FILE_MAX);
 	folder(&writing, "", 0755);
 	write_faults(&writing); /* first: whatever fails then, they are told */
 	write_fetcher(&writing);

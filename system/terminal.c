@@ -240,7 +240,7 @@ static void check_together(const struct terminal *t, const unsigned *lines, stru
 
 static void parse(struct terminal *out, struct bytes text, unsigned *lines, struct faults *faults)
 {
-	_Static_assert(ARRAY_COUNT(settings) <= SETTINGS_MOST, "each has a line");
+	_Static_assert(ARRAY_COUNT(settings) <= SETTINGS_MAX, "each has a line");
 	*out = terminal_default;
 	settings_read(text, settings, ARRAY_COUNT(settings), out, lines, faults);
 	check_together(out, lines, faults);
@@ -330,7 +330,7 @@ int terminal_read(struct terminal *out, const char *path, const char *boards, st
 	int rc;
 
 	*out = terminal_default;
-	buffer_init(&file, SETTINGS_FILE_MOST);
+	buffer_init(&file, SETTINGS_FILE_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc == 0) {
 		parse(out, buffer_bytes(&file), lines, faults);

@@ -13,7 +13,7 @@
 #include "base/settings.h"
 #include "system/hours.h"
 
-enum { TERMINAL_SERVERS_MOST = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
+enum { TERMINAL_SERVERS_MAX = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
 /* A file that gopura.conf names is no larger; all authorities of a system take a quarter of it. */
 enum { TERMINAL_FILE_BYTES_MAX = 1 << 20 };
 
@@ -27,7 +27,7 @@ enum terminal_usb {
 };
 
 struct terminal_servers {
-	char names[TERMINAL_SERVERS_MOST][254]; /* addresses; of time servers names too */
+	char names[TERMINAL_SERVERS_MAX][254]; /* addresses; of time servers names too */
 	uint32_t count;
 };
 

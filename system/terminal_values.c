@@ -255,7 +255,7 @@ static bool set_servers(struct terminal_servers *out, const char *value,
 		length = strcspn(value, " \t,");
 		if (length == 0)
 			break;
-		if (servers.count == TERMINAL_SERVERS_MOST || length >= sizeof(servers.names[0]))
+		if (servers.count == TERMINAL_SERVERS_MAX || length >= sizeof(servers.names[0]))
 			return false;
 		memcpy(servers.names[servers.count], value, length);
 		if (!is_good(servers.names[servers.count++]))

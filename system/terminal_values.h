@@ -1,5 +1,5 @@
-/* How each value of gopura.conf reads: the set functions of its table (board/settings.h), each into
- * its field of a struct terminal. Private to board/terminal. */
+/* How each value of gopura.conf reads: the set functions of its table (base/settings.h), each into
+ * its field of a struct terminal. Private to system/terminal. */
 #ifndef GOPURA_SYSTEM_TERMINAL_VALUES_H
 #define GOPURA_SYSTEM_TERMINAL_VALUES_H
 

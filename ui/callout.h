@@ -19,7 +19,7 @@
 
 enum {
 	CALLOUTS_A_SIDE = 14,
-	CALLOUTS_MOST = 2 * CALLOUTS_A_SIDE,
+	CALLOUTS_MAX = 2 * CALLOUTS_A_SIDE,
 	CALLOUTS_FEW = 6, /* as many are shown even where all are details */
 };
 
@@ -50,7 +50,7 @@ struct callout {
 /* Left column from top to bottom, then the right one. The state that makes the next layout stable
  * is this list itself: zero it once, then pass it again. */
 struct callouts {
-	struct callout list[CALLOUTS_MOST];
+	struct callout list[CALLOUTS_MAX];
 	uint32_t count;
 };
 

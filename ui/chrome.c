@@ -79,7 +79,7 @@ void chrome_layout(struct chrome *out, const struct theme *theme, const char *co
 		   uint32_t language_count, int most_width_px, struct chrome_has has)
 {
 	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM),
-				.menu = language_count > CHROME_LANGUAGES_MOST };
+				.menu = language_count > CHROME_LANGUAGES_MAX };
 	/* Before buttons shrink, type does: so large type moves none but the languages. */
 	bool *const savings[] = { &out->codes, &out->usual, &out->tight, &out->menu,
 				  &out->toolless };

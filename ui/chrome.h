@@ -7,8 +7,8 @@
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { CHROME_LANGUAGES_MOST = 8 }; /* side by side; more are behind one button */
-enum { CHROME_BUTTONS_MOST = CHROME_LANGUAGES_MOST + 9 };
+enum { CHROME_LANGUAGES_MAX = 8 }; /* side by side; more are behind one button */
+enum { CHROME_BUTTONS_MAX = CHROME_LANGUAGES_MAX + 9 };
 
 enum chrome_button_kind {
 	CHROME_HOME,
@@ -31,7 +31,7 @@ struct chrome_button {
 };
 
 struct chrome {
-	struct chrome_button buttons[CHROME_BUTTONS_MOST];
+	struct chrome_button buttons[CHROME_BUTTONS_MAX];
 	uint32_t button_count;
 	int width_px, height_px;
 	bool codes;    /* no room for the languages' names: their codes */

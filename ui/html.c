@@ -11,7 +11,7 @@
 
 /* Lines are broken one paragraph at a time, which takes longer than in proportion to its length: a
  * quarter of a megabyte without a space took 20 s. Some pages of a book are enough for one. */
-enum { DEPTH_MOST = 200, BLOCK_TEXT_BYTES_MAX = 8192 };
+enum { DEPTH_MAX = 200, BLOCK_TEXT_BYTES_MAX = 8192 };
 
 /* ---- text ---- */
 
@@ -197,7 +197,7 @@ static uint32_t count_cells(const xmlNode *row)
 	for (const xmlNode *n = row->children; n; n = n->next)
 		cells += n->type == XML_ELEMENT_NODE && (strcmp((const char *)n->name, "td") == 0 ||
 							 strcmp((const char *)n->name, "th") == 0);
-	return cells < HTML_COLUMNS_MOST ? cells : HTML_COLUMNS_MOST;
+	return cells < HTML_COLUMNS_MAX ? cells : HTML_COLUMNS_MAX;
 }
 
 static void walk_cell(struct html_parser *p, const xmlNode *node, struct html_inherited in,
@@ -321,7 +321,7 @@ static void walk_element(struct html_parser *p, const xmlNode *node, struct html
 
 static void walk(struct html_parser *p, const xmlNode *node, struct html_inherited *in, int depth)
 {
-	if (depth > DEPTH_MOST)
+	if (depth > DEPTH_MAX)
 		return;
 	for (; node && !p->error; node = node->next) {
 		if (node->type == XML_TEXT_NODE && node->content)
@@ -353,7 +353,7 @@ int html_parse(struct html *out, struct bytes source)
 	xmlDoc *doc;
 
 	memset(out, 0, sizeof(*out));
-	if (source.size > HTML_BYTES_MOST)
+	if (source.size > HTML_BYTES_MAX)
 		return -EFBIG;
 	if (source.size == 0 ||
 	    !g_utf8_validate((const char *)source.data, (gssize)source.size, NULL))

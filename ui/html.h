@@ -45,7 +45,7 @@ struct html {
 	uint32_t link_count;
 };
 
-enum { HTML_BLOCKS_MOST = 5000, HTML_COLUMNS_MOST = 8, HTML_BYTES_MOST = 256 << 10 };
+enum { HTML_BLOCKS_MAX = 5000, HTML_COLUMNS_MAX = 8, HTML_BYTES_MAX = 256 << 10 };
 
 /* *out is finished by the caller; zeroed on failure. -EBADMSG: not UTF-8, or no text and no picture
  * in it; -EFBIG; -ENOMEM. */

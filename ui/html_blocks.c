@@ -60,7 +60,7 @@ struct html_block *html_add_block(struct html_parser *p, enum html_block_kind ki
 	struct html_block *grown, *block;
 
 	html_close_block(p);
-	if (p->error == 0 && html->block_count == HTML_BLOCKS_MOST)
+	if (p->error == 0 && html->block_count == HTML_BLOCKS_MAX)
 		p->error = -EFBIG;
 	if (p->error)
 		return NULL;

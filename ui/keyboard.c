@@ -272,7 +272,7 @@ static char *with_letters(const char *text, const char *end, uint32_t *letters, 
 static char *type_key(const struct keyboard_key *key, const char *text)
 {
 	const char *end = text + strlen(text), *last = end;
-	uint32_t letters[2 * HANGUL_LETTERS_MOST];
+	uint32_t letters[2 * HANGUL_LETTERS_MAX];
 	size_t count = 0;
 
 	if (end > text) {

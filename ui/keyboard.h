@@ -9,7 +9,7 @@
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-enum { KEYBOARD_KEYS_MOST = 96 };
+enum { KEYBOARD_KEYS_MAX = 96 };
 
 enum keyboard_key_kind { KEY_TEXT, KEY_SPACE, KEY_BACKSPACE, KEY_LATIN };
 
@@ -20,7 +20,7 @@ struct keyboard_key {
 };
 
 struct keyboard {
-	struct keyboard_key keys[KEYBOARD_KEYS_MOST];
+	struct keyboard_key keys[KEYBOARD_KEYS_MAX];
 	uint32_t key_count;
 	int width_px, height_px;
 	bool latin; /* the letters behind KEY_LATIN are shown */

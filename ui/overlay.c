@@ -8,8 +8,8 @@
 #include "ui/hint.h"
 #include "ui/overlay_state.h"
 
-_Static_assert((int)BITMAP_COUNT <= (int)OVERLAY_BITMAPS_MOST, "ids of bitmaps");
-_Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MOST, "labels that come and labels that go");
+_Static_assert((int)BITMAP_COUNT <= (int)OVERLAY_BITMAPS_MAX, "ids of bitmaps");
+_Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MAX, "labels that come and labels that go");
 
 enum {
 	FADE_MS = 180,
@@ -87,7 +87,7 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	*out = NULL;
 	if (options->width_px < 320 || options->height_px < 320 || options->width_px > 8192 ||
 	    options->height_px > 8192 || options->language_count < 1 ||
-	    options->language_count > OVERLAY_LANGUAGES_MOST)
+	    options->language_count > OVERLAY_LANGUAGES_MAX)
 		return -EINVAL;
 	overlay = calloc(1, sizeof(*overlay));
 	if (!overlay)
@@ -131,7 +131,7 @@ void overlay_destroy(struct overlay *overlay)
 	overlay_drop_tours(overlay->tours.entries);
 	for (uint32_t i = 0; i < BITMAP_COUNT; i++)
 		bitmap_finish(&overlay->drawings[i].bitmap);
-	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MOST; i++)
+	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MAX; i++)
 		free(overlay->languages[i]);
 	theme_finish(&overlay->theme);
 	free(overlay);
@@ -173,14 +173,14 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 	int rc = copies && anchors ? 0 : -ENOMEM;
 	bool had_parts;
 
-	if (count > OVERLAY_PARTS_MOST)
+	if (count > OVERLAY_PARTS_MAX)
 		rc = -EINVAL;
 	for (uint32_t i = 0; rc == 0 && i < count; i++)
 		rc = copy_part(&copies[i], &parts[i]);
 	if (rc == 0 && count != overlay->part_count && overlay_search_parts(overlay, count) < 0)
 		rc = -ENOMEM;
 	if (rc < 0) {
-		drop_parts(copies, count > OVERLAY_PARTS_MOST ? 0 : count);
+		drop_parts(copies, count > OVERLAY_PARTS_MAX ? 0 : count);
 		free(anchors);
 		return rc;
 	}

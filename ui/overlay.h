@@ -17,11 +17,11 @@
 #include "ui/source.h"
 
 enum {
-	OVERLAY_PARTS_MOST = 1000,
-	OVERLAY_LANGUAGES_MOST = 64,
-	OVERLAY_TOURS_MOST = 8,
-	OVERLAY_LAYERS_MOST = 256,  /* in a frame */
-	OVERLAY_BITMAPS_MOST = 128, /* bitmap ids are below this */
+	OVERLAY_PARTS_MAX = 1000,
+	OVERLAY_LANGUAGES_MAX = 64,
+	OVERLAY_TOURS_MAX = 8,
+	OVERLAY_LAYERS_MAX = 256,  /* in a frame */
+	OVERLAY_BITMAPS_MAX = 128, /* bitmap ids are below this */
 };
 
 struct overlay_rect {
@@ -259,7 +259,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms);
 /* A quad of a bitmap. The app keeps one texture per bitmap id and uploads the pixels when revision
  * is not the one it has. Draw in order, blending GL_ONE, GL_ONE_MINUS_SRC_ALPHA. */
 struct overlay_layer {
-	uint32_t bitmap;             /* id, below OVERLAY_BITMAPS_MOST */
+	uint32_t bitmap;             /* id, below OVERLAY_BITMAPS_MAX */
 	uint32_t revision;           /* never 0 */
 	const struct bitmap *pixels; /* borrowed until the next overlay_update */
 	float corners_px[4][2];      /* top left, top right, bottom right, bottom left */

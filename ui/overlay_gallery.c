@@ -14,7 +14,7 @@
 
 enum {
 	PICTURE_MOST_PX = 2048, /* a side of what is drawn of one; the rest is the screen's work */
-	UPSCALE_MOST = 2,       /* how many pixels of the panel one of the picture may cover */
+	UPSCALE_MAX = 2,        /* how many pixels of the panel one of the picture may cover */
 	SETTLE_MS = 90,         /* in which a swipe comes to 1/e of its way */
 	FLICK_PX_PER_S = 500,
 };
@@ -73,7 +73,7 @@ static float fit_scale(const struct overlay *overlay, const struct bitmap *bitma
 	float wide = (float)view.width_px / (float)bitmap->width_px;
 	float high = (float)view.height_px / (float)bitmap->height_px;
 
-	return fminf(fminf(wide, high), UPSCALE_MOST);
+	return fminf(fminf(wide, high), UPSCALE_MAX);
 }
 
 /* Left, top, width, height of a picture that is drawn; false: it is not. */
@@ -157,7 +157,7 @@ static float zoom_most(struct overlay *overlay)
 
 	if (!bitmap->surface)
 		return 1;
-	return fmaxf(DOUBLE_TAP_ZOOM, UPSCALE_MOST / fit_scale(overlay, bitmap));
+	return fmaxf(DOUBLE_TAP_ZOOM, UPSCALE_MAX / fit_scale(overlay, bitmap));
 }
 
 void overlay_picture_pinch(struct overlay *overlay, float x_px, float y_px, float scale,

@@ -387,8 +387,8 @@ static void paint_layer(cairo_t *context, const struct overlay_layer *layer)
 
 void overlay_paint(const struct overlay *overlay, cairo_t *context)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
-	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
+	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 
 	for (uint32_t i = 0; i < count; i++)
 		paint_layer(context, &layers[i]);

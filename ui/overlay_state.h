@@ -123,7 +123,7 @@ struct tour_entry {
 
 struct tours_menu {
 	struct fade fade; /* on: it is open */
-	struct tour_entry entries[OVERLAY_TOURS_MOST];
+	struct tour_entry entries[OVERLAY_TOURS_MAX];
 	uint32_t count;
 	bool dirty;
 };
@@ -153,7 +153,7 @@ struct overlay {
 	struct picture_source pictures;
 	struct theme theme;
 	struct overlay_comfort comfort;
-	char *languages[OVERLAY_LANGUAGES_MOST];
+	char *languages[OVERLAY_LANGUAGES_MAX];
 	uint32_t language_count;
 	int language; /* index of the one that is set */
 

@@ -16,7 +16,7 @@
 #define ROW_MM     14.0f /* of the menu */
 #define ICON_MM    3.2f
 
-enum { LINES_MOST = 4 };
+enum { LINES_MAX = 4 };
 
 static int px(const struct overlay *overlay, float mm)
 {
@@ -27,8 +27,8 @@ static int px(const struct overlay *overlay, float mm)
 
 int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours, uint32_t count)
 {
-	struct tour_entry entries[OVERLAY_TOURS_MOST] = { 0 };
-	int rc = count > OVERLAY_TOURS_MOST ? -1 : 0;
+	struct tour_entry entries[OVERLAY_TOURS_MAX] = { 0 };
+	int rc = count > OVERLAY_TOURS_MAX ? -1 : 0;
 
 	for (uint32_t i = 0; rc == 0 && i < count; i++) {
 		entries[i].title = strdup(tours[i].title);
@@ -53,7 +53,7 @@ int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours, uin
 
 void overlay_drop_tours(struct tour_entry *entries)
 {
-	for (uint32_t i = 0; i < OVERLAY_TOURS_MOST; i++) {
+	for (uint32_t i = 0; i < OVERLAY_TOURS_MAX; i++) {
 		free(entries[i].title);
 		free(entries[i].caption);
 		free(entries[i].thumbnail);
@@ -148,7 +148,7 @@ static PangoLayout *lay_out_caption(const struct overlay *overlay, int *height_p
 	int most_px = most_height(overlay) - head_height(overlay) - px(overlay, DOTS_MM) -
 		      px(overlay, PADDING_MM);
 
-	for (int lines = LINES_MOST;; lines--) {
+	for (int lines = LINES_MAX;; lines--) {
 		PangoLayout *layout =
 			theme_layout(&overlay->theme, TEXT_CAPTION, overlay->tour.caption, room_px);
 

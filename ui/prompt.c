@@ -8,7 +8,7 @@
 #include "ui/strings.h"
 
 /* Of the invitation: below the first language they stand in columns where they are many. */
-enum { LINES_MOST = 24, COLUMN_LINES = 7, COLUMNS_MOST = 3 };
+enum { LINES_MAX = 24, COLUMN_LINES = 7, COLUMNS_MAX = 3 };
 
 #define PADDING_MM 5.0f
 #define ICON_MM    16.0f
@@ -42,7 +42,7 @@ static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 	uint32_t count = 0;
 
 	memcpy(language, theme->language, sizeof(language));
-	for (uint32_t i = 0; i < language_count && count < LINES_MOST; i++) {
+	for (uint32_t i = 0; i < language_count && count < LINES_MAX; i++) {
 		const char *text = ui_string(UI_TOUCH, languages[i]);
 
 		if (is_said(languages, i, text))
@@ -58,7 +58,7 @@ static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 
 /* Pixels. The first line is above all columns. */
 struct lines {
-	PangoLayout *lines[LINES_MOST];
+	PangoLayout *lines[LINES_MAX];
 	uint32_t count;
 	int columns, rows, column_width, first_height, row_heights[COLUMN_LINES];
 };
@@ -77,7 +77,7 @@ static struct lines place_lines(struct theme *theme, const char *const *language
 		all.column_width = width > all.column_width ? width : all.column_width;
 	}
 	all.columns = ((int)all.count - 1 + COLUMN_LINES - 1) / COLUMN_LINES;
-	all.columns = all.columns < COLUMNS_MOST ? all.columns : COLUMNS_MOST;
+	all.columns = all.columns < COLUMNS_MAX ? all.columns : COLUMNS_MAX;
 	while (all.columns > 1 &&
 	       all.columns * all.column_width + (all.columns - 1) * 2 * gap > room_px)
 		all.columns--;

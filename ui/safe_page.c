@@ -19,7 +19,7 @@ enum {
 
 static const struct {
 	const char *language, *text;
-} words[SAFE_PAGE_LINES_MOST] = {
+} words[SAFE_PAGE_LINES_MAX] = {
 	{ "en", "We will be right back" },   { "fr", "Nous revenons dans un instant" },
 	{ "km", "យើងនឹងត្រឡប់មកវិញបន្តិចទៀតនេះ" }, { "ja", "まもなく再開します" },
 	{ "de", "Gleich geht es weiter" },   { "es", "Volvemos en un momento" },
@@ -66,7 +66,7 @@ int safe_page_init(struct safe_page *out, int width_px, int height_px)
 
 	*out = (struct safe_page){ .width_px = width_px, .height_px = height_px };
 	rc = theme_init(&out->theme, (float)shorter(out) / SHORTER_SIDE_MM, words[0].language);
-	for (int i = 0; rc == 0 && i < SAFE_PAGE_LINES_MOST; i++)
+	for (int i = 0; rc == 0 && i < SAFE_PAGE_LINES_MAX; i++)
 		add_line(out, words[i].language, words[i].text);
 	return rc;
 }

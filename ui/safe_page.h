@@ -8,7 +8,7 @@
 
 #include "ui/theme.h"
 
-enum { SAFE_PAGE_LINES_MOST = 8 };
+enum { SAFE_PAGE_LINES_MAX = 8 };
 
 struct safe_page_line {
 	PangoLayout *layout; /* owned */
@@ -18,7 +18,7 @@ struct safe_page_line {
 struct safe_page {
 	struct theme theme;
 	int width_px, height_px; /* of the picture as the visitor sees it */
-	struct safe_page_line lines[SAFE_PAGE_LINES_MOST];
+	struct safe_page_line lines[SAFE_PAGE_LINES_MAX];
 	int line_count; /* languages that have a font here */
 	double text_width_px, text_height_px;
 };

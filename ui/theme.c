@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LINE_MOST 1.5 /* of a line that stands alone; sizes of its type */
+#define LINE_HEIGHT_MAX 1.5 /* of a line that stands alone; sizes of its type */
 
 #define RGB(r, g, b)                                                                               \
 	{                                                                                          \
@@ -220,7 +220,7 @@ bool theme_begins_at_right(const char *text)
 static int trim_line(const struct theme *theme, enum text_style style, PangoLayout *layout,
 		     int *above_px)
 {
-	const int most_px = (int)lround(theme_style_px(theme, style) * LINE_MOST);
+	const int most_px = (int)lround(theme_style_px(theme, style) * LINE_HEIGHT_MAX);
 	int height_px, baseline_px;
 
 	pango_layout_get_pixel_size(layout, NULL, &height_px);

@@ -12,12 +12,12 @@
 #include "format/picture.h"
 
 enum {
-	VIEWS_MOST = 10000,
-	SHOTS_MOST = 200,
+	VIEWS_MAX = 10000,
+	SHOTS_MAX = 200,
 	SHOT_NAME_BYTES = 64,
 	VIEW_MOST_MS = 120000, /* then it is written as it is, and said so */
 	QUIET_MS = 1200, /* without a byte received: longer than between two status messages */
-	FRAMES_MOST = 4096,
+	FRAMES_MAX = 4096,
 	LOOK_MS = 20, /* at what came, between two frames at rest */
 };
 
@@ -43,7 +43,7 @@ struct capture {
 	uint64_t bytes_before;  /* received when this view began */
 	uint64_t bytes_seen;
 	uint32_t objects;
-	uint32_t frame_us[FRAMES_MOST];
+	uint32_t frame_us[FRAMES_MAX];
 	uint32_t frames;
 };
 
@@ -51,11 +51,11 @@ struct capture {
 
 static bool parse_view(const char *line, struct view *view)
 {
-	char rest;
+	char accumulation;
 
 	return sscanf(line, "%f %f %f %f %f %f %f %c", &view->eye_m[0], &view->eye_m[1],
 		      &view->eye_m[2], &view->target_m[0], &view->target_m[1], &view->target_m[2],
-		      &view->fov_deg, &rest) == 7 &&
+		      &view->fov_deg, &accumulation) == 7 &&
 	       view->fov_deg >= 1 && view->fov_deg <= 150 &&
 	       memcmp(view->eye_m, view->target_m, sizeof(view->eye_m)) != 0;
 }
@@ -63,9 +63,9 @@ static bool parse_view(const char *line, struct view *view)
 static bool parse_shot(const char *line, struct shot *shot)
 {
 	long ms;
-	char rest;
+	char accumulation;
 
-	if (sscanf(line, "%ld %63[a-zA-Z0-9_-] %c", &ms, shot->name, &rest) != 2 || ms < 0)
+	if (sscanf(line, "%ld %63[a-zA-Z0-9_-] %c", &ms, shot->name, &accumulation) != 2 || ms < 0)
 		return false;
 	shot->at_ms = ms;
 	return true;
@@ -73,7 +73,7 @@ static bool parse_shot(const char *line, struct shot *shot)
 
 static int read_lines(struct capture *capture, const char *path, bool views)
 {
-	const uint32_t most = views ? VIEWS_MOST : SHOTS_MOST;
+	const uint32_t most = views ? VIEWS_MAX : SHOTS_MAX;
 	FILE *file = fopen(path, "re");
 	char line[512];
 	unsigned number = 0;
@@ -124,13 +124,13 @@ int capture_create(struct capture **out, const struct kiosk *kiosk)
 	if (mkdir(capture->folder, 0777) < 0 && errno != EEXIST)
 		rc = -errno;
 	if (views) {
-		capture->views = calloc(VIEWS_MOST, sizeof(*capture->views));
+		capture->views = calloc(VIEWS_MAX, sizeof(*capture->views));
 		snprintf(path, sizeof(path), "%s/views.jsonl", capture->folder);
 		capture->lines = rc == 0 ? fopen(path, "we") : NULL;
 		if (rc == 0 && !capture->lines)
 			rc = -errno;
 	} else {
-		capture->shots = calloc(SHOTS_MOST, sizeof(*capture->shots));
+		capture->shots = calloc(SHOTS_MAX, sizeof(*capture->shots));
 	}
 	if (rc < 0)
 		log_error("app", "%s: %s", capture->folder, strerror(-rc));
@@ -275,7 +275,7 @@ static int after_view(struct capture *capture, struct kiosk *kiosk)
 		return 0;
 	if (kiosk->shown.frame.patches > 0 && !capture->first_ms)
 		capture->first_ms = now_ms;
-	if (capture->frames < FRAMES_MOST)
+	if (capture->frames < FRAMES_MAX)
 		capture->frame_us[capture->frames++] = kiosk->frame_us;
 	quiet = is_quiet(capture, kiosk, now_ms);
 	late = now_ms - capture->began_ms > VIEW_MOST_MS;

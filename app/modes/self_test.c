@@ -368,7 +368,7 @@ static void check_trust(struct self_test *test)
 		    "no trust root is remembered: give the museum's root/1.json by --trust once");
 		return;
 	}
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc < 0)
 		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", path,

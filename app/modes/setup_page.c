@@ -8,8 +8,8 @@
 enum {
 	PAGE_LEAST_MS = 30000,
 	PAGE_FADE_MS = 600,
-	PAGE_TEXTURE = OVERLAY_BITMAPS_MOST, /* the first that no overlay has */
-	HINTS_MOST = 3,
+	PAGE_TEXTURE = OVERLAY_BITMAPS_MAX, /* the first that no overlay has */
+	HINTS_MAX = 3,
 };
 
 static int draw_page(struct kiosk *kiosk, const struct notice *notice)
@@ -21,8 +21,8 @@ static int draw_page(struct kiosk *kiosk, const struct notice *notice)
 static int draw_faults(struct kiosk *kiosk)
 {
 	const struct faults *faults = &kiosk->provision.faults;
-	struct notice_item items[FAULTS_MOST];
-	char marks[FAULTS_MOST][20], lead[PATH_MAX + 64];
+	struct notice_item items[FAULTS_MAX];
+	char marks[FAULTS_MAX][20], lead[PATH_MAX + 64];
 	const struct notice notice = {
 		.title = "gopura.conf needs mending",
 		.lead = lead,
@@ -51,8 +51,8 @@ static int draw_faults(struct kiosk *kiosk)
 static int draw_missing(struct kiosk *kiosk)
 {
 	const struct options *options = &kiosk->options;
-	char where[OPTIONS_CONFS_MOST * 256] = "Save it as ";
-	const struct notice_item items[HINTS_MOST] = {
+	char where[OPTIONS_CONFS_MAX * 256] = "Save it as ";
+	const struct notice_item items[HINTS_MAX] = {
 		{ "1", "On any computer write a text file gopura.conf:\n"
 		       "[release]\n"
 		       "url = https://museum.example/temple/\n"
@@ -64,7 +64,7 @@ static int draw_missing(struct kiosk *kiosk)
 		.title = "This terminal is not set up yet",
 		.lead = "It does not know where its temple is.",
 		.items = items,
-		.count = HINTS_MOST,
+		.count = HINTS_MAX,
 		.foot = "Of the appliance /efi is the partition gopura-esp of its disk, and "
 			"/run/gopura-stick any USB stick. What else the file may say stands in "
 			"docs/terminal.md: language, panel, opening hours, network, Wi-Fi.",

@@ -39,17 +39,17 @@ static const char *beside(const struct provision *provision, const char *name, c
 static const char *checked_trust(struct provision *provision)
 {
 	const char *path = beside(provision, provision->terminal.trust, provision->trust_path);
-	struct update update = { .sequence_floor = 0 };
+	struct trust trust = { .sequence_floor = 0 };
 	const char *why = "";
 	struct buffer file;
 	int rc;
 
 	if (!path)
 		return NULL;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc == 0)
-		rc = update_pin(&update, buffer_bytes(&file), &why);
+		rc = trust_pin(&trust, buffer_bytes(&file), &why);
 	else
 		why = open_problem(rc);
 	buffer_finish(&file);

@@ -40,12 +40,12 @@ struct scene_options kiosk_scene_options(const struct profile *profile, enum sce
 	};
 }
 
-static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct hash root,
+static int open_exhibit(struct kiosk *kiosk, struct session *session, struct hash root,
 			uint32_t root_bytes)
 {
 	const struct profile *profile = &kiosk->profile;
 	const struct scene_options scene = kiosk_scene_options(profile, kiosk->options.mode);
-	const struct story_options story = {
+	const struct information_view_options view = {
 		.width_px = kiosk_width_px(kiosk),
 		.height_px = kiosk_height_px(kiosk),
 		.px_per_mm = kiosk->px_per_mm,
@@ -53,51 +53,51 @@ static int open_exhibit(struct kiosk *kiosk, struct exhibit *exhibit, struct has
 	};
 	int rc;
 
-	*exhibit = (struct exhibit){ .root = root, .root_bytes = root_bytes };
-	rc = scene_create(&exhibit->scene, &scene);
+	*session = (struct session){ .root = root, .root_bytes = root_bytes };
+	rc = scene_create(&session->scene, &scene);
 	if (rc == 0)
-		rc = story_create(&exhibit->story, &story);
+		rc = information_view_create(&session->view, &view);
 	if (rc == 0)
-		rc = scene_open(exhibit->scene, root, root_bytes);
+		rc = scene_open(session->scene, root, root_bytes);
 	if (rc == 0)
-		rc = kiosk_watch(kiosk, scene_fd(exhibit->scene));
+		rc = kiosk_watch(kiosk, scene_fd(session->scene));
 	if (rc < 0)
-		exhibit_close(exhibit);
+		session_close(session);
 	return rc;
 }
 
-void exhibit_close(struct exhibit *exhibit)
+void session_close(struct session *session)
 {
-	story_destroy(exhibit->story);
-	scene_destroy(exhibit->scene);
-	*exhibit = (struct exhibit){ 0 };
+	information_view_destroy(session->view);
+	scene_destroy(session->scene);
+	*session = (struct session){ 0 };
 }
 
-static void open_root(struct exhibit *exhibit, struct hash hash, struct bytes object)
+static void open_root(struct session *session, struct hash hash, struct bytes object)
 {
 	struct page page;
 
 	if (page_decode(&page, object) == 0) {
-		story_open(exhibit->story, hash, &page);
+		information_view_open(session->view, hash, &page);
 		page_finish(&page);
-		exhibit->root_here = true;
+		session->root_here = true;
 	}
 }
 
-bool exhibit_give(struct exhibit *exhibit, struct hash hash, struct bytes object)
+bool session_give(struct session *session, struct hash hash, struct bytes object)
 {
 	bool kept;
 
-	if (!exhibit->scene)
+	if (!session->scene)
 		return false;
-	exhibit->was_settled = exhibit->was_settled || exhibit->frame.settled;
-	kept = page_is(object) || !exhibit->was_settled;
-	if (kept && exhibit->kept_count < EXHIBIT_KEPT_MOST)
-		exhibit->kept[exhibit->kept_count++] = hash;
-	if (!story_give(exhibit->story, hash, object))
-		scene_give(exhibit->scene, hash, object);
-	if (!exhibit->root_here && hash_equal(hash, exhibit->root) && scene_root(exhibit->scene))
-		open_root(exhibit, hash, object);
+	session->was_settled = session->was_settled || session->frame.settled;
+	kept = page_is(object) || !session->was_settled;
+	if (kept && session->kept_count < SESSION_KEPT_MAX)
+		session->kept[session->kept_count++] = hash;
+	if (!information_view_give(session->view, hash, object))
+		scene_give(session->scene, hash, object);
+	if (!session->root_here && hash_equal(hash, session->root) && scene_root(session->scene))
+		open_root(session, hash, object);
 	return kept;
 }
 
@@ -133,23 +133,23 @@ static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_byt
 	wants_clear(&kiosk->wants);
 }
 
-void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
+void session_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 {
 	/* What has not even its root page shows nothing: no reason to wait for its end. */
 	const bool unseen = kiosk->shown.root_here;
-	struct exhibit *exhibit = unseen ? &kiosk->coming : &kiosk->shown;
+	struct session *session = unseen ? &kiosk->coming : &kiosk->shown;
 	int rc;
 
-	exhibit_close(&kiosk->coming);
+	session_close(&kiosk->coming);
 	if (kiosk->shown.scene && hash_equal(kiosk->shown.root, root))
 		return; /* back to the pictures that are on the panel */
-	exhibit_close(exhibit);
+	session_close(session);
 	kiosk->coming_held = false;
 	if (unseen)
 		net_client_add_release(kiosk->net, root, root_bytes);
 	else
 		use_release(kiosk, root, root_bytes);
-	rc = open_exhibit(kiosk, exhibit, root, root_bytes);
+	rc = open_exhibit(kiosk, session, root, root_bytes);
 	if (rc < 0)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
 	kiosk->coming_since_ms = clock_now_ms();
@@ -158,45 +158,46 @@ void exhibit_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 	kiosk_redraw(kiosk);
 }
 
-bool exhibit_may_load(const struct kiosk *kiosk)
+bool session_may_load(const struct kiosk *kiosk)
 {
 	/* A clock that nobody set would hold it back for ever. */
-	return follow_next_on_stick(kiosk->follow) || !clock_wall_is_set() ||
+	return updater_next_on_stick(kiosk->updater) || !clock_wall_is_set() ||
 	       daily_holds(&kiosk->options.download, clock_wall_s());
 }
 
 static bool is_ready(const struct kiosk *kiosk)
 {
-	const struct exhibit *coming = &kiosk->coming;
+	const struct session *coming = &kiosk->coming;
 	const bool waited = clock_now_ms() - kiosk->coming_since_ms > WARM_MOST_MS;
 
 	return !coming->syncing && !coming->remembering && coming->frame.patches > 0 &&
-	       story_info(coming->story) && (coming->frame.settled || waited);
+	       information_view_info(coming->view) && (coming->frame.settled || waited);
 }
 
 static void take_over(struct kiosk *kiosk)
 {
-	struct exhibit before = kiosk->shown;
-	struct overlay *overlay = story_overlay(kiosk->coming.story);
+	struct session before = kiosk->shown;
+	struct overlay *overlay = information_view_overlay(kiosk->coming.view);
 
 	kiosk->shown = kiosk->coming;
 	kiosk->shown.synced = true;
-	kiosk->coming = (struct exhibit){ 0 };
+	kiosk->coming = (struct session){ 0 };
 	kiosk->shown.shown_ms = clock_now_ms();
 	use_release(kiosk, kiosk->shown.root, kiosk->shown.root_bytes);
 	for (uint32_t i = 0; i < kiosk->shown.kept_count; i++)
 		net_client_keep(kiosk->net, kiosk->shown.kept[i]);
-	if (story_language(before.story))
-		story_set_language(kiosk->shown.story, story_language(before.story));
+	if (information_view_language(before.view))
+		information_view_set_language(kiosk->shown.view,
+					      information_view_language(before.view));
 	if (overlay) /* a panel too small for words has none */
 		overlay_show_help(overlay, false);
-	guide_end(kiosk);              /* its tours are others */
+	tour_player_end(kiosk);        /* its tours are others */
 	back_forget(kiosk);            /* and its parts */
 	kiosk->looked_triangles = 0;   /* its anchors are others */
 	if (before.frame.patches == 0) /* nobody has the eye anywhere */
 		kiosk->navigator_ready = false;
 	quads_forget(kiosk->quads);
-	exhibit_close(&before);
+	session_close(&before);
 	set_bounds(kiosk);
 	kiosk_redraw(kiosk);
 }
@@ -222,7 +223,7 @@ static void wait_for_disk(struct kiosk *kiosk)
 	kiosk->coming_waits = true;
 }
 
-void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
+void session_remembered(struct kiosk *kiosk, struct hash root, int rc)
 {
 	if (!kiosk->coming.scene || !hash_equal(kiosk->coming.root, root))
 		return;
@@ -238,9 +239,9 @@ void exhibit_remembered(struct kiosk *kiosk, struct hash root, int rc)
 /* A release that came after another was made durable before it was shown. The first one is shown as
  * it comes, and nobody else syncs what the cache has of it: a power cut minutes later would lose
  * it. On a slow machine the eye is sent round before its picture is whole, and then it never is. */
-void exhibit_keep_first(struct kiosk *kiosk)
+void session_keep_first(struct kiosk *kiosk)
 {
-	struct exhibit *shown = &kiosk->shown;
+	struct session *shown = &kiosk->shown;
 
 	if (shown->synced || shown->frame.patches == 0 || kiosk->coming.syncing)
 		return;
@@ -252,9 +253,9 @@ void exhibit_keep_first(struct kiosk *kiosk)
 }
 
 /* Objects first, then the state that names them: a power cut between the two costs nothing. */
-void exhibit_synced(struct kiosk *kiosk, bool done)
+void session_synced(struct kiosk *kiosk, bool done)
 {
-	struct exhibit *coming = &kiosk->coming;
+	struct session *coming = &kiosk->coming;
 
 	if (kiosk->shown.syncing) { /* answers come in order */
 		kiosk->shown.syncing = false;
@@ -270,20 +271,21 @@ void exhibit_synced(struct kiosk *kiosk, bool done)
 		return;
 	}
 	coming->remembering = true;
-	follow_remember(kiosk->follow, coming->root);
+	updater_remember(kiosk->updater, coming->root);
 }
 
-void exhibit_warm(struct kiosk *kiosk)
+void session_warm(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
 
 	if (kiosk->shown.root_here && !kiosk->navigator_ready) {
 		set_bounds(kiosk);
-		follow_remember(kiosk->follow, kiosk->shown.root);
+		updater_remember(kiosk->updater, kiosk->shown.root);
 	}
 	if (trial_is_broken(&kiosk->coming)) {
-		follow_refuse(kiosk->follow, kiosk->coming.root, "objects of it cannot be decoded");
-		exhibit_close(&kiosk->coming);
+		updater_refuse(kiosk->updater, kiosk->coming.root,
+			       "objects of it cannot be decoded");
+		session_close(&kiosk->coming);
 	}
 	kiosk->coming_waits = kiosk->coming.root_here;
 	if (!kiosk->coming.root_here || kiosk->camera.width_px == 0 ||
@@ -293,26 +295,26 @@ void exhibit_warm(struct kiosk *kiosk)
 	draw_small(kiosk);
 	kiosk->coming_waits = kiosk->coming.frame.moving;
 	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was another one */
-	if (is_ready(kiosk) && guest_left_ms(kiosk) == 0) {
+	if (is_ready(kiosk) && visitor_left_ms(kiosk) == 0) {
 		kiosk->coming.syncing = true;
 		net_client_sync(kiosk->net);
 		wait_for_disk(kiosk);
 	}
 }
 
-int exhibit_wait_ms(const struct kiosk *kiosk)
+int session_wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
 	int64_t due_ms = kiosk->coming_since_ms + WARM_MOST_MS + 1;
 
 	if (kiosk->coming_held)
-		return exhibit_may_load(kiosk) ? 0 : HELD_MS;
+		return session_may_load(kiosk) ? 0 : HELD_MS;
 	if (!kiosk->coming.root_here)
 		return -1;
 	if (kiosk->coming_waits)
 		due_ms = kiosk->coming_drawn_ms + WARM_PERIOD_MS;
 	else if (is_ready(kiosk))
-		return guest_left_ms(kiosk);
+		return visitor_left_ms(kiosk);
 	else if (due_ms <= now_ms)
 		return -1; /* until something of it arrives */
 	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;

@@ -19,7 +19,7 @@ struct wish {
 	int64_t time_floor_s;              /* 0: none */
 };
 
-struct keeper {
+struct state_writer {
 	struct state *state; /* the thread's */
 	pthread_t thread;
 	bool has_thread;
@@ -29,14 +29,14 @@ struct keeper {
 	pthread_cond_t asked;
 	struct wish wish; /* under lock, as all below */
 	bool ends, answered;
-	struct keeper_answer answer;
+	struct state_writer_answer answer;
 };
 
 static void wish_init(struct wish *wish)
 {
 	*wish = (struct wish){ 0 };
-	buffer_init(&wish->release_file, STATE_FILE_BYTES_MOST);
-	buffer_init(&wish->trust, STATE_FILE_BYTES_MOST);
+	buffer_init(&wish->release_file, STATE_FILE_BYTES_MAX);
+	buffer_init(&wish->trust, STATE_FILE_BYTES_MAX);
 }
 
 static void wish_finish(struct wish *wish)
@@ -53,117 +53,117 @@ static bool is_something(const struct wish *wish)
 
 /* ---- on the thread */
 
-static void answer(struct keeper *keeper, const struct state_release *release, int rc)
+static void answer(struct state_writer *writer, const struct state_release *release, int rc)
 {
 	const uint64_t one = 1;
 
-	pthread_mutex_lock(&keeper->lock);
-	keeper->answer =
-		(struct keeper_answer){ release->root, release->root_bytes, release->sequence, rc };
-	keeper->answered = true;
-	pthread_mutex_unlock(&keeper->lock);
-	if (write(keeper->fd, &one, sizeof(one)) < 0)
+	pthread_mutex_lock(&writer->lock);
+	writer->answer = (struct state_writer_answer){ release->root, release->root_bytes,
+						       release->sequence, rc };
+	writer->answered = true;
+	pthread_mutex_unlock(&writer->lock);
+	if (write(writer->fd, &one, sizeof(one)) < 0)
 		log_error("app", "kiosk bug: the keeper cannot answer");
 }
 
 /* The trust root first: the release may be signed by its keys. */
-static void fulfil(struct keeper *keeper, struct wish *wish)
+static void fulfil(struct state_writer *writer, struct wish *wish)
 {
 	if (wish->trust_wanted &&
-	    state_set_trust(keeper->state, buffer_bytes(&wish->trust), wish->clear) < 0)
+	    state_set_trust(writer->state, buffer_bytes(&wish->trust), wish->clear) < 0)
 		log_warn("app", "the trust root could not be remembered");
 	/* Both are about the release before the one that is wanted now. */
-	if (wish->proof_wanted && state_prove(keeper->state) < 0)
+	if (wish->proof_wanted && state_prove(writer->state) < 0)
 		log_warn("app", "that the release works could not be remembered");
-	if (wish->return_wanted && state_fall_back(keeper->state) < 0)
+	if (wish->return_wanted && state_fall_back(writer->state) < 0)
 		log_warn("app", "the return to the release before could not be remembered");
-	if (wish->time_floor_s > 0 && state_raise_time_floor(keeper->state, wish->time_floor_s) < 0)
+	if (wish->time_floor_s > 0 && state_raise_time_floor(writer->state, wish->time_floor_s) < 0)
 		log_debug("app", "the time floor could not be written");
 	if (wish->release_wanted) {
 		wish->release.file = buffer_bytes(&wish->release_file);
-		answer(keeper, &wish->release, state_activate(keeper->state, &wish->release));
+		answer(writer, &wish->release, state_activate(writer->state, &wish->release));
 	}
 }
 
 static void *run(void *data)
 {
-	struct keeper *keeper = data;
+	struct state_writer *writer = data;
 
-	pthread_mutex_lock(&keeper->lock);
-	while (!keeper->ends || is_something(&keeper->wish)) {
-		struct wish wish = keeper->wish;
+	pthread_mutex_lock(&writer->lock);
+	while (!writer->ends || is_something(&writer->wish)) {
+		struct wish wish = writer->wish;
 
 		if (!is_something(&wish)) {
-			pthread_cond_wait(&keeper->asked, &keeper->lock);
+			pthread_cond_wait(&writer->asked, &writer->lock);
 			continue;
 		}
-		wish_init(&keeper->wish);
-		pthread_mutex_unlock(&keeper->lock);
-		fulfil(keeper, &wish);
+		wish_init(&writer->wish);
+		pthread_mutex_unlock(&writer->lock);
+		fulfil(writer, &wish);
 		wish_finish(&wish);
-		pthread_mutex_lock(&keeper->lock);
+		pthread_mutex_lock(&writer->lock);
 	}
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_mutex_unlock(&writer->lock);
 	return NULL;
 }
 
 /* ---- on the owner's thread */
 
 /* Signals are the loop's: the thread is born with all of them blocked. */
-static int start_thread(struct keeper *keeper)
+static int start_thread(struct state_writer *writer)
 {
 	sigset_t all, before;
 	int rc;
 
 	sigfillset(&all);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	rc = -pthread_create(&keeper->thread, NULL, run, keeper);
+	rc = -pthread_create(&writer->thread, NULL, run, writer);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	keeper->has_thread = rc == 0;
+	writer->has_thread = rc == 0;
 	return rc;
 }
 
-int keeper_create(struct keeper **out, struct state *state)
+int state_writer_create(struct state_writer **out, struct state *state)
 {
-	struct keeper *keeper = calloc(1, sizeof(*keeper));
+	struct state_writer *writer = calloc(1, sizeof(*writer));
 	int rc;
 
 	*out = NULL;
-	if (!keeper) {
+	if (!writer) {
 		state_destroy(state);
 		return -ENOMEM;
 	}
-	keeper->state = state;
-	wish_init(&keeper->wish);
-	pthread_mutex_init(&keeper->lock, NULL);
-	pthread_cond_init(&keeper->asked, NULL);
-	keeper->fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	rc = keeper->fd < 0 ? -errno : start_thread(keeper);
+	writer->state = state;
+	wish_init(&writer->wish);
+	pthread_mutex_init(&writer->lock, NULL);
+	pthread_cond_init(&writer->asked, NULL);
+	writer->fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	rc = writer->fd < 0 ? -errno : start_thread(writer);
 	if (rc < 0) {
-		keeper_destroy(keeper);
+		state_writer_destroy(writer);
 		return rc;
 	}
-	*out = keeper;
+	*out = writer;
 	return 0;
 }
 
-void keeper_destroy(struct keeper *keeper)
+void state_writer_destroy(struct state_writer *writer)
 {
-	if (!keeper)
+	if (!writer)
 		return;
-	pthread_mutex_lock(&keeper->lock);
-	keeper->ends = true;
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
-	if (keeper->has_thread)
-		pthread_join(keeper->thread, NULL);
-	pthread_cond_destroy(&keeper->asked);
-	pthread_mutex_destroy(&keeper->lock);
-	wish_finish(&keeper->wish);
-	if (keeper->fd >= 0)
-		close(keeper->fd);
-	state_destroy(keeper->state);
-	free(keeper);
+	pthread_mutex_lock(&writer->lock);
+	writer->ends = true;
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
+	if (writer->has_thread)
+		pthread_join(writer->thread, NULL);
+	pthread_cond_destroy(&writer->asked);
+	pthread_mutex_destroy(&writer->lock);
+	wish_finish(&writer->wish);
+	if (writer->fd >= 0)
+		close(writer->fd);
+	state_destroy(writer->state);
+	free(writer);
 }
 
 static int copy_file(struct buffer *out, struct bytes file)
@@ -173,78 +173,78 @@ static int copy_file(struct buffer *out, struct bytes file)
 	return out->error;
 }
 
-int keeper_activate(struct keeper *keeper, const struct state_release *release)
+int state_writer_activate(struct state_writer *writer, const struct state_release *release)
 {
-	struct wish *wish = &keeper->wish;
+	struct wish *wish = &writer->wish;
 	int rc;
 
-	pthread_mutex_lock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
 	rc = copy_file(&wish->release_file, release->file);
 	wish->release = *release;
 	wish->release_wanted = rc == 0;
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
 	return rc;
 }
 
-int keeper_set_trust(struct keeper *keeper, struct bytes file, enum state_clear clear)
+int state_writer_set_trust(struct state_writer *writer, struct bytes file, enum state_clear clear)
 {
-	struct wish *wish = &keeper->wish;
+	struct wish *wish = &writer->wish;
 	int rc;
 
-	pthread_mutex_lock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
 	rc = copy_file(&wish->trust, file);
 	wish->trust_wanted = rc == 0;
 	wish->clear |= clear;
 	if (clear & STATE_CLEAR_TIME_FLOOR)
 		wish->time_floor_s = 0; /* what was asked for before was an old key's */
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
 	return rc;
 }
 
-void keeper_prove(struct keeper *keeper)
+void state_writer_prove(struct state_writer *writer)
 {
-	pthread_mutex_lock(&keeper->lock);
-	keeper->wish.proof_wanted = true;
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
+	writer->wish.proof_wanted = true;
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
 }
 
-void keeper_fall_back(struct keeper *keeper)
+void state_writer_fall_back(struct state_writer *writer)
 {
-	pthread_mutex_lock(&keeper->lock);
-	keeper->wish.return_wanted = true;
-	keeper->wish.proof_wanted = false;
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
+	writer->wish.return_wanted = true;
+	writer->wish.proof_wanted = false;
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
 }
 
-void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s)
+void state_writer_raise_time_floor(struct state_writer *writer, int64_t at_least_s)
 {
-	pthread_mutex_lock(&keeper->lock);
-	if (at_least_s > keeper->wish.time_floor_s)
-		keeper->wish.time_floor_s = at_least_s;
-	pthread_cond_signal(&keeper->asked);
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
+	if (at_least_s > writer->wish.time_floor_s)
+		writer->wish.time_floor_s = at_least_s;
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
 }
 
-int keeper_fd(const struct keeper *keeper)
+int state_writer_fd(const struct state_writer *writer)
 {
-	return keeper->fd;
+	return writer->fd;
 }
 
-bool keeper_take(struct keeper *keeper, struct keeper_answer *out)
+bool state_writer_take(struct state_writer *writer, struct state_writer_answer *out)
 {
 	uint64_t count;
 	bool answered;
 
-	if (read(keeper->fd, &count, sizeof(count)) < 0)
+	if (read(writer->fd, &count, sizeof(count)) < 0)
 		return false;
-	pthread_mutex_lock(&keeper->lock);
-	answered = keeper->answered;
-	*out = keeper->answer;
-	keeper->answered = false;
-	pthread_mutex_unlock(&keeper->lock);
+	pthread_mutex_lock(&writer->lock);
+	answered = writer->answered;
+	*out = writer->answer;
+	writer->answered = false;
+	pthread_mutex_unlock(&writer->lock);
 	return answered;
 }

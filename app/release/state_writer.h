@@ -6,9 +6,9 @@
 
 #include "storage/state.h"
 
-struct keeper;
+struct state_writer;
 
-struct keeper_answer {
+struct state_writer_answer {
 	struct hash root; /* of the release that was to be remembered */
 	uint32_t root_bytes;
 	uint64_t sequence;
@@ -16,26 +16,29 @@ struct keeper_answer {
 };
 
 /* state is taken, also on failure: from now on the thread's alone. */
-must_check int keeper_create(struct keeper **out, struct state *state);
+must_check int state_writer_create(struct state_writer **out, struct state *state);
 /* Writes what was asked for, then ends; NULL is fine. */
-void keeper_destroy(struct keeper *keeper);
+void state_writer_destroy(struct state_writer *writer);
 
-/* Answered by keeper_take, unless a later release was asked for before this one was written. */
-must_check int keeper_activate(struct keeper *keeper, const struct state_release *release);
+/* Answered by state_writer_take, unless a later release was asked for before this one was written.
+ */
+must_check int state_writer_activate(struct state_writer *writer,
+				     const struct state_release *release);
 /* clear: which floors fall with the old root, in one change with it. Failures are logged: the trust
- * root in use stays in use without a disk, too. Not while keeper_activate waits for its answer:
- * that release would be written afterwards, and raise the floor once more. */
-must_check int keeper_set_trust(struct keeper *keeper, struct bytes file, enum state_clear clear);
+ * root in use stays in use without a disk, too. Not while state_writer_activate waits for its
+ * answer: that release would be written afterwards, and raise the floor once more. */
+must_check int state_writer_set_trust(struct state_writer *writer, struct bytes file,
+				      enum state_clear clear);
 /* The release that was remembered last works, or does not: state_prove, state_fall_back. Failures
  * are logged: the next start then tries again. */
-void keeper_prove(struct keeper *keeper);
-void keeper_fall_back(struct keeper *keeper);
+void state_writer_prove(struct state_writer *writer);
+void state_writer_fall_back(struct state_writer *writer);
 /* Never lowers it, and does not wait for the disk. */
-void keeper_raise_time_floor(struct keeper *keeper, int64_t at_least_s);
+void state_writer_raise_time_floor(struct state_writer *writer, int64_t at_least_s);
 
-/* Readable when keeper_take has something. */
-int keeper_fd(const struct keeper *keeper);
+/* Readable when state_writer_take has something. */
+int state_writer_fd(const struct state_writer *writer);
 /* The next answer; false: none. */
-bool keeper_take(struct keeper *keeper, struct keeper_answer *out);
+bool state_writer_take(struct state_writer *writer, struct state_writer_answer *out);
 
 #endif

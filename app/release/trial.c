@@ -16,10 +16,10 @@ static int left_ms(int64_t since_ms, int64_t most_ms)
 	return left > 0 ? (int)left : 0;
 }
 
-bool trial_is_broken(const struct exhibit *exhibit)
+bool trial_is_broken(const struct session *session)
 {
-	return exhibit->scene &&
-	       (scene_refused(exhibit->scene) > 0 || story_broken(exhibit->story));
+	return session->scene &&
+	       (scene_refused(session->scene) > 0 || information_view_broken(session->view));
 }
 
 /* It hangs in the air: nothing is wanted, nothing is shown. A network that is away is no fault of
@@ -32,32 +32,32 @@ static bool is_blank(const struct kiosk *kiosk)
 
 void trial_watch(struct kiosk *kiosk)
 {
-	struct exhibit *shown = &kiosk->shown;
+	struct session *shown = &kiosk->shown;
 
-	if (!follow_on_trial(kiosk->follow) || shown->shown_ms == 0)
+	if (!updater_on_trial(kiosk->updater) || shown->shown_ms == 0)
 		return;
 	if (shown->frame.patches > 0 && shown->pictured_ms == 0 &&
 	    kiosk->last_frame_ms >= shown->shown_ms && !display_is_dark(kiosk->display))
 		shown->pictured_ms = kiosk->last_frame_ms;
 	if (shown->pictured_ms > 0 && left_ms(shown->pictured_ms, PROVEN_MS) == 0)
-		follow_prove(kiosk->follow);
-	else if (!follow_has_before(kiosk->follow) || kiosk->coming.scene)
+		updater_prove(kiosk->updater);
+	else if (!updater_has_before(kiosk->updater) || kiosk->coming.scene)
 		return;
 	else if (shown->frame.patches == 0 && trial_is_broken(shown))
-		follow_fall_back(kiosk->follow, "objects of it cannot be decoded");
+		updater_fall_back(kiosk->updater, "objects of it cannot be decoded");
 	else if (is_blank(kiosk) && left_ms(shown->shown_ms, BLANK_MS) == 0)
-		follow_fall_back(kiosk->follow, "nothing of it was to be seen for a minute");
+		updater_fall_back(kiosk->updater, "nothing of it was to be seen for a minute");
 }
 
 int trial_wait_ms(const struct kiosk *kiosk)
 {
-	const struct exhibit *shown = &kiosk->shown;
+	const struct session *shown = &kiosk->shown;
 
-	if (!follow_on_trial(kiosk->follow) || shown->shown_ms == 0)
+	if (!updater_on_trial(kiosk->updater) || shown->shown_ms == 0)
 		return -1;
 	if (shown->pictured_ms > 0)
 		return left_ms(shown->pictured_ms, PROVEN_MS);
-	if (follow_has_before(kiosk->follow) && !kiosk->coming.scene && is_blank(kiosk))
+	if (updater_has_before(kiosk->updater) && !kiosk->coming.scene && is_blank(kiosk))
 		return left_ms(shown->shown_ms, BLANK_MS);
 	return -1;
 }

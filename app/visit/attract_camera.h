@@ -8,21 +8,23 @@
 #include <stdint.h>
 
 enum {
-	ROAM_PLACES = 8, /* on the way round */
-	ROAM_REST_MS = 9000,
-	ROAM_MOVE_MS = 14000,
+	ATTRACT_CAMERA_PLACES = 8, /* on the way round */
+	ATTRACT_CAMERA_REST_MS = 9000,
+	ATTRACT_CAMERA_MOVE_MS = 14000,
 };
 
-struct roam {
+struct attract_camera {
 	float axis_m[2]; /* x, y */
 	float eye_m[3], target_m[3];
 };
 
-void roam_init(struct roam *roam, const float box_min_m[3], const float box_max_m[3],
-	       const float home_eye_m[3], const float home_target_m[3]);
+void attract_camera_init(struct attract_camera *attract, const float box_min_m[3],
+			 const float box_max_m[3], const float home_eye_m[3],
+			 const float home_target_m[3]);
 /* Where the eye is so long after it began. true: it moves then. */
-bool roam_pose(const struct roam *roam, int64_t ms, float eye_m[3], float target_m[3]);
+bool attract_camera_pose(const struct attract_camera *attract, int64_t ms, float eye_m[3],
+			 float target_m[3]);
 /* Until it moves on; 0: it moves. */
-int roam_rest_ms(int64_t ms);
+int attract_camera_rest_ms(int64_t ms);
 
 #endif

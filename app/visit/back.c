@@ -12,7 +12,7 @@ static bool is_on_tour(const struct kiosk *kiosk)
 
 static struct place place_of(const struct kiosk *kiosk)
 {
-	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct place here = { .card = overlay_card(overlay),
 			      .page = overlay_page(overlay),
 			      .read = overlay_read(overlay),
@@ -38,20 +38,20 @@ void back_forget(struct kiosk *kiosk)
 
 static void go_to(struct kiosk *kiosk, const struct place *place)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	if (!place->on_tour)
-		guide_end(kiosk);
+		tour_player_end(kiosk);
 	if (place->page < 0) {
 		overlay_close_page(overlay);
 	} else if (place->page == overlay_page(overlay) ||
-		   story_open_page(kiosk->shown.story, (uint32_t)place->page)) {
+		   information_view_open_page(kiosk->shown.view, (uint32_t)place->page)) {
 		overlay_widen_page(overlay, place->wide);
 		overlay_read_from(overlay, place->read);
 	}
 	if (place->searching) {
 		overlay_search_again(overlay);
-		story_search(kiosk->shown.story);
+		information_view_search(kiosk->shown.view);
 	} else {
 		overlay_show_search(overlay, false);
 	}
@@ -71,7 +71,7 @@ static bool take(const struct kiosk *kiosk, struct way_back *way, struct place *
 
 void back_press(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct place place;
 
 	/* What lies over the rest goes first. */
@@ -85,12 +85,13 @@ void back_press(struct kiosk *kiosk)
 
 void back_say(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
-	struct way_back rest = kiosk->way_back; /* what a press would leave of it is not wanted */
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	struct way_back accumulation =
+		kiosk->way_back; /* what a press would leave of it is not wanted */
 	struct place place;
 
 	if (overlay)
 		overlay_offer_back(overlay, overlay_picture(overlay) >= 0 ||
 						    overlay_choosing(overlay) ||
-						    take(kiosk, &rest, &place));
+						    take(kiosk, &accumulation, &place));
 }

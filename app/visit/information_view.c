@@ -9,18 +9,18 @@
 #include "base/log.h"
 #include "storage/info_view.h"
 
-enum { PICTURES_MOST = 512, DECODED_MOST = 48, LANGUAGE_BYTES = 16, FOUND_MOST = 100 };
+enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
 
 /* A picture that was asked for. */
-struct story_picture {
+struct information_view_picture {
 	bool wanted;
 	bool broken;            /* came, and cannot be decoded: not asked for again */
 	struct picture decoded; /* rgba NULL: not here */
 	uint32_t used;          /* turn of its last use, for letting the oldest go */
 };
 
-struct story {
-	struct story_options options;
+struct information_view {
+	struct information_view_options options;
 	char language[LANGUAGE_BYTES];
 	struct overlay *overlay;
 	struct info *info;
@@ -32,82 +32,85 @@ struct story {
 	struct page page;              /* the info page; children zero until it is here */
 	struct buffer page_bytes;      /* what page.payload borrows from */
 
-	struct story_picture pictures[PICTURES_MOST]; /* as info_picture numbers them */
+	struct information_view_picture pictures[PICTURES_MAX]; /* as info_picture numbers them */
 	uint32_t turn;
 };
 
-int story_create(struct story **out, const struct story_options *options)
+int information_view_create(struct information_view **out,
+			    const struct information_view_options *options)
 {
-	struct story *story = calloc(1, sizeof(*story));
+	struct information_view *view = calloc(1, sizeof(*view));
 
 	*out = NULL;
-	if (!story)
+	if (!view)
 		return -ENOMEM;
-	story->options = *options;
+	view->options = *options;
 	if (options->language)
-		snprintf(story->language, sizeof(story->language), "%s", options->language);
-	story->options.language = NULL;
-	buffer_init(&story->page_bytes, PAGE_BYTES_MOST);
-	*out = story;
+		snprintf(view->language, sizeof(view->language), "%s", options->language);
+	view->options.language = NULL;
+	buffer_init(&view->page_bytes, PAGE_BYTES_MAX);
+	*out = view;
 	return 0;
 }
 
-static void forget_pictures(struct story *story)
+static void forget_pictures(struct information_view *view)
 {
-	for (size_t i = 0; i < PICTURES_MOST; i++)
-		picture_finish(&story->pictures[i].decoded);
-	memset(story->pictures, 0, sizeof(story->pictures));
+	for (size_t i = 0; i < PICTURES_MAX; i++)
+		picture_finish(&view->pictures[i].decoded);
+	memset(view->pictures, 0, sizeof(view->pictures));
 }
 
-void story_destroy(struct story *story)
+void information_view_destroy(struct information_view *view)
 {
-	if (!story)
+	if (!view)
 		return;
-	overlay_destroy(story->overlay);
-	info_close(story->info);
-	forget_pictures(story);
-	page_finish(&story->page);
-	buffer_finish(&story->page_bytes);
-	free(story);
+	overlay_destroy(view->overlay);
+	info_close(view->info);
+	forget_pictures(view);
+	page_finish(&view->page);
+	buffer_finish(&view->page_bytes);
+	free(view);
 }
 
-void story_open(struct story *story, struct hash root, const struct page *root_page)
+void information_view_open(struct information_view *view, struct hash root,
+			   const struct page *root_page)
 {
-	page_finish(&story->page);
-	story->page_here = story->database_here = false;
-	story->root = root;
-	story->page_at = root_page->children[ROOT_CHILD_INFO];
-	story->page_offset = (uint32_t)page_child_offset(root_page, ROOT_CHILD_INFO);
+	page_finish(&view->page);
+	view->page_here = view->database_here = false;
+	view->root = root;
+	view->page_at = root_page->children[ROOT_CHILD_INFO];
+	view->page_offset = (uint32_t)page_child_offset(root_page, ROOT_CHILD_INFO);
 }
 
-struct overlay *story_overlay(struct story *story)
+struct overlay *information_view_overlay(struct information_view *view)
 {
-	return story ? story->overlay : NULL;
+	return view ? view->overlay : NULL;
 }
 
-const struct info *story_info(const struct story *story)
+const struct info *information_view_info(const struct information_view *view)
 {
-	return story ? story->info : NULL;
+	return view ? view->info : NULL;
 }
 
 /* ---- pictures */
 
-static uint32_t picture_index(const struct story *story, const struct info_picture *picture)
+static uint32_t picture_index(const struct information_view *view,
+			      const struct info_picture *picture)
 {
-	return (uint32_t)(picture - info_picture(story->info, 0));
+	return (uint32_t)(picture - info_picture(view->info, 0));
 }
 
 static bool on_picture(void *data, const char *name, struct overlay_picture *out)
 {
-	struct story *story = data;
+	struct information_view *view = data;
 	const struct info_picture *picture =
-		story->info ? info_find_picture(story->info, name) : NULL;
-	struct story_picture *own;
+		view->info ? info_find_picture(view->info, name) : NULL;
+	struct information_view_picture *own;
 
-	if (!picture || picture_index(story, picture) >= PICTURES_MOST)
+	if (!picture || picture_index(view, picture) >= PICTURES_MAX)
 		return false;
-	own = &story->pictures[picture_index(story, picture)];
-	own->used = ++story->turn;
+	own = &view->pictures[picture_index(view, picture)];
+	own->used = ++view->turn;
 	own->wanted = !own->decoded.rgba && !own->broken;
 	*out = (struct overlay_picture){
 		.picture = own->decoded.rgba ? &own->decoded : NULL,
@@ -117,14 +120,14 @@ static bool on_picture(void *data, const char *name, struct overlay_picture *out
 	return true;
 }
 
-/* Keeps at most DECODED_MOST pictures in memory; asking for one that went brings it again. */
-static void let_oldest_picture_go(struct story *story)
+/* Keeps at most DECODED_MAX pictures in memory; asking for one that went brings it again. */
+static void let_oldest_picture_go(struct information_view *view)
 {
-	struct story_picture *oldest = NULL;
+	struct information_view_picture *oldest = NULL;
 	uint32_t count = 0;
 
-	for (size_t i = 0; i < PICTURES_MOST; i++) {
-		struct story_picture *own = &story->pictures[i];
+	for (size_t i = 0; i < PICTURES_MAX; i++) {
+		struct information_view_picture *own = &view->pictures[i];
 
 		if (!own->decoded.rgba)
 			continue;
@@ -132,11 +135,12 @@ static void let_oldest_picture_go(struct story *story)
 		if (!oldest || own->used < oldest->used)
 			oldest = own;
 	}
-	if (count > DECODED_MOST)
+	if (count > DECODED_MAX)
 		picture_finish(&oldest->decoded);
 }
 
-static void decode_picture(struct story_picture *own, const char *name, struct bytes object)
+static void decode_picture(struct information_view_picture *own, const char *name,
+			   struct bytes object)
 {
 	const int rc = picture_decode_for_page(&own->decoded, object);
 
@@ -148,15 +152,15 @@ static void decode_picture(struct story_picture *own, const char *name, struct b
 		log_error("app", "content bug: picture %s cannot be shown", name);
 }
 
-static bool give_picture(struct story *story, struct hash hash, struct bytes object)
+static bool give_picture(struct information_view *view, struct hash hash, struct bytes object)
 {
 	bool ours = false;
 
-	if (!story->info || !story->overlay)
+	if (!view->info || !view->overlay)
 		return false;
-	for (uint32_t i = 0; i < info_picture_count(story->info) && i < PICTURES_MOST; i++) {
-		const struct info_picture *picture = info_picture(story->info, i);
-		struct story_picture *own = &story->pictures[i];
+	for (uint32_t i = 0; i < info_picture_count(view->info) && i < PICTURES_MAX; i++) {
+		const struct info_picture *picture = info_picture(view->info, i);
+		struct information_view_picture *own = &view->pictures[i];
 
 		if (!hash_equal(picture->hash, hash))
 			continue;
@@ -164,76 +168,76 @@ static bool give_picture(struct story *story, struct hash hash, struct bytes obj
 		own->wanted = false;
 		if (!own->decoded.rgba)
 			decode_picture(own, picture->name, object);
-		let_oldest_picture_go(story);
-		overlay_picture_arrived(story->overlay, picture->name);
+		let_oldest_picture_go(view);
+		overlay_picture_arrived(view->overlay, picture->name);
 	}
 	return ours;
 }
 
 /* ---- the database */
 
-static int tell_parts(struct story *story)
+static int tell_parts(struct information_view *view)
 {
-	const uint32_t count = info_part_count(story->info);
+	const uint32_t count = info_part_count(view->info);
 	struct overlay_part *parts = calloc(count ? count : 1, sizeof(*parts));
 	int rc;
 
 	if (!parts)
 		return -ENOMEM;
 	for (uint32_t i = 0; i < count; i++) {
-		const struct info_text text = info_text(story->info, i, story->language);
+		const struct info_text text = info_text(view->info, i, view->language);
 
 		parts[i] = (struct overlay_part){
 			.title = text.title,
 			.caption = text.caption,
 			.thumbnail = text.thumbnail,
-			.has_page = info_part(story->info, i)->has_page,
+			.has_page = info_part(view->info, i)->has_page,
 		};
 	}
-	rc = overlay_parts(story->overlay, parts, count);
+	rc = overlay_parts(view->overlay, parts, count);
 	free(parts);
 	return rc;
 }
 
-static int tell_tours(struct story *story)
+static int tell_tours(struct information_view *view)
 {
-	struct overlay_tour tours[INFO_TOURS_MOST];
-	const uint32_t count = info_tour_count(story->info);
+	struct overlay_tour tours[INFO_TOURS_MAX];
+	const uint32_t count = info_tour_count(view->info);
 
 	for (uint32_t i = 0; i < count; i++) {
-		const struct info_text text = info_tour_text(story->info, i, story->language);
+		const struct info_text text = info_tour_text(view->info, i, view->language);
 
 		tours[i] = (struct overlay_tour){ text.title, text.caption, text.thumbnail };
 	}
-	return overlay_tours(story->overlay, tours, count) < 0 ? -ENOMEM : 0;
+	return overlay_tours(view->overlay, tours, count) < 0 ? -ENOMEM : 0;
 }
 
-static int create_overlay(struct story *story)
+static int create_overlay(struct information_view *view)
 {
-	const char *languages[OVERLAY_LANGUAGES_MOST];
+	const char *languages[OVERLAY_LANGUAGES_MAX];
 	struct overlay_options options = {
-		.width_px = story->options.width_px,
-		.height_px = story->options.height_px,
-		.px_per_mm = story->options.px_per_mm,
+		.width_px = view->options.width_px,
+		.height_px = view->options.height_px,
+		.px_per_mm = view->options.px_per_mm,
 		.languages = languages,
-		.language_count = info_language_count(story->info),
+		.language_count = info_language_count(view->info),
 		.picture = on_picture,
-		.data = story,
+		.data = view,
 	};
 
-	if (options.language_count > OVERLAY_LANGUAGES_MOST)
-		options.language_count = OVERLAY_LANGUAGES_MOST;
+	if (options.language_count > OVERLAY_LANGUAGES_MAX)
+		options.language_count = OVERLAY_LANGUAGES_MAX;
 	for (uint32_t i = 0; i < options.language_count; i++)
-		languages[i] = info_language(story->info, i);
-	overlay_destroy(story->overlay);
-	return overlay_create(&story->overlay, &options);
+		languages[i] = info_language(view->info, i);
+	overlay_destroy(view->overlay);
+	return overlay_create(&view->overlay, &options);
 }
 
 _Static_assert((int)INFO_TOOL_LIGHT == (int)OVERLAY_TOOL_LIGHT &&
 		       (int)INFO_TOOL_SECTION == (int)OVERLAY_TOOL_SECTION,
 	       "one set of tools");
 
-static void give_database(struct story *story, struct bytes object)
+static void give_database(struct information_view *view, struct bytes object)
 {
 	struct info *info;
 	int rc = info_open(&info, object);
@@ -242,143 +246,144 @@ static void give_database(struct story *story, struct bytes object)
 		log_error("app", "content bug: the release's information database is damaged");
 		return;
 	}
-	info_close(story->info);
-	story->info = info;
-	forget_pictures(story);
-	snprintf(story->language, sizeof(story->language), "%s",
-		 info_nearest_language(info, story->language));
-	rc = create_overlay(story);
+	info_close(view->info);
+	view->info = info;
+	forget_pictures(view);
+	snprintf(view->language, sizeof(view->language), "%s",
+		 info_nearest_language(info, view->language));
+	rc = create_overlay(view);
 	if (rc == 0) {
-		overlay_language(story->overlay, story->language);
-		overlay_offer_tools(story->overlay, info_tools(info));
-		rc = tell_parts(story);
+		overlay_language(view->overlay, view->language);
+		overlay_offer_tools(view->overlay, info_tools(info));
+		rc = tell_parts(view);
 		if (rc == 0)
-			rc = tell_tours(story);
+			rc = tell_tours(view);
 	}
 	if (rc < 0)
 		log_error("app", "the words over the model cannot be shown: %s", strerror(-rc));
 }
 
-bool story_give(struct story *story, struct hash hash, struct bytes object)
+bool information_view_give(struct information_view *view, struct hash hash, struct bytes object)
 {
-	if (hash_equal(hash, story->page_at.hash) && !story->page_here) {
-		story->page_here = true;
-		buffer_clear(&story->page_bytes);
-		buffer_put(&story->page_bytes, object.data, object.size);
-		if (story->page_bytes.error ||
-		    page_decode(&story->page, buffer_bytes(&story->page_bytes)) < 0 ||
-		    story->page.kind != PAGE_INFO || story->page.child_count == 0) {
+	if (hash_equal(hash, view->page_at.hash) && !view->page_here) {
+		view->page_here = true;
+		buffer_clear(&view->page_bytes);
+		buffer_put(&view->page_bytes, object.data, object.size);
+		if (view->page_bytes.error ||
+		    page_decode(&view->page, buffer_bytes(&view->page_bytes)) < 0 ||
+		    view->page.kind != PAGE_INFO || view->page.child_count == 0) {
 			log_error("app", "content bug: the release's info page is damaged");
-			page_finish(&story->page); /* one of another kind names nothing of ours */
+			page_finish(&view->page); /* one of another kind names nothing of ours */
 		}
 		return true;
 	}
-	if (!story->database_here && story->page.child_count > 0 &&
-	    hash_equal(hash, story->page.children[0].hash)) {
-		story->database_here = true;
-		give_database(story, object);
+	if (!view->database_here && view->page.child_count > 0 &&
+	    hash_equal(hash, view->page.children[0].hash)) {
+		view->database_here = true;
+		give_database(view, object);
 		return true;
 	}
-	return give_picture(story, hash, object);
+	return give_picture(view, hash, object);
 }
 
-static void want_child(struct story *story, struct wants *wants, uint32_t child, uint32_t priority)
+static void want_child(struct information_view *view, struct wants *wants, uint32_t child,
+		       uint32_t priority)
 {
 	const struct message_want want = {
-		.hash = story->page.children[child].hash,
-		.page = story->page_at.hash,
-		.offset = (uint32_t)page_child_offset(&story->page, child),
-		.size = story->page.children[child].size,
+		.hash = view->page.children[child].hash,
+		.page = view->page_at.hash,
+		.offset = (uint32_t)page_child_offset(&view->page, child),
+		.size = view->page.children[child].size,
 		.priority = priority,
 	};
 
 	wants_add(wants, &want);
 }
 
-void story_wants(struct story *story, struct wants *wants)
+void information_view_wants(struct information_view *view, struct wants *wants)
 {
-	if (hash_is_zero(story->root))
+	if (hash_is_zero(view->root))
 		return;
-	if (!story->page_here) {
+	if (!view->page_here) {
 		const struct message_want want = {
-			.hash = story->page_at.hash,
-			.page = story->root,
-			.offset = story->page_offset,
-			.size = story->page_at.size,
+			.hash = view->page_at.hash,
+			.page = view->root,
+			.offset = view->page_offset,
+			.size = view->page_at.size,
 			.priority = MESSAGE_PRIORITY_INDEX,
 		};
 
 		wants_add(wants, &want);
 		return;
 	}
-	if (story->page.child_count > 0 && !story->database_here)
-		want_child(story, wants, 0, MESSAGE_PRIORITY_INDEX / 2);
-	for (uint32_t i = 0; story->info && i < info_picture_count(story->info); i++) {
-		const struct hash hash = info_picture(story->info, i)->hash;
+	if (view->page.child_count > 0 && !view->database_here)
+		want_child(view, wants, 0, MESSAGE_PRIORITY_INDEX / 2);
+	for (uint32_t i = 0; view->info && i < info_picture_count(view->info); i++) {
+		const struct hash hash = info_picture(view->info, i)->hash;
 
-		if (i >= PICTURES_MOST || !story->pictures[i].wanted)
+		if (i >= PICTURES_MAX || !view->pictures[i].wanted)
 			continue;
-		for (uint32_t c = 1; c < story->page.child_count; c++)
-			if (hash_equal(story->page.children[c].hash, hash))
-				want_child(story, wants, c, MESSAGE_PRIORITY_INDEX / 2);
+		for (uint32_t c = 1; c < view->page.child_count; c++)
+			if (hash_equal(view->page.children[c].hash, hash))
+				want_child(view, wants, c, MESSAGE_PRIORITY_INDEX / 2);
 	}
 }
 
-bool story_broken(const struct story *story)
+bool information_view_broken(const struct information_view *view)
 {
-	return story->page_here && (story->page.child_count == 0 || story->database_here) &&
-	       !story->info;
+	return view->page_here && (view->page.child_count == 0 || view->database_here) &&
+	       !view->info;
 }
 
-const char *story_language(const struct story *story)
+const char *information_view_language(const struct information_view *view)
 {
-	return story->language[0] ? story->language : NULL;
+	return view->language[0] ? view->language : NULL;
 }
 
-void story_set_language(struct story *story, const char *language)
+void information_view_set_language(struct information_view *view, const char *language)
 {
 	int page;
 
-	if (story->info)
-		language = info_nearest_language(story->info, language);
-	if (strcmp(story->language, language) == 0)
+	if (view->info)
+		language = info_nearest_language(view->info, language);
+	if (strcmp(view->language, language) == 0)
 		return;
 	log_debug("app", "words in %s", language);
-	snprintf(story->language, sizeof(story->language), "%s", language);
-	if (!story->overlay)
+	snprintf(view->language, sizeof(view->language), "%s", language);
+	if (!view->overlay)
 		return;
-	page = overlay_page(story->overlay);
-	overlay_language(story->overlay, story->language);
-	if (tell_parts(story) < 0 || tell_tours(story) < 0)
+	page = overlay_page(view->overlay);
+	overlay_language(view->overlay, view->language);
+	if (tell_parts(view) < 0 || tell_tours(view) < 0)
 		log_error("app", "out of memory for the words of parts and tours");
 	if (page >= 0)
-		story_open_page(story, (uint32_t)page);
-	if (overlay_searching(story->overlay))
-		story_search(story); /* the language's own come first */
+		information_view_open_page(view, (uint32_t)page);
+	if (overlay_searching(view->overlay))
+		information_view_search(view); /* the language's own come first */
 }
 
-bool story_open_page(struct story *story, uint32_t part)
+bool information_view_open_page(struct information_view *view, uint32_t part)
 {
 	struct bytes html;
-	int rc = info_page(story->info, part, story->language, &html, NULL);
+	int rc = info_page(view->info, part, view->language, &html, NULL);
 
 	if (rc == 0)
-		rc = overlay_show_page(story->overlay, (int)part, html,
-				       info_credits(story->info, part, story->language));
+		rc = overlay_show_page(view->overlay, (int)part, html,
+				       info_credits(view->info, part, view->language));
 	if (rc < 0 && rc != -ENOENT)
-		log_error("app", "content bug: page of %s: %s", info_part(story->info, part)->id,
+		log_error("app", "content bug: page of %s: %s", info_part(view->info, part)->id,
 			  strerror(-rc));
 	return rc == 0;
 }
 
-void story_search(struct story *story)
+void information_view_search(struct information_view *view)
 {
-	static uint32_t parts[FOUND_MOST];
-	const char *query = overlay_query(story->overlay);
+	static uint32_t parts[FOUND_MAX];
+	const char *query = overlay_query(view->overlay);
 
 	if (*query)
-		overlay_found(story->overlay, parts,
-			      info_search(story->info, query, story->language, parts, FOUND_MOST));
+		overlay_found(view->overlay, parts,
+			      info_search(view->info, query, view->language, parts, FOUND_MAX));
 }
 
 /* ---- regions */
@@ -392,7 +397,7 @@ static void region_of(const struct info_region *from, struct region *out)
 		[INFO_REGION_PRISM] = REGION_PRISM,
 	};
 
-	_Static_assert((int)INFO_CORNERS_MOST == (int)REGION_CORNERS_MOST, "one limit");
+	_Static_assert((int)INFO_CORNERS_MAX == (int)REGION_CORNERS_MAX, "one limit");
 	*out = (struct region){
 		.kind = kinds[from->kind],
 		.radius_m = from->radius_m,
@@ -406,22 +411,22 @@ static void region_of(const struct info_region *from, struct region *out)
 	memcpy(out->corners_m, from->corners_m, sizeof(out->corners_m));
 }
 
-bool story_region(const struct story *story, uint32_t part, struct region *out)
+bool information_view_region(const struct information_view *view, uint32_t part, struct region *out)
 {
-	region_of(&info_part(story->info, part)->region, out);
+	region_of(&info_part(view->info, part)->region, out);
 	return out->kind != REGION_NONE;
 }
 
-int story_part_at(const struct story *story, const float point_m[3])
+int information_view_part_at(const struct information_view *view, const float point_m[3])
 {
 	float best_size = INFINITY;
 	int best = -1;
 
-	for (uint32_t i = 0; story->info && i < info_part_count(story->info); i++) {
-		const float size = info_region_size_m(&info_part(story->info, i)->region);
+	for (uint32_t i = 0; view->info && i < info_part_count(view->info); i++) {
+		const float size = info_region_size_m(&info_part(view->info, i)->region);
 		struct region region;
 
-		if (size < best_size && story_region(story, i, &region) &&
+		if (size < best_size && information_view_region(view, i, &region) &&
 		    region_contains(&region, point_m)) {
 			best = (int)i;
 			best_size = size;
@@ -430,10 +435,10 @@ int story_part_at(const struct story *story, const float point_m[3])
 	return best;
 }
 
-void story_viewpoint(const struct story *story, uint32_t part, float least_m, const float eye_m[3],
-		     float eye_out_m[3], float target_m[3])
+void information_view_viewpoint(const struct information_view *view, uint32_t part, float least_m,
+				const float eye_m[3], float eye_out_m[3], float target_m[3])
 {
-	const struct info_part *info = info_part(story->info, part);
+	const struct info_part *info = info_part(view->info, part);
 
 	info_view(&info->region, info->anchor_m, least_m, eye_m, eye_out_m, target_m);
 }

@@ -17,7 +17,7 @@ static float heading(const struct kiosk *kiosk)
 
 static unsigned offered(const struct kiosk *kiosk)
 {
-	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
 	return overlay ? overlay_tools_offered(overlay) : 0;
 }
@@ -63,7 +63,7 @@ void tools_press(struct kiosk *kiosk, unsigned tool)
 		section_init(&now->section, o->box_min_m, o->box_max_m);
 		section_face(&now->section, kiosk->camera.eye_m, forward);
 	}
-	kiosk->anchors_to_look = OVERLAY_PARTS_MOST; /* other stone is before them */
+	kiosk->anchors_to_look = OVERLAY_PARTS_MAX; /* other stone is before them */
 	say(kiosk);
 	kiosk_redraw(kiosk);
 }
@@ -117,14 +117,14 @@ static void move(struct kiosk *kiosk, const float at[2])
 						 (at[0] - tools->grabbed_at[0]) * sinf(turn)));
 		break;
 	}
-	kiosk->anchors_to_look = OVERLAY_PARTS_MOST;
+	kiosk->anchors_to_look = OVERLAY_PARTS_MAX;
 	kiosk_redraw(kiosk);
 }
 
 bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
 {
 	struct tools *tools = &kiosk->tools;
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	const bool is_holder =
 		tools->held != OVERLAY_HANDLE_NONE && tools->contact == event->contact;
 	enum overlay_handle handle;
@@ -157,7 +157,7 @@ bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
 
 void tools_say(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct scene_tools *now = &kiosk->tools.now;
 
 	/* Another release may offer others. */

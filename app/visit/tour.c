@@ -4,11 +4,11 @@
 
 enum { STEP_MOST_MS = 50 }; /* of the eye: a hiccup is not a jump */
 
-_Static_assert((int)TOUR_STOPS_MOST == (int)INFO_STOPS_MOST, "stops of a tour");
+_Static_assert((int)TOUR_STOPS_MAX == (int)INFO_STOPS_MAX, "stops of a tour");
 
 void tour_way(struct tour_path *out, const struct info_tour *of, float diagonal_m)
 {
-	struct tour_view views[TOUR_STOPS_MOST];
+	struct tour_view views[TOUR_STOPS_MAX];
 
 	for (uint32_t i = 0; i < of->stop_count; i++) {
 		const struct info_stop *stop = &of->stops[i];
@@ -64,8 +64,8 @@ bool tour_runs(const struct tour *tour)
 /* Stays pass by the clock, for nothing is drawn then; moves as fast as they can be seen. */
 static void advance(struct tour *tour, int64_t ms)
 {
-	const int64_t rest = tour_path_rest_ms(&tour->path, tour->at_ms);
-	const int64_t stays = ms < rest ? ms : rest;
+	const int64_t accumulation = tour_path_rest_ms(&tour->path, tour->at_ms);
+	const int64_t stays = ms < accumulation ? ms : accumulation;
 
 	tour->at_ms += stays;
 	ms -= stays;
@@ -96,10 +96,10 @@ bool tour_step(struct tour *tour, int64_t now_ms, bool arrived, struct tour_pose
 
 int tour_wait_ms(const struct tour *tour, int64_t now_ms)
 {
-	int64_t rest;
+	int64_t accumulation;
 
 	if (tour->state != TOUR_FLYING)
 		return tour->state == TOUR_COMING ? 0 : -1;
-	rest = tour_path_rest_ms(&tour->path, tour->at_ms) - (now_ms - tour->then_ms);
-	return rest > 0 ? (int)rest : 0;
+	accumulation = tour_path_rest_ms(&tour->path, tour->at_ms) - (now_ms - tour->then_ms);
+	return accumulation > 0 ? (int)accumulation : 0;
 }

@@ -16,7 +16,7 @@ enum { COME_LEAST_MS = 1200, COME_MOST_MS = 5000 };
 /* The tour that is flown; NULL: none. */
 static const struct info_tour *flown(const struct kiosk *kiosk)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
 	if (kiosk->tour.state == TOUR_OFF || !info || kiosk->tour.which >= info_tour_count(info))
 		return NULL;
@@ -47,7 +47,7 @@ static void come(struct kiosk *kiosk)
 
 static void begin(struct kiosk *kiosk, uint32_t which, bool loops)
 {
-	const struct info_tour *tour = info_tour(story_info(kiosk->shown.story), which);
+	const struct info_tour *tour = info_tour(information_view_info(kiosk->shown.view), which);
 
 	tour_begin(&kiosk->tour, which, tour, loops, navigator_diagonal_m(&kiosk->navigator),
 		   clock_now_ms());
@@ -55,9 +55,9 @@ static void begin(struct kiosk *kiosk, uint32_t which, bool loops)
 	come(kiosk);
 }
 
-bool guide_go_round(struct kiosk *kiosk)
+bool tour_player_go_round(struct kiosk *kiosk)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
 	for (uint32_t i = 0; info && i < info_tour_count(info); i++)
 		if (info_tour(info, i)->attract) {
@@ -77,18 +77,18 @@ static void clear(struct overlay *overlay)
 	overlay_show_card(overlay, -1);
 }
 
-void guide_start(struct kiosk *kiosk, int which)
+void tour_player_start(struct kiosk *kiosk, int which)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
 	if (!info || which < 0 || (uint32_t)which >= info_tour_count(info))
 		return;
-	clear(story_overlay(kiosk->shown.story));
+	clear(information_view_overlay(kiosk->shown.view));
 	begin(kiosk, (uint32_t)which, false);
-	guest_count_id(kiosk, TALLY_TOUR, info_tour(info, (uint32_t)which)->id);
+	visitor_count_id(kiosk, USAGE_TOUR, info_tour(info, (uint32_t)which)->id);
 }
 
-void guide_halt(struct kiosk *kiosk)
+void tour_player_halt(struct kiosk *kiosk)
 {
 	if (kiosk->tour.loops)
 		tour_end(&kiosk->tour); /* nobody's, and somebody came */
@@ -98,45 +98,45 @@ void guide_halt(struct kiosk *kiosk)
 	say_eye(kiosk, "halts");
 }
 
-void guide_go_on(struct kiosk *kiosk)
+void tour_player_go_on(struct kiosk *kiosk)
 {
 	if (kiosk->tour.state != TOUR_HALTED)
 		return;
-	clear(story_overlay(kiosk->shown.story));
+	clear(information_view_overlay(kiosk->shown.view));
 	tour_go_on(&kiosk->tour);
 	log_debug("app", "tour goes on");
 	come(kiosk);
 }
 
-void guide_end(struct kiosk *kiosk)
+void tour_player_end(struct kiosk *kiosk)
 {
 	if (kiosk->tour.state != TOUR_OFF)
 		log_debug("app", "tour ends");
 	tour_end(&kiosk->tour);
 }
 
-void guide_press(struct kiosk *kiosk)
+void tour_player_press(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
-	const struct info *info = story_info(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
 	if (kiosk->tour.state == TOUR_HALTED)
-		guide_go_on(kiosk);
+		tour_player_go_on(kiosk);
 	else if (tour_runs(&kiosk->tour))
-		guide_halt(kiosk);
+		tour_player_halt(kiosk);
 	else if (info_tour_count(info) == 1)
-		guide_start(kiosk, 0);
+		tour_player_start(kiosk, 0);
 	else
 		overlay_show_tours(overlay, !overlay_choosing(overlay));
 }
 
-bool guide_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 {
 	const enum tour_state before = kiosk->tour.state;
 	struct tour_pose pose;
 
 	/* Another release, or somebody came. */
-	if (!flown(kiosk) || (kiosk->tour.loops && kiosk->visit.state != VISIT_NOBODY))
+	if (!flown(kiosk) || (kiosk->tour.loops && kiosk->presence.state != PRESENCE_NOBODY))
 		tour_end(&kiosk->tour);
 	if (!tour_step(&kiosk->tour, now_ms, kiosk->navigator.flight_left_ms <= 0, &pose))
 		return false;
@@ -163,7 +163,7 @@ static uint32_t spoken_stop(const struct kiosk *kiosk, const struct info_tour *t
 	return stop;
 }
 
-int guide_part(const struct kiosk *kiosk)
+int tour_player_part(const struct kiosk *kiosk)
 {
 	const struct info_tour *tour = flown(kiosk);
 	struct tour_pose pose;
@@ -174,10 +174,10 @@ int guide_part(const struct kiosk *kiosk)
 	return pose.moves ? -1 : tour->stops[pose.stop].part;
 }
 
-void guide_say(struct kiosk *kiosk)
+void tour_player_say(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
-	const struct info *info = story_info(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	const struct info *info = information_view_info(kiosk->shown.view);
 	const struct info_tour *tour = flown(kiosk);
 	struct overlay_tour_state state = { .paused = kiosk->tour.state == TOUR_HALTED };
 	const char *language;
@@ -189,7 +189,7 @@ void guide_say(struct kiosk *kiosk)
 		overlay_show_tour(overlay, NULL);
 		return;
 	}
-	language = story_language(kiosk->shown.story);
+	language = information_view_language(kiosk->shown.view);
 	stop = spoken_stop(kiosk, tour);
 	state.tour = (int)kiosk->tour.which;
 	state.caption = info_stop_caption(info, kiosk->tour.which, stop, language);

@@ -8,9 +8,9 @@ enum { HOMEWARD_MS = 2500 };
 
 static bool is_reading(const struct kiosk *kiosk)
 {
-	const struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 
-	for (size_t i = 0; i < TOUCH_CONTACTS_MOST; i++)
+	for (size_t i = 0; i < TOUCH_CONTACTS_MAX; i++)
 		if (kiosk->gestures.fingers[i].down)
 			return true;
 	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
@@ -19,33 +19,34 @@ static bool is_reading(const struct kiosk *kiosk)
 			   kiosk->tools.now.rake.on || kiosk->tools.now.section.on);
 }
 
-int64_t guest_clock_s(void)
+int64_t visitor_clock_s(void)
 {
 	return clock_wall_is_set() || clock_wall_is_plausible() ? clock_wall_s() : 0;
 }
 
-void guest_count(struct kiosk *kiosk, enum tally_kind kind, int part)
+void visitor_count(struct kiosk *kiosk, enum usage_kind kind, int part)
 {
-	const struct info *info = story_info(kiosk->shown.story);
+	const struct info *info = information_view_info(kiosk->shown.view);
 
-	guest_count_id(kiosk, kind, info && part >= 0 ? info_part(info, (uint32_t)part)->id : "");
+	visitor_count_id(kiosk, kind, info && part >= 0 ? info_part(info, (uint32_t)part)->id : "");
 }
 
-void guest_count_id(struct kiosk *kiosk, enum tally_kind kind, const char *id)
+void visitor_count_id(struct kiosk *kiosk, enum usage_kind kind, const char *id)
 {
-	const char *language = kiosk->shown.story ? story_language(kiosk->shown.story) : NULL;
+	const char *language =
+		kiosk->shown.view ? information_view_language(kiosk->shown.view) : NULL;
 
-	if (kiosk->tally)
-		tally_add(kiosk->tally, kind, id, language ? language : "", guest_clock_s());
+	if (kiosk->usage)
+		usage_add(kiosk->usage, kind, id, language ? language : "", visitor_clock_s());
 }
 
 /* Nothing of one visitor is left for the next. */
 static void begin_anew(struct kiosk *kiosk)
 {
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	const char *language = kiosk->options.language;
 
-	guide_end(kiosk);
+	tour_player_end(kiosk);
 	tools_end(kiosk);
 	back_forget(kiosk);
 	if (overlay) {
@@ -57,13 +58,14 @@ static void begin_anew(struct kiosk *kiosk)
 		if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 			log_debug("app", "comfort: forgotten");
 		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
-		story_set_language(kiosk->shown.story,
-				   language ? language
-					    : info_language(story_info(kiosk->shown.story), 0));
+		information_view_set_language(
+			kiosk->shown.view,
+			language ? language
+				 : info_language(information_view_info(kiosk->shown.view), 0));
 	}
 	fingers_init(kiosk); /* what still lies on the glass is nobody's */
-	if (kiosk->tally)
-		tally_write(kiosk->tally);
+	if (kiosk->usage)
+		usage_write(kiosk->usage);
 }
 
 /* From where the eye is to where its way begins. */
@@ -72,26 +74,27 @@ static void send_round(struct kiosk *kiosk, int64_t now_ms)
 	const struct navigator_options *o = &kiosk->navigator.options;
 	float eye_m[3], target_m[3];
 
-	if (guide_go_round(kiosk))
+	if (tour_player_go_round(kiosk))
 		return;
-	roam_init(&kiosk->roam, o->box_min_m, o->box_max_m, o->home_eye_m, o->home_target_m);
-	roam_pose(&kiosk->roam, 0, eye_m, target_m);
+	attract_camera_init(&kiosk->attract, o->box_min_m, o->box_max_m, o->home_eye_m,
+			    o->home_target_m);
+	attract_camera_pose(&kiosk->attract, 0, eye_m, target_m);
 	navigator_fly(&kiosk->navigator, eye_m, target_m, HOMEWARD_MS);
-	kiosk->roam_since_ms = now_ms + HOMEWARD_MS;
+	kiosk->attract_camera_since_ms = now_ms + HOMEWARD_MS;
 }
 
 /* For whoever wonders what a visit was. */
 static void say_state(struct kiosk *kiosk)
 {
 	static const char *const states[] = {
-		[VISIT_NOBODY] = "nobody is there",
-		[VISIT_SOMEBODY] = "somebody is there",
-		[VISIT_ASKED] = "is somebody there?",
+		[PRESENCE_NOBODY] = "nobody is there",
+		[PRESENCE_SOMEBODY] = "somebody is there",
+		[PRESENCE_ASKED] = "is somebody there?",
 	};
 
-	if (kiosk->visit_said != kiosk->visit.state)
-		log_debug("app", "%s", states[kiosk->visit.state]);
-	kiosk->visit_said = kiosk->visit.state;
+	if (kiosk->presence_said != kiosk->presence.state)
+		log_debug("app", "%s", states[kiosk->presence.state]);
+	kiosk->presence_said = kiosk->presence.state;
 }
 
 static bool is_off(const struct kiosk *kiosk)
@@ -104,52 +107,53 @@ static int eye_wait_ms(const struct kiosk *kiosk, int64_t now_ms)
 {
 	if (kiosk->tour.state != TOUR_OFF)
 		return tour_wait_ms(&kiosk->tour, now_ms);
-	return kiosk->visit.state == VISIT_NOBODY ? roam_rest_ms(now_ms - kiosk->roam_since_ms)
-						  : -1;
+	return kiosk->presence.state == PRESENCE_NOBODY
+		       ? attract_camera_rest_ms(now_ms - kiosk->attract_camera_since_ms)
+		       : -1;
 }
 
-void guest_watch(struct kiosk *kiosk)
+void visitor_watch(struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
-	const enum visit_state before = kiosk->visit.state;
-	struct overlay *overlay = story_overlay(kiosk->shown.story);
+	const enum presence_state before = kiosk->presence.state;
+	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	int asked_s;
 
 	if (is_off(kiosk))
 		return;
 	if (!kiosk->tour.loops && tour_runs(&kiosk->tour))
-		visit_keep(&kiosk->visit, now_ms);
-	visit_step(&kiosk->visit, now_ms, is_reading(kiosk));
+		presence_keep(&kiosk->presence, now_ms);
+	presence_step(&kiosk->presence, now_ms, is_reading(kiosk));
 	say_state(kiosk);
-	if (kiosk->visit.state == VISIT_NOBODY && before != VISIT_NOBODY) {
+	if (kiosk->presence.state == PRESENCE_NOBODY && before != PRESENCE_NOBODY) {
 		begin_anew(kiosk);
 		send_round(kiosk, now_ms);
-	} else if (kiosk->visit.state == VISIT_NOBODY && kiosk->tour.state == TOUR_OFF) {
-		guide_go_round(kiosk); /* of another release, or one whose words came late */
+	} else if (kiosk->presence.state == PRESENCE_NOBODY && kiosk->tour.state == TOUR_OFF) {
+		tour_player_go_round(kiosk); /* of another release, or one whose words came late */
 	}
-	asked_s = visit_asked_s(&kiosk->visit, now_ms);
+	asked_s = presence_asked_s(&kiosk->presence, now_ms);
 	if (overlay) { /* also one that is new */
-		overlay_invite(overlay, kiosk->visit.state == VISIT_NOBODY);
+		overlay_invite(overlay, kiosk->presence.state == PRESENCE_NOBODY);
 		overlay_ask(overlay, asked_s);
-		guide_say(kiosk);
+		tour_player_say(kiosk);
 	}
-	if (kiosk->visit.state != before || asked_s != kiosk->asked_s)
+	if (kiosk->presence.state != before || asked_s != kiosk->asked_s)
 		kiosk_redraw(kiosk);
 	kiosk->asked_s = asked_s;
 	if (eye_wait_ms(kiosk, now_ms) == 0)
 		kiosk_redraw(kiosk);
 }
 
-int guest_wait_ms(const struct kiosk *kiosk)
+int visitor_wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms();
 
 	if (is_off(kiosk))
 		return -1;
-	return sooner(eye_wait_ms(kiosk, now_ms), visit_wait_ms(&kiosk->visit, now_ms));
+	return sooner(eye_wait_ms(kiosk, now_ms), presence_wait_ms(&kiosk->presence, now_ms));
 }
 
-bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+bool visitor_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 {
 	float eye_m[3], target_m[3];
 	bool moves;
@@ -157,22 +161,23 @@ bool guest_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 	if (is_off(kiosk))
 		return false;
 	if (kiosk->tour.state != TOUR_OFF)
-		return guide_leads_eye(kiosk, now_ms);
-	if (kiosk->visit.state != VISIT_NOBODY || now_ms < kiosk->roam_since_ms)
+		return tour_player_leads_eye(kiosk, now_ms);
+	if (kiosk->presence.state != PRESENCE_NOBODY || now_ms < kiosk->attract_camera_since_ms)
 		return false;
-	moves = roam_pose(&kiosk->roam, now_ms - kiosk->roam_since_ms, eye_m, target_m);
+	moves = attract_camera_pose(&kiosk->attract, now_ms - kiosk->attract_camera_since_ms, eye_m,
+				    target_m);
 	navigator_look(&kiosk->navigator, eye_m, target_m);
 	return moves;
 }
 
-bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
+bool visitor_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
 {
 	const uint32_t bit = 1u << event->contact;
-	const bool asked = kiosk->visit.state == VISIT_ASKED;
+	const bool asked = kiosk->presence.state == PRESENCE_ASKED;
 
-	if (!kiosk->visit.touched)
-		guest_count(kiosk, TALLY_VISIT, -1);
-	visit_touch(&kiosk->visit, clock_now_ms());
+	if (!kiosk->presence.touched)
+		visitor_count(kiosk, USAGE_VISIT, -1);
+	presence_touch(&kiosk->presence, clock_now_ms());
 	if (event->phase == TOUCH_DOWN)
 		kiosk->answers = asked ? kiosk->answers | bit : kiosk->answers & ~bit;
 	if (asked)
@@ -180,9 +185,9 @@ bool guest_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
 	return (kiosk->answers & bit) != 0;
 }
 
-int guest_left_ms(const struct kiosk *kiosk)
+int visitor_left_ms(const struct kiosk *kiosk)
 {
-	if (!kiosk->visit.touched || kiosk->shown.frame.patches == 0)
+	if (!kiosk->presence.touched || kiosk->shown.frame.patches == 0)
 		return 0;
-	return visit_left_ms(&kiosk->visit, clock_now_ms());
+	return presence_left_ms(&kiosk->presence, clock_now_ms());
 }

@@ -25,9 +25,9 @@ static bool is_same(const struct place *a, const struct place *b, float near_m)
 
 void way_back_note(struct way_back *way, const struct place *here)
 {
-	if (way->count == WAY_BACK_MOST) {
+	if (way->count == WAY_BACK_MAX) {
 		memmove(&way->places[0], &way->places[1],
-			(WAY_BACK_MOST - 1) * sizeof(way->places[0]));
+			(WAY_BACK_MAX - 1) * sizeof(way->places[0]));
 		way->count--;
 	}
 	way->places[way->count++] = *here;

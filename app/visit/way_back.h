@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { WAY_BACK_MOST = 32 }; /* steps that are remembered */
+enum { WAY_BACK_MAX = 32 }; /* steps that are remembered */
 
 struct place {
 	float eye_m[3], target_m[3];
@@ -18,7 +18,7 @@ struct place {
 };
 
 struct way_back {
-	struct place places[WAY_BACK_MOST];
+	struct place places[WAY_BACK_MAX];
 	uint32_t count;
 };
 

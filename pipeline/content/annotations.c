@@ -23,7 +23,7 @@ const struct annotation_text annotation_texts[ANNOTATION_TEXTS] = {
 	{ "caption", "describing" },
 };
 
-uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MOST])
+uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MAX])
 {
 	const cJSON *part;
 	uint32_t count = 0;
@@ -35,12 +35,12 @@ uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANG
 		for (const cJSON *t = titles ? titles->child : NULL; t && t->string; t = t->next) {
 			uint32_t i = 0;
 
-			while (i < count && i < INFO_LANGUAGES_MOST &&
+			while (i < count && i < INFO_LANGUAGES_MAX &&
 			       strcmp(languages[i], t->string) != 0)
 				i++;
 			if (i < count)
 				continue;
-			if (count < INFO_LANGUAGES_MOST)
+			if (count < INFO_LANGUAGES_MAX)
 				languages[count] = t->string;
 			count++;
 		}

@@ -5,7 +5,7 @@
 
 #include "pipeline/content/info_build.h"
 
-enum { ANNOTATIONS_BYTES_MOST = 256 << 20 }; /* of a file */
+enum { ANNOTATIONS_BYTES_MAX = 256 << 20 }; /* of a file */
 
 struct annotations_export_options {
 	const char *folder;

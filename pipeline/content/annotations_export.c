@@ -173,7 +173,7 @@ static bool add_region(struct exporter *e, cJSON *selectors, const cJSON *region
 		selector = add_object(e, selectors, NULL);
 		if (selector)
 			add_text(e, selector, "type", ours->type);
-		for (size_t m = 0; selector && m < ANNOTATION_MEMBERS_MOST && ours->members[m];
+		for (size_t m = 0; selector && m < ANNOTATION_MEMBERS_MAX && ours->members[m];
 		     m++) {
 			const cJSON *member =
 				cJSON_GetObjectItemCaseSensitive(region, ours->members[m]);
@@ -216,7 +216,7 @@ static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32
 {
 	const struct content_part *read = &e->content->parts[index];
 	cJSON *item = add_object(e, items, NULL), *thumbnail;
-	char id[INFO_ID_BYTES_MOST + 2] = "#";
+	char id[INFO_ID_BYTES_MAX + 2] = "#";
 
 	if (!item)
 		return;
@@ -318,7 +318,7 @@ static int read_json(cJSON **out, struct content *content, const char *name)
 	int rc = -ENAMETOOLONG;
 
 	*out = NULL;
-	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
 	if (content_path(content, path, sizeof(path), name))
 		rc = buffer_read_file(&text, path);
 	if (rc == 0)
@@ -329,7 +329,7 @@ static int read_json(cJSON **out, struct content *content, const char *name)
 
 int annotations_export(struct annotations *out, const struct annotations_export_options *options)
 {
-	const char *languages[INFO_LANGUAGES_MOST] = { "en" };
+	const char *languages[INFO_LANGUAGES_MAX] = { "en" };
 	struct info_build_options build = { .folder = options->folder,
 					    .languages = options->languages,
 					    .language_count = options->language_count,
@@ -340,7 +340,7 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 	int rc = read_json(&json, &content, "parts.json");
 
 	*out = (struct annotations){ 0 };
-	buffer_init(&out->json, ANNOTATIONS_BYTES_MOST);
+	buffer_init(&out->json, ANNOTATIONS_BYTES_MAX);
 	if (rc == 0 && !build.languages) {
 		build.languages = languages;
 		build.language_count = annotation_languages(json, languages);
@@ -351,7 +351,7 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 		content_complain(&content, true, "parts.json", 0,
 				 "titles are in more than %d languages, or in what is no "
 				 "language's code: name those to take",
-				 INFO_LANGUAGES_MOST);
+				 INFO_LANGUAGES_MAX);
 		rc = -EINVAL;
 	}
 	if (rc == 0)

@@ -78,13 +78,13 @@ static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
 static void read_id(struct importer *im)
 {
 	const char *iri = string_of(im->item, "id");
-	char id[INFO_ID_BYTES_MOST + 1];
+	char id[INFO_ID_BYTES_MAX + 1];
 	size_t size = 0;
 
 	for (const char *p = iri; p && *p; p++) {
 		if (*p == '#' || *p == '/' || *p == ':')
 			size = 0;
-		else if (size < INFO_ID_BYTES_MOST)
+		else if (size < INFO_ID_BYTES_MAX)
 			id[size++] = *p >= 'A' && *p <= 'Z' ? (char)(*p + 32) : *p;
 	}
 	id[size] = 0;
@@ -310,7 +310,7 @@ static cJSON *region_of(struct importer *im, const cJSON *selector)
 		if (!region)
 			return NULL;
 		add(im, region, "kind", cJSON_CreateString(ours->kind));
-		for (size_t m = 0; m < ANNOTATION_MEMBERS_MOST && ours->members[m]; m++) {
+		for (size_t m = 0; m < ANNOTATION_MEMBERS_MAX && ours->members[m]; m++) {
 			const cJSON *member =
 				cJSON_GetObjectItemCaseSensitive(selector, ours->members[m]);
 
@@ -486,7 +486,7 @@ static int import(struct importer *im)
 	cJSON *json = NULL;
 	int rc;
 
-	buffer_init(&text, ANNOTATIONS_BYTES_MOST);
+	buffer_init(&text, ANNOTATIONS_BYTES_MAX);
 	rc = read_file(im, &json, &text);
 	if (rc == 0 && importer_has_room(im)) {
 		im->parts_file = cJSON_CreateObject();

@@ -7,12 +7,12 @@
 #include "pipeline/content/annotations.h"
 #include "pipeline/content/info_content.h"
 
-enum { ANNOTATION_MEMBERS_MOST = 4 };
+enum { ANNOTATION_MEMBERS_MAX = 4 };
 
 /* A region's kind and the selector that says the same, member by member. */
 struct annotation_selector {
 	const char *kind, *type;
-	const char *members[ANNOTATION_MEMBERS_MOST]; /* up to the first NULL */
+	const char *members[ANNOTATION_MEMBERS_MAX]; /* up to the first NULL */
 };
 
 enum { ANNOTATION_SELECTORS = 4 };
@@ -27,14 +27,14 @@ struct annotation_text {
 extern const struct annotation_text annotation_texts[ANNOTATION_TEXTS];
 
 /* The languages of the parts' titles, in the order in which they appear; borrowed from json. How
- * many there are; at most INFO_LANGUAGES_MOST are written. */
-uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MOST]);
+ * many there are; at most INFO_LANGUAGES_MAX are written. */
+uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MAX]);
 
 /* ---- import */
 
 struct page_file {
-	char name[INFO_ID_BYTES_MOST + 40]; /* "pages/gate.en.html" */
-	const char *html;                   /* borrowed from the file's JSON */
+	char name[INFO_ID_BYTES_MAX + 40]; /* "pages/gate.en.html" */
+	const char *html;                  /* borrowed from the file's JSON */
 };
 
 struct importer {

@@ -154,7 +154,7 @@ static int write_all(struct importer *im)
 /* As a release of all its languages would be. */
 static int check_written(struct importer *im)
 {
-	const char *languages[INFO_LANGUAGES_MOST] = { "en" };
+	const char *languages[INFO_LANGUAGES_MAX] = { "en" };
 	struct info_build_options build = { .folder = im->options->folder,
 					    .languages = languages,
 					    .complaint = im->options->complaint,

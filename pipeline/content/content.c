@@ -32,7 +32,7 @@ static bool set_scans(void *target, const char *value)
 
 		if (!name)
 			return false;
-		if (content->scan_count == CONTENT_SCANS_MOST || !content_name_is_safe(name)) {
+		if (content->scan_count == CONTENT_SCANS_MAX || !content_name_is_safe(name)) {
 			free(name);
 			return false;
 		}
@@ -215,8 +215,7 @@ static bool set_languages(void *target, const char *value)
 	while (*(value += strspn(value, " \t,"))) {
 		size_t length = strcspn(value, " \t,");
 
-		if (content->language_count == CONTENT_LANGUAGES_MOST ||
-		    !is_language(value, length))
+		if (content->language_count == CONTENT_LANGUAGES_MAX || !is_language(value, length))
 			return false;
 		memset(content->languages[content->language_count], 0, CONTENT_LANGUAGE_BYTES);
 		memcpy(content->languages[content->language_count++], value, length);

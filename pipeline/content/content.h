@@ -12,8 +12,8 @@
 
 enum {
 	CONTENT_PATH_BYTES = 4096,
-	CONTENT_SCANS_MOST = 64,
-	CONTENT_LANGUAGES_MOST = 64,
+	CONTENT_SCANS_MAX = 64,
+	CONTENT_LANGUAGES_MAX = 64,
 	CONTENT_LANGUAGE_BYTES = 12,
 };
 
@@ -32,7 +32,7 @@ enum content_lit {
 struct content {
 	char folder[CONTENT_PATH_BYTES]; /* as given, without a slash at its end */
 	char name[128];                  /* UTF-8; by default the folder's name */
-	char *scans[CONTENT_SCANS_MOST]; /* paths, folder included; owned */
+	char *scans[CONTENT_SCANS_MAX];  /* paths, folder included; owned */
 	uint32_t scan_count;             /* at least 1 */
 	struct import_options import;
 	enum content_colours colours;
@@ -49,7 +49,7 @@ struct content {
 	uint32_t patch_triangles; /* 256..4000; 0: by the size of the scan */
 	double publish_share;     /* of the scan's triangles; above 0, at most 1 */
 	uint32_t language_count;
-	char languages[CONTENT_LANGUAGES_MOST][CONTENT_LANGUAGE_BYTES]; /* the first is default */
+	char languages[CONTENT_LANGUAGES_MAX][CONTENT_LANGUAGE_BYTES]; /* the first is default */
 };
 
 /* Reads FOLDER/temple.ini; the scans must be there. Fault names file, line and cure. *out is
@@ -75,7 +75,7 @@ must_check int content_scans_key(const struct content *content, struct hash *out
 struct content_scans {
 	bool from_cache;       /* nothing was read anew; reports are empty */
 	uint32_t report_count; /* scan_count, unless from_cache */
-	struct import_report reports[CONTENT_SCANS_MOST];
+	struct import_report reports[CONTENT_SCANS_MAX];
 };
 
 /* All scans in one mesh: from .work/mesh where that is of the same key, else imported, repaired

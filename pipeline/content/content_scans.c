@@ -14,7 +14,7 @@
 #include "pipeline/import/mesh_file.h"
 
 /* Raised whenever import gives another mesh from the same files. */
-enum { IMPORT_VERSION = 2, KEY_TEXT_MOST = 1 << 22 };
+enum { IMPORT_VERSION = 2, KEY_TEXT_MAX = 1 << 22 };
 
 /* By its name within the folder, which may be called by another path tomorrow. */
 static void put_file(struct buffer *text, const struct content *content, const char *path)
@@ -68,7 +68,7 @@ int content_scans_key(const struct content *content, struct hash *out, struct fa
 	struct buffer text;
 	int rc = 0;
 
-	buffer_init(&text, KEY_TEXT_MOST);
+	buffer_init(&text, KEY_TEXT_MAX);
 	buffer_put_u32(&text, IMPORT_VERSION);
 	buffer_put_u32(&text, import->up);
 	buffer_put_f64(&text, import->metres_per_unit);

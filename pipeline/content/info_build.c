@@ -184,7 +184,7 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 			  const struct content_part *part)
 {
 	const struct content_page *page = &part->pages[language];
-	int64_t content_id = information * INFO_LANGUAGES_MOST + language;
+	int64_t content_id = information * INFO_LANGUAGES_MAX + language;
 
 	if (!part->titles[language] && !part->captions[language] && !page->html)
 		return;
@@ -260,7 +260,7 @@ static void write_stop(struct writer *w, int64_t tour, int64_t position,
 	if (stop->view.part >= 0)
 		bind_int(w, stop->view.part);
 	insert(w);
-	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
 		if (!stop->captions[i])
 			continue;
 		prepare(w, "INSERT INTO tour_stop_contents VALUES(?,?,?,?)");
@@ -281,7 +281,7 @@ static void write_tour(struct writer *w, int64_t id, const struct content_tour *
 	if (tour->thumbnail_picture >= 0)
 		bind_int(w, tour->thumbnail_picture);
 	insert(w);
-	for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+	for (uint32_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
 		if (!tour->titles[i] && !tour->captions[i])
 			continue;
 		prepare(w, "INSERT INTO tour_contents VALUES(?,?,?,?)");
@@ -359,7 +359,7 @@ static int encode(struct buffer *out, struct content *content)
 		return rc;
 	content_complain(content, true, "parts.json", 0,
 			 "titles and pages together are larger than %d MB: shorten the pages",
-			 OBJECT_BYTES_MOST >> 20);
+			 OBJECT_BYTES_MAX >> 20);
 	return -EINVAL;
 }
 
@@ -408,13 +408,13 @@ static void count(struct info_built *out, const struct content *content)
 			out->tour_lines[t].stops[i] = content->tours[t].stops[i].line;
 	}
 	for (uint32_t p = 0; p < content->part_count; p++)
-		for (uint32_t i = 0; i < INFO_LANGUAGES_MOST; i++)
+		for (uint32_t i = 0; i < INFO_LANGUAGES_MAX; i++)
 			out->page_count += content->parts[p].pages[i].html != NULL;
 }
 
 bool content_languages_are_sane(const struct info_build_options *options)
 {
-	if (options->language_count < 1 || options->language_count > INFO_LANGUAGES_MOST)
+	if (options->language_count < 1 || options->language_count > INFO_LANGUAGES_MAX)
 		return false;
 	for (uint32_t i = 0; i < options->language_count; i++) {
 		const char *code = options->languages[i];
@@ -436,11 +436,11 @@ int info_build(struct info_built *out, const struct info_build_options *options)
 	int rc = 0;
 
 	*out = (struct info_built){ 0 };
-	buffer_init(&out->database, OBJECT_BYTES_MOST);
+	buffer_init(&out->database, OBJECT_BYTES_MAX);
 	if (!content_languages_are_sane(options))
 		content_complain(&content, true, "temple.ini", 0,
 				 "languages: give 1 to %d codes such as \"en fr km\", each once",
-				 INFO_LANGUAGES_MOST);
+				 INFO_LANGUAGES_MAX);
 	else if ((rc = content_read_parts(&content)) == 0)
 		rc = content_read_tours(&content);
 	if (rc == 0 && content.part_count > 0)

@@ -25,7 +25,7 @@ typedef int info_place_faces(void *data, struct info_faces *faces, struct fault 
 struct info_build_options {
 	const char *folder; /* the content folder: parts.json, tours.json, pages/, pictures/ */
 	const char *const *languages; /* such as "en"; the first must have every title */
-	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MOST */
+	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MAX */
 	unsigned tools;               /* enum info_tool */
 	info_complaint *complaint;    /* NULL: they are logged */
 	void *complaint_data;
@@ -41,13 +41,13 @@ struct info_picture_file {
 
 /* Where in tours.json a tour stands, and its stops: for those who find fault with its way. */
 struct info_tour_lines {
-	unsigned tour, stops[INFO_STOPS_MOST];
+	unsigned tour, stops[INFO_STOPS_MAX];
 };
 
 struct info_built {
 	struct buffer database; /* the SQLite image */
 	uint32_t part_count, page_count, picture_count, tour_count;
-	struct info_tour_lines tour_lines[INFO_TOURS_MOST];
+	struct info_tour_lines tour_lines[INFO_TOURS_MAX];
 	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
 };
 

@@ -38,7 +38,7 @@ static void part_finish(struct content_part *part)
 	free(part->thumbnail);
 	for (uint32_t i = 0; i < part->credit_count; i++)
 		free(part->credits[i].value);
-	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
 		free(part->titles[i]);
 		free(part->captions[i]);
 		free(part->readings[i]);
@@ -50,7 +50,7 @@ static void part_finish(struct content_part *part)
 static void tour_finish(struct content_tour *tour)
 {
 	free(tour->id);
-	for (size_t i = 0; i < INFO_LANGUAGES_MOST; i++) {
+	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
 		free(tour->titles[i]);
 		free(tour->captions[i]);
 		for (uint32_t s = 0; s < tour->stop_count; s++)
@@ -116,7 +116,7 @@ static void measure_picture(struct content *content, struct content_picture *pic
 	int rc = -ENAMETOOLONG;
 
 	picture->damaged = true; /* until it proves good */
-	buffer_init(&bytes, OBJECT_BYTES_MOST);
+	buffer_init(&bytes, OBJECT_BYTES_MAX);
 	if (content_path(content, path, sizeof(path), picture->name))
 		rc = buffer_read_file(&bytes, path);
 	if (rc == -ENOENT) {
@@ -126,7 +126,7 @@ static void measure_picture(struct content *content, struct content_picture *pic
 	} else if (rc == -EFBIG) {
 		content_complain(content, true, picture->name, 0,
 				 "picture is larger than %u MB: save it smaller",
-				 OBJECT_BYTES_MOST >> 20);
+				 OBJECT_BYTES_MAX >> 20);
 	} else if (rc < 0) {
 		content_complain(content, true, picture->name, 0, "cannot be read: %s",
 				 strerror(-rc));

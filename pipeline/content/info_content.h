@@ -7,7 +7,7 @@
 
 struct cJSON;
 
-enum { INFO_ID_BYTES_MOST = 64, INFO_PARTS_FILE_BYTES_MOST = 16 << 20 };
+enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
 struct content_page {
 	char *html; /* owned, terminated; NULL: none */
@@ -23,7 +23,7 @@ struct content_credit {
 	char *value;         /* owned */
 };
 
-enum { CONTENT_CREDITS_MOST = 64 };
+enum { CONTENT_CREDITS_MAX = 64 };
 
 struct content_part {
 	char *id;
@@ -31,26 +31,26 @@ struct content_part {
 	bool without_page;
 	struct info_region region;
 	float anchor_m[3];
-	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
-	char *readings[INFO_LANGUAGES_MOST];                               /* the same */
-	struct content_credit credits[CONTENT_CREDITS_MOST]; /* in the order of the elements */
+	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
+	char *readings[INFO_LANGUAGES_MAX];                              /* the same */
+	struct content_credit credits[CONTENT_CREDITS_MAX]; /* in the order of the elements */
 	uint32_t credit_count;
 	char *thumbnail;       /* owned, a name; NULL: none */
 	int thumbnail_picture; /* index into content.pictures, or -1 */
-	struct content_page pages[INFO_LANGUAGES_MOST];
+	struct content_page pages[INFO_LANGUAGES_MAX];
 };
 
 struct content_stop {
 	struct info_stop view;
-	unsigned line;                       /* of tours.json */
-	char *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	unsigned line;                      /* of tours.json */
+	char *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 };
 
 struct content_tour {
 	char *id;
 	unsigned line;
 	bool attract;
-	char *titles[INFO_LANGUAGES_MOST], *captions[INFO_LANGUAGES_MOST]; /* owned or NULL */
+	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 	int thumbnail_picture;      /* index into content.pictures, or -1 */
 	struct content_stop *stops; /* owned */
 	uint32_t stop_count;
@@ -92,7 +92,7 @@ must_check int content_read_credits(struct content *content, struct content_part
 /* Reads and checks a picture that file:line refers to. Its index, or -1 after a complaint, or
  * -ENOMEM. */
 int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);
-/* 1 to INFO_LANGUAGES_MOST codes, each once. */
+/* 1 to INFO_LANGUAGES_MAX codes, each once. */
 bool content_languages_are_sane(const struct info_build_options *options);
 /* The part's index or -1. */
 int content_find_part(const struct content *content, const char *id);

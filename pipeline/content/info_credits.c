@@ -46,11 +46,11 @@ static int add(struct content *content, struct content_part *part, const char *e
 		complain(content, part, element);
 		return 0;
 	}
-	if (part->credit_count == CONTENT_CREDITS_MOST) {
+	if (part->credit_count == CONTENT_CREDITS_MAX) {
 		content_complain(
 			content, true, "parts.json", part->line,
 			"part \"%s\": more than %d statements in its credits: shorten them",
-			part->id, CONTENT_CREDITS_MOST);
+			part->id, CONTENT_CREDITS_MAX);
 		return 0;
 	}
 	*credit = (struct content_credit){ element, language, strdup(text) };

@@ -74,10 +74,10 @@ static int check_image(struct page_check *check, xmlNode *node)
 	xmlFree(src);
 	if (picture == -ENOMEM)
 		return -ENOMEM;
-	if (picture >= 0 && check->page->picture_count == INFO_PAGE_PICTURES_MOST) {
+	if (picture >= 0 && check->page->picture_count == INFO_PAGE_PICTURES_MAX) {
 		content_complain(check->content, true, check->file, line,
 				 "more than %d pictures on a page: split it",
-				 INFO_PAGE_PICTURES_MOST);
+				 INFO_PAGE_PICTURES_MAX);
 		return 0;
 	}
 	return picture >= 0 ? note_picture(check, picture) : 0;
@@ -241,7 +241,7 @@ static int read_page_file(struct page_check *check)
 	char path[PATH_MAX];
 	int rc = -ENAMETOOLONG;
 
-	buffer_init(&bytes, INFO_PAGE_BYTES_MOST + 1);
+	buffer_init(&bytes, INFO_PAGE_BYTES_MAX + 1);
 	if (content_path(check->content, path, sizeof(path), check->file))
 		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
 	if (rc == 0) {
@@ -259,7 +259,7 @@ static int read_page_file(struct page_check *check)
 		content_complain(check->content, true, check->file, 0,
 				 rc == -EFBIG ? "page is larger than %d KB: split it"
 					      : "cannot be read (at most %d KB)",
-				 INFO_PAGE_BYTES_MOST >> 10);
+				 INFO_PAGE_BYTES_MAX >> 10);
 	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
 		content_complain(check->content, true, check->file, 0,
 				 "is not UTF-8: save it with that encoding");
@@ -277,7 +277,7 @@ static int read_part_pages(struct content *content, struct content_part *part)
 	const struct info_build_options *options = content->options;
 
 	for (uint32_t i = 0; i < options->language_count; i++) {
-		char file[INFO_ID_BYTES_MOST + 40];
+		char file[INFO_ID_BYTES_MAX + 40];
 		struct page_check check = { content, &part->pages[i], file, 0 };
 		int rc;
 

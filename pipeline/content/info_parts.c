@@ -119,9 +119,9 @@ static bool read_corners(struct part_reader *r, const cJSON *corners)
 	struct info_region *region = &r->part->region;
 	int count = cJSON_IsArray(corners) ? cJSON_GetArraySize(corners) : 0;
 
-	if (count < 3 || count > INFO_CORNERS_MOST) {
+	if (count < 3 || count > INFO_CORNERS_MAX) {
 		complain_part(r, "part \"%s\": a prism needs 3 to %d \"corners\", it has %d",
-			      part_name(r), INFO_CORNERS_MOST, count);
+			      part_name(r), INFO_CORNERS_MAX, count);
 		return false;
 	}
 	for (int i = 0; i < count; i++) {
@@ -246,7 +246,7 @@ bool content_is_id(const char *id)
 {
 	size_t size = strlen(id);
 
-	return size > 0 && size <= INFO_ID_BYTES_MOST &&
+	return size > 0 && size <= INFO_ID_BYTES_MAX &&
 	       strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-_") == size;
 }
 
@@ -258,7 +258,7 @@ static int read_id(struct part_reader *r)
 		complain_part(r,
 			      "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
 			      "page's file)",
-			      id ? id : "", INFO_ID_BYTES_MOST);
+			      id ? id : "", INFO_ID_BYTES_MAX);
 	else if (content_find_part(r->content, id) >= 0)
 		complain_part(r, "part \"%s\" is there twice: rename or remove one", id);
 	r->part->id = strdup(id ? id : "");
@@ -318,9 +318,9 @@ static int read_array(struct content *content, const cJSON *json, const char *te
 	const cJSON *item;
 	int rc = 0, i = 0;
 
-	if (count > INFO_PARTS_MOST) {
+	if (count > INFO_PARTS_MAX) {
 		content_complain(content, true, parts_file, 0, "%d parts: at most %d are possible",
-				 count, INFO_PARTS_MOST);
+				 count, INFO_PARTS_MAX);
 		return 0;
 	}
 	lines = calloc((size_t)count + 1, sizeof(*lines));
@@ -384,7 +384,7 @@ int content_read_parts(struct content *content)
 
 	if (!content_path(content, path, sizeof(path), parts_file))
 		return -ENAMETOOLONG;
-	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
 	rc = buffer_read_file(&text, path);
 	if (rc == 0) {
 		rc = parse_parts(content, &text);

@@ -1,5 +1,5 @@
 /* tours.json into tours. Whether a way leads through a wall is judged where the scan is:
- * pipeline/tour_check. */
+ * pipeline/content/tour_check. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
@@ -16,7 +16,7 @@
 static const char tours_file[] = "tours.json";
 
 #define STAY_S       6.0f
-#define SECONDS_MOST 120.0f
+#define SECONDS_MAX  120.0f
 #define PART_LEAST_M 0.5f /* a part without a size, as a stop sees it */
 
 /* What the readers of a tour share; stop: the one that is read, from 1. */
@@ -81,11 +81,11 @@ static float read_seconds(const struct tour_reader *r, const cJSON *json, const 
 
 	if (!item)
 		return usual;
-	if (seconds >= 1 && seconds <= SECONDS_MOST)
+	if (seconds >= 1 && seconds <= SECONDS_MAX)
 		return (float)seconds;
 	if (seconds != 0 || !may_be_none)
 		complain(r, "\"%s\" must be %s1 to %.0f seconds", key, may_be_none ? "0 or " : "",
-			 (double)SECONDS_MOST);
+			 (double)SECONDS_MAX);
 	return 0;
 }
 
@@ -199,11 +199,11 @@ static int read_stops(struct tour_reader *r, const cJSON *json, const char *text
 {
 	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "stops");
 	int count = cJSON_IsArray(array) ? cJSON_GetArraySize(array) : 0, i = 0, rc = 0;
-	unsigned lines[INFO_STOPS_MOST] = { 0 };
+	unsigned lines[INFO_STOPS_MAX] = { 0 };
 	const cJSON *item;
 
-	if (count < 2 || count > INFO_STOPS_MOST) {
-		complain(r, "a tour needs 2 to %d \"stops\", it has %d", INFO_STOPS_MOST, count);
+	if (count < 2 || count > INFO_STOPS_MAX) {
+		complain(r, "a tour needs 2 to %d \"stops\", it has %d", INFO_STOPS_MAX, count);
 		return 0;
 	}
 	r->tour->stops = calloc((size_t)count, sizeof(*r->tour->stops));
@@ -265,7 +265,7 @@ static int read_tour(struct content *content, const cJSON *json, const char *tex
 		return -ENOMEM;
 	content->tour_count++; /* now content_finish releases it */
 	if (!content_is_id(tour->id))
-		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MOST);
+		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
 		complain(&r, "is there twice: rename or remove one");
 	check_keys(&r, json, " id title caption thumbnail attract stops ");
@@ -288,13 +288,13 @@ static const char *line_at(const char *text, unsigned line)
 
 static int read_array(struct content *content, const cJSON *array, const char *text)
 {
-	unsigned lines[INFO_TOURS_MOST] = { 0 };
+	unsigned lines[INFO_TOURS_MAX] = { 0 };
 	const cJSON *item;
 	int count = cJSON_GetArraySize(array), rc = 0, i = 0;
 
-	if (count > INFO_TOURS_MOST) {
+	if (count > INFO_TOURS_MAX) {
 		content_complain(content, true, tours_file, 0, "%d tours: at most %d are possible",
-				 count, INFO_TOURS_MOST);
+				 count, INFO_TOURS_MAX);
 		return 0;
 	}
 	content->tours = calloc((size_t)count + 1, sizeof(*content->tours));
@@ -355,7 +355,7 @@ int content_read_tours(struct content *content)
 
 	if (!content_path(content, path, sizeof(path), tours_file))
 		return -ENAMETOOLONG;
-	buffer_init(&text, INFO_PARTS_FILE_BYTES_MOST);
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
 	rc = buffer_read_file(&text, path);
 	if (rc == 0) {
 		rc = parse(content, &text);

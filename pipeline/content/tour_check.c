@@ -15,7 +15,7 @@
 #include "geometry/tour_path.h"
 #include "geometry/vec.h"
 
-enum { LEAF = 8, STEPS_MOST = 1 << 20, LOOK_MS = 100 };
+enum { LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100 };
 
 #define STEP_SHARE    0.25f /* of the clearance */
 #define THROUGH_SHARE 0.2f  /* nearer than this of it is through */
@@ -48,7 +48,7 @@ struct way {
 	uint32_t step_count;
 	struct box *boxes; /* owned; of node n: its halves are 2n + 1 and 2n + 2 */
 	uint32_t depth;
-	struct nearest nearest[TOUR_STOPS_MOST];
+	struct nearest nearest[TOUR_STOPS_MAX];
 	uint32_t faults;
 };
 
@@ -83,7 +83,7 @@ static int take_steps(struct way *way)
 
 	for (uint32_t leg = 0; leg < way->path.leg_count; leg++)
 		count += (uint64_t)(tour_path_leg_m(&way->path, leg) / step_m) + 2;
-	if (count > STEPS_MOST) {
+	if (count > STEPS_MAX) {
 		complain(way, -1, "its way is too long: stops are far outside of the model");
 		return -EINVAL;
 	}
@@ -292,9 +292,9 @@ static void judge_pace(struct way *way)
 	struct tour_pose before, pose;
 	int complained = -1;
 
-	if (way->path.duration_ms > TOUR_MINUTES_MOST * 60000)
+	if (way->path.duration_ms > TOUR_MINUTES_MAX * 60000)
 		complain(way, -1, "takes %.1f minutes, nobody stands so long: at most %d",
-			 (double)way->path.duration_ms / 60000, TOUR_MINUTES_MOST);
+			 (double)way->path.duration_ms / 60000, TOUR_MINUTES_MAX);
 	tour_path_pose(&way->path, 0, &before);
 	for (int64_t ms = LOOK_MS; ms <= way->path.duration_ms; ms += LOOK_MS) {
 		const uint32_t stops = way->tour->stop_count;
@@ -318,7 +318,7 @@ static void judge_pace(struct way *way)
 
 static int judge_tour(struct way *way)
 {
-	struct tour_view views[TOUR_STOPS_MOST];
+	struct tour_view views[TOUR_STOPS_MAX];
 	int rc;
 
 	for (uint32_t i = 0; i < way->tour->stop_count; i++) {
@@ -331,7 +331,7 @@ static int judge_tour(struct way *way)
 	}
 	tour_path_init(&way->path, views, way->tour->stop_count, way->tour->attract,
 		       way->diagonal_m);
-	for (uint32_t i = 0; i < TOUR_STOPS_MOST; i++)
+	for (uint32_t i = 0; i < TOUR_STOPS_MAX; i++)
 		way->nearest[i].distance_m = INFINITY;
 	rc = take_steps(way);
 	if (rc == 0)

@@ -6,7 +6,7 @@
 #include "pipeline/content/info_build.h"
 #include "pipeline/import/mesh.h"
 
-enum { TOUR_MINUTES_MOST = 10 };
+enum { TOUR_MINUTES_MAX = 10 };
 
 struct tour_check_options {
 	const struct mesh *mesh; /* of all scans; borrowed */

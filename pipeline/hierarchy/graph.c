@@ -8,7 +8,7 @@
 
 #include <metis.h>
 
-enum { PARTS_BY_BISECTION_MOST = 8, NODES_A_PART = 64 };
+enum { PARTS_BY_BISECTION_MAX = 8, NODES_A_PART = 64 };
 
 /* Thousandths that a part may be too heavy, so that a cut can follow what it is to follow. */
 enum { IMBALANCE = 40, TRIES = 8 /* of halving, the best is taken */ };
@@ -252,7 +252,7 @@ static int run_metis(idx_t *parts, struct rows *rows, const struct graph *graph,
 		wanted[1] = shares[1];
 	}
 	pthread_mutex_lock(&metis_lock);
-	if (part_count <= PARTS_BY_BISECTION_MOST)
+	if (part_count <= PARTS_BY_BISECTION_MAX)
 		code = METIS_PartGraphRecursive(&nodes, &constraints, rows->first, rows->to,
 						rows->node_weights, NULL, rows->weights, &count,
 						shares && part_count == 2 ? wanted : NULL, NULL,

@@ -12,7 +12,7 @@ struct lattice_vertex {
 	uint16_t position[3];
 	uint8_t border;    /* 1: on an open edge of the scan */
 	uint8_t colour[4]; /* sRGB, open sky */
-	uint8_t seen;      /* 0: never; 255 until exposure_find (pipeline/exposure.h) */
+	uint8_t seen;      /* 0: never; 255 until exposure_find (pipeline/hierarchy/exposure.h) */
 	float normal[3];   /* unit, weighted by area */
 };
 

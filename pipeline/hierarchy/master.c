@@ -14,7 +14,7 @@
 #include "pipeline/material/material.h"
 
 /* Raised whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 6, INDEX_VERSION = 2, INDEX_BYTES_MOST = 256 << 20 };
+enum { BUILD_VERSION = 6, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -30,7 +30,7 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 	buffer_put_u32(&text, options->multires.patch_triangles);
 	buffer_put_u32(&text, options->multires.group_patches);
 	buffer_put_u32(&text, options->multires.top_triangles);
-	buffer_put_u8(&text, options->stone_colours);
+	buffer_put_u8(&text, options->material_colours);
 	stamp = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
 	return stamp;
@@ -110,7 +110,7 @@ static void colour_as_stone(struct lattice_mesh *mesh)
 		for (int i = 0; i < 3; i++)
 			at[i] = (float)(lattice->origin_m[i] +
 					lattice->step_m * vertex->position[i]);
-		stone_colour(rgb, at, vertex->normal, footprint);
+		material_colour(rgb, at, vertex->normal, footprint);
 		for (int i = 0; i < 3; i++)
 			vertex->colour[i] = (uint8_t)(255.0f * (rgb[i] < 0.0f   ? 0.0f
 								: rgb[i] > 1.0f ? 1.0f
@@ -137,7 +137,7 @@ static int put_index(struct buffer *out, const struct master *head,
 	for (int i = 0; i < 3; i++)
 		buffer_put_f32(out, head->box_max_m[i]);
 	buffer_put_u64(out, head->source_triangles);
-	buffer_init(&payload, INDEX_BYTES_MOST);
+	buffer_init(&payload, INDEX_BYTES_MAX);
 	rc = hierarchy_encode(&payload, hierarchy);
 	buffer_put_u32(out, (uint32_t)payload.size);
 	buffer_put(out, payload.data, payload.size);
@@ -159,7 +159,7 @@ static int write_index(const char *folder, const struct master *head,
 	struct buffer index;
 	int rc = path_in(path, folder, "index");
 
-	buffer_init(&index, INDEX_BYTES_MOST);
+	buffer_init(&index, INDEX_BYTES_MAX);
 	if (rc == 0)
 		rc = put_index(&index, head, hierarchy, writer);
 	if (rc == 0)
@@ -198,7 +198,7 @@ static int build_into(struct writer *writer, const char *folder, const struct me
 
 	if (rc < 0)
 		return rc;
-	if (options->stone_colours)
+	if (options->material_colours)
 		colour_as_stone(&lattice_mesh);
 	head.lattice = lattice_mesh.lattice;
 	memcpy(head.box_min_m, lattice_mesh.box_min_m, sizeof(head.box_min_m));
@@ -328,7 +328,7 @@ int master_open(struct master **out, const char *folder, const struct hash *stam
 	if (!master)
 		return rc;
 	master->fd = -1;
-	buffer_init(&index, INDEX_BYTES_MOST);
+	buffer_init(&index, INDEX_BYTES_MAX);
 	if (rc == 0)
 		rc = buffer_read_file(&index, path);
 	if (rc == 0)

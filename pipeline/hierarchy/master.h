@@ -25,7 +25,8 @@ struct master {
 
 struct master_options {
 	struct multires_options multires;
-	bool stone_colours; /* colour vertices by format/stone.h and not as the scan is */
+	bool material_colours; /* colour vertices by pipeline/material/material.h and not as the
+				  scan is */
 };
 
 /* What a build found and made; for people. */

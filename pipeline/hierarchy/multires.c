@@ -17,7 +17,7 @@
 enum {
 	PATCHES = 256, /* a scan has at least so many, where they are not too small for it */
 	PATCH_TRIANGLES = 1000,
-	PATCH_TRIANGLES_LEAST = 256,
+	PATCH_TRIANGLES_MIN = 256,
 	GROUP_PATCHES = 8,
 	REDUCTION = 4, /* each level has so many times fewer triangles */
 	TOP_TRIANGLES = 6000,
@@ -50,9 +50,9 @@ static uint32_t patch_triangles_for(uint32_t triangle_count)
 {
 	uint32_t some = triangle_count / PATCHES;
 
-	return some > PATCH_TRIANGLES         ? PATCH_TRIANGLES
-	       : some < PATCH_TRIANGLES_LEAST ? PATCH_TRIANGLES_LEAST
-					      : some;
+	return some > PATCH_TRIANGLES       ? PATCH_TRIANGLES
+	       : some < PATCH_TRIANGLES_MIN ? PATCH_TRIANGLES_MIN
+					    : some;
 }
 
 static void set_defaults(struct multires_options *options, uint32_t triangle_count)
@@ -61,9 +61,9 @@ static void set_defaults(struct multires_options *options, uint32_t triangle_cou
 
 	if (options->patch_triangles == 0)
 		options->patch_triangles = patch_triangles_for(triangle_count);
-	if (options->patch_triangles > PATCH_TRIANGLES_MOST)
-		options->patch_triangles = PATCH_TRIANGLES_MOST;
-	if (options->group_patches < 2 || options->group_patches > GROUP_PATCHES_MOST / 2)
+	if (options->patch_triangles > PATCH_TRIANGLES_MAX)
+		options->patch_triangles = PATCH_TRIANGLES_MAX;
+	if (options->group_patches < 2 || options->group_patches > GROUP_PATCHES_MAX / 2)
 		options->group_patches = GROUP_PATCHES;
 	if (options->top_triangles == 0)
 		options->top_triangles = triangle_count / TOP_PART < TOP_TRIANGLES
@@ -268,7 +268,7 @@ static int sort_into_jobs(struct builder *builder, const uint32_t *labels)
 	for (uint32_t i = 0; i < level->count; i++) {
 		sorted[i] = level->items[(uint32_t)order[i]];
 		if (!job || order[i] >> 32 != order[i - 1] >> 32 ||
-		    job->patch_count == GROUP_PATCHES_MOST) {
+		    job->patch_count == GROUP_PATCHES_MAX) {
 			job = &builder->jobs[builder->job_count];
 			job->low = job->high = builder->job_count++;
 		}
@@ -350,7 +350,7 @@ static int run_level(struct builder *builder, struct live_patches *next)
 	struct multires_level *level = &stats->levels[stats->level_count];
 	int rc;
 
-	if (stats->level_count == MULTIRES_LEVELS_MOST)
+	if (stats->level_count == MULTIRES_LEVELS_MAX)
 		return -E2BIG;
 	stats->level_count++;
 	level->group_count = builder->job_count;
@@ -392,7 +392,7 @@ static int one_group(struct builder *builder)
 	uint32_t *labels = calloc(builder->level.count + 1, sizeof(*labels));
 	int rc = labels ? 0 : -ENOMEM;
 
-	if (builder->level.count > GROUP_PATCHES_MOST)
+	if (builder->level.count > GROUP_PATCHES_MAX)
 		rc = -E2BIG;
 	forget_users(builder);
 	if (rc == 0)
@@ -440,18 +440,18 @@ static int build_groups(struct builder *builder)
 	int rc = 0;
 
 	while (rc == 0 && (before > builder->options.top_triangles ||
-			   builder->level.count > GROUP_PATCHES_MOST)) {
+			   builder->level.count > GROUP_PATCHES_MAX)) {
 		/* Close to the top borders are most of what there is: one group without. */
 		if (before <= REDUCTION * (uint64_t)builder->options.top_triangles)
-			group_patches = GROUP_PATCHES_MOST;
+			group_patches = GROUP_PATCHES_MAX;
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
 		/* Borders hinder: fewer, larger groups have less of them. */
 		if (after > before - before / 5) {
-			if (group_patches == GROUP_PATCHES_MOST && after >= before)
+			if (group_patches == GROUP_PATCHES_MAX && after >= before)
 				break;
-			group_patches = group_patches > GROUP_PATCHES_MOST / 2 ? GROUP_PATCHES_MOST
-									       : 2 * group_patches;
+			group_patches = group_patches > GROUP_PATCHES_MAX / 2 ? GROUP_PATCHES_MAX
+									      : 2 * group_patches;
 		}
 		before = after;
 	}
@@ -526,7 +526,7 @@ static int add_tree_job(struct builder *builder, struct tree *tree, uint32_t n)
 		.is_whole = true, /* the paper simplifies to the limit, whatever it takes */
 	};
 	builder->job_count++;
-	return rc == 0 && left->count > GROUP_PATCHES_MOST ? -E2BIG : rc;
+	return rc == 0 && left->count > GROUP_PATCHES_MAX ? -E2BIG : rc;
 }
 
 /* All nodes of one height, independent of each other. */

@@ -18,13 +18,13 @@ enum multires_kind {
 
 struct multires_options {
 	enum multires_kind kind;
-	uint32_t patch_triangles; /* the most in a patch, 1..PATCH_TRIANGLES_MOST; 0: the default */
+	uint32_t patch_triangles; /* the most in a patch, 1..PATCH_TRIANGLES_MAX; 0: the default */
 	uint32_t group_patches;   /* about so many in a group, 2..32; 0: the default */
 	uint32_t top_triangles;   /* the coarsest cut has at most so many; 0: the default */
 	uint32_t jobs;            /* threads; 0: one a processor. The result is the same. */
 };
 
-enum { MULTIRES_LEVELS_MOST = 64 };
+enum { MULTIRES_LEVELS_MAX = 64 };
 
 struct multires_level {
 	uint64_t triangle_count;
@@ -33,9 +33,9 @@ struct multires_level {
 
 struct multires_stats {
 	uint32_t level_count;
-	struct multires_level levels[MULTIRES_LEVELS_MOST]; /* [0] is the finest */
-	uint64_t object_bytes, vertex_count;                /* of all groups */
-	uint32_t top_bytes;                                 /* of the object of group 0 */
+	struct multires_level levels[MULTIRES_LEVELS_MAX]; /* [0] is the finest */
+	uint64_t object_bytes, vertex_count;               /* of all groups */
+	uint32_t top_bytes;                                /* of the object of group 0 */
 };
 
 /* Takes the groups' objects in the order they are made, which is finest first: number n will be

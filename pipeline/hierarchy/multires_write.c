@@ -240,7 +240,7 @@ int group_job_write(const struct job_site *site, struct group_job *job, uint32_t
 		bound_patch(made, &meshes[p], &site->mesh->lattice);
 		bound_normals(made, &meshes[p]);
 	}
-	buffer_init(&job->object, OBJECT_BYTES_MOST);
+	buffer_init(&job->object, OBJECT_BYTES_MAX);
 	if (rc == 0) {
 		bound_group(job);
 		rc = patch_group_encode(&job->object, meshes, job->patch_count);

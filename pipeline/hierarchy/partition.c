@@ -7,7 +7,7 @@
 
 #include "pipeline/hierarchy/graph.h"
 
-enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MOST = 10 };
+enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MAX = 10 };
 
 /* What the weight of an edge is made of. */
 struct look {
@@ -311,7 +311,7 @@ static int sort_into_voxels(struct splitter *splitter)
 	uint32_t fullest;
 	int rc = 0;
 
-	for (int level = 1; level <= LEVELS_MOST; level++) {
+	for (int level = 1; level <= LEVELS_MAX; level++) {
 		rc = number_voxels(splitter, level, &fullest);
 		if (rc < 0 || fullest < splitter->options.voxel_triangles ||
 		    splitter->voxel_count > splitter->triangle_count / 8)

@@ -21,7 +21,7 @@ struct surface {
 struct simplify_result {
 	/* What the surface is wrong by: the largest distance (root of the mean square, weighted by
 	 * area) of a new vertex from the planes it stands for, as far as they are seen (`seen` of
-	 * their vertices, pipeline/exposure.h); lattice steps. */
+	 * their vertices, pipeline/hierarchy/exposure.h); lattice steps. */
 	double error_steps;
 	/* What the costliest collapse lost: squared distance times area that is seen, lattice steps
 	 * to the fourth. */

@@ -8,7 +8,7 @@
 
 #include "base/bytes.h"
 
-enum { FILE_BYTES_MOST = 256 << 20, RANGES_FIRST = 64 };
+enum { FILE_BYTES_MAX = 256 << 20, RANGES_FIRST = 64 };
 
 /* What is read, and where. */
 struct text {
@@ -151,7 +151,7 @@ int face_list_read(struct face_list *out, const char *path, const char *name, ui
 	int rc;
 
 	*out = (struct face_list){ 0 };
-	buffer_init(&file, FILE_BYTES_MOST);
+	buffer_init(&file, FILE_BYTES_MAX);
 	rc = buffer_read_file(&file, path);
 	buffer_put_u8(&file, 0);
 	if (rc == 0)

@@ -1,5 +1,5 @@
-/* A scan file into a repaired mesh in metres, z up. PLY is read by pipeline/ply.h; OBJ, STL, OFF
- * and glTF by assimp, in a child process with limits, so that what crashes or hangs there is an
+/* A scan file into a repaired mesh in metres, z up. PLY is read by pipeline/import/ply.h; OBJ, STL,
+ * OFF and glTF by assimp, in a child process with limits, so that what crashes or hangs there is an
  * error message here. docs/import.md says what is read and what is refused. */
 #ifndef GOPURA_PIPELINE_IMPORT_IMPORT_H
 #define GOPURA_PIPELINE_IMPORT_IMPORT_H

@@ -21,7 +21,7 @@
 #include "pipeline/import/sandbox.h"
 
 /* MAXLEN is assimp's: what a name can hold. */
-enum { NODE_DEPTH_MOST = 256 };
+enum { NODE_DEPTH_MAX = 256 };
 
 static const struct hash no_key;
 
@@ -185,7 +185,7 @@ static int load_textures(struct builder *builder)
 	struct mesh *mesh = &builder->mesh;
 	int rc = 0;
 
-	if (count > MESH_TEXTURES_MOST)
+	if (count > MESH_TEXTURES_MAX)
 		return -EFBIG;
 	mesh->textures = calloc(count, sizeof(*mesh->textures));
 	if (!mesh->textures)
@@ -289,9 +289,9 @@ static int walk(struct builder *builder, const struct aiNode *node,
 	struct aiMatrix4x4 place = *parent;
 	int rc = 0;
 
-	if (depth > NODE_DEPTH_MOST)
+	if (depth > NODE_DEPTH_MAX)
 		return fault_set(builder->fault, -EBADMSG, "%s: its nodes are nested over %d deep",
-				 builder->job->path, NODE_DEPTH_MOST);
+				 builder->job->path, NODE_DEPTH_MAX);
 	aiMultiplyMatrix4(&place, &node->mTransformation);
 	for (uint32_t i = 0; i < node->mNumMeshes && rc == 0; i++)
 		rc = build ? add_mesh(builder, node->mMeshes[i], &place)

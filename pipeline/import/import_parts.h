@@ -1,4 +1,4 @@
-/* What the sources of import share. Private to pipeline/import*.c. */
+/* What the sources of import share. Private to pipeline/import/import*.c. */
 #ifndef GOPURA_PIPELINE_IMPORT_IMPORT_PARTS_H
 #define GOPURA_PIPELINE_IMPORT_IMPORT_PARTS_H
 

@@ -1,5 +1,5 @@
 /* assimp in the sandbox: it reads through our own file functions, which ask the parent for every
- * file (pipeline/sandbox.h). */
+ * file (pipeline/import/sandbox.h). */
 #include <errno.h>
 #include <limits.h>
 #include <stdint.h>

@@ -7,7 +7,7 @@
 
 #include "format/picture.h"
 
-enum { PICTURE_FILE_MOST = 1 << 29 };
+enum { PICTURE_FILE_MAX = 1 << 29 };
 
 static const char too_much[] = "makes its pictures too large together";
 
@@ -106,7 +106,7 @@ int import_texture(struct mesh_texture *out, struct import_files *files, const c
 		return tolerate(out, files->scan_path, name, too_much, plain, report);
 	fd = import_files_open(files, name);
 	rc = fd < 0 ? fd : 0;
-	buffer_init(&file, PICTURE_FILE_MOST);
+	buffer_init(&file, PICTURE_FILE_MAX);
 	if (fd >= 0) {
 		rc = read_picture(&file, fd);
 		close(fd);

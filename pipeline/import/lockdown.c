@@ -69,7 +69,7 @@ int lockdown_files(void)
 enum { X32_CALLS = 0x40000000, STEPS_MAX = 256 };
 
 /* What a parser needs, and the sanitizers. None of these takes a name; recvmsg is how an opened
- * file is received (pipeline/sandbox.h). */
+ * file is received (pipeline/import/sandbox.h). */
 static const uint32_t allowed_calls[] = {
 	SYS_read,          SYS_readv,        SYS_pread64,         SYS_write,        SYS_writev,
 	SYS_pwrite64,      SYS_lseek,        SYS_close,           SYS_recvmsg,      SYS_brk,

@@ -104,7 +104,7 @@ static int join_materials(struct mesh *joined, const struct mesh *a, const struc
 
 	if (!a->textures && !b->textures)
 		return 0;
-	if ((uint64_t)a->texture_count + b->texture_count + 2 > MESH_TEXTURES_MOST)
+	if ((uint64_t)a->texture_count + b->texture_count + 2 > MESH_TEXTURES_MAX)
 		return -EFBIG;
 	rc = join_textures(joined, a, b, &base);
 	if (rc < 0)
@@ -143,7 +143,7 @@ static int join_meshes(struct mesh *joined, const struct mesh *a, const struct m
 
 static int join_scans(struct mesh *joined, const struct mesh *a, const struct mesh *b)
 {
-	if (a->scan_count + b->scan_count > MESH_SCANS_MOST)
+	if (a->scan_count + b->scan_count > MESH_SCANS_MAX)
 		return -EFBIG;
 	memcpy(joined->scans, a->scans, a->scan_count * sizeof(*a->scans));
 	memcpy(joined->scans + a->scan_count, b->scans, b->scan_count * sizeof(*b->scans));

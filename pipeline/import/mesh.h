@@ -7,7 +7,7 @@
 
 #include "base/compiler.h"
 
-enum { MESH_TEXTURES_MOST = UINT16_MAX, MESH_SCANS_MOST = 64 };
+enum { MESH_TEXTURES_MAX = UINT16_MAX, MESH_SCANS_MAX = 64 };
 
 #define MESH_NO_FACE UINT32_MAX
 
@@ -36,7 +36,7 @@ struct mesh {
 	uint32_t *faces; /* of each triangle, the number of its face in its scan's file, from 0, or
 			  * MESH_NO_FACE; NULL: no scan says */
 	uint32_t scan_count; /* 0: not from files */
-	struct mesh_scan scans[MESH_SCANS_MOST];
+	struct mesh_scan scans[MESH_SCANS_MAX];
 };
 
 void mesh_finish(struct mesh *mesh); /* frees what it owns, zeroes; NULL is fine */
@@ -46,7 +46,7 @@ void mesh_box(const struct mesh *mesh, float low[3], float high[3]);
 
 /* Behind what mesh holds; other is unchanged. What one of the two lacks is filled in: colours
  * white, uvs 0 on a texture of one pixel, in the colour of its first vertex, no face. -ENOMEM;
- * -EFBIG past 32-bit counts, MESH_TEXTURES_MOST or MESH_SCANS_MOST. On failure mesh is as it was.
+ * -EFBIG past 32-bit counts, MESH_TEXTURES_MAX or MESH_SCANS_MAX. On failure mesh is as it was.
  */
 must_check int mesh_append(struct mesh *mesh, const struct mesh *other);
 

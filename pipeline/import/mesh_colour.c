@@ -7,7 +7,7 @@
 
 #include "pipeline/import/mesh_places.h"
 
-enum { CELLS_LEAST = 2, CELLS_MOST = 8 };
+enum { CELLS_MIN = 2, CELLS_MAX = 8 };
 
 /* Weighted colours of a place. */
 struct sum {
@@ -22,9 +22,9 @@ static int cells_of(const struct mesh *mesh, const uint32_t t[3],
 	float area = fabsf((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
 	float side_px = sqrtf(area * (float)texture->width * (float)texture->height);
 
-	if (!(side_px > 2 * CELLS_LEAST))
-		return CELLS_LEAST;
-	return side_px < 2 * CELLS_MOST ? (int)(side_px / 2) : CELLS_MOST;
+	if (!(side_px > 2 * CELLS_MIN))
+		return CELLS_MIN;
+	return side_px < 2 * CELLS_MAX ? (int)(side_px / 2) : CELLS_MAX;
 }
 
 static void add_sample(const struct mesh *mesh, const uint32_t t[3],

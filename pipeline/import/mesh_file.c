@@ -139,7 +139,7 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 
 int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 {
-	char temporary[BYTES_PATH_MOST];
+	char temporary[BYTES_PATH_MAX];
 	int fd = bytes_begin_file(temporary, path);
 
 	if (fd < 0)
@@ -161,7 +161,7 @@ static int64_t bytes_left(int fd)
 
 static int read_textures_sizes(struct stream *stream, struct mesh *mesh, int64_t *left)
 {
-	if ((int64_t)mesh->texture_count * 8 > *left || mesh->texture_count > MESH_TEXTURES_MOST)
+	if ((int64_t)mesh->texture_count * 8 > *left || mesh->texture_count > MESH_TEXTURES_MAX)
 		return -EBADMSG;
 	mesh->textures = calloc(mesh->texture_count, sizeof(*mesh->textures));
 	if (!mesh->textures)
@@ -229,7 +229,7 @@ static bool scans_are_sound(const struct mesh *mesh)
 
 static int read_scans(struct stream *stream, struct mesh *mesh, uint32_t count, int64_t *left)
 {
-	if (count > MESH_SCANS_MOST)
+	if (count > MESH_SCANS_MAX)
 		return -EBADMSG;
 	for (uint32_t s = 0; s < count; s++) {
 		uint32_t numbers[2] = { 0 };

@@ -159,7 +159,7 @@ static int face_corner(struct pass *pass, double value)
 
 	if (rc < 0)
 		return rc;
-	if (ply->corner_count == PLY_CORNERS_MOST)
+	if (ply->corner_count == PLY_CORNERS_MAX)
 		return element_fault(pass, -EFBIG, "over 65536 corners; triangulate it");
 	ply->corners[ply->corner_count++] = (uint32_t)value;
 	return 0;
@@ -175,7 +175,7 @@ static int end_face(struct pass *pass)
 		return element_fault(
 			pass, -EBADMSG,
 			"its texcoord list must hold two numbers a corner; export it again");
-	pass->triangle.texture = texture > 0 && texture < PLY_TEXTURES_MOST ? (uint32_t)texture : 0;
+	pass->triangle.texture = texture > 0 && texture < PLY_TEXTURES_MAX ? (uint32_t)texture : 0;
 	for (uint32_t i = 2; i < ply->corner_count; i++) {
 		const uint32_t at[3] = { 0, i - 1, i };
 		int rc;
@@ -202,7 +202,7 @@ static int list_item(struct pass *pass, enum ply_slot slot, double value)
 							     : face_corner(pass, value);
 	if (slot != PLY_SLOT_CORNER_UVS || pass->element->kind != PLY_KIND_FACE)
 		return 0;
-	if (ply->corner_uv_floats == 2 * PLY_CORNERS_MOST)
+	if (ply->corner_uv_floats == 2 * PLY_CORNERS_MAX)
 		return element_fault(pass, -EFBIG, "over 65536 corners; triangulate it");
 	((float *)ply->corner_uvs)[ply->corner_uv_floats++] = (float)value;
 	return 0;
@@ -377,8 +377,8 @@ static int start(struct ply *ply, int fd, struct fault *fault)
 
 	if (rc == -EISDIR || rc == -ESPIPE)
 		return fault_set(fault, rc, "%s: not a regular file; give a PLY file", ply->name);
-	ply->corners = malloc(PLY_CORNERS_MOST * sizeof(*ply->corners));
-	ply->corner_uvs = malloc(PLY_CORNERS_MOST * sizeof(*ply->corner_uvs));
+	ply->corners = malloc(PLY_CORNERS_MAX * sizeof(*ply->corners));
+	ply->corner_uvs = malloc(PLY_CORNERS_MAX * sizeof(*ply->corner_uvs));
 	if (rc == 0 && (!ply->corners || !ply->corner_uvs))
 		rc = -ENOMEM;
 	if (rc < 0)
@@ -426,7 +426,7 @@ void ply_close(struct ply *ply)
 	if (!ply)
 		return;
 	ply_input_finish(&ply->input);
-	for (uint32_t i = 0; i < PLY_TEXTURES_MOST; i++)
+	for (uint32_t i = 0; i < PLY_TEXTURES_MAX; i++)
 		free(ply->textures[i]);
 	free(ply->corners);
 	free(ply->corner_uvs);

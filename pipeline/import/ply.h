@@ -15,8 +15,8 @@
 #include "base/fault.h"
 
 enum {
-	PLY_TEXTURES_MOST = 256,
-	PLY_CORNERS_MOST = 65536, /* of one polygon */
+	PLY_TEXTURES_MAX = 256,
+	PLY_CORNERS_MAX = 65536, /* of one polygon */
 };
 
 struct ply; /* private to ply*.c */

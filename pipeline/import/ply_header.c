@@ -86,14 +86,14 @@ static int line_fault(struct ply *ply, struct fault *fault, const char *what)
 
 /* A line without its end, which is LF, CR LF, or CR where that ended the first line (there
  * a LF after end_header is data). */
-static int read_line(struct ply *ply, char line[PLY_LINE_MOST], struct fault *fault)
+static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct fault *fault)
 {
 	struct ply_input *input = &ply->input;
 	size_t length = 0;
 	int c;
 
 	while ((c = ply_input_peek(input)) >= 0 && c != '\n' && c != '\r') {
-		if (length == PLY_LINE_MOST - 1)
+		if (length == PLY_LINE_MAX - 1)
 			return line_fault(ply, fault,
 					  "a header line of over 4095 bytes; is this a PLY?");
 		line[length++] = (char)c;
@@ -103,7 +103,7 @@ static int read_line(struct ply *ply, char line[PLY_LINE_MOST], struct fault *fa
 	if (c < 0)
 		return line_fault(ply, fault,
 				  "the file ends within its header; copy it again from the source");
-	if (ply_input_offset(input) > PLY_HEADER_MOST)
+	if (ply_input_offset(input) > PLY_HEADER_MAX)
 		return line_fault(ply, fault, "the header goes on for over 1 MiB; is this a PLY?");
 	input->at++;
 	if (c == '\r' && input->line == 1)
@@ -147,7 +147,7 @@ static int read_element(struct ply *ply, const char *words, struct fault *fault)
 	struct ply_element *element = &ply->elements[ply->element_count];
 	char count[24] = "", more[2] = "", *end;
 
-	if (ply->element_count == PLY_ELEMENTS_MOST)
+	if (ply->element_count == PLY_ELEMENTS_MAX)
 		return line_fault(ply, fault, "over 32 kinds of elements; remove some");
 	*element = (struct ply_element){ 0 };
 	if (sscanf(words, "%63s %23s %1s", element->name, count, more) != 2)
@@ -175,7 +175,7 @@ static int read_property(struct ply *ply, const char *words, struct fault *fault
 	if (ply->element_count == 0)
 		return line_fault(ply, fault, "a property before the first element");
 	element = &ply->elements[ply->element_count - 1];
-	if (element->property_count == PLY_PROPERTIES_MOST)
+	if (element->property_count == PLY_PROPERTIES_MAX)
 		return line_fault(ply, fault, "over 128 properties in one element; remove some");
 	if (sscanf(words, "%15s", first) == 1 && strcmp(first, "list") == 0) {
 		if (sscanf(words, "%*s %15s %15s %63s", second, third, property.name) != 3)
@@ -209,7 +209,7 @@ static int read_comment(struct ply *ply, const char *words, struct fault *fault)
 		ply->gopura_open = true;
 	if (sscanf(words, "TextureFile %511[^\r\n]", name) != 1)
 		return 0;
-	if (ply->summary.texture_count == PLY_TEXTURES_MOST)
+	if (ply->summary.texture_count == PLY_TEXTURES_MAX)
 		return line_fault(ply, fault, "over 256 textures; merge some");
 	ply->textures[ply->summary.texture_count] = strdup(name);
 	if (!ply->textures[ply->summary.texture_count])
@@ -252,7 +252,7 @@ static int read_header_line(struct ply *ply, const char *line, bool *has_format,
 
 int ply_read_header(struct ply *ply, struct fault *fault)
 {
-	char line[PLY_LINE_MOST];
+	char line[PLY_LINE_MAX];
 	bool has_format = false;
 	int rc;
 

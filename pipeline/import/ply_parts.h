@@ -1,4 +1,4 @@
-/* What the sources of the PLY reader share. Private to pipeline/ply*.c. */
+/* What the sources of the PLY reader share. Private to pipeline/import/ply*.c. */
 #ifndef GOPURA_PIPELINE_IMPORT_PLY_PARTS_H
 #define GOPURA_PIPELINE_IMPORT_PLY_PARTS_H
 
@@ -8,10 +8,10 @@
 
 enum {
 	PLY_BUFFER_BYTES = 1 << 18,
-	PLY_LINE_MOST = 4096, /* of the header */
-	PLY_HEADER_MOST = 1 << 20,
-	PLY_ELEMENTS_MOST = 32,
-	PLY_PROPERTIES_MOST = 128, /* of one element */
+	PLY_LINE_MAX = 4096, /* of the header */
+	PLY_HEADER_MAX = 1 << 20,
+	PLY_ELEMENTS_MAX = 32,
+	PLY_PROPERTIES_MAX = 128, /* of one element */
 	PLY_NAME_BYTES = 64,
 	PLY_TOKEN_BYTES = 128, /* of one ASCII number */
 };
@@ -94,7 +94,7 @@ struct ply_element {
 	enum ply_kind kind;
 	uint64_t count;
 	uint32_t property_count;
-	struct ply_property properties[PLY_PROPERTIES_MOST];
+	struct ply_property properties[PLY_PROPERTIES_MAX];
 	uint32_t stride; /* bytes in binary; 0: it holds a list */
 };
 
@@ -105,13 +105,13 @@ struct ply {
 	struct ply_input input;
 	enum ply_encoding encoding;
 	uint32_t element_count;
-	struct ply_element elements[PLY_ELEMENTS_MOST];
+	struct ply_element elements[PLY_ELEMENTS_MAX];
 	struct ply_summary summary;
-	char *textures[PLY_TEXTURES_MOST]; /* owned */
-	bool cr_only;                      /* how header lines end */
+	char *textures[PLY_TEXTURES_MAX]; /* owned */
+	bool cr_only;                     /* how header lines end */
 	bool gopura_open, range_grid;
 	uint64_t trailing;
-	/* corners of the polygon at hand, PLY_CORNERS_MOST each; owned */
+	/* corners of the polygon at hand, PLY_CORNERS_MAX each; owned */
 	uint32_t *corners;
 	float (*corner_uvs)[2];
 	uint32_t corner_count, corner_uv_floats;

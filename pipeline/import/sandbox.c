@@ -39,7 +39,7 @@ enum {
 struct outcome {
 	bool finished;
 	int rc;
-	int files_wall, calls_wall; /* of pipeline/lockdown.h: 0, or why it does not stand */
+	int files_wall, calls_wall; /* of pipeline/import/lockdown.h: 0, or why it does not stand */
 	struct fault fault;
 };
 

@@ -3,7 +3,7 @@
  *
  * The child can compute, use the memory and the processor time it was given, and read what its
  * parent opens for it. It can open, make or change no file, start no program or process, reach no
- * network and no other process: pipeline/lockdown.h. */
+ * network and no other process: pipeline/import/lockdown.h. */
 #ifndef GOPURA_PIPELINE_IMPORT_SANDBOX_H
 #define GOPURA_PIPELINE_IMPORT_SANDBOX_H
 

@@ -168,7 +168,7 @@ static int print_page(FILE *to, struct bytes bytes)
 
 static int print_patch_group(FILE *to, struct bytes bytes)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count = 0;
 	int rc = patch_group_decode(meshes, &count, bytes);
 
@@ -263,12 +263,12 @@ static int print_signed(FILE *to, struct bytes bytes)
 {
 	cJSON *json = cJSON_ParseWithLength((const char *)bytes.data, bytes.size);
 	const cJSON *payload = cJSON_GetObjectItemCaseSensitive(json, "payload"), *signature;
-	uint8_t text[METADATA_FILE_BYTES_MOST];
+	uint8_t text[METADATA_FILE_BYTES_MAX];
 	size_t size = 0;
 	cJSON *inner = NULL;
 	char *shown = NULL;
 
-	if (bytes.size <= METADATA_FILE_BYTES_MOST && cJSON_IsString(payload) &&
+	if (bytes.size <= METADATA_FILE_BYTES_MAX && cJSON_IsString(payload) &&
 	    sodium_base642bin(text, sizeof(text), payload->valuestring,
 			      strlen(payload->valuestring), NULL, &size, NULL,
 			      sodium_base64_VARIANT_ORIGINAL) == 0)

@@ -8,7 +8,7 @@
 #include "format/metadata.h"
 #include "pipeline/release/object_map.h"
 
-enum { LOCATOR_BYTES_MOST = 256 << 20 };
+enum { LOCATOR_BYTES_MAX = 256 << 20 };
 
 /* A page on the way through the release. */
 struct place {
@@ -41,8 +41,8 @@ static int read_release(struct walk *walk, bool show)
 	const char *why = NULL;
 	int rc;
 
-	buffer_init(&root, METADATA_FILE_BYTES_MOST);
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&root, METADATA_FILE_BYTES_MAX);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = release_reader_file(walk->reader, "root/1.json", &root);
 	if (rc == 0)
 		rc = trust_root_first(&trust, buffer_bytes(&root), &why);
@@ -74,7 +74,7 @@ static int read_locator(struct walk *walk, bool show)
 	int rc;
 
 	hash_to_hex(walk->release.root, name + strlen(name));
-	buffer_init(&file, LOCATOR_BYTES_MOST);
+	buffer_init(&file, LOCATOR_BYTES_MAX);
 	rc = release_reader_file(walk->reader, name, &file);
 	if (rc < 0)
 		complain(walk, rc, release_reader_why(walk->reader));

@@ -142,7 +142,7 @@ static int write_root(const char *folder, const struct signing_key keys[3])
 		root.roles[role].threshold = root.roles[role].key_count = 1;
 		memcpy(root.roles[role].keys[0], keys[role].public_key, KEY_BYTES);
 	}
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = trust_root_encode(&file, &root, &keys[META_ROOT], 1);
 	snprintf(path, sizeof(path), "%s/root/1.json", folder);
 	if (rc == 0)
@@ -284,7 +284,7 @@ int keys_follow_roots(struct trust_root *trust, const char *folder, const char *
 	struct buffer file;
 	int rc = 0;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	while (rc == 0 && keys_read_root(&file, folder, trust->version + 1) == 0)
 		rc = trust_root_next(trust, buffer_bytes(&file), why);
 	buffer_finish(&file);
@@ -305,7 +305,7 @@ static int load_root(struct trust_root *trust, const char *folder)
 	struct buffer file;
 	int rc;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = keys_read_root(&file, folder, 1);
 	if (rc == 0)
 		rc = trust_root_first(trust, buffer_bytes(&file), &why);

@@ -1,5 +1,5 @@
 /* The publisher's signing keys: a folder of their own, never inside a release, and by default not
- * inside the content either (pipeline/keys_place.h).
+ * inside the content either (pipeline/release/keys_place.h).
  *
  *   root.key release.key timestamp.key   "gopura-key-1 ROLE HEX", an ed25519 seed; mode 0600
  *   root/1.json ... root/N.json          the signed roots, as published

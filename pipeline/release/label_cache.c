@@ -6,8 +6,8 @@
 enum {
 	LABELLING_VERSION =
 		1, /* raised when the same parts of the same scan are labelled otherwise */
-	KEY_TEXT_MOST = 1 << 20,
-	FILE_BYTES_MOST = 256 << 20,
+	KEY_TEXT_MAX = 1 << 20,
+	FILE_BYTES_MAX = 256 << 20,
 };
 
 int label_cache_key(struct hash *out, const struct content *content, struct hash hierarchy,
@@ -19,7 +19,7 @@ int label_cache_key(struct hash *out, const struct content *content, struct hash
 
 	if (rc < 0)
 		return rc;
-	buffer_init(&text, KEY_TEXT_MOST);
+	buffer_init(&text, KEY_TEXT_MAX);
 	buffer_put_u32(&text, LABELLING_VERSION);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
 	buffer_put(&text, hierarchy.bytes, HASH_BYTES);
@@ -75,7 +75,7 @@ int label_cache_load(struct buffer *labels, uint32_t count, struct hash key, con
 	struct buffer file;
 	int rc;
 
-	buffer_init(&file, FILE_BYTES_MOST);
+	buffer_init(&file, FILE_BYTES_MAX);
 	rc = buffer_read_file(&file, path);
 	rc = rc < 0 ? -ENOENT : read_file(labels, count, key, buffer_bytes(&file));
 	buffer_finish(&file);
@@ -90,7 +90,7 @@ int label_cache_save(const struct buffer *labels, uint32_t count, struct hash ke
 	struct hash whole = { 0 };
 	int rc;
 
-	buffer_init(&file, FILE_BYTES_MOST);
+	buffer_init(&file, FILE_BYTES_MAX);
 	buffer_put(&file, whole.bytes, HASH_BYTES);
 	buffer_put(&file, key.bytes, HASH_BYTES);
 	buffer_put_u32(&file, count);

@@ -8,7 +8,7 @@
 #include "format/normal.h"
 #include "geometry/vec.h"
 
-enum { SAMPLES_MOST = ((1 << LABEL_LEVEL_MOST) + 1) * ((1 << LABEL_LEVEL_MOST) + 2) / 2 };
+enum { SAMPLES_MAX = ((1 << LABEL_LEVEL_MAX) + 1) * ((1 << LABEL_LEVEL_MAX) + 2) / 2 };
 
 /* A growing group. */
 struct writer {
@@ -20,10 +20,10 @@ struct writer {
 	uint32_t set_room, member_room, border_room, value_room;
 	/* The triangle at hand. */
 	float corner[3][3], normal[3][3], centre[3], radius_m, longest_m;
-	uint16_t own[LABEL_PARTS_MOST]; /* the parts that have it wholly */
+	uint16_t own[LABEL_PARTS_MAX]; /* the parts that have it wholly */
 	uint32_t own_count;
 	int level; /* of its samples; 0: not taken yet */
-	struct nearest_place samples[SAMPLES_MOST];
+	struct nearest_place samples[SAMPLES_MAX];
 };
 
 /* Room for more items; doubles. */
@@ -93,9 +93,9 @@ static void mix(float out[3], float at[3][3], const int weight[3], int n)
 
 static void take_samples(struct writer *w)
 {
-	int level = LABEL_LEVEL_LEAST, n;
+	int level = LABEL_LEVEL_MIN, n;
 
-	while (level < LABEL_LEVEL_MOST && w->longest_m > w->cell_m * (float)(1 << level))
+	while (level < LABEL_LEVEL_MAX && w->longest_m > w->cell_m * (float)(1 << level))
 		level++;
 	n = 1 << level;
 	for (int i = 0; i <= n; i++)
@@ -150,7 +150,7 @@ static int number_set(struct writer *w, uint16_t *out)
 					       w->own_count * sizeof(*w->own)) == 0))
 			return 0;
 	}
-	if (group->set_count == LABEL_SETS_MOST)
+	if (group->set_count == LABEL_SETS_MAX)
 		return -EFBIG;
 	rc = make_room(&group->sets, &w->set_room, group->set_count + 1, sizeof(*group->sets));
 	if (rc == 0)
@@ -168,9 +168,9 @@ static int number_set(struct writer *w, uint16_t *out)
 /* Metres into a number that is odd, so that no corner lies on the outline itself. */
 static int8_t value_of(float within_m, float cell_m)
 {
-	float steps = floorf(within_m / cell_m * LABEL_VALUE_MOST / 2);
+	float steps = floorf(within_m / cell_m * LABEL_VALUE_MAX / 2);
 
-	steps = fminf(fmaxf(steps, -(LABEL_VALUE_MOST + 1) / 2), LABEL_VALUE_MOST / 2);
+	steps = fminf(fmaxf(steps, -(LABEL_VALUE_MAX + 1) / 2), LABEL_VALUE_MAX / 2);
 	return (int8_t)(2 * (int)steps + 1);
 }
 
@@ -200,7 +200,7 @@ static int add_border(struct writer *w, struct label_patch *patch, uint32_t tria
 /* One part that comes near the triangle. */
 static int label_part(struct writer *w, struct label_patch *patch, uint32_t triangle, uint32_t part)
 {
-	int8_t values[SAMPLES_MOST];
+	int8_t values[SAMPLES_MAX];
 	uint32_t count, within = 0;
 	float cell_m, inset_m = 0;
 

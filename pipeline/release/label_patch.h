@@ -7,9 +7,9 @@
 #include "pipeline/release/label_source.h"
 
 /* patches: as decoded from the published object, since labels count its triangles and corners.
- * cell_m: an outline within a triangle is as fine as this, where LABEL_LEVEL_MOST allows. *out is
+ * cell_m: an outline within a triangle is as fine as this, where LABEL_LEVEL_MAX allows. *out is
  * finished by the caller; part_count 0: no part comes near, there is nothing to publish. Any
- * thread. -ENOMEM; -EFBIG: more than LABEL_SETS_MOST sets of parts in one group. */
+ * thread. -ENOMEM; -EFBIG: more than LABEL_SETS_MAX sets of parts in one group. */
 must_check int label_patch_group(struct label_group *out, const struct label_source *source,
 				 const struct lattice *lattice, const struct patch_mesh *patches,
 				 uint32_t patch_count, float cell_m);

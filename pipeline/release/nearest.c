@@ -7,7 +7,7 @@
 
 #include "geometry/vec.h"
 
-enum { LEAF_TRIANGLES = 8, DEPTH_MOST = 64 };
+enum { LEAF_TRIANGLES = 8, DEPTH_MAX = 64 };
 
 struct node {
 	float low[3], high[3];
@@ -236,7 +236,7 @@ bool nearest_find(const struct nearest *nearest, const float point_m[3], const f
 		  float most_m, struct nearest_place *out)
 {
 	struct search s = { nearest, point_m, facing, most_m * most_m, out, false };
-	uint32_t stack[DEPTH_MOST], depth = 0;
+	uint32_t stack[DEPTH_MAX], depth = 0;
 
 	if (nearest->node_count > 0)
 		stack[depth++] = 0;

@@ -77,7 +77,7 @@ int object_store_add(struct object_store *store, struct bytes bytes, struct page
 	struct hash hash;
 	int rc;
 
-	if (bytes.size == 0 || bytes.size > OBJECT_BYTES_MOST)
+	if (bytes.size == 0 || bytes.size > OBJECT_BYTES_MAX)
 		return -EFBIG;
 	hash = hash_of(bytes);
 	if (child)
@@ -101,7 +101,7 @@ int object_store_add_page(struct object_store *store, const struct page *page,
 	struct buffer buffer;
 	int rc;
 
-	buffer_init(&buffer, PAGE_BYTES_MOST);
+	buffer_init(&buffer, PAGE_BYTES_MAX);
 	page_encode(&buffer, page);
 	rc = buffer.error;
 	if (rc == 0)
@@ -138,7 +138,7 @@ int object_store_add_stretch(struct object_store *store, const char *path, uint6
 	struct stored object = { .size = child->size, .offset = offset };
 	int rc;
 
-	if (child->size == 0 || child->size > OBJECT_BYTES_MOST)
+	if (child->size == 0 || child->size > OBJECT_BYTES_MAX)
 		return -EFBIG;
 	rc = path_index(store, path, &object.file);
 	if (rc == 0)

@@ -124,7 +124,7 @@ static int write_block(struct packer *packer, struct hash page, const struct pag
 {
 	uint64_t most = packer->options->pack_bytes ? packer->options->pack_bytes : PACK_BYTES;
 	struct locator_block block = { .page = page, .size = (uint32_t)size };
-	int rc = size > PACK_BYTES_MOST ? -EFBIG : 0;
+	int rc = size > PACK_BYTES_MAX ? -EFBIG : 0;
 
 	if (rc == 0 && packer->pack.size > 0 && packer->pack.size + size > most)
 		rc = end_pack(packer);
@@ -168,7 +168,7 @@ static int place_page(struct packer *packer, struct hash name)
 	struct page page = { 0 };
 	int rc;
 
-	buffer_init(&object, PAGE_BYTES_MOST);
+	buffer_init(&object, PAGE_BYTES_MAX);
 	rc = object_store_read(packer->options->objects, name, &object);
 	if (rc == 0)
 		rc = page_decode(&page, buffer_bytes(&object));
@@ -304,7 +304,7 @@ int pack_release(const struct pack_options *options, struct pack_result *result)
 	int rc;
 
 	*result = (struct pack_result){ 0 };
-	buffer_init(&packer.pack, (size_t)PACK_BYTES_MOST + PACK_BYTES);
+	buffer_init(&packer.pack, (size_t)PACK_BYTES_MAX + PACK_BYTES);
 	rc = make_folder(options->release, "packs");
 	if (rc == 0)
 		rc = make_folder(options->release, "locator");

@@ -15,8 +15,8 @@
 #include "pipeline/release/object_store.h"
 
 enum {
-	PACK_BYTES = 32 << 20,     /* a pack ends before the block that would pass this */
-	PACK_BYTES_MOST = 1 << 30, /* of one block, and so of a pack */
+	PACK_BYTES = 32 << 20,    /* a pack ends before the block that would pass this */
+	PACK_BYTES_MAX = 1 << 30, /* of one block, and so of a pack */
 };
 
 struct pack_options {

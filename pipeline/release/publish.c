@@ -80,14 +80,14 @@ static int make_root(struct page_child *out, struct object_store *objects,
 		     const struct root_page *root, const struct page_child *children,
 		     uint32_t child_count)
 {
-	struct page_child copy[ROOT_CHILDREN_MOST];
+	struct page_child copy[ROOT_CHILDREN_MAX];
 	struct page page = { .kind = PAGE_ROOT, .child_count = child_count, .children = copy };
 	struct buffer payload;
 	int rc;
 
-	assert(child_count >= ROOT_CHILD_COUNT && child_count <= ROOT_CHILDREN_MOST);
+	assert(child_count >= ROOT_CHILD_COUNT && child_count <= ROOT_CHILDREN_MAX);
 	memcpy(copy, children, child_count * sizeof(*copy));
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	root_page_encode(&payload, root);
 	page.payload = buffer_bytes(&payload);
 	rc = payload.error ? payload.error : object_store_add_page(objects, &page, out);

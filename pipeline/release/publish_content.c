@@ -117,7 +117,7 @@ static int fill_root(struct root_page *root, const struct content *content,
 /* ---- the parts */
 
 static struct info_build_options info_options(const struct content *content,
-					      const char *languages[CONTENT_LANGUAGES_MOST],
+					      const char *languages[CONTENT_LANGUAGES_MAX],
 					      struct part_faces_all *faces)
 {
 	faces->content = content;
@@ -180,7 +180,7 @@ static int check_tours(const struct info_build_options *options, const struct co
 
 int publish_content_check(const struct content *content)
 {
-	const char *languages[CONTENT_LANGUAGES_MOST];
+	const char *languages[CONTENT_LANGUAGES_MAX];
 	struct part_faces_all faces = { .only_judge = true };
 	const struct info_build_options options = info_options(content, languages, &faces);
 	int rc = check_tours(&options, content);
@@ -192,7 +192,7 @@ int publish_content_check(const struct content *content)
 static int add_info(struct object_store *objects, const struct content *content,
 		    struct part_faces_all *faces, struct page_child *out)
 {
-	const char *languages[CONTENT_LANGUAGES_MOST];
+	const char *languages[CONTENT_LANGUAGES_MAX];
 	const struct info_build_options options = info_options(content, languages, faces);
 
 	const int rc = check_tours(&options, content);
@@ -218,7 +218,7 @@ static int publish_objects(struct publish_content_report *report,
 			   const struct publish_target *target, struct object_store *objects,
 			   const struct content *content)
 {
-	struct page_child children[ROOT_CHILDREN_MOST];
+	struct page_child children[ROOT_CHILDREN_MAX];
 	uint32_t child_count = ROOT_CHILD_COUNT;
 	struct part_faces_all faces = { 0 };
 	struct root_page root = { 0 };

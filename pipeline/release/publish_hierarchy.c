@@ -54,7 +54,7 @@ static void round_normal(int8_t normal[2])
  * decide which image is seen where (docs/patch.md has the figures). */
 static int round_group(struct buffer *object)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count;
 	int rc = patch_group_decode(meshes, &count, buffer_bytes(object));
 
@@ -79,7 +79,7 @@ static int add_groups(struct object_store *objects, const struct master *master,
 	struct buffer object;
 	int rc = 0;
 
-	buffer_init(&object, OBJECT_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
 	for (uint32_t i = 0; rc == 0 && i < cut->hierarchy.group_count; i++) {
 		buffer_clear(&object);
 		rc = master_read_group(master, cut->groups[i], &object);
@@ -101,7 +101,7 @@ static int add_page(struct object_store *objects, const struct hierarchy *hierar
 	struct buffer payload;
 	int rc;
 
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	rc = hierarchy_encode(&payload, hierarchy);
 	page.payload = buffer_bytes(&payload);
 	if (rc == 0)

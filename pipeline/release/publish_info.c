@@ -17,7 +17,7 @@ static int add_picture(struct object_store *objects, const char *folder,
 
 	if (snprintf(path, sizeof(path), "%s/%s", folder, picture->name) >= PATH_MAX)
 		return -ENAMETOOLONG;
-	buffer_init(&file, OBJECT_BYTES_MOST);
+	buffer_init(&file, OBJECT_BYTES_MAX);
 	rc = buffer_read_file(&file, path);
 	if (rc == 0)
 		rc = object_store_add(objects, buffer_bytes(&file), out);
@@ -83,7 +83,7 @@ int publish_info(struct object_store *objects, const struct info_build_options *
 			log_error("pipeline",
 				  "%s: the information database has %zu bytes, more "
 				  "than an object may have (%d)",
-				  options->folder, built.database.size, OBJECT_BYTES_MOST);
+				  options->folder, built.database.size, OBJECT_BYTES_MAX);
 	}
 	for (uint32_t i = 0; rc == 0 && i < built.picture_count; i++)
 		rc = add_picture(objects, options->folder, &built.pictures[i],

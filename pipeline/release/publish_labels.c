@@ -30,7 +30,7 @@ static int read_page(struct object_store *objects, const struct page_child *chil
 {
 	int rc;
 
-	buffer_init(bytes, PAGE_BYTES_MOST);
+	buffer_init(bytes, PAGE_BYTES_MAX);
 	rc = object_store_read(objects, child->hash, bytes);
 	return rc < 0 ? rc : page_decode(page, buffer_bytes(bytes));
 }
@@ -88,7 +88,7 @@ static int open_info(struct object_store *objects, const struct page_child *chil
 	struct page page = { 0 };
 	int rc = read_page(objects, child, &page, &page_bytes);
 
-	buffer_init(&image, OBJECT_BYTES_MOST);
+	buffer_init(&image, OBJECT_BYTES_MAX);
 	if (rc == 0)
 		rc = object_store_read(objects, page.children[0].hash, &image);
 	if (rc == 0)
@@ -120,7 +120,7 @@ static float cell_of(const struct labelling *l, uint32_t group)
 static int label_one(void *user, uint32_t piece, uint32_t worker)
 {
 	struct labelling *l = user;
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	struct label_group labels = { 0 };
 	uint32_t count = 0;
 	int rc = patch_group_decode(meshes, &count, buffer_bytes(&l->groups[piece]));
@@ -151,8 +151,8 @@ static int open_groups(struct labelling *l, const struct page_child *hierarchy)
 	if (!l->groups || !l->labels)
 		return -ENOMEM;
 	for (uint32_t g = 0; g < l->page.child_count; g++) {
-		buffer_init(&l->groups[g], OBJECT_BYTES_MOST);
-		buffer_init(&l->labels[g], OBJECT_BYTES_MOST);
+		buffer_init(&l->groups[g], OBJECT_BYTES_MAX);
+		buffer_init(&l->labels[g], OBJECT_BYTES_MAX);
 	}
 	return rc;
 }
@@ -201,7 +201,7 @@ static int add_page(struct labelling *l, struct page_child *out)
 	struct buffer payload;
 	int rc = 0;
 
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	page.children = calloc(groups + 1, sizeof(*page.children));
 	if (!child_of_group || !page.children)
 		rc = -ENOMEM;

@@ -64,7 +64,7 @@ static int close_brick(struct samples_writer *writer)
 
 	if (writer->brick_index == SAMPLE_NONE)
 		return 0;
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	brick_page_encode(&payload, &writer->brick);
 	rc = add_page(writer->objects, PAGE_BRICK, &writer->faces, &payload, &child);
 	if (rc == 0) {
@@ -85,7 +85,7 @@ static int write_face_page(struct object_store *objects, const struct sample_fac
 	int rc = 0;
 
 	memset(page.tile_child, 0xff, sizeof(page.tile_child));
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	for (uint32_t i = 0; rc == 0 && i < face->tile_count; i++) {
 		struct page_child tile = { .hash = hash_of(face->objects[i]),
 					   .size = (uint32_t)face->objects[i].size };
@@ -161,7 +161,7 @@ int publish_samples(struct object_store *objects, const char *content, struct pa
 	struct buffer payload;
 	int rc = writer ? samples_store_open(&store, content) : -ENOMEM;
 
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	if (rc == 0) {
 		writer->objects = objects;
 		rc = start(writer, store);

@@ -58,7 +58,7 @@ static int read_release(struct release *out, const char *release, const char *na
 	int rc = make_path(path, release, name);
 
 	*out = (struct release){ 0 };
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	if (rc == 0)
 		rc = buffer_read_file(&file, path);
 	if (rc == 0)
@@ -127,7 +127,7 @@ static int copy_roots(const char *release, const char *keys_folder, uint32_t new
 	struct buffer file;
 	int rc = 0;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	for (uint32_t version = 1; rc == 0 && version <= newest; version++) {
 		char name[32];
 
@@ -151,7 +151,7 @@ static int write_timestamp(const char *release, const struct publisher_keys *key
 	struct buffer file;
 	int rc;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = timestamp_encode(&file, &timestamp, &keys->timestamp, 1);
 	if (rc == 0)
 		rc = write_file(release, "timestamp.json", buffer_bytes(&file));
@@ -167,7 +167,7 @@ int release_files_write(const char *release, const char *keys_folder,
 	char name[64];
 	int rc = make_folders(release);
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	if (rc == 0)
 		rc = copy_roots(release, keys_folder, keys->trust.version);
 	if (rc == 0)
@@ -192,7 +192,7 @@ int release_files_renew(const char *release, const struct publisher_keys *keys,
 	struct buffer file;
 	int rc = release_files_current(&current, release, keys);
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	if (rc == 0)
 		rc = make_path(path, release, "release.json");
 	if (rc == 0)

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Breadth first, a walk is in one pack, and now and then in an older release's. */
-enum { PACKS_KEPT = 4, FILE_BYTES_MOST = 1 << 30 };
+enum { PACKS_KEPT = 4, FILE_BYTES_MAX = 1 << 30 };
 
 struct kept_pack {
 	struct hash name;
@@ -108,7 +108,7 @@ int release_reader_create(struct release_reader **out, const struct release_read
 	if (!reader)
 		return -ENOMEM;
 	for (int i = 0; i < PACKS_KEPT; i++)
-		buffer_init(&reader->packs[i].bytes, FILE_BYTES_MOST);
+		buffer_init(&reader->packs[i].bytes, FILE_BYTES_MAX);
 	while (length > 1 && options->place[length - 1] == '/')
 		length--;
 	if (length >= sizeof(reader->place))

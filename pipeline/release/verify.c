@@ -9,7 +9,7 @@
 
 #include "pipeline/release/verify_parts.h"
 
-enum { ROOTS_MOST = 1000, LOCATOR_BYTES_MOST = 256 << 20 };
+enum { ROOTS_MAX = 1000, LOCATOR_BYTES_MAX = 256 << 20 };
 
 int verify_blame(struct verify_report *report, int rc, const char *text, ...)
 {
@@ -46,7 +46,7 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 	rc = trust_root_first(&report->trust, first, &why);
 	if (rc < 0)
 		return verify_blame(report, rc, "the first root: %s", why);
-	while (report->trust.version < ROOTS_MOST) {
+	while (report->trust.version < ROOTS_MAX) {
 		char name[32];
 
 		snprintf(name, sizeof(name), "root/%u.json", report->trust.version + 1);
@@ -59,7 +59,7 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 		if (rc < 0)
 			return verify_blame(report, rc, "%s: %s", name, why);
 	}
-	return verify_blame(report, -EBADMSG, "more than %d roots", ROOTS_MOST);
+	return verify_blame(report, -EBADMSG, "more than %d roots", ROOTS_MAX);
 }
 
 static int check_expiry(struct verify_walk *walk, const char *name, int64_t expires_s)
@@ -100,7 +100,7 @@ static int read_metadata(struct verify_walk *walk)
 	struct buffer file;
 	int rc;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = read_roots(walk, &file);
 	if (rc == 0)
 		rc = check_expiry(walk, "the newest root", walk->report->trust.expires_s);
@@ -123,7 +123,7 @@ static int read_locator(struct verify_walk *walk)
 	int rc;
 
 	hash_to_hex(walk->report->release.root, name + strlen(name));
-	buffer_init(&file, LOCATOR_BYTES_MOST);
+	buffer_init(&file, LOCATOR_BYTES_MAX);
 	rc = release_reader_file(walk->options->reader, name, &file);
 	if (rc < 0) {
 		blame_reader(walk, rc);
@@ -261,7 +261,7 @@ static int do_task(struct verify_walk *walk, const struct verify_task *task)
 	if (rc < 0)
 		return blame_reader(walk, rc);
 	progress_add(walk->progress, bytes.size);
-	buffer_init(&copy, PAGE_BYTES_MOST);
+	buffer_init(&copy, PAGE_BYTES_MAX);
 	buffer_put(&copy, bytes.data, bytes.size);
 	rc = copy.error ? copy.error : page_decode(&page.page, buffer_bytes(&copy));
 	if (rc < 0) {

@@ -34,7 +34,7 @@ static void count(struct verify_sum *sum, struct bytes object)
 
 int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 {
-	static const enum page_kind kinds[ROOT_CHILDREN_MOST] = {
+	static const enum page_kind kinds[ROOT_CHILDREN_MAX] = {
 		[ROOT_CHILD_HIERARCHY] = PAGE_HIERARCHY,
 		[ROOT_CHILD_SAMPLES] = PAGE_SAMPLES,
 		[ROOT_CHILD_INFO] = PAGE_INFO,
@@ -44,8 +44,7 @@ int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 
 	if (rc < 0)
 		return rc;
-	if (page->page.child_count < ROOT_CHILD_COUNT ||
-	    page->page.child_count > ROOT_CHILDREN_MOST)
+	if (page->page.child_count < ROOT_CHILD_COUNT || page->page.child_count > ROOT_CHILDREN_MAX)
 		return blame_page(walk, page,
 				  "a root page has three children, or four with labels");
 	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
@@ -75,7 +74,7 @@ static const char *compare_group(const struct hierarchy *hierarchy, uint32_t ind
 static int check_group(struct verify_walk *walk, const struct verify_page *page,
 		       const struct hierarchy *hierarchy, uint32_t index)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	const char *wrong = "does not decode";
 	uint32_t mesh_count = 0;
 	struct bytes object;

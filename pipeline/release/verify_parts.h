@@ -1,4 +1,4 @@
-/* What the sources of the verifier share. Private to pipeline/verify*.c. */
+/* What the sources of the verifier share. Private to pipeline/release/verify*.c. */
 #ifndef GOPURA_PIPELINE_RELEASE_VERIFY_PARTS_H
 #define GOPURA_PIPELINE_RELEASE_VERIFY_PARTS_H
 

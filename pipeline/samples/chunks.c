@@ -146,7 +146,7 @@ static void add_vertex(struct builder *builder, uint32_t vertex)
 static int reserve(struct builder *builder)
 {
 	struct chunks *out = builder->out;
-	uint32_t wanted = out->vertex_count + 3 * CHUNK_TRIANGLES_MOST;
+	uint32_t wanted = out->vertex_count + 3 * CHUNK_TRIANGLES_MAX;
 	void *grown;
 
 	if (out->count == builder->capacity) {
@@ -222,7 +222,7 @@ static uint32_t add_chunk(struct builder *builder, const struct place *places, u
 	*chunk = (struct chunk){ .first_vertex = out->vertex_count,
 				 .first_index = out->index_count,
 				 .texture = (uint16_t)(places->key >> 48) };
-	while (count < left && count < CHUNK_TRIANGLES_MOST &&
+	while (count < left && count < CHUNK_TRIANGLES_MAX &&
 	       places[count].key >> 48 == places->key >> 48) {
 		const uint32_t *t = builder->mesh->triangles[places[count].triangle];
 

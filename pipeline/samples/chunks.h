@@ -5,7 +5,7 @@
 
 #include "pipeline/import/mesh.h"
 
-enum { CHUNK_TRIANGLES_MOST = 4096 };
+enum { CHUNK_TRIANGLES_MAX = 4096 };
 
 /* As uploaded: 20 bytes. */
 struct chunk_vertex {

@@ -47,9 +47,9 @@ static const char scan_colour[] = "vec3 base() { return v_colour.rgb; }\n";
 /* Row 0 of a picture is its top, where v is 1. */
 static const char image_colour[] =
 	"vec3 base() { return texture2D(image, vec2(v_uv.x, 1.0 - v_uv.y)).rgb; }\n";
-static const char stone[] =
+static const char material[] =
 	"vec3 base() {\n"
-	"	return stone_colour(v_at, normalize(v_normal), distance(v_at, eye) * px_radians);\n"
+	"	return material_colour(v_at, normalize(v_normal), distance(v_at, eye) * px_radians);\n"
 	"}\n";
 static const char no_light[] = "float shade() { return 1.0; }\n";
 static const char sun_light[] =
@@ -72,12 +72,12 @@ static const char surface_main[] =
 
 static int build_program(struct drawing *drawing, const struct drawing_options *options)
 {
-	const char *colour = options->procedural      ? stone
+	const char *colour = options->procedural      ? material
 			     : drawing->texture_count ? image_colour
 						      : scan_colour;
 	const char *const vertex[] = { vertex_text, NULL };
 	const char *const fragment[] = { fragment_head,
-					 options->procedural ? stone_glsl : "",
+					 options->procedural ? material_glsl : "",
 					 options->lit ? light_glsl : "",
 					 colour,
 					 options->lit ? sun_light : no_light,

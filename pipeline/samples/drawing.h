@@ -1,6 +1,6 @@
 /* The model at its finest, drawn by GLES2 from anywhere: what samples and reference pictures are
  * made of. Colour is the scan's vertices, its pictures, or the procedural stone, times the light
- * where the model is lit (format/light.h). Alpha tells what a pixel shows: 255 the front of a
+ * where the model is lit (geometry/light.h). Alpha tells what a pixel shows: 255 the front of a
  * surface, 254 its back (DRAWING_BACK), 0 nothing. Surfaces instead of colours are for shading.h,
  * which knows how they are packed. Both sides are drawn, as a scan's rim needs.
  *
@@ -17,7 +17,7 @@ enum { DRAWING_BACK = 254 };
 struct drawing_options {
 	bool lit;
 	float sun[3];    /* unit vector */
-	bool procedural; /* colours from format/stone.h */
+	bool procedural; /* colours from pipeline/material/material.h */
 	bool surfaces;   /* procedural only: draw what shading.h makes the colours of, not these */
 };
 

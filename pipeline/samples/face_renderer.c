@@ -9,10 +9,10 @@
 #include "pipeline/samples/cube_frame.h"
 #include "pipeline/samples/shading.h"
 
-enum { OBJECTS_BYTES_MOST = 128 << 20 };
+enum { OBJECTS_BYTES_MAX = 128 << 20 };
 
-struct shooter {
-	struct shooter_options options;
+struct face_renderer {
+	struct face_renderer_options options;
 	struct frame *frame;
 	struct shading *shading;
 	struct pyramid pyramid;
@@ -26,46 +26,46 @@ static uint32_t level_px(uint32_t level)
 	return (uint32_t)SAMPLE_IMAGE_PX << level;
 }
 
-int shooter_create(struct shooter **out, const struct shooter_options *options)
+int face_renderer_create(struct face_renderer **out, const struct face_renderer_options *options)
 {
-	struct shooter *shooter = calloc(1, sizeof(*shooter));
+	struct face_renderer *renderer = calloc(1, sizeof(*renderer));
 	uint32_t side = level_px(options->level_count - 1);
 	int rc;
 
 	*out = NULL;
-	if (!shooter)
+	if (!renderer)
 		return -ENOMEM;
-	shooter->options = *options;
-	int samples = options->level_count < SAMPLE_LEVELS_MOST ? 2 : 1;
-	shooter->frame_px = (int)side * samples;
-	rc = pyramid_init(&shooter->pyramid, side);
+	renderer->options = *options;
+	int samples = options->level_count < SAMPLE_LEVELS_MAX ? 2 : 1;
+	renderer->frame_px = (int)side * samples;
+	rc = pyramid_init(&renderer->pyramid, side);
 	if (rc == 0)
-		rc = frame_create(&shooter->frame, shooter->frame_px, shooter->frame_px);
+		rc = frame_create(&renderer->frame, renderer->frame_px, renderer->frame_px);
 	if (rc == 0)
-		rc = shading_create(&shooter->shading, shooter->frame, shooter->frame_px,
-				    shooter->frame_px, samples, &options->drawn);
+		rc = shading_create(&renderer->shading, renderer->frame, renderer->frame_px,
+				    renderer->frame_px, samples, &options->drawn);
 	if (rc < 0) {
-		shooter_destroy(shooter);
+		face_renderer_destroy(renderer);
 		return rc;
 	}
-	*out = shooter;
+	*out = renderer;
 	return 0;
 }
 
-void shooter_destroy(struct shooter *shooter)
+void face_renderer_destroy(struct face_renderer *renderer)
 {
-	if (!shooter)
+	if (!renderer)
 		return;
-	shading_destroy(shooter->shading);
-	frame_destroy(shooter->frame);
-	pyramid_finish(&shooter->pyramid);
-	free(shooter);
+	shading_destroy(renderer->shading);
+	frame_destroy(renderer->frame);
+	pyramid_finish(&renderer->pyramid);
+	free(renderer);
 }
 
 void shot_init(struct shot *shot)
 {
 	memset(shot, 0, sizeof(*shot));
-	buffer_init(&shot->objects, OBJECTS_BYTES_MOST);
+	buffer_init(&shot->objects, OBJECTS_BYTES_MAX);
 }
 
 void shot_finish(struct shot *shot)
@@ -73,9 +73,10 @@ void shot_finish(struct shot *shot)
 	buffer_finish(&shot->objects);
 }
 
-static struct camera face_camera(const struct shooter *shooter, const float point_m[3], int face)
+static struct camera face_camera(const struct face_renderer *renderer, const float point_m[3],
+				 int face)
 {
-	struct camera camera = { .width_px = shooter->frame_px, .height_px = shooter->frame_px };
+	struct camera camera = { .width_px = renderer->frame_px, .height_px = renderer->frame_px };
 	double tangent = (double)SAMPLE_IMAGE_PX / SAMPLE_TILE_PX;
 
 	camera.fov_deg = (float)(2 * atan(tangent) * 180 / M_PI);
@@ -88,11 +89,11 @@ static struct camera face_camera(const struct shooter *shooter, const float poin
 }
 
 /* Does anything show in a square of the level's picture, or within a pixel of it? */
-static bool shows(const struct shooter *shooter, uint32_t level, uint32_t x, uint32_t y,
+static bool shows(const struct face_renderer *renderer, uint32_t level, uint32_t x, uint32_t y,
 		  uint32_t side)
 {
-	uint32_t k = shooter->options.level_count - 1 - level, width = level_px(level);
-	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])shooter->pyramid.levels[k];
+	uint32_t k = renderer->options.level_count - 1 - level, width = level_px(level);
+	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])renderer->pyramid.levels[k];
 
 	for (uint32_t row = y - 1; row < y + side + 1; row++)
 		for (uint32_t column = x - 1; column < x + side + 1; column++)
@@ -101,35 +102,35 @@ static bool shows(const struct shooter *shooter, uint32_t level, uint32_t x, uin
 	return false;
 }
 
-static uint16_t find_coverage(const struct shooter *shooter)
+static uint16_t find_coverage(const struct face_renderer *renderer)
 {
-	uint32_t level = shooter->options.level_count - 1;
+	uint32_t level = renderer->options.level_count - 1;
 	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
 	uint32_t width = (uint32_t)SAMPLE_TILE_PX << level, side = (width + 3) / 4;
 	uint16_t coverage = 0;
 
 	for (uint32_t i = 0; i < 16; i++)
-		if (shows(shooter, level, apron + i % 4 * width / 4, apron + i / 4 * width / 4,
+		if (shows(renderer, level, apron + i % 4 * width / 4, apron + i / 4 * width / 4,
 			  side))
 			coverage |= (uint16_t)(1u << i);
 	return coverage;
 }
 
-static int encode_tile(struct shooter *shooter, struct shot *shot, uint32_t level, uint32_t x,
-		       uint32_t y)
+static int encode_tile(struct face_renderer *renderer, struct shot *shot, uint32_t level,
+		       uint32_t x, uint32_t y)
 {
-	uint32_t k = shooter->options.level_count - 1 - level, width = level_px(level);
-	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])shooter->pyramid.levels[k];
-	uint8_t *to = shooter->tile;
+	uint32_t k = renderer->options.level_count - 1 - level, width = level_px(level);
+	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])renderer->pyramid.levels[k];
+	uint8_t *to = renderer->tile;
 
 	for (uint32_t row = 0; row < SAMPLE_IMAGE_PX; row++)
 		for (uint32_t column = 0; column < SAMPLE_IMAGE_PX; column++, to += 3)
 			memcpy(to, pixels[(size_t)(y + row) * width + x + column], 3);
-	return tile_encode(&shot->objects, shooter->tile, SAMPLE_IMAGE_PX,
-			   shooter->options.quality);
+	return tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX,
+			   renderer->options.quality);
 }
 
-static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)
+static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t level)
 {
 	uint32_t apron = (uint32_t)SAMPLE_APRON_PX << level;
 
@@ -141,9 +142,9 @@ static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)
 
 		face_tile_place(level, index, &row, &column);
 		uint32_t x = apron + column * SAMPLE_TILE_PX, y = apron + row * SAMPLE_TILE_PX;
-		if (!shows(shooter, level, x, y, SAMPLE_TILE_PX))
+		if (!shows(renderer, level, x, y, SAMPLE_TILE_PX))
 			continue;
-		rc = encode_tile(shooter, shot, level, x - SAMPLE_APRON_PX, y - SAMPLE_APRON_PX);
+		rc = encode_tile(renderer, shot, level, x - SAMPLE_APRON_PX, y - SAMPLE_APRON_PX);
 		if (rc < 0)
 			return rc;
 		shot->tiles[n] = (uint16_t)index;
@@ -154,36 +155,37 @@ static int cut_level(struct shooter *shooter, struct shot *shot, uint32_t level)
 }
 
 /* Into the pyramid's finest level. found: something shows. */
-static int render(struct shooter *shooter, struct shot *shot, const float point_m[3], int face,
-		  bool *found)
+static int render(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
+		  int face, bool *found)
 {
-	struct camera camera = face_camera(shooter, point_m, face);
+	struct camera camera = face_camera(renderer, point_m, face);
 	const uint8_t *rgba;
 	float matrix[16];
 	int rc;
 
-	*found = drawing_range(shooter->options.drawing, point_m, cube_axes[face].forward,
+	*found = drawing_range(renderer->options.drawing, point_m, cube_axes[face].forward,
 			       &camera.near_m, &camera.far_m);
 	if (!*found)
 		return 0;
 	camera_matrix(&camera, matrix);
-	*found = drawing_visible(shooter->options.drawing, matrix) > 0;
+	*found = drawing_visible(renderer->options.drawing, matrix) > 0;
 	if (!*found)
 		return 0;
-	frame_bind(shooter->frame);
-	drawing_draw(shooter->options.drawing, matrix, point_m, 1 / camera_px_per_radian(&camera));
-	rc = frame_range(shooter->frame, camera.near_m, camera.far_m, found, &shot->near_m,
+	frame_bind(renderer->frame);
+	drawing_draw(renderer->options.drawing, matrix, point_m, 1 / camera_px_per_radian(&camera));
+	rc = frame_range(renderer->frame, camera.near_m, camera.far_m, found, &shot->near_m,
 			 &shot->far_m);
 	if (rc < 0 || !*found)
 		return rc;
-	rc = shading_take(shooter->shading, &camera, &rgba);
+	rc = shading_take(renderer->shading, &camera, &rgba);
 	if (rc < 0)
 		return rc;
-	pyramid_set(&shooter->pyramid, rgba, &shot->covered, &shot->backs);
+	pyramid_set(&renderer->pyramid, rgba, &shot->covered, &shot->backs);
 	return 0;
 }
 
-int shooter_take(struct shooter *shooter, struct shot *shot, const float point_m[3], int face)
+int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
+		       int face)
 {
 	bool found;
 	int rc;
@@ -192,16 +194,16 @@ int shooter_take(struct shooter *shooter, struct shot *shot, const float point_m
 	shot->coverage = 0;
 	shot->tile_count = 0;
 	buffer_clear(&shot->objects);
-	rc = render(shooter, shot, point_m, face, &found);
+	rc = render(renderer, shot, point_m, face, &found);
 	if (rc < 0 || !found || !shot->covered)
 		return rc;
-	shot->coverage = find_coverage(shooter);
+	shot->coverage = find_coverage(renderer);
 	if (!shot->coverage) /* only the aprons show anything */
 		return 0;
-	pyramid_reduce(&shooter->pyramid);
-	pyramid_fill(&shooter->pyramid);
-	rc = pyramid_sharpen(&shooter->pyramid);
-	for (uint32_t level = 0; rc == 0 && level < shooter->options.level_count; level++)
-		rc = cut_level(shooter, shot, level);
+	pyramid_reduce(&renderer->pyramid);
+	pyramid_fill(&renderer->pyramid);
+	rc = pyramid_sharpen(&renderer->pyramid);
+	for (uint32_t level = 0; rc == 0 && level < renderer->options.level_count; level++)
+		rc = cut_level(renderer, shot, level);
 	return rc;
 }

@@ -14,7 +14,7 @@ int pyramid_init(struct pyramid *pyramid, uint32_t side_px)
 	for (uint32_t side = side_px;; side = (side + 1) / 2) {
 		uint32_t level = pyramid->level_count++;
 
-		assert(level < PYRAMID_LEVELS_MOST);
+		assert(level < PYRAMID_LEVELS_MAX);
 		pyramid->side_px[level] = side;
 		pyramid->levels[level] = calloc((size_t)side * side, 4);
 		if (!pyramid->levels[level]) {

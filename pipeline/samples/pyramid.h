@@ -9,13 +9,13 @@
 
 #include "base/compiler.h"
 
-enum { PYRAMID_LEVELS_MOST = 16 };
+enum { PYRAMID_LEVELS_MAX = 16 };
 
 /* Square; straight sRGB and coverage (255: all), row 0 on top. */
 struct pyramid {
 	uint32_t level_count; /* level 0 is the finest, the last is one pixel */
-	uint32_t side_px[PYRAMID_LEVELS_MOST];
-	uint8_t (*levels[PYRAMID_LEVELS_MOST])[4]; /* owned */
+	uint32_t side_px[PYRAMID_LEVELS_MAX];
+	uint8_t (*levels[PYRAMID_LEVELS_MAX])[4]; /* owned */
 };
 
 must_check int pyramid_init(struct pyramid *pyramid, uint32_t side_px);

@@ -15,7 +15,7 @@
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 
-enum { REFERENCE_VERSION = 1, LINE_BYTES = 512, PNG_BYTES_MOST = 256 << 20, NUMBERS = 7 };
+enum { REFERENCE_VERSION = 1, LINE_BYTES = 512, PNG_BYTES_MAX = 256 << 20, NUMBERS = 7 };
 
 /* Everything that one run of drawing shares. */
 struct easel {
@@ -112,7 +112,7 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 			goto fail;
 		}
 		views = grown;
-		if (found != NUMBERS || *count == REFERENCE_VIEWS_MOST ||
+		if (found != NUMBERS || *count == REFERENCE_VIEWS_MAX ||
 		    !view_from(&views[*count], numbers)) {
 			fault_set(fault, rc,
 				  "%s, line %u: give eye x y z, target x y z (another place) and "
@@ -316,7 +316,7 @@ static int write_view(const struct easel *easel, uint32_t n, struct hash key)
 		if (!picture.rgba[4 * i + 3])
 			memset(picture.rgba + 4 * i, 0, 3);
 	}
-	buffer_init(&file, PNG_BYTES_MOST);
+	buffer_init(&file, PNG_BYTES_MAX);
 	rc = picture_encode_png(&file, &picture);
 	view_path(path, easel->options, n, "png");
 	if (rc == 0)

@@ -7,15 +7,11 @@
 #include "geometry/camera.h"
 #include "pipeline/content/content.h"
 
-enum {
-	REFERENCE_VIEWS_MOST = 100000,
-	REFERENCE_SIDE_PX_MOST = 4096,
-	REFERENCE_SUPERSAMPLE_MOST = 16
-};
+enum { REFERENCE_VIEWS_MAX = 100000, REFERENCE_SIDE_PX_MAX = 4096, REFERENCE_SUPERSAMPLE_MAX = 16 };
 
 struct reference_options {
-	int width_px, height_px; /* 1 .. REFERENCE_SIDE_PX_MOST */
-	uint32_t supersample;    /* N x N samples a pixel, 1 .. REFERENCE_SUPERSAMPLE_MOST */
+	int width_px, height_px; /* 1 .. REFERENCE_SIDE_PX_MAX */
+	uint32_t supersample;    /* N x N samples a pixel, 1 .. REFERENCE_SUPERSAMPLE_MAX */
 	const char *out_dir;     /* made where it is missing; borrowed */
 };
 

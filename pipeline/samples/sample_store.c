@@ -11,7 +11,7 @@
 
 #include "base/log.h"
 
-enum { VERSION = 1, POINT_BYTES_MOST = 512 << 20, GRID_BYTES_MOST = 1 << 20 };
+enum { VERSION = 1, POINT_BYTES_MAX = 512 << 20, GRID_BYTES_MAX = 1 << 20 };
 
 static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt";
 
@@ -26,9 +26,9 @@ struct samples_store {
 	uint32_t faces_left;  /* in point_file */
 	uint32_t point[3];
 	uint32_t states[SAMPLE_STATES];
-	uint16_t tiles[FACE_TILES_MOST];
-	struct bytes objects[FACE_TILES_MOST];
-	uint64_t offsets[FACE_TILES_MOST];
+	uint16_t tiles[FACE_TILES_MAX];
+	struct bytes objects[FACE_TILES_MAX];
+	uint64_t offsets[FACE_TILES_MAX];
 	char path[PATH_MAX]; /* of point_file */
 };
 
@@ -82,10 +82,10 @@ static bool read_head(struct reader *reader, struct bytes file, const char magic
 static bool grid_is_sane(const struct sample_grid *grid)
 {
 	for (int i = 0; i < 3; i++)
-		if (grid->count[i] < 1 || grid->count[i] > SAMPLE_GRID_MOST ||
+		if (grid->count[i] < 1 || grid->count[i] > SAMPLE_GRID_MAX ||
 		    !isfinite(grid->origin_m[i]) || !(grid->spacing_m[i] > 0))
 			return false;
-	return grid->level_count >= 1 && grid->level_count <= SAMPLE_LEVELS_MOST;
+	return grid->level_count >= 1 && grid->level_count <= SAMPLE_LEVELS_MAX;
 }
 
 static bool read_grid(struct samples_store *store)
@@ -188,8 +188,8 @@ int samples_store_open(struct samples_store **out, const char *content_dir)
 	*out = NULL;
 	if (!store)
 		return -ENOMEM;
-	buffer_init(&store->grid_file, GRID_BYTES_MOST);
-	buffer_init(&store->point_file, POINT_BYTES_MOST);
+	buffer_init(&store->grid_file, GRID_BYTES_MAX);
+	buffer_init(&store->point_file, POINT_BYTES_MAX);
 	rc = samples_dir(store->dir, sizeof(store->dir), content_dir);
 	if (rc == 0) {
 		snprintf(path, sizeof(path), "%s/grid", store->dir);
@@ -336,8 +336,8 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 
 	if (rc < 0)
 		return rc;
-	buffer_init(&file, GRID_BYTES_MOST);
-	buffer_init(&old, GRID_BYTES_MOST);
+	buffer_init(&file, GRID_BYTES_MAX);
+	buffer_init(&old, GRID_BYTES_MAX);
 	put_head(&file, grid_magic, key);
 	for (int i = 0; i < 3; i++)
 		buffer_put_f32(&file, grid->origin_m[i]);
@@ -363,7 +363,7 @@ bool samples_store_has(const char *content_dir, const uint32_t point[3], struct 
 	struct samples_store store = { .key = key };
 	int rc;
 
-	buffer_init(&store.point_file, POINT_BYTES_MOST);
+	buffer_init(&store.point_file, POINT_BYTES_MAX);
 	rc = samples_dir(store.dir, sizeof(store.dir), content_dir);
 	if (rc == 0)
 		rc = load_point(&store, point);
@@ -396,7 +396,7 @@ int samples_store_put(const char *content_dir, struct hash key, enum sample_stat
 	if (rc < 0)
 		return rc;
 	point_path(path, dir, point);
-	buffer_init(&file, POINT_BYTES_MOST);
+	buffer_init(&file, POINT_BYTES_MAX);
 	put_head(&file, point_magic, key);
 	buffer_put_u8(&file, (uint8_t)state);
 	buffer_put_u8(&file, (uint8_t)face_count);

@@ -22,7 +22,7 @@ enum sample_state {
 
 struct sample_grid {
 	float origin_m[3], spacing_m[3];
-	uint32_t count[3];    /* points a side, 1 .. SAMPLE_GRID_MOST */
+	uint32_t count[3];    /* points a side, 1 .. SAMPLE_GRID_MAX */
 	uint32_t level_count; /* of the finest face */
 };
 

@@ -20,7 +20,7 @@
 #include "pipeline/samples/face_renderer.h"
 #include "render/display/headless.h"
 
-enum { SAMPLER_VERSION = 7, JOBS_MOST = 64 };
+enum { SAMPLER_VERSION = 7, JOBS_MAX = 64 };
 
 /* The grid's box, in sizes of the model: docs/samples.md. */
 static const float grid_reach = 1.5f;
@@ -150,7 +150,7 @@ static bool is_hopeless(const struct sampling *sampling, const float point_m[3],
 struct taken {
 	struct shot shots[CUBE_FACES];
 	struct sample_face faces[CUBE_FACES];
-	struct bytes objects[CUBE_FACES][FACE_TILES_MOST];
+	struct bytes objects[CUBE_FACES][FACE_TILES_MAX];
 };
 
 static void describe_face(struct taken *taken, uint32_t n, int face, uint32_t level_count)
@@ -173,8 +173,8 @@ static void describe_face(struct taken *taken, uint32_t n, int face, uint32_t le
 						.objects = taken->objects[face] };
 }
 
-static int take_point(const struct sampling *sampling, struct shooter *shooter, struct taken *taken,
-		      const uint32_t point[3])
+static int take_point(const struct sampling *sampling, struct face_renderer *renderer,
+		      struct taken *taken, const uint32_t point[3])
 {
 	enum sample_state state = SAMPLE_EMPTY;
 	uint64_t covered = 0, backs = 0;
@@ -186,7 +186,7 @@ static int take_point(const struct sampling *sampling, struct shooter *shooter, 
 		return samples_store_put(sampling->content->folder, sampling->key, state, point,
 					 NULL, 0);
 	for (int face = 0; face < CUBE_FACES; face++) {
-		int rc = shooter_take(shooter, &taken->shots[face], place, face);
+		int rc = face_renderer_take(renderer, &taken->shots[face], place, face);
 
 		if (rc < 0)
 			return rc;
@@ -205,7 +205,7 @@ static int take_point(const struct sampling *sampling, struct shooter *shooter, 
 }
 
 /* Takes points off the queue; a byte into the pipe for each. */
-static int work(const struct sampling *sampling, struct shooter *shooter, int done_fd)
+static int work(const struct sampling *sampling, struct face_renderer *renderer, int done_fd)
 {
 	struct taken *taken = calloc(1, sizeof(*taken));
 	int rc = 0;
@@ -219,7 +219,7 @@ static int work(const struct sampling *sampling, struct shooter *shooter, int do
 
 		if (n >= sampling->point_count)
 			break;
-		rc = take_point(sampling, shooter, taken, sampling->points[n]);
+		rc = take_point(sampling, renderer, taken, sampling->points[n]);
 		if (rc == 0 && write(done_fd, "", 1) != 1)
 			rc = -EPIPE;
 	}
@@ -232,12 +232,12 @@ static int work(const struct sampling *sampling, struct shooter *shooter, int do
 /* All of a child process. */
 static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd)
 {
-	struct shooter_options options = { .drawn = sampling->drawing,
-					   .level_count = sampling->grid.level_count,
-					   .quality = (int)sampling->content->quality };
+	struct face_renderer_options options = { .drawn = sampling->drawing,
+						 .level_count = sampling->grid.level_count,
+						 .quality = (int)sampling->content->quality };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	struct headless *headless = NULL;
-	struct shooter *shooter = NULL;
+	struct face_renderer *renderer = NULL;
 	char threads[24];
 	int rc;
 
@@ -249,12 +249,12 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 		rc = drawing_create(&options.drawing, &sampling->chunks, sampling->mesh,
 				    &options.drawn);
 	if (rc == 0)
-		rc = shooter_create(&shooter, &options);
+		rc = face_renderer_create(&renderer, &options);
 	if (rc == 0)
-		rc = work(sampling, shooter, done_fd);
+		rc = work(sampling, renderer, done_fd);
 	if (rc < 0)
 		log_error("pipeline", "a process of the sampler ended: %s", strerror(-rc));
-	shooter_destroy(shooter);
+	face_renderer_destroy(renderer);
 	drawing_destroy(options.drawing);
 	headless_destroy(headless);
 	return rc;
@@ -294,7 +294,7 @@ static void watch(int done_fd, uint32_t total)
 
 static int run_children(struct sampling *sampling, uint32_t jobs)
 {
-	pid_t children[JOBS_MOST] = { 0 };
+	pid_t children[JOBS_MAX] = { 0 };
 	int done[2], rc;
 
 	if (pipe(done) < 0)
@@ -328,7 +328,7 @@ static int sample(struct sampling *sampling, const struct sampler_options *optio
 	if (rc < 0 || sampling->point_count == 0)
 		return rc;
 	jobs = jobs < sampling->point_count ? jobs : sampling->point_count;
-	jobs = jobs < JOBS_MOST ? jobs : JOBS_MOST;
+	jobs = jobs < JOBS_MAX ? jobs : JOBS_MAX;
 	sampling->queue = mmap(NULL, sizeof(*sampling->queue), PROT_READ | PROT_WRITE,
 			       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
 	if (sampling->queue == MAP_FAILED)

@@ -1,6 +1,6 @@
-/* Renders the samples of a content folder into its store (pipeline/sample_store.h): finds the
- * sampling points, leaves out those in solid matter, below the ground or with nothing to see, and
- * shares the rest among processes. docs/samples.md. */
+/* Renders the samples of a content folder into its store (pipeline/samples/sample_store.h): finds
+ * the sampling points, leaves out those in solid matter, below the ground or with nothing to see,
+ * and shares the rest among processes. docs/samples.md. */
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 

@@ -76,7 +76,7 @@ static const char unpack[] =
 
 /* Each loop ends by a break at its very end on purpose: a rasteriser in software walks both ways of
  * a condition, and after a break on to the end of the loop's body. */
-static const char stone_means[] =
+static const char material_means[] =
 	"float mean_detail(float frequency, float footprint) {\n"
 	"	float cells = frequency * footprint, sum = 0.0, weight = 0.0;\n"
 	"	float count = cells >= 1.0 ? 0.0 : cells < 0.15 ? 1.0 : float(SAMPLES);\n"
@@ -84,7 +84,7 @@ static const char stone_means[] =
 	"	while (true) {\n"
 	"		float w = count < 2.0 ? 1.0 : is_mine(i);\n"
 	"		vec3 p = count < 2.0 ? middle : pick(i);\n"
-	"		sum += w * stone_detail(p, frequency, footprint);\n"
+	"		sum += w * material_detail(p, frequency, footprint);\n"
 	"		weight += w;\n"
 	"		i++;\n"
 	"		if (float(i) >= count) break;\n"
@@ -96,7 +96,7 @@ static const char stone_means[] =
 	"	float weight = 0.0;\n"
 	"	int i = -1;\n"
 	"	while (true) {\n"
-	"		vec4 block = stone_block(i < 0 ? middle : pick(i), n, footprint);\n"
+	"		vec4 block = material_block(i < 0 ? middle : pick(i), n, footprint);\n"
 	"		if (i < 0 && block.w > 0.014 + 1.2 * spread) {\n"
 	"			sum = block;\n"
 	"			weight = 1.0;\n"
@@ -112,12 +112,12 @@ static const char stone_means[] =
 	"}\n"
 	"vec3 base(vec3 n) {\n"
 	"	float footprint = distance(middle, eye) * px_radians;\n"
-	"	return stone_paint(middle, n, footprint, mean_block(n, footprint),\n"
+	"	return material_paint(middle, n, footprint, mean_block(n, footprint),\n"
 	"			   mean_detail(23.0, footprint), mean_detail(97.0, footprint));\n"
 	"}\n";
 
 /* Samples that lie together are taken together; each round starts from the first one left. */
-static const char stone_main[] =
+static const char material_main[] =
 	"void main() {\n"
 	"	vec3 sum = vec3(0.0);\n"
 	"	float covered = 0.0, backs = 0.0;\n"
@@ -170,17 +170,17 @@ static int build_program(struct shading *shading, const struct drawing_options *
 	const char *const vertex[] = { gl_square_vertex, NULL };
 	const char *const side = shading->side == 1 ? one_sample : four_samples;
 	const char *const plain[] = { side, fragment_head, colour_main, NULL };
-	const char *const stone[] = { side,
-				      fragment_head,
-				      stone_glsl,
-				      options->lit ? light_glsl : "",
-				      options->lit ? sun_light : no_light,
-				      unpack,
-				      stone_means,
-				      stone_main,
-				      NULL };
+	const char *const material[] = { side,
+					 fragment_head,
+					 material_glsl,
+					 options->lit ? light_glsl : "",
+					 options->lit ? sun_light : no_light,
+					 unpack,
+					 material_means,
+					 material_main,
+					 NULL };
 	const struct gl_program_source source = { "shading", vertex,
-						  options->procedural ? stone : plain,
+						  options->procedural ? material : plain,
 						  gl_square_attributes };
 	const char *const mask[] = { mask_text, NULL };
 	const struct gl_program_source mask_source = { "mask", vertex, mask, gl_square_attributes };

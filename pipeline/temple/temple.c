@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STATIONS_MOST = 1 << 17, ROWS_KEPT = 3 };
+enum { STATIONS_MAX = 1 << 17, ROWS_KEPT = 3 };
 
 struct row {
 	float (*positions)[3];
@@ -26,7 +26,7 @@ struct writer {
 	struct sky *sky;
 	float density;
 	uint64_t vertices, triangles; /* of the whole */
-	struct station *across, *up;  /* STATIONS_MOST each */
+	struct station *across, *up;  /* STATIONS_MAX each */
 	struct row rows[ROWS_KEPT];
 };
 
@@ -123,7 +123,7 @@ static void colour_vertex(const struct writer *w, const float position[3], const
 
 	/* Light is thrown back by the stone around: nothing is quite dark. */
 	open = (0.14f + 0.86f * powf(open, 0.75f)) * (1 - 0.45f * hollow * hollow);
-	stone_colour(rgb, position, normal, spacing_m);
+	material_colour(rgb, position, normal, spacing_m);
 	for (int k = 0; k < 3; k++)
 		out[k] = (uint8_t)(fminf(1, fmaxf(0, rgb[k])) * 255 + 0.5f);
 	out[3] = (uint8_t)(fminf(1, fmaxf(0.02f, open)) * 255 + 0.5f);
@@ -212,8 +212,8 @@ static int write_all(struct writer *w)
 		(unsigned long long)w->triangles);
 	for (uint32_t i = 0; rc == 0 && i < w->plan.count; i++) {
 		sheet_stations(&w->plan.sheets[i], density_of(w, i), w->across, &columns, w->up,
-			       &rows, STATIONS_MOST);
-		if (columns > STATIONS_MOST || rows > STATIONS_MOST)
+			       &rows, STATIONS_MAX);
+		if (columns > STATIONS_MAX || rows > STATIONS_MAX)
 			return -ERANGE;
 		rc = write_vertices(w, &w->plan.sheets[i], columns, rows);
 	}
@@ -257,11 +257,11 @@ static int writer_rooms(struct writer *w)
 {
 	bool whole = true;
 
-	w->across = calloc(STATIONS_MOST, sizeof(*w->across));
-	w->up = calloc(STATIONS_MOST, sizeof(*w->up));
+	w->across = calloc(STATIONS_MAX, sizeof(*w->across));
+	w->up = calloc(STATIONS_MAX, sizeof(*w->up));
 	for (int i = 0; i < ROWS_KEPT; i++) {
-		w->rows[i].positions = calloc(STATIONS_MOST, sizeof(*w->rows[i].positions));
-		w->rows[i].hollow = calloc(STATIONS_MOST, sizeof(*w->rows[i].hollow));
+		w->rows[i].positions = calloc(STATIONS_MAX, sizeof(*w->rows[i].positions));
+		w->rows[i].hollow = calloc(STATIONS_MAX, sizeof(*w->rows[i].hollow));
 		whole = whole && w->rows[i].positions && w->rows[i].hollow;
 	}
 	return whole && w->across && w->up ? 0 : -ENOMEM;
@@ -286,8 +286,7 @@ int temple_write(FILE *file, const struct temple_options *options)
 
 	if (options->bodies)
 		*options->bodies = (struct temple_bodies){ 0 };
-	if (options->triangles < TEMPLE_TRIANGLES_LEAST ||
-	    options->triangles > TEMPLE_TRIANGLES_MOST)
+	if (options->triangles < TEMPLE_TRIANGLES_MIN || options->triangles > TEMPLE_TRIANGLES_MAX)
 		return -ERANGE;
 	rc = plan_create(&w.plan, options->seed);
 	if (rc == 0)

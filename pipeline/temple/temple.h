@@ -10,7 +10,7 @@
 
 struct progress;
 
-enum { TEMPLE_TRIANGLES_LEAST = 10000, TEMPLE_TRIANGLES_MOST = 100000000 };
+enum { TEMPLE_TRIANGLES_MIN = 10000, TEMPLE_TRIANGLES_MAX = 100000000 };
 
 /* A carving of its own, such as a lion: the faces of the file that are it. */
 struct temple_body {

@@ -19,13 +19,13 @@
 #include <stdint.h>
 
 enum outline_kind { OUTLINE_LINE, OUTLINE_CLOSED, OUTLINE_ROUND };
-enum { OUTLINE_CORNERS_MOST = 28 };
+enum { OUTLINE_CORNERS_MAX = 28 };
 
 /* Of half size 1 (a line: from -0.5 to 0.5); sheets scale it. */
 struct outline {
 	enum outline_kind kind;
 	uint32_t count; /* corners; 1 for a round one */
-	float corners[OUTLINE_CORNERS_MOST][2];
+	float corners[OUTLINE_CORNERS_MAX][2];
 };
 
 /* A point of a profile, and what lies between it and the next one. */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { WIDE = 152, HIGH = 92, STATIONS_MOST = 4096, RAYS = 26, REACH = 30 };
+enum { WIDE = 152, HIGH = 92, STATIONS_MAX = 4096, RAYS = 26, REACH = 30 };
 static const float voxel_m = 0.3f;
 enum { SOLID = 1 };
 
@@ -52,9 +52,9 @@ static void mark_sheet(struct sky *sky, const struct sheet *sheet, struct statio
 {
 	uint32_t columns, rows;
 
-	sheet_stations(sheet, 2.0f, across, &columns, up, &rows, STATIONS_MOST);
+	sheet_stations(sheet, 2.0f, across, &columns, up, &rows, STATIONS_MAX);
 	uint32_t quads = sheet_wraps(sheet) ? columns : columns - 1;
-	if (columns == 0 || columns > STATIONS_MOST || rows > STATIONS_MOST)
+	if (columns == 0 || columns > STATIONS_MAX || rows > STATIONS_MAX)
 		return;
 	for (uint32_t j = 0; j + 1 < rows; j++) {
 		for (uint32_t i = 0; i < quads; i++) {
@@ -106,7 +106,7 @@ static void look_around(struct sky *sky, int x, int y, int z)
 int sky_create(struct sky **out, const struct plan *plan)
 {
 	struct sky *sky = calloc(1, sizeof(*sky));
-	struct station *stations = calloc(2 * STATIONS_MOST, sizeof(*stations));
+	struct station *stations = calloc(2 * STATIONS_MAX, sizeof(*stations));
 
 	*out = NULL;
 	if (!sky || !stations) {
@@ -115,7 +115,7 @@ int sky_create(struct sky **out, const struct plan *plan)
 		return -ENOMEM;
 	}
 	for (uint32_t i = 0; i < plan->count; i++)
-		mark_sheet(sky, &plan->sheets[i], stations, stations + STATIONS_MOST);
+		mark_sheet(sky, &plan->sheets[i], stations, stations + STATIONS_MAX);
 	free(stations);
 	for (int z = 0; z < HIGH; z++)
 		for (int y = 0; y < WIDE; y++)

@@ -1,8 +1,8 @@
 /* Where pictures appear: a KMS panel, a window for trying out, or memory. Creating one makes its
  * GLES2 context current; everything is for the thread that created it.
  *
- * The rotation of a panel lives in the projections (render/camera.h, render/overlay.h), never in a
- * plane property, so that it is the same on every board. */
+ * The rotation of a panel lives in the projections (geometry/camera.h, render/overlay.h), never in
+ * a plane property, so that it is the same on every board. */
 #ifndef GOPURA_RENDER_DISPLAY_DISPLAY_H
 #define GOPURA_RENDER_DISPLAY_DISPLAY_H
 

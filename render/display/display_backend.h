@@ -1,4 +1,4 @@
-/* What a kind of display provides; private to render/display*.c. */
+/* What a kind of display provides; private to render/display/display*.c. */
 #ifndef GOPURA_RENDER_DISPLAY_DISPLAY_BACKEND_H
 #define GOPURA_RENDER_DISPLAY_DISPLAY_BACKEND_H
 

@@ -15,7 +15,7 @@
 #include "base/log.h"
 
 enum {
-	CARDS_MOST = 8,
+	CARDS_MAX = 8,
 	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk, a boot splash go later */
 	CARD_LOOK_MS = 500,
 };
@@ -170,7 +170,7 @@ static void read_modifiers(struct drm_card *card)
 	if (!blob)
 		return;
 	while (drmModeFormatModifierBlobIterNext(blob, &at))
-		if (at.fmt == DRM_FORMAT_XRGB8888 && card->modifier_count < DRM_MODIFIERS_MOST)
+		if (at.fmt == DRM_FORMAT_XRGB8888 && card->modifier_count < DRM_MODIFIERS_MAX)
 			card->modifiers[card->modifier_count++] = at.mod;
 	drmModeFreePropertyBlob(blob);
 }
@@ -262,7 +262,7 @@ static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 	char path[32];
 	int result = -ENODEV;
 
-	for (int i = 0; i < CARDS_MOST; i++) {
+	for (int i = 0; i < CARDS_MAX; i++) {
 		int rc;
 
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
@@ -329,7 +329,7 @@ static bool is_late(const struct drm_card_options *options)
 
 	if (options->device)
 		return false;
-	for (int i = 0; i < CARDS_MOST; i++) {
+	for (int i = 0; i < CARDS_MAX; i++) {
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
 		if (access(path, R_OK | W_OK) == 0)
 			return false;

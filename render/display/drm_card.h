@@ -10,7 +10,7 @@
 #include "base/compiler.h"
 #include "render/display/drm_mode.h"
 
-enum { DRM_MODIFIERS_MOST = 32 };
+enum { DRM_MODIFIERS_MAX = 32 };
 
 struct drm_card_options {
 	const char *device;    /* NULL: the first card with a panel */
@@ -37,7 +37,7 @@ struct drm_card {
 	int width_mm;
 	drmModeCrtc *crtc_before; /* owned; put back at the end */
 	struct drm_card_properties properties;
-	uint64_t modifiers[DRM_MODIFIERS_MOST]; /* of XRGB8888 on the plane, by IN_FORMATS */
+	uint64_t modifiers[DRM_MODIFIERS_MAX]; /* of XRGB8888 on the plane, by IN_FORMATS */
 	uint32_t modifier_count;
 };
 

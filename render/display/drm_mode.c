@@ -9,7 +9,7 @@ enum {
 	SYNC_PX = 32,
 	FRONT_PX = 48,
 	FRONT_LINES = 3,
-	BACK_LINES_LEAST = 6,
+	BACK_LINES_MIN = 6,
 	BLANK_LEAST_US = 460,
 	CLOCK_STEP_KHZ = 250,
 };
@@ -53,8 +53,8 @@ void drm_mode_make(drmModeModeInfo *out, int width_px, int height_px, int hz)
 	int blank = (int)(BLANK_LEAST_US / line_us) + 1, total_px, total_lines;
 	double clock_khz;
 
-	if (blank < FRONT_LINES + sync + BACK_LINES_LEAST)
-		blank = FRONT_LINES + sync + BACK_LINES_LEAST;
+	if (blank < FRONT_LINES + sync + BACK_LINES_MIN)
+		blank = FRONT_LINES + sync + BACK_LINES_MIN;
 	total_px = width_px + BLANK_PX;
 	total_lines = height_px + blank;
 	clock_khz = (double)rate * total_px * total_lines / 1000;

@@ -17,7 +17,7 @@ enum {
 	RETRY_MS = 250,
 	LOOK_AWAY_MS = 2000,  /* looking asks every connector: tens of milliseconds */
 	LOOK_SHOWN_MS = 5000, /* for drivers that say nothing; asks no connector */
-	REFUSALS_MOST = 3,
+	REFUSALS_MAX = 3,
 };
 
 /* ---- what is decided */
@@ -30,7 +30,7 @@ enum drm_panel_step drm_panel_after_flip(int rc, unsigned refusals)
 		return DRM_PANEL_LATER;
 	if (rc == -ENODEV || rc == -ENOMEM) /* the card itself is gone; looking finds nothing */
 		return DRM_PANEL_FAULT;
-	return refusals < REFUSALS_MOST ? DRM_PANEL_LOOK : DRM_PANEL_FAULT;
+	return refusals < REFUSALS_MAX ? DRM_PANEL_LOOK : DRM_PANEL_FAULT;
 }
 
 enum drm_panel_step drm_panel_after_look(enum drm_card_news news, bool was_away, bool refused,

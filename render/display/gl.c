@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 
-enum { PARTS_MOST = 16, NAME_BYTES = 128, INFO_BYTES = 4096 };
+enum { PARTS_MAX = 16, NAME_BYTES = 128, INFO_BYTES = 4096 };
 
 static const char *error_name(GLenum error)
 {
@@ -99,7 +99,7 @@ static int compile(GLuint *out, GLenum kind, const char *name, const char *const
 
 	while (parts[count])
 		count++;
-	assert(count <= PARTS_MOST);
+	assert(count <= PARTS_MAX);
 	glShaderSource(shader, count, (const GLchar *const *)parts, NULL);
 	glCompileShader(shader);
 	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);

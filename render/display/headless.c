@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "render/display/context.h"
 
-enum { DEVICES_MOST = 8 };
+enum { DEVICES_MAX = 8 };
 
 struct headless {
 	EGLDisplay display;
@@ -61,10 +61,10 @@ static bool try_devices(struct headless *headless)
 {
 	PFNEGLQUERYDEVICESEXTPROC query =
 		(PFNEGLQUERYDEVICESEXTPROC)eglGetProcAddress("eglQueryDevicesEXT");
-	EGLDeviceEXT devices[DEVICES_MOST];
+	EGLDeviceEXT devices[DEVICES_MAX];
 	EGLint count = 0;
 
-	if (!query || !query(DEVICES_MOST, devices, &count))
+	if (!query || !query(DEVICES_MAX, devices, &count))
 		return false;
 	for (EGLint i = 0; i < count; i++)
 		if (try_platform(headless, EGL_PLATFORM_DEVICE_EXT, devices[i]))

@@ -1,5 +1,5 @@
 /* A GLES2 context without any display: EGL's surfaceless platform where Mesa offers it, else an EGL
- * device. Pictures are drawn into a gl_target (render/gl.h). */
+ * device. Pictures are drawn into a gl_target (render/display/gl.h). */
 #ifndef GOPURA_RENDER_DISPLAY_HEADLESS_H
 #define GOPURA_RENDER_DISPLAY_HEADLESS_H
 

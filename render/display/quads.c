@@ -16,7 +16,7 @@ struct quads_texture {
 struct quads {
 	GLuint program;
 	GLint to_clip, alpha;
-	struct quads_texture textures[QUADS_TEXTURES_MOST];
+	struct quads_texture textures[QUADS_TEXTURES_MAX];
 	uint8_t *rows; /* without padding; owned */
 	size_t rows_bytes;
 };
@@ -67,7 +67,7 @@ void quads_destroy(struct quads *quads)
 {
 	if (!quads)
 		return;
-	for (size_t i = 0; i < QUADS_TEXTURES_MOST; i++)
+	for (size_t i = 0; i < QUADS_TEXTURES_MAX; i++)
 		if (quads->textures[i].name)
 			glDeleteTextures(1, &quads->textures[i].name);
 	glDeleteProgram(quads->program);
@@ -101,7 +101,7 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 	struct quads_texture *texture;
 	const uint8_t *rows;
 
-	if (pixels->id >= QUADS_TEXTURES_MOST)
+	if (pixels->id >= QUADS_TEXTURES_MAX)
 		return -EINVAL;
 	texture = &quads->textures[pixels->id];
 	if (texture->revision == pixels->revision)
@@ -139,7 +139,7 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 
 void quads_drop(struct quads *quads, uint32_t id)
 {
-	if (id >= QUADS_TEXTURES_MOST)
+	if (id >= QUADS_TEXTURES_MAX)
 		return;
 	if (quads->textures[id].name)
 		glDeleteTextures(1, &quads->textures[id].name);
@@ -148,7 +148,7 @@ void quads_drop(struct quads *quads, uint32_t id)
 
 void quads_forget(struct quads *quads)
 {
-	for (size_t i = 0; i < QUADS_TEXTURES_MOST; i++)
+	for (size_t i = 0; i < QUADS_TEXTURES_MAX; i++)
 		quads->textures[i].revision = 0;
 }
 
@@ -200,7 +200,7 @@ void quads_draw(struct quads *quads, uint32_t id, const float corners_px[4][2],
 				 { source[2], source[3] },
 				 { source[0], source[3] } };
 
-	if (id >= QUADS_TEXTURES_MOST || !quads->textures[id].name)
+	if (id >= QUADS_TEXTURES_MAX || !quads->textures[id].name)
 		return;
 	gl_bind_texture(0, quads->textures[id].name);
 	glUniform1f(quads->alpha, alpha);

@@ -7,7 +7,7 @@
 
 #include "base/compiler.h"
 
-enum { QUADS_TEXTURES_MOST = 129 };
+enum { QUADS_TEXTURES_MAX = 129 };
 
 struct quads;
 
@@ -16,7 +16,7 @@ must_check int quads_create(struct quads **out);
 void quads_destroy(struct quads *quads); /* NULL is fine */
 
 /* Premultiplied, bytes B, G, R, A (as Cairo draws). Uploaded only where revision is another than
- * the texture has; id is below QUADS_TEXTURES_MOST. */
+ * the texture has; id is below QUADS_TEXTURES_MAX. */
 struct quads_pixels {
 	uint32_t id, revision; /* revision is never 0 */
 	int width_px, height_px, stride_bytes;

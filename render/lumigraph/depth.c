@@ -145,8 +145,8 @@ void depth_finish(struct depth *depth)
 {
 	gl_target_destroy(&depth->raw);
 	if (depth->sheet[0]) { /* else there may be no context */
-		glDeleteFramebuffers(DEPTH_SHEETS_MOST, depth->framebuffer);
-		glDeleteTextures(DEPTH_SHEETS_MOST, depth->sheet);
+		glDeleteFramebuffers(DEPTH_SHEETS_MAX, depth->framebuffer);
+		glDeleteTextures(DEPTH_SHEETS_MAX, depth->sheet);
 	}
 	if (depth->draw_program)
 		glDeleteProgram(depth->draw_program);

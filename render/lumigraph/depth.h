@@ -11,7 +11,7 @@
 #include "render/display/gl.h"
 #include "render/lumigraph/tiles.h"
 
-enum { DEPTH_SHEETS_MOST = 8 };
+enum { DEPTH_SHEETS_MAX = 8 };
 
 /* Squares of face_px, one for each of the tiles' face slots, row by row and sheet by sheet. A sheet
  * is a texture. Without highp its sides must be powers of two (gl_texture_most_px). */
@@ -21,7 +21,7 @@ struct depth_layout {
 
 struct depth {
 	struct gl_target raw; /* the face that is being drawn */
-	GLuint sheet[DEPTH_SHEETS_MOST], framebuffer[DEPTH_SHEETS_MOST];
+	GLuint sheet[DEPTH_SHEETS_MAX], framebuffer[DEPTH_SHEETS_MAX];
 	GLuint draw_program, grow_program;
 	GLint lattice, axes, far_m, window, base, high;
 	struct depth_layout layout;
@@ -34,7 +34,7 @@ struct depth {
 		face_key key;
 		uint64_t cut;    /* what it was rendered from */
 		float window[4]; /* of the face (-1..1) what the square holds: middle, half sides */
-	} face[TILES_FACES_MOST];
+	} face[TILES_FACES_MAX];
 };
 
 must_check int depth_init(struct depth *depth, const struct depth_layout *layout);

@@ -9,7 +9,7 @@
 #define AMBIENT 0.22
 #define DIRECT  1.30 /* a wall that the eye faces stays light enough with the lamp at its lowest */
 /* Where the light of the scan was less, its pictures have little to tell but noise. */
-#define BAKED_LEAST  0.3
+#define BAKED_MIN    0.3
 #define STRING_OF(x) #x
 #define STRING(x)    STRING_OF(x)
 
@@ -42,8 +42,8 @@ void rake_direction(const struct rake *rake, const float right[3], const float u
 const char rake_vertex_glsl[] =
 	"vec4 rake_of(vec3 normal, float open, vec4 sun) {\n"
 	"	float baked = sun.w > 0.5 ? light(normal, open, sun.xyz) : 1.0;\n"
-	"	return vec4(normal, (0.5 + 0.5 * open) / max(baked, " STRING(BAKED_LEAST) "));\n"
-											  "}\n";
+	"	return vec4(normal, (0.5 + 0.5 * open) / max(baked, " STRING(BAKED_MIN) "));\n"
+											"}\n";
 const char rake_fragment_glsl[] =
 	"float rake_light(vec4 of, vec3 towards) {\n"
 	"	float facing = max(0.0, dot(normalize(of.xyz), towards));\n"
@@ -53,7 +53,7 @@ const char rake_fragment_glsl[] =
 float rake_light_at(const float normal[3], float open, const float sun[3], bool lit,
 		    const float towards[3])
 {
-	const float baked = lit ? fmaxf(light_at(normal, open, sun), (float)BAKED_LEAST) : 1;
+	const float baked = lit ? fmaxf(light_at(normal, open, sun), (float)BAKED_MIN) : 1;
 	const float facing = fmaxf(0, vec_dot(normal, towards));
 
 	return ((float)AMBIENT + (float)DIRECT * facing) * (0.5f + 0.5f * open) / baked;

@@ -3,8 +3,8 @@
  * Tiles lie in an atlas of slots. A face of a sampling point that has any tile owns a face slot:
  * 32 x 32 cells of an indirection texture, each naming the finest tile that covers it (atlas
  * column, row, tiles a side at its level, weight while it fades in), and a square of the depth
- * atlas (render/depth.h) of the same number. Past the budgets the face or tile used longest ago
- * goes first, never one that is in use now. */
+ * atlas (render/lumigraph/depth.h) of the same number. Past the budgets the face or tile used
+ * longest ago goes first, never one that is in use now. */
 #ifndef GOPURA_RENDER_LUMIGRAPH_TILES_H
 #define GOPURA_RENDER_LUMIGRAPH_TILES_H
 
@@ -14,7 +14,7 @@
 
 enum {
 	TILES_CELLS = AIM_CELLS, /* a side: tiles of the finest level */
-	TILES_FACES_MOST = 64,
+	TILES_FACES_MAX = 64,
 	TILES_FADE_MS = 250,
 };
 
@@ -50,7 +50,7 @@ struct tiles {
 };
 
 /* budget_bytes: for the atlas (3 bytes a pixel) alone. Rows of face slots: at most
- * TILES_FACES_MOST in all. */
+ * TILES_FACES_MAX in all. */
 must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across,
 			  uint32_t face_rows);
 void tiles_finish(struct tiles *tiles);

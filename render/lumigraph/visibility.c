@@ -8,7 +8,7 @@
 
 static const float far_m = 1000; /* depths are 16 bits of it: 15 mm */
 
-static const char census_vertex[] =
+static const char visibility_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform vec4 u_lattice;\n"
 	"uniform vec3 u_right, u_up, u_forward;\n" /* right and up over the tangents */
@@ -28,7 +28,7 @@ static const char census_vertex[] =
 	"			   ((f + n) * z - 2.0 * f * n) / (f - n), z);\n"
 	"}\n";
 
-static const char census_fragment[] =
+static const char visibility_fragment[] =
 	"uniform vec2 u_number;\n"
 	"varying float v_depth;\n"
 	"#ifdef CUT\n"
@@ -45,13 +45,13 @@ static const char census_fragment[] =
 	"	gl_FragColor = vec4(back / 255.0 + u_number.x, u_number.y, vec2(high, low) / 255.0);\n"
 	"}\n";
 
-static int build(struct census_program *out, const char *defines)
+static int build(struct visibility_program *out, const char *defines)
 {
 	const struct gl_program_source source = {
 		.name = "census",
-		.vertex = (const char *const[]){ defines, census_vertex, NULL },
-		.fragment =
-			(const char *const[]){ gl_fine_fragment, defines, census_fragment, NULL },
+		.vertex = (const char *const[]){ defines, visibility_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, defines, visibility_fragment,
+						   NULL },
 		.attributes = (const char *const[]){ "a_position", NULL },
 	};
 	int rc = gl_program_build(&out->program, &source);
@@ -66,51 +66,51 @@ static int build(struct census_program *out, const char *defines)
 	return 0;
 }
 
-int census_init(struct census *census)
+int visibility_init(struct visibility *visibility)
 {
-	memset(census, 0, sizeof(*census));
-	census->pixels = calloc(CENSUS_WIDTH * CENSUS_HEIGHT, 4);
-	int rc = census->pixels ? build(&census->whole, "") : -ENOMEM;
+	memset(visibility, 0, sizeof(*visibility));
+	visibility->pixels = calloc(VISIBILITY_WIDTH * VISIBILITY_HEIGHT, 4);
+	int rc = visibility->pixels ? build(&visibility->whole, "") : -ENOMEM;
 	if (rc == 0)
-		rc = gl_target_create(&census->target, CENSUS_WIDTH, CENSUS_HEIGHT);
+		rc = gl_target_create(&visibility->target, VISIBILITY_WIDTH, VISIBILITY_HEIGHT);
 	if (rc < 0) {
-		census_finish(census);
+		visibility_finish(visibility);
 		return rc;
 	}
 	return 0;
 }
 
-static const struct census_program *program_for(struct census *census)
+static const struct visibility_program *program_for(struct visibility *visibility)
 {
-	if (!view_is_cut(&census->view))
-		return &census->whole;
-	if (!census->section.program && build(&census->section, "#define CUT\n") < 0)
-		return &census->whole; /* what is cut away then hides what it hid */
-	return &census->section;
+	if (!view_is_cut(&visibility->view))
+		return &visibility->whole;
+	if (!visibility->section.program && build(&visibility->section, "#define CUT\n") < 0)
+		return &visibility->whole; /* what is cut away then hides what it hid */
+	return &visibility->section;
 }
 
-void census_finish(struct census *census)
+void visibility_finish(struct visibility *visibility)
 {
-	if (census->whole.program)
-		glDeleteProgram(census->whole.program);
-	if (census->section.program)
-		glDeleteProgram(census->section.program);
-	gl_target_destroy(&census->target);
-	free(census->pixels);
-	memset(census, 0, sizeof(*census));
+	if (visibility->whole.program)
+		glDeleteProgram(visibility->whole.program);
+	if (visibility->section.program)
+		glDeleteProgram(visibility->section.program);
+	gl_target_destroy(&visibility->target);
+	free(visibility->pixels);
+	memset(visibility, 0, sizeof(*visibility));
 }
 
-void census_resume(struct census *census, const struct root_page *root)
+void visibility_resume(struct visibility *visibility, const struct root_page *root)
 {
 	const struct lattice *lattice = &root->lattice;
-	const struct view *view = &census->view;
-	gl_target_bind(&census->target);
+	const struct view *view = &visibility->view;
+	gl_target_bind(&visibility->target);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	const struct census_program *program = census->used = program_for(census);
+	const struct visibility_program *program = visibility->used = program_for(visibility);
 	glUseProgram(program->program);
 	glUniform4f(program->lattice, (float)(lattice->origin_m[0] - view->eye_m[0]),
 		    (float)(lattice->origin_m[1] - view->eye_m[1]),
@@ -127,39 +127,41 @@ void census_resume(struct census *census, const struct root_page *root)
 	glDisableVertexAttribArray(2);
 }
 
-void census_begin(struct census *census, const struct view *view, const struct root_page *root)
+void visibility_begin(struct visibility *visibility, const struct view *view,
+		      const struct root_page *root)
 {
-	census->view = *view;
-	census_resume(census, root);
+	visibility->view = *view;
+	visibility_resume(visibility, root);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void census_number(const struct census *census, uint32_t piece)
+void visibility_number(const struct visibility *visibility, uint32_t piece)
 {
-	glUniform2f(census->used->number, (float)((piece + 1) >> 8) / 255,
+	glUniform2f(visibility->used->number, (float)((piece + 1) >> 8) / 255,
 		    (float)((piece + 1) & 255) / 255);
 }
 
-int census_end(struct census *census)
+int visibility_end(struct visibility *visibility)
 {
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glReadPixels(0, 0, CENSUS_WIDTH, CENSUS_HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, census->pixels);
+	glReadPixels(0, 0, VISIBILITY_WIDTH, VISIBILITY_HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE,
+		     visibility->pixels);
 	return gl_check("taking the census");
 }
 
-bool census_at(const struct census *census, int x, int y, struct census_point *out)
+bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out)
 {
-	const uint8_t *pixel = census->pixels + 4 * (y * CENSUS_WIDTH + x);
-	const struct view *view = &census->view;
+	const uint8_t *pixel = visibility->pixels + 4 * (y * VISIBILITY_WIDTH + x);
+	const struct view *view = &visibility->view;
 	uint32_t number = (uint32_t)(pixel[0] & 127) << 8 | pixel[1];
 	if (number == 0)
 		return false;
 	out->piece = number - 1;
 	out->back = pixel[0] & 128;
 	float depth = (float)(pixel[2] << 8 | pixel[3]) / 65535 * far_m;
-	float right = (2 * ((float)x + 0.5f) / CENSUS_WIDTH - 1) * view->tan_x * depth;
-	float up = (2 * ((float)y + 0.5f) / CENSUS_HEIGHT - 1) * view->tan_y * depth;
+	float right = (2 * ((float)x + 0.5f) / VISIBILITY_WIDTH - 1) * view->tan_x * depth;
+	float up = (2 * ((float)y + 0.5f) / VISIBILITY_HEIGHT - 1) * view->tan_y * depth;
 	for (int i = 0; i < 3; i++)
 		out->at_m[i] = view->eye_m[i] + depth * view->forward[i] + right * view->right[i] +
 			       up * view->up[i];

@@ -8,36 +8,38 @@
 #include "geometry/view.h"
 #include "render/display/gl.h"
 
-enum { CENSUS_WIDTH = 320, CENSUS_HEIGHT = 180, CENSUS_PIECES_MOST = 32767 };
+enum { VISIBILITY_WIDTH = 320, VISIBILITY_HEIGHT = 180, VISIBILITY_PIECES_MAX = 32767 };
 
-struct census {
+struct visibility {
 	struct gl_target target;
-	struct census_program {
+	struct visibility_program {
 		GLuint program;
 		GLint right, up, forward, lattice, number, cut;
 	} whole, section; /* the latter for views that are cut, made when first needed */
-	const struct census_program *used;
+	const struct visibility_program *used;
 	uint8_t *pixels; /* owned */
 	struct view view;
 };
 
-struct census_point {
+struct visibility_point {
 	uint32_t piece; /* as numbered */
 	bool back;      /* of a triangle: it turns clockwise to the eye */
 	float at_m[3];
 };
 
-must_check int census_init(struct census *census);
-void census_finish(struct census *census);
+must_check int visibility_init(struct visibility *visibility);
+void visibility_finish(struct visibility *visibility);
 
-/* Afterwards for each piece census_number, then its patch bound and its triangles drawn. */
-void census_begin(struct census *census, const struct view *view, const struct root_page *root);
+/* Afterwards for each piece visibility_number, then its patch bound and its triangles drawn. */
+void visibility_begin(struct visibility *visibility, const struct view *view,
+		      const struct root_page *root);
 /* The same once more where other things were drawn between. */
-void census_resume(struct census *census, const struct root_page *root);
-void census_number(const struct census *census, uint32_t piece); /* below CENSUS_PIECES_MOST */
+void visibility_resume(struct visibility *visibility, const struct root_page *root);
+void visibility_number(const struct visibility *visibility,
+		       uint32_t piece); /* below VISIBILITY_PIECES_MAX */
 /* Reads the picture. */
-must_check int census_end(struct census *census);
+must_check int visibility_end(struct visibility *visibility);
 /* What shows at a place of it; false: nothing. */
-bool census_at(const struct census *census, int x, int y, struct census_point *out);
+bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out);
 
 #endif

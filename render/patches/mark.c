@@ -102,7 +102,7 @@ static void find_middle(float out[3], const struct region *region)
 {
 	memcpy(out, region->centre_m, 3 * sizeof(out[0]));
 	if (region->kind != REGION_PRISM || region->corner_count < 3 ||
-	    region->corner_count > REGION_CORNERS_MOST)
+	    region->corner_count > REGION_CORNERS_MAX)
 		return;
 	out[0] = out[1] = 0;
 	for (uint32_t i = 0; i < region->corner_count; i++)
@@ -128,13 +128,13 @@ static void set_region(const struct mark *mark, const float middle[3], const str
 			   0,
 			   cosf(turn),
 			   sinf(turn) };
-	float corners[2 * REGION_CORNERS_MOST] = { 0 };
-	for (uint32_t i = 0; i < region->corner_count && i < REGION_CORNERS_MOST; i++) {
+	float corners[2 * REGION_CORNERS_MAX] = { 0 };
+	for (uint32_t i = 0; i < region->corner_count && i < REGION_CORNERS_MAX; i++) {
 		corners[2 * i] = region->corners_m[i][0] - middle[0];
 		corners[2 * i + 1] = region->corners_m[i][1] - middle[1];
 	}
 	glUniform4fv(mark->region, 4, rows);
-	glUniform4fv(mark->corners, REGION_CORNERS_MOST / 2, corners);
+	glUniform4fv(mark->corners, REGION_CORNERS_MAX / 2, corners);
 }
 
 void mark_begin(const struct mark *mark, const struct view *view, const struct root_page *root,

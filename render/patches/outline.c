@@ -97,16 +97,16 @@ static void place_corner(struct corner *out, float at[3][3], int level, const in
 }
 
 /* A triangle that the outline crosses. */
-static bool add_divided(struct outline *o, const struct solid *solid, uint32_t triangle,
+static bool add_divided(struct outline *o, const struct patch_bvh *bvh, uint32_t triangle,
 			const int8_t *values, int level)
 {
-	const uint16_t *index = &solid->indices[3 * triangle];
+	const uint16_t *index = &bvh->indices[3 * triangle];
 	float at[3][3], ab[3], ac[3], normal[3];
 	const int n = 1 << level;
 
 	for (int k = 0; k < 3; k++)
 		for (int i = 0; i < 3; i++)
-			at[k][i] = solid->positions[index[k]][i];
+			at[k][i] = bvh->positions[index[k]][i];
 	vec_sub(ab, at[1], at[0]);
 	vec_sub(ac, at[2], at[0]);
 	vec_cross(normal, ab, ac);
@@ -131,17 +131,17 @@ static bool add_divided(struct outline *o, const struct solid *solid, uint32_t t
 	return true;
 }
 
-static bool add_of(struct outline *o, const struct solid *solid, uint32_t triangle,
+static bool add_of(struct outline *o, const struct patch_bvh *bvh, uint32_t triangle,
 		   const struct label_group *labels, uint32_t patch, uint32_t part)
 {
 	const struct label_patch *of = &labels->patches[patch];
-	const uint32_t known_as = solid->order[triangle];
+	const uint32_t known_as = bvh->order[triangle];
 	uint32_t first, count;
 
 	if (label_holds(labels, patch, known_as, part)) {
 		if (!make_room(&o->whole, &o->whole_room, o->whole_count + 3, sizeof(*o->whole)))
 			return false;
-		memcpy(&o->whole[o->whole_count], &solid->indices[3 * triangle],
+		memcpy(&o->whole[o->whole_count], &bvh->indices[3 * triangle],
 		       3 * sizeof(*o->whole));
 		o->whole_count += 3;
 		return true;
@@ -149,18 +149,17 @@ static bool add_of(struct outline *o, const struct solid *solid, uint32_t triang
 	count = label_borders(of, known_as, &first);
 	for (uint32_t b = first; b < first + count; b++)
 		if (of->borders[b].part == part)
-			return add_divided(o, solid, triangle,
-					   &labels->values[of->borders[b].first],
+			return add_divided(o, bvh, triangle, &labels->values[of->borders[b].first],
 					   of->borders[b].level);
 	return true;
 }
 
-int outline_create(struct outline *out, const struct solid *solid, const struct label_group *labels,
-		   uint32_t patch, uint32_t part)
+int outline_create(struct outline *out, const struct patch_bvh *bvh,
+		   const struct label_group *labels, uint32_t patch, uint32_t part)
 {
 	*out = (struct outline){ 0 };
 	for (uint32_t t = 0; t < labels->patches[patch].triangle_count; t++) {
-		if (add_of(out, solid, t, labels, patch, part))
+		if (add_of(out, bvh, t, labels, patch, part))
 			continue;
 		outline_finish(out);
 		return -ENOMEM;

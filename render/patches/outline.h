@@ -21,7 +21,7 @@ struct outline {
 
 /* patch: within its group, of which the solid is. part: the group's number. *out is finished by the
  * caller. -ENOMEM. */
-must_check int outline_create(struct outline *out, const struct solid *solid,
+must_check int outline_create(struct outline *out, const struct patch_bvh *bvh,
 			      const struct label_group *labels, uint32_t patch, uint32_t part);
 void outline_finish(struct outline *outline); /* zeroed is fine */
 

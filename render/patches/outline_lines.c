@@ -83,7 +83,7 @@ static const char tint_fragment[] = "varying float v_cut;\n"
 				    "	gl_FragColor = vec4(1.0, 0.78, 0.25, 0.14);\n"
 				    "}\n";
 
-static int build(struct ribbon_program *out, const struct gl_program_source *source)
+static int build(struct outline_lines_program *out, const struct gl_program_source *source)
 {
 	int rc = gl_program_build(&out->program, source);
 	out->clip = glGetUniformLocation(out->program, "u_clip");
@@ -165,11 +165,11 @@ static void set_corners(struct vertex corner[4], const struct outline_line *line
 	}
 }
 
-int ribbon_make(struct ribbon *out, const struct outline *outline, uint32_t serial)
+int outline_lines_make(struct outline_lines *out, const struct outline *outline, uint32_t serial)
 {
 	const size_t bytes = 4 * sizeof(struct vertex) * outline->line_count;
 	struct vertex *vertices = malloc(bytes + 1);
-	ribbon_finish(out);
+	outline_lines_finish(out);
 	if (!vertices)
 		return -ENOMEM;
 	for (uint32_t i = 0; i < outline->line_count; i++)
@@ -187,20 +187,20 @@ int ribbon_make(struct ribbon *out, const struct outline *outline, uint32_t seri
 	return gl_check("uploading an outline");
 }
 
-void ribbon_finish(struct ribbon *ribbon)
+void outline_lines_finish(struct outline_lines *lines)
 {
-	if (ribbon->lines)
-		glDeleteBuffers(1, &ribbon->lines);
-	if (ribbon->whole)
-		glDeleteBuffers(1, &ribbon->whole);
-	if (ribbon->within)
-		glDeleteBuffers(1, &ribbon->within);
-	memset(ribbon, 0, sizeof(*ribbon));
+	if (lines->lines)
+		glDeleteBuffers(1, &lines->lines);
+	if (lines->whole)
+		glDeleteBuffers(1, &lines->whole);
+	if (lines->within)
+		glDeleteBuffers(1, &lines->within);
+	memset(lines, 0, sizeof(*lines));
 }
 
 /* ---- drawing */
 
-static void begin(const struct ribbon_program *program, const struct view *view,
+static void begin(const struct outline_lines_program *program, const struct view *view,
 		  const struct root_page *root)
 {
 	const struct lattice *lattice = &root->lattice;
@@ -231,18 +231,18 @@ void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
 	glDisableVertexAttribArray(2);
 }
 
-void ribbon_tint(const struct ribbon *ribbon)
+void outline_lines_tint(const struct outline_lines *lines)
 {
-	if (ribbon->whole_count > 0) {
-		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, ribbon->whole);
-		glDrawElements(GL_TRIANGLES, (GLsizei)ribbon->whole_count, GL_UNSIGNED_SHORT, NULL);
+	if (lines->whole_count > 0) {
+		glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, lines->whole);
+		glDrawElements(GL_TRIANGLES, (GLsizei)lines->whole_count, GL_UNSIGNED_SHORT, NULL);
 	}
-	if (ribbon->within_count > 0) {
-		glBindBuffer(GL_ARRAY_BUFFER, ribbon->within);
+	if (lines->within_count > 0) {
+		glBindBuffer(GL_ARRAY_BUFFER, lines->within);
 		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, NULL);
 		/* Parts of triangles are as far away as the whole, but for rounding. */
 		glEnable(GL_POLYGON_OFFSET_FILL);
-		glDrawArrays(GL_TRIANGLES, 0, (GLsizei)ribbon->within_count);
+		glDrawArrays(GL_TRIANGLES, 0, (GLsizei)lines->within_count);
 		glDisable(GL_POLYGON_OFFSET_FILL);
 	}
 }
@@ -256,13 +256,13 @@ void ribbons_begin_lines(const struct ribbons *ribbons, const struct view *view,
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, ribbons->quads);
 }
 
-void ribbon_lines(const struct ribbon *ribbon)
+void outline_lines_lines(const struct outline_lines *lines)
 {
 	const GLsizei stride = sizeof(struct vertex);
-	if (ribbon->line_count > 0)
-		glBindBuffer(GL_ARRAY_BUFFER, ribbon->lines);
-	for (uint32_t first = 0; first < ribbon->line_count; first += QUADS) {
-		uint32_t count = ribbon->line_count - first;
+	if (lines->line_count > 0)
+		glBindBuffer(GL_ARRAY_BUFFER, lines->lines);
+	for (uint32_t first = 0; first < lines->line_count; first += QUADS) {
+		uint32_t count = lines->line_count - first;
 		const uintptr_t from = 4 * (uintptr_t)first * sizeof(struct vertex);
 		count = count < QUADS ? count : QUADS;
 		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride,

@@ -27,8 +27,8 @@ static void patch_finish(struct geometry_patch *patch)
 		glDeleteBuffers(1, &patch->vertices);
 	if (patch->indices)
 		glDeleteBuffers(1, &patch->indices);
-	ribbon_finish(&patch->ribbon);
-	solid_finish(&patch->content.solid);
+	outline_lines_finish(&patch->lines);
+	patch_bvh_finish(&patch->content.bvh);
 	patch_mesh_finish(&patch->content.mesh);
 	free(patch->pieces);
 	memset(patch, 0, sizeof(*patch));
@@ -73,8 +73,8 @@ static size_t patch_bytes(const struct geometry_patch *patch)
 	const struct patch_mesh *mesh = &patch->content.mesh;
 	size_t indices = 3 * mesh->triangle_count * sizeof(*mesh->indices);
 	return mesh->vertex_count * sizeof(*mesh->vertices) + 2 * indices +
-	       solid_bytes(&patch->content.solid) +
-	       patch->content.solid.piece_count * sizeof(*patch->pieces);
+	       patch_bvh_bytes(&patch->content.bvh) +
+	       patch->content.bvh.piece_count * sizeof(*patch->pieces);
 }
 
 static bool is_as_announced(const struct geometry *geometry, uint32_t group,
@@ -108,10 +108,10 @@ static void unload(struct geometry *geometry, uint32_t group)
 
 static void init_pieces(struct geometry_patch *patch)
 {
-	for (uint32_t i = 0; i < patch->content.solid.piece_count; i++) {
-		const struct piece *piece = &patch->content.solid.pieces[i];
+	for (uint32_t i = 0; i < patch->content.bvh.piece_count; i++) {
+		const struct piece *piece = &patch->content.bvh.pieces[i];
 		for (int k = 0; k < PIECE_PROBES; k++)
-			patch->pieces[i].probe[k] = solid_probe(&patch->content.solid, piece, k);
+			patch->pieces[i].probe[k] = patch_bvh_probe(&patch->content.bvh, piece, k);
 	}
 }
 
@@ -127,8 +127,7 @@ int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *
 		struct geometry_patch *patch = &geometry->patches[g->first_patch + i];
 		patch->content = answer->patches[i];
 		memset(&answer->patches[i], 0, sizeof(answer->patches[i]));
-		patch->pieces =
-			calloc(patch->content.solid.piece_count + 1, sizeof(*patch->pieces));
+		patch->pieces = calloc(patch->content.bvh.piece_count + 1, sizeof(*patch->pieces));
 		rc = patch->pieces ? upload(patch) : -ENOMEM;
 		if (rc == 0)
 			init_pieces(patch);
@@ -247,8 +246,8 @@ bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const 
 		const struct hierarchy_patch *patch = &geometry->hierarchy->patches[p];
 		if (!ray_meets_sphere(from_m, direction, *distance_m, patch->centre_m,
 				      patch->radius_m) ||
-		    !solid_ray(&geometry->patches[p].content.solid, from_m, direction, least_m,
-			       distance_m, hit ? &hit->on : NULL))
+		    !patch_bvh_ray(&geometry->patches[p].content.bvh, from_m, direction, least_m,
+				   distance_m, hit ? &hit->on : NULL))
 			continue;
 		found = true;
 		if (hit)
@@ -264,7 +263,7 @@ bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, con
 		uint32_t p = cut->patches[i];
 		const struct hierarchy_patch *patch = &geometry->hierarchy->patches[p];
 		if (ray_meets_sphere(from_m, direction, most_m, patch->centre_m, patch->radius_m) &&
-		    solid_blocks(&geometry->patches[p].content.solid, from_m, direction, most_m))
+		    patch_bvh_blocks(&geometry->patches[p].content.bvh, from_m, direction, most_m))
 			return true;
 	}
 	return false;

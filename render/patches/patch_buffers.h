@@ -45,7 +45,7 @@ struct geometry_patch {
 	struct pool_patch content;
 	struct piece_state *pieces; /* owned; one per content.solid.pieces */
 	enum geometry_sides sides;
-	struct ribbon ribbon; /* the outline of the part that was marked last */
+	struct outline_lines lines; /* the outline of the part that was marked last */
 };
 
 struct geometry {
@@ -84,7 +84,7 @@ void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
 
 struct geometry_hit {
 	uint32_t patch;
-	struct solid_hit on;
+	struct patch_bvh_hit on;
 };
 
 /* Nearest hit among the listed patches between least_m and *distance_m, which becomes it; *hit (may

@@ -7,7 +7,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-enum { WORKERS_MOST = 16 };
+enum { WORKERS_MAX = 16 };
 
 struct job {
 	struct job *next;
@@ -24,7 +24,7 @@ struct queue {
 struct pool {
 	pthread_mutex_t lock;
 	pthread_cond_t work, idle;
-	pthread_t workers[WORKERS_MOST];
+	pthread_t workers[WORKERS_MAX];
 	uint32_t worker_count, at_work;
 	bool stopping;
 	struct queue todo, done; /* under lock */
@@ -74,7 +74,7 @@ void pool_answer_finish(struct pool_answer *answer)
 {
 	free(answer->rgb);
 	for (uint32_t i = 0; i < answer->patch_count; i++) {
-		solid_finish(&answer->patches[i].solid);
+		patch_bvh_finish(&answer->patches[i].bvh);
 		patch_mesh_finish(&answer->patches[i].mesh);
 	}
 	free(answer->patches);
@@ -97,7 +97,7 @@ static int decode_tile(struct job *job)
 
 static int decode_group(struct job *job, const struct lattice *lattice)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count = 0;
 	int rc = patch_group_decode(meshes, &count,
 				    (struct bytes){ job->object, job->object_bytes });
@@ -113,8 +113,8 @@ static int decode_group(struct job *job, const struct lattice *lattice)
 	for (uint32_t i = 0; i < count; i++) {
 		job->answer.patches[i].mesh = meshes[i];
 		if (rc == 0)
-			rc = solid_init(&job->answer.patches[i].solid, &job->answer.patches[i].mesh,
-					lattice);
+			rc = patch_bvh_init(&job->answer.patches[i].bvh,
+					    &job->answer.patches[i].mesh, lattice);
 	}
 	return rc;
 }
@@ -188,7 +188,7 @@ int pool_create(struct pool **out, uint32_t worker_count)
 	pthread_cond_init(&pool->idle, NULL);
 	pool->fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	int rc = pool->fd < 0 ? -errno : 0;
-	worker_count = worker_count > WORKERS_MOST ? WORKERS_MOST : worker_count;
+	worker_count = worker_count > WORKERS_MAX ? WORKERS_MAX : worker_count;
 	while (rc == 0 && pool->worker_count < worker_count) {
 		rc = -pthread_create(&pool->workers[pool->worker_count], NULL, run_worker, pool);
 		if (rc == 0)

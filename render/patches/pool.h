@@ -14,7 +14,7 @@ enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS };
 /* A patch as decoded: mesh and the tree over it. */
 struct pool_patch {
 	struct patch_mesh mesh;
-	struct solid solid;
+	struct patch_bvh bvh;
 };
 
 struct pool_answer {

@@ -9,7 +9,7 @@ enum {
 	POINTS_BEST = 12,    /* considered for a piece, of all */
 	POINTS_RESIDENT = 6, /* besides, of those with tiles */
 	POINTS_ENOUGH = 3,   /* that see all of it */
-	CANDIDATES_MOST = 2 * (POINTS_BEST + POINTS_RESIDENT),
+	CANDIDATES_MAX = 2 * (POINTS_BEST + POINTS_RESIDENT),
 };
 
 /* Below these a further face or fetch is not worth its cost. */
@@ -187,7 +187,7 @@ static struct candidate *candidate_of(struct candidate *list, uint32_t *count, f
 	for (uint32_t i = *count; i > 0 && list[i - 1].face / CUBE_FACES == face / CUBE_FACES; i--)
 		if (list[i - 1].face == face)
 			return &list[i - 1];
-	if (*count == CANDIDATES_MOST)
+	if (*count == CANDIDATES_MAX)
 		return NULL;
 	struct candidate *candidate = &list[(*count)++];
 	memset(candidate, 0, sizeof(*candidate));
@@ -347,7 +347,7 @@ static void choose_wants(struct plan_choice *choice, const struct candidate *lis
 void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 		const struct plan_eye *eye, const struct plan_surface *surface)
 {
-	struct candidate list[CANDIDATES_MOST];
+	struct candidate list[CANDIDATES_MAX];
 	struct ranked ranked;
 	uint32_t count = 0;
 	uint8_t in_sight = 0;

@@ -121,7 +121,7 @@ static bool bricks_are_sane(const struct repository *r)
 	for (int i = 0; i < 3; i++)
 		if (r->grid.count[i] == 0 || r->grid.bricks[i] * BRICK_SIDE < r->grid.count[i])
 			return false;
-	return r->grid.level_count >= 1 && r->grid.level_count <= SAMPLE_LEVELS_MOST;
+	return r->grid.level_count >= 1 && r->grid.level_count <= SAMPLE_LEVELS_MAX;
 }
 
 int repository_open(struct repository *repository, struct hash hash, struct bytes object)

@@ -60,7 +60,7 @@ bool repository_brick(const struct repository *repository, uint32_t child,
 /* Whether anything is seen in the given sixteenths of the face (bits as in brick_page); true while
  * unknown. */
 bool repository_covers(const struct repository *repository, face_key face, uint16_t sixteenths);
-/* Levels of every face, 1 .. SAMPLE_LEVELS_MOST. */
+/* Levels of every face, 1 .. SAMPLE_LEVELS_MAX. */
 uint32_t repository_levels(const struct repository *repository);
 /* false: the tile is absent, or the face's page is not there. */
 bool repository_tile(const struct repository *repository, struct tile_name name,

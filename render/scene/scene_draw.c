@@ -11,7 +11,7 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
 	SEASON_US = 1000000,         /* a view for which it is known what there is no room for */
-	SHARE_PX_MOST = 320,         /* the picture from which image_share is counted */
+	SHARE_PX_MAX = 320,          /* the picture from which image_share is counted */
 };
 
 /* ---- depth of faces */
@@ -105,7 +105,7 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 		       const struct visible_piece *v, struct run *run)
 {
 	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-	const struct piece *piece = &patch->content.solid.pieces[v->piece];
+	const struct piece *piece = &patch->content.bvh.pieces[v->piece];
 	bool joins = surface_faces(v->program) == 0 && v->patch == run->patch &&
 		     piece->first_triangle == run->first + run->count;
 	if (!joins)
@@ -186,7 +186,7 @@ static float count_share(struct scene *scene)
 {
 	struct gl_target small;
 	int width = scene->view.width_px, height = scene->view.height_px;
-	while (width > SHARE_PX_MOST) {
+	while (width > SHARE_PX_MAX) {
 		width /= 2;
 		height /= 2;
 	}
@@ -269,9 +269,10 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 {
 	const struct view *view = &scene->view;
 	if (moved)
-		rest_break(&scene->rest);
-	const bool draws = changed || !rest_is_done(&scene->rest);
-	if (moved || rest_prepare(&scene->rest, view->width_px, view->height_px, draws) < 0) {
+		accumulation_break(&scene->accumulation);
+	const bool draws = changed || !accumulation_is_done(&scene->accumulation);
+	if (moved || accumulation_prepare(&scene->accumulation, view->width_px, view->height_px,
+					  draws) < 0) {
 		gl_place_bind(place, view->width_px, view->height_px);
 		begin_picture(scene);
 		draw_picture(scene, view, false);
@@ -280,13 +281,13 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 	if (draws) {
 		struct view jittered = *view;
 		float x, y;
-		rest_offset(&scene->rest, changed, &x, &y);
+		accumulation_offset(&scene->accumulation, changed, &x, &y);
 		view_jitter(&jittered, x, y);
-		gl_target_bind(&scene->rest.frame);
+		gl_target_bind(&scene->accumulation.frame);
 		begin_picture(scene);
 		draw_picture(scene, &jittered, false);
 	}
-	rest_add(&scene->rest, place, changed);
+	accumulation_add(&scene->accumulation, place, changed);
 }
 
 static void draw_nothing(const struct camera *camera)
@@ -318,16 +319,16 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->has_view = true;
 	prepare(scene, moved, out);
 	if (scene_note_mark(scene, mark))
-		rest_break(&scene->rest); /* an answer to a touch: at once */
+		accumulation_break(&scene->accumulation); /* an answer to a touch: at once */
 	bool changed = is_busy(scene);
 	show(scene, &place, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	scene_list_wants(scene);
 	/* What is wanted may never come: memory is given back without it. */
-	bool still = !moved && !changed && rest_is_done(&scene->rest);
+	bool still = !moved && !changed && accumulation_is_done(&scene->accumulation);
 	out->settled = still && scene->want_count == 0;
-	out->moving = is_busy(scene) || moved || !rest_is_done(&scene->rest);
+	out->moving = is_busy(scene) || moved || !accumulation_is_done(&scene->accumulation);
 	if (!out->settled)
 		scene->image_share = -1;
 	else if (scene->image_share < 0)
@@ -335,6 +336,6 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	out->image_share = scene->image_share;
 	if (!still)
 		return;
-	rest_let_go(&scene->rest, &place);
+	accumulation_let_go(&scene->accumulation, &place);
 	gl_place_bind(&place, camera->width_px, camera->height_px);
 }

@@ -67,10 +67,10 @@ const char *scene_part(struct scene *scene, const struct camera *camera, float x
 		return "";
 	if (labels->patch_count == 0)
 		return NULL;
-	int part = label_part_at(
-		labels, hit.patch - scene->hierarchy.groups[group].first_patch,
-		scene->geometry.patches[hit.patch].content.solid.order[hit.on.triangle], hit.on.u,
-		hit.on.v);
+	int part =
+		label_part_at(labels, hit.patch - scene->hierarchy.groups[group].first_patch,
+			      scene->geometry.patches[hit.patch].content.bvh.order[hit.on.triangle],
+			      hit.on.u, hit.on.v);
 	return part < 0 ? "" : labels->parts[part].id;
 }
 
@@ -81,11 +81,11 @@ static int make_ribbon(struct scene *scene, uint32_t patch, const struct label_g
 	struct outline outline = { 0 };
 	int part = label_find(labels, scene->marked_part), rc = 0;
 	if (part >= 0)
-		rc = outline_create(&outline, &out->content.solid, labels,
+		rc = outline_create(&outline, &out->content.bvh, labels,
 				    patch - scene->hierarchy.groups[known->group].first_patch,
 				    (uint32_t)part);
 	if (rc == 0)
-		rc = ribbon_make(&out->ribbon, &outline, scene->mark_serial);
+		rc = outline_lines_make(&out->lines, &outline, scene->mark_serial);
 	outline_finish(&outline);
 	return rc;
 }
@@ -100,7 +100,7 @@ bool scene_outline(struct scene *scene, uint32_t patch)
 		return true;
 	if (labels->patch_count == 0)
 		return false;
-	if (scene->geometry.patches[patch].ribbon.serial == scene->mark_serial)
+	if (scene->geometry.patches[patch].lines.serial == scene->mark_serial)
 		return true;
 	return make_ribbon(scene, patch, labels) == 0;
 }

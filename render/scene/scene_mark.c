@@ -32,7 +32,7 @@ static void draw_region(struct scene *scene, const struct view *view)
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-		const struct piece *piece = &patch->content.solid.pieces[v->piece];
+		const struct piece *piece = &patch->content.bvh.pieces[v->piece];
 		if (!region_meets_sphere(region, piece->centre_m, piece->radius_m) ||
 		    scene_outline(scene, v->patch))
 			continue;
@@ -58,16 +58,16 @@ static void each_ribbon(struct scene *scene, void (*draw)(struct scene *, uint32
 
 static void draw_tint(struct scene *scene, uint32_t patch)
 {
-	const struct ribbon *ribbon = &scene->geometry.patches[patch].ribbon;
-	if (ribbon->whole_count + ribbon->within_count == 0)
+	const struct outline_lines *lines = &scene->geometry.patches[patch].lines;
+	if (lines->whole_count + lines->within_count == 0)
 		return;
 	geometry_bind(&scene->geometry, patch);
-	ribbon_tint(ribbon);
+	outline_lines_tint(lines);
 }
 
 static void draw_lines(struct scene *scene, uint32_t patch)
 {
-	ribbon_lines(&scene->geometry.patches[patch].ribbon);
+	outline_lines_lines(&scene->geometry.patches[patch].lines);
 }
 
 void scene_draw_mark(struct scene *scene, const struct view *view)

@@ -10,8 +10,8 @@
 enum {
 	DEPTH_FACE_PX = 512,
 	DEPTH_TEXEL_BYTES = 2, /* four where RGB565 cannot be drawn into */
-	FACES_LEAST = 16,
-	SIDE_FACES_MOST = 8, /* of a sheet of depths: GL_LIMIT_TEXTURE_PX */
+	FACES_MIN = 16,
+	SIDE_FACES_MAX = 8, /* of a sheet of depths: GL_LIMIT_TEXTURE_PX */
 };
 
 static uint32_t limited(uint64_t value, uint64_t least, uint64_t most)
@@ -25,7 +25,7 @@ static uint32_t limited(uint64_t value, uint64_t least, uint64_t most)
 static struct depth_layout lay_out_depths(uint32_t faces)
 {
 	struct depth_layout out = { .face_px = DEPTH_FACE_PX };
-	uint32_t side = limited((uint64_t)gl_texture_most_px() / DEPTH_FACE_PX, 1, SIDE_FACES_MOST);
+	uint32_t side = limited((uint64_t)gl_texture_most_px() / DEPTH_FACE_PX, 1, SIDE_FACES_MAX);
 	uint32_t rows = faces / side;
 	out.across = (int)side;
 	out.sheets = (int)((rows + side - 1) / side);
@@ -34,8 +34,8 @@ static struct depth_layout lay_out_depths(uint32_t faces)
 		out.rows = 2;
 		out.sheets = (int)rows / 2;
 	}
-	if (out.sheets > DEPTH_SHEETS_MOST)
-		out.sheets = DEPTH_SHEETS_MOST;
+	if (out.sheets > DEPTH_SHEETS_MAX)
+		out.sheets = DEPTH_SHEETS_MAX;
 	return out;
 }
 
@@ -44,7 +44,7 @@ static int make_atlases(struct scene *scene)
 {
 	const uint64_t face_bytes = (uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX;
 	const uint64_t budget = scene->options.texture_budget_bytes;
-	const uint32_t faces = limited(budget * 3 / 8 / face_bytes, FACES_LEAST, TILES_FACES_MOST);
+	const uint32_t faces = limited(budget * 3 / 8 / face_bytes, FACES_MIN, TILES_FACES_MAX);
 	const struct depth_layout layout = lay_out_depths(faces);
 	const int rows = layout.rows * layout.sheets;
 	const uint64_t spent = face_bytes * (uint64_t)(rows * layout.across);
@@ -75,7 +75,7 @@ int scene_create(struct scene **out, const struct scene_options *options)
 	if (rc == 0)
 		rc = ribbons_init(&scene->ribbons);
 	if (rc == 0)
-		rc = census_init(&scene->census);
+		rc = visibility_init(&scene->visibility);
 	if (rc < 0) {
 		scene_destroy(scene);
 		return rc;
@@ -127,8 +127,8 @@ void scene_destroy(struct scene *scene)
 	pool_destroy(scene->pool);
 	mark_finish(&scene->mark);
 	ribbons_finish(&scene->ribbons);
-	rest_finish(&scene->rest);
-	census_finish(&scene->census);
+	accumulation_finish(&scene->accumulation);
+	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);
 	depth_finish(&scene->depth);
 	tiles_finish(&scene->tiles);
@@ -146,8 +146,8 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	forget(scene);
 	tiles_clear(&scene->tiles);
 	depth_clear(&scene->depth, 1);
-	rest_break(&scene->rest);
-	scene->census_us = 0;
+	accumulation_break(&scene->accumulation);
+	scene->visibility_us = 0;
 	scene->root_hash = root;
 	scene->root_bytes = root_bytes;
 	scene_list_wants(scene);
@@ -213,9 +213,8 @@ static int open_root(struct scene *scene, struct bytes bytes)
 	if (rc == 0)
 		rc = root_page_decode(&scene->root, page.payload);
 	if (rc == 0) {
-		scene->root_child_count = page.child_count < ROOT_CHILDREN_MOST
-						  ? page.child_count
-						  : ROOT_CHILDREN_MOST;
+		scene->root_child_count =
+			page.child_count < ROOT_CHILDREN_MAX ? page.child_count : ROOT_CHILDREN_MAX;
 		memcpy(scene->root_child, page.children,
 		       scene->root_child_count * sizeof(*scene->root_child));
 		pool_set_lattice(scene->pool, &scene->root.lattice);

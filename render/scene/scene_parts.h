@@ -62,8 +62,8 @@ struct scene {
 	struct surface surface;
 	struct mark mark;
 	struct ribbons ribbons;
-	struct rest rest;
-	struct census census;
+	struct accumulation accumulation;
+	struct visibility visibility;
 
 	uint32_t refused;       /* objects that could not be used */
 	struct object *objects; /* owned */
@@ -75,7 +75,7 @@ struct scene {
 	uint32_t root_bytes;
 	bool has_root, has_hierarchy;
 	struct root_page root;
-	struct page_child root_child[ROOT_CHILDREN_MOST];
+	struct page_child root_child[ROOT_CHILDREN_MAX];
 	uint32_t root_child_count;
 	struct hierarchy hierarchy;
 	struct hash hierarchy_hash;
@@ -106,13 +106,13 @@ struct scene {
 	uint64_t counting_cut; /* cut_signature as it began */
 	bool counting;         /* half of it is drawn */
 	uint32_t epoch;        /* of what planning looks at: tiles, pages */
-	int64_t census_us;     /* when it was taken */
+	int64_t visibility_us; /* when it was taken */
 	int64_t season_us;     /* when the tiles' season began */
 	bool was_moving;
-	float census_eye_m[3];
-	float census_forward[3];
-	uint64_t census_cut;
-	float census_section[4];
+	float visibility_eye_m[3];
+	float visibility_forward[3];
+	uint64_t visibility_cut;
+	float visibility_section[4];
 	bool plans_are_stale; /* some piece in sight waits to be planned */
 	bool fading, depth_is_stale, uploads_wait;
 	uint64_t cut_signature;

@@ -27,7 +27,8 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 	} else if (rc == 0 && object->kind == OBJECT_LABELS) {
 		rc = geometry_label(&scene->geometry, (uint32_t)object->id, &answer->labels);
 		if (scene->is_marked)
-			rest_break(&scene->rest); /* another outline than the sum has */
+			accumulation_break(
+				&scene->accumulation); /* another outline than the sum has */
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;
@@ -76,7 +77,7 @@ void scene_desire(struct scene *scene)
 {
 	const struct cut_options options = cut_options_of(scene);
 	cut_desire(&scene->cut, &scene->view, scene->geometry.loaded,
-		   scene->census_us ? scene->seen_px : NULL, &options);
+		   scene->visibility_us ? scene->seen_px : NULL, &options);
 }
 
 float scene_patch_error_m(const struct scene *scene, uint32_t patch)
@@ -111,11 +112,11 @@ static void list_patch(struct scene *scene, uint32_t p, uint32_t *count)
 {
 	const struct view *view = &scene->view;
 	const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
-	const struct solid *solid = &scene->geometry.patches[p].content.solid;
+	const struct patch_bvh *bvh = &scene->geometry.patches[p].content.bvh;
 	if (!view_sees_sphere(view, patch->centre_m, patch->radius_m))
 		return;
-	for (uint32_t k = 0; k < solid->piece_count; k++) {
-		const struct piece *piece = &solid->pieces[k];
+	for (uint32_t k = 0; k < bvh->piece_count; k++) {
+		const struct piece *piece = &bvh->pieces[k];
 		const struct visible_piece visible = {
 			.patch = p,
 			.piece = k,
@@ -205,8 +206,8 @@ static void plan_one(struct scene *scene, const struct plan_world *world,
 		     const struct visible_piece *visible, struct piece_state *state)
 {
 	struct plan_surface surface = {
-		.piece = &scene->geometry.patches[visible->patch]
-				  .content.solid.pieces[visible->piece],
+		.piece =
+			&scene->geometry.patches[visible->patch].content.bvh.pieces[visible->piece],
 		.error_m = scene_patch_error_m(scene, visible->patch),
 		.probe = state->probe,
 	};
@@ -249,7 +250,7 @@ void scene_plan_pieces(struct scene *scene, int64_t budget_us)
 		const struct visible_piece *v = &scene->visible[at];
 		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 		struct piece_state *state = &patch->pieces[v->piece];
-		if (!is_stale(scene, &patch->content.solid.pieces[v->piece], state))
+		if (!is_stale(scene, &patch->content.bvh.pieces[v->piece], state))
 			continue;
 		if (clock_now_us() >= until_us) {
 			scene->plan_cursor = at;
@@ -314,9 +315,11 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 		bool chosen = blend_is_chosen(&state->choice, blend);
 		if (chosen && !depth_ready(&scene->depth, slot, blend->face))
 			continue; /* the depth pass will come to it */
-		float rest = blend->target - blend->weight;
-		blend->weight += rest > step ? step : rest < -step ? -step : rest;
-		moving |= fabsf(rest) > 0;
+		float accumulation = blend->target - blend->weight;
+		blend->weight += accumulation > step    ? step
+				 : accumulation < -step ? -step
+							: accumulation;
+		moving |= fabsf(accumulation) > 0;
 		if (!chosen && blend->weight <= 0)
 			*blend = (struct blend){ 0 };
 	}
@@ -375,7 +378,7 @@ void scene_fade_blends(struct scene *scene, float passed_ms)
 		const bool moving = fade_piece(scene, state, shown ? step : 1);
 		scene->fading |= moving;
 		if (!hidden)
-			touch_piece(scene, &patch->content.solid.pieces[v->piece], state);
+			touch_piece(scene, &patch->content.bvh.pieces[v->piece], state);
 		if (!shown && !hidden && (moving || !state->planned || !is_dressed(scene, state)))
 			dissolve_hold(&scene->dissolve, scene->hierarchy.patches[v->patch].group);
 	}

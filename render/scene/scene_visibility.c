@@ -17,16 +17,17 @@ static const float stray_share = 0.2f;
 
 static bool is_due(const struct scene *scene, bool moved)
 {
-	if (scene->census_us == 0 || scene->census_cut != scene->cut_signature)
+	if (scene->visibility_us == 0 || scene->visibility_cut != scene->cut_signature)
 		return true;
-	if (!moved && memcmp(scene->census_section, scene->view.cut, sizeof(scene->view.cut)) != 0)
+	if (!moved &&
+	    memcmp(scene->visibility_section, scene->view.cut, sizeof(scene->view.cut)) != 0)
 		return true;
-	if (moved && clock_now_us() - scene->census_us < MOVING_US)
+	if (moved && clock_now_us() - scene->visibility_us < MOVING_US)
 		return false;
 	float limit = moved ? 1 : 0.2f; /* at rest it must be right */
 	return (moved && view_is_cut(&scene->view)) ||
-	       vec_distance(scene->census_eye_m, scene->view.eye_m) > limit * moved_m ||
-	       vec_distance(scene->census_forward, scene->view.forward) > limit * turned;
+	       vec_distance(scene->visibility_eye_m, scene->view.eye_m) > limit * moved_m ||
+	       vec_distance(scene->visibility_forward, scene->view.forward) > limit * turned;
 }
 
 /* Of the pieces in the list, numbers `from` up to `to`. */
@@ -36,11 +37,11 @@ static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 	for (uint32_t i = from; i < to; i++) {
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
-			&scene->geometry.patches[v->patch].content.solid.pieces[v->piece];
+			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
 		if (v->patch != bound)
 			geometry_bind(&scene->geometry, v->patch);
 		bound = v->patch;
-		census_number(&scene->census, i);
+		visibility_number(&scene->visibility, i);
 		geometry_draw(piece->first_triangle, piece->triangle_count);
 	}
 }
@@ -56,13 +57,13 @@ static bool begin(struct scene *scene)
 		scene->counted = larger;
 		scene->counted_capacity = scene->visible_count;
 	}
-	scene->counted_count = scene->visible_count < CENSUS_PIECES_MOST ? scene->visible_count
-									 : CENSUS_PIECES_MOST;
+	scene->counted_count = scene->visible_count < VISIBILITY_PIECES_MAX ? scene->visible_count
+									    : VISIBILITY_PIECES_MAX;
 	if (scene->counted_count > 0)
 		memcpy(scene->counted, scene->visible,
 		       scene->counted_count * sizeof(*scene->counted));
 	scene->counting_cut = scene->cut_signature;
-	census_begin(&scene->census, &scene->view, &scene->root);
+	visibility_begin(&scene->visibility, &scene->view, &scene->root);
 	return true;
 }
 
@@ -72,7 +73,7 @@ static bool draw(struct scene *scene, bool moved)
 {
 	if (scene->counting && moved && scene->counting_cut == scene->cut_signature) {
 		scene->counting = false;
-		census_resume(&scene->census, &scene->root);
+		visibility_resume(&scene->visibility, &scene->root);
 		draw_numbers(scene, scene->counted_count / 2, scene->counted_count);
 		return true;
 	}
@@ -102,12 +103,13 @@ static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
 }
 
 /* What shows far from every probe: the farthest of a piece, in stray_m and stray. */
-static void count_point(struct scene *scene, const struct census_point *point)
+static void count_point(struct scene *scene, const struct visibility_point *point)
 {
 	struct piece_state *state = state_of(scene, point->piece);
 	if (!state)
 		return;
-	if (point->back && !view_is_cut(&scene->census.view)) /* a section shows many for once */
+	if (point->back &&
+	    !view_is_cut(&scene->visibility.view)) /* a section shows many for once */
 		scene->geometry.patches[scene->counted[point->piece].patch].sides = SIDES_BOTH;
 	int nearest = nearest_probe(state, point->at_m);
 	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
@@ -121,15 +123,15 @@ static void count_point(struct scene *scene, const struct census_point *point)
 
 static void count_all(struct scene *scene)
 {
-	struct census_point point;
+	struct visibility_point point;
 	for (uint32_t i = 0; i < scene->counted_count; i++) {
 		struct piece_state *state = state_of(scene, i);
 		state->seen_px = state->stray_off_m = 0;
 		memset(state->weight, 0, sizeof(state->weight));
 	}
-	for (int y = 0; y < CENSUS_HEIGHT; y++)
-		for (int x = 0; x < CENSUS_WIDTH; x++)
-			if (census_at(&scene->census, x, y, &point))
+	for (int y = 0; y < VISIBILITY_HEIGHT; y++)
+		for (int x = 0; x < VISIBILITY_WIDTH; x++)
+			if (visibility_at(&scene->visibility, x, y, &point))
 				count_point(scene, &point);
 }
 
@@ -138,8 +140,8 @@ static void move_probe(struct scene *scene, uint32_t visible)
 {
 	struct piece_state *state = state_of(scene, visible);
 	const struct visible_piece *v = &scene->counted[visible];
-	const struct solid *solid = &scene->geometry.patches[v->patch].content.solid;
-	const struct piece *piece = &solid->pieces[v->piece];
+	const struct patch_bvh *bvh = &scene->geometry.patches[v->patch].content.bvh;
+	const struct piece *piece = &bvh->pieces[v->piece];
 	if (state->stray_off_m < stray_share * piece->radius_m)
 		return;
 	int idle = 0;
@@ -148,9 +150,9 @@ static void move_probe(struct scene *scene, uint32_t visible)
 	if (idle == PIECE_PROBES)
 		return;
 	/* Of the piece's own places the nearest lends its normal. */
-	struct piece_probe like = solid_probe(solid, piece, 0);
+	struct piece_probe like = patch_bvh_probe(bvh, piece, 0);
 	for (int k = 1; k < PIECE_PROBES; k++) {
-		struct piece_probe other = solid_probe(solid, piece, k);
+		struct piece_probe other = patch_bvh_probe(bvh, piece, k);
 		if (vec_distance(other.at_m, state->stray_m) <
 		    vec_distance(like.at_m, state->stray_m))
 			like = other;
@@ -165,11 +167,11 @@ static void conclude(struct scene *scene, const struct visible_piece *visible)
 {
 	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
 	struct piece_state *state = &patch->pieces[visible->piece];
-	if (patch->sides == SIDES_UNKNOWN && !view_is_cut(&scene->census.view))
+	if (patch->sides == SIDES_UNKNOWN && !view_is_cut(&scene->visibility.view))
 		patch->sides = SIDES_FRONT;
 	for (int k = 0; k < PIECE_PROBES && state->seen_px > 0; k++)
 		state->weight[k] /= state->seen_px;
-	state->seen_px *= scene->view.picture_px / (CENSUS_WIDTH * CENSUS_HEIGHT);
+	state->seen_px *= scene->view.picture_px / (VISIBILITY_WIDTH * VISIBILITY_HEIGHT);
 	state->counted = true;
 	state->planned = false;
 }
@@ -194,7 +196,7 @@ bool scene_take_census(struct scene *scene, bool moved)
 {
 	if (!scene->counting && !is_due(scene, moved))
 		return false;
-	if (!draw(scene, moved) || census_end(&scene->census) < 0)
+	if (!draw(scene, moved) || visibility_end(&scene->visibility) < 0)
 		return true;
 	count_all(scene);
 	for (int round = 0; round < PROBE_MOVES; round++) {
@@ -205,10 +207,13 @@ bool scene_take_census(struct scene *scene, bool moved)
 	for (uint32_t i = 0; i < scene->counted_count; i++)
 		conclude(scene, &scene->counted[i]);
 	sum_patches(scene);
-	scene->census_us = clock_now_us();
-	scene->census_cut = scene->cut_signature;
-	memcpy(scene->census_section, scene->census.view.cut, sizeof(scene->census_section));
-	memcpy(scene->census_eye_m, scene->census.view.eye_m, sizeof(scene->census_eye_m));
-	memcpy(scene->census_forward, scene->census.view.forward, sizeof(scene->census_forward));
+	scene->visibility_us = clock_now_us();
+	scene->visibility_cut = scene->cut_signature;
+	memcpy(scene->visibility_section, scene->visibility.view.cut,
+	       sizeof(scene->visibility_section));
+	memcpy(scene->visibility_eye_m, scene->visibility.view.eye_m,
+	       sizeof(scene->visibility_eye_m));
+	memcpy(scene->visibility_forward, scene->visibility.view.forward,
+	       sizeof(scene->visibility_forward));
 	return true;
 }

@@ -45,7 +45,7 @@ static const float lasting = 4;
  * than one that fills it: it is what there is to see. */
 static uint32_t least_priority(const struct scene *scene, float lasts)
 {
-	float filled = scene->census_us ? scene->filled : 1;
+	float filled = scene->visibility_us ? scene->filled : 1;
 	return plan_priority(scene->options.thrift_px_per_kb * filled / lasts, 1000);
 }
 

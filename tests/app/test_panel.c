@@ -103,7 +103,7 @@ int frame_unseen(struct kiosk *k)
 	return 0;
 }
 
-int exhibit_wait_ms(const struct kiosk *k)
+int session_wait_ms(const struct kiosk *k)
 {
 	(void)k;
 	return NEVER;

@@ -143,7 +143,7 @@ static void more_than_fit_are_ignored(void **state)
 	wants_clear(&wants);
 	want_count = 0;
 	wants_begin(&wants);
-	for (uint32_t i = 0; i < WANTS_MOST + 50; i++) {
+	for (uint32_t i = 0; i < WANTS_MAX + 50; i++) {
 		struct message_want want = want_of(1, 100);
 
 		want.hash.bytes[0] = (uint8_t)i;
@@ -151,7 +151,7 @@ static void more_than_fit_are_ignored(void **state)
 		wants_add(&wants, &want);
 	}
 	wants_say(&wants, NULL);
-	CHECK(want_count == WANTS_MOST);
+	CHECK(want_count == WANTS_MAX);
 }
 
 int main(void)

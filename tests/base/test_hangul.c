@@ -9,10 +9,10 @@ static void every_syllable_comes_from_its_letters(void **state)
 {
 	(void)state;
 	for (uint32_t c = 0xac00; c <= 0xd7a3; c++) {
-		uint32_t letters[HANGUL_LETTERS_MOST];
+		uint32_t letters[HANGUL_LETTERS_MAX];
 		const size_t count = hangul_letters(c, letters);
 
-		CHECK(count >= 2 && count <= HANGUL_LETTERS_MOST);
+		CHECK(count >= 2 && count <= HANGUL_LETTERS_MAX);
 		for (size_t i = 0; i < count; i++)
 			CHECK(letters[i] >= 0x3131 && letters[i] <= 0x3163);
 		CHECK(hangul_compose(letters, count) == 1 && letters[0] == c);
@@ -33,7 +33,7 @@ static void a_vowel_takes_the_consonant_before_it(void **state)
 static void what_makes_no_syllable_stays(void **state)
 {
 	uint32_t text[] = { 'a', 0x3131, 0x3131, 0x314f, ' ', 0x3157, 0x314f, 0x3138 };
-	uint32_t letters[HANGUL_LETTERS_MOST];
+	uint32_t letters[HANGUL_LETTERS_MAX];
 
 	(void)state;
 	CHECK(hangul_compose(text, 8) == 7);
@@ -49,7 +49,7 @@ static void what_makes_no_syllable_stays(void **state)
 /* Letters by their place in a syllable, as normalization has them. */
 static void letters_of_normalization_are_those_of_keys(void **state)
 {
-	uint32_t letters[HANGUL_LETTERS_MOST];
+	uint32_t letters[HANGUL_LETTERS_MAX];
 
 	(void)state;
 	CHECK(hangul_letters(0x1112, letters) == 1 && letters[0] == 0x314e);

@@ -10,7 +10,7 @@ static struct buffer out;
 static int begin(void **state)
 {
 	(void)state;
-	buffer_init(&out, FIGURES_BYTES_MOST);
+	buffer_init(&out, METRICS_BYTES_MAX);
 	return 0;
 }
 
@@ -34,8 +34,8 @@ static bool is(const char *expected)
 static void a_figure_is_three_lines_of_the_format(void **state)
 {
 	(void)state;
-	figures_gauge(&out, "a_seconds", "How long.", 0.25);
-	figures_counter(&out, "a_bytes_total", "How much.", 123456789012.0);
+	metrics_gauge(&out, "a_seconds", "How long.", 0.25);
+	metrics_counter(&out, "a_bytes_total", "How much.", 123456789012.0);
 	CHECK(is("# HELP a_seconds How long.\n# TYPE a_seconds gauge\na_seconds 0.25\n"
 		 "# HELP a_bytes_total How much.\n# TYPE a_bytes_total counter\n"
 		 "a_bytes_total 123456789012\n"));
@@ -48,28 +48,28 @@ static void labels_are_escaped_and_what_is_no_text_is_replaced(void **state)
 	char value[64];
 
 	(void)state;
-	figures_info(&out, "a_info", "Words.", labels, 2);
+	metrics_info(&out, "a_info", "Words.", labels, 2);
 	CHECK(is("# HELP a_info Words.\n# TYPE a_info gauge\n"
 		 "a_info{name=\"a \\\"b\\\" \\\\ ? c\",other=\"ប្រាសាទ ???\"} 1\n"));
-	CHECK(figures_valid(buffer_bytes(&out), "a_"));
-	CHECK(figures_label(buffer_bytes(&out), "a_info", "name", value, sizeof(value)));
+	CHECK(metrics_valid(buffer_bytes(&out), "a_"));
+	CHECK(metrics_label(buffer_bytes(&out), "a_info", "name", value, sizeof(value)));
 	CHECK(strcmp(value, "a \"b\" \\ ? c") == 0);
-	CHECK(figures_label(buffer_bytes(&out), "a_info", "other", value, 4));
+	CHECK(metrics_label(buffer_bytes(&out), "a_info", "other", value, 4));
 	CHECK(strcmp(value, "ប") == 0);
-	CHECK(!figures_label(buffer_bytes(&out), "a_info", "third", value, sizeof(value)));
+	CHECK(!metrics_label(buffer_bytes(&out), "a_info", "third", value, sizeof(value)));
 	CHECK(value[0] == '\0');
 }
 
-static void figures_are_found_by_their_whole_name(void **state)
+static void metrics_are_found_by_their_whole_name(void **state)
 {
 	double value = -1;
 
 	(void)state;
-	CHECK(figures_find(text("ab 1\nb 2.5\n"), "b", &value) && value == 2.5);
-	CHECK(!figures_find(text("ab 1\nabc 2\n"), "b", &value) && value == 2.5);
-	CHECK(figures_find(text("nonsense\nb -3e2\n"), "b", &value) && value == -300);
-	CHECK(!figures_find(text("b 1"), "b", &value)); /* a line that was cut */
-	CHECK(!figures_find(text(""), "b", &value));
+	CHECK(metrics_find(text("ab 1\nb 2.5\n"), "b", &value) && value == 2.5);
+	CHECK(!metrics_find(text("ab 1\nabc 2\n"), "b", &value) && value == 2.5);
+	CHECK(metrics_find(text("nonsense\nb -3e2\n"), "b", &value) && value == -300);
+	CHECK(!metrics_find(text("b 1"), "b", &value)); /* a line that was cut */
+	CHECK(!metrics_find(text(""), "b", &value));
 }
 
 static void only_whole_lines_about_the_programs_own_figures_are_valid(void **state)
@@ -115,11 +115,11 @@ static void only_whole_lines_about_the_programs_own_figures_are_valid(void **sta
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(bad); i++)
-		if (figures_valid(text(bad[i]), "a_"))
+		if (metrics_valid(text(bad[i]), "a_"))
 			fail_msg("held for valid: %s", bad[i]);
-	CHECK(figures_valid(text("a_x 1\n"), "a_"));
-	CHECK(figures_valid(text("# HELP a_x Words: {1}\n# TYPE a_x counter\na_x 0\n"), "a_"));
-	CHECK(figures_valid(text("a_x{l=\"\",m=\"\\\\\\\"\\n\"} -1.5e-3\n"), "a_"));
+	CHECK(metrics_valid(text("a_x 1\n"), "a_"));
+	CHECK(metrics_valid(text("# HELP a_x Words: {1}\n# TYPE a_x counter\na_x 0\n"), "a_"));
+	CHECK(metrics_valid(text("a_x{l=\"\",m=\"\\\\\\\"\\n\"} -1.5e-3\n"), "a_"));
 }
 
 static void no_truncation_of_a_valid_text_reads_past_its_end(void **state)
@@ -133,8 +133,8 @@ static void no_truncation_of_a_valid_text_reads_past_its_end(void **state)
 		const struct bytes cut = { (uint8_t *)exact, n };
 
 		memcpy(exact, whole, n);
-		CHECK(figures_valid(cut, "a_") == (n == strlen(whole)));
-		CHECK(figures_label(cut, "a_x", "m", value, sizeof(value)) == (n == strlen(whole)));
+		CHECK(metrics_valid(cut, "a_") == (n == strlen(whole)));
+		CHECK(metrics_label(cut, "a_x", "m", value, sizeof(value)) == (n == strlen(whole)));
 		free(exact);
 	}
 }
@@ -145,7 +145,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_figure_is_three_lines_of_the_format, begin, end),
 		cmocka_unit_test_setup_teardown(labels_are_escaped_and_what_is_no_text_is_replaced,
 						begin, end),
-		cmocka_unit_test(figures_are_found_by_their_whole_name),
+		cmocka_unit_test(metrics_are_found_by_their_whole_name),
 		cmocka_unit_test(only_whole_lines_about_the_programs_own_figures_are_valid),
 		cmocka_unit_test(no_truncation_of_a_valid_text_reads_past_its_end),
 	};

@@ -17,18 +17,18 @@ static size_t padding; /* bytes that the program tells besides */
 
 static void tell(void *data, struct buffer *out)
 {
-	figures_gauge(out, "gopura_test_answer", "Of all.", *(double *)data);
+	metrics_gauge(out, "gopura_test_answer", "Of all.", *(double *)data);
 	for (size_t i = 0; i < padding; i++)
 		buffer_put_u8(out, '\n');
 }
 
-static struct figures_socket *offer(double *answer)
+static struct metrics_socket *offer(double *answer)
 {
-	const struct figures_socket_options options = { path, "gopura_test", tell, answer };
-	struct figures_socket *figures;
+	const struct metrics_socket_options options = { path, "gopura_test", tell, answer };
+	struct metrics_socket *metrics;
 
-	CHECK(figures_socket_create(&figures, &options) == 0);
-	return figures;
+	CHECK(metrics_socket_create(&metrics, &options) == 0);
+	return metrics;
 }
 
 static int visit(void)
@@ -41,9 +41,9 @@ static int visit(void)
 	return fd;
 }
 
-static bool is_wanted(const struct figures_socket *figures)
+static bool is_wanted(const struct metrics_socket *metrics)
 {
-	struct pollfd poll_fd = { .fd = figures_socket_fd(figures), .events = POLLIN };
+	struct pollfd poll_fd = { .fd = metrics_socket_fd(metrics), .events = POLLIN };
 
 	return poll(&poll_fd, 1, 0) == 1;
 }
@@ -65,7 +65,7 @@ static double figure(struct bytes text, const char *name)
 {
 	double value = -1;
 
-	CHECK(figures_find(text, name, &value));
+	CHECK(metrics_find(text, name, &value));
 	return value;
 }
 
@@ -91,49 +91,49 @@ static int end(void **state)
 static void whoever_connects_gets_the_figures_and_is_let_go(void **state)
 {
 	double answer = 42;
-	struct figures_socket *figures = offer(&answer);
-	static char text[FIGURES_BYTES_MOST];
+	struct metrics_socket *metrics = offer(&answer);
+	static char text[METRICS_BYTES_MAX];
 	struct bytes heard;
 	struct stat info;
 	int fd;
 
 	(void)state;
 	CHECK(stat(path, &info) == 0 && (info.st_mode & 0777) == 0666);
-	CHECK(!is_wanted(figures));
+	CHECK(!is_wanted(metrics));
 	fd = visit();
-	CHECK(is_wanted(figures));
-	figures_socket_dispatch(figures);
-	CHECK(!is_wanted(figures));
+	CHECK(is_wanted(metrics));
+	metrics_socket_dispatch(metrics);
+	CHECK(!is_wanted(metrics));
 	heard = hear(fd, text, sizeof(text));
-	CHECK(figures_valid(heard, "gopura_test_"));
+	CHECK(metrics_valid(heard, "gopura_test_"));
 	CHECK(figure(heard, "gopura_test_answer") == 42);
 	CHECK(figure(heard, "gopura_test_uptime_seconds") >= 0);
 	CHECK(figure(heard, "gopura_test_resident_bytes") > 0);
 	CHECK(figure(heard, "gopura_test_starts_total") == 1);
 	answer = 43;
 	fd = visit();
-	figures_socket_dispatch(figures);
+	metrics_socket_dispatch(metrics);
 	CHECK(figure(hear(fd, text, sizeof(text)), "gopura_test_answer") == 43);
-	figures_socket_destroy(figures);
+	metrics_socket_destroy(metrics);
 }
 
 static void starts_are_counted_from_one_program_to_the_next(void **state)
 {
 	double answer = 0;
-	static char text[FIGURES_BYTES_MOST];
+	static char text[METRICS_BYTES_MAX];
 	double before = 0;
 
 	(void)state;
 	for (int i = 0; i < 3; i++) {
-		struct figures_socket *figures = offer(&answer);
+		struct metrics_socket *metrics = offer(&answer);
 		const int fd = visit();
 		double starts;
 
-		figures_socket_dispatch(figures);
+		metrics_socket_dispatch(metrics);
 		starts = figure(hear(fd, text, sizeof(text)), "gopura_test_starts_total");
 		CHECK(i == 0 || starts == before + 1);
 		before = starts;
-		figures_socket_destroy(figures);
+		metrics_socket_destroy(metrics);
 	}
 }
 
@@ -141,63 +141,63 @@ static void starts_are_counted_from_one_program_to_the_next(void **state)
 static void nobody_is_waited_for(void **state)
 {
 	double answer = 1;
-	struct figures_socket *figures = offer(&answer);
-	static char text[FIGURES_BYTES_MOST];
+	struct metrics_socket *metrics = offer(&answer);
+	static char text[METRICS_BYTES_MAX];
 	int slow[8];
 
 	(void)state;
-	figures_socket_dispatch(figures); /* nobody is there */
+	metrics_socket_dispatch(metrics); /* nobody is there */
 	close(visit());
-	figures_socket_dispatch(figures);
+	metrics_socket_dispatch(metrics);
 	for (int i = 0; i < 8; i++)
 		slow[i] = visit();
 	for (int i = 0; i < 8; i++)
-		figures_socket_dispatch(figures);
-	CHECK(!is_wanted(figures));
+		metrics_socket_dispatch(metrics);
+	CHECK(!is_wanted(metrics));
 	for (int i = 0; i < 8; i++)
 		CHECK(figure(hear(slow[i], text, sizeof(text)), "gopura_test_answer") == 1);
-	figures_socket_destroy(figures);
+	metrics_socket_destroy(metrics);
 }
 
 static void too_much_is_not_told_in_part(void **state)
 {
 	double answer = 1;
-	struct figures_socket *figures = offer(&answer);
-	static char text[FIGURES_BYTES_MOST];
+	struct metrics_socket *metrics = offer(&answer);
+	static char text[METRICS_BYTES_MAX];
 	int fd = visit();
 
 	(void)state;
-	padding = FIGURES_BYTES_MOST;
-	figures_socket_dispatch(figures);
+	padding = METRICS_BYTES_MAX;
+	metrics_socket_dispatch(metrics);
 	CHECK(hear(fd, text, sizeof(text)).size == 0);
 	padding = 0;
 	fd = visit();
-	figures_socket_dispatch(figures);
+	metrics_socket_dispatch(metrics);
 	CHECK(hear(fd, text, sizeof(text)).size > 0);
-	figures_socket_destroy(figures);
+	metrics_socket_destroy(metrics);
 }
 
 static void a_socket_left_behind_is_replaced_and_a_bad_place_is_an_error(void **state)
 {
 	double answer = 1;
-	struct figures_socket *first = offer(&answer), *second = offer(&answer);
-	struct figures_socket_options options = { "/nowhere/figures", "gopura_test", tell,
+	struct metrics_socket *first = offer(&answer), *second = offer(&answer);
+	struct metrics_socket_options options = { "/nowhere/figures", "gopura_test", tell,
 						  &answer };
-	static char text[FIGURES_BYTES_MOST], name[200];
-	struct figures_socket *none = second;
+	static char text[METRICS_BYTES_MAX], name[200];
+	struct metrics_socket *none = second;
 	int fd = visit();
 
 	(void)state;
-	figures_socket_dispatch(second);
+	metrics_socket_dispatch(second);
 	CHECK(hear(fd, text, sizeof(text)).size > 0);
-	CHECK(figures_socket_create(&none, &options) == -ENOENT && !none);
+	CHECK(metrics_socket_create(&none, &options) == -ENOENT && !none);
 	memset(name, 'x', sizeof(name) - 1);
 	options.path = name;
-	CHECK(figures_socket_create(&none, &options) == -ENAMETOOLONG && !none);
-	CHECK(figures_socket_fd(NULL) == -1);
-	figures_socket_destroy(NULL);
-	figures_socket_destroy(first);
-	figures_socket_destroy(second);
+	CHECK(metrics_socket_create(&none, &options) == -ENAMETOOLONG && !none);
+	CHECK(metrics_socket_fd(NULL) == -1);
+	metrics_socket_destroy(NULL);
+	metrics_socket_destroy(first);
+	metrics_socket_destroy(second);
 }
 
 int main(void)

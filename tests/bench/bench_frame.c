@@ -18,13 +18,13 @@
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 120000, CROSSING_FRAMES = 10 };
+enum { VIEWS_MAX = 16, FRAMES_MAX = 1000, SETTLE_MS = 120000, CROSSING_FRAMES = 10 };
 
 struct bench {
 	struct stage stage;
 	GLuint quad_program, plain_program, texture, quad_buffer;
 	GLint plain_clip, plain_lattice;
-	struct camera cameras[VIEWS_MOST], moving;
+	struct camera cameras[VIEWS_MAX], moving;
 	struct scene_frame frame; /* drawn last */
 	uint32_t views, frames, unsettled;
 	bool frames_alone;
@@ -120,7 +120,7 @@ static void draw_plain(struct bench *bench)
 	glDisableVertexAttribArray(2);
 	for (uint32_t i = 0, run = 0; i < scene->visible_count; i += run) {
 		const struct visible_piece *v = &scene->visible[i];
-		const struct piece *pieces = scene->geometry.patches[v->patch].content.solid.pieces;
+		const struct piece *pieces = scene->geometry.patches[v->patch].content.bvh.pieces;
 		uint32_t count = 0;
 
 		for (run = 0; i + run < scene->visible_count && v[run].patch == v->patch &&
@@ -151,7 +151,7 @@ static struct spent spent_until_now(void)
 /* Of the frames, the median; the frame that is drawn is finished. */
 static struct spent median_spent(struct bench *bench, void (*draw)(struct bench *))
 {
-	double ms[FRAMES_MOST], cpu_ms[FRAMES_MOST];
+	double ms[FRAMES_MAX], cpu_ms[FRAMES_MAX];
 
 	for (uint32_t i = 0; i < bench->frames; i++) {
 		const struct spent began = spent_until_now();
@@ -271,8 +271,8 @@ static struct cost cost_of(struct bench *bench, struct camera camera)
 static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 {
 	struct scene_options options = bench->stage.options.scene;
-	double ms[VIEWS_MOST], cpu_ms[VIEWS_MOST], plain_ms[VIEWS_MOST], plain_cpu_ms[VIEWS_MOST];
-	double triangles[VIEWS_MOST], crossing_pct[VIEWS_MOST];
+	double ms[VIEWS_MAX], cpu_ms[VIEWS_MAX], plain_ms[VIEWS_MAX], plain_cpu_ms[VIEWS_MAX];
+	double triangles[VIEWS_MAX], crossing_pct[VIEWS_MAX];
 
 	options.mode = mode;
 	stage_begin(&bench->stage, &options);
@@ -331,7 +331,7 @@ int main(int argc, char **argv)
 	static struct bench bench;
 	unsigned long frames = argc > 3 ? strtoul(argv[3], NULL, 10) : 60;
 
-	if (argc < 3 || frames < 1 || frames > FRAMES_MOST) {
+	if (argc < 3 || frames < 1 || frames > FRAMES_MAX) {
 		fputs("usage: bench_frame RELEASE VIEWS [FRAMES, at most 1000 [frames]]\n", stderr);
 		return 2;
 	}
@@ -345,7 +345,7 @@ int main(int argc, char **argv)
 	options.scene.upload_budget_us = 100000; /* warm soon; then nothing is left to upload */
 	bench.frames = (uint32_t)frames;
 	bench.frames_alone = argc > 4;
-	bench.views = stage_read_views(bench.cameras, VIEWS_MOST, argv[2], 0, 0);
+	bench.views = stage_read_views(bench.cameras, VIEWS_MAX, argv[2], 0, 0);
 	printf("{\"views\": %u, \"frames\": %u, \"sizes\": [\n", bench.views, bench.frames);
 	measure(&bench, &options, false);
 	options.width_px = 1920;

@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "pipeline/content/info_build.h"
 
-enum { ROUNDS = 50, FOUND_MOST = 100 };
+enum { ROUNDS = 50, FOUND_MAX = 100 };
 
 static void quiet(void *data, bool is_error, const char *file, unsigned line, const char *text)
 {
@@ -28,14 +28,14 @@ static void ask(struct info *info)
 						  { "塔", "ja" },    { "なーが", "ja" },
 						  { "ប្រា", "km" },   { "pierre", "fr" } };
 	double most_ms = 0, least_ms = 1e9;
-	uint32_t parts[FOUND_MOST], found = 0;
+	uint32_t parts[FOUND_MAX], found = 0;
 
 	for (size_t i = 0; i < ARRAY_COUNT(queries); i++) {
 		int64_t start_us = clock_thread_us();
 		double mean_ms;
 
 		for (int round = 0; round < ROUNDS; round++)
-			found += info_search(info, queries[i][0], queries[i][1], parts, FOUND_MOST);
+			found += info_search(info, queries[i][0], queries[i][1], parts, FOUND_MAX);
 		mean_ms = ms_since(start_us) / ROUNDS;
 		most_ms = mean_ms > most_ms ? mean_ms : most_ms;
 		least_ms = mean_ms < least_ms ? mean_ms : least_ms;

@@ -16,7 +16,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { VIEWS_MOST = 16, FRAMES_MOST = 1000, SETTLE_MS = 120000 };
+enum { VIEWS_MAX = 16, FRAMES_MAX = 1000, SETTLE_MS = 120000 };
 enum mode { WITHOUT, LIGHT, SECTION_WHOLE, SECTION, BOTH, MODES };
 
 static const char *const names[MODES] = { "without", "light", "section_whole", "section", "both" };
@@ -48,9 +48,9 @@ static struct scene_tools tools_of(const struct stage *stage, const struct camer
 }
 
 static void measure(struct stage *stage, struct camera camera, uint32_t frames,
-		    double out[MODES][VIEWS_MOST], uint32_t view)
+		    double out[MODES][VIEWS_MAX], uint32_t view)
 {
-	static double spent[MODES][FRAMES_MOST];
+	static double spent[MODES][FRAMES_MAX];
 	struct scene_frame frame;
 
 	camera.width_px = stage->target.width_px;
@@ -89,12 +89,12 @@ static void measure(struct stage *stage, struct camera camera, uint32_t frames,
 
 static void run(const struct stage_options *options, const char *views, uint32_t frames, bool last)
 {
-	static double ms[MODES][VIEWS_MOST];
-	struct camera cameras[VIEWS_MOST];
-	double ratio[VIEWS_MOST];
+	static double ms[MODES][VIEWS_MAX];
+	struct camera cameras[VIEWS_MAX];
+	double ratio[VIEWS_MAX];
 	struct stage stage;
 	const uint32_t count =
-		stage_read_views(cameras, VIEWS_MOST, views, options->width_px, options->height_px);
+		stage_read_views(cameras, VIEWS_MAX, views, options->width_px, options->height_px);
 
 	stage_open(&stage, options);
 	for (uint32_t view = 0; view < count; view++)
@@ -130,7 +130,7 @@ int main(int argc, char **argv)
 					     .width_px = sizes[i][0],
 					     .height_px = sizes[i][1],
 					     .wall_clock = true },
-		    argv[2], frames < FRAMES_MOST ? frames : FRAMES_MOST, i == 1);
+		    argv[2], frames < FRAMES_MAX ? frames : FRAMES_MAX, i == 1);
 	printf("]}\n");
 	return 0;
 }

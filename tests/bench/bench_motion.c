@@ -26,7 +26,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { FRAMES_MOST = 6000, LEGS_MOST = 2000, BLOCK = 8, POP = 16, HOLE = 16 };
+enum { FRAMES_MAX = 6000, LEGS_MAX = 2000, BLOCK = 8, POP = 16, HOLE = 16 };
 
 /* Of the model's blocks, how many may pop in one frame before it shows. */
 static const double pop_share = 0.002;
@@ -50,14 +50,14 @@ struct moment {
 };
 
 struct bench {
-	const char *visit, *out, *truth;
+	const char *presence, *out, *truth;
 	struct stage_options options;
 	struct stage stage;
 	bool tries_fault;
 	enum harm harm;
-	struct leg leg[LEGS_MOST];
+	struct leg leg[LEGS_MAX];
 	uint32_t leg_count, fps;
-	struct moment moment[FRAMES_MOST];
+	struct moment moment[FRAMES_MAX];
 	uint32_t moment_count, judged;
 };
 
@@ -76,12 +76,12 @@ static enum gait gait_of(const char *name)
 
 static void read_visit(struct bench *bench)
 {
-	FILE *file = fopen(bench->visit, "re");
+	FILE *file = fopen(bench->presence, "re");
 	char line[256], gait[16];
 
 	if (!file)
-		stage_die(bench->visit, -errno);
-	while (bench->leg_count < LEGS_MOST && fgets(line, sizeof(line), file)) {
+		stage_die(bench->presence, -errno);
+	while (bench->leg_count < LEGS_MAX && fgets(line, sizeof(line), file)) {
 		struct leg *leg = &bench->leg[bench->leg_count];
 		float *e = leg->eye_m, *t = leg->target_m;
 
@@ -100,7 +100,7 @@ static void read_visit(struct bench *bench)
 	}
 	fclose(file);
 	if (bench->leg_count < 2)
-		stage_die(bench->visit, -EINVAL);
+		stage_die(bench->presence, -EINVAL);
 }
 
 static float eased(enum gait gait, float t)
@@ -133,7 +133,7 @@ static void add_moment(struct bench *bench, const struct leg *leg, const struct 
 	struct moment *m = &bench->moment[bench->moment_count++];
 	const float t = eased(leg->gait, (float)(i + 1) / (float)count);
 
-	if (bench->moment_count == FRAMES_MOST)
+	if (bench->moment_count == FRAMES_MAX)
 		stage_die("the visit is too long", -E2BIG);
 	m->camera = (struct camera){ .up = { 0, 0, 1 },
 				     .near_m = 0.1f,
@@ -193,7 +193,7 @@ static void plan_visit(struct bench *bench)
 /* ---- faults, by hand in the scene's own state */
 
 struct broken {
-	struct solid *solid;
+	struct patch_bvh *bvh;
 	uint32_t piece_count;
 };
 
@@ -205,9 +205,9 @@ static void break_patch(struct scene *scene, struct broken *broken)
 	for (uint32_t p = 0; p < scene->hierarchy.patch_count; p++)
 		if (scene->seen_px[p] > scene->seen_px[best])
 			best = p;
-	broken->solid = &scene->geometry.patches[best].content.solid;
-	broken->piece_count = broken->solid->piece_count;
-	broken->solid->piece_count = 0;
+	broken->bvh = &scene->geometry.patches[best].content.bvh;
+	broken->piece_count = broken->bvh->piece_count;
+	broken->bvh->piece_count = 0;
 }
 
 /* As if each had been there for long. */
@@ -226,9 +226,9 @@ static void break_fades(struct scene *scene)
 }
 
 /* Pixels that each face slot colours. */
-static void count_faces(const struct scene *scene, float pixels[TILES_FACES_MOST])
+static void count_faces(const struct scene *scene, float pixels[TILES_FACES_MAX])
 {
-	memset(pixels, 0, TILES_FACES_MOST * sizeof(*pixels));
+	memset(pixels, 0, TILES_FACES_MAX * sizeof(*pixels));
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		const struct piece_state *state =
@@ -245,11 +245,11 @@ static void count_faces(const struct scene *scene, float pixels[TILES_FACES_MOST
 	}
 }
 
-static uint32_t take_most(float pixels[TILES_FACES_MOST])
+static uint32_t take_most(float pixels[TILES_FACES_MAX])
 {
 	uint32_t most = 0;
 
-	for (uint32_t i = 1; i < TILES_FACES_MOST; i++)
+	for (uint32_t i = 1; i < TILES_FACES_MAX; i++)
 		if (pixels[i] > pixels[most])
 			most = i;
 	pixels[most] = -1;
@@ -259,7 +259,7 @@ static uint32_t take_most(float pixels[TILES_FACES_MOST])
 /* The two faces that colour most exchange their pictures. */
 static void break_sample(struct scene *scene)
 {
-	float pixels[TILES_FACES_MOST];
+	float pixels[TILES_FACES_MAX];
 	uint16_t slots[TILES_CELLS][TILES_CELLS];
 
 	count_faces(scene, pixels);
@@ -345,8 +345,8 @@ static void draw_moment(struct bench *bench, uint32_t i)
 		after = stage_read(stage);
 		compare(bench, m, before, after);
 		free(after);
-		if (broken.solid)
-			broken.solid->piece_count = broken.piece_count;
+		if (broken.bvh)
+			broken.bvh->piece_count = broken.piece_count;
 	}
 	free(before);
 }
@@ -368,9 +368,9 @@ static double settling_ms(const struct bench *bench, uint32_t first, uint32_t co
 
 static void report(const struct bench *bench)
 {
-	static double cpu[FRAMES_MOST], stops[LEGS_MOST], rests[LEGS_MOST];
+	static double cpu[FRAMES_MAX], stops[LEGS_MAX], rests[LEGS_MAX];
 	uint32_t cpus = 0, stop_count = 0, moving = 0, popping = 0, holes = 0, popped_most = 0;
-	double moving_sum = 0, moving_least = 99, rest_sum = 0, median;
+	double moving_sum = 0, moving_least = 99, accumulation_sum = 0, median;
 	char path[512];
 	FILE *file;
 
@@ -396,7 +396,7 @@ static void report(const struct bench *bench)
 		       bench->moment[i + count].judge == m->judge)
 			count++;
 		rests[stop_count] = bench->moment[i + count - 1].psnr;
-		rest_sum += rests[stop_count];
+		accumulation_sum += rests[stop_count];
 		/* The first rest begins with nothing at all: a start, not a stop. */
 		stops[stop_count++] = settling_ms(bench, i, count);
 		i += count - 1;
@@ -410,7 +410,7 @@ static void report(const struct bench *bench)
 		fprintf(file,
 			"\"moving_db\": %.2f, \"moving_least_db\": %.2f, \"rest_db\": %.2f, "
 			"\"stops_ms\": [",
-			moving_sum / moving, moving_least, rest_sum / stop_count);
+			moving_sum / moving, moving_least, accumulation_sum / stop_count);
 		for (uint32_t i = 0; i < stop_count; i++)
 			fprintf(file, "%s%.0f", i ? ", " : "", stops[i]);
 		fprintf(file, "], \"stop_median_ms\": %.0f, ",
@@ -482,7 +482,7 @@ int main(int argc, char **argv)
 						.bits_a_second = 10000000,
 						.scene = kiosk_scene_options(&profile_default,
 									     SCENE_LUMIGRAPH) };
-	bench.visit = argv[2];
+	bench.presence = argv[2];
 	bench.out = argv[3];
 	bench.fps = 30;
 	for (int i = 4; i + 1 < argc; i += 2)

@@ -116,7 +116,7 @@ static void look(const struct overlay *overlay)
 	printf("{\"part\": \"%s\", \"first_frame_ms\": %.1f, \"whole_ms\": %.1f, \"frames\": %u, "
 	       "\"with_pictures_ms\": %.1f, \"words_cpu_ms\": %.2f, \"first_frame_cpu_ms\": %.1f, "
 	       "\"whole_cpu_ms\": %.1f}\n",
-	       info_part(story_info(kiosk.shown.story), (uint32_t)part)->id,
+	       info_part(information_view_info(kiosk.shown.view), (uint32_t)part)->id,
 	       (double)(opening.first_us - opening.began_us) / 1000,
 	       (double)(opening.whole_us - opening.began_us) / 1000, opening.whole_frames,
 	       (double)(now_us - opening.began_us) / 1000, (double)opening.words_us / 1000,
@@ -127,7 +127,7 @@ static void look(const struct overlay *overlay)
 int __wrap_frame_draw(struct kiosk *of)
 {
 	const int rc = __real_frame_draw(of);
-	const struct overlay *overlay = story_overlay(kiosk.shown.story);
+	const struct overlay *overlay = information_view_overlay(kiosk.shown.view);
 
 	if (overlay)
 		look(overlay);

@@ -26,11 +26,11 @@ struct bench {
 	const char *release, *views, *out, *truth;
 	struct stage_options options;
 	struct stage stage;
-	struct camera camera[STAGE_VIEWS_MOST];
+	struct camera camera[STAGE_VIEWS_MAX];
 	uint32_t view_count;
 	double trace_db;
 	uint64_t bytes_to_db; /* of the first view; 0: not reached */
-	double psnr[STAGE_VIEWS_MOST];
+	double psnr[STAGE_VIEWS_MAX];
 	uint32_t scored;
 	FILE *lines;
 };
@@ -164,7 +164,7 @@ int main(int argc, char **argv)
 	char path[512];
 
 	parse(&bench, argc, argv);
-	bench.view_count = stage_read_views(bench.camera, STAGE_VIEWS_MOST, bench.views,
+	bench.view_count = stage_read_views(bench.camera, STAGE_VIEWS_MAX, bench.views,
 					    bench.options.width_px, bench.options.height_px);
 	stage_open(&bench.stage, &bench.options);
 	mkdir(bench.out, 0777);

@@ -13,7 +13,7 @@
 
 enum {
 	STAGE_IN_FLIGHT = 64,
-	STAGE_VIEWS_MOST = 1000,
+	STAGE_VIEWS_MAX = 1000,
 	STAGE_OBJECT_OVERHEAD = 40, /* bytes of a range's headers, beside its object's */
 };
 

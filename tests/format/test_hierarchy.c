@@ -164,8 +164,8 @@ static void does_not_encode_what_breaks_a_rule(void **state)
 /* Sound compression around unsound numbers: the decoder judges by the same rules. */
 static void refuses_well_packed_nonsense(void **state)
 {
-	enum { HEADER = 9, RAW_MOST = 4096 };
-	uint8_t raw[RAW_MOST], packed[2 * RAW_MOST];
+	enum { HEADER = 9, RAW_MAX = 4096 };
+	uint8_t raw[RAW_MAX], packed[2 * RAW_MAX];
 	struct example example;
 	struct buffer payload;
 	size_t size, refused = 0;

@@ -62,7 +62,7 @@ static struct buffer encoded(const struct label_group *group)
 static void every_corner_of_a_divided_triangle_has_its_place(void **state)
 {
 	(void)state;
-	for (int level = LABEL_LEVEL_LEAST; level <= LABEL_LEVEL_MOST; level++) {
+	for (int level = LABEL_LEVEL_MIN; level <= LABEL_LEVEL_MAX; level++) {
 		int n = 1 << level;
 		uint32_t next = 0;
 
@@ -177,7 +177,7 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	e.border.triangle = TRIANGLES;
 	CHECK(encoding_of(&e) == -EINVAL);
 	example_init(&e);
-	e.border.level = LABEL_LEVEL_MOST + 1;
+	e.border.level = LABEL_LEVEL_MAX + 1;
 	CHECK(encoding_of(&e) == -EINVAL);
 	example_init(&e);
 	memcpy(e.parts[0].id, "a b", 4);

@@ -15,7 +15,7 @@ static const uint8_t text[] = "a corner of a lintel";
 static const struct message samples[] = {
 	{ .kind = MESSAGE_RELEASE, .release = { some, 4096, false } },
 	{ .kind = MESSAGE_RELEASE, .release = { other, 7, true } },
-	{ .kind = MESSAGE_WANT, .want = { some, other, 70000, OBJECT_BYTES_MOST, 1234567 } },
+	{ .kind = MESSAGE_WANT, .want = { some, other, 70000, OBJECT_BYTES_MAX, 1234567 } },
 	{ .kind = MESSAGE_DROP, .drop = some },
 	{ .kind = MESSAGE_KEEP, .keep = other },
 	{ .kind = MESSAGE_ASK_META, .period_s = 3600 },
@@ -33,7 +33,7 @@ static struct buffer encoded(const struct message *message)
 {
 	struct buffer out;
 
-	buffer_init(&out, MESSAGE_BYTES_MOST);
+	buffer_init(&out, MESSAGE_BYTES_MAX);
 	message_encode(&out, message);
 	CHECK(out.error == 0);
 	return out;
@@ -64,7 +64,7 @@ static void keeps_every_field(void **state)
 	(void)state;
 	CHECK(message_decode(&back, buffer_bytes(&wire)) == 0);
 	CHECK(hash_equal(back.want.hash, some) && hash_equal(back.want.page, other));
-	CHECK(back.want.offset == 70000 && back.want.size == OBJECT_BYTES_MOST);
+	CHECK(back.want.offset == 70000 && back.want.size == OBJECT_BYTES_MAX);
 	CHECK(back.want.priority == 1234567);
 	buffer_finish(&wire);
 	wire = encoded(&samples[12]);
@@ -126,19 +126,19 @@ static void refuses_sizes_out_of_range(void **state)
 {
 	static const struct message bad[] = {
 		{ .kind = MESSAGE_RELEASE, .release = { some, 0, false } },
-		{ .kind = MESSAGE_RELEASE, .release = { some, OBJECT_BYTES_MOST + 1, false } },
+		{ .kind = MESSAGE_RELEASE, .release = { some, OBJECT_BYTES_MAX + 1, false } },
 		{ .kind = MESSAGE_RELEASE, .release = { { { 0 } }, 10, false } },
 		{ .kind = MESSAGE_WANT, .want = { some, other, 0, 0, 0 } },
-		{ .kind = MESSAGE_WANT, .want = { some, other, 0, OBJECT_BYTES_MOST + 1, 0 } },
+		{ .kind = MESSAGE_WANT, .want = { some, other, 0, OBJECT_BYTES_MAX + 1, 0 } },
 		{ .kind = MESSAGE_WANT, .want = { { { 0 } }, other, 0, 1, 0 } },
 		{ .kind = MESSAGE_OBJECT, .object = { some, { text, 5 }, 6 } },
-		{ .kind = MESSAGE_OBJECT, .object = { some, { NULL, 0 }, OBJECT_BYTES_MOST + 1 } },
+		{ .kind = MESSAGE_OBJECT, .object = { some, { NULL, 0 }, OBJECT_BYTES_MAX + 1 } },
 		{ .kind = MESSAGE_MISSING, .missing = { some, MISSING_DAMAGED + 1 } },
 		{ .kind = MESSAGE_META, .meta = { META_TIMESTAMP + 1, 0, { text, 4 } } },
 		{ .kind = MESSAGE_META, .meta = { META_ROOT, 0, { NULL, 0 } } },
 		{ .kind = MESSAGE_META,
 		  .meta = { META_ROOT, 0, { text, 4 }, META_FROM_STICK + 1 } },
-		{ .kind = MESSAGE_ASK_META, .period_s = MESSAGE_PERIOD_S_MOST + 1 },
+		{ .kind = MESSAGE_ASK_META, .period_s = MESSAGE_PERIOD_S_MAX + 1 },
 		{ .kind = MESSAGE_STATUS, .status = { .online = 2 } },
 		{ .kind = 200 },
 	};
@@ -155,18 +155,18 @@ static void refuses_sizes_out_of_range(void **state)
 
 static void encodes_no_object_past_the_inline_ceiling(void **state)
 {
-	uint8_t *large = calloc(1, MESSAGE_INLINE_MOST + 1);
+	uint8_t *large = calloc(1, MESSAGE_INLINE_MAX + 1);
 	struct message message = { .kind = MESSAGE_OBJECT };
 	struct buffer wire;
 
 	(void)state;
 	message.object.hash = some;
-	message.object.bytes = (struct bytes){ large, MESSAGE_INLINE_MOST };
-	message.object.size = MESSAGE_INLINE_MOST;
+	message.object.bytes = (struct bytes){ large, MESSAGE_INLINE_MAX };
+	message.object.size = MESSAGE_INLINE_MAX;
 	wire = encoded(&message);
-	CHECK(wire.size <= MESSAGE_BYTES_MOST);
+	CHECK(wire.size <= MESSAGE_BYTES_MAX);
 	buffer_clear(&wire);
-	message.object.bytes.size = message.object.size = MESSAGE_INLINE_MOST + 1;
+	message.object.bytes.size = message.object.size = MESSAGE_INLINE_MAX + 1;
 	message_encode(&wire, &message);
 	CHECK(wire.error == -EFBIG);
 	buffer_finish(&wire);

@@ -70,7 +70,7 @@ static void a_release_goes_round(void **state)
 	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(release_encode(&file, &sample_release, &keys[3], 1) == 0);
 	CHECK(release_decode(&back, &trust, buffer_bytes(&file), NULL) == 0);
 	CHECK(back.sequence == 7 && back.expires_s == 1900000000 && back.root_bytes == 345);
@@ -85,7 +85,7 @@ static void no_damage_gives_another_release(void **state)
 	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(release_encode(&file, &sample_release, &keys[3], 1) == 0);
 	file.size--; /* the newline at the end is not needed */
 	refuses_every_truncation(decode_release, &trust, buffer_bytes(&file));
@@ -101,7 +101,7 @@ static void a_wrong_or_missing_key_is_rejected(void **state)
 	struct release back;
 
 	(void)state;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(release_encode(&file, &sample_release, &keys[4], 1) == 0); /* the timestamp's */
 	CHECK(release_decode(&back, &trust, buffer_bytes(&file), &why) == -EKEYREJECTED);
 	CHECK(why != NULL);
@@ -121,7 +121,7 @@ static void no_file_passes_for_another_roles(void **state)
 	(void)state;
 	/* The same key in both roles, so that only the role's name tells them apart. */
 	memcpy(trust.roles[META_RELEASE].keys[0], keys[4].public_key, KEY_BYTES);
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(timestamp_encode(&file, &stamp, &keys[4], 1) == 0);
 	CHECK(timestamp_decode(&back, &trust, buffer_bytes(&file), NULL) == 0);
 	CHECK(back.sequence == 3 && back.expires_s == 9 && back.release.bytes[0] == 5);
@@ -145,7 +145,7 @@ static void a_timestamp_may_say_when_it_was_signed(void **state)
 		struct timestamp back;
 		struct buffer file;
 
-		buffer_init(&file, METADATA_FILE_BYTES_MOST);
+		buffer_init(&file, METADATA_FILE_BYTES_MAX);
 		CHECK(timestamp_encode(&file, &stamp, &keys[4], 1) == 0);
 		CHECK(timestamp_decode(&back, &trust, buffer_bytes(&file), NULL) == times[i].rc);
 		CHECK(times[i].rc < 0 || back.issued_s == times[i].issued_s);
@@ -160,7 +160,7 @@ static void a_root_needs_its_threshold(void **state)
 	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, keys, 2) == 0);
 	CHECK(trust_root_first(&back, buffer_bytes(&file), NULL) == 0);
 	CHECK(back.version == 1 && back.roles[META_ROOT].key_count == 3);
@@ -189,7 +189,7 @@ static int next_signed(uint32_t version, const int *signers, uint32_t count, boo
 	}
 	for (uint32_t i = 0; i < count; i++)
 		with[i] = keys[signers[i]];
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &next, with, count) == 0);
 	rc = trust_root_next(&trust, buffer_bytes(&file), NULL);
 	CHECK(trust.version == (rc == 0 ? version : 1)); /* unchanged on failure */
@@ -292,7 +292,7 @@ static void a_key_named_twice_is_no_root(void **state)
 
 	(void)state;
 	memcpy(root.roles[META_ROOT].keys[1], keys[0].public_key, KEY_BYTES);
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, keys, 3) == 0);
 	CHECK(trust_root_first(&back, buffer_bytes(&file), NULL) == -EBADMSG);
 	buffer_clear(&file);

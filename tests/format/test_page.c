@@ -9,7 +9,7 @@
 
 static struct page_child children[] = {
 	{ .hash.bytes = { 1 }, .size = 100, .is_page = true },
-	{ .hash.bytes = { 2, 9 }, .size = OBJECT_BYTES_MOST, .is_page = false },
+	{ .hash.bytes = { 2, 9 }, .size = OBJECT_BYTES_MAX, .is_page = false },
 	{ .hash.bytes = { 3 }, .size = 1, .is_page = false },
 };
 
@@ -53,7 +53,7 @@ static void gives_back_children_and_payload(void **state)
 	}
 	CHECK(back.payload.size == 7 && memcmp(back.payload.data, "payload", 7) == 0);
 	CHECK(page_child_offset(&back, 0) == 0);
-	CHECK(page_child_offset(&back, 2) == 100 + OBJECT_BYTES_MOST);
+	CHECK(page_child_offset(&back, 2) == 100 + OBJECT_BYTES_MAX);
 	page_finish(&back);
 	page_finish(NULL);
 	buffer_finish(&buffer);
@@ -115,15 +115,15 @@ static void refuses_what_no_encoder_writes(void **state)
 	CHECK(decode_with(11, 0xff) == -EBADMSG);   /* absurdly more */
 	CHECK(decode_with(15, 0xff) == -EBADMSG);   /* absurd payload */
 	CHECK(decode_with(16, 0) == -EBADMSG);      /* an empty child */
-	CHECK(decode_with(18, 0x41) == -EBADMSG);   /* a page above PAGE_BYTES_MOST */
-	CHECK(decode_with(16 + 20, 1) == -EBADMSG); /* above OBJECT_BYTES_MOST */
+	CHECK(decode_with(18, 0x41) == -EBADMSG);   /* a page above PAGE_BYTES_MAX */
+	CHECK(decode_with(16 + 20, 1) == -EBADMSG); /* above OBJECT_BYTES_MAX */
 	CHECK(decode_with(16 + 4, 0) == -EBADMSG);  /* the zero hash */
 	CHECK(decode_with(16 + 40 + 3, 0x80) == 0); /* another flag is another page */
 }
 
 static void refuses_to_write_too_large_a_page(void **state)
 {
-	static uint8_t payload[PAGE_BYTES_MOST];
+	static uint8_t payload[PAGE_BYTES_MAX];
 	struct page page = { .kind = PAGE_INFO, .payload = { payload, sizeof(payload) } };
 	struct buffer buffer;
 

@@ -68,7 +68,7 @@ static void check_equal(const struct patch_mesh *a, const struct patch_mesh *b)
 static void gives_back_every_bit_of_every_patch(void **state)
 {
 	struct patch_mesh patches[3] = { sheet(SIDE, 1), sheet(2, 77), sheet(9, 3) };
-	struct patch_mesh back[GROUP_PATCHES_MOST];
+	struct patch_mesh back[GROUP_PATCHES_MAX];
 	struct buffer object;
 	uint32_t count;
 
@@ -90,7 +90,7 @@ static void gives_back_every_bit_of_every_patch(void **state)
 /* What a release rounds to: fewer digits, fewer bytes, and still every bit comes back. */
 static void tells_round_numbers_in_fewer_bytes(void **state)
 {
-	struct patch_mesh mesh = sheet(SIDE, 1), back[GROUP_PATCHES_MOST];
+	struct patch_mesh mesh = sheet(SIDE, 1), back[GROUP_PATCHES_MAX];
 	struct buffer object;
 	size_t exact_bytes;
 	uint32_t count;
@@ -126,7 +126,7 @@ static void tells_round_numbers_in_fewer_bytes(void **state)
 
 static void keeps_vertices_that_no_triangle_names(void **state)
 {
-	struct patch_mesh mesh = sheet(4, 5), back[GROUP_PATCHES_MOST];
+	struct patch_mesh mesh = sheet(4, 5), back[GROUP_PATCHES_MAX];
 	struct buffer object;
 	uint32_t count;
 
@@ -150,7 +150,7 @@ static void refuses_to_encode_what_is_no_patch(void **state)
 	(void)state;
 	buffer_init(&object, 1 << 20);
 	CHECK(patch_group_encode(&object, &mesh, 0) == -EINVAL);
-	CHECK(patch_group_encode(&object, &mesh, GROUP_PATCHES_MOST + 1) == -EINVAL);
+	CHECK(patch_group_encode(&object, &mesh, GROUP_PATCHES_MAX + 1) == -EINVAL);
 	mesh.indices[5] = (uint16_t)mesh.vertex_count;
 	CHECK(patch_group_encode(&object, &mesh, 1) == -EINVAL);
 	mesh.triangle_count = 0;
@@ -161,7 +161,7 @@ static void refuses_to_encode_what_is_no_patch(void **state)
 
 static int decode_exact(const uint8_t *data, size_t size)
 {
-	struct patch_mesh back[GROUP_PATCHES_MOST];
+	struct patch_mesh back[GROUP_PATCHES_MAX];
 	uint8_t *exact = malloc(size ? size : 1); /* no slack for the sanitizer */
 	uint32_t count;
 	int rc;

@@ -92,8 +92,8 @@ static void refuses_impossible_grids(void **state)
 		{ 24, 0 },    /* no points */
 		{ 25, 65 },   /* too many */
 		{ 27, 0 },    /* no level */
-		{ 27, SAMPLE_LEVELS_MOST + 1 }, /* too many levels */
-		{ 28, 0x1d },                   /* a fifth brick of four */
+		{ 27, SAMPLE_LEVELS_MAX + 1 }, /* too many levels */
+		{ 28, 0x1d },                  /* a fifth brick of four */
 	};
 	struct samples_page page = a_page();
 	struct buffer wire;
@@ -153,7 +153,7 @@ static void keeps_a_face(void **state)
 
 	(void)state;
 	face.level_count = 3;
-	for (uint32_t i = 0; i < FACE_TILES_MOST; i++)
+	for (uint32_t i = 0; i < FACE_TILES_MAX; i++)
 		face.tile_child[i] = i < 21 && i % 3 ? next++ : SAMPLE_NONE;
 	buffer_init(&wire, 1000);
 	face_page_encode(&wire, &face);
@@ -172,7 +172,7 @@ static void numbers_tiles_from_the_coarsest(void **state)
 	uint32_t expected = 0;
 
 	(void)state;
-	for (uint32_t level = 0; level < SAMPLE_LEVELS_MOST; level++) {
+	for (uint32_t level = 0; level < SAMPLE_LEVELS_MAX; level++) {
 		for (uint32_t n = 0; n < 1u << 2 * level; n++) {
 			uint32_t row, column;
 
@@ -181,7 +181,7 @@ static void numbers_tiles_from_the_coarsest(void **state)
 			CHECK(face_tile_index(level, row, column) == expected++);
 		}
 	}
-	CHECK(expected == FACE_TILES_MOST);
+	CHECK(expected == FACE_TILES_MAX);
 }
 
 static void numbers_of_a_square_of_tiles_follow_one_another(void **state)

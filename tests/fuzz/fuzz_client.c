@@ -48,7 +48,7 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 		    enum meta_source source)
 {
 	(void)data, (void)version;
-	if (role < META_ROOT || role > META_TIMESTAMP || bytes.size > MESSAGE_META_BYTES_MOST ||
+	if (role < META_ROOT || role > META_TIMESTAMP || bytes.size > MESSAGE_META_BYTES_MAX ||
 	    source < META_FROM_SERVER || source > META_FROM_STICK)
 		abort();
 }
@@ -140,7 +140,7 @@ static void send_object(int socket, uint8_t which, uint8_t kind)
 
 	if (fd >= 0)
 		message.object.bytes = (struct bytes){ NULL, 0 };
-	buffer_init(&packet, MESSAGE_BYTES_MOST);
+	buffer_init(&packet, MESSAGE_BYTES_MAX);
 	message_encode(&packet, &message);
 	send_packet(socket, buffer_bytes(&packet), fd, 1);
 	buffer_finish(&packet);

@@ -286,7 +286,7 @@ static bool has_room(void *data)
 }
 
 /* As a message can say it (format/message.h): one of our objects, or one at any place. */
-static void want(struct bring *bring, struct reader *in)
+static void want(struct downloader *downloader, struct reader *in)
 {
 	const uint8_t n = reader_u8(in);
 	struct message_want want = { .hash = names[n % OBJECTS],
@@ -302,27 +302,28 @@ static void want(struct bring *bring, struct reader *in)
 	}
 	if ((n & 0xc0) == 0x40)
 		want.page = (struct hash){ { 0 } };
-	bring_want(bring, &want);
+	downloader_want(downloader, &want);
 }
 
-static void event(struct bring *bring, struct reader *in)
+static void event(struct downloader *downloader, struct reader *in)
 {
 	const uint8_t what = reader_u8(in);
 
 	switch (what % 10) {
 	case 0:
-		bring_use_release(bring, (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } }, 100,
-				  what & 0x80);
+		downloader_use_release(downloader,
+				       (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } }, 100,
+				       what & 0x80);
 		break;
 	case 1:
 	case 2:
-		want(bring, in);
+		want(downloader, in);
 		break;
 	case 3:
-		bring_drop(bring, names[what / 10 % OBJECTS]);
+		downloader_drop(downloader, names[what / 10 % OBJECTS]);
 		break;
 	case 4:
-		bring_keep(bring, names[what / 10 % OBJECTS]);
+		downloader_keep(downloader, names[what / 10 % OBJECTS]);
 		break;
 	case 5:
 	case 6:
@@ -333,17 +334,17 @@ static void event(struct bring *bring, struct reader *in)
 		break;
 	case 8:
 		world.is_full = what & 0x80;
-		bring_ask_again(bring);
+		downloader_ask_again(downloader);
 		break;
 	case 9:
 		if (what & 0x80)
-			bring_forget_all(bring);
+			downloader_forget_all(downloader);
 		else
 			world.locator_cached = what & 0x40;
 		break;
 	}
-	bring_work(bring);
-	(void)bring_due_ms(bring);
+	downloader_work(downloader);
+	(void)downloader_due_ms(downloader);
 }
 
 static void begin(void)
@@ -364,9 +365,9 @@ static void begin(void)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	struct bring_options options = { .link = &world.link,
-					 .events = { on_object, on_missing, has_room } };
-	struct bring *bring;
+	struct downloader_options options = { .link = &world.link,
+					      .events = { on_object, on_missing, has_room } };
+	struct downloader *downloader;
 	struct reader in;
 
 	begin();
@@ -374,12 +375,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	world.now_ms = 1000;
 	link_init(&world.link);
 	world.link.refusal = &world.refusal;
-	if (bring_create(&bring, &options) < 0)
+	if (downloader_create(&downloader, &options) < 0)
 		abort();
 	reader_init(&in, (struct bytes){ data, size });
 	for (int i = 0; i < EVENTS_MAX && reader_left(&in) > 0; i++)
-		event(bring, &in);
-	bring_destroy(bring);
+		event(downloader, &in);
+	downloader_destroy(downloader);
 	if (world.open > 0 || world.link.in_flight > 0)
 		abort();
 	return 0;

@@ -1,9 +1,9 @@
 /* A scan in OBJ, STL, OFF or glTF, and a reader of it that was taken over: assimp itself is behind
- * a sandbox (pipeline/sandbox.h), whose child may crash on any file. What the parent believes of
- * such a child is ours. Here the sandbox is this file: the first byte says whether the child gives
- * back a result, the rest is what it writes into the memory that it shares with its parent, and
- * after a "gopmesh", the mesh it claims to have read (with its hash made right). The files
- * themselves are left to tests/pipeline/test_import.c. */
+ * a sandbox (pipeline/import/sandbox.h), whose child may crash on any file. What the parent
+ * believes of such a child is ours. Here the sandbox is this file: the first byte says whether the
+ * child gives back a result, the rest is what it writes into the memory that it shares with its
+ * parent, and after a "gopmesh", the mesh it claims to have read (with its hash made right). The
+ * files themselves are left to tests/pipeline/test_import.c. */
 #include <errno.h>
 #include <math.h>
 #include <sys/mman.h>

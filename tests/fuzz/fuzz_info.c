@@ -35,7 +35,7 @@ static void ask_of_tour(const struct info *info, uint32_t t, const char *languag
 	const struct info_tour *tour = info_tour(info, t);
 
 	if (!info_tour_text(info, t, language).title || info_find_tour(info, tour->id) < 0 ||
-	    tour->stop_count > INFO_STOPS_MOST)
+	    tour->stop_count > INFO_STOPS_MAX)
 		abort();
 	for (uint32_t s = 0; s < tour->stop_count; s++)
 		if (!info_stop_caption(info, t, s, language) ||

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
 	if (message_decode(&message, (struct bytes){ data, size }) < 0)
 		return 0;
-	buffer_init(&again, MESSAGE_BYTES_MOST);
+	buffer_init(&again, MESSAGE_BYTES_MAX);
 	message_encode(&again, &message);
 	if (again.error || again.size != size || memcmp(again.data, data, size) != 0)
 		abort();

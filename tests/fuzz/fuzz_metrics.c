@@ -14,16 +14,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	struct buffer out;
 	double number = 0;
 
-	figures_valid(text, "gopura_kiosk_");
-	figures_find(text, "gopura_kiosk_frames_total", &number);
-	if (!figures_label(text, "gopura_kiosk_refusal_info", "why", value, sizeof(value)))
+	metrics_valid(text, "gopura_kiosk_");
+	metrics_find(text, "gopura_kiosk_frames_total", &number);
+	if (!metrics_label(text, "gopura_kiosk_refusal_info", "why", value, sizeof(value)))
 		return 0;
 	if (strlen(value) >= sizeof(value))
 		abort();
-	buffer_init(&out, FIGURES_BYTES_MOST);
-	figures_info(&out, "gopura_kiosk_refusal_info", "Why.", &label, 1);
-	figures_gauge(&out, "gopura_kiosk_frames", "How many.", number);
-	if (out.error || !figures_valid(buffer_bytes(&out), "gopura_kiosk_"))
+	buffer_init(&out, METRICS_BYTES_MAX);
+	metrics_info(&out, "gopura_kiosk_refusal_info", "Why.", &label, 1);
+	metrics_gauge(&out, "gopura_kiosk_frames", "How many.", number);
+	if (out.error || !metrics_valid(buffer_bytes(&out), "gopura_kiosk_"))
 		abort();
 	buffer_finish(&out);
 	return 0;

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void decode(struct bytes object)
 {
-	struct patch_mesh patches[GROUP_PATCHES_MOST];
+	struct patch_mesh patches[GROUP_PATCHES_MAX];
 	uint32_t patch_count;
 	struct buffer again;
 

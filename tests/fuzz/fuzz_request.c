@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	if (status != 0 && status != 200 && status != 400 && status != 404 && status != 405 &&
 	    status != 431 && status != 505)
 		abort();
-	if (status == 0 && size >= REQUEST_BYTES_MOST)
+	if (status == 0 && size >= REQUEST_BYTES_MAX)
 		abort();
 	for (size_t n = size > 64 ? size - 64 : 0; n < size; n++) {
 		const int before = request_parse(&again, (struct bytes){ data, n });

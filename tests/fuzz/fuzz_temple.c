@@ -10,7 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static bool keeps_its_limits(const struct content *c)
 {
 	const float length = c->sun[0] * c->sun[0] + c->sun[1] * c->sun[1] + c->sun[2] * c->sun[2];
-	bool good = c->scan_count >= 1 && c->scan_count <= CONTENT_SCANS_MOST &&
+	bool good = c->scan_count >= 1 && c->scan_count <= CONTENT_SCANS_MAX &&
 		    strlen(c->name) < sizeof(c->name) && c->import.metres_per_unit > 0 &&
 		    isfinite(c->import.metres_per_unit) && fabsf(length - 1) < 0.01f &&
 		    c->grid_points >= 4 && c->grid_points <= 32 && c->face_px >= 128 &&
@@ -18,7 +18,7 @@ static bool keeps_its_limits(const struct content *c)
 		    (c->patch_triangles == 0 ||
 		     (c->patch_triangles >= 256 && c->patch_triangles <= 4000)) &&
 		    c->publish_share > 0 && c->publish_share <= 1 && c->language_count >= 1 &&
-		    c->language_count <= CONTENT_LANGUAGES_MOST;
+		    c->language_count <= CONTENT_LANGUAGES_MAX;
 
 	for (int k = 0; k < 3 && c->has_start; k++)
 		good = good && isfinite(c->start_eye_m[k]) && isfinite(c->start_target_m[k]);

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		return 0;
 	for (size_t i = 1; i < replay.count; i++)
 		if (replay.events[i].time_us < replay.events[i - 1].time_us ||
-		    replay.events[i].contact >= TOUCH_CONTACTS_MOST)
+		    replay.events[i].contact >= TOUCH_CONTACTS_MAX)
 			abort();
 	touch_replay_finish(&replay);
 	return 0;

@@ -8,12 +8,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void put_in_order(struct buffer *out)
 {
-	struct tally *tally;
+	struct usage *usage;
 
-	if (tally_create(&tally, scratch_path("visits.csv"), NULL, 1795000000) < 0)
+	if (usage_create(&usage, scratch_path("visits.csv"), NULL, 1795000000) < 0)
 		abort();
-	tally_destroy(tally);
-	buffer_init(out, TALLY_FILE_MOST);
+	usage_destroy(usage);
+	buffer_init(out, USAGE_FILE_MAX);
 	if (buffer_read_file(out, scratch_path("visits.csv")) < 0)
 		abort();
 }

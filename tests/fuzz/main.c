@@ -13,9 +13,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { MUTATIONS_PER_FILE = 200, TRUNCATIONS_MOST = 600, RUNS_MAX = 4000 };
+enum { MUTATIONS_PER_FILE = 200, TRUNCATIONS_MAX = 600, RUNS_MAX = 4000 };
 
-static size_t mutations = MUTATIONS_PER_FILE, truncations = TRUNCATIONS_MOST, runs;
+static size_t mutations = MUTATIONS_PER_FILE, truncations = TRUNCATIONS_MAX, runs;
 
 static uint32_t random_state = 1;
 
@@ -109,7 +109,7 @@ static void limit_runs(size_t files)
 	const size_t each = RUNS_MAX / (files ? files : 1);
 
 	mutations = each / 4 < MUTATIONS_PER_FILE ? each / 4 + 1 : MUTATIONS_PER_FILE;
-	truncations = each * 3 / 4 < TRUNCATIONS_MOST ? each * 3 / 4 + 1 : TRUNCATIONS_MOST;
+	truncations = each * 3 / 4 < TRUNCATIONS_MAX ? each * 3 / 4 + 1 : TRUNCATIONS_MAX;
 }
 
 int main(int argc, char **argv)

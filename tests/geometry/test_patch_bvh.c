@@ -43,11 +43,11 @@ static float uniform(uint32_t *seed)
 }
 
 /* The place on the triangle, by its corners as the mesh came, is the one along the ray. */
-static bool is_where_it_says(const struct solid *solid, const float from[3],
-			     const float direction[3], float distance, const struct solid_hit *hit,
-			     const uint16_t *came)
+static bool is_where_it_says(const struct patch_bvh *bvh, const float from[3],
+			     const float direction[3], float distance,
+			     const struct patch_bvh_hit *hit, const uint16_t *came)
 {
-	const uint16_t *corner = &came[3 * solid->order[hit->triangle]];
+	const uint16_t *corner = &came[3 * bvh->order[hit->triangle]];
 	const float share[3] = { 1 - hit->u - hit->v, hit->u, hit->v };
 	float on_ray[3], on_triangle[3] = { 0 };
 	vec_add_scaled(on_ray, from, distance, direction);
@@ -55,7 +55,7 @@ static bool is_where_it_says(const struct solid *solid, const float from[3],
 		for (int i = 0; i < 3; i++)
 			on_triangle[i] +=
 				share[k] * (float)(lattice.origin_m[i] +
-						   lattice.step_m * solid->positions[corner[k]][i]);
+						   lattice.step_m * bvh->positions[corner[k]][i]);
 	return vec_distance(on_ray, on_triangle) < 1e-3f;
 }
 
@@ -63,12 +63,12 @@ static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
 {
 	(void)state;
 	struct patch_mesh mesh;
-	struct solid solid;
+	struct patch_bvh bvh;
 	uint32_t seed = 1, hits = 0;
 	make_bumps(&mesh);
 	uint16_t *came = malloc(3 * mesh.triangle_count * sizeof(*came));
 	memcpy(came, mesh.indices, 3 * mesh.triangle_count * sizeof(*came));
-	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	CHECK(patch_bvh_init(&bvh, &mesh, &lattice) == 0);
 	for (int i = 0; i < 2000; i++) {
 		float from[3], direction[3];
 		for (int k = 0; k < 3; k++) {
@@ -77,23 +77,23 @@ static void a_ray_meets_what_every_triangle_tried_alone_says(void **state)
 		}
 		vec_normalise(direction);
 		float found = INFINITY, nearest = INFINITY;
-		struct solid_hit where;
-		bool hit = solid_ray(&solid, from, direction, 0, &found, &where);
+		struct patch_bvh_hit where;
+		bool hit = patch_bvh_ray(&bvh, from, direction, 0, &found, &where);
 		/* One leaf of everything: the same test without the tree. */
-		struct solid flat = solid;
-		struct solid_node all = solid.nodes[0];
+		struct patch_bvh flat = bvh;
+		struct patch_bvh_node all = bvh.nodes[0];
 		all.right = 0;
 		flat.nodes = &all;
 		flat.node_count = 1;
-		CHECK(solid_ray(&flat, from, direction, 0, &nearest, NULL) == hit);
+		CHECK(patch_bvh_ray(&flat, from, direction, 0, &nearest, NULL) == hit);
 		CHECK(found == nearest);
 		hits += hit;
 		if (hit)
-			CHECK(is_where_it_says(&solid, from, direction, found, &where, came));
+			CHECK(is_where_it_says(&bvh, from, direction, found, &where, came));
 	}
 	CHECK(hits > 100 && hits < 1900);
 	free(came);
-	solid_finish(&solid);
+	patch_bvh_finish(&bvh);
 	patch_mesh_finish(&mesh);
 }
 
@@ -101,21 +101,21 @@ static void pieces_hold_every_triangle_once(void **state)
 {
 	(void)state;
 	struct patch_mesh mesh;
-	struct solid solid;
+	struct patch_bvh bvh;
 	make_bumps(&mesh);
-	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
+	CHECK(patch_bvh_init(&bvh, &mesh, &lattice) == 0);
 	uint32_t next = 0;
-	for (uint32_t i = 0; i < solid.piece_count; i++) {
-		const struct piece *piece = &solid.pieces[i];
+	for (uint32_t i = 0; i < bvh.piece_count; i++) {
+		const struct piece *piece = &bvh.pieces[i];
 		CHECK(piece->first_triangle == next && piece->triangle_count > 0);
-		CHECK(piece->triangle_count <= PIECE_TRIANGLES_MOST);
+		CHECK(piece->triangle_count <= PIECE_TRIANGLES_MAX);
 		for (int k = 0; k < PIECE_PROBES; k++)
-			CHECK(vec_distance(solid_probe(&solid, piece, k).at_m, piece->centre_m) <=
+			CHECK(vec_distance(patch_bvh_probe(&bvh, piece, k).at_m, piece->centre_m) <=
 			      piece->radius_m * 1.001f);
 		next += piece->triangle_count;
 	}
 	CHECK(next == mesh.triangle_count);
-	solid_finish(&solid);
+	patch_bvh_finish(&bvh);
 	patch_mesh_finish(&mesh);
 }
 
@@ -123,25 +123,25 @@ static void an_empty_patch_is_met_by_nothing(void **state)
 {
 	(void)state;
 	struct patch_mesh mesh = { 0 };
-	struct solid solid;
+	struct patch_bvh bvh;
 	const float from[3] = { 0 }, up[3] = { 0, 0, 1 };
 	float distance = INFINITY;
-	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
-	CHECK(!solid_ray(&solid, from, up, 0, &distance, NULL));
-	solid_finish(&solid);
+	CHECK(patch_bvh_init(&bvh, &mesh, &lattice) == 0);
+	CHECK(!patch_bvh_ray(&bvh, from, up, 0, &distance, NULL));
+	patch_bvh_finish(&bvh);
 }
 
 static void triangles_in_one_place_do_not_hang_the_split(void **state)
 {
 	(void)state;
 	struct patch_mesh mesh;
-	struct solid solid;
+	struct patch_bvh bvh;
 	make_bumps(&mesh);
 	for (uint32_t i = 0; i < mesh.vertex_count; i++)
 		memset(mesh.vertices[i].position, 0, sizeof(mesh.vertices[i].position));
-	CHECK(solid_init(&solid, &mesh, &lattice) == 0);
-	CHECK(solid.piece_count >= 1);
-	solid_finish(&solid);
+	CHECK(patch_bvh_init(&bvh, &mesh, &lattice) == 0);
+	CHECK(bvh.piece_count >= 1);
+	patch_bvh_finish(&bvh);
 	patch_mesh_finish(&mesh);
 }
 

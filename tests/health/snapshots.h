@@ -60,16 +60,16 @@ static inline void make_well(struct snapshot *snapshot)
 static inline void change(struct snapshot *snapshot, enum program program, const char *name,
 			  const char *text)
 {
-	struct buffer *figures = &snapshot->answers[program].text;
-	static char changed[FIGURES_BYTES_MOST];
+	struct buffer *metrics = &snapshot->answers[program].text;
+	static char changed[METRICS_BYTES_MAX];
 	const char *at, *end;
 
-	buffer_put_u8(figures, '\0');
-	at = strstr((char *)figures->data, name);
+	buffer_put_u8(metrics, '\0');
+	at = strstr((char *)metrics->data, name);
 	CHECK(at);
 	end = strchr(at, '\n');
-	snprintf(changed, sizeof(changed), "%.*s%s%s", (int)(at - (char *)figures->data),
-		 figures->data, text, *text ? end : end + 1);
+	snprintf(changed, sizeof(changed), "%.*s%s%s", (int)(at - (char *)metrics->data),
+		 metrics->data, text, *text ? end : end + 1);
 	set_text(snapshot, program, changed);
 }
 

@@ -114,7 +114,7 @@ static void nonsense_is_not_passed_on(void **state)
 
 static void more_than_a_program_may_say_is_nonsense(void **state)
 {
-	static const char *pieces[FIGURES_BYTES_MOST / 17 + 3];
+	static const char *pieces[METRICS_BYTES_MAX / 17 + 3];
 	const struct answer *kiosk = &snapshot.answers[PROGRAM_KIOSK];
 
 	(void)state;

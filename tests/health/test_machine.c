@@ -95,7 +95,7 @@ static void the_kernels_files_are_understood(void **state)
 
 static void long_files_are_cut(void **state)
 {
-	static char text[3 * MACHINE_FAULTS_BYTES_MOST];
+	static char text[3 * MACHINE_FAULTS_BYTES_MAX];
 	struct machine m;
 
 	(void)state;
@@ -105,7 +105,7 @@ static void long_files_are_cut(void **state)
 	write_file("/proc/cmdline", text);
 	write_file("/proc/uptime", text);
 	read_it(&m);
-	CHECK(strlen(m.faults) == MACHINE_FAULTS_BYTES_MOST - 1);
+	CHECK(strlen(m.faults) == MACHINE_FAULTS_BYTES_MAX - 1);
 	CHECK(strlen(m.slot) == sizeof(m.slot) - 1);
 	CHECK(isnan(m.uptime_s));
 }

@@ -13,7 +13,7 @@ static int begin(void **state)
 {
 	(void)state;
 	make_well(&snapshot);
-	buffer_init(&out, PAGE_BYTES_MOST);
+	buffer_init(&out, PAGE_BYTES_MAX);
 	return 0;
 }
 
@@ -77,12 +77,12 @@ static void metrics_are_the_programs_own_and_the_machines(void **state)
 	CHECK(strstr(ask(REQUEST_METRICS, false, &body),
 		     "Content-Type: text/plain; version=0.0.4; charset=utf-8\r\n"));
 	text = (struct bytes){ (const uint8_t *)body, strlen(body) };
-	CHECK(figures_valid(text, "gopura_"));
+	CHECK(metrics_valid(text, "gopura_"));
 	CHECK(begins(body, WELL_KIOSK WELL_FETCH));
-	CHECK(figures_find(text, "gopura_kiosk_up", &value) && value == 1);
-	CHECK(figures_find(text, "gopura_terminal_level", &value) && value == 0);
-	CHECK(figures_find(text, "gopura_terminal_temperature_celsius", &value) && value == 55);
-	CHECK(figures_find(text, "gopura_terminal_written_bytes_total", &value) && value == 3e9);
+	CHECK(metrics_find(text, "gopura_kiosk_up", &value) && value == 1);
+	CHECK(metrics_find(text, "gopura_terminal_level", &value) && value == 0);
+	CHECK(metrics_find(text, "gopura_terminal_temperature_celsius", &value) && value == 55);
+	CHECK(metrics_find(text, "gopura_terminal_written_bytes_total", &value) && value == 3e9);
 }
 
 static void what_is_not_known_is_not_told(void **state)
@@ -98,9 +98,9 @@ static void what_is_not_known_is_not_told(void **state)
 	buffer_clear(&snapshot.answers[PROGRAM_KIOSK].text);
 	ask(REQUEST_METRICS, false, &body);
 	text = (struct bytes){ (const uint8_t *)body, strlen(body) };
-	CHECK(figures_valid(text, "gopura_"));
-	CHECK(figures_find(text, "gopura_kiosk_up", &value) && value == 0);
-	CHECK(figures_find(text, "gopura_terminal_level", &value) && value == 2);
+	CHECK(metrics_valid(text, "gopura_"));
+	CHECK(metrics_find(text, "gopura_kiosk_up", &value) && value == 0);
+	CHECK(metrics_find(text, "gopura_terminal_level", &value) && value == 2);
 	CHECK(!strstr(body, "temperature") && !strstr(body, "nan"));
 	ask(REQUEST_OVERVIEW, false, &body);
 	CHECK(!strstr(body, "nan") && !strstr(body, "Temperature"));
@@ -137,13 +137,13 @@ static void a_page_of_the_longest_texts_fits(void **state)
 	(void)state;
 	buffer_clear(text);
 	buffer_put(text, "gopura_kiosk_release_info{root=\"", 32);
-	while (text->size < FIGURES_BYTES_MOST / 2)
+	while (text->size < METRICS_BYTES_MAX / 2)
 		buffer_put_u8(text, '<');
 	buffer_put(text, "\",name=\"", 8);
-	while (text->size < FIGURES_BYTES_MOST - 5)
+	while (text->size < METRICS_BYTES_MAX - 5)
 		buffer_put_u8(text, '<');
 	buffer_put(text, "\"} 1\n", 5);
-	CHECK(figures_valid(buffer_bytes(text), "gopura_kiosk_"));
+	CHECK(metrics_valid(buffer_bytes(text), "gopura_kiosk_"));
 	memset(snapshot.machine.faults, '<', sizeof(snapshot.machine.faults) - 1);
 	for (size_t i = 0; i + 1 < sizeof(snapshot.machine.faults); i += 100)
 		snapshot.machine.faults[i] = '\n';

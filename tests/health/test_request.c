@@ -81,7 +81,7 @@ static void a_head_is_waited_for_until_it_is_too_long(void **state)
 {
 	const char *whole = "GET /health HTTP/1.1\r\nHost: x\r\n\r\n";
 	const char *beginning = "GET / HTTP/1.1\r\nA: ";
-	static char text[REQUEST_BYTES_MOST + 64];
+	static char text[REQUEST_BYTES_MAX + 64];
 	struct request request;
 
 	(void)state;
@@ -93,10 +93,9 @@ static void a_head_is_waited_for_until_it_is_too_long(void **state)
 	}
 	memset(text, 'a', sizeof(text));
 	memcpy(text, beginning, strlen(beginning));
-	CHECK(request_parse(&request, (struct bytes){ (uint8_t *)text, REQUEST_BYTES_MOST - 1 }) ==
+	CHECK(request_parse(&request, (struct bytes){ (uint8_t *)text, REQUEST_BYTES_MAX - 1 }) ==
 	      0);
-	CHECK(request_parse(&request, (struct bytes){ (uint8_t *)text, REQUEST_BYTES_MOST }) ==
-	      431);
+	CHECK(request_parse(&request, (struct bytes){ (uint8_t *)text, REQUEST_BYTES_MAX }) == 431);
 	memcpy(text + sizeof(text) - 4, "\r\n\r\n", 4);
 	CHECK(request_parse(&request, (struct bytes){ (uint8_t *)text, sizeof(text) }) == 431);
 }

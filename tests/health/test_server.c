@@ -91,7 +91,7 @@ static void say(int fd, const char *text)
 }
 
 /* Asks for path and has room for little of the answer. */
-static int visit_slowly(const char *path)
+static int presence_slowly(const char *path)
 {
 	const int little = 4096, fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	char text[64];
@@ -161,7 +161,7 @@ static void slow_clients_are_cut_and_others_are_served_meanwhile(void **state)
 {
 	struct running server;
 	char text[64];
-	int slow[SERVER_CLIENTS_MOST + 4], fd;
+	int slow[SERVER_CLIENTS_MAX + 4], fd;
 
 	(void)state;
 	start(&server, 300, 200);
@@ -193,7 +193,7 @@ static void who_does_not_take_the_answer_is_cut(void **state)
 	(void)state;
 	answer_bytes = 130000;
 	start(&server, 300, 200);
-	fd = visit_slowly("/");
+	fd = presence_slowly("/");
 	finish(&server); /* did not wait for us */
 	close(fd);
 	start(&server, 60000, 200);
@@ -269,7 +269,7 @@ static void a_file_of_many_megabytes_arrives_whole(void **state)
 	(void)state;
 	make_file(20 << 20);
 	start(&server, 60000, 200);
-	CHECK(hear_file(visit_slowly("/visits.csv")) == file_bytes);
+	CHECK(hear_file(presence_slowly("/visits.csv")) == file_bytes);
 	finish(&server);
 	drop_file();
 }
@@ -294,7 +294,7 @@ static long resident_kib(void)
 static void slow_readers_of_a_file_take_no_memory_and_not_every_place(void **state)
 {
 	struct running server;
-	int slow[SERVER_CLIENTS_MOST - 1], refused = 0, fd;
+	int slow[SERVER_CLIENTS_MAX - 1], refused = 0, fd;
 	char text[64];
 	long before_kib;
 
@@ -303,7 +303,7 @@ static void slow_readers_of_a_file_take_no_memory_and_not_every_place(void **sta
 	start(&server, 60000, 200);
 	before_kib = resident_kib();
 	for (size_t i = 0; i < ARRAY_COUNT(slow); i++)
-		slow[i] = visit_slowly("/visits.csv");
+		slow[i] = presence_slowly("/visits.csv");
 	fd = visit();
 	say(fd, "GET /health HTTP/1.1\r\n\r\n");
 	hear(fd, text, sizeof(text));
@@ -316,7 +316,7 @@ static void slow_readers_of_a_file_take_no_memory_and_not_every_place(void **sta
 	}
 	CHECK(refused == (int)ARRAY_COUNT(slow) - SERVER_FILES_MAX);
 	/* Their places are free again. */
-	CHECK(hear_file(visit_slowly("/visits.csv")) == file_bytes);
+	CHECK(hear_file(presence_slowly("/visits.csv")) == file_bytes);
 	finish(&server);
 	drop_file();
 }
@@ -330,7 +330,7 @@ static void who_reads_a_file_too_slowly_is_cut(void **state)
 	make_file(2 << 20);
 	start(&server, 100, 200);
 	server.options.file_bytes_per_s = 8 << 20;
-	fd = visit_slowly("/visits.csv");
+	fd = presence_slowly("/visits.csv");
 	finish(&server); /* did not wait for us */
 	CHECK(hear_file(fd) < file_bytes);
 	drop_file();
@@ -345,7 +345,7 @@ static void a_file_that_shrinks_ends_its_answer(void **state)
 	(void)state;
 	make_file(8 << 20);
 	start(&server, 60000, 200);
-	fd = visit_slowly("/visits.csv");
+	fd = presence_slowly("/visits.csv");
 	CHECK(recv(fd, &first, 1, MSG_PEEK) == 1);
 	CHECK(ftruncate(file, 1 << 20) == 0);
 	CHECK(hear_file(fd) < file_bytes);

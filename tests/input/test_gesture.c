@@ -6,16 +6,16 @@
 
 #include "tests/check.h"
 
-enum { SEEN_MOST = 200 };
+enum { SEEN_MAX = 200 };
 
-static struct gesture seen[SEEN_MOST];
+static struct gesture seen[SEEN_MAX];
 static uint32_t seen_count;
 static struct gesture_recogniser recogniser;
 
 static void note(void *data, const struct gesture *gesture)
 {
 	(void)data;
-	if (seen_count < SEEN_MOST)
+	if (seen_count < SEEN_MAX)
 		seen[seen_count++] = *gesture;
 }
 
@@ -246,7 +246,7 @@ static void random_fingers_leave_nothing_open(void **state)
 			finger(phase, contact, (float)((random >> 4) % 800),
 			       (float)((random >> 12) % 600), t_ms);
 		}
-		for (uint32_t c = 0; c < TOUCH_CONTACTS_MOST; c++)
+		for (uint32_t c = 0; c < TOUCH_CONTACTS_MAX; c++)
 			finger(TOUCH_UP, c, 1, 1, t_ms + 10);
 		for (uint32_t i = 0; i < seen_count; i++) {
 			const struct gesture *g = &seen[i];

@@ -12,10 +12,10 @@
 
 #include "tests/check.h"
 
-enum { EVENTS_MOST = 64, SKIPPED = 77 };
+enum { EVENTS_MAX = 64, SKIPPED = 77 };
 
 struct heard {
-	struct touch_event events[EVENTS_MOST];
+	struct touch_event events[EVENTS_MAX];
 	uint32_t count;
 };
 
@@ -23,7 +23,7 @@ static void note(void *data, const struct touch_event *event)
 {
 	struct heard *heard = data;
 
-	if (heard->count < EVENTS_MOST)
+	if (heard->count < EVENTS_MAX)
 		heard->events[heard->count++] = *event;
 }
 

@@ -12,7 +12,7 @@
 #include "net/http.h"
 #include "tests/check.h"
 
-enum { ASKED_MOST = 32 };
+enum { ASKED_MAX = 32 };
 
 struct http_request {
 	struct http_ask ask;
@@ -21,7 +21,7 @@ struct http_request {
 };
 
 static struct fake_server {
-	struct http_request asked[ASKED_MOST];
+	struct http_request asked[ASKED_MAX];
 	size_t count; /* requests so far */
 	size_t cancelled;
 	int64_t now_ms;
@@ -90,7 +90,7 @@ int http_ask(struct http *http, const struct http_ask *ask, struct http_request 
 
 	(void)http;
 	CHECK(!server.is_giving);
-	CHECK(server.count <= ASKED_MOST);
+	CHECK(server.count <= ASKED_MAX);
 	*request = (struct http_request){ .ask = *ask, .open = true };
 	snprintf(request->path, sizeof(request->path), "%s", ask->path);
 	snprintf(request->etag, sizeof(request->etag), "%s", ask->etag ? ask->etag : "");

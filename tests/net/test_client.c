@@ -77,7 +77,7 @@ struct stage {
 	uint64_t received_bytes;
 };
 
-static const uint8_t stone[] = "sandstone", brick[] = "laterite";
+static const uint8_t material[] = "sandstone", brick[] = "laterite";
 
 static struct bytes of(const uint8_t *text)
 {
@@ -253,7 +253,7 @@ static struct message object_of(const uint8_t *text)
 static void brings_what_is_wanted_once(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 
 	net_client_want(stage->client, &want);
 	CHECK(heard(stage).want.priority == 7);
@@ -262,20 +262,20 @@ static void brings_what_is_wanted_once(void **state)
 	want.priority = 9;
 	net_client_want(stage->client, &want);
 	CHECK(heard(stage).want.priority == 9);
-	tell(stage, object_of(stone), -1);
+	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 1 && hash_equal(stage->last, want.hash));
-	tell(stage, object_of(stone), -1); /* nobody waits for it any more */
+	tell(stage, object_of(material), -1); /* nobody waits for it any more */
 	CHECK(stage->objects == 1);
 }
 
 static void passes_on_what_is_missing_and_meta_and_status(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct message missing = { .kind = MESSAGE_MISSING,
 				   .missing = { want.hash, MISSING_NOT_FOUND } };
 	struct message meta = { .kind = MESSAGE_META,
-				.meta = { META_ROOT, 4, of(stone), META_FROM_STICK } };
+				.meta = { META_ROOT, 4, of(material), META_FROM_STICK } };
 	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 500 };
 
 	tell(stage, missing, -1);
@@ -283,7 +283,7 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	net_client_want(stage->client, &want);
 	tell(stage, missing, -1);
 	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
-	tell(stage, object_of(stone), -1); /* it came after all */
+	tell(stage, object_of(material), -1); /* it came after all */
 	CHECK(stage->objects == 1);
 	tell(stage, meta, -1);
 	CHECK(stage->metas == 1);
@@ -316,7 +316,7 @@ static void tells_after_every_root_which_one_it_has(void **state)
 {
 	struct stage *stage = *state;
 	struct message meta = { .kind = MESSAGE_META,
-				.meta = { META_ROOT, 4, of(stone), META_FROM_STICK } };
+				.meta = { META_ROOT, 4, of(material), META_FROM_STICK } };
 
 	CHECK(heard_trust(stage) == 3); /* on connecting */
 	tell(stage, meta, -1);
@@ -343,7 +343,7 @@ static void asks_for_what_came_to_be_safe(void **state)
 static void drops_and_forgets(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 
 	net_client_drop(stage->client, want.hash); /* was not wanted: not a word */
 	CHECK(hears_nothing(stage));
@@ -351,26 +351,26 @@ static void drops_and_forgets(void **state)
 	net_client_drop(stage->client, want.hash);
 	CHECK(heard(stage).kind == MESSAGE_WANT);
 	CHECK(heard(stage).kind == MESSAGE_DROP);
-	tell(stage, object_of(stone), -1); /* was under way */
+	tell(stage, object_of(material), -1); /* was under way */
 	CHECK(stage->objects == 0);
 }
 
 static void takes_large_objects_sealed(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
-	struct message message = object_of(stone);
+	struct message_want want = want_of(material, 7);
+	struct message message = object_of(material);
 
 	net_client_want(stage->client, &want);
 	message.object.bytes = (struct bytes){ NULL, 0 };
-	tell(stage, message, packets_seal(of(stone)));
+	tell(stage, message, packets_seal(of(material)));
 	CHECK(stage->objects == 1);
 }
 
 static void says_everything_again_after_the_fetcher_died(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct hash root = { { 1 } }, next = { { 2 } }, keep = { { 3 } };
 	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 500 };
 	struct message message;
@@ -394,14 +394,14 @@ static void says_everything_again_after_the_fetcher_died(void **state)
 	status.status.received_bytes = 70; /* the new one counts from zero */
 	tell(stage, status, -1);
 	CHECK(stage->received_bytes == 570);
-	tell(stage, object_of(stone), -1);
+	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 1);
 }
 
 static void begins_anew_with_another_release(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct hash root = { { 1 } }, next = { { 2 } };
 
 	net_client_use_release(stage->client, root, 100);
@@ -412,7 +412,7 @@ static void begins_anew_with_another_release(void **state)
 	CHECK(hears_nothing(stage));
 	net_client_use_release(stage->client, next, 100);
 	CHECK(heard(stage).kind == MESSAGE_RELEASE);
-	tell(stage, object_of(stone), -1);
+	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 0); /* wants of the old one are dropped */
 	reconnects(stage);
 	CHECK(hash_equal(heard(stage).release.root, next));
@@ -422,7 +422,7 @@ static void begins_anew_with_another_release(void **state)
 static void leaves_a_fetcher_that_lies(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct message lie = object_of(brick);
 
 	net_client_want(stage->client, &want);
@@ -450,8 +450,8 @@ static void comes_again(struct stage *stage)
 static void is_not_held_up_by_a_socket_that_lingers(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
-	const struct message objects[] = { object_of(stone), object_of(brick) };
+	struct message_want want = want_of(material, 7);
+	const struct message objects[] = { object_of(material), object_of(brick) };
 
 	net_client_want(stage->client, &want);
 	for (size_t i = 0; i < ARRAY_COUNT(objects); i++) {
@@ -461,7 +461,7 @@ static void is_not_held_up_by_a_socket_that_lingers(void **state)
 		int peer, fd = lingering_socket(&peer);
 
 		message.object.bytes = (struct bytes){ NULL, 0 };
-		buffer_init(&wire, MESSAGE_BYTES_MOST);
+		buffer_init(&wire, MESSAGE_BYTES_MAX);
 		message_encode(&wire, &message);
 		send_with(stage->fetcher.fd, wire.data, wire.size, &fd, 1);
 		buffer_finish(&wire);
@@ -470,29 +470,29 @@ static void is_not_held_up_by_a_socket_that_lingers(void **state)
 		CHECK(clock_now_ms() - began_ms < LINGER_S * 1000 / 2);
 		close(peer);
 	}
-	tell(stage, object_of(stone), -1);
+	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 1);
 }
 
 static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct message message = object_of(brick);
 
 	net_client_want(stage->client, &want);
 	CHECK(heard(stage).kind == MESSAGE_WANT);
 	/* Never hashed, so nobody sees that it is a lie. */
-	message.object.bytes = of(stone);
-	message.object.size = (uint32_t)of(stone).size;
+	message.object.bytes = of(material);
+	message.object.size = (uint32_t)of(material).size;
 	for (int i = 0; i < 16; i++)
 		tell(stage, message, -1);
-	tell(stage, object_of(stone), -1); /* some may be an error */
+	tell(stage, object_of(material), -1); /* some may be an error */
 	CHECK(stage->objects == 1);
 	tell(stage, message, -1);
 	comes_again(stage);
 	net_client_want(stage->client, &want);
-	tell(stage, object_of(stone), -1);
+	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 2);
 }
 
@@ -500,7 +500,7 @@ static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 static void takes_what_was_on_its_way_for_no_crime(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 
 	for (int i = 0; i < 500; i++) {
 		net_client_want(stage->client, &want);
@@ -509,7 +509,7 @@ static void takes_what_was_on_its_way_for_no_crime(void **state)
 		want.priority++;
 		net_client_want(stage->client, &want);
 		for (int sent = 0; sent < 3; sent++)
-			tell(stage, object_of(stone), -1);
+			tell(stage, object_of(material), -1);
 	}
 	CHECK(stage->objects == 500);
 	CHECK(heard(stage).kind == MESSAGE_WANT); /* on the first connection still */
@@ -518,7 +518,7 @@ static void takes_what_was_on_its_way_for_no_crime(void **state)
 static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 
 	for (int i = 0; i < 2000000; i++) { /* some 300 MB, all in all */
 		want.priority++;
@@ -558,7 +558,7 @@ static void does_not_block_on_a_fetcher_that_hangs(void **state)
 static void leaves_a_fetcher_that_says_nothing(void **state)
 {
 	struct stage *stage = *state;
-	struct message_want want = want_of(stone, 7);
+	struct message_want want = want_of(material, 7);
 	struct message status = { .kind = MESSAGE_STATUS, .status.received_bytes = 1 };
 	struct message message;
 	int passed;
@@ -595,7 +595,7 @@ static void survives_a_fetcher_that_cannot_start(void **state)
 		struct net_client_options options = { .program = programs[i],
 						      .release_url = "/nowhere",
 						      .cache_path = "/nowhere" };
-		struct message_want want = want_of(stone, 7);
+		struct message_want want = want_of(material, 7);
 		struct net_client *client;
 
 		CHECK(net_client_create(&client, &options) == 0);

@@ -14,7 +14,7 @@ struct stage {
 	struct cache *cache;
 	struct link link;
 	struct refusal refusal;
-	struct bring *bring;
+	struct downloader *downloader;
 	uint8_t pack[OBJECTS * OBJECT_BYTES];
 	struct hash names[OBJECTS], page, pack_name, root;
 	struct buffer locator;
@@ -63,9 +63,9 @@ static int set_up(void **state)
 {
 	struct stage *stage = calloc(1, sizeof(*stage));
 	struct cache_options cache = { .budget_bytes = 8 << 20 };
-	struct bring_options options = { .link = &stage->link,
-					 .events = { on_object, on_missing, has_room },
-					 .data = stage };
+	struct downloader_options options = { .link = &stage->link,
+					      .events = { on_object, on_missing, has_room },
+					      .data = stage };
 	char path[96];
 
 	*state = stage;
@@ -79,7 +79,7 @@ static int set_up(void **state)
 	link_init(&stage->link);
 	stage->link.refusal = &stage->refusal;
 	options.cache = stage->cache;
-	CHECK(bring_create(&stage->bring, &options) == 0);
+	CHECK(downloader_create(&stage->downloader, &options) == 0);
 	for (size_t i = 0; i < sizeof(stage->pack); i++)
 		stage->pack[i] = (uint8_t)(i * i / 7 + i / OBJECT_BYTES);
 	for (int i = 0; i < OBJECTS; i++)
@@ -96,7 +96,7 @@ static int tear_down(void **state)
 	struct stage *stage = *state;
 	char command[128];
 
-	bring_destroy(stage->bring);
+	downloader_destroy(stage->downloader);
 	cache_destroy(stage->cache);
 	buffer_finish(&stage->locator);
 	snprintf(command, sizeof(command), "rm -rf %s", stage->folder);
@@ -112,18 +112,18 @@ static void want(struct stage *stage, int n, uint32_t priority)
 					.size = OBJECT_BYTES,
 					.priority = priority };
 
-	bring_want(stage->bring, &message);
+	downloader_want(stage->downloader, &message);
 }
 
 /* The release in use, its locator brought. */
 static void begin(struct stage *stage)
 {
-	bring_use_release(stage->bring, stage->root, 100, false);
-	bring_work(stage->bring);
+	downloader_use_release(stage->downloader, stage->root, 100, false);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 1 && strncmp(asked(0)->path, "locator/07", 10) == 0);
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 }
 
 /* The bytes that the request asked for, from the pack. */
@@ -141,7 +141,7 @@ static void asks_for_neighbours_in_one_request(void **state)
 	want(stage, 4, 1000);
 	want(stage, 6, 2000); /* across an object that nobody wants: its bytes would cost more */
 	want(stage, 12, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 4);
 	CHECK(asked(2)->ask.first == 6 * OBJECT_BYTES && asked(2)->ask.size == OBJECT_BYTES);
 	CHECK(asked(1)->ask.first == 3 * OBJECT_BYTES && asked(1)->ask.size == 2 * OBJECT_BYTES);
@@ -150,29 +150,29 @@ static void asks_for_neighbours_in_one_request(void **state)
 	give(asked(1), answer_to(stage, asked(1)));
 	CHECK(stage->objects == 2); /* before the request has ended */
 	end(asked(1), 0);
-	CHECK(bring_wanted(stage->bring) == 2);
+	CHECK(downloader_wanted(stage->downloader) == 2);
 }
 
 static void brings_from_the_cache_what_it_brought_before(void **state)
 {
 	struct stage *stage = *state;
-	struct bring_figures figures;
+	struct downloader_figures metrics;
 
 	begin(stage);
 	want(stage, 3, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	give(asked(0), answer_to(stage, asked(0)));
 	end(asked(0), 0);
 	want(stage, 3, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 2 && stage->objects == 2);
-	bring_figures(stage->bring, &figures);
-	CHECK(figures.from_cache == 1 && figures.from_server == 1);
+	downloader_figures(stage->downloader, &metrics);
+	CHECK(metrics.from_cache == 1 && metrics.from_server == 1);
 	/* and the locator too: a start without the network */
-	bring_forget_all(stage->bring);
-	bring_use_release(stage->bring, stage->root, 100, false);
+	downloader_forget_all(stage->downloader);
+	downloader_use_release(stage->downloader, stage->root, 100, false);
 	want(stage, 5, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/", 6) == 0);
 }
 
@@ -184,7 +184,7 @@ static void asks_for_the_best_first_and_for_few_at_once(void **state)
 	for (int n = 0; n < OBJECTS; n += 3) /* too far apart to join */
 		want(stage, n, 1000 + (uint32_t)n);
 	want(stage, 1, MESSAGE_PRIORITY_INDEX);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.asked[1].ask.first == 0); /* with the page beside it */
 	CHECK(server.asked[2].ask.first == 18 * OBJECT_BYTES);
 }
@@ -210,26 +210,26 @@ static void leaves_the_line_room(void **state)
 					      .offset = n << 20,
 					      .size = 1 << 20 };
 
-		bring_want(stage->bring, &large);
+		downloader_want(stage->downloader, &large);
 	}
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 1 + 8);
-	bring_want(stage->bring, &page); /* for which there is room always */
-	bring_work(stage->bring);
+	downloader_want(stage->downloader, &page); /* for which there is room always */
+	downloader_work(stage->downloader);
 	CHECK(server.count == 1 + 9 && asked(0)->ask.size == 500);
 }
 
 /* The bringer anew, with a limit of 6000 bytes a second. */
 static void limit(struct stage *stage)
 {
-	struct bring_options options = { .cache = stage->cache,
-					 .link = &stage->link,
-					 .rate_limit = 6000,
-					 .events = { on_object, on_missing, has_room },
-					 .data = stage };
+	struct downloader_options options = { .cache = stage->cache,
+					      .link = &stage->link,
+					      .rate_limit = 6000,
+					      .events = { on_object, on_missing, has_room },
+					      .data = stage };
 
-	bring_destroy(stage->bring);
-	CHECK(bring_create(&stage->bring, &options) == 0);
+	downloader_destroy(stage->downloader);
+	CHECK(downloader_create(&stage->downloader, &options) == 0);
 	begin(stage);
 }
 
@@ -253,13 +253,13 @@ static void keeps_to_its_rate_with_what_is_for_later(void **state)
 	began_ms = server.now_ms;
 	for (int n = 0; n < OBJECTS; n += 2) /* too far apart to join */
 		want(stage, n, MESSAGE_PRIORITY_PICTURE - 1);
-	while (bring_wanted(stage->bring) > 0) {
+	while (downloader_wanted(stage->downloader) > 0) {
 		CHECK(++turns < 200); /* it sleeps until they are paid for */
-		bring_work(stage->bring);
+		downloader_work(stage->downloader);
 		answer_all(stage, &answered);
-		if (bring_due_ms(stage->bring) > server.now_ms &&
-		    bring_due_ms(stage->bring) != INT64_MAX)
-			server.now_ms = bring_due_ms(stage->bring);
+		if (downloader_due_ms(stage->downloader) > server.now_ms &&
+		    downloader_due_ms(stage->downloader) != INT64_MAX)
+			server.now_ms = downloader_due_ms(stage->downloader);
 	}
 	/* 30 000 bytes: the next may go out when they are paid for; half a second was saved */
 	CHECK(server.now_ms - began_ms > 30000 / 6 - 500 - 600);
@@ -275,22 +275,22 @@ static void what_is_shown_has_no_rate(void **state)
 	limit(stage);
 	for (int n = 0; n < 8; n++) /* overdrawn by 21 000 bytes then: 3.5 seconds */
 		want(stage, n, 0);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	answer_all(stage, &answered);
 	CHECK(stage->objects == 8);
 	want(stage, 10, 500); /* for later, though it stands beside what is shown */
 	for (int n = 11; n < OBJECTS; n++)
 		want(stage, n, MESSAGE_PRIORITY_PICTURE);
 	for (int i = 0; i < 3; i++) {
-		bring_work(stage->bring);
+		downloader_work(stage->downloader);
 		answer_all(stage, &answered);
 	}
-	CHECK(server.now_ms == began_ms && bring_wanted(stage->bring) == 1);
-	CHECK(bring_due_ms(stage->bring) > server.now_ms + 2000);
+	CHECK(server.now_ms == began_ms && downloader_wanted(stage->downloader) == 1);
+	CHECK(downloader_due_ms(stage->downloader) > server.now_ms + 2000);
 	want(stage, 10, MESSAGE_PRIORITY_PICTURE); /* now it is shown */
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	answer_all(stage, &answered);
-	CHECK(bring_wanted(stage->bring) == 0);
+	CHECK(downloader_wanted(stage->downloader) == 0);
 }
 
 static void stops_when_the_kiosk_takes_no_more(void **state)
@@ -300,12 +300,12 @@ static void stops_when_the_kiosk_takes_no_more(void **state)
 	begin(stage);
 	stage->full = true;
 	want(stage, 3, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 1);
-	CHECK(bring_due_ms(stage->bring) == INT64_MAX); /* no reason to wake up */
+	CHECK(downloader_due_ms(stage->downloader) == INT64_MAX); /* no reason to wake up */
 	stage->full = false;
-	CHECK(bring_due_ms(stage->bring) <= server.now_ms);
-	bring_work(stage->bring);
+	CHECK(downloader_due_ms(stage->downloader) <= server.now_ms);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 2);
 }
 
@@ -316,12 +316,12 @@ static void cancels_what_nobody_wants_any_more(void **state)
 	begin(stage);
 	want(stage, 3, 1000);
 	want(stage, 4, 1000);
-	bring_work(stage->bring);
-	bring_drop(stage->bring, stage->names[3]);
+	downloader_work(stage->downloader);
+	downloader_drop(stage->downloader, stage->names[3]);
 	CHECK(server.cancelled == 0);
-	bring_drop(stage->bring, stage->names[4]);
-	CHECK(server.cancelled == 1 && bring_wanted(stage->bring) == 0);
-	bring_work(stage->bring);
+	downloader_drop(stage->downloader, stage->names[4]);
+	CHECK(server.cancelled == 1 && downloader_wanted(stage->downloader) == 0);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 2);
 }
 
@@ -333,8 +333,8 @@ static void keeps_what_was_dropped_while_it_came(void **state)
 	begin(stage);
 	want(stage, 3, 1000);
 	want(stage, 4, 1000);
-	bring_work(stage->bring);
-	bring_drop(stage->bring, stage->names[3]);
+	downloader_work(stage->downloader);
+	downloader_drop(stage->downloader, stage->names[3]);
 	give(asked(0), answer_to(stage, asked(0)));
 	end(asked(0), 0);
 	CHECK(stage->objects == 1 && hash_equal(stage->last, stage->names[4]));
@@ -350,12 +350,12 @@ static void refuses_a_wrong_hash_asks_again_and_tells(void **state)
 	begin(stage);
 	want(stage, 3, 1000);
 	want(stage, 4, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1;
 	give(asked(0), answer_to(stage, asked(0)));
 	end(asked(0), 0);
 	CHECK(stage->objects == 1 && stage->missing == 0); /* its neighbour is none the worse */
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 3 && asked(0)->ask.size == OBJECT_BYTES);
 	give(asked(0), answer_to(stage, asked(0)));
 	CHECK(stage->missing == 1 && stage->reason == MISSING_DAMAGED);
@@ -363,13 +363,13 @@ static void refuses_a_wrong_hash_asks_again_and_tells(void **state)
 	end(asked(0), 0);
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1; /* repaired */
 	server.now_ms += 200000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 5 && asked(1)->ask.size == OBJECT_BYTES); /* and the locator */
 	give(asked(1), answer_to(stage, asked(1)));
 	end(asked(1), 0);
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
-	CHECK(stage->objects == 2 && bring_wanted(stage->bring) == 0);
+	CHECK(stage->objects == 2 && downloader_wanted(stage->downloader) == 0);
 }
 
 static void asks_for_the_locator_after_damage_but_not_amid_it(void **state)
@@ -382,16 +382,16 @@ static void asks_for_the_locator_after_damage_but_not_amid_it(void **state)
 	want(stage, 3, 1000);
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1;
 	for (int i = 0; i < 2; i++) {
-		bring_work(stage->bring);
+		downloader_work(stage->downloader);
 		before = server.count;
 		give(asked(0), answer_to(stage, asked(0)));
 		CHECK(server.count == before);
 		end(asked(0), 0);
 	}
 	CHECK(stage->missing == 1 && stage->reason == MISSING_DAMAGED);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == before + 1 && strncmp(asked(0)->path, "locator/", 8) == 0);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == before + 1); /* once */
 }
 
@@ -402,14 +402,14 @@ static void asks_again_for_the_rest_of_a_pack_cut_short(void **state)
 	begin(stage);
 	want(stage, 3, 1000);
 	want(stage, 4, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	give(asked(0), (struct bytes){ stage->pack + 3 * OBJECT_BYTES, OBJECT_BYTES + 500 });
 	end(asked(0), 0);
 	CHECK(stage->objects == 1);
 	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
 	CHECK(hash_equal(stage->last, stage->names[4]));
-	bring_work(stage->bring);
-	CHECK(bring_due_ms(stage->bring) > server.now_ms); /* but not at once */
+	downloader_work(stage->downloader);
+	CHECK(downloader_due_ms(stage->downloader) > server.now_ms); /* but not at once */
 }
 
 static void waits_while_the_server_is_away(void **state)
@@ -420,29 +420,29 @@ static void waits_while_the_server_is_away(void **state)
 	begin(stage);
 	for (int n = 0; n < 9; n += 3)
 		want(stage, n, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 4);
 	for (int n = 0; n < 3; n++)
 		end(asked(2 - (size_t)n), -EHOSTUNREACH);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 4 && stage->missing == 0 && !stage->link.online);
-	CHECK(bring_due_ms(stage->bring) > server.now_ms);
+	CHECK(downloader_due_ms(stage->downloader) > server.now_ms);
 	server.now_ms += 5000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 5); /* one goes to look */
-	CHECK(bring_due_ms(stage->bring) == INT64_MAX);
+	CHECK(downloader_due_ms(stage->downloader) == INT64_MAX);
 	end(asked(0), -EHOSTUNREACH);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(stage->missing == 3 && stage->reason == MISSING_OFFLINE);
 	want(stage, 15, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(stage->missing == 4); /* told at once */
 	server.now_ms += 5000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	give(asked(0), answer_to(stage, asked(0)));
 	before = server.count;
 	end(asked(0), 0);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(stage->link.online && stage->objects == 1);
 	CHECK(server.count == before + 3); /* and all the others follow */
 }
@@ -457,11 +457,11 @@ static void tells_what_the_release_does_not_have(void **state)
 				       .size = 10 };
 
 	begin(stage);
-	bring_want(stage->bring, &stray);
-	bring_work(stage->bring);
+	downloader_want(stage->downloader, &stray);
+	downloader_work(stage->downloader);
 	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
-	bring_want(stage->bring, &beyond);
-	bring_work(stage->bring);
+	downloader_want(stage->downloader, &beyond);
+	downloader_work(stage->downloader);
 	CHECK(stage->missing == 2);
 	CHECK(strncmp(asked(0)->path, "packs/", 6) != 0);
 }
@@ -470,22 +470,22 @@ static void does_without_a_damaged_locator_until_it_is_repaired(void **state)
 {
 	struct stage *stage = *state;
 
-	bring_use_release(stage->bring, stage->root, 100, false);
+	downloader_use_release(stage->downloader, stage->root, 100, false);
 	want(stage, 3, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	stage->locator.data[20] ^= 1;
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(stage->missing == 1 && server.count == 1);
 	stage->locator.data[20] ^= 1;
 	server.now_ms += 10000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 2);
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
 	server.now_ms += 10000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.count == 3 && strncmp(asked(0)->path, "packs/", 6) == 0);
 }
 
@@ -497,14 +497,14 @@ static void follows_objects_into_other_packs(void **state)
 	server.now_ms += 100000;
 	make_release(stage, 0xbb); /* packed anew under the same hashes */
 	want(stage, 3, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	end(asked(0), -ENOENT); /* the old pack is gone */
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "locator/", 8) == 0);
 	give(asked(0), buffer_bytes(&stage->locator));
 	end(asked(0), 0);
 	server.now_ms += 10000;
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/bb", 8) == 0);
 }
 
@@ -516,9 +516,9 @@ static void serves_two_releases_side_by_side(void **state)
 
 	begin(stage);
 	want(stage, 3, 1000);
-	bring_use_release(stage->bring, next, 100, true);
-	bring_work(stage->bring);
-	CHECK(bring_wanted(stage->bring) == 1);
+	downloader_use_release(stage->downloader, next, 100, true);
+	downloader_work(stage->downloader);
+	CHECK(downloader_wanted(stage->downloader) == 1);
 	CHECK(strncmp(server.asked[1].path, "locator/08", 10) == 0 ||
 	      strncmp(server.asked[2].path, "locator/08", 10) == 0);
 	stage->page = (struct hash){ { 10 } };
@@ -529,14 +529,14 @@ static void serves_two_releases_side_by_side(void **state)
 			end(&server.asked[i], 0);
 		}
 	want(stage, 5, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/cc", 8) == 0);
 	stage->page = page;
 	want(stage, 9, 1000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/aa", 8) == 0);
-	bring_use_release(stage->bring, next, 100, false);
-	CHECK(bring_wanted(stage->bring) == 0);
+	downloader_use_release(stage->downloader, next, 100, false);
+	CHECK(downloader_wanted(stage->downloader) == 0);
 }
 
 static void raises_a_priority_before_it_asks(void **state)
@@ -547,9 +547,9 @@ static void raises_a_priority_before_it_asks(void **state)
 	want(stage, 0, 1000);
 	want(stage, 9, 2000);
 	want(stage, 0, 3000);
-	bring_work(stage->bring);
+	downloader_work(stage->downloader);
 	CHECK(server.asked[1].ask.first == 0);
-	CHECK(bring_wanted(stage->bring) == 2);
+	CHECK(downloader_wanted(stage->downloader) == 2);
 }
 
 #define STAGED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)

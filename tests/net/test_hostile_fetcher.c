@@ -194,7 +194,7 @@ static void dispatch(struct stage *stage)
 /* Is the kiosk connected? What it says is read, but for once in a while. */
 static bool connected(struct stage *stage)
 {
-	static char heard[MESSAGE_BYTES_MOST];
+	static char heard[MESSAGE_BYTES_MAX];
 	int fd = accept4(stage->listener, NULL, NULL, SOCK_CLOEXEC);
 	ssize_t got = 1;
 
@@ -240,7 +240,7 @@ static bool send_message(struct stage *stage, const struct message *message, int
 	struct buffer wire;
 	bool sent;
 
-	buffer_init(&wire, MESSAGE_BYTES_MOST);
+	buffer_init(&wire, MESSAGE_BYTES_MAX);
 	message_encode(&wire, message);
 	CHECK(wire.error == 0);
 	sent = send_packet(stage, buffer_bytes(&wire), fd);
@@ -343,7 +343,7 @@ static void send_object(struct stage *stage)
 
 static void send_metadata(struct stage *stage)
 {
-	static uint8_t rubbish[MESSAGE_META_BYTES_MOST];
+	static uint8_t rubbish[MESSAGE_META_BYTES_MAX];
 	const struct message message = { .kind = MESSAGE_META,
 					 .meta = { (enum meta_role)random_below(stage, 3),
 						   random_below(stage, UINT32_MAX),
@@ -380,7 +380,7 @@ static void send_rubbish(struct stage *stage)
 	for (size_t i = 0; i < size; i++)
 		packet[i] = (uint8_t)random_below(stage, 256);
 	if (random_below(stage, 2)) {
-		buffer_init(&wire, MESSAGE_BYTES_MOST);
+		buffer_init(&wire, MESSAGE_BYTES_MAX);
 		message_encode(&wire, &message);
 		size = size < wire.size ? size : wire.size;
 		memcpy(packet, wire.data, size);

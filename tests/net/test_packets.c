@@ -120,7 +120,7 @@ static void refused(const struct message *message, const int *fds, size_t count)
 	int passed;
 
 	open_ends(&ends);
-	buffer_init(&wire, MESSAGE_BYTES_MOST);
+	buffer_init(&wire, MESSAGE_BYTES_MAX);
 	message_encode(&wire, message);
 	send_with(ends.near.fd, wire.data, wire.size, fds, count);
 	buffer_finish(&wire);
@@ -195,7 +195,7 @@ static void never_waits_for_the_close_of_what_was_passed(void **state)
 	int passed, fds[20], peers[21];
 
 	(void)state;
-	buffer_init(&wire, MESSAGE_BYTES_MOST);
+	buffer_init(&wire, MESSAGE_BYTES_MAX);
 	message_encode(&wire, &object);
 	for (size_t i = 0; i < ARRAY_COUNT(counts); i++) {
 		for (size_t k = 0; k < counts[i]; k++)
@@ -216,7 +216,7 @@ static void never_waits_for_the_close_of_what_was_passed(void **state)
 
 static void refuses_a_packet_past_the_ceiling(void **state)
 {
-	uint8_t *large = calloc(1, MESSAGE_BYTES_MOST + 500);
+	uint8_t *large = calloc(1, MESSAGE_BYTES_MAX + 500);
 	struct message back;
 	struct ends ends;
 	int passed;
@@ -224,7 +224,7 @@ static void refuses_a_packet_past_the_ceiling(void **state)
 	(void)state;
 	open_ends(&ends);
 	large[0] = MESSAGE_META;
-	CHECK(send(ends.near.fd, large, MESSAGE_BYTES_MOST + 500, 0) == MESSAGE_BYTES_MOST + 500);
+	CHECK(send(ends.near.fd, large, MESSAGE_BYTES_MAX + 500, 0) == MESSAGE_BYTES_MAX + 500);
 	CHECK(packets_receive(&ends.far, &back, &passed) == -EBADMSG);
 	close_ends(&ends);
 	free(large);

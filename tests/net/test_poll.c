@@ -251,12 +251,12 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 static void refuses_endless_data(void **state)
 {
 	struct stage *stage = *state;
-	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MOST + 1);
+	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MAX + 1);
 
 	poll_ask(stage->poll, 0);
 	poll_work(stage->poll);
-	CHECK(asked(0)->ask.ceiling == MESSAGE_META_BYTES_MOST);
-	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MOST + 1 });
+	CHECK(asked(0)->ask.ceiling == MESSAGE_META_BYTES_MAX);
+	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MAX + 1 });
 	end(asked(0), 0);
 	CHECK(stage->said[0] == '\0');
 	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/2.json") == 0);

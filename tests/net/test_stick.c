@@ -408,7 +408,7 @@ static void refuses_endless_files(void **state)
 
 	put_release(stage, "", "T");
 	in_folder(stage, path, "release.json");
-	CHECK(truncate(path, MESSAGE_META_BYTES_MOST + 1) == 0);
+	CHECK(truncate(path, MESSAGE_META_BYTES_MAX + 1) == 0);
 	CHECK(look(stage) && !strstr(stage->said, "release"));
 	in_folder(stage, path, "timestamp.json");
 	CHECK(truncate(path, 1ll << 40) == 0);

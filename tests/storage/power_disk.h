@@ -23,7 +23,7 @@
 
 #include "tests/check.h"
 
-enum { POWER_FILES_MOST = 512, POWER_NAME_BYTES = 64, POWER_SECTOR_BYTES = 512 };
+enum { POWER_FILES_MAX = 512, POWER_NAME_BYTES = 64, POWER_SECTOR_BYTES = 512 };
 
 enum power_kind {
 	POWER_CREATE, /* file, under the name */
@@ -51,8 +51,8 @@ struct power_file {
 
 /* Names and bytes. */
 struct power_image {
-	struct power_file files[POWER_FILES_MOST];
-	char names[POWER_FILES_MOST][POWER_NAME_BYTES]; /* of each file; "": it has none */
+	struct power_file files[POWER_FILES_MAX];
+	char names[POWER_FILES_MAX][POWER_NAME_BYTES]; /* of each file; "": it has none */
 };
 
 static struct power_disk {
@@ -98,7 +98,7 @@ static struct power_op *power_note(enum power_kind kind, int file, const char *n
 
 static int power_create(const char *name)
 {
-	CHECK(power.file_count < POWER_FILES_MOST - 1);
+	CHECK(power.file_count < POWER_FILES_MAX - 1);
 	power_note(POWER_CREATE, ++power.file_count, name);
 	return power.file_count;
 }
@@ -407,7 +407,7 @@ static void power_put_torn(struct power_file *file, const struct power_op *op, u
 
 static int power_named(const struct power_image *image, const char *name)
 {
-	for (int i = 1; i < POWER_FILES_MOST; i++)
+	for (int i = 1; i < POWER_FILES_MAX; i++)
 		if (strcmp(image->names[i], name) == 0)
 			return i;
 	return 0;
@@ -471,7 +471,7 @@ static void power_settle(const struct power_op *sync)
 
 static inline void power_rewind(void)
 {
-	for (int i = 0; i < POWER_FILES_MOST; i++)
+	for (int i = 0; i < POWER_FILES_MAX; i++)
 		free(power.durable.files[i].bytes);
 	memset(&power.durable, 0, sizeof(power.durable));
 	free(power.pending);
@@ -494,7 +494,7 @@ static inline void power_step(size_t n)
 static void power_copy(struct power_image *to, const struct power_image *from)
 {
 	memcpy(to->names, from->names, sizeof(to->names));
-	for (int i = 0; i < POWER_FILES_MOST; i++) {
+	for (int i = 0; i < POWER_FILES_MAX; i++) {
 		to->files[i].size = 0;
 		if (from->files[i].size > 0)
 			power_put(&to->files[i], from->files[i].bytes, from->files[i].size, 0);
@@ -534,7 +534,7 @@ static inline void power_disk_make(const char *folder, bool (*has)(const void *d
 			power_apply(&image, op);
 	}
 	power_empty(folder);
-	for (int i = 1; i < POWER_FILES_MOST; i++) {
+	for (int i = 1; i < POWER_FILES_MAX; i++) {
 		char path[PATH_MAX + POWER_NAME_BYTES];
 		FILE *file;
 

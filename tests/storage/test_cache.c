@@ -168,7 +168,7 @@ static uint32_t put_until_evicted(struct cache *cache, uint64_t count, uint32_t 
 
 static void drops_the_least_useful_first(void **state)
 {
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	(void)state;
 	CHECK(put(cache, 0, 50000, 1000000) == 0); /* an index page */
@@ -191,7 +191,7 @@ static void drops_the_least_useful_first(void **state)
 
 static void knows_what_was_wanted_before_a_restart(void **state)
 {
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	(void)state;
 	now_ms += 7200 * 1000;
@@ -199,7 +199,7 @@ static void knows_what_was_wanted_before_a_restart(void **state)
 	CHECK(put(cache, 2, 50000, 0) == 0);
 	cache_destroy(cache);
 	now_ms = 50; /* a boot: the monotonic clock begins anew */
-	cache = open_cache(CACHE_BUDGET_LEAST);
+	cache = open_cache(CACHE_BUDGET_MIN);
 	now_ms += 1000;
 	CHECK(put(cache, 3, 50000, 0) == 0);
 	put_until_evicted(cache, 1, 100);
@@ -211,7 +211,7 @@ static void knows_what_was_wanted_before_a_restart(void **state)
 static void keeps_what_it_was_told_to_keep(void **state)
 {
 	const struct hash first = { { 1 } }, second = { { 2 } }, third = { { 3 } };
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	(void)state;
 	CHECK(cache_use_release(cache, first) == 0);
@@ -223,7 +223,7 @@ static void keeps_what_it_was_told_to_keep(void **state)
 	for (uint32_t n = 100; n < 250; n++)
 		CHECK(put(cache, n, 50000, 0) == 0);
 	cache_destroy(cache);
-	cache = open_cache(CACHE_BUDGET_LEAST);
+	cache = open_cache(CACHE_BUDGET_MIN);
 	CHECK(cache_use_release(cache, first) == 0); /* the same: kept still */
 	for (uint32_t n = 250; n < 400; n++)
 		CHECK(put(cache, n, 50000, 0) == 0);
@@ -252,7 +252,7 @@ static void churn(struct cache *cache, uint32_t first)
 static void keeps_both_releases_across_a_return(void **state)
 {
 	const struct hash first = { { 1 } }, second = { { 2 } };
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	(void)state;
 	for (uint32_t n = 1; n <= 3; n++)
@@ -265,7 +265,7 @@ static void keeps_both_releases_across_a_return(void **state)
 	CHECK(cache_keep(cache, hash_of(object(3, 50000))) == 0);
 	CHECK(cache_use_release(cache, first) == 0); /* it did not work */
 	cache_destroy(cache);
-	cache = open_cache(CACHE_BUDGET_LEAST);
+	cache = open_cache(CACHE_BUDGET_MIN);
 	churn(cache, 100);
 	for (uint32_t n = 1; n <= 3; n++)
 		CHECK(get(cache, n, 50000) == 0);
@@ -278,7 +278,7 @@ static void keeps_both_releases_across_a_return(void **state)
 
 static void keeps_no_more_than_three_quarters(void **state)
 {
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 	struct cache_figures figures;
 	int rc = 0;
 
@@ -290,7 +290,7 @@ static void keeps_no_more_than_three_quarters(void **state)
 	}
 	CHECK(rc == -ENOSPC);
 	cache_figures(cache, &figures);
-	CHECK(figures.kept_bytes <= CACHE_BUDGET_LEAST / 4 * 3 + 50000);
+	CHECK(figures.kept_bytes <= CACHE_BUDGET_MIN / 4 * 3 + 50000);
 	CHECK(put(cache, 200, 50000, 0) == 0); /* others still pass through */
 	cache_destroy(cache);
 }
@@ -315,7 +315,7 @@ static void gives_the_disk_back_when_the_budget_shrinks(void **state)
 
 static void refuses_what_can_never_fit(void **state)
 {
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	(void)state;
 	CHECK(put(cache, 1, sizeof(store), 0) == -EFBIG);
@@ -479,7 +479,7 @@ static void survives_flipped_bits(void **state)
 /* A short life of a cache; every call may fail, none may do worse. */
 static void live(void)
 {
-	struct cache *cache = open_cache(CACHE_BUDGET_LEAST);
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
 
 	for (uint32_t n = 0; n < 150; n++) {
 		int rc = put(cache, n, 1000 + n % 7 * 9000, 0);
@@ -491,7 +491,7 @@ static void live(void)
 			rc = cache_flush(cache);
 			CHECK(rc == 0 || rc == -ENOSPC || rc == -EIO);
 		}
-		CHECK(cache_file_bytes(cache) <= CACHE_BUDGET_LEAST);
+		CHECK(cache_file_bytes(cache) <= CACHE_BUDGET_MIN);
 	}
 	cache_destroy(cache);
 }
@@ -558,7 +558,7 @@ static void lives_without_a_file(void **state)
 	CHECK(get(cache, 1, 100) == -ENOENT);
 	CHECK(cache_flush(cache) == 0);
 	cache_figures(cache, &figures);
-	CHECK(figures.budget_bytes == CACHE_BUDGET_LEAST && figures.file_bytes == 0);
+	CHECK(figures.budget_bytes == CACHE_BUDGET_MIN && figures.file_bytes == 0);
 	cache_destroy(cache);
 }
 

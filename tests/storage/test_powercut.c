@@ -17,8 +17,8 @@
 enum {
 	RELEASES = 5, /* 1 .. 4 are shown in turn, 3 is returned from */
 	OBJECTS = 10, /* of a release; the last two are the next one's too */
-	OBJECT_BYTES_LEAST = 300,
-	MARKS_MOST = 256,
+	OBJECT_BYTES_MIN = 300,
+	MARKS_MAX = 256,
 };
 
 static char folder[] = "/dev/shm/gopura-powercut-XXXXXX";
@@ -33,7 +33,7 @@ struct promise {
 	uint32_t locators; /* the same, in use or before */
 };
 
-static struct promise promises[MARKS_MOST];
+static struct promise promises[MARKS_MAX];
 static size_t promise_count;
 
 /* What a test leaves out, to see that it is missed. */
@@ -55,7 +55,7 @@ static uint32_t object_number(uint32_t release, uint32_t n)
 static struct bytes object(uint32_t number)
 {
 	static uint8_t bytes[8192];
-	uint32_t size = OBJECT_BYTES_LEAST + number * 977 % 5000;
+	uint32_t size = OBJECT_BYTES_MIN + number * 977 % 5000;
 
 	for (uint32_t i = 0; i < size; i++)
 		bytes[i] = (uint8_t)((i * 2654435761u + number * 40503u) >> 13);
@@ -94,7 +94,7 @@ static struct state_release release_of(uint64_t sequence)
 static struct cache *open_cache(const char *in)
 {
 	char path[96];
-	const struct cache_options options = { .path = path, .budget_bytes = CACHE_BUDGET_LEAST };
+	const struct cache_options options = { .path = path, .budget_bytes = CACHE_BUDGET_MIN };
 	struct cache *cache;
 
 	snprintf(path, sizeof(path), "%s/cache.db", in);
@@ -124,7 +124,7 @@ static void promise(const struct state *state, uint32_t objects, uint32_t locato
 	struct promise *next = &promises[promise_count];
 	struct bytes trust;
 
-	CHECK(promise_count < MARKS_MOST);
+	CHECK(promise_count < MARKS_MAX);
 	next->in_use = sequence_of(state_release(state, &release), &release);
 	next->before = sequence_of(state_previous(state, &release), &release);
 	next->floor = state_sequence_floor(state);

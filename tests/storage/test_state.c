@@ -148,12 +148,12 @@ static void never_lowers_a_floor(void **unused)
 static void refuses_a_file_past_its_ceiling(void **unused)
 {
 	struct state *state = open_state();
-	uint8_t *large = calloc(1, STATE_FILE_BYTES_MOST + 1);
+	uint8_t *large = calloc(1, STATE_FILE_BYTES_MAX + 1);
 	struct state_release next = release(9);
 
 	(void)unused;
 	CHECK(activate(state, 1) == 0);
-	next.file = (struct bytes){ large, STATE_FILE_BYTES_MOST + 1 };
+	next.file = (struct bytes){ large, STATE_FILE_BYTES_MAX + 1 };
 	CHECK(state_activate(state, &next) == -EFBIG);
 	CHECK(state_set_trust(state, next.file, STATE_CLEAR_NOTHING) == -EFBIG);
 	CHECK(active(state) == 1 && state_sequence_floor(state) == 1);
@@ -231,7 +231,7 @@ static void encode_root(struct buffer *out, uint32_t version)
 		memcpy(root.roles[role].keys[0], root_key.public_key, KEY_BYTES);
 		root.roles[role].key_count = root.roles[role].threshold = 1;
 	}
-	buffer_init(out, METADATA_FILE_BYTES_MOST);
+	buffer_init(out, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(out, &root, &root_key, 1) == 0);
 }
 

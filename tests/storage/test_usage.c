@@ -50,50 +50,50 @@ static void write_text(const char *text)
 	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)text, strlen(text) }, path) == 0);
 }
 
-static struct tally *begin(int64_t now_s)
+static struct usage *begin(int64_t now_s)
 {
-	struct tally *tally;
+	struct usage *usage;
 
-	CHECK(tally_create(&tally, path, copy, now_s) == 0);
-	return tally;
+	CHECK(usage_create(&usage, path, copy, now_s) == 0);
+	return usage;
 }
 
 #define HEADER "hour,kind,what,language,count\n"
 
 static void counts_by_hour_kind_part_and_language(void **state)
 {
-	struct tally *tally = begin(noon);
+	struct usage *usage = begin(noon);
 
 	(void)state;
 	says(path, HEADER);
-	tally_add(tally, TALLY_VISIT, "", "en", noon);
-	tally_add(tally, TALLY_PART, "gate", "en", noon + 10);
-	tally_add(tally, TALLY_PART, "gate", "en", noon + 20);
-	tally_add(tally, TALLY_PART, "gate", "km", noon + 20);
-	tally_add(tally, TALLY_PAGE, "gate", "en", noon + HOUR_S);
+	usage_add(usage, USAGE_VISIT, "", "en", noon);
+	usage_add(usage, USAGE_PART, "gate", "en", noon + 10);
+	usage_add(usage, USAGE_PART, "gate", "en", noon + 20);
+	usage_add(usage, USAGE_PART, "gate", "km", noon + 20);
+	usage_add(usage, USAGE_PAGE, "gate", "en", noon + HOUR_S);
 	says(path, HEADER); /* the disk is left alone until then */
-	tally_write(tally);
+	usage_write(usage);
 	says(path, HEADER "2026-11-29T12,visit,,en,1\n2026-11-29T12,part,gate,en,2\n"
 			  "2026-11-29T12,part,gate,km,1\n2026-11-29T13,page,gate,en,1\n");
-	tally_destroy(tally);
+	usage_destroy(usage);
 }
 
 static void sums_up_at_the_next_start(void **state)
 {
-	struct tally *tally = begin(noon);
+	struct usage *usage = begin(noon);
 
 	(void)state;
 	for (int i = 0; i < 3; i++) {
-		tally_add(tally, TALLY_LANGUAGE, "", "ja", noon);
-		tally_add(tally, TALLY_SEARCH, "", "ja", noon);
-		tally_write(tally);
+		usage_add(usage, USAGE_LANGUAGE, "", "ja", noon);
+		usage_add(usage, USAGE_SEARCH, "", "ja", noon);
+		usage_write(usage);
 	}
-	tally_destroy(tally);
-	tally = begin(noon);
+	usage_destroy(usage);
+	usage = begin(noon);
 	says(path, HEADER "2026-11-29T12,language,,ja,3\n2026-11-29T12,search,,ja,3\n");
-	tally_add(tally, TALLY_SEARCH, "", "ja", noon);
-	tally_destroy(tally);
-	tally_destroy(begin(noon));
+	usage_add(usage, USAGE_SEARCH, "", "ja", noon);
+	usage_destroy(usage);
+	usage_destroy(begin(noon));
 	says(path, HEADER "2026-11-29T12,language,,ja,3\n2026-11-29T12,search,,ja,4\n");
 }
 
@@ -102,10 +102,10 @@ static void keeps_four_hundred_days(void **state)
 	(void)state;
 	write_text(HEADER "2025-10-25T11,visit,,en,5\n2025-10-25T12,visit,,en,6\n"
 			  "unset,visit,,en,7\n2026-11-29T11,visit,,en,8\n");
-	tally_destroy(begin(0)); /* a clock that nobody set forgets nothing */
+	usage_destroy(begin(0)); /* a clock that nobody set forgets nothing */
 	says(path, HEADER "2025-10-25T11,visit,,en,5\n2025-10-25T12,visit,,en,6\n"
 			  "2026-11-29T11,visit,,en,8\nunset,visit,,en,7\n");
-	tally_destroy(begin(noon));
+	usage_destroy(begin(noon));
 	says(path, HEADER "2025-10-25T12,visit,,en,6\n2026-11-29T11,visit,,en,8\n"
 			  "unset,visit,,en,7\n");
 }
@@ -118,38 +118,38 @@ static void leaves_out_what_is_no_count(void **state)
 			  "2026-11-29T11,part,\"=cmd()\",en,1\n2026-11-29T11,part,a,en,-1\n"
 			  "2026-11-29T11,part,a,en,1,1\n\n2026-11-29T11,part,a,en,1\n"
 			  "2026-11-29T11,pa");
-	tally_destroy(begin(noon));
+	usage_destroy(begin(noon));
 	says(path, HEADER "2026-11-29T11,visit,,en,8\n2026-11-29T11,part,a,en,1\n");
 }
 
 static void the_copy_says_the_same_to_everybody(void **state)
 {
-	struct tally *tally;
+	struct usage *usage;
 	struct stat status;
 
 	(void)state;
 	write_text(HEADER "2026-11-29T11,visit,,en,8\n");
-	tally = begin(noon);
-	tally_add(tally, TALLY_PART, "gate", "en", noon);
-	tally_write(tally);
+	usage = begin(noon);
+	usage_add(usage, USAGE_PART, "gate", "en", noon);
+	usage_write(usage);
 	says(copy, HEADER "2026-11-29T11,visit,,en,8\n2026-11-29T12,part,gate,en,1\n");
 	CHECK(stat(copy, &status) == 0 && (status.st_mode & 0777) == 0644);
-	tally_destroy(tally);
+	usage_destroy(usage);
 }
 
 static void goes_on_without_a_disk(void **state)
 {
-	struct tally *tally;
+	struct usage *usage;
 
 	(void)state;
-	CHECK(tally_create(&tally, "/proc/nowhere/visits.csv", NULL, noon) == 0);
+	CHECK(usage_create(&usage, "/proc/nowhere/visits.csv", NULL, noon) == 0);
 	for (int i = 0; i < 2000; i++) {
 		char part[24];
 
 		snprintf(part, sizeof(part), "part-%d", i);
-		tally_add(tally, TALLY_PART, part, "en", noon);
+		usage_add(usage, USAGE_PART, part, "en", noon);
 	}
-	tally_destroy(tally);
+	usage_destroy(usage);
 }
 
 #define FILED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)

@@ -15,7 +15,7 @@ enum {
 	IMAGE_MIB = 16,
 	CARD_MIB = 40,
 	ENTRIES = 128 * 128,
-	WRITES_MOST = 8,
+	WRITES_MAX = 8,
 };
 
 struct write {
@@ -25,7 +25,7 @@ struct write {
 };
 
 /* What the module did to the disk, in order. */
-static struct write writes[WRITES_MOST];
+static struct write writes[WRITES_MAX];
 static unsigned write_count, fail_at;
 
 ssize_t __real_pwrite(int fd, const void *data, size_t size, off_t at);
@@ -35,7 +35,7 @@ int __wrap_fsync(int fd);
 
 static bool note(struct write write)
 {
-	CHECK(write_count < WRITES_MOST);
+	CHECK(write_count < WRITES_MAX);
 	writes[write_count++] = write;
 	return write_count == fail_at;
 }

@@ -367,8 +367,8 @@ static void bounds_the_list_and_counts_the_rest(void **state)
 	for (int i = 0; i < 50; i++)
 		strncat(text, "what is this\n", sizeof(text) - strlen(text) - 1);
 	parse(text);
-	CHECK(faults.count == FAULTS_MOST && faults.dropped == 50 - FAULTS_MOST);
-	CHECK(faults.list[0].line == 4 && faults.list[FAULTS_MOST - 1].line == 3 + FAULTS_MOST);
+	CHECK(faults.count == FAULTS_MAX && faults.dropped == 50 - FAULTS_MAX);
+	CHECK(faults.list[0].line == 4 && faults.list[FAULTS_MAX - 1].line == 3 + FAULTS_MAX);
 	memset(value, 'x', sizeof(value) - 1);
 	value[sizeof(value) - 1] = '\0';
 	snprintf(text, sizeof(text), RELEASE "ca = %s\n", value);
@@ -517,7 +517,7 @@ static void the_example_is_without_fault(void **state)
 	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, SETTINGS_FILE_MOST);
+	buffer_init(&file, SETTINGS_FILE_MAX);
 	CHECK(buffer_read_file(&file, "system/gopura.conf.example") == 0);
 	parse_bytes(file.data, file.size);
 	buffer_finish(&file);

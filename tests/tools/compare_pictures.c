@@ -14,7 +14,7 @@
 
 #include "format/picture.h"
 
-enum { VIEWS_MOST = 1000, WINDOW = 8 };
+enum { VIEWS_MAX = 1000, WINDOW = 8 };
 
 static const float background[3] = { 96, 96, 96 };
 
@@ -147,7 +147,7 @@ static int compare_view(const char *truth_dir, const char *other_dir, int view, 
 
 int main(int argc, char **argv)
 {
-	static double psnr[VIEWS_MOST];
+	static double psnr[VIEWS_MAX];
 	double psnr_sum = 0, ssim_sum = 0, worst = 0;
 	int views = 0, worst_count, rc = 0;
 
@@ -155,7 +155,7 @@ int main(int argc, char **argv)
 		fprintf(stderr, "usage: compare_pictures TRUTH_DIR OTHER_DIR\n");
 		return 2;
 	}
-	while (views < VIEWS_MOST) {
+	while (views < VIEWS_MAX) {
 		double ssim;
 
 		rc = compare_view(argv[1], argv[2], views, &psnr[views], &ssim);

@@ -141,7 +141,7 @@ static int make(const char *folder, uint32_t pages, uint32_t objects, uint32_t b
 	maker.locator.blocks = calloc(pages + 2, sizeof(struct locator_block));
 	root.children = calloc(pages, sizeof(*root.children));
 	for (uint32_t i = 0; i <= pages; i++)
-		buffer_init(&encoded[i], PAGE_BYTES_MOST);
+		buffer_init(&encoded[i], PAGE_BYTES_MAX);
 	for (uint32_t i = 0; i < pages; i++) {
 		hash = make_leaf(&maker, objects, bytes, &encoded[i]);
 		root.children[i] = (struct page_child){ hash, (uint32_t)encoded[i].size, true };

@@ -15,7 +15,7 @@
 
 #include "format/picture.h"
 
-enum { LEVEL = 16, SQUARE = 24, WORST_MOST = 34 };
+enum { LEVEL = 16, SQUARE = 24, WORST_MAX = 34 };
 
 static int read_picture(struct picture *out, const char *path)
 {
@@ -133,7 +133,7 @@ static int compare(const char *golden, const char *fresh, const char *side)
 	if (rc == 0) {
 		worst = worst_square(&a, &b, at);
 		printf("%s: %.1f at %u %u\n", golden, worst, at[0], at[1]);
-		if (worst > WORST_MOST)
+		if (worst > WORST_MAX)
 			rc = write_side(&a, &b, side) < 0 ? -EIO : -ERANGE;
 	}
 	picture_finish(&a);

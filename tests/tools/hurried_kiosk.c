@@ -37,7 +37,7 @@ void __real_fingers_on_touch(void *data, const struct touch_event *event);
 void __wrap_fingers_on_touch(void *data, const struct touch_event *event);
 
 enum {
-	TIMERS_MOST = 8,
+	TIMERS_MAX = 8,
 	LOOK_US = 100,         /* a look at the clock takes so long, so budgets of time end */
 	REAL_WAIT_MS = 2,      /* a look at what others do */
 	HELD_AT_US = 2000000,  /* of the kiosk's life, until there is a picture */
@@ -49,7 +49,7 @@ static _Atomic int64_t virtual_us = 1000000000;
 static struct {
 	int fd;
 	int64_t due_us;
-} timers[TIMERS_MOST];
+} timers[TIMERS_MAX];
 static uint32_t timer_count;
 static bool failed;
 
@@ -102,7 +102,7 @@ int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 
 	while (i < timer_count && timers[i].fd != fd)
 		i++;
-	if (i == TIMERS_MOST)
+	if (i == TIMERS_MAX)
 		abort();
 	if (i == timer_count)
 		timer_count++;
@@ -163,16 +163,16 @@ int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_
 static void check_budgets(void)
 {
 	const struct scene_options budget = kiosk_scene_options(&kiosk.profile, kiosk.options.mode);
-	static struct overlay_layer layers[OVERLAY_LAYERS_MOST + 1];
+	static struct overlay_layer layers[OVERLAY_LAYERS_MAX + 1];
 	const struct scene_frame *frame = &kiosk.shown.frame;
 	struct scene_memory memory = { 0 };
 	uint32_t layer_count = 0;
 
 	if (kiosk.shown.scene)
 		scene_memory(kiosk.shown.scene, &memory);
-	if (story_overlay(kiosk.shown.story))
-		layer_count = overlay_layers(story_overlay(kiosk.shown.story), layers,
-					     OVERLAY_LAYERS_MOST + 1);
+	if (information_view_overlay(kiosk.shown.view))
+		layer_count = overlay_layers(information_view_overlay(kiosk.shown.view), layers,
+					     OVERLAY_LAYERS_MAX + 1);
 	if (frame->triangles > budget.triangle_budget)
 		fail("%u triangles drawn, %u are the most", frame->triangles,
 		     budget.triangle_budget);
@@ -180,7 +180,7 @@ static void check_budgets(void)
 		fail("%llu bytes of textures", (unsigned long long)memory.texture_bytes);
 	if (memory.geometry_bytes > budget.geometry_budget_bytes)
 		fail("%llu bytes of patches", (unsigned long long)memory.geometry_bytes);
-	if (layer_count >= OVERLAY_LAYERS_MOST)
+	if (layer_count >= OVERLAY_LAYERS_MAX)
 		fail("%u layers of words", layer_count);
 	for (int i = 0; i < 3; i++)
 		if (!isfinite(kiosk.camera.eye_m[i]) || !isfinite(kiosk.camera.target_m[i]))
@@ -203,8 +203,8 @@ static void look_at_words(const struct overlay *overlay)
 	seen.reach += overlay_comfort(overlay).reach;
 	seen.tools += kiosk.tools.now.rake.on || kiosk.tools.now.section.on;
 	seen.help += overlay_help(overlay);
-	seen.language += strcmp(story_language(kiosk.shown.story),
-				info_language(story_info(kiosk.shown.story), 0)) != 0;
+	seen.language += strcmp(information_view_language(kiosk.shown.view),
+				info_language(information_view_info(kiosk.shown.view), 0)) != 0;
 }
 
 static bool somebody_is_led(void)
@@ -221,22 +221,23 @@ int __wrap_frame_draw(struct kiosk *of)
 	if (somebody_is_led())
 		last_touch_us = virtual_us;
 	check_budgets();
-	if (story_overlay(kiosk.shown.story))
-		look_at_words(story_overlay(kiosk.shown.story));
+	if (information_view_overlay(kiosk.shown.view))
+		look_at_words(information_view_overlay(kiosk.shown.view));
 	return rc;
 }
 
 /* A finger's event: what was before it must have been right. */
 void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
 {
-	const int64_t idle_us = (int64_t)kiosk.visit.idle_ms * 1000;
-	const int64_t most_us = VISIT_READ_TIMES * idle_us + VISIT_ASK_MS * 1000 + END_MOST_US;
-	const enum visit_state state = kiosk.visit.state;
+	const int64_t idle_us = (int64_t)kiosk.presence.idle_ms * 1000;
+	const int64_t most_us =
+		PRESENCE_READ_TIMES * idle_us + PRESENCE_ASK_MS * 1000 + END_MOST_US;
+	const enum presence_state state = kiosk.presence.state;
 
-	seen.asked += state == VISIT_ASKED;
+	seen.asked += state == PRESENCE_ASKED;
 	if (seen.touches > 0 && !somebody_is_led() && virtual_us - last_touch_us > most_us) {
 		seen.nobody++;
-		if (state != VISIT_NOBODY)
+		if (state != PRESENCE_NOBODY)
 			fail("nobody touched it for %.1f s, and it does not show itself",
 			     (double)(virtual_us - last_touch_us) / 1e6);
 	}
@@ -248,9 +249,9 @@ void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
 /* Nothing of the last visitor is there. */
 static void check_attract(void)
 {
-	struct overlay *overlay = story_overlay(kiosk.shown.story);
+	struct overlay *overlay = information_view_overlay(kiosk.shown.view);
 
-	if (kiosk.visit.state != VISIT_NOBODY || !overlay) {
+	if (kiosk.presence.state != PRESENCE_NOBODY || !overlay) {
 		fail("it does not show itself at the end");
 		return;
 	}
@@ -263,12 +264,12 @@ static void check_attract(void)
 		fail("large type or reach stayed");
 	if (kiosk.tools.now.rake.on || kiosk.tools.now.section.on)
 		fail("a tool stayed");
-	if (strcmp(story_language(kiosk.shown.story),
-		   info_language(story_info(kiosk.shown.story), 0)) != 0)
-		fail("the language stayed %s", story_language(kiosk.shown.story));
+	if (strcmp(information_view_language(kiosk.shown.view),
+		   info_language(information_view_info(kiosk.shown.view), 0)) != 0)
+		fail("the language stayed %s", information_view_language(kiosk.shown.view));
 	if (overlay_tap(overlay, 1, 1).kind != OVERLAY_NONE)
 		fail("something lies in the corner that is the model's");
-	for (int i = 0; i < TOUCH_CONTACTS_MOST; i++)
+	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++)
 		if (kiosk.gestures.fingers[i].down)
 			fail("finger %d is still down", i);
 	if (kiosk.fingers_on_keys != 0)
@@ -288,13 +289,14 @@ static int run(void)
 	rc = kiosk_run(&kiosk);
 	if (rc < 0 || failed || asked.shots_path)
 		return rc;
-	until_us = virtual_us + VISIT_READ_TIMES * (int64_t)kiosk.visit.idle_ms * 1000 +
-		   VISIT_ASK_MS * 1000 + END_MOST_US;
-	while (rc == 0 && !failed && kiosk.visit.state != VISIT_NOBODY && virtual_us < until_us) {
+	until_us = virtual_us + PRESENCE_READ_TIMES * (int64_t)kiosk.presence.idle_ms * 1000 +
+		   PRESENCE_ASK_MS * 1000 + END_MOST_US;
+	while (rc == 0 && !failed && kiosk.presence.state != PRESENCE_NOBODY &&
+	       virtual_us < until_us) {
 		if (somebody_is_led()) /* which ends by itself, and then it is as after a touch */
 			until_us = virtual_us + kiosk.tour.path.duration_ms * 1000 +
-				   VISIT_READ_TIMES * (int64_t)kiosk.visit.idle_ms * 1000 +
-				   VISIT_ASK_MS * 1000 + END_MOST_US;
+				   PRESENCE_READ_TIMES * (int64_t)kiosk.presence.idle_ms * 1000 +
+				   PRESENCE_ASK_MS * 1000 + END_MOST_US;
 		kiosk.quit = false; /* the replay ended: a turn sets it again */
 		rc = kiosk_run(&kiosk);
 	}

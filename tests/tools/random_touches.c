@@ -16,8 +16,8 @@
 enum { LEAVES_MS = 40000, LEAVES_EVERY = 300, FIRST_MS = 3000 };
 
 static struct contacts contacts = { .palm_px = 120 };
-static struct contact_slot slots[TOUCH_SLOTS_MOST];
-static struct touch_raw raws[TOUCH_SLOTS_MOST];
+static struct contact_slot slots[TOUCH_SLOTS_MAX];
+static struct touch_raw raws[TOUCH_SLOTS_MAX];
 static uint64_t state;
 static int64_t now_ms = FIRST_MS;
 static long left, leaves_at; /* events */
@@ -148,7 +148,7 @@ static void mash(void)
 		const uint32_t changes = 1 + random_below(random_below(8) == 0 ? 24 : 3);
 
 		for (uint32_t c = 0; c < changes; c++) {
-			struct touch_raw *raw = &raws[random_below(TOUCH_SLOTS_MOST)];
+			struct touch_raw *raw = &raws[random_below(TOUCH_SLOTS_MAX)];
 			const uint32_t what = random_below(8);
 
 			if (!raw->down || what == 0)

@@ -22,7 +22,7 @@
 #include <GLES2/gl2.h>
 #include <GLES2/gl2ext.h>
 
-enum { SIDE_MOST = 2048, UNITS_MOST = 8, NAMES_MOST = 65536, PROGRAMS_MOST = 64 };
+enum { SIDE_MAX = 2048, UNITS_MAX = 8, NAMES_MAX = 65536, PROGRAMS_MAX = 64 };
 
 /* The function that the product would have called. */
 #define REAL(name) ((__typeof__(&(name)))real(#name))
@@ -44,9 +44,9 @@ static bool used;
 static struct {
 	size_t bytes;
 	bool rgb;
-} held[NAMES_MOST];
+} held[NAMES_MAX];
 static size_t all_bytes, all_most, rgb_bytes, rgb_most;
-static GLuint unlinked[PROGRAMS_MOST]; /* programs that ask for too much */
+static GLuint unlinked[PROGRAMS_MAX]; /* programs that ask for too much */
 static unsigned unlinked_count;
 
 /* ---- what holds, what was refused */
@@ -134,16 +134,16 @@ GL_APICALL void GL_APIENTRY glGetIntegerv(GLenum name, GLint *out)
 	REAL(glGetIntegerv)(name, out);
 	if (holds("size") && (name == GL_MAX_TEXTURE_SIZE || name == GL_MAX_RENDERBUFFER_SIZE ||
 			      name == GL_MAX_CUBE_MAP_TEXTURE_SIZE))
-		limit_value(out, SIDE_MOST);
+		limit_value(out, SIDE_MAX);
 	if (holds("size") && name == GL_MAX_VIEWPORT_DIMS) {
-		limit_value(&out[0], SIDE_MOST);
-		limit_value(&out[1], SIDE_MOST);
+		limit_value(&out[0], SIDE_MAX);
+		limit_value(&out[1], SIDE_MAX);
 	}
 	if (holds("units") && name == GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS)
 		*out = 0;
 	if (holds("units") &&
 	    (name == GL_MAX_TEXTURE_IMAGE_UNITS || name == GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS))
-		limit_value(out, UNITS_MOST);
+		limit_value(out, UNITS_MAX);
 }
 
 GL_APICALL void GL_APIENTRY glGetShaderPrecisionFormat(GLenum kind, GLenum precision, GLint *range,
@@ -176,7 +176,7 @@ static size_t bytes_of(GLsizei width, GLsizei height, GLenum format, GLenum type
 static void hold(GLuint name, size_t bytes, bool rgb)
 {
 	used = true;
-	if (name >= NAMES_MOST)
+	if (name >= NAMES_MAX)
 		abort();
 	all_bytes += bytes - held[name].bytes;
 	if (held[name].rgb)
@@ -200,7 +200,7 @@ GL_APICALL void GL_APIENTRY glTexImage2D(GLenum target, GLint level, GLint inter
 					 GLsizei height, GLint border, GLenum format, GLenum type,
 					 const void *pixels)
 {
-	if (holds("size") && (width > SIDE_MOST || height > SIDE_MOST)) {
+	if (holds("size") && (width > SIDE_MAX || height > SIDE_MAX)) {
 		refuse(GL_INVALID_VALUE, "a texture of that size", width, height);
 		return;
 	}
@@ -230,7 +230,7 @@ GL_APICALL void GL_APIENTRY glDeleteTextures(GLsizei count, const GLuint *names)
 
 GL_APICALL void GL_APIENTRY glActiveTexture(GLenum unit)
 {
-	if (holds("units") && unit >= GL_TEXTURE0 + UNITS_MOST)
+	if (holds("units") && unit >= GL_TEXTURE0 + UNITS_MAX)
 		refuse(GL_INVALID_ENUM, "a texture unit", (int)(unit - GL_TEXTURE0), 0);
 	else
 		REAL(glActiveTexture)(unit);
@@ -254,7 +254,7 @@ static bool is_refused_format(GLenum format)
 GL_APICALL void GL_APIENTRY glRenderbufferStorage(GLenum target, GLenum format, GLsizei width,
 						  GLsizei height)
 {
-	if (holds("size") && (width > SIDE_MOST || height > SIDE_MOST))
+	if (holds("size") && (width > SIDE_MAX || height > SIDE_MAX))
 		refuse(GL_INVALID_VALUE, "a renderbuffer of that size", width, height);
 	else if (is_refused_format(format))
 		refuse(GL_INVALID_ENUM, "a renderbuffer of that format", (int)format, 0);
@@ -265,10 +265,10 @@ GL_APICALL void GL_APIENTRY glRenderbufferStorage(GLenum target, GLenum format, 
 /* A driver clamps without a word, and the picture is wrong: counted, so that a test sees it. */
 GL_APICALL void GL_APIENTRY glViewport(GLint x, GLint y, GLsizei width, GLsizei height)
 {
-	if (holds("size") && (width > SIDE_MOST || height > SIDE_MOST)) {
+	if (holds("size") && (width > SIDE_MAX || height > SIDE_MAX)) {
 		refuse(GL_NO_ERROR, "a viewport of that size", width, height);
-		limit_value(&width, SIDE_MOST);
-		limit_value(&height, SIDE_MOST);
+		limit_value(&width, SIDE_MAX);
+		limit_value(&height, SIDE_MAX);
 	}
 	REAL(glViewport)(x, y, width, height);
 }
@@ -341,10 +341,10 @@ GL_APICALL void GL_APIENTRY glLinkProgram(GLuint program)
 {
 	REAL(glLinkProgram)(program);
 	GLint units = holds("units") ? samplers_of(program) : 0;
-	if (units <= UNITS_MOST)
+	if (units <= UNITS_MAX)
 		return;
 	refuse(GL_NO_ERROR, "a program of that many texture units", units, 0);
-	if (unlinked_count < PROGRAMS_MOST)
+	if (unlinked_count < PROGRAMS_MAX)
 		unlinked[unlinked_count++] = program;
 }
 

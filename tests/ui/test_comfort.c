@@ -177,12 +177,12 @@ static void set_language(struct overlay *overlay, int language)
 /* As many as there may be. */
 static void set_tours(struct overlay *overlay, int language)
 {
-	struct overlay_tour tours[OVERLAY_TOURS_MOST];
+	struct overlay_tour tours[OVERLAY_TOURS_MAX];
 
-	for (int i = 0; i < OVERLAY_TOURS_MOST; i++)
+	for (int i = 0; i < OVERLAY_TOURS_MAX; i++)
 		tours[i] = (struct overlay_tour){ titles[language], captions[language],
 						  i % 2 ? "a.png" : "" };
-	CHECK(overlay_tours(overlay, tours, OVERLAY_TOURS_MOST) == 0);
+	CHECK(overlay_tours(overlay, tours, OVERLAY_TOURS_MAX) == 0);
 }
 
 static void show_tour(struct overlay *overlay, int language, bool paused)
@@ -246,7 +246,7 @@ static void paint(struct overlay *overlay, const char *screen)
 
 /* ---- what answers a finger, by feeling the whole panel */
 
-enum { CONTROLS_MOST = 200, STEP_PX = 8 };
+enum { CONTROLS_MAX = 200, STEP_PX = 8 };
 
 struct control {
 	struct overlay_action action;
@@ -279,7 +279,7 @@ static uint32_t feel(const struct overlay *overlay, struct control *controls)
 				    y <= controls[i].bottom_px + STEP_PX)
 					break;
 			if (i == count) {
-				CHECK(count < CONTROLS_MOST);
+				CHECK(count < CONTROLS_MAX);
 				controls[count++] = (struct control){ action, x, y, x, y };
 			}
 			controls[i].left_px = x < controls[i].left_px ? x : controls[i].left_px;
@@ -320,7 +320,7 @@ static bool may_be_cut(enum overlay_action_kind kind)
 
 static void feel_all(struct overlay *overlay, const char *screen, enum overlay_action_kind expected)
 {
-	struct control controls[CONTROLS_MOST];
+	struct control controls[CONTROLS_MAX];
 	int least_px = theme_px(&overlay->theme, THEME_TARGET_MM);
 	uint32_t count;
 
@@ -483,7 +483,7 @@ static void a_panel_within_reach_as_a_whole_has_no_reach_mode(void **state)
 	(void)state;
 	for (size_t s = 0; s < ARRAY_COUNT(small); s++) {
 		struct overlay *overlay = open_overlay(small[s][0], small[s][1]);
-		struct control controls[CONTROLS_MOST];
+		struct control controls[CONTROLS_MAX];
 
 		overlay_set_comfort(overlay, (struct overlay_comfort){ true, true });
 		CHECK(overlay_comfort(overlay).large && !overlay_comfort(overlay).reach);

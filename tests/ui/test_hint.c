@@ -55,8 +55,8 @@ static void one_finger_turns_then_two_part_and_then_they_rest(void **state)
 
 static uint32_t fingers_shown(const struct overlay *overlay)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
-	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST), fingers = 0;
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
+	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX), fingers = 0;
 
 	for (uint32_t i = 0; i < count; i++)
 		fingers += layers[i].bitmap == BITMAP_FINGER;
@@ -64,7 +64,7 @@ static uint32_t fingers_shown(const struct overlay *overlay)
 }
 
 /* Milliseconds until nothing moves. */
-static int64_t rest_after(struct overlay *overlay, int64_t *now_ms)
+static int64_t accumulation_after(struct overlay *overlay, int64_t *now_ms)
 {
 	const int64_t began_ms = *now_ms;
 
@@ -84,13 +84,13 @@ static void the_hint_moves_a_while_goes_at_once_and_moves_anew(void **state)
 
 	(void)state;
 	CHECK(overlay_create(&overlay, &options) == 0);
-	moved_ms = rest_after(overlay, &now_ms);
+	moved_ms = accumulation_after(overlay, &now_ms);
 	CHECK(moved_ms >= HINT_MOVES_MS && moved_ms < HINT_MOVES_MS + 100);
 	CHECK(fingers_shown(overlay) == HINT_FINGERS);
 	overlay_show_help(overlay, false); /* what a visitor's first drag does */
-	CHECK(rest_after(overlay, &now_ms) < 300 && fingers_shown(overlay) == 0);
+	CHECK(accumulation_after(overlay, &now_ms) < 300 && fingers_shown(overlay) == 0);
 	overlay_show_help(overlay, true);
-	CHECK(rest_after(overlay, &now_ms) >= HINT_MOVES_MS);
+	CHECK(accumulation_after(overlay, &now_ms) >= HINT_MOVES_MS);
 	overlay_destroy(overlay);
 }
 

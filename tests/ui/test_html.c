@@ -91,7 +91,7 @@ static void marks_rows_columns_and_looks(void **state)
 
 static void refuses_what_says_nothing(void **state)
 {
-	char *large = malloc(HTML_BYTES_MOST + 1);
+	char *large = malloc(HTML_BYTES_MAX + 1);
 
 	(void)state;
 	CHECK(parse("") == -EBADMSG);
@@ -100,8 +100,8 @@ static void refuses_what_says_nothing(void **state)
 	CHECK(parse("<p>a\xff</p>") == -EBADMSG);
 	CHECK(parse("<<<>>>&;&#;") == 0 || html.block_count == 0);
 	html_finish(&html);
-	memset(large, 'a', HTML_BYTES_MOST + 1);
-	CHECK(html_parse(&html, (struct bytes){ (uint8_t *)large, HTML_BYTES_MOST + 1 }) == -EFBIG);
+	memset(large, 'a', HTML_BYTES_MAX + 1);
+	CHECK(html_parse(&html, (struct bytes){ (uint8_t *)large, HTML_BYTES_MAX + 1 }) == -EFBIG);
 	free(large);
 	html_finish(NULL);
 }
@@ -207,13 +207,13 @@ static void spans_are_sound_on_any_page(void **state)
  */
 static void many_attributes_take_no_time(void **state)
 {
-	char *page = malloc(HTML_BYTES_MOST);
+	char *page = malloc(HTML_BYTES_MAX);
 	clock_t began = clock();
 	size_t at = 0;
 	(void)state;
 
 	CHECK(page);
-	for (int k = 0; at < HTML_BYTES_MOST - 40; k++)
+	for (int k = 0; at < HTML_BYTES_MAX - 40; k++)
 		at += (size_t)snprintf(page + at, 20, k ? " a%d" : "<p", k);
 	at += (size_t)snprintf(page + at, 20, ">x</p>");
 	CHECK(html_parse(&html, (struct bytes){ (uint8_t *)page, at }) == 0);
@@ -262,12 +262,12 @@ static void survives_nasty_pages(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(pieces); i++) {
-		buffer_init(&page, HTML_BYTES_MOST);
+		buffer_init(&page, HTML_BYTES_MAX);
 		for (int k = 0; k < 4000; k++)
 			buffer_put(&page, pieces[i], strlen(pieces[i]));
 		buffer_put(&page, "end", 3);
 		if (html_parse(&html, buffer_bytes(&page)) == 0) {
-			CHECK(html.block_count > 0 && html.block_count <= HTML_BLOCKS_MOST);
+			CHECK(html.block_count > 0 && html.block_count <= HTML_BLOCKS_MAX);
 			html_finish(&html);
 		}
 		buffer_finish(&page);

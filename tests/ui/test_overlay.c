@@ -90,12 +90,12 @@ static void paint_album(struct album *album)
 		for (uint32_t x = 0; x < width; x++) {
 			uint8_t *p = album->picture.rgba + ((size_t)y * width + x) * 4;
 			float half = 20 + 80 * powf((float)y / (float)height, 1.6f);
-			bool stone = fabsf((float)x - 240) < half && y > 30;
+			bool material = fabsf((float)x - 240) < half && y > 30;
 			uint8_t shade = (uint8_t)(((x / 6 + y / 9) % 2) * 12);
 
-			p[0] = stone ? (uint8_t)(150 + shade) : (uint8_t)(230 - y / 4);
-			p[1] = stone ? (uint8_t)(128 + shade) : (uint8_t)(200 - y / 5);
-			p[2] = stone ? (uint8_t)(104 + shade) : (uint8_t)(170 + y / 6);
+			p[0] = material ? (uint8_t)(150 + shade) : (uint8_t)(230 - y / 4);
+			p[1] = material ? (uint8_t)(128 + shade) : (uint8_t)(200 - y / 5);
+			p[2] = material ? (uint8_t)(104 + shade) : (uint8_t)(170 + y / 6);
 			p[3] = 255;
 		}
 	}
@@ -201,14 +201,14 @@ static int painted(const struct bitmap *bitmap, struct overlay_rect rect)
 
 static void check_layers(const struct overlay *overlay)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
-	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
+	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 
-	CHECK(count > 0 && count < OVERLAY_LAYERS_MOST);
+	CHECK(count > 0 && count < OVERLAY_LAYERS_MAX);
 	for (uint32_t i = 0; i < count; i++) {
 		const struct overlay_layer *layer = &layers[i];
 
-		CHECK(layer->bitmap < OVERLAY_BITMAPS_MOST && layer->revision > 0);
+		CHECK(layer->bitmap < OVERLAY_BITMAPS_MAX && layer->revision > 0);
 		CHECK(layer->alpha > 0 && layer->alpha <= 1 && layer->pixels->surface);
 		for (int c = 0; c < 4; c++) {
 			CHECK(layer->corners_px[c][0] >= -8 &&
@@ -480,7 +480,7 @@ static void a_late_picture_moves_nothing(void **state)
 /* Fades begin at nothing and are monotonous: nothing pops. */
 static void nothing_pops(void **state)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
 	struct album album;
 	struct overlay *overlay;
 	float last = 0;
@@ -496,7 +496,7 @@ static void nothing_pops(void **state)
 		uint32_t count;
 
 		overlay_update(overlay, now_ms);
-		count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+		count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 		for (uint32_t i = 0; i < count; i++)
 			if (layers[i].bitmap == BITMAP_CARD)
 				alpha = layers[i].alpha;
@@ -511,8 +511,8 @@ static void nothing_pops(void **state)
 /* Of the part's label; 0: it has none. */
 static float label_alpha(struct overlay *overlay, int part)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
-	const uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
+	const uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 
 	for (uint32_t i = 0; i < count; i++)
 		if (layers[i].bitmap >= BITMAP_LABEL && layers[i].bitmap < BITMAP_LABEL + LABELS &&

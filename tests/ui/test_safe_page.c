@@ -100,7 +100,7 @@ static void every_language_has_its_letters(void **state)
 
 	(void)state;
 	CHECK(safe_page_init(&page, 1280, 720) == 0);
-	CHECK(page.line_count == SAFE_PAGE_LINES_MOST);
+	CHECK(page.line_count == SAFE_PAGE_LINES_MAX);
 	safe_page_finish(&page);
 }
 

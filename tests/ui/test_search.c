@@ -394,7 +394,7 @@ static void arabic_begins_at_the_right(void **state)
 static void the_list_scrolls_and_stays_inside(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720);
-	struct overlay_layer layers[OVERLAY_LAYERS_MOST];
+	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
 	struct overlay_rect rows;
 	struct overlay_action action;
 	uint32_t count;
@@ -412,7 +412,7 @@ static void the_list_scrolls_and_stays_inside(void **state)
 	CHECK(action.kind == OVERLAY_FOUND && action.part == PARTS - 1);
 	overlay_scroll(overlay, 15);
 	settle(overlay);
-	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MOST);
+	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 	for (uint32_t i = 0; i < count; i++)
 		if (layers[i].bitmap >= BITMAP_ROW && layers[i].bitmap < BITMAP_ROW + SEARCH_ROWS)
 			CHECK(layers[i].corners_px[0][1] >= (float)rows.y_px &&

@@ -43,65 +43,65 @@ static int leave_folder(void **unused)
 	return system(command);
 }
 
-static struct keeper *open_keeper(void)
+static struct state_writer *open_keeper(void)
 {
 	struct state *state;
-	struct keeper *keeper;
+	struct state_writer *writer;
 
 	CHECK(state_create(&state, path) == 0);
-	CHECK(keeper_create(&keeper, state) == 0);
-	return keeper;
+	CHECK(state_writer_create(&writer, state) == 0);
+	return writer;
 }
 
-static void activate(struct keeper *keeper, uint8_t n)
+static void activate(struct state_writer *writer, uint8_t n)
 {
 	const uint8_t file[3] = { n, n, n };
 	const struct state_release release = { { { n } }, 100u + n, n, { file, sizeof(file) } };
 
-	CHECK(keeper_activate(keeper, &release) == 0);
+	CHECK(state_writer_activate(writer, &release) == 0);
 }
 
-static void wait_for_answer(struct keeper *keeper, struct keeper_answer *answer)
+static void wait_for_answer(struct state_writer *writer, struct state_writer_answer *answer)
 {
-	struct pollfd ready = { .fd = keeper_fd(keeper), .events = POLLIN };
+	struct pollfd ready = { .fd = state_writer_fd(writer), .events = POLLIN };
 
 	CHECK(poll(&ready, 1, 60000) == 1);
-	CHECK(keeper_take(keeper, answer));
+	CHECK(state_writer_take(writer, answer));
 }
 
 static void asks_while_the_disk_sleeps(void **unused)
 {
-	struct keeper *keeper = open_keeper();
-	struct keeper_answer answer;
+	struct state_writer *writer = open_keeper();
+	struct state_writer_answer answer;
 
 	(void)unused;
 	gated = true;
-	activate(keeper, 7); /* would hang here, if it waited */
-	CHECK(!keeper_take(keeper, &answer));
+	activate(writer, 7); /* would hang here, if it waited */
+	CHECK(!state_writer_take(writer, &answer));
 	gated = false;
 	for (int i = 0; i < 8; i++)
 		sem_post(&gate);
-	wait_for_answer(keeper, &answer);
+	wait_for_answer(writer, &answer);
 	CHECK(answer.rc == 0 && answer.sequence == 7 && answer.root.bytes[0] == 7);
-	CHECK(!keeper_take(keeper, &answer));
-	keeper_destroy(keeper);
+	CHECK(!state_writer_take(writer, &answer));
+	state_writer_destroy(writer);
 }
 
 static void writes_what_was_asked_for_before_it_ends(void **unused)
 {
 	const uint8_t trust[2] = { 1, 2 };
-	struct keeper *keeper = open_keeper();
+	struct state_writer *writer = open_keeper();
 	struct state_release release;
 	struct state *state;
 	struct bytes file;
 
 	(void)unused;
-	activate(keeper, 3);
-	CHECK(keeper_set_trust(keeper, (struct bytes){ trust, sizeof(trust) },
-			       STATE_CLEAR_NOTHING) == 0);
-	keeper_raise_time_floor(keeper, 2000000000);
-	activate(keeper, 4);
-	keeper_destroy(keeper);
+	activate(writer, 3);
+	CHECK(state_writer_set_trust(writer, (struct bytes){ trust, sizeof(trust) },
+				     STATE_CLEAR_NOTHING) == 0);
+	state_writer_raise_time_floor(writer, 2000000000);
+	activate(writer, 4);
+	state_writer_destroy(writer);
 	CHECK(state_create(&state, path) == 0);
 	CHECK(state_release(state, &release) == 0);
 	CHECK(release.sequence == 4 && release.root_bytes == 104 && release.file.size == 3);
@@ -112,30 +112,30 @@ static void writes_what_was_asked_for_before_it_ends(void **unused)
 
 static void tells_of_a_release_that_is_too_old(void **unused)
 {
-	struct keeper *keeper = open_keeper();
-	struct keeper_answer answer;
+	struct state_writer *writer = open_keeper();
+	struct state_writer_answer answer;
 
 	(void)unused;
-	activate(keeper, 9);
-	wait_for_answer(keeper, &answer);
-	activate(keeper, 8);
-	wait_for_answer(keeper, &answer);
+	activate(writer, 9);
+	wait_for_answer(writer, &answer);
+	activate(writer, 8);
+	wait_for_answer(writer, &answer);
 	CHECK(answer.rc < 0 && answer.sequence == 8);
-	keeper_destroy(keeper);
+	state_writer_destroy(writer);
 }
 
 static void tells_of_a_disk_that_cannot_be_written(void **unused)
 {
-	struct keeper *keeper;
-	struct keeper_answer answer;
+	struct state_writer *writer;
+	struct state_writer_answer answer;
 
 	(void)unused;
 	snprintf(path, sizeof(path), "%s/no/such/folder/state.db", folder);
-	keeper = open_keeper();
-	activate(keeper, 1);
-	wait_for_answer(keeper, &answer);
+	writer = open_keeper();
+	activate(writer, 1);
+	wait_for_answer(writer, &answer);
 	CHECK(answer.rc < 0 && answer.sequence == 1);
-	keeper_destroy(keeper);
+	state_writer_destroy(writer);
 }
 
 int main(void)

@@ -21,28 +21,28 @@ int64_t clock_now_ms(void)
 	return world.now_ms;
 }
 
-bool follow_on_trial(const struct follow *follow)
+bool updater_on_trial(const struct updater *updater)
 {
-	(void)follow;
+	(void)updater;
 	return world.on_trial;
 }
 
-bool follow_has_before(const struct follow *follow)
+bool updater_has_before(const struct updater *updater)
 {
-	(void)follow;
+	(void)updater;
 	return world.has_before;
 }
 
-void follow_prove(struct follow *follow)
+void updater_prove(struct updater *updater)
 {
-	(void)follow;
+	(void)updater;
 	world.proven++;
 	world.on_trial = false;
 }
 
-void follow_fall_back(struct follow *follow, const char *why)
+void updater_fall_back(struct updater *updater, const char *why)
 {
-	(void)follow;
+	(void)updater;
 	CHECK(why[0]);
 	world.returned++;
 	world.on_trial = false;
@@ -54,9 +54,9 @@ uint32_t scene_refused(const struct scene *scene)
 	return world.refused;
 }
 
-bool story_broken(const struct story *story)
+bool information_view_broken(const struct information_view *view)
 {
-	(void)story;
+	(void)view;
 	return world.broken_words;
 }
 
@@ -75,7 +75,7 @@ static int set_up(void **state)
 	world.now_ms = 1000000;
 	world.on_trial = world.has_before = true;
 	kiosk.shown.scene = (struct scene *)&some_thing;
-	kiosk.shown.story = (struct story *)&some_thing;
+	kiosk.shown.view = (struct information_view *)&some_thing;
 	kiosk.shown.root_here = true;
 	kiosk.shown.shown_ms = world.now_ms;
 	return 0;

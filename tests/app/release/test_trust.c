@@ -11,7 +11,7 @@ enum { NOW_S = 1700000000, DAY_S = 86400, POOL = 4 };
 
 static struct signing_key root_key, root_key_2, release_key, timestamp_key, stranger;
 static struct signing_key release_pool[POOL], timestamp_pool[POOL];
-static const struct update_time now = { NOW_S }, no_clock = { 0 };
+static const struct trust_time now = { NOW_S }, no_clock = { 0 };
 
 static void make_key(struct signing_key *key)
 {
@@ -52,16 +52,16 @@ static int set_up(void **state)
 	return 0;
 }
 
-static void pin(struct update *update)
+static void pin(struct trust *trust)
 {
 	const struct trust_root root = root_of(1, &root_key);
 	struct buffer file;
 	const char *why;
 
-	*update = (struct update){ 0 };
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	*trust = (struct trust){ 0 };
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
-	CHECK(update_pin(update, buffer_bytes(&file), &why) == 0);
+	CHECK(trust_pin(trust, buffer_bytes(&file), &why) == 0);
 	buffer_finish(&file);
 }
 
@@ -71,10 +71,10 @@ struct offer {
 	int64_t expires_s, timestamp_expires_s;                /* 0: in a day */
 	const struct signing_key *release_key, *timestamp_key; /* NULL: the right ones */
 	bool other_file; /* the timestamp names another release.json */
-	struct update_time time;
+	struct trust_time time;
 };
 
-static int take(struct update *update, const struct offer *offer, const char **why)
+static int take(struct trust *trust, const struct offer *offer, const char **why)
 {
 	struct release release = { .sequence = offer->sequence, .root_bytes = 100 };
 	struct timestamp timestamp = { 0 };
@@ -84,8 +84,8 @@ static int take(struct update *update, const struct offer *offer, const char **w
 
 	memset(release.root.bytes, (int)offer->sequence, HASH_BYTES);
 	release.expires_s = offer->expires_s ? offer->expires_s : NOW_S + DAY_S;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MAX);
 	CHECK(release_encode(&file, &release,
 			     offer->release_key ? offer->release_key : &release_key, 1) == 0);
 	timestamp.sequence =
@@ -98,12 +98,12 @@ static int take(struct update *update, const struct offer *offer, const char **w
 			       offer->timestamp_key ? offer->timestamp_key : &timestamp_key,
 			       1) == 0);
 	*why = NULL;
-	rc = update_timestamp(update, buffer_bytes(&stamp), offer->time, why);
+	rc = trust_timestamp(trust, buffer_bytes(&stamp), offer->time, why);
 	if (rc == 0)
-		rc = update_release(update, buffer_bytes(&file), offer->time, &got, why);
+		rc = trust_release(trust, buffer_bytes(&file), offer->time, &got, why);
 	if (rc == 1) {
 		CHECK(got.sequence == offer->sequence);
-		update_accept(update, got.sequence);
+		trust_accept(trust, got.sequence);
 	}
 	CHECK(rc >= 0 || (*why && **why));
 	buffer_finish(&file);
@@ -111,7 +111,7 @@ static int take(struct update *update, const struct offer *offer, const char **w
 	return rc;
 }
 
-static int offer_stamp(struct update *update, uint64_t sequence, struct bytes release)
+static int offer_stamp(struct trust *trust, uint64_t sequence, struct bytes release)
 {
 	const struct timestamp timestamp = { .sequence = sequence,
 					     .expires_s = NOW_S + DAY_S,
@@ -120,86 +120,86 @@ static int offer_stamp(struct update *update, uint64_t sequence, struct bytes re
 	const char *why;
 	int rc;
 
-	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MAX);
 	CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
-	rc = update_timestamp(update, buffer_bytes(&stamp), now, &why);
+	rc = trust_timestamp(trust, buffer_bytes(&stamp), now, &why);
 	buffer_finish(&stamp);
 	return rc;
 }
 
 static void takes_a_newer_release_once(void **state)
 {
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	CHECK(take(&update, &(struct offer){ .sequence = 1, .time = now }, &why) == 1);
-	CHECK(take(&update, &(struct offer){ .sequence = 1, .time = now }, &why) == 0);
-	CHECK(take(&update, &(struct offer){ .sequence = 7, .time = now }, &why) == 1);
+	pin(&trust);
+	CHECK(take(&trust, &(struct offer){ .sequence = 1, .time = now }, &why) == 1);
+	CHECK(take(&trust, &(struct offer){ .sequence = 1, .time = now }, &why) == 0);
+	CHECK(take(&trust, &(struct offer){ .sequence = 7, .time = now }, &why) == 1);
 }
 
 static void refuses_a_rollback(void **state)
 {
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	CHECK(take(&update, &(struct offer){ .sequence = 5, .time = now }, &why) == 1);
-	CHECK(take(&update, &(struct offer){ .sequence = 4, .time = now }, &why) == -ESTALE);
+	pin(&trust);
+	CHECK(take(&trust, &(struct offer){ .sequence = 5, .time = now }, &why) == 1);
+	CHECK(take(&trust, &(struct offer){ .sequence = 4, .time = now }, &why) == -ESTALE);
 	/* A fresh timestamp over an old release. */
-	CHECK(take(&update, &(struct offer){ .sequence = 4, .timestamp_sequence = 6, .time = now },
+	CHECK(take(&trust, &(struct offer){ .sequence = 4, .timestamp_sequence = 6, .time = now },
 		   &why) == -ESTALE);
 }
 
 static void refuses_mix_and_match(void **state)
 {
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	CHECK(take(&update, &(struct offer){ .sequence = 2, .other_file = true, .time = now },
+	pin(&trust);
+	CHECK(take(&trust, &(struct offer){ .sequence = 2, .other_file = true, .time = now },
 		   &why) == -ESTALE);
 }
 
 static void refuses_a_freeze_where_the_clock_is_set(void **state)
 {
 	struct offer late = { .sequence = 3, .expires_s = NOW_S - DAY_S };
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
+	pin(&trust);
 	late.time = now;
-	CHECK(take(&update, &late, &why) == -EKEYEXPIRED);
+	CHECK(take(&trust, &late, &why) == -EKEYEXPIRED);
 	late.expires_s = 0;
 	late.timestamp_expires_s = NOW_S - 1;
-	CHECK(take(&update, &late, &why) == -EKEYEXPIRED);
+	CHECK(take(&trust, &late, &why) == -EKEYEXPIRED);
 	late.time = no_clock;
-	CHECK(take(&update, &late, &why) == 1);
+	CHECK(take(&trust, &late, &why) == 1);
 }
 
 static void refuses_strangers(void **state)
 {
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	CHECK(take(&update, &(struct offer){ .sequence = 2, .release_key = &stranger, .time = now },
+	pin(&trust);
+	CHECK(take(&trust, &(struct offer){ .sequence = 2, .release_key = &stranger, .time = now },
 		   &why) == -EKEYREJECTED);
-	CHECK(take(&update,
+	CHECK(take(&trust,
 		   &(struct offer){ .sequence = 2, .timestamp_key = &stranger, .time = now },
 		   &why) == -EKEYREJECTED);
 	/* One role's key does not sign for another. */
-	CHECK(take(&update,
+	CHECK(take(&trust,
 		   &(struct offer){ .sequence = 2, .release_key = &timestamp_key, .time = now },
 		   &why) == -EKEYREJECTED);
 }
 
-static int offer_root(struct update *update, uint32_t version, const struct signing_key *own,
+static int offer_root(struct trust *trust, uint32_t version, const struct signing_key *own,
 		      const struct signing_key *signers, uint32_t signer_count)
 {
 	const struct trust_root root = root_of(version, own);
@@ -207,9 +207,9 @@ static int offer_root(struct update *update, uint32_t version, const struct sign
 	const char *why;
 	int rc;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, signers, signer_count) == 0);
-	rc = update_root(update, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why);
+	rc = trust_root(trust, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why);
 	buffer_finish(&file);
 	return rc;
 }
@@ -217,18 +217,18 @@ static int offer_root(struct update *update, uint32_t version, const struct sign
 static void follows_a_key_rotation_signed_by_old_and_new_keys(void **state)
 {
 	const struct signing_key both[2] = { root_key, root_key_2 };
-	struct update update;
+	struct trust trust;
 
 	(void)state;
-	pin(&update);
-	CHECK(offer_root(&update, 2, &root_key_2, &root_key_2, 1) < 0);
-	CHECK(offer_root(&update, 2, &root_key_2, &root_key, 1) < 0);
-	CHECK(offer_root(&update, 3, &root_key_2, both, 2) < 0); /* one was left out */
-	CHECK(update.trust.version == 1);
-	CHECK(offer_root(&update, 2, &root_key_2, both, 2) == 0);
-	CHECK(update.trust.version == 2);
-	CHECK(offer_root(&update, 2, &root_key_2, both, 2) < 0); /* again */
-	CHECK(offer_root(&update, 3, &root_key_2, &root_key_2, 1) == 0);
+	pin(&trust);
+	CHECK(offer_root(&trust, 2, &root_key_2, &root_key_2, 1) < 0);
+	CHECK(offer_root(&trust, 2, &root_key_2, &root_key, 1) < 0);
+	CHECK(offer_root(&trust, 3, &root_key_2, both, 2) < 0); /* one was left out */
+	CHECK(trust.root.version == 1);
+	CHECK(offer_root(&trust, 2, &root_key_2, both, 2) == 0);
+	CHECK(trust.root.version == 2);
+	CHECK(offer_root(&trust, 2, &root_key_2, both, 2) < 0); /* again */
+	CHECK(offer_root(&trust, 3, &root_key_2, &root_key_2, 1) == 0);
 }
 
 /* A root whose releases need two of two keys. */
@@ -240,25 +240,25 @@ static void refuses_a_release_below_the_threshold(void **state)
 	};
 	struct trust_root root = root_of(1, &root_key);
 	struct buffer file, one, two;
-	struct update update = { 0 };
+	struct trust trust = { 0 };
 	struct release got;
 	const char *why = "";
 
 	(void)state;
 	give_role(&root, META_RELEASE, &stranger);
 	root.roles[META_RELEASE].threshold = 2;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	buffer_init(&one, METADATA_FILE_BYTES_MOST);
-	buffer_init(&two, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	buffer_init(&one, METADATA_FILE_BYTES_MAX);
+	buffer_init(&two, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
-	CHECK(update_pin(&update, buffer_bytes(&file), &why) == 0);
+	CHECK(trust_pin(&trust, buffer_bytes(&file), &why) == 0);
 	CHECK(release_encode(&one, &release, both, 1) == 0);
 	CHECK(release_encode(&two, &release, both, 2) == 0);
-	CHECK(offer_stamp(&update, 2, buffer_bytes(&one)) == 0);
-	CHECK(update_release(&update, buffer_bytes(&one), now, &got, &why) == -EKEYREJECTED);
+	CHECK(offer_stamp(&trust, 2, buffer_bytes(&one)) == 0);
+	CHECK(trust_release(&trust, buffer_bytes(&one), now, &got, &why) == -EKEYREJECTED);
 	CHECK(strstr(why, "threshold"));
-	CHECK(offer_stamp(&update, 2, buffer_bytes(&two)) == 0);
-	CHECK(update_release(&update, buffer_bytes(&two), now, &got, &why) == 1);
+	CHECK(offer_stamp(&trust, 2, buffer_bytes(&two)) == 0);
+	CHECK(trust_release(&trust, buffer_bytes(&two), now, &got, &why) == 1);
 	buffer_finish(&file);
 	buffer_finish(&one);
 	buffer_finish(&two);
@@ -266,19 +266,19 @@ static void refuses_a_release_below_the_threshold(void **state)
 
 static void refuses_all_under_a_root_that_has_expired(void **state)
 {
-	const struct update_time late = { NOW_S + 366 * DAY_S };
+	const struct trust_time late = { NOW_S + 366 * DAY_S };
 	struct offer offer = { .sequence = 2,
 			       .expires_s = late.now_s + DAY_S,
 			       .timestamp_expires_s = late.now_s + DAY_S,
 			       .time = late };
-	struct update update;
+	struct trust trust;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	CHECK(take(&update, &offer, &why) == -EKEYEXPIRED && strstr(why, "root"));
+	pin(&trust);
+	CHECK(take(&trust, &offer, &why) == -EKEYEXPIRED && strstr(why, "root"));
 	offer.time = no_clock;
-	CHECK(take(&update, &offer, &why) == 1);
+	CHECK(take(&trust, &offer, &why) == 1);
 }
 
 /* ---- a root that takes keys away */
@@ -340,26 +340,26 @@ static void a_root_that_takes_keys_away_clears_what_they_had_set(void **state)
 			.sequence = thief, .expires_s = NOW_S, .root = { { 1 } }, .root_bytes = 100
 		};
 		struct buffer file, used;
-		struct update update = { 0 };
+		struct trust trust = { 0 };
 		const char *why = "";
 
-		buffer_init(&file, METADATA_FILE_BYTES_MOST);
-		buffer_init(&used, METADATA_FILE_BYTES_MOST);
+		buffer_init(&file, METADATA_FILE_BYTES_MAX);
+		buffer_init(&used, METADATA_FILE_BYTES_MAX);
 		encode_root(&file, 1, roots[i].releases, roots[i].timestamps);
-		CHECK(update_pin(&update, buffer_bytes(&file), &why) == 0);
-		update.sequence_floor = thief;
-		update.time_floor_s = NOW_S;
-		update.have_timestamp = true;
+		CHECK(trust_pin(&trust, buffer_bytes(&file), &why) == 0);
+		trust.sequence_floor = thief;
+		trust.time_floor_s = NOW_S;
+		trust.have_timestamp = true;
 		if (roots[i].signer != ' ')
 			CHECK(release_encode(&used, &release, &release_pool[roots[i].signer - 'a'],
 					     1) == 0);
 		encode_root(&file, 2, roots[i].next_releases, roots[i].next_timestamps);
-		CHECK(update_root(&update, buffer_bytes(&file), buffer_bytes(&used), &why) == 0);
-		if (update.sequence_floor != (roots[i].sequence_stays ? thief : 0))
+		CHECK(trust_root(&trust, buffer_bytes(&file), buffer_bytes(&used), &why) == 0);
+		if (trust.sequence_floor != (roots[i].sequence_stays ? thief : 0))
 			fail_msg("root %zu: the sequence floor is wrong", i);
-		if (update.time_floor_s != (roots[i].time_stays ? NOW_S : 0))
+		if (trust.time_floor_s != (roots[i].time_stays ? NOW_S : 0))
 			fail_msg("root %zu: the time floor is wrong", i);
-		CHECK(!update.have_timestamp);
+		CHECK(!trust.have_timestamp);
 		buffer_finish(&file);
 		buffer_finish(&used);
 	}
@@ -367,19 +367,19 @@ static void a_root_that_takes_keys_away_clears_what_they_had_set(void **state)
 
 static void a_root_that_is_refused_clears_nothing(void **state)
 {
-	struct update update;
+	struct trust trust;
 	struct buffer file;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	update.sequence_floor = 9;
-	update.time_floor_s = NOW_S;
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	pin(&trust);
+	trust.sequence_floor = 9;
+	trust.time_floor_s = NOW_S;
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	encode_root(&file, 2, "a 1", "a 1");
 	file.data[file.size / 2] ^= 1;
-	CHECK(update_root(&update, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why) < 0);
-	CHECK(update.sequence_floor == 9 && update.time_floor_s == NOW_S);
+	CHECK(trust_root(&trust, buffer_bytes(&file), (struct bytes){ NULL, 0 }, &why) < 0);
+	CHECK(trust.sequence_floor == 9 && trust.time_floor_s == NOW_S);
 	buffer_finish(&file);
 }
 
@@ -388,36 +388,36 @@ static void a_root_that_is_refused_clears_nothing(void **state)
 static void only_a_signed_timestamp_raises_the_time_floor(void **state)
 {
 	struct timestamp timestamp = { .sequence = 1, .expires_s = NOW_S + 900 * DAY_S };
-	struct update update;
+	struct trust trust;
 	struct buffer stamp;
 	const char *why;
 
 	(void)state;
-	pin(&update);
-	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	pin(&trust);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MAX);
 	for (int i = 0; i < 3; i++) {
 		/* none is said, then one, then an earlier one */
 		timestamp.issued_s = i == 0 ? 0 : NOW_S - i * DAY_S;
 		buffer_clear(&stamp);
 		CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
-		CHECK(update_timestamp(&update, buffer_bytes(&stamp), now, &why) == 0);
-		CHECK(update.time_floor_s == (i == 0 ? 0 : NOW_S - DAY_S));
+		CHECK(trust_timestamp(&trust, buffer_bytes(&stamp), now, &why) == 0);
+		CHECK(trust.time_floor_s == (i == 0 ? 0 : NOW_S - DAY_S));
 	}
 	timestamp.issued_s = NOW_S + DAY_S;
 	buffer_clear(&stamp);
 	CHECK(timestamp_encode(&stamp, &timestamp, &stranger, 1) == 0);
-	CHECK(update_timestamp(&update, buffer_bytes(&stamp), now, &why) == -EKEYREJECTED);
-	CHECK(update.time_floor_s == NOW_S - DAY_S);
+	CHECK(trust_timestamp(&trust, buffer_bytes(&stamp), now, &why) == -EKEYREJECTED);
+	CHECK(trust.time_floor_s == NOW_S - DAY_S);
 	buffer_finish(&stamp);
 }
 
 static void takes_nothing_without_a_trust_root(void **state)
 {
-	struct update update = { 0 };
+	struct trust trust = { 0 };
 	const char *why;
 
 	(void)state;
-	CHECK(take(&update, &(struct offer){ .sequence = 2, .time = now }, &why) == -ENOKEY);
+	CHECK(take(&trust, &(struct offer){ .sequence = 2, .time = now }, &why) == -ENOKEY);
 }
 
 int main(void)

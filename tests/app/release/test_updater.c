@@ -78,7 +78,7 @@ static void encode_root(struct buffer *file, uint32_t version)
 {
 	const struct trust_root root = root_of_version(version);
 
-	buffer_init(file, METADATA_FILE_BYTES_MOST);
+	buffer_init(file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(file, &root, &root_key, 1) == 0);
 }
 
@@ -123,19 +123,19 @@ static int leave_museum(void **unused)
 	return system(command);
 }
 
-static struct follow *open_follow(void)
+static struct updater *open_follow(void)
 {
-	const struct follow_options options = {
+	const struct updater_options options = {
 		.state_path = state_path,
 		.trust_path = trust_path,
 		.begin = on_begin,
 		.remembered = on_remembered,
 	};
-	struct follow *follow;
+	struct updater *updater;
 
-	CHECK(follow_create(&follow, &options) == 0);
-	follow_start(follow);
-	return follow;
+	CHECK(updater_create(&updater, &options) == 0);
+	updater_start(updater);
+	return updater;
 }
 
 static struct hash root_of(uint8_t n)
@@ -147,7 +147,7 @@ static struct hash root_of(uint8_t n)
 }
 
 /* The fetcher brings the metadata of a release. */
-static void offer(struct follow *follow, uint64_t sequence, uint8_t root, enum meta_source source)
+static void offer(struct updater *updater, uint64_t sequence, uint8_t root, enum meta_source source)
 {
 	const int64_t expires_s = clock_wall_s() + expires_in_s;
 	const struct release release = { .sequence = sequence,
@@ -159,440 +159,440 @@ static void offer(struct follow *follow, uint64_t sequence, uint8_t root, enum m
 				       .issued_s = issued_s };
 	struct buffer file, stamp;
 
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
-	buffer_init(&stamp, METADATA_FILE_BYTES_MOST);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	buffer_init(&stamp, METADATA_FILE_BYTES_MAX);
 	CHECK(release_encode(&file, &release, &release_key, 1) == 0);
 	timestamp.release = hash_of(buffer_bytes(&file));
 	CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
-	follow_meta(follow, META_TIMESTAMP, 0, buffer_bytes(&stamp), source);
-	follow_meta(follow, META_RELEASE, 0, buffer_bytes(&file), source);
+	updater_meta(updater, META_TIMESTAMP, 0, buffer_bytes(&stamp), source);
+	updater_meta(updater, META_RELEASE, 0, buffer_bytes(&file), source);
 	buffer_finish(&file);
 	buffer_finish(&stamp);
 }
 
-static void publish(struct follow *follow, uint64_t sequence, uint8_t root)
+static void publish(struct updater *updater, uint64_t sequence, uint8_t root)
 {
-	offer(follow, sequence, root, META_FROM_SERVER);
+	offer(updater, sequence, root, META_FROM_SERVER);
 }
 
-static void dispatch(struct follow *follow)
+static void dispatch(struct updater *updater)
 {
-	struct pollfd ready = { .fd = follow_fd(follow), .events = POLLIN };
+	struct pollfd ready = { .fd = updater_fd(updater), .events = POLLIN };
 
 	CHECK(poll(&ready, 1, 60000) == 1);
-	CHECK(follow_dispatch(follow) == 0);
+	CHECK(updater_dispatch(updater) == 0);
 }
 
-static void show(struct follow *follow, uint8_t root)
+static void show(struct updater *updater, uint8_t root)
 {
-	follow_remember(follow, root_of(root));
-	dispatch(follow);
+	updater_remember(updater, root_of(root));
+	dispatch(updater);
 	CHECK(hash_equal(told.remembered_root, root_of(root)));
 }
 
 static void begins_a_release_and_remembers_it_once_shown(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
 	CHECK(told.begun == 0);
-	publish(follow, 1, 0x11);
+	publish(updater, 1, 0x11);
 	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x11)));
-	publish(follow, 1, 0x11); /* it is on its way */
+	publish(updater, 1, 0x11); /* it is on its way */
 	CHECK(told.begun == 1 && told.remembered == 0);
-	show(follow, 0x11);
+	show(updater, 0x11);
 	CHECK(told.remembered == 1 && told.failed == 0);
-	follow_destroy(follow);
-	follow = open_follow();
+	updater_destroy(updater);
+	updater = open_follow();
 	CHECK(told.begun == 2 && hash_equal(told.begun_root, root_of(0x11)));
-	publish(follow, 1, 0x11); /* it is there already */
+	publish(updater, 1, 0x11); /* it is there already */
 	CHECK(told.begun == 2);
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void forgets_a_release_that_was_never_shown(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	publish(follow, 1, 0x11);
-	show(follow, 0x11);
-	publish(follow, 2, 0x22);
-	follow_destroy(follow);
-	follow = open_follow();
+	publish(updater, 1, 0x11);
+	show(updater, 0x11);
+	publish(updater, 2, 0x22);
+	updater_destroy(updater);
+	updater = open_follow();
 	CHECK(hash_equal(told.begun_root, root_of(0x11)));
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void takes_the_newest_of_two_that_come_in_a_row(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	publish(follow, 1, 0x11);
-	publish(follow, 2, 0x22);
+	publish(updater, 1, 0x11);
+	publish(updater, 2, 0x22);
 	CHECK(told.begun == 2 && hash_equal(told.begun_root, root_of(0x22)));
 	/* The first is shown after all: that must not be written down as the second. */
-	follow_remember(follow, root_of(0x11));
+	updater_remember(updater, root_of(0x11));
 	CHECK(told.remembered == 1);
-	follow_destroy(follow);
+	updater_destroy(updater);
 	told.begun = 0;
-	follow = open_follow();
+	updater = open_follow();
 	CHECK(told.begun == 0);
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void goes_back_to_the_pictures_on_the_panel(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	publish(follow, 1, 0x11);
-	show(follow, 0x11);
-	publish(follow, 2, 0x22);
-	publish(follow, 3, 0x11); /* the museum took 2 back while it was coming */
+	publish(updater, 1, 0x11);
+	show(updater, 0x11);
+	publish(updater, 2, 0x22);
+	publish(updater, 3, 0x11); /* the museum took 2 back while it was coming */
 	CHECK(told.begun == 3 && hash_equal(told.begun_root, root_of(0x11)));
-	dispatch(follow); /* the new number is written without being asked for */
+	dispatch(updater); /* the new number is written without being asked for */
 	CHECK(told.remembered == 2 && hash_equal(told.remembered_root, root_of(0x11)));
-	publish(follow, 2, 0x22);
-	CHECK(told.begun == 3);                    /* older than what was seen */
-	CHECK(follow_refusal(follow)->count == 1); /* the cause, in words for later */
-	CHECK(strcmp(follow_refusal(follow)->what, "timestamp.json") == 0);
-	CHECK(strstr(follow_refusal(follow)->why, "older") && follow_refusal(follow)->at_s > 0);
-	follow_destroy(follow);
+	publish(updater, 2, 0x22);
+	CHECK(told.begun == 3);                      /* older than what was seen */
+	CHECK(updater_refusal(updater)->count == 1); /* the cause, in words for later */
+	CHECK(strcmp(updater_refusal(updater)->what, "timestamp.json") == 0);
+	CHECK(strstr(updater_refusal(updater)->why, "older") && updater_refusal(updater)->at_s > 0);
+	updater_destroy(updater);
 }
 
 /* As a kiosk that works, and is followed by another. */
-static void show_and_prove(struct follow *follow, uint64_t sequence, uint8_t root)
+static void show_and_prove(struct updater *updater, uint64_t sequence, uint8_t root)
 {
-	publish(follow, sequence, root);
-	show(follow, root);
-	follow_prove(follow);
+	publish(updater, sequence, root);
+	show(updater, root);
+	updater_prove(updater);
 }
 
 static void returns_to_the_one_before_after_three_starts_without_a_picture(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 1, 0x11);
-	publish(follow, 2, 0x22);
-	show(follow, 0x22);
+	show_and_prove(updater, 1, 0x11);
+	publish(updater, 2, 0x22);
+	show(updater, 0x22);
 	for (int crash = 1; crash <= 3; crash++) {
-		CHECK(follow_on_trial(follow) && hash_equal(told.begun_root, root_of(0x22)));
-		follow_destroy(follow);
-		follow = open_follow();
+		CHECK(updater_on_trial(updater) && hash_equal(told.begun_root, root_of(0x22)));
+		updater_destroy(updater);
+		updater = open_follow();
 	}
-	CHECK(hash_equal(told.begun_root, root_of(0x11)) && !follow_on_trial(follow));
-	CHECK(strcmp(follow_refusal(follow)->what, "release 2") == 0);
-	CHECK(strstr(follow_refusal(follow)->why, "three times"));
+	CHECK(hash_equal(told.begun_root, root_of(0x11)) && !updater_on_trial(updater));
+	CHECK(strcmp(updater_refusal(updater)->what, "release 2") == 0);
+	CHECK(strstr(updater_refusal(updater)->why, "three times"));
 	told.begun = 0;
-	publish(follow, 2, 0x22); /* the server still has it: nothing happens */
+	publish(updater, 2, 0x22); /* the server still has it: nothing happens */
 	CHECK(told.begun == 0);
-	publish(follow, 3, 0x33);
+	publish(updater, 3, 0x33);
 	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x33)));
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void keeps_a_release_that_was_seen_to_work(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 1, 0x11);
-	show_and_prove(follow, 2, 0x22);
+	show_and_prove(updater, 1, 0x11);
+	show_and_prove(updater, 2, 0x22);
 	for (int crash = 0; crash < 5; crash++) {
-		follow_destroy(follow);
-		follow = open_follow();
-		CHECK(hash_equal(told.begun_root, root_of(0x22)) && !follow_on_trial(follow));
+		updater_destroy(updater);
+		updater = open_follow();
+		CHECK(hash_equal(told.begun_root, root_of(0x22)) && !updater_on_trial(updater));
 	}
-	follow_fall_back(follow, "no");
-	CHECK(hash_equal(told.begun_root, root_of(0x22)) && follow_refusal(follow)->count == 0);
-	follow_destroy(follow);
+	updater_fall_back(updater, "no");
+	CHECK(hash_equal(told.begun_root, root_of(0x22)) && updater_refusal(updater)->count == 0);
+	updater_destroy(updater);
 }
 
 static void falls_back_while_it_runs_and_stays_so(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 1, 0x11);
-	publish(follow, 2, 0x22);
-	show(follow, 0x22);
-	follow_fall_back(follow, "nothing to be seen");
+	show_and_prove(updater, 1, 0x11);
+	publish(updater, 2, 0x22);
+	show(updater, 0x22);
+	updater_fall_back(updater, "nothing to be seen");
 	for (int start = 0; start < 2; start++) {
-		CHECK(hash_equal(told.begun_root, root_of(0x11)) && !follow_on_trial(follow));
+		CHECK(hash_equal(told.begun_root, root_of(0x11)) && !updater_on_trial(updater));
 		told.begun = 0;
-		publish(follow, 2, 0x22); /* the floor did not fall */
-		publish(follow, 1, 0x11);
+		publish(updater, 2, 0x22); /* the floor did not fall */
+		publish(updater, 1, 0x11);
 		CHECK(told.begun == 0);
-		follow_destroy(follow);
-		follow = open_follow();
+		updater_destroy(updater);
+		updater = open_follow();
 	}
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void begins_no_release_again_that_cannot_be_decoded(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 1, 0x11);
-	publish(follow, 2, 0x22);
-	follow_refuse(follow, root_of(0x22), "objects of it cannot be decoded");
-	CHECK(strcmp(follow_refusal(follow)->what, "release 2") == 0);
+	show_and_prove(updater, 1, 0x11);
+	publish(updater, 2, 0x22);
+	updater_refuse(updater, root_of(0x22), "objects of it cannot be decoded");
+	CHECK(strcmp(updater_refusal(updater)->what, "release 2") == 0);
 	told.begun = 0;
-	publish(follow, 2, 0x22);
+	publish(updater, 2, 0x22);
 	CHECK(told.begun == 0);
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void takes_a_stick_by_the_same_rules(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	offer(follow, 5, 0x55, META_FROM_STICK);
-	CHECK(told.begun == 1 && follow_next_on_stick(follow));
-	show(follow, 0x55);
-	CHECK(!follow_next_on_stick(follow));
-	offer(follow, 4, 0x44, META_FROM_STICK);
-	CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
-	CHECK(strcmp(follow_refusal(follow)->what, "timestamp.json of the stick") == 0);
-	CHECK(strstr(follow_refusal(follow)->why, "older"));
-	publish(follow, 6, 0x66);
-	CHECK(told.begun == 2 && !follow_next_on_stick(follow));
-	offer(follow, 6, 0x66, META_FROM_STICK); /* the same, nearer */
-	CHECK(told.begun == 2 && follow_next_on_stick(follow));
-	follow_destroy(follow);
+	offer(updater, 5, 0x55, META_FROM_STICK);
+	CHECK(told.begun == 1 && updater_next_on_stick(updater));
+	show(updater, 0x55);
+	CHECK(!updater_next_on_stick(updater));
+	offer(updater, 4, 0x44, META_FROM_STICK);
+	CHECK(told.begun == 1 && updater_refusal(updater)->count == 1);
+	CHECK(strcmp(updater_refusal(updater)->what, "timestamp.json of the stick") == 0);
+	CHECK(strstr(updater_refusal(updater)->why, "older"));
+	publish(updater, 6, 0x66);
+	CHECK(told.begun == 2 && !updater_next_on_stick(updater));
+	offer(updater, 6, 0x66, META_FROM_STICK); /* the same, nearer */
+	CHECK(told.begun == 2 && updater_next_on_stick(updater));
+	updater_destroy(updater);
 }
 
 /* As the fetcher is told: it looks for the next one. */
 static void says_which_root_it_has_verified(void **unused)
 {
 	static const uint8_t page[] = "<html>Please log in";
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 	struct trust_root root = root_of_version(2);
 	struct buffer file;
 
 	(void)unused;
-	CHECK(follow_root_version(follow) == 1);
-	follow_meta(follow, META_ROOT, 2, (struct bytes){ page, sizeof(page) }, META_FROM_SERVER);
-	CHECK(follow_root_version(follow) == 1);
-	buffer_init(&file, METADATA_FILE_BYTES_MOST);
+	CHECK(updater_root_version(updater) == 1);
+	updater_meta(updater, META_ROOT, 2, (struct bytes){ page, sizeof(page) }, META_FROM_SERVER);
+	CHECK(updater_root_version(updater) == 1);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	CHECK(trust_root_encode(&file, &root, &root_key, 1) == 0);
-	follow_meta(follow, META_ROOT, 3, buffer_bytes(&file), META_FROM_SERVER);
-	CHECK(follow_root_version(follow) == 1);
-	follow_meta(follow, META_ROOT, 2, buffer_bytes(&file), META_FROM_SERVER);
-	CHECK(follow_root_version(follow) == 2);
+	updater_meta(updater, META_ROOT, 3, buffer_bytes(&file), META_FROM_SERVER);
+	CHECK(updater_root_version(updater) == 1);
+	updater_meta(updater, META_ROOT, 2, buffer_bytes(&file), META_FROM_SERVER);
+	CHECK(updater_root_version(updater) == 2);
 	buffer_finish(&file);
-	follow_destroy(follow);
-	follow = open_follow();
-	CHECK(follow_root_version(follow) == 2); /* remembered */
-	follow_destroy(follow);
+	updater_destroy(updater);
+	updater = open_follow();
+	CHECK(updater_root_version(updater) == 2); /* remembered */
+	updater_destroy(updater);
 }
 
 /* Expired while nobody looked: what is shown stays, only updates are refused. */
 static void keeps_showing_what_has_expired(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 1, 0x11);
+	show_and_prove(updater, 1, 0x11);
 	expires_in_s = -DAY_S;
-	publish(follow, 2, 0x22);
+	publish(updater, 2, 0x22);
 	expires_in_s = DAY_S;
-	CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
-	CHECK(strstr(follow_refusal(follow)->why, "expired"));
-	follow_destroy(follow);
+	CHECK(told.begun == 1 && updater_refusal(updater)->count == 1);
+	CHECK(strstr(updater_refusal(updater)->why, "expired"));
+	updater_destroy(updater);
 	told.begun = 0;
-	follow = open_follow();
+	updater = open_follow();
 	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0x11)));
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 /* ---- the clock */
 
-static void reopen(struct follow **follow)
+static void reopen(struct updater **updater)
 {
-	follow_destroy(*follow);
-	*follow = open_follow();
+	updater_destroy(*updater);
+	*updater = open_follow();
 }
 
 /* Metadata that is good by any clock, taken while somebody on the network says it is 2099. */
 static void a_clock_that_is_wrong_for_a_day_spoils_nothing(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 	struct buffer root;
 
 	(void)unused;
 	wall_s = Y2099_S;
-	show_and_prove(follow, 1, 0x11);
+	show_and_prove(updater, 1, 0x11);
 	encode_root(&root, 2);
-	follow_meta(follow, META_ROOT, 2, buffer_bytes(&root), META_FROM_SERVER);
+	updater_meta(updater, META_ROOT, 2, buffer_bytes(&root), META_FROM_SERVER);
 	buffer_finish(&root);
-	CHECK(follow_refusal(follow)->count == 0);
+	CHECK(updater_refusal(updater)->count == 0);
 	wall_s = TODAY_S;
 	for (int start = 0; start < 2; start++) {
 		told.begun = 0;
-		publish(follow, 2 + (uint64_t)start, 0x22 + (uint8_t)start);
-		CHECK(told.begun == 1 && follow_refusal(follow)->count == 0);
+		publish(updater, 2 + (uint64_t)start, 0x22 + (uint8_t)start);
+		CHECK(told.begun == 1 && updater_refusal(updater)->count == 0);
 		/* And what has expired has. */
 		expires_in_s = -DAY_S;
-		publish(follow, 9, 0x99);
+		publish(updater, 9, 0x99);
 		expires_in_s = DAY_S;
-		CHECK(told.begun == 1 && follow_refusal(follow)->count == 1);
-		CHECK(strstr(follow_refusal(follow)->why, "expired"));
-		reopen(&follow);
+		CHECK(told.begun == 1 && updater_refusal(updater)->count == 1);
+		CHECK(strstr(updater_refusal(updater)->why, "expired"));
+		reopen(&updater);
 	}
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 /* A clock that was set back a year, and a file that has expired since. */
 static void a_signed_time_stands_against_a_clock_that_was_set_back(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
 	issued_s = TODAY_S;
-	show_and_prove(follow, 1, 0x11);
+	show_and_prove(updater, 1, 0x11);
 	issued_s = 0;
 	wall_s = TODAY_S - 365 * DAY_S;
 	expires_in_s = 30 * DAY_S;
 	for (int start = 0; start < 2; start++) {
 		told.begun = 0;
-		publish(follow, 2, 0x22);
-		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "expired"));
-		reopen(&follow);
+		publish(updater, 2, 0x22);
+		CHECK(told.begun == 0 && strstr(updater_refusal(updater)->why, "expired"));
+		reopen(&updater);
 	}
 	expires_in_s = DAY_S;
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 /* ---- keys that were stolen */
 
 #define THIEFS_SEQUENCE ((uint64_t)1 << 53)
 
-static void give_root(struct follow *follow, uint32_t version)
+static void give_root(struct updater *updater, uint32_t version)
 {
 	struct buffer root;
 
 	encode_root(&root, version);
-	follow_meta(follow, META_ROOT, version, buffer_bytes(&root), META_FROM_SERVER);
+	updater_meta(updater, META_ROOT, version, buffer_bytes(&root), META_FROM_SERVER);
 	buffer_finish(&root);
 }
 
 /* The museum's own, then a thief's who has both keys: the last sequence there is, and a time floor
  * in the next century. */
-static struct follow *be_robbed(void)
+static struct updater *be_robbed(void)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
-	show_and_prove(follow, 7, 0x77);
+	show_and_prove(updater, 7, 0x77);
 	issued_s = Y2099_S;
 	expires_in_s = LATE_S - TODAY_S;
-	show_and_prove(follow, THIEFS_SEQUENCE, 0xee);
+	show_and_prove(updater, THIEFS_SEQUENCE, 0xee);
 	issued_s = 0;
 	expires_in_s = DAY_S;
-	publish(follow, 8, 0x88);
-	CHECK(hash_equal(told.begun_root, root_of(0xee)) && follow_refusal(follow)->count == 1);
-	return follow;
+	publish(updater, 8, 0x88);
+	CHECK(hash_equal(told.begun_root, root_of(0xee)) && updater_refusal(updater)->count == 1);
+	return updater;
 }
 
 static void publishes_again_after_a_theft_when_both_keys_are_changed(void **unused)
 {
 	const struct signing_key stolen[2] = { release_key, timestamp_key };
-	struct follow *follow = be_robbed();
+	struct updater *updater = be_robbed();
 	struct signing_key own[2];
 
 	(void)unused;
 	change_key(&release_key);
 	change_key(&timestamp_key);
 	told.begun = 0;
-	give_root(follow, 2);
+	give_root(updater, 2);
 	CHECK(told.begun == 0); /* what is shown stays, until the museum publishes */
-	reopen(&follow);
+	reopen(&updater);
 	CHECK(told.begun == 1 && hash_equal(told.begun_root, root_of(0xee)));
 	/* Nothing of before comes back: neither the thief's nor an older one of the museum's. */
 	own[0] = release_key;
 	own[1] = timestamp_key;
 	release_key = stolen[0];
 	timestamp_key = stolen[1];
-	publish(follow, THIEFS_SEQUENCE, 0xef);
-	publish(follow, 7, 0x77);
+	publish(updater, THIEFS_SEQUENCE, 0xef);
+	publish(updater, 7, 0x77);
 	CHECK(told.begun == 1);
 	release_key = own[0];
 	timestamp_key = own[1];
-	show_and_prove(follow, 8, 0x88);
-	CHECK(follow_sequence(follow) == 8);
-	reopen(&follow);
-	CHECK(hash_equal(told.begun_root, root_of(0x88)) && follow_sequence(follow) == 8);
+	show_and_prove(updater, 8, 0x88);
+	CHECK(updater_sequence(updater) == 8);
+	reopen(&updater);
+	CHECK(hash_equal(told.begun_root, root_of(0x88)) && updater_sequence(updater) == 8);
 	told.begun = 0;
-	publish(follow, 7, 0x77); /* and the floor is there again */
+	publish(updater, 7, 0x77); /* and the floor is there again */
 	CHECK(told.begun == 0);
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void a_root_that_leaves_the_keys_leaves_the_floors(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
 	issued_s = TODAY_S;
-	show_and_prove(follow, 7, 0x77);
+	show_and_prove(updater, 7, 0x77);
 	issued_s = 0;
-	give_root(follow, 2);
+	give_root(updater, 2);
 	for (int start = 0; start < 2; start++) {
 		told.begun = 0;
-		publish(follow, 6, 0x66);
-		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "older"));
+		publish(updater, 6, 0x66);
+		CHECK(told.begun == 0 && strstr(updater_refusal(updater)->why, "older"));
 		wall_s = TODAY_S - 365 * DAY_S;
-		publish(follow, 8, 0x88);
-		CHECK(told.begun == 0 && strstr(follow_refusal(follow)->why, "expired"));
+		publish(updater, 8, 0x88);
+		CHECK(told.begun == 0 && strstr(updater_refusal(updater)->why, "expired"));
 		wall_s = TODAY_S;
-		reopen(&follow);
+		reopen(&updater);
 	}
-	follow_destroy(follow);
+	updater_destroy(updater);
 }
 
 static void stops_bringing_what_a_key_signed_that_is_trusted_no_more(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 7, 0x77);
-	publish(follow, THIEFS_SEQUENCE, 0xee);
+	show_and_prove(updater, 7, 0x77);
+	publish(updater, THIEFS_SEQUENCE, 0xee);
 	CHECK(hash_equal(told.begun_root, root_of(0xee)));
 	change_key(&release_key);
-	give_root(follow, 2);
+	give_root(updater, 2);
 	CHECK(hash_equal(told.begun_root, root_of(0x77)));
 	/* It had come whole just now: it is not remembered. */
-	follow_remember(follow, root_of(0xee));
-	reopen(&follow);
+	updater_remember(updater, root_of(0xee));
+	reopen(&updater);
 	CHECK(hash_equal(told.begun_root, root_of(0x77)));
-	show_and_prove(follow, 8, 0x88);
-	follow_destroy(follow);
+	show_and_prove(updater, 8, 0x88);
+	updater_destroy(updater);
 }
 
 /* The thief's release is being written when the root comes: the root is taken at the next round,
  * else the release would raise the floor that the root had cleared. */
 static void takes_a_root_after_what_is_being_written(void **unused)
 {
-	struct follow *follow = open_follow();
+	struct updater *updater = open_follow();
 
 	(void)unused;
-	show_and_prove(follow, 7, 0x77);
-	publish(follow, THIEFS_SEQUENCE, 0xee);
-	follow_remember(follow, root_of(0xee));
+	show_and_prove(updater, 7, 0x77);
+	publish(updater, THIEFS_SEQUENCE, 0xee);
+	updater_remember(updater, root_of(0xee));
 	change_key(&release_key);
 	change_key(&timestamp_key);
-	give_root(follow, 2);
-	dispatch(follow);
-	give_root(follow, 2);
-	show_and_prove(follow, 8, 0x88);
-	reopen(&follow);
-	CHECK(hash_equal(told.begun_root, root_of(0x88)) && follow_sequence(follow) == 8);
-	follow_destroy(follow);
+	give_root(updater, 2);
+	dispatch(updater);
+	give_root(updater, 2);
+	show_and_prove(updater, 8, 0x88);
+	reopen(&updater);
+	CHECK(hash_equal(told.begun_root, root_of(0x88)) && updater_sequence(updater) == 8);
+	updater_destroy(updater);
 }
 
 int main(void)

@@ -132,7 +132,7 @@ static void make_release(struct release *release)
 		CHECK(buffer_read_file(&release->pictures[n], path) == 0);
 		name_object(release, 1 + n, buffer_bytes(&release->pictures[n]));
 	}
-	buffer_init(&release->page, PAGE_BYTES_MOST);
+	buffer_init(&release->page, PAGE_BYTES_MAX);
 	page_encode(&release->page, &page);
 	for (int i = 0; i < ROOT_CHILD_COUNT; i++)
 		release->root_children[i] = (struct page_child){ { { 1 } }, 100, true };
@@ -151,59 +151,61 @@ static void finish_release(struct release *release)
 	buffer_finish(&release->page);
 }
 
-static struct story *begin(const struct release *release, const char *language)
+static struct information_view *begin(const struct release *release, const char *language)
 {
-	const struct story_options options = { 1920, 1080, 4, language };
-	struct story *story;
+	const struct information_view_options options = { 1920, 1080, 4, language };
+	struct information_view *view;
 
-	CHECK(story_create(&story, &options) == 0);
-	story_open(story, (struct hash){ { 7 } }, &release->root);
-	return story;
+	CHECK(information_view_create(&view, &options) == 0);
+	information_view_open(view, (struct hash){ { 7 } }, &release->root);
+	return view;
 }
 
-static const struct wants *wants_of(struct story *story)
+static const struct wants *wants_of(struct information_view *view)
 {
 	static struct wants wants;
 
 	wants_begin(&wants);
-	story_wants(story, &wants);
+	information_view_wants(view, &wants);
 	return &wants;
 }
 
-static bool give_page(struct story *story, const struct release *release)
+static bool give_page(struct information_view *view, const struct release *release)
 {
-	return story_give(story, release->root_children[ROOT_CHILD_INFO].hash,
-			  buffer_bytes(&release->page));
+	return information_view_give(view, release->root_children[ROOT_CHILD_INFO].hash,
+				     buffer_bytes(&release->page));
 }
 
-static bool give(struct story *story, const struct release *release, uint32_t child)
+static bool give(struct information_view *view, const struct release *release, uint32_t child)
 {
-	return story_give(story, release->children[child].hash, release->objects[child]);
+	return information_view_give(view, release->children[child].hash, release->objects[child]);
 }
 
 static void asks_for_page_then_database_then_nothing(void **state)
 {
 	struct release release;
-	struct story *story;
+	struct information_view *view;
 	const struct wants *wants;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
-	CHECK(!story_overlay(story) && !story_info(story) && !story_language(story));
-	CHECK(!give(story, &release, 0)); /* nobody asked for it yet */
-	wants = wants_of(story);
+	view = begin(&release, NULL);
+	CHECK(!information_view_overlay(view) && !information_view_info(view) &&
+	      !information_view_language(view));
+	CHECK(!give(view, &release, 0)); /* nobody asked for it yet */
+	wants = wants_of(view);
 	CHECK(wants->next_count == 1 && wants->next[0].offset == 200);
 	CHECK(hash_equal(wants->next[0].hash, release.root_children[ROOT_CHILD_INFO].hash));
-	CHECK(give_page(story, &release));
-	wants = wants_of(story);
+	CHECK(give_page(view, &release));
+	wants = wants_of(view);
 	CHECK(wants->next_count == 1 && wants->next[0].offset == 0);
 	CHECK(hash_equal(wants->next[0].hash, release.children[0].hash));
-	CHECK(give(story, &release, 0));
-	CHECK(story_overlay(story) && info_part_count(story_info(story)) == 3);
-	CHECK(wants_of(story)->next_count == 0);
-	CHECK(!story_give(story, (struct hash){ { 99 } }, release.objects[0])); /* the scene's */
-	story_destroy(story);
+	CHECK(give(view, &release, 0));
+	CHECK(information_view_overlay(view) && info_part_count(information_view_info(view)) == 3);
+	CHECK(wants_of(view)->next_count == 0);
+	CHECK(!information_view_give(view, (struct hash){ { 99 } },
+				     release.objects[0])); /* the scene's */
+	information_view_destroy(view);
 	finish_release(&release);
 }
 
@@ -217,15 +219,15 @@ static void falls_back_to_the_first_language(void **state)
 	(void)state;
 	make_release(&release);
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		struct story *story = begin(&release, cases[i].asked);
+		struct information_view *view = begin(&release, cases[i].asked);
 
-		CHECK(give_page(story, &release) && give(story, &release, 0));
-		CHECK(strcmp(story_language(story), cases[i].got) == 0);
-		story_set_language(story, "km");
-		CHECK(strcmp(story_language(story), "km") == 0);
-		CHECK(story_open_page(story, 0)); /* it has one in English alone */
-		CHECK(!story_open_page(story, 1));
-		story_destroy(story);
+		CHECK(give_page(view, &release) && give(view, &release, 0));
+		CHECK(strcmp(information_view_language(view), cases[i].got) == 0);
+		information_view_set_language(view, "km");
+		CHECK(strcmp(information_view_language(view), "km") == 0);
+		CHECK(information_view_open_page(view, 0)); /* it has one in English alone */
+		CHECK(!information_view_open_page(view, 1));
+		information_view_destroy(view);
 	}
 	finish_release(&release);
 }
@@ -243,23 +245,23 @@ static void press(struct overlay *overlay, const char *letter)
 static void a_query_lists_what_it_finds(void **state)
 {
 	struct release release;
-	struct story *story;
+	struct information_view *view;
 	struct overlay *overlay;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
-	CHECK(give_page(story, &release) && give(story, &release, 0));
-	overlay = story_overlay(story);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	overlay = information_view_overlay(view);
 	overlay_show_search(overlay, true);
-	story_search(story); /* nothing typed: all stay */
+	information_view_search(view); /* nothing typed: all stay */
 	CHECK(overlay->search.found_count == 3);
 	press(overlay, "d");
-	story_search(story);
+	information_view_search(view);
 	CHECK(overlay->search.found_count == 1 && overlay->search.found[0] == 1);
-	story_set_language(story, "km"); /* what is typed is looked for again */
+	information_view_set_language(view, "km"); /* what is typed is looked for again */
 	CHECK(overlay_searching(overlay) && overlay->search.found_count == 1);
-	story_destroy(story);
+	information_view_destroy(view);
 	finish_release(&release);
 }
 
@@ -268,91 +270,93 @@ static void a_point_belongs_to_the_smallest_region(void **state)
 	const float in_both[3] = { 5, 0, 0 }, in_tower[3] = { -5, 0, 0 }, outside[3] = { 50, 0, 0 };
 	struct release release;
 	struct region region;
-	struct story *story;
+	struct information_view *view;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
-	CHECK(story_part_at(story, in_both) == -1); /* nothing is known yet */
-	CHECK(give_page(story, &release) && give(story, &release, 0));
-	CHECK(story_part_at(story, in_both) == 1);
-	CHECK(story_part_at(story, in_tower) == 0);
-	CHECK(story_part_at(story, outside) == -1);
-	CHECK(story_region(story, 1, &region) && region.kind == REGION_SPHERE);
-	CHECK(!story_region(story, 2, &region)); /* only a spot */
-	story_destroy(story);
+	view = begin(&release, NULL);
+	CHECK(information_view_part_at(view, in_both) == -1); /* nothing is known yet */
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_part_at(view, in_both) == 1);
+	CHECK(information_view_part_at(view, in_tower) == 0);
+	CHECK(information_view_part_at(view, outside) == -1);
+	CHECK(information_view_region(view, 1, &region) && region.kind == REGION_SPHERE);
+	CHECK(!information_view_region(view, 2, &region)); /* only a spot */
+	information_view_destroy(view);
 	finish_release(&release);
 }
 
 static void does_not_ask_again_for_what_came_damaged(void **state)
 {
 	struct release release;
-	struct story *story;
+	struct information_view *view;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
+	view = begin(&release, NULL);
 	release.page.data[0] ^= 1;
-	CHECK(give_page(story, &release)); /* ours, if of no use */
-	CHECK(wants_of(story)->next_count == 0 && !story_info(story));
-	story_destroy(story);
+	CHECK(give_page(view, &release)); /* ours, if of no use */
+	CHECK(wants_of(view)->next_count == 0 && !information_view_info(view));
+	information_view_destroy(view);
 	release.page.data[0] ^= 1;
 
-	story = begin(&release, NULL);
+	view = begin(&release, NULL);
 	release.page.data[4] = PAGE_BRICK; /* whole, but no info page */
-	CHECK(give_page(story, &release));
-	CHECK(wants_of(story)->next_count == 0 && !give(story, &release, 0));
-	story_destroy(story);
+	CHECK(give_page(view, &release));
+	CHECK(wants_of(view)->next_count == 0 && !give(view, &release, 0));
+	information_view_destroy(view);
 	release.page.data[4] = PAGE_INFO;
 
-	story = begin(&release, NULL);
-	CHECK(give_page(story, &release));
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release));
 	release.built.database.data[0] ^= 1;
-	CHECK(give(story, &release, 0));
-	CHECK(wants_of(story)->next_count == 0 && !story_info(story) && !story_overlay(story));
+	CHECK(give(view, &release, 0));
+	CHECK(wants_of(view)->next_count == 0 && !information_view_info(view) &&
+	      !information_view_overlay(view));
 	release.built.database.data[0] ^= 1;
-	story_open(story, (struct hash){ { 8 } }, &release.root); /* the next release is good */
-	CHECK(give_page(story, &release) && give(story, &release, 0));
-	CHECK(story_info(story));
-	story_destroy(story);
+	information_view_open(view, (struct hash){ { 8 } },
+			      &release.root); /* the next release is good */
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_info(view));
+	information_view_destroy(view);
 	finish_release(&release);
 }
 
 static void a_damaged_picture_is_not_asked_for_again(void **state)
 {
 	struct release release;
-	struct story *story;
+	struct information_view *view;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
-	CHECK(give_page(story, &release) && give(story, &release, 0));
-	CHECK(story_open_page(story, 0));
-	CHECK(wants_of(story)->next_count == PICTURES);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_open_page(view, 0));
+	CHECK(wants_of(view)->next_count == PICTURES);
 	release.pictures[3].data[0] ^= 1;
-	CHECK(give(story, &release, 1 + 3));
-	CHECK(story_open_page(story, 0));
-	CHECK(wants_of(story)->next_count == PICTURES - 1);
-	story_destroy(story);
+	CHECK(give(view, &release, 1 + 3));
+	CHECK(information_view_open_page(view, 0));
+	CHECK(wants_of(view)->next_count == PICTURES - 1);
+	information_view_destroy(view);
 	finish_release(&release);
 }
 
 static void lets_pictures_go_and_asks_for_them_again(void **state)
 {
 	struct release release;
-	struct story *story;
+	struct information_view *view;
 
 	(void)state;
 	make_release(&release);
-	story = begin(&release, NULL);
-	CHECK(give_page(story, &release) && give(story, &release, 0));
-	CHECK(story_open_page(story, 0));
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_open_page(view, 0));
 	for (uint32_t n = 0; n < PICTURES; n++)
-		CHECK(give(story, &release, 1 + n));
-	overlay_close_page(story_overlay(story));
-	CHECK(story_open_page(story, 0));
-	CHECK(wants_of(story)->next_count == PICTURES - PICTURES_KEPT);
-	story_destroy(story);
+		CHECK(give(view, &release, 1 + n));
+	overlay_close_page(information_view_overlay(view));
+	CHECK(information_view_open_page(view, 0));
+	CHECK(wants_of(view)->next_count == PICTURES - PICTURES_KEPT);
+	information_view_destroy(view);
 	finish_release(&release);
 }
 

@@ -5,76 +5,83 @@
 
 enum { IDLE_S = 60, S = 1000 };
 
-static struct visit fresh(void)
+static struct presence fresh(void)
 {
-	struct visit visit;
+	struct presence presence;
 
-	visit_init(&visit, IDLE_S, 0);
-	return visit;
+	presence_init(&presence, IDLE_S, 0);
+	return presence;
 }
 
-static enum visit_state at(struct visit *visit, int64_t s, bool reading)
+static enum presence_state at(struct presence *presence, int64_t s, bool reading)
 {
-	visit_step(visit, s * S, reading);
-	return visit->state;
+	presence_step(presence, s * S, reading);
+	return presence->state;
 }
 
 static void nobody_who_never_touched_is_asked(void **state)
 {
-	struct visit visit = fresh();
+	struct presence presence = fresh();
 
 	(void)state;
-	CHECK(at(&visit, 59, false) == VISIT_SOMEBODY);
-	CHECK(visit_wait_ms(&visit, 59 * S) == S);
-	CHECK(at(&visit, 60, false) == VISIT_NOBODY);
-	CHECK(visit_wait_ms(&visit, 60 * S) == -1 && visit_left_ms(&visit, 60 * S) == 0);
+	CHECK(at(&presence, 59, false) == PRESENCE_SOMEBODY);
+	CHECK(presence_wait_ms(&presence, 59 * S) == S);
+	CHECK(at(&presence, 60, false) == PRESENCE_NOBODY);
+	CHECK(presence_wait_ms(&presence, 60 * S) == -1 &&
+	      presence_left_ms(&presence, 60 * S) == 0);
 }
 
 static void who_touched_is_asked_and_counted_down(void **state)
 {
-	struct visit visit = fresh();
+	struct presence presence = fresh();
 
 	(void)state;
-	visit_touch(&visit, 10 * S);
-	CHECK(at(&visit, 69, false) == VISIT_SOMEBODY && visit_asked_s(&visit, 69 * S) == -1);
-	CHECK(at(&visit, 70, false) == VISIT_ASKED && visit_asked_s(&visit, 70 * S) == 15);
-	CHECK(visit_asked_s(&visit, 70 * S + 1) == 15 && visit_asked_s(&visit, 71 * S) == 14);
-	CHECK(visit_asked_s(&visit, 85 * S - 1) == 1);
-	CHECK(at(&visit, 84, false) == VISIT_ASKED);
-	CHECK(at(&visit, 85, false) == VISIT_NOBODY && !visit.touched);
+	presence_touch(&presence, 10 * S);
+	CHECK(at(&presence, 69, false) == PRESENCE_SOMEBODY &&
+	      presence_asked_s(&presence, 69 * S) == -1);
+	CHECK(at(&presence, 70, false) == PRESENCE_ASKED &&
+	      presence_asked_s(&presence, 70 * S) == 15);
+	CHECK(presence_asked_s(&presence, 70 * S + 1) == 15 &&
+	      presence_asked_s(&presence, 71 * S) == 14);
+	CHECK(presence_asked_s(&presence, 85 * S - 1) == 1);
+	CHECK(at(&presence, 84, false) == PRESENCE_ASKED);
+	CHECK(at(&presence, 85, false) == PRESENCE_NOBODY && !presence.touched);
 }
 
 static void an_answer_keeps_the_visit(void **state)
 {
-	struct visit visit = fresh();
+	struct presence presence = fresh();
 
 	(void)state;
-	visit_touch(&visit, 0);
-	CHECK(at(&visit, 70, false) == VISIT_ASKED);
-	visit_touch(&visit, 71 * S);
-	CHECK(visit.state == VISIT_SOMEBODY && at(&visit, 71, false) == VISIT_SOMEBODY);
-	CHECK(at(&visit, 130, false) == VISIT_SOMEBODY && at(&visit, 131, false) == VISIT_ASKED);
+	presence_touch(&presence, 0);
+	CHECK(at(&presence, 70, false) == PRESENCE_ASKED);
+	presence_touch(&presence, 71 * S);
+	CHECK(presence.state == PRESENCE_SOMEBODY && at(&presence, 71, false) == PRESENCE_SOMEBODY);
+	CHECK(at(&presence, 130, false) == PRESENCE_SOMEBODY &&
+	      at(&presence, 131, false) == PRESENCE_ASKED);
 }
 
 static void who_reads_has_longer(void **state)
 {
-	struct visit visit = fresh();
+	struct presence presence = fresh();
 
 	(void)state;
-	visit_touch(&visit, 0);
-	CHECK(at(&visit, 179, true) == VISIT_SOMEBODY && at(&visit, 180, true) == VISIT_ASKED);
-	CHECK(at(&visit, 194, true) == VISIT_ASKED && at(&visit, 195, true) == VISIT_NOBODY);
+	presence_touch(&presence, 0);
+	CHECK(at(&presence, 179, true) == PRESENCE_SOMEBODY &&
+	      at(&presence, 180, true) == PRESENCE_ASKED);
+	CHECK(at(&presence, 194, true) == PRESENCE_ASKED &&
+	      at(&presence, 195, true) == PRESENCE_NOBODY);
 }
 
 static void a_touch_begins_a_visit(void **state)
 {
-	struct visit visit = fresh();
+	struct presence presence = fresh();
 
 	(void)state;
-	CHECK(at(&visit, 1000, false) == VISIT_NOBODY);
-	visit_touch(&visit, 1001 * S);
-	CHECK(at(&visit, 1001, false) == VISIT_SOMEBODY);
-	CHECK(visit_left_ms(&visit, 1001 * S) == (IDLE_S * S) + VISIT_ASK_MS);
+	CHECK(at(&presence, 1000, false) == PRESENCE_NOBODY);
+	presence_touch(&presence, 1001 * S);
+	CHECK(at(&presence, 1001, false) == PRESENCE_SOMEBODY);
+	CHECK(presence_left_ms(&presence, 1001 * S) == (IDLE_S * S) + PRESENCE_ASK_MS);
 }
 
 /* Whoever only waits as long as he is told, whatever was touched before, is out of every state. */
@@ -84,7 +91,7 @@ static void waiting_alone_ends_every_visit(void **state)
 
 	(void)state;
 	for (int run = 0; run < 1000; run++) {
-		struct visit visit = fresh();
+		struct presence presence = fresh();
 		int64_t now_ms = 0;
 		int turns = 0, wait_ms;
 
@@ -92,15 +99,15 @@ static void waiting_alone_ends_every_visit(void **state)
 			seed = seed * 1664525 + 1013904223;
 			now_ms += seed >> 15;
 			if (seed & 64)
-				visit_touch(&visit, now_ms);
-			visit_step(&visit, now_ms, seed & 128);
+				presence_touch(&presence, now_ms);
+			presence_step(&presence, now_ms, seed & 128);
 		}
-		while ((wait_ms = visit_wait_ms(&visit, now_ms)) >= 0) {
+		while ((wait_ms = presence_wait_ms(&presence, now_ms)) >= 0) {
 			CHECK(++turns < 40);
 			now_ms += wait_ms;
-			visit_step(&visit, now_ms, visit.reading);
+			presence_step(&presence, now_ms, presence.reading);
 		}
-		CHECK(visit.state == VISIT_NOBODY);
+		CHECK(presence.state == PRESENCE_NOBODY);
 	}
 }
 

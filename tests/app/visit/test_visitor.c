@@ -12,7 +12,7 @@ enum { S = 1000 };
 static struct {
 	int64_t now_ms;
 	int card, page, asked_s, flights, looks, redraws, led;
-	int counted[TALLY_TOUR + 1], written;
+	int counted[USAGE_TOUR + 1], written;
 	bool invites, searches, chooses, chooses_language, has_tour;
 	struct overlay_comfort comfort;
 	char language[8];
@@ -37,14 +37,14 @@ void fingers_init(struct kiosk *of)
 	memset(&of->gestures, 0, sizeof(of->gestures));
 }
 
-struct overlay *story_overlay(struct story *story)
+struct overlay *information_view_overlay(struct information_view *view)
 {
-	return (struct overlay *)story;
+	return (struct overlay *)view;
 }
 
-const struct info *story_info(const struct story *story)
+const struct info *information_view_info(const struct information_view *view)
 {
-	return (const struct info *)story;
+	return (const struct info *)view;
 }
 
 const char *info_language(const struct info *info, uint32_t index)
@@ -54,9 +54,9 @@ const char *info_language(const struct info *info, uint32_t index)
 	return "km";
 }
 
-void story_set_language(struct story *story, const char *language)
+void information_view_set_language(struct information_view *view, const char *language)
 {
-	(void)story;
+	(void)view;
 	snprintf(world.language, sizeof(world.language), "%s", language);
 }
 
@@ -120,7 +120,7 @@ bool overlay_choosing_language(const struct overlay *overlay)
 	return world.chooses_language;
 }
 
-bool guide_go_round(struct kiosk *of)
+bool tour_player_go_round(struct kiosk *of)
 {
 	if (world.has_tour) {
 		of->tour.state = TOUR_FLYING;
@@ -129,7 +129,7 @@ bool guide_go_round(struct kiosk *of)
 	return world.has_tour;
 }
 
-void guide_end(struct kiosk *of)
+void tour_player_end(struct kiosk *of)
 {
 	of->tour.state = TOUR_OFF;
 	of->tour.loops = false;
@@ -145,14 +145,14 @@ void back_forget(struct kiosk *of)
 	of->way_back.count = 0;
 }
 
-bool guide_leads_eye(struct kiosk *of, int64_t now_ms)
+bool tour_player_leads_eye(struct kiosk *of, int64_t now_ms)
 {
 	CHECK(of == &kiosk && now_ms == world.now_ms);
 	world.led++;
 	return true;
 }
 
-void guide_say(struct kiosk *of)
+void tour_player_say(struct kiosk *of)
 {
 	(void)of;
 }
@@ -206,9 +206,9 @@ void navigator_look(struct navigator *nav, const float eye_m[3], const float tar
 	world.looks++;
 }
 
-const char *story_language(const struct story *story)
+const char *information_view_language(const struct information_view *view)
 {
-	(void)story;
+	(void)view;
 	return world.language;
 }
 
@@ -235,17 +235,17 @@ int64_t clock_wall_s(void)
 	return 1795953600;
 }
 
-void tally_add(struct tally *tally, enum tally_kind kind, const char *what, const char *language,
+void usage_add(struct usage *usage, enum usage_kind kind, const char *what, const char *language,
 	       int64_t now_s)
 {
-	CHECK(tally == (struct tally *)&some_thing && now_s == 1795953600);
-	CHECK(strcmp(what, kind == TALLY_PART ? "gate" : "") == 0 && language == world.language);
+	CHECK(usage == (struct usage *)&some_thing && now_s == 1795953600);
+	CHECK(strcmp(what, kind == USAGE_PART ? "gate" : "") == 0 && language == world.language);
 	world.counted[kind]++;
 }
 
-void tally_write(struct tally *tally)
+void usage_write(struct usage *usage)
 {
-	(void)tally;
+	(void)usage;
 	world.written++;
 }
 
@@ -257,45 +257,45 @@ static int set_up(void **state)
 	world.now_ms = 1000000;
 	world.card = world.page = world.asked_s = -1;
 	snprintf(world.language, sizeof(world.language), "fr");
-	kiosk.shown.story = (struct story *)&some_thing;
+	kiosk.shown.view = (struct information_view *)&some_thing;
 	kiosk.shown.frame.patches = 9;
-	kiosk.tally = (struct tally *)&some_thing;
+	kiosk.usage = (struct usage *)&some_thing;
 	kiosk.navigator_ready = true;
 	kiosk.navigator.options = (struct navigator_options){
 		.box_max_m = { 10, 10, 10 },
 		.home_eye_m = { 5, -40, 5 },
 	};
-	visit_init(&kiosk.visit, 60, world.now_ms);
+	presence_init(&kiosk.presence, 60, world.now_ms);
 	return 0;
 }
 
 static void after(int64_t ms)
 {
 	world.now_ms += ms;
-	guest_watch(&kiosk);
+	visitor_watch(&kiosk);
 }
 
 static bool touches(enum touch_phase phase)
 {
-	return guest_takes_touch(&kiosk, &(struct touch_event){ .phase = phase, .contact = 3 });
+	return visitor_takes_touch(&kiosk, &(struct touch_event){ .phase = phase, .contact = 3 });
 }
 
 static void shows_the_model_round_while_nobody_is_there(void **state)
 {
 	(void)state;
 	after(0);
-	CHECK(!world.invites && guest_wait_ms(&kiosk) == 60 * S);
-	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 0);
+	CHECK(!world.invites && visitor_wait_ms(&kiosk) == 60 * S);
+	CHECK(!visitor_leads_eye(&kiosk, world.now_ms) && world.looks == 0);
 	after(60 * S);
 	CHECK(world.invites && world.flights == 1 && world.asked_s == -1 && world.redraws > 0);
-	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 0); /* it flies there */
+	CHECK(!visitor_leads_eye(&kiosk, world.now_ms) && world.looks == 0); /* it flies there */
 	after(3 * S);
-	CHECK(!guest_leads_eye(&kiosk, world.now_ms) && world.looks == 1); /* and rests */
-	CHECK(guest_wait_ms(&kiosk) > S);
+	CHECK(!visitor_leads_eye(&kiosk, world.now_ms) && world.looks == 1); /* and rests */
+	CHECK(visitor_wait_ms(&kiosk) > S);
 	world.redraws = 0;
-	after(ROAM_REST_MS);
-	CHECK(world.redraws == 1 && guest_wait_ms(&kiosk) == 0);
-	CHECK(guest_leads_eye(&kiosk, world.now_ms));
+	after(ATTRACT_CAMERA_REST_MS);
+	CHECK(world.redraws == 1 && visitor_wait_ms(&kiosk) == 0);
+	CHECK(visitor_leads_eye(&kiosk, world.now_ms));
 }
 
 static void the_tour_for_nobody_takes_the_circles_place(void **state)
@@ -304,15 +304,15 @@ static void the_tour_for_nobody_takes_the_circles_place(void **state)
 	world.has_tour = true;
 	after(60 * S);
 	CHECK(world.invites && world.flights == 0 && kiosk.tour.loops);
-	CHECK(guest_leads_eye(&kiosk, world.now_ms) && world.led == 1 && world.looks == 0);
-	CHECK(guest_wait_ms(&kiosk) == 0);
-	guide_end(&kiosk); /* another release */
+	CHECK(visitor_leads_eye(&kiosk, world.now_ms) && world.led == 1 && world.looks == 0);
+	CHECK(visitor_wait_ms(&kiosk) == 0);
+	tour_player_end(&kiosk); /* another release */
 	after(0);
 	CHECK(kiosk.tour.loops);
-	guide_end(&kiosk);
+	tour_player_end(&kiosk);
 	world.has_tour = false; /* one without */
 	after(0);
-	CHECK(!kiosk.tour.loops && guest_wait_ms(&kiosk) >= 0);
+	CHECK(!kiosk.tour.loops && visitor_wait_ms(&kiosk) >= 0);
 }
 
 /* Nobody is asked while led about; who halted a tour reads; then nobody is there. */
@@ -325,7 +325,7 @@ static void a_tour_that_runs_is_somebody_and_ends_as_nobody(void **state)
 		after(S);
 		CHECK(world.asked_s == -1 && !world.invites);
 	}
-	guide_end(&kiosk);
+	tour_player_end(&kiosk);
 	after(59 * S);
 	CHECK(world.asked_s == -1);
 	after(S);
@@ -403,7 +403,7 @@ static void the_first_touch_already_counts(void **state)
 	CHECK(world.invites);
 	CHECK(!touches(TOUCH_DOWN));
 	after(0);
-	CHECK(!world.invites && !guest_leads_eye(&kiosk, world.now_ms));
+	CHECK(!world.invites && !visitor_leads_eye(&kiosk, world.now_ms));
 }
 
 static void what_lies_on_the_glass_keeps_nobody_for_ever(void **state)
@@ -422,11 +422,11 @@ static void what_lies_on_the_glass_keeps_nobody_for_ever(void **state)
 static void tells_how_long_the_panel_is_somebodys(void **state)
 {
 	(void)state;
-	CHECK(guest_left_ms(&kiosk) == 0); /* nobody ever came */
+	CHECK(visitor_left_ms(&kiosk) == 0); /* nobody ever came */
 	touches(TOUCH_DOWN);
-	CHECK(guest_left_ms(&kiosk) == 75 * S);
+	CHECK(visitor_left_ms(&kiosk) == 75 * S);
 	kiosk.shown.frame.patches = 0;
-	CHECK(guest_left_ms(&kiosk) == 0); /* nothing is to be seen */
+	CHECK(visitor_left_ms(&kiosk) == 0); /* nothing is to be seen */
 }
 
 static void counts_visits_and_writes_when_they_end(void **state)
@@ -434,14 +434,14 @@ static void counts_visits_and_writes_when_they_end(void **state)
 	(void)state;
 	touches(TOUCH_DOWN);
 	touches(TOUCH_UP);
-	guest_count(&kiosk, TALLY_PART, 0);
-	CHECK(world.counted[TALLY_VISIT] == 1 && world.counted[TALLY_PART] == 1);
+	visitor_count(&kiosk, USAGE_PART, 0);
+	CHECK(world.counted[USAGE_VISIT] == 1 && world.counted[USAGE_PART] == 1);
 	after(74 * S);
 	CHECK(world.written == 0);
 	after(S);
 	CHECK(world.written == 1);
 	touches(TOUCH_DOWN);
-	CHECK(world.counted[TALLY_VISIT] == 2);
+	CHECK(world.counted[USAGE_VISIT] == 2);
 }
 
 static void pictures_of_views_have_no_visitors(void **state)
@@ -449,7 +449,7 @@ static void pictures_of_views_have_no_visitors(void **state)
 	(void)state;
 	kiosk.options.views_path = "views.txt";
 	after(3600 * S);
-	CHECK(world.redraws == 0 && world.flights == 0 && guest_wait_ms(&kiosk) == -1);
+	CHECK(world.redraws == 0 && world.flights == 0 && visitor_wait_ms(&kiosk) == -1);
 }
 
 #define VISITED(test) cmocka_unit_test_setup(test, set_up)

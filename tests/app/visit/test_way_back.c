@@ -63,12 +63,12 @@ static void the_oldest_steps_are_forgotten(void **state)
 	struct place back;
 
 	(void)state;
-	for (int i = 0; i < 3 * WAY_BACK_MOST; i++) {
+	for (int i = 0; i < 3 * WAY_BACK_MAX; i++) {
 		const struct place step = place_at((float)i, -1, -1);
 
 		way_back_note(&way, &step);
 	}
-	for (int i = 3 * WAY_BACK_MOST - 1; i >= 2 * WAY_BACK_MOST; i--)
+	for (int i = 3 * WAY_BACK_MAX - 1; i >= 2 * WAY_BACK_MAX; i--)
 		CHECK(way_back_take(&way, &here, 0.1f, &back) && back.eye_m[0] == (float)i);
 	CHECK(!way_back_take(&way, &here, 0.1f, &back));
 }

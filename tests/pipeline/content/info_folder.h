@@ -11,7 +11,7 @@
 #include "pipeline/content/info_build.h"
 #include "tests/check.h"
 
-enum { COMPLAINTS_MOST = 32 };
+enum { COMPLAINTS_MAX = 32 };
 
 struct complaints {
 	struct {
@@ -19,7 +19,7 @@ struct complaints {
 		char file[200];
 		unsigned line;
 		char text[400];
-	} list[COMPLAINTS_MOST];
+	} list[COMPLAINTS_MAX];
 	uint32_t count;
 };
 
@@ -30,7 +30,7 @@ static inline void note(void *data, bool is_error, const char *file, unsigned li
 {
 	struct complaints *complaints = data;
 
-	if (complaints->count == COMPLAINTS_MOST)
+	if (complaints->count == COMPLAINTS_MAX)
 		return;
 	complaints->list[complaints->count].is_error = is_error;
 	complaints->list[complaints->count].line = line;

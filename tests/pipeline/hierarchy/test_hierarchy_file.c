@@ -227,7 +227,7 @@ static void find_open_places(struct model *model, const struct lattice_mesh *mes
 
 static void take_patches(struct model *model, const struct objects *objects)
 {
-	struct patch_mesh group[GROUP_PATCHES_MOST];
+	struct patch_mesh group[GROUP_PATCHES_MAX];
 
 	model->patches = calloc(model->hierarchy.patch_count, sizeof(*model->patches));
 	for (uint32_t g = 0; g < model->hierarchy.group_count; g++) {

@@ -57,10 +57,10 @@ static void gives_every_group_back(void **state)
 	(void)state;
 	home_init(&home);
 	CHECK(master_open(&master, home.master, &home.stamp) == 0);
-	buffer_init(&object, OBJECT_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
 	for (uint32_t g = 0; g < master->hierarchy.group_count; g++) {
 		const struct hierarchy_group *group = &master->hierarchy.groups[g];
-		struct patch_mesh patches[GROUP_PATCHES_MOST];
+		struct patch_mesh patches[GROUP_PATCHES_MAX];
 		uint32_t count;
 
 		buffer_clear(&object);

@@ -35,11 +35,11 @@ static const char *const vertex[] = {
 };
 static const char *const fragment[] = {
 	"precision highp float;\nuniform vec3 origin, right, up, normal;\nuniform float footprint;\n",
-	stone_glsl,
+	material_glsl,
 	"void main() {\n"
 	"	vec2 at = floor(gl_FragCoord.xy);\n"
 	"	vec3 p = (origin + at.x * right) + at.y * up;\n"
-	"	gl_FragColor = vec4(stone_colour(p, normal, footprint), 1.0);\n"
+	"	gl_FragColor = vec4(material_colour(p, normal, footprint), 1.0);\n"
 	"}\n",
 	NULL
 };
@@ -60,13 +60,13 @@ static void draw(GLuint program, const struct square *s)
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-static void stone_at(const struct square *s, int x, int y, float rgb[3])
+static void material_at(const struct square *s, int x, int y, float rgb[3])
 {
 	float p[3];
 
 	for (int k = 0; k < 3; k++)
 		p[k] = (s->origin[k] + (float)x * s->right[k]) + (float)y * s->up[k];
-	stone_colour(rgb, p, s->normal, s->footprint_m);
+	material_colour(rgb, p, s->normal, s->footprint_m);
 }
 
 /* Of the pixels that differ by more than 2 of 255: rounding may move a joint by a pixel, no more.
@@ -79,7 +79,7 @@ static int differing(const struct square *s, const uint8_t *rgba)
 		for (int x = 0; x < SIDE; x++) {
 			const uint8_t *pixel = rgba + 4 * ((SIDE - 1 - y) * SIDE + x);
 			float rgb[3], worst = 0;
-			stone_at(s, x, y, rgb);
+			material_at(s, x, y, rgb);
 			for (int k = 0; k < 3; k++)
 				worst = fmaxf(worst, fabsf(fminf(fmaxf(rgb[k], 0), 1) * 255 -
 							   (float)pixel[k]));
@@ -124,13 +124,13 @@ static void is_a_colour_with_detail_down_to_a_centimetre(void **state)
 	for (int i = 0; i < 400; i++) {
 		float p[3] = { 3 + 0.05f * (float)i, -12, 5 }, q[3] = { p[0] + 0.01f, -12, 5 };
 		float a[3], b[3];
-		stone_colour(a, p, wall->normal, 0);
-		stone_colour(b, q, wall->normal, 0);
+		material_colour(a, p, wall->normal, 0);
+		material_colour(b, q, wall->normal, 0);
 		near_sum += fabsf(a[0] - b[0]);
 		for (int k = 0; k < 3; k++)
 			CHECK(a[k] >= -0.05f && a[k] <= 1.3f);
-		stone_colour(a, p, wall->normal, 0.5f);
-		stone_colour(b, q, wall->normal, 0.5f);
+		material_colour(a, p, wall->normal, 0.5f);
+		material_colour(b, q, wall->normal, 0.5f);
 		coarse_sum += fabsf(a[0] - b[0]);
 	}
 	CHECK(near_sum > 400 * 0.01f);       /* a centimetre further is another colour */

@@ -199,7 +199,7 @@ static void a_stretch_of_a_file_is_checked_when_it_is_read(void **state)
 
 static void refuses_objects_out_of_bounds(void **state)
 {
-	const struct page_child large = { .hash = { { 1 } }, .size = OBJECT_BYTES_MOST + 1 };
+	const struct page_child large = { .hash = { { 1 } }, .size = OBJECT_BYTES_MAX + 1 };
 
 	(void)state;
 	CHECK(object_store_add(objects, (struct bytes){ NULL, 0 }, NULL) == -EFBIG);

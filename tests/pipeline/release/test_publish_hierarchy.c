@@ -38,7 +38,7 @@ static int put_object(uint32_t group)
 	struct buffer object;
 	int rc;
 
-	buffer_init(&object, OBJECT_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
 	rc = patch_group_encode(&object, &mesh, 1);
 	places[group] = group == 0 ? 0 : places[group - 1] + sizes[group - 1];
 	sizes[group] = (uint32_t)object.size;
@@ -112,7 +112,7 @@ static uint64_t publish(double share, struct page *page, struct hierarchy *back)
 	uint64_t triangles;
 
 	buffer_finish(&object);
-	buffer_init(&object, PAGE_BYTES_MOST);
+	buffer_init(&object, PAGE_BYTES_MAX);
 	CHECK(publish_hierarchy(objects, &master, share, &child, &triangles) == 0);
 	CHECK(child.is_page);
 	CHECK(object_store_read(objects, child.hash, &object) == 0);
@@ -147,12 +147,12 @@ static void what_is_published_is_a_hierarchy_within_the_share(void **state)
 /* The first vertex of a published group that holds the triangle of put_object. */
 static struct patch_vertex read_object(struct hash hash)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	struct patch_vertex first;
 	struct buffer object;
 	uint32_t count;
 
-	buffer_init(&object, OBJECT_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
 	CHECK(object_store_read(objects, hash, &object) == 0);
 	CHECK(patch_group_decode(meshes, &count, buffer_bytes(&object)) == 0);
 	CHECK(count == 1 && meshes[0].vertex_count == 3);

@@ -130,7 +130,7 @@ static int tear_down(void **state)
 struct made {
 	struct object_store *objects;
 	struct root_page root;
-	struct page_child children[ROOT_CHILDREN_MOST];
+	struct page_child children[ROOT_CHILDREN_MAX];
 	int labels;    /* what publish_labels said */
 	bool imported; /* it, or a list of faces, needed the scan */
 };
@@ -204,7 +204,7 @@ static struct page read_page(const struct made *made, struct hash hash, struct b
 {
 	struct page page;
 
-	buffer_init(bytes, PAGE_BYTES_MOST);
+	buffer_init(bytes, PAGE_BYTES_MAX);
 	CHECK(object_store_read(made->objects, hash, bytes) == 0);
 	CHECK(page_decode(&page, buffer_bytes(bytes)) == 0);
 	return page;
@@ -232,11 +232,11 @@ static void add_patch(struct surface *s, const struct lattice *lattice,
 static void read_group(struct surface *s, const struct made *made,
 		       const struct hierarchy *hierarchy, struct hash hash, uint32_t group)
 {
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	struct buffer object;
 	uint32_t count;
 
-	buffer_init(&object, OBJECT_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
 	CHECK(object_store_read(made->objects, hash, &object) == 0);
 	CHECK(patch_group_decode(meshes, &count, buffer_bytes(&object)) == 0);
 	for (uint32_t p = 0; p < count; p++) {
@@ -262,7 +262,7 @@ static void read_labels(struct surface *s, const struct made *made)
 	for (uint32_t g = 0; g < s->group_count; g++) {
 		if (child_of_group[g] == LABEL_NONE)
 			continue;
-		buffer_init(&object, OBJECT_BYTES_MOST);
+		buffer_init(&object, OBJECT_BYTES_MAX);
 		CHECK(object_store_read(made->objects, page.children[child_of_group[g]].hash,
 					&object) == 0);
 		CHECK(label_group_decode(&s->labels[g], buffer_bytes(&object)) == 0);

@@ -77,7 +77,7 @@ static int publish_and_verify(const char *part, uint32_t triangles, uint32_t gro
 	const struct publish_target target = tiny_target(&tiny);
 	const struct release_reader_options options = { .place = tiny.release };
 	struct verify_options verify = { 0 };
-	struct page_child children[ROOT_CHILDREN_MOST];
+	struct page_child children[ROOT_CHILDREN_MAX];
 	struct publish_report report;
 	struct object_store *objects;
 	int rc;
@@ -87,7 +87,7 @@ static int publish_and_verify(const char *part, uint32_t triangles, uint32_t gro
 	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
 	add_page(objects, part, triangles, groups, &children[ROOT_CHILD_LABELS]);
-	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILDREN_MOST) ==
+	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILDREN_MAX) ==
 	      0);
 	object_store_destroy(objects);
 	CHECK(release_reader_create(&verify.reader, &options) == 0);

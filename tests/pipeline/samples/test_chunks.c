@@ -28,7 +28,7 @@ static void keeps_every_triangle_once(void **state)
 	for (uint32_t n = 0; n < chunks.count; n++) {
 		const struct chunk *chunk = &chunks.items[n];
 
-		CHECK(chunk->index_count / 3 <= CHUNK_TRIANGLES_MOST);
+		CHECK(chunk->index_count / 3 <= CHUNK_TRIANGLES_MAX);
 		for (uint32_t i = 0; i < chunk->index_count; i++) {
 			uint16_t index = chunks.indices[chunk->first_index + i];
 			const float *p;

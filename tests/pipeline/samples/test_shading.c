@@ -138,7 +138,7 @@ static void averages_colours_of_a_large_frame(void **state)
 static void counts_backs(void **state)
 {
 	enum { SIDE = 64 };
-	const struct drawing_options stone[] = {
+	const struct drawing_options material[] = {
 		{ 0 },
 		{ .procedural = true, .surfaces = true },
 		{ .procedural = true, .surfaces = true, .lit = true, .sun = { 0, 0, 1 } },
@@ -151,11 +151,11 @@ static void counts_backs(void **state)
 
 	(void)state;
 	toy_box(&mesh, (float[3]){ -1, -1, -1 }, (float[3]){ 1, 1, 1 }, six);
-	for (size_t i = 0; i < 2 * ARRAY_COUNT(stone); i++) {
+	for (size_t i = 0; i < 2 * ARRAY_COUNT(material); i++) {
 		int finer = 1 + (int)i % 2;
 		uint8_t *picture;
 
-		shoot(&mesh, &stone[i / 2], camera, SIDE, finer, &picture, NULL);
+		shoot(&mesh, &material[i / 2], camera, SIDE, finer, &picture, NULL);
 		for (int k = 0; k < SIDE / finer * (SIDE / finer); k++)
 			CHECK(picture[4 * k + 3] == SHADING_SAMPLES * (SHADING_COVERED + 1));
 		free(picture);

@@ -227,7 +227,7 @@ static void says_what_went_wrong(void **state)
 	(void)state;
 	CHECK(full != NULL);
 	CHECK(temple_write(full, &options) == -ERANGE);
-	options.triangles = TEMPLE_TRIANGLES_MOST + 1ull;
+	options.triangles = TEMPLE_TRIANGLES_MAX + 1ull;
 	CHECK(temple_write(full, &options) == -ERANGE);
 	options.triangles = 10000;
 	CHECK(temple_write(full, &options) == -EIO);

@@ -1,6 +1,6 @@
 /* What fragments compute where they have mediump alone, as twins in C of the shaders' formulas
- * (render/surface.c, render/depth.c) that round every step to ten bits of mantissa, against
- * doubles: over random points, pieces and places of a temple 60 m wide. */
+ * (render/lumigraph/surface.c, render/lumigraph/depth.c) that round every step to ten bits of
+ * mantissa, against doubles: over random points, pieces and places of a temple 60 m wide. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

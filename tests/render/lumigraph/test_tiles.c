@@ -20,7 +20,7 @@ static int lay(void **state)
 	*state = table;
 	if (!table || headless_create(&table->headless) < 0)
 		return -1;
-	return tiles_init(&table->tiles, SMALL_BUDGET, 8, TILES_FACES_MOST / 8);
+	return tiles_init(&table->tiles, SMALL_BUDGET, 8, TILES_FACES_MAX / 8);
 }
 
 static int clear_away(void **state)
@@ -122,13 +122,13 @@ static void faces_past_the_slots_take_the_oldest(void **state)
 {
 	struct table *table = *state;
 	struct tiles tiles;
-	CHECK(tiles_init(&tiles, 3ull * 4096 * 4096, 8, TILES_FACES_MOST / 8) == 0);
-	for (face_key face = 0; face < TILES_FACES_MOST + 10; face++) {
+	CHECK(tiles_init(&tiles, 3ull * 4096 * 4096, 8, TILES_FACES_MAX / 8) == 0);
+	for (face_key face = 0; face < TILES_FACES_MAX + 10; face++) {
 		tiles_begin(&tiles);
 		CHECK(tiles_put(&tiles, name_of(face, 0, 0, 0), table->rgb) == 0);
 	}
-	CHECK(tiles.key_count == TILES_FACES_MOST);
-	for (face_key face = 0; face < TILES_FACES_MOST + 10; face++)
+	CHECK(tiles.key_count == TILES_FACES_MAX);
+	for (face_key face = 0; face < TILES_FACES_MAX + 10; face++)
 		CHECK((tiles_face_slot(&tiles, face) >= 0) == (face >= 10));
 	tiles_clear(&tiles);
 	CHECK(tiles.key_count == 0 && !tiles_has(&tiles, name_of(20, 0, 0, 0)));

@@ -8,17 +8,17 @@
 #include "geometry/vec.h"
 #include "tests/render/scene/little_release.h"
 
-enum { LITTLE_LABEL_LEVEL = 4, LITTLE_BORDERS_MOST = 4000 };
+enum { LITTLE_LABEL_LEVEL = 4, LITTLE_BORDERS_MAX = 4000 };
 
 /* What a group's labels are made in. */
 struct little_labels {
 	struct label_group group;
 	struct label_part part;
 	struct label_set sets[2];
-	uint16_t member, in[GROUP_PATCHES_MOST][PATCH_TRIANGLES_MOST];
-	struct label_patch patches[GROUP_PATCHES_MOST];
-	struct label_border borders[LITTLE_BORDERS_MOST];
-	int8_t values[LITTLE_BORDERS_MOST * 200];
+	uint16_t member, in[GROUP_PATCHES_MAX][PATCH_TRIANGLES_MAX];
+	struct label_patch patches[GROUP_PATCHES_MAX];
+	struct label_border borders[LITTLE_BORDERS_MAX];
+	int8_t values[LITTLE_BORDERS_MAX * 200];
 };
 
 static inline struct bytes little_bytes(const struct little_release *r, struct hash hash)
@@ -62,7 +62,7 @@ static inline void little_label_triangle(struct little_labels *l, uint32_t p, ui
 	l->in[p][t] = within == count;
 	if (within == 0 || within == count)
 		return;
-	CHECK(l->patches[p].border_count < LITTLE_BORDERS_MOST);
+	CHECK(l->patches[p].border_count < LITTLE_BORDERS_MAX);
 	l->patches[p].borders[l->patches[p].border_count++] = (struct label_border){
 		.triangle = (uint16_t)t, .level = LITTLE_LABEL_LEVEL, .first = l->group.value_count
 	};
@@ -73,7 +73,7 @@ static inline struct page_child little_label_group(struct little_release *r, str
 						   const char *part, const struct region *region)
 {
 	static struct little_labels l;
-	struct patch_mesh meshes[GROUP_PATCHES_MOST];
+	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	struct page_child child;
 	struct buffer out;
 	uint32_t count, used = 0;
@@ -93,7 +93,7 @@ static inline struct page_child little_label_group(struct little_release *r, str
 		used += l.patches[p].border_count;
 		patch_mesh_finish(&meshes[p]);
 	}
-	buffer_init(&out, OBJECT_BYTES_MOST);
+	buffer_init(&out, OBJECT_BYTES_MAX);
 	CHECK(label_group_encode(&out, &l.group) == 0);
 	child = little_add(r, &out, false);
 	buffer_finish(&out);
@@ -105,11 +105,11 @@ static inline void little_label(struct little_release *r, const char *part,
 				const struct region *region, bool spoiled)
 {
 	struct page root, hierarchy;
-	struct page_child children[ROOT_CHILDREN_MOST], groups[8], child;
+	struct page_child children[ROOT_CHILDREN_MAX], groups[8], child;
 	uint32_t of_group[8];
 	struct buffer payload;
 
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	CHECK(page_decode(&root, little_bytes(r, r->root)) == 0);
 	memcpy(children, root.children, ROOT_CHILD_COUNT * sizeof(*children));
 	CHECK(page_decode(&hierarchy, little_bytes(r, children[ROOT_CHILD_HIERARCHY].hash)) == 0);
@@ -127,7 +127,7 @@ static inline void little_label(struct little_release *r, const char *part,
 	children[ROOT_CHILD_LABELS] =
 		little_page(r, PAGE_LABELS, groups, hierarchy.child_count, &payload);
 	buffer_put(&payload, root.payload.data, root.payload.size);
-	child = little_page(r, PAGE_ROOT, children, ROOT_CHILDREN_MOST, &payload);
+	child = little_page(r, PAGE_ROOT, children, ROOT_CHILDREN_MAX, &payload);
 	r->root = child.hash;
 	r->root_bytes = child.size;
 	buffer_finish(&payload);

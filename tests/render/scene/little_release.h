@@ -18,7 +18,7 @@
 
 #include "tests/check.h"
 
-enum { LITTLE_OBJECTS_MOST = 4096, LITTLE_LEVELS = 2, LITTLE_BOXES = 5 };
+enum { LITTLE_OBJECTS_MAX = 4096, LITTLE_LEVELS = 2, LITTLE_BOXES = 5 };
 
 struct little_object {
 	struct hash hash;
@@ -27,7 +27,7 @@ struct little_object {
 };
 
 struct little_release {
-	struct little_object objects[LITTLE_OBJECTS_MOST];
+	struct little_object objects[LITTLE_OBJECTS_MAX];
 	uint32_t object_count;
 	struct hash root;
 	uint32_t root_bytes;
@@ -93,7 +93,7 @@ static bool little_is_inside(const float at[3])
 
 static struct page_child little_add(struct little_release *r, struct buffer *bytes, bool is_page)
 {
-	CHECK(bytes->error == 0 && r->object_count < LITTLE_OBJECTS_MOST);
+	CHECK(bytes->error == 0 && r->object_count < LITTLE_OBJECTS_MAX);
 	struct little_object *object = &r->objects[r->object_count++];
 	object->hash = hash_of(buffer_bytes(bytes));
 	object->size = bytes->size;
@@ -108,7 +108,7 @@ static struct page_child little_page(struct little_release *r, enum page_kind ki
 				     struct buffer *payload)
 {
 	struct buffer out;
-	buffer_init(&out, PAGE_BYTES_MOST);
+	buffer_init(&out, PAGE_BYTES_MAX);
 	const struct page page = { kind, count, children, buffer_bytes(payload) };
 	page_encode(&out, &page);
 	struct page_child child = little_add(r, &out, true);
@@ -173,8 +173,8 @@ static void little_side(struct little_mesh *m, const float box[2][3], int axis, 
 static void little_mesh_of(struct little_mesh *m, int box, int cells)
 {
 	memset(m, 0, sizeof(*m));
-	m->mesh.vertices = calloc(PATCH_VERTICES_MOST, sizeof(*m->mesh.vertices));
-	m->mesh.indices = calloc(3 * PATCH_TRIANGLES_MOST, sizeof(*m->mesh.indices));
+	m->mesh.vertices = calloc(PATCH_VERTICES_MAX, sizeof(*m->mesh.vertices));
+	m->mesh.indices = calloc(3 * PATCH_TRIANGLES_MAX, sizeof(*m->mesh.indices));
 	for (int i = 0; i < 3; i++) {
 		m->min[i] = INFINITY;
 		m->max[i] = -INFINITY;
@@ -209,7 +209,7 @@ static struct page_child little_hierarchy(struct little_release *r)
 	};
 	struct page_child children[2];
 	struct buffer out;
-	buffer_init(&out, OBJECT_BYTES_MOST);
+	buffer_init(&out, OBJECT_BYTES_MAX);
 	for (uint32_t g = 0; g < 2; g++) {
 		struct patch_mesh meshes[LITTLE_BOXES];
 		for (int b = 0; b < LITTLE_BOXES; b++) {
@@ -266,12 +266,12 @@ static bool little_face(struct little_release *r, const float point[3], int face
 			struct page_child *out)
 {
 	static uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
-	struct page_child children[FACE_TILES_MOST];
+	struct page_child children[FACE_TILES_MAX];
 	struct face_page page = { .level_count = LITTLE_LEVELS };
 	struct buffer bytes;
 	uint32_t count = 0;
 	memset(page.tile_child, 0xff, sizeof(page.tile_child));
-	buffer_init(&bytes, OBJECT_BYTES_MOST);
+	buffer_init(&bytes, OBJECT_BYTES_MAX);
 	for (uint32_t level = 0; level < LITTLE_LEVELS; level++) {
 		for (uint32_t at = 0; at < 1u << (2 * level); at++) {
 			uint32_t row = at >> level, column = at & ((1u << level) - 1);
@@ -295,7 +295,7 @@ static struct page_child little_samples(struct little_release *r)
 	struct page_child children[BRICK_POINTS * CUBE_FACES], brick_child;
 	struct buffer payload;
 	uint32_t count = 0, zero = 0;
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	memset(&brick, 0, sizeof(brick));
 	memset(brick.face_child, 0xff, sizeof(brick.face_child));
 	for (uint32_t p = 0; p < r->points * r->points * 2; p++) {
@@ -352,7 +352,7 @@ static inline struct little_release *little_release_make(uint32_t points)
 				  .background = { 120, 150, 180 },
 				  .source_triangles = 100000,
 				  .published_triangles = 4320 };
-	buffer_init(&payload, PAGE_BYTES_MOST);
+	buffer_init(&payload, PAGE_BYTES_MAX);
 	root_page_encode(&payload, &root);
 	struct page_child page = little_page(r, PAGE_ROOT, children, ROOT_CHILD_COUNT, &payload);
 	r->root = page.hash;

@@ -7,7 +7,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/render/scene/little_release.h"
 
-enum { WIDTH = 480, HEIGHT = 270, FRAMES_MOST = 3000 };
+enum { WIDTH = 480, HEIGHT = 270, FRAMES_MAX = 3000 };
 
 static struct little_release *release; /* made once for all tests */
 
@@ -75,7 +75,7 @@ static void draw(struct stage *stage, const struct camera *camera, const struct 
 /* Serves and draws until the scene says that it is settled. Returns frames. */
 static int settle(struct stage *stage, const struct camera *camera, const struct region *region)
 {
-	for (int i = 0; i < FRAMES_MOST; i++) {
+	for (int i = 0; i < FRAMES_MAX; i++) {
 		draw(stage, camera, region);
 		little_release_serve(stage->release, stage->scene, 16);
 		if (stage->frame.settled) {
@@ -83,7 +83,7 @@ static int settle(struct stage *stage, const struct camera *camera, const struct
 			return i;
 		}
 	}
-	fail_msg("not settled after %d frames", FRAMES_MOST);
+	fail_msg("not settled after %d frames", FRAMES_MAX);
 	return 0;
 }
 

@@ -7,7 +7,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/render/scene/little_labels.h"
 
-enum { WIDTH = 480, HEIGHT = 270, FRAMES_MOST = 3000 };
+enum { WIDTH = 480, HEIGHT = 270, FRAMES_MAX = 3000 };
 
 static const struct scene_options usual = {
 	.mode = SCENE_POLYGONS,
@@ -75,7 +75,7 @@ static void draw(struct stage *stage)
 static void settle_with(struct stage *stage, const struct camera *camera,
 			const struct scene_mark *mark, uint8_t *seen)
 {
-	for (int i = 0; i < FRAMES_MOST; i++) {
+	for (int i = 0; i < FRAMES_MAX; i++) {
 		gl_target_bind(&stage->target);
 		CHECK(scene_dispatch(stage->scene) == 0);
 		scene_draw(stage->scene, camera, mark, &stage->frame);
@@ -86,7 +86,7 @@ static void settle_with(struct stage *stage, const struct camera *camera,
 			CHECK(gl_target_read(&stage->target, seen) == 0);
 		return;
 	}
-	fail_msg("not settled after %d frames", FRAMES_MOST);
+	fail_msg("not settled after %d frames", FRAMES_MAX);
 }
 
 static void settle(struct stage *stage)
@@ -133,7 +133,7 @@ static void labels_come_after_what_is_to_be_seen(void **state)
 
 	(void)state;
 	raise_stage(&stage, true, false);
-	for (int i = 0; i < FRAMES_MOST; i++) {
+	for (int i = 0; i < FRAMES_MAX; i++) {
 		size_t count;
 
 		draw(&stage);
@@ -235,7 +235,7 @@ static void an_outline_lies_where_the_region_ends(void **state)
 		const uint32_t g = stage.scene->hierarchy.patches[p].group;
 		struct outline outline;
 
-		CHECK(outline_create(&outline, &geometry->patches[p].content.solid,
+		CHECK(outline_create(&outline, &geometry->patches[p].content.bvh,
 				     &geometry->labels[g],
 				     p - stage.scene->hierarchy.groups[g].first_patch, 0) == 0);
 		for (uint32_t k = 0; k < 2 * outline.line_count; k++) {

@@ -11,7 +11,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/render/scene/little_release.h"
 
-enum { WIDTH = 480, HEIGHT = 270, PIXELS = WIDTH * HEIGHT, FRAMES_MOST = 3000 };
+enum { WIDTH = 480, HEIGHT = 270, PIXELS = WIDTH * HEIGHT, FRAMES_MAX = 3000 };
 
 static struct little_release *release; /* made once for all tests */
 
@@ -82,7 +82,7 @@ static int settle(const struct scene_tools *tools, const char *name)
 
 	scene_use(stage.scene, tools);
 	for (stage.frame.settled = false; !stage.frame.settled; frames++) {
-		CHECK(frames < FRAMES_MOST);
+		CHECK(frames < FRAMES_MAX);
 		draw();
 	}
 	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
