@@ -7,7 +7,7 @@
 
 struct build_options {
 	const char *out;     /* the release folder; NULL: "release" beside the content folder */
-	const char *keys;    /* the keys' folder; NULL: as pipeline/release/keys_place.h says */
+	const char *keys;    /* the keys' folder; NULL: as pipeline/keys/keys_place.h says */
 	const char *comment; /* NULL: none */
 	uint32_t jobs;       /* processes and threads; 0: one a core */
 };

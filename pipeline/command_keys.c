@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "pipeline/release/keys_place.h"
+#include "pipeline/keys/keys_place.h"
 
 static const char help[] =
 	"gopura-content keys: make the signing keys of a content folder, or say where they are\n"

@@ -10,7 +10,7 @@
 
 #include "pipeline/import/import_parts.h"
 #include "pipeline/import/sandbox.h"
-#include "pipeline/release/keys.h"
+#include "pipeline/keys/keys.h"
 
 int import_files_open_folder(const char *scan_path)
 {

@@ -9,7 +9,7 @@
 #include "base/log.h"
 #include "pipeline/content/tour_check.h"
 #include "pipeline/hierarchy/master.h"
-#include "pipeline/release/keys_place.h"
+#include "pipeline/keys/keys_place.h"
 #include "pipeline/release/publish_sources.h"
 #include "pipeline/release/start_view.h"
 

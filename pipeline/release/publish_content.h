@@ -11,7 +11,7 @@
 struct publish_content_options {
 	const struct content *content;
 	const char *out;        /* the release folder; NULL: "release" beside the content folder */
-	const char *keys;       /* the keys' folder; NULL: as pipeline/release/keys_place.h says */
+	const char *keys;       /* the keys' folder; NULL: as pipeline/keys/keys_place.h says */
 	const char *comment;    /* NULL: none */
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 };

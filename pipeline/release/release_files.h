@@ -7,7 +7,7 @@
 #ifndef GOPURA_PIPELINE_RELEASE_RELEASE_FILES_H
 #define GOPURA_PIPELINE_RELEASE_RELEASE_FILES_H
 
-#include "pipeline/release/keys.h"
+#include "pipeline/keys/keys.h"
 
 /* The current release by its signed file. -ENOENT: nothing was published yet. Other errors are
  * logged: a release.json that our own keys did not sign is never overwritten. */

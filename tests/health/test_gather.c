@@ -36,7 +36,8 @@ static void *answer(void *data)
 	const int fd = accept(program->fd, NULL, NULL);
 
 	for (const char *const *piece = program->pieces; *piece; piece++)
-		if (write(fd, *piece, strlen(*piece)) < 0)
+		if (send(fd, *piece, strlen(*piece), MSG_NOSIGNAL) <
+		    0) /* it may have heard enough */
 			break;
 	close(fd);
 	return NULL;

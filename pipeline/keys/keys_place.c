@@ -1,4 +1,4 @@
-#include "pipeline/release/keys_place.h"
+#include "pipeline/keys/keys_place.h"
 
 #include <errno.h>
 #include <fcntl.h>

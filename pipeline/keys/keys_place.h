@@ -10,12 +10,12 @@
  * A keys' folder without that file belongs to the first content folder that asks.
  *
  * Keys were once made in DIR/keys. Such are moved to their new place. */
-#ifndef GOPURA_PIPELINE_RELEASE_KEYS_PLACE_H
-#define GOPURA_PIPELINE_RELEASE_KEYS_PLACE_H
+#ifndef GOPURA_PIPELINE_KEYS_KEYS_PLACE_H
+#define GOPURA_PIPELINE_KEYS_KEYS_PLACE_H
 
 #include <limits.h>
 
-#include "pipeline/release/keys.h"
+#include "pipeline/keys/keys.h"
 
 /* Finds the keys of a content folder, moves or makes them where necessary, and reads them. given is
  * --keys or NULL. folder gets their place; *made tells whether they are new, and may be NULL.

@@ -1,4 +1,4 @@
-#include "pipeline/release/keys.h"
+#include "pipeline/keys/keys.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,13 +1,13 @@
 /* The publisher's signing keys: a folder of their own, never inside a release, and by default not
- * inside the content either (pipeline/release/keys_place.h).
+ * inside the content either (pipeline/keys/keys_place.h).
  *
  *   root.key release.key timestamp.key   "gopura-key-1 ROLE HEX", an ed25519 seed; mode 0600
  *   root/1.json ... root/N.json          the signed roots, as published
  *
  * root.key may be taken away once root/1.json is made (it signs the next root only); publishing
  * needs the other two. */
-#ifndef GOPURA_PIPELINE_RELEASE_KEYS_H
-#define GOPURA_PIPELINE_RELEASE_KEYS_H
+#ifndef GOPURA_PIPELINE_KEYS_KEYS_H
+#define GOPURA_PIPELINE_KEYS_KEYS_H
 
 #include "format/metadata.h"
 

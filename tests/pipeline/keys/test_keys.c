@@ -1,5 +1,5 @@
 /* Signing keys: made whole or completed, never replaced, and found where they belong. */
-#include "pipeline/release/keys_place.h"
+#include "pipeline/keys/keys_place.h"
 
 #include <errno.h>
 #include <fcntl.h>
