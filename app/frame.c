@@ -10,9 +10,9 @@
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "geometry/viewpoint.h"
 #include "render/display/context.h"
 #include "render/display/gl.h"
-#include "storage/info_view.h"
 
 enum {
 	STEP_MOST_MS = 50, /* of the navigator: a hiccup is not a jump */
@@ -140,7 +140,7 @@ static float size_on_panel(const struct kiosk *kiosk, const struct info_part *pa
 	const float distance_m =
 		glm_vec3_distance((float *)part->anchor_m, (float *)kiosk->camera.eye_m);
 
-	return 2 * info_region_size_m(&part->region) * camera_px_per_radian(&kiosk->camera) /
+	return 2 * region_size_m(&part->region) * camera_px_per_radian(&kiosk->camera) /
 	       fmaxf(distance_m, 0.01f);
 }
 

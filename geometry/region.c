@@ -43,7 +43,7 @@ float region_distance(const struct region *region, const float point_m[3])
 			return INFINITY;
 		return fmaxf(polygon_distance(region, point_m[0], point_m[1]),
 			     fmaxf(region->floor_m - point_m[2], point_m[2] - region->roof_m));
-	case REGION_NONE:
+	case REGION_POINT:
 		break;
 	}
 	return INFINITY;
@@ -57,4 +57,24 @@ bool region_contains(const struct region *region, const float point_m[3])
 bool region_meets_sphere(const struct region *region, const float centre_m[3], float radius_m)
 {
 	return region_distance(region, centre_m) <= radius_m;
+}
+
+float region_size_m(const struct region *region)
+{
+	float most = 0;
+
+	switch (region->kind) {
+	case REGION_POINT: /* one of a list of faces has their radius */
+	case REGION_SPHERE:
+		return region->radius_m;
+	case REGION_BOX:
+		return cbrtf(region->half_m[0] * region->half_m[1] * region->half_m[2]);
+	case REGION_PRISM:
+		for (uint32_t i = 0; i < region->corner_count; i++)
+			most = fmaxf(most,
+				     hypotf(region->corners_m[i][0] - region->corners_m[0][0],
+					    region->corners_m[i][1] - region->corners_m[0][1]));
+		return cbrtf(most * most * (region->roof_m - region->floor_m)) / 2;
+	}
+	return 0;
 }

@@ -10,31 +10,15 @@
 
 #include "base/bytes.h"
 #include "format/hash.h"
+#include "geometry/region.h"
 
 enum {
-	INFO_CORNERS_MAX = 16,
 	INFO_LANGUAGES_MAX = 64,
 	INFO_PARTS_MAX = 1000,
 	INFO_PAGE_BYTES_MAX = 256 << 10, /* one HTML page; what ui/html.h takes */
 	INFO_PAGE_PICTURES_MAX = 64,
 	INFO_TOURS_MAX = 8,
 	INFO_STOPS_MAX = 64, /* of a tour */
-};
-
-enum info_region_kind { INFO_REGION_POINT, INFO_REGION_SPHERE, INFO_REGION_BOX, INFO_REGION_PRISM };
-
-/* The place of a part on the model; metres, z up. A point has only its centre; one that stands for
- * a list of faces has their radius too, and its surface in the release's labels (format/label.h).
- */
-struct info_region {
-	enum info_region_kind kind;
-	float centre_m[3];
-	float radius_m;        /* sphere, list of faces */
-	float half_m[3];       /* box, before turning */
-	float turn_deg;        /* box: about the vertical */
-	float floor_m, roof_m; /* prism */
-	uint32_t corner_count;
-	float corners_m[INFO_CORNERS_MAX][2]; /* prism: x, y, counter-clockwise */
 };
 
 /* Ways of looking that the content gives visitors, a bit each: docs/tools.md. */
@@ -47,9 +31,10 @@ struct info;
 
 struct info_part {
 	const char *id;
-	struct info_region region;
-	float anchor_m[3]; /* where the leader line ends */
-	bool has_page;     /* in some language */
+	struct region region; /* a list of faces: a point with their radius; the surface is in the
+				 labels */
+	float anchor_m[3];    /* where the leader line ends */
+	bool has_page;        /* in some language */
 };
 
 /* Texts in the language asked for; where that has none in one of its kind ("pt" for "pt-BR"), else

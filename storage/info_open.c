@@ -134,7 +134,7 @@ static int read_picture(struct info *info, sqlite3_stmt *row)
 	return 0;
 }
 
-static int read_region(sqlite3_stmt *row, struct info_region *region)
+static int read_region(sqlite3_stmt *row, struct region *region)
 {
 	static const char *const kinds[] = { "point", "sphere", "box", "prism" };
 	const char *kind = (const char *)sqlite3_column_text(row, 2);
@@ -145,7 +145,7 @@ static int read_region(sqlite3_stmt *row, struct info_region *region)
 		i++;
 	if (i == ARRAY_COUNT(kinds))
 		return -EBADMSG;
-	region->kind = (enum info_region_kind)i;
+	region->kind = (enum region_kind)i;
 	rc = info_read_floats(row, 3, region->centre_m, 3);
 	if (rc == 0)
 		rc = read_float(row, 9, &region->radius_m);
@@ -189,12 +189,12 @@ static int read_part(struct info *info, sqlite3_stmt *row)
 static int read_corner(struct info *info, sqlite3_stmt *row)
 {
 	sqlite3_int64 id = sqlite3_column_int64(row, 0);
-	struct info_region *region;
+	struct region *region;
 
 	if (id < 0 || id >= info->part_count)
 		return -EBADMSG;
 	region = &info->parts[id].public.region;
-	if (region->corner_count == INFO_CORNERS_MAX)
+	if (region->corner_count == REGION_CORNERS_MAX)
 		return -EBADMSG;
 	return info_read_floats(row, 1, region->corners_m[region->corner_count++], 2);
 }
@@ -350,11 +350,11 @@ static int load(struct info *info)
 	if (rc == 0 && info->language_count == 0)
 		rc = -EBADMSG;
 	for (uint32_t i = 0; i < info->part_count && rc == 0; i++) {
-		const struct info_region *region = &info->parts[i].public.region;
+		const struct region *region = &info->parts[i].public.region;
 
 		if (!info->parts[i].texts[0].title)
 			rc = -EBADMSG;
-		if (region->kind == INFO_REGION_PRISM && region->corner_count < 3)
+		if (region->kind == REGION_PRISM && region->corner_count < 3)
 			rc = -EBADMSG;
 	}
 	return rc;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "storage/info_view.h"
+#include "geometry/viewpoint.h"
 
 enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
 
@@ -388,33 +388,10 @@ void information_view_search(struct information_view *view)
 
 /* ---- regions */
 
-static void region_of(const struct info_region *from, struct region *out)
-{
-	static const enum region_kind kinds[] = {
-		[INFO_REGION_POINT] = REGION_NONE,
-		[INFO_REGION_SPHERE] = REGION_SPHERE,
-		[INFO_REGION_BOX] = REGION_BOX,
-		[INFO_REGION_PRISM] = REGION_PRISM,
-	};
-
-	_Static_assert((int)INFO_CORNERS_MAX == (int)REGION_CORNERS_MAX, "one limit");
-	*out = (struct region){
-		.kind = kinds[from->kind],
-		.radius_m = from->radius_m,
-		.turn_deg = from->turn_deg,
-		.floor_m = from->floor_m,
-		.roof_m = from->roof_m,
-		.corner_count = from->corner_count,
-	};
-	memcpy(out->centre_m, from->centre_m, sizeof(out->centre_m));
-	memcpy(out->half_m, from->half_m, sizeof(out->half_m));
-	memcpy(out->corners_m, from->corners_m, sizeof(out->corners_m));
-}
-
 bool information_view_region(const struct information_view *view, uint32_t part, struct region *out)
 {
-	region_of(&info_part(view->info, part)->region, out);
-	return out->kind != REGION_NONE;
+	*out = info_part(view->info, part)->region;
+	return out->kind != REGION_POINT;
 }
 
 int information_view_part_at(const struct information_view *view, const float point_m[3])
@@ -423,7 +400,7 @@ int information_view_part_at(const struct information_view *view, const float po
 	int best = -1;
 
 	for (uint32_t i = 0; view->info && i < info_part_count(view->info); i++) {
-		const float size = info_region_size_m(&info_part(view->info, i)->region);
+		const float size = region_size_m(&info_part(view->info, i)->region);
 		struct region region;
 
 		if (size < best_size && information_view_region(view, i, &region) &&
@@ -440,5 +417,5 @@ void information_view_viewpoint(const struct information_view *view, uint32_t pa
 {
 	const struct info_part *info = info_part(view->info, part);
 
-	info_view(&info->region, info->anchor_m, least_m, eye_m, eye_out_m, target_m);
+	viewpoint_of_region(&info->region, info->anchor_m, least_m, eye_m, eye_out_m, target_m);
 }

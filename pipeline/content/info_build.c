@@ -156,7 +156,7 @@ static void bind_vector(struct writer *w, const float v[3])
 static void write_part(struct writer *w, int64_t id, const struct content_part *part)
 {
 	static const char *const kinds[] = { "point", "sphere", "box", "prism" };
-	const struct info_region *region = &part->region;
+	const struct region *region = &part->region;
 
 	prepare(w, "INSERT INTO identified_part VALUES(?,?,?, ?,?,?, ?,?,?, ?, ?,?,?, ?, ?,?)");
 	bind_int(w, id);

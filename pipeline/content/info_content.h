@@ -29,7 +29,7 @@ struct content_part {
 	char *id;
 	unsigned line; /* of parts.json */
 	bool without_page;
-	struct info_region region;
+	struct region region;
 	float anchor_m[3];
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 	char *readings[INFO_LANGUAGES_MAX];                              /* the same */

@@ -64,9 +64,9 @@ static bool read_vector(const struct part_reader *r, const cJSON *object, const 
 
 static void read_sphere(struct part_reader *r, const cJSON *json)
 {
-	struct info_region *region = &r->part->region;
+	struct region *region = &r->part->region;
 
-	region->kind = INFO_REGION_SPHERE;
+	region->kind = REGION_SPHERE;
 	read_vector(r, json, "centre", region->centre_m);
 	if (!read_number(json, "radius", &region->radius_m) || region->radius_m <= 0)
 		complain_part(r, "part \"%s\": \"radius\" must be a positive number of metres",
@@ -75,9 +75,9 @@ static void read_sphere(struct part_reader *r, const cJSON *json)
 
 static void read_box(struct part_reader *r, const cJSON *json)
 {
-	struct info_region *region = &r->part->region;
+	struct region *region = &r->part->region;
 
-	region->kind = INFO_REGION_BOX;
+	region->kind = REGION_BOX;
 	read_vector(r, json, "centre", region->centre_m);
 	if (read_vector(r, json, "half", region->half_m) &&
 	    !(region->half_m[0] > 0 && region->half_m[1] > 0 && region->half_m[2] > 0))
@@ -88,7 +88,7 @@ static void read_box(struct part_reader *r, const cJSON *json)
 }
 
 /* Twice the area, positive when counter-clockwise. */
-static double area_twice(const struct info_region *region)
+static double area_twice(const struct region *region)
 {
 	double sum = 0;
 
@@ -101,7 +101,7 @@ static double area_twice(const struct info_region *region)
 	return sum;
 }
 
-static void make_counter_clockwise(struct info_region *region)
+static void make_counter_clockwise(struct region *region)
 {
 	if (area_twice(region) >= 0)
 		return;
@@ -116,12 +116,12 @@ static void make_counter_clockwise(struct info_region *region)
 
 static bool read_corners(struct part_reader *r, const cJSON *corners)
 {
-	struct info_region *region = &r->part->region;
+	struct region *region = &r->part->region;
 	int count = cJSON_IsArray(corners) ? cJSON_GetArraySize(corners) : 0;
 
-	if (count < 3 || count > INFO_CORNERS_MAX) {
+	if (count < 3 || count > REGION_CORNERS_MAX) {
 		complain_part(r, "part \"%s\": a prism needs 3 to %d \"corners\", it has %d",
-			      part_name(r), INFO_CORNERS_MAX, count);
+			      part_name(r), REGION_CORNERS_MAX, count);
 		return false;
 	}
 	for (int i = 0; i < count; i++) {
@@ -139,9 +139,9 @@ static bool read_corners(struct part_reader *r, const cJSON *corners)
 
 static void read_prism(struct part_reader *r, const cJSON *json)
 {
-	struct info_region *region = &r->part->region;
+	struct region *region = &r->part->region;
 
-	region->kind = INFO_REGION_PRISM;
+	region->kind = REGION_PRISM;
 	if (!read_number(json, "floor", &region->floor_m) ||
 	    !read_number(json, "roof", &region->roof_m) || region->roof_m <= region->floor_m)
 		complain_part(r, "part \"%s\": \"floor\" and \"roof\" must be heights, roof above",
@@ -194,7 +194,7 @@ static int read_region(struct part_reader *r)
 	if (has_faces)
 		rc = read_faces(r, json);
 	else if (!json && anchor)
-		r->part->region.kind = INFO_REGION_POINT;
+		r->part->region.kind = REGION_POINT;
 	else if (kind && strcmp(kind, "sphere") == 0)
 		read_sphere(r, json);
 	else if (kind && strcmp(kind, "box") == 0)

@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/viewpoint.h"
 #include "pipeline/content/info_content.h"
 #include "pipeline/content/json_lines.h"
-#include "storage/info_view.h"
 
 static const char tours_file[] = "tours.json";
 
@@ -164,8 +164,8 @@ static void read_view(const struct tour_reader *r, const cJSON *json, struct inf
 		complain(r, "\"%s\" alone is no view: add \"%s\": [x, y, z]",
 			 has_eye ? "eye" : "target", has_eye ? "target" : "eye");
 	} else if (part && before) {
-		info_view(&part->region, part->anchor_m, PART_LEAST_M, before->eye_m, stop->eye_m,
-			  stop->target_m);
+		viewpoint_of_region(&part->region, part->anchor_m, PART_LEAST_M, before->eye_m,
+				    stop->eye_m, stop->target_m);
 	} else if (part) {
 		complain(r, "a part is shown from where the stop before stands, and the first has "
 			    "none: add \"eye\": [x, y, z]");

@@ -37,28 +37,6 @@ static int read_page(struct object_store *objects, const struct page_child *chil
 
 /* ---- the parts */
 
-static void region_of(const struct info_region *from, struct region *out)
-{
-	static const enum region_kind kinds[] = {
-		[INFO_REGION_POINT] = REGION_NONE,
-		[INFO_REGION_SPHERE] = REGION_SPHERE,
-		[INFO_REGION_BOX] = REGION_BOX,
-		[INFO_REGION_PRISM] = REGION_PRISM,
-	};
-
-	*out = (struct region){
-		.kind = kinds[from->kind],
-		.radius_m = from->radius_m,
-		.turn_deg = from->turn_deg,
-		.floor_m = from->floor_m,
-		.roof_m = from->roof_m,
-		.corner_count = from->corner_count,
-	};
-	memcpy(out->centre_m, from->centre_m, sizeof(out->centre_m));
-	memcpy(out->half_m, from->half_m, sizeof(out->half_m));
-	memcpy(out->corners_m, from->corners_m, sizeof(out->corners_m));
-}
-
 /* Those that have a surface. */
 static uint32_t list_parts(struct label_source_part *parts, const struct info *info,
 			   const struct part_faces_all *faces)
@@ -71,12 +49,12 @@ static uint32_t list_parts(struct label_source_part *parts, const struct info *i
 		struct label_source_part *part = &parts[count];
 
 		*part = (struct label_source_part){ .id = from->id };
-		region_of(&from->region, &part->region);
+		part->region = from->region;
 		if (list) {
 			part->triangles = list->triangles;
 			part->triangle_count = list->count;
 		}
-		count += list || part->region.kind != REGION_NONE;
+		count += list || part->region.kind != REGION_POINT;
 	}
 	return count;
 }

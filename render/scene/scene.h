@@ -67,7 +67,7 @@ struct scene_frame {
 /* The part whose border is drawn in bold. */
 struct scene_mark {
 	const char *part;     /* its id, by which the release's labels know its outline; borrowed */
-	struct region region; /* where those are not here; REGION_NONE: nothing then */
+	struct region region; /* where those are not here; REGION_POINT: nothing then */
 };
 
 /* Draws into the framebuffer that is bound, on the release's background; alpha is coverage.

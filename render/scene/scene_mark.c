@@ -74,7 +74,7 @@ void scene_draw_mark(struct scene *scene, const struct view *view)
 {
 	if (!scene->is_marked)
 		return;
-	if (scene->marked_region.kind != REGION_NONE)
+	if (scene->marked_region.kind != REGION_POINT)
 		draw_region(scene, view);
 	if (!scene->labels || !scene->marked_part[0])
 		return;

@@ -29,11 +29,11 @@ static void gives_back_what_the_folder_says(void **state)
 	CHECK(strcmp(info_language(info, 1), "km") == 0);
 	CHECK(info_find(info, "gate") == 1 && info_find(info, "nothing") == -ENOENT);
 
-	CHECK(info_part(info, 0)->region.kind == INFO_REGION_BOX);
+	CHECK(info_part(info, 0)->region.kind == REGION_BOX);
 	CHECK(info_part(info, 0)->region.half_m[2] == 5);
 	CHECK(info_part(info, 0)->region.turn_deg == 45);
 	CHECK(info_part(info, 0)->anchor_m[2] == 25);
-	CHECK(info_part(info, 2)->region.kind == INFO_REGION_POINT);
+	CHECK(info_part(info, 2)->region.kind == REGION_POINT);
 	CHECK(info_part(info, 2)->region.centre_m[1] == 6);
 	CHECK(!info_part(info, 2)->has_page && info_part(info, 1)->has_page);
 
@@ -65,7 +65,7 @@ static void turns_a_clockwise_prism_round(void **state)
 {
 	struct complaints complaints;
 	struct info_built built;
-	const struct info_region *region;
+	const struct region *region;
 	double area = 0;
 	struct info *info;
 

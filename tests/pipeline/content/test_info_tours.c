@@ -4,8 +4,8 @@
 #include <math.h>
 #include <unistd.h>
 
+#include "geometry/viewpoint.h"
 #include "storage/info_schema.h"
-#include "storage/info_view.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static const char good_tours[] =
@@ -85,8 +85,8 @@ static void a_stop_that_names_a_part_alone_is_the_view_of_it(void **state)
 	CHECK(build(&built, &complaints) == 0);
 	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
 	stops = info_tour(info, 0)->stops;
-	info_view(&info_part(info, 2)->region, info_part(info, 2)->anchor_m, 0.5f, stops[0].eye_m,
-		  eye, target);
+	viewpoint_of_region(&info_part(info, 2)->region, info_part(info, 2)->anchor_m, 0.5f,
+			    stops[0].eye_m, eye, target);
 	for (int i = 0; i < 3; i++)
 		CHECK(stops[1].eye_m[i] == eye[i] && stops[1].target_m[i] == target[i]);
 	CHECK(target[0] == 5 && target[2] == 7);

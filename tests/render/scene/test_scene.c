@@ -422,7 +422,7 @@ static void regions_know_what_is_in_them(void **state)
 	CHECK(region_contains(&prism, (float[]){ 0.5f, 3, 1 }));
 	CHECK(!region_contains(&prism, (float[]){ 3, 3, 1 }));
 	CHECK(!region_contains(&prism, (float[]){ 3, 0.5f, 2.5f }));
-	const struct region none = { .kind = REGION_NONE };
+	const struct region none = { .kind = REGION_POINT };
 	CHECK(!region_contains(&none, (float[]){ 0, 0, 0 }));
 }
 

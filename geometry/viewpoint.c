@@ -1,0 +1,33 @@
+#include "geometry/viewpoint.h"
+
+#include <math.h>
+
+#include "geometry/vec.h"
+
+#define DISTANCE_SIZES 5 /* of the part, from it */
+#define STEEP_MIN      0.05f
+#define STEEP_MAX      0.7f
+
+void viewpoint_of_region(const struct region *region, const float anchor_m[3], float least_m,
+			 const float from_m[3], float eye_m[3], float target_m[3])
+{
+	const float size = fmaxf(region_size_m(region), least_m);
+	float away[3], distance;
+
+	for (int i = 0; i < 3; i++) {
+		away[i] = from_m[i] - anchor_m[i];
+		target_m[i] = anchor_m[i];
+	}
+	distance = vec_normalise(away);
+	if (distance < least_m / 5) {
+		away[0] = 0;
+		away[1] = -1;
+		away[2] = 0.3f;
+		vec_normalise(away);
+	}
+	away[2] = fminf(fmaxf(away[2], STEEP_MIN), STEEP_MAX);
+	vec_normalise(away);
+	distance = fminf(distance, DISTANCE_SIZES * size);
+	for (int i = 0; i < 3; i++)
+		eye_m[i] = target_m[i] + distance * away[i];
+}
