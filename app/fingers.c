@@ -31,7 +31,7 @@ static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
 	const struct navigator_options *o = &kiosk->navigator.options;
 	float direction[3], middle[3];
 
-	frame_to_panel(kiosk, &x_px, &y_px);
+	viewport_to_panel(kiosk, &x_px, &y_px);
 	if (scene_pick(kiosk->shown.scene, &kiosk->camera, x_px, y_px, point_m))
 		return true;
 	camera_ray(&kiosk->camera, x_px, y_px, direction);
@@ -93,7 +93,7 @@ static void show_card(struct kiosk *kiosk, int part)
 	if (part >= 0) {
 		log_debug("app", "card of %s",
 			  info_part(information_view_info(kiosk->shown.view), (uint32_t)part)->id);
-		visitor_count(kiosk, USAGE_PART, part);
+		counting_part(kiosk, USAGE_PART, part);
 	}
 	overlay_show_card(information_view_overlay(kiosk->shown.view), part);
 }
@@ -103,7 +103,7 @@ static void open_page(struct kiosk *kiosk, int part)
 	if (part >= 0 && information_view_open_page(kiosk->shown.view, (uint32_t)part)) {
 		log_debug("app", "page of %s",
 			  info_part(information_view_info(kiosk->shown.view), (uint32_t)part)->id);
-		visitor_count(kiosk, USAGE_PAGE, part);
+		counting_part(kiosk, USAGE_PAGE, part);
 		show_card(kiosk, -1);
 		fly_to_part(kiosk, (uint32_t)part);
 	}
@@ -132,7 +132,7 @@ static int part_under(struct kiosk *kiosk, float x_px, float y_px)
 
 	if (!info || !pick(kiosk, x_px, y_px, point))
 		return -1;
-	frame_to_panel(kiosk, &x_px, &y_px);
+	viewport_to_panel(kiosk, &x_px, &y_px);
 	id = scene_part(kiosk->shown.scene, &kiosk->camera, x_px, y_px);
 	if (!id)
 		return information_view_part_at(kiosk->shown.view, point);
@@ -261,7 +261,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 		break;
 	case OVERLAY_LANGUAGE:
 		information_view_set_language(kiosk->shown.view, action->language);
-		visitor_count(kiosk, USAGE_LANGUAGE, -1);
+		counting_part(kiosk, USAGE_LANGUAGE, -1);
 		break;
 	case OVERLAY_LANGUAGES:
 		overlay_show_languages(overlay, !overlay_choosing_language(overlay));
@@ -299,7 +299,7 @@ static void carry_out(struct kiosk *kiosk, const struct overlay_action *action)
 	case OVERLAY_SEARCH:
 		overlay_show_search(overlay, !overlay_searching(overlay));
 		if (overlay_searching(overlay))
-			visitor_count(kiosk, USAGE_SEARCH, -1);
+			counting_part(kiosk, USAGE_SEARCH, -1);
 		break;
 	case OVERLAY_LARGE:
 	case OVERLAY_REACH:
@@ -499,7 +499,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 		return; /* for the panel alone, or a page without anything to touch */
 	if (visitor_takes_touch(kiosk, event))
 		return;
-	frame_unshift(kiosk, &seen.x_px, &seen.y_px);
+	viewport_unshift(kiosk, &seen.x_px, &seen.y_px);
 	if (!tools_take_touch(kiosk, &seen) && !types(kiosk, &seen))
 		gesture_feed(&kiosk->gestures, &seen);
 }
@@ -529,7 +529,7 @@ void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_
 
 	if (setup_page_covers(kiosk))
 		return;
-	frame_from_panel(kiosk, &x_px, &y_px);
+	viewport_from_panel(kiosk, &x_px, &y_px);
 	if (kind == POINTER_WHEEL) {
 		presence_touch(&kiosk->presence, clock_now_ms());
 		if (kiosk->navigator_ready)

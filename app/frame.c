@@ -20,75 +20,6 @@ enum {
 	SAY_EYE_MS = 100,
 };
 
-static bool is_sideways(const struct kiosk *kiosk)
-{
-	return kiosk->profile.rotation_deg == 90 || kiosk->profile.rotation_deg == 270;
-}
-
-int kiosk_width_px(const struct kiosk *kiosk)
-{
-	return is_sideways(kiosk) ? display_height_px(kiosk->display)
-				  : display_width_px(kiosk->display);
-}
-
-int kiosk_height_px(const struct kiosk *kiosk)
-{
-	return is_sideways(kiosk) ? display_width_px(kiosk->display)
-				  : display_height_px(kiosk->display);
-}
-
-void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
-{
-	const float width = (float)display_width_px(kiosk->display);
-	const float height = (float)display_height_px(kiosk->display);
-	const float x = *x_px, y = *y_px;
-
-	switch (kiosk->profile.rotation_deg) {
-	case 90:
-		*x_px = y;
-		*y_px = height - x;
-		break;
-	case 180:
-		*x_px = width - x;
-		*y_px = height - y;
-		break;
-	case 270:
-		*x_px = width - y;
-		*y_px = x;
-		break;
-	}
-}
-
-void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px)
-{
-	const float width = (float)display_width_px(kiosk->display);
-	const float height = (float)display_height_px(kiosk->display);
-	const float x = *x_px, y = *y_px;
-
-	switch (kiosk->profile.rotation_deg) {
-	case 90:
-		*x_px = height - y;
-		*y_px = x;
-		break;
-	case 180:
-		*x_px = width - x;
-		*y_px = height - y;
-		break;
-	case 270:
-		*x_px = y;
-		*y_px = width - x;
-		break;
-	}
-}
-
-void frame_unshift(const struct kiosk *kiosk, float *x_px, float *y_px)
-{
-	frame_to_panel(kiosk, x_px, y_px);
-	*x_px -= (float)kiosk->panel.shift_px[0];
-	*y_px += (float)kiosk->panel.shift_px[1]; /* GL counts upwards */
-	frame_from_panel(kiosk, x_px, y_px);
-}
-
 void frame_camera(const struct kiosk *kiosk, struct camera *out)
 {
 	navigator_camera(&kiosk->navigator, out);
@@ -160,7 +91,7 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 						     &a->x_px, &a->y_px);
 
 		if (before_eye)
-			frame_from_panel(kiosk, &a->x_px, &a->y_px);
+			viewport_from_panel(kiosk, &a->x_px, &a->y_px);
 		a->hidden = kiosk->hidden[i];
 		a->size_px = size_on_panel(kiosk, info_part(info, i));
 		a->visible =

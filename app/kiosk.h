@@ -148,22 +148,31 @@ must_check int kiosk_start(struct kiosk *kiosk);
  * -ESTALE: a new process does. */
 must_check int kiosk_run(struct kiosk *kiosk);
 void kiosk_stop(struct kiosk *kiosk);
-/* Has the loop wait for this descriptor too, until it is closed; -1: nothing. */
-must_check int kiosk_watch(struct kiosk *kiosk, int fd);
-/* Of two times to wait, milliseconds, of which -1 is for ever. */
+/* Returns the earlier of two timeouts in milliseconds; -1 means none. */
 static inline int sooner(int a_ms, int b_ms)
 {
 	if (a_ms < 0 || b_ms < 0)
 		return a_ms < 0 ? b_ms : a_ms;
 	return a_ms < b_ms ? a_ms : b_ms;
 }
-/* The picture changes: draw soon. */
+
+/* kiosk.c: what every part needs. */
+/* Asks for a frame: the picture has changed. */
 void kiosk_redraw(struct kiosk *kiosk);
-/* Of the picture as the visitor sees it. */
+/* Makes the loop wait for fd too, until fd is closed. fd -1: does nothing. */
+must_check int kiosk_watch(struct kiosk *kiosk, int fd);
+/* Size of the picture as the visitor sees it, which is turned where the panel is. */
 int kiosk_width_px(const struct kiosk *kiosk);
 int kiosk_height_px(const struct kiosk *kiosk);
+/* Turns the visitor's pixels into the framebuffer's, and back. They differ on a panel that is
+ * turned. */
+void viewport_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
+void viewport_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
+/* Turns a place on the glass into the place of the picture there, both in the visitor's pixels: the
+ * picture is shifted by a few pixels to spare the panel. */
+void viewport_unshift(const struct kiosk *kiosk, float *x_px, float *y_px);
 
-/* exhibit.c: what is shown, and what comes next. */
+/* session.c: what is shown, and what comes next. */
 /* What a board's profile asks of a scene. */
 struct scene_options kiosk_scene_options(const struct profile *profile, enum scene_mode mode);
 void session_close(struct session *session);
@@ -208,25 +217,27 @@ int setup_page_wait_ms(const struct kiosk *kiosk);
 /* vitals.c: offers how the terminal is, where the options ask for it. */
 must_check int vitals_offer(struct kiosk *kiosk);
 
-/* guest.c: whether a visitor is there. */
-/* The clock on the wall, seconds since 1970; 0: nobody set it. */
-int64_t visitor_clock_s(void);
+/* visitor.c: whether a visitor is there. */
 /* Once a turn: asks, begins anew, shows the model. */
 void visitor_watch(struct kiosk *kiosk);
 /* When visitor_watch has something to do by time alone, milliseconds; -1: never. */
 int visitor_wait_ms(const struct kiosk *kiosk);
 /* Moves the eye where nobody else does. true: it moves on. */
 bool visitor_leads_eye(struct kiosk *kiosk, int64_t now_ms);
-/* A visitor looked at something: storage/usage.h. part: -1 for what is of none. */
-void visitor_count(struct kiosk *kiosk, enum usage_kind kind, int part);
-/* The same of what has that id. */
-void visitor_count_id(struct kiosk *kiosk, enum usage_kind kind, const char *id);
 /* A finger does something. true: it is the answer to the question, and means nothing else. */
 bool visitor_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Until the panel counts as left alone, milliseconds; 0: it is. */
 int visitor_left_ms(const struct kiosk *kiosk);
 
-/* guide.c: guided tours. */
+/* counting.c */
+/* Wall clock, seconds since 1970; 0 while nobody has set it. */
+int64_t counting_clock_s(void);
+/* Counts that a visitor looked at the part; -1: at something that belongs to no part. */
+void counting_part(struct kiosk *kiosk, enum usage_kind kind, int part);
+/* The same by the id of what was looked at: a part, or a tour. */
+void counting_id(struct kiosk *kiosk, enum usage_kind kind, const char *id);
+
+/* tour_player.c: guided tours. */
 void tour_player_start(struct kiosk *kiosk, int which); /* a visitor's; -1: none */
 void tour_player_halt(struct kiosk *kiosk);
 void tour_player_go_on(struct kiosk *kiosk);
@@ -264,7 +275,7 @@ void tools_say(struct kiosk *kiosk);
 void trial_watch(struct kiosk *kiosk);
 /* When trial_watch has something to do by time alone, milliseconds; -1: never. */
 int trial_wait_ms(const struct kiosk *kiosk);
-/* The exhibit has an object that cannot be decoded. */
+/* The session has an object that cannot be decoded. */
 bool trial_is_broken(const struct session *session);
 
 /* frame.c */
@@ -273,13 +284,6 @@ must_check int frame_draw(struct kiosk *kiosk);
 must_check int frame_unseen(struct kiosk *kiosk);
 /* Where the eye is now, with the panel's fields filled in. */
 void frame_camera(const struct kiosk *kiosk, struct camera *out);
-/* From the visitor's pixels to the framebuffer's, and back: they differ where the panel is turned.
- */
-void frame_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
-void frame_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
-/* From where a finger is on the glass to where it is on the picture, which may lie a little beside
- * it; both the visitor's pixels. */
-void frame_unshift(const struct kiosk *kiosk, float *x_px, float *y_px);
 
 /* fingers.c */
 void fingers_init(struct kiosk *kiosk);

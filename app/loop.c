@@ -23,11 +23,6 @@ enum {
 	FOV_DEG = 45,
 };
 
-void kiosk_redraw(struct kiosk *kiosk)
-{
-	kiosk->frame_wanted = true;
-}
-
 /* ---- what comes from the fetcher */
 
 static void on_object(void *data, struct hash hash, struct bytes bytes)
@@ -194,7 +189,7 @@ static int start_net(struct kiosk *kiosk)
 	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
 	snprintf(state, sizeof(state), "%s/state.db", folder);
 	snprintf(visits, sizeof(visits), "%s/visits.csv", folder);
-	rc = usage_create(&kiosk->usage, visits, kiosk->options.visits_path, visitor_clock_s());
+	rc = usage_create(&kiosk->usage, visits, kiosk->options.visits_path, counting_clock_s());
 	if (rc < 0)
 		return rc;
 	if (!net.program) {
@@ -206,15 +201,6 @@ static int start_net(struct kiosk *kiosk)
 		return rc;
 	net.root_version = updater_root_version(kiosk->updater);
 	return net_client_create(&kiosk->net, &net);
-}
-
-int kiosk_watch(struct kiosk *kiosk, int fd)
-{
-	struct epoll_event event = { .events = EPOLLIN, .data.fd = fd };
-
-	if (fd < 0)
-		return 0;
-	return epoll_ctl(kiosk->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
 }
 
 static int start_loop(struct kiosk *kiosk)

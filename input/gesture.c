@@ -36,6 +36,13 @@ void gesture_init(struct gesture_recogniser *recogniser, const struct gesture_op
 		recogniser->options.again_us = AGAIN_US;
 }
 
+void gesture_reset(struct gesture_recogniser *recogniser)
+{
+	const struct gesture_options options = recogniser->options;
+
+	gesture_init(recogniser, &options);
+}
+
 /* ---- samples ---- */
 
 /* Where the gesture is: the finger, or the middle, distance and direction of two. The angle goes

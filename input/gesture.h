@@ -80,6 +80,9 @@ struct gesture_recogniser {
 };
 
 void gesture_init(struct gesture_recogniser *recogniser, const struct gesture_options *options);
+/* Forgets all fingers and what they were doing, with the same options: fingers that are still down
+ * report nothing until they touch anew. */
+void gesture_reset(struct gesture_recogniser *recogniser);
 /* Emits what the event leads to before it returns. Contacts past TOUCH_CONTACTS_MAX are ignored.
  */
 void gesture_feed(struct gesture_recogniser *recogniser, const struct touch_event *event);

@@ -85,7 +85,7 @@ void tour_player_start(struct kiosk *kiosk, int which)
 		return;
 	clear(information_view_overlay(kiosk->shown.view));
 	begin(kiosk, (uint32_t)which, false);
-	visitor_count_id(kiosk, USAGE_TOUR, info_tour(info, (uint32_t)which)->id);
+	counting_id(kiosk, USAGE_TOUR, info_tour(info, (uint32_t)which)->id);
 }
 
 void tour_player_halt(struct kiosk *kiosk)

@@ -19,27 +19,6 @@ static bool is_reading(const struct kiosk *kiosk)
 			   kiosk->tools.now.rake.on || kiosk->tools.now.section.on);
 }
 
-int64_t visitor_clock_s(void)
-{
-	return clock_wall_is_set() || clock_wall_is_plausible() ? clock_wall_s() : 0;
-}
-
-void visitor_count(struct kiosk *kiosk, enum usage_kind kind, int part)
-{
-	const struct info *info = information_view_info(kiosk->shown.view);
-
-	visitor_count_id(kiosk, kind, info && part >= 0 ? info_part(info, (uint32_t)part)->id : "");
-}
-
-void visitor_count_id(struct kiosk *kiosk, enum usage_kind kind, const char *id)
-{
-	const char *language =
-		kiosk->shown.view ? information_view_language(kiosk->shown.view) : NULL;
-
-	if (kiosk->usage)
-		usage_add(kiosk->usage, kind, id, language ? language : "", visitor_clock_s());
-}
-
 /* Nothing of one visitor is left for the next. */
 static void begin_anew(struct kiosk *kiosk)
 {
@@ -63,7 +42,8 @@ static void begin_anew(struct kiosk *kiosk)
 			language ? language
 				 : info_language(information_view_info(kiosk->shown.view), 0));
 	}
-	fingers_init(kiosk); /* what still lies on the glass is nobody's */
+	gesture_reset(&kiosk->gestures); /* fingers that still lie on the glass belong to nobody */
+	kiosk->fingers_on_keys = 0;
 	if (kiosk->usage)
 		usage_write(kiosk->usage);
 }
@@ -176,7 +156,7 @@ bool visitor_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
 	const bool asked = kiosk->presence.state == PRESENCE_ASKED;
 
 	if (!kiosk->presence.touched)
-		visitor_count(kiosk, USAGE_VISIT, -1);
+		counting_part(kiosk, USAGE_VISIT, -1);
 	presence_touch(&kiosk->presence, clock_now_ms());
 	if (event->phase == TOUCH_DOWN)
 		kiosk->answers = asked ? kiosk->answers | bit : kiosk->answers & ~bit;

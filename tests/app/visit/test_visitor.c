@@ -32,11 +32,6 @@ void kiosk_redraw(struct kiosk *of)
 	world.redraws++;
 }
 
-void fingers_init(struct kiosk *of)
-{
-	memset(&of->gestures, 0, sizeof(of->gestures));
-}
-
 struct overlay *information_view_overlay(struct information_view *view)
 {
 	return (struct overlay *)view;
@@ -434,7 +429,7 @@ static void counts_visits_and_writes_when_they_end(void **state)
 	(void)state;
 	touches(TOUCH_DOWN);
 	touches(TOUCH_UP);
-	visitor_count(&kiosk, USAGE_PART, 0);
+	counting_part(&kiosk, USAGE_PART, 0);
 	CHECK(world.counted[USAGE_VISIT] == 1 && world.counted[USAGE_PART] == 1);
 	after(74 * S);
 	CHECK(world.written == 0);
