@@ -3,7 +3,6 @@
  * own readers, and taken away again where they refuse it. */
 #include <errno.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,24 +10,6 @@
 #include "base/log.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/json_lines.h"
-
-void importer_complain(struct importer *im, bool is_error, unsigned line, const char *text, ...)
-{
-	const struct annotations_import_options *options = im->options;
-	char message[512];
-	va_list args;
-
-	va_start(args, text);
-	vsnprintf(message, sizeof(message), text, args);
-	va_end(args);
-	im->error_count += is_error;
-	if (options->complaint)
-		options->complaint(options->complaint_data, is_error, options->file, line, message);
-	else if (is_error)
-		log_error("storage", "%s:%u: %s", options->file, line, message);
-	else
-		log_warn("storage", "%s:%u: %s", options->file, line, message);
-}
 
 static const char *string_of(const cJSON *object, const char *key)
 {

@@ -4,6 +4,8 @@
 
 #include "base/progress.h"
 #include "pipeline/material/material.h"
+#include "pipeline/temple/temple_carve.h"
+#include "pipeline/temple/temple_compose.h"
 #include "pipeline/temple/temple_plan.h"
 #include "pipeline/temple/temple_sky.h"
 

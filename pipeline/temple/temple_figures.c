@@ -1,36 +1,10 @@
 #include "pipeline/temple/temple_figures.h"
 
-#include "pipeline/temple/temple_relief.h"
+#include "base/compiler.h"
+#include "pipeline/temple/temple_carve.h"
 
 #include <math.h>
 #include <stddef.h>
-
-float carve_step(float from, float to, float x)
-{
-	float t = fminf(1.0f, fmaxf(0.0f, (x - from) / (to - from)));
-
-	return t * t * (3 - 2 * t);
-}
-
-float carve_ridge(float distance, float width)
-{
-	float t = distance / width;
-
-	return t > -1 && t < 1 ? sqrtf(1 - t * t) : 0;
-}
-
-/* limb: ax ay bx by, radius at a, radius at b. */
-float carve_limb(float x, float y, const float limb[6])
-{
-	float dx = limb[2] - limb[0], dy = limb[3] - limb[1];
-	float px = x - limb[0], py = y - limb[1];
-	float t = (px * dx + py * dy) / fmaxf(dx * dx + dy * dy, 1e-6f);
-
-	t = fminf(1.0f, fmaxf(0.0f, t));
-	float r = limb[4] + (limb[5] - limb[4]) * t;
-	float d2 = (px - dx * t) * (px - dx * t) + (py - dy * t) * (py - dy * t);
-	return d2 < r * r ? sqrtf(r * r - d2) : 0;
-}
 
 static float limbs(float x, float y, const float (*list)[6], size_t count)
 {

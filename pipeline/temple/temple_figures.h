@@ -18,10 +18,4 @@ float figure_lion(float x, float y);
 float figure_hood(float x, float y, float aspect);
 float figure_flame(float x, float y, float aspect, float shape);
 
-/* Small tools of carving. */
-float carve_step(float from, float to, float x); /* smooth 0..1 */
-/* A rounded limb from a to b: its height over the ground, radii in the same unit. */
-float carve_limb(float x, float y, const float limb[6]);
-float carve_ridge(float distance, float width); /* 1 on the line, 0 past the width */
-
 #endif

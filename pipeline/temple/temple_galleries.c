@@ -1,5 +1,6 @@
 /* Galleries: a moulded base, walls or rows of pillars, a vault of carved roof stones with a crest.
  */
+#include "pipeline/temple/temple_carve.h"
 #include "pipeline/temple/temple_plan.h"
 
 #include <math.h>

@@ -1,5 +1,7 @@
 #include "pipeline/temple/temple_figures.h"
 
+#include "pipeline/temple/temple_carve.h"
+
 #include <math.h>
 
 static float bump(float x, float y, float cx, float cy, float rx, float ry)

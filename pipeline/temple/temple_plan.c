@@ -160,20 +160,6 @@ void plan_body(struct plan *plan, const char *kind, uint32_t from)
 	more[plan->body_count++] = (struct body){ kind, number, from, plan->count - from };
 }
 
-int plan_create(struct plan *plan, uint32_t seed)
-{
-	*plan = (struct plan){ .seed = seed };
-	plan_terraces(plan);
-	plan_galleries(plan);
-	plan_towers(plan);
-	if (plan->error) {
-		int error = plan->error;
-		plan_destroy(plan);
-		return error;
-	}
-	return 0;
-}
-
 void plan_destroy(struct plan *plan)
 {
 	if (!plan)

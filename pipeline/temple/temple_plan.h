@@ -22,7 +22,6 @@ struct plan {
 };
 
 /* Lays out the whole temple. On failure the plan is empty. */
-must_check int plan_create(struct plan *plan, uint32_t seed);
 void plan_destroy(struct plan *plan); /* NULL and zeroed are fine */
 
 /* ---- for the files that lay it out */

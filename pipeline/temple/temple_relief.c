@@ -1,18 +1,9 @@
 #include "pipeline/temple/temple_relief.h"
 
+#include "pipeline/temple/temple_carve.h"
 #include "pipeline/temple/temple_figures.h"
 
 #include <math.h>
-
-float temple_chance(uint32_t seed, uint32_t a, uint32_t b)
-{
-	uint32_t h = seed * 0x9e3779b1u ^ a * 0x85ebca6bu ^ b * 0xc2b2ae35u;
-
-	h = (h ^ h >> 15) * 0x2c1b3c6du;
-	h = (h ^ h >> 12) * 0x297a2d39u;
-	h ^= h >> 15;
-	return (float)(h >> 8) / 16777216.0f;
-}
 
 bool relief_varies_across(enum relief kind)
 {

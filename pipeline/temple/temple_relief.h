@@ -53,7 +53,4 @@ struct relief_place {
 bool relief_varies_across(enum relief kind);
 float relief_height(const struct relief_style *style, const struct relief_place *place);
 
-/* 0..1 from three numbers and a seed; the temple's only source of chance. */
-float temple_chance(uint32_t seed, uint32_t a, uint32_t b);
-
 #endif

@@ -1,5 +1,6 @@
 /* Towers: five lotus buds on the summit, smaller ones on the corners of the outer gallery, and
  * towers with four faces over its gates. */
+#include "pipeline/temple/temple_carve.h"
 #include "pipeline/temple/temple_plan.h"
 
 #include <math.h>

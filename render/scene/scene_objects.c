@@ -150,7 +150,8 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	scene->visibility_us = 0;
 	scene->root_hash = root;
 	scene->root_bytes = root_bytes;
-	scene_list_wants(scene);
+	scene->want_count = 0;
+	scene->wants_are_stale = true;
 	return 0;
 }
 

@@ -8,7 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "base/bytes.h"
-#include "pipeline/temple/temple_plan.h"
+#include "pipeline/temple/temple_compose.h"
 #include "tests/check.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };

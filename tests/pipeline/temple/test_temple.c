@@ -1,4 +1,5 @@
 #include "pipeline/temple/temple.h"
+#include "pipeline/temple/temple_compose.h"
 
 #include <errno.h>
 #include <getopt.h>

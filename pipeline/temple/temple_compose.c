@@ -1,0 +1,16 @@
+/* Puts the whole temple together: terraces, then galleries, then towers. */
+#include "pipeline/temple/temple_compose.h"
+
+int plan_create(struct plan *plan, uint32_t seed)
+{
+	*plan = (struct plan){ .seed = seed };
+	plan_terraces(plan);
+	plan_galleries(plan);
+	plan_towers(plan);
+	if (plan->error) {
+		int error = plan->error;
+		plan_destroy(plan);
+		return error;
+	}
+	return 0;
+}
