@@ -83,8 +83,8 @@ $(BUILD)/.deps: packages.txt
 demo: all ## build and show the demo temple (Ctrl-C ends it)
 	@demo/run.sh
 
-test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU
-	@tests/run.sh all
+test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU; T=NAME: one, as T=test_cut or T=e2e/kiosk
+	@tests/run.sh $(if $(T),only $(T),all)
 
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick

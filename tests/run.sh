@@ -3,6 +3,7 @@
 #
 #   tests/run.sh quick   style, and the unit tests and fuzz corpora under sanitizers
 #   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
+#   tests/run.sh only NAME...   the tests alone whose path has one of these words in it: test_cut, e2e/kiosk, net/
 #
 # A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
 # tests, and after them end-to-end tests and machines in QEMU, run beside one another: each has a
@@ -47,7 +48,8 @@ if [ "${1:-}" = lane ]; then
 	exit 0
 fi
 
-unit() { # FOLDER_OF_THE_BUILD LABEL
+# unit BUILD LABEL [WORDS]: the programs of tests/ as built there, or those whose path has one of the words.
+unit() {
 	local program
 	{
 		find tests -name 'test_*.c' | sort | while read -r program; do
@@ -58,15 +60,45 @@ unit() { # FOLDER_OF_THE_BUILD LABEL
 			program=${program%.c}
 			echo "$2/${program#tests/} 600 $1/$program tests/fuzz/corpus/${program#tests/fuzz/fuzz_}"
 		done
-	} | xargs -P "$jobs" -L 1 tests/run.sh one
+	} | grep -E "${3:-.}" | xargs -r -P "$jobs" -L 1 tests/run.sh one
 }
+
+scripts() { find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' | sed 's/^tests\///; s/\.sh$//' | sort; }
 
 mode=${1:-all}
 began=$SECONDS
 rm -rf "$logs"
 mkdir -p "$logs"
+count() { cat "$logs"/*.verdict | grep -c "$1"; }
+summary() {
+	printf '\n%d minutes %d seconds\n' $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60))
+	echo "$(count passed) passed, $(count failed) failed, $(count skipped) skipped"
+	[ "$(count failed)" -eq 0 ]
+}
+
+if [ "$mode" = only ]; then
+	shift
+	words=$(IFS='|'; echo "$*")
+	programs=$(find tests -name 'test_*.c' -o -path 'tests/fuzz/fuzz_*.c' | sed 's/\.c$//' | grep -E "$words")
+	chosen=$(scripts | grep -E "$words")
+	[ -n "$programs$chosen" ] || { echo "no test has '$words' in its path below tests/" >&2; exit 2; }
+	if [ -n "$programs" ]; then
+		# shellcheck disable=SC2086
+		make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan ${programs//tests\//build\/asan\/tests\/} >"$logs/build.log" 2>&1 ||
+			{ tail -n 30 "$logs/build.log"; exit 1; }
+		unit build/asan san "tests/($(paste -sd'|' <<<"${programs//tests\//}"))( |$)"
+	fi
+	if [ -n "$chosen" ]; then
+		make --no-print-directory -j"$jobs" all tests >"$logs/build.log" 2>&1 || { tail -n 30 "$logs/build.log"; exit 1; }
+		xargs -L 1 tests/run.sh lane <<<"$chosen"
+	fi
+	summary
+	exit
+fi
+
 run_one check-style 120 tests/style/check.sh
 run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan all tests
+run_one check-circles 120 tests/style/circles.py build/asan/obj
 if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests benches
 	# What the end-to-end tests show, made beside the unit tests: much of it is the work of one core.
@@ -83,13 +115,9 @@ if [ "$mode" = all ]; then
 	{
 		echo qemu/kiosk qemu/image qemu/disks qemu/powercut
 		printf '%s\n' e2e/weak e2e/switch e2e/golden e2e/tours qemu/arm64 e2e/tools e2e/pictures e2e/visit
-		find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' -printf '%P %h\n' |
-			sed 's/\(.*\)\.sh tests\/\(.*\)/\2\/\1/' | sort
+		scripts
 	} | awk '!seen[$1]++ { print } { for (i = 2; i <= NF; i++) seen[$i]++ }' |
 		xargs -P "$((jobs + 1))" -L 1 tests/run.sh lane
 fi
 
-count() { cat "$logs"/*.verdict | grep -c "$1"; }
-printf '\n%d minutes %d seconds\n' $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60))
-echo "$(count passed) passed, $(count failed) failed, $(count skipped) skipped"
-[ "$(count failed)" -eq 0 ]
+summary
