@@ -48,6 +48,15 @@ static bool set_matrix(const struct setting *setting, void *target, const char *
 	return true;
 }
 
+/* A name that was used before: refused, and `expects` says the one of now. */
+static bool set_never(const struct setting *setting, void *target, const char *value)
+{
+	(void)setting;
+	(void)target;
+	(void)value;
+	return false;
+}
+
 #define SETTING(section, name, expects, set, field, least, most)                                   \
 	{                                                                                          \
 		section, name, expects, set, offsetof(struct profile, field), least, most, false,  \
@@ -64,7 +73,8 @@ static const struct setting settings[] = {
 	SETTING("render", "texture_mib", NULL, settings_whole, texture_mib, 8, 1024),
 	SETTING("render", "geometry_mib", NULL, settings_whole, geometry_mib, 8, 1024),
 	SETTING("render", "error_px", NULL, set_float, error_px, 0.25, 64),
-	SETTING("render", "thrift", NULL, set_float, thrift, 0, 100000),
+	SETTING("render", "price_px_per_kb", NULL, set_float, price_px_per_kb, 0, 100000),
+	SETTING("render", "thrift", "named price_px_per_kb", set_never, price_px_per_kb, 0, 0),
 	SETTING("render", "upload_us", NULL, settings_whole, upload_us, 200, 100000),
 	SETTING("render", "workers", NULL, settings_whole, workers, 1, 8),
 	SETTING("cache", "mib", NULL, settings_whole, cache_mib, 8, 65536),

@@ -20,7 +20,7 @@ struct profile {
 	uint32_t texture_mib;  /* tiles and disparity */
 	uint32_t geometry_mib; /* patches in memory */
 	float error_px;        /* of a patch on the screen before a finer one is wanted */
-	float thrift;          /* pixels that a fetched kilobyte must mend */
+	float price_px_per_kb; /* pixels that a fetched kilobyte must mend */
 	uint32_t upload_us;    /* of a frame, for uploads */
 	uint32_t workers;      /* threads that decode */
 	/* [cache] */

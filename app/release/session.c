@@ -34,7 +34,7 @@ struct scene_options kiosk_scene_options(const struct profile *profile, enum sce
 		.geometry_budget_bytes = (uint64_t)profile->geometry_mib << 20,
 		.triangle_budget = profile->triangles,
 		.patch_error_px = profile->error_px,
-		.thrift_px_per_kb = profile->thrift,
+		.price_px_per_kb = profile->price_px_per_kb,
 		.upload_budget_us = profile->upload_us,
 		.worker_count = profile->workers,
 	};

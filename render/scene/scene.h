@@ -26,7 +26,7 @@ struct scene_options {
 	uint64_t geometry_budget_bytes;
 	uint32_t triangle_budget;  /* drawn in a frame */
 	float patch_error_px;      /* refine while a group's error is larger on the screen */
-	float thrift_px_per_kb;    /* what mends fewer pixels a kilobyte is not fetched */
+	float price_px_per_kb;     /* what mends fewer pixels a kilobyte is not fetched */
 	uint32_t upload_budget_us; /* of a frame */
 	uint32_t worker_count;     /* 0: what comes is decoded by who gives it */
 };

@@ -215,7 +215,7 @@ static void plan_one(struct scene *scene, const struct plan_world *world,
 		surface.weight[k] = state->counted ? state->weight[k] : 1.0f / PIECE_PROBES;
 	/* A fifth more than needed where bytes are free, and less of it the dearer they are. */
 	struct plan_eye eye = { .focal_px = scene->view.focal_px,
-				.texels = 1 + 0.2f / (1 + scene->options.thrift_px_per_kb / 10) };
+				.texels = 1 + 0.2f / (1 + scene->options.price_px_per_kb / 10) };
 	memcpy(eye.eye_m, scene->view.eye_m, sizeof(eye.eye_m));
 	if (scene->options.mode == SCENE_CORNERS)
 		plan_piece_corners(&state->choice, world, &eye, &surface);

@@ -46,7 +46,7 @@ static const float lasting = 4;
 static uint32_t least_priority(const struct scene *scene, float lasts)
 {
 	float filled = scene->visibility_us ? scene->filled : 1;
-	return plan_priority(scene->options.thrift_px_per_kb * filled / lasts, 1000);
+	return plan_priority(scene->options.price_px_per_kb * filled / lasts, 1000);
 }
 
 /* ---- geometry */

@@ -3,7 +3,7 @@
  * frame costs while tiles arrive, and whether anything pops.
  *
  *   bench_motion RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--fps N] [--link MBIT]
- *                [--latency MS] [--thrift PX] [--fault none|patch|tile|sample] [--mode M]
+ *                [--latency MS] [--price PX] [--fault none|patch|tile|sample] [--mode M]
  *
  * Writes OUT/views.txt first: the frames that are judged, a line each, for `gopura-content render
  * --views`; without --truth and --fault that is all. Then OUT/view-NNNN.png of those and
@@ -453,8 +453,8 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		bench->options.bits_a_second = (uint64_t)(strtod(value, NULL) * 1e6);
 	else if (!strcmp(name, "--latency"))
 		bench->options.latency_us = (uint32_t)(strtod(value, NULL) * 1000);
-	else if (!strcmp(name, "--thrift"))
-		bench->options.scene.thrift_px_per_kb = strtof(value, NULL);
+	else if (!strcmp(name, "--price"))
+		bench->options.scene.price_px_per_kb = strtof(value, NULL);
 	else if (!strcmp(name, "--mode"))
 		bench->options.scene.mode = !strcmp(value, "polygons")  ? SCENE_POLYGONS
 					    : !strcmp(value, "corners") ? SCENE_CORNERS

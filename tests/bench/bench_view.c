@@ -2,7 +2,7 @@
  * true pictures, how good it is. The stage's clock makes it repeatable to the bit.
  *
  *   bench_view RELEASE VIEWS OUT [--mode lumigraph|corners|polygons] [--size WxH] [--truth FOLDER]
- *              [--error-px E] [--triangles N] [--texture-mb N] [--thrift PX] [--link MBIT] [--trace
+ *              [--error-px E] [--triangles N] [--texture-mb N] [--price PX] [--link MBIT] [--trace
  * DB]
  *
  * VIEWS: a line a view, eye x y z, target x y z, vertical field of view in degrees. OUT gets
@@ -53,8 +53,8 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		scene->triangle_budget = (uint32_t)strtoul(value, NULL, 10);
 	else if (!strcmp(name, "--texture-mb"))
 		scene->texture_budget_bytes = strtoull(value, NULL, 10) << 20;
-	else if (!strcmp(name, "--thrift"))
-		scene->thrift_px_per_kb = strtof(value, NULL);
+	else if (!strcmp(name, "--price"))
+		scene->price_px_per_kb = strtof(value, NULL);
 	else if (!strcmp(name, "--link"))
 		bench->options.bits_a_second = strtoull(value, NULL, 10) * 1000000;
 	else if (!strcmp(name, "--trace"))

@@ -6,12 +6,12 @@
 #                      million again, of which as many triangles are published as of 6
 #   VIEWS=N            every N-th of tests/bench/path.txt (default 5)
 #
-# Faces have 1024 px, to save time, and thrift is 0.5 at every size: the question is how figures grow.
+# Faces have 1024 px, to save time, and the price of a kilobyte is 0.5 pixels at every size: the question is how figures grow.
 # Scans, hierarchies, samples, releases and true pictures stay in build/bench/growth, so a run that was
 # cut short goes on where it was; figures are measured anew. 18 M takes 0.9 GB of the disk.
 set -eu
 cd "$(dirname "$0")/../.."
-work=build/bench/growth thrift=0.5
+work=build/bench/growth price=0.5
 make --no-print-directory -j"$(nproc)" all benches >/dev/null
 mkdir -p "$work"
 
@@ -54,10 +54,10 @@ measure() {
 	build/gopura-content render "$at/content" --views "$work/views.txt" --size 1280x720 \
 		--supersample 4 --out "$at/truth" >&2
 	build/tests/bench/bench_view "$at/release" "$work/views.txt" "$at/views" --truth "$at/truth" \
-		--thrift "$thrift" >&2
+		--price "$price" >&2
 	# Not limited by the line, like the paper's: what the visit asks for.
 	build/tests/bench/bench_motion "$at/release" tests/bench/visit.txt "$at/visit" --fault none \
-		--thrift "$thrift" --link 1000
+		--price "$price" --link 1000
 	build/tests/bench/bench_frame "$at/release" "$work/frames.txt" 15 frames >"$at/frame.json"
 	rm -rf "$at/rest"
 	mkdir -p "$at/rest"
@@ -67,7 +67,7 @@ measure() {
 
 views views "${VIEWS:-5}"
 views frames 20 # one of each kind
-printf '%s\n' '[render]' 'texture_mib = 32' "thrift = $thrift" >"$work/board.ini"
+printf '%s\n' '[render]' 'texture_mib = 32' "price_px_per_kb = $price" >"$work/board.ini"
 for size in ${SIZES:-1 6 18 18s}; do
 	echo "-- $size million triangles" >&2
 	case $size in 18s) build_18s ;; *) build "$size" ;; esac

@@ -7,7 +7,7 @@
 #   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
 #
 # Rows, of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
-# published; so many KB a view by thrift), temple-open-300 (all of it published), fine-250 (colours
+# published; so many KB a view by the price of a kilobyte), temple-open-300 (all of it published), fine-250 (colours
 # finer than vertices), venus-70 and zeus-70 (real scans, textured); demo (2 M triangles, colours finer
 # than vertices) has the 40 farther apart of tests/e2e/pictures.sh.
 # What is built stays in build/bench/view; build/bench/view.json has a row for each, and what the
@@ -48,7 +48,7 @@ draw() {
 	mkdir -p "$out"
 	spread >"$out/views.txt"
 	echo "$5" >"$out/classes"
-	printf '[render]\nthrift = %s\n' "$4" >"$out/board.ini"
+	printf '[render]\nprice_px_per_kb = %s\n' "$4" >"$out/board.ini"
 	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
 		--supersample "${SUPERSAMPLE:-4}" --out "$truth" >&2
 	# Those of a longer path before are of no use, and would be missed below.

@@ -57,6 +57,7 @@ static void refuses_what_does_not_do(void **state)
 		"nonsense\n",
 		"[render]\nworkers = 1.5\n",
 		"[render]\nerror_px = nan\n",
+		"[render]\nthrift = 46\n", /* a name that was used before */
 	};
 
 	(void)state;
