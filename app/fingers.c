@@ -14,16 +14,7 @@
 #define PART_LEAST_SHARE 0.03f /* the same of a small model: of its diagonal */
 #define SLOP_MM          3
 #define NEAR_MM          10
-#define PX_PER_MM_GUESS  3.8f /* 96 dots an inch */
 #define WHEEL_STEP       1.12f
-
-static float px_per_mm(const struct kiosk *kiosk)
-{
-	const int mm = kiosk->profile.width_mm ? kiosk->profile.width_mm
-					       : display_width_mm(kiosk->display);
-
-	return mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : PX_PER_MM_GUESS;
-}
 
 /* The surface point under a finger; where there is none, the model's middle's distance counts. */
 static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
@@ -453,8 +444,8 @@ static void on_gesture(void *data, const struct gesture *gesture)
 void fingers_init(struct kiosk *kiosk)
 {
 	const struct gesture_options options = {
-		.slop_px = SLOP_MM * px_per_mm(kiosk),
-		.near_px = NEAR_MM * px_per_mm(kiosk),
+		.slop_px = SLOP_MM * kiosk->px_per_mm,
+		.near_px = NEAR_MM * kiosk->px_per_mm,
 		.gesture = on_gesture,
 		.data = kiosk,
 	};

@@ -122,7 +122,7 @@ struct kiosk {
 	struct attract_camera attract;
 	int64_t attract_camera_since_ms; /* the eye's way without a visitor began, or will */
 
-	float px_per_mm;      /* of the panel; 0: not known */
+	float px_per_mm;      /* of the panel, or a guess where nothing knows its size */
 	struct camera camera; /* of the last frame */
 	struct message_status status;
 	int64_t started_ms, last_frame_ms;

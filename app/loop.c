@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/metrics_socket.h"
 #include "base/service.h"
+#include "ui/theme.h"
 
 enum {
 	FRAME_MS = 16, /* where no panel sets the pace */
@@ -122,7 +123,9 @@ static int start_input(struct kiosk *kiosk)
 	const int mm = profile->width_mm ? profile->width_mm : display_width_mm(kiosk->display);
 	struct touch_options touch;
 
-	kiosk->px_per_mm = mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm : 0;
+	kiosk->px_per_mm =
+		mm > 0 ? (float)display_width_px(kiosk->display) / (float)mm
+		       : theme_guess_px_per_mm(kiosk_width_px(kiosk), kiosk_height_px(kiosk));
 	touch = (struct touch_options){
 		.width_px = kiosk_width_px(kiosk),
 		.height_px = kiosk_height_px(kiosk),
