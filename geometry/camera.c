@@ -1,3 +1,4 @@
+/* Matrices, rays and projected pixels of a camera, computed with cglm. */
 #include "geometry/camera.h"
 
 #include <math.h>
@@ -35,7 +36,7 @@ static void view_of(const struct camera *camera, mat4 out)
 	glm_vec3_normalize(forward);
 	glm_vec3_normalize(up);
 	glm_vec3_cross(forward, up, side);
-	if (glm_vec3_norm(side) < 1e-4f) /* straight up or down: any up will do, always the same */
+	if (glm_vec3_norm(side) < 1e-4f) /* straight up or down: any fixed up vector will do */
 		glm_vec3_copy(fabsf(forward[1]) < 0.9f ? (vec3){ 0, 1, 0 } : (vec3){ 0, 0, 1 }, up);
 	glm_look(eye, forward, up, out);
 }
@@ -46,7 +47,7 @@ static void projection_of(const struct camera *camera, mat4 out)
 
 	glm_perspective(glm_rad(camera->fov_deg), camera_aspect(camera), camera->near_m,
 			camera->far_m, perspective);
-	/* Exact for the four turns that there are: no cosine that is nearly nought. */
+	/* Quarter turns are exact; a cosine would be nearly, but not quite, zero. */
 	glm_mat4_identity(turn);
 	for (int deg = camera->rotation_deg; deg > 0; deg -= 90) {
 		mat4 quarter = { { 0, 1, 0, 0 }, { -1, 0, 0, 0 }, { 0, 0, 1, 0 }, { 0, 0, 0, 1 } };
@@ -90,14 +91,15 @@ void camera_ray(const struct camera *camera, float x_px, float y_px, float direc
 	float tangent = tanf(glm_rad(camera->fov_deg) / 2);
 	vec3 ray;
 
-	for (int deg = camera->rotation_deg; deg > 0; deg -= 90) { /* undo the projection's turn */
+	/* undo the rotation of the projection */
+	for (int deg = camera->rotation_deg; deg > 0; deg -= 90) {
 		float was_x = x;
 
 		x = y;
 		y = -was_x;
 	}
 	view_of(camera, view);
-	for (int i = 0; i < 3; i++) /* the view's rows are the eye's axes */
+	for (int i = 0; i < 3; i++) /* the rows of the view matrix are the axes of the eye */
 		ray[i] = x * tangent * camera_aspect(camera) * view[i][0] +
 			 y * tangent * view[i][1] - view[i][2];
 	glm_vec3_normalize(ray);

@@ -1,11 +1,14 @@
-/* Where the eye is. Metres, z up. A value; no state.
+/* The camera: where the eye is, what it looks at, and its projection. Metres, z up. A plain value
+ * without hidden state.
  *
- * width_px x height_px is the framebuffer. A panel that hangs turned by rotation_deg clockwise
- * shows its framebuffer turned likewise; so the projection turns the picture anticlockwise in it,
- * and nothing else knows. The field of view is vertical for who stands before the panel. Pixels are
- * the framebuffer's: x right, y down, (0, 0) the corner of the first, (0.5, 0.5) its middle.
+ * width_px x height_px is the size of the framebuffer. A panel that is mounted rotated clockwise by
+ * rotation_deg shows its framebuffer rotated likewise. The projection therefore rotates the picture
+ * anticlockwise inside the framebuffer; no other code knows about the rotation. The field of view
+ * is the vertical one as seen by a visitor in front of the panel. Pixel coordinates are those of
+ * the framebuffer: x right, y down; (0, 0) is the corner of the first pixel, (0.5, 0.5) its centre.
  *
- * Matrices are 16 floats, column by column, as GL takes them; clip space is GL's, z in -w..w. */
+ * Matrices are 16 floats in column-major order, as GL takes them. Clip space is GL's, with z in
+ * -w..w. */
 #ifndef GOPURA_GEOMETRY_CAMERA_H
 #define GOPURA_GEOMETRY_CAMERA_H
 
@@ -13,31 +16,37 @@
 
 struct camera {
 	float eye_m[3], target_m[3];
-	float up[3];   /* need not be perpendicular; (0,0,1) but for looks straight down */
+	/* need not be perpendicular to the view; (0,0,1) unless looking straight down */
+	float up[3];
 	float fov_deg; /* vertical */
 	float near_m, far_m;
 	int width_px, height_px;
-	int rotation_deg; /* of the panel: 0, 90, 180, 270, clockwise; in the projection only */
-	int shift_px[2];  /* right and up: where the picture lies in the framebuffer it is drawn
-			     into; pixels are counted from the picture's corner all the same */
+	/* of the panel, clockwise: 0, 90, 180 or 270; the projection applies it */
+	int rotation_deg;
+	/* offset, right and up, of the picture in the framebuffer that it is drawn into; pixel
+	 * coordinates still count from the picture's corner */
+	int shift_px[2];
 };
 
-/* World to eye: the eye looks along -z, y is up. Where up runs along the line of sight another one
- * is taken, so that the matrix is always a rotation and a shift. */
+/* Writes the world-to-eye matrix: the eye looks along -z, y is up. Where up is parallel to the line
+ * of sight, a fixed other up is used, so the matrix is always a rotation and a translation. */
 void camera_view(const struct camera *camera, float out[16]);
-/* Eye to clip space, the panel's rotation in it. */
+/* Writes the eye-to-clip matrix. It includes the rotation of the panel. */
 void camera_projection(const struct camera *camera, float out[16]);
-/* World to clip space. */
+/* Writes the world-to-clip matrix. */
 void camera_matrix(const struct camera *camera, float out[16]);
-/* Of the picture as it is seen, rotation accounted for: width over height. */
+/* Returns width over height of the picture as the visitor sees it, after the rotation of the
+ * panel. */
 float camera_aspect(const struct camera *camera);
-/* How many pixels a length of one metre covers one metre before the eye. */
+/* Returns how many pixels a length of one metre covers at a distance of one metre from the eye, in
+ * the middle of the picture. */
 float camera_px_per_radian(const struct camera *camera);
 
-/* The direction (unit vector, from the eye) that a pixel of the framebuffer looks along. */
+/* Writes the direction (a unit vector, from the eye) in which a pixel of the framebuffer looks. */
 void camera_ray(const struct camera *camera, float x_px, float y_px, float direction[3]);
-/* Where a point appears. false: it is behind the eye, and the pixel is not set. Neither near, far
- * nor the framebuffer's edges are judged. */
+/* Projects a point to framebuffer pixels. Returns false where the point is behind the eye; then the
+ * pixel is not set. The point is not tested against the near plane, the far plane or the edges of
+ * the framebuffer. */
 bool camera_pixel(const struct camera *camera, const float point_m[3], float *x_px, float *y_px);
 
 #endif

@@ -1,3 +1,4 @@
+/* The lighting formula of light.h twice, in GLSL and in C. Both must stay equal. */
 #include "geometry/light.h"
 
 const char light_glsl[] =

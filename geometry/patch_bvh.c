@@ -1,3 +1,5 @@
+/* Builds the BVH of a patch by median splits, cuts it into pieces and runs the ray queries over
+ * it. */
 #include "geometry/patch_bvh.h"
 
 #include <errno.h>
@@ -22,8 +24,8 @@ static void vertex_m(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
 
 struct builder {
 	struct patch_bvh *bvh;
-	uint16_t *indices; /* of the mesh, being sorted */
-	/* Per triangle, sorted along: three times the centre, and the unit normal. */
+	uint16_t *indices; /* the mesh's index buffer, sorted in place */
+	/* The sort keys of each triangle: three times its centre, then its unit normal. */
 	float (*key)[6];
 };
 
@@ -44,7 +46,8 @@ static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
 	}
 }
 
-/* Wirth's selection: the middle triangle along an axis comes to the middle of the run. */
+/* Wirth's selection algorithm: moves the median triangle along an axis to the middle of the
+ * range. */
 static void split_at_median(struct builder *b, uint32_t first, uint32_t count, int axis)
 {
 	int64_t low = first, high = first + count - 1, middle = first + count / 2;
@@ -82,7 +85,7 @@ static void bound(const struct builder *b, struct patch_bvh_node *node)
 	}
 }
 
-/* Length of the mean normal of a run: 1 flat, 0 all around. */
+/* Returns the length of the mean normal of a range: 1 flat, 0 facing all directions. */
 static float flatness_of(const struct builder *b, uint32_t first, uint32_t count)
 {
 	float sum[3] = { 0 };
@@ -92,8 +95,8 @@ static float flatness_of(const struct builder *b, uint32_t first, uint32_t count
 	return vec_length(sum) / (float)count;
 }
 
-/* The axis along which a run is longest; where it is larger than a piece, bends count too, so that
- * the sides of a pillar come into different pieces. */
+/* Returns the key along which a range is longest. In a range larger than a piece the normals count
+ * too, so that the sides of a pillar go to different pieces. */
 static int longest_axis(const struct builder *b, const struct patch_bvh_node *node)
 {
 	float least[6], most[6], longest = 0;
@@ -112,7 +115,7 @@ static int longest_axis(const struct builder *b, const struct patch_bvh_node *no
 			axis = k;
 		}
 	}
-	/* A bend of a right angle counts for as much as the run is long. */
+	/* A bend of 90 degrees counts as much as the length of the range. */
 	float scale = longest / 1.4f;
 	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MAX; k++) {
 		if ((most[k] - least[k]) * scale > longest) {
@@ -156,7 +159,8 @@ static void measure_piece(const struct patch_bvh *bvh, struct piece *piece)
 			piece->normal[i] += n[i];
 		area2 += vec_length(n);
 	}
-	/* Two triangles a vertex, each vertex a cell of spacing squared. */
+	/* There are two triangles per vertex, and each vertex stands for a cell of spacing
+	 * squared. */
 	piece->spacing_m = sqrtf(area2 / (float)piece->triangle_count);
 	vec_normalise(piece->normal);
 }
@@ -165,7 +169,7 @@ struct piece_probe patch_bvh_probe(const struct patch_bvh *bvh, const struct pie
 				   int probe)
 {
 	struct piece_probe out;
-	/* Triangles of a piece are sorted in space: even steps are spread well. */
+	/* The triangles of a piece are sorted in space, so even steps spread well over it. */
 	uint32_t t = piece->first_triangle +
 		     (2 * (uint32_t)probe + 1) * piece->triangle_count / (2 * PIECE_PROBES);
 	float corner[3][3], ab[3], ac[3];
@@ -196,7 +200,7 @@ static void set_extents(const struct patch_bvh *bvh, struct piece *piece)
 	}
 }
 
-/* Whether one choice of samples may suit a run of triangles. */
+/* Returns whether one choice of samples may suit all triangles of the node. */
 static bool is_one_piece(const struct builder *b, const struct patch_bvh_node *node)
 {
 	if (!node->right || node->count <= PIECE_TRIANGLES_MIN)
@@ -248,7 +252,8 @@ static void set_key(const struct patch_bvh *bvh, const uint16_t index[3], float 
 	vec_normalise(&key[3]);
 }
 
-/* To what was used of the most that could have been; where that fails the block stays as it is. */
+/* Reduces a block, allocated for the worst case, to the bytes used. Where realloc fails the block
+ * stays as it is. */
 static void *shrink(void *block, size_t bytes)
 {
 	void *smaller = realloc(block, bytes);
@@ -318,7 +323,7 @@ bool ray_meets_sphere(const float from_m[3], const float direction[3], float mos
 	return vec_dot(off, off) <= radius_m * radius_m;
 }
 
-/* A ray in units of the lattice, where vertices are whole numbers. */
+/* A ray in lattice units, where vertices are whole numbers. */
 struct cast {
 	const struct patch_bvh *bvh;
 	float from[3], direction[3], inverse[3];

@@ -1,10 +1,11 @@
+/* Signed distances to spheres, turned boxes and prisms; the other queries are built on them. */
 #include "geometry/region.h"
 
 #include <math.h>
 
 #include "geometry/vec.h"
 
-/* To the polygon's edge, negative inside (crossings counted). */
+/* Returns the distance to the polygon's edge, negative inside (by counting crossings). */
 static float polygon_distance(const struct region *region, float x, float y)
 {
 	float nearest = INFINITY;
@@ -64,7 +65,7 @@ float region_size_m(const struct region *region)
 	float most = 0;
 
 	switch (region->kind) {
-	case REGION_POINT: /* one of a list of faces has their radius */
+	case REGION_POINT: /* a point that stands for a list of faces has their radius */
 	case REGION_SPHERE:
 		return region->radius_m;
 	case REGION_BOX:

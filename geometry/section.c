@@ -1,3 +1,5 @@
+/* The section plane: an angle and an offset from the middle of the model, and clipping against
+ * it. */
 #include "geometry/section.h"
 
 #include <math.h>
@@ -5,7 +7,8 @@
 
 #include "geometry/vec.h"
 
-static const float before_eye = 0.12f; /* of the reach, where the eye has gone past the middle */
+/* share of reach_m in front of the eye, if the eye is beyond the middle */
+static const float before_eye = 0.12f;
 static const float along_eye = 1e-5f;
 
 void section_init(struct section *section, const float box_min_m[3], const float box_max_m[3])
@@ -23,7 +26,7 @@ static void normal_of(const struct section *section, float normal[3])
 	normal[2] = 0;
 }
 
-/* From the middle along the normal. */
+/* Returns the distance of a point from the middle of the model along the normal. */
 static float place_of(const struct section *section, const float point_m[3])
 {
 	float normal[3], from[3];
@@ -37,7 +40,7 @@ void section_face(struct section *section, const float eye_m[3], const float for
 {
 	float x = -forward[0], y = -forward[1], eye_at;
 
-	if (hypotf(x, y) < 0.2f) { /* it looks down: the way that it came */
+	if (hypotf(x, y) < 0.2f) { /* it looks down: use the direction from the middle to the eye */
 		x = eye_m[0] - section->middle_m[0];
 		y = eye_m[1] - section->middle_m[1];
 	}

@@ -1,3 +1,5 @@
+/* Builds the spline through the stops, measures its legs, and evaluates it by time with a smooth
+ * start and end of each run. */
 #include "geometry/tour_path.h"
 
 #include <assert.h>
@@ -6,11 +8,11 @@
 
 #include "geometry/vec.h"
 
-#define SPEED_SHARE     0.05f /* of the diagonal, a second */
-#define RADIAN_SHARE    0.1f  /* of the diagonal: 0.5 radians, 29 degrees, a second */
+#define SPEED_SHARE     0.05f /* diagonals per second */
+#define RADIAN_SHARE    0.1f  /* diagonals per radian: 0.5 radians (29 degrees) per second */
 #define TRAVEL_LEAST_S  3.0f
-#define PITCH_MAX       1.45f /* the kiosk's eye looks no steeper */
-#define KNOT_MIN        1e-3f /* of two poses that are one */
+#define PITCH_MAX       1.45f /* the kiosk's camera looks no steeper */
+#define KNOT_MIN        1e-3f /* for two equal poses */
 #define CLEARANCE_M     0.175f
 #define CLEARANCE_SHARE 0.01f
 #define MS              1000.0f
@@ -33,7 +35,8 @@ static void set_pose(float pose[TOUR_AXES], const struct tour_view *stop, float 
 		  metres_a_radian;
 }
 
-/* The same direction, the short way round from the one before. */
+/* Keeps the direction but adds whole turns, so that the camera turns the short way round from the
+ * pose before. */
 static void turn_from(float pose[TOUR_AXES], const float before[TOUR_AXES], float metres_a_radian)
 {
 	const float round = 2 * (float)M_PI * metres_a_radian;
@@ -50,7 +53,8 @@ static float apart(const float a[TOUR_AXES], const float b[TOUR_AXES])
 	return sqrtf(sum);
 }
 
-/* Centripetal: a knot is the root of the distance from the next. */
+/* Centripetal parametrisation: the knot interval is the square root of the distance to the next
+ * pose. */
 static void set_knots(struct tour_leg *leg)
 {
 	leg->knots[0] = 0;
@@ -59,7 +63,7 @@ static void set_knots(struct tour_leg *leg)
 				fmaxf(sqrtf(apart(leg->poses[i - 1], leg->poses[i])), KNOT_MIN);
 }
 
-/* The pyramid of Barry and Goldman; u from 0 to 1 of the leg. */
+/* Evaluates the curve by the pyramid of Barry and Goldman; u is 0 to 1 within the leg. */
 static void evaluate(const struct tour_leg *leg, float u, float out[TOUR_AXES])
 {
 	const float *k = leg->knots;
@@ -69,7 +73,7 @@ static void evaluate(const struct tour_leg *leg, float u, float out[TOUR_AXES])
 	memcpy(level, leg->poses, sizeof(level));
 	for (int span = 1; span < 4; span++)
 		for (int i = 0; i < 4 - span; i++) {
-			/* The last step lies between the two poses in the middle. */
+			/* The last step interpolates between the two poses in the middle. */
 			const int low = span == 3 ? 1 : i, high = span == 3 ? 2 : i + span;
 			const float share = (t - k[low]) / (k[high] - k[low]);
 
@@ -94,7 +98,8 @@ static void measure(struct tour_leg *leg)
 
 /* ---- the way */
 
-/* An end that nothing comes before or after goes on as it came. */
+/* An end of an open path has no neighbour: mirrors the other pose at it, so that the curve goes
+ * straight on. */
 static void mirror(float out[TOUR_AXES], const float end[TOUR_AXES], const float other[TOUR_AXES])
 {
 	for (int i = 0; i < TOUR_AXES; i++)
@@ -153,7 +158,7 @@ static void set_runs(struct tour_path *path, const struct tour_view *stops, floa
 		if (stops[(leg + 1) % path->stop_count].stay_s > 0)
 			now_ms = path->duration_ms;
 	}
-	if (path->leg_count < path->stop_count) /* it ends where it stays, not where it arrives */
+	if (path->leg_count < path->stop_count) /* it ends after the last stay, not on arrival */
 		path->duration_ms += (int64_t)(stops[path->stop_count - 1].stay_s * MS);
 }
 
@@ -204,7 +209,7 @@ static void set_out(const struct tour_path *path, const float pose[TOUR_AXES],
 	out->target_m[2] = pose[2] + sinf(pitch);
 }
 
-/* The run that has begun last; of before the first, it. */
+/* Returns the run in progress, or the next one while the camera stays before it. */
 static const struct tour_run *run_at(const struct tour_path *path, int64_t ms)
 {
 	uint32_t i = path->run_count - 1;
@@ -213,7 +218,7 @@ static const struct tour_run *run_at(const struct tour_path *path, int64_t ms)
 		const struct tour_run *before = &path->runs[i - 1];
 
 		if (ms >= before->begin_ms + before->move_ms)
-			break; /* it stays before this one begins */
+			break; /* it stays before this run begins */
 		i--;
 	}
 	return &path->runs[i];
@@ -259,5 +264,5 @@ int64_t tour_path_rest_ms(const struct tour_path *path, int64_t ms)
 		return run->begin_ms - ms;
 	if (ms < run->begin_ms + run->move_ms || ms >= path->duration_ms)
 		return 0;
-	return path->duration_ms - ms; /* the last stop's */
+	return path->duration_ms - ms; /* the stay at the last stop */
 }

@@ -1,11 +1,12 @@
-/* The way of a guided tour: where the eye is, and where it looks, at any time of it. The pipeline
- * judges this curve against the scan, and the kiosk flies it: docs/tours.md.
+/* The camera path of a guided tour: where the eye is and where it looks at any time. The pipeline
+ * checks this curve against the scan, and the kiosk flies it: docs/tours.md.
  *
- * A pose is a point of five numbers, place and direction, the latter in metres that an angle is
- * worth. The way is the centripetal Catmull-Rom curve through the stops' poses, which has neither
- * cusps nor loops between two of them, and at every stop goes the way of its neighbours. Between
- * two stops that stay it is passed at one go, by its length: slowly out of the one and slowly into
- * the other, without a halt at those that are only on the way. Pure; a value. */
+ * A pose is a point in five dimensions: the position, and yaw and pitch converted to metres
+ * (metres_a_radian). The path is the centripetal Catmull-Rom curve through the poses of the stops,
+ * which has no cusps or loops between two of them; its tangent at a stop follows from the
+ * neighbouring stops. The part between two stops where the camera stays is flown in one go,
+ * parametrised by its length. It starts and ends slowly, and does not halt at stops that are only
+ * passed. Pure functions on a plain value. */
 #ifndef GOPURA_GEOMETRY_TOUR_PATH_H
 #define GOPURA_GEOMETRY_TOUR_PATH_H
 
@@ -15,23 +16,24 @@
 enum {
 	TOUR_STOPS_MAX = 64,
 	TOUR_AXES = 5,
-	TOUR_PIECES = 64 /* of a leg, by which it is measured */
+	TOUR_PIECES = 64 /* pieces into which a leg is divided to measure its length */
 };
 
 struct tour_view {
 	float eye_m[3], target_m[3];
-	float stay_s;   /* 0: only on the way; the first and the last stay */
-	float travel_s; /* of the leg to it; 0: by its length */
+	/* seconds at the stop; 0: passed without a halt. The first and the last stop stay */
+	float stay_s;
+	float travel_s; /* seconds of the leg to it; 0: follows from its length */
 };
 
-/* From a stop to the next one. */
+/* The curve from one stop to the next. */
 struct tour_leg {
-	float poses[4][TOUR_AXES]; /* before, from, to, after */
+	float poses[4][TOUR_AXES]; /* of the stops before, from, to and after */
 	float knots[4];
-	float to_m[TOUR_PIECES + 1]; /* length of the way up to each piece's end */
+	float to_m[TOUR_PIECES + 1]; /* length of the curve up to the end of each piece */
 };
 
-/* Legs without a halt between. */
+/* Consecutive legs without a halt between them. */
 struct tour_run {
 	uint32_t first_leg, leg_count;
 	float length_m;
@@ -43,30 +45,35 @@ struct tour_path {
 	float metres_a_radian;
 	struct tour_leg legs[TOUR_STOPS_MAX];
 	struct tour_run runs[TOUR_STOPS_MAX];
-	int64_t duration_ms; /* of all; of a closed one until it begins anew */
+	int64_t duration_ms; /* of the whole tour; of a closed tour: until it starts again */
 };
 
-/* A tour's count of stops is 2 to TOUR_STOPS_MAX. closed: a last leg leads back to the first stop.
- * diagonal_m: of the model's box, to which speed is in proportion. */
+/* Computes the path. count is 2 to TOUR_STOPS_MAX; stops are read only during the call. closed: a
+ * last leg leads back to the first stop. diagonal_m is the diagonal of the model's bounding box,
+ * positive; the speed is proportional to it. */
 void tour_path_init(struct tour_path *path, const struct tour_view *stops, uint32_t count,
 		    bool closed, float diagonal_m);
 
 struct tour_pose {
-	float eye_m[3], target_m[3]; /* a metre apart */
-	uint32_t stop;               /* where it stays, or goes next */
+	float eye_m[3], target_m[3]; /* one metre apart */
+	uint32_t stop;               /* the stop where it stays, or to which it moves next */
 	bool moves;
 };
 
-/* So long after it began; before and after its ends it is there. */
+/* Writes the pose ms milliseconds after the start. Before the start it is the first pose, after the
+ * end the last one. */
 void tour_path_pose(const struct tour_path *path, int64_t ms, struct tour_pose *out);
-/* The leg's place at a share of its length, 0 to 1. */
+/* Writes the position of the eye at a share, 0 to 1, of the leg's length. */
 void tour_path_place(const struct tour_path *path, uint32_t leg, float share, float eye_m[3]);
+/* Returns the length of a leg in metres, the turning converted to metres included. */
 float tour_path_leg_m(const struct tour_path *path, uint32_t leg);
-/* Until it moves on; 0: it moves, or has ended. */
+/* Returns how many milliseconds the camera will still stay at its stop; 0: it is moving, or the
+ * tour has ended. */
 int64_t tour_path_rest_ms(const struct tour_path *path, int64_t ms);
 
-/* What is nearer to the way than this is in it: no near plane, however wide the panel, reaches it.
- * diagonal_m as above. */
+/* Returns the distance from the path within which the model counts as an obstacle. It is large
+ * enough that the near plane of no panel, however wide, reaches the model. diagonal_m as in
+ * tour_path_init. */
 float tour_path_clearance_m(float diagonal_m);
 
 #endif

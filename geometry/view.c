@@ -1,3 +1,4 @@
+/* Derives the axes, the matrix and the frustum planes of a view, and tests spheres against them. */
 #include "geometry/view.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@ static void set_matrix(struct view *view, const struct camera *camera)
 		view->up[i] = turn[4 * i + 1];
 		view->forward[i] = -turn[4 * i + 2];
 	}
-	/* Relative to the eye the view only turns: precise wherever the model's origin is. */
+	/* Relative to the eye the view matrix is a rotation only, which stays precise however far
+	 * the model is from the origin. */
 	turn[12] = turn[13] = turn[14] = 0;
 	for (int column = 0; column < 4; column++)
 		for (int row = 0; row < 4; row++)

@@ -1,10 +1,12 @@
+/* Places the eye on the line from the part to the present eye, at a distance in proportion to the
+ * part's size. */
 #include "geometry/viewpoint.h"
 
 #include <math.h>
 
 #include "geometry/vec.h"
 
-#define DISTANCE_SIZES 5 /* of the part, from it */
+#define DISTANCE_SIZES 5 /* distance from the part, in sizes of the part */
 #define STEEP_MIN      0.05f
 #define STEEP_MAX      0.7f
 
