@@ -1,3 +1,5 @@
+/* Implements the canvas: copies each picture into one of two dumb buffers and shows it through
+ * drm_panel. */
 #include "render/display/canvas.h"
 
 #include <errno.h>
@@ -11,7 +13,7 @@
 #include "base/log.h"
 #include "render/display/drm_panel.h"
 
-/* The card's own memory, which every KMS driver gives and the CPU writes. */
+/* A dumb buffer: memory of the card that every KMS driver offers and the CPU can write. */
 struct dumb {
 	uint32_t handle, fb, stride_bytes;
 	uint64_t bytes;
@@ -23,7 +25,7 @@ struct canvas {
 	int width_px, height_px;
 	struct drm_panel panel;
 	struct dumb buffers[2];
-	int next; /* of them, to draw into */
+	int next; /* index of the buffer to draw into */
 };
 
 static int create_dumb(struct canvas *canvas, struct dumb *dumb)

@@ -1,5 +1,5 @@
-/* A panel drawn by the CPU, for when the GPU or its driver is what is ill: KMS with two dumb
- * buffers, or memory. One thread. */
+/* A panel drawn by the CPU, for when the GPU or its driver does not work. It uses KMS with two dumb
+ * buffers, or no panel at all. One thread. */
 #ifndef GOPURA_RENDER_DISPLAY_CANVAS_H
 #define GOPURA_RENDER_DISPLAY_CANVAS_H
 
@@ -10,24 +10,28 @@
 
 struct canvas;
 
-/* Of the options: kind (not a window; auto: a panel, else memory), size, device, connector.
- * *out is owned by the caller; NULL on failure. -ENODEV: no panel (logged). */
+/* Uses these options: kind (a window is not possible; DISPLAY_AUTO takes a panel, else headless),
+ * size, device and connector. The caller owns *out; it is NULL on failure. -ENODEV: no panel
+ * (logged). -ENOMEM, and what KMS reports. */
 must_check int canvas_create(struct canvas **out, const struct display_options *options);
-void canvas_destroy(struct canvas *canvas); /* NULL and half-built are fine */
+/* Stops showing and frees everything. NULL and a half-built canvas are fine. */
+void canvas_destroy(struct canvas *canvas);
 
+/* What it is: DISPLAY_DRM or DISPLAY_HEADLESS, and its size. */
 enum display_kind canvas_kind(const struct canvas *canvas);
 int canvas_width_px(const struct canvas *canvas);
 int canvas_height_px(const struct canvas *canvas);
 
-/* As of display.h. */
+/* These work like the functions of the same name in display.h. */
 int canvas_fd(const struct canvas *canvas);
 int canvas_wait_ms(const struct canvas *canvas);
 must_check int canvas_dispatch(struct canvas *canvas);
 bool canvas_ready(const struct canvas *canvas);
 bool canvas_is_dark(const struct canvas *canvas);
 
-/* Shows a picture of the canvas' size, 4 bytes a pixel: blue, green, red, any. Only where
- * canvas_ready; *pixels is free again when this returns. */
+/* Shows a picture of the canvas' size, 4 bytes a pixel: blue, green, red, unused. Call it only
+ * where canvas_ready. *pixels is copied before it returns. A headless canvas discards the
+ * picture. */
 must_check int canvas_show(struct canvas *canvas, const uint8_t *pixels, int stride_bytes);
 
 #endif

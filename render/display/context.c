@@ -1,3 +1,5 @@
+/* Asks EGL for a context with reset notification, and the GL robustness extensions for its
+ * state. */
 #include "render/display/context.h"
 
 #include <string.h>
@@ -9,7 +11,8 @@
 EGLContext context_create(EGLDisplay egl, EGLConfig config)
 {
 	static const EGLint plain[] = { EGL_CONTEXT_CLIENT_VERSION, 2, EGL_NONE };
-	/* Told of resets, without the checks of every access that "robust access" would add. */
+	/* Notification of resets only, without the bounds checks of every access that "robust
+	 * access" would add. */
 	static const EGLint telling[] = { EGL_CONTEXT_CLIENT_VERSION, 2,
 					  EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
 					  EGL_LOSE_CONTEXT_ON_RESET_EXT, EGL_NONE };

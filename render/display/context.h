@@ -1,6 +1,6 @@
-/* A GLES2 context that says when the GPU lost it, where the driver can tell: after a reset, or a
- * driver that gave up. Nothing of such a context can be used again, so whoever has one ends, and
- * the program starts anew. For the thread that owns the context. */
+/* Creates GLES2 contexts that report when the GPU has lost them, after a reset or a driver failure,
+ * where the driver can tell. No object of a lost context can be used again, so the program ends and
+ * is started again. Call it on the thread that owns the context. */
 #ifndef GOPURA_RENDER_DISPLAY_CONTEXT_H
 #define GOPURA_RENDER_DISPLAY_CONTEXT_H
 
@@ -8,9 +8,9 @@
 
 #include <EGL/egl.h>
 
-/* EGL_NO_CONTEXT on failure, as eglCreateContext. */
+/* Returns a new GLES2 context, owned by the caller, or EGL_NO_CONTEXT like eglCreateContext. */
 EGLContext context_create(EGLDisplay egl, EGLConfig config);
-/* The current context is lost; false where the driver cannot say. */
+/* Returns whether the current context is lost; false also where the driver cannot tell. */
 bool context_is_lost(void);
 
 #endif

@@ -1,3 +1,4 @@
+/* Chooses a backend (KMS, window or headless) and forwards every call to it. */
 #include "render/display/display.h"
 
 #include <errno.h>
@@ -42,7 +43,7 @@ static int try_any(struct display *display, const struct display_options *option
 	const bool desktop = getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
 	int rc;
 
-	/* In a desktop session the card is taken: a window, without asking for it. */
+	/* In a desktop session another program owns the card, so a window is tried first. */
 	if (desktop && try_window(display, options) == 0)
 		return 0;
 	rc = try_backend(display, &display_drm, options);
@@ -145,7 +146,7 @@ bool display_take_stale(struct display *display)
 	return (display->backend->take_stale && display->backend->take_stale(display)) || woken;
 }
 
-/* A panel that cannot be switched off is black at least. */
+/* Draws a panel black that cannot be switched off. */
 static int show_black(struct display *display, int why)
 {
 	log_warn("render", "board bug: the panel cannot be switched off (%s): it is black instead",

@@ -1,4 +1,4 @@
-/* What a kind of display provides; private to render/display/display*.c. */
+/* The interface that each kind of display implements; private to render/display/display*.c. */
 #ifndef GOPURA_RENDER_DISPLAY_DISPLAY_BACKEND_H
 #define GOPURA_RENDER_DISPLAY_DISPLAY_BACKEND_H
 
@@ -15,7 +15,7 @@ struct display_backend {
 	int (*dispatch)(struct display *display);
 	void (*begin)(struct display *display);
 	int (*present)(struct display *display);
-	/* What may be missing where nothing is waited for. */
+	/* These may be NULL where nothing is waited for; so may dispatch. */
 	bool (*ready)(const struct display *display);
 	bool (*dark)(const struct display *display);
 	int (*wait_ms)(const struct display *display);

@@ -1,5 +1,5 @@
-/* A KMS panel through GBM and EGL. Mesa finds the GPU that renders for the card, so display and
- * render nodes may differ. */
+/* The KMS backend: draws through GBM and EGL and shows buffers by page flips. Mesa finds the GPU
+ * that renders for the card, so display node and render node may differ. */
 #include <errno.h>
 #include <stdlib.h>
 
@@ -44,7 +44,7 @@ static int create_surface(struct drm_display *drm)
 	return drm->surface ? 0 : -ENODEV;
 }
 
-/* The EGL configuration whose pixels are what the plane scans out. */
+/* Returns the EGL configuration whose pixel format the plane scans out. */
 static EGLConfig choose_config(EGLDisplay egl)
 {
 	static const EGLint wanted[] = { EGL_SURFACE_TYPE,
@@ -170,7 +170,7 @@ static int dispatch(struct display *display)
 static void begin(struct display *display)
 {
 	(void)display;
-	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the surface's own */
+	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the default framebuffer of the surface */
 }
 
 static void forget_framebuffer(struct gbm_bo *bo, void *data)
@@ -178,7 +178,7 @@ static void forget_framebuffer(struct gbm_bo *bo, void *data)
 	drmModeRmFB(gbm_device_get_fd(gbm_bo_get_device(bo)), (uint32_t)(uintptr_t)data);
 }
 
-/* The KMS framebuffer of a buffer, made once and kept with it; 0: refused. */
+/* Returns the KMS framebuffer of a buffer, created once and kept with it; 0: refused. */
 static uint32_t framebuffer_of(struct drm_display *drm, struct gbm_bo *bo)
 {
 	const uint32_t width = gbm_bo_get_width(bo), height = gbm_bo_get_height(bo);

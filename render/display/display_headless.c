@@ -1,4 +1,4 @@
-/* Pictures in memory: for tests, captures and machines without a panel. */
+/* The headless backend: draws into a texture, for tests, captures and machines without a panel. */
 #include <errno.h>
 #include <stdlib.h>
 

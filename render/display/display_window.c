@@ -1,5 +1,6 @@
-/* A window for trying out; the mouse is one finger. SDL has no descriptor to wait on, so a timer
- * descriptor stands in: a window is looked at by a person, not left for a year. */
+/* The window backend, by SDL2, for development; the mouse acts as one finger. SDL has no descriptor
+ * to wait on, so a timer descriptor polls it. That costs wake-ups, which is acceptable because a
+ * window never runs unattended. */
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/timerfd.h>
@@ -17,7 +18,7 @@ enum { POLL_MS = 8 };
 struct window_display {
 	SDL_Window *window;
 	SDL_GLContext context;
-	struct display_options options; /* its callbacks */
+	struct display_options options; /* copied for its callbacks */
 };
 
 static int create(struct display *display, const struct display_options *options)
@@ -120,7 +121,7 @@ static int dispatch(struct display *display)
 static void begin(struct display *display)
 {
 	(void)display;
-	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the window's own */
+	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the default framebuffer of the window */
 }
 
 static int present(struct display *display)

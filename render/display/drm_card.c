@@ -1,3 +1,5 @@
+/* Finds a card under /dev/dri with a connected panel, chooses connector, CRTC, primary plane and
+ * mode, and looks again after a hot-plug. */
 #include "render/display/drm_card.h"
 
 #include <errno.h>
@@ -16,13 +18,15 @@
 
 enum {
 	CARDS_MAX = 8,
-	CARD_WAIT_MS = 30000, /* a driver may come later than the kiosk, a boot splash go later */
+	/* a driver may load after the kiosk, a boot splash may end after it */
+	CARD_WAIT_MS = 30000,
 	CARD_LOOK_MS = 500,
 };
 
 /* ---- properties */
 
-/* Id of a property of an object, and its value where value is not NULL; 0: there is none. */
+/* Returns the id of a property of an object, and its value where value is not NULL; 0: there is
+ * none. */
 static uint32_t property_id(int fd, uint32_t object, uint32_t type, const char *name,
 			    uint64_t *value)
 {
@@ -86,7 +90,7 @@ static bool connector_has_name(const drmModeConnector *connector, const char *na
 	char own_name[64];
 
 	if (connector->connector_type == DRM_MODE_CONNECTOR_WRITEBACK)
-		return false; /* writes into memory */
+		return false; /* a writeback connector writes into memory */
 	if (!name)
 		return true;
 	snprintf(own_name, sizeof(own_name), "%s-%u",
@@ -117,7 +121,7 @@ static void choose_mode(struct drm_card *card, const drmModeConnector *connector
 			 card->mode.hdisplay, card->mode.vdisplay, card->mode.vrefresh);
 }
 
-/* Bits of the CRTCs that the connector can be driven by. */
+/* Returns a bit mask of the CRTCs that can drive the connector. */
 static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
 {
 	uint32_t bits = 0;
@@ -132,8 +136,8 @@ static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
 	return bits;
 }
 
-/* The first connector of that name with a panel; where there is none and connected is false, the
- * first of that name. */
+/* Chooses the first connector of that name with a panel. Where connected is false, the first of
+ * that name. */
 static bool choose_connector(struct drm_card *card, const drmModeRes *resources, bool connected,
 			     const struct drm_card_options *options, uint32_t *crtc_bits)
 {
@@ -157,7 +161,7 @@ static bool choose_connector(struct drm_card *card, const drmModeRes *resources,
 	return false;
 }
 
-/* Modifiers the plane takes for XRGB8888, from its IN_FORMATS blob. */
+/* Reads the modifiers that the plane accepts for XRGB8888 from its IN_FORMATS blob. */
 static void read_modifiers(struct drm_card *card)
 {
 	uint64_t blob_id = 0;
@@ -175,7 +179,7 @@ static void read_modifiers(struct drm_card *card)
 	drmModeFreePropertyBlob(blob);
 }
 
-/* The primary plane of the CRTC with the given index; 0: none. */
+/* Returns the primary plane of the CRTC with the given index; 0: none. */
 static uint32_t primary_plane(int fd, int crtc_index)
 {
 	drmModePlaneRes *planes = drmModeGetPlaneResources(fd);
@@ -228,7 +232,7 @@ static int open_card(struct drm_card *card, const char *device, bool connected,
 		       !getenv("GOPURA_DRM_LEGACY");
 	resources = drmModeGetResources(card->fd);
 	if (!resources)
-		rc = -ENODEV; /* renders, but shows nothing: another card drives the panel */
+		rc = -ENODEV; /* a render-only card; another card drives the panel */
 	else if (!choose_connector(card, resources, connected, options, &crtc_bits))
 		rc = -ENXIO;
 	else if (!drmIsMaster(card->fd) && drmSetMaster(card->fd) < 0)
@@ -255,7 +259,8 @@ static const char *why_not(int rc)
 	}
 }
 
-/* -EBUSY, where another program has one that would do: *taken is its number. */
+/* Tries each card. Returns -EBUSY if another program uses one that would do; *taken is then its
+ * number. */
 static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 		    const struct drm_card_options *options)
 {
@@ -274,7 +279,7 @@ static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 			*taken = i;
 		}
 		if (options->device) {
-			/* What is waited for, or looked at again without a panel, is no fault. */
+			/* Not an error: it is waited for, or tried again without a panel. */
 			if (!options->may_wait || (rc != -EBUSY && (rc != -ENXIO || !connected)))
 				log_error("render", "%s: %s", options->device, why_not(rc));
 			return result;
@@ -290,14 +295,14 @@ static int open_once(struct drm_card *out, bool told, int *taken,
 {
 	int rc = open_any(out, true, told, taken, options);
 
-	/* A panel that another program has is worth more than a card without one. */
+	/* A panel that another program uses is better than a card without a panel. */
 	if (rc == -ENODEV && options->may_wait)
 		rc = open_any(out, false, told, taken, options);
 	return rc;
 }
 
-/* A card is given up with its descriptor, so it is opened anew each time: the first to open it when
- * nobody has it is its master, and no other call needs no privilege. */
+/* A failed attempt closes the card, so each attempt opens it again: the first process to open a
+ * card without a master becomes its master, and any other way would need privileges. */
 static int open_when_free(struct drm_card *out, const struct drm_card_options *options)
 {
 	const struct timespec pause = { .tv_nsec = CARD_LOOK_MS * 1000000l };
@@ -322,7 +327,7 @@ static int open_when_free(struct drm_card *out, const struct drm_card_options *o
 	return rc < 0 ? -ENODEV : 0;
 }
 
-/* Is there none at all, or none that we may open yet? */
+/* Returns whether there is no card yet, or none that we may open. */
 static bool is_late(const struct drm_card_options *options)
 {
 	char path[32];

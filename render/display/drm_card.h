@@ -1,4 +1,5 @@
-/* A KMS card that can show a picture: its panel, mode, CRTC, plane, and the properties to set. */
+/* A KMS card that can show pictures: its connector, mode, CRTC, plane, and the properties to
+ * set. */
 #ifndef GOPURA_RENDER_DISPLAY_DRM_CARD_H
 #define GOPURA_RENDER_DISPLAY_DRM_CARD_H
 
@@ -16,12 +17,13 @@ struct drm_card_options {
 	const char *device;    /* NULL: the first card with a panel */
 	const char *connector; /* such as "HDMI-A-1"; NULL: the first with a panel */
 	struct drm_mode_wish mode;
-	bool may_wait; /* a card without a panel will do where there is none with one */
+	/* accept a card without a panel if no card has one, and wait (drm_card_open) */
+	bool may_wait;
 };
 
 /* Property ids; 0: the driver has no such property. */
 struct drm_card_properties {
-	uint32_t connector_crtc, connector_link; /* the latter may be missing */
+	uint32_t connector_crtc, connector_link; /* connector_link may be missing */
 	uint32_t crtc_mode, crtc_active;
 	uint32_t plane_fb, plane_crtc;
 	uint32_t plane_src_x, plane_src_y, plane_src_w, plane_src_h;
@@ -31,41 +33,48 @@ struct drm_card_properties {
 struct drm_card {
 	int fd; /* owned */
 	bool atomic;
-	bool connected, link_is_bad;     /* as last looked at */
+	bool connected, link_is_bad;     /* as of the last drm_card_look */
 	uint32_t connector, crtc, plane; /* plane is 0 without atomic */
 	drmModeModeInfo mode;
 	int width_mm;
-	drmModeCrtc *crtc_before; /* owned; put back at the end */
+	drmModeCrtc *crtc_before; /* owned; restored by drm_card_close */
 	struct drm_card_properties properties;
-	uint64_t modifiers[DRM_MODIFIERS_MAX]; /* of XRGB8888 on the plane, by IN_FORMATS */
+	/* that the plane takes for XRGB8888, from IN_FORMATS */
+	uint64_t modifiers[DRM_MODIFIERS_MAX];
 	uint32_t modifier_count;
 };
 
-/* With may_wait, half a minute for a first card to come (where no device is named) and as long for
- * another program to give it up, in which this does not return. -ENODEV: no card with a connected
- * panel that is free; the log says why for each card. */
+/* Opens a card and chooses its mode. Strings of the options are borrowed for the call. With
+ * may_wait it blocks: up to half a minute for a first card to appear (where no device is named),
+ * and as long for another program to release the card. -ENODEV: no free card with a connected
+ * panel; the log says why for each card. */
 must_check int drm_card_open(struct drm_card *out, const struct drm_card_options *options);
+/* Restores the picture from before, closes the card and frees what it holds. A card that was never
+ * opened (fd -1) is fine. */
 void drm_card_close(struct drm_card *card);
 
 enum drm_card_news {
 	DRM_CARD_NO_PANEL,
-	DRM_CARD_SAME_PANEL,  /* of the size there was; its rate may be another */
-	DRM_CARD_OTHER_PANEL, /* of another size or on another connector: *card is as it was */
+	DRM_CARD_SAME_PANEL,  /* the size is unchanged; the rate may differ */
+	DRM_CARD_OTHER_PANEL, /* another size or another connector; *card is unchanged */
 };
 
-/* Asks the card what is plugged in, with the options it was opened with. May take some tens of
- * milliseconds: for a panel that is not there, or when the kernel says that something changed. */
+/* Asks the card what is plugged in; options are those it was opened with. It may take tens of
+ * milliseconds, so call it only while no panel is connected, or when the kernel reports a
+ * change. */
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options);
 
-/* Shows framebuffer fb on the next vertical blank; a flip event with data follows. The first call,
- * and that after a change of panel or after drm_card_sleep, sets the mode. Negative errno: as the
- * kernel says. */
+/* Shows framebuffer fb on the next vertical blank; a flip event with data follows. set_mode also
+ * sets the mode: needed in the first call, after a change of panel and after drm_card_sleep. On
+ * failure returns the negative errno of the kernel. */
 must_check int drm_card_flip(struct drm_card *card, uint32_t fb, bool set_mode, void *data);
 
-/* Of a negative errno: another program or a suspend has the card for now; nothing is broken. */
+/* Returns whether a negative errno means that another program or a suspend has the card for now;
+ * then nothing is broken. */
 bool drm_card_is_taken(int rc);
 
-/* Switches the panel off, and lets the next flip that sets the mode switch it on. */
+/* Switch the panel off, and prepare it to be switched on by the next flip that sets the mode.
+ * Negative errno of the kernel; -EOPNOTSUPP: the driver knows no DPMS. */
 must_check int drm_card_sleep(struct drm_card *card);
 must_check int drm_card_wake(struct drm_card *card);
 

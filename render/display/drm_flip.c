@@ -1,4 +1,4 @@
-/* Pictures on the panel: flips, and switching it off. Part of drm_card.h. */
+/* Page flips and switching the panel off and on, atomic or legacy. Part of drm_card.h. */
 #include <errno.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "render/display/drm_card.h"
 
-/* Sticky: the first failure stays, and is judged once. */
+/* Collects the errors of all additions; they are checked once, before the commit. */
 struct atomic {
 	drmModeAtomicReq *request;
 	bool failed;
@@ -148,6 +148,6 @@ int drm_card_sleep(struct drm_card *card)
 
 int drm_card_wake(struct drm_card *card)
 {
-	/* Atomic: the next flip sets the mode, and makes it active. */
+	/* Atomic: the next flip sets the mode and makes the CRTC active. */
 	return card->atomic ? 0 : set_dpms(card, DRM_MODE_DPMS_ON);
 }

@@ -1,10 +1,12 @@
+/* Picks the mode that matches size and rate best, or computes CVT timings for a panel without
+ * EDID. */
 #include "render/display/drm_mode.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 enum {
-	/* Of the reduced blanking: pixels, lines, microseconds. */
+	/* Constants of CVT reduced blanking, in pixels, lines and microseconds. */
 	BLANK_PX = 160,
 	SYNC_PX = 32,
 	FRONT_PX = 48,
@@ -14,7 +16,7 @@ enum {
 	CLOCK_STEP_KHZ = 250,
 };
 
-/* The width of the vertical sync says the shape of the picture. */
+/* Returns the width of the vertical sync in lines; by CVT it encodes the aspect ratio. */
 static int sync_lines(int width_px, int height_px)
 {
 	if (width_px * 3 == height_px * 4)
@@ -26,7 +28,7 @@ static int sync_lines(int width_px, int height_px)
 	return width_px * 4 == height_px * 5 || width_px * 9 == height_px * 15 ? 7 : 10;
 }
 
-/* What every panel without EDID has been able to show since there are flat ones. */
+/* XGA at 60 Hz (VESA DMT), which practically every flat panel accepts. */
 static void make_fallback(drmModeModeInfo *out)
 {
 	*out = (drmModeModeInfo){
@@ -75,13 +77,13 @@ void drm_mode_make(drmModeModeInfo *out, int width_px, int height_px, int hz)
 	snprintf(out->name, sizeof(out->name), "%dx%d", width_px, height_px);
 }
 
-/* Interlaced pictures flicker where a line is thin: only where there is nothing else. */
+/* Interlaced modes flicker on thin lines; they are used only if nothing else is offered. */
 static bool interlaced(const drmModeModeInfo *mode)
 {
 	return (mode->flags & DRM_MODE_FLAG_INTERLACE) != 0;
 }
 
-/* Is a the better one of two of the size wished for? */
+/* Returns whether a is better than b, where both have the size asked for. */
 static bool better(const drmModeModeInfo *a, const drmModeModeInfo *b, int hz)
 {
 	const int off_a = hz ? abs((int)a->vrefresh - hz) : 0;

@@ -1,3 +1,5 @@
+/* Runs the state machine of a KMS panel: watches the card and hot-plug events, retries while
+ * another program has the card, and detects flips that hang. */
 #include "render/display/drm_panel.h"
 
 #include <errno.h>
@@ -15,12 +17,12 @@
 enum {
 	FLIP_TIMEOUT_MS = 1000,
 	RETRY_MS = 250,
-	LOOK_AWAY_MS = 2000,  /* looking asks every connector: tens of milliseconds */
-	LOOK_SHOWN_MS = 5000, /* for drivers that say nothing; asks no connector */
+	LOOK_AWAY_MS = 2000,  /* probes every connector, which takes tens of milliseconds */
+	LOOK_SHOWN_MS = 5000, /* for drivers without hot-plug events; probes no connector */
 	REFUSALS_MAX = 3,
 };
 
-/* ---- what is decided */
+/* ---- decisions */
 
 enum drm_panel_step drm_panel_after_flip(int rc, unsigned refusals)
 {
@@ -28,7 +30,8 @@ enum drm_panel_step drm_panel_after_flip(int rc, unsigned refusals)
 		return DRM_PANEL_GO_ON;
 	if (drm_card_is_taken(rc))
 		return DRM_PANEL_LATER;
-	if (rc == -ENODEV || rc == -ENOMEM) /* the card itself is gone; looking finds nothing */
+	/* the card is gone or memory is short: checking the connector would not help */
+	if (rc == -ENODEV || rc == -ENOMEM)
 		return DRM_PANEL_FAULT;
 	return refusals < REFUSALS_MAX ? DRM_PANEL_LOOK : DRM_PANEL_FAULT;
 }
@@ -170,7 +173,7 @@ static int look(struct drm_panel *panel, bool refused)
 			log_info("render", "the panel is back");
 		panel->mode_is_set = false;
 		panel->stale = true;
-		if (panel->flip_pending) /* its second begins again */
+		if (panel->flip_pending) /* restart its timeout */
 			panel->flip_asked_ms = clock_now_ms();
 		break;
 	default:
@@ -179,7 +182,7 @@ static int look(struct drm_panel *panel, bool refused)
 	return 0;
 }
 
-/* What the kernel knows without asking the panel. */
+/* Checks the connector state that the kernel already knows, without probing the panel. */
 static bool seems_changed(const struct drm_panel *panel)
 {
 	drmModeConnector *connector =
@@ -204,7 +207,7 @@ static int look_if_due(struct drm_panel *panel)
 	const bool plugged = panel->uevent_fd >= 0 && uevent_take(panel->uevent_fd);
 	const bool due = panel->look_ms != 0 && clock_now_ms() >= panel->look_ms;
 
-	if (panel->asleep) /* many a panel lets go of its connector in its sleep */
+	if (panel->asleep) /* many panels disconnect while asleep */
 		return 0;
 	if (plugged || (due && (panel->away || seems_changed(panel))))
 		return look(panel, false);
@@ -254,7 +257,7 @@ static int refused(struct drm_panel *panel, int rc)
 			log_info("render", "another program has the panel (%s): waiting for it",
 				 strerror(-rc));
 		panel->taken = panel->taken_said = true;
-		panel->mode_is_set = false; /* who knows what it does to it */
+		panel->mode_is_set = false; /* the other program may change the mode */
 		panel->retry_ms = clock_now_ms() + RETRY_MS;
 		return 0;
 	}

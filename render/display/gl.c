@@ -1,3 +1,5 @@
+/* Implements the GLES2 helpers. Each program is checked after linking for how many uniforms,
+ * attributes and texture units it uses. */
 #include "render/display/gl.h"
 
 #include <assert.h>
@@ -34,7 +36,7 @@ int gl_check(const char *doing)
 	int rc = 0;
 	GLenum error;
 
-	/* A driver that has given up may report for ever. */
+	/* A driver that has failed may report errors for ever. */
 	for (int n = 0; n < 8 && (error = glGetError()) != GL_NO_ERROR; n++) {
 		if (error == GL_CONTEXT_LOST_KHR)
 			return -ENOTRECOVERABLE;
@@ -44,7 +46,7 @@ int gl_check(const char *doing)
 	return rc;
 }
 
-/* Is word in text, not as a part of a longer name? */
+/* Returns whether word occurs in text, not as a part of a longer name. */
 static bool has_word(const char *text, const char *word)
 {
 	size_t size = strlen(word);
@@ -124,7 +126,8 @@ static bool parts_have_word(const char *const *parts, const char *word)
 	return false;
 }
 
-/* Quarters of a vec4 that one takes, as the packing of GLES2's appendix A can reach. */
+/* Returns how many components (quarters of a vec4) a uniform takes, assuming the packing of
+ * appendix A of the GLSL ES 1.00 specification. */
 static int quarters_of(GLenum type)
 {
 	switch (type) {
@@ -147,7 +150,8 @@ static int quarters_of(GLenum type)
 	}
 }
 
-/* GLES2 cannot ask which stage uses a uniform; its name in the stage's text tells. */
+/* Checks a program against the limits. GLES2 cannot tell which stage uses a uniform, so its name is
+ * searched for in the text of each stage. */
 static int judge_limits(GLuint program, const struct gl_program_source *source)
 {
 	GLint uniforms = 0, attributes = 0, units = 0, of_vertex = 0, of_fragment = 0;
@@ -164,7 +168,8 @@ static int judge_limits(GLuint program, const struct gl_program_source *source)
 		if (type == GL_SAMPLER_2D || type == GL_SAMPLER_CUBE) {
 			units += size;
 			if (parts_have_word(source->vertex, name))
-				units += GL_LIMIT_UNITS; /* GLES2 promises no vertex textures */
+				/* GLES2 guarantees no textures in vertex shaders */
+				units += GL_LIMIT_UNITS;
 			continue;
 		}
 		if (parts_have_word(source->vertex, name))

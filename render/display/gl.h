@@ -1,6 +1,6 @@
-/* GLES2, with errors in our form, and nothing beyond what GLES2 promises every board: llvmpipe and
- * desktop drivers allow more, so what is asked for is held against these limits here. Every call
- * is from the thread that owns the context. */
+/* Helpers for GLES2 that return errors as negative errno. They allow only what GLES2 guarantees on
+ * every board: llvmpipe and desktop drivers allow more, so requests are checked against the limits
+ * below. Call everything on the thread that owns the context. */
 #ifndef GOPURA_RENDER_DISPLAY_GL_H
 #define GOPURA_RENDER_DISPLAY_GL_H
 
@@ -21,34 +21,36 @@ enum {
 	GL_LIMIT_MEDIUMP_PX = 2048,      /* a side, where fragments have no highp */
 };
 
-/* Logs every pending GL error as "doing: NAME". 0, or -ENOMEM, or -EIO; -ENOTRECOVERABLE, which is
- * not logged: the GPU lost its context. */
+/* Logs every pending GL error as "doing: NAME". Returns 0, -ENOMEM or -EIO; or -ENOTRECOVERABLE,
+ * which is not logged: the GPU lost its context. */
 must_check int gl_check(const char *doing);
-/* Whole words only. */
+/* Returns whether the context has the extension; the whole name must match. */
 bool gl_has_extension(const char *name);
-/* Whether fragments have more than mediump, of which eleven bits are promised. */
+/* Returns whether fragment shaders have highp; only mediump with 11 bits is guaranteed. */
 bool gl_has_highp(void);
-/* A side of the largest texture to make: what this board takes, within the limits above. Sides
- * that are powers of two may repeat, and coordinates from -0.5 to 0.5 then name 2048 pixels to
- * a quarter of one even in mediump. */
+/* Returns the largest side of a texture in pixels: what this board accepts, within the limits
+ * above. Textures with power-of-two sides may repeat; coordinates from -0.5 to 0.5 then address
+ * 2048 pixels to a quarter of a pixel even in mediump. */
 int gl_texture_most_px(void);
-/* Begins a fragment shader: floats, and what is declared FINE, in the best precision there is. */
+/* First part of a fragment shader: sets the best available precision for floats and defines FINE,
+ * the qualifier of the same precision. */
 extern const char gl_fine_fragment[];
 
 struct gl_program_source {
-	const char *name;              /* for complaints */
-	const char *const *vertex;     /* parts put one after another; NULL at the end */
+	const char *name;              /* for log messages */
+	const char *const *vertex;     /* parts that are concatenated; NULL at the end */
 	const char *const *fragment;   /* likewise */
 	const char *const *attributes; /* names bound to locations 0, 1, ...; NULL at the end */
 };
 
-/* *out is deleted by the caller with glDeleteProgram; 0 on failure, which is logged with the
- * driver's words. -EINVAL: does not compile or link. -E2BIG: more than the limits above. */
+/* Compiles and links a program. The caller deletes *out with glDeleteProgram; it is 0 on failure,
+ * which is logged with the driver's message. -EINVAL: it does not compile or link. -E2BIG: it
+ * exceeds the limits above. */
 must_check int gl_program_build(GLuint *out, const struct gl_program_source *source);
 
-/* The whole viewport as two triangles: a vertex shader that gives v_at, 0..1 across and up, and
- * what draws them with the program in use, built with gl_square_attributes. Leaves attribute 0 off.
- */
+/* Draws over the whole viewport as two triangles. gl_square_vertex is a vertex shader with the
+ * varying v_at, 0..1 to the right and up. gl_draw_square draws with the current program, which was
+ * linked with gl_square_attributes; it leaves attribute 0 disabled. */
 extern const char gl_square_vertex[];
 extern const char *const gl_square_attributes[];
 void gl_draw_square(void);
@@ -56,41 +58,46 @@ void gl_draw_square(void);
 struct gl_texture_options {
 	int width_px, height_px;
 	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA */
-	GLenum type;        /* 0: 8 bits each; GL_UNSIGNED_SHORT_5_6_5 */
+	GLenum type;        /* 0: 8 bits per channel; or GL_UNSIGNED_SHORT_5_6_5 */
 	GLenum filter;      /* GL_NEAREST or GL_LINEAR; with mipmaps: trilinear */
-	bool mipmaps;       /* sides must be powers of two: GLES2 */
+	bool mipmaps;       /* sides must be powers of two (GLES2) */
 	bool repeat;        /* likewise */
-	bool large;         /* may be past what every board has, as a panel or the pipeline asks */
-	const void *pixels; /* rows without padding; NULL: undefined */
+	bool large;         /* may exceed the guaranteed size, for a panel or the pipeline */
+	const void *pixels; /* borrowed for the call; rows without padding; NULL: undefined */
 };
 
-/* Leaves the texture bound to the active unit. -EINVAL past what GLES2 allows. */
+/* Creates a texture and leaves it bound to the active unit. The caller deletes *out; it is 0 on
+ * failure. -EINVAL: more than GLES2 guarantees. -ENOMEM, -EIO. */
 must_check int gl_texture_create(GLuint *out, const struct gl_texture_options *options);
-/* To unit 0 .. GL_LIMIT_UNITS - 1, which is active afterwards. */
+/* Binds a texture to unit 0 .. GL_LIMIT_UNITS - 1, and leaves that unit active. */
 void gl_bind_texture(unsigned unit, GLuint texture);
 
-/* A picture to draw into: RGBA texture and depth (24 bits where the driver has them). */
+/* A render target: an RGBA texture and a depth buffer (24 bits where the driver has them). */
 struct gl_target {
 	GLuint framebuffer, colour, depth;
 	int width_px, height_px;
 	int depth_bits;
 };
 
-/* Where a picture goes: a framebuffer that is there, and the picture's lower left corner in it. */
+/* Where a picture is drawn: an existing framebuffer, and the picture's lower left corner in it. */
 struct gl_place {
 	GLuint framebuffer;
 	int x_px, y_px;
 };
-/* Binds it and sets the viewport to the picture. */
+/* Binds the framebuffer and sets the viewport to the picture. */
 void gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 
-/* Leaves it bound, the viewport set to all of it. *out is zeroed on failure. */
+/* Creates a render target, binds it and sets the viewport to all of it. *out is zeroed on failure.
+ * -EINVAL, -ENOMEM, -EIO. */
 must_check int gl_target_create(struct gl_target *out, int width_px, int height_px);
 /* The same without a depth buffer. */
 must_check int gl_target_create_flat(struct gl_target *out, int width_px, int height_px);
-void gl_target_destroy(struct gl_target *target); /* NULL and zeroed are fine */
+/* Deletes its GL objects. NULL and a zeroed target are fine. */
+void gl_target_destroy(struct gl_target *target);
+/* Binds the target and sets the viewport to all of it. */
 void gl_target_bind(const struct gl_target *target);
-/* 4 bytes a pixel, row 0 on top. Binds the target. */
+/* Reads the target: 4 bytes a pixel, row 0 at the top; rgba is the caller's, of width x height x 4
+ * bytes. Binds the target and waits for the GPU. -ENOMEM, or as gl_check. */
 must_check int gl_target_read(const struct gl_target *target, uint8_t *rgba);
 
 #endif

@@ -1,3 +1,4 @@
+/* Tries EGL's surfaceless platform and then each EGL device until one gives a GLES2 context. */
 #include "render/display/headless.h"
 
 #include <errno.h>
@@ -27,8 +28,9 @@ static bool has_client_extension(const char *name)
 
 static bool start_context(struct headless *headless)
 {
-	static const EGLint wanted[] = { EGL_SURFACE_TYPE, 0, /* none: we draw into textures */
-					 EGL_RENDERABLE_TYPE, EGL_OPENGL_ES2_BIT, EGL_NONE };
+	/* no surface: we draw into textures */
+	static const EGLint wanted[] = { EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
+					 EGL_OPENGL_ES2_BIT, EGL_NONE };
 	EGLConfig config;
 	EGLint count = 0;
 
@@ -99,7 +101,7 @@ void headless_destroy(struct headless *headless)
 		return;
 	eglMakeCurrent(headless->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 	eglDestroyContext(headless->display, headless->context);
-	/* The display is EGL's, one for all contexts of the process: terminating it here would end
+	/* EGL shares one display between all contexts of the process; terminating it here would end
 	 * the others. */
 	eglReleaseThread();
 	free(headless);

@@ -1,3 +1,4 @@
+/* Uploads the bitmaps of ui as textures and draws them as rotated, blended quads. */
 #include "render/display/quads.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@ struct quads {
 	GLuint program;
 	GLint to_clip, alpha;
 	struct quads_texture textures[QUADS_TEXTURES_MAX];
-	uint8_t *rows; /* without padding; owned */
+	uint8_t *rows; /* owned; scratch for bitmaps with padded rows */
 	size_t rows_bytes;
 };
 
@@ -31,7 +32,7 @@ static const char vertex_source[] =
 	"	gl_Position = vec4((to_clip * vec3(position, 1.0)).xy, 0.0, 1.0);\n"
 	"}\n";
 
-/* Cairo's bytes are B, G, R, A. */
+/* Cairo's bytes are B, G, R, A, so the channels are swapped here. */
 static const char fragment_source[] = "precision mediump float;\n"
 				      "uniform sampler2D picture;\n"
 				      "uniform float alpha;\n"
@@ -75,7 +76,8 @@ void quads_destroy(struct quads *quads)
 	free(quads);
 }
 
-/* The pixels with their rows side by side: GLES2 cannot skip a row's padding. */
+/* Returns the pixels without padding between rows, because GLES2 cannot skip padding. NULL: out of
+ * memory. */
 static const uint8_t *packed_rows(struct quads *quads, const struct quads_pixels *pixels)
 {
 	const size_t row = (size_t)pixels->width_px * 4, bytes = row * (size_t)pixels->height_px;
@@ -152,8 +154,8 @@ void quads_forget(struct quads *quads)
 		quads->textures[i].revision = 0;
 }
 
-/* Visitor's pixels to clip space, column-major: the panel shows the framebuffer turned by
- * rotation_deg clockwise, so what is drawn is turned back. */
+/* Writes the matrix from the visitor's pixels to clip space, column-major. The panel shows the
+ * framebuffer rotated clockwise by rotation_deg, so the drawing is rotated back. */
 static void clip_matrix(float out[9], int width_px, int height_px, int rotation_deg)
 {
 	const bool sideways = rotation_deg == 90 || rotation_deg == 270;
@@ -162,7 +164,7 @@ static void clip_matrix(float out[9], int width_px, int height_px, int rotation_
 	const float angle = (float)rotation_deg * (float)M_PI / 180;
 	const float c = roundf(cosf(angle)), s = roundf(sinf(angle));
 
-	/* Upright: x = 2 px / w - 1, y = 1 - 2 py / h; then turned counter-clockwise. */
+	/* Upright: x = 2 px / w - 1, y = 1 - 2 py / h; then rotated anticlockwise. */
 	out[0] = c * 2 / w;
 	out[1] = s * 2 / w;
 	out[2] = 0;

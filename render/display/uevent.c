@@ -1,3 +1,4 @@
+/* Reads kernel uevents from a netlink socket and looks for SUBSYSTEM=drm with HOTPLUG=1. */
 #include "render/display/uevent.h"
 
 #include <errno.h>
@@ -6,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { KERNELS_GROUP = 1 }; /* udev's own is 2 */
+enum { KERNELS_GROUP = 1 }; /* group 2 is udev's */
 
 int uevent_open(void)
 {
@@ -34,7 +35,7 @@ bool uevent_is_hotplug(const char *message, size_t size)
 		const size_t length = strnlen(word, size - at);
 
 		if (length == size - at)
-			break; /* cut off: it may say anything */
+			break; /* truncated: its meaning is unknown */
 		drm |= strcmp(word, "SUBSYSTEM=drm") == 0;
 		hotplug |= strcmp(word, "HOTPLUG=1") == 0;
 		at += length + 1;
@@ -54,10 +55,10 @@ bool uevent_take(int fd)
 					      (struct sockaddr *)&from, &from_size);
 
 		if (size < 0 && errno == ENOBUFS)
-			hotplug = true; /* more came than was read: look */
+			hotplug = true; /* messages were lost: check the connector */
 		else if (size < 0 && errno != EINTR)
 			return hotplug;
-		else if (size > 0 && from.nl_pid == 0) /* the kernel's, nobody else's */
+		else if (size > 0 && from.nl_pid == 0) /* sent by the kernel */
 			hotplug |= uevent_is_hotplug(message, (size_t)size);
 	}
 }

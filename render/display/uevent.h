@@ -1,6 +1,6 @@
-/* The kernel's word that something was plugged in or out, from its own netlink group: udev's is not
- * heard in a sandbox with a network of its own, the kernel's is. Where a sandbox forbids netlink
- * altogether there is none, and whoever asks looks by the clock. */
+/* Hot-plug events of the kernel, from its own netlink group: udev's group does not reach a sandbox
+ * with its own network namespace, the kernel's does. Where a sandbox forbids netlink there are no
+ * events, and the caller polls instead. */
 #ifndef GOPURA_RENDER_DISPLAY_UEVENT_H
 #define GOPURA_RENDER_DISPLAY_UEVENT_H
 
@@ -9,11 +9,13 @@
 
 #include "base/compiler.h"
 
-/* A descriptor to wait on and to close; negative errno where netlink is forbidden. */
+/* Returns a descriptor to wait on, owned by the caller; negative errno where netlink is
+ * forbidden. */
 must_check int uevent_open(void);
-/* Reads what came; true: a panel was plugged in or out. */
+/* Reads all pending events. Returns whether a panel was, or may have been, plugged in or out. */
 bool uevent_take(int fd);
-/* Is it such a message? size bytes of words, each ended by a zero. Pure. */
+/* Returns whether a message reports a hot-plug of a panel. message has size bytes of strings, each
+ * ended by a zero. Pure function. */
 bool uevent_is_hotplug(const char *message, size_t size);
 
 #endif
