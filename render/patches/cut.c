@@ -1,3 +1,5 @@
+/* Grows a cut through the patch hierarchy with a heap of errors, for what is shown and for what is
+ * desired. */
 #include "render/patches/cut.h"
 
 #include <errno.h>
@@ -134,12 +136,12 @@ float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[
 	return group->error_m * focal_px / distance;
 }
 
-/* From where, with what, the cut is grown. */
+/* The viewpoint, the allowed groups and the limits for growing a cut. */
 struct growth {
-	const struct view *view; /* NULL: all around */
+	const struct view *view; /* NULL: in all directions */
 	const float *eye_m;
 	float focal_px;
-	const uint8_t *loaded; /* only these */
+	const uint8_t *loaded; /* only these groups may be refined */
 	uint8_t *refined;
 	const struct cut_options *options;
 };
@@ -168,7 +170,7 @@ static int64_t group_cost(const struct cut *cut, const struct growth *growth, ui
 	return cost;
 }
 
-/* A group that was refined may be the last its finer groups were waiting for. */
+/* Pushes the finer groups for which this group was the last missing dependency. */
 static void release_finer(struct cut *cut, const struct growth *growth, uint32_t group)
 {
 	const struct hierarchy *h = cut->hierarchy;
@@ -228,8 +230,8 @@ void cut_update(struct cut *cut, const struct view *view, const uint8_t *loaded,
 
 /* ---- desire */
 
-/* What shows of each patch and of what each group replaces; a group comes after those it depends
- * on, so coarser patches have theirs before they share it out. */
+/* Computes the visible pixels of each patch and of what each group replaces. A group comes after
+ * those it depends on, so the pixels of coarser patches are known before they are shared out. */
 static void share_out(struct cut *cut, const struct view *view, const float *seen_px)
 {
 	const struct hierarchy *h = cut->hierarchy;
@@ -264,7 +266,7 @@ static void share_out(struct cut *cut, const struct view *view, const float *see
 	}
 }
 
-/* What shows, and what that depends on. */
+/* Marks the groups that are visible, and those they depend on. */
 static void mark_needed(struct cut *cut, const struct view *view, float error_px)
 {
 	const struct hierarchy *h = cut->hierarchy;

@@ -1,3 +1,4 @@
+/* Steps the share of each group towards 0 or 1 and keeps it below the shares that it depends on. */
 #include "render/patches/dissolve.h"
 
 #include <errno.h>
@@ -27,7 +28,7 @@ void dissolve_finish(struct dissolve *dissolve)
 	memset(dissolve, 0, sizeof(*dissolve));
 }
 
-/* The smallest share of what a group depends on. */
+/* Returns the smallest share of the groups that a group depends on. */
 static float share_below(const struct dissolve *dissolve, uint32_t group)
 {
 	uint32_t count;
@@ -40,7 +41,7 @@ static float share_below(const struct dissolve *dissolve, uint32_t group)
 	return share;
 }
 
-/* The largest share of what depends on a group. */
+/* Returns the largest share of the groups that depend on a group. */
 static float share_above(const struct dissolve *dissolve, uint32_t group)
 {
 	const struct hierarchy *h = dissolve->cut->hierarchy;
@@ -66,7 +67,7 @@ void dissolve_step(struct dissolve *dissolve, const uint8_t *loaded, float passe
 	const struct cut *cut = dissolve->cut;
 	const float step = passed_ms / DISSOLVE_MS;
 	dissolve->moving = false;
-	/* Coarse before fine: none may pass what it depends on. */
+	/* Coarse groups come before fine ones: none may exceed what it depends on. */
 	for (uint32_t g = 0; g < cut->hierarchy->group_count; g++) {
 		float *share = &dissolve->share[g], most = share_below(dissolve, g);
 		if (!loaded[g] || !cut->shown[g])
@@ -74,7 +75,7 @@ void dissolve_step(struct dissolve *dissolve, const uint8_t *loaded, float passe
 		if (!loaded[g])
 			*share = 0;
 		else if (g == 0)
-			*share = 1; /* it covers nothing */
+			*share = 1; /* the root group replaces nothing */
 		else if (cut->shown[g] && !waits(dissolve, g, passed_ms))
 			*share += step;
 		*share = vec_least(*share, most);

@@ -1,3 +1,4 @@
+/* The shader that computes the distance to a region per fragment, and the state to draw with it. */
 #include "render/patches/mark.h"
 
 #include <math.h>
@@ -8,10 +9,10 @@ static const char mark_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
-	"uniform vec4 u_middle;\n" /* of the region from the eye; focal_px */
+	"uniform vec4 u_middle;\n" /* middle of the region from the eye; focal_px */
 	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n" /* before the section */
-	"varying vec4 v_at;\n"   /* from there; a pixel's width */
+	"varying float v_cut;\n" /* metres in front of the section plane */
+	"varying vec4 v_at;\n"   /* position from the region's middle; width of a pixel in metres */
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
@@ -19,9 +20,10 @@ static const char mark_vertex[] =
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
-/* The twin of region_distance. u_region[0]: kind (as the enum), corners, floor, roof;
- * [1].w: radius; [2]: half sides, 0; [3].xy: cosine, sine of the turn. u_corners: x, y, two to a
- * vector. All from the region's middle, so that mediump holds it. */
+/* The GLSL version of region_distance; both must agree. u_region[0]: kind (as in the enum), corner
+ * count, floor, roof; [1].w: radius; [2]: half sides, 0; [3].xy: cosine and sine of the rotation.
+ * u_corners: x, y, two corners to a vector. All positions count from the region's middle, so that
+ * mediump suffices. */
 static const char mark_extensions[] = "#extension GL_OES_standard_derivatives : enable\n";
 
 static const char mark_fragment[] =
@@ -60,8 +62,7 @@ static const char mark_fragment[] =
 	"	float d = region_distance(v_at.xyz);\n"
 	"	float pixel = v_at.w;\n"
 	"#ifdef GL_OES_standard_derivatives\n"
-	/* A surface that runs along the boundary would be line all over: width along the surface.
-	 */
+	/* A surface along the boundary would be all line: use the width along the surface. */
 	"	pixel = clamp(length(vec2(dFdx(d), dFdy(d))), 0.05 * pixel, pixel);\n"
 	"#endif\n"
 	"	float line = 1.0 - smoothstep(2.0, 3.0, abs(d) / pixel);\n"
@@ -154,7 +155,7 @@ void mark_begin(const struct mark *mark, const struct view *view, const struct r
 		    view->focal_px);
 	set_region(mark, middle, region);
 	glEnable(GL_BLEND);
-	/* Coverage stays what the surface wrote. */
+	/* Keep the alpha (coverage) that the surface wrote. */
 	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
 	glDepthFunc(GL_LEQUAL);
 	glDepthMask(GL_FALSE);

@@ -1,5 +1,6 @@
-/* A part's region on the surface: a bold line of constant width where the surface crosses the
- * region's boundary, a slight tint inside. Drawn over the patches at equal depth. */
+/* Marks the region of a part on the surface: a bold line of constant width where the surface
+ * crosses the boundary of the region, and a slight tint inside. It is drawn over the patches at
+ * equal depth. */
 #ifndef GOPURA_RENDER_PATCHES_MARK_H
 #define GOPURA_RENDER_PATCHES_MARK_H
 
@@ -13,9 +14,12 @@ struct mark {
 	GLint clip, lattice, region, corners, middle, cut;
 };
 
+/* Builds the program; needs a current GL context. Errors as gl_program_build. mark_finish frees it;
+ * a zeroed mark is fine. */
 must_check int mark_init(struct mark *mark);
 void mark_finish(struct mark *mark);
-/* geometry_bind and draws of patches that region_meets_sphere follow, then mark_end. */
+/* Sets up the program and the GL state. Then draw all patches for which region_meets_sphere is true
+ * (geometry_bind, geometry_draw), and call mark_end, which restores the state. */
 void mark_begin(const struct mark *mark, const struct view *view, const struct root_page *root,
 		const struct region *region);
 void mark_end(void);

@@ -1,3 +1,4 @@
+/* Divides labelled triangles into small ones and cuts them where the label value changes sign. */
 #include "render/patches/outline.h"
 
 #include <errno.h>
@@ -6,7 +7,8 @@
 
 #include "geometry/vec.h"
 
-/* Room for more items behind count; doubles. */
+/* Grows an array to hold at least `needed` items, doubling its size. items points to the array
+ * pointer. */
 static bool make_room(void *items, uint32_t *room, uint32_t needed, size_t item_bytes)
 {
 	uint32_t larger = *room ? *room : 64;
@@ -25,16 +27,16 @@ static bool make_room(void *items, uint32_t *room, uint32_t needed, size_t item_
 	return true;
 }
 
-/* A corner of a small triangle: where, and how far within. */
+/* A corner of a small triangle: its position, and how far inside it is. */
 struct corner {
 	float at[3];
 	int value;
 };
 
-/* Where the outline crosses from a to b, which lie on its two sides. */
+/* Writes the point between a and b, on either side of the outline, where it crosses. */
 static void cross(float out[3], const struct corner *a, const struct corner *b)
 {
-	/* From the one within, so that neighbours agree bit for bit. */
+	/* Interpolate from the inner corner, so that neighbours agree bit for bit. */
 	const struct corner *in = a->value > 0 ? a : b, *off = a->value > 0 ? b : a;
 	float share = (float)in->value / (float)(in->value - off->value);
 
@@ -49,7 +51,7 @@ static void add_triangle(struct outline *o, const float a[3], const float b[3], 
 	memcpy(o->within[o->within_count++], c, sizeof(*o->within));
 }
 
-/* A small triangle; at most one line and two triangles of it. */
+/* Adds a small triangle: at most one line, and two triangles of its inner area. */
 static bool add_small(struct outline *o, const struct corner *corner[3], const float normal[3])
 {
 	float ab[3], ac[3];
@@ -66,7 +68,7 @@ static bool add_small(struct outline *o, const struct corner *corner[3], const f
 		add_triangle(o, corner[0]->at, corner[1]->at, corner[2]->at);
 		return true;
 	}
-	/* The corner that is alone on its side. */
+	/* Find the corner that is alone on its side. */
 	while ((corner[alone]->value > 0) != (within == 1))
 		alone++;
 	const struct corner *a = corner[alone], *b = corner[(alone + 1) % 3],
@@ -96,7 +98,7 @@ static void place_corner(struct corner *out, float at[3][3], int level, const in
 		out->at[x] = at[0][x] + v * (at[1][x] - at[0][x]) + w * (at[2][x] - at[0][x]);
 }
 
-/* A triangle that the outline crosses. */
+/* Divides a triangle that the outline crosses. */
 static bool add_divided(struct outline *o, const struct patch_bvh *bvh, uint32_t triangle,
 			const int8_t *values, int level)
 {

@@ -1,5 +1,5 @@
-/* A part's outline on one patch, and what of the patch lies within, by its labels. Pure; places are
- * on the lattice. */
+/* The outline of a part on one patch, and the area of the patch inside it, computed from the
+ * labels. Pure; positions are in lattice units. */
 #ifndef GOPURA_RENDER_PATCHES_OUTLINE_H
 #define GOPURA_RENDER_PATCHES_OUTLINE_H
 
@@ -8,21 +8,23 @@
 
 struct outline_line {
 	float at[2][3];
-	float normal[3]; /* of the triangle it lies on, unit */
+	float normal[3]; /* of the triangle it lies on, unit length */
 };
 
 struct outline {
 	struct outline_line *lines; /* owned, like the next two */
-	uint16_t *whole;            /* triangles that lie within: corners, as the solid's indices */
-	float (*within)[3];         /* of the others what lies within: corners, three a triangle */
+	uint16_t *whole;            /* triangles entirely inside: corners, as indices of the BVH */
+	/* the inner area of the other triangles: corners, three per triangle */
+	float (*within)[3];
 	uint32_t line_count, whole_count, within_count;
 	uint32_t line_room, whole_room, within_room; /* private */
 };
 
-/* patch: within its group, of which the solid is. part: the group's number. *out is finished by the
- * caller. -ENOMEM. */
+/* Computes the outline of a part on one patch. bvh is that of the patch; patch is its index within
+ * its group; part is the index of the part in the group's labels. The caller finishes *out. Returns
+ * 0 or -ENOMEM. */
 must_check int outline_create(struct outline *out, const struct patch_bvh *bvh,
 			      const struct label_group *labels, uint32_t patch, uint32_t part);
-void outline_finish(struct outline *outline); /* zeroed is fine */
+void outline_finish(struct outline *outline); /* Frees it; a zeroed outline is fine. */
 
 #endif

@@ -1,3 +1,5 @@
+/* Uploads outlines as quads and triangles, widens the lines in the vertex shader, and draws lines
+ * and tints. */
 #include "render/patches/outline_lines.h"
 
 #include <errno.h>
@@ -8,32 +10,34 @@
 
 enum { QUADS = 4096 };
 
-/* A corner of the quad around a line, as the shader takes it. */
+/* A corner of the quad around a line, in the layout of the vertex shader. */
 struct vertex {
-	float at[3], other[3]; /* this end, and the other */
+	float at[3], other[3]; /* this end and the other end, in lattice units */
 	int8_t normal[3];
-	int8_t side; /* 1 and -1: this end is the first; 2 and -2: the second */
+	int8_t side; /* 1 and -1: this is the first end; 2 and -2: the second */
 };
 
-/* Widened in pixels; each corner's depth is that of the triangle's plane there, so that the line
- * does not sink into a surface that is seen aslant, and a little nearer, so that it lies above. */
+/* The line is widened in pixels. The depth of each corner is that of the triangle's plane there, so
+ * that the line does not sink into a surface seen at a grazing angle, and a little nearer, so that
+ * it lies on top. */
 static const char line_vertex[] =
 	"attribute vec3 a_position;\n"
 	"attribute vec3 a_other;\n"
-	"attribute vec4 a_side;\n" /* normal; as in struct vertex */
+	"attribute vec4 a_side;\n" /* normal; side as in struct vertex */
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
-	"uniform vec4 u_picture;\n" /* half its sides, focal length: pixels */
+	"uniform vec4 u_picture;\n" /* half its sides and the focal length, in pixels */
 	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n" /* before the section */
-	"varying vec3 v_at;\n"   /* pixels along, across; length */
+	"varying float v_cut;\n" /* metres in front of the section plane */
+	"varying vec3 v_at;\n"   /* pixels along and across the line; its length */
 	"void main() {\n"
 	"	const float reach = 3.5;\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"	vec4 here = u_clip * vec4(p, 1.0);\n"
 	"	vec4 there = u_clip * vec4(u_lattice.xyz + u_lattice.w * a_other, 1.0);\n"
-	"	if (here.z < -here.w || there.z < -there.w) {\n" /* one is behind the eye */
+	/* an end is nearer than the near plane */
+	"	if (here.z < -here.w || there.z < -there.w) {\n"
 	"		gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n"
 	"		return;\n"
 	"	}\n"
@@ -215,7 +219,7 @@ static void begin(const struct outline_lines_program *program, const struct view
 		glUniform4f(program->picture, (float)view->width_px / 2, (float)view->height_px / 2,
 			    view->focal_px, 0);
 	glEnable(GL_BLEND);
-	/* Coverage stays what the surface wrote. */
+	/* Keep the alpha (coverage) that the surface wrote. */
 	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
 	glDepthFunc(GL_LEQUAL);
 	glDepthMask(GL_FALSE);
@@ -240,7 +244,8 @@ void outline_lines_tint(const struct outline_lines *lines)
 	if (lines->within_count > 0) {
 		glBindBuffer(GL_ARRAY_BUFFER, lines->within);
 		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, NULL);
-		/* Parts of triangles are as far away as the whole, but for rounding. */
+		/* Parts of a triangle have its depth except for rounding, so they need an
+		 * offset. */
 		glEnable(GL_POLYGON_OFFSET_FILL);
 		glDrawArrays(GL_TRIANGLES, 0, (GLsizei)lines->within_count);
 		glDisable(GL_POLYGON_OFFSET_FILL);

@@ -1,5 +1,5 @@
-/* Outlines as bold lines over the patches they lie on: as wide in pixels from near as from afar,
- * and hidden where the model hides them; what lies within is tinted slightly. */
+/* Draws outlines as bold lines over the patches they lie on. The width in pixels is the same at any
+ * distance, and the model hides them like its surface. The area inside is tinted slightly. */
 #ifndef GOPURA_RENDER_PATCHES_OUTLINE_LINES_H
 #define GOPURA_RENDER_PATCHES_OUTLINE_LINES_H
 
@@ -15,25 +15,30 @@ struct outline_lines_program {
 
 struct ribbons {
 	struct outline_lines_program line, tint;
-	GLuint quads; /* indices of as many as are drawn at once */
+	GLuint quads; /* index buffer for the quads of one draw call */
 };
 
-/* An outline on the GPU. */
+/* The GPU buffers of an outline. */
 struct outline_lines {
 	GLuint lines, whole, within;
 	uint32_t line_count, whole_count, within_count;
-	uint32_t serial; /* of what it is; 0: nothing was made */
+	uint32_t serial; /* number of the marked part it belongs to; 0: nothing was made */
 };
 
+/* Builds the programs; needs a current GL context, as everything here. Errors as gl_program_build,
+ * or -ENOMEM; ribbons_finish is allowed after both. It frees everything; zeroed is fine. */
 must_check int ribbons_init(struct ribbons *ribbons);
 void ribbons_finish(struct ribbons *ribbons);
 
+/* Uploads an outline and replaces what *out held. serial must not be 0. -ENOMEM, or as gl_check. */
 must_check int outline_lines_make(struct outline_lines *out, const struct outline *outline,
 				  uint32_t serial);
-void outline_lines_finish(struct outline_lines *lines); /* zeroed is fine */
+void outline_lines_finish(struct outline_lines *lines); /* Deletes the buffers; zeroed is fine. */
 
-/* Blended over the picture, whose depth stays as it is. In this order: tints, each with its patch
- * bound (geometry_bind; attributes 1 and 2 are not used), lines, the end. */
+/* Drawing is blended over the picture, whose depth stays as it is. Call in this order:
+ * ribbons_begin_tints; outline_lines_tint for each patch, with the patch bound (geometry_bind;
+ * attributes 1 and 2 are not used); ribbons_begin_lines; outline_lines_lines for each patch;
+ * ribbons_end. */
 void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
 			 const struct root_page *root);
 void outline_lines_tint(const struct outline_lines *lines);

@@ -1,3 +1,5 @@
+/* Uploads decoded groups, keeps them within a budget, binds and draws them, and runs ray queries
+ * over the shown ones. */
 #include "render/patches/patch_buffers.h"
 
 #include <errno.h>
@@ -50,7 +52,8 @@ void geometry_finish(struct geometry *geometry)
 
 /* ---- loading */
 
-/* After it only the GPU has the vertices; where they are, solid has for itself. */
+/* Uploads a patch. Afterwards only the GPU holds the vertices; the BVH has its own copy of the
+ * positions. */
 static int upload(struct geometry_patch *patch)
 {
 	struct patch_mesh *mesh = &patch->content.mesh;
@@ -172,7 +175,8 @@ int geometry_label(struct geometry *geometry, uint32_t group, struct label_group
 
 /* ---- budget */
 
-/* The least useful that nothing loaded stands on; HIERARCHY_NONE: all are of use now. */
+/* Returns the group desired longest ago, on which no loaded group depends. HIERARCHY_NONE: all are
+ * desired now. */
 static uint32_t least_useful(const struct geometry *geometry)
 {
 	const struct hierarchy *h = geometry->hierarchy;
@@ -182,7 +186,7 @@ static uint32_t least_useful(const struct geometry *geometry)
 			continue;
 		if (best == HIERARCHY_NONE ||
 		    geometry->group_stamp[g] < geometry->group_stamp[best])
-			best = g; /* among equals the finest: groups come after what they refine */
+			best = g; /* among equals the finest: groups come after those they refine */
 	}
 	return best;
 }

@@ -1,6 +1,7 @@
-/* The patches that are loaded: on the GPU for drawing, in memory for rays, and what each piece of
- * them is coloured by. Counted in bytes of both; past the budget the groups that were of no use
- * for longest go, finest first, never one that a shown or wanted cut stands on. */
+/* The loaded patches: in GPU buffers for drawing, in memory for rays, and the state of what colours
+ * each of their pieces. Both kinds of memory count. Over the budget, the groups that were desired
+ * longest ago are dropped, the finest first among equals; never one that the present cut desires,
+ * nor the root group. One thread, with a current GL context. */
 #ifndef GOPURA_RENDER_PATCHES_PATCH_BUFFERS_H
 #define GOPURA_RENDER_PATCHES_PATCH_BUFFERS_H
 
@@ -11,7 +12,7 @@
 #include "render/patches/pool.h"
 #include "render/plan/plan.h"
 
-/* One of the faces blended on a piece, fading in and out. */
+/* One of the faces blended on a piece, while it fades in or out. */
 struct blend {
 	face_key face;
 	float half_px;
@@ -22,64 +23,71 @@ struct blend {
 struct piece_state {
 	struct plan_choice choice;
 	struct blend blend[PLAN_ENTRIES];
-	float seen_px; /* of the screen, by the last census that had it in the frustum */
-	struct piece_probe probe[PIECE_PROBES]; /* move to where it shows */
+	/* visible pixels on the screen, from the last visibility pass that had it in the frustum */
+	float seen_px;
+	struct piece_probe probe[PIECE_PROBES]; /* they move to where the piece is visible */
 	float weight[PIECE_PROBES];
-	float stray_m[3], stray_off_m; /* what shows farthest from any probe */
-	bool counted;                  /* by any census */
-	bool planned, orphan;          /* orphan: a face it was blended from is gone */
-	uint32_t planned_epoch;        /* of the world, when it was */
-	uint32_t planned_versions;     /* sum over the faces it wants */
+	/* the visible point farthest from any probe, and its distance */
+	float stray_m[3], stray_off_m;
+	bool counted;              /* by any visibility pass */
+	bool planned, orphan;      /* orphan: a face it was blended from has been dropped */
+	uint32_t planned_epoch;    /* epoch of the world when it was planned */
+	uint32_t planned_versions; /* sum of the versions of the faces it wants */
 	float planned_eye_m[3];
 };
 
-/* Which sides of a patch's triangles have been seen to show. */
+/* Which sides of a patch's triangles have been found visible. */
 enum geometry_sides {
-	SIDES_UNKNOWN, /* nobody looked */
+	SIDES_UNKNOWN, /* no visibility pass has counted it */
 	SIDES_FRONT,
-	SIDES_BOTH, /* a back, through a scan's rim: this stays */
+	SIDES_BOTH, /* a back was visible, through an open border of the scan; this is final */
 };
 
 struct geometry_patch {
 	GLuint vertices, indices;
 	struct pool_patch content;
-	struct piece_state *pieces; /* owned; one per content.solid.pieces */
+	struct piece_state *pieces; /* owned; one for each of content.bvh.pieces */
 	enum geometry_sides sides;
-	struct outline_lines lines; /* the outline of the part that was marked last */
+	struct outline_lines lines; /* the outline of the part marked last */
 };
 
 struct geometry {
 	const struct hierarchy *hierarchy; /* borrowed */
 	struct geometry_patch *patches;    /* per patch of the hierarchy; owned, as all below */
 	uint8_t *loaded;                   /* per group */
-	struct label_group *labels;        /* per group; without patches: not here */
+	struct label_group *labels;        /* per group; not here where patch_count is 0 */
 	uint64_t *group_bytes;
-	uint32_t *group_stamp; /* last frame it was of use */
+	uint32_t *group_stamp; /* the last round (stamp) in which it was desired */
 	uint64_t bytes;
-	uint64_t changes; /* of what is loaded, so far */
+	uint64_t changes; /* counts loads and drops of groups */
 	uint32_t stamp;
 };
 
+/* Initialises it with nothing loaded. The hierarchy is borrowed and must outlive it. -ENOMEM. */
 must_check int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy);
+/* Frees everything. */
 void geometry_finish(struct geometry *geometry);
 
-/* Takes the answer's patches. -EBADMSG: they are not what the hierarchy says; -ENOMEM. On failure
- * nothing is taken. */
+/* Takes the patches of the answer and uploads them. A group that is loaded already is ignored.
+ * -EBADMSG: they do not match the hierarchy; nothing is taken. -ENOMEM, or as gl_check: the group
+ * is not loaded, and patches may have been taken and freed. */
 must_check int geometry_put(struct geometry *geometry, uint32_t group, struct pool_answer *answer);
-/* Takes the labels of a group; of one that was dropped meanwhile they are dropped too. -EBADMSG:
- * they are not of its patches. */
+/* Takes the labels of a group. They are ignored where the group is not loaded (any more) or has
+ * labels. -EBADMSG: they do not match its patches. */
 must_check int geometry_label(struct geometry *geometry, uint32_t group,
 			      struct label_group *labels);
-/* Marks what a cut stands on, then drops groups until the budget holds. */
+/* Marks the groups that the cut desires, then drops others until the budget holds. */
 void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t budget_bytes);
 
-/* Binds buffers; attribute 0 position, 1 normal (raw octahedral), 2 colour. */
+/* Binds the buffers of a patch. Attribute 0 is the position, 1 the normal (octahedral,
+ * unconverted), 2 the colour. */
 void geometry_bind(const struct geometry *geometry, uint32_t patch);
-/* Backs are not drawn where only fronts show: half of a closed model's triangles. Otherwise, and
- * when the last patch is drawn (geometry_cull_none), both are. */
+/* Sets face culling for a patch: back faces are culled where only front faces were found visible,
+ * which halves the triangles of a closed model. Otherwise, and after geometry_cull_none, which is
+ * called after the last patch, both sides are drawn. */
 void geometry_cull(const struct geometry *geometry, uint32_t patch);
 void geometry_cull_none(void);
-/* A run of a bound patch's triangles. */
+/* Draws a range of triangles of the bound patch. */
 void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
 
 struct geometry_hit {
@@ -87,12 +95,13 @@ struct geometry_hit {
 	struct patch_bvh_hit on;
 };
 
-/* Nearest hit among the listed patches between least_m and *distance_m, which becomes it; *hit (may
- * be NULL) says where. */
+/* Finds the nearest hit among the shown patches of the cut, farther than least_m and nearer than
+ * *distance_m. On a hit it returns true, sets *distance_m, and fills *hit (which may be NULL).
+ * direction is a unit vector. */
 bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
 		  const float direction[3], float least_m, float *distance_m,
 		  struct geometry_hit *hit);
-/* Whether any of them is met before most_m. */
+/* Returns whether any shown patch is hit before most_m. */
 bool geometry_blocks(const struct geometry *geometry, const struct cut *cut, const float from_m[3],
 		     const float direction[3], float most_m);
 

@@ -1,3 +1,4 @@
+/* A queue of jobs under one mutex, the threads that work on it, and a queue of answers. */
 #include "render/patches/pool.h"
 
 #include <errno.h>
@@ -16,7 +17,7 @@ struct job {
 	size_t object_bytes;
 };
 
-/* A list that is appended to at the end. */
+/* A singly linked list with a pointer to its end. */
 struct queue {
 	struct job *first, **last;
 };
@@ -29,7 +30,7 @@ struct pool {
 	bool stopping;
 	struct queue todo, done; /* under lock */
 	struct lattice lattice;
-	uint32_t busy; /* of the thread that gives and takes */
+	uint32_t busy; /* only used by the thread that gives and takes */
 	int fd;
 };
 
@@ -141,7 +142,8 @@ static void do_job(struct job *job, const struct lattice *lattice)
 	job->object = NULL;
 }
 
-/* Called with the lock held, which is not held while the job is done. false: nothing to do. */
+/* Runs one job. Called with the lock held, which is released while the job runs. Returns false
+ * where there is none. */
 static bool do_one(struct pool *pool)
 {
 	struct job *job = queue_take(&pool->todo);
@@ -156,7 +158,7 @@ static bool do_one(struct pool *pool)
 	queue_put(&pool->done, job);
 	pthread_cond_signal(&pool->idle);
 	const uint64_t one = 1;
-	/* The counter cannot overflow: it is read whenever an answer is taken. */
+	/* The counter cannot overflow: it is reset whenever answers are taken. */
 	ssize_t written = write(pool->fd, &one, sizeof(one));
 	(void)written;
 	return true;
@@ -275,7 +277,7 @@ void pool_quiet(struct pool *pool)
 {
 	uint64_t count;
 	ssize_t taken = read(pool->fd, &count, sizeof(count));
-	(void)taken; /* nothing to read: quiet already */
+	(void)taken; /* fails where the descriptor was not readable */
 }
 
 uint32_t pool_busy(const struct pool *pool)

@@ -1,6 +1,5 @@
-/* Worker threads that decode what arrived: tiles into pixels, patch groups into meshes that rays
- * and GPU can use, their labels. One thread gives and takes; answers are told through an eventfd.
- */
+/* Worker threads that decode objects: tiles into pixels, patch groups into meshes with a BVH, and
+ * labels. One thread gives and takes; an eventfd reports answers. */
 #ifndef GOPURA_RENDER_PATCHES_POOL_H
 #define GOPURA_RENDER_PATCHES_POOL_H
 
@@ -11,7 +10,7 @@
 
 enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS };
 
-/* A patch as decoded: mesh and the tree over it. */
+/* A decoded patch: its mesh and the BVH over it. */
 struct pool_patch {
 	struct patch_mesh mesh;
 	struct patch_bvh bvh;
@@ -19,9 +18,11 @@ struct pool_patch {
 
 struct pool_answer {
 	enum pool_kind kind;
-	uint64_t id;  /* as given */
-	int error;    /* 0, -EBADMSG, -ENOMEM */
-	uint8_t *rgb; /* tile: SAMPLE_IMAGE_PX square. Owned by who took the answer, like patches */
+	uint64_t id; /* as passed to pool_give */
+	int error;   /* 0, -EBADMSG, -ENOMEM */
+	/* tile: SAMPLE_IMAGE_PX square, 3 bytes a pixel. Owned by whoever took the answer, as are
+	 * patches and labels. */
+	uint8_t *rgb;
 	struct pool_patch *patches;
 	uint32_t patch_count;
 	struct label_group labels;
@@ -29,23 +30,28 @@ struct pool_answer {
 
 struct pool;
 
-/* Without workers the thread that gives decodes at once: answers come in the order of the gifts. */
+/* Creates the pool with at most 16 threads. With worker_count 0 pool_give decodes at once, and
+ * answers come in the order of the calls. The caller owns *out; it is NULL on failure. -ENOMEM, or
+ * what eventfd and pthread_create report. */
 must_check int pool_create(struct pool **out, uint32_t worker_count);
-void pool_destroy(struct pool *pool); /* waits for the work at hand */
+/* Waits for the jobs in progress and drops all others. NULL is fine. */
+void pool_destroy(struct pool *pool);
 
-/* Of all patches. Only while idle or after pool_forget. */
+/* Sets the lattice of all patches. Call it only while the pool is idle or after pool_forget. */
 void pool_set_lattice(struct pool *pool, const struct lattice *lattice);
-/* The object is copied. -ENOMEM. */
+/* Queues an object for decoding; it is copied. id is returned with the answer. -ENOMEM. */
 must_check int pool_give(struct pool *pool, enum pool_kind kind, uint64_t id, struct bytes object);
-/* false: nothing is done. */
+/* Takes the next answer; the caller then owns its contents. Returns false where none is ready. */
 bool pool_take(struct pool *pool, struct pool_answer *answer);
+/* Frees the contents of an answer; a zeroed one is fine. */
 void pool_answer_finish(struct pool_answer *answer);
-uint32_t pool_busy(const struct pool *pool); /* given and not yet taken */
-/* Drops what was given and not taken, waiting for the work at hand. */
+/* Returns how many objects were given and not yet taken. */
+uint32_t pool_busy(const struct pool *pool);
+/* Drops everything given and not taken; it waits for the jobs in progress. */
 void pool_forget(struct pool *pool);
-/* Readable from when work was done until pool_quiet. */
+/* Returns a descriptor, borrowed, that is readable from the end of a job until pool_quiet. */
 int pool_fd(const struct pool *pool);
-/* The descriptor is readable no more until another answer comes; answers stay. */
+/* Resets the descriptor until another answer comes; the answers stay. */
 void pool_quiet(struct pool *pool);
 
 #endif

@@ -1,10 +1,11 @@
+/* Open addressing with linear probing, at most half full, and backward shifts on removal. */
 #include "render/plan/cell_map.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Finaliser of MurmurHash3: neighbouring keys spread. */
+/* The finaliser of MurmurHash3, which spreads neighbouring keys. */
 static uint32_t place_of(const struct map *map, uint64_t key)
 {
 	key ^= key >> 33;
@@ -88,7 +89,7 @@ void map_remove(struct map *map, uint64_t key)
 	uint32_t mask = map->capacity - 1, hole = place_of(map, key);
 	while (map->keys[hole] != key)
 		hole = (hole + 1) & mask;
-	/* Whoever probed past the hole moves back into it. */
+	/* Entries that were probed past the hole move back into it. */
 	for (uint32_t at = (hole + 1) & mask; map->values[at] != MAP_NONE; at = (at + 1) & mask) {
 		uint32_t home = place_of(map, map->keys[at]);
 		if (((at - home) & mask) < ((at - hole) & mask))

@@ -1,3 +1,5 @@
+/* Ranks the sampling points of a piece, tests which of them see it, and chooses entries and wants
+ * greedily by gain. */
 #include "render/plan/plan.h"
 
 #include <math.h>
@@ -6,15 +8,15 @@
 #include "geometry/vec.h"
 
 enum {
-	POINTS_BEST = 12,    /* considered for a piece, of all */
-	POINTS_RESIDENT = 6, /* besides, of those with tiles */
-	POINTS_ENOUGH = 3,   /* that see all of it */
+	POINTS_BEST = 12,    /* best points considered for a piece */
+	POINTS_RESIDENT = 6, /* further ones, among points with tiles on the GPU */
+	POINTS_ENOUGH = 3,   /* points that see all of the piece, after which ray tests stop */
 	CANDIDATES_MAX = 2 * (POINTS_BEST + POINTS_RESIDENT),
 };
 
-/* Below these a further face or fetch is not worth its cost. */
+/* Below these gains a further face or fetch is not worth its cost. */
 static const float entry_gain_least = 0.05f, want_gain_least = 0.02f;
-/* What is shown stays unless another is better by this. */
+/* A shown face stays unless another is better by this factor. */
 static const float loyalty = 1.1f;
 
 bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3],
@@ -29,7 +31,7 @@ bool plan_footprint(struct plan_area *out, face_key face, const float sample_m[3
 		float x = vec_dot(to, axes->right), y = vec_dot(to, axes->up);
 		float z = vec_dot(to, axes->forward);
 		any |= z > 0;
-		/* Beside or behind the face: as far as its rim. */
+		/* Points beside or behind the face are clamped to its border. */
 		z = vec_most(z, 1e-3f * (fabsf(x) + fabsf(y)) + 1e-6f);
 		float u = vec_least(vec_most(x / z, -1), 1), v = vec_least(vec_most(y / z, -1), 1);
 		out->u0 = vec_least(out->u0, u);
@@ -47,7 +49,7 @@ struct candidate {
 	float sample_m[3];
 	uint8_t level;
 	bool resident;
-	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* worth, 0 where it does not see */
+	float ideal[PIECE_PROBES], now[PIECE_PROBES]; /* worth; 0 where it does not see the probe */
 	float resident_half_px;
 };
 
@@ -127,12 +129,13 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 	}
 }
 
-/* Bit per probe: whether nothing is between. Remembered with the piece: neither moves. */
+/* Returns a bit mask of the probes that the point sees without an obstacle. The rays are remembered
+ * with the piece, since neither end moves. */
 static uint8_t sight_of(struct plan_choice *choice, const struct plan_world *world,
 			const struct plan_surface *surface, uint32_t point, const float sample[3])
 {
-	/* A slot for each value of the lowest bits, turned by the others: rows of the grid, whose
-	 * lengths are often powers of two, share them out. */
+	/* The slot is given by the lowest bits of the point's number, rotated by the higher bits:
+	 * rows of the grid, whose lengths are often powers of two, then spread over the slots. */
 	uint32_t high = point / PLAN_SIGHTS;
 	struct plan_sight *sight = &choice->sight[(point + high * 37) % PLAN_SIGHTS];
 	if (sight->point != high + 1)
@@ -156,7 +159,7 @@ void plan_forget_probe(struct plan_choice *choice, int probe)
 	}
 }
 
-/* Where most of what shows is. */
+/* Returns the probe near most of the visible area. */
 static const struct piece_probe *main_probe(const struct plan_surface *surface)
 {
 	int main = 0;
@@ -232,7 +235,8 @@ static uint32_t level_for(const struct plan_world *world, const struct plan_eye 
 	return plan_level(eye->texels * needed, repository_levels(world->repository));
 }
 
-/* Returns which probes it sees. */
+/* Adds the faces of a point as candidates. Returns a bit mask of the visible probes that it
+ * sees. */
 static uint8_t add_point(struct candidate *list, uint32_t *count, struct plan_choice *choice,
 			 const struct plan_world *world, const struct plan_eye *eye,
 			 const struct plan_surface *surface, uint8_t in_sight, uint32_t point)
@@ -272,7 +276,8 @@ static bool is_chosen(const struct plan_entry *entries, uint32_t count, face_key
 	return false;
 }
 
-/* Greedy: what is left undone of a probe is the product of what each face leaves undone. */
+/* Chooses greedily. What remains to be improved at a probe is the product of what each chosen face
+ * leaves. */
 static void choose_entries(struct plan_choice *choice, const struct candidate *list, uint32_t count,
 			   const struct plan_surface *surface)
 {
@@ -308,7 +313,7 @@ static void choose_entries(struct plan_choice *choice, const struct candidate *l
 	}
 }
 
-/* A piece is coloured well by one good image; so each probe counts its best alone, and a fetch is
+/* One good image colours a piece well. So each probe counts only its best image, and a fetch is
  * worth what it adds to that. */
 static void choose_wants(struct plan_choice *choice, const struct candidate *list, uint32_t count,
 			 const struct plan_surface *surface)
@@ -355,7 +360,8 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 		if (surface->weight[k] > 0)
 			in_sight |= (uint8_t)(1 << k);
 	rank_points(&ranked, world, eye, surface);
-	/* Rays are dear: once enough good points see it whole, worse ones add nothing. */
+	/* Rays are expensive: once enough good points see the whole piece, worse ones add
+	 * nothing. */
 	uint32_t whole = 0;
 	for (uint32_t i = 0; i < ranked.count; i++) {
 		if (whole >= POINTS_ENOUGH && !has_resident(world, ranked.point[i]))
@@ -368,7 +374,7 @@ void plan_piece(struct plan_choice *choice, const struct plan_world *world,
 	choose_wants(choice, list, count, surface);
 }
 
-/* ---- the paper's eight corners */
+/* ---- the eight corners of the paper */
 
 static void add_corner(struct plan_choice *choice, const struct plan_world *world,
 		       const struct plan_eye *eye, const struct plan_surface *surface,

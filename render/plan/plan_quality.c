@@ -1,3 +1,4 @@
+/* The quality formula of plan.h and what follows from it: worth, levels and priorities. */
 #include <math.h>
 
 #include "geometry/vec.h"
@@ -13,9 +14,9 @@ const struct plan_tuning plan_tuning = {
 };
 
 struct geometry {
-	float eye_distance, sample_distance, depth; /* depth: along the face's axis */
-	float eye_cosine, sample_cosine;            /* at the surface */
-	float angle_cosine;                         /* between the lines of sight */
+	float eye_distance, sample_distance, depth; /* depth: distance along the face's axis */
+	float eye_cosine, sample_cosine;            /* cosines at the surface */
+	float angle_cosine;                         /* between the two lines of sight */
 };
 
 static struct geometry look(const struct plan_eye *eye, const float point[3], const float normal[3],
@@ -29,7 +30,7 @@ static struct geometry look(const struct plan_eye *eye, const float point[3], co
 	g.eye_distance = vec_most(vec_normalise(to_eye), 1e-3f);
 	g.sample_distance = vec_most(vec_normalise(to_sample), 1e-3f);
 	g.depth = vec_most(g.depth, 1e-3f);
-	/* Scans have rims: what shows is the side that is turned to the eye. */
+	/* Scans have open borders: the visible side is the one that faces the eye. */
 	float side = vec_dot(to_eye, normal) < 0 ? -1 : 1;
 	g.eye_cosine = side * vec_dot(to_eye, normal);
 	g.sample_cosine = side * vec_dot(to_sample, normal);
@@ -37,7 +38,7 @@ static struct geometry look(const struct plan_eye *eye, const float point[3], co
 	return g;
 }
 
-/* Foreshortening acts on one of two directions: its root is the mean. */
+/* Foreshortening acts on one of two directions, so its square root is the mean. */
 static float needed(const struct plan_eye *eye, const struct geometry *g)
 {
 	return eye->focal_px * g->depth / g->eye_distance *
@@ -80,7 +81,7 @@ float plan_worth(float quality, float instead)
 {
 	if (quality <= instead)
 		return 0;
-	/* Quality is one over a squared penalty: two of its octaves are one of detail. */
+	/* Quality is one over a squared penalty, so two octaves of it are one octave of detail. */
 	return vec_least(log2f(quality / instead) / 16, 1);
 }
 
@@ -99,7 +100,8 @@ uint32_t plan_level(float needed_half_px, uint32_t level_count)
 
 uint32_t plan_priority(float gain, uint32_t bytes)
 {
-	/* From a hundredth of a pixel in a megabyte to the whole picture in a byte: 60 octaves. */
+	/* The scale has 64 octaves of pixels per byte, from 2^-30. It includes everything from a
+	 * hundredth of a pixel per megabyte to the whole picture per byte. */
 	float per_byte = gain / (float)(bytes > 0 ? bytes : 1);
 	float octaves = log2f(vec_most(per_byte, 1e-9f)) + 30;
 	float scaled = vec_least(vec_most(octaves / 64, 0), 1);

@@ -1,10 +1,12 @@
+/* Decodes the pages of samples, bricks and faces, and answers where the object of a tile or page
+ * lies. */
 #include "render/plan/repository.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A page's children, with the sums that tell where each lies. */
+/* The children of a page, with the offset at which each lies. */
 struct children {
 	struct hash page;
 	struct page_child *child; /* owned */
@@ -46,7 +48,7 @@ static void children_finish(struct children *children)
 	memset(children, 0, sizeof(*children));
 }
 
-/* Takes the page's children. */
+/* Takes ownership of the page's children. */
 static int children_take(struct children *out, struct page *page, struct hash hash)
 {
 	*out = (struct children){ .page = hash, .child = page->children };
@@ -110,7 +112,7 @@ void repository_finish(struct repository *repository)
 	memset(repository, 0, sizeof(*repository));
 }
 
-/* The page's children that are bricks must be children; else nothing could be fetched. */
+/* Every brick must refer to an existing child of the page; otherwise it could not be fetched. */
 static bool bricks_are_sane(const struct repository *r)
 {
 	uint32_t bricks = r->grid.bricks[0] * r->grid.bricks[1] * r->grid.bricks[2];
@@ -201,7 +203,7 @@ int repository_give_face(struct repository *repository, face_key key, struct byt
 {
 	struct message_want place;
 	if (repository_face(repository, key, &place, NULL) != REPOSITORY_PAGE)
-		return 0; /* there already */
+		return 0; /* here already, or not expected */
 	struct face_entry *face = calloc(1, sizeof(*face));
 	if (!face)
 		return -ENOMEM;
@@ -233,7 +235,7 @@ void repository_point_m(const struct repository *repository, uint32_t point, flo
 		out[i] = grid->origin_m[i] + grid->spacing_m[i] * (float)at[i];
 }
 
-/* The child of the samples page, and the point's place in that brick. */
+/* Returns the brick's child index in the samples page, and the point's index in that brick. */
 static uint32_t brick_of(const struct repository *r, uint32_t point, uint32_t *in_brick)
 {
 	const struct samples_page *grid = &r->grid;

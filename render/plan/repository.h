@@ -1,5 +1,5 @@
-/* What is known of the sampling repository: its grid, and as they arrive the pages of bricks and
- * faces, so that a tile's name and place can be told (pure; no GL). */
+/* What is known of the sampling repository: its grid, and the pages of bricks and faces as they
+ * arrive, from which the hash and location of a tile follow. Pure; no GL. */
 #ifndef GOPURA_RENDER_PLAN_REPOSITORY_H
 #define GOPURA_RENDER_PLAN_REPOSITORY_H
 
@@ -7,62 +7,70 @@
 #include "format/samples.h"
 #include "render/plan/cell_map.h"
 
-/* A face of a sampling point: point * CUBE_FACES + face; point = (z * count_y + y) * count_x + x.
- * A tile of it: the face's key, level, row and column. */
+/* A face_key is a face of a sampling point: point * CUBE_FACES + face, with point = (z * count_y +
+ * y) * count_x + x. A tile is named by the face's key, level, row and column. */
 typedef uint32_t face_key;
 struct tile_name {
 	face_key face;
 	uint8_t level, row, column;
 };
-uint64_t tile_name_pack(struct tile_name name); /* below 2^48 */
+/* Packs a name into a number below 2^48, and back. */
+uint64_t tile_name_pack(struct tile_name name);
 struct tile_name tile_name_unpack(uint64_t packed);
 
 enum repository_state {
-	REPOSITORY_EMPTY,   /* nothing of the model is seen there */
-	REPOSITORY_UNKNOWN, /* the brick's page is needed: *want is it */
-	REPOSITORY_PAGE,    /* the face shows something; its page is needed: *want is it */
-	REPOSITORY_READY,   /* tiles can be named */
+	REPOSITORY_EMPTY,   /* nothing of the model is visible there */
+	REPOSITORY_UNKNOWN, /* the page of its brick is needed first: *want */
+	REPOSITORY_PAGE,    /* the face has content; its page is needed: *want */
+	REPOSITORY_READY,   /* its page is here: tiles can be looked up */
 };
 
 struct repository {
-	bool ready; /* the samples page is there */
+	bool ready; /* the samples page has arrived */
 	struct samples_page grid;
 	uint32_t point_count;
 	/* Private. */
-	struct page page; /* of the samples; its bytes are kept */
+	struct page page; /* the samples page; page_bytes holds its bytes */
 	uint8_t *page_bytes;
 	struct hash page_hash;
-	struct brick_entry **bricks; /* per child of the page; NULL: not there. Owned. */
+	struct brick_entry **bricks; /* per child of the page; NULL: not here. Owned. */
 	struct face_entry **faces;   /* owned */
 	uint32_t face_count, face_capacity;
 	struct map face_of; /* face_key -> index of faces */
 };
 
+/* Frees everything and leaves it empty. */
 void repository_finish(struct repository *repository);
-/* The samples page. -EBADMSG, -ENOMEM. */
+/* Replaces everything with a new samples page. The object is copied. -EBADMSG, -ENOMEM; then it is
+ * empty. */
 must_check int repository_open(struct repository *repository, struct hash hash,
 			       struct bytes object);
-/* The page of a brick, by the child of the samples page that it is. */
+/* Adds the page of a brick; child is its index among the children of the samples page. A page that
+ * is here already is ignored. -EBADMSG, -ENOMEM. */
 must_check int repository_give_brick(struct repository *repository, uint32_t child,
 				     struct bytes object);
-/* The page of a face whose brick is here; a second time it is ignored. -EBADMSG, -ENOMEM. */
+/* Adds the page of a face whose brick is here; otherwise, or the second time, it is ignored.
+ * -EBADMSG, -ENOMEM. */
 must_check int repository_give_face(struct repository *repository, face_key face,
 				    struct bytes object);
 
-/* Where a sampling point is, metres. */
+/* Writes the position of a sampling point in metres. */
 void repository_point_m(const struct repository *repository, uint32_t point, float out[3]);
-/* want may be NULL. For REPOSITORY_UNKNOWN *brick_child is set too (may be NULL). */
+/* Returns what is known of a face. *want is set as the state says; want may be NULL. For
+ * REPOSITORY_UNKNOWN *brick_child is set too (may be NULL). */
 enum repository_state repository_face(const struct repository *repository, face_key face,
 				      struct message_want *want, uint32_t *brick_child);
-/* Where a brick's page lies; false: it is here already, or none is by that child. */
+/* Writes how to fetch the page of a brick. Returns false where it is here already, or no brick has
+ * this child index. */
 bool repository_brick(const struct repository *repository, uint32_t child,
 		      struct message_want *want);
-/* Whether anything is seen in the given sixteenths of the face (bits as in brick_page); true while
- * unknown. */
+/* Returns whether anything is visible in the given sixteenths of the face (bits as in brick_page);
+ * true while unknown. */
 bool repository_covers(const struct repository *repository, face_key face, uint16_t sixteenths);
-/* Levels of every face, 1 .. SAMPLE_LEVELS_MAX. */
+/* Returns the number of levels of every face, 1 .. SAMPLE_LEVELS_MAX. */
 uint32_t repository_levels(const struct repository *repository);
-/* false: the tile is absent, or the face's page is not there. */
+/* Writes how to fetch a tile. Returns false where the tile does not exist, or its face's page is
+ * not here. want may be NULL. */
 bool repository_tile(const struct repository *repository, struct tile_name name,
 		     struct message_want *want);
 
