@@ -1,8 +1,10 @@
+/* Adds jittered frames to a sum by blending with falling weights, and draws the sum. */
 #include "render/lumigraph/accumulation.h"
 
 #include <string.h>
 
-/* As many as are in flight: census, depths, picture, sum, words. More only delay the panel. */
+/* As many passes as can be in flight: visibility pass, depths, picture, sum, overlay. More would
+ * only delay the panel. */
 enum { PASSES_MAX = 6 };
 
 static const char square_fragment[] = "precision mediump float;\n"
@@ -62,7 +64,7 @@ void accumulation_break(struct accumulation *accumulation)
 	accumulation->count = accumulation->same = 0;
 }
 
-/* Halton's sequence in bases 2 and 3. */
+/* The Halton sequence in bases 2 and 3. */
 static float halton(uint32_t index, uint32_t base)
 {
 	float value = 0, digit = 1;
@@ -73,7 +75,7 @@ static float halton(uint32_t index, uint32_t base)
 	return value;
 }
 
-/* Of the last frames, as they weigh in the sum. */
+/* Returns the mean of the last frames' offsets with their weights in the sum. */
 static float mean_of_halton(uint32_t base)
 {
 	float sum = 0, weights = 0;
@@ -88,7 +90,8 @@ static float mean_of_halton(uint32_t base)
 void accumulation_offset(const struct accumulation *accumulation, bool changed, float *x_px,
 			 float *y_px)
 {
-	/* The last frames lie alike whenever they began, so one scene has one picture. */
+	/* The last frames have the same offsets whenever they began, so one scene always gives one
+	 * picture. */
 	uint32_t index =
 		(changed ? accumulation->count : accumulation->same) % ACCUMULATION_FRAMES + 1;
 	*x_px = halton(index, 2) - mean_of_halton(2);
@@ -117,8 +120,8 @@ void accumulation_add(struct accumulation *accumulation, const struct gl_place *
 		gl_target_bind(&accumulation->sum);
 		glDisable(GL_DEPTH_TEST);
 		glEnable(GL_BLEND);
-		/* Frame n weighs n: what the picture was is soon forgotten, and eight bits do not
-		 * swallow the last frames. */
+		/* Frame n has weight n: the previous picture fades out soon, and 8 bits per channel
+		 * still resolve the last frames. */
 		glBlendColor(0, 0, 0, 2.0f / (float)(before + 2));
 		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
 		draw_square(accumulation, accumulation->frame.colour);
@@ -141,11 +144,11 @@ void accumulation_let_go(struct accumulation *accumulation, const struct gl_plac
 	gl_target_destroy(&accumulation->frame);
 	gl_place_bind(place, accumulation->sum.width_px, accumulation->sum.height_px);
 	glDisable(GL_DEPTH_TEST);
-	/* Large ones, so that none is done before all have begun. */
+	/* Full-size passes, so that none ends before all have begun. */
 	for (int i = 0; i < PASSES_MAX; i++) {
 		draw_square(accumulation, accumulation->sum.colour);
 		glFlush();
 	}
 	glFinish();
-	glReleaseShaderCompiler(); /* of no use until the next scene */
+	glReleaseShaderCompiler(); /* not needed until the next scene */
 }

@@ -1,3 +1,5 @@
+/* Computes the reference cell, the reference depth and the projection rows for a piece and a
+ * face. */
 #include "render/lumigraph/aim.h"
 
 #include <math.h>
@@ -20,8 +22,8 @@ void aim_at(struct aim *out, const struct cube_axes *axes, const float point_m[3
 	float ahead = fmaxf(depth, 1e-3f);
 	out->cell[0] = whole_within(half + half * vec_dot(to, axes->right) / ahead, AIM_CELLS - 1);
 	out->cell[1] = whole_within(half - half * vec_dot(to, axes->up) / ahead, AIM_CELLS - 1);
-	/* A piece that comes near the point needs depths that are right against nothing: what is
-	 * divided by must not be a small difference. */
+	/* A piece near the sampling point needs depths relative to 0: the shader divides by the
+	 * depth, which must not be a small difference. */
 	bool far_off = depth > 2 * radius_m;
 	out->units = far_off ? whole_within(depth / aim_unit_m(far_m), AIM_DEPTH_UNITS - 1) : 0;
 	out->depth_m = out->units * aim_unit_m(far_m);

@@ -1,3 +1,5 @@
+/* Renders a face of a sampling point as depths and packs them, with grown silhouettes, into a
+ * sheet. */
 #include "render/lumigraph/depth.h"
 
 #include <errno.h>
@@ -9,24 +11,24 @@
 
 static const char draw_vertex[] =
 	"attribute vec3 a_position;\n"
-	"uniform vec4 u_lattice;\n" /* of the lattice's origin from the point, metres; step */
+	"uniform vec4 u_lattice;\n" /* lattice origin relative to the point, metres; step */
 	"uniform mat3 u_axes;\n"
 	"uniform float u_far;\n"
 	"uniform vec4 u_window;\n"
-	"uniform vec2 u_base;\n" /* depth to count from, in units; a unit's metres */
+	"uniform vec2 u_base;\n" /* reference depth in units; metres per unit */
 	"varying float v_depth;\n"
 	"void main() {\n"
 	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
-	/* Sampling points lie as far apart as the model is large, and as far from it. */
+	/* Sampling points are as far apart, and as far from the model, as its size allows. */
 	"	float n = u_far * 0.0007;\n"
-	/* Row 0 of a face is its top and row 0 of a texture its bottom: y is turned over. */
+	/* Row 0 of a face is at the top, row 0 of a texture at the bottom: y is flipped. */
 	"	vec2 at = (q.xy - u_window.xy * q.z) / u_window.zw;\n"
 	"	gl_Position = vec4(at.x, -at.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
 	"			   q.z);\n"
 	"	v_depth = q.z / u_base.y - u_base.x;\n"
 	"}\n";
 
-/* Two bytes: a unit (32 steps) has eight of the lower one's. */
+/* Writes two bytes. A unit (32 steps) is an eighth of the higher byte. */
 static const char draw_fragment[] =
 	"uniform float u_high;\n"
 	"varying float v_depth;\n"
@@ -36,12 +38,13 @@ static const char draw_fragment[] =
 	"	gl_FragColor = vec4(clamp(u_high + high, 0.0, 255.0), low, 0.0, 255.0) / 255.0;\n"
 	"}\n";
 
-/* Bytes stay apart, as mediump holds no sixteen bits; what is near is told by eleven of them. */
+/* The two bytes stay separate, because mediump cannot hold 16 bits; 11 bits suffice to compare
+ * which is nearer. */
 static const char grow_fragment[] =
-	"uniform FINE sampler2D u_raw;\n" /* by default lowp */
+	"uniform FINE sampler2D u_raw;\n" /* the default is lowp */
 	"uniform float u_texel;\n"
 	"varying vec2 v_at;\n"
-	"vec3 depth_at(vec2 at) {\n" /* bytes; both as one number */
+	"vec3 depth_at(vec2 at) {\n" /* the two bytes; both as one number */
 	"	vec4 t = texture2D(u_raw, at);\n"
 	"	vec2 d = t.a < 0.5 ? vec2(255.0) : floor(t.rg * 255.0 + 0.5);\n"
 	"	return vec3(d, d.x + d.y / 256.0);\n"
@@ -53,7 +56,7 @@ static const char grow_fragment[] =
 	"			vec3 d = depth_at(v_at + u_texel * vec2(float(x), float(y)));\n"
 	"			nearest = d.z < nearest.z ? d : nearest;\n"
 	"		}\n"
-	/* A step: more than a surface seen at a grazing angle climbs in a texel. */
+	/* A depth step: more than a surface seen at a grazing angle changes within a texel. */
 	"	vec2 d = own.z - nearest.z > 0.06 * own.z ? nearest.xy : own.xy;\n"
 	"	float high = floor(d.x / 8.0), middle = floor(d.y / 32.0);\n"
 	"	gl_FragColor = vec4(high / 31.0, ((d.x - 8.0 * high) * 8.0 + middle) / 63.0,\n"
@@ -118,7 +121,8 @@ static int make_sheet(struct depth *depth, int at)
 	int rc = make_sheet_of(depth, at, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, &complete);
 	if (rc < 0 || complete)
 		return rc;
-	/* GLES2 leaves open what can be drawn into; 5, 6 and 5 bits survive in 8 as well. */
+	/* GLES2 does not guarantee which formats can be drawn into; 5, 6 and 5 bits fit into 8 as
+	 * well. */
 	glDeleteFramebuffers(1, &depth->framebuffer[at]);
 	glDeleteTextures(1, &depth->sheet[at]);
 	rc = make_sheet_of(depth, at, GL_RGBA, GL_UNSIGNED_BYTE, &complete);
@@ -144,7 +148,7 @@ int depth_init(struct depth *depth, const struct depth_layout *layout)
 void depth_finish(struct depth *depth)
 {
 	gl_target_destroy(&depth->raw);
-	if (depth->sheet[0]) { /* else there may be no context */
+	if (depth->sheet[0]) { /* otherwise there may be no context */
 		glDeleteFramebuffers(DEPTH_SHEETS_MAX, depth->framebuffer);
 		glDeleteTextures(DEPTH_SHEETS_MAX, depth->sheet);
 	}
@@ -172,7 +176,8 @@ struct rectangle {
 	float low[2], high[2];
 };
 
-/* What shows of an edge in a face's plane; nothing behind the point. */
+/* Extends the rectangle by the visible part of an edge in the plane of the face; the part behind
+ * the point is ignored. */
 static void add_edge(struct rectangle *out, const float a[3], const float b[3])
 {
 	const float least = 1e-3f, *ends[2] = { a, b };
@@ -190,7 +195,7 @@ static void add_edge(struct rectangle *out, const float a[3], const float b[3])
 	}
 }
 
-/* Of the face that part in which the box shows, with a texel around it. */
+/* Writes the area of the face in which the model's box is visible, with a border of a texel. */
 static void find_window(float window[4], const struct cube_axes *axes, const float sample_m[3],
 			const struct root_page *root, int face_px)
 {
@@ -270,7 +275,7 @@ void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[place.sheet]);
 	glViewport(place.column * side_px, place.row * side_px, side_px, side_px);
 	glDisable(GL_DEPTH_TEST);
-	glDisable(GL_DITHER); /* its bits are no colour's */
+	glDisable(GL_DITHER); /* dithering would damage the packed bits */
 	glUseProgram(depth->grow_program);
 	gl_bind_texture(0, depth->raw.colour);
 	gl_draw_square();

@@ -1,3 +1,4 @@
+/* Computes the direction of the raking light and its shading, in GLSL and in C. */
 #include "render/lumigraph/raking_light.h"
 
 #include <math.h>
@@ -7,8 +8,8 @@
 #include "geometry/vec.h"
 
 #define AMBIENT 0.22
-#define DIRECT  1.30 /* a wall that the eye faces stays light enough with the lamp at its lowest */
-/* Where the light of the scan was less, its pictures have little to tell but noise. */
+#define DIRECT  1.30 /* keeps a wall facing the eye bright at the lowest light */
+/* Below this light the scan's pictures hold little but noise. */
 #define BAKED_MIN    0.3
 #define STRING_OF(x) #x
 #define STRING(x)    STRING_OF(x)
@@ -27,7 +28,7 @@ void rake_direction(const struct rake *rake, const float right[3], const float u
 	const float far = fminf(sqrtf(rake->at[0] * rake->at[0] + rake->at[1] * rake->at[1]), 1);
 	const float elevation =
 		(RAKE_HIGH_DEG + far * (RAKE_LOW_DEG - RAKE_HIGH_DEG)) * (float)M_PI / 180;
-	/* Just in the middle it comes from above, as light does. */
+	/* Exactly in the middle the light comes from above, as is natural. */
 	const float x = far > 1e-4f ? rake->at[0] / far : 0,
 		    y = far > 1e-4f ? rake->at[1] / far : 1;
 
@@ -36,9 +37,9 @@ void rake_direction(const struct rake *rake, const float right[3], const float u
 			cosf(elevation) * (x * right[k] + y * up[k]) - sinf(elevation) * forward[k];
 }
 
-/* What was baked goes out again, as the mesh knows it; what the pictures have beyond it, finer
- * relief and the stone's own colours, stays in. Half of the sky's share stays as well: joints and
- * corners are dark in every light. */
+/* The light that was baked into the colours is divided out, as far as the mesh knows it. What the
+ * pictures have beyond it (finer relief and the colours of the material itself) stays. Half of the
+ * sky's share stays as well: joints and corners are dark in any light. */
 const char rake_vertex_glsl[] =
 	"vec4 rake_of(vec3 normal, float open, vec4 sun) {\n"
 	"	float baked = sun.w > 0.5 ? light(normal, open, sun.xyz) : 1.0;\n"

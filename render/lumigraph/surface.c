@@ -1,3 +1,5 @@
+/* Holds the GLSL of the surface programs, builds them per number of faces and tools, and sets their
+ * uniforms. */
 #include "render/lumigraph/surface.h"
 
 #include <stdio.h>
@@ -7,21 +9,21 @@
 #include "geometry/vec.h"
 #include "render/lumigraph/aim.h"
 
-enum { DEPTH_UNIT = 2 }; /* and those after it, one for each face of a piece */
+enum { DEPTH_UNIT = 2 }; /* first of the units for depths, one for each face of a piece */
 
-/* Positions are metres relative to the eye, so that floats suffice anywhere in the model. */
+/* Positions are in metres relative to the eye, so that floats suffice anywhere in the model. */
 static const char vertex_common[] =
 	"invariant gl_Position;\n" /* the mark is drawn over it at equal depth */
 	"attribute vec3 a_position;\n"
 	"attribute vec2 a_normal;\n"
 	"attribute vec4 a_colour;\n"
 	"uniform mat4 u_clip;\n"
-	"uniform vec4 u_lattice;\n" /* origin from the eye, step */
-	"uniform vec4 u_sun;\n"     /* direction, 1 where the model is lit */
-	"varying vec4 v_colour;\n"  /* a: weight of the own colour among the images */
+	"uniform vec4 u_lattice;\n" /* origin relative to the eye; step */
+	"uniform vec4 u_sun;\n"     /* direction; 1 where the model is lit */
+	"varying vec4 v_colour;\n"  /* a: weight of the patch's own colour among the images */
 	"#ifdef CUT\n"
 	"uniform vec4 u_cut;\n"
-	"varying float v_cut;\n" /* metres before the plane */
+	"varying float v_cut;\n" /* metres in front of the section plane */
 	"#endif\n"
 	"#ifdef RAKE\n"
 	"varying vec4 v_rake;\n"
@@ -55,9 +57,9 @@ static const char plain_vertex[] = "void main() {\n"
 				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
 				   "}\n";
 
-/* Backs that show are where the plane went into solid matter: one flat colour, as on a drawing of a
- * section. What is cut away is left out last, as what dissolves is, where textures are looked up.
- */
+/* Visible back faces are where the plane cuts solid matter: one flat colour, as in a section
+ * drawing. In programs that look up textures, fragments that are cut away or dissolved are
+ * discarded last. */
 static const char tools_fragment[] =
 	"#ifdef RAKE\n"
 	"uniform vec3 u_rake;\n"
@@ -72,7 +74,7 @@ static const char tools_fragment[] =
 	"#endif\n"
 	"#ifdef CUT\n"
 	"	if (!gl_FrontFacing)\n"
-	"		colour = vec3(0.62, 0.28, 0.15);\n" /* the theme's laterite */
+	"		colour = vec3(0.62, 0.28, 0.15);\n" /* the laterite colour of the theme */
 	"#endif\n"
 	"	return colour;\n"
 	"}\n"
@@ -83,8 +85,8 @@ static const char tools_fragment[] =
 	"#endif\n"
 	"}\n";
 
-/* A number of each pixel's own, spread evenly over any few neighbours (Jimenez 2014, "Next
- * generation post processing in Call of Duty: Advanced Warfare", interleaved gradient noise). */
+/* A fixed number for each pixel, evenly distributed over any few neighbours: interleaved gradient
+ * noise (Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare"). */
 static const char dissolve_none[] = "void dissolve() {}\n";
 static const char dissolve_some[] =
 	"#ifdef GL_FRAGMENT_PRECISION_HIGH\n"
@@ -92,7 +94,8 @@ static const char dissolve_some[] =
 	"#define PIXEL gl_FragCoord.xy\n"
 	"#else\n"
 	"#define NUMBER mediump\n"
-	"#define PIXEL mod(floor(gl_FragCoord.xy), 32.0)\n" /* of larger ones little is left */
+	/* mediump loses the digits of larger numbers */
+	"#define PIXEL mod(floor(gl_FragCoord.xy), 32.0)\n"
 	"#endif\n"
 	"uniform NUMBER vec2 u_range;\n"
 	"void dissolve() {\n"
@@ -112,11 +115,11 @@ static const char plain_fragment[] =
 	"			    1.0);\n"
 	"}\n";
 
-/* Per face five rows: the aim's three, the point and the blend's weight, and (half_px, the aim's
- * depth, 0, 0). The quality is plan_quality's twin. */
+/* Five rows per face: three of the aim; the sampling point and the blend's weight; (half_px, the
+ * aim's depth, 0, 0). quality() computes the same as plan_quality. */
 static const char blended_vertex[] =
 	"uniform vec4 u_face[5 * FACES];\n"
-	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, spacing by its penalty */
+	"uniform vec4 u_eye;\n"     /* focal_px, error_m, even, spacing times own penalty */
 	"uniform vec4 u_tune[2];\n" /* blur, parallax, angle, 0; facing low, 1 / (high - low) */
 	"varying vec4 v_face[FACES];\n"
 	"float quality(vec3 p, vec3 n, vec3 s, float depth, float half_px) {\n"
@@ -162,15 +165,16 @@ static const char blended_vertex[] =
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
-/* Constants that C and GLSL share come first, made by set_constants. Cells and depths count from
- * the aim's, which are whole, so all of it holds in mediump (tests/render/test_mediump.c). */
+/* Constants shared by C and GLSL are prepended (set_constants). Cells and depths are relative to
+ * those of the aim, which are integers, so all of it works in mediump
+ * (tests/render/test_mediump.c). */
 static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
-	"uniform FINE sampler2D u_cells, u_depths[FACES];\n" /* by default lowp */
-	"uniform vec4 u_place[FACES];\n"  /* the aim's cell; the face's first in the texture */
-	"uniform vec4 u_window[FACES];\n" /* of cells, place in the depths: scale, offset */
-	"uniform vec3 u_base[FACES];\n"   /* the aim's depth in metres; in units, as 64 x + y */
-	"uniform vec2 u_depth;\n"         /* a unit in metres, the nearest */
+	"uniform FINE sampler2D u_cells, u_depths[FACES];\n" /* the default is lowp */
+	"uniform vec4 u_place[FACES];\n"  /* the aim's cell; the face's first cell in the texture */
+	"uniform vec4 u_window[FACES];\n" /* from cells to the depth sheet: scale, offset */
+	"uniform vec3 u_base[FACES];\n"   /* the aim's depth in metres; and in units, as 64 x + y */
+	"uniform vec2 u_depth;\n"         /* metres per unit; the nearest depth */
 	"uniform float u_share, u_slack;\n"
 	"varying vec4 v_colour;\n"
 	"varying vec4 v_face[FACES];\n"
@@ -184,7 +188,8 @@ static const char blended_fragment[] =
 	"	if (max(outside.x, outside.y) > CELLS / 2.0)\n"
 	"		return vec4(0.0);\n"
 	"	vec3 d = texture2D(depths, way * window.xy + window.zw).rgb;\n"
-	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n" /* 5, 6, 5 bits; some return 8 */
+	/* 5, 6, 5 bits; some drivers keep 8 */
+	"	d = floor(d * vec3(31.0, 63.0, 31.0) + 0.5);\n"
 	"	d.xy -= base.yz;\n"
 	"	float behind = face.z - dot(d, vec3(64.0, 1.0, 1.0 / 32.0)) * u_depth.x;\n"
 	"	float slack = u_slack + 0.001 * z;\n"
@@ -192,7 +197,8 @@ static const char blended_fragment[] =
 	"	if (w < 0.0002)\n"
 	"		return vec4(0.0);\n"
 	"	vec4 tile = texture2D(u_cells, (place.zw + cell) / CELL_GRID) * 255.0;\n"
-	"	float share = floor(tile.b + 0.5) / CELLS;\n" /* of the tile, that a cell is */
+	/* share of the tile that a cell covers */
+	"	float share = floor(tile.b + 0.5) / CELLS;\n"
 	"	vec2 local = way * share + (place.xy * share - floor((cell + 0.5) * share));\n"
 	"	vec2 at = floor(tile.rg + 0.5 - MIDDLE) * IMAGE + (local * TILE + APRON);\n"
 	"	w *= tile.a / 255.0;\n"
@@ -211,7 +217,7 @@ static const char blended_fragment[] =
 	"	float share = sum.a / (sum.a + own);\n"
 	"	gl_FragColor = vec4(mix(lit_by_tools(colour), vec3(share), u_share), 1.0);\n"
 	"	cut_away();\n"
-	"	dissolve();\n" /* last: SwiftShader reads a texture after a discard astray */
+	"	dissolve();\n" /* last: SwiftShader reads textures wrongly after a discard */
 	"}\n";
 
 static void find_uniforms(struct surface_program *p)
@@ -240,12 +246,13 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 		 "#define FACES %d\n"
 		 "#define CELLS %d.0\n"
 		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
-		 "#define IMAGE %.9f\n" /* the slots' sides as shares of the atlas */
+		 "#define IMAGE %.9f\n" /* sides within a slot, as shares of the atlas */
 		 "#define APRON %.9f\n"
 		 "#define TILE %.9f\n"
 		 "#define MIDDLE %d.0\n"
 		 "#define OWN_SHARE 0.05\n"
-		 "#define DOUBT 20.0\n", /* of an image that says other than the patch itself */
+		 /* penalty for an image that differs from the patch's own colour */
+		 "#define DOUBT 20.0\n",
 		 faces, AIM_CELLS, (int)tiles->faces_across * TILES_CELLS,
 		 (int)tiles->face_rows * TILES_CELLS, (double)(SAMPLE_IMAGE_PX / atlas_px),
 		 (double)(SAMPLE_APRON_PX / atlas_px), (double)(SAMPLE_TILE_PX / atlas_px),
@@ -344,7 +351,7 @@ void surface_finish(struct surface *surface)
 	memset(surface, 0, sizeof(*surface));
 }
 
-/* The program with the tools that are on. */
+/* Returns the program with the active tools; builds it where it is missing. */
 static const struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
 					 int program)
 {
@@ -421,7 +428,7 @@ void surface_dissolve(const struct surface *surface, struct dissolve_range range
 		glUniform2f(p->range, range.low, range.high);
 }
 
-/* From a place of the aim's cells to one in the atlas of depths. */
+/* Computes the mapping from the aim's cells to the depth sheet. */
 static void place_window(float out[4], const struct depth *depth, int slot, const struct aim *aim)
 {
 	const float *window = depth->face[slot].window;
@@ -431,7 +438,8 @@ static void place_window(float out[4], const struct depth *depth, int slot, cons
 	const float corner[2] = { (float)place.column, (float)place.row };
 	const float half = AIM_CELLS / 2;
 	for (int k = 0; k < 2; k++) {
-		/* A hair less, so that the face's rim is not its neighbour's. */
+		/* Slightly less, so that the border of the face does not read its neighbour's
+		 * texels. */
 		float scale = 0.4999f / window[2 + k] / grid[k];
 		float from = (aim->cell[k] - half) / half - middle[k];
 		out[k] = scale / half;
@@ -441,7 +449,7 @@ static void place_window(float out[4], const struct depth *depth, int slot, cons
 	}
 }
 
-/* What the shader is told of the faces, one after the other. */
+/* The uniforms of the faces, one after the other. */
 struct told {
 	float face[PLAN_ENTRIES][20], place[PLAN_ENTRIES][4], window[PLAN_ENTRIES][4];
 	float base[PLAN_ENTRIES][3];

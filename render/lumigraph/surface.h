@@ -1,5 +1,5 @@
-/* The programs that colour a patch: its own colours under the light, and the images of the faces
- * that see it, tested for occlusion, weighted and blended (docs/lumigraph.md). */
+/* The shader programs that colour a patch: by its own colours under the light, and by the images of
+ * the faces that see it, tested for occlusion, weighted and blended (docs/lumigraph.md). */
 #ifndef GOPURA_RENDER_LUMIGRAPH_SURFACE_H
 #define GOPURA_RENDER_LUMIGRAPH_SURFACE_H
 
@@ -17,47 +17,53 @@ struct surface_program {
 		rake, cut;
 };
 
-/* A program for each number of faces: none, the patch's own colours, is the cheapest; and one each
- * for patches that dissolve, which leave out pixels. */
+/* A program for each number of faces (none means the patch's own colours, the cheapest), and as
+ * many again for patches that dissolve, which discard pixels. */
 enum { SURFACE_PROGRAMS = 2 * (PLAN_ENTRIES + 1) };
 
-/* All that again for each tool that is on, made when first drawn with: most visits need none. */
+/* The same set for each combination of active tools. It is built when first drawn with, because
+ * most visits need none. */
 enum { SURFACE_RAKE = 1, SURFACE_CUT = 2, SURFACE_TOOLS = 4 };
 
 struct surface {
 	struct surface_program of[SURFACE_TOOLS][SURFACE_PROGRAMS];
-	const struct surface_program *used; /* of the last surface_begin */
+	const struct surface_program *used; /* program of the last surface_begin */
 	const struct tiles *tiles;          /* borrowed */
 	bool lacks[SURFACE_TOOLS];          /* the driver refused one: drawn without the tools */
 };
 
-/* For the sizes of those textures, which must outlive it. */
+/* Builds the programs without tools. tiles gives the texture sizes; it is borrowed and must outlive
+ * the surface. Errors as gl_program_build. */
 must_check int surface_init(struct surface *surface, const struct tiles *tiles);
+/* Deletes the programs; zeroed is fine. */
 void surface_finish(struct surface *surface);
 
 struct surface_frame {
 	const struct view *view;
 	const struct root_page *root;
-	const struct tiles *tiles; /* NULL: the patches' own colours */
+	const struct tiles *tiles; /* NULL: only the patches' own colours */
 	const struct depth *depth;
 	const struct repository *repository;
-	struct rake rake; /* the view has the section */
-	bool even;   /* faces weigh what their blend says, whatever they see (the eight corners) */
-	bool shares; /* draws how much of a pixel images colour, instead of its colour */
+	struct rake rake; /* the raking light; the section plane is in the view */
+	/* faces have the weight of their blend, whatever they see (the eight corners) */
+	bool even;
+	bool shares; /* draws the share of a pixel that images colour, instead of its colour */
 };
 
-/* The program for a piece by which of its faces can be drawn now; below 0: it shows nowhere. */
+/* Returns the program for a piece, by how many of its faces can be drawn now; negative where the
+ * piece is drawn nowhere. */
 int surface_choose(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],
 		   struct dissolve_range range);
-/* How many faces a program blends: 0..PLAN_ENTRIES. */
+/* Returns how many faces a program blends: 0..PLAN_ENTRIES. */
 int surface_faces(int program);
-/* Sets up state and uniforms for the program's pieces; geometry_bind and, but for none,
- * surface_dissolve and surface_blend follow per patch and piece. With a section both sides of
- * triangles are needed: the backs are where solid matter is cut. */
+/* Sets up the state and uniforms of a program. Then, per patch, call geometry_bind and
+ * surface_dissolve, and per piece surface_blend (unless the program blends no faces). With a
+ * section plane both sides of triangles must be drawn: back faces show where solid matter is
+ * cut. */
 void surface_begin(struct surface *surface, const struct surface_frame *frame, int program);
-/* Where the patch that is drawn next shows; of no effect in programs that draw it whole. */
+/* Sets the pixels in which the next patch is drawn; no effect in programs that draw it whole. */
 void surface_dissolve(const struct surface *surface, struct dissolve_range range);
-/* The faces of the piece that is drawn next; error_m as in plan_quality. */
+/* Sets the faces of the next piece; error_m as in plan_quality. */
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
 		   const struct blend blend[PLAN_ENTRIES], const struct piece *piece,
 		   float error_m);

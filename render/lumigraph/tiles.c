@@ -1,3 +1,4 @@
+/* Manages the slots of the atlas and of the faces, and keeps the indirection texture up to date. */
 #include "render/lumigraph/tiles.h"
 
 #include <errno.h>
@@ -25,13 +26,13 @@ static int make_textures(struct tiles *tiles)
 	return rc;
 }
 
-/* Drivers keep RGB in four bytes a pixel. */
+/* Drivers store RGB with four bytes a pixel. */
 static bool fits(int side_px, uint64_t budget_bytes)
 {
 	return 4ull * (uint64_t)side_px * (uint64_t)side_px <= budget_bytes;
 }
 
-/* As many slots as board and budget allow, four a row at least. */
+/* Chooses as many slots as board and budget allow, at least four in a row. */
 static void choose_size(struct tiles *tiles, uint64_t budget_bytes)
 {
 	enum { LEAST = 4 };
@@ -108,7 +109,7 @@ void tiles_begin(struct tiles *tiles)
 
 /* ---- cells */
 
-/* The cells that a tile covers: a square of `side` at (row, column) * side. */
+/* The cells that a tile covers: a square of `side` cells at (row, column) * side. */
 struct cells {
 	int side, row, column;
 };
@@ -126,7 +127,8 @@ static void cover(struct tiles_face *face, struct tile_name name, uint32_t slot,
 		for (int x = cells.column; x < cells.column + cells.side; x++) {
 			if (face->level[y][x] >= (int)name.level)
 				continue;
-			/* Only what had nothing fades; a sharper picture just takes over. */
+			/* Only a cell that was empty fades in; a sharper picture replaces the old
+			 * one at once. */
 			if (face->level[y][x] < 0)
 				face->born_ms[y][x] = now_ms;
 			face->level[y][x] = (int8_t)name.level;
@@ -136,7 +138,7 @@ static void cover(struct tiles_face *face, struct tile_name name, uint32_t slot,
 	face->fading = face->dirty = true;
 }
 
-/* After a tile left: what else covers its cells. */
+/* After a tile was dropped, finds which coarser tile now covers its cells. */
 static void uncover(struct tiles *tiles, struct tiles_face *face, struct tile_name gone)
 {
 	struct cells cells = cells_of(gone);
@@ -180,7 +182,7 @@ static void drop_face(struct tiles *tiles, struct tiles_face *face)
 	face->used = false;
 }
 
-/* Without memory it may be fetched once more: no harm. */
+/* On lack of memory it may be fetched once more, which does no harm. */
 static void decline(struct tiles *tiles, struct tile_name name)
 {
 	int rc = map_set(&tiles->declined, tile_name_pack(name), 1);
@@ -215,7 +217,8 @@ static void drop_tile(struct tiles *tiles, uint32_t slot)
 		drop_face(tiles, face);
 }
 
-/* A free slot, else the one used longest ago, but none of this round. MAP_NONE: no such. */
+/* Returns a free slot, else the one used longest ago outside this round. MAP_NONE: there is
+ * none. */
 static uint32_t take_slot(struct tiles *tiles)
 {
 	uint32_t best = MAP_NONE;
@@ -266,7 +269,7 @@ bool tiles_has(const struct tiles *tiles, struct tile_name name)
 	return map_get(&tiles->slot_of, tile_name_pack(name)) != MAP_NONE;
 }
 
-/* Of a column or row of slots in the atlas. */
+/* Returns the pixel position of a column or row of slots in the atlas. */
 static int place_px(const struct tiles *tiles, int slot)
 {
 	int place = (slot - tiles->slots_before) * SAMPLE_IMAGE_PX;
@@ -284,7 +287,7 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 		decline(tiles, name);
 		return -ENOSPC;
 	}
-	face->tile_count++; /* holds the face while a slot is sought */
+	face->tile_count++; /* keeps the face while a slot is searched */
 	uint32_t slot = take_slot(tiles);
 	int rc = slot == MAP_NONE ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
 	if (rc < 0) {

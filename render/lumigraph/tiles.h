@@ -1,10 +1,11 @@
-/* Image tiles on the GPU as a virtual texture for GLES2's eight units.
+/* Image tiles on the GPU as a virtual texture, within the eight texture units of GLES2.
  *
- * Tiles lie in an atlas of slots. A face of a sampling point that has any tile owns a face slot:
- * 32 x 32 cells of an indirection texture, each naming the finest tile that covers it (atlas
- * column, row, tiles a side at its level, weight while it fades in), and a square of the depth
- * atlas (render/lumigraph/depth.h) of the same number. Past the budgets the face or tile used
- * longest ago goes first, never one that is in use now. */
+ * Tiles lie in the slots of an atlas. A face of a sampling point that has any tile owns a face
+ * slot: 32 x 32 cells of an indirection texture, and a square of the depth sheets
+ * (render/lumigraph/depth.h) with the same number. Each cell names the finest tile that covers it
+ * (atlas column and row, tiles per side at its level, and a weight while it fades in). Over the
+ * budget, the face or tile used longest ago is dropped first, never one that is in use now. One
+ * thread, with a current GL context. */
 #ifndef GOPURA_RENDER_LUMIGRAPH_TILES_H
 #define GOPURA_RENDER_LUMIGRAPH_TILES_H
 
@@ -13,69 +14,73 @@
 #include "render/plan/repository.h"
 
 enum {
-	TILES_CELLS = AIM_CELLS, /* a side: tiles of the finest level */
+	TILES_CELLS = AIM_CELLS, /* cells per side; as many as tiles of the finest level */
 	TILES_FACES_MAX = 64,
 	TILES_FADE_MS = 250,
 };
 
 struct tiles_face {
 	face_key key;
-	bool used;                    /* holds a face */
-	uint32_t stamp;               /* last plan that used it */
-	uint32_t tile_count, version; /* version: changes with every tile that comes or goes */
-	int8_t level[TILES_CELLS][TILES_CELLS]; /* finest that is there, -1: none; [row][column] */
+	bool used;                    /* the slot holds a face */
+	uint32_t stamp;               /* last round (tiles_begin) that used it */
+	uint32_t tile_count, version; /* version changes with every tile that comes or goes */
+	int8_t level[TILES_CELLS][TILES_CELLS]; /* finest level there, -1: none; [row][column] */
 	uint16_t slot[TILES_CELLS][TILES_CELLS];
 	int64_t born_ms[TILES_CELLS][TILES_CELLS];
-	bool fading, dirty; /* the indirection texture lags behind */
+	bool fading, dirty; /* the indirection texture must be updated */
 };
 
 struct tiles {
 	GLuint atlas, indirection;
 	int atlas_px, slots_across; /* the atlas is square */
-	bool repeats;               /* without highp, so that coordinates are near 0 */
-	int slots_before;           /* 0, a side: of those across */
+	bool repeats;               /* it repeats; without highp, to keep coordinates near 0 */
+	int slots_before;           /* slots per side at negative coordinates; 0 with highp */
 	uint32_t slot_count;
-	uint32_t faces_across, face_rows, face_count; /* slots of faces */
+	uint32_t faces_across, face_rows, face_count; /* face slots */
 	/* Private. */
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
 	struct tiles_face *faces;
-	uint32_t *slot_season; /* when it came */
+	uint32_t *slot_season; /* season in which it came */
 	uint32_t season;
-	struct map declined; /* tiles that came and went within a season */
+	struct map declined; /* tiles that came and went within a season, or found no room */
 	struct map slot_of, face_of;
 	uint32_t stamp, version;
-	face_key *keys; /* of the faces in use, dense */
+	face_key *keys; /* the faces in use, without gaps */
 	uint32_t key_count;
 };
 
-/* budget_bytes: for the atlas (3 bytes a pixel) alone. Rows of face slots: at most
- * TILES_FACES_MAX in all. */
+/* Allocates the atlas and the face slots. budget_bytes is for the atlas alone, counted as 4 bytes a
+ * pixel; it holds at least 4 x 4 slots. faces_across x face_rows is at most TILES_FACES_MAX.
+ * -ENOMEM, or as gl_texture_create. */
 must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across,
 			  uint32_t face_rows);
+/* Frees everything; zeroed is fine. */
 void tiles_finish(struct tiles *tiles);
-void tiles_clear(struct tiles *tiles); /* forgets all, keeps the textures */
+void tiles_clear(struct tiles *tiles); /* Drops all tiles and faces and keeps the textures. */
 
-/* A new round of use: what is not touched from here on may go. */
+/* Starts a new round of use: what is not touched from now on may be dropped. */
 void tiles_begin(struct tiles *tiles);
 /* Marks a resident face, and its tiles under the rectangle (-1..1), as in use. */
 void tiles_touch(struct tiles *tiles, face_key face, float u0, float v0, float u1, float v1);
 
-/* Uploaded and resident; whether it is in use does not matter. */
+/* Returns whether a tile is resident, in use or not. */
 bool tiles_has(const struct tiles *tiles, struct tile_name name);
-/* Uploads. -ENOSPC: everything there is in use. */
+/* Uploads a tile: rgb is SAMPLE_IMAGE_PX square, 3 bytes a pixel. A resident tile is ignored.
+ * -ENOSPC: everything there is in use; then it is declined. */
 must_check int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb);
-/* Face slot, -1: no tile of it is there. */
+/* Returns the slot of a face, -1: none of its tiles is resident. */
 int tiles_face_slot(const struct tiles *tiles, face_key face);
-/* Finest level at a place of a face (-1..1), -1: none. */
+/* Returns the finest level at a place of a face (-1..1), -1: none. */
 int tiles_level_at(const struct tiles *tiles, face_key face, float u, float v);
-/* More is in use than there is room for: a tile that came and had to go again within a season, or
- * found no room, is not worth fetching until the next one. */
+/* Starts a new season. A tile that came and was dropped within one season, or found no room, is
+ * declined: it is not worth fetching until the next season, because more is in use than fits. */
 void tiles_begin_season(struct tiles *tiles);
+/* Returns whether a tile was declined in this season. */
 bool tiles_is_declined(const struct tiles *tiles, struct tile_name name);
-/* Room for so many more tiles without taking one that is in use. */
+/* Returns how many more tiles fit without dropping one that is in use. */
 uint32_t tiles_room(const struct tiles *tiles);
-/* Advances fades and uploads what changed. Returns whether any fade runs. */
+/* Advances fades and uploads changed cells. Returns whether any fade is in progress. */
 bool tiles_tick(struct tiles *tiles);
 
 #endif

@@ -1,3 +1,5 @@
+/* Draws pieces as numbers and depths into 320 x 180 pixels, reads them back and decodes single
+ * pixels. */
 #include "render/lumigraph/visibility.h"
 
 #include <errno.h>
@@ -6,12 +8,13 @@
 
 #include "geometry/vec.h"
 
-static const float far_m = 1000; /* depths are 16 bits of it: 15 mm */
+static const float far_m = 1000; /* far limit of depths, which have 16 bits: steps of 15 mm */
 
 static const char visibility_vertex[] =
 	"attribute vec3 a_position;\n"
 	"uniform vec4 u_lattice;\n"
-	"uniform vec3 u_right, u_up, u_forward;\n" /* right and up over the tangents */
+	/* right and up are divided by the tangents of the field of view */
+	"uniform vec3 u_right, u_up, u_forward;\n"
 	"varying float v_depth;\n"
 	"#ifdef CUT\n"
 	"uniform vec4 u_cut;\n"
@@ -85,7 +88,8 @@ static const struct visibility_program *program_for(struct visibility *visibilit
 	if (!view_is_cut(&visibility->view))
 		return &visibility->whole;
 	if (!visibility->section.program && build(&visibility->section, "#define CUT\n") < 0)
-		return &visibility->whole; /* what is cut away then hides what it hid */
+		/* the part that is cut away then still hides what is behind it */
+		return &visibility->whole;
 	return &visibility->section;
 }
 

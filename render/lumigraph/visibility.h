@@ -1,6 +1,6 @@
-/* Which surface is in sight, counted: the pieces in the frustum are drawn into a small picture as
- * numbers, sides and depths, and read back. What is hidden wants nothing, and what shows is judged
- * by the places of it that show. */
+/* The visibility pass: finds which surface is visible. The pieces in the frustum are drawn into a
+ * small picture as numbers, sides and depths, and read back. A hidden piece wants nothing, and a
+ * visible one is judged by its visible points. Needs a current GL context. */
 #ifndef GOPURA_RENDER_LUMIGRAPH_VISIBILITY_H
 #define GOPURA_RENDER_LUMIGRAPH_VISIBILITY_H
 
@@ -15,31 +15,36 @@ struct visibility {
 	struct visibility_program {
 		GLuint program;
 		GLint right, up, forward, lattice, number, cut;
-	} whole, section; /* the latter for views that are cut, made when first needed */
+	} whole, section; /* section is for views with a section plane, built when first needed */
 	const struct visibility_program *used;
 	uint8_t *pixels; /* owned */
 	struct view view;
 };
 
 struct visibility_point {
-	uint32_t piece; /* as numbered */
-	bool back;      /* of a triangle: it turns clockwise to the eye */
+	uint32_t piece; /* the number given to visibility_number */
+	bool back;      /* a back face: clockwise as seen from the eye */
 	float at_m[3];
 };
 
+/* Builds the program and the target. -ENOMEM, or as gl_program_build and gl_target_create. */
 must_check int visibility_init(struct visibility *visibility);
+/* Frees everything; zeroed is fine. */
 void visibility_finish(struct visibility *visibility);
 
-/* Afterwards for each piece visibility_number, then its patch bound and its triangles drawn. */
+/* Begins the pass. Then, for each piece, call visibility_number, bind its patch and draw its
+ * triangles. */
 void visibility_begin(struct visibility *visibility, const struct view *view,
 		      const struct root_page *root);
-/* The same once more where other things were drawn between. */
+/* Continues the pass after other things were drawn. */
 void visibility_resume(struct visibility *visibility, const struct root_page *root);
 void visibility_number(const struct visibility *visibility,
-		       uint32_t piece); /* below VISIBILITY_PIECES_MAX */
-/* Reads the picture. */
+		       /* Sets the number of the next piece, below VISIBILITY_PIECES_MAX. */
+		       uint32_t piece);
+/* Reads the picture back; waits for the GPU. Errors as gl_check. */
 must_check int visibility_end(struct visibility *visibility);
-/* What shows at a place of it; false: nothing. */
+/* Writes what is visible at a pixel of the small picture; y counts upwards. Returns false where
+ * there is nothing. */
 bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out);
 
 #endif
