@@ -17,12 +17,13 @@ must_check int canvas_create(struct canvas **out, const struct display_options *
 /* Stops showing and frees everything. NULL and a half-built canvas are fine. */
 void canvas_destroy(struct canvas *canvas);
 
-/* What it is: DISPLAY_DRM or DISPLAY_HEADLESS, and its size. */
+/* Returns what it is: DISPLAY_DRM or DISPLAY_HEADLESS. */
 enum display_kind canvas_kind(const struct canvas *canvas);
+/* Its size in pixels. */
 int canvas_width_px(const struct canvas *canvas);
 int canvas_height_px(const struct canvas *canvas);
 
-/* These work like the functions of the same name in display.h. */
+/* Like display_fd, display_wait_ms, display_dispatch, display_ready and display_is_dark. */
 int canvas_fd(const struct canvas *canvas);
 int canvas_wait_ms(const struct canvas *canvas);
 must_check int canvas_dispatch(struct canvas *canvas);

@@ -43,9 +43,9 @@ must_check int display_create(struct display **out, const struct display_options
 /* Frees the display and its GL context. NULL and a half-built display are fine. */
 void display_destroy(struct display *display);
 
-/* What it turned out to be, and its size in pixels; the size of the framebuffer, before
- * rotation. */
+/* Returns what DISPLAY_AUTO turned out to be. */
 enum display_kind display_kind(const struct display *display);
+/* The size of the framebuffer, before rotation. */
 int display_width_px(const struct display *display);
 int display_height_px(const struct display *display);
 /* Returns the width of the visible area in millimetres, from the panel's EDID; 0: not known. */

@@ -73,9 +73,9 @@ must_check int drm_card_flip(struct drm_card *card, uint32_t fb, bool set_mode, 
  * then nothing is broken. */
 bool drm_card_is_taken(int rc);
 
-/* Switch the panel off, and prepare it to be switched on by the next flip that sets the mode.
- * Negative errno of the kernel; -EOPNOTSUPP: the driver knows no DPMS. */
+/* Switches the panel off. Negative errno of the kernel; -EOPNOTSUPP: the driver knows no DPMS. */
 must_check int drm_card_sleep(struct drm_card *card);
+/* Prepares the panel: the next flip that sets the mode switches it on. Errors as drm_card_sleep. */
 must_check int drm_card_wake(struct drm_card *card);
 
 #endif

@@ -26,8 +26,9 @@ struct outline_lines {
 };
 
 /* Builds the programs; needs a current GL context, as everything here. Errors as gl_program_build,
- * or -ENOMEM; ribbons_finish is allowed after both. It frees everything; zeroed is fine. */
+ * or -ENOMEM; then call ribbons_finish. */
 must_check int ribbons_init(struct ribbons *ribbons);
+/* Frees everything; zeroed is fine. */
 void ribbons_finish(struct ribbons *ribbons);
 
 /* Uploads an outline and replaces what *out held. serial must not be 0. -ENOMEM, or as gl_check. */
@@ -35,16 +36,18 @@ must_check int outline_lines_make(struct outline_lines *out, const struct outlin
 				  uint32_t serial);
 void outline_lines_finish(struct outline_lines *lines); /* Deletes the buffers; zeroed is fine. */
 
-/* Drawing is blended over the picture, whose depth stays as it is. Call in this order:
- * ribbons_begin_tints; outline_lines_tint for each patch, with the patch bound (geometry_bind;
- * attributes 1 and 2 are not used); ribbons_begin_lines; outline_lines_lines for each patch;
- * ribbons_end. */
+/* Drawing is blended over the picture, whose depth stays as it is. First the tints: each with its
+ * patch bound (geometry_bind; attributes 1 and 2 are not used). */
 void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
 			 const struct root_page *root);
+/* Draws the tint of one patch, after ribbons_begin_tints. */
 void outline_lines_tint(const struct outline_lines *lines);
+/* Then the lines. */
 void ribbons_begin_lines(const struct ribbons *ribbons, const struct view *view,
 			 const struct root_page *root);
+/* Draws the lines of one patch, after ribbons_begin_lines; the patch need not be bound. */
 void outline_lines_lines(const struct outline_lines *lines);
+/* Finally restores the GL state that the scene expects. */
 void ribbons_end(void);
 
 #endif

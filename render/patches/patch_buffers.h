@@ -83,9 +83,9 @@ void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t b
  * unconverted), 2 the colour. */
 void geometry_bind(const struct geometry *geometry, uint32_t patch);
 /* Sets face culling for a patch: back faces are culled where only front faces were found visible,
- * which halves the triangles of a closed model. Otherwise, and after geometry_cull_none, which is
- * called after the last patch, both sides are drawn. */
+ * which halves the triangles of a closed model. Otherwise both sides are drawn. */
 void geometry_cull(const struct geometry *geometry, uint32_t patch);
+/* Ends culling, after the last patch was drawn. */
 void geometry_cull_none(void);
 /* Draws a range of triangles of the bound patch. */
 void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);

@@ -14,8 +14,9 @@ struct tile_name {
 	face_key face;
 	uint8_t level, row, column;
 };
-/* Packs a name into a number below 2^48, and back. */
+/* The name packed into a number below 2^48. */
 uint64_t tile_name_pack(struct tile_name name);
+/* The name that was packed into this number. */
 struct tile_name tile_name_unpack(uint64_t packed);
 
 enum repository_state {

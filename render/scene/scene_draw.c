@@ -1,3 +1,4 @@
+/* Draws a frame: updates what is shown, draws depth maps and pieces, and accumulates at rest. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,18 +10,18 @@
 
 enum {
 	PLAN_BUDGET_US = 5000,
-	PLAN_BUDGET_REST_US = 50000, /* nobody waits for the next frame */
-	SEASON_US = 1000000,         /* a view for which it is known what there is no room for */
-	SHARE_PX_MAX = 320,          /* the picture from which image_share is counted */
+	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
+	SEASON_US = 1000000,         /* longest season of the tiles while the eye moves */
+	SHARE_PX_MAX = 320,          /* width of the picture from which image_share is counted */
 };
 
 /* ---- depth of faces */
 
-/* What the eye sees is tested against these depths: a surface that is drawn but simplified away
- * here would take the colours of what lies before it. */
+/* Visible surfaces are tested against these depths. A surface that is drawn, but simplified away
+ * here, would take the colours of what is in front of it. */
 static const float depth_error_px = 0.25f;
 
-/* Whether a sphere can be in a face's quarter of space. */
+/* Returns whether a sphere may be inside the pyramid of a face. */
 static bool face_sees(const struct cube_axes *axes, const float sample[3], const float centre[3],
 		      float radius)
 {
@@ -56,7 +57,8 @@ static void draw_depth_face(struct scene *scene, int slot, face_key face)
 	depth_end(&scene->depth, slot, face, scene->cut_signature);
 }
 
-/* Faces without depth first, within the time; then one that knew a coarser mesh. */
+/* Draws faces without depths first, within the time; then one whose depths are from an older state
+ * of the mesh. */
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
 {
 	int outdated = -1;
@@ -88,8 +90,8 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 
 /* ---- pictures */
 
-/* A run of triangles of the patch that is bound, not drawn yet: pieces that need no uniforms of
- * their own are drawn at once. */
+/* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
+ * uniforms of their own are drawn together. */
 struct run {
 	uint32_t patch, first, count;
 };
@@ -125,7 +127,7 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 	run->count += piece->triangle_count;
 }
 
-/* Program by program, so that each sets its uniforms once. */
+/* Draws program by program, so that each sets its uniforms once. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
 	const uint32_t count = scene->visible_count + scene->leaving_count;
@@ -151,7 +153,7 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 	geometry_cull_none();
 }
 
-/* What it is drawn into is bound. */
+/* The target must be bound. */
 static void begin_picture(const struct scene *scene)
 {
 	const uint8_t *sky = scene->root.background;
@@ -181,7 +183,7 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		scene_draw_mark(scene, view);
 }
 
-/* How much of the model's pixels images colour, from a small picture. */
+/* Returns the share of the model's pixels that images colour, from a small picture. */
 static float count_share(struct scene *scene)
 {
 	struct gl_target small;
@@ -227,7 +229,7 @@ static bool view_changed(const struct scene *scene, const struct view *view)
 	       was->width_px != view->width_px || was->height_px != view->height_px;
 }
 
-/* Another view may have room for other tiles. */
+/* Starts a new season where the view changed: another view may have room for other tiles. */
 static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 {
 	bool came_to_rest = scene->was_moving && !moved;
@@ -241,7 +243,7 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 {
 	int64_t now_us = clock_now_us();
-	/* A hiccup is not a jump. */
+	/* A long pause must not make fades jump. */
 	float passed_ms =
 		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
 	scene->frame_us = now_us;
@@ -259,12 +261,13 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, passed_ms);
 	if (moved && counted)
-		scene->depth_is_stale = true; /* one pass more than the picture's is enough */
+		/* beside the picture one further pass per frame is enough */
+		scene->depth_is_stale = true;
 	else
 		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
 }
 
-/* Draws to the place given: at rest by way of the sum, moving at once. */
+/* Draws to the given place: at rest through accumulation, while moving directly. */
 static void show(struct scene *scene, const struct gl_place *place, bool moved, bool changed)
 {
 	const struct view *view = &scene->view;
@@ -319,13 +322,14 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->has_view = true;
 	prepare(scene, moved, out);
 	if (scene_note_mark(scene, mark))
-		accumulation_break(&scene->accumulation); /* an answer to a touch: at once */
+		/* it answers a touch, so it must appear at once */
+		accumulation_break(&scene->accumulation);
 	bool changed = is_busy(scene);
 	show(scene, &place, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	scene_list_wants(scene);
-	/* What is wanted may never come: memory is given back without it. */
+	/* Wanted objects may never arrive, so memory is freed without waiting for them. */
 	bool still = !moved && !changed && accumulation_is_done(&scene->accumulation);
 	out->settled = still && scene->want_count == 0;
 	out->moving = is_busy(scene) || moved || !accumulation_is_done(&scene->accumulation);

@@ -1,3 +1,5 @@
+/* Loads the labels of the release, finds the part under a pixel, and makes the outline lines of the
+ * marked part. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -96,7 +98,7 @@ bool scene_outline(struct scene *scene, uint32_t patch)
 	const struct label_group *labels = &scene->geometry.labels[group];
 	if (!scene->labels || !scene->marked_part[0])
 		return false;
-	if (scene->labels_of[group] == LABEL_NONE) /* nothing of any part is on it */
+	if (scene->labels_of[group] == LABEL_NONE) /* no part touches this group */
 		return true;
 	if (labels->patch_count == 0)
 		return false;

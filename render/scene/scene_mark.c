@@ -1,3 +1,5 @@
+/* Draws the marked part over the picture: by its labels, and by its region where the labels are
+ * missing. */
 #include <string.h>
 
 #include "base/log.h"
@@ -20,7 +22,7 @@ bool scene_note_mark(struct scene *scene, const struct scene_mark *mark)
 	return changed;
 }
 
-/* By the region itself: those patches alone whose labels are not here. */
+/* Draws the region, only on patches whose labels are not here. */
 static void draw_region(struct scene *scene, const struct view *view)
 {
 	const struct region *region = &scene->marked_region;
@@ -44,7 +46,7 @@ static void draw_region(struct scene *scene, const struct view *view)
 	mark_end();
 }
 
-/* Calls for each patch in sight that has something of the part. */
+/* Calls draw for each visible patch whose outline lines are known. */
 static void each_ribbon(struct scene *scene, void (*draw)(struct scene *, uint32_t patch))
 {
 	uint32_t before = HIERARCHY_NONE;

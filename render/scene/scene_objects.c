@@ -1,3 +1,5 @@
+/* Creates the scene, takes the objects that arrive and opens them by kind, and answers ray
+ * queries. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,9 +11,9 @@
 
 enum {
 	DEPTH_FACE_PX = 512,
-	DEPTH_TEXEL_BYTES = 2, /* four where RGB565 cannot be drawn into */
+	DEPTH_TEXEL_BYTES = 2, /* 4 where the driver cannot draw into RGB565 */
 	FACES_MIN = 16,
-	SIDE_FACES_MAX = 8, /* of a sheet of depths: GL_LIMIT_TEXTURE_PX */
+	SIDE_FACES_MAX = 8, /* faces per side of a depth sheet; follows from GL_LIMIT_TEXTURE_PX */
 };
 
 static uint32_t limited(uint64_t value, uint64_t least, uint64_t most)
@@ -20,8 +22,8 @@ static uint32_t limited(uint64_t value, uint64_t least, uint64_t most)
 	return (uint32_t)(value > most ? most : value);
 }
 
-/* Sheets as large as a texture may be, as few as that gives. Where they must repeat (depth.h), two
- * rows each: of powers of two those that fit most budgets. */
+/* Chooses the depth sheets: as large as a texture may be, and as few as possible. Where they must
+ * repeat (depth.h) each has two rows: of the powers of two that fits most budgets. */
 static struct depth_layout lay_out_depths(uint32_t faces)
 {
 	struct depth_layout out = { .face_px = DEPTH_FACE_PX };
@@ -39,7 +41,8 @@ static struct depth_layout lay_out_depths(uint32_t faces)
 	return out;
 }
 
-/* Of the texture budget three eighths are depths: a face in use has about a dozen tiles in use. */
+/* Three eighths of the texture budget are for depths: a face in use has about a dozen tiles in
+ * use. */
 static int make_atlases(struct scene *scene)
 {
 	const uint64_t face_bytes = (uint64_t)DEPTH_TEXEL_BYTES * DEPTH_FACE_PX * DEPTH_FACE_PX;
@@ -102,7 +105,7 @@ static void drop_hierarchy(struct scene *scene)
 	scene->group_priority = NULL;
 }
 
-/* Everything of a release. */
+/* Drops everything of a release. */
 static void forget(struct scene *scene)
 {
 	pool_forget(scene->pool);
@@ -182,7 +185,7 @@ struct object *scene_expect(struct scene *scene, struct hash hash, enum object_k
 {
 	struct object *known = scene_object(scene, hash);
 	if (known) {
-		/* The same bytes may serve two places, one after the other. */
+		/* The same bytes may serve two purposes, one after the other. */
 		if (known->state == OBJECT_WANTED) {
 			known->kind = kind;
 			known->id = id;
@@ -219,7 +222,8 @@ static int open_root(struct scene *scene, struct bytes bytes)
 		memcpy(scene->root_child, page.children,
 		       scene->root_child_count * sizeof(*scene->root_child));
 		pool_set_lattice(scene->pool, &scene->root.lattice);
-		/* A sampling point may be outside the box by its half on every side. */
+		/* A sampling point may lie outside the model's box by half the box's size on every
+		 * side. */
 		float far_m = 2.2f * vec_distance(scene->root.box_min_m, scene->root.box_max_m);
 		depth_clear(&scene->depth, far_m);
 		scene->has_root = true;
@@ -341,7 +345,7 @@ void scene_give(struct scene *scene, struct hash hash, struct bytes object)
 	else if (rc < 0)
 		scene_refuse(scene, known, rc);
 	else if (known->kind == OBJECT_BRICK)
-		scene->epoch++; /* it tells what is empty */
+		scene->epoch++; /* the page tells which faces are empty */
 }
 
 uint32_t scene_refused(const struct scene *scene)
@@ -356,7 +360,7 @@ int scene_fd(const struct scene *scene)
 
 int scene_dispatch(struct scene *scene)
 {
-	/* Answers are taken by the next frame, under its time budget. */
+	/* The next frame takes the answers, within its time budget. */
 	pool_quiet(scene->pool);
 	scene->uploads_wait = true;
 	return 0;
@@ -387,7 +391,7 @@ void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count)
 void scene_use(struct scene *scene, const struct scene_tools *tools)
 {
 	const struct rake *was = &scene->tools.rake, *rake = &tools->rake;
-	/* The section moves the view. */
+	/* A change of the section is detected as a change of the view. */
 	scene->tools_moved |= was->on != rake->on ||
 			      (rake->on && memcmp(was->at, rake->at, sizeof(was->at)) != 0);
 	scene->tools = *tools;

@@ -1,11 +1,11 @@
 /* What the sources of the scene share; private to them.
- *   scene_objects.c  life, objects in
- *   scene_wants.c    objects wanted
- *   scene_labels.c   which part a place belongs to
- *   scene_plan.c     what is shown: cut, pieces, blends
- *   scene_census.c   which pieces are in sight
- *   scene_draw.c     the frame
- *   scene_mark.c     the marked part over it */
+ *   scene_objects.c     creation, incoming objects, rays
+ *   scene_wants.c       the list of wanted objects
+ *   scene_labels.c      which part a place belongs to
+ *   scene_plan.c        what is shown: cut, pieces, blends
+ *   scene_visibility.c  the visibility pass: which pieces are visible
+ *   scene_draw.c        the frame
+ *   scene_mark.c        the marked part drawn over it */
 #ifndef GOPURA_RENDER_SCENE_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_SCENE_PARTS_H
 
@@ -38,7 +38,7 @@ enum object_kind {
 
 enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
 
-/* An object that was wanted once: what it is for when it comes. */
+/* An object that was wanted at some time, and what it is for. */
 struct object {
 	struct hash hash;
 	uint64_t id;
@@ -46,11 +46,11 @@ struct object {
 	enum object_state state;
 };
 
-/* A piece in sight. */
+/* A piece in the frustum. */
 struct visible_piece {
 	uint32_t patch, piece;
-	float pixels; /* of the screen, as far as known */
-	int program;  /* of the surface's, that draws it in this picture; below 0: none */
+	float pixels; /* pixels that its bounding sphere covers on the screen */
+	int program;  /* program of the surface that draws it in this picture; negative: none */
 	struct dissolve_range range;
 };
 
@@ -65,11 +65,12 @@ struct scene {
 	struct accumulation accumulation;
 	struct visibility visibility;
 
-	uint32_t refused;       /* objects that could not be used */
+	uint32_t refused;       /* number of objects that could not be used */
 	struct object *objects; /* owned */
 	uint32_t object_count, object_capacity;
 	struct map object_of; /* first 8 bytes of a hash -> index of objects */
-	struct map decoding;  /* object_id_key -> index of objects: with the workers */
+	/* first 8 bytes of a hash -> index of objects: those with the workers */
+	struct map decoding;
 
 	struct hash root_hash;
 	uint32_t root_bytes;
@@ -79,88 +80,105 @@ struct scene {
 	uint32_t root_child_count;
 	struct hierarchy hierarchy;
 	struct hash hierarchy_hash;
-	struct page_child *groups; /* children of the hierarchy's page; owned */
+	struct page_child *groups; /* children of the hierarchy page; owned */
 	uint32_t *group_offset;    /* owned */
 	/* Children of the labels page: */
 	struct page_child *labels; /* owned; NULL: not here */
 	uint32_t *labels_offset;   /* owned */
-	uint32_t *labels_of;       /* of each group, which, or LABEL_NONE; owned */
+	uint32_t *labels_of;       /* per group, index of its child, or LABEL_NONE; owned */
 	struct geometry geometry;
 	struct cut cut, around;
 	struct dissolve dissolve;
-	float *seen_px;           /* per patch, by the last census; owned */
-	float filled;             /* share of the picture that shows the model, likewise */
-	uint32_t *group_priority; /* of the list of wants at hand; owned */
+	/* visible pixels per patch, from the last visibility pass; owned */
+	float *seen_px;
+	/* share of the picture that shows the model, from the same pass */
+	float filled;
+	uint32_t *group_priority; /* used while the wants are listed; owned */
 	struct repository repository;
 
 	struct scene_tools tools;
-	bool tools_moved; /* since the last frame */
-	/* The frame at hand. */
+	bool tools_moved; /* changed since the last frame */
+	/* The current frame. */
 	struct view view;
 	bool has_view;
 	int64_t frame_us;
-	struct visible_piece *visible; /* owned; of the cut, then of what it replaced */
+	/* owned; pieces of the cut, then of the patches it is replacing */
+	struct visible_piece *visible;
 	uint32_t visible_count, leaving_count, visible_capacity;
-	struct visible_piece *counted; /* those that the census at hand numbers; owned */
+	struct visible_piece *counted; /* those numbered in the current visibility pass; owned */
 	uint32_t counted_count, counted_capacity;
-	uint64_t counting_cut; /* cut_signature as it began */
-	bool counting;         /* half of it is drawn */
-	uint32_t epoch;        /* of what planning looks at: tiles, pages */
-	int64_t visibility_us; /* when it was taken */
-	int64_t season_us;     /* when the tiles' season began */
+	uint64_t counting_cut; /* cut_signature when the pass began */
+	bool counting;         /* half of the pass is drawn */
+	uint32_t epoch;        /* counts changes of what planning depends on: pages */
+	int64_t visibility_us; /* time of the last visibility pass; 0: none yet */
+	int64_t season_us;     /* when the current season of the tiles began */
 	bool was_moving;
 	float visibility_eye_m[3];
 	float visibility_forward[3];
 	uint64_t visibility_cut;
 	float visibility_section[4];
-	bool plans_are_stale; /* some piece in sight waits to be planned */
+	bool plans_are_stale; /* some visible piece must still be planned */
 	bool fading, depth_is_stale, uploads_wait;
 	uint64_t cut_signature;
 	float image_share;
 	struct message_want *wants; /* owned */
 	uint32_t want_count, want_capacity;
-	bool wants_are_stale; /* something came since they were listed */
+	bool wants_are_stale; /* objects arrived since they were listed */
 	uint32_t plan_cursor;
 	/* What the last frame marked: */
 	bool is_marked;
 	char marked_part[LABEL_ID_BYTES];
 	struct region marked_region;
-	uint32_t mark_serial; /* so many parts were */
+	uint32_t mark_serial; /* counts changes of the marked part */
 };
 
-/* scene_objects.c */
+/* scene_objects.c: returns the object with this hash, or NULL. Borrowed until the next
+ * scene_expect. */
 struct object *scene_object(struct scene *scene, struct hash hash);
-/* Remembers what an object is for; NULL without memory. */
+/* Registers what an object is for and returns it; NULL: out of memory. */
 struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,
 			    uint64_t id);
-/* Logs a content bug; the object is not wanted again. */
+/* Logs a content bug; the object is not wanted again. error is a negative errno. */
 void scene_refuse(struct scene *scene, struct object *object, int error);
 
-/* scene_labels.c: the labels page; once the hierarchy is here. -EBADMSG, -ENOMEM. */
+/* scene_labels.c: takes the labels page; needs the hierarchy. -EBADMSG, -ENOMEM. */
 must_check int scene_open_labels(struct scene *scene, struct bytes bytes);
+/* Frees what the labels page gave. */
 void scene_drop_labels(struct scene *scene);
-bool scene_has_labels(const struct scene *scene); /* the release, here or not */
-/* A labelled patch has the marked part's outline as ribbon, made where it is not there yet. false:
- * it is not known, or there was no memory. */
+/* Returns whether the release has labels, here already or not. */
+bool scene_has_labels(const struct scene *scene);
+/* Provides the outline lines of the marked part on a patch, and makes them where they are missing.
+ * Returns false where the labels are not here, no part is marked, or memory is short. */
 bool scene_outline(struct scene *scene, uint32_t patch);
 
 /* scene_wants.c: rebuilds scene->wants, most wanted first. */
 void scene_list_wants(struct scene *scene);
 
-/* scene_census.c: whether any of it was drawn. */
+/* scene_visibility.c: runs a visibility pass where one is due, or half of one while the eye moves.
+ * Returns whether anything was drawn for it. */
 bool scene_take_census(struct scene *scene, bool moved);
 
-/* scene_plan.c */
+/* scene_plan.c, in the order of a frame. passed_ms is the time since the last frame. */
+/* Takes decoded objects until until_us. */
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);
+/* Drops groups over the budget, updates the cut and steps the dissolve. */
 void scene_update_cut(struct scene *scene, float passed_ms);
-void scene_desire(struct scene *scene); /* after the census */
+/* After the visibility pass: computes which groups are desired. */
+void scene_desire(struct scene *scene);
+/* Lists the pieces in the frustum, front to back. */
 void scene_list_pieces(struct scene *scene);
+/* Plans pieces that need it, for at most budget_us. */
 void scene_plan_pieces(struct scene *scene, int64_t budget_us);
+/* Moves the weights of the blends towards what was chosen. */
 void scene_fade_blends(struct scene *scene, float passed_ms);
+/* scene_draw.c: draws missing depth maps until until_us, then at most one outdated one. */
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out);
-/* scene_mark.c: notes it; whether it is another than in the frame before. */
+/* scene_mark.c: stores what is marked (NULL: nothing). Returns whether it differs from the frame
+ * before. */
 bool scene_note_mark(struct scene *scene, const struct scene_mark *mark);
+/* Draws the mark over the picture that is bound. */
 void scene_draw_mark(struct scene *scene, const struct view *view);
+/* scene_plan.c: returns the geometric error of a patch against the scan, metres. */
 float scene_patch_error_m(const struct scene *scene, uint32_t patch);
 
 #endif

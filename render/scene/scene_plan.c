@@ -1,3 +1,5 @@
+/* Takes decoded objects, grows the cut, lists the pieces in the frustum, plans which faces colour
+ * them, and fades between faces. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +10,7 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_parts.h"
 
-/* An eye that moved by this share of the distance to a piece sees it anew. */
+/* A piece is planned again when the eye has moved by this share of its distance. */
 static const float eye_moved = 0.02f;
 
 /* ---- what workers decoded */
@@ -21,19 +23,19 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 		return;
 	struct object *object = &scene->objects[at];
 	int rc = answer->error;
-	object->state = OBJECT_WANTED; /* again, should it be dropped */
+	object->state = OBJECT_WANTED; /* it may be wanted again after it is dropped */
 	if (rc == 0 && object->kind == OBJECT_GROUP) {
 		rc = geometry_put(&scene->geometry, (uint32_t)object->id, answer);
 	} else if (rc == 0 && object->kind == OBJECT_LABELS) {
 		rc = geometry_label(&scene->geometry, (uint32_t)object->id, &answer->labels);
 		if (scene->is_marked)
 			accumulation_break(
-				&scene->accumulation); /* another outline than the sum has */
+				&scene->accumulation); /* the accumulated sum has the old outline */
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;
 		if (rc == -ENOSPC)
-			rc = 0; /* all that is there is in use */
+			rc = 0; /* every slot is in use; not an error */
 	}
 	if (rc == -EBADMSG)
 		scene_refuse(scene, object, rc);
@@ -85,8 +87,8 @@ float scene_patch_error_m(const struct scene *scene, uint32_t patch)
 	uint32_t finer = scene->hierarchy.patches[patch].finer;
 	if (finer != HIERARCHY_NONE)
 		return scene->hierarchy.groups[finer].error_m;
-	/* The finest published: its own error against the scan is not told; half of that of the
-	 * group it came with is a fair guess. */
+	/* For the finest published patches the error against the scan is not stored; half the error
+	 * of the group they came with is a fair guess. */
 	float error = scene->hierarchy.groups[scene->hierarchy.patches[patch].group].error_m;
 	return isfinite(error) ? error / 2 : 0;
 }
@@ -107,7 +109,7 @@ static bool add_visible(struct scene *scene, const struct visible_piece *piece)
 	return true;
 }
 
-/* Those of a patch, if there is room for them. */
+/* Lists the pieces of a patch that are in the frustum, as far as memory allows. */
 static void list_patch(struct scene *scene, uint32_t p, uint32_t *count)
 {
 	const struct view *view = &scene->view;
@@ -139,7 +141,7 @@ static int by_distance(const void *a, const void *b, void *data)
 	return (distance[0] > distance[1]) - (distance[0] < distance[1]);
 }
 
-/* Front to back, so that what is hidden fails its depth test before it is coloured. */
+/* Front to back, so that hidden fragments fail the depth test before they are coloured. */
 void scene_list_pieces(struct scene *scene)
 {
 	qsort_r(scene->cut.patches, scene->cut.patch_count, sizeof(*scene->cut.patches),
@@ -167,14 +169,14 @@ static bool sees(void *data, const float sample_m[3], const float point_m[3])
 	float to[3];
 	vec_sub(to, point_m, sample_m);
 	float distance = vec_normalise(to);
-	/* Short of the surface itself, by more than a mesh is usually wrong. */
+	/* Stop before the surface itself, by more than the usual error of the mesh. */
 	float most = distance * 0.985f - 2.5f * depth_slack_m(&scene->depth);
 	if (most <= 0)
 		return true;
 	return !geometry_blocks(&scene->geometry, &scene->cut, sample_m, to, most);
 }
 
-/* Changes when a tile of a wanted face comes or goes. */
+/* Returns a sum that changes when a tile of a wanted face comes or goes. */
 static uint32_t versions_of(const struct scene *scene, const struct plan_choice *choice)
 {
 	uint32_t sum = 0;
@@ -190,7 +192,7 @@ static bool is_stale(const struct scene *scene, const struct piece *piece,
 		     const struct piece_state *state)
 {
 	if (state->counted && state->seen_px <= 0)
-		return false; /* hidden: coloured by what it had */
+		return false; /* hidden: keeps its old colours */
 	if (!state->planned || state->orphan)
 		return true;
 	if (state->choice.want_count > 0 &&
@@ -213,7 +215,7 @@ static void plan_one(struct scene *scene, const struct plan_world *world,
 	};
 	for (int k = 0; k < PIECE_PROBES; k++)
 		surface.weight[k] = state->counted ? state->weight[k] : 1.0f / PIECE_PROBES;
-	/* A fifth more than needed where bytes are free, and less of it the dearer they are. */
+	/* Up to a fifth more texels than needed; the higher the thrift, the fewer. */
 	struct plan_eye eye = { .focal_px = scene->view.focal_px,
 				.texels = 1 + 0.2f / (1 + scene->options.price_px_per_kb / 10) };
 	memcpy(eye.eye_m, scene->view.eye_m, sizeof(eye.eye_m));
@@ -242,7 +244,7 @@ void scene_plan_pieces(struct scene *scene, int64_t budget_us)
 	scene->plans_are_stale = false;
 	if (!scene->repository.ready)
 		return;
-	/* Each frame goes on where the last one ran out of time. */
+	/* Each frame continues where the last one ran out of time. */
 	uint32_t count = scene->visible_count;
 	uint32_t start = count ? scene->plan_cursor % count : 0;
 	for (uint32_t i = 0; i < count; i++) {
@@ -297,7 +299,7 @@ static void take_up(struct piece_state *state, const struct plan_entry *entry)
 	}
 }
 
-/* Returns whether anything still moves. */
+/* Returns whether any weight still changes. */
 static bool fade_piece(struct scene *scene, struct piece_state *state, float step)
 {
 	bool moving = false;
@@ -314,7 +316,7 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 		}
 		bool chosen = blend_is_chosen(&state->choice, blend);
 		if (chosen && !depth_ready(&scene->depth, slot, blend->face))
-			continue; /* the depth pass will come to it */
+			continue; /* its depths are not drawn yet */
 		float accumulation = blend->target - blend->weight;
 		blend->weight += accumulation > step    ? step
 				 : accumulation < -step ? -step
@@ -348,7 +350,7 @@ static void touch_piece(struct scene *scene, const struct piece *piece,
 	}
 }
 
-/* All that was chosen to colour it does. */
+/* Returns whether every face chosen for the piece has reached its weight. */
 static bool is_dressed(const struct scene *scene, const struct piece_state *state)
 {
 	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
@@ -372,7 +374,7 @@ void scene_fade_blends(struct scene *scene, float passed_ms)
 		const struct visible_piece *v = &scene->visible[i];
 		struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 		struct piece_state *state = &patch->pieces[v->piece];
-		/* Not shown yet: what it shows first is no change. */
+		/* A piece that is not shown yet takes its first weights at once. */
 		const bool shown = dissolve_draws(v->range);
 		const bool hidden = state->counted && state->seen_px <= 0;
 		const bool moving = fade_piece(scene, state, shown ? step : 1);

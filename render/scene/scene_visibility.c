@@ -1,3 +1,5 @@
+/* Runs the visibility pass when it is due, counts the visible pixels of pieces and patches, and
+ * moves the probes. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,13 +8,13 @@
 #include "render/scene/scene_parts.h"
 
 enum {
-	MOVING_US = 120000, /* between two censuses of a moving eye */
-	PROBE_MOVES = 2,    /* rounds of a census */
+	MOVING_US = 120000, /* between two passes while the eye moves */
+	PROBE_MOVES = 2,    /* rounds of moving probes per pass */
 };
 
-/* A view that differs by less than this is counted as the same. */
+/* A view that differs by less than this counts as the same. */
 static const float moved_m = 0.05f, turned = 0.01f;
-/* What shows farther than this share of a piece's radius from a probe deserves one. */
+/* A visible point farther than this share of a piece's radius from every probe deserves a probe. */
 static const float stray_share = 0.2f;
 
 static bool is_due(const struct scene *scene, bool moved)
@@ -24,13 +26,13 @@ static bool is_due(const struct scene *scene, bool moved)
 		return true;
 	if (moved && clock_now_us() - scene->visibility_us < MOVING_US)
 		return false;
-	float limit = moved ? 1 : 0.2f; /* at rest it must be right */
+	float limit = moved ? 1 : 0.2f; /* at rest the limits are tighter */
 	return (moved && view_is_cut(&scene->view)) ||
 	       vec_distance(scene->visibility_eye_m, scene->view.eye_m) > limit * moved_m ||
 	       vec_distance(scene->visibility_forward, scene->view.forward) > limit * turned;
 }
 
-/* Of the pieces in the list, numbers `from` up to `to`. */
+/* Draws the listed pieces with numbers from `from` to below `to`. */
 static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 {
 	uint32_t bound = HIERARCHY_NONE;
@@ -46,7 +48,7 @@ static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 	}
 }
 
-/* What is in sight now will be counted. */
+/* Begins a pass over the pieces that are in the frustum now. */
 static bool begin(struct scene *scene)
 {
 	if (scene->counted_capacity < scene->visible_count) {
@@ -67,8 +69,8 @@ static bool begin(struct scene *scene)
 	return true;
 }
 
-/* A moving eye's is drawn in two frames, so that neither takes much longer than the others. Returns
- * whether it is drawn. */
+/* While the eye moves a pass is drawn in two frames, so that neither takes much longer than others.
+ * Returns whether the pass is complete. */
 static bool draw(struct scene *scene, bool moved)
 {
 	if (scene->counting && moved && scene->counting_cut == scene->cut_signature) {
@@ -102,14 +104,16 @@ static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
 	return &scene->geometry.patches[v->patch].pieces[v->piece];
 }
 
-/* What shows far from every probe: the farthest of a piece, in stray_m and stray. */
+/* Counts a visible point. The point of a piece farthest from every probe is kept in stray_m and
+ * stray_off_m. */
 static void count_point(struct scene *scene, const struct visibility_point *point)
 {
 	struct piece_state *state = state_of(scene, point->piece);
 	if (!state)
 		return;
 	if (point->back &&
-	    !view_is_cut(&scene->visibility.view)) /* a section shows many for once */
+	    /* a section plane shows back faces only for now */
+	    !view_is_cut(&scene->visibility.view))
 		scene->geometry.patches[scene->counted[point->piece].patch].sides = SIDES_BOTH;
 	int nearest = nearest_probe(state, point->at_m);
 	float off = vec_distance(state->probe[nearest].at_m, point->at_m);
@@ -135,7 +139,7 @@ static void count_all(struct scene *scene)
 				count_point(scene, &point);
 }
 
-/* A probe that shows nothing moves to the place that is farthest from any. */
+/* Moves a probe without visible points to the visible point farthest from any probe. */
 static void move_probe(struct scene *scene, uint32_t visible)
 {
 	struct piece_state *state = state_of(scene, visible);
@@ -149,7 +153,7 @@ static void move_probe(struct scene *scene, uint32_t visible)
 		idle++;
 	if (idle == PIECE_PROBES)
 		return;
-	/* Of the piece's own places the nearest lends its normal. */
+	/* The nearest of the piece's initial probes provides the normal. */
 	struct piece_probe like = patch_bvh_probe(bvh, piece, 0);
 	for (int k = 1; k < PIECE_PROBES; k++) {
 		struct piece_probe other = patch_bvh_probe(bvh, piece, k);
@@ -162,7 +166,8 @@ static void move_probe(struct scene *scene, uint32_t visible)
 	plan_forget_probe(&state->choice, idle);
 }
 
-/* Weights that sum to one; pixels of the screen; a new judgement where what shows has changed. */
+/* Normalises the weights, scales the count to pixels of the screen, and has the piece planned
+ * again. */
 static void conclude(struct scene *scene, const struct visible_piece *visible)
 {
 	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
@@ -176,7 +181,7 @@ static void conclude(struct scene *scene, const struct visible_piece *visible)
 	state->planned = false;
 }
 
-/* Of the patches that are shown now; nobody looked at the others. */
+/* Sums the visible pixels of the shown patches; the others were not counted. */
 static void sum_patches(struct scene *scene)
 {
 	for (uint32_t p = 0; p < scene->hierarchy.patch_count; p++)

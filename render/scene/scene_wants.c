@@ -1,10 +1,13 @@
+/* Lists what the scene wants, pages, geometry, labels and tiles, each with a priority by gain per
+ * byte. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/scene/scene_parts.h"
 
-/* A coarse tile stands in for sixteen fine ones: it comes first where no image shows yet. */
+/* A coarse tile, two levels up, stands in for 16 fine ones: it comes first where no image is shown
+ * yet. */
 enum { COARSER_FIRST = 2 };
 
 static void want(struct scene *scene, enum object_kind kind, uint64_t id,
@@ -38,11 +41,12 @@ static void want_child_of_root(struct scene *scene, enum object_kind kind, uint3
 	want(scene, kind, 0, &place, priority);
 }
 
-/* Geometry stays good for every view after, an image for those from near where it was taken. */
+/* Geometry stays useful for every later view, an image only for views from near its sampling
+ * point. */
 static const float lasting = 4;
 
-/* What is worth less is not fetched. A model that fills a third of the picture is not worth less
- * than one that fills it: it is what there is to see. */
+/* Returns the lowest priority that is fetched. A model that fills a third of the picture is not
+ * worth less than one that fills it: there is nothing else to see. */
 static uint32_t least_priority(const struct scene *scene, float lasts)
 {
 	float filled = scene->visibility_us ? scene->filled : 1;
@@ -60,14 +64,15 @@ static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
 	want(scene, OBJECT_GROUP, group, &place, priority);
 }
 
-/* What surfaces that are off by so many pixels cost the picture, on plan_worth's scale: an image
- * brings octaves of detail even to a rough surface, a finer surface puts them into place. */
+/* Returns what a surface with this error in pixels costs the picture, on the scale of plan_worth.
+ * An image adds octaves of detail even to a rough surface; a finer surface puts them in the right
+ * place. */
 static float misplaced(float error_px)
 {
 	return 0.1f * (isfinite(error_px) ? error_px / (error_px + 8) : 1);
 }
 
-/* What a group is worth, and what others need it for. */
+/* Wants groups by their own worth, and by the worth of the groups that depend on them. */
 static void want_groups(struct scene *scene)
 {
 	const struct cut *cut = &scene->cut;
@@ -97,7 +102,7 @@ static void want_groups(struct scene *scene)
 
 /* ---- labels */
 
-/* After all that is to be seen: a touch is answered by regions until then. */
+/* Labels come after everything visible: until they arrive, regions answer a touch. */
 enum { LABELS_PRIORITY = 1 };
 
 static void want_labels_of(struct scene *scene, uint32_t group)
@@ -112,7 +117,7 @@ static void want_labels_of(struct scene *scene, uint32_t group)
 	want(scene, OBJECT_LABELS, group, &place, LABELS_PRIORITY);
 }
 
-/* Of what is in sight. */
+/* Wants the labels of visible groups. */
 static void want_labels(struct scene *scene)
 {
 	uint8_t *asked = scene->labels ? calloc(scene->hierarchy.group_count, 1) : NULL;
@@ -133,7 +138,7 @@ static void want_labels(struct scene *scene)
 
 /* ---- images */
 
-/* A tile or face page that pieces want, with the sum of what they would win. */
+/* A tile or page that pieces want, with the sum of their gains. */
 struct gain {
 	uint64_t id;
 	float pixels;
@@ -229,8 +234,8 @@ static bool place_gain(const struct scene *scene, const struct gain *gain,
 	}
 }
 
-/* Pages of what matters come before pictures: without them nothing can be judged. 0: not worth it.
- */
+/* Returns the priority of a gain. Worthwhile pages come before pictures, since nothing can be
+ * judged without them. 0: not worth fetching. */
 static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
 {
 	uint32_t priority = plan_priority(gain->pixels, bytes);
@@ -274,7 +279,7 @@ static int by_priority(const void *a, const void *b)
 	return hash_compare(left->hash, right->hash);
 }
 
-/* No more tiles than the atlas can take without dropping one that is in use. */
+/* Keeps no more tiles than the atlas can take without dropping one in use. */
 static void limit_to_room(struct scene *scene)
 {
 	uint32_t room = tiles_room(&scene->tiles), busy = pool_busy(scene->pool), kept = 0;
