@@ -1,3 +1,4 @@
+/* Reads the property LIBINPUT_CALIBRATION_MATRIX through sd-device and parses it. */
 #include "input/calibration.h"
 
 #include <errno.h>
@@ -21,7 +22,7 @@ bool calibration_parse(const char *text, float matrix[6])
 		if (!isfinite(m[i]))
 			return false;
 	if (m[0] * m[4] - m[1] * m[3] == 0)
-		return false; /* all fingers on one line */
+		return false; /* singular: it maps all fingers onto a line */
 	memcpy(matrix, m, sizeof(m));
 	return true;
 }

@@ -1,3 +1,5 @@
+/* Maps raw positions to panel pixels, decides what counts as a finger, and reports downs, moves and
+ * lifts. */
 #include "input/contacts.h"
 
 static void to_panel(const struct contacts *contacts, const float m[6], const struct touch_raw *raw,
@@ -8,7 +10,7 @@ static void to_panel(const struct contacts *contacts, const float m[6], const st
 	float x = u, y = v;
 
 	switch (contacts->rotation_deg) {
-	case 90: /* the panel's own left edge is on top */
+	case 90: /* the left edge of the framebuffer is at the top */
 		x = 1 - v;
 		y = u;
 		break;
@@ -44,7 +46,7 @@ static bool is_palm(const struct contacts *contacts, const struct touch_raw *raw
 	return contacts->palm_px > 0 && raw->major * width_px > contacts->palm_px;
 }
 
-/* -1: more are down than anybody has fingers. */
+/* Returns a free contact number; -1: all are in use. */
 static int take_contact(struct contacts *contacts)
 {
 	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++) {

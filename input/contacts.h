@@ -1,6 +1,6 @@
-/* From what a device says to fingers on the panel: calibration and rotation, palms and fingers at
- * the edge left out, a number for each finger that is down, whichever device it is on. Private to
- * touch.c. */
+/* Turns the state of a device into contacts on the panel: applies calibration and rotation, ignores
+ * palms and fingers at the edge, and numbers the fingers that are down across all devices. Private
+ * to touch.c. */
 #ifndef GOPURA_INPUT_CONTACTS_H
 #define GOPURA_INPUT_CONTACTS_H
 
@@ -8,28 +8,30 @@
 #include "input/touch_event.h"
 
 struct contacts {
-	int width_px, height_px, rotation_deg; /* these as in struct touch_options */
+	int width_px, height_px, rotation_deg; /* as in struct touch_options */
 	float edge_px, palm_px;
 	void (*event)(void *data, const struct touch_event *event); /* NULL is fine */
 	void *data;
 	bool used[TOUCH_CONTACTS_MAX];
 };
 
-/* What a slot of a device is on the panel. */
+/* The state of a slot of a device, on the panel. */
 struct contact_slot {
-	int id;      /* the finger's, while down */
-	bool down;   /* known to be down, reported or ignored */
-	int contact; /* reported as; -1: ignored until it lifts */
+	int id;      /* the device's id of the finger, while down */
+	bool down;   /* down, whether reported or ignored */
+	int contact; /* number it is reported as; -1: ignored until it lifts */
 	float x_px, y_px;
 };
 
-/* A frame of a device against what was known of its slots. A finger whose lift was lost shows as a
- * changed id. Calls event. */
+/* Compares a frame of a device with the known state of its slots, updates them and calls event for
+ * each change. matrix is the calibration. A changed id means that the lift of the previous finger
+ * was lost. */
 void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
 		   const struct touch_raw raws[TOUCH_SLOTS_MAX], const float matrix[6],
 		   int64_t time_us);
+/* Returns whether any finger is down, reported or ignored. */
 bool contacts_any_down(const struct contact_slot slots[TOUCH_SLOTS_MAX]);
-/* The device went away: all its fingers are cancelled. */
+/* The device went away: reports TOUCH_CANCEL for all its fingers. */
 void contacts_cancel(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
 		     int64_t time_us);
 

@@ -1,3 +1,5 @@
+/* The state machine from touch events to taps, drags and pinches, with velocities from the last
+ * samples. */
 #include "input/gesture.h"
 
 #include <math.h>
@@ -6,11 +8,11 @@
 enum {
 	TAP_US = 500 * 1000,
 	AGAIN_US = 400 * 1000,
-	VELOCITY_WINDOW_US = 100 * 1000, /* a fling is measured over the last of it */
-	ACCUMULATION_US = 60 * 1000,     /* a finger that rested this long flings nothing */
+	VELOCITY_WINDOW_US = 100 * 1000, /* the velocity of a fling is measured over this time */
+	ACCUMULATION_US = 60 * 1000,     /* a finger that rested longer than this has no velocity */
 };
 
-#define PINCH_LEAST_PX 8.0f /* nearer fingers count as this far apart */
+#define PINCH_LEAST_PX 8.0f /* smaller distances of two fingers count as this */
 
 static void emit(struct gesture_recogniser *r, struct gesture gesture)
 {
@@ -45,8 +47,8 @@ void gesture_reset(struct gesture_recogniser *recogniser)
 
 /* ---- samples ---- */
 
-/* Where the gesture is: the finger, or the middle, distance and direction of two. The angle goes
- * on beyond a half turn, so that differences need no care. */
+/* Returns the state of the gesture now: the finger, or the midpoint, distance and direction of two.
+ * The angle continues beyond half a turn, so differences never wrap. */
 static struct gesture_sample sample_now(const struct gesture_recogniser *r, int64_t time_us)
 {
 	const struct gesture_finger *a = &r->fingers[r->first], *b = &r->fingers[r->second];
@@ -104,7 +106,8 @@ static void go_on(struct gesture_recogniser *r, enum gesture_kind kind, int64_t 
 				  .time_us = time_us });
 }
 
-/* Speeds over the last moment; none where the fingers rested before they left. */
+/* Ends a gesture with the velocities of the last moment; none where the fingers rested before they
+ * lifted. */
 static void end(struct gesture_recogniser *r, enum gesture_kind kind, int64_t time_us)
 {
 	const struct gesture_sample *last = &r->last, *first = last;
@@ -128,7 +131,7 @@ static void end(struct gesture_recogniser *r, enum gesture_kind kind, int64_t ti
 
 /* ---- fingers ---- */
 
-/* Any finger but that one that is down, or TOUCH_CONTACTS_MAX. */
+/* Returns a finger that is down other than this one, or TOUCH_CONTACTS_MAX. */
 static uint32_t other_finger(const struct gesture_recogniser *r, uint32_t but)
 {
 	for (uint32_t i = 0; i < TOUCH_CONTACTS_MAX; i++)
@@ -137,7 +140,7 @@ static uint32_t other_finger(const struct gesture_recogniser *r, uint32_t but)
 	return TOUCH_CONTACTS_MAX;
 }
 
-/* A finger that stays after a pinch may go on to drag, but is no tap. */
+/* After a gesture: a finger that stays down may start a drag, but not a tap. */
 static void hand_over(struct gesture_recogniser *r, uint32_t finger)
 {
 	r->state = GESTURE_IDLE;
@@ -166,7 +169,7 @@ static void on_down(struct gesture_recogniser *r, const struct touch_event *even
 		emit_at(r, GESTURE_PRESS, event->x_px, event->y_px, event->time_us);
 		break;
 	case GESTURE_DRAGGING:
-		/* Goes over into a pinch: no inertia between. */
+		/* The drag becomes a pinch: its end has no velocity. */
 		emit_at(r, GESTURE_DRAG_END, r->last.x_px, r->last.y_px, event->time_us);
 		/* fall through */
 	case GESTURE_PRESSED:
@@ -212,7 +215,7 @@ static void tap(struct gesture_recogniser *r, const struct gesture_finger *finge
 		     hypotf(finger->x_px - r->tap_x_px, finger->y_px - r->tap_y_px) <=
 			     r->options.near_px;
 
-	/* A third tap begins anew. */
+	/* A third tap counts as a first one again. */
 	r->tapped = !again;
 	r->tap_us = time_us;
 	r->tap_x_px = finger->x_px;

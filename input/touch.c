@@ -1,3 +1,5 @@
+/* Watches the input folder for devices, reads and calibrates those that are touchscreens, and plays
+ * recorded touches. */
 #include "input/touch.h"
 
 #include <dirent.h>
@@ -26,22 +28,23 @@ enum {
 };
 
 struct source {
-	struct touch_device *device; /* NULL: free */
+	struct touch_device *device; /* NULL: this entry is free */
 	float matrix[6];             /* calibration */
-	bool matrix_is_known;        /* udev need not be asked again */
+	bool matrix_is_known;        /* known: udev need not be asked again */
 	struct contact_slot slots[TOUCH_SLOTS_MAX];
 };
 
 struct touch {
-	struct touch_options options; /* folder and replay_path are our copies */
+	/* folder and replay_path here are not used; see the copies below */
+	struct touch_options options;
 	char *folder, *replay_path;
-	bool is_calibrated; /* by the options: udev is not asked */
+	bool is_calibrated; /* calibrated by the options: udev is not asked */
 	int epoll_fd, inotify_fd, timer_fd;
-	int parent_watch; /* of the folder's own folder while it is missing, else -1 */
+	int parent_watch; /* inotify watch of the parent while the folder is missing, else -1 */
 	struct source sources[DEVICES_MAX];
 	struct contacts contacts;
 	struct touch_replay replay;
-	size_t replayed; /* events */
+	size_t replayed; /* number of events played */
 	int64_t replay_start_us;
 };
 
@@ -93,8 +96,8 @@ static bool is_open(const struct touch *touch, const char *path)
 	return false;
 }
 
-/* A device that cannot be used is none of ours; one that may not be opened yet is told of again
- * when its permissions change. */
+/* Opens a device if it is a touchscreen. One that may not be opened yet is reported again by
+ * inotify when its permissions change. */
 static void try_device(struct touch *touch, const char *name)
 {
 	struct source *source = NULL;
@@ -131,7 +134,7 @@ static void scan(struct touch *touch)
 	closedir(folder);
 }
 
-/* A kernel without any device may have no /dev/input yet: then its parent is watched for it. */
+/* Where there is no input device yet /dev/input may be missing: then its parent is watched. */
 static void watch_folder(struct touch *touch)
 {
 	char parent[PATH_MAX];
@@ -156,13 +159,14 @@ static void watch_folder(struct touch *touch)
 static void read_source(struct touch *touch, struct source *source)
 {
 	struct touch_raw slots[TOUCH_SLOTS_MAX];
-	int64_t time_us = clock_now_us(); /* of a frame that only a resync made */
+	int64_t time_us = clock_now_us(); /* used for a frame that only a resync completed */
 	int rc;
 
 	if (!source->device)
-		return; /* went in this very dispatch */
+		return; /* it was removed in this same dispatch */
 	while ((rc = touch_device_read(source->device, slots, &time_us)) > 0) {
-		if (!contacts_any_down(source->slots)) /* between two fingers the world may turn */
+		/* the calibration may change while no finger is down */
+		if (!contacts_any_down(source->slots))
 			calibrate(touch, source);
 		contacts_take(&touch->contacts, source->slots, slots, source->matrix, time_us);
 	}
@@ -206,7 +210,7 @@ static void arm_timer(struct touch *touch)
 	wait_us = touch->replay_start_us + touch->replay.events[touch->replayed].time_us -
 		  clock_now_us();
 	if (wait_us < 1)
-		wait_us = 1; /* zero would disarm it */
+		wait_us = 1; /* zero would disarm the timer */
 	when.it_value.tv_sec = wait_us / 1000000;
 	when.it_value.tv_nsec = wait_us % 1000000 * 1000;
 	timerfd_settime(touch->timer_fd, 0, &when, NULL);

@@ -1,5 +1,6 @@
-/* libevdev keeps the state of every slot and repairs it after SYN_DROPPED, so a frame is read as
- * a state, not as a story of events: whatever was lost, the next frame is right. */
+/* Reads an evdev device through libevdev. libevdev keeps the state of every slot and repairs it
+ * after SYN_DROPPED, so a frame is read as a state, not as a list of events: whatever was lost, the
+ * next frame is right. */
 #include "input/touch_device.h"
 
 #include <errno.h>
@@ -26,9 +27,9 @@ struct touch_device {
 	bool multitouch, syncing;
 	int slot_count;
 	struct axis x, y;
-	unsigned button; /* single touch: what says that it is down */
+	unsigned button; /* single touch: the button that means contact */
 	bool was_down;
-	int presses; /* single touch: counts fingers, as tracking ids do */
+	int presses; /* single touch: counts contacts, in place of tracking ids */
 };
 
 static bool read_axis(struct touch_device *device, unsigned code, struct axis *out)
@@ -45,7 +46,7 @@ static bool read_axis(struct touch_device *device, unsigned code, struct axis *o
 	return out->maximum > out->minimum;
 }
 
-/* A touchpad moves a pointer and a stick steers: neither is the panel. */
+/* Touchpads move a pointer and joysticks steer: they are not the panel. */
 static bool is_something_else(const struct libevdev *evdev)
 {
 	return (libevdev_has_property(evdev, INPUT_PROP_POINTER) &&
@@ -74,14 +75,15 @@ static int recognise(struct touch_device *device)
 	if (libevdev_has_event_code(evdev, EV_KEY, BTN_TOUCH))
 		device->button = BTN_TOUCH;
 	else if (libevdev_has_event_code(evdev, EV_KEY, BTN_LEFT))
-		device->button = BTN_LEFT; /* a virtual machine's tablet */
+		device->button = BTN_LEFT; /* the tablet of a virtual machine */
 	else
 		return -ENODEV;
 	device->slot_count = 1;
 	return 0;
 }
 
-/* libevdev speaks up when a kernel driver breaks the protocol; it then does what is safest. */
+/* Logs a message of libevdev, which reports when a kernel driver breaks the protocol and then does
+ * what is safest. */
 static void hear_libevdev(const struct libevdev *evdev, enum libevdev_log_priority priority,
 			  void *data, const char *file, int line, const char *function,
 			  const char *format, va_list args)
@@ -120,7 +122,8 @@ int touch_device_open(struct touch_device **out, const char *path)
 		touch_device_close(device);
 		return rc;
 	}
-	/* Where the kernel cannot, its wall clock does: only differences count. */
+	/* Without the monotonic clock the kernel uses its wall clock, which is acceptable: only
+	 * time differences count. */
 	if (libevdev_set_clock_id(device->evdev, CLOCK_MONOTONIC) < 0)
 		log_debug("input", "%s: keeps the wall clock", path);
 	libevdev_set_device_log_function(device->evdev, hear_libevdev, LIBEVDEV_LOG_ERROR, NULL);
@@ -226,7 +229,7 @@ int touch_device_read(struct touch_device *device, struct touch_raw slots[TOUCH_
 		int status = libevdev_next_event(device->evdev, flag, &event);
 
 		if (status == LIBEVDEV_READ_STATUS_SYNC && !device->syncing) {
-			/* The kernel dropped events: ask for the state, then go on. */
+			/* The kernel dropped events: read the present state, then continue. */
 			device->syncing = true;
 			continue;
 		}

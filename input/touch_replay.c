@@ -1,3 +1,5 @@
+/* Parses lines of the form "t_ms down|move|up|cancel slot x y" and checks that they can be
+ * played. */
 #include "input/touch_replay.h"
 
 #include <errno.h>
@@ -44,7 +46,7 @@ static int find_phase(const char *word, enum touch_phase *out)
 	return -EINVAL;
 }
 
-/* "t_ms down|move|up|cancel slot [x y]"; up and cancel may leave x y out. */
+/* Parses "t_ms down|move|up|cancel slot [x y]"; only up and cancel may omit x y. */
 static int parse_event(struct parser *p, const char *line)
 {
 	struct touch_event event = { 0 };
@@ -59,7 +61,7 @@ static int parse_event(struct parser *p, const char *line)
 	if (slot < 0 || slot >= TOUCH_CONTACTS_MAX || !(t_ms >= 0 && t_ms < 1e9))
 		return -EINVAL;
 	if (p->down[slot] == (event.phase == TOUCH_DOWN))
-		return -EINVAL; /* down twice, or moved and lifted without having come */
+		return -EINVAL; /* down twice, or move, up or cancel without down */
 	event.contact = (uint32_t)slot;
 	event.time_us = (int64_t)(t_ms * 1000);
 	if (p->replay->count > 0 && event.time_us < p->replay->events[p->replay->count - 1].time_us)

@@ -1,4 +1,4 @@
-/* Private to input: a file of touches. docs/input.md has its form. */
+/* Private to input: parses a file of recorded touches. docs/input.md has its format. */
 #ifndef GOPURA_INPUT_TOUCH_REPLAY_H
 #define GOPURA_INPUT_TOUCH_REPLAY_H
 
@@ -6,14 +6,16 @@
 #include "input/touch_event.h"
 
 struct touch_replay {
-	struct touch_event *events; /* owned; in order of time; pixels of the panel */
+	struct touch_event *events; /* owned; in order of time; in pixels of the panel */
 	size_t count;
 };
 
-/* *line (may be NULL) is that of the fault. -EINVAL: malformed; -ENOMEM. width and height are the
- * panel's, to which a file with a "size" line is scaled. */
+/* Parses a replay file. width_px and height_px are the panel's, to which a file with a "size" line
+ * is scaled. -EINVAL: malformed, and *line (may be NULL) is the number of the faulty line; -ENOMEM.
+ * The caller finishes *out. */
 must_check int touch_replay_parse(struct touch_replay *out, struct bytes text, int width_px,
 				  int height_px, unsigned *line);
-void touch_replay_finish(struct touch_replay *replay); /* NULL and zeroed are fine */
+/* Frees the events. NULL and a zeroed replay are fine. */
+void touch_replay_finish(struct touch_replay *replay);
 
 #endif
