@@ -1,3 +1,4 @@
+/* The default profile and the table of settings that an ini file may contain. */
 #include "board/profile.h"
 
 #include <errno.h>
