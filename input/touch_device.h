@@ -25,8 +25,9 @@ must_check int touch_device_open(struct touch_device **out, const char *path);
 void touch_device_close(struct touch_device *device); /* Closes and frees it. NULL is fine. */
 /* Returns its descriptor, borrowed: readable when touch_device_read has something. */
 int touch_device_fd(const struct touch_device *device);
-/* Its path and its name by the kernel; borrowed until it is closed. */
+/* Its path, as opened; borrowed until it is closed. */
 const char *touch_device_path(const struct touch_device *device);
+/* Its name by the kernel; borrowed until it is closed. */
 const char *touch_device_name(const struct touch_device *device);
 /* Returns its name, ranges and number of fingers as text; borrowed until the next call for any
  * device. */

@@ -19,8 +19,9 @@ void canvas_destroy(struct canvas *canvas);
 
 /* Returns what it is: DISPLAY_DRM or DISPLAY_HEADLESS. */
 enum display_kind canvas_kind(const struct canvas *canvas);
-/* Its size in pixels. */
+/* Its width in pixels. */
 int canvas_width_px(const struct canvas *canvas);
+/* Its height in pixels. */
 int canvas_height_px(const struct canvas *canvas);
 
 /* Like display_fd, display_wait_ms, display_dispatch, display_ready and display_is_dark. */

@@ -45,8 +45,9 @@ void display_destroy(struct display *display);
 
 /* Returns what DISPLAY_AUTO turned out to be. */
 enum display_kind display_kind(const struct display *display);
-/* The size of the framebuffer, before rotation. */
+/* The width of the framebuffer in pixels, before rotation. */
 int display_width_px(const struct display *display);
+/* The height of the framebuffer in pixels, before rotation. */
 int display_height_px(const struct display *display);
 /* Returns the width of the visible area in millimetres, from the panel's EDID; 0: not known. */
 int display_width_mm(const struct display *display);

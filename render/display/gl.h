@@ -48,11 +48,11 @@ struct gl_program_source {
  * exceeds the limits above. */
 must_check int gl_program_build(GLuint *out, const struct gl_program_source *source);
 
-/* Draws over the whole viewport as two triangles. gl_square_vertex is a vertex shader with the
- * varying v_at, 0..1 to the right and up. gl_draw_square draws with the current program, which was
- * linked with gl_square_attributes; it leaves attribute 0 disabled. */
+/* Parts to draw over the whole viewport. gl_square_vertex is a vertex shader with the varying v_at,
+ * 0..1 to the right and up; its program is linked with gl_square_attributes. */
 extern const char gl_square_vertex[];
 extern const char *const gl_square_attributes[];
+/* Draws the viewport as two triangles with the current program; leaves attribute 0 disabled. */
 void gl_draw_square(void);
 
 struct gl_texture_options {

@@ -38,9 +38,8 @@ void visibility_begin(struct visibility *visibility, const struct view *view,
 		      const struct root_page *root);
 /* Continues the pass after other things were drawn. */
 void visibility_resume(struct visibility *visibility, const struct root_page *root);
-void visibility_number(const struct visibility *visibility,
-		       /* Sets the number of the next piece, below VISIBILITY_PIECES_MAX. */
-		       uint32_t piece);
+/* Sets the number of the next piece, below VISIBILITY_PIECES_MAX. */
+void visibility_number(const struct visibility *visibility, uint32_t piece);
 /* Reads the picture back; waits for the GPU. Errors as gl_check. */
 must_check int visibility_end(struct visibility *visibility);
 /* Writes what is visible at a pixel of the small picture; y counts upwards. Returns false where
