@@ -1,7 +1,7 @@
-/* The C text below and the GLSL text at the end are the same function, line for line: a change of
- * one is a change of both. The hash is a permutation polynomial modulo 289, whose every
- * intermediate is an integer below 2^24. A quarter, not a half, is added before the floor: past
- * 2^23 floats have no halves. */
+/* The weathered stone in C and, at the end, in GLSL. Both are the same function line for line: a
+ * change of one is a change of both. The hash is a permutation polynomial modulo 289, whose
+ * intermediate values are all integers below 2^24. A quarter, not a half, is added before the
+ * floor: above 2^23 floats have no halves. */
 #include "pipeline/material/material.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ static float mod289(float x)
 	return x - floorf((x + 0.25f) * (1.0f / 289.0f)) * 289.0f;
 }
 
-/* Of an integer 0..577, the sum of two remainders. */
+/* Permutes an integer 0..577, the sum of two remainders. */
 static float permute(float x)
 {
 	return mod289((34.0f * x + 1.0f) * x);
@@ -34,7 +34,7 @@ static float ramp(float from, float to, float x)
 	return t * t * (3.0f - 2.0f * t);
 }
 
-/* Value noise, 0..1; cells of 1 / (fx, fy, fz) metres. */
+/* Returns value noise, 0..1, with cells of 1 / (fx, fy, fz) metres. */
 static float noise(const float p[3], float fx, float fy, float fz)
 {
 	float x = p[0] * fx, y = p[1] * fy, z = p[2] * fz;
@@ -56,7 +56,8 @@ static float noise(const float p[3], float fx, float fy, float fz)
 	return blend(low, high, w) * (1.0f / 288.0f);
 }
 
-/* Detail of size 1 / frequency fades out as the footprint grows to it. */
+/* Returns the share of detail of size 1 / frequency that is kept; it falls as the footprint
+ * grows. */
 static float kept(float frequency, float footprint_m)
 {
 	return fminf(fmaxf(1.6f - 1.6f * frequency * footprint_m, 0.0f), 1.0f);
@@ -69,7 +70,8 @@ static void mix3(float rgb[3], float r, float g, float b, float t)
 	rgb[2] = blend(rgb[2], b, t);
 }
 
-/* Noise of one frequency, which fades to its mean where the footprint is too coarse for it. */
+/* Returns noise of one frequency, which fades to its mean where the footprint is too coarse for
+ * it. */
 static float detail(const float p[3], float frequency, float footprint_m)
 {
 	float share = kept(frequency, footprint_m);
@@ -79,8 +81,9 @@ static float detail(const float p[3], float frequency, float footprint_m)
 	return blend(0.5f, noise(p, frequency, frequency, frequency), share);
 }
 
-/* Courses of blocks: along the wall and up it; on a floor, both ways along it. Of the block: tone,
- * tint, how much of a joint this is, and how far from the joint's middle (metres or more). */
+/* Courses of blocks: along a wall and up it; on a floor, both ways along it. Writes for the block:
+ * tone, tint, the share of a joint here, and the distance from the joint's middle (metres or
+ * more). */
 static void block_at(float block[4], const float p[3], const float n[3], float footprint_m)
 {
 	float along = fabsf(n[0]) > fabsf(n[1]) ? p[1] : p[0], up = p[2] * 2.3f;
@@ -100,7 +103,7 @@ static void block_at(float block[4], const float p[3], const float n[3], float f
 	block[3] = edge;
 }
 
-/* All but the finest: inch and grain are the noises of that detail. */
+/* Everything but the finest detail; inch and grain are its noises. */
 static void paint(float rgb[3], const float p[3], const float n[3], float footprint_m,
 		  const float block[4], float inch, float grain)
 {

@@ -1,5 +1,6 @@
-/* Two passes over the plan: how many rows and columns every sheet has at a density, until the sum
- * is the number asked for; then all vertices, then all triangles, a row at a time. */
+/* Writes the demo temple. First it searches for the density at which the rows and columns of all
+ * sheets give the wanted number of triangles; then it writes all vertices, then all triangles, a
+ * row at a time. */
 #include "pipeline/temple/temple.h"
 
 #include "base/progress.h"
@@ -27,13 +28,13 @@ struct writer {
 	struct plan plan;
 	struct sky *sky;
 	float density;
-	uint64_t vertices, triangles; /* of the whole */
+	uint64_t vertices, triangles; /* of the whole temple */
 	struct station *across, *up;  /* STATIONS_MAX each */
 	struct row rows[ROWS_KEPT];
 };
 
-/* Sheets alike would all gain a row at the same density and the sum would leap: each has its own.
- */
+/* Equal sheets would all gain a row at the same density, and the sum would jump; so each sheet has
+ * a slightly different density. */
 static float density_of(const struct writer *w, uint32_t sheet)
 {
 	return w->density * (0.92f + 0.16f * temple_chance(77, sheet, 0));
@@ -98,8 +99,8 @@ static void fill_row(const struct writer *w, const struct sheet *sheet, uint32_t
 		sheet_at(sheet, &w->across[i], &w->up[row], out->positions[i], &out->hollow[i]);
 }
 
-/* From the neighbours in the grid; also how far the vertex lies below them, a share of the spacing.
- */
+/* Computes the normal from the neighbours in the grid, and *spacing_m, about the distance of
+ * vertices. */
 static void normal_at(const float *left, const float *right, const float *below, const float *above,
 		      float normal[3], float *spacing_m)
 {
@@ -123,7 +124,7 @@ static void colour_vertex(const struct writer *w, const float position[3], const
 {
 	float rgb[3], open = sky_open(w->sky, position, normal);
 
-	/* Light is thrown back by the stone around: nothing is quite dark. */
+	/* Stone around reflects light, so nothing is completely dark. */
 	open = (0.14f + 0.86f * powf(open, 0.75f)) * (1 - 0.45f * hollow * hollow);
 	material_colour(rgb, position, normal, spacing_m);
 	for (int k = 0; k < 3; k++)

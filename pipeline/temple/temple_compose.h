@@ -4,8 +4,8 @@
 
 #include "pipeline/temple/temple_plan.h"
 
-/* Fills *plan; the caller destroys it with plan_destroy. The same seed gives the same temple.
- * -ENOMEM. */
+/* Lays out the whole temple. The caller destroys the plan. The same seed gives the same temple.
+ * Returns 0 or -ENOMEM; on failure the plan is empty. */
 must_check int plan_create(struct plan *plan, uint32_t seed);
 
 #endif

@@ -1,3 +1,4 @@
+/* Carvings of doors and gables: lintel, pediment, false door, window and antefix. */
 #include "pipeline/temple/temple_figures.h"
 
 #include "pipeline/temple/temple_carve.h"
@@ -18,7 +19,7 @@ static float limb(float x, float y, float ax, float ay, float bx, float by, floa
 	return carve_limb(x, y, list);
 }
 
-/* Curling leaves seen from the tip: the filling of everything that is not a figure. */
+/* Curling leaves seen from the tip; they fill everything that is not a figure. */
 static float foliage(float x, float y, float size)
 {
 	float cx = x / size, row = floorf(y / size), shift = fmodf(row, 2) == 0 ? 0.5f : 0;
@@ -29,7 +30,7 @@ static float foliage(float x, float y, float size)
 	return r < 0.5f ? carve_ridge(turns - roundf(turns), 0.36f) * (1 - r) : 0;
 }
 
-/* ---- lintel: Kala in the middle devours a garland that sags to both ends in makara heads */
+/* ---- lintel: in the middle Kala devours a garland that sags and ends in makara heads */
 
 static float kala(float x, float y)
 {
@@ -48,7 +49,7 @@ static float kala(float x, float y)
 	return fmaxf(fmaxf(skull + eyes + brow + nose, jaw), fmaxf(claws, crest)) * 0.8f;
 }
 
-/* A head turned outwards, its trunk rolled up, a row of teeth; at the end of the garland. */
+/* A head turned outwards with a rolled-up trunk and a row of teeth, at the end of the garland. */
 static float lintel_makara(float x, float y)
 {
 	float r = hypotf(x, y), a = atan2f(y, x), turns = r * 7.5f + a / 6.28319f;
@@ -68,7 +69,7 @@ float figure_lintel(float x, float y, float aspect)
 	float garland = carve_ridge(y - line, 0.085f);
 	float twist = 0.18f * sinf((fabsf(x) + y * 0.6f) * 60);
 	float above = y > line ? 0.55f * foliage(fabsf(x), y - line, 0.30f) : 0;
-	/* Below, pendants of leaves hang from the garland. */
+	/* Pendants of leaves hang below the garland. */
 	float pendant_x = ax * 3.5f, px = pendant_x - floorf(pendant_x) - 0.5f;
 	float hang = y < line ? 0.6f * carve_ridge(px, 0.36f * carve_step(0.02f, 0.4f, y)) : 0;
 	float vein = y < line ? 0.16f * cosf((y + fabsf(px)) * 75) : 0;
@@ -105,7 +106,7 @@ static float deity(float x, float y)
 	float arms = fmaxf(limb(fabsf(x), y, 0.07f, 0.50f, 0.14f, 0.42f, 0.03f, 0.025f),
 			   limb(fabsf(x), y, 0.14f, 0.42f, 0.12f, 0.54f, 0.025f, 0.02f));
 	float crown = limb(x, y, 0, 0.65f, 0, 0.74f, 0.035f, 0.008f);
-	/* The three-headed elephant beneath. */
+	/* The three-headed elephant below. */
 	float mount = fmaxf(1.3f * limb(x, y, 0, 0.2f, 0, 0.22f, 0.09f, 0.08f),
 			    limb(fabsf(x), y, 0.13f, 0.2f, 0.14f, 0.2f, 0.07f, 0.06f));
 	float trunks = fmaxf(limb(x, y, 0, 0.2f, 0, 0.07f, 0.05f, 0.025f),

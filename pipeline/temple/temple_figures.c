@@ -1,3 +1,4 @@
+/* Basic carving shapes, the devata and the procession of walkers and elephants. */
 #include "pipeline/temple/temple_figures.h"
 
 #include "base/compiler.h"
@@ -59,7 +60,7 @@ static float devata_head(float x, float y)
 	return fmaxf(face, crown);
 }
 
-/* The long skirt: pleats, a hem that flares, two hanging ends of the sash. */
+/* The long skirt: pleats, a flared hem, two hanging ends of the sash. */
 static float devata_skirt(float x, float y)
 {
 	if (y < 0.06f || y > 0.56f)
@@ -82,7 +83,7 @@ float figure_devata(float x, float y, float aspect, uint32_t seed)
 	float side = temple_chance(seed, 3, 5) < 0.5f ? -1.0f : 1.0f;
 	float edge = aspect * 0.5f - fabsf(x);
 	float arch_y = 0.80f + 0.17f * (1 - powf(fabsf(x) / (aspect * 0.5f), 1.6f));
-	/* The niche: a frame of foliage, its arch lobed, the ground inside sunk. */
+	/* The niche: a frame of foliage with a lobed arch and a sunk ground. */
 	float frame = y > arch_y || edge < 0.055f ? 0.62f : 0;
 	float lip = fmaxf(y < arch_y ? carve_ridge(edge - 0.06f, 0.028f) : 0,
 			  edge > 0.06f ? carve_ridge(y - arch_y, 0.03f) : 0);
@@ -95,7 +96,7 @@ float figure_devata(float x, float y, float aspect, uint32_t seed)
 	return fmaxf(fmaxf(frame + leaf, lip * 0.85f), fmaxf(pedestal, fminf(body, 1.15f)));
 }
 
-/* ---- a procession: two registers of walkers, now and then a rider on an elephant */
+/* ---- a procession: registers of walkers, and now and then a rider on an elephant */
 
 static float walker(float x, float y, uint32_t seed, uint32_t n)
 {

@@ -1,21 +1,32 @@
-/* The figurative carvings of the demo temple, as height fields. x runs from -1 to 1 across the
- * field's half width times its aspect, y from 0 to 1 up it; the height is a share of the relief's
- * depth, about 0 to 1. Used by temple_relief.c alone. */
+/* The figurative carvings of the demo temple, as height fields. y runs from 0 to 1 from the bottom
+ * to the top of the field; x is in the same unit, 0 in the middle. The result is a share of the
+ * relief's depth, about 0 to 1. Only temple_relief.c uses them. */
 #ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_FIGURES_H
 #define GOPURA_PIPELINE_TEMPLE_TEMPLE_FIGURES_H
 
 #include <stdint.h>
 
-/* aspect: width over height of the field; x in -aspect/2 .. aspect/2. */
+/* A goddess in her niche. For all figures but the procession: aspect is width over height of the
+ * field, and x runs over -aspect/2 .. aspect/2; where the outline narrows shape is the share of the
+ * width left at this height, and scales x as well. seed varies the figure. */
 float figure_devata(float x, float y, float aspect, uint32_t seed);
+/* A procession, in metres from the lower left corner, for a field of any width. */
 float figure_march(float x_m, float y_m, float height_m, uint32_t seed);
+/* A kala's head over a garland. */
 float figure_lintel(float x, float y, float aspect);
+/* A pediment: naga arch, deity, worshippers. */
 float figure_tympanum(float x, float y, float aspect, float shape);
+/* A false door. */
 float figure_door(float x, float y, float aspect);
+/* A window with turned balusters. */
 float figure_window(float x, float y, float aspect);
+/* A great smiling face. */
 float figure_face(float x, float y, float aspect);
+/* The mask of a lion; its height may be negative outside the mane. */
 float figure_lion(float x, float y);
+/* The seven heads of a naga; aspect is not used. */
 float figure_hood(float x, float y, float aspect);
+/* An antefix: flames around a seated figure. */
 float figure_flame(float x, float y, float aspect, float shape);
 
 #endif

@@ -1,5 +1,5 @@
-/* Galleries: a moulded base, walls or rows of pillars, a vault of carved roof stones with a crest.
- */
+/* Lays out the galleries: a moulded base, walls or rows of pillars, and a vault of carved roof
+ * stones with a crest. */
 #include "pipeline/temple/temple_carve.h"
 #include "pipeline/temple/temple_plan.h"
 
@@ -12,7 +12,7 @@ static const struct profile_point base_points[] = {
 };
 static const struct profile base = { ARRAY_COUNT(base_points), base_points };
 
-/* From the eave in front over the ridge to the eave behind. */
+/* From the front eave over the ridge to the back eave. */
 static const struct profile_point vault_points[] = {
 	{ 0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },        { 1.0f, 0.0f, RELIEF_PETALS, 0.05f, 0.22f },
 	{ 0.98f, 0.13f, RELIEF_TILES, 0.13f, 0.5f },  { 0.92f, 0.38f, RELIEF_TILES, 0.13f, 0.5f },
@@ -24,7 +24,7 @@ static const struct profile_point vault_points[] = {
 };
 static const struct profile vault = { ARRAY_COUNT(vault_points), vault_points };
 
-/* Its inside, seen from below. */
+/* The inside of the vault, seen from below. */
 static const struct profile_point ceiling_points[] = {
 	{ -0.80f, -0.1f, RELIEF_PLAIN, 0, 0 }, { -0.72f, 0.35f, RELIEF_PLAIN, 0, 0 },
 	{ 0.0f, 0.88f, RELIEF_PLAIN, 0, 0 },   { 0.72f, 0.35f, RELIEF_PLAIN, 0, 0 },
@@ -55,7 +55,7 @@ static const struct profile_point beam_points[] = {
 };
 static const struct profile beam = { ARRAY_COUNT(beam_points), beam_points };
 
-/* A row of small leaves on the ridge; one in so many has fallen. */
+/* A row of small leaves on the ridge; 12 % of them have fallen. */
 static void plan_crest(struct plan *plan, const struct frame *middle, float length_m, float z_m)
 {
 	int count = (int)(length_m / 0.5f);
@@ -95,7 +95,7 @@ static void plan_colonnade(struct plan *plan, const struct frame *row, float len
 	lintel->stretch = 0.34f / length_m;
 }
 
-/* The wall in front: windows or devatas by turns, a frieze above. */
+/* The front wall: windows and devatas alternate, with a frieze above. */
 static void plan_front(struct plan *plan, const struct frame *wall, const struct gallery *gallery)
 {
 	int count = (int)fmaxf(1, roundf(gallery->length_m / 1.5f));

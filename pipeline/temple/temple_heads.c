@@ -1,3 +1,4 @@
+/* Carvings of heads: the smiling face, the lion mask and the naga hood. */
 #include "pipeline/temple/temple_figures.h"
 
 #include "pipeline/temple/temple_carve.h"
@@ -11,7 +12,7 @@ static float bump(float x, float y, float cx, float cy, float rx, float ry)
 	return expf(-(dx * dx + dy * dy));
 }
 
-/* ---- a face in the manner of the Bayon: closed mouth, wide lips, lowered lids, a diadem */
+/* ---- a face in the style of the Bayon: closed mouth, wide lips, lowered lids, a diadem */
 
 static float face_skull(float x, float y)
 {
@@ -104,7 +105,7 @@ float figure_face(float x, float y, float aspect)
 	h += 0.075f * bump(ax, y, 0, 0.125f, 0.1f, 0.055f);  /* chin */
 	h += face_diadem(x, y) * carve_step(0.0f, 0.08f, edge);
 	h = fmaxf(h, face_ear(ax, y) + 0.12f);
-	/* The stones it is built of: open joints, courses of a sixth of the face. */
+	/* The blocks it is built of: open joints, courses of a sixth of the face. */
 	float course = y * 6.5f, row = floorf(course);
 	float material = x * 4.2f + 0.5f * fmodf(row, 2);
 	float joint = fminf(fminf(course - row, row + 1 - course) / 6.5f,
@@ -132,7 +133,7 @@ float figure_lion(float x, float y)
 	float teeth = y < 0.335f && y > 0.295f && ax < 0.17f ? 0.07f * fabsf(sinf(x * 52)) : 0;
 	float ears = 0.2f * bump(ax, y, 0.33f, 0.83f, 0.07f, 0.08f);
 
-	/* Outside the mane the ground falls back into the body. */
+	/* Outside the mane the surface falls back into the body. */
 	return head + curls + eyes + brow + muzzle + nose + mouth + teeth + ears -
 	       0.75f * carve_step(0.43f, 0.56f, r);
 }

@@ -1,3 +1,5 @@
+/* Collects the sheets of the temple: outlines, frames, and the sheets that every building part
+ * uses. */
 #include "pipeline/temple/temple_plan.h"
 
 #include <errno.h>
@@ -21,7 +23,7 @@ const struct outline outline_octagon = { OUTLINE_CLOSED,
 					   { 0.414f, -1 },
 					   { 1, -0.414f } } };
 
-/* A quarter's corners, turned into the other three. */
+/* The corners of a quarter, rotated into the other three. */
 #define QUARTERS(ax, bx, by)                                                                       \
 	{ 1, ax }, { bx, ax }, { bx, by }, { by, by }, { by, bx }, { ax, bx }, { ax, 1 },          \
 		{ -ax, 1 }, { -ax, bx }, { -by, bx }, { -by, by }, { -bx, by }, { -bx, ax },       \
@@ -57,7 +59,7 @@ struct frame frame_within(const struct frame *frame, float x_m, float y_m, float
 	};
 }
 
-/* What is written to when memory ran out, so that the layout need not ask at every stone. */
+/* Receives the writes after memory has run out, so that the layout need not check each sheet. */
 static struct sheet nowhere;
 
 static struct sheet *plan_room(struct plan *plan)

@@ -1,86 +1,94 @@
-/* The plan of the demo temple: which sheets stand where. Bounded: some thousands of sheets,
- * whatever the number of triangles asked for. */
+/* The plan of the demo temple: which sheets stand where. Its size is bounded: some thousands of
+ * sheets for any number of triangles. */
 #ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_PLAN_H
 #define GOPURA_PIPELINE_TEMPLE_TEMPLE_PLAN_H
 
 #include "pipeline/temple/temple_sheet.h"
 
-/* Sheets that are one carving, such as a lion: a part can be marked by its faces. */
+/* Consecutive sheets that form one carving, such as a lion, so that a part can be marked by its
+ * faces. */
 struct body {
 	const char *kind; /* static: "lion", "naga", "stairs" */
-	uint32_t number;  /* of its kind, from 1 */
+	uint32_t number;  /* number within its kind, from 1 */
 	uint32_t first, count;
 };
 
 struct plan {
 	struct sheet *sheets; /* owned */
 	uint32_t count, capacity;
-	struct body *bodies; /* owned; ascending, apart from one another */
+	struct body *bodies; /* owned; ascending, without overlaps */
 	uint32_t body_count;
 	uint32_t seed;
-	int error; /* 0 or -ENOMEM, sticky */
+	int error; /* 0 or -ENOMEM; the first error stays */
 };
 
-/* Lays out the whole temple. On failure the plan is empty. */
-void plan_destroy(struct plan *plan); /* NULL and zeroed are fine */
+void plan_destroy(struct plan *plan); /* Frees the plan. NULL and a zeroed plan are fine. */
 
-/* ---- for the files that lay it out */
+/* ---- for the sources that lay it out */
 
-/* A place with a direction: local -y looks that way. */
+/* A position with a direction: its local -y axis points that way. */
 struct frame {
 	float origin_m[3];
 	float turn[2];
 };
 
+/* A frame in the temple's own axes. quarter_turns are counter-clockwise. */
 struct frame frame_at(float x_m, float y_m, float z_m, int quarter_turns);
-/* A place in the frame's own axes. turns: quarter turns counter-clockwise. */
+/* A frame given in the axes of another one. turns: quarter turns counter-clockwise. */
 struct frame frame_within(const struct frame *frame, float x_m, float y_m, float z_m, int turns);
 
 extern const struct outline outline_line, outline_square, outline_circle, outline_octagon,
 	outline_redented, outline_redented_deep;
 
-/* A sheet of the profile, standing at the frame; the caller changes what differs. Never NULL:
- * when memory ran out, a sheet that is in no plan. */
+/* Adds a sheet of the profile, standing at the frame; the caller then changes what differs. Never
+ * NULL: when memory has run out, it returns a sheet that belongs to no plan. Borrowed until the
+ * next sheet. */
 struct sheet *plan_sheet(struct plan *plan, const struct frame *frame,
 			 const struct outline *outline, const struct profile *profile, float size_m,
 			 float reach_m, float height_m);
-/* An upright relief, its middle foot at the frame. */
+/* Adds an upright relief; the frame is the middle of its lower edge. Returns as plan_sheet. */
 struct sheet *plan_panel(struct plan *plan, const struct frame *frame, float width_m,
 			 float height_m, enum relief relief, float depth_m, float period_m);
-/* A level rectangle looking up, its middle at the frame. */
+/* Adds a level rectangle that faces up; the frame is its middle. */
 void plan_floor(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
 		enum relief relief, float depth_m, float period_m);
-/* A plain upright box with lid; the frame is the middle of its foot. */
+/* Adds a plain upright box with a lid; the frame is the middle of its base. */
 void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
 	      float height_m);
 
-/* The reliefs laid out since `from` (a plan->count) get more divisions: what a visitor
- * meets first, and what the parts point at, was scanned more closely. */
+/* Multiplies the divisions of the reliefs added since `from` (a plan->count): what a visitor meets
+ * first, and what the parts refer to, is modelled more finely. */
 void plan_refine(struct plan *plan, uint32_t from, float factor);
-/* What was laid out since `from` is one carving. */
+/* Declares the sheets added since `from` as one carving. kind is a static string. */
 void plan_body(struct plan *plan, const char *kind, uint32_t from);
 
+/* The ground, the terraces, stairs and balustrades. */
 void plan_terraces(struct plan *plan);
+/* The outer galleries and those on the top terrace. */
 void plan_galleries(struct plan *plan);
+/* The towers and the gates. */
 void plan_towers(struct plan *plan);
-/* A lotus-bud tower on a redented plan. half_m: of its body; body_m: height of the body. */
+/* A lotus-bud tower on a redented plan. half_m is half the width and body_m the height of its body,
+ * top_m about its total height, tiers the number of storeys above the body. */
 void plan_tower(struct plan *plan, const struct frame *frame, float half_m, float body_m,
 		float top_m, uint32_t tiers);
-/* A tower with a face to each side. */
+/* A tower with a face on each side; half_m is half its width. */
 void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m);
-/* A doorway with colonettes, lintel and pediment on a porch that comes out of the frame's front. */
+/* A doorway with colonettes, lintel and pediment on a porch that projects depth_m from the front of
+ * the frame. */
 void plan_porch(struct plan *plan, const struct frame *frame, float half_m, float depth_m,
 		float height_m);
-/* A flight of stairs climbing against the frame's direction, with its cheeks. */
+/* A flight of stairs that climbs against the frame's direction, with side walls and lions. */
 void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, float run_m,
 		 float rise_m);
-/* A gallery along the frame's x axis, the frame in the middle of its floor. */
+/* A gallery along the frame's x axis; the frame is in the middle of its floor. */
 struct gallery {
 	float length_m, half_m, wall_m;
-	bool open;    /* a row of columns in front instead of a wall */
-	bool reliefs; /* a procession along the wall in front */
-	bool windows; /* balustered windows in front */
+	bool open;    /* columns in front instead of a wall */
+	bool reliefs; /* a procession along the back wall of an open gallery */
+	bool windows; /* not used: every wall gets windows */
 };
+/* Adds a gallery. */
 void plan_gallery(struct plan *plan, const struct frame *frame, const struct gallery *gallery);
 
 #endif

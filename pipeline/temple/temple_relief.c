@@ -1,3 +1,4 @@
+/* Mouldings, ornaments and masonry as height functions, and the choice of the function by style. */
 #include "pipeline/temple/temple_relief.h"
 
 #include "pipeline/temple/temple_carve.h"
@@ -10,7 +11,8 @@ bool relief_varies_across(enum relief kind)
 	return kind != RELIEF_PLAIN && kind != RELIEF_ROUND && kind != RELIEF_HOLLOW;
 }
 
-/* Position in a repeated motif: x in -0.5..0.5 of it, its width chosen so that whole ones fit. */
+/* Position in a repeated motif: x is -0.5..0.5 of it, and its width is chosen so that whole motifs
+ * fit. */
 struct cell {
 	float x, width_m;
 	uint32_t index;
@@ -78,7 +80,7 @@ static float flowers(const struct relief_style *s, const struct relief_place *p)
 	return fmaxf(0.8f * flower(x * 1.5f, y * 1.5f), 0.7f * carve_ridge(lattice, 0.07f));
 }
 
-/* A vine waving along the band, a spiral with a leafy rim in each of its bends. x in motifs. */
+/* A vine waving along the band, with a leafy spiral in each bend. x counts motifs. */
 static float scroll(float x, float y)
 {
 	float cell = floorf(x * 2), side = fmodf(cell, 2) == 0 ? 1.0f : -1.0f;
@@ -124,7 +126,7 @@ static float scales(const struct relief_style *s, const struct relief_place *p)
 	return r < 1.2f ? sqrtf(1 - r / 1.2f) : 0.05f;
 }
 
-/* Courses of stones: joints, and every stone a little out of line. */
+/* Courses of stones with joints, each stone slightly displaced. */
 static float blocks(const struct relief_style *s, const struct relief_place *p)
 {
 	float course_m = s->period_m * 0.55f, row = floorf(p->y_m / course_m);
@@ -194,7 +196,8 @@ static float carving(const struct relief_style *s, const struct relief_place *p)
 	return 0;
 }
 
-/* Motifs that the vertices cannot follow would only be noise. */
+/* Returns the share of a motif that is kept: motifs too fine for the vertices would only be
+ * noise. */
 static float resolved(const struct relief_style *s, const struct relief_place *p)
 {
 	float motif_m = s->kind == RELIEF_BEADS ? fmaxf(s->period_m, p->height_m) : s->period_m;

@@ -1,5 +1,5 @@
-/* Carving: how far a stone surface stands out at a place, metres. Pure functions of the place, the
- * style and its seed. */
+/* Carving: how far a stone surface stands out at a place, in metres. Pure functions of the place,
+ * the style and its seed. */
 #ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_RELIEF_H
 #define GOPURA_PIPELINE_TEMPLE_TEMPLE_RELIEF_H
 
@@ -10,11 +10,11 @@
 
 enum relief {
 	RELIEF_PLAIN,
-	RELIEF_SHEET,     /* what the sheet says (profiles only) */
-	RELIEF_ROUND,     /* a torus moulding */
-	RELIEF_HOLLOW,    /* a cavetto */
+	RELIEF_SHEET,     /* the relief of the sheet (profiles only) */
+	RELIEF_ROUND,     /* a torus moulding (convex) */
+	RELIEF_HOLLOW,    /* a cavetto moulding (concave) */
 	RELIEF_PETALS,    /* a row of lotus petals, tips up */
-	RELIEF_DROPS,     /* the same, tips down */
+	RELIEF_DROPS,     /* the same with tips down */
 	RELIEF_BEADS,     /* a row of half spheres */
 	RELIEF_FLOWERS,   /* a field of four-petalled flowers in lozenges */
 	RELIEF_SCROLL,    /* foliage scrolls along a band */
@@ -42,15 +42,16 @@ struct relief_style {
 };
 
 struct relief_place {
-	float x_m, y_m;          /* from the lower left corner of the field */
+	float x_m, y_m;          /* position from the lower left corner of the field */
 	float width_m, height_m; /* of the field */
 	float shape;             /* share of the width that is left at this height */
-	float step_m;            /* between vertices: finer motifs fade away */
-	uint32_t segment;        /* of the outline, so that neighbours differ */
+	float step_m;            /* distance of vertices: finer motifs fade out */
+	uint32_t segment;        /* segment of the outline, so that neighbours differ */
 };
 
-/* Whether it changes along the outline and so needs dividing there. */
+/* Returns whether the relief changes along the outline and so needs divisions there. */
 bool relief_varies_across(enum relief kind);
+/* Returns the height over the sheet at a place, metres; negative in hollows. */
 float relief_height(const struct relief_style *style, const struct relief_place *place);
 
 #endif

@@ -1,3 +1,4 @@
+/* Divides a sheet into rows and columns at a density, and computes the position of each vertex. */
 #include "pipeline/temple/temple_sheet.h"
 
 #include <math.h>
@@ -50,7 +51,7 @@ static bool carved_across(const struct sheet *sheet)
 	return false;
 }
 
-/* Divisions of a segment; 0: too short to show, skip its end. */
+/* Returns the number of divisions of a segment; 0: too short to show, leave out its end. */
 static uint32_t divisions(float length_m, float density, bool carved, bool curved)
 {
 	float wanted = length_m * density;
@@ -108,7 +109,7 @@ static void list_across(const struct sheet *sheet, float density, struct list *l
 	}
 	if (!sheet_wraps(sheet) && sheet->rim_m > 0)
 		list_add(list, 0, 1.0f, 1);
-	/* A ring of fewer than four corners is no solid: keep all of them. */
+	/* A ring with fewer than four corners encloses no volume: keep all of them. */
 	if (sheet_wraps(sheet) && list->count < 4) {
 		list->count = 0;
 		for (uint32_t s = 0; s < segments; s++)
@@ -120,7 +121,8 @@ static void list_up(const struct sheet *sheet, float density, struct list *list)
 {
 	uint32_t segments = sheet->profile->count - 1;
 	const struct profile_point *first = sheet->profile->points, *last = first + segments;
-	bool returns = first->out == last->out && first->z == last->z; /* keep it a solid */
+	/* a closed profile must stay closed */
+	bool returns = first->out == last->out && first->z == last->z;
 	bool rim = !sheet_wraps(sheet) && sheet->rim_m > 0;
 
 	if (rim)
@@ -173,9 +175,9 @@ uint64_t sheet_triangles(const struct sheet *sheet, uint32_t columns, uint32_t r
 	return 2ull * (sheet_wraps(sheet) ? columns : columns - 1) * (rows - 1);
 }
 
-/* ---- where a crossing lies */
+/* ---- position of a vertex */
 
-/* Width at height t (0..1) as a share of the whole. */
+/* Returns the width at height t (0..1) as a share of the full width. */
 static float shape_width(enum sheet_shape shape, float t)
 {
 	switch (shape) {
@@ -193,7 +195,7 @@ static float shape_width(enum sheet_shape shape, float t)
 	return 1.0f;
 }
 
-/* The offset of one metre outwards at a corner: along both edges' outsides at once. */
+/* Computes the offset at a corner that moves both edges outwards by one metre. */
 static void mitre(const struct outline *o, uint32_t corner, float out[2])
 {
 	const float *a = o->corners[(corner + o->count - 1) % o->count];
@@ -207,7 +209,7 @@ static void mitre(const struct outline *o, uint32_t corner, float out[2])
 	out[1] = (n1[1] + n2[1]) * scale;
 }
 
-/* Base point, unit outside and mitred offset in the plan. */
+/* Base point, unit outward normal and mitred offset in the plan. */
 struct foot {
 	float point[2], outside[2], offset[2];
 };
@@ -246,7 +248,7 @@ static void foot_at(const struct sheet *sheet, const struct station *across, flo
 	}
 }
 
-/* The relief of a crossing: height_m outwards, and how much of it also follows the mitre. */
+/* Returns the relief of a vertex in metres outwards; *style is the style there. */
 static float relief_of(const struct sheet *sheet, const struct station *across,
 		       const struct station *up, float width, struct relief_style *style)
 {

@@ -1,14 +1,13 @@
-/* The building stone of the demo temple: a sheet, one profile swept along one outline.
+/* The building element of the demo temple: a sheet, which is one profile swept along one outline.
  *
  * A terrace is a moulding swept round a square, a column a moulding swept round a circle, a roof an
- * arch swept along a line, a relief a flat upright sheet whose surface is pushed out. Each sheet is
- * a grid of vertices shared by its triangles. How many rows and columns the grid has follows from
- * the density asked for, so that the same sheets give ten thousand triangles or a hundred million:
- * parts that carry relief are divided, plain ones never are, and edges too small for the density
- * are left out.
+ * arch swept along a line, and a relief a flat upright sheet with a displaced surface. Each sheet
+ * is a grid of vertices shared by its triangles. The rows and columns of the grid follow from the
+ * density, so the same sheets give ten thousand triangles or a hundred million: parts with relief
+ * are divided, plain ones never are, and edges too short for the density are left out.
  *
- * Local axes: an outline runs counter-clockwise, its outside to the right; a line runs along +x and
- * faces -y (south). Metres, z up. */
+ * Local axes: an outline runs counter-clockwise, with its outside to the right; a line runs along
+ * +x and faces -y (south). Metres, z up. */
 #ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_SHEET_H
 #define GOPURA_PIPELINE_TEMPLE_TEMPLE_SHEET_H
 
@@ -21,16 +20,16 @@
 enum outline_kind { OUTLINE_LINE, OUTLINE_CLOSED, OUTLINE_ROUND };
 enum { OUTLINE_CORNERS_MAX = 28 };
 
-/* Of half size 1 (a line: from -0.5 to 0.5); sheets scale it. */
+/* Its half size is 1 (a line runs from -0.5 to 0.5); sheets scale it. */
 struct outline {
 	enum outline_kind kind;
-	uint32_t count; /* corners; 1 for a round one */
+	uint32_t count; /* number of corners; 1 for a round one */
 	float corners[OUTLINE_CORNERS_MAX][2];
 };
 
-/* A point of a profile, and what lies between it and the next one. */
+/* A point of a profile, and the relief between it and the next one. */
 struct profile_point {
-	float out, z; /* times the sheet's reach_m and height_m */
+	float out, z; /* in units of the sheet's reach_m and height_m */
 	enum relief relief;
 	float depth_m;
 	float period_m; /* width of one motif */
@@ -45,40 +44,43 @@ struct profile {
 enum sheet_shape { SHAPE_FULL, SHAPE_PEDIMENT, SHAPE_LEAF, SHAPE_HOOD };
 
 struct sheet {
-	const struct outline *outline; /* borrowed, lives as long as the plan */
-	const struct profile *profile; /* the same */
+	const struct outline *outline; /* borrowed; must outlive the plan */
+	const struct profile *profile; /* borrowed likewise */
 	float origin_m[3];
-	float turn[2];           /* cosine and sine of the turn about the vertical */
+	float turn[2];           /* cosine and sine of the rotation about the vertical */
 	float size_m;            /* scale of the outline */
-	float stretch;           /* the outline's y over its x */
+	float stretch;           /* scale of the outline's y relative to its x */
 	float reach_m, height_m; /* scales of the profile */
-	float lean;              /* metres the top leans outwards per metre of height */
-	float rim_m;             /* > 0: a line's sheet whose edges are bent back this far */
+	float lean;              /* metres that the sheet leans outwards per metre of height */
+	float rim_m;             /* > 0: the edges of a sheet on a line are bent back this far */
 	enum sheet_shape shape;
-	struct relief_style relief; /* for profile segments of RELIEF_SHEET */
-	float interest;             /* divisions per metre, relative to the temple's density */
-	bool optional;              /* left out where the density cannot show it */
+	struct relief_style relief; /* for profile segments with RELIEF_SHEET */
+	float interest;             /* divisions per metre relative to the temple's density */
+	bool optional;              /* left out where the density is too low to show it */
 };
 
-/* One line of the grid, across or along. */
+/* A row or column of the grid. */
 struct station {
 	uint16_t segment;
 	int8_t rim;   /* -1, 1: bent back at the low or high end */
 	float at;     /* 0..1 in the segment */
-	float step_m; /* to the next one: carving finer than that is left away */
+	float step_m; /* distance to the next one: finer carving fades out */
 };
 
-/* Stations of a sheet at a density (divisions per metre at interest 1): *columns along the outline,
- * *rows along the profile. Where the lists are not NULL they are filled, at most `most` each. A
- * sheet that is left out has no columns. */
+/* Computes the stations of a sheet at a density (divisions per metre at interest 1): *columns along
+ * the outline and *rows along the profile. Lists that are not NULL are filled, with at most `most`
+ * entries each; the counts may be larger. A sheet that is left out has no columns. */
 void sheet_stations(const struct sheet *sheet, float density, struct station *across,
 		    uint32_t *columns, struct station *up, uint32_t *rows, uint32_t most);
-/* Columns close on themselves. */
+/* Returns whether the columns form a closed ring. */
 bool sheet_wraps(const struct sheet *sheet);
+/* Returns the number of vertices of a grid of this size. */
 uint64_t sheet_vertices(const struct sheet *sheet, uint32_t columns, uint32_t rows);
+/* Returns the number of its triangles. */
 uint64_t sheet_triangles(const struct sheet *sheet, uint32_t columns, uint32_t rows);
 
-/* Where a crossing lies, metres; *hollow: 0 on the crests of the relief, 1 at its bottom. */
+/* Writes the position of a grid vertex in metres. *hollow: 0 on the crests of the relief, 1 at its
+ * bottom. */
 void sheet_at(const struct sheet *sheet, const struct station *across, const struct station *up,
 	      float position_m[3], float *hollow);
 

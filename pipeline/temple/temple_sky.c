@@ -1,3 +1,5 @@
+/* Marks the voxels that sheets touch, casts rays from free voxels next to them, and interpolates
+ * the result. */
 #include "pipeline/temple/temple_sky.h"
 
 #include <errno.h>
@@ -10,7 +12,8 @@ enum { SOLID = 1 };
 
 struct sky {
 	uint8_t solid[HIGH][WIDE][WIDE];
-	uint8_t open[HIGH][WIDE][WIDE]; /* 1..255, of free voxels near solid ones */
+	/* 1..255, for free voxels near solid ones; 0: not computed */
+	uint8_t open[HIGH][WIDE][WIDE];
 };
 
 static int cell(float metres, float low_m)
@@ -25,7 +28,7 @@ static bool inside(int x, int y, int z)
 	return x >= 0 && y >= 0 && z >= 0 && x < WIDE && y < WIDE && z < HIGH;
 }
 
-/* Every sheet, sampled twice a voxel between its own stations. */
+/* Marks a quad of a sheet, sampled twice per voxel. */
 static void mark_quad(struct sky *sky, const float a[3], const float b[3], const float c[3],
 		      const float d[3])
 {
@@ -67,7 +70,7 @@ static void mark_sheet(struct sky *sky, const struct sheet *sheet, struct statio
 	}
 }
 
-/* The share of the rays to the sky from a free voxel, the high ones counting more. */
+/* Returns the share of rays from a free voxel that reach the sky; steep rays have more weight. */
 static uint8_t look_up(const struct sky *sky, int x, int y, int z)
 {
 	float seen = 0, all = 0;
@@ -93,7 +96,8 @@ static uint8_t look_up(const struct sky *sky, int x, int y, int z)
 	return (uint8_t)(1 + 254 * seen / all);
 }
 
-/* The free voxels a vertex of this solid one may ask about; 0 is "not looked at yet". */
+/* Computes the free voxels that a vertex in this solid voxel may ask for; 0 means not computed
+ * yet. */
 static void look_around(struct sky *sky, int x, int y, int z)
 {
 	for (int k = z - 2; k <= z + 2; k++)
@@ -131,7 +135,8 @@ void sky_destroy(struct sky *sky)
 	free(sky);
 }
 
-/* Between the eight voxels around a point in front of the surface; solid ones do not count. */
+/* Interpolates between the eight voxels around a point in front of the surface; solid ones do not
+ * count. */
 float sky_open(const struct sky *sky, const float position_m[3], const float normal[3])
 {
 	float at[3], sum = 0, weights = 0;

@@ -1,5 +1,5 @@
-/* How much of the sky a place in the temple sees: an estimate from a grid of voxels 0.3 m wide that
- * the sheets are drawn into. Made once, a few megabytes whatever the density. */
+/* Estimates how much of the sky a place in the temple sees, from a grid of voxels 0.3 m wide into
+ * which the sheets are drawn. It is built once and takes a few megabytes at any density. */
 #ifndef GOPURA_PIPELINE_TEMPLE_TEMPLE_SKY_H
 #define GOPURA_PIPELINE_TEMPLE_TEMPLE_SKY_H
 
@@ -7,9 +7,11 @@
 
 struct sky;
 
+/* Builds the grid. The caller owns *out; it is NULL on failure. The plan is only read during the
+ * call. -ENOMEM. */
 must_check int sky_create(struct sky **out, const struct plan *plan);
-void sky_destroy(struct sky *sky); /* NULL is fine */
-/* 0 (closed in) to 1 (the whole upper hemisphere open). */
+void sky_destroy(struct sky *sky); /* Frees it. NULL is fine. */
+/* Returns 0 (enclosed) to 1 (the whole upper hemisphere visible). */
 float sky_open(const struct sky *sky, const float position_m[3], const float normal[3]);
 
 #endif

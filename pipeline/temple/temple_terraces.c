@@ -1,10 +1,11 @@
-/* The mountain: ground, three terraces, the stairs up the four axes, the naga balustrades. */
+/* Lays out the temple mountain: the ground, three terraces, the stairs on the four axes, and the
+ * naga balustrades. */
 #include "pipeline/temple/temple_plan.h"
 
 #include <math.h>
 
-/* The moulded base of a Khmer terrace: the same mouldings from the foot up and from the top down,
- * a torus between them. */
+/* The moulded base of a Khmer terrace: the same mouldings from the bottom up and from the top down,
+ * with a torus between them. */
 static const struct profile_point terrace_points[] = {
 	{ 1.00f, 0.00f, RELIEF_PLAIN, 0, 0 },
 	{ 1.00f, 0.09f, RELIEF_PLAIN, 0, 0 },
@@ -55,7 +56,7 @@ static const struct profile_point stair_points[] = {
 };
 static const struct profile stairs = { ARRAY_COUNT(stair_points), stair_points };
 
-/* A serpent's body: round, all scales. */
+/* The body of a naga: round, with scales all over. */
 static const struct profile_point body_points[] = {
 	{ 0.0f, -1.0f, RELIEF_SCALES, 0.03f, 0.16f }, { 0.7f, -0.7f, RELIEF_SCALES, 0.03f, 0.16f },
 	{ 1.0f, 0.0f, RELIEF_SCALES, 0.03f, 0.16f },  { 0.7f, 0.7f, RELIEF_SCALES, 0.03f, 0.16f },
@@ -72,7 +73,7 @@ static const struct profile_point post_points[] = {
 };
 static const struct profile post = { ARRAY_COUNT(post_points), post_points };
 
-/* A seated guardian lion, as turned as a lion can be: haunches, chest, mane and muzzle. */
+/* A seated guardian lion as a body of revolution: haunches, chest, mane and muzzle. */
 static const struct profile_point lion_points[] = {
 	{ 0.75f, 0.00f, RELIEF_PLAIN, 0, 0 },
 	{ 0.95f, 0.12f, RELIEF_ROUND, 0.02f, 0 },
@@ -150,7 +151,7 @@ static void plan_hood(struct plan *plan, const struct frame *frame)
 	plan_body(plan, "naga", first);
 }
 
-/* Along the rim of the lowest terrace, from the stairs to the corner. */
+/* A naga along the edge of the lowest terrace, from the stairs to the corner. */
 static void plan_naga(struct plan *plan, const struct frame *side, float from_m, float to_m)
 {
 	float sign = from_m < to_m ? 1.0f : -1.0f, length = fabsf(to_m - from_m);

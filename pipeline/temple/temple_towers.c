@@ -1,5 +1,5 @@
-/* Towers: five lotus buds on the summit, smaller ones on the corners of the outer gallery, and
- * towers with four faces over its gates. */
+/* Lays out the towers: five lotus buds on the summit, smaller ones at the corners of the outer
+ * gallery, and towers with four faces over its gates. */
 #include "pipeline/temple/temple_carve.h"
 #include "pipeline/temple/temple_plan.h"
 
@@ -44,7 +44,7 @@ static const struct profile_point storey_points[] = {
 };
 static const struct profile storey = { ARRAY_COUNT(storey_points), storey_points };
 
-/* The lotus on the top and its stone pin. */
+/* The lotus on top, and its stone pin. */
 static const struct profile_point crown_points[] = {
 	{ 0.80f, 0.00f, RELIEF_PETALS, 0.05f, 0.24f },
 	{ 1.00f, 0.16f, RELIEF_PETALS, 0.06f, 0.24f },
@@ -82,7 +82,7 @@ static const struct profile_point colonnette_points[] = {
 };
 static const struct profile colonnette = { ARRAY_COUNT(colonnette_points), colonnette_points };
 
-/* Front and back of a pediment that stands free. */
+/* The front and back of a free-standing pediment. */
 static void plan_pediment(struct plan *plan, const struct frame *foot, float width_m,
 			  float height_m)
 {
@@ -96,7 +96,7 @@ static void plan_pediment(struct plan *plan, const struct frame *foot, float wid
 	}
 }
 
-/* The frame of a doorway: colonettes, lintel, pediment; z = 0 on the sill. */
+/* The frame of a doorway: colonettes, lintel and pediment; z = 0 at the sill. */
 static void plan_doorway(struct plan *plan, const struct frame *sill, float half_m, float height_m)
 {
 	float opening = height_m * 0.72f;
@@ -124,7 +124,7 @@ static void plan_doorway(struct plan *plan, const struct frame *sill, float half
 	plan_pediment(plan, &gable, half_m * 2.7f, half_m * 1.75f);
 }
 
-/* Pointed vault over a porch, along the frame's y axis. */
+/* A pointed vault over a porch, along the frame's y axis. */
 static void plan_porch_roof(struct plan *plan, const struct frame *frame, float half_m,
 			    float depth_m, float height_m)
 {
@@ -174,7 +174,7 @@ void plan_porch(struct plan *plan, const struct frame *frame, float half_m, floa
 	plan_doorway(plan, &front, half_m, height_m);
 }
 
-/* A leaf of stone that stands free on a cornice and leans back a little. */
+/* A free-standing leaf of stone on a cornice that leans back slightly. */
 static void plan_antefix(struct plan *plan, const struct frame *frame, float width_m, float high_m)
 {
 	struct sheet *leaf = plan_panel(plan, frame, width_m, high_m, RELIEF_FLAME, 0.09f, 0);
@@ -185,11 +185,11 @@ static void plan_antefix(struct plan *plan, const struct frame *frame, float wid
 	leaf->interest = 3.9f;
 }
 
-/* Antefixes on a cornice: one on each axis and one across each corner; where there is room two
+/* Antefixes on a cornice: one on each axis and one across each corner; where there is room, two
  * more beside each axis. */
 static void plan_antefixes(struct plan *plan, const struct frame *deck, float half_m, float high_m)
 {
-	const float eighth = sqrtf(0.5f); /* of a turn: its sine and cosine */
+	const float eighth = sqrtf(0.5f); /* sine and cosine of an eighth turn */
 	const bool roomy = half_m > 1.9f;
 
 	for (int turn = 0; turn < 4; turn++) {
@@ -215,7 +215,7 @@ static void plan_antefixes(struct plan *plan, const struct frame *deck, float ha
 	}
 }
 
-/* The storeys above the body, along a bud's curve, and the lotus on top. */
+/* The storeys above the body, along the curve of a bud, and the lotus on top. */
 static void plan_bud(struct plan *plan, const struct frame *frame, float half_m, float rise_m,
 		     uint32_t tiers)
 {
@@ -304,12 +304,12 @@ static void plan_gate(struct plan *plan, int turn)
 		struct frame porch = frame_within(&gate, 0, 0, 0.1f, side);
 		porch = frame_within(&porch, 0, -1.7f, 0, 0);
 		plan_porch(plan, &porch, 1.05f, side & 1 ? 1.7f : 1.1f, 2.7f);
-		if (side == 0 && turn < 2) /* the eastern door, and the southern */
+		if (side == 0 && turn < 2) /* the eastern and the southern door */
 			plan_refine(plan, first, turn == 1 ? 2.1f : 1.7f);
 	}
 }
 
-/* Doors of stone on the two outer sides. */
+/* Stone doors on the two outer sides. */
 static void plan_closed_doors(struct plan *plan, const struct frame *tower, float half_m)
 {
 	for (int side = 0; side < 2; side++) {
