@@ -1,8 +1,9 @@
+/* Projects directions onto the faces of a cube map, and back. */
 #include "format/cube.h"
 
 #include <math.h>
 
-/* The four sides stand upright; above and below, up is +y. */
+/* The four side faces have +z up. The faces above and below have +y up. */
 const struct cube_axes cube_axes[CUBE_FACES] = {
 	{ { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 } }, { { -1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } },
 	{ { 0, 1, 0 }, { 1, 0, 0 }, { 0, 0, 1 } },  { { 0, -1, 0 }, { -1, 0, 0 }, { 0, 0, 1 } },

@@ -1,3 +1,4 @@
+/* Names objects with libsodium's BLAKE2b and converts names to and from hexadecimal text. */
 #include "format/hash.h"
 
 #include <errno.h>
@@ -5,7 +6,8 @@
 #include <sodium.h>
 #include <string.h>
 
-/* libsodium works without it, but only afterwards with the processor's fastest BLAKE2b. */
+/* libsodium works without sodium_init(), but it uses the processor's fastest BLAKE2b only after
+ * it. */
 static void pick_fastest(void)
 {
 	if (sodium_init() < 0)

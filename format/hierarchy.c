@@ -1,3 +1,5 @@
+/* Encodes, decodes and checks the hierarchy of patch groups. Numbers are stored as byte columns
+ * under one zstd frame. */
 #include "format/hierarchy.h"
 
 #include <errno.h>
@@ -98,7 +100,8 @@ int hierarchy_check(const struct hierarchy *hierarchy)
 	}
 	if (patch != hierarchy->patch_count)
 		rc = -EINVAL;
-	/* In order, so that whoever replaces g has been seen when g's turn comes. */
+	/* In order, so that all patches that group g replaces have been seen before g is
+	 * checked. */
 	for (uint32_t g = 0; rc == 0 && g < hierarchy->group_count; g++)
 		if (!group_holds(hierarchy, g, replaces))
 			rc = -EINVAL;
@@ -106,7 +109,7 @@ int hierarchy_check(const struct hierarchy *hierarchy)
 	return rc;
 }
 
-/* Rows of width bytes into columns of bytes, which compress better. */
+/* Turns rows of width bytes into columns of bytes, which compress better. */
 static void transpose(uint8_t *out, const uint8_t *in, size_t rows, size_t width)
 {
 	for (size_t row = 0; row < rows; row++)
@@ -217,7 +220,8 @@ static void get_rows(struct hierarchy *out, struct bytes rows)
 	}
 }
 
-/* Columns of bytes back into rows; both owned by the caller, of the size the counts ask. */
+/* Turns columns of bytes back into rows. The caller owns both and sizes them by the counts of
+ * hierarchy. */
 static int unpack_rows(uint8_t *rows, uint8_t *columns, const struct hierarchy *hierarchy,
 		       struct bytes packed)
 {
@@ -268,8 +272,8 @@ int hierarchy_decode(struct hierarchy *out, struct bytes payload)
 	version = reader_u8(&reader);
 	out->group_count = reader_u32(&reader);
 	out->patch_count = reader_u32(&reader);
-	/* A group holds at least one patch, and zstd packs at most some thousand to one, so
-	 * this bounds what a few bytes can make us allocate. */
+	/* A group holds at least one patch, and zstd compresses at most some thousand to one. These
+	 * checks limit how much memory a few bytes can make us allocate. */
 	if (!reader.failed && version == VERSION && out->group_count >= 1 &&
 	    out->group_count <= HIERARCHY_GROUPS_MAX && out->patch_count <= PATCHES_MAX &&
 	    out->patch_count >= out->group_count)

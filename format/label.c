@@ -1,3 +1,5 @@
+/* Encodes, decodes and checks the labels of a patch group, and answers which part lies at a point
+ * of a triangle. */
 #include "format/label.h"
 
 #include <errno.h>
@@ -34,7 +36,7 @@ uint32_t label_value_at(int level, int i, int j)
 	return (uint32_t)(i * (n + 1) - i * (i - 1) / 2 + j);
 }
 
-/* ---- what must be so, for both sides */
+/* ---- rules that encoder and decoder check */
 
 static bool is_id(const char *id)
 {
@@ -164,7 +166,8 @@ static void put_parts(struct buffer *raw, const struct label_group *group)
 	}
 }
 
-/* Each kind of number by itself, low bytes before high ones: they compress better so. */
+/* Numbers of one kind are stored together, low bytes before high ones: they compress better that
+ * way. */
 static void put_patches(struct buffer *raw, const struct label_group *group)
 {
 	for (uint32_t p = 0; p < group->patch_count; p++) {
@@ -271,7 +274,8 @@ static int read_sets(struct label_group *out, struct reader *reader)
 
 		patch->triangle_count = reader_u16(reader);
 		patch->border_count = reader_u32(reader);
-		/* What the bytes cannot hold is not allocated. */
+		/* Refuse counts that the remaining bytes cannot hold, before allocating for
+		 * them. */
 		if (reader->failed || patch->triangle_count > PATCH_TRIANGLES_MAX ||
 		    patch->border_count > reader_left(reader) / 5)
 			return -EBADMSG;
@@ -398,7 +402,7 @@ size_t label_group_bytes(const struct label_group *group)
 	return bytes;
 }
 
-/* ---- questions */
+/* ---- queries */
 
 int label_find(const struct label_group *group, const char *id)
 {
@@ -431,7 +435,7 @@ uint32_t label_borders(const struct label_patch *patch, uint32_t triangle, uint3
 	return end - low;
 }
 
-/* Between the corners of the small triangle that holds the place. */
+/* Interpolates linearly between the corners of the small triangle that contains (u, v). */
 static float value_between(const int8_t *values, int level, float u, float v)
 {
 	int n = 1 << level;
@@ -515,7 +519,7 @@ int label_page_decode(uint32_t **child_of_group, uint32_t group_count, uint32_t 
 		bits = g % 8 ? bits >> 1 : reader_u8(&reader);
 		children[g] = bits & 1 ? next++ : LABEL_NONE;
 	}
-	/* The last byte's other bits are no group's. */
+	/* The unused bits of the last byte must be zero. */
 	if (next != child_count || (group_count % 8 > 0 && bits >> 1)) {
 		free(children);
 		return -EBADMSG;

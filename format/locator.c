@@ -1,3 +1,4 @@
+/* Encodes and decodes the locator file, and finds a page's block in it by binary search. */
 #include "format/locator.h"
 
 #include <errno.h>
@@ -73,7 +74,8 @@ static int read_tables(struct reader *reader, struct locator *locator)
 	return 0;
 }
 
-/* The header's counts must account for every byte, and the last hash for all the others. */
+/* Checks the header: its counts must account for every byte of the file, and the last hash must
+ * match all bytes before it. */
 static int read_header(struct reader *reader, struct locator *locator, struct bytes file)
 {
 	struct bytes magic = reader_bytes(reader, sizeof(locator_magic));

@@ -1,13 +1,14 @@
-/* Where the blocks of pages lie in the packs. Unsigned (every object is checked by its own hash)
- * and self-checking, so that repacking changes no hash. One file a release, `locator/ROOTHASH`:
+/* Where the blocks of pages lie in the packs. The locator is not signed: every object is checked by
+ * its own hash, and so packs can be rearranged without changing a hash. It checks itself with a
+ * hash at its end. One file per release, `locator/ROOTHASH`:
  *
  *   "GLoc"  u32 version(1)  u32 pack_count  u32 block_count
  *   pack_count x { 16 bytes name }          a pack is the file packs/HEX of its name
  *   block_count x { 16 bytes page, u32 pack, u32 offset, u32 size }    sorted by page
  *   16 bytes: hash of all before
  *
- * The block of page P holds P's children side by side (format/page.h). The root page itself is the
- * whole block of the zero hash. */
+ * The block of page P holds the children of P side by side (format/page.h). The root page is
+ * nobody's child; it forms the block of the zero hash. */
 #ifndef GOPURA_FORMAT_LOCATOR_H
 #define GOPURA_FORMAT_LOCATOR_H
 
@@ -26,13 +27,14 @@ struct locator {
 	struct locator_block *blocks; /* owned; sorted by page */
 };
 
-/* Appends the file, its checksum included; blocks must be sorted. Failures are out->error. */
+/* Appends the file with its checksum. Blocks must be sorted by page. Failures are out->error. */
 void locator_encode(struct buffer *out, const struct locator *locator);
-/* Copies all it needs. *out is finished by the caller; on failure it is zeroed. -EBADMSG: damaged,
- * truncated or no locator; -ENOMEM. */
+/* Copies what it needs from file. The caller ends *out with locator_finish(); it is zeroed on
+ * failure. Returns -EBADMSG if the file is damaged, truncated or not a locator, or -ENOMEM. */
 must_check int locator_decode(struct locator *out, struct bytes file);
-/* NULL: not there. */
+/* Returns the block of a page, borrowed from the locator, or NULL. */
 const struct locator_block *locator_find(const struct locator *locator, struct hash page);
+/* Frees the arrays and zeroes the struct. NULL and zeroed are fine. */
 void locator_finish(struct locator *locator);
 
 #endif

@@ -1,11 +1,13 @@
+/* Encodes and decodes the packets of the socket between kiosk and fetcher, and checks each field's
+ * range. */
 #include "format/message.h"
 
 #include <errno.h>
 
 #include "format/page.h"
 
-/* A packet is a byte of kind and then the fields in the order of the struct. The last field of
- * MESSAGE_OBJECT and MESSAGE_META is the rest of the packet. */
+/* A packet is one byte with the kind, then the fields in the order in which message_encode() writes
+ * them. The last field of MESSAGE_OBJECT and MESSAGE_META is the rest of the packet. */
 
 static void put_hash(struct buffer *out, struct hash hash)
 {
@@ -60,7 +62,7 @@ static void get_status(struct message_status *out, struct reader *reader)
 	out->offline_since_s = reader_u64(reader);
 }
 
-/* The rest of the packet, whose size must not pass the ceiling of its kind. */
+/* Puts the rest of the packet; its size must not exceed the maximum of its kind. */
 static void put_rest(struct buffer *out, struct bytes rest, size_t most)
 {
 	if (rest.size > most && !out->error)
@@ -132,7 +134,7 @@ static bool object_in_range(const struct message *message)
 	return inlined == 0 || inlined == message->object.size;
 }
 
-/* Reads the fields of *out's kind; true when each is in its range. */
+/* Reads the fields of *out's kind. Returns true if each is in its range. */
 static bool get_fields(struct message *out, struct reader *reader)
 {
 	uint8_t small, source;

@@ -1,24 +1,26 @@
-/* What kiosk and fetcher say to each other over a Unix SOCK_SEQPACKET socket, one message a packet.
+/* Messages between kiosk and fetcher over a Unix SOCK_SEQPACKET socket, one message per packet.
  *
  * Kiosk to fetcher
- *   MESSAGE_RELEASE  use this release (its locator lies under its root's hash): alone, which drops
- *                    every want and forgets other releases, or also, beside those in use, so that
- *                    the next one can be brought while this one is shown
- *   MESSAGE_WANT     bring an object (again with another priority: only the priority changes)
- *   MESSAGE_DROP     no longer wanted
+ *   MESSAGE_RELEASE  use this release (its locator is named by its root's hash). Without `also`:
+ *                    drop every want and forget other releases. With `also`: beside those in use,
+ *                    so that the next release is downloaded while this one is shown
+ *   MESSAGE_WANT     download an object (sent again with another priority: only that changes)
+ *   MESSAGE_DROP     an object is no longer wanted
  *   MESSAGE_KEEP     an object that must not leave the cache while its release is in use
- *   MESSAGE_ASK_META fetch the signed metadata now, and from now on as often as this says
- *   MESSAGE_SYNC     what was brought so far must survive a power cut: answered by MESSAGE_SYNCED
+ *   MESSAGE_ASK_META fetch the signed metadata now, and from now on with this period
+ *   MESSAGE_SYNC     make what was downloaded so far survive a power cut; the fetcher answers
+ *                    with MESSAGE_SYNCED
  *   MESSAGE_TRUST    the version of the trust root that the kiosk has, on connecting and in answer
  *                    to every root: the fetcher looks for the next one
+ *
  * Fetcher to kiosk
  *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MAX, else a sealed memfd
- *   MESSAGE_MISSING  not to be had now (offline, or the server has it not, or it is damaged); the
- *                    fetcher goes on trying while it is wanted
+ *   MESSAGE_MISSING  not available now (offline, or the server does not have it, or it is damaged);
+ *                    the fetcher keeps trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
- *   MESSAGE_SYNCED   it does, or the disk failed
- *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute: the sign of
- *                    life by which the kiosk knows a hanging fetcher
+ *   MESSAGE_SYNCED   answers MESSAGE_SYNC: true if the data is safe, false if the disk failed
+ *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute; also the sign
+ *                    of life by which the kiosk detects that the fetcher hangs
  *
  * The kiosk hashes every object it receives. A message that does not decode closes the socket. */
 #ifndef GOPURA_FORMAT_MESSAGE_H
@@ -45,7 +47,7 @@ enum {
 	MESSAGE_INLINE_MAX = 96 * 1024,
 	MESSAGE_BYTES_MAX = MESSAGE_INLINE_MAX + 1024,
 	MESSAGE_META_BYTES_MAX = 64 * 1024,
-	MESSAGE_RELEASES_MAX = 4, /* in use at once */
+	MESSAGE_RELEASES_MAX = 4, /* releases in use at once */
 	MESSAGE_PERIOD_S_MAX = 86400,
 };
 
@@ -55,24 +57,24 @@ enum missing_reason { MISSING_OFFLINE, MISSING_NOT_FOUND, MISSING_DAMAGED };
 
 struct message_want {
 	struct hash hash;
-	struct hash page;  /* whose child it is; zero for a root page */
+	struct hash page;  /* the page whose child it is; zero for a root page */
 	uint32_t offset;   /* in the page's block, bytes */
 	uint32_t size;     /* bytes */
-	uint32_t priority; /* higher first; MESSAGE_PRIORITY_* are anchors */
+	uint32_t priority; /* higher first; MESSAGE_PRIORITY_* mark the ranges */
 };
 
 enum {
-	MESSAGE_PRIORITY_LATER = 0,       /* of a release that is not shown yet: 0 .. 999 */
-	MESSAGE_PRIORITY_PICTURE = 1000,  /* tiles and patches: 1000 .. 999999 by gain */
-	MESSAGE_PRIORITY_INDEX = 1000000, /* pages: without them nothing can be judged */
+	MESSAGE_PRIORITY_LATER = 0,       /* for a release that is not shown yet: 0 .. 999 */
+	MESSAGE_PRIORITY_PICTURE = 1000,  /* tiles and patches: 1000 .. 999999, by gain */
+	MESSAGE_PRIORITY_INDEX = 1000000, /* pages: nothing can be planned without them */
 };
 
 struct message_status {
 	uint8_t online;          /* the last request was answered */
-	uint32_t wanted;         /* objects not yet brought */
-	uint64_t received_bytes; /* from the network since start: TLS, headers and all */
+	uint32_t wanted;         /* objects not yet downloaded */
+	uint64_t received_bytes; /* from the network since start, TLS and headers included */
 	uint64_t cache_bytes, cache_budget_bytes;
-	uint64_t offline_since_s; /* wall clock, 0 while online */
+	uint64_t offline_since_s; /* wall clock, seconds since 1970; 0 while online */
 };
 
 struct message {
@@ -81,17 +83,17 @@ struct message {
 		struct {
 			struct hash root;
 			uint32_t root_bytes;
-			bool also; /* beside those in use */
+			bool also; /* use it beside the releases in use */
 		} release;
 		struct message_want want;
 		struct hash drop;
 		struct hash keep;
-		uint32_t period_s;     /* of MESSAGE_ASK_META; 0: as the fetcher has it */
+		uint32_t period_s;     /* of MESSAGE_ASK_META; 0: the fetcher's own period */
 		uint32_t root_version; /* of MESSAGE_TRUST; 0: the kiosk has no trust root */
 		bool synced;
 		struct {
 			struct hash hash;
-			struct bytes bytes; /* borrowed; empty: in the descriptor that came along */
+			struct bytes bytes; /* borrowed; empty if a descriptor holds them */
 			uint32_t size;
 		} object;
 		struct {
@@ -100,7 +102,7 @@ struct message {
 		} missing;
 		struct {
 			enum meta_role role;
-			uint32_t version;   /* of META_ROOT: N of root/N.json */
+			uint32_t version;   /* for META_ROOT: N of root/N.json */
 			struct bytes bytes; /* borrowed */
 			enum meta_source source;
 		} meta;
@@ -108,12 +110,13 @@ struct message {
 	};
 };
 
-/* Appends one packet. Encodes what it is given: what does not keep to the limits above (an inline
- * object larger than MESSAGE_INLINE_MAX) sets out's error to -EFBIG. */
+/* Appends one packet. A message that exceeds the limits above (an inline object larger than
+ * MESSAGE_INLINE_MAX) sets the error of out to -EFBIG; other fields are not checked. */
 void message_encode(struct buffer *out, const struct message *message);
-/* Bytes in *out are borrowed from packet. -EBADMSG: truncated, trailing bytes, an unknown kind, or
- * a size, role or reason out of range. Whether a descriptor came along is the caller's to check
- * (MESSAGE_OBJECT with empty bytes needs exactly one, everything else none). */
+/* Decodes one packet. Bytes in *out are borrowed from packet. Returns -EBADMSG if the packet is
+ * truncated, has trailing bytes or an unknown kind, or if a hash, size, role or reason is out of
+ * range. The caller checks whether a descriptor came along: MESSAGE_OBJECT with empty bytes needs
+ * exactly one, every other message none. */
 must_check int message_decode(struct message *out, struct bytes packet);
 
 #endif

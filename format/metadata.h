@@ -1,13 +1,13 @@
-/* Signed metadata, as in The Update Framework, as small as it can be. A museum server holds
+/* Signed metadata: a minimal form of The Update Framework. A museum server holds
  *
  *   root/1.json ... root/N.json   keys and thresholds of the three roles; N is signed by N-1's keys
  *                                 and by its own
  *   release.json                  the release: root hash and size, sequence, expiry
  *   timestamp.json                short-lived: names the current release.json by its hash
  *
- * Each file is an envelope {"payload": BASE64, "signatures": [{"key": HEX, "signature": BASE64}]}
- * whose signatures are ed25519 over "gopura-ROLE-v1\n" followed by the payload's exact bytes, so
- * that no canonical JSON is needed and no role's file can pass for another's. A key is named by the
+ * Each file is an envelope {"payload": BASE64, "signatures": [{"key": HEX, "signature": BASE64}]}.
+ * Its signatures are ed25519 over "gopura-ROLE-v1\n" followed by the payload's exact bytes. So no
+ * canonical JSON is needed, and a file of one role cannot pass for another's. A key is named by the
  * hash of its 32 bytes. */
 #ifndef GOPURA_FORMAT_METADATA_H
 #define GOPURA_FORMAT_METADATA_H
@@ -22,7 +22,7 @@ struct role_keys {
 	uint8_t keys[KEYS_MAX][KEY_BYTES];
 };
 
-/* What root/N.json says. */
+/* Contents of root/N.json. */
 struct trust_root {
 	uint32_t version;          /* N */
 	int64_t expires_s;         /* seconds since 1970 */
@@ -30,37 +30,44 @@ struct trust_root {
 };
 
 struct release {
-	uint64_t sequence; /* never falls */
+	uint64_t sequence; /* never decreases */
 	int64_t expires_s;
-	struct hash root; /* of the root page */
+	struct hash root; /* hash of the root page */
 	uint32_t root_bytes;
-	char comment[256]; /* the publisher's, for people */
+	char comment[256]; /* written by the publisher, for people */
 };
 
 struct timestamp {
-	uint64_t sequence; /* of the release it names */
+	uint64_t sequence; /* of the release that it names */
 	int64_t expires_s;
 	int64_t issued_s;    /* when it was signed, by the publisher's clock; 0: it does not say */
-	struct hash release; /* of release.json's bytes */
+	struct hash release; /* of the bytes of release.json */
 };
 
-/* Decode and check the signatures against the role's keys in trust.
+/* These decode a file and check its signatures against the role's keys in trust. They return
  *   -EBADMSG  not such a file            -EKEYREJECTED  fewer good signatures than the threshold
- * why (may be NULL) is set to a static text for the health page. Expiry and sequence are the
- * caller's to judge: only it knows whether the clock is set. */
+ * or -ENOMEM. why (may be NULL) is set to a static text for the health page if a file is refused.
+ * The caller judges expiry and sequence: only it knows whether the clock is set. *out is zeroed on
+ * failure.
+ *
+ * trust_root_first() has no earlier root: it checks the file against the keys that it contains. */
 must_check int trust_root_first(struct trust_root *out, struct bytes file, const char **why);
-/* Version must be trust->version + 1, signed by both. On success *trust is the new one. */
+/* The version must be trust->version + 1, and both the old and the new root keys must have signed.
+ * On success *trust is the new root; on failure it is unchanged. */
 must_check int trust_root_next(struct trust_root *trust, struct bytes file, const char **why);
+/* See above. These two check only the keys of their own role. */
 must_check int release_decode(struct release *out, const struct trust_root *trust,
 			      struct bytes file, const char **why);
 must_check int timestamp_decode(struct timestamp *out, const struct trust_root *trust,
 				struct bytes file, const char **why);
 
-/* The publisher's side. secret: 64 bytes as libsodium's crypto_sign makes them. */
+/* For the publisher. secret: 64 bytes as libsodium's crypto_sign makes them. */
 struct signing_key {
 	uint8_t public_key[KEY_BYTES];
 	uint8_t secret[64];
 };
+/* Each appends a signed file with one signature per key. Nothing checks whether these are the
+ * role's keys. Returns -ENOMEM or the error of out. */
 must_check int trust_root_encode(struct buffer *out, const struct trust_root *root,
 				 const struct signing_key *keys, uint32_t key_count);
 must_check int release_encode(struct buffer *out, const struct release *release,

@@ -4,14 +4,15 @@
 
 #include "format/metadata.h"
 
-/* "format" in every payload: raised when an old reader could misunderstand a new file. */
+/* The member "format" of every payload. Raise it when an old reader could misunderstand a new
+ * file. */
 #define PAYLOAD_FORMAT 1
 
-/* Indexed by enum meta_role; as payloads and signed messages say them. */
+/* The names in payloads and signed messages, indexed by enum meta_role. */
 extern const char *const metadata_role_names[];
 
-/* What a role's signatures are over. out is initialised here, and finished by the caller also on
- * failure. */
+/* Makes the message that a role's signatures cover. Initialises out; the caller finishes it, also
+ * on failure. Returns -ENOMEM or -EFBIG. */
 must_check int metadata_message(struct buffer *out, enum meta_role role, struct bytes payload);
 
 #endif

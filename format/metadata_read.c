@@ -1,3 +1,5 @@
+/* Reads signed metadata files: strict JSON, base64, ed25519 signatures, then the fields of each
+ * role. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
@@ -8,7 +10,7 @@
 #include "format/metadata_parts.h"
 #include "format/page.h"
 
-/* Integers must survive a double, which is what JSON numbers are to most readers. */
+/* 2^53: JSON numbers are doubles to most readers, and an integer must survive that. */
 #define WHOLE_MAX 9007199254740992.0
 
 struct signature {
@@ -16,7 +18,7 @@ struct signature {
 	uint8_t bytes[crypto_sign_BYTES];
 };
 
-/* At most a signature of every old and every new key; more is nobody's honest file. */
+/* One signature of every old and every new key at most. No honest file has more. */
 enum { SIGNATURES_MAX = 2 * KEYS_MAX };
 
 struct envelope {
@@ -41,7 +43,7 @@ static bool only_space_after(const char *at, const char *end)
 	return at == end;
 }
 
-/* NULL unless text is one JSON object and nothing else. */
+/* Returns NULL unless text is one JSON object and nothing else. The caller deletes it. */
 static cJSON *parse_object(struct bytes text)
 {
 	const char *start = (const char *)text.data, *end = NULL;
@@ -56,7 +58,8 @@ static cJSON *parse_object(struct bytes text)
 	return NULL;
 }
 
-/* The member of that name if there is exactly one; a second would be another reader's first. */
+/* Returns the member of that name, or NULL if there is none or more than one: of two, another
+ * reader could take the other. */
 static const cJSON *member(const cJSON *object, const char *name)
 {
 	const cJSON *item, *found = NULL;
@@ -104,8 +107,9 @@ static bool time_member(const cJSON *object, const char *name, int64_t *out)
 	return true;
 }
 
-/* *size: room in, length out. One text only for each string of bytes: libsodium takes some
- * characters above 127 for others. */
+/* *size is the room in out before the call and the length after it. Characters above 127 are
+ * refused, so that each byte string has only one text: libsodium mistakes some of them for
+ * others. */
 static bool base64_decode(const char *text, uint8_t *out, size_t *size)
 {
 	size_t length = text ? strlen(text) : 0, room = *size;
@@ -205,7 +209,7 @@ static int check_signatures(const struct envelope *envelope, enum meta_role role
 	return rc;
 }
 
-/* The payload as JSON, of the role asked for. NULL otherwise. */
+/* Returns the payload as JSON if it is of the given role, else NULL. */
 static cJSON *open_payload(const struct envelope *envelope, enum meta_role role)
 {
 	cJSON *json = parse_object(buffer_bytes(&envelope->payload));
@@ -235,7 +239,7 @@ static int read_role(struct role_keys *role, const cJSON *json)
 		if (role->key_count == KEYS_MAX || !cJSON_IsString(item) ||
 		    !base64_exact(item->valuestring, key, KEY_BYTES))
 			return -EBADMSG;
-		/* A key named twice would count twice towards the threshold. */
+		/* A key listed twice would count twice towards the threshold. */
 		for (uint32_t i = 0; i < role->key_count; i++)
 			if (memcmp(role->keys[i], key, KEY_BYTES) == 0)
 				return -EBADMSG;
@@ -308,7 +312,8 @@ int trust_root_next(struct trust_root *trust, struct bytes file, const char **wh
 
 /* ---- release and timestamp ---- */
 
-/* Signatures first: the JSON parser of the payload only meets what a key holder wrote. */
+/* Signatures are checked first, so that the JSON parser reads only payloads that a key holder
+ * wrote. */
 static int open_signed(cJSON **out, enum meta_role role, const struct trust_root *trust,
 		       struct bytes file, const char **why)
 {

@@ -1,4 +1,4 @@
-/* The publisher's side of signed metadata. */
+/* Writes and signs metadata files for the publisher: the payload as JSON, then the envelope. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <sodium.h>
@@ -10,7 +10,7 @@
 
 const char *const metadata_role_names[] = { "root", "release", "timestamp" };
 
-/* What is signed: the role's name too, so that no file can pass for another role's. */
+/* The role's name is signed too, so that no file can pass for one of another role. */
 int metadata_message(struct buffer *out, enum meta_role role, struct bytes payload)
 {
 	buffer_init(out, METADATA_FILE_BYTES_MAX + 64);
@@ -78,7 +78,7 @@ static int put_envelope(struct buffer *out, enum meta_role role, struct bytes pa
 	return rc;
 }
 
-/* Takes json, which may be NULL or lack what there was no memory for (complete tells). */
+/* Takes json. complete is false if memory ran out while json was built; json may then be NULL. */
 static int sign_payload(struct buffer *out, enum meta_role role, cJSON *json, bool complete,
 			const struct signing_key *keys, uint32_t key_count)
 {

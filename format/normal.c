@@ -1,3 +1,4 @@
+/* Packs a unit normal into two signed bytes by octahedral projection, and unpacks it. */
 #include "format/normal.h"
 
 #include <math.h>
@@ -33,7 +34,7 @@ void normal_decode(float out[3], const int8_t normal[2])
 	float x = normal[0] / 127.0f, y = normal[1] / 127.0f;
 	float z, length;
 
-	/* -128 is no normal that encode writes; it means -127. */
+	/* The encoder never writes -128; it is read as -127. */
 	x = x < -1.0f ? -1.0f : x;
 	y = y < -1.0f ? -1.0f : y;
 	z = 1.0f - fabsf(x) - fabsf(y);

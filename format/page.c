@@ -1,3 +1,4 @@
+/* Encodes and decodes the outer form that all pages share: header, child list, payload. */
 #include "format/page.h"
 
 #include <assert.h>
@@ -57,7 +58,7 @@ static bool read_child(struct reader *reader, struct page_child *child)
 
 static int read_children(struct reader *reader, struct page *page)
 {
-	/* One more than none, so that NULL always means there is no memory. */
+	/* One element more, so that NULL always means that memory ran out. */
 	page->children = calloc((size_t)page->child_count + 1, sizeof(*page->children));
 	if (!page->children)
 		return -ENOMEM;
@@ -88,7 +89,7 @@ int page_decode(struct page *out, struct bytes object)
 	if (memcmp(magic.data, page_magic, sizeof(page_magic)) != 0 || version != PAGE_VERSION ||
 	    page.kind < PAGE_ROOT || page.kind > PAGE_LABELS)
 		return rc;
-	/* The counts must account for every byte before anything is allocated for them. */
+	/* The counts must account for every byte before memory is allocated for them. */
 	if ((uint64_t)page.child_count * PAGE_CHILD_BYTES + payload_bytes != reader_left(&reader))
 		return rc;
 	rc = read_children(&reader, &page);

@@ -1,22 +1,22 @@
-/* A page: an object that names others. All pages share one outer form, so that whoever walks a
- * release (fetcher, verifier, packer) needs to know nothing of what is in it:
+/* A page is an object that names other objects. All pages share one outer form, so that code that
+ * walks a release (fetcher, verifier, packer) need not know what a page contains:
  *
  *   "GPag"  u16 kind  u16 version(1)  u32 child_count  u32 payload_bytes
  *   child_count x { u32 size_and_flag, 16 bytes hash }     bit 31 of the size: the child is a page
  *   payload (its form depends on the kind; see the header named after it)
  *
- * All integers little endian. Nothing may follow the payload.
+ * All integers are little endian. Nothing may follow the payload.
  *
- * The children of a page lie in a pack side by side, in the page's order ("the block of the
- * page"). So the place of child i is (the page's block, the sum of the sizes before i), and the
- * unsigned locator needs one entry a page, not one an object. */
+ * The children of a page lie side by side in a pack, in the page's order ("the block of the page").
+ * Child i is found in the page's block at the sum of the sizes before i. So the unsigned locator
+ * needs one entry per page, not one per object. */
 #ifndef GOPURA_FORMAT_PAGE_H
 #define GOPURA_FORMAT_PAGE_H
 
 #include "format/hash.h"
 
 enum page_kind {
-	PAGE_ROOT = 1,  /* format/root_page.h: one a release */
+	PAGE_ROOT = 1,  /* format/root_page.h: one per release */
 	PAGE_HIERARCHY, /* format/hierarchy.h: children are patch groups */
 	PAGE_SAMPLES,   /* format/samples.h: children are brick pages */
 	PAGE_BRICK,     /* 4 x 4 x 4 sampling points: children are face pages */
@@ -45,18 +45,20 @@ struct page {
 	struct bytes payload;        /* borrowed from the bytes that were decoded */
 };
 
-/* Appends the encoded page. */
+/* Appends the encoded page. Failures are out->error; a page above PAGE_BYTES_MAX sets -EFBIG. Kind
+ * and child sizes must be valid: the encoder asserts them. */
 void page_encode(struct buffer *out, const struct page *page);
-/* *out is finished by the caller; on failure it is zeroed. -EBADMSG: not a page, truncated, has
- * trailing bytes, an unknown kind or version, a child larger than OBJECT_BYTES_MAX or empty.
- * -ENOMEM. */
+/* The caller ends *out with page_finish(); it is zeroed on failure. Returns -ENOMEM, or -EBADMSG if
+ * the object is not a page, is truncated, has trailing bytes or an unknown kind or version, or has
+ * a child that is empty, without a hash, or larger than its kind may be. */
 must_check int page_decode(struct page *out, struct bytes object);
+/* Frees the children and zeroes the struct. NULL and zeroed are fine. */
 void page_finish(struct page *page);
 
-/* The object begins as a page does; page_decode may still refuse it. */
+/* Returns true if the object begins as a page does. page_decode may still refuse it. */
 bool page_is(struct bytes object);
 
-/* Where the page's child lies in the page's block, in bytes. */
+/* Returns the offset of a child in the page's block, in bytes. */
 uint64_t page_child_offset(const struct page *page, uint32_t child);
 
 #endif

@@ -1,3 +1,5 @@
+/* Encodes and decodes the geometry of a patch group as zstd streams of indices and predicted
+ * vertices. */
 #include "format/patch.h"
 
 #include <errno.h>
@@ -9,8 +11,9 @@
 
 #include "format/predict.h"
 
-/* docs/patch.md has the bytes. Each stream holds one kind of number of all patches together, so
- * that each gets its own statistics in zstd and a small patch pays no header. */
+/* docs/patch.md describes the bytes. Each stream holds one kind of number of all patches of the
+ * group. So zstd sees uniform statistics in each stream, and a small patch needs no stream
+ * headers. */
 enum stream {
 	STREAM_INDICES, /* meshoptimizer's index codec, patch after patch */
 	STREAM_POSITION_LOW,
@@ -27,15 +30,15 @@ enum {
 	ZSTD_LEVEL = 12,
 	INDEX_BYTES_MAX = 8 * PATCH_TRIANGLES_MAX,
 	NORMAL_ZEROS_MAX = 6,
-	BITS_MIN = 4 /* fewer do not fill eight by one repetition */
+	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
 static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1 };
 
-/* The fewest digits that tell every vertex of a group without loss. */
+/* The fewest bits that express every vertex of a group without loss. */
 struct precision {
-	uint8_t normal_zeros; /* low binary digits that are zero in each of them */
+	uint8_t normal_zeros; /* low bits that are zero in every normal */
 	uint8_t colour_bits, open_bits;
 };
 
@@ -74,7 +77,7 @@ static uint8_t get(struct streams *streams, enum stream stream)
 	return streams->data[stream][streams->at[stream]++];
 }
 
-/* Small differences of either sign become small numbers; differences wrap. */
+/* Maps small differences of either sign to small numbers (zigzag). Differences wrap around. */
 static uint16_t fold16(uint16_t difference)
 {
 	return (uint16_t)(difference << 1 ^ (difference & 0x8000 ? 0xffff : 0));
@@ -95,7 +98,8 @@ static uint8_t unfold8(uint8_t folded)
 	return (uint8_t)(folded >> 1 ^ (folded & 1 ? 0xff : 0));
 }
 
-/* So many bits fill eight by repetition: none and all stay what they are. */
+/* Widens a value of bits bits to eight by repeating its bits, so that all zeros and all ones stay
+ * so. */
 static uint8_t widen(uint8_t value, int bits)
 {
 	return bits == 8 ? value : (uint8_t)(value << (8 - bits) | value >> (2 * bits - 8));
@@ -191,7 +195,8 @@ static void get_rest(struct streams *streams, struct patch_mesh *mesh,
 		get_colour(colour[3], unfold8(get(streams, STREAM_OPEN)), precision->open_bits);
 }
 
-/* The vertices of one patch, to or from the streams. The mesh's indices are in range. */
+/* Writes the vertices of one patch to the streams, or reads them. The indices of the mesh must be
+ * in range. */
 static int code_vertices(struct streams *streams, struct patch_mesh *mesh,
 			 const struct precision *precision, bool encoding)
 {
@@ -228,8 +233,9 @@ static bool indices_fit(const struct patch_mesh *mesh)
 	return true;
 }
 
-/* The index codec may turn a triangle about; the vertices must be predicted over what the decoder
- * will see, so decoded is the patch with the indices as they come back. */
+/* The index codec may rotate the corners of a triangle. The encoder must predict vertices from the
+ * same triangles as the decoder. So *decoded is the patch with its indices as the decoder will see
+ * them; these are owned by the caller. */
 static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
 			  const struct patch_mesh *mesh)
 {
@@ -306,7 +312,7 @@ static struct precision precision_of(const struct patch_mesh *patches, uint32_t 
 	return precision;
 }
 
-/* Header and streams of patches whose indices are packed already. */
+/* Writes header and streams of patches whose indices are already packed. */
 static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t patch_count,
 		     const uint32_t *index_bytes, struct bytes indices)
 {

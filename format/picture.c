@@ -1,3 +1,5 @@
+/* Decodes and encodes whole pictures with libpng and libjpeg, within limits on size and progressive
+ * scans. */
 #include "format/picture.h"
 
 #include <errno.h>
@@ -9,7 +11,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
-/* Room for width x height pixels. */
+/* Allocates width x height pixels; -EBADMSG for an empty picture, -EFBIG past the limits. */
 static int allocate(struct picture *out, uint32_t width, uint32_t height, uint32_t side_most_px)
 {
 	if (width == 0 || height == 0)
@@ -33,7 +35,7 @@ void picture_finish(struct picture *picture)
 	*picture = (struct picture){ 0 };
 }
 
-/* ---- PNG, by libpng's simplified interface, which holds its own error handling */
+/* ---- PNG, with libpng's simplified interface, which handles its own errors */
 
 static int decode_png(struct picture *out, struct bytes file, uint32_t side_most_px)
 {
@@ -90,7 +92,7 @@ static void jpeg_fail(j_common_ptr codec)
 	longjmp(failure->jump, 1);
 }
 
-/* Warnings are counted by libjpeg; a format module prints nothing. */
+/* Counts warnings and prints nothing: code in format/ never logs. */
 static void jpeg_quiet(j_common_ptr codec, int level)
 {
 	if (level < 0)
@@ -105,7 +107,8 @@ static struct jpeg_error_mgr *jpeg_errors(struct jpeg_failure *failure)
 	return &failure->manager;
 }
 
-/* Each scan goes over the whole picture: a thousand empty ones are a small file and a long wait. */
+/* Stops after SCANS_MAX scans. Each scan processes the whole picture, so a small file with a
+ * thousand empty scans would take very long. */
 static void jpeg_count_scans(j_common_ptr codec)
 {
 	if (codec->is_decompressor &&
@@ -137,14 +140,15 @@ static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_mos
 	jpeg_mem_src(&codec, file.data, file.size);
 	jpeg_read_header(&codec, TRUE);
 	codec.out_color_space = JCS_EXT_RGBA;
-	/* Before libjpeg allocates: a progressive file's coefficients need twice that. */
+	/* Checked before libjpeg allocates: the coefficients of a progressive file need twice as
+	 * much. */
 	rc = allocate(out, codec.image_width, codec.image_height, side_most_px);
 	if (rc == 0) {
 		failure.progress.progress_monitor = jpeg_count_scans;
 		codec.progress = &failure.progress;
 		jpeg_start_decompress(&codec);
 		read_rgba_rows(&codec, out);
-		/* A file that ends early is padded with grey by libjpeg, and a warning. */
+		/* If a file ends early, libjpeg pads it with grey and counts a warning. */
 		if (failure.manager.num_warnings > 0)
 			rc = -EBADMSG;
 		else

@@ -1,5 +1,5 @@
 /* Whole pictures (PNG, JPEG) to and from pixels in memory: page pictures, scan textures, captures.
- * Tiles are not pictures: format/tile.h. */
+ * Tiles have their own codec: format/tile.h. */
 #ifndef GOPURA_FORMAT_PICTURE_H
 #define GOPURA_FORMAT_PICTURE_H
 
@@ -8,25 +8,26 @@
 enum {
 	PICTURE_SIDE_MOST_PX = 16384,
 	PICTURE_PIXELS_MAX = 1 << 28,
-	/* Of pages and cards: a terminal decodes these between two frames. */
+	/* For pictures of pages and cards: a terminal decodes these between two frames. */
 	PICTURE_PAGE_SIDE_MOST_PX = 4096,
 };
 
-/* sRGB with straight alpha, 4 bytes a pixel, row 0 on top, rows side by side. */
+/* sRGB with straight alpha, 4 bytes per pixel, row 0 on top, no padding between rows. */
 struct picture {
 	uint32_t width, height;
 	uint8_t *rgba; /* owned */
 };
 
-/* Told apart by their first bytes. -EBADMSG: damaged, truncated, or neither; -EFBIG: past the
- * limits above; -ENOMEM. *out is zeroed on failure. */
+/* Decodes a PNG or JPEG file, recognised by its first bytes. Returns -EBADMSG if it is damaged,
+ * truncated or neither; -EFBIG past the limits above; -ENOMEM. The caller ends *out with
+ * picture_finish(); it is zeroed on failure. */
 must_check int picture_decode(struct picture *out, struct bytes file);
-/* The same for a picture of a page: -EFBIG past PICTURE_PAGE_SIDE_MOST_PX, before any pixel is
- * decoded or room for it allocated. */
+/* As picture_decode, for a picture of a page: returns -EFBIG past PICTURE_PAGE_SIDE_MOST_PX, before
+ * any pixel is decoded or memory for it is allocated. */
 must_check int picture_decode_for_page(struct picture *out, struct bytes file);
-/* Appends the file. -ENOMEM, or -EFBIG past the buffer's ceiling. */
+/* Appends the file. Returns -ENOMEM, or -EFBIG past the buffer's ceiling. */
 must_check int picture_encode_png(struct buffer *out, const struct picture *picture);
-/* quality 1..100; alpha is dropped. */
+/* As above. quality is 1..100; alpha is dropped. */
 must_check int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality);
 void picture_finish(struct picture *picture); /* NULL and zeroed are fine */
 

@@ -1,3 +1,5 @@
+/* Predicts positions, normals and colours of patch vertices from those already coded, in
+ * integers. */
 #include "format/predict.h"
 
 #include <errno.h>
@@ -5,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directed edges of the triangles so far, and the vertex across each: open addressing. */
+/* Hash table (open addressing) of the directed edges of the triangles so far, with the opposite
+ * vertex of each. */
 struct edge_table {
-	uint32_t *keys; /* from << 16 | to, plus one; 0: free */
+	uint32_t *keys; /* (from << 16 | to) + 1; 0: free */
 	uint16_t *apexes;
 	uint32_t mask;
 };
@@ -50,7 +53,7 @@ static void edge_table_put(struct edge_table *table, uint16_t from, uint16_t to,
 	table->apexes[at] = apex;
 }
 
-/* The edge b-a of an earlier triangle is this triangle's a-b seen from the other side. */
+/* Finds the apex of a directed edge. The edge a-b of this triangle runs as b-a in its neighbour. */
 static bool edge_table_find(const struct edge_table *table, uint16_t from, uint16_t to,
 			    uint16_t *apex)
 {
@@ -74,7 +77,7 @@ static void step_in_triangle(struct predict_step *step, const struct edge_table 
 		step->from[step->known_count++] = apex;
 }
 
-/* With nothing known in the triangle, the vertex before is the nearest guess. */
+/* If no vertex of the triangle is known, the vertex coded before is the best guess. */
 static void step_after(struct predict_step *step, const struct predict_step *first)
 {
 	if (step->known_count != 0 || step == first)
@@ -152,7 +155,7 @@ void predict_colour(uint8_t out[4], const struct predict_step *step,
 	}
 }
 
-/* Twice the area along the normal; at most 2^35 an axis. */
+/* The normal with the length of twice the area; at most 2^35 per axis. */
 static void triangle_cross(int64_t out[3], const uint16_t *a, const uint16_t *b, const uint16_t *c)
 {
 	int64_t u[3], v[3];
@@ -175,7 +178,7 @@ static int64_t magnitude(int64_t value)
 	return value < 0 ? -value : value;
 }
 
-/* normal_encode on integers; sums stay under 2^49, so that 127 times them fits. */
+/* normal_encode in integers. Sums stay under 2^49, so that 127 times a sum fits in 64 bits. */
 static void octahedral(int8_t out[2], const int64_t n[3])
 {
 	int64_t sum = magnitude(n[0]) + magnitude(n[1]) + magnitude(n[2]);

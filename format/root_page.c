@@ -1,3 +1,4 @@
+/* Encodes, decodes and checks the payload of the root page. */
 #include "format/root_page.h"
 
 #include <errno.h>

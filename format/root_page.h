@@ -1,6 +1,6 @@
-/* Payload of PAGE_ROOT: what a release shows, before anything of it is fetched.
- * Children, in this order: the hierarchy page, the samples page, the info page; then, where parts
- * have regions, the labels page. */
+/* Payload of PAGE_ROOT: what a kiosk must know about a release before it fetches anything else.
+ * Children, in this order: the hierarchy page, the samples page, the info page, and the labels page
+ * if any part has a region. */
 #ifndef GOPURA_FORMAT_ROOT_PAGE_H
 #define GOPURA_FORMAT_ROOT_PAGE_H
 
@@ -10,34 +10,34 @@ enum {
 	ROOT_CHILD_HIERARCHY,
 	ROOT_CHILD_SAMPLES,
 	ROOT_CHILD_INFO,
-	ROOT_CHILD_COUNT, /* that every root page has */
+	ROOT_CHILD_COUNT, /* the children that every root page has */
 	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
 	ROOT_CHILDREN_MAX
 };
 
-/* The one quantisation lattice of a model: metres = origin + step * lattice, lattice in 0..65535
- * on each axis, so that a border shared by two patches is equal bit for bit at every level. */
+/* The single quantisation lattice of a model: metres = origin + step * lattice, with lattice in
+ * 0..65535 on each axis. So a border shared by two patches is equal bit for bit at every level. */
 struct lattice {
 	double origin_m[3];
 	double step_m;
 };
 
 struct root_page {
-	char name[128]; /* UTF-8, of the model */
+	char name[128]; /* the model's name, UTF-8 */
 	struct lattice lattice;
-	float box_min_m[3], box_max_m[3]; /* of the model; z is up */
+	float box_min_m[3], box_max_m[3]; /* bounding box of the model; z is up */
 	float start_eye_m[3], start_target_m[3];
 	float sun[3]; /* unit vector towards the light */
 	uint8_t lit;  /* 1: colour times light (geometry/light.h); 0: the scan's own colours */
 	uint8_t background[3];     /* sRGB behind the model */
-	uint64_t source_triangles; /* of the scan, at home */
+	uint64_t source_triangles; /* of the original scan */
 	uint64_t published_triangles;
 };
 
-/* Appends the payload, for page.payload. */
+/* Appends the payload, for page.payload. Failures are out->error. */
 void root_page_encode(struct buffer *out, const struct root_page *root);
-/* -EBADMSG: truncated, bytes left over, numbers that are not finite or make no sense; *out is
- * zeroed then. */
+/* Returns -EBADMSG if the payload is truncated, has bytes left over, or holds numbers that are not
+ * finite or not plausible. *out is then zeroed. Nothing is allocated. */
 must_check int root_page_decode(struct root_page *out, struct bytes payload);
 
 #endif

@@ -1,3 +1,4 @@
+/* Encodes and decodes the three kinds of sample page: grid, brick and face. */
 #include "format/samples.h"
 
 #include <assert.h>
@@ -6,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Which of count children exist, a bit each; a child's number is the count of those before it, so
- * that numbers need no bytes. children must be numbered in order. */
+/* Writes one bit per child: whether it exists. The number of a child is the count of children
+ * before it, so numbers need no bytes. Children must be numbered in order. */
 static void put_presence(struct buffer *out, const uint32_t *children, uint32_t count)
 {
 	uint32_t next = 0;
@@ -112,7 +113,7 @@ void samples_page_finish(struct samples_page *samples)
 	*samples = (struct samples_page){ 0 };
 }
 
-/* The upper half of a float: 1/128 of the distance is enough, as long as near errs towards the
+/* The upper half of a float, a precision of 1/128. That is enough if near is rounded towards the
  * eye and far away from it. */
 static uint16_t half_of(float metres, bool up)
 {
@@ -196,7 +197,8 @@ int face_page_decode(struct face_page *out, struct bytes payload)
 
 uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column)
 {
-	uint32_t index = ((1u << 2 * level) - 1) / 3; /* 1 + 4 + 16 + ... below this level */
+	uint32_t index =
+		((1u << 2 * level) - 1) / 3; /* 1 + 4 + 16 + ...: the tiles of all coarser levels */
 
 	for (uint32_t bit = 0; bit < level; bit++)
 		index += (row >> bit & 1) << (2 * bit + 1) | (column >> bit & 1) << 2 * bit;

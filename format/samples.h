@@ -1,17 +1,17 @@
 /* The sampling repository (paper P0 5.2) as pages and tiles.
  *
  * Points lie on a regular grid: point (x, y, z) is at origin + spacing * (x, y, z). At each point
- * six faces (format/cube.h) were rendered from the full hierarchy, at finest_px pixels a side and
- * at every half of that down to one tile. A level is cut into tiles of SAMPLE_TILE_PX pixels, each
- * stored with an apron of SAMPLE_APRON_PX on every side (what lies there on the neighbouring tile
- * or, outside the face, on the 90 degree face's own plane continued), so that bilinear filtering
- * never needs a neighbour; both together are whole blocks of the coding (docs/samples.md). A tile
- * that shows nothing of the model is absent.
+ * six faces (format/cube.h) are rendered from the full hierarchy. The finest level has
+ * SAMPLE_TILE_PX << (level_count - 1) pixels a side; each coarser level has half of that, down to
+ * one tile. A level is cut into tiles of SAMPLE_TILE_PX pixels. Each tile is stored with an apron
+ * of SAMPLE_APRON_PX on every side, so that bilinear filtering never needs a neighbour. The apron
+ * repeats the pixels of the neighbouring tile or, at the edge of the face, continues the plane of
+ * the face. Tile and apron together are whole blocks of the coding (docs/samples.md). A tile that
+ * shows nothing of the model is absent.
  *
  * Three kinds of page: PAGE_SAMPLES (one; the grid; children: bricks that hold anything) ->
- * PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything)
- * -> PAGE_FACE (children: tiles that are there, level by level from the coarsest, each in
- * Morton's order). */
+ * PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything) -> PAGE_FACE (children: the
+ * tiles that exist, level by level from the coarsest, each level in Morton order). */
 #ifndef GOPURA_FORMAT_SAMPLES_H
 #define GOPURA_FORMAT_SAMPLES_H
 
@@ -21,7 +21,7 @@
 enum {
 	SAMPLE_TILE_PX = 126,
 	SAMPLE_APRON_PX = 1,
-	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* what a tile holds: 128 */
+	SAMPLE_IMAGE_PX = SAMPLE_TILE_PX + 2 * SAMPLE_APRON_PX, /* side of a stored tile: 128 */
 	SAMPLE_LEVELS_MAX = 6, /* 126, 252, 504, 1008, 2016, 4032 pixels a side */
 	SAMPLE_GRID_MAX = 64,  /* points a side */
 	BRICK_SIDE = 4,        /* points */
@@ -33,53 +33,60 @@ struct samples_page {
 	float origin_m[3], spacing_m[3];
 	uint8_t count[3];    /* points a side */
 	uint8_t level_count; /* level l has SAMPLE_TILE_PX << l pixels a side */
-	/* Child of the page that is brick (bx, by, bz), or HIERARCHY_NONE's twin SAMPLE_NONE:
-	 * nothing was sampled there. Index: (bz * bricks[1] + by) * bricks[0] + bx. Owned. */
+	/* The child number of brick (bx, by, bz), or SAMPLE_NONE: nothing was sampled there. Index:
+	 * (bz * bricks[1] + by) * bricks[0] + bx. Owned. */
 	uint32_t bricks[3];
 	uint32_t *brick_child;
 };
 
-/* In all three pages children are numbered in the order of their index here, without gaps: the
- * bytes hold only which are there (docs/samples.md). The decoders number them so; whoever follows
- * a number first holds it against the page's child_count. */
+/* In all three pages, children are numbered in the order of their index here, without gaps. The
+ * bytes only say which exist (docs/samples.md), and the decoders number them. Before a number is
+ * used, it must be checked against the page's child_count. */
 
 #define SAMPLE_NONE UINT32_MAX
 
-/* Appends the payload, for page.payload, as the other two encoders do. Failures are out->error. */
+/* Appends the payload, for page.payload; so do the other two encoders. Failures are out->error.
+ * Children must be numbered as described above: the encoders assert it. */
 void samples_page_encode(struct buffer *out, const struct samples_page *samples);
-/* *out is finished by the caller; on failure it is zeroed. -EBADMSG, -ENOMEM. */
+/* The caller ends *out with samples_page_finish(); it is zeroed on failure. Returns -EBADMSG or
+ * -ENOMEM. */
 must_check int samples_page_decode(struct samples_page *out, struct bytes payload);
+/* Frees the array and zeroes the struct. NULL and zeroed are fine. */
 void samples_page_finish(struct samples_page *samples);
 
-/* A brick, per point p = (z * 4 + y) * 4 + x within it, and face f. */
+/* A brick, indexed by point p = (z * 4 + y) * 4 + x within it, and by face f. */
 struct brick_page {
-	/* Child that is the face's page, or SAMPLE_NONE. */
+	/* The child number of the face's page, or SAMPLE_NONE. */
 	uint32_t face_child[BRICK_POINTS][CUBE_FACES];
-	/* Which of the 4 x 4 sixteenths of the face show the model: bit row * 4 + column. */
+	/* Which cells of a 4 x 4 grid on the face show the model: bit row * 4 + column. */
 	uint16_t coverage[BRICK_POINTS][CUBE_FACES];
-	/* Distance along the face's axis, of what it shows, metres. On the wire 16 bits each: near
-	 * comes back up to 1/128 nearer, far up to 1/128 farther. */
+	/* Range of distances along the face's axis of what the face shows, metres. The wire has 16
+	 * bits for each: near decodes up to 1/128 nearer, far up to 1/128 farther. */
 	float near_m[BRICK_POINTS][CUBE_FACES], far_m[BRICK_POINTS][CUBE_FACES];
 };
 
+/* See samples_page_encode. */
 void brick_page_encode(struct buffer *out, const struct brick_page *brick);
-/* -EBADMSG: *out is of no use then. The same of face_page_decode; neither allocates. */
+/* Returns -EBADMSG; *out is then undefined. The same holds for face_page_decode. Neither
+ * allocates. */
 must_check int brick_page_decode(struct brick_page *out, struct bytes payload);
 
 struct face_page {
 	uint8_t level_count;
-	/* Child that is the tile, or SAMPLE_NONE; index face_tile_index(). */
+	/* The child number of the tile, or SAMPLE_NONE; indexed by face_tile_index(). */
 	uint32_t tile_child[FACE_TILES_MAX];
 };
 
+/* See samples_page_encode and brick_page_decode. */
 void face_page_encode(struct buffer *out, const struct face_page *face);
 must_check int face_page_decode(struct face_page *out, struct bytes payload);
 
-/* Index of a tile among all of a face: coarsest level first, and each level in Morton's order (by
- * the bits of row and column in turn), so that what is near on the face is near in the pack, and
- * what a view asks for lies in few ranges. */
+/* Returns the index of a tile among all tiles of a face: coarsest level first, each level in Morton
+ * order (the bits of row and column interleaved). So tiles that are near each other on the face are
+ * near in the pack, and the tiles of a view lie in few byte ranges. */
 uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column);
-/* Where the tile of such an index lies; the level must be the index's own. */
+/* The inverse: sets row and column of the tile with that index. level must be the level of the
+ * index. */
 void face_tile_place(uint32_t level, uint32_t index, uint32_t *row, uint32_t *column);
 
 #endif

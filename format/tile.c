@@ -1,3 +1,4 @@
+/* Encodes and decodes one tile with libwebp, without the RIFF container. */
 #include "format/tile.h"
 
 #include <errno.h>
@@ -12,9 +13,9 @@ enum {
 	FRAME_HEADER_BYTES = 10
 };
 
-/* Chosen by error for the bytes, not for an eye at a fixed distance: a tile is magnified, shrunk
- * and blended with others, so nothing is moved from where it would not be seen (sns), and blocks
- * are smoothed a little (docs/samples.md). */
+/* These settings minimise the error for a given size, not the error seen from a fixed distance. A
+ * tile is magnified, shrunk and blended with others, so spatial noise shaping (sns) is off, and
+ * blocks are smoothed a little (docs/samples.md). */
 static bool set_up(WebPConfig *config, int quality)
 {
 	if (!WebPConfigInit(config))
@@ -26,7 +27,7 @@ static bool set_up(WebPConfig *config, int quality)
 	return WebPValidateConfig(config);
 }
 
-/* The frame within what libwebp wrote; its chunk is padded to an even size. */
+/* Returns the frame within libwebp's file. Its chunk is padded to an even size. */
 static struct bytes frame_of(const WebPMemoryWriter *file)
 {
 	const uint8_t *size = file->mem + CONTAINER_BYTES - 4;
@@ -61,8 +62,8 @@ int tile_encode(struct buffer *out, const uint8_t *rgb, uint32_t side_px, int qu
 	return rc;
 }
 
-/* The head of a key frame of that size (RFC 6386, 9.1): libwebp would also take a container or a
- * lossless picture. */
+/* Accepts only the header of a key frame of that size (RFC 6386, 9.1). libwebp alone would also
+ * take a container or a lossless picture. */
 static bool acceptable(struct bytes object, uint32_t side_px)
 {
 	static const uint8_t start_code[3] = { 0x9d, 0x01, 0x2a };
