@@ -1,3 +1,5 @@
+/* Lays out the blocks of a parsed page with Pango, draws them with Cairo and finds links and
+ * pictures by position. */
 #include "ui/article.h"
 
 #include <errno.h>
@@ -11,7 +13,7 @@
 #define SIDE_MARGIN_MM    8.0f
 #define TOP_MARGIN_MM     3.0f
 #define BOTTOM_MARGIN_MM  14.0f
-#define MEASURE_EMS       34 /* the longest line, in sizes of the body's type */
+#define MEASURE_EMS       34 /* the longest line, in multiples of the body's type size */
 #define INDENT_MM         6.0f
 #define QUOTE_MM          6.0f
 #define CELL_PADDING_MM   1.6f
@@ -21,7 +23,7 @@ struct item {
 	const struct html_block *block;
 	int x_px, y_px, width_px, height_px;
 	PangoLayout *layout, *marker; /* owned or NULL */
-	struct bitmap picture;        /* scaled; empty: not here yet */
+	struct bitmap picture;        /* scaled; empty if it has not arrived yet */
 };
 
 struct link_area {
@@ -39,7 +41,7 @@ struct article {
 	int height_px;
 };
 
-/* ---- text with its looks ---- */
+/* ---- text with attributes ---- */
 
 static void add_attribute(PangoAttrList *list, PangoAttribute *attribute,
 			  const struct html_span *span)
@@ -117,7 +119,8 @@ static float space_before_mm(const struct html_block *block, const struct html_b
 	}
 }
 
-/* Its proportions from the picture, from what is known of it, or a guess. */
+/* Sets the size of a picture's place: from the picture, or from its announced size, or from a
+ * guess. */
 static void measure_picture(struct article *article, struct item *item)
 {
 	struct overlay_picture found = { 0 };
@@ -151,7 +154,7 @@ static void measure_picture(struct article *article, struct item *item)
 	    item->picture.height_px == item->height_px)
 		return; /* scaled already */
 	bitmap_finish(&item->picture);
-	/* Without memory for it the place stays empty; the text can be read all the same. */
+	/* If memory runs out, the place stays empty; the text can still be read. */
 	if (found.picture &&
 	    bitmap_from_picture(&item->picture, found.picture, item->width_px, item->height_px) < 0)
 		bitmap_finish(&item->picture);
@@ -163,9 +166,9 @@ static void place_item(struct article *article, struct item *item, int x_px, int
 	int indent_px = (int)block->indent * px(article, INDENT_MM) +
 			(block->quote ? px(article, QUOTE_MM) : 0);
 
-	if (indent_px > width_px / 2) /* however deep the lists: half the line stays */
+	if (indent_px > width_px / 2) /* half the line stays, however deep the lists are */
 		indent_px = width_px / 2;
-	/* Indented on the side where its language begins. */
+	/* Indented on the side where lines of the language begin. */
 	item->x_px = theme_is_right_to_left(article->options.theme) ? x_px : x_px + indent_px;
 	item->y_px = y_px;
 	item->width_px = width_px - indent_px > 1 ? width_px - indent_px : 1;
@@ -186,7 +189,8 @@ static void place_item(struct article *article, struct item *item, int x_px, int
 	}
 }
 
-/* The blocks of one row of a table, from first on; returns how many. *y_px moves below it. */
+/* Places the blocks of one table row, from block first on. Returns how many there are and moves
+ * *y_px below the row. */
 static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
 {
 	const struct html_block *blocks = article->html.blocks;
@@ -229,7 +233,7 @@ static int add_link_area(struct article *article, struct link_area area)
 	return 0;
 }
 
-/* A rectangle for each line that the link touches. */
+/* Adds a rectangle for each line that the link touches. */
 static int find_link_areas(struct article *article, const struct item *item,
 			   const struct html_span *span)
 {
@@ -286,7 +290,7 @@ static int lay_out(struct article *article)
 		const struct html_block *above = i > 0 ? &html->blocks[i - 1] : NULL;
 		struct item *item = &article->items[i];
 
-		/* Rows of one table stand close. */
+		/* Rows of one table have no space between them. */
 		if (!block->row || !above || !above->row)
 			y_px += px(article, space_before_mm(block, above));
 		if (block->row) {
@@ -327,7 +331,7 @@ int article_lay_out(struct article *article, int width_px, int view_px)
 	if (article->column_px < 1)
 		article->column_px = 1;
 	article->left_px = (width_px - article->column_px) / 2;
-	drop_layouts(article); /* made for another width, or another size of type */
+	drop_layouts(article); /* they were made for another width or type size */
 	rc = lay_out(article);
 	if (rc < 0)
 		article->link_count = 0;
@@ -380,7 +384,7 @@ void article_destroy(struct article *article)
 	free(article);
 }
 
-/* ---- what is asked ---- */
+/* ---- queries and drawing ---- */
 
 int article_height_px(const struct article *article)
 {
@@ -444,7 +448,7 @@ static void draw_item(const struct article *article, const struct item *item, ca
 	}
 }
 
-/* A hairline below each row of a table. */
+/* Draws a hairline below each table row, after the row's last block. */
 static void draw_row_line(const struct article *article, uint32_t i, cairo_t *context)
 {
 	const struct html *html = &article->html;
@@ -464,7 +468,7 @@ static void draw_row_line(const struct article *article, uint32_t i, cairo_t *co
 
 void article_draw(const struct article *article, cairo_t *context, int top_px, int height_px)
 {
-	int slack_px = px(article, 4.0f); /* swashes and marks reach out of their boxes */
+	int slack_px = px(article, 4.0f); /* swashes and marks reach beyond their boxes */
 
 	cairo_save(context);
 	theme_set_source(context, theme_paper, 1);
@@ -553,7 +557,7 @@ int article_picture_arrived(struct article *article, const char *name)
 
 		if (item->block->kind != HTML_IMAGE || strcmp(item->block->text, name) != 0)
 			continue;
-		/* Fails for memory only, and then without links; the text stays. */
+		/* It fails only if memory runs out; then links are lost, and the text stays. */
 		if (lay_out(article) < 0)
 			article->link_count = 0;
 		return item->y_px;

@@ -1,3 +1,4 @@
+/* Creates Cairo image surfaces and fills them from decoded pictures. */
 #include "ui/bitmap.h"
 
 #include <errno.h>
@@ -46,7 +47,7 @@ void bitmap_end(struct bitmap *bitmap, cairo_t *context)
 	cairo_surface_flush(bitmap->surface);
 }
 
-/* sRGB with straight alpha to premultiplied words. */
+/* Converts sRGB with straight alpha to premultiplied words. */
 static void premultiply(struct bitmap *out, const struct picture *picture)
 {
 	for (uint32_t y = 0; y < picture->height; y++) {

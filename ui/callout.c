@@ -1,15 +1,17 @@
+/* Chooses which parts get a callout, orders the labels of each column and resolves overlaps and
+ * crossings. */
 #include "ui/callout.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SHOWN_DETAIL 0.75f /* of what a part must be large to be shown, to stay so */
+#define SHOWN_DETAIL 0.75f /* a shown part stays down to this share of the size limit */
 
 struct candidate {
 	uint32_t part;
-	int64_t rank; /* smaller stays */
-	int order;    /* place in the column of the frame before, or -1 */
+	int64_t rank; /* the smaller rank stays */
+	int order;    /* index in the last frame's list, or -1 */
 	float x_px, y_px;
 	int label_px;
 };
@@ -17,7 +19,7 @@ struct candidate {
 struct column {
 	struct candidate list[CALLOUTS_A_SIDE];
 	uint32_t count;
-	int centre_px[CALLOUTS_A_SIDE]; /* of the labels */
+	int centre_px[CALLOUTS_A_SIDE]; /* centres of the labels */
 	bool left;
 };
 
@@ -27,8 +29,8 @@ struct layout {
 	uint32_t anchor_count;
 	const struct callouts *before;
 	float left_port_px, right_port_px;
-	bool strict;     /* sides by the middle alone */
-	float detail_px; /* of parts that are not shown yet */
+	bool strict;     /* choose sides by the middle alone */
+	float detail_px; /* size limit for parts that are not shown yet */
 };
 
 static double side_of(double ax, double ay, double bx, double by, double cx, double cy)
@@ -50,7 +52,7 @@ bool callouts_cross(const struct callout *a, const struct callout *b)
 	return c * d < 0 && e * f < 0;
 }
 
-/* ---- who stands where ---- */
+/* ---- choice and order ---- */
 
 static const struct callout *find_before(const struct layout *layout, uint32_t part, int *order)
 {
@@ -75,7 +77,7 @@ static bool is_eligible(const struct layout *layout, const struct callout_anchor
 	       anchor->y_px <= (float)(area->y_px + area->height_px);
 }
 
-/* A label that is there keeps its side while its anchor wanders a little past the middle. */
+/* A shown label keeps its side while its anchor moves a little past the middle. */
 static bool goes_left(const struct layout *layout, const struct callout *before, float x_px)
 {
 	float middle = (layout->left_port_px + layout->right_port_px) / 2;
@@ -95,7 +97,7 @@ static uint32_t capacity(const struct callout_area *area)
 	return rows < CALLOUTS_A_SIDE ? (uint32_t)rows : CALLOUTS_A_SIDE;
 }
 
-/* Keeps the `most` best ranked, unordered. */
+/* Keeps the `most` best-ranked candidates, unordered. */
 static void offer(struct column *column, uint32_t most, struct candidate candidate)
 {
 	uint32_t worst = 0;
@@ -111,10 +113,10 @@ static void offer(struct column *column, uint32_t most, struct candidate candida
 		column->list[worst] = candidate;
 }
 
-/* The area's, or what the largest few are larger than where those are all details. */
+/* Returns the size limit: the area's, or less, so that the CALLOUTS_FEW largest parts are shown. */
 static float detail_of(const struct layout *layout)
 {
-	float largest[CALLOUTS_FEW] = { 0 }; /* descending */
+	float largest[CALLOUTS_FEW] = { 0 }; /* in descending order */
 
 	for (uint32_t i = 0; i < layout->anchor_count; i++) {
 		const struct callout_anchor *anchor = &layout->anchors[i];
@@ -156,7 +158,7 @@ static void choose(const struct layout *layout, struct column *left, struct colu
 		before = find_before(layout, i, &candidate.order);
 		if (is_detail(layout, anchor, before))
 			continue;
-		/* Whoever is shown stays, unless someone much more important comes. */
+		/* A shown part stays, unless a much more important one comes. */
 		candidate.rank = 4 * (int64_t)i - (before ? layout->anchor_count : 0);
 		offer(goes_left(layout, before, anchor->x_px) ? left : right, most, candidate);
 	}
@@ -179,14 +181,15 @@ static int by_height(const void *a, const void *b)
 	return left->part < right->part ? -1 : 1;
 }
 
-/* By height, except that those of the frame before keep their order among themselves. */
+/* Sorts by height, but labels of the last frame keep their order among themselves. */
 static void sort(struct column *column)
 {
 	qsort(column->list, column->count, sizeof(column->list[0]), by_height);
 	for (uint32_t i = 1; i < column->count; i++) {
 		if (column->list[i].order < 0)
 			continue;
-		/* Insertion sort on the old ones only; new ones stay where their height is. */
+		/* Insertion sort of the old labels only. New ones stay where their height puts
+		 * them. */
 		for (uint32_t at = i; at > 0;) {
 			uint32_t above = at - 1;
 
@@ -203,7 +206,7 @@ static void sort(struct column *column)
 
 /* ---- heights ---- */
 
-/* Pooling adjacent violators: pools of labels that touch, each at the mean of what they want. */
+/* Pools adjacent violators: labels that touch form a pool at the mean of the heights they want. */
 static void settle(const struct layout *layout, struct column *column)
 {
 	const struct callout_area *area = layout->area;
@@ -269,8 +272,9 @@ static bool find_crossing(const struct layout *layout, const struct column *colu
 	return false;
 }
 
-/* Heights move with the order, so that the proof of termination for given places does not hold to
- * the letter; the bound does, and past it the less important of two goes. */
+/* Heights change with the order, so the proof of termination for fixed positions does not fully
+ * hold. The number of swaps is therefore limited; past the limit, the less important of the two
+ * labels is removed. */
 static void uncross(const struct layout *layout, struct column *column)
 {
 	uint32_t tries = column->count * column->count, a, b;
@@ -291,7 +295,7 @@ static void uncross(const struct layout *layout, struct column *column)
 	}
 }
 
-/* From a point to a leader, pixels. */
+/* Distance from a point to a leader, pixels. */
 static float distance_to(const struct callout *leader, float x_px, float y_px)
 {
 	float dx = leader->anchor_x_px - leader->port_x_px;
@@ -304,7 +308,7 @@ static float distance_to(const struct callout *leader, float x_px, float y_px)
 	return hypotf(leader->port_x_px + t * dx - x_px, leader->port_y_px + t * dy - y_px);
 }
 
-/* How far the leader of one of two neighbours keeps from the dot of the other. */
+/* The distance that the leaders of two neighbours keep from each other's dots. */
 static float clearance(const struct layout *layout, const struct column *column, uint32_t upper)
 {
 	struct callout a = place(layout, column, upper), b = place(layout, column, upper + 1);
@@ -313,8 +317,8 @@ static float clearance(const struct layout *layout, const struct column *column,
 		     distance_to(&b, a.anchor_x_px, a.anchor_y_px));
 }
 
-/* A leader that all but runs through another's dot seems to belong to it: neighbours change places
- * where that parts them clearly. */
+/* If a leader almost runs through another label's dot, it seems to belong to that label. Neighbours
+ * change places if that separates them clearly. */
 static void clear_dots(const struct layout *layout, struct column *column)
 {
 	float near_px = (float)layout->area->row_px / 3;
@@ -372,7 +376,8 @@ void callouts_layout(struct callouts *callouts, const struct callout_area *area,
 	layout.detail_px = detail_of(&layout);
 	lay_out(&layout, &out);
 	if (sides_cross(&out)) {
-		/* Each side of the middle keeps to itself: nothing can cross. */
+		/* With sides chosen by the middle alone, leaders of different sides cannot
+		 * cross. */
 		layout.strict = true;
 		lay_out(&layout, &out);
 	}

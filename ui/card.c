@@ -1,3 +1,4 @@
+/* Draws the card of a part and finds its close control. */
 #include "ui/card.h"
 
 #include <math.h>
@@ -19,7 +20,7 @@ void card_size(const struct theme *theme, int most_width_px, int *width_px, int 
 		*width_px = most_width_px;
 }
 
-/* Paper with a soft edge: rings of faint shadow, widest first. */
+/* Draws paper with a soft edge: rings of faint shadow, the widest first. */
 static void draw_paper(const struct theme *theme, cairo_t *context, int width_px, int height_px)
 {
 	double shadow = theme_px(theme, SHADOW_MM), radius = theme_px(theme, THEME_RADIUS_MM);
@@ -38,14 +39,14 @@ static void draw_paper(const struct theme *theme, cairo_t *context, int width_px
 	cairo_fill(context);
 }
 
-/* Where something lies that is so far from the side at which its language begins to read. */
+/* Returns the left edge of an item that is x_px from the side where lines of the language begin. */
 static int mirrored(const struct theme *theme, int all_px, int x_px, int width_px)
 {
 	return theme_is_right_to_left(theme) ? all_px - x_px - width_px : x_px;
 }
 
-/* Returns where the text may begin, from that side. -ENOMEM from the scaling leaves the place
- * shaded. */
+/* Returns where the text may begin, counted from that side. If scaling runs out of memory, the
+ * place stays shaded. */
 static int draw_thumbnail(const struct theme *theme, cairo_t *context, const struct card *card,
 			  int width_px, int height_px)
 {
@@ -98,7 +99,7 @@ static int text_height(const struct theme *theme, enum text_style style, const c
 	return height_px;
 }
 
-/* "Read more >" where the lines end, at the bottom; returns the height it takes. */
+/* Draws "Read more >" at the bottom, where lines end. Returns the height it takes. */
 static int draw_more(const struct theme *theme, cairo_t *context, int card_px, int right_px,
 		     int bottom_px)
 {
@@ -144,11 +145,11 @@ int card_draw(struct bitmap *out, const struct theme *theme, const struct card *
 	draw_text(theme, context, TEXT_TITLE, theme_ink, card->title,
 		  mirrored(theme, width_px, x_px, room_px), y_px, room_px, 2);
 	y_px += title_px + theme_px(theme, 1.0f);
-	for (int lines = 3; lines > 0; lines--) { /* as many as there is room for */
+	for (int lines = 3; lines > 0; lines--) { /* as many lines as fit */
 		int caption_px =
 			text_height(theme, TEXT_CAPTION, card->caption, right_px - x_px, lines);
 
-		/* One line is always said: fonts with tall lines leave them mostly empty. */
+		/* At least one line is drawn: fonts with tall lines leave them mostly empty. */
 		if (lines > 1 && y_px + caption_px > bottom_px)
 			continue;
 		draw_text(theme, context, TEXT_CAPTION, theme_ink_soft, card->caption,

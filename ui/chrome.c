@@ -1,3 +1,4 @@
+/* Lays out and draws the bar of controls; narrow panels get it in steps of saving width. */
 #include "ui/chrome.h"
 
 #include <ctype.h>
@@ -27,7 +28,7 @@ static void add(struct chrome *chrome, enum chrome_button_kind kind, int languag
 	chrome->width_px += width_px;
 }
 
-/* Borrowed of the theme. */
+/* Returns a copy of the theme for labels; its context stays owned by the theme. */
 static struct theme type_of(const struct chrome *chrome, const struct theme *theme)
 {
 	struct theme type = *theme;
@@ -80,7 +81,7 @@ void chrome_layout(struct chrome *out, const struct theme *theme, const char *co
 {
 	*out = (struct chrome){ .height_px = theme_px(theme, BAR_MM),
 				.menu = language_count > CHROME_LANGUAGES_MAX };
-	/* Before buttons shrink, type does: so large type moves none but the languages. */
+	/* Type shrinks before buttons do. So large type moves only the language buttons. */
 	bool *const savings[] = { &out->codes, &out->usual, &out->tight, &out->menu,
 				  &out->toolless };
 

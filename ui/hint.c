@@ -1,3 +1,4 @@
+/* Draws the help pictures and computes where the moving fingertips are on them. */
 #include "ui/hint.h"
 
 #include <math.h>
@@ -11,7 +12,7 @@
 #define ICON_MM    14.0f
 #define CELL_MM    38.0f
 #define FINGER_MM  4.0f
-/* In halves of an icon. */
+/* In units of half an icon. */
 #define TURN_REACH 0.6f
 #define ZOOM_NEAR  0.26f
 #define ZOOM_FAR   0.62f
@@ -20,10 +21,10 @@ enum { CELLS = 3, MOVE_MS = 1500 };
 
 static int cells(bool has_names)
 {
-	return CELLS - !has_names; /* the last speaks of them */
+	return CELLS - !has_names; /* the last cell explains names */
 }
 
-/* The middle of a cell; the first thing to do stands where its language begins to read. */
+/* The middle of a cell. The first cell is on the side where lines of the language begin. */
 static float cell_x(const struct theme *theme, int width_px, int cell, int count)
 {
 	const float padding = (float)theme_px(theme, PADDING_MM);
@@ -103,7 +104,7 @@ int hint_draw_finger(struct bitmap *out, const struct theme *theme)
 		return rc;
 	context = bitmap_begin(out);
 	cairo_arc(context, middle, middle, middle, 0, turn);
-	theme_set_source(context, theme_night, 1); /* parts it from the way it goes */
+	theme_set_source(context, theme_night, 1); /* separates it from the path it moves on */
 	cairo_fill(context);
 	cairo_arc(context, middle, middle, middle * 0.78, 0, turn);
 	theme_set_source(context, theme_night_text, 1);
@@ -112,7 +113,7 @@ int hint_draw_finger(struct bitmap *out, const struct theme *theme)
 	return 0;
 }
 
-/* One turns, then two part, and anew; from where they rest and back, without a jerk. */
+/* One finger turns, then two zoom, and so on. They start and end at rest. */
 void hint_fingers(const struct theme *theme, int width_px, bool has_names, int64_t shown_ms,
 		  float middles_px[HINT_FINGERS][2])
 {
@@ -120,7 +121,7 @@ void hint_fingers(const struct theme *theme, int width_px, bool has_names, int64
 	const float phase = full_turn * (float)(shown_ms % MOVE_MS) / MOVE_MS;
 	const bool moves = shown_ms < HINT_MOVES_MS, zooms = shown_ms / MOVE_MS % 2 == 1;
 	const float half = (float)theme_px(theme, ICON_MM) / 2, y = icon_y(theme);
-	/* A sine squared begins and ends at rest. */
+	/* A squared sine has zero speed at both ends. */
 	const float there = moves ? (1 - cosf(phase)) / 2 : 0;
 	const float side = zooms ? 0 : TURN_REACH * sinf(phase) * (moves ? sqrtf(there) : 0);
 	const float apart = ZOOM_NEAR + (zooms ? there * (ZOOM_FAR - ZOOM_NEAR) : 0);

@@ -1,8 +1,7 @@
+/* Draws each icon with Cairo in a box from -1 to 1, which icon_draw scales. */
 #include "ui/icon.h"
 
 #include <math.h>
-
-/* All in a box from -1 to 1. */
 
 static void line(cairo_t *c, double x0, double y0, double x1, double y1)
 {
@@ -23,7 +22,7 @@ static void dot(cairo_t *c, double x, double y, double radius)
 	cairo_fill(c);
 }
 
-/* Head at x, y, pointing along dx, dy (unit length). */
+/* Adds an arrow head with its tip at x, y, pointing along dx, dy (unit length). */
 static void arrow_head(cairo_t *c, double x, double y, double dx, double dy)
 {
 	double size = 0.38;
@@ -49,7 +48,8 @@ static void draw_home(cairo_t *c)
 	cairo_line_to(c, 0.75, 0.85);
 }
 
-/* Two arrows along a diagonal, by the distance of their tails and heads from the middle. */
+/* Draws two arrows along a diagonal, given the distances of their tails and heads from the
+ * middle. */
 static void draw_corners(cairo_t *c, double tail, double head)
 {
 	const double way = (head > tail ? 1 : -1) * sqrt(0.5);
@@ -82,7 +82,7 @@ static void draw_help(cairo_t *c)
 	dot(c, 0, 0.86, 0.15);
 }
 
-/* Ways for fingers, which lie on them: chrome.h says where. */
+/* The paths of the fingers. The fingertips are drawn over them at the places of hint_fingers(). */
 static void draw_turn(cairo_t *c)
 {
 	line(c, -0.95, 0, 0.95, 0);

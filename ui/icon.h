@@ -1,4 +1,4 @@
-/* A few pictograms as strokes, in the source colour of the context. */
+/* Pictograms drawn as strokes in the context's source colour. */
 #ifndef GOPURA_UI_ICON_H
 #define GOPURA_UI_ICON_H
 
@@ -9,27 +9,27 @@ enum icon {
 	ICON_FORWARD,
 	ICON_BACK,
 	ICON_HOME,
-	ICON_RETURN, /* an arrow to where one came from */
+	ICON_RETURN, /* an arrow back to the last place */
 	ICON_HELP,
-	ICON_TURN, /* one finger goes sideways */
-	ICON_ZOOM, /* two fingers part */
+	ICON_TURN, /* one finger moves sideways */
+	ICON_ZOOM, /* two fingers move apart */
 	ICON_TAP,
 	ICON_SEARCH,
 	ICON_SPACE,
 	ICON_BACKSPACE,
-	ICON_LARGE, /* type */
-	ICON_REACH, /* who sits in a wheelchair */
-	ICON_TOUR,  /* a way from stop to stop */
+	ICON_LARGE, /* large type */
+	ICON_REACH, /* a person in a wheelchair */
+	ICON_TOUR,  /* a path from stop to stop */
 	ICON_PAUSE,
 	ICON_LIGHT,   /* a lamp low beside a relief */
-	ICON_SECTION, /* a body that is cut */
-	ICON_PUSH,    /* to and fro */
-	ICON_WIDEN,   /* out into the corners */
+	ICON_SECTION, /* a solid that is cut */
+	ICON_PUSH,    /* two arrows, to and fro */
+	ICON_WIDEN,   /* arrows out into the corners */
 	ICON_NARROW,
 	ICON_LANGUAGES, /* a globe */
 };
 
-/* About size across, centred on x, y. */
+/* Draws an icon, about size across, centred on x, y. */
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size);
 
 #endif

@@ -1,3 +1,4 @@
+/* The on-screen keyboard: the letters of each language, the layout of keys, drawing and typing. */
 #include "ui/keyboard.h"
 
 #include <stdio.h>
@@ -8,12 +9,12 @@
 
 #define ROW_MM     11.0f
 #define COLUMN_MM  14.0f
-#define KEY_GAP_MM 0.5f /* on each side of what is drawn of a key */
+#define KEY_GAP_MM 0.5f /* margin around each drawn key, inside its target */
 
 static const char latin[] = "q w e r t y u i o p\na s d f g h j k l\nz x c v b n m";
 
-/* Rows as they stand on the glass, from the left. Kana go from the right, as in a table of them.
- * Chinese has Latin letters: of Pinyin. */
+/* Rows from top to bottom, keys from the left. Kana run from the right, as in a kana table. Chinese
+ * gets Latin letters, for Pinyin. */
 static const struct {
 	const char *language, *rows;
 } layouts[] = {
@@ -59,7 +60,7 @@ static bool is_latin(const char *rows)
 	return (unsigned char)rows[0] < 0x80;
 }
 
-/* The longest row. */
+/* Returns the number of keys in the longest row. */
 static int count_columns(const char *rows)
 {
 	int most = 0, count = 1;
@@ -80,14 +81,14 @@ static struct keyboard_key *add(struct keyboard *keyboard, enum keyboard_key_kin
 	return key;
 }
 
-/* Kana are: their rows mean something. */
+/* Kana form a table: the rows have a meaning and must not be rearranged. */
 static bool is_table(const char *rows)
 {
 	return rows == find_rows("ja");
 }
 
-/* Letters into rows of at most `columns`, in cells; y_px is the row. on: whether the rows run on
- * into each other. Returns how many rows. */
+/* Places letters in rows of at most `columns` cells. Until place_cells(), x_px is the column and
+ * y_px the row. on: one row continues into the next. Returns the number of rows. */
 static int place_letters(struct keyboard *keyboard, const char *rows, int columns, bool on)
 {
 	int row = 0, column = 0;
@@ -115,7 +116,7 @@ static int place_letters(struct keyboard *keyboard, const char *rows, int column
 	return row + 1;
 }
 
-/* Cells into pixels, each row in the middle. */
+/* Converts cells into pixels and centres each row. */
 static void place_cells(struct keyboard *keyboard, int column_px, int row_px)
 {
 	for (uint32_t first = 0; first < keyboard->key_count;) {
@@ -138,7 +139,7 @@ static void place_cells(struct keyboard *keyboard, int column_px, int row_px)
 		keyboard->keys[i].y_px *= row_px;
 }
 
-/* The other letters, a space, and the key that takes a letter back. */
+/* The bottom row: switch to other letters, space, backspace. */
 static void place_bottom(struct keyboard *keyboard, int y_px, int row_px, bool has_latin,
 			 int column_px)
 {
@@ -169,7 +170,7 @@ void keyboard_layout(struct keyboard *out, const struct theme *theme, const char
 	if (columns * target_px > width_px)
 		columns = width_px / target_px > 4 ? width_px / target_px : 4;
 	row_count = place_letters(out, rows, columns, false) + 1;
-	/* Too low for that: as alphabets run, in longer rows. */
+	/* If the panel is too low, let rows run on into longer ones. */
 	while (row_count > most_rows && !is_table(rows) && (columns + 1) * target_px <= width_px)
 		row_count = place_letters(out, rows, ++columns, true) + 1;
 	column_px = width_px / columns;
@@ -197,7 +198,7 @@ int keyboard_key_at(const struct keyboard *keyboard, float x_px, float y_px)
 
 /* ---- drawing ---- */
 
-/* A mark alone stands on a circle of dots; the two of kana have signs of their own. */
+/* A combining mark is shown on a dotted circle. The two kana marks have signs of their own. */
 static void label_of(const struct keyboard *keyboard, const struct keyboard_key *key, char *label,
 		     size_t label_bytes)
 {
@@ -256,7 +257,8 @@ int keyboard_draw(struct bitmap *out, const struct keyboard *keyboard, const str
 
 /* ---- typing ---- */
 
-/* The text up to `end` and the Korean letters, which join. */
+/* Returns the text up to `end` followed by the Korean letters, composed into syllables. Release
+ * with g_free. */
 static char *with_letters(const char *text, const char *end, uint32_t *letters, size_t count)
 {
 	char *syllables =
@@ -268,7 +270,7 @@ static char *with_letters(const char *text, const char *end, uint32_t *letters, 
 	return typed;
 }
 
-/* What stands there once the key is pressed. Released by g_free. */
+/* Returns the text after the key was pressed. Release with g_free. */
 static char *type_key(const struct keyboard_key *key, const char *text)
 {
 	const char *end = text + strlen(text), *last = end;
@@ -279,7 +281,7 @@ static char *type_key(const struct keyboard_key *key, const char *text)
 		last = g_utf8_find_prev_char(text, end);
 		count = hangul_letters(g_utf8_get_char(last), letters);
 	}
-	if (key->kind == KEY_BACKSPACE) /* a letter of a syllable, else a character */
+	if (key->kind == KEY_BACKSPACE) /* removes a letter of a syllable, else a character */
 		return with_letters(text, last, letters, count > 0 ? count - 1 : 0);
 	if (key->kind == KEY_TEXT) {
 		const size_t added = hangul_letters(g_utf8_get_char(key->text), letters + count);
@@ -299,7 +301,7 @@ bool keyboard_type(const struct keyboard_key *key, char *text, size_t text_bytes
 	if (key->kind == KEY_LATIN || (key->kind == KEY_BACKSPACE && size == 0))
 		return false;
 	if (key->kind == KEY_SPACE && (size == 0 || text[size - 1] == ' '))
-		return false; /* words are parted once */
+		return false; /* no two spaces in a row */
 	typed = type_key(key, text);
 	composed = g_utf8_normalize(typed, -1, G_NORMALIZE_NFC);
 	fits = composed && strlen(composed) < text_bytes;

@@ -1,3 +1,4 @@
+/* Draws a notice page with the largest of a few type sizes at which everything fits. */
 #include "ui/notice.h"
 
 #include <math.h>
@@ -9,21 +10,21 @@
 #define PADDING_MM   9.0f
 #define BAR_MM       2.2f
 #define GAP_MM       2.6f
-#define MARK_MM      2.4f   /* between a mark and its text */
-#define NARROWEST_MM 85.0f  /* what a panel is taken for at least */
-#define WIDEST_MM    230.0f /* of a line of text: longer ones are hard to follow */
+#define MARK_MM      2.4f   /* space between a mark and its text */
+#define NARROWEST_MM 85.0f  /* the panel is treated as at least this wide */
+#define WIDEST_MM    230.0f /* longest line of text: longer ones are hard to follow */
 
-/* Largest first. The last is the smallest that is read from an arm's length. */
+/* Type scales, largest first. The last is the smallest that can be read at arm's length. */
 static const float scales[] = { 1.5f, 1.25f, 1.0f, 0.8f, 0.65f };
 
 struct page {
 	const struct theme *theme;
 	cairo_t *context;
 	int x_px, width_px, mark_px;
-	bool drawn; /* else only measured */
+	bool drawn; /* false: only measure */
 };
 
-/* Its height; y_px is where it begins. */
+/* Draws or measures a text that begins at y_px. Returns its height. */
 static int put_text(const struct page *page, enum text_style style, struct colour colour,
 		    const char *text, int x_px, int y_px)
 {
@@ -51,7 +52,7 @@ static int text_width_px(const struct theme *theme, enum text_style style, const
 	return width_px;
 }
 
-/* Where the texts of the items begin: behind the widest mark. */
+/* Sets where the texts of the items begin: to the right of the widest mark. */
 static void measure_marks(struct page *page, const struct notice *notice)
 {
 	page->mark_px = 0;
@@ -96,7 +97,7 @@ static int put_foot(const struct page *page, const struct notice *notice, int y_
 				 y_px + gap_px);
 }
 
-/* The page with its first `count` items from y_px on; gives its height. */
+/* Draws or measures the page with its first `count` items, from y_px on. Returns its height. */
 static int put_page(const struct page *page, const struct notice *notice, uint32_t count, int y_px)
 {
 	const int began_px = y_px, gap_px = theme_px(page->theme, GAP_MM);
@@ -135,8 +136,8 @@ static void draw_paper(const struct page *page, int height_px)
 	cairo_fill(page->context);
 }
 
-/* At this size of type; false: not all of it fits, and nothing was drawn. With `forced` as many of
- * the items as fit. */
+/* Draws the page at the page's type size. Returns false, with nothing drawn, if not everything
+ * fits. With `forced`, draws as many items as fit and returns true. */
 static bool draw_at(struct page *page, const struct notice *notice, bool forced, int width_px,
 		    int height_px, uint32_t *count)
 {
@@ -154,7 +155,7 @@ static bool draw_at(struct page *page, const struct notice *notice, bool forced,
 		return false;
 	page->drawn = true;
 	draw_paper(page, height_px);
-	/* A little above the middle, where the eye looks first. */
+	/* A little above the middle, where people look first. */
 	put_page(page, notice, *count,
 		 padding_px + (room_px > used_px ? (room_px - used_px) * 2 / 5 : 0));
 	return true;
@@ -164,7 +165,8 @@ int notice_draw(struct bitmap *out, const struct notice *notice, float px_per_mm
 		int height_px, uint32_t *shown)
 {
 	const int shorter_px = width_px < height_px ? width_px : height_px;
-	/* Large panels have large pixels: letters need enough of them, however large that is. */
+	/* Large panels have large pixels. Letters need enough of them, however large they
+	 * become. */
 	const float mm_px = fmaxf(theme_guess_px_per_mm(width_px, height_px),
 				  fminf(px_per_mm, (float)shorter_px / NARROWEST_MM));
 	uint32_t count = 0;

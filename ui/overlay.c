@@ -1,3 +1,4 @@
+/* The overlay: its creation and content, which element a tap hits, and the update of each frame. */
 #include "ui/overlay.h"
 
 #include <errno.h>
@@ -13,15 +14,15 @@ _Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MAX, "labels that come and label
 
 enum {
 	FADE_MS = 180,
-	PAGE_FADE_MS = 110, /* it is there, whole, within 150 of the tap */
-	STEP_MOST_MS = 100, /* a longer pause counts as this */
-	LABELS_A_FRAME = 4, /* drawn in one update */
-	STRIPS_A_FRAME = 1, /* so that opening a page costs no frame */
+	PAGE_FADE_MS = 110, /* the page is fully visible within 150 ms of the tap */
+	STEP_MOST_MS = 100, /* a longer pause counts as this long */
+	LABELS_A_FRAME = 4, /* labels drawn in one update */
+	STRIPS_A_FRAME = 1, /* so that opening a page drops no frame */
 	FLING_SLOWDOWN_MS = 350,
 	FLING_LEAST_PX_PER_S = 20,
 };
 
-/* ---- life ---- */
+/* ---- creation ---- */
 
 static int copy_languages(struct overlay *overlay, const struct overlay_options *options)
 {
@@ -37,7 +38,7 @@ static int copy_languages(struct overlay *overlay, const struct overlay_options 
 void overlay_lay_out_chrome(struct overlay *overlay)
 {
 	int gaps_px = 2 * theme_px(&overlay->theme, THEME_GAP_MM);
-	/* It must fit beside an open page. */
+	/* The bar must fit beside an open page. */
 	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
 	const struct chrome_has has = {
 		.search = overlay->part_count > 0,
@@ -63,7 +64,7 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 
 	if (px_per_mm <= 0)
 		px_per_mm = theme_guess_px_per_mm(options->width_px, options->height_px);
-	/* On a panel smaller than a hand everything shrinks rather than being cut off. */
+	/* On a panel smaller than a hand everything shrinks; otherwise it would be cut off. */
 	px_per_mm = fminf(px_per_mm, (float)shorter_px / 85.0f);
 	rc = theme_init(&overlay->theme, px_per_mm, options->languages[0]);
 	if (rc == 0)
@@ -75,7 +76,7 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 	overlay->strip_px = options->height_px / (STRIPS - 4) > STRIP_PX
 				    ? options->height_px / (STRIPS - 4)
 				    : STRIP_PX;
-	overlay_draw_help(overlay); /* its size is asked for */
+	overlay_draw_help(overlay); /* its size is needed for layout */
 	return 0;
 }
 
@@ -137,7 +138,7 @@ void overlay_destroy(struct overlay *overlay)
 	free(overlay);
 }
 
-/* ---- what it shows ---- */
+/* ---- content ---- */
 
 static int copy_part(struct part *to, const struct overlay_part *from)
 {
@@ -201,7 +202,7 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 		overlay->help_dirty = true;
 		overlay_lay_out_chrome(overlay);
 	}
-	overlay_search_language(overlay); /* its rows are in other words */
+	overlay_search_language(overlay); /* its rows have other texts now */
 	overlay_measure_labels(overlay);
 	overlay_forget_labels(overlay);
 	overlay->card_dirty = overlay->head_dirty = true;
@@ -216,7 +217,7 @@ void overlay_language(struct overlay *overlay, const char *language)
 		overlay->language = (int)i;
 		theme_set_language(&overlay->theme, language);
 		overlay->chrome_dirty = overlay->help_dirty = true;
-		overlay->question_drawn_s = 0; /* in the other language */
+		overlay->question_drawn_s = 0; /* draw it again in the new language */
 		overlay->card_dirty = overlay->head_dirty = true;
 		overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
 		overlay_search_language(overlay);
@@ -245,7 +246,8 @@ void overlay_show_card(struct overlay *overlay, int part)
 	if (part == overlay->card_part)
 		return;
 	if (part >= 0)
-		overlay_widen_page(overlay, false); /* it is about the model */
+		overlay_widen_page(overlay,
+				   false); /* a card is about the model, which must be visible */
 	overlay->card_part = part;
 	overlay->card.on = part >= 0;
 	overlay->callouts_dirty = true;
@@ -255,7 +257,7 @@ void overlay_show_card(struct overlay *overlay, int part)
 		overlay->card.alpha = 0;
 	overlay->card_shown = part;
 	overlay->card_dirty = true;
-	overlay_show_help(overlay, false); /* they share their place */
+	overlay_show_help(overlay, false); /* card and help share their place */
 	overlay_show_tours(overlay, false);
 }
 
@@ -291,8 +293,8 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 	for (uint32_t i = 0; i < STRIPS; i++)
 		overlay->strips[i] = (struct strip){ .index = -1 };
 	overlay->head_dirty = true;
-	overlay_show_search(overlay, false); /* it takes its place */
-	overlay_show_card(overlay, -1);      /* the page says it all */
+	overlay_show_search(overlay, false); /* the page takes its place */
+	overlay_show_card(overlay, -1);      /* the page has all its information */
 	overlay_show_help(overlay, false);
 	overlay_show_tours(overlay, false);
 	overlay->callouts_dirty = true;
@@ -409,7 +411,7 @@ static struct overlay_action tap_page(const struct overlay *overlay, float x_px,
 
 	if (overlay_rect_holds(overlay_head_rect(overlay, overlay_page_rect(overlay)), x_px,
 			       y_px)) {
-		/* The head's whole right end, so that a near miss closes too. */
+		/* The whole right end of the head closes, so that a near miss closes too. */
 		if (x_px >= (float)overlay_close_rect(overlay).x_px)
 			action.kind = OVERLAY_CLOSE_PAGE;
 		else if (overlay_rect_holds(overlay_widen_rect(overlay), x_px, y_px))
@@ -591,7 +593,8 @@ static bool advance_scroll(float *scroll_px, float *px_per_s, int most_px, int64
 	return *px_per_s != 0;
 }
 
-/* A pillar that passes before a part takes nothing away. */
+/* Dims a label while its part is hidden. A short occlusion, as by a passing pillar, removes
+ * nothing. */
 static bool watch_hidden(struct overlay *overlay, struct label *label, int64_t step_ms)
 {
 	label->dim.on = overlay->parts[label->part].hidden;
@@ -639,7 +642,7 @@ static bool update_strips(struct overlay *overlay, int64_t step_ms)
 {
 	struct overlay_rect view = overlay_view_rect(overlay);
 	int first = (int)overlay->scroll_px / overlay->strip_px;
-	/* One more than is seen, so that a finger finds it drawn. */
+	/* One strip more than is visible, so that scrolling finds it drawn. */
 	int last = ((int)overlay->scroll_px + view.height_px) / overlay->strip_px + 1;
 	int end = article_height_px(overlay->article) / overlay->strip_px;
 	uint32_t budget = STRIPS_A_FRAME;
@@ -657,7 +660,7 @@ static bool update_strips(struct overlay *overlay, int64_t step_ms)
 			strip->index = index;
 			strip->stale = false;
 			strip->fade.on = true;
-			if (overlay->page.alpha < 1) /* it comes in with its page */
+			if (overlay->page.alpha < 1) /* it appears together with its page */
 				strip->fade.alpha = 1;
 			overlay_draw_strip(overlay, slot);
 			budget--;

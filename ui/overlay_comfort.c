@@ -1,5 +1,5 @@
-/* Large type, reach mode and a page over the whole panel: what is shown is measured and placed
- * anew. */
+/* Large type, reach mode and a page over the whole panel: measures and places again what is
+ * shown. */
 #include "ui/overlay_state.h"
 
 struct overlay_comfort overlay_comfort(const struct overlay *overlay)
@@ -7,7 +7,7 @@ struct overlay_comfort overlay_comfort(const struct overlay *overlay)
 	return overlay->comfort;
 }
 
-/* What was in the first line is there again, about. */
+/* Lays the page out again. The first visible line stays about the same. */
 static void lay_out_page(struct overlay *overlay)
 {
 	struct overlay_rect view = overlay_view_rect(overlay);
@@ -15,7 +15,7 @@ static void lay_out_page(struct overlay *overlay)
 	int most_px;
 
 	if (article_lay_out(overlay->article, view.width_px, view.height_px) < 0)
-		overlay_close_page(overlay); /* no memory for its links */
+		overlay_close_page(overlay); /* no memory for the links */
 	most_px = overlay_scroll_most(overlay);
 	overlay->scroll_px = read * (float)article_height_px(overlay->article);
 	if (overlay->scroll_px > (float)most_px)
@@ -52,7 +52,7 @@ void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort
 	overlay_lay_out_chrome(overlay);
 	overlay_measure_labels(overlay);
 	overlay_forget_labels(overlay);
-	overlay_search_language(overlay); /* its rows and keys are of another size */
+	overlay_search_language(overlay); /* its rows and keys have another size now */
 	overlay->search.scroll_px = overlay->search.scroll_px_per_s = 0;
 	if (overlay->article)
 		lay_out_page(overlay);

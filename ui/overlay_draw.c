@@ -1,4 +1,4 @@
-/* The overlay's bitmaps. One that cannot be drawn for want of memory is left out of the layers. */
+/* Draws the overlay's bitmaps. If memory runs out for one, it is left out of the layers. */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +31,7 @@ void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 	bitmap_end(&overlay->drawings[id].bitmap, context);
 }
 
-/* Modules that make their own bitmap hand it over here. */
+/* Takes over a bitmap that another module made; rc is that module's result. */
 static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh, int rc)
 {
 	struct drawing *drawing = &overlay->drawings[id];
@@ -42,7 +42,7 @@ static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh
 		drawing->bitmap = *fresh;
 }
 
-/* Across a leader: a light core between dark edges, so that it shows on any stone. */
+/* A leader in cross-section: a light core between dark edges, so that it shows on any material. */
 static void draw_leader(struct overlay *overlay)
 {
 	int across_px = px(overlay, 1.5f) + 2;
@@ -231,7 +231,7 @@ void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int wid
 	g_object_unref(layout);
 }
 
-/* The part's name in small, a line below, and the one control that closes. */
+/* The head of a page: the part's name in small type, a line, and the control that closes. */
 void overlay_draw_page_head(struct overlay *overlay)
 {
 	struct overlay_rect head = overlay_head_rect(overlay, overlay_page_rect(overlay));
@@ -315,7 +315,7 @@ void overlay_draw_label(struct overlay *overlay, uint32_t index)
 		theme_set_source(context, theme_night, THEME_LABEL_ALPHA);
 	cairo_fill(context);
 	layout = theme_layout(&overlay->theme, TEXT_LABEL, overlay->parts[label->part].title, -1);
-	/* A pixel more: rounding must not cut a text that fits. */
+	/* One pixel more, so that rounding does not cut a text that fits. */
 	theme_limit_lines(layout, width_px - 2 * padding_px + 1, 1);
 	pango_layout_get_pixel_size(layout, NULL, &text_px);
 	theme_set_source(context, theme_night_text, 1);

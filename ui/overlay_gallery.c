@@ -1,5 +1,6 @@
-/* The pictures of the page that is open, one at a time over the whole panel: two fingers zoom, one
- * moves what is zoomed and turns to the next where nothing is. The bar stays over it. */
+/* The gallery shows the pictures of the open page one at a time over the whole panel. Two fingers
+ * zoom. One finger moves a zoomed picture, else it swipes to the next. The bar stays visible over
+ * it. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,27 +10,27 @@
 #include "ui/overlay_state.h"
 
 #define MARGIN_MM  4.0f
-#define CAPTION_MM 16.0f /* two lines of it */
-#define BUTTON_MM  13.0f /* close, and to either side */
+#define CAPTION_MM 16.0f /* two lines of caption */
+#define BUTTON_MM  13.0f /* the buttons: close, previous, next */
 
 enum {
-	PICTURE_MOST_PX = 2048, /* a side of what is drawn of one; the rest is the screen's work */
-	UPSCALE_MAX = 2,        /* how many pixels of the panel one of the picture may cover */
-	SETTLE_MS = 90,         /* in which a swipe comes to 1/e of its way */
+	PICTURE_MOST_PX = 2048, /* longest side of the bitmap; the GPU scales it further */
+	UPSCALE_MAX = 2,        /* panel pixels per picture pixel, at most */
+	SETTLE_MS = 90,         /* time constant of a swipe that settles (to 1/e) */
 	FLICK_PX_PER_S = 500,
 };
 
 #define DOUBLE_TAP_ZOOM 2.5f
-#define END_RESISTANCE  0.35f /* of a swipe where nothing follows */
+#define END_RESISTANCE  0.35f /* factor for a swipe beyond the first or last picture */
 
 static int px(const struct overlay *overlay, float mm)
 {
 	return theme_px(&overlay->theme, mm);
 }
 
-/* ---- places ---- */
+/* ---- layout ---- */
 
-/* Where a picture stands that is not zoomed: above its caption, which is above the bar. */
+/* The place of a picture that is not zoomed: above its caption, which is above the bar. */
 struct overlay_rect overlay_gallery_rect(const struct overlay *overlay)
 {
 	int bottom_px =
@@ -49,7 +50,7 @@ struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
 	struct overlay_rect rect = { overlay->width_px - side_px - margin_px, margin_px, side_px,
 				     side_px };
 
-	if (overlay->comfort.reach) { /* at the lower end, the one that closes above the next */
+	if (overlay->comfort.reach) { /* at the lower end; close is above next */
 		rect.y_px = view.y_px + view.height_px - side_px;
 		if (button == GALLERY_CLOSE)
 			rect.y_px -= side_px + px(overlay, THEME_GAP_MM);
@@ -66,7 +67,7 @@ static struct drawing *drawing_of(struct overlay *overlay, int picture)
 	return &overlay->drawings[BITMAP_PICTURE + picture % GALLERY_SLOTS];
 }
 
-/* Pixels of the panel that a pixel of the drawn picture covers, not zoomed. */
+/* Panel pixels per bitmap pixel when not zoomed. */
 static float fit_scale(const struct overlay *overlay, const struct bitmap *bitmap)
 {
 	struct overlay_rect view = overlay_gallery_rect(overlay);
@@ -76,7 +77,7 @@ static float fit_scale(const struct overlay *overlay, const struct bitmap *bitma
 	return fminf(fminf(wide, high), UPSCALE_MAX);
 }
 
-/* Left, top, width, height of a picture that is drawn; false: it is not. */
+/* Sets left, top, width and height of a picture. Returns false if it is not drawn yet. */
 bool overlay_gallery_place(const struct overlay *overlay, int picture, float place_px[4])
 {
 	const struct gallery *gallery = &overlay->gallery;
@@ -136,7 +137,7 @@ int overlay_picture(const struct overlay *overlay)
 	return overlay->gallery.fade.on ? overlay->gallery.at : -1;
 }
 
-/* What is zoomed covers the view, or stands in its middle. */
+/* Moves a zoomed picture so that it covers the view, or is centred in it. */
 static void keep_inside(struct overlay *overlay)
 {
 	struct gallery *gallery = &overlay->gallery;
@@ -169,7 +170,7 @@ void overlay_picture_pinch(struct overlay *overlay, float x_px, float y_px, floa
 	float x = x_px - (float)view.x_px - (float)view.width_px / 2;
 	float y = y_px - (float)view.y_px - (float)view.height_px / 2;
 
-	/* What is under the fingers stays there. */
+	/* The point under the fingers stays there. */
 	gallery->x_px = x + (gallery->x_px - x) * to / from + dx_px;
 	gallery->y_px = y + (gallery->y_px - y) * to / from + dy_px;
 	gallery->zoom = to;
@@ -227,7 +228,7 @@ void overlay_gallery_arrived(struct overlay *overlay, const char *name)
 		    strcmp(article_picture(overlay->article, (uint32_t)gallery->slots[i].picture,
 					   NULL),
 			   name) == 0)
-			gallery->slots[i].picture = -1; /* drawn anew */
+			gallery->slots[i].picture = -1; /* draw it again */
 }
 
 /* ---- touch ---- */
@@ -260,7 +261,7 @@ struct overlay_action overlay_gallery_tap(const struct overlay *overlay, float x
 
 /* ---- drawing ---- */
 
-/* true: it was there to be drawn. */
+/* Draws a picture into its slot. Returns false if it has not arrived or memory ran out. */
 static bool draw_picture(struct overlay *overlay, int picture)
 {
 	struct drawing *drawing = drawing_of(overlay, picture);
@@ -276,7 +277,7 @@ static bool draw_picture(struct overlay *overlay, int picture)
 	width = (float)found.picture->width;
 	height = (float)found.picture->height;
 	shrink = fminf(1, PICTURE_MOST_PX / fmaxf(width, height));
-	/* Without memory for it the place stays empty. */
+	/* If memory runs out, the place stays empty. */
 	if (bitmap_from_picture(&drawing->bitmap, found.picture, (int)fmaxf(1, width * shrink),
 				(int)fmaxf(1, height * shrink)) < 0)
 		bitmap_finish(&drawing->bitmap);
@@ -312,7 +313,7 @@ static void draw_words(struct overlay *overlay)
 	overlay_end(overlay, BITMAP_PICTURE_WORDS, context);
 }
 
-/* Each once: they never change. */
+/* Drawn once; they never change. */
 void overlay_draw_gallery_buttons(struct overlay *overlay)
 {
 	static const enum icon icons[] = { [GALLERY_CLOSE] = ICON_CLOSE,
@@ -337,7 +338,7 @@ void overlay_draw_gallery_buttons(struct overlay *overlay)
 
 /* ---- a frame ---- */
 
-/* The one that is looked at, then its neighbours, one a frame. */
+/* Draws the current picture first, then its neighbours, one per frame. */
 static bool update_slots(struct overlay *overlay, int64_t step_ms)
 {
 	static const int order[] = { 0, 1, -1 };

@@ -1,9 +1,9 @@
-/* The menu of languages, where the bar has one button for all of them. It stands above the bar and
- * over whatever is open: who wants to read on in another language loses no page. */
+/* The menu of languages, used if the bar has one button for all of them. It stands above the bar
+ * and over whatever is open, so that switching the language does not close the page. */
 #include "ui/overlay_state.h"
 #include "ui/strings.h"
 
-#define COLUMN_MM  38.0f /* of a name; narrower, down to NARROW_MM, where there are many */
+#define COLUMN_MM  38.0f /* width of a name; down to NARROW_MM if there are many */
 #define NARROW_MM  22.0f
 #define ROW_MM     11.0f
 #define PADDING_MM 2.0f
@@ -37,7 +37,7 @@ bool overlay_choosing_language(const struct overlay *overlay)
 	return overlay->menu.fade.on;
 }
 
-/* ---- places ---- */
+/* ---- layout ---- */
 
 static int rows_of(const struct overlay *overlay, int columns)
 {
@@ -58,7 +58,7 @@ static struct grid lay_out(const struct overlay *overlay)
 	grid.columns = wide / column_px < COLUMNS ? wide / column_px : COLUMNS;
 	if (grid.columns < 1)
 		grid.columns = 1;
-	/* Rows give way before names do. */
+	/* If rows do not fit, add columns before rows shrink below a touch target. */
 	while (rows_of(overlay, grid.columns) * target > high &&
 	       (grid.columns + 1) * px(overlay, NARROW_MM) <= wide)
 		grid.columns++;
@@ -78,7 +78,7 @@ struct overlay_rect overlay_languages_rect(const struct overlay *overlay)
 	return lay_out(overlay).all;
 }
 
-/* The languages are in rows; whoever taps beside the menu wants none. */
+/* Languages are listed row by row. A tap beside the menu closes it. */
 struct overlay_action overlay_languages_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	const struct grid grid = lay_out(overlay);

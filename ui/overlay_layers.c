@@ -1,11 +1,11 @@
-/* What is shown as textured quads. */
+/* Turns what is shown into a list of textured quads, and paints that list with Cairo for tests. */
 #include <math.h>
 #include <string.h>
 
 #include "ui/hint.h"
 #include "ui/overlay_state.h"
 
-#define DIM 0.6f /* what a callout loses while its part is hidden */
+#define DIM 0.6f /* share of its alpha that a callout loses while its part is hidden */
 
 struct list {
 	const struct overlay *overlay;
@@ -13,7 +13,7 @@ struct list {
 	uint32_t count, most;
 };
 
-/* Slow at the end, so that nothing stops with a jerk. */
+/* Slows down at the end, so that nothing stops abruptly. */
 static float ease(float alpha)
 {
 	return alpha * (2 - alpha);
@@ -47,7 +47,7 @@ static void add_rect(struct list *list, int id, float alpha, float x, float y, f
 		memcpy(layer->corners_px, corners, sizeof(corners));
 }
 
-/* At its own size, its upper left corner there. */
+/* Adds a bitmap at its own size with its upper left corner at x, y. */
 static void add_bitmap(struct list *list, int id, float alpha, float x, float y)
 {
 	const struct bitmap *bitmap = &list->overlay->drawings[id].bitmap;
@@ -111,7 +111,7 @@ static void add_callouts(struct list *list)
 	}
 }
 
-/* The piece that the view shows of a bitmap as wide as it. */
+/* Adds the visible piece of a bitmap that is as wide as the view. */
 static void add_clipped(struct list *list, int id, float alpha, struct overlay_rect view, float top,
 			float dx, float dy)
 {
@@ -279,7 +279,7 @@ static void add_help(struct list *list)
 			   (float)help.y_px + middles_px[i][1] - (float)finger->height_px / 2);
 }
 
-/* A quad about a place, its height along a unit vector. */
+/* Adds a quad centred on a point, with its height along a unit vector. */
 static void add_turned(struct list *list, int id, float alpha, const float at[2],
 		       const float along[2], float half_across, float half_along)
 {
@@ -358,7 +358,7 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 	return list.count;
 }
 
-/* ---- by Cairo ---- */
+/* ---- painting with Cairo ---- */
 
 static void paint_layer(cairo_t *context, const struct overlay_layer *layer)
 {

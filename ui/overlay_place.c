@@ -1,16 +1,16 @@
-/* Where everything is on the panel. */
+/* Computes the rectangle of every element on the panel, and lays callouts out into labels. */
 #include <stdlib.h>
 
 #include "ui/overlay_state.h"
 
 #define HEAD_MM 13.0f
-#define DETAIL  0.05f /* of the scene's height: what looks smaller is one */
-/* Reach mode's part of the panel: a third, but not less than the search needs with keys of
+#define DETAIL  0.05f /* share of the scene's height; smaller parts are details */
+/* Reach mode uses a third of the panel, but not less than the search needs with keys of
  * THEME_TARGET_MM. */
 #define REACH_MM          70.0f
 #define REACH_PORTRAIT_MM 110.0f
-#define REACH_WIDTH_MM    200.0f /* two keyboards beside each other */
-#define CLOSE_MM          34.0f  /* the close control is as wide as this at most */
+#define REACH_WIDTH_MM    200.0f /* two keyboards side by side */
+#define CLOSE_MM          34.0f  /* maximum width of the close control */
 
 static int px(const struct overlay *overlay, float mm)
 {
@@ -53,7 +53,7 @@ bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px)
 	       y_px >= (float)rect.y_px && y_px < (float)(rect.y_px + rect.height_px);
 }
 
-/* What a page has beside the model, and the search. */
+/* The place of a page or the search beside the model. */
 struct overlay_rect overlay_half_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
@@ -83,7 +83,8 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 	if (overlay->search.fade.on) {
 		struct overlay_rect search = overlay_search_rect(overlay);
 
-		/* Where that leaves a strip, or nothing, the model has the whole behind it. */
+		/* If the search leaves nothing of the panel, the model keeps the whole panel behind
+		 * it. */
 		if (search.x_px > 0)
 			rect.width_px = search.x_px;
 		else if (search.y_px > 0)
@@ -97,7 +98,8 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 	return rect;
 }
 
-/* Beside what is always there in a flat panel's lowest line, else on top of its paper. */
+/* On a flat panel the head is in the lowest line, beside the bar; else it is on top of the
+ * paper. */
 struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper)
 {
 	if (overlay_is_flat(overlay)) {
@@ -119,7 +121,7 @@ struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overl
 				      head.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
 }
 
-/* Below the head; in portrait and in reach also above the bar, which stays where it always is. */
+/* Below the head. In portrait and in reach mode it also ends above the bar, which never moves. */
 struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = overlay_page_rect(overlay);
@@ -127,7 +129,8 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 
 	rect.y_px += head_px;
 	rect.height_px -= head_px;
-	if (rect.x_px == 0) /* it is below the model, not beside it, or has the whole panel */
+	if (rect.x_px ==
+	    0) /* it is below the model or has the whole panel, so the bar is over it */
 		rect.height_px -= overlay->chrome.height_px + 2 * px(overlay, THEME_GAP_MM);
 	if (rect.height_px < 1)
 		rect.height_px = 1;
@@ -139,7 +142,7 @@ struct overlay_rect overlay_close_rect(const struct overlay *overlay)
 	return overlay_close_in(overlay, overlay_head_rect(overlay, overlay_page_rect(overlay)));
 }
 
-/* Beside it; nothing where there is no such control. */
+/* Beside the close control; empty if the page cannot be widened. */
 struct overlay_rect overlay_widen_rect(const struct overlay *overlay)
 {
 	struct overlay_rect close = overlay_close_rect(overlay);
@@ -160,8 +163,8 @@ struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)
 				      overlay->chrome.width_px, overlay->chrome.height_px };
 }
 
-/* The lowest line that the scene may use: above the bar where that is in the scene. In reach it is
- * there always: a card comes to lie over a page rather than above it. */
+/* Returns the lowest line that the scene may use: above the bar if the bar is in the scene. In
+ * reach mode it is always above the bar; a card then lies over a page, not above it. */
 static int floor_of(const struct overlay *overlay)
 {
 	struct overlay_rect scene = overlay_scene_rect(overlay);
@@ -203,7 +206,7 @@ struct overlay_rect overlay_invitation_rect(const struct overlay *overlay)
 	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
-/* In the middle of everything: nothing else counts then. In reach its button is low. */
+/* In the middle of the panel: nothing else matters then. In reach mode it is low. */
 struct overlay_rect overlay_question_rect(const struct overlay *overlay)
 {
 	const struct bitmap *bitmap = &overlay->drawings[BITMAP_QUESTION].bitmap;
@@ -261,12 +264,12 @@ static struct callout_area callout_area(const struct overlay *overlay)
 		area.above_px = overlay_reach_top(overlay) - area.y_px;
 		area.y_px = overlay_reach_top(overlay);
 		if (overlay->page_part >= 0 || overlay->search.fade.on)
-			floor_px = area.y_px; /* they have the labels' place */
+			floor_px = area.y_px; /* page or search take the labels' place */
 	}
 	area.height_px = floor_px - area.y_px;
 	area.column_px = overlay->column_px;
-	/* Half of the width is the model's own; beside a page, where it is narrow, a little less.
-	 */
+	/* About half of the width is the model's; beside a page, where it is narrow, a little
+	 * less. */
 	most_px = area.width_px * (scene.width_px < overlay->width_px ? 31 : 27) / 100;
 	if (area.column_px > most_px)
 		area.column_px = most_px;
@@ -282,7 +285,8 @@ static struct label *find_label(struct overlay *overlay, int part)
 	return NULL;
 }
 
-/* A free one, or the faintest of those that fade out. There are more than can be shown at once. */
+/* Returns a free label, or the faintest of those that fade out. There are more labels than
+ * callouts. */
 static struct label *take_label(struct overlay *overlay)
 {
 	struct label *best = NULL;
@@ -312,7 +316,7 @@ static void show_label(struct overlay *overlay, const struct callout *place)
 		*label = (struct label){ .part = (int)place->part };
 	} else if (label->place.left != place->left ||
 		   abs(label->place.y_px - place->y_px) > overlay_row_px(overlay)) {
-		label->fade.alpha = 0; /* it changed places: come in anew rather than jump */
+		label->fade.alpha = 0; /* it changed its place: fade in again, do not jump */
 	}
 	label->place = *place;
 	label->fade.on = true;
@@ -337,7 +341,7 @@ void overlay_lay_out_callouts(struct overlay *overlay)
 		overlay->anchors[i].label_px =
 			label_px < area.column_px ? label_px : area.column_px;
 		overlay->anchors[i].visible = may_have_callout(overlay, (int)i);
-		/* What was chosen is no detail. */
+		/* A chosen part never counts as a detail. */
 		overlay->anchors[i].size_px =
 			(int)i == overlay->card_part || (int)i == overlay->page_part
 				? 0

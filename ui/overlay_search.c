@@ -1,5 +1,5 @@
-/* The search: a field, what was found and a keyboard. It stands where a page would, and takes the
- * whole width where half a panel is too narrow for fingers on keys. */
+/* The search: a field, a list of results and a keyboard. It stands where a page would. If half a
+ * panel is too narrow for fingers on keys, it takes the whole width. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,11 +7,11 @@
 #include "ui/overlay_state.h"
 #include "ui/strings.h"
 
-#define SIDE_MM    4.0f   /* beside field and rows */
-#define ROW_MM     18.0f  /* of the list; more on panels so tall that SEARCH_ROWS would not do */
-#define WIDTH_MM   100.0f /* narrower than this no keyboard is, if the panel has it */
-#define HEIGHT_MM  110.0f /* the same upright */
-#define KEEP_MM    30.0f  /* a strip of the model lower than this is none */
+#define SIDE_MM    4.0f   /* margin beside field and rows */
+#define ROW_MM     18.0f  /* row of the list; higher on panels too tall for SEARCH_ROWS rows */
+#define WIDTH_MM   100.0f /* minimum width of the keyboard, if the panel has it */
+#define HEIGHT_MM  110.0f /* minimum height of the search in portrait */
+#define KEEP_MM    30.0f  /* a strip of the model lower than this is not kept */
 #define PADDING_MM 3.0f
 
 enum { ROW_NONE = -1, ROW_NOTHING_FOUND = -2 };
@@ -21,7 +21,7 @@ static int px(const struct overlay *overlay, float mm)
 	return theme_px(&overlay->theme, mm);
 }
 
-/* ---- places ---- */
+/* ---- layout ---- */
 
 struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 {
@@ -39,7 +39,7 @@ struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 	} else if (rect.width_px < px(overlay, WIDTH_MM)) {
 		rect = (struct overlay_rect){ 0, 0, overlay->width_px, bar_px };
 	} else if (bar.x_px + bar.width_px > rect.x_px) {
-		rect.height_px = bar_px; /* many languages: the bar reaches below it */
+		rect.height_px = bar_px; /* with many languages the bar extends below it */
 	}
 	return rect;
 }
@@ -49,7 +49,7 @@ static struct overlay_rect head_rect(const struct overlay *overlay)
 	return overlay_head_rect(overlay, overlay_search_rect(overlay));
 }
 
-/* What the head leaves for list and keyboard: below it; flat, above it and the bar. */
+/* The place of list and keyboard: below the head, or on a flat panel above head and bar. */
 static struct overlay_rect body_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = overlay_search_rect(overlay), head = head_rect(overlay);
@@ -63,7 +63,7 @@ static struct overlay_rect body_rect(const struct overlay *overlay)
 	return rect;
 }
 
-/* Below the list; flat, beside it. */
+/* Below the list, or on a flat panel beside it. */
 struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay)
 {
 	struct overlay_rect rect = body_rect(overlay);
@@ -134,14 +134,14 @@ static void lay_out_keyboard(struct overlay *overlay, bool latin)
 	if (overlay_is_flat(overlay))
 		body.width_px /= 2;
 	else
-		body.height_px -= px(overlay, ROW_MM); /* one is seen at least */
+		body.height_px -= px(overlay, ROW_MM); /* at least one row stays visible */
 	keyboard_layout(keyboard, &overlay->theme, overlay->theme.language, latin, body.width_px,
 			body.height_px);
 	overlay->search.keyboard_dirty = true;
 	overlay->search.pressed = -1;
 }
 
-/* Nothing typed: everything, in the order of importance. */
+/* With nothing typed, all parts are listed in order of importance. */
 static void list_all(struct overlay *overlay)
 {
 	for (uint32_t i = 0; i < overlay->part_count; i++)
@@ -306,7 +306,7 @@ struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_
 
 /* ---- drawing ---- */
 
-/* The query with a caret behind it; where nothing is typed, what the field is for. */
+/* Draws the query with a caret behind it, or, while nothing is typed, what the field is for. */
 static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px, int width_px,
 		       int height_px)
 {
@@ -319,7 +319,7 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 	if (*query)
 		from_right = theme_begins_at_right(query);
 	pango_layout_get_pixel_size(layout, &text_px, &tall_px);
-	if (text_px > width_px) { /* the end is what one is typing */
+	if (text_px > width_px) { /* the end is where the visitor types */
 		pango_layout_set_width(layout, width_px * PANGO_SCALE);
 		pango_layout_set_height(layout, -1);
 		pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_START);
@@ -330,7 +330,7 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 	cairo_move_to(context, left_px, (height_px - tall_px) / 2.0);
 	pango_cairo_show_layout(context, layout);
 	g_object_unref(layout);
-	if (!*query) /* before what stands there */
+	if (!*query) /* the caret is before the placeholder */
 		from_right = !from_right;
 	cairo_rectangle(context, from_right ? left_px - 2 * caret_px : left_px + text_px + caret_px,
 			(height_px - tall_px) / 2.0, caret_px, tall_px);
@@ -473,7 +473,7 @@ static bool update_rows(struct overlay *overlay, int64_t step_ms)
 			}
 			budget--;
 			if (row->part != part)
-				row->fade.alpha = 0; /* comes in anew */
+				row->fade.alpha = 0; /* fades in again */
 			row->part = part;
 			row->index = i;
 			row->stale = false;
@@ -501,7 +501,7 @@ bool overlay_update_search(struct overlay *overlay, int64_t step_ms)
 	return search->fade.on ? update_rows(overlay, step_ms) || moving : moving;
 }
 
-/* Where the key that was pressed last is; false: none is. */
+/* Sets the place of the key that was pressed last. Returns false if there is none. */
 bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out)
 {
 	struct overlay_rect keys = overlay_keyboard_rect(overlay);

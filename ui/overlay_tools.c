@@ -1,6 +1,6 @@
-/* What fingers hold of the tools: a lamp on its ring, and a section seen from above. Each stands in
- * a place of its own above the bar's line, at the scene's right, wherever what is open leaves it.
- */
+/* The control discs of the tools: a lamp on its ring, and a section seen from above. Each disc has
+ * its own place above the bar's line, at the right end of the scene, and shows unless something
+ * open covers that place. */
 #include <math.h>
 
 #include "ui/icon.h"
@@ -9,7 +9,7 @@
 
 #define DISC_MM    44.0f
 #define PADDING_MM 2.0f
-#define HEAD_MM    7.0f /* of the tool's name */
+#define HEAD_MM    7.0f /* the line with the tool's name */
 #define LINE_MM    0.9f
 
 static const unsigned tool_bits[OVERLAY_TOOL_COUNT] = { OVERLAY_TOOL_LIGHT, OVERLAY_TOOL_SECTION };
@@ -19,7 +19,7 @@ static int px(const struct overlay *overlay, float mm)
 	return theme_px(&overlay->theme, mm);
 }
 
-/* ---- what it shows ---- */
+/* ---- state ---- */
 
 void overlay_offer_tools(struct overlay *overlay, unsigned tools)
 {
@@ -44,17 +44,18 @@ void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *sta
 		return;
 	overlay->tools.dirty = overlay->chrome_dirty = overlay->callouts_dirty = true;
 	if (changed & state->on)
-		overlay_show_help(overlay, false); /* they share their place on small panels */
+		overlay_show_help(overlay,
+				  false); /* help and tools share their place on small panels */
 }
 
-/* ---- places ---- */
+/* ---- layout ---- */
 
 static int head_px(const struct overlay *overlay)
 {
 	return theme_text_px(&overlay->theme, HEAD_MM);
 }
 
-/* As large as there is room for both beside each other. */
+/* The size of a disc: both must fit beside each other. */
 static int disc_px(const struct overlay *overlay)
 {
 	const struct overlay_rect scene = overlay_scene_rect(overlay);
@@ -79,7 +80,7 @@ struct overlay_rect overlay_tool_rect(const struct overlay *overlay, int tool)
 	const int gap = px(overlay, THEME_GAP_MM), side = disc_px(overlay);
 	const int width = side + 2 * px(overlay, PADDING_MM);
 	const int height = side + head_px(overlay) + px(overlay, PADDING_MM);
-	/* The first that is offered is the outermost, and stays there whatever is on. */
+	/* The first offered tool is the outermost, whatever is on. */
 	const int place = tool > 0 && overlay->tools.offered & tool_bits[0] ? 1 : 0;
 
 	return (struct overlay_rect){ scene.x_px + scene.width_px - (place + 1) * (width + gap),
@@ -93,7 +94,7 @@ static bool meet(struct overlay_rect a, struct overlay_rect b)
 	       a.y_px < b.y_px + b.height_px && b.y_px < a.y_px + a.height_px;
 }
 
-/* What is read comes before what is held: a tool that is on goes on doing what it does. */
+/* Text has priority over controls: a disc hides, but its tool stays on and keeps its effect. */
 bool overlay_tool_shows(const struct overlay *overlay, int tool)
 {
 	const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
@@ -135,7 +136,7 @@ int overlay_tools_left(const struct overlay *overlay)
 	return left;
 }
 
-/* The ring that knobs slide on: all of a knob stays on the disc. */
+/* The ring that the knobs slide on. A knob always lies completely on the disc. */
 static void ring_of(const struct overlay *overlay, int tool, float *x_px, float *y_px,
 		    float *radius_px)
 {
@@ -235,7 +236,7 @@ static void draw_disc(struct overlay *overlay, int tool)
 		theme_set_source(context, theme_night_text, THEME_DIM_ALPHA);
 		cairo_arc(context, (double)x, (double)y, (double)radius / 2, 0, turn);
 		cairo_stroke(context);
-	} else { /* who looks stands below */
+	} else { /* a mark for the viewer, who stands below */
 		const double side = px(overlay, 1.6f), foot = (double)(y + radius) - 3 * line;
 
 		theme_set_source(context, theme_night_text, THEME_DIM_ALPHA);
@@ -310,7 +311,7 @@ bool overlay_update_tools(struct overlay *overlay, int64_t step_ms)
 	return moving;
 }
 
-/* Where the knobs are; pixels of the panel. The push's is turned as along[] says. */
+/* Sets the centres of the knobs, pixels of the panel. The push knob is turned along along[]. */
 void overlay_tool_knobs(const struct overlay *overlay, struct overlay_knobs *out)
 {
 	const struct overlay_tools *now = &overlay->tools.now;

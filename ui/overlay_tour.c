@@ -1,5 +1,5 @@
-/* Guided tours: the panel below the model while one is flown, and the menu of them. Both stand
- * where a card would, so only one of the three is there at a time. */
+/* Guided tours: the panel below the model while a tour runs, and the menu of tours. Both stand
+ * where a card would, so only one of the three is visible at a time. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +11,9 @@
 
 #define WIDTH_MM   150.0f
 #define PADDING_MM 3.0f
-#define DOTS_MM    5.0f /* the line with the stops' dots */
+#define DOTS_MM    5.0f /* height of the line with the stops' dots */
 #define DOT_MM     1.1f
-#define ROW_MM     14.0f /* of the menu */
+#define ROW_MM     14.0f /* row of the menu */
 #define ICON_MM    3.2f
 
 enum { LINES_MAX = 4 };
@@ -23,7 +23,7 @@ static int px(const struct overlay *overlay, float mm)
 	return theme_px(&overlay->theme, mm);
 }
 
-/* ---- what is shown ---- */
+/* ---- state ---- */
 
 int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours, uint32_t count)
 {
@@ -91,7 +91,7 @@ void overlay_show_tour(struct overlay *overlay, const struct overlay_tour_state 
 	if (!state)
 		return;
 	if (strcmp(panel->caption, state->caption) != 0 || panel->tour != state->tour) {
-		panel->fade.alpha = 0; /* another size too: it comes in anew rather than jump */
+		panel->fade.alpha = 0; /* it has another size too: fade in again, do not jump */
 		overlay->callouts_dirty = true;
 	}
 	panel->dirty |= panel->fade.alpha == 0 || panel->stop != state->stop ||
@@ -116,7 +116,7 @@ void overlay_picture_of_tours(struct overlay *overlay, const char *name)
 			overlay->tours.dirty = true;
 }
 
-/* ---- places of the panel ---- */
+/* ---- layout of the panel ---- */
 
 static int most_width(const struct overlay *overlay)
 {
@@ -126,7 +126,7 @@ static int most_width(const struct overlay *overlay)
 	return width_px < most_px ? width_px : most_px;
 }
 
-/* What the scene has above the bar, in reach mode what is low of it. */
+/* The height available above the bar; in reach mode only its low part. */
 static int most_height(const struct overlay *overlay)
 {
 	int gap_px = px(overlay, THEME_GAP_MM);
@@ -141,7 +141,7 @@ static int head_height(const struct overlay *overlay)
 	return theme_text_px(&overlay->theme, THEME_TARGET_MM) + px(overlay, THEME_GAP_MM);
 }
 
-/* As many lines as there is room for. */
+/* Lays out the caption with as many lines as fit. The caller unrefs the layout. */
 static PangoLayout *lay_out_caption(const struct overlay *overlay, int *height_px)
 {
 	int room_px = most_width(overlay) - 2 * px(overlay, PADDING_MM);
@@ -183,7 +183,7 @@ static PangoLayout *lay_out_button(const struct overlay *overlay, int *width_px)
 	return layout;
 }
 
-/* The cross is the end of the head, and all of it. */
+/* The close control takes the whole end of the head. */
 static int cross_width(const struct overlay *overlay)
 {
 	return px(overlay, THEME_TARGET_MM) + px(overlay, THEME_GAP_MM);
@@ -203,7 +203,7 @@ struct overlay_action overlay_tour_tap(const struct overlay *overlay, float x_px
 		return action;
 	}
 	g_object_unref(lay_out_button(overlay, &button_px));
-	/* Who stopped it goes on by a touch wherever the words are. */
+	/* A paused tour goes on by a tap anywhere on the panel. */
 	if (overlay->tour.paused || (is_head && x_px >= (float)(right_px - button_px)))
 		action.kind = OVERLAY_TOUR_PAUSE;
 	return action;
@@ -211,7 +211,7 @@ struct overlay_action overlay_tour_tap(const struct overlay *overlay, float x_px
 
 /* ---- the panel's bitmap ---- */
 
-/* One a stop, the one that is reached or next filled; those before it lit. */
+/* Draws one dot per stop. The current or next stop is larger; stops up to it are filled. */
 static void draw_dots(struct overlay *overlay, cairo_t *context, int width_px, int y_px)
 {
 	const struct tour_panel *panel = &overlay->tour;
@@ -312,7 +312,7 @@ struct menu {
 	int head_px, row_px, columns;
 };
 
-/* Rows below each other, or beside where they would be too many. */
+/* Rows stand below each other, or in two columns if there are too many. */
 static struct menu lay_out_menu(const struct overlay *overlay)
 {
 	int count = (int)overlay->tours.count, padding = px(overlay, THEME_GAP_MM), rows;
@@ -358,7 +358,7 @@ struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px
 	return action;
 }
 
-/* Title and, where there is room for it, caption, beside a picture. */
+/* Draws title and picture of a tour, and its caption if it fits. */
 static void draw_entry(struct overlay *overlay, cairo_t *context, const struct tour_entry *entry,
 		       struct overlay_rect at)
 {

@@ -1,3 +1,4 @@
+/* Draws the invitation to touch and the question whether somebody is still there. */
 #include "ui/prompt.h"
 
 #include <stdbool.h>
@@ -7,12 +8,12 @@
 #include "ui/icon.h"
 #include "ui/strings.h"
 
-/* Of the invitation: below the first language they stand in columns where they are many. */
+/* The invitation's lines. Below the first, they stand in columns if there are many. */
 enum { LINES_MAX = 24, COLUMN_LINES = 7, COLUMNS_MAX = 3 };
 
 #define PADDING_MM 5.0f
 #define ICON_MM    16.0f
-#define LINE_MM    1.6f /* between two */
+#define LINE_MM    1.6f /* space between two lines */
 #define BUTTON_MM  12.0f
 
 static void measure(PangoLayout *layout, int *width_px, int *height_px)
@@ -34,7 +35,8 @@ static bool is_said(const char *const *languages, uint32_t before, const char *t
 	return false;
 }
 
-/* The first language in large, the others below. Each is set as its own language sets it. */
+/* Lays out one line per language, the first in large type, each by the rules of its own
+ * language. */
 static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 			      const char *const *languages, uint32_t language_count, int room_px)
 {
@@ -56,14 +58,14 @@ static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 	return count;
 }
 
-/* Pixels. The first line is above all columns. */
+/* Lines and their sizes in pixels. The first line is above all columns. */
 struct lines {
 	PangoLayout *lines[LINES_MAX];
 	uint32_t count;
 	int columns, rows, column_width, first_height, row_heights[COLUMN_LINES];
 };
 
-/* In as many columns as there is room for; lines that find none are left out. */
+/* Uses as many columns as fit. Lines that do not fit are left out. */
 static struct lines place_lines(struct theme *theme, const char *const *languages,
 				uint32_t language_count, int room_px, int gap)
 {
@@ -120,7 +122,7 @@ int prompt_draw_invitation(struct bitmap *out, struct theme *theme, const char *
 		cairo_fill(context);
 		theme_set_source(context, theme_night_text, 1);
 		icon_draw(context, ICON_TAP, padding + icon / 2.0, out->height_px / 2.0, icon);
-		/* What is read from the right ends where the others do. */
+		/* Right-to-left lines end at the same right edge. */
 		pango_layout_set_width(all.lines[0], text_width * PANGO_SCALE);
 		draw_text(context, all.lines[0], x, y);
 		for (int i = 1; i < (int)all.count && i <= all.rows * all.columns; i++) {
@@ -164,7 +166,7 @@ int prompt_draw_question(struct bitmap *out, const struct theme *theme, int seco
 	PangoLayout *layouts[COUNT];
 	char count_down[160];
 
-	/* Each of strings.c has one %d. */
+	/* Each of these strings in strings.c contains one %d. */
 	snprintf(count_down, sizeof(count_down), ui_string(UI_ANEW, theme->language), seconds_left);
 	texts[COUNT_DOWN] = count_down;
 	for (int i = 0; i < COUNT; i++) {
@@ -173,7 +175,8 @@ int prompt_draw_question(struct bitmap *out, const struct theme *theme, int seco
 		layouts[i] = theme_layout(theme, styles[i], texts[i], -1);
 		theme_limit_lines(layouts[i], room_px, 2);
 		measure(layouts[i], &width[i], &height[i]);
-		/* Else what is read from the right would begin at the far end of the room. */
+		/* Otherwise right-to-left text would begin at the far end of the available
+		 * width. */
 		pango_layout_set_width(layouts[i], width[i] * PANGO_SCALE);
 	}
 	button_px = width[BUTTON] + 4 * padding;

@@ -1,5 +1,5 @@
-/* What the terminal itself says to whoever is there, or is not: the invitation to touch, in all
- * languages at once, and the question whether somebody is still there. */
+/* Texts that the terminal itself addresses to visitors: the invitation to touch, in all languages
+ * at once, and the question whether somebody is still there. */
 #ifndef GOPURA_UI_PROMPT_H
 #define GOPURA_UI_PROMPT_H
 
@@ -8,9 +8,11 @@
 #include "ui/bitmap.h"
 #include "ui/theme.h"
 
-/* Fresh bitmaps, as large as they need, at most that wide. -ENOMEM and others of bitmap_init. */
+/* Both draw into a new bitmap, owned by the caller, as large as needed and at most most_width_px
+ * wide. They return the errors of bitmap_init. */
 
-/* A line a language, what two say alike once. languages are borrowed for the call. */
+/* One line per language; a text that two languages share appears once. languages are borrowed for
+ * the call. The theme's language changes during the call and is restored. */
 must_check int prompt_draw_invitation(struct bitmap *out, struct theme *theme,
 				      const char *const *languages, uint32_t language_count,
 				      int most_width_px);

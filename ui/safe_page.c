@@ -1,3 +1,5 @@
+/* Draws the page that stands in for the model: an animated tower and a short message in several
+ * languages. */
 #include "ui/safe_page.h"
 
 #include <math.h>
@@ -5,16 +7,16 @@
 
 enum {
 	STOREYS = 6,
-	LINE_MS = 3000,  /* a language is lit */
+	LINE_MS = 3000,  /* how long one language is lit */
 	RISE_MS = 12000, /* from the first storey lit to all dark again */
 	DRIFT_X_MS = 97000,
 	DRIFT_Y_MS = 61000,
 };
 
 #define SHORTER_SIDE_MM                                                                            \
-	105.0f             /* as which the panel is taken, whatever it is: to be read from afar */
-#define DRIFT_SHARE  0.025 /* of the shorter side, each way */
-#define TOWER_WIDTH  1.44  /* of its drawing */
+	105.0f /* every panel is treated as this large, so that text is readable from afar */
+#define DRIFT_SHARE  0.025 /* share of the shorter side, each way */
+#define TOWER_WIDTH  1.44  /* extent of its drawing */
 #define TOWER_HEIGHT 2.13
 
 static const struct {
@@ -26,7 +28,7 @@ static const struct {
 	{ "zh", "马上回来，请稍候" },        { "ar", "سنعود بعد قليل" },
 };
 
-/* ---- life */
+/* ---- creation */
 
 static bool is_wide(const struct safe_page *page)
 {
@@ -38,7 +40,7 @@ static double shorter(const struct safe_page *page)
 	return is_wide(page) ? page->height_px : page->width_px;
 }
 
-/* A language whose letters no font has would be a row of boxes. */
+/* Skips a language without a font: it would show as a row of boxes. */
 static void add_line(struct safe_page *page, const char *language, const char *text)
 {
 	struct safe_page_line *line = &page->lines[page->line_count];
@@ -79,7 +81,7 @@ void safe_page_finish(struct safe_page *page)
 	memset(page, 0, sizeof(*page));
 }
 
-/* ---- the tower: its foot is about 0, 0, and it goes up */
+/* ---- the tower: its foot is at 0, 0, and it extends upwards */
 
 static double smooth(double t)
 {
@@ -87,7 +89,8 @@ static double smooth(double t)
 	return t * t * (3 - 2 * t);
 }
 
-/* How far a storey is lit: one after the other, then all fade together. */
+/* How brightly a storey is lit, 0..1: storeys light up one after the other, then all fade
+ * together. */
 static double light(int storey, int64_t time_ms)
 {
 	const double at = (double)(time_ms % RISE_MS) / RISE_MS;
@@ -147,7 +150,7 @@ static void draw_tower(cairo_t *c, int64_t time_ms)
 		cairo_fill(c);
 		bottom += height + 0.012;
 	}
-	cairo_new_path(c); /* the lotus on top */
+	cairo_new_path(c); /* the lotus on the top */
 	cairo_move_to(c, -0.085, -bottom);
 	cairo_curve_to(c, -0.13, -bottom - 0.09, -0.03, -bottom - 0.12, 0, -bottom - 0.26);
 	cairo_curve_to(c, 0.03, -bottom - 0.12, 0.13, -bottom - 0.09, 0.085, -bottom);
@@ -159,7 +162,7 @@ static void draw_tower(cairo_t *c, int64_t time_ms)
 
 /* ---- the words */
 
-/* 1 while a line is lit, and going over to the next one gently. */
+/* Returns 1 while a line is lit, with a smooth change to the next line. */
 static double emphasis(const struct safe_page *page, int line, int64_t time_ms)
 {
 	const int64_t round_ms = (int64_t)LINE_MS * page->line_count;
@@ -187,7 +190,7 @@ static void draw_lines(const struct safe_page *page, cairo_t *c, double left, do
 	}
 }
 
-/* Tower and words beside or above each other, in a box of that size about 0, 0. */
+/* Sets the size of the box around 0, 0 that holds tower and words, beside or above each other. */
 static void box_size(const struct safe_page *page, double tower, double gap, double *width,
 		     double *height)
 {

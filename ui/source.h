@@ -1,4 +1,4 @@
-/* Where ui gets its pictures: a callback of the app's, handed down to whoever draws. */
+/* How ui gets its pictures: a callback of the app, passed down to the code that draws. */
 #ifndef GOPURA_UI_SOURCE_H
 #define GOPURA_UI_SOURCE_H
 
@@ -7,13 +7,15 @@
 #include "format/picture.h"
 
 struct overlay_picture {
-	const struct picture *picture; /* borrowed until the next call; NULL: not here yet */
-	uint32_t width_px, height_px; /* when known before it arrives, so that text does not jump */
+	const struct picture *picture; /* borrowed until the next call; NULL: not arrived yet */
+	uint32_t width_px,
+		height_px; /* size if known before it arrives, so that text does not jump; else 0 */
 };
 
 struct picture_source {
-	/* A picture by the name that a page or thumbnail gives ("pictures/gate.jpg"). false: there
-	 * is none of that name. Asking is wanting: it is fetched, and the app says when it came. */
+	/* Returns a picture by the name that a page or thumbnail gives ("pictures/gate.jpg").
+	 * false: no picture has that name. Asking also requests it: it is fetched, and the app
+	 * tells when it has arrived. */
 	bool (*get)(void *data, const char *name, struct overlay_picture *out);
 	void *data;
 };

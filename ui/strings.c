@@ -1,3 +1,4 @@
+/* Tables of the kiosk's own texts by language, and of the languages' own names. */
 #include "ui/strings.h"
 
 #include <stdbool.h>
@@ -159,7 +160,7 @@ static const struct {
 	{ "tl", "Tagalog" },
 };
 
-/* "pt" of "pt-BR". */
+/* Returns true if wider is language or its prefix, as "pt" is for "pt-BR". */
 static bool is_kind_of(const char *language, const char *wider)
 {
 	const size_t size = strlen(wider);

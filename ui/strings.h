@@ -1,4 +1,4 @@
-/* The few words that are the kiosk's own, and what languages call themselves. */
+/* The kiosk's own texts in each language, and the languages' names for themselves. */
 #ifndef GOPURA_UI_STRINGS_H
 #define GOPURA_UI_STRINGS_H
 
@@ -9,20 +9,22 @@ enum ui_string {
 	UI_HELP_ZOOM,
 	UI_HELP_TAP,
 	UI_TOUCH,       /* the invitation */
-	UI_STILL_THERE, /* asked of a visitor who does nothing */
-	UI_ANEW,        /* %d seconds */
+	UI_STILL_THERE, /* asked of an inactive visitor */
+	UI_ANEW,        /* contains %d: seconds */
 	UI_GO_ON,
 	UI_SEARCH,
 	UI_NOTHING_FOUND,
 	UI_TOURS,
-	UI_LIGHT, /* the tools */
+	UI_LIGHT, /* this and the next: names of the tools */
 	UI_SECTION,
 	UI_STRING_COUNT,
 };
 
-/* "pt-BR" as "pt"; in English where the language is not among ours. Never NULL. */
+/* Returns a text in a language; "pt-BR" gets the text of "pt". English if the language is unknown.
+ * Never NULL; static. */
 const char *ui_string(enum ui_string string, const char *language);
-/* "ខ្មែរ" for "km"; the code itself where we do not know better. */
+/* Returns a language's own name, "ខ្មែរ" for "km". Returns the code itself if the name is
+ * unknown. */
 const char *ui_endonym(const char *language);
 
 #endif

@@ -1,3 +1,4 @@
+/* Colours, type styles and fonts of the interface, and Pango layouts made from them. */
 #include "ui/theme.h"
 
 #include <errno.h>
@@ -5,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LINE_HEIGHT_MAX 1.5 /* of a line that stands alone; sizes of its type */
+#define LINE_HEIGHT_MAX 1.5 /* of a single line, in multiples of its type size */
 
 #define RGB(r, g, b)                                                                               \
 	{                                                                                          \
@@ -21,7 +22,7 @@ const struct colour theme_accent = RGB(158, 72, 38); /* laterite */
 const struct colour theme_night = RGB(28, 25, 22);
 const struct colour theme_night_text = RGB(246, 240, 230);
 
-/* Each script by name: what a system would choose by itself has another weight and line. */
+/* Each script is named: fonts that the system would choose have another weight and line height. */
 static const char serif[] =
 	"Noto Serif, Noto Serif Khmer, Noto Serif CJK JP, Noto Naskh Arabic, Noto Serif Thai, "
 	"Noto Serif Devanagari, Noto Serif Lao, Noto Serif Myanmar, Noto Serif Hebrew, "
@@ -32,7 +33,7 @@ static const char sans[] =
 
 static const struct {
 	const char *families;
-	float size_mm; /* of the em */
+	float size_mm; /* size of the em */
 	PangoWeight weight;
 	bool italic;
 	float line_spacing;
@@ -50,8 +51,9 @@ static const struct {
 	[TEXT_CELL] = { sans, 4.1f, PANGO_WEIGHT_NORMAL, false, 1.1f },
 };
 
-/* Scripts whose letters are small in their em, or whose fonts leave room for marks that few texts
- * have. Not of controls: what stands beside each other there are several languages. */
+/* Corrections for scripts whose letters are small in their em, or whose fonts leave room for marks
+ * that few texts have. Not used for controls, where texts of several languages stand side by
+ * side. */
 static const struct {
 	const char language[3];
 	float size, line;
@@ -86,7 +88,8 @@ int theme_init(struct theme *theme, float px_per_mm, const char *language)
 	theme->context = pango_font_map_create_context(pango_cairo_font_map_get_default());
 	if (!theme->context)
 		return -ENOMEM;
-	/* Textures move by fractions of a pixel: grey antialiasing, no sub-pixel colours. */
+	/* Textures move by fractions of a pixel. So antialiasing is grey, without sub-pixel
+	 * colours. */
 	options = cairo_font_options_create();
 	cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
 	cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_SLIGHT);
@@ -192,8 +195,8 @@ PangoLayout *theme_layout(const struct theme *theme, enum text_style style, cons
 	pango_layout_set_font_description(layout, font);
 	pango_font_description_free(font);
 	pango_layout_set_line_spacing(layout, styles[style].line_spacing * script_line(theme));
-	/* Words first; a word longer than the line (Khmer is written without spaces) is broken
-	 * between clusters, never inside one. */
+	/* Break between words first. A word longer than the line (Khmer is written without spaces)
+	 * is broken between clusters, never inside one. */
 	pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
 	pango_layout_set_width(layout, width_px < 0 ? -1 : width_px * PANGO_SCALE);
 	pango_layout_set_text(layout, text, -1);
@@ -207,7 +210,7 @@ void theme_limit_lines(PangoLayout *layout, int width_px, int lines)
 	pango_layout_set_ellipsize(layout, PANGO_ELLIPSIZE_END);
 }
 
-/* ---- lines that stand alone ---- */
+/* ---- single lines ---- */
 
 bool theme_begins_at_right(const char *text)
 {
@@ -216,7 +219,8 @@ bool theme_begins_at_right(const char *text)
 	return *text && g_utf8_get_char(text) >= 0x590 && g_utf8_get_char(text) < 0x900;
 }
 
-/* above_px: what its font would have above that it does not need. */
+/* Returns the height of a single line. *above_px is set to the unused space that its font has
+ * above. */
 static int trim_line(const struct theme *theme, enum text_style style, PangoLayout *layout,
 		     int *above_px)
 {
@@ -248,7 +252,7 @@ void theme_show_line(cairo_t *context, const struct theme *theme, enum text_styl
 	int above_px;
 
 	theme_limit_lines(layout, width_px > 1 ? width_px : 1, 1);
-	/* Pango takes left to mean the beginning of a line of the text's own direction. */
+	/* Pango aligns "left" to the beginning of a line in the text's own direction. */
 	if (theme_is_right_to_left(theme) && !theme_begins_at_right(text))
 		pango_layout_set_alignment(layout, PANGO_ALIGN_RIGHT);
 	trim_line(theme, style, layout, &above_px);
