@@ -32,8 +32,8 @@ int article_height_px(const struct article *article);
 /* Draws the piece of the article from top_px on, height_px tall, at the origin of context. The
  * piece is opaque. */
 void article_draw(const struct article *article, cairo_t *context, int top_px, int height_px);
-/* Returns what the link at or near that point names (the id of a part), or NULL. Coordinates are
- * the article's. Borrowed until the article is destroyed. */
+/* Returns what the link at or near that point names (the id of a part, or "tour:" and a tour's id),
+ * or NULL. Coordinates are the article's. Borrowed until the article is destroyed. */
 const char *article_link_at(const struct article *article, float x_px, float y_px);
 /* The pictures in order. article_picture() returns the name of one; *caption (may be NULL) is set
  * to its caption, or "". Both are borrowed. */

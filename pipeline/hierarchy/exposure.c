@@ -1,4 +1,5 @@
-/* The scan becomes voxels; from every vertex rays go through them to a few viewpoints. */
+/* Estimates the visibility of vertices: converts the scan to voxels and casts rays through them
+ * from each vertex to a few viewpoints. */
 #include "pipeline/hierarchy/exposure.h"
 
 #include <errno.h>
@@ -12,15 +13,15 @@
 enum {
 	SIDE = 256, /* voxels along the longest axis */
 	VOXEL_STEPS = 65536 / SIDE,
-	VIEWPOINTS = 8, /* of each vertex: neighbours have others, and a patch has many */
+	VIEWPOINTS = 8, /* per vertex; neighbours have others, so a patch has many */
 	PIECE_VERTICES = 4096
 };
 
 struct exposure {
 	struct lattice_mesh *mesh;
-	uint8_t *solid;            /* a bit a voxel, x fastest: stone, or closed in by it */
-	float low[3], high[3];     /* of the model, voxels */
-	struct progress *progress; /* in vertices */
+	uint8_t *solid;            /* one bit per voxel, x fastest: material or enclosed by it */
+	float low[3], high[3];     /* bounding box of the model, in voxels */
+	struct progress *progress; /* counts vertices */
 };
 
 static void place_of(float out[3], const struct lattice_vertex *vertex)
@@ -41,7 +42,7 @@ static bool is_solid(const struct exposure *exposure, const int voxel[3])
 	return exposure->solid[bit / 8] >> bit % 8 & 1;
 }
 
-/* Points of the triangle at most half a voxel apart. */
+/* Marks the voxels of sample points on the triangle, at most half a voxel apart. */
 static void fill_triangle(struct exposure *exposure, const uint32_t triangle[3])
 {
 	float at[3][3], longest = 0;
@@ -114,7 +115,8 @@ static int reach_sides_and_top(struct queue *queue, uint8_t *reached,
 	return rc;
 }
 
-/* No eye comes to where air does not come: the hollows of towers, of statues open below. */
+/* Marks enclosed air as solid: no camera gets there. Examples are hollow towers and statues that
+ * are open below. */
 static int close_hollows(struct exposure *exposure)
 {
 	uint8_t *reached = calloc(SIDE * SIDE / 8, SIDE);
@@ -142,11 +144,13 @@ static int close_hollows(struct exposure *exposure)
 	return rc;
 }
 
-/* Through the voxels from one point to another (Amanatides and Woo 1987). */
+/* Traces a ray through the voxels between two points (Amanatides and Woo 1987). Returns true if no
+ * solid voxel is on the way. */
 static bool is_free(const struct exposure *exposure, const float from[3], const float to[3])
 {
 	int at[3], step[3];
-	float next[3], each[3]; /* when the ray enters the next voxel of each axis, 0..1 */
+	float next[3],
+		each[3]; /* ray parameter (0..1) at which the next voxel of each axis begins */
 
 	for (int k = 0; k < 3; k++) {
 		float d = to[k] - from[k], below = from[k] - floorf(from[k]);
@@ -171,9 +175,9 @@ static bool is_free(const struct exposure *exposure, const float from[3], const 
 	}
 }
 
-/* The n-th of a vertex's viewpoints, in the box twice the model above its lowest point: an even
- * sequence (multiples of powers of a root of x^4 = x + 1, as the golden ratio does for one axis),
- * begun elsewhere for each vertex. */
+/* The n-th viewpoint of a vertex, in the box of twice the model's size above its lowest point. It
+ * is a low-discrepancy sequence: multiples of powers of a root of x^4 = x + 1, as the golden ratio
+ * is used in one dimension. It starts elsewhere for each vertex. */
 static void viewpoint(float out[3], const struct exposure *exposure, uint32_t vertex, uint32_t n)
 {
 	static const float steps[3] = { 0.8191725f, 0.6710436f, 0.5497005f };
@@ -202,8 +206,8 @@ static float seen_of(const struct exposure *exposure, uint32_t v)
 			cosine += (eye[k] - at[k]) * vertex->normal[k];
 			square += (eye[k] - at[k]) * (eye[k] - at[k]);
 		}
-		/* From beside the voxels that the surface itself fills, on the eye's side: scans do
-		 * not always know which side is out. */
+		/* Start outside the voxels that the surface itself fills, on the side of the
+		 * viewpoint: the orientation of scans is not always right. */
 		for (int k = 0; k < 3; k++)
 			from[k] = at[k] + (cosine < 0 ? -1.5f : 1.5f) * vertex->normal[k];
 		if (square > 0 && is_free(exposure, from, eye))

@@ -1,3 +1,4 @@
+/* Builds graphs, connects their parts along a Morton curve and divides them with METIS. */
 #include "pipeline/hierarchy/graph.h"
 
 #include <errno.h>
@@ -10,8 +11,9 @@
 
 enum { PARTS_BY_BISECTION_MAX = 8, NODES_A_PART = 64 };
 
-/* Thousandths that a part may be too heavy, so that a cut can follow what it is to follow. */
-enum { IMBALANCE = 40, TRIES = 8 /* of halving, the best is taken */ };
+/* IMBALANCE: how much too heavy a part may be, in thousandths. It leaves a cut freedom to follow
+ * creases and borders. */
+enum { IMBALANCE = 40, TRIES = 8 /* bisections that METIS tries; the best is taken */ };
 
 static pthread_mutex_t metis_lock = PTHREAD_MUTEX_INITIALIZER;
 
@@ -52,7 +54,7 @@ int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight)
 	return 0;
 }
 
-/* ---- joining what is near */
+/* ---- connecting parts that are near each other */
 
 static uint32_t find_root(uint32_t *parents, uint32_t node)
 {
@@ -73,7 +75,7 @@ static bool unite(uint32_t *parents, uint32_t a, uint32_t b)
 	return true;
 }
 
-/* Bits of a lattice coordinate spread out, two zeros after each. */
+/* Spreads the bits of a lattice coordinate, with two zeros after each. */
 static uint64_t spread(uint64_t bits)
 {
 	bits &= 0xffff;
@@ -83,7 +85,7 @@ static uint64_t spread(uint64_t bits)
 	return (bits | bits << 2) & 0x249249249249u;
 }
 
-/* Along the curve of Morton (1966) a cell of any size is one run. */
+/* The position on the Morton curve (1966): a cell of any size is one run of it. */
 static uint64_t place_on_curve(const float at[3])
 {
 	uint64_t place = 0;
@@ -107,8 +109,8 @@ static int compare_placed(const void *left, const void *right)
 	return a->node < b->node ? -1 : a->node > b->node;
 }
 
-/* Nodes of one cell are near: the parts among them are joined, in ever larger cells; at the last
- * all nodes lie in one. */
+/* Nodes of one cell are near each other. Connects the parts within each cell, for ever larger
+ * cells; the last cell contains all nodes. */
 static int connect_runs(struct graph *graph, uint32_t *parents, const struct placed *placed,
 			int32_t weight, uint32_t part_count)
 {
@@ -166,8 +168,8 @@ static void rows_finish(struct rows *rows)
 	free(rows->node_weights);
 }
 
-/* Entries of a row in the order of their node, the weights of equal ones summed: METIS wants no
- * edge twice. Rows are short, so insertion will do. Returns the entries left. */
+/* Sorts the entries of a row by node and adds up the weights of equal ones: METIS wants no edge
+ * twice. Rows are short, so insertion sort will do. Returns the number of entries left. */
 static idx_t tidy_row(idx_t *to, idx_t *weights, idx_t count)
 {
 	idx_t kept = 0;
@@ -265,7 +267,8 @@ static int run_metis(idx_t *parts, struct rows *rows, const struct graph *graph,
 	return code == METIS_OK ? 0 : code == METIS_ERROR_MEMORY ? -ENOMEM : -EINVAL;
 }
 
-/* METIS may leave a part empty on graphs that are tiny or strange; runs of nodes will do then. */
+/* METIS may leave a part empty on very small or unusual graphs. Then simple runs of nodes will
+ * do. */
 static void divide_in_runs(uint32_t *labels, const struct graph *graph, uint32_t part_count)
 {
 	for (uint32_t i = 0; i < graph->node_count; i++)
@@ -306,7 +309,7 @@ static int divide_at_once(uint32_t *labels, const struct graph *graph, uint32_t 
 	return rc;
 }
 
-/* The nodes with one of two labels as a graph of their own; names[node] is its place there. */
+/* Makes a graph of the nodes with one of two labels. names[node] is set to a node's index in it. */
 static int half_of_graph(struct graph *half, uint32_t *names, const struct graph *graph,
 			 const uint32_t *labels, uint32_t label)
 {
@@ -329,8 +332,8 @@ static int half_of_graph(struct graph *half, uint32_t *names, const struct graph
 	return rc;
 }
 
-/* Few heavy nodes: METIS on many parts at once would find nothing left to divide, so halve it
- * step by step and look. */
+/* With few heavy nodes per part, METIS cannot divide into many parts at once. So divide into
+ * halves, step by step, and check each. */
 static int divide_by_halves(uint32_t *labels, const struct graph *graph, uint32_t part_count)
 {
 	uint32_t parts[2] = { part_count / 2, part_count - part_count / 2 }, counts[2] = { 0, 0 };

@@ -1,6 +1,6 @@
-/* Weighted graphs and their division by METIS (Karypis and Kumar 1998).
- * METIS draws from one random generator of the process; graph_divide seeds it and holds a lock, so
- * that the answer depends on the graph alone. Any thread. */
+/* Weighted graphs and their division by METIS (Karypis and Kumar 1998). METIS uses one random
+ * generator per process. graph_divide seeds it and holds a lock, so that the result depends on the
+ * graph alone. Any thread. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_GRAPH_H
 #define GOPURA_PIPELINE_HIERARCHY_GRAPH_H
 
@@ -15,7 +15,7 @@ struct graph_edge {
 	int32_t weight; /* 1 or more */
 };
 
-/* Edges as they are found, then sealed into rows. */
+/* A graph as a list of edges in the order they were added. */
 struct graph {
 	uint32_t node_count;
 	int32_t *node_weights; /* owned */
@@ -23,17 +23,21 @@ struct graph {
 	size_t edge_count, edge_room;
 };
 
-must_check int graph_init(struct graph *graph, uint32_t node_count); /* weights 1 */
+must_check int graph_init(struct graph *graph,
+			  uint32_t node_count); /* all nodes get weight 1; -ENOMEM */
+/* Frees the graph. NULL and zeroed are fine. */
 void graph_finish(struct graph *graph);
-/* Two edges between the same nodes weigh their sum; an edge from a node to itself is ignored. */
+/* Adds an edge. The weights of edges between the same nodes add up; an edge from a node to itself
+ * is ignored. Returns -ENOMEM. */
 must_check int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight);
 
-/* Joins what is disconnected where it is near, by edges of the weight: at[node] is where a node is,
- * in lattice steps. */
+/* Connects the parts of a disconnected graph where they are near each other, by edges of that
+ * weight. at[node] is a node's position in lattice steps. Returns -ENOMEM. */
 must_check int graph_connect(struct graph *graph, float (*at)[3], int32_t weight);
 
-/* labels[node] in 0..part_count-1; no part is empty where there are nodes enough. shares, where not
- * NULL, are the wanted shares of the weight where there are two parts, with sum 1. */
+/* Divides the graph. Sets labels[node] to 0..part_count-1; no part is empty if there are enough
+ * nodes. shares (may be NULL) are the wanted shares of the weight, with sum 1; they count only for
+ * two parts. Returns -ENOMEM, or -EINVAL if METIS refuses the graph. */
 must_check int graph_divide(uint32_t *labels, const struct graph *graph, uint32_t part_count,
 			    const float *shares);
 

@@ -1,3 +1,5 @@
+/* Quantises a scan to its lattice: merges vertices at one place, drops bad triangles, finds normals
+ * and open borders. */
 #include "pipeline/hierarchy/lattice_mesh.h"
 
 #include <errno.h>
@@ -50,7 +52,7 @@ static uint64_t mix(uint64_t key)
 	return key ^ key >> 32;
 }
 
-/* Open addressing over indices plus one; 0 is free. */
+/* Hash table with open addressing; entries are an index plus one, 0 is free. */
 static uint32_t *table_create(uint32_t *mask, uint32_t count)
 {
 	uint64_t size = 64;
@@ -62,12 +64,12 @@ static uint32_t *table_create(uint32_t *mask, uint32_t count)
 }
 
 struct merged {
-	uint32_t *to;       /* of each vertex of the scan, its vertex on the lattice */
-	uint32_t (*sum)[4]; /* colours */
+	uint32_t *to;       /* for each vertex of the scan, its vertex on the lattice */
+	uint32_t (*sum)[4]; /* sums of colours */
 	uint32_t *count;
 };
 
-/* Vertices at one place become one, in the order of their first appearance. */
+/* Merges vertices at one place, in the order of their first appearance. */
 static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const struct mesh *mesh,
 			  const uint8_t colour[3])
 {
@@ -156,7 +158,8 @@ static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *count
 	return out->triangle_count > 0 ? 0 : -EINVAL;
 }
 
-/* A vertex without triangles would be in no patch; drop it so that ids are dense. */
+/* A vertex without triangles would be in no patch. Drops such vertices, so that indices are
+ * dense. */
 static int drop_unused(struct lattice_mesh *mesh)
 {
 	uint32_t *to = calloc(mesh->vertex_count, sizeof(*to)), kept = 0;
@@ -224,7 +227,7 @@ static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts
 			uint32_t runs[2];
 
 			incidence_edge(runs, &incidence, mesh->triangles, a, b);
-			/* Met once from each of its triangles, it counts as one. */
+			/* The edge is visited once from each of its triangles but counts as one. */
 			if (runs[0] + runs[1] > 2)
 				crowded += 1.0 / (runs[0] + runs[1]);
 			if (runs[0] == runs[1])
@@ -299,8 +302,8 @@ int incidence_create(struct incidence *out, uint32_t (*triangles)[3], uint32_t t
 		incidence_finish(out);
 		return -ENOMEM;
 	}
-	/* Counted two places on, so that filling leaves the starts one place on: no second array.
-	 */
+	/* Counts are stored two places further on. Filling then leaves the starts one place further
+	 * on, and no second array is needed. */
 	for (uint32_t t = 0; t < triangle_count; t++)
 		for (int corner = 0; corner < 3; corner++)
 			out->first[triangles[t][corner] + 2]++;

@@ -1,3 +1,4 @@
+/* Builds, opens and reads the master: a file of patch group objects and its index. */
 #include "pipeline/hierarchy/master.h"
 
 #include <dirent.h>
@@ -13,7 +14,7 @@
 #include "base/clock.h"
 #include "pipeline/material/material.h"
 
-/* Raised whenever the same scan would give other bytes. */
+/* Raise BUILD_VERSION whenever the same scan would give other bytes. */
 enum { BUILD_VERSION = 6, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
@@ -59,7 +60,7 @@ struct written {
 
 struct writer {
 	int fd;
-	struct written *objects; /* owned; in the order they are made */
+	struct written *objects; /* owned; in the order in which they are made */
 	uint32_t count, room;
 };
 
@@ -142,7 +143,7 @@ static int put_index(struct buffer *out, const struct master *head,
 	buffer_put_u32(out, (uint32_t)payload.size);
 	buffer_put(out, payload.data, payload.size);
 	buffer_finish(&payload);
-	/* In the order they lie in the file: made finest first. */
+	/* In the order in which they lie in the file: the finest are made first. */
 	for (uint32_t i = 0; i < writer->count; i++) {
 		buffer_put_u32(out, writer->objects[i].size);
 		buffer_put_f32(out, writer->objects[i].loss_m4);
@@ -168,7 +169,7 @@ static int write_index(const char *folder, const struct master *head,
 	return rc;
 }
 
-/* Of earlier builds, whole or not. */
+/* Removes the files of earlier builds, complete or not. */
 static void remove_other_files(const char *folder, const char *keep)
 {
 	DIR *entries = opendir(folder);
@@ -226,7 +227,8 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 		return rc;
 	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
 		return -errno;
-	/* A new file even where one has this name: an index may still point into the old one. */
+	/* Always make a new file, even if one has this name: an index may still point into the old
+	 * one. */
 	if (unlink(path) < 0 && errno != ENOENT)
 		return -errno;
 	writer.fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -296,7 +298,7 @@ static int get_index(struct master *master, struct bytes index, const struct has
 	master->losses_m4 = calloc(count, sizeof(*master->losses_m4));
 	if (!master->places || !master->sizes || !master->losses_m4)
 		return -ENOMEM;
-	/* Group 0 was made last and lies last. */
+	/* Group 0 was made last and is last in the file. */
 	for (uint32_t g = count; g-- > 0;) {
 		master->sizes[g] = reader_u32(&reader);
 		master->losses_m4[g] = reader_f32(&reader);
@@ -313,7 +315,7 @@ static int open_groups(struct master *master, const char *path)
 	master->fd = open(path, O_RDONLY | O_CLOEXEC);
 	if (master->fd < 0 || fstat(master->fd, &file) < 0)
 		return -errno;
-	/* Group 0 is the last. */
+	/* Group 0 is the last in the file. */
 	return (uint64_t)file.st_size == master->places[0] + master->sizes[0] ? 0 : -EBADMSG;
 }
 

@@ -1,3 +1,5 @@
+/* Selects the part of a master that is published, by greedy choice of the groups with the largest
+ * loss. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +11,7 @@ struct ranked {
 	uint32_t group;
 };
 
-/* The worst first. Losses are saturated, so what depends on a group never comes before it. */
+/* Largest loss first. Losses are saturated, so a group never comes before those it depends on. */
 static int compare_ranked(const void *left, const void *right)
 {
 	const struct ranked *a = left, *b = right;
@@ -29,7 +31,7 @@ static uint64_t group_triangles(const struct hierarchy *hierarchy, uint32_t grou
 	return count;
 }
 
-/* missing[g]: the patches that g replaces and that are not chosen yet. */
+/* missing[g] is the number of patches that g replaces and that are not chosen yet. */
 static void choose_group(const struct hierarchy *hierarchy, uint32_t group, uint32_t *missing)
 {
 	const struct hierarchy_group *row = &hierarchy->groups[group];
@@ -39,7 +41,7 @@ static void choose_group(const struct hierarchy *hierarchy, uint32_t group, uint
 			missing[hierarchy->patches[p].finer]--;
 }
 
-/* Returns the triangles of what is chosen. */
+/* Chooses groups with at most `most` triangles. Returns the number of triangles chosen. */
 static uint64_t choose(bool *chosen, struct ranked *ranked, uint32_t *missing,
 		       const struct master *master, uint64_t most)
 {
@@ -111,7 +113,7 @@ int master_cut_create(struct master_cut *out, const struct master *master, doubl
 	bool *chosen = calloc(hierarchy->group_count, sizeof(*chosen));
 	struct ranked *ranked = calloc(hierarchy->group_count, sizeof(*ranked));
 	uint32_t *missing = calloc(hierarchy->group_count, sizeof(*missing));
-	/* All levels together are about twice the scan, so all of it is no share of it. */
+	/* All levels together have about twice the triangles of the scan, so 1 means no limit. */
 	uint64_t most =
 		share >= 1 ? UINT64_MAX : (uint64_t)(share * (double)master->source_triangles);
 	int rc = chosen && ranked && missing ? 0 : -ENOMEM;

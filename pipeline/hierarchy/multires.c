@@ -1,3 +1,5 @@
+/* Builds the hierarchy level by level: groups patches, runs a job for each group, and collects the
+ * coarser patches, until the coarsest cut is small enough. */
 #include "pipeline/hierarchy/multires.h"
 
 #include <errno.h>
@@ -15,18 +17,18 @@
 #include "pipeline/hierarchy/partition.h"
 
 enum {
-	PATCHES = 256, /* a scan has at least so many, where they are not too small for it */
+	PATCHES = 256, /* a scan has at least so many, unless they get too small */
 	PATCH_TRIANGLES = 1000,
 	PATCH_TRIANGLES_MIN = 256,
 	GROUP_PATCHES = 8,
-	REDUCTION = 4, /* each level has so many times fewer triangles */
+	REDUCTION = 4, /* factor by which triangles decrease per level */
 	TOP_TRIANGLES = 6000,
-	TOP_PART = 40, /* of a small scan's triangles: far below what is published of it */
+	TOP_PART = 40, /* a small scan's top has 1/40 of it, far less than is published */
 	VOXEL_TRIANGLES = 256,
 	CHUNK_TRIANGLES = 65536,
-	TOUCH_WEIGHT = 4, /* of each vertex that two patches share */
-	NEIGHBOURS = 6,   /* of each patch, by distance */
-	NEAR_WEIGHT = 10  /* of each of them */
+	TOUCH_WEIGHT = 4, /* for each vertex that two patches share */
+	NEIGHBOURS = 6,   /* nearest patches to which each patch gets an edge */
+	NEAR_WEIGHT = 10  /* weight of each such edge */
 };
 
 struct builder {
@@ -37,15 +39,16 @@ struct builder {
 	struct job_site site;
 	struct partition partition;
 	struct live_patches level;
-	struct group_job *jobs; /* of the level */
+	struct group_job *jobs; /* jobs of the current level */
 	uint32_t job_count;
-	struct progress *progress; /* in triangles, those of every level */
-	/* What was made so far, in order. */
+	struct progress *progress; /* counts triangles of all levels */
+	/* The hierarchy made so far, in the order of making. */
 	struct hierarchy made;
 	uint32_t group_room, patch_room;
 };
 
-/* Small enough that a view can choose, of small scans too; docs/hierarchy.md has the figures. */
+/* Patches are small enough that a view can choose among them, in small scans too; docs/hierarchy.md
+ * has the figures. */
 static uint32_t patch_triangles_for(uint32_t triangle_count)
 {
 	uint32_t some = triangle_count / PATCHES;
@@ -126,7 +129,7 @@ static int partition_scan(struct builder *builder)
 	return rc < 0 ? rc : make_leaves(builder);
 }
 
-/* ---- who uses a vertex */
+/* ---- users of a vertex */
 
 static void forget_users(struct builder *builder)
 {
@@ -157,8 +160,8 @@ static uint64_t level_triangles(const struct live_patches *level)
 	return count;
 }
 
-/* Each vertex joins the last patch that used it to the next: a patch graph whose weights grow with
- * the length of the shared border. */
+/* Each vertex connects the last patch that used it to the next. The weights in the graph of patches
+ * then grow with the length of the shared border. */
 static int add_touching(struct graph *graph, const struct builder *builder)
 {
 	uint32_t *last = malloc((builder->mesh->vertex_count + 1) * sizeof(*last));
@@ -181,7 +184,8 @@ static int add_touching(struct graph *graph, const struct builder *builder)
 	return rc;
 }
 
-/* What is near goes together though it may not touch: scans of temples come in many pieces. */
+/* Connects patches that are near each other even if they do not touch: scans of temples consist of
+ * many pieces. */
 static int add_near(struct graph *graph, float (*centres)[3])
 {
 	int rc = 0;
@@ -211,7 +215,7 @@ static int add_near(struct graph *graph, float (*centres)[3])
 	return rc;
 }
 
-/* Groups hold about group_patches; labels of each patch. */
+/* Sets labels[patch] to its group. Groups hold about group_patches patches. */
 static int group_level(uint32_t *labels, uint32_t *group_count, const struct builder *builder,
 		       uint32_t group_patches)
 {
@@ -247,7 +251,7 @@ static int compare_u64(const void *left, const void *right)
 	return a < b ? -1 : a > b;
 }
 
-/* The level's patches in the order of their groups; a job for each run of one group. */
+/* Sorts the patches of the level by group and makes a job for each group. */
 static int sort_into_jobs(struct builder *builder, const uint32_t *labels)
 {
 	struct live_patches *level = &builder->level;
@@ -286,7 +290,7 @@ static int sort_into_jobs(struct builder *builder, const uint32_t *labels)
 	return 0;
 }
 
-/* ---- what is made */
+/* ---- results */
 
 static int make_room(struct builder *builder, uint32_t groups, uint32_t patches)
 {
@@ -336,14 +340,15 @@ static int run_job(void *user, uint32_t piece, uint32_t worker)
 	uint64_t triangles = 0;
 	int rc;
 
-	for (uint32_t p = 0; p < job->patch_count; p++) /* the job uses its patches up */
+	for (uint32_t p = 0; p < job->patch_count;
+	     p++) /* counted before, because the job frees its patches */
 		triangles += job->patches[p].triangle_count;
 	rc = group_job_run(&builder->site, job, worker);
 	progress_add(builder->progress, triangles);
 	return rc;
 }
 
-/* Runs the level's jobs; next gets the coarser patches in the order of the jobs. */
+/* Runs the level's jobs. next receives the coarser patches in the order of the jobs. */
 static int run_level(struct builder *builder, struct live_patches *next)
 {
 	struct multires_stats *stats = builder->stats;
@@ -441,12 +446,12 @@ static int build_groups(struct builder *builder)
 
 	while (rc == 0 && (before > builder->options.top_triangles ||
 			   builder->level.count > GROUP_PATCHES_MAX)) {
-		/* Close to the top borders are most of what there is: one group without. */
+		/* Close to the top, locked borders dominate: use a single group, which has none. */
 		if (before <= REDUCTION * (uint64_t)builder->options.top_triangles)
 			group_patches = GROUP_PATCHES_MAX;
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
-		/* Borders hinder: fewer, larger groups have less of them. */
+		/* Locked borders prevent collapses. Fewer and larger groups have less of them. */
 		if (after > before - before / 5) {
 			if (group_patches == GROUP_PATCHES_MAX && after >= before)
 				break;
@@ -460,10 +465,10 @@ static int build_groups(struct builder *builder)
 
 /* ---- the binary tree */
 
-/* What a node of the tree has come to: its patches, once its height's turn was. */
+/* For each node of the tree: its patches, once the level of its height has run. */
 struct tree {
-	uint32_t *heights;            /* of each node */
-	struct live_patches *patches; /* of each node */
+	uint32_t *heights;            /* for each node */
+	struct live_patches *patches; /* for each node */
 };
 
 static void tree_finish(struct tree *tree, uint32_t node_count)
@@ -474,7 +479,7 @@ static void tree_finish(struct tree *tree, uint32_t node_count)
 	free(tree->heights);
 }
 
-/* Leaves get their patch; children come after their parents, so heights are found backwards. */
+/* Leaves get their patch. Children come after their parents, so heights are found backwards. */
 static int tree_init(struct tree *tree, struct builder *builder)
 {
 	const struct partition *partition = &builder->partition;
@@ -512,7 +517,7 @@ static int add_tree_job(struct builder *builder, struct tree *tree, uint32_t n)
 	struct live_patches *right = &tree->patches[node->children[1]];
 	int rc = 0;
 
-	/* The left child's list takes in the right one's. */
+	/* The left child's list takes over the patches of the right one. */
 	for (uint32_t p = 0; rc == 0 && p < right->count; p++) {
 		rc = live_patches_add(left, right->items[p]);
 		right->items[p].triangles = NULL;
@@ -523,13 +528,13 @@ static int add_tree_job(struct builder *builder, struct tree *tree, uint32_t n)
 		.low = node->first_leaf,
 		.high = node->first_leaf + node->leaf_count - 1,
 		.target_triangles = builder->options.patch_triangles,
-		.is_whole = true, /* the paper simplifies to the limit, whatever it takes */
+		.is_whole = true, /* the paper simplifies to the target without an error limit */
 	};
 	builder->job_count++;
 	return rc == 0 && left->count > GROUP_PATCHES_MAX ? -E2BIG : rc;
 }
 
-/* All nodes of one height, independent of each other. */
+/* Runs all nodes of one height; they are independent of each other. */
 static int tree_level(struct builder *builder, struct tree *tree, uint32_t height)
 {
 	uint32_t node_count = builder->partition.node_count, at = 0;
@@ -547,7 +552,7 @@ static int tree_level(struct builder *builder, struct tree *tree, uint32_t heigh
 		}
 	if (rc == 0)
 		rc = run_level(builder, &next);
-	/* The patches of a job carry its number, and the numbers rise with the nodes. */
+	/* The patches of a job carry its number, and the numbers increase with the nodes. */
 	for (uint32_t p = 0; rc == 0 && p < next.count; p++) {
 		if (p > 0 && next.items[p].finer != next.items[p - 1].finer)
 			at++;
@@ -583,7 +588,7 @@ static int build_tree(struct builder *builder)
 
 /* ---- the whole */
 
-/* Made finest first; read coarsest first. */
+/* Reverses the order of groups: made finest first, stored coarsest first. */
 static int turn_round(struct hierarchy *out, const struct hierarchy *made)
 {
 	uint32_t last = made->group_count - 1;
@@ -649,7 +654,7 @@ static void builder_finish(struct builder *builder)
 	hierarchy_finish(&builder->made);
 }
 
-/* Of all levels together. */
+/* Estimates the triangles of all levels together, for the progress display. */
 static uint64_t all_triangles(enum multires_kind kind, uint64_t finest)
 {
 	uint64_t reduction = kind == MULTIRES_TREE ? 2 : REDUCTION;

@@ -1,4 +1,5 @@
-/* One group of a level: written out, merged, simplified, divided again. */
+/* Processes one group of a level: writes its object, merges its patches, simplifies them and
+ * divides them again. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 #include "pipeline/hierarchy/partition.h"
 #include "pipeline/hierarchy/simplify.h"
 
-/* Times the error so far, what one level may add. */
+/* The error that one level may add, as a multiple of the error so far. */
 #define ERROR_GROWTH 9.0
 
 void live_patch_finish(struct live_patch *patch)
@@ -43,10 +44,10 @@ int live_patches_add(struct live_patches *patches, struct live_patch patch)
 	return 0;
 }
 
-/* The group's patches as one surface with names of its own. */
+/* The group's patches merged into one surface with local vertex indices. */
 struct merged {
 	struct surface surface; /* owned */
-	uint32_t *globals;      /* owned; of each vertex, its index in the scan */
+	uint32_t *globals;      /* owned; for each vertex, its index in the scan */
 };
 
 static void merged_finish(struct merged *merged)
@@ -114,7 +115,7 @@ static int merge(struct merged *merged, const struct job_site *site, const struc
 	return 0;
 }
 
-/* Nobody else uses the vertices that are not locked, so they may change in place. */
+/* Unlocked vertices are used by this group only, so they may change in place. */
 static void give_back_vertices(const struct merged *merged, const struct job_site *site)
 {
 	for (uint32_t v = 0; v < merged->surface.vertex_count; v++)
@@ -179,8 +180,9 @@ static int divide(struct group_job *job, const struct merged *merged, uint32_t p
 	return rc;
 }
 
-/* Where a group is hindered by its border, better few collapses than wild ones: another border is
- * hindering next time. The first level has nothing to go by, the last nothing to hinder it. */
+/* Limits the error of a simplification. If a locked border hinders a group, few collapses are
+ * better than wild ones: on the next level the border is elsewhere. The first level has no earlier
+ * error to go by, and the last one has no locked border. */
 static double error_most(const struct job_site *site, const struct group_job *job, double error_m)
 {
 	if (job->is_whole || error_m <= 0.0)
@@ -207,7 +209,7 @@ int group_job_run(const struct job_site *site, struct group_job *job, uint32_t w
 			rc = simplify(&merged.surface, job->target_triangles,
 				      error_most(site, job, error), &result);
 		if (rc == 0) {
-			/* The errors of the levels below add up. */
+			/* The errors of the levels add up. */
 			error += result.error_steps * step_m;
 			job->group.error_m = (float)error;
 			job->loss_m4 = (float)fmax(loss, result.loss_steps4 * pow(step_m, 4));

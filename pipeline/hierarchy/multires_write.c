@@ -1,4 +1,5 @@
-/* Patches of a group into its object and its rows of the hierarchy. */
+/* Turns the patches of a group into its object and its rows of the hierarchy, with bounding spheres
+ * and normal cones. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +24,7 @@ static double distance(const double a[3], const double b[3])
 	return sqrt(x * x + y * y + z * z);
 }
 
-/* Local names in the order of the triangles, which go into the cache's order first. */
+/* Numbers the vertices of a patch, after its triangles are sorted for the vertex cache. */
 static int name_vertices(unsigned int *indices, unsigned int **globals, uint32_t *vertex_count,
 			 const struct live_patch *patch, uint32_t *local_of)
 {
@@ -48,7 +49,7 @@ static int name_vertices(unsigned int *indices, unsigned int **globals, uint32_t
 	for (uint32_t v = 0; v < *vertex_count; v++)
 		local_of[named[v]] = NO_GROUP;
 	meshopt_optimizeVertexCache(indices, order, count, *vertex_count);
-	/* Again in the new order, so that vertices come as they are first used. */
+	/* Number them again in the new order, so that vertices come in the order of first use. */
 	for (size_t i = 0; i < count; i++)
 		order[i] = named[indices[i]];
 	*vertex_count = 0;
@@ -140,7 +141,7 @@ static void triangle_normal(double out[3], const struct patch_mesh *patch, uint3
 		out[i] = length > 0.0 ? out[i] / length : 0.0;
 }
 
-/* The normals of the triangles, since they decide what faces the eye. */
+/* Uses the triangles' own normals, since these decide which triangles face the camera. */
 static void bound_normals(struct hierarchy_patch *out, const struct patch_mesh *patch)
 {
 	double axis[3] = { 0.0, 0.0, 0.0 }, normal[3], length, least = 1.0;
@@ -164,7 +165,8 @@ static void bound_normals(struct hierarchy_patch *out, const struct patch_mesh *
 	out->cone_cos = length > 1e-9 ? (float)fmax(-1.0, least - 1e-6) : -1.0f;
 }
 
-/* The farthest point of all the spheres that the group's has to enclose. */
+/* Finds the farthest point of all spheres that the group's sphere must enclose. Returns its
+ * distance. */
 static double farthest(double out[3], const struct group_job *job, const double centre[3])
 {
 	double most = -1.0;
@@ -195,8 +197,8 @@ static double farthest(double out[3], const struct group_job *job, const double 
 	return most;
 }
 
-/* Nearly the smallest sphere, by steps towards what is farthest (Badoiu and Clarkson 2003): spheres
- * nest over many levels, so slack would add up. */
+/* Finds nearly the smallest sphere, by steps towards the farthest point (Badoiu and Clarkson 2003).
+ * Spheres nest over many levels, so slack would add up. */
 static void bound_group(struct group_job *job)
 {
 	double centre[3] = { job->made[0].centre_m[0], job->made[0].centre_m[1],
@@ -215,7 +217,7 @@ static void bound_group(struct group_job *job)
 		for (int i = 0; i < 3; i++)
 			centre[i] += (far[i] - centre[i]) / (step + 1);
 	}
-	/* A hair more, so that what is nested stays nested in single precision. */
+	/* Slightly larger, so that nested spheres stay nested in single precision. */
 	job->group.radius_m = (float)(best * (1.0 + 1e-6));
 }
 

@@ -1,3 +1,5 @@
+/* Partitions a surface into patches: builds the dual graphs of triangles and voxels and divides
+ * them. */
 #include "pipeline/hierarchy/partition.h"
 
 #include <errno.h>
@@ -9,11 +11,11 @@
 
 enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MAX = 10 };
 
-/* What the weight of an edge is made of. */
+/* The properties of a triangle or voxel that determine the weight of an edge. */
 struct look {
-	float normal[3]; /* sum weighted by area; unit once settled */
-	float colour[3]; /* sum; mean once settled */
-	float centre[3]; /* the same, lattice steps */
+	float normal[3]; /* area-weighted sum; a unit vector after look_settle */
+	float colour[3]; /* sum; the mean after look_settle */
+	float centre[3]; /* likewise, lattice steps */
 	uint32_t triangle_count;
 };
 
@@ -24,12 +26,12 @@ struct splitter {
 	struct partition_options options;
 	struct partition *out;
 	uint32_t node_room;
-	uint32_t *local_of; /* of each vertex, while a set of triangles is at work */
+	uint32_t *local_of; /* for each vertex, its index in the current set of triangles */
 	/* The voxels: triangles of voxel v are items[first[v]] to items[first[v + 1] - 1]. */
 	uint32_t *voxel_of, *first, *items, voxel_count;
 	struct look *looks;
-	struct graph graph; /* of all voxels */
-	uint32_t *node_of;  /* of each voxel, its place in the set at work */
+	struct graph graph; /* graph of all voxels */
+	uint32_t *node_of;  /* for each voxel, its index in the current set */
 };
 
 static void look_add(struct look *look, const struct splitter *splitter, uint32_t t)
@@ -101,7 +103,7 @@ static int add_node(struct splitter *splitter, uint32_t *index)
 
 /* ---- triangles */
 
-/* The dual graph of some triangles: corners renamed into local, 3 a triangle. */
+/* Adds the edges of the dual graph of some triangles; local holds their renamed corners. */
 static int add_dual_edges(struct graph *graph, uint32_t (*local)[3], uint32_t count,
 			  uint32_t vertex_count, const struct look *looks)
 {
@@ -198,7 +200,8 @@ static int sort_by_label(uint32_t *set, uint32_t count, const uint32_t *labels, 
 	return 0;
 }
 
-/* So many leaves that each stays under the limit though METIS balances to some percent only. */
+/* The number of leaves, chosen so that each stays below the limit although METIS balances only to
+ * some percent. */
 static uint32_t leaves_for(const struct splitter *splitter, uint32_t triangle_count)
 {
 	double most = 0.94 * splitter->options.patch_triangles;
@@ -262,7 +265,7 @@ static uint64_t cell_at(const uint16_t position[3], int level)
 	return cell;
 }
 
-/* The voxel that holds most of the triangle's corners; the first corner's where all differ. */
+/* The voxel that holds most of the triangle's corners; if all differ, the first corner's. */
 static uint64_t voxel_of_triangle(const struct splitter *splitter, uint32_t t, int level)
 {
 	uint64_t cells[3];
@@ -305,7 +308,7 @@ static int number_voxels(struct splitter *splitter, int level, uint32_t *fullest
 	return table && cells && fill ? 0 : -ENOMEM;
 }
 
-/* Finer until each voxel holds fewer triangles than asked, or until finer is hardly a gain. */
+/* Refines until each voxel holds fewer triangles than required, or until refining gains little. */
 static int sort_into_voxels(struct splitter *splitter)
 {
 	uint32_t fullest;
@@ -338,7 +341,7 @@ static int sort_into_voxels(struct splitter *splitter)
 	return 0;
 }
 
-/* An edge of the voxels' graph for each edge of triangles in two voxels. */
+/* Adds an edge between voxels for each edge between triangles in two voxels. */
 static int connect_voxels(struct splitter *splitter, uint32_t vertex_count)
 {
 	struct incidence incidence;
@@ -369,8 +372,7 @@ static int connect_voxels(struct splitter *splitter, uint32_t vertex_count)
 	return rc;
 }
 
-/* The part of the graph between the voxels of a set. edges are those of the graph that can matter:
- * the set's own come to lie in front. */
+/* Makes the subgraph of the voxels in a set. */
 static int graph_of_set(struct graph *out, struct splitter *splitter, const uint32_t *set,
 			uint32_t count)
 {

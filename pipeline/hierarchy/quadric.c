@@ -1,6 +1,8 @@
+/* Quadric error metrics: sums of plane distances as a symmetric 3x3 matrix, a vector and a
+ * constant. */
 #include "pipeline/hierarchy/quadric.h"
 
-/* Of the matrix's trace: how much a flat direction is held near the guess. */
+/* Share of the matrix's trace: how strongly a flat direction is held near the guess. */
 #define HOLD 1e-3
 
 void quadric_add_plane(struct quadric *quadric, const double normal[3], const double point[3],
@@ -52,7 +54,7 @@ void quadric_least(double out[3], const struct quadric *q, const double near[3])
 	double hold = HOLD * (q->xx + q->yy + q->zz) + 1e-9;
 	double xx = q->xx + hold, yy = q->yy + hold, zz = q->zz + hold;
 	double x = hold * near[0] - q->x, y = hold * near[1] - q->y, z = hold * near[2] - q->z;
-	/* Cofactors of the symmetric matrix; the hold makes it definite. */
+	/* Cofactors of the symmetric matrix; the added hold makes it positive definite. */
 	double cxx = yy * zz - q->yz * q->yz, cxy = q->xz * q->yz - q->xy * zz;
 	double cxz = q->xy * q->yz - q->xz * yy, cyy = xx * zz - q->xz * q->xz;
 	double cyz = q->xy * q->xz - xx * q->yz, czz = xx * yy - q->xy * q->xy;

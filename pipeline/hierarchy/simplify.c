@@ -1,3 +1,5 @@
+/* Edge-collapse simplification with a priority queue, quadrics and checks for folds and
+ * topology. */
 #include "pipeline/hierarchy/simplify.h"
 
 #include <errno.h>
@@ -9,34 +11,34 @@
 #include "pipeline/hierarchy/quadric.h"
 
 #define NONE          UINT32_MAX
-#define BORDER_WEIGHT 20.0  /* of the planes that hold open edges, to the edge's square */
-#define COLOUR_WEIGHT 0.005 /* black to white over an edge, against moving it by its length */
-#define SHAPE_WEIGHT  1e-6  /* on flat ground, short edges first */
-#define FOLD_COSINE   0.2   /* a triangle may turn by less than this */
-#define UNSEEN_WEIGHT 0.03  /* of what nobody sees, to what is seen from all sides */
+#define BORDER_WEIGHT 20.0  /* of planes that hold open edges, times the edge's squared length */
+#define COLOUR_WEIGHT 0.005 /* of black to white, relative to moving the edge by its length */
+#define SHAPE_WEIGHT  1e-6  /* on flat surfaces, short edges go first */
+#define FOLD_COSINE   0.2   /* minimum cosine between a triangle's normals before and after */
+#define UNSEEN_WEIGHT 0.03  /* of invisible surface, relative to surface seen from all sides */
 
 struct candidate {
 	float cost;
 	uint32_t a, b;
-	uint32_t stamp; /* of both versions together; they only grow */
+	uint32_t stamp; /* sum of both vertices' versions; they only increase */
 };
 
 struct work {
 	struct surface *surface;
 	struct quadric *quadrics;
-	double *areas; /* of each vertex, for the mean of normals and colours */
-	/* Corners at each vertex, a list: corner 3 t + i is corner i of triangle t. */
+	double *areas; /* for each vertex, to average normals and colours */
+	/* Linked list of the corners at each vertex: corner 3 t + i is corner i of triangle t. */
 	uint32_t *first, *next;
-	uint8_t *dead; /* of each triangle */
+	uint8_t *dead; /* for each triangle */
 	uint32_t *versions;
 	uint32_t *marks, mark;
 	struct candidate *heap;
 	size_t heap_count, heap_room;
 	uint32_t alive_count;
-	double worst; /* square of the error so far, lattice steps */
-	double most;  /* that it may come to */
-	double loss;  /* of the costliest collapse */
-	bool loose;   /* the surface may close onto itself */
+	double worst; /* squared error so far, lattice steps */
+	double most;  /* limit of worst */
+	double loss;  /* loss of the costliest collapse */
+	bool loose;   /* topology may change: the surface may pinch */
 	uint32_t collapse_count;
 };
 
@@ -89,7 +91,7 @@ static bool has(const uint32_t triangle[3], uint32_t vertex)
 	return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
-/* The next living corner at a vertex; unlinks dead ones on the way. */
+/* Returns the next living corner at a vertex, and unlinks dead ones on the way. */
 static uint32_t living(struct work *work, uint32_t *link)
 {
 	while (*link != NONE && work->dead[*link / 3])
@@ -134,7 +136,7 @@ static void cross_of_triangle(double out[3], const struct work *work, uint32_t t
 	cross_of(out, at[0], at[1], at[2]);
 }
 
-/* Triangles with both ends of the edge; *forth is how many run from a to b. */
+/* Counts the triangles at an edge; *forth is how many of them run from a to b. */
 static uint32_t triangles_at_edge(struct work *work, uint32_t a, uint32_t b, uint32_t *forth)
 {
 	uint32_t count = 0;
@@ -161,7 +163,7 @@ static bool edge_is_open(struct work *work, uint32_t a, uint32_t b)
 
 /* ---- quadrics */
 
-/* Errors count by how many see them: "Visibility-guided simplification", Zhang and Turk 2002. */
+/* Errors are weighted by visibility: "Visibility-guided simplification", Zhang and Turk 2002. */
 static double importance(const struct lattice_vertex *vertex)
 {
 	return UNSEEN_WEIGHT + (1.0 - UNSEEN_WEIGHT) * vertex->seen / 255.0;
@@ -214,9 +216,10 @@ static void add_triangle(struct work *work, uint32_t t)
 	}
 }
 
-/* ---- what a collapse costs */
+/* ---- cost of a collapse */
 
-/* May gone leave where keep stays? Open edges are only ever shortened along themselves. */
+/* Returns true if gone may be removed while keep stays. Open edges are only shortened along
+ * themselves. */
 static bool may_leave(struct work *work, uint32_t gone, uint32_t keep, bool open)
 {
 	const struct surface *surface = work->surface;
@@ -244,7 +247,8 @@ static double squared_distance(const double a[3], const double b[3])
 	return dot(d, d);
 }
 
-/* Between two free vertices: the best point, or the middle where the best is far off. */
+/* Places the vertex of a collapse between two free vertices: at the best point, or in the middle if
+ * the best point is far away. */
 static double free_place(double out[3], const struct quadric *sum, const double a[3],
 			 const double b[3])
 {
@@ -259,7 +263,8 @@ static double free_place(double out[3], const struct quadric *sum, const double 
 	return quadric_at(sum, out);
 }
 
-/* Which end stays, and where it comes to be. Returns the quadric's value, negative: not allowed. */
+/* Decides which end stays and where it moves. Returns the quadric's value; negative: not
+ * allowed. */
 static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, struct work *work,
 			     uint32_t a, uint32_t b)
 {
@@ -278,7 +283,8 @@ static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, stru
 	place_of(at_b, work, b);
 	if (!is_fixed(work, a) && !is_fixed(work, b))
 		return free_place(out, &sum, at_a, at_b);
-	/* One end stays where it is: the one that may not leave, or the fixed, or the better. */
+	/* One end stays in its place: the one that may not leave, or the fixed one, or the better
+	 * one. */
 	value_a = b_may ? quadric_at(&sum, at_a) : INFINITY;
 	value_b = a_may ? quadric_at(&sum, at_b) : INFINITY;
 	if (b_may && is_fixed(work, a) && !is_fixed(work, b))
@@ -325,8 +331,8 @@ static int push_edge(struct work *work, uint32_t a, uint32_t b)
 		    (struct candidate){ (float)cost, a, b, work->versions[a] + work->versions[b] });
 }
 
-/* Both ways round an edge its triangles would push it: only the one from the smaller end, or the
- * only one there is. */
+/* Both triangles of an edge would push it, one in each direction. Push it only from the smaller
+ * end, or if the edge is open. */
 static int push_all_edges(struct work *work)
 {
 	int rc = 0;
@@ -343,7 +349,7 @@ static int push_all_edges(struct work *work)
 	return rc;
 }
 
-/* ---- whether a collapse is sound */
+/* ---- validity of a collapse */
 
 static void mark_neighbours(struct work *work, uint32_t vertex)
 {
@@ -357,8 +363,8 @@ static void mark_neighbours(struct work *work, uint32_t vertex)
 	}
 }
 
-/* The link condition (Dey et al. 1999): the ends have no neighbours in common but those across
- * their edge's triangles. */
+/* The link condition (Dey et al. 1999): the two ends have no common neighbours except those
+ * opposite their edge. */
 static bool link_is_sound(struct work *work, uint32_t a, uint32_t b)
 {
 	uint32_t across = 0, common = 0;
@@ -375,13 +381,14 @@ static bool link_is_sound(struct work *work, uint32_t a, uint32_t b)
 			if (other == a || work->marks[other] != work->mark)
 				continue;
 			common++;
-			work->marks[other] = work->mark - 1; /* once */
+			work->marks[other] = work->mark - 1; /* count it once */
 		}
 	}
 	return common <= across;
 }
 
-/* After the collapse this triangle of one end would lie on one of the other, facing it. */
+/* Returns true if after the collapse this triangle would coincide with one of the other end, facing
+ * it. */
 static bool is_cancelled(struct work *work, uint32_t corner, uint32_t other_end)
 {
 	const uint32_t *triangle = work->surface->triangles[corner / 3];
@@ -397,8 +404,8 @@ static bool is_cancelled(struct work *work, uint32_t corner, uint32_t other_end)
 	return false;
 }
 
-/* Does a triangle look the way the scan did there, by the normals that its corners carry? Small
- * turns add up over many collapses; this does not. */
+/* Returns true if a triangle faces the same way as the scan did there, by the normals of its
+ * corners. Small rotations add up over many collapses; this test does not drift. */
 static bool faces_as_scan(const struct work *work, const uint32_t triangle[3],
 			  const double normal[3])
 {
@@ -410,7 +417,7 @@ static bool faces_as_scan(const struct work *work, const uint32_t triangle[3],
 	return sum > 0.0;
 }
 
-/* Would a triangle at vertex turn over when the vertex moves to at? */
+/* Returns true if a triangle at vertex would turn over when the vertex moves to at. */
 static bool folds(struct work *work, uint32_t vertex, uint32_t other_end, const double at[3])
 {
 	EACH_CORNER(work, vertex, corner)
@@ -464,7 +471,7 @@ static void kill(struct work *work, uint32_t t)
 	work->alive_count--;
 }
 
-/* Two triangles back to back enclose nothing: both go. */
+/* Two triangles back to back enclose nothing: removes both. */
 static void cancel_pairs(struct work *work, uint32_t vertex)
 {
 	EACH_CORNER(work, vertex, corner)
@@ -480,7 +487,7 @@ static void cancel_pairs(struct work *work, uint32_t vertex)
 			    facing[(other % 3 + 2) % 3] != p)
 				continue;
 			if (work->alive_count <= 2)
-				return; /* something must stay */
+				return; /* at least one triangle must stay */
 			kill(work, corner / 3);
 			kill(work, other / 3);
 			break;
@@ -525,7 +532,7 @@ static int push_edges_of(struct work *work, uint32_t vertex)
 	return 0;
 }
 
-/* Would nothing at all be left? */
+/* Returns true if the collapse would leave no triangle. */
 static bool is_last(struct work *work, uint32_t a, uint32_t b)
 {
 	uint32_t forth;
@@ -632,7 +639,8 @@ int simplify(struct surface *surface, uint32_t target_triangles, double error_mo
 	work.most = error_most_steps * error_most_steps;
 	if (rc == 0)
 		rc = collapse_until(&work, target_triangles);
-	/* Stuck: what hinders is the shape of the surface, so let it pinch, as long as it helps. */
+	/* If it is stuck, the topology of the surface is the obstacle. Let the surface pinch, as
+	 * long as that helps. */
 	work.loose = true;
 	do {
 		before = work.alive_count;
