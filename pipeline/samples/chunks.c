@@ -1,3 +1,5 @@
+/* Sorts triangles by texture and Morton code and cuts the sequence into chunks; computes winding
+ * numbers from them. */
 #include "pipeline/samples/chunks.h"
 
 #include <errno.h>
@@ -5,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One triangle's place on the curve along which chunks are cut. */
+/* A triangle's position in the order in which chunks are cut. */
 struct place {
-	uint64_t key; /* texture, then Morton code of its middle */
+	uint64_t key; /* texture, then Morton code of its centre */
 	uint32_t triangle;
 };
 
@@ -15,10 +17,10 @@ struct builder {
 	const struct mesh *mesh;
 	struct chunks *out;
 	const uint8_t *colour;
-	float (*normals)[3]; /* of the mesh's vertices, not normalised */
+	float (*normals)[3]; /* for each vertex of the mesh, not normalised */
 	struct place *places;
-	uint32_t *local;   /* of the mesh's vertices: index in the chunk that saw it last */
-	uint32_t *seen_by; /* that chunk's number plus one */
+	uint32_t *local; /* for each vertex of the mesh: its index in the last chunk that used it */
+	uint32_t *seen_by; /* the number of that chunk plus one */
 	uint32_t capacity, vertex_capacity;
 };
 
@@ -50,7 +52,7 @@ static void sum_normals(struct builder *builder)
 	}
 }
 
-/* Every third bit of 16. */
+/* Spreads 16 bits, with two zeros after each. */
 static uint64_t spread(uint32_t x)
 {
 	uint64_t v = x & 0xffff;
@@ -142,7 +144,7 @@ static void add_vertex(struct builder *builder, uint32_t vertex)
 	builder->out->vertex_count++;
 }
 
-/* A vertex twice the first guess is needed only by meshes whose triangles share nothing. */
+/* Makes room for one more chunk, even if its triangles share no vertices. */
 static int reserve(struct builder *builder)
 {
 	struct chunks *out = builder->out;
@@ -173,7 +175,7 @@ static int reserve(struct builder *builder)
 	return 0;
 }
 
-/* Box and what the far field needs. */
+/* Sets the bounding box and the far-field values of a chunk. */
 static void finish_chunk(const struct builder *builder, struct chunk *chunk,
 			 const struct place *places, uint32_t count)
 {
@@ -212,7 +214,8 @@ static void finish_chunk(const struct builder *builder, struct chunk *chunk,
 	chunk->radius_m = sqrtf(chunk->radius_m);
 }
 
-/* Takes triangles along the curve while they fit; gives how many. */
+/* Adds a chunk of triangles along the curve: all of one texture, at most CHUNK_TRIANGLES_MAX.
+ * Returns how many were taken. */
 static uint32_t add_chunk(struct builder *builder, const struct place *places, uint32_t left)
 {
 	struct chunks *out = builder->out;

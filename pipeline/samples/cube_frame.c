@@ -1,3 +1,5 @@
+/* A framebuffer with a depth texture, and a shader that reduces its depth to nearest and farthest
+ * values of 8 x 8 blocks. */
 #include "pipeline/samples/cube_frame.h"
 
 #include <assert.h>
@@ -13,15 +15,16 @@ enum { BLOCK_PX = 8, STEPS = 65534 };
 struct frame {
 	int width_px, height_px;
 	GLuint framebuffer, colour, depth;
-	struct gl_target blocks; /* nearest and farthest of BLOCK_PX squares */
+	struct gl_target blocks; /* nearest and farthest of each square of BLOCK_PX */
 	GLuint program;
 	uint8_t *block_pixels; /* owned */
 };
 
-/* 16 bits each for the logarithm of the nearest and of the farthest distance, as a share of the
- * way from near to far plane; 65535 in both: nothing. The sampler is highp in so many words: its
- * default is lowp whatever floats are, and Mesa then reads it in 16 bits. gl_FragCoord is mediump
- * whatever is said, and its 16 bits cannot tell the rows of a large frame apart. */
+/* Packs the logarithms of the nearest and the farthest distance, 16 bits each, as a share of the
+ * way from near to far plane; 65535 in both means nothing. The sampler is declared highp
+ * explicitly: its default is lowp, whatever the default of floats is, and Mesa then reads it with
+ * 16 bits. gl_FragCoord is always mediump, and 16 bits cannot distinguish the rows of a large
+ * frame. */
 static const char fragment_text[] =
 	"precision highp float;\n"
 	"uniform highp sampler2D depth; uniform vec2 size; uniform vec2 planes;\n"
@@ -189,7 +192,7 @@ int frame_range(struct frame *frame, float plane_near_m, float plane_far_m, bool
 	*found = high >= 0;
 	if (!*found)
 		return 0;
-	/* Half a part in 1000 to the safe side, for the shader's logarithm. */
+	/* Widen by half a part in 1000, for the precision of the shader's logarithm. */
 	*near_m = plane_near_m * powf(ratio, (float)low / STEPS) * 0.9995f;
 	*far_m = plane_near_m * powf(ratio, (float)high / STEPS) * 1.0005f;
 	return 0;

@@ -1,4 +1,5 @@
-/* A framebuffer whose depth can be asked: how near and how far is what it shows? */
+/* A framebuffer with a readable depth texture. It can tell the nearest and farthest distance of
+ * what it shows. */
 #ifndef GOPURA_PIPELINE_SAMPLES_CUBE_FRAME_H
 #define GOPURA_PIPELINE_SAMPLES_CUBE_FRAME_H
 
@@ -9,18 +10,21 @@
 
 struct frame;
 
-/* side_px is a multiple of 8. The pipeline's machines must have OES_depth_texture (llvmpipe has);
- * -ENOTSUP, logged, where they have not. */
+/* width_px and height_px are multiples of 8. *out is owned by the caller; NULL on failure. Returns
+ * -ENOMEM, the errors of GL, or -ENOTSUP (logged) without OES_depth_texture, which the pipeline's
+ * machines must have (llvmpipe has it). */
 must_check int frame_create(struct frame **out, int width_px, int height_px);
 void frame_destroy(struct frame *frame); /* NULL is fine */
+/* Binds the framebuffer and sets the viewport to all of it. */
 void frame_bind(const struct frame *frame);
-/* To units 0 .. GL_LIMIT_UNITS - 1, for reading what was drawn while another framebuffer is bound.
- * Blocks, as the last frame_range left them: a pixel a square of 8, white where it shows nothing.
- */
+/* Binds the frame's textures to units 0 .. GL_LIMIT_UNITS - 1, to read them while another
+ * framebuffer is bound. The blocks texture has one pixel per 8 x 8 pixels, as the last frame_range
+ * left it; a white pixel means that nothing shows there. */
 void frame_bind_textures(const struct frame *frame, unsigned colour_unit, unsigned depth_unit,
 			 unsigned blocks_unit);
-/* Distance along the view's axis of what a perspective picture with these planes shows, each to
- * one part in 1000, near rounded down and far up. found: false where it shows nothing. */
+/* Finds the range of distances along the view axis of what a perspective picture with these planes
+ * shows, metres. Each is accurate to one part in 1000; near is rounded down and far up. *found is
+ * false if it shows nothing. Returns the errors of reading back. */
 must_check int frame_range(struct frame *frame, float plane_near_m, float plane_far_m, bool *found,
 			   float *near_m, float *far_m);
 

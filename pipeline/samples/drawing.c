@@ -1,3 +1,4 @@
+/* Uploads the chunks of a scan and its textures, and draws the visible chunks from near to far. */
 #include "pipeline/samples/drawing.h"
 
 #include <errno.h>
@@ -24,7 +25,7 @@ struct drawing {
 	GLint matrix_at, eye_at, px_at;
 	uint32_t texture_count;
 	GLuint *textures;    /* owned */
-	struct order *order; /* room for every chunk; owned */
+	struct order *order; /* owned; room for every chunk */
 };
 
 static const char *const attributes[] = { "position", "normal", "colour", "uv", NULL };
@@ -44,7 +45,7 @@ static const char fragment_head[] =
 	"varying vec3 v_at; varying vec3 v_normal; varying vec4 v_colour; varying vec2 v_uv;\n";
 
 static const char scan_colour[] = "vec3 base() { return v_colour.rgb; }\n";
-/* Row 0 of a picture is its top, where v is 1. */
+/* Row 0 of a texture is its top, where v is 1. */
 static const char image_colour[] =
 	"vec3 base() { return texture2D(image, vec2(v_uv.x, 1.0 - v_uv.y)).rgb; }\n";
 static const char material[] =
@@ -61,9 +62,9 @@ static const char fragment_main[] =
 	"			    gl_FrontFacing ? 1.0 : 254.0 / 255.0);\n"
 	"}\n";
 
-/* Normal, and in alpha the share of open sky: 1..127 of a back, 128..255 of a front. Nothing is 0.
- * Eight bits do: vertices have no more. Little is done on purpose, where triangles are small this
- * runs several times a pixel. */
+/* Writes the normal, and in alpha the share of open sky: 1..127 for a back, 128..255 for a front, 0
+ * for nothing. Eight bits are enough: vertices have no more. The shader does little on purpose:
+ * where triangles are small it runs several times per pixel. */
 static const char surface_main[] =
 	"void main() {\n"
 	"	float open = gl_FrontFacing ? 128.0 + 127.0 * v_colour.a : 1.0 + 126.0 * v_colour.a;\n"
@@ -100,7 +101,7 @@ static int build_program(struct drawing *drawing, const struct drawing_options *
 	return 0;
 }
 
-/* Half as wide and high, by box; a new array, or NULL. */
+/* Halves a picture with a box filter. Returns a new array, or NULL without memory. */
 static uint8_t *halve(const uint8_t *rgb, uint32_t *width, uint32_t *height)
 {
 	uint32_t w = *width > 1 ? *width / 2 : 1, h = *height > 1 ? *height / 2 : 1;
@@ -119,8 +120,8 @@ static uint8_t *halve(const uint8_t *rgb, uint32_t *width, uint32_t *height)
 	return out;
 }
 
-/* Scan pictures keep their size where the driver bears it: pipeline machines are ours to choose,
- * so the kiosk's limit (gl_texture_create) does not hold here. */
+/* Uploads a scan's texture at its own size if the driver allows it. We choose the pipeline's
+ * machines, so the kiosk's limit (gl_texture_create) does not apply here. */
 static int upload_texture(GLuint texture, const struct mesh_texture *source)
 {
 	uint32_t width = source->width, height = source->height;
@@ -232,7 +233,8 @@ void drawing_destroy(struct drawing *drawing)
 	free(drawing);
 }
 
-/* Farthest point of the box along direction, sign +1; nearest, sign -1. */
+/* Returns the distance of the box's farthest (sign +1) or nearest (sign -1) point along
+ * direction. */
 static float reach(const struct chunk *chunk, const float eye_m[3], const float direction[3],
 		   float sign)
 {
@@ -274,7 +276,7 @@ bool drawing_range(const struct drawing *drawing, const float eye_m[3], const fl
 	return true;
 }
 
-/* Outside one of clip space's planes with all its corners? */
+/* Returns true if all corners are outside one of the planes of clip space. */
 static bool is_outside(const struct chunk *chunk, const float m[16])
 {
 	for (int plane = 0; plane < 6; plane++) {
@@ -329,7 +331,7 @@ static int compare_order(const void *a, const void *b)
 	return x->chunk < y->chunk ? -1 : x->chunk > y->chunk;
 }
 
-/* Nearest first, so that the depth test spares the shading of what is hidden. */
+/* Sorts visible chunks nearest first, so that the depth test avoids shading of hidden surface. */
 static uint32_t sort_visible(struct drawing *drawing, const float matrix[16], const float eye_m[3])
 {
 	uint32_t count = 0;

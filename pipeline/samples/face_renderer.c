@@ -1,3 +1,5 @@
+/* Renders a face with drawing and shading, and turns the picture into encoded tiles with a
+ * pyramid. */
 #include "pipeline/samples/face_renderer.h"
 
 #include <errno.h>
@@ -20,7 +22,7 @@ struct face_renderer {
 	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 };
 
-/* A level's picture is wider than its face by the aprons that its coarsest level needs. */
+/* The picture of a level is wider than its face by the aprons that the coarsest level needs. */
 static uint32_t level_px(uint32_t level)
 {
 	return (uint32_t)SAMPLE_IMAGE_PX << level;
@@ -88,7 +90,7 @@ static struct camera face_camera(const struct face_renderer *renderer, const flo
 	return camera;
 }
 
-/* Does anything show in a square of the level's picture, or within a pixel of it? */
+/* Returns true if anything shows in a square of the level's picture, or within a pixel of it. */
 static bool shows(const struct face_renderer *renderer, uint32_t level, uint32_t x, uint32_t y,
 		  uint32_t side)
 {
@@ -154,7 +156,7 @@ static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t
 	return 0;
 }
 
-/* Into the pyramid's finest level. found: something shows. */
+/* Renders into the pyramid's finest level. *found is false if nothing shows. */
 static int render(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
 		  int face, bool *found)
 {
@@ -198,7 +200,7 @@ int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const 
 	if (rc < 0 || !found || !shot->covered)
 		return rc;
 	shot->coverage = find_coverage(renderer);
-	if (!shot->coverage) /* only the aprons show anything */
+	if (!shot->coverage) /* only the aprons show something */
 		return 0;
 	pyramid_reduce(&renderer->pyramid);
 	pyramid_fill(&renderer->pyramid);

@@ -1,6 +1,5 @@
-/* Takes one face of one sampling point: renders it, fills the background, cuts it into tiles at
- * every level and encodes them (docs/samples.md). Every call is from the thread that owns the GL
- * context. */
+/* Renders one face of one sampling point, fills its background, cuts it into tiles at every level
+ * and encodes them (docs/samples.md). Call everything from the thread that owns the GL context. */
 #ifndef GOPURA_PIPELINE_SAMPLES_FACE_RENDERER_H
 #define GOPURA_PIPELINE_SAMPLES_FACE_RENDERER_H
 
@@ -10,31 +9,38 @@
 #include "pipeline/samples/pyramid.h"
 
 struct face_renderer_options {
-	struct drawing *drawing;      /* borrowed for as long as the shooter lives */
-	struct drawing_options drawn; /* what it was made with: surfaces if procedural */
+	struct drawing *drawing;      /* borrowed for the renderer's lifetime */
+	struct drawing_options drawn; /* the options it was made with; surfaces if procedural */
 	uint32_t level_count;         /* 1 .. SAMPLE_LEVELS_MAX */
+	/* of tile_encode, 1..100 */
 	int quality;
 };
 
 struct shot {
-	uint64_t covered, backs; /* rendered pixels that show anything, and that show its back */
-	uint16_t coverage;       /* as brick_page.coverage; 0: nothing, and no tiles */
+	uint64_t covered,
+		backs;     /* rendered samples that show anything, and those that show a back */
+	uint16_t coverage; /* as in brick_page; 0: nothing shows, and there are no tiles */
+	/* As in brick_page. */
 	float near_m, far_m;
 	uint32_t tile_count;
-	uint16_t tiles[FACE_TILES_MAX];  /* face_tile_index, rising */
-	uint32_t end_of[FACE_TILES_MAX]; /* in objects: where each tile's bytes end */
-	struct buffer objects;           /* encoded tiles, one after another; owned */
+	uint16_t tiles[FACE_TILES_MAX];  /* face_tile_index of each, ascending */
+	uint32_t end_of[FACE_TILES_MAX]; /* where each tile ends in objects */
+	struct buffer objects;           /* owned; the encoded tiles one after the other */
 };
 
 struct face_renderer;
 
+/* *out is owned by the caller; NULL on failure. Returns -ENOMEM or the errors of GL. */
 must_check int face_renderer_create(struct face_renderer **out,
 				    const struct face_renderer_options *options);
 void face_renderer_destroy(struct face_renderer *renderer); /* NULL is fine */
 
+/* Prepares an empty shot. */
 void shot_init(struct shot *shot);
+/* Frees the encoded tiles. */
 void shot_finish(struct shot *shot);
-/* Into shot, which may have been used before. */
+/* Renders a face (0..5, format/cube.h) at point_m into shot, which may have been used before.
+ * Returns -ENOMEM, or the errors of GL and the encoder. */
 must_check int face_renderer_take(struct face_renderer *renderer, struct shot *shot,
 				  const float point_m[3], int face);
 

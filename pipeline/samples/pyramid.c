@@ -1,3 +1,4 @@
+/* Builds the levels of a picture, fills uncovered pixels (push-pull) and sharpens every level. */
 #include "pipeline/samples/pyramid.h"
 
 #include <assert.h>
@@ -51,7 +52,7 @@ void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered
 	}
 }
 
-/* Of the four pixels, those that there are, weighted by coverage. */
+/* Averages the existing ones of four pixels, weighted by coverage. */
 static void reduce_pixel(uint8_t to[4], const uint8_t *const four[4], unsigned count)
 {
 	unsigned sum[3] = { 0 }, weight = 0;
@@ -108,7 +109,8 @@ void pyramid_reduce(struct pyramid *pyramid)
 		reduce(pyramid, level);
 }
 
-/* Bilinear: a fine pixel's middle lies a quarter of a coarse one off its own. */
+/* Fills bilinearly: the centre of a fine pixel is a quarter of a coarse pixel away from the coarse
+ * one's. */
 static void fill(const struct pyramid *pyramid, uint32_t level)
 {
 	uint32_t side = pyramid->side_px[level], coarser = pyramid->side_px[level + 1];
@@ -143,7 +145,8 @@ void pyramid_fill(struct pyramid *pyramid)
 		fill(pyramid, level - 1);
 }
 
-/* 64ths of its difference to each of its four neighbours that a pixel takes on. */
+/* The share, in 64ths, of the difference to each of its four neighbours that is added to a
+ * pixel. */
 enum { SHARPENING = 8 };
 
 static void sharpen_row(uint8_t (*to)[4], const uint8_t (*above)[4], const uint8_t (*row)[4],
@@ -161,7 +164,7 @@ static void sharpen_row(uint8_t (*to)[4], const uint8_t (*above)[4], const uint8
 	}
 }
 
-/* rows: room for two, which are kept as they were while the picture changes. */
+/* rows: room for two rows, which keep their old values while the picture changes. */
 static void sharpen(const struct pyramid *pyramid, uint32_t level, uint8_t (*rows)[4])
 {
 	uint32_t side = pyramid->side_px[level];

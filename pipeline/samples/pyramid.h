@@ -1,6 +1,6 @@
-/* A picture with coverage at every half of its size, and its background filled in: push-pull after
- * Gortler et al. 1996 ("The Lumigraph"). Filled, because coding would ring at the silhouettes and
- * bilinear filtering would bleed the background into them. */
+/* A picture with coverage at every power of two of its size, with a filled background: push-pull
+ * after Gortler et al. 1996 ("The Lumigraph"). The background is filled because coding would
+ * otherwise ring at silhouettes, and bilinear filtering would bleed the background into them. */
 #ifndef GOPURA_PIPELINE_SAMPLES_PYRAMID_H
 #define GOPURA_PIPELINE_SAMPLES_PYRAMID_H
 
@@ -11,26 +11,28 @@
 
 enum { PYRAMID_LEVELS_MAX = 16 };
 
-/* Square; straight sRGB and coverage (255: all), row 0 on top. */
+/* Square pictures; straight sRGB and coverage (255: all), row 0 on top. */
 struct pyramid {
 	uint32_t level_count; /* level 0 is the finest, the last is one pixel */
 	uint32_t side_px[PYRAMID_LEVELS_MAX];
 	uint8_t (*levels[PYRAMID_LEVELS_MAX])[4]; /* owned */
 };
 
+/* Allocates all levels. Returns -ENOMEM; zeroed then. */
 must_check int pyramid_init(struct pyramid *pyramid, uint32_t side_px);
 void pyramid_finish(struct pyramid *pyramid); /* NULL and zeroed are fine */
 
-/* Level 0 from a picture as shading_take gives it. Gives how many of its samples show anything, and
- * how many of these a back. */
+/* Sets level 0 from a picture of shading_take. Sets *covered to the number of its samples that show
+ * anything, and *backs to how many of these show a back. */
 void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs);
-/* All other levels by box filter, weighted by coverage; a pixel that shows anything has coverage
- * of at least 1 at every level. */
+/* Makes all other levels with a box filter weighted by coverage. A pixel that shows anything has a
+ * coverage of at least 1 at every level. */
 void pyramid_reduce(struct pyramid *pyramid);
-/* Colours of uncovered pixels from the next coarser level; coverage stays. */
+/* Sets the colours of uncovered pixels from the next coarser level. Coverage stays. */
 void pyramid_fill(struct pyramid *pyramid);
-/* Every level, by what showing it will blur: texels are means over their squares, and between them
- * the kiosk interpolates. Colours that leave 0..255 stay at its ends. Last of all. -ENOMEM. */
+/* Sharpens every level to compensate for the blur of display: texels are means over their squares,
+ * and the kiosk interpolates between them. Colours are clamped to 0..255. Call it last. Returns
+ * -ENOMEM. */
 must_check int pyramid_sharpen(struct pyramid *pyramid);
 
 #endif

@@ -1,3 +1,5 @@
+/* Parses lists of views and draws supersampled reference pictures, skipping those that are up to
+ * date. */
 #include "pipeline/samples/reference.h"
 
 #include <ctype.h>
@@ -17,7 +19,7 @@
 
 enum { REFERENCE_VERSION = 1, LINE_BYTES = 512, PNG_BYTES_MAX = 256 << 20, NUMBERS = 7 };
 
-/* Everything that one run of drawing shares. */
+/* Everything that one run shares. */
 struct easel {
 	const struct reference_options *options;
 	struct headless *headless;
@@ -25,13 +27,13 @@ struct easel {
 	struct chunks chunks;
 	struct drawing *drawing;
 	struct gl_target target;
-	uint32_t block;      /* samples a pixel and side that one frame holds */
+	uint32_t block;      /* samples per pixel and side in one frame */
 	uint32_t (*sums)[4]; /* red, green, blue and count of covered samples; owned */
 	uint8_t *frame;      /* owned */
 };
 
-/* The numbers of a line, in order, with the words eye and target between them at will. -1: there is
- * something else. */
+/* Reads the numbers of a line, in order; the words eye, target and fov may stand between them.
+ * Returns how many there are, -1 if there is something else or too many. */
 static int line_numbers(const char *line, float out[NUMBERS])
 {
 	int count = 0;
@@ -73,7 +75,7 @@ static bool view_from(struct camera *view, const float numbers[NUMBERS])
 	return away > 0 && view->fov_deg >= 1 && view->fov_deg <= 170;
 }
 
-/* The text of a line without its end; false: that was the last. */
+/* Copies the next line without its end, cut at LINE_BYTES. Returns false if there is none. */
 static bool next_line(struct bytes *text, char line[LINE_BYTES])
 {
 	size_t size = 0;
@@ -164,7 +166,7 @@ static void view_path(char out[PATH_MAX], const struct reference_options *option
 	snprintf(out, PATH_MAX, "%s/view-%04u.%s", options->out_dir, n, ending);
 }
 
-/* Beside each picture lies what it was made from. */
+/* Returns true if the picture exists and its .key file has the same key. */
 static bool is_there(const struct reference_options *options, uint32_t n, struct hash key)
 {
 	char path[PATH_MAX], hex[HASH_HEX_BYTES];
@@ -195,7 +197,7 @@ static int set_up(struct easel *easel, const struct content *content, struct fau
 
 	if (rc < 0)
 		return rc;
-	/* The largest frame that holds a divisor of the samples; the rest is jitter. */
+	/* The largest frame whose block divides the samples; jitter provides the rest. */
 	for (uint32_t k = 1; k <= options->supersample; k++)
 		if (options->supersample % k == 0 && side * (int)k <= GL_LIMIT_TEXTURE_PX)
 			easel->block = k;
@@ -251,7 +253,7 @@ static void add_frame(struct easel *easel)
 	}
 }
 
-/* All samples of a view into the sums. */
+/* Draws all samples of a view and adds them to the sums. */
 static int draw_samples(struct easel *easel, const struct camera *view)
 {
 	struct camera camera = *view;
@@ -267,7 +269,7 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 	camera.width_px = easel->target.width_px;
 	camera.height_px = easel->target.height_px;
 	if (!drawing_range(easel->drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m))
-		return 0; /* all of it is behind the eye */
+		return 0; /* everything is behind the eye */
 	camera_matrix(&camera, matrix);
 	for (uint32_t n = 0; n < jitters * jitters; n++) {
 		float shift[2] = { ((float)(n % jitters) + 0.5f) / (float)jitters - 0.5f,

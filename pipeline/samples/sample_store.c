@@ -1,3 +1,5 @@
+/* Files of rendered samples: writes one file per sampling point, and reads them back in publishing
+ * order. */
 #include "pipeline/samples/sample_store.h"
 
 #include <errno.h>
@@ -16,20 +18,20 @@ enum { VERSION = 1, POINT_BYTES_MAX = 512 << 20, GRID_BYTES_MAX = 1 << 20 };
 static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt";
 
 struct samples_store {
-	char dir[PATH_MAX - 64]; /* .../samples */
+	char dir[PATH_MAX - 64]; /* path of the folder samples */
 	struct sample_grid grid;
 	struct hash key;
 	struct buffer grid_file;
 	struct buffer point_file;
-	struct reader reader; /* in point_file */
-	uint32_t next_point;  /* in the order of the bricks */
-	uint32_t faces_left;  /* in point_file */
+	struct reader reader; /* reads point_file */
+	uint32_t next_point;  /* number in the order of the bricks */
+	uint32_t faces_left;  /* still unread in point_file */
 	uint32_t point[3];
 	uint32_t states[SAMPLE_STATES];
 	uint16_t tiles[FACE_TILES_MAX];
 	struct bytes objects[FACE_TILES_MAX];
 	uint64_t offsets[FACE_TILES_MAX];
-	char path[PATH_MAX]; /* of point_file */
+	char path[PATH_MAX]; /* path of point_file */
 };
 
 static int samples_dir(char *out, size_t size, const char *content_dir)
@@ -44,7 +46,7 @@ static void point_path(char out[PATH_MAX], const char *dir, const uint32_t point
 	snprintf(out, PATH_MAX, "%s/%02u-%02u-%02u", dir, point[0], point[1], point[2]);
 }
 
-/* Every file: magic, version, key, what it says, hash of all before. */
+/* Every file contains: magic, version, key, contents, hash of everything before. */
 static void seal(struct buffer *file)
 {
 	struct hash hash = hash_of(buffer_bytes(file));
@@ -59,7 +61,7 @@ static void put_head(struct buffer *file, const char magic[4], struct hash key)
 	buffer_put(file, key.bytes, HASH_BYTES);
 }
 
-/* Leaves the reader behind the head. */
+/* Checks hash, magic and version, and leaves the reader after the head. */
 static bool read_head(struct reader *reader, struct bytes file, const char magic[4],
 		      struct hash *key)
 {
@@ -104,7 +106,8 @@ static bool read_grid(struct samples_store *store)
 	return !reader.failed && !reader_left(&reader) && grid_is_sane(&store->grid);
 }
 
-/* The point that comes n-th, brick by brick. false: past the last. */
+/* Sets the n-th point, counted brick by brick. Returns false past the last. The point may lie
+ * outside the grid. */
 static bool point_in_order(const struct sample_grid *grid, uint32_t n, uint32_t point[3])
 {
 	uint32_t bricks[3];
@@ -125,7 +128,8 @@ static bool point_exists(const struct sample_grid *grid, const uint32_t point[3]
 	return point[0] < grid->count[0] && point[1] < grid->count[1] && point[2] < grid->count[2];
 }
 
-/* Into point_file; the reader stands before the first face. -ENOENT: of another key. */
+/* Loads a point into point_file, with the reader before its state. Returns -ENOENT if the key
+ * differs. */
 static int load_point(struct samples_store *store, const uint32_t point[3])
 {
 	struct hash key;
@@ -150,7 +154,8 @@ static int read_state(struct samples_store *store)
 	return state;
 }
 
-/* Reads only the heads: is everything there, and how much of what? */
+/* Checks that every point is there, and counts states. Reads each file, but only its head is
+ * decoded. */
 static int survey(struct samples_store *store)
 {
 	uint32_t point[3], missing = 0;
@@ -271,7 +276,7 @@ static int read_face(struct samples_store *store, struct sample_face *out)
 	return reader->failed ? -EBADMSG : 0;
 }
 
-/* 1: a point with faces is loaded. 0: there is none any more. */
+/* Loads the next point with faces. Returns 1, or 0 if there are no more. */
 static int advance(struct samples_store *store)
 {
 	while (point_in_order(&store->grid, store->next_point, store->point)) {

@@ -1,10 +1,10 @@
-/* The rendered samples of a content folder, DIR/.work/samples/: one file `grid`, and one file a
- * sampling point, written whole or not at all, so that sampling can be stopped anywhere, resumed,
- * and done by many machines on one file system. Every file carries the key of what it was made
- * from (hash of geometry and settings); files of another key count as not there.
+/* The rendered samples of a content folder, DIR/.work/samples/: one file `grid`, and one file per
+ * sampling point. Files are written completely or not at all. So sampling can be stopped at any
+ * time, resumed, and shared by many machines on one file system. Every file carries the key of its
+ * sources (a hash of geometry and settings); files with another key count as missing.
  *
- * The sampler writes with put, the publisher reads with open and next. docs/samples.md has the
- * bytes. One thread a store; several processes may put different points at once. */
+ * The sampler writes with put; the publisher reads with open and next. docs/samples.md describes
+ * the bytes. One thread per store; several processes may put different points at once. */
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLE_STORE_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLE_STORE_H
 
@@ -15,15 +15,15 @@
 enum sample_state {
 	SAMPLE_RENDERED,
 	SAMPLE_EMPTY,  /* nothing of the model in any face */
-	SAMPLE_INSIDE, /* in solid matter */
-	SAMPLE_GROUND, /* below it */
+	SAMPLE_INSIDE, /* inside solid matter */
+	SAMPLE_GROUND, /* below the ground */
 	SAMPLE_STATES
 };
 
 struct sample_grid {
 	float origin_m[3], spacing_m[3];
-	uint32_t count[3];    /* points a side, 1 .. SAMPLE_GRID_MAX */
-	uint32_t level_count; /* of the finest face */
+	uint32_t count[3];    /* points per axis, 1 .. SAMPLE_GRID_MAX */
+	uint32_t level_count; /* levels of a face */
 };
 
 /* One face that shows something of the model. */
@@ -31,46 +31,50 @@ struct sample_face {
 	uint32_t point[3]; /* x, y, z on the grid */
 	int face;
 	uint32_t level_count;
-	uint16_t coverage;           /* as brick_page.coverage; never 0 */
-	float near_m, far_m;         /* as brick_page.near_m */
+	uint16_t coverage;           /* as in brick_page; never 0 */
+	float near_m, far_m;         /* as in brick_page */
 	uint32_t tile_count;         /* at least 1 */
-	const uint16_t *tiles;       /* face_tile_index of each, rising; borrowed */
+	const uint16_t *tiles;       /* face_tile_index of each, ascending; borrowed */
 	const struct bytes *objects; /* encoded tiles; borrowed */
-	/* From samples_store_next: the file the tiles lie in, and where; both borrowed. */
+	/* Set by samples_store_next: the file that holds the tiles, and their offsets in it; both
+	 * borrowed. */
 	const char *path;
 	const uint64_t *offsets;
 };
 
 struct samples_store;
 
-/* Opens what the sampler left for reading. *out is NULL on failure. -ENOENT: nothing was sampled,
- * or points are missing still (logged with the cure). -EBADMSG: damaged (logged). */
+/* Opens the sampler's results for reading. *out is owned by the caller; NULL on failure. Returns
+ * -ENOENT if nothing was sampled or points are still missing, stale or damaged (logged with the
+ * remedy); -EBADMSG if `grid` is damaged (logged). */
 must_check int samples_store_open(struct samples_store **out, const char *content_dir);
 /* NULL is fine. */
 void samples_store_close(struct samples_store *store);
 
+/* Borrowed until the store is closed. */
 const struct sample_grid *samples_store_grid(const struct samples_store *store);
-/* Changes when anything that was sampled changes. */
+/* Returns the key of the sources; it changes if anything that was sampled changes. */
 struct hash samples_store_key(const struct samples_store *store);
 
-/* The next face: brick by brick (bricks z, y, x, the last runs fastest), in a brick point by point
- * (likewise), then by face; so a brick page and its face pages can be written as they come. 1: *out
- * is set, borrowed until the next call. 0: that was all. -EBADMSG: a file is damaged (logged with
- * its name; `sample` makes it anew). */
+/* Reads the next face: brick by brick (order z, y, x, the last runs fastest), in a brick point by
+ * point (likewise), then by face. So a brick page and its face pages can be written as they come.
+ * Returns 1 if *out is set, borrowed until the next call; 0 at the end; -EBADMSG if a file is
+ * damaged (logged with its name; `sample` makes it again), or the errors of the disk. */
 must_check int samples_store_next(struct samples_store *store, struct sample_face *out);
-/* From the first face again. */
+/* Starts again with the first face. */
 void samples_store_rewind(struct samples_store *store);
-/* How many points are in each state; for reports. */
+/* Counts the points in each state, for reports. */
 void samples_store_states(const struct samples_store *store, uint32_t counts[SAMPLE_STATES]);
 
-/* ---- the sampler's side */
+/* ---- for the sampler */
 
-/* Writes `grid`, unless one of the same bytes is there. */
+/* Writes `grid`, unless it has the same bytes already. Creates the folders. */
 must_check int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 				   struct hash key);
-/* Is the point there, whole, with that key? */
+/* Returns true if the point's file exists, is complete and has that key. */
 bool samples_store_has(const char *content_dir, const uint32_t point[3], struct hash key);
-/* faces: face_count of them, by rising face, for SAMPLE_RENDERED; none for other states. */
+/* Writes the file of a point. faces: face_count of them, in ascending order of face, for
+ * SAMPLE_RENDERED; none for other states. */
 must_check int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,
 				 const uint32_t point[3], const struct sample_face *faces,
 				 uint32_t face_count);

@@ -1,3 +1,5 @@
+/* Places sampling points and renders them in child processes, which take points from a shared
+ * counter. */
 #include "pipeline/samples/sampler.h"
 
 #include <errno.h>
@@ -22,13 +24,13 @@
 
 enum { SAMPLER_VERSION = 7, JOBS_MAX = 64 };
 
-/* The grid's box, in sizes of the model: docs/samples.md. */
+/* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;
-/* Solid where the surface winds around the point at least this often; and, for scans that are open
- * towards the point, where more than this share of what it sees are backs. */
+/* A point is inside solid matter if its winding number is above winding_solid. For scans that are
+ * open towards the point: if more than the share backs_solid of what it sees are back faces. */
 static const double winding_solid = 0.5, backs_solid = 0.5;
 
-/* What a child process takes from; shared memory. */
+/* Number of the next point; shared memory of the child processes. */
 struct queue {
 	atomic_uint next;
 };
@@ -41,7 +43,7 @@ struct sampling {
 	struct drawing_options drawing;
 	struct hash key;
 	bool below_ground;
-	uint32_t (*points)[3]; /* still to be made; owned */
+	uint32_t (*points)[3]; /* owned; points that are still missing */
 	uint32_t point_count;
 	struct queue *queue;
 };
@@ -64,7 +66,8 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 		uint32_t steps = (uint32_t)lrintf(side / spacing);
 
 		if (i == 2 && !below_ground) {
-			/* The lowest layer stands half a step above the ground, where eyes are. */
+			/* The lowest layer is half a step above the ground, where visitors' eyes
+			 * would be. */
 			side = middle + half - low_m[i];
 			steps = (uint32_t)lrintf(side / spacing);
 			steps = steps < 1 ? 1 : steps;
@@ -111,7 +114,7 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 	return key;
 }
 
-/* Points of the shard that are not there yet. */
+/* Lists the points of the shard that are still missing. */
 static int list_points(struct sampling *sampling, const struct sampler_options *options)
 {
 	const uint32_t *count = sampling->grid.count;
@@ -134,7 +137,7 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 	return 0;
 }
 
-/* Before anything is rendered: can the point be left out? */
+/* Returns true if the point can be skipped before anything is rendered. */
 static bool is_hopeless(const struct sampling *sampling, const float point_m[3],
 			enum sample_state *state)
 {
@@ -146,7 +149,7 @@ static bool is_hopeless(const struct sampling *sampling, const float point_m[3],
 	return chunks_winding(&sampling->chunks, point_m) > winding_solid;
 }
 
-/* A face of the six as the store wants it. */
+/* The six faces of a point, in the form that the store takes. */
 struct taken {
 	struct shot shots[CUBE_FACES];
 	struct sample_face faces[CUBE_FACES];
@@ -204,7 +207,7 @@ static int take_point(const struct sampling *sampling, struct face_renderer *ren
 				 taken->faces, count);
 }
 
-/* Takes points off the queue; a byte into the pipe for each. */
+/* Processes points until none is left, and writes a byte into the pipe for each. */
 static int work(const struct sampling *sampling, struct face_renderer *renderer, int done_fd)
 {
 	struct taken *taken = calloc(1, sizeof(*taken));
@@ -229,7 +232,7 @@ static int work(const struct sampling *sampling, struct face_renderer *renderer,
 	return rc;
 }
 
-/* All of a child process. */
+/* The body of a child process. */
 static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd)
 {
 	struct face_renderer_options options = { .drawn = sampling->drawing,
@@ -241,7 +244,7 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 	char threads[24];
 	int rc;
 
-	/* A software rasteriser otherwise starts a thread a core in every process. */
+	/* Otherwise a software rasteriser starts one thread per core in every process. */
 	snprintf(threads, sizeof(threads), "%ld", cores > (long)jobs ? cores / (long)jobs : 1);
 	setenv("LP_NUM_THREADS", threads, 0);
 	rc = headless_create(&headless);
@@ -280,7 +283,7 @@ static int start_children(const struct sampling *sampling, uint32_t jobs, pid_t 
 	return 0;
 }
 
-/* Until every child has closed its end of the pipe. */
+/* Shows progress until every child has closed its end of the pipe. */
 static void watch(int done_fd, uint32_t total)
 {
 	struct progress *progress = progress_start("sampling", "points", total);

@@ -1,6 +1,6 @@
-/* Renders the samples of a content folder into its store (pipeline/samples/sample_store.h): finds
- * the sampling points, leaves out those in solid matter, below the ground or with nothing to see,
- * and shares the rest among processes. docs/samples.md. */
+/* Renders the samples of a content folder into its store (pipeline/samples/sample_store.h). It
+ * places the sampling points, skips those inside solid matter or below the ground, and shares the
+ * rest among processes. docs/samples.md. */
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 
@@ -8,21 +8,23 @@
 #include "pipeline/samples/sample_store.h"
 
 struct sampler_options {
-	uint32_t jobs; /* processes; 0: one a core */
+	uint32_t jobs; /* processes; 0: one per core */
 	uint32_t shard,
-		shard_count; /* of all points those with number % count == shard; 0, 1: all */
-	bool below_ground;   /* points also below the lowest point of the model */
+		shard_count; /* only points with number % shard_count == shard; count 0, 1: all */
+	bool below_ground;   /* place points also below the lowest point of the model */
 };
 
-/* Where the sampling points of a model lie: over a box half as large again, `points` along the
- * longest side, as many on the others as keep the distances alike; above the ground unless
- * below_ground. */
+/* Places the sampling points of a model: over a box 1.5 times as large, `points` along the longest
+ * side and as many on the other sides as keep the spacing similar; above the ground unless
+ * below_ground. face_px is the resolution of a face's finest level, which is rounded down to
+ * SAMPLE_TILE_PX << n. */
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground);
+/* Sets out to the position of a point, metres. */
 void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3]);
 
-/* Makes what is missing. Shows progress; errors are in fault. A run that was interrupted goes on
- * where it stopped. The result depends on nothing but the folder. */
+/* Renders all points that are missing, and shows progress. An interrupted run continues where it
+ * stopped. The result depends only on the folder. Errors are described in fault. */
 must_check int sampler_run(const struct content *content, const struct sampler_options *options,
 			   struct fault *fault);
 

@@ -1,3 +1,5 @@
+/* Resolves a multisampled frame into a picture with a fragment shader, which also computes the
+ * procedural material. */
 #include "pipeline/samples/shading.h"
 
 #include <errno.h>
@@ -9,20 +11,20 @@
 
 struct shading {
 	const struct frame *frame; /* borrowed */
-	int width_px, height_px;   /* the frame's */
-	int side;                  /* samples a pixel's */
+	int width_px, height_px;   /* of the frame */
+	int side;                  /* samples per pixel and axis */
 	struct gl_target picture;
 	GLuint mask, program;
 	uint8_t *pixels; /* owned */
 };
 
-/* As in frame.c, samplers are highp in so many words and gl_FragCoord is not used. */
+/* As in cube_frame.c, samplers are explicitly highp and gl_FragCoord is not used. */
 static const char one_sample[] = "#define SIDE 1\n";
 static const char four_samples[] = "#define SIDE 2\n";
 static const char fragment_head[] =
 	"precision highp float;\n"
 	"const int SAMPLES = SIDE * SIDE;\n"
-	"float code(float covered, float backs) {\n" /* of shading.h; one sample counts as four */
+	"float code(float covered, float backs) {\n" /* see shading.h */
 	"	return float(4 / SAMPLES) * (covered * 8.0 + backs) / 255.0;\n"
 	"}\n"
 	"uniform highp sampler2D colour; uniform highp sampler2D depth;\n"
@@ -34,8 +36,8 @@ static const char fragment_head[] =
 	"	return floor(v_at * size / float(SIDE)) * float(SIDE) + 0.5 + odd;\n"
 	"}\n";
 
-/* A rasteriser in software leaves out a shader where no pixel passes the depth test, and nothing
- * else does: so the mask sets the depth of what is worth shading. */
+/* A software rasteriser skips a shader only where no pixel passes the depth test. So the mask sets
+ * the depth of the pixels that need shading. */
 static const char mask_text[] = "precision highp float;\n"
 				"uniform highp sampler2D blocks; varying vec2 v_at;\n"
 				"void main() {\n"
@@ -60,7 +62,7 @@ static const char colour_main[] =
 static const char no_light[] = "float shade(vec3 n, float open) { return 1.0; }\n";
 static const char sun_light[] = "float shade(vec3 n, float open) { return light(n, open, sun); }\n";
 
-/* A sample's surface, as drawing.c packs it. */
+/* Unpacks a sample's surface, as drawing.c packs it. */
 static const char unpack[] =
 	"vec3 at[4]; vec3 normal[4]; float shine[4]; float left[4]; float mine[4];\n"
 	"vec3 middle; float spread;\n"
@@ -74,8 +76,8 @@ static const char unpack[] =
 	"	return i == 0 ? mine[0] : i == 1 ? mine[1] : i == 2 ? mine[2] : mine[3];\n"
 	"}\n";
 
-/* Each loop ends by a break at its very end on purpose: a rasteriser in software walks both ways of
- * a condition, and after a break on to the end of the loop's body. */
+/* Each loop ends with a break at its very end, on purpose. A software rasteriser executes both
+ * sides of a condition, and after a break the rest of the loop's body. */
 static const char material_means[] =
 	"float mean_detail(float frequency, float footprint) {\n"
 	"	float cells = frequency * footprint, sum = 0.0, weight = 0.0;\n"
@@ -116,7 +118,8 @@ static const char material_means[] =
 	"			   mean_detail(23.0, footprint), mean_detail(97.0, footprint));\n"
 	"}\n";
 
-/* Samples that lie together are taken together; each round starts from the first one left. */
+/* Samples that lie together are shaded together. Each round starts with the first sample that is
+ * left. */
 static const char material_main[] =
 	"void main() {\n"
 	"	vec3 sum = vec3(0.0);\n"
@@ -239,7 +242,7 @@ void shading_destroy(struct shading *shading)
 	free(shading);
 }
 
-/* From the eye to the plane one metre before it, through a place of the frame. */
+/* A ray from the eye to the plane one metre in front of it, through a point of the frame. */
 static void ray_to(float out[3], const struct camera *camera, float x_px, float y_px)
 {
 	float middle[3], along = 0;
@@ -252,7 +255,7 @@ static void ray_to(float out[3], const struct camera *camera, float x_px, float 
 		out[i] /= along;
 }
 
-/* Rays of GL's pixels, whose rows rise: corner_ray + x * right + y * up. */
+/* Sets the rays of GL's pixels, whose rows go upwards: corner_ray + x * right + y * up. */
 static void set_camera(const struct shading *shading, const struct camera *camera)
 {
 	float width = (float)camera->width_px, height = (float)camera->height_px;
