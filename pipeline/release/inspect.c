@@ -1,3 +1,5 @@
+/* Prints summaries of single files: recognises the form by its first bytes, decodes it and prints
+ * its main figures. */
 #include "pipeline/release/inspect.h"
 
 #include <cjson/cJSON.h>
@@ -258,7 +260,7 @@ static int print_info(FILE *to, struct bytes bytes)
 	return 0;
 }
 
-/* Signatures are for verify to judge: here only what the file says. */
+/* Prints what a signed file says. Signatures are not checked here; verify does that. */
 static int print_signed(FILE *to, struct bytes bytes)
 {
 	cJSON *json = cJSON_ParseWithLength((const char *)bytes.data, bytes.size);
@@ -293,7 +295,7 @@ static int print_signed(FILE *to, struct bytes bytes)
 	return shown ? 0 : -EBADMSG;
 }
 
-/* A whole picture, or a tile. */
+/* Prints the size of a picture or, if it does not decode as one, of a tile. */
 static int print_picture(FILE *to, struct bytes bytes)
 {
 	uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];

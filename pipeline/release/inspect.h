@@ -1,4 +1,4 @@
-/* Readable summaries of what a release, or a file of one, holds. Prints to `to`. */
+/* Prints readable summaries of a release, or of a file of one, to `to`. */
 #ifndef GOPURA_PIPELINE_RELEASE_INSPECT_H
 #define GOPURA_PIPELINE_RELEASE_INSPECT_H
 
@@ -6,15 +6,16 @@
 
 #include "pipeline/release/release_reader.h"
 
-/* Any object, locator, signed file, picture or master file, told by its first bytes. -EBADMSG: it
- * is damaged, or none of these (a line says so). */
+/* Summarises an object, locator, signed file or picture, recognised by its first bytes. Tiles have
+ * no such bytes and are not recognised. Returns -EBADMSG if it is damaged or of no known form (a
+ * line says so). */
 must_check int inspect_bytes(FILE *to, struct bytes bytes);
 
-/* A release as a whole: what is current, and its pages down to the bricks. Errors are printed to
- * `to` as they are met. */
+/* Summarises a whole release: its signed file, its locator, its root page and the root's first
+ * three children. Errors are printed to `to` as they occur. */
 must_check int inspect_release(FILE *to, struct release_reader *reader);
 
-/* Finds one object of the release, says where it hangs and lies, and summarises it. -ENOENT: the
+/* Finds one object of the release, prints where it is, and summarises it. Returns -ENOENT if the
  * release has no such object. */
 must_check int inspect_object(FILE *to, struct release_reader *reader, struct hash object);
 

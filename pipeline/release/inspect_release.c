@@ -1,3 +1,4 @@
+/* Walks through the pages of a release, to summarise it or to find one of its objects. */
 #include "pipeline/release/inspect.h"
 
 #include <errno.h>
@@ -10,9 +11,9 @@
 
 enum { LOCATOR_BYTES_MAX = 256 << 20 };
 
-/* A page on the way through the release. */
+/* A page found while walking through the release. */
 struct place {
-	struct hash parent; /* zero for the root */
+	struct hash parent; /* the page whose child it is; zero for the root */
 	uint64_t offset;
 	struct page_child child;
 };
@@ -22,7 +23,7 @@ struct walk {
 	struct release_reader *reader;
 	struct locator locator;
 	struct release release;
-	struct place *places; /* breadth first; owned */
+	struct place *places; /* owned; in breadth-first order */
 	size_t count, room;
 	struct hash_map seen;
 };
@@ -33,7 +34,7 @@ static int complain(struct walk *walk, int rc, const char *text)
 	return rc;
 }
 
-/* By the release's own first root: to look, not to trust. */
+/* Reads release.json, trusting the release's own first root: to look, not to verify. */
 static int read_release(struct walk *walk, bool show)
 {
 	struct buffer root, file;
@@ -127,7 +128,7 @@ static void finish(struct walk *walk)
 	free(walk->places);
 }
 
-/* The object's bytes, borrowed until the next call. */
+/* Reads an object; its bytes are borrowed until the next call. */
 static int read_place(struct walk *walk, const struct place *place, struct bytes *out)
 {
 	int rc = release_reader_child(walk->reader, &walk->locator, place->parent, place->offset,
@@ -155,7 +156,7 @@ static int show_found(struct walk *walk, const struct place *place, uint32_t chi
 	return inspect_bytes(walk->to, bytes);
 }
 
-/* 1: found among the page's children. */
+/* Looks for the object among a page's children. Returns 1 if it was found and shown. */
 static int look_among(struct walk *walk, const struct place *at, struct hash object)
 {
 	struct place child = { .parent = at->child.hash };
@@ -192,7 +193,7 @@ int inspect_object(FILE *to, struct release_reader *reader, struct hash object)
 		return rc;
 	}
 	for (size_t i = 0; rc == 0 && i < walk.count; i++) {
-		struct place at = walk.places[i]; /* the array may move */
+		struct place at = walk.places[i]; /* a copy: the array may move */
 
 		rc = look_among(&walk, &at, object);
 	}
@@ -217,7 +218,8 @@ int inspect_release(FILE *to, struct release_reader *reader)
 			rc = page_decode(&page, bytes);
 		if (rc < 0)
 			break;
-		/* The root and its children; bricks by the hundred are asked for by name. */
+		/* The root and its first children. Hundreds of bricks follow; ask for them by
+		 * name. */
 		if (i < 4)
 			rc = inspect_bytes(to, bytes);
 		for (uint32_t c = 0; rc == 0 && i == 0 && c < page.child_count; c++) {

@@ -1,11 +1,11 @@
+/* Stores the label objects of all groups in one file with a key and a checksum. */
 #include "pipeline/release/label_cache.h"
 
 #include <errno.h>
 #include <string.h>
 
 enum {
-	LABELLING_VERSION =
-		1, /* raised when the same parts of the same scan are labelled otherwise */
+	LABELLING_VERSION = 1, /* raise it when the same parts of the same scan get other labels */
 	KEY_TEXT_MAX = 1 << 20,
 	FILE_BYTES_MAX = 256 << 20,
 };
@@ -47,7 +47,8 @@ static struct hash read_hash(struct reader *reader)
 	return hash;
 }
 
-/* The file: the hash of all behind it; the key; the count; each object after its size. */
+/* The file contains: the hash of everything after it, the key, the count, and each object after its
+ * size. */
 static int read_file(struct buffer *labels, uint32_t count, struct hash key, struct bytes file)
 {
 	struct reader reader;

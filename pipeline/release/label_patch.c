@@ -1,3 +1,5 @@
+/* Labels the triangles of a patch group: finds which parts contain each triangle, and samples the
+ * triangles that an outline crosses. */
 #include "pipeline/release/label_patch.h"
 
 #include <errno.h>
@@ -10,23 +12,24 @@
 
 enum { SAMPLES_MAX = ((1 << LABEL_LEVEL_MAX) + 1) * ((1 << LABEL_LEVEL_MAX) + 2) / 2 };
 
-/* A growing group. */
+/* The group being built, and the current triangle. */
 struct writer {
 	struct label_group *out;
 	const struct label_source *source;
 	const struct lattice *lattice;
 	float cell_m;
-	uint32_t *part_of; /* of each part of the source, its number here plus one; owned */
+	uint32_t *
+		part_of; /* for each part of the source, its number in this group plus one; owned */
 	uint32_t set_room, member_room, border_room, value_room;
-	/* The triangle at hand. */
+	/* The current triangle: */
 	float corner[3][3], normal[3][3], centre[3], radius_m, longest_m;
-	uint16_t own[LABEL_PARTS_MAX]; /* the parts that have it wholly */
+	uint16_t own[LABEL_PARTS_MAX]; /* the parts that contain it completely */
 	uint32_t own_count;
-	int level; /* of its samples; 0: not taken yet */
+	int level; /* level of its samples; 0: not sampled yet */
 	struct nearest_place samples[SAMPLES_MAX];
 };
 
-/* Room for more items; doubles. */
+/* Grows an array to at least `needed` items, by doubling. */
 static int make_room(void *items, uint32_t *room, uint32_t needed, size_t item_bytes)
 {
 	uint32_t larger = *room ? *room : 16;
@@ -45,7 +48,7 @@ static int make_room(void *items, uint32_t *room, uint32_t needed, size_t item_b
 	return 0;
 }
 
-/* ---- the triangle at hand */
+/* ---- the current triangle */
 
 static void place_triangle(struct writer *w, const struct patch_mesh *patch, uint32_t t)
 {
@@ -71,7 +74,8 @@ static void place_triangle(struct writer *w, const struct patch_mesh *patch, uin
 	}
 }
 
-/* By corners in a fixed order, so that triangles that share an edge agree on it bit for bit. */
+/* Interpolates between corners in a fixed order, so that triangles that share an edge get the same
+ * bits on it. */
 static void mix(float out[3], float at[3][3], const int weight[3], int n)
 {
 	int order[3] = { 0, 1, 2 };
@@ -111,9 +115,9 @@ static void take_samples(struct writer *w)
 	w->level = level;
 }
 
-/* ---- what is told of it */
+/* ---- its labels */
 
-/* The number of a part in this group. */
+/* Returns the number of a part in this group; adds the part if needed. */
 static uint16_t number_part(struct writer *w, uint32_t part)
 {
 	const struct label_source_part *from = label_source_part(w->source, part);
@@ -134,7 +138,7 @@ static int by_number(const void *a, const void *b)
 	return *(const uint16_t *)a - *(const uint16_t *)b;
 }
 
-/* The set of the triangle's own parts, made where it is the first of its kind. */
+/* Finds the set of the parts that contain the triangle, or adds it. */
 static int number_set(struct writer *w, uint16_t *out)
 {
 	struct label_group *group = w->out;
@@ -165,7 +169,7 @@ static int number_set(struct writer *w, uint16_t *out)
 	return 0;
 }
 
-/* Metres into a number that is odd, so that no corner lies on the outline itself. */
+/* Quantises metres to an odd number, so that no corner lies on the outline itself. */
 static int8_t value_of(float within_m, float cell_m)
 {
 	float steps = floorf(within_m / cell_m * LABEL_VALUE_MAX / 2);
@@ -197,7 +201,7 @@ static int add_border(struct writer *w, struct label_patch *patch, uint32_t tria
 	return 0;
 }
 
-/* One part that comes near the triangle. */
+/* Labels the triangle for one part that is near it. */
 static int label_part(struct writer *w, struct label_patch *patch, uint32_t triangle, uint32_t part)
 {
 	int8_t values[SAMPLES_MAX];
@@ -208,8 +212,8 @@ static int label_part(struct writer *w, struct label_patch *patch, uint32_t tria
 		take_samples(w);
 	count = label_values(w->level);
 	cell_m = w->longest_m / (float)(1 << w->level);
-	/* Where the surface ends with the part nothing lies outside: the outline runs just within.
-	 */
+	/* If the surface ends where the part ends, nothing lies outside the part. So the outline is
+	 * moved slightly inwards. */
 	if (label_source_part(w->source, part)->triangles)
 		inset_m = fminf(cell_m, w->cell_m) / 4;
 	for (uint32_t i = 0; i < count; i++) {
@@ -235,7 +239,8 @@ static int by_triangle(const void *a, const void *b)
 	return left->part - right->part;
 }
 
-/* Borders of a triangle come in the order of the source's parts; their numbers here are others. */
+/* Sorts the borders of a patch. They were added in the order of the source's parts, but the group
+ * numbers its parts differently. */
 static int sort_borders(struct label_group *group, struct label_patch *patch, uint32_t first_value)
 {
 	uint32_t count = group->value_count - first_value, next = first_value;
@@ -258,8 +263,8 @@ static int sort_borders(struct label_group *group, struct label_patch *patch, ui
 	return 0;
 }
 
-/* Where all of it lies on one side of a part, one sample tells; else it is looked at as finely as
- * outlines are told. */
+/* If the whole triangle is on one side of a part, one sample decides. Otherwise it is sampled at
+ * the resolution of outlines. */
 static int label_triangle(struct writer *w, struct label_patch *patch,
 			  const struct patch_mesh *mesh, uint32_t t, const uint32_t *near,
 			  uint32_t near_count)
@@ -289,8 +294,9 @@ static int label_triangle(struct writer *w, struct label_patch *patch,
 	return rc < 0 ? rc : number_set(w, &patch->sets[t]);
 }
 
-/* The parts that a patch may have something of; how many. Its surface may be off the scan by as
- * much as its middle triangles are, which is small beside it: a quarter of its size is plenty. */
+/* Lists the parts that a patch may intersect. Returns how many. The patch's surface may be off the
+ * scan by about the size of its triangles, which is small compared with the patch: a quarter of its
+ * size is plenty. */
 static uint32_t list_near(const struct writer *w, const struct patch_mesh *mesh, uint32_t *near)
 {
 	float low[3] = { INFINITY, INFINITY, INFINITY };

@@ -1,3 +1,5 @@
+/* Prepares the parts for labelling: bounding spheres, areas and outlines, with search trees for the
+ * nearest surface and the nearest outline. */
 #include "pipeline/release/label_source.h"
 
 #include <errno.h>
@@ -8,9 +10,10 @@
 #include "geometry/vec.h"
 #include "pipeline/import/mesh_edges.h"
 
-/* A part's outline where it is no volume: the edges of its triangles that no other of them has. */
+/* The outline of a part that is a list of triangles: the edges that an odd number of its triangles
+ * share. */
 struct outline {
-	uint32_t (*edges)[3]; /* triangles without width; owned */
+	uint32_t (*edges)[3]; /* owned; triangles of zero width */
 	uint32_t count, room;
 	bool failed;
 	struct nearest *nearest;
@@ -20,7 +23,7 @@ struct label_source {
 	const struct mesh *mesh;
 	struct nearest *surface;
 	struct label_source_part *parts; /* owned */
-	struct outline *outlines;        /* of each part; owned */
+	struct outline *outlines;        /* owned; one per part */
 	uint32_t part_count;
 	float spacing_m;
 };
@@ -49,7 +52,7 @@ static void note_edge(void *data, const struct mesh_edge *edge)
 	outline->edges[outline->count++][2] = edge->ends[1];
 }
 
-/* A rim of the scan counts as outline here; nothing lies beyond it that could be outside. */
+/* An open border of the scan also counts as outline here; nothing beyond it could be outside. */
 static int find_outline(struct outline *outline, const struct mesh *mesh,
 			const struct label_source_part *part)
 {
@@ -145,7 +148,7 @@ static void bound(struct label_source_part *part, const struct mesh *mesh)
 		bound_prism(part);
 }
 
-/* One walk over the scan for all volumes. */
+/* Measures the areas of all volumes in one pass over the scan, and of triangle lists. */
 static int measure(struct label_source *source)
 {
 	double *areas = calloc(source->part_count + 1, sizeof(*areas));
@@ -242,7 +245,7 @@ const struct label_source_part *label_source_part(const struct label_source *sou
 	return &source->parts[part];
 }
 
-/* ---- asking */
+/* ---- queries */
 
 void label_source_place(const struct label_source *source, const float point_m[3],
 			const float normal[3], float off_m, struct nearest_place *out)
@@ -250,7 +253,7 @@ void label_source_place(const struct label_source *source, const float point_m[3
 	struct nearest_place same;
 
 	nearest_find(source->surface, point_m, NULL, INFINITY, out);
-	/* Much farther it is another place and not the other side. */
+	/* If it is much farther away, it is another place and not the other side of a wall. */
 	if (!nearest_faces(source->surface, out->triangle, normal) &&
 	    nearest_find(source->surface, point_m, normal, fmaxf(3 * out->distance_m, off_m),
 			 &same))

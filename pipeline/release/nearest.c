@@ -1,3 +1,4 @@
+/* A bounding-volume tree over triangles, split at the median, and its nearest-point search. */
 #include "pipeline/release/nearest.h"
 
 #include <errno.h>
@@ -11,14 +12,14 @@ enum { LEAF_TRIANGLES = 8, DEPTH_MAX = 64 };
 
 struct node {
 	float low[3], high[3];
-	uint32_t first, count; /* in order; an inner node's children are it + 1 and right */
+	uint32_t first, count; /* a run of order; an inner node's children: the next, right */
 	uint32_t right;        /* 0: a leaf */
 };
 
 struct nearest {
 	float (*positions)[3];
 	uint32_t (*triangles)[3];
-	uint32_t *order;    /* of triangles; owned */
+	uint32_t *order;    /* owned; the triangles in tree order */
 	struct node *nodes; /* owned */
 	uint32_t node_count;
 };
@@ -53,7 +54,7 @@ static void bound(const struct nearest *n, struct node *node)
 		}
 }
 
-/* Wirth's selection: the middle triangle along an axis comes to the middle of the run. */
+/* Wirth's selection: moves the median triangle along an axis to the middle of the run. */
 static void split_at_median(struct nearest *n, const struct node *node, int axis)
 {
 	int64_t low = node->first, high = low + node->count - 1, middle = low + node->count / 2;
@@ -111,7 +112,7 @@ int nearest_create(struct nearest **out, float (*positions)[3], uint32_t (*trian
 		return -ENOMEM;
 	n->positions = positions;
 	n->triangles = triangles;
-	/* Halving leaves at least four in a leaf, but for a tree of one. */
+	/* A split leaves at least four triangles in a leaf, unless the tree is a single leaf. */
 	n->nodes = calloc((size_t)triangle_count / 2 + 1, sizeof(*n->nodes));
 	n->order = malloc(((size_t)triangle_count + 1) * sizeof(*n->order));
 	if (!n->nodes || !n->order) {
@@ -135,7 +136,7 @@ void nearest_destroy(struct nearest *nearest)
 	free(nearest);
 }
 
-/* ---- asking */
+/* ---- queries */
 
 static void point_between(float out[3], const float a[3], const float b[3], float share)
 {
@@ -143,8 +144,8 @@ static void point_between(float out[3], const float a[3], const float b[3], floa
 		out[i] = a[i] + share * (b[i] - a[i]);
 }
 
-/* By the region of corners, edges or face in which the point lies (Ericson, "Real-Time Collision
- * Detection", 2005, 5.1.5). */
+/* Nearest point of a triangle, by the Voronoi region of corner, edge or face that contains p
+ * (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). */
 static void nearest_of_triangle(float out[3], const float p[3], const float a[3], const float b[3],
 				const float c[3])
 {
@@ -220,7 +221,8 @@ static void look(struct search *s, const struct node *node)
 				    corner(n, t, 2));
 		vec_sub(off, at, s->point);
 		distance2 = vec_dot(off, off);
-		/* Of equals the first in the mesh, whatever the tree looks like. */
+		/* Of equally near triangles, take the first in the mesh, independent of the
+		 * tree. */
 		if (distance2 > s->best2 ||
 		    (s->found && distance2 == s->best2 && t > s->out->triangle) ||
 		    (s->facing && !nearest_faces(n, t, s->facing)))
@@ -251,7 +253,7 @@ bool nearest_find(const struct nearest *nearest, const float point_m[3], const f
 			look(&s, node);
 			continue;
 		}
-		/* The nearer is looked into first. */
+		/* The nearer child is searched first. */
 		bool swap = box_distance2(right, point_m) < box_distance2(left, point_m);
 
 		stack[depth++] = swap ? at + 1 : node->right;

@@ -1,3 +1,4 @@
+/* A hash table with linear probing that grows when it is half full. */
 #include "pipeline/release/object_map.h"
 
 #include <errno.h>

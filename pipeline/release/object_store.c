@@ -1,3 +1,4 @@
+/* Keeps objects by hash, in memory or as a byte range of a file that is checked when it is read. */
 #include "pipeline/release/object_store.h"
 
 #include <errno.h>
@@ -10,7 +11,7 @@
 #include "pipeline/release/object_map.h"
 
 struct stored {
-	uint8_t *memory; /* owned; NULL: in a file */
+	uint8_t *memory; /* owned; NULL: it is in a file */
 	uint32_t size;
 	uint32_t file; /* index into paths */
 	uint64_t offset;
@@ -51,7 +52,7 @@ void object_store_destroy(struct object_store *store)
 	free(store);
 }
 
-/* 1: *object was taken. 0: there already. */
+/* Returns 1 if *object was taken, 0 if the hash was there already. */
 static int insert(struct object_store *store, struct hash hash, const struct stored *object)
 {
 	int rc;

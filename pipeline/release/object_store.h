@@ -1,5 +1,5 @@
-/* The objects of a release that is being made, by name: small ones in memory, the many tiles where
- * they lie already (a stretch of a file). One thread. */
+/* The objects of a release that is being made, by name. Small ones are kept in memory; the many
+ * tiles stay in the files where the sampler wrote them. One thread. */
 #ifndef GOPURA_PIPELINE_RELEASE_OBJECT_STORE_H
 #define GOPURA_PIPELINE_RELEASE_OBJECT_STORE_H
 
@@ -7,23 +7,26 @@
 
 struct object_store;
 
+/* *out is owned by the caller; NULL on failure. Returns -ENOMEM. */
 must_check int object_store_create(struct object_store **out);
 void object_store_destroy(struct object_store *store); /* NULL is fine */
 
-/* bytes are copied. *child (may be NULL) becomes what a page says of it. -EFBIG: empty or larger
- * than an object may be. */
+/* Adds an object; bytes are copied. *child (may be NULL) is set for use in a page. Adding it twice
+ * is fine. Returns -EFBIG if it is empty or larger than OBJECT_BYTES_MAX, or -ENOMEM. */
 must_check int object_store_add(struct object_store *store, struct bytes bytes,
 				struct page_child *child);
-/* The same for a page, which is encoded here. */
+/* Encodes a page and adds it likewise. */
 must_check int object_store_add_page(struct object_store *store, const struct page *page,
 				     struct page_child *child);
-/* An object that lies in a file; path is copied, once a run of calls with the same one. */
+/* Adds an object that lies in a file at offset. path is copied, once for consecutive calls with the
+ * same one. The file is not read now. */
 must_check int object_store_add_stretch(struct object_store *store, const char *path,
 					uint64_t offset, const struct page_child *child);
 
-/* Appends the object to out. -ENOENT: no such object. -EBADMSG: the file has changed since (its
- * bytes do not hash to the name any more). */
+/* Appends the object to out. Returns -ENOENT if there is no such object, or -EBADMSG (logged) if
+ * the file changed since (its bytes do not hash to the name any more). */
 must_check int object_store_read(struct object_store *store, struct hash hash, struct buffer *out);
+/* Returns true if the store has the object. */
 bool object_store_has(const struct object_store *store, struct hash hash);
 
 #endif

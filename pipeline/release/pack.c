@@ -1,3 +1,5 @@
+/* Walks the pages of a release breadth first, writes their blocks into packs or reuses old ones,
+ * and writes the locator. */
 #include "pipeline/release/pack.h"
 
 #include <errno.h>
@@ -11,21 +13,21 @@
 #include "base/log.h"
 #include "pipeline/release/object_map.h"
 
-/* Which pack a block lies in, until the names of new packs are known. */
+/* Marks a block in a new pack while the names of new packs are not known. */
 #define NEW_PACK (1u << 31)
 
 struct packer {
 	const struct pack_options *options;
 	struct pack_result *result;
 	struct hash_map seen;     /* pages that are queued or done */
-	struct page_child *queue; /* pages, breadth first; owned */
+	struct page_child *queue; /* owned; pages in breadth-first order */
 	size_t queue_count, queue_room;
 	struct locator_block *blocks; /* owned; pack is an index into before, or NEW_PACK | index */
 	uint32_t block_count, block_room;
-	struct hash *packs; /* new ones; owned */
+	struct hash *packs; /* owned; names of new packs */
 	uint32_t pack_count;
-	struct buffer pack;  /* the one being filled */
-	bool *before_exists; /* a pack of before; owned */
+	struct buffer pack;  /* the pack being filled */
+	bool *before_exists; /* owned; for each pack of before */
 };
 
 static int path_of(char path[PATH_MAX], const char *release, const char *folder, struct hash name)
@@ -38,7 +40,7 @@ static int path_of(char path[PATH_MAX], const char *release, const char *folder,
 		       : -ENAMETOOLONG;
 }
 
-/* *items has room for one more afterwards. */
+/* Ensures that *items has room for one more. */
 static int make_room(void **items, size_t count, size_t *room, size_t item_bytes)
 {
 	size_t more = *room ? *room * 2 : 64;
@@ -94,8 +96,8 @@ static int end_pack(struct packer *packer)
 	packer->packs = grown;
 	name = hash_of(bytes);
 	rc = path_of(path, packer->options->release, "packs", name);
-	/* The same pack may stand there from a run that was cut off later on: whole, by its name.
-	 */
+	/* The same pack may exist from a run that was interrupted later. Its name proves that it is
+	 * complete. */
 	if (rc == 0)
 		rc = bytes_write_file(bytes, path);
 	if (rc < 0) {
@@ -109,7 +111,7 @@ static int end_pack(struct packer *packer)
 	return 0;
 }
 
-/* The block of an earlier release, if its pack is there. */
+/* Returns the page's block in the earlier release, if its pack still exists. */
 static const struct locator_block *block_before(const struct packer *packer, struct hash page,
 						uint64_t size)
 {
@@ -153,7 +155,7 @@ static int place_block(struct packer *packer, struct hash page, const struct pag
 		size += children[i].size;
 	if (size == 0)
 		return 0;
-	/* The zero hash is another root's block in another release. */
+	/* The zero hash names another root's block in another release. */
 	before = hash_is_zero(page) ? NULL : block_before(packer, page, size);
 	if (!before)
 		return write_block(packer, page, children, child_count, size);
@@ -224,7 +226,7 @@ static int compare_blocks(const void *a, const void *b)
 			    ((const struct locator_block *)b)->page);
 }
 
-/* Numbers the packs: those of before that are used, in their order, then the new ones. */
+/* Numbers the packs: first the reused old ones in their order, then the new ones. */
 static int make_locator(struct packer *packer, struct locator *locator)
 {
 	uint32_t count = packer->options->before ? packer->options->before->pack_count : 0;

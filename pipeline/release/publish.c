@@ -1,3 +1,5 @@
+/* Publishes a release: makes the root page, packs, and writes the signed files if anything
+ * changed. */
 #include "pipeline/release/publish.h"
 
 #include <assert.h>
@@ -43,7 +45,7 @@ static int64_t life_or(int64_t life_s, int days)
 	return life_s > 0 ? life_s : (int64_t)days * DAY_S;
 }
 
-/* The next release: signs and writes. */
+/* Signs and writes the files of the next release. */
 static int sign(struct publish_report *report, const struct publish_target *target,
 		const struct page_child *root, uint64_t sequence)
 {
@@ -108,7 +110,7 @@ static void show_packing(void *data, uint64_t done_bytes)
 	bar->done = done_bytes;
 }
 
-/* Packs against the locator of the release before, where it can be read. */
+/* Packs the release, reusing blocks of the previous release if its locator can be read. */
 static int pack(struct publish_report *report, const struct publish_target *target,
 		struct object_store *objects, const struct page_child *root,
 		const struct release *before)

@@ -1,3 +1,5 @@
+/* Collects the parts of a release from a content folder (hierarchy, samples, information, labels)
+ * and publishes them with the folder's keys. */
 #include "pipeline/release/publish_content.h"
 
 #include <errno.h>
@@ -13,7 +15,7 @@
 #include "pipeline/release/publish_sources.h"
 #include "pipeline/release/start_view.h"
 
-/* Where the release goes and who signs it. */
+/* The target folder and the signing keys. */
 struct setting {
 	char keys_folder[PATH_MAX];
 	struct publisher_keys keys;
@@ -52,7 +54,7 @@ static int setting_init(struct setting *setting, char release[PATH_MAX],
 	return open_keys(setting, options);
 }
 
-/* How much the current release is, by its locator. -ENOENT: a pack is gone. */
+/* Measures the current release by its locator. Returns -ENOENT if a pack is missing. */
 static int measure(struct publish_content_report *report)
 {
 	struct locator locator;
@@ -75,7 +77,7 @@ static int measure(struct publish_content_report *report)
 
 /* ---- the root page */
 
-/* Only "auto" needs the mesh, to see whether it has pictures. */
+/* Decides whether the model is lit. Only "auto" needs the mesh, to see whether it has textures. */
 static int judge_light(bool *lit, const struct content *content)
 {
 	struct fault fault = { "" };
@@ -156,8 +158,8 @@ static int check_ways(const struct info_built *built, const struct content *cont
 	return rc;
 }
 
-/* Every fault of what is told; the scan is read only where there are tours. Their stops need the
- * anchors of lists of faces. */
+/* Logs every fault of the information. The scan is read only if there are tours; the stops of a
+ * tour need the anchors of face lists. */
 static int check_tours(const struct info_build_options *options, const struct content *content)
 {
 	struct info_build_options quiet = *options;
@@ -165,7 +167,7 @@ static int check_tours(const struct info_build_options *options, const struct co
 	struct info_built built;
 	int rc;
 
-	quiet.complaint = complain; /* warnings are publish_info's */
+	quiet.complaint = complain; /* warnings are left to publish_info */
 	rc = info_build(&built, &quiet);
 	if (rc == 0 && built.tour_count > 0 && faces->only_judge) {
 		info_built_finish(&built);

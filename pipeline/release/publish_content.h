@@ -1,4 +1,4 @@
-/* A release out of a content folder whose hierarchy and samples are made. */
+/* Publishes a content folder whose hierarchy and samples exist. */
 #ifndef GOPURA_PIPELINE_RELEASE_PUBLISH_CONTENT_H
 #define GOPURA_PIPELINE_RELEASE_PUBLISH_CONTENT_H
 
@@ -19,32 +19,33 @@ struct publish_content_options {
 struct publish_content_report {
 	struct publish_report publish;
 	char release[PATH_MAX];
-	uint64_t release_bytes; /* of the objects of the current release */
+	uint64_t release_bytes; /* size of all objects of the current release */
 	uint32_t release_packs;
-	uint64_t published_triangles; /* by publish_content */
+	uint64_t published_triangles; /* set by publish_content */
 };
 
-/* Errors are logged. -ENOENT: hierarchy or samples are not made yet. */
+/* Publishes the content folder. Makes signing keys if there are none. Returns -ENOENT if hierarchy
+ * or samples do not exist yet. Errors are logged. */
 must_check int publish_content(struct publish_content_report *report,
 			       const struct publish_content_options *options);
 
-/* Whether parts, pages and pictures can be published; every fault is logged. */
+/* Checks whether parts, pages, pictures and tours can be published; every fault is logged. */
 must_check int publish_content_check(const struct content *content);
 
-/* The root of an earlier release again: see publish_again. */
+/* Publishes the root of an earlier release again: see publish_again. */
 must_check int publish_content_again(struct publish_content_report *report,
 				     const struct publish_content_options *options,
 				     uint64_t sequence);
 
-/* What is published, and nothing written. -ENOENT as below. */
+/* Reports the current release; nothing is published. Returns -ENOENT as below. */
 must_check int publish_content_current(struct publish_content_report *report,
 				       const struct publish_content_options *options);
-/* Nothing but a new timestamp. -ENOENT: nothing is published there, or its packs are not all there
- * any more. */
+/* Writes only a new timestamp. Returns -ENOENT if nothing was published there, or some of its packs
+ * are missing. */
 must_check int publish_content_renew(struct publish_content_report *report,
 				     const struct publish_content_options *options);
 
-/* For people: one line for what is current, one for what was written. */
+/* Prints for people: one line about the current release, one about what was written. */
 void publish_content_print(FILE *to, const struct publish_content_report *report);
 
 #endif

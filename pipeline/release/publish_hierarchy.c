@@ -1,3 +1,5 @@
+/* Publishes the coarse part of the master: cuts it, reduces the precision of normals and colours,
+ * and makes the hierarchy page. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -7,7 +9,7 @@
 #include "format/patch.h"
 #include "pipeline/release/publish_sources.h"
 
-/* The share that holds the top and no more. */
+/* Returns the smallest share that contains the top group. */
 static double share_of_top(const struct master *master)
 {
 	const struct hierarchy *hierarchy = &master->hierarchy;
@@ -31,7 +33,7 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 	return master_cut_create(cut, master, share_of_top(master));
 }
 
-/* What a patch is coloured with where no image is needs no more. */
+/* Vertex colours are seen only where there is no image, and need no more precision. */
 enum { COLOUR_BITS = 6, OPEN_BITS = 4 };
 
 static void round_colours(uint8_t colour[4])
@@ -40,7 +42,7 @@ static void round_colours(uint8_t colour[4])
 		colour[i] = patch_round_colour(colour[i], i < 3 ? COLOUR_BITS : OPEN_BITS);
 }
 
-/* To every fourth step, away from zero at the half; -128 is no normal's. */
+/* Rounds to multiples of 4, halves away from zero. -128 is no valid normal. */
 static void round_normal(int8_t normal[2])
 {
 	for (int i = 0; i < 2; i++) {
@@ -50,8 +52,8 @@ static void round_normal(int8_t normal[2])
 	}
 }
 
-/* The same for equal vertices, so that neighbours go on agreeing. Places stay as they are: they
- * decide which image is seen where (docs/patch.md has the figures). */
+/* Reduces precision equally for equal vertices, so that neighbours still agree. Positions stay
+ * unchanged: they decide which image is seen where (docs/patch.md has the figures). */
 static int round_group(struct buffer *object)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];

@@ -1,3 +1,4 @@
+/* Publishes the information page: builds the database and adds it with its pictures. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -7,7 +8,7 @@
 #include "base/log.h"
 #include "pipeline/release/publish_sources.h"
 
-/* The file is read again: it must still be what the database names. */
+/* Adds a picture. The file is read again and must still have the hash that the database names. */
 static int add_picture(struct object_store *objects, const char *folder,
 		       const struct info_picture_file *picture, struct page_child *out)
 {
@@ -32,7 +33,7 @@ static int add_picture(struct object_store *objects, const char *folder,
 	return rc;
 }
 
-/* Every error, but warnings only until it is clear what they are about. */
+/* All errors are logged, but only the first few warnings. */
 enum { WARNINGS_SHOWN = 5 };
 
 static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)

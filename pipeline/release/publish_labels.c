@@ -1,3 +1,5 @@
+/* Publishes the labels page: labels every published patch group by the scan, or takes the labels
+ * from the cache. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,16 +14,16 @@
 #include "pipeline/release/label_patch.h"
 #include "pipeline/release/publish_sources.h"
 
-/* The groups as published, and what comes of each. */
+/* The groups as published, and their labels. */
 struct labelling {
 	struct object_store *objects;
-	struct page page; /* of the hierarchy; page_bytes hold its payload */
+	struct page page; /* the hierarchy page; page_bytes holds its payload */
 	struct buffer page_bytes;
 	struct hierarchy hierarchy;
 	const struct label_source *source;
 	struct lattice lattice;
-	struct buffer *groups; /* objects; owned */
-	struct buffer *labels; /* of each; empty: none; owned */
+	struct buffer *groups; /* owned; patch group objects */
+	struct buffer *labels; /* owned; the label object of each group, empty: none */
 	struct progress *progress;
 };
 
@@ -37,7 +39,7 @@ static int read_page(struct object_store *objects, const struct page_child *chil
 
 /* ---- the parts */
 
-/* Those that have a surface. */
+/* Lists the parts that have a surface. Returns how many. */
 static uint32_t list_parts(struct label_source_part *parts, const struct info *info,
 			   const struct part_faces_all *faces)
 {
@@ -79,8 +81,8 @@ static int open_info(struct object_store *objects, const struct page_child *chil
 
 /* ---- the groups */
 
-/* How finely outlines are told: as the scan's faces, and on coarser patches, which are seen from
- * afar, as what those are wrong by: the least of them. */
+/* The resolution of outlines, metres: the spacing of the scan. On coarser patches, which are seen
+ * from afar, it is the smallest error of the patches, if that is larger. */
 static float cell_of(const struct labelling *l, uint32_t group)
 {
 	const struct hierarchy_group *g = &l->hierarchy.groups[group];

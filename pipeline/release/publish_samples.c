@@ -1,3 +1,5 @@
+/* Publishes the sample pages: turns the faces of the sample store into face, brick and samples
+ * pages. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +13,14 @@ struct children {
 	uint32_t count, room;
 };
 
-/* Faces come brick by brick, so one brick is open at a time. */
+/* Faces arrive brick by brick, so only one brick is open at a time. */
 struct samples_writer {
 	struct object_store *objects;
 	struct samples_page page;
 	struct children bricks;
-	uint32_t brick_index; /* the open one, or SAMPLE_NONE */
+	uint32_t brick_index; /* the open brick, or SAMPLE_NONE */
 	struct brick_page brick;
-	struct children faces; /* of the open brick */
+	struct children faces; /* children of the open brick */
 };
 
 static int add_child(struct children *children, const struct page_child *child)

@@ -1,3 +1,4 @@
+/* Reads and writes the signed metadata files of a release folder. */
 #include "pipeline/release/release_files.h"
 
 #include <errno.h>
@@ -17,9 +18,9 @@ static int make_path(char path[PATH_MAX], const char *release, const char *name)
 	return snprintf(path, PATH_MAX, "%s/%s", release, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
 }
 
-/* Servers tell versions of a file apart by its size and the second it was written in (ETag,
- * Last-Modified). Two within one second would be one to them, and who has the first would be told
- * for ever that it is current. */
+/* Servers distinguish versions of a file by its size and the second of its modification (ETag,
+ * Last-Modified). Two versions within one second would look equal, and a client with the first one
+ * would always be told that it is current. So the new file gets a later time than the old one. */
 static int make_later(const char *path, time_t than_s)
 {
 	struct timespec times[2] = { { .tv_nsec = UTIME_OMIT } };

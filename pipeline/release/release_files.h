@@ -1,35 +1,36 @@
-/* The signed files of a release folder: what is current, and what was.
+/* The signed files of a release folder: the current release and the earlier ones.
  *
- *   root/N.json  release.json  timestamp.json  history/SEQUENCE.json (each release.json there was)
+ *   root/N.json  release.json  timestamp.json  history/SEQUENCE.json (every release.json so far)
  *
- * Writing order, so that a reader never meets a name without what it names: packs and locator (see
- * pack.h), roots, history, release.json, timestamp.json. */
+ * Files are written in this order, so that a reader never finds a name before the file it names:
+ * packs and locator (see pack.h), roots, history, release.json, timestamp.json. */
 #ifndef GOPURA_PIPELINE_RELEASE_RELEASE_FILES_H
 #define GOPURA_PIPELINE_RELEASE_RELEASE_FILES_H
 
 #include "pipeline/keys/keys.h"
 
-/* The current release by its signed file. -ENOENT: nothing was published yet. Other errors are
- * logged: a release.json that our own keys did not sign is never overwritten. */
+/* Reads the current release from its signed file. Returns -ENOENT if nothing was published yet.
+ * Other errors are logged: a release.json that our own keys did not sign is never overwritten. */
 must_check int release_files_current(struct release *out, const char *release,
 				     const struct publisher_keys *keys);
 
-/* The release of a sequence, out of the history. -ENOENT: there was none. */
+/* Reads the release with that sequence from the history. Returns -ENOENT if there was none. */
 must_check int release_files_at(struct release *out, const char *release,
 				const struct publisher_keys *keys, uint64_t sequence);
 
-/* The newest one before `current` that had another root. -ENOENT: there is none. */
+/* Reads the newest release before `current` that had another root. Returns -ENOENT if there is
+ * none. */
 must_check int release_files_before(struct release *out, const char *release,
 				    const struct publisher_keys *keys,
 				    const struct release *current);
 
-/* Signs and writes roots, history, release.json, timestamp.json. keys_folder is where the roots
- * are. timestamp_life_s: how long the timestamp holds from now. */
+/* Signs and writes roots, history, release.json and timestamp.json. keys_folder holds the roots.
+ * timestamp_life_s: how long the timestamp is valid from now, seconds. Errors are logged. */
 must_check int release_files_write(const char *release, const char *keys_folder,
 				   const struct publisher_keys *keys, const struct release *what,
 				   int64_t timestamp_life_s);
 
-/* A new timestamp for the release.json that is there. */
+/* Writes a new timestamp for the current release.json. */
 must_check int release_files_renew(const char *release, const struct publisher_keys *keys,
 				   int64_t timestamp_life_s);
 

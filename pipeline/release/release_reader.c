@@ -1,3 +1,5 @@
+/* Reads the files of a release from disk or with libcurl, keeps a few packs in memory, and checks
+ * the hash of everything it returns. */
 #include "pipeline/release/release_reader.h"
 
 #include <curl/curl.h>
@@ -8,17 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Breadth first, a walk is in one pack, and now and then in an older release's. */
+/* A breadth-first walk stays in one pack, and sometimes visits one of an older release. */
 enum { PACKS_KEPT = 4, FILE_BYTES_MAX = 1 << 30 };
 
 struct kept_pack {
 	struct hash name;
 	struct buffer bytes;
-	uint64_t used; /* when, by the reader's count of calls */
+	uint64_t used; /* the reader's count of calls when it was used last; 0: empty */
 };
 
 struct release_reader {
-	char place[PATH_MAX]; /* no / at the end */
+	char place[PATH_MAX]; /* without a final / */
 	bool is_url;
 	CURL *curl;
 	struct kept_pack packs[PACKS_KEPT];
@@ -65,7 +67,7 @@ static int start_curl(struct release_reader *reader, const char *ca_file)
 		code = curl_easy_setopt(reader->curl, CURLOPT_HTTP_VERSION, CURL_HTTP_VERSION_2TLS);
 	if (code == CURLE_OK)
 		code = curl_easy_setopt(reader->curl, CURLOPT_FOLLOWLOCATION, 0L);
-	/* Stalled for a minute is gone; slow is not. */
+	/* A transfer that stalls for a minute has failed; a slow one has not. */
 	if (code == CURLE_OK)
 		code = curl_easy_setopt(reader->curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
 	if (code == CURLE_OK)

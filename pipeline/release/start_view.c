@@ -1,10 +1,11 @@
+/* Computes the default first view of a model from its bounding box. */
 #include "pipeline/release/start_view.h"
 
 #include <math.h>
 
-static const double margin = 0.95; /* of half the picture */
+static const double margin = 0.95; /* usable share of half the picture */
 
-/* The way from the model to the eye, unit length, and the picture's axes there. */
+/* Unit vectors: from the model to the eye, and the axes of the picture. */
 struct start_axes {
 	double back[3], right[3], up[3];
 };
@@ -30,7 +31,7 @@ static struct start_axes front_corner(void)
 	return axes;
 }
 
-/* How far back a corner, given from the middle, needs the eye. */
+/* Returns the distance of the eye at which a corner (relative to the centre) is just visible. */
 static double distance_for(const struct start_axes *axes, const double corner[3])
 {
 	const double tangent = margin * tan(START_VIEW_FOV_DEG * M_PI / 360);

@@ -1,3 +1,4 @@
+/* Verifies the signed files and the locator of a release, then walks its pages breadth first. */
 #include "pipeline/release/verify.h"
 
 #include <errno.h>
@@ -138,7 +139,7 @@ static int read_locator(struct verify_walk *walk)
 	return rc;
 }
 
-/* Packs that no block is in would be no part of the walk. */
+/* Refuses packs without blocks: the walk would never check them. */
 static int check_packs_used(struct verify_walk *walk)
 {
 	bool *used = calloc(walk->locator.pack_count + 1, sizeof(*used));
@@ -287,9 +288,9 @@ static int walk_all(struct verify_walk *walk)
 				    .kind = PAGE_ROOT };
 	int rc = queue_task(walk, &root);
 
-	walk->blocks_used = 1; /* the root's own */
+	walk->blocks_used = 1; /* the block of the root page */
 	for (size_t i = 0; rc == 0 && i < walk->task_count; i++) {
-		struct verify_task task = walk->tasks[i]; /* the array may move */
+		struct verify_task task = walk->tasks[i]; /* a copy: the array may move */
 
 		rc = do_task(walk, &task);
 	}

@@ -1,6 +1,6 @@
-/* Walks a whole release, as a suspicious stranger would: the chain of roots, signatures, expiry,
- * the locator, every pack and every object by its hash, every page, patch group, tile and the
- * information database by its decoder, and that what pages say about their children is so. */
+/* Verifies a whole release without trusting it: the chain of roots, signatures, expiry, the
+ * locator, every pack and object by its hash, and every page, patch group, tile and the information
+ * database by its decoder. It also checks that what pages say about their children is true. */
 #ifndef GOPURA_PIPELINE_RELEASE_VERIFY_H
 #define GOPURA_PIPELINE_RELEASE_VERIFY_H
 
@@ -12,12 +12,11 @@ enum { VERIFY_WHY_BYTES = 1280 };
 
 struct verify_options {
 	struct release_reader *reader;
-	struct bytes
-		trusted_root; /* root/1.json from a place that is trusted; empty: the release's */
-	int64_t now_s;        /* expiry is judged by it; 0: not at all */
+	struct bytes trusted_root; /* root/1.json from a trusted source; empty: the release's own */
+	int64_t now_s;             /* the time for expiry checks, seconds since 1970; 0: no check */
 };
 
-/* What there is of one kind. */
+/* Number and size of objects of one kind. */
 struct verify_sum {
 	uint64_t count, bytes;
 };
@@ -28,17 +27,18 @@ struct verify_report {
 	struct timestamp timestamp;
 	struct root_page root;
 	uint32_t locator_bytes, pack_count;
-	uint64_t read_bytes; /* all files; packs may hold blocks of other releases too */
-	struct verify_sum pages[PAGE_LABELS + 1]; /* by enum page_kind */
+	uint64_t read_bytes; /* of all files; packs may hold blocks of other releases too */
+	struct verify_sum pages[PAGE_LABELS + 1]; /* indexed by enum page_kind */
 	struct verify_sum groups, tiles, pictures, database, labels;
-	uint64_t hierarchy_triangles; /* of all published patches */
+	uint64_t hierarchy_triangles; /* in all published patches */
 	uint32_t patches;
-	uint32_t points, faces; /* that show something */
+	uint32_t points, faces; /* which show something */
 	uint32_t parts;
-	char why[VERIFY_WHY_BYTES]; /* the first thing that is wrong, and where; "" */
+	char why[VERIFY_WHY_BYTES]; /* the first error and its place; "" if none */
 };
 
-/* 0: all is right. Negative errno: report->why says what is not; the rest is as far as it got. */
+/* Returns 0 if everything is correct. Otherwise report->why describes the first error, and the rest
+ * of the report is filled as far as verification got. */
 must_check int verify_release(struct verify_report *report, const struct verify_options *options);
 
 #endif

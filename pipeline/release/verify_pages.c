@@ -1,4 +1,4 @@
-/* What must be true of the pages of each kind and of their children. */
+/* Checks the pages of each kind and those of their children that are not pages. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,7 +110,8 @@ int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *pa
 
 /* ---- samples ---- */
 
-/* Children are numbered in order: the last number tells how many there must be. */
+/* Returns how many children the numbers imply: they are consecutive, so it is the largest plus
+ * one. */
 static uint32_t children_named(const uint32_t *children, uint32_t length)
 {
 	uint32_t named = 0;

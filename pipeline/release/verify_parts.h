@@ -10,10 +10,10 @@
 #include "pipeline/release/verify.h"
 #include "storage/info.h"
 
-/* A page that is still to be looked into: where it lies, and what it must be. */
+/* A page that is still to be verified: where it is, and which kind it must have. */
 struct verify_task {
 	struct hash parent;
-	uint64_t offset; /* in the parent's block */
+	uint64_t offset; /* bytes, in the parent's block */
 	struct page_child child;
 	enum page_kind kind;
 };
@@ -26,29 +26,30 @@ struct verify_walk {
 	struct verify_task *tasks;
 	size_t task_count, task_room;
 	uint32_t blocks_used;
-	struct samples_page samples; /* once it was met, as the next two */
+	struct samples_page samples; /* set when its page was verified, as the next two */
 	struct hierarchy hierarchy;
 	struct info *info;
 	struct progress *progress;
 };
 
-/* The page being looked into; bytes are a copy, because the reader's are borrowed for one call. */
+/* The page being verified. It points into a copy of the bytes, because the reader's are borrowed
+ * for one call only. */
 struct verify_page {
 	struct hash name;
 	struct page page;
 };
 
-/* Says what is wrong, unless something was said already; gives rc back. */
+/* Records what is wrong, unless an error was recorded already. Returns rc. */
 int verify_blame(struct verify_report *report, int rc, const char *text, ...) printf_like(3, 4);
 
-/* The page's child, hashed and found right; borrowed until the next call. */
+/* Reads a child of a page and checks its hash; borrowed until the next call. */
 must_check int verify_child(struct verify_walk *walk, const struct verify_page *page,
 			    uint32_t child, struct bytes *out);
-/* Looks into the child later. */
+/* Queues the child for verification; it must be a page of that kind. */
 must_check int verify_later(struct verify_walk *walk, const struct verify_page *page,
 			    uint32_t child, enum page_kind kind);
 
-/* What is in a page of its kind, and what its children that are no pages are. */
+/* Verify a page of each kind, and those of its children that are not pages. */
 must_check int verify_root_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_samples_page(struct verify_walk *walk, const struct verify_page *page);
