@@ -1,3 +1,5 @@
+/* The calls of the object cache: get, put, keep and the choice of releases. Every object's hash is
+ * checked when it is read. */
 #include "storage/cache.h"
 
 #include <errno.h>
@@ -11,9 +13,9 @@
 
 enum {
 	LOG_BYTES_MAX = 64 << 20,
-	TOUCH_S = 600, /* a want moves an object up at most this often: it costs a write */
+	TOUCH_S = 600, /* minimum time between two rank updates of an object: each costs a write */
 	EVICT_TRIES = 8,
-	KEPT_NOW = 1, /* in keeps.releases */
+	KEPT_NOW = 1, /* bits of keeps.releases */
 	KEPT_BEFORE = 2,
 };
 
@@ -22,7 +24,7 @@ static int64_t pages_of(size_t bytes)
 	return (int64_t)(bytes / (CACHE_PAGE_BYTES - 4)) + 1;
 }
 
-/* What a priority is worth, in seconds of use. */
+/* Converts a priority to seconds of use. */
 static int64_t worth_s(uint32_t priority)
 {
 	int64_t hours = 0;
@@ -78,7 +80,7 @@ void cache_destroy(struct cache *cache)
 	free(cache);
 }
 
-/* The blob of a column into out. */
+/* Copies the blob of a column into out. */
 static int take_blob(struct buffer *out, sqlite3_stmt *statement, int column)
 {
 	const void *bytes = sqlite3_column_blob(statement, column);
@@ -90,7 +92,8 @@ static int take_blob(struct buffer *out, sqlite3_stmt *statement, int column)
 	return 0;
 }
 
-/* Wanted again: it will go later. A failure costs only that. */
+/* The object was requested again: raises its rank, so that it is evicted later. A failure has no
+ * other effect. */
 static void touch(struct cache *cache, sqlite3_int64 id, sqlite3_int64 rank, uint32_t priority)
 {
 	sqlite3_stmt *statement = cache->statements[STATEMENT_TOUCH];
@@ -102,7 +105,7 @@ static void touch(struct cache *cache, sqlite3_int64 id, sqlite3_int64 rank, uin
 	sqlite3_bind_int64(statement, 2, now);
 	if (cache_judge(cache, db_run(statement), "noting a want") < 0 ||
 	    cache_count_pages(cache, CACHE_EXTRA_PAGES) < 0)
-		return; /* complained of already */
+		return; /* logged already */
 }
 
 static int drop_damaged(struct cache *cache, sqlite3_int64 id)
@@ -151,7 +154,7 @@ int cache_get(struct cache *cache, struct hash hash, uint32_t priority, struct b
 	return 0;
 }
 
-/* For which releases: KEPT_NOW, KEPT_BEFORE, both or none. */
+/* Returns for which releases the object is kept: KEPT_NOW, KEPT_BEFORE, both or none. */
 static int kept_for(struct cache *cache, const struct hash *hash)
 {
 	sqlite3_stmt *statement = bound_to_hash(cache, STATEMENT_IS_KEPT, hash);
@@ -168,8 +171,8 @@ static bool may_keep_more(struct cache *cache)
 	return kept >= 0 && (uint64_t)kept < cache->budget_bytes / 4 * 3;
 }
 
-/* SQLite may still find no room, for instance where a free list is damaged or the disk is full:
- * evicting more is worth a few tries. */
+/* SQLite may still find no room, for instance if a free list is damaged or the disk is full.
+ * Evicting more is worth a few tries. */
 static int put_with_room(struct cache *cache, sqlite3_stmt *put, int64_t pages)
 {
 	int rc = cache_make_room(cache, pages);
@@ -190,8 +193,8 @@ static int put_row(struct cache *cache, sqlite3_stmt *put, size_t bytes)
 
 	if ((uint64_t)pages * CACHE_PAGE_BYTES > cache->log_bytes / 4 + 8 * CACHE_PAGE_BYTES)
 		return -EFBIG;
-	/* Beforehand: a large row begins a transaction of its own, or the log would outgrow its
-	 * share. */
+	/* Flush first, so that a large row gets its own transaction; otherwise the log could exceed
+	 * its share. */
 	rc = cache_reserve_pages(cache, pages);
 	if (rc == 0)
 		rc = put_with_room(cache, put, pages);
@@ -267,7 +270,8 @@ int cache_use_release(struct cache *cache, struct hash root)
 	rc = cache_begin(cache);
 	if (rc < 0)
 		return rc;
-	/* What was in use is now before; what was before is in use again, or let go. */
+	/* The release in use becomes the one before. The one before is in use again, or no longer
+	 * kept. */
 	snprintf(
 		sql, sizeof(sql),
 		"UPDATE keeps SET releases = (releases & %d) * 2 + (releases & %d) / 2;"

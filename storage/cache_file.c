@@ -1,3 +1,5 @@
+/* Opens the cache's database, prepares its statements, and replaces a damaged file with a new
+ * one. */
 #include "storage/cache_private.h"
 
 #include <errno.h>
@@ -11,8 +13,9 @@
 enum {
 	RETRY_MS = 30000,
 	COMPLAIN_MS = 60000,
-	FAULTS_MAX = 16,            /* failed reads in a row: the file is as good as damaged */
-	BROKEN_BYTES_MAX = 1 << 20, /* of a damaged file: its header and schema, for who looks */
+	FAULTS_MAX = 16, /* consecutive failed reads after which the file counts as damaged */
+	BROKEN_BYTES_MAX =
+		1 << 20, /* how much of a damaged file is kept for inspection: header and schema */
 	SCHEMA_VERSION = 2,
 };
 
@@ -38,9 +41,9 @@ static const char *const statement_sql[STATEMENT_COUNT] = {
 	[STATEMENT_TICK] = "INSERT OR REPLACE INTO facts (name, value) VALUES ('tick', ?1)",
 };
 
-/* keeps.releases: bit 0, for the release in use; bit 1, for the one before. facts.release and
- * facts.before name these. Objects need a rowid: reading large rows by a WITHOUT ROWID key is seven
- * times slower. */
+/* keeps.releases: bit 0 for the release in use, bit 1 for the one before. facts.release and
+ * facts.before hold their names. Objects need a rowid: reading large rows by a WITHOUT ROWID key is
+ * seven times slower. */
 static const char schema[] =
 	"CREATE TABLE objects (id INTEGER PRIMARY KEY, hash BLOB NOT NULL, rank INTEGER NOT NULL,"
 	" kept INTEGER NOT NULL, size INTEGER NOT NULL, bytes BLOB NOT NULL);"
@@ -52,7 +55,7 @@ static const char schema[] =
 	" check_hash BLOB NOT NULL, bytes BLOB NOT NULL);"
 	"CREATE TABLE facts (name TEXT PRIMARY KEY, value) WITHOUT ROWID;";
 
-/* Once a minute: a full disk would say the same thousand times. */
+/* Logs at most once a minute: a full disk would cause the same message a thousand times. */
 static void complain(struct cache *cache, int rc, const char *doing)
 {
 	int64_t now_ms = clock_now_ms();
@@ -88,7 +91,8 @@ static int on_log(void *data, sqlite3 *db, const char *name, int pages)
 	return SQLITE_OK;
 }
 
-/* A file of another kind or version is as good as a damaged one: nothing in it is missed. */
+/* Creates the schema in an empty file. A file of another kind or version is treated as damaged:
+ * nothing in it is needed. */
 static int check_schema(struct cache *cache)
 {
 	sqlite3_int64 version = db_integer(cache->db, "PRAGMA user_version");
@@ -116,7 +120,7 @@ int cache_set_pragmas(struct cache *cache)
 
 	if (rc < 0)
 		return rc;
-	sqlite3_wal_autocheckpoint(cache->db, 0); /* checkpoint() does it, and hears of failures */
+	sqlite3_wal_autocheckpoint(cache->db, 0); /* checkpoint() does this and sees failures */
 	sqlite3_wal_hook(cache->db, on_log, cache);
 	snprintf(sql, sizeof(sql), "PRAGMA max_page_count=%lld; PRAGMA journal_size_limit=%lld",
 		 (long long)((cache->budget_bytes - cache->log_bytes) / CACHE_PAGE_BYTES),
@@ -150,7 +154,7 @@ static int open_db(struct cache *cache)
 		rc = check_schema(cache);
 	if (rc == 0)
 		rc = prepare_all(cache);
-	/* Read-only though the file is not: its header claims a format of the future. */
+	/* Read-only although the file is writable: its header claims a format of the future. */
 	if (rc == -EROFS && access(cache->path, W_OK) == 0)
 		rc = -EBADMSG;
 	if (rc < 0) {
@@ -165,7 +169,7 @@ static int open_db(struct cache *cache)
 	return 0;
 }
 
-/* The database is damaged: out of the way with it, and a fresh one. */
+/* Sets a damaged database aside and starts a new one. */
 static void start_over(struct cache *cache)
 {
 	int rc;
@@ -183,7 +187,7 @@ static void start_over(struct cache *cache)
 	}
 }
 
-/* Every result of SQLite passes here. After a failure the transaction may be gone. */
+/* Handles every result of SQLite. After a failure the transaction may be gone. */
 int cache_judge(struct cache *cache, int rc, const char *doing)
 {
 	if (rc == 0) {

@@ -1,3 +1,5 @@
+/* Keeps the cache within its budget: transactions, checkpoints of the log, eviction and
+ * shrinking. */
 #include "storage/cache_private.h"
 
 #include <errno.h>
@@ -5,14 +7,15 @@
 
 #include "base/clock.h"
 
-/* How the budget holds. It is split into the database file and its write-ahead log, once:
+/* How the budget is kept. It is split once, into the database file and its write-ahead log:
  *
- *   log       an eighth, at most LOG_BYTES_MAX. A transaction is ended when the pages it dirtied,
- *             overestimated, reach a quarter of that; the log is written back into the database as
- *             soon as it is past half, and no further write is taken while that fails.
+ *   log       an eighth, at most LOG_BYTES_MAX. A transaction is ended when the pages it changed,
+ *             overestimated, reach a quarter of that or BATCH_BYTES_MAX. The log is written back
+ *             into the database as soon as it is more than half full. While that fails, no further
+ *             write is accepted.
  *   database  the rest, as SQLite's own max_page_count: it cannot grow past it. Pages of evicted
- *             objects are used again; incremental vacuum gives them back only when the budget was
- *             made smaller.
+ *             objects are used again; incremental vacuum returns them to the disk only when the
+ *             budget was made smaller.
  *
  * Exclusive locking keeps the log's index in memory, so there is no third file. */
 
@@ -25,12 +28,12 @@ int64_t cache_tick(const struct cache *cache)
 
 /* ---- transactions */
 
-/* What failed to be written must not stay half in the next transaction. */
+/* What failed to be written must not remain partly in the next transaction. */
 static void roll_back(struct cache *cache)
 {
 	if (!cache->db || !cache->in_batch)
 		return;
-	/* Fails where SQLite rolled back by itself: just as well. */
+	/* It fails if SQLite has rolled back already; that is fine. */
 	sqlite3_exec(cache->db, "ROLLBACK", NULL, NULL, NULL);
 	cache->in_batch = false;
 	cache->batch_pages = 0;
@@ -83,7 +86,8 @@ int cache_flush(struct cache *cache)
 	}
 	cache->in_batch = false;
 	cache->batch_pages = 0;
-	/* Written it is; where the log cannot be written back, cache_begin hears of it again. */
+	/* The commit succeeded. If the log cannot be written back now, cache_begin notices it
+	 * again. */
 	rc = checkpoint(cache);
 	return 0;
 }
@@ -94,7 +98,7 @@ int cache_sync(struct cache *cache)
 
 	if (rc < 0 || !cache->db)
 		return rc < 0 ? rc : -EIO;
-	/* A commit alone is not synced; writing the log back is, before and after. */
+	/* A commit alone does not sync; writing the log back does, before and after. */
 	code = sqlite3_wal_checkpoint_v2(cache->db, NULL, SQLITE_CHECKPOINT_FULL, NULL, NULL);
 	return cache_judge(cache, db_code(code), "writing the log back");
 }
@@ -126,7 +130,7 @@ int cache_count_pages(struct cache *cache, int64_t pages)
 
 /* ---- eviction */
 
-/* Drops the least useful object. -ENOSPC: all that is left is kept. */
+/* Drops the least useful object. Returns -ENOSPC if everything that is left is kept. */
 static int evict_one(struct cache *cache)
 {
 	sqlite3_stmt *least = cache->statements[STATEMENT_MIN];
@@ -158,7 +162,7 @@ int64_t cache_free_pages(struct cache *cache)
 	       cache_integer(cache, STATEMENT_FREE_PAGES);
 }
 
-/* Until wanted pages are free. A transaction that grew long is ended on the way. */
+/* A transaction that grows too long is ended in between. */
 int cache_make_room(struct cache *cache, int64_t wanted)
 {
 	int rc = cache_begin(cache);
@@ -173,7 +177,7 @@ int cache_make_room(struct cache *cache, int64_t wanted)
 	return rc;
 }
 
-/* More may have been kept under the larger budget than the smaller one holds. */
+/* If the budget was made smaller, more may be kept than it can hold. Then nothing stays kept. */
 static int make_room_at_any_price(struct cache *cache)
 {
 	int rc = cache_make_room(cache, CACHE_EXTRA_PAGES);
@@ -194,7 +198,7 @@ void cache_shrink(struct cache *cache)
 		return;
 	if (make_room_at_any_price(cache) < 0 || cache_flush(cache) < 0 || !cache->db)
 		return;
-	/* In steps, for moving pages goes through the log. */
+	/* In steps, because moving pages goes through the log. */
 	snprintf(sql, sizeof(sql), "PRAGMA incremental_vacuum(%lld)",
 		 (long long)(cache->log_bytes / CACHE_PAGE_BYTES / 8));
 	for (int64_t pages = cache_integer(cache, STATEMENT_PAGES), before = pages + 1;
@@ -206,7 +210,7 @@ void cache_shrink(struct cache *cache)
 	}
 	sqlite3_wal_checkpoint_v2(cache->db, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
 	cache->log_pages = 0;
-	/* max_page_count could not go below the old size. */
+	/* max_page_count could not be set below the old size. */
 	if (cache_judge(cache, cache_set_pragmas(cache), "shrinking the cache") < 0)
 		cache->figures.refused_writes++;
 }

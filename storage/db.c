@@ -1,3 +1,4 @@
+/* Opens SQLite databases with safe settings, translates result codes, and renames damaged files. */
 #include "storage/db.h"
 
 #include <errno.h>
@@ -18,7 +19,7 @@ int db_code(int code)
 	case SQLITE_CORRUPT:
 	case SQLITE_NOTADB:
 	case SQLITE_FORMAT:
-	case SQLITE_MISMATCH: /* of a rowid: a page that was overwritten */
+	case SQLITE_MISMATCH: /* a rowid mismatch: a page was overwritten */
 		return -EBADMSG;
 	case SQLITE_FULL:
 		return -ENOSPC;
@@ -50,10 +51,10 @@ int db_open(sqlite3 **out, const char *path)
 		    SQLITE_OPEN_EXRESCODE;
 	int code = sqlite3_open_v2(path, out, flags, NULL);
 
-	/* Before the first read: exclusive locking then needs no shared memory file beside WAL. */
+	/* Set before the first read: with exclusive locking, WAL needs no shared-memory file. */
 	if (code == SQLITE_OK)
 		code = sqlite3_exec(*out, "PRAGMA locking_mode=EXCLUSIVE", NULL, NULL, NULL);
-	/* Whatever schema a damaged or planted file brings, none of it may act. */
+	/* Nothing in the schema of a damaged or planted file may execute. */
 	if (code == SQLITE_OK)
 		code = sqlite3_db_config(*out, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
 	if (code == SQLITE_OK)

@@ -1,4 +1,4 @@
-/* The one door to SQLite for the modules of this folder: opens, translates errors, sets a damaged
+/* Wraps SQLite for the modules of this folder: opens databases, translates errors, sets a damaged
  * database aside. */
 #ifndef GOPURA_STORAGE_DB_H
 #define GOPURA_STORAGE_DB_H
@@ -8,24 +8,26 @@
 
 #include "base/compiler.h"
 
-/* 0 for SQLITE_OK, ROW and DONE; -EBADMSG: the file is damaged or no database; -ENOSPC: disk full
- * or past its page ceiling; -ENOMEM; -EROFS; -EIO: anything else. Says nothing. */
+/* Translates a result code: 0 for SQLITE_OK, ROW and DONE; -EBADMSG: the file is damaged or not a
+ * database; -ENOSPC: disk full or page limit reached; -ENOMEM; -EROFS; -EBUSY; -EIO: anything else.
+ * Does not log. */
 must_check int db_code(int code);
-/* As db_code, and logs what went wrong. db may be NULL. */
+/* As db_code, and logs the error. db may be NULL. */
 must_check int db_error(sqlite3 *db, int code, const char *doing);
 
-/* Opens or creates path for one thread of this process and nobody else (exclusive locking). On
- * failure *out is NULL. */
+/* Opens or creates a database for one thread of this process only (exclusive locking). On failure
+ * *out is NULL. Returns errors as db_code. */
 must_check int db_open(sqlite3 **out, const char *path);
-/* Runs each statement of sql. Silent: the caller decides what a failure means. */
+/* Runs each statement of sql. Does not log: the caller decides what a failure means. */
 must_check int db_exec(sqlite3 *db, const char *sql);
-/* Steps a statement that gives no rows, and resets it. Silent. */
+/* Steps a statement that gives no rows, and resets it. Does not log. */
 must_check int db_run(sqlite3_stmt *statement);
-/* The single integer that sql gives; on failure (or no row) -1. */
+/* Returns the single integer that sql gives; -1 on failure or without a row. */
 sqlite3_int64 db_integer(sqlite3 *db, const char *sql);
 
-/* Renames path to path.broken (replacing an earlier one), cut to most_bytes so that a damaged cache
- * costs no second budget, and removes its -wal, -shm and -journal. The database must be closed. */
+/* Renames path to path.broken (replacing an earlier one) and cuts it to most_bytes, so that a
+ * damaged cache does not take a second budget. Removes its -wal, -shm and -journal. The database
+ * must be closed. Returns 0 if there is no such file, or a negative errno. */
 must_check int db_set_aside(const char *path, long most_bytes);
 
 #endif

@@ -1,10 +1,10 @@
-/* The information database of a release: which parts of the model are identified, what is known
+/* The information database of a release: which parts of the model are identified, and what is known
  * about each, in which languages. docs/information.md has the tables, which are the three of
  * Okamoto et al. ("identified part", "assigned information", "information contents").
  *
- * This is the reader, in the kiosk; pipeline/content/info_build.h writes the database. Pictures are
- * not inside: the database names them by the hash of their file's bytes, and they travel as objects
- * of their own, so that changing a caption does not send them again. */
+ * This is the reader, used by the kiosk; pipeline/content/info_build.h writes the database.
+ * Pictures are not inside: the database names them by the hash of their file's bytes. They are
+ * transferred as objects of their own, so that changing a caption does not send them again. */
 #ifndef GOPURA_STORAGE_INFO_H
 #define GOPURA_STORAGE_INFO_H
 
@@ -18,106 +18,116 @@ enum {
 	INFO_PAGE_BYTES_MAX = 256 << 10, /* one HTML page; what ui/html.h takes */
 	INFO_PAGE_PICTURES_MAX = 64,
 	INFO_TOURS_MAX = 8,
-	INFO_STOPS_MAX = 64, /* of a tour */
+	INFO_STOPS_MAX = 64, /* in a tour */
 };
 
-/* Ways of looking that the content gives visitors, a bit each: docs/tools.md. */
+/* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
 enum info_tool { INFO_TOOL_LIGHT = 1, INFO_TOOL_SECTION = 2 };
-/* "light" or "section"; 0: neither. */
+/* Returns the tool of a name ("light" or "section"); 0: neither. */
 unsigned info_tool_named(const char *name, size_t length);
 
-/* One thread. */
+/* An open database. One thread. */
 struct info;
 
 struct info_part {
 	const char *id;
-	struct region region; /* a list of faces: a point with their radius; the surface is in the
-				 labels */
-	float anchor_m[3];    /* where the leader line ends */
-	bool has_page;        /* in some language */
+	/* For a list of faces, a point and a radius; the labels have its surface. */
+	struct region region;
+	float anchor_m[3]; /* where the leader line ends */
+	bool has_page;     /* in at least one language */
 };
 
-/* Texts in the language asked for; where that has none in one of its kind ("pt" for "pt-BR"), else
- * in the first of the release's languages that has one. All
- * UTF-8 and borrowed until info_close. caption and thumbnail may be "". */
+/* Texts in the requested language. If it has none, the texts are in a related language ("pt" for
+ * "pt-BR"), or else in the first of the release's languages that has one. All are UTF-8 and
+ * borrowed until info_close. caption and thumbnail may be "". */
 struct info_text {
-	const char *language; /* that was found */
+	const char *language; /* the language that was found */
 	const char *title, *caption;
 	const char *thumbnail; /* a picture's name */
 };
 
 struct info_picture {
-	const char *name; /* as pages write it: "pictures/gate.jpg" */
+	const char *name; /* as in pages: "pictures/gate.jpg" */
 	struct hash hash;
 	uint32_t width_px, height_px;
 };
 
-/* image is copied. *out is owned by the caller; on failure it is NULL. -EBADMSG: not such a
- * database, damaged, or of a version of the schema that this program does not read. Older versions
- * are read as they are; what they lack is made in memory beside them. */
+/* Opens a database image, which is copied. *out is owned by the caller; on failure it is NULL.
+ * Returns -ENOMEM, or -EBADMSG if it is not such a database, damaged, or of a schema version that
+ * this program does not read. Older versions are read; what they lack is created in memory beside
+ * them. */
 must_check int info_open(struct info **out, struct bytes image);
 void info_close(struct info *info); /* NULL is fine */
 
-/* In the order of parts.json, which is the order of importance. Borrowed until info_close. */
+/* Parts in the order of parts.json, which is the order of importance. Borrowed until info_close. */
 uint32_t info_part_count(const struct info *info);
+/* part < info_part_count(). */
 const struct info_part *info_part(const struct info *info, uint32_t part);
-/* The part's index, or -ENOENT. */
+/* Returns the index of the part with that id, or -ENOENT. */
 int info_find(const struct info *info, const char *id);
 
-/* The release's languages, the default first. */
+/* The release's languages, the default first. Borrowed until info_close. */
 uint32_t info_language_count(const struct info *info);
+/* index < info_language_count(). */
 const char *info_language(const struct info *info, uint32_t index);
-/* Of these the one asked for, or what stands in for it. */
+/* Returns the release's language that best matches the requested one. */
 const char *info_nearest_language(const struct info *info, const char *language);
 
+/* Returns the texts of a part; see struct info_text. */
 struct info_text info_text(const struct info *info, uint32_t part, const char *language);
 
-/* The part's page: *html is borrowed until the next info_page or info_close, *language (may be
- * NULL) says which language was found. -ENOENT: the part has no page. -EBADMSG: damaged. */
+/* Reads the page of a part. *html is borrowed until the next info_page or info_close.
+ * *language_found (may be NULL) is set to the language that was found. Returns -ENOENT if the part
+ * has no page, -EBADMSG if the database is damaged, or -ENOMEM. */
 must_check int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
 			 const char **language_found);
 
-/* Who made what is said of the part, when, after what, and whose it is: one line of text, "" where
- * nothing is known. Borrowed until the next info_credits or info_close. */
+/* Returns the credits of a part's information in one line (creator, date, source, rights and so
+ * on), "" if nothing is known. Borrowed until the next info_credits or info_close. */
 const char *info_credits(struct info *info, uint32_t part, const char *language);
 
-/* Parts in which every word of query stands, the last letters of each may be missing: first where
- * it stands in that language, of these in titles before captions before pages. How many were
- * written to parts, `most` at most; 0 for a query without words. */
+/* Searches for parts that contain every word of query; the end of each word may be missing. Parts
+ * found in that language come first, and among them titles before captions before pages. Writes at
+ * most `most` parts and returns how many; 0 for a query without words. */
 uint32_t info_search(struct info *info, const char *query, const char *language, uint32_t *parts,
 		     uint32_t most);
 
-/* What the content switched on, of enum info_tool; what this program does not know is left out. */
+/* Returns the tools that the content offers, a mask of enum info_tool; unknown ones are left
+ * out. */
 unsigned info_tools(const struct info *info);
 
 /* ---- guided tours: docs/tours.md ---- */
 
 struct info_stop {
 	float eye_m[3], target_m[3];
-	float stay_s, travel_s; /* 0: none, it is only on the way; 0: by the distance */
-	int part;               /* that is lit, or -1 */
+	float stay_s,
+		travel_s; /* stay 0: the tour passes without a stop; travel 0: chosen by distance */
+	int part;         /* the part to highlight, or -1 */
 };
 
 struct info_tour {
 	const char *id;
-	bool attract; /* flown round while nobody is there; its way is closed */
+	bool attract; /* runs in a loop while no visitor is present; its path is closed */
 	uint32_t stop_count;
 	struct info_stop stops[INFO_STOPS_MAX];
 };
 
-/* None in images before version 3. Borrowed until info_close; texts as info_text gives them. */
+/* Tours; none in images before version 3. Borrowed until info_close; texts as from info_text. */
 uint32_t info_tour_count(const struct info *info);
+/* tour < info_tour_count(). */
 const struct info_tour *info_tour(const struct info *info, uint32_t tour);
-int info_find_tour(const struct info *info, const char *id); /* or -ENOENT */
+int info_find_tour(const struct info *info, const char *id); /* the tour's index, or -ENOENT */
+/* Returns title, caption and thumbnail of a tour. */
 struct info_text info_tour_text(const struct info *info, uint32_t tour, const char *language);
-/* What is said at a stop; "": nothing. */
+/* Returns the text at a stop, or "". */
 const char *info_stop_caption(const struct info *info, uint32_t tour, uint32_t stop,
 			      const char *language);
 
-/* Every picture of the database, sorted by name. Borrowed until info_close. */
+/* All pictures of the database, sorted by name. Borrowed until info_close. */
 uint32_t info_picture_count(const struct info *info);
+/* index < info_picture_count(). */
 const struct info_picture *info_picture(const struct info *info, uint32_t index);
-/* NULL: no such picture. */
+/* Returns the picture of that name, or NULL. */
 const struct info_picture *info_find_picture(const struct info *info, const char *name);
 
 #endif

@@ -1,5 +1,5 @@
-/* What is asked of SQLite while the kiosk runs, but for the pages: who made it, and where a word
- * stands. Bounded, so that no image can hold a frame up for long. */
+/* Queries that run in SQLite while the kiosk runs, except for pages: credits and search. Their work
+ * is limited, so that no image can block a frame for long. */
 #include <errno.h>
 #include <libxml/xmlstring.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ enum { CALLS_OF_A_SEARCH = 1000 };
 
 /* ---- credits ---- */
 
-/* Of an element in several languages: the one asked for, else the default. */
+/* For an element in several languages, reads the requested language, else the default. */
 static int read_credits(struct info *info, uint32_t part, uint32_t language)
 {
 	static const char sql[] =
@@ -64,7 +64,7 @@ static int by_content(const void *a, const void *b)
 	return (left->content_id > right->content_id) - (left->content_id < right->content_id);
 }
 
-/* Which part and language a row of the index is of. */
+/* Lists the part and language of each row of the index, sorted by row. */
 static int list_contents(struct info *info)
 {
 	info->contents = calloc((size_t)info->part_count * info->language_count + 1,
@@ -84,7 +84,7 @@ static int list_contents(struct info *info)
 	return 0;
 }
 
-/* What is found, each part once: in the language asked for, and in others. */
+/* Search results, each part once: in the requested language, and in others. */
 struct search {
 	struct info *info;
 	uint32_t language;
@@ -135,7 +135,7 @@ uint32_t info_search(struct info *info, const char *query, const char *language,
 	info->calls_most = CALLS_OF_A_SEARCH;
 	code = info_index_find(info->db, query, on_hit, &search);
 	info->calls_most = INFO_CALLS_MAX;
-	/* What was found before the bound or the damage is found all the same. */
+	/* What was found before the limit or the damage is still valid. */
 	if (code != SQLITE_OK)
 		log_warn("storage", "search in the information database: %s",
 			 sqlite3_errmsg(info->db));

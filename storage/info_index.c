@@ -1,3 +1,4 @@
+/* Makes the full-text index (FTS5) of the information database and searches in it. */
 #include "storage/info_index.h"
 
 #include <errno.h>
@@ -21,7 +22,7 @@ static bool is_one_of(const char *name, const char *const *names, size_t count)
 	return false;
 }
 
-/* Ends the word before it, unlike an <em> in the middle of one. */
+/* Returns true if the element separates words, unlike an <em> in the middle of one. */
 static bool parts_words(const xmlNode *node)
 {
 	static const char *const within[] = {
@@ -39,7 +40,7 @@ static bool is_unread(const xmlNode *node)
 	return is_one_of((const char *)node->name, unread, ARRAY_COUNT(unread));
 }
 
-/* The node after this one in the order of the text, without recursion. */
+/* Returns the next node in text order, without recursion. */
 static const xmlNode *next_node(const xmlNode *node, struct buffer *text)
 {
 	bool is_element = node->type == XML_ELEMENT_NODE;
@@ -77,10 +78,10 @@ static int read_text(struct buffer *text, const char *html)
 	return text->error;
 }
 
-/* ---- making it ---- */
+/* ---- creation ---- */
 
-/* Nothing of the text is stored twice (content = ''); the words are ours, so that FTS5 has only to
- * part them at spaces: "ascii" keeps every byte from 128 on as part of a word. */
+/* The text is not stored a second time (content = ''). The words are already split by words.h, so
+ * FTS5 only separates them at spaces: "ascii" treats every byte from 128 on as part of a word. */
 static const char create[] = "CREATE VIRTUAL TABLE %s.search USING fts5(title, caption, body,"
 			     " content = '', tokenize = 'ascii')";
 
@@ -165,16 +166,16 @@ int info_index_make(sqlite3 *db, const struct info_index_options *options)
 	code = sqlite3_exec(db, sql, NULL, NULL, NULL);
 	if (code == SQLITE_OK)
 		code = fill(db, schema, options->has_reading);
-	/* One segment: smaller, and whatever the order of inserts left behind is gone. */
+	/* Merge into one segment: smaller, and independent of the order of inserts. */
 	snprintf(sql, sizeof(sql), "INSERT INTO %s.search(search) VALUES('optimize')", schema);
 	if (code == SQLITE_OK)
 		code = sqlite3_exec(db, sql, NULL, NULL, NULL);
 	return code;
 }
 
-/* ---- asking it ---- */
+/* ---- search ---- */
 
-/* words: of words_query. *more is false where the caller has enough. */
+/* words: from words_query. *more becomes false if the caller needs no more. */
 static int find_in(sqlite3_stmt *statement, const char *columns, struct bytes words,
 		   info_index_hit *hit, void *data, bool *more)
 {

@@ -1,7 +1,7 @@
-/* Everything but the pages is loaded when the database is opened: a thousand parts in eight
- * languages are a few hundred KB, and no frame ever waits for SQLite. The image may come from a
- * damaged cache or a stranger, so the schema is not trusted (it cannot run functions), the pages
- * of the file are checked, and work is bounded. */
+/* Opens an information database. Everything except pages is loaded when it is opened: a thousand
+ * parts in eight languages are a few hundred KB, and no frame ever waits for SQLite. The image may
+ * come from a damaged cache or a stranger. So the schema is not trusted (it cannot run functions),
+ * the pages of the file are checked, and work is limited. */
 #include <errno.h>
 #include <libxml/xmlstring.h>
 #include <math.h>
@@ -101,7 +101,7 @@ static int read_language(struct info *info, sqlite3_stmt *row)
 	return rc;
 }
 
-/* Room for one more; arrays grow by doubling. NULL: no memory. */
+/* Makes room for one more item; arrays grow by doubling. Returns NULL without memory. */
 static void *grow(void *array, uint32_t count, size_t item_bytes)
 {
 	if (count & (count - 1))
@@ -223,7 +223,7 @@ static int read_content(struct info *info, sqlite3_stmt *row)
 		return -EBADMSG;
 	text = &info->parts[id].texts[language];
 	if (text->title || text->caption || text->has_page)
-		return 0; /* a second information of the part: the kiosk shows the first */
+		return 0; /* a second information about the part; the kiosk shows the first */
 	text->content_id = sqlite3_column_int64(row, 5);
 	text->has_page = sqlite3_column_int(row, 4) != 0;
 	info->parts[id].public.has_page |= text->has_page;
@@ -256,7 +256,7 @@ static int attach_image(struct info *info, struct bytes image)
 	if (!copy)
 		return -ENOMEM;
 	memcpy(copy, image.data, image.size);
-	/* Frees the copy, on failure too. */
+	/* It frees the copy, also on failure. */
 	code = sqlite3_deserialize(info->db, "main", copy, (sqlite3_int64)image.size,
 				   (sqlite3_int64)image.size,
 				   SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY);
@@ -272,7 +272,7 @@ static int attach_image(struct info *info, struct bytes image)
 	return 0;
 }
 
-/* What the file says it is, and whether its b-trees are whole. */
+/* Checks kind and version of the file, and whether its b-trees are intact. */
 static int check_image(struct info *info, sqlite3_int64 *version)
 {
 	sqlite3_int64 application = 0;
@@ -304,7 +304,7 @@ static int check_image(struct info *info, sqlite3_int64 *version)
 	return rc;
 }
 
-/* What version 2 has and 1 lacks, in temp: the image itself is never written. */
+/* Creates what version 1 lacks, in temp: the image itself is never written. */
 static int complete_version_1(struct info *info)
 {
 	static const char missing[] =
@@ -429,7 +429,7 @@ void info_close(struct info *info)
 	free(info);
 }
 
-/* ---- what is asked ---- */
+/* ---- queries ---- */
 
 uint32_t info_part_count(const struct info *info)
 {
@@ -470,7 +470,7 @@ struct info_order info_order_of(const struct info *info, const char *language)
 {
 	struct info_order order = { .count = 0 };
 
-	/* The same, of a kind, others: every language is in one of these. */
+	/* Rounds: the same language, related ones, others. Every language is in one of these. */
 	for (int round = 0; round < 3; round++)
 		for (uint32_t i = 0; i < info->language_count; i++) {
 			const char *other = info->languages[i];
@@ -514,7 +514,7 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
 	struct info_text text;
 
 	while (!p->texts[order.languages[at]].title)
-		at++; /* one has it: it was looked at when the image was opened */
+		at++; /* one has a title: this was checked when the image was opened */
 	found = order.languages[at];
 	text.language = info->languages[found];
 	text.title = p->texts[found].title;
@@ -523,7 +523,7 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
 	return text;
 }
 
-/* Or language_count: none has a page. */
+/* Returns the best language that has a page, or language_count if none has. */
 static uint32_t page_language(const struct info *info, const struct part *part,
 			      const char *language)
 {

@@ -1,4 +1,4 @@
-/* Private to storage: what the sources of an open information database share. */
+/* What the sources of an open information database share. Private to storage. */
 #ifndef GOPURA_STORAGE_INFO_PRIVATE_H
 #define GOPURA_STORAGE_INFO_PRIVATE_H
 
@@ -7,7 +7,7 @@
 #include "storage/info.h"
 
 enum {
-	INFO_CALLS_MAX = 100000, /* 10^8 steps of SQLite's machine while opening */
+	INFO_CALLS_MAX = 100000, /* 10^8 steps of SQLite's virtual machine while opening */
 	INFO_CREDITS_BYTES_MAX = 8 << 10,
 };
 
@@ -31,17 +31,17 @@ struct part {
 
 struct tour {
 	struct info_tour public;                                         /* id owned */
-	uint32_t thumbnail;                                              /* as a part's */
+	uint32_t thumbnail;                                              /* as in struct part */
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
-	char *stop_captions[INFO_STOPS_MAX][INFO_LANGUAGES_MAX];         /* the same */
+	char *stop_captions[INFO_STOPS_MAX][INFO_LANGUAGES_MAX];         /* likewise */
 };
 
 struct info {
 	sqlite3 *db;
-	sqlite3_stmt *page;    /* steps on the row that the last info_page gave */
-	struct buffer credits; /* what the last info_credits gave */
+	sqlite3_stmt *page;    /* stands on the row that the last info_page returned */
+	struct buffer credits; /* the result of the last info_credits */
 	uint32_t calls, calls_most;
-	struct info_hit *contents; /* by id; made by the first search */
+	struct info_hit *contents; /* sorted by id; made by the first search */
 	uint32_t content_count;
 	char *languages[INFO_LANGUAGES_MAX];
 	uint32_t language_count;
@@ -55,28 +55,34 @@ struct info {
 	uint32_t picture_count;
 };
 
-/* 0, -ENOMEM or -EBADMSG, logged. */
+/* Translates a result code to 0, -ENOMEM, or -EBADMSG, which is logged. */
 must_check int info_from_sqlite(sqlite3 *db, int code, const char *doing);
-/* Of an image that is not trusted. */
+/* Reads one row of an image that is not trusted. Returns 0 or a negative errno, which ends the
+ * query. */
 typedef int info_row_reader(struct info *info, sqlite3_stmt *row);
+/* Runs sql and calls read for each row. */
 must_check int info_each_row(struct info *info, const char *sql, info_row_reader *read);
-/* A copy of a text column; NULL stays NULL. Zero bytes inside and what is not UTF-8 are refused. */
+/* Copies a text column; NULL stays NULL. Returns -EBADMSG for text with zero bytes inside or
+ * invalid UTF-8, or -ENOMEM. *out is owned by the caller. */
 must_check int info_copy_text(sqlite3_stmt *row, int column, char **out);
+/* Reads count columns; -EBADMSG if one is not finite. */
 must_check int info_read_floats(sqlite3_stmt *row, int column, float *out, int count);
-/* info_tools.c: an image has such a table or not, of any version. */
+/* info_tools.c: the table of tools may exist in any version. */
 must_check int info_load_tools(struct info *info);
-/* info_tour.c: after parts and pictures. */
+/* info_tour.c: call it after parts and pictures are loaded. */
 must_check int info_load_tours(struct info *info);
+/* Frees the tours. */
 void info_drop_tours(struct info *info);
-/* All languages, in the order in which they stand in for one another: the one asked for, those of
- * its kind ("pt" for "pt-BR", and the other way round), then as the release has them. */
+/* All languages, in the order in which they replace a missing text: the requested one, related ones
+ * ("pt" for "pt-BR", and the reverse), then those of the release in its order. */
 struct info_order {
 	uint32_t languages[INFO_LANGUAGES_MAX], count;
 };
+/* language may be NULL: the release's order. */
 struct info_order info_order_of(const struct info *info, const char *language);
-/* The first that has a text; NULL: none has. found may be NULL. */
+/* Returns the first text in that order, or NULL. *found (may be NULL) is set to its language. */
 const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found);
-/* The one asked for, or what stands in for it. */
+/* Returns the index of the best match for a language. */
 uint32_t info_language_index(const struct info *info, const char *language);
 
 #endif

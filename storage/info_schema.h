@@ -1,15 +1,15 @@
-/* Private to storage: what both sides of the information database agree on. */
+/* What reader and writer of the information database must agree on. Private to storage. */
 #ifndef GOPURA_STORAGE_INFO_SCHEMA_H
 #define GOPURA_STORAGE_INFO_SCHEMA_H
 
 enum {
 	INFO_APPLICATION_ID = 0x47704966, /* "GpIf", in the SQLite header */
-	INFO_SCHEMA_VERSION = 3,          /* user_version, as info_build writes it with tours */
-	INFO_SCHEMA_TOURLESS = 2,         /* and without */
-	INFO_SCHEMA_OLDEST = 1,           /* that info_open still reads; docs/information.md */
+	INFO_SCHEMA_VERSION = 3,          /* user_version of a database with tours */
+	INFO_SCHEMA_TOURLESS = 2,         /* user_version without tours */
+	INFO_SCHEMA_OLDEST = 1, /* oldest that info_open still reads; docs/information.md */
 };
 
-/* A bit each of enum info_tool, in this order. */
+/* Names of the bits of enum info_tool, in this order. */
 enum { INFO_TOOL_NAMES = 2 };
 extern const char *const info_tool_names[INFO_TOOL_NAMES];
 

@@ -1,5 +1,6 @@
-/* Which tools the content gives visitors. A table of its own that is there only where it gives
- * some: programs that know none never ask for it, and the version stays what it is for them. */
+/* Reads which tools the content offers to visitors. They have their own table, which exists only if
+ * there are any. Programs that know no tools never read it, and the schema version stays the same
+ * for them. */
 #include <string.h>
 
 #include "storage/info_private.h"

@@ -1,11 +1,12 @@
-/* The tours of an open information database: rows of an image that is not trusted. */
+/* Loads the tours of an information database from an image that is not trusted, and answers queries
+ * about them. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "storage/info_private.h"
 
-/* A number of what there are count of; count where it is none. */
+/* Reads an index below count; returns count if it is out of range. */
 static uint32_t column_index(sqlite3_stmt *row, int column, uint32_t count)
 {
 	const sqlite3_int64 value = sqlite3_column_int64(row, column);
@@ -127,7 +128,8 @@ int info_load_tours(struct info *info)
 	for (uint32_t i = 0; i < info->tour_count && rc == 0; i++) {
 		const struct info_tour *tour = &info->tours[i].public;
 
-		/* Ends that stay are what its way's moves lie between: geometry/tour_path.h. */
+		/* The first and the last stop must have a stay: movements lie between stays
+		 * (geometry/tour_path.h). */
 		if (!info->tours[i].titles[0] || tour->stop_count < 2 ||
 		    tour->stops[0].stay_s == 0 || tour->stops[tour->stop_count - 1].stay_s == 0)
 			rc = -EBADMSG;
@@ -149,7 +151,7 @@ void info_drop_tours(struct info *info)
 	free(info->tours);
 }
 
-/* ---- what is asked ---- */
+/* ---- queries ---- */
 
 uint32_t info_tour_count(const struct info *info)
 {

@@ -1,3 +1,5 @@
+/* Keeps the hourly counts of visitors' actions in a CSV file: reads and tidies it at the start,
+ * then appends. */
 #include "storage/usage.h"
 
 #include <ctype.h>
@@ -17,11 +19,12 @@ enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MAX = 256,
 
 static const char header[] = "hour,kind,what,language,count\n";
 static const char *const kind_names[] = { "visit", "part", "page", "language", "search", "tour" };
-/* Of a terminal whose clock nobody set; after every date, so never too old. */
+/* The hour of a terminal whose clock was never set. It sorts after every date, so it is never too
+ * old. */
 static const char unset_hour[] = "unset";
 
 struct entry {
-	char hour[HOUR_BYTES]; /* 2026-11-23T10, by the clock on the wall */
+	char hour[HOUR_BYTES]; /* 2026-11-23T10, local time */
 	enum usage_kind kind;
 	char what[WHAT_BYTES], language[LANGUAGE_BYTES];
 	uint64_t count;
@@ -75,7 +78,7 @@ static bool is_hour(const char *text)
 	return true;
 }
 
-/* The next field, cut off at its comma; NULL: it is too long, or there is none. */
+/* Returns the next field, ended at its comma; NULL if it is too long or missing. */
 static const char *take_field(char **rest, size_t bytes_most)
 {
 	char *field = *rest, *end = field ? strchr(field, ',') : NULL;
@@ -108,7 +111,7 @@ static bool parse_line(char *line, struct entry *out)
 	return *end == '\0';
 }
 
-/* ---- the file, at the start */
+/* ---- the file at the start */
 
 static int compare(const void *a, const void *b)
 {
@@ -131,7 +134,7 @@ static size_t count_lines(struct bytes text)
 	return count;
 }
 
-/* The whole lines of text, which is spoilt; *bad: how many were none of ours. */
+/* Parses the complete lines of text, which is modified. *bad is the number of invalid lines. */
 static size_t parse(struct buffer *text, struct entry *entries, size_t *bad)
 {
 	char *line = (char *)text->data, *limit = text->size ? line + text->size : line;
@@ -142,12 +145,12 @@ static size_t parse(struct buffer *text, struct entry *entries, size_t *bad)
 		char *end = memchr(line, '\n', (size_t)(limit - line));
 
 		if (!end) {
-			++*bad; /* torn by a power cut */
+			++*bad; /* cut off by a power failure */
 			break;
 		}
 		*end = '\0';
 		if (strncmp(line, header, sizeof(header) - 2) == 0)
-			; /* nothing to count */
+			; /* the header */
 		else if (parse_line(line, &entries[count]))
 			count++;
 		else
@@ -181,7 +184,7 @@ static void complain(struct usage *usage, const char *path, int rc)
 	usage->complained = true;
 }
 
-/* text: what the file says now; it becomes what it should say. */
+/* Replaces the contents of the file in text with the tidy version. */
 static int tidy(struct buffer *text, const char *path, int64_t now_s)
 {
 	char oldest[HOUR_BYTES] = "";
@@ -230,7 +233,7 @@ static int begin_files(struct usage *usage, int64_t now_s)
 	return rc == -ENOMEM ? rc : 0;
 }
 
-/* ---- life */
+/* ---- creation */
 
 int usage_create(struct usage **out, const char *path, const char *copy_path, int64_t now_s)
 {
@@ -308,7 +311,7 @@ void usage_write(struct usage *usage)
 	rc = lines.error;
 	if (rc == 0)
 		rc = append(usage->path, buffer_bytes(&lines));
-	if (rc == 0) /* else they are counted on, and tried again */
+	if (rc == 0) /* else they stay pending and are tried again */
 		usage->pending_count = 0;
 	else
 		complain(usage, usage->path, rc);

@@ -1,10 +1,10 @@
-/* What visitors looked at, counted without anything about them: how often in each hour a visit
- * began, a part's card or page was opened, a language chosen, the search opened, a tour begun. Kept
- * 400 days in one file of text, which is the CSV that is handed out (docs/visitors.md).
+/* Counts what visitors look at, without any personal data: how often in each hour a visit began, a
+ * part's card or page was opened, a language was chosen, the search was opened, a tour was started.
+ * Counts are kept for 400 days in one text file, the CSV that is handed out (docs/visitors.md).
  *
- * Counts are gathered in memory and added as lines at the file's end, without waiting for the disk:
- * a power cut costs the last half minute at most, a torn line is dropped at the next start, and
- * what stands twice is summed then. One thread. */
+ * Counts are collected in memory and appended as lines to the file, without waiting for the disk. A
+ * power cut costs the last half minute at most. An incomplete line is dropped at the next start,
+ * and repeated entries are then added up. One thread. */
 #ifndef GOPURA_STORAGE_USAGE_H
 #define GOPURA_STORAGE_USAGE_H
 
@@ -18,18 +18,19 @@ enum { USAGE_KEPT_DAYS = 400, USAGE_FILE_MAX = 32 << 20 };
 
 struct usage;
 
-/* The file at path is read, summed up and freed of what is too old and of what is no line of ours.
- * copy_path (NULL: none) gets the same and is kept like it: for those who must not see into path's
- * folder. now_s: wall clock, 0 where it is not known to be set. *out is owned by the caller.
- * -ENOMEM alone: what the disk refuses is logged, and counts are gathered all the same. */
+/* Reads the file at path, adds up its entries, and removes what is too old or not valid. copy_path
+ * (NULL: none) gets the same contents and is kept up to date: for programs that must not read
+ * path's folder. now_s: wall clock, seconds since 1970; 0 if it may not be set. *out is owned by
+ * the caller. Fails only with -ENOMEM: other errors are logged, and counting goes on in memory. */
 must_check int usage_create(struct usage **out, const char *path, const char *copy_path,
 			    int64_t now_s);
-void usage_destroy(struct usage *usage); /* writes; NULL is fine */
+void usage_destroy(struct usage *usage); /* writes what is pending; NULL is fine */
 
-/* what: a part's or tour's id, or ""; letters, digits, - and _ alone. language: likewise. */
+/* Adds one event. what: the id of a part or tour, or "". what and language may contain only
+ * letters, digits, - and _; other values count as "". */
 void usage_add(struct usage *usage, enum usage_kind kind, const char *what, const char *language,
 	       int64_t now_s);
-/* What was counted since goes to the file. */
+/* Appends what was counted since the last write to the file. */
 void usage_write(struct usage *usage);
 
 #endif

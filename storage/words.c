@@ -1,3 +1,5 @@
+/* Normalises text with GLib's Unicode functions and splits it into search words and FTS5
+ * queries. */
 #include "storage/words.h"
 
 #include <errno.h>
@@ -7,7 +9,7 @@
 
 #include "base/hangul.h"
 
-/* Letters that decompose into nothing, and what people type for them. */
+/* Letters without a Unicode decomposition, and what people type instead. */
 static const struct {
 	gunichar from;
 	const char *to;
@@ -22,8 +24,8 @@ static bool is_between(gunichar c, gunichar first, gunichar last)
 	return c >= first && c <= last;
 }
 
-/* Marks above and below that people leave out when they search: of Latin, Greek and Cyrillic,
- * of Arabic; and what is not seen at all, the space without width among it. */
+/* Returns true for marks that people leave out when they search (of Latin, Greek, Cyrillic and
+ * Arabic), and for invisible characters such as the zero-width space. */
 static bool is_left_out(gunichar c)
 {
 	return is_between(c, 0x300, 0x36f) || is_between(c, 0x64b, 0x65f) || c == 0x670 ||
@@ -31,7 +33,7 @@ static bool is_left_out(gunichar c)
 	       is_between(c, 0xfe00, 0xfe0f) || c == 0xfeff;
 }
 
-/* Thai, Lao, Burmese, Khmer, kana, ideographs: a word a character. */
+/* Thai, Lao, Burmese, Khmer, kana, ideographs: each character is a word. */
 static bool is_without_spaces(gunichar c)
 {
 	return is_between(c, 0xe00, 0xeff) || is_between(c, 0x1000, 0x109f) ||
@@ -55,15 +57,15 @@ static gunichar fold(gunichar c)
 	c = g_unichar_tolower(c);
 	while (g_unichar_decompose(c, &base, &mark) && mark != 0 && is_left_out(mark))
 		c = base;
-	if (is_between(c, 0x30a1, 0x30f6)) /* katakana are hiragana */
+	if (is_between(c, 0x30a1, 0x30f6)) /* katakana to hiragana */
 		c -= 0x60;
 	for (size_t i = 0; i < ARRAY_COUNT(small_kana); i++)
 		if (small_kana[i] == c)
-			return c + 1; /* each stands before the large one */
+			return c + 1; /* each comes directly before the large one */
 	return c;
 }
 
-/* Korean by its letters, so that half a syllable finds what it may become. */
+/* Writes Korean as letters, so that half a syllable finds what it may become. */
 static void put_char(struct buffer *out, gunichar c)
 {
 	uint32_t letters[HANGUL_LETTERS_MAX];
@@ -110,7 +112,7 @@ int words_of(struct buffer *out, const char *text)
 	return out->error;
 }
 
-/* One piece of the query between spaces: a phrase whose last word may go on. */
+/* Writes one piece of the query as a phrase whose last word may continue. */
 static int put_phrase(struct buffer *out, const char *piece, bool *is_first)
 {
 	struct buffer words;
