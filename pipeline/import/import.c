@@ -243,11 +243,6 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
-uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes)
-{
-	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
-}
-
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
 		     struct fault *fault)

@@ -8,8 +8,13 @@
 /* Readers give the mesh in the file's unit and axes, indices in range, not repaired. */
 must_check int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 			  struct import_report *report, struct fault *fault);
-/* What decoding may take, unless options say so: a small file cannot be a scan that needs much. */
-uint64_t import_memory_bytes(const struct import_options *options, uint64_t file_bytes);
+/* The most memory that decoding may take. Unless the options say so, it grows with the file: a
+ * small file is no scan that needs much. */
+static inline uint64_t import_memory_bytes(const struct import_options *options,
+					   uint64_t file_bytes)
+{
+	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
+}
 
 /* ---- files that a scan names */
 
