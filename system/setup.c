@@ -1,5 +1,8 @@
+/* Writes what gopura.conf means for the machine: a file for each program that takes something of
+ * it. */
 #include "system/setup.h"
 
+#include <arpa/inet.h>
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
@@ -13,6 +16,7 @@
 #include "base/bytes.h"
 #include "base/log.h"
 #include "base/safe_open.h"
+#include "system/terminal_values.h"
 
 enum { FILE_MAX = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
 
@@ -133,13 +137,44 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 	return rc == 0 && is_plain_word(out);
 }
 
+/* Addresses that the fetcher's unit denies: of the terminal itself, and link-local ones. */
+static bool is_denied(const char *host)
+{
+	struct in6_addr v6;
+	struct in_addr v4;
+
+	if (inet_pton(AF_INET, host, &v4) == 1)
+		return ntohl(v4.s_addr) >> 24 == 127 || ntohl(v4.s_addr) >> 16 == 0xa9fe;
+	return inet_pton(AF_INET6, host, &v6) == 1 &&
+	       (IN6_IS_ADDR_LOOPBACK(&v6) || IN6_IS_ADDR_LINKLOCAL(&v6));
+}
+
+/* A museum server that gopura.conf names by such an address may be reached all the same. */
+static void write_fetch_address(struct writing *writing)
+{
+	const char *host = strstr(writing->setup->terminal->release_url, "://");
+	char address[INET6_ADDRSTRLEN] = "";
+
+	if (host) {
+		host += 3;
+		host += *host == '[';
+		snprintf(address, sizeof(address), "%.*s",
+			 (int)strcspn(host, host[-1] == '[' ? "]%" : ":/"), host);
+	}
+	if (is_denied(address))
+		put(writing, "%s\n", address);
+	finish_file(writing, "fetch-address");
+}
+
 static void write_fetcher(struct writing *writing)
 {
 	const struct terminal *t = writing->setup->terminal;
 	char authority[PATH_MAX];
 	const bool has_authority = copy_authority(writing, authority);
 
-	if (t->release_url[0])
+	/* A release on the stick is read by the stick's own thread, not as if it were a server's.
+	 */
+	if (t->release_url[0] && !terminal_url_is_of_stick(t->release_url))
 		put(writing, "RELEASE_URL=\"%s\"\n", t->release_url);
 	put(writing, "FETCH_OPTIONS=\"");
 	if (t->poll_s > 0)
@@ -152,6 +187,7 @@ static void write_fetcher(struct writing *writing)
 		put(writing, " --ca %s", authority);
 	put(writing, "\"\n");
 	finish_file(writing, "fetch.env");
+	write_fetch_address(writing);
 }
 
 static void write_health(struct writing *writing)

@@ -62,7 +62,7 @@ static const struct setting settings[] = {
 	[AT_URL] = { .section = "release",
 		     .name = "url",
 		     .expects = "an address such as https://museum.example/temple/, or a folder "
-				"such as /media/release",
+				"such as /media/release; on a stick /run/gopura-stick/release",
 		     .set = terminal_set_url },
 	[AT_TRUST] = { .section = "release",
 		       .name = "trust",

@@ -1,3 +1,4 @@
+/* What each value of gopura.conf may be. */
 #include "system/terminal_values.h"
 
 #include <arpa/inet.h>
@@ -13,6 +14,8 @@
 #define LETTERS     "abcdefghijklmnopqrstuvwxyz"
 #define BIG_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 #define DIGITS      "0123456789"
+
+#define STICK_FOLDER "/run/gopura-stick" /* where the appliance mounts a stick */
 
 /* ---- texts */
 
@@ -90,6 +93,17 @@ bool terminal_set_board(const struct setting *setting, void *target, const char 
 
 /* ---- the release */
 
+bool terminal_url_is_of_stick(const char *url)
+{
+	static const char *const places[] = { "", "/", "/release", "/release/" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(places); i++)
+		if (strncmp(url, STICK_FOLDER, strlen(STICK_FOLDER)) == 0 &&
+		    strcmp(url + strlen(STICK_FOLDER), places[i]) == 0)
+			return true;
+	return false;
+}
+
 /* An address that stands in a command line and in a file of the service manager's. */
 bool terminal_set_url(const struct setting *setting, void *target, const char *value)
 {
@@ -105,6 +119,9 @@ bool terminal_set_url(const struct setting *setting, void *target, const char *v
 	else if (strncmp(value, "http://", 7) == 0)
 		host = value + 7;
 	if (host ? !isalnum((unsigned char)*host) && *host != '[' : *value != '/')
+		return false;
+	if (strncmp(value, STICK_FOLDER, strlen(STICK_FOLDER)) == 0 &&
+	    !terminal_url_is_of_stick(value))
 		return false;
 	return put(terminal->release_url, sizeof(terminal->release_url), value);
 }

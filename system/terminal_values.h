@@ -27,4 +27,8 @@ bool terminal_set_country(const struct setting *setting, void *target, const cha
 bool terminal_set_listen(const struct setting *setting, void *target, const char *value);
 bool terminal_set_usb(const struct setting *setting, void *target, const char *value);
 
+/* The url names the stick itself, or release/ on it: the two places where the fetcher looks there.
+ */
+bool terminal_url_is_of_stick(const char *url);
+
 #endif

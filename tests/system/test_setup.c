@@ -357,6 +357,7 @@ static const struct {
 	{ "dnssd/gopura-health.dnssd",
 	  { "[Service]", "Name=%H", "Type=_http._tcp", "Port=", "TxtText=path=/" },
 	  "0123456789" },
+	{ "fetch-address", { "" }, "0123456789abcdefABCDEF:." },
 	{ "health-address", { "" }, "0123456789abcdefABCDEF:.[]" },
 	{ "usb", { "" }, "abcdefghijklmnopqrstuvwxyz " },
 	{ "faults", { "" }, NULL },
@@ -487,6 +488,41 @@ static void no_folders_name_says_more_than_its_own(void **state)
 	snprintf(conf_path, sizeof(conf_path), "%s", kept);
 }
 
+static void a_release_on_the_stick_is_left_to_the_sticks_own_reader(void **state)
+{
+	(void)state;
+	apply("[release]\nurl = /run/gopura-stick/release\ntrust = 1.json\n");
+	CHECK(strcmp(text_of("faults"), "") == 0);
+	has_not("fetch.env", "RELEASE_URL");
+	apply("[release]\nurl = /run/gopura-stick/elsewhere\ntrust = 1.json\n");
+	has("faults", "line 2: url must be");
+	apply("[release]\nurl = /media/release\ntrust = 1.json\n");
+	has("fetch.env", "RELEASE_URL=\"/media/release\"");
+}
+
+static void only_a_server_that_would_be_denied_is_named_to_the_fetchers_unit(void **state)
+{
+	static const char *const cases[][2] = {
+		{ "https://museum.example/temple/", "" },
+		{ "http://192.168.1.2:8080/", "" },
+		{ "http://169.254.7.9:8080/", "169.254.7.9\n" },
+		{ "https://127.0.0.1/temple/", "127.0.0.1\n" },
+		{ "https://[fe80::1%25eth0]:8443/", "fe80::1\n" },
+		{ "https://[::1]/", "::1\n" },
+		{ "https://[2001:db8::1]/", "" },
+		{ "https://169.254.7.9.museum.example/", "" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		char conf[256];
+
+		snprintf(conf, sizeof(conf), "[release]\nurl = %s\ntrust = 1.json\n", cases[i][0]);
+		apply(conf);
+		CHECK(strcmp(text_of("fetch-address"), cases[i][1]) == 0);
+	}
+}
+
 static void the_network_is_told_of_the_health_page_where_asked_for(void **state)
 {
 	(void)state;
@@ -531,6 +567,8 @@ int main(void)
 		cmocka_unit_test(the_radio_has_the_address_and_old_networks_go),
 		cmocka_unit_test(the_network_is_told_of_the_health_page_where_asked_for),
 		cmocka_unit_test(the_authority_outlives_its_stick),
+		cmocka_unit_test(a_release_on_the_stick_is_left_to_the_sticks_own_reader),
+		cmocka_unit_test(only_a_server_that_would_be_denied_is_named_to_the_fetchers_unit),
 		cmocka_unit_test(no_value_says_more_than_its_own),
 		cmocka_unit_test(no_folders_name_says_more_than_its_own),
 		cmocka_unit_test(what_usb_may_bring_is_nothing_unless_it_is_named),
