@@ -9,7 +9,7 @@ enum {
 	TAP_US = 500 * 1000,
 	AGAIN_US = 400 * 1000,
 	VELOCITY_WINDOW_US = 100 * 1000, /* the velocity of a fling is measured over this time */
-	ACCUMULATION_US = 60 * 1000,     /* a finger that rested longer than this has no velocity */
+	REST_US = 60 * 1000,             /* a finger that rested longer than this has no velocity */
 };
 
 #define PINCH_LEAST_PX 8.0f /* smaller distances of two fingers count as this */
@@ -120,7 +120,7 @@ static void end(struct gesture_recogniser *r, enum gesture_kind kind, int64_t ti
 		if (time_us - r->history[i].time_us <= VELOCITY_WINDOW_US)
 			first = &r->history[i];
 	seconds = (float)(last->time_us - first->time_us) / 1e6f;
-	if (seconds > 0 && time_us - last->time_us <= ACCUMULATION_US) {
+	if (seconds > 0 && time_us - last->time_us <= REST_US) {
 		gesture.vx_px_per_s = (last->x_px - first->x_px) / seconds;
 		gesture.vy_px_per_s = (last->y_px - first->y_px) / seconds;
 		gesture.scale_per_s = (last->log_distance - first->log_distance) / seconds;

@@ -93,12 +93,12 @@ static void block_at(float block[4], const float p[3], const float n[3], float f
 	}
 	float row = floorf(up);
 	float across = along * 1.17f + hash(row, 5.0f, 1.0f);
-	float material = floorf(across);
-	float edge = fminf(fminf(across - material, material + 1.0f - across) * 0.85f,
+	float stone = floorf(across);
+	float edge = fminf(fminf(across - stone, stone + 1.0f - across) * 0.85f,
 			   fminf(up - row, row + 1.0f - up) * 0.43f);
 
-	block[0] = hash(material, row, 9.0f);
-	block[1] = hash(row, material, 23.0f);
+	block[0] = hash(stone, row, 9.0f);
+	block[1] = hash(row, stone, 23.0f);
 	block[2] = (1.0f - ramp(0.003f, 0.014f, edge)) * kept(30.0f, footprint_m);
 	block[3] = edge;
 }

@@ -85,10 +85,10 @@ static void plan_colonnade(struct plan *plan, const struct frame *row, float len
 	for (int i = 0; i < count; i++) {
 		float x = ((float)i / (float)(count - 1) - 0.5f) * (length_m - 0.5f);
 		struct frame foot = frame_within(row, x, 0, 0, 0);
-		struct sheet *material = plan_sheet(plan, &foot, &outline_square, &pillar, 0.15f,
-						    0.06f, height_m - 0.34f);
-		material->interest = 1.3f;
-		material->optional = true;
+		struct sheet *sheet = plan_sheet(plan, &foot, &outline_square, &pillar, 0.15f,
+						 0.06f, height_m - 0.34f);
+		sheet->interest = 1.3f;
+		sheet->optional = true;
 	}
 	struct sheet *lintel =
 		plan_sheet(plan, &above, &outline_square, &beam, length_m * 0.5f, 0.06f, 0.36f);

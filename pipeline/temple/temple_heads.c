@@ -107,9 +107,9 @@ float figure_face(float x, float y, float aspect)
 	h = fmaxf(h, face_ear(ax, y) + 0.12f);
 	/* The blocks it is built of: open joints, courses of a sixth of the face. */
 	float course = y * 6.5f, row = floorf(course);
-	float material = x * 4.2f + 0.5f * fmodf(row, 2);
+	float stone = x * 4.2f + 0.5f * fmodf(row, 2);
 	float joint = fminf(fminf(course - row, row + 1 - course) / 6.5f,
-			    fabsf(material - roundf(material)) / 4.2f);
+			    fabsf(stone - roundf(stone)) / 4.2f);
 	return h - 0.035f * (1 - carve_step(0.0f, 0.008f, joint));
 }
 

@@ -131,10 +131,10 @@ static float blocks(const struct relief_style *s, const struct relief_place *p)
 {
 	float course_m = s->period_m * 0.55f, row = floorf(p->y_m / course_m);
 	float shift = temple_chance(s->seed, (uint32_t)(int32_t)row, 7) * s->period_m;
-	float material = floorf((p->x_m + shift) / s->period_m);
-	float x = p->x_m + shift - material * s->period_m, y = p->y_m - row * course_m;
+	float stone = floorf((p->x_m + shift) / s->period_m);
+	float x = p->x_m + shift - stone * s->period_m, y = p->y_m - row * course_m;
 	float edge = fminf(fminf(x, s->period_m - x), fminf(y, course_m - y));
-	uint32_t a = (uint32_t)(int32_t)row, b = (uint32_t)(int32_t)material;
+	uint32_t a = (uint32_t)(int32_t)row, b = (uint32_t)(int32_t)stone;
 	float out = 0.55f + 0.45f * temple_chance(s->seed, a, b);
 	float tilt = (temple_chance(s->seed + 1, a, b) - 0.5f) * (x / s->period_m - 0.5f);
 

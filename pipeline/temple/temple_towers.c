@@ -88,11 +88,11 @@ static void plan_pediment(struct plan *plan, const struct frame *foot, float wid
 {
 	for (int side = 0; side < 2; side++) {
 		struct frame face = frame_within(foot, 0, side ? 0.12f : -0.12f, 0, side ? 2 : 0);
-		struct sheet *material = plan_panel(plan, &face, width_m, height_m, RELIEF_TYMPANUM,
-						    side ? 0.04f : 0.17f, 0);
-		material->shape = SHAPE_PEDIMENT;
-		material->rim_m = 0.13f;
-		material->interest = side ? 0.8f : 3.0f;
+		struct sheet *sheet = plan_panel(plan, &face, width_m, height_m, RELIEF_TYMPANUM,
+						 side ? 0.04f : 0.17f, 0);
+		sheet->shape = SHAPE_PEDIMENT;
+		sheet->rim_m = 0.13f;
+		sheet->interest = side ? 0.8f : 3.0f;
 	}
 }
 
@@ -110,10 +110,10 @@ static void plan_doorway(struct plan *plan, const struct frame *sill, float half
 		struct frame pilaster =
 			frame_within(sill, (float)side * (half_m * 0.87f), -0.14f, 0, 0);
 		plan_box(plan, &jamb, 0.14f, 0.14f, opening);
-		struct sheet *material = plan_sheet(plan, &shaft, &outline_circle, &colonnette,
-						    0.075f, 0.05f, opening);
-		material->interest = 2;
-		material->optional = true;
+		struct sheet *sheet = plan_sheet(plan, &shaft, &outline_circle, &colonnette, 0.075f,
+						 0.05f, opening);
+		sheet->interest = 2;
+		sheet->optional = true;
 		plan_panel(plan, &pilaster, half_m * 0.3f, height_m, RELIEF_SCROLL_UP, 0.05f, 0.34f)
 			->interest = 1.6f;
 	}
@@ -283,10 +283,10 @@ void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m)
 	for (int turn = 0; turn < 4; turn++) {
 		struct frame face = frame_within(&neck, 0, 0, 0.1f, turn);
 		face = frame_within(&face, 0, -half_m * 0.62f, 0, 0);
-		struct sheet *material = plan_panel(plan, &face, head_m * 0.86f, head_m,
-						    RELIEF_FACE, head_m * 0.42f, 0);
-		material->interest = 3.4f;
-		material->rim_m = 0.2f;
+		struct sheet *sheet = plan_panel(plan, &face, head_m * 0.86f, head_m, RELIEF_FACE,
+						 head_m * 0.42f, 0);
+		sheet->interest = 3.4f;
+		sheet->rim_m = 0.2f;
 	}
 	plan_bud(plan, &bud, half_m * 0.8f, 3.6f, 3);
 }

@@ -17,7 +17,7 @@ static const char square_fragment[] = "precision mediump float;\n"
 static int build(struct accumulation *accumulation)
 {
 	const struct gl_program_source source = {
-		.name = "rest",
+		.name = "accumulation",
 		.vertex = (const char *const[]){ gl_square_vertex, NULL },
 		.fragment = (const char *const[]){ square_fragment, NULL },
 		.attributes = gl_square_attributes,

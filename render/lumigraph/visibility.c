@@ -51,7 +51,7 @@ static const char visibility_fragment[] =
 static int build(struct visibility_program *out, const char *defines)
 {
 	const struct gl_program_source source = {
-		.name = "census",
+		.name = "visibility",
 		.vertex = (const char *const[]){ defines, visibility_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, defines, visibility_fragment,
 						   NULL },
@@ -151,7 +151,7 @@ int visibility_end(struct visibility *visibility)
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, VISIBILITY_WIDTH, VISIBILITY_HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE,
 		     visibility->pixels);
-	return gl_check("taking the census");
+	return gl_check("taking the visibility pass");
 }
 
 bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out)

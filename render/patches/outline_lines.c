@@ -97,7 +97,7 @@ static int build(struct outline_lines_program *out, const struct gl_program_sour
 	return rc;
 }
 
-static int make_quads(struct ribbons *ribbons)
+static int make_quads(struct outline_renderer *outlines)
 {
 	uint16_t *indices = malloc(QUADS * 6 * sizeof(*indices));
 	if (!indices)
@@ -106,17 +106,17 @@ static int make_quads(struct ribbons *ribbons)
 		static const uint8_t corner[6] = { 0, 1, 2, 2, 1, 3 };
 		indices[i] = (uint16_t)(i / 6 * 4 + corner[i % 6]);
 	}
-	glGenBuffers(1, &ribbons->quads);
-	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, ribbons->quads);
+	glGenBuffers(1, &outlines->quads);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, outlines->quads);
 	glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(QUADS * 6 * sizeof(*indices)), indices,
 		     GL_STATIC_DRAW);
 	free(indices);
 	return gl_check("making the lines' quads");
 }
 
-int ribbons_init(struct ribbons *ribbons)
+int outline_renderer_init(struct outline_renderer *outlines)
 {
-	memset(ribbons, 0, sizeof(*ribbons));
+	memset(outlines, 0, sizeof(*outlines));
 	const struct gl_program_source line = {
 		.name = "outline",
 		.vertex = (const char *const[]){ line_vertex, NULL },
@@ -129,21 +129,21 @@ int ribbons_init(struct ribbons *ribbons)
 		.fragment = (const char *const[]){ gl_fine_fragment, tint_fragment, NULL },
 		.attributes = (const char *const[]){ "a_position", NULL },
 	};
-	int rc = build(&ribbons->line, &line);
+	int rc = build(&outlines->line, &line);
 	if (rc == 0)
-		rc = build(&ribbons->tint, &tint);
-	return rc < 0 ? rc : make_quads(ribbons);
+		rc = build(&outlines->tint, &tint);
+	return rc < 0 ? rc : make_quads(outlines);
 }
 
-void ribbons_finish(struct ribbons *ribbons)
+void outline_renderer_finish(struct outline_renderer *outlines)
 {
-	if (ribbons->line.program)
-		glDeleteProgram(ribbons->line.program);
-	if (ribbons->tint.program)
-		glDeleteProgram(ribbons->tint.program);
-	if (ribbons->quads)
-		glDeleteBuffers(1, &ribbons->quads);
-	memset(ribbons, 0, sizeof(*ribbons));
+	if (outlines->line.program)
+		glDeleteProgram(outlines->line.program);
+	if (outlines->tint.program)
+		glDeleteProgram(outlines->tint.program);
+	if (outlines->quads)
+		glDeleteBuffers(1, &outlines->quads);
+	memset(outlines, 0, sizeof(*outlines));
 }
 
 /* ---- an outline */
@@ -226,10 +226,10 @@ static void begin(const struct outline_lines_program *program, const struct view
 	glEnableVertexAttribArray(0);
 }
 
-void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
-			 const struct root_page *root)
+void outline_renderer_begin_tints(const struct outline_renderer *outlines, const struct view *view,
+				  const struct root_page *root)
 {
-	begin(&ribbons->tint, view, root);
+	begin(&outlines->tint, view, root);
 	glPolygonOffset(-1, -2);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
@@ -252,13 +252,13 @@ void outline_lines_tint(const struct outline_lines *lines)
 	}
 }
 
-void ribbons_begin_lines(const struct ribbons *ribbons, const struct view *view,
-			 const struct root_page *root)
+void outline_renderer_begin_lines(const struct outline_renderer *outlines, const struct view *view,
+				  const struct root_page *root)
 {
-	begin(&ribbons->line, view, root);
+	begin(&outlines->line, view, root);
 	glEnableVertexAttribArray(1);
 	glEnableVertexAttribArray(2);
-	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, ribbons->quads);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, outlines->quads);
 }
 
 void outline_lines_lines(const struct outline_lines *lines)
@@ -280,7 +280,7 @@ void outline_lines_lines(const struct outline_lines *lines)
 	}
 }
 
-void ribbons_end(void)
+void outline_renderer_end(void)
 {
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);

@@ -13,7 +13,7 @@ struct outline_lines_program {
 	GLint clip, lattice, picture, cut;
 };
 
-struct ribbons {
+struct outline_renderer {
 	struct outline_lines_program line, tint;
 	GLuint quads; /* index buffer for the quads of one draw call */
 };
@@ -26,10 +26,10 @@ struct outline_lines {
 };
 
 /* Builds the programs; needs a current GL context, as everything here. Errors as gl_program_build,
- * or -ENOMEM; then call ribbons_finish. */
-must_check int ribbons_init(struct ribbons *ribbons);
+ * or -ENOMEM; then call outline_renderer_finish. */
+must_check int outline_renderer_init(struct outline_renderer *outlines);
 /* Frees everything; zeroed is fine. */
-void ribbons_finish(struct ribbons *ribbons);
+void outline_renderer_finish(struct outline_renderer *outlines);
 
 /* Uploads an outline and replaces what *out held. serial must not be 0. -ENOMEM, or as gl_check. */
 must_check int outline_lines_make(struct outline_lines *out, const struct outline *outline,
@@ -38,16 +38,16 @@ void outline_lines_finish(struct outline_lines *lines); /* Deletes the buffers; 
 
 /* Drawing is blended over the picture, whose depth stays as it is. First the tints: each with its
  * patch bound (geometry_bind; attributes 1 and 2 are not used). */
-void ribbons_begin_tints(const struct ribbons *ribbons, const struct view *view,
-			 const struct root_page *root);
-/* Draws the tint of one patch, after ribbons_begin_tints. */
+void outline_renderer_begin_tints(const struct outline_renderer *outlines, const struct view *view,
+				  const struct root_page *root);
+/* Draws the tint of one patch, after outline_renderer_begin_tints. */
 void outline_lines_tint(const struct outline_lines *lines);
 /* Then the lines. */
-void ribbons_begin_lines(const struct ribbons *ribbons, const struct view *view,
-			 const struct root_page *root);
-/* Draws the lines of one patch, after ribbons_begin_lines; the patch need not be bound. */
+void outline_renderer_begin_lines(const struct outline_renderer *outlines, const struct view *view,
+				  const struct root_page *root);
+/* Draws the lines of one patch, after outline_renderer_begin_lines; the patch need not be bound. */
 void outline_lines_lines(const struct outline_lines *lines);
 /* Finally restores the GL state that the scene expects. */
-void ribbons_end(void);
+void outline_renderer_end(void);
 
 #endif

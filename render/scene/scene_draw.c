@@ -250,7 +250,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
 	scene_update_cut(scene, passed_ms);
 	scene_list_pieces(scene);
-	bool counted = scene_take_census(scene, moved);
+	bool counted = scene_take_visibility(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->depth_is_stale = false;

@@ -76,7 +76,7 @@ const char *scene_part(struct scene *scene, const struct camera *camera, float x
 	return part < 0 ? "" : labels->parts[part].id;
 }
 
-static int make_ribbon(struct scene *scene, uint32_t patch, const struct label_group *labels)
+static int make_outline(struct scene *scene, uint32_t patch, const struct label_group *labels)
 {
 	const struct hierarchy_patch *known = &scene->hierarchy.patches[patch];
 	struct geometry_patch *out = &scene->geometry.patches[patch];
@@ -104,5 +104,5 @@ bool scene_outline(struct scene *scene, uint32_t patch)
 		return false;
 	if (scene->geometry.patches[patch].lines.serial == scene->mark_serial)
 		return true;
-	return make_ribbon(scene, patch, labels) == 0;
+	return make_outline(scene, patch, labels) == 0;
 }

@@ -47,7 +47,7 @@ static void draw_region(struct scene *scene, const struct view *view)
 }
 
 /* Calls draw for each visible patch whose outline lines are known. */
-static void each_ribbon(struct scene *scene, void (*draw)(struct scene *, uint32_t patch))
+static void each_outlined_patch(struct scene *scene, void (*draw)(struct scene *, uint32_t patch))
 {
 	uint32_t before = HIERARCHY_NONE;
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
@@ -80,9 +80,9 @@ void scene_draw_mark(struct scene *scene, const struct view *view)
 		draw_region(scene, view);
 	if (!scene->labels || !scene->marked_part[0])
 		return;
-	ribbons_begin_tints(&scene->ribbons, view, &scene->root);
-	each_ribbon(scene, draw_tint);
-	ribbons_begin_lines(&scene->ribbons, view, &scene->root);
-	each_ribbon(scene, draw_lines);
-	ribbons_end();
+	outline_renderer_begin_tints(&scene->outlines, view, &scene->root);
+	each_outlined_patch(scene, draw_tint);
+	outline_renderer_begin_lines(&scene->outlines, view, &scene->root);
+	each_outlined_patch(scene, draw_lines);
+	outline_renderer_end();
 }

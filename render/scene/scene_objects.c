@@ -76,7 +76,7 @@ int scene_create(struct scene **out, const struct scene_options *options)
 	if (rc == 0)
 		rc = mark_init(&scene->mark);
 	if (rc == 0)
-		rc = ribbons_init(&scene->ribbons);
+		rc = outline_renderer_init(&scene->outlines);
 	if (rc == 0)
 		rc = visibility_init(&scene->visibility);
 	if (rc < 0) {
@@ -129,7 +129,7 @@ void scene_destroy(struct scene *scene)
 		forget(scene);
 	pool_destroy(scene->pool);
 	mark_finish(&scene->mark);
-	ribbons_finish(&scene->ribbons);
+	outline_renderer_finish(&scene->outlines);
 	accumulation_finish(&scene->accumulation);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);

@@ -61,7 +61,7 @@ struct scene {
 	struct depth depth;
 	struct surface surface;
 	struct mark mark;
-	struct ribbons ribbons;
+	struct outline_renderer outlines;
 	struct accumulation accumulation;
 	struct visibility visibility;
 
@@ -156,7 +156,7 @@ void scene_list_wants(struct scene *scene);
 
 /* scene_visibility.c: runs a visibility pass where one is due, or half of one while the eye moves.
  * Returns whether anything was drawn for it. */
-bool scene_take_census(struct scene *scene, bool moved);
+bool scene_take_visibility(struct scene *scene, bool moved);
 
 /* scene_plan.c, in the order of a frame. passed_ms is the time since the last frame. */
 /* Takes decoded objects until until_us. */

@@ -317,11 +317,9 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 		bool chosen = blend_is_chosen(&state->choice, blend);
 		if (chosen && !depth_ready(&scene->depth, slot, blend->face))
 			continue; /* its depths are not drawn yet */
-		float accumulation = blend->target - blend->weight;
-		blend->weight += accumulation > step    ? step
-				 : accumulation < -step ? -step
-							: accumulation;
-		moving |= fabsf(accumulation) > 0;
+		float left = blend->target - blend->weight;
+		blend->weight += left > step ? step : left < -step ? -step : left;
+		moving |= fabsf(left) > 0;
 		if (!chosen && blend->weight <= 0)
 			*blend = (struct blend){ 0 };
 	}

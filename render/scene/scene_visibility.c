@@ -197,7 +197,7 @@ static void sum_patches(struct scene *scene)
 	scene->filled = all_px / scene->view.picture_px;
 }
 
-bool scene_take_census(struct scene *scene, bool moved)
+bool scene_take_visibility(struct scene *scene, bool moved)
 {
 	if (!scene->counting && !is_due(scene, moved))
 		return false;
