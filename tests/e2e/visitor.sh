@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
-work=build/e2e/guest
+work=build/e2e/visitor
 rm -rf "$work"
 mkdir -p "$work"
 small_release
