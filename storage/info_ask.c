@@ -7,7 +7,8 @@
 
 #include "base/log.h"
 #include "storage/info_index.h"
-#include "storage/info_private.h"
+#include "storage/info_languages.h"
+#include "storage/info_rows.h"
 
 enum { CALLS_OF_A_SEARCH = 1000 };
 

@@ -3,8 +3,6 @@
  * come from a damaged cache or a stranger. So the schema is not trusted (it cannot run functions),
  * the pages of the file are checked, and work is limited. */
 #include <errno.h>
-#include <libxml/xmlstring.h>
-#include <math.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,28 +10,14 @@
 
 #include "base/log.h"
 #include "storage/info_index.h"
-#include "storage/info_private.h"
+#include "storage/info_languages.h"
+#include "storage/info_rows.h"
 #include "storage/info_schema.h"
 
 enum {
 	STEPS_PER_CALL = 1000,
 	PICTURES_MAX = 100000,
 };
-
-int info_from_sqlite(sqlite3 *db, int code, const char *doing)
-{
-	switch (code) {
-	case SQLITE_OK:
-	case SQLITE_ROW:
-	case SQLITE_DONE:
-		return 0;
-	case SQLITE_NOMEM:
-		return -ENOMEM;
-	default:
-		log_error("storage", "information database: %s: %s", doing, sqlite3_errmsg(db));
-		return -EBADMSG;
-	}
-}
 
 static int bound_work(void *data)
 {
@@ -43,48 +27,6 @@ static int bound_work(void *data)
 }
 
 /* ---- rows ---- */
-
-int info_each_row(struct info *info, const char *sql, info_row_reader *read)
-{
-	sqlite3_stmt *statement = NULL;
-	int code = sqlite3_prepare_v2(info->db, sql, -1, &statement, NULL);
-	int rc = info_from_sqlite(info->db, code, sql);
-
-	while (rc == 0 && (code = sqlite3_step(statement)) == SQLITE_ROW)
-		rc = read(info, statement);
-	if (rc == 0)
-		rc = info_from_sqlite(info->db, code, sql);
-	sqlite3_finalize(statement);
-	return rc;
-}
-
-int info_copy_text(sqlite3_stmt *row, int column, char **out)
-{
-	const char *text = (const char *)sqlite3_column_text(row, column);
-	int size = sqlite3_column_bytes(row, column);
-
-	if (!text)
-		return sqlite3_column_type(row, column) == SQLITE_NULL ? 0 : -ENOMEM;
-	if (strlen(text) != (size_t)size || !xmlCheckUTF8((const unsigned char *)text))
-		return -EBADMSG;
-	*out = strdup(text);
-	return *out ? 0 : -ENOMEM;
-}
-
-static int read_float(sqlite3_stmt *row, int column, float *out)
-{
-	*out = (float)sqlite3_column_double(row, column);
-	return isfinite(*out) ? 0 : -EBADMSG;
-}
-
-int info_read_floats(sqlite3_stmt *row, int column, float *out, int count)
-{
-	int rc = 0;
-
-	for (int i = 0; i < count && rc == 0; i++)
-		rc = read_float(row, column + i, &out[i]);
-	return rc;
-}
 
 static int read_language(struct info *info, sqlite3_stmt *row)
 {
@@ -148,15 +90,15 @@ static int read_region(sqlite3_stmt *row, struct region *region)
 	region->kind = (enum region_kind)i;
 	rc = info_read_floats(row, 3, region->centre_m, 3);
 	if (rc == 0)
-		rc = read_float(row, 9, &region->radius_m);
+		rc = info_read_floats(row, 9, &region->radius_m, 1);
 	if (rc == 0)
 		rc = info_read_floats(row, 10, region->half_m, 3);
 	if (rc == 0)
-		rc = read_float(row, 13, &region->turn_deg);
+		rc = info_read_floats(row, 13, &region->turn_deg, 1);
 	if (rc == 0)
-		rc = read_float(row, 14, &region->floor_m);
+		rc = info_read_floats(row, 14, &region->floor_m, 1);
 	if (rc == 0)
-		rc = read_float(row, 15, &region->roof_m);
+		rc = info_read_floats(row, 15, &region->roof_m, 1);
 	return rc;
 }
 
@@ -457,48 +399,6 @@ uint32_t info_language_count(const struct info *info)
 const char *info_language(const struct info *info, uint32_t index)
 {
 	return info->languages[index];
-}
-
-static bool is_of_a_kind(const char *a, const char *b)
-{
-	const size_t size = strcspn(a, "-");
-
-	return size == strcspn(b, "-") && strncmp(a, b, size) == 0;
-}
-
-struct info_order info_order_of(const struct info *info, const char *language)
-{
-	struct info_order order = { .count = 0 };
-
-	/* Rounds: the same language, related ones, others. Every language is in one of these. */
-	for (int round = 0; round < 3; round++)
-		for (uint32_t i = 0; i < info->language_count; i++) {
-			const char *other = info->languages[i];
-			const bool same = language && strcmp(other, language) == 0;
-			const bool of_a_kind = language && is_of_a_kind(other, language);
-
-			if (round == (same ? 0 : of_a_kind ? 1 : 2))
-				order.languages[order.count++] = i;
-		}
-	return order;
-}
-
-const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found)
-{
-	for (uint32_t i = 0; i < order->count; i++) {
-		const char *text = texts[order->languages[i]];
-
-		if (text && found)
-			*found = order->languages[i];
-		if (text)
-			return text;
-	}
-	return NULL;
-}
-
-uint32_t info_language_index(const struct info *info, const char *language)
-{
-	return info_order_of(info, language).languages[0];
 }
 
 const char *info_nearest_language(const struct info *info, const char *language)

@@ -55,34 +55,11 @@ struct info {
 	uint32_t picture_count;
 };
 
-/* Translates a result code to 0, -ENOMEM, or -EBADMSG, which is logged. */
-must_check int info_from_sqlite(sqlite3 *db, int code, const char *doing);
-/* Reads one row of an image that is not trusted. Returns 0 or a negative errno, which ends the
- * query. */
-typedef int info_row_reader(struct info *info, sqlite3_stmt *row);
-/* Runs sql and calls read for each row. */
-must_check int info_each_row(struct info *info, const char *sql, info_row_reader *read);
-/* Copies a text column; NULL stays NULL. Returns -EBADMSG for text with zero bytes inside or
- * invalid UTF-8, or -ENOMEM. *out is owned by the caller. */
-must_check int info_copy_text(sqlite3_stmt *row, int column, char **out);
-/* Reads count columns; -EBADMSG if one is not finite. */
-must_check int info_read_floats(sqlite3_stmt *row, int column, float *out, int count);
 /* info_tools.c: the table of tools may exist in any version. */
 must_check int info_load_tools(struct info *info);
 /* info_tour.c: call it after parts and pictures are loaded. */
 must_check int info_load_tours(struct info *info);
 /* Frees the tours. */
 void info_drop_tours(struct info *info);
-/* All languages, in the order in which they replace a missing text: the requested one, related ones
- * ("pt" for "pt-BR", and the reverse), then those of the release in its order. */
-struct info_order {
-	uint32_t languages[INFO_LANGUAGES_MAX], count;
-};
-/* language may be NULL: the release's order. */
-struct info_order info_order_of(const struct info *info, const char *language);
-/* Returns the first text in that order, or NULL. *found (may be NULL) is set to its language. */
-const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found);
-/* Returns the index of the best match for a language. */
-uint32_t info_language_index(const struct info *info, const char *language);
 
 #endif

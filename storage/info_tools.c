@@ -3,7 +3,7 @@
  * for them. */
 #include <string.h>
 
-#include "storage/info_private.h"
+#include "storage/info_rows.h"
 #include "storage/info_schema.h"
 
 const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section" };

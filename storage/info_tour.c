@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "storage/info_private.h"
+#include "storage/info_languages.h"
+#include "storage/info_rows.h"
 
 /* Reads an index below count; returns count if it is out of range. */
 static uint32_t column_index(sqlite3_stmt *row, int column, uint32_t count)

@@ -13,7 +13,6 @@ import sys
 KNOWN = {
     "net/downloader net/downloader_range net/downloader_release",
     "pipeline/release/verify pipeline/release/verify_pages",
-    "storage/info_open storage/info_tools storage/info_tour",
     "ui/overlay ui/overlay_comfort ui/overlay_draw ui/overlay_gallery ui/overlay_languages ui/overlay_place"
     " ui/overlay_search ui/overlay_tools ui/overlay_tour",
 }
