@@ -3,31 +3,13 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/release/verify_parts.h"
+#include "pipeline/release/verify_pages.h"
 
 enum { ROOTS_MAX = 1000, LOCATOR_BYTES_MAX = 256 << 20 };
-
-int verify_blame(struct verify_report *report, int rc, const char *text, ...)
-{
-	va_list args;
-
-	if (report->why[0] == '\0') {
-		va_start(args, text);
-		vsnprintf(report->why, sizeof(report->why), text, args);
-		va_end(args);
-	}
-	return rc;
-}
-
-static int blame_reader(struct verify_walk *walk, int rc)
-{
-	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->options->reader));
-}
 
 /* ---- signed metadata ---- */
 
@@ -41,7 +23,7 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 	if (first.size == 0) {
 		rc = release_reader_file(walk->options->reader, "root/1.json", file);
 		if (rc < 0)
-			return blame_reader(walk, rc);
+			return verify_blame_reader(walk, rc);
 		first = buffer_bytes(file);
 	}
 	rc = trust_root_first(&report->trust, first, &why);
@@ -55,7 +37,7 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 		if (rc == -ENOENT)
 			return 0;
 		if (rc < 0)
-			return blame_reader(walk, rc);
+			return verify_blame_reader(walk, rc);
 		rc = trust_root_next(&report->trust, buffer_bytes(file), &why);
 		if (rc < 0)
 			return verify_blame(report, rc, "%s: %s", name, why);
@@ -79,13 +61,13 @@ static int read_release(struct verify_walk *walk, struct buffer *file)
 	int rc = release_reader_file(walk->options->reader, "timestamp.json", file);
 
 	if (rc < 0)
-		return blame_reader(walk, rc);
+		return verify_blame_reader(walk, rc);
 	rc = timestamp_decode(&report->timestamp, &report->trust, buffer_bytes(file), &why);
 	if (rc < 0)
 		return verify_blame(report, rc, "timestamp.json: %s", why);
 	rc = release_reader_file(walk->options->reader, "release.json", file);
 	if (rc < 0)
-		return blame_reader(walk, rc);
+		return verify_blame_reader(walk, rc);
 	rc = release_decode(&report->release, &report->trust, buffer_bytes(file), &why);
 	if (rc < 0)
 		return verify_blame(report, rc, "release.json: %s", why);
@@ -127,7 +109,7 @@ static int read_locator(struct verify_walk *walk)
 	buffer_init(&file, LOCATOR_BYTES_MAX);
 	rc = release_reader_file(walk->options->reader, name, &file);
 	if (rc < 0) {
-		blame_reader(walk, rc);
+		verify_blame_reader(walk, rc);
 	} else {
 		rc = locator_decode(&walk->locator, buffer_bytes(&file));
 		if (rc < 0)
@@ -160,51 +142,6 @@ static int check_packs_used(struct verify_walk *walk)
 }
 
 /* ---- the walk ---- */
-
-int verify_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
-		 struct bytes *out)
-{
-	int rc = release_reader_child(walk->options->reader, &walk->locator, page->name,
-				      page_child_offset(&page->page, child),
-				      &page->page.children[child], out);
-
-	progress_add(walk->progress, page->page.children[child].size);
-	return rc < 0 ? blame_reader(walk, rc) : 0;
-}
-
-static int queue_task(struct verify_walk *walk, const struct verify_task *task)
-{
-	int rc = hash_map_put(&walk->seen, task->child.hash, task->kind);
-
-	if (rc <= 0)
-		return rc;
-	if (walk->task_count == walk->task_room) {
-		size_t room = walk->task_room ? walk->task_room * 2 : 256;
-		struct verify_task *grown = realloc(walk->tasks, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		walk->tasks = grown;
-		walk->task_room = room;
-	}
-	walk->tasks[walk->task_count++] = *task;
-	return 0;
-}
-
-int verify_later(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
-		 enum page_kind kind)
-{
-	struct verify_task task = { .parent = page->name,
-				    .offset = page_child_offset(&page->page, child),
-				    .child = page->page.children[child],
-				    .kind = kind };
-	char hex[HASH_HEX_BYTES];
-
-	if (task.child.is_page)
-		return queue_task(walk, &task);
-	hash_to_hex(page->name, hex);
-	return verify_blame(walk->report, -EBADMSG, "page %s: child %u is not a page", hex, child);
-}
 
 static int check_block(struct verify_walk *walk, const struct verify_page *page)
 {
@@ -260,7 +197,7 @@ static int do_task(struct verify_walk *walk, const struct verify_task *task)
 				      task->offset, &task->child, &bytes);
 
 	if (rc < 0)
-		return blame_reader(walk, rc);
+		return verify_blame_reader(walk, rc);
 	progress_add(walk->progress, bytes.size);
 	buffer_init(&copy, PAGE_BYTES_MAX);
 	buffer_put(&copy, bytes.data, bytes.size);
@@ -286,7 +223,7 @@ static int walk_all(struct verify_walk *walk)
 					       .size = walk->report->release.root_bytes,
 					       .is_page = true },
 				    .kind = PAGE_ROOT };
-	int rc = queue_task(walk, &root);
+	int rc = verify_queue(walk, &root);
 
 	walk->blocks_used = 1; /* the block of the root page */
 	for (size_t i = 0; rc == 0 && i < walk->task_count; i++) {

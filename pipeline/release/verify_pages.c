@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "format/label.h"
-#include "pipeline/release/verify_parts.h"
+#include "pipeline/release/verify_pages.h"
 
 static int blame_page(struct verify_walk *walk, const struct verify_page *page, const char *text)
 {

@@ -1,6 +1,7 @@
-/* What the sources of the verifier share. Private to pipeline/release/verify*.c. */
-#ifndef GOPURA_PIPELINE_RELEASE_VERIFY_PARTS_H
-#define GOPURA_PIPELINE_RELEASE_VERIFY_PARTS_H
+/* The walk over all pages of a release that is verified: what is queued, what was met, and the
+ * first fault. */
+#ifndef GOPURA_PIPELINE_RELEASE_VERIFY_WALK_H
+#define GOPURA_PIPELINE_RELEASE_VERIFY_WALK_H
 
 #include "base/progress.h"
 #include "format/hierarchy.h"
@@ -41,21 +42,16 @@ struct verify_page {
 
 /* Records what is wrong, unless an error was recorded already. Returns rc. */
 int verify_blame(struct verify_report *report, int rc, const char *text, ...) printf_like(3, 4);
+/* The same with what the reader of the release says. */
+int verify_blame_reader(struct verify_walk *walk, int rc);
 
 /* Reads a child of a page and checks its hash; borrowed until the next call. */
 must_check int verify_child(struct verify_walk *walk, const struct verify_page *page,
 			    uint32_t child, struct bytes *out);
+/* Queues a page; one that was met before is queued only once. -ENOMEM. */
+must_check int verify_queue(struct verify_walk *walk, const struct verify_task *task);
 /* Queues the child for verification; it must be a page of that kind. */
 must_check int verify_later(struct verify_walk *walk, const struct verify_page *page,
 			    uint32_t child, enum page_kind kind);
-
-/* Verify a page of each kind, and those of its children that are not pages. */
-must_check int verify_root_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_samples_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_brick_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_face_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_info_page(struct verify_walk *walk, const struct verify_page *page);
-must_check int verify_labels_page(struct verify_walk *walk, const struct verify_page *page);
 
 #endif

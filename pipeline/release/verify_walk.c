@@ -1,0 +1,69 @@
+/* The queue of pages that are still to be checked, and how a fault is said. */
+#include "pipeline/release/verify_walk.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int verify_blame(struct verify_report *report, int rc, const char *text, ...)
+{
+	va_list args;
+
+	if (report->why[0] == '\0') {
+		va_start(args, text);
+		vsnprintf(report->why, sizeof(report->why), text, args);
+		va_end(args);
+	}
+	return rc;
+}
+
+int verify_blame_reader(struct verify_walk *walk, int rc)
+{
+	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->options->reader));
+}
+
+int verify_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+		 struct bytes *out)
+{
+	int rc = release_reader_child(walk->options->reader, &walk->locator, page->name,
+				      page_child_offset(&page->page, child),
+				      &page->page.children[child], out);
+
+	progress_add(walk->progress, page->page.children[child].size);
+	return rc < 0 ? verify_blame_reader(walk, rc) : 0;
+}
+
+int verify_queue(struct verify_walk *walk, const struct verify_task *task)
+{
+	int rc = hash_map_put(&walk->seen, task->child.hash, task->kind);
+
+	if (rc <= 0)
+		return rc;
+	if (walk->task_count == walk->task_room) {
+		size_t room = walk->task_room ? walk->task_room * 2 : 256;
+		struct verify_task *grown = realloc(walk->tasks, room * sizeof(*grown));
+
+		if (!grown)
+			return -ENOMEM;
+		walk->tasks = grown;
+		walk->task_room = room;
+	}
+	walk->tasks[walk->task_count++] = *task;
+	return 0;
+}
+
+int verify_later(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
+		 enum page_kind kind)
+{
+	struct verify_task task = { .parent = page->name,
+				    .offset = page_child_offset(&page->page, child),
+				    .child = page->page.children[child],
+				    .kind = kind };
+	char hex[HASH_HEX_BYTES];
+
+	if (task.child.is_page)
+		return verify_queue(walk, &task);
+	hash_to_hex(page->name, hex);
+	return verify_blame(walk->report, -EBADMSG, "page %s: child %u is not a page", hex, child);
+}
