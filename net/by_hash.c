@@ -1,11 +1,12 @@
+/* Implements the hash map with open addressing and linear probing. There are no tombstones: removal
+ * shifts the following entries back. The key is already a hash, so its first 8 bytes select the
+ * slot. */
+
 #include "net/by_hash.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Open addressing, linear probing, no tombstones: removal shifts back what follows. The key is
- * already a hash, so its first bytes are the place. */
 
 void by_hash_finish(struct by_hash *map)
 {
@@ -21,7 +22,7 @@ static size_t home_of(const struct by_hash *map, const struct hash *key)
 	return (size_t)bits & (map->capacity - 1);
 }
 
-/* The slot with the key, or the free one where it would stand. */
+/* Returns the slot that holds the key, or the free slot where it would be inserted. */
 static size_t slot_of(const struct by_hash *map, const struct hash *key)
 {
 	size_t at = home_of(map, key);
@@ -77,7 +78,7 @@ void by_hash_remove(struct by_hash *map, struct hash key)
 	for (at = (hole + 1) & mask; map->slots[at]; at = (at + 1) & mask) {
 		size_t home = home_of(map, &map->slots[at]->key);
 
-		/* May it move back to the hole? Not past its home. */
+		/* An entry may move back to the hole unless its home slot lies behind the hole. */
 		if (((at - home) & mask) >= ((at - hole) & mask)) {
 			map->slots[hole] = map->slots[at];
 			hole = at;

@@ -1,3 +1,6 @@
+/* Client side of the fetcher's socket: starts gopura-fetch or connects to it, verifies each object
+ * that arrives, and repeats all requests after a reconnect. */
+
 #include "net/client.h"
 
 #include <errno.h>
@@ -25,16 +28,19 @@
 extern char **environ;
 
 enum {
-	MESSAGES_MAX = 64, /* in one dispatch: the frame path has other guests */
+	MESSAGES_MAX = 64, /* per dispatch: other sources share the frame loop */
+	/* time limit of one dispatch */
 	DISPATCH_US = 3000,
-	PAUSE_MS = 100, /* before the first restart, then doubling */
+	PAUSE_MS = 100, /* before the first restart; doubles with each failure */
 	PAUSE_MOST_MS = 10000,
-	STEADY_MS = 10000,          /* a connection that lasted so long was a good one */
-	END_MS = 2000,              /* for the fetcher to end by itself */
-	SILENT_MS = 90000,          /* without a word: it hangs (it speaks every 30 s at least) */
-	UNWANTED_MAX = 16,          /* objects on one connection that were never wanted on it */
-	QUEUE_BYTES_MAX = 64 << 20, /* to the fetcher; every want of a large temple has room */
-	FETCHER_FD = 3,             /* of the socket, in the fetcher */
+	STEADY_MS = 10000, /* a connection that lasted longer resets the failure count */
+	END_MS = 2000,     /* how long the fetcher may take to exit by itself */
+	SILENT_MS = 90000, /* without any message; then it hangs (it sends a status at least every
+			      30 s) */
+	UNWANTED_MAX = 16, /* objects accepted on one connection that were never requested on it */
+	QUEUE_BYTES_MAX =
+		64 << 20, /* send queue to the fetcher; holds every want of a large temple */
+	FETCHER_FD = 3,   /* descriptor number of the socket in the fetcher process */
 };
 
 enum source { SOURCE_SOCKET, SOURCE_CHILD, SOURCE_TIMER };
@@ -52,26 +58,28 @@ struct in_use {
 struct net_client {
 	struct net_client_options options;
 	int epoll_fd, timer_fd;
-	struct packets packets; /* fd -1: not connected */
+	struct packets packets; /* fd is -1 while not connected */
+	/* EPOLLOUT is being watched */
 	bool waits_to_send;
-	bool is_deaf; /* the queue is full: it does not read */
-	/* Objects that may come although nobody wants them: one for each want that was taken back
-	 * or said again on this connection, as the object may have been on its way. */
+	bool is_deaf; /* the send queue is full because the fetcher does not read */
+	/* Number of objects that may still arrive although nobody wants them. Each want that was
+	 * dropped or repeated on this connection counts one, because its object may already be on
+	 * its way. */
 	uint64_t late_count;
-	uint32_t unwanted_count; /* those beyond */
+	uint32_t unwanted_count; /* unrequested objects beyond late_count */
 	pid_t pid;               /* of the fetcher we started; 0: none */
 	int pid_fd;
-	uint32_t failures; /* connections that did not last, in a row */
+	uint32_t failures; /* connections in a row that did not last */
 	int64_t connected_ms, heard_ms;
 	uint64_t received_before,
-		received_now; /* bytes, of the fetchers that died and of this one */
+		received_now; /* bytes received by earlier fetchers, and by the current one */
 	struct by_hash wants; /* struct wanted, owned */
 	struct by_hash keeps; /* struct hash_entry, owned */
 	struct in_use releases[MESSAGE_RELEASES_MAX];
 	size_t release_count;
 };
 
-/* ---- small change */
+/* ---- helpers */
 
 static int watch(struct net_client *client, int fd, enum source source, uint32_t events, int how)
 {
@@ -87,7 +95,7 @@ static void set_timer(struct net_client *client, int64_t after_ms)
 	timerfd_settime(client->timer_fd, 0, &when, NULL);
 }
 
-/* The socket is asked for room only while something waits. */
+/* Watches for EPOLLOUT only while messages wait in the queue. */
 static void watch_socket(struct net_client *client)
 {
 	bool waits = packets_wait(&client->packets);
@@ -99,7 +107,8 @@ static void watch_socket(struct net_client *client)
 		client->waits_to_send = waits;
 }
 
-/* Not connected: it will be said on connecting. A socket that broke is noticed on receiving. */
+/* Sends a message. While not connected it does nothing, because say_everything repeats the state
+ * after connecting. A broken socket is detected when receiving. */
 static void say(struct net_client *client, const struct message *message)
 {
 	int rc;
@@ -108,7 +117,8 @@ static void say(struct net_client *client, const struct message *message)
 		return;
 	if (client->packets.queued_bytes > QUEUE_BYTES_MAX) {
 		client->is_deaf = true;
-		set_timer(client, 1); /* look_after hangs up: not here, in the midst of a message */
+		set_timer(client, 1); /* look_after disconnects later; this function may run while a
+					 message is being handled */
 		return;
 	}
 	rc = packets_send(&client->packets, message, -1);
@@ -190,7 +200,8 @@ static int connect_to(struct net_client *client, const char *path)
 	return adopt_socket(client, fd);
 }
 
-/* With our end of the socket as its descriptor FETCHER_FD, and the signals as a program expects. */
+/* Starts the fetcher. It gets our end of the socket pair as FETCHER_FD, an empty signal mask and
+ * the default signal handlers. fd is borrowed. */
 static int spawn_with(struct net_client *client, char *const *arguments, int fd)
 {
 	posix_spawn_file_actions_t actions;
@@ -277,7 +288,7 @@ static void connect_now(struct net_client *client)
 	int rc;
 
 	if (closer_is_full())
-		rc = -EBUSY; /* what earlier ones passed hangs in its close */
+		rc = -EBUSY; /* earlier descriptors still hang in close() */
 	else if (client->options.socket_path)
 		rc = connect_to(client, client->options.socket_path);
 	else
@@ -302,10 +313,12 @@ static void disconnect(struct net_client *client, const char *why)
 		log_debug("net", "the fetcher's socket was not watched");
 	packets_finish(&client->packets);
 	if (client->pid)
-		kill(client->pid, SIGTERM); /* it ends anyhow, its socket being closed */
+		kill(client->pid,
+		     SIGTERM); /* it also exits by itself, because its socket is closed */
 	retry_later(client);
 }
 
+/* Returns false while the child process still runs. */
 static bool reap(struct net_client *client)
 {
 	if (client->pid && waitpid(client->pid, NULL, WNOHANG) == 0)
@@ -317,7 +330,7 @@ static bool reap(struct net_client *client)
 	return true;
 }
 
-/* A fetcher that hangs is as good as a dead one. */
+/* Disconnects a fetcher that hangs or does not read. A hanging fetcher counts as dead. */
 static void look_after(struct net_client *client)
 {
 	int64_t silent_ms = clock_now_ms() - client->heard_ms;
@@ -335,7 +348,8 @@ static void look_after(struct net_client *client)
 	disconnect(client, "it said nothing for a long time");
 }
 
-/* The pause is over. The cache has one owner: the old fetcher must be gone first. */
+/* Either supervises the connection, or reconnects when the pause is over. Only one process may own
+ * the cache, so the old fetcher must have exited first. */
 static void on_timer(struct net_client *client)
 {
 	uint64_t expirations;
@@ -354,9 +368,10 @@ static void on_timer(struct net_client *client)
 	connect_now(client);
 }
 
-/* ---- what the fetcher brings */
+/* ---- what the fetcher sends */
 
-/* An object that nobody waits for costs no more than this look. -EBADMSG: too many of them. */
+/* Counts an object that nobody waits for; it is neither hashed nor mapped. -EBADMSG: too many of
+ * them arrived. */
 static int count_unwanted(struct net_client *client)
 {
 	if (client->late_count > 0) {
@@ -366,7 +381,7 @@ static int count_unwanted(struct net_client *client)
 	return ++client->unwanted_count > UNWANTED_MAX ? -EBADMSG : 0;
 }
 
-/* -EBADMSG: not the bytes of that hash. */
+/* Verifies the hash and passes the object on. -EBADMSG: the bytes do not have that hash. */
 static int pass_on(struct net_client *client, struct hash hash, struct bytes bytes)
 {
 	struct wanted *wanted = by_hash_find(&client->wants, hash);
@@ -379,7 +394,7 @@ static int pass_on(struct net_client *client, struct hash hash, struct bytes byt
 	return 0;
 }
 
-/* passed is taken. */
+/* Takes the descriptor `passed` (-1: none). */
 static int take_object(struct net_client *client, const struct message *message, int passed)
 {
 	struct bytes mapped;
@@ -401,7 +416,7 @@ static int take_object(struct net_client *client, const struct message *message,
 	return rc;
 }
 
-/* A fetcher counts from its own start; the kiosk from its. */
+/* Each fetcher counts bytes from its own start. The kiosk gets the sum over all fetchers. */
 static void pass_status_on(struct net_client *client, struct message_status status)
 {
 	client->received_now = status.received_bytes;
@@ -426,7 +441,8 @@ static int obey(struct net_client *client, const struct message *message, int pa
 		if (events->meta)
 			events->meta(data, message->meta.role, message->meta.version,
 				     message->meta.bytes, message->meta.source);
-		if (message->meta.role == META_ROOT) /* taken or not, the fetcher waits for it */
+		if (message->meta.role == META_ROOT) /* the fetcher waits for this answer, whether
+							the kiosk accepted the root or not */
 			say_trust(client);
 		return 0;
 	case MESSAGE_SYNCED:
@@ -437,7 +453,7 @@ static int obey(struct net_client *client, const struct message *message, int pa
 		pass_status_on(client, message->status);
 		return 0;
 	default:
-		return -EBADMSG; /* that is ours to say */
+		return -EBADMSG; /* only the client may send this kind of message */
 	}
 }
 
@@ -483,8 +499,8 @@ int net_client_dispatch(struct net_client *client)
 				hear_fetcher(client);
 			break;
 		case SOURCE_CHILD:
-			/* What it sent before it died is read first: the socket tells of the end.
-			 */
+			/* Messages that the fetcher sent before it exited are read first. The
+			 * socket itself reports the end of the connection. */
 			if (client->packets.fd < 0)
 				reap(client);
 			else
@@ -500,7 +516,7 @@ int net_client_dispatch(struct net_client *client)
 
 /* ---- create, destroy */
 
-/* Empty text stays what it is; NULL stays NULL. */
+/* Replaces *text by a copy. NULL stays NULL. */
 static int copy_text(const char **text)
 {
 	if (!*text)
@@ -520,7 +536,7 @@ static int copy_options(struct net_client *client, const struct net_client_optio
 	client->options = *options;
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
 		if (rc < 0)
-			*texts[i] = NULL; /* not ours to free */
+			*texts[i] = NULL; /* not copied yet, so we must not free it */
 		else
 			rc = copy_text(texts[i]);
 	}
@@ -603,13 +619,14 @@ void net_client_destroy(struct net_client *client)
 	free(client);
 }
 
-/* ---- what the kiosk asks */
+/* ---- what the kiosk asks for */
 
 static void use(struct net_client *client, struct hash root, uint32_t root_bytes, bool also)
 {
 	struct message message = { .kind = MESSAGE_RELEASE, .release = { root, root_bytes, also } };
 
-	/* The one in use stays first; of the others the oldest goes. */
+	/* The list is full: the release in use stays first, and the oldest of the others is
+	 * removed. */
 	if (client->release_count == MESSAGE_RELEASES_MAX) {
 		memmove(&client->releases[1], &client->releases[2],
 			(MESSAGE_RELEASES_MAX - 2) * sizeof(client->releases[0]));
@@ -645,12 +662,12 @@ void net_client_want(struct net_client *client, const struct message_want *want)
 
 	if (wanted && wanted->want.priority == want->priority)
 		return;
-	if (wanted) /* it comes again where it was on its way */
+	if (wanted) /* the object may be on its way already, and will then arrive twice */
 		client->late_count++;
 	if (!wanted) {
 		wanted = calloc(1, sizeof(*wanted));
 		if (!wanted)
-			return; /* the kiosk will want it again */
+			return; /* the kiosk will request it again */
 		wanted->entry.key = want->hash;
 		if (by_hash_add(&client->wants, &wanted->entry) < 0) {
 			free(wanted);

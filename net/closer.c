@@ -1,3 +1,6 @@
+/* Runs each close() on a detached thread with all signals blocked, and counts the threads that have
+ * not finished. */
+
 #include "net/closer.h"
 
 #include <pthread.h>
@@ -11,7 +14,8 @@
 
 enum { STACK_BYTES = 256 << 10 };
 
-static atomic_uint running; /* threads, and descriptors that got none */
+static atomic_uint
+	running; /* running threads, plus descriptors for which no thread could be started */
 
 static void *close_one(void *data)
 {
@@ -20,7 +24,8 @@ static void *close_one(void *data)
 	return NULL;
 }
 
-/* A thread that nobody waits for: the end of the process ends it too, and a close that hangs. */
+/* The thread is detached: when the process exits, the thread ends too, even if its close()
+ * hangs. */
 static int start_thread(int fd)
 {
 	pthread_attr_t attributes;
@@ -32,7 +37,7 @@ static int start_thread(int fd)
 	pthread_attr_init(&attributes);
 	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
 	pthread_attr_setstacksize(&attributes, STACK_BYTES);
-	pthread_sigmask(SIG_SETMASK, &all, &before); /* signals are for the loop */
+	pthread_sigmask(SIG_SETMASK, &all, &before); /* signals are handled by the loop */
 	rc = pthread_create(&thread, &attributes, close_one, (void *)(intptr_t)fd);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	pthread_attr_destroy(&attributes);
@@ -47,7 +52,7 @@ void closer_close(int fd)
 		return;
 	atomic_fetch_add(&running, 1);
 	rc = start_thread(fd);
-	if (rc != 0) /* it stays open: rather that than a loop that hangs */
+	if (rc != 0) /* the descriptor stays open; that is better than a loop that hangs */
 		log_error("net", "no thread to close a descriptor: %s", strerror(rc));
 }
 

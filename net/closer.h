@@ -1,6 +1,6 @@
-/* Closes descriptors on threads of their own, for those whose close may wait: a TCP socket that
- * somebody passed with SO_LINGER set waits for its peer as long as that option says, and so does
- * the socket that it still lies in. The caller never waits. Any thread. */
+/* Closes descriptors on separate threads, because close() may block. A TCP socket with SO_LINGER
+ * set, passed to us by the other side, blocks in close() for as long as that option says; so does
+ * the UNIX socket in whose queue it lies. The caller never waits. Any thread. */
 #ifndef GOPURA_NET_CLOSER_H
 #define GOPURA_NET_CLOSER_H
 
@@ -8,10 +8,10 @@
 
 enum { CLOSER_THREADS_MAX = 16 };
 
-/* fd is taken. Below 0: nothing happens. */
+/* fd is taken. Does nothing if fd is negative. */
 void closer_close(int fd);
-/* So many descriptors are being closed and hang that whoever caused it should not get another
- * connection: each one may add a thread and a descriptor. */
+/* Returns true when CLOSER_THREADS_MAX descriptors hang in close(). Whoever caused this should get
+ * no new connection, because each one may add another thread and descriptor. */
 bool closer_is_full(void);
 
 #endif

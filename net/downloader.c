@@ -1,3 +1,6 @@
+/* Decides where each wanted object comes from: cache, USB stick, or server. It also plans the range
+ * requests under the limits for number, size and rate. */
+
 #include "net/downloader.h"
 
 #include <errno.h>
@@ -11,15 +14,20 @@
 enum {
 	WANTS_MAX = 1 << 18,
 	RANGES_MAX = 8,
-	SMALL_RANGES_MAX = 32, /* as long as all together stay small: the line's delay */
+	SMALL_RANGES_MAX =
+		32, /* while all requests together are small, so that latency does not dominate */
 	SMALL_BYTES = 256 << 10,
-	RANGES_FOR_PAGES = 2, /* beside those: nothing can be judged without pages */
-	GAP_BYTES = 512, /* what a request of its own would cost on the line, and a little more */
+	RANGES_FOR_PAGES =
+		2, /* extra requests for index pages: without pages nothing else can be planned */
+	GAP_BYTES = 512, /* bytes to read and discard rather than send a new request (its cost, and
+			    a little more) */
 	RANGE_BYTES_MIN = 64 << 10,
 	RANGE_BYTES_MAX = 1 << 20,
-	RANGE_MS = 250, /* of the line: what comes later in it should not wait longer */
+	RANGE_MS = 250, /* a range should take about this long, so that more urgent requests do not
+			   wait longer */
+	/* assumed bandwidth before the first measurement */
 	BYTES_PER_S_FIRST = 1 << 20,
-	CACHE_READS_MAX = 64, /* in one go: the loop has other guests */
+	CACHE_READS_MAX = 64, /* per call: other sources share the loop */
 };
 
 /* ---- create, destroy */
@@ -50,7 +58,7 @@ void downloader_destroy(struct downloader *downloader)
 	free(downloader);
 }
 
-/* ---- wants come and go */
+/* ---- adding and dropping wants */
 
 static int add_fresh(struct downloader *downloader, struct want *want)
 {
@@ -69,6 +77,7 @@ static int add_fresh(struct downloader *downloader, struct want *want)
 	return 0;
 }
 
+/* Reports a missing object, but only when the reason changes. */
 static void report(struct downloader *downloader, struct want *want, enum missing_reason reason)
 {
 	if (want->reported == (int)reason)
@@ -77,7 +86,8 @@ static void report(struct downloader *downloader, struct want *want, enum missin
 	downloader->options.events.missing(downloader->options.data, want->entry.key, reason);
 }
 
-/* Of a release that is not shown yet: the rate limit is for that, no visitor waits for it. */
+/* True for objects of a release that is not shown yet. The rate limit applies to these, because no
+ * visitor waits for them. */
 static bool is_for_later(uint32_t priority)
 {
 	return priority < MESSAGE_PRIORITY_PICTURE;
@@ -89,7 +99,8 @@ void downloader_want(struct downloader *downloader, const struct message_want *a
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
-			downloader->plan_changed = true; /* it waits for the rate no more */
+			downloader->plan_changed =
+				true; /* the rate limit no longer applies to it */
 		want->asked.priority = asked->priority;
 		downloader->fresh_changed = true;
 		return;
@@ -110,7 +121,7 @@ void downloader_want(struct downloader *downloader, const struct message_want *a
 	downloader->options.events.missing(downloader->options.data, asked->hash, MISSING_OFFLINE);
 }
 
-/* Out of the map; freed unless it still stands among the fresh. */
+/* Removes the want from the map. Frees it unless it is still in the fresh list. */
 static void forget(struct downloader *downloader, struct want *want)
 {
 	by_hash_remove(&downloader->wants, want->entry.key);
@@ -154,18 +165,19 @@ void downloader_forget_all(struct downloader *downloader)
 	downloader_forget_releases(downloader);
 }
 
-/* ---- what comes */
+/* ---- objects that arrive */
 
 static void pass_on(struct downloader *downloader, struct want *want, struct bytes bytes)
 {
 	struct hash hash = want->entry.key;
 
-	want->state = WANT_WAITING; /* among the fresh no longer: forget frees it */
+	want->state = WANT_WAITING; /* no longer in the fresh list, so forget() frees it */
 	forget(downloader, want);
 	downloader->options.events.object(downloader->options.data, hash, bytes);
 }
 
-/* Wrong bytes: once more at once (a flipped bit on the way), then it is damage and told. */
+/* Handles wrong bytes. The first time the object is requested again at once (a bit may have flipped
+ * in transit); the second time the damage is reported. */
 static void note_damage(struct downloader *downloader, struct want *want)
 {
 	char hex[HASH_HEX_BYTES];
@@ -207,7 +219,7 @@ void downloader_arrived(struct downloader *downloader, struct want *want, struct
 void downloader_failed(struct downloader *downloader, struct want *want, int rc)
 {
 	want->state = WANT_WAITING;
-	want->retry_at_ms = 0; /* the line's pause is pause enough */
+	want->retry_at_ms = 0; /* the pause of the link is enough */
 	downloader->plan_changed = true;
 	if (rc == -EHOSTUNREACH)
 		return;
@@ -225,7 +237,8 @@ static int by_priority(const void *a, const void *b)
 
 	if (left->asked.priority != right->asked.priority)
 		return left->asked.priority < right->asked.priority ? -1 : 1;
-	return left->order > right->order ? -1 : 1; /* the earlier one last: it is served first */
+	return left->order > right->order ? -1 : 1; /* the earlier one comes last, because the list
+						       is served from its end */
 }
 
 static void wait_for_server(struct downloader *downloader, struct want *want)
@@ -262,7 +275,8 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 	hash_to_hex(hash, hex);
 	refusal_note(downloader->options.link->refusal, hex,
 		     "the stick's bytes of this object are damaged");
-	if (downloader->metrics.stick_damaged++ == 0) /* of thousands, perhaps */
+	if (downloader->metrics.stick_damaged++ ==
+	    0) /* logs only the first; there may be thousands */
 		log_warn("net", "the stick's bytes of object %s are damaged", hex);
 }
 
@@ -299,7 +313,7 @@ void downloader_ask_again(struct downloader *downloader)
 
 	while ((want = by_hash_next(&downloader->wants, &at)))
 		if (want->state == WANT_WAITING && add_fresh(downloader, want) < 0)
-			return; /* the server may have it */
+			return; /* stays waiting: the server may have it */
 }
 
 static void work_fresh(struct downloader *downloader)
@@ -324,7 +338,8 @@ static void work_fresh(struct downloader *downloader)
 
 /* ---- the server */
 
-/* What the rate limit allows now; half a second of it is saved up at most. */
+/* Adds what the rate limit allows since the last call. At most half a second's worth is saved
+ * up. */
 static void refill_allowance(struct downloader *downloader)
 {
 	int64_t rate = (int64_t)downloader->options.rate_limit;
@@ -341,7 +356,7 @@ static bool is_overdrawn(const struct downloader *downloader)
 	return downloader->options.rate_limit > 0 && downloader->allowance_bytes <= 0;
 }
 
-/* When what is for later may be asked for again. */
+/* Returns when the rate limit allows requests for later releases again (clock_now_ms); 0: now. */
 static int64_t allowance_due_ms(const struct downloader *downloader)
 {
 	if (!is_overdrawn(downloader))
@@ -366,7 +381,8 @@ static bool reserve_items(struct downloader *downloader)
 	return true;
 }
 
-/* All wants that could be asked for now, sorted by place. */
+/* Collects all wants that could be requested now into items, sorted by place. Returns their
+ * count. */
 static size_t gather(struct downloader *downloader)
 {
 	int64_t now_ms = clock_now_ms();
@@ -418,7 +434,7 @@ static bool may_ask_for(const struct downloader *downloader, uint32_t priority)
 	return downloader->range_count < most && link_may_ask(downloader->options.link);
 }
 
-/* Of those that no range has taken; 0 where all are. */
+/* Returns the highest priority among items that no range has taken yet; 0 if none is left. */
 static uint32_t best_priority(const struct range_item *items, size_t count)
 {
 	uint32_t best = 0;
@@ -439,7 +455,7 @@ static uint32_t later_bytes(const struct range_item *items, size_t count)
 	return bytes;
 }
 
-/* Of a range whose best one has this priority. */
+/* Limits for a range whose most urgent object has this priority. */
 static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
 {
 	uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
@@ -469,7 +485,7 @@ static void work_ranges(struct downloader *downloader)
 		return;
 	count = gather(downloader);
 	downloader->plan_changed = false;
-	/* The best one decides whether there is a place for its range. */
+	/* The most urgent item decides whether another range may be requested. */
 	while (best = best_priority(downloader->items, count),
 	       (taken = range_plan(downloader->items, count, limits_now(downloader, best),
 				   &first)) > 0) {
@@ -487,7 +503,8 @@ static void work_ranges(struct downloader *downloader)
 	}
 }
 
-/* The line is down: who waits is told, once. */
+/* When the link goes down, reports MISSING_OFFLINE once to every waiting want. When it comes back,
+ * clears these reports. */
 static void tell_of_the_line(struct downloader *downloader)
 {
 	bool is_down = link_is_down(downloader->options.link);
@@ -514,13 +531,14 @@ void downloader_work(struct downloader *downloader)
 	downloader_work_releases(downloader);
 	tell_of_the_line(downloader);
 	if (downloader->plan_due_ms <= clock_now_ms())
-		downloader->plan_changed = true; /* a want's pause is over */
+		downloader->plan_changed = true; /* the retry pause of a want is over */
 	work_ranges(downloader);
 	downloader_ask_suspects(
-		downloader); /* last: planning, too, finds objects without a place */
+		downloader); /* last, because planning may also find objects without a place */
 }
 
-/* When what is due may go out, the line considered: an answer wakes us anyhow. */
+/* Adjusts due_ms to the state of the link. While a request is in flight after a failure, its answer
+ * wakes the loop, so no timer is needed. */
 static int64_t line_due_ms(const struct link *link, int64_t due_ms)
 {
 	if (link->failures == 0 || due_ms == INT64_MAX)
@@ -536,7 +554,7 @@ int64_t downloader_due_ms(const struct downloader *downloader)
 	int64_t due_ms = downloader_releases_due_ms(downloader);
 
 	if (!downloader->options.events.has_room(downloader->options.data))
-		return line_due_ms(link, due_ms); /* the kiosk will wake us */
+		return line_due_ms(link, due_ms); /* the loop wakes up when the kiosk reads */
 	if (downloader->fresh_count > 0)
 		return 0;
 	if (downloader->range_count < ranges_most(downloader)) {

@@ -1,10 +1,10 @@
-/* Brings wanted objects, from the cache or the server, and checks each by its hash.
+/* Gets wanted objects from the cache, a USB stick or the server, and checks each by its hash.
  *
- * A want is first looked for in the cache, best priority first. Else its place is found in the
- * locator of a release in use (newest first), and neighbours are asked for together
- * (net/range_plan.h), a few requests at a time. Objects go on as soon as their last byte came, not
- * at the end of their range. docs/fetch.md has the whole. One thread; nothing here waits but the
- * disk under the cache. */
+ * A want is first looked up in the cache, in order of priority, then on the stick. Otherwise its
+ * place is found in the locator of a release in use (newest first). Neighbouring objects are
+ * requested together (net/range_plan.h), a few requests at a time. Each object is passed on as soon
+ * as its last byte has arrived, not at the end of its range. docs/fetch.md describes the whole. One
+ * thread; no call blocks, except on the disk under the cache. */
 #ifndef GOPURA_NET_DOWNLOADER_H
 #define GOPURA_NET_DOWNLOADER_H
 
@@ -14,67 +14,72 @@
 #include "net/stick.h"
 #include "storage/cache.h"
 
-struct downloader; /* private to bring*.c */
+struct downloader; /* private to downloader*.c */
 
 struct downloader_events {
-	/* Bytes are borrowed for the call; their hash is right. The want is forgotten then. */
+	/* Bytes are borrowed for the call; their hash was checked. The want is removed. */
 	void (*object)(void *data, struct hash hash, struct bytes bytes);
-	/* The want stays; said again only when the reason changes. */
+	/* The want stays. Called again only when the reason changes. */
 	void (*missing)(void *data, struct hash hash, enum missing_reason reason);
-	/* False: bring no more for now (the kiosk is slow to take them). */
+	/* False: deliver no more for now, because the kiosk reads too slowly. */
 	bool (*has_room)(void *data);
 };
 
 struct downloader_options {
-	struct http *http; /* borrowed, as all that follow */
+	struct http *http; /* borrowed, like the pointers below */
 	struct cache *cache;
 	struct link *link;
 	struct stick *stick; /* asked before the server; NULL: none */
-	uint64_t rate_limit; /* bytes a second of what is for later, in the mean; 0: none */
+	uint64_t rate_limit; /* average bytes per second for releases not shown yet; 0: no limit */
 	struct downloader_events events;
 	void *data;
 };
 
-/* Since create. */
+/* Counters since downloader_create. */
 struct downloader_figures {
 	uint64_t from_cache, from_server, from_stick; /* objects */
 	uint64_t ranges;                              /* requests for objects */
-	uint64_t damaged;       /* objects whose bytes were not of their hash */
-	uint64_t stick_damaged; /* the same, of a stick; the server is asked then */
-	uint64_t cancelled;     /* requests given up: nothing in them was wanted any more */
+	uint64_t damaged;       /* objects whose bytes did not match their hash */
+	uint64_t stick_damaged; /* the same for a stick; the server is asked then */
+	uint64_t cancelled;     /* requests cancelled because nothing in them was wanted any more */
 };
 
-/* *out is owned by the caller. -ENOMEM. */
+/* *out is owned by the caller; it is NULL on failure. Options are copied; the pointers in them are
+ * borrowed. -ENOMEM. */
 must_check int downloader_create(struct downloader **out, const struct downloader_options *options);
+/* Cancels all requests. Drops all wants without events. NULL is fine. */
 void downloader_destroy(struct downloader *downloader);
 
-/* Alone: drops every want, forgets other releases. Also: beside them. */
+/* also false: this becomes the only release; all wants and other releases are dropped. also true:
+ * it is added beside the others. root_bytes is the size of the root page. */
 void downloader_use_release(struct downloader *downloader, struct hash root, uint32_t root_bytes,
 			    bool also);
-/* Copied. Wanted already: only its priority changes. */
+/* *want is copied. If the object is already wanted, only its priority changes. */
 void downloader_want(struct downloader *downloader, const struct message_want *want);
-/* No event follows; a request that brings nothing else is cancelled. */
+/* No event follows. A request that carries no other wanted object is cancelled. */
 void downloader_drop(struct downloader *downloader, struct hash hash);
-/* The cache lets it go last. */
+/* Asks the cache to evict this object last. */
 void downloader_keep(struct downloader *downloader, struct hash hash);
-/* The stick's answer to a want, as stick_options.object has it. */
+/* Passes in the stick's answer; the arguments are those of stick_options.object. */
 void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,
 			       struct bytes bytes);
-/* The stick is still waited for with this want. */
+/* Returns true if this want still waits for the stick. */
 bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash);
-/* A stick came: what is waited for may be there. */
+/* A stick was plugged in: looks for all waiting wants again. */
 void downloader_ask_again(struct downloader *downloader);
-void downloader_forget_all(
-	struct downloader *downloader); /* the kiosk is gone: wants and releases */
+void downloader_forget_all(struct downloader *downloader); /* Drops all wants and releases, because
+							      the kiosk disconnected. */
 
-/* Does what can be done now. Call after dispatching http and after each of the calls above. */
+/* Does all work that is possible now. Call it after http_dispatch and after each of the calls
+ * above. */
 void downloader_work(struct downloader *downloader);
-/* When downloader_work has something to do by time alone (clock_now_ms); INT64_MAX: never. Now or
- * earlier: at once. */
+/* Returns when downloader_work next has timed work to do (clock_now_ms); INT64_MAX: never. A time
+ * that is now or in the past means at once. */
 int64_t downloader_due_ms(const struct downloader *downloader);
 
-/* Wants that were neither brought nor dropped. */
+/* Returns the number of wants that were neither delivered nor dropped. */
 uint32_t downloader_wanted(const struct downloader *downloader);
+/* Copies the counters to *out. */
 void downloader_figures(const struct downloader *downloader, struct downloader_figures *out);
 
 #endif

@@ -1,3 +1,6 @@
+/* Requests a range of a pack and splits the answer into objects. A range holds objects of one pack
+ * in the order of their places, with small gaps. Each object is passed on when it is complete. */
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -5,9 +8,6 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "net/downloader_private.h"
-
-/* A range is one request: objects of a pack in the order of their places, with small gaps. Bytes go
- * into one object at a time; each is passed on when it is complete. */
 
 struct slot {
 	struct hash hash;
@@ -20,12 +20,12 @@ struct range {
 	struct range *next, **link;
 	struct downloader *downloader;
 	struct http_request *request;
-	uint32_t wanted;   /* slots with a want that are still to come */
-	size_t count, now; /* slots; the one whose bytes come */
+	uint32_t wanted;   /* slots with a want that have not arrived yet */
+	size_t count, now; /* number of slots; index of the slot whose bytes arrive now */
 	uint64_t at;       /* place in the pack of the next byte */
-	uint64_t bytes;    /* of the whole range */
+	uint64_t bytes;    /* size of the whole range */
 	int64_t began_ms;
-	struct buffer object; /* of the slot that comes, so far */
+	struct buffer object; /* bytes received so far of the current slot */
 	struct slot slots[];
 };
 
@@ -42,7 +42,7 @@ static void unlink_range(struct range *range)
 	free(range);
 }
 
-/* All bytes of the slot have come. */
+/* Called when all bytes of the slot have arrived. */
 static void finish_slot(struct range *range, struct slot *slot)
 {
 	struct bytes bytes = buffer_bytes(&range->object);
@@ -54,7 +54,8 @@ static void finish_slot(struct range *range, struct slot *slot)
 		want->range = NULL;
 		downloader_arrived(range->downloader, want, bytes);
 	} else if (hash_equal(hash_of(bytes), slot->hash)) {
-		/* Paid for: the cache may as well have it. A failure is the cache's to tell. */
+		/* The bytes were downloaded anyway, so they are cached. The cache logs its own
+		 * failures. */
 		if (cache_put(range->downloader->options.cache, slot->hash, bytes, 0) == 0)
 			range->downloader->metrics.from_server++;
 	}
@@ -62,7 +63,7 @@ static void finish_slot(struct range *range, struct slot *slot)
 	range->now++;
 }
 
-/* Takes what the slot lacks, or skips the gap before it. Gives the bytes used. */
+/* Copies what the slot lacks, or skips the gap before it. Returns the number of bytes used. */
 static size_t feed_slot(struct range *range, struct slot *slot, struct bytes piece)
 {
 	uint64_t gap = slot->place > range->at ? slot->place - range->at : 0;
@@ -89,10 +90,10 @@ static bool on_piece(void *data, struct bytes piece)
 		piece.data += used;
 		piece.size -= used;
 	}
-	return !range->object.error; /* the range ends with its last slot by itself */
+	return !range->object.error; /* the request ends by itself after its last slot */
 }
 
-/* A moving picture of what the line carries; short ranges tell more of its delay than its width. */
+/* Updates the moving average of the bandwidth. Short ranges measure latency more than bandwidth. */
 static void measure(struct range *range)
 {
 	int64_t took_ms = clock_now_ms() - range->began_ms;
@@ -107,7 +108,8 @@ static void on_done(void *data, const struct http_result *result)
 	struct range *range = data;
 	struct downloader *downloader = range->downloader;
 	struct link *link = downloader->options.link;
-	/* An answer that ended early (a pack cut short) has not what was asked for. */
+	/* A successful answer that ended early (a truncated pack) lacks the objects we asked
+	 * for. */
 	int rc = result->rc == 0 ? -ENOENT : result->rc;
 
 	if (rc == -EHOSTUNREACH)

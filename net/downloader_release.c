@@ -1,3 +1,6 @@
+/* Manages the locators of the releases in use: reads them from the cache, downloads them from the
+ * server, and looks up the place of an object in them. */
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +11,7 @@
 
 enum {
 	LOCATOR_BYTES_MAX = 64 << 20,
-	SUSPECT_MS = 60000, /* a locator is not got anew more often */
+	SUSPECT_MS = 60000, /* a locator is downloaded again at most this often */
 };
 
 static void release_destroy(struct downloader_release *release)
@@ -137,7 +140,7 @@ static void ask_cache(struct downloader_release *release)
 	buffer_finish(&file);
 }
 
-/* ---- what bring.c asks */
+/* ---- called by downloader.c */
 
 void downloader_use_release(struct downloader *downloader, struct hash root, uint32_t root_bytes,
 			    bool also)
@@ -151,7 +154,7 @@ void downloader_use_release(struct downloader *downloader, struct hash root, uin
 			return;
 	release = calloc(1, sizeof(*release));
 	if (!release)
-		return; /* its wants are reported missing */
+		return; /* the wants of this release are reported missing */
 	release->root = root;
 	release->root_bytes = root_bytes;
 	release->downloader = downloader;
@@ -219,11 +222,12 @@ void downloader_ask_suspects(struct downloader *downloader)
 		    !link_may_ask(downloader->options.link))
 			continue;
 		release->retry_at_ms = clock_now_ms() + SUSPECT_MS;
-		ask_server(release); /* until it came the old one serves */
+		ask_server(release); /* the old locator is used until the new one has arrived */
 	}
 }
 
-/* Into *out where this release says; false: it does not. */
+/* Writes the object's place in this release to *out. Returns false if the release does not contain
+ * it. */
 static bool locate_in(const struct downloader_release *release, const struct want *want,
 		      struct range_item *out)
 {
@@ -231,7 +235,7 @@ static bool locate_in(const struct downloader_release *release, const struct wan
 
 	if (!block || (uint64_t)want->asked.offset + want->asked.size > block->size)
 		return false;
-	/* A root page is the block of no page, and must be this release's. */
+	/* The root page belongs to no page. It must be the root of this release. */
 	if (hash_is_zero(want->asked.page) && !hash_equal(want->entry.key, release->root))
 		return false;
 	out->pack = release->locator.packs[block->pack];

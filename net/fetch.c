@@ -1,3 +1,6 @@
+/* The main loop of gopura-fetch. It connects the kiosk's socket, the downloader, the metadata poll,
+ * the USB stick and the metrics socket. */
+
 #include "net/fetch.h"
 
 #include <errno.h>
@@ -21,11 +24,13 @@
 #include "net/poll.h"
 
 enum {
-	QUEUE_BYTES_MAX = 8 << 20, /* to the kiosk; past it nothing more is brought */
-	PACKETS_MAX = 512,         /* read in one go */
-	FLUSH_MS = 500,            /* what is in the cache's transaction is at most that old */
-	STATUS_MS = 1000,          /* while figures change */
-	ALIVE_MS = 30000,          /* while they do not: the kiosk shall know that we live */
+	QUEUE_BYTES_MAX = 8 << 20, /* to the kiosk; beyond this no more objects are fetched */
+	PACKETS_MAX = 512,         /* read per call */
+	FLUSH_MS =
+		500, /* an object stays uncommitted in the cache's transaction at most this long */
+	STATUS_MS = 1000, /* status interval while values change */
+	ALIVE_MS = 30000, /* status interval while they do not change: shows the kiosk that we are
+			     alive */
 };
 
 enum source {
@@ -40,24 +45,25 @@ enum source {
 struct fetch {
 	const struct fetch_options *options;
 	int epoll_fd, listen_fd, signal_fd;
-	bool has_kiosk, kiosk_waits; /* for its socket to take more */
+	bool has_kiosk, kiosk_waits; /* kiosk_waits: EPOLLOUT is watched on its socket */
 	bool ends;
 	struct packets kiosk;
 	struct http *http;
 	struct cache *cache;
 	struct link link;
-	struct refusal refusal; /* the last one, of the server's */
+	struct refusal refusal; /* the last refusal of something from the server */
 	struct downloader *downloader;
 	struct poll *poll;
-	struct stick *stick;            /* NULL: none is looked for */
+	struct stick *stick;            /* NULL: no stick is used */
 	struct metrics_socket *metrics; /* NULL: not offered */
-	uint32_t root_version;          /* of the trust root that the kiosk has */
+	uint32_t root_version;          /* version of the trust root that the kiosk has */
+	/* the last status sent */
 	struct message_status said;
-	int64_t flush_ms, status_ms; /* when due */
-	int64_t said_ms;             /* when the kiosk was last told the figures */
+	int64_t flush_ms, status_ms; /* when due (clock_now_ms) */
+	int64_t said_ms;             /* when the kiosk was last sent a status */
 };
 
-/* ---- the kiosk comes and goes */
+/* ---- the kiosk connects and disconnects */
 
 static int watch(struct fetch *fetch, int fd, enum source source, uint32_t events, int how)
 {
@@ -91,8 +97,8 @@ static int meet_kiosk(struct fetch *fetch, int fd)
 	return watch(fetch, fd, SOURCE_KIOSK, EPOLLIN, EPOLL_CTL_ADD);
 }
 
-/* One at a time: a newcomer replaces who was there, for a kiosk that started anew comes back before
- * its old socket was noticed to be dead. */
+/* Only one kiosk is served. A new connection replaces the old one, because a restarted kiosk
+ * reconnects before its old socket is detected as closed. */
 static int accept_kiosk(struct fetch *fetch)
 {
 	int fd = accept4(fetch->listen_fd, NULL, NULL, SOCK_CLOEXEC);
@@ -109,12 +115,12 @@ static void send_to_kiosk(struct fetch *fetch, const struct message *message, in
 	int rc = packets_send(&fetch->kiosk, message, passed);
 
 	if (rc == -EPIPE || rc == -ECONNRESET)
-		return; /* receiving will notice */
+		return; /* the next receive detects it */
 	if (rc < 0)
 		log_error("net", "a message did not go out: %s", strerror(-rc));
 }
 
-/* ---- what the others report */
+/* ---- events from the other modules */
 
 static void on_object(void *data, struct hash hash, struct bytes bytes)
 {
@@ -181,7 +187,7 @@ static bool is_wanted_of_stick(void *data, struct hash hash)
 	return downloader_wants_of_stick(fetch->downloader, hash);
 }
 
-/* ---- what the kiosk says */
+/* ---- requests from the kiosk */
 
 static int obey(struct fetch *fetch, const struct message *message)
 {
@@ -201,11 +207,12 @@ static int obey(struct fetch *fetch, const struct message *message)
 		return 0;
 	case MESSAGE_ASK_META:
 		poll_ask(fetch->poll, message->period_s);
-		stick_forget(fetch->stick); /* it is told again */
+		stick_forget(fetch->stick); /* so that the stick's metadata is sent again */
 		return 0;
 	case MESSAGE_TRUST:
 		if (message->root_version != fetch->root_version)
-			stick_forget(fetch->stick); /* its release may be good under this root */
+			stick_forget(fetch->stick); /* the stick's release may be valid under this
+						       root */
 		fetch->root_version = message->root_version;
 		stick_trust(fetch->stick, message->root_version);
 		poll_trust(fetch->poll, message->root_version);
@@ -217,7 +224,7 @@ static int obey(struct fetch *fetch, const struct message *message)
 			      -1);
 		return 0;
 	default:
-		return -EBADMSG; /* that is ours to say */
+		return -EBADMSG; /* only the fetcher may send this kind of message */
 	}
 }
 
@@ -254,7 +261,8 @@ static void tell_status(struct fetch *fetch)
 	status->offline_since_s = fetch->link.offline_since_s;
 	if (memcmp(status, &fetch->said, sizeof(*status)) == 0 &&
 	    clock_now_ms() < fetch->said_ms + ALIVE_MS) {
-		fetch->status_ms = fetch->said_ms + ALIVE_MS; /* or when something happens */
+		fetch->status_ms =
+			fetch->said_ms + ALIVE_MS; /* or earlier, when something happens */
 		return;
 	}
 	fetch->status_ms = clock_now_ms() + STATUS_MS;
@@ -263,7 +271,7 @@ static void tell_status(struct fetch *fetch)
 	send_to_kiosk(fetch, &message, -1);
 }
 
-/* ---- figures, for whoever looks after the terminal: docs/health.md has them as a table */
+/* ---- metrics for monitoring; docs/health.md lists them */
 
 static void write_refusal(const struct refusal *refusal, struct buffer *out)
 {
@@ -441,7 +449,7 @@ static int listen_on(struct fetch *fetch, const char *path)
 	if (fd < 0)
 		return -errno;
 	fetch->listen_fd = fd;
-	unlink(path); /* of a fetcher before us */
+	unlink(path); /* left by an earlier fetcher */
 	if (bind(fd, (struct sockaddr *)&address, sizeof(address)) < 0 || chmod(path, 0660) < 0 ||
 	    listen(fd, 4) < 0)
 		return -errno;
@@ -570,7 +578,8 @@ int fetch_run(const struct fetch_options *options)
 			       .flush_ms = INT64_MAX };
 	int rc = start(&fetch);
 
-	if (rc == 0 && options->socket_path) /* else the kiosk is the service, and waits for us */
+	if (rc == 0 &&
+	    options->socket_path) /* otherwise the kiosk is the service and waits for us */
 		service_ready();
 	if (rc == 0)
 		rc = loop(&fetch);

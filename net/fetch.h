@@ -1,5 +1,5 @@
-/* The fetcher as a whole: one loop over the kiosk's socket and the server's answers. docs/fetch.md
- * tells how it works. */
+/* The fetcher process: one loop over the kiosk's socket and the server's answers. docs/fetch.md
+ * describes how it works. */
 #ifndef GOPURA_NET_FETCH_H
 #define GOPURA_NET_FETCH_H
 
@@ -8,22 +8,26 @@
 #include "base/compiler.h"
 
 struct fetch_options {
-	const char *release_url; /* https://..., http://..., a folder */
-	const char *stick_path;  /* a folder where a release may come to lie; NULL: none */
+	const char *release_url; /* https://..., http://..., or a folder */
+	const char *
+		stick_path; /* folder where a USB stick with a release may be mounted; NULL: none */
 	const char *cache_path;
+	/* at least 4 MiB */
 	uint64_t cache_budget_bytes;
-	const char *ca_file; /* NULL: the system's */
-	const char
-		*redirect_hosts;  /* that the server may redirect to (net/redirect.h); NULL: none */
-	const char *socket_path;  /* to listen on; NULL: fd */
-	const char *metrics_path; /* to offer figures on (docs/health.md); NULL: none */
-	int fd;                   /* connected already; the fetcher ends with it */
+	const char *ca_file;        /* NULL: the system's */
+	const char *redirect_hosts; /* hosts that the server may redirect to (net/redirect.h); NULL:
+				       none */
+	const char *socket_path;    /* path to listen on; NULL: fd is used */
+	const char *metrics_path;   /* socket path for metrics (docs/health.md); NULL: none */
+	int fd; /* already connected, taken; the fetcher exits when it is closed */
+	/* seconds between checks for a new release */
 	uint32_t poll_s;
-	uint64_t rate_limit; /* bytes a second of a release that is not shown yet; 0: none */
-	uint32_t stall_s;    /* 0: the default */
+	uint64_t rate_limit; /* bytes per second for a release that is not shown yet; 0: no limit */
+	uint32_t stall_s;    /* seconds without data before a request fails; 0: the default */
 };
 
-/* Until SIGTERM or SIGINT, or until the kiosk closes fd: 0. Negative errno when it cannot begin. */
+/* Runs until SIGTERM or SIGINT, or until the kiosk closes fd; then returns 0. Returns a negative
+ * errno if it cannot start or if waiting for events fails. Options are borrowed. */
 must_check int fetch_run(const struct fetch_options *options);
 
 #endif

@@ -1,3 +1,6 @@
+/* HTTP requests with libcurl's multi interface, driven by an epoll descriptor and a timer. It
+ * checks ranges, sizes and redirections of each answer, and counts received bytes. */
+
 #include "net/http.h"
 
 #include <curl/curl.h>
@@ -24,11 +27,13 @@ enum {
 	STALL_S = 15,
 	STALL_BYTES_PER_S = 64,
 	PATIENCE_S = 60,
-	TRICKLE_BYTES_PER_S = 1024, /* of a whole request; less is no line but a trap */
+	TRICKLE_BYTES_PER_S = 1024, /* minimum average rate of a whole request; anything slower is
+				       treated as an attack */
 	TRICKLE_S_MAX = 900,
-	HEADER_BYTES_MAX = 64 * 1024,     /* of an answer, all its headers together */
-	ERROR_BODY_BYTES_MAX = 64 * 1024, /* read to its end, so that the connection can stay */
-	CONNECTIONS_MAX = 8,              /* with HTTP/1.1; HTTP/2 needs one */
+	HEADER_BYTES_MAX = 64 * 1024, /* all headers of one answer together */
+	ERROR_BODY_BYTES_MAX =
+		64 * 1024,   /* read to its end, so that the connection can be reused */
+	CONNECTIONS_MAX = 8, /* with HTTP/1.1; HTTP/2 needs one */
 	SOCKETS_MAX = 64,
 	EVENTS = 16,
 };
@@ -37,13 +42,14 @@ struct http {
 	CURLM *multi;
 	int epoll_fd, timer_fd;
 	char url[URL_BYTES_MAX];
-	char folder[PATH_MAX]; /* as given, when local */
+	char folder[PATH_MAX]; /* the folder as given, if the server is local */
 	char *ca_file, *redirect_hosts;
 	long stall_s, patience_s;
 	bool is_local;
-	int sockets[SOCKETS_MAX]; /* open ones, for what they received */
+	int sockets[SOCKETS_MAX]; /* open sockets, to count the bytes they received */
 	size_t socket_count;
-	uint64_t received_bytes; /* by sockets that were closed, and from a local folder */
+	uint64_t received_bytes; /* received by sockets that were closed, and read from a local
+				    folder */
 };
 
 struct http_request {
@@ -53,19 +59,19 @@ struct http_request {
 	struct http_ask ask;
 	char etag[ETAG_BYTES_MAX]; /* of the answer */
 	char error[CURL_ERROR_SIZE];
-	long status; /* known once the body begins; 0 before, and of a local folder */
+	long status; /* known once the body begins; 0 before that and for a local folder */
 	bool body_began;
 	bool range_is_right;   /* the answer's Content-Range begins where we asked */
 	uint32_t redirects;    /* followed so far */
-	bool went_astray;      /* the last one led where we do not go */
+	bool went_astray;      /* the last redirection was not allowed or failed */
 	uint64_t header_bytes; /* of the answer */
 	bool enough, refused;  /* why the body was cut short */
-	uint64_t skip;         /* bytes of a whole file before those we asked for */
-	uint64_t given;        /* bytes given to the receiver */
-	uint64_t ignored;      /* bytes of an error's page */
+	uint64_t skip;         /* bytes of a whole file that precede those we asked for */
+	uint64_t given;        /* bytes passed to the receiver */
+	uint64_t ignored;      /* bytes of an error page */
 };
 
-/* ---- sockets: what they received, by the kernel's own count */
+/* ---- sockets: bytes received, as counted by the kernel */
 
 static uint64_t received_by(int fd)
 {
@@ -111,7 +117,7 @@ uint64_t http_received_bytes(const struct http *http)
 	return sum;
 }
 
-/* ---- the loop's side */
+/* ---- event loop */
 
 static int on_socket(CURL *easy, curl_socket_t fd, int what, void *data, void *known)
 {
@@ -130,7 +136,7 @@ static int on_socket(CURL *easy, curl_socket_t fd, int what, void *data, void *k
 	if (epoll_ctl(http->epoll_fd, known ? EPOLL_CTL_MOD : EPOLL_CTL_ADD, fd, &event) < 0)
 		epoll_ctl(http->epoll_fd, errno == EEXIST ? EPOLL_CTL_MOD : EPOLL_CTL_ADD, fd,
 			  &event);
-	curl_multi_assign(http->multi, fd, http); /* known from now on */
+	curl_multi_assign(http->multi, fd, http); /* `known` is not NULL from now on */
 	return 0;
 }
 
@@ -141,7 +147,7 @@ static int on_timer(CURLM *multi, long timeout_ms, void *data)
 
 	(void)multi;
 	if (timeout_ms == 0)
-		when.it_value.tv_nsec = 1; /* at once: zero would disarm */
+		when.it_value.tv_nsec = 1; /* now; zero would disarm the timer */
 	if (timeout_ms > 0) {
 		when.it_value.tv_sec = timeout_ms / 1000;
 		when.it_value.tv_nsec = timeout_ms % 1000 * 1000000;
@@ -180,11 +186,13 @@ static void take_etag(struct http_request *request, const char *text, size_t siz
 		text++;
 		size--;
 	}
-	/* It goes back to the server in a header of ours, where a control would begin another. */
+	/* The ETag is sent back to the server in a request header, where a control character could
+	 * start another header. */
 	for (size_t i = 0; i < size; i++)
 		if ((unsigned char)text[i] < ' ' || text[i] == 0x7f)
 			return;
-	if (size < sizeof(request->etag)) /* a longer one would be another one when cut */
+	if (size < sizeof(request->etag)) /* a longer one is dropped: truncated, it would be a
+					     different ETag */
 		snprintf(request->etag, sizeof(request->etag), "%.*s", (int)size, text);
 }
 
@@ -194,11 +202,12 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 
 	(void)one;
 	request->header_bytes += size;
-	if (request->header_bytes > HEADER_BYTES_MAX) { /* curl keeps them all */
+	if (request->header_bytes > HEADER_BYTES_MAX) { /* curl keeps them all in memory */
 		request->refused = true;
 		return 0;
 	}
-	if (header_is(line, size, "HTTP/")) { /* also of the answer after a "100 Continue" */
+	if (header_is(line, size,
+		      "HTTP/")) { /* also the header of the answer after a "100 Continue" */
 		request->range_is_right = false;
 		request->etag[0] = '\0';
 	} else if (header_is(line, size, "content-range:")) {
@@ -211,13 +220,14 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 
 /* ---- an answer's body */
 
-/* Once the status is known. False: not what we asked for. */
+/* Called once the status is known. Returns false if the answer is not what we asked for. */
 static bool judge_answer(struct http_request *request)
 {
 	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
 	if (request->status == 206)
 		return request->ask.size > 0 && request->range_is_right;
-	/* A server that knows no ranges sends the whole file: read on to our part. */
+	/* A server without range support sends the whole file. The bytes before our part are
+	 * skipped. */
 	if (request->status == 200 && request->ask.size > 0)
 		request->skip = request->ask.first;
 	return true;
@@ -228,7 +238,7 @@ static bool has_body_for_us(const struct http_request *request)
 	return request->status == 0 || request->status == 200 || request->status == 206;
 }
 
-/* False: enough. */
+/* Passes a piece to the receiver. Returns false if no more bytes are needed or allowed. */
 static bool give(struct http_request *request, struct bytes piece)
 {
 	uint64_t most = request->ask.size ? request->ask.size : request->ask.ceiling;
@@ -236,13 +246,13 @@ static bool give(struct http_request *request, struct bytes piece)
 	bool more;
 
 	if (piece.size > room) {
-		request->refused = request->ask.size == 0; /* a whole file past its ceiling */
+		request->refused = request->ask.size == 0; /* a whole file exceeds its ceiling */
 		piece.size = (size_t)room;
 		if (request->refused)
 			return false;
 	}
 	if (piece.size == 0)
-		return request->ask.size == 0; /* the rest of the file is not ours */
+		return request->ask.size == 0; /* the rest of the file was not asked for */
 	more = request->ask.receive(request->ask.data, piece);
 	request->given += piece.size;
 	return more && (request->ask.size == 0 || request->given < request->ask.size ||
@@ -309,13 +319,14 @@ static int judge_code(struct http_request *request, CURLcode code)
 		return -EBADMSG;
 	if (code == CURLE_FILE_COULDNT_READ_FILE || code == CURLE_BAD_DOWNLOAD_RESUME ||
 	    (request->http->is_local && code == CURLE_RANGE_ERROR)) {
-		/* A stick that was pulled out is a network that is gone. */
+		/* If the folder itself is gone (a stick was pulled out), treat it like a lost
+		 * network. */
 		return access(request->http->folder, F_OK) == 0 ? -ENOENT : -EHOSTUNREACH;
 	}
 	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
 	if (request->went_astray)
 		return -EHOSTUNREACH;
-	if (code == CURLE_WRITE_ERROR) /* an endless error page */
+	if (code == CURLE_WRITE_ERROR) /* an error page that is too long */
 		return judge_status(request->status) < 0 ? judge_status(request->status) : -EBADMSG;
 	if (code != CURLE_OK)
 		return -EHOSTUNREACH;
@@ -330,8 +341,7 @@ static void release_request(struct http_request *request)
 	free(request);
 }
 
-/* The request goes on where the answer sent it. false: it sent us nowhere, or where we do not go.
- */
+/* Follows the answer's redirection. Returns false if there is none, or if it is not allowed. */
 static bool follow(struct http_request *request, CURLcode code)
 {
 	const struct http *http = request->http;
@@ -446,12 +456,14 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_PRIVATE, request);
 	curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, request->error);
 	curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
-	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*"); /* the museum's server is reached directly */
+	curl_easy_setopt(easy, CURLOPT_NOPROXY,
+			 "*"); /* the museum's server is reached without a proxy */
 	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");
 	curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, http->is_local ? "file" : "http,https");
-	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 0L); /* follow() judges each */
+	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 0L); /* follow() checks each redirection */
 	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);
-	curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L); /* rather share a connection than open one */
+	curl_easy_setopt(easy, CURLOPT_PIPEWAIT,
+			 1L); /* prefer sharing a connection to opening a new one */
 	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)STALL_BYTES_PER_S);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, http->stall_s);
@@ -467,7 +479,8 @@ static void set_options(struct http_request *request)
 		curl_easy_setopt(easy, CURLOPT_CAINFO, http->ca_file);
 }
 
-/* A server that sends a little now and then never stalls, and would hold its place for hours. */
+/* Time limit of a whole request. A server that sends a few bytes now and then never counts as
+ * stalled, and would otherwise block a request for hours. */
 static long time_limit_s(const struct http_request *request)
 {
 	const struct http_ask *ask = &request->ask;
@@ -496,7 +509,7 @@ static void set_ask(struct http_request *request)
 		request->headers = curl_slist_append(NULL, text);
 		curl_easy_setopt(request->easy, CURLOPT_HTTPHEADER, request->headers);
 	}
-	request->ask.path = NULL; /* curl copied what it needs */
+	request->ask.path = NULL; /* curl has copied what it needs */
 	request->ask.etag = NULL;
 }
 
@@ -534,7 +547,8 @@ void http_cancel(struct http_request *request)
 
 /* ---- create and destroy */
 
-/* A folder's path as a url, what a url cannot hold percent-encoded. */
+/* Writes a folder's path as a file:// url. Characters that a url cannot contain are
+ * percent-encoded. */
 static int url_of_folder(char *out, size_t size, const char *path)
 {
 	char whole[PATH_MAX], folder[PATH_MAX / 2];
@@ -647,7 +661,7 @@ void http_destroy(struct http *http)
 {
 	if (!http)
 		return;
-	curl_multi_cleanup(http->multi); /* NULL is fine; closes sockets through on_close */
+	curl_multi_cleanup(http->multi); /* NULL is fine; closes the sockets through on_close */
 	if (http->timer_fd >= 0)
 		close(http->timer_fd);
 	if (http->epoll_fd >= 0)

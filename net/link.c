@@ -1,3 +1,6 @@
+/* Tracks whether the server answers, and computes randomised exponential pauses between
+ * attempts. */
+
 #include "net/link.h"
 
 #include <stdlib.h>
@@ -38,7 +41,8 @@ void link_answered(struct link *link)
 void link_failed(struct link *link, const char *url, const char *why)
 {
 	link->errors++;
-	/* Requests that were under way when it broke tell nothing new. */
+	/* Requests that were already in flight when the connection broke give no new
+	 * information. */
 	if (link->failures > 0 && clock_now_ms() < link->retry_at_ms)
 		return;
 	if (link->online || link->failures == 0) {

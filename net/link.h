@@ -1,6 +1,6 @@
-/* Whether the server answers, and when to try again: what all requests have in common. After a
- * failure one request at a time goes out, after a pause that doubles and is never the same twice,
- * so that a hundred terminals do not return at one instant. */
+/* Whether the server answers, and when to try again; shared by all requests. After a failure, only
+ * one request at a time is sent, after a pause that doubles and is randomised, so that a hundred
+ * terminals do not all return at the same moment. */
 #ifndef GOPURA_NET_LINK_H
 #define GOPURA_NET_LINK_H
 
@@ -10,27 +10,29 @@
 #include "base/refusal.h"
 
 struct link {
-	uint32_t failures; /* since the last answer */
+	uint32_t failures; /* in a row, since the last answer */
 	int64_t retry_at_ms;
-	bool online;              /* the last request was answered; false before the first */
+	bool online;              /* the last request was answered; false before the first one */
 	uint64_t offline_since_s; /* wall clock; 0 while online */
-	uint32_t in_flight;       /* requests */
-	struct refusal *refusal;  /* what was not taken of the server; borrowed, NULL: untold */
-	uint64_t answers, errors; /* requests that ended so, since link_init */
+	uint32_t in_flight;       /* number of requests in flight */
+	struct refusal *refusal;  /* where refusals are noted; borrowed; NULL: nowhere */
+	uint64_t answers, errors; /* requests that ended this way since link_init */
 };
 
-/* Of the n-th failure in a row (from 1): half a second doubling to a minute, times 0.5 .. 1.5. */
+/* Returns the pause in ms after the n-th failure in a row (n from 1): half a second, doubling up to
+ * one minute, times a random factor of 0.5 to 1.5. */
 int64_t link_pause_ms(uint32_t failures);
 
-/* Before the first answer: not online, and free to ask. */
+/* Initial state: not online, but requests are allowed. */
 void link_init(struct link *link);
-/* Any answer of the server counts, also one that says no. */
+/* Any answer of the server counts, even a negative one. */
 void link_answered(struct link *link);
-/* Logs the first failure, with why. */
+/* Notes a failed request. Logs url and why for the first failure in a row. */
 void link_failed(struct link *link, const char *url, const char *why);
-/* After a failure only one request at a time, and not before its pause is over. */
+/* Returns whether a request may be sent now. After a failure only one at a time, after its
+ * pause. */
 bool link_may_ask(const struct link *link);
-/* False until it failed twice: a server that starts anew is not worth telling. */
+/* Returns true after two failures in a row. A single one may be a server that restarts. */
 bool link_is_down(const struct link *link);
 
 #endif

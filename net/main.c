@@ -1,4 +1,5 @@
-/* gopura-fetch: brings objects; network and cache, no devices. */
+/* gopura-fetch: parses the command line and runs the fetcher. This process uses the network and the
+ * cache, but no devices. */
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -73,7 +74,7 @@ static const struct option long_options[] = {
 	{ 0 },
 };
 
-/* A whole number in least..most, or the end. */
+/* Parses a whole number in least..most. Prints a message and exits if it is not one. */
 static uint64_t number(const char *name, const char *text, uint64_t least, uint64_t most)
 {
 	char *end;
@@ -137,7 +138,7 @@ static void take_option(struct fetch_options *options, int option)
 	case OPTION_HELP:
 		fputs(help, stdout);
 		exit(0);
-	default: /* getopt has said what is wrong */
+	default: /* getopt has printed the error */
 		fprintf(stderr, "gopura-fetch: see gopura-fetch --help\n");
 		exit(2);
 	}

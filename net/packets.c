@@ -1,3 +1,6 @@
+/* Sends and receives whole messages over a SOCK_SEQPACKET socket, with sealed memory descriptors
+ * for large objects and a queue for what the socket does not accept yet. */
+
 #include "net/packets.h"
 
 #include <errno.h>
@@ -19,7 +22,7 @@ struct packet {
 	struct packet *next;
 	int passed; /* owned; -1: none */
 	size_t size;
-	size_t weight; /* bytes that wait with it: the descriptor's too */
+	size_t weight; /* bytes it occupies in the queue, including those of the descriptor */
 	uint8_t bytes[];
 };
 
@@ -49,8 +52,8 @@ void packets_finish(struct packets *packets)
 	}
 	buffer_finish(&packets->in);
 	buffer_finish(&packets->out);
-	if (packets->last && packets->fd >= 0) {  /* not a zeroed one */
-		shutdown(packets->fd, SHUT_RDWR); /* the other end hears of it now */
+	if (packets->last && packets->fd >= 0) {  /* false for a zeroed struct */
+		shutdown(packets->fd, SHUT_RDWR); /* tells the other end now */
 		closer_close(packets->fd);
 	}
 	*packets = (struct packets){ .fd = -1 };
@@ -80,7 +83,8 @@ static int send_now(int fd, struct bytes bytes, int passed)
 	do
 		sent = sendmsg(fd, &header, MSG_NOSIGNAL | MSG_DONTWAIT);
 	while (sent < 0 && errno == EINTR);
-	/* ETOOMANYREFS: descriptors in flight; ENOBUFS: both pass as the other end reads. */
+	/* ETOOMANYREFS (too many descriptors in flight) and ENOBUFS both pass when the other end
+	 * reads. */
 	if (sent < 0 && (errno == EWOULDBLOCK || errno == ETOOMANYREFS || errno == ENOBUFS))
 		return -EAGAIN;
 	return sent < 0 ? -errno : 0;
@@ -117,7 +121,7 @@ int packets_send(struct packets *packets, const struct message *message, int pas
 		rc = enqueue(packets, buffer_bytes(&packets->out), passed,
 			     passed >= 0 ? message->object.size : 0);
 		if (rc == 0)
-			passed = -1; /* the queue's now */
+			passed = -1; /* the queue owns it now */
 	}
 	if (passed >= 0)
 		close(passed);
@@ -149,24 +153,24 @@ bool packets_wait(const struct packets *packets)
 
 /* ---- receiving
  *
- * Whoever is at the other end may pass any descriptor, and the last close of some of them waits (a
- * TCP socket with SO_LINGER). So a message is only looked at first (MSG_PEEK): what is passed to us
- * then is a second reference beside that of the queue, and no close of ours is the last one. It is
- * taken out of the queue when its descriptor is known to be plain memory. Else it stays there, and
- * goes with the socket, which is closed on a thread of its own. */
+ * The other end may pass any descriptor. The last close of some descriptors blocks (a TCP socket
+ * with SO_LINGER). So a message is first read with MSG_PEEK: the descriptor we get is then a second
+ * reference beside the one in the queue, and closing ours is never the last close. The message is
+ * removed from the queue only when its descriptor is known to be sealed memory. Otherwise it stays
+ * in the queue until the socket is closed, on a separate thread. */
 
-/* A memfd sealed against every change: the one kind of descriptor that is taken. Asked for the
- * seals first, as no other file's code answers that question: even fstat may wait. */
+/* Accepts only a memfd sealed against every change. The seals are checked first, because no other
+ * file type's code is involved in that query; even fstat may block. */
 static bool is_sealed_memory(int fd)
 {
 	const int seals = fcntl(fd, F_GET_SEALS);
 	struct statfs system;
 
 	return seals >= 0 && (seals & SEALS) == SEALS && fstatfs(fd, &system) == 0 &&
-	       system.f_type == TMPFS_MAGIC; /* no huge pages, which may run out */
+	       system.f_type == TMPFS_MAGIC; /* not hugetlbfs, whose pages may run out */
 }
 
-/* The descriptor that came along, -1: none. */
+/* Returns the descriptor that was passed with the message; -1: none. */
 static int passed_in(struct msghdr *header)
 {
 	int passed = -1;
@@ -178,7 +182,7 @@ static int passed_in(struct msghdr *header)
 	return passed;
 }
 
-/* recvmsg as it is meant here: at once or not at all. */
+/* recvmsg that does not block and is repeated after EINTR. */
 static ssize_t receive_now(int fd, struct msghdr *header, int flags)
 {
 	ssize_t got;
@@ -199,7 +203,8 @@ static int peek_packet(struct packets *packets, int *passed)
 	struct msghdr header = { .msg_iov = &part,
 				 .msg_iovlen = 1,
 				 .msg_control = control.bytes,
-				 /* without the padding, where a second one would find room */
+				 /* without the padding, which would have room for a second
+				  * descriptor */
 				 .msg_controllen = CMSG_LEN(sizeof(int)) };
 	ssize_t got;
 
@@ -217,7 +222,7 @@ static int peek_packet(struct packets *packets, int *passed)
 							       : -errno;
 	packets->in.size = (size_t)got;
 	*passed = passed_in(&header);
-	if (got == 0) /* no message is empty: it is the end */
+	if (got == 0) /* no message is empty, so this is the end of the connection */
 		return -EPIPE;
 	return header.msg_flags & (MSG_TRUNC | MSG_CTRUNC) ? -EBADMSG : 0;
 }
@@ -244,7 +249,7 @@ int packets_receive(struct packets *packets, struct message *out, int *passed)
 	rc = peek_packet(packets, passed);
 	if (rc == 0)
 		rc = judge_packet(packets, out, *passed);
-	if (rc == 0 && receive_now(packets->fd, &nothing, 0) < 0) /* out of the queue */
+	if (rc == 0 && receive_now(packets->fd, &nothing, 0) < 0) /* remove it from the queue */
 		rc = -errno;
 	if (rc < 0) {
 		closer_close(*passed);
@@ -283,7 +288,7 @@ int packets_map_sealed(struct bytes *out, int fd, uint32_t size)
 	struct stat info;
 	void *at;
 
-	/* Unsealed, the other end could change or shorten it under our eyes. */
+	/* The other end could change or truncate an unsealed file while we read it. */
 	if (!is_sealed_memory(fd))
 		return -EBADMSG;
 	if (fstat(fd, &info) < 0 || info.st_size != (off_t)size || size == 0)

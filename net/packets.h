@@ -1,5 +1,6 @@
-/* The socket between kiosk and fetcher: whole messages (format/message.h), a descriptor beside
- * some, never blocking; what the socket does not take now waits in a queue. Both ends use it. */
+/* The socket between kiosk and fetcher, used by both ends. It carries whole messages
+ * (format/message.h), some with a descriptor. It never blocks: what the socket does not accept now
+ * waits in a queue. */
 #ifndef GOPURA_NET_PACKETS_H
 #define GOPURA_NET_PACKETS_H
 
@@ -9,35 +10,37 @@ struct packet;
 
 struct packets {
 	int fd;                       /* owned; -1: none */
-	struct packet *first, **last; /* queue to be sent */
-	size_t queued_bytes;          /* those of descriptors included */
-	struct buffer in, out;        /* scratch */
+	struct packet *first, **last; /* send queue */
+	size_t queued_bytes;          /* includes the bytes of queued descriptors */
+	struct buffer in, out;        /* scratch memory */
 };
 
-/* fd is taken, and made non-blocking. */
+/* fd is taken and made non-blocking. */
 void packets_init(struct packets *packets, int fd);
-/* A zeroed or finished one is fine. The other end is told at once; the close itself is left to
- * net/closer.h, for what lies in the socket unread may be anything: until then an epoll set has it
- * still, so take it out there first. */
+/* A zeroed or finished struct is fine. The other end is told at once. net/closer.h does the close
+ * itself, because unread descriptors in the socket may make it block. Remove the socket from any
+ * epoll set first: the set keeps it until the close is done. */
 void packets_finish(struct packets *packets);
 
-/* passed (-1: none) is taken, even on failure. -EPIPE and kin: the other end is gone. -EFBIG: the
- * message keeps not to its limits. */
+/* Sends or queues a message. The descriptor `passed` (-1: none) is taken, even on failure. -EPIPE,
+ * -ECONNRESET: the other end is gone. -EFBIG: the message exceeds its limits. -ENOMEM. */
 must_check int packets_send(struct packets *packets, const struct message *message, int passed);
-/* Sends what waits, as far as the socket takes it. */
+/* Sends queued messages until the socket accepts no more. Returns 0, also if some remain queued. */
 must_check int packets_flush(struct packets *packets);
-bool packets_wait(const struct packets *packets); /* something waits to be sent */
+bool packets_wait(
+	const struct packets *packets); /* Returns true if messages wait in the send queue. */
 
-/* The next message; its bytes are borrowed until the next call. *passed is the descriptor that came
- * along (owned by the caller) or -1; it is a memfd sealed against every change.
- *   -EAGAIN none now   -EPIPE the other end closed
- *   -EBADMSG not a message, or descriptors amiss: it stays the next one, so hang up */
+/* Receives the next message; its bytes are borrowed until the next call. *passed is a descriptor
+ * that came with it (a sealed memfd, owned by the caller), or -1.
+ *   -EAGAIN: no message now. -EPIPE: the other end closed the connection.
+ *   -EBADMSG: invalid message or descriptor. It stays in the queue, so disconnect. */
 must_check int packets_receive(struct packets *packets, struct message *out, int *passed);
 
-/* A sealed memfd with these bytes, owned by the caller; negative errno. */
+/* Creates a sealed memfd with a copy of these bytes. Returns the descriptor, owned by the caller,
+ * or a negative errno. */
 must_check int packets_seal(struct bytes bytes);
-/* Maps what a message passed: checks that it is sealed against every change and has that size.
- * *out must be unmapped. -EBADMSG. */
+/* Maps a received descriptor after checking that it is sealed and has exactly this size. The caller
+ * must munmap *out; fd is borrowed. -EBADMSG: the check failed. */
 must_check int packets_map_sealed(struct bytes *out, int fd, uint32_t size);
 
 #endif

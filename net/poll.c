@@ -1,3 +1,6 @@
+/* State machine that requests root, timestamp and release metadata in turn, and passes changed
+ * files to the kiosk. It waits for the kiosk's verdict after a new root. */
+
 #include "net/poll.h"
 
 #include <errno.h>
@@ -11,7 +14,7 @@
 enum {
 	ETAG_BYTES_MAX = 128,
 	PATH_BYTES = 32,
-	VERDICT_MS = 3000, /* for the kiosk to say whether it took a root */
+	VERDICT_MS = 3000, /* how long the kiosk may take to accept or reject a root */
 };
 
 enum stage { STAGE_IDLE, STAGE_ROOT, STAGE_VERDICT, STAGE_TIMESTAMP, STAGE_RELEASE };
@@ -26,14 +29,14 @@ struct poll {
 	bool running;
 	int64_t next_ms;
 	uint32_t failures;
-	bool complained; /* of a file the server has not */
-	bool stamped;    /* a new timestamp was said, and no release since */
+	bool complained; /* a missing or oversized file was logged */
+	bool stamped;    /* a new timestamp was passed on, and no release since */
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
-	uint32_t root_version; /* that the kiosk has */
-	struct known root;     /* the server's answer for the next one, which nobody checked yet */
-	int64_t verdict_ms;    /* of STAGE_VERDICT: how long the kiosk's word is waited for */
+	uint32_t root_version; /* version of the root that the kiosk has */
+	struct known root; /* the server's candidate for the next root; nobody has checked it yet */
+	int64_t verdict_ms; /* in STAGE_VERDICT: when to stop waiting for the kiosk */
 	struct known timestamp, release;
 };
 
@@ -58,7 +61,7 @@ static void forget(struct known *known)
 	known->etag[0] = '\0';
 }
 
-/* The round ends, and what it knew is asked for anew in the next one. */
+/* Ends the round and forgets all files, so that the next round requests them again. */
 static void begin_anew(struct poll *poll)
 {
 	if (poll->request) {
@@ -113,7 +116,8 @@ void poll_trust(struct poll *poll, uint32_t root_version)
 		begin_anew(poll);
 		poll->root_version = root_version;
 	} else if (poll->stage == STAGE_VERDICT) {
-		poll->verdict_ms = 0; /* it was refused: poll_work goes on with the others */
+		poll->verdict_ms =
+			0; /* the root was rejected: poll_work continues with the other files */
 	}
 }
 
@@ -149,15 +153,16 @@ static bool on_piece(void *data, struct bytes piece)
 	return !poll->body.error;
 }
 
-/* The body is a file we did not know: keep it and pass it on. */
+/* Handles the body of an answer: stores it and passes it on if it changed. */
 static void take_body(struct poll *poll, const char *etag)
 {
 	struct known *known = known_of_stage(poll);
 	bool same = known->file.size == poll->body.size && poll->body.size > 0 &&
 		    memcmp(known->file.data, poll->body.data, poll->body.size) == 0;
 
-	/* A root is asked for without: whoever can make an answer up can make its ETag up too, and
-	 * would have the server say "not modified" of a root that never came. */
+	/* Roots are requested without an ETag. An attacker who can forge an answer can also forge
+	 * its ETag, and would make the server answer "not modified" for a root that we never
+	 * received. */
 	if (poll->stage != STAGE_ROOT)
 		snprintf(known->etag, sizeof(known->etag), "%s", etag);
 	if (same || poll->body.size == 0)
@@ -187,7 +192,7 @@ static int64_t period_ms(const struct poll *poll)
 	return period - period / 10 + random() % (period / 5 + 1);
 }
 
-/* Logged once: it will be the same in a minute. */
+/* Logs only the first time, because the next round will fail in the same way. */
 static void complain(struct poll *poll, const char *path, const char *why)
 {
 	if (!poll->complained)
@@ -218,18 +223,19 @@ static void on_done(void *data, const struct http_result *result)
 		take_body(poll, result->etag);
 	else if (rc == -EFBIG || rc == -EBADMSG)
 		complain(poll, path_of_stage(poll, path), "larger than such a file may be");
-	else if (rc < 0 && poll->stage != STAGE_ROOT) /* the next root is not there, as a rule */
+	else if (rc < 0 && poll->stage != STAGE_ROOT) /* usually there is no newer root */
 		complain(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {
-		/* Published between two looks, the release came before the timestamp that names it,
-		 * and was refused: it is the same still, but now it fits. */
+		/* If both files are published between two rounds, the release may arrive before the
+		 * timestamp that names it and be rejected. It is passed on again, because now it
+		 * matches. */
 		if (poll->stamped)
 			say(poll, META_RELEASE, 0, &poll->release);
 		poll->stamped = false;
 		rest(poll, period_ms(poll));
 		return;
 	}
-	if (poll->stage == STAGE_VERDICT) /* a new root: the kiosk's word first */
+	if (poll->stage == STAGE_VERDICT) /* new root: wait for the kiosk's verdict */
 		return;
 	poll->stage = poll->stage == STAGE_ROOT ? STAGE_TIMESTAMP : STAGE_RELEASE;
 	ask(poll);

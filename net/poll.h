@@ -1,7 +1,7 @@
-/* Looks for signed metadata (format/metadata.h) now and then: the next root, timestamp.json,
- * release.json, in this order. What is new goes on as received; signatures are the kiosk's to
- * check. A root counts when the kiosk says that it has it (poll_trust), never because a server
- * answered: each round asks for the root after the kiosk's. One thread. */
+/* Checks regularly for signed metadata (format/metadata.h): the next root, timestamp.json and
+ * release.json, in this order. Changed files are passed on as received; the kiosk checks the
+ * signatures. A root counts only when the kiosk confirms it (poll_trust), never because a server
+ * sent it: each round requests the root after the kiosk's. One thread. */
 #ifndef GOPURA_NET_POLL_H
 #define GOPURA_NET_POLL_H
 
@@ -12,25 +12,31 @@
 struct poll; /* private to poll.c */
 
 struct poll_options {
-	struct http *http; /* borrowed, as link */
+	struct http *http; /* borrowed, like link */
 	struct link *link;
-	uint32_t period_s; /* between looks; a tenth more or less, so that terminals spread */
+	uint32_t period_s; /* between rounds; varied randomly by 10 % so that terminals spread */
+	/* A metadata file as received; its signature is not checked. Bytes are borrowed for the
+	 * call. version is 0 except for a root. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
 	void *data;
 };
 
-/* *out is owned by the caller; it looks for nothing before poll_ask. -ENOMEM. */
+/* *out is owned by the caller. It requests nothing before poll_ask. -ENOMEM. */
 must_check int poll_create(struct poll **out, const struct poll_options *options);
+/* Cancels a request in flight. NULL is fine. */
 void poll_destroy(struct poll *poll);
 
-/* Says again all that is known, and looks now; from now on every period_s (0: as before). */
+/* Passes all known files on again and starts a round now, unless one runs; then one round every
+ * period_s (0: unchanged). */
 void poll_ask(struct poll *poll, uint32_t period_s);
-/* The version of the trust root that the kiosk has, 0: none. Said again after every root that went
- * to the kiosk, whether it took it or not. A new one begins a round at once: its successor may be
- * there, and what was refused under the old root may be good under this one. */
+/* Sets the version of the kiosk's trust root; 0: none. Call it again after every root that was
+ * passed on, whether the kiosk accepted it or not. A new version starts a round at once: the next
+ * root may be available, and files rejected under the old root may be valid under this one. */
 void poll_trust(struct poll *poll, uint32_t root_version);
-void poll_stop(struct poll *poll); /* until poll_ask; what is known is forgotten */
+void poll_stop(struct poll *poll); /* Stops until poll_ask; known files are forgotten. */
+/* Does all work that is due now. */
 void poll_work(struct poll *poll);
-int64_t poll_due_ms(const struct poll *poll); /* as downloader_due_ms */
+int64_t poll_due_ms(const struct poll *poll); /* Returns when poll_work has work to do, like
+						 downloader_due_ms. */
 
 #endif

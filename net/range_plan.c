@@ -1,3 +1,6 @@
+/* Selects neighbouring objects for one range request, starting from the most urgent one and growing
+ * in both directions. */
+
 #include "net/range_plan.h"
 
 #include <stdlib.h>
@@ -28,8 +31,8 @@ static uint64_t end_of(const struct range_item *item)
 	return item->place + item->size;
 }
 
-/* May the range from left's place to right's end grow by next to its neighbour `to`? Overlapping
- * places (one of them is a lie) go separate ways. */
+/* Returns whether the range from left's place to right's end may grow by `outer`, the neighbour of
+ * `inner`. Overlapping objects are never joined (one of their places must be wrong). */
 static bool may_join(const struct range_item *left, const struct range_item *right,
 		     const struct range_item *outer, const struct range_item *inner,
 		     struct range_limits limits)

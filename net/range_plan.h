@@ -1,9 +1,9 @@
-/* Which bytes of which pack to ask for next. Pure.
+/* Plans which bytes of which pack to request next. Pure functions.
  *
- * The request begins with the object of the highest priority (of equal ones, the one wanted first)
- * and takes in neighbours of the same pack, on the side of the higher priority first, as long as
- * the gap to them and the whole stay small: objects that are wanted together lie together, and a
- * request costs a round trip and some hundred bytes, which a small gap does not. */
+ * A request starts with the object of the highest priority (if equal, the one wanted first). It
+ * then grows by neighbours in the same pack, first on the side with the higher priority, as long as
+ * the gap and the total size stay small. Objects that are wanted together lie together, and a
+ * request costs a round trip and some hundred bytes, which is more than a small gap. */
 #ifndef GOPURA_NET_RANGE_PLAN_H
 #define GOPURA_NET_RANGE_PLAN_H
 
@@ -15,23 +15,23 @@
 
 struct range_item {
 	struct hash pack;
-	uint64_t place; /* in the pack, bytes */
+	uint64_t place; /* in the pack, in bytes */
 	uint32_t size;  /* bytes */
 	uint32_t priority;
-	uint64_t order; /* lower was wanted earlier */
-	void *want;     /* the caller's */
-	bool taken;     /* by an earlier plan: not looked at */
+	uint64_t order; /* a lower value was wanted earlier */
+	void *want;     /* belongs to the caller */
+	bool taken;     /* used by an earlier plan: ignored */
 };
 
 struct range_limits {
-	uint32_t gap_bytes;  /* between neighbours, at most */
-	uint32_t most_bytes; /* of a request of several objects */
+	uint32_t gap_bytes;  /* maximum gap between neighbours */
+	uint32_t most_bytes; /* maximum size of a request for several objects */
 };
 
-/* By pack, then place. */
+/* Sorts by pack, then by place. */
 void range_sort(struct range_item *items, size_t count);
-/* Chooses items[*first .. *first + result), of sorted items. 0: nothing is left. Those that are not
- * taken among them are wanted; they are marked taken. */
+/* Chooses the next range from sorted items: items[*first .. *first + result), and marks them taken.
+ * Returns 0 if all items were taken already. */
 size_t range_plan(struct range_item *items, size_t count, struct range_limits limits,
 		  size_t *first);
 

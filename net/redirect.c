@@ -1,3 +1,6 @@
+/* Parses urls with libcurl's url interface and compares hosts and ports, to decide whether a
+ * redirection may be followed. */
+
 #include "net/redirect.h"
 
 #include <ctype.h>
@@ -10,20 +13,20 @@
 enum { HOST_BYTES = 256 };
 
 struct place {
-	bool secret;                             /* https */
-	char host[HOST_BYTES], user[HOST_BYTES]; /* user: "" where there is none */
+	bool secret;                             /* true for https */
+	char host[HOST_BYTES], user[HOST_BYTES]; /* user is "" if the url has none */
 	unsigned port;
 };
 
-/* ---- the list of named hosts */
+/* ---- list of allowed hosts */
 
-/* The next one of the list, cut off; NULL: there is none. */
+/* Cuts the next host off the list; NULL at the end. */
 static char *next_host(char **list)
 {
 	return strtok_r(NULL, ", ", list);
 }
 
-/* Cuts ":port" off; 0: there is none. false: it is no port. */
+/* Cuts ":port" off the host. *port is 0 if there is none. Returns false for an invalid port. */
 static bool cut_port(char *host, unsigned *port)
 {
 	char *colon = strchr(host, ':'), *end;
@@ -90,7 +93,7 @@ static bool get_part(CURLU *url, CURLUPart part, char *out, size_t bytes)
 	return fits;
 }
 
-/* false: no url of http or https. */
+/* Returns false if text is not an http or https url. */
 static bool parse(struct place *out, const char *text)
 {
 	CURLU *url = curl_url();

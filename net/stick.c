@@ -1,3 +1,6 @@
+/* Runs the stick reader on its own thread, one job at a time: a look for a stick, or a batch of
+ * objects. It detects jobs that hang. */
+
 #include "net/stick.h"
 
 #include <errno.h>
@@ -17,9 +20,9 @@
 enum {
 	LOOK_MS = 3000,
 	PATIENCE_MS = 10000,
-	LEFT_ALONE_MS = 60000, /* after a job that hung */
-	END_S = 2,             /* for the thread to end with us; else it is left behind */
-	OBJECTS_MAX = 32,      /* of a job */
+	LEFT_ALONE_MS = 60000, /* pause after a job that hung */
+	END_S = 2,             /* how long the thread may take to end; then it is abandoned */
+	OBJECTS_MAX = 32,      /* per job */
 	JOB_BYTES_MAX = 2 << 20,
 };
 
@@ -30,7 +33,7 @@ struct job_object {
 };
 
 struct job {
-	bool looks; /* for a stick; else reads objects */
+	bool looks; /* true: look for a stick; false: read objects */
 	bool forgets;
 	uint32_t root_version;
 	enum stick_news news;
@@ -44,12 +47,13 @@ struct job {
 
 enum worker_state { WORKER_IDLE, WORKER_BUSY, WORKER_DONE };
 
-/* Outlives the stick where the thread hangs. While it is busy, job and reader are the thread's. */
+/* May outlive struct stick if the thread hangs. While state is WORKER_BUSY, only the thread uses
+ * job and reader. */
 struct worker {
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
 	enum worker_state state;
-	bool ends, ended, abandoned; /* abandoned: the thread frees it */
+	bool ends, ended, abandoned; /* abandoned: the thread frees the worker */
 	int event_fd;
 	struct stick_reader reader;
 	struct job job;
@@ -57,21 +61,21 @@ struct worker {
 
 struct asked {
 	struct message_want want;
-	uint64_t order; /* of arrival */
+	uint64_t order; /* order of arrival */
 };
 
 struct stick {
 	struct stick_options options;
 	struct worker *worker;
 	pthread_t thread;
-	int64_t look_ms, began_ms; /* the next look; the job under way */
-	bool forgets;              /* all is to be told again */
+	int64_t look_ms, began_ms; /* time of the next look; start of the current job */
+	bool forgets;              /* report everything again at the next look */
 	bool is_here;
-	bool hangs; /* the job under way was given up */
+	bool hangs; /* the current job took too long and was given up */
 	uint32_t root_version;
 	struct hash roots[MESSAGE_RELEASES_MAX];
 	size_t root_count;
-	struct asked *asked; /* owned; sorted by priority when not asked_changed, best last */
+	struct asked *asked; /* owned; sorted by priority unless asked_changed; the best is last */
 	size_t asked_count, asked_capacity;
 	bool asked_changed;
 	uint64_t orders;
@@ -206,7 +210,7 @@ int stick_create(struct stick **out, const struct stick_options *options)
 	if (!stick)
 		return -ENOMEM;
 	stick->options = *options;
-	stick->options.folder = NULL; /* the reader's */
+	stick->options.folder = NULL; /* the reader has its own copy */
 	if (stick->options.patience_ms == 0)
 		stick->options.patience_ms = PATIENCE_MS;
 	rc = create_worker(&stick->worker, options->folder);
@@ -222,7 +226,7 @@ int stick_create(struct stick **out, const struct stick_options *options)
 	return 0;
 }
 
-/* A thread that hangs in the device is left behind, with what it works on. */
+/* Ends the thread. A thread that hangs in the device is abandoned, together with its data. */
 static void end_thread(struct stick *stick)
 {
 	struct worker *worker = stick->worker;
@@ -257,7 +261,7 @@ void stick_destroy(struct stick *stick)
 	free(stick);
 }
 
-/* ---- what is asked for */
+/* ---- requests */
 
 void stick_forget(struct stick *stick)
 {
@@ -300,7 +304,7 @@ bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
 	return true;
 }
 
-/* The best one last. */
+/* Sorts the most urgent request to the end. */
 static int by_priority(const void *a, const void *b)
 {
 	const struct asked *left = a, *right = b;
@@ -315,13 +319,13 @@ static void answer(struct stick *stick, struct hash hash, int rc, struct bytes b
 	stick->options.object(stick->options.data, hash, rc, bytes);
 }
 
-/* There is no stick any more, or none that answers. */
+/* Answers all requests with -ENOENT, because there is no stick or it does not answer. */
 static void refuse_all(struct stick *stick)
 {
 	size_t count = stick->asked_count;
 
 	stick->is_here = false;
-	stick->asked_count = 0; /* an answer may ask for more, which is refused now */
+	stick->asked_count = 0; /* the answer callback may ask for more; that is refused now */
 	for (size_t i = 0; i < count; i++)
 		answer(stick, stick->asked[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
 }
@@ -366,7 +370,7 @@ static void begin_read(struct stick *stick)
 	set_state(stick->worker, WORKER_BUSY);
 }
 
-/* true: a stick came. */
+/* Returns true if a stick was plugged in. */
 static bool take_look(struct stick *stick)
 {
 	const struct job *job = &stick->worker->job;
@@ -398,7 +402,8 @@ static void take_objects(struct stick *stick)
 	}
 }
 
-/* What a job brought that was given up is of no use: its stick may be another one by now. */
+/* Handles a finished job; returns true if a stick was plugged in. The result of a job that was
+ * given up is discarded, because another stick may be present by now. */
 static bool take_job(struct stick *stick)
 {
 	bool came = false;
@@ -417,7 +422,8 @@ static bool take_job(struct stick *stick)
 	return came;
 }
 
-/* The objects of the job are the thread's, but what was asked for is not touched by it. */
+/* Gives up the current job. The thread owns the objects of the job, but it does not change the
+ * wants in it, so they may be read here. */
 static void give_up(struct stick *stick)
 {
 	const struct job *job = &stick->worker->job;
@@ -470,6 +476,6 @@ int64_t stick_due_ms(const struct stick *stick, bool has_room)
 		return INT64_MAX;
 	if (state_of(stick->worker) == WORKER_IDLE)
 		return has_room && stick->asked_count > 0 ? 0 : stick->look_ms;
-	/* The event tells of its end. */
+	/* The event descriptor reports the end of the job. */
 	return stick->hangs ? INT64_MAX : stick->began_ms + stick->options.patience_ms;
 }

@@ -1,9 +1,9 @@
-/* A release on a USB stick that somebody plugs in: the same files as on the museum server, and as
- * little trusted. Its metadata goes to the kiosk, which checks it; objects are checked by their
- * hash. A thread of its own reads the stick (net/stick_reader.h), one job at a time: a device that
- * hangs holds up that thread alone. A job that takes longer than patience_ms is given up: what was
- * asked for is answered as not there, and the stick is left alone until the thread comes back and a
- * minute has passed. All calls from one thread; none waits, but stick_destroy for a moment. */
+/* A release on a USB stick. It has the same files as the museum server and is trusted as little:
+ * the kiosk checks its metadata, and objects are checked by their hash. A separate thread reads the
+ * stick (net/stick_reader.h), one job at a time, so a device that hangs blocks only that thread. A
+ * job that takes longer than patience_ms is given up: its requests are answered with -ENOENT, and
+ * the stick is not used until the thread has come back and one minute has passed. Make all calls
+ * from one thread. None blocks, except stick_destroy, for up to 2 s. */
 #ifndef GOPURA_NET_STICK_H
 #define GOPURA_NET_STICK_H
 
@@ -12,37 +12,43 @@
 struct stick; /* private to stick.c */
 
 struct stick_options {
-	const char *folder; /* copied; where the stick is mounted: the release, or release/ in it */
-	uint32_t patience_ms; /* 0: 10000 */
+	const char *folder; /* copied; mount point of the stick; the release is there or in release/
+			       below it */
+	uint32_t patience_ms; /* time limit of a job; 0: 10000 */
+	/* Metadata of a stick that was plugged in; not checked. Bytes are borrowed for the call. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
-	/* The answer to stick_ask. rc 0: these are its bytes, of the right hash. -ENOENT: not
-	 * there. -EBADMSG: there, but damaged. */
+	/* The answer to stick_ask; bytes are borrowed. rc 0: the bytes are correct. -ENOENT: the
+	 * object is not there. -EBADMSG: it is there, but damaged. */
 	void (*object)(void *data, struct hash hash, int rc, struct bytes bytes);
-	/* Asked before an object is read: who wanted it may have gone. */
+	/* Called before an object is read, because the want may have been dropped. */
 	bool (*is_wanted)(void *data, struct hash hash);
 	void *data;
 };
 
-/* *out is owned by the caller. -ENOMEM, or that there is no thread to be had. */
+/* *out is owned by the caller; it is NULL on failure. -ENOMEM, or a negative errno if no thread
+ * could be started. */
 must_check int stick_create(struct stick **out, const struct stick_options *options);
-void stick_destroy(struct stick *stick); /* NULL is fine, as for each call */
+void stick_destroy(struct stick *stick); /* NULL is fine, as for every call here. */
 
-/* Readable when a job has ended: stick_heard, then stick_work. -1 of NULL. */
+/* Readable when a job has ended; then call stick_heard and stick_work. -1 if stick is NULL.
+ * Borrowed. */
 int stick_fd(const struct stick *stick);
+/* Clears the event of stick_fd. */
 void stick_heard(struct stick *stick);
-/* Looks now and then: what came, or is another one, is told by meta. Passes on what was read, and
- * begins the next job; has_room: objects may be among it. true: objects may be had that could not
- * be had before. */
+/* Handles a finished job and starts the next one; looks for a stick every 3 s. A new or changed
+ * stick is reported with the meta event. has_room: objects may be read. Returns true if a stick was
+ * plugged in, so objects may be available that were not before. */
 must_check bool stick_work(struct stick *stick, bool has_room);
-/* When stick_work has something to do by time alone; INT64_MAX: never. */
+/* Returns when stick_work has timed work to do (clock_now_ms); INT64_MAX: never. */
 int64_t stick_due_ms(const struct stick *stick, bool has_room);
-/* At the next stick_work all is told again: another kiosk asks. */
+/* Reports everything again at the next look, because another kiosk asks. */
 void stick_forget(struct stick *stick);
-/* The version of the trust root that the kiosk has: roots are told from the one after it on. */
+/* Sets the version of the kiosk's trust root. Roots after this version are reported. */
 void stick_trust(struct stick *stick, uint32_t root_version);
 
-/* Has the object looked for by the locators of these releases, newest first; those of the last call
- * hold for all. false: there is no stick, and no answer comes. */
+/* Requests an object, to be found by the locators of these releases (newest first). The releases of
+ * the last call apply to all open requests. Returns false if there is no stick; then no answer
+ * follows. */
 must_check bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
 			  const struct message_want *want);
 

@@ -1,3 +1,6 @@
+/* Reads metadata, locators and objects from a mounted stick. It uses only regular files and never
+ * follows links. */
+
 #include "net/stick_reader.h"
 
 #include <errno.h>
@@ -22,7 +25,7 @@ int stick_reader_init(struct stick_reader *reader, const char *folder)
 	return reader->folder ? 0 : -ENOMEM;
 }
 
-/* What was read of the stick that was there. */
+/* Frees everything that was read from the previous stick. */
 static void close_files(struct stick_reader *reader)
 {
 	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++) {
@@ -60,7 +63,7 @@ static int open_file(const struct stick_reader *reader, const char *name)
 	return open_beneath(reader->folder, whole);
 }
 
-/* Into reader->file. */
+/* Reads a file into reader->file. */
 static int read_file(struct stick_reader *reader, const char *name, size_t ceiling)
 {
 	struct stat info;
@@ -94,7 +97,7 @@ static int read_stamp(struct stick_reader *reader)
 
 /* ---- metadata */
 
-/* What was read last is told. */
+/* Appends the file that was read last to the list. */
 static void add_file(const struct stick_reader *reader, struct stick_file *files, size_t *count,
 		     enum meta_role role, uint32_t version)
 {
@@ -130,7 +133,7 @@ enum stick_news stick_reader_look(struct stick_reader *reader, uint32_t root_ver
 {
 	*count = 0;
 	if (read_stamp(reader) < 0) {
-		close_files(reader); /* or it could not be unmounted */
+		close_files(reader); /* open files would prevent unmounting */
 		buffer_clear(&reader->stamp);
 		return STICK_GONE;
 	}

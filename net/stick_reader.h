@@ -1,6 +1,6 @@
-/* What is read of a stick, for net/stick.c. Every call may wait for the device, for good where it
- * hangs, so they are for a thread of their own. A stick may hold anything: only regular files are
- * opened, and none through a link, whatever component of its path it is. */
+/* Reads from a mounted stick, for net/stick.c. Every call may block on the device (forever, if it
+ * hangs), so calls belong on a separate thread. A stick may contain anything: only regular files
+ * are opened, and never through a link in any component of the path. */
 #ifndef GOPURA_NET_STICK_READER_H
 #define GOPURA_NET_STICK_READER_H
 
@@ -8,48 +8,50 @@
 #include "format/message.h"
 
 enum {
-	STICK_ROOTS_MAX = 16, /* in one look */
+	STICK_ROOTS_MAX = 16, /* per look */
 	STICK_FILES_MAX = STICK_ROOTS_MAX + 2,
 };
 
 struct stick_release {
-	struct hash root; /* zero: none */
+	struct hash root; /* zero: unused */
 	struct locator locator;
-	bool readable; /* else there is none, or it is damaged */
+	bool readable; /* false: the locator is missing or damaged */
 };
 
 struct stick_reader {
 	const char *folder;  /* owned */
-	const char *below;   /* in it lies the release: "" or "release/" */
-	struct buffer stamp; /* timestamp.json as it was told; empty: no stick */
-	struct buffer file;  /* read last */
+	const char *below;   /* subfolder of the release: "" or "release/" */
+	struct buffer stamp; /* timestamp.json as last reported; empty: no stick */
+	struct buffer file;  /* the file that was read last */
 	struct stick_release releases[MESSAGE_RELEASES_MAX];
-	size_t next_release; /* to be overwritten */
-	struct hash pack;    /* that is open */
+	size_t next_release; /* slot to be overwritten next */
+	struct hash pack;    /* the pack that is open */
 	int pack_fd;         /* -1: none */
 };
 
+/* Result of stick_reader_look: nothing changed, no stick, or a new or changed stick. */
 enum stick_news { STICK_AS_BEFORE, STICK_GONE, STICK_CAME };
 
 struct stick_file {
 	enum meta_role role;
-	uint32_t version; /* of META_ROOT */
+	uint32_t version; /* only for META_ROOT */
 	struct buffer bytes;
 };
 
-/* -ENOMEM. */
+/* folder is copied. -ENOMEM; even then the reader must be finished. */
 must_check int stick_reader_init(struct stick_reader *reader, const char *folder);
-void stick_reader_finish(struct stick_reader *reader); /* zeroed is fine */
+void stick_reader_finish(struct stick_reader *reader); /* A zeroed struct is fine. */
 
-/* From now on all is news. */
+/* Makes the next look report everything again. */
 void stick_reader_forget(struct stick_reader *reader);
-/* STICK_CAME: files has what is to be told, in this order, owned by the caller; the roots are those
- * after root_version. */
+/* Looks for a stick. On STICK_CAME, files[0 .. *count) holds what to report, in this order; the
+ * caller owns their buffers. Roots are those after root_version. */
 enum stick_news stick_reader_look(struct stick_reader *reader, uint32_t root_version,
 				  struct stick_file files[STICK_FILES_MAX], size_t *count);
 
-/* The bytes of a want, where the locator of one of these releases says. -ENOENT: not there.
- * -EBADMSG: there, but they are not of its hash. */
+/* Reads a wanted object into *out, at the place given by the locator of one of these releases
+ * (tried in order). -ENOENT: it is not there. -EBADMSG: it is there, but the bytes do not match the
+ * hash. */
 must_check int stick_reader_get(struct stick_reader *reader, const struct hash *roots, size_t count,
 				const struct message_want *want, struct buffer *out);
 
