@@ -1,3 +1,6 @@
+/* Reads and writes a GPT: enlarges the last partition and replaces the GUIDs of the image. The
+ * entries alternate between two places, so that a power cut never leaves a half-written table. */
+
 #include "system/disk_table.h"
 
 #include <errno.h>
@@ -9,8 +12,8 @@
 
 enum {
 	SECTOR = 512,
-	ALIGN = 2048, /* sectors: a MiB, as partitions are laid */
-	/* The header, UEFI 2.10, 5.3.2 */
+	ALIGN = 2048, /* in sectors: 1 MiB, the usual partition alignment */
+	/* Offsets in the header, UEFI 2.10, section 5.3.2 */
 	HEADER_BYTES = 92,
 	HEADER_CRC = 16,
 	HEADER_OWN = 24,
@@ -22,23 +25,24 @@ enum {
 	HEADER_ENTRY_COUNT = 80,
 	HEADER_ENTRY_BYTES = 84,
 	HEADER_ENTRIES_CRC = 88,
-	/* The entries */
+	/* The partition entries, and the offsets in one entry */
 	ENTRY_COUNT = 128,
 	ENTRY_BYTES = 128,
 	ENTRY_IDENTITY = 16,
 	ENTRY_FIRST = 32,
 	ENTRY_LAST = 40,
 	ENTRY_NAME = 56,
-	NAME_MAX = 36, /* UTF-16 */
+	NAME_MAX = 36, /* UTF-16 code units */
 	ENTRIES_BYTES = ENTRY_COUNT * ENTRY_BYTES,
 	ENTRIES_SECTORS = ENTRIES_BYTES / SECTOR,
-	PRIMARY = 1, /* the sector of the header */
+	PRIMARY = 1, /* sector of the primary header */
+	/* first sector of each of the two places for the entries */
 	PLACE_ONE = 2,
 	PLACE_TWO = PLACE_ONE + ENTRIES_SECTORS,
-	IDENTITY_BYTES = 16, /* a GUID, mixed-endian */
+	IDENTITY_BYTES = 16, /* a GUID in mixed-endian form */
 };
 
-/* The disk's identity as image/assemble.sh writes it: 6F707572-6100-4000-8000-0000000000FF. */
+/* The disk GUID that image/assemble.sh writes: 6F707572-6100-4000-8000-0000000000FF. */
 static const uint8_t image_identity[IDENTITY_BYTES] = { 0x72, 0x75, 0x70, 0x6f, 0x00, 0x61,
 							0x00, 0x40, 0x80, 0x00, 0x00, 0x00,
 							0x00, 0x00, 0x00, 0xff };
@@ -63,7 +67,7 @@ static void put(uint8_t *at, unsigned size, uint64_t value)
 		at[i] = (uint8_t)value;
 }
 
-/* CRC-32 as UEFI asks for it (IEEE 802.3, reflected). */
+/* CRC-32 as UEFI requires (IEEE 802.3, reflected). */
 static uint32_t crc32_of(const uint8_t *data, size_t size)
 {
 	uint32_t crc = 0xffffffff;
@@ -134,8 +138,8 @@ static bool has_name(const uint8_t *entry, const char *name)
 	return false;
 }
 
-/* -ENOTSUP where one lies behind it, or where there is no room for a second place of the entries.
- */
+/* Finds the entry with this name. -ENOTSUP: another partition lies behind it, or there is no room
+ * for the second place of the entries. */
 static int find(struct table *table, const char *name, uint8_t **out)
 {
 	uint8_t *found = NULL, *last = NULL;
@@ -157,6 +161,8 @@ static int find(struct table *table, const char *name, uint8_t **out)
 	return !found ? -ENOENT : found == last ? 0 : -ENOTSUP;
 }
 
+/* Completes a header: its own sector, that of the other header, the place of the entries, and the
+ * CRC. */
 static void seal(uint8_t header[SECTOR], uint64_t own, uint64_t other, uint64_t entries_at)
 {
 	put(header + HEADER_OWN, 8, own);
@@ -165,6 +171,7 @@ static void seal(uint8_t header[SECTOR], uint64_t own, uint64_t other, uint64_t 
 	put(header + HEADER_CRC, 4, header_crc(header));
 }
 
+/* Writes the entries and the backup header, syncs, and then replaces the primary header. */
 static int write_table(struct table *table, int fd, uint64_t sectors)
 {
 	uint64_t now_at = get(table->header + HEADER_ENTRIES, 8), copy = sectors - 1;
@@ -218,7 +225,7 @@ int disk_table_grow(int fd, uint64_t disk_bytes, const char *name, struct disk_p
 	return rc;
 }
 
-/* A random GUID, version 4. */
+/* Generates a random GUID, version 4. */
 static int new_identity(uint8_t out[IDENTITY_BYTES])
 {
 	if (getrandom(out, IDENTITY_BYTES, 0) != IDENTITY_BYTES)
@@ -228,9 +235,8 @@ static int new_identity(uint8_t out[IDENTITY_BYTES])
 	return 0;
 }
 
-/* Whether both places of the entries, and the copy at the disk's end, lie outside of every
- * partition.
- */
+/* Returns whether both places of the entries, and the backup table at the end of the disk, lie
+ * outside every partition. */
 static bool has_room(const struct table *table, uint64_t sectors)
 {
 	for (unsigned i = 0; i < ENTRY_COUNT; i++) {

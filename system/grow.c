@@ -1,3 +1,6 @@
+/* Enlarges the data partition at boot: first the partition table, then the kernel's view of the
+ * partition, then the mounted ext4 file system. */
+
 #include "system/grow.h"
 
 #include <errno.h>
@@ -12,12 +15,13 @@
 #include "base/log.h"
 #include "system/disk_table.h"
 
-/* Of the kernel's fs/ext4/ext4.h, which no header of user space has. */
+/* From the kernel's fs/ext4/ext4.h; no user-space header defines it. */
 #define EXT4_RESIZE _IOW('f', 16, uint64_t)
 
 enum { MIB = 1 << 20 };
 
-/* The kernel reads a table anew only where nothing of the disk is mounted: it is told instead. */
+/* Tells the kernel the new size. It rereads a partition table only if nothing on the disk is
+ * mounted. */
 static int tell_kernel(int fd, const struct disk_part *part)
 {
 	struct blkpg_partition partition = {
@@ -34,7 +38,7 @@ static int tell_kernel(int fd, const struct disk_part *part)
 	return ioctl(fd, BLKPG, &argument) < 0 ? -errno : 0;
 }
 
-/* A terminal that keeps the identity of the image starts all the same. */
+/* Renews the GUIDs. A failure is only logged: the terminal also starts with those of the image. */
 static void renew_table(int fd, uint64_t disk_bytes, const char *disk)
 {
 	bool renewed;

@@ -1,12 +1,13 @@
-/* The data partition takes the whole card: table, kernel and file system of it. */
+/* Lets the data partition use the whole disk: partition table, kernel and file system. */
 #ifndef GOPURA_SYSTEM_GROW_H
 #define GOPURA_SYSTEM_GROW_H
 
 #include "base/compiler.h"
 
-/* The partition with this name, the last on the disk, and its ext4 that is mounted at folder,
- * become as large as the disk allows. Does nothing where they are; may be cut off at any
- * instruction and called again. Says what was done or why not; negative errno. */
+/* Enlarges the last partition of `disk`, found by its name, and the ext4 file system on it, which
+ * is mounted at `folder`, as far as the disk allows. Does nothing if both are large enough. It may
+ * be interrupted at any instruction and called again. Logs what was done, or why not. Returns 0 or
+ * a negative errno. */
 must_check int grow(const char *disk, const char *name, const char *folder);
 
 #endif

@@ -1,3 +1,6 @@
+/* Parses weekly opening hours into a bitmap with one bit per minute, and finds the next time that
+ * they open or close. */
+
 #include "system/hours.h"
 
 #include <ctype.h>
@@ -28,7 +31,7 @@ static bool read_day(const char **text, int *day)
 	return false;
 }
 
-/* "Mo" or "Sa-Mo"; one bit a day. */
+/* Reads "Mo" or "Sa-Mo". Sets one bit per day; Sunday is bit 0. */
 static bool read_days(const char **text, unsigned *days)
 {
 	int first, last;
@@ -48,7 +51,7 @@ static bool read_days(const char **text, unsigned *days)
 	}
 }
 
-/* A time of day as HH:MM or H:MM, 00:00 to 24:00, in minutes; *text moves behind it. */
+/* Reads a time of day as HH:MM or H:MM, 00:00 to 24:00, into minutes. *text moves behind it. */
 static bool read_clock(const char **text, int *minutes)
 {
 	const char *at = *text;
@@ -71,6 +74,8 @@ static bool read_clock(const char **text, int *minutes)
 	return true;
 }
 
+/* Sets the minutes from `from` to `to` on each of the days. If `to` is not later, it is on the next
+ * day. */
 static void open_times(struct hours *hours, unsigned days, int from, int to)
 {
 	const int length = to > from ? to - from : to - from + DAY_MINUTES;
@@ -103,7 +108,7 @@ static bool read_times(const char **text, struct hours *hours, unsigned days)
 bool hours_parse(struct hours *out, const char *text)
 {
 	unsigned days = EVERY_DAY;
-	bool gathering = false; /* days that have no times yet */
+	bool gathering = false; /* days were read whose times have not come yet */
 
 	memset(out, 0, sizeof(*out));
 	for (;;) {
@@ -142,9 +147,9 @@ bool hours_open_at(const struct hours *hours, const struct tm *local)
 	return hours->open[minute / 8] >> minute % 8 & 1;
 }
 
-/* Minute by minute, each asked of the time zone: that is right on every day there is, and a week
- * of them takes under a millisecond. A week and a day, since one on which the clocks change may
- * hide what stands in an hour that is not there. */
+/* Tests every minute in the time zone. This is correct on every day, and a whole week takes less
+ * than a millisecond. It tests a week and a day, because opening hours may fall into the hour that
+ * is skipped when the clocks change. */
 int hours_change_min(const struct hours *hours, time_t now)
 {
 	struct tm local;

@@ -1,4 +1,5 @@
-/* gopura-setup: makes gopura.conf hold for the system, or tells what is wrong with it. */
+/* gopura-setup: parses the command line, then applies gopura.conf to the system, checks it, prints
+ * its checksum, or enlarges the data partition. */
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -77,7 +78,7 @@ static void usage(const char *wrong)
 	exit(2);
 }
 
-/* A name that is passed on to other programs, and could say more to them than a name. */
+/* Refuses file names that other programs could misread, because the names are passed on to them. */
 static void check_name(const char *name)
 {
 	for (const char *c = name; *c; c++)
@@ -124,7 +125,7 @@ static void take_option(struct command *command, int option)
 	case OPTION_HELP:
 		fputs(help, stdout);
 		exit(0);
-	default: /* getopt has said what is wrong */
+	default: /* getopt has printed the error */
 		usage("wrong options");
 	}
 }
@@ -155,7 +156,8 @@ static void parse(struct command *command, int argc, char **argv)
 		usage("--out is missing");
 }
 
-/* On a desk the terminal's profiles are not there unless somebody says where. */
+/* Checks one file. On a desk computer the board profiles are not installed, so they are only
+ * checked if --boards is given. */
 static int check(const struct command *command)
 {
 	static struct terminal terminal;

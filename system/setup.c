@@ -1,5 +1,4 @@
-/* Writes what gopura.conf means for the machine: a file for each program that takes something of
- * it. */
+/* Translates gopura.conf into one file for each program or unit that needs part of it. */
 #include "system/setup.h"
 
 #include <arpa/inet.h>
@@ -20,7 +19,7 @@
 
 enum { FILE_MAX = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
 
-/* ---- files: the first failure is kept, and what follows it does nothing */
+/* ---- files: the first failure is kept, and later writes do nothing */
 
 struct writing {
 	const struct setup *setup;
@@ -66,7 +65,7 @@ static void folder(struct writing *writing, const char *name, mode_t mode)
 		failed(writing, path, -errno);
 }
 
-/* What was put since the last file. */
+/* Writes the text collected since the last file. */
 static void finish_file(struct writing *writing, const char *name)
 {
 	char path[PATH_MAX];
@@ -80,7 +79,7 @@ static void finish_file(struct writing *writing, const char *name)
 	buffer_clear(&writing->text);
 }
 
-/* What an earlier gopura.conf said is said no more. */
+/* Deletes the files that an earlier gopura.conf produced. */
 static void empty_folder(struct writing *writing, const char *name)
 {
 	char path[PATH_MAX];
@@ -96,9 +95,9 @@ static void empty_folder(struct writing *writing, const char *name)
 		closedir(files);
 }
 
-/* ---- what the programs are started with */
+/* ---- options of the programs */
 
-/* May stand in a file of the service manager's, as one word and without an escape. */
+/* Returns whether the text may be written to a systemd file as one word without escapes. */
 static bool is_plain_word(const char *text)
 {
 	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -107,8 +106,9 @@ static bool is_plain_word(const char *text)
 	return text[strspn(text, plain)] == '\0';
 }
 
-/* The authority that gopura.conf names, copied: the stick that it came from may go. Its whole path,
- * which holds whatever folder a unit starts in, into out. False: there is none. */
+/* Copies the certificate authority named in gopura.conf, because the stick it came from may be
+ * removed. Writes its absolute path, which does not depend on a unit's working folder, to out.
+ * Returns false if there is none. */
 static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 {
 	const struct setup *setup = writing->setup;
@@ -129,7 +129,8 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 	buffer_finish(&file);
 	if (rc == 0 && !realpath(path, out))
 		rc = -errno;
-	/* Everything else of the set-up goes on: without it the fetcher trusts the system's. */
+	/* The rest of the set-up continues. Without the file the fetcher trusts the system's
+	 * authorities. */
 	if (rc < 0)
 		log_error("setup", "%s: %s", setup->terminal->ca, open_problem(rc));
 	else if (!is_plain_word(out))
@@ -137,7 +138,7 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 	return rc == 0 && is_plain_word(out);
 }
 
-/* Addresses that the fetcher's unit denies: of the terminal itself, and link-local ones. */
+/* Addresses that the fetcher's unit denies: loopback and link-local ones. */
 static bool is_denied(const char *host)
 {
 	struct in6_addr v6;
@@ -149,7 +150,7 @@ static bool is_denied(const char *host)
 	       (IN6_IS_ADDR_LOOPBACK(&v6) || IN6_IS_ADDR_LINKLOCAL(&v6));
 }
 
-/* A museum server that gopura.conf names by such an address may be reached all the same. */
+/* Allows a museum server that gopura.conf names by such an address. */
 static void write_fetch_address(struct writing *writing)
 {
 	const char *host = strstr(writing->setup->terminal->release_url, "://");
@@ -172,8 +173,7 @@ static void write_fetcher(struct writing *writing)
 	char authority[PATH_MAX];
 	const bool has_authority = copy_authority(writing, authority);
 
-	/* A release on the stick is read by the stick's own thread, not as if it were a server's.
-	 */
+	/* A release on the stick is read by the fetcher's stick thread, not treated as a server. */
 	if (t->release_url[0] && !terminal_url_is_of_stick(t->release_url))
 		put(writing, "RELEASE_URL=\"%s\"\n", t->release_url);
 	put(writing, "FETCH_OPTIONS=\"");
@@ -200,7 +200,7 @@ static void write_health(struct writing *writing)
 	finish_file(writing, "health-address");
 }
 
-/* What systemd-resolved tells who asks by multicast for web pages (DNS-SD). */
+/* The service that systemd-resolved announces to clients that search for web pages (DNS-SD). */
 static void write_announcement(struct writing *writing)
 {
 	const struct terminal *t = writing->setup->terminal;
@@ -223,7 +223,7 @@ static void put_servers(struct writing *writing, const char *name,
 		put(writing, "%s=%s\n", name, servers->names[i]);
 }
 
-/* What gopura.conf names takes the place of what the network offers. */
+/* Servers named in gopura.conf replace those that the network offers. */
 static void put_uses(struct writing *writing, const char *section, bool has_ntp)
 {
 	const struct terminal *t = writing->setup->terminal;
@@ -242,7 +242,8 @@ static void write_network(struct writing *writing, const char *file, const char 
 	char host[TERMINAL_NAME_BYTES];
 
 	terminal_host_name(t, host);
-	/* The mark is udev's (70-gopura-usb.rules): on the board, or allowed under [usb]. */
+	/* udev sets this property (70-gopura-usb.rules) for network cards on the board and for
+	 * those allowed under [usb]. */
 	put(writing,
 	    "[Match]\nType=%s\nProperty=GOPURA_NETWORK=yes\n\n[Link]\nRequiredForOnline=no\n\n"
 	    "[Network]\n",
@@ -287,7 +288,7 @@ void setup_wifi_name(const struct terminal *terminal, char out[SETUP_WIFI_NAME_B
 	snprintf(out + length, SETUP_WIFI_NAME_BYTES - length, ".%s", kind);
 }
 
-/* iwd's texts escape a backslash, and a space where it is the first. */
+/* iwd's text values escape every backslash, and a space at the beginning. */
 static void put_escaped(struct writing *writing, const char *text)
 {
 	if (*text == ' ') {
@@ -304,7 +305,7 @@ static void write_wifi(struct writing *writing)
 	char name[SETUP_WIFI_NAME_BYTES], path[sizeof("iwd/") + SETUP_WIFI_NAME_BYTES];
 	char network[PATH_MAX];
 
-	folder(writing, "iwd", 0700); /* passphrases are root's */
+	folder(writing, "iwd", 0700); /* only root may read passphrases */
 	empty_folder(writing, "iwd");
 	if (!t->ssid[0]) {
 		path_of(writing, "network/20-wifi.network", network);
@@ -330,7 +331,8 @@ static void write_wifi(struct writing *writing)
 	write_network(writing, "network/20-wifi.network", "wlan", WIFI_METRIC, t->is_static);
 }
 
-/* The address is the radio's where there is one: two cards with one address reach nobody. */
+/* If there is Wi-Fi, it gets the static address: with the same address on two cards neither would
+ * work. */
 static void write_networks(struct writing *writing)
 {
 	const struct terminal *t = writing->setup->terminal;
@@ -343,7 +345,7 @@ static void write_networks(struct writing *writing)
 
 /* ---- USB */
 
-/* For gopura-usb, which judges what is plugged in; empty: nothing but storage and touch. */
+/* For gopura-usb, which decides about plugged-in devices. Empty: only storage and touch. */
 static void write_usb(struct writing *writing)
 {
 	char words[TERMINAL_USB_WORDS_BYTES];
@@ -395,7 +397,8 @@ int setup_write(const struct setup *setup)
 
 	buffer_init(&writing.text, FILE_MAX);
 	folder(&writing, "", 0755);
-	write_faults(&writing); /* first: whatever fails then, they are told */
+	write_faults(
+		&writing); /* first, so that the faults are reported even if a later file fails */
 	write_fetcher(&writing);
 	write_health(&writing);
 	write_announcement(&writing);

@@ -1,3 +1,6 @@
+/* Reads gopura.conf: holds the table of its settings, checks them against each other, and looks for
+ * the files they name. */
+
 #include "system/terminal.h"
 
 #include <arpa/inet.h>
@@ -181,7 +184,7 @@ static const struct setting settings[] = {
 	  .set = terminal_set_usb },
 };
 
-/* ---- the whole */
+/* ---- checks across settings */
 
 static bool in_one_network(const char *a, const char *b, uint32_t bits)
 {
@@ -190,7 +193,7 @@ static bool in_one_network(const char *a, const char *b, uint32_t bits)
 
 	if (inet_pton(family, a, bytes[0]) != 1 || inet_pton(family, b, bytes[1]) != 1)
 		return false;
-	/* A router's own address of the cable it stands at does always. */
+	/* A router's link-local address is always reachable on its own cable. */
 	if (family == AF_INET6 && bytes[1][0] == 0xfe && bytes[1][1] == 0x80)
 		return true;
 	for (uint32_t i = 0; i < bits; i++)
@@ -204,7 +207,7 @@ static bool is_loopback(const char *address)
 	return strncmp(address, "127.", 4) == 0 || strcmp(address, "::1") == 0;
 }
 
-/* What is wrong between right lines. A line that was refused has been complained of already. */
+/* Reports contradictions between valid lines. Invalid lines have been reported already. */
 static void check_together(const struct terminal *t, const unsigned *lines, struct faults *faults)
 {
 	if (lines[AT_TRUST] && !lines[AT_URL])
@@ -264,7 +267,7 @@ int terminal_read_beside(struct buffer *out, const char *path, const char *name)
 	return buffer_read_beneath(out, folder, name);
 }
 
-/* A file that is named and cannot be read is as good as not named. */
+/* Checks that a named file can be read. If not, reports it and clears the name. */
 static void look_beside(const char *path, char *name, unsigned line, struct faults *faults)
 {
 	const char *slash = strrchr(path, '/'), *conf = slash ? slash + 1 : path;
@@ -287,7 +290,7 @@ static void look_beside(const char *path, char *name, unsigned line, struct faul
 	*name = '\0';
 }
 
-/* "generic, weak-arm" */
+/* Writes the names of all profiles as "generic, weak-arm". */
 static void list_profiles(const char *boards, char *out, size_t bytes)
 {
 	struct dirent **entries = NULL;
@@ -345,7 +348,8 @@ int terminal_read(struct terminal *out, const char *path, const char *boards, st
 	return rc == -ENOENT ? rc : 0;
 }
 
-/* With its length in front, so that what moves from one file to the next changes the checksum. */
+/* Hashes a file with its length in front, so that moving bytes from one file to the next changes
+ * the checksum. */
 static void sum_file(crypto_generichash_state *sum, const struct buffer *file)
 {
 	uint8_t length[8];

@@ -1,5 +1,5 @@
-/* gopura.conf: the one file that makes an appliance this museum's terminal (docs/terminal.md).
- * Every value is checked; who has a struct terminal need not doubt it. */
+/* gopura.conf: the one file that turns an appliance into this museum's terminal (docs/terminal.md).
+ * Every value is checked: code that gets a struct terminal can rely on it. */
 #ifndef GOPURA_SYSTEM_TERMINAL_H
 #define GOPURA_SYSTEM_TERMINAL_H
 
@@ -14,91 +14,97 @@
 #include "system/hours.h"
 
 enum { TERMINAL_SERVERS_MAX = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
-/* A file that gopura.conf names is no larger; all authorities of a system take a quarter of it. */
+/* Maximum size of a file that gopura.conf names. All certificate authorities of a system together
+ * take a quarter of it. */
 enum { TERMINAL_FILE_BYTES_MAX = 1 << 20 };
 
-/* Kinds of USB device that are taken up only where gopura.conf says so; storage and touch always
- * are. As bits of usb_allow. */
+/* Kinds of USB device that are used only if gopura.conf allows them; storage and touch always are.
+ * These are the bits of usb_allow. */
 enum terminal_usb {
 	TERMINAL_USB_KEYBOARD = 1,
-	TERMINAL_USB_NETWORK = 2, /* by cable */
+	TERMINAL_USB_NETWORK = 2, /* wired */
 	TERMINAL_USB_WIFI = 4,
 	TERMINAL_USB_PANEL = 8, /* DisplayLink */
 };
 
 struct terminal_servers {
-	char names[TERMINAL_SERVERS_MAX][254]; /* addresses; of time servers names too */
+	char names[TERMINAL_SERVERS_MAX][254]; /* addresses; time servers may also be names */
 	uint32_t count;
 };
 
-/* Strings are "" where the file says nothing. */
+/* A string is "" if the file does not set it. */
 struct terminal {
 	/* [terminal] */
 	char name[TERMINAL_NAME_BYTES]; /* UTF-8, as people call it */
-	char language[16];              /* such as km or pt-BR */
-	char time_zone[64];             /* of /usr/share/zoneinfo */
-	char board[32];                 /* a profile's name, without .ini */
+	char language[16];              /* for example km or pt-BR */
+	char time_zone[64];             /* relative to /usr/share/zoneinfo */
+	char board[32];                 /* name of a profile, without .ini */
 	/* [release] */
-	char release_url[TERMINAL_URL_BYTES];    /* https://, http:// or an absolute folder */
-	char trust[TERMINAL_NAME_BYTES];         /* file beside gopura.conf, no slashes */
-	char ca[TERMINAL_NAME_BYTES];            /* the same */
+	char release_url[TERMINAL_URL_BYTES]; /* https://, http:// or an absolute folder */
+	char trust[TERMINAL_NAME_BYTES]; /* name of a file beside gopura.conf, without slashes */
+	char ca[TERMINAL_NAME_BYTES];    /* the same */
 	char redirect_hosts[TERMINAL_URL_BYTES]; /* "cdn.example,cdn2.example:8443" */
-	uint32_t poll_s;                         /* 60 .. 86400; 0: not said */
-	struct daily download;                   /* of the local day; its ends equal: always */
-	uint32_t rate_limit_kib;                 /* a second; 0: none */
+	uint32_t poll_s;                         /* 60 .. 86400; 0: not set */
+	struct daily download;                   /* local time of day; both ends equal: always */
+	uint32_t rate_limit_kib;                 /* KiB per second; 0: no limit */
 	/* [panel] */
-	int width_px, height_px; /* 0: what the panel prefers */
-	int hz;                  /* whole; 0: any */
-	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board's profile says it */
-	struct hours hours;      /* always open where the file says nothing */
-	uint32_t wake_min;       /* a touch switches it on outside of hours; 0: it does not */
-	bool shift;              /* pixels move now and then; yes where the file says nothing */
+	int width_px, height_px; /* 0: the panel's preferred mode */
+	int hz;                  /* whole number; 0: any */
+	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board profile decides */
+	struct hours hours;      /* always open if the file does not set them */
+	uint32_t wake_min; /* minutes the panel stays on after a touch outside the hours; 0: it
+			      stays off */
+	bool shift;        /* pixels are shifted now and then; true if the file does not set it */
 	/* [network] */
-	bool is_static;                 /* address and prefix_bits hold; else by DHCP */
-	char address[INET6_ADDRSTRLEN]; /* without the prefix */
+	bool is_static;                 /* true: address and prefix_bits are valid; false: DHCP */
+	char address[INET6_ADDRSTRLEN]; /* without the prefix length */
 	uint32_t prefix_bits;
 	char gateway[INET6_ADDRSTRLEN];
 	struct terminal_servers dns, ntp;
 	/* [wifi] */
-	char ssid[33];       /* bytes that make UTF-8 */
+	char ssid[33];       /* valid UTF-8 */
 	char passphrase[65]; /* 8 to 63 printable ASCII characters, or 64 hexadecimal digits (a key)
 			      */
 	char country[3];     /* two capital letters */
 	/* [health] */
 	char listen_address[INET6_ADDRSTRLEN];
 	uint32_t listen_port;
-	bool mdns; /* the network is told of it */
+	bool mdns; /* announce the health page on the network */
 	/* [usb] */
-	uint32_t usb_allow; /* enum terminal_usb */
+	uint32_t usb_allow; /* bits of enum terminal_usb */
 	/* [visit] */
-	uint32_t idle_s; /* without a touch until a visitor is asked; 5 .. 3600 */
+	uint32_t idle_s; /* seconds without a touch before the visitor is asked; 5 .. 3600 */
 };
 
+/* The values that hold for everything the file does not set. */
 extern const struct terminal terminal_default;
 
-/* *out starts as terminal_default; what is right is set although other lines are wrong. */
+/* Parses text. *out starts as terminal_default; valid lines are applied even if others are wrong.
+ * Faults are added to *faults. */
 void terminal_parse(struct terminal *out, struct bytes text, struct faults *faults);
-/* Reads the file, looks beside it for the files that it names and in the folder `boards` (NULL: no
- * look) for the profile; a name without a file is at fault, and "" then. -ENOENT: there is no
- * gopura.conf at path; that is not among the faults. What cannot be read is one. */
+/* Reads the file at path, and looks for the files it names beside it and for the board profile in
+ * the folder `boards` (NULL: no check). A name without a readable file is reported and cleared.
+ * -ENOENT: there is no file at path; this is not added to the faults. A file that cannot be read is
+ * added to the faults, and the result is 0. */
 must_check int terminal_read(struct terminal *out, const char *path, const char *boards,
 			     struct faults *faults);
 
-/* A file that the gopura.conf at path names, into *out (cleared first); nothing else than a regular
- * file in the same folder is read. Errors: base/safe_open.h. */
+/* Reads a file named by the gopura.conf at `path` into *out (cleared first). Only a regular file in
+ * the same folder is read. Errors: base/safe_open.h. */
 must_check int terminal_read_beside(struct buffer *out, const char *path, const char *name);
 
-/* A checksum over the gopura.conf at path and the files that it names, as hexadecimal text: the
- * same for two that mean the same. A named file that cannot be read counts as empty. Errors:
- * base/safe_open.h, of gopura.conf itself. */
+/* Writes a checksum over the gopura.conf at `path` and the files that it names, as hexadecimal
+ * text: equal contents give equal sums. A named file that cannot be read counts as empty. Errors:
+ * those of base/safe_open.h, for gopura.conf itself. */
 enum { TERMINAL_SUM_BYTES = 65 };
 must_check int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES]);
-/* The kinds of usb_allow as gopura.conf calls them, with spaces between; "" where there is none. */
+/* Writes the kinds in usb_allow as gopura.conf calls them, separated by spaces; "" if there are
+ * none. */
 enum { TERMINAL_USB_WORDS_BYTES = 64 };
 void terminal_usb_words(const struct terminal *terminal, char out[TERMINAL_USB_WORDS_BYTES]);
 
-/* The terminal's name as computers say it: letters, digits and dashes; "gopura" where nothing is
- * left of it. */
+/* Writes the terminal's name as a host name: lower-case letters, digits and dashes; "gopura" if
+ * nothing is left. */
 void terminal_host_name(const struct terminal *terminal, char out[TERMINAL_NAME_BYTES]);
 
 #endif

@@ -1,4 +1,4 @@
-/* What each value of gopura.conf may be. */
+/* The set function of each setting in gopura.conf: checks the text of a value and stores it. */
 #include "system/terminal_values.h"
 
 #include <arpa/inet.h>
@@ -19,7 +19,7 @@
 
 /* ---- texts */
 
-/* Into the field, if it has room. */
+/* Copies value into the field if it fits. */
 static bool put(char *to, size_t bytes, const char *value)
 {
 	const size_t length = strlen(value);
@@ -35,7 +35,8 @@ static bool only(const char *text, const char *chars)
 	return text[strspn(text, chars)] == '\0';
 }
 
-/* Tabs and, in UTF-8, U+0080 to U+009f; settings_read has refused the other ones. */
+/* Returns true for tabs and U+0080 to U+009F; settings_read has refused other control
+ * characters. */
 static bool has_control(const char *text)
 {
 	for (; *text; text++)
@@ -53,7 +54,7 @@ bool terminal_set_name(const struct setting *setting, void *target, const char *
 	return !has_control(value) && put(terminal->name, sizeof(terminal->name), value);
 }
 
-/* km, pt-BR, zh_Hant */
+/* For example km, pt-BR, zh_Hant. */
 bool terminal_set_language(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -104,7 +105,7 @@ bool terminal_url_is_of_stick(const char *url)
 	return false;
 }
 
-/* An address that stands in a command line and in a file of the service manager's. */
+/* The url is used in a command line and in a systemd file, so only these characters are allowed. */
 bool terminal_set_url(const struct setting *setting, void *target, const char *value)
 {
 	static const char signs[] = LETTERS BIG_LETTERS DIGITS "-._~:/?[]@!&()*+,;=%";
@@ -146,7 +147,7 @@ bool terminal_set_download(const struct setting *setting, void *target, const ch
 
 /* ---- the panel */
 
-/* 1920x1080, 1920x1080@60 */
+/* For example 1920x1080 or 1920x1080@60. */
 bool terminal_set_mode(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -212,7 +213,8 @@ static bool is_address(const char *text)
 	return inet_pton(AF_INET, text, &bytes) == 1 || inet_pton(AF_INET6, text, &bytes) == 1;
 }
 
-/* dhcp, or 192.168.1.20/24. Of a network of its own no host is the first or the last. */
+/* dhcp, or for example 192.168.1.20/24. The first and last address of an IPv4 network are refused,
+ * because they belong to no host. */
 bool terminal_set_address(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -295,7 +297,7 @@ bool terminal_set_ntp(const struct setting *setting, void *target, const char *v
 	return set_servers(&((struct terminal *)target)->ntp, value, is_host);
 }
 
-/* cdn.example, cdn.example:8443: as gopura-fetch takes them. */
+/* For example cdn.example or cdn.example:8443, as gopura-fetch accepts them. */
 static bool is_host_with_port(const char *text)
 {
 	char host[254];
@@ -314,7 +316,7 @@ static bool is_host_with_port(const char *text)
 	       strtoul(text + length + 1, NULL, 10) - 1 < 65535;
 }
 
-/* They stand in a command line: with commas alone between them. */
+/* The list is used in a command line, so hosts are separated only by commas. */
 bool terminal_set_redirect_hosts(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -353,7 +355,8 @@ bool terminal_set_passphrase(const struct setting *setting, void *target, const 
 	return put(terminal->passphrase, sizeof(terminal->passphrase), value);
 }
 
-/* As the time zones' list of countries has it; any two letters where the system has no list. */
+/* Checks the list of countries of the time zone package. Without that list any two letters are
+ * valid. */
 bool terminal_set_country(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -376,7 +379,7 @@ bool terminal_set_country(const struct setting *setting, void *target, const cha
 	return true;
 }
 
-/* 127.0.0.1:9100, [::1]:9100 */
+/* For example 127.0.0.1:9100 or [::1]:9100. */
 bool terminal_set_listen(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;
@@ -411,7 +414,7 @@ static const struct {
 	{ "panel", TERMINAL_USB_PANEL },
 };
 
-/* keyboard, network */
+/* For example "keyboard, network". */
 bool terminal_set_usb(const struct setting *setting, void *target, const char *value)
 {
 	uint32_t allow = 0;

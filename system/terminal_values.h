@@ -1,10 +1,12 @@
-/* How each value of gopura.conf reads: the set functions of its table (base/settings.h), each into
- * its field of a struct terminal. Private to system/terminal. */
+/* Set functions for the table of settings in terminal.c (base/settings.h). Each stores its value in
+ * one field of a struct terminal. Private to system/terminal. */
 #ifndef GOPURA_SYSTEM_TERMINAL_VALUES_H
 #define GOPURA_SYSTEM_TERMINAL_VALUES_H
 
 #include "system/terminal.h"
 
+/* Each function returns false if value is not valid; target, a struct terminal, is then unchanged.
+ * `setting` is the row of the table; some functions use its offset and range. */
 bool terminal_set_name(const struct setting *setting, void *target, const char *value);
 bool terminal_set_language(const struct setting *setting, void *target, const char *value);
 bool terminal_set_time_zone(const struct setting *setting, void *target, const char *value);
@@ -27,8 +29,8 @@ bool terminal_set_country(const struct setting *setting, void *target, const cha
 bool terminal_set_listen(const struct setting *setting, void *target, const char *value);
 bool terminal_set_usb(const struct setting *setting, void *target, const char *value);
 
-/* The url names the stick itself, or release/ on it: the two places where the fetcher looks there.
- */
+/* Returns whether url names the mounted stick itself or release/ on it. These are the two places
+ * where the fetcher looks for a release on a stick. */
 bool terminal_url_is_of_stick(const char *url);
 
 #endif
