@@ -1,3 +1,6 @@
+/* Keeps the kiosk's state as one record in an SQLite database and in a second copy, and recovers it
+ * after damage. */
+
 #include "storage/state.h"
 
 #include <errno.h>
@@ -14,6 +17,7 @@
 
 enum {
 	BROKEN_BYTES_MAX = 1 << 20,
+	/* the time floor is written only when it rises by at least this */
 	TIME_STEP_S = 3600,
 };
 
@@ -21,6 +25,7 @@ struct state {
 	char path[PATH_MAX];
 	sqlite3 *db; /* NULL: could not be opened; nothing is written */
 	struct record record;
+	/* as last written to disk */
 	int64_t written_time_floor_s;
 };
 
@@ -45,7 +50,7 @@ static void take_column(struct buffer *out, sqlite3_stmt *row, int column)
 		buffer_put(out, bytes, (size_t)size);
 }
 
-/* From four columns. */
+/* Reads a release from four consecutive columns. */
 static int take_release(struct kept_release *out, sqlite3_stmt *row, int column)
 {
 	if (sqlite3_column_bytes(row, column) != HASH_BYTES)
@@ -72,7 +77,7 @@ static int take_row(struct record *out, sqlite3_stmt *row)
 	return memcmp(check.bytes, sqlite3_column_blob(row, 12), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
 
-/* -ENOENT: a fresh database. */
+/* -ENOENT: the database is new and has no record. -EBADMSG: the record is damaged. */
 static int read_record(struct record *out, sqlite3 *db)
 {
 	sqlite3_stmt *select = NULL;
@@ -84,7 +89,7 @@ static int read_record(struct record *out, sqlite3 *db)
 		-1, &select, NULL);
 	int rc;
 
-	if (code == SQLITE_ERROR) /* no such column: not our table */
+	if (code == SQLITE_ERROR) /* no such column: the table is not ours */
 		return -EBADMSG;
 	if (code == SQLITE_OK)
 		code = sqlite3_step(select);
@@ -139,7 +144,8 @@ static void close_db(struct state *state)
 	state->db = NULL;
 }
 
-/* Opens the file and reads it. -ENOENT: fresh. -EBADMSG: damaged. */
+/* Opens the database and reads the record. -ENOENT: the database is new. -EBADMSG: it is
+ * damaged. */
 static int open_db(struct state *state)
 {
 	int rc = db_open(&state->db, state->path);
@@ -150,12 +156,14 @@ static int open_db(struct state *state)
 		rc = db_exec(state->db, schema);
 	if (rc == 0)
 		rc = read_record(&state->record, state->db);
-	/* Read-only though the file is not: its header claims a format of the future. */
+	/* SQLite opened it read-only although the file is writable: its header claims a newer
+	 * format. */
 	return rc == -EROFS && access(state->path, W_OK) == 0 ? -EBADMSG : rc;
 }
 
-/* ---- accidents */
+/* ---- damage and recovery */
 
+/* Raises each floor of record to that of other, if that is higher. */
 static void raise_floors(struct record *record, const struct record *other)
 {
 	if (other->sequence_floor > record->sequence_floor)
@@ -164,7 +172,7 @@ static void raise_floors(struct record *record, const struct record *other)
 		record_set_time_floor(record, record_time_floor_s(other));
 }
 
-/* Its number; 0: none, or no root file. */
+/* Returns the version of the trust root; 0 if there is none or if it is not a root file. */
 static uint32_t root_version(const struct record *record)
 {
 	struct trust_root root;
@@ -172,9 +180,9 @@ static uint32_t root_version(const struct record *record)
 	return trust_root_first(&root, buffer_bytes(&record->trust), NULL) == 0 ? root.version : 0;
 }
 
-/* An older database put back in place must not lower the floors. But a second copy of before the
- * trust root in use must not raise them: this root may have cleared them, and the power may have
- * gone between the two files. */
+/* An older database that was put back must not lower the floors, so the floors of the second copy
+ * count too. But a second copy with an older trust root must not raise them: the newer root may
+ * have cleared the floors, and the power may have failed between the two writes. */
 static void compare_with_second(struct state *state)
 {
 	struct record second;
@@ -186,7 +194,7 @@ static void compare_with_second(struct state *state)
 	record_finish(&second);
 }
 
-/* The database told nothing (rc says why): take the second copy, if that is whole. */
+/* The database could not be read (rc says why): uses the second copy, if that is intact. */
 static void recover(struct state *state, int rc)
 {
 	bool damaged = rc == -EBADMSG;
@@ -249,7 +257,7 @@ void state_destroy(struct state *state)
 	free(state);
 }
 
-/* ---- the calls */
+/* ---- public functions */
 
 static int tell_release(const struct kept_release *release, struct state_release *out)
 {
@@ -291,7 +299,7 @@ int64_t state_time_floor_s(const struct state *state)
 	return record_time_floor_s(&state->record);
 }
 
-/* Writes next, which is taken: it becomes the record, or is finished on failure. */
+/* Writes *next. It is taken: it becomes the record, or is freed on failure. */
 static int change(struct state *state, struct record *next)
 {
 	int rc = record_error(next);
@@ -305,13 +313,14 @@ static int change(struct state *state, struct record *next)
 	record_finish(&state->record);
 	state->record = *next;
 	state->written_time_floor_s = record_time_floor_s(next);
-	/* The database has it: a failure here costs only the second copy. */
+	/* The database has the record; a failure here costs only the second copy. */
 	if (record_write_second(&state->record, state->path) < 0)
 		log_warn("storage", "%s.second could not be written", state->path);
 	return 0;
 }
 
-/* To the back: what was there is finished, what comes to the front has no file yet. */
+/* The release in use becomes the previous one. The old previous one is freed, and record->release
+ * is left empty. */
 static void make_previous(struct record *record)
 {
 	buffer_finish(&record->previous.file);

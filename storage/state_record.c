@@ -1,3 +1,5 @@
+/* Encodes and decodes the state record, and reads and writes its second copy. */
+
 #include "storage/state_record.h"
 
 #include <errno.h>
@@ -31,7 +33,7 @@ int record_error(const struct record *record)
 
 int64_t record_time_floor_s(const struct record *record)
 {
-	/* The least number has no positive counterpart. */
+	/* INT64_MIN has no positive counterpart. */
 	return record->stored_time_floor_s < 0 && record->stored_time_floor_s != INT64_MIN
 		       ? -record->stored_time_floor_s
 		       : 0;
@@ -97,7 +99,7 @@ static void release_decode(struct kept_release *out, struct reader *reader)
 	get_sized(&out->file, reader);
 }
 
-/* -EBADMSG: not such a record, or changed since it was written. */
+/* -EBADMSG: not such a record, or it was changed after it was written. */
 static int record_decode(struct record *out, struct bytes file)
 {
 	struct bytes body = { file.data, file.size - HASH_BYTES };

@@ -1,15 +1,14 @@
-/* What the kiosk's state remembers, as one record; and its second copy, PATH.second. Private to the
- * state.
+/* The kiosk's state as one record, and its second copy PATH.second. Private to the state.
  *
- * The record, in memory all the time, stands twice on disk: as the row of a table whose columns a
- * person can read, with a hash over the encoded record; and encoded, with that hash behind it, in
- * PATH.second. The encoded form:
+ * The record is always in memory and is stored twice on disk: as a row of a table whose columns
+ * people can read, with a hash over the encoded record; and in encoded form, followed by that hash,
+ * in PATH.second. The encoded form:
  *
  *   "GSta"  u32 version(2)  u64 sequence floor  u64 time floor, negated
  *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json
  *   u32 tries  of the previous release: 16 bytes root ... release.json
  *
- * Version 1 ended before the tries; such a copy is read, as of a release that is proven. */
+ * Version 1 ended before the tries. Such a copy is still read; its release counts as proven. */
 #ifndef GOPURA_STORAGE_STATE_RECORD_H
 #define GOPURA_STORAGE_STATE_RECORD_H
 
@@ -25,32 +24,36 @@ struct kept_release {
 
 struct record {
 	uint64_t sequence_floor;
-	int64_t stored_time_floor_s; /* see record_time_floor_s */
+	int64_t stored_time_floor_s; /* negated; see record_time_floor_s */
 	struct kept_release release, previous;
 	struct buffer trust; /* empty: none yet */
-	uint32_t tries;      /* of release; 0: proven */
+	uint32_t tries;      /* tries of the release; 0: proven */
 };
 
+/* Makes an empty record. */
 void record_init(struct record *record);
+/* Frees the three files. */
 void record_finish(struct record *record);
-/* *out is as record_init leaves it, with copies of its own. */
+/* Initialises *out and copies everything, including the files. Check record_error afterwards. */
 void record_copy(struct record *out, const struct record *from);
-/* The floor from signed metadata, 0: none. On disk it is negative: earlier programs wrote what the
- * clock had said as a positive number, and a clock may have said anything. A positive one is
- * dropped here; and to an earlier program, which comes back with a slot of an earlier system, a
- * negative one is no floor, while the rest of the record stays good. */
+/* The time floor from signed metadata in seconds since 1970; 0: none. It is stored as a negative
+ * number. Earlier programs stored the clock's time as a positive number, and a clock may be wrong,
+ * so a positive one is ignored here. If the system falls back to an earlier slot, the earlier
+ * program ignores a negative floor and can still use the rest of the record. */
 int64_t record_time_floor_s(const struct record *record);
+/* Sets the time floor; floor_s >= 0. */
 void record_set_time_floor(struct record *record, int64_t floor_s);
-/* -EFBIG: a file did not fit. */
+/* Returns the error of the record's buffers: 0, -EFBIG if a file did not fit, or -ENOMEM. */
 must_check int record_error(const struct record *record);
-/* Of the encoded record. */
+/* Computes the hash of the encoded record. Returns a buffer's error, as record_error. */
 must_check int record_hash(struct hash *out, const struct record *record);
 
-/* PATH.second, path being the database's. -EBADMSG: not such a record, or changed since it was
- * written; *out is to be finished all the same. */
+/* Reads PATH.second, where path is that of the database. -EBADMSG: not such a record, or it was
+ * changed after it was written. *out must be finished in any case. */
 must_check int record_read_second(struct record *out, const char *path);
+/* Writes PATH.second; the old copy stays on failure. Returns 0 or a negative errno. */
 must_check int record_write_second(const struct record *record, const char *path);
-/* What power cuts left of it. */
+/* Deletes temporary files of PATH.second that a power cut left behind. */
 void record_drop_leftovers(const char *path);
 
 #endif
