@@ -1,3 +1,6 @@
+/* Reduces a page's HTML in one pass over the bytes: keeps text, tag names, src of img and href of
+ * a, and drops everything else. */
+
 #include "format/html_tags.h"
 
 #include <string.h>
@@ -10,7 +13,7 @@ struct scanner {
 	unsigned line;
 };
 
-/* Names and values are pieces of the page. */
+/* A name or a value: a part of the page, not copied. */
 struct piece {
 	const char *text;
 	size_t size;
@@ -59,7 +62,7 @@ static void skip_spaces(struct scanner *s)
 		step(s);
 }
 
-/* Behind the next mark, or to the end. */
+/* Skips past the next mark, or to the end. */
 static void skip_past(struct scanner *s, const char *mark)
 {
 	const size_t size = strlen(mark);
@@ -104,12 +107,13 @@ static struct piece read_value(struct scanner *s)
 	return value;
 }
 
-/* In a tag, at something that is neither white space nor its end. */
+/* Reads one attribute. The scanner stands in a tag, at a character that is neither white space nor
+ * the tag's end. */
 static void read_attribute(struct scanner *s, struct piece *name, struct piece *value)
 {
 	*name = (struct piece){ s->at, 0 };
 	*value = (struct piece){ s->at, 0 };
-	do /* the first may be anything: = too */
+	do /* the first character may be anything, even '=' */
 		s->at++;
 	while (s->at < s->end && !is_space(*s->at) && !strchr("/>=", *s->at));
 	name->size = (size_t)(s->at - name->text);
@@ -138,13 +142,13 @@ static void put_attribute(struct scanner *s, const char *name, struct piece valu
 
 /* ---- tags */
 
-/* The one attribute of a tag that is shown, or NULL. */
+/* The one attribute of this tag that is kept, or NULL. */
 static const char *wanted_attribute(struct piece name)
 {
 	return is(name, "img") ? "src" : is(name, "a") ? "href" : NULL;
 }
 
-/* To the tag's end; true: it ends with "/>". */
+/* Reads to the end of the tag. Returns true if it ends with "/>". */
 static bool read_attributes(struct scanner *s, const char *wanted, struct piece *kept)
 {
 	const unsigned line = s->line;
@@ -174,7 +178,7 @@ static bool read_attributes(struct scanner *s, const char *wanted, struct piece 
 	return is_empty;
 }
 
-/* What a script or style holds is no HTML: to its end tag. */
+/* Skips the contents of a script or style, which are not HTML, up to its end tag. */
 static void skip_raw(struct scanner *s, struct piece name)
 {
 	while (s->at < s->end) {

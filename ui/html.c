@@ -1,3 +1,5 @@
+/* Walks libxml2's tree of a page and turns elements and text into blocks. */
+
 #include "ui/html.h"
 
 #include <errno.h>
@@ -9,8 +11,8 @@
 #include "format/html_tags.h"
 #include "ui/html_parts.h"
 
-/* Lines are broken one paragraph at a time, which takes longer than in proportion to its length: a
- * quarter of a megabyte without a space took 20 s. Some pages of a book are enough for one. */
+/* The layout breaks lines one paragraph at a time, and its cost grows faster than the paragraph:
+ * 256 KiB without a space took 20 s. So a block holds at most a few book pages of text. */
 enum { DEPTH_MAX = 200, BLOCK_TEXT_BYTES_MAX = 8192 };
 
 /* ---- text ---- */
@@ -20,8 +22,8 @@ static bool is_space(unsigned char c)
 	return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f';
 }
 
-/* Ideographs, kana and their punctuation: three bytes from U+3000 to U+9FFF, or U+F900 to U+FFEF
- * full width. Between two of them a line end of the source is no space. */
+/* Ideographs, kana and their punctuation: three bytes, U+3000 to U+9FFF, or full-width forms in
+ * U+F900 to U+FFEF. A line break between two of them in the source is not a space. */
 static bool is_wide(const unsigned char *c, size_t left)
 {
 	return left >= 3 && ((c[0] >= 0xe3 && c[0] <= 0xe9) || c[0] == 0xef);
@@ -42,7 +44,8 @@ static void put_space(struct html_parser *p, const unsigned char *next, size_t l
 	p->space_had_newline = false;
 }
 
-/* To the next white space; of a word without an end a piece, of whole characters. */
+/* Returns the length of the word up to the next white space. A very long word is cut between
+ * characters. */
 static size_t word_bytes(const unsigned char *text, size_t left)
 {
 	size_t size = 0;
@@ -92,7 +95,7 @@ static void put_text(struct html_parser *p, const unsigned char *text,
 /* ---- elements ---- */
 
 enum role {
-	ROLE_INLINE, /* unknown ones too: their text counts */
+	ROLE_INLINE, /* also unknown elements: their text is kept */
 	ROLE_BLOCK,
 	ROLE_SKIP,
 	ROLE_BREAK,
@@ -189,7 +192,7 @@ static int add_link(struct html_parser *p, const xmlNode *node)
 	return link;
 }
 
-/* How many cells the row has, before they are walked. */
+/* Counts the cells of a row, before they are walked. */
 static uint32_t count_cells(const xmlNode *row)
 {
 	uint32_t cells = 0;
@@ -215,7 +218,7 @@ static void walk_row(struct html_parser *p, const xmlNode *node, struct html_inh
 
 	html_close_block(p);
 	first = p->html->block_count;
-	if (in.row > 0 || cells == 0) { /* a table in a cell: its text only */
+	if (in.row > 0 || cells == 0) { /* a table inside a cell: only its text is kept */
 		walk(p, node->children, &in, depth);
 		return;
 	}
@@ -331,7 +334,7 @@ static void walk(struct html_parser *p, const xmlNode *node, struct html_inherit
 	}
 }
 
-/* NULL: no memory, or nothing in it. */
+/* Parses the reduced page. NULL: no memory, or the page is empty. */
 static xmlDoc *read_tree(struct bytes source)
 {
 	struct buffer reduced;

@@ -1,3 +1,6 @@
+/* Builds the list of blocks: opens and closes them, appends text, and records spans of equal
+ * appearance. */
+
 #include "ui/html_parts.h"
 
 #include <errno.h>
@@ -24,7 +27,7 @@ char *html_copy(struct html_parser *p, const char *text)
 	return made;
 }
 
-/* Spans are in the order of the text: those of what was cut off are the last. */
+/* Spans are in text order, so those of removed text come last. */
 static void trim_spans(struct html_block *block, uint32_t size)
 {
 	while (block->span_count > 0 && block->spans[block->span_count - 1].start >= size)
