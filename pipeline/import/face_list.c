@@ -1,3 +1,6 @@
+/* Parses a list of face numbers and ranges into sorted ranges, and finds the triangles that come
+ * from these faces. */
+
 #include "pipeline/import/face_list.h"
 
 #include <ctype.h>
@@ -10,7 +13,7 @@
 
 enum { FILE_BYTES_MAX = 256 << 20, RANGES_FIRST = 64 };
 
-/* What is read, and where. */
+/* The text being read, and the position in it. */
 struct text {
 	const char *at, *name;
 	unsigned line;
@@ -18,7 +21,7 @@ struct text {
 	struct fault *fault;
 };
 
-/* Over spaces and comments. false: the end. */
+/* Skips white space and comments. Returns false at the end. */
 static bool next_word(struct text *text)
 {
 	for (;; text->at++) {
@@ -33,7 +36,7 @@ static bool next_word(struct text *text)
 	}
 }
 
-/* Of a word, as much as a message should show. */
+/* Returns how many bytes of a word a message should show. */
 static int shown(const char *word)
 {
 	const size_t size = strcspn(word, " \t\r\n#");
@@ -107,7 +110,8 @@ static int by_first(const void *a, const void *b)
 	return (left->first > right->first) - (left->first < right->first);
 }
 
-/* A face that is named twice is meant once. */
+/* Sorts the ranges and merges those that overlap or touch, so that a face named twice counts
+ * once. */
 static void join(struct face_list *list)
 {
 	uint32_t kept = 0;

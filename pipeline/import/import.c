@@ -1,3 +1,6 @@
+/* Imports one scan: detects the format, calls the reader, converts to metres with z up, repairs the
+ * mesh, and gives every vertex a colour. */
+
 #include "pipeline/import/import_parts.h"
 
 #include <ctype.h>
@@ -16,7 +19,7 @@
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };
 
-/* ---- which reader */
+/* ---- detecting the format */
 
 enum scan_format { SCAN_PLY, SCAN_STL, SCAN_OFF, SCAN_OBJ, SCAN_GLTF, SCAN_GLB, SCAN_UNKNOWN };
 
@@ -30,8 +33,8 @@ static bool has_extension(const char *path, const char *extension)
 	       strcasecmp(path + length - extension_length, extension) == 0;
 }
 
-/* By the file's first bytes where they say it, else by its name: OBJ and binary STL have no mark.
- */
+/* Detects the format by the first bytes if they are distinctive, otherwise by the file name: OBJ
+ * and binary STL have no signature. */
 static enum scan_format sniff(const char *path, const char *head, size_t size)
 {
 	static const struct {
@@ -60,7 +63,8 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	char head[64];
 	struct stat status;
 	ssize_t got = -1;
-	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* of a FIFO, too */
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY |
+				    O_CLOEXEC); /* O_NONBLOCK: do not wait if it is a FIFO */
 
 	if (fd < 0)
 		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
@@ -83,9 +87,9 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	return 0;
 }
 
-/* ---- from the file's axes, unit and colours to ours */
+/* ---- converting axes, unit and colours */
 
-/* Right-handed stays right-handed: only turns. */
+/* Rotates the file's up axis to z. Only rotations are used, so right-handed stays right-handed. */
 static void turn_up(const float from[3], enum import_axis up, double to[3])
 {
 	static const int axis[3][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 2, 0 } };
@@ -129,7 +133,8 @@ static void default_colour_of(const struct import_options *options, uint8_t rgb[
 	memcpy(rgb, given ? options->default_colour : sandstone, 3);
 }
 
-/* Before vertices are merged: colours that will not be shown must not part them. */
+/* Removes colours that will not be shown. This must happen before equal vertices are merged,
+ * because such colours would keep vertices apart. */
 static void drop_colours(struct mesh *mesh, const struct import_options *options)
 {
 	if (options->override_colour)
@@ -140,7 +145,7 @@ static void drop_colours(struct mesh *mesh, const struct import_options *options
 		memset(mesh->colours[i], 255, 3);
 }
 
-/* Afterwards every vertex has a colour. */
+/* Gives every vertex its final colour. */
 static int settle_colours(struct mesh *mesh, const struct import_options *options,
 			  const struct import_report *report)
 {
@@ -162,7 +167,8 @@ static int settle_colours(struct mesh *mesh, const struct import_options *option
 	return 0;
 }
 
-/* A float has 24 bits: far from the origin they are spent on the way there. */
+/* Warns about lost precision: a float has 24 significant bits, and far from the origin they are
+ * used up by the distance. */
 static void judge_box(struct mesh *mesh, const char *path, struct import_report *report)
 {
 	float far_m = 0, size_m = 0;
@@ -198,8 +204,7 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 				 " with a corner that is no number); export it again",
 				 path, report->repairs.degenerate_faces,
 				 report->repairs.lost_faces);
-	/* Those of assimp's corners are no fault of the scan: it parts every face from the others.
-	 */
+	/* assimp gives every face its own vertices, so merging them is no repair of the scan. */
 	if (!is_indexed)
 		report->repairs.merged_vertices = 0;
 	mesh->scan_count = 1;

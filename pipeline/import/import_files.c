@@ -1,5 +1,6 @@
-/* Files that a scan names, which whoever made the scan has chosen: opened one folder at a time from
- * the scan's own, so that neither "..", nor a link, nor an absolute name leads out of it. */
+/* Opens files that a scan names. Whoever made the scan chose these names, so they are opened one
+ * folder at a time from the scan's own folder: neither "..", nor a link, nor an absolute path leads
+ * out of it. */
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -43,8 +44,8 @@ const char *import_files_why(int rc)
 	}
 }
 
-/* Neither absolute, nor with "..", nor hidden: settings and secrets lie in folders whose names
- * begin with a dot. */
+/* Returns whether the name stays below the folder: not absolute, no "..", and nothing hidden,
+ * because settings and secrets lie in folders whose names begin with a dot. */
 static bool stays_below(const char *name)
 {
 	if (name[0] == '/')
@@ -60,7 +61,7 @@ static bool stays_below(const char *name)
 	return true;
 }
 
-/* Why the last call failed on name: a link says so in its own way. */
+/* Returns the error of the last call on name, or -ELOOP if name is a link. */
 static int failed(int folder, const char *name)
 {
 	int rc = -errno;
@@ -71,7 +72,8 @@ static int failed(int folder, const char *name)
 	return rc;
 }
 
-/* A FIFO would wait, a device may act when it is opened: looked at first, and once more after. */
+/* Opens a regular file only. A FIFO would block, and opening a device may trigger an action, so the
+ * type is checked before and after opening. */
 static int open_regular(int folder, const char *name)
 {
 	struct stat status;
@@ -95,7 +97,7 @@ static int open_regular(int folder, const char *name)
 	return fd;
 }
 
-/* The folder of that name in the folder at, which is closed. */
+/* Opens the folder `name` in the folder `at`. at is closed. */
 static int step_into(int at, const char *name, size_t length)
 {
 	char part[NAME_MAX + 1];
@@ -112,7 +114,7 @@ static int step_into(int at, const char *name, size_t length)
 	return next;
 }
 
-/* name stays below: see above. */
+/* Opens a file below the folder. The name must satisfy stays_below. */
 static int open_below(int folder, const char *name)
 {
 	int at = fcntl(folder, F_DUPFD_CLOEXEC, 0);
@@ -148,7 +150,7 @@ int import_files_open_at(int folder_fd, const char *name)
 		if (*c == '\\')
 			*c = '/';
 	if (strchr(clean, ':'))
-		rc = -ENOENT; /* C:/... and http://... are no files of this machine */
+		rc = -ENOENT; /* C:/... and http://... are not files on this machine */
 	else
 		rc = stays_below(clean) ? open_below(folder_fd, clean) : -EXDEV;
 	if (rc >= 0)

@@ -1,5 +1,5 @@
-/* OBJ, STL, OFF and glTF by assimp, in a child process. What assimp gives is not believed either:
- * every index is checked. */
+/* Reads OBJ, STL, OFF and glTF with assimp in a sandboxed child process. assimp's output is not
+ * trusted either: every index is checked. */
 #include "pipeline/import/import_parts.h"
 
 #include <errno.h>
@@ -20,33 +20,34 @@
 #include "pipeline/import/mesh_file.h"
 #include "pipeline/import/sandbox.h"
 
-/* MAXLEN is assimp's: what a name can hold. */
+/* MAXLEN is defined by assimp: the size of a name. */
 enum { NODE_DEPTH_MAX = 256 };
 
 static const struct hash no_key;
 
-/* In shared memory; the child reads the first part and fills the second. */
+/* In shared memory. The child reads path and format, and fills in report; the mesh goes to
+ * result_fd. */
 struct job {
-	char path[PATH_MAX]; /* with the format's own extension: by that assimp chooses its reader
-			      */
+	char path[PATH_MAX]; /* ends with the format's own extension, by which assimp chooses its
+				reader */
 	struct import_foreign_format format;
-	int result_fd; /* the mesh, as a mesh file */
+	int result_fd; /* receives the mesh as a mesh file */
 	struct import_report report;
 };
 
-/* ---- in the child: an assimp scene into a mesh */
+/* ---- in the child: converting an assimp scene into a mesh */
 
 struct builder {
 	const struct aiScene *scene;
 	struct job *job;
 	struct fault *fault;
 	struct mesh mesh;
-	uint64_t vertices, triangles; /* of all instances, counted first */
-	uint64_t skipped;             /* points and lines */
+	uint64_t vertices, triangles; /* sums over all instances, counted in the first pass */
+	uint64_t skipped;             /* points and lines that were skipped */
 	bool has_colours, has_textures;
 };
 
-/* sRGB transfer function, IEC 61966-2-1. */
+/* Converts a colour to a byte; linear ones with the sRGB transfer function, IEC 61966-2-1. */
 static uint8_t colour_byte(float value, bool is_linear)
 {
 	if (!(value > 0))
@@ -59,7 +60,7 @@ static uint8_t colour_byte(float value, bool is_linear)
 	return (uint8_t)(value * 255 + 0.5f);
 }
 
-/* Name of a material's picture; false: it has none. */
+/* Gets the file name of a material's picture. Returns false if it has none. */
 static bool picture_of(const struct aiMaterial *material, char name[MAXLEN])
 {
 	static const enum aiTextureType types[] = { aiTextureType_BASE_COLOR,
@@ -75,7 +76,8 @@ static bool picture_of(const struct aiMaterial *material, char name[MAXLEN])
 	return false;
 }
 
-/* False: it has none worth the name (assimp's own default, or the formats' default, white). */
+/* Gets a material's plain colour. Returns false if it is only a default (that of assimp, or white,
+ * that of the formats). */
 static bool plain_colour_of(const struct aiMaterial *material, struct import_foreign_format format,
 			    uint8_t rgb[3])
 {
@@ -120,7 +122,7 @@ static int count_mesh(struct builder *builder, uint32_t index)
 	return 0;
 }
 
-/* "*3" is the fourth picture that lies in the file; NULL: name is a file's. */
+/* Finds an embedded picture: "*3" is the fourth one in the scan. NULL: name is that of a file. */
 static const struct aiTexture *embedded_texture(const struct aiScene *scene, const char *name)
 {
 	char *end;
@@ -178,7 +180,7 @@ static int load_texture(struct builder *builder, const struct aiMaterial *materi
 	return import_texture(out, &files, name, plain, &builder->job->report);
 }
 
-/* One texture a material, pictures and plain colours alike. */
+/* Loads one texture per material; a plain colour becomes a texture of one pixel. */
 static int load_textures(struct builder *builder)
 {
 	uint32_t count = builder->scene->mNumMaterials;
@@ -247,7 +249,8 @@ static void add_vertices(struct builder *builder, const struct aiMesh *from,
 	}
 }
 
-/* A mirrored instance turns its faces inside out; turned back here. */
+/* Adds one instance. A mirrored instance would turn its faces inside out, so their corners are
+ * reversed. */
 static int add_mesh(struct builder *builder, uint32_t index, const struct aiMatrix4x4 *place)
 {
 	const struct aiMesh *from = builder->scene->mMeshes[index];
@@ -282,7 +285,7 @@ static int add_mesh(struct builder *builder, uint32_t index, const struct aiMatr
 	return 0;
 }
 
-/* Twice over the nodes: first count, then build. */
+/* Walks the nodes. It runs twice: the first pass counts, the second builds. */
 static int walk(struct builder *builder, const struct aiNode *node,
 		const struct aiMatrix4x4 *parent, int depth, bool build)
 {
@@ -349,15 +352,15 @@ static int read_scene(void *shared, struct fault *fault)
 		rc = mesh_file_write(job->result_fd, &builder.mesh, no_key);
 	if (rc < 0)
 		fault_set(fault, rc, "%s: %s", job->path, strerror(-rc));
-	return rc; /* the process ends, and everything with it */
+	return rc; /* the process ends now and releases everything */
 }
 
 /* ---- in the parent */
 
-/* What the child may have: the scan, and what lies below its folder. The job is not asked, once
- * foreign code has run. */
+/* What the child may open: the scan, and files below its folder. The shared job is not consulted
+ * for this, because foreign code may have changed it. */
 struct parent {
-	const char *path; /* borrowed, as given */
+	const char *path; /* borrowed; as given */
 	char seen_path[PATH_MAX];
 	int scan_fd, folder_fd, result_fd;
 };
@@ -373,7 +376,7 @@ static int open_for_child(void *data, const char *name)
 	return fd < 0 ? -errno : fd;
 }
 
-/* The path, where its extension is another or none with the format's behind it. */
+/* Copies the path, and appends the format's extension if it has another one or none. */
 static int make_seen_path(char seen[PATH_MAX], const char *path, const char *extension)
 {
 	size_t length = strlen(path), extension_length = strlen(extension);
@@ -426,7 +429,7 @@ static void parent_finish(struct parent *parent)
 static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 		   const struct import_options *options, uint64_t file_bytes, struct fault *fault)
 {
-	/* Two hundred times what a sound file of that size takes on an idle machine. */
+	/* By default about 200 times what an intact file of that size takes on an idle machine. */
 	const struct sandbox_options limits = {
 		.timeout_s = options->timeout_s ? options->timeout_s
 						: (uint32_t)(6 + (file_bytes >> 18)),
@@ -449,10 +452,11 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 	return 0;
 }
 
-/* Only what a child fills, and no string of it unended. */
+/* Copies only what the child fills in. The child is not trusted: a string may lack its end. */
 static void take_report(struct import_report *report, const struct import_report *told)
 {
-	report->had_colours = *(const uint8_t *)&told->had_colours != 0; /* any byte may be there */
+	report->had_colours =
+		*(const uint8_t *)&told->had_colours != 0; /* the byte may have any value */
 	report->textures = told->textures;
 	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
 }

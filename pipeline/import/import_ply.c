@@ -1,3 +1,6 @@
+/* Reads a PLY scan: collects the vertices and triangles of the streaming reader into a mesh, and
+ * loads its textures. */
+
 #include "pipeline/import/import_parts.h"
 
 #include <errno.h>
@@ -9,17 +12,18 @@
 #include "base/progress.h"
 #include "pipeline/import/ply.h"
 
-/* Collects what the reader gives. */
+/* Collects what the PLY reader delivers. */
 struct collector {
 	const struct ply_summary *summary;
 	struct mesh mesh;
-	float (*corner_uvs)[3][2]; /* of each triangle, where the file has them; owned */
+	float (*corner_uvs)[3][2]; /* of each triangle's corners, if the file has them; owned */
 	size_t triangle_capacity;
 	const struct ply *ply;
-	struct progress *progress; /* in KiB of the file */
+	struct progress *progress; /* counts KiB of the file */
 	uint64_t shown_kib;
 };
 
+/* progress is updated once per so many items */
 enum { ITEMS_PER_LOOK = 1 << 14 };
 
 static void show_progress(struct collector *collector, uint32_t items)
@@ -49,7 +53,7 @@ static int take_vertex(void *data, const struct ply_vertex *vertex)
 	return 0;
 }
 
-/* Polygons are fans: there may be more triangles than the header counts faces. */
+/* Polygons become fans, so there may be more triangles than faces in the header. */
 static int grow_triangles(struct collector *collector)
 {
 	struct mesh *mesh = &collector->mesh;
@@ -108,7 +112,7 @@ static int take_triangle(void *data, const struct ply_triangle *triangle)
 	return 0;
 }
 
-/* The header was judged against the file's length, so its counts can be believed. */
+/* The header's counts were checked against the file's length, so they are safe to allocate. */
 static int allocate(struct collector *collector)
 {
 	const struct ply_summary *summary = collector->summary;
@@ -136,7 +140,7 @@ static int allocate(struct collector *collector)
 	return 0;
 }
 
-/* Every corner becomes a vertex of its own; the repair merges what is equal again. */
+/* Gives every corner its own vertex; the repair merges equal ones again. */
 static int split_corners(struct collector *collector)
 {
 	struct mesh *mesh = &collector->mesh;

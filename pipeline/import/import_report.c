@@ -1,3 +1,5 @@
+/* Prints the import report as text. */
+
 #include "pipeline/import/import.h"
 
 #include <inttypes.h>

@@ -1,5 +1,5 @@
-/* assimp in the sandbox: it reads through our own file functions, which ask the parent for every
- * file (pipeline/import/sandbox.h). */
+/* Runs assimp inside the sandbox. It reads through our own file functions, which ask the parent
+ * process for every file (pipeline/import/sandbox.h). */
 #include <errno.h>
 #include <limits.h>
 #include <stdint.h>
@@ -17,18 +17,18 @@
 #include "pipeline/import/sandbox.h"
 
 struct file {
-	struct aiFile functions; /* first: assimp gives back its address */
+	struct aiFile functions; /* must be first: assimp passes its address back */
 	int fd;
 	uint64_t at, size;
 };
 
 struct files {
-	struct aiFileIO functions; /* first, as above */
+	struct aiFileIO functions; /* must be first, as above */
 	const char *seen_path;
-	size_t folder_bytes; /* of seen_path, the slash included */
-	int refused;         /* why the first file was not given; 0: none was refused */
+	size_t folder_bytes; /* length of the folder in seen_path, with the slash */
+	int refused;         /* why the first refused file was refused; 0: none was */
 	char refused_name[256];
-	char missing[PATH_MAX]; /* path of the file that was looked for last, and was not there */
+	char missing[PATH_MAX]; /* path of the last file that was not found */
 };
 
 /* ---- one file */
@@ -71,7 +71,7 @@ static size_t file_size(struct aiFile *handle)
 	return (size_t)((struct file *)handle)->size;
 }
 
-/* offset is signed in all but its type. */
+/* offset has an unsigned type, but negative values are passed in it. */
 static enum aiReturn file_seek(struct aiFile *handle, size_t offset, enum aiOrigin origin)
 {
 	struct file *file = (struct file *)handle;
@@ -100,9 +100,9 @@ static void with_slashes(char out[PATH_MAX], const char *folder, size_t folder_b
 			*c = '/';
 }
 
-/* What assimp cannot open it tries again under other names: with and without the scan's folder,
- * with other slashes, and with pieces of the path. Of a file that is missing these are no names
- * that the scan has. */
+/* If assimp cannot open a file, it tries other names: with and without the scan's folder, with
+ * other slashes, and with parts of the path. Those attempts are not names in the scan, so they are
+ * not reported. */
 static bool is_another_try(const struct files *files, const char *asked, const char *name)
 {
 	char clean[PATH_MAX];
@@ -126,7 +126,7 @@ static void note_failure(struct files *files, const char *asked, const char *nam
 	}
 }
 
-/* assimp puts the scan's folder before the names that it finds in the scan. */
+/* Returns the name as the scan gives it. assimp puts the scan's folder in front of such names. */
 static const char *as_named_in_the_scan(const struct files *files, const char *name)
 {
 	bool is_scan = strcmp(name, files->seen_path) == 0;

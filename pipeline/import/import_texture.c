@@ -1,3 +1,6 @@
+/* Decodes the pictures of a scan into textures. Unusable pictures are replaced by a plain colour
+ * with a warning. */
+
 #include "pipeline/import/import_parts.h"
 
 #include <errno.h>
@@ -77,7 +80,8 @@ static int read_picture(struct buffer *file, int fd)
 	return 0;
 }
 
-/* One name may stand many times in a scan, and a picture of a few bytes be very large. */
+/* Counts the decoded picture against the limit. A scan may name a picture many times, and a file of
+ * a few bytes may decode to a very large picture. */
 static int charge(struct mesh_texture *out, struct import_files *files, const char *name,
 		  const uint8_t plain[3], struct import_report *report)
 {
@@ -89,7 +93,7 @@ static int charge(struct mesh_texture *out, struct import_files *files, const ch
 		files->picture_bytes_left -= bytes;
 		return 0;
 	}
-	files->picture_bytes_left = 0; /* and none is decoded any more */
+	files->picture_bytes_left = 0; /* no further picture is decoded */
 	report->textures--;
 	free(out->rgb);
 	return tolerate(out, files->scan_path, name, too_much, plain, report);

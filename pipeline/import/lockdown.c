@@ -1,3 +1,6 @@
+/* Builds an empty Landlock ruleset, and a seccomp filter with a short list of allowed system
+ * calls. */
+
 #include "pipeline/import/lockdown.h"
 
 #include <errno.h>
@@ -12,7 +15,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* Both walls need it: no program that is started could have more rights than this process. */
+/* Landlock and seccomp require this: no program that is started can gain more rights than this
+ * process has. */
 static int give_up_privileges(void)
 {
 	return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) < 0 ? -EOPNOTSUPP : 0;
@@ -20,18 +24,18 @@ static int give_up_privileges(void)
 
 /* ---- Landlock */
 
-/* The rights of files that a version of Landlock knows: it refuses what it does not know. */
+/* Returns the file access rights that this version of Landlock knows; it refuses unknown ones. */
 static uint64_t rights_of_version(int version)
 {
-	/* First version: execute, write, read, list, remove and make of every kind. */
+	/* Version 1: execute, write, read, list, remove and create every kind of file. */
 	uint64_t rights = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;
 
 	if (version >= 2)
-		rights |= 1ull << 13; /* link or rename to another folder */
+		rights |= 1ull << 13; /* link or rename into another folder */
 	if (version >= 3)
 		rights |= 1ull << 14; /* truncate */
 	if (version >= 5)
-		rights |= 1ull << 15; /* ioctl of a device */
+		rights |= 1ull << 15; /* ioctl on a device */
 	return rights;
 }
 
@@ -45,7 +49,7 @@ int lockdown_files(void)
 
 	if (rc < 0)
 		return rc;
-	/* No rule allows anything: all that is named here is refused. */
+	/* No rule allows anything, so every right named here is denied. */
 	rules.handled_access_fs = rights_of_version((int)version);
 	fd = (int)syscall(SYS_landlock_create_ruleset, &rules, sizeof(rules), 0);
 	if (fd < 0)
@@ -68,8 +72,8 @@ int lockdown_files(void)
 
 enum { X32_CALLS = 0x40000000, STEPS_MAX = 256 };
 
-/* What a parser needs, and the sanitizers. None of these takes a name; recvmsg is how an opened
- * file is received (pipeline/import/sandbox.h). */
+/* The calls that a parser and the sanitizers need. None takes a file name; recvmsg receives files
+ * that the parent opened (pipeline/import/sandbox.h). */
 static const uint32_t allowed_calls[] = {
 	SYS_read,          SYS_readv,        SYS_pread64,         SYS_write,        SYS_writev,
 	SYS_pwrite64,      SYS_lseek,        SYS_close,           SYS_recvmsg,      SYS_brk,
@@ -100,7 +104,7 @@ static void answer(struct program *program, uint32_t verdict)
 	put(program, (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, verdict));
 }
 
-/* The low half of an argument; arguments of these calls that matter have no more. */
+/* Offset of the low half of an argument. The arguments checked here use only that half. */
 static size_t argument_at(int index)
 {
 	const size_t low = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 4 : 0;
@@ -108,7 +112,7 @@ static size_t argument_at(int index)
 	return offsetof(struct seccomp_data, args) + (size_t)index * 8 + low;
 }
 
-/* Memory may be had, but not to run code in. */
+/* Allows mapping memory, but not executable memory. */
 static void allow_unless_executable(struct program *program, uint32_t call)
 {
 	put(program, (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, call, 0, 4));
@@ -118,7 +122,7 @@ static void allow_unless_executable(struct program *program, uint32_t call)
 	answer(program, SECCOMP_RET_ALLOW);
 }
 
-/* abort() and the sanitizers signal themselves, and nobody else. */
+/* Allows signals to the own process only: abort() and the sanitizers need that. */
 static void allow_signals_to_itself(struct program *program)
 {
 	put(program, (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_tgkill, 0, 4));
@@ -136,7 +140,7 @@ static void write_program(struct program *program)
 	    (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, OUR_ARCHITECTURE, 1, 0));
 	answer(program, SECCOMP_RET_KILL_PROCESS);
 	load(program, offsetof(struct seccomp_data, nr));
-	/* The same calls under other numbers, on x86. */
+	/* On x86 the same calls exist under other numbers (x32). */
 	put(program, (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, X32_CALLS, 0, 1));
 	answer(program, SECCOMP_RET_KILL_PROCESS);
 	for (size_t i = 0; i < ARRAY_COUNT(allowed_calls); i++) {

@@ -1,3 +1,5 @@
+/* Frees, measures and joins meshes, and reads texture pixels. */
+
 #include "pipeline/import/mesh.h"
 
 #include <errno.h>
@@ -35,7 +37,8 @@ void mesh_box(const struct mesh *mesh, float low[3], float high[3])
 
 /* ---- appending */
 
-/* A new array: the first, then the second; where one is NULL its part is of fill bytes. */
+/* Returns a new array with the first and then the second. If one is NULL, its part is set to fill
+ * bytes. */
 static void *join(const void *first, size_t first_count, const void *second, size_t second_count,
 		  size_t item_bytes, int fill)
 {
@@ -63,7 +66,7 @@ static int copy_texture(struct mesh_texture *to, const struct mesh_texture *from
 	return 0;
 }
 
-/* Of a mesh without textures: its vertices' one colour. */
+/* The colour of a mesh without textures: that of its first vertex, or white. */
 static void plain_colour(const struct mesh *mesh, uint8_t rgb[3])
 {
 	memset(rgb, 255, 3);
@@ -71,8 +74,8 @@ static void plain_colour(const struct mesh *mesh, uint8_t rgb[3])
 		memcpy(rgb, mesh->colours[0], 3);
 }
 
-/* Copies of both meshes' textures; a side without any gets a plain one, for it needs a material.
- * base is where the second's begin. */
+/* Copies the textures of both meshes. A mesh without textures gets a plain one, because its
+ * triangles need a material. *base is the index of the second mesh's first texture. */
 static int join_textures(struct mesh *joined, const struct mesh *a, const struct mesh *b,
 			 uint32_t *base)
 {
@@ -177,7 +180,7 @@ int mesh_append(struct mesh *mesh, const struct mesh *other)
 
 /* ---- textures */
 
-/* 0..size-1, repeating. */
+/* Maps a repeating texture coordinate to a pixel in 0 .. size - 1. */
 static uint32_t wrap(float at, uint32_t size)
 {
 	float within = at - floorf(at);

@@ -1,3 +1,5 @@
+/* Averages texture pixels over the faces around each vertex to get vertex colours. */
+
 #include "pipeline/import/mesh_colour.h"
 
 #include <errno.h>
@@ -9,12 +11,12 @@
 
 enum { CELLS_MIN = 2, CELLS_MAX = 8 };
 
-/* Weighted colours of a place. */
+/* Weighted sum of colours at one place. */
 struct sum {
 	float rgb[3], weight;
 };
 
-/* Cells along an edge of the face: about one for two pixels. */
+/* Number of cells along an edge of the face: about one for every two pixels. */
 static int cells_of(const struct mesh *mesh, const uint32_t t[3],
 		    const struct mesh_texture *texture)
 {
@@ -48,8 +50,8 @@ static void add_sample(const struct mesh *mesh, const uint32_t t[3],
 	}
 }
 
-/* At the centres of the cells of a regular division, those that point up and those that point
- * down. */
+/* Adds samples at the centres of the cells of a regular subdivision of the face, both the upward
+ * and the downward cells. */
 static void add_face(const struct mesh *mesh, uint32_t face, const uint32_t *place,
 		     struct sum *sums)
 {
@@ -57,7 +59,7 @@ static void add_face(const struct mesh *mesh, uint32_t face, const uint32_t *pla
 	const struct mesh_texture *texture = &mesh->textures[mesh->materials[face]];
 	const uint32_t places[3] = { place[t[0]], place[t[1]], place[t[2]] };
 	int cells = cells_of(mesh, t, texture);
-	float share = 1 / (float)(cells * cells); /* every face counts the same */
+	float share = 1 / (float)(cells * cells); /* every face has the same weight */
 
 	for (int i = 0; i < cells; i++)
 		for (int j = 0; i + j < cells; j++)

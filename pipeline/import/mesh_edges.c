@@ -1,3 +1,6 @@
+/* Collects the edges of all faces by counting sort over their lower end, so that equal edges become
+ * neighbours. */
+
 #include "pipeline/import/mesh_edges.h"
 
 #include <errno.h>
@@ -5,7 +8,8 @@
 
 #include "pipeline/import/mesh_places.h"
 
-/* Few enough to sort by insertion; a vertex has six edges on average, half of them filed here. */
+/* Up to this many are sorted by insertion. A vertex has six edges on average, and half of them are
+ * stored here. */
 enum { FEW = 64 };
 
 static void sort_few(uint64_t *values, uint64_t count)
@@ -26,7 +30,7 @@ static int compare_u64(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
-/* Gives the lower end; *item as in the header. */
+/* Returns the lower end of edge k of the face; *item is as in the header. */
 static uint32_t edge_of(const struct mesh *mesh, const uint32_t *place, uint32_t face, int k,
 			uint64_t *item)
 {
@@ -37,7 +41,7 @@ static uint32_t edge_of(const struct mesh *mesh, const uint32_t *place, uint32_t
 	return a < b ? a : b;
 }
 
-/* By counting: first how many each vertex has, then each item to its place. */
+/* Counting sort: first counts the items of each vertex, then puts each item in its place. */
 static void file_all(struct mesh_edges *edges, const struct mesh *mesh, const uint32_t *place)
 {
 	uint64_t item, *start = edges->start;

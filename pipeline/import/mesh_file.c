@@ -1,3 +1,6 @@
+/* Writes and reads mesh files. The reader checks sizes, hash and indices before it trusts
+ * anything. */
+
 #include "pipeline/import/mesh_file.h"
 
 #include <errno.h>
@@ -24,7 +27,7 @@ enum {
 
 static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 2 };
 
-/* A file, with the hash of what passed; sticky. */
+/* A file and the hash of the bytes that passed through it. The first error is kept. */
 struct stream {
 	int fd;
 	int error;
@@ -75,7 +78,7 @@ static void get(struct stream *stream, void *data, size_t size)
 	}
 }
 
-/* Of the arrays, in the order of the file. */
+/* The arrays of a mesh, in file order. */
 struct section {
 	void **data;
 	size_t bytes;
@@ -147,7 +150,7 @@ int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 	return bytes_end_file(fd, temporary, path, mesh_file_write(fd, mesh, key));
 }
 
-/* ---- reading: nothing is allocated that the file is not long enough for */
+/* ---- reading: allocates only what the file is long enough for */
 
 static int64_t bytes_left(int fd)
 {
@@ -242,7 +245,8 @@ static int read_scans(struct stream *stream, struct mesh *mesh, uint32_t count, 
 	return stream->error;
 }
 
-/* The hash guards against accidents; these rules against whoever writes hashes. */
+/* The hash detects accidental damage. These checks also catch a file with a correct hash but bad
+ * indices. */
 static bool is_sound(const struct mesh *mesh)
 {
 	for (uint32_t i = 0; i < mesh->triangle_count; i++)

@@ -1,17 +1,20 @@
-/* A sheet is what hangs together by edges whose two faces agree. Where two sheets meet they
- * disagree, by definition; then the smaller follows the larger. A sheet follows its largest
- * neighbour, that one its own, up to a sheet that is the largest around, which stays as it is.
- * A flood over the faces would be shorter, but where a surface cannot agree with itself (two skins
- * glued at one spot) it turns half of what was right. */
+/* Makes the faces of a surface show the same side.
+ *
+ * A sheet is a set of faces connected by edges whose two faces agree. Where two sheets meet, their
+ * faces disagree by definition, and the smaller sheet follows the larger. Each sheet follows its
+ * largest neighbour, which may follow its own, up to a sheet that is larger than all its neighbours
+ * and stays as it is. A flood fill over the faces would be shorter, but where a surface cannot be
+ * oriented consistently (two skins joined at one spot) it turns half of the correct faces. */
 #include "pipeline/import/mesh_orient.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
 struct sheets {
-	uint32_t *parent; /* of each face, up to its sheet's root: disjoint sets; owned */
-	uint32_t *size;   /* faces, of roots; owned */
-	uint32_t *leader; /* root of the sheet that it follows, itself if none; owned */
+	uint32_t *
+		parent; /* disjoint sets: parent of each face, up to the root of its sheet; owned */
+	uint32_t *size; /* number of faces; valid for roots; owned */
+	uint32_t *leader; /* root of the sheet that this root follows, or itself; owned */
 };
 
 static uint32_t root_of(const struct sheets *sheets, uint32_t face)
@@ -23,7 +26,7 @@ static uint32_t root_of(const struct sheets *sheets, uint32_t face)
 	return face;
 }
 
-/* A total order, so that nobody follows in a circle. */
+/* A total order, so that sheets never follow each other in a circle. */
 static bool is_larger(const struct sheets *sheets, uint32_t a, uint32_t b)
 {
 	return sheets->size[a] != sheets->size[b] ? sheets->size[a] > sheets->size[b] : a < b;
@@ -60,14 +63,14 @@ static void find_leaders(void *data, const struct mesh_edge *edge)
 	a = root_of(sheets, edge->faces[0]);
 	b = root_of(sheets, edge->faces[1]);
 	if (a == b)
-		return; /* the sheet cannot agree with itself there */
+		return; /* the sheet disagrees with itself there */
 	if (is_larger(sheets, a, sheets->leader[b]))
 		sheets->leader[b] = a;
 	if (is_larger(sheets, b, sheets->leader[a]))
 		sheets->leader[a] = b;
 }
 
-/* Against its leader's side, whatever side that one ends up on. */
+/* Returns whether the sheet must be turned. Each step to a leader reverses the orientation. */
 static bool is_to_be_turned(const struct sheets *sheets, uint32_t root)
 {
 	bool turned = false;

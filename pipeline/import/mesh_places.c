@@ -1,3 +1,5 @@
+/* Finds equal vertices with a hash table (open addressing). */
+
 #include "pipeline/import/mesh_places.h"
 
 #include <stdbool.h>
@@ -6,7 +8,7 @@
 
 #define NO_VERTEX UINT32_MAX
 
-/* Equal vertices by open addressing. */
+/* Adds a word to a hash. */
 static uint64_t mix(uint64_t hash, uint64_t word)
 {
 	hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
@@ -45,7 +47,7 @@ static bool same_vertex(const struct mesh *mesh, uint32_t a, uint32_t b, bool pl
 	       (!mesh->uvs || memcmp(mesh->uvs[a], mesh->uvs[b], sizeof(mesh->uvs[a])) == 0);
 }
 
-/* first[i] is the first vertex that equals i. Owned by the caller; NULL: no memory. */
+/* first[i] is the first vertex that equals vertex i. Owned by the caller; NULL: no memory. */
 static uint32_t *find_first_equals(const struct mesh *mesh, bool place_only)
 {
 	size_t slots = 16;

@@ -1,3 +1,5 @@
+/* Removes unusable faces and duplicate vertices, counts edges, and orients the faces. */
+
 #include "pipeline/import/mesh_repair.h"
 
 #include <errno.h>
@@ -12,7 +14,7 @@
 
 #define NO_VERTEX UINT32_MAX
 
-/* Minus zero is zero, or equal places would differ in their bytes. */
+/* Turns minus zero into zero; otherwise equal places would differ in their bytes. */
 static void settle_zeros(struct mesh *mesh)
 {
 	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
@@ -69,7 +71,7 @@ static void filter_faces(struct mesh *mesh, const uint32_t *first, struct mesh_r
 	mesh->triangle_count = kept;
 }
 
-/* Moves the used vertices to the front; first becomes the map from old to new. */
+/* Moves the used vertices to the front. `first` becomes the map from old to new indices. */
 static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh_repairs *repairs)
 {
 	uint32_t kept = 0;
@@ -110,7 +112,8 @@ static void count_edge(void *data, const struct mesh_edge *edge)
 	repairs->turned_edges += edge->turned;
 }
 
-/* Only edges whose faces disagree need the work of finding out who is right. */
+/* Counts the edges. Only if faces disagree must the correct orientation be found, and the edges be
+ * counted again. */
 static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
 {
 	struct mesh_edges edges;

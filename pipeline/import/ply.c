@@ -1,4 +1,4 @@
-/* The body of a PLY: elements one after another, each property decoded, kept or skipped. */
+/* Reads the body of a PLY: one element after another; each property is decoded or skipped. */
 #include "pipeline/import/ply_parts.h"
 
 #include <ctype.h>
@@ -11,17 +11,18 @@
 #include <string.h>
 #include <unistd.h>
 
-/* One pass over the body. */
+/* State of one pass over the body. */
 struct pass {
 	struct ply *ply;
 	const struct ply_visitor *visitor;
 	struct fault *fault;
 	const struct ply_element *element;
-	uint64_t index; /* of the element at hand */
-	uint64_t faces; /* and strips, of the elements before */
+	uint64_t index; /* of the current element */
+	uint64_t faces; /* faces and strips in earlier elements */
 	double values[PLY_SLOT_NONE];
 	struct ply_triangle triangle;
-	uint32_t strip[2], strip_length; /* the last corners of the strip at hand */
+	uint32_t strip[2],
+		strip_length; /* the last two corners of the current strip, and its length */
 };
 
 static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)
@@ -53,7 +54,7 @@ static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)
 	}
 }
 
-/* "file.ply: face 12 (line 40)" */
+/* Sets a fault such as "file.ply:40: face 12: ...". */
 static int element_fault(const struct pass *pass, int error, const char *what)
 {
 	struct ply *ply = pass->ply;
@@ -105,7 +106,7 @@ static int next_number(struct pass *pass, enum ply_type type, bool cross_lines, 
 	}
 }
 
-/* ---- corners into triangles */
+/* ---- turning corners into triangles */
 
 static int emit(struct pass *pass, uint32_t a, uint32_t b, uint32_t c)
 {
@@ -130,7 +131,8 @@ static int check_corner(struct pass *pass, double value)
 	return element_fault(pass, -EBADMSG, what);
 }
 
-/* Every other triangle of a strip turns the other way. */
+/* Adds a corner of a strip; -1 starts a new strip. Every second triangle has its corners in reverse
+ * order. */
 static int strip_corner(struct pass *pass, double value)
 {
 	uint32_t corner, a = pass->strip[0], b = pass->strip[1];
@@ -228,7 +230,7 @@ static int read_list(struct pass *pass, const struct ply_property *property, boo
 	return 0;
 }
 
-/* 0..255 from whatever type a colour has: floats run 0..1, shorts to 65535. */
+/* Converts a colour of any type to 0..255. Floats range over 0..1, 16-bit integers up to 65535. */
 static uint8_t colour_byte(double value, enum ply_type type)
 {
 	if (type >= PLY_FLOAT32)
@@ -257,7 +259,7 @@ static int end_vertex(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE
 	return pass->visitor->vertex(pass->visitor->data, &vertex);
 }
 
-/* An element without lists, in binary: only what means something is decoded. */
+/* Reads a binary element without lists; decodes only the properties that we use. */
 static int read_packed(struct pass *pass)
 {
 	const struct ply_element *element = pass->element;
@@ -286,7 +288,7 @@ static int read_properties(struct pass *pass)
 		if (property->count_type != PLY_TYPE_NONE) {
 			rc = read_list(pass, property, i == 0);
 		} else {
-			/* Elements may share a line's break only at their own start. */
+			/* Only the first property of an element may follow a line break. */
 			rc = next_number(pass, property->type, i == 0, &value);
 			if (rc == 0 && property->slot != PLY_SLOT_NONE)
 				pass->values[property->slot] = value;
@@ -297,7 +299,7 @@ static int read_properties(struct pass *pass)
 	return 0;
 }
 
-/* Behind the last number of an element only its line's end may stand. */
+/* After the last number of an element only the end of its line may follow. */
 static int end_line(struct pass *pass)
 {
 	struct ply_input *input = &pass->ply->input;

@@ -1,4 +1,4 @@
-/* The header of a PLY: lines of words, from "ply" to "end_header". */
+/* Reads the header of a PLY: lines of words, from "ply" to "end_header". */
 #include "pipeline/import/ply_parts.h"
 
 #include <errno.h>
@@ -84,8 +84,8 @@ static int line_fault(struct ply *ply, struct fault *fault, const char *what)
 	return fault_set(fault, -EBADMSG, "%s:%" PRIu64 ": %s", ply->name, ply->input.line, what);
 }
 
-/* A line without its end, which is LF, CR LF, or CR where that ended the first line (there
- * a LF after end_header is data). */
+/* Reads a line without its end. A line ends with LF or CR LF, or with CR if the first line did
+ * (then a LF after end_header is data). */
 static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct fault *fault)
 {
 	struct ply_input *input = &ply->input;
@@ -218,7 +218,7 @@ static int read_comment(struct ply *ply, const char *words, struct fault *fault)
 	return 0;
 }
 
-/* Where line begins with the word, what follows it; or NULL. */
+/* Returns what follows the word if the line begins with it, otherwise NULL. */
 static const char *after_word(const char *line, const char *word)
 {
 	size_t length = strlen(word);
@@ -279,7 +279,7 @@ int ply_read_header(struct ply *ply, struct fault *fault)
 	return has_format ? 0 : line_fault(ply, fault, "the header has no 'format' line");
 }
 
-/* ---- does the body make sense? */
+/* ---- checking the header against the file */
 
 static bool has_slot(const struct ply_element *element, enum ply_slot slot)
 {
@@ -289,7 +289,7 @@ static bool has_slot(const struct ply_element *element, enum ply_slot slot)
 	return false;
 }
 
-/* Offsets and stride; gives the fewest bytes that one element can take. */
+/* Computes offsets and stride. Returns the minimum number of bytes of one element. */
 static uint64_t lay_out(struct ply_element *element, enum ply_encoding encoding)
 {
 	uint64_t least = 0;
@@ -302,7 +302,7 @@ static uint64_t lay_out(struct ply_element *element, enum ply_encoding encoding)
 		property->offset = (uint32_t)least;
 		has_list |= is_list;
 		if (encoding == PLY_ASCII)
-			least += 2; /* a digit and what parts it from the next */
+			least += 2; /* a digit and a separator */
 		else
 			least += ply_type_bytes(is_list ? property->count_type : property->type);
 	}

@@ -1,3 +1,5 @@
+/* Buffered input for the PLY reader: views of binary data, and fast parsing of ASCII numbers. */
+
 #include "pipeline/import/ply_parts.h"
 
 #include <errno.h>
@@ -14,7 +16,7 @@ int ply_input_init(struct ply_input *input, int fd)
 	*input = (struct ply_input){ .fd = fd, .line = 1 };
 	if (fstat(fd, &status) < 0)
 		return -errno;
-	/* Of anything but a file nobody knows the length, and a header may promise anything. */
+	/* Only a regular file has a known length, against which the header's counts are checked. */
 	if (!S_ISREG(status.st_mode))
 		return S_ISDIR(status.st_mode) ? -EISDIR : -ESPIPE;
 	input->file_bytes = (uint64_t)status.st_size;
@@ -30,7 +32,8 @@ void ply_input_finish(struct ply_input *input)
 	*input = (struct ply_input){ .fd = -1 };
 }
 
-/* Moves what is left to the front and reads until size bytes are there or the file ends. */
+/* Moves the remaining bytes to the front and reads until `size` bytes are there or the file
+ * ends. */
 static bool refill(struct ply_input *input, size_t size)
 {
 	memmove(input->buffer, input->buffer + input->at, input->end - input->at);
@@ -82,8 +85,9 @@ static bool is_blank(int c)
 	return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/* Exact where the digits fit 53 bits and the power of ten is exact in a double (Clinger's fast
- * path, 1990); everything else goes to strtod, which is ten times slower. */
+/* Parses a decimal number exactly if its digits fit into 53 bits and the power of ten is exact in a
+ * double (Clinger's fast path, 1990). Returns false otherwise; strtod then does it, ten times
+ * slower. */
 static bool parse_simple(const char *text, double *out)
 {
 	static const double powers[] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,

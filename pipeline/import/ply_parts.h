@@ -1,4 +1,4 @@
-/* What the sources of the PLY reader share. Private to pipeline/import/ply*.c. */
+/* Shared by the sources of the PLY reader. Private to pipeline/import/ply*.c. */
 #ifndef GOPURA_PIPELINE_IMPORT_PLY_PARTS_H
 #define GOPURA_PIPELINE_IMPORT_PLY_PARTS_H
 
@@ -8,43 +8,48 @@
 
 enum {
 	PLY_BUFFER_BYTES = 1 << 18,
-	PLY_LINE_MAX = 4096, /* of the header */
+	PLY_LINE_MAX = 4096, /* of a header line */
 	PLY_HEADER_MAX = 1 << 20,
 	PLY_ELEMENTS_MAX = 32,
-	PLY_PROPERTIES_MAX = 128, /* of one element */
+	PLY_PROPERTIES_MAX = 128, /* per element */
 	PLY_NAME_BYTES = 64,
-	PLY_TOKEN_BYTES = 128, /* of one ASCII number */
+	PLY_TOKEN_BYTES = 128, /* text of one ASCII number */
 };
 
-/* ---- ply_input.c: a file through one fixed buffer */
+/* ---- ply_input.c: reads a file through one fixed buffer */
 
 struct ply_input {
 	int fd;
 	uint8_t *buffer; /* owned */
 	size_t at, end;
-	uint64_t base;       /* offset in the file of buffer[0] */
-	uint64_t file_bytes; /* by stat */
-	uint64_t line;       /* of the next byte, from 1; counted in header and ASCII */
-	int error;           /* of read(2), sticky */
+	uint64_t base;       /* file offset of buffer[0] */
+	uint64_t file_bytes; /* from fstat */
+	uint64_t line; /* line number of the next byte, from 1; counted in the header and in ASCII
+			  bodies */
+	int error;     /* error of read(2); kept */
 };
 
+/* fd is taken, even on failure; call ply_input_finish. -EISDIR, -ESPIPE: not a regular file.
+ * -ENOMEM. */
 must_check int ply_input_init(struct ply_input *input, int fd);
+/* Closes the descriptor and frees the buffer. */
 void ply_input_finish(struct ply_input *input);
-/* A view of the next size bytes (size <= PLY_BUFFER_BYTES), consumed; NULL when fewer are left.
- * Borrowed until the next call. */
+/* Consumes the next `size` bytes (size <= PLY_BUFFER_BYTES) and returns a view of them, borrowed
+ * until the next call. NULL: fewer bytes are left. */
 const uint8_t *ply_input_take(struct ply_input *input, size_t size);
-/* The next byte without consuming it; -1 at the end. */
+/* Returns the next byte without consuming it; -1 at the end. */
 int ply_input_peek(struct ply_input *input);
+/* Returns the file offset of the next byte. */
 uint64_t ply_input_offset(const struct ply_input *input);
 
 enum ply_token {
 	PLY_TOKEN_NUMBER,
-	PLY_TOKEN_LINE_END, /* the line has no further one; nothing is consumed */
-	PLY_TOKEN_BAD,      /* not a number; text says what stands there */
+	PLY_TOKEN_LINE_END, /* the line has no further number; the line end is not consumed */
+	PLY_TOKEN_BAD,      /* not a number; text holds what was found */
 	PLY_TOKEN_FILE_END,
 };
 
-/* The next number of an ASCII body; crosses line ends only if asked. */
+/* Reads the next number of an ASCII body. It skips line ends only if cross_lines is set. */
 enum ply_token ply_input_number(struct ply_input *input, bool cross_lines, double *out,
 				char text[PLY_TOKEN_BYTES]);
 
@@ -62,7 +67,7 @@ enum ply_type {
 	PLY_TYPE_NONE,
 };
 
-/* What a property means to us. */
+/* Our meaning of a property. */
 enum ply_slot {
 	PLY_SLOT_X,
 	PLY_SLOT_Y,
@@ -81,10 +86,10 @@ enum ply_slot {
 
 struct ply_property {
 	char name[PLY_NAME_BYTES];
-	enum ply_type type;       /* of the value, or of the list's items */
+	enum ply_type type;       /* of the value, or of the items of a list */
 	enum ply_type count_type; /* PLY_TYPE_NONE: not a list */
 	enum ply_slot slot;
-	uint32_t offset; /* bytes from the element's start, where the element has no list */
+	uint32_t offset; /* bytes from the start of the element, if it has no list */
 };
 
 enum ply_kind { PLY_KIND_VERTEX, PLY_KIND_FACE, PLY_KIND_STRIP, PLY_KIND_OTHER };
@@ -95,31 +100,34 @@ struct ply_element {
 	uint64_t count;
 	uint32_t property_count;
 	struct ply_property properties[PLY_PROPERTIES_MAX];
-	uint32_t stride; /* bytes in binary; 0: it holds a list */
+	uint32_t stride; /* bytes in binary; 0: ASCII, or it has a list */
 };
 
 enum ply_encoding { PLY_ASCII, PLY_LITTLE, PLY_BIG };
 
 struct ply {
-	char name[256]; /* of the file, as faults call it */
+	char name[256]; /* name of the file in messages */
 	struct ply_input input;
 	enum ply_encoding encoding;
 	uint32_t element_count;
 	struct ply_element elements[PLY_ELEMENTS_MAX];
 	struct ply_summary summary;
 	char *textures[PLY_TEXTURES_MAX]; /* owned */
-	bool cr_only;                     /* how header lines end */
+	bool cr_only;                     /* lines end with CR alone */
 	bool gopura_open, range_grid;
 	uint64_t trailing;
-	/* corners of the polygon at hand, PLY_CORNERS_MAX each; owned */
+	/* Corners of the current polygon, PLY_CORNERS_MAX each; owned. */
 	uint32_t *corners;
 	float (*corner_uvs)[2];
 	uint32_t corner_count, corner_uv_floats;
 };
 
+/* Returns the size of a binary value; 0 for PLY_TYPE_NONE. */
 size_t ply_type_bytes(enum ply_type type);
+/* Reads the header up to end_header. -EBADMSG with a fault; -ENOMEM. */
 must_check int ply_read_header(struct ply *ply, struct fault *fault);
-/* After the header: does the body make sense, and is the file long enough for it? */
+/* After the header: checks that its declarations make sense and that the file is long enough.
+ * -EBADMSG or -EFBIG with a fault. */
 must_check int ply_judge_header(struct ply *ply, struct fault *fault);
 
 #endif

@@ -1,3 +1,6 @@
+/* Forks a child with resource limits and the lockdown, serves its requests to open files over a
+ * socket, and reports how it ended. */
+
 #include "pipeline/import/sandbox.h"
 
 #include <errno.h>
@@ -30,20 +33,21 @@ enum { ADDRESS_SPACE_IS_COUNTED = 1 };
 enum {
 	LOOK_EVERY_MS = 50,
 	NAME_BYTES_MAX = 4096,
-	OPENS_MAX = 10000, /* of one child, over its life */
+	OPENS_MAX = 10000, /* per child, over its lifetime */
 	DESCRIPTORS_MAX = 64,
 };
 
-/* In shared memory: how the child ended, if it got there. The walls are told before foreign code
- * runs. */
+/* In shared memory: how the child ended. The state of the restrictions is stored before foreign
+ * code runs. */
 struct outcome {
 	bool finished;
 	int rc;
-	int files_wall, calls_wall; /* of pipeline/import/lockdown.h: 0, or why it does not stand */
+	int files_wall, calls_wall; /* from pipeline/import/lockdown.h: 0, or why the restriction is
+				       not active */
 	struct fault fault;
 };
 
-/* In the child: where it asks for files. */
+/* In the child: the socket on which it asks for files. */
 static int asking_fd = -1;
 
 void *sandbox_shared_create(size_t size)
@@ -66,14 +70,14 @@ static void limit(int resource, rlim_t most)
 	setrlimit((__rlimit_resource_t)resource, &both);
 }
 
-/* ---- files that the parent opens for the child: a name one way, a descriptor the other */
+/* ---- files that the parent opens for the child: it receives a name and sends a descriptor */
 
 union descriptor_room {
 	struct cmsghdr align;
 	char bytes[CMSG_SPACE(sizeof(int))];
 };
 
-/* fd: what was opened, or a negative errno. */
+/* Sends the result of an open: fd is the descriptor or a negative errno. */
 static void send_opened(int socket, int fd)
 {
 	union descriptor_room room = { .bytes = { 0 } };
@@ -91,12 +95,12 @@ static void send_opened(int socket, int fd)
 		control->cmsg_len = CMSG_LEN(sizeof(int));
 		memcpy(CMSG_DATA(control), &fd, sizeof(fd));
 	}
-	/* A child that does not listen any more is judged by how it ends. */
+	/* If the child does not listen any more, the way it ends tells why. */
 	if (sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
 		log_debug("pipeline", "a parser did not wait for its file: %s", strerror(errno));
 }
 
-/* In the parent. False: the child will not ask again. */
+/* Runs in the parent: answers one request. Returns false if the child will not ask again. */
 static bool answer_one(int socket, const struct sandbox_options *options, uint32_t *opens)
 {
 	char name[NAME_BYTES_MAX + 1];
@@ -151,7 +155,7 @@ int sandbox_open(const char *name)
 
 /* ---- the child */
 
-/* Foreign code likes to talk; what matters comes back as a fault. */
+/* Discards output of foreign code; everything important comes back as a fault. */
 static void silence(void)
 {
 	int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -160,11 +164,11 @@ static void silence(void)
 		return;
 	dup2(nowhere, STDIN_FILENO);
 	dup2(nowhere, STDOUT_FILENO);
-	if (ADDRESS_SPACE_IS_COUNTED) /* else the sanitizer may have to say something */
+	if (ADDRESS_SPACE_IS_COUNTED) /* otherwise the sanitizer may need to print */
 		dup2(nowhere, STDERR_FILENO);
 }
 
-/* All but the standard ones and these two. */
+/* Closes all descriptors except the standard ones and these two. */
 static void close_others(int a, int b)
 {
 	const int low = a < b ? a : b, high = a < b ? b : a;
@@ -189,7 +193,7 @@ static void set_limits(const struct sandbox_options *options)
 	limit(RLIMIT_CPU, options->timeout_s);
 	limit(RLIMIT_NPROC, 0);
 	limit(RLIMIT_NOFILE, DESCRIPTORS_MAX);
-	limit(RLIMIT_FSIZE, options->memory_bytes); /* its result is a file, in memory */
+	limit(RLIMIT_FSIZE, options->memory_bytes); /* the result is a file in memory */
 	if (ADDRESS_SPACE_IS_COUNTED)
 		limit(RLIMIT_AS, options->memory_bytes);
 }
@@ -210,7 +214,7 @@ _Noreturn static void child(sandbox_work work, void *shared, const struct sandbo
 	outcome->rc = work(shared, &fault);
 	outcome->fault = fault;
 	outcome->finished = true;
-	_exit(0); /* no destructors, no leak report: the process is thrown away */
+	_exit(0); /* no destructors and no leak report, because the process is discarded */
 }
 
 /* ---- the parent */
@@ -231,7 +235,7 @@ static uint64_t resident_bytes(pid_t pid)
 	return resident * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Until the child ends, or has to be ended: 0, -ETIMEDOUT, -ENOMEM. */
+/* Waits until the child ends (0) or must be killed (-ETIMEDOUT, -ENOMEM). */
 static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options *options)
 {
 	int64_t end_ms = clock_now_ms() + (int64_t)options->timeout_s * 1000;
@@ -250,14 +254,14 @@ static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options
 			if (news[0].revents)
 				return 0;
 			if (news[1].revents && !answer_one(socket, options, &opens))
-				socket = -1; /* poll passes over it */
+				socket = -1; /* poll ignores it */
 		}
 		if (!ADDRESS_SPACE_IS_COUNTED && resident_bytes(pid) > options->memory_bytes)
 			return -ENOMEM;
 	}
 }
 
-/* Once in a process: it is the kernel that lacks it, not the scan. */
+/* Warns only once per process, because the kernel lacks it, not the scan. */
 static void tell_walls(const struct outcome *outcome, const char *name)
 {
 	static bool was_told;
@@ -310,7 +314,7 @@ static int start_and_watch(sandbox_work work, void *shared, const struct sandbox
 
 	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) < 0)
 		return -errno;
-	fflush(NULL); /* or the child holds a copy of what is not yet written */
+	fflush(NULL); /* otherwise the child inherits a copy of unwritten output */
 	pid = fork();
 	if (pid == 0) {
 		asking_fd = sockets[1];

@@ -1,9 +1,9 @@
-/* Work in a child process behind walls, so that a foreign parser that crashes, hangs, eats the
- * memory or is taken over by a file becomes an error message.
+/* Runs work in a restricted child process, so that a foreign parser that crashes, hangs, uses up
+ * the memory or is taken over by a malicious file leads to an error message.
  *
- * The child can compute, use the memory and the processor time it was given, and read what its
- * parent opens for it. It can open, make or change no file, start no program or process, reach no
- * network and no other process: pipeline/import/lockdown.h. */
+ * The child can compute, use the memory and processor time it is given, and read what its parent
+ * opens for it. It cannot open, create or change a file, start a program or process, or reach the
+ * network or another process: pipeline/import/lockdown.h. */
 #ifndef GOPURA_PIPELINE_IMPORT_SANDBOX_H
 #define GOPURA_PIPELINE_IMPORT_SANDBOX_H
 
@@ -14,32 +14,34 @@
 #include "base/fault.h"
 
 struct sandbox_options {
-	uint32_t timeout_s;    /* wall clock and processor time */
-	uint64_t memory_bytes; /* address space; resident memory in a build with AddressSanitizer,
-				* which reserves terabytes of address space */
+	uint32_t timeout_s;    /* limit for wall-clock time and for processor time */
+	uint64_t memory_bytes; /* limit for the address space; for resident memory in a build with
+				  AddressSanitizer, which reserves terabytes of address space */
 	int result_fd;         /* stays open in the child, for its result; 0: none */
-	/* Runs in the parent when the child calls sandbox_open. Gives a descriptor, which is taken,
-	 * or a negative errno. It must judge the name: the child may be in foreign hands. NULL:
-	 * nothing can be opened. */
+	/* Called in the parent when the child calls sandbox_open. Returns a descriptor, which is
+	 * taken, or a negative errno. It must check the name, because the child may be under
+	 * foreign control. NULL: nothing can be opened. */
 	int (*open)(void *data, const char *name);
 	void *open_data;
 };
 
-/* What the child does. Of the descriptors of the parent it has result_fd and standard output and
- * error, which lead nowhere; of memory it gets a copy, and what it changes there is lost but in
- * shared. Gives 0, or a negative errno and a fault. */
+/* The work of the child. Of the parent's descriptors it has only result_fd; standard input and
+ * output lead to /dev/null. Its memory is a copy: changes are lost except in `shared`. Returns 0,
+ * or a negative errno with a fault. */
 typedef int (*sandbox_work)(void *shared, struct fault *fault);
 
-/* In the child: a file of that name, as options.open of the parent gives it. Owned by the caller.
- * Negative errno. */
+/* In the child: opens a file through options.open in the parent. Returns a descriptor owned by the
+ * caller, or a negative errno. */
 must_check int sandbox_open(const char *name);
 
-/* For what the child gives back; zeroed. Believe nothing of it: not even that a string ends. NULL:
- * no memory. */
+/* Makes zeroed shared memory for the child's results. Do not trust its contents, not even that a
+ * string has an end. NULL: no memory. */
 void *sandbox_shared_create(size_t size);
 void sandbox_shared_destroy(void *shared, size_t size); /* NULL is fine */
 
-/* Gives work's result. -ETIMEDOUT, -ENOMEM, -EBADMSG (it crashed): fault is "NAME: ..." then. */
+/* Runs work in a child and returns its result. -ETIMEDOUT: it took too long. -ENOMEM: it used too
+ * much memory. -EBADMSG: it crashed. fault is then "NAME: ...". `shared` comes from
+ * sandbox_shared_create. */
 must_check int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
 			   const char *name, struct fault *fault);
 
