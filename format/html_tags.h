@@ -16,9 +16,10 @@ struct html_tags {
 	unsigned line;            /* where that tag begins, from 1 */
 };
 
-/* Appends the reduced page to *out, at most HTML_TAGS_GROWTH bytes for each input byte. found may
- * be NULL. Returns the error of *out: 0, -EFBIG or -ENOMEM. */
+/* Maximum number of output bytes for each input byte. */
 enum { HTML_TAGS_GROWTH = 6 };
+/* Appends the reduced page to *out. *found gets the tag with the most attributes; found may be
+ * NULL. Returns the error of *out: 0, -EFBIG or -ENOMEM. */
 must_check int html_tags_reduce(struct buffer *out, struct bytes html, struct html_tags *found);
 
 #endif

@@ -35,12 +35,12 @@ enum {
 	PAUSE_MOST_MS = 10000,
 	STEADY_MS = 10000, /* a connection that lasted longer resets the failure count */
 	END_MS = 2000,     /* how long the fetcher may take to exit by itself */
-	SILENT_MS = 90000, /* without any message; then it hangs (it sends a status at least every
-			      30 s) */
+	/* without any message; then it hangs (it sends a status at least every 30 s) */
+	SILENT_MS = 90000,
 	UNWANTED_MAX = 16, /* objects accepted on one connection that were never requested on it */
-	QUEUE_BYTES_MAX =
-		64 << 20, /* send queue to the fetcher; holds every want of a large temple */
-	FETCHER_FD = 3,   /* descriptor number of the socket in the fetcher process */
+	/* send queue to the fetcher; holds every want of a large temple */
+	QUEUE_BYTES_MAX = 64 << 20,
+	FETCHER_FD = 3, /* descriptor number of the socket in the fetcher process */
 };
 
 enum source { SOURCE_SOCKET, SOURCE_CHILD, SOURCE_TIMER };
@@ -71,8 +71,8 @@ struct net_client {
 	int pid_fd;
 	uint32_t failures; /* connections in a row that did not last */
 	int64_t connected_ms, heard_ms;
-	uint64_t received_before,
-		received_now; /* bytes received by earlier fetchers, and by the current one */
+	/* Bytes received by earlier fetchers, and by the current one. */
+	uint64_t received_before, received_now;
 	struct by_hash wants; /* struct wanted, owned */
 	struct by_hash keeps; /* struct hash_entry, owned */
 	struct in_use releases[MESSAGE_RELEASES_MAX];
@@ -117,8 +117,9 @@ static void say(struct net_client *client, const struct message *message)
 		return;
 	if (client->packets.queued_bytes > QUEUE_BYTES_MAX) {
 		client->is_deaf = true;
-		set_timer(client, 1); /* look_after disconnects later; this function may run while a
-					 message is being handled */
+		/* look_after disconnects later; this function may run while a message is being
+		 * handled */
+		set_timer(client, 1);
 		return;
 	}
 	rc = packets_send(&client->packets, message, -1);
@@ -313,8 +314,8 @@ static void disconnect(struct net_client *client, const char *why)
 		log_debug("net", "the fetcher's socket was not watched");
 	packets_finish(&client->packets);
 	if (client->pid)
-		kill(client->pid,
-		     SIGTERM); /* it also exits by itself, because its socket is closed */
+		/* it also exits by itself, because its socket is closed */
+		kill(client->pid, SIGTERM);
 	retry_later(client);
 }
 
@@ -441,8 +442,8 @@ static int obey(struct net_client *client, const struct message *message, int pa
 		if (events->meta)
 			events->meta(data, message->meta.role, message->meta.version,
 				     message->meta.bytes, message->meta.source);
-		if (message->meta.role == META_ROOT) /* the fetcher waits for this answer, whether
-							the kiosk accepted the root or not */
+		/* the fetcher waits for this answer, whether the kiosk accepted the root or not */
+		if (message->meta.role == META_ROOT)
 			say_trust(client);
 		return 0;
 	case MESSAGE_SYNCED:

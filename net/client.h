@@ -27,9 +27,9 @@ struct net_client_events {
 };
 
 struct net_client_options {
-	const char
-		*socket_path; /* copied; socket of a fetcher that runs already; NULL: start one */
-	const char *program;  /* copied; path of gopura-fetch; required to start one */
+	/* copied; socket of a fetcher that runs already; NULL: start one */
+	const char *socket_path;
+	const char *program;     /* copied; path of gopura-fetch; required to start one */
 	const char *release_url; /* copied; https://..., http://... or a folder */
 	const char *stick_path;  /* copied; passed to a fetcher that is started; NULL: none */
 	const char *cache_path;  /* copied; the fetcher's cache.db */
@@ -47,8 +47,8 @@ struct net_client_options {
  * tries again. -EINVAL: options are missing. -ENOMEM, or another negative errno if epoll or a timer
  * cannot be created. */
 must_check int net_client_create(struct net_client **out, const struct net_client_options *options);
-void net_client_destroy(struct net_client *client); /* Also ends a fetcher that the client started;
-						       waits up to 2 s for it. NULL is fine. */
+/* Also ends a fetcher that the client started; waits up to 2 s for it. NULL is fine. */
+void net_client_destroy(struct net_client *client);
 
 /* An epoll descriptor, borrowed. It is readable when net_client_dispatch has work to do. */
 int net_client_fd(const struct net_client *client);

@@ -14,8 +14,8 @@
 
 enum { STACK_BYTES = 256 << 10 };
 
-static atomic_uint
-	running; /* running threads, plus descriptors for which no thread could be started */
+/* running threads, plus descriptors for which no thread could be started */
+static atomic_uint running;
 
 static void *close_one(void *data)
 {

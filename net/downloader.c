@@ -14,17 +14,17 @@
 enum {
 	WANTS_MAX = 1 << 18,
 	RANGES_MAX = 8,
-	SMALL_RANGES_MAX =
-		32, /* while all requests together are small, so that latency does not dominate */
+	/* while all requests together are small, so that latency does not dominate */
+	SMALL_RANGES_MAX = 32,
 	SMALL_BYTES = 256 << 10,
-	RANGES_FOR_PAGES =
-		2, /* extra requests for index pages: without pages nothing else can be planned */
-	GAP_BYTES = 512, /* bytes to read and discard rather than send a new request (its cost, and
-			    a little more) */
+	/* extra requests for index pages: without pages nothing else can be planned */
+	RANGES_FOR_PAGES = 2,
+	/* bytes to read and discard rather than send a new request (its cost, and a little more) */
+	GAP_BYTES = 512,
 	RANGE_BYTES_MIN = 64 << 10,
 	RANGE_BYTES_MAX = 1 << 20,
-	RANGE_MS = 250, /* a range should take about this long, so that more urgent requests do not
-			   wait longer */
+	/* a range should take about this long, so that more urgent requests do not wait longer */
+	RANGE_MS = 250,
 	/* assumed bandwidth before the first measurement */
 	BYTES_PER_S_FIRST = 1 << 20,
 	CACHE_READS_MAX = 64, /* per call: other sources share the loop */
@@ -99,8 +99,8 @@ void downloader_want(struct downloader *downloader, const struct message_want *a
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
-			downloader->plan_changed =
-				true; /* the rate limit no longer applies to it */
+			/* the rate limit no longer applies to it */
+			downloader->plan_changed = true;
 		want->asked.priority = asked->priority;
 		downloader->fresh_changed = true;
 		return;
@@ -237,8 +237,8 @@ static int by_priority(const void *a, const void *b)
 
 	if (left->asked.priority != right->asked.priority)
 		return left->asked.priority < right->asked.priority ? -1 : 1;
-	return left->order > right->order ? -1 : 1; /* the earlier one comes last, because the list
-						       is served from its end */
+	/* the earlier one comes last, because the list is served from its end */
+	return left->order > right->order ? -1 : 1;
 }
 
 static void wait_for_server(struct downloader *downloader, struct want *want)
@@ -275,8 +275,8 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 	hash_to_hex(hash, hex);
 	refusal_note(downloader->options.link->refusal, hex,
 		     "the stick's bytes of this object are damaged");
-	if (downloader->metrics.stick_damaged++ ==
-	    0) /* logs only the first; there may be thousands */
+	/* logs only the first; there may be thousands */
+	if (downloader->metrics.stick_damaged++ == 0)
 		log_warn("net", "the stick's bytes of object %s are damaged", hex);
 }
 
@@ -533,8 +533,8 @@ void downloader_work(struct downloader *downloader)
 	if (downloader->plan_due_ms <= clock_now_ms())
 		downloader->plan_changed = true; /* the retry pause of a want is over */
 	work_ranges(downloader);
-	downloader_ask_suspects(
-		downloader); /* last, because planning may also find objects without a place */
+	/* Last, because planning may also find objects without a place. */
+	downloader_ask_suspects(downloader);
 }
 
 /* Adjusts due_ms to the state of the link. While a request is in flight after a failure, its answer

@@ -67,8 +67,8 @@ void downloader_stick_answered(struct downloader *downloader, struct hash hash, 
 bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash);
 /* A stick was plugged in: looks for all waiting wants again. */
 void downloader_ask_again(struct downloader *downloader);
-void downloader_forget_all(struct downloader *downloader); /* Drops all wants and releases, because
-							      the kiosk disconnected. */
+/* Drops all wants and releases, because the kiosk disconnected. */
+void downloader_forget_all(struct downloader *downloader);
 
 /* Does all work that is possible now. Call it after http_dispatch and after each of the calls
  * above. */

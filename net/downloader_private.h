@@ -45,8 +45,8 @@ struct downloader_release {
 struct downloader {
 	struct downloader_options options;
 	struct by_hash wants;
-	struct want *
-		*fresh; /* owned array; sorted by priority unless fresh_changed; the best is last */
+	/* owned array; sorted by priority unless fresh_changed; the best is last */
+	struct want **fresh;
 	size_t fresh_count, fresh_capacity;
 	bool fresh_changed;
 	bool plan_changed;   /* something may be requested that could not be before */
@@ -63,10 +63,11 @@ struct downloader {
 	bool suspicious;       /* set by downloader_suspect_locators, acted on by downloader_work */
 	bool was_down;         /* all wants were told that the server is offline */
 	uint64_t bytes_per_s;  /* moving average of the bandwidth */
-	int64_t allowance_bytes; /* with a rate limit: bytes that may be requested now for later
-				    releases; negative: overdrawn */
-	int64_t allowance_ms;    /* when allowance_bytes was computed */
-	bool later_waits;        /* something waits only for the rate limit */
+	/* with a rate limit: bytes that may be requested now for later releases; negative:
+	 * overdrawn */
+	int64_t allowance_bytes;
+	int64_t allowance_ms; /* when allowance_bytes was computed */
+	bool later_waits;     /* something waits only for the rate limit */
 	struct downloader_figures metrics;
 };
 

@@ -26,11 +26,11 @@
 enum {
 	QUEUE_BYTES_MAX = 8 << 20, /* to the kiosk; beyond this no more objects are fetched */
 	PACKETS_MAX = 512,         /* read per call */
-	FLUSH_MS =
-		500, /* an object stays uncommitted in the cache's transaction at most this long */
+	/* an object stays uncommitted in the cache's transaction at most this long */
+	FLUSH_MS = 500,
 	STATUS_MS = 1000, /* status interval while values change */
-	ALIVE_MS = 30000, /* status interval while they do not change: shows the kiosk that we are
-			     alive */
+	/* status interval while they do not change: shows the kiosk that we are alive */
+	ALIVE_MS = 30000,
 };
 
 enum source {
@@ -211,8 +211,8 @@ static int obey(struct fetch *fetch, const struct message *message)
 		return 0;
 	case MESSAGE_TRUST:
 		if (message->root_version != fetch->root_version)
-			stick_forget(fetch->stick); /* the stick's release may be valid under this
-						       root */
+			/* the stick's release may be valid under this root */
+			stick_forget(fetch->stick);
 		fetch->root_version = message->root_version;
 		stick_trust(fetch->stick, message->root_version);
 		poll_trust(fetch->poll, message->root_version);
@@ -261,8 +261,8 @@ static void tell_status(struct fetch *fetch)
 	status->offline_since_s = fetch->link.offline_since_s;
 	if (memcmp(status, &fetch->said, sizeof(*status)) == 0 &&
 	    clock_now_ms() < fetch->said_ms + ALIVE_MS) {
-		fetch->status_ms =
-			fetch->said_ms + ALIVE_MS; /* or earlier, when something happens */
+		/* or earlier, when something happens */
+		fetch->status_ms = fetch->said_ms + ALIVE_MS;
 		return;
 	}
 	fetch->status_ms = clock_now_ms() + STATUS_MS;
@@ -578,8 +578,8 @@ int fetch_run(const struct fetch_options *options)
 			       .flush_ms = INT64_MAX };
 	int rc = start(&fetch);
 
-	if (rc == 0 &&
-	    options->socket_path) /* otherwise the kiosk is the service and waits for us */
+	/* otherwise the kiosk is the service and waits for us */
+	if (rc == 0 && options->socket_path)
 		service_ready();
 	if (rc == 0)
 		rc = loop(&fetch);

@@ -9,16 +9,16 @@
 
 struct fetch_options {
 	const char *release_url; /* https://..., http://..., or a folder */
-	const char *
-		stick_path; /* folder where a USB stick with a release may be mounted; NULL: none */
+	/* folder where a USB stick with a release may be mounted; NULL: none */
+	const char *stick_path;
 	const char *cache_path;
 	/* at least 4 MiB */
 	uint64_t cache_budget_bytes;
-	const char *ca_file;        /* NULL: the system's */
-	const char *redirect_hosts; /* hosts that the server may redirect to (net/redirect.h); NULL:
-				       none */
-	const char *socket_path;    /* path to listen on; NULL: fd is used */
-	const char *metrics_path;   /* socket path for metrics (docs/health.md); NULL: none */
+	const char *ca_file; /* NULL: the system's */
+	/* Hosts that the server may redirect to (net/redirect.h); NULL: none. */
+	const char *redirect_hosts;
+	const char *socket_path;  /* path to listen on; NULL: fd is used */
+	const char *metrics_path; /* socket path for metrics (docs/health.md); NULL: none */
 	int fd; /* already connected, taken; the fetcher exits when it is closed */
 	/* seconds between checks for a new release */
 	uint32_t poll_s;

@@ -27,12 +27,12 @@ enum {
 	STALL_S = 15,
 	STALL_BYTES_PER_S = 64,
 	PATIENCE_S = 60,
-	TRICKLE_BYTES_PER_S = 1024, /* minimum average rate of a whole request; anything slower is
-				       treated as an attack */
+	/* minimum average rate of a whole request; anything slower is treated as an attack */
+	TRICKLE_BYTES_PER_S = 1024,
 	TRICKLE_S_MAX = 900,
 	HEADER_BYTES_MAX = 64 * 1024, /* all headers of one answer together */
-	ERROR_BODY_BYTES_MAX =
-		64 * 1024,   /* read to its end, so that the connection can be reused */
+	/* read to its end, so that the connection can be reused */
+	ERROR_BODY_BYTES_MAX = 64 * 1024,
 	CONNECTIONS_MAX = 8, /* with HTTP/1.1; HTTP/2 needs one */
 	SOCKETS_MAX = 64,
 	EVENTS = 16,
@@ -48,8 +48,8 @@ struct http {
 	bool is_local;
 	int sockets[SOCKETS_MAX]; /* open sockets, to count the bytes they received */
 	size_t socket_count;
-	uint64_t received_bytes; /* received by sockets that were closed, and read from a local
-				    folder */
+	/* received by sockets that were closed, and read from a local folder */
+	uint64_t received_bytes;
 };
 
 struct http_request {
@@ -191,8 +191,8 @@ static void take_etag(struct http_request *request, const char *text, size_t siz
 	for (size_t i = 0; i < size; i++)
 		if ((unsigned char)text[i] < ' ' || text[i] == 0x7f)
 			return;
-	if (size < sizeof(request->etag)) /* a longer one is dropped: truncated, it would be a
-					     different ETag */
+	/* a longer one is dropped: truncated, it would be a different ETag */
+	if (size < sizeof(request->etag))
 		snprintf(request->etag, sizeof(request->etag), "%.*s", (int)size, text);
 }
 
@@ -206,8 +206,8 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 		request->refused = true;
 		return 0;
 	}
-	if (header_is(line, size,
-		      "HTTP/")) { /* also the header of the answer after a "100 Continue" */
+	/* also the header of the answer after a "100 Continue" */
+	if (header_is(line, size, "HTTP/")) {
 		request->range_is_right = false;
 		request->etag[0] = '\0';
 	} else if (header_is(line, size, "content-range:")) {
@@ -456,14 +456,14 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_PRIVATE, request);
 	curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, request->error);
 	curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
-	curl_easy_setopt(easy, CURLOPT_NOPROXY,
-			 "*"); /* the museum's server is reached without a proxy */
+	/* the museum's server is reached without a proxy */
+	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*");
 	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");
 	curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, http->is_local ? "file" : "http,https");
 	curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 0L); /* follow() checks each redirection */
 	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);
-	curl_easy_setopt(easy, CURLOPT_PIPEWAIT,
-			 1L); /* prefer sharing a connection to opening a new one */
+	/* prefer sharing a connection to opening a new one */
+	curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
 	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)STALL_BYTES_PER_S);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, http->stall_s);

@@ -37,8 +37,8 @@ struct http_ask {
 	const char *path;     /* below the server's url, for example "packs/HEX"; copied */
 	uint64_t first, size; /* bytes; size 0: the whole file */
 	uint64_t ceiling;     /* maximum size of a whole file in bytes */
-	const char
-		*etag; /* copied; ask for the file only if its ETag differs; NULL or "": always */
+	/* copied; ask for the file only if its ETag differs; NULL or "": always */
+	const char *etag;
 	/* Called for each piece of the body, in order. Returns false when no more is needed; the
 	 * request then ends successfully. It must not call into this module. */
 	bool (*receive)(void *data, struct bytes piece);
@@ -51,8 +51,8 @@ struct http_ask {
  * redirect_hosts is not a valid list. -ENOMEM, or another negative errno from epoll or the
  * timer. */
 must_check int http_create(struct http **out, const struct http_options *options);
-void http_destroy(
-	struct http *http); /* All requests must have ended or been cancelled. NULL is fine. */
+/* All requests must have ended or been cancelled. NULL is fine. */
+void http_destroy(struct http *http);
 
 /* An epoll descriptor, borrowed. It is readable when http_dispatch has work to do. http_dispatch
  * calls receive and done of the requests, and returns a negative errno only if waiting fails. */
@@ -62,8 +62,8 @@ must_check int http_dispatch(struct http *http);
 
 /* Starts a request; *ask is copied. *out is borrowed until done has been called. -ENOMEM. */
 must_check int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out);
-void http_cancel(struct http_request *request); /* Frees the request without calling done. Not
-						   allowed from receive. NULL is fine. */
+/* Frees the request without calling done. Not allowed from receive. NULL is fine. */
+void http_cancel(struct http_request *request);
 
 /* Returns the number of bytes received. TCP connections count all bytes the kernel received,
  * including TLS and headers; a local folder counts the bytes read. */

@@ -27,8 +27,8 @@ void packets_finish(struct packets *packets);
 must_check int packets_send(struct packets *packets, const struct message *message, int passed);
 /* Sends queued messages until the socket accepts no more. Returns 0, also if some remain queued. */
 must_check int packets_flush(struct packets *packets);
-bool packets_wait(
-	const struct packets *packets); /* Returns true if messages wait in the send queue. */
+/* Returns true if messages wait in the send queue. */
+bool packets_wait(const struct packets *packets);
 
 /* Receives the next message; its bytes are borrowed until the next call. *passed is a descriptor
  * that came with it (a sealed memfd, owned by the caller), or -1.

@@ -116,8 +116,8 @@ void poll_trust(struct poll *poll, uint32_t root_version)
 		begin_anew(poll);
 		poll->root_version = root_version;
 	} else if (poll->stage == STAGE_VERDICT) {
-		poll->verdict_ms =
-			0; /* the root was rejected: poll_work continues with the other files */
+		/* the root was rejected: poll_work continues with the other files */
+		poll->verdict_ms = 0;
 	}
 }
 

@@ -36,7 +36,7 @@ void poll_trust(struct poll *poll, uint32_t root_version);
 void poll_stop(struct poll *poll); /* Stops until poll_ask; known files are forgotten. */
 /* Does all work that is due now. */
 void poll_work(struct poll *poll);
-int64_t poll_due_ms(const struct poll *poll); /* Returns when poll_work has work to do, like
-						 downloader_due_ms. */
+/* Returns when poll_work has work to do, like downloader_due_ms. */
+int64_t poll_due_ms(const struct poll *poll);
 
 #endif

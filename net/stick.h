@@ -12,8 +12,8 @@
 struct stick; /* private to stick.c */
 
 struct stick_options {
-	const char *folder; /* copied; mount point of the stick; the release is there or in release/
-			       below it */
+	/* copied; mount point of the stick; the release is there or in release/ below it */
+	const char *folder;
 	uint32_t patience_ms; /* time limit of a job; 0: 10000 */
 	/* Metadata of a stick that was plugged in; not checked. Bytes are borrowed for the call. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);

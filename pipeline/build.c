@@ -1,3 +1,6 @@
+/* Runs the stages from content folder to release, and skips them if a stamp over all inputs shows
+ * that nothing has changed. */
+
 #include "pipeline/build.h"
 
 #include <dirent.h>
@@ -56,7 +59,8 @@ static void put_folder(struct buffer *text, const struct content *content, const
 	free(entries);
 }
 
-/* Another program may make another release of the same content. */
+/* Hashes the program itself, because another version may make another release from the same
+ * content. */
 static int put_program(struct buffer *text)
 {
 	struct buffer program;
@@ -71,7 +75,7 @@ static int put_program(struct buffer *text)
 	return rc;
 }
 
-/* Of everything that a release is made from. */
+/* Hashes everything that a release is made from. */
 static int make_stamp(struct hash *out, const struct content *content,
 		      const struct build_options *options)
 {
@@ -105,7 +109,7 @@ static int make_stamp(struct hash *out, const struct content *content,
 	return rc;
 }
 
-/* What the stamp file holds once a release was made: the stamp, and the root that came of it. */
+/* Contents of the stamp file after a release was made: the stamp, and the root of that release. */
 struct stamp_file {
 	char text[2 * HASH_HEX_BYTES + 1];
 };
@@ -121,7 +125,8 @@ static struct stamp_file stamp_text(struct hash stamp, struct hash root)
 	return file;
 }
 
-/* True where the last build of all this is what is current, and whole; its timestamp is renewed. */
+/* Returns true if the current release was built from exactly these inputs and is complete. Its
+ * timestamp is then renewed. */
 static bool is_built(struct build_report *report, const char *stamp_path, struct hash stamp,
 		     const struct publish_content_options *publish)
 {

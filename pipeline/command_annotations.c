@@ -1,3 +1,5 @@
+/* gopura-content annotations: exports and imports W3C Web Annotations. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>
@@ -41,7 +43,7 @@ static void say(void *data, bool is_error, const char *file, unsigned line, cons
 	fprintf(stderr, "%s: %s%s: %s\n", is_error ? "error" : "warning", file, at, text);
 }
 
-/* "en,fr" in place. 0: it is no such list. */
+/* Splits a list such as "en,fr" in place. Returns the count; 0: not a valid list. */
 static uint32_t split_languages(char *list, const char *languages[INFO_LANGUAGES_MAX])
 {
 	uint32_t count = 0;
@@ -56,7 +58,7 @@ static uint32_t split_languages(char *list, const char *languages[INFO_LANGUAGES
 
 static int fail(const char *what, int rc)
 {
-	if (rc != -EINVAL) /* that was said in full */
+	if (rc != -EINVAL) /* -EINVAL was already reported in detail */
 		fprintf(stderr, "gopura-content annotations: %s: %s\n", what, strerror(-rc));
 	return EXIT_FAILURE;
 }
@@ -75,7 +77,7 @@ static int copy_picture(const char *content, const char *beside, const char *nam
 		return -ENAMETOOLONG;
 	if (stat(from, &a) == 0 && stat(to, &b) == 0 && a.st_dev == b.st_dev &&
 	    a.st_ino == b.st_ino)
-		return 0; /* the file is written into the content folder itself */
+		return 0; /* the export is written into the content folder itself */
 	buffer_init(&file, 64 << 20);
 	rc = buffer_read_file(&file, from);
 	if (rc == 0)

@@ -1,3 +1,5 @@
+/* gopura-content build: makes a signed release from a content folder. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,3 +1,6 @@
+/* gopura-content hierarchy: makes the multiresolution hierarchy of a content folder and reports its
+ * levels. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>
@@ -29,7 +32,7 @@ static const char help[] =
 
 struct settings {
 	const char *folder; /* borrowed from argv */
-	const char *kind;   /* NULL: as temple.ini says */
+	const char *kind;   /* NULL: as in temple.ini */
 	uint32_t jobs;
 	bool force;
 };

@@ -1,3 +1,6 @@
+/* gopura-content import: reads scans, reports what was found and repaired, and can save the joined
+ * mesh. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>

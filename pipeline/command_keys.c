@@ -1,3 +1,5 @@
+/* gopura-content keys: creates the signing keys of a content folder, or shows where they are. */
+
 #include "pipeline/commands.h"
 
 #include <getopt.h>

@@ -1,3 +1,5 @@
+/* gopura-content render: draws reference pictures of the scan at full resolution. */
+
 #include "pipeline/commands.h"
 
 #include <getopt.h>

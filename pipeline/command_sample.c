@@ -1,3 +1,5 @@
+/* gopura-content sample: renders the sampling images of a content folder. */
+
 #include "pipeline/commands.h"
 
 #include <getopt.h>

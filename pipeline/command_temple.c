@@ -1,4 +1,4 @@
-/* gopura-content temple: the demo temple as a PLY file of any size. */
+/* gopura-content temple: writes the demo temple as a PLY file of any size. */
 #include "pipeline/commands.h"
 
 #include "base/progress.h"
@@ -26,7 +26,8 @@ static const char help[] =
 	"  gopura-content temple --triangles 1500000 --out scan.ply\n"
 	"  gopura-content temple --triangles 100000000 --seed 7 --out large.ply\n";
 
-/* Into a file beside it first, so that no half temple is ever taken for a whole one. */
+/* Writes to a temporary file first, so that an incomplete temple is never mistaken for a complete
+ * one. */
 static int write_file(const char *path, struct temple_options *options)
 {
 	char part[4096];
@@ -51,7 +52,7 @@ static int write_file(const char *path, struct temple_options *options)
 	return rc;
 }
 
-/* FOLDER/lion-1.faces and so on. On failure path is what could not be written. */
+/* Writes FOLDER/lion-1.faces and so on. On failure path names what could not be written. */
 static int write_regions(const char *folder, const struct temple_bodies *all, char path[4096])
 {
 	int rc = 0;
@@ -81,7 +82,7 @@ struct request {
 	const char *path, *regions;
 };
 
-/* 0: go on; else the exit status plus one. */
+/* Returns 0 to go on, otherwise the exit status plus one. */
 static int read_options(int argc, char **argv, struct request *request)
 {
 	static const struct option names[] = { { "triangles", required_argument, NULL, 't' },

@@ -1,3 +1,5 @@
+/* gopura-content verify: checks a whole release and prints a summary. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>

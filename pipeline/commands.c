@@ -1,3 +1,5 @@
+/* Helpers shared by the commands of gopura-content. */
+
 #include "pipeline/commands.h"
 
 #include <errno.h>

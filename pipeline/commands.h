@@ -1,5 +1,6 @@
-/* The commands of gopura-content, one source file each. argv[0] is the command's own name; each
- * returns an exit status, prints its own errors, and answers --help. */
+/* The commands of gopura-content, one source file each. argv[0] is the name of the command. Each
+ * returns an exit status (0 done, 1 failed, 2 wrong command line), prints its own errors, and
+ * supports --help. */
 #ifndef GOPURA_PIPELINE_COMMANDS_H
 #define GOPURA_PIPELINE_COMMANDS_H
 
@@ -12,21 +13,34 @@ struct command {
 	int (*run)(int argc, char **argv);
 };
 
+/* annotations: exports and imports W3C Web Annotations. */
 int command_annotations(int argc, char **argv);
+/* build: makes a signed release from a content folder. */
 int command_build(int argc, char **argv);
+/* hierarchy: makes the multiresolution hierarchy. */
 int command_hierarchy(int argc, char **argv);
+/* import: reads scans and reports what was repaired. */
 int command_import(int argc, char **argv);
+/* inspect: shows what an object, a file or a release contains. */
 int command_inspect(int argc, char **argv);
+/* keys: creates the signing keys, or shows where they are. */
 int command_keys(int argc, char **argv);
+/* publish: signs a release of what was built. */
 int command_publish(int argc, char **argv);
+/* verify: checks a whole release. */
 int command_verify(int argc, char **argv);
+/* render: draws reference pictures of the scan. */
 int command_render(int argc, char **argv);
+/* sample: renders the sampling images. */
 int command_sample(int argc, char **argv);
+/* temple: writes the demo temple as a PLY file. */
 int command_temple(int argc, char **argv);
 
-/* Says what is wrong with the options of a command, value behind it, and gives its exit status. */
+/* Prints what is wrong with the options of a command, followed by value, and returns its exit
+ * status, 2. */
 int command_wrong(const char *command, const char *what, const char *value);
-/* A whole number in least..most, nothing before or behind it; false: it is not. */
+/* Parses a whole number in least..most; the text must contain nothing else. Returns false
+ * otherwise; *out is then undefined. */
 bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *out);
 
 #endif

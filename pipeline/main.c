@@ -1,4 +1,5 @@
-/* gopura-content: scans into signed releases. */
+/* gopura-content: turns scans into signed releases. Dispatches to the commands in
+ * pipeline/command_*.c. */
 #include <stdio.h>
 #include <string.h>
 

@@ -58,14 +58,15 @@ must_check int state_try(struct state *state);
 must_check int state_prove(struct state *state);
 /* Returns to the previous release and marks it as proven; floors stay. -ENOENT: there is none. */
 must_check int state_fall_back(struct state *state);
-/* Copies the trust root's file and clears the given floors in the same transaction. Errors as for
- * state_activate. */
+/* Which floors state_set_trust clears. */
 enum state_clear {
 	STATE_CLEAR_NOTHING = 0,
 	STATE_CLEAR_SEQUENCE_FLOOR = 1,
 	STATE_CLEAR_TIME_FLOOR = 2,
 	STATE_CLEAR_BOTH_FLOORS = 3,
 };
+/* Copies the trust root's file and clears the given floors in the same transaction. Errors as for
+ * state_activate, without -ESTALE. */
 must_check int state_set_trust(struct state *state, struct bytes file, enum state_clear clear);
 /* Raises the time floor; a lower value does nothing. It is written only when it rises by an hour or
  * more, to spare the flash memory. Until then the higher floor is kept in memory only. */

@@ -19,8 +19,8 @@
 enum { HOURS_MINUTES = 7 * 24 * 60 };
 
 struct hours {
-	uint8_t open[HOURS_MINUTES /
-		     8]; /* one bit per minute, starting Sunday 00:00 as in tm_wday */
+	/* one bit per minute, starting Sunday 00:00 as in tm_wday */
+	uint8_t open[HOURS_MINUTES / 8];
 };
 
 /* Returns false if text is not valid; *out is then undefined. */

@@ -397,8 +397,8 @@ int setup_write(const struct setup *setup)
 
 	buffer_init(&writing.text, FILE_MAX);
 	folder(&writing, "", 0755);
-	write_faults(
-		&writing); /* first, so that the faults are reported even if a later file fails */
+	/* first, so that the faults are reported even if a later file fails */
+	write_faults(&writing);
 	write_fetcher(&writing);
 	write_health(&writing);
 	write_announcement(&writing);

@@ -17,9 +17,10 @@ struct setup {
  * file that could not be written (logged). */
 must_check int setup_write(const struct setup *setup);
 
-/* The file name under which iwd looks for the network's settings: NAME.psk or NAME.open, where NAME
- * is the SSID or '=' and its hexadecimal form. */
+/* Maximum length of a name: the SSID in hexadecimal, '=', the extension and the end. */
 enum { SETUP_WIFI_NAME_BYTES = 1 + 2 * 32 + 6 };
+/* Writes the file name under which iwd looks for the network's settings: NAME.psk or NAME.open,
+ * where NAME is the SSID or '=' and its hexadecimal form. */
 void setup_wifi_name(const struct terminal *terminal, char out[SETUP_WIFI_NAME_BYTES]);
 
 #endif

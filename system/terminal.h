@@ -52,9 +52,9 @@ struct terminal {
 	int hz;                  /* whole number; 0: any */
 	int rotation_deg;        /* 0, 90, 180, 270, clockwise; -1: the board profile decides */
 	struct hours hours;      /* always open if the file does not set them */
-	uint32_t wake_min; /* minutes the panel stays on after a touch outside the hours; 0: it
-			      stays off */
-	bool shift;        /* pixels are shifted now and then; true if the file does not set it */
+	/* minutes the panel stays on after a touch outside the hours; 0: it stays off */
+	uint32_t wake_min;
+	bool shift; /* pixels are shifted now and then; true if the file does not set it */
 	/* [network] */
 	bool is_static;                 /* true: address and prefix_bits are valid; false: DHCP */
 	char address[INET6_ADDRSTRLEN]; /* without the prefix length */
@@ -62,10 +62,10 @@ struct terminal {
 	char gateway[INET6_ADDRSTRLEN];
 	struct terminal_servers dns, ntp;
 	/* [wifi] */
-	char ssid[33];       /* valid UTF-8 */
-	char passphrase[65]; /* 8 to 63 printable ASCII characters, or 64 hexadecimal digits (a key)
-			      */
-	char country[3];     /* two capital letters */
+	char ssid[33]; /* valid UTF-8 */
+	/* 8 to 63 printable ASCII characters, or 64 hexadecimal digits (a key) */
+	char passphrase[65];
+	char country[3]; /* two capital letters */
 	/* [health] */
 	char listen_address[INET6_ADDRSTRLEN];
 	uint32_t listen_port;
@@ -93,14 +93,16 @@ must_check int terminal_read(struct terminal *out, const char *path, const char 
  * the same folder is read. Errors: base/safe_open.h. */
 must_check int terminal_read_beside(struct buffer *out, const char *path, const char *name);
 
+/* Length of a checksum as hexadecimal text, with its end. */
+enum { TERMINAL_SUM_BYTES = 65 };
 /* Writes a checksum over the gopura.conf at `path` and the files that it names, as hexadecimal
  * text: equal contents give equal sums. A named file that cannot be read counts as empty. Errors:
  * those of base/safe_open.h, for gopura.conf itself. */
-enum { TERMINAL_SUM_BYTES = 65 };
 must_check int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES]);
+/* Length of the result of terminal_usb_words, with its end. */
+enum { TERMINAL_USB_WORDS_BYTES = 64 };
 /* Writes the kinds in usb_allow as gopura.conf calls them, separated by spaces; "" if there are
  * none. */
-enum { TERMINAL_USB_WORDS_BYTES = 64 };
 void terminal_usb_words(const struct terminal *terminal, char out[TERMINAL_USB_WORDS_BYTES]);
 
 /* Writes the terminal's name as a host name: lower-case letters, digits and dashes; "gopura" if

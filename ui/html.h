@@ -33,8 +33,8 @@ struct html_block {
 	uint32_t indent; /* nesting depth of lists */
 	bool quote;      /* inside a blockquote */
 	uint32_t row;    /* table row, counted over the whole page from 1; 0: not in a table */
-	uint32_t column,
-		column_count; /* of the cell; a cell's blocks are drawn one below the other */
+	/* of the cell; a cell's blocks are drawn one below the other */
+	uint32_t column, column_count;
 	bool heading_cell;
 	struct html_span *spans; /* owned, in order, not overlapping */
 	uint32_t span_count;

@@ -17,13 +17,13 @@ struct html_parser {
 	struct html *html;
 	struct html_block *open; /* the block that text is appended to; NULL: none */
 	size_t open_bytes, open_room;
-	const char
-		*marker_wanted; /* marker of a list item whose first block has not been added yet */
+	/* marker of a list item whose first block has not been added yet */
+	const char *marker_wanted;
 	char marker[16];
 	uint32_t row_count;
 	bool space, space_had_newline; /* white space to be written before the next word */
-	struct html_inherited
-		space_in; /* properties at that white space, so that no link begins with a space */
+	/* properties at that white space, so that no link begins with a space */
+	struct html_inherited space_in;
 	/* 0, -ENOMEM or -EFBIG; the first error stops the parser */
 	int error;
 };

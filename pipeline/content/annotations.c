@@ -1,3 +1,6 @@
+/* Tables that export and import of annotations share: selectors, Dublin Core elements, and purposes
+ * of texts. */
+
 #include "pipeline/content/annotations.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* parts.json and pages/ into one annotation collection. What the folder says goes through as it is
- * written (numbers keep their digits); that it is right is checked by info_build's own readers. */
+/* Converts parts.json, tours.json and pages/ to one annotation collection. Values are copied as
+ * written in the folder (numbers keep their digits); info_build's own readers check them. */
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "pipeline/content/annotations.h"
 #include "pipeline/content/annotations_private.h"
 
-/* The terms that the W3C's context has not; docs/annotations.md. */
+/* Defines the terms that the W3C context lacks; see docs/annotations.md. */
 static const char context[] =
 	"[\"http://www.w3.org/ns/anno.jsonld\", {\"gopura\": \"https://gopura.example/ns#\","
 	"\"Model\": \"gopura:Model\", \"reading\": \"gopura:reading\","
@@ -24,7 +24,7 @@ static const char context[] =
 	"\"roof\": \"gopura:roof\", \"file\": \"gopura:file\", \"scan\": \"gopura:scan\","
 	"\"tours\": {\"@id\": \"gopura:tours\", \"@type\": \"@json\"}}]";
 
-/* cJSON's adders return NULL where memory ran out: sticky, judged once. */
+/* cJSON's functions return NULL without memory. The failure is noted here and checked once. */
 struct exporter {
 	const struct content *content;
 	bool failed;
@@ -51,7 +51,8 @@ static void add_text(struct exporter *e, cJSON *object, const char *key, const c
 	add(e, object, key, cJSON_CreateString(text));
 }
 
-/* An empty object that its parent owns; NULL after a failure, which every adder takes. */
+/* Adds an empty object, owned by its parent. Returns NULL after a failure; the functions here
+ * accept that. */
 static cJSON *add_object(struct exporter *e, cJSON *parent, const char *key)
 {
 	cJSON *made = cJSON_CreateObject();
@@ -65,7 +66,7 @@ static cJSON *add_object(struct exporter *e, cJSON *parent, const char *key)
 
 /* ---- credits */
 
-/* Texts by language are language-tagged strings. */
+/* Texts by language become language-tagged strings. */
 static cJSON *tagged(struct exporter *e, const cJSON *said)
 {
 	cJSON *array;
@@ -153,7 +154,7 @@ static void add_point(struct exporter *e, cJSON *selectors, const cJSON *xyz)
 		add(e, selector, axes[i], cJSON_Duplicate(cJSON_GetArrayItem(xyz, i), true));
 }
 
-/* false: no selector of ours says such a region. */
+/* Adds the region's selector. Returns false if no selector can express this kind of region. */
 static bool add_region(struct exporter *e, cJSON *selectors, const cJSON *region)
 {
 	const char *kind = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(region, "kind"));
@@ -238,7 +239,7 @@ static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32
 				 read->id);
 }
 
-/* tours: as tours.json has them, which no other tool reads; NULL: none. */
+/* tours is the array of tours.json, which no other tool reads; NULL: none. */
 static cJSON *make_collection(struct exporter *e, const cJSON *json, const cJSON *tours)
 {
 	cJSON *collection = cJSON_CreateObject(), *page, *items;
@@ -310,7 +311,7 @@ static int write_collection(struct annotations *out, struct content *content, co
 	return rc == 0 && content->error_count > 0 ? -EINVAL : rc;
 }
 
-/* A file's text again as JSON: the folder's own readers have judged it, or will. */
+/* Parses a file of the folder as JSON. The folder's own readers check its contents. */
 static int read_json(cJSON **out, struct content *content, const char *name)
 {
 	struct buffer text;
@@ -344,7 +345,7 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 	if (rc == 0 && !build.languages) {
 		build.languages = languages;
 		build.language_count = annotation_languages(json, languages);
-		if (build.language_count == 0) /* nothing but faults, or no parts */
+		if (build.language_count == 0) /* there are only faults or no parts */
 			build.language_count = 1;
 	}
 	if (rc == 0 && !content_languages_are_sane(&build)) {

@@ -1,6 +1,6 @@
-/* A file of annotations, ours or another tool's, into parts.json, pages/ and pictures/. All of it
- * is read and judged before anything is written; what came of it is then checked by info_build's
- * own readers, and taken away again where they refuse it. */
+/* Converts a file of annotations, ours or that of another tool, to parts.json, pages/ and
+ * pictures/. Everything is read and checked before anything is written. info_build's own readers
+ * then check the result; if they refuse it, it is removed again. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ static void add(struct importer *im, cJSON *object, const char *key, cJSON *valu
 	}
 }
 
-/* The object of that key, made where it is missing; NULL: no memory. */
+/* Returns the object with that key; creates it if missing. NULL: no memory. */
 static cJSON *object_of(struct importer *im, cJSON *parent, const char *key)
 {
 	cJSON *found = cJSON_GetObjectItemCaseSensitive(parent, key);
@@ -42,7 +42,8 @@ static cJSON *object_of(struct importer *im, cJSON *parent, const char *key)
 	return cJSON_GetObjectItemCaseSensitive(parent, key);
 }
 
-/* One thing or a list of things: the first; the next is ->next of what a list gives. */
+/* For a value that may be one thing or a list: first_of returns the first thing, next_of the
+ * next. */
 static const cJSON *first_of(const cJSON *one_or_many)
 {
 	return cJSON_IsArray(one_or_many) ? one_or_many->child : one_or_many;
@@ -55,7 +56,8 @@ static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
 
 /* ---- the id */
 
-/* What stands behind the last # or / of an IRI, in the letters of an id. */
+/* Makes the part's id from the end of the IRI, after the last '#', '/' or ':', using only
+ * characters that an id may contain. */
 static void read_id(struct importer *im)
 {
 	const char *iri = string_of(im->item, "id");
@@ -94,7 +96,7 @@ static bool is_tagged(const cJSON *value)
 	return string_of(value, "@value") && string_of(value, "@language");
 }
 
-/* {"@value": ..., "@language": ...}, or a list of them, into texts by language. */
+/* Converts {"@value": ..., "@language": ...}, or a list of them, to texts by language. */
 static cJSON *untagged(struct importer *im, const cJSON *said)
 {
 	cJSON *texts = cJSON_CreateObject();
@@ -109,7 +111,7 @@ static cJSON *untagged(struct importer *im, const cJSON *said)
 static cJSON *credit_of(struct importer *im, const cJSON *said)
 {
 	const cJSON *first = first_of(said);
-	const char *name = string_of(first, "name"); /* of an agent, as the W3C's creator is */
+	const char *name = string_of(first, "name"); /* of an agent, such as the W3C creator */
 
 	if (first && is_tagged(first))
 		return untagged(im, said);
@@ -120,7 +122,7 @@ static cJSON *credit_of(struct importer *im, const cJSON *said)
 	return cJSON_Duplicate(said, true);
 }
 
-/* dcterms:..., else dc:..., else the W3C's own creator and rights. */
+/* Looks for dcterms:..., then dc:..., then the W3C's own creator and rights. */
 static void read_credits(struct importer *im, const cJSON *from, cJSON *to)
 {
 	static const char *const prefixes[] = { "dcterms:", "dc:", "" };
@@ -303,7 +305,7 @@ static cJSON *region_of(struct importer *im, const cJSON *selector)
 	return NULL;
 }
 
-/* Of two points the first is the region, the last the anchor. */
+/* Stores a point. If there are two, the first is the region and the last the anchor. */
 static void take_point(struct importer *im, cJSON *point)
 {
 	cJSON *anchor = cJSON_DetachItemFromObjectCaseSensitive(im->part, "anchor");
@@ -337,7 +339,7 @@ static void read_selector(struct importer *im, const cJSON *selector)
 		cJSON_Delete(found);
 }
 
-/* false: nothing there says where on a model the part is. */
+/* Returns false if the target does not say where on a model the part is. */
 static bool read_target(struct importer *im)
 {
 	const cJSON *target = first_of(cJSON_GetObjectItemCaseSensitive(im->item, "target"));
@@ -383,7 +385,8 @@ static void read_item(struct importer *im, const cJSON *item, unsigned line)
 	im->report->part_count++;
 }
 
-/* The annotations of a collection, a page, a list, or one alone. NULL after a complaint. */
+/* Finds the annotations in a collection, a page, a list, or a single annotation. Returns NULL after
+ * a complaint. */
 static const cJSON *find_items(struct importer *im, const cJSON *json)
 {
 	const cJSON *page = cJSON_GetObjectItemCaseSensitive(json, "first");

@@ -1,4 +1,4 @@
-/* Private to storage: what export and import of annotations agree on. */
+/* Shared by export and import of annotations. Private to pipeline/content/annotations*.c. */
 #ifndef GOPURA_PIPELINE_CONTENT_ANNOTATIONS_PRIVATE_H
 #define GOPURA_PIPELINE_CONTENT_ANNOTATIONS_PRIVATE_H
 
@@ -9,16 +9,17 @@
 
 enum { ANNOTATION_MEMBERS_MAX = 4 };
 
-/* A region's kind and the selector that says the same, member by member. */
+/* A kind of region and the selector that expresses it, with the same members. */
 struct annotation_selector {
 	const char *kind, *type;
-	const char *members[ANNOTATION_MEMBERS_MAX]; /* up to the first NULL */
+	const char *members[ANNOTATION_MEMBERS_MAX]; /* ends at the first NULL */
 };
 
 enum { ANNOTATION_SELECTORS = 4 };
 extern const struct annotation_selector annotation_selectors[ANNOTATION_SELECTORS];
 
-/* Dublin Core's terms that parts.json knows, and the texts that a part has in each language. */
+/* The Dublin Core elements that parts.json supports, and the texts that a part has in each
+ * language. */
 enum { ANNOTATION_ELEMENTS = 9, ANNOTATION_TEXTS = 3 };
 extern const char *const annotation_elements[ANNOTATION_ELEMENTS];
 struct annotation_text {
@@ -26,14 +27,14 @@ struct annotation_text {
 };
 extern const struct annotation_text annotation_texts[ANNOTATION_TEXTS];
 
-/* The languages of the parts' titles, in the order in which they appear; borrowed from json. How
- * many there are; at most INFO_LANGUAGES_MAX are written. */
+/* Collects the languages of the parts' titles in order of appearance; the strings are borrowed from
+ * json. Returns how many there are; at most INFO_LANGUAGES_MAX are written. */
 uint32_t annotation_languages(const cJSON *json, const char *languages[INFO_LANGUAGES_MAX]);
 
 /* ---- import */
 
 struct page_file {
-	char name[INFO_ID_BYTES_MAX + 40]; /* "pages/gate.en.html" */
+	char name[INFO_ID_BYTES_MAX + 40]; /* for example "pages/gate.en.html" */
 	const char *html;                  /* borrowed from the file's JSON */
 };
 
@@ -41,25 +42,26 @@ struct importer {
 	const struct annotations_import_options *options;
 	struct annotations_imported *report;
 	const char *language;
-	cJSON *parts_file, *parts; /* parts_file owned; parts is its array */
+	cJSON *parts_file, *parts; /* parts_file is owned; parts is the array in it */
 	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
 	struct page_file *pages;   /* owned */
 	uint32_t page_count, error_count;
-	char **written; /* owned paths, in the order of writing */
+	char **written; /* owned paths, in the order in which they were written */
 	size_t written_count;
-	bool failed; /* memory ran out */
-	/* The annotation that is read. */
+	bool failed; /* out of memory */
+	/* The annotation that is being read. */
 	const cJSON *item;
 	unsigned line;
 	cJSON *part;
 };
 
-/* Of options->file. */
+/* Reports a fault in options->file at this line; 0: no line. */
 printf_like(4, 5) void importer_complain(struct importer *im, bool is_error, unsigned line,
 					 const char *text, ...);
-/* The folder has no parts and pages yet; else it was complained about. */
+/* Returns whether the folder has no parts.json, tours.json and pages yet; otherwise it complains.
+ * Removes an empty pages/. */
 bool importer_has_room(struct importer *im);
-/* Writes what was read, checks it, and takes it away again where that fails. */
+/* Writes what was read and checks it. On failure everything written is removed. Negative errno. */
 must_check int importer_write(struct importer *im);
 
 #endif

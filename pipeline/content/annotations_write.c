@@ -1,5 +1,5 @@
-/* What an import has read into a content folder, and out of it again where the folder's own readers
- * refuse it. */
+/* Writes an imported content folder, and removes the files again if the folder's own readers refuse
+ * them. */
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
@@ -80,7 +80,7 @@ static int copy_picture(struct importer *im, const char *from, const char *name)
 	snprintf(relative, sizeof(relative), "pictures/%s", name);
 	if (snprintf(to, sizeof(to), "%s/%s", im->options->folder, relative) >= PATH_MAX)
 		return -ENAMETOOLONG;
-	if (access(to, F_OK) == 0) /* the folder's own, or the same one */
+	if (access(to, F_OK) == 0) /* already in the folder, or the same file */
 		return 0;
 	buffer_init(&file, 64 << 20);
 	rc = buffer_read_file(&file, from);
@@ -93,7 +93,7 @@ static int copy_picture(struct importer *im, const char *from, const char *name)
 	return rc;
 }
 
-/* PATH_MAX bytes: of a file, or ".". */
+/* Writes the file's folder, or ".", to folder (PATH_MAX bytes). */
 static void folder_of(const char *file, char *folder)
 {
 	char *slash;
@@ -106,7 +106,7 @@ static void folder_of(const char *file, char *folder)
 		slash[slash == folder] = 0;
 }
 
-/* All that lie beside the file: which of them the pages show is not known yet. */
+/* Copies all pictures beside the file, because it is not known yet which of them the pages use. */
 static int copy_pictures(struct importer *im)
 {
 	char folder[PATH_MAX], from[2 * PATH_MAX];
@@ -131,7 +131,7 @@ static int copy_pictures(struct importer *im)
 	return rc;
 }
 
-/* tours.json around what the file has of it. */
+/* Writes tours.json with the tours of the file. */
 static int write_tours(struct importer *im)
 {
 	cJSON *file = cJSON_CreateObject();
@@ -171,7 +171,7 @@ static int write_all(struct importer *im)
 	return rc;
 }
 
-/* As a release of all its languages would be. */
+/* Checks the result like a release with all its languages. */
 static int check_written(struct importer *im)
 {
 	const char *languages[INFO_LANGUAGES_MAX] = { "en" };
@@ -194,7 +194,8 @@ static int check_written(struct importer *im)
 static void take_away(struct importer *im)
 {
 	for (size_t i = im->written_count; i-- > 0;)
-		remove(im->written[i]); /* folders are empty by then, or not ours */
+		/* folders are empty by now, or contain files that are not ours */
+		remove(im->written[i]);
 }
 
 bool importer_has_room(struct importer *im)
@@ -205,7 +206,7 @@ bool importer_has_room(struct importer *im)
 		char path[PATH_MAX];
 
 		snprintf(path, sizeof(path), "%s/%s", im->options->folder, names[i]);
-		if (i == 1 && rmdir(path) == 0) /* an empty one is as good as none */
+		if (i == 1 && rmdir(path) == 0) /* an empty folder is removed */
 			continue;
 		if (access(path, F_OK) < 0)
 			continue;

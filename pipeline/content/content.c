@@ -1,3 +1,6 @@
+/* Reads temple.ini with its table of keys, fills in defaults, and builds paths inside the content
+ * folder. */
+
 #include "pipeline/content/content.h"
 
 #include <errno.h>
@@ -21,7 +24,7 @@ static bool set_name(void *target, const char *value)
 				 (int)sizeof(content->name);
 }
 
-/* Paths are made when the whole file is read: the folder comes first. */
+/* Stores the names only. Paths are built when the whole file has been read. */
 static bool set_scans(void *target, const char *value)
 {
 	struct content *content = target;
@@ -98,7 +101,7 @@ static bool set_background(void *target, const char *value)
 	return ini_colour(value, ((struct content *)target)->background);
 }
 
-/* "eye 1 2 3 target 4 5 6"; the words may be missing. */
+/* Reads "eye 1 2 3 target 4 5 6"; the words may be omitted. */
 static bool set_start(void *target, const char *value)
 {
 	struct content *content = target;
@@ -195,7 +198,7 @@ static bool set_publish_share(void *target, const char *value)
 	return ini_number(value, 1e-6, 1, &((struct content *)target)->publish_share);
 }
 
-/* "en", "km", "pt-BR" */
+/* For example "en", "km" or "pt-BR". */
 static bool is_language(const char *tag, size_t length)
 {
 	if (length < 2 || length >= CONTENT_LANGUAGE_BYTES)

@@ -1,4 +1,4 @@
-/* The scans of a content folder into one mesh, cached. */
+/* Imports the scans of a content folder into one mesh and caches it. */
 #include "pipeline/content/content.h"
 
 #include <dirent.h>
@@ -13,10 +13,10 @@
 #include "base/bytes.h"
 #include "pipeline/import/mesh_file.h"
 
-/* Raised whenever import gives another mesh from the same files. */
+/* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files. */
 enum { IMPORT_VERSION = 2, KEY_TEXT_MAX = 1 << 22 };
 
-/* By its name within the folder, which may be called by another path tomorrow. */
+/* The file is named relative to the folder, because the folder's own path may change. */
 static void put_file(struct buffer *text, const struct content *content, const char *path)
 {
 	const char *name = path + strlen(content->folder);
@@ -30,7 +30,7 @@ static void put_file(struct buffer *text, const struct content *content, const c
 	buffer_put_u64(text, (uint64_t)status.st_mtim.tv_nsec);
 }
 
-/* What a scan may name besides itself. */
+/* Selects files that a scan may refer to. */
 static int is_companion(const struct dirent *entry)
 {
 	static const char *const extensions[] = { ".mtl", ".jpg", ".jpeg", ".png", ".bin" };
@@ -89,7 +89,8 @@ int content_scans_key(const struct content *content, struct hash *out, struct fa
 	return rc;
 }
 
-/* A scan with vertex colours has no place in a mesh whose faces take theirs from pictures. */
+/* Refuses to join a scan with vertex colours to one with pictures, because faces of the joint mesh
+ * take their colours from pictures. */
 static int judge_mix(const struct content *content, const struct mesh *mesh,
 		     const struct import_report *reports, uint32_t count, struct fault *fault)
 {

@@ -1,6 +1,6 @@
-/* Content in memory into the SQLite image. Everything is inserted in one fixed order into a fresh
- * database with nothing of the clock, the machine or the folder's path in it, and the result is
- * vacuumed, so the same content gives the same bytes. */
+/* Writes content in memory into an SQLite image. Everything is inserted in a fixed order into a new
+ * database that contains nothing of the clock, the machine or the folder's path, and the result is
+ * vacuumed. So the same content gives the same bytes. */
 #include <errno.h>
 #include <sqlite3.h>
 #include <stdio.h>
@@ -13,9 +13,9 @@
 #include "storage/info_index.h"
 #include "storage/info_schema.h"
 
-/* The paper's three tables, and what relational honesty adds: the identity of an information
- * (one may be assigned to several parts and exists in several languages), corners, pictures and
- * languages. docs/information.md explains each. */
+/* The paper's three tables, extended for a proper relational design: the identity of an information
+ * (it may be assigned to several parts and exists in several languages), corners, pictures and
+ * languages. docs/information.md explains each table. */
 static const char schema[] =
 	"PRAGMA page_size = 4096;"
 	"PRAGMA foreign_keys = ON;"
@@ -49,8 +49,8 @@ static const char schema[] =
 	" position INTEGER NOT NULL, picture_id INTEGER NOT NULL REFERENCES picture,"
 	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
 
-/* Where there are tours: an image of a folder without them is of the version before, for programs
- * that know no later one. */
+/* Added only if there are tours. Without tours the image has the previous version number, so that
+ * older programs can read it. */
 static const char tour_schema[] =
 	"CREATE TABLE tour(tour_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
 	" attract INTEGER NOT NULL, thumbnail INTEGER REFERENCES picture);"
@@ -67,7 +67,7 @@ static const char tour_schema[] =
 	" position INTEGER NOT NULL, language INTEGER NOT NULL REFERENCES language,"
 	" caption TEXT NOT NULL, PRIMARY KEY(tour_id, position, language)) WITHOUT ROWID;";
 
-/* Sticky: after the first failure nothing happens any more; judged once. */
+/* After the first failure all further calls do nothing; the code is checked once. */
 struct writer {
 	sqlite3 *db;
 	sqlite3_stmt *statement;
@@ -100,7 +100,7 @@ static void bind_real(struct writer *w, double value)
 		w->code = sqlite3_bind_double(w->statement, ++w->bound, value);
 }
 
-static void bind_text(struct writer *w, const char *text) /* NULL is NULL */
+static void bind_text(struct writer *w, const char *text) /* NULL becomes SQL NULL */
 {
 	if (w->code == SQLITE_OK)
 		w->code = sqlite3_bind_text(w->statement, ++w->bound, text, -1, SQLITE_STATIC);
@@ -206,7 +206,7 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 	}
 }
 
-/* Whole: what is said of all parts as well. */
+/* Writes all credits of a part, including those stated for all parts. */
 static void write_credits(struct writer *w, int64_t information, const struct content_part *part)
 {
 	for (uint32_t i = 0; i < part->credit_count; i++) {
@@ -370,7 +370,7 @@ static int by_hash(const void *a, const void *b)
 	return hash_compare(left->hash, right->hash);
 }
 
-/* Two names may hold the same bytes: one object. */
+/* Lists the pictures by hash. Files with the same bytes become one object. */
 static int list_pictures(struct info_built *out, struct content *content)
 {
 	uint32_t kept = 0;

@@ -1,45 +1,46 @@
-/* Compiles the parts, pages, tours and pictures of a content folder into one SQLite image, the same
- * bytes for the same folder; storage/info.h reads it. docs/information.md has the tables. */
+/* Compiles the parts, pages, tours and pictures of a content folder into one SQLite image. The same
+ * folder gives the same bytes. storage/info.h reads it; docs/information.md has the tables. */
 #ifndef GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 #define GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 
 #include "base/fault.h"
 #include "storage/info.h"
 
-/* One thing found in the content folder. file is relative to the folder, line is 0 where none
- * applies, text says what is wrong and what cures it. All borrowed for the call. */
+/* Reports one fault in the content folder. file is relative to the folder; line is 0 if there is
+ * none; text says what is wrong and how to correct it. All are borrowed for the call. */
 typedef void info_complaint(void *data, bool is_error, const char *file, unsigned line,
 			    const char *text);
 
 /* A region that is a list of faces of a scan. */
 struct info_faces {
-	const char *part; /* its id */
+	const char *part; /* id of the part */
 	const char *file; /* relative to the folder */
-	const char *scan; /* as temple.ini has it; NULL: the only one */
-	float centre_m[3], radius_m,
-		anchor_m[3]; /* to be filled in: where it lies; a place on it */
+	const char *scan; /* as in temple.ini; NULL: the only scan */
+	/* Results: where it lies, and a place on it. */
+	float centre_m[3], radius_m, anchor_m[3];
 };
-/* Judges and places it. -EINVAL: fault says what is wrong, with the cure. */
+/* Checks the list and fills in the place. -EINVAL: fault says what is wrong and how to correct
+ * it. */
 typedef int info_place_faces(void *data, struct info_faces *faces, struct fault *fault);
 
 struct info_build_options {
-	const char *folder; /* the content folder: parts.json, tours.json, pages/, pictures/ */
-	const char *const *languages; /* such as "en"; the first must have every title */
+	const char *folder; /* content folder: parts.json, tours.json, pages/, pictures/ */
+	const char *const *languages; /* such as "en"; every title must exist in the first one */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MAX */
-	unsigned tools;               /* enum info_tool */
-	info_complaint *complaint;    /* NULL: they are logged */
+	unsigned tools;               /* bits of enum info_tool */
+	info_complaint *complaint;    /* NULL: complaints are logged */
 	void *complaint_data;
-	info_place_faces *place_faces; /* NULL: lists of faces are not looked into */
+	info_place_faces *place_faces; /* NULL: lists of faces are not checked */
 	void *place_faces_data;
 };
 
 struct info_picture_file {
-	struct hash hash; /* of the file's bytes: the object's name */
+	struct hash hash; /* of the file's bytes; it is the name of the object */
 	uint32_t size;    /* bytes */
 	char *name;       /* owned; such as "pictures/gate.jpg", relative to the content folder */
 };
 
-/* Where in tours.json a tour stands, and its stops: for those who find fault with its way. */
+/* Lines in tours.json of a tour and its stops, for complaints about its path. */
 struct info_tour_lines {
 	unsigned tour, stops[INFO_STOPS_MAX];
 };
@@ -51,10 +52,11 @@ struct info_built {
 	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
 };
 
-/* A folder without parts.json gives a database without parts. *out is finished by the caller; on
- * failure it is zeroed. -EINVAL: the content is at fault and every fault was complained about;
- * -ENOMEM, -EIO. */
+/* Reads and checks the folder and builds the image. A folder without parts.json gives a database
+ * without parts. The caller finishes *out; it is zeroed on failure. -EINVAL: the content has
+ * faults, and every fault was reported as a complaint. -ENOMEM, -EIO. */
 must_check int info_build(struct info_built *out, const struct info_build_options *options);
-void info_built_finish(struct info_built *built); /* NULL and zeroed are fine */
+/* Frees the contents. NULL and zeroed are fine. */
+void info_built_finish(struct info_built *built);
 
 #endif

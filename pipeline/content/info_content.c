@@ -1,3 +1,6 @@
+/* Shared helpers of the readers of a content folder: complaints, searching, freeing, and checking
+ * pictures. */
+
 #include "pipeline/content/info_content.h"
 
 #include <errno.h>
@@ -96,7 +99,7 @@ bool content_path(const struct content *content, char *path, size_t path_bytes, 
 	return n > 0 && (size_t)n < path_bytes;
 }
 
-/* Names stay inside the folder by construction: no way up, no sub-folder, no hidden file. */
+/* Accepts only files directly in pictures/: no parent folder, no sub-folder, no hidden file. */
 static bool is_picture_name(const char *name)
 {
 	static const char folder[] = "pictures/";
@@ -115,7 +118,7 @@ static void measure_picture(struct content *content, struct content_picture *pic
 	char path[PATH_MAX];
 	int rc = -ENAMETOOLONG;
 
-	picture->damaged = true; /* until it proves good */
+	picture->damaged = true; /* until it was decoded */
 	buffer_init(&bytes, OBJECT_BYTES_MAX);
 	if (content_path(content, path, sizeof(path), picture->name))
 		rc = buffer_read_file(&bytes, path);

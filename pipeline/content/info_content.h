@@ -1,5 +1,5 @@
-/* Private to storage: a content folder's parts, pages and pictures in memory, as info_build reads
- * and checks them before anything is written. */
+/* A content folder's parts, pages, tours and pictures in memory, as info_build reads and checks
+ * them before anything is written. Private to pipeline/content. */
 #ifndef GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
 #define GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
 
@@ -10,16 +10,16 @@ struct cJSON;
 enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
 struct content_page {
-	char *html; /* owned, terminated; NULL: none */
+	char *html; /* owned, null-terminated; NULL: none */
 	size_t size;
-	uint32_t *pictures; /* owned; indices into content.pictures, in order, each once */
+	uint32_t *pictures; /* owned; indices into content.pictures, in order of use, each once */
 	uint32_t picture_count;
 };
 
-/* A statement in Dublin Core's terms. */
+/* One Dublin Core statement. */
 struct content_credit {
 	const char *element; /* borrowed from a constant table */
-	int language;        /* index into the release's languages; -1: of none */
+	int language;        /* index into the release's languages; -1: no language */
 	char *value;         /* owned */
 };
 
@@ -27,7 +27,7 @@ enum { CONTENT_CREDITS_MAX = 64 };
 
 struct content_part {
 	char *id;
-	unsigned line; /* of parts.json */
+	unsigned line; /* line in parts.json */
 	bool without_page;
 	struct region region;
 	float anchor_m[3];
@@ -35,14 +35,14 @@ struct content_part {
 	char *readings[INFO_LANGUAGES_MAX];                              /* the same */
 	struct content_credit credits[CONTENT_CREDITS_MAX]; /* in the order of the elements */
 	uint32_t credit_count;
-	char *thumbnail;       /* owned, a name; NULL: none */
+	char *thumbnail;       /* owned name; NULL: none */
 	int thumbnail_picture; /* index into content.pictures, or -1 */
 	struct content_page pages[INFO_LANGUAGES_MAX];
 };
 
 struct content_stop {
 	struct info_stop view;
-	unsigned line;                      /* of tours.json */
+	unsigned line;                      /* line in tours.json */
 	char *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 };
 
@@ -61,7 +61,7 @@ struct content_picture {
 	const char *media_type;
 	struct hash hash;
 	uint32_t size, width_px, height_px;
-	bool damaged; /* complained about once */
+	bool damaged; /* has been complained about */
 };
 
 struct content {
@@ -72,35 +72,41 @@ struct content {
 	uint32_t tour_count;
 	struct content_picture *pictures;
 	uint32_t picture_count;
-	uint32_t error_count; /* complaints that are errors */
+	uint32_t error_count; /* number of complaints that are errors */
 };
 
-/* file as in info_complaint. */
+/* Reports a complaint. file and line are as in info_complaint. */
 void content_complain(struct content *content, bool is_error, const char *file, unsigned line,
 		      const char *text, ...) printf_like(5, 6);
+/* Frees everything that was read. options stays. */
 void content_finish(struct content *content);
 
-/* Each returns 0 even where it complained; negative errno only where it cannot go on. */
+/* Reads parts.json. Like the other readers, it returns 0 even after complaints; a negative errno
+ * means that reading cannot go on. */
 must_check int content_read_parts(struct content *content);
+/* Reads and checks the pages of the parts. Call it after content_read_parts and content_read_tours,
+ * because pages may link to both. */
 must_check int content_read_pages(struct content *content);
-/* After the parts: stops may name them. */
+/* Reads tours.json. Call it after content_read_parts, because stops may name parts. */
 must_check int content_read_tours(struct content *content);
-/* Adds what json, the "credits" of a part, and, where that lacks an element, all, those of all
- * parts, say. Either may be NULL. Complains as of the part's line. */
+/* Adds the credits of a part: `json` is the part's own "credits", and `all` those stated for all
+ * parts, used for elements that json lacks. Either may be NULL. Complains with the part's line.
+ * -ENOMEM. */
 must_check int content_read_credits(struct content *content, struct content_part *part,
 				    const struct cJSON *json, const struct cJSON *all);
-/* Reads and checks a picture that file:line refers to. Its index, or -1 after a complaint, or
+/* Reads and checks a picture that file:line refers to. Returns its index, -1 after a complaint, or
  * -ENOMEM. */
 int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);
-/* 1 to INFO_LANGUAGES_MAX codes, each once. */
+/* Returns whether there are 1 to INFO_LANGUAGES_MAX valid codes, each once. */
 bool content_languages_are_sane(const struct info_build_options *options);
-/* The part's index or -1. */
+/* Returns the part's index, or -1. */
 int content_find_part(const struct content *content, const char *id);
+/* Returns the tour's index, or -1. */
 int content_find_tour(const struct content *content, const char *id);
-/* May name a part or a tour. */
+/* Returns whether id may name a part or a tour. */
 bool content_is_id(const char *id);
 
-/* The path of a file of the folder; false where it does not fit. */
+/* Builds the path of a file in the folder. Returns false if it does not fit. */
 bool content_path(const struct content *content, char *path, size_t path_bytes, const char *name);
 
 #endif

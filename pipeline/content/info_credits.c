@@ -1,4 +1,4 @@
-/* "credits" of parts.json: statements in Dublin Core's terms, of a part or of all of them. */
+/* Reads "credits" of parts.json: Dublin Core statements about one part or all parts. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -6,8 +6,8 @@
 
 #include "pipeline/content/info_content.h"
 
-/* In the order in which a page shows them; title, description, language, format and identifier are
- * what the part says anyway. */
+/* In the order in which a page shows them. Title, description, language, format and identifier are
+ * already known from the part itself. */
 static const char *const elements[] = { "creator", "contributor", "publisher", "date",    "source",
 					"rights",  "subject",     "coverage",  "relation" };
 
@@ -27,7 +27,7 @@ static void complain(struct content *content, const struct content_part *part, c
 			 part->id, key);
 }
 
-/* The language's index, -1 for a language that the release has not. */
+/* Returns the language's index, or -1 if the release does not have it. */
 static int find_language(const struct content *content, const char *code)
 {
 	for (uint32_t i = 0; i < content->options->language_count; i++)
@@ -74,7 +74,7 @@ static int add_by_language(struct content *content, struct content_part *part, c
 	}
 	if (!json->child)
 		complain(content, part, element);
-	/* The others must be texts as well, though this release has no use for them. */
+	/* Texts in other languages must be strings too, although this release does not use them. */
 	for (const cJSON *text = json->child; text; text = text->next)
 		if (find_language(content, text->string) < 0 && !cJSON_IsString(text))
 			complain(content, part, element);
@@ -101,7 +101,7 @@ int content_read_credits(struct content *content, struct content_part *part, con
 	if ((json && !cJSON_IsObject(json)) || (all && !cJSON_IsObject(all)))
 		complain(content, part, "credits");
 	check_elements(content, part, json);
-	if (content->part_count == 1) /* said once, with the first part */
+	if (content->part_count == 1) /* reported only once, with the first part */
 		check_elements(content, part, all);
 	for (size_t i = 0; rc == 0 && i < ARRAY_COUNT(elements); i++) {
 		const cJSON *said = cJSON_GetObjectItemCaseSensitive(json, elements[i]);

@@ -1,5 +1,5 @@
-/* pages/ID.LANG.html: read by libxml2's HTML parser, which forgives, and then checked by rules that
- * do not: what the kiosk cannot show, or must not load, is refused here with its line. */
+/* Reads pages/ID.LANG.html. libxml2's HTML parser tolerates errors; our own strict rules then
+ * refuse, with the line, what the kiosk cannot show or must not load. */
 #include <dirent.h>
 #include <errno.h>
 #include <libxml/HTMLparser.h>
@@ -16,10 +16,10 @@ struct page_check {
 	struct content *content;
 	struct content_page *page;
 	const char *file;
-	uint32_t text_bytes; /* outside of white space */
+	uint32_t text_bytes; /* bytes that are not white space */
 };
 
-/* What ui/page.c draws or rightly ignores. */
+/* Elements that ui/html.c draws, or may safely ignore. */
 static const char *const allowed_elements[] = {
 	"html",    "head",   "title",  "meta",       "body",       "main", "section", "article",
 	"header",  "footer", "div",    "h1",         "h2",         "h3",   "p",       "br",
@@ -144,7 +144,7 @@ static int check_element(struct page_check *check, xmlNode *node)
 	return strcmp(name, "img") == 0 ? check_image(check, node) : 0;
 }
 
-/* Without recursion, whatever the depth. */
+/* Returns the next node of the tree without recursion, so any depth is safe. */
 static xmlNode *next_node(xmlNode *node)
 {
 	if (node->children && node->type == XML_ELEMENT_NODE)
@@ -174,7 +174,7 @@ static void hear_parser(void *data, xmlError *error)
 	struct page_check *check = parser->_private;
 	char text[200];
 
-	/* libxml2 knows HTML 4: figure and its kin are judged by our own list. */
+	/* libxml2 knows only HTML 4; our own list decides about newer elements such as figure. */
 	if (error->code == XML_HTML_UNKNOWN_TAG)
 		return;
 	snprintf(text, sizeof(text), "%s", error->message ? error->message : "malformed HTML");
@@ -183,7 +183,8 @@ static void hear_parser(void *data, xmlError *error)
 			 "%s: check that every tag is closed in order", text);
 }
 
-/* Before the parser, which would take long over it. */
+/* Checks the number of attributes before the parser runs, which would be slow with many. Returns
+ * false after a complaint. */
 static bool check_tags(struct page_check *check)
 {
 	const struct bytes html = { (const uint8_t *)check->page->html, check->page->size };
@@ -225,8 +226,8 @@ static int parse_page(struct page_check *check)
 	return rc;
 }
 
-/* What a page holds is shown to everybody. A link could lead to a file that nobody meant to show,
- * and whoever reads a FIFO waits. */
+/* Returns false for links and special files. Page contents are published, so a link could expose a
+ * private file, and reading a FIFO would block. */
 static bool is_plain_file(const char *path)
 {
 	struct stat status;
@@ -234,7 +235,7 @@ static bool is_plain_file(const char *path)
 	return lstat(path, &status) < 0 || S_ISREG(status.st_mode);
 }
 
-/* 0 and page->html NULL where the file is missing. */
+/* Reads the file into check->page. If the file is missing, returns 0 and html stays NULL. */
 static int read_page_file(struct page_check *check)
 {
 	struct buffer bytes;
@@ -318,7 +319,7 @@ static bool is_expected(const struct content *content, const char *name)
 	return false;
 }
 
-/* A page that nobody can reach is most often a misspelt id. */
+/* Warns about pages that no part uses; most often the id is misspelt. */
 static void find_stray_pages(struct content *content)
 {
 	struct dirent **entries = NULL;

@@ -1,4 +1,4 @@
-/* parts.json into parts. */
+/* Reads parts.json into parts. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
@@ -11,9 +11,9 @@
 
 static const char parts_file[] = "parts.json";
 
-/* ---- pieces of a part ---- */
+/* ---- fields of a part ---- */
 
-/* What one part's readers share. */
+/* Shared by the functions that read one part. */
 struct part_reader {
 	struct content *content;
 	struct content_part *part;
@@ -87,7 +87,7 @@ static void read_box(struct part_reader *r, const cJSON *json)
 		complain_part(r, "part \"%s\": \"turn\" must be a number of degrees", part_name(r));
 }
 
-/* Twice the area, positive when counter-clockwise. */
+/* Returns twice the area; positive if counter-clockwise. */
 static double area_twice(const struct region *region)
 {
 	double sum = 0;
@@ -154,7 +154,8 @@ static void read_prism(struct part_reader *r, const cJSON *json)
 		complain_part(r, "part \"%s\": the corners enclose no area", part_name(r));
 }
 
-/* What knows the scan places it; without an anchor a leader line ends where it says. */
+/* Lets place_faces check and place the list. Without an "anchor", the leader line ends at the place
+ * it returns. */
 static int read_faces(struct part_reader *r, const cJSON *json)
 {
 	const struct info_build_options *options = r->content->options;
@@ -217,7 +218,7 @@ static int read_region(struct part_reader *r)
 	return rc;
 }
 
-/* {"en": "...", "fr": "..."} into texts by the release's languages. */
+/* Reads {"en": "...", "fr": "..."} into texts indexed by the release's languages. */
 static int read_texts(struct part_reader *r, const char *key, char *texts[], bool needed)
 {
 	const struct info_build_options *options = r->content->options;
@@ -292,7 +293,7 @@ static int read_part(struct content *content, const cJSON *json, unsigned line,
 	rc = read_id(&reader);
 	if (rc < 0)
 		return rc;
-	content->part_count++; /* now content_finish releases it */
+	content->part_count++; /* from here on content_finish frees it */
 	part->without_page = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
 	rc = read_region(&reader);
 	if (rc == 0)
@@ -389,7 +390,7 @@ int content_read_parts(struct content *content)
 	if (rc == 0) {
 		rc = parse_parts(content, &text);
 	} else if (rc == -ENOENT) {
-		rc = 0; /* a model about which nothing is written yet */
+		rc = 0; /* nothing has been written about this model yet */
 	} else if (rc != -ENOMEM) {
 		content_complain(content, true, parts_file, 0, "cannot be read: %s", strerror(-rc));
 		rc = 0;

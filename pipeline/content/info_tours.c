@@ -1,5 +1,5 @@
-/* tours.json into tours. Whether a way leads through a wall is judged where the scan is:
- * pipeline/content/tour_check. */
+/* Reads tours.json into tours. Whether a path leads through a wall is checked in
+ * pipeline/content/tour_check, where the scan is available. */
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
@@ -17,9 +17,9 @@ static const char tours_file[] = "tours.json";
 
 #define STAY_S       6.0f
 #define SECONDS_MAX  120.0f
-#define PART_LEAST_M 0.5f /* a part without a size, as a stop sees it */
+#define PART_LEAST_M 0.5f /* size assumed for a part without one */
 
-/* What the readers of a tour share; stop: the one that is read, from 1. */
+/* Shared by the functions that read a tour. stop: number of the current stop, from 1; 0: none. */
 struct tour_reader {
 	struct content *content;
 	struct content_tour *tour;
@@ -43,7 +43,7 @@ static void complain(const struct tour_reader *r, const char *text, ...)
 			 r->tour->id ? r->tour->id : "?", where, message);
 }
 
-/* A key that nobody reads is most often misspelt. */
+/* Complains about unknown keys, which are usually misspelt. */
 static void check_keys(const struct tour_reader *r, const cJSON *json, const char *known)
 {
 	for (const cJSON *item = json->child; item; item = item->next) {
@@ -72,7 +72,7 @@ static bool read_vector(const struct tour_reader *r, const cJSON *json, const ch
 	return is_vector;
 }
 
-/* `usual` where the key is not there. */
+/* Returns the value in seconds, or `usual` if the key is missing. */
 static float read_seconds(const struct tour_reader *r, const cJSON *json, const char *key,
 			  float usual, bool may_be_none)
 {
@@ -89,7 +89,8 @@ static float read_seconds(const struct tour_reader *r, const cJSON *json, const 
 	return 0;
 }
 
-/* {"en": "...", "fr": "..."}; the first language must be there where any is, or where needed. */
+/* Reads {"en": "...", "fr": "..."}. If there is any text, or if it is needed, the first language
+ * must be there. */
 static int read_texts(const struct tour_reader *r, const cJSON *json, const char *key,
 		      char *texts[], bool needed)
 {
@@ -138,8 +139,8 @@ static void read_part(const struct tour_reader *r, const cJSON *json, struct inf
 		complain(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
 }
 
-/* Its own eye and target, or the part as a visitor is brought before it: from where the stop before
- * stands. */
+/* Reads the stop's own eye and target, or computes the view of its part, as for a visitor who comes
+ * from the stop before. */
 static void read_view(const struct tour_reader *r, const cJSON *json, struct info_stop *stop,
 		      const struct info_stop *before)
 {
@@ -181,7 +182,7 @@ static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 	const struct info_stop *before = r->tour->stop_count > 0 ? &stop[-1].view : NULL;
 
 	stop->line = r->line;
-	r->stop = ++r->tour->stop_count; /* now content_finish releases it */
+	r->stop = ++r->tour->stop_count; /* from here on content_finish frees it */
 	stop->view.part = -1;
 	if (!cJSON_IsObject(json)) {
 		complain(r, "must be an object: {\"eye\": [x, y, z], \"target\": [x, y, z]}");
@@ -263,7 +264,7 @@ static int read_tour(struct content *content, const cJSON *json, const char *tex
 	tour->id = strdup(id ? id : "");
 	if (!tour->id)
 		return -ENOMEM;
-	content->tour_count++; /* now content_finish releases it */
+	content->tour_count++; /* from here on content_finish frees it */
 	if (!content_is_id(tour->id))
 		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
@@ -278,7 +279,7 @@ static int read_tour(struct content *content, const cJSON *json, const char *tex
 	return rc == 0 ? read_stops(&r, json, text, line) : rc;
 }
 
-/* Where line begins. */
+/* Returns the start of this line. */
 static const char *line_at(const char *text, unsigned line)
 {
 	for (; line > 1 && *text; text++)
@@ -360,7 +361,7 @@ int content_read_tours(struct content *content)
 	if (rc == 0) {
 		rc = parse(content, &text);
 	} else if (rc == -ENOENT) {
-		rc = 0; /* a model round which nobody is led */
+		rc = 0; /* the model has no tours */
 	} else if (rc != -ENOMEM) {
 		content_complain(content, true, tours_file, 0, "cannot be read: %s", strerror(-rc));
 		rc = 0;

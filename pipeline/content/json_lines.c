@@ -1,3 +1,5 @@
+/* Scans JSON text for line numbers, because cJSON keeps no positions. */
+
 #include "pipeline/content/json_lines.h"
 
 #include <glib.h>
@@ -20,7 +22,7 @@ const char *json_not_utf8(const char *text)
 	return g_utf8_validate(text, -1, &end) ? NULL : end;
 }
 
-/* The end of the string that begins at its quote, on its closing one. */
+/* Returns the closing quote of the string that begins at `quote`, or the end of the text. */
 static const char *skip_string(const char *quote)
 {
 	const char *p = quote + 1;
@@ -34,8 +36,8 @@ void json_item_lines(const char *text, const char *key, unsigned *lines, size_t 
 {
 	const size_t size = strlen(key);
 	unsigned line = 1, depth = 0,
-		 inside = 0;  /* inside: the depth within the array; 0: before */
-	bool is_next = false; /* the string before was the key */
+		 inside = 0;  /* inside: depth of the array's items; 0: not in the array yet */
+	bool is_next = false; /* the previous string was the key */
 	size_t found = 0;
 
 	for (const char *p = text; *p && found < most; p++) {

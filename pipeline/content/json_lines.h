@@ -1,17 +1,17 @@
-/* Private to storage: where in a JSON text things stand; cJSON keeps no positions. */
+/* Positions in a JSON text, which cJSON does not keep. Private to pipeline/content. */
 #ifndef GOPURA_PIPELINE_CONTENT_JSON_LINES_H
 #define GOPURA_PIPELINE_CONTENT_JSON_LINES_H
 
 #include <stddef.h>
 
-/* The line of a place of the text, from 1. */
+/* Returns the line of a position in the text, from 1. */
 unsigned json_line_of(const char *text, const char *at);
 
-/* The first place that is not UTF-8, which cJSON does not look at; NULL: all is. */
+/* Returns the first position that is not UTF-8 (cJSON does not check this); NULL: all is valid. */
 const char *json_not_utf8(const char *text);
 
-/* Lines on which the objects of the array of that key begin, wherever it is; for a text that is
- * JSON. Writes at most `most`. */
+/* Finds the lines on which the objects of the first array with that key begin, at any depth. The
+ * text must be valid JSON. Writes at most `most` lines. */
 void json_item_lines(const char *text, const char *key, unsigned *lines, size_t most);
 
 #endif

@@ -1,3 +1,6 @@
+/* Checks lists of faces as regions of parts, and finds their triangles and place on the imported
+ * mesh. */
+
 #include "pipeline/content/part_faces.h"
 #include "pipeline/content/info_build.h"
 
@@ -37,7 +40,7 @@ const struct part_faces *part_faces_find(const struct part_faces_all *all, const
 	return NULL;
 }
 
-/* As temple.ini names it. */
+/* Returns the scan's name as in temple.ini. */
 static const char *scan_name(const struct content *content, uint32_t scan)
 {
 	return content->scans[scan] + strlen(content->folder) + 1;
@@ -64,7 +67,7 @@ static int find_scan(const struct content *content, const struct info_faces *fac
 			   : 0;
 }
 
-/* Other formats have no numbers that mean the same to every program. */
+/* Counts the faces of a scan. Only PLY has face numbers that mean the same to every program. */
 static int count_faces(const struct part_faces_all *all, uint32_t scan, uint32_t *out,
 		       struct fault *fault)
 {
@@ -93,8 +96,9 @@ static void middle_of(const struct mesh *mesh, uint32_t triangle, float out[3])
 			 3;
 }
 
-/* In the middle of the faces' box and as large as it: a ball has its radius, a cube half its side,
- * as regions of these kinds have. The anchor is the face nearest to the middle. */
+/* Places the region at the middle of the bounding box of its faces. The radius is half the box's
+ * diagonal divided by the square root of 3: for a cube, half its side. The anchor is the face
+ * nearest to the middle. */
 static void place(struct info_faces *faces, const struct mesh *mesh, const struct part_faces *part)
 {
 	float low[3] = { INFINITY, INFINITY, INFINITY };
@@ -159,7 +163,7 @@ int part_faces_place(void *data, struct info_faces *faces, struct fault *fault)
 	uint32_t scan, face_count;
 	int rc = find_scan(all->content, faces, &scan, fault);
 
-	/* Where a build looks for what has changed. */
+	/* A build checks only this folder for changes. */
 	if (rc == 0 && strncmp(faces->file, "regions/", 8) != 0)
 		rc = fault_set(fault, -EINVAL,
 			       "\"%.60s\": lists of faces lie in regions/, such as "
@@ -175,7 +179,7 @@ int part_faces_place(void *data, struct info_faces *faces, struct fault *fault)
 	if (rc == 0)
 		rc = face_list_read(&list, path, faces->file, face_count, fault);
 	if (rc == -ENOENT)
-		rc = -EINVAL; /* the fault says so */
+		rc = -EINVAL; /* fault already says so */
 	if (rc == 0 && !all->only_judge)
 		rc = find_triangles(all, faces, &list, scan, fault);
 	face_list_finish(&list);

@@ -1,7 +1,7 @@
-/* The scan is large and the way is small: so the way has the tree, of boxes about stretches of it,
- * and the scan's triangles come by once, in any order. The way is looked at in steps of a quarter
- * of the clearance, so whatever crosses it is nearer to one of them than the clearance, however
- * thin. */
+/* Checks the path of each tour against the scan. The scan is large and the path is small, so the
+ * tree of boxes is built over the path, and the scan's triangles pass once in any order. The path
+ * is sampled in steps of a quarter of the clearance, so even a thin triangle that crosses it is
+ * nearer to one of the steps than the clearance. */
 #include "pipeline/content/tour_check.h"
 #include "pipeline/content/info_build.h"
 
@@ -18,10 +18,10 @@
 enum { LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100 };
 
 #define STEP_SHARE    0.25f /* of the clearance */
-#define THROUGH_SHARE 0.2f  /* nearer than this of it is through */
-#define FAR_SHARE     1.2f  /* of the diagonal, from the model's middle: as the kiosk has it */
-#define GROUND_SHARE  1.5f  /* of the clearance, above the lowest place */
-#define TURN_MOST_RAD 1.05f /* a second: 60 degrees */
+#define THROUGH_SHARE 0.2f  /* nearer than this share of the clearance counts as through */
+#define FAR_SHARE     1.2f  /* of the diagonal, from the model's centre; the same as in the kiosk */
+#define GROUND_SHARE  1.5f  /* of the clearance, above the lowest point */
+#define TURN_MOST_RAD 1.05f /* per second: 60 degrees */
 
 struct step {
 	float at_m[3];
@@ -32,7 +32,7 @@ struct box {
 	float low[3], high[3];
 };
 
-/* Of one leg: the place where the scan is nearest. */
+/* For one leg: the step at which the scan is nearest, and that distance. */
 struct nearest {
 	float distance_m, at_m[3];
 };
@@ -41,18 +41,18 @@ struct way {
 	const struct tour_check_options *options;
 	const struct info_built *built;
 	const struct info_tour *tour;
-	uint32_t number; /* of the tour */
+	uint32_t number; /* number of the tour */
 	float clearance_m, diagonal_m, box_min_m[3], box_max_m[3];
 	struct tour_path path;
 	struct step *steps; /* owned */
 	uint32_t step_count;
-	struct box *boxes; /* owned; of node n: its halves are 2n + 1 and 2n + 2 */
+	struct box *boxes; /* owned; the children of node n are 2n + 1 and 2n + 2 */
 	uint32_t depth;
 	struct nearest nearest[TOUR_STOPS_MAX];
 	uint32_t faults;
 };
 
-/* leg: -1 for what is of the whole tour. */
+/* leg is -1 for faults of the whole tour. */
 static void complain(struct way *way, int leg, const char *text, ...) printf_like(3, 4);
 
 static void complain(struct way *way, int leg, const char *text, ...)
@@ -74,7 +74,7 @@ static void complain(struct way *way, int leg, const char *text, ...)
 				leg < 0 ? lines->tour : lines->stops[to], all);
 }
 
-/* ---- the way in steps, and their tree */
+/* ---- steps along the path, and their tree */
 
 static int take_steps(struct way *way)
 {
@@ -139,7 +139,7 @@ static int grow_tree(struct way *way)
 	return 0;
 }
 
-/* ---- the scan comes by */
+/* ---- the triangles of the scan */
 
 struct triangle {
 	float a[3], ab[3], ac[3];
@@ -156,7 +156,8 @@ static float edge_distance2(const float from[3], const float along[3])
 	return vec_dot(off, off);
 }
 
-/* Above its face the plane is nearest, else one of the three edges. */
+/* If the point projects into the triangle, the plane is nearest; otherwise one of the three
+ * edges. */
 static float triangle_distance(const struct triangle *t, const float point[3])
 {
 	float from_a[3], from_b[3], bc[3], normal[3], cross[3], d2;
@@ -255,7 +256,8 @@ static void judge_clearance(struct way *way)
 	}
 }
 
-/* Where a visitor's finger, who may take the eye over at any place of it, would find it held. */
+/* Checks the limits that hold for a visitor's camera, because a visitor may take over the camera
+ * anywhere on the path. */
 static void judge_bounds(struct way *way)
 {
 	const float ground_m = way->box_min_m[2] + GROUND_SHARE * way->clearance_m;

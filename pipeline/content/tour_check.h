@@ -1,5 +1,5 @@
-/* Whether the tours of a content folder lead through a wall: their way, as the kiosk flies it,
- * against the scan's surface. docs/tours.md. */
+/* Checks the tours of a content folder: whether the path, as the kiosk flies it, is too near to the
+ * scan's surface, leaves the camera's limits, or turns too fast. docs/tours.md. */
 #ifndef GOPURA_PIPELINE_CONTENT_TOUR_CHECK_H
 #define GOPURA_PIPELINE_CONTENT_TOUR_CHECK_H
 
@@ -9,13 +9,14 @@
 enum { TOUR_MINUTES_MAX = 10 };
 
 struct tour_check_options {
-	const struct mesh *mesh; /* of all scans; borrowed */
+	const struct mesh *mesh; /* all scans; borrowed */
+	/* must not be NULL */
 	info_complaint *complaint;
 	void *complaint_data;
 };
 
-/* built: as info_build made it. -EINVAL: there are faults; each leg's worst was complained about.
- * -ENOMEM; -EBADMSG: the database cannot be read. */
+/* built is the result of info_build. -EINVAL: there are faults; for each leg the worst one was
+ * reported as a complaint. -ENOMEM. -EBADMSG: the database cannot be read. */
 must_check int tour_check(const struct info_built *built, const struct tour_check_options *options);
 
 #endif

@@ -63,8 +63,8 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	char head[64];
 	struct stat status;
 	ssize_t got = -1;
-	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY |
-				    O_CLOEXEC); /* O_NONBLOCK: do not wait if it is a FIFO */
+	/* O_NONBLOCK: do not wait if it is a FIFO */
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 
 	if (fd < 0)
 		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));

@@ -18,10 +18,11 @@ struct import_options {
 	double metres_per_unit;    /* 0: 1 m */
 	uint8_t default_colour[3]; /* for a scan without colours; all 0: sandstone */
 	bool override_colour;      /* use default_colour even if the scan has colours */
-	uint32_t
-		timeout_s; /* wall-clock limit of a foreign parser; 0: depends on the file's size */
-	uint64_t memory_bytes; /* limit for a foreign parser and for the pictures of a PLY; 0:
-				  depends on the file's size */
+	/* wall-clock limit of a foreign parser; 0: depends on the file's size */
+	uint32_t timeout_s;
+	/* limit for a foreign parser and for the pictures of a PLY; 0: depends on the file's
+	 * size */
+	uint64_t memory_bytes;
 };
 
 struct import_report {
@@ -36,7 +37,7 @@ struct import_report {
 	uint32_t vertices, triangles; /* of the result */
 	float low_m[3], high_m[3];
 	struct mesh_repairs repairs;
-	struct fault warning; /* the last thing that was tolerated with loss; "" if none */
+	struct fault warning; /* the first thing that was tolerated with loss; "" if none */
 };
 
 /* *out is owned by the caller; it is zeroed on failure. The result always has colours: those of the
@@ -45,9 +46,10 @@ struct import_report {
 must_check int import_scan(struct mesh *out, const char *path, const struct import_options *options,
 			   struct import_report *report, struct fault *fault);
 
-/* Parse an option. Axis: "z", "y" or "x". Unit: "m", "cm", "mm", "in", or the metres in one unit,
- * above 0 and at most 1e9. False: not valid, and *out is unchanged. */
+/* Parses the name of an axis: "z", "y" or "x". False: not valid, and *out is unchanged. */
 bool import_axis_named(const char *name, enum import_axis *out);
+/* Parses a unit: "m", "cm", "mm", "in", or the metres in one unit, above 0 and at most 1e9. False:
+ * not valid, and *out_metres is unchanged. */
 bool import_unit_named(const char *name, double *out_metres);
 
 /* Prints a summary for people: what was read, and one line for each kind of repair. */

@@ -28,8 +28,8 @@ static const struct hash no_key;
 /* In shared memory. The child reads path and format, and fills in report; the mesh goes to
  * result_fd. */
 struct job {
-	char path[PATH_MAX]; /* ends with the format's own extension, by which assimp chooses its
-				reader */
+	/* ends with the format's own extension, by which assimp chooses its reader */
+	char path[PATH_MAX];
 	struct import_foreign_format format;
 	int result_fd; /* receives the mesh as a mesh file */
 	struct import_report report;
@@ -455,8 +455,8 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 /* Copies only what the child fills in. The child is not trusted: a string may lack its end. */
 static void take_report(struct import_report *report, const struct import_report *told)
 {
-	report->had_colours =
-		*(const uint8_t *)&told->had_colours != 0; /* the byte may have any value */
+	/* the byte may have any value */
+	report->had_colours = *(const uint8_t *)&told->had_colours != 0;
 	report->textures = told->textures;
 	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
 }

@@ -33,8 +33,8 @@ must_check int import_files_open_folder(const char *scan_path);
 struct import_files {
 	const char *scan_path; /* borrowed; for messages */
 	int folder_fd;         /* borrowed; not used in the sandbox */
-	bool in_sandbox; /* the parent opens files, and the sandbox limits the memory for pictures
-			  */
+	/* the parent opens files, and the sandbox limits the memory for pictures */
+	bool in_sandbox;
 	uint64_t picture_bytes_left; /* outside the sandbox: for all decoded pictures together */
 };
 
@@ -59,10 +59,10 @@ must_check int import_foreign(struct mesh *out, const char *path,
 			      const struct import_options *options, struct import_report *report,
 			      struct fault *fault);
 
+struct aiScene;
 /* Runs assimp in the sandbox. The parent opens all files: seen_path stands for the scan, other
  * names are as the scan gives them. The scene is borrowed until the process ends. NULL: fault says
  * why. */
-struct aiScene;
 const struct aiScene *import_scene(const char *seen_path, const char *format_name,
 				   struct fault *fault);
 

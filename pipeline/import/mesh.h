@@ -29,20 +29,22 @@ struct mesh {
 	uint32_t vertex_count, triangle_count;
 	float (*positions)[3];
 	uint8_t (*colours)[4]; /* sRGB and open sky (255: fully open); NULL: the scan has none */
-	float (*uvs)[2]; /* v = 0 at the bottom of the picture; NULL: no texture. A vertex with two
-			    texture coordinates is stored as two vertices. */
+	/* v = 0 at the bottom of the picture; NULL: no texture. A vertex with two texture
+	 * coordinates is stored as two vertices. */
+	float (*uvs)[2];
 	uint32_t (*triangles)[3];
 	uint16_t *materials; /* texture index of each triangle; NULL: no texture */
 	uint32_t texture_count;
 	struct mesh_texture *textures;
-	uint32_t *faces; /* for each triangle, the number of its face in its scan's file, from 0, or
-			    MESH_NO_FACE; NULL: no scan has face numbers */
+	/* for each triangle, the number of its face in its scan's file, from 0, or MESH_NO_FACE;
+	 * NULL: no scan has face numbers */
+	uint32_t *faces;
 	uint32_t scan_count; /* 0: the mesh does not come from files */
 	struct mesh_scan scans[MESH_SCANS_MAX];
 };
 
-void mesh_finish(
-	struct mesh *mesh); /* Frees everything the mesh owns and zeroes it. NULL is fine. */
+/* Frees everything the mesh owns and zeroes it. NULL is fine. */
+void mesh_finish(struct mesh *mesh);
 
 /* Computes the bounding box of all vertices; zeros for an empty mesh. */
 void mesh_box(const struct mesh *mesh, float low[3], float high[3]);

@@ -17,8 +17,9 @@ struct mesh_edge {
 struct mesh_edges {
 	uint32_t vertex_count;
 	uint64_t *start; /* index of the first item of each vertex, and the end; owned */
-	uint64_t *items; /* one per edge of a face, stored under its lower end, sorted; owned: other
-			    end << 33 | (runs from lower to other) << 32 | face */
+	/* one per edge of a face, stored under its lower end, sorted; owned: other end << 33 |
+	 * (runs from lower to other) << 32 | face */
+	uint64_t *items;
 };
 
 /* Collects the edges; mesh is only read. It must have fewer than 2^31 vertices. -ENOMEM; then *out

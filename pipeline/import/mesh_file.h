@@ -23,8 +23,11 @@ must_check int mesh_file_save(const struct mesh *mesh, struct hash key, const ch
  * another key. -EBADMSG: it is damaged. In these cases make the mesh again and save it. */
 must_check int mesh_file_load(struct mesh *out, struct hash key, const char *path);
 
-/* The same on an open descriptor, from its current offset. The descriptor stays open. */
+/* Writes a mesh to an open descriptor, from its current offset. The descriptor stays open. Negative
+ * errno. */
 must_check int mesh_file_write(int fd, const struct mesh *mesh, struct hash key);
+/* Reads a mesh from an open descriptor, from its current offset. It stays open. Results as
+ * mesh_file_load, without -ENOENT. */
 must_check int mesh_file_read(struct mesh *out, struct hash key, int fd);
 
 #endif

@@ -11,9 +11,9 @@
 #include <stdlib.h>
 
 struct sheets {
-	uint32_t *
-		parent; /* disjoint sets: parent of each face, up to the root of its sheet; owned */
-	uint32_t *size; /* number of faces; valid for roots; owned */
+	/* disjoint sets: parent of each face, up to the root of its sheet; owned */
+	uint32_t *parent;
+	uint32_t *size;   /* number of faces; valid for roots; owned */
 	uint32_t *leader; /* root of the sheet that this root follows, or itself; owned */
 };
 

@@ -21,8 +21,8 @@ struct pass {
 	uint64_t faces; /* faces and strips in earlier elements */
 	double values[PLY_SLOT_NONE];
 	struct ply_triangle triangle;
-	uint32_t strip[2],
-		strip_length; /* the last two corners of the current strip, and its length */
+	/* the last two corners of the current strip, and its length */
+	uint32_t strip[2], strip_length;
 };
 
 static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)

@@ -32,8 +32,8 @@ struct ply_summary {
 	bool has_corner_uv;    /* per corner of a face */
 	bool is_ascii;
 	uint32_t texture_count;
-	const char *const
-		*textures;       /* names from "comment TextureFile"; borrowed from the reader */
+	/* Names from "comment TextureFile"; borrowed from the reader. */
+	const char *const *textures;
 	uint32_t strange_lines;  /* header lines that were not understood and were skipped */
 	const char *points_only; /* the reason why there are no faces, or NULL */
 };
@@ -68,16 +68,16 @@ must_check int ply_open(struct ply **out, const char *path, struct fault *fault)
 must_check int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault);
 void ply_close(struct ply *ply); /* NULL is fine */
 
-const struct ply_summary *
-ply_summary(const struct ply *ply); /* What the header declares; borrowed from the reader. */
+/* What the header declares; borrowed from the reader. */
+const struct ply_summary *ply_summary(const struct ply *ply);
 
 /* Reads everything after the header. Call it once. Returns 0, a negative errno with a fault, or
  * what a visitor returned. */
 must_check int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct fault *fault);
 
-/* Bytes of the file read so far, and the size of the file, for progress. */
+/* Returns the number of bytes of the file read so far, for progress. */
 uint64_t ply_bytes_read(const struct ply *ply);
-uint64_t ply_bytes_total(const struct ply *ply);
+uint64_t ply_bytes_total(const struct ply *ply); /* size of the file in bytes */
 /* After ply_read: number of bytes after the last element; they were ignored. */
 uint64_t ply_bytes_trailing(const struct ply *ply);
 

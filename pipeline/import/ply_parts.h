@@ -24,9 +24,9 @@ struct ply_input {
 	size_t at, end;
 	uint64_t base;       /* file offset of buffer[0] */
 	uint64_t file_bytes; /* from fstat */
-	uint64_t line; /* line number of the next byte, from 1; counted in the header and in ASCII
-			  bodies */
-	int error;     /* error of read(2); kept */
+	/* line number of the next byte, from 1; counted in the header and in ASCII bodies */
+	uint64_t line;
+	int error; /* error of read(2); kept */
 };
 
 /* fd is taken, even on failure; call ply_input_finish. -EISDIR, -ESPIPE: not a regular file.

@@ -42,8 +42,8 @@ enum {
 struct outcome {
 	bool finished;
 	int rc;
-	int files_wall, calls_wall; /* from pipeline/import/lockdown.h: 0, or why the restriction is
-				       not active */
+	/* from pipeline/import/lockdown.h: 0, or why the restriction is not active */
+	int files_wall, calls_wall;
 	struct fault fault;
 };
 

@@ -14,10 +14,11 @@
 #include "base/fault.h"
 
 struct sandbox_options {
-	uint32_t timeout_s;    /* limit for wall-clock time and for processor time */
-	uint64_t memory_bytes; /* limit for the address space; for resident memory in a build with
-				  AddressSanitizer, which reserves terabytes of address space */
-	int result_fd;         /* stays open in the child, for its result; 0: none */
+	uint32_t timeout_s; /* limit for wall-clock time and for processor time */
+	/* limit for the address space; for resident memory in a build with AddressSanitizer, which
+	 * reserves terabytes of address space */
+	uint64_t memory_bytes;
+	int result_fd; /* stays open in the child, for its result; 0: none */
 	/* Called in the parent when the child calls sandbox_open. Returns a descriptor, which is
 	 * taken, or a negative errno. It must check the name, because the child may be under
 	 * foreign control. NULL: nothing can be opened. */

@@ -1,3 +1,6 @@
+/* Creates, reads and checks the publisher's key files and the signed roots. New files are written
+ * so that a power cut leaves either none or a complete one. */
+
 #include "pipeline/keys/keys.h"
 
 #include <errno.h>
@@ -12,7 +15,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-/* A root outlives the terminals that were shipped with it. */
+/* A root must stay valid longer than the terminals that were shipped with it live. */
 #define ROOT_LIFE_S (20ll * 365 * 86400)
 
 static const char *const role_names[] = { "root", "release", "timestamp" };
@@ -40,7 +43,8 @@ bool keys_is_key_file(int fd)
 	       memcmp(start, key_mark, sizeof(start)) == 0;
 }
 
-/* An empty one is what a power cut left: nothing. */
+/* Returns whether the key exists. An empty file is the remains of a power cut and does not
+ * count. */
 static bool has_key(const char *folder, enum meta_role role)
 {
 	char path[PATH_MAX];
@@ -64,9 +68,9 @@ bool keys_are_in(const char *folder)
 	       has_key(folder, META_TIMESTAMP);
 }
 
-/* ---- making them */
+/* ---- creating keys */
 
-/* What is in it is there after a power cut. */
+/* Makes the folder's entries durable. */
 int keys_sync_folder(const char *path)
 {
 	int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -77,7 +81,7 @@ int keys_sync_folder(const char *path)
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
-/* A new file or none. Never readable by others, not even for a moment. */
+/* Writes a complete new file or none. It is never readable by others, not even for a moment. */
 static int write_private(const char *path, const char *text)
 {
 	char aside[PATH_MAX + 8];
@@ -201,8 +205,8 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
-/* Made in this order: a folder that has a later key without an earlier one is no interrupted run,
- * somebody has taken the earlier one away. */
+/* Keys are created in this order. So a folder that has a later key without an earlier one is not an
+ * interrupted run: somebody removed the earlier one. */
 static int judge_order(const char *folder)
 {
 	for (int role = META_RELEASE; role <= META_TIMESTAMP; role++)
@@ -217,7 +221,7 @@ static int judge_order(const char *folder)
 	return 0;
 }
 
-/* All that is missing, and root/1.json last: without it there are no keys. */
+/* Creates everything that is missing, and root/1.json last: until it exists there are no keys. */
 static int complete(const char *folder)
 {
 	struct signing_key keys[3];
@@ -268,7 +272,7 @@ int keys_make(const char *folder)
 	return rc < 0 ? rc : keys_sync_parent(folder);
 }
 
-/* ---- using them */
+/* ---- using keys */
 
 int keys_read_root(struct buffer *out, const char *folder, uint32_t version)
 {

@@ -1,3 +1,6 @@
+/* Chooses the folder of a content folder's signing keys, moves keys out of the content folder, and
+ * opens or creates them under a lock. */
+
 #include "pipeline/keys/keys_place.h"
 
 #include <errno.h>
@@ -24,7 +27,7 @@ static int join(char out[PATH_MAX], const char *folder, const char *name)
 	return snprintf(out, PATH_MAX, "%s/%s", folder, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
 }
 
-/* ---- the default place */
+/* ---- the default location */
 
 static int default_base(char out[PATH_MAX])
 {
@@ -43,7 +46,7 @@ static int default_base(char out[PATH_MAX])
 			       : complain("signing keys", -ENAMETOOLONG, "; give --keys FOLDER");
 }
 
-/* Each folder on the way, for nobody else to look into. */
+/* Creates every folder on the path, accessible only to the owner. */
 static int make_way(const char *folder)
 {
 	char path[PATH_MAX];
@@ -60,7 +63,7 @@ static int make_way(const char *folder)
 		       : 0;
 }
 
-/* Whose keys these are. -ENOENT: it does not say. */
+/* Reads which content folder these keys belong to. -ENOENT: it is not stated. */
 static int read_owner(char owner[PATH_MAX], const char *keys)
 {
 	char path[PATH_MAX];
@@ -90,7 +93,8 @@ static int write_owner(const char *keys, const char *content)
 	return rc < 0 ? complain(path, rc, "") : 0;
 }
 
-/* Keys of that name which belong to a folder that is no more: perhaps this one, moved. */
+/* Warns about keys of the same name whose content folder no longer exists; it may be this folder,
+ * moved. */
 static void tell_orphan(const char *orphan, const char *content)
 {
 	char owner[PATH_MAX];
@@ -104,7 +108,8 @@ static void tell_orphan(const char *orphan, const char *content)
 			content, orphan, owner, orphan);
 }
 
-/* The place of content's keys below base: its own, or one that belongs to nobody, or a new one. */
+/* Chooses the folder below base: the one that names this content, or one that belongs to nobody, or
+ * a new one. */
 static int choose(char out[PATH_MAX], const char *base, const char *content)
 {
 	const char *name = content[1] ? strrchr(content, '/') + 1 : "root";
@@ -135,7 +140,7 @@ static int choose(char out[PATH_MAX], const char *base, const char *content)
 	return complain(content, -EMFILE, ": too many keys of that name; give --keys FOLDER");
 }
 
-/* ---- out of the content folder */
+/* ---- moving keys out of the content folder */
 
 static int copy_file(const char *from, const char *to, mode_t mode)
 {
@@ -147,7 +152,7 @@ static int copy_file(const char *from, const char *to, mode_t mode)
 	if (rc == 0) {
 		fd = open(to, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, mode);
 		rc = fd < 0 ? -errno : 0;
-		errno = 0; /* a short write sets none */
+		errno = 0; /* a short write does not set errno */
 		if (rc == 0 &&
 		    (write(fd, file.data, file.size) != (ssize_t)file.size || fsync(fd) < 0))
 			rc = errno ? -errno : -ENOSPC;
@@ -172,7 +177,7 @@ static int old_file(char out[PATH_MAX], const char *folder, int index)
 		       : -ENAMETOOLONG;
 }
 
-/* Keys and roots go, then the folders, where nothing else lies in them. */
+/* Removes keys and roots, then the folders if they are empty. */
 static void remove_files(const char *folder)
 {
 	char path[PATH_MAX];
@@ -188,14 +193,15 @@ static void remove_files(const char *folder)
 			 folder);
 }
 
-/* To another file system: copied aside, synced, renamed; only then are the old ones removed. */
+/* Moves the keys to another file system: they are copied to a temporary folder, synced and renamed;
+ * only then are the old ones removed. */
 static int copy_across(const char *from, const char *to)
 {
 	char aside[PATH_MAX], path[PATH_MAX], copy[PATH_MAX];
 	int rc = snprintf(aside, PATH_MAX, "%s.move", to) < PATH_MAX ? 0 : -ENAMETOOLONG;
 
 	if (rc == 0 && access(aside, F_OK) == 0)
-		remove_files(aside); /* of an interrupted run */
+		remove_files(aside); /* left by an interrupted run */
 	if (rc == 0)
 		rc = join(path, aside, "root");
 	if (rc == 0 && ((mkdir(aside, 0700) < 0 && errno != EEXIST) ||
@@ -248,7 +254,8 @@ static bool is_one_folder(const char *a, const char *b)
 	       first.st_ino == second.st_ino;
 }
 
-/* folder becomes old where the keys must stay there. */
+/* Moves the keys out of DIR/keys. If that fails, folder is set to the old place, where they
+ * stay. */
 static void move_old(char folder[PATH_MAX], const char *content)
 {
 	char old[PATH_MAX];
@@ -283,10 +290,10 @@ static void move_old(char folder[PATH_MAX], const char *content)
 	}
 }
 
-/* ---- all of it */
+/* ---- putting it together */
 
-/* Two builds at once must not make keys twice. Freed by close; a folder that cannot be locked is
- * used without. */
+/* Locks the parent folder, because two builds at once must not create keys twice. Closing the
+ * descriptor releases the lock. A folder that cannot be locked is used without one. */
 static int lock_beside(const char *folder)
 {
 	char parent[PATH_MAX];
@@ -303,7 +310,7 @@ static int lock_beside(const char *folder)
 	return fd;
 }
 
-/* Where --keys says. Only the folders above are made here. */
+/* Uses the folder given with --keys. Only the folders above it are created here. */
 static int take_given(char folder[PATH_MAX], const char *given)
 {
 	size_t size = strlen(given);
@@ -349,7 +356,7 @@ static void judge_place(const char *folder, const char *content)
 			 folder);
 }
 
-/* The lock is held meanwhile. */
+/* Called while the lock is held. */
 static int open_at(struct publisher_keys *out, char folder[PATH_MAX], const char *content,
 		   bool is_given, bool *made)
 {
@@ -385,7 +392,8 @@ int keys_open(struct publisher_keys *out, char folder[PATH_MAX], const char *con
 	if (rc < 0)
 		return rc;
 	if (!given)
-		snprintf(folder, PATH_MAX, "%.*s/", PATH_MAX - 2, base); /* what is beside: base */
+		/* the trailing slash makes base itself the parent folder */
+		snprintf(folder, PATH_MAX, "%.*s/", PATH_MAX - 2, base);
 	lock = lock_beside(folder);
 	if (!given)
 		rc = choose(folder, base, content);
