@@ -1,6 +1,5 @@
 /* Reduces a page's HTML in one pass over the bytes: keeps text, tag names, src of img and href of
  * a, and drops everything else. */
-
 #include "format/html_tags.h"
 
 #include <string.h>

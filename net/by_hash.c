@@ -1,7 +1,6 @@
 /* Implements the hash map with open addressing and linear probing. There are no tombstones: removal
  * shifts the following entries back. The key is already a hash, so its first 8 bytes select the
  * slot. */
-
 #include "net/by_hash.h"
 
 #include <errno.h>

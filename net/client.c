@@ -1,6 +1,5 @@
 /* Client side of the fetcher's socket: starts gopura-fetch or connects to it, verifies each object
  * that arrives, and repeats all requests after a reconnect. */
-
 #include "net/client.h"
 
 #include <errno.h>
@@ -314,8 +313,7 @@ static void disconnect(struct net_client *client, const char *why)
 		log_debug("net", "the fetcher's socket was not watched");
 	packets_finish(&client->packets);
 	if (client->pid)
-		/* it also exits by itself, because its socket is closed */
-		kill(client->pid, SIGTERM);
+		kill(client->pid, SIGTERM); /* its closed socket ends it anyway */
 	retry_later(client);
 }
 

@@ -52,7 +52,8 @@ void net_client_destroy(struct net_client *client);
 
 /* An epoll descriptor, borrowed. It is readable when net_client_dispatch has work to do. */
 int net_client_fd(const struct net_client *client);
-/* Calls the events. Takes about 3 ms at most. Returns a negative errno only if epoll_wait fails. */
+/* Calls the events. Handles messages for about 3 ms, the rest in later calls. Returns a negative
+ * errno only if epoll_wait fails. */
 must_check int net_client_dispatch(struct net_client *client);
 
 /* Makes this the only release in use: drops every want and forgets every keep, so request again

@@ -1,6 +1,5 @@
 /* Runs each close() on a detached thread with all signals blocked, and counts the threads that have
  * not finished. */
-
 #include "net/closer.h"
 
 #include <pthread.h>

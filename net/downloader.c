@@ -1,6 +1,5 @@
 /* Decides where each wanted object comes from: cache, USB stick, or server. It also plans the range
  * requests under the limits for number, size and rate. */
-
 #include "net/downloader.h"
 
 #include <errno.h>
@@ -99,8 +98,7 @@ void downloader_want(struct downloader *downloader, const struct message_want *a
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
-			/* the rate limit no longer applies to it */
-			downloader->plan_changed = true;
+			downloader->plan_changed = true; /* no longer rate-limited */
 		want->asked.priority = asked->priority;
 		downloader->fresh_changed = true;
 		return;

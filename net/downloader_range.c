@@ -1,6 +1,5 @@
 /* Requests a range of a pack and splits the answer into objects. A range holds objects of one pack
  * in the order of their places, with small gaps. Each object is passed on when it is complete. */
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Manages the locators of the releases in use: reads them from the cache, downloads them from the
  * server, and looks up the place of an object in them. */
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
-/* The main loop of gopura-fetch. It connects the kiosk's socket, the downloader, the metadata poll,
- * the USB stick and the metrics socket. */
-
+/* The event loop of gopura-fetch. It serves the kiosk's socket and runs the downloader, the
+ * metadata poll, the USB stick and the metrics socket. */
 #include "net/fetch.h"
 
 #include <errno.h>
@@ -211,8 +210,7 @@ static int obey(struct fetch *fetch, const struct message *message)
 		return 0;
 	case MESSAGE_TRUST:
 		if (message->root_version != fetch->root_version)
-			/* the stick's release may be valid under this root */
-			stick_forget(fetch->stick);
+			stick_forget(fetch->stick); /* may be valid under this root */
 		fetch->root_version = message->root_version;
 		stick_trust(fetch->stick, message->root_version);
 		poll_trust(fetch->poll, message->root_version);

@@ -1,6 +1,5 @@
 /* HTTP requests with libcurl's multi interface, driven by an epoll descriptor and a timer. It
  * checks ranges, sizes and redirections of each answer, and counts received bytes. */
-
 #include "net/http.h"
 
 #include <curl/curl.h>

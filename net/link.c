@@ -1,6 +1,5 @@
 /* Tracks whether the server answers, and computes randomised exponential pauses between
  * attempts. */
-
 #include "net/link.h"
 
 #include <stdlib.h>

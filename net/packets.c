@@ -1,6 +1,5 @@
 /* Sends and receives whole messages over a SOCK_SEQPACKET socket, with sealed memory descriptors
  * for large objects and a queue for what the socket does not accept yet. */
-
 #include "net/packets.h"
 
 #include <errno.h>

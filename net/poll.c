@@ -1,6 +1,5 @@
 /* State machine that requests root, timestamp and release metadata in turn, and passes changed
  * files to the kiosk. It waits for the kiosk's verdict after a new root. */
-
 #include "net/poll.h"
 
 #include <errno.h>

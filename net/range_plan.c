@@ -1,6 +1,5 @@
 /* Selects neighbouring objects for one range request, starting from the most urgent one and growing
  * in both directions. */
-
 #include "net/range_plan.h"
 
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Parses urls with libcurl's url interface and compares hosts and ports, to decide whether a
  * redirection may be followed. */
-
 #include "net/redirect.h"
 
 #include <ctype.h>

@@ -1,11 +1,11 @@
-/* Decides which redirections of the museum server are followed. Pure functions.
+/* Decides which redirections of the museum server are followed. Pure functions. Both the host and
+ * the scheme must be acceptable.
  *
- * - The same host and port are allowed. A server used over http may also redirect to its https on
- * port 443.
- * - A listed host is allowed: "name" only on the default port of the scheme, "name:port" only on
- * that port.
- * - https is always allowed; http only if the server itself is used over http, and never after
- * https.
+ * Host: the same host and port as the server (if the server is used over http, also its https on
+ * port 443), or a listed host: "name" on the default port of the scheme, "name:port" on that port
+ * only.
+ *
+ * Scheme: https, or http if the server itself is used over http and no https url came before.
  *
  * Without this check, whoever answers for the server once (a captive portal, a compromised server)
  * could make the terminal send requests to any machine of the museum's network. */

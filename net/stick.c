@@ -1,6 +1,5 @@
 /* Runs the stick reader on its own thread, one job at a time: a look for a stick, or a batch of
  * objects. It detects jobs that hang. */
-
 #include "net/stick.h"
 
 #include <errno.h>

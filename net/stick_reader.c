@@ -1,6 +1,5 @@
 /* Reads metadata, locators and objects from a mounted stick. It uses only regular files and never
  * follows links. */
-
 #include "net/stick_reader.h"
 
 #include <errno.h>

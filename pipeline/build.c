@@ -1,6 +1,5 @@
 /* Runs the stages from content folder to release, and skips them if a stamp over all inputs shows
  * that nothing has changed. */
-
 #include "pipeline/build.h"
 
 #include <dirent.h>

@@ -1,5 +1,4 @@
 /* gopura-content annotations: exports and imports W3C Web Annotations. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

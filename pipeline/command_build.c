@@ -1,5 +1,4 @@
 /* gopura-content build: makes a signed release from a content folder. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* gopura-content hierarchy: makes the multiresolution hierarchy of a content folder and reports its
  * levels. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* gopura-content import: reads scans, reports what was found and repaired, and can save the joined
  * mesh. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

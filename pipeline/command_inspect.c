@@ -1,5 +1,4 @@
 /* gopura-content inspect: shows what an object, a file or a release contains. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

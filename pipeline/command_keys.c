@@ -1,5 +1,4 @@
 /* gopura-content keys: creates the signing keys of a content folder, or shows where they are. */
-
 #include "pipeline/commands.h"
 
 #include <getopt.h>

@@ -1,6 +1,5 @@
 /* gopura-content publish: signs a release of what was built, repeats an earlier release, or renews
  * the timestamp. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,5 +1,4 @@
 /* gopura-content render: draws reference pictures of the scan at full resolution. */
-
 #include "pipeline/commands.h"
 
 #include <getopt.h>

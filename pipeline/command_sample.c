@@ -1,5 +1,4 @@
 /* gopura-content sample: renders the sampling images of a content folder. */
-
 #include "pipeline/commands.h"
 
 #include <getopt.h>

@@ -1,5 +1,4 @@
 /* gopura-content verify: checks a whole release and prints a summary. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,5 +1,4 @@
 /* Helpers shared by the commands of gopura-content. */
-
 #include "pipeline/commands.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Keeps the kiosk's state as one record in an SQLite database and in a second copy, and recovers it
  * after damage. */
-
 #include "storage/state.h"
 
 #include <errno.h>

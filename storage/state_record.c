@@ -1,5 +1,4 @@
 /* Encodes and decodes the state record, and reads and writes its second copy. */
-
 #include "storage/state_record.h"
 
 #include <errno.h>

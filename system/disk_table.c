@@ -1,6 +1,5 @@
 /* Reads and writes a GPT: enlarges the last partition and replaces the GUIDs of the image. The
  * entries alternate between two places, so that a power cut never leaves a half-written table. */
-
 #include "system/disk_table.h"
 
 #include <errno.h>

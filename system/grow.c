@@ -1,6 +1,5 @@
 /* Enlarges the data partition at boot: first the partition table, then the kernel's view of the
  * partition, then the mounted ext4 file system. */
-
 #include "system/grow.h"
 
 #include <errno.h>

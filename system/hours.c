@@ -1,6 +1,5 @@
 /* Parses weekly opening hours into a bitmap with one bit per minute, and finds the next time that
  * they open or close. */
-
 #include "system/hours.h"
 
 #include <ctype.h>

@@ -1,6 +1,5 @@
 /* Reads gopura.conf: holds the table of its settings, checks them against each other, and looks for
  * the files they name. */
-
 #include "system/terminal.h"
 
 #include <arpa/inet.h>

@@ -49,7 +49,8 @@ bool terminal_set_passphrase(const struct setting *setting, void *target, const 
 bool terminal_set_country(const struct setting *setting, void *target, const char *value);
 /* [health] listen: ADDRESS:PORT, or [ADDRESS]:PORT for IPv6. */
 bool terminal_set_listen(const struct setting *setting, void *target, const char *value);
-/* [usb] allow: one or more of keyboard, network, wifi, panel. */
+/* [usb] allow: one or more of keyboard, network, wifi, panel. An empty list returns false and
+ * clears the field. */
 bool terminal_set_usb(const struct setting *setting, void *target, const char *value);
 
 /* Returns whether url names the mounted stick itself or release/ on it. These are the two places

@@ -1,5 +1,4 @@
 /* Walks libxml2's tree of a page and turns elements and text into blocks. */
-
 #include "ui/html.h"
 
 #include <errno.h>

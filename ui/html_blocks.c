@@ -1,6 +1,5 @@
 /* Builds the list of blocks: opens and closes them, appends text, and records spans of equal
  * appearance. */
-
 #include "ui/html_parts.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Tables that export and import of annotations share: selectors, Dublin Core elements, and purposes
  * of texts. */
-
 #include "pipeline/content/annotations.h"
 
 #include <stdlib.h>

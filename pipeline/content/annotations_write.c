@@ -194,8 +194,7 @@ static int check_written(struct importer *im)
 static void take_away(struct importer *im)
 {
 	for (size_t i = im->written_count; i-- > 0;)
-		/* folders are empty by now, or contain files that are not ours */
-		remove(im->written[i]);
+		remove(im->written[i]); /* our folders are empty by now */
 }
 
 bool importer_has_room(struct importer *im)

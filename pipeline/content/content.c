@@ -1,6 +1,5 @@
 /* Reads temple.ini with its table of keys, fills in defaults, and builds paths inside the content
  * folder. */
-
 #include "pipeline/content/content.h"
 
 #include <errno.h>

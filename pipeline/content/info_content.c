@@ -1,6 +1,5 @@
 /* Shared helpers of the readers of a content folder: complaints, searching, freeing, and checking
  * pictures. */
-
 #include "pipeline/content/info_content.h"
 
 #include <errno.h>

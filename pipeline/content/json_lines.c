@@ -1,5 +1,4 @@
 /* Scans JSON text for line numbers, because cJSON keeps no positions. */
-
 #include "pipeline/content/json_lines.h"
 
 #include <glib.h>

@@ -1,6 +1,5 @@
 /* Checks lists of faces as regions of parts, and finds their triangles and place on the imported
  * mesh. */
-
 #include "pipeline/content/part_faces.h"
 #include "pipeline/content/info_build.h"
 
@@ -96,8 +95,8 @@ static void middle_of(const struct mesh *mesh, uint32_t triangle, float out[3])
 			 3;
 }
 
-/* Places the region at the middle of the bounding box of its faces. The radius is half the box's
- * diagonal divided by the square root of 3: for a cube, half its side. The anchor is the face
+/* Places the region at the middle of the bounding box of the faces' centres. The radius is half the
+ * box's diagonal divided by the square root of 3: for a cube, half its side. The anchor is the face
  * nearest to the middle. */
 static void place(struct info_faces *faces, const struct mesh *mesh, const struct part_faces *part)
 {

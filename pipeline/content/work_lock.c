@@ -1,5 +1,4 @@
 /* Takes a POSIX record lock on DIR/.work/lock. */
-
 #include "pipeline/content/work_lock.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Parses a list of face numbers and ranges into sorted ranges, and finds the triangles that come
  * from these faces. */
-
 #include "pipeline/import/face_list.h"
 
 #include <ctype.h>

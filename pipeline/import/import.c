@@ -1,6 +1,5 @@
 /* Imports one scan: detects the format, calls the reader, converts to metres with z up, repairs the
  * mesh, and gives every vertex a colour. */
-
 #include "pipeline/import/import_parts.h"
 
 #include <ctype.h>

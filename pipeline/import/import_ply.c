@@ -1,6 +1,5 @@
 /* Reads a PLY scan: collects the vertices and triangles of the streaming reader into a mesh, and
  * loads its textures. */
-
 #include "pipeline/import/import_parts.h"
 
 #include <errno.h>

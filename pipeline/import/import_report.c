@@ -1,5 +1,4 @@
 /* Prints the import report as text. */
-
 #include "pipeline/import/import.h"
 
 #include <inttypes.h>

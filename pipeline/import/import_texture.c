@@ -1,6 +1,5 @@
 /* Decodes the pictures of a scan into textures. Unusable pictures are replaced by a plain colour
  * with a warning. */
-
 #include "pipeline/import/import_parts.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Builds an empty Landlock ruleset, and a seccomp filter with a short list of allowed system
  * calls. */
-
 #include "pipeline/import/lockdown.h"
 
 #include <errno.h>

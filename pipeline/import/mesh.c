@@ -1,5 +1,4 @@
 /* Frees, measures and joins meshes, and reads texture pixels. */
-
 #include "pipeline/import/mesh.h"
 
 #include <errno.h>

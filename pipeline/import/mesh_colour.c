@@ -1,5 +1,4 @@
 /* Averages texture pixels over the faces around each vertex to get vertex colours. */
-
 #include "pipeline/import/mesh_colour.h"
 
 #include <errno.h>

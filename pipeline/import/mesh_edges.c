@@ -1,6 +1,5 @@
 /* Collects the edges of all faces by counting sort over their lower end, so that equal edges become
  * neighbours. */
-
 #include "pipeline/import/mesh_edges.h"
 
 #include <errno.h>

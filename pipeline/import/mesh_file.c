@@ -1,6 +1,5 @@
 /* Writes and reads mesh files. The reader checks sizes, hash and indices before it trusts
  * anything. */
-
 #include "pipeline/import/mesh_file.h"
 
 #include <errno.h>

@@ -1,5 +1,4 @@
 /* Finds equal vertices with a hash table (open addressing). */
-
 #include "pipeline/import/mesh_places.h"
 
 #include <stdbool.h>

@@ -1,5 +1,4 @@
 /* Removes unusable faces and duplicate vertices, counts edges, and orients the faces. */
-
 #include "pipeline/import/mesh_repair.h"
 
 #include <errno.h>

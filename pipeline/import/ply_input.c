@@ -1,5 +1,4 @@
 /* Buffered input for the PLY reader: views of binary data, and fast parsing of ASCII numbers. */
-
 #include "pipeline/import/ply_parts.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Forks a child with resource limits and the lockdown, serves its requests to open files over a
  * socket, and reports how it ended. */
-
 #include "pipeline/import/sandbox.h"
 
 #include <errno.h>

@@ -26,9 +26,9 @@ struct sandbox_options {
 	void *open_data;
 };
 
-/* The work of the child. Of the parent's descriptors it has only result_fd; standard input and
- * output lead to /dev/null. Its memory is a copy: changes are lost except in `shared`. Returns 0,
- * or a negative errno with a fault. */
+/* The work of the child. Of the parent's descriptors it has only result_fd and the standard ones,
+ * which lead to /dev/null (standard error stays open in a build with AddressSanitizer). Its memory
+ * is a copy: changes are lost except in `shared`. Returns 0, or a negative errno with a fault. */
 typedef int (*sandbox_work)(void *shared, struct fault *fault);
 
 /* In the child: opens a file through options.open in the parent. Returns a descriptor owned by the

@@ -1,6 +1,5 @@
 /* Creates, reads and checks the publisher's key files and the signed roots. New files are written
  * so that a power cut leaves either none or a complete one. */
-
 #include "pipeline/keys/keys.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
 /* Chooses the folder of a content folder's signing keys, moves keys out of the content folder, and
  * opens or creates them under a lock. */
-
 #include "pipeline/keys/keys_place.h"
 
 #include <errno.h>
@@ -392,8 +391,7 @@ int keys_open(struct publisher_keys *out, char folder[PATH_MAX], const char *con
 	if (rc < 0)
 		return rc;
 	if (!given)
-		/* the trailing slash makes base itself the parent folder */
-		snprintf(folder, PATH_MAX, "%.*s/", PATH_MAX - 2, base);
+		snprintf(folder, PATH_MAX, "%.*s/", PATH_MAX - 2, base); /* parent: base */
 	lock = lock_beside(folder);
 	if (!given)
 		rc = choose(folder, base, content);
