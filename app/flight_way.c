@@ -1,3 +1,6 @@
+/* Chooses the path of a camera flight: a straight line, or a quadratic Bezier curve that bends up
+ * or to a side around obstacles. Candidate curves are tried in order of their bend, each tested in
+ * short segments. */
 #include "app/flight_way.h"
 
 #include <cglm/cglm.h>

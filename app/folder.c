@@ -1,3 +1,5 @@
+/* Finds and creates the state folder, and keeps the file touch.seen in it, which records that a
+ * touchscreen was once connected. */
 #include "app/folder.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* The kiosk's event loop: starts the modules, waits for all their descriptors with one epoll,
+ * dispatches events, draws frames when they are due, and stops the modules in reverse order. */
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>

@@ -1,3 +1,5 @@
+/* Moves the eye: turning, zooming and panning about a pivot, flings that slow down, and timed
+ * flights. The eye stays within bounds; only a flight without a free path may pass a surface. */
 #include "app/navigator.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* Parses the command line of gopura-kiosk with getopt_long, checks each value, and prints the help
+ * text. */
 #include "app/options.h"
 
 #include <ctype.h>

@@ -1,3 +1,5 @@
+/* Controls the panel over the day: opening hours, waking it by touch, and the small picture shift
+ * against burn-in. Also reports to the service manager that frames reach the panel. */
 #include <limits.h>
 #include <string.h>
 #include <time.h>

@@ -1,3 +1,5 @@
+/* Compares the objects wanted this turn with those already asked for, as two lists sorted by hash,
+ * and sends only the differences to the fetcher. */
 #include "app/wants.h"
 
 #include <stdlib.h>

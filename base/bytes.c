@@ -1,3 +1,5 @@
+/* Implements the byte buffer and the reader, and the functions that read whole files and replace
+ * files atomically. */
 #include "base/bytes.h"
 
 #include <ctype.h>

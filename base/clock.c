@@ -1,3 +1,4 @@
+/* Reads the system's clocks, and judges whether the wall clock can be trusted. */
 #include "base/clock.h"
 
 #include <stdio.h>

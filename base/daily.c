@@ -1,3 +1,4 @@
+/* Parses a daily time span such as 22:00-06:00, and tests whether a moment lies in it. */
 #include "base/daily.h"
 
 #include <errno.h>

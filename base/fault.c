@@ -1,3 +1,4 @@
+/* Formats the message of a fault and keeps the first one. */
 #include "base/fault.h"
 
 #include <stdarg.h>

@@ -1,3 +1,5 @@
+/* Splits Korean syllables into their letters and composes letters into syllables, with the
+ * arithmetic and the tables of Unicode. */
 #include "base/hangul.h"
 
 #include <stdbool.h>

@@ -1,3 +1,5 @@
+/* Reads an INI file with inih against a table of known keys, counts lines for error messages, and
+ * parses common kinds of values. */
 #include "base/ini.h"
 
 #include <errno.h>

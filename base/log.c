@@ -1,3 +1,4 @@
+/* Formats log lines and writes each to standard error with one call. */
 #include "base/log.h"
 
 #include <stdarg.h>

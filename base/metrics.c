@@ -1,3 +1,5 @@
+/* Writes metrics in Prometheus's text format, and validates and searches such text with a small
+ * parser. */
 #include "base/metrics.h"
 
 #include <math.h>

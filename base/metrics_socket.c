@@ -1,3 +1,5 @@
+/* Listens on a Unix socket, and answers each connection with the program's metrics and those that
+ * all programs have in common. */
 #include "base/metrics_socket.h"
 
 #include <errno.h>

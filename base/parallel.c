@@ -1,3 +1,5 @@
+/* Distributes numbered pieces of work over threads with an atomic counter, and keeps the failure of
+ * the lowest piece. */
 #include "base/parallel.h"
 
 #include <pthread.h>

@@ -1,3 +1,5 @@
+/* Formats and prints the progress of long work: a bar on a terminal, otherwise a log line at
+ * intervals. */
 #include "base/progress.h"
 
 #include <pthread.h>

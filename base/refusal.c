@@ -1,3 +1,4 @@
+/* Records the latest refusal with its time. */
 #include "base/refusal.h"
 
 #include <stdio.h>

@@ -1,3 +1,5 @@
+/* Opens regular files safely: with openat2 where the kernel has it, otherwise one path component at
+ * a time without following links. */
 #include "base/safe_open.h"
 
 #include <errno.h>

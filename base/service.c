@@ -1,3 +1,4 @@
+/* Sends sd_notify messages to systemd, and computes when the next watchdog message is due. */
 #include "base/service.h"
 
 #include <systemd/sd-daemon.h>

@@ -1,3 +1,5 @@
+/* Parses a settings file line by line against a table of settings. Collects all faults, and
+ * suggests the nearest known name for a misspelt one. */
 #include "base/settings.h"
 
 #include <errno.h>

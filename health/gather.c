@@ -1,3 +1,5 @@
+/* Collects a snapshot: connects to the metrics sockets of kiosk and fetcher, reads both answers
+ * with one deadline, and adds the machine's values. */
 #include "health/gather.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* Reads memory, temperature, disk writes, uptime and firmware slot from /proc and /sys, the room on
+ * the data partition, and the file of set-up faults. */
 #include "health/machine.h"
 
 #include <dirent.h>

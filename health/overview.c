@@ -1,3 +1,5 @@
+/* Writes the HTML page for people: the verdict, the findings, and tables of what is shown and of
+ * the machine's values. */
 #include "health/overview.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* Builds the HTTP answers of gopura-health: heads, the body of each page but the file of visits,
+ * and refusals. */
 #include "health/page.h"
 
 #include <math.h>

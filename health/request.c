@@ -1,3 +1,4 @@
+/* Parses the head of an HTTP request strictly, and finds the page that it asks for. */
 #include "health/request.h"
 
 #include <string.h>

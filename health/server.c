@@ -1,3 +1,5 @@
+/* A small HTTP server: one poll loop over listeners and clients, with a limit on time and memory
+ * for each client. */
 #include "health/server.h"
 
 #include <errno.h>

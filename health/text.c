@@ -1,3 +1,4 @@
+/* Appends plain, formatted and HTML-escaped text to a buffer. */
 #include "health/text.h"
 
 #include <stdarg.h>

@@ -1,3 +1,5 @@
+/* Judges a snapshot by fixed rules: each rule that fails adds a finding with what is wrong and how
+ * to mend it. */
 #include "health/verdict.h"
 
 #include <errno.h>

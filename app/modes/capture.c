@@ -1,3 +1,6 @@
+/* Writes pictures for --views and --shots: sets the camera for each listed view, waits until its
+ * picture has settled, and writes a PNG and a line of measurements; or writes PNGs at given times
+ * of a replay. */
 #include "app/modes/capture.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* Runs the safe page: a small loop that draws an animated page with Cairo into a display buffer,
+ * without the GPU, and reports to the service manager. */
 #include "app/modes/safe_mode.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* Runs the checks of --self-test one after another (settings, storage, trust root, touch, panel,
+ * GPU) and prints one line of result for each. */
 #include "app/modes/self_test.h"
 
 #include <dirent.h>

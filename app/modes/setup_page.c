@@ -1,3 +1,5 @@
+/* Draws the page that lists the faults of gopura.conf, or says that the file is missing. The page
+ * fades out after half a minute if the model can be shown. */
 #include <stdio.h>
 #include <string.h>
 

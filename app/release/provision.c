@@ -1,3 +1,5 @@
+/* Reads gopura.conf and the board profile, and merges their values into the options that the
+ * command line left open. */
 #include "app/release/provision.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* The thread that writes state.db. Callers leave requests under a lock; the thread takes them all
+ * at once, writes them in a safe order, and answers through an eventfd. */
 #include "app/release/state_writer.h"
 
 #include <errno.h>

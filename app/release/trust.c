@@ -1,3 +1,5 @@
+/* Decides whether a root, timestamp.json or release.json is accepted, and clears the floors that
+ * withdrawn keys may have set. */
 #include "app/release/trust.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* Follows releases: checks the metadata that arrives, starts loading a newer release, has it
+ * written to state.db, and goes back to the release before it when it does not work. */
 #include "app/release/updater.h"
 
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* Computes the camera path around the model while nobody is there: the first pose turned about the
+ * vertical axis, with an eased move between resting places. */
 #include "app/visit/attract_camera.h"
 
 #include <math.h>

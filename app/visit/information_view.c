@@ -1,3 +1,5 @@
+/* Loads a release's information page, database and pictures as they arrive, and fills the overlay
+ * with their texts. */
 #include "app/visit/information_view.h"
 
 #include <errno.h>

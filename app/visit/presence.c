@@ -1,3 +1,4 @@
+/* The state machine that decides from touches and elapsed time whether a visitor is there. */
 #include "app/visit/presence.h"
 
 enum { SECOND_MS = 1000 };

@@ -1,3 +1,5 @@
+/* Handles the visitor's two tools, the raking light and the section: switches them on and off,
+ * moves them with a finger on their discs, and passes them to scene and overlay. */
 #include <math.h>
 #include <string.h>
 

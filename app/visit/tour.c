@@ -1,3 +1,5 @@
+/* The state machine of one tour: how far along its path it is, and whether it waits for the eye,
+ * flies, or is halted. */
 #include "app/visit/tour.h"
 
 #include <string.h>

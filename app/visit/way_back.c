@@ -1,3 +1,5 @@
+/* The stack of places behind the back button: the oldest is dropped when it is full, and places
+ * that look like the current one are skipped. */
 #include "app/visit/way_back.h"
 
 #include <string.h>
