@@ -1,4 +1,5 @@
-/* What fingers mean: on the model they move the eye, on the words they open and close. */
+/* Gives touches and gestures their meaning: on the model they move the eye; on the overlay they
+ * open, close, scroll and type. Also starts the camera flights that taps ask for. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -10,13 +11,14 @@
 #include "base/log.h"
 
 #define FLIGHT_MS        900
-#define PART_LEAST_M     0.5f  /* a part without a size, as the flight to it sees it */
-#define PART_LEAST_SHARE 0.03f /* the same of a small model: of its diagonal */
+#define PART_LEAST_M     0.5f  /* smallest size of a part for a flight to it */
+#define PART_LEAST_SHARE 0.03f /* on a small model: a share of its diagonal */
 #define SLOP_MM          3
 #define NEAR_MM          10
 #define WHEEL_STEP       1.12f
 
-/* The surface point under a finger; where there is none, the model's middle's distance counts. */
+/* Finds the surface point under a finger. If the ray hits nothing, point_m is the point on the ray
+ * at the distance of the model's centre, and the result is false. */
 static bool pick(struct kiosk *kiosk, float x_px, float y_px, float point_m[3])
 {
 	const struct navigator_options *o = &kiosk->navigator.options;
@@ -46,7 +48,7 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 
 /* ---- flights */
 
-/* Flies to where the part stands in the middle of what the words leave of the panel. */
+/* Flies to a pose in which the part is in the middle of the area that the overlay leaves free. */
 static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 {
 	const struct overlay_rect rect =
@@ -100,8 +102,8 @@ static void open_page(struct kiosk *kiosk, int part)
 	}
 }
 
-/* Its part stood in the middle of what the page left: now in that of the whole, unless somebody has
- * looked elsewhere. */
+/* Closes the page. Its part was in the middle of the area beside the page; if nobody has moved the
+ * eye since, flies so that the part is in the middle of the whole panel. */
 static void close_page(struct kiosk *kiosk)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -114,7 +116,8 @@ static void close_page(struct kiosk *kiosk)
 
 /* ---- taps */
 
-/* By the release's labels; by the regions themselves where those are not here. */
+/* Returns the part under a finger, or -1. Uses the labels of the release; if they are not loaded,
+ * the regions of the parts. */
 static int part_under(struct kiosk *kiosk, float x_px, float y_px)
 {
 	const struct info *info = information_view_info(kiosk->shown.view);
@@ -139,8 +142,8 @@ static void tap_model(struct kiosk *kiosk, float x_px, float y_px)
 	show_card(kiosk, part);
 }
 
-/* To the tour; to the part's page; to one that has none on the model, beside the page that is read.
- */
+/* Follows a link of a page: starts the tour, or opens the part's page. A part without a page is
+ * shown on the model, and the open page stays. */
 static void follow_link(struct kiosk *kiosk, const char *link)
 {
 	const struct info *info = information_view_info(kiosk->shown.view);
@@ -159,7 +162,8 @@ static void follow_link(struct kiosk *kiosk, const char *link)
 	open_page(kiosk, part);
 }
 
-/* What is typed is nobody's business: a number is said, for whoever tests keyboards. */
+/* The log gets only the number of bytes typed, not the text, which is private. The number is enough
+ * to test keyboards. */
 static void press_key(struct kiosk *kiosk, int key)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -170,7 +174,8 @@ static void press_key(struct kiosk *kiosk, int key)
 	log_debug("app", "search: %zu bytes typed", strlen(overlay_query(overlay)));
 }
 
-/* What a page leaves for the model may be another piece of the panel then. */
+/* Switches large text or easy reach on or off. Easy reach moves the page, so the area left for the
+ * model may change; the part is then centred again. */
 static void change_comfort(struct kiosk *kiosk, enum overlay_action_kind which)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -187,14 +192,16 @@ static void change_comfort(struct kiosk *kiosk, enum overlay_action_kind which)
 		fly_to_part(kiosk, (uint32_t)overlay_page(overlay));
 }
 
-/* What is to be read, or lies elsewhere, and the eye's way do not go together. */
+/* Returns whether the action halts a tour: it opens something to read or leads elsewhere, which
+ * does not fit a moving camera. */
 static bool halts_tour(enum overlay_action_kind kind)
 {
 	return kind == OVERLAY_OPEN_CARD || kind == OVERLAY_OPEN_PAGE || kind == OVERLAY_SEARCH ||
 	       kind == OVERLAY_HELP || kind == OVERLAY_LINK || kind == OVERLAY_FOUND;
 }
 
-/* The way back leads to before it. What only closes something is none. */
+/* Returns whether the action is a step that the back button can undo. An action that only closes
+ * something is no step. */
 static bool is_step(const struct kiosk *kiosk, enum overlay_action_kind kind)
 {
 	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -381,7 +388,7 @@ static void on_words(struct kiosk *kiosk, const struct gesture *gesture)
 		overlay_fling(overlay, gesture->vy_px_per_s);
 }
 
-/* Two lines a gesture, for whoever wonders what a panel's fingers did. */
+/* Logs the eye, twice per gesture, to help find out what fingers did on a panel. */
 static void say_eye(const struct kiosk *kiosk, const char *when)
 {
 	const float *eye_m = kiosk->navigator.eye_m;
@@ -428,7 +435,7 @@ static void on_gesture(void *data, const struct gesture *gesture)
 	struct kiosk *kiosk = data;
 
 	if (!kiosk->navigator_ready)
-		return; /* nothing is there to touch */
+		return; /* nothing can be touched yet */
 	kiosk_redraw(kiosk);
 	if (gesture->kind == GESTURE_PRESS)
 		on_press(kiosk, gesture);
@@ -454,9 +461,9 @@ void fingers_init(struct kiosk *kiosk)
 	kiosk->fingers_on_keys = 0;
 }
 
-/* Keys answer when the finger comes down, each finger for itself: who types with two does not
- * pinch, and whose finger slides off has typed all the same. true: the finger is a key's until it
- * lifts. */
+/* Handles the on-screen keyboard. A key acts when the finger comes down, each finger separately:
+ * two typing fingers are not a pinch, and a finger that slides off has still typed. Returns true if
+ * the finger belongs to a key until it lifts. */
 static bool types(struct kiosk *kiosk, const struct touch_event *event)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -487,7 +494,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 	struct touch_event seen = *event;
 
 	if (panel_takes_touch(kiosk, event) || setup_page_covers(kiosk))
-		return; /* for the panel alone, or a page without anything to touch */
+		return; /* the touch only woke the panel, or the setup page is shown */
 	if (visitor_takes_touch(kiosk, event))
 		return;
 	viewport_unshift(kiosk, &seen.x_px, &seen.y_px);
@@ -495,7 +502,7 @@ void fingers_on_touch(void *data, const struct touch_event *event)
 		gesture_feed(&kiosk->gestures, &seen);
 }
 
-/* The wheel is a pinch: of the picture that is shown, else of the model. */
+/* A wheel step acts as a pinch: on the picture if one is shown, otherwise on the model. */
 static void turn_wheel(struct kiosk *kiosk, float x_px, float y_px, float scale)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);

@@ -48,7 +48,7 @@ static bool way_is_free(const struct flight_way *way, flight_way_free *is_free, 
 void flight_way_choose(struct flight_way *way, const float from_m[3], const float to_m[3],
 		       float size_m, flight_way_free *is_free, void *data)
 {
-	/* Up, and to the sides, as shares of the bow. */
+	/* Directions of the bend: up and sideways, as shares of its size. */
 	static const float bends[][2] = {
 		{ 1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7f, 0.7f }, { 0.7f, -0.7f }
 	};
@@ -63,10 +63,11 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 		return;
 	glm_vec3_sub(way->to_m, way->from_m, across);
 	length_m = glm_vec3_norm(across);
-	reach_m = fmaxf(length_m / 2, fminf(size_m / 2, 2 * length_m)); /* no detour for a step */
+	reach_m = fmaxf(length_m / 2,
+			fminf(size_m / 2, 2 * length_m)); /* no large detour for a short move */
 	glm_vec3_copy((vec3){ -across[1], across[0], 0 }, side);
 	if (glm_vec3_norm(side) < 1e-6f * reach_m)
-		side[0] = 1; /* straight up or down: any side */
+		side[0] = 1; /* the flight is vertical: any side will do */
 	glm_vec3_normalize(side);
 	for (size_t i = 0; i < ARRAY_COUNT(bows); i++) {
 		for (size_t k = 0; k < ARRAY_COUNT(bends); k++) {

@@ -1,4 +1,4 @@
-/* Where a flight leads: straight, or in a bow over or round what is in the way. A bow is a
+/* The path of a camera flight: straight, or a bend over or around an obstacle. A bend is a
  * quadratic Bezier curve. Pure. */
 #ifndef GOPURA_APP_FLIGHT_WAY_H
 #define GOPURA_APP_FLIGHT_WAY_H
@@ -6,18 +6,22 @@
 #include <stdbool.h>
 
 struct flight_way {
-	float from_m[3], over_m[3], to_m[3]; /* straight: over_m is half way */
+	float from_m[3], over_m[3],
+		to_m[3]; /* over_m: the control point; the midpoint if straight */
 };
 
-/* Nothing is between two places, or so near them that it would be cut open. */
+/* Returns whether the segment is free: nothing lies on it, or so close to it that the near plane
+ * would cut it open. */
 typedef bool flight_way_free(void *data, const float from_m[3], const float to_m[3]);
 
-/* The least bow that is free, of some that rise or give way to a side; where none is, straight.
- * size_m: about as high as what may be in the way. */
+/* Chooses the smallest free bend out of a fixed list that goes up, sideways or both; if none is
+ * free, a straight path. size_m: about the height of possible obstacles; it limits the bend.
+ * is_free is called with data, only during this call. */
 void flight_way_choose(struct flight_way *way, const float from_m[3], const float to_m[3],
 		       float size_m, flight_way_free *is_free, void *data);
-/* t: 0 to 1. */
+/* Writes the point at t, 0 to 1, to out_m. */
 void flight_way_at(const struct flight_way *way, float t, float out_m[3]);
+/* Returns the length of the path, in metres, approximated by 16 segments. */
 float flight_way_length_m(const struct flight_way *way);
 
 #endif

@@ -25,7 +25,7 @@ int folder_of_state(const char *dir, char out[PATH_MAX])
 		if (*slash != '/')
 			continue;
 		*slash = '\0';
-		mkdir(out, 0700); /* what cannot be made is found out at the end */
+		mkdir(out, 0700); /* a failure shows when the last folder is created */
 		*slash = '/';
 	}
 	if (mkdir(out, 0700) < 0 && errno != EEXIST) {
@@ -49,7 +49,7 @@ void folder_remember_touch(const char *folder, const char *name)
 
 	touch_path(folder, path);
 	if (access(path, F_OK) == 0)
-		return; /* a card does not wear */
+		return; /* written once, to spare the flash memory */
 	file = fopen(path, "we");
 	if (!file)
 		return;

@@ -1,5 +1,5 @@
-/* A frame: the eye moves, the scene is drawn, the words go over it, and what is missing is asked
- * for. Nothing here waits for disk, network or a decoder. */
+/* Draws one frame: moves the eye, draws the scene, draws the overlay over it, and asks the fetcher
+ * for missing objects. Nothing here waits for disk, network or a decoder. */
 #include <errno.h>
 #include <malloc.h>
 #include <math.h>
@@ -15,7 +15,8 @@
 #include "render/display/gl.h"
 
 enum {
-	STEP_MOST_MS = 50, /* of the navigator: a hiccup is not a jump */
+	STEP_MOST_MS =
+		50, /* longest time step of the navigator: after a delay the eye does not jump */
 	ANCHORS_A_FRAME = 3,
 	SAY_EYE_MS = 100,
 };
@@ -45,12 +46,14 @@ static bool anchor_is_hidden(struct kiosk *kiosk, const float anchor_m[3])
 	return free_m < distance - fmaxf(off, 0.03f * distance);
 }
 
-/* A few rays a frame: stone in front of an anchor changes slowly. */
+/* Tests a few anchors per frame with a ray, because what hides an anchor changes slowly. */
 static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 {
 	const struct info *info = information_view_info(kiosk->shown.view);
 
-	/* Not while something is merely missing: a kiosk without a network rests too. */
+	/* Tests all anchors again if the eye moves, the frame still changes, or other triangles
+	 * were drawn. Objects that are merely missing do not count, so a kiosk without a network
+	 * comes to rest too. */
 	if (kiosk->eye_moves || kiosk->shown.frame.moving ||
 	    kiosk->looked_triangles != kiosk->shown.frame.triangles)
 		kiosk->anchors_to_look = count;
@@ -65,7 +68,7 @@ static void look_at_anchors(struct kiosk *kiosk, uint32_t count)
 	}
 }
 
-/* Across; 0: it is a mere place. */
+/* Returns the diameter of the part on the panel, in pixels; 0 if it is only a point. */
 static float size_on_panel(const struct kiosk *kiosk, const struct info_part *part)
 {
 	const float distance_m =
@@ -183,7 +186,8 @@ static void add_wants(struct kiosk *kiosk, struct session *session)
 		wants_add(&kiosk->wants, &list[i]);
 }
 
-/* What is shown comes first; what is coming has what is left of the line. */
+/* Tells the fetcher what is wanted. The release that is shown comes first; the next release gets
+ * the rest of the bandwidth. */
 static void say_wants(struct kiosk *kiosk)
 {
 	wants_begin(&kiosk->wants);
@@ -204,7 +208,7 @@ static void say_first_picture(struct kiosk *kiosk)
 		 (long long)(clock_now_ms() - kiosk->started_ms));
 }
 
-/* The eye's way, for whoever plays a visit again on another clock. */
+/* Logs the path of the eye, so that a visit can be replayed with other timing. */
 static void say_eye(struct kiosk *kiosk, int64_t now_ms)
 {
 	const float *e = kiosk->camera.eye_m, *t = kiosk->camera.target_m;
@@ -219,8 +223,9 @@ static void say_eye(struct kiosk *kiosk, int64_t now_ms)
 		  (double)e[1], (double)e[2], (double)t[0], (double)t[1], (double)t[2]);
 }
 
-/* What loading took and freed, to the machine: once a rest, since it takes milliseconds (7 of the 5
- * M temple), and so does every page that comes back. */
+/* Returns freed memory to the system. Once each time the picture settles, because it takes
+ * milliseconds (7 with the temple of 5 million triangles), and so does each page that is faulted in
+ * again. */
 static void give_back_memory(struct kiosk *kiosk)
 {
 	if (!kiosk->shown.frame.settled)
@@ -267,8 +272,8 @@ int frame_draw(struct kiosk *kiosk)
 	session_warm(kiosk);
 	display_begin(kiosk->display);
 	draw_scene(kiosk, words);
-	overlay = information_view_overlay(
-		kiosk->shown.view); /* another one after a change of release */
+	overlay =
+		information_view_overlay(kiosk->shown.view); /* session_warm may have changed it */
 	if (overlay && words)
 		rc = draw_words(kiosk, overlay, now_ms);
 	if (rc == 0)

@@ -1,5 +1,5 @@
-/* What every part of the kiosk needs: to ask for a frame, to have a descriptor waited for, and the
- * way between the visitor's pixels and the panel's. */
+/* Functions that all parts of the kiosk use: asking for a frame, watching a descriptor, and
+ * converting between the visitor's pixels and the panel's. */
 #include "app/kiosk.h"
 
 #include <errno.h>
@@ -86,6 +86,6 @@ void viewport_unshift(const struct kiosk *kiosk, float *x_px, float *y_px)
 {
 	viewport_to_panel(kiosk, x_px, y_px);
 	*x_px -= (float)kiosk->panel.shift_px[0];
-	*y_px += (float)kiosk->panel.shift_px[1]; /* GL counts upwards */
+	*y_px += (float)kiosk->panel.shift_px[1]; /* GL's y axis points up */
 	viewport_from_panel(kiosk, x_px, y_px);
 }

@@ -21,12 +21,12 @@
 #include "ui/theme.h"
 
 enum {
-	FRAME_MS = 16, /* where no panel sets the pace */
+	FRAME_MS = 16, /* frame period if no panel sets the pace */
 	LOST_LEAST_MS = 5000,
 	FOV_DEG = 45,
 };
 
-/* ---- what comes from the fetcher */
+/* ---- events of the fetcher */
 
 static void on_object(void *data, struct hash hash, struct bytes bytes)
 {
@@ -141,13 +141,13 @@ static int start_input(struct kiosk *kiosk)
 
 	memcpy(touch.matrix, profile->matrix, sizeof(touch.matrix));
 	fingers_init(kiosk);
-	/* In a window the mouse is the finger, and the desktop owns the touchscreen. */
+	/* In a window the mouse acts as the finger, and the desktop owns the touchscreen. */
 	if (display_kind(kiosk->display) == DISPLAY_WINDOW && !touch.replay_path)
 		return 0;
 	return touch_create(&kiosk->touch, &touch);
 }
 
-/* gopura-fetch beside this program. */
+/* Writes the path of gopura-fetch in the folder of this program to out. */
 static void fetch_beside(char out[PATH_MAX])
 {
 	ssize_t length = readlink("/proc/self/exe", out, PATH_MAX - sizeof("gopura-fetch"));
@@ -165,7 +165,8 @@ static int start_net(struct kiosk *kiosk)
 	struct net_client_options net = {
 		.socket_path = kiosk->options.socket_path,
 		.program = kiosk->options.fetch_program,
-		/* Without a server, what is cached: no release is in the state's own folder. */
+		/* Without a server or stick, a folder that holds no release: only what is cached
+		 * can be shown. */
 		.release_url = kiosk->options.release_url ? kiosk->options.release_url
 			       : kiosk->options.stick_dir ? kiosk->options.stick_dir
 							  : folder,
@@ -309,10 +310,10 @@ static int dispatch(struct kiosk *kiosk, int fd)
 		kiosk_redraw(kiosk);
 		return scene_dispatch(kiosk->coming.scene);
 	}
-	return 0; /* of a scene that was closed a moment ago */
+	return 0; /* an event of a scene that was closed just before */
 }
 
-/* How long nothing needs to be done, milliseconds; -1: until something happens. */
+/* Returns how many milliseconds the loop may wait for events; -1: without limit. */
 static int wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t since = clock_now_ms() - kiosk->last_frame_ms;
@@ -339,7 +340,8 @@ static int turn(struct kiosk *kiosk)
 		return errno == EINTR ? 0 : -errno;
 	for (int i = 0; i < count && rc == 0; i++)
 		rc = dispatch(kiosk, ready[i].data.fd);
-	/* The wait for quiet is counted in frames; what is coming is drawn with one. */
+	/* Frames must go on by time alone: capture counts its quiet time in frames, the next
+	 * release is drawn as part of a frame, and the setup page fades out. */
 	if (count == 0 &&
 	    (kiosk->capture || session_wait_ms(kiosk) == 0 || setup_page_wait_ms(kiosk) == 0))
 		kiosk_redraw(kiosk);
@@ -371,7 +373,7 @@ int kiosk_run(struct kiosk *kiosk)
 	service_stopping();
 	if (rc == -ENOTRECOVERABLE && clock_now_ms() - kiosk->started_ms < LOST_LEAST_MS) {
 		log_error("app", "board bug: the GPU loses its context as soon as it is used");
-		return -EIO; /* a crash: to begin anew does not help */
+		return -EIO; /* counts as a crash: a restart would not help */
 	}
 	if (rc == -ENOTRECOVERABLE)
 		log_warn("app", "board bug: the GPU lost its context: starting anew");

@@ -1,4 +1,5 @@
-/* gopura-kiosk: owns panel and touch, and has no network. */
+/* The program gopura-kiosk, which owns panel and touch and has no network: parses the options, then
+ * runs the self test, the safe page or the kiosk, and maps the result to an exit status. */
 #include <errno.h>
 #include <malloc.h>
 #include <stdlib.h>
@@ -13,7 +14,8 @@ int main(int argc, char **argv)
 	static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
 	int rc;
 
-	mallopt(M_ARENA_MAX, 1); /* workers' own would keep 2 MB that nobody uses */
+	mallopt(M_ARENA_MAX,
+		1); /* one malloc arena: those of worker threads would hold 2 MB unused */
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:
 		return EXIT_SUCCESS;
@@ -30,7 +32,7 @@ int main(int argc, char **argv)
 		rc = kiosk_start(&kiosk); /* display, scene, input, fetcher */
 		if (rc == 0)
 			rc = kiosk_run(&kiosk);
-		kiosk_stop(&kiosk); /* the reverse; any part may be missing */
+		kiosk_stop(&kiosk); /* in reverse order; any part may be missing */
 	}
 	if (rc == -ENOTRECOVERABLE)
 		return KIOSK_STATUS_LOST_GPU;

@@ -6,17 +6,19 @@
 
 #include <cglm/cglm.h>
 
-#define PITCH_MAX      1.45f /* radians; past it "up" on the panel would jump */
+#define PITCH_MAX      1.45f /* radians; beyond it "up" on the panel would flip */
 #define FLING_DECAY_MS 325.0f
-#define FLING_MIN      8.0f /* px/s; slower is rest */
-/* Of a temple, in a visitor's measure; of what is smaller than a house, a share of its diagonal. */
-#define GROUND_LEAST_M     0.25f /* eye above the bottom of the box */
+#define FLING_MIN      8.0f /* px/s; slower counts as stopped */
+/* Distances: in metres for a temple; for a model smaller than a house, as a share of its diagonal.
+ * The smaller of the two counts. */
+#define GROUND_LEAST_M     0.25f /* lowest height of the eye above the bottom of the box */
 #define GROUND_LEAST_SHARE 0.005f
-#define KEEP_OFF_M         0.35f /* eye to a wall */
+#define KEEP_OFF_M         0.35f /* smallest distance of the eye to a surface */
 #define KEEP_OFF_SHARE     0.02f
-#define BOW_MAX            2.0f /* times as long as straight on: a flight takes no longer */
-#define FAR_SHARE          2.5f /* eye to the model's middle, in half diagonals */
-#define FAR_OVER_HOME      1.1f /* or as far as it begins, and a little more */
+#define BOW_MAX            2.0f /* the duration of a flight grows with its path, at most by this factor */
+#define FAR_SHARE          2.5f /* largest distance of the eye to the model's centre, in half diagonals */
+#define FAR_OVER_HOME      1.1f /* or this many times the distance of the first view, if that is more \
+				 */
 
 static void view_direction(const struct navigator *nav, float out[3])
 {
@@ -48,7 +50,7 @@ static float lowest_m(const struct navigator *nav)
 	       fminf(GROUND_LEAST_M, GROUND_LEAST_SHARE * navigator_diagonal_m(nav));
 }
 
-/* How far from the model's middle the eye may go. */
+/* Returns the largest distance of the eye from the model's centre, which it writes to middle_m. */
 static float farthest_m(const struct navigator *nav, float middle_m[3])
 {
 	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
@@ -57,7 +59,7 @@ static float farthest_m(const struct navigator *nav, float middle_m[3])
 		     FAR_OVER_HOME * glm_vec3_distance((float *)nav->options.home_eye_m, middle_m));
 }
 
-/* Where the eye may be, whatever asked for it. */
+/* Moves eye_m to the nearest allowed place: near the model and above the ground. */
 static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
 {
 	float middle[3], from_middle[3], distance;
@@ -72,7 +74,8 @@ static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
 	eye_m[2] = fmaxf(eye_m[2], lowest_m(nav));
 }
 
-/* Moves the eye towards a place, as far as there is nothing in the way. true: all of it. */
+/* Moves the eye towards to_m until something is in the way. Returns true if it got there. to_m is
+ * first moved into the bounds. */
 static bool move_eye(struct navigator *nav, float to_m[3])
 {
 	const struct navigator_options *o = &nav->options;
@@ -149,7 +152,7 @@ static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by
 		*nav = before;
 		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
 		if (yaw_by != 0 && pitch != nav->pitch)
-			turn_about_pivot(nav, yaw_by, 0); /* slide along what holds it */
+			turn_about_pivot(nav, yaw_by, 0); /* slide along the obstacle */
 	}
 }
 
@@ -191,7 +194,8 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s)
 	nav->fling_px_s[1] = vy_px_s;
 }
 
-/* Whether the eye can go from here to there, and no near plane reaches anything there. */
+/* Returns whether the eye can go straight from from_m to to_m without passing a surface, and stand
+ * at to_m with no surface within the near plane's distance. */
 static bool way_is_free(void *data, const float from_m[3], const float to_m[3])
 {
 	const struct navigator *nav = data;
@@ -237,7 +241,7 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	nav->from_yaw = nav->yaw;
 	nav->from_pitch = nav->pitch;
 	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
-	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the short way round */
+	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the shorter way round */
 	nav->to_yaw = nav->from_yaw + turn;
 	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MAX), 1);
 }
@@ -277,7 +281,7 @@ static void step_flight(struct navigator *nav, float dt_ms)
 	t = t * t * (3 - 2 * t);
 	flight_way_at(&nav->way, t, eye);
 	keep_in_bounds(nav, eye);
-	glm_vec3_copy(eye, nav->eye_m); /* even through a wall, where no bow was free */
+	glm_vec3_copy(eye, nav->eye_m); /* even through a wall, if no path was free */
 	nav->yaw = glm_lerp(nav->from_yaw, nav->to_yaw, t);
 	nav->pitch = glm_lerp(nav->from_pitch, nav->to_pitch, t);
 }

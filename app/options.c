@@ -317,7 +317,7 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 			return OPTIONS_DONE;
 		}
 		if (option == '?')
-			return OPTIONS_BAD; /* getopt said what */
+			return OPTIONS_BAD; /* getopt printed the reason */
 		if (!set_value(out, option, optarg)) {
 			fprintf(stderr, "gopura-kiosk: --%s cannot be '%s'; see --help\n",
 				long_options[which].name, optarg);

@@ -11,11 +11,11 @@
 #include "render/display/shift.h"
 
 enum {
-	LOOK_MS = 30000, /* somebody may set the clock, or the time zone */
+	LOOK_MS = 30000, /* interval of checking the clock: its time or time zone may be changed */
 	MINUTE_MS = 60000,
 };
 
-/* ---- the hours */
+/* ---- opening hours */
 
 static bool has_hours(const struct kiosk *kiosk)
 {
@@ -25,7 +25,8 @@ static bool has_hours(const struct kiosk *kiosk)
 	return memcmp(&kiosk->options.hours, &always, sizeof(always)) != 0;
 }
 
-/* A clock that nobody set would switch the panel off by day: then it is always open. */
+/* Returns whether the opening hours say closed. A clock that cannot be trusted could switch the
+ * panel off by day, so the result is then always open. */
 static bool is_closed(const struct kiosk *kiosk)
 {
 	const time_t now = (time_t)clock_wall_s();
@@ -36,7 +37,8 @@ static bool is_closed(const struct kiosk *kiosk)
 	       !hours_open_at(&kiosk->options.hours, &local);
 }
 
-/* A visitor is not sent away in the middle, and one who comes late may wake it. */
+/* Returns whether a touch keeps the panel on: it is not switched off in front of a visitor, and a
+ * late visitor may wake it. */
 static bool was_touched(const struct kiosk *kiosk)
 {
 	const struct panel *panel = &kiosk->panel;
@@ -58,7 +60,8 @@ static int keep_hours(struct kiosk *kiosk)
 		panel->look_ms = clock_now_ms() + LOOK_MS;
 	}
 	asleep = panel->closed && !was_touched(kiosk);
-	/* What is under way comes onto the panel first; one that is not there need not sleep. */
+	/* A frame that was submitted must reach the panel before it is switched off; a panel that
+	 * is not connected need not be. */
 	if (asleep == panel->asleep || (asleep && !display_ready(kiosk->display)))
 		return 0;
 	rc = display_sleep(kiosk->display, asleep);
@@ -107,9 +110,9 @@ static int manager_wait_ms(void)
 	return due_ms <= now_ms ? 0 : due_ms - now_ms > INT_MAX ? INT_MAX : (int)(due_ms - now_ms);
 }
 
-/* The terminal is well when what was drawn has come onto the panel. At rest nothing is drawn, and a
- * panel that hangs would not be noticed: then what is shown is drawn once more. Where nothing can
- * be shown, it is enough that the loop turns. */
+/* Reports to the service manager that the kiosk works, once what was drawn has come onto the panel.
+ * At rest nothing is drawn, so a hung panel would go unnoticed: when a report is due, one more
+ * frame is drawn. If nothing can be shown, it is enough that the loop turns. */
 static void tell_manager(struct kiosk *kiosk)
 {
 	const bool dark = display_is_dark(kiosk->display);
@@ -150,7 +153,8 @@ int panel_turn(struct kiosk *kiosk)
 	return rc;
 }
 
-/* Hours and shift: without them nothing is looked at, and nobody is woken. */
+/* Returns in how many milliseconds opening hours or picture shift need a check; -1 if neither is
+ * used, so the loop is not woken. */
 static int day_wait_ms(const struct kiosk *kiosk)
 {
 	const int64_t now_ms = clock_now_ms(), look_ms = kiosk->panel.look_ms;

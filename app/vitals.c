@@ -1,5 +1,5 @@
-/* How the terminal is, told to whoever looks after it: docs/health.md has the figures as a table.
- * Written on demand, by the thread of the loop: every one of them is at hand. */
+/* Writes the kiosk's metrics for gopura-health and Prometheus; docs/health.md lists them. They are
+ * written on demand by the thread of the loop, from values that are at hand. */
 #include "app/kiosk.h"
 #include "app/release/updater.h"
 #include "base/clock.h"
@@ -83,7 +83,7 @@ static void write_board(const struct kiosk *kiosk, struct buffer *out)
 		     (const struct figure_label[]){ { "renderer", renderer ? renderer : "" } }, 1);
 	metrics_gauge(out, "gopura_kiosk_wanted", "Objects asked of the fetcher and not yet here.",
 		      kiosk->wants.said_count);
-	/* A replayed file and a window's mouse are no devices that could be missed. */
+	/* With a replayed file, or in a window, no touch device is expected. */
 	if (kiosk->touch && !kiosk->options.touch_replay_path)
 		metrics_gauge(out, "gopura_kiosk_touch_devices", "Touch devices that are open.",
 			      touch_device_count(kiosk->touch));

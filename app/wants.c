@@ -6,7 +6,8 @@
 #include <string.h>
 
 enum {
-	/* Twice MESSAGE_PRIORITY_INDEX, the highest, becomes 999. */
+	/* Divisor for priorities: twice MESSAGE_PRIORITY_INDEX, the highest priority, becomes 999.
+	 */
 	LATER_SHARE = 2 * MESSAGE_PRIORITY_INDEX / MESSAGE_PRIORITY_PICTURE + 2,
 };
 
@@ -38,7 +39,7 @@ void wants_later(struct wants *wants)
 	wants->later = true;
 }
 
-/* Sorts the new list and leaves each hash once, with its highest priority. */
+/* Sorts the new list by hash and keeps each hash once, with its highest priority. */
 static void tidy(struct wants *wants)
 {
 	uint32_t kept = 0;
@@ -57,7 +58,8 @@ static void tidy(struct wants *wants)
 	wants->next_count = kept;
 }
 
-/* A small change of gain is not worth a message. */
+/* Returns whether the priorities differ enough, by a quarter of the lower one, to be worth a
+ * message. */
 static bool priority_differs(uint32_t a, uint32_t b)
 {
 	const uint32_t low = a < b ? a : b, high = a < b ? b : a;

@@ -1,4 +1,5 @@
-/* What the kiosk wants of the fetcher, as one list a turn: only differences are said. */
+/* The objects that the kiosk wants from the fetcher. The kiosk rebuilds the list every turn; only
+ * the differences are sent. */
 #ifndef GOPURA_APP_WANTS_H
 #define GOPURA_APP_WANTS_H
 
@@ -7,25 +8,29 @@
 enum { WANTS_MAX = 512 };
 
 struct wants {
-	struct message_want said[WANTS_MAX]; /* sorted by hash */
+	struct message_want said[WANTS_MAX]; /* what the fetcher was told; sorted by hash */
 	uint32_t said_count;
 	struct message_want next[WANTS_MAX];
 	uint32_t next_count;
 	bool later;
 };
 
-/* A turn: wants_begin, wants_add for each (wants_later between them), wants_say. What was said
- * before and is not added any more is dropped. Past WANTS_MAX, later ones are ignored: add what
- * matters first. */
+/* One turn: wants_begin, then wants_add for each object (wants_later in between), then wants_say.
+ * An object that was sent before and is not added again is dropped. Beyond WANTS_MAX additions are
+ * ignored, so add the important ones first. */
+/* Starts a new list. */
 void wants_begin(struct wants *wants);
+/* Adds a copy of *want. One object may be added several times; the highest priority counts. */
 void wants_add(struct wants *wants, const struct message_want *want);
-/* What is added after this, until the turn ends, is of a release that is not shown yet: its
- * priorities fall below MESSAGE_PRIORITY_PICTURE, their order kept. */
+/* Objects added after this call, until the turn ends, belong to a release that is not shown yet:
+ * their priorities are lowered below MESSAGE_PRIORITY_PICTURE and keep their order. */
 void wants_later(struct wants *wants);
+/* Sends the differences since the last turn to the fetcher: new objects, dropped ones, and clear
+ * changes of priority. */
 void wants_say(struct wants *wants, struct net_client *client);
-/* The object came. */
+/* Removes an object that arrived from the list of what the fetcher was told. */
 void wants_arrived(struct wants *wants, struct hash hash);
-/* All was forgotten on the other side too: another release. */
+/* Forgets both lists, after net_client_use_release made the client forget its wants. */
 void wants_clear(struct wants *wants);
 
 #endif
