@@ -18,10 +18,12 @@ enum {
 	VIEWS_MAX = 10000,
 	SHOTS_MAX = 200,
 	SHOT_NAME_BYTES = 64,
-	VIEW_MOST_MS = 120000, /* then it is written as it is, and said so */
-	QUIET_MS = 1200, /* without a byte received: longer than between two status messages */
+	VIEW_MOST_MS = 120000, /* longest wait for a view to settle; then it is written as it is,
+				  with a warning */
+	QUIET_MS = 1200,       /* time without a byte received; longer than the interval of status
+				  messages */
 	FRAMES_MAX = 4096,
-	LOOK_MS = 20, /* at what came, between two frames at rest */
+	LOOK_MS = 20, /* interval of checks while no frame is drawn */
 };
 
 struct view {
@@ -40,17 +42,17 @@ struct capture {
 	uint32_t count, at;
 	FILE *lines; /* views.jsonl */
 
-	int64_t began_ms;       /* of this view, or of the replay; 0: not yet */
-	int64_t first_ms;       /* 0: nothing was drawn yet */
-	int64_t quiet_since_ms; /* 0: not settled */
-	uint64_t bytes_before;  /* received when this view began */
+	int64_t began_ms;       /* start of this view, or of the replay; 0: not yet */
+	int64_t first_ms;       /* when its first picture was drawn; 0: not yet */
+	int64_t quiet_since_ms; /* when it became quiet; 0: not settled */
+	uint64_t bytes_before;  /* bytes received when this view began */
 	uint64_t bytes_seen;
 	uint32_t objects;
 	uint32_t frame_us[FRAMES_MAX];
 	uint32_t frames;
 };
 
-/* ---- what to draw */
+/* ---- lists of views and shots */
 
 static bool parse_view(const char *line, struct view *view)
 {
@@ -162,8 +164,9 @@ void capture_destroy(struct capture *capture)
 
 /* ---- pictures */
 
-/* The frame as PNG. Coverage is kept where the scene alone was drawn; what lies under nothing is
- * black, so that the same picture has the same bytes. */
+/* Writes the frame as PNG. With coverage, which is for pictures of the scene alone, alpha tells how
+ * much of a pixel the model covers, and pixels without it are black, so that equal pictures have
+ * equal bytes. Otherwise alpha is 255. */
 static int write_picture(const struct capture *capture, struct kiosk *kiosk, const char *name,
 			 bool coverage)
 {
@@ -253,7 +256,8 @@ void capture_aim(struct capture *capture, struct kiosk *kiosk)
 	camera->fov_deg = view->fov_deg;
 }
 
-/* Nothing wanted, drawing or arriving for long enough that the status counts every byte. */
+/* Returns whether the picture is complete: it has settled, and no byte has arrived for QUIET_MS, so
+ * the fetcher's status counts every byte. */
 static bool is_quiet(struct capture *capture, const struct kiosk *kiosk, int64_t now_ms)
 {
 	if (!kiosk->shown.frame.settled || kiosk->words_move ||

@@ -25,12 +25,12 @@ enum { FRAME_MS = 100, SHOT_MS = 5000, SHOTS = 2 };
 
 struct safe_mode {
 	struct canvas *canvas;
-	struct bitmap bitmap; /* as the panel has it */
+	struct bitmap bitmap; /* in the panel's orientation */
 	struct safe_page page;
-	cairo_matrix_t to_panel; /* from the visitor's pixels */
+	cairo_matrix_t to_panel; /* from the visitor's pixels to the panel's */
 	int signal_fd;
-	int64_t drawn_ms; /* 0: never */
-	bool ready;       /* the service manager was told */
+	int64_t drawn_ms; /* time of the last picture; 0: none */
+	bool ready;       /* the service manager was told that the page is up */
 };
 
 /* ---- start */
@@ -61,7 +61,7 @@ static int start(struct safe_mode *safe, struct options *options)
 	bool sideways;
 	int rc, width, height;
 
-	/* A profile may be what is wrong: then what is right of it holds. */
+	/* A faulty profile may be why the kiosk failed: the valid entries are used. */
 	if (provision_read(&provision, options, &profile) < 0)
 		log_warn("app", "safe page: going on in spite of the profile");
 	display = (struct display_options){
@@ -141,7 +141,8 @@ static int write_shots(struct safe_mode *safe, const char *folder)
 
 /* ---- run */
 
-/* Well is a page whose pictures come onto the panel, or one that waits for a panel. */
+/* Reports to the service manager that the page works: its pictures reach the panel, or it waits for
+ * a panel to be connected. */
 static void tell_manager(struct safe_mode *safe)
 {
 	if (!canvas_is_dark(safe->canvas) && (!safe->drawn_ms || !canvas_ready(safe->canvas)))

@@ -1,14 +1,14 @@
-/* gopura-kiosk --safe-page: what the service manager starts when the kiosk does not stay up. It
- * uses neither GPU nor release, cache or state, so that none of them can be what is wrong with it.
- */
+/* gopura-kiosk --safe-page: the page that the service manager starts when the kiosk keeps failing.
+ * It uses no GPU, release, cache or state, so none of them can break it. */
 #ifndef GOPURA_APP_MODES_SAFE_MODE_H
 #define GOPURA_APP_MODES_SAFE_MODE_H
 
 #include "app/options.h"
 
-/* Fills in options by gopura.conf, of which it takes how the panel hangs. Until SIGTERM or SIGINT;
- * with options->capture_dir, writes safe-0.png and safe-1.png, five seconds apart, and ends.
- * Negative errno (logged); -ESTALE: another panel, begin anew. */
+/* Completes *options from gopura.conf, and takes the panel's rotation from it or the board profile.
+ * Shows the page until SIGTERM or SIGINT. With options->capture_dir, writes safe-0.png and
+ * safe-1.png, the animation at 0 and 5 seconds, and returns. Returns 0 or a negative errno
+ * (logged); -ESTALE: another panel was connected; restart the program. */
 must_check int safe_mode_run(struct options *options);
 
 #endif

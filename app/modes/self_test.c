@@ -25,16 +25,16 @@
 #include "storage/state.h"
 
 enum {
-	FLIP_MOST_MS = 3000, /* a first mode set takes its time */
-	STATE_ROOM_MIB = 16, /* state.db, its journal and its second copy, many times over */
+	FLIP_MOST_MS = 3000, /* longest wait for a frame; the first mode set is slow */
+	STATE_ROOM_MIB = 16, /* state.db, its journal and its second copy, with a large margin */
 	PROBE_BYTES = 4096,
 };
 
 struct self_test {
 	const struct options *options;
 	struct profile profile;
-	struct display *display; /* NULL: there is none */
-	char folder[PATH_MAX];   /* of the state; "": there is none */
+	struct display *display; /* NULL: it could not be opened */
+	char folder[PATH_MAX];   /* of the state; "": it cannot be written */
 	bool failed;
 };
 
@@ -79,7 +79,8 @@ static void check_settings(struct self_test *test, struct options *options)
 
 /* ---- panel and GPU */
 
-/* One picture, until it is on the panel. */
+/* Presents one picture and waits until it is on the panel. Returns 0, -ETIMEDOUT or a negative
+ * errno. */
 static int flip(struct display *display)
 {
 	const int64_t until_ms = clock_now_ms() + FLIP_MOST_MS;
@@ -143,7 +144,7 @@ static bool has_limit(struct self_test *test, GLenum name, int needed, const cha
 {
 	GLint has[2] = { 0, 0 };
 
-	glGetIntegerv(name, has); /* of two, as for viewports, the smaller counts */
+	glGetIntegerv(name, has); /* viewport dimensions are two values: the smaller counts */
 	if (name == GL_MAX_VIEWPORT_DIMS && has[1] < has[0])
 		has[0] = has[1];
 	if (has[0] >= needed)
@@ -154,7 +155,7 @@ static bool has_limit(struct self_test *test, GLenum name, int needed, const cha
 	return false;
 }
 
-/* All shaders compile and the budgets of the profile can be had. */
+/* Returns whether all shaders compile and a scene with the profile's budgets can be created. */
 static bool has_scene(const struct self_test *test)
 {
 	struct scene_options options = kiosk_scene_options(&test->profile, test->options->mode);
@@ -202,7 +203,7 @@ static void check_gpu(struct self_test *test)
 
 /* ---- touch */
 
-/* A node that is there and may not be opened: its path in out. */
+/* Returns whether an input device exists that may not be opened; its path is in out. */
 static bool is_locked_out(char *out, size_t bytes)
 {
 	DIR *folder = opendir("/dev/input");
@@ -277,8 +278,8 @@ static int write_probe(const char *folder)
 	return rc;
 }
 
-/* What is needed beside what lies there already: the cache only where this kiosk starts the
- * fetcher. */
+/* Returns the free space that the state folder still needs, in MiB. The cache counts only if this
+ * kiosk starts the fetcher, less what it already occupies. */
 static uint64_t room_needed_mib(const struct self_test *test)
 {
 	char path[PATH_MAX + 16];
@@ -339,7 +340,7 @@ static void say_trust(struct self_test *test, const char *whose, struct bytes fi
 		say(test, true, "trust", "%s, version %" PRIu32, whose, root.version);
 }
 
-/* The state's, if it has one. */
+/* Checks the trust root stored in the state. Returns whether there is one. */
 static bool check_remembered_trust(struct self_test *test)
 {
 	char path[PATH_MAX + 16];
@@ -385,7 +386,7 @@ bool self_test_run(struct options *options)
 	struct self_test test = { .options = options };
 
 	check_settings(&test, options);
-	check_storage(&test); /* which says whether there was a touchscreen */
+	check_storage(&test); /* sets the folder, in which check_touch looks for touch.seen */
 	check_trust(&test);
 	check_touch(&test);
 	check_panel(&test);

@@ -1,5 +1,5 @@
-/* gopura-kiosk --self-test: is this machine fit to be a terminal? For the engineer who sets one up,
- * and for an update that wants to know whether the new system still is. */
+/* gopura-kiosk --self-test: tests whether this machine can work as a terminal. It is for the
+ * engineer who sets one up, and for an update that checks the new system. */
 #ifndef GOPURA_APP_MODES_SELF_TEST_H
 #define GOPURA_APP_MODES_SELF_TEST_H
 
@@ -7,9 +7,9 @@
 
 #include "app/options.h"
 
-/* Fills in options by gopura.conf. A line a check on standard output: "ok" or "fail", what was
- * checked, what was found, and where it failed what to do. true: all are well. Not beside a running
- * kiosk: the panel is one program's. */
+/* Completes *options from gopura.conf and prints one line per check to standard output: "ok" or
+ * "fail", what was checked, what was found and, if it failed, what to do. Returns whether all
+ * checks passed. Do not run it beside a running kiosk: only one program can use the panel. */
 must_check bool self_test_run(struct options *options);
 
 #endif

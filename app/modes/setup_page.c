@@ -10,7 +10,7 @@
 enum {
 	PAGE_LEAST_MS = 30000,
 	PAGE_FADE_MS = 600,
-	PAGE_TEXTURE = OVERLAY_BITMAPS_MAX, /* the first that no overlay has */
+	PAGE_TEXTURE = OVERLAY_BITMAPS_MAX, /* the first texture id that the overlay does not use */
 	HINTS_MAX = 3,
 };
 
@@ -42,7 +42,7 @@ static int draw_faults(struct kiosk *kiosk)
 		marks[i][0] = '\0';
 		if (faults->list[i].line > 0) {
 			snprintf(marks[i], sizeof(marks[i]), "line %u", faults->list[i].line);
-			text = strchr(text, ':') + 2; /* the mark says its beginning */
+			text = strchr(text, ':') + 2; /* skip "line N: ", which the mark shows */
 		}
 		items[i] = (struct notice_item){ .mark = marks[i], .text = text };
 	}
@@ -86,7 +86,7 @@ static int draw_missing(struct kiosk *kiosk)
 int setup_page_show(struct kiosk *kiosk)
 {
 	struct provision *provision = &kiosk->provision;
-	/* Nothing to show, and no key to trust what may come. */
+	/* Nothing can be shown, and there is no trust root to check what may arrive. */
 	const bool is_unset =
 		kiosk->options.conf_count > 0 && !kiosk->options.trust_path && !kiosk->shown.scene;
 
@@ -109,7 +109,8 @@ bool setup_page_covers(const struct kiosk *kiosk)
 	return kiosk->setup_page.bitmap.surface && kiosk->setup_page.leaves_ms == 0;
 }
 
-/* What it covers; -1: nothing that could be shown yet. */
+/* Returns in how many milliseconds the page is to fade out; -1: not by time, because the model
+ * cannot be shown yet or the page was not drawn. */
 static int64_t leaves_in_ms(const struct kiosk *kiosk, int64_t now_ms)
 {
 	const int64_t due_ms = kiosk->setup_page.since_ms + PAGE_LEAST_MS;
@@ -140,7 +141,7 @@ int setup_page_draw(struct kiosk *kiosk, int64_t now_ms)
 		.stride_bytes = page->bitmap.stride_bytes,
 		.bgra = page->bitmap.pixels,
 	};
-	const int unmoved_px[2] = { 0, 0 }; /* it covers the panel to its edges */
+	const int unmoved_px[2] = { 0, 0 }; /* no shift: the page covers the panel to its edges */
 	float alpha = 1;
 	int rc;
 

@@ -12,9 +12,9 @@
 #include "base/log.h"
 #include "base/safe_open.h"
 
-/* ---- from the file */
+/* ---- reading and merging */
 
-/* The first of the files that is there. */
+/* Reads the first of the files that exists. */
 static void read_file(struct provision *provision, const struct options *options)
 {
 	provision->terminal = terminal_default;
@@ -25,7 +25,7 @@ static void read_file(struct provision *provision, const struct options *options
 			provision->path = options->conf_paths[i];
 }
 
-/* The path of a file beside gopura.conf; NULL: it names none. */
+/* Writes the path of a file beside gopura.conf to out and returns it; NULL if name is empty. */
 static const char *beside(const struct provision *provision, const char *name, char out[PATH_MAX])
 {
 	const char *slash = strrchr(provision->path, '/');
@@ -37,7 +37,8 @@ static const char *beside(const struct provision *provision, const char *name, c
 	return out;
 }
 
-/* A file that is no trust root would end every start. */
+/* Returns the path of the trust root that gopura.conf names, or NULL after adding a fault. The file
+ * is checked here, because an invalid one would make every start fail. */
 static const char *checked_trust(struct provision *provision)
 {
 	const char *path = beside(provision, provision->terminal.trust, provision->trust_path);
@@ -91,7 +92,8 @@ static void merge(struct provision *provision, struct options *options)
 	if (memcmp(&options->hours, &terminal_default.hours, sizeof(options->hours)) == 0)
 		options->hours = terminal->hours;
 	options->shift = options->shift || terminal->shift;
-	/* Opening hours and the time to download are this place's, whatever the system has. */
+	/* Opening hours and download times are in this place's time zone, so it overrides the
+	 * system's. */
 	if (terminal->time_zone[0] && setenv("TZ", terminal->time_zone, 0) == 0)
 		tzset();
 }

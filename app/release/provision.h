@@ -1,5 +1,5 @@
-/* What gopura.conf says of this terminal, under what the command line says, and what is wrong with
- * it. */
+/* The settings of this terminal: gopura.conf, overridden by the command line, and the faults found
+ * in the file. */
 #ifndef GOPURA_APP_RELEASE_PROVISION_H
 #define GOPURA_APP_RELEASE_PROVISION_H
 
@@ -10,15 +10,16 @@
 #include "system/terminal.h"
 
 struct provision {
-	struct terminal terminal; /* terminal_default where there is no file */
+	struct terminal terminal; /* terminal_default if there is no file */
 	struct faults faults;
-	const char *path; /* the file that was read; NULL: none was there, or none asked for */
+	const char *path; /* the file that was read; NULL: none exists, or none was asked for */
 	char trust_path[PATH_MAX], ca_path[PATH_MAX], board_path[PATH_MAX];
 };
 
-/* provision is zeroed. Fills in the options that the command line leaves open, and the profile;
- * logs the faults. What it fills in is borrowed from provision. Negative errno (logged): the
- * profile of --board does not do, and holds what is right of it. */
+/* Reads gopura.conf and the board profile. *provision is zeroed by the caller. Completes the
+ * options that the command line left open and fills in *profile; the options then borrow from
+ * *provision. Logs the faults. Returns 0, or a negative errno (logged) if the profile of --board
+ * has faults; *profile then has its valid entries. */
 must_check int provision_read(struct provision *provision, struct options *options,
 			      struct profile *profile);
 

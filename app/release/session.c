@@ -1,6 +1,6 @@
-/* What is shown, and what comes next. A new release is drawn small and unseen, with the visitor's
- * own camera, until nothing of it is missing; it is written down, and then the two change places
- * between two frames. */
+/* Manages the release that is shown and the next one. The next release is drawn small and off
+ * screen, with the visitor's camera, until nothing is missing; then it is stored, and it replaces
+ * the other between two frames. */
 #include <errno.h>
 #include <string.h>
 
@@ -11,11 +11,13 @@
 
 enum {
 	WARM_PERIOD_MS = 100,
-	WARM_MOST_MS = 60000, /* then it is shown as far as it came, if it shows anything */
+	WARM_MOST_MS =
+		60000, /* longest wait for a complete picture; then what there is of it is shown */
 	WARM_WIDTH_PX = 320,
-	FORGETFUL_MS = 30000,  /* until what could not be written is tried again */
-	HELD_MS = 60000,       /* between looks at the clock */
-	WHOLE_MOST_MS = 20000, /* that a first picture has until it is kept as far as it came */
+	FORGETFUL_MS = 30000,  /* wait before a failed write is tried again */
+	HELD_MS = 60000,       /* interval of checking the time of day */
+	WHOLE_MOST_MS = 20000, /* time for a first picture to become complete before its objects are
+				  synced */
 	FOV_DEG = 45,
 };
 
@@ -101,8 +103,8 @@ bool session_give(struct session *session, struct hash hash, struct bytes object
 	return kept;
 }
 
-/* The eye's bounds are the release's. At the first release it goes to its start; at an update it
- * stays where the visitor has it. */
+/* Takes the eye's bounds from the release. With the first release the eye goes to its start pose;
+ * after an update it stays where the visitor has it. */
 static void set_bounds(struct kiosk *kiosk)
 {
 	const struct root_page *root = scene_root(kiosk->shown.scene);
@@ -126,7 +128,7 @@ static void set_bounds(struct kiosk *kiosk)
 		 (unsigned long long)root->source_triangles);
 }
 
-/* The fetcher forgets all wants of other releases; the next frame says ours again. */
+/* Switches the fetcher to this release. It forgets all wants; the next frame sends them again. */
 static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 {
 	net_client_use_release(kiosk->net, root, root_bytes);
@@ -135,14 +137,14 @@ static void use_release(struct kiosk *kiosk, struct hash root, uint32_t root_byt
 
 void session_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 {
-	/* What has not even its root page shows nothing: no reason to wait for its end. */
+	/* A release without its root page shows nothing, so it is replaced at once. */
 	const bool unseen = kiosk->shown.root_here;
 	struct session *session = unseen ? &kiosk->coming : &kiosk->shown;
 	int rc;
 
 	session_close(&kiosk->coming);
 	if (kiosk->shown.scene && hash_equal(kiosk->shown.root, root))
-		return; /* back to the pictures that are on the panel */
+		return; /* the release that is on the panel */
 	session_close(session);
 	kiosk->coming_held = false;
 	if (unseen)
@@ -160,7 +162,7 @@ void session_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 
 bool session_may_load(const struct kiosk *kiosk)
 {
-	/* A clock that nobody set would hold it back for ever. */
+	/* If the clock is not set, the time of day could block the download for ever. */
 	return updater_next_on_stick(kiosk->updater) || !clock_wall_is_set() ||
 	       daily_holds(&kiosk->options.download, clock_wall_s());
 }
@@ -189,12 +191,12 @@ static void take_over(struct kiosk *kiosk)
 	if (information_view_language(before.view))
 		information_view_set_language(kiosk->shown.view,
 					      information_view_language(before.view));
-	if (overlay) /* a panel too small for words has none */
+	if (overlay) /* NULL if the panel is too small for it */
 		overlay_show_help(overlay, false);
-	tour_player_end(kiosk);        /* its tours are others */
-	back_forget(kiosk);            /* and its parts */
-	kiosk->looked_triangles = 0;   /* its anchors are others */
-	if (before.frame.patches == 0) /* nobody has the eye anywhere */
+	tour_player_end(kiosk);        /* the new release has other tours */
+	back_forget(kiosk);            /* and other parts */
+	kiosk->looked_triangles = 0;   /* and other anchors */
+	if (before.frame.patches == 0) /* nothing was shown, so the eye has no place to keep */
 		kiosk->navigator_ready = false;
 	quads_forget(kiosk->quads);
 	session_close(&before);
@@ -231,14 +233,15 @@ void session_remembered(struct kiosk *kiosk, struct hash root, int rc)
 		take_over(kiosk);
 		return;
 	}
-	/* What is remembered stays on the panel; the disk is asked again later. */
+	/* The stored release stays on the panel; the write is tried again later. */
 	kiosk->coming.remembering = false;
 	wait_for_disk(kiosk);
 }
 
-/* A release that came after another was made durable before it was shown. The first one is shown as
- * it comes, and nobody else syncs what the cache has of it: a power cut minutes later would lose
- * it. On a slow machine the eye is sent round before its picture is whole, and then it never is. */
+/* Syncs the objects of the first release. A later release is synced before it is shown, but the
+ * first is shown while it loads, so a power cut minutes later would lose it. On a slow machine its
+ * picture may never be complete, because the eye moves by itself before; so there is a time limit.
+ */
 void session_keep_first(struct kiosk *kiosk)
 {
 	struct session *shown = &kiosk->shown;
@@ -252,12 +255,13 @@ void session_keep_first(struct kiosk *kiosk)
 	net_client_sync(kiosk->net);
 }
 
-/* Objects first, then the state that names them: a power cut between the two costs nothing. */
+/* Objects are synced first, then the state that names them: a power cut between the two loses
+ * nothing. */
 void session_synced(struct kiosk *kiosk, bool done)
 {
 	struct session *coming = &kiosk->coming;
 
-	if (kiosk->shown.syncing) { /* answers come in order */
+	if (kiosk->shown.syncing) { /* answers arrive in order */
 		kiosk->shown.syncing = false;
 		if (done)
 			log_info("app", "the picture is safe on the disk");
@@ -294,7 +298,7 @@ void session_warm(struct kiosk *kiosk)
 	kiosk->coming_drawn_ms = now_ms;
 	draw_small(kiosk);
 	kiosk->coming_waits = kiosk->coming.frame.moving;
-	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was another one */
+	kiosk->coming.syncing = false; /* no answer for so long: the fetcher was restarted */
 	if (is_ready(kiosk) && visitor_left_ms(kiosk) == 0) {
 		kiosk->coming.syncing = true;
 		net_client_sync(kiosk->net);
@@ -316,6 +320,6 @@ int session_wait_ms(const struct kiosk *kiosk)
 	else if (is_ready(kiosk))
 		return visitor_left_ms(kiosk);
 	else if (due_ms <= now_ms)
-		return -1; /* until something of it arrives */
+		return -1; /* wait until something of it arrives */
 	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;
 }

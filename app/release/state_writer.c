@@ -11,25 +11,25 @@
 
 #include "base/log.h"
 
-/* What is asked for; the buffers change hands with it. */
+/* The changes that are requested. The thread takes the struct over, with its buffers. */
 struct wish {
 	bool release_wanted, trust_wanted;
 	bool proof_wanted, return_wanted;
-	struct state_release release;      /* its file: release_file */
+	struct state_release release;      /* its file is in release_file */
 	struct buffer release_file, trust; /* owned */
-	enum state_clear clear;            /* with the trust root */
-	int64_t time_floor_s;              /* 0: none */
+	enum state_clear clear;            /* cleared together with storing the trust root */
+	int64_t time_floor_s;              /* 0: no change requested */
 };
 
 struct state_writer {
-	struct state *state; /* the thread's */
+	struct state *state; /* used by the thread only */
 	pthread_t thread;
 	bool has_thread;
 	int fd;
 
 	pthread_mutex_t lock;
 	pthread_cond_t asked;
-	struct wish wish; /* under lock, as all below */
+	struct wish wish; /* guarded by lock, as are the fields below */
 	bool ends, answered;
 	struct state_writer_answer answer;
 };
@@ -68,13 +68,14 @@ static void answer(struct state_writer *writer, const struct state_release *rele
 		log_error("app", "kiosk bug: the keeper cannot answer");
 }
 
-/* The trust root first: the release may be signed by its keys. */
+/* Writes the requested changes. The trust root comes first, because the release may be signed by
+ * its keys. */
 static void fulfil(struct state_writer *writer, struct wish *wish)
 {
 	if (wish->trust_wanted &&
 	    state_set_trust(writer->state, buffer_bytes(&wish->trust), wish->clear) < 0)
 		log_warn("app", "the trust root could not be remembered");
-	/* Both are about the release before the one that is wanted now. */
+	/* These two concern the release in use, not the one stored below. */
 	if (wish->proof_wanted && state_prove(writer->state) < 0)
 		log_warn("app", "that the release works could not be remembered");
 	if (wish->return_wanted && state_fall_back(writer->state) < 0)
@@ -109,9 +110,9 @@ static void *run(void *data)
 	return NULL;
 }
 
-/* ---- on the owner's thread */
+/* ---- on the caller's thread */
 
-/* Signals are the loop's: the thread is born with all of them blocked. */
+/* Starts the thread with all signals blocked, because the loop handles them. */
 static int start_thread(struct state_writer *writer)
 {
 	sigset_t all, before;
@@ -199,7 +200,8 @@ int state_writer_set_trust(struct state_writer *writer, struct bytes file, enum 
 	wish->trust_wanted = rc == 0;
 	wish->clear |= clear;
 	if (clear & STATE_CLEAR_TIME_FLOOR)
-		wish->time_floor_s = 0; /* what was asked for before was an old key's */
+		wish->time_floor_s =
+			0; /* an earlier request came from a timestamp of the old key */
 	pthread_cond_signal(&writer->asked);
 	pthread_mutex_unlock(&writer->lock);
 	return rc;

@@ -1,12 +1,12 @@
-/* A new release changes places with the old one between two visitors, and is on trial then: what is
- * not seen to work goes back. */
+/* Tests whether a new release works: it is on trial from when it is first shown. If its picture
+ * does not appear, the kiosk falls back to the release before it. */
 #include "app/kiosk.h"
 #include "app/release/updater.h"
 #include "base/clock.h"
 
 enum {
-	PROVEN_MS = 10000, /* to be seen for so long without a crash: it works */
-	BLANK_MS = 60000,  /* all that was wanted is here, and there is nothing to be seen */
+	PROVEN_MS = 10000, /* visible for so long without a crash: it works */
+	BLANK_MS = 60000,  /* everything wanted has arrived, but nothing is visible */
 };
 
 static int left_ms(int64_t since_ms, int64_t most_ms)
@@ -22,8 +22,8 @@ bool trial_is_broken(const struct session *session)
 	       (scene_refused(session->scene) > 0 || information_view_broken(session->view));
 }
 
-/* It hangs in the air: nothing is wanted, nothing is shown. A network that is away is no fault of
- * the release. */
+/* Returns whether nothing is visible although nothing more is wanted. While objects are wanted the
+ * network may be down, which is no fault of the release. */
 static bool is_blank(const struct kiosk *kiosk)
 {
 	return kiosk->shown.scene && kiosk->shown.frame.patches == 0 && kiosk->shown.root_here &&

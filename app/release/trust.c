@@ -24,7 +24,7 @@ int trust_pin(struct trust *trust, struct bytes file, const char **why)
 	return rc;
 }
 
-/* ---- what a new root leaves of what the old one's keys set */
+/* ---- which floors a new root clears */
 
 static uint32_t kept_count(const struct role_keys *old, const struct role_keys *next)
 {
@@ -36,13 +36,13 @@ static uint32_t kept_count(const struct role_keys *old, const struct role_keys *
 	return kept;
 }
 
-/* Somebody who could sign for the role may not be able to any more. */
+/* Returns whether somebody who could sign for the role may no longer be able to. */
 static bool is_withdrawn(const struct role_keys *old, const struct role_keys *next)
 {
 	return kept_count(old, next) < old->key_count || next->threshold > old->threshold;
 }
 
-/* No file that was signed for the role before is good now. */
+/* Returns whether no file signed for the role before is valid now. */
 static bool is_replaced(const struct role_keys *old, const struct role_keys *next)
 {
 	return kept_count(old, next) < next->threshold;
@@ -55,7 +55,7 @@ static void clear_floors(struct trust *trust, const struct trust_root *old, stru
 	const bool releases_withdrawn = is_withdrawn(&was[META_RELEASE], &now[META_RELEASE]);
 	struct release release;
 
-	trust->have_timestamp = false; /* its key may have changed */
+	trust->have_timestamp = false; /* the key of the role may have changed */
 	if (stamps_withdrawn)
 		trust->time_floor_s = 0;
 	if (is_replaced(&was[META_TIMESTAMP], &now[META_TIMESTAMP]) ||

@@ -13,7 +13,7 @@
 #include "base/log.h"
 #include "base/safe_open.h"
 
-/* Of a release; root zero: none. */
+/* A release; root zero: none. */
 struct place {
 	struct hash root;
 	uint32_t root_bytes;
@@ -22,22 +22,24 @@ struct place {
 
 struct updater {
 	struct updater_options options;
-	struct state_writer *writer; /* of the state */
+	struct state_writer *writer; /* writes the state */
 	struct trust trust;
-	struct place shown, before; /* remembered; the one that worked before it */
-	bool on_trial;              /* shown was not seen to work yet */
-	struct buffer shown_file;   /* its release.json; empty: not known */
-	uint64_t writing;           /* sequence that the keeper was asked to write last; 0: done */
-	const char *said; /* of a refusal, in the log; static; "": none since a good release */
+	struct place shown, before; /* the stored release; the one that worked before it */
+	bool on_trial;              /* shown is not yet known to work */
+	struct buffer shown_file;   /* release.json of shown; empty: not known */
+	uint64_t writing; /* sequence that the state writer was asked to store last; 0: stored */
+	const char *said; /* reason of the refusal logged last; static; "": none since an accepted
+			     release */
 	struct refusal refusal;
-	bool stamp_refused;  /* the last timestamp.json was: a refused release.json is a consequence
-			      */
-	struct release next; /* brought now; sequence 0: none */
-	struct buffer next_file; /* its release.json */
+	bool stamp_refused;  /* the last timestamp.json was refused, so a refused release.json is
+				only a consequence */
+	struct release next; /* being loaded; sequence 0: none */
+	struct buffer next_file; /* release.json of next */
 	enum meta_source next_source;
 };
 
-/* The trust root in use: what the state remembers, or the pinned file at the first start. */
+/* Finds the trust root: the stored one, or the file given at the first start, which is then stored.
+ * Returns 0 also if there is none. */
 static int find_trust(struct updater *updater, struct state *state)
 {
 	struct buffer pinned;
@@ -83,8 +85,9 @@ static struct place place_of(const struct state_release *release)
 	return (struct place){ release->root, release->root_bytes, release->sequence };
 }
 
-/* A release on trial that was begun so often and never got to a picture does not work here. Else
- * this is one more try, written down before it begins: what follows may be a crash. */
+/* Decides about a release on trial at start. If it was started STATE_TRIES_MAX times without
+ * success, falls back to the release before it. Otherwise this start is one more try, which is
+ * stored before it begins, because it may end in a crash. */
 static void judge_trial(struct updater *updater, struct state *state)
 {
 	struct state_release release;
@@ -100,7 +103,7 @@ static void judge_trial(struct updater *updater, struct state *state)
 	}
 }
 
-/* What the state says, before the keeper has it. */
+/* Reads the state, before the state writer takes it over. */
 static int read_state(struct updater *updater, struct state *state)
 {
 	struct state_release release;
@@ -170,7 +173,7 @@ void updater_start(struct updater *updater)
 			       updater->shown.root_bytes);
 }
 
-/* The later of clock and floor; 0 where the clock is not known to be set. */
+/* Returns the later of clock and time floor; 0 if the clock is not known to be set. */
 static struct trust_time time_now(const struct updater *updater)
 {
 	const int64_t now_s = clock_wall_s(), floor_s = updater->trust.time_floor_s;
@@ -186,7 +189,7 @@ static void begin_next(struct updater *updater, const struct release *release, s
 	if (updater->next.sequence == release->sequence) {
 		if (source == META_FROM_STICK)
 			updater->next_source = source;
-		return; /* it is on its way */
+		return; /* it is being loaded already */
 	}
 	buffer_clear(&updater->next_file);
 	buffer_put(&updater->next_file, file.data, file.size);
@@ -197,14 +200,15 @@ static void begin_next(struct updater *updater, const struct release *release, s
 	log_info("app", "release %llu is %s%s%s", (unsigned long long)release->sequence,
 		 source == META_FROM_STICK ? "on the stick" : "published",
 		 release->comment[0] ? ": " : "", release->comment);
-	/* The same pictures under a new signature: nothing to bring, and what was coming is not
-	 * wanted any more. */
+	/* If the new release has the same root, there is nothing to load: it is stored, and what
+	 * was loading is dropped. */
 	if (hash_equal(updater->shown.root, release->root))
 		updater_remember(updater, release->root);
 	updater->options.begin(updater->options.data, release->root, release->root_bytes);
 }
 
-/* What was being brought was signed by a key that is trusted no more: back to what is shown. */
+/* Drops the release being loaded if a key that signed it is no longer trusted, and returns to the
+ * one that is shown. */
 static void drop_distrusted(struct updater *updater)
 {
 	struct release release;
@@ -221,8 +225,8 @@ static void drop_distrusted(struct updater *updater)
 				       updater->shown.root_bytes);
 }
 
-/* Root N+1. What was trusted under the keys that it takes away goes with them, in memory and, in
- * one change with the root, on disk; what is shown stays. */
+/* Accepts root N+1. What the withdrawn keys had set is cleared, in memory and, in one transaction
+ * with the root, on disk. The release that is shown stays. */
 static int take_root(struct updater *updater, struct bytes bytes, const char **why)
 {
 	const uint64_t sequence_floor = updater->trust.sequence_floor;
@@ -263,9 +267,10 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 	switch (role) {
 	case META_ROOT:
 		if (version != updater->trust.root.version + 1)
-			return; /* known already, or not to be judged yet */
+			return; /* already known, or an earlier one is missing */
 		if (updater->writing)
-			return; /* asked for again; what is written now may be an old key's */
+			return; /* the fetcher will be asked again; the release being stored may be
+				   an old key's */
 		rc = take_root(updater, bytes, &why);
 		break;
 	case META_TIMESTAMP:
@@ -280,7 +285,7 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		break;
 	}
 	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused)) {
-		if (why != updater->said) /* it will be the same in a minute */
+		if (why != updater->said) /* do not log the same reason every minute */
 			log_warn("app", "refused %s: %s", name, why);
 		updater->said = why;
 		refusal_note(&updater->refusal, name, why);
@@ -307,7 +312,8 @@ void updater_remember(struct updater *updater, struct hash root)
 	int rc;
 
 	if (release.sequence == 0 || !hash_equal(release.root, root)) {
-		updater->options.remembered(updater->options.data, root, 0); /* it is already */
+		updater->options.remembered(updater->options.data, root,
+					    0); /* it is already stored */
 		return;
 	}
 	rc = state_writer_activate(updater->writer, &release);
@@ -319,7 +325,7 @@ void updater_remember(struct updater *updater, struct hash root)
 
 uint64_t updater_sequence(const struct updater *updater)
 {
-	/* The floor may have been cleared since. */
+	/* The floor may have been cleared by a new root. */
 	return updater->trust.sequence_floor > 0 ? updater->trust.sequence_floor
 						 : updater->shown.sequence;
 }
@@ -334,7 +340,7 @@ int updater_fd(const struct updater *updater)
 	return state_writer_fd(updater->writer);
 }
 
-/* As state_activate has it. */
+/* Updates shown, before and on_trial as state_activate does in the state. */
 static void take_answer(struct updater *updater, const struct state_writer_answer *answer)
 {
 	if (!hash_equal(updater->shown.root, answer->root)) {
@@ -382,7 +388,7 @@ void updater_fall_back(struct updater *updater, const char *why)
 	buffer_clear(&updater->shown_file);
 	updater->before = (struct place){ 0 };
 	updater->on_trial = false;
-	updater->next = (struct release){ 0 }; /* it gives way */
+	updater->next = (struct release){ 0 }; /* the fallback replaces it */
 	state_writer_fall_back(updater->writer);
 	updater->options.begin(updater->options.data, updater->shown.root,
 			       updater->shown.root_bytes);

@@ -1,7 +1,7 @@
-/* Follows the releases of the museum server: remembers which one is shown (state.db), checks the
- * signed metadata, and has the next release brought in the background and remembered before it is
- * shown. One that is new is on trial until updater_prove; where it is not seen to work, the one
- * before it is returned to. No call but updater_create waits for a disk. */
+/* Follows the releases of the museum server: knows which one is shown (state.db), checks the signed
+ * metadata, has the next release loaded in the background, and stores it before it is shown. A new
+ * release is on trial until updater_prove; if it does not work, the one before it is used again.
+ * Only updater_create waits for a disk. One thread. */
 #ifndef GOPURA_APP_RELEASE_UPDATER_H
 #define GOPURA_APP_RELEASE_UPDATER_H
 
@@ -11,47 +11,56 @@
 struct updater;
 
 struct updater_options {
-	const char *state_path; /* state.db; copied */
-	const char *trust_path; /* root/1.json to pin where the state has none; NULL: none */
-	/* Bring this release: at the start the remembered one, later each new one, or the one
-	 * before. Once it can be shown whole, updater_remember is to be called. */
+	const char *state_path; /* state.db; borrowed, needed by updater_create only */
+	const char *trust_path; /* root/1.json to trust if the state has no root; borrowed likewise;
+				   NULL: none */
+	/* Load this release: at start the stored one, later each new one, or the one before it.
+	 * Call updater_remember once it can be shown completely. */
 	void (*begin)(void *data, struct hash root, uint32_t root_bytes);
-	/* The release is remembered, durably: show it. rc < 0: it is not; stay with what is shown,
-	 * and ask again later. */
+	/* The release is stored on disk: show it. rc < 0: it is not; keep showing the other and ask
+	 * again later. */
 	void (*remembered)(void *data, struct hash root, int rc);
 	void *data;
 };
 
+/* Opens the state, decides about a release on trial, and starts the state writer. *out is owned by
+ * the caller; it is NULL on failure. Returns 0 or a negative errno. */
 must_check int updater_create(struct updater **out, const struct updater_options *options);
 void updater_destroy(struct updater *updater); /* NULL is fine */
 
-/* Begins: shows the remembered release, if there is one. */
+/* Calls begin with the stored release, if there is one. */
 void updater_start(struct updater *updater);
+/* Handles a metadata file that arrived; bytes are borrowed for the call, their signature is checked
+ * here. version: of a root. A refused file is logged and counted. */
 void updater_meta(struct updater *updater, enum meta_role role, uint32_t version,
 		  struct bytes bytes, enum meta_source source);
-/* Of the trust root in use; 0: none. */
+/* Returns the version of the trust root in use; 0: none. */
 uint32_t updater_root_version(const struct updater *updater);
-/* The release that is being brought was offered by a stick. */
+/* Returns whether the release being loaded was offered by a stick. */
 bool updater_next_on_stick(const struct updater *updater);
-/* The release with this root can be shown whole: has it remembered. `remembered` is called from
- * updater_dispatch when the disk has it, or at once where there is nothing to write. */
+/* The release with this root can be shown completely: has it stored. `remembered` is called from
+ * updater_dispatch once it is on disk, or at once if there is nothing to write. */
 void updater_remember(struct updater *updater, struct hash root);
-/* Of the release that is remembered last; 0: none yet. */
+/* Returns the highest sequence that was stored; 0: none yet. */
 uint64_t updater_sequence(const struct updater *updater);
-/* The release that is remembered was not seen to work yet. */
+/* Returns whether the stored release is not yet known to work. */
 bool updater_on_trial(const struct updater *updater);
-/* There is one that worked before it. */
+/* Returns whether there is a release before it that worked. */
 bool updater_has_before(const struct updater *updater);
-/* It works. */
+/* The stored release works: ends its trial. */
 void updater_prove(struct updater *updater);
-/* It does not (why: for people): it is refused, and the one before it begun, if there is one. */
+/* The release on trial does not work: records it as refused, and begins the one before it. why is
+ * for people. Does nothing if there is none before it. */
 void updater_fall_back(struct updater *updater, const char *why);
-/* The release that is being brought cannot be shown: refused, and not begun again. */
+/* Records that the release being loaded cannot be shown. It is not begun again. why is for people.
+ */
 void updater_refuse(struct updater *updater, struct hash root, const char *why);
-/* What was refused last of the releases that were offered. Borrowed; the counter tells of news. */
+/* Returns the last refusal of an offered release or its files. Borrowed; its counter rises with
+ * each. */
 const struct refusal *updater_refusal(const struct updater *updater);
-/* Readable when updater_dispatch has something to do. */
+/* Returns a descriptor, borrowed, that is readable when updater_dispatch has something to do. */
 int updater_fd(const struct updater *updater);
+/* Handles an answer of the state writer and calls `remembered`. Returns 0. */
 must_check int updater_dispatch(struct updater *updater);
 
 #endif
