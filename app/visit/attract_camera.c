@@ -7,7 +7,7 @@
 
 #include <cglm/cglm.h>
 
-#define CLEAR_SHARE 0.6f /* of the box's diagonal on the ground: the circle is round the box */
+#define CLEAR_SHARE 0.6f /* of the box's diagonal in plan: the circle then lies around the box */
 
 enum { PLACE_MS = ATTRACT_CAMERA_REST_MS + ATTRACT_CAMERA_MOVE_MS };
 
@@ -28,7 +28,8 @@ void attract_camera_init(struct attract_camera *attract, const float box_min_m[3
 	distance_m = hypotf(out_m[0], out_m[1]);
 	if (distance_m >= least_m)
 		return;
-	/* A first view from within, or from above, says little about the way round. */
+	/* A first view from inside or above is no use for a path around the model: start on the
+	 * circle instead. */
 	if (distance_m < least_m / 100) {
 		out_m[0] = 0;
 		out_m[1] = -(distance_m = 1);

@@ -1,9 +1,10 @@
-/* The bar's way back: one step at a time to where the visitor was. */
+/* The back button of the bar: records the visitor's place before each step, and returns to it one
+ * step at a time. */
 #include "app/kiosk.h"
 #include "base/log.h"
 
 #define FLIGHT_MS  900
-#define NEAR_SHARE 0.01f /* of the model's diagonal: there the eye has not moved */
+#define NEAR_SHARE 0.01f /* of the model's diagonal; an eye that moved less has not moved */
 
 static bool is_on_tour(const struct kiosk *kiosk)
 {
@@ -74,7 +75,7 @@ void back_press(struct kiosk *kiosk)
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct place place;
 
-	/* What lies over the rest goes first. */
+	/* A picture or the choice of tours covers the rest, so it is closed first. */
 	if (overlay_picture(overlay) >= 0)
 		overlay_show_picture(overlay, -1);
 	else if (overlay_choosing(overlay))
@@ -87,7 +88,7 @@ void back_say(struct kiosk *kiosk)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct way_back accumulation =
-		kiosk->way_back; /* what a press would leave of it is not wanted */
+		kiosk->way_back; /* a copy: taking a place from it must not change the steps */
 	struct place place;
 
 	if (overlay)

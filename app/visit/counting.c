@@ -1,4 +1,4 @@
-/* Counts what visitors look at, in the language in which they do: storage/usage.h. */
+/* Counts what visitors look at, together with the language they use: storage/usage.h. */
 #include "app/kiosk.h"
 #include "base/clock.h"
 

@@ -13,12 +13,12 @@
 
 enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
 
-/* A picture that was asked for. */
+/* One picture of the release. */
 struct information_view_picture {
 	bool wanted;
-	bool broken;            /* came, and cannot be decoded: not asked for again */
-	struct picture decoded; /* rgba NULL: not here */
-	uint32_t used;          /* turn of its last use, for letting the oldest go */
+	bool broken;            /* arrived but cannot be decoded; it is not requested again */
+	struct picture decoded; /* rgba NULL: not loaded */
+	uint32_t used;          /* value of turn at its last use, to evict the oldest */
 };
 
 struct information_view {
@@ -30,11 +30,11 @@ struct information_view {
 	struct hash root;          /* zero: no release */
 	struct page_child page_at; /* the info page in the root page */
 	uint32_t page_offset;
-	bool page_here, database_here; /* or found damaged: either way wanted no more */
-	struct page page;              /* the info page; children zero until it is here */
-	struct buffer page_bytes;      /* what page.payload borrows from */
+	bool page_here, database_here; /* arrived, intact or damaged: no longer wanted */
+	struct page page;              /* the info page; no children until it has arrived */
+	struct buffer page_bytes;      /* the bytes that page.payload points into */
 
-	struct information_view_picture pictures[PICTURES_MAX]; /* as info_picture numbers them */
+	struct information_view_picture pictures[PICTURES_MAX]; /* indexed like info_picture */
 	uint32_t turn;
 };
 
@@ -122,7 +122,8 @@ static bool on_picture(void *data, const char *name, struct overlay_picture *out
 	return true;
 }
 
-/* Keeps at most DECODED_MAX pictures in memory; asking for one that went brings it again. */
+/* Evicts the picture used longest ago if more than DECODED_MAX are decoded. It is requested again
+ * when it is needed. */
 static void let_oldest_picture_go(struct information_view *view)
 {
 	struct information_view_picture *oldest = NULL;
@@ -275,7 +276,8 @@ bool information_view_give(struct information_view *view, struct hash hash, stru
 		    page_decode(&view->page, buffer_bytes(&view->page_bytes)) < 0 ||
 		    view->page.kind != PAGE_INFO || view->page.child_count == 0) {
 			log_error("app", "content bug: the release's info page is damaged");
-			page_finish(&view->page); /* one of another kind names nothing of ours */
+			page_finish(
+				&view->page); /* a page of another kind has no children for us */
 		}
 		return true;
 	}
@@ -361,7 +363,7 @@ void information_view_set_language(struct information_view *view, const char *la
 	if (page >= 0)
 		information_view_open_page(view, (uint32_t)page);
 	if (overlay_searching(view->overlay))
-		information_view_search(view); /* the language's own come first */
+		information_view_search(view); /* results in the chosen language come first */
 }
 
 bool information_view_open_page(struct information_view *view, uint32_t part)

@@ -1,5 +1,6 @@
-/* What is known about the temple's parts: the release's information database, and the words and
- * pictures over the model. Wants its objects through wants_add like the scene does. */
+/* The information about the model's parts: loads the release's information database and its
+ * pictures, and shows them in the overlay. Its objects are requested through wants_add, like the
+ * scene's. */
 #ifndef GOPURA_APP_VISIT_INFORMATION_VIEW_H
 #define GOPURA_APP_VISIT_INFORMATION_VIEW_H
 
@@ -12,47 +13,56 @@
 struct information_view;
 
 struct information_view_options {
-	int width_px, height_px; /* as the visitor sees it */
-	float px_per_mm;         /* 0: guessed */
-	const char *language;    /* copied; NULL: the release's first */
+	int width_px, height_px; /* of the picture as the visitor sees it */
+	float px_per_mm;         /* 0: estimated */
+	const char *language;    /* copied; NULL: the first language of the release */
 };
 
+/* Creates a view without a release. *out is owned by the caller; it is NULL on failure. Returns 0
+ * or -ENOMEM. */
 must_check int information_view_create(struct information_view **out,
 				       const struct information_view_options *options);
+/* Frees it; NULL is fine. */
 void information_view_destroy(struct information_view *view);
 
-/* Another release: its info page is child ROOT_CHILD_INFO of the root page. What is open closes
- * when the new database is there; until then the old one answers. */
+/* Begins to load a release; its info page is child ROOT_CHILD_INFO of the root page, which is
+ * borrowed for the call. An open page or card closes when the new database arrives; until then the
+ * old database is used. */
 void information_view_open(struct information_view *view, struct hash root,
 			   const struct page *root_page);
-/* true: the object was the story's. */
+/* Gives an object that arrived to the view; borrowed for the call. Returns true if it belongs to
+ * the view. */
 bool information_view_give(struct information_view *view, struct hash hash, struct bytes object);
+/* Adds the objects that are still needed to wants. */
 void information_view_wants(struct information_view *view, struct wants *wants);
 
-/* NULL until the database is there, and for a story that is NULL. Borrowed until the next
- * information_view_give. */
+/* Return the overlay and the database; NULL until the database has arrived, and if view is NULL.
+ * Borrowed until the next information_view_give. */
 struct overlay *information_view_overlay(struct information_view *view);
 const struct info *information_view_info(const struct information_view *view);
-/* What the words come from arrived and cannot be read. */
+/* Returns whether the info page or the database arrived but could not be read. */
 bool information_view_broken(const struct information_view *view);
-/* NULL: not chosen yet. Borrowed. */
+/* Returns the language in use, or NULL if none is chosen yet. Borrowed. */
 const char *information_view_language(const struct information_view *view);
+/* Changes to the language of the release that is nearest to the given one, and writes the overlay's
+ * texts again. language is copied. */
 void information_view_set_language(struct information_view *view, const char *language);
 
-/* Says to the overlay what its query finds. */
+/* Searches for the overlay's query, and gives it the parts found. */
 void information_view_search(struct information_view *view);
 
-/* The part that a point of the surface belongs to: of those that contain it the smallest, or -1. */
+/* Returns the smallest part that contains a point of the surface, or -1. */
 int information_view_part_at(const struct information_view *view, const float point_m[3]);
-/* The region of a part, for the bold border. false: it is only a point. */
+/* Writes the region of a part, for its outline. Returns false if it is only a point. */
 bool information_view_region(const struct information_view *view, uint32_t part,
 			     struct region *out);
-/* Where to stand to see a part well: as the eye stands now, but nearer. A part that is smaller
- * than least_m, or a mere point, is looked at as if it were as large. */
+/* Writes a pose from which the part is seen well: in about the direction from which the eye sees it
+ * now, but closer. A part smaller than least_m, or a point, is treated as if it had that size. */
 void information_view_viewpoint(const struct information_view *view, uint32_t part, float least_m,
 				const float eye_m[3], float eye_out_m[3], float target_m[3]);
 
-/* Opens a part's page beside the model. false: it has none. */
+/* Opens a part's page beside the model. Returns false if there is none, or it cannot be shown
+ * (logged). */
 bool information_view_open_page(struct information_view *view, uint32_t part);
 
 #endif

@@ -1,6 +1,7 @@
-/* Whether a visitor is there: pure but for the times it is told. Nobody -> a touch -> somebody, who
- * after a while without a touch is asked, and is gone where no answer comes. From each state the
- * next one is reached by time alone, so a terminal never stays where somebody left it. */
+/* Decides whether a visitor is there: nobody -> somebody (at a touch) -> asked (after some time
+ * without a touch) -> nobody (if no answer comes). Time alone leads from each state back to nobody,
+ * so a terminal never stays as somebody left it. Pure: all times are passed in, in milliseconds of
+ * clock_now_ms. */
 #ifndef GOPURA_APP_VISIT_PRESENCE_H
 #define GOPURA_APP_VISIT_PRESENCE_H
 
@@ -10,12 +11,13 @@
 enum {
 	PRESENCE_IDLE_LEAST_S = 5,
 	PRESENCE_IDLE_MOST_S = 3600,
-	PRESENCE_READ_TIMES = 3, /* who reads touches less often: idle times this */
+	PRESENCE_READ_TIMES = 3, /* while reading, the idle time is multiplied by this */
 	PRESENCE_ASK_MS = 15000,
 };
 
 enum presence_state {
-	PRESENCE_NOBODY, /* the model is shown as it shows itself best */
+	PRESENCE_NOBODY, /* nobody is there: the model is presented by a tour or the attract camera
+			  */
 	PRESENCE_SOMEBODY,
 	PRESENCE_ASKED, /* "are you still there?" */
 };
@@ -23,25 +25,28 @@ enum presence_state {
 struct presence {
 	enum presence_state state;
 	int64_t idle_ms;
-	int64_t touched_ms; /* or when it began */
-	bool reading;       /* as last told */
-	bool touched;       /* by this visitor; nobody is asked who never was there */
+	int64_t touched_ms; /* last touch; at first, when presence_init was called */
+	bool reading;       /* as given to presence_step last */
+	bool touched; /* this visitor has touched the panel; without a touch nobody is asked */
 };
 
-/* As if somebody had come a moment ago. */
+/* Starts in the state somebody. idle_s: seconds without a touch until the visitor is asked,
+ * PRESENCE_IDLE_LEAST_S to PRESENCE_IDLE_MOST_S. */
 void presence_init(struct presence *presence, int idle_s, int64_t now_ms);
-/* Something was done with a finger. */
+/* Records a touch: somebody is there. */
 void presence_touch(struct presence *presence, int64_t now_ms);
-/* Somebody is led about, and needs not touch anything: as if it were touched now. */
+/* Restarts the idle time without a touch, in the state somebody only: a visitor who watches a tour
+ * need not touch anything. */
 void presence_keep(struct presence *presence, int64_t now_ms);
-/* Lets time pass. reading: a card, page or search is open, or a finger lies still on the glass. */
+/* Updates the state. reading: the visitor is busy with something that needs few touches, such as an
+ * open page, and gets more time. */
 void presence_step(struct presence *presence, int64_t now_ms, bool reading);
-/* Milliseconds until presence_step changes something, or the count-down's next second; -1: never.
- */
+/* Returns the milliseconds until presence_step changes the state, or until the next second of the
+ * countdown; -1: never. */
 int presence_wait_ms(const struct presence *presence, int64_t now_ms);
-/* Until nobody is there, without a touch; 0: so it is. */
+/* Returns the milliseconds until the state is nobody if no touch comes; 0: it is. */
 int presence_left_ms(const struct presence *presence, int64_t now_ms);
-/* Seconds that are left for an answer, 1 or more; -1: nothing is asked. */
+/* Returns the seconds left for an answer, 1 or more; -1: nothing is asked. */
 int presence_asked_s(const struct presence *presence, int64_t now_ms);
 
 #endif

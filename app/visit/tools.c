@@ -6,10 +6,12 @@
 #include "app/kiosk.h"
 #include "base/log.h"
 
-/* Where the lamp is when it is switched on: from the upper left, as drawings have it, and low. */
+/* The first position of the raking light on its disc: from the upper left, as is usual in drawings,
+ * and low. */
 static const float first_light[2] = { -0.62f, 0.52f };
 
-/* Of the eye, about the vertical: discs have up away from it. */
+/* Returns the eye's heading about the vertical axis, in radians. On the discs, up points away from
+ * the eye. */
 static float heading(const struct kiosk *kiosk)
 {
 	const float *eye = kiosk->camera.eye_m, *target = kiosk->camera.target_m;
@@ -65,7 +67,7 @@ void tools_press(struct kiosk *kiosk, unsigned tool)
 		section_init(&now->section, o->box_min_m, o->box_max_m);
 		section_face(&now->section, kiosk->camera.eye_m, forward);
 	}
-	kiosk->anchors_to_look = OVERLAY_PARTS_MAX; /* other stone is before them */
+	kiosk->anchors_to_look = OVERLAY_PARTS_MAX; /* the section changes what hides an anchor */
 	say(kiosk);
 	kiosk_redraw(kiosk);
 }
@@ -112,7 +114,7 @@ static void move(struct kiosk *kiosk, const float at[2])
 			section_turn(section, heading(kiosk) + atan2f(-at[0], at[1]));
 		break;
 	case OVERLAY_HANDLE_PUSH:
-		/* As far as the finger went along the normal. */
+		/* Moves the section as far as the finger moved along its normal. */
 		section->push_m = tools->grabbed_push_m;
 		section_push(section,
 			     section->reach_m * ((at[1] - tools->grabbed_at[1]) * cosf(turn) -
@@ -162,7 +164,7 @@ void tools_say(struct kiosk *kiosk)
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
 	struct scene_tools *now = &kiosk->tools.now;
 
-	/* Another release may offer others. */
+	/* Another release may offer other tools. */
 	now->rake.on = now->rake.on && offered(kiosk) & OVERLAY_TOOL_LIGHT;
 	now->section.on = now->section.on && offered(kiosk) & OVERLAY_TOOL_SECTION;
 	if (kiosk->shown.scene)

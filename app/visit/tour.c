@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { STEP_MOST_MS = 50 }; /* of the eye: a hiccup is not a jump */
+enum { STEP_MOST_MS = 50 }; /* longest step of the eye: after a delay it does not jump */
 
 _Static_assert((int)TOUR_STOPS_MAX == (int)INFO_STOPS_MAX, "stops of a tour");
 
@@ -32,7 +32,8 @@ void tour_begin(struct tour *tour, uint32_t which, const struct info_tour *of, b
 	tour->at_ms = 0;
 	tour->then_ms = now_ms;
 	tour_way(&tour->path, of, diagonal_m);
-	/* Its last leg leads back, for who is not there: a visitor's tour ends at the last stop. */
+	/* The last leg of a looping tour leads back to its start. A visitor's tour ends at the last
+	 * stop, before it. */
 	if (of->attract && !loops) {
 		const struct tour_run *last = &tour->path.runs[tour->path.run_count - 1];
 
@@ -63,7 +64,8 @@ bool tour_runs(const struct tour *tour)
 	return tour->state == TOUR_COMING || tour->state == TOUR_FLYING;
 }
 
-/* Stays pass by the clock, for nothing is drawn then; moves as fast as they can be seen. */
+/* Advances the tour. Stays pass by the clock, because nothing is drawn then; movements advance by
+ * at most STEP_MOST_MS per step. */
 static void advance(struct tour *tour, int64_t ms)
 {
 	const int64_t accumulation = tour_path_rest_ms(&tour->path, tour->at_ms);

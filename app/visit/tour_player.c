@@ -1,5 +1,5 @@
-/* Guided tours in the kiosk: who starts and halts them, where the eye comes from, and what is said
- * on the way. */
+/* Plays guided tours in the kiosk: starts and halts them, flies the eye to their path, and shows
+ * captions in the overlay. */
 #include <math.h>
 #include <string.h>
 
@@ -9,11 +9,11 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-#define CALM_SHARE 0.1f /* of the diagonal, a second: the eye comes to the way */
+#define CALM_SHARE 0.1f /* of the model's diagonal per second: speed of the flight to the path */
 
 enum { COME_LEAST_MS = 1200, COME_MOST_MS = 5000 };
 
-/* The tour that is flown; NULL: none. */
+/* Returns the current tour, or NULL. */
 static const struct info_tour *flown(const struct kiosk *kiosk)
 {
 	const struct info *info = information_view_info(kiosk->shown.view);
@@ -23,7 +23,7 @@ static const struct info_tour *flown(const struct kiosk *kiosk)
 	return info_tour(info, kiosk->tour.which);
 }
 
-/* For whoever wonders where it was taken, and where it went on. */
+/* Logs the eye where a tour is halted or continues. */
 static void say_eye(const struct kiosk *kiosk, const char *what)
 {
 	const float *eye_m = kiosk->navigator.eye_m;
@@ -67,7 +67,7 @@ bool tour_player_go_round(struct kiosk *kiosk)
 	return false;
 }
 
-/* The model alone, for the tour to be seen. */
+/* Closes everything that covers the model, so that the tour can be seen. */
 static void clear(struct overlay *overlay)
 {
 	overlay_close_page(overlay);
@@ -91,7 +91,7 @@ void tour_player_start(struct kiosk *kiosk, int which)
 void tour_player_halt(struct kiosk *kiosk)
 {
 	if (kiosk->tour.loops)
-		tour_end(&kiosk->tour); /* nobody's, and somebody came */
+		tour_end(&kiosk->tour); /* it ran for nobody, and now somebody came */
 	if (!tour_runs(&kiosk->tour))
 		return;
 	tour_halt(&kiosk->tour);
@@ -135,7 +135,7 @@ bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 	const enum tour_state before = kiosk->tour.state;
 	struct tour_pose pose;
 
-	/* Another release, or somebody came. */
+	/* The release has changed, or somebody came. */
 	if (!flown(kiosk) || (kiosk->tour.loops && kiosk->presence.state != PRESENCE_NOBODY))
 		tour_end(&kiosk->tour);
 	if (!tour_step(&kiosk->tour, now_ms, kiosk->navigator.flight_left_ms <= 0, &pose))
@@ -148,9 +148,10 @@ bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 	return pose.moves;
 }
 
-/* ---- what is said */
+/* ---- what the overlay shows */
 
-/* Where it stays, or will next: stops on the way alone are not spoken of. */
+/* Returns the stop whose caption is shown: the current or next stop at which the tour stays. Stops
+ * that are only passed have none. */
 static uint32_t spoken_stop(const struct kiosk *kiosk, const struct info_tour *tour)
 {
 	struct tour_pose pose;
@@ -159,7 +160,7 @@ static uint32_t spoken_stop(const struct kiosk *kiosk, const struct info_tour *t
 	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
 	stop = pose.stop;
 	while (tour->stops[stop].stay_s == 0)
-		stop = (stop + 1) % tour->stop_count; /* the last one stays */
+		stop = (stop + 1) % tour->stop_count; /* a tour always stays at its last stop */
 	return stop;
 }
 

@@ -1,5 +1,5 @@
-/* What a visit asks of the rest: the model that shows itself while nobody is there, the question
- * whether somebody still is, and everything as it was for whoever comes next. */
+/* Manages a visit: while nobody is there, the model presents itself; after a time without a touch
+ * the visitor is asked; after a visit everything is reset for the next visitor. */
 #include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/log.h"
@@ -19,7 +19,7 @@ static bool is_reading(const struct kiosk *kiosk)
 			   kiosk->tools.now.rake.on || kiosk->tools.now.section.on);
 }
 
-/* Nothing of one visitor is left for the next. */
+/* Resets everything, so that nothing of one visitor is left for the next. */
 static void begin_anew(struct kiosk *kiosk)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
@@ -42,13 +42,14 @@ static void begin_anew(struct kiosk *kiosk)
 			language ? language
 				 : info_language(information_view_info(kiosk->shown.view), 0));
 	}
-	gesture_reset(&kiosk->gestures); /* fingers that still lie on the glass belong to nobody */
+	gesture_reset(&kiosk->gestures); /* fingers still on the glass belong to nobody */
 	kiosk->fingers_on_keys = 0;
 	if (kiosk->usage)
 		usage_write(kiosk->usage);
 }
 
-/* From where the eye is to where its way begins. */
+/* Starts the tour for the time while nobody is there, or flies the eye to the start of the attract
+ * camera. */
 static void send_round(struct kiosk *kiosk, int64_t now_ms)
 {
 	const struct navigator_options *o = &kiosk->navigator.options;
@@ -63,7 +64,7 @@ static void send_round(struct kiosk *kiosk, int64_t now_ms)
 	kiosk->attract_camera_since_ms = now_ms + HOMEWARD_MS;
 }
 
-/* For whoever wonders what a visit was. */
+/* Logs a change of the visitor's state. */
 static void say_state(struct kiosk *kiosk)
 {
 	static const char *const states[] = {
@@ -82,7 +83,7 @@ static bool is_off(const struct kiosk *kiosk)
 	return kiosk->options.views_path || !kiosk->navigator_ready;
 }
 
-/* Until the eye moves by itself, whoever leads it; -1: it does not. */
+/* Returns the milliseconds until the eye moves by itself; -1: it does not. */
 static int eye_wait_ms(const struct kiosk *kiosk, int64_t now_ms)
 {
 	if (kiosk->tour.state != TOUR_OFF)
@@ -109,10 +110,11 @@ void visitor_watch(struct kiosk *kiosk)
 		begin_anew(kiosk);
 		send_round(kiosk, now_ms);
 	} else if (kiosk->presence.state == PRESENCE_NOBODY && kiosk->tour.state == TOUR_OFF) {
-		tour_player_go_round(kiosk); /* of another release, or one whose words came late */
+		tour_player_go_round(kiosk); /* a new release, or a database that arrived late, may
+						have a tour */
 	}
 	asked_s = presence_asked_s(&kiosk->presence, now_ms);
-	if (overlay) { /* also one that is new */
+	if (overlay) { /* the overlay may be new, so tell it each time */
 		overlay_invite(overlay, kiosk->presence.state == PRESENCE_NOBODY);
 		overlay_ask(overlay, asked_s);
 		tour_player_say(kiosk);

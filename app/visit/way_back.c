@@ -16,7 +16,7 @@ static bool is_same(const struct place *a, const struct place *b, float near_m)
 	    a->on_tour != b->on_tour)
 		return false;
 	if (a->on_tour)
-		return true; /* which leads the eye */
+		return true; /* both are on a tour, which moves the eye */
 	glm_vec3_sub((float *)a->target_m, (float *)a->eye_m, from);
 	glm_vec3_sub((float *)b->target_m, (float *)b->eye_m, to);
 	glm_vec3_normalize(from);

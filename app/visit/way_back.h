@@ -1,20 +1,20 @@
-/* Where a visitor was before each step: what was open, and where the eye stood or was going. A step
- * back leads to the last such place that is another than here. Pure. */
+/* The places where a visitor was before each step: what was open, and where the eye stood or was
+ * flying to. A step back leads to the last place that differs from the current one. Pure. */
 #ifndef GOPURA_APP_VISIT_WAY_BACK_H
 #define GOPURA_APP_VISIT_WAY_BACK_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { WAY_BACK_MAX = 32 }; /* steps that are remembered */
+enum { WAY_BACK_MAX = 32 }; /* most steps that are kept */
 
 struct place {
 	float eye_m[3], target_m[3];
-	int card, page; /* parts, or -1 */
-	float read;     /* of the page: the share of it above what is seen */
-	bool wide;      /* the page has the whole panel */
+	int card, page; /* open part, or -1 */
+	float read;     /* scroll position: share of the page above the visible part */
+	bool wide;      /* the page covers the whole panel */
 	bool searching;
-	bool on_tour; /* a visitor's: flown, or halted */
+	bool on_tour; /* on a visitor's tour, running or halted */
 };
 
 struct way_back {
@@ -22,10 +22,11 @@ struct way_back {
 	uint32_t count;
 };
 
-/* A step begins here. The oldest place is forgotten where there are too many. */
+/* Records the place where a step begins. The oldest place is dropped if there are more than
+ * WAY_BACK_MAX. */
 void way_back_note(struct way_back *way, const struct place *here);
-/* The last place that is not here, which is forgotten with what came after it. false: there is
- * none. near_m: eyes no farther apart stand in the same place. */
+/* Takes the last place that differs from here, and drops it and those after it. Returns false if
+ * there is none. near_m: eyes no farther apart count as in the same place. */
 bool way_back_take(struct way_back *way, const struct place *here, float near_m, struct place *out);
 
 #endif
