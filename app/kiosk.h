@@ -164,16 +164,17 @@ static inline int sooner(int a_ms, int b_ms)
 /* kiosk.c: what every part uses. */
 /* Requests a frame, because the picture has changed. */
 void kiosk_redraw(struct kiosk *kiosk);
-/* Adds fd to the epoll set until fd is closed. fd -1: does nothing. Returns 0 or a negative errno.
+/* Adds fd to the epoll set, until fd is closed. fd -1: does nothing. Returns 0 or a negative errno.
  */
 must_check int kiosk_watch(struct kiosk *kiosk, int fd);
 /* Size of the picture as the visitor sees it, in pixels: width and height are exchanged if the
  * panel is rotated by 90 or 270 degrees. */
 int kiosk_width_px(const struct kiosk *kiosk);
-int kiosk_height_px(const struct kiosk *kiosk);
+int kiosk_height_px(const struct kiosk *kiosk); /* likewise */
 /* Convert a point from the visitor's pixels to the framebuffer's, and back, in place. The two
  * differ if the panel is rotated. */
 void viewport_to_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
+/* The reverse of viewport_to_panel. */
 void viewport_from_panel(const struct kiosk *kiosk, float *x_px, float *y_px);
 /* Converts a point on the glass to the point of the picture shown there, both in the visitor's
  * pixels and in place. The picture may be shifted by a few pixels to spare the panel. */
@@ -196,9 +197,9 @@ void session_warm(struct kiosk *kiosk);
 /* Handles the answer to net_client_sync. done: the objects survive a power cut; otherwise the disk
  * failed. */
 void session_synced(struct kiosk *kiosk, bool done);
-void session_keep_first(
-	struct kiosk *kiosk); /* Called after each frame: asks the fetcher to sync the objects of
-				 the first release, once its picture is complete or has had time. */
+/* Called after each frame: asks the fetcher to sync the objects of the first release, once its
+ * picture is complete or has had time. */
+void session_keep_first(struct kiosk *kiosk);
 /* Returns whether objects of the next release may be requested: it is the time of day for it, the
  * release is on a stick, or the clock is not set. */
 bool session_may_load(const struct kiosk *kiosk);
@@ -224,8 +225,8 @@ bool panel_takes_touch(struct kiosk *kiosk, const struct touch_event *event);
 /* Draws the page into its bitmap if there is something to say. Call it when the panel's size is
  * known and the stored release has been opened. Returns 0 or a negative errno. */
 must_check int setup_page_show(struct kiosk *kiosk);
-void setup_page_finish(
-	struct kiosk *kiosk); /* frees the bitmap; one that was never drawn is fine */
+/* Frees the bitmap; one that was never drawn is fine. */
+void setup_page_finish(struct kiosk *kiosk);
 /* Draws the page over everything else in the frame, and fades it out when its time has passed.
  * Returns 0 or a negative errno. */
 must_check int setup_page_draw(struct kiosk *kiosk, int64_t now_ms);
@@ -325,9 +326,10 @@ void frame_camera(const struct kiosk *kiosk, struct camera *out);
 /* fingers.c */
 /* Initialises gesture recognition; needs px_per_mm. */
 void fingers_init(struct kiosk *kiosk);
-/* Callbacks of touch and display; data is the kiosk. Touches are in the visitor's pixels; pointer
- * positions in the panel's, steps of the wheel > 0 zoom in. */
+/* Callback of the touchscreen: handles a touch in the visitor's pixels. data is the kiosk. */
 void fingers_on_touch(void *data, const struct touch_event *event);
+/* Callback of the display: handles the pointer of a window, in the panel's pixels. steps > 0 of the
+ * wheel zoom in. data is the kiosk. */
 void fingers_on_pointer(void *data, enum pointer_kind kind, float x_px, float y_px, float steps);
 
 #endif

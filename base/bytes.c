@@ -347,7 +347,8 @@ int bytes_write_file(struct bytes bytes, const char *path)
 	return rc < 0 ? rc : sync_folder_of(path);
 }
 
-/* "state.db.second.a1B2c3" of "state.db.second", as mkostemp names it. */
+/* Returns whether entry is a temporary file of name, as mkostemp names it: "state.db.second.a1B2c3"
+ * for "state.db.second". */
 static bool is_leftover(const char *entry, const char *name)
 {
 	const size_t length = strlen(name);

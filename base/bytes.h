@@ -1,6 +1,6 @@
 /* Byte strings: a borrowed view, a growing buffer with a ceiling, and a bounds-checked reader.
- * Buffer and reader are sticky: after the first failure further calls do nothing and the failure
- * is judged once at the end. Integers are little endian on disk and wire. */
+ * Buffer and reader keep their first failure: later calls do nothing, and the caller checks once at
+ * the end. Integers are little endian on disk and wire. */
 #ifndef GOPURA_BASE_BYTES_H
 #define GOPURA_BASE_BYTES_H
 
@@ -10,85 +10,96 @@
 
 #include "base/compiler.h"
 
-/* Borrowed. */
+/* A borrowed view. */
 struct bytes {
 	const uint8_t *data;
 	size_t size;
 };
 
-/* Owned by whoever holds it; buffer_finish releases it. */
+/* Owned by its holder; buffer_finish releases it. */
 struct buffer {
 	uint8_t *data;
 	size_t size;
 	size_t capacity;
-	size_t ceiling; /* bytes; growing past it fails */
-	int error;      /* 0, or -ENOMEM, or -EFBIG, sticky */
+	size_t ceiling; /* maximum size in bytes; growing past it fails */
+	int error;      /* first failure: 0, -ENOMEM or -EFBIG; kept until buffer_clear */
 };
 
-/* Empty; allocates when first written to. */
+/* Sets *buffer to empty. Memory is allocated at the first write. */
 void buffer_init(struct buffer *buffer, size_t ceiling_bytes);
-void buffer_finish(struct buffer *buffer); /* NULL and zeroed are fine */
-void buffer_clear(struct buffer *buffer);  /* keeps the memory, forgets the error */
+void buffer_finish(struct buffer *buffer); /* frees the memory; NULL and zeroed are fine */
+void buffer_clear(struct buffer *buffer);  /* empties it and resets error; keeps the memory */
 
-/* Room for size more bytes, counted as written, contents undefined. NULL on failure. */
+/* Appends size bytes with undefined contents and returns a pointer to them, borrowed until the next
+ * call on the buffer. NULL on failure. */
 uint8_t *buffer_extend(struct buffer *buffer, size_t size);
-/* Appends a copy, numbers little endian. Failures are kept in error, to be asked for once at the
- * end; nothing is written after one. */
+/* Append a copy of data, or a number in little endian. A failure is kept in error, to be checked
+ * once at the end; after it nothing is written. */
 void buffer_put(struct buffer *buffer, const void *data, size_t size);
-void buffer_put_u8(struct buffer *buffer, uint8_t value);
-void buffer_put_u16(struct buffer *buffer, uint16_t value);
-void buffer_put_u32(struct buffer *buffer, uint32_t value);
-void buffer_put_u64(struct buffer *buffer, uint64_t value);
-void buffer_put_f32(struct buffer *buffer, float value);
-void buffer_put_f64(struct buffer *buffer, double value);
-/* u16 length, then the bytes, no terminator. Longer than 65535 bytes sets -EFBIG. */
+void buffer_put_u8(struct buffer *buffer, uint8_t value);   /* 1 byte */
+void buffer_put_u16(struct buffer *buffer, uint16_t value); /* 2 bytes */
+void buffer_put_u32(struct buffer *buffer, uint32_t value); /* 4 bytes */
+void buffer_put_u64(struct buffer *buffer, uint64_t value); /* 8 bytes */
+void buffer_put_f32(struct buffer *buffer, float value);    /* IEEE 754 single precision */
+void buffer_put_f64(struct buffer *buffer, double value);   /* IEEE 754 double precision */
+/* Appends the length as u16, then the bytes without terminator. Text longer than 65535 bytes sets
+ * -EFBIG. */
 void buffer_put_string(struct buffer *buffer, const char *text);
-/* A view of what was written; borrowed until the next call on the buffer. */
+/* Returns a view of what was written; borrowed until the next call on the buffer. */
 struct bytes buffer_bytes(const struct buffer *buffer);
 
 struct reader {
 	const uint8_t *data;
 	size_t size;
 	size_t at;
-	bool failed; /* read past the end; every later read gives zero */
+	bool failed; /* a read failed; every later read gives zero */
 };
 
-/* Reads from borrowed bytes, numbers little endian. What lies past the end reads as zero and sets
- * failed, to be asked for once at the end. */
+/* Reads numbers in little endian from bytes, which are borrowed. A read past the end gives zero and
+ * sets failed, to be checked once at the end. */
 void reader_init(struct reader *reader, struct bytes bytes);
+/* Returns the number of bytes not read yet; 0 after a failure. */
 size_t reader_left(const struct reader *reader);
-uint8_t reader_u8(struct reader *reader);
-uint16_t reader_u16(struct reader *reader);
-uint32_t reader_u32(struct reader *reader);
-uint64_t reader_u64(struct reader *reader);
-float reader_f32(struct reader *reader);
-double reader_f64(struct reader *reader);
-/* Borrowed from what the reader reads; empty on failure. */
+uint8_t reader_u8(struct reader *reader);   /* 1 byte */
+uint16_t reader_u16(struct reader *reader); /* 2 bytes */
+uint32_t reader_u32(struct reader *reader); /* 4 bytes */
+uint64_t reader_u64(struct reader *reader); /* 8 bytes */
+float reader_f32(struct reader *reader);    /* IEEE 754 single precision */
+double reader_f64(struct reader *reader);   /* IEEE 754 double precision */
+/* Returns a view of the next size bytes, borrowed from the reader's bytes; empty on failure. */
 struct bytes reader_bytes(struct reader *reader, size_t size);
-/* Into out, terminated; fails where the text does not fit in out_bytes or holds a zero byte. */
+/* Reads a text as buffer_put_string writes it into out, terminated. Sets failed if it does not fit
+ * into out_bytes or holds a zero byte; out is then "". */
 void reader_string(struct reader *reader, char *out, size_t out_bytes);
 
-/* Whole file into *out (cleared first). Negative errno, -EFBIG past the buffer's ceiling. Only
- * regular files are read (base/safe_open.h has the errors and their words): a path that we or the
- * operator chose; */
+/* Reads a whole regular file into *out, which is cleared first. Returns 0 or a negative errno:
+ * -EFBIG past the buffer's ceiling, -ENOMEM, and the errors of base/safe_open.h, which open_problem
+ * explains. This one is for a path that we or the operator chose. */
 must_check int buffer_read_file(struct buffer *out, const char *path);
-/* a name from a foreign file or medium, below a folder that we trust, no links; */
+/* As buffer_read_file, for a name from a foreign file or medium, below a folder that we trust.
+ * Links are not followed. */
 must_check int buffer_read_beneath(struct buffer *out, const char *folder, const char *name);
-/* a path whose folder we trust, and whose last component is foreign. */
+/* As buffer_read_file, for a path whose folder we trust and whose last component is foreign. */
 must_check int buffer_read_foreign(struct buffer *out, const char *path);
-/* As far as it reads; fd is taken, or a negative errno that is given back. */
+/* Reads from the descriptor's position to its end into *out. fd is taken; if it is a negative
+ * errno, it is returned. */
 must_check int buffer_read_fd(struct buffer *out, int fd);
-/* size bytes at a place of a file; -EBADMSG: it ends before. */
+/* Reads exactly size bytes at an offset of a file. Returns 0 or a negative errno; -EBADMSG if the
+ * file ends before. */
 must_check int bytes_read_at(int fd, void *to, size_t size, uint64_t at);
 enum { BYTES_PATH_MAX = 4096 };
-/* A file that takes the place of another only when it is whole: bytes_begin_file gives a descriptor
- * of a temporary file beside path and its name; bytes_end_file closes it, and renames it, or
- * removes it where rc, which it gives back, tells that writing failed. */
+/* Begins to replace a file: creates a temporary file beside path, and writes its name to temporary.
+ * Returns its descriptor, owned by the caller, or a negative errno. */
 must_check int bytes_begin_file(char temporary[BYTES_PATH_MAX], const char *path);
+/* Ends it: closes fd and renames the temporary file to path, so path is replaced only when the new
+ * file is complete. If rc is negative, because writing failed, removes it and returns rc. Does not
+ * call fsync. */
 must_check int bytes_end_file(int fd, const char *temporary, const char *path, int rc);
-/* Atomically: a temporary file beside it, fsync, rename, fsync of the folder. */
+/* Writes a file atomically: temporary file beside it, fsync, rename, fsync of the folder. Returns 0
+ * or a negative errno. */
 must_check int bytes_write_file(struct bytes bytes, const char *path);
-/* Removes temporary files that power cuts left of path's. While nobody writes it. */
+/* Removes temporary files of path that were left by power cuts. Call it only while nobody writes
+ * path. */
 void bytes_drop_leftovers(const char *path);
 
 #endif

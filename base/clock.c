@@ -39,8 +39,8 @@ bool clock_wall_is_set(void)
 {
 	struct timex state = { .modes = 0 };
 
-	/* A sandbox that lets nobody set the clock may not let it be asked either; systemd's time
-	 * service leaves a mark. */
+	/* A sandbox that forbids setting the clock may forbid adjtimex too; then the file that
+	 * systemd's time service creates tells. */
 	if (adjtimex(&state) < 0)
 		return access("/run/systemd/timesync/synchronized", F_OK) == 0;
 	return !(state.status & STA_UNSYNC);
@@ -51,7 +51,8 @@ bool clock_agrees(const char *battery_s, int64_t system_s)
 	char *end;
 	const long long battery = strtoll(battery_s, &end, 10);
 
-	/* A day apart is a time zone and then some; a dead battery is years apart. */
+	/* Less than a day of difference may be a time zone; a clock with an empty battery is years
+	 * wrong. */
 	return end != battery_s && llabs(battery - (long long)system_s) < 24 * 3600;
 }
 

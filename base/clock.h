@@ -1,26 +1,29 @@
-/* The one source of time. Tests replace these functions at link time; pass no old "now" down. */
+/* The only source of time. Tests replace these functions at link time. Do not pass an old "now"
+ * down; ask again. */
 #ifndef GOPURA_BASE_CLOCK_H
 #define GOPURA_BASE_CLOCK_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Monotonic; the zero is arbitrary. */
+/* Returns monotonic time in milliseconds, from an arbitrary zero. */
 int64_t clock_now_ms(void);
-/* The same clock, microseconds. */
+/* Returns the same clock in microseconds. */
 int64_t clock_now_us(void);
 
-/* CPU time of the calling thread. */
+/* Returns the CPU time of the calling thread, in microseconds. */
 int64_t clock_thread_us(void);
 
-/* Seconds since 1970 by the wall clock, which may be wrong: see storage/state.h for the floor. */
+/* Returns the wall clock in seconds since 1970. It may be wrong: storage/state.h keeps a floor for
+ * it. */
 int64_t clock_wall_s(void);
-/* The kernel was told the time by somebody who knows it (NTP): expiry may be judged. */
+/* Returns whether the clock was set from the network (NTP), so that expiry may be judged. */
 bool clock_wall_is_set(void);
-/* The time of day may be believed although nobody on the network confirmed it: a clock with a
- * battery runs in this machine, and says the same. */
+/* Returns whether the time of day may be trusted even if the network has not confirmed it: the
+ * clock is set, or a battery-backed clock in this machine agrees with it. */
 bool clock_wall_is_plausible(void);
-/* What such a clock says (seconds since 1970 as text) against what the system says. Pure. */
+/* Returns whether a battery-backed clock (battery_s: seconds since 1970 as text) and the system's
+ * clock differ by less than a day. Pure. */
 bool clock_agrees(const char *battery_s, int64_t system_s);
 
 #endif

@@ -13,7 +13,8 @@ int daily_parse(struct daily *out, const char *text)
 	int hours[2], minutes[2];
 	char end;
 
-	/* Each place is one digit: no signs, no spaces, none left out. */
+	/* Every position must hold a digit or the given sign: no signs, no spaces, nothing left
+	 * out. */
 	if (strlen(text) != 11 || strspn(text, "0123456789:-") != 11 ||
 	    sscanf(text, "%2d:%2d-%2d:%2d%c", &hours[0], &minutes[0], &hours[1], &minutes[1],
 		   &end) != 4)

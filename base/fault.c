@@ -13,7 +13,8 @@ int fault_set(struct fault *fault, int error, const char *text, ...)
 	va_start(args, text);
 	vsnprintf(fault->text, sizeof(fault->text), text, args);
 	va_end(args);
-	/* It may quote a file's bytes, and goes to a terminal. */
+	/* The text may quote bytes of a file and is printed to a terminal, so control characters
+	 * are replaced. */
 	for (char *c = fault->text; *c; c++)
 		if ((unsigned char)*c < 0x20 || *c == 0x7f)
 			*c = '?';

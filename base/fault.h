@@ -1,5 +1,5 @@
-/* What is wrong with somebody's file, in a sentence for who must mend it: file, place, cure.
- * Modules that read what people made take one and fill it; commands print it. */
+/* What is wrong with a user's file, in one sentence that names the file, the place and the cure.
+ * Modules that read files written by people fill it in; commands print it. */
 #ifndef GOPURA_BASE_FAULT_H
 #define GOPURA_BASE_FAULT_H
 
@@ -8,11 +8,11 @@
 enum { FAULT_BYTES = 768 };
 
 struct fault {
-	char text[FAULT_BYTES]; /* "" while nothing is wrong */
+	char text[FAULT_BYTES]; /* "" if nothing is wrong */
 };
 
-/* Keeps the first text, which is the cause; later ones are its consequences. Gives error back,
- * so that a caller can say `return fault_set(fault, -EBADMSG, ...)`. fault may be NULL. */
+/* Sets the text, unless one is set: the first is the cause, later ones are consequences. Returns
+ * error, so that a caller can write `return fault_set(fault, -EBADMSG, ...)`. fault may be NULL. */
 int fault_set(struct fault *fault, int error, const char *text, ...) printf_like(3, 4);
 
 #endif

@@ -9,11 +9,11 @@
 enum {
 	SYLLABLE_FIRST = 0xac00,
 	SYLLABLE_COUNT = 19 * 21 * 28,
-	VOWEL_FIRST = 0x314f, /* ㅏ; 21 in the order of the syllables */
+	VOWEL_FIRST = 0x314f, /* ㅏ; the 21 vowels, in the order of the syllables */
 	VOWELS = 21,
 };
 
-/* Consonants that begin a syllable, and that end one, in the order of the syllables. */
+/* Consonants that begin a syllable, and those that end one, in the order of the syllables. */
 static const uint16_t leads[19] = { 0x3131, 0x3132, 0x3134, 0x3137, 0x3138, 0x3139, 0x3141,
 				    0x3142, 0x3143, 0x3145, 0x3146, 0x3147, 0x3148, 0x3149,
 				    0x314a, 0x314b, 0x314c, 0x314d, 0x314e };
@@ -22,7 +22,7 @@ static const uint16_t tails[28] = { 0,      0x3131, 0x3132, 0x3133, 0x3134, 0x31
 				    0x313f, 0x3140, 0x3141, 0x3142, 0x3144, 0x3145, 0x3146,
 				    0x3147, 0x3148, 0x314a, 0x314b, 0x314c, 0x314d, 0x314e };
 
-/* Two keys that make one letter: ㅗ ㅏ ㅘ … ㅡ ㅣ ㅢ, ㄱ ㅅ ㄳ … ㅂ ㅅ ㅄ. */
+/* Pairs of keys that form one letter: ㅗ ㅏ ㅘ … ㅡ ㅣ ㅢ, ㄱ ㅅ ㄳ … ㅂ ㅅ ㅄ. */
 static const struct {
 	uint16_t first, second, both;
 } pairs[] = {
@@ -44,7 +44,8 @@ static bool is_vowel(uint32_t c)
 	return c >= VOWEL_FIRST && c < VOWEL_FIRST + VOWELS;
 }
 
-/* Letters as normalization forms have them, by their place in a syllable. */
+/* Converts a letter of the normalization forms, where its position in the syllable is part of the
+ * code, to the letter of the keys. Other characters are returned unchanged. */
 static uint32_t plain(uint32_t c)
 {
 	if (c >= 0x1100 && c < 0x1100 + ARRAY_COUNT(leads))
@@ -64,7 +65,7 @@ static int find(const uint16_t *letters, int count, uint32_t c)
 	return -1;
 }
 
-/* 0: the two are no letter. */
+/* Returns the letter that the two form, or 0. */
 static uint32_t join(uint32_t first, uint32_t second)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(pairs); i++)
@@ -101,7 +102,8 @@ size_t hangul_letters(uint32_t c, uint32_t letters[HANGUL_LETTERS_MAX])
 	return count;
 }
 
-/* The letter there, or the one that it makes with the next; counts those it took. */
+/* Returns the letter at text, or the one it forms with the next, and adds the letters taken to *at.
+ */
 static uint32_t take(const uint32_t *text, size_t left, size_t *at)
 {
 	const uint32_t both = left > 1 ? join(text[0], text[1]) : 0;
@@ -110,7 +112,8 @@ static uint32_t take(const uint32_t *text, size_t left, size_t *at)
 	return both ? both : text[0];
 }
 
-/* What may end the syllable: a vowel takes the consonant before it along. */
+/* Returns the index of the final consonant of a syllable, 0 for none, and adds the letters taken to
+ * *at. A consonant before a vowel begins the next syllable. */
 static int take_tail(const uint32_t *text, size_t left, size_t *at)
 {
 	const uint32_t both = left > 1 ? join(text[0], text[1]) : 0;

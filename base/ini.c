@@ -14,7 +14,7 @@
 
 #include "base/safe_open.h"
 
-enum { KEYS_MAX = 128, LINE_BYTES_MAX = 196 /* what inih of Debian holds, less its own bytes */ };
+enum { KEYS_MAX = 128, LINE_BYTES_MAX = 196 /* limit of Debian's inih, less its own bytes */ };
 
 struct reading {
 	const char *path;
@@ -22,13 +22,14 @@ struct reading {
 	unsigned line;
 	const struct ini_key *keys;
 	size_t key_count;
-	unsigned seen_line[KEYS_MAX]; /* of each key; 0: not yet */
+	unsigned seen_line[KEYS_MAX]; /* line of each key; 0: not seen yet */
 	void *target;
 	struct fault *fault;
 	int rc;
 };
 
-/* Counts lines, which inih does not tell; cuts nothing silently. */
+/* Reads the next line for inih. Counts lines, because inih does not report them, and refuses lines
+ * that inih would cut. */
 static char *next_line(char *text, int size, void *data)
 {
 	struct reading *reading = data;
@@ -51,7 +52,7 @@ static char *next_line(char *text, int size, void *data)
 	return line;
 }
 
-/* "points, face_px, quality" */
+/* Writes the keys of a section to out, such as "points, face_px, quality". */
 static void list_keys(const struct reading *reading, const char *section, char *out, size_t size)
 {
 	size_t length = 0;
@@ -116,7 +117,7 @@ static int take(struct reading *reading, size_t index, const char *value)
 	return 0;
 }
 
-/* inih's convention: 1 is success. Only the first fault counts. */
+/* Handles one entry. Returns 1 for success, as inih expects. Only the first fault counts. */
 static int handle(void *data, const char *section, const char *name, const char *value)
 {
 	struct reading *reading = data;

@@ -15,7 +15,8 @@ void log_set_level(enum log_level level)
 
 void log_line(enum log_level level, const char *module, const char *text, ...)
 {
-	/* syslog priorities, which journald reads from a stream; names for people. */
+	/* Prefixes are syslog priorities, which journald reads from the stream; names are for
+	 * people. */
 	static const char *const journal_prefix[] = { "<3>", "<4>", "<6>", "<7>" };
 	static const char *const name[] = { "error", "warn", "info", "debug" };
 	char line[1024];
@@ -26,7 +27,7 @@ void log_line(enum log_level level, const char *module, const char *text, ...)
 	va_start(args, text);
 	vsnprintf(line, sizeof(line), text, args);
 	va_end(args);
-	/* One call a line, so that lines of several threads do not mix. */
+	/* One call for each line, so that lines of several threads do not mix. */
 	if (getenv("JOURNAL_STREAM"))
 		fprintf(stderr, "%s%s: %s\n", journal_prefix[level], module, line);
 	else

@@ -1,8 +1,8 @@
-/* Log lines on standard error, one a call, with the priority prefix that journald understands
- * when standard error is the journal.
+/* Log lines on standard error, one for each call. If standard error is the journal, each has the
+ * priority prefix that journald understands.
  *
  *   error  someone must come
- *   warn   degraded, going on
+ *   warn   degraded, but running
  *   info   a state changed (a boot is under twenty lines)
  *   debug  off unless asked for
  *
@@ -17,7 +17,8 @@ enum log_level { LOG_LEVEL_ERROR, LOG_LEVEL_WARN, LOG_LEVEL_INFO, LOG_LEVEL_DEBU
 /* Lines above this level are dropped. The default is LOG_LEVEL_INFO. */
 void log_set_level(enum log_level level);
 
-/* module is the folder that speaks ("storage", "net"); text needs no newline. */
+/* Writes a line. module: the folder it comes from ("storage", "net"). text needs no newline; more
+ * than 1023 bytes are cut. */
 void log_line(enum log_level level, const char *module, const char *text, ...) printf_like(3, 4);
 
 #define log_error(...) log_line(LOG_LEVEL_ERROR, __VA_ARGS__)

@@ -12,7 +12,8 @@ static void put_text(struct buffer *out, const char *text)
 	buffer_put(out, text, strlen(text));
 }
 
-/* Bytes of the character at text; 0: it is none. */
+/* Returns the number of bytes of the UTF-8 character at text; 0 if there is none, or it is a
+ * control character. */
 static size_t character_bytes(const uint8_t *text, size_t left)
 {
 	static const uint32_t least[] = { 0, 0, 0x80, 0x800, 0x10000 };
@@ -53,7 +54,7 @@ static void put_head(struct buffer *out, const char *name, const char *kind, con
 	put_text(out, name);
 }
 
-/* Whole numbers in full: bytes are counted past what six digits hold. */
+/* Whole numbers are written in full, because byte counts need more than six digits. */
 static void put_value(struct buffer *out, double value)
 {
 	char text[40];
@@ -106,14 +107,14 @@ void metrics_info(struct buffer *out, const char *name, const char *help,
 	put_text(out, count > 0 ? "} 1\n" : " 1\n");
 }
 
-/* ---- reading. A cursor over one line; each take_ moves it behind what was read. */
+/* ---- reading: a cursor moves over one line; each take_ function moves it past what it read */
 
 struct cursor {
 	const uint8_t *at, *end;
 };
 
 struct sample {
-	struct bytes name, labels; /* between the braces */
+	struct bytes name, labels; /* labels: the text between the braces */
 	double value;
 };
 
@@ -154,7 +155,7 @@ static bool take_name(struct cursor *line, struct bytes *out)
 	return out->size > 0 && out->size < METRICS_NAME_MAX;
 }
 
-/* What stands between quotes, escapes and all. */
+/* Takes a quoted text; escapes stay in *out. */
 static bool take_quoted(struct cursor *line, struct bytes *out)
 {
 	if (!take_literal(line, "\""))
@@ -191,7 +192,7 @@ static bool take_value(struct cursor *line, double *out)
 		return false;
 	memcpy(text, line->at, size);
 	text[size] = '\0';
-	if (!strchr("-0123456789", text[0])) /* strtod would pass spaces over, too */
+	if (!strchr("-0123456789", text[0])) /* strtod would skip spaces and accept more */
 		return false;
 	*out = strtod(text, &end);
 	return end == text + size && isfinite(*out);

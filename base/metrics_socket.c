@@ -14,20 +14,20 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { WAIT_MAX = 8 /* connections that may wait for an answer */ };
+enum { WAIT_MAX = 8 /* most connections that may wait for an answer */ };
 
 struct metrics_socket {
 	struct metrics_socket_options options;
 	struct sockaddr_un address;
 	int fd;
-	bool bound; /* the name is ours to remove */
+	bool bound; /* the socket file is ours, to be removed at the end */
 	uint64_t starts;
 	int64_t started_ms;
 	struct buffer text;
 };
 
-/* Beside the socket, in a folder that a reboot empties (/run): a program that crashes again and
- * again is seen, and no card wears. */
+/* Counts this start in PATH.starts and returns the number of starts. The file is in a folder that a
+ * reboot empties (/run): repeated crashes are seen, and no flash memory wears. */
 static uint64_t count_start(const char *path)
 {
 	char name[sizeof(((struct sockaddr_un *)0)->sun_path) + 8];
@@ -57,7 +57,7 @@ static int listen_on(struct metrics_socket *metrics)
 	metrics->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 	if (metrics->fd < 0)
 		return -errno;
-	unlink(path); /* of the program before us */
+	unlink(path); /* left by an earlier process */
 	if (bind(metrics->fd, (struct sockaddr *)&metrics->address, sizeof(metrics->address)) < 0)
 		return -errno;
 	metrics->bound = true;
@@ -114,9 +114,10 @@ int metrics_socket_fd(const struct metrics_socket *metrics)
 	return metrics ? metrics->fd : -1;
 }
 
-/* ---- what every program tells */
+/* ---- metrics that all programs have */
 
-/* One number of a file of /proc, behind a word; false: the kernel does not say. */
+/* Finds the first line of a file of /proc that matches scan, a sscanf format with one number.
+ * Returns false if there is none. */
 static bool proc_number(const char *path, const char *scan, unsigned long long *out)
 {
 	char text[1024];
@@ -175,7 +176,7 @@ void metrics_socket_dispatch(struct metrics_socket *metrics)
 	const int fd = accept4(metrics->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 
 	if (fd < 0)
-		return; /* it went away meanwhile */
+		return; /* the client has closed the connection meanwhile */
 	buffer_clear(&metrics->text);
 	metrics->options.write(metrics->options.data, &metrics->text);
 	write_common(metrics);

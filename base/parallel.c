@@ -13,7 +13,7 @@ struct crew {
 	void *user;
 	uint32_t piece_count;
 	atomic_uint next;
-	pthread_mutex_t lock; /* of what follows */
+	pthread_mutex_t lock; /* guards the fields below */
 	uint32_t failed_piece;
 	int rc;
 };
@@ -67,7 +67,7 @@ int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work
 	if (worker_count > piece_count)
 		worker_count = piece_count;
 	pthread_mutex_init(&crew.lock, NULL);
-	/* The caller is worker 0; a thread that cannot be had is done without. */
+	/* The caller is worker 0. If a thread cannot be created, fewer workers do the work. */
 	for (uint32_t i = 0; i < worker_count; i++) {
 		workers[i] = (struct worker){ .crew = &crew, .number = i };
 		if (i > 0)

@@ -1,4 +1,4 @@
-/* Independent pieces of work on several threads. */
+/* Runs independent pieces of work on several threads. */
 #ifndef GOPURA_BASE_PARALLEL_H
 #define GOPURA_BASE_PARALLEL_H
 
@@ -6,11 +6,13 @@
 
 #include "base/compiler.h"
 
-/* One piece; worker is 0..worker_count-1, and no two pieces run with one number at a time. */
+/* Does one piece. worker: 0 to worker_count - 1; no two pieces run with the same worker at one
+ * time. Returns 0 or a negative errno. */
 typedef int (*parallel_work)(void *user, uint32_t piece, uint32_t worker);
 
-/* Pieces 0..piece_count-1, begun in this order; returns when all have ended. The failure of the
- * lowest piece that failed; after a failure no new piece is begun. */
+/* Runs pieces 0 to piece_count - 1, begun in this order, with at most worker_count workers (64 at
+ * most), of which the caller is one. Returns when all have ended: 0, or the failure of the lowest
+ * piece that failed. After a failure no new piece is begun. */
 must_check int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work,
 			    void *user);
 

@@ -23,7 +23,7 @@ enum {
 };
 
 struct progress {
-	pthread_mutex_t lock; /* all below */
+	pthread_mutex_t lock; /* guards all fields below */
 	char what[48], unit[24];
 	uint64_t done, total;
 	int64_t started_ms, shown_ms;
@@ -45,7 +45,7 @@ struct progress *progress_start(const char *what, const char *unit, uint64_t tot
 	return progress;
 }
 
-/* 1234567 as "1.23 M" */
+/* Writes a count in at most four digits before the point, with a scale: 1234567 as "1234.6 k". */
 static void print_count(char out[16], double count)
 {
 	static const char *const scale[] = { "", " k", " M", " G" };
@@ -116,7 +116,7 @@ static int terminal_columns(void)
 	return size.ws_col < COLUMNS_MAX ? size.ws_col : COLUMNS_MAX;
 }
 
-/* With the lock held. */
+/* Prints the progress. The caller holds the lock. */
 static void show(struct progress *progress, int64_t elapsed_ms)
 {
 	char line[COLUMNS_MAX + 1];

@@ -1,5 +1,5 @@
-/* The last thing that a program would not take, kept for who asks later why nothing changes: a
- * figure of the health page. Pure; one thread. */
+/* The last thing that a program refused, kept for those who ask later why nothing changes: a metric
+ * of the health page. Reads the wall clock; one thread. */
 #ifndef GOPURA_BASE_REFUSAL_H
 #define GOPURA_BASE_REFUSAL_H
 
@@ -8,13 +8,15 @@
 enum { REFUSAL_WHAT_BYTES = 96, REFUSAL_WHY_BYTES = 192 };
 
 struct refusal {
-	uint64_t count;                /* since start; 0: nothing was refused yet */
-	int64_t at_s;                  /* wall clock, which may be wrong */
-	char what[REFUSAL_WHAT_BYTES]; /* what it concerned: a file, an object, a server */
-	char why[REFUSAL_WHY_BYTES];   /* in plain words */
+	uint64_t count; /* refusals since the start; 0: none */
+	int64_t at_s;   /* time of the last one by the wall clock, which may be wrong; seconds since
+			   1970 */
+	char what[REFUSAL_WHAT_BYTES]; /* what was refused: a file, an object, a server */
+	char why[REFUSAL_WHY_BYTES];   /* the reason, in plain words */
 };
 
-/* Both texts are copied, cut where they do not fit. refusal may be NULL. */
+/* Counts a refusal and records its time. Both texts are copied, cut if they do not fit. refusal may
+ * be NULL. */
 void refusal_note(struct refusal *refusal, const char *what, const char *why);
 
 #endif

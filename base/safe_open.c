@@ -15,14 +15,15 @@
 
 enum { READ_FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
 
-/* fd, or the reason why it is no regular file; then fd is closed. */
+/* Returns fd if it is a regular file; otherwise closes it and returns the reason as a negative
+ * errno. A negative errno as fd is passed on. */
 static int only_regular(int fd)
 {
 	struct stat info;
 	int rc = fd;
 
 	if (fd < 0)
-		return fd == -ENXIO ? -ENOTSUP : fd; /* so open() says it of a socket */
+		return fd == -ENXIO ? -ENOTSUP : fd; /* open() fails with ENXIO on a socket */
 	if (fstat(fd, &info) < 0)
 		rc = -errno;
 	else if (S_ISDIR(info.st_mode))
@@ -41,13 +42,13 @@ int open_regular(const char *path)
 	return only_regular(fd < 0 ? -errno : fd);
 }
 
-/* Length of the component at the start of name; 0 at its end. */
+/* Returns the length of the first component of name; 0 at its end. */
 static size_t component_length(const char *name)
 {
 	return strcspn(name, "/");
 }
 
-/* "a/b.c": no empty component, no "." and no "..". */
+/* Returns whether name is relative, such as "a/b.c", without empty components, "." and "..". */
 static bool stays_beneath(const char *name)
 {
 	for (;;) {
@@ -62,9 +63,10 @@ static bool stays_beneath(const char *name)
 	}
 }
 
-/* ---- kernels or sandboxes without openat2: component by component */
+/* ---- for kernels or sandboxes without openat2: one component at a time */
 
-/* Takes fd, of a path component; gives it back if it is a folder of the file system `device`. */
+/* Returns fd if it is a folder of the file system `device`; otherwise closes it and returns a
+ * negative errno. */
 static int only_folder(int fd, dev_t device)
 {
 	struct stat info;
@@ -85,7 +87,8 @@ static int only_folder(int fd, dev_t device)
 	return rc;
 }
 
-/* Takes parent. */
+/* Opens a component of a path, without following a link. parent is taken. Returns a negative errno
+ * on failure. */
 static int open_component(int parent, const char *component, int flags)
 {
 	int fd = openat(parent, component, flags | O_NOFOLLOW);
@@ -138,7 +141,7 @@ static int open_at(int folder, const char *name)
 
 	if (fd >= 0)
 		return (int)fd;
-	/* EPERM is how a filter of system calls may refuse it. */
+	/* A filter of system calls may refuse it with EPERM. */
 	if (errno == ENOSYS || errno == EPERM)
 		return open_by_steps(folder, name);
 	return -errno;

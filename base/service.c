@@ -5,10 +5,10 @@
 
 #include "base/clock.h"
 
-/* The variables stay in the environment: WATCHDOG_PID says whose they are. */
+/* Do not unset the environment variables: WATCHDOG_PID says which process they are for. */
 enum { KEEP = 0 };
 
-static int64_t alive_ms; /* when it was told last */
+static int64_t alive_ms; /* time of the last message */
 
 void service_ready(void)
 {
@@ -18,7 +18,7 @@ void service_ready(void)
 
 int64_t service_due_ms(void)
 {
-	static int64_t every_ms = -1; /* what the environment says does not change */
+	static int64_t every_ms = -1; /* read once, because the environment does not change */
 	uint64_t period_us;
 
 	if (every_ms < 0)

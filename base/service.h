@@ -1,18 +1,18 @@
-/* What the service manager is told (systemd's sd_notify). Where there is none, nothing is said. For
- * the thread of the loop. */
+/* Messages to the service manager (systemd's sd_notify). Without one nothing is sent. For the
+ * thread of the loop. */
 #ifndef GOPURA_BASE_SERVICE_H
 #define GOPURA_BASE_SERVICE_H
 
 #include <stdint.h>
 
-/* It does now what it was started for. */
+/* Tells it that the program is ready and does its work. */
 void service_ready(void);
-/* When it is next to be told that the program is well, a third of what it waits after the last
- * time; INT64_MAX: it does not wait. On the clock of clock_now_ms. */
+/* Returns when service_alive is due next, in milliseconds of clock_now_ms: a third of the watchdog
+ * period after the last message; INT64_MAX if there is no watchdog. */
 int64_t service_due_ms(void);
-/* The program is well. */
+/* Tells the watchdog that the program works. */
 void service_alive(void);
-/* It was asked to end, and does. */
+/* Tells it that the program is ending. */
 void service_stopping(void);
 
 #endif

@@ -19,14 +19,15 @@ struct reading {
 	void *target;
 	struct faults *faults;
 	unsigned line;
-	char section[NAME_MAX]; /* as the table has it; "": none yet */
-	bool skipping;          /* the section is not known, which was said */
+	char section[NAME_MAX]; /* as written in the table; "": none yet */
+	bool skipping;          /* the section is unknown, which was reported */
 	unsigned seen[SETTINGS_MAX];
 };
 
 /* ---- faults */
 
-/* Bytes of the character at text, 0: it is none that can be shown. */
+/* Returns the number of bytes of the UTF-8 character at text; 0 if it is invalid or a control
+ * character. */
 static size_t utf8_bytes(const char *text)
 {
 	static const uint32_t least[] = { 0, 0, 0x80, 0x800, 0x10000 };
@@ -57,7 +58,7 @@ static void make_printable(char *text)
 	}
 }
 
-/* No character is cut in two. */
+/* Cuts the text to at most that many bytes, without splitting a character. */
 static void cut(char *text, size_t bytes)
 {
 	size_t at = 0;
@@ -100,14 +101,14 @@ void faults_add(struct faults *faults, unsigned line, const char *text, ...)
 	faults->count++;
 }
 
-/* ---- what was meant by what is not known */
+/* ---- suggestions for unknown names */
 
 static int smaller(int a, int b)
 {
 	return a < b ? a : b;
 }
 
-/* Letters to add, drop or change to come from one word to the other. */
+/* Returns the edit distance of two words: letters to add, drop or change. Case is ignored. */
 static int distance(const char *a, const char *b)
 {
 	int row[NAME_MAX + 1];
@@ -220,7 +221,7 @@ static void cut_space(char *text)
 		text[--length] = '\0';
 }
 
-/* Where a remark begins behind a value, with the space before it; NULL: nowhere. */
+/* Returns where a comment after a value begins, with the space before it; NULL if there is none. */
 static char *find_remark(char *text)
 {
 	for (char *at = text; (at = strpbrk(at, "#;")); at++)
@@ -229,7 +230,7 @@ static char *find_remark(char *text)
 	return NULL;
 }
 
-/* The value without its quotes or the remark behind it; NULL: at fault, which was said. */
+/* Returns the value without quotes and comment; NULL after adding a fault. */
 static char *bare_value(struct reading *reading, const struct setting *setting, char *text)
 {
 	char *remark;
@@ -379,7 +380,8 @@ static void on_line(struct reading *reading, char *line)
 	}
 }
 
-/* As Notepad once saved what it called Unicode; or no text at all. */
+/* Returns whether the file can be read: not too large, not UTF-16 (which old versions of Notepad
+ * call Unicode), and without zero bytes. */
 static bool is_text(struct bytes text, struct faults *faults)
 {
 	if (text.size > SETTINGS_FILE_MAX)

@@ -1,10 +1,9 @@
-/* Files for people, of [section]s and name = value lines, read as a whole: every fault is gathered
- * with its line and what mends it, and what is right is set although other lines are wrong. Files
- * as Windows saves them (CRLF, a byte order mark) do as well.
+/* Settings files with [section]s and name = value lines. The whole file is read: every fault is
+ * collected with its line and its cure, and valid settings are set even if other lines are wrong.
+ * Files as Windows saves them (CRLF, a byte order mark) are accepted.
  *
- *   # or ; at a line's start          a remark; behind a value: after a space
- *   name = "  as it stands # "        quotes keep spaces, and signs of a remark
- */
+ *   # or ; at a line's start          a comment; after a value: with a space before it
+ *   name = "  as it stands # "        quotes keep spaces and comment signs */
 #ifndef GOPURA_BASE_SETTINGS_H
 #define GOPURA_BASE_SETTINGS_H
 
@@ -16,40 +15,45 @@
 
 enum { FAULTS_MAX = 32, FAULT_TEXT_BYTES = 280, SETTINGS_MAX = 48, SETTINGS_FILE_MAX = 65536 };
 
-/* In the order of their lines; what is of no line in particular comes last. */
+/* Faults in the order of their lines; those without a line come last. */
 struct faults {
 	struct {
-		unsigned line;               /* 0: of the file as a whole */
-		char text[FAULT_TEXT_BYTES]; /* "line 7: ...": a sentence, printable UTF-8 */
+		unsigned line;               /* 0: the file as a whole */
+		char text[FAULT_TEXT_BYTES]; /* "line 7: ...": one sentence of printable UTF-8 */
 	} list[FAULTS_MAX];
-	unsigned count;   /* in the list */
-	unsigned dropped; /* more there would be */
+	unsigned count;   /* number in the list */
+	unsigned dropped; /* number that did not fit into the list */
 };
 
-/* line 0: no line is named. Bytes that cannot be printed become '?'. */
+/* Adds a fault, in the order of lines. line 0: no line. Bytes that cannot be printed become '?'; a
+ * text too long is cut. */
 void faults_add(struct faults *faults, unsigned line, const char *text, ...) printf_like(3, 4);
 
 struct setting {
 	const char *section, *name;
-	const char *expects; /* "name must be ..., not 'x'"; NULL: a number least .. most */
-	/* false: value is not what the setting expects, and nothing is set. */
+	const char
+		*expects; /* for "NAME must be ..., not 'x'"; NULL: a number from least to most */
+	/* Sets the field in target. false: the value is not what the setting expects; report it. */
 	bool (*set)(const struct setting *setting, void *target, const char *value);
-	size_t offset; /* of the field in the target */
+	size_t offset; /* offset of the field in the target */
 	double least, most;
-	bool secret;    /* its value is never told */
-	bool free_text; /* a # in it may belong to it: then quotes must say so */
+	bool secret;    /* its value is never printed */
+	bool free_text; /* its value may contain # or ;: then quotes are required */
 };
 
-/* lines (of `count`, or NULL) gets the line of each setting that the text names, also where its
- * value was refused; 0: it is not there. Of a setting that stands twice the first one counts. */
+/* Reads a whole text against a table of `count` settings, at most SETTINGS_MAX, ordered by section.
+ * Fields of target whose settings do not appear keep their values. lines, of `count` elements or
+ * NULL, receives the line of each setting that appears, even if its value was refused; 0: it does
+ * not appear. If a setting appears twice, the first one counts. Faults are added to *faults. */
 void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
 		   unsigned *lines, struct faults *faults);
 
-/* ---- for set functions; numbers lie within the setting's least and most */
+/* ---- for set functions; each number must lie from the setting's least to its most */
 
-/* As many numbers as wanted, with spaces or commas between, and nothing else. */
+/* Parses exactly `wanted` numbers, separated by spaces or commas. On false, out may have been
+ * written to. */
 bool settings_numbers(const struct setting *setting, const char *value, double *out, int wanted);
-/* A set function: one whole number, into an int or uint32_t. */
+/* A set function for one whole number, stored as int or uint32_t. */
 bool settings_whole(const struct setting *setting, void *target, const char *value);
 
 #endif

@@ -36,7 +36,7 @@ must_check int state_writer_set_trust(struct state_writer *writer, struct bytes 
 /* Request state_prove and state_fall_back: the stored release works, or does not. A failed write is
  * only logged; the next start tries again. */
 void state_writer_prove(struct state_writer *writer);
-void state_writer_fall_back(struct state_writer *writer);
+void state_writer_fall_back(struct state_writer *writer); /* likewise */
 /* Requests state_raise_time_floor; a lower value than one requested before has no effect. */
 void state_writer_raise_time_floor(struct state_writer *writer, int64_t at_least_s);
 

@@ -39,7 +39,7 @@ void information_view_wants(struct information_view *view, struct wants *wants);
 /* Return the overlay and the database; NULL until the database has arrived, and if view is NULL.
  * Borrowed until the next information_view_give. */
 struct overlay *information_view_overlay(struct information_view *view);
-const struct info *information_view_info(const struct information_view *view);
+const struct info *information_view_info(const struct information_view *view); /* likewise */
 /* Returns whether the info page or the database arrived but could not be read. */
 bool information_view_broken(const struct information_view *view);
 /* Returns the language in use, or NULL if none is chosen yet. Borrowed. */
