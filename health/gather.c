@@ -26,7 +26,8 @@ void snapshot_finish(struct snapshot *snapshot)
 		buffer_finish(&snapshot->answers[i].text);
 }
 
-/* A descriptor, or negative errno. A hung program's queue that is full counts as a hang. */
+/* Connects to a program. Returns a descriptor or a negative errno. If the queue of connections is
+ * full, the program counts as hung. */
 static int begin(const char *path)
 {
 	struct sockaddr_un address = { .sun_family = AF_UNIX };
@@ -45,7 +46,7 @@ static int begin(const char *path)
 	return rc;
 }
 
-/* What is there now. 1: more will come, 0: that was all; negative errno. */
+/* Reads what has arrived. Returns 1 if more may come, 0 at the end, or a negative errno. */
 static int hear(struct buffer *text, int fd)
 {
 	uint8_t piece[4096];

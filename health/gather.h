@@ -1,5 +1,5 @@
-/* Asks the terminal's programs for their figures (base/metrics_socket.h) and the machine for its
- * own. */
+/* Collects the metrics of the terminal's programs (base/metrics_socket.h) and the values of the
+ * machine. */
 #ifndef GOPURA_HEALTH_GATHER_H
 #define GOPURA_HEALTH_GATHER_H
 
@@ -8,10 +8,10 @@
 
 enum program { PROGRAM_KIOSK, PROGRAM_FETCH, PROGRAM_COUNT };
 
-/* What a program answered. text is valid by metrics_valid, and empty unless rc is 0. */
+/* What a program answered. text passes metrics_valid; it is empty unless rc is 0. */
 struct answer {
 	/* -ENOENT, -ECONNREFUSED: it does not run   -ETIMEDOUT: it hangs
-	 * -EBADMSG: it answers nonsense             others: as connect */
+	 * -EBADMSG: its answer is not valid         others: as connect */
 	int rc;
 	struct buffer text; /* owned */
 };
@@ -19,19 +19,22 @@ struct answer {
 struct snapshot {
 	struct answer answers[PROGRAM_COUNT];
 	struct machine machine;
-	int64_t taken_ms;     /* clock_now_ms; 0: never */
-	int64_t taken_wall_s; /* since 1970 */
+	int64_t taken_ms;     /* by clock_now_ms; 0: never */
+	int64_t taken_wall_s; /* seconds since 1970 */
 };
 
 struct gather_options {
 	const char *sockets[PROGRAM_COUNT];
-	int64_t patience_ms; /* with all of them together; then they hang */
+	int64_t patience_ms; /* time for all programs together; one that takes longer counts as hung
+			      */
 	struct machine_options machine;
 };
 
+/* Sets *snapshot to empty. */
 void snapshot_init(struct snapshot *snapshot);
+/* Frees the answers. */
 void snapshot_finish(struct snapshot *snapshot);
-/* Waits for the programs, patience_ms at most. */
+/* Fills the snapshot anew. Waits for the programs, patience_ms at most. */
 void snapshot_take(struct snapshot *snapshot, const struct gather_options *options);
 
 #endif

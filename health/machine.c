@@ -13,7 +13,7 @@
 
 enum { ZONES_MAX = 64, SECTOR_BYTES = 512 };
 
-/* The beginning of a file, terminated; "" where it cannot be read. */
+/* Reads the beginning of a file into out, terminated; "" if it cannot be read. */
 static void read_text(char *out, size_t out_bytes, const char *root, const char *path)
 {
 	char name[PATH_MAX];
@@ -46,7 +46,7 @@ static void read_memory(struct machine *out, const char *root)
 	out->memory_free_bytes = number_after(text, "MemAvailable:") * 1024;
 }
 
-/* The word behind rauc.slot= on the kernel's command line. */
+/* Reads the firmware slot: the word after rauc.slot= on the kernel's command line. */
 static void read_slot(struct machine *out, const char *root)
 {
 	char text[2048], format[32];
@@ -70,12 +70,13 @@ static double hottest_c(const char *root)
 		snprintf(path, sizeof(path), "/sys/class/thermal/thermal_zone%d/temp", i);
 		read_text(text, sizeof(text), root, path);
 		if (sscanf(text, "%d", &milli) == 1)
-			hottest = fmax(hottest, milli / 1000.0); /* NAN is less than any */
+			hottest = fmax(hottest, milli / 1000.0); /* fmax ignores NAN */
 	}
 	return hottest;
 }
 
-/* What lies upon another device or is none that wears. */
+/* Returns whether a block device is a disk that wears: not one that lies on another device or in
+ * memory. */
 static bool is_disk(const char *name)
 {
 	static const char *const others[] = { ".", "loop", "ram", "zram", "sr", "dm-", "md" };

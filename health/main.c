@@ -1,4 +1,5 @@
-/* gopura-health: says over HTTP whether the terminal is well, and if not, what to do. */
+/* The program gopura-health, which says over HTTP whether the terminal works, and if not, what to
+ * do: parses the options, opens the sockets and runs the server. */
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -17,12 +18,13 @@
 #include "health/server.h"
 
 enum {
-	FRESH_MS = 1000,    /* what was gathered answers so long: many clients are one question */
-	PROGRAMS_MS = 2000, /* a kiosk without a GPU may be that long at one frame */
+	FRESH_MS = 1000, /* a snapshot answers all requests for so long, so that many clients cost
+			    one query */
+	PROGRAMS_MS = 2000, /* without a GPU, one frame of the kiosk may take as long */
 	PATIENCE_MS = 10000,
 	IDLE_S = 30,
 	LISTEN_BACKLOG = 16,
-	FILE_BYTES_PER_S = 256 << 10, /* a poor wireless network brings more */
+	FILE_BYTES_PER_S = 256 << 10, /* even a poor wireless network is faster */
 };
 
 static const char help[] =
@@ -73,9 +75,9 @@ static const struct option long_options[] = {
 };
 
 struct health {
-	const char *listen; /* NULL: systemd's */
+	const char *listen; /* NULL: sockets passed by systemd */
 	unsigned long idle_s;
-	const char *visits; /* a file; the kiosk's --visits */
+	const char *visits; /* path of the file that the kiosk writes with --visits */
 	struct gather_options gather;
 	struct snapshot snapshot;
 	struct verdict verdict;
@@ -124,7 +126,7 @@ static void take_option(struct health *health, int option)
 	case OPTION_HELP:
 		fputs(help, stdout);
 		exit(0);
-	default: /* getopt has said what is wrong */
+	default: /* getopt printed the reason */
 		fputs("gopura-health: see gopura-health --help\n", stderr);
 		exit(2);
 	}
@@ -160,7 +162,7 @@ static int bind_to(const struct addrinfo *address)
 	return rc;
 }
 
-/* A listening descriptor, or negative errno. */
+/* Returns a listening descriptor or a negative errno; ends the program if text is no address. */
 static int listen_on(const char *text)
 {
 	const struct addrinfo wish = { .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE,
@@ -185,7 +187,7 @@ static int listen_on(const char *text)
 	return fd;
 }
 
-/* How many of systemd's sockets are in fds; negative errno. */
+/* Writes the sockets passed by systemd to fds. Returns their number or a negative errno. */
 static int passed_sockets(int fds[SERVER_LISTENERS_MAX])
 {
 	const int count = sd_listen_fds(1);
@@ -202,8 +204,8 @@ static int passed_sockets(int fds[SERVER_LISTENERS_MAX])
 
 /* ---- answers */
 
-/* As the kiosk left it; there is none before its first start. Only a regular file: the folder is
- * the kiosk's, and a pipe there would keep us waiting. */
+/* Opens the file of visits as the kiosk wrote it; before its first start there is none. Only a
+ * regular file is accepted: the folder is the kiosk's, and a FIFO there could block us. */
 static int open_visits(const char *path, uint64_t *bytes)
 {
 	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);

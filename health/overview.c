@@ -9,8 +9,8 @@
 
 #include "health/text.h"
 
-/* No script, no picture, nothing from elsewhere: it must open in whatever browser is at hand, on a
- * network that has nothing else. */
+/* No script, no image and nothing from other servers: the page must open in any browser, on a
+ * network without internet. */
 static const char style[] =
 	":root{color-scheme:light dark;--paper:#f6f4ef;--sheet:#fff;--ink:#22201c;--soft:#6b665c;--line:#e2ddd2;"
 	"--well:#2f7d4f;--remark:#b87a12;--ill:#b3372b}"
@@ -75,7 +75,7 @@ static void put_bytes(struct buffer *out, double bytes)
 	text_format(out, bytes < 10 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
 }
 
-/* How much of a whole is used; nothing where it is not told. */
+/* Writes how much of a whole is used; nothing if it is not known. */
 static void put_share(const struct facts *facts, double used, double whole, const char *what)
 {
 	if (!(whole > 0) || !(used >= 0))

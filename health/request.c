@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* RFC 9110: what methods and names of fields are made of. */
+/* Returns whether text is a token of RFC 9110, section 5.6.2: the syntax of methods and field
+ * names. */
 static bool is_token(struct bytes text)
 {
 	for (size_t i = 0; i < text.size; i++) {
@@ -20,7 +21,7 @@ static bool is(struct bytes text, const char *word)
 	return text.size == strlen(word) && memcmp(text.data, word, text.size) == 0;
 }
 
-/* Up to the mark, which is passed over; false: there is none. */
+/* Takes the text up to the mark, and skips the mark. Returns false if there is no mark. */
 static bool take_until(struct bytes *rest, const char *mark, struct bytes *out)
 {
 	const size_t size = strlen(mark);
@@ -88,7 +89,7 @@ int request_parse(struct request *out, struct bytes received)
 
 	if (!take_until(&rest, "\r\n\r\n", &head))
 		return received.size >= REQUEST_BYTES_MAX ? 431 : 0;
-	head.size += 2; /* the end of the last line */
+	head.size += 2; /* with the end of the last line */
 	if (head.size > REQUEST_BYTES_MAX || !take_until(&head, "\r\n", &line))
 		return 431;
 	status = parse_line(out, line);

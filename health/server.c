@@ -13,10 +13,10 @@
 #include "base/log.h"
 
 enum {
-	/* Of the kernel's memory for each client; by itself it would grow to megabytes. */
+	/* Kernel memory for sending to each client; without a limit it would grow to megabytes. */
 	SEND_BUFFER_BYTES = 64 * 1024,
 	FILE_PIECE_BYTES = 32 * 1024,
-	PAUSE_MS = 100, /* when the system has no descriptors left */
+	PAUSE_MS = 100, /* wait before accepting again if the system has no descriptors left */
 };
 
 enum stage { STAGE_FREE, STAGE_HEARS, STAGE_ANSWERS, STAGE_LEAVES };
@@ -28,16 +28,16 @@ struct client {
 	uint8_t head[REQUEST_BYTES_MAX];
 	size_t head_bytes;
 	struct reply reply;
-	size_t sent_bytes; /* of reply.text */
-	uint64_t file_at;  /* what was sent of reply.file */
+	size_t sent_bytes; /* bytes sent of reply.text */
+	uint64_t file_at;  /* bytes sent of reply.file */
 };
 
 struct server {
 	const struct server_options *options;
 	struct client clients[SERVER_CLIENTS_MAX];
-	size_t busy, files; /* connections; of them, that get a file */
+	size_t busy, files; /* open connections; those of them that receive a file */
 	int64_t idle_since_ms;
-	int64_t accept_at_ms; /* not before */
+	int64_t accept_at_ms; /* do not accept connections before this time */
 };
 
 static void drop_reply(struct server *server, struct client *client)
@@ -64,7 +64,7 @@ static void meet(struct server *server, int fd)
 	const int send_buffer_bytes = SEND_BUFFER_BYTES;
 	struct client *client = server->clients;
 
-	while (client->stage != STAGE_FREE) /* one is: more are not let in */
+	while (client->stage != STAGE_FREE) /* one is free, because no more are accepted */
 		client++;
 	*client = (struct client){ .stage = STAGE_HEARS, .fd = fd, .reply = { .file = -1 } };
 	client->until_ms = clock_now_ms() + server->options->patience_ms;
@@ -91,10 +91,10 @@ static void accept_from(struct server *server, int listener)
 	}
 }
 
-/* ---- a client, as far as it goes without waiting */
+/* ---- one client, as far as possible without waiting */
 
-/* What else it says is read and dropped until it hangs up: closed over unread bytes, the kernel
- * would throw the answer away. */
+/* Reads and drops what the client still sends, until it closes the connection: if we closed it with
+ * unread bytes, the kernel would discard the answer. */
 static void see_off(struct server *server, struct client *client)
 {
 	uint8_t dropped[4096];
@@ -104,7 +104,8 @@ static void see_off(struct server *server, struct client *client)
 		part(server, client);
 }
 
-/* 0 too where the client takes no more for the moment; negative errno. */
+/* Sends a part; *sent is how much. Returns 0, also if the client cannot take more now, or a
+ * negative errno. */
 static int send_piece(int fd, const void *data, size_t size, size_t *sent)
 {
 	const ssize_t rc = send(fd, data, size, MSG_NOSIGNAL);
@@ -113,8 +114,8 @@ static int send_piece(int fd, const void *data, size_t size, size_t *sent)
 	return rc < 0 && errno != EAGAIN && errno != EINTR ? -errno : 0;
 }
 
-/* Not sendfile, which raises SIGPIPE where the client is gone. What the client did not take is
- * read again. */
+/* Sends a piece of the file. It does not use sendfile, which raises SIGPIPE if the client is gone.
+ * What the client did not take is read again. */
 static int send_file_piece(struct client *client)
 {
 	const uint64_t left = client->reply.file_bytes - client->file_at;
@@ -127,7 +128,7 @@ static int send_file_piece(struct client *client)
 	if (size < 0 && errno == EINTR)
 		return 0;
 	if (size <= 0)
-		return size < 0 ? -errno : -ENODATA; /* the file has become shorter */
+		return size < 0 ? -errno : -ENODATA; /* the file was truncated */
 	rc = send_piece(client->fd, piece, (size_t)size, &sent);
 	client->file_at += sent;
 	return rc;
@@ -164,14 +165,15 @@ static void send_answer(struct server *server, struct client *client)
 	}
 	if (!is_sent(client))
 		return;
-	if (client->reply.file >= 0) /* its time was for the file */
+	if (client->reply.file >=
+	    0) /* the time so far was for the file; the client gets new time to close */
 		client->until_ms = clock_now_ms() + server->options->patience_ms;
 	drop_reply(server, client);
 	shutdown(client->fd, SHUT_WR);
 	client->stage = STAGE_LEAVES;
 }
 
-/* The time that a reader of so many bytes is given beside patience_ms. */
+/* Returns the time that the receiver of a file of that size gets in addition to patience_ms. */
 static int64_t file_ms(const struct server_options *options, uint64_t bytes)
 {
 	const uint64_t seconds = bytes / options->file_bytes_per_s;

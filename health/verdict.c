@@ -10,18 +10,18 @@
 #include <string.h>
 
 enum {
-	PICTURE_S = 120,    /* from the kiosk's start until a picture must be there */
-	TOGETHER_S = 60,    /* until kiosk and fetcher must have met */
-	OFFLINE_S = 300,    /* shorter gaps are life */
-	CLOCK_S = 900,      /* of the machine, until its clock must be set */
-	RESTARTED_S = 3600, /* a restart is told that long */
+	PICTURE_S = 120,    /* a picture must be there so long after the kiosk's start */
+	TOGETHER_S = 60,    /* kiosk and fetcher must be connected so long after their start */
+	OFFLINE_S = 300,    /* shorter interruptions are normal */
+	CLOCK_S = 900,      /* the clock must be set so long after boot */
+	RESTARTED_S = 3600, /* a restart is reported for so long */
 	REFUSED_S = 86400,
-	FRAMES_MIN = 500, /* before late ones are judged */
+	FRAMES_MIN = 500, /* frames needed to judge the share of late ones */
 	HOT_C = 80,
 	BURNING_C = 95,
 };
 
-/* Shares. */
+/* Limits as shares: late frames, free memory, free data partition. */
 static const double late_most = 0.2, memory_low = 0.08, memory_out = 0.03, data_low = 0.05;
 
 static void add(struct verdict *verdict, enum level level, const char *what, const char *cure,
@@ -58,14 +58,14 @@ void verdict_duration(char *out, size_t out_bytes, double seconds)
 	size_t i = 0;
 	double count;
 
-	/* Two of the smaller unit say more than one of the larger. */
+	/* Two of a smaller unit are more exact than one of a larger. */
 	while (i + 1 < ARRAY_COUNT(units) && seconds < 2 * units[i].seconds)
 		i++;
 	count = floor(fmax(seconds, 0) / units[i].seconds);
 	snprintf(out, out_bytes, "%.0f %s%s", count, units[i].name, count == 1 ? "" : "s");
 }
 
-/* NAN: not told. */
+/* Returns a metric of a program; NAN if it is not available. */
 static double figure(const struct snapshot *snapshot, enum program program, const char *name)
 {
 	double value = NAN;
@@ -162,8 +162,8 @@ static void judge_picture(struct verdict *verdict, const struct snapshot *snapsh
 		    "%.0f %% of the frames took longer than the panel waits.", 100 * late / frames);
 }
 
-/* Releases that were offered and not taken. What is wrong with one is found again at each look for
- * a new one: what was found last a day ago is mended. */
+/* Judges refused releases. A fault in a release is found again at each look for a new one, so one
+ * that was last found more than a day ago has been corrected. */
 static void judge_refusal(struct verdict *verdict, const struct snapshot *snapshot)
 {
 	const struct bytes kiosk = buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text);
@@ -239,7 +239,7 @@ static void judge_machine(struct verdict *verdict, const struct snapshot *snapsh
 		    "%s", "");
 }
 
-/* gopura-setup writes a line for each entry of gopura.conf that it could not obey. */
+/* gopura-setup writes one line for each entry of gopura.conf that it could not apply. */
 static void judge_faults(struct verdict *verdict, const char *faults)
 {
 	while (*faults) {

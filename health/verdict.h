@@ -1,5 +1,5 @@
-/* What is ill and how it is cured, in plain words for people who did not build the terminal. Pure.
- * docs/health.md has the rules as a table. */
+/* Judges what is wrong and how to mend it, in plain words for people who did not build the
+ * terminal. Pure. docs/health.md has the rules as a table. */
 #ifndef GOPURA_HEALTH_VERDICT_H
 #define GOPURA_HEALTH_VERDICT_H
 
@@ -8,7 +8,7 @@
 enum level {
 	LEVEL_WELL,
 	LEVEL_REMARK, /* the terminal works; somebody should look */
-	LEVEL_ILL,    /* visitors notice it: somebody must come */
+	LEVEL_ILL,    /* visitors notice: somebody must come */
 	LEVEL_COUNT
 };
 
@@ -22,15 +22,15 @@ struct finding {
 };
 
 struct verdict {
-	enum level level; /* the worst */
+	enum level level; /* the worst level of the findings */
 	struct finding findings[FINDINGS_MAX];
 	size_t count;
 };
 
-/* Findings stand with the worst first. */
+/* Judges a snapshot. Findings are ordered from the worst; beyond FINDINGS_MAX they are dropped. */
 void verdict_judge(struct verdict *out, const struct snapshot *snapshot);
 
-/* For people: "3 minutes", "2 days". */
+/* Writes a duration for people to out: "3 minutes", "2 days". */
 void verdict_duration(char *out, size_t out_bytes, double seconds);
 
 #endif
