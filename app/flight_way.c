@@ -63,8 +63,8 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 		return;
 	glm_vec3_sub(way->to_m, way->from_m, across);
 	length_m = glm_vec3_norm(across);
-	reach_m = fmaxf(length_m / 2,
-			fminf(size_m / 2, 2 * length_m)); /* no large detour for a short move */
+	/* A short move gets no large detour. */
+	reach_m = fmaxf(length_m / 2, fminf(size_m / 2, 2 * length_m));
 	glm_vec3_copy((vec3){ -across[1], across[0], 0 }, side);
 	if (glm_vec3_norm(side) < 1e-6f * reach_m)
 		side[0] = 1; /* the flight is vertical: any side will do */

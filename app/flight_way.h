@@ -6,8 +6,8 @@
 #include <stdbool.h>
 
 struct flight_way {
-	float from_m[3], over_m[3],
-		to_m[3]; /* over_m: the control point; the midpoint if straight */
+	/* over_m is the control point; the midpoint of a straight path. */
+	float from_m[3], over_m[3], to_m[3];
 };
 
 /* Returns whether the segment is free: nothing lies on it, or so close to it that the near plane

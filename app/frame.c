@@ -15,8 +15,8 @@
 #include "render/display/gl.h"
 
 enum {
-	STEP_MOST_MS =
-		50, /* longest time step of the navigator: after a delay the eye does not jump */
+	/* Longest time step of the navigator, so that after a delay the eye does not jump. */
+	STEP_MOST_MS = 50,
 	ANCHORS_A_FRAME = 3,
 	SAY_EYE_MS = 100,
 };

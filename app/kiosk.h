@@ -264,8 +264,8 @@ void counting_part(struct kiosk *kiosk, enum usage_kind kind, int part);
 void counting_id(struct kiosk *kiosk, enum usage_kind kind, const char *id);
 
 /* tour_player.c: guided tours. */
-void tour_player_start(struct kiosk *kiosk,
-		       int which); /* for a visitor; which: its index, -1: nothing happens */
+/* Starts a tour for a visitor. which: its index; -1: does nothing. */
+void tour_player_start(struct kiosk *kiosk, int which);
 /* Halts a visitor's tour; ends the looping tour that runs while nobody is there. */
 void tour_player_halt(struct kiosk *kiosk);
 /* Continues a halted tour from where it was. */

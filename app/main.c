@@ -14,8 +14,8 @@ int main(int argc, char **argv)
 	static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
 	int rc;
 
-	mallopt(M_ARENA_MAX,
-		1); /* one malloc arena: those of worker threads would hold 2 MB unused */
+	/* One malloc arena: those of the worker threads would hold 2 MB unused. */
+	mallopt(M_ARENA_MAX, 1);
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:
 		return EXIT_SUCCESS;

@@ -17,8 +17,7 @@
 #define KEEP_OFF_SHARE     0.02f
 #define BOW_MAX            2.0f /* the duration of a flight grows with its path, at most by this factor */
 #define FAR_SHARE          2.5f /* largest distance of the eye to the model's centre, in half diagonals */
-#define FAR_OVER_HOME      1.1f /* or this many times the distance of the first view, if that is more \
-				 */
+#define FAR_OVER_HOME      1.1f /* or in distances of the first view, if more */
 
 static void view_direction(const struct navigator *nav, float out[3])
 {

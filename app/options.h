@@ -20,20 +20,20 @@ struct options {
 	uint32_t conf_count;
 	const char *boards_dir;  /* folder of the board profiles that gopura.conf names */
 	const char *release_url; /* NULL: the release stored in the state, from the cache */
-	const char
-		*stick_dir; /* folder in which a USB stick with a release may appear; NULL: none */
+	/* Folder in which a USB stick with a release may appear; NULL: none. */
+	const char *stick_dir;
 	const char *trust_path; /* root/1.json to trust at the first start; NULL: the stored root
 				   only */
 	const char *ca_path;
-	const char
-		*redirect_hosts; /* hosts that the server may redirect to; set from gopura.conf */
+	/* Hosts that the server may redirect to; set from gopura.conf. */
+	const char *redirect_hosts;
 	const char *state_dir;   /* folder of state.db and cache.db */
 	const char *socket_path; /* of a running fetcher; NULL: the kiosk starts one */
 	const char *fetch_program;
 	const char *visits_path; /* file for a copy of the counts of what visitors look at; NULL:
 				    none */
-	const char *
-		metrics_path; /* socket on which metrics are offered (docs/health.md); NULL: none */
+	/* Socket on which metrics are offered (docs/health.md); NULL: none. */
+	const char *metrics_path;
 	enum display_kind display;
 	const char *device;      /* /dev/dri/cardN */
 	int width_px, height_px; /* 0: the panel's preferred mode */

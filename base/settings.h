@@ -31,8 +31,8 @@ void faults_add(struct faults *faults, unsigned line, const char *text, ...) pri
 
 struct setting {
 	const char *section, *name;
-	const char
-		*expects; /* for "NAME must be ..., not 'x'"; NULL: a number from least to most */
+	/* For "NAME must be ..., not 'x'"; NULL: a number from least to most. */
+	const char *expects;
 	/* Sets the field in target. false: the value is not what the setting expects; report it. */
 	bool (*set)(const struct setting *setting, void *target, const char *value);
 	size_t offset; /* offset of the field in the target */

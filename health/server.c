@@ -165,8 +165,7 @@ static void send_answer(struct server *server, struct client *client)
 	}
 	if (!is_sent(client))
 		return;
-	if (client->reply.file >=
-	    0) /* the time so far was for the file; the client gets new time to close */
+	if (client->reply.file >= 0) /* the time so far was for the file */
 		client->until_ms = clock_now_ms() + server->options->patience_ms;
 	drop_reply(server, client);
 	shutdown(client->fd, SHUT_WR);

@@ -11,8 +11,8 @@
 
 enum {
 	WARM_PERIOD_MS = 100,
-	WARM_MOST_MS =
-		60000, /* longest wait for a complete picture; then what there is of it is shown */
+	/* Longest wait for a complete picture; then what there is of it is shown. */
+	WARM_MOST_MS = 60000,
 	WARM_WIDTH_PX = 320,
 	FORGETFUL_MS = 30000,  /* wait before a failed write is tried again */
 	HELD_MS = 60000,       /* interval of checking the time of day */

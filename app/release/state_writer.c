@@ -200,8 +200,7 @@ int state_writer_set_trust(struct state_writer *writer, struct bytes file, enum 
 	wish->trust_wanted = rc == 0;
 	wish->clear |= clear;
 	if (clear & STATE_CLEAR_TIME_FLOOR)
-		wish->time_floor_s =
-			0; /* an earlier request came from a timestamp of the old key */
+		wish->time_floor_s = 0; /* it was requested under the old key */
 	pthread_cond_signal(&writer->asked);
 	pthread_mutex_unlock(&writer->lock);
 	return rc;

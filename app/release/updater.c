@@ -312,8 +312,7 @@ void updater_remember(struct updater *updater, struct hash root)
 	int rc;
 
 	if (release.sequence == 0 || !hash_equal(release.root, root)) {
-		updater->options.remembered(updater->options.data, root,
-					    0); /* it is already stored */
+		updater->options.remembered(updater->options.data, root, 0); /* stored already */
 		return;
 	}
 	rc = state_writer_activate(updater->writer, &release);

@@ -276,8 +276,7 @@ bool information_view_give(struct information_view *view, struct hash hash, stru
 		    page_decode(&view->page, buffer_bytes(&view->page_bytes)) < 0 ||
 		    view->page.kind != PAGE_INFO || view->page.child_count == 0) {
 			log_error("app", "content bug: the release's info page is damaged");
-			page_finish(
-				&view->page); /* a page of another kind has no children for us */
+			page_finish(&view->page); /* another kind of page has no children for us */
 		}
 		return true;
 	}
