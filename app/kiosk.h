@@ -114,8 +114,7 @@ struct kiosk {
 	struct gesture_recogniser gestures;
 	bool finger_on_words;     /* the gesture began on the overlay, such as a page or card */
 	uint32_t fingers_on_keys; /* bit mask of contacts */
-	uint32_t answers; /* bit mask of contacts that only answered the question whether somebody
-			     is there */
+	uint32_t answers;         /* bit mask of contacts that only answered the question */
 	struct presence presence;
 	enum presence_state presence_said; /* the state logged last */
 	int asked_s;              /* the countdown that the overlay shows, in seconds; -1: none */

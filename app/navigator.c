@@ -15,8 +15,8 @@
 #define GROUND_LEAST_SHARE 0.005f
 #define KEEP_OFF_M         0.35f /* smallest distance of the eye to a surface */
 #define KEEP_OFF_SHARE     0.02f
-#define BOW_MAX            2.0f /* the duration of a flight grows with its path, at most by this factor */
-#define FAR_SHARE          2.5f /* largest distance of the eye to the model's centre, in half diagonals */
+#define BOW_MAX            2.0f /* largest factor by which a curved path prolongs a flight */
+#define FAR_SHARE          2.5f /* largest distance of the eye, in half diagonals of the model */
 #define FAR_OVER_HOME      1.1f /* or in distances of the first view, if more */
 
 static void view_direction(const struct navigator *nav, float out[3])

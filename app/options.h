@@ -15,15 +15,13 @@ enum { OPTIONS_CONFS_MAX = 4 };
 /* Strings are borrowed: from argv, static, or, once provision_read has completed the options, from
  * its struct provision. */
 struct options {
-	const char *conf_paths[OPTIONS_CONFS_MAX]; /* candidates for gopura.conf; the first that
-						      exists is read */
+	const char *conf_paths[OPTIONS_CONFS_MAX]; /* gopura.conf: the first that exists */
 	uint32_t conf_count;
 	const char *boards_dir;  /* folder of the board profiles that gopura.conf names */
 	const char *release_url; /* NULL: the release stored in the state, from the cache */
 	/* Folder in which a USB stick with a release may appear; NULL: none. */
 	const char *stick_dir;
-	const char *trust_path; /* root/1.json to trust at the first start; NULL: the stored root
-				   only */
+	const char *trust_path; /* trusted at the first start; NULL: the stored root */
 	const char *ca_path;
 	/* Hosts that the server may redirect to; set from gopura.conf. */
 	const char *redirect_hosts;

@@ -25,8 +25,7 @@ struct snapshot {
 
 struct gather_options {
 	const char *sockets[PROGRAM_COUNT];
-	int64_t patience_ms; /* time for all programs together; one that takes longer counts as hung
-			      */
+	int64_t patience_ms; /* for all programs together; then they count as hung */
 	struct machine_options machine;
 };
 

@@ -18,8 +18,7 @@
 #include "health/server.h"
 
 enum {
-	FRESH_MS = 1000, /* a snapshot answers all requests for so long, so that many clients cost
-			    one query */
+	FRESH_MS = 1000,    /* a snapshot answers all requests for so long */
 	PROGRAMS_MS = 2000, /* without a GPU, one frame of the kiosk may take as long */
 	PATIENCE_MS = 10000,
 	IDLE_S = 30,

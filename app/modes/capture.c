@@ -18,10 +18,8 @@ enum {
 	VIEWS_MAX = 10000,
 	SHOTS_MAX = 200,
 	SHOT_NAME_BYTES = 64,
-	VIEW_MOST_MS = 120000, /* longest wait for a view to settle; then it is written as it is,
-				  with a warning */
-	QUIET_MS = 1200,       /* time without a byte received; longer than the interval of status
-				  messages */
+	VIEW_MOST_MS = 120000, /* longest wait for a view; then it is written with a warning */
+	QUIET_MS = 1200,       /* without a byte received; longer than the status interval */
 	FRAMES_MAX = 4096,
 	LOOK_MS = 20, /* interval of checks while no frame is drawn */
 };
@@ -31,7 +29,7 @@ struct view {
 };
 
 struct shot {
-	int64_t at_ms; /* since the first picture */
+	int64_t at_ms; /* since the first frame */
 	char name[SHOT_NAME_BYTES];
 };
 

@@ -28,12 +28,10 @@ struct updater {
 	bool on_trial;              /* shown is not yet known to work */
 	struct buffer shown_file;   /* release.json of shown; empty: not known */
 	uint64_t writing; /* sequence that the state writer was asked to store last; 0: stored */
-	const char *said; /* reason of the refusal logged last; static; "": none since an accepted
-			     release */
+	const char *said; /* reason logged last; static; "": none since an accepted release */
 	struct refusal refusal;
-	bool stamp_refused;  /* the last timestamp.json was refused, so a refused release.json is
-				only a consequence */
-	struct release next; /* being loaded; sequence 0: none */
+	bool stamp_refused;      /* timestamp.json was: a refused release.json follows from it */
+	struct release next;     /* being loaded; sequence 0: none */
 	struct buffer next_file; /* release.json of next */
 	enum meta_source next_source;
 };

@@ -11,7 +11,7 @@
 enum {
 	PRESENCE_IDLE_LEAST_S = 5,
 	PRESENCE_IDLE_MOST_S = 3600,
-	PRESENCE_READ_TIMES = 3, /* while reading, the idle time is multiplied by this */
+	PRESENCE_READ_TIMES = 3, /* factor of the idle time while reading */
 	PRESENCE_ASK_MS = 15000,
 };
 

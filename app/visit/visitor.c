@@ -110,8 +110,7 @@ void visitor_watch(struct kiosk *kiosk)
 		begin_anew(kiosk);
 		send_round(kiosk, now_ms);
 	} else if (kiosk->presence.state == PRESENCE_NOBODY && kiosk->tour.state == TOUR_OFF) {
-		tour_player_go_round(kiosk); /* a new release, or a database that arrived late, may
-						have a tour */
+		tour_player_go_round(kiosk); /* its database may have arrived late */
 	}
 	asked_s = presence_asked_s(&kiosk->presence, now_ms);
 	if (overlay) { /* the overlay may be new, so tell it each time */
