@@ -21,7 +21,7 @@ struct options {
 	const char *release_url; /* NULL: the release stored in the state, from the cache */
 	/* Folder in which a USB stick with a release may appear; NULL: none. */
 	const char *stick_dir;
-	const char *trust_path; /* trusted at the first start; NULL: the stored root */
+	const char *trust_path; /* root/1.json for the first start; NULL: the stored root */
 	const char *ca_path;
 	/* Hosts that the server may redirect to; set from gopura.conf. */
 	const char *redirect_hosts;

@@ -14,10 +14,9 @@ enum {
 	/* Longest wait for a complete picture; then what there is of it is shown. */
 	WARM_MOST_MS = 60000,
 	WARM_WIDTH_PX = 320,
-	FORGETFUL_MS = 30000, /* wait before a failed write is tried again */
-	HELD_MS = 60000,      /* interval of checking the time of day */
-	WHOLE_MOST_MS =
-		20000, /* longest wait for the first picture before its objects are synced */
+	FORGETFUL_MS = 30000,  /* wait before a failed write is tried again */
+	HELD_MS = 60000,       /* interval of checking the time of day */
+	WHOLE_MOST_MS = 20000, /* longest wait before the first picture is synced */
 	FOV_DEG = 45,
 };
 
