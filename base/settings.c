@@ -11,7 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LINE_HEIGHT_MAX = 1000, NAME_MAX = 32, QUOTED_MAX = 60 };
+enum { LINE_BYTES_MAX = 1000, NAME_MAX = 32, QUOTED_MAX = 60 };
 
 struct reading {
 	const struct setting *settings;
@@ -75,7 +75,7 @@ static void cut(char *text, size_t bytes)
 
 void faults_add(struct faults *faults, unsigned line, const char *text, ...)
 {
-	char sentence[2 * LINE_HEIGHT_MAX];
+	char sentence[2 * LINE_BYTES_MAX];
 	unsigned at = faults->count;
 	size_t length = 0;
 	va_list args;
@@ -143,7 +143,7 @@ static bool section_begins(const struct reading *reading, size_t i)
 
 static void unknown_section(struct reading *reading, const char *name)
 {
-	char known[LINE_HEIGHT_MAX] = "";
+	char known[LINE_BYTES_MAX] = "";
 	const char *best = NULL;
 	int nearest = INT32_MAX;
 
@@ -170,7 +170,7 @@ static void unknown_section(struct reading *reading, const char *name)
 
 static void unknown_name(struct reading *reading, const char *name)
 {
-	char known[LINE_HEIGHT_MAX] = "";
+	char known[LINE_BYTES_MAX] = "";
 	const char *best = NULL;
 	int nearest = INT32_MAX;
 
@@ -413,13 +413,13 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 		while (at < text.size) {
 			const uint8_t *end = memchr(text.data + at, '\n', text.size - at);
 			const size_t size = end ? (size_t)(end - text.data) - at : text.size - at;
-			char line[LINE_HEIGHT_MAX + 1];
+			char line[LINE_BYTES_MAX + 1];
 
 			reading.line++;
-			if (size > LINE_HEIGHT_MAX) {
+			if (size > LINE_BYTES_MAX) {
 				faults_add(faults, reading.line,
 					   "the line is longer than %d bytes; shorten it",
-					   LINE_HEIGHT_MAX);
+					   LINE_BYTES_MAX);
 			} else {
 				memcpy(line, text.data + at, size);
 				line[size] = '\0';

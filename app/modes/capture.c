@@ -54,11 +54,11 @@ struct capture {
 
 static bool parse_view(const char *line, struct view *view)
 {
-	char accumulation;
+	char rest;
 
 	return sscanf(line, "%f %f %f %f %f %f %f %c", &view->eye_m[0], &view->eye_m[1],
 		      &view->eye_m[2], &view->target_m[0], &view->target_m[1], &view->target_m[2],
-		      &view->fov_deg, &accumulation) == 7 &&
+		      &view->fov_deg, &rest) == 7 &&
 	       view->fov_deg >= 1 && view->fov_deg <= 150 &&
 	       memcmp(view->eye_m, view->target_m, sizeof(view->eye_m)) != 0;
 }
@@ -66,9 +66,9 @@ static bool parse_view(const char *line, struct view *view)
 static bool parse_shot(const char *line, struct shot *shot)
 {
 	long ms;
-	char accumulation;
+	char rest;
 
-	if (sscanf(line, "%ld %63[a-zA-Z0-9_-] %c", &ms, shot->name, &accumulation) != 2 || ms < 0)
+	if (sscanf(line, "%ld %63[a-zA-Z0-9_-] %c", &ms, shot->name, &rest) != 2 || ms < 0)
 		return false;
 	shot->at_ms = ms;
 	return true;

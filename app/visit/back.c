@@ -87,12 +87,12 @@ void back_press(struct kiosk *kiosk)
 void back_say(struct kiosk *kiosk)
 {
 	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
-	struct way_back accumulation =
+	struct way_back rest =
 		kiosk->way_back; /* a copy: taking a place from it must not change the steps */
 	struct place place;
 
 	if (overlay)
 		overlay_offer_back(overlay, overlay_picture(overlay) >= 0 ||
 						    overlay_choosing(overlay) ||
-						    take(kiosk, &accumulation, &place));
+						    take(kiosk, &rest, &place));
 }

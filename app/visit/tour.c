@@ -68,8 +68,8 @@ bool tour_runs(const struct tour *tour)
  * at most STEP_MOST_MS per step. */
 static void advance(struct tour *tour, int64_t ms)
 {
-	const int64_t accumulation = tour_path_rest_ms(&tour->path, tour->at_ms);
-	const int64_t stays = ms < accumulation ? ms : accumulation;
+	const int64_t left_ms = tour_path_rest_ms(&tour->path, tour->at_ms);
+	const int64_t stays = ms < left_ms ? ms : left_ms;
 
 	tour->at_ms += stays;
 	ms -= stays;
@@ -100,10 +100,10 @@ bool tour_step(struct tour *tour, int64_t now_ms, bool arrived, struct tour_pose
 
 int tour_wait_ms(const struct tour *tour, int64_t now_ms)
 {
-	int64_t accumulation;
+	int64_t left_ms;
 
 	if (tour->state != TOUR_FLYING)
 		return tour->state == TOUR_COMING ? 0 : -1;
-	accumulation = tour_path_rest_ms(&tour->path, tour->at_ms) - (now_ms - tour->then_ms);
-	return accumulation > 0 ? (int)accumulation : 0;
+	left_ms = tour_path_rest_ms(&tour->path, tour->at_ms) - (now_ms - tour->then_ms);
+	return left_ms > 0 ? (int)left_ms : 0;
 }
