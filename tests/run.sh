@@ -44,7 +44,13 @@ fi
 
 if [ "${1:-}" = lane ]; then
 	shift
-	for name; do run_one "$name.sh" 2400 bash "tests/$name.sh"; done
+	# A machine in QEMU has watchdogs and deadlines in real time: it goes before tests that only compute.
+	for name; do
+		case $name in
+		qemu/*) run_one "$name.sh" 2400 bash "tests/$name.sh" ;;
+		*) run_one "$name.sh" 2400 nice -n 5 bash "tests/$name.sh" ;;
+		esac
+	done
 	exit 0
 fi
 
