@@ -241,14 +241,17 @@ static int judge_packet(const struct packets *packets, struct message *out, int 
 
 int packets_receive(struct packets *packets, struct message *out, int *passed)
 {
-	struct msghdr nothing = { 0 };
+	/* One byte and not none: a recvmsg without a buffer is no recvmsg to qemu-user. */
+	char byte;
+	struct iovec part = { &byte, sizeof(byte) };
+	struct msghdr rest = { .msg_iov = &part, .msg_iovlen = 1 };
 	int rc;
 
 	*passed = -1;
 	rc = peek_packet(packets, passed);
 	if (rc == 0)
 		rc = judge_packet(packets, out, *passed);
-	if (rc == 0 && receive_now(packets->fd, &nothing, 0) < 0) /* remove it from the queue */
+	if (rc == 0 && receive_now(packets->fd, &rest, 0) < 0) /* remove it from the queue */
 		rc = -errno;
 	if (rc < 0) {
 		closer_close(*passed);
