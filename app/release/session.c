@@ -41,7 +41,7 @@ struct scene_options kiosk_scene_options(const struct profile *profile, enum sce
 	};
 }
 
-static int open_exhibit(struct kiosk *kiosk, struct session *session, struct hash root,
+static int open_session(struct kiosk *kiosk, struct session *session, struct hash root,
 			uint32_t root_bytes)
 {
 	const struct profile *profile = &kiosk->profile;
@@ -150,7 +150,7 @@ void session_begin(struct kiosk *kiosk, struct hash root, uint32_t root_bytes)
 		net_client_add_release(kiosk->net, root, root_bytes);
 	else
 		use_release(kiosk, root, root_bytes);
-	rc = open_exhibit(kiosk, session, root, root_bytes);
+	rc = open_session(kiosk, session, root, root_bytes);
 	if (rc < 0)
 		log_error("app", "cannot open the release: %s", strerror(-rc));
 	kiosk->coming_since_ms = clock_now_ms();

@@ -1,6 +1,6 @@
 /* What a kiosk says and a server answers, in any order: the bytes are a sequence of both, for the
- * fetcher's bringer with a server that is this file. What is passed on has the right hash, requests
- * stay within their number, and none is left at the end. */
+ * fetcher's downloader with a server that is this file. What is passed on has the right hash,
+ * requests stay within their number, and none is left at the end. */
 #include <errno.h>
 
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 
 enum { OBJECTS = 20, OBJECT_BYTES = 3000 };
 
-/* A release of one page's objects, in a pack; and a bringer that reports to the test. */
+/* A release of one page's objects, in a pack; and a downloader that reports to the test. */
 struct stage {
 	char folder[64];
 	struct cache *cache;
@@ -219,7 +219,7 @@ static void leaves_the_line_room(void **state)
 	CHECK(server.count == 1 + 9 && asked(0)->ask.size == 500);
 }
 
-/* The bringer anew, with a limit of 6000 bytes a second. */
+/* The downloader anew, with a limit of 6000 bytes a second. */
 static void limit(struct stage *stage)
 {
 	struct downloader_options options = { .cache = stage->cache,

@@ -8,7 +8,7 @@
 
 enum { S = 1000 };
 
-/* The rest of the kiosk, as guest.c sees and leaves it. */
+/* The rest of the kiosk, as visitor.c sees and leaves it. */
 static struct {
 	int64_t now_ms;
 	int card, page, asked_s, flights, looks, redraws, led;
