@@ -26,7 +26,7 @@ static const char context[] =
 
 /* cJSON's functions return NULL without memory. The failure is noted here and checked once. */
 struct exporter {
-	const struct content *content;
+	const struct draft *draft;
 	bool failed;
 };
 
@@ -118,7 +118,7 @@ static void add_body(struct exporter *e, cJSON *bodies, const char *purpose, con
 
 static void add_bodies(struct exporter *e, cJSON *item, const cJSON *part, uint32_t index)
 {
-	const struct info_build_options *options = e->content->options;
+	const struct info_build_options *options = e->draft->options;
 	cJSON *bodies = cJSON_CreateArray();
 
 	add(e, item, "body", bodies);
@@ -134,9 +134,9 @@ static void add_bodies(struct exporter *e, cJSON *item, const cJSON *part, uint3
 				add_body(e, bodies, annotation_texts[t].purpose, "text/plain",
 					 language, text);
 		}
-		if (e->content->parts[index].pages[i].html)
+		if (e->draft->parts[index].pages[i].html)
 			add_body(e, bodies, "describing", "text/html", language,
-				 e->content->parts[index].pages[i].html);
+				 e->draft->parts[index].pages[i].html);
 	}
 }
 
@@ -215,7 +215,7 @@ static bool add_target(struct exporter *e, cJSON *item, const cJSON *part)
 
 static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32_t index)
 {
-	const struct content_part *read = &e->content->parts[index];
+	const struct draft_part *read = &e->draft->parts[index];
 	cJSON *item = add_object(e, items, NULL), *thumbnail;
 	char id[INFO_ID_BYTES_MAX + 2] = "#";
 
@@ -233,10 +233,10 @@ static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32
 	}
 	add_bodies(e, item, part, index);
 	if (!e->failed && !add_target(e, item, part))
-		content_complain((struct content *)e->content, true, "parts.json", read->line,
-				 "part \"%s\": no selector says a region of its kind, see "
-				 "docs/annotations.md; give it a box, sphere or prism",
-				 read->id);
+		draft_complain((struct draft *)e->draft, true, "parts.json", read->line,
+			       "part \"%s\": no selector says a region of its kind, see "
+			       "docs/annotations.md; give it a box, sphere or prism",
+			       read->id);
 }
 
 /* tours is the array of tours.json, which no other tool reads; NULL: none. */
@@ -251,9 +251,9 @@ static cJSON *make_collection(struct exporter *e, const cJSON *json, const cJSON
 	add(e, collection, "@context", cJSON_Parse(context));
 	add_text(e, collection, "id", "#parts");
 	add_text(e, collection, "type", "AnnotationCollection");
-	add(e, collection, "total", cJSON_CreateNumber(e->content->part_count));
+	add(e, collection, "total", cJSON_CreateNumber(e->draft->part_count));
 	add_credits(e, collection, json);
-	if (e->content->tour_count > 0)
+	if (e->draft->tour_count > 0)
 		add(e, collection, "tours", cJSON_Duplicate(tours, true));
 	page = add_object(e, collection, "first");
 	items = cJSON_CreateArray();
@@ -278,13 +278,13 @@ static cJSON *make_collection(struct exporter *e, const cJSON *json, const cJSON
 	return collection;
 }
 
-static int list_pictures(struct annotations *out, const struct content *content)
+static int list_pictures(struct annotations *out, const struct draft *draft)
 {
-	out->pictures = calloc((size_t)content->picture_count + 1, sizeof(*out->pictures));
+	out->pictures = calloc((size_t)draft->picture_count + 1, sizeof(*out->pictures));
 	if (!out->pictures)
 		return -ENOMEM;
-	for (uint32_t i = 0; i < content->picture_count; i++) {
-		out->pictures[i] = strdup(content->pictures[i].name);
+	for (uint32_t i = 0; i < draft->picture_count; i++) {
+		out->pictures[i] = strdup(draft->pictures[i].name);
 		if (!out->pictures[i])
 			return -ENOMEM;
 		out->picture_count++;
@@ -292,10 +292,10 @@ static int list_pictures(struct annotations *out, const struct content *content)
 	return 0;
 }
 
-static int write_collection(struct annotations *out, struct content *content, const cJSON *json,
+static int write_collection(struct annotations *out, struct draft *draft, const cJSON *json,
 			    const cJSON *tours)
 {
-	struct exporter exporter = { .content = content };
+	struct exporter exporter = { .draft = draft };
 	cJSON *collection = make_collection(&exporter, json, tours);
 	char *text = collection ? cJSON_Print(collection) : NULL;
 	int rc = text ? 0 : -ENOMEM;
@@ -307,12 +307,12 @@ static int write_collection(struct annotations *out, struct content *content, co
 	}
 	cJSON_free(text);
 	cJSON_Delete(collection);
-	out->count = content->part_count;
-	return rc == 0 && content->error_count > 0 ? -EINVAL : rc;
+	out->count = draft->part_count;
+	return rc == 0 && draft->error_count > 0 ? -EINVAL : rc;
 }
 
 /* Parses a file of the folder as JSON. The folder's own readers check its contents. */
-static int read_json(cJSON **out, struct content *content, const char *name)
+static int read_json(cJSON **out, struct draft *draft, const char *name)
 {
 	struct buffer text;
 	char path[PATH_MAX];
@@ -320,7 +320,7 @@ static int read_json(cJSON **out, struct content *content, const char *name)
 
 	*out = NULL;
 	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
-	if (content_path(content, path, sizeof(path), name))
+	if (draft_path(draft, path, sizeof(path), name))
 		rc = buffer_read_file(&text, path);
 	if (rc == 0)
 		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
@@ -336,9 +336,9 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 					    .language_count = options->language_count,
 					    .complaint = options->complaint,
 					    .complaint_data = options->complaint_data };
-	struct content content = { .options = &build };
+	struct draft draft = { .options = &build };
 	cJSON *json, *tours = NULL;
-	int rc = read_json(&json, &content, "parts.json");
+	int rc = read_json(&json, &draft, "parts.json");
 
 	*out = (struct annotations){ 0 };
 	buffer_init(&out->json, ANNOTATIONS_BYTES_MAX);
@@ -348,32 +348,32 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 		if (build.language_count == 0) /* there are only faults or no parts */
 			build.language_count = 1;
 	}
-	if (rc == 0 && !content_languages_are_sane(&build)) {
-		content_complain(&content, true, "parts.json", 0,
-				 "titles are in more than %d languages, or in what is no "
-				 "language's code: name those to take",
-				 INFO_LANGUAGES_MAX);
+	if (rc == 0 && !draft_languages_are_sane(&build)) {
+		draft_complain(&draft, true, "parts.json", 0,
+			       "titles are in more than %d languages, or in what is no "
+			       "language's code: name those to take",
+			       INFO_LANGUAGES_MAX);
 		rc = -EINVAL;
 	}
 	if (rc == 0)
-		rc = content_read_parts(&content);
+		rc = draft_read_parts(&draft);
 	if (rc == 0)
-		rc = content_read_tours(&content);
-	if (rc == 0 && content.tour_count > 0)
-		rc = read_json(&tours, &content, "tours.json");
-	if (rc == 0 && content.part_count > 0)
-		rc = content_read_pages(&content);
-	if (rc == 0 && content.error_count > 0)
+		rc = draft_read_tours(&draft);
+	if (rc == 0 && draft.tour_count > 0)
+		rc = read_json(&tours, &draft, "tours.json");
+	if (rc == 0 && draft.part_count > 0)
+		rc = draft_read_pages(&draft);
+	if (rc == 0 && draft.error_count > 0)
 		rc = -EINVAL;
 	if (rc == 0)
-		rc = write_collection(out, &content, json,
+		rc = write_collection(out, &draft, json,
 				      cJSON_GetObjectItemCaseSensitive(tours, "tours"));
 	if (rc == 0)
-		rc = list_pictures(out, &content);
+		rc = list_pictures(out, &draft);
 	if (rc < 0)
 		annotations_finish(out);
 	cJSON_Delete(json);
 	cJSON_Delete(tours);
-	content_finish(&content);
+	draft_finish(&draft);
 	return rc;
 }

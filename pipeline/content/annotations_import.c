@@ -183,7 +183,7 @@ static bool is_language(const char *code)
 {
 	const struct info_build_options one = { .languages = &code, .language_count = 1 };
 
-	return content_languages_are_sane(&one);
+	return draft_languages_are_sane(&one);
 }
 
 static void read_body(struct importer *im, const cJSON *body)

@@ -5,7 +5,7 @@
 #include <cjson/cJSON.h>
 
 #include "pipeline/content/annotations.h"
-#include "pipeline/content/info_content.h"
+#include "pipeline/content/draft_private.h"
 
 enum { ANNOTATION_MEMBERS_MAX = 4 };
 

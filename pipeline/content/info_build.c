@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 #include "format/page.h"
-#include "pipeline/content/info_content.h"
+#include "pipeline/content/draft_private.h"
 #include "storage/info_index.h"
 #include "storage/info_schema.h"
 
@@ -128,10 +128,10 @@ static void write_languages(struct writer *w, const struct info_build_options *o
 	}
 }
 
-static void write_pictures(struct writer *w, const struct content *content)
+static void write_pictures(struct writer *w, const struct draft *draft)
 {
-	for (uint32_t i = 0; i < content->picture_count; i++) {
-		const struct content_picture *picture = &content->pictures[i];
+	for (uint32_t i = 0; i < draft->picture_count; i++) {
+		const struct draft_picture *picture = &draft->pictures[i];
 
 		prepare(w, "INSERT INTO picture VALUES(?, ?, ?, ?, ?, ?, ?)");
 		bind_int(w, i);
@@ -153,7 +153,7 @@ static void bind_vector(struct writer *w, const float v[3])
 		bind_real(w, v[i]);
 }
 
-static void write_part(struct writer *w, int64_t id, const struct content_part *part)
+static void write_part(struct writer *w, int64_t id, const struct draft_part *part)
 {
 	static const char *const kinds[] = { "point", "sphere", "box", "prism" };
 	const struct region *region = &part->region;
@@ -181,9 +181,9 @@ static void write_part(struct writer *w, int64_t id, const struct content_part *
 }
 
 static void write_content(struct writer *w, int64_t information, uint32_t language,
-			  const struct content_part *part)
+			  const struct draft_part *part)
 {
-	const struct content_page *page = &part->pages[language];
+	const struct draft_page *page = &part->pages[language];
 	int64_t content_id = information * INFO_LANGUAGES_MAX + language;
 
 	if (!part->titles[language] && !part->captions[language] && !page->html)
@@ -207,10 +207,10 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 }
 
 /* Writes all credits of a part, including those stated for all parts. */
-static void write_credits(struct writer *w, int64_t information, const struct content_part *part)
+static void write_credits(struct writer *w, int64_t information, const struct draft_part *part)
 {
 	for (uint32_t i = 0; i < part->credit_count; i++) {
-		const struct content_credit *credit = &part->credits[i];
+		const struct draft_credit *credit = &part->credits[i];
 
 		prepare(w, "INSERT INTO dublin_core VALUES(?,?,?,?,?)");
 		bind_int(w, information);
@@ -225,7 +225,7 @@ static void write_credits(struct writer *w, int64_t information, const struct co
 	}
 }
 
-static void write_information(struct writer *w, int64_t id, const struct content_part *part,
+static void write_information(struct writer *w, int64_t id, const struct draft_part *part,
 			      uint32_t language_count)
 {
 	bool has_page = false;
@@ -248,7 +248,7 @@ static void write_information(struct writer *w, int64_t id, const struct content
 }
 
 static void write_stop(struct writer *w, int64_t tour, int64_t position,
-		       const struct content_stop *stop)
+		       const struct draft_stop *stop)
 {
 	prepare(w, "INSERT INTO tour_stop VALUES(?,?, ?,?,?, ?,?,?, ?,?,?)");
 	bind_int(w, tour);
@@ -272,7 +272,7 @@ static void write_stop(struct writer *w, int64_t tour, int64_t position,
 	}
 }
 
-static void write_tour(struct writer *w, int64_t id, const struct content_tour *tour)
+static void write_tour(struct writer *w, int64_t id, const struct draft_tour *tour)
 {
 	prepare(w, "INSERT INTO tour VALUES(?,?,?,?)");
 	bind_int(w, id);
@@ -308,34 +308,34 @@ static void write_tools(struct writer *w, unsigned tools)
 	}
 }
 
-static void write_database(struct writer *w, const struct content *content)
+static void write_database(struct writer *w, const struct draft *draft)
 {
 	char pragmas[100];
 
 	snprintf(pragmas, sizeof(pragmas), "PRAGMA application_id = %d; PRAGMA user_version = %d;",
 		 INFO_APPLICATION_ID,
-		 content->tour_count > 0 ? INFO_SCHEMA_VERSION : INFO_SCHEMA_TOURLESS);
+		 draft->tour_count > 0 ? INFO_SCHEMA_VERSION : INFO_SCHEMA_TOURLESS);
 	run(w, schema);
-	if (content->tour_count > 0)
+	if (draft->tour_count > 0)
 		run(w, tour_schema);
 	run(w, pragmas);
 	run(w, "BEGIN");
-	write_languages(w, content->options);
-	write_pictures(w, content);
-	for (uint32_t i = 0; i < content->part_count; i++) {
-		write_part(w, i, &content->parts[i]);
-		write_information(w, i, &content->parts[i], content->options->language_count);
+	write_languages(w, draft->options);
+	write_pictures(w, draft);
+	for (uint32_t i = 0; i < draft->part_count; i++) {
+		write_part(w, i, &draft->parts[i]);
+		write_information(w, i, &draft->parts[i], draft->options->language_count);
 	}
-	for (uint32_t i = 0; i < content->tour_count; i++)
-		write_tour(w, i, &content->tours[i]);
-	write_tools(w, content->options->tools);
+	for (uint32_t i = 0; i < draft->tour_count; i++)
+		write_tour(w, i, &draft->tours[i]);
+	write_tools(w, draft->options->tools);
 	if (w->code == SQLITE_OK)
 		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
 	run(w, "COMMIT");
 	run(w, "VACUUM");
 }
 
-static int encode(struct buffer *out, struct content *content)
+static int encode(struct buffer *out, struct draft *draft)
 {
 	struct writer w = { 0 };
 	sqlite3_int64 size = 0;
@@ -343,7 +343,7 @@ static int encode(struct buffer *out, struct content *content)
 	int rc = 0;
 
 	w.code = sqlite3_open(":memory:", &w.db);
-	write_database(&w, content);
+	write_database(&w, draft);
 	if (w.code == SQLITE_OK) {
 		image = sqlite3_serialize(w.db, "main", &size, 0);
 		if (image)
@@ -357,9 +357,9 @@ static int encode(struct buffer *out, struct content *content)
 	sqlite3_close(w.db);
 	if (rc != -EFBIG)
 		return rc;
-	content_complain(content, true, "parts.json", 0,
-			 "titles and pages together are larger than %d MB: shorten the pages",
-			 OBJECT_BYTES_MAX >> 20);
+	draft_complain(draft, true, "parts.json", 0,
+		       "titles and pages together are larger than %d MB: shorten the pages",
+		       OBJECT_BYTES_MAX >> 20);
 	return -EINVAL;
 }
 
@@ -371,15 +371,15 @@ static int by_hash(const void *a, const void *b)
 }
 
 /* Lists the pictures by hash. Files with the same bytes become one object. */
-static int list_pictures(struct info_built *out, struct content *content)
+static int list_pictures(struct info_built *out, struct draft *draft)
 {
 	uint32_t kept = 0;
 
-	out->pictures = calloc(content->picture_count + 1, sizeof(*out->pictures));
+	out->pictures = calloc(draft->picture_count + 1, sizeof(*out->pictures));
 	if (!out->pictures)
 		return -ENOMEM;
-	for (uint32_t i = 0; i < content->picture_count; i++) {
-		struct content_picture *picture = &content->pictures[i];
+	for (uint32_t i = 0; i < draft->picture_count; i++) {
+		struct draft_picture *picture = &draft->pictures[i];
 
 		out->pictures[i] = (struct info_picture_file){ picture->hash, picture->size,
 							       strdup(picture->name) };
@@ -398,21 +398,21 @@ static int list_pictures(struct info_built *out, struct content *content)
 	return 0;
 }
 
-static void count(struct info_built *out, const struct content *content)
+static void count(struct info_built *out, const struct draft *draft)
 {
-	out->part_count = content->part_count;
-	out->tour_count = content->tour_count;
-	for (uint32_t t = 0; t < content->tour_count; t++) {
-		out->tour_lines[t].tour = content->tours[t].line;
-		for (uint32_t i = 0; i < content->tours[t].stop_count; i++)
-			out->tour_lines[t].stops[i] = content->tours[t].stops[i].line;
+	out->part_count = draft->part_count;
+	out->tour_count = draft->tour_count;
+	for (uint32_t t = 0; t < draft->tour_count; t++) {
+		out->tour_lines[t].tour = draft->tours[t].line;
+		for (uint32_t i = 0; i < draft->tours[t].stop_count; i++)
+			out->tour_lines[t].stops[i] = draft->tours[t].stops[i].line;
 	}
-	for (uint32_t p = 0; p < content->part_count; p++)
+	for (uint32_t p = 0; p < draft->part_count; p++)
 		for (uint32_t i = 0; i < INFO_LANGUAGES_MAX; i++)
-			out->page_count += content->parts[p].pages[i].html != NULL;
+			out->page_count += draft->parts[p].pages[i].html != NULL;
 }
 
-bool content_languages_are_sane(const struct info_build_options *options)
+bool draft_languages_are_sane(const struct info_build_options *options)
 {
 	if (options->language_count < 1 || options->language_count > INFO_LANGUAGES_MAX)
 		return false;
@@ -432,30 +432,30 @@ bool content_languages_are_sane(const struct info_build_options *options)
 
 int info_build(struct info_built *out, const struct info_build_options *options)
 {
-	struct content content = { .options = options };
+	struct draft draft = { .options = options };
 	int rc = 0;
 
 	*out = (struct info_built){ 0 };
 	buffer_init(&out->database, OBJECT_BYTES_MAX);
-	if (!content_languages_are_sane(options))
-		content_complain(&content, true, "temple.ini", 0,
-				 "languages: give 1 to %d codes such as \"en fr km\", each once",
-				 INFO_LANGUAGES_MAX);
-	else if ((rc = content_read_parts(&content)) == 0)
-		rc = content_read_tours(&content);
-	if (rc == 0 && content.part_count > 0)
-		rc = content_read_pages(&content);
-	if (rc == 0 && content.error_count > 0)
+	if (!draft_languages_are_sane(options))
+		draft_complain(&draft, true, "temple.ini", 0,
+			       "languages: give 1 to %d codes such as \"en fr km\", each once",
+			       INFO_LANGUAGES_MAX);
+	else if ((rc = draft_read_parts(&draft)) == 0)
+		rc = draft_read_tours(&draft);
+	if (rc == 0 && draft.part_count > 0)
+		rc = draft_read_pages(&draft);
+	if (rc == 0 && draft.error_count > 0)
 		rc = -EINVAL;
 	if (rc == 0)
-		rc = encode(&out->database, &content);
+		rc = encode(&out->database, &draft);
 	if (rc == 0)
-		rc = list_pictures(out, &content);
+		rc = list_pictures(out, &draft);
 	if (rc == 0)
-		count(out, &content);
+		count(out, &draft);
 	else
 		info_built_finish(out);
-	content_finish(&content);
+	draft_finish(&draft);
 	return rc;
 }
 

@@ -10,11 +10,11 @@
 #include <sys/stat.h>
 
 #include "format/html_tags.h"
-#include "pipeline/content/info_content.h"
+#include "pipeline/content/draft_private.h"
 
 struct page_check {
-	struct content *content;
-	struct content_page *page;
+	struct draft *draft;
+	struct draft_page *page;
 	const char *file;
 	uint32_t text_bytes; /* bytes that are not white space */
 };
@@ -46,7 +46,7 @@ static unsigned node_line(xmlNode *node)
 
 static int note_picture(struct page_check *check, int picture)
 {
-	struct content_page *page = check->page;
+	struct draft_page *page = check->page;
 	uint32_t *grown;
 
 	for (uint32_t i = 0; i < page->picture_count; i++)
@@ -67,17 +67,16 @@ static int check_image(struct page_check *check, xmlNode *node)
 	int picture = -1;
 
 	if (!src)
-		content_complain(check->content, true, check->file, line,
-				 "<img> without src: write src=\"pictures/NAME\"");
+		draft_complain(check->draft, true, check->file, line,
+			       "<img> without src: write src=\"pictures/NAME\"");
 	else
-		picture = content_add_picture(check->content, src, check->file, line);
+		picture = draft_add_picture(check->draft, src, check->file, line);
 	xmlFree(src);
 	if (picture == -ENOMEM)
 		return -ENOMEM;
 	if (picture >= 0 && check->page->picture_count == INFO_PAGE_PICTURES_MAX) {
-		content_complain(check->content, true, check->file, line,
-				 "more than %d pictures on a page: split it",
-				 INFO_PAGE_PICTURES_MAX);
+		draft_complain(check->draft, true, check->file, line,
+			       "more than %d pictures on a page: split it", INFO_PAGE_PICTURES_MAX);
 		return 0;
 	}
 	return picture >= 0 ? note_picture(check, picture) : 0;
@@ -89,29 +88,29 @@ static void check_link(struct page_check *check, xmlNode *node)
 	bool to_page = href && strncmp(href, "page:", 5) == 0;
 	bool to_part = href && strncmp(href, "part:", 5) == 0;
 	bool to_tour = href && strncmp(href, "tour:", 5) == 0;
-	int part = to_page || to_part ? content_find_part(check->content, href + 5) : -1;
+	int part = to_page || to_part ? draft_find_part(check->draft, href + 5) : -1;
 	unsigned line = node_line(node);
 
 	if (!href)
-		content_complain(check->content, true, check->file, line,
-				 "<a> without href: write href=\"part:ID\", or remove it");
-	else if (to_tour && content_find_tour(check->content, href + 5) < 0)
-		content_complain(check->content, true, check->file, line,
-				 "link to \"%.80s\": no tour has that id; see tours.json", href);
+		draft_complain(check->draft, true, check->file, line,
+			       "<a> without href: write href=\"part:ID\", or remove it");
+	else if (to_tour && draft_find_tour(check->draft, href + 5) < 0)
+		draft_complain(check->draft, true, check->file, line,
+			       "link to \"%.80s\": no tour has that id; see tours.json", href);
 	else if (!to_page && !to_part && !to_tour)
-		content_complain(check->content, true, check->file, line,
-				 "link to \"%.80s\": a kiosk leads nowhere outside; link to "
-				 "\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
-				 "text",
-				 href);
+		draft_complain(check->draft, true, check->file, line,
+			       "link to \"%.80s\": a kiosk leads nowhere outside; link to "
+			       "\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
+			       "text",
+			       href);
 	else if (!to_tour && part < 0)
-		content_complain(check->content, true, check->file, line,
-				 "link to \"%.80s\": no part has that id; see parts.json", href);
-	else if (to_page && check->content->parts[part].without_page)
-		content_complain(check->content, true, check->file, line,
-				 "link to \"%.80s\": that part has no page; write \"part:%.64s\", "
-				 "which shows it on the model",
-				 href, href + 5);
+		draft_complain(check->draft, true, check->file, line,
+			       "link to \"%.80s\": no part has that id; see parts.json", href);
+	else if (to_page && check->draft->parts[part].without_page)
+		draft_complain(check->draft, true, check->file, line,
+			       "link to \"%.80s\": that part has no page; write \"part:%.64s\", "
+			       "which shows it on the model",
+			       href, href + 5);
 	xmlFree(href);
 }
 
@@ -121,11 +120,11 @@ static void check_attributes(struct page_check *check, xmlNode *node)
 		const char *name = (const char *)a->name;
 
 		if (strncmp(name, "on", 2) == 0)
-			content_complain(check->content, true, check->file, node_line(node),
-					 "attribute %.40s: pages run no scripts; remove it", name);
+			draft_complain(check->draft, true, check->file, node_line(node),
+				       "attribute %.40s: pages run no scripts; remove it", name);
 		else if (strcmp(name, "style") == 0)
-			content_complain(check->content, false, check->file, node_line(node),
-					 "style is ignored: the kiosk has one look for all pages");
+			draft_complain(check->draft, false, check->file, node_line(node),
+				       "style is ignored: the kiosk has one look for all pages");
 	}
 }
 
@@ -134,10 +133,10 @@ static int check_element(struct page_check *check, xmlNode *node)
 	const char *name = (const char *)node->name;
 
 	if (!is_allowed(name))
-		content_complain(check->content, true, check->file, node_line(node),
-				 "<%.40s> cannot be shown: see docs/information.md for the "
-				 "elements that can",
-				 name);
+		draft_complain(check->draft, true, check->file, node_line(node),
+			       "<%.40s> cannot be shown: see docs/information.md for the "
+			       "elements that can",
+			       name);
 	check_attributes(check, node);
 	if (strcmp(name, "a") == 0)
 		check_link(check, node);
@@ -179,8 +178,8 @@ static void hear_parser(void *data, xmlError *error)
 		return;
 	snprintf(text, sizeof(text), "%s", error->message ? error->message : "malformed HTML");
 	text[strcspn(text, "\n")] = 0;
-	content_complain(check->content, false, check->file, (unsigned)error->line,
-			 "%s: check that every tag is closed in order", text);
+	draft_complain(check->draft, false, check->file, (unsigned)error->line,
+		       "%s: check that every tag is closed in order", text);
 }
 
 /* Checks the number of attributes before the parser runs, which would be slow with many. Returns
@@ -196,10 +195,10 @@ static bool check_tags(struct page_check *check)
 	rc = html_tags_reduce(&reduced, html, &found);
 	buffer_finish(&reduced);
 	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
-		content_complain(check->content, true, check->file, found.line,
-				 "a tag with %u attributes: at most %d are read, and the kiosk "
-				 "shows none but src and href; remove the others",
-				 found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
+		draft_complain(check->draft, true, check->file, found.line,
+			       "a tag with %u attributes: at most %d are read, and the kiosk "
+			       "shows none but src and href; remove the others",
+			       found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
 	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
 }
 
@@ -219,8 +218,8 @@ static int parse_page(struct page_check *check)
 	if (doc)
 		rc = check_tree(check, doc);
 	if (rc == 0 && check->text_bytes == 0)
-		content_complain(check->content, true, check->file, 1,
-				 "there is no text on this page: write some, or remove the file");
+		draft_complain(check->draft, true, check->file, 1,
+			       "there is no text on this page: write some, or remove the file");
 	xmlFreeDoc(doc);
 	htmlFreeParserCtxt(parser);
 	return rc;
@@ -243,7 +242,7 @@ static int read_page_file(struct page_check *check)
 	int rc = -ENAMETOOLONG;
 
 	buffer_init(&bytes, INFO_PAGE_BYTES_MAX + 1);
-	if (content_path(check->content, path, sizeof(path), check->file))
+	if (draft_path(check->draft, path, sizeof(path), check->file))
 		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
 	if (rc == 0) {
 		buffer_put_u8(&bytes, 0);
@@ -254,16 +253,16 @@ static int read_page_file(struct page_check *check)
 		return rc == -ENOMEM ? rc : 0;
 	}
 	if (rc == -ELOOP) {
-		content_complain(check->content, true, check->file, 0,
-				 "is a link or no regular file: put the page itself there");
+		draft_complain(check->draft, true, check->file, 0,
+			       "is a link or no regular file: put the page itself there");
 	} else if (rc < 0) {
-		content_complain(check->content, true, check->file, 0,
-				 rc == -EFBIG ? "page is larger than %d KB: split it"
-					      : "cannot be read (at most %d KB)",
-				 INFO_PAGE_BYTES_MAX >> 10);
+		draft_complain(check->draft, true, check->file, 0,
+			       rc == -EFBIG ? "page is larger than %d KB: split it"
+					    : "cannot be read (at most %d KB)",
+			       INFO_PAGE_BYTES_MAX >> 10);
 	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
-		content_complain(check->content, true, check->file, 0,
-				 "is not UTF-8: save it with that encoding");
+		draft_complain(check->draft, true, check->file, 0,
+			       "is not UTF-8: save it with that encoding");
 	} else {
 		check->page->html = (char *)bytes.data; /* taken */
 		check->page->size = bytes.size - 1;
@@ -273,13 +272,13 @@ static int read_page_file(struct page_check *check)
 	return 0;
 }
 
-static int read_part_pages(struct content *content, struct content_part *part)
+static int read_part_pages(struct draft *draft, struct draft_part *part)
 {
-	const struct info_build_options *options = content->options;
+	const struct info_build_options *options = draft->options;
 
 	for (uint32_t i = 0; i < options->language_count; i++) {
 		char file[INFO_ID_BYTES_MAX + 40];
-		struct page_check check = { content, &part->pages[i], file, 0 };
+		struct page_check check = { draft, &part->pages[i], file, 0 };
 		int rc;
 
 		snprintf(file, sizeof(file), "pages/%.64s.%.16s.html", part->id,
@@ -288,25 +287,25 @@ static int read_part_pages(struct content *content, struct content_part *part)
 		if (rc == 0 && part->pages[i].html)
 			rc = check_tags(&check) ? parse_page(&check) : 0;
 		else if (rc == 0 && !part->without_page)
-			content_complain(content, i == 0, file, 0,
-					 i == 0 ? "is missing: write it, or give the part "
-						  "\"page\": false in parts.json"
-						: "is missing: the page in another language is "
-						  "shown instead");
+			draft_complain(draft, i == 0, file, 0,
+				       i == 0 ? "is missing: write it, or give the part "
+						"\"page\": false in parts.json"
+					      : "is missing: the page in another language is "
+						"shown instead");
 		if (rc < 0)
 			return rc;
 	}
 	return 0;
 }
 
-static bool is_expected(const struct content *content, const char *name)
+static bool is_expected(const struct draft *draft, const char *name)
 {
-	const struct info_build_options *options = content->options;
+	const struct info_build_options *options = draft->options;
 
-	for (uint32_t p = 0; p < content->part_count; p++) {
-		size_t size = strlen(content->parts[p].id);
+	for (uint32_t p = 0; p < draft->part_count; p++) {
+		size_t size = strlen(draft->parts[p].id);
 
-		if (strncmp(name, content->parts[p].id, size) != 0 || name[size] != '.')
+		if (strncmp(name, draft->parts[p].id, size) != 0 || name[size] != '.')
 			continue;
 		for (uint32_t i = 0; i < options->language_count; i++) {
 			size_t n = strlen(options->languages[i]);
@@ -320,38 +319,38 @@ static bool is_expected(const struct content *content, const char *name)
 }
 
 /* Warns about pages that no part uses; most often the id is misspelt. */
-static void find_stray_pages(struct content *content)
+static void find_stray_pages(struct draft *draft)
 {
 	struct dirent **entries = NULL;
 	char path[PATH_MAX];
 	int count;
 
-	if (!content_path(content, path, sizeof(path), "pages"))
+	if (!draft_path(draft, path, sizeof(path), "pages"))
 		return;
 	count = scandir(path, &entries, NULL, alphasort);
 	for (int i = 0; i < count; i++) {
 		const char *name = entries[i]->d_name;
 		char file[300];
 
-		if (name[0] != '.' && !is_expected(content, name)) {
+		if (name[0] != '.' && !is_expected(draft, name)) {
 			snprintf(file, sizeof(file), "pages/%s", name);
-			content_complain(content, false, file, 0,
-					 "belongs to no part and language of this release: name it "
-					 "ID.LANGUAGE.html after a part of parts.json");
+			draft_complain(draft, false, file, 0,
+				       "belongs to no part and language of this release: name it "
+				       "ID.LANGUAGE.html after a part of parts.json");
 		}
 		free(entries[i]);
 	}
 	free(entries);
 }
 
-int content_read_pages(struct content *content)
+int draft_read_pages(struct draft *draft)
 {
-	for (uint32_t i = 0; i < content->part_count; i++) {
-		int rc = read_part_pages(content, &content->parts[i]);
+	for (uint32_t i = 0; i < draft->part_count; i++) {
+		int rc = read_part_pages(draft, &draft->parts[i]);
 
 		if (rc < 0)
 			return rc;
 	}
-	find_stray_pages(content);
+	find_stray_pages(draft);
 	return 0;
 }

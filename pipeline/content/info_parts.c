@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/content/info_content.h"
+#include "pipeline/content/draft_private.h"
 #include "pipeline/content/json_lines.h"
 
 static const char parts_file[] = "parts.json";
@@ -15,13 +15,13 @@ static const char parts_file[] = "parts.json";
 
 /* Shared by the functions that read one part. */
 struct part_reader {
-	struct content *content;
-	struct content_part *part;
+	struct draft *draft;
+	struct draft_part *part;
 	const cJSON *json;
 };
 
 #define complain_part(reader, ...)                                                                 \
-	content_complain((reader)->content, true, parts_file, (reader)->part->line, __VA_ARGS__)
+	draft_complain((reader)->draft, true, parts_file, (reader)->part->line, __VA_ARGS__)
 
 static const char *part_name(const struct part_reader *r)
 {
@@ -158,7 +158,7 @@ static void read_prism(struct part_reader *r, const cJSON *json)
  * it returns. */
 static int read_faces(struct part_reader *r, const cJSON *json)
 {
-	const struct info_build_options *options = r->content->options;
+	const struct info_build_options *options = r->draft->options;
 	struct info_faces faces = {
 		.part = part_name(r),
 		.file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file")),
@@ -221,7 +221,7 @@ static int read_region(struct part_reader *r)
 /* Reads {"en": "...", "fr": "..."} into texts indexed by the release's languages. */
 static int read_texts(struct part_reader *r, const char *key, char *texts[], bool needed)
 {
-	const struct info_build_options *options = r->content->options;
+	const struct info_build_options *options = r->draft->options;
 	const cJSON *object = cJSON_GetObjectItemCaseSensitive(r->json, key);
 
 	for (uint32_t i = 0; i < options->language_count; i++) {
@@ -234,16 +234,16 @@ static int read_texts(struct part_reader *r, const char *key, char *texts[], boo
 		if (text && !(texts[i] = strdup(text)))
 			return -ENOMEM;
 		if (!text && needed)
-			content_complain(r->content, i == 0, parts_file, r->part->line,
-					 "part \"%s\" has no %s in \"%s\"%s: add \"%s\": {\"%s\": "
-					 "\"...\"}",
-					 part_name(r), key, language,
-					 i == 0 ? ", the first language" : "", key, language);
+			draft_complain(r->draft, i == 0, parts_file, r->part->line,
+				       "part \"%s\" has no %s in \"%s\"%s: add \"%s\": {\"%s\": "
+				       "\"...\"}",
+				       part_name(r), key, language,
+				       i == 0 ? ", the first language" : "", key, language);
 	}
 	return 0;
 }
 
-bool content_is_id(const char *id)
+bool draft_is_id(const char *id)
 {
 	size_t size = strlen(id);
 
@@ -255,12 +255,12 @@ static int read_id(struct part_reader *r)
 {
 	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r->json, "id"));
 
-	if (!id || !content_is_id(id))
+	if (!id || !draft_is_id(id))
 		complain_part(r,
 			      "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
 			      "page's file)",
 			      id ? id : "", INFO_ID_BYTES_MAX);
-	else if (content_find_part(r->content, id) >= 0)
+	else if (draft_find_part(r->draft, id) >= 0)
 		complain_part(r, "part \"%s\" is there twice: rename or remove one", id);
 	r->part->id = strdup(id ? id : "");
 	return r->part->id ? 0 : -ENOMEM;
@@ -277,23 +277,21 @@ static int read_thumbnail(struct part_reader *r)
 	r->part->thumbnail = strdup(name);
 	if (!r->part->thumbnail)
 		return -ENOMEM;
-	r->part->thumbnail_picture =
-		content_add_picture(r->content, name, parts_file, r->part->line);
+	r->part->thumbnail_picture = draft_add_picture(r->draft, name, parts_file, r->part->line);
 	return r->part->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
 }
 
-static int read_part(struct content *content, const cJSON *json, unsigned line,
-		     const cJSON *credits)
+static int read_part(struct draft *draft, const cJSON *json, unsigned line, const cJSON *credits)
 {
-	struct content_part *part = &content->parts[content->part_count];
-	struct part_reader reader = { .content = content, .part = part, .json = json };
+	struct draft_part *part = &draft->parts[draft->part_count];
+	struct part_reader reader = { .draft = draft, .part = part, .json = json };
 	int rc;
 
 	part->line = line;
 	rc = read_id(&reader);
 	if (rc < 0)
 		return rc;
-	content->part_count++; /* from here on content_finish frees it */
+	draft->part_count++; /* from here on draft_finish frees it */
 	part->without_page = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
 	rc = read_region(&reader);
 	if (rc == 0)
@@ -303,14 +301,14 @@ static int read_part(struct content *content, const cJSON *json, unsigned line,
 	if (rc == 0)
 		rc = read_texts(&reader, "reading", part->readings, false);
 	if (rc == 0)
-		rc = content_read_credits(
-			content, part, cJSON_GetObjectItemCaseSensitive(json, "credits"), credits);
+		rc = draft_read_credits(draft, part,
+					cJSON_GetObjectItemCaseSensitive(json, "credits"), credits);
 	if (rc == 0)
 		rc = read_thumbnail(&reader);
 	return rc;
 }
 
-static int read_array(struct content *content, const cJSON *json, const char *text)
+static int read_array(struct draft *draft, const cJSON *json, const char *text)
 {
 	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "parts");
 	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(json, "credits");
@@ -320,13 +318,13 @@ static int read_array(struct content *content, const cJSON *json, const char *te
 	int rc = 0, i = 0;
 
 	if (count > INFO_PARTS_MAX) {
-		content_complain(content, true, parts_file, 0, "%d parts: at most %d are possible",
-				 count, INFO_PARTS_MAX);
+		draft_complain(draft, true, parts_file, 0, "%d parts: at most %d are possible",
+			       count, INFO_PARTS_MAX);
 		return 0;
 	}
 	lines = calloc((size_t)count + 1, sizeof(*lines));
-	content->parts = calloc((size_t)count + 1, sizeof(*content->parts));
-	if (!lines || !content->parts)
+	draft->parts = calloc((size_t)count + 1, sizeof(*draft->parts));
+	if (!lines || !draft->parts)
 		rc = -ENOMEM;
 	else
 		json_item_lines(text, "parts", lines, (size_t)count);
@@ -335,18 +333,18 @@ static int read_array(struct content *content, const cJSON *json, const char *te
 		if (rc < 0)
 			break;
 		if (cJSON_IsObject(item))
-			rc = read_part(content, item, lines[i], credits);
+			rc = read_part(draft, item, lines[i], credits);
 		else
-			content_complain(content, true, parts_file, 0,
-					 "entry %d of \"parts\" is no object: write {\"id\": ...}",
-					 i + 1);
+			draft_complain(draft, true, parts_file, 0,
+				       "entry %d of \"parts\" is no object: write {\"id\": ...}",
+				       i + 1);
 		i++;
 	}
 	free(lines);
 	return rc;
 }
 
-static int parse_parts(struct content *content, struct buffer *text)
+static int parse_parts(struct draft *draft, struct buffer *text)
 {
 	const char *end = NULL, *bad;
 	const cJSON *array;
@@ -358,41 +356,41 @@ static int parse_parts(struct content *content, struct buffer *text)
 		return text->error;
 	bad = json_not_utf8((char *)text->data);
 	if (bad) {
-		content_complain(content, true, parts_file, json_line_of((char *)text->data, bad),
-				 "is not UTF-8 here: save it with that encoding");
+		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, bad),
+			       "is not UTF-8 here: save it with that encoding");
 		return 0;
 	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
 	if (!json)
-		content_complain(content, true, parts_file, json_line_of((char *)text->data, end),
-				 "is not JSON from here on: look for a missing comma, quote or "
-				 "bracket");
+		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, end),
+			       "is not JSON from here on: look for a missing comma, quote or "
+			       "bracket");
 	else if (!cJSON_IsArray(array))
-		content_complain(content, true, parts_file, 1,
-				 "must be {\"parts\": [...]} at the outside");
+		draft_complain(draft, true, parts_file, 1,
+			       "must be {\"parts\": [...]} at the outside");
 	else
-		rc = read_array(content, json, (const char *)text->data);
+		rc = read_array(draft, json, (const char *)text->data);
 	cJSON_Delete(json);
 	return rc;
 }
 
-int content_read_parts(struct content *content)
+int draft_read_parts(struct draft *draft)
 {
 	struct buffer text;
 	char path[PATH_MAX];
 	int rc;
 
-	if (!content_path(content, path, sizeof(path), parts_file))
+	if (!draft_path(draft, path, sizeof(path), parts_file))
 		return -ENAMETOOLONG;
 	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
 	rc = buffer_read_file(&text, path);
 	if (rc == 0) {
-		rc = parse_parts(content, &text);
+		rc = parse_parts(draft, &text);
 	} else if (rc == -ENOENT) {
 		rc = 0; /* nothing has been written about this model yet */
 	} else if (rc != -ENOMEM) {
-		content_complain(content, true, parts_file, 0, "cannot be read: %s", strerror(-rc));
+		draft_complain(draft, true, parts_file, 0, "cannot be read: %s", strerror(-rc));
 		rc = 0;
 	}
 	buffer_finish(&text);

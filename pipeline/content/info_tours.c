@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "geometry/viewpoint.h"
-#include "pipeline/content/info_content.h"
+#include "pipeline/content/draft_private.h"
 #include "pipeline/content/json_lines.h"
 
 static const char tours_file[] = "tours.json";
@@ -21,8 +21,8 @@ static const char tours_file[] = "tours.json";
 
 /* Shared by the functions that read a tour. stop: number of the current stop, from 1; 0: none. */
 struct tour_reader {
-	struct content *content;
-	struct content_tour *tour;
+	struct draft *draft;
+	struct draft_tour *tour;
 	unsigned line;
 	uint32_t stop;
 };
@@ -39,8 +39,8 @@ static void complain(const struct tour_reader *r, const char *text, ...)
 	va_end(args);
 	if (r->stop > 0)
 		snprintf(where, sizeof(where), ", stop %u", r->stop);
-	content_complain(r->content, true, tours_file, r->line, "tour \"%.64s\"%s: %s",
-			 r->tour->id ? r->tour->id : "?", where, message);
+	draft_complain(r->draft, true, tours_file, r->line, "tour \"%.64s\"%s: %s",
+		       r->tour->id ? r->tour->id : "?", where, message);
 }
 
 /* Complains about unknown keys, which are usually misspelt. */
@@ -94,7 +94,7 @@ static float read_seconds(const struct tour_reader *r, const cJSON *json, const 
 static int read_texts(const struct tour_reader *r, const cJSON *json, const char *key,
 		      char *texts[], bool needed)
 {
-	const struct info_build_options *options = r->content->options;
+	const struct info_build_options *options = r->draft->options;
 	const cJSON *object = cJSON_GetObjectItemCaseSensitive(json, key);
 
 	if (object && !cJSON_IsObject(object))
@@ -114,8 +114,8 @@ static int read_texts(const struct tour_reader *r, const cJSON *json, const char
 				"no %s in \"%s\", the first language: add \"%s\": {\"%s\": \"...\"}",
 				key, options->languages[i], key, options->languages[i]);
 		} else if (object) {
-			content_complain(
-				r->content, false, tours_file, r->line,
+			draft_complain(
+				r->draft, false, tours_file, r->line,
 				"tour \"%.64s\": no %s in \"%s\": that of another language is "
 				"shown instead",
 				r->tour->id, key, options->languages[i]);
@@ -134,7 +134,7 @@ static void read_part(const struct tour_reader *r, const cJSON *json, struct inf
 	stop->part = -1;
 	if (!item)
 		return;
-	stop->part = id ? content_find_part(r->content, id) : -1;
+	stop->part = id ? draft_find_part(r->draft, id) : -1;
 	if (stop->part < 0)
 		complain(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
 }
@@ -144,7 +144,7 @@ static void read_part(const struct tour_reader *r, const cJSON *json, struct inf
 static void read_view(const struct tour_reader *r, const cJSON *json, struct info_stop *stop,
 		      const struct info_stop *before)
 {
-	const struct content_part *part = stop->part >= 0 ? &r->content->parts[stop->part] : NULL;
+	const struct draft_part *part = stop->part >= 0 ? &r->draft->parts[stop->part] : NULL;
 	const bool has_eye = cJSON_HasObjectItem(json, "eye");
 	const bool has_target = cJSON_HasObjectItem(json, "target");
 
@@ -178,11 +178,11 @@ static void read_view(const struct tour_reader *r, const cJSON *json, struct inf
 
 static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 {
-	struct content_stop *stop = &r->tour->stops[r->tour->stop_count];
+	struct draft_stop *stop = &r->tour->stops[r->tour->stop_count];
 	const struct info_stop *before = r->tour->stop_count > 0 ? &stop[-1].view : NULL;
 
 	stop->line = r->line;
-	r->stop = ++r->tour->stop_count; /* from here on content_finish frees it */
+	r->stop = ++r->tour->stop_count; /* from here on draft_finish frees it */
 	stop->view.part = -1;
 	if (!cJSON_IsObject(json)) {
 		complain(r, "must be an object: {\"eye\": [x, y, z], \"target\": [x, y, z]}");
@@ -231,7 +231,7 @@ static int read_thumbnail(const struct tour_reader *r, const cJSON *json)
 		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "thumbnail"));
 
 	r->tour->thumbnail_picture =
-		name ? content_add_picture(r->content, name, tours_file, r->line) : -1;
+		name ? draft_add_picture(r->draft, name, tours_file, r->line) : -1;
 	return r->tour->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
 }
 
@@ -242,21 +242,21 @@ static void check_attract(const struct tour_reader *r, const cJSON *json)
 	if (attract && !cJSON_IsBool(attract))
 		complain(r, "\"attract\" must be true or false");
 	r->tour->attract = cJSON_IsTrue(attract);
-	for (uint32_t i = 0; r->tour->attract && i + 1 < r->content->tour_count; i++)
-		if (r->content->tours[i].attract)
+	for (uint32_t i = 0; r->tour->attract && i + 1 < r->draft->tour_count; i++)
+		if (r->draft->tours[i].attract)
 			complain(r,
 				 "tour \"%s\" has \"attract\" too: only one can be shown while "
 				 "nobody is there",
-				 r->content->tours[i].id);
+				 r->draft->tours[i].id);
 }
 
 /* text begins at the tour. */
-static int read_tour(struct content *content, const cJSON *json, const char *text, unsigned line)
+static int read_tour(struct draft *draft, const cJSON *json, const char *text, unsigned line)
 {
-	struct content_tour *tour = &content->tours[content->tour_count];
-	struct tour_reader r = { .content = content, .tour = tour, .line = line };
+	struct draft_tour *tour = &draft->tours[draft->tour_count];
+	struct tour_reader r = { .draft = draft, .tour = tour, .line = line };
 	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "id"));
-	const bool is_twice = id && content_find_tour(content, id) >= 0;
+	const bool is_twice = id && draft_find_tour(draft, id) >= 0;
 	int rc;
 
 	tour->line = line;
@@ -264,8 +264,8 @@ static int read_tour(struct content *content, const cJSON *json, const char *tex
 	tour->id = strdup(id ? id : "");
 	if (!tour->id)
 		return -ENOMEM;
-	content->tour_count++; /* from here on content_finish frees it */
-	if (!content_is_id(tour->id))
+	draft->tour_count++; /* from here on draft_finish frees it */
+	if (!draft_is_id(tour->id))
 		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
 		complain(&r, "is there twice: rename or remove one");
@@ -287,19 +287,19 @@ static const char *line_at(const char *text, unsigned line)
 	return text;
 }
 
-static int read_array(struct content *content, const cJSON *array, const char *text)
+static int read_array(struct draft *draft, const cJSON *array, const char *text)
 {
 	unsigned lines[INFO_TOURS_MAX] = { 0 };
 	const cJSON *item;
 	int count = cJSON_GetArraySize(array), rc = 0, i = 0;
 
 	if (count > INFO_TOURS_MAX) {
-		content_complain(content, true, tours_file, 0, "%d tours: at most %d are possible",
-				 count, INFO_TOURS_MAX);
+		draft_complain(draft, true, tours_file, 0, "%d tours: at most %d are possible",
+			       count, INFO_TOURS_MAX);
 		return 0;
 	}
-	content->tours = calloc((size_t)count + 1, sizeof(*content->tours));
-	if (!content->tours)
+	draft->tours = calloc((size_t)count + 1, sizeof(*draft->tours));
+	if (!draft->tours)
 		return -ENOMEM;
 	json_item_lines(text, "tours", lines, (size_t)count);
 	cJSON_ArrayForEach(item, array)
@@ -307,17 +307,17 @@ static int read_array(struct content *content, const cJSON *array, const char *t
 		if (rc < 0)
 			break;
 		if (cJSON_IsObject(item))
-			rc = read_tour(content, item, line_at(text, lines[i]), lines[i]);
+			rc = read_tour(draft, item, line_at(text, lines[i]), lines[i]);
 		else
-			content_complain(content, true, tours_file, 0,
-					 "entry %d of \"tours\" is no object: write {\"id\": ...}",
-					 i + 1);
+			draft_complain(draft, true, tours_file, 0,
+				       "entry %d of \"tours\" is no object: write {\"id\": ...}",
+				       i + 1);
 		i++;
 	}
 	return rc;
 }
 
-static int parse(struct content *content, struct buffer *text)
+static int parse(struct draft *draft, struct buffer *text)
 {
 	const char *end = NULL, *bad;
 	const cJSON *array;
@@ -329,41 +329,41 @@ static int parse(struct content *content, struct buffer *text)
 		return text->error;
 	bad = json_not_utf8((char *)text->data);
 	if (bad) {
-		content_complain(content, true, tours_file, json_line_of((char *)text->data, bad),
-				 "is not UTF-8 here: save it with that encoding");
+		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, bad),
+			       "is not UTF-8 here: save it with that encoding");
 		return 0;
 	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "tours");
 	if (!json)
-		content_complain(content, true, tours_file, json_line_of((char *)text->data, end),
-				 "is not JSON from here on: look for a missing comma, quote or "
-				 "bracket");
+		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, end),
+			       "is not JSON from here on: look for a missing comma, quote or "
+			       "bracket");
 	else if (!cJSON_IsArray(array))
-		content_complain(content, true, tours_file, 1,
-				 "must be {\"tours\": [...]} at the outside");
+		draft_complain(draft, true, tours_file, 1,
+			       "must be {\"tours\": [...]} at the outside");
 	else
-		rc = read_array(content, array, (const char *)text->data);
+		rc = read_array(draft, array, (const char *)text->data);
 	cJSON_Delete(json);
 	return rc;
 }
 
-int content_read_tours(struct content *content)
+int draft_read_tours(struct draft *draft)
 {
 	struct buffer text;
 	char path[PATH_MAX];
 	int rc;
 
-	if (!content_path(content, path, sizeof(path), tours_file))
+	if (!draft_path(draft, path, sizeof(path), tours_file))
 		return -ENAMETOOLONG;
 	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
 	rc = buffer_read_file(&text, path);
 	if (rc == 0) {
-		rc = parse(content, &text);
+		rc = parse(draft, &text);
 	} else if (rc == -ENOENT) {
 		rc = 0; /* the model has no tours */
 	} else if (rc != -ENOMEM) {
-		content_complain(content, true, tours_file, 0, "cannot be read: %s", strerror(-rc));
+		draft_complain(draft, true, tours_file, 0, "cannot be read: %s", strerror(-rc));
 		rc = 0;
 	}
 	buffer_finish(&text);

@@ -1,7 +1,7 @@
 /* A content folder's parts, pages, tours and pictures in memory, as info_build reads and checks
  * them before anything is written. Private to pipeline/content. */
-#ifndef GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
-#define GOPURA_PIPELINE_CONTENT_INFO_CONTENT_H
+#ifndef GOPURA_PIPELINE_CONTENT_DRAFT_PRIVATE_H
+#define GOPURA_PIPELINE_CONTENT_DRAFT_PRIVATE_H
 
 #include "pipeline/content/info_build.h"
 
@@ -9,23 +9,23 @@ struct cJSON;
 
 enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
-struct content_page {
+struct draft_page {
 	char *html; /* owned, null-terminated; NULL: none */
 	size_t size;
-	uint32_t *pictures; /* owned; indices into content.pictures, in order of use, each once */
+	uint32_t *pictures; /* owned; indices into draft.pictures, in order of use, each once */
 	uint32_t picture_count;
 };
 
 /* One Dublin Core statement. */
-struct content_credit {
+struct draft_credit {
 	const char *element; /* borrowed from a constant table */
 	int language;        /* index into the release's languages; -1: no language */
 	char *value;         /* owned */
 };
 
-enum { CONTENT_CREDITS_MAX = 64 };
+enum { DRAFT_CREDITS_MAX = 64 };
 
-struct content_part {
+struct draft_part {
 	char *id;
 	unsigned line; /* line in parts.json */
 	bool without_page;
@@ -33,30 +33,30 @@ struct content_part {
 	float anchor_m[3];
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 	char *readings[INFO_LANGUAGES_MAX];                              /* the same */
-	struct content_credit credits[CONTENT_CREDITS_MAX]; /* in the order of the elements */
+	struct draft_credit credits[DRAFT_CREDITS_MAX]; /* in the order of the elements */
 	uint32_t credit_count;
 	char *thumbnail;       /* owned name; NULL: none */
-	int thumbnail_picture; /* index into content.pictures, or -1 */
-	struct content_page pages[INFO_LANGUAGES_MAX];
+	int thumbnail_picture; /* index into draft.pictures, or -1 */
+	struct draft_page pages[INFO_LANGUAGES_MAX];
 };
 
-struct content_stop {
+struct draft_stop {
 	struct info_stop view;
 	unsigned line;                      /* line in tours.json */
 	char *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 };
 
-struct content_tour {
+struct draft_tour {
 	char *id;
 	unsigned line;
 	bool attract;
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
-	int thumbnail_picture;      /* index into content.pictures, or -1 */
-	struct content_stop *stops; /* owned */
+	int thumbnail_picture;    /* index into draft.pictures, or -1 */
+	struct draft_stop *stops; /* owned */
 	uint32_t stop_count;
 };
 
-struct content_picture {
+struct draft_picture {
 	char *name;
 	const char *media_type;
 	struct hash hash;
@@ -64,49 +64,49 @@ struct content_picture {
 	bool damaged; /* has been complained about */
 };
 
-struct content {
+struct draft {
 	const struct info_build_options *options;
-	struct content_part *parts;
+	struct draft_part *parts;
 	uint32_t part_count;
-	struct content_tour *tours;
+	struct draft_tour *tours;
 	uint32_t tour_count;
-	struct content_picture *pictures;
+	struct draft_picture *pictures;
 	uint32_t picture_count;
 	uint32_t error_count; /* number of complaints that are errors */
 };
 
 /* Reports a complaint. file and line are as in info_complaint. */
-void content_complain(struct content *content, bool is_error, const char *file, unsigned line,
-		      const char *text, ...) printf_like(5, 6);
+void draft_complain(struct draft *draft, bool is_error, const char *file, unsigned line,
+		    const char *text, ...) printf_like(5, 6);
 /* Frees everything that was read. options stays. */
-void content_finish(struct content *content);
+void draft_finish(struct draft *draft);
 
 /* Reads parts.json. Like the other readers, it returns 0 even after complaints; a negative errno
  * means that reading cannot go on. */
-must_check int content_read_parts(struct content *content);
-/* Reads and checks the pages of the parts. Call it after content_read_parts and content_read_tours,
+must_check int draft_read_parts(struct draft *draft);
+/* Reads and checks the pages of the parts. Call it after draft_read_parts and draft_read_tours,
  * because pages may link to both. */
-must_check int content_read_pages(struct content *content);
-/* Reads tours.json. Call it after content_read_parts, because stops may name parts. */
-must_check int content_read_tours(struct content *content);
+must_check int draft_read_pages(struct draft *draft);
+/* Reads tours.json. Call it after draft_read_parts, because stops may name parts. */
+must_check int draft_read_tours(struct draft *draft);
 /* Adds the credits of a part: `json` is the part's own "credits", and `all` those stated for all
  * parts, used for elements that json lacks. Either may be NULL. Complains with the part's line.
  * -ENOMEM. */
-must_check int content_read_credits(struct content *content, struct content_part *part,
-				    const struct cJSON *json, const struct cJSON *all);
+must_check int draft_read_credits(struct draft *draft, struct draft_part *part,
+				  const struct cJSON *json, const struct cJSON *all);
 /* Reads and checks a picture that file:line refers to. Returns its index, -1 after a complaint, or
  * -ENOMEM. */
-int content_add_picture(struct content *content, const char *name, const char *file, unsigned line);
+int draft_add_picture(struct draft *draft, const char *name, const char *file, unsigned line);
 /* Returns whether there are 1 to INFO_LANGUAGES_MAX valid codes, each once. */
-bool content_languages_are_sane(const struct info_build_options *options);
+bool draft_languages_are_sane(const struct info_build_options *options);
 /* Returns the part's index, or -1. */
-int content_find_part(const struct content *content, const char *id);
+int draft_find_part(const struct draft *draft, const char *id);
 /* Returns the tour's index, or -1. */
-int content_find_tour(const struct content *content, const char *id);
+int draft_find_tour(const struct draft *draft, const char *id);
 /* Returns whether id may name a part or a tour. */
-bool content_is_id(const char *id);
+bool draft_is_id(const char *id);
 
 /* Builds the path of a file in the folder. Returns false if it does not fit. */
-bool content_path(const struct content *content, char *path, size_t path_bytes, const char *name);
+bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name);
 
 #endif

@@ -1,0 +1,179 @@
+/* Shared helpers of the readers of a content folder: complaints, searching, freeing, and checking
+ * pictures. */
+#include "pipeline/content/draft_private.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "format/page.h"
+#include "format/picture.h"
+
+void draft_complain(struct draft *draft, bool is_error, const char *file, unsigned line,
+		    const char *text, ...)
+{
+	const struct info_build_options *options = draft->options;
+	char message[512];
+	va_list args;
+
+	va_start(args, text);
+	vsnprintf(message, sizeof(message), text, args);
+	va_end(args);
+	draft->error_count += is_error;
+	if (options->complaint) {
+		options->complaint(options->complaint_data, is_error, file, line, message);
+		return;
+	}
+	if (is_error)
+		log_error("storage", "%s/%s:%u: %s", options->folder, file, line, message);
+	else
+		log_warn("storage", "%s/%s:%u: %s", options->folder, file, line, message);
+}
+
+static void part_finish(struct draft_part *part)
+{
+	free(part->id);
+	free(part->thumbnail);
+	for (uint32_t i = 0; i < part->credit_count; i++)
+		free(part->credits[i].value);
+	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
+		free(part->titles[i]);
+		free(part->captions[i]);
+		free(part->readings[i]);
+		free(part->pages[i].html);
+		free(part->pages[i].pictures);
+	}
+}
+
+static void tour_finish(struct draft_tour *tour)
+{
+	free(tour->id);
+	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++) {
+		free(tour->titles[i]);
+		free(tour->captions[i]);
+		for (uint32_t s = 0; s < tour->stop_count; s++)
+			free(tour->stops[s].captions[i]);
+	}
+	free(tour->stops);
+}
+
+void draft_finish(struct draft *draft)
+{
+	for (uint32_t i = 0; i < draft->tour_count; i++)
+		tour_finish(&draft->tours[i]);
+	free(draft->tours);
+	for (uint32_t i = 0; i < draft->part_count; i++)
+		part_finish(&draft->parts[i]);
+	for (uint32_t i = 0; i < draft->picture_count; i++)
+		free(draft->pictures[i].name);
+	free(draft->parts);
+	free(draft->pictures);
+	*draft = (struct draft){ .options = draft->options };
+}
+
+int draft_find_part(const struct draft *draft, const char *id)
+{
+	for (uint32_t i = 0; i < draft->part_count; i++)
+		if (strcmp(draft->parts[i].id, id) == 0)
+			return (int)i;
+	return -1;
+}
+
+int draft_find_tour(const struct draft *draft, const char *id)
+{
+	for (uint32_t i = 0; i < draft->tour_count; i++)
+		if (strcmp(draft->tours[i].id, id) == 0)
+			return (int)i;
+	return -1;
+}
+
+bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name)
+{
+	int n = snprintf(path, path_bytes, "%s/%s", draft->options->folder, name);
+
+	return n > 0 && (size_t)n < path_bytes;
+}
+
+/* Accepts only files directly in pictures/: no parent folder, no sub-folder, no hidden file. */
+static bool is_picture_name(const char *name)
+{
+	static const char folder[] = "pictures/";
+	const char *rest = name + sizeof(folder) - 1;
+
+	if (strncmp(name, folder, sizeof(folder) - 1) != 0)
+		return false;
+	return *rest && *rest != '.' && strlen(rest) <= 200 && !strpbrk(rest, "/\\\"<>?#%");
+}
+
+static void measure_picture(struct draft *draft, struct draft_picture *picture, const char *file,
+			    unsigned line)
+{
+	struct picture decoded = { 0 };
+	struct buffer bytes;
+	char path[PATH_MAX];
+	int rc = -ENAMETOOLONG;
+
+	picture->damaged = true; /* until it was decoded */
+	buffer_init(&bytes, OBJECT_BYTES_MAX);
+	if (draft_path(draft, path, sizeof(path), picture->name))
+		rc = buffer_read_file(&bytes, path);
+	if (rc == -ENOENT) {
+		draft_complain(draft, true, file, line,
+			       "picture \"%s\" is not there: add the file, or mend the name",
+			       picture->name);
+	} else if (rc == -EFBIG) {
+		draft_complain(draft, true, picture->name, 0,
+			       "picture is larger than %u MB: save it smaller",
+			       OBJECT_BYTES_MAX >> 20);
+	} else if (rc < 0) {
+		draft_complain(draft, true, picture->name, 0, "cannot be read: %s", strerror(-rc));
+	} else if ((rc = picture_decode_for_page(&decoded, buffer_bytes(&bytes))) == -EFBIG) {
+		draft_complain(draft, true, picture->name, 0,
+			       "picture is larger than %d pixels a side, which terminals do not "
+			       "show: save it smaller",
+			       PICTURE_PAGE_SIDE_MOST_PX);
+	} else if (rc < 0) {
+		draft_complain(draft, true, picture->name, 0,
+			       "is no whole JPEG or PNG picture: save it anew as one");
+	} else {
+		picture->damaged = false;
+		picture->media_type = bytes.data[0] == 0x89 ? "image/png" : "image/jpeg";
+		picture->hash = hash_of(buffer_bytes(&bytes));
+		picture->size = (uint32_t)bytes.size;
+		picture->width_px = decoded.width;
+		picture->height_px = decoded.height;
+	}
+	picture_finish(&decoded);
+	buffer_finish(&bytes);
+}
+
+int draft_add_picture(struct draft *draft, const char *name, const char *file, unsigned line)
+{
+	struct draft_picture *grown, *picture;
+
+	for (uint32_t i = 0; i < draft->picture_count; i++)
+		if (strcmp(draft->pictures[i].name, name) == 0)
+			return draft->pictures[i].damaged ? -1 : (int)i;
+	if (!is_picture_name(name)) {
+		draft_complain(draft, true, file, line,
+			       "picture \"%.80s\": write it as \"pictures/NAME\", a file of the "
+			       "content folder; nothing is loaded from elsewhere",
+			       name);
+		return -1;
+	}
+	grown = realloc(draft->pictures, (draft->picture_count + 1) * sizeof(*grown));
+	if (!grown)
+		return -ENOMEM;
+	draft->pictures = grown;
+	picture = &grown[draft->picture_count];
+	*picture = (struct draft_picture){ .name = strdup(name) };
+	if (!picture->name)
+		return -ENOMEM;
+	draft->picture_count++;
+	measure_picture(draft, picture, file, line);
+	return picture->damaged ? -1 : (int)draft->picture_count - 1;
+}
