@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 enum { LINE_BYTES_MAX = 200, EVENTS_MAX = 1000000 };
 
 struct parser {
@@ -20,16 +22,11 @@ struct parser {
 static int add_event(struct parser *p, const struct touch_event *event)
 {
 	struct touch_replay *replay = p->replay;
-	struct touch_event *grown = replay->events;
+	int rc = ARRAY_RESERVE(replay->events, replay->room, replay->count + 1, EVENTS_MAX);
 
-	if (replay->count == EVENTS_MAX)
-		return -EINVAL;
-	if ((replay->count & (replay->count - 1)) == 0)
-		grown = realloc(grown, (replay->count ? 2 * replay->count : 1) * sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	replay->events = grown;
-	grown[replay->count++] = *event;
+	if (rc < 0)
+		return rc == -EFBIG ? -EINVAL : rc;
+	replay->events[replay->count++] = *event;
 	return 0;
 }
 

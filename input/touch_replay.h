@@ -7,7 +7,7 @@
 
 struct touch_replay {
 	struct touch_event *events; /* owned; in order of time; in pixels of the panel */
-	size_t count;
+	uint32_t count, room;
 };
 
 /* Parses a replay file. width_px and height_px are the panel's, to which a file with a "size" line

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "storage/info_index.h"
 #include "storage/info_languages.h"
@@ -43,17 +44,9 @@ static int read_language(struct info *info, sqlite3_stmt *row)
 	return rc;
 }
 
-/* Makes room for one more item; arrays grow by doubling. Returns NULL without memory. */
-static void *grow(void *array, uint32_t count, size_t item_bytes)
-{
-	if (count & (count - 1))
-		return array;
-	return realloc(array, (count ? 2 * (size_t)count : 1) * item_bytes);
-}
-
 static int read_picture(struct info *info, sqlite3_stmt *row)
 {
-	struct info_picture *grown, *picture;
+	struct info_picture *picture;
 	char *name = NULL;
 	int rc;
 
@@ -62,13 +55,13 @@ static int read_picture(struct info *info, sqlite3_stmt *row)
 	rc = info_copy_text(row, 0, &name);
 	if (rc < 0 || !name)
 		return rc < 0 ? rc : -EBADMSG;
-	grown = grow(info->pictures, info->picture_count, sizeof(*grown));
-	if (!grown) {
+	rc = ARRAY_RESERVE(info->pictures, info->picture_room, info->picture_count + 1,
+			   PICTURES_MAX);
+	if (rc < 0) {
 		free(name);
-		return -ENOMEM;
+		return rc;
 	}
-	info->pictures = grown;
-	picture = &grown[info->picture_count++];
+	picture = &info->pictures[info->picture_count++];
 	*picture = (struct info_picture){ .name = name,
 					  .width_px = (uint32_t)sqlite3_column_int(row, 2),
 					  .height_px = (uint32_t)sqlite3_column_int(row, 3) };
@@ -104,7 +97,7 @@ static int read_region(sqlite3_stmt *row, struct region *region)
 
 static int read_part(struct info *info, sqlite3_stmt *row)
 {
-	struct part *grown, *part;
+	struct part *part;
 	char *id = NULL;
 	int rc;
 
@@ -113,13 +106,12 @@ static int read_part(struct info *info, sqlite3_stmt *row)
 	rc = info_copy_text(row, 1, &id);
 	if (rc < 0 || !id)
 		return rc < 0 ? rc : -EBADMSG;
-	grown = grow(info->parts, info->part_count, sizeof(*grown));
-	if (!grown) {
+	rc = ARRAY_RESERVE(info->parts, info->part_room, info->part_count + 1, INFO_PARTS_MAX);
+	if (rc < 0) {
 		free(id);
-		return -ENOMEM;
+		return rc;
 	}
-	info->parts = grown;
-	part = &grown[info->part_count++];
+	part = &info->parts[info->part_count++];
 	memset(part, 0, sizeof(*part));
 	part->public.id = id;
 	rc = read_region(row, &part->public.region);

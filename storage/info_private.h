@@ -46,13 +46,13 @@ struct info {
 	char *languages[INFO_LANGUAGES_MAX];
 	uint32_t language_count;
 	struct part *parts;
-	uint32_t part_count;
+	uint32_t part_count, part_room;
 	struct tour *tours;
-	uint32_t tour_count;
+	uint32_t tour_count, tour_room;
 	unsigned tools;
 	bool has_tools;
 	struct info_picture *pictures; /* names owned */
-	uint32_t picture_count;
+	uint32_t picture_count, picture_room;
 };
 
 /* info_tools.c: the table of tools may exist in any version. */

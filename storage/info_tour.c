@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "storage/info_languages.h"
 #include "storage/info_rows.h"
 
@@ -17,16 +18,15 @@ static uint32_t column_index(sqlite3_stmt *row, int column, uint32_t count)
 
 static int read_tour(struct info *info, sqlite3_stmt *row)
 {
-	struct tour *grown, *tour;
+	struct tour *tour;
 	int rc;
 
 	if (info->tour_count == INFO_TOURS_MAX || sqlite3_column_int64(row, 0) != info->tour_count)
 		return -EBADMSG;
-	grown = realloc(info->tours, (info->tour_count + 1) * sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	info->tours = grown;
-	tour = &grown[info->tour_count++];
+	rc = ARRAY_RESERVE(info->tours, info->tour_room, info->tour_count + 1, INFO_TOURS_MAX);
+	if (rc < 0)
+		return rc;
+	tour = &info->tours[info->tour_count++];
 	memset(tour, 0, sizeof(*tour));
 	tour->public.attract = sqlite3_column_int(row, 2) != 0;
 	rc = info_copy_text(row, 1, (char **)&tour->public.id);

@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/bytes.h"
 
-enum { FILE_BYTES_MAX = 256 << 20, RANGES_FIRST = 64 };
+enum { FILE_BYTES_MAX = 256 << 20 };
 
 /* The text being read, and the position in it. */
 struct text {
@@ -89,17 +90,11 @@ static int read_range(struct text *text, struct face_range *out)
 
 static int add(struct face_list *list, uint32_t *room, struct face_range range)
 {
-	if (list->count == *room) {
-		uint32_t more = *room ? 2 * *room : RANGES_FIRST;
-		struct face_range *grown = realloc(list->ranges, more * sizeof(*grown));
+	int rc = ARRAY_RESERVE(list->ranges, *room, list->count + 1, UINT32_MAX);
 
-		if (!grown)
-			return -ENOMEM;
-		list->ranges = grown;
-		*room = more;
-	}
-	list->ranges[list->count++] = range;
-	return 0;
+	if (rc == 0)
+		list->ranges[list->count++] = range;
+	return rc;
 }
 
 static int by_first(const void *a, const void *b)

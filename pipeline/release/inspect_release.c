@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "format/metadata.h"
 #include "pipeline/release/object_map.h"
 
@@ -24,7 +25,7 @@ struct walk {
 	struct locator locator;
 	struct release release;
 	struct place *places; /* owned; in breadth-first order */
-	size_t count, room;
+	uint32_t count, room;
 	struct hash_map seen;
 };
 
@@ -95,17 +96,10 @@ static int add_place(struct walk *walk, const struct place *place)
 
 	if (rc <= 0)
 		return rc;
-	if (walk->count == walk->room) {
-		size_t room = walk->room ? walk->room * 2 : 64;
-		struct place *grown = realloc(walk->places, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		walk->places = grown;
-		walk->room = room;
-	}
-	walk->places[walk->count++] = *place;
-	return 0;
+	rc = ARRAY_RESERVE(walk->places, walk->room, walk->count + 1, UINT32_MAX);
+	if (rc == 0)
+		walk->places[walk->count++] = *place;
+	return rc;
 }
 
 static int start(struct walk *walk, bool show)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "format/normal.h"
 #include "geometry/vec.h"
 
@@ -28,25 +29,6 @@ struct writer {
 	int level; /* level of its samples; 0: not sampled yet */
 	struct nearest_place samples[SAMPLES_MAX];
 };
-
-/* Grows an array to at least `needed` items, by doubling. */
-static int make_room(void *items, uint32_t *room, uint32_t needed, size_t item_bytes)
-{
-	uint32_t larger = *room ? *room : 16;
-	void *grown, *old;
-
-	if (needed <= *room)
-		return 0;
-	while (larger < needed)
-		larger *= 2;
-	memcpy(&old, items, sizeof(old));
-	grown = realloc(old, larger * item_bytes);
-	if (!grown)
-		return -ENOMEM;
-	memcpy(items, &grown, sizeof(grown));
-	*room = larger;
-	return 0;
-}
 
 /* ---- the current triangle */
 
@@ -154,12 +136,10 @@ static int number_set(struct writer *w, uint16_t *out)
 					       w->own_count * sizeof(*w->own)) == 0))
 			return 0;
 	}
-	if (group->set_count == LABEL_SETS_MAX)
-		return -EFBIG;
-	rc = make_room(&group->sets, &w->set_room, group->set_count + 1, sizeof(*group->sets));
+	rc = ARRAY_RESERVE(group->sets, w->set_room, group->set_count + 1, LABEL_SETS_MAX);
 	if (rc == 0)
-		rc = make_room(&group->members, &w->member_room, group->member_count + w->own_count,
-			       sizeof(*group->members));
+		rc = ARRAY_RESERVE(group->members, w->member_room,
+				   group->member_count + w->own_count, UINT32_MAX);
 	if (rc < 0)
 		return rc;
 	group->sets[group->set_count] = (struct label_set){ group->member_count, w->own_count };
@@ -183,11 +163,11 @@ static int add_border(struct writer *w, struct label_patch *patch, uint32_t tria
 {
 	struct label_group *group = w->out;
 	uint32_t count = label_values(w->level);
-	int rc = make_room(&patch->borders, &w->border_room, patch->border_count + 1,
-			   sizeof(*patch->borders));
+	int rc = ARRAY_RESERVE(patch->borders, w->border_room, patch->border_count + 1, UINT32_MAX);
 
 	if (rc == 0)
-		rc = make_room(&group->values, &w->value_room, group->value_count + count, 1);
+		rc = ARRAY_RESERVE(group->values, w->value_room, group->value_count + count,
+				   UINT32_MAX);
 	if (rc < 0)
 		return rc;
 	patch->borders[patch->border_count++] = (struct label_border){
@@ -357,7 +337,7 @@ int label_patch_group(struct label_group *out, const struct label_source *source
 			.out = out, .source = source, .lattice = lattice, .cell_m = cell_m
 		};
 		w->part_of = calloc(parts + 1, sizeof(*w->part_of));
-		rc = w->part_of ? make_room(&out->sets, &w->set_room, 1, sizeof(*out->sets))
+		rc = w->part_of ? ARRAY_RESERVE(out->sets, w->set_room, 1, LABEL_SETS_MAX)
 				: -ENOMEM;
 	}
 	if (rc == 0) {

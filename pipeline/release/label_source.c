@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "geometry/vec.h"
 #include "pipeline/import/mesh_edges.h"
 
@@ -36,16 +37,9 @@ static void note_edge(void *data, const struct mesh_edge *edge)
 
 	if (edge->face_count % 2 == 0 || outline->failed)
 		return;
-	if (outline->count == outline->room) {
-		uint32_t room = outline->room ? 2 * outline->room : 256;
-		void *grown = realloc(outline->edges, room * sizeof(*outline->edges));
-
-		if (!grown) {
-			outline->failed = true;
-			return;
-		}
-		outline->edges = grown;
-		outline->room = room;
+	if (ARRAY_RESERVE(outline->edges, outline->room, outline->count + 1, UINT32_MAX) < 0) {
+		outline->failed = true;
+		return;
 	}
 	outline->edges[outline->count][0] = edge->ends[0];
 	outline->edges[outline->count][1] = edge->ends[1];

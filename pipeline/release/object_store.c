@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "pipeline/release/object_map.h"
 
@@ -20,9 +21,9 @@ struct stored {
 struct object_store {
 	struct hash_map index; /* hash to index into objects */
 	struct stored *objects;
-	size_t count, capacity;
+	uint32_t count, room;
 	char **paths;
-	uint32_t path_count;
+	uint32_t path_count, path_room;
 	int open_fd; /* of paths[open_file]; -1: none */
 	uint32_t open_file;
 };
@@ -40,7 +41,7 @@ void object_store_destroy(struct object_store *store)
 {
 	if (!store)
 		return;
-	for (size_t i = 0; i < store->count; i++)
+	for (uint32_t i = 0; i < store->count; i++)
 		free(store->objects[i].memory);
 	for (uint32_t i = 0; i < store->path_count; i++)
 		free(store->paths[i]);
@@ -55,17 +56,10 @@ void object_store_destroy(struct object_store *store)
 /* Returns 1 if *object was taken, 0 if the hash was there already. */
 static int insert(struct object_store *store, struct hash hash, const struct stored *object)
 {
-	int rc;
+	int rc = ARRAY_RESERVE(store->objects, store->room, store->count + 1, UINT32_MAX);
 
-	if (store->count == store->capacity) {
-		size_t capacity = store->capacity ? store->capacity * 2 : 256;
-		struct stored *grown = realloc(store->objects, capacity * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		store->objects = grown;
-		store->capacity = capacity;
-	}
+	if (rc < 0)
+		return rc;
 	rc = hash_map_put(&store->index, hash, store->count);
 	if (rc == 1)
 		store->objects[store->count++] = *object;
@@ -116,16 +110,15 @@ int object_store_add_page(struct object_store *store, const struct page *page,
 
 static int path_index(struct object_store *store, const char *path, uint32_t *index)
 {
-	char **grown;
+	int rc;
 
 	if (store->path_count > 0 && strcmp(store->paths[store->path_count - 1], path) == 0) {
 		*index = store->path_count - 1;
 		return 0;
 	}
-	grown = realloc(store->paths, (store->path_count + 1) * sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	store->paths = grown;
+	rc = ARRAY_RESERVE(store->paths, store->path_room, store->path_count + 1, UINT32_MAX);
+	if (rc < 0)
+		return rc;
 	store->paths[store->path_count] = strdup(path);
 	if (!store->paths[store->path_count])
 		return -ENOMEM;

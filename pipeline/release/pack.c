@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "pipeline/release/object_map.h"
 
@@ -21,11 +22,11 @@ struct packer {
 	struct pack_result *result;
 	struct hash_map seen;     /* pages that are queued or done */
 	struct page_child *queue; /* owned; pages in breadth-first order */
-	size_t queue_count, queue_room;
+	uint32_t queue_count, queue_room;
 	struct locator_block *blocks; /* owned; pack is an index into before, or NEW_PACK | index */
 	uint32_t block_count, block_room;
 	struct hash *packs; /* owned; names of new packs */
-	uint32_t pack_count;
+	uint32_t pack_count, pack_room;
 	struct buffer pack;  /* the pack being filled */
 	bool *before_exists; /* owned; for each pack of before */
 };
@@ -40,30 +41,13 @@ static int path_of(char path[PATH_MAX], const char *release, const char *folder,
 		       : -ENAMETOOLONG;
 }
 
-/* Ensures that *items has room for one more. */
-static int make_room(void **items, size_t count, size_t *room, size_t item_bytes)
-{
-	size_t more = *room ? *room * 2 : 64;
-	void *grown;
-
-	if (count < *room)
-		return 0;
-	grown = realloc(*items, more * item_bytes);
-	if (!grown)
-		return -ENOMEM;
-	*items = grown;
-	*room = more;
-	return 0;
-}
-
 static int queue_page(struct packer *packer, const struct page_child *page)
 {
 	int rc = hash_map_put(&packer->seen, page->hash, 0);
 
 	if (rc <= 0)
 		return rc;
-	rc = make_room((void **)&packer->queue, packer->queue_count, &packer->queue_room,
-		       sizeof(*packer->queue));
+	rc = ARRAY_RESERVE(packer->queue, packer->queue_room, packer->queue_count + 1, UINT32_MAX);
 	if (rc == 0)
 		packer->queue[packer->queue_count++] = *page;
 	return rc;
@@ -71,11 +55,9 @@ static int queue_page(struct packer *packer, const struct page_child *page)
 
 static int add_block(struct packer *packer, const struct locator_block *block)
 {
-	size_t room = packer->block_room;
-	int rc = make_room((void **)&packer->blocks, packer->block_count, &room,
-			   sizeof(*packer->blocks));
+	int rc = ARRAY_RESERVE(packer->blocks, packer->block_room, packer->block_count + 1,
+			       UINT32_MAX);
 
-	packer->block_room = (uint32_t)room;
 	if (rc == 0)
 		packer->blocks[packer->block_count++] = *block;
 	return rc;
@@ -84,16 +66,15 @@ static int add_block(struct packer *packer, const struct locator_block *block)
 static int end_pack(struct packer *packer)
 {
 	struct bytes bytes = buffer_bytes(&packer->pack);
-	struct hash name, *grown;
+	struct hash name;
 	char path[PATH_MAX];
 	int rc;
 
 	if (bytes.size == 0)
 		return 0;
-	grown = realloc(packer->packs, (packer->pack_count + 1) * sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	packer->packs = grown;
+	rc = ARRAY_RESERVE(packer->packs, packer->pack_room, packer->pack_count + 1, NEW_PACK - 1);
+	if (rc < 0)
+		return rc;
 	name = hash_of(bytes);
 	rc = path_of(path, packer->options->release, "packs", name);
 	/* The same pack may exist from a run that was interrupted later. Its name proves that it is
@@ -190,7 +171,7 @@ static int place_all(struct packer *packer)
 
 	if (rc == 0)
 		rc = queue_page(packer, &packer->options->root);
-	for (size_t i = 0; rc == 0 && i < packer->queue_count; i++) {
+	for (uint32_t i = 0; rc == 0 && i < packer->queue_count; i++) {
 		rc = place_page(packer, packer->queue[i].hash);
 		if (packer->options->progress)
 			packer->options->progress(packer->options->progress_data,

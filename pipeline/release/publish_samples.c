@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "pipeline/release/publish_sources.h"
 #include "pipeline/samples/sample_store.h"
@@ -25,17 +26,11 @@ struct samples_writer {
 
 static int add_child(struct children *children, const struct page_child *child)
 {
-	if (children->count == children->room) {
-		uint32_t room = children->room ? children->room * 2 : 64;
-		struct page_child *grown = realloc(children->items, room * sizeof(*grown));
+	int rc = ARRAY_RESERVE(children->items, children->room, children->count + 1, UINT32_MAX);
 
-		if (!grown)
-			return -ENOMEM;
-		children->items = grown;
-		children->room = room;
-	}
-	children->items[children->count++] = *child;
-	return 0;
+	if (rc == 0)
+		children->items[children->count++] = *child;
+	return rc;
 }
 
 static int add_page(struct object_store *objects, enum page_kind kind,

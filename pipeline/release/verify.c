@@ -226,7 +226,7 @@ static int walk_all(struct verify_walk *walk)
 	int rc = verify_queue(walk, &root);
 
 	walk->blocks_used = 1; /* the block of the root page */
-	for (size_t i = 0; rc == 0 && i < walk->task_count; i++) {
+	for (uint32_t i = 0; rc == 0 && i < walk->task_count; i++) {
 		struct verify_task task = walk->tasks[i]; /* a copy: the array may move */
 
 		rc = do_task(walk, &task);

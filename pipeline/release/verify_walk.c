@@ -4,7 +4,8 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
+
+#include "base/array.h"
 
 int verify_blame(struct verify_report *report, int rc, const char *text, ...)
 {
@@ -40,17 +41,10 @@ int verify_queue(struct verify_walk *walk, const struct verify_task *task)
 
 	if (rc <= 0)
 		return rc;
-	if (walk->task_count == walk->task_room) {
-		size_t room = walk->task_room ? walk->task_room * 2 : 256;
-		struct verify_task *grown = realloc(walk->tasks, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		walk->tasks = grown;
-		walk->task_room = room;
-	}
-	walk->tasks[walk->task_count++] = *task;
-	return 0;
+	rc = ARRAY_RESERVE(walk->tasks, walk->task_room, walk->task_count + 1, UINT32_MAX);
+	if (rc == 0)
+		walk->tasks[walk->task_count++] = *task;
+	return rc;
 }
 
 int verify_later(struct verify_walk *walk, const struct verify_page *page, uint32_t child,

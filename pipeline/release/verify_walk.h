@@ -25,7 +25,7 @@ struct verify_walk {
 	struct locator locator;
 	struct hash_map seen; /* pages that are queued or done */
 	struct verify_task *tasks;
-	size_t task_count, task_room;
+	uint32_t task_count, task_room;
 	uint32_t blocks_used;
 	struct samples_page samples; /* set when its page was verified, as the next two */
 	struct hierarchy hierarchy;

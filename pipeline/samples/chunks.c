@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 /* A triangle's position in the order in which chunks are cut. */
 struct place {
 	uint64_t key; /* texture, then Morton code of its centre */
@@ -21,7 +23,7 @@ struct builder {
 	struct place *places;
 	uint32_t *local; /* for each vertex of the mesh: its index in the last chunk that used it */
 	uint32_t *seen_by; /* the number of that chunk plus one */
-	uint32_t capacity, vertex_capacity;
+	uint32_t room, vertex_room, uv_room;
 };
 
 static void cross_of(const struct mesh *mesh, uint32_t triangle, double out[3])
@@ -148,31 +150,14 @@ static void add_vertex(struct builder *builder, uint32_t vertex)
 static int reserve(struct builder *builder)
 {
 	struct chunks *out = builder->out;
-	uint32_t wanted = out->vertex_count + 3 * CHUNK_TRIANGLES_MAX;
-	void *grown;
+	uint64_t wanted = (uint64_t)out->vertex_count + 3 * CHUNK_TRIANGLES_MAX;
+	int rc = ARRAY_RESERVE(out->items, builder->room, out->count + 1, UINT32_MAX);
 
-	if (out->count == builder->capacity) {
-		builder->capacity = builder->capacity ? 2 * builder->capacity : 64;
-		grown = realloc(out->items, builder->capacity * sizeof(*out->items));
-		if (!grown)
-			return -ENOMEM;
-		out->items = grown;
-	}
-	if (wanted <= builder->vertex_capacity)
-		return 0;
-	wanted += wanted / 2;
-	grown = realloc(out->vertices, wanted * sizeof(*out->vertices));
-	if (!grown)
-		return -ENOMEM;
-	out->vertices = grown;
-	if (builder->mesh->uvs) {
-		grown = realloc(out->uvs, wanted * sizeof(*out->uvs));
-		if (!grown)
-			return -ENOMEM;
-		out->uvs = grown;
-	}
-	builder->vertex_capacity = wanted;
-	return 0;
+	if (rc == 0)
+		rc = ARRAY_RESERVE(out->vertices, builder->vertex_room, wanted, UINT32_MAX);
+	if (rc == 0 && builder->mesh->uvs)
+		rc = ARRAY_RESERVE(out->uvs, builder->uv_room, wanted, UINT32_MAX);
+	return rc;
 }
 
 /* Sets the bounding box and the far-field values of a chunk. */

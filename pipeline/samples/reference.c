@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/array.h"
 #include "base/progress.h"
 #include "format/picture.h"
 #include "pipeline/samples/drawing.h"
@@ -96,6 +97,7 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 		    struct fault *fault)
 {
 	struct camera *views = NULL;
+	uint32_t room = 0;
 	char line[LINE_BYTES];
 	int rc = -EINVAL;
 
@@ -104,16 +106,13 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 	for (unsigned number = 1; next_line(&text, line); number++) {
 		float numbers[NUMBERS];
 		int found = line_numbers(line, numbers);
-		void *grown;
 
 		if (found == 0)
 			continue;
-		grown = realloc(views, (*count + 1) * sizeof(*views));
-		if (!grown) {
+		if (ARRAY_RESERVE(views, room, *count + 1, REFERENCE_VIEWS_MAX + 1) < 0) {
 			rc = -ENOMEM;
 			goto fail;
 		}
-		views = grown;
 		if (found != NUMBERS || *count == REFERENCE_VIEWS_MAX ||
 		    !view_from(&views[*count], numbers)) {
 			fault_set(fault, rc,

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 const struct outline outline_line = { OUTLINE_LINE, 2, { { -0.5f, 0 }, { 0.5f, 0 } } };
 const struct outline outline_square = { OUTLINE_CLOSED,
 					4,
@@ -66,16 +68,9 @@ static struct sheet *plan_room(struct plan *plan)
 {
 	if (plan->error)
 		return &nowhere;
-	if (plan->count == plan->capacity) {
-		uint32_t capacity = plan->capacity ? plan->capacity * 2 : 1024;
-		struct sheet *more = realloc(plan->sheets, capacity * sizeof(*more));
-		if (!more) {
-			plan->error = -ENOMEM;
-			return &nowhere;
-		}
-		plan->sheets = more;
-		plan->capacity = capacity;
-	}
+	plan->error = ARRAY_RESERVE(plan->sheets, plan->room, plan->count + 1, UINT32_MAX);
+	if (plan->error)
+		return &nowhere;
 	return &plan->sheets[plan->count++];
 }
 
@@ -149,17 +144,16 @@ void plan_refine(struct plan *plan, uint32_t from, float factor)
 
 void plan_body(struct plan *plan, const char *kind, uint32_t from)
 {
-	struct body *more = realloc(plan->bodies, (plan->body_count + 1) * sizeof(*more));
 	uint32_t number = 1;
+	int rc = ARRAY_RESERVE(plan->bodies, plan->body_room, plan->body_count + 1, UINT32_MAX);
 
-	if (!more) {
-		plan->error = -ENOMEM;
+	if (rc < 0) {
+		plan->error = rc;
 		return;
 	}
-	plan->bodies = more;
 	for (uint32_t i = 0; i < plan->body_count; i++)
-		number += strcmp(more[i].kind, kind) == 0;
-	more[plan->body_count++] = (struct body){ kind, number, from, plan->count - from };
+		number += strcmp(plan->bodies[i].kind, kind) == 0;
+	plan->bodies[plan->body_count++] = (struct body){ kind, number, from, plan->count - from };
 }
 
 void plan_destroy(struct plan *plan)

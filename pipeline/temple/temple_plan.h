@@ -15,9 +15,9 @@ struct body {
 
 struct plan {
 	struct sheet *sheets; /* owned */
-	uint32_t count, capacity;
+	uint32_t count, room;
 	struct body *bodies; /* owned; ascending, without overlaps */
-	uint32_t body_count;
+	uint32_t body_count, body_room;
 	uint32_t seed;
 	int error; /* 0 or -ENOMEM; the first error stays */
 };

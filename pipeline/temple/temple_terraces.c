@@ -100,12 +100,12 @@ static void plan_lion(struct plan *plan, const struct frame *frame, float height
 	struct sheet *sheet =
 		plan_sheet(plan, frame, &outline_circle, &lion, 0.01f, height_m * 0.34f, height_m);
 	struct frame head = frame_within(frame, 0, -height_m * 0.10f, height_m * 0.56f, 0);
-	struct sheet *face = plan_panel(plan, &head, height_m * 0.46f, height_m * 0.44f,
-					RELIEF_LION, height_m * 0.30f, 0);
 
 	sheet->optional = true;
 	sheet->interest = 2;
-	face->interest = 4;
+	sheet = plan_panel(plan, &head, height_m * 0.46f, height_m * 0.44f, RELIEF_LION,
+			   height_m * 0.30f, 0);
+	sheet->interest = 4;
 	for (int side = -1; side <= 1; side += 2) {
 		struct frame foot = frame_within(frame, (float)side * height_m * 0.17f,
 						 -height_m * 0.27f, 0, 0);

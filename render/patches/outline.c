@@ -5,27 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "geometry/vec.h"
-
-/* Grows an array to hold at least `needed` items, doubling its size. items points to the array
- * pointer. */
-static bool make_room(void *items, uint32_t *room, uint32_t needed, size_t item_bytes)
-{
-	uint32_t larger = *room ? *room : 64;
-	void *old, *grown;
-
-	if (needed <= *room)
-		return true;
-	while (larger < needed)
-		larger *= 2;
-	memcpy(&old, items, sizeof(old));
-	grown = realloc(old, larger * item_bytes);
-	if (!grown)
-		return false;
-	memcpy(items, &grown, sizeof(grown));
-	*room = larger;
-	return true;
-}
 
 /* A corner of a small triangle: its position, and how far inside it is. */
 struct corner {
@@ -61,8 +42,8 @@ static bool add_small(struct outline *o, const struct corner *corner[3], const f
 		within += corner[k]->value > 0;
 	if (within == 0)
 		return true;
-	if (!make_room(&o->lines, &o->line_room, o->line_count + 1, sizeof(*o->lines)) ||
-	    !make_room(&o->within, &o->within_room, o->within_count + 6, sizeof(*o->within)))
+	if (ARRAY_RESERVE(o->lines, o->line_room, o->line_count + 1, UINT32_MAX) < 0 ||
+	    ARRAY_RESERVE(o->within, o->within_room, o->within_count + 6, UINT32_MAX) < 0)
 		return false;
 	if (within == 3) {
 		add_triangle(o, corner[0]->at, corner[1]->at, corner[2]->at);
@@ -141,7 +122,7 @@ static bool add_of(struct outline *o, const struct patch_bvh *bvh, uint32_t tria
 	uint32_t first, count;
 
 	if (label_holds(labels, patch, known_as, part)) {
-		if (!make_room(&o->whole, &o->whole_room, o->whole_count + 3, sizeof(*o->whole)))
+		if (ARRAY_RESERVE(o->whole, o->whole_room, o->whole_count + 3, UINT32_MAX) < 0)
 			return false;
 		memcpy(&o->whole[o->whole_count], &bvh->indices[3 * triangle],
 		       3 * sizeof(*o->whole));

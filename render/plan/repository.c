@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 /* The children of a page, with the offset at which each lies. */
 struct children {
 	struct hash page;
@@ -185,15 +187,9 @@ int repository_give_brick(struct repository *repository, uint32_t child, struct 
 
 static int face_add(struct repository *r, struct face_entry *face)
 {
-	if (r->face_count == r->face_capacity) {
-		uint32_t capacity = r->face_capacity ? 2 * r->face_capacity : 64;
-		struct face_entry **larger = realloc(r->faces, capacity * sizeof(*larger));
-		if (!larger)
-			return -ENOMEM;
-		r->faces = larger;
-		r->face_capacity = capacity;
-	}
-	int rc = map_set(&r->face_of, face->key, r->face_count);
+	int rc = ARRAY_RESERVE(r->faces, r->face_room, r->face_count + 1, MAP_NONE);
+	if (rc == 0)
+		rc = map_set(&r->face_of, face->key, r->face_count);
 	if (rc == 0)
 		r->faces[r->face_count++] = face;
 	return rc;

@@ -36,7 +36,7 @@ struct repository {
 	struct hash page_hash;
 	struct brick_entry **bricks; /* per child of the page; NULL: not here. Owned. */
 	struct face_entry **faces;   /* owned */
-	uint32_t face_count, face_capacity;
+	uint32_t face_count, face_room;
 	struct map face_of; /* face_key -> index of faces */
 };
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_parts.h"
@@ -192,15 +193,9 @@ struct object *scene_expect(struct scene *scene, struct hash hash, enum object_k
 		}
 		return known;
 	}
-	if (scene->object_count == scene->object_capacity) {
-		uint32_t capacity = scene->object_capacity ? 2 * scene->object_capacity : 256;
-		struct object *larger = realloc(scene->objects, capacity * sizeof(*scene->objects));
-		if (!larger)
-			return NULL;
-		scene->objects = larger;
-		scene->object_capacity = capacity;
-	}
-	if (map_set(&scene->object_of, hash_key(hash), scene->object_count) < 0)
+	if (ARRAY_RESERVE(scene->objects, scene->object_room, scene->object_count + 1, MAP_NONE) <
+		    0 ||
+	    map_set(&scene->object_of, hash_key(hash), scene->object_count) < 0)
 		return NULL;
 	struct object *object = &scene->objects[scene->object_count++];
 	*object = (struct object){ .hash = hash, .kind = kind, .id = id };

@@ -67,7 +67,7 @@ struct scene {
 
 	uint32_t refused;       /* number of objects that could not be used */
 	struct object *objects; /* owned */
-	uint32_t object_count, object_capacity;
+	uint32_t object_count, object_room;
 	struct map object_of; /* first 8 bytes of a hash -> index of objects */
 	/* first 8 bytes of a hash -> index of objects: those with the workers */
 	struct map decoding;
@@ -104,9 +104,9 @@ struct scene {
 	int64_t frame_us;
 	/* owned; pieces of the cut, then of the patches it is replacing */
 	struct visible_piece *visible;
-	uint32_t visible_count, leaving_count, visible_capacity;
+	uint32_t visible_count, leaving_count, visible_room;
 	struct visible_piece *counted; /* those numbered in the current visibility pass; owned */
-	uint32_t counted_count, counted_capacity;
+	uint32_t counted_count, counted_room;
 	uint64_t counting_cut; /* cut_signature when the pass began */
 	bool counting;         /* half of the pass is drawn */
 	uint32_t epoch;        /* counts changes of what planning depends on: pages */
@@ -122,7 +122,7 @@ struct scene {
 	uint64_t cut_signature;
 	float image_share;
 	struct message_want *wants; /* owned */
-	uint32_t want_count, want_capacity;
+	uint32_t want_count, want_room;
 	bool wants_are_stale; /* objects arrived since they were listed */
 	uint32_t plan_cursor;
 	/* What the last frame marked: */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
@@ -96,15 +97,8 @@ float scene_patch_error_m(const struct scene *scene, uint32_t patch)
 static bool add_visible(struct scene *scene, const struct visible_piece *piece)
 {
 	const uint32_t count = scene->visible_count + scene->leaving_count;
-	if (count == scene->visible_capacity) {
-		uint32_t capacity = scene->visible_capacity ? 2 * scene->visible_capacity : 512;
-		struct visible_piece *larger =
-			realloc(scene->visible, capacity * sizeof(*scene->visible));
-		if (!larger)
-			return false;
-		scene->visible = larger;
-		scene->visible_capacity = capacity;
-	}
+	if (ARRAY_RESERVE(scene->visible, scene->visible_room, count + 1, UINT32_MAX) < 0)
+		return false;
 	scene->visible[count] = *piece;
 	return true;
 }

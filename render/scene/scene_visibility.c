@@ -1,8 +1,8 @@
 /* Runs the visibility pass when it is due, counts the visible pixels of pieces and patches, and
  * moves the probes. */
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_parts.h"
@@ -51,14 +51,9 @@ static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 /* Begins a pass over the pieces that are in the frustum now. */
 static bool begin(struct scene *scene)
 {
-	if (scene->counted_capacity < scene->visible_count) {
-		struct visible_piece *larger =
-			realloc(scene->counted, scene->visible_count * sizeof(*larger));
-		if (!larger)
-			return false;
-		scene->counted = larger;
-		scene->counted_capacity = scene->visible_count;
-	}
+	if (ARRAY_RESERVE(scene->counted, scene->counted_room, scene->visible_count, UINT32_MAX) <
+	    0)
+		return false;
 	scene->counted_count = scene->visible_count < VISIBILITY_PIECES_MAX ? scene->visible_count
 									    : VISIBILITY_PIECES_MAX;
 	if (scene->counted_count > 0)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 #include "render/scene/scene_parts.h"
 
 /* A coarse tile, two levels up, stands in for 16 fine ones: it comes first where no image is shown
@@ -16,15 +18,8 @@ static void want(struct scene *scene, enum object_kind kind, uint64_t id,
 	const struct object *object = scene_expect(scene, place->hash, kind, id);
 	if (!object || object->state != OBJECT_WANTED)
 		return;
-	if (scene->want_count == scene->want_capacity) {
-		uint32_t capacity = scene->want_capacity ? 2 * scene->want_capacity : 256;
-		struct message_want *larger =
-			realloc(scene->wants, capacity * sizeof(*scene->wants));
-		if (!larger)
-			return;
-		scene->wants = larger;
-		scene->want_capacity = capacity;
-	}
+	if (ARRAY_RESERVE(scene->wants, scene->want_room, scene->want_count + 1, UINT32_MAX) < 0)
+		return;
 	struct message_want *out = &scene->wants[scene->want_count++];
 	*out = *place;
 	out->priority = priority;
@@ -147,7 +142,7 @@ struct gain {
 
 struct gains {
 	struct gain *list; /* owned */
-	uint32_t count, capacity;
+	uint32_t count, room;
 	struct map of; /* id and kind -> index */
 };
 
@@ -159,15 +154,8 @@ static void gain_add(struct gains *gains, enum object_kind kind, uint64_t id, fl
 		gains->list[at].pixels += pixels;
 		return;
 	}
-	if (gains->count == gains->capacity) {
-		uint32_t capacity = gains->capacity ? 2 * gains->capacity : 256;
-		struct gain *larger = realloc(gains->list, capacity * sizeof(*gains->list));
-		if (!larger)
-			return;
-		gains->list = larger;
-		gains->capacity = capacity;
-	}
-	if (map_set(&gains->of, key, gains->count) == 0)
+	if (ARRAY_RESERVE(gains->list, gains->room, gains->count + 1, MAP_NONE) == 0 &&
+	    map_set(&gains->of, key, gains->count) == 0)
 		gains->list[gains->count++] = (struct gain){ id, pixels, kind };
 }
 
