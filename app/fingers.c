@@ -51,8 +51,7 @@ static void grab(struct kiosk *kiosk, float x_px, float y_px)
 /* Flies to a pose in which the part is in the middle of the area that the overlay leaves free. */
 static void fly_to_part(struct kiosk *kiosk, uint32_t part)
 {
-	const struct overlay_rect rect =
-		overlay_scene_rect(information_view_overlay(kiosk->shown.view));
+	const struct rect rect = overlay_scene_rect(information_view_overlay(kiosk->shown.view));
 	const float w = (float)kiosk_width_px(kiosk), h = (float)kiosk_height_px(kiosk);
 	const float tangent = tanf(glm_rad(kiosk->navigator.options.fov_deg) / 2);
 	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;

@@ -82,7 +82,7 @@ static void place_anchors(struct kiosk *kiosk, struct overlay *overlay)
 {
 	static struct overlay_anchor anchors[OVERLAY_PARTS_MAX];
 	const struct info *info = information_view_info(kiosk->shown.view);
-	const struct overlay_rect rect = overlay_scene_rect(overlay);
+	const struct rect rect = overlay_scene_rect(overlay);
 	const uint32_t count = info_part_count(info);
 
 	if (count == 0 || count > OVERLAY_PARTS_MAX)

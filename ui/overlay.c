@@ -1,6 +1,7 @@
 /* The overlay: its creation and content, which element a tap hits, and the update of each frame. */
 #include "ui/overlay.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,11 +10,9 @@
 #include "ui/hint.h"
 #include "ui/overlay_state.h"
 
-_Static_assert((int)BITMAP_COUNT <= (int)OVERLAY_BITMAPS_MAX, "ids of bitmaps");
 _Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MAX, "labels that come and labels that go");
 
 enum {
-	FADE_MS = 180,
 	PAGE_FADE_MS = 110, /* the page is fully visible within 150 ms of the tap */
 	STEP_MOST_MS = 100, /* a longer pause counts as this long */
 	LABELS_A_FRAME = 4, /* labels drawn in one update */
@@ -23,17 +22,6 @@ enum {
 };
 
 /* ---- creation ---- */
-
-static int copy_languages(struct overlay *overlay, const struct overlay_options *options)
-{
-	for (uint32_t i = 0; i < options->language_count; i++) {
-		overlay->languages[i] = strdup(options->languages[i]);
-		if (!overlay->languages[i])
-			return -ENOMEM;
-		overlay->language_count++;
-	}
-	return 0;
-}
 
 void overlay_lay_out_chrome(struct overlay *overlay)
 {
@@ -48,8 +36,9 @@ void overlay_lay_out_chrome(struct overlay *overlay)
 		.reach = overlay_offers_reach(overlay),
 	};
 
-	chrome_layout(&overlay->chrome, &overlay->theme, (const char *const *)overlay->languages,
-		      overlay->language_count, most_px - gaps_px, has);
+	chrome_layout(&overlay->chrome, &overlay->theme,
+		      (const char *const *)overlay->languages.codes, overlay->languages.count,
+		      most_px - gaps_px, has);
 	if (!overlay->chrome.menu)
 		overlay_show_languages(overlay, false);
 	overlay->chrome_dirty = true;
@@ -68,7 +57,8 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 	px_per_mm = fminf(px_per_mm, (float)shorter_px / 85.0f);
 	rc = theme_init(&overlay->theme, px_per_mm, options->languages[0]);
 	if (rc == 0)
-		rc = copy_languages(overlay, options);
+		rc = languages_copy(&overlay->languages, options->languages,
+				    options->language_count);
 	if (rc < 0)
 		return rc;
 	overlay_lay_out_chrome(overlay);
@@ -83,6 +73,7 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 int overlay_create(struct overlay **out, const struct overlay_options *options)
 {
 	struct overlay *overlay;
+	uint32_t next_id = 0;
 	int rc;
 
 	*out = NULL;
@@ -96,6 +87,9 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	overlay->width_px = options->width_px;
 	overlay->height_px = options->height_px;
 	overlay->pictures = (struct picture_source){ options->picture, options->data };
+	sprites_init(overlay->sprites, BITMAP_COUNT, &next_id);
+	languages_view_init(&overlay->languages_view, &next_id);
+	assert(next_id <= OVERLAY_BITMAPS_MAX);
 	overlay->help.on = true;
 	overlay->card_part = overlay->page_part = overlay->search.pressed = -1;
 	for (uint32_t i = 0; i < LABELS; i++)
@@ -130,10 +124,9 @@ void overlay_destroy(struct overlay *overlay)
 	free(overlay->anchors);
 	free(overlay->search.found);
 	overlay_drop_tours(overlay->tours.entries);
-	for (uint32_t i = 0; i < BITMAP_COUNT; i++)
-		bitmap_finish(&overlay->drawings[i].bitmap);
-	for (uint32_t i = 0; i < OVERLAY_LANGUAGES_MAX; i++)
-		free(overlay->languages[i]);
+	sprites_finish(overlay->sprites, BITMAP_COUNT);
+	languages_view_finish(&overlay->languages_view);
+	languages_free(&overlay->languages);
 	theme_finish(&overlay->theme);
 	free(overlay);
 }
@@ -211,20 +204,17 @@ int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uin
 
 void overlay_language(struct overlay *overlay, const char *language)
 {
-	for (uint32_t i = 0; i < overlay->language_count; i++) {
-		if (strcmp(overlay->languages[i], language) != 0)
-			continue;
-		overlay->language = (int)i;
-		theme_set_language(&overlay->theme, language);
-		overlay->chrome_dirty = overlay->help_dirty = true;
-		overlay->question_drawn_s = 0; /* draw it again in the new language */
-		overlay->card_dirty = overlay->head_dirty = true;
-		overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
-		overlay_search_language(overlay);
-		overlay_show_languages(overlay, false);
-		overlay->menu.dirty = true;
-		overlay_forget_labels(overlay);
-	}
+	if (!languages_set(&overlay->languages, language))
+		return;
+	theme_set_language(&overlay->theme, language);
+	overlay->chrome_dirty = overlay->help_dirty = true;
+	overlay->question_drawn_s = 0; /* draw it again in the new language */
+	overlay->card_dirty = overlay->head_dirty = true;
+	overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
+	overlay_search_language(overlay);
+	overlay_show_languages(overlay, false);
+	overlay->languages_view.dirty = true;
+	overlay_forget_labels(overlay);
 }
 
 void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count)
@@ -388,16 +378,27 @@ void overlay_picture_arrived(struct overlay *overlay, const char *name)
 		overlay->card_dirty = true;
 }
 
+void overlay_show_languages(struct overlay *overlay, bool on)
+{
+	overlay->chrome_dirty |=
+		languages_view_show(&overlay->languages_view, on && overlay->chrome.menu);
+}
+
+bool overlay_choosing_language(const struct overlay *overlay)
+{
+	return overlay->languages_view.fade.on;
+}
+
 /* ---- touch ---- */
 
 static int label_at(const struct overlay *overlay, float x_px, float y_px)
 {
 	for (uint32_t i = 0; i < LABELS; i++) {
 		const struct label *label = &overlay->labels[i];
-		struct overlay_rect rect = { label->place.x_px, label->place.y_px,
-					     label->place.width_px, overlay_row_px(overlay) };
+		struct rect rect = { label->place.x_px, label->place.y_px, label->place.width_px,
+				     overlay_row_px(overlay) };
 
-		if (label->part >= 0 && label->fade.on && overlay_rect_holds(rect, x_px, y_px))
+		if (label->part >= 0 && label->fade.on && rect_holds(rect, x_px, y_px))
 			return label->part;
 	}
 	return -1;
@@ -406,19 +407,18 @@ static int label_at(const struct overlay *overlay, float x_px, float y_px)
 static struct overlay_action tap_page(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->page_part };
-	struct overlay_rect view = overlay_view_rect(overlay);
+	struct rect view = overlay_view_rect(overlay);
 	int picture;
 
-	if (overlay_rect_holds(overlay_head_rect(overlay, overlay_page_rect(overlay)), x_px,
-			       y_px)) {
+	if (rect_holds(overlay_head_rect(overlay, overlay_page_rect(overlay)), x_px, y_px)) {
 		/* The whole right end of the head closes, so that a near miss closes too. */
 		if (x_px >= (float)overlay_close_rect(overlay).x_px)
 			action.kind = OVERLAY_CLOSE_PAGE;
-		else if (overlay_rect_holds(overlay_widen_rect(overlay), x_px, y_px))
+		else if (rect_holds(overlay_widen_rect(overlay), x_px, y_px))
 			action.kind = OVERLAY_WIDEN_PAGE;
 		return action;
 	}
-	if (!overlay_rect_holds(view, x_px, y_px))
+	if (!rect_holds(view, x_px, y_px))
 		return action;
 	x_px -= (float)view.x_px;
 	y_px += overlay->scroll_px - (float)view.y_px;
@@ -460,9 +460,9 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 		action.kind = OVERLAY_REACH;
 	} else if (button->kind == CHROME_LANGUAGES) {
 		action.kind = OVERLAY_LANGUAGES;
-	} else if (button->language != overlay->language) {
+	} else if (button->language != overlay->languages.current) {
 		action.kind = OVERLAY_LANGUAGE;
-		action.language = overlay->languages[button->language];
+		action.language = overlay->languages.codes[button->language];
 	}
 	return action;
 }
@@ -470,7 +470,7 @@ static struct overlay_action tap_chrome(const struct overlay *overlay, float x_p
 static struct overlay_action tap_card(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->card_part };
-	struct overlay_rect card = overlay_card_rect(overlay);
+	struct rect card = overlay_card_rect(overlay);
 
 	if (card_closes(&overlay->theme, card.width_px, x_px - (float)card.x_px,
 			y_px - (float)card.y_px))
@@ -483,30 +483,30 @@ static struct overlay_action tap_card(const struct overlay *overlay, float x_px,
 struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_NONE, .part = -1 };
-	struct overlay_rect chrome = overlay_chrome_rect(overlay);
+	const struct screen screen = overlay_screen(overlay);
+	struct rect chrome = screen.bar;
 
-	if (overlay_rect_holds(chrome, x_px, y_px))
+	if (rect_holds(chrome, x_px, y_px))
 		return tap_chrome(overlay, x_px - (float)chrome.x_px);
-	if (overlay->menu.fade.on)
-		return overlay_languages_tap(overlay, x_px, y_px);
+	if (overlay->languages_view.fade.on)
+		return languages_view_tap(&screen, &overlay->languages, x_px, y_px);
 	if (overlay->gallery.fade.on)
 		return overlay_gallery_tap(overlay, x_px, y_px);
-	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
+	if (overlay->search.fade.on && rect_holds(overlay_search_rect(overlay), x_px, y_px))
 		return overlay_search_tap(overlay, x_px, y_px);
-	if (overlay->card_part >= 0 && overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px))
+	if (overlay->card_part >= 0 && rect_holds(overlay_card_rect(overlay), x_px, y_px))
 		return tap_card(overlay, x_px, y_px);
-	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
+	if (overlay->page_part >= 0 && rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return tap_page(overlay, x_px, y_px);
-	if (overlay->tours.fade.on && overlay_rect_holds(overlay_menu_rect(overlay), x_px, y_px))
+	if (overlay->tours.fade.on && rect_holds(overlay_menu_rect(overlay), x_px, y_px))
 		return overlay_menu_tap(overlay, x_px, y_px);
-	if (overlay_tour_shows(overlay) &&
-	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
+	if (overlay_tour_shows(overlay) && rect_holds(overlay_tour_rect(overlay), x_px, y_px))
 		return overlay_tour_tap(overlay, x_px, y_px);
 	if (overlay_on_tools(overlay, x_px, y_px)) {
 		action.kind = OVERLAY_SWALLOWED;
 		return action;
 	}
-	if (overlay->help.on && overlay_rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
+	if (overlay->help.on && rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
 		action.kind = OVERLAY_HELP;
 		return action;
 	}
@@ -518,26 +518,26 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 {
+	const struct screen screen = overlay_screen(overlay);
+
 	if (overlay->gallery.fade.on)
 		return true;
-	if (overlay->menu.fade.on &&
-	    overlay_rect_holds(overlay_languages_rect(overlay), x_px, y_px))
+	if (overlay->languages_view.fade.on &&
+	    rect_holds(languages_view_rect(&screen, &overlay->languages), x_px, y_px))
 		return true;
-	if (overlay_rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
+	if (rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
 		return true;
-	if (overlay->page_part >= 0 && overlay_rect_holds(overlay_page_rect(overlay), x_px, y_px))
+	if (overlay->page_part >= 0 && rect_holds(overlay_page_rect(overlay), x_px, y_px))
 		return true;
-	if (overlay->search.fade.on && overlay_rect_holds(overlay_search_rect(overlay), x_px, y_px))
+	if (overlay->search.fade.on && rect_holds(overlay_search_rect(overlay), x_px, y_px))
 		return true;
-	if (overlay->tours.fade.on && overlay_rect_holds(overlay_menu_rect(overlay), x_px, y_px))
+	if (overlay->tours.fade.on && rect_holds(overlay_menu_rect(overlay), x_px, y_px))
 		return true;
-	if (overlay_tour_shows(overlay) &&
-	    overlay_rect_holds(overlay_tour_rect(overlay), x_px, y_px))
+	if (overlay_tour_shows(overlay) && rect_holds(overlay_tour_rect(overlay), x_px, y_px))
 		return true;
 	if (overlay_on_tools(overlay, x_px, y_px))
 		return true;
-	return overlay->card_part >= 0 &&
-	       overlay_rect_holds(overlay_card_rect(overlay), x_px, y_px);
+	return overlay->card_part >= 0 && rect_holds(overlay_card_rect(overlay), x_px, y_px);
 }
 
 static void scroll_by(float *scroll_px, float *px_per_s, int most_px, float by_px)
@@ -572,16 +572,6 @@ void overlay_fling(struct overlay *overlay, float vy_px_per_s)
 
 /* ---- a frame ---- */
 
-bool overlay_advance(struct fade *fade, int64_t step_ms)
-{
-	float target = fade->on ? 1 : 0, step = (float)step_ms / FADE_MS;
-
-	if (fade->alpha == target)
-		return false;
-	fade->alpha = fade->on ? fminf(fade->alpha + step, 1) : fmaxf(fade->alpha - step, 0);
-	return fade->alpha != target;
-}
-
 static bool advance_scroll(float *scroll_px, float *px_per_s, int most_px, int64_t step_ms)
 {
 	if (*px_per_s == 0)
@@ -600,11 +590,11 @@ static bool watch_hidden(struct overlay *overlay, struct label *label, int64_t s
 	label->dim.on = overlay->parts[label->part].hidden;
 	if (!label->dim.on || !label->fade.on) {
 		label->hidden_ms = 0;
-		return overlay_advance(&label->dim, step_ms);
+		return fade_advance(&label->dim, step_ms);
 	}
 	label->hidden_ms += step_ms;
 	overlay->callouts_dirty |= label->hidden_ms >= OVERLAY_HIDDEN_MS;
-	overlay_advance(&label->dim, step_ms);
+	fade_advance(&label->dim, step_ms);
 	return true;
 }
 
@@ -620,9 +610,9 @@ static bool update_labels(struct overlay *overlay, int64_t step_ms)
 		if (label->part < 0)
 			continue;
 		selected = label->part == overlay->card_part || label->part == overlay->page_part;
-		if (label->fade.on && (!label->drawn || label->drawn_selected != selected ||
-				       overlay->drawings[BITMAP_LABEL + i].bitmap.width_px !=
-					       label->place.width_px)) {
+		if (label->fade.on &&
+		    (!label->drawn || label->drawn_selected != selected ||
+		     overlay->sprites[BITMAP_LABEL + i].bitmap.width_px != label->place.width_px)) {
 			if (budget == 0) {
 				moving = true;
 				continue;
@@ -630,7 +620,7 @@ static bool update_labels(struct overlay *overlay, int64_t step_ms)
 			overlay_draw_label(overlay, i);
 			budget--;
 		}
-		moving |= overlay_advance(&label->fade, step_ms);
+		moving |= fade_advance(&label->fade, step_ms);
 		moving |= watch_hidden(overlay, label, step_ms);
 		if (!label->fade.on && label->fade.alpha == 0)
 			*label = (struct label){ .part = -1 };
@@ -640,7 +630,7 @@ static bool update_labels(struct overlay *overlay, int64_t step_ms)
 
 static bool update_strips(struct overlay *overlay, int64_t step_ms)
 {
-	struct overlay_rect view = overlay_view_rect(overlay);
+	struct rect view = overlay_view_rect(overlay);
 	int first = (int)overlay->scroll_px / overlay->strip_px;
 	/* One strip more than is visible, so that scrolling finds it drawn. */
 	int last = ((int)overlay->scroll_px + view.height_px) / overlay->strip_px + 1;
@@ -665,7 +655,7 @@ static bool update_strips(struct overlay *overlay, int64_t step_ms)
 			overlay_draw_strip(overlay, slot);
 			budget--;
 		}
-		moving |= overlay_advance(&strip->fade, step_ms);
+		moving |= fade_advance(&strip->fade, step_ms);
 	}
 	return moving;
 }
@@ -688,6 +678,7 @@ static void draw_what_changed(struct overlay *overlay)
 
 bool overlay_update(struct overlay *overlay, int64_t now_ms)
 {
+	const struct screen screen = overlay_screen(overlay);
 	int64_t step_ms = overlay->then_ms ? now_ms - overlay->then_ms : 0;
 	bool moving;
 
@@ -696,20 +687,21 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	overlay->then_ms = now_ms;
 	draw_what_changed(overlay);
 	moving = overlay_update_tours(overlay, step_ms);
-	moving |= overlay_update_languages(overlay, step_ms);
+	moving |= languages_view_update(&overlay->languages_view, &screen, &overlay->languages,
+					step_ms);
 	moving |= overlay_update_tools(overlay, step_ms);
 	if (overlay->callouts_dirty)
 		overlay_lay_out_callouts(overlay);
 	overlay->callouts_dirty = false;
-	moving |= overlay_advance(&overlay->help, step_ms);
+	moving |= fade_advance(&overlay->help, step_ms);
 	if (overlay->help.on && overlay->help_ms < HINT_MOVES_MS) {
 		overlay->help_ms += step_ms;
 		moving = true;
 	}
-	moving |= overlay_advance(&overlay->invitation, step_ms);
-	moving |= overlay_advance(&overlay->question, step_ms);
-	moving |= overlay_advance(&overlay->card, step_ms);
-	moving |= overlay_advance(&overlay->page, step_ms * FADE_MS / PAGE_FADE_MS);
+	moving |= fade_advance(&overlay->invitation, step_ms);
+	moving |= fade_advance(&overlay->question, step_ms);
+	moving |= fade_advance(&overlay->card, step_ms);
+	moving |= fade_advance(&overlay->page, step_ms * FADE_MS / PAGE_FADE_MS);
 	moving |= advance_scroll(&overlay->scroll_px, &overlay->scroll_px_per_s,
 				 overlay_scroll_most(overlay), step_ms);
 	if (overlay->search.scroll_px_per_s != 0)

@@ -13,19 +13,17 @@
 #include <stdint.h>
 
 #include "base/bytes.h"
-#include "ui/bitmap.h"
+#include "ui/action.h"
+#include "ui/languages.h"
+#include "ui/layers.h"
+#include "ui/rect.h"
 #include "ui/source.h"
 
 enum {
 	OVERLAY_PARTS_MAX = 1000,
-	OVERLAY_LANGUAGES_MAX = 64,
 	OVERLAY_TOURS_MAX = 8,
 	OVERLAY_LAYERS_MAX = 256,  /* in one frame */
 	OVERLAY_BITMAPS_MAX = 128, /* bitmap ids are below this */
-};
-
-struct overlay_rect {
-	int x_px, y_px, width_px, height_px;
 };
 
 struct overlay_options {
@@ -189,7 +187,7 @@ void overlay_offer_back(struct overlay *overlay, bool on);
 
 /* Returns the part of the panel that is left for the model: all of it, or what page or search
  * leave. It changes at once when a page opens; the app moves its camera there at its own pace. */
-struct overlay_rect overlay_scene_rect(const struct overlay *overlay);
+struct rect overlay_scene_rect(const struct overlay *overlay);
 
 /* ---- touch ---- */
 
@@ -203,46 +201,6 @@ struct overlay_comfort {
 void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort);
 /* Returns the current settings. */
 struct overlay_comfort overlay_comfort(const struct overlay *overlay);
-
-enum overlay_action_kind {
-	OVERLAY_NONE,      /* not on the overlay: the tap is the model's */
-	OVERLAY_SWALLOWED, /* on the overlay, but nothing happens */
-	OVERLAY_OPEN_CARD, /* part: a callout was tapped */
-	OVERLAY_OPEN_PAGE, /* part: its card was tapped */
-	OVERLAY_CLOSE_CARD,
-	OVERLAY_CLOSE_PAGE,
-	OVERLAY_WIDEN_PAGE, /* toggle the whole-panel page (overlay_page_is_wide) */
-	OVERLAY_LANGUAGE,   /* set language */
-	OVERLAY_LANGUAGES,  /* toggle their menu (overlay_choosing_language) */
-	OVERLAY_LINK,       /* link: a link's target, a part's id or "tour:" and a tour's id */
-	OVERLAY_HOME,       /* go to the first view */
-	OVERLAY_BACK,       /* go back; only where that is offered */
-	OVERLAY_HELP,       /* toggle the help (overlay_help) */
-	OVERLAY_SEARCH,     /* toggle the search (overlay_searching) */
-	OVERLAY_LARGE,      /* toggle large type (overlay_comfort) */
-	OVERLAY_REACH,      /* toggle reach mode */
-	OVERLAY_LIGHT,      /* toggle this tool */
-	OVERLAY_SECTION,    /* toggle this tool */
-	OVERLAY_KEY,        /* key: for overlay_press */
-	OVERLAY_FOUND,      /* part: a search result was tapped */
-	OVERLAY_PICTURE,    /* picture: for overlay_show_picture */
-	OVERLAY_TOURS,      /* toggle the menu; while a tour runs, the tour goes on */
-	OVERLAY_TOUR,       /* tour: it was chosen */
-	OVERLAY_TOUR_PAUSE, /* pause or resume the tour */
-	OVERLAY_TOUR_CLOSE,
-};
-
-enum { OVERLAY_KEY_CLEAR = -1 }; /* the field's clear control */
-
-struct overlay_action {
-	enum overlay_action_kind kind;
-	int part;             /* else -1 */
-	int key;              /* for OVERLAY_KEY */
-	int picture;          /* for OVERLAY_PICTURE */
-	int tour;             /* for OVERLAY_TOUR */
-	const char *language; /* borrowed until the overlay is destroyed; else NULL */
-	const char *link;     /* borrowed until the page changes; else NULL */
-};
 
 /* Returns what a tap at that point means. Changes nothing. */
 struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px);
@@ -285,17 +243,6 @@ void overlay_picture_double_tap(struct overlay *overlay, float x_px, float y_px)
 /* Advances fades and scrolling, lays out and draws what changed. now_ms is monotonic. Returns true
  * if something still moves: draw again soon. */
 bool overlay_update(struct overlay *overlay, int64_t now_ms);
-
-/* A textured quad. The app keeps one texture per bitmap id and uploads the pixels if revision
- * differs from its own. Draw in order, blending GL_ONE, GL_ONE_MINUS_SRC_ALPHA. */
-struct overlay_layer {
-	uint32_t bitmap;             /* id, below OVERLAY_BITMAPS_MAX */
-	uint32_t revision;           /* never 0 */
-	const struct bitmap *pixels; /* borrowed until the next overlay_update */
-	float corners_px[4][2];      /* top left, top right, bottom right, bottom left */
-	float source[4];             /* left, top, right, bottom of the bitmap, 0..1 */
-	float alpha;                 /* multiplies all four channels */
-};
 
 /* Writes at most `most` layers, bottom first. Returns how many were written. */
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most);

@@ -10,7 +10,7 @@ struct overlay_comfort overlay_comfort(const struct overlay *overlay)
 /* Lays the page out again. The first visible line stays about the same. */
 static void lay_out_page(struct overlay *overlay)
 {
-	struct overlay_rect view = overlay_view_rect(overlay);
+	struct rect view = overlay_view_rect(overlay);
 	float read = overlay->scroll_px / (float)article_height_px(overlay->article);
 	int most_px;
 
@@ -59,7 +59,7 @@ void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort
 	if (overlay->invitation.on)
 		overlay_draw_invitation(overlay);
 	overlay->tools.dirty = overlay->tour.dirty = overlay->tours.dirty = true;
-	overlay->menu.dirty = true;
+	overlay->languages_view.dirty = true;
 	overlay->help_dirty = overlay->card_dirty = overlay->head_dirty = true;
 	overlay->gallery.words_dirty = true;
 	overlay->question_drawn_s = 0;

@@ -15,31 +15,17 @@ static int px(const struct overlay *overlay, float mm)
 
 cairo_t *overlay_begin(struct overlay *overlay, enum bitmap_id id, int width_px, int height_px)
 {
-	struct drawing *drawing = &overlay->drawings[id];
-
-	drawing->revision++;
-	if (drawing->bitmap.width_px != width_px || drawing->bitmap.height_px != height_px) {
-		bitmap_finish(&drawing->bitmap);
-		if (bitmap_init(&drawing->bitmap, width_px, height_px) < 0)
-			return NULL;
-	}
-	return bitmap_begin(&drawing->bitmap);
+	return sprite_begin(&overlay->sprites[id], width_px, height_px);
 }
 
 void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context)
 {
-	bitmap_end(&overlay->drawings[id].bitmap, context);
+	sprite_end(&overlay->sprites[id], context);
 }
 
-/* Takes over a bitmap that another module made; rc is that module's result. */
-static void put(struct overlay *overlay, enum bitmap_id id, struct bitmap *fresh, int rc)
+static void put(struct overlay *overlay, enum bitmap_id id, const struct bitmap *fresh, int rc)
 {
-	struct drawing *drawing = &overlay->drawings[id];
-
-	bitmap_finish(&drawing->bitmap);
-	drawing->revision++;
-	if (rc == 0)
-		drawing->bitmap = *fresh;
+	sprite_take(&overlay->sprites[id], fresh, rc);
 }
 
 /* A leader in cross-section: a light core between dark edges, so that it shows on any material. */
@@ -140,7 +126,7 @@ void overlay_draw_chrome(struct overlay *overlay)
 {
 	struct bitmap fresh;
 	const struct chrome_state state = {
-		.language = overlay->language,
+		.language = overlay->languages.current,
 		.back = overlay->back,
 		.help = overlay->help.on,
 		.search = overlay->search.fade.on,
@@ -149,10 +135,10 @@ void overlay_draw_chrome(struct overlay *overlay)
 		.reach = overlay->comfort.reach,
 		.light = overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.now.on & OVERLAY_TOOL_SECTION,
-		.languages = overlay->menu.fade.on,
+		.languages = overlay->languages_view.fade.on,
 	};
 	int rc = chrome_draw(&fresh, &overlay->chrome, &overlay->theme,
-			     (const char *const *)overlay->languages, state);
+			     (const char *const *)overlay->languages.codes, state);
 
 	put(overlay, BITMAP_CHROME, &fresh, rc);
 }
@@ -180,8 +166,9 @@ void overlay_draw_invitation(struct overlay *overlay)
 	int most_px = overlay->width_px - 2 * px(overlay, THEME_GAP_MM);
 
 	put(overlay, BITMAP_INVITATION, &fresh,
-	    prompt_draw_invitation(&fresh, &overlay->theme, (const char *const *)overlay->languages,
-				   overlay->language_count, most_px));
+	    prompt_draw_invitation(&fresh, &overlay->theme,
+				   (const char *const *)overlay->languages.codes,
+				   overlay->languages.count, most_px));
 }
 
 void overlay_draw_question(struct overlay *overlay)
@@ -197,7 +184,7 @@ void overlay_draw_question(struct overlay *overlay)
 void overlay_draw_card(struct overlay *overlay)
 {
 	const struct part *part = &overlay->parts[overlay->card_shown];
-	struct overlay_rect rect = overlay_card_rect(overlay);
+	struct rect rect = overlay_card_rect(overlay);
 	struct overlay_picture found = { 0 };
 	struct card card = { .title = part->title,
 			     .caption = part->caption,
@@ -234,11 +221,11 @@ void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int wid
 /* The head of a page: the part's name in small type, a line, and the control that closes. */
 void overlay_draw_page_head(struct overlay *overlay)
 {
-	struct overlay_rect head = overlay_head_rect(overlay, overlay_page_rect(overlay));
-	struct overlay_rect close = overlay_close_rect(overlay);
+	struct rect head = overlay_head_rect(overlay, overlay_page_rect(overlay));
+	struct rect close = overlay_close_rect(overlay);
 	int text_px;
 	int left_px = px(overlay, 8.0f);
-	const struct overlay_rect widen = overlay_widen_rect(overlay);
+	const struct rect widen = overlay_widen_rect(overlay);
 	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px;
 	int room_px = end_px - head.x_px - left_px - px(overlay, THEME_GAP_MM);
 	cairo_t *context = overlay_begin(overlay, BITMAP_PAGE_HEAD, head.width_px, head.height_px);

@@ -31,24 +31,21 @@ static int px(const struct overlay *overlay, float mm)
 /* ---- layout ---- */
 
 /* The place of a picture that is not zoomed: above its caption, which is above the bar. */
-struct overlay_rect overlay_gallery_rect(const struct overlay *overlay)
+struct rect overlay_gallery_rect(const struct overlay *overlay)
 {
 	int bottom_px =
 		overlay_chrome_rect(overlay).y_px - theme_text_px(&overlay->theme, CAPTION_MM);
 	int margin_px = px(overlay, MARGIN_MM);
 
-	return (struct overlay_rect){ margin_px, margin_px, overlay->width_px - 2 * margin_px,
-				      bottom_px - 2 * margin_px > 1 ? bottom_px - 2 * margin_px
-								    : 1 };
+	return (struct rect){ margin_px, margin_px, overlay->width_px - 2 * margin_px,
+			      bottom_px - 2 * margin_px > 1 ? bottom_px - 2 * margin_px : 1 };
 }
 
-struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
-					   enum gallery_button button)
+struct rect overlay_gallery_button(const struct overlay *overlay, enum gallery_button button)
 {
 	int side_px = px(overlay, BUTTON_MM), margin_px = px(overlay, MARGIN_MM);
-	struct overlay_rect view = overlay_gallery_rect(overlay);
-	struct overlay_rect rect = { overlay->width_px - side_px - margin_px, margin_px, side_px,
-				     side_px };
+	struct rect view = overlay_gallery_rect(overlay);
+	struct rect rect = { overlay->width_px - side_px - margin_px, margin_px, side_px, side_px };
 
 	if (overlay->comfort.reach) { /* at the lower end; close is above next */
 		rect.y_px = view.y_px + view.height_px - side_px;
@@ -62,15 +59,15 @@ struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
 	return rect;
 }
 
-static struct drawing *drawing_of(struct overlay *overlay, int picture)
+static struct sprite *sprite_of(struct overlay *overlay, int picture)
 {
-	return &overlay->drawings[BITMAP_PICTURE + picture % GALLERY_SLOTS];
+	return &overlay->sprites[BITMAP_PICTURE + picture % GALLERY_SLOTS];
 }
 
 /* Panel pixels per bitmap pixel when not zoomed. */
 static float fit_scale(const struct overlay *overlay, const struct bitmap *bitmap)
 {
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	float wide = (float)view.width_px / (float)bitmap->width_px;
 	float high = (float)view.height_px / (float)bitmap->height_px;
 
@@ -83,8 +80,8 @@ bool overlay_gallery_place(const struct overlay *overlay, int picture, float pla
 	const struct gallery *gallery = &overlay->gallery;
 	const struct gallery_slot *slot = &gallery->slots[picture % GALLERY_SLOTS];
 	const struct bitmap *bitmap =
-		&overlay->drawings[BITMAP_PICTURE + picture % GALLERY_SLOTS].bitmap;
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+		&overlay->sprites[BITMAP_PICTURE + picture % GALLERY_SLOTS].bitmap;
+	struct rect view = overlay_gallery_rect(overlay);
 	float x, y, scale;
 
 	if (slot->picture != picture || !bitmap->surface)
@@ -141,7 +138,7 @@ int overlay_picture(const struct overlay *overlay)
 static void keep_inside(struct overlay *overlay)
 {
 	struct gallery *gallery = &overlay->gallery;
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	float place[4], spare_x, spare_y;
 
 	if (!overlay_gallery_place(overlay, gallery->at, place))
@@ -154,7 +151,7 @@ static void keep_inside(struct overlay *overlay)
 
 static float zoom_most(struct overlay *overlay)
 {
-	const struct bitmap *bitmap = &drawing_of(overlay, overlay->gallery.at)->bitmap;
+	const struct bitmap *bitmap = &sprite_of(overlay, overlay->gallery.at)->bitmap;
 
 	if (!bitmap->surface)
 		return 1;
@@ -165,7 +162,7 @@ void overlay_picture_pinch(struct overlay *overlay, float x_px, float y_px, floa
 			   float dx_px, float dy_px)
 {
 	struct gallery *gallery = &overlay->gallery;
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	float from = gallery->zoom, to = fminf(fmaxf(from * scale, 1), zoom_most(overlay));
 	float x = x_px - (float)view.x_px - (float)view.width_px / 2;
 	float y = y_px - (float)view.y_px - (float)view.height_px / 2;
@@ -235,7 +232,7 @@ void overlay_gallery_arrived(struct overlay *overlay, const char *name)
 
 static bool is_on(const struct overlay *overlay, enum gallery_button button, float x_px, float y_px)
 {
-	return overlay_rect_holds(overlay_gallery_button(overlay, button), x_px, y_px);
+	return rect_holds(overlay_gallery_button(overlay, button), x_px, y_px);
 }
 
 struct overlay_action overlay_gallery_tap(const struct overlay *overlay, float x_px, float y_px)
@@ -264,13 +261,13 @@ struct overlay_action overlay_gallery_tap(const struct overlay *overlay, float x
 /* Draws a picture into its slot. Returns false if it has not arrived or memory ran out. */
 static bool draw_picture(struct overlay *overlay, int picture)
 {
-	struct drawing *drawing = drawing_of(overlay, picture);
+	struct sprite *sprite = sprite_of(overlay, picture);
 	const char *name = article_picture(overlay->article, (uint32_t)picture, NULL);
 	struct overlay_picture found = { 0 };
 	float width, height, shrink;
 
-	bitmap_finish(&drawing->bitmap);
-	drawing->revision++;
+	bitmap_finish(&sprite->bitmap);
+	sprite->revision++;
 	if (!overlay->pictures.get ||
 	    !overlay->pictures.get(overlay->pictures.data, name, &found) || !found.picture)
 		return false;
@@ -278,16 +275,16 @@ static bool draw_picture(struct overlay *overlay, int picture)
 	height = (float)found.picture->height;
 	shrink = fminf(1, PICTURE_MOST_PX / fmaxf(width, height));
 	/* If memory runs out, the place stays empty. */
-	if (bitmap_from_picture(&drawing->bitmap, found.picture, (int)fmaxf(1, width * shrink),
+	if (bitmap_from_picture(&sprite->bitmap, found.picture, (int)fmaxf(1, width * shrink),
 				(int)fmaxf(1, height * shrink)) < 0)
-		bitmap_finish(&drawing->bitmap);
-	return drawing->bitmap.surface != NULL;
+		bitmap_finish(&sprite->bitmap);
+	return sprite->bitmap.surface != NULL;
 }
 
 static void draw_words(struct overlay *overlay)
 {
 	const struct gallery *gallery = &overlay->gallery;
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	cairo_t *context = overlay_begin(overlay, BITMAP_PICTURE_WORDS, view.width_px,
 					 theme_text_px(&overlay->theme, CAPTION_MM));
 	const char *caption = "";
@@ -361,7 +358,7 @@ static bool update_slots(struct overlay *overlay, int64_t step_ms)
 			slot->fade.on = draw_picture(overlay, picture);
 			drew = true;
 		}
-		moving |= overlay_advance(&slot->fade, step_ms);
+		moving |= fade_advance(&slot->fade, step_ms);
 	}
 	return moving;
 }
@@ -369,7 +366,7 @@ static bool update_slots(struct overlay *overlay, int64_t step_ms)
 bool overlay_update_gallery(struct overlay *overlay, int64_t step_ms)
 {
 	struct gallery *gallery = &overlay->gallery;
-	bool moving = overlay_advance(&gallery->fade, step_ms);
+	bool moving = fade_advance(&gallery->fade, step_ms);
 
 	if (!gallery->fade.on || !overlay->article)
 		return moving;

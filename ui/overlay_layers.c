@@ -9,8 +9,7 @@
 
 struct list {
 	const struct overlay *overlay;
-	struct overlay_layer *layers;
-	uint32_t count, most;
+	struct layers layers;
 };
 
 /* Slows down at the end, so that nothing stops abruptly. */
@@ -21,38 +20,19 @@ static float ease(float alpha)
 
 static struct overlay_layer *add(struct list *list, int id, float alpha)
 {
-	const struct drawing *drawing = &list->overlay->drawings[id];
-	struct overlay_layer *layer;
-
-	if (alpha <= 0 || !drawing->bitmap.surface || list->count == list->most)
-		return NULL;
-	layer = &list->layers[list->count++];
-	*layer = (struct overlay_layer){ .bitmap = (uint32_t)id,
-					 .revision = drawing->revision,
-					 .pixels = &drawing->bitmap,
-					 .source = { 0, 0, 1, 1 },
-					 .alpha = alpha };
-	return layer;
+	return layers_add(&list->layers, &list->overlay->sprites[id], alpha);
 }
 
 static void add_rect(struct list *list, int id, float alpha, float x, float y, float width,
 		     float height)
 {
-	struct overlay_layer *layer = add(list, id, alpha);
-	const float corners[4][2] = {
-		{ x, y }, { x + width, y }, { x + width, y + height }, { x, y + height }
-	};
-
-	if (layer)
-		memcpy(layer->corners_px, corners, sizeof(corners));
+	layers_add_stretched(&list->layers, &list->overlay->sprites[id], alpha, x, y, width,
+			     height);
 }
 
-/* Adds a bitmap at its own size with its upper left corner at x, y. */
 static void add_bitmap(struct list *list, int id, float alpha, float x, float y)
 {
-	const struct bitmap *bitmap = &list->overlay->drawings[id].bitmap;
-
-	add_rect(list, id, alpha, x, y, (float)bitmap->width_px, (float)bitmap->height_px);
+	layers_add_at(&list->layers, &list->overlay->sprites[id], alpha, x, y);
 }
 
 static float label_alpha(const struct label *label)
@@ -65,7 +45,7 @@ static void add_leader(struct list *list, const struct label *label)
 	const struct callout *c = &label->place;
 	float dx = c->anchor_x_px - c->port_x_px, dy = c->anchor_y_px - c->port_y_px;
 	float length = hypotf(dx, dy);
-	float half = (float)list->overlay->drawings[BITMAP_LEADER].bitmap.height_px / 2;
+	float half = (float)list->overlay->sprites[BITMAP_LEADER].bitmap.height_px / 2;
 	struct overlay_layer *layer;
 	float nx, ny;
 
@@ -89,7 +69,7 @@ static void add_leader(struct list *list, const struct label *label)
 static void add_callouts(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
-	float half = (float)overlay->drawings[BITMAP_DOT].bitmap.width_px / 2;
+	float half = (float)overlay->sprites[BITMAP_DOT].bitmap.width_px / 2;
 
 	for (uint32_t i = 0; i < LABELS; i++)
 		if (overlay->labels[i].drawn)
@@ -111,33 +91,13 @@ static void add_callouts(struct list *list)
 	}
 }
 
-/* Adds the visible piece of a bitmap that is as wide as the view. */
-static void add_clipped(struct list *list, int id, float alpha, struct overlay_rect view, float top,
+static void add_clipped(struct list *list, int id, float alpha, struct rect view, float top,
 			float dx, float dy)
 {
-	float height = (float)list->overlay->drawings[id].bitmap.height_px;
-	float top_in = fmaxf(top, (float)view.y_px);
-	float bottom_in = fminf(top + height, (float)(view.y_px + view.height_px));
-	struct overlay_layer *layer;
-
-	if (bottom_in <= top_in)
-		return;
-	layer = add(list, id, alpha);
-	if (!layer)
-		return;
-	layer->source[1] = (top_in - top) / height;
-	layer->source[3] = (bottom_in - top) / height;
-	for (int corner = 0; corner < 4; corner++) {
-		bool right = corner == 1 || corner == 2;
-
-		layer->corners_px[corner][0] =
-			(float)view.x_px + (right ? (float)view.width_px : 0) + dx;
-		layer->corners_px[corner][1] = (corner < 2 ? top_in : bottom_in) + dy;
-	}
+	layers_add_clipped(&list->layers, &list->overlay->sprites[id], alpha, view, top, dx, dy);
 }
 
-static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view, float dx,
-		      float dy)
+static void add_strip(struct list *list, uint32_t slot, struct rect view, float dx, float dy)
 {
 	const struct overlay *overlay = list->overlay;
 	const struct strip *strip = &overlay->strips[slot];
@@ -149,11 +109,11 @@ static void add_strip(struct list *list, uint32_t slot, struct overlay_rect view
 			    ease(overlay->page.alpha) * ease(strip->fade.alpha), view, top, dx, dy);
 }
 
-static void add_scroll_mark(struct list *list, struct overlay_rect view, float scroll_px,
-			    float most, float alpha, float dx, float dy)
+static void add_scroll_mark(struct list *list, struct rect view, float scroll_px, float most,
+			    float alpha, float dx, float dy)
 {
 	const struct overlay *overlay = list->overlay;
-	float width = (float)overlay->drawings[BITMAP_SCROLL].bitmap.width_px, height;
+	float width = (float)overlay->sprites[BITMAP_SCROLL].bitmap.width_px, height;
 
 	if (most <= 0)
 		return;
@@ -166,13 +126,13 @@ static void add_scroll_mark(struct list *list, struct overlay_rect view, float s
 static void add_page(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
-	struct overlay_rect page = overlay_page_rect(overlay), view = overlay_view_rect(overlay);
-	struct overlay_rect head = overlay_head_rect(overlay, page);
+	struct rect page = overlay_page_rect(overlay), view = overlay_view_rect(overlay);
+	struct rect head = overlay_head_rect(overlay, page);
 	float alpha = ease(overlay->page.alpha),
 	      slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
 	float dx = overlay_is_portrait(overlay) || overlay_is_flat(overlay) ? 0 : slide,
 	      dy = slide - dx;
-	float foot_px = (float)overlay->drawings[BITMAP_PAGE_FOOT].bitmap.height_px;
+	float foot_px = (float)overlay->sprites[BITMAP_PAGE_FOOT].bitmap.height_px;
 
 	if (!overlay->article)
 		return;
@@ -189,8 +149,8 @@ static void add_page(struct list *list)
 	add_bitmap(list, BITMAP_PAGE_HEAD, alpha, (float)head.x_px + dx, (float)head.y_px + dy);
 }
 
-static void add_row(struct list *list, uint32_t slot, struct overlay_rect view, float alpha,
-		    float dx, float dy)
+static void add_row(struct list *list, uint32_t slot, struct rect view, float alpha, float dx,
+		    float dy)
 {
 	const struct overlay *overlay = list->overlay;
 	const struct search_row *row = &overlay->search.rows[slot];
@@ -206,9 +166,9 @@ static void add_row(struct list *list, uint32_t slot, struct overlay_rect view, 
 static void add_search(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
-	struct overlay_rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
-	struct overlay_rect head = overlay_head_rect(overlay, all);
-	struct overlay_rect keys = overlay_keyboard_rect(overlay), key;
+	struct rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
+	struct rect head = overlay_head_rect(overlay, all);
+	struct rect keys = overlay_keyboard_rect(overlay), key;
 	float alpha = ease(overlay->search.fade.alpha);
 	float slide = (1 - alpha) * 12 * overlay->theme.px_per_mm;
 	float dx = overlay_is_portrait(overlay) || overlay_is_flat(overlay) ? 0 : slide,
@@ -232,7 +192,7 @@ static void add_gallery(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
 	const struct gallery *gallery = &overlay->gallery;
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	float alpha = ease(gallery->fade.alpha);
 
 	add_rect(list, BITMAP_NIGHT, alpha, 0, 0, (float)overlay->width_px,
@@ -252,8 +212,7 @@ static void add_gallery(struct list *list)
 		add_bitmap(list, BITMAP_PICTURE_WORDS, alpha, (float)view.x_px,
 			   (float)(view.y_px + view.height_px) + 2 * overlay->theme.px_per_mm);
 	for (int button = 0; button < GALLERY_BUTTONS; button++) {
-		struct overlay_rect rect =
-			overlay_gallery_button(overlay, (enum gallery_button)button);
+		struct rect rect = overlay_gallery_button(overlay, (enum gallery_button)button);
 
 		if ((button == GALLERY_BACK && gallery->at == 0) ||
 		    (button == GALLERY_ON && gallery->at + 1 >= gallery->count))
@@ -266,8 +225,8 @@ static void add_gallery(struct list *list)
 static void add_help(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
-	const struct bitmap *finger = &overlay->drawings[BITMAP_FINGER].bitmap;
-	struct overlay_rect help = overlay_help_rect(overlay);
+	const struct bitmap *finger = &overlay->sprites[BITMAP_FINGER].bitmap;
+	struct rect help = overlay_help_rect(overlay);
 	float alpha = ease(overlay->help.alpha), middles_px[HINT_FINGERS][2];
 
 	add_bitmap(list, BITMAP_HELP, alpha, (float)help.x_px, (float)help.y_px);
@@ -279,35 +238,24 @@ static void add_help(struct list *list)
 			   (float)help.y_px + middles_px[i][1] - (float)finger->height_px / 2);
 }
 
-/* Adds a quad centred on a point, with its height along a unit vector. */
 static void add_turned(struct list *list, int id, float alpha, const float at[2],
 		       const float along[2], float half_across, float half_along)
 {
-	struct overlay_layer *layer = add(list, id, alpha);
-	static const float sides[4][2] = { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
-
-	if (!layer)
-		return;
-	for (int corner = 0; corner < 4; corner++) {
-		const float across = sides[corner][0] * half_across;
-		const float down = sides[corner][1] * half_along;
-
-		layer->corners_px[corner][0] = at[0] + across * along[1] - down * along[0];
-		layer->corners_px[corner][1] = at[1] - across * along[0] - down * along[1];
-	}
+	layers_add_turned(&list->layers, &list->overlay->sprites[id], alpha, at, along, half_across,
+			  half_along);
 }
 
 static void add_tools(struct list *list)
 {
 	const struct overlay *overlay = list->overlay;
-	const float knob = (float)overlay->drawings[BITMAP_KNOB].bitmap.width_px / 2;
+	const float knob = (float)overlay->sprites[BITMAP_KNOB].bitmap.width_px / 2;
 	const float upright[2] = { 0, -1 };
 	float alpha[OVERLAY_TOOL_COUNT];
 	struct overlay_knobs knobs;
 
 	overlay_tool_knobs(overlay, &knobs);
 	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
-		const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
+		const struct rect rect = overlay_tool_rect(overlay, tool);
 
 		alpha[tool] = ease(overlay->tools.fade[tool].alpha);
 		if (alpha[tool] > 0)
@@ -326,13 +274,13 @@ static void add_tools(struct list *list)
 
 uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *layers, uint32_t most)
 {
-	struct list list = { .overlay = overlay, .layers = layers, .most = most };
-	struct overlay_rect card = overlay_card_rect(overlay);
-	struct overlay_rect chrome = overlay_chrome_rect(overlay);
-	struct overlay_rect invitation = overlay_invitation_rect(overlay);
-	struct overlay_rect question = overlay_question_rect(overlay);
-	struct overlay_rect tour = overlay_tour_rect(overlay), menu = overlay_menu_rect(overlay);
-	struct overlay_rect languages = overlay_languages_rect(overlay);
+	struct list list = { .overlay = overlay, .layers = { .list = layers, .most = most } };
+	const struct screen screen = overlay_screen(overlay);
+	struct rect card = overlay_card_rect(overlay);
+	struct rect chrome = overlay_chrome_rect(overlay);
+	struct rect invitation = overlay_invitation_rect(overlay);
+	struct rect question = overlay_question_rect(overlay);
+	struct rect tour = overlay_tour_rect(overlay), menu = overlay_menu_rect(overlay);
 
 	add_callouts(&list);
 	add_tools(&list);
@@ -350,46 +298,18 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lay
 		add_search(&list);
 	if (overlay->gallery.fade.alpha > 0)
 		add_gallery(&list);
-	add_bitmap(&list, BITMAP_LANGUAGES, ease(overlay->menu.fade.alpha), (float)languages.x_px,
-		   (float)languages.y_px);
+	languages_view_layers(&overlay->languages_view, &screen, &overlay->languages, &list.layers);
 	add_bitmap(&list, BITMAP_CHROME, 1, (float)chrome.x_px, (float)chrome.y_px);
 	add_bitmap(&list, BITMAP_QUESTION, ease(overlay->question.alpha), (float)question.x_px,
 		   (float)question.y_px);
-	return list.count;
-}
-
-/* ---- painting with Cairo ---- */
-
-static void paint_layer(cairo_t *context, const struct overlay_layer *layer)
-{
-	float(*c)[2] = (float(*)[2])layer->corners_px;
-	double width = (layer->source[2] - layer->source[0]) * layer->pixels->width_px;
-	double height = (layer->source[3] - layer->source[1]) * layer->pixels->height_px;
-	cairo_matrix_t matrix;
-
-	cairo_save(context);
-	cairo_move_to(context, c[0][0], c[0][1]);
-	for (int i = 1; i < 4; i++)
-		cairo_line_to(context, c[i][0], c[i][1]);
-	cairo_close_path(context);
-	cairo_clip(context);
-	cairo_matrix_init(&matrix, (c[1][0] - c[0][0]) / width, (c[1][1] - c[0][1]) / width,
-			  (c[3][0] - c[0][0]) / height, (c[3][1] - c[0][1]) / height, c[0][0],
-			  c[0][1]);
-	cairo_transform(context, &matrix);
-	cairo_set_source_surface(context, layer->pixels->surface,
-				 -layer->source[0] * layer->pixels->width_px,
-				 -layer->source[1] * layer->pixels->height_px);
-	cairo_pattern_set_extend(cairo_get_source(context), CAIRO_EXTEND_PAD);
-	cairo_paint_with_alpha(context, layer->alpha);
-	cairo_restore(context);
+	return list.layers.count;
 }
 
 void overlay_paint(const struct overlay *overlay, cairo_t *context)
 {
-	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
-	uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
+	struct overlay_layer list[OVERLAY_LAYERS_MAX];
+	const struct layers layers = { .list = list,
+				       .count = overlay_layers(overlay, list, OVERLAY_LAYERS_MAX) };
 
-	for (uint32_t i = 0; i < count; i++)
-		paint_layer(context, &layers[i]);
+	layers_paint(&layers, context);
 }

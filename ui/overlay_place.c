@@ -3,85 +3,81 @@
 
 #include "ui/overlay_state.h"
 
-#define HEAD_MM 13.0f
-#define DETAIL  0.05f /* share of the scene's height; smaller parts are details */
-/* Reach mode uses a third of the panel, but not less than the search needs with keys of
- * THEME_TARGET_MM. */
-#define REACH_MM          70.0f
-#define REACH_PORTRAIT_MM 110.0f
-#define REACH_WIDTH_MM    200.0f /* two keyboards side by side */
-#define CLOSE_MM          34.0f  /* maximum width of the close control */
+#define HEAD_MM  13.0f
+#define DETAIL   0.05f /* share of the scene's height; smaller parts are details */
+#define CLOSE_MM 34.0f /* maximum width of the close control */
 
 static int px(const struct overlay *overlay, float mm)
 {
 	return theme_px(&overlay->theme, mm);
 }
 
-bool overlay_is_portrait(const struct overlay *overlay)
+/* Without the scene, which depends on what is open. */
+static struct screen bare_screen(const struct overlay *overlay)
 {
-	return overlay->height_px > overlay->width_px;
+	return (struct screen){ .theme = &overlay->theme,
+				.width_px = overlay->width_px,
+				.height_px = overlay->height_px,
+				.reach = overlay->comfort.reach,
+				.bar = overlay_chrome_rect(overlay) };
 }
 
-static int reach_height(const struct overlay *overlay)
+struct screen overlay_screen(const struct overlay *overlay)
 {
-	int least_px = px(overlay, overlay_is_portrait(overlay) ? REACH_PORTRAIT_MM : REACH_MM);
+	struct screen screen = bare_screen(overlay);
 
-	return overlay->height_px / 3 > least_px ? overlay->height_px / 3 : least_px;
+	screen.scene = overlay_scene_rect(overlay);
+	return screen;
+}
+
+bool overlay_is_portrait(const struct overlay *overlay)
+{
+	const struct screen screen = bare_screen(overlay);
+
+	return screen_is_portrait(&screen);
 }
 
 bool overlay_offers_reach(const struct overlay *overlay)
 {
-	int least_px =
-		px(overlay, overlay_is_portrait(overlay) ? REACH_WIDTH_MM / 2 : REACH_WIDTH_MM);
+	const struct screen screen = bare_screen(overlay);
 
-	return 2 * reach_height(overlay) <= overlay->height_px && overlay->width_px >= least_px;
+	return screen_offers_reach(&screen);
 }
 
 int overlay_reach_top(const struct overlay *overlay)
 {
-	return overlay->comfort.reach ? overlay->height_px - reach_height(overlay) : 0;
+	const struct screen screen = bare_screen(overlay);
+
+	return screen_reach_top(&screen);
 }
 
 bool overlay_is_flat(const struct overlay *overlay)
 {
-	return overlay->comfort.reach && !overlay_is_portrait(overlay);
+	const struct screen screen = bare_screen(overlay);
+
+	return screen_is_flat(&screen);
 }
 
-bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px)
+struct rect overlay_half_rect(const struct overlay *overlay)
 {
-	return x_px >= (float)rect.x_px && x_px < (float)(rect.x_px + rect.width_px) &&
-	       y_px >= (float)rect.y_px && y_px < (float)(rect.y_px + rect.height_px);
+	const struct screen screen = bare_screen(overlay);
+
+	return screen_half(&screen);
 }
 
-/* The place of a page or the search beside the model. */
-struct overlay_rect overlay_half_rect(const struct overlay *overlay)
-{
-	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
-
-	if (overlay->comfort.reach || overlay_is_portrait(overlay)) {
-		rect.y_px = overlay->comfort.reach ? overlay_reach_top(overlay)
-						   : overlay->height_px / 2;
-		rect.height_px -= rect.y_px;
-	} else {
-		rect.x_px = overlay->width_px / 2;
-		rect.width_px -= rect.x_px;
-	}
-	return rect;
-}
-
-struct overlay_rect overlay_page_rect(const struct overlay *overlay)
+struct rect overlay_page_rect(const struct overlay *overlay)
 {
 	if (overlay->page_wide)
-		return (struct overlay_rect){ 0, 0, overlay->width_px, overlay->height_px };
+		return (struct rect){ 0, 0, overlay->width_px, overlay->height_px };
 	return overlay_half_rect(overlay);
 }
 
-struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
+struct rect overlay_scene_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = { 0, 0, overlay->width_px, overlay->height_px };
+	struct rect rect = { 0, 0, overlay->width_px, overlay->height_px };
 
 	if (overlay->search.fade.on) {
-		struct overlay_rect search = overlay_search_rect(overlay);
+		struct rect search = overlay_search_rect(overlay);
 
 		/* If the search leaves nothing of the panel, the model keeps the whole panel behind
 		 * it. */
@@ -100,7 +96,7 @@ struct overlay_rect overlay_scene_rect(const struct overlay *overlay)
 
 /* On a flat panel the head is in the lowest line, beside the bar; else it is on top of the
  * paper. */
-struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper)
+struct rect overlay_head_rect(const struct overlay *overlay, struct rect paper)
 {
 	if (overlay_is_flat(overlay)) {
 		paper.x_px = overlay->width_px / 2;
@@ -113,18 +109,18 @@ struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct over
 	return paper;
 }
 
-struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overlay_rect head)
+struct rect overlay_close_in(const struct overlay *overlay, struct rect head)
 {
 	int width_px = theme_text_px(&overlay->theme, CLOSE_MM), gap_px = px(overlay, THEME_GAP_MM);
 
-	return (struct overlay_rect){ head.x_px + head.width_px - width_px - gap_px,
-				      head.y_px + gap_px, width_px, px(overlay, THEME_TARGET_MM) };
+	return (struct rect){ head.x_px + head.width_px - width_px - gap_px, head.y_px + gap_px,
+			      width_px, px(overlay, THEME_TARGET_MM) };
 }
 
 /* Below the head. In portrait and in reach mode it also ends above the bar, which never moves. */
-struct overlay_rect overlay_view_rect(const struct overlay *overlay)
+struct rect overlay_view_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_page_rect(overlay);
+	struct rect rect = overlay_page_rect(overlay);
 	int head_px = overlay_is_flat(overlay) ? 0 : px(overlay, HEAD_MM);
 
 	rect.y_px += head_px;
@@ -137,53 +133,46 @@ struct overlay_rect overlay_view_rect(const struct overlay *overlay)
 	return rect;
 }
 
-struct overlay_rect overlay_close_rect(const struct overlay *overlay)
+struct rect overlay_close_rect(const struct overlay *overlay)
 {
 	return overlay_close_in(overlay, overlay_head_rect(overlay, overlay_page_rect(overlay)));
 }
 
 /* Beside the close control; empty if the page cannot be widened. */
-struct overlay_rect overlay_widen_rect(const struct overlay *overlay)
+struct rect overlay_widen_rect(const struct overlay *overlay)
 {
-	struct overlay_rect close = overlay_close_rect(overlay);
+	struct rect close = overlay_close_rect(overlay);
 	int side_px = px(overlay, THEME_TARGET_MM);
 
 	if (overlay->comfort.reach)
-		return (struct overlay_rect){ 0 };
-	return (struct overlay_rect){ close.x_px - px(overlay, THEME_GAP_MM) - side_px, close.y_px,
-				      side_px, side_px };
+		return (struct rect){ 0 };
+	return (struct rect){ close.x_px - px(overlay, THEME_GAP_MM) - side_px, close.y_px, side_px,
+			      side_px };
 }
 
-struct overlay_rect overlay_chrome_rect(const struct overlay *overlay)
+struct rect overlay_chrome_rect(const struct overlay *overlay)
 {
 	int margin_px = px(overlay, THEME_GAP_MM);
 
-	return (struct overlay_rect){ margin_px,
-				      overlay->height_px - overlay->chrome.height_px - margin_px,
-				      overlay->chrome.width_px, overlay->chrome.height_px };
+	return (struct rect){ margin_px, overlay->height_px - overlay->chrome.height_px - margin_px,
+			      overlay->chrome.width_px, overlay->chrome.height_px };
 }
 
-/* Returns the lowest line that the scene may use: above the bar if the bar is in the scene. In
- * reach mode it is always above the bar; a card then lies over a page, not above it. */
 static int floor_of(const struct overlay *overlay)
 {
-	struct overlay_rect scene = overlay_scene_rect(overlay);
-	int bottom_px = scene.y_px + scene.height_px;
-	int bar_px = overlay_chrome_rect(overlay).y_px;
+	const struct screen screen = overlay_screen(overlay);
 
-	return (bottom_px < bar_px && !overlay->comfort.reach ? bottom_px : bar_px) -
-	       px(overlay, THEME_GAP_MM);
+	return screen_floor(&screen);
 }
 
-struct overlay_rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px)
+struct rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px)
 {
-	struct overlay_rect scene = overlay_scene_rect(overlay);
+	const struct screen screen = overlay_screen(overlay);
 
-	return (struct overlay_rect){ scene.x_px + (scene.width_px - width_px) / 2,
-				      floor_of(overlay) - height_px, width_px, height_px };
+	return screen_above_floor(&screen, width_px, height_px);
 }
 
-struct overlay_rect overlay_card_rect(const struct overlay *overlay)
+struct rect overlay_card_rect(const struct overlay *overlay)
 {
 	int most_px = overlay_scene_rect(overlay).width_px - 2 * px(overlay, THEME_GAP_MM);
 	int width_px, height_px;
@@ -192,30 +181,30 @@ struct overlay_rect overlay_card_rect(const struct overlay *overlay)
 	return overlay_above_floor(overlay, width_px, height_px);
 }
 
-struct overlay_rect overlay_help_rect(const struct overlay *overlay)
+struct rect overlay_help_rect(const struct overlay *overlay)
 {
-	const struct bitmap *bitmap = &overlay->drawings[BITMAP_HELP].bitmap;
+	const struct bitmap *bitmap = &overlay->sprites[BITMAP_HELP].bitmap;
 
 	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
-struct overlay_rect overlay_invitation_rect(const struct overlay *overlay)
+struct rect overlay_invitation_rect(const struct overlay *overlay)
 {
-	const struct bitmap *bitmap = &overlay->drawings[BITMAP_INVITATION].bitmap;
+	const struct bitmap *bitmap = &overlay->sprites[BITMAP_INVITATION].bitmap;
 
 	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
 
 /* In the middle of the panel: nothing else matters then. In reach mode it is low. */
-struct overlay_rect overlay_question_rect(const struct overlay *overlay)
+struct rect overlay_question_rect(const struct overlay *overlay)
 {
-	const struct bitmap *bitmap = &overlay->drawings[BITMAP_QUESTION].bitmap;
+	const struct bitmap *bitmap = &overlay->sprites[BITMAP_QUESTION].bitmap;
 
 	if (overlay->comfort.reach)
 		return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
-	return (struct overlay_rect){ (overlay->width_px - bitmap->width_px) / 2,
-				      (overlay->height_px - bitmap->height_px) / 2,
-				      bitmap->width_px, bitmap->height_px };
+	return (struct rect){ (overlay->width_px - bitmap->width_px) / 2,
+			      (overlay->height_px - bitmap->height_px) / 2, bitmap->width_px,
+			      bitmap->height_px };
 }
 
 int overlay_scroll_most(const struct overlay *overlay)
@@ -236,7 +225,7 @@ int overlay_row_px(const struct overlay *overlay)
 
 static struct callout_area callout_area(const struct overlay *overlay)
 {
-	struct overlay_rect scene = overlay_scene_rect(overlay);
+	struct rect scene = overlay_scene_rect(overlay);
 	int margin_px = px(overlay, THEME_MARGIN_MM), floor_px = floor_of(overlay), most_px;
 	struct callout_area area = { .x_px = scene.x_px + margin_px,
 				     .y_px = scene.y_px + margin_px,

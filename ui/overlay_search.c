@@ -23,9 +23,9 @@ static int px(const struct overlay *overlay, float mm)
 
 /* ---- layout ---- */
 
-struct overlay_rect overlay_search_rect(const struct overlay *overlay)
+struct rect overlay_search_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_half_rect(overlay), bar = overlay_chrome_rect(overlay);
+	struct rect rect = overlay_half_rect(overlay), bar = overlay_chrome_rect(overlay);
 	int bar_px = bar.y_px - px(overlay, THEME_GAP_MM);
 
 	if (overlay_is_flat(overlay))
@@ -37,22 +37,22 @@ struct overlay_rect overlay_search_rect(const struct overlay *overlay)
 			rect.y_px = 0;
 		rect.height_px = bar_px - rect.y_px;
 	} else if (rect.width_px < px(overlay, WIDTH_MM)) {
-		rect = (struct overlay_rect){ 0, 0, overlay->width_px, bar_px };
+		rect = (struct rect){ 0, 0, overlay->width_px, bar_px };
 	} else if (bar.x_px + bar.width_px > rect.x_px) {
 		rect.height_px = bar_px; /* with many languages the bar extends below it */
 	}
 	return rect;
 }
 
-static struct overlay_rect head_rect(const struct overlay *overlay)
+static struct rect head_rect(const struct overlay *overlay)
 {
 	return overlay_head_rect(overlay, overlay_search_rect(overlay));
 }
 
 /* The place of list and keyboard: below the head, or on a flat panel above head and bar. */
-static struct overlay_rect body_rect(const struct overlay *overlay)
+static struct rect body_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = overlay_search_rect(overlay), head = head_rect(overlay);
+	struct rect rect = overlay_search_rect(overlay), head = head_rect(overlay);
 
 	if (overlay_is_flat(overlay)) {
 		rect.height_px = head.y_px - rect.y_px;
@@ -64,9 +64,9 @@ static struct overlay_rect body_rect(const struct overlay *overlay)
 }
 
 /* Below the list, or on a flat panel beside it. */
-struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay)
+struct rect overlay_keyboard_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = body_rect(overlay);
+	struct rect rect = body_rect(overlay);
 
 	rect.y_px += rect.height_px - overlay->search.keyboard.height_px;
 	rect.height_px = overlay->search.keyboard.height_px;
@@ -75,9 +75,9 @@ struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay)
 	return rect;
 }
 
-struct overlay_rect overlay_found_rect(const struct overlay *overlay)
+struct rect overlay_found_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = body_rect(overlay);
+	struct rect rect = body_rect(overlay);
 
 	if (overlay_is_flat(overlay)) {
 		rect.x_px = rect.width_px / 2;
@@ -88,14 +88,14 @@ struct overlay_rect overlay_found_rect(const struct overlay *overlay)
 	return rect;
 }
 
-static struct overlay_rect close_rect(const struct overlay *overlay)
+static struct rect close_rect(const struct overlay *overlay)
 {
 	return overlay_close_in(overlay, head_rect(overlay));
 }
 
-static struct overlay_rect field_rect(const struct overlay *overlay)
+static struct rect field_rect(const struct overlay *overlay)
 {
-	struct overlay_rect rect = close_rect(overlay);
+	struct rect rect = close_rect(overlay);
 	int left_px = head_rect(overlay).x_px + px(overlay, SIDE_MM);
 
 	rect.width_px = rect.x_px - px(overlay, THEME_GAP_MM) - left_px;
@@ -128,7 +128,7 @@ int overlay_found_scroll_most(const struct overlay *overlay)
 
 static void lay_out_keyboard(struct overlay *overlay, bool latin)
 {
-	struct overlay_rect body = body_rect(overlay);
+	struct rect body = body_rect(overlay);
 	struct keyboard *keyboard = &overlay->search.keyboard;
 
 	if (overlay_is_flat(overlay))
@@ -271,12 +271,12 @@ void overlay_search_picture(struct overlay *overlay, const char *name)
 struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
-	struct overlay_rect keys = overlay_keyboard_rect(overlay);
-	struct overlay_rect list = overlay_found_rect(overlay), head = head_rect(overlay);
-	struct overlay_rect field = field_rect(overlay);
+	struct rect keys = overlay_keyboard_rect(overlay);
+	struct rect list = overlay_found_rect(overlay), head = head_rect(overlay);
+	struct rect field = field_rect(overlay);
 	bool mirrored = theme_is_right_to_left(&overlay->theme);
 
-	if (overlay_rect_holds(head, x_px, y_px)) {
+	if (rect_holds(head, x_px, y_px)) {
 		float from_end_px = mirrored ? x_px - (float)field.x_px
 					     : (float)(field.x_px + field.width_px) - x_px;
 
@@ -287,12 +287,12 @@ struct overlay_action overlay_search_tap(const struct overlay *overlay, float x_
 			action = (struct overlay_action){ .kind = OVERLAY_KEY,
 							  .part = -1,
 							  .key = OVERLAY_KEY_CLEAR };
-	} else if (overlay_rect_holds(keys, x_px, y_px)) {
+	} else if (rect_holds(keys, x_px, y_px)) {
 		action.key = keyboard_key_at(&overlay->search.keyboard, x_px - (float)keys.x_px,
 					     y_px - (float)keys.y_px);
 		if (action.key >= 0)
 			action.kind = OVERLAY_KEY;
-	} else if (overlay_rect_holds(list, x_px, y_px)) {
+	} else if (rect_holds(list, x_px, y_px)) {
 		int row = (int)((y_px - (float)list.y_px + overlay->search.scroll_px) /
 				(float)overlay_found_row_px(overlay));
 
@@ -340,7 +340,7 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 
 static void draw_field(cairo_t *context, const struct overlay *overlay)
 {
-	struct overlay_rect rect = head_rect(overlay), field = field_rect(overlay);
+	struct rect rect = head_rect(overlay), field = field_rect(overlay);
 	bool mirrored = theme_is_right_to_left(&overlay->theme);
 	int icon_px = px(overlay, 4.0f), end_px = field.height_px;
 
@@ -362,7 +362,7 @@ static void draw_field(cairo_t *context, const struct overlay *overlay)
 
 void overlay_draw_search_head(struct overlay *overlay)
 {
-	struct overlay_rect rect = head_rect(overlay), close = close_rect(overlay);
+	struct rect rect = head_rect(overlay), close = close_rect(overlay);
 	cairo_t *context =
 		overlay_begin(overlay, BITMAP_SEARCH_HEAD, rect.width_px, rect.height_px);
 
@@ -480,7 +480,7 @@ static bool update_rows(struct overlay *overlay, int64_t step_ms)
 			row->fade.on = true;
 			draw_row(overlay, slot);
 		}
-		moving |= overlay_advance(&row->fade, step_ms);
+		moving |= fade_advance(&row->fade, step_ms);
 	}
 	return moving;
 }
@@ -488,11 +488,11 @@ static bool update_rows(struct overlay *overlay, int64_t step_ms)
 bool overlay_update_search(struct overlay *overlay, int64_t step_ms)
 {
 	struct search *search = &overlay->search;
-	bool moving = overlay_advance(&search->fade, step_ms);
+	bool moving = fade_advance(&search->fade, step_ms);
 
 	if (search->fade.alpha == 0 && !search->fade.on)
 		return moving;
-	moving |= overlay_advance(&search->press, step_ms);
+	moving |= fade_advance(&search->press, step_ms);
 	if (search->keyboard_dirty)
 		overlay_draw_keyboard(overlay);
 	if (search->head_dirty)
@@ -502,15 +502,15 @@ bool overlay_update_search(struct overlay *overlay, int64_t step_ms)
 }
 
 /* Sets the place of the key that was pressed last. Returns false if there is none. */
-bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out)
+bool overlay_pressed_rect(const struct overlay *overlay, struct rect *out)
 {
-	struct overlay_rect keys = overlay_keyboard_rect(overlay);
+	struct rect keys = overlay_keyboard_rect(overlay);
 	const struct keyboard_key *key;
 
 	if (overlay->search.pressed < 0)
 		return false;
 	key = &overlay->search.keyboard.keys[overlay->search.pressed];
-	*out = (struct overlay_rect){ keys.x_px + key->x_px, keys.y_px + key->y_px, key->width_px,
-				      key->height_px };
+	*out = (struct rect){ keys.x_px + key->x_px, keys.y_px + key->y_px, key->width_px,
+			      key->height_px };
 	return true;
 }

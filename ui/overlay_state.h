@@ -6,8 +6,11 @@
 #include "ui/callout.h"
 #include "ui/card.h"
 #include "ui/chrome.h"
+#include "ui/fade.h"
 #include "ui/keyboard.h"
+#include "ui/languages_view.h"
 #include "ui/overlay.h"
+#include "ui/screen.h"
 #include "ui/theme.h"
 
 enum { STRIPS = 16, LABELS = 64, STRIP_PX = 256 };
@@ -39,7 +42,6 @@ enum bitmap_id {
 	BITMAP_PICTURE_WORDS,
 	BITMAP_TOUR,
 	BITMAP_TOURS,
-	BITMAP_LANGUAGES,
 	BITMAP_DISC, /* one per tool */
 	BITMAP_KNOB = BITMAP_DISC + OVERLAY_TOOL_COUNT,
 	BITMAP_PUSH,
@@ -50,16 +52,6 @@ enum bitmap_id {
 	BITMAP_ROW = BITMAP_STRIP + STRIPS,
 	BITMAP_LABEL = BITMAP_ROW + SEARCH_ROWS,
 	BITMAP_COUNT = BITMAP_LABEL + LABELS,
-};
-
-struct drawing {
-	struct bitmap bitmap; /* empty: could not be drawn, left out */
-	uint32_t revision;
-};
-
-struct fade {
-	float alpha;
-	bool on;
 };
 
 struct part {
@@ -128,11 +120,6 @@ struct tours_menu {
 	bool dirty;
 };
 
-struct languages_menu {
-	struct fade fade; /* on: it is open */
-	bool dirty;
-};
-
 struct tour_panel {
 	struct fade fade; /* fade.on: nothing else takes its place */
 	bool on, paused, dirty;
@@ -144,7 +131,7 @@ struct tools_panel {
 	unsigned offered;
 	struct overlay_tools now;
 	struct fade fade[OVERLAY_TOOL_COUNT]; /* fade.on: the disc is visible */
-	struct overlay_rect drawn;            /* the size for which the discs were drawn */
+	struct rect drawn;                    /* the size for which the discs were drawn */
 	bool dirty;
 };
 
@@ -153,9 +140,7 @@ struct overlay {
 	struct picture_source pictures;
 	struct theme theme;
 	struct overlay_comfort comfort;
-	char *languages[OVERLAY_LANGUAGES_MAX];
-	uint32_t language_count;
-	int language; /* index of the current language */
+	struct languages languages;
 
 	struct part *parts;
 	uint32_t part_count;
@@ -182,13 +167,15 @@ struct overlay {
 	struct gallery gallery;
 	struct tools_panel tools;
 	struct tours_menu tours;
-	struct languages_menu menu;
+	struct languages_view languages_view;
 	struct tour_panel tour;
 
-	struct drawing drawings[BITMAP_COUNT];
+	struct sprite sprites[BITMAP_COUNT];
 	int64_t then_ms; /* time of the last update; 0: none yet */
 };
 
+/* The layout as it is now. */
+struct screen overlay_screen(const struct overlay *overlay);
 /* Places of the elements, pixels of the panel (overlay_place.c). */
 bool overlay_is_portrait(const struct overlay *overlay);
 /* In reach mode, the line below which all controls are; else 0. */
@@ -198,32 +185,29 @@ bool overlay_offers_reach(const struct overlay *overlay);
 /* Reach mode on a wide panel: page and search lie flat, with their head beside the bar. */
 bool overlay_is_flat(const struct overlay *overlay);
 /* The place of a page or the search beside the model. */
-struct overlay_rect overlay_half_rect(const struct overlay *overlay);
-struct overlay_rect overlay_page_rect(const struct overlay *overlay); /* all of the paper */
-struct overlay_rect
+struct rect overlay_half_rect(const struct overlay *overlay);
+struct rect overlay_page_rect(const struct overlay *overlay); /* all of the paper */
+struct rect
 overlay_view_rect(const struct overlay *overlay); /* the visible window on the article */
 /* The card, whether it is open or not. */
-struct overlay_rect overlay_card_rect(const struct overlay *overlay);
+struct rect overlay_card_rect(const struct overlay *overlay);
 /* The bar. */
-struct overlay_rect overlay_chrome_rect(const struct overlay *overlay);
+struct rect overlay_chrome_rect(const struct overlay *overlay);
 /* These three have the size of their bitmaps, which must be drawn before. */
-struct overlay_rect overlay_help_rect(const struct overlay *overlay);
+struct rect overlay_help_rect(const struct overlay *overlay);
 /* See above. */
-struct overlay_rect overlay_invitation_rect(const struct overlay *overlay);
+struct rect overlay_invitation_rect(const struct overlay *overlay);
 /* See above. */
-struct overlay_rect overlay_question_rect(const struct overlay *overlay);
-struct overlay_rect
-overlay_close_rect(const struct overlay *overlay); /* close control of the page */
+struct rect overlay_question_rect(const struct overlay *overlay);
+struct rect overlay_close_rect(const struct overlay *overlay); /* close control of the page */
 /* The control that widens the page; empty if there is none. */
-struct overlay_rect overlay_widen_rect(const struct overlay *overlay);
+struct rect overlay_widen_rect(const struct overlay *overlay);
 /* The head of a page or the search: the line with the control that closes it. */
-struct overlay_rect overlay_head_rect(const struct overlay *overlay, struct overlay_rect paper);
+struct rect overlay_head_rect(const struct overlay *overlay, struct rect paper);
 /* The control that closes, at the end of a head. */
-struct overlay_rect overlay_close_in(const struct overlay *overlay, struct overlay_rect head);
-/* Returns true if the point is in the rectangle. */
-bool overlay_rect_holds(struct overlay_rect rect, float x_px, float y_px);
+struct rect overlay_close_in(const struct overlay *overlay, struct rect head);
 /* A rectangle of that size, centred in the scene, on the lowest line that the scene may use. */
-struct overlay_rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px);
+struct rect overlay_above_floor(const struct overlay *overlay, int width_px, int height_px);
 /* Returns the largest scroll position of the page; 0 without one. */
 int overlay_scroll_most(const struct overlay *overlay);
 
@@ -259,13 +243,11 @@ void overlay_end(struct overlay *overlay, enum bitmap_id id, cairo_t *context);
 /* Draws the control that closes a page or the search at the origin. */
 void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int width_px,
 			int height_px);
-/* Advances a fade by step_ms. Returns true if it still moves. */
-bool overlay_advance(struct fade *fade, int64_t step_ms);
 
 /* overlay_search.c */
-struct overlay_rect overlay_search_rect(const struct overlay *overlay); /* all of the paper */
-struct overlay_rect overlay_keyboard_rect(const struct overlay *overlay);
-struct overlay_rect overlay_found_rect(const struct overlay *overlay); /* the list of results */
+struct rect overlay_search_rect(const struct overlay *overlay); /* all of the paper */
+struct rect overlay_keyboard_rect(const struct overlay *overlay);
+struct rect overlay_found_rect(const struct overlay *overlay); /* the list of results */
 /* Returns the height of a row of the list. */
 int overlay_found_row_px(const struct overlay *overlay);
 /* Returns the largest scroll position of the list. */
@@ -285,13 +267,12 @@ bool overlay_update_search(struct overlay *overlay, int64_t step_ms);
 void overlay_draw_search_head(struct overlay *overlay);
 void overlay_draw_keyboard(struct overlay *overlay);
 /* Sets the place of the last pressed key. Returns false if there is none. */
-bool overlay_pressed_rect(const struct overlay *overlay, struct overlay_rect *out);
+bool overlay_pressed_rect(const struct overlay *overlay, struct rect *out);
 
 /* overlay_gallery.c: the place of a picture that is not zoomed. */
-struct overlay_rect overlay_gallery_rect(const struct overlay *overlay);
+struct rect overlay_gallery_rect(const struct overlay *overlay);
 /* The place of one of its buttons. */
-struct overlay_rect overlay_gallery_button(const struct overlay *overlay,
-					   enum gallery_button button);
+struct rect overlay_gallery_button(const struct overlay *overlay, enum gallery_button button);
 /* Sets left, top, width, height of a picture. Returns false if it is not drawn yet. */
 bool overlay_gallery_place(const struct overlay *overlay, int picture, float place_px[4]);
 /* Returns what a tap on the gallery means. */
@@ -303,9 +284,9 @@ void overlay_draw_gallery_buttons(struct overlay *overlay);
 bool overlay_update_gallery(struct overlay *overlay, int64_t step_ms);
 
 /* overlay_tour.c: the place of the tour's panel. */
-struct overlay_rect overlay_tour_rect(const struct overlay *overlay);
+struct rect overlay_tour_rect(const struct overlay *overlay);
 /* The menu of tours. */
-struct overlay_rect overlay_menu_rect(const struct overlay *overlay);
+struct rect overlay_menu_rect(const struct overlay *overlay);
 /* Returns true if a tour runs and nothing else takes the panel's place. */
 bool overlay_tour_shows(const struct overlay *overlay);
 /* Return what a tap on the panel or the menu means. */
@@ -318,12 +299,6 @@ void overlay_drop_tours(struct tour_entry *entries);
 void overlay_picture_of_tours(struct overlay *overlay, const char *name);
 bool overlay_update_tours(struct overlay *overlay, int64_t step_ms);
 
-/* overlay_languages.c: the place of the menu. */
-struct overlay_rect overlay_languages_rect(const struct overlay *overlay);
-/* Returns what a tap means while the menu is open; beside the menu, a tap closes it. */
-struct overlay_action overlay_languages_tap(const struct overlay *overlay, float x_px, float y_px);
-bool overlay_update_languages(struct overlay *overlay, int64_t step_ms);
-
 /* overlay_tools.c: the knobs; centres in pixels of the panel. */
 struct overlay_knobs {
 	float light[2], turn[2], push[2];
@@ -331,7 +306,7 @@ struct overlay_knobs {
 	float line_px, thick_px; /* half the length and half the thickness of the section's line */
 };
 /* The place of a tool's disc. */
-struct overlay_rect overlay_tool_rect(const struct overlay *overlay, int tool);
+struct rect overlay_tool_rect(const struct overlay *overlay, int tool);
 /* Returns true if the tool is on and its place is free. */
 bool overlay_tool_shows(const struct overlay *overlay, int tool);
 /* Top and left edge of the visible discs; the panel's height and width if there are none. */

@@ -58,7 +58,7 @@ static int head_px(const struct overlay *overlay)
 /* The size of a disc: both must fit beside each other. */
 static int disc_px(const struct overlay *overlay)
 {
-	const struct overlay_rect scene = overlay_scene_rect(overlay);
+	const struct rect scene = overlay_scene_rect(overlay);
 	const int gap = px(overlay, THEME_GAP_MM), padding = px(overlay, PADDING_MM);
 	const int top =
 		overlay_reach_top(overlay) > scene.y_px ? overlay_reach_top(overlay) : scene.y_px;
@@ -74,45 +74,38 @@ static int disc_px(const struct overlay *overlay)
 	return side > 1 ? side : 1;
 }
 
-struct overlay_rect overlay_tool_rect(const struct overlay *overlay, int tool)
+struct rect overlay_tool_rect(const struct overlay *overlay, int tool)
 {
-	const struct overlay_rect scene = overlay_scene_rect(overlay);
+	const struct rect scene = overlay_scene_rect(overlay);
 	const int gap = px(overlay, THEME_GAP_MM), side = disc_px(overlay);
 	const int width = side + 2 * px(overlay, PADDING_MM);
 	const int height = side + head_px(overlay) + px(overlay, PADDING_MM);
 	/* The first offered tool is the outermost, whatever is on. */
 	const int place = tool > 0 && overlay->tools.offered & tool_bits[0] ? 1 : 0;
 
-	return (struct overlay_rect){ scene.x_px + scene.width_px - (place + 1) * (width + gap),
-				      overlay_above_floor(overlay, 0, 0).y_px - height, width,
-				      height };
-}
-
-static bool meet(struct overlay_rect a, struct overlay_rect b)
-{
-	return a.x_px < b.x_px + b.width_px && b.x_px < a.x_px + a.width_px &&
-	       a.y_px < b.y_px + b.height_px && b.y_px < a.y_px + a.height_px;
+	return (struct rect){ scene.x_px + scene.width_px - (place + 1) * (width + gap),
+			      overlay_above_floor(overlay, 0, 0).y_px - height, width, height };
 }
 
 /* Text has priority over controls: a disc hides, but its tool stays on and keeps its effect. */
 bool overlay_tool_shows(const struct overlay *overlay, int tool)
 {
-	const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
+	const struct rect rect = overlay_tool_rect(overlay, tool);
 
 	if (!(overlay->tools.now.on & overlay_tools_offered(overlay) & tool_bits[tool]) ||
 	    overlay->gallery.fade.on || overlay->invitation.on)
 		return false;
-	if (overlay->search.fade.on && meet(rect, overlay_search_rect(overlay)))
+	if (overlay->search.fade.on && rect_meets(rect, overlay_search_rect(overlay)))
 		return false;
-	if (overlay->page_part >= 0 && meet(rect, overlay_page_rect(overlay)))
+	if (overlay->page_part >= 0 && rect_meets(rect, overlay_page_rect(overlay)))
 		return false;
-	if (overlay->card_part >= 0 && meet(rect, overlay_card_rect(overlay)))
+	if (overlay->card_part >= 0 && rect_meets(rect, overlay_card_rect(overlay)))
 		return false;
-	if (overlay->help.on && meet(rect, overlay_help_rect(overlay)))
+	if (overlay->help.on && rect_meets(rect, overlay_help_rect(overlay)))
 		return false;
-	if (overlay_choosing(overlay) && meet(rect, overlay_menu_rect(overlay)))
+	if (overlay_choosing(overlay) && rect_meets(rect, overlay_menu_rect(overlay)))
 		return false;
-	return !overlay_tour_shows(overlay) || !meet(rect, overlay_tour_rect(overlay));
+	return !overlay_tour_shows(overlay) || !rect_meets(rect, overlay_tour_rect(overlay));
 }
 
 int overlay_tools_top(const struct overlay *overlay)
@@ -140,7 +133,7 @@ int overlay_tools_left(const struct overlay *overlay)
 static void ring_of(const struct overlay *overlay, int tool, float *x_px, float *y_px,
 		    float *radius_px)
 {
-	const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
+	const struct rect rect = overlay_tool_rect(overlay, tool);
 	const float side = (float)disc_px(overlay);
 
 	*x_px = (float)rect.x_px + (float)rect.width_px / 2;
@@ -154,18 +147,19 @@ bool overlay_on_tools(const struct overlay *overlay, float x_px, float y_px)
 {
 	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++)
 		if (overlay_tool_shows(overlay, tool) &&
-		    overlay_rect_holds(overlay_tool_rect(overlay, tool), x_px, y_px))
+		    rect_holds(overlay_tool_rect(overlay, tool), x_px, y_px))
 			return true;
 	return false;
 }
 
 enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px, float y_px)
 {
+	const struct screen screen = overlay_screen(overlay);
 	float x, y, radius;
 
 	if (overlay->question.on ||
-	    (overlay->menu.fade.on &&
-	     overlay_rect_holds(overlay_languages_rect(overlay), x_px, y_px)))
+	    (overlay->languages_view.fade.on &&
+	     rect_holds(languages_view_rect(&screen, &overlay->languages), x_px, y_px)))
 		return OVERLAY_HANDLE_NONE;
 	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
 		if (!overlay_tool_shows(overlay, tool))
@@ -198,7 +192,7 @@ void overlay_handle_place(const struct overlay *overlay, enum overlay_handle han
 static void draw_disc(struct overlay *overlay, int tool)
 {
 	static const enum ui_string names[OVERLAY_TOOL_COUNT] = { UI_LIGHT, UI_SECTION };
-	const struct overlay_rect rect = overlay_tool_rect(overlay, tool);
+	const struct rect rect = overlay_tool_rect(overlay, tool);
 	const enum bitmap_id id = (enum bitmap_id)(BITMAP_DISC + tool);
 	cairo_t *context = overlay_begin(overlay, id, rect.width_px, rect.height_px);
 	const double turn = 4 * acos(0.0), line = px(overlay, 0.35f);
@@ -285,7 +279,7 @@ static void draw_line(struct overlay *overlay)
 bool overlay_update_tools(struct overlay *overlay, int64_t step_ms)
 {
 	struct tools_panel *tools = &overlay->tools;
-	const struct overlay_rect rect = overlay_tool_rect(overlay, 0);
+	const struct rect rect = overlay_tool_rect(overlay, 0);
 	bool moving = false;
 
 	if (!tools->offered)
@@ -297,7 +291,7 @@ bool overlay_update_tools(struct overlay *overlay, int64_t step_ms)
 
 		overlay->callouts_dirty |= shows != tools->fade[tool].on;
 		tools->fade[tool].on = shows;
-		moving |= overlay_advance(&tools->fade[tool], step_ms);
+		moving |= fade_advance(&tools->fade[tool], step_ms);
 	}
 	if (tools->dirty && tools->now.on) {
 		tools->drawn = rect;

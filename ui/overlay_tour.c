@@ -160,9 +160,9 @@ static PangoLayout *lay_out_caption(const struct overlay *overlay, int *height_p
 	}
 }
 
-struct overlay_rect overlay_tour_rect(const struct overlay *overlay)
+struct rect overlay_tour_rect(const struct overlay *overlay)
 {
-	const struct bitmap *bitmap = &overlay->drawings[BITMAP_TOUR].bitmap;
+	const struct bitmap *bitmap = &overlay->sprites[BITMAP_TOUR].bitmap;
 
 	return overlay_above_floor(overlay, bitmap->width_px, bitmap->height_px);
 }
@@ -194,7 +194,7 @@ static int cross_width(const struct overlay *overlay)
 struct overlay_action overlay_tour_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
-	struct overlay_rect panel = overlay_tour_rect(overlay);
+	struct rect panel = overlay_tour_rect(overlay);
 	int button_px, right_px = panel.x_px + panel.width_px - cross_width(overlay);
 	bool is_head = y_px < (float)(panel.y_px + head_height(overlay));
 
@@ -308,7 +308,7 @@ static void draw_panel(struct overlay *overlay)
 /* ---- the menu ---- */
 
 struct menu {
-	struct overlay_rect all;
+	struct rect all;
 	int head_px, row_px, columns;
 };
 
@@ -333,7 +333,7 @@ static struct menu lay_out_menu(const struct overlay *overlay)
 	return menu;
 }
 
-struct overlay_rect overlay_menu_rect(const struct overlay *overlay)
+struct rect overlay_menu_rect(const struct overlay *overlay)
 {
 	return lay_out_menu(overlay).all;
 }
@@ -360,7 +360,7 @@ struct overlay_action overlay_menu_tap(const struct overlay *overlay, float x_px
 
 /* Draws title and picture of a tour, and its caption if it fits. */
 static void draw_entry(struct overlay *overlay, cairo_t *context, const struct tour_entry *entry,
-		       struct overlay_rect at)
+		       struct rect at)
 {
 	const bool from_right = theme_is_right_to_left(&overlay->theme);
 	int gap_px = px(overlay, THEME_GAP_MM), side_px = at.height_px - gap_px;
@@ -420,10 +420,9 @@ static void draw_menu(struct overlay *overlay)
 		  px(overlay, ICON_MM));
 	for (int i = 0; i < (int)overlay->tours.count; i++)
 		draw_entry(overlay, context, &overlay->tours.entries[i],
-			   (struct overlay_rect){
-				   width_px * (i % menu.columns) / menu.columns + padding,
-				   menu.head_px + i / menu.columns * menu.row_px,
-				   width_px / menu.columns - 2 * padding, menu.row_px });
+			   (struct rect){ width_px * (i % menu.columns) / menu.columns + padding,
+					  menu.head_px + i / menu.columns * menu.row_px,
+					  width_px / menu.columns - 2 * padding, menu.row_px });
 	overlay_end(overlay, BITMAP_TOURS, context);
 }
 
@@ -444,6 +443,6 @@ bool overlay_update_tours(struct overlay *overlay, int64_t step_ms)
 		draw_menu(overlay);
 		overlay->tours.dirty = false;
 	}
-	moving = overlay_advance(&overlay->tour.fade, step_ms);
-	return overlay_advance(&overlay->tours.fade, step_ms) || moving;
+	moving = fade_advance(&overlay->tour.fade, step_ms);
+	return fade_advance(&overlay->tours.fade, step_ms) || moving;
 }

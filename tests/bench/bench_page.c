@@ -63,7 +63,7 @@ bool __wrap_overlay_update(struct overlay *overlay, int64_t now_ms)
 
 static bool is_whole(const struct overlay *overlay)
 {
-	const struct overlay_rect view = overlay_view_rect(overlay);
+	const struct rect view = overlay_view_rect(overlay);
 	const int last = (view.height_px - 1) / overlay->strip_px;
 	const int end = article_height_px(overlay->article) / overlay->strip_px;
 

@@ -147,7 +147,7 @@ static void settle(struct overlay *overlay)
 
 static void give_anchors(struct overlay *overlay)
 {
-	struct overlay_rect scene = overlay_scene_rect(overlay);
+	struct rect scene = overlay_scene_rect(overlay);
 	struct overlay_anchor anchors[PARTS] = { 0 };
 
 	for (int i = 0; i < PARTS; i++) {
@@ -429,11 +429,11 @@ static void the_bar_stays_where_it_is(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720);
 	struct chrome before = overlay->chrome;
-	struct overlay_rect bar = overlay_chrome_rect(overlay);
+	struct rect bar = overlay_chrome_rect(overlay);
 
 	(void)state;
 	for (int mode = 0; mode < 4; mode++) {
-		struct overlay_rect now;
+		struct rect now;
 
 		overlay_set_comfort(overlay, (struct overlay_comfort){ mode & 1, mode & 2 });
 		now = overlay_chrome_rect(overlay);

@@ -110,7 +110,7 @@ static void screen(struct overlay *overlay, const char *name)
 
 static struct overlay_action tap_button(const struct overlay *overlay, enum gallery_button button)
 {
-	struct overlay_rect rect = overlay_gallery_button(overlay, button);
+	struct rect rect = overlay_gallery_button(overlay, button);
 
 	return overlay_tap(overlay, (float)rect.x_px + (float)rect.width_px / 2,
 			   (float)rect.y_px + (float)rect.height_px / 2);
@@ -119,7 +119,7 @@ static struct overlay_action tap_button(const struct overlay *overlay, enum gall
 static void a_tap_on_a_figure_opens_it(void **state)
 {
 	struct overlay *overlay = open_page(1920, 1080);
-	struct overlay_rect view = overlay_view_rect(overlay);
+	struct rect view = overlay_view_rect(overlay);
 	struct overlay_action action = { 0 };
 
 	(void)state;
@@ -153,7 +153,7 @@ static void fits_every_panel(void **state)
 	(void)state;
 	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
 		struct overlay *overlay = open_page(sizes[s][0], sizes[s][1]);
-		struct overlay_rect view = overlay_gallery_rect(overlay);
+		struct rect view = overlay_gallery_rect(overlay);
 
 		for (int picture = 0; picture < 3; picture++) {
 			float place[4];
@@ -174,7 +174,7 @@ static void fits_every_panel(void **state)
 static void a_pinch_zooms_about_the_fingers(void **state)
 {
 	struct overlay *overlay = open_page(1920, 1080);
-	struct overlay_rect view = overlay_gallery_rect(overlay);
+	struct rect view = overlay_gallery_rect(overlay);
 	float before[4], after[4], at_x, at_y;
 
 	(void)state;

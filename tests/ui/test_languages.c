@@ -76,7 +76,7 @@ static const struct chrome_button *menu_button(const struct overlay *overlay)
 
 static struct overlay_action tap_button(const struct overlay *overlay)
 {
-	const struct overlay_rect bar = overlay_chrome_rect(overlay);
+	const struct rect bar = overlay_chrome_rect(overlay);
 	const struct chrome_button *button = menu_button(overlay);
 
 	CHECK(button);
@@ -84,10 +84,17 @@ static struct overlay_action tap_button(const struct overlay *overlay)
 			   (float)bar.y_px + (float)bar.height_px / 2);
 }
 
+static struct rect menu_rect(const struct overlay *overlay)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	return languages_view_rect(&screen, &overlay->languages);
+}
+
 /* Where the fingers that choose each language come down: as large as a finger, and each once. */
 static void check_cells(const struct overlay *overlay)
 {
-	const struct overlay_rect all = overlay_languages_rect(overlay);
+	const struct rect all = menu_rect(overlay);
 	const int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
 	const int least_px = target_px - STEP_PX; /* by so much less than it is */
 	uint32_t felt[MANY] = { 0 };
@@ -103,11 +110,11 @@ static void check_cells(const struct overlay *overlay)
 			CHECK(overlay_covers(overlay, (float)x, (float)y));
 			if (action.kind != OVERLAY_LANGUAGE)
 				continue;
-			for (uint32_t i = 0; i < overlay->language_count; i++)
+			for (uint32_t i = 0; i < overlay->languages.count; i++)
 				felt[i] += strcmp(languages[i], action.language) == 0;
 		}
-	for (uint32_t i = 0; i < overlay->language_count; i++) {
-		if ((int)i == overlay->language)
+	for (uint32_t i = 0; i < overlay->languages.count; i++) {
+		if ((int)i == overlay->languages.current)
 			CHECK(felt[i] == 0);
 		else if (felt[i] * STEP_PX * STEP_PX < (uint32_t)(least_px * least_px))
 			fail_msg("%dx%d: %s is too small", overlay->width_px, overlay->height_px,
@@ -143,7 +150,7 @@ static void a_language_closes_the_menu_and_nothing_else(void **state)
 	struct overlay *overlay = open_overlay(1280, 720, 14);
 	const struct overlay_part part = { "Zentralturm", "Aus Stein.", "", true };
 	const struct overlay_part parts[PARTS] = { part, part, part };
-	struct overlay_rect all;
+	struct rect all;
 
 	(void)state;
 	CHECK(overlay_show_page(overlay, 0,
@@ -152,7 +159,7 @@ static void a_language_closes_the_menu_and_nothing_else(void **state)
 	overlay_show_languages(overlay, true);
 	leave_picture(overlay, "page");
 	CHECK(overlay_choosing_language(overlay) && overlay_page(overlay) == 0);
-	all = overlay_languages_rect(overlay);
+	all = menu_rect(overlay);
 	check_cells(overlay);
 	/* Beside it: it closes, and the page's own control is not meant. */
 	CHECK(overlay_tap(overlay, 1270, 10).kind == OVERLAY_LANGUAGES);
@@ -161,7 +168,7 @@ static void a_language_closes_the_menu_and_nothing_else(void **state)
 	CHECK(overlay_parts(overlay, parts, PARTS) == 0);
 	settle(overlay);
 	CHECK(!overlay_choosing_language(overlay) && overlay_page(overlay) == 0);
-	CHECK(overlay->menu.fade.alpha == 0);
+	CHECK(overlay->languages_view.fade.alpha == 0);
 	overlay_destroy(overlay);
 }
 
@@ -189,7 +196,7 @@ static void every_language_is_invited(void **state)
 	(void)state;
 	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
 		struct overlay *overlay = open_overlay(sizes[s][0], sizes[s][1], 25);
-		struct overlay_rect rect;
+		struct rect rect;
 
 		overlay_invite(overlay, true);
 		leave_picture(overlay, "invited");

@@ -115,7 +115,7 @@ static bool hides[PARTS]; /* the model does, of the parts */
 
 static void give_anchors(struct overlay *overlay)
 {
-	struct overlay_rect scene = overlay_scene_rect(overlay);
+	struct rect scene = overlay_scene_rect(overlay);
 	struct overlay_anchor anchors[PARTS] = { 0 };
 
 	for (int i = 0; i < PARTS; i++) {
@@ -180,7 +180,7 @@ static struct bitmap screen(struct overlay *overlay, const char *name)
 }
 
 /* How many pixels of a rectangle differ from the first one there. */
-static int painted(const struct bitmap *bitmap, struct overlay_rect rect)
+static int painted(const struct bitmap *bitmap, struct rect rect)
 {
 	int count = 0;
 	uint32_t first = 0;
@@ -298,7 +298,7 @@ static void shows_every_screen_on_every_panel(void **state)
 }
 
 /* The middle of a rectangle. */
-static struct overlay_action tap(const struct overlay *overlay, struct overlay_rect rect)
+static struct overlay_action tap(const struct overlay *overlay, struct rect rect)
 {
 	return overlay_tap(overlay, (float)rect.x_px + (float)rect.width_px / 2,
 			   (float)rect.y_px + (float)rect.height_px / 2);
@@ -307,7 +307,7 @@ static struct overlay_action tap(const struct overlay *overlay, struct overlay_r
 static void a_tap_means_what_is_under_it(void **state)
 {
 	struct overlay_action action;
-	struct overlay_rect chrome;
+	struct rect chrome;
 	struct album album;
 	struct overlay *overlay;
 
@@ -354,7 +354,7 @@ static void a_tap_means_what_is_under_it(void **state)
 static void a_page_scrolls_links_and_closes(void **state)
 {
 	struct overlay_action action = { 0 };
-	struct overlay_rect view;
+	struct rect view;
 	struct album album;
 	struct overlay *overlay;
 
@@ -398,7 +398,7 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 {
 	struct album album;
 	struct overlay *overlay;
-	struct overlay_rect half, bar;
+	struct rect half, bar;
 	const struct bytes html = { (const uint8_t *)pages[0], strlen(pages[0]) };
 	float read;
 
@@ -587,16 +587,16 @@ static void the_question_counts_down_in_the_language_that_is_set(void **state)
 	overlay = open_overlay(&album, 1280, 720);
 	overlay_ask(overlay, 9);
 	settle(overlay);
-	revision = overlay->drawings[BITMAP_QUESTION].revision;
+	revision = overlay->sprites[BITMAP_QUESTION].revision;
 	overlay_ask(overlay, 9);
 	settle(overlay);
-	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision);
+	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision);
 	overlay_ask(overlay, 8);
 	settle(overlay);
-	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision + 1);
+	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision + 1);
 	overlay_language(overlay, languages[1]);
 	settle(overlay);
-	CHECK(overlay->drawings[BITMAP_QUESTION].revision == revision + 2);
+	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision + 2);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
@@ -626,7 +626,7 @@ static void the_way_back_answers_where_there_is_one(void **state)
 {
 	struct album album;
 	struct overlay *overlay;
-	struct overlay_rect bar;
+	struct rect bar;
 	float x, y;
 
 	(void)state;
@@ -649,7 +649,7 @@ static void the_way_back_answers_where_there_is_one(void **state)
 /* A model without parts has no names to tap. */
 static void the_help_speaks_of_names_where_there_are_some(void **state)
 {
-	struct overlay_rect with, without;
+	struct rect with, without;
 	struct album album;
 	struct overlay *overlay;
 

@@ -121,7 +121,7 @@ static struct bitmap screen(struct overlay *overlay, const char *name)
 static struct overlay_action tap_key(const struct overlay *overlay, int key)
 {
 	const struct keyboard_key *k = &overlay->search.keyboard.keys[key];
-	struct overlay_rect keys = overlay_keyboard_rect(overlay);
+	struct rect keys = overlay_keyboard_rect(overlay);
 
 	return overlay_tap(overlay, (float)(keys.x_px + k->x_px) + (float)k->width_px / 2,
 			   (float)(keys.y_px + k->y_px) + (float)k->height_px / 2);
@@ -157,9 +157,9 @@ static const int sizes[][2] = { { 1920, 1080 }, { 1080, 1920 }, { 1280, 720 }, {
 /* Whether it all lies on the panel, beside one another, and keys are as large as a finger. */
 static void check_places(const struct overlay *overlay)
 {
-	struct overlay_rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
+	struct rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
 	const struct keyboard *keyboard = &overlay->search.keyboard;
-	struct overlay_rect bar;
+	struct rect bar;
 	int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
 
 	CHECK(all.x_px >= 0 && all.x_px + all.width_px <= overlay->width_px);
@@ -286,7 +286,7 @@ static void a_korean_syllable_loses_a_letter_at_a_time(void **state)
 static void a_letter_is_taken_back_and_the_field_emptied(void **state)
 {
 	struct overlay *overlay = open_overlay(1920, 1080);
-	struct overlay_rect all, rows;
+	struct rect all, rows;
 	struct overlay_action action = { 0 };
 	char before[SEARCH_QUERY_BYTES];
 
@@ -326,7 +326,7 @@ static void what_is_found_is_listed_and_tapped(void **state)
 {
 	static const uint32_t found[] = { 7, 2, 4, 99 };
 	struct overlay *overlay = open_overlay(1920, 1080);
-	struct overlay_rect rows;
+	struct rect rows;
 	struct overlay_action action;
 	struct bitmap bitmap;
 
@@ -365,7 +365,7 @@ static void what_is_found_is_listed_and_tapped(void **state)
 static void arabic_begins_at_the_right(void **state)
 {
 	struct overlay *overlay = open_overlay(1920, 1080);
-	struct overlay_rect all;
+	struct rect all;
 	struct bitmap bitmap;
 	int left = 0, right = 0;
 
@@ -395,7 +395,7 @@ static void the_list_scrolls_and_stays_inside(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720);
 	struct overlay_layer layers[OVERLAY_LAYERS_MAX];
-	struct overlay_rect rows;
+	struct rect rows;
 	struct overlay_action action;
 	uint32_t count;
 
@@ -426,7 +426,7 @@ static void page_card_and_search_take_turns(void **state)
 {
 	static const char page[] = "<p>A page.</p>";
 	struct overlay *overlay = open_overlay(1280, 720);
-	struct overlay_rect bar;
+	struct rect bar;
 	struct overlay_action action = { 0 };
 
 	(void)state;

@@ -98,7 +98,7 @@ static enum overlay_action_kind tap_button(const struct overlay *overlay,
 					   enum chrome_button_kind kind)
 {
 	const struct chrome_button *button = button_of(overlay, kind);
-	const struct overlay_rect bar = overlay_chrome_rect(overlay);
+	const struct rect bar = overlay_chrome_rect(overlay);
 
 	return overlay_tap(overlay, (float)(bar.x_px + button->x_px) + (float)button->width_px / 2,
 			   (float)bar.y_px + (float)bar.height_px / 2)
@@ -249,7 +249,7 @@ static void what_is_read_comes_before_what_is_held(void **state)
 	static const char html[] = "<h1>A tower</h1><p>Of stone.</p>";
 	struct overlay *wide = open_overlay(1920, 1080, BOTH);
 	struct overlay *narrow = open_overlay(800, 1280, BOTH);
-	struct overlay_rect rect;
+	struct rect rect;
 
 	(void)state;
 	show(wide, BOTH);
@@ -279,7 +279,7 @@ static void tools_at_rest_cost_no_frame(void **state)
 
 	(void)state;
 	show(overlay, BOTH);
-	const uint32_t drawn = overlay->drawings[BITMAP_DISC].revision;
+	const uint32_t drawn = overlay->sprites[BITMAP_DISC].revision;
 
 	CHECK(drawn > 0);
 	for (int i = 0; i < 20; i++) { /* a knob moves without being drawn anew */
@@ -287,7 +287,7 @@ static void tools_at_rest_cost_no_frame(void **state)
 				   &(struct overlay_tools){ .on = BOTH, .push = (float)i / 20 });
 		CHECK(!overlay_update(overlay, 100000 + 20 * i));
 	}
-	CHECK(overlay->drawings[BITMAP_DISC].revision == drawn);
+	CHECK(overlay->sprites[BITMAP_DISC].revision == drawn);
 	overlay_destroy(overlay);
 }
 
