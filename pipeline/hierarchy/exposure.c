@@ -1,55 +1,91 @@
 /* Estimates the visibility of vertices: converts the scan to voxels and casts rays through them
- * from each vertex to a few viewpoints. */
+ * from the air in front of the surface to a few viewpoints. */
 #include "pipeline/hierarchy/exposure.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 
 #include "base/parallel.h"
 #include "base/progress.h"
 
 enum {
 	SIDE = 256, /* voxels along the longest axis */
-	VOXEL_STEPS = 65536 / SIDE,
-	VIEWPOINTS = 8, /* per vertex; neighbours have others, so a patch has many */
+	BRICK = 4,  /* a brick of so many voxels a side is one word of 64 bits, x fastest */
+	BRICKS = SIDE / BRICK,
+	MARGIN = 2,     /* voxels of air at the sides and above, where rays may start */
+	VIEWPOINTS = 8, /* of a voxel; neighbours have others, so a patch has many */
+	KNOWN = 1 << VIEWPOINTS,
 	PIECE_VERTICES = 4096
 };
 
+/* Distance in front of the surface at which rays start: outside the voxels that it fills itself. */
+#define START_VOXELS 1.5f
+
 struct exposure {
-	struct lattice_mesh *mesh;
-	uint8_t *solid;            /* one bit per voxel, x fastest: material or enclosed by it */
-	float low[3], high[3];     /* bounding box of the model, in voxels */
-	struct progress *progress; /* counts vertices */
+	uint64_t solid[BRICKS * BRICKS * BRICKS]; /* material, or enclosed by it */
+	/* For each voxel, once it is KNOWN: a bit for each viewpoint that it is seen from. */
+	uint16_t seen_from[SIDE * SIDE * SIDE];
+	float low[3], high[3]; /* bounding box of the model, in voxels */
 };
 
-static void place_of(float out[3], const struct lattice_vertex *vertex)
+/* The model keeps away from the sides and the top of the grid. It stands on its floor, because no
+ * camera is below. */
+static float to_voxels(uint16_t position, int axis)
 {
-	for (int k = 0; k < 3; k++)
-		out[k] = (float)vertex->position[k] / VOXEL_STEPS;
+	const float scale = (float)(SIDE - 2 * MARGIN) / 65536.0f;
+
+	return (float)position * scale + (axis < 2 ? MARGIN : 0);
 }
 
-static uint32_t bit_of(const int voxel[3])
+static uint32_t brick_of(const int voxel[3])
 {
-	return (uint32_t)((voxel[2] * SIDE + voxel[1]) * SIDE + voxel[0]);
+	return (uint32_t)((voxel[2] / BRICK * BRICKS + voxel[1] / BRICK) * BRICKS +
+			  voxel[0] / BRICK);
+}
+
+static uint64_t bit_in_brick(const int voxel[3])
+{
+	return UINT64_C(1) << ((voxel[2] % BRICK * BRICK + voxel[1] % BRICK) * BRICK +
+			       voxel[0] % BRICK);
 }
 
 static bool is_solid(const struct exposure *exposure, const int voxel[3])
 {
-	uint32_t bit = bit_of(voxel);
+	return exposure->solid[brick_of(voxel)] & bit_in_brick(voxel);
+}
 
-	return exposure->solid[bit / 8] >> bit % 8 & 1;
+static int clamp_voxel(float at)
+{
+	return at < 0.0f ? 0 : at >= (float)SIDE ? SIDE - 1 : (int)at;
+}
+
+int exposure_create(struct exposure **out)
+{
+	void *memory = mmap(NULL, sizeof(**out), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
+			    -1, 0);
+
+	*out = memory == MAP_FAILED ? NULL : memory;
+	return *out ? 0 : -ENOMEM;
+}
+
+void exposure_destroy(struct exposure *exposure)
+{
+	if (exposure)
+		munmap(exposure, sizeof(*exposure));
 }
 
 /* Marks the voxels of sample points on the triangle, at most half a voxel apart. */
-static void fill_triangle(struct exposure *exposure, const uint32_t triangle[3])
+void exposure_add(struct exposure *exposure, const uint16_t corners[3][3])
 {
 	float at[3][3], longest = 0;
 	uint32_t parts;
 
 	for (int c = 0; c < 3; c++)
-		place_of(at[c], &exposure->mesh->vertices[triangle[c]]);
+		for (int k = 0; k < 3; k++)
+			at[c][k] = to_voxels(corners[c][k], k);
 	for (int c = 0; c < 3; c++)
 		for (int k = 0; k < 3; k++)
 			longest = fmaxf(longest, fabsf(at[c][k] - at[(c + 1) % 3][k]));
@@ -57,212 +93,335 @@ static void fill_triangle(struct exposure *exposure, const uint32_t triangle[3])
 	for (uint32_t u = 0; u <= parts; u++)
 		for (uint32_t v = 0; u + v <= parts; v++) {
 			float a = (float)u / (float)parts, b = (float)v / (float)parts;
+			uint64_t bit, *brick;
 			int voxel[3];
-			uint32_t bit;
 
-			for (int k = 0; k < 3; k++) {
-				float x = at[0][k] + a * (at[1][k] - at[0][k]) +
-					  b * (at[2][k] - at[0][k]);
-
-				voxel[k] = (int)fminf(fmaxf(x, 0), SIDE - 1);
-			}
-			bit = bit_of(voxel);
-			exposure->solid[bit / 8] |= (uint8_t)(1u << bit % 8);
+			for (int k = 0; k < 3; k++)
+				voxel[k] = clamp_voxel(at[0][k] + a * (at[1][k] - at[0][k]) +
+						       b * (at[2][k] - at[0][k]));
+			bit = bit_in_brick(voxel);
+			brick = &exposure->solid[brick_of(voxel)];
+			/* Mostly it is marked already. */
+			if (!(__atomic_load_n(brick, __ATOMIC_RELAXED) & bit))
+				__atomic_fetch_or(brick, bit, __ATOMIC_RELAXED);
 		}
 }
 
-struct queue {
-	uint32_t *bits, count, room;
+/* ---- enclosed air */
+
+/* The voxels of a brick at one of its faces: the first or last along an axis. */
+static const uint64_t first_of[3] = { 0x1111111111111111, 0x000f000f000f000f, 0x000000000000ffff };
+static const uint64_t last_of[3] = { 0x8888888888888888, 0xf000f000f000f000, 0xffff000000000000 };
+static const int stride[3] = { 1, BRICK, BRICK *BRICK };          /* bits within a brick */
+static const int brick_stride[3] = { 1, BRICKS, BRICKS *BRICKS }; /* bricks */
+
+/* Bricks whose air has been reached from further voxels since they were looked at. */
+struct flood {
+	const uint64_t *solid;
+	uint64_t *reached;
+	uint32_t *queue, first, count; /* a ring; each brick is in it once at most */
+	bool *queued;
 };
 
-static int reach(struct queue *queue, uint8_t *reached, const struct exposure *exposure,
-		 const int voxel[3])
+enum { BRICK_COUNT = BRICKS * BRICKS * BRICKS };
+
+static void reach(struct flood *flood, uint32_t brick, uint64_t voxels)
 {
-	uint32_t bit = bit_of(voxel);
-
-	if ((exposure->solid[bit / 8] | reached[bit / 8]) >> bit % 8 & 1)
-		return 0;
-	if (queue->count == queue->room) {
-		uint32_t room = 2 * queue->room + 4096;
-		uint32_t *grown = realloc(queue->bits, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		queue->bits = grown;
-		queue->room = room;
-	}
-	reached[bit / 8] |= (uint8_t)(1u << bit % 8);
-	queue->bits[queue->count++] = bit;
-	return 0;
+	voxels &= ~flood->solid[brick] & ~flood->reached[brick];
+	if (!voxels)
+		return;
+	flood->reached[brick] |= voxels;
+	if (flood->queued[brick])
+		return;
+	flood->queued[brick] = true;
+	flood->queue[(flood->first + flood->count++) % BRICK_COUNT] = brick;
 }
 
-static int reach_sides_and_top(struct queue *queue, uint8_t *reached,
-			       const struct exposure *exposure)
+static void reach_sides_and_top(struct flood *flood)
 {
-	int rc = 0;
+	for (uint32_t i = 0; i < BRICKS; i++)
+		for (uint32_t j = 0; j < BRICKS; j++) {
+			const uint32_t last = BRICKS - 1, row = BRICKS, layer = BRICKS * BRICKS;
 
-	for (int i = 0; i < SIDE; i++)
-		for (int j = 0; rc == 0 && j < SIDE; j++) {
-			const int starts[5][3] = { { 0, i, j },
-						   { SIDE - 1, i, j },
-						   { i, 0, j },
-						   { i, SIDE - 1, j },
-						   { i, j, SIDE - 1 } };
-
-			for (int k = 0; rc == 0 && k < 5; k++)
-				rc = reach(queue, reached, exposure, starts[k]);
+			reach(flood, i * layer + j * row, first_of[0]);
+			reach(flood, i * layer + j * row + last, last_of[0]);
+			reach(flood, i * layer + j, first_of[1]);
+			reach(flood, i * layer + last * row + j, last_of[1]);
+			reach(flood, last * layer + i * row + j, last_of[2]);
 		}
-	return rc;
+}
+
+/* Spreads within a brick, then to its neighbours. */
+static void spread(struct flood *flood, uint32_t brick)
+{
+	const uint32_t at[3] = { brick % BRICKS, brick / BRICKS % BRICKS,
+				 brick / (BRICKS * BRICKS) };
+	uint64_t air = ~flood->solid[brick], reached = flood->reached[brick], before;
+
+	do {
+		before = reached;
+		for (int k = 0; k < 3; k++)
+			reached |= ((reached & ~last_of[k]) << stride[k] |
+				    (reached & ~first_of[k]) >> stride[k]) &
+				   air;
+	} while (reached != before);
+	flood->reached[brick] = reached;
+	for (int k = 0; k < 3; k++) {
+		int across = (BRICK - 1) * stride[k];
+
+		if (at[k] > 0)
+			reach(flood, brick - (uint32_t)brick_stride[k],
+			      (reached & first_of[k]) << across);
+		if (at[k] < BRICKS - 1)
+			reach(flood, brick + (uint32_t)brick_stride[k],
+			      (reached & last_of[k]) >> across);
+	}
 }
 
 /* Marks enclosed air as solid: no camera gets there. Examples are hollow towers and statues that
  * are open below. */
 static int close_hollows(struct exposure *exposure)
 {
-	uint8_t *reached = calloc(SIDE * SIDE / 8, SIDE);
-	struct queue queue = { 0 };
-	int rc = reached ? reach_sides_and_top(&queue, reached, exposure) : -ENOMEM;
+	struct flood flood = {
+		.solid = exposure->solid,
+		.reached = calloc(BRICK_COUNT, sizeof(*flood.reached)),
+		.queue = calloc(BRICK_COUNT, sizeof(*flood.queue)),
+		.queued = calloc(BRICK_COUNT, sizeof(*flood.queued)),
+	};
+	int rc = flood.reached && flood.queue && flood.queued ? 0 : -ENOMEM;
 
-	while (rc == 0 && queue.count > 0) {
-		uint32_t bit = queue.bits[--queue.count];
-		int at[3] = { (int)(bit % SIDE), (int)(bit / SIDE % SIDE),
-			      (int)(bit / (SIDE * SIDE)) };
+	if (rc == 0)
+		reach_sides_and_top(&flood);
+	while (rc == 0 && flood.count > 0) {
+		uint32_t brick = flood.queue[flood.first];
 
-		for (int k = 0; k < 3; k++)
-			for (int step = -1; rc == 0 && step < 2; step += 2) {
-				int to[3] = { at[0], at[1], at[2] };
-
-				to[k] += step;
-				if (to[k] >= 0 && to[k] < SIDE)
-					rc = reach(&queue, reached, exposure, to);
-			}
+		flood.first = (flood.first + 1) % BRICK_COUNT;
+		flood.count--;
+		flood.queued[brick] = false;
+		spread(&flood, brick);
 	}
-	for (uint32_t i = 0; rc == 0 && i < SIDE * SIDE / 8 * SIDE; i++)
-		exposure->solid[i] = (uint8_t)~reached[i];
-	free(queue.bits);
-	free(reached);
+	for (uint32_t i = 0; rc == 0 && i < BRICK_COUNT; i++)
+		exposure->solid[i] = ~flood.reached[i];
+	free(flood.reached);
+	free(flood.queue);
+	free(flood.queued);
 	return rc;
 }
 
-/* Traces a ray through the voxels between two points (Amanatides and Woo 1987). Returns true if no
- * solid voxel is on the way. */
-static bool is_free(const struct exposure *exposure, const float from[3], const float to[3])
+static void find_box(struct exposure *exposure)
 {
-	int at[3], step[3];
-	float next[3],
-		each[3]; /* ray parameter (0..1) at which the next voxel of each axis begins */
-
 	for (int k = 0; k < 3; k++) {
-		float d = to[k] - from[k], below = from[k] - floorf(from[k]);
-
-		at[k] = (int)floorf(from[k]);
-		step[k] = d < 0 ? -1 : 1;
-		each[k] = d == 0 ? INFINITY : 1 / fabsf(d);
-		next[k] = d == 0 ? INFINITY : (d < 0 ? below : 1 - below) * each[k];
+		exposure->low[k] = SIDE;
+		exposure->high[k] = 0;
 	}
-	for (;;) {
-		int k = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : next[1] < next[2] ? 1 : 2;
+	for (uint32_t i = 0; i < BRICK_COUNT; i++) {
+		const uint32_t at[3] = { i % BRICKS, i / BRICKS % BRICKS, i / (BRICKS * BRICKS) };
 
-		for (int i = 0; i < 3; i++)
-			if (at[i] < 0 || at[i] >= SIDE)
-				return true;
-		if (is_solid(exposure, at))
-			return false;
-		if (!(next[k] < 1))
-			return true;
-		at[k] += step[k];
-		next[k] += each[k];
+		if (!exposure->solid[i])
+			continue;
+		for (int k = 0; k < 3; k++) {
+			exposure->low[k] = fminf(exposure->low[k], (float)(at[k] * BRICK));
+			exposure->high[k] = fmaxf(exposure->high[k], (float)(at[k] + 1) * BRICK);
+		}
 	}
 }
 
-/* The n-th viewpoint of a vertex, in the box of twice the model's size above its lowest point. It
- * is a low-discrepancy sequence: multiples of powers of a root of x^4 = x + 1, as the golden ratio
- * is used in one dimension. It starts elsewhere for each vertex. */
-static void viewpoint(float out[3], const struct exposure *exposure, uint32_t vertex, uint32_t n)
+int exposure_close(struct exposure *exposure)
 {
-	static const float steps[3] = { 0.8191725f, 0.6710436f, 0.5497005f };
+	find_box(exposure);
+	return close_hollows(exposure);
+}
+
+/* ---- rays */
+
+/* A walk over cells of one size along a ray (Amanatides and Woo 1987). Parameters along the ray run
+ * from 0 to 1. */
+struct walk {
+	int at[3], step[3];
+	float next[3], each[3]; /* where the next cell of each axis begins, and how far apart */
+};
+
+static void walk_start(struct walk *walk, const float from[3], const float along[3], float size)
+{
+	for (int k = 0; k < 3; k++) {
+		float edge = (float)(walk->at[k] + (along[k] > 0.0f)) * size;
+
+		walk->step[k] = along[k] < 0.0f ? -1 : 1;
+		walk->each[k] = along[k] == 0.0f ? INFINITY : size / fabsf(along[k]);
+		walk->next[k] = along[k] == 0.0f ? INFINITY : (edge - from[k]) / along[k];
+	}
+}
+
+static int walk_axis(const struct walk *walk)
+{
+	const float *next = walk->next;
+
+	return next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : next[1] < next[2] ? 1 : 2;
+}
+
+/* Walks the voxels of one brick that is not empty. enter is where the ray comes in. */
+static bool brick_is_free(uint64_t solid, const int brick[3], const float from[3],
+			  const float along[3], float enter)
+{
+	struct walk walk;
+
+	for (int k = 0; k < 3; k++) {
+		int inside = (int)floorf(from[k] + enter * along[k]) - BRICK * brick[k];
+
+		walk.at[k] = BRICK * brick[k] + (inside < 0        ? 0
+						 : inside >= BRICK ? BRICK - 1
+								   : inside);
+	}
+	walk_start(&walk, from, along, 1.0f);
+	for (;;) {
+		int k = walk_axis(&walk);
+
+		if (solid & bit_in_brick(walk.at))
+			return false;
+		if (!(walk.next[k] < 1.0f))
+			return true;
+		walk.at[k] += walk.step[k];
+		if (walk.at[k] < BRICK * brick[k] || walk.at[k] >= BRICK * (brick[k] + 1))
+			return true;
+		walk.next[k] += walk.each[k];
+	}
+}
+
+/* Returns true if no solid voxel lies between two points; from is in the grid. */
+static bool is_free(const struct exposure *exposure, const float from[3], const float to[3])
+{
+	float along[3] = { to[0] - from[0], to[1] - from[1], to[2] - from[2] }, enter = 0.0f;
+	struct walk walk;
+
+	for (int k = 0; k < 3; k++)
+		walk.at[k] = (int)from[k] / BRICK;
+	walk_start(&walk, from, along, BRICK);
+	for (;;) {
+		const int *at = walk.at;
+		uint64_t solid = exposure->solid[(at[2] * BRICKS + at[1]) * BRICKS + at[0]];
+		int k = walk_axis(&walk);
+
+		if (solid && !brick_is_free(solid, at, from, along, enter))
+			return false;
+		enter = walk.next[k];
+		walk.at[k] += walk.step[k];
+		if (!(enter < 1.0f) || walk.at[k] < 0 || walk.at[k] >= BRICKS)
+			return true;
+		walk.next[k] += walk.each[k];
+	}
+}
+
+/* The n-th viewpoint of a voxel, in the box of twice the model's size above its lowest point. It is
+ * a low-discrepancy sequence: multiples of powers of a root of x^4 = x + 1, as the golden ratio is
+ * used in one dimension. It starts elsewhere for each voxel. */
+static void viewpoint(float out[3], const struct exposure *exposure, uint32_t voxel, uint32_t n)
+{
+	static const uint32_t steps[3] = { 3518319155u, 2882110345u, 2360945575u }; /* of 2^32 */
 	static const uint32_t starts[3] = { 2654435761u, 2246822519u, 3266489917u };
 
 	for (int k = 0; k < 3; k++) {
 		float low = exposure->low[k], half = (exposure->high[k] - low) / 2;
-		float start = (float)((vertex + 1) * starts[k] >> 8) / 16777216.0f;
-		float t = fmodf(start + steps[k] * (float)n, 1.0f);
+		float t = (float)(((voxel + 1) * starts[k] + steps[k] * n) >> 8) / 16777216.0f;
 
 		out[k] = k == 2 ? low + t * 3 * half : low - half + t * 4 * half;
 	}
 }
 
-static float seen_of(const struct exposure *exposure, uint32_t v)
+/* Two processes may find the same voxel at the same time. Both find the same. */
+static uint32_t seen_from(struct exposure *exposure, uint32_t voxel, const int at[3])
 {
-	const struct lattice_vertex *vertex = &exposure->mesh->vertices[v];
+	uint16_t *place = &exposure->seen_from[voxel];
+	uint32_t seen = __atomic_load_n(place, __ATOMIC_RELAXED);
+
+	if (seen & KNOWN)
+		return seen;
+	for (uint32_t n = 0; n < VIEWPOINTS && !is_solid(exposure, at); n++) {
+		const float from[3] = { (float)at[0] + 0.5f, (float)at[1] + 0.5f,
+					(float)at[2] + 0.5f };
+		float eye[3];
+
+		viewpoint(eye, exposure, voxel, n);
+		seen |= is_free(exposure, from, eye) ? 1u << n : 0;
+	}
+	__atomic_store_n(place, (uint16_t)(seen | KNOWN), __ATOMIC_RELAXED);
+	return seen;
+}
+
+uint8_t exposure_of(struct exposure *exposure, const uint16_t position[3], const float normal[3])
+{
 	float at[3], seen = 0;
 
-	place_of(at, vertex);
-	for (uint32_t n = 0; n < VIEWPOINTS; n++) {
-		float eye[3], from[3], cosine = 0, square = 0;
+	for (int k = 0; k < 3; k++)
+		at[k] = to_voxels(position[k], k);
+	for (int side = -1; side < 2; side += 2) {
+		uint32_t voxel, from;
+		int start[3];
 
-		viewpoint(eye, exposure, v, n);
-		for (int k = 0; k < 3; k++) {
-			cosine += (eye[k] - at[k]) * vertex->normal[k];
-			square += (eye[k] - at[k]) * (eye[k] - at[k]);
-		}
-		/* Start outside the voxels that the surface itself fills, on the side of the
-		 * viewpoint: the orientation of scans is not always right. */
 		for (int k = 0; k < 3; k++)
-			from[k] = at[k] + (cosine < 0 ? -1.5f : 1.5f) * vertex->normal[k];
-		if (square > 0 && is_free(exposure, from, eye))
-			seen += fabsf(cosine) / sqrtf(square);
+			start[k] = clamp_voxel(at[k] + (float)side * START_VOXELS * normal[k]);
+		voxel = (uint32_t)((start[2] * SIDE + start[1]) * SIDE + start[0]);
+		from = seen_from(exposure, voxel, start);
+		for (uint32_t n = 0; n < VIEWPOINTS; n++) {
+			float eye[3], cosine = 0, square = 0;
+
+			if (!(from >> n & 1))
+				continue;
+			viewpoint(eye, exposure, voxel, n);
+			for (int k = 0; k < 3; k++) {
+				cosine += (eye[k] - at[k]) * normal[k];
+				square += (eye[k] - at[k]) * (eye[k] - at[k]);
+			}
+			/* The other side has viewpoints of its own. */
+			if (square > 0 && cosine * (float)side > 0)
+				seen += fabsf(cosine) / sqrtf(square);
+		}
 	}
-	return fminf(1, 2 * seen / VIEWPOINTS);
+	return (uint8_t)(255 * fminf(1, 2 * seen / VIEWPOINTS) + 0.5f);
 }
+
+/* ---- a whole mesh */
+
+struct finder {
+	struct exposure *exposure;
+	struct lattice_mesh *mesh;
+	struct progress *progress; /* counts vertices */
+};
 
 static int find_piece(void *user, uint32_t piece, uint32_t worker)
 {
-	struct exposure *exposure = user;
-	struct lattice_mesh *mesh = exposure->mesh;
+	struct finder *finder = user;
+	struct lattice_mesh *mesh = finder->mesh;
 	uint32_t first = piece * PIECE_VERTICES, left = mesh->vertex_count - first;
 	uint32_t count = left < PIECE_VERTICES ? left : PIECE_VERTICES;
 
 	(void)worker;
 	for (uint32_t v = first; v < first + count; v++)
-		mesh->vertices[v].seen = (uint8_t)(255 * seen_of(exposure, v) + 0.5f);
-	progress_add(exposure->progress, count);
+		mesh->vertices[v].seen = exposure_of(finder->exposure, mesh->vertices[v].position,
+						     mesh->vertices[v].normal);
+	progress_add(finder->progress, count);
 	return 0;
-}
-
-static void find_box(struct exposure *exposure)
-{
-	for (uint32_t v = 0; v < exposure->mesh->vertex_count; v++) {
-		float at[3];
-
-		place_of(at, &exposure->mesh->vertices[v]);
-		for (int k = 0; k < 3; k++) {
-			exposure->low[k] = fminf(exposure->low[k], at[k]);
-			exposure->high[k] = fmaxf(exposure->high[k], at[k]);
-		}
-	}
 }
 
 int exposure_find(struct lattice_mesh *mesh, uint32_t jobs)
 {
-	struct exposure exposure = {
-		.mesh = mesh,
-		.solid = calloc(SIDE * SIDE / 8, SIDE),
-		.low = { SIDE, SIDE, SIDE },
-	};
 	uint32_t pieces = (mesh->vertex_count + PIECE_VERTICES - 1) / PIECE_VERTICES;
-	int rc;
+	struct finder finder = { .mesh = mesh };
+	int rc = exposure_create(&finder.exposure);
 
-	if (!exposure.solid)
-		return -ENOMEM;
-	find_box(&exposure);
-	for (uint32_t t = 0; t < mesh->triangle_count; t++)
-		fill_triangle(&exposure, mesh->triangles[t]);
-	rc = close_hollows(&exposure);
-	exposure.progress = progress_start("looking", "vertices", mesh->vertex_count);
+	for (uint32_t t = 0; rc == 0 && t < mesh->triangle_count; t++) {
+		uint16_t corners[3][3];
+
+		for (int c = 0; c < 3; c++)
+			for (int k = 0; k < 3; k++)
+				corners[c][k] = mesh->vertices[mesh->triangles[t][c]].position[k];
+		exposure_add(finder.exposure, (const uint16_t(*)[3])corners);
+	}
 	if (rc == 0)
-		rc = parallel_run(jobs, pieces, find_piece, &exposure);
-	progress_end(exposure.progress);
-	free(exposure.solid);
+		rc = exposure_close(finder.exposure);
+	finder.progress = progress_start("looking", "vertices", mesh->vertex_count);
+	if (rc == 0)
+		rc = parallel_run(jobs, pieces, find_piece, &finder);
+	progress_end(finder.progress);
+	exposure_destroy(finder.exposure);
 	return rc;
 }

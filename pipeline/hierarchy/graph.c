@@ -11,6 +11,10 @@
 
 enum { PARTS_BY_BISECTION_MAX = 8, NODES_A_PART = 64 };
 
+/* CLUSTERS_A_PART: METIS gets no more nodes than this for a part. A larger graph is shrunk first to
+ * clusters of at most CLUSTER_NODES nodes; afterwards the cut is smoothed node by node. */
+enum { CLUSTERS_A_PART = 96, CLUSTER_NODES = 16, SMOOTHING_PASSES = 6 };
+
 /* IMBALANCE: how much too heavy a part may be, in thousandths. It leaves a cut freedom to follow
  * creases and borders. */
 enum { IMBALANCE = 40, TRIES = 8 /* bisections that METIS tries; the best is taken */ };
@@ -367,15 +371,247 @@ static int divide_by_halves(uint32_t *labels, const struct graph *graph, uint32_
 	return rc;
 }
 
+static int divide_unclustered(uint32_t *labels, const struct graph *graph, uint32_t part_count,
+			      const float *shares)
+{
+	if (part_count > 2 && graph->node_count < NODES_A_PART * part_count)
+		return divide_by_halves(labels, graph, part_count);
+	return divide_at_once(labels, graph, part_count, shares);
+}
+
+/* ---- large graphs: clusters, then smoothing */
+
+#define NO_CLUSTER UINT32_MAX
+
+/* The nodes next to a growing cluster, with the weight of their edges into it. */
+struct frontier {
+	struct {
+		uint32_t node;
+		idx_t weight;
+	} items[256];
+	uint32_t count;
+};
+
+static void frontier_add(struct frontier *frontier, uint32_t node, idx_t weight)
+{
+	uint32_t i = 0;
+
+	while (i < frontier->count && frontier->items[i].node != node)
+		i++;
+	if (i == ARRAY_COUNT(frontier->items))
+		return;
+	if (i == frontier->count) {
+		frontier->items[frontier->count].node = node;
+		frontier->items[frontier->count++].weight = 0;
+	}
+	frontier->items[i].weight += weight;
+}
+
+/* Removes and returns the node with the strongest edges into the cluster, of equals the first. */
+static uint32_t frontier_take(struct frontier *frontier)
+{
+	uint32_t best = 0, node;
+
+	for (uint32_t i = 1; i < frontier->count; i++)
+		if (frontier->items[i].weight > frontier->items[best].weight)
+			best = i;
+	node = frontier->items[best].node;
+	for (uint32_t i = best; i + 1 < frontier->count; i++)
+		frontier->items[i] = frontier->items[i + 1];
+	frontier->count--;
+	return node;
+}
+
+/* Grows clusters of at most that weight, node after node. Returns the number of clusters. */
+static uint32_t grow_clusters(uint32_t *cluster_of, const struct rows *rows, uint32_t node_count,
+			      int64_t weight_most)
+{
+	uint32_t cluster_count = 0;
+
+	memset(cluster_of, 0xff, node_count * sizeof(*cluster_of));
+	for (uint32_t seed = 0; seed < node_count; seed++) {
+		struct frontier frontier = { .count = 0 };
+		uint32_t node = seed;
+		int64_t weight = 0;
+
+		if (cluster_of[seed] != NO_CLUSTER)
+			continue;
+		for (;;) {
+			cluster_of[node] = cluster_count;
+			weight += rows->node_weights[node];
+			for (idx_t e = rows->first[node]; e < rows->first[node + 1]; e++)
+				if (cluster_of[rows->to[e]] == NO_CLUSTER)
+					frontier_add(&frontier, (uint32_t)rows->to[e],
+						     rows->weights[e]);
+			if (frontier.count == 0)
+				break;
+			node = frontier_take(&frontier);
+			if (weight + rows->node_weights[node] > weight_most)
+				break;
+		}
+		cluster_count++;
+	}
+	return cluster_count;
+}
+
+static int graph_of_clusters(struct graph *out, const struct rows *rows, uint32_t node_count,
+			     const uint32_t *cluster_of, uint32_t cluster_count)
+{
+	int rc = graph_init(out, cluster_count);
+
+	if (rc == 0)
+		memset(out->node_weights, 0, cluster_count * sizeof(*out->node_weights));
+	for (uint32_t i = 0; rc == 0 && i < node_count; i++) {
+		out->node_weights[cluster_of[i]] += rows->node_weights[i];
+		for (idx_t e = rows->first[i]; rc == 0 && e < rows->first[i + 1]; e++)
+			if ((uint32_t)rows->to[e] > i)
+				rc = graph_add(out, cluster_of[i], cluster_of[rows->to[e]],
+					       rows->weights[e]);
+	}
+	return rc;
+}
+
+/* What smoothing keeps track of. */
+struct smoothing {
+	const struct rows *rows;
+	uint32_t *labels;
+	int64_t *weights, *least, *most; /* for each part */
+};
+
+/* Moves a node to the neighbouring part that its edges hold to most. Returns true if it moved. */
+static bool move_node(struct smoothing *smoothing, uint32_t node)
+{
+	const struct rows *rows = smoothing->rows;
+	uint32_t from = smoothing->labels[node], parts[8], count = 0, best = from;
+	idx_t pulls[8], weight = rows->node_weights[node], stay = 0, strongest;
+
+	for (idx_t e = rows->first[node]; e < rows->first[node + 1]; e++) {
+		uint32_t part = smoothing->labels[rows->to[e]], i = 0;
+
+		if (part == from) {
+			stay += rows->weights[e];
+			continue;
+		}
+		while (i < count && parts[i] != part)
+			i++;
+		if (i == ARRAY_COUNT(parts))
+			continue;
+		if (i == count) {
+			parts[count] = part;
+			pulls[count++] = 0;
+		}
+		pulls[i] += rows->weights[e];
+	}
+	strongest = stay;
+	for (uint32_t i = 0; i < count; i++)
+		if (pulls[i] > strongest &&
+		    smoothing->weights[parts[i]] + weight <= smoothing->most[parts[i]]) {
+			strongest = pulls[i];
+			best = parts[i];
+		}
+	if (best == from || smoothing->weights[from] - weight < smoothing->least[from])
+		return false;
+	smoothing->weights[from] -= weight;
+	smoothing->weights[best] += weight;
+	smoothing->labels[node] = best;
+	return true;
+}
+
+static int smooth(uint32_t *labels, const struct rows *rows, uint32_t node_count,
+		  uint32_t part_count, const float *shares)
+{
+	struct smoothing smoothing = {
+		.rows = rows,
+		.labels = labels,
+		.weights = calloc(part_count, sizeof(*smoothing.weights)),
+		.least = calloc(part_count, sizeof(*smoothing.least)),
+		.most = calloc(part_count, sizeof(*smoothing.most)),
+	};
+	int rc = smoothing.weights && smoothing.least && smoothing.most ? 0 : -ENOMEM;
+	bool moved = rc == 0;
+	double total = 0.0;
+
+	for (uint32_t i = 0; rc == 0 && i < node_count; i++) {
+		smoothing.weights[labels[i]] += rows->node_weights[i];
+		total += rows->node_weights[i];
+	}
+	for (uint32_t p = 0; rc == 0 && p < part_count; p++) {
+		double wanted =
+			total * (shares && part_count == 2 ? (double)shares[p] : 1.0 / part_count);
+
+		smoothing.most[p] = (int64_t)(wanted * (1.0 + IMBALANCE / 1000.0));
+		smoothing.least[p] = (int64_t)(wanted * (1.0 - IMBALANCE / 1000.0));
+	}
+	for (int pass = 0; moved && pass < SMOOTHING_PASSES; pass++) {
+		moved = false;
+		for (uint32_t i = 0; i < node_count; i++)
+			moved = move_node(&smoothing, i) || moved;
+	}
+	free(smoothing.weights);
+	free(smoothing.least);
+	free(smoothing.most);
+	return rc;
+}
+
+static int divide_clusters(uint32_t *labels, const struct graph *graph, uint32_t part_count,
+			   const float *shares, int64_t cluster_weight)
+{
+	uint32_t *cluster_of = malloc(graph->node_count * sizeof(*cluster_of)), *parts = NULL;
+	struct graph clusters = { 0 };
+	struct rows rows;
+	int rc = rows_init(&rows, graph);
+
+	if (!cluster_of)
+		rc = -ENOMEM;
+	if (rc == 0)
+		rc = graph_of_clusters(
+			&clusters, &rows, graph->node_count, cluster_of,
+			grow_clusters(cluster_of, &rows, graph->node_count, cluster_weight));
+	if (rc == 0) {
+		parts = malloc(clusters.node_count * sizeof(*parts));
+		/* Where nodes are too heavy or too lonely to form clusters, METIS gets them as they
+		 * are. */
+		rc = !parts ? -ENOMEM
+		     : clusters.node_count < graph->node_count - graph->node_count / 4
+			     ? graph_divide(parts, &clusters, part_count, shares)
+			     : divide_unclustered(parts, &clusters, part_count, shares);
+	}
+	for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
+		labels[i] = parts[cluster_of[i]];
+	if (rc == 0)
+		rc = smooth(labels, &rows, graph->node_count, part_count, shares);
+	graph_finish(&clusters);
+	rows_finish(&rows);
+	free(cluster_of);
+	free(parts);
+	return rc;
+}
+
+/* Returns the weight of the clusters that a graph is to be shrunk to, or 0: it is small enough. */
+static int64_t cluster_weight_for(const struct graph *graph, uint32_t part_count)
+{
+	double nodes = graph->node_count / ((double)CLUSTERS_A_PART * part_count);
+	double total = 0.0;
+
+	if (nodes < 2.0)
+		return 0;
+	for (uint32_t i = 0; i < graph->node_count; i++)
+		total += graph->node_weights[i];
+	return (int64_t)(total / graph->node_count * fmin(nodes, CLUSTER_NODES));
+}
+
 int graph_divide(uint32_t *labels, const struct graph *graph, uint32_t part_count,
 		 const float *shares)
 {
+	int64_t cluster_weight;
+
 	if (part_count <= 1 || graph->node_count <= part_count) {
 		for (uint32_t i = 0; i < graph->node_count; i++)
 			labels[i] = part_count <= 1 ? 0 : i;
 		return 0;
 	}
-	if (part_count > 2 && graph->node_count < NODES_A_PART * part_count)
-		return divide_by_halves(labels, graph, part_count);
-	return divide_at_once(labels, graph, part_count, shares);
+	cluster_weight = cluster_weight_for(graph, part_count);
+	return cluster_weight > 0
+		       ? divide_clusters(labels, graph, part_count, shares, cluster_weight)
+		       : divide_unclustered(labels, graph, part_count, shares);
 }

@@ -1,4 +1,5 @@
-/* Weighted graphs and their division by METIS (Karypis and Kumar 1998). METIS uses one random
+/* Weighted graphs and their division by METIS (Karypis and Kumar 1998). Large graphs are shrunk to
+ * clusters first, and the cut is smoothed afterwards (docs/hierarchy.md). METIS uses one random
  * generator per process. graph_divide seeds it and holds a lock, so that the result depends on the
  * graph alone. Any thread. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_GRAPH_H

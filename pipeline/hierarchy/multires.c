@@ -25,7 +25,7 @@ enum {
 	TOP_TRIANGLES = 6000,
 	TOP_PART = 40, /* a small scan's top has 1/40 of it, far less than is published */
 	VOXEL_TRIANGLES = 256,
-	CHUNK_TRIANGLES = 65536,
+	CHUNK_TRIANGLES = 1 << 20,
 	TOUCH_WEIGHT = 4, /* for each vertex that two patches share */
 	NEIGHBOURS = 6,   /* nearest patches to which each patch gets an edge */
 	NEAR_WEIGHT = 10  /* weight of each such edge */
