@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
@@ -81,4 +82,12 @@ int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work
 			pthread_join(workers[i].thread, NULL);
 	pthread_mutex_destroy(&crew.lock);
 	return crew.rc;
+}
+
+uint32_t parallel_cores(void)
+{
+	cpu_set_t set;
+	int count = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
+
+	return count < 1 ? 1 : count > 8 ? 8 : (uint32_t)count;
 }

@@ -16,4 +16,7 @@ typedef int (*parallel_work)(void *user, uint32_t piece, uint32_t worker);
 must_check int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work,
 			    void *user);
 
+/* Returns how many processors this process may use, at most 8: more would wait for memory. */
+uint32_t parallel_cores(void);
+
 #endif

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/spill.h"
 #include "pipeline/import/mesh_colour.h"
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };
@@ -108,16 +109,17 @@ static void to_metres(struct mesh *mesh, const struct import_options *options)
 		turn_up(mesh->positions[i], options->up, turned);
 		for (int k = 0; k < 3; k++)
 			mesh->positions[i][k] = (float)(turned[k] * scale);
+		spill_pass(i);
 	}
 }
 
 static void drop_textures(struct mesh *mesh)
 {
 	for (uint32_t i = 0; i < mesh->texture_count; i++)
-		free(mesh->textures[i].rgb);
+		spill_free(mesh->textures[i].rgb);
 	free(mesh->textures);
-	free(mesh->uvs);
-	free(mesh->materials);
+	spill_free(mesh->uvs);
+	spill_free(mesh->materials);
 	mesh->textures = NULL;
 	mesh->uvs = NULL;
 	mesh->materials = NULL;
@@ -155,14 +157,16 @@ static int settle_colours(struct mesh *mesh, const struct import_options *option
 	if (report->had_colours && !options->override_colour)
 		return 0;
 	if (!mesh->colours) {
-		mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
+		mesh->colours = spill_alloc((size_t)mesh->vertex_count * 4);
 		if (!mesh->colours)
-			return -ENOMEM;
+			return -errno;
 		memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
 	}
 	default_colour_of(options, rgb);
-	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
 		memcpy(mesh->colours[i], rgb, 3);
+		spill_pass(i);
+	}
 	return 0;
 }
 
@@ -196,7 +200,9 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	if (rc == 0)
 		rc = settle_colours(mesh, options, report);
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: too large for this machine's memory", path);
+		return fault_set(fault, rc, "%s: %s", path,
+				 rc == -ENOSPC ? "the disk has no room for the imported mesh"
+					       : "too large for this machine's memory");
 	if (mesh->triangle_count == 0)
 		return fault_set(fault, -EBADMSG,
 				 "%s: none of its faces is usable (%" PRIu32 " degenerate, %" PRIu32

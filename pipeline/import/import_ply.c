@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/progress.h"
+#include "base/spill.h"
 #include "pipeline/import/ply.h"
 
 /* Collects what the PLY reader delivers. */
@@ -31,6 +32,7 @@ static void show_progress(struct collector *collector, uint32_t items)
 
 	if (items % ITEMS_PER_LOOK != 0)
 		return;
+	spill_breathe();
 	kib = ply_bytes_read(collector->ply) >> 10;
 	progress_add(collector->progress, kib - collector->shown_kib);
 	collector->shown_kib = kib;
@@ -52,37 +54,35 @@ static int take_vertex(void *data, const struct ply_vertex *vertex)
 	return 0;
 }
 
+static int grow(void **array, size_t old_count, size_t count, size_t item_bytes)
+{
+	void *grown = spill_resize(*array, old_count * item_bytes, count * item_bytes);
+
+	if (!grown)
+		return -errno;
+	*array = grown;
+	return 0;
+}
+
 /* Polygons become fans, so there may be more triangles than faces in the header. */
 static int grow_triangles(struct collector *collector)
 {
 	struct mesh *mesh = &collector->mesh;
-	size_t capacity = collector->triangle_capacity + collector->triangle_capacity / 2 + 64;
-	void *grown;
+	size_t old = collector->triangle_capacity, capacity = old + old / 2 + 64;
+	int rc = mesh->triangle_count == UINT32_MAX - 1 ? -EFBIG : 0;
 
-	if (mesh->triangle_count == UINT32_MAX - 1)
-		return -EFBIG;
-	grown = realloc(mesh->triangles, capacity * sizeof(*mesh->triangles));
-	if (!grown)
-		return -ENOMEM;
-	mesh->triangles = grown;
-	grown = realloc(mesh->faces, capacity * sizeof(*mesh->faces));
-	if (!grown)
-		return -ENOMEM;
-	mesh->faces = grown;
-	if (mesh->materials) {
-		grown = realloc(mesh->materials, capacity * sizeof(*mesh->materials));
-		if (!grown)
-			return -ENOMEM;
-		mesh->materials = grown;
-	}
-	if (collector->corner_uvs) {
-		grown = realloc(collector->corner_uvs, capacity * sizeof(*collector->corner_uvs));
-		if (!grown)
-			return -ENOMEM;
-		collector->corner_uvs = grown;
-	}
-	collector->triangle_capacity = capacity;
-	return 0;
+	if (rc == 0)
+		rc = grow((void **)&mesh->triangles, old, capacity, sizeof(*mesh->triangles));
+	if (rc == 0)
+		rc = grow((void **)&mesh->faces, old, capacity, sizeof(*mesh->faces));
+	if (rc == 0 && mesh->materials)
+		rc = grow((void **)&mesh->materials, old, capacity, sizeof(*mesh->materials));
+	if (rc == 0 && collector->corner_uvs)
+		rc = grow((void **)&collector->corner_uvs, old, capacity,
+			  sizeof(*collector->corner_uvs));
+	if (rc == 0)
+		collector->triangle_capacity = capacity;
+	return rc;
 }
 
 static int take_triangle(void *data, const struct ply_triangle *triangle)
@@ -120,22 +120,22 @@ static int allocate(struct collector *collector)
 	bool has_picture =
 		summary->texture_count > 0 && (summary->has_uv || summary->has_corner_uv);
 
-	mesh->positions = malloc(vertices * sizeof(*mesh->positions));
-	mesh->triangles = malloc(triangles * sizeof(*mesh->triangles));
-	mesh->faces = malloc(triangles * sizeof(*mesh->faces));
+	mesh->positions = spill_alloc(vertices * sizeof(*mesh->positions));
+	mesh->triangles = spill_alloc(triangles * sizeof(*mesh->triangles));
+	mesh->faces = spill_alloc(triangles * sizeof(*mesh->faces));
 	if (summary->has_colour || summary->has_open_sky)
-		mesh->colours = malloc(vertices * sizeof(*mesh->colours));
+		mesh->colours = spill_alloc(vertices * sizeof(*mesh->colours));
 	if (has_picture && !summary->has_corner_uv)
-		mesh->uvs = malloc(vertices * sizeof(*mesh->uvs));
+		mesh->uvs = spill_alloc(vertices * sizeof(*mesh->uvs));
 	if (has_picture)
-		mesh->materials = malloc(triangles * sizeof(*mesh->materials));
+		mesh->materials = spill_alloc(triangles * sizeof(*mesh->materials));
 	if (has_picture && summary->has_corner_uv)
-		collector->corner_uvs = malloc(triangles * sizeof(*collector->corner_uvs));
+		collector->corner_uvs = spill_alloc(triangles * sizeof(*collector->corner_uvs));
 	collector->triangle_capacity = triangles;
 	if (!mesh->positions || !mesh->triangles || !mesh->faces ||
 	    ((summary->has_colour || summary->has_open_sky) && !mesh->colours) ||
 	    (has_picture && (!mesh->materials || (!mesh->uvs && !collector->corner_uvs))))
-		return -ENOMEM;
+		return -errno;
 	return 0;
 }
 
@@ -144,17 +144,14 @@ static int split_corners(struct collector *collector)
 {
 	struct mesh *mesh = &collector->mesh;
 	size_t count = (size_t)mesh->triangle_count * 3;
-	float(*positions)[3] = malloc((count + 1) * sizeof(*positions));
-	float(*uvs)[2] = malloc((count + 1) * sizeof(*uvs));
-	uint8_t(*colours)[4] = mesh->colours ? malloc((count + 1) * sizeof(*colours)) : NULL;
+	float(*positions)[3] = spill_alloc((count + 1) * sizeof(*positions));
+	float(*uvs)[2] = spill_alloc((count + 1) * sizeof(*uvs));
+	uint8_t(*colours)[4] = mesh->colours ? spill_alloc((count + 1) * sizeof(*colours)) : NULL;
+	int rc = positions && uvs && (!mesh->colours || colours) ? 0 : -errno;
 
-	if (count >= UINT32_MAX || !positions || !uvs || (mesh->colours && !colours)) {
-		free(positions);
-		free(uvs);
-		free(colours);
-		return count >= UINT32_MAX ? -EFBIG : -ENOMEM;
-	}
-	for (size_t i = 0; i < count; i++) {
+	if (count >= UINT32_MAX)
+		rc = -EFBIG;
+	for (size_t i = 0; i < count && rc == 0; i++) {
 		uint32_t *corner = &mesh->triangles[i / 3][i % 3];
 
 		memcpy(positions[i], mesh->positions[*corner], sizeof(positions[i]));
@@ -162,9 +159,16 @@ static int split_corners(struct collector *collector)
 		if (colours)
 			memcpy(colours[i], mesh->colours[*corner], sizeof(colours[i]));
 		*corner = (uint32_t)i;
+		spill_pass(i);
 	}
-	free(mesh->positions);
-	free(mesh->colours);
+	if (rc < 0) {
+		spill_free(positions);
+		spill_free(uvs);
+		spill_free(colours);
+		return rc;
+	}
+	spill_free(mesh->positions);
+	spill_free(mesh->colours);
 	mesh->positions = positions;
 	mesh->colours = colours;
 	mesh->uvs = uvs;
@@ -217,10 +221,14 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	if (rc == 0)
 		rc = load_textures(collector, path, options, report);
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: %s", path,
-				 rc == -ENOMEM  ? "too large for this machine's memory"
-				 : rc == -EFBIG ? "too many triangles; split it into several files"
-						: strerror(-rc));
+		return fault_set(
+			fault, rc, "%s: %s", path,
+			rc == -ENOMEM ? "too large for this machine's memory"
+			: rc == -ENOSPC
+				? "the disk has no room for the imported mesh; make some, or set TMPDIR to "
+				  "a larger disk"
+			: rc == -EFBIG ? "too many triangles; split it into several files"
+				       : strerror(-rc));
 	return 0;
 }
 
@@ -250,7 +258,7 @@ int import_ply(struct mesh *out, const char *path, const struct import_options *
 		collector.mesh = (struct mesh){ 0 };
 	}
 	mesh_finish(&collector.mesh);
-	free(collector.corner_uvs);
+	spill_free(collector.corner_uvs);
 	ply_close(ply);
 	return rc;
 }

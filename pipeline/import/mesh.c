@@ -7,18 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spill.h"
+
 void mesh_finish(struct mesh *mesh)
 {
 	if (!mesh)
 		return;
-	free(mesh->positions);
-	free(mesh->colours);
-	free(mesh->uvs);
-	free(mesh->triangles);
-	free(mesh->materials);
-	free(mesh->faces);
+	spill_free(mesh->positions);
+	spill_free(mesh->colours);
+	spill_free(mesh->uvs);
+	spill_free(mesh->triangles);
+	spill_free(mesh->materials);
+	spill_free(mesh->faces);
 	for (uint32_t i = 0; mesh->textures && i < mesh->texture_count; i++)
-		free(mesh->textures[i].rgb);
+		spill_free(mesh->textures[i].rgb);
 	free(mesh->textures);
 	*mesh = (struct mesh){ 0 };
 }
@@ -27,30 +29,37 @@ void mesh_box(const struct mesh *mesh, float low[3], float high[3])
 {
 	for (int k = 0; k < 3; k++)
 		low[k] = high[k] = mesh->vertex_count ? mesh->positions[0][k] : 0;
-	for (uint32_t i = 1; i < mesh->vertex_count; i++)
+	for (uint32_t i = 1; i < mesh->vertex_count; i++) {
 		for (int k = 0; k < 3; k++) {
 			low[k] = fminf(low[k], mesh->positions[i][k]);
 			high[k] = fmaxf(high[k], mesh->positions[i][k]);
 		}
+		spill_pass(i);
+	}
 }
 
 /* ---- appending */
 
-/* Returns a new array with the first and then the second. If one is NULL, its part is set to fill
- * bytes. */
-static void *join(const void *first, size_t first_count, const void *second, size_t second_count,
+/* Makes room in *array for another second_count items behind the first_count, and copies them from
+ * second. What one of the two lacks is set to fill bytes. */
+static int extend(void **array, size_t first_count, const void *second, size_t second_count,
 		  size_t item_bytes, int fill)
 {
-	uint8_t *joined = malloc((first_count + second_count) * item_bytes + 1);
+	size_t first_bytes = first_count * item_bytes, second_bytes = second_count * item_bytes;
+	bool filled = *array == NULL;
+	uint8_t *grown = spill_resize(*array, filled ? 0 : first_bytes, first_bytes + second_bytes);
 
-	if (!joined)
-		return NULL;
-	memset(joined, fill, (first_count + second_count) * item_bytes);
-	if (first)
-		memcpy(joined, first, first_count * item_bytes);
+	if (!grown)
+		return -errno;
+	*array = grown;
+	if (filled && fill)
+		memset(grown, fill, first_bytes);
 	if (second)
-		memcpy(joined + first_count * item_bytes, second, second_count * item_bytes);
-	return joined;
+		memcpy(grown + first_bytes, second, second_bytes);
+	else if (fill)
+		memset(grown + first_bytes, fill, second_bytes);
+	spill_breathe();
+	return 0;
 }
 
 static int copy_texture(struct mesh_texture *to, const struct mesh_texture *from)
@@ -65,115 +74,109 @@ static int copy_texture(struct mesh_texture *to, const struct mesh_texture *from
 	return 0;
 }
 
-/* The colour of a mesh without textures: that of its first vertex, or white. */
-static void plain_colour(const struct mesh *mesh, uint8_t rgb[3])
+/* Adds a texture of one pixel in the colour of the mesh's first vertex, or white. */
+static int add_plain(struct mesh *to, const struct mesh *of)
 {
-	memset(rgb, 255, 3);
-	if (mesh->colours && mesh->vertex_count > 0)
-		memcpy(rgb, mesh->colours[0], 3);
+	uint8_t rgb[3] = { 255, 255, 255 };
+	const struct mesh_texture plain = { 1, 1, rgb };
+
+	if (of->colours && of->vertex_count > 0)
+		memcpy(rgb, of->colours[0], 3);
+	return copy_texture(&to->textures[to->texture_count++], &plain);
 }
 
-/* Copies the textures of both meshes. A mesh without textures gets a plain one, because its
- * triangles need a material. *base is the index of the second mesh's first texture. */
-static int join_textures(struct mesh *joined, const struct mesh *a, const struct mesh *b,
-			 uint32_t *base)
+/* A mesh without textures gets a plain one, because its triangles need a material. *base is the
+ * index of the second mesh's first texture. */
+static int extend_textures(struct mesh *mesh, const struct mesh *other, uint32_t *base)
 {
-	uint8_t a_colour[3], b_colour[3];
-	const struct mesh_texture a_plain = { 1, 1, a_colour }, b_plain = { 1, 1, b_colour };
-	uint32_t a_count = a->textures ? a->texture_count : 1;
-	uint32_t b_count = b->textures ? b->texture_count : 1;
+	size_t room = (size_t)mesh->texture_count + other->texture_count + 2;
+	struct mesh_texture *grown = realloc(mesh->textures, room * sizeof(*grown));
+	bool had = mesh->textures != NULL;
 	int rc = 0;
 
-	*base = a_count;
-	plain_colour(a, a_colour);
-	plain_colour(b, b_colour);
-	joined->textures = calloc((size_t)a_count + b_count, sizeof(*joined->textures));
-	if (!joined->textures)
+	if (!grown)
 		return -ENOMEM;
-	joined->texture_count = a_count + b_count;
-	for (uint32_t i = 0; i < a_count && rc == 0; i++)
-		rc = copy_texture(&joined->textures[i], a->textures ? &a->textures[i] : &a_plain);
-	for (uint32_t i = 0; i < b_count && rc == 0; i++)
-		rc = copy_texture(&joined->textures[a_count + i],
-				  b->textures ? &b->textures[i] : &b_plain);
+	mesh->textures = grown;
+	if (!had)
+		rc = add_plain(mesh, mesh);
+	*base = mesh->texture_count;
+	if (rc == 0 && !other->textures)
+		rc = add_plain(mesh, other);
+	for (uint32_t i = 0; i < other->texture_count && rc == 0; i++)
+		rc = copy_texture(&mesh->textures[mesh->texture_count++], &other->textures[i]);
 	return rc;
 }
 
-static int join_materials(struct mesh *joined, const struct mesh *a, const struct mesh *b)
+static int extend_materials(struct mesh *mesh, const struct mesh *other)
 {
-	uint32_t base;
+	uint32_t base = 0;
 	int rc;
 
-	if (!a->textures && !b->textures)
+	if (!mesh->textures && !other->textures)
 		return 0;
-	if ((uint64_t)a->texture_count + b->texture_count + 2 > MESH_TEXTURES_MAX)
+	if ((uint64_t)mesh->texture_count + other->texture_count + 2 > MESH_TEXTURES_MAX)
 		return -EFBIG;
-	rc = join_textures(joined, a, b, &base);
-	if (rc < 0)
-		return rc;
-	joined->uvs = join(a->uvs, a->vertex_count, b->uvs, b->vertex_count, sizeof(*a->uvs), 0);
-	joined->materials = join(a->materials, a->triangle_count, b->materials, b->triangle_count,
-				 sizeof(*a->materials), 0);
-	if (!joined->uvs || !joined->materials)
-		return -ENOMEM;
-	for (uint32_t i = 0; i < b->triangle_count; i++)
-		joined->materials[a->triangle_count + i] += (uint16_t)base;
-	return 0;
+	rc = extend_textures(mesh, other, &base);
+	if (rc == 0)
+		rc = extend((void **)&mesh->uvs, mesh->vertex_count, other->uvs,
+			    other->vertex_count, sizeof(*mesh->uvs), 0);
+	if (rc == 0)
+		rc = extend((void **)&mesh->materials, mesh->triangle_count, other->materials,
+			    other->triangle_count, sizeof(*mesh->materials), 0);
+	for (uint32_t i = 0; i < other->triangle_count && rc == 0; i++)
+		mesh->materials[mesh->triangle_count + i] += (uint16_t)base;
+	return rc;
 }
 
-static int join_meshes(struct mesh *joined, const struct mesh *a, const struct mesh *b)
+static int extend_vertices(struct mesh *mesh, const struct mesh *other)
 {
-	joined->vertex_count = a->vertex_count + b->vertex_count;
-	joined->triangle_count = a->triangle_count + b->triangle_count;
-	joined->positions = join(a->positions, a->vertex_count, b->positions, b->vertex_count,
-				 sizeof(*a->positions), 0);
-	joined->triangles = join(a->triangles, a->triangle_count, b->triangles, b->triangle_count,
-				 sizeof(*a->triangles), 0);
-	if (!joined->positions || !joined->triangles)
-		return -ENOMEM;
-	for (uint32_t i = a->triangle_count; i < joined->triangle_count; i++)
+	int rc = 0;
+
+	if (mesh->colours || other->colours)
+		rc = extend((void **)&mesh->colours, mesh->vertex_count, other->colours,
+			    other->vertex_count, sizeof(*mesh->colours), 255);
+	if (rc == 0)
+		rc = extend((void **)&mesh->positions, mesh->vertex_count, other->positions,
+			    other->vertex_count, sizeof(*mesh->positions), 0);
+	return rc;
+}
+
+static int extend_triangles(struct mesh *mesh, const struct mesh *other)
+{
+	int rc = extend((void **)&mesh->triangles, mesh->triangle_count, other->triangles,
+			other->triangle_count, sizeof(*mesh->triangles), 0);
+
+	for (uint32_t i = 0; i < other->triangle_count && rc == 0; i++) {
 		for (int k = 0; k < 3; k++)
-			joined->triangles[i][k] += a->vertex_count;
-	if (a->colours || b->colours) {
-		joined->colours = join(a->colours, a->vertex_count, b->colours, b->vertex_count,
-				       sizeof(*a->colours), 255);
-		if (!joined->colours)
-			return -ENOMEM;
+			mesh->triangles[mesh->triangle_count + i][k] += mesh->vertex_count;
+		spill_pass(i);
 	}
-	return join_materials(joined, a, b);
-}
-
-static int join_scans(struct mesh *joined, const struct mesh *a, const struct mesh *b)
-{
-	if (a->scan_count + b->scan_count > MESH_SCANS_MAX)
-		return -EFBIG;
-	memcpy(joined->scans, a->scans, a->scan_count * sizeof(*a->scans));
-	memcpy(joined->scans + a->scan_count, b->scans, b->scan_count * sizeof(*b->scans));
-	joined->scan_count = a->scan_count + b->scan_count;
-	if (!a->faces && !b->faces)
-		return 0;
-	joined->faces = join(a->faces, a->triangle_count, b->faces, b->triangle_count,
-			     sizeof(*a->faces), 0xff); /* MESH_NO_FACE */
-	return joined->faces ? 0 : -ENOMEM;
+	if (rc == 0 && (mesh->faces || other->faces))
+		rc = extend((void **)&mesh->faces, mesh->triangle_count, other->faces,
+			    other->triangle_count, sizeof(*mesh->faces), 0xff); /* MESH_NO_FACE */
+	return rc;
 }
 
 int mesh_append(struct mesh *mesh, const struct mesh *other)
 {
-	struct mesh joined = { 0 };
 	int rc;
 
 	if ((uint64_t)mesh->vertex_count + other->vertex_count >= UINT32_MAX ||
-	    (uint64_t)mesh->triangle_count + other->triangle_count >= UINT32_MAX)
+	    (uint64_t)mesh->triangle_count + other->triangle_count >= UINT32_MAX ||
+	    mesh->scan_count + other->scan_count > MESH_SCANS_MAX)
 		return -EFBIG;
-	rc = join_meshes(&joined, mesh, other);
+	rc = extend_materials(mesh, other);
 	if (rc == 0)
-		rc = join_scans(&joined, mesh, other);
-	if (rc < 0) {
-		mesh_finish(&joined);
+		rc = extend_vertices(mesh, other);
+	if (rc == 0)
+		rc = extend_triangles(mesh, other);
+	if (rc < 0)
 		return rc;
-	}
-	mesh_finish(mesh);
-	*mesh = joined;
+	memcpy(mesh->scans + mesh->scan_count, other->scans,
+	       other->scan_count * sizeof(*other->scans));
+	mesh->scan_count += other->scan_count;
+	mesh->vertex_count += other->vertex_count;
+	mesh->triangle_count += other->triangle_count;
 	return 0;
 }
 

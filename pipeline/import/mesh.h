@@ -1,5 +1,6 @@
-/* A mesh in memory, as the import produces it: metres, z up, counter-clockwise seen from
- * outside. */
+/* A mesh as the import produces it: metres, z up, counter-clockwise seen from outside. Its arrays
+ * may be larger than memory (base/spill.h): whoever passes over them calls spill_pass for each
+ * item. */
 #ifndef GOPURA_PIPELINE_IMPORT_MESH_H
 #define GOPURA_PIPELINE_IMPORT_MESH_H
 
@@ -25,6 +26,7 @@ struct mesh_scan {
 	uint32_t face_count; /* as counted in the file; 0: its faces have no numbers */
 };
 
+/* The arrays are owned, of spill_alloc or malloc; those of a mesh that was loaded are read only. */
 struct mesh {
 	uint32_t vertex_count, triangle_count;
 	float (*positions)[3];
@@ -49,10 +51,11 @@ void mesh_finish(struct mesh *mesh);
 /* Computes the bounding box of all vertices; zeros for an empty mesh. */
 void mesh_box(const struct mesh *mesh, float low[3], float high[3]);
 
-/* Appends a copy of other, which is unchanged. What one of the two lacks is filled in: white
- * colours; uvs of 0 on a texture of one pixel in the colour of its first vertex; no face numbers.
- * -ENOMEM. -EFBIG: beyond 32-bit counts, MESH_TEXTURES_MAX or MESH_SCANS_MAX. On failure mesh is
- * unchanged. */
+/* Appends a copy of other, which is unchanged. The arrays of mesh must be writable. What one of the
+ * two lacks is filled in: white colours; uvs of 0 on a texture of one pixel in the colour of its
+ * first vertex; no face numbers. -ENOMEM. -EFBIG: beyond 32-bit counts, MESH_TEXTURES_MAX or
+ * MESH_SCANS_MAX. On failure mesh may have lost its colours or textures and is only to be finished.
+ */
 must_check int mesh_append(struct mesh *mesh, const struct mesh *other);
 
 /* Reads the colour of the texture at uv: nearest pixel, repeating. */

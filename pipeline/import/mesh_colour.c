@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spill.h"
 #include "pipeline/import/mesh_places.h"
 
 enum { CELLS_MIN = 2, CELLS_MAX = 8 };
@@ -76,9 +77,9 @@ static int give_colours(struct mesh *mesh)
 {
 	if (mesh->colours)
 		return 0;
-	mesh->colours = malloc((size_t)mesh->vertex_count * 4 + 1);
+	mesh->colours = spill_alloc((size_t)mesh->vertex_count * 4);
 	if (!mesh->colours)
-		return -ENOMEM;
+		return -errno;
 	memset(mesh->colours, 255, (size_t)mesh->vertex_count * 4);
 	return 0;
 }
@@ -92,17 +93,20 @@ int mesh_colours_from_textures(struct mesh *mesh)
 	if (!mesh->textures || !mesh->uvs || !mesh->materials)
 		return 0;
 	place = mesh_places(mesh);
-	sums = calloc((size_t)mesh->vertex_count + 1, sizeof(*sums));
-	rc = place && sums ? give_colours(mesh) : -ENOMEM;
-	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++)
+	sums = spill_alloc(((size_t)mesh->vertex_count + 1) * sizeof(*sums));
+	rc = place && sums ? give_colours(mesh) : -errno;
+	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++) {
 		add_face(mesh, i, place, sums);
+		spill_pass(i);
+	}
 	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
 		const struct sum *sum = &sums[place[i]];
 
 		for (int k = 0; k < 3 && sum->weight > 0; k++)
 			mesh->colours[i][k] = (uint8_t)(sum->rgb[k] / sum->weight + 0.5f);
+		spill_pass(i);
 	}
-	free(place);
-	free(sums);
+	spill_free(place);
+	spill_free(sums);
 	return rc;
 }

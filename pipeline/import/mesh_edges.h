@@ -15,20 +15,22 @@ struct mesh_edge {
 };
 
 struct mesh_edges {
-	uint32_t vertex_count;
-	uint64_t *start; /* index of the first item of each vertex, and the end; owned */
-	/* one per edge of a face, stored under its lower end, sorted; owned: other end << 33 |
-	 * (runs from lower to other) << 32 | face */
-	uint64_t *items;
+	const struct mesh *mesh; /* borrowed */
+	uint32_t *place;         /* for each vertex, the first at its place; owned */
+	/* how many edges have their lower end among each EDGES_BIN vertices; owned */
+	uint32_t *bins;
+	/* lowest and highest lower end of the edges of each EDGES_BLOCK faces; owned */
+	uint32_t (*bounds)[2];
 };
 
-/* Collects the edges; mesh is only read. It must have fewer than 2^31 vertices. -ENOMEM; then *out
- * is zeroed. */
+/* Prepares to go through the edges of mesh, which must have fewer than 2^31 vertices. It must stay,
+ * and only the order of a face's corners may change. -ENOMEM, -ENOSPC; then *out is zeroed. */
 must_check int mesh_edges_init(struct mesh_edges *out, const struct mesh *mesh);
 void mesh_edges_finish(struct mesh_edges *edges); /* NULL and zeroed are fine */
 
-/* Calls visit once for each edge, in a fixed order. */
-void mesh_edges_each(const struct mesh_edges *edges,
-		     void (*visit)(void *data, const struct mesh_edge *edge), void *data);
+/* Calls visit once for each edge, in a fixed order. Takes memory for a part of the edges at a time.
+ * -ENOMEM. */
+must_check int mesh_edges_each(const struct mesh_edges *edges,
+			       void (*visit)(void *data, const struct mesh_edge *edge), void *data);
 
 #endif

@@ -14,6 +14,8 @@
 
 #include <sodium.h>
 
+#include "base/spill.h"
+
 enum {
 	BYTE_ORDER_PROBE = 0x01020304,
 	HAS_COLOURS = 1,
@@ -21,10 +23,11 @@ enum {
 	HAS_MATERIALS = 4,
 	HAS_FACES = 8,
 	COUNTS = 5,
-	CHUNK_BYTES = 1 << 24,
+	CHUNK_BYTES = 1 << 20,
+	ALIGNMENT = 8, /* of each array in the file */
 };
 
-static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 2 };
+static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 3 };
 
 /* A file and the hash of the bytes that passed through it. The first error is kept. */
 struct stream {
@@ -54,7 +57,21 @@ static void put(struct stream *stream, const void *data, size_t size)
 		crypto_generichash_update(&stream->hash, bytes, (size_t)done);
 		bytes += done;
 		size -= (size_t)done;
+		spill_breathe();
 	}
+}
+
+static size_t padded(size_t bytes)
+{
+	return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
+
+static void put_array(struct stream *stream, const void *data, size_t bytes)
+{
+	static const uint8_t zeros[ALIGNMENT];
+
+	put(stream, data, bytes);
+	put(stream, zeros, padded(bytes) - bytes);
 }
 
 static void get(struct stream *stream, void *data, size_t size)
@@ -131,9 +148,9 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 		put(&stream, (uint32_t[]){ mesh->textures[i].width, mesh->textures[i].height }, 8);
 	lay_out(&shape, counts[3], sections);
 	for (int i = 0; i < SECTIONS; i++)
-		put(&stream, *sections[i].data, sections[i].bytes);
+		put_array(&stream, *sections[i].data, sections[i].bytes);
 	for (uint32_t i = 0; i < mesh->texture_count; i++)
-		put(&stream, mesh->textures[i].rgb, texture_bytes(&mesh->textures[i]));
+		put_array(&stream, mesh->textures[i].rgb, texture_bytes(&mesh->textures[i]));
 	crypto_generichash_final(&stream.hash, digest, sizeof(digest));
 	put(&stream, digest, sizeof(digest));
 	return stream.error;
@@ -178,37 +195,54 @@ static int read_textures_sizes(struct stream *stream, struct mesh *mesh, int64_t
 			return stream->error;
 		if (size[0] == 0 || size[1] == 0 || size[0] > 65535 || size[1] > 65535)
 			return -EBADMSG;
-		*left -= 8 + (int64_t)texture_bytes(&mesh->textures[i]);
+		*left -= 8 + (int64_t)padded(texture_bytes(&mesh->textures[i]));
 		if (*left < 0)
 			return -EBADMSG;
 	}
 	return 0;
 }
 
+/* Hashes size bytes of the file without keeping them. */
+static void skip(struct stream *stream, int64_t size)
+{
+	uint8_t *chunk = malloc(CHUNK_BYTES);
+
+	if (!chunk)
+		stream->error = -ENOMEM;
+	for (int64_t left = size; left > 0 && !stream->error; left -= CHUNK_BYTES)
+		get(stream, chunk, left < CHUNK_BYTES ? (size_t)left : CHUNK_BYTES);
+	free(chunk);
+}
+
+/* Maps bytes of the file at *offset to *out, and moves *offset behind them. */
+static int map_array(int fd, uint64_t *offset, void **out, size_t bytes)
+{
+	*out = spill_map(fd, *offset, bytes);
+	*offset += padded(bytes);
+	return *out ? 0 : -errno;
+}
+
 static int read_arrays(struct stream *stream, struct mesh *mesh, uint32_t flags, int64_t left)
 {
+	off_t at = lseek(stream->fd, 0, SEEK_CUR);
+	uint64_t offset = (uint64_t)at;
 	struct section sections[SECTIONS];
+	int rc = 0;
 
 	lay_out(mesh, flags, sections);
 	for (int i = 0; i < SECTIONS; i++)
-		left -= (int64_t)sections[i].bytes;
-	if (left != HASH_BYTES)
-		return -EBADMSG;
-	for (int i = 0; i < SECTIONS; i++) {
-		if (sections[i].bytes == 0 && i != 0 && i != 3)
-			continue;
-		*sections[i].data = malloc(sections[i].bytes + 1);
-		if (!*sections[i].data)
-			return -ENOMEM;
-		get(stream, *sections[i].data, sections[i].bytes);
-	}
-	for (uint32_t i = 0; i < mesh->texture_count; i++) {
-		mesh->textures[i].rgb = malloc(texture_bytes(&mesh->textures[i]));
-		if (!mesh->textures[i].rgb)
-			return -ENOMEM;
-		get(stream, mesh->textures[i].rgb, texture_bytes(&mesh->textures[i]));
-	}
-	return stream->error;
+		left -= (int64_t)padded(sections[i].bytes);
+	if (at < 0 || left != HASH_BYTES)
+		return at < 0 ? -errno : -EBADMSG;
+	for (int i = 0; i < SECTIONS && rc == 0; i++)
+		if (sections[i].bytes > 0 || i == 0 || i == 3)
+			rc = map_array(stream->fd, &offset, sections[i].data, sections[i].bytes);
+	for (uint32_t i = 0; i < mesh->texture_count && rc == 0; i++)
+		rc = map_array(stream->fd, &offset, (void **)&mesh->textures[i].rgb,
+			       texture_bytes(&mesh->textures[i]));
+	if (rc == 0)
+		skip(stream, (int64_t)offset - at);
+	return rc < 0 ? rc : stream->error;
 }
 
 static bool scans_are_sound(const struct mesh *mesh)
@@ -248,10 +282,12 @@ static int read_scans(struct stream *stream, struct mesh *mesh, uint32_t count, 
  * indices. */
 static bool is_sound(const struct mesh *mesh)
 {
-	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
 		for (int k = 0; k < 3; k++)
 			if (mesh->triangles[i][k] >= mesh->vertex_count)
 				return false;
+		spill_pass(i);
+	}
 	for (uint32_t i = 0; mesh->materials && i < mesh->triangle_count; i++)
 		if (mesh->materials[i] >= mesh->texture_count)
 			return false;

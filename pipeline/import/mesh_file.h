@@ -1,13 +1,15 @@
 /* A mesh as a cache file (DIR/.work/mesh). Arrays are stored as in memory, so in this machine's
- * byte order; such a file is never published. It ends with a BLAKE2b hash of everything before.
+ * byte order; such a file is never published. Large arrays of a mesh that is loaded are the file
+ * itself, mapped: loading takes no memory. It ends with a BLAKE2b hash of everything before.
  *
- *   8 bytes   "gopmesh" and the version, 2
+ *   8 bytes   "gopmesh" and the version, 3
  *   u32       0x01020304, shows the byte order
  *   16 bytes  key: what the mesh was made from
  *   u32 x 5   vertices, triangles, textures, flags (1 colours, 2 uvs, 4 materials, 8 faces), scans
  *   u32 x 2   triangles and faces of each scan
  *   u32 x 2   width and height of each texture
- *   arrays    positions, colours, uvs, triangles, materials, faces, pixels of each texture
+ *   arrays    positions, colours, uvs, triangles, materials, faces, pixels of each texture,
+ *             each filled up with zeros to 8 bytes
  *   16 bytes  BLAKE2b of everything before */
 #ifndef GOPURA_PIPELINE_IMPORT_MESH_FILE_H
 #define GOPURA_PIPELINE_IMPORT_MESH_FILE_H

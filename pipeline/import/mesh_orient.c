@@ -10,6 +10,8 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "base/spill.h"
+
 struct sheets {
 	/* disjoint sets: parent of each face, up to the root of its sheet; owned */
 	uint32_t *parent;
@@ -85,6 +87,7 @@ static void turn_faces(struct mesh *mesh, const struct sheets *sheets, uint32_t 
 	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
 		uint32_t *t = mesh->triangles[i], swap = t[1];
 
+		spill_pass(i);
 		if (!is_to_be_turned(sheets, root_of(sheets, i)))
 			continue;
 		t[1] = t[2];
@@ -96,21 +99,23 @@ static void turn_faces(struct mesh *mesh, const struct sheets *sheets, uint32_t 
 int mesh_orient(struct mesh *mesh, const struct mesh_edges *edges, uint32_t *turned_faces)
 {
 	size_t bytes = ((size_t)mesh->triangle_count + 1) * sizeof(uint32_t);
-	struct sheets sheets = { malloc(bytes), malloc(bytes), malloc(bytes) };
-	int rc = sheets.parent && sheets.size && sheets.leader ? 0 : -ENOMEM;
+	struct sheets sheets = { spill_alloc(bytes), spill_alloc(bytes), spill_alloc(bytes) };
+	int rc = sheets.parent && sheets.size && sheets.leader ? 0 : -errno;
 
 	*turned_faces = 0;
 	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++) {
 		sheets.parent[i] = sheets.leader[i] = i;
 		sheets.size[i] = 1;
+		spill_pass(i);
 	}
-	if (rc == 0) {
-		mesh_edges_each(edges, join_agreeing, &sheets);
-		mesh_edges_each(edges, find_leaders, &sheets);
+	if (rc == 0)
+		rc = mesh_edges_each(edges, join_agreeing, &sheets);
+	if (rc == 0)
+		rc = mesh_edges_each(edges, find_leaders, &sheets);
+	if (rc == 0)
 		turn_faces(mesh, &sheets, turned_faces);
-	}
-	free(sheets.parent);
-	free(sheets.size);
-	free(sheets.leader);
+	spill_free(sheets.parent);
+	spill_free(sheets.size);
+	spill_free(sheets.leader);
 	return rc;
 }

@@ -5,7 +5,7 @@
 #include "pipeline/import/mesh_edges.h"
 
 /* Turns the faces that show another side than the larger part of the surface around them. edges are
- * those of mesh; they are out of date afterwards if *turned_faces is not 0. -ENOMEM. */
+ * those of mesh. Turning a face changes none of their ends. -ENOMEM, -ENOSPC. */
 must_check int mesh_orient(struct mesh *mesh, const struct mesh_edges *edges,
 			   uint32_t *turned_faces);
 

@@ -1,9 +1,13 @@
 /* Finds equal vertices with a hash table (open addressing). */
 #include "pipeline/import/mesh_places.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/parallel.h"
+#include "base/spill.h"
 
 #define NO_VERTEX UINT32_MAX
 
@@ -46,32 +50,86 @@ static bool same_vertex(const struct mesh *mesh, uint32_t a, uint32_t b, bool pl
 	       (!mesh->uvs || memcmp(mesh->uvs[a], mesh->uvs[b], sizeof(mesh->uvs[a])) == 0);
 }
 
-/* first[i] is the first vertex that equals vertex i. Owned by the caller; NULL: no memory. */
+/* Equal vertices have equal hashes, so the vertices are divided by their hash into parts that are
+ * searched one after the other, each with a table of bounded size. */
+struct search {
+	const struct mesh *mesh;
+	bool place_only;
+	uint32_t parts;
+	size_t slots; /* of a table at first; a power of two */
+	uint32_t *first;
+};
+
+enum { PART_VERTICES = 3 << 20 }; /* a table of 64 MB */
+
+/* An entry of the table: the upper half of the hash, then the vertex. Returns false if more than
+ * half of the table fills, which a file can bring about that was made for it. */
+static bool find_in_part(const struct search *search, uint32_t part, uint64_t *table, size_t slots)
+{
+	const struct mesh *mesh = search->mesh;
+	size_t used = 0;
+
+	memset(table, 0xff, slots * sizeof(*table));
+	for (uint32_t i = 0; i < mesh->vertex_count && used <= slots / 2; i++) {
+		uint64_t hash = hash_vertex(mesh, i, search->place_only), upper = hash >> 32;
+		size_t at = hash & (slots - 1);
+
+		spill_pass(i);
+		if (upper * search->parts >> 32 != part)
+			continue;
+		while ((uint32_t)table[at] != NO_VERTEX &&
+		       (table[at] >> 32 != upper ||
+			!same_vertex(mesh, (uint32_t)table[at], i, search->place_only)))
+			at = (at + 1) & (slots - 1);
+		if ((uint32_t)table[at] == NO_VERTEX) {
+			table[at] = upper << 32 | i;
+			used++;
+		}
+		search->first[i] = (uint32_t)table[at];
+	}
+	return used <= slots / 2;
+}
+
+static int find_part(void *user, uint32_t part, uint32_t worker)
+{
+	const struct search *search = user;
+	size_t slots = search->slots;
+	bool found = false;
+
+	(void)worker;
+	while (!found) {
+		uint64_t *table = malloc(slots * sizeof(*table));
+
+		if (!table)
+			return -ENOMEM;
+		found = find_in_part(search, part, table, slots);
+		free(table);
+		slots *= 2;
+	}
+	return 0;
+}
+
+/* first[i] is the first vertex that equals vertex i. Owned by the caller; NULL: errno. */
 static uint32_t *find_first_equals(const struct mesh *mesh, bool place_only)
 {
-	size_t slots = 16;
-	uint32_t *table, *first = malloc(((size_t)mesh->vertex_count + 1) * sizeof(*first));
+	struct search search = { .mesh = mesh,
+				 .place_only = place_only,
+				 .parts = mesh->vertex_count / PART_VERTICES + 1,
+				 .slots = 16 };
+	int rc;
 
-	while (slots < (size_t)mesh->vertex_count + mesh->vertex_count / 2)
-		slots *= 2;
-	table = malloc(slots * sizeof(*table));
-	if (!table || !first) {
-		free(table);
-		free(first);
+	while (search.slots < 2 * (size_t)(mesh->vertex_count / search.parts) +
+				      mesh->vertex_count / search.parts / 8)
+		search.slots *= 2; /* the parts are not exactly equal */
+	search.first = spill_alloc(((size_t)mesh->vertex_count + 1) * sizeof(*search.first));
+	if (!search.first)
 		return NULL;
-	}
-	memset(table, 0xff, slots * sizeof(*table));
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		size_t at = hash_vertex(mesh, i, place_only) & (slots - 1);
-
-		while (table[at] != NO_VERTEX && !same_vertex(mesh, table[at], i, place_only))
-			at = (at + 1) & (slots - 1);
-		if (table[at] == NO_VERTEX)
-			table[at] = i;
-		first[i] = table[at];
-	}
-	free(table);
-	return first;
+	rc = parallel_run(parallel_cores(), search.parts, find_part, &search);
+	if (rc == 0)
+		return search.first;
+	spill_free(search.first);
+	errno = -rc;
+	return NULL;
 }
 
 uint32_t *mesh_places(const struct mesh *mesh)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spill.h"
 #include "pipeline/import/mesh_edges.h"
 #include "pipeline/import/mesh_orient.h"
 #include "pipeline/import/mesh_places.h"
@@ -21,6 +22,7 @@ static void settle_zeros(struct mesh *mesh)
 			mesh->positions[i][k] += 0.0f;
 		for (int k = 0; k < 2 && mesh->uvs; k++)
 			mesh->uvs[i][k] += 0.0f;
+		spill_pass(i);
 	}
 }
 
@@ -51,6 +53,7 @@ static void filter_faces(struct mesh *mesh, const uint32_t *first, struct mesh_r
 		const uint32_t *t = mesh->triangles[i];
 		uint32_t merged[3] = { first[t[0]], first[t[1]], first[t[2]] };
 
+		spill_pass(i);
 		if (!is_finite_vertex(mesh, t[0]) || !is_finite_vertex(mesh, t[1]) ||
 		    !is_finite_vertex(mesh, t[2])) {
 			repairs->lost_faces++;
@@ -79,11 +82,15 @@ static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh
 		if (first[i] != i)
 			repairs->merged_vertices++;
 		first[i] = NO_VERTEX;
+		spill_pass(i);
 	}
-	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
 		for (int k = 0; k < 3; k++)
 			first[mesh->triangles[i][k]] = 0;
+		spill_pass(i);
+	}
 	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		spill_pass(i);
 		if (first[i] == NO_VERTEX)
 			continue;
 		memmove(mesh->positions[kept], mesh->positions[i], sizeof(mesh->positions[i]));
@@ -95,9 +102,11 @@ static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh
 	}
 	repairs->unused_vertices = mesh->vertex_count - kept - repairs->merged_vertices;
 	mesh->vertex_count = kept;
-	for (uint32_t i = 0; i < mesh->triangle_count; i++)
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
 		for (int k = 0; k < 3; k++)
 			mesh->triangles[i][k] = first[mesh->triangles[i][k]];
+		spill_pass(i);
+	}
 }
 
 /* ---- edges */
@@ -120,19 +129,15 @@ static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
 
 	if (rc < 0)
 		return rc;
-	mesh_edges_each(&edges, count_edge, repairs);
-	if (repairs->turned_edges > 0)
+	rc = mesh_edges_each(&edges, count_edge, repairs);
+	if (rc == 0 && repairs->turned_edges > 0)
 		rc = mesh_orient(mesh, &edges, &repairs->turned_faces);
+	if (rc == 0 && repairs->turned_faces > 0) {
+		repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
+		rc = mesh_edges_each(&edges, count_edge, repairs);
+	}
 	mesh_edges_finish(&edges);
-	if (rc < 0 || repairs->turned_faces == 0)
-		return rc;
-	rc = mesh_edges_init(&edges, mesh);
-	if (rc < 0)
-		return rc;
-	repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
-	mesh_edges_each(&edges, count_edge, repairs);
-	mesh_edges_finish(&edges);
-	return 0;
+	return rc;
 }
 
 int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
@@ -143,9 +148,9 @@ int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
 	settle_zeros(mesh);
 	first = mesh_equals(mesh);
 	if (!first)
-		return -ENOMEM;
+		return -errno;
 	filter_faces(mesh, first, repairs);
 	drop_unused_vertices(mesh, first, repairs);
-	free(first);
+	spill_free(first);
 	return mesh->vertex_count >> 31 ? 0 : settle_edges(mesh, repairs);
 }

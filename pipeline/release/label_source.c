@@ -46,31 +46,56 @@ static void note_edge(void *data, const struct mesh_edge *edge)
 	outline->edges[outline->count++][2] = edge->ends[1];
 }
 
+/* Copies the part's triangles, each with vertices of its own: what follows then does not grow with
+ * the whole scan. */
+static int copy_triangles(struct mesh *out, const struct mesh *mesh,
+			  const struct label_source_part *part)
+{
+	size_t corners = (size_t)part->triangle_count * 3;
+
+	if (corners >> 31)
+		return -EFBIG;
+	*out = (struct mesh){ .vertex_count = (uint32_t)corners,
+			      .triangle_count = part->triangle_count,
+			      .positions = malloc((corners + 1) * sizeof(*out->positions)),
+			      .triangles = malloc((corners + 1) * sizeof(uint32_t)) };
+	if (!out->positions || !out->triangles)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < corners; i++) {
+		uint32_t vertex = mesh->triangles[part->triangles[i / 3]][i % 3];
+
+		memcpy(out->positions[i], mesh->positions[vertex], sizeof(out->positions[i]));
+		out->triangles[i / 3][i % 3] = i;
+	}
+	return 0;
+}
+
 /* An open border of the scan also counts as outline here; nothing beyond it could be outside. */
 static int find_outline(struct outline *outline, const struct mesh *mesh,
 			const struct label_source_part *part)
 {
-	struct mesh own = { .vertex_count = mesh->vertex_count, .positions = mesh->positions };
-	struct mesh_edges edges;
-	int rc;
+	struct mesh own;
+	struct mesh_edges edges = { 0 };
+	int rc = copy_triangles(&own, mesh, part);
 
-	own.triangle_count = part->triangle_count;
-	own.triangles = malloc(((size_t)part->triangle_count + 1) * sizeof(*own.triangles));
-	if (!own.triangles)
-		return -ENOMEM;
-	for (uint32_t i = 0; i < part->triangle_count; i++)
-		memcpy(own.triangles[i], mesh->triangles[part->triangles[i]],
-		       sizeof(*own.triangles));
-	rc = mesh_edges_init(&edges, &own);
-	if (rc == 0) {
-		mesh_edges_each(&edges, note_edge, outline);
-		mesh_edges_finish(&edges);
-		rc = outline->failed ? -ENOMEM : 0;
-	}
+	if (rc == 0)
+		rc = mesh_edges_init(&edges, &own);
+	if (rc == 0)
+		rc = mesh_edges_each(&edges, note_edge, outline);
+	if (rc == 0 && outline->failed)
+		rc = -ENOMEM;
+	for (uint32_t i = 0; i < outline->count; i++)
+		for (int k = 0; k < 3; k++) {
+			uint32_t corner = outline->edges[i][k];
+
+			outline->edges[i][k] =
+				mesh->triangles[part->triangles[corner / 3]][corner % 3];
+		}
 	if (rc == 0)
 		rc = nearest_create(&outline->nearest, mesh->positions, outline->edges,
 				    outline->count);
-	free(own.triangles);
+	mesh_edges_finish(&edges);
+	mesh_finish(&own);
 	return rc;
 }
 
