@@ -75,14 +75,15 @@ static int put_program(struct buffer *text)
 }
 
 /* Hashes everything that a release is made from. */
-static int make_stamp(struct hash *out, const struct content *content,
+static int make_stamp(struct hash *out, struct sources *sources,
 		      const struct build_options *options)
 {
+	const struct content *content = sources_content(sources);
 	static const char *const names[] = { "temple.ini", "parts.json", "tours.json" };
 	struct fault fault = { "" };
 	struct hash scans;
 	struct buffer text;
-	int rc = content_scans_key(content, &scans, &fault);
+	int rc = scans_key(sources_scans(sources), &scans, &fault);
 
 	if (rc < 0)
 		return fail(&fault, rc, strerror(-rc));
@@ -155,29 +156,28 @@ void build_master_options(struct master_options *out, const struct content *cont
 	};
 }
 
-static int make_master(const char *folder, const struct content *content, struct hash stamp,
+static int make_master(const char *folder, struct scans *scans, struct hash stamp,
 		       const struct master_options *options)
 {
 	struct master_report report;
 	struct fault fault = { "" };
-	struct mesh mesh;
-	int rc = content_import(&mesh, content, NULL, &fault);
+	const struct mesh *mesh;
+	int rc = scans_get_mesh(scans, &mesh, &fault);
 
 	if (rc < 0)
 		return fail(&fault, rc, strerror(-rc));
-	rc = master_build(folder, &mesh, stamp, options, &report);
+	rc = master_build(folder, mesh, stamp, options, &report);
 	if (rc < 0)
 		log_error("pipeline", "%s: %s%s", folder, strerror(-rc),
 			  rc == -E2BIG ? "; the coarsest patches do not fit in one group, use "
 					 "--hierarchy groups"
 				       : "");
-	mesh_finish(&mesh);
 	return rc;
 }
 
-static int build_hierarchy(struct build_report *report, const struct content *content,
-			   uint32_t jobs)
+static int build_hierarchy(struct build_report *report, struct scans *scans, uint32_t jobs)
 {
+	const struct content *content = scans_content(scans);
 	struct master_options options;
 	struct fault fault = { "" };
 	struct master *master = NULL;
@@ -187,14 +187,14 @@ static int build_hierarchy(struct build_report *report, const struct content *co
 
 	build_master_options(&options, content, jobs);
 	if (rc == 0)
-		rc = content_scans_key(content, &key, &fault);
+		rc = scans_key(scans, &key, &fault);
 	if (rc < 0)
 		return fail(&fault, rc, strerror(-rc));
 	stamp = master_stamp(key, &options);
 	rc = master_open(&master, folder, &stamp);
 	if (rc < 0) {
 		report->hierarchy_made = true;
-		rc = make_master(folder, content, stamp, &options);
+		rc = make_master(folder, scans, stamp, &options);
 		if (rc == 0)
 			rc = master_open(&master, folder, &stamp);
 	}
@@ -204,28 +204,28 @@ static int build_hierarchy(struct build_report *report, const struct content *co
 	return rc;
 }
 
-static int build_samples(const struct content *content, uint32_t jobs)
+static int build_samples(struct scans *scans, uint32_t jobs)
 {
 	const struct sampler_options options = { .jobs = jobs };
 	struct fault fault = { "" };
-	int rc = sampler_run(content, &options, &fault);
+	int rc = sampler_run(scans, &options, &fault);
 
 	return rc < 0 ? fail(&fault, rc, strerror(-rc)) : 0;
 }
 
-static int run_stages(struct build_report *report, const struct content *content,
-		      const struct build_options *options,
+static int run_stages(struct build_report *report, uint32_t jobs,
 		      const struct publish_content_options *publish)
 {
+	struct scans *scans = sources_scans(publish->sources);
 	int64_t start = clock_now_ms(), at;
-	int rc = publish_content_check(content); /* before the long work, not after it */
+	int rc = sources_check(publish->sources); /* before the long work, not after it */
 
 	if (rc == 0)
-		rc = build_hierarchy(report, content, options->jobs);
+		rc = build_hierarchy(report, scans, jobs);
 	at = clock_now_ms();
 	report->hierarchy_ms = at - start;
 	if (rc == 0)
-		rc = build_samples(content, options->jobs);
+		rc = build_samples(scans, jobs);
 	start = clock_now_ms();
 	report->samples_ms = start - at;
 	if (rc == 0)
@@ -234,36 +234,44 @@ static int run_stages(struct build_report *report, const struct content *content
 	return rc;
 }
 
-int build_content(struct build_report *report, const struct content *content,
-		  const struct build_options *options)
+static int build_from(struct build_report *report, struct sources *sources,
+		      const struct build_options *options)
 {
-	const struct publish_content_options publish = { .content = content,
+	const struct publish_content_options publish = { .sources = sources,
 							 .out = options->out,
 							 .keys = options->keys,
 							 .comment = options->comment };
-	int64_t start = clock_now_ms();
 	char stamp_path[CONTENT_PATH_BYTES];
+	struct stamp_file file;
 	struct hash stamp;
-	int rc = content_work_path(content, "built", stamp_path);
+	int rc = content_work_path(sources_content(sources), "built", stamp_path);
+
+	if (rc == 0)
+		rc = make_stamp(&stamp, sources, options);
+	if (rc < 0)
+		return rc;
+	report->nothing_changed = is_built(report, stamp_path, stamp, &publish);
+	if (report->nothing_changed)
+		return 0;
+	rc = run_stages(report, options->jobs, &publish);
+	if (rc < 0)
+		return rc;
+	file = stamp_text(stamp, report->publish.publish.release.root);
+	return bytes_write_file((struct bytes){ (uint8_t *)file.text, strlen(file.text) },
+				stamp_path);
+}
+
+int build_content(struct build_report *report, const struct content *content,
+		  const struct build_options *options)
+{
+	int64_t start = clock_now_ms();
+	struct sources *sources;
+	int rc = sources_create(&sources, content);
 
 	*report = (struct build_report){ 0 };
 	if (rc == 0)
-		rc = make_stamp(&stamp, content, options);
-	if (rc < 0)
-		return rc;
-	if (is_built(report, stamp_path, stamp, &publish)) {
-		report->nothing_changed = true;
-	} else {
-		rc = run_stages(report, content, options, &publish);
-		if (rc == 0) {
-			struct stamp_file file =
-				stamp_text(stamp, report->publish.publish.release.root);
-
-			rc = bytes_write_file(
-				(struct bytes){ (uint8_t *)file.text, strlen(file.text) },
-				stamp_path);
-		}
-	}
+		rc = build_from(report, sources, options);
+	sources_destroy(sources);
 	report->all_ms = clock_now_ms() - start;
 	return rc;
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "pipeline/build.h"
-#include "pipeline/content/content.h"
+#include "pipeline/content/scans.h"
 #include "pipeline/hierarchy/master.h"
 
 static const char help[] =
@@ -91,27 +91,28 @@ static int complain(const char *what, int rc, const struct fault *fault)
 	return rc;
 }
 
-static int build(const char *folder, const struct content *content, struct hash stamp,
+static int build(const char *folder, struct scans *scans, struct hash stamp,
 		 const struct master_options *options)
 {
 	struct master_report report;
 	struct fault fault = { "" };
-	struct mesh mesh;
-	int rc = content_import(&mesh, content, NULL, &fault);
+	const struct mesh *mesh;
+	int rc = scans_get_mesh(scans, &mesh, &fault);
 
 	if (rc < 0)
-		return complain(content->folder, rc, &fault);
-	rc = master_build(folder, &mesh, stamp, options, &report);
+		return complain(scans_content(scans)->folder, rc, &fault);
+	rc = master_build(folder, mesh, stamp, options, &report);
 	if (rc < 0)
 		complain(folder, rc, NULL);
 	else
-		print_report(&report, mesh.triangle_count);
-	mesh_finish(&mesh);
+		print_report(&report, mesh->triangle_count);
+	scans_drop_mesh(scans);
 	return rc;
 }
 
-static int make(const struct settings *settings, const struct content *content)
+static int make(const struct settings *settings, struct scans *scans)
 {
+	const struct content *content = scans_content(scans);
 	struct master_options options;
 	struct fault fault = { "" };
 	struct master *master = NULL;
@@ -121,7 +122,7 @@ static int make(const struct settings *settings, const struct content *content)
 
 	build_master_options(&options, content, settings->jobs);
 	if (rc == 0)
-		rc = content_scans_key(content, &key, &fault);
+		rc = scans_key(scans, &key, &fault);
 	if (rc < 0)
 		return complain(content->folder, rc, &fault);
 	stamp = master_stamp(key, &options);
@@ -129,7 +130,7 @@ static int make(const struct settings *settings, const struct content *content)
 	if (rc == 0) {
 		puts("nothing changed");
 	} else {
-		rc = build(folder, content, stamp, &options);
+		rc = build(folder, scans, stamp, &options);
 		if (rc == 0)
 			rc = master_open(&master, folder, &stamp);
 	}
@@ -143,6 +144,7 @@ static int run(const struct settings *settings)
 {
 	struct fault fault = { "" };
 	struct content content;
+	struct scans *scans = NULL;
 	int rc = content_read(&content, settings->folder, &fault);
 
 	if (rc < 0) {
@@ -151,7 +153,10 @@ static int run(const struct settings *settings)
 	}
 	if (settings->kind)
 		content.binary_tree = strcmp(settings->kind, "tree") == 0;
-	rc = make(settings, &content);
+	rc = scans_create(&scans, &content);
+	if (rc == 0)
+		rc = make(settings, scans);
+	scans_destroy(scans);
 	content_release(&content);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -52,6 +52,7 @@ static int run(struct settings *settings, const char *folder)
 	struct publish_content_report report;
 	struct fault fault = { "" };
 	struct content content;
+	struct sources *sources = NULL;
 	int lock = -1;
 	int rc = content_read(&content, folder, &fault);
 
@@ -60,8 +61,10 @@ static int run(struct settings *settings, const char *folder)
 			fault.text[0] ? fault.text : strerror(-rc));
 		return EXIT_FAILURE;
 	}
-	settings->publish.content = &content;
 	rc = work_lock(&lock, &content);
+	if (rc == 0)
+		rc = sources_create(&sources, &content);
+	settings->publish.sources = sources;
 	if (rc == 0)
 		rc = publish(&report, settings);
 	if (rc == 0)
@@ -71,6 +74,7 @@ static int run(struct settings *settings, const char *folder)
 			strerror(-rc));
 	if (lock >= 0)
 		close(lock);
+	sources_destroy(sources);
 	content_release(&content);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -104,6 +104,7 @@ int command_render(int argc, char **argv)
 	struct settings settings = { .reference = { .supersample = 1 } };
 	struct reference_report report;
 	struct content content = { 0 };
+	struct scans *scans = NULL;
 	struct camera *views = NULL;
 	struct fault fault = { "" };
 	uint32_t count;
@@ -119,12 +120,15 @@ int command_render(int argc, char **argv)
 	if (rc == 0)
 		rc = content_read(&content, settings.dir, &fault);
 	if (rc == 0)
-		rc = reference_draw(&content, views, count, &settings.reference, &report, &fault);
+		rc = scans_create(&scans, &content);
+	if (rc == 0)
+		rc = reference_draw(scans, views, count, &settings.reference, &report, &fault);
 	if (rc == 0)
 		printf("%s: %u pictures drawn, %u kept\n", settings.reference.out_dir, report.drawn,
 		       report.kept);
 	else
 		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+	scans_destroy(scans);
 	content_release(&content);
 	free(views);
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -81,6 +81,7 @@ int command_sample(int argc, char **argv)
 	struct sampler_options options = { .shard_count = 1 };
 	struct fault fault = { "" };
 	struct content content;
+	struct scans *scans = NULL;
 	const char *dir;
 	int rc;
 
@@ -90,7 +91,10 @@ int command_sample(int argc, char **argv)
 	}
 	rc = content_read(&content, dir, &fault);
 	if (rc == 0)
-		rc = sampler_run(&content, &options, &fault);
+		rc = scans_create(&scans, &content);
+	if (rc == 0)
+		rc = sampler_run(scans, &options, &fault);
+	scans_destroy(scans);
 	content_release(&content);
 	if (rc < 0) {
 		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));

@@ -332,10 +332,10 @@ void content_release(struct content *content)
 	*content = (struct content){ 0 };
 }
 
-bool content_is_lit(const struct content *content, const struct mesh *mesh)
+bool content_is_lit(const struct content *content, bool has_textures)
 {
 	if (content->lit == CONTENT_LIT_AUTO)
-		return mesh->textures == NULL;
+		return !has_textures;
 	return content->lit == CONTENT_LIT_YES;
 }
 

@@ -70,25 +70,7 @@ must_check int content_file_path(const struct content *content, const char *name
 must_check int content_work_path(const struct content *content, const char *name,
 				 char out[CONTENT_PATH_BYTES]);
 
-/* Hashes everything the mesh is made from: names, sizes and modification times of the scans and of
- * the files beside them (mtl, pictures, buffers), and the import options. Equal keys mean equal
- * meshes. Negative errno, with fault. */
-must_check int content_scans_key(const struct content *content, struct hash *out,
-				 struct fault *fault);
-
-struct content_scans {
-	bool from_cache;       /* nothing was read again; the reports are empty */
-	uint32_t report_count; /* scan_count, or 0 if from_cache */
-	struct import_report reports[CONTENT_SCANS_MAX];
-};
-
-/* Gets all scans as one mesh: from .work/mesh if its key matches, otherwise imported, repaired and
- * saved there. *out is owned by the caller; it is zeroed on failure. scans may be NULL. Negative
- * errno, with fault. */
-must_check int content_import(struct mesh *out, const struct content *content,
-			      struct content_scans *scans, struct fault *fault);
-
-/* Returns whether the model is lit; decides "auto" by whether the mesh has textures. */
-bool content_is_lit(const struct content *content, const struct mesh *mesh);
+/* Returns whether the model is lit; "auto" depends on whether the scans have pictures. */
+bool content_is_lit(const struct content *content, bool has_textures);
 
 #endif

@@ -37,6 +37,8 @@ void draft_complain(struct draft *draft, bool is_error, const char *file, unsign
 static void part_finish(struct draft_part *part)
 {
 	free(part->id);
+	free(part->faces_file);
+	free(part->faces_scan);
 	free(part->thumbnail);
 	for (uint32_t i = 0; i < part->credit_count; i++)
 		free(part->credits[i].value);
@@ -89,6 +91,14 @@ int draft_find_tour(const struct draft *draft, const char *id)
 		if (strcmp(draft->tours[i].id, id) == 0)
 			return (int)i;
 	return -1;
+}
+
+bool draft_has_faces(const struct draft *draft)
+{
+	for (uint32_t i = 0; i < draft->part_count; i++)
+		if (draft->parts[i].faces_file)
+			return true;
+	return false;
 }
 
 bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name)

@@ -29,8 +29,11 @@ struct draft_part {
 	char *id;
 	unsigned line; /* line in parts.json */
 	bool without_page;
+	/* Zero until draft_place_faces, if the region is a list of faces. */
 	struct region region;
 	float anchor_m[3];
+	bool has_anchor;               /* anchor_m is given in parts.json */
+	char *faces_file, *faces_scan; /* owned; file NULL: its region is no list of faces */
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 	char *readings[INFO_LANGUAGES_MAX];                              /* the same */
 	struct draft_credit credits[DRAFT_CREDITS_MAX]; /* in the order of the elements */
@@ -41,7 +44,8 @@ struct draft_part {
 };
 
 struct draft_stop {
-	struct info_stop view;
+	struct info_stop view; /* whole after draft_place_stops */
+	bool has_eye, has_target;
 	unsigned line;                      /* line in tours.json */
 	char *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
 };
@@ -89,6 +93,8 @@ must_check int draft_read_parts(struct draft *draft);
 must_check int draft_read_pages(struct draft *draft);
 /* Reads tours.json. Call it after draft_read_parts, because stops may name parts. */
 must_check int draft_read_tours(struct draft *draft);
+/* Computes and checks the views of stops that name a part. Call it when all parts have a place. */
+void draft_place_stops(struct draft *draft);
 /* Adds the credits of a part: `json` is the part's own "credits", and `all` those stated for all
  * parts, used for elements that json lacks. Either may be NULL. Complains with the part's line.
  * -ENOMEM. */
@@ -103,6 +109,8 @@ bool draft_languages_are_sane(const struct info_build_options *options);
 int draft_find_part(const struct draft *draft, const char *id);
 /* Returns the tour's index, or -1. */
 int draft_find_tour(const struct draft *draft, const char *id);
+/* Returns whether a part's region is a list of faces. */
+bool draft_has_faces(const struct draft *draft);
 /* Returns whether id may name a part or a tour. */
 bool draft_is_id(const char *id);
 

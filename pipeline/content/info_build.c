@@ -430,32 +430,122 @@ bool draft_languages_are_sane(const struct info_build_options *options)
 	return true;
 }
 
-int info_build(struct info_built *out, const struct info_build_options *options)
+/* Reads everything; returns 0 also if there were complaints. */
+static int read_all(struct draft *draft)
 {
-	struct draft draft = { .options = options };
+	int rc = 0;
+
+	if (!draft_languages_are_sane(draft->options)) {
+		draft_complain(draft, true, "temple.ini", 0,
+			       "languages: give 1 to %d codes such as \"en fr km\", each once",
+			       INFO_LANGUAGES_MAX);
+		return 0;
+	}
+	rc = draft_read_parts(draft);
+	if (rc == 0)
+		rc = draft_read_tours(draft);
+	if (rc == 0 && draft->part_count > 0)
+		rc = draft_read_pages(draft);
+	if (rc == 0 && !draft_has_faces(draft))
+		draft_place_stops(draft);
+	return rc;
+}
+
+int info_read(struct draft **out, const struct info_build_options *options)
+{
+	struct draft *draft = calloc(1, sizeof(*draft));
+	int rc;
+
+	*out = NULL;
+	if (!draft)
+		return -ENOMEM;
+	draft->options = options;
+	rc = read_all(draft);
+	if (rc == 0 && draft->error_count > 0)
+		rc = -EINVAL;
+	if (rc == 0)
+		*out = draft;
+	else
+		info_draft_destroy(draft);
+	return rc;
+}
+
+void info_draft_destroy(struct draft *draft)
+{
+	if (!draft)
+		return;
+	draft_finish(draft);
+	free(draft);
+}
+
+bool info_has_tours(const struct draft *draft)
+{
+	return draft->tour_count > 0;
+}
+
+/* Places the regions that are lists of faces. The leader line of a part without an "anchor" ends on
+ * its faces. */
+static int place_faces(struct draft *draft)
+{
+	const struct info_build_options *options = draft->options;
+	int rc = 0;
+
+	for (uint32_t i = 0; rc == 0 && options->place_faces && i < draft->part_count; i++) {
+		struct draft_part *part = &draft->parts[i];
+		struct info_faces faces = { .part = part->id,
+					    .file = part->faces_file,
+					    .scan = part->faces_scan };
+		struct fault fault = { "" };
+
+		if (!part->faces_file)
+			continue;
+		rc = options->place_faces(options->faces_data, &faces, &fault);
+		if (rc == -EINVAL) {
+			draft_complain(draft, true, "parts.json", part->line, "part \"%s\": %s",
+				       part->id, fault.text);
+			rc = 0;
+		}
+		memcpy(part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));
+		part->region.radius_m = faces.radius_m;
+		if (!part->has_anchor)
+			memcpy(part->anchor_m, faces.anchor_m, sizeof(faces.anchor_m));
+	}
+	return rc;
+}
+
+int info_compile(struct info_built *out, struct draft *draft)
+{
 	int rc = 0;
 
 	*out = (struct info_built){ 0 };
 	buffer_init(&out->database, OBJECT_BYTES_MAX);
-	if (!draft_languages_are_sane(options))
-		draft_complain(&draft, true, "temple.ini", 0,
-			       "languages: give 1 to %d codes such as \"en fr km\", each once",
-			       INFO_LANGUAGES_MAX);
-	else if ((rc = draft_read_parts(&draft)) == 0)
-		rc = draft_read_tours(&draft);
-	if (rc == 0 && draft.part_count > 0)
-		rc = draft_read_pages(&draft);
-	if (rc == 0 && draft.error_count > 0)
+	if (draft_has_faces(draft)) {
+		rc = place_faces(draft);
+		if (rc == 0)
+			draft_place_stops(draft);
+	}
+	if (rc == 0 && draft->error_count > 0)
 		rc = -EINVAL;
 	if (rc == 0)
-		rc = encode(&out->database, &draft);
+		rc = encode(&out->database, draft);
 	if (rc == 0)
-		rc = list_pictures(out, &draft);
+		rc = list_pictures(out, draft);
 	if (rc == 0)
-		count(out, &draft);
+		count(out, draft);
 	else
 		info_built_finish(out);
-	draft_finish(&draft);
+	return rc;
+}
+
+int info_build(struct info_built *out, const struct info_build_options *options)
+{
+	struct draft *draft;
+	int rc = info_read(&draft, options);
+
+	*out = (struct info_built){ 0 };
+	if (rc == 0)
+		rc = info_compile(out, draft);
+	info_draft_destroy(draft);
 	return rc;
 }
 

@@ -19,9 +19,8 @@ struct info_faces {
 	/* Results: where it lies, and a place on it. */
 	float centre_m[3], radius_m, anchor_m[3];
 };
-/* Checks the list and fills in the place. -EINVAL: fault says what is wrong and how to correct
- * it. */
-typedef int info_place_faces(void *data, struct info_faces *faces, struct fault *fault);
+/* Works on one list. -EINVAL: fault says what is wrong and how to correct it. */
+typedef int info_faces_call(void *data, struct info_faces *faces, struct fault *fault);
 
 struct info_build_options {
 	const char *folder; /* content folder: parts.json, tours.json, pages/, pictures/ */
@@ -30,8 +29,9 @@ struct info_build_options {
 	unsigned tools;               /* bits of enum info_tool */
 	info_complaint *complaint;    /* NULL: complaints are logged */
 	void *complaint_data;
-	info_place_faces *place_faces; /* NULL: lists of faces are not checked */
-	void *place_faces_data;
+	info_faces_call *judge_faces; /* checks a list without the scan; NULL: none is checked */
+	info_faces_call *place_faces; /* fills in its place; NULL: all are at 0 0 0 */
+	void *faces_data;
 };
 
 struct info_picture_file {
@@ -52,9 +52,22 @@ struct info_built {
 	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
 };
 
-/* Reads and checks the folder and builds the image. A folder without parts.json gives a database
- * without parts. The caller finishes *out; it is zeroed on failure. -EINVAL: the content has
- * faults, and every fault was reported as a complaint. -ENOMEM, -EIO. */
+/* A folder as read and checked: everything but where its lists of faces lie. */
+struct draft;
+
+/* Reads and checks the folder; a list of faces only by judge_faces. A folder without parts.json has
+ * no parts. options is borrowed for the draft's lifetime. *out is owned by the caller; NULL on
+ * failure. -EINVAL: the content has faults, and every fault was reported as a complaint. -ENOMEM,
+ * -EIO. */
+must_check int info_read(struct draft **out, const struct info_build_options *options);
+void info_draft_destroy(struct draft *draft); /* NULL is fine */
+/* Returns whether there are tours. */
+bool info_has_tours(const struct draft *draft);
+/* Places the lists of faces and the stops that depend on them, and builds the image. Once for a
+ * draft. The caller finishes *out; it is zeroed on failure. Errors as of info_read. */
+must_check int info_compile(struct info_built *out, struct draft *draft);
+
+/* info_read and info_compile in one. */
 must_check int info_build(struct info_built *out, const struct info_build_options *options);
 /* Frees the contents. NULL and zeroed are fine. */
 void info_built_finish(struct info_built *built);

@@ -154,33 +154,31 @@ static void read_prism(struct part_reader *r, const cJSON *json)
 		complain_part(r, "part \"%s\": the corners enclose no area", part_name(r));
 }
 
-/* Lets place_faces check and place the list. Without an "anchor", the leader line ends at the place
- * it returns. */
+/* Keeps the list's names, and lets judge_faces check it. */
 static int read_faces(struct part_reader *r, const cJSON *json)
 {
 	const struct info_build_options *options = r->draft->options;
-	struct info_faces faces = {
-		.part = part_name(r),
-		.file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file")),
-		.scan = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "scan")),
-	};
+	const char *file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file"));
+	const char *scan = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "scan"));
+	struct info_faces faces = { .part = part_name(r), .file = file, .scan = scan };
 	struct fault fault = { "" };
 	int rc;
 
-	if (!faces.file)
+	if (!file) {
 		complain_part(
 			r,
 			"part \"%s\": a region of faces needs a \"file\" that lists them, such "
 			"as \"regions/lintel.faces\"",
 			part_name(r));
-	if (!faces.file || !options->place_faces)
 		return 0;
-	rc = options->place_faces(options->place_faces_data, &faces, &fault);
+	}
+	r->part->faces_file = strdup(file);
+	r->part->faces_scan = scan ? strdup(scan) : NULL;
+	if (!r->part->faces_file || (scan && !r->part->faces_scan))
+		return -ENOMEM;
+	rc = options->judge_faces ? options->judge_faces(options->faces_data, &faces, &fault) : 0;
 	if (rc == -EINVAL)
 		complain_part(r, "part \"%s\": %s", part_name(r), fault.text);
-	memcpy(r->part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));
-	memcpy(r->part->anchor_m, faces.anchor_m, sizeof(faces.anchor_m));
-	r->part->region.radius_m = faces.radius_m;
 	return rc == -EINVAL ? 0 : rc;
 }
 
@@ -209,8 +207,8 @@ static int read_region(struct part_reader *r)
 			      "part \"%s\": region kind \"%.40s\" is none of point, sphere, box, "
 			      "prism, faces",
 			      part_name(r), kind ? kind : "");
-	if (!has_faces)
-		memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
+	memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
+	r->part->has_anchor = anchor != NULL;
 	if (anchor)
 		read_vector(r, r->json, "anchor", r->part->anchor_m);
 	if (!json)

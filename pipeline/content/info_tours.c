@@ -139,35 +139,22 @@ static void read_part(const struct tour_reader *r, const cJSON *json, struct inf
 		complain(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
 }
 
-/* Reads the stop's own eye and target, or computes the view of its part, as for a visitor who comes
- * from the stop before. */
-static void read_view(const struct tour_reader *r, const cJSON *json, struct info_stop *stop,
-		      const struct info_stop *before)
+/* Reads the stop's own eye and target; place_stop computes what it leaves to its part. */
+static void read_view(const struct tour_reader *r, const cJSON *json, struct draft_stop *stop,
+		      bool is_first)
 {
-	const struct draft_part *part = stop->part >= 0 ? &r->draft->parts[stop->part] : NULL;
+	const bool has_part = stop->view.part >= 0;
 	const bool has_eye = cJSON_HasObjectItem(json, "eye");
 	const bool has_target = cJSON_HasObjectItem(json, "target");
 
-	if (part)
-		memcpy(stop->target_m, part->anchor_m, sizeof(stop->target_m));
-	if (has_eye && (has_target || part)) {
-		float apart = 0;
-		bool is_view = read_vector(r, json, "eye", stop->eye_m);
-
-		if (has_target)
-			is_view &= read_vector(r, json, "target", stop->target_m);
-		for (int i = 0; i < 3; i++)
-			apart = fmaxf(apart, fabsf(stop->eye_m[i] - stop->target_m[i]));
-		if (is_view && apart < 0.01f)
-			complain(r, "\"eye\" and \"target\" are one place: move the target to "
-				    "what is to be seen");
+	if (has_eye && (has_target || has_part)) {
+		stop->has_eye = read_vector(r, json, "eye", stop->view.eye_m);
+		stop->has_target =
+			has_target && read_vector(r, json, "target", stop->view.target_m);
 	} else if (has_eye || has_target) {
 		complain(r, "\"%s\" alone is no view: add \"%s\": [x, y, z]",
 			 has_eye ? "eye" : "target", has_eye ? "target" : "eye");
-	} else if (part && before) {
-		viewpoint_of_region(&part->region, part->anchor_m, PART_LEAST_M, before->eye_m,
-				    stop->eye_m, stop->target_m);
-	} else if (part) {
+	} else if (has_part && is_first) {
 		complain(r, "a part is shown from where the stop before stands, and the first has "
 			    "none: add \"eye\": [x, y, z]");
 	} else if (!cJSON_HasObjectItem(json, "part")) {
@@ -179,7 +166,7 @@ static void read_view(const struct tour_reader *r, const cJSON *json, struct inf
 static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 {
 	struct draft_stop *stop = &r->tour->stops[r->tour->stop_count];
-	const struct info_stop *before = r->tour->stop_count > 0 ? &stop[-1].view : NULL;
+	const bool is_first = r->tour->stop_count == 0;
 
 	stop->line = r->line;
 	r->stop = ++r->tour->stop_count; /* from here on draft_finish frees it */
@@ -190,7 +177,7 @@ static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 	}
 	check_keys(r, json, " eye target part stay travel caption ");
 	read_part(r, json, &stop->view);
-	read_view(r, json, &stop->view, before);
+	read_view(r, json, stop, is_first);
 	stop->view.stay_s = read_seconds(r, json, "stay", STAY_S, !is_end);
 	stop->view.travel_s = read_seconds(r, json, "travel", 0, false);
 	return read_texts(r, json, "caption", stop->captions, false);
@@ -221,6 +208,44 @@ static int read_stops(struct tour_reader *r, const cJSON *json, const char *text
 	r->stop = 0;
 	r->line = line;
 	return rc;
+}
+
+/* Computes the view of the stop's part, as for a visitor who comes from the stop before. */
+static void place_stop(const struct tour_reader *r, struct draft_stop *stop,
+		       const struct info_stop *before)
+{
+	const struct draft_part *part =
+		stop->view.part >= 0 ? &r->draft->parts[stop->view.part] : NULL;
+	struct info_stop *view = &stop->view;
+	float apart = 0;
+
+	if (part && !stop->has_target)
+		memcpy(view->target_m, part->anchor_m, sizeof(view->target_m));
+	if (!stop->has_eye) {
+		if (part && before)
+			viewpoint_of_region(&part->region, part->anchor_m, PART_LEAST_M,
+					    before->eye_m, view->eye_m, view->target_m);
+		return;
+	}
+	for (int i = 0; i < 3; i++)
+		apart = fmaxf(apart, fabsf(view->eye_m[i] - view->target_m[i]));
+	if ((part || stop->has_target) && apart < 0.01f)
+		complain(r, "\"eye\" and \"target\" are one place: move the target to what is to "
+			    "be seen");
+}
+
+void draft_place_stops(struct draft *draft)
+{
+	for (uint32_t t = 0; t < draft->tour_count; t++) {
+		struct draft_tour *tour = &draft->tours[t];
+		struct tour_reader r = { .draft = draft, .tour = tour };
+
+		for (uint32_t i = 0; i < tour->stop_count; i++) {
+			r.line = tour->stops[i].line;
+			r.stop = i + 1;
+			place_stop(&r, &tour->stops[i], i > 0 ? &tour->stops[i - 1].view : NULL);
+		}
+	}
 }
 
 /* ---- tours ---- */

@@ -15,7 +15,8 @@
 #include "geometry/tour_path.h"
 #include "geometry/vec.h"
 
-enum { LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100 };
+/* Raise VERSION when the check refuses what it let pass before. */
+enum { VERSION = 1, LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100, KEY_TEXT_MAX = 1 << 20 };
 
 #define STEP_SHARE    0.25f /* of the clearance */
 #define THROUGH_SHARE 0.2f  /* nearer than this share of the clearance counts as through */
@@ -347,6 +348,40 @@ static int judge_tour(struct way *way)
 	}
 	free(way->steps);
 	free(way->boxes);
+	return rc;
+}
+
+int tour_check_key(struct hash *out, const struct info_built *built, struct hash scans)
+{
+	struct buffer text;
+	struct info *info;
+	int rc = info_open(&info, buffer_bytes(&built->database));
+
+	if (rc < 0)
+		return rc;
+	buffer_init(&text, KEY_TEXT_MAX);
+	buffer_put_u32(&text, VERSION);
+	buffer_put(&text, scans.bytes, HASH_BYTES);
+	for (uint32_t i = 0; i < info_tour_count(info); i++) {
+		const struct info_tour *tour = info_tour(info, i);
+
+		buffer_put_u8(&text, tour->attract);
+		buffer_put_u32(&text, tour->stop_count);
+		for (uint32_t n = 0; n < tour->stop_count; n++) {
+			const struct info_stop *stop = &tour->stops[n];
+
+			for (int k = 0; k < 3; k++) {
+				buffer_put_f32(&text, stop->eye_m[k]);
+				buffer_put_f32(&text, stop->target_m[k]);
+			}
+			buffer_put_f32(&text, stop->stay_s);
+			buffer_put_f32(&text, stop->travel_s);
+		}
+	}
+	rc = text.error;
+	*out = hash_of(buffer_bytes(&text));
+	buffer_finish(&text);
+	info_close(info);
 	return rc;
 }
 

@@ -15,6 +15,10 @@ struct tour_check_options {
 	void *complaint_data;
 };
 
+/* Hashes everything that the check depends on: the ways, and the scans by their key. Errors as
+ * below. */
+must_check int tour_check_key(struct hash *out, const struct info_built *built, struct hash scans);
+
 /* built is the result of info_build. -EINVAL: there are faults; for each leg the worst one was
  * reported as a complaint. -ENOMEM. -EBADMSG: the database cannot be read. */
 must_check int tour_check(const struct info_built *built, const struct tour_check_options *options);

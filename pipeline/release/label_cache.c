@@ -5,20 +5,17 @@
 #include <string.h>
 
 enum {
-	LABELLING_VERSION = 1, /* raise it when the same parts of the same scan get other labels */
+	LABELLING_VERSION = 2, /* raise it when the same parts of the same scan get other labels */
 	KEY_TEXT_MAX = 1 << 20,
 	FILE_BYTES_MAX = 256 << 20,
 };
 
-int label_cache_key(struct hash *out, const struct content *content, struct hash hierarchy,
-		    const struct label_source_part *parts, uint32_t part_count, struct fault *fault)
+int label_cache_key(struct hash *out, struct hash scans, struct hash hierarchy,
+		    const struct label_source_part *parts, uint32_t part_count)
 {
 	struct buffer text;
-	struct hash scans, faces;
-	int rc = content_scans_key(content, &scans, fault);
+	int rc;
 
-	if (rc < 0)
-		return rc;
 	buffer_init(&text, KEY_TEXT_MAX);
 	buffer_put_u32(&text, LABELLING_VERSION);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
@@ -26,10 +23,8 @@ int label_cache_key(struct hash *out, const struct content *content, struct hash
 	for (uint32_t i = 0; i < part_count; i++) {
 		buffer_put_string(&text, parts[i].id);
 		buffer_put(&text, &parts[i].region, sizeof(parts[i].region));
-		faces = hash_of(
-			(struct bytes){ (const uint8_t *)parts[i].triangles,
-					parts[i].triangle_count * sizeof(*parts[i].triangles) });
-		buffer_put(&text, faces.bytes, HASH_BYTES);
+		buffer_put_u8(&text, parts[i].is_list);
+		buffer_put(&text, parts[i].list.bytes, HASH_BYTES);
 	}
 	rc = text.error;
 	*out = hash_of(buffer_bytes(&text));

@@ -5,14 +5,12 @@
 
 #include "base/bytes.h"
 #include "format/hash.h"
-#include "pipeline/content/content.h"
 #include "pipeline/release/label_source.h"
 
 /* Hashes everything that labels depend on: the scans, the published patches (the hierarchy page's
- * hash) and the parts. Returns -EINVAL as content_scans_key does, or -ENOMEM. */
-must_check int label_cache_key(struct hash *out, const struct content *content,
-			       struct hash hierarchy, const struct label_source_part *parts,
-			       uint32_t part_count, struct fault *fault);
+ * hash) and the parts. Returns -ENOMEM. */
+must_check int label_cache_key(struct hash *out, struct hash scans, struct hash hierarchy,
+			       const struct label_source_part *parts, uint32_t part_count);
 
 /* Loads the objects of count groups into initialised buffers; empty for a group without labels.
  * Returns -ENOENT if the cache does not have that key and count, complete; the buffers are then

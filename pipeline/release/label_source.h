@@ -4,6 +4,7 @@
 #ifndef GOPURA_PIPELINE_RELEASE_LABEL_SOURCE_H
 #define GOPURA_PIPELINE_RELEASE_LABEL_SOURCE_H
 
+#include "format/hash.h"
 #include "geometry/region.h"
 #include "pipeline/import/mesh.h"
 #include "pipeline/release/nearest.h"
@@ -13,6 +14,8 @@
 struct label_source_part {
 	const char *id;            /* borrowed for the source's lifetime */
 	struct region region;      /* used if triangles is NULL */
+	bool is_list;              /* a list of triangles */
+	struct hash list;          /* what the list is made from; zero if it is none */
 	const uint32_t *triangles; /* triangles of the mesh, ascending; borrowed likewise */
 	uint32_t triangle_count;
 	/* Set by label_source_create: */

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "pipeline/content/tour_check.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/keys/keys_place.h"
 #include "pipeline/release/publish_sources.h"
@@ -25,8 +24,8 @@ struct setting {
 static int open_keys(struct setting *setting, const struct publish_content_options *options)
 {
 	bool made;
-	int rc = keys_open(&setting->keys, setting->keys_folder, options->content->folder,
-			   options->keys, &made);
+	int rc = keys_open(&setting->keys, setting->keys_folder,
+			   sources_content(options->sources)->folder, options->keys, &made);
 
 	if (rc == 0 && made)
 		log_info(
@@ -40,7 +39,7 @@ static int open_keys(struct setting *setting, const struct publish_content_optio
 static int setting_init(struct setting *setting, char release[PATH_MAX],
 			const struct publish_content_options *options)
 {
-	const char *folder = options->content->folder;
+	const char *folder = sources_content(options->sources)->folder;
 	int size = options->out ? snprintf(release, PATH_MAX, "%s", options->out)
 				: snprintf(release, PATH_MAX, "%s/../release", folder);
 
@@ -77,28 +76,26 @@ static int measure(struct publish_content_report *report)
 
 /* ---- the root page */
 
-/* Decides whether the model is lit. Only "auto" needs the mesh, to see whether it has textures. */
-static int judge_light(bool *lit, const struct content *content)
+/* Decides whether the model is lit. Only "auto" depends on the scans. */
+static int judge_light(bool *lit, struct scans *scans)
 {
+	const struct content *content = scans_content(scans);
+	const struct scans_shape *shape = NULL;
 	struct fault fault = { "" };
-	struct mesh mesh = { 0 };
-	int rc = 0;
+	int rc = content->lit == CONTENT_LIT_AUTO ? scans_get_shape(scans, &shape, &fault) : 0;
 
-	if (content->lit == CONTENT_LIT_AUTO)
-		rc = content_import(&mesh, content, NULL, &fault);
 	if (rc < 0)
 		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
 	else
-		*lit = content_is_lit(content, &mesh);
-	mesh_finish(&mesh);
+		*lit = content_is_lit(content, shape && shape->has_textures);
 	return rc;
 }
 
-static int fill_root(struct root_page *root, const struct content *content,
-		     const struct master *master)
+static int fill_root(struct root_page *root, struct scans *scans, const struct master *master)
 {
+	const struct content *content = scans_content(scans);
 	bool lit = false;
-	int rc = judge_light(&lit, content);
+	int rc = judge_light(&lit, scans);
 
 	snprintf(root->name, sizeof(root->name), "%s", content->name);
 	root->lattice = master->lattice;
@@ -118,90 +115,6 @@ static int fill_root(struct root_page *root, const struct content *content,
 
 /* ---- the parts */
 
-static struct info_build_options info_options(const struct content *content,
-					      const char *languages[CONTENT_LANGUAGES_MAX],
-					      struct part_faces_all *faces)
-{
-	faces->content = content;
-	for (uint32_t i = 0; i < content->language_count; i++)
-		languages[i] = content->languages[i];
-	return (struct info_build_options){ .folder = content->folder,
-					    .languages = languages,
-					    .language_count = content->language_count,
-					    .tools = content->tools,
-					    .place_faces = part_faces_place,
-					    .place_faces_data = faces };
-}
-
-static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
-{
-	(void)data;
-	if (is_error && line > 0)
-		log_error("pipeline", "%s:%u: %s", file, line, text);
-	else if (is_error)
-		log_error("pipeline", "%s: %s", file, text);
-}
-
-static int check_ways(const struct info_built *built, const struct content *content)
-{
-	struct tour_check_options options = { .complaint = complain };
-	struct fault fault = { "" };
-	struct mesh mesh = { 0 };
-	int rc = content_import(&mesh, content, NULL, &fault);
-
-	options.mesh = &mesh;
-	if (rc < 0)
-		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
-	else
-		rc = tour_check(built, &options);
-	mesh_finish(&mesh);
-	return rc;
-}
-
-/* Logs every fault of the information. The scan is read only if there are tours; the stops of a
- * tour need the anchors of face lists. */
-static int check_tours(const struct info_build_options *options, const struct content *content)
-{
-	struct info_build_options quiet = *options;
-	struct part_faces_all *faces = options->place_faces_data;
-	struct info_built built;
-	int rc;
-
-	quiet.complaint = complain; /* warnings are left to publish_info */
-	rc = info_build(&built, &quiet);
-	if (rc == 0 && built.tour_count > 0 && faces->only_judge) {
-		info_built_finish(&built);
-		faces->only_judge = false;
-		rc = info_build(&built, &quiet);
-	}
-	if (rc == 0 && built.tour_count > 0)
-		rc = check_ways(&built, content);
-	info_built_finish(&built);
-	return rc;
-}
-
-int publish_content_check(const struct content *content)
-{
-	const char *languages[CONTENT_LANGUAGES_MAX];
-	struct part_faces_all faces = { .only_judge = true };
-	const struct info_build_options options = info_options(content, languages, &faces);
-	int rc = check_tours(&options, content);
-
-	part_faces_finish(&faces);
-	return rc;
-}
-
-static int add_info(struct object_store *objects, const struct content *content,
-		    struct part_faces_all *faces, struct page_child *out)
-{
-	const char *languages[CONTENT_LANGUAGES_MAX];
-	const struct info_build_options options = info_options(content, languages, faces);
-
-	const int rc = check_tours(&options, content);
-
-	return rc < 0 ? rc : publish_info(objects, &options, out);
-}
-
 static int open_master(struct master **master, const struct content *content)
 {
 	char folder[CONTENT_PATH_BYTES];
@@ -216,32 +129,45 @@ static int open_master(struct master **master, const struct content *content)
 	return rc;
 }
 
-static int publish_objects(struct publish_content_report *report,
-			   const struct publish_target *target, struct object_store *objects,
-			   const struct content *content)
+static int add_hierarchy(struct object_store *objects, struct root_page *root,
+			 struct sources *sources, struct page_child *out)
 {
-	struct page_child children[ROOT_CHILDREN_MAX];
-	uint32_t child_count = ROOT_CHILD_COUNT;
-	struct part_faces_all faces = { 0 };
-	struct root_page root = { 0 };
+	const struct content *content = sources_content(sources);
 	struct master *master;
 	int rc = open_master(&master, content);
 
 	if (rc == 0)
-		rc = fill_root(&root, content, master);
+		rc = fill_root(root, sources_scans(sources), master);
 	if (rc == 0)
-		rc = publish_hierarchy(objects, master, content->publish_share,
-				       &children[ROOT_CHILD_HIERARCHY], &root.published_triangles);
+		rc = publish_hierarchy(objects, master, content->publish_share, out,
+				       &root->published_triangles);
 	master_destroy(master);
+	return rc;
+}
+
+static int publish_objects(struct publish_content_report *report,
+			   const struct publish_target *target, struct object_store *objects,
+			   struct sources *sources)
+{
+	const char *folder = sources_content(sources)->folder;
+	struct page_child children[ROOT_CHILDREN_MAX];
+	uint32_t child_count = ROOT_CHILD_COUNT;
+	const struct info_built *info;
+	struct root_page root = { 0 };
+	int rc = add_hierarchy(objects, &root, sources, &children[ROOT_CHILD_HIERARCHY]);
+
 	if (rc == 0)
-		rc = publish_samples(objects, content->folder, &children[ROOT_CHILD_SAMPLES]);
+		rc = publish_samples(objects, folder, &children[ROOT_CHILD_SAMPLES]);
 	if (rc == 0)
-		rc = add_info(objects, content, &faces, &children[ROOT_CHILD_INFO]);
+		rc = sources_info(sources, &info);
 	if (rc == 0)
-		rc = publish_labels(objects, &root, &faces, children, &children[ROOT_CHILD_LABELS]);
+		rc = publish_info(objects, info, folder, &children[ROOT_CHILD_INFO]);
+	if (rc == 0)
+		rc = publish_labels(objects, &root, sources, children,
+				    &children[ROOT_CHILD_LABELS]);
+	scans_drop_mesh(sources_scans(sources));
 	if (rc > 0)
 		child_count = ROOT_CHILD_LABELS + 1;
-	part_faces_finish(&faces);
 	if (rc >= 0)
 		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
 	report->published_triangles = root.published_triangles;
@@ -260,7 +186,7 @@ int publish_content(struct publish_content_report *report,
 	if (rc == 0)
 		rc = object_store_create(&objects);
 	if (rc == 0)
-		rc = publish_objects(report, &setting.target, objects, options->content);
+		rc = publish_objects(report, &setting.target, objects, options->sources);
 	object_store_destroy(objects);
 	keys_finish(&setting.keys);
 	return rc < 0 ? rc : measure(report);

@@ -5,15 +5,15 @@
 #include <limits.h>
 #include <stdio.h>
 
-#include "pipeline/content/content.h"
+#include "pipeline/content/sources.h"
 #include "pipeline/release/publish.h"
 
 struct publish_content_options {
-	const struct content *content;
-	const char *out;        /* the release folder; NULL: "release" beside the content folder */
-	const char *keys;       /* the keys' folder; NULL: as pipeline/keys/keys_place.h says */
-	const char *comment;    /* NULL: none */
-	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
+	struct sources *sources; /* borrowed */
+	const char *out;         /* the release folder; NULL: "release" beside the content folder */
+	const char *keys;        /* the keys' folder; NULL: as pipeline/keys/keys_place.h says */
+	const char *comment;     /* NULL: none */
+	int64_t release_life_s;  /* 0: RELEASE_LIFE_DAYS */
 };
 
 struct publish_content_report {
@@ -28,9 +28,6 @@ struct publish_content_report {
  * or samples do not exist yet. Errors are logged. */
 must_check int publish_content(struct publish_content_report *report,
 			       const struct publish_content_options *options);
-
-/* Checks whether parts, pages, pictures and tours can be published; every fault is logged. */
-must_check int publish_content_check(const struct content *content);
 
 /* Publishes the root of an earlier release again: see publish_again. */
 must_check int publish_content_again(struct publish_content_report *report,

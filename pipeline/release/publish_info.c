@@ -1,4 +1,4 @@
-/* Publishes the information page: builds the database and adds it with its pictures. */
+/* Publishes the information page: adds the database and its pictures. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -33,66 +33,25 @@ static int add_picture(struct object_store *objects, const char *folder,
 	return rc;
 }
 
-/* All errors are logged, but only the first few warnings. */
-enum { WARNINGS_SHOWN = 5 };
-
-static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
-{
-	uint32_t *warnings = data;
-	char at[16] = "";
-
-	if (line > 0)
-		snprintf(at, sizeof(at), ":%u", line);
-	if (is_error)
-		log_error("pipeline", "%s%s: %s", file, at, text);
-	else if (++*warnings <= WARNINGS_SHOWN)
-		log_warn("pipeline", "%s%s: %s", file, at, text);
-}
-
-static int build(struct info_built *built, const struct info_build_options *options)
-{
-	struct info_build_options told = *options;
-	uint32_t warnings = 0;
-	int rc;
-
-	if (!told.complaint) {
-		told.complaint = complain;
-		told.complaint_data = &warnings;
-	}
-	rc = info_build(built, &told);
-	if (warnings > WARNINGS_SHOWN)
-		log_warn("pipeline", "%s: and %u warnings more of pages and parts", options->folder,
-			 warnings - WARNINGS_SHOWN);
-	return rc;
-}
-
-int publish_info(struct object_store *objects, const struct info_build_options *options,
+int publish_info(struct object_store *objects, const struct info_built *info, const char *folder,
 		 struct page_child *out)
 {
-	struct page page = { .kind = PAGE_INFO };
-	struct info_built built;
-	int rc = build(&built, options);
+	struct page page = { .kind = PAGE_INFO, .child_count = info->picture_count + 1 };
+	int rc;
 
-	if (rc < 0)
-		return rc;
-	page.children = calloc(built.picture_count + 1, sizeof(*page.children));
+	page.children = calloc(page.child_count, sizeof(*page.children));
 	if (!page.children)
-		rc = -ENOMEM;
-	if (rc == 0) {
-		rc = object_store_add(objects, buffer_bytes(&built.database), &page.children[0]);
-		if (rc == -EFBIG)
-			log_error("pipeline",
-				  "%s: the information database has %zu bytes, more "
-				  "than an object may have (%d)",
-				  options->folder, built.database.size, OBJECT_BYTES_MAX);
-	}
-	for (uint32_t i = 0; rc == 0 && i < built.picture_count; i++)
-		rc = add_picture(objects, options->folder, &built.pictures[i],
-				 &page.children[i + 1]);
-	page.child_count = built.picture_count + 1;
+		return -ENOMEM;
+	rc = object_store_add(objects, buffer_bytes(&info->database), &page.children[0]);
+	if (rc == -EFBIG)
+		log_error("pipeline",
+			  "%s: the information database has %zu bytes, more than an object may "
+			  "have (%d)",
+			  folder, info->database.size, OBJECT_BYTES_MAX);
+	for (uint32_t i = 0; rc == 0 && i < info->picture_count; i++)
+		rc = add_picture(objects, folder, &info->pictures[i], &page.children[i + 1]);
 	if (rc == 0)
 		rc = object_store_add_page(objects, &page, out);
 	free(page.children);
-	info_built_finish(&built);
 	return rc;
 }

@@ -41,22 +41,20 @@ static int read_page(struct object_store *objects, const struct page_child *chil
 
 /* Lists the parts that have a surface. Returns how many. */
 static uint32_t list_parts(struct label_source_part *parts, const struct info *info,
-			   const struct part_faces_all *faces)
+			   const struct sources *sources)
 {
 	uint32_t count = 0;
 
 	for (uint32_t i = 0; i < info_part_count(info); i++) {
 		const struct info_part *from = info_part(info, i);
-		const struct part_faces *list = part_faces_find(faces, from->id);
 		struct label_source_part *part = &parts[count];
+		struct sources_faces faces = { 0 };
 
 		*part = (struct label_source_part){ .id = from->id };
 		part->region = from->region;
-		if (list) {
-			part->triangles = list->triangles;
-			part->triangle_count = list->count;
-		}
-		count += list || part->region.kind != REGION_POINT;
+		part->is_list = sources_faces_of(sources, from->id, &faces);
+		part->list = faces.key;
+		count += part->is_list || part->region.kind != REGION_POINT;
 	}
 	return count;
 }
@@ -206,14 +204,25 @@ static int add_page(struct labelling *l, struct page_child *out)
 	return rc;
 }
 
-static int label_by_scan(struct labelling *l, const struct label_source_part *parts, uint32_t count,
-			 struct part_faces_all *faces, struct fault *fault)
+static int label_by_scan(struct labelling *l, struct label_source_part *parts, uint32_t count,
+			 struct sources *sources, struct fault *fault)
 {
 	struct label_source *source = NULL;
-	int rc = part_faces_mesh(faces, fault);
+	const struct mesh *mesh;
+	int rc = scans_get_mesh(sources_scans(sources), &mesh, fault);
 
 	if (rc == 0)
-		rc = label_source_create(&source, &faces->mesh, parts, count);
+		rc = sources_find_faces(sources, fault);
+	for (uint32_t i = 0; rc == 0 && i < count; i++) {
+		struct sources_faces faces;
+
+		if (!sources_faces_of(sources, parts[i].id, &faces))
+			continue;
+		parts[i].triangles = faces.triangles;
+		parts[i].triangle_count = faces.triangle_count;
+	}
+	if (rc == 0)
+		rc = label_source_create(&source, mesh, parts, count);
 	l->source = source;
 	if (rc == 0)
 		rc = read_groups(l);
@@ -223,21 +232,23 @@ static int label_by_scan(struct labelling *l, const struct label_source_part *pa
 	return rc;
 }
 
-static int make_labels(struct labelling *l, const struct label_source_part *parts, uint32_t count,
-		       struct part_faces_all *faces, const struct page_child *hierarchy,
+static int make_labels(struct labelling *l, struct label_source_part *parts, uint32_t count,
+		       struct sources *sources, const struct page_child *hierarchy,
 		       struct page_child *out)
 {
 	char path[CONTENT_PATH_BYTES];
 	struct fault fault = { "" };
-	struct hash key;
+	struct hash scans, key;
 	int rc = open_groups(l, hierarchy);
 
 	if (rc == 0)
-		rc = label_cache_key(&key, faces->content, hierarchy->hash, parts, count, &fault);
+		rc = scans_key(sources_scans(sources), &scans, &fault);
 	if (rc == 0)
-		rc = content_work_path(faces->content, "labels", path);
+		rc = label_cache_key(&key, scans, hierarchy->hash, parts, count);
+	if (rc == 0)
+		rc = content_work_path(sources_content(sources), "labels", path);
 	if (rc == 0 && label_cache_load(l->labels, l->page.child_count, key, path) < 0) {
-		rc = label_by_scan(l, parts, count, faces, &fault);
+		rc = label_by_scan(l, parts, count, sources, &fault);
 		if (rc == 0)
 			rc = label_cache_save(l->labels, l->page.child_count, key, path);
 	}
@@ -250,7 +261,7 @@ static int make_labels(struct labelling *l, const struct label_source_part *part
 }
 
 int publish_labels(struct object_store *objects, const struct root_page *root,
-		   struct part_faces_all *faces, const struct page_child children[ROOT_CHILD_COUNT],
+		   struct sources *sources, const struct page_child children[ROOT_CHILD_COUNT],
 		   struct page_child *out)
 {
 	struct labelling l = { .objects = objects, .lattice = root->lattice };
@@ -264,9 +275,9 @@ int publish_labels(struct object_store *objects, const struct root_page *root,
 		rc = parts ? 0 : -ENOMEM;
 	}
 	if (rc == 0)
-		count = list_parts(parts, info, faces);
+		count = list_parts(parts, info, sources);
 	if (rc == 0 && count > 0)
-		rc = make_labels(&l, parts, count, faces, &children[ROOT_CHILD_HIERARCHY], out);
+		rc = make_labels(&l, parts, count, sources, &children[ROOT_CHILD_HIERARCHY], out);
 	if (rc < 0)
 		log_error("pipeline", "the labels: %s", strerror(-rc));
 	free(parts);

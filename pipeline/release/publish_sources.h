@@ -3,8 +3,7 @@
 #ifndef GOPURA_PIPELINE_RELEASE_PUBLISH_SOURCES_H
 #define GOPURA_PIPELINE_RELEASE_PUBLISH_SOURCES_H
 
-#include "pipeline/content/info_build.h"
-#include "pipeline/content/part_faces.h"
+#include "pipeline/content/sources.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/release/object_store.h"
 
@@ -13,17 +12,17 @@
 must_check int publish_samples(struct object_store *objects, const char *content,
 			       struct page_child *out);
 
-/* Adds the information page: the database, then the pictures by hash. Returns -EINVAL if parts.json
- * or a page has faults (every fault is logged). */
-must_check int publish_info(struct object_store *objects, const struct info_build_options *options,
-			    struct page_child *out);
+/* Adds the information page: the database, then the pictures of the content folder by hash. Errors
+ * are logged. */
+must_check int publish_info(struct object_store *objects, const struct info_built *info,
+			    const char *folder, struct page_child *out);
 
 /* Adds the labels page and its objects: which parts the published patches belong to, according to
  * the scan's surface (docs/labels.md). children holds the pages of the hierarchy and the
  * information. Returns 1 if *out is set, 0 if no part has a region and so there are no labels.
  * Errors are logged. */
 must_check int publish_labels(struct object_store *objects, const struct root_page *root,
-			      struct part_faces_all *faces,
+			      struct sources *sources,
 			      const struct page_child children[ROOT_CHILD_COUNT],
 			      struct page_child *out);
 

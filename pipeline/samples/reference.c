@@ -185,14 +185,16 @@ static bool is_there(const struct reference_options *options, uint32_t n, struct
 	return same;
 }
 
-static int set_up(struct easel *easel, const struct content *content, struct fault *fault)
+static int set_up(struct easel *easel, struct scans *scans, struct fault *fault)
 {
+	const struct content *content = scans_content(scans);
 	const struct reference_options *options = easel->options;
 	struct drawing_options drawing = { .procedural =
 						   content->colours == CONTENT_COLOURS_PROCEDURAL };
 	size_t pixels = (size_t)options->width_px * (size_t)options->height_px;
 	int side = options->width_px > options->height_px ? options->width_px : options->height_px;
-	int rc = content_import(&easel->mesh, content, NULL, fault);
+	const struct mesh *mesh;
+	int rc = scans_get_mesh(scans, &mesh, fault);
 
 	if (rc < 0)
 		return rc;
@@ -200,7 +202,7 @@ static int set_up(struct easel *easel, const struct content *content, struct fau
 	for (uint32_t k = 1; k <= options->supersample; k++)
 		if (options->supersample % k == 0 && side * (int)k <= GL_LIMIT_TEXTURE_PX)
 			easel->block = k;
-	drawing.lit = content_is_lit(content, &easel->mesh);
+	drawing.lit = content_is_lit(content, mesh->textures != NULL);
 	memcpy(drawing.sun, content->sun, sizeof(drawing.sun));
 	easel->sums = malloc(pixels * sizeof(*easel->sums));
 	easel->frame = malloc(pixels * easel->block * easel->block * 4);
@@ -208,9 +210,9 @@ static int set_up(struct easel *easel, const struct content *content, struct fau
 		return -ENOMEM;
 	rc = headless_create(&easel->headless);
 	if (rc == 0)
-		rc = chunks_init(&easel->chunks, &easel->mesh, content->import.default_colour);
+		rc = chunks_init(&easel->chunks, mesh, content->import.default_colour);
 	if (rc == 0)
-		rc = drawing_create(&easel->drawing, &easel->chunks, &easel->mesh, &drawing);
+		rc = drawing_create(&easel->drawing, &easel->chunks, mesh, &drawing);
 	if (rc == 0)
 		rc = gl_target_create(&easel->target, options->width_px * (int)easel->block,
 				      options->height_px * (int)easel->block);
@@ -225,7 +227,6 @@ static void take_down(struct easel *easel)
 	}
 	headless_destroy(easel->headless);
 	chunks_finish(&easel->chunks);
-	mesh_finish(&easel->mesh);
 	free(easel->sums);
 	free(easel->frame);
 }
@@ -342,14 +343,14 @@ static int draw_view(struct easel *easel, const struct camera *view, uint32_t n,
 	return rc < 0 ? rc : write_view(easel, n, key);
 }
 
-int reference_draw(const struct content *content, const struct camera *views, uint32_t count,
+int reference_draw(struct scans *scans, const struct camera *views, uint32_t count,
 		   const struct reference_options *options, struct reference_report *report,
 		   struct fault *fault)
 {
 	struct easel easel = { .options = options };
 	struct progress *progress;
-	struct hash scans;
-	int rc = content_scans_key(content, &scans, fault);
+	struct hash scans_hash;
+	int rc = scans_key(scans, &scans_hash, fault);
 
 	*report = (struct reference_report){ 0 };
 	if (rc < 0)
@@ -358,13 +359,13 @@ int reference_draw(const struct content *content, const struct camera *views, ui
 		return fault_set(fault, -errno, "%s: %s", options->out_dir, strerror(errno));
 	progress = progress_start("rendering", "views", count);
 	for (uint32_t n = 0; rc == 0 && n < count; n++) {
-		struct hash key = view_key(content, scans, &views[n], options);
+		struct hash key = view_key(scans_content(scans), scans_hash, &views[n], options);
 
 		if (is_there(options, n, key)) {
 			report->kept++;
 		} else {
 			if (!easel.headless)
-				rc = set_up(&easel, content, fault);
+				rc = set_up(&easel, scans, fault);
 			if (rc == 0)
 				rc = draw_view(&easel, &views[n], n, key);
 			report->drawn += rc == 0;

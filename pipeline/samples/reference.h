@@ -5,7 +5,7 @@
 
 #include "base/bytes.h"
 #include "geometry/camera.h"
-#include "pipeline/content/content.h"
+#include "pipeline/content/scans.h"
 
 enum { REFERENCE_VIEWS_MAX = 100000, REFERENCE_SIDE_PX_MAX = 4096, REFERENCE_SUPERSAMPLE_MAX = 16 };
 
@@ -29,8 +29,8 @@ must_check int reference_views(struct camera **out, uint32_t *count, struct byte
 /* Writes OUT_DIR/view-0000.png and so on: sRGB, straight alpha that is coverage, colour 0 where
  * alpha is 0. Samples are averaged with a box filter, in sRGB as everywhere here. Errors are
  * described in fault. */
-must_check int reference_draw(const struct content *content, const struct camera *views,
-			      uint32_t count, const struct reference_options *options,
+must_check int reference_draw(struct scans *scans, const struct camera *views, uint32_t count,
+			      const struct reference_options *options,
 			      struct reference_report *report, struct fault *fault);
 
 #endif

@@ -320,7 +320,30 @@ static int run_children(struct sampling *sampling, uint32_t jobs)
 	return rc;
 }
 
-static int sample(struct sampling *sampling, const struct sampler_options *options)
+/* Renders the points of the list. */
+static int render(struct sampling *sampling, struct scans *scans, uint32_t jobs,
+		  struct fault *fault)
+{
+	int rc = scans_get_mesh(scans, &sampling->mesh, fault);
+
+	if (rc == 0)
+		rc = chunks_init(&sampling->chunks, sampling->mesh,
+				 sampling->content->import.default_colour);
+	if (rc < 0)
+		return rc;
+	jobs = jobs < sampling->point_count ? jobs : sampling->point_count;
+	jobs = jobs < JOBS_MAX ? jobs : JOBS_MAX;
+	sampling->queue = mmap(NULL, sizeof(*sampling->queue), PROT_READ | PROT_WRITE,
+			       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	rc = sampling->queue == MAP_FAILED ? -ENOMEM : run_children(sampling, jobs);
+	if (sampling->queue != MAP_FAILED)
+		munmap(sampling->queue, sizeof(*sampling->queue));
+	chunks_finish(&sampling->chunks);
+	return rc;
+}
+
+static int sample(struct sampling *sampling, struct scans *scans,
+		  const struct sampler_options *options, struct fault *fault)
 {
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	uint32_t jobs = options->jobs ? options->jobs : (uint32_t)(cores > 0 ? cores : 1);
@@ -328,46 +351,32 @@ static int sample(struct sampling *sampling, const struct sampler_options *optio
 
 	if (rc == 0)
 		rc = list_points(sampling, options);
-	if (rc < 0 || sampling->point_count == 0)
-		return rc;
-	jobs = jobs < sampling->point_count ? jobs : sampling->point_count;
-	jobs = jobs < JOBS_MAX ? jobs : JOBS_MAX;
-	sampling->queue = mmap(NULL, sizeof(*sampling->queue), PROT_READ | PROT_WRITE,
-			       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-	if (sampling->queue == MAP_FAILED)
-		return -ENOMEM;
-	rc = run_children(sampling, jobs);
-	munmap(sampling->queue, sizeof(*sampling->queue));
+	if (rc == 0 && sampling->point_count > 0)
+		rc = render(sampling, scans, jobs, fault);
+	free(sampling->points);
 	return rc;
 }
 
-int sampler_run(const struct content *content, const struct sampler_options *options,
-		struct fault *fault)
+int sampler_run(struct scans *scans, const struct sampler_options *options, struct fault *fault)
 {
+	const struct content *content = scans_content(scans);
 	struct sampling sampling = { .content = content, .below_ground = options->below_ground };
-	struct mesh mesh = { 0 };
+	const struct scans_shape *shape;
 	struct hash mesh_key;
-	int rc = content_scans_key(content, &mesh_key, fault);
+	int rc = scans_key(scans, &mesh_key, fault);
 
 	if (rc == 0)
-		rc = content_import(&mesh, content, NULL, fault);
+		rc = scans_get_shape(scans, &shape, fault);
 	if (rc < 0)
 		return rc;
-	sampling.mesh = &mesh;
-	sampling.drawing.lit = content_is_lit(content, &mesh);
+	sampling.drawing.lit = content_is_lit(content, shape->has_textures);
 	sampling.drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
 	sampling.drawing.surfaces = sampling.drawing.procedural;
 	memcpy(sampling.drawing.sun, content->sun, sizeof(content->sun));
-	rc = chunks_init(&sampling.chunks, &mesh, content->import.default_colour);
-	if (rc == 0) {
-		sampler_grid(&sampling.grid, sampling.chunks.low_m, sampling.chunks.high_m,
-			     content->grid_points, content->face_px, options->below_ground);
-		sampling.key = make_key(&sampling, mesh_key);
-		rc = sample(&sampling, options);
-	}
-	free(sampling.points);
-	chunks_finish(&sampling.chunks);
-	mesh_finish(&mesh);
+	sampler_grid(&sampling.grid, shape->low_m, shape->high_m, content->grid_points,
+		     content->face_px, options->below_ground);
+	sampling.key = make_key(&sampling, mesh_key);
+	rc = sample(&sampling, scans, options, fault);
 	if (rc < 0)
 		fault_set(fault, rc, "%s: sampling failed: %s", content->folder, strerror(-rc));
 	return rc;

@@ -4,7 +4,7 @@
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 
-#include "pipeline/content/content.h"
+#include "pipeline/content/scans.h"
 #include "pipeline/samples/sample_store.h"
 
 struct sampler_options {
@@ -24,8 +24,9 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3]);
 
 /* Renders all points that are missing, and shows progress. An interrupted run continues where it
- * stopped. The result depends only on the folder. Errors are described in fault. */
-must_check int sampler_run(const struct content *content, const struct sampler_options *options,
+ * stopped. The result depends only on the folder. The mesh is read only if a point is missing, and
+ * stays with scans. Errors are described in fault. */
+must_check int sampler_run(struct scans *scans, const struct sampler_options *options,
 			   struct fault *fault);
 
 #endif

@@ -45,6 +45,7 @@ int main(int argc, char **argv)
 	struct publisher_keys keys;
 	struct publish_target target = { .keys = &keys, .pack_bytes = 1 << 20 };
 	struct publish_report report;
+	struct info_built built;
 	struct object_store *objects;
 	struct tiny tiny;
 
@@ -61,9 +62,11 @@ int main(int argc, char **argv)
 	CHECK(object_store_create(&objects) == 0);
 	spoiled_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
-	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
+	CHECK(info_build(&built, &info) == 0);
+	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILD_COUNT) ==
 	      0);
+	info_built_finish(&built);
 	object_store_destroy(objects);
 	keys_finish(&keys);
 	tiny_remove(&tiny);

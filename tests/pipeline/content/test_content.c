@@ -1,9 +1,11 @@
 #include "pipeline/content/content.h"
+#include "pipeline/content/scans.h"
 #include "storage/info.h"
 
 #include <errno.h>
 #include <math.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
@@ -173,21 +175,72 @@ static void names_stay_inside_the_folder(void **state)
 			fail_msg("taken for unsafe: '%s'", good[i]);
 }
 
+/* The number of the file .work/mesh, which is another whenever the mesh is saved; 0: none. */
+static ino_t mesh_number(const char *folder)
+{
+	struct stat status;
+	char path[512];
+
+	snprintf(path, sizeof(path), "%s/.work/mesh", folder);
+	return stat(path, &status) == 0 ? status.st_ino : 0;
+}
+
 static void import_of(const char *folder, bool *from_cache, uint32_t *triangles)
 {
-	static struct content_scans scans;
+	const ino_t before = mesh_number(folder);
 	struct content content;
 	struct fault fault = { "" };
-	struct mesh mesh;
+	const struct mesh *mesh;
+	struct scans *scans;
 
 	CHECK(content_read(&content, folder, &fault) == 0);
-	if (content_import(&mesh, &content, &scans, &fault) < 0)
+	CHECK(scans_create(&scans, &content) == 0);
+	if (scans_get_mesh(scans, &mesh, &fault) < 0)
 		fail_msg("%s", fault.text);
-	*from_cache = scans.from_cache;
-	*triangles = mesh.triangle_count;
-	CHECK(content_is_lit(&content, &mesh));
-	mesh_finish(&mesh);
+	*from_cache = mesh_number(folder) == before;
+	*triangles = mesh->triangle_count;
+	CHECK(content_is_lit(&content, mesh->textures != NULL));
+	scans_destroy(scans);
 	content_release(&content);
+}
+
+static void the_shape_is_known_without_the_mesh(void **state)
+{
+	char folder[256], path[512];
+	const struct scans_shape *shape;
+	struct content content;
+	struct fault fault = { "" };
+	struct scans *scans;
+	FILE *file;
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply tower.ply\nunit = cm\n");
+	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_known_shape(scans) == NULL && mesh_number(folder) == 0);
+	CHECK(scans_get_shape(scans, &shape, &fault) == 0);
+	scans_destroy(scans);
+	snprintf(path, sizeof(path), "%s/.work/mesh", folder);
+	CHECK(unlink(path) == 0);
+
+	CHECK(scans_create(&scans, &content) == 0);
+	shape = scans_known_shape(scans);
+	CHECK(shape != NULL && mesh_number(folder) == 0);
+	CHECK(shape->high_m[0] == 0.01f && shape->high_m[2] == 0 && shape->low_m[1] == 0);
+	CHECK(!shape->has_textures && shape->scan_count == 2 && shape->face_counts[1] == 1);
+	scans_destroy(scans);
+
+	/* a damaged one counts as none */
+	snprintf(path, sizeof(path), "%s/.work/shape", folder);
+	file = fopen(path, "r+b");
+	CHECK(file && fseek(file, 30, SEEK_SET) == 0 && fputc(0x55, file) != EOF &&
+	      fclose(file) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_known_shape(scans) == NULL);
+	CHECK(scans_get_shape(scans, &shape, &fault) == 0 && shape->high_m[0] == 0.01f);
+	scans_destroy(scans);
+	content_release(&content);
+	remove_folder(folder);
 }
 
 static void a_second_import_comes_from_the_cache_until_something_changes(void **state)
@@ -234,6 +287,7 @@ int main(void)
 		cmocka_unit_test(says_what_is_no_content_folder),
 		cmocka_unit_test(a_line_longer_than_inih_holds_is_a_fault),
 		cmocka_unit_test(names_stay_inside_the_folder),
+		cmocka_unit_test(the_shape_is_known_without_the_mesh),
 		cmocka_unit_test(a_second_import_comes_from_the_cache_until_something_changes),
 	};
 

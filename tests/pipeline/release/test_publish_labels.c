@@ -10,6 +10,7 @@
 
 #include "format/label.h"
 #include "geometry/region.h"
+#include "pipeline/content/part_faces.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/release/nearest.h"
 #include "pipeline/release/publish_sources.h"
@@ -20,7 +21,8 @@ enum { STEPS = 40 };
 
 static char folder[64];
 static struct content content;
-static struct mesh scan; /* as imported */
+static struct scans *scans;
+static const struct mesh *scan; /* as imported */
 
 static void write_text(const char *name, const char *text)
 {
@@ -110,7 +112,8 @@ static int set_up(void **state)
 	write_faces(-0.8f);
 	write_parts(0.6f);
 	CHECK(content_read(&content, folder, &fault) == 0);
-	CHECK(content_import(&scan, &content, NULL, &fault) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_get_mesh(scans, &scan, &fault) == 0);
 	return 0;
 }
 
@@ -119,7 +122,7 @@ static int tear_down(void **state)
 	char command[200];
 
 	(void)state;
-	mesh_finish(&scan);
+	scans_destroy(scans);
 	content_release(&content);
 	snprintf(command, sizeof(command), "rm -rf '%s'", folder);
 	return system(command);
@@ -132,28 +135,24 @@ struct made {
 	struct root_page root;
 	struct page_child children[ROOT_CHILDREN_MAX];
 	int labels;    /* what publish_labels said */
-	bool imported; /* it, or a list of faces, needed the scan */
+	bool imported; /* labels, or the place of a list of faces, needed the scan */
 };
 
-static char told[400]; /* the last complaint */
-
-static void note(void *data, bool is_error, const char *file, unsigned line, const char *text)
+/* Empties .work/mesh: whoever needs the mesh now has to import it again, and saves it. */
+static void empty_mesh(void)
 {
-	(void)data, (void)is_error, (void)file, (void)line;
-	snprintf(told, sizeof(told), "%s", text);
+	char path[CONTENT_PATH_BYTES];
+
+	CHECK(content_work_path(&content, "mesh", path) == 0 && truncate(path, 0) == 0);
 }
 
-static int add_info(struct made *made, struct part_faces_all *faces)
+static bool is_mesh_back(void)
 {
-	static const char *const languages[] = { "en" };
-	const struct info_build_options options = { .folder = folder,
-						    .languages = languages,
-						    .language_count = 1,
-						    .complaint = note,
-						    .place_faces = part_faces_place,
-						    .place_faces_data = faces };
+	char path[CONTENT_PATH_BYTES];
+	struct stat status;
 
-	return publish_info(made->objects, &options, &made->children[ROOT_CHILD_INFO]);
+	CHECK(content_work_path(&content, "mesh", path) == 0 && stat(path, &status) == 0);
+	return status.st_size > 0;
 }
 
 static struct made make(uint32_t patch_triangles)
@@ -161,26 +160,30 @@ static struct made make(uint32_t patch_triangles)
 	const struct master_options options = {
 		.multires = { .patch_triangles = patch_triangles, .top_triangles = 300, .jobs = 2 }
 	};
-	struct part_faces_all faces = { .content = &content };
 	const struct hash stamp = { { 1 } };
+	const struct info_built *info;
+	struct sources *sources;
 	char place[CONTENT_PATH_BYTES];
 	struct master_report report;
 	struct master *master;
 	struct made made = { 0 };
 
 	CHECK(content_work_path(&content, "master", place) == 0);
-	CHECK(master_build(place, &scan, stamp, &options, &report) == 0);
+	CHECK(master_build(place, scan, stamp, &options, &report) == 0);
 	CHECK(master_open(&master, place, &stamp) == 0);
 	made.root.lattice = master->lattice;
 	CHECK(object_store_create(&made.objects) == 0);
 	CHECK(publish_hierarchy(made.objects, master, 0.6, &made.children[ROOT_CHILD_HIERARCHY],
 				&made.root.published_triangles) == 0);
 	master_destroy(master);
-	CHECK(add_info(&made, &faces) == 0);
-	made.labels = publish_labels(made.objects, &made.root, &faces, made.children,
+	empty_mesh();
+	CHECK(sources_create(&sources, &content) == 0);
+	CHECK(sources_info(sources, &info) == 0);
+	CHECK(publish_info(made.objects, info, folder, &made.children[ROOT_CHILD_INFO]) == 0);
+	made.labels = publish_labels(made.objects, &made.root, sources, made.children,
 				     &made.children[ROOT_CHILD_LABELS]);
-	made.imported = faces.has_mesh;
-	part_faces_finish(&faces);
+	made.imported = is_mesh_back();
+	sources_destroy(sources);
 	return made;
 }
 
@@ -353,11 +356,11 @@ static const char *part_at(const struct surface *s, const float point_m[3], floa
 
 static void middle_of(uint32_t triangle, float out[3])
 {
-	const uint32_t *t = scan.triangles[triangle];
+	const uint32_t *t = scan->triangles[triangle];
 
 	for (int i = 0; i < 3; i++)
-		out[i] = (scan.positions[t[0]][i] + scan.positions[t[1]][i] +
-			  scan.positions[t[2]][i]) /
+		out[i] = (scan->positions[t[0]][i] + scan->positions[t[1]][i] +
+			  scan->positions[t[2]][i]) /
 			 3;
 }
 
@@ -384,7 +387,7 @@ static void labels_survive_another_hierarchy(void **state)
 
 		CHECK(made.labels == 1);
 		surface_init(&surface, &made);
-		for (uint32_t t = 0; t < scan.triangle_count; t++) {
+		for (uint32_t t = 0; t < scan->triangle_count; t++) {
 			const char *truth, *says;
 			float at[3], off_m;
 
@@ -467,6 +470,30 @@ static void only_what_changes_is_labelled_again(void **state)
 	made_finish(&after);
 }
 
+static void a_list_of_faces_needs_the_scan_only_when_it_is_new(void **state)
+{
+	struct made before = make(130), after;
+
+	(void)state;
+	CHECK(before.imported);
+	after = make(130);
+	CHECK(!after.imported);
+	CHECK(hash_equal(before.children[ROOT_CHILD_INFO].hash,
+			 after.children[ROOT_CHILD_INFO].hash));
+	CHECK(hash_equal(before.children[ROOT_CHILD_LABELS].hash,
+			 after.children[ROOT_CHILD_LABELS].hash));
+	made_finish(&after);
+	write_faces(-0.7f);
+	after = make(130);
+	CHECK(after.imported);
+	CHECK(!hash_equal(before.children[ROOT_CHILD_INFO].hash,
+			  after.children[ROOT_CHILD_INFO].hash));
+	CHECK(!hash_equal(before.children[ROOT_CHILD_LABELS].hash,
+			  after.children[ROOT_CHILD_LABELS].hash));
+	made_finish(&before);
+	made_finish(&after);
+}
+
 static void points_alone_need_no_labels(void **state)
 {
 	struct made made;
@@ -477,6 +504,14 @@ static void points_alone_need_no_labels(void **state)
 	made = make(130);
 	CHECK(made.labels == 0);
 	made_finish(&made);
+}
+
+static char told[400]; /* the last complaint */
+
+static void note(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	(void)data, (void)is_error, (void)file, (void)line;
+	snprintf(told, sizeof(told), "%s", text);
 }
 
 static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
@@ -492,12 +527,20 @@ static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 		{ "{\"kind\":\"faces\",\"file\":\"regions/foot.faces\",\"scan\":\"other.ply\"}",
 		  "none of the scans" },
 	};
-	struct part_faces_all faces = { .content = &content, .only_judge = true };
+	static const char *const languages[] = { "en" };
 
 	(void)state;
 	write_text("regions/bad.faces", "1\n99999999\n");
+	empty_mesh();
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		struct made made = { 0 };
+		struct part_faces_all faces;
+		const struct info_build_options options = { .folder = folder,
+							    .languages = languages,
+							    .language_count = 1,
+							    .complaint = note,
+							    .judge_faces = part_faces_judge,
+							    .faces_data = &faces };
+		struct draft *draft;
 		char text[400];
 
 		snprintf(text, sizeof(text),
@@ -505,14 +548,13 @@ static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 			 "\"title\":{\"en\":\"Foot\"}}]}",
 			 cases[i].region);
 		write_text("parts.json", text);
-		CHECK(object_store_create(&made.objects) == 0);
-		CHECK(add_info(&made, &faces) == -EINVAL);
+		part_faces_init(&faces, scans);
+		CHECK(info_read(&draft, &options) == -EINVAL);
 		if (!strstr(told, cases[i].says))
 			fail_msg("case %zu says: %s", i, told);
-		CHECK(!faces.has_mesh);
-		made_finish(&made);
+		part_faces_finish(&faces);
 	}
-	part_faces_finish(&faces);
+	CHECK(!is_mesh_back());
 }
 
 int main(void)
@@ -526,6 +568,8 @@ int main(void)
 						tear_down),
 		cmocka_unit_test_setup_teardown(only_what_changes_is_labelled_again, set_up,
 						tear_down),
+		cmocka_unit_test_setup_teardown(a_list_of_faces_needs_the_scan_only_when_it_is_new,
+						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(points_alone_need_no_labels, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(faces_that_cannot_be_are_told_before_the_long_work,
 						set_up, tear_down),

@@ -79,16 +79,19 @@ static int publish_and_verify(const char *part, uint32_t triangles, uint32_t gro
 	struct verify_options verify = { 0 };
 	struct page_child children[ROOT_CHILDREN_MAX];
 	struct publish_report report;
+	struct info_built built;
 	struct object_store *objects;
 	int rc;
 
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
-	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
+	CHECK(info_build(&built, &info) == 0);
+	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	add_page(objects, part, triangles, groups, &children[ROOT_CHILD_LABELS]);
 	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILDREN_MAX) ==
 	      0);
+	info_built_finish(&built);
 	object_store_destroy(objects);
 	CHECK(release_reader_create(&verify.reader, &options) == 0);
 	rc = verify_release(&verified, &verify);

@@ -208,6 +208,7 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 	struct publish_target target = tiny_target(tiny);
 	struct page_child children[ROOT_CHILD_COUNT];
 	struct publish_report report;
+	struct info_built built;
 	struct object_store *objects;
 
 	target.comment = comment;
@@ -215,9 +216,11 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(publish_samples(objects, tiny->content, &children[ROOT_CHILD_SAMPLES]) == 0);
-	CHECK(publish_info(objects, &info, &children[ROOT_CHILD_INFO]) == 0);
+	CHECK(info_build(&built, &info) == 0);
+	CHECK(publish_info(objects, &built, tiny->content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_parts(&report, &target, objects, &tiny->root, children, ROOT_CHILD_COUNT) ==
 	      0);
+	info_built_finish(&built);
 	object_store_destroy(objects);
 	return report;
 }

@@ -95,6 +95,7 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 	struct reference_report report;
 	struct fault fault = { "" };
 	struct content content;
+	struct scans *scans;
 	struct camera *views;
 	char out_dir[128], path[160];
 	struct buffer file;
@@ -104,7 +105,8 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 	options.out_dir = out_dir;
 	CHECK(read_views(&views, &count, views_text, &fault) == 0);
 	CHECK(content_read(&content, dir, &fault) == 0);
-	CHECK(reference_draw(&content, views, count, &options, &report, &fault) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(reference_draw(scans, views, count, &options, &report, &fault) == 0);
 	CHECK(report.drawn == expected_drawn && report.kept == count - expected_drawn);
 	snprintf(path, sizeof(path), "%s/view-%04u.png", out_dir, count - 1);
 	buffer_init(&file, 1 << 20);
@@ -112,6 +114,7 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 	CHECK(picture_decode(out, buffer_bytes(&file)) == 0);
 	CHECK(out->width == (uint32_t)side && out->height == (uint32_t)side);
 	buffer_finish(&file);
+	scans_destroy(scans);
 	content_release(&content);
 	free(views);
 }

@@ -1,0 +1,45 @@
+/* The scans of a content folder as one mesh. What a process asks for is found once: the key when it
+ * is first needed, the mesh when nothing less will do. Much needs only the key and the shape, so a
+ * build that changes a page reads no mesh. One thread. */
+#ifndef GOPURA_PIPELINE_CONTENT_SCANS_H
+#define GOPURA_PIPELINE_CONTENT_SCANS_H
+
+#include "pipeline/content/content.h"
+
+struct scans;
+
+/* What can be said of the mesh without having it in memory; kept in .work/shape. */
+struct scans_shape {
+	float low_m[3], high_m[3]; /* bounding box */
+	bool has_textures;
+	uint32_t scan_count;
+	/* as counted in each scan's file; 0: its faces have no numbers */
+	uint32_t face_counts[CONTENT_SCANS_MAX];
+};
+
+/* Opens nothing yet. content is borrowed for the lifetime. *out is owned by the caller; NULL on
+ * failure. -ENOMEM. */
+must_check int scans_create(struct scans **out, const struct content *content);
+void scans_destroy(struct scans *scans); /* NULL is fine */
+const struct content *scans_content(const struct scans *scans);
+
+/* Hashes everything the mesh is made from: names, sizes and modification times of the scans and of
+ * the files beside them (mtl, pictures, buffers), and the import options. Equal keys mean equal
+ * meshes. Negative errno, with fault. */
+must_check int scans_key(struct scans *scans, struct hash *out, struct fault *fault);
+
+/* Gets the shape; the scans are imported only if nobody has imported them yet. *out is borrowed for
+ * the lifetime. Negative errno, with fault. */
+must_check int scans_get_shape(struct scans *scans, const struct scans_shape **out,
+			       struct fault *fault);
+/* Returns the shape if it is known already, else NULL. Reads no scan. */
+const struct scans_shape *scans_known_shape(struct scans *scans);
+
+/* Gets the mesh: from .work/mesh if its key matches, otherwise imported, repaired and saved there.
+ * It stays in memory until scans_drop_mesh; *out is borrowed until then. Negative errno, with
+ * fault. */
+must_check int scans_get_mesh(struct scans *scans, const struct mesh **out, struct fault *fault);
+/* Frees the mesh, if it is in memory. The last user calls it. */
+void scans_drop_mesh(struct scans *scans);
+
+#endif

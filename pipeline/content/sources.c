@@ -1,0 +1,208 @@
+/* Reads and compiles the information once, with its lists of faces and the check of its tours. */
+#include "pipeline/content/sources.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "pipeline/content/part_faces.h"
+#include "pipeline/content/tour_check.h"
+
+/* All errors are logged, but only the first few warnings. */
+enum { WARNINGS_SHOWN = 5, TOURS_BYTES_MAX = 64 };
+
+struct sources {
+	const struct content *content;
+	struct scans *scans;
+	struct part_faces_all faces;
+	const char *languages[CONTENT_LANGUAGES_MAX];
+	struct info_build_options options;
+	struct draft *draft; /* NULL: not read yet, or compiled */
+	struct info_built built;
+	bool is_built;
+	uint32_t warnings;
+};
+
+static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
+{
+	struct sources *sources = data;
+	char at[16] = "";
+
+	if (line > 0)
+		snprintf(at, sizeof(at), ":%u", line);
+	if (is_error)
+		log_error("pipeline", "%s%s: %s", file, at, text);
+	else if (++sources->warnings <= WARNINGS_SHOWN)
+		log_warn("pipeline", "%s%s: %s", file, at, text);
+}
+
+static void set_options(struct sources *sources)
+{
+	const struct content *content = sources->content;
+
+	for (uint32_t i = 0; i < content->language_count; i++)
+		sources->languages[i] = content->languages[i];
+	sources->options = (struct info_build_options){ .folder = content->folder,
+							.languages = sources->languages,
+							.language_count = content->language_count,
+							.tools = content->tools,
+							.complaint = complain,
+							.complaint_data = sources,
+							.judge_faces = part_faces_judge,
+							.place_faces = part_faces_place,
+							.faces_data = &sources->faces };
+}
+
+int sources_create(struct sources **out, const struct content *content)
+{
+	struct sources *sources = calloc(1, sizeof(*sources));
+	int rc = sources ? scans_create(&sources->scans, content) : -ENOMEM;
+
+	*out = NULL;
+	if (rc < 0) {
+		free(sources);
+		return rc;
+	}
+	sources->content = content;
+	part_faces_init(&sources->faces, sources->scans);
+	set_options(sources);
+	*out = sources;
+	return 0;
+}
+
+void sources_destroy(struct sources *sources)
+{
+	if (!sources)
+		return;
+	info_built_finish(&sources->built);
+	info_draft_destroy(sources->draft);
+	part_faces_finish(&sources->faces);
+	scans_destroy(sources->scans);
+	free(sources);
+}
+
+const struct content *sources_content(const struct sources *sources)
+{
+	return sources->content;
+}
+
+struct scans *sources_scans(struct sources *sources)
+{
+	return sources->scans;
+}
+
+/* ---- the ways of the tours */
+
+/* .work/tours holds the key of the ways that were found free, in hexadecimal. */
+static bool are_known(const char *path, struct hash key)
+{
+	char hex[HASH_HEX_BYTES];
+	struct buffer file;
+	bool same;
+
+	hash_to_hex(key, hex);
+	buffer_init(&file, TOURS_BYTES_MAX);
+	same = buffer_read_file(&file, path) == 0 && file.size == strlen(hex) &&
+	       memcmp(file.data, hex, file.size) == 0;
+	buffer_finish(&file);
+	return same;
+}
+
+static int check_ways(struct sources *sources, const struct info_built *built, struct fault *fault)
+{
+	struct tour_check_options options = { .complaint = complain, .complaint_data = sources };
+	char path[CONTENT_PATH_BYTES], hex[HASH_HEX_BYTES];
+	struct hash scans, key;
+	int rc = scans_key(sources->scans, &scans, fault);
+
+	if (rc == 0)
+		rc = tour_check_key(&key, built, scans);
+	if (rc == 0)
+		rc = content_work_path(sources->content, "tours", path);
+	if (rc < 0 || are_known(path, key))
+		return rc;
+	rc = scans_get_mesh(sources->scans, &options.mesh, fault);
+	if (rc == 0)
+		rc = tour_check(built, &options);
+	if (rc < 0)
+		return rc;
+	hash_to_hex(key, hex);
+	return bytes_write_file((struct bytes){ (const uint8_t *)hex, strlen(hex) }, path);
+}
+
+/* ---- the information */
+
+static int compile(struct sources *sources, struct fault *fault)
+{
+	int rc = info_compile(&sources->built, sources->draft);
+
+	if (rc == 0 && sources->faces.part_count > 0)
+		rc = part_faces_keep(&sources->faces, fault);
+	if (rc == 0 && sources->built.tour_count > 0)
+		rc = check_ways(sources, &sources->built, fault);
+	if (rc < 0) {
+		info_built_finish(&sources->built);
+		return rc;
+	}
+	info_draft_destroy(sources->draft);
+	sources->draft = NULL;
+	sources->is_built = true;
+	if (sources->warnings > WARNINGS_SHOWN)
+		log_warn("pipeline", "%s: and %u warnings more of pages and parts",
+			 sources->content->folder, sources->warnings - WARNINGS_SHOWN);
+	return 0;
+}
+
+/* The faults of the folder have been logged as complaints; this logs any other. */
+static int tell(const struct sources *sources, int rc, const struct fault *fault)
+{
+	if (rc < 0 && fault->text[0])
+		log_error("pipeline", "%s", fault->text);
+	else if (rc < 0 && rc != -EINVAL)
+		log_error("pipeline", "%s: %s", sources->content->folder, strerror(-rc));
+	return rc;
+}
+
+int sources_check(struct sources *sources)
+{
+	const struct info_built *built;
+	struct fault fault = { "" };
+	int rc = 0;
+
+	if (!sources->draft && !sources->is_built)
+		rc = info_read(&sources->draft, &sources->options);
+	if (rc == 0 && sources->draft && info_has_tours(sources->draft))
+		return sources_info(sources, &built);
+	return tell(sources, rc, &fault);
+}
+
+int sources_info(struct sources *sources, const struct info_built **out)
+{
+	struct fault fault = { "" };
+	int rc = 0;
+
+	*out = NULL;
+	if (!sources->draft && !sources->is_built)
+		rc = info_read(&sources->draft, &sources->options);
+	if (rc == 0 && !sources->is_built)
+		rc = compile(sources, &fault);
+	if (rc == 0)
+		*out = &sources->built;
+	return tell(sources, rc, &fault);
+}
+
+int sources_find_faces(struct sources *sources, struct fault *fault)
+{
+	return part_faces_find_all(&sources->faces, fault);
+}
+
+bool sources_faces_of(const struct sources *sources, const char *part, struct sources_faces *out)
+{
+	const struct part_faces *faces = part_faces_of(&sources->faces, part);
+
+	if (!faces)
+		return false;
+	*out = (struct sources_faces){ faces->key, faces->triangles, faces->triangle_count };
+	return true;
+}

@@ -1,0 +1,38 @@
+/* What a release is made from: a content folder's scans, and its parts, pages and tours. A command
+ * makes one and hands it to every stage, so that each source is read once. One thread. */
+#ifndef GOPURA_PIPELINE_CONTENT_SOURCES_H
+#define GOPURA_PIPELINE_CONTENT_SOURCES_H
+
+#include "pipeline/content/info_build.h"
+#include "pipeline/content/scans.h"
+
+struct sources;
+
+/* Reads nothing yet. content is borrowed for the lifetime. *out is owned by the caller; NULL on
+ * failure. -ENOMEM. */
+must_check int sources_create(struct sources **out, const struct content *content);
+void sources_destroy(struct sources *sources); /* NULL is fine */
+const struct content *sources_content(const struct sources *sources);
+/* The scans, borrowed. */
+struct scans *sources_scans(struct sources *sources);
+
+/* Checks parts, pages, pictures and tours, so that faults are found before the long work. The scans
+ * are imported only if there are tours, whose ways must not lead through them. -EINVAL: every fault
+ * was logged. Other errors are logged too. */
+must_check int sources_check(struct sources *sources);
+/* Gets the compiled parts, pages and tours, checked likewise. *out is borrowed for the lifetime. */
+must_check int sources_info(struct sources *sources, const struct info_built **out);
+
+/* The faces of a part whose region is a list of them. */
+struct sources_faces {
+	struct hash key; /* of the list and the scans */
+	/* of the mesh, ascending; borrowed. NULL before sources_find_faces. */
+	const uint32_t *triangles;
+	uint32_t triangle_count;
+};
+/* Finds the triangles of all lists. Call it after sources_info. Negative errno, with fault. */
+must_check int sources_find_faces(struct sources *sources, struct fault *fault);
+/* Returns false if the part's region is not a list of faces. Call it after sources_info. */
+bool sources_faces_of(const struct sources *sources, const char *part, struct sources_faces *out);
+
+#endif
