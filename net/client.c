@@ -31,7 +31,7 @@ enum {
 	/* time limit of one dispatch */
 	DISPATCH_US = 3000,
 	PAUSE_MS = 100, /* before the first restart; doubles with each failure */
-	PAUSE_MOST_MS = 10000,
+	PAUSE_MAX_MS = 10000,
 	STEADY_MS = 10000, /* a connection that lasted longer resets the failure count */
 	END_MS = 2000,     /* how long the fetcher may take to exit by itself */
 	/* without any message; then it hangs (it sends a status at least every 30 s) */
@@ -60,7 +60,7 @@ struct net_client {
 	struct packets packets; /* fd is -1 while not connected */
 	/* EPOLLOUT is being watched */
 	bool waits_to_send;
-	bool is_deaf; /* the send queue is full because the fetcher does not read */
+	bool is_stalled; /* the send queue is full because the fetcher does not read */
 	/* Number of objects that may still arrive although nobody wants them. Each want that was
 	 * dropped or repeated on this connection counts one, because its object may already be on
 	 * its way. */
@@ -69,7 +69,7 @@ struct net_client {
 	pid_t pid;               /* of the fetcher we started; 0: none */
 	int pid_fd;
 	uint32_t failures; /* connections in a row that did not last */
-	int64_t connected_ms, heard_ms;
+	int64_t connected_ms, received_ms;
 	/* Bytes received by earlier fetchers, and by the current one. */
 	uint64_t received_before, received_now;
 	struct by_hash wants; /* struct wanted, owned */
@@ -106,30 +106,30 @@ static void watch_socket(struct net_client *client)
 		client->waits_to_send = waits;
 }
 
-/* Sends a message. While not connected it does nothing, because say_everything repeats the state
+/* Sends a message. While not connected it does nothing, because send_all_state repeats the state
  * after connecting. A broken socket is detected when receiving. */
-static void say(struct net_client *client, const struct message *message)
+static void send_message(struct net_client *client, const struct message *message)
 {
 	int rc;
 
-	if (client->packets.fd < 0 || client->is_deaf)
+	if (client->packets.fd < 0 || client->is_stalled)
 		return;
 	if (client->packets.queued_bytes > QUEUE_BYTES_MAX) {
-		client->is_deaf = true;
-		/* look_after disconnects later; this function may run while a message is being
+		client->is_stalled = true;
+		/* supervise disconnects later; this function may run while a message is being
 		 * handled */
 		set_timer(client, 1);
 		return;
 	}
 	rc = packets_send(&client->packets, message, -1);
 	if (rc < 0 && rc != -EPIPE && rc != -ECONNRESET)
-		log_error("net", "a message to the fetcher did not go out: %s", strerror(-rc));
+		log_error("net", "a message to the fetcher could not be sent: %s", strerror(-rc));
 	watch_socket(client);
 }
 
 /* ---- connecting */
 
-static void say_releases(struct net_client *client)
+static void send_releases(struct net_client *client)
 {
 	for (size_t i = 0; i < client->release_count; i++) {
 		const struct in_use *release = &client->releases[i];
@@ -137,45 +137,45 @@ static void say_releases(struct net_client *client)
 					   .release = { release->root, release->root_bytes,
 							i > 0 } };
 
-		say(client, &message);
+		send_message(client, &message);
 	}
 }
 
-static void say_trust(struct net_client *client)
+static void send_trust(struct net_client *client)
 {
-	say(client, &(struct message){ .kind = MESSAGE_TRUST,
-				       .root_version = client->options.root_version });
+	send_message(client, &(struct message){ .kind = MESSAGE_TRUST,
+						.root_version = client->options.root_version });
 }
 
-static void say_everything(struct net_client *client)
+static void send_all_state(struct net_client *client)
 {
 	struct message message = { .kind = MESSAGE_ASK_META, .period_s = client->options.poll_s };
 	struct hash_entry *keep;
 	struct wanted *wanted;
 	size_t at = 0;
 
-	say_releases(client);
-	say_trust(client);
-	say(client, &message);
+	send_releases(client);
+	send_trust(client);
+	send_message(client, &message);
 	message.kind = MESSAGE_KEEP;
 	while ((keep = by_hash_next(&client->keeps, &at))) {
 		message.keep = keep->key;
-		say(client, &message);
+		send_message(client, &message);
 	}
 	at = 0;
 	message.kind = MESSAGE_WANT;
 	while ((wanted = by_hash_next(&client->wants, &at))) {
 		message.want = wanted->want;
-		say(client, &message);
+		send_message(client, &message);
 	}
 }
 
 static int adopt_socket(struct net_client *client, int fd)
 {
 	packets_init(&client->packets, fd);
-	client->waits_to_send = client->is_deaf = false;
+	client->waits_to_send = client->is_stalled = false;
 	client->late_count = client->unwanted_count = 0;
-	client->connected_ms = client->heard_ms = clock_now_ms();
+	client->connected_ms = client->received_ms = clock_now_ms();
 	set_timer(client, SILENT_MS);
 	return watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
 }
@@ -274,11 +274,11 @@ static void retry_later(struct net_client *client)
 
 	if (client->connected_ms && clock_now_ms() - client->connected_ms > STEADY_MS)
 		client->failures = 0;
-	for (uint32_t i = 0; i < client->failures && pause_ms < PAUSE_MOST_MS; i++)
+	for (uint32_t i = 0; i < client->failures && pause_ms < PAUSE_MAX_MS; i++)
 		pause_ms *= 2;
 	client->failures++;
 	client->connected_ms = 0;
-	set_timer(client, pause_ms < PAUSE_MOST_MS ? pause_ms : PAUSE_MOST_MS);
+	set_timer(client, pause_ms < PAUSE_MAX_MS ? pause_ms : PAUSE_MAX_MS);
 }
 
 static void connect_now(struct net_client *client)
@@ -294,7 +294,7 @@ static void connect_now(struct net_client *client)
 	else
 		rc = start_fetcher(client);
 	if (rc == 0) {
-		say_everything(client);
+		send_all_state(client);
 		return;
 	}
 	if (client->failures == 0)
@@ -306,7 +306,7 @@ static void disconnect(struct net_client *client, const char *why)
 {
 	if (client->packets.fd < 0)
 		return;
-	log_warn("net", "the fetcher is gone: %s", why);
+	log_warn("net", "the fetcher is disconnected: %s", why);
 	client->received_before += client->received_now;
 	client->received_now = 0;
 	if (watch(client, client->packets.fd, SOURCE_SOCKET, 0, EPOLL_CTL_DEL) < 0)
@@ -330,12 +330,12 @@ static bool reap(struct net_client *client)
 }
 
 /* Disconnects a fetcher that hangs or does not read. A hanging fetcher counts as dead. */
-static void look_after(struct net_client *client)
+static void supervise(struct net_client *client)
 {
-	int64_t silent_ms = clock_now_ms() - client->heard_ms;
+	int64_t silent_ms = clock_now_ms() - client->received_ms;
 
-	if (client->is_deaf) {
-		disconnect(client, "it does not read what it is told");
+	if (client->is_stalled) {
+		disconnect(client, "it does not read its messages");
 		return;
 	}
 	if (silent_ms < SILENT_MS) {
@@ -344,7 +344,7 @@ static void look_after(struct net_client *client)
 	}
 	if (client->pid)
 		kill(client->pid, SIGKILL);
-	disconnect(client, "it said nothing for a long time");
+	disconnect(client, "it sent nothing for a long time");
 }
 
 /* Either supervises the connection, or reconnects when the pause is over. Only one process may own
@@ -356,7 +356,7 @@ static void on_timer(struct net_client *client)
 	if (read(client->timer_fd, &expirations, sizeof(expirations)) < 0)
 		return;
 	if (client->packets.fd >= 0) {
-		look_after(client);
+		supervise(client);
 		return;
 	}
 	if (!reap(client)) {
@@ -416,7 +416,7 @@ static int take_object(struct net_client *client, const struct message *message,
 }
 
 /* Each fetcher counts bytes from its own start. The kiosk gets the sum over all fetchers. */
-static void pass_status_on(struct net_client *client, struct message_status status)
+static void pass_status(struct net_client *client, struct message_status status)
 {
 	client->received_now = status.received_bytes;
 	status.received_bytes += client->received_before;
@@ -424,7 +424,7 @@ static void pass_status_on(struct net_client *client, struct message_status stat
 		client->options.events.status(client->options.data, &status);
 }
 
-static int obey(struct net_client *client, const struct message *message, int passed)
+static int handle_message(struct net_client *client, const struct message *message, int passed)
 {
 	const struct net_client_events *events = &client->options.events;
 	void *data = client->options.data;
@@ -442,21 +442,21 @@ static int obey(struct net_client *client, const struct message *message, int pa
 				     message->meta.bytes, message->meta.source);
 		/* the fetcher waits for this answer, whether the kiosk accepted the root or not */
 		if (message->meta.role == META_ROOT)
-			say_trust(client);
+			send_trust(client);
 		return 0;
 	case MESSAGE_SYNCED:
 		if (events->synced)
 			events->synced(data, message->synced);
 		return 0;
 	case MESSAGE_STATUS:
-		pass_status_on(client, message->status);
+		pass_status(client, message->status);
 		return 0;
 	default:
 		return -EBADMSG; /* only the client may send this kind of message */
 	}
 }
 
-static void hear_fetcher(struct net_client *client)
+static void receive_messages(struct net_client *client)
 {
 	int64_t until_us = clock_now_us() + DISPATCH_US;
 	int rc = packets_flush(&client->packets);
@@ -467,14 +467,14 @@ static void hear_fetcher(struct net_client *client)
 
 		rc = packets_receive(&client->packets, &message, &passed);
 		if (rc == 0) {
-			client->heard_ms = clock_now_ms();
-			rc = obey(client, &message, passed);
+			client->received_ms = clock_now_ms();
+			rc = handle_message(client, &message, passed);
 		}
 	}
 	watch_socket(client);
 	if (rc == -EBADMSG)
-		disconnect(client, "fetcher bug: it sent what is no message, wrong bytes, or what "
-				   "nobody wanted");
+		disconnect(client, "fetcher bug: it sent an invalid message, wrong bytes, or "
+				   "unwanted objects");
 	else if (rc < 0 && rc != -EAGAIN)
 		disconnect(client, rc == -EPIPE ? "it closed the socket" : strerror(-rc));
 }
@@ -495,7 +495,7 @@ int net_client_dispatch(struct net_client *client)
 		switch ((enum source)events[i].data.u32) {
 		case SOURCE_SOCKET:
 			if (client->packets.fd >= 0)
-				hear_fetcher(client);
+				receive_messages(client);
 			break;
 		case SOURCE_CHILD:
 			/* Messages that the fetcher sent before it exited are read first. The
@@ -503,7 +503,7 @@ int net_client_dispatch(struct net_client *client)
 			if (client->packets.fd < 0)
 				reap(client);
 			else
-				hear_fetcher(client);
+				receive_messages(client);
 			break;
 		case SOURCE_TIMER:
 			on_timer(client);
@@ -620,7 +620,7 @@ void net_client_destroy(struct net_client *client)
 
 /* ---- what the kiosk asks for */
 
-static void use(struct net_client *client, struct hash root, uint32_t root_bytes, bool also)
+static void add_release(struct net_client *client, struct hash root, uint32_t root_bytes, bool also)
 {
 	struct message message = { .kind = MESSAGE_RELEASE, .release = { root, root_bytes, also } };
 
@@ -632,7 +632,7 @@ static void use(struct net_client *client, struct hash root, uint32_t root_bytes
 		client->release_count--;
 	}
 	client->releases[client->release_count++] = (struct in_use){ root, root_bytes };
-	say(client, &message);
+	send_message(client, &message);
 }
 
 void net_client_use_release(struct net_client *client, struct hash root, uint32_t root_bytes)
@@ -643,7 +643,7 @@ void net_client_use_release(struct net_client *client, struct hash root, uint32_
 	forget_entries(&client->wants);
 	forget_entries(&client->keeps);
 	client->release_count = 0;
-	use(client, root, root_bytes, false);
+	add_release(client, root, root_bytes, false);
 }
 
 void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes)
@@ -651,7 +651,7 @@ void net_client_add_release(struct net_client *client, struct hash root, uint32_
 	for (size_t i = 0; i < client->release_count; i++)
 		if (hash_equal(client->releases[i].root, root))
 			return;
-	use(client, root, root_bytes, client->release_count > 0);
+	add_release(client, root, root_bytes, client->release_count > 0);
 }
 
 void net_client_want(struct net_client *client, const struct message_want *want)
@@ -674,7 +674,7 @@ void net_client_want(struct net_client *client, const struct message_want *want)
 		}
 	}
 	wanted->want = *want;
-	say(client, &message);
+	send_message(client, &message);
 }
 
 void net_client_drop(struct net_client *client, struct hash hash)
@@ -687,12 +687,12 @@ void net_client_drop(struct net_client *client, struct hash hash)
 	by_hash_remove(&client->wants, hash);
 	free(wanted);
 	client->late_count++;
-	say(client, &message);
+	send_message(client, &message);
 }
 
 void net_client_sync(struct net_client *client)
 {
-	say(client, &(struct message){ .kind = MESSAGE_SYNC });
+	send_message(client, &(struct message){ .kind = MESSAGE_SYNC });
 }
 
 void net_client_trust(struct net_client *client, uint32_t root_version)
@@ -715,5 +715,5 @@ void net_client_keep(struct net_client *client, struct hash hash)
 		free(keep);
 		return;
 	}
-	say(client, &message);
+	send_message(client, &message);
 }

@@ -8,10 +8,12 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/page.h"
-#include "net/downloader_private.h"
+#include "net/locators.h"
+#include "net/range_plan.h"
+#include "net/ranges.h"
+#include "net/want_set.h"
 
 enum {
-	WANTS_MAX = 1 << 18,
 	RANGES_MAX = 8,
 	/* while all requests together are small, so that latency does not dominate */
 	SMALL_RANGES_MAX = 32,
@@ -24,57 +26,29 @@ enum {
 	RANGE_BYTES_MAX = 1 << 20,
 	/* a range should take about this long, so that more urgent requests do not wait longer */
 	RANGE_MS = 250,
-	/* assumed bandwidth before the first measurement */
-	BYTES_PER_S_FIRST = 1 << 20,
 	CACHE_READS_MAX = 64, /* per call: other sources share the loop */
 };
 
-/* ---- create, destroy */
+struct downloader {
+	struct downloader_options options;
+	struct want_set wants;
+	struct locators locators;
+	struct ranges ranges;
+	bool plan_changed;   /* something may be requested that could not be before */
+	int64_t plan_due_ms; /* when the first retry pause ends; INT64_MAX: no want is pausing */
+	struct range_item *items; /* scratch memory for planning */
+	size_t item_capacity;
+	struct buffer scratch; /* holds one object read from the cache */
+	bool was_down;         /* all wants were reported as offline */
+	/* with a rate limit: bytes that may be requested now for later releases; negative:
+	 * overdrawn */
+	int64_t allowance_bytes;
+	int64_t allowance_ms;                /* when allowance_bytes was computed */
+	bool later_waits;                    /* something waits only for the rate limit */
+	struct downloader_counters counters; /* without those that ranges keeps */
+};
 
-int downloader_create(struct downloader **out, const struct downloader_options *options)
-{
-	struct downloader *downloader = calloc(1, sizeof(*downloader));
-
-	*out = downloader;
-	if (!downloader)
-		return -ENOMEM;
-	downloader->options = *options;
-	downloader->bytes_per_s = BYTES_PER_S_FIRST;
-	downloader->plan_due_ms = INT64_MAX;
-	buffer_init(&downloader->scratch, OBJECT_BYTES_MAX);
-	return 0;
-}
-
-void downloader_destroy(struct downloader *downloader)
-{
-	if (!downloader)
-		return;
-	downloader_forget_all(downloader);
-	by_hash_finish(&downloader->wants);
-	buffer_finish(&downloader->scratch);
-	free(downloader->fresh);
-	free(downloader->items);
-	free(downloader);
-}
-
-/* ---- adding and dropping wants */
-
-static int add_fresh(struct downloader *downloader, struct want *want)
-{
-	if (downloader->fresh_count == downloader->fresh_capacity) {
-		size_t capacity = downloader->fresh_capacity ? downloader->fresh_capacity * 2 : 256;
-		struct want **larger = realloc(downloader->fresh, capacity * sizeof(*larger));
-
-		if (!larger)
-			return -ENOMEM;
-		downloader->fresh = larger;
-		downloader->fresh_capacity = capacity;
-	}
-	want->state = WANT_FRESH;
-	downloader->fresh[downloader->fresh_count++] = want;
-	downloader->fresh_changed = true;
-	return 0;
-}
+/* ---- wants */
 
 /* Reports a missing object, but only when the reason changes. */
 static void report(struct downloader *downloader, struct want *want, enum missing_reason reason)
@@ -83,6 +57,11 @@ static void report(struct downloader *downloader, struct want *want, enum missin
 		return;
 	want->reported = (int)reason;
 	downloader->options.events.missing(downloader->options.data, want->entry.key, reason);
+}
+
+static bool has_room(const struct downloader *downloader)
+{
+	return downloader->options.events.has_room(downloader->options.data);
 }
 
 /* True for objects of a release that is not shown yet. The rate limit applies to these, because no
@@ -94,49 +73,28 @@ static bool is_for_later(uint32_t priority)
 
 void downloader_want(struct downloader *downloader, const struct message_want *asked)
 {
-	struct want *want = by_hash_find(&downloader->wants, asked->hash);
+	struct want *want = want_set_find(&downloader->wants, asked->hash);
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
 			downloader->plan_changed = true; /* no longer rate-limited */
-		want->asked.priority = asked->priority;
-		downloader->fresh_changed = true;
+		want_set_change_priority(&downloader->wants, want, asked->priority);
 		return;
 	}
-	want = calloc(1, sizeof(*want));
-	if (want && downloader->wants.count < WANTS_MAX) {
-		want->entry.key = asked->hash;
-		want->asked = *asked;
-		want->order = downloader->orders++;
-		want->reported = -1;
-		if (add_fresh(downloader, want) == 0) {
-			if (by_hash_add(&downloader->wants, &want->entry) == 0)
-				return;
-			downloader->fresh_count--;
-		}
-	}
-	free(want);
-	downloader->options.events.missing(downloader->options.data, asked->hash, MISSING_OFFLINE);
-}
-
-/* Removes the want from the map. Frees it unless it is still in the fresh list. */
-static void forget(struct downloader *downloader, struct want *want)
-{
-	by_hash_remove(&downloader->wants, want->entry.key);
-	if (want->state == WANT_FRESH)
-		want->dropped = true;
-	else
-		free(want);
+	if (want_set_add(&downloader->wants, asked) < 0)
+		downloader->options.events.missing(downloader->options.data, asked->hash,
+						   MISSING_OFFLINE);
 }
 
 void downloader_drop(struct downloader *downloader, struct hash hash)
 {
-	struct want *want = by_hash_find(&downloader->wants, hash);
+	struct want *want = want_set_find(&downloader->wants, hash);
 
 	if (!want)
 		return;
-	downloader_leave_range(downloader, want);
-	forget(downloader, want);
+	if (ranges_leave(&downloader->ranges, want))
+		downloader->plan_changed = true;
+	want_set_remove(&downloader->wants, want);
 }
 
 void downloader_keep(struct downloader *downloader, struct hash hash)
@@ -147,20 +105,21 @@ void downloader_keep(struct downloader *downloader, struct hash hash)
 		log_debug("net", "the cache keeps as much as it may");
 }
 
-void downloader_forget_all(struct downloader *downloader)
+void downloader_use_release(struct downloader *downloader, struct hash root, bool also)
 {
-	struct want *want;
-	size_t at = 0;
+	if (!also)
+		downloader_clear(downloader);
+	if (locators_add(&downloader->locators, root) < 0)
+		return; /* the wants of this release are reported missing */
+	if (!also && cache_use_release(downloader->options.cache, root) < 0)
+		log_warn("net", "the cache cannot note which release is in use");
+}
 
-	downloader_cancel_ranges(downloader);
-	while ((want = by_hash_next(&downloader->wants, &at)))
-		if (want->state != WANT_FRESH)
-			free(want);
-	for (size_t i = 0; i < downloader->fresh_count; i++)
-		free(downloader->fresh[i]);
-	downloader->fresh_count = 0;
-	by_hash_finish(&downloader->wants);
-	downloader_forget_releases(downloader);
+void downloader_clear(struct downloader *downloader)
+{
+	ranges_cancel_all(&downloader->ranges);
+	want_set_finish(&downloader->wants);
+	locators_clear(&downloader->locators);
 }
 
 /* ---- objects that arrive */
@@ -169,9 +128,17 @@ static void pass_on(struct downloader *downloader, struct want *want, struct byt
 {
 	struct hash hash = want->entry.key;
 
-	want->state = WANT_WAITING; /* no longer in the fresh list, so forget() frees it */
-	forget(downloader, want);
+	want_set_remove(&downloader->wants, want);
 	downloader->options.events.object(downloader->options.data, hash, bytes);
+}
+
+static void put_into_cache(struct downloader *downloader, const struct want *want,
+			   struct bytes bytes)
+{
+	int rc = cache_put(downloader->options.cache, want->entry.key, bytes, want->asked.priority);
+
+	if (rc < 0)
+		log_debug("net", "an object is not in the cache (%d)", rc);
 }
 
 /* Handles wrong bytes. The first time the object is requested again at once (a bit may have flipped
@@ -180,8 +147,7 @@ static void note_damage(struct downloader *downloader, struct want *want)
 {
 	char hex[HASH_HEX_BYTES];
 
-	downloader->metrics.damaged++;
-	want->state = WANT_WAITING;
+	downloader->counters.damaged++;
 	want->damages++;
 	want->failures++;
 	want->retry_at_ms = clock_now_ms();
@@ -196,27 +162,33 @@ static void note_damage(struct downloader *downloader, struct want *want)
 	}
 	want->retry_at_ms += link_pause_ms(want->failures);
 	report(downloader, want, MISSING_DAMAGED);
-	downloader_suspect_locators(downloader);
+	locators_suspect(&downloader->locators);
 }
 
-void downloader_arrived(struct downloader *downloader, struct want *want, struct bytes bytes)
+/* See ranges_options.object. */
+static void on_range_object(void *data, struct want *want, struct hash hash, struct bytes bytes)
 {
-	int rc;
+	struct downloader *downloader = data;
 
-	if (!hash_equal(hash_of(bytes), want->entry.key)) {
-		note_damage(downloader, want);
-		return;
+	if (!hash_equal(hash_of(bytes), hash)) {
+		if (want)
+			note_damage(downloader, want);
+	} else if (want) {
+		downloader->counters.from_server++;
+		put_into_cache(downloader, want, bytes);
+		pass_on(downloader, want, bytes);
+	} else if (cache_put(downloader->options.cache, hash, bytes, 0) == 0) {
+		/* Nobody wants it any more, but its bytes were downloaded anyway. The cache logs
+		 * its own failures. */
+		downloader->counters.from_server++;
 	}
-	downloader->metrics.from_server++;
-	rc = cache_put(downloader->options.cache, want->entry.key, bytes, want->asked.priority);
-	if (rc < 0)
-		log_debug("net", "an object did not get into the cache (%d)", rc);
-	pass_on(downloader, want, bytes);
 }
 
-void downloader_failed(struct downloader *downloader, struct want *want, int rc)
+/* The waiting want was not delivered. rc is that of struct http_result. */
+static void on_failed(void *data, struct want *want, int rc)
 {
-	want->state = WANT_WAITING;
+	struct downloader *downloader = data;
+
 	want->retry_at_ms = 0; /* the pause of the link is enough */
 	downloader->plan_changed = true;
 	if (rc == -EHOSTUNREACH)
@@ -224,20 +196,18 @@ void downloader_failed(struct downloader *downloader, struct want *want, int rc)
 	want->failures++;
 	want->retry_at_ms = clock_now_ms() + link_pause_ms(want->failures);
 	report(downloader, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
-	downloader_suspect_locators(downloader);
+	locators_suspect(&downloader->locators);
+}
+
+/* More may be requested than before: a range has ended, or a locator has changed. */
+static void on_change(void *data)
+{
+	struct downloader *downloader = data;
+
+	downloader->plan_changed = true;
 }
 
 /* ---- the cache */
-
-static int by_priority(const void *a, const void *b)
-{
-	const struct want *left = *(struct want *const *)a, *right = *(struct want *const *)b;
-
-	if (left->asked.priority != right->asked.priority)
-		return left->asked.priority < right->asked.priority ? -1 : 1;
-	/* the earlier one comes last, because the list is served from its end */
-	return left->order > right->order ? -1 : 1;
-}
 
 static void wait_for_server(struct downloader *downloader, struct want *want)
 {
@@ -247,21 +217,40 @@ static void wait_for_server(struct downloader *downloader, struct want *want)
 		report(downloader, want, MISSING_OFFLINE);
 }
 
-static void ask_cache(struct downloader *downloader, struct want *want)
+/* Returns true if the stick was asked; downloader_stick_answered gets the answer. */
+static bool request_from_stick(struct downloader *downloader, const struct want *want)
+{
+	struct hash roots[MESSAGE_RELEASES_MAX];
+	size_t count = locators_roots(&downloader->locators, roots);
+
+	return count > 0 && stick_request(downloader->options.stick, roots, count, &want->asked);
+}
+
+static void look_up(struct downloader *downloader, struct want *want)
 {
 	int rc = cache_get(downloader->options.cache, want->entry.key, want->asked.priority,
 			   &downloader->scratch);
 
-	want->state = WANT_WAITING;
 	if (rc == 0) {
-		downloader->metrics.from_cache++;
+		downloader->counters.from_cache++;
 		pass_on(downloader, want, buffer_bytes(&downloader->scratch));
 		return;
 	}
-	if (downloader_ask_stick(downloader, want))
+	if (request_from_stick(downloader, want))
 		want->state = WANT_ON_STICK;
 	else
 		wait_for_server(downloader, want);
+}
+
+static void look_up_queued(struct downloader *downloader)
+{
+	for (int i = 0; i < CACHE_READS_MAX && has_room(downloader); i++) {
+		struct want *want = want_set_dequeue(&downloader->wants);
+
+		if (!want)
+			break;
+		look_up(downloader, want);
+	}
 }
 
 /* ---- the stick */
@@ -274,14 +263,14 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 	refusal_note(downloader->options.link->refusal, hex,
 		     "the stick's bytes of this object are damaged");
 	/* logs only the first; there may be thousands */
-	if (downloader->metrics.stick_damaged++ == 0)
+	if (downloader->counters.stick_damaged++ == 0)
 		log_warn("net", "the stick's bytes of object %s are damaged", hex);
 }
 
 void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,
 			       struct bytes bytes)
 {
-	struct want *want = by_hash_find(&downloader->wants, hash);
+	struct want *want = want_set_find(&downloader->wants, hash);
 
 	if (rc == -EBADMSG)
 		note_damage_on_stick(downloader, hash);
@@ -291,47 +280,26 @@ void downloader_stick_answered(struct downloader *downloader, struct hash hash, 
 		wait_for_server(downloader, want);
 		return;
 	}
-	downloader->metrics.from_stick++;
-	if (cache_put(downloader->options.cache, hash, bytes, want->asked.priority) < 0)
-		log_debug("net", "an object did not get into the cache");
+	downloader->counters.from_stick++;
+	put_into_cache(downloader, want, bytes);
 	pass_on(downloader, want, bytes);
 }
 
 bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash)
 {
-	const struct want *want = by_hash_find(&downloader->wants, hash);
+	const struct want *want = want_set_find(&downloader->wants, hash);
 
 	return want && want->state == WANT_ON_STICK;
 }
 
-void downloader_ask_again(struct downloader *downloader)
+void downloader_look_up_again(struct downloader *downloader)
 {
 	struct want *want;
 	size_t at = 0;
 
-	while ((want = by_hash_next(&downloader->wants, &at)))
-		if (want->state == WANT_WAITING && add_fresh(downloader, want) < 0)
+	while ((want = want_set_next(&downloader->wants, &at)))
+		if (want->state == WANT_WAITING && want_set_requeue(&downloader->wants, want) < 0)
 			return; /* stays waiting: the server may have it */
-}
-
-static void work_fresh(struct downloader *downloader)
-{
-	const struct downloader_events *events = &downloader->options.events;
-
-	if (downloader->fresh_changed && downloader->fresh_count > 1)
-		qsort(downloader->fresh, downloader->fresh_count, sizeof(downloader->fresh[0]),
-		      by_priority);
-	downloader->fresh_changed = false;
-	for (int i = 0; i < CACHE_READS_MAX && downloader->fresh_count > 0 &&
-			events->has_room(downloader->options.data);
-	     i++) {
-		struct want *want = downloader->fresh[--downloader->fresh_count];
-
-		if (want->dropped)
-			free(want);
-		else
-			ask_cache(downloader, want);
-	}
 }
 
 /* ---- the server */
@@ -365,7 +333,7 @@ static int64_t allowance_due_ms(const struct downloader *downloader)
 
 static bool reserve_items(struct downloader *downloader)
 {
-	size_t needed = downloader->wants.count;
+	size_t needed = want_set_count(&downloader->wants);
 	struct range_item *larger;
 
 	if (needed <= downloader->item_capacity)
@@ -391,7 +359,7 @@ static size_t gather(struct downloader *downloader)
 	downloader->later_waits = false;
 	if (!reserve_items(downloader))
 		return 0;
-	while ((want = by_hash_next(&downloader->wants, &at))) {
+	while ((want = want_set_next(&downloader->wants, &at))) {
 		struct range_item *item = &downloader->items[count];
 		int rc;
 
@@ -402,9 +370,10 @@ static size_t gather(struct downloader *downloader)
 			continue;
 		}
 		rc = want->retry_at_ms > now_ms ? -EBUSY
-						: downloader_locate(downloader, want, item);
+						: locators_find(&downloader->locators, &want->asked,
+								want->failures, item);
 		if (rc == -ENOENT)
-			downloader_failed(downloader, want, rc);
+			on_failed(downloader, want, rc);
 		if (want->retry_at_ms > now_ms && want->retry_at_ms < downloader->plan_due_ms)
 			downloader->plan_due_ms = want->retry_at_ms;
 		if (rc < 0)
@@ -418,18 +387,18 @@ static size_t gather(struct downloader *downloader)
 	return count;
 }
 
-static uint32_t ranges_most(const struct downloader *downloader)
+static uint32_t ranges_max(const struct downloader *downloader)
 {
-	return downloader->flying_bytes < SMALL_BYTES ? SMALL_RANGES_MAX : RANGES_MAX;
+	return downloader->ranges.bytes < SMALL_BYTES ? SMALL_RANGES_MAX : RANGES_MAX;
 }
 
-static bool may_ask_for(const struct downloader *downloader, uint32_t priority)
+static bool may_request(const struct downloader *downloader, uint32_t priority)
 {
-	uint32_t most = ranges_most(downloader);
+	uint32_t most = ranges_max(downloader);
 
 	if (priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
-	return downloader->range_count < most && link_may_ask(downloader->options.link);
+	return downloader->ranges.count < most && link_may_request(downloader->options.link);
 }
 
 /* Returns the highest priority among items that no range has taken yet; 0 if none is left. */
@@ -457,7 +426,7 @@ static uint32_t later_bytes(const struct range_item *items, size_t count)
 static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
 {
 	uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
-	uint64_t most = downloader->bytes_per_s;
+	uint64_t most = downloader->ranges.bytes_per_s;
 
 	most = (rate > 0 && rate < most ? rate : most) * RANGE_MS / 1000;
 	if (most < RANGE_BYTES_MIN)
@@ -467,7 +436,7 @@ static struct range_limits limits_now(const struct downloader *downloader, uint3
 	return (struct range_limits){ .gap_bytes = GAP_BYTES, .most_bytes = (uint32_t)most };
 }
 
-static void work_ranges(struct downloader *downloader)
+static void request_ranges(struct downloader *downloader)
 {
 	size_t count, first, taken;
 	uint32_t best;
@@ -477,9 +446,8 @@ static void work_ranges(struct downloader *downloader)
 	if (downloader->later_waits && !is_overdrawn(downloader))
 		downloader->plan_changed = true;
 	if (!downloader->plan_changed ||
-	    downloader->range_count >= ranges_most(downloader) + RANGES_FOR_PAGES ||
-	    !link_may_ask(downloader->options.link) ||
-	    !downloader->options.events.has_room(downloader->options.data))
+	    downloader->ranges.count >= ranges_max(downloader) + RANGES_FOR_PAGES ||
+	    !link_may_request(downloader->options.link) || !has_room(downloader))
 		return;
 	count = gather(downloader);
 	downloader->plan_changed = false;
@@ -491,11 +459,11 @@ static void work_ranges(struct downloader *downloader)
 			downloader->later_waits = true;
 			return;
 		}
-		if (!may_ask_for(downloader, best)) {
+		if (!may_request(downloader, best)) {
 			downloader->plan_changed = true;
 			return;
 		}
-		if (downloader_ask_range(downloader, &downloader->items[first], taken) > 0)
+		if (ranges_request(&downloader->ranges, &downloader->items[first], taken) == 0)
 			downloader->allowance_bytes -=
 				later_bytes(&downloader->items[first], taken);
 	}
@@ -503,7 +471,7 @@ static void work_ranges(struct downloader *downloader)
 
 /* When the link goes down, reports MISSING_OFFLINE once to every waiting want. When it comes back,
  * clears these reports. */
-static void tell_of_the_line(struct downloader *downloader)
+static void report_link(struct downloader *downloader)
 {
 	bool is_down = link_is_down(downloader->options.link);
 	struct want *want;
@@ -513,8 +481,8 @@ static void tell_of_the_line(struct downloader *downloader)
 		return;
 	downloader->was_down = is_down;
 	downloader->plan_changed = true;
-	while ((want = by_hash_next(&downloader->wants, &at))) {
-		if (want->state == WANT_FRESH || want->state == WANT_ON_STICK)
+	while ((want = want_set_next(&downloader->wants, &at))) {
+		if (want->state == WANT_QUEUED || want->state == WANT_ON_STICK)
 			continue;
 		if (is_down)
 			report(downloader, want, MISSING_OFFLINE);
@@ -525,19 +493,19 @@ static void tell_of_the_line(struct downloader *downloader)
 
 void downloader_work(struct downloader *downloader)
 {
-	work_fresh(downloader);
-	downloader_work_releases(downloader);
-	tell_of_the_line(downloader);
+	look_up_queued(downloader);
+	locators_work(&downloader->locators);
+	report_link(downloader);
 	if (downloader->plan_due_ms <= clock_now_ms())
 		downloader->plan_changed = true; /* the retry pause of a want is over */
-	work_ranges(downloader);
+	request_ranges(downloader);
 	/* Last, because planning may also find objects without a place. */
-	downloader_ask_suspects(downloader);
+	locators_refresh_suspected(&downloader->locators);
 }
 
 /* Adjusts due_ms to the state of the link. While a request is in flight after a failure, its answer
  * wakes the loop, so no timer is needed. */
-static int64_t line_due_ms(const struct link *link, int64_t due_ms)
+static int64_t link_due_ms(const struct link *link, int64_t due_ms)
 {
 	if (link->failures == 0 || due_ms == INT64_MAX)
 		return due_ms;
@@ -549,28 +517,68 @@ static int64_t line_due_ms(const struct link *link, int64_t due_ms)
 int64_t downloader_due_ms(const struct downloader *downloader)
 {
 	const struct link *link = downloader->options.link;
-	int64_t due_ms = downloader_releases_due_ms(downloader);
+	int64_t due_ms = locators_due_ms(&downloader->locators);
 
-	if (!downloader->options.events.has_room(downloader->options.data))
-		return line_due_ms(link, due_ms); /* the loop wakes up when the kiosk reads */
-	if (downloader->fresh_count > 0)
+	if (!has_room(downloader))
+		return link_due_ms(link, due_ms); /* the loop wakes up when the kiosk reads */
+	if (want_set_has_queued(&downloader->wants))
 		return 0;
-	if (downloader->range_count < ranges_most(downloader)) {
+	if (downloader->ranges.count < ranges_max(downloader)) {
 		int64_t plan_ms = downloader->plan_changed ? 0 : downloader->plan_due_ms;
 
 		if (downloader->later_waits && allowance_due_ms(downloader) < plan_ms)
 			plan_ms = allowance_due_ms(downloader);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}
-	return line_due_ms(link, due_ms);
+	return link_due_ms(link, due_ms);
 }
 
 uint32_t downloader_wanted(const struct downloader *downloader)
 {
-	return (uint32_t)downloader->wants.count;
+	return (uint32_t)want_set_count(&downloader->wants);
 }
 
-void downloader_figures(const struct downloader *downloader, struct downloader_figures *out)
+void downloader_counters(const struct downloader *downloader, struct downloader_counters *out)
 {
-	*out = downloader->metrics;
+	*out = downloader->counters;
+	out->ranges = downloader->ranges.requests;
+	out->cancelled = downloader->ranges.cancelled;
+}
+
+/* ---- create, destroy */
+
+int downloader_create(struct downloader **out, const struct downloader_options *options)
+{
+	struct downloader *downloader = calloc(1, sizeof(*downloader));
+	struct ranges_options ranges = { .http = options->http,
+					 .link = options->link,
+					 .object = on_range_object,
+					 .failed = on_failed,
+					 .ended = on_change,
+					 .data = downloader };
+	struct locators_options locators = { .http = options->http,
+					     .cache = options->cache,
+					     .link = options->link,
+					     .changed = on_change,
+					     .data = downloader };
+
+	*out = downloader;
+	if (!downloader)
+		return -ENOMEM;
+	downloader->options = *options;
+	downloader->plan_due_ms = INT64_MAX;
+	ranges_init(&downloader->ranges, &ranges);
+	locators_init(&downloader->locators, &locators);
+	buffer_init(&downloader->scratch, OBJECT_BYTES_MAX);
+	return 0;
+}
+
+void downloader_destroy(struct downloader *downloader)
+{
+	if (!downloader)
+		return;
+	downloader_clear(downloader);
+	buffer_finish(&downloader->scratch);
+	free(downloader->items);
+	free(downloader);
 }

@@ -14,7 +14,7 @@
 #include "net/stick.h"
 #include "storage/cache.h"
 
-struct downloader; /* private to downloader*.c */
+struct downloader; /* private to downloader.c */
 
 struct downloader_events {
 	/* Bytes are borrowed for the call; their hash was checked. The want is removed. */
@@ -36,7 +36,7 @@ struct downloader_options {
 };
 
 /* Counters since downloader_create. */
-struct downloader_figures {
+struct downloader_counters {
 	uint64_t from_cache, from_server, from_stick; /* objects */
 	uint64_t ranges;                              /* requests for objects */
 	uint64_t damaged;       /* objects whose bytes did not match their hash */
@@ -51,9 +51,8 @@ must_check int downloader_create(struct downloader **out, const struct downloade
 void downloader_destroy(struct downloader *downloader);
 
 /* also false: this becomes the only release; all wants and other releases are dropped. also true:
- * it is added beside the others. root_bytes is the size of the root page. */
-void downloader_use_release(struct downloader *downloader, struct hash root, uint32_t root_bytes,
-			    bool also);
+ * it is added beside the others. */
+void downloader_use_release(struct downloader *downloader, struct hash root, bool also);
 /* *want is copied. If the object is already wanted, only its priority changes. */
 void downloader_want(struct downloader *downloader, const struct message_want *want);
 /* No event follows. A request that carries no other wanted object is cancelled. */
@@ -65,10 +64,10 @@ void downloader_stick_answered(struct downloader *downloader, struct hash hash, 
 			       struct bytes bytes);
 /* Returns true if this want still waits for the stick. */
 bool downloader_wants_of_stick(const struct downloader *downloader, struct hash hash);
-/* A stick was plugged in: looks for all waiting wants again. */
-void downloader_ask_again(struct downloader *downloader);
+/* A stick was plugged in: looks up all waiting wants again. */
+void downloader_look_up_again(struct downloader *downloader);
 /* Drops all wants and releases, because the kiosk disconnected. */
-void downloader_forget_all(struct downloader *downloader);
+void downloader_clear(struct downloader *downloader);
 
 /* Does all work that is possible now. Call it after http_dispatch and after each of the calls
  * above. */
@@ -80,6 +79,6 @@ int64_t downloader_due_ms(const struct downloader *downloader);
 /* Returns the number of wants that were neither delivered nor dropped. */
 uint32_t downloader_wanted(const struct downloader *downloader);
 /* Copies the counters to *out. */
-void downloader_figures(const struct downloader *downloader, struct downloader_figures *out);
+void downloader_counters(const struct downloader *downloader, struct downloader_counters *out);
 
 #endif

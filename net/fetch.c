@@ -38,7 +38,7 @@ enum source {
 	SOURCE_HTTP,
 	SOURCE_STICK,
 	SOURCE_SIGNAL,
-	SOURCE_FIGURES,
+	SOURCE_METRICS,
 };
 
 struct fetch {
@@ -57,9 +57,9 @@ struct fetch {
 	struct metrics_socket *metrics; /* NULL: not offered */
 	uint32_t root_version;          /* version of the trust root that the kiosk has */
 	/* the last status sent */
-	struct message_status said;
+	struct message_status sent_status;
 	int64_t flush_ms, status_ms; /* when due (clock_now_ms) */
-	int64_t said_ms;             /* when the kiosk was last sent a status */
+	int64_t sent_status_ms;      /* when the kiosk was last sent a status */
 };
 
 /* ---- the kiosk connects and disconnects */
@@ -71,27 +71,27 @@ static int watch(struct fetch *fetch, int fd, enum source source, uint32_t event
 	return epoll_ctl(fetch->epoll_fd, how, fd, &event) < 0 ? -errno : 0;
 }
 
-static void lose_kiosk(struct fetch *fetch, const char *why)
+static void disconnect_kiosk(struct fetch *fetch, const char *why)
 {
 	if (!fetch->has_kiosk)
 		return;
-	log_info("net", "the kiosk is gone: %s", why);
+	log_info("net", "the kiosk is disconnected: %s", why);
 	fetch->has_kiosk = fetch->kiosk_waits = false;
 	if (watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, 0, EPOLL_CTL_DEL) < 0)
 		log_debug("net", "the kiosk's socket was not watched");
 	packets_finish(&fetch->kiosk);
-	downloader_forget_all(fetch->downloader);
+	downloader_clear(fetch->downloader);
 	poll_stop(fetch->poll);
 	if (fetch->listen_fd < 0)
 		fetch->ends = true;
 }
 
-static int meet_kiosk(struct fetch *fetch, int fd)
+static int use_connection(struct fetch *fetch, int fd)
 {
 	packets_init(&fetch->kiosk, fd);
 	fetch->has_kiosk = true;
 	fetch->kiosk_waits = false;
-	fetch->said = (struct message_status){ 0 };
+	fetch->sent_status = (struct message_status){ 0 };
 	fetch->status_ms = 0;
 	return watch(fetch, fd, SOURCE_KIOSK, EPOLLIN, EPOLL_CTL_ADD);
 }
@@ -104,9 +104,9 @@ static int accept_kiosk(struct fetch *fetch)
 
 	if (fd < 0)
 		return errno == EAGAIN || errno == ECONNABORTED || errno == EINTR ? 0 : -errno;
-	lose_kiosk(fetch, "another one came");
-	log_info("net", "a kiosk came");
-	return meet_kiosk(fetch, fd);
+	disconnect_kiosk(fetch, "another kiosk connected");
+	log_info("net", "a kiosk connected");
+	return use_connection(fetch, fd);
 }
 
 static void send_to_kiosk(struct fetch *fetch, const struct message *message, int passed)
@@ -116,7 +116,7 @@ static void send_to_kiosk(struct fetch *fetch, const struct message *message, in
 	if (rc == -EPIPE || rc == -ECONNRESET)
 		return; /* the next receive detects it */
 	if (rc < 0)
-		log_error("net", "a message did not go out: %s", strerror(-rc));
+		log_error("net", "a message could not be sent: %s", strerror(-rc));
 }
 
 /* ---- events from the other modules */
@@ -188,12 +188,12 @@ static bool is_wanted_of_stick(void *data, struct hash hash)
 
 /* ---- requests from the kiosk */
 
-static int obey(struct fetch *fetch, const struct message *message)
+static int handle_message(struct fetch *fetch, const struct message *message)
 {
 	switch (message->kind) {
 	case MESSAGE_RELEASE:
 		downloader_use_release(fetch->downloader, message->release.root,
-				       message->release.root_bytes, message->release.also);
+				       message->release.also);
 		return 0;
 	case MESSAGE_WANT:
 		downloader_want(fetch->downloader, &message->want);
@@ -205,7 +205,7 @@ static int obey(struct fetch *fetch, const struct message *message)
 		downloader_keep(fetch->downloader, message->keep);
 		return 0;
 	case MESSAGE_ASK_META:
-		poll_ask(fetch->poll, message->period_s);
+		poll_start(fetch->poll, message->period_s);
 		stick_forget(fetch->stick); /* so that the stick's metadata is sent again */
 		return 0;
 	case MESSAGE_TRUST:
@@ -226,7 +226,7 @@ static int obey(struct fetch *fetch, const struct message *message)
 	}
 }
 
-static void hear_kiosk(struct fetch *fetch)
+static void receive_messages(struct fetch *fetch)
 {
 	int rc = packets_flush(&fetch->kiosk);
 
@@ -236,15 +236,15 @@ static void hear_kiosk(struct fetch *fetch)
 
 		rc = packets_receive(&fetch->kiosk, &message, &passed);
 		if (rc == 0)
-			rc = obey(fetch, &message);
+			rc = handle_message(fetch, &message);
 	}
 	if (rc == -EBADMSG)
-		lose_kiosk(fetch, "kiosk bug: it sent what is no message");
+		disconnect_kiosk(fetch, "kiosk bug: it sent an invalid message");
 	else if (rc < 0 && rc != -EAGAIN)
-		lose_kiosk(fetch, strerror(-rc));
+		disconnect_kiosk(fetch, strerror(-rc));
 }
 
-static void tell_status(struct fetch *fetch)
+static void send_status(struct fetch *fetch)
 {
 	struct message message = { .kind = MESSAGE_STATUS };
 	struct message_status *status = &message.status;
@@ -257,15 +257,15 @@ static void tell_status(struct fetch *fetch)
 	status->cache_bytes = cache_file_bytes(fetch->cache);
 	status->cache_budget_bytes = fetch->options->cache_budget_bytes;
 	status->offline_since_s = fetch->link.offline_since_s;
-	if (memcmp(status, &fetch->said, sizeof(*status)) == 0 &&
-	    clock_now_ms() < fetch->said_ms + ALIVE_MS) {
+	if (memcmp(status, &fetch->sent_status, sizeof(*status)) == 0 &&
+	    clock_now_ms() < fetch->sent_status_ms + ALIVE_MS) {
 		/* or earlier, when something happens */
-		fetch->status_ms = fetch->said_ms + ALIVE_MS;
+		fetch->status_ms = fetch->sent_status_ms + ALIVE_MS;
 		return;
 	}
 	fetch->status_ms = clock_now_ms() + STATUS_MS;
-	fetch->said_ms = clock_now_ms();
-	fetch->said = *status;
+	fetch->sent_status_ms = clock_now_ms();
+	fetch->sent_status = *status;
 	send_to_kiosk(fetch, &message, -1);
 }
 
@@ -285,13 +285,13 @@ static void write_refusal(const struct refusal *refusal, struct buffer *out)
 		2);
 }
 
-static void write_figures(void *data, struct buffer *out)
+static void write_metrics(void *data, struct buffer *out)
 {
 	const struct fetch *fetch = data;
 	const struct link *link = &fetch->link;
-	struct downloader_figures objects;
+	struct downloader_counters objects;
 
-	downloader_figures(fetch->downloader, &objects);
+	downloader_counters(fetch->downloader, &objects);
 	metrics_gauge(out, "gopura_fetch_online", "Whether the last request was answered.",
 		      link->online);
 	metrics_gauge(out, "gopura_fetch_offline_since_seconds",
@@ -349,10 +349,10 @@ static void work(struct fetch *fetch)
 
 	if (fetch->has_kiosk) {
 		if (stick_work(fetch->stick, kiosk_has_room(fetch)))
-			downloader_ask_again(fetch->downloader);
+			downloader_look_up_again(fetch->downloader);
 		downloader_work(fetch->downloader);
 		poll_work(fetch->poll);
-		tell_status(fetch);
+		send_status(fetch);
 	}
 	flush_cache(fetch);
 	waits = fetch->has_kiosk && packets_wait(&fetch->kiosk);
@@ -391,17 +391,17 @@ static int dispatch(struct fetch *fetch, enum source source)
 		return accept_kiosk(fetch);
 	case SOURCE_KIOSK:
 		if (fetch->has_kiosk)
-			hear_kiosk(fetch);
+			receive_messages(fetch);
 		return 0;
 	case SOURCE_HTTP:
 		return http_dispatch(fetch->http);
 	case SOURCE_STICK:
-		stick_heard(fetch->stick);
+		stick_clear_event(fetch->stick);
 		return 0;
 	case SOURCE_SIGNAL:
 		fetch->ends = true;
 		return 0;
-	case SOURCE_FIGURES:
+	case SOURCE_METRICS:
 		metrics_socket_dispatch(fetch->metrics);
 		return 0;
 	}
@@ -469,7 +469,7 @@ static int watch_signals(struct fetch *fetch)
 	return watch(fetch, fetch->signal_fd, SOURCE_SIGNAL, EPOLLIN, EPOLL_CTL_ADD);
 }
 
-static int create_parts(struct fetch *fetch)
+static int create_modules(struct fetch *fetch)
 {
 	const struct fetch_options *options = fetch->options;
 	struct http_options http = { .url = options->release_url,
@@ -512,18 +512,18 @@ static int create_parts(struct fetch *fetch)
 	return rc;
 }
 
-static int offer_figures(struct fetch *fetch)
+static int offer_metrics(struct fetch *fetch)
 {
 	const struct metrics_socket_options options = { .path = fetch->options->metrics_path,
 							.prefix = "gopura_fetch",
-							.write = write_figures,
+							.write = write_metrics,
 							.data = fetch };
 	int rc = 0;
 
 	if (options.path)
 		rc = metrics_socket_create(&fetch->metrics, &options);
 	if (rc == 0 && fetch->metrics)
-		rc = watch(fetch, metrics_socket_fd(fetch->metrics), SOURCE_FIGURES, EPOLLIN,
+		rc = watch(fetch, metrics_socket_fd(fetch->metrics), SOURCE_METRICS, EPOLLIN,
 			   EPOLL_CTL_ADD);
 	return rc;
 }
@@ -538,14 +538,14 @@ static int start(struct fetch *fetch)
 	srandom((unsigned)clock_now_us() ^ (unsigned)getpid());
 	rc = watch_signals(fetch);
 	if (rc == 0)
-		rc = create_parts(fetch);
+		rc = create_modules(fetch);
 	if (rc == 0)
-		rc = offer_figures(fetch);
+		rc = offer_metrics(fetch);
 	if (rc < 0)
 		return rc;
 	if (fetch->options->socket_path)
 		return listen_on(fetch, fetch->options->socket_path);
-	return meet_kiosk(fetch, fetch->options->fd);
+	return use_connection(fetch, fetch->options->fd);
 }
 
 static void stop(struct fetch *fetch)

@@ -55,7 +55,7 @@ struct http_request {
 	struct http *http;
 	CURL *easy;
 	struct curl_slist *headers;
-	struct http_ask ask;
+	struct http_get get;
 	char etag[ETAG_BYTES_MAX]; /* of the answer */
 	char error[CURL_ERROR_SIZE];
 	long status; /* known once the body begins; 0 before that and for a local folder */
@@ -66,7 +66,7 @@ struct http_request {
 	uint64_t header_bytes; /* of the answer */
 	bool enough, refused;  /* why the body was cut short */
 	uint64_t skip;         /* bytes of a whole file that precede those we asked for */
-	uint64_t given;        /* bytes passed to the receiver */
+	uint64_t passed;       /* bytes passed to the receiver */
 	uint64_t ignored;      /* bytes of an error page */
 };
 
@@ -210,7 +210,7 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 		request->range_is_right = false;
 		request->etag[0] = '\0';
 	} else if (header_is(line, size, "content-range:")) {
-		request->range_is_right = range_begins_at(line, size, request->ask.first);
+		request->range_is_right = range_begins_at(line, size, request->get.first);
 	} else if (header_is(line, size, "etag:")) {
 		take_etag(request, line + 5, size - 5);
 	}
@@ -224,11 +224,11 @@ static bool judge_answer(struct http_request *request)
 {
 	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &request->status);
 	if (request->status == 206)
-		return request->ask.size > 0 && request->range_is_right;
+		return request->get.size > 0 && request->range_is_right;
 	/* A server without range support sends the whole file. The bytes before our part are
 	 * skipped. */
-	if (request->status == 200 && request->ask.size > 0)
-		request->skip = request->ask.first;
+	if (request->status == 200 && request->get.size > 0)
+		request->skip = request->get.first;
 	return true;
 }
 
@@ -238,23 +238,23 @@ static bool has_body_for_us(const struct http_request *request)
 }
 
 /* Passes a piece to the receiver. Returns false if no more bytes are needed or allowed. */
-static bool give(struct http_request *request, struct bytes piece)
+static bool pass_piece(struct http_request *request, struct bytes piece)
 {
-	uint64_t most = request->ask.size ? request->ask.size : request->ask.ceiling;
-	uint64_t room = most - request->given;
+	uint64_t max = request->get.size ? request->get.size : request->get.ceiling;
+	uint64_t room = max - request->passed;
 	bool more;
 
 	if (piece.size > room) {
-		request->refused = request->ask.size == 0; /* a whole file exceeds its ceiling */
+		request->refused = request->get.size == 0; /* a whole file exceeds its ceiling */
 		piece.size = (size_t)room;
 		if (request->refused)
 			return false;
 	}
 	if (piece.size == 0)
-		return request->ask.size == 0; /* the rest of the file was not asked for */
-	more = request->ask.receive(request->ask.data, piece);
-	request->given += piece.size;
-	return more && (request->ask.size == 0 || request->given < request->ask.size ||
+		return request->get.size == 0; /* the rest of the file was not asked for */
+	more = request->get.receive(request->get.data, piece);
+	request->passed += piece.size;
+	return more && (request->get.size == 0 || request->passed < request->get.size ||
 			request->status != 200);
 }
 
@@ -284,7 +284,7 @@ static size_t on_body(char *data, size_t one, size_t size, void *user)
 	piece.data += request->skip;
 	piece.size -= (size_t)request->skip;
 	request->skip = 0;
-	if (give(request, piece))
+	if (pass_piece(request, piece))
 		return size;
 	request->enough = !request->refused;
 	return 0; /* curl then ends the request */
@@ -393,7 +393,7 @@ static void finish_request(CURL *easy, CURLcode code)
 		snprintf(why, sizeof(why), "%s",
 			 request->error[0] ? request->error : curl_easy_strerror(code));
 	curl_multi_remove_handle(request->http->multi, easy);
-	request->ask.done(request->ask.data, &result);
+	request->get.done(request->get.data, &result);
 	release_request(request);
 }
 
@@ -445,7 +445,7 @@ const char *http_url(const struct http *http)
 	return http->url;
 }
 
-/* ---- asking */
+/* ---- starting a request */
 
 static void set_options(struct http_request *request)
 {
@@ -482,37 +482,37 @@ static void set_options(struct http_request *request)
  * stalled, and would otherwise block a request for hours. */
 static long time_limit_s(const struct http_request *request)
 {
-	const struct http_ask *ask = &request->ask;
-	uint64_t for_bytes_s = (ask->size ? ask->size : ask->ceiling) / TRICKLE_BYTES_PER_S;
+	const struct http_get *get = &request->get;
+	uint64_t for_bytes_s = (get->size ? get->size : get->ceiling) / TRICKLE_BYTES_PER_S;
 
 	if (for_bytes_s > TRICKLE_S_MAX)
 		for_bytes_s = TRICKLE_S_MAX;
 	return request->http->patience_s + (long)for_bytes_s;
 }
 
-static void set_ask(struct http_request *request)
+static void set_request(struct http_request *request)
 {
-	const struct http_ask *ask = &request->ask;
+	const struct http_get *get = &request->get;
 	char text[URL_BYTES_MAX + 256];
 
 	curl_easy_setopt(request->easy, CURLOPT_TIMEOUT, time_limit_s(request));
-	snprintf(text, sizeof(text), "%s/%s", request->http->url, ask->path);
+	snprintf(text, sizeof(text), "%s/%s", request->http->url, get->path);
 	curl_easy_setopt(request->easy, CURLOPT_URL, text);
-	if (ask->size > 0) {
-		snprintf(text, sizeof(text), "%llu-%llu", (unsigned long long)ask->first,
-			 (unsigned long long)(ask->first + ask->size - 1));
+	if (get->size > 0) {
+		snprintf(text, sizeof(text), "%llu-%llu", (unsigned long long)get->first,
+			 (unsigned long long)(get->first + get->size - 1));
 		curl_easy_setopt(request->easy, CURLOPT_RANGE, text);
 	}
-	if (ask->etag && ask->etag[0]) {
-		snprintf(text, sizeof(text), "If-None-Match: %s", ask->etag);
+	if (get->etag && get->etag[0]) {
+		snprintf(text, sizeof(text), "If-None-Match: %s", get->etag);
 		request->headers = curl_slist_append(NULL, text);
 		curl_easy_setopt(request->easy, CURLOPT_HTTPHEADER, request->headers);
 	}
-	request->ask.path = NULL; /* curl has copied what it needs */
-	request->ask.etag = NULL;
+	request->get.path = NULL; /* curl has copied what it needs */
+	request->get.etag = NULL;
 }
 
-int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out)
+int http_get(struct http *http, const struct http_get *get, struct http_request **out)
 {
 	struct http_request *request = calloc(1, sizeof(*request));
 
@@ -520,14 +520,14 @@ int http_ask(struct http *http, const struct http_ask *ask, struct http_request 
 	if (!request)
 		return -ENOMEM;
 	request->http = http;
-	request->ask = *ask;
+	request->get = *get;
 	request->easy = curl_easy_init();
 	if (!request->easy) {
 		free(request);
 		return -ENOMEM;
 	}
 	set_options(request);
-	set_ask(request);
+	set_request(request);
 	if (curl_multi_add_handle(http->multi, request->easy) != CURLM_OK) {
 		curl_easy_cleanup(request->easy);
 		curl_slist_free_all(request->headers);

@@ -14,7 +14,7 @@ struct http_options {
 	const char *ca_file; /* copied; NULL: the system's certificates */
 	uint32_t stall_s;    /* seconds without data before a request fails; 0: 15 */
 	/* Time limit of a slow request in seconds: this value, plus one second for each KiB it may
-	 * bring, with at most 900 seconds added. 0: 60. */
+	 * deliver, with at most 900 seconds added. 0: 60. */
 	uint32_t patience_s;
 	/* Hosts besides the server itself that it may redirect to (net/redirect.h). Copied; NULL:
 	 * none. A redirection to any other host makes the request fail. */
@@ -33,7 +33,7 @@ struct http_result {
 	const char *why;   /* borrowed for the call; a reason for people to read */
 };
 
-struct http_ask {
+struct http_get {
 	const char *path;     /* below the server's url, for example "packs/HEX"; copied */
 	uint64_t first, size; /* bytes; size 0: the whole file */
 	uint64_t ceiling;     /* maximum size of a whole file in bytes */
@@ -60,8 +60,8 @@ int http_fd(const struct http *http);
 /* Handles pending events without waiting; see http_fd. */
 must_check int http_dispatch(struct http *http);
 
-/* Starts a request; *ask is copied. *out is borrowed until done has been called. -ENOMEM. */
-must_check int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out);
+/* Starts a GET request; *get is copied. *out is borrowed until done has been called. -ENOMEM. */
+must_check int http_get(struct http *http, const struct http_get *get, struct http_request **out);
 /* Frees the request without calling done. Not allowed from receive. NULL is fine. */
 void http_cancel(struct http_request *request);
 

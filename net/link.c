@@ -7,16 +7,16 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-enum { PAUSE_MS = 500, PAUSE_MOST_MS = 60000 };
+enum { PAUSE_MS = 500, PAUSE_MAX_MS = 60000 };
 
 int64_t link_pause_ms(uint32_t failures)
 {
 	int64_t pause_ms = PAUSE_MS;
 
-	for (uint32_t i = 1; i < failures && pause_ms < PAUSE_MOST_MS; i++)
+	for (uint32_t i = 1; i < failures && pause_ms < PAUSE_MAX_MS; i++)
 		pause_ms *= 2;
-	if (pause_ms > PAUSE_MOST_MS)
-		pause_ms = PAUSE_MOST_MS;
+	if (pause_ms > PAUSE_MAX_MS)
+		pause_ms = PAUSE_MAX_MS;
 	return pause_ms / 2 + random() % (pause_ms + 1);
 }
 
@@ -55,7 +55,7 @@ void link_failed(struct link *link, const char *url, const char *why)
 	link->retry_at_ms = clock_now_ms() + link_pause_ms(link->failures);
 }
 
-bool link_may_ask(const struct link *link)
+bool link_may_request(const struct link *link)
 {
 	if (link->failures == 0)
 		return true;

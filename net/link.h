@@ -31,7 +31,7 @@ void link_answered(struct link *link);
 void link_failed(struct link *link, const char *url, const char *why);
 /* Returns whether a request may be sent now. After a failure only one at a time, after its
  * pause. */
-bool link_may_ask(const struct link *link);
+bool link_may_request(const struct link *link);
 /* Returns true after two failures in a row. A single one may be a server that restarts. */
 bool link_is_down(const struct link *link);
 

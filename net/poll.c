@@ -28,8 +28,8 @@ struct poll {
 	bool running;
 	int64_t next_ms;
 	uint32_t failures;
-	bool complained; /* a missing or oversized file was logged */
-	bool stamped;    /* a new timestamp was passed on, and no release since */
+	bool logged_refusal; /* a missing or oversized file was logged */
+	bool stamped;        /* a new timestamp was passed on, and no release since */
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
@@ -61,7 +61,7 @@ static void forget(struct known *known)
 }
 
 /* Ends the round and forgets all files, so that the next round requests them again. */
-static void begin_anew(struct poll *poll)
+static void reset(struct poll *poll)
 {
 	if (poll->request) {
 		http_cancel(poll->request);
@@ -78,7 +78,7 @@ static void begin_anew(struct poll *poll)
 
 void poll_stop(struct poll *poll)
 {
-	begin_anew(poll);
+	reset(poll);
 	poll->running = false;
 }
 
@@ -91,19 +91,20 @@ void poll_destroy(struct poll *poll)
 	free(poll);
 }
 
-static void say(struct poll *poll, enum meta_role role, uint32_t version, const struct known *known)
+static void pass_on(struct poll *poll, enum meta_role role, uint32_t version,
+		    const struct known *known)
 {
 	if (known->file.size)
 		poll->options.meta(poll->options.data, role, version, buffer_bytes(&known->file));
 }
 
-void poll_ask(struct poll *poll, uint32_t period_s)
+void poll_start(struct poll *poll, uint32_t period_s)
 {
 	if (period_s)
 		poll->options.period_s = period_s;
-	say(poll, META_ROOT, poll->root_version + 1, &poll->root);
-	say(poll, META_TIMESTAMP, 0, &poll->timestamp);
-	say(poll, META_RELEASE, 0, &poll->release);
+	pass_on(poll, META_ROOT, poll->root_version + 1, &poll->root);
+	pass_on(poll, META_TIMESTAMP, 0, &poll->timestamp);
+	pass_on(poll, META_RELEASE, 0, &poll->release);
 	poll->running = true;
 	if (poll->stage == STAGE_IDLE)
 		poll->next_ms = 0;
@@ -112,7 +113,7 @@ void poll_ask(struct poll *poll, uint32_t period_s)
 void poll_trust(struct poll *poll, uint32_t root_version)
 {
 	if (root_version != poll->root_version) {
-		begin_anew(poll);
+		reset(poll);
 		poll->root_version = root_version;
 	} else if (poll->stage == STAGE_VERDICT) {
 		/* the root was rejected: poll_work continues with the other files */
@@ -171,14 +172,15 @@ static void take_body(struct poll *poll, const char *etag)
 	if (poll->stage == STAGE_ROOT) {
 		poll->stage = STAGE_VERDICT;
 		poll->verdict_ms = clock_now_ms() + VERDICT_MS;
-		say(poll, META_ROOT, poll->root_version + 1, known);
+		pass_on(poll, META_ROOT, poll->root_version + 1, known);
 	} else {
 		poll->stamped = poll->stage == STAGE_TIMESTAMP;
-		say(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0, known);
+		pass_on(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0,
+			known);
 	}
 }
 
-static void rest(struct poll *poll, int64_t pause_ms)
+static void pause_round(struct poll *poll, int64_t pause_ms)
 {
 	poll->stage = STAGE_IDLE;
 	poll->next_ms = clock_now_ms() + pause_ms;
@@ -192,15 +194,15 @@ static int64_t period_ms(const struct poll *poll)
 }
 
 /* Logs only the first time, because the next round will fail in the same way. */
-static void complain(struct poll *poll, const char *path, const char *why)
+static void note_refusal(struct poll *poll, const char *path, const char *why)
 {
-	if (!poll->complained)
-		log_warn("net", "content bug: no %s to be had: %s", path, why);
-	poll->complained = true;
+	if (!poll->logged_refusal)
+		log_warn("net", "content bug: cannot get %s: %s", path, why);
+	poll->logged_refusal = true;
 	refusal_note(poll->options.link->refusal, path, why);
 }
 
-static void ask(struct poll *poll);
+static void request_file(struct poll *poll);
 
 static void on_done(void *data, const struct http_result *result)
 {
@@ -213,7 +215,7 @@ static void on_done(void *data, const struct http_result *result)
 	if (rc == -EHOSTUNREACH) {
 		link_failed(poll->options.link, http_url(poll->options.http), result->why);
 		poll->failures++;
-		rest(poll, link_pause_ms(poll->failures));
+		pause_round(poll, link_pause_ms(poll->failures));
 		return;
 	}
 	link_answered(poll->options.link);
@@ -221,41 +223,41 @@ static void on_done(void *data, const struct http_result *result)
 	if (rc == 0 && !result->not_modified)
 		take_body(poll, result->etag);
 	else if (rc == -EFBIG || rc == -EBADMSG)
-		complain(poll, path_of_stage(poll, path), "larger than such a file may be");
+		note_refusal(poll, path_of_stage(poll, path), "larger than such a file may be");
 	else if (rc < 0 && poll->stage != STAGE_ROOT) /* usually there is no newer root */
-		complain(poll, path_of_stage(poll, path), result->why);
+		note_refusal(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {
 		/* If both files are published between two rounds, the release may arrive before the
 		 * timestamp that names it and be rejected. It is passed on again, because now it
 		 * matches. */
 		if (poll->stamped)
-			say(poll, META_RELEASE, 0, &poll->release);
+			pass_on(poll, META_RELEASE, 0, &poll->release);
 		poll->stamped = false;
-		rest(poll, period_ms(poll));
+		pause_round(poll, period_ms(poll));
 		return;
 	}
 	if (poll->stage == STAGE_VERDICT) /* new root: wait for the kiosk's verdict */
 		return;
 	poll->stage = poll->stage == STAGE_ROOT ? STAGE_TIMESTAMP : STAGE_RELEASE;
-	ask(poll);
+	request_file(poll);
 }
 
-/* ---- questions */
+/* ---- requests */
 
-static void ask(struct poll *poll)
+static void request_file(struct poll *poll)
 {
 	const struct known *known = known_of_stage(poll);
 	char path[PATH_BYTES];
-	struct http_ask question = { .path = path_of_stage(poll, path),
-				     .ceiling = MESSAGE_META_BYTES_MAX,
-				     .etag = known->file.size ? known->etag : NULL,
-				     .receive = on_piece,
-				     .done = on_done,
-				     .data = poll };
+	struct http_get get = { .path = path_of_stage(poll, path),
+				.ceiling = MESSAGE_META_BYTES_MAX,
+				.etag = known->file.size ? known->etag : NULL,
+				.receive = on_piece,
+				.done = on_done,
+				.data = poll };
 
 	buffer_clear(&poll->body);
-	if (http_ask(poll->options.http, &question, &poll->request) < 0)
-		rest(poll, 1000);
+	if (http_get(poll->options.http, &get, &poll->request) < 0)
+		pause_round(poll, 1000);
 	else
 		poll->options.link->in_flight++;
 }
@@ -264,14 +266,14 @@ void poll_work(struct poll *poll)
 {
 	if (poll->stage == STAGE_VERDICT && clock_now_ms() >= poll->verdict_ms) {
 		poll->stage = STAGE_TIMESTAMP;
-		ask(poll);
+		request_file(poll);
 		return;
 	}
 	if (!poll->running || poll->stage != STAGE_IDLE || clock_now_ms() < poll->next_ms ||
-	    !link_may_ask(poll->options.link))
+	    !link_may_request(poll->options.link))
 		return;
 	poll->stage = STAGE_ROOT;
-	ask(poll);
+	request_file(poll);
 }
 
 int64_t poll_due_ms(const struct poll *poll)

@@ -21,19 +21,19 @@ struct poll_options {
 	void *data;
 };
 
-/* *out is owned by the caller. It requests nothing before poll_ask. -ENOMEM. */
+/* *out is owned by the caller. It requests nothing before poll_start. -ENOMEM. */
 must_check int poll_create(struct poll **out, const struct poll_options *options);
 /* Cancels a request in flight. NULL is fine. */
 void poll_destroy(struct poll *poll);
 
 /* Passes all known files on again and starts a round now, unless one runs; then one round every
  * period_s (0: unchanged). */
-void poll_ask(struct poll *poll, uint32_t period_s);
+void poll_start(struct poll *poll, uint32_t period_s);
 /* Sets the version of the kiosk's trust root; 0: none. Call it again after every root that was
  * passed on, whether the kiosk accepted it or not. A new version starts a round at once: the next
  * root may be available, and files rejected under the old root may be valid under this one. */
 void poll_trust(struct poll *poll, uint32_t root_version);
-void poll_stop(struct poll *poll); /* Stops until poll_ask; known files are forgotten. */
+void poll_stop(struct poll *poll); /* Stops until poll_start; known files are forgotten. */
 /* Does all work that is due now. */
 void poll_work(struct poll *poll);
 /* Returns when poll_work has work to do, like downloader_due_ms. */

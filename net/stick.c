@@ -19,7 +19,7 @@
 enum {
 	LOOK_MS = 3000,
 	PATIENCE_MS = 10000,
-	LEFT_ALONE_MS = 60000, /* pause after a job that hung */
+	HANG_PAUSE_MS = 60000, /* pause after a job that hung */
 	END_S = 2,             /* how long the thread may take to end; then it is abandoned */
 	OBJECTS_MAX = 32,      /* per job */
 	JOB_BYTES_MAX = 2 << 20,
@@ -35,7 +35,7 @@ struct job {
 	bool looks; /* true: look for a stick; false: read objects */
 	bool forgets;
 	uint32_t root_version;
-	enum stick_news news;
+	enum stick_change change;
 	struct stick_file files[STICK_FILES_MAX];
 	size_t file_count;
 	struct hash roots[MESSAGE_RELEASES_MAX];
@@ -58,7 +58,7 @@ struct worker {
 	struct job job;
 };
 
-struct asked {
+struct request {
 	struct message_want want;
 	uint64_t order; /* order of arrival */
 };
@@ -74,23 +74,24 @@ struct stick {
 	uint32_t root_version;
 	struct hash roots[MESSAGE_RELEASES_MAX];
 	size_t root_count;
-	struct asked *asked; /* owned; sorted by priority unless asked_changed; the best is last */
-	size_t asked_count, asked_capacity;
-	bool asked_changed;
+	struct request
+		*requests; /* owned; sorted by priority unless requests_changed; the best is last */
+	size_t request_count, request_capacity;
+	bool requests_changed;
 	uint64_t orders;
 };
 
 /* ---- the thread */
 
-static void do_job(struct worker *worker)
+static void run_job(struct worker *worker)
 {
 	struct job *job = &worker->job;
 
 	if (job->forgets)
 		stick_reader_forget(&worker->reader);
 	if (job->looks) {
-		job->news = stick_reader_look(&worker->reader, job->root_version, job->files,
-					      &job->file_count);
+		job->change = stick_reader_look(&worker->reader, job->root_version, job->files,
+						&job->file_count);
 		return;
 	}
 	for (size_t i = 0; i < job->object_count; i++) {
@@ -102,7 +103,7 @@ static void do_job(struct worker *worker)
 	}
 }
 
-static void empty_job(struct job *job)
+static void clear_job(struct job *job)
 {
 	for (size_t i = 0; i < job->file_count; i++)
 		buffer_finish(&job->files[i].bytes);
@@ -113,7 +114,7 @@ static void empty_job(struct job *job)
 
 static void worker_free(struct worker *worker)
 {
-	empty_job(&worker->job);
+	clear_job(&worker->job);
 	stick_reader_finish(&worker->reader);
 	if (worker->event_fd >= 0)
 		close(worker->event_fd);
@@ -134,11 +135,11 @@ static void *run(void *data)
 			continue;
 		}
 		pthread_mutex_unlock(&worker->lock);
-		do_job(worker);
+		run_job(worker);
 		pthread_mutex_lock(&worker->lock);
 		worker->state = WORKER_DONE;
 		if (eventfd_write(worker->event_fd, 1) < 0)
-			log_debug("net", "the loop was not woken for the stick");
+			log_debug("net", "the loop was not woken up for the stick");
 	}
 	worker->ended = true;
 	abandoned = worker->abandoned;
@@ -256,7 +257,7 @@ void stick_destroy(struct stick *stick)
 	if (!stick)
 		return;
 	end_thread(stick);
-	free(stick->asked);
+	free(stick->requests);
 	free(stick);
 }
 
@@ -279,34 +280,34 @@ void stick_trust(struct stick *stick, uint32_t root_version)
 
 static bool grow(struct stick *stick)
 {
-	size_t capacity = stick->asked_capacity ? stick->asked_capacity * 2 : 64;
-	struct asked *larger = realloc(stick->asked, capacity * sizeof(*larger));
+	size_t capacity = stick->request_capacity ? stick->request_capacity * 2 : 64;
+	struct request *larger = realloc(stick->requests, capacity * sizeof(*larger));
 
 	if (!larger)
 		return false;
-	stick->asked = larger;
-	stick->asked_capacity = capacity;
+	stick->requests = larger;
+	stick->request_capacity = capacity;
 	return true;
 }
 
-bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
-	       const struct message_want *want)
+bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
+		   const struct message_want *want)
 {
 	if (!stick || !stick->is_here || stick->hangs)
 		return false;
-	if (stick->asked_count == stick->asked_capacity && !grow(stick))
+	if (stick->request_count == stick->request_capacity && !grow(stick))
 		return false;
 	stick->root_count = count < MESSAGE_RELEASES_MAX ? count : MESSAGE_RELEASES_MAX;
 	memcpy(stick->roots, roots, stick->root_count * sizeof(*roots));
-	stick->asked[stick->asked_count++] = (struct asked){ *want, stick->orders++ };
-	stick->asked_changed = true;
+	stick->requests[stick->request_count++] = (struct request){ *want, stick->orders++ };
+	stick->requests_changed = true;
 	return true;
 }
 
 /* Sorts the most urgent request to the end. */
 static int by_priority(const void *a, const void *b)
 {
-	const struct asked *left = a, *right = b;
+	const struct request *left = a, *right = b;
 
 	if (left->want.priority != right->want.priority)
 		return left->want.priority < right->want.priority ? -1 : 1;
@@ -321,12 +322,12 @@ static void answer(struct stick *stick, struct hash hash, int rc, struct bytes b
 /* Answers all requests with -ENOENT, because there is no stick or it does not answer. */
 static void refuse_all(struct stick *stick)
 {
-	size_t count = stick->asked_count;
+	size_t count = stick->request_count;
 
 	stick->is_here = false;
-	stick->asked_count = 0; /* the answer callback may ask for more; that is refused now */
+	stick->request_count = 0; /* the answer callback may ask for more; that is refused now */
 	for (size_t i = 0; i < count; i++)
-		answer(stick, stick->asked[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
+		answer(stick, stick->requests[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
 }
 
 /* ---- jobs */
@@ -349,11 +350,13 @@ static void begin_read(struct stick *stick)
 	struct job *job = &stick->worker->job;
 	size_t bytes = 0;
 
-	if (stick->asked_changed)
-		qsort(stick->asked, stick->asked_count, sizeof(stick->asked[0]), by_priority);
-	stick->asked_changed = false;
-	while (stick->asked_count > 0 && job->object_count < OBJECTS_MAX && bytes < JOB_BYTES_MAX) {
-		const struct message_want *want = &stick->asked[--stick->asked_count].want;
+	if (stick->requests_changed)
+		qsort(stick->requests, stick->request_count, sizeof(stick->requests[0]),
+		      by_priority);
+	stick->requests_changed = false;
+	while (stick->request_count > 0 && job->object_count < OBJECTS_MAX &&
+	       bytes < JOB_BYTES_MAX) {
+		const struct message_want *want = &stick->requests[--stick->request_count].want;
 
 		if (!stick->options.is_wanted(stick->options.data, want->hash))
 			continue;
@@ -370,18 +373,18 @@ static void begin_read(struct stick *stick)
 }
 
 /* Returns true if a stick was plugged in. */
-static bool take_look(struct stick *stick)
+static bool finish_look(struct stick *stick)
 {
 	const struct job *job = &stick->worker->job;
 
-	if (job->news == STICK_GONE) {
+	if (job->change == STICK_REMOVED) {
 		if (stick->is_here)
-			log_info("net", "the stick is gone");
+			log_info("net", "the stick was removed");
 		refuse_all(stick);
 	}
-	if (job->news != STICK_CAME)
+	if (job->change != STICK_INSERTED)
 		return false;
-	log_info("net", "a stick with a release is here: %s/%s", stick->worker->reader.folder,
+	log_info("net", "found a stick with a release: %s/%s", stick->worker->reader.folder,
 		 stick->worker->reader.below);
 	stick->is_here = true;
 	for (size_t i = 0; i < job->file_count; i++)
@@ -390,7 +393,7 @@ static bool take_look(struct stick *stick)
 	return true;
 }
 
-static void take_objects(struct stick *stick)
+static void finish_read(struct stick *stick)
 {
 	const struct job *job = &stick->worker->job;
 
@@ -403,31 +406,31 @@ static void take_objects(struct stick *stick)
 
 /* Handles a finished job; returns true if a stick was plugged in. The result of a job that was
  * given up is discarded, because another stick may be present by now. */
-static bool take_job(struct stick *stick)
+static bool finish_job(struct stick *stick)
 {
-	bool came = false;
+	bool inserted = false;
 
 	if (stick->hangs) {
 		stick->hangs = false;
 		stick->forgets = true;
-		stick->look_ms = clock_now_ms() + LEFT_ALONE_MS;
+		stick->look_ms = clock_now_ms() + HANG_PAUSE_MS;
 	} else if (stick->worker->job.looks) {
-		came = take_look(stick);
+		inserted = finish_look(stick);
 	} else {
-		take_objects(stick);
+		finish_read(stick);
 	}
-	empty_job(&stick->worker->job);
+	clear_job(&stick->worker->job);
 	set_state(stick->worker, WORKER_IDLE);
-	return came;
+	return inserted;
 }
 
 /* Gives up the current job. The thread owns the objects of the job, but it does not change the
  * wants in it, so they may be read here. */
-static void give_up(struct stick *stick)
+static void give_up_job(struct stick *stick)
 {
 	const struct job *job = &stick->worker->job;
 
-	log_warn("net", "the stick does not answer: it is left alone");
+	log_warn("net", "the stick does not respond and is not used for a while");
 	stick->hangs = true;
 	for (size_t i = 0; !job->looks && i < job->object_count; i++)
 		answer(stick, job->objects[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
@@ -437,31 +440,31 @@ static void give_up(struct stick *stick)
 bool stick_work(struct stick *stick, bool has_room)
 {
 	enum worker_state state;
-	bool came = false;
+	bool inserted = false;
 
 	if (!stick)
 		return false;
 	state = state_of(stick->worker);
 	if (state == WORKER_BUSY) {
 		if (!stick->hangs && clock_now_ms() >= stick->began_ms + stick->options.patience_ms)
-			give_up(stick);
+			give_up_job(stick);
 		return false;
 	}
 	if (state == WORKER_DONE)
-		came = take_job(stick);
+		inserted = finish_job(stick);
 	if (clock_now_ms() >= stick->look_ms)
 		begin_look(stick);
-	else if (has_room && stick->asked_count > 0)
+	else if (has_room && stick->request_count > 0)
 		begin_read(stick);
-	return came;
+	return inserted;
 }
 
-void stick_heard(struct stick *stick)
+void stick_clear_event(struct stick *stick)
 {
 	eventfd_t count;
 
 	if (stick && eventfd_read(stick->worker->event_fd, &count) < 0)
-		log_debug("net", "the stick's thread had nothing to say");
+		log_debug("net", "the stick's thread had no event");
 }
 
 int stick_fd(const struct stick *stick)
@@ -474,7 +477,7 @@ int64_t stick_due_ms(const struct stick *stick, bool has_room)
 	if (!stick)
 		return INT64_MAX;
 	if (state_of(stick->worker) == WORKER_IDLE)
-		return has_room && stick->asked_count > 0 ? 0 : stick->look_ms;
+		return has_room && stick->request_count > 0 ? 0 : stick->look_ms;
 	/* The event descriptor reports the end of the job. */
 	return stick->hangs ? INT64_MAX : stick->began_ms + stick->options.patience_ms;
 }

@@ -17,8 +17,8 @@ struct stick_options {
 	uint32_t patience_ms; /* time limit of a job; 0: 10000 */
 	/* Metadata of a stick that was plugged in; not checked. Bytes are borrowed for the call. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
-	/* The answer to stick_ask; bytes are borrowed. rc 0: the bytes are correct. -ENOENT: the
-	 * object is not there. -EBADMSG: it is there, but damaged. */
+	/* The answer to stick_request; bytes are borrowed. rc 0: the bytes are correct. -ENOENT:
+	 * the object is not there. -EBADMSG: it is there, but damaged. */
 	void (*object)(void *data, struct hash hash, int rc, struct bytes bytes);
 	/* Called before an object is read, because the want may have been dropped. */
 	bool (*is_wanted)(void *data, struct hash hash);
@@ -30,11 +30,11 @@ struct stick_options {
 must_check int stick_create(struct stick **out, const struct stick_options *options);
 void stick_destroy(struct stick *stick); /* NULL is fine, as for every call here. */
 
-/* Readable when a job has ended; then call stick_heard and stick_work. -1 if stick is NULL.
+/* Readable when a job has ended; then call stick_clear_event and stick_work. -1 if stick is NULL.
  * Borrowed. */
 int stick_fd(const struct stick *stick);
 /* Clears the event of stick_fd. */
-void stick_heard(struct stick *stick);
+void stick_clear_event(struct stick *stick);
 /* Handles a finished job and starts the next one; looks for a stick every 3 s. A new or changed
  * stick is reported with the meta event. has_room: objects may be read. Returns true if a stick was
  * plugged in, so objects may be available that were not before. */
@@ -49,7 +49,7 @@ void stick_trust(struct stick *stick, uint32_t root_version);
 /* Requests an object, to be found by the locators of these releases (newest first). The releases of
  * the last call apply to all open requests. Returns false if there is no stick; then no answer
  * follows. */
-must_check bool stick_ask(struct stick *stick, const struct hash *roots, size_t count,
-			  const struct message_want *want);
+must_check bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
+			      const struct message_want *want);
 
 #endif

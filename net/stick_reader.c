@@ -127,23 +127,23 @@ static void read_all(struct stick_reader *reader, uint32_t root_version, struct 
 		add_file(reader, files, count, META_RELEASE, 0);
 }
 
-enum stick_news stick_reader_look(struct stick_reader *reader, uint32_t root_version,
-				  struct stick_file files[STICK_FILES_MAX], size_t *count)
+enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
+				    struct stick_file files[STICK_FILES_MAX], size_t *count)
 {
 	*count = 0;
 	if (read_stamp(reader) < 0) {
 		close_files(reader); /* open files would prevent unmounting */
 		buffer_clear(&reader->stamp);
-		return STICK_GONE;
+		return STICK_REMOVED;
 	}
 	if (reader->stamp.size == reader->file.size &&
 	    memcmp(reader->stamp.data, reader->file.data, reader->file.size) == 0)
-		return STICK_AS_BEFORE;
+		return STICK_UNCHANGED;
 	close_files(reader);
 	buffer_clear(&reader->stamp);
 	buffer_put(&reader->stamp, reader->file.data, reader->file.size);
 	read_all(reader, root_version, files, count);
-	return STICK_CAME;
+	return STICK_INSERTED;
 }
 
 /* ---- objects */

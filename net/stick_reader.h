@@ -30,7 +30,7 @@ struct stick_reader {
 };
 
 /* Result of stick_reader_look: nothing changed, no stick, or a new or changed stick. */
-enum stick_news { STICK_AS_BEFORE, STICK_GONE, STICK_CAME };
+enum stick_change { STICK_UNCHANGED, STICK_REMOVED, STICK_INSERTED };
 
 struct stick_file {
 	enum meta_role role;
@@ -44,10 +44,10 @@ void stick_reader_finish(struct stick_reader *reader); /* A zeroed struct is fin
 
 /* Makes the next look report everything again. */
 void stick_reader_forget(struct stick_reader *reader);
-/* Looks for a stick. On STICK_CAME, files[0 .. *count) holds what to report, in this order; the
+/* Looks for a stick. On STICK_INSERTED, files[0 .. *count) holds what to report, in this order; the
  * caller owns their buffers. Roots are those after root_version. */
-enum stick_news stick_reader_look(struct stick_reader *reader, uint32_t root_version,
-				  struct stick_file files[STICK_FILES_MAX], size_t *count);
+enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
+				    struct stick_file files[STICK_FILES_MAX], size_t *count);
 
 /* Reads a wanted object into *out, at the place given by the locator of one of these releases
  * (tried in order). -ENOENT: it is not there. -EBADMSG: it is there, but the bytes do not match the

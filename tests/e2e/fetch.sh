@@ -102,7 +102,7 @@ is came "$line" -eq 2051
 # ---- the fetcher is killed half-way
 line=$(walk killed.db --unseen --kill --most-s 60) || fail "not all came after the fetcher was killed: $line"
 is came "$line" -eq 2051
-grep -q 'the fetcher is gone' "$folder/walk.log" || fail "the fetcher was not killed"
+grep -q 'the fetcher is disconnected' "$folder/walk.log" || fail "the fetcher was not killed"
 # what the first one brought was not asked for twice: its transaction at most
 is received "$line" -lt $((16105624 * 125 / 100))
 fetch=$slow_fetch

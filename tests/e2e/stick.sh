@@ -48,7 +48,7 @@ wait_for 30 "the stick's release" says 'release 1 is on the stick'
 wait_for 90 "release 1" says 'release 1 is shown'
 wait_for 90 "whole picture" says 'picture has settled'
 pull
-wait_for 30 "notice that it was pulled out" says 'stick is gone'
+wait_for 30 "notice that it was pulled out" says 'stick was removed'
 
 # ---- an update from another stick
 publish Second

@@ -24,7 +24,7 @@ pkill -9 -P "$pid" gopura-fetch || fail "there was no fetcher to kill"
 sleep 4
 serve "$small/release" "$work/server" "$port"; echo "server back"
 wait "$pid" || { tail -30 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
-grep -q 'the fetcher is gone' "$work/kiosk.log" || fail "the fetcher's death went unnoticed"
+grep -q 'the fetcher is disconnected' "$work/kiosk.log" || fail "the fetcher's death went unnoticed"
 grep -q 'app: card of' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no card was opened"; }
 grep -q 'app: page of' "$work/kiosk.log" || { tail -30 "$work/kiosk.log"; fail "no page was opened"; }
 [ "$(ls "$work/shots"/*.png | wc -l)" = "$(grep -vc '^#' demo/visit.shots)" ] || fail "shots are missing"

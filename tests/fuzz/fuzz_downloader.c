@@ -1,30 +1,16 @@
-/* What a kiosk says and a server answers, in any order: the bytes are a sequence of both, for the
- * fetcher's downloader with a server that is this file. What is passed on has the right hash,
- * requests stay within their number, and none is left at the end. */
-#include <errno.h>
-
-#include <stdlib.h>
-#include <string.h>
-
-#include "base/clock.h"
+/* Messages of a kiosk and answers of a server, in any order: the bytes are a sequence of both, for
+ * the fetcher's downloader with the server of tests/net/fake_http.h. What is passed on has the
+ * right hash, requests stay within their number, and none is left at the end. */
 #include "format/locator.h"
 #include "net/downloader.h"
+#include "tests/net/fake_http.h"
 
-enum { OBJECTS = 6, OBJECT_BYTES = 300, ROOTS = 3, ASKED_MAX = 64, EVENTS_MAX = 60 };
+enum { OBJECTS = 6, OBJECT_BYTES = 300, ROOTS = 3, EVENTS_MAX = 60 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-struct http_request {
-	struct http_ask ask;
-	bool open, enough, is_locator;
-	uint64_t given;
-};
-
 static struct {
-	struct http_request asked[ASKED_MAX];
-	size_t count, open;
-	int64_t now_ms;
-	bool is_giving, is_full;
+	bool is_full;
 	bool cached[OBJECTS], locator_cached; /* what the cache has */
 	struct link link;
 	struct refusal refusal;
@@ -34,91 +20,6 @@ static uint8_t pack[OBJECTS * OBJECT_BYTES];
 static struct hash names[OBJECTS];
 static const struct hash page = { { 9 } }, pack_name = { { 0xaa } };
 static struct buffer locator;
-
-/* ---- in place of base/clock.c and net/http.c */
-
-int64_t clock_now_ms(void)
-{
-	return world.now_ms;
-}
-
-int64_t clock_now_us(void)
-{
-	return world.now_ms * 1000;
-}
-
-int64_t clock_thread_us(void)
-{
-	return 0;
-}
-
-int64_t clock_wall_s(void)
-{
-	return 1790000000 + world.now_ms / 1000;
-}
-
-int http_create(struct http **out, const struct http_options *options)
-{
-	(void)options;
-	*out = NULL;
-	return 0;
-}
-
-void http_destroy(struct http *http)
-{
-	(void)http;
-}
-
-int http_fd(const struct http *http)
-{
-	(void)http;
-	return -1;
-}
-
-int http_dispatch(struct http *http)
-{
-	(void)http;
-	return 0;
-}
-
-uint64_t http_received_bytes(const struct http *http)
-{
-	(void)http;
-	return 0;
-}
-
-const char *http_url(const struct http *http)
-{
-	(void)http;
-	return "fuzz:";
-}
-
-int http_ask(struct http *http, const struct http_ask *ask, struct http_request **out)
-{
-	struct http_request *request = &world.asked[world.count];
-
-	(void)http;
-	if (world.is_giving)
-		abort();
-	if (world.count == ASKED_MAX)
-		return -ENOMEM;
-	*request = (struct http_request){ .ask = *ask,
-					  .open = true,
-					  .is_locator = strncmp(ask->path, "locator/", 8) == 0 };
-	request->ask.path = request->ask.etag = NULL;
-	world.count++;
-	world.open++;
-	*out = request;
-	return 0;
-}
-
-void http_cancel(struct http_request *request)
-{
-	if (!request->open || world.is_giving)
-		abort();
-	request->open = false;
-	world.open--;
-}
 
 /* ---- in place of storage/cache.c: a SQLite file each time would be all that is done */
 
@@ -185,58 +86,46 @@ int cache_put_file(struct cache *cache, struct hash name, struct bytes file)
 
 /* ---- the server answers */
 
+static size_t open_requests(void)
+{
+	size_t count = 0;
+
+	for (size_t i = 0; i < server.count; i++)
+		count += server.asked[i].open;
+	return count;
+}
+
 /* The n-th of the open ones; NULL: none. */
 static struct http_request *open_request(uint8_t n)
 {
-	size_t skip = world.open ? n % world.open : 0;
+	const size_t open = open_requests();
+	size_t skip = open ? n % open : 0;
 
-	for (size_t i = 0; i < world.count; i++)
-		if (world.asked[i].open && skip-- == 0)
-			return &world.asked[i];
+	for (size_t i = 0; i < server.count; i++)
+		if (server.asked[i].open && skip-- == 0)
+			return &server.asked[i];
 	return NULL;
 }
 
-/* As net/http.h promises: never past what was asked for, and nothing after the receiver had enough.
- */
-static void give(struct http_request *request, struct bytes bytes)
-{
-	const uint64_t most = request->ask.size ? request->ask.size : request->ask.ceiling;
-	const uint64_t room = most - request->given;
-
-	if (bytes.size > room)
-		bytes.size = (size_t)room;
-	if (bytes.size == 0 || request->enough)
-		return;
-	request->given += bytes.size;
-	world.is_giving = true;
-	request->enough = !request->ask.receive(request->ask.data, bytes);
-	world.is_giving = false;
-}
-
-/* The bytes that stand where they were asked for. */
+/* The bytes at the place that was requested. */
 static void give_right(struct http_request *request, size_t size)
 {
+	const bool is_locator = strncmp(request->path, "locator/", 8) == 0;
 	struct bytes from = buffer_bytes(&locator);
-	const uint64_t at =
-		request->is_locator ? request->given : request->ask.first + request->given;
+	const uint64_t at = is_locator ? request->given : request->get.first + request->given;
 
-	if (!request->is_locator)
+	if (!is_locator)
 		from = (struct bytes){ pack, sizeof(pack) };
 	if (at < from.size)
 		give(request, (struct bytes){ from.data + at,
 					      size < from.size - at ? size : from.size - at });
 }
 
-static void end(struct http_request *request, uint8_t how)
+static void end_somehow(struct http_request *request, uint8_t how)
 {
 	static const int results[] = { 0, 0, 0, -ENOENT, -EBADMSG, -EHOSTUNREACH };
-	const struct http_result result = { .rc = results[how % ARRAY_COUNT(results)],
-					    .etag = "",
-					    .why = "the fuzzer says so" };
 
-	request->open = false;
-	world.open--;
-	request->ask.done(request->ask.data, &result);
+	end(request, results[how % ARRAY_COUNT(results)]);
 }
 
 static void answer(struct reader *in)
@@ -258,7 +147,7 @@ static void answer(struct reader *in)
 		end(request, 0);
 		break;
 	case 3:
-		end(request, size);
+		end_somehow(request, size);
 		break;
 	}
 }
@@ -312,7 +201,7 @@ static void event(struct downloader *downloader, struct reader *in)
 	switch (what % 10) {
 	case 0:
 		downloader_use_release(downloader,
-				       (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } }, 100,
+				       (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } },
 				       what & 0x80);
 		break;
 	case 1:
@@ -330,15 +219,15 @@ static void event(struct downloader *downloader, struct reader *in)
 		answer(in);
 		break;
 	case 7:
-		world.now_ms += (int64_t)reader_u16(in) * 10;
+		server.now_ms += (int64_t)reader_u16(in) * 10;
 		break;
 	case 8:
 		world.is_full = what & 0x80;
-		downloader_ask_again(downloader);
+		downloader_look_up_again(downloader);
 		break;
 	case 9:
 		if (what & 0x80)
-			downloader_forget_all(downloader);
+			downloader_clear(downloader);
 		else
 			world.locator_cached = what & 0x40;
 		break;
@@ -372,7 +261,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
 	begin();
 	memset(&world, 0, sizeof(world));
-	world.now_ms = 1000;
+	memset(&server, 0, sizeof(server));
+	server.now_ms = 1000;
 	link_init(&world.link);
 	world.link.refusal = &world.refusal;
 	if (downloader_create(&downloader, &options) < 0)
@@ -381,7 +271,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	for (int i = 0; i < EVENTS_MAX && reader_left(&in) > 0; i++)
 		event(downloader, &in);
 	downloader_destroy(downloader);
-	if (world.open > 0 || world.link.in_flight > 0)
+	if (open_requests() > 0 || world.link.in_flight > 0)
 		abort();
 	return 0;
 }

@@ -128,7 +128,7 @@ static void done(void *data, const struct http_result *result)
 
 static void ask(struct http *http)
 {
-	const struct http_ask ask = {
+	const struct http_get ask = {
 		.path = "packs/00",
 		.first = asked.what & ASK_RANGE ? FIRST : 0,
 		.size = asked.what & ASK_RANGE ? RANGE_BYTES : 0,
@@ -139,7 +139,7 @@ static void ask(struct http *http)
 	};
 	struct http_request *request;
 
-	if (http_ask(http, &ask, &request) < 0)
+	if (http_get(http, &ask, &request) < 0)
 		abort();
 	for (int i = 0; i < STEPS_MAX && !asked.done; i++) {
 		struct pollfd ready = { .fd = http_fd(http), .events = POLLIN };

@@ -209,7 +209,7 @@ static bool is_of_the_begin(const struct message *message)
 }
 
 /* The next message that the fetcher gets; those of a connection's begin left out. */
-static struct message heard(struct stage *stage)
+static struct message received(struct stage *stage)
 {
 	struct message message;
 	int passed, rc;
@@ -250,18 +250,18 @@ static struct message object_of(const uint8_t *text)
 					     (uint32_t)of(text).size } };
 }
 
-static void brings_what_is_wanted_once(void **state)
+static void delivers_what_is_wanted_once(void **state)
 {
 	struct stage *stage = *state;
 	struct message_want want = want_of(material, 7);
 
 	net_client_want(stage->client, &want);
-	CHECK(heard(stage).want.priority == 7);
+	CHECK(received(stage).want.priority == 7);
 	net_client_want(stage->client, &want); /* the same again: nothing new */
 	CHECK(hears_nothing(stage));
 	want.priority = 9;
 	net_client_want(stage->client, &want);
-	CHECK(heard(stage).want.priority == 9);
+	CHECK(received(stage).want.priority == 9);
 	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 1 && hash_equal(stage->last, want.hash));
 	tell(stage, object_of(material), -1); /* nobody waits for it any more */
@@ -291,7 +291,7 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 	CHECK(stage->statuses == 1 && stage->received_bytes == 500);
 }
 
-/* Everything is said again; returns having seen the new connection. */
+/* All state is sent again; returns having seen the new connection. */
 static void reconnects(struct stage *stage)
 {
 	packets_finish(&stage->fetcher);
@@ -301,7 +301,7 @@ static void reconnects(struct stage *stage)
 }
 
 /* The version in the next MESSAGE_TRUST, with whatever comes before it skipped. */
-static uint32_t heard_trust(struct stage *stage)
+static uint32_t received_trust(struct stage *stage)
 {
 	struct message message;
 	int passed;
@@ -318,14 +318,14 @@ static void tells_after_every_root_which_one_it_has(void **state)
 	struct message meta = { .kind = MESSAGE_META,
 				.meta = { META_ROOT, 4, of(material), META_FROM_STICK } };
 
-	CHECK(heard_trust(stage) == 3); /* on connecting */
+	CHECK(received_trust(stage) == 3); /* on connecting */
 	tell(stage, meta, -1);
-	CHECK(heard_trust(stage) == 3); /* refused */
+	CHECK(received_trust(stage) == 3); /* refused */
 	stage->root_version = 4;
 	tell(stage, meta, -1);
-	CHECK(heard_trust(stage) == 4);
+	CHECK(received_trust(stage) == 4);
 	reconnects(stage);
-	CHECK(heard_trust(stage) == 4);
+	CHECK(received_trust(stage) == 4);
 }
 
 static void asks_for_what_came_to_be_safe(void **state)
@@ -333,7 +333,7 @@ static void asks_for_what_came_to_be_safe(void **state)
 	struct stage *stage = *state;
 
 	net_client_sync(stage->client);
-	CHECK(heard(stage).kind == MESSAGE_SYNC && stage->synced == 0);
+	CHECK(received(stage).kind == MESSAGE_SYNC && stage->synced == 0);
 	tell(stage, (struct message){ .kind = MESSAGE_SYNCED, .synced = true }, -1);
 	CHECK(stage->synced == 1);
 	tell(stage, (struct message){ .kind = MESSAGE_SYNCED }, -1);
@@ -349,8 +349,8 @@ static void drops_and_forgets(void **state)
 	CHECK(hears_nothing(stage));
 	net_client_want(stage->client, &want);
 	net_client_drop(stage->client, want.hash);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
-	CHECK(heard(stage).kind == MESSAGE_DROP);
+	CHECK(received(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_DROP);
 	tell(stage, object_of(material), -1); /* was under way */
 	CHECK(stage->objects == 0);
 }
@@ -381,15 +381,15 @@ static void says_everything_again_after_the_fetcher_died(void **state)
 	net_client_keep(stage->client, keep);
 	tell(stage, status, -1);
 	reconnects(stage);
-	message = heard(stage);
+	message = received(stage);
 	CHECK(message.kind == MESSAGE_RELEASE && hash_equal(message.release.root, root));
 	CHECK(!message.release.also && message.release.root_bytes == 100);
-	message = heard(stage);
+	message = received(stage);
 	CHECK(message.kind == MESSAGE_RELEASE && hash_equal(message.release.root, next));
 	CHECK(message.release.also);
-	message = heard(stage);
+	message = received(stage);
 	CHECK(message.kind == MESSAGE_KEEP && hash_equal(message.keep, keep));
-	message = heard(stage);
+	message = received(stage);
 	CHECK(message.kind == MESSAGE_WANT && hash_equal(message.want.hash, want.hash));
 	status.status.received_bytes = 70; /* the new one counts from zero */
 	tell(stage, status, -1);
@@ -407,15 +407,15 @@ static void begins_anew_with_another_release(void **state)
 	net_client_use_release(stage->client, root, 100);
 	net_client_want(stage->client, &want);
 	net_client_use_release(stage->client, root, 100); /* in use already */
-	CHECK(heard(stage).kind == MESSAGE_RELEASE);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_RELEASE);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 	CHECK(hears_nothing(stage));
 	net_client_use_release(stage->client, next, 100);
-	CHECK(heard(stage).kind == MESSAGE_RELEASE);
+	CHECK(received(stage).kind == MESSAGE_RELEASE);
 	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 0); /* wants of the old one are dropped */
 	reconnects(stage);
-	CHECK(hash_equal(heard(stage).release.root, next));
+	CHECK(hash_equal(received(stage).release.root, next));
 	CHECK(hears_nothing(stage));
 }
 
@@ -426,16 +426,16 @@ static void leaves_a_fetcher_that_lies(void **state)
 	struct message lie = object_of(brick);
 
 	net_client_want(stage->client, &want);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 	lie.object.hash = want.hash; /* these are not its bytes */
 	tell(stage, lie, -1);
 	CHECK(stage->objects == 0);
 	accept_client(stage); /* it hung up and came again */
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 	CHECK(send(stage->fetcher.fd, "no message", 10, 0) == 10);
 	dispatch(stage);
 	accept_client(stage);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 }
 
 /* The kiosk has hung up, and comes again. */
@@ -481,7 +481,7 @@ static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 	struct message message = object_of(brick);
 
 	net_client_want(stage->client, &want);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 	/* Never hashed, so nobody sees that it is a lie. */
 	message.object.bytes = of(material);
 	message.object.size = (uint32_t)of(material).size;
@@ -496,7 +496,7 @@ static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 	CHECK(stage->objects == 2);
 }
 
-/* Each want that was taken back or said again may have been on its way. */
+/* Each want that was taken back or repeated may have been on its way. */
 static void takes_what_was_on_its_way_for_no_crime(void **state)
 {
 	struct stage *stage = *state;
@@ -512,7 +512,7 @@ static void takes_what_was_on_its_way_for_no_crime(void **state)
 			tell(stage, object_of(material), -1);
 	}
 	CHECK(stage->objects == 500);
-	CHECK(heard(stage).kind == MESSAGE_WANT); /* on the first connection still */
+	CHECK(received(stage).kind == MESSAGE_WANT); /* on the first connection still */
 }
 
 static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
@@ -526,7 +526,7 @@ static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
 	}
 	ring(stage);
 	comes_again(stage);
-	CHECK(heard(stage).want.priority == want.priority);
+	CHECK(received(stage).want.priority == want.priority);
 }
 
 static void does_not_block_on_a_fetcher_that_hangs(void **state)
@@ -572,7 +572,7 @@ static void leaves_a_fetcher_that_says_nothing(void **state)
 	later_ms += 40000;
 	ring(stage);
 	accept_client(stage);
-	CHECK(heard(stage).kind == MESSAGE_WANT);
+	CHECK(received(stage).kind == MESSAGE_WANT);
 }
 
 static void says_what_is_wrong_with_its_options(void **state)
@@ -615,7 +615,7 @@ static void survives_a_fetcher_that_cannot_start(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		STAGED(brings_what_is_wanted_once),
+		STAGED(delivers_what_is_wanted_once),
 		STAGED(passes_on_what_is_missing_and_meta_and_status),
 		STAGED(tells_after_every_root_which_one_it_has),
 		STAGED(asks_for_what_came_to_be_safe),

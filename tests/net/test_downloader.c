@@ -4,6 +4,7 @@
 
 #include "format/locator.h"
 #include "format/page.h"
+#include "tests/check.h"
 #include "tests/net/fake_http.h"
 
 enum { OBJECTS = 20, OBJECT_BYTES = 3000 };
@@ -71,7 +72,7 @@ static int set_up(void **state)
 	*state = stage;
 	memset(&server, 0, sizeof(server));
 	server.now_ms = 1000;
-	snprintf(stage->folder, sizeof(stage->folder), "/tmp/gopura-bring-XXXXXX");
+	snprintf(stage->folder, sizeof(stage->folder), "/tmp/gopura-download-XXXXXX");
 	CHECK(mkdtemp(stage->folder));
 	snprintf(path, sizeof(path), "%s/cache.db", stage->folder);
 	cache.path = path;
@@ -115,10 +116,10 @@ static void want(struct stage *stage, int n, uint32_t priority)
 	downloader_want(stage->downloader, &message);
 }
 
-/* The release in use, its locator brought. */
+/* The release in use, its locator downloaded. */
 static void begin(struct stage *stage)
 {
-	downloader_use_release(stage->downloader, stage->root, 100, false);
+	downloader_use_release(stage->downloader, stage->root, false);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 1 && strncmp(asked(0)->path, "locator/07", 10) == 0);
 	give(asked(0), buffer_bytes(&stage->locator));
@@ -129,7 +130,7 @@ static void begin(struct stage *stage)
 /* The bytes that the request asked for, from the pack. */
 static struct bytes answer_to(const struct stage *stage, const struct http_request *request)
 {
-	return (struct bytes){ stage->pack + request->ask.first, request->ask.size };
+	return (struct bytes){ stage->pack + request->get.first, request->get.size };
 }
 
 static void asks_for_neighbours_in_one_request(void **state)
@@ -143,9 +144,9 @@ static void asks_for_neighbours_in_one_request(void **state)
 	want(stage, 12, 1000);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 4);
-	CHECK(asked(2)->ask.first == 6 * OBJECT_BYTES && asked(2)->ask.size == OBJECT_BYTES);
-	CHECK(asked(1)->ask.first == 3 * OBJECT_BYTES && asked(1)->ask.size == 2 * OBJECT_BYTES);
-	CHECK(asked(0)->ask.first == 12 * OBJECT_BYTES && asked(0)->ask.size == OBJECT_BYTES);
+	CHECK(asked(2)->get.first == 6 * OBJECT_BYTES && asked(2)->get.size == OBJECT_BYTES);
+	CHECK(asked(1)->get.first == 3 * OBJECT_BYTES && asked(1)->get.size == 2 * OBJECT_BYTES);
+	CHECK(asked(0)->get.first == 12 * OBJECT_BYTES && asked(0)->get.size == OBJECT_BYTES);
 	CHECK(strncmp(asked(0)->path, "packs/aa", 8) == 0);
 	give(asked(1), answer_to(stage, asked(1)));
 	CHECK(stage->objects == 2); /* before the request has ended */
@@ -153,10 +154,10 @@ static void asks_for_neighbours_in_one_request(void **state)
 	CHECK(downloader_wanted(stage->downloader) == 2);
 }
 
-static void brings_from_the_cache_what_it_brought_before(void **state)
+static void finds_in_the_cache_what_it_downloaded_before(void **state)
 {
 	struct stage *stage = *state;
-	struct downloader_figures metrics;
+	struct downloader_counters metrics;
 
 	begin(stage);
 	want(stage, 3, 1000);
@@ -166,11 +167,11 @@ static void brings_from_the_cache_what_it_brought_before(void **state)
 	want(stage, 3, 1000);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 2 && stage->objects == 2);
-	downloader_figures(stage->downloader, &metrics);
+	downloader_counters(stage->downloader, &metrics);
 	CHECK(metrics.from_cache == 1 && metrics.from_server == 1);
 	/* and the locator too: a start without the network */
-	downloader_forget_all(stage->downloader);
-	downloader_use_release(stage->downloader, stage->root, 100, false);
+	downloader_clear(stage->downloader);
+	downloader_use_release(stage->downloader, stage->root, false);
 	want(stage, 5, 1000);
 	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/", 6) == 0);
@@ -185,12 +186,12 @@ static void asks_for_the_best_first_and_for_few_at_once(void **state)
 		want(stage, n, 1000 + (uint32_t)n);
 	want(stage, 1, MESSAGE_PRIORITY_INDEX);
 	downloader_work(stage->downloader);
-	CHECK(server.asked[1].ask.first == 0); /* with the page beside it */
-	CHECK(server.asked[2].ask.first == 18 * OBJECT_BYTES);
+	CHECK(server.asked[1].get.first == 0); /* with the page beside it */
+	CHECK(server.asked[2].get.first == 18 * OBJECT_BYTES);
 }
 
 /* Objects as large as a range may be: few are under way at once. */
-static void leaves_the_line_room(void **state)
+static void limits_the_ranges_in_flight(void **state)
 {
 	struct stage *stage = *state;
 	struct locator_block block = { stage->page, 0, 0, UINT32_MAX };
@@ -216,7 +217,7 @@ static void leaves_the_line_room(void **state)
 	CHECK(server.count == 1 + 8);
 	downloader_want(stage->downloader, &page); /* for which there is room always */
 	downloader_work(stage->downloader);
-	CHECK(server.count == 1 + 9 && asked(0)->ask.size == 500);
+	CHECK(server.count == 1 + 9 && asked(0)->get.size == 500);
 }
 
 /* The downloader anew, with a limit of 6000 bytes a second. */
@@ -356,7 +357,7 @@ static void refuses_a_wrong_hash_asks_again_and_tells(void **state)
 	end(asked(0), 0);
 	CHECK(stage->objects == 1 && stage->missing == 0); /* its neighbour is none the worse */
 	downloader_work(stage->downloader);
-	CHECK(server.count == 3 && asked(0)->ask.size == OBJECT_BYTES);
+	CHECK(server.count == 3 && asked(0)->get.size == OBJECT_BYTES);
 	give(asked(0), answer_to(stage, asked(0)));
 	CHECK(stage->missing == 1 && stage->reason == MISSING_DAMAGED);
 	CHECK(stage->refusal.count == 1 && strstr(stage->refusal.why, "damaged"));
@@ -364,7 +365,7 @@ static void refuses_a_wrong_hash_asks_again_and_tells(void **state)
 	stage->pack[3 * OBJECT_BYTES + 77] ^= 1; /* repaired */
 	server.now_ms += 200000;
 	downloader_work(stage->downloader);
-	CHECK(server.count == 5 && asked(1)->ask.size == OBJECT_BYTES); /* and the locator */
+	CHECK(server.count == 5 && asked(1)->get.size == OBJECT_BYTES); /* and the locator */
 	give(asked(1), answer_to(stage, asked(1)));
 	end(asked(1), 0);
 	give(asked(0), buffer_bytes(&stage->locator));
@@ -470,7 +471,7 @@ static void does_without_a_damaged_locator_until_it_is_repaired(void **state)
 {
 	struct stage *stage = *state;
 
-	downloader_use_release(stage->downloader, stage->root, 100, false);
+	downloader_use_release(stage->downloader, stage->root, false);
 	want(stage, 3, 1000);
 	downloader_work(stage->downloader);
 	stage->locator.data[20] ^= 1;
@@ -516,7 +517,7 @@ static void serves_two_releases_side_by_side(void **state)
 
 	begin(stage);
 	want(stage, 3, 1000);
-	downloader_use_release(stage->downloader, next, 100, true);
+	downloader_use_release(stage->downloader, next, true);
 	downloader_work(stage->downloader);
 	CHECK(downloader_wanted(stage->downloader) == 1);
 	CHECK(strncmp(server.asked[1].path, "locator/08", 10) == 0 ||
@@ -524,7 +525,7 @@ static void serves_two_releases_side_by_side(void **state)
 	stage->page = (struct hash){ { 10 } };
 	make_release(stage, 0xcc);
 	for (size_t i = 1; i < server.count; i++)
-		if (server.asked[i].open && server.asked[i].ask.size == 0) {
+		if (server.asked[i].open && server.asked[i].get.size == 0) {
 			give(&server.asked[i], buffer_bytes(&stage->locator));
 			end(&server.asked[i], 0);
 		}
@@ -535,7 +536,7 @@ static void serves_two_releases_side_by_side(void **state)
 	want(stage, 9, 1000);
 	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/aa", 8) == 0);
-	downloader_use_release(stage->downloader, next, 100, false);
+	downloader_use_release(stage->downloader, next, false);
 	CHECK(downloader_wanted(stage->downloader) == 0);
 }
 
@@ -548,7 +549,7 @@ static void raises_a_priority_before_it_asks(void **state)
 	want(stage, 9, 2000);
 	want(stage, 0, 3000);
 	downloader_work(stage->downloader);
-	CHECK(server.asked[1].ask.first == 0);
+	CHECK(server.asked[1].get.first == 0);
 	CHECK(downloader_wanted(stage->downloader) == 2);
 }
 
@@ -558,9 +559,9 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(asks_for_neighbours_in_one_request),
-		STAGED(brings_from_the_cache_what_it_brought_before),
+		STAGED(finds_in_the_cache_what_it_downloaded_before),
 		STAGED(asks_for_the_best_first_and_for_few_at_once),
-		STAGED(leaves_the_line_room),
+		STAGED(limits_the_ranges_in_flight),
 		STAGED(keeps_to_its_rate_with_what_is_for_later),
 		STAGED(what_is_shown_has_no_rate),
 		STAGED(stops_when_the_kiosk_takes_no_more),

@@ -70,7 +70,7 @@ static struct {
 static struct {
 	int listener, port;
 	pthread_t thread;
-	_Atomic int visitors;
+	_Atomic int requests;
 } neighbour;
 
 static const struct script *script_for(const char *request)
@@ -156,14 +156,14 @@ static void *serve(void *unused)
 	return unused;
 }
 
-static void *count_visitors(void *unused)
+static void *count_requests(void *unused)
 {
 	static const char answer[] = "HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nother";
 	char request[2048];
 	int fd;
 
 	while ((fd = accept(neighbour.listener, NULL, NULL)) >= 0) {
-		neighbour.visitors++;
+		neighbour.requests++;
 		if (read(fd, request, sizeof(request)) > 0)
 			send(fd, answer, sizeof(answer) - 1, MSG_NOSIGNAL);
 		close(fd);
@@ -190,7 +190,7 @@ static int begin_server(void **state)
 	(void)state;
 	server.listener = listen_on_loopback(&server.port);
 	neighbour.listener = listen_on_loopback(&neighbour.port);
-	CHECK(pthread_create(&neighbour.thread, NULL, count_visitors, NULL) == 0);
+	CHECK(pthread_create(&neighbour.thread, NULL, count_requests, NULL) == 0);
 	return pthread_create(&server.thread, NULL, serve, NULL);
 }
 
@@ -241,7 +241,7 @@ static struct outcome fetch_with(const struct http_options *options, const char 
 				 uint64_t first, uint64_t size, const char *etag)
 {
 	struct outcome outcome = { .rc = 1 };
-	struct http_ask ask = { .path = path,
+	struct http_get ask = { .path = path,
 				.first = first,
 				.size = size,
 				.ceiling = 30,
@@ -254,7 +254,7 @@ static struct outcome fetch_with(const struct http_options *options, const char 
 	struct http *http;
 
 	CHECK(http_create(&http, options) == 0);
-	CHECK(http_ask(http, &ask, &request) == 0);
+	CHECK(http_get(http, &ask, &request) == 0);
 	while (!outcome.ended && clock_now_ms() < until_ms) {
 		struct pollfd ready = { .fd = http_fd(http), .events = POLLIN };
 
@@ -289,7 +289,7 @@ static bool gave(const struct outcome *outcome, const char *text)
 	       memcmp(outcome->body, text, outcome->size) == 0;
 }
 
-static void brings_files_and_ranges(void **state)
+static void downloads_files_and_ranges(void **state)
 {
 	struct outcome outcome = fetch("whole", 0, 0);
 
@@ -398,7 +398,7 @@ static void follows_no_redirection_elsewhere(void **state)
 	snprintf(path, sizeof(path), "to/localhost:%d/whole", server.port);
 	outcome = fetch(path, 0, 0);
 	CHECK(outcome.rc == -EHOSTUNREACH && outcome.size == 0);
-	CHECK(neighbour.visitors == 0); /* not even a connection */
+	CHECK(neighbour.requests == 0); /* not even a connection */
 }
 
 static void follows_redirections_to_hosts_that_were_named(void **state)
@@ -412,7 +412,7 @@ static void follows_redirections_to_hosts_that_were_named(void **state)
 	snprintf(named, sizeof(named), "127.0.0.1:%d", neighbour.port);
 	snprintf(path, sizeof(path), "to/127.0.0.1:%d/other", neighbour.port);
 	outcome = fetch_with(&options, path, 0, 0, NULL);
-	CHECK(gave(&outcome, "other") && neighbour.visitors == 1);
+	CHECK(gave(&outcome, "other") && neighbour.requests == 1);
 }
 
 static void follows_a_few_redirections_only(void **state)
@@ -507,7 +507,7 @@ static void knows_which_urls_it_can_serve(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(brings_files_and_ranges),
+		cmocka_unit_test(downloads_files_and_ranges),
 		cmocka_unit_test(finds_the_range_in_a_whole_file),
 		cmocka_unit_test(refuses_another_range_than_it_asked_for),
 		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),

@@ -1,5 +1,6 @@
 #include "net/link.h"
 
+#include "tests/check.h"
 #include "tests/net/fake_http.h"
 
 static void pauses_longer_each_time_and_never_the_same(void **state)
@@ -29,23 +30,23 @@ static void sends_one_request_to_look_after_a_failure(void **state)
 	memset(&server, 0, sizeof(server));
 	server.now_ms = 1000;
 	link_init(&link);
-	CHECK(!link.online && link.offline_since_s > 0 && link_may_ask(&link));
+	CHECK(!link.online && link.offline_since_s > 0 && link_may_request(&link));
 	link_answered(&link);
 	CHECK(link.online && link.offline_since_s == 0);
 	link_failed(&link, "fake:", "cut");
-	CHECK(!link.online && link.offline_since_s == 1700000001 && !link_may_ask(&link));
+	CHECK(!link.online && link.offline_since_s == 1700000001 && !link_may_request(&link));
 	link_failed(&link, "fake:", "cut"); /* others that were under way */
 	CHECK(link.failures == 1 && !link_is_down(&link));
 	server.now_ms = link.retry_at_ms;
-	CHECK(link_may_ask(&link));
+	CHECK(link_may_request(&link));
 	link.in_flight = 1;
-	CHECK(!link_may_ask(&link));
+	CHECK(!link_may_request(&link));
 	link.in_flight = 0;
 	server.now_ms += 3000;
 	link_failed(&link, "fake:", "cut");
 	CHECK(link_is_down(&link) && link.offline_since_s == 1700000001);
 	link_answered(&link);
-	CHECK(link_may_ask(&link) && !link_is_down(&link));
+	CHECK(link_may_request(&link) && !link_is_down(&link));
 	CHECK(link.answers == 2 && link.errors == 3);
 }
 

@@ -1,22 +1,23 @@
 #include "net/poll.h"
 
+#include "tests/check.h"
 #include "tests/net/fake_http.h"
 
 struct stage {
 	struct link link;
 	struct poll *poll;
 	struct refusal refusal;
-	char said[256]; /* "root1 timestamp ..." */
+	char passed[256]; /* "root1 timestamp ..." */
 };
 
 static void on_meta(void *data, enum meta_role role, uint32_t version, struct bytes bytes)
 {
 	static const char *const names[] = { "root", "release", "timestamp" };
 	struct stage *stage = data;
-	size_t used = strlen(stage->said);
+	size_t used = strlen(stage->passed);
 
-	snprintf(stage->said + used, sizeof(stage->said) - used, "%s%u:%.*s ", names[role], version,
-		 (int)bytes.size, (const char *)bytes.data);
+	snprintf(stage->passed + used, sizeof(stage->passed) - used, "%s%u:%.*s ", names[role],
+		 version, (int)bytes.size, (const char *)bytes.data);
 }
 
 static int set_up(void **state)
@@ -54,20 +55,20 @@ static void answer(const char *path, const char *text)
 	end(asked(0), text[0] ? 0 : -ENOENT);
 }
 
-static void heard(struct stage *stage, const char *expected)
+static void expect_passed(struct stage *stage, const char *expected)
 {
-	CHECK(strcmp(stage->said, expected) == 0);
-	stage->said[0] = '\0';
+	CHECK(strcmp(stage->passed, expected) == 0);
+	stage->passed[0] = '\0';
 }
 
 static void look_once(struct stage *stage)
 {
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	poll_work(stage->poll);
 	answer("root/2.json", "");
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "timestamp0:T release0:R ");
+	expect_passed(stage, "timestamp0:T release0:R ");
 }
 
 /* The kiosk has checked what it was told last, and says which root it has now. */
@@ -99,7 +100,7 @@ static void says_each_file_once_roots_first(void **state)
 	answer("root/2.json", "");
 	answer("timestamp.json", "T"); /* the same again: not a word */
 	answer("release.json", "S");
-	heard(stage, "release0:S ");
+	expect_passed(stage, "release0:S ");
 }
 
 static void follows_several_roots_in_one_round(void **state)
@@ -109,7 +110,7 @@ static void follows_several_roots_in_one_round(void **state)
 	look_once(stage);
 	next_round(stage);
 	answer("root/2.json", "B");
-	heard(stage, "root2:B ");
+	expect_passed(stage, "root2:B ");
 	CHECK(server.count == 1); /* the kiosk has not said that it is good */
 	kiosk_says(stage, 2);
 	answer("root/3.json", "C");
@@ -117,7 +118,7 @@ static void follows_several_roots_in_one_round(void **state)
 	answer("root/4.json", "");
 	answer("timestamp.json", "T"); /* the same again, but it may be good under the new root */
 	answer("release.json", "R");
-	heard(stage, "root3:C timestamp0:T release0:R ");
+	expect_passed(stage, "root3:C timestamp0:T release0:R ");
 }
 
 /* Whoever answers with what is no root (a captive portal) changes nothing. */
@@ -126,7 +127,7 @@ static void asks_for_the_next_root_until_the_kiosk_has_it(void **state)
 	struct stage *stage = *state;
 	char page[64];
 
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	poll_work(stage->poll);
 	for (int round = 0; round < 200; round++) {
 		snprintf(page, sizeof(page), "<html>Log in, guest %d", round);
@@ -134,39 +135,39 @@ static void asks_for_the_next_root_until_the_kiosk_has_it(void **state)
 		kiosk_says(stage, 1); /* refused */
 		answer("timestamp.json", page);
 		answer("release.json", page);
-		stage->said[0] = '\0';
+		stage->passed[0] = '\0';
 		next_round(stage);
 	}
-	CHECK(asked(0)->ask.etag[0] == '\0'); /* the portal could have made one up */
+	CHECK(asked(0)->get.etag[0] == '\0'); /* the portal could have made one up */
 	answer("root/2.json", "B");
-	heard(stage, "root2:B ");
+	expect_passed(stage, "root2:B ");
 	kiosk_says(stage, 2);
 	answer("root/3.json", "");
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "timestamp0:T release0:R ");
+	expect_passed(stage, "timestamp0:T release0:R ");
 }
 
 static void says_what_was_refused_once_and_goes_on(void **state)
 {
 	struct stage *stage = *state;
 
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	poll_work(stage->poll);
 	answer("root/2.json", "bad");
-	heard(stage, "root2:bad ");
+	expect_passed(stage, "root2:bad ");
 	poll_work(stage->poll);
 	CHECK(server.count == 1 && poll_due_ms(stage->poll) == server.now_ms + 3000);
 	server.now_ms += 3000; /* a kiosk that says nothing does not stop it */
 	poll_work(stage->poll);
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "timestamp0:T release0:R ");
+	expect_passed(stage, "timestamp0:T release0:R ");
 	next_round(stage);
 	answer("root/2.json", "bad");
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "");
+	expect_passed(stage, "");
 }
 
 /* A stick had it. */
@@ -174,7 +175,7 @@ static void begins_a_round_when_the_kiosk_has_another_root(void **state)
 {
 	struct stage *stage = *state;
 
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	poll_work(stage->poll);
 	answer("root/2.json", "");
 	kiosk_says(stage, 5);
@@ -182,7 +183,7 @@ static void begins_a_round_when_the_kiosk_has_another_root(void **state)
 	answer("root/6.json", "");
 	answer("timestamp.json", "T");
 	answer("release.json", "R");
-	heard(stage, "timestamp0:T release0:R ");
+	expect_passed(stage, "timestamp0:T release0:R ");
 }
 
 /* The publisher writes release.json, then the timestamp that names it; who looks in between has the
@@ -197,19 +198,19 @@ static void says_a_release_again_under_its_timestamp(void **state)
 	answer("root/2.json", "");
 	answer("timestamp.json", "T");
 	answer("release.json", "S");
-	heard(stage, "release0:S ");
+	expect_passed(stage, "release0:S ");
 	server.now_ms += 66001;
 	poll_work(stage->poll);
 	answer("root/2.json", "");
 	answer("timestamp.json", "U");
 	answer("release.json", "S");
-	heard(stage, "timestamp0:U release0:S ");
+	expect_passed(stage, "timestamp0:U release0:S ");
 	server.now_ms += 66001;
 	poll_work(stage->poll);
 	answer("root/2.json", "");
 	answer("timestamp.json", "U");
 	answer("release.json", "S");
-	heard(stage, "");
+	expect_passed(stage, "");
 }
 
 static void says_all_again_when_asked(void **state)
@@ -217,8 +218,8 @@ static void says_all_again_when_asked(void **state)
 	struct stage *stage = *state;
 
 	look_once(stage);
-	poll_ask(stage->poll, 0);
-	heard(stage, "timestamp0:T release0:R ");
+	poll_start(stage->poll, 0);
+	expect_passed(stage, "timestamp0:T release0:R ");
 	poll_work(stage->poll);
 	CHECK(server.count == 4); /* and looks at once */
 	poll_stop(stage->poll);
@@ -232,7 +233,7 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 {
 	struct stage *stage = *state;
 
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	for (size_t n = 1; n < 8; n++) {
 		poll_work(stage->poll);
 		CHECK(server.count == n);
@@ -245,7 +246,7 @@ static void tries_again_after_pauses_when_the_server_is_away(void **state)
 	poll_work(stage->poll);
 	answer("root/2.json", "B");
 	CHECK(stage->link.online);
-	heard(stage, "root2:B ");
+	expect_passed(stage, "root2:B ");
 }
 
 static void refuses_endless_data(void **state)
@@ -253,17 +254,17 @@ static void refuses_endless_data(void **state)
 	struct stage *stage = *state;
 	uint8_t *large = calloc(1, MESSAGE_META_BYTES_MAX + 1);
 
-	poll_ask(stage->poll, 0);
+	poll_start(stage->poll, 0);
 	poll_work(stage->poll);
-	CHECK(asked(0)->ask.ceiling == MESSAGE_META_BYTES_MAX);
+	CHECK(asked(0)->get.ceiling == MESSAGE_META_BYTES_MAX);
 	give(asked(0), (struct bytes){ large, MESSAGE_META_BYTES_MAX + 1 });
-	end(asked(0), 0);
-	CHECK(stage->said[0] == '\0');
+	end(asked(0), -EBADMSG); /* as net/http.c ends it */
+	CHECK(stage->passed[0] == '\0');
 	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/2.json") == 0);
 	CHECK(strcmp(stage->refusal.why, "larger than such a file may be") == 0);
 	answer("timestamp.json", ""); /* goes on with the others */
 	answer("release.json", "R");
-	heard(stage, "release0:R ");
+	expect_passed(stage, "release0:R ");
 	free(large);
 }
 

@@ -172,7 +172,7 @@ static bool work(struct stage *stage)
 	bool came = stick_work(stage->stick, true);
 
 	CHECK(poll(&ready, 1, 60000) == 1);
-	stick_heard(stage->stick);
+	stick_clear_event(stage->stick);
 	return stick_work(stage->stick, true) || came;
 }
 
@@ -198,7 +198,7 @@ static int get(struct stage *stage, struct hash of, uint32_t offset, uint32_t si
 {
 	const struct message_want want = want_of(offset, size);
 
-	if (!stick_ask(stage->stick, &of, 1, &want))
+	if (!stick_request(stage->stick, &of, 1, &want))
 		return -ENOENT;
 	stage->answers = 0;
 	CHECK(!work(stage) && stage->answers == 1);
@@ -309,20 +309,20 @@ static void leaves_a_device_that_hangs_alone(void **state)
 	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
 	set_device(true);
 	stage->answers = 0;
-	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(stick_request(stage->stick, &root, 1, &want));
 	CHECK(!stick_work(stage->stick, true)); /* the thread hangs, we do not */
-	CHECK(stick_ask(stage->stick, &root, 1, &other));
+	CHECK(stick_request(stage->stick, &root, 1, &other));
 	now_ms += 9000;
 	CHECK(!stick_work(stage->stick, true) && stage->answers == 0);
 	CHECK(stick_due_ms(stage->stick, true) == now_ms + 1000);
 	now_ms += 1000;
 	CHECK(!stick_work(stage->stick, true));
 	CHECK(stage->answers == 2 && stage->rc == -ENOENT); /* the server may have them */
-	CHECK(!stick_ask(stage->stick, &root, 1, &want));
+	CHECK(!stick_request(stage->stick, &root, 1, &want));
 	CHECK(stick_due_ms(stage->stick, true) == INT64_MAX);
 	set_device(false);
 	CHECK(poll(&ready, 1, 60000) == 1);
-	stick_heard(stage->stick);
+	stick_clear_event(stage->stick);
 	CHECK(!stick_work(stage->stick, true) && stage->answers == 2);
 	CHECK(stick_due_ms(stage->stick, true) == now_ms + 60000);
 	now_ms += 60000;
@@ -338,7 +338,7 @@ static void ends_while_a_device_hangs(void **state)
 	put_release(stage, "", "T");
 	CHECK(look(stage));
 	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
-	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(stick_request(stage->stick, &root, 1, &want));
 	set_device(true);
 	CHECK(!stick_work(stage->stick, true));
 	stick_destroy(stage->stick); /* leaves the thread behind */
@@ -356,13 +356,13 @@ static void reads_the_best_first_and_nothing_that_is_not_wanted(void **state)
 	stage->answers = 0;
 	for (uint32_t i = 0; i < 40; i++) {
 		want.priority = i;
-		CHECK(stick_ask(stage->stick, &root, 1, &want));
+		CHECK(stick_request(stage->stick, &root, 1, &want));
 	}
 	want = want_of(9, 8);
-	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(stick_request(stage->stick, &root, 1, &want));
 	CHECK(!work(stage) && stage->answers == 32 && strcmp(stage->object, "sandstone") == 0);
 	CHECK(!work(stage) && stage->answers == 41 && strcmp(stage->object, "laterite") == 0);
-	CHECK(stick_ask(stage->stick, &root, 1, &want));
+	CHECK(stick_request(stage->stick, &root, 1, &want));
 	stage->nobody_wants = true;
 	CHECK(!stick_work(stage->stick, true) && stage->answers == 41);
 	CHECK(stick_due_ms(stage->stick, true) > now_ms); /* nothing was begun */

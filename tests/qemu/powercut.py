@@ -95,7 +95,7 @@ class Session:
             machine.temple("first")
             machine.resting_picture("first")
             machine.unplug()
-            said("the stick is gone")
+            said("the stick was removed")
             self.mark("next is there")
             machine.plug(stick("next"))
             said(f"release {self.sequences[1]} is shown")

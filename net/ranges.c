@@ -1,23 +1,25 @@
-/* Requests a range of a pack and splits the answer into objects. A range holds objects of one pack
- * in the order of their places, with small gaps. Each object is passed on when it is complete. */
+/* Requests ranges of packs and splits the answers into objects. */
+#include "net/ranges.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "base/log.h"
-#include "net/downloader_private.h"
+
+/* assumed bandwidth before the first measurement */
+enum { FIRST_BYTES_PER_S = 1 << 20 };
 
 struct slot {
 	struct hash hash;
 	uint64_t place;
 	uint32_t size;
-	struct want *want; /* NULL: dropped meanwhile; its bytes still go into the cache */
+	struct want *want; /* NULL: it left; its bytes are reported all the same */
 };
 
 struct range {
 	struct range *next, **link;
-	struct downloader *downloader;
+	struct ranges *ranges;
 	struct http_request *request;
 	uint32_t wanted;   /* slots with a want that have not arrived yet */
 	size_t count, now; /* number of slots; index of the slot whose bytes arrive now */
@@ -28,36 +30,47 @@ struct range {
 	struct slot slots[];
 };
 
+void ranges_init(struct ranges *ranges, const struct ranges_options *options)
+{
+	*ranges = (struct ranges){ .options = *options, .bytes_per_s = FIRST_BYTES_PER_S };
+}
+
 static void unlink_range(struct range *range)
 {
+	struct ranges *ranges = range->ranges;
+
 	*range->link = range->next;
 	if (range->next)
 		range->next->link = range->link;
-	range->downloader->range_count--;
-	range->downloader->flying_bytes -= range->bytes;
-	range->downloader->options.link->in_flight--;
-	range->downloader->plan_changed = true;
+	ranges->count--;
+	ranges->bytes -= range->bytes;
+	ranges->options.link->in_flight--;
 	buffer_finish(&range->object);
 	free(range);
+}
+
+/* Takes the slot's want out of the range. Returns it, or NULL if it has left already. */
+static struct want *detach(struct slot *slot)
+{
+	struct want *want = slot->want;
+
+	if (!want)
+		return NULL;
+	slot->want = NULL;
+	want->range = NULL;
+	want->state = WANT_WAITING;
+	return want;
 }
 
 /* Called when all bytes of the slot have arrived. */
 static void finish_slot(struct range *range, struct slot *slot)
 {
-	struct bytes bytes = buffer_bytes(&range->object);
-	struct want *want = slot->want;
+	const struct ranges_options *options = &range->ranges->options;
+	struct want *want = detach(slot);
 
-	slot->want = NULL;
-	if (want) {
+	if (want)
 		range->wanted--;
-		want->range = NULL;
-		downloader_arrived(range->downloader, want, bytes);
-	} else if (hash_equal(hash_of(bytes), slot->hash)) {
-		/* The bytes were downloaded anyway, so they are cached. The cache logs its own
-		 * failures. */
-		if (cache_put(range->downloader->options.cache, slot->hash, bytes, 0) == 0)
-			range->downloader->metrics.from_server++;
-	}
+	options->object(options->data, want, slot->hash, buffer_bytes(&range->object));
 	buffer_clear(&range->object);
 	range->now++;
 }
@@ -99,34 +112,31 @@ static void measure(struct range *range)
 	uint64_t bytes = range->at - range->slots[0].place;
 	uint64_t rate = bytes * 1000 / (uint64_t)(took_ms > 0 ? took_ms : 1);
 
-	range->downloader->bytes_per_s = (range->downloader->bytes_per_s * 7 + rate) / 8;
+	range->ranges->bytes_per_s = (range->ranges->bytes_per_s * 7 + rate) / 8;
 }
 
 static void on_done(void *data, const struct http_result *result)
 {
 	struct range *range = data;
-	struct downloader *downloader = range->downloader;
-	struct link *link = downloader->options.link;
-	/* A successful answer that ended early (a truncated pack) lacks the objects we asked
-	 * for. */
+	const struct ranges_options *options = &range->ranges->options;
+	/* A successful answer that ended early (a truncated pack) lacks the objects we requested.
+	 */
 	int rc = result->rc == 0 ? -ENOENT : result->rc;
 
 	if (rc == -EHOSTUNREACH)
-		link_failed(link, http_url(downloader->options.http), result->why);
+		link_failed(options->link, http_url(options->http), result->why);
 	else
-		link_answered(link);
+		link_answered(options->link);
 	if (range->now == range->count)
 		measure(range);
 	for (size_t i = 0; i < range->count; i++) {
-		struct want *want = range->slots[i].want;
+		struct want *want = detach(&range->slots[i]);
 
-		range->slots[i].want = NULL;
-		if (want) {
-			want->range = NULL;
-			downloader_failed(downloader, want, rc);
-		}
+		if (want)
+			options->failed(options->data, want, rc);
 	}
 	unlink_range(range);
+	options->ended(options->data);
 }
 
 static void fill_slots(struct range *range, const struct range_item *items, size_t count)
@@ -137,7 +147,7 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 		range->slots[i] =
 			(struct slot){ want->entry.key, items[i].place, items[i].size, want };
 		want->range = range;
-		want->state = WANT_FLYING;
+		want->state = WANT_IN_FLIGHT;
 	}
 	range->count = count;
 	range->wanted = (uint32_t)count;
@@ -145,66 +155,71 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 	range->began_ms = clock_now_ms();
 }
 
-int64_t downloader_ask_range(struct downloader *downloader, const struct range_item *items,
-			     size_t count)
+static void link_range(struct ranges *ranges, struct range *range)
+{
+	range->ranges = ranges;
+	range->next = ranges->first;
+	range->link = &ranges->first;
+	if (range->next)
+		range->next->link = &range->next;
+	ranges->first = range;
+	ranges->count++;
+	ranges->bytes += range->bytes;
+	ranges->requests++;
+	ranges->options.link->in_flight++;
+}
+
+int ranges_request(struct ranges *ranges, const struct range_item *items, size_t count)
 {
 	struct range *range = calloc(1, sizeof(*range) + count * sizeof(range->slots[0]));
 	char path[64], hex[HASH_HEX_BYTES];
-	struct http_ask ask = { .path = path, .receive = on_piece, .done = on_done };
+	struct http_get get = { .path = path, .receive = on_piece, .done = on_done };
+	int rc;
 
 	if (!range)
-		return 0;
+		return -ENOMEM;
 	hash_to_hex(items[0].pack, hex);
 	snprintf(path, sizeof(path), "packs/%s", hex);
-	ask.first = items[0].place;
-	ask.size = items[count - 1].place + items[count - 1].size - ask.first;
-	ask.data = range;
-	if (http_ask(downloader->options.http, &ask, &range->request) < 0) {
+	get.first = items[0].place;
+	get.size = items[count - 1].place + items[count - 1].size - get.first;
+	get.data = range;
+	rc = http_get(ranges->options.http, &get, &range->request);
+	if (rc < 0) {
 		free(range);
-		return 0;
+		return rc;
 	}
-	range->downloader = downloader;
 	buffer_init(&range->object, UINT32_MAX);
-	range->bytes = ask.size;
+	range->bytes = get.size;
 	fill_slots(range, items, count);
-	range->next = downloader->ranges;
-	range->link = &downloader->ranges;
-	if (range->next)
-		range->next->link = &range->next;
-	downloader->ranges = range;
-	downloader->range_count++;
-	downloader->flying_bytes += range->bytes;
-	downloader->metrics.ranges++;
-	downloader->options.link->in_flight++;
-	return (int64_t)range->bytes;
+	link_range(ranges, range);
+	return 0;
 }
 
-void downloader_leave_range(struct downloader *downloader, struct want *want)
+bool ranges_leave(struct ranges *ranges, struct want *want)
 {
 	struct range *range = want->range;
 
 	if (!range)
-		return;
+		return false;
 	for (size_t i = range->now; i < range->count; i++)
 		if (range->slots[i].want == want)
-			range->slots[i].want = NULL;
-	want->range = NULL;
+			detach(&range->slots[i]);
 	if (--range->wanted > 0)
-		return;
-	downloader->metrics.cancelled++;
+		return false;
+	ranges->cancelled++;
 	http_cancel(range->request);
 	unlink_range(range);
+	return true;
 }
 
-void downloader_cancel_ranges(struct downloader *downloader)
+void ranges_cancel_all(struct ranges *ranges)
 {
-	while (downloader->ranges) {
-		struct range *range = downloader->ranges;
+	while (ranges->first) {
+		struct range *range = ranges->first;
 
 		http_cancel(range->request);
 		for (size_t i = 0; i < range->count; i++)
-			if (range->slots[i].want)
-				range->slots[i].want->range = NULL;
+			detach(&range->slots[i]);
 		unlink_range(range);
 	}
 }
