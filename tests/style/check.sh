@@ -45,6 +45,24 @@ may_enter() {
 	*) echo ;;
 	esac
 }
+# What may be included of a room from outside it; a room that is not named here: all but what is private.
+# Private headers are named *_private.h or *_parts.h.
+is_public() {
+	local names name=${1##*/}
+	case $1 in
+	*_private.h | *_parts.h) return 1 ;;
+	pipeline/import/*) names="import mesh mesh_edges mesh_file face_list ply" ;;
+	pipeline/content/*) names="content scans sources info_build annotations work_lock" ;;
+	pipeline/hierarchy/*) names="master" ;;
+	pipeline/samples/*) names="sampler sample_store reference" ;;
+	pipeline/release/*) names="publish_content verify inspect" ;;
+	pipeline/keys/*) names="keys keys_place" ;;
+	pipeline/material/*) names="material" ;;
+	pipeline/temple/*) names="temple" ;;
+	*) return 0 ;;
+	esac
+	case " $names " in *" ${name%.h} "*) return 0 ;; *) return 1 ;; esac
+}
 # room PATH: folder/room of a file, or its folder
 room() { case $1 in */*/*) echo "${1%/*}" ;; *) echo "${1%%/*}" ;; esac }
 for file in $files; do
@@ -59,6 +77,9 @@ for file in $files; do
 			inner=$(room "$include")
 			[ "$inner" != "$folder" ] || inner=.
 			case $entered in *" ${inner##*/} "*) ;; *) complain "$file: $room may not include $include" ;; esac
+		fi
+		if [ "$folder" != tests ] && [ "${include%/*}" != "$room" ] && ! is_public "$include"; then
+			complain "$file: $include is private to ${include%/*}"
 		fi
 		if [ "$folder" = app ] && [ "${include%%/*}" = net ] && [ "$include" != net/client.h ]; then
 			complain "$file: of net, app may include only net/client.h"
