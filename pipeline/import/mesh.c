@@ -9,6 +9,8 @@
 
 #include "base/spill.h"
 
+enum { PUT_BYTES = 16 << 20 };
+
 void mesh_finish(struct mesh *mesh)
 {
 	if (!mesh)
@@ -40,6 +42,19 @@ void mesh_box(const struct mesh *mesh, float low[3], float high[3])
 
 /* ---- appending */
 
+/* Copies bytes, or sets them to fill if from is NULL, without keeping all of them resident. */
+static void put(uint8_t *to, const uint8_t *from, int fill, size_t bytes)
+{
+	for (size_t at = 0, size; at < bytes; at += size) {
+		size = bytes - at < PUT_BYTES ? bytes - at : PUT_BYTES;
+		if (from)
+			memcpy(to + at, from + at, size);
+		else
+			memset(to + at, fill, size);
+		spill_breathe();
+	}
+}
+
 /* Makes room in *array for another second_count items behind the first_count, and copies them from
  * second. What one of the two lacks is set to fill bytes. */
 static int extend(void **array, size_t first_count, const void *second, size_t second_count,
@@ -52,13 +67,9 @@ static int extend(void **array, size_t first_count, const void *second, size_t s
 	if (!grown)
 		return -errno;
 	*array = grown;
-	if (filled && fill)
-		memset(grown, fill, first_bytes);
-	if (second)
-		memcpy(grown + first_bytes, second, second_bytes);
-	else if (fill)
-		memset(grown + first_bytes, fill, second_bytes);
-	spill_breathe();
+	if (filled)
+		put(grown, NULL, fill, first_bytes);
+	put(grown + first_bytes, second, fill, second_bytes);
 	return 0;
 }
 
