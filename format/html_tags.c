@@ -1,9 +1,11 @@
-/* Reduces a page's HTML in one pass over the bytes: keeps text, tag names, src of img and href of
- * a, and drops everything else. */
+/* Reduces a page's HTML in one pass over the bytes: keeps text, tag names and the attributes that
+ * the table of elements names, and drops everything else. */
 #include "format/html_tags.h"
 
 #include <string.h>
 #include <strings.h>
+
+#include "format/html_elements.h"
 
 struct scanner {
 	const char *at, *end;
@@ -141,12 +143,6 @@ static void put_attribute(struct scanner *s, const char *name, struct piece valu
 
 /* ---- tags */
 
-/* The one attribute of this tag that is kept, or NULL. */
-static const char *wanted_attribute(struct piece name)
-{
-	return is(name, "img") ? "src" : is(name, "a") ? "href" : NULL;
-}
-
 /* Reads to the end of the tag. Returns true if it ends with "/>". */
 static bool read_attributes(struct scanner *s, const char *wanted, struct piece *kept)
 {
@@ -194,14 +190,14 @@ static void skip_raw(struct scanner *s, struct piece name)
 static void read_start_tag(struct scanner *s)
 {
 	struct piece kept = { NULL, 0 }, name;
-	const char *wanted;
+	const struct html_element *element;
 	bool is_empty;
 
 	s->at++;
 	name = read_name(s);
-	wanted = wanted_attribute(name);
-	is_empty = read_attributes(s, wanted, &kept);
-	if (is(name, "script") || is(name, "style")) {
+	element = html_element(name.text, name.size);
+	is_empty = read_attributes(s, element->attribute, &kept);
+	if (element->role == HTML_RAW) {
 		if (!is_empty)
 			skip_raw(s, name);
 		return;
@@ -209,7 +205,7 @@ static void read_start_tag(struct scanner *s)
 	put(s, "<");
 	buffer_put(s->out, name.text, name.size);
 	if (kept.text)
-		put_attribute(s, wanted, kept);
+		put_attribute(s, element->attribute, kept);
 	put(s, is_empty ? "/>" : ">");
 }
 

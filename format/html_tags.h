@@ -9,7 +9,10 @@
 
 #include "base/bytes.h"
 
-enum { HTML_TAG_ATTRIBUTES_MAX = 64 }; /* limit for published pages */
+enum {
+	HTML_BYTES_MAX = 256 << 10,   /* of a page */
+	HTML_TAG_ATTRIBUTES_MAX = 64, /* limit for published pages */
+};
 
 struct html_tags {
 	uint32_t attribute_count; /* of the tag with the most attributes */

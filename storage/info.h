@@ -15,7 +15,6 @@
 enum {
 	INFO_LANGUAGES_MAX = 64,
 	INFO_PARTS_MAX = 1000,
-	INFO_PAGE_BYTES_MAX = 256 << 10, /* one HTML page; what ui/html.h takes */
 	INFO_PAGE_PICTURES_MAX = 64,
 	INFO_TOURS_MAX = 8,
 	INFO_STOPS_MAX = 64, /* in a tour */
@@ -76,11 +75,14 @@ const char *info_nearest_language(const struct info *info, const char *language)
 /* Returns the texts of a part; see struct info_text. */
 struct info_text info_text(const struct info *info, uint32_t part, const char *language);
 
-/* Reads the page of a part. *html is borrowed until the next info_page or info_close.
- * *language_found (may be NULL) is set to the language that was found. Returns -ENOENT if the part
- * has no page, -EBADMSG if the database is damaged, or -ENOMEM. */
-must_check int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
-			 const char **language_found);
+/* Reads the page of a part, an encoded article (format/article.h) that is not checked yet. *article
+ * is borrowed until the next info_page or info_close. Of an image whose pages are HTML it is made
+ * now, plainly (storage/plain_page.h). *language_found (may be NULL) is set to the language that
+ * was found. Returns -ENOENT if the part has no page, -EBADMSG if the database is damaged, or
+ * -ENOMEM.
+ */
+must_check int info_page(struct info *info, uint32_t part, const char *language,
+			 struct bytes *article, const char **language_found);
 
 /* Returns the credits of a part's information in one line (creator, date, source, rights and so
  * on), "" if nothing is known. Borrowed until the next info_credits or info_close. */

@@ -1,7 +1,7 @@
 /* Queries that run in SQLite while the kiosk runs, except for pages: credits and search. Their work
  * is limited, so that no image can block a frame for long. */
 #include <errno.h>
-#include <libxml/xmlstring.h>
+#include <glib.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +13,23 @@
 enum { CALLS_OF_A_SEARCH = 1000 };
 
 /* ---- credits ---- */
+
+/* Appends a text with each run of white space as one space. */
+static void put_in_one_line(struct buffer *out, const char *text)
+{
+	static const char space[] = " \t\r\n";
+
+	text += strspn(text, space);
+	while (*text) {
+		const size_t size = strcspn(text, space);
+
+		buffer_put(out, text, size);
+		text += size;
+		text += strspn(text, space);
+		if (*text)
+			buffer_put_u8(out, ' ');
+	}
+}
 
 /* For an element in several languages, reads the requested language, else the default. */
 static int read_credits(struct info *info, uint32_t part, uint32_t language)
@@ -35,12 +52,12 @@ static int read_credits(struct info *info, uint32_t part, uint32_t language)
 		const char *value = (const char *)sqlite3_column_text(statement, 0);
 
 		code = SQLITE_OK;
-		if (!value || !xmlCheckUTF8((const unsigned char *)value))
+		if (!value || !g_utf8_validate(value, -1, NULL))
 			code = SQLITE_CORRUPT;
 		else if (info->credits.size > 0)
 			buffer_put(&info->credits, " · ", strlen(" · "));
 		if (code == SQLITE_OK)
-			buffer_put(&info->credits, value, strlen(value));
+			put_in_one_line(&info->credits, value);
 	}
 	sqlite3_finalize(statement);
 	return info_from_sqlite(info->db, code, "credits");

@@ -2,80 +2,35 @@
 #include "storage/info_index.h"
 
 #include <errno.h>
-#include <libxml/HTMLparser.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "format/html_tags.h"
-#include "storage/info.h"
+#include "format/article.h"
+#include "storage/info_schema.h"
+#include "storage/plain_page.h"
 #include "storage/words.h"
 
-enum { WORDS_BYTES_MAX = 32 * INFO_PAGE_BYTES_MAX };
+enum { WORDS_BYTES_MAX = 8 * ARTICLE_BYTES_MAX };
 
 /* ---- a page's words ---- */
 
-static bool is_one_of(const char *name, const char *const *names, size_t count)
+/* Writes the texts of an article, ended by a zero byte. A page that is no article has no words. */
+static int read_text(struct buffer *text, struct bytes page)
 {
-	for (size_t i = 0; i < count; i++)
-		if (strcmp(name, names[i]) == 0)
-			return true;
-	return false;
-}
+	struct article_blocks article;
+	int rc = article_decode(&article, page);
 
-/* Returns true if the element separates words, unlike an <em> in the middle of one. */
-static bool parts_words(const xmlNode *node)
-{
-	static const char *const within[] = {
-		"a",   "em",   "i", "strong", "b",    "span", "sub",
-		"sup", "cite", "q", "abbr",   "time", "dfn",  "small"
-	};
+	for (uint32_t i = 0; i < article.block_count; i++) {
+		const struct article_block *block = &article.blocks[i];
 
-	return !is_one_of((const char *)node->name, within, ARRAY_COUNT(within));
-}
-
-static bool is_unread(const xmlNode *node)
-{
-	static const char *const unread[] = { "head", "script", "style", "template" };
-
-	return is_one_of((const char *)node->name, unread, ARRAY_COUNT(unread));
-}
-
-/* Returns the next node in text order, without recursion. */
-static const xmlNode *next_node(const xmlNode *node, struct buffer *text)
-{
-	bool is_element = node->type == XML_ELEMENT_NODE;
-
-	if (is_element && parts_words(node))
-		buffer_put_u8(text, ' ');
-	if (is_element && node->children && !is_unread(node))
-		return node->children;
-	while (node && !node->next) {
-		node = node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
-		if (node && parts_words(node))
+		if (block->kind == ARTICLE_TEXT) {
+			buffer_put(text, block->text, strlen(block->text));
 			buffer_put_u8(text, ' ');
+		}
 	}
-	return node ? node->next : NULL;
-}
-
-static int read_text(struct buffer *text, const char *html)
-{
-	const struct bytes page = { (const uint8_t *)html, strlen(html) };
-	struct buffer reduced;
-	xmlDoc *doc = NULL;
-
-	buffer_init(&reduced, HTML_TAGS_GROWTH * page.size + 64);
-	if (html_tags_reduce(&reduced, page, NULL) == 0 && reduced.size > 0)
-		doc = htmlReadMemory((const char *)reduced.data, (int)reduced.size, NULL, "UTF-8",
-				     HTML_PARSE_RECOVER | HTML_PARSE_NOERROR |
-					     HTML_PARSE_NOWARNING | HTML_PARSE_NONET);
-	buffer_finish(&reduced);
-	for (const xmlNode *node = doc ? xmlDocGetRootElement(doc) : NULL; node;
-	     node = next_node(node, text))
-		if (node->type == XML_TEXT_NODE && node->content)
-			buffer_put(text, node->content, strlen((const char *)node->content));
-	xmlFreeDoc(doc);
+	article_finish(&article);
 	buffer_put_u8(text, 0);
-	return text->error;
+	return rc == -ENOMEM ? rc : text->error;
 }
 
 /* ---- creation ---- */
@@ -98,23 +53,30 @@ static int bind_words(sqlite3_stmt *to, int column, const char *text, const char
 	return code;
 }
 
-static int bind_page(sqlite3_stmt *to, int column, const char *html)
+/* body: an article, or HTML in images from before there were any. */
+static int bind_page(sqlite3_stmt *to, int column, struct bytes body, int version)
 {
-	struct buffer text;
-	int code = SQLITE_NOMEM;
+	struct buffer plain, text;
+	int code = SQLITE_NOMEM, rc = 0;
 
+	buffer_init(&plain, ARTICLE_BYTES_MAX);
 	buffer_init(&text, WORDS_BYTES_MAX);
-	if (!html)
-		code = bind_words(to, column, NULL, NULL);
-	else if (read_text(&text, html) == 0)
+	if (version < INFO_SCHEMA_ARTICLES) {
+		rc = plain_page(&plain, body);
+		body = buffer_bytes(&plain);
+	}
+	if (rc != -ENOMEM && read_text(&text, body) == 0)
 		code = bind_words(to, column, (char *)text.data, NULL);
+	buffer_finish(&plain);
 	buffer_finish(&text);
 	return code;
 }
 
 /* from: content_id, title, reading, caption, body, subjects. */
-static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from)
+static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from, int version)
 {
+	const void *body;
+
 	int code = sqlite3_bind_int64(to, 1, sqlite3_column_int64(from, 0));
 
 	if (code == SQLITE_OK)
@@ -123,15 +85,18 @@ static int copy_row(sqlite3_stmt *to, sqlite3_stmt *from)
 	if (code == SQLITE_OK)
 		code = bind_words(to, 3, (const char *)sqlite3_column_text(from, 3),
 				  (const char *)sqlite3_column_text(from, 5));
+	body = sqlite3_column_blob(from, 4);
 	if (code == SQLITE_OK)
-		code = bind_page(to, 4, (const char *)sqlite3_column_text(from, 4));
+		code = bind_page(to, 4,
+				 (struct bytes){ body, (size_t)sqlite3_column_bytes(from, 4) },
+				 version);
 	if (code == SQLITE_OK)
 		code = sqlite3_step(to) == SQLITE_DONE ? SQLITE_OK : SQLITE_ERROR;
 	sqlite3_reset(to);
 	return code;
 }
 
-static int fill(sqlite3 *db, const char *schema, bool has_reading)
+static int fill(sqlite3 *db, const char *schema, int version)
 {
 	sqlite3_stmt *from = NULL, *to = NULL;
 	char sql[500];
@@ -143,29 +108,29 @@ static int fill(sqlite3 *db, const char *schema, bool has_reading)
 		 " c.information_id AND element = 'subject'"
 		 " AND (d.language IS NULL OR d.language = c.language))"
 		 " FROM main.information_contents c ORDER BY content_id",
-		 has_reading ? "reading" : "NULL");
+		 version < INFO_SCHEMA_SEARCH ? "NULL" : "reading");
 	code = sqlite3_prepare_v2(db, sql, -1, &from, NULL);
 	snprintf(sql, sizeof(sql),
 		 "INSERT INTO %s.search(rowid, title, caption, body) VALUES(?, ?, ?, ?)", schema);
 	if (code == SQLITE_OK)
 		code = sqlite3_prepare_v2(db, sql, -1, &to, NULL);
 	while (code == SQLITE_OK && (step = sqlite3_step(from)) == SQLITE_ROW)
-		code = copy_row(to, from);
+		code = copy_row(to, from, version);
 	sqlite3_finalize(from);
 	sqlite3_finalize(to);
 	return code == SQLITE_OK && step != SQLITE_DONE ? step : code;
 }
 
-int info_index_make(sqlite3 *db, const struct info_index_options *options)
+int info_index_make(sqlite3 *db, int version)
 {
-	const char *schema = options->temporary ? "temp" : "main";
+	const char *schema = version < INFO_SCHEMA_SEARCH ? "temp" : "main";
 	char sql[200];
 	int code;
 
 	snprintf(sql, sizeof(sql), create, schema);
 	code = sqlite3_exec(db, sql, NULL, NULL, NULL);
 	if (code == SQLITE_OK)
-		code = fill(db, schema, options->has_reading);
+		code = fill(db, schema, version);
 	/* Merge into one segment: smaller, and independent of the order of inserts. */
 	snprintf(sql, sizeof(sql), "INSERT INTO %s.search(search) VALUES('optimize')", schema);
 	if (code == SQLITE_OK)

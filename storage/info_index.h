@@ -8,13 +8,9 @@
 
 #include "base/bytes.h"
 
-struct info_index_options {
-	bool temporary;   /* in temp, for an image without an index; else in main */
-	bool has_reading; /* information_contents has a column "reading" */
-};
-
-/* Creates and fills the index. Returns SQLITE_OK, or SQLite's code. */
-must_check int info_index_make(sqlite3 *db, const struct info_index_options *options);
+/* Creates and fills the index of an image of that schema version; in temp if its version has none
+ * of its own, else in main. Returns SQLITE_OK, or SQLite's code. */
+must_check int info_index_make(sqlite3 *db, int version);
 
 /* Receives a row that was found. Returns false if no more are needed. */
 typedef bool info_index_hit(void *data, int64_t content_id);

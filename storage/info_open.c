@@ -10,10 +10,12 @@
 
 #include "base/array.h"
 #include "base/log.h"
+#include "format/article.h"
 #include "storage/info_index.h"
 #include "storage/info_languages.h"
 #include "storage/info_rows.h"
 #include "storage/info_schema.h"
+#include "storage/plain_page.h"
 
 enum {
 	STEPS_PER_CALL = 1000,
@@ -207,27 +209,28 @@ static int attach_image(struct info *info, struct bytes image)
 }
 
 /* Checks kind and version of the file, and whether its b-trees are intact. */
-static int check_image(struct info *info, sqlite3_int64 *version)
+static int check_image(struct info *info)
 {
-	sqlite3_int64 application = 0;
+	sqlite3_int64 application = 0, version = 0;
 	sqlite3_stmt *statement = NULL;
 	const char *verdict = NULL;
 	int code, rc;
 
 	rc = read_one_number(info, "PRAGMA application_id", &application);
 	if (rc == 0)
-		rc = read_one_number(info, "PRAGMA user_version", version);
+		rc = read_one_number(info, "PRAGMA user_version", &version);
 	if (rc < 0)
 		return rc;
-	if (application != INFO_APPLICATION_ID || *version < INFO_SCHEMA_OLDEST ||
-	    *version > INFO_SCHEMA_VERSION) {
+	if (application != INFO_APPLICATION_ID || version < INFO_SCHEMA_OLDEST ||
+	    version > INFO_SCHEMA_VERSION) {
 		log_error("storage",
 			  "content bug: information database of kind %llx version %lld; this "
 			  "program reads versions %d to %d",
-			  (unsigned long long)application, (long long)*version, INFO_SCHEMA_OLDEST,
+			  (unsigned long long)application, (long long)version, INFO_SCHEMA_OLDEST,
 			  INFO_SCHEMA_VERSION);
 		return -EBADMSG;
 	}
+	info->version = (int)version;
 	code = sqlite3_prepare_v2(info->db, "PRAGMA quick_check(1)", -1, &statement, NULL);
 	if (code == SQLITE_OK)
 		code = sqlite3_step(statement);
@@ -245,11 +248,10 @@ static int complete_version_1(struct info *info)
 		"PRAGMA temp_store = MEMORY;"
 		"CREATE TEMP TABLE dublin_core(information_id INTEGER, position INTEGER,"
 		" element TEXT, language INTEGER, value TEXT)";
-	const struct info_index_options options = { .temporary = true };
 	int code = sqlite3_exec(info->db, missing, NULL, NULL, NULL);
 
 	if (code == SQLITE_OK)
-		code = info_index_make(info->db, &options);
+		code = info_index_make(info->db, info->version);
 	return info_from_sqlite(info->db, code, "completing version 1");
 }
 
@@ -300,22 +302,21 @@ static int open_image(struct info *info, struct bytes image)
 		"SELECT c.body FROM assigned_information a JOIN information_contents c"
 		" USING(information_id) WHERE a.part_id = ?1 AND c.language = ?2"
 		" AND c.body IS NOT NULL ORDER BY a.position LIMIT 1";
-	sqlite3_int64 version = 0;
 	int rc = attach_image(info, image);
 
 	if (rc == 0)
-		rc = check_image(info, &version);
+		rc = check_image(info);
 	if (rc == 0)
 		rc = load(info);
 	if (rc == 0)
 		rc = info_from_sqlite(info->db,
 				      sqlite3_prepare_v2(info->db, page_sql, -1, &info->page, NULL),
 				      "page");
-	if (rc == 0 && version > INFO_SCHEMA_TOURLESS)
+	if (rc == 0 && info->version >= INFO_SCHEMA_TOURS)
 		rc = info_load_tours(info);
 	if (rc == 0)
 		rc = info_load_tools(info);
-	if (rc == 0 && version == 1)
+	if (rc == 0 && info->version < INFO_SCHEMA_SEARCH)
 		rc = complete_version_1(info);
 	return rc;
 }
@@ -328,6 +329,7 @@ int info_open(struct info **out, struct bytes image)
 	*out = NULL;
 	if (!info)
 		return -ENOMEM;
+	buffer_init(&info->plain, ARTICLE_BYTES_MAX);
 	buffer_init(&info->credits, INFO_CREDITS_BYTES_MAX);
 	rc = open_image(info, image);
 	if (rc < 0) {
@@ -344,6 +346,7 @@ void info_close(struct info *info)
 		return;
 	sqlite3_finalize(info->page);
 	sqlite3_close(info->db);
+	buffer_finish(&info->plain);
 	buffer_finish(&info->credits);
 	free(info->contents);
 	info_drop_tours(info);
@@ -427,14 +430,13 @@ static uint32_t page_language(const struct info *info, const struct part *part,
 	return info->language_count;
 }
 
-int info_page(struct info *info, uint32_t part, const char *language, struct bytes *html,
+int info_page(struct info *info, uint32_t part, const char *language, struct bytes *article,
 	      const char **language_found)
 {
 	uint32_t found = page_language(info, &info->parts[part], language);
-	const void *body;
-	int code;
+	int code, rc = 0;
 
-	*html = (struct bytes){ 0 };
+	*article = (struct bytes){ 0 };
 	if (found == info->language_count)
 		return -ENOENT;
 	info->calls = 0;
@@ -444,13 +446,16 @@ int info_page(struct info *info, uint32_t part, const char *language, struct byt
 	code = sqlite3_step(info->page);
 	if (code != SQLITE_ROW)
 		return code == SQLITE_DONE ? -EBADMSG : info_from_sqlite(info->db, code, "page");
-	body = sqlite3_column_text(info->page, 0);
-	if (!body)
-		return -ENOMEM;
-	*html = (struct bytes){ body, (size_t)sqlite3_column_bytes(info->page, 0) };
+	article->data = sqlite3_column_blob(info->page, 0);
+	article->size = (size_t)sqlite3_column_bytes(info->page, 0);
+	if (info->version < INFO_SCHEMA_ARTICLES) {
+		buffer_clear(&info->plain);
+		rc = plain_page(&info->plain, *article);
+		*article = buffer_bytes(&info->plain);
+	}
 	if (language_found)
 		*language_found = info->languages[found];
-	return 0;
+	return rc;
 }
 
 uint32_t info_picture_count(const struct info *info)

@@ -38,7 +38,9 @@ struct tour {
 
 struct info {
 	sqlite3 *db;
+	int version;           /* of the image's schema */
 	sqlite3_stmt *page;    /* stands on the row that the last info_page returned */
+	struct buffer plain;   /* its article, if the image has it as HTML */
 	struct buffer credits; /* the result of the last info_credits */
 	uint32_t calls, calls_most;
 	struct info_hit *contents; /* sorted by id; made by the first search */

@@ -3,7 +3,7 @@
 #include "storage/info_rows.h"
 
 #include <errno.h>
-#include <libxml/xmlstring.h>
+#include <glib.h>
 #include <math.h>
 #include <string.h>
 
@@ -45,7 +45,7 @@ int info_copy_text(sqlite3_stmt *row, int column, char **out)
 
 	if (!text)
 		return sqlite3_column_type(row, column) == SQLITE_NULL ? 0 : -ENOMEM;
-	if (strlen(text) != (size_t)size || !xmlCheckUTF8((const unsigned char *)text))
+	if (!g_utf8_validate(text, size, NULL))
 		return -EBADMSG;
 	*out = strdup(text);
 	return *out ? 0 : -ENOMEM;

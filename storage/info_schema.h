@@ -4,8 +4,10 @@
 
 enum {
 	INFO_APPLICATION_ID = 0x47704966, /* "GpIf", in the SQLite header */
-	INFO_SCHEMA_VERSION = 3,          /* user_version of a database with tours */
-	INFO_SCHEMA_TOURLESS = 2,         /* user_version without tours */
+	INFO_SCHEMA_VERSION = 4,          /* user_version of what is written */
+	INFO_SCHEMA_ARTICLES = 4,         /* first version whose pages are articles, not HTML */
+	INFO_SCHEMA_TOURS = 3,            /* first version with tours */
+	INFO_SCHEMA_SEARCH = 2,           /* first version with credits, readings and an index */
 	INFO_SCHEMA_OLDEST = 1, /* oldest that info_open still reads; docs/information.md */
 };
 

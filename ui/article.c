@@ -1,5 +1,5 @@
-/* Lays out the blocks of a parsed page with Pango, draws them with Cairo and finds links and
- * pictures by position. */
+/* Lays out the blocks of an article with Pango, draws them with Cairo and finds links and pictures
+ * by position. */
 #include "ui/article.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@
 #define LINK_TOLERANCE_MM 3.5f
 
 struct item {
-	const struct html_block *block;
+	const struct article_block *block;
 	int x_px, y_px, width_px, height_px;
 	PangoLayout *layout, *marker; /* owned or NULL */
 	struct bitmap picture;        /* scaled; empty if it has not arrived yet */
@@ -33,8 +33,11 @@ struct link_area {
 
 struct article {
 	struct article_options options;
-	struct html html;
-	struct item *items; /* as many as blocks */
+	struct article_blocks content;
+	struct article_block note[2]; /* the rule and the small print below it */
+	char *note_text;              /* owned; NULL: no note */
+	struct item *items;           /* one for each block, then those of the note */
+	uint32_t item_count;
 	struct link_area *links;
 	uint32_t link_count;
 	int left_px, column_px; /* of the text */
@@ -44,28 +47,28 @@ struct article {
 /* ---- text with attributes ---- */
 
 static void add_attribute(PangoAttrList *list, PangoAttribute *attribute,
-			  const struct html_span *span)
+			  const struct article_span *span)
 {
 	attribute->start_index = span->start;
 	attribute->end_index = span->end;
 	pango_attr_list_insert(list, attribute);
 }
 
-static void add_span(PangoAttrList *list, const struct html_span *span, bool italics)
+static void add_span(PangoAttrList *list, const struct article_span *span, bool italics)
 {
-	if (span->flags & HTML_EMPHASIS)
+	if (span->flags & ARTICLE_EMPHASIS)
 		add_attribute(list,
 			      italics ? pango_attr_style_new(PANGO_STYLE_ITALIC)
 				      : pango_attr_weight_new(PANGO_WEIGHT_MEDIUM),
 			      span);
-	if (span->flags & HTML_STRONG)
+	if (span->flags & ARTICLE_STRONG)
 		add_attribute(list, pango_attr_weight_new(PANGO_WEIGHT_BOLD), span);
-	if (span->flags & (HTML_SMALL | HTML_SUBSCRIPT | HTML_SUPERSCRIPT))
+	if (span->flags & (ARTICLE_SMALL | ARTICLE_SUBSCRIPT | ARTICLE_SUPERSCRIPT))
 		add_attribute(list, pango_attr_scale_new(PANGO_SCALE_SMALL), span);
-	if (span->flags & HTML_SUBSCRIPT)
+	if (span->flags & ARTICLE_SUBSCRIPT)
 		add_attribute(list, pango_attr_baseline_shift_new(PANGO_BASELINE_SHIFT_SUBSCRIPT),
 			      span);
-	if (span->flags & HTML_SUPERSCRIPT)
+	if (span->flags & ARTICLE_SUPERSCRIPT)
 		add_attribute(list, pango_attr_baseline_shift_new(PANGO_BASELINE_SHIFT_SUPERSCRIPT),
 			      span);
 	if (span->link >= 0) {
@@ -78,11 +81,23 @@ static void add_span(PangoAttrList *list, const struct html_span *span, bool ita
 	}
 }
 
-static PangoLayout *make_layout(const struct article *article, const struct html_block *block,
+static enum text_style style_of(const struct article_block *block)
+{
+	static const enum text_style styles[ARTICLE_STYLE_COUNT] = {
+		[ARTICLE_BODY] = TEXT_BODY,           [ARTICLE_HEADING_1] = TEXT_HEADING_1,
+		[ARTICLE_HEADING_2] = TEXT_HEADING_2, [ARTICLE_HEADING_3] = TEXT_HEADING_3,
+		[ARTICLE_QUOTE] = TEXT_QUOTE,         [ARTICLE_FIGURE] = TEXT_FIGURE,
+		[ARTICLE_CELL] = TEXT_CELL,
+	};
+
+	return styles[block->style];
+}
+
+static PangoLayout *make_layout(const struct article *article, const struct article_block *block,
 				int width_px)
 {
 	PangoLayout *layout =
-		theme_layout(article->options.theme, block->style, block->text, width_px);
+		theme_layout(article->options.theme, style_of(block), block->text, width_px);
 	PangoAttrList *list = pango_attr_list_new();
 
 	for (uint32_t i = 0; i < block->span_count; i++)
@@ -99,21 +114,21 @@ static int px(const struct article *article, float mm)
 	return theme_px(article->options.theme, mm);
 }
 
-static float space_before_mm(const struct html_block *block, const struct html_block *above)
+static float space_before_mm(const struct article_block *block, const struct article_block *above)
 {
 	if (!above)
 		return TOP_MARGIN_MM;
-	if (block->kind != HTML_TEXT)
+	if (block->kind != ARTICLE_TEXT)
 		return 4.0f;
 	switch (block->style) {
-	case TEXT_HEADING_1:
+	case ARTICLE_HEADING_1:
 		return 7.0f;
-	case TEXT_HEADING_2:
+	case ARTICLE_HEADING_2:
 		return 7.0f;
-	case TEXT_HEADING_3:
+	case ARTICLE_HEADING_3:
 		return 5.5f;
-	case TEXT_FIGURE:
-		return above->kind == HTML_IMAGE ? 1.4f : 3.0f;
+	case ARTICLE_FIGURE:
+		return above->kind == ARTICLE_IMAGE ? 1.4f : 3.0f;
 	default:
 		return block->marker && above->indent ? 1.6f : 3.2f;
 	}
@@ -162,7 +177,7 @@ static void measure_picture(struct article *article, struct item *item)
 
 static void place_item(struct article *article, struct item *item, int x_px, int y_px, int width_px)
 {
-	const struct html_block *block = item->block;
+	const struct article_block *block = item->block;
 	int indent_px = (int)block->indent * px(article, INDENT_MM) +
 			(block->quote ? px(article, QUOTE_MM) : 0);
 
@@ -173,18 +188,18 @@ static void place_item(struct article *article, struct item *item, int x_px, int
 	item->y_px = y_px;
 	item->width_px = width_px - indent_px > 1 ? width_px - indent_px : 1;
 	switch (block->kind) {
-	case HTML_RULE:
+	case ARTICLE_RULE:
 		item->height_px = px(article, 0.4f);
 		break;
-	case HTML_IMAGE:
+	case ARTICLE_IMAGE:
 		measure_picture(article, item);
 		break;
-	case HTML_TEXT:
+	case ARTICLE_TEXT:
 		if (!item->layout)
 			item->layout = make_layout(article, block, item->width_px);
 		pango_layout_get_pixel_size(item->layout, NULL, &item->height_px);
 		if (block->marker && !item->marker)
-			item->marker = theme_layout(article->options.theme, block->style,
+			item->marker = theme_layout(article->options.theme, style_of(block),
 						    block->marker, -1);
 	}
 }
@@ -193,18 +208,18 @@ static void place_item(struct article *article, struct item *item, int x_px, int
  * *y_px below the row. */
 static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
 {
-	const struct html_block *blocks = article->html.blocks;
-	uint32_t count = 0, columns = blocks[first].column_count ? blocks[first].column_count : 1;
+	const struct item *items = &article->items[first];
+	const uint32_t row = items->block->row, columns = items->block->column_count;
+	uint32_t count = 0;
 	int padding_px = px(article, CELL_PADDING_MM), lowest_px = *y_px, below_px = 0;
 
-	while (first + count < article->html.block_count &&
-	       blocks[first + count].row == blocks[first].row) {
+	while (first + count < article->item_count && items[count].block->row == row) {
 		struct item *item = &article->items[first + count];
-		uint32_t column = item->block->column < columns ? item->block->column : columns - 1;
+		uint32_t column = item->block->column;
 		int left_px = article->column_px * (int)column / (int)columns;
 		int right_px = article->column_px * (int)(column + 1) / (int)columns;
 
-		if (count == 0 || blocks[first + count - 1].column != item->block->column)
+		if (count == 0 || items[count - 1].block->column != column)
 			below_px = *y_px;
 		place_item(article, item, article->left_px + left_px, below_px + padding_px,
 			   right_px - left_px - 2 * padding_px > 1
@@ -235,7 +250,7 @@ static int add_link_area(struct article *article, struct link_area area)
 
 /* Adds a rectangle for each line that the link touches. */
 static int find_link_areas(struct article *article, const struct item *item,
-			   const struct html_span *span)
+			   const struct article_span *span)
 {
 	PangoLayoutIter *iter = pango_layout_get_iter(item->layout);
 	int rc = 0;
@@ -269,7 +284,7 @@ static int find_links(struct article *article)
 	int rc = 0;
 
 	article->link_count = 0;
-	for (uint32_t i = 0; i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		const struct item *item = &article->items[i];
 
 		for (uint32_t k = 0; item->layout && k < item->block->span_count && rc == 0; k++)
@@ -281,14 +296,13 @@ static int find_links(struct article *article)
 
 static int lay_out(struct article *article)
 {
-	const struct html *html = &article->html;
 	uint32_t i = 0;
 	int y_px = 0;
 
-	while (i < html->block_count) {
-		const struct html_block *block = &html->blocks[i];
-		const struct html_block *above = i > 0 ? &html->blocks[i - 1] : NULL;
+	while (i < article->item_count) {
 		struct item *item = &article->items[i];
+		const struct article_block *block = item->block;
+		const struct article_block *above = i > 0 ? item[-1].block : NULL;
 
 		/* Rows of one table have no space between them. */
 		if (!block->row || !above || !above->row)
@@ -307,7 +321,7 @@ static int lay_out(struct article *article)
 
 static void drop_layouts(struct article *article)
 {
-	for (uint32_t i = 0; i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		struct item *item = &article->items[i];
 
 		if (item->layout)
@@ -338,7 +352,32 @@ int article_lay_out(struct article *article, int width_px, int view_px)
 	return rc;
 }
 
-int article_create(struct article **out, const struct article_options *options, struct bytes html)
+/* Lists the blocks of the article and, where there are credits, a rule and the credits. */
+static int make_items(struct article *article, const char *credits)
+{
+	const uint32_t count = article->content.block_count;
+
+	if (credits && *credits) {
+		article->note_text = strdup(credits);
+		if (!article->note_text)
+			return -ENOMEM;
+		article->note[0] =
+			(struct article_block){ .kind = ARTICLE_RULE, .style = ARTICLE_FIGURE };
+		article->note[1] = (struct article_block){ .kind = ARTICLE_TEXT,
+							   .style = ARTICLE_FIGURE,
+							   .text = article->note_text };
+	}
+	article->items = calloc(count + ARRAY_COUNT(article->note), sizeof(*article->items));
+	if (!article->items)
+		return -ENOMEM;
+	article->item_count = count + (article->note_text ? ARRAY_COUNT(article->note) : 0);
+	for (uint32_t i = 0; i < article->item_count; i++)
+		article->items[i].block =
+			i < count ? &article->content.blocks[i] : &article->note[i - count];
+	return 0;
+}
+
+int article_create(struct article **out, const struct article_options *options, struct bytes bytes)
 {
 	struct article *article = calloc(1, sizeof(*article));
 	int rc;
@@ -347,16 +386,10 @@ int article_create(struct article **out, const struct article_options *options, 
 	if (!article)
 		return -ENOMEM;
 	article->options = *options;
-	rc = html_parse(&article->html, html);
-	if (rc == 0 && options->credits && *options->credits)
-		rc = html_add_note(&article->html, options->credits);
 	article->options.credits = NULL;
-	if (rc == 0) {
-		article->items = calloc(article->html.block_count, sizeof(*article->items));
-		rc = article->items ? 0 : -ENOMEM;
-	}
-	for (uint32_t i = 0; rc == 0 && i < article->html.block_count; i++)
-		article->items[i].block = &article->html.blocks[i];
+	rc = article_decode(&article->content, bytes);
+	if (rc == 0)
+		rc = make_items(article, options->credits);
 	if (rc == 0)
 		rc = article_lay_out(article, options->width_px, options->view_px);
 	if (rc < 0) {
@@ -371,7 +404,7 @@ void article_destroy(struct article *article)
 {
 	if (!article)
 		return;
-	for (uint32_t i = 0; article->items && i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		if (article->items[i].layout)
 			g_object_unref(article->items[i].layout);
 		if (article->items[i].marker)
@@ -380,7 +413,8 @@ void article_destroy(struct article *article)
 	}
 	free(article->items);
 	free(article->links);
-	html_finish(&article->html);
+	free(article->note_text);
+	article_finish(&article->content);
 	free(article);
 }
 
@@ -403,9 +437,9 @@ static void draw_picture(const struct item *item, cairo_t *context)
 	cairo_fill(context);
 }
 
-static struct colour colour_of(enum text_style style)
+static struct colour colour_of(enum article_style style)
 {
-	return style == TEXT_FIGURE || style == TEXT_QUOTE ? theme_ink_soft : theme_ink;
+	return style == ARTICLE_FIGURE || style == ARTICLE_QUOTE ? theme_ink_soft : theme_ink;
 }
 
 static void draw_quote_bar(const struct article *article, const struct item *item, cairo_t *context)
@@ -419,13 +453,13 @@ static void draw_quote_bar(const struct article *article, const struct item *ite
 
 static void draw_item(const struct article *article, const struct item *item, cairo_t *context)
 {
-	if (item->block->kind == HTML_RULE) {
+	if (item->block->kind == ARTICLE_RULE) {
 		cairo_rectangle(context, item->x_px, item->y_px, item->width_px, item->height_px);
 		theme_set_source(context, theme_line, 1);
 		cairo_fill(context);
 		return;
 	}
-	if (item->block->kind == HTML_IMAGE) {
+	if (item->block->kind == ARTICLE_IMAGE) {
 		draw_picture(item, context);
 		return;
 	}
@@ -451,15 +485,15 @@ static void draw_item(const struct article *article, const struct item *item, ca
 /* Draws a hairline below each table row, after the row's last block. */
 static void draw_row_line(const struct article *article, uint32_t i, cairo_t *context)
 {
-	const struct html *html = &article->html;
-	uint32_t row = html->blocks[i].row;
+	const struct item *items = article->items;
+	uint32_t row = items[i].block->row;
 	int lowest_px = 0;
 
-	if (!row || (i + 1 < html->block_count && html->blocks[i + 1].row == row))
+	if (!row || (i + 1 < article->item_count && items[i + 1].block->row == row))
 		return;
-	for (uint32_t k = i + 1; k-- > 0 && html->blocks[k].row == row;)
-		if (article->items[k].y_px + article->items[k].height_px > lowest_px)
-			lowest_px = article->items[k].y_px + article->items[k].height_px;
+	for (uint32_t k = i + 1; k-- > 0 && items[k].block->row == row;)
+		if (items[k].y_px + items[k].height_px > lowest_px)
+			lowest_px = items[k].y_px + items[k].height_px;
 	cairo_rectangle(context, article->left_px, lowest_px + px(article, CELL_PADDING_MM) - 1,
 			article->column_px, 1);
 	theme_set_source(context, theme_line, 1);
@@ -474,7 +508,7 @@ void article_draw(const struct article *article, cairo_t *context, int top_px, i
 	theme_set_source(context, theme_paper, 1);
 	cairo_paint(context);
 	cairo_translate(context, 0, -top_px);
-	for (uint32_t i = 0; i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		const struct item *item = &article->items[i];
 
 		if (item->y_px - slack_px >= top_px + height_px ||
@@ -502,7 +536,7 @@ const char *article_link_at(const struct article *article, float x_px, float y_p
 					   outside(y_px, area->y_px, area->height_px));
 
 		if (distance_px <= nearest_px) {
-			found = article->html.links[area->link];
+			found = article->content.links[area->link];
 			nearest_px = distance_px;
 		}
 	}
@@ -513,34 +547,35 @@ uint32_t article_picture_count(const struct article *article)
 {
 	uint32_t count = 0;
 
-	for (uint32_t i = 0; i < article->html.block_count; i++)
-		count += article->html.blocks[i].kind == HTML_IMAGE;
+	for (uint32_t i = 0; i < article->item_count; i++)
+		count += article->items[i].block->kind == ARTICLE_IMAGE;
 	return count;
 }
 
 const char *article_picture(const struct article *article, uint32_t picture, const char **caption)
 {
-	const struct html *html = &article->html;
+	const struct item *items = article->items;
+	const struct article_block *below;
 	uint32_t i = 0;
 
-	while (i < html->block_count && (html->blocks[i].kind != HTML_IMAGE || picture-- > 0))
+	while (i < article->item_count && (items[i].block->kind != ARTICLE_IMAGE || picture-- > 0))
 		i++;
+	below = i + 1 < article->item_count ? items[i + 1].block : NULL;
 	if (caption)
-		*caption = i + 1 < html->block_count && html->blocks[i + 1].kind == HTML_TEXT &&
-					   html->blocks[i + 1].style == TEXT_FIGURE
-				   ? html->blocks[i + 1].text
+		*caption = below && below->kind == ARTICLE_TEXT && below->style == ARTICLE_FIGURE
+				   ? below->text
 				   : "";
-	return i < html->block_count ? html->blocks[i].text : "";
+	return i < article->item_count ? items[i].block->text : "";
 }
 
 int article_picture_at(const struct article *article, float x_px, float y_px)
 {
 	int picture = 0;
 
-	for (uint32_t i = 0; i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		const struct item *item = &article->items[i];
 
-		if (item->block->kind != HTML_IMAGE)
+		if (item->block->kind != ARTICLE_IMAGE)
 			continue;
 		if (x_px >= (float)item->x_px && x_px < (float)(item->x_px + item->width_px) &&
 		    y_px >= (float)item->y_px && y_px < (float)(item->y_px + item->height_px))
@@ -552,10 +587,10 @@ int article_picture_at(const struct article *article, float x_px, float y_px)
 
 int article_picture_arrived(struct article *article, const char *name)
 {
-	for (uint32_t i = 0; i < article->html.block_count; i++) {
+	for (uint32_t i = 0; i < article->item_count; i++) {
 		const struct item *item = &article->items[i];
 
-		if (item->block->kind != HTML_IMAGE || strcmp(item->block->text, name) != 0)
+		if (item->block->kind != ARTICLE_IMAGE || strcmp(item->block->text, name) != 0)
 			continue;
 		/* It fails only if memory runs out; then links are lost, and the text stays. */
 		if (lay_out(article) < 0)
@@ -569,7 +604,7 @@ int article_unknown_glyphs(const struct article *article)
 {
 	int count = 0;
 
-	for (uint32_t i = 0; i < article->html.block_count; i++)
+	for (uint32_t i = 0; i < article->item_count; i++)
 		if (article->items[i].layout)
 			count += pango_layout_get_unknown_glyphs_count(article->items[i].layout);
 	return count;

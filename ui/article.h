@@ -1,11 +1,12 @@
-/* A page of text and pictures, laid out for a given width: its height, its appearance piece by
+/* An article (format/article.h) laid out for a given width: its height, its appearance piece by
  * piece, and the places of its links. It is drawn in pieces, so that a long page needs no long
- * bitmap. It is called article because format/page.h already uses the word page. */
+ * bitmap. */
 #ifndef GOPURA_UI_ARTICLE_H
 #define GOPURA_UI_ARTICLE_H
 
-#include "ui/html.h"
+#include "format/article.h"
 #include "ui/source.h"
+#include "ui/theme.h"
 
 struct article;
 
@@ -18,10 +19,10 @@ struct article_options {
 		*credits; /* small print below the page; read during the call; NULL or "": none */
 };
 
-/* Parses html and lays it out; html is not kept. *out is owned by the caller; on failure it is
- * NULL. Returns the errors of html_parse. */
+/* Decodes an article and lays it out; the bytes are not kept. *out is owned by the caller; on
+ * failure it is NULL. Returns the errors of article_decode. */
 must_check int article_create(struct article **out, const struct article_options *options,
-			      struct bytes html);
+			      struct bytes bytes);
 /* Lays out again, for another type size or another window. Returns -ENOMEM; the article then has no
  * links. */
 must_check int article_lay_out(struct article *article, int width_px, int view_px);

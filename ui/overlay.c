@@ -256,7 +256,7 @@ int overlay_card(const struct overlay *overlay)
 	return overlay->card_part;
 }
 
-int overlay_show_page(struct overlay *overlay, int part, struct bytes html, const char *credits)
+int overlay_show_page(struct overlay *overlay, int part, struct bytes bytes, const char *credits)
 {
 	struct article_options options = { .theme = &overlay->theme,
 					   .pictures = overlay->pictures,
@@ -270,7 +270,7 @@ int overlay_show_page(struct overlay *overlay, int part, struct bytes html, cons
 		overlay->page_wide = false;
 	options.width_px = overlay_view_rect(overlay).width_px;
 	options.view_px = overlay_view_rect(overlay).height_px;
-	rc = article_create(&article, &options, html);
+	rc = article_create(&article, &options, bytes);
 	if (rc < 0)
 		return rc;
 	overlay->gallery = (struct gallery){ 0 };

@@ -77,10 +77,11 @@ void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *ancho
 void overlay_show_card(struct overlay *overlay, int part);
 int overlay_card(const struct overlay *overlay); /* the part whose card is open, or -1 */
 
-/* Opens the page of a part beside the model, or replaces the open page. html is parsed now and not
- * kept. credits is small print below the page; it is copied and may be "". Returns -EBADMSG if html
- * has nothing that can be shown, -EINVAL if there is no such part, or -ENOMEM. */
-must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes html,
+/* Opens the page of a part beside the model, or replaces the open page. article is encoded
+ * (format/article.h); it is decoded now and not kept. credits is small print below the page, in one
+ * line; it is copied and may be "". Returns -EBADMSG if article is not valid, -EINVAL if there is
+ * no such part, or -ENOMEM. */
+must_check int overlay_show_page(struct overlay *overlay, int part, struct bytes article,
 				 const char *credits);
 /* Closes the page and its pictures. The page fades out. */
 void overlay_close_page(struct overlay *overlay);

@@ -367,11 +367,11 @@ void information_view_set_language(struct information_view *view, const char *la
 
 bool information_view_open_page(struct information_view *view, uint32_t part)
 {
-	struct bytes html;
-	int rc = info_page(view->info, part, view->language, &html, NULL);
+	struct bytes article;
+	int rc = info_page(view->info, part, view->language, &article, NULL);
 
 	if (rc == 0)
-		rc = overlay_show_page(view->overlay, (int)part, html,
+		rc = overlay_show_page(view->overlay, (int)part, article,
 				       info_credits(view->info, part, view->language));
 	if (rc < 0 && rc != -ENOENT)
 		log_error("app", "content bug: page of %s: %s", info_part(view->info, part)->id,

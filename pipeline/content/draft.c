@@ -47,6 +47,7 @@ static void part_finish(struct draft_part *part)
 		free(part->captions[i]);
 		free(part->readings[i]);
 		free(part->pages[i].html);
+		buffer_finish(&part->pages[i].article);
 		free(part->pages[i].pictures);
 	}
 }

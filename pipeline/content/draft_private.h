@@ -12,7 +12,8 @@ enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 struct draft_page {
 	char *html; /* owned, null-terminated; NULL: none */
 	size_t size;
-	uint32_t *pictures; /* owned; indices into draft.pictures, in order of use, each once */
+	struct buffer article; /* made of html; empty if html was complained about */
+	uint32_t *pictures;    /* owned; indices into draft.pictures, in order of use, each once */
 	uint32_t picture_count;
 };
 

@@ -41,17 +41,13 @@ static const char schema[] =
 	"CREATE TABLE information_contents(content_id INTEGER PRIMARY KEY,"
 	" information_id INTEGER NOT NULL REFERENCES information,"
 	" language INTEGER NOT NULL REFERENCES language, title TEXT, reading TEXT, caption TEXT,"
-	" body TEXT, UNIQUE(information_id, language));"
+	" body BLOB, UNIQUE(information_id, language));"
 	"CREATE TABLE dublin_core(information_id INTEGER NOT NULL REFERENCES information,"
 	" position INTEGER NOT NULL, element TEXT NOT NULL, language INTEGER REFERENCES language,"
 	" value TEXT NOT NULL, PRIMARY KEY(information_id, position)) WITHOUT ROWID;"
 	"CREATE TABLE content_picture(content_id INTEGER NOT NULL REFERENCES information_contents,"
 	" position INTEGER NOT NULL, picture_id INTEGER NOT NULL REFERENCES picture,"
-	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
-
-/* Added only if there are tours. Without tours the image has the previous version number, so that
- * older programs can read it. */
-static const char tour_schema[] =
+	" PRIMARY KEY(content_id, position)) WITHOUT ROWID;"
 	"CREATE TABLE tour(tour_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE,"
 	" attract INTEGER NOT NULL, thumbnail INTEGER REFERENCES picture);"
 	"CREATE TABLE tour_contents(tour_id INTEGER NOT NULL REFERENCES tour,"
@@ -106,6 +102,13 @@ static void bind_text(struct writer *w, const char *text) /* NULL becomes SQL NU
 		w->code = sqlite3_bind_text(w->statement, ++w->bound, text, -1, SQLITE_STATIC);
 }
 
+static void bind_blob(struct writer *w, struct bytes blob) /* no bytes become SQL NULL */
+{
+	if (w->code == SQLITE_OK)
+		w->code = sqlite3_bind_blob(w->statement, ++w->bound, blob.size ? blob.data : NULL,
+					    (int)blob.size, SQLITE_STATIC);
+}
+
 static void insert(struct writer *w)
 {
 	int code;
@@ -136,9 +139,7 @@ static void write_pictures(struct writer *w, const struct draft *draft)
 		prepare(w, "INSERT INTO picture VALUES(?, ?, ?, ?, ?, ?, ?)");
 		bind_int(w, i);
 		bind_text(w, picture->name);
-		if (w->code == SQLITE_OK)
-			w->code = sqlite3_bind_blob(w->statement, ++w->bound, picture->hash.bytes,
-						    HASH_BYTES, SQLITE_STATIC);
+		bind_blob(w, (struct bytes){ picture->hash.bytes, HASH_BYTES });
 		bind_int(w, picture->size);
 		bind_text(w, picture->media_type);
 		bind_int(w, picture->width_px);
@@ -195,7 +196,7 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 	bind_text(w, part->titles[language]);
 	bind_text(w, part->readings[language]);
 	bind_text(w, part->captions[language]);
-	bind_text(w, page->html);
+	bind_blob(w, buffer_bytes(&page->article));
 	insert(w);
 	for (uint32_t i = 0; i < page->picture_count; i++) {
 		prepare(w, "INSERT INTO content_picture VALUES(?,?,?)");
@@ -313,11 +314,8 @@ static void write_database(struct writer *w, const struct draft *draft)
 	char pragmas[100];
 
 	snprintf(pragmas, sizeof(pragmas), "PRAGMA application_id = %d; PRAGMA user_version = %d;",
-		 INFO_APPLICATION_ID,
-		 draft->tour_count > 0 ? INFO_SCHEMA_VERSION : INFO_SCHEMA_TOURLESS);
+		 INFO_APPLICATION_ID, INFO_SCHEMA_VERSION);
 	run(w, schema);
-	if (draft->tour_count > 0)
-		run(w, tour_schema);
 	run(w, pragmas);
 	run(w, "BEGIN");
 	write_languages(w, draft->options);
@@ -330,7 +328,7 @@ static void write_database(struct writer *w, const struct draft *draft)
 		write_tour(w, i, &draft->tours[i]);
 	write_tools(w, draft->options->tools);
 	if (w->code == SQLITE_OK)
-		w->code = info_index_make(w->db, &(struct info_index_options){ false, true });
+		w->code = info_index_make(w->db, INFO_SCHEMA_VERSION);
 	run(w, "COMMIT");
 	run(w, "VACUUM");
 }

@@ -1,5 +1,5 @@
-/* Reads pages/ID.LANG.html. libxml2's HTML parser tolerates errors; our own strict rules then
- * refuse, with the line, what the kiosk cannot show or must not load. */
+/* Reads pages/ID.LANG.html and makes articles of them. libxml2's HTML parser tolerates errors; our
+ * own strict rules then refuse, with the line, what the kiosk cannot show or must not load. */
 #include <dirent.h>
 #include <errno.h>
 #include <libxml/HTMLparser.h>
@@ -9,8 +9,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "format/article.h"
+#include "format/html_elements.h"
 #include "format/html_tags.h"
 #include "pipeline/content/draft_private.h"
+#include "pipeline/content/page_compile.h"
 
 struct page_check {
 	struct draft *draft;
@@ -18,24 +21,6 @@ struct page_check {
 	const char *file;
 	uint32_t text_bytes; /* bytes that are not white space */
 };
-
-/* Elements that ui/html.c draws, or may safely ignore. */
-static const char *const allowed_elements[] = {
-	"html",    "head",   "title",  "meta",       "body",       "main", "section", "article",
-	"header",  "footer", "div",    "h1",         "h2",         "h3",   "p",       "br",
-	"hr",      "ul",     "ol",     "li",         "a",          "img",  "em",      "i",
-	"strong",  "b",      "figure", "span",       "sub",        "sup",  "small",   "table",
-	"caption", "thead",  "tbody",  "tr",         "th",         "td",   "cite",    "q",
-	"abbr",    "time",   "dfn",    "blockquote", "figcaption",
-};
-
-static bool is_allowed(const char *name)
-{
-	for (size_t i = 0; i < ARRAY_COUNT(allowed_elements); i++)
-		if (strcmp(name, allowed_elements[i]) == 0)
-			return true;
-	return false;
-}
 
 static unsigned node_line(xmlNode *node)
 {
@@ -132,7 +117,7 @@ static int check_element(struct page_check *check, xmlNode *node)
 {
 	const char *name = (const char *)node->name;
 
-	if (!is_allowed(name))
+	if (!html_element(name, strlen(name))->is_allowed)
 		draft_complain(check->draft, true, check->file, node_line(node),
 			       "<%.40s> cannot be shown: see docs/information.md for the "
 			       "elements that can",
@@ -196,8 +181,8 @@ static bool check_tags(struct page_check *check)
 	buffer_finish(&reduced);
 	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
 		draft_complain(check->draft, true, check->file, found.line,
-			       "a tag with %u attributes: at most %d are read, and the kiosk "
-			       "shows none but src and href; remove the others",
+			       "a tag with %u attributes: at most %d are read, and only src and "
+			       "href mean anything; remove the others",
 			       found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
 	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
 }
@@ -241,7 +226,7 @@ static int read_page_file(struct page_check *check)
 	char path[PATH_MAX];
 	int rc = -ENAMETOOLONG;
 
-	buffer_init(&bytes, INFO_PAGE_BYTES_MAX + 1);
+	buffer_init(&bytes, HTML_BYTES_MAX + 1);
 	if (draft_path(check->draft, path, sizeof(path), check->file))
 		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
 	if (rc == 0) {
@@ -259,7 +244,7 @@ static int read_page_file(struct page_check *check)
 		draft_complain(check->draft, true, check->file, 0,
 			       rc == -EFBIG ? "page is larger than %d KB: split it"
 					    : "cannot be read (at most %d KB)",
-			       INFO_PAGE_BYTES_MAX >> 10);
+			       HTML_BYTES_MAX >> 10);
 	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
 		draft_complain(check->draft, true, check->file, 0,
 			       "is not UTF-8: save it with that encoding");
@@ -270,6 +255,36 @@ static int read_page_file(struct page_check *check)
 	}
 	buffer_finish(&bytes);
 	return 0;
+}
+
+/* Makes the article. What was complained about is not published, so it needs none. */
+static int compile_page(struct page_check *check)
+{
+	struct draft_page *page = check->page;
+	const struct bytes html = { (const uint8_t *)page->html, page->size };
+	int rc;
+
+	buffer_init(&page->article, ARTICLE_BYTES_MAX);
+	rc = page_compile(&page->article, html);
+	if (rc == -EFBIG)
+		draft_complain(
+			check->draft, true, check->file, 0,
+			"more than %d paragraphs, pictures and cells, or links: split the page",
+			ARTICLE_BLOCKS_MAX);
+	else if (rc == -EBADMSG)
+		draft_complain(check->draft, true, check->file, 1,
+			       "there is no text on this page: write some, or remove the file");
+	return rc == -ENOMEM ? rc : 0;
+}
+
+static int check_page(struct page_check *check)
+{
+	const uint32_t errors = check->draft->error_count;
+	int rc = check_tags(check) ? parse_page(check) : 0;
+
+	if (rc == 0 && check->draft->error_count == errors)
+		rc = compile_page(check);
+	return rc;
 }
 
 static int read_part_pages(struct draft *draft, struct draft_part *part)
@@ -285,7 +300,7 @@ static int read_part_pages(struct draft *draft, struct draft_part *part)
 			 options->languages[i]);
 		rc = read_page_file(&check);
 		if (rc == 0 && part->pages[i].html)
-			rc = check_tags(&check) ? parse_page(&check) : 0;
+			rc = check_page(&check);
 		else if (rc == 0 && !part->without_page)
 			draft_complain(draft, i == 0, file, 0,
 				       i == 0 ? "is missing: write it, or give the part "

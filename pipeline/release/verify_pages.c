@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/article.h"
 #include "format/label.h"
 #include "pipeline/release/verify_pages.h"
 
@@ -220,6 +221,40 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 	return rc < 0 ? rc : 0;
 }
 
+/* Decodes the page of every part and language, and looks up the pictures that it shows. */
+static int check_articles(struct verify_walk *walk, struct info *info)
+{
+	const uint32_t languages = info_language_count(info);
+	int rc = 0;
+
+	for (uint32_t i = 0; rc == 0 && i < info_part_count(info) * languages; i++) {
+		const char *language = info_language(info, i % languages), *found = "";
+		const char *part = info_part(info, i / languages)->id, *missing = NULL;
+		struct article_blocks article = { 0 };
+		struct bytes bytes;
+
+		rc = info_page(info, i / languages, language, &bytes, &found);
+		if (rc == 0 && strcmp(found, language) == 0)
+			rc = article_decode(&article, bytes);
+		for (uint32_t k = 0; !missing && k < article.block_count; k++)
+			if (article.blocks[k].kind == ARTICLE_IMAGE &&
+			    !info_find_picture(info, article.blocks[k].text))
+				missing = article.blocks[k].text;
+		if (missing)
+			rc = verify_blame(walk->report, -EBADMSG,
+					  "the page of %s in %s shows %s, which the information "
+					  "has not",
+					  part, language, missing);
+		else if (rc == -EBADMSG)
+			rc = verify_blame(walk->report, rc, "the page of %s in %s is damaged", part,
+					  language);
+		else if (rc == -ENOENT)
+			rc = 0;
+		article_finish(&article);
+	}
+	return rc;
+}
+
 int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
 {
 	struct bytes image;
@@ -237,7 +272,8 @@ int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
 						    "is damaged or of another version")
 				      : rc;
 	walk->report->parts = info_part_count(walk->info);
-	return check_pictures(walk, page, walk->info);
+	rc = check_articles(walk, walk->info);
+	return rc < 0 ? rc : check_pictures(walk, page, walk->info);
 }
 
 /* ---- labels ---- */

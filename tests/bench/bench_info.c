@@ -47,12 +47,12 @@ static void ask(struct info *info)
 static double read_pages(struct info *info)
 {
 	int64_t start_us = clock_thread_us();
-	struct bytes html;
+	struct bytes article;
 	uint32_t count = 0;
 
 	for (int round = 0; round < ROUNDS; round++)
 		for (uint32_t part = 0; part < info_part_count(info); part++)
-			count += info_page(info, part, "km", &html, NULL) == 0;
+			count += info_page(info, part, "km", &article, NULL) == 0;
 	return count ? ms_since(start_us) / count : 0;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "pipeline/content/page_compile.h"
 #include "ui/overlay_state.h"
 
 enum { PARTS = 200, ROUNDS = 60 };
@@ -119,16 +120,19 @@ int main(int argc, char **argv)
 	const struct overlay_options options = {
 		.width_px = 1920, .height_px = 1080, .languages = languages, .language_count = 4
 	};
-	struct buffer page;
+	struct buffer html, page;
 
-	buffer_init(&page, 1 << 20);
-	if (argc != 2 || buffer_read_file(&page, argv[1]) < 0 ||
+	buffer_init(&html, 1 << 20);
+	buffer_init(&page, ARTICLE_BYTES_MAX);
+	if (argc != 2 || buffer_read_file(&html, argv[1]) < 0 ||
+	    page_compile(&page, buffer_bytes(&html)) < 0 ||
 	    overlay_create(&overlay, &options) < 0 || give_parts() < 0) {
 		fprintf(stderr, "usage: bench_ui PAGE.html\n");
 		return 1;
 	}
 	measure(buffer_bytes(&page));
 	overlay_destroy(overlay);
+	buffer_finish(&html);
 	buffer_finish(&page);
 	return 0;
 }

@@ -16,13 +16,13 @@ static void ask_of_part(struct info *info, uint32_t part, const char *language)
 {
 	const struct info_text text = info_text(info, part, language);
 	const char *found = NULL;
-	struct bytes html;
+	struct bytes article;
 
 	if (!text.title || !text.caption || !text.thumbnail || !text.language)
 		abort();
 	if (text.thumbnail[0] && !info_find_picture(info, text.thumbnail))
 		abort();
-	if (info_page(info, part, language, &html, &found) == 0 && !found)
+	if (info_page(info, part, language, &article, &found) == 0 && !found)
 		abort();
 	if (!info_credits(info, part, language))
 		abort();

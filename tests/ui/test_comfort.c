@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
@@ -215,9 +216,7 @@ static struct overlay *open_overlay(int width_px, int height_px)
 
 static void show_page(struct overlay *overlay)
 {
-	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)html, sizeof(html) - 1 },
-				"© The museum") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(html), "© The museum") == 0);
 }
 
 static void paint(struct overlay *overlay, const char *screen)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 
 static const char *const languages[] = { "en", "ja" };
@@ -80,8 +81,7 @@ static struct overlay *open_page(int width_px, int height_px)
 
 	CHECK(overlay_create(&overlay, &options) == 0);
 	CHECK(overlay_parts(overlay, &part, 1) == 0);
-	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)page, strlen(page) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(page), "") == 0);
 	settle(overlay);
 	return overlay;
 }
@@ -275,11 +275,10 @@ static void what_closes_the_page_closes_its_pictures(void **state)
 	CHECK(!overlay->article);
 	overlay_show_picture(overlay, 0);
 	CHECK(overlay_picture(overlay) == -1); /* of no page */
-	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)page, strlen(page) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(page), "") == 0);
 	overlay_show_picture(overlay, 2);
-	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)page, strlen(page) },
-				"") == 0); /* in another language, say */
+	CHECK(overlay_show_page(overlay, 0, compiled(page), "") ==
+	      0); /* in another language, say */
 	CHECK(overlay_picture(overlay) == -1);
 	overlay_show_picture(overlay, 1);
 	overlay_show_search(overlay, true);

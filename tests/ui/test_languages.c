@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 #include "ui/strings.h"
 
@@ -153,9 +154,7 @@ static void a_language_closes_the_menu_and_nothing_else(void **state)
 	struct rect all;
 
 	(void)state;
-	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)html, sizeof(html) - 1 },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(html), "") == 0);
 	overlay_show_languages(overlay, true);
 	leave_picture(overlay, "page");
 	CHECK(overlay_choosing_language(overlay) && overlay_page(overlay) == 0);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
@@ -264,9 +265,7 @@ static void shows_every_screen_on_every_panel(void **state)
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 
-			CHECK(overlay_show_page(overlay, 0,
-						(struct bytes){ (const uint8_t *)pages[language],
-								strlen(pages[language]) },
+			CHECK(overlay_show_page(overlay, 0, compiled(pages[language]),
 						"© The museum · 1150") == 0);
 			CHECK(article_unknown_glyphs(overlay->article) == 0);
 			give_anchors(overlay);
@@ -361,9 +360,7 @@ static void a_page_scrolls_links_and_closes(void **state)
 	(void)state;
 	paint_album(&album);
 	overlay = open_overlay(&album, 1280, 720);
-	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	CHECK(overlay_page(overlay) == 0 && overlay_scene_rect(overlay).width_px == 640);
 	settle(overlay);
 	view = overlay_view_rect(overlay);
@@ -399,7 +396,6 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	struct album album;
 	struct overlay *overlay;
 	struct rect half, bar;
-	const struct bytes html = { (const uint8_t *)pages[0], strlen(pages[0]) };
 	float read;
 
 	(void)state;
@@ -407,7 +403,7 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	overlay = open_overlay(&album, 1280, 720);
 	overlay_widen_page(overlay, true); /* there is none */
 	CHECK(!overlay_page_is_wide(overlay));
-	CHECK(overlay_show_page(overlay, 0, html, "") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	settle(overlay);
 	half = overlay_page_rect(overlay);
 	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
@@ -425,7 +421,7 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	CHECK(overlay_scene_rect(overlay).width_px == half.x_px); /* the eye stays where it is */
 	CHECK(tap(overlay, overlay_close_rect(overlay)).kind == OVERLAY_CLOSE_PAGE);
 	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
-	CHECK(overlay_show_page(overlay, 1, html, "") == 0); /* by a link */
+	CHECK(overlay_show_page(overlay, 1, compiled(pages[0]), "") == 0); /* by a link */
 	CHECK(overlay_page_is_wide(overlay));
 
 	overlay_show_card(overlay, 2); /* of a part that has no page: look at it */
@@ -439,7 +435,7 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
 	overlay_widen_page(overlay, true);
 	overlay_close_page(overlay);
-	CHECK(overlay_show_page(overlay, 0, html, "") == 0); /* the next one */
+	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0); /* the next one */
 	CHECK(overlay_page_rect(overlay).x_px == half.x_px);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
@@ -457,9 +453,7 @@ static void a_late_picture_moves_nothing(void **state)
 	paint_album(&album);
 	album.arrived = false;
 	overlay = open_overlay(&album, 1280, 720);
-	CHECK(overlay_show_page(overlay, 0,
-				(struct bytes){ (const uint8_t *)pages[0], strlen(pages[0]) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	CHECK(album.asked > 0);
 	height_px = article_height_px(overlay->article);
 	before = screen(overlay, "page-waiting");

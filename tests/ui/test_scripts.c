@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/article.h"
 #include "ui/theme.h"
 
@@ -64,8 +65,7 @@ static cairo_surface_t *page_of(const struct theme *theme, const char *text, int
 	char html[TEXT_BYTES];
 
 	snprintf(html, sizeof(html), "<p>%s</p>", text);
-	CHECK(article_create(&article, &options,
-			     (struct bytes){ (const uint8_t *)html, strlen(html) }) == 0);
+	CHECK(article_create(&article, &options, compiled(html)) == 0);
 	*unknown = article_unknown_glyphs(article);
 	article_draw(article, context, 0, VIEW_PX);
 	article_destroy(article);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 
 enum { PARTS = 12, LANGUAGES = 17 };
@@ -430,8 +431,7 @@ static void page_card_and_search_take_turns(void **state)
 	struct overlay_action action = { 0 };
 
 	(void)state;
-	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)page, strlen(page) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 0, compiled(page), "") == 0);
 	bar = overlay_chrome_rect(overlay);
 	for (int x = bar.x_px; x < bar.x_px + bar.width_px && action.kind != OVERLAY_SEARCH; x += 9)
 		action = overlay_tap(overlay, (float)x, (float)bar.y_px + 9);
@@ -440,8 +440,7 @@ static void page_card_and_search_take_turns(void **state)
 	CHECK(overlay_page(overlay) == -1 && overlay_searching(overlay));
 	overlay_show_card(overlay, 1); /* a callout beside it */
 	CHECK(overlay_searching(overlay));
-	CHECK(overlay_show_page(overlay, 1, (struct bytes){ (const uint8_t *)page, strlen(page) },
-				"") == 0);
+	CHECK(overlay_show_page(overlay, 1, compiled(page), "") == 0);
 	CHECK(!overlay_searching(overlay));
 	settle(overlay);
 	overlay_show_search(overlay, true);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
 #include "ui/strings.h"
 
@@ -259,8 +260,7 @@ static void what_is_read_comes_before_what_is_held(void **state)
 	CHECK(!overlay_tool_shows(narrow, 0)); /* the card has that place; the light stays on */
 	overlay_show_card(narrow, -1);
 	CHECK(overlay_tool_shows(narrow, 0));
-	CHECK(overlay_show_page(wide, 0, (struct bytes){ (const uint8_t *)html, sizeof(html) - 1 },
-				"") == 0);
+	CHECK(overlay_show_page(wide, 0, compiled(html), "") == 0);
 	settle(wide);
 	rect = overlay_tool_rect(wide, 0);
 	CHECK(overlay_tool_shows(wide, 0) && rect.x_px + rect.width_px <= wide->width_px / 2);

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "format/article.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static void gives_back_what_the_folder_says(void **state)
@@ -17,7 +18,7 @@ static void gives_back_what_the_folder_says(void **state)
 	struct complaints complaints;
 	struct info_built built;
 	struct info *info;
-	struct bytes html;
+	struct bytes article;
 	const char *language;
 	struct info_text text;
 
@@ -42,11 +43,11 @@ static void gives_back_what_the_folder_says(void **state)
 	CHECK(strcmp(text.thumbnail, "pictures/a.png") == 0);
 	CHECK(strcmp(info_text(info, 0, "de").title, "Central tower") == 0);
 
-	CHECK(info_page(info, 0, "km", &html, &language) == 0);
-	CHECK(strcmp(language, "km") == 0 && memmem(html.data, html.size, "ភ្នំ", 12));
-	CHECK(info_page(info, 1, "km", &html, &language) == 0); /* falls back */
+	CHECK(info_page(info, 0, "km", &article, &language) == 0);
+	CHECK(strcmp(language, "km") == 0 && memmem(article.data, article.size, "ភ្នំ", 12));
+	CHECK(info_page(info, 1, "km", &article, &language) == 0); /* falls back */
 	CHECK(strcmp(language, "en") == 0);
-	CHECK(info_page(info, 2, "en", &html, NULL) == -ENOENT);
+	CHECK(info_page(info, 2, "en", &article, NULL) == -ENOENT);
 
 	CHECK(info_picture_count(info) == 2);
 	CHECK(info_find_picture(info, "pictures/b.png")->width_px == 20);
@@ -195,6 +196,7 @@ static void names_the_line_of_a_bad_page(void **state)
 		{ "<p>x</p>\n<b\nclass=y " TEN TEN TEN TEN TEN TEN "a b c d>z</b>",
 		  "a tag with 65 attributes", 2 },
 		{ "  \n <p> </p>", "no text", 1 },
+		{ "<title>x</title>", "no text", 1 },
 		{ "<p>\xff\xfe</p>", "UTF-8", 0 },
 	};
 	struct complaints complaints;
@@ -208,6 +210,28 @@ static void names_the_line_of_a_bad_page(void **state)
 			fail_msg("case %zu: \"%s\" at line %u, not \"%s\"", i,
 				 complaints.list[0].text, complaints.list[0].line, cases[i].words);
 	}
+}
+
+/* More blocks than an article may have; the kiosk would refuse it. */
+static void refuses_a_page_of_too_many_blocks(void **state)
+{
+	struct complaints complaints;
+	struct info_built built;
+	char *page = malloc(ARTICLE_BLOCKS_MAX * 4 + 8);
+	size_t size = 0;
+
+	(void)state;
+	while (size < ARTICLE_BLOCKS_MAX * 4)
+		size += (size_t)snprintf(page + size, 5, "<hr>");
+	snprintf(page + size - 4, 8, "end");
+	write_text("pages/gate.en.html", page);
+	CHECK(build(&built, &complaints) == 0);
+	info_built_finish(&built);
+	snprintf(page + size - 4, 8, "<hr>end");
+	write_text("pages/gate.en.html", page);
+	CHECK(build(&built, &complaints) == -EINVAL);
+	CHECK(was_told(&complaints, "pages/gate.en.html", 0, "split the page"));
+	free(page);
 }
 
 /* A page is published: the file of a link, a key perhaps, would be shown to everybody. */
@@ -345,8 +369,8 @@ static void survives_flipped_bytes(void **state)
 		rc = info_open(&info, buffer_bytes(image));
 		CHECK((rc == 0) == (info != NULL));
 		for (uint32_t p = 0; info && p < info_part_count(info); p++) {
-			struct bytes html;
-			int page = info_page(info, p, "en", &html, NULL);
+			struct bytes article;
+			int page = info_page(info, p, "en", &article, NULL);
 
 			CHECK(page <= 0 && info_text(info, p, "km").title);
 		}
@@ -367,6 +391,8 @@ int main(void)
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_part, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_page, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(refuses_a_page_of_too_many_blocks, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(refuses_a_page_that_is_a_link_or_a_fifo, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(wants_the_page_in_the_first_language, set_up,

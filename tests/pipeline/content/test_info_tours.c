@@ -95,8 +95,7 @@ static void a_stop_that_names_a_part_alone_is_the_view_of_it(void **state)
 	info_built_finish(&built);
 }
 
-/* Terminals that were not updated read on what they always read. */
-static void a_folder_without_tours_gives_the_version_before(void **state)
+static void a_folder_without_tours_gives_none(void **state)
 {
 	struct info_built built, empty;
 	struct complaints complaints;
@@ -104,7 +103,7 @@ static void a_folder_without_tours_gives_the_version_before(void **state)
 
 	(void)state;
 	CHECK(build(&built, &complaints) == 0);
-	CHECK(built.tour_count == 0 && version_of(&built) == INFO_SCHEMA_TOURLESS);
+	CHECK(built.tour_count == 0 && version_of(&built) == INFO_SCHEMA_VERSION);
 	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
 	CHECK(info_tour_count(info) == 0 && info_find_tour(info, "round") == -ENOENT);
 	info_close(info);
@@ -251,7 +250,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(gives_back_the_tours_of_the_folder),
 		IN_A_FOLDER(a_stop_that_names_a_part_alone_is_the_view_of_it),
-		IN_A_FOLDER(a_folder_without_tours_gives_the_version_before),
+		IN_A_FOLDER(a_folder_without_tours_gives_none),
 		IN_A_FOLDER(links_lead_to_tours_that_are_there),
 		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
 		IN_A_FOLDER(a_damaged_image_breaks_nothing),
