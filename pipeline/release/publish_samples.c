@@ -84,8 +84,7 @@ static int write_face_page(struct object_store *objects, const struct sample_fac
 	memset(page.tile_child, 0xff, sizeof(page.tile_child));
 	buffer_init(&payload, PAGE_BYTES_MAX);
 	for (uint32_t i = 0; rc == 0 && i < face->tile_count; i++) {
-		struct page_child tile = { .hash = hash_of(face->objects[i]),
-					   .size = (uint32_t)face->objects[i].size };
+		struct page_child tile = { .hash = face->hashes[i], .size = face->sizes[i] };
 
 		page.tile_child[face->tiles[i]] = i;
 		rc = object_store_add_stretch(objects, face->path, face->offsets[i], &tile);

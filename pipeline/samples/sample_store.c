@@ -1,5 +1,6 @@
-/* Files of rendered samples: writes one file per sampling point, and reads them back in publishing
- * order. */
+/* Files of rendered samples: writes one file per sampling point, and gives them in publishing
+ * order. `index` keeps what publishing needs of every point, so that their files are read only
+ * once. */
 #include "pipeline/samples/sample_store.h"
 
 #include <errno.h>
@@ -12,26 +13,33 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "pipeline/samples/sample_file_private.h"
 
-enum { VERSION = 1, POINT_BYTES_MAX = 512 << 20, GRID_BYTES_MAX = 1 << 20 };
+enum { GRID_BYTES_MAX = 1 << 20, INDEX_BYTES_MAX = 512 << 20, YOUNG_S = 2 };
 
-static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt";
+static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt", index_magic[4] = "GSix";
+
+/* A point's file, as far as it is known. */
+struct point {
+	uint64_t bytes, time_s;
+	uint32_t time_ns;
+	struct bytes summary; /* in index_file or own; empty: not known */
+	uint8_t *own;         /* owned */
+};
 
 struct samples_store {
 	char dir[PATH_MAX - 64]; /* path of the folder samples */
 	struct sample_grid grid;
 	struct hash key;
-	struct buffer grid_file;
-	struct buffer point_file;
-	struct reader reader; /* reads point_file */
-	uint32_t next_point;  /* number in the order of the bricks */
-	uint32_t faces_left;  /* still unread in point_file */
-	uint32_t point[3];
+	struct buffer grid_file, index_file, point_file;
+	struct point *points; /* owned; in the order of the bricks */
+	uint32_t point_count; /* of all bricks, also those outside the grid */
+	bool is_changed;      /* a summary was made that index does not have */
 	uint32_t states[SAMPLE_STATES];
-	uint16_t tiles[FACE_TILES_MAX];
-	struct bytes objects[FACE_TILES_MAX];
-	uint64_t offsets[FACE_TILES_MAX];
-	char path[PATH_MAX]; /* path of point_file */
+	uint32_t next_point; /* number in the order of the bricks */
+	uint32_t place[3];   /* of the faces that samples_store_next gives */
+	struct sample_summary summary;
+	char path[PATH_MAX]; /* of that point's file */
 };
 
 static int samples_dir(char *out, size_t size, const char *content_dir)
@@ -44,41 +52,6 @@ static int samples_dir(char *out, size_t size, const char *content_dir)
 static void point_path(char out[PATH_MAX], const char *dir, const uint32_t point[3])
 {
 	snprintf(out, PATH_MAX, "%s/%02u-%02u-%02u", dir, point[0], point[1], point[2]);
-}
-
-/* Every file contains: magic, version, key, contents, hash of everything before. */
-static void seal(struct buffer *file)
-{
-	struct hash hash = hash_of(buffer_bytes(file));
-
-	buffer_put(file, hash.bytes, HASH_BYTES);
-}
-
-static void put_head(struct buffer *file, const char magic[4], struct hash key)
-{
-	buffer_put(file, magic, 4);
-	buffer_put_u32(file, VERSION);
-	buffer_put(file, key.bytes, HASH_BYTES);
-}
-
-/* Checks hash, magic and version, and leaves the reader after the head. */
-static bool read_head(struct reader *reader, struct bytes file, const char magic[4],
-		      struct hash *key)
-{
-	struct bytes head, body = { file.data, file.size - HASH_BYTES };
-	struct hash hash;
-
-	if (file.size < 8 + 2 * HASH_BYTES)
-		return false;
-	hash = hash_of(body);
-	if (memcmp(hash.bytes, file.data + body.size, HASH_BYTES) != 0)
-		return false;
-	reader_init(reader, body);
-	head = reader_bytes(reader, 4);
-	if (memcmp(head.data, magic, 4) != 0 || reader_u32(reader) != VERSION)
-		return false;
-	memcpy(key->bytes, reader_bytes(reader, HASH_BYTES).data, HASH_BYTES);
-	return true;
 }
 
 static bool grid_is_sane(const struct sample_grid *grid)
@@ -94,7 +67,7 @@ static bool read_grid(struct samples_store *store)
 {
 	struct reader reader;
 
-	if (!read_head(&reader, buffer_bytes(&store->grid_file), grid_magic, &store->key))
+	if (!sample_file_open(&reader, buffer_bytes(&store->grid_file), grid_magic, &store->key))
 		return false;
 	for (int i = 0; i < 3; i++)
 		store->grid.origin_m[i] = reader_f32(&reader);
@@ -106,21 +79,35 @@ static bool read_grid(struct samples_store *store)
 	return !reader.failed && !reader_left(&reader) && grid_is_sane(&store->grid);
 }
 
-/* Sets the n-th point, counted brick by brick. Returns false past the last. The point may lie
- * outside the grid. */
-static bool point_in_order(const struct sample_grid *grid, uint32_t n, uint32_t point[3])
-{
-	uint32_t bricks[3];
-	uint32_t brick = n / BRICK_POINTS, in = n % BRICK_POINTS;
+/* ---- points by number */
 
+static void count_bricks(const struct sample_grid *grid, uint32_t bricks[3])
+{
 	for (int i = 0; i < 3; i++)
 		bricks[i] = (grid->count[i] + BRICK_SIDE - 1) / BRICK_SIDE;
-	if (brick >= bricks[0] * bricks[1] * bricks[2])
-		return false;
+}
+
+/* Sets the n-th point, counted brick by brick. It may lie outside the grid. */
+static void point_in_order(const struct sample_grid *grid, uint32_t n, uint32_t point[3])
+{
+	uint32_t brick = n / BRICK_POINTS, in = n % BRICK_POINTS, bricks[3];
+
+	count_bricks(grid, bricks);
 	point[0] = brick % bricks[0] * BRICK_SIDE + in % BRICK_SIDE;
 	point[1] = brick / bricks[0] % bricks[1] * BRICK_SIDE + in / BRICK_SIDE % BRICK_SIDE;
 	point[2] = brick / bricks[0] / bricks[1] * BRICK_SIDE + in / BRICK_SIDE / BRICK_SIDE;
-	return true;
+}
+
+static uint32_t number_of(const struct sample_grid *grid, const uint32_t point[3])
+{
+	uint32_t bricks[3], brick = 0, in = 0;
+
+	count_bricks(grid, bricks);
+	for (int i = 2; i >= 0; i--) {
+		brick = brick * bricks[i] + point[i] / BRICK_SIDE;
+		in = in * BRICK_SIDE + point[i] % BRICK_SIDE;
+	}
+	return brick * BRICK_POINTS + in;
 }
 
 static bool point_exists(const struct sample_grid *grid, const uint32_t point[3])
@@ -128,48 +115,136 @@ static bool point_exists(const struct sample_grid *grid, const uint32_t point[3]
 	return point[0] < grid->count[0] && point[1] < grid->count[1] && point[2] < grid->count[2];
 }
 
-/* Loads a point into point_file, with the reader before its state. Returns -ENOENT if the key
- * differs. */
-static int load_point(struct samples_store *store, const uint32_t point[3])
+/* ---- the index */
+
+static bool is_file_of(const struct point *point, const struct stat *status)
 {
+	return point->summary.size > 0 && point->bytes == (uint64_t)status->st_size &&
+	       point->time_s == (uint64_t)status->st_mtim.tv_sec &&
+	       point->time_ns == (uint32_t)status->st_mtim.tv_nsec;
+}
+
+/* Takes the entries of the index. Files that were nearly as young as the index when it was written
+ * could have changed since without another time: they are read again. */
+static void take_index(struct samples_store *store, const char *path)
+{
+	struct reader reader;
+	struct stat status;
 	struct hash key;
+
+	if (buffer_read_file(&store->index_file, path) < 0 || stat(path, &status) < 0 ||
+	    !sample_file_open(&reader, buffer_bytes(&store->index_file), index_magic, &key) ||
+	    !hash_equal(key, store->key))
+		return;
+	while (reader_left(&reader) > 0) {
+		uint32_t n = reader_u32(&reader);
+		struct point point = { .bytes = reader_u64(&reader) };
+
+		point.time_s = reader_u64(&reader);
+		point.time_ns = reader_u32(&reader);
+		point.summary = reader_bytes(&reader, reader_u32(&reader));
+		if (reader.failed || n >= store->point_count)
+			return;
+		if (point.time_s + YOUNG_S < (uint64_t)status.st_mtim.tv_sec)
+			store->points[n] = point;
+	}
+}
+
+static int write_index(const struct samples_store *store)
+{
+	char path[PATH_MAX];
+	struct buffer file;
 	int rc;
 
-	point_path(store->path, store->dir, point);
-	rc = buffer_read_file(&store->point_file, store->path);
+	buffer_init(&file, INDEX_BYTES_MAX);
+	sample_file_begin(&file, index_magic, store->key);
+	for (uint32_t n = 0; n < store->point_count; n++) {
+		const struct point *point = &store->points[n];
+
+		if (point->summary.size == 0)
+			continue;
+		buffer_put_u32(&file, n);
+		buffer_put_u64(&file, point->bytes);
+		buffer_put_u64(&file, point->time_s);
+		buffer_put_u32(&file, point->time_ns);
+		buffer_put_u32(&file, (uint32_t)point->summary.size);
+		buffer_put(&file, point->summary.data, point->summary.size);
+	}
+	sample_file_seal(&file);
+	snprintf(path, sizeof(path), "%s/index", store->dir);
+	rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* ---- looking at a point */
+
+/* Reads a point's file and makes its summary. Returns -ENOENT if the key differs. */
+static int summarize(struct samples_store *store, struct point *point, const char *path)
+{
+	struct reader reader;
+	struct buffer summary;
+	struct hash key;
+	int rc = buffer_read_file(&store->point_file, path);
+
 	if (rc < 0)
 		return rc;
-	if (!read_head(&store->reader, buffer_bytes(&store->point_file), point_magic, &key))
+	if (!sample_file_open(&reader, buffer_bytes(&store->point_file), point_magic, &key))
 		return -EBADMSG;
-	return hash_equal(key, store->key) ? 0 : -ENOENT;
+	if (!hash_equal(key, store->key))
+		return -ENOENT;
+	buffer_init(&summary, SAMPLE_FILE_BYTES_MAX);
+	rc = sample_file_summarize(&summary, &reader, store->grid.level_count);
+	if (rc < 0) {
+		buffer_finish(&summary);
+		return rc;
+	}
+	free(point->own);
+	point->own = summary.data; /* taken */
+	point->summary = buffer_bytes(&summary);
+	store->is_changed = true;
+	return 0;
 }
 
-static int read_state(struct samples_store *store)
+/* Makes sure that the summary is that of the file. Returns -ENOENT or -EBADMSG if the point has to
+ * be rendered, or the errors of the disk. */
+static int look_at(struct samples_store *store, uint32_t n, const uint32_t place[3])
 {
-	uint8_t state = reader_u8(&store->reader);
+	struct point *point = &store->points[n];
+	struct stat status;
+	char path[PATH_MAX];
+	int rc;
 
-	store->faces_left = reader_u8(&store->reader);
-	if (store->reader.failed || state >= SAMPLE_STATES || store->faces_left > CUBE_FACES)
-		return -EBADMSG;
-	return state;
+	point_path(path, store->dir, place);
+	if (stat(path, &status) < 0)
+		return -errno;
+	if (is_file_of(point, &status))
+		return 0;
+	rc = summarize(store, point, path);
+	if (rc < 0)
+		point->summary = (struct bytes){ 0 };
+	point->bytes = (uint64_t)status.st_size;
+	point->time_s = (uint64_t)status.st_mtim.tv_sec;
+	point->time_ns = (uint32_t)status.st_mtim.tv_nsec;
+	return rc;
 }
 
-/* Checks that every point is there, and counts states. Reads each file, but only its head is
- * decoded. */
+/* Looks at every point and counts states. */
 static int survey(struct samples_store *store)
 {
-	uint32_t point[3], missing = 0;
+	uint32_t place[3], missing = 0;
 
-	for (uint32_t n = 0; point_in_order(&store->grid, n, point); n++) {
+	for (uint32_t n = 0; n < store->point_count; n++) {
 		int rc;
 
-		if (!point_exists(&store->grid, point))
+		point_in_order(&store->grid, n, place);
+		if (!point_exists(&store->grid, place))
 			continue;
-		rc = load_point(store, point);
+		rc = look_at(store, n, place);
+		if (rc == 0 && !sample_summary_open(&store->summary, store->points[n].summary))
+			rc = -EBADMSG;
 		if (rc == 0)
-			rc = read_state(store);
-		if (rc >= 0)
-			store->states[rc]++;
+			store->states[store->summary.state]++;
 		else if (rc == -ENOENT || rc == -EBADMSG)
 			missing++;
 		else
@@ -184,7 +259,24 @@ static int survey(struct samples_store *store)
 	return -ENOENT;
 }
 
-int samples_store_open(struct samples_store **out, const char *content_dir)
+/* ---- the store */
+
+static int make_points(struct samples_store *store)
+{
+	uint32_t bricks[3];
+	char path[PATH_MAX];
+
+	count_bricks(&store->grid, bricks);
+	store->point_count = bricks[0] * bricks[1] * bricks[2] * BRICK_POINTS;
+	store->points = calloc(store->point_count, sizeof(*store->points));
+	if (!store->points)
+		return -ENOMEM;
+	snprintf(path, sizeof(path), "%s/index", store->dir);
+	take_index(store, path);
+	return 0;
+}
+
+int samples_store_look(struct samples_store **out, const char *content_dir)
 {
 	struct samples_store *store = calloc(1, sizeof(*store));
 	char path[PATH_MAX];
@@ -194,7 +286,8 @@ int samples_store_open(struct samples_store **out, const char *content_dir)
 	if (!store)
 		return -ENOMEM;
 	buffer_init(&store->grid_file, GRID_BYTES_MAX);
-	buffer_init(&store->point_file, POINT_BYTES_MAX);
+	buffer_init(&store->index_file, INDEX_BYTES_MAX);
+	buffer_init(&store->point_file, SAMPLE_FILE_BYTES_MAX);
 	rc = samples_dir(store->dir, sizeof(store->dir), content_dir);
 	if (rc == 0) {
 		snprintf(path, sizeof(path), "%s/grid", store->dir);
@@ -206,10 +299,32 @@ int samples_store_open(struct samples_store **out, const char *content_dir)
 				  rc == -EBADMSG ? "damaged" : strerror(-rc));
 	}
 	if (rc == 0)
+		rc = make_points(store);
+	if (rc < 0) {
+		samples_store_close(store);
+		return rc;
+	}
+	*out = store;
+	return 0;
+}
+
+int samples_store_open(struct samples_store **out, const char *content_dir)
+{
+	struct samples_store *store;
+	int rc = samples_store_look(&store, content_dir);
+
+	*out = NULL;
+	if (rc == 0)
 		rc = survey(store);
 	if (rc < 0) {
 		samples_store_close(store);
 		return rc;
+	}
+	if (store->is_changed) {
+		rc = write_index(store);
+		if (rc < 0)
+			log_warn("pipeline", "%s/index: %s: the next build reads all samples again",
+				 store->dir, strerror(-rc));
 	}
 	samples_store_rewind(store);
 	*out = store;
@@ -220,7 +335,11 @@ void samples_store_close(struct samples_store *store)
 {
 	if (!store)
 		return;
+	for (uint32_t n = 0; n < store->point_count && store->points; n++)
+		free(store->points[n].own);
+	free(store->points);
 	buffer_finish(&store->grid_file);
+	buffer_finish(&store->index_file);
 	buffer_finish(&store->point_file);
 	free(store);
 }
@@ -238,7 +357,7 @@ struct hash samples_store_key(const struct samples_store *store)
 void samples_store_rewind(struct samples_store *store)
 {
 	store->next_point = 0;
-	store->faces_left = 0;
+	store->summary.faces_left = 0;
 }
 
 void samples_store_states(const struct samples_store *store, uint32_t counts[SAMPLE_STATES])
@@ -246,76 +365,41 @@ void samples_store_states(const struct samples_store *store, uint32_t counts[SAM
 	memcpy(counts, store->states, sizeof(store->states));
 }
 
-static int read_face(struct samples_store *store, struct sample_face *out)
+/* Goes to the next point with faces. Returns false if there are no more. */
+static bool advance(struct samples_store *store)
 {
-	struct reader *reader = &store->reader;
+	while (store->next_point < store->point_count) {
+		uint32_t n = store->next_point++;
 
-	*out = (struct sample_face){ .tiles = store->tiles,
-				     .objects = store->objects,
-				     .path = store->path,
-				     .offsets = store->offsets };
-	memcpy(out->point, store->point, sizeof(out->point));
-	out->face = reader_u8(reader);
-	out->level_count = reader_u8(reader);
-	out->coverage = reader_u16(reader);
-	out->near_m = reader_f32(reader);
-	out->far_m = reader_f32(reader);
-	out->tile_count = reader_u32(reader);
-	if (reader->failed || out->face >= CUBE_FACES || out->level_count < 1 ||
-	    out->level_count > store->grid.level_count || out->tile_count < 1 ||
-	    out->tile_count > face_tile_index(out->level_count, 0, 0))
-		return -EBADMSG;
-	for (uint32_t i = 0; i < out->tile_count; i++) {
-		store->tiles[i] = reader_u16(reader);
-		store->objects[i] = reader_bytes(reader, reader_u32(reader));
-		store->offsets[i] = reader->at - store->objects[i].size;
-		if (store->tiles[i] >= face_tile_index(out->level_count, 0, 0) ||
-		    (i > 0 && store->tiles[i] <= store->tiles[i - 1]))
-			return -EBADMSG;
-	}
-	return reader->failed ? -EBADMSG : 0;
-}
-
-/* Loads the next point with faces. Returns 1, or 0 if there are no more. */
-static int advance(struct samples_store *store)
-{
-	while (point_in_order(&store->grid, store->next_point, store->point)) {
-		int rc;
-
-		store->next_point++;
-		if (!point_exists(&store->grid, store->point))
+		if (store->points[n].summary.size == 0 ||
+		    !sample_summary_open(&store->summary, store->points[n].summary) ||
+		    store->summary.faces_left == 0)
 			continue;
-		rc = load_point(store, store->point);
-		if (rc == 0)
-			rc = read_state(store);
-		if (rc < 0)
-			return rc;
-		if (store->faces_left)
-			return 1;
+		point_in_order(&store->grid, n, store->place);
+		point_path(store->path, store->dir, store->place);
+		return true;
 	}
-	return 0;
+	return false;
 }
 
 int samples_store_next(struct samples_store *store, struct sample_face *out)
 {
-	int rc = 1;
-
-	if (!store->faces_left)
-		rc = advance(store);
-	if (rc == 0)
+	if (store->summary.faces_left == 0 && !advance(store))
 		return 0;
-	if (rc == 1) {
-		store->faces_left--;
-		rc = read_face(store, out);
-	}
-	if (rc < 0) {
-		log_error("pipeline", "%s/%02u-%02u-%02u: %s: run 'gopura-content sample' again",
-			  store->dir, store->point[0], store->point[1], store->point[2],
-			  rc == -EBADMSG ? "damaged" : strerror(-rc));
-		return rc;
-	}
+	if (!sample_summary_next(&store->summary, out))
+		return -EBADMSG; /* not after survey, which was content with it */
+	memcpy(out->point, store->place, sizeof(out->point));
+	out->path = store->path;
 	return 1;
 }
+
+bool samples_store_has(struct samples_store *store, const uint32_t point[3])
+{
+	return point_exists(&store->grid, point) &&
+	       look_at(store, number_of(&store->grid, point), point) == 0;
+}
+
+/* ---- writing */
 
 static int make_dirs(const char *content_dir)
 {
@@ -343,7 +427,7 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 		return rc;
 	buffer_init(&file, GRID_BYTES_MAX);
 	buffer_init(&old, GRID_BYTES_MAX);
-	put_head(&file, grid_magic, key);
+	sample_file_begin(&file, grid_magic, key);
 	for (int i = 0; i < 3; i++)
 		buffer_put_f32(&file, grid->origin_m[i]);
 	for (int i = 0; i < 3; i++)
@@ -351,7 +435,7 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	for (int i = 0; i < 3; i++)
 		buffer_put_u32(&file, grid->count[i]);
 	buffer_put_u32(&file, grid->level_count);
-	seal(&file);
+	sample_file_seal(&file);
 	rc = file.error;
 	if (snprintf(path, sizeof(path), "%s/.work/samples/grid", content_dir) >= PATH_MAX)
 		rc = -ENAMETOOLONG;
@@ -361,34 +445,6 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	buffer_finish(&file);
 	buffer_finish(&old);
 	return rc;
-}
-
-bool samples_store_has(const char *content_dir, const uint32_t point[3], struct hash key)
-{
-	struct samples_store store = { .key = key };
-	int rc;
-
-	buffer_init(&store.point_file, POINT_BYTES_MAX);
-	rc = samples_dir(store.dir, sizeof(store.dir), content_dir);
-	if (rc == 0)
-		rc = load_point(&store, point);
-	buffer_finish(&store.point_file);
-	return rc == 0;
-}
-
-static void put_face(struct buffer *file, const struct sample_face *face)
-{
-	buffer_put_u8(file, (uint8_t)face->face);
-	buffer_put_u8(file, (uint8_t)face->level_count);
-	buffer_put_u16(file, face->coverage);
-	buffer_put_f32(file, face->near_m);
-	buffer_put_f32(file, face->far_m);
-	buffer_put_u32(file, face->tile_count);
-	for (uint32_t i = 0; i < face->tile_count; i++) {
-		buffer_put_u16(file, face->tiles[i]);
-		buffer_put_u32(file, (uint32_t)face->objects[i].size);
-		buffer_put(file, face->objects[i].data, face->objects[i].size);
-	}
 }
 
 int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,
@@ -401,13 +457,10 @@ int samples_store_put(const char *content_dir, struct hash key, enum sample_stat
 	if (rc < 0)
 		return rc;
 	point_path(path, dir, point);
-	buffer_init(&file, POINT_BYTES_MAX);
-	put_head(&file, point_magic, key);
-	buffer_put_u8(&file, (uint8_t)state);
-	buffer_put_u8(&file, (uint8_t)face_count);
-	for (uint32_t i = 0; i < face_count; i++)
-		put_face(&file, &faces[i]);
-	seal(&file);
+	buffer_init(&file, SAMPLE_FILE_BYTES_MAX);
+	sample_file_begin(&file, point_magic, key);
+	sample_file_put_point(&file, state, faces, face_count);
+	sample_file_seal(&file);
 	rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
 	buffer_finish(&file);
 	return rc;

@@ -31,13 +31,16 @@ struct sample_face {
 	uint32_t point[3]; /* x, y, z on the grid */
 	int face;
 	uint32_t level_count;
-	uint16_t coverage;           /* as in brick_page; never 0 */
-	float near_m, far_m;         /* as in brick_page */
-	uint32_t tile_count;         /* at least 1 */
-	const uint16_t *tiles;       /* face_tile_index of each, ascending; borrowed */
-	const struct bytes *objects; /* encoded tiles; borrowed */
-	/* Set by samples_store_next: the file that holds the tiles, and their offsets in it; both
-	 * borrowed. */
+	uint16_t coverage;     /* as in brick_page; never 0 */
+	float near_m, far_m;   /* as in brick_page */
+	uint32_t tile_count;   /* at least 1 */
+	const uint16_t *tiles; /* face_tile_index of each, ascending; borrowed */
+	/* For samples_store_put: encoded tiles; borrowed. */
+	const struct bytes *objects;
+	/* Set by samples_store_next instead: hashes and sizes of the encoded tiles, the file that
+	 * holds them, and their offsets in it; all borrowed. */
+	const struct hash *hashes;
+	const uint32_t *sizes;
 	const char *path;
 	const uint64_t *offsets;
 };
@@ -46,7 +49,8 @@ struct samples_store;
 
 /* Opens the sampler's results for reading. *out is owned by the caller; NULL on failure. Returns
  * -ENOENT if nothing was sampled or points are still missing, stale or damaged (logged with the
- * remedy); -EBADMSG if `grid` is damaged (logged). */
+ * remedy); -EBADMSG if `grid` is damaged (logged). A point's file is read only if its size or time
+ * is not as `index` says, and `index` is then written anew. */
 must_check int samples_store_open(struct samples_store **out, const char *content_dir);
 /* NULL is fine. */
 void samples_store_close(struct samples_store *store);
@@ -56,10 +60,9 @@ const struct sample_grid *samples_store_grid(const struct samples_store *store);
 /* Returns the key of the sources; it changes if anything that was sampled changes. */
 struct hash samples_store_key(const struct samples_store *store);
 
-/* Reads the next face: brick by brick (order z, y, x, the last runs fastest), in a brick point by
+/* Gives the next face: brick by brick (order z, y, x, the last runs fastest), in a brick point by
  * point (likewise), then by face. So a brick page and its face pages can be written as they come.
- * Returns 1 if *out is set, borrowed until the next call; 0 at the end; -EBADMSG if a file is
- * damaged (logged with its name; `sample` makes it again), or the errors of the disk. */
+ * Returns 1 if *out is set, borrowed until the next call; 0 at the end. */
 must_check int samples_store_next(struct samples_store *store, struct sample_face *out);
 /* Starts again with the first face. */
 void samples_store_rewind(struct samples_store *store);
@@ -71,8 +74,10 @@ void samples_store_states(const struct samples_store *store, uint32_t counts[SAM
 /* Writes `grid`, unless it has the same bytes already. Creates the folders. */
 must_check int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 				   struct hash key);
-/* Returns true if the point's file exists, is complete and has that key. */
-bool samples_store_has(const char *content_dir, const uint32_t point[3], struct hash key);
+/* Opens the store though points may be missing, and looks at none of them. Errors as above. */
+must_check int samples_store_look(struct samples_store **out, const char *content_dir);
+/* Returns true if the point's file exists, is complete and has the key of the grid. */
+bool samples_store_has(struct samples_store *store, const uint32_t point[3]);
 /* Writes the file of a point. faces: face_count of them, in ascending order of face, for
  * SAMPLE_RENDERED; none for other states. */
 must_check int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,

@@ -119,11 +119,13 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 {
 	const uint32_t *count = sampling->grid.count;
 	uint32_t total = count[0] * count[1] * count[2];
+	struct samples_store *store;
+	int rc = samples_store_look(&store, sampling->content->folder);
 
+	if (rc < 0)
+		return rc;
 	sampling->points = malloc(total * sizeof(*sampling->points));
-	if (!sampling->points)
-		return -ENOMEM;
-	for (uint32_t n = 0; n < total; n++) {
+	for (uint32_t n = 0; sampling->points && n < total; n++) {
 		uint32_t *point = sampling->points[sampling->point_count];
 
 		if (options->shard_count > 1 && n % options->shard_count != options->shard)
@@ -131,10 +133,11 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 		point[0] = n % count[0];
 		point[1] = n / count[0] % count[1];
 		point[2] = n / count[0] / count[1];
-		if (!samples_store_has(sampling->content->folder, point, sampling->key))
+		if (!samples_store_has(store, point))
 			sampling->point_count++;
 	}
-	return 0;
+	samples_store_close(store);
+	return sampling->points ? 0 : -ENOMEM;
 }
 
 /* Returns true if the point can be skipped before anything is rendered. */

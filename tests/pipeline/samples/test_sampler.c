@@ -8,6 +8,7 @@
 #include "format/tile.h"
 #include "pipeline/samples/sampler.h"
 #include "tests/check.h"
+#include "tests/pipeline/samples/tile_of.h"
 
 static char dir[3][64]; /* whole, shards, textured */
 static const uint8_t six[6][3] = { { 200, 40, 40 },  { 40, 200, 40 },  { 40, 40, 200 },
@@ -281,7 +282,7 @@ static void tiles_show_what_rays_meet(void **state)
 			uint32_t level, row, column;
 
 			find_place(face.tiles[t], &level, &row, &column);
-			CHECK(tile_decode(rgb, SAMPLE_IMAGE_PX, face.objects[t]) == 0);
+			CHECK(tile_decode(rgb, SAMPLE_IMAGE_PX, tile_of(&face, t)) == 0);
 			for (int i = 0; i < SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX; i += 41) {
 				float x = (float)(i % SAMPLE_IMAGE_PX - SAMPLE_APRON_PX +
 						  (int)column * SAMPLE_TILE_PX) +
@@ -320,8 +321,8 @@ static void aprons_continue_into_the_neighbour(void **state)
 			/* Tile 1 is row 0, column 0 of level 1, tile 2 the one right of it. */
 			if (face.tiles[t] != 1 || face.tiles[t + 1] != 2)
 				continue;
-			CHECK(tile_decode(left, SAMPLE_IMAGE_PX, face.objects[t]) == 0);
-			CHECK(tile_decode(right, SAMPLE_IMAGE_PX, face.objects[t + 1]) == 0);
+			CHECK(tile_decode(left, SAMPLE_IMAGE_PX, tile_of(&face, t)) == 0);
+			CHECK(tile_decode(right, SAMPLE_IMAGE_PX, tile_of(&face, t + 1)) == 0);
 			for (int i = 0; i < SAMPLE_IMAGE_PX * shared; i++) {
 				int row = i / shared * SAMPLE_IMAGE_PX * 3;
 				int edge = row + SAMPLE_TILE_PX * 3;
@@ -350,8 +351,8 @@ static void compare_files(const char *a, const char *b)
 	buffer_init(&first, 64 << 20);
 	buffer_init(&second, 64 << 20);
 	while ((entry = readdir(folder))) {
-		if (entry->d_name[0] == '.')
-			continue;
+		if (entry->d_name[0] == '.' || strcmp(entry->d_name, "index") == 0)
+			continue; /* the index has the files' times */
 		snprintf(path[0], sizeof(path[0]), "%s/.work/samples/%.20s", a, entry->d_name);
 		snprintf(path[1], sizeof(path[1]), "%s/.work/samples/%.20s", b, entry->d_name);
 		CHECK(buffer_read_file(&first, path[0]) == 0);
@@ -382,19 +383,17 @@ static void makes_only_what_is_missing(void **state)
 {
 	const uint32_t point[3] = { 3, 0, 1 };
 	struct samples_store *store;
-	struct hash key;
 	char path[256];
 
 	(void)state;
-	CHECK(samples_store_open(&store, dir[0]) == 0);
-	key = samples_store_key(store);
-	samples_store_close(store);
 	snprintf(path, sizeof(path), "%s/.work/samples/03-00-01", dir[0]);
 	CHECK(remove(path) == 0);
 	snprintf(path, sizeof(path), "%s/.work/samples/04-00-01", dir[0]);
 	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)"damage", 6 }, path) == 0);
 	sample(dir[0], 1, 0, 1);
-	CHECK(samples_store_has(dir[0], point, key));
+	CHECK(samples_store_look(&store, dir[0]) == 0);
+	CHECK(samples_store_has(store, point));
+	samples_store_close(store);
 	compare_files(dir[0], dir[1]);
 }
 
