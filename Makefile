@@ -13,7 +13,7 @@ comma   := ,
 
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
-           pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd
+           pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
 # METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lmeshoptimizer -linih -lm -pthread
 

@@ -1,5 +1,5 @@
-/* The program gopura-health, which says over HTTP whether the terminal works, and if not, what to
- * do: parses the options, opens the sockets and runs the server. */
+/* The program gopura-health, which reports over HTTP whether the terminal works, and if not, what
+ * to do: parses the options, opens the socket and runs the server. */
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -27,22 +27,22 @@ enum {
 };
 
 static const char help[] =
-	"gopura-health: says over HTTP whether the terminal is well, and if not, what to do\n"
+	"gopura-health: reports over HTTP whether the terminal works, and if not, what to do\n"
 	"\n"
 	"  gopura-health [options]\n"
 	"\n"
 	"  Pages: / for people, /metrics for Prometheus, /health (200 or 503) for scripts,\n"
-	"  /visits.csv for who wants to know what visitors look at (docs/visitors.md).\n"
-	"  systemd passes the listening socket (gopura-health.socket) and starts the program when\n"
-	"  somebody asks; without one:\n"
+	"  /visits.csv with counts of what visitors look at (docs/visitors.md).\n"
+	"  systemd passes the listening socket (gopura-health.socket) and starts the program at\n"
+	"  the first request. Without systemd:\n"
 	"\n"
-	"  --listen ADDR:PORT  listen here, and do not end when idle ([::1]:9100 for IPv6)\n"
+	"  --listen ADDR:PORT  listen here, and do not exit when idle ([::1]:9100 for IPv6)\n"
 	"  --kiosk PATH        gopura-kiosk's --figures (/run/gopura-kiosk/figures)\n"
 	"  --fetch PATH        gopura-fetch's --figures (/run/gopura-fetch/figures)\n"
-	"  --faults FILE       what gopura.conf said in vain, a line each (/run/gopura/faults)\n"
+	"  --faults FILE       errors in gopura.conf, one per line (/run/gopura/faults)\n"
 	"  --visits FILE       counts of what visitors look at (/run/gopura-kiosk/visits.csv)\n"
-	"  --data DIR          on the partition whose room is told (/var/lib)\n"
-	"  --idle-s SECONDS    with systemd's socket: end when nobody asked for so long (30)\n"
+	"  --data DIR          a folder on the partition whose free space is reported (/var/lib)\n"
+	"  --idle-s SECONDS    with systemd's socket: exit after so long without a request (30)\n"
 	"  --version, --help\n"
 	"\n"
 	"Example\n"
@@ -74,7 +74,7 @@ static const struct option long_options[] = {
 };
 
 struct health {
-	const char *listen; /* NULL: sockets passed by systemd */
+	const char *listen; /* NULL: systemd passes the socket */
 	unsigned long idle_s;
 	const char *visits; /* path of the file that the kiosk writes with --visits */
 	struct gather_options gather;
@@ -186,19 +186,16 @@ static int listen_on(const char *text)
 	return fd;
 }
 
-/* Writes the sockets passed by systemd to fds. Returns their number or a negative errno. */
-static int passed_sockets(int fds[SERVER_LISTENERS_MAX])
+/* Returns the socket passed by systemd or a negative errno. */
+static int passed_socket(void)
 {
 	const int count = sd_listen_fds(1);
 
-	if (count <= 0 || count > SERVER_LISTENERS_MAX)
+	if (count != 1)
 		return count < 0 ? count : -EINVAL;
-	for (int i = 0; i < count; i++) {
-		fds[i] = SD_LISTEN_FDS_START + i;
-		if (sd_is_socket(fds[i], AF_UNSPEC, SOCK_STREAM, 1) <= 0)
-			return -ENOTSOCK;
-	}
-	return count;
+	return sd_is_socket(SD_LISTEN_FDS_START, AF_UNSPEC, SOCK_STREAM, 1) > 0
+		       ? SD_LISTEN_FDS_START
+		       : -ENOTSOCK;
 }
 
 /* ---- answers */
@@ -220,32 +217,27 @@ static int open_visits(const char *path, uint64_t *bytes)
 	return fd;
 }
 
-static void answer_visits(const struct health *health, const struct request *request,
-			  struct reply *reply)
+static void answer_visits(const struct health *health, struct reply *reply)
 {
-	reply->file = open_visits(health->visits, &reply->file_bytes);
-	if (reply->file < 0) {
-		reply->file = -1;
-		page_refuse(&reply->text, 404);
-		return;
-	}
-	page_visits_head(&reply->text, reply->file_bytes);
-	if (!request->head)
-		return;
-	close(reply->file);
-	reply->file = -1;
+	const int fd = open_visits(health->visits, &reply->file_bytes);
+
+	if (fd < 0)
+		return; /* 404 */
+	reply->file = fd;
+	reply->status = 200;
+	reply->type = "text/csv";
 }
 
-static void answer(void *data, int status, const struct request *request, struct reply *reply)
+/* See server_options.answer. */
+static void answer(void *data, const char *path, struct reply *reply)
 {
+	const enum page page = page_of_path(path);
 	struct health *health = data;
 
-	if (status != 200) {
-		page_refuse(&reply->text, status);
+	if (page == PAGE_NONE)
 		return;
-	}
-	if (request->page == REQUEST_VISITS) {
-		answer_visits(health, request, reply);
+	if (page == PAGE_VISITS) {
+		answer_visits(health, reply);
 		return;
 	}
 	if (health->snapshot.taken_ms == 0 ||
@@ -253,37 +245,31 @@ static void answer(void *data, int status, const struct request *request, struct
 		snapshot_take(&health->snapshot, &health->gather);
 		verdict_judge(&health->verdict, &health->snapshot);
 	}
-	page_answer(&reply->text, request, &health->snapshot, &health->verdict);
+	buffer_init(&reply->body, PAGE_BYTES_MAX);
+	reply->status =
+		page_write(&reply->body, &reply->type, page, &health->snapshot, &health->verdict);
 }
 
 static int run(struct health *health)
 {
-	int fds[SERVER_LISTENERS_MAX];
 	struct server_options server = {
-		.listeners = fds,
+		.listener = health->listen ? listen_on(health->listen) : passed_socket(),
 		.patience_ms = PATIENCE_MS,
 		.file_bytes_per_s = FILE_BYTES_PER_S,
 		.idle_ms = health->listen ? 0 : (int64_t)health->idle_s * 1000,
 		.answer = answer,
 		.data = health,
 	};
-	int count = 1;
+	int rc = server.listener;
 
-	if (health->listen)
-		fds[0] = listen_on(health->listen);
-	else
-		count = passed_sockets(fds);
-	if (count < 0 || fds[0] < 0) {
-		const int rc = count < 0 ? count : fds[0];
-
+	if (rc < 0)
 		fprintf(stderr, "gopura-health: %s: %s\n",
 			health->listen ? health->listen
-				       : "no socket of systemd's (or use --listen ADDR:PORT)",
+				       : "systemd passed no socket (use --listen ADDR:PORT)",
 			strerror(-rc));
-		return rc;
-	}
-	server.listener_count = (size_t)count;
-	return server_run(&server);
+	else
+		rc = server_run(&server);
+	return rc;
 }
 
 int main(int argc, char **argv)

@@ -13,9 +13,9 @@
  * network without internet. */
 static const char style[] =
 	":root{color-scheme:light dark;--paper:#f6f4ef;--sheet:#fff;--ink:#22201c;--soft:#6b665c;--line:#e2ddd2;"
-	"--well:#2f7d4f;--remark:#b87a12;--ill:#b3372b}"
+	"--ok:#2f7d4f;--warning:#9a650c;--critical:#b3372b}"
 	"@media(prefers-color-scheme:dark){:root{--paper:#1a1917;--sheet:#242220;--ink:#ece8df;--soft:#a49d8f;"
-	"--line:#3a3733;--well:#3f9a64;--remark:#c98a1c;--ill:#cf4f41}}"
+	"--line:#3a3733;--ok:#35804f;--warning:#a36c10;--critical:#c9483a}}"
 	"*{box-sizing:border-box}"
 	"body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}"
 	"main{max-width:52rem;margin:0 auto;padding:1.25rem 1rem 3rem}"
@@ -27,8 +27,8 @@ static const char style[] =
 	"article{background:var(--sheet);border:1px solid var(--line);border-left:.45rem solid var(--level);"
 	"border-radius:.4rem;padding:.8rem 1rem;margin:.8rem 0}"
 	"article h3{margin:0;font-size:1.1rem}article p{margin:.35rem 0 0;overflow-wrap:anywhere}"
-	"article .cure{color:var(--soft)}"
-	".well{--level:var(--well)}.remark{--level:var(--remark)}.ill{--level:var(--ill)}"
+	"article .detail{color:var(--soft)}"
+	".ok{--level:var(--ok)}.warning{--level:var(--warning)}.critical{--level:var(--critical)}"
 	"table{width:100%;border-collapse:collapse;background:var(--sheet);border:1px solid var(--line)}"
 	"th,td{text-align:left;vertical-align:top;padding:.45rem .8rem;border-top:1px solid var(--line)}"
 	"tr:first-child>*{border-top:0}th{width:13rem;font-weight:500;color:var(--soft)}"
@@ -37,7 +37,7 @@ static const char style[] =
 	"footer{margin-top:1.5rem;color:var(--soft);font-size:.9rem}a{color:inherit}"
 	"@media(max-width:34rem){th,td{display:block;width:auto;padding:.4rem .8rem}td{border:0;padding-top:0}}";
 
-static const char *const classes[LEVEL_COUNT] = { "well", "remark", "ill" };
+static const char *const classes[LEVEL_COUNT] = { "ok", "warning", "critical" };
 
 static const char *const signs[LEVEL_COUNT] = {
 	"<path d='M14 25l8 8 13-17'/>",
@@ -106,13 +106,13 @@ static void write_release(const struct facts *facts)
 
 	row(facts, "Release");
 	if (!metrics_label(kiosk, "gopura_kiosk_release_info", "root", root, sizeof(root))) {
-		text_put(facts->out, kiosk.size ? "none is shown" : "not known");
+		text_put(facts->out, kiosk.size ? "none" : "unknown");
 		return;
 	}
 	metrics_label(kiosk, "gopura_kiosk_release_info", "name", name, sizeof(name));
 	text_put_html(facts->out, name);
 	if (sequence > 0)
-		text_format(facts->out, ", number %.0f", sequence);
+		text_format(facts->out, ", version %.0f", sequence);
 	text_put(facts->out, " <small>(");
 	text_put_html(facts->out, root);
 	text_put(facts->out, ")</small>");
@@ -125,17 +125,18 @@ static void write_server(const struct facts *facts)
 
 	row(facts, "Museum server");
 	if (isnan(online)) {
-		text_put(facts->out, "not known");
+		text_put(facts->out, "unknown");
 		return;
 	}
-	text_put(facts->out, online > 0 ? "answers" : "does not answer");
 	if (online == 0 && since_s > 0) {
-		text_put(facts->out, ", for ");
+		text_put(facts->out, "has not responded for ");
 		put_duration(facts->out, (double)facts->snapshot->taken_wall_s - since_s);
+	} else {
+		text_put(facts->out, online > 0 ? "responds" : "does not respond");
 	}
 	text_put(facts->out, "; ");
 	put_bytes(facts->out, figure(facts, PROGRAM_FETCH, "gopura_fetch_received_bytes_total"));
-	text_format(facts->out, " received, %.0f of %.0f requests without an answer",
+	text_format(facts->out, " received; %.0f of %.0f requests failed",
 		    figure(facts, PROGRAM_FETCH, "gopura_fetch_errors_total"),
 		    figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
 }
@@ -166,25 +167,26 @@ static void write_panel(const struct facts *facts)
 
 	if (kiosk.size == 0)
 		return;
-	row(facts, "Pictures");
-	text_format(facts->out, "%.0f drawn, %.0f late, the last one ",
+	row(facts, "Frames");
+	text_format(facts->out, "%.0f drawn, %.0f of them late; the last one ",
 		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_frames_total"),
 		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_late_frames_total"));
 	put_duration(facts->out,
 		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_last_frame_age_seconds"));
-	text_put(facts->out, " ago (at rest none is drawn)");
-	row(facts, "Drawn by");
+	text_put(facts->out, " ago (none are drawn while nothing moves)");
+	row(facts, "Graphics");
 	metrics_label(kiosk, "gopura_kiosk_gl_info", "renderer", renderer, sizeof(renderer));
 	text_put_html(facts->out, renderer);
 	if (!isnan(touch)) {
 		row(facts, "Touchscreens");
 		text_format(facts->out, "%.0f", touch);
 	}
-	row(facts, "Held for drawing");
+	row(facts, "Graphics memory");
 	put_share(facts, figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_bytes"),
-		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_budget_bytes"), "of images");
+		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_budget_bytes"), "for images");
 	put_share(facts, figure(facts, PROGRAM_KIOSK, "gopura_kiosk_geometry_bytes"),
-		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_geometry_budget_bytes"), "of shape");
+		  figure(facts, PROGRAM_KIOSK, "gopura_kiosk_geometry_budget_bytes"),
+		  "for geometry");
 }
 
 static void write_machine(const struct facts *facts)
@@ -193,7 +195,7 @@ static void write_machine(const struct facts *facts)
 
 	if (!isnan(m->temperature_c)) {
 		row(facts, "Temperature");
-		text_format(facts->out, "%.0f degrees Celsius", m->temperature_c);
+		text_format(facts->out, "%.0f °C", m->temperature_c);
 	}
 	row(facts, "Memory");
 	put_share(facts, m->memory_bytes - m->memory_free_bytes, m->memory_bytes, "in use");
@@ -201,13 +203,13 @@ static void write_machine(const struct facts *facts)
 	put_share(facts, m->data_bytes - m->data_free_bytes, m->data_bytes, "in use");
 	put_share(facts, figure(facts, PROGRAM_FETCH, "gopura_fetch_cache_bytes"),
 		  figure(facts, PROGRAM_FETCH, "gopura_fetch_cache_budget_bytes"),
-		  "of what may be kept");
+		  "used by the download cache");
 	if (!isnan(m->written_bytes)) {
 		row(facts, "Written to disks");
 		put_bytes(facts->out, m->written_bytes);
-		text_put(facts->out, " since the machine began");
+		text_put(facts->out, " since the computer started");
 	}
-	row(facts, "On for");
+	row(facts, "Running for");
 	put_duration(facts->out, m->uptime_s);
 	if (m->slot[0]) {
 		row(facts, "Firmware");
@@ -221,12 +223,12 @@ static void write_program(const struct facts *facts, enum program program, const
 {
 	row(facts, name);
 	if (facts->snapshot->answers[program].rc < 0) {
-		text_put(facts->out, "silent");
+		text_put(facts->out, "does not respond");
 		return;
 	}
-	text_put(facts->out, "runs for ");
+	text_put(facts->out, "running for ");
 	put_duration(facts->out, figure(facts, program, uptime));
-	text_format(facts->out, ", %.0f start%s, holds ", figure(facts, program, starts),
+	text_format(facts->out, ", started %.0f time%s, uses ", figure(facts, program, starts),
 		    figure(facts, program, starts) == 1 ? "" : "s");
 	put_bytes(facts->out, figure(facts, program, memory));
 }
@@ -235,12 +237,12 @@ static void write_program(const struct facts *facts, enum program program, const
 
 static void write_head(const struct facts *facts, const struct verdict *verdict)
 {
-	static const char *const words[LEVEL_COUNT] = { "All is well", "It works, with a remark",
-							"It is ill" };
+	static const char *const words[LEVEL_COUNT] = { "Everything works", "Works, with a warning",
+							"Needs attention" };
 	const char *word = words[verdict->level];
 
-	if (verdict->level == LEVEL_REMARK && verdict->count > 1)
-		word = "It works, with remarks";
+	if (verdict->level == LEVEL_WARNING && verdict->count > 1)
+		word = "Works, with warnings";
 	text_put(facts->out, "<!doctype html><html lang=en><meta charset=utf-8>"
 			     "<meta name=viewport content='width=device-width'>"
 			     "<meta http-equiv=refresh content=10><title>");
@@ -265,11 +267,11 @@ static void write_findings(struct buffer *out, const struct verdict *verdict)
 		text_put_html(out, finding->what);
 		text_put(out, "</h3>");
 		if (finding->detail[0]) {
-			text_put(out, "<p>");
+			text_put(out, "<p class=detail>");
 			text_put_html(out, finding->detail);
 		}
-		text_put(out, "<p class=cure>");
-		text_put_html(out, finding->cure);
+		text_put(out, "<p>");
+		text_put_html(out, finding->action);
 		text_put(out, "</article>");
 	}
 }
@@ -284,25 +286,26 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 
 	write_head(&facts, verdict);
 	write_findings(out, verdict);
-	text_put(out, "<h2>What is shown</h2><table>");
+	text_put(out, "<h2>Content</h2><table>");
 	write_release(&facts);
 	write_server(&facts);
-	write_refusal(&facts, PROGRAM_KIOSK, "Refused last", "gopura_kiosk_refused_at_seconds",
-		      "gopura_kiosk_refusal_info");
-	write_refusal(&facts, PROGRAM_FETCH, "Not brought last", "gopura_fetch_refused_at_seconds",
-		      "gopura_fetch_refusal_info");
+	write_refusal(&facts, PROGRAM_KIOSK, "Last rejected release",
+		      "gopura_kiosk_refused_at_seconds", "gopura_kiosk_refusal_info");
+	write_refusal(&facts, PROGRAM_FETCH, "Last failed download",
+		      "gopura_fetch_refused_at_seconds", "gopura_fetch_refusal_info");
 	write_panel(&facts);
-	text_put(out, "</table><h2>The machine</h2><table>");
+	text_put(out, "</table><h2>Computer</h2><table>");
 	write_machine(&facts);
 	write_program(&facts, PROGRAM_KIOSK, "gopura-kiosk", "gopura_kiosk_uptime_seconds",
 		      "gopura_kiosk_starts_total", "gopura_kiosk_resident_bytes");
 	write_program(&facts, PROGRAM_FETCH, "gopura-fetch", "gopura_fetch_uptime_seconds",
 		      "gopura_fetch_starts_total", "gopura_fetch_resident_bytes");
 	strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", localtime_r(&taken_s, &local));
-	text_format(out,
-		    "</table><footer>As of %s by this machine's clock; looks again every 10 "
-		    "seconds. <a href=/metrics>Figures</a> for Prometheus, <a href=/health>one "
-		    "word</a> for scripts; <a href=/visits.csv>what visitors look at</a>, "
-		    "without anything about them.</footer></main>\n",
-		    when);
+	text_format(
+		out,
+		"</table><footer>Measured at %s (clock of this terminal). The page reloads every 10 "
+		"seconds.<br><a href=/metrics>Metrics</a> for Prometheus · <a href=/health>status</a> "
+		"for scripts · <a href=/visits.csv>anonymous counts</a> of what visitors look at"
+		"</footer></main>\n",
+		when);
 }

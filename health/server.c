@@ -1,10 +1,13 @@
-/* A small HTTP server: one poll loop over listeners and clients, with a limit on time and memory
- * for each client. */
+/* Drives libmicrohttpd from one loop without threads. libmicrohttpd limits a connection only while
+ * it is silent; the loop limits the whole time of each, by shutting its socket down. */
 #include "health/server.h"
 
+#include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <poll.h>
+#include <microhttpd.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -15,162 +18,86 @@
 enum {
 	/* Kernel memory for sending to each client; without a limit it would grow to megabytes. */
 	SEND_BUFFER_BYTES = 64 * 1024,
+	CONNECTION_BYTES = 8 * 1024, /* memory for the heads of a request and its answer */
 	FILE_PIECE_BYTES = 32 * 1024,
-	PAUSE_MS = 100, /* wait before accepting again if the system has no descriptors left */
+	WAIT_MS_MAX = 60000,
 };
 
-enum stage { STAGE_FREE, STAGE_HEARS, STAGE_ANSWERS, STAGE_LEAVES };
-
 struct client {
-	enum stage stage;
-	int fd;
-	int64_t until_ms;
-	uint8_t head[REQUEST_BYTES_MAX];
-	size_t head_bytes;
-	struct reply reply;
-	size_t sent_bytes; /* bytes sent of reply.text */
-	uint64_t file_at;  /* bytes sent of reply.file */
+	bool busy;
+	int fd;           /* borrowed from libmicrohttpd */
+	int64_t until_ms; /* INT64_MAX: its socket was shut down */
+	bool has_file;
 };
 
 struct server {
 	const struct server_options *options;
+	struct MHD_Daemon *daemon;
 	struct client clients[SERVER_CLIENTS_MAX];
-	size_t busy, files; /* open connections; those of them that receive a file */
+	size_t client_count, file_count; /* connections; those of them that receive a file */
 	int64_t idle_since_ms;
-	int64_t accept_at_ms; /* do not accept connections before this time */
 };
 
-static void drop_reply(struct server *server, struct client *client)
-{
-	buffer_finish(&client->reply.text);
-	if (client->reply.file < 0)
-		return;
-	close(client->reply.file);
-	client->reply.file = -1;
-	server->files--;
-}
+/* ---- connections */
 
-static void part(struct server *server, struct client *client)
+static void begin_client(struct server *server, struct MHD_Connection *connection, void **context)
 {
-	close(client->fd);
-	drop_reply(server, client);
-	client->stage = STAGE_FREE;
-	server->busy--;
-	server->idle_since_ms = clock_now_ms();
-}
-
-static void meet(struct server *server, int fd)
-{
+	const union MHD_ConnectionInfo *info =
+		MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
 	const int send_buffer_bytes = SEND_BUFFER_BYTES;
 	struct client *client = server->clients;
 
-	while (client->stage != STAGE_FREE) /* one is free, because no more are accepted */
-		client++;
-	*client = (struct client){ .stage = STAGE_HEARS, .fd = fd, .reply = { .file = -1 } };
-	client->until_ms = clock_now_ms() + server->options->patience_ms;
-	if (setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes, sizeof(int)) < 0)
+	if (setsockopt(info->connect_fd, SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes,
+		       sizeof(send_buffer_bytes)) < 0)
 		log_warn("health", "a send buffer keeps its size: %s", strerror(errno));
-	server->busy++;
+	while (client->busy) {
+		client++;
+		assert(client < server->clients + SERVER_CLIENTS_MAX); /* the connection limit */
+	}
+	*client = (struct client){ .busy = true,
+				   .fd = info->connect_fd,
+				   .until_ms = clock_now_ms() + server->options->patience_ms };
+	server->client_count++;
+	*context = client;
 }
 
-static void accept_from(struct server *server, int listener)
+static void end_client(struct server *server, struct client *client)
 {
-	int fd;
+	server->file_count -= client->has_file;
+	client->busy = false;
+	server->client_count--;
+	server->idle_since_ms = clock_now_ms();
+}
 
-	while (server->busy < SERVER_CLIENTS_MAX) {
-		fd = accept4(listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-		if (fd >= 0) {
-			meet(server, fd);
+static void on_connection(void *data, struct MHD_Connection *connection, void **context,
+			  enum MHD_ConnectionNotificationCode code)
+{
+	if (code == MHD_CONNECTION_NOTIFY_STARTED)
+		begin_client(data, connection, context);
+	else
+		end_client(data, *context);
+}
+
+static struct client *client_of(struct MHD_Connection *connection)
+{
+	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)
+		->socket_context;
+}
+
+/* libmicrohttpd closes a connection when it finds its socket shut down. */
+static void disconnect_late_clients(struct server *server)
+{
+	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++) {
+		struct client *client = &server->clients[i];
+
+		if (!client->busy || clock_now_ms() < client->until_ms)
 			continue;
-		}
-		if (errno != EAGAIN && errno != ECONNABORTED && errno != EINTR) {
-			log_warn("health", "no connection is taken: %s", strerror(errno));
-			server->accept_at_ms = clock_now_ms() + PAUSE_MS;
-		}
-		return;
+		shutdown(client->fd, SHUT_RDWR);
+		client->until_ms = INT64_MAX;
 	}
 }
 
-/* ---- one client, as far as possible without waiting */
-
-/* Reads and drops what the client still sends, until it closes the connection: if we closed it with
- * unread bytes, the kernel would discard the answer. */
-static void see_off(struct server *server, struct client *client)
-{
-	uint8_t dropped[4096];
-	ssize_t size = read(client->fd, dropped, sizeof(dropped));
-
-	if (size == 0 || (size < 0 && errno != EAGAIN && errno != EINTR))
-		part(server, client);
-}
-
-/* Sends a part; *sent is how much. Returns 0, also if the client cannot take more now, or a
- * negative errno. */
-static int send_piece(int fd, const void *data, size_t size, size_t *sent)
-{
-	const ssize_t rc = send(fd, data, size, MSG_NOSIGNAL);
-
-	*sent = rc > 0 ? (size_t)rc : 0;
-	return rc < 0 && errno != EAGAIN && errno != EINTR ? -errno : 0;
-}
-
-/* Sends a piece of the file. It does not use sendfile, which raises SIGPIPE if the client is gone.
- * What the client did not take is read again. */
-static int send_file_piece(struct client *client)
-{
-	const uint64_t left = client->reply.file_bytes - client->file_at;
-	uint8_t piece[FILE_PIECE_BYTES];
-	const size_t wanted = left < sizeof(piece) ? (size_t)left : sizeof(piece);
-	const ssize_t size = pread(client->reply.file, piece, wanted, (off_t)client->file_at);
-	size_t sent;
-	int rc;
-
-	if (size < 0 && errno == EINTR)
-		return 0;
-	if (size <= 0)
-		return size < 0 ? -errno : -ENODATA; /* the file was truncated */
-	rc = send_piece(client->fd, piece, (size_t)size, &sent);
-	client->file_at += sent;
-	return rc;
-}
-
-static int send_text_piece(struct client *client)
-{
-	const struct buffer *text = &client->reply.text;
-	size_t sent;
-	const int rc = send_piece(client->fd, text->data + client->sent_bytes,
-				  text->size - client->sent_bytes, &sent);
-
-	client->sent_bytes += sent;
-	return rc;
-}
-
-static bool is_sent(const struct client *client)
-{
-	return client->sent_bytes == client->reply.text.size &&
-	       (client->reply.file < 0 || client->file_at == client->reply.file_bytes);
-}
-
-static void send_answer(struct server *server, struct client *client)
-{
-	int rc = 0;
-
-	if (client->sent_bytes < client->reply.text.size)
-		rc = send_text_piece(client);
-	else if (!is_sent(client))
-		rc = send_file_piece(client);
-	if (rc < 0) {
-		part(server, client);
-		return;
-	}
-	if (!is_sent(client))
-		return;
-	if (client->reply.file >= 0) /* the time so far was for the file */
-		client->until_ms = clock_now_ms() + server->options->patience_ms;
-	drop_reply(server, client);
-	shutdown(client->fd, SHUT_WR);
-	client->stage = STAGE_LEAVES;
-}
+/* ---- answers */
 
 /* Returns the time that the receiver of a file of that size gets in addition to patience_ms. */
 static int64_t file_ms(const struct server_options *options, uint64_t bytes)
@@ -180,122 +107,157 @@ static int64_t file_ms(const struct server_options *options, uint64_t bytes)
 	return seconds < SERVER_FILE_MS_MAX / 1000 ? (int64_t)seconds * 1000 : SERVER_FILE_MS_MAX;
 }
 
-static void make_reply(struct server *server, struct client *client, int status,
-		       const struct request *request)
+/* Replaces the reply by the status in words. */
+static void refuse(struct reply *reply, unsigned status)
 {
-	const struct server_options *options = server->options;
-	struct reply *reply = &client->reply;
+	char text[64];
 
-	buffer_init(&reply->text, SERVER_TEXT_BYTES_MAX);
-	options->answer(options->data, status, request, reply);
-	if (reply->file >= 0 && server->files == SERVER_FILES_MAX) {
+	if (reply->file >= 0)
 		close(reply->file);
-		reply->file = -1;
-		buffer_clear(&reply->text);
-		options->answer(options->data, 503, request, reply);
-	}
-	if (reply->file < 0)
-		return;
-	server->files++;
-	client->until_ms += file_ms(options, reply->file_bytes);
+	reply->file = -1;
+	reply->status = (int)status;
+	reply->type = "text/plain";
+	snprintf(text, sizeof(text), "%u %s\n", status, MHD_get_reason_phrase_for(status));
+	buffer_finish(&reply->body);
+	buffer_init(&reply->body, sizeof(text));
+	buffer_put(&reply->body, text, strlen(text));
 }
 
-static void hear(struct server *server, struct client *client)
+/* Reads a piece of the file at *data, which starts at place. */
+static ssize_t read_file(void *data, uint64_t place, char *out, size_t bytes)
 {
-	ssize_t size = read(client->fd, client->head + client->head_bytes,
-			    sizeof(client->head) - client->head_bytes);
-	struct request request = { 0 };
-	int status;
+	const ssize_t size = pread(*(int *)data, out, bytes, (off_t)place);
 
-	if (size < 0 && (errno == EAGAIN || errno == EINTR))
-		return;
-	if (size <= 0) {
-		part(server, client);
-		return;
-	}
-	client->head_bytes += (size_t)size;
-	status = request_parse(&request, (struct bytes){ client->head, client->head_bytes });
-	if (status == 0)
-		return;
-	make_reply(server, client, status, &request);
-	if (client->reply.text.error) {
-		log_warn("health", "an answer did not fit: %s",
-			 strerror(-client->reply.text.error));
-		part(server, client);
-		return;
-	}
-	client->stage = STAGE_ANSWERS;
-	send_answer(server, client);
+	return size > 0 ? size : MHD_CONTENT_READER_END_WITH_ERROR; /* 0: it was truncated */
 }
 
-static void serve(struct server *server, struct client *client)
+static void close_file(void *data)
 {
-	switch (client->stage) {
-	case STAGE_FREE:
-		break;
-	case STAGE_HEARS:
-		hear(server, client);
-		break;
-	case STAGE_ANSWERS:
-		send_answer(server, client);
-		break;
-	case STAGE_LEAVES:
-		see_off(server, client);
-		break;
+	close(*(int *)data);
+	free(data);
+}
+
+/* Takes the file. libmicrohttpd's own response from a descriptor uses sendfile, which waits for
+ * ever when the file was truncated. */
+static struct MHD_Response *make_file_response(const struct reply *reply)
+{
+	struct MHD_Response *response = NULL;
+	int *fd = malloc(sizeof(*fd));
+
+	if (fd) {
+		*fd = reply->file;
+		response = MHD_create_response_from_callback(reply->file_bytes, FILE_PIECE_BYTES,
+							     read_file, fd, close_file);
 	}
+	if (!response) {
+		close(reply->file);
+		free(fd);
+	}
+	return response;
+}
+
+/* Takes the contents of the reply. Returns NULL if there is no memory. */
+static struct MHD_Response *make_response(struct reply *reply)
+{
+	struct MHD_Response *response;
+
+	if (reply->file >= 0)
+		return make_file_response(reply);
+	response = MHD_create_response_from_buffer(reply->body.size, reply->body.data,
+						   MHD_RESPMEM_MUST_FREE);
+	if (!response)
+		buffer_finish(&reply->body);
+	return response;
+}
+
+static enum MHD_Result add_headers(struct MHD_Response *response, const struct reply *reply)
+{
+	const struct {
+		const char *name, *value;
+	} headers[] = {
+		{ "Connection", "close" },
+		{ "Cache-Control", "no-store" },
+		{ "X-Content-Type-Options", "nosniff" },
+		{ "Content-Security-Policy", "default-src 'none'; style-src 'unsafe-inline'" },
+		{ "Allow", reply->status == MHD_HTTP_METHOD_NOT_ALLOWED ? "GET, HEAD" : NULL },
+	};
+	enum MHD_Result rc = MHD_YES;
+	char type[80];
+
+	snprintf(type, sizeof(type), "%s; charset=utf-8", reply->type);
+	rc = MHD_add_response_header(response, "Content-Type", type);
+	for (size_t i = 0; i < ARRAY_COUNT(headers) && rc == MHD_YES; i++)
+		if (headers[i].value)
+			rc = MHD_add_response_header(response, headers[i].name, headers[i].value);
+	return rc;
+}
+
+/* Sends the reply and takes its contents. MHD_NO closes the connection. */
+static enum MHD_Result send_reply(struct MHD_Connection *connection, struct reply *reply)
+{
+	struct MHD_Response *response = make_response(reply);
+	enum MHD_Result rc = MHD_NO;
+
+	if (!response)
+		return MHD_NO;
+	if (add_headers(response, reply) == MHD_YES)
+		rc = MHD_queue_response(connection, (unsigned)reply->status, response);
+	MHD_destroy_response(response); /* the connection holds it while it is sent */
+	return rc;
+}
+
+static enum MHD_Result on_request(void *data, struct MHD_Connection *connection, const char *path,
+				  const char *method, const char *version, const char *upload,
+				  size_t *upload_bytes, void **request)
+{
+	struct server *server = data;
+	const struct server_options *options = server->options;
+	struct client *client = client_of(connection);
+	struct reply reply = { .status = MHD_HTTP_NOT_FOUND, .file = -1 };
+
+	(void)version, (void)upload, (void)upload_bytes, (void)request;
+	if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0) {
+		refuse(&reply, MHD_HTTP_METHOD_NOT_ALLOWED);
+		return send_reply(connection, &reply);
+	}
+	options->answer(options->data, path, &reply);
+	if (reply.body.error) {
+		log_warn("health", "an answer does not fit: %s", strerror(-reply.body.error));
+		buffer_finish(&reply.body);
+		return MHD_NO;
+	}
+	if (reply.file >= 0 && server->file_count == SERVER_FILES_MAX)
+		refuse(&reply, MHD_HTTP_SERVICE_UNAVAILABLE);
+	else if (reply.file < 0 && reply.body.size == 0)
+		refuse(&reply, (unsigned)reply.status);
+	if (reply.file >= 0) {
+		client->has_file = true;
+		server->file_count++;
+		client->until_ms += file_ms(options, reply.file_bytes);
+	}
+	return send_reply(connection, &reply);
 }
 
 /* ---- the loop */
 
-static int wait_ms(const struct server *server)
+static int32_t wait_ms(const struct server *server)
 {
 	const int64_t now_ms = clock_now_ms();
-	int64_t due_ms = INT64_MAX;
+	int64_t due_ms = now_ms + WAIT_MS_MAX;
 
-	if (server->busy == 0 && server->options->idle_ms > 0)
+	if (server->client_count == 0 && server->options->idle_ms > 0 &&
+	    server->idle_since_ms + server->options->idle_ms < due_ms)
 		due_ms = server->idle_since_ms + server->options->idle_ms;
-	if (server->accept_at_ms > now_ms && server->accept_at_ms < due_ms)
-		due_ms = server->accept_at_ms;
 	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++)
-		if (server->clients[i].stage != STAGE_FREE && server->clients[i].until_ms < due_ms)
+		if (server->clients[i].busy && server->clients[i].until_ms < due_ms)
 			due_ms = server->clients[i].until_ms;
-	if (due_ms == INT64_MAX)
-		return -1;
-	return due_ms <= now_ms ? 0 : due_ms - now_ms > 60000 ? 60000 : (int)(due_ms - now_ms);
+	return due_ms > now_ms ? (int32_t)(due_ms - now_ms) : 0;
 }
 
-static int turn(struct server *server)
+static bool is_over(const struct server *server)
 {
-	const size_t count = server->options->listener_count;
-	struct pollfd ready[SERVER_LISTENERS_MAX + SERVER_CLIENTS_MAX];
-	const bool full =
-		server->busy == SERVER_CLIENTS_MAX || clock_now_ms() < server->accept_at_ms;
-
-	for (size_t i = 0; i < count; i++)
-		ready[i] = (struct pollfd){ .fd = full ? -1 : server->options->listeners[i],
-					    .events = POLLIN };
-	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++) {
-		const struct client *client = &server->clients[i];
-
-		ready[count + i] = (struct pollfd){
-			.fd = client->stage == STAGE_FREE ? -1 : client->fd,
-			.events = client->stage == STAGE_ANSWERS ? POLLOUT : POLLIN,
-		};
-	}
-	if (poll(ready, count + SERVER_CLIENTS_MAX, wait_ms(server)) < 0)
-		return errno == EINTR ? 0 : -errno;
-	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++) {
-		struct client *client = &server->clients[i];
-
-		if (client->stage != STAGE_FREE && ready[count + i].revents)
-			serve(server, client);
-		if (client->stage != STAGE_FREE && clock_now_ms() >= client->until_ms)
-			part(server, client);
-	}
-	for (size_t i = 0; i < count; i++)
-		if (ready[i].revents)
-			accept_from(server, ready[i].fd);
-	return 0;
+	return server->client_count == 0 && server->options->idle_ms > 0 &&
+	       clock_now_ms() >= server->idle_since_ms + server->options->idle_ms;
 }
 
 int server_run(const struct server_options *options)
@@ -303,18 +265,23 @@ int server_run(const struct server_options *options)
 	struct server server = { .options = options, .idle_since_ms = clock_now_ms() };
 	int rc = 0;
 
-	if (options->listener_count == 0 || options->listener_count > SERVER_LISTENERS_MAX ||
-	    options->file_bytes_per_s == 0)
+	if (options->file_bytes_per_s == 0)
 		return -EINVAL;
-	for (size_t i = 0; i < options->listener_count; i++)
-		if (fcntl(options->listeners[i], F_SETFL, O_NONBLOCK) < 0)
-			return -errno;
-	do
-		rc = turn(&server);
-	while (rc == 0 && (server.busy > 0 || options->idle_ms == 0 ||
-			   clock_now_ms() < server.idle_since_ms + options->idle_ms));
-	for (size_t i = 0; i < SERVER_CLIENTS_MAX; i++)
-		if (server.clients[i].stage != STAGE_FREE)
-			part(&server, &server.clients[i]);
+	signal(SIGPIPE, SIG_IGN); /* a client may close while a file is being sent */
+	server.daemon = MHD_start_daemon(
+		MHD_USE_EPOLL, 0, NULL, NULL, on_request, &server, MHD_OPTION_LISTEN_SOCKET,
+		options->listener, MHD_OPTION_NOTIFY_CONNECTION, on_connection, &server,
+		MHD_OPTION_CONNECTION_LIMIT, (unsigned)SERVER_CLIENTS_MAX,
+		MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)SERVER_CLIENTS_PER_ADDRESS_MAX,
+		MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES,
+		MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1, MHD_OPTION_END);
+	if (!server.daemon)
+		return -EINVAL;
+	while (rc == 0 && !is_over(&server)) {
+		if (MHD_run_wait(server.daemon, wait_ms(&server)) != MHD_YES)
+			rc = -EIO;
+		disconnect_late_clients(&server);
+	}
+	MHD_stop_daemon(server.daemon);
 	return rc;
 }

@@ -1,5 +1,5 @@
-/* Judges a snapshot by fixed rules: each rule that fails adds a finding with what is wrong and how
- * to mend it. */
+/* Judges a snapshot by fixed rules: each rule that fails adds a finding with what is wrong and what
+ * to do. */
 #include "health/verdict.h"
 
 #include <errno.h>
@@ -24,10 +24,10 @@ enum {
 /* Limits as shares: late frames, free memory, free data partition. */
 static const double late_most = 0.2, memory_low = 0.08, memory_out = 0.03, data_low = 0.05;
 
-static void add(struct verdict *verdict, enum level level, const char *what, const char *cure,
+static void add(struct verdict *verdict, enum level level, const char *what, const char *action,
 		const char *detail, ...) printf_like(5, 6);
 
-static void add(struct verdict *verdict, enum level level, const char *what, const char *cure,
+static void add(struct verdict *verdict, enum level level, const char *what, const char *action,
 		const char *detail, ...)
 {
 	struct finding *finding = verdict->findings;
@@ -43,7 +43,7 @@ static void add(struct verdict *verdict, enum level level, const char *what, con
 	verdict->count++;
 	if (level > verdict->level)
 		verdict->level = level;
-	*finding = (struct finding){ .level = level, .what = what, .cure = cure };
+	*finding = (struct finding){ .level = level, .what = what, .action = action };
 	va_start(args, detail);
 	vsnprintf(finding->detail, sizeof(finding->detail), detail, args);
 	va_end(args);
@@ -76,39 +76,41 @@ static double figure(const struct snapshot *snapshot, enum program program, cons
 
 /* ---- the programs */
 
-static const char *silence(int rc)
+static const char *why_silent(int rc)
 {
 	switch (rc) {
 	case -ENOENT:
-		return "It does not run: it was stopped, or has not begun.";
+		return "It is not running: it was stopped, or has not started yet.";
 	case -ECONNREFUSED:
-		return "It has ended, and was not started again yet.";
+		return "It has exited and was not restarted yet.";
 	case -ETIMEDOUT:
-		return "It runs, and does not answer: it hangs.";
+		return "It is running but does not respond: it hangs.";
 	case -EBADMSG:
-		return "It answers, but not what it should.";
+		return "Its response is not valid.";
 	default:
 		return strerror(-rc);
 	}
 }
 
-static void judge_silence(struct verdict *verdict, const struct snapshot *snapshot)
+static void judge_programs(struct verdict *verdict, const struct snapshot *snapshot)
 {
 	const int kiosk = snapshot->answers[PROGRAM_KIOSK].rc;
 	const int fetch = snapshot->answers[PROGRAM_FETCH].rc;
 
 	if (kiosk < 0)
-		add(verdict, LEVEL_ILL, "The program that draws the picture is silent",
-		    "It is started again by itself within a minute. If this stays, switch the "
-		    "terminal off and on; if that does not help, keep what journalctl -u "
-		    "gopura-kiosk says and call whoever installed it.",
-		    "%s", silence(kiosk));
+		add(verdict, LEVEL_CRITICAL, "The display program does not respond",
+		    "Visitors may see no picture, or cannot use it. The program (gopura-kiosk) is "
+		    "restarted automatically within a minute. If this message stays, switch the "
+		    "terminal off and on. If that does not help, save the output of journalctl -u "
+		    "gopura-kiosk and contact the installer.",
+		    "%s", why_silent(kiosk));
 	if (fetch < 0)
-		add(verdict, LEVEL_ILL, "The program that brings pictures and pages is silent",
-		    "It is started again by itself within a minute; until then visitors see what "
-		    "was on the panel. If this stays, switch the terminal off and on, and keep "
-		    "what journalctl -u gopura-fetch says.",
-		    "%s", silence(fetch));
+		add(verdict, LEVEL_CRITICAL, "The download program does not respond",
+		    "Visitors see only what is already loaded. The program (gopura-fetch) is "
+		    "restarted automatically within a minute. If this message stays, switch the "
+		    "terminal off and on. If that does not help, save the output of journalctl -u "
+		    "gopura-fetch and contact the installer.",
+		    "%s", why_silent(fetch));
 }
 
 static void judge_restart(struct verdict *verdict, const struct snapshot *snapshot,
@@ -122,10 +124,10 @@ static void judge_restart(struct verdict *verdict, const struct snapshot *snapsh
 	if (!(count > 1) || !(since_s < RESTARTED_S))
 		return;
 	verdict_duration(ago, sizeof(ago), since_s);
-	add(verdict, LEVEL_REMARK, what,
-	    "Once is nothing. If the number grows from day to day, keep what journalctl says of "
-	    "it and call whoever installed the terminal.",
-	    "%s ago; %.0f restart%s since the machine began.", ago, count - 1,
+	add(verdict, LEVEL_WARNING, what,
+	    "A single restart is harmless. If the number grows from day to day, save the output "
+	    "of journalctl and contact the installer.",
+	    "%s ago; %.0f restart%s since the computer started.", ago, count - 1,
 	    count == 2 ? "" : "s");
 }
 
@@ -139,27 +141,28 @@ static void judge_picture(struct verdict *verdict, const struct snapshot *snapsh
 	char renderer[80];
 
 	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_picture") == 0 && since_s > PICTURE_S)
-		add(verdict, LEVEL_ILL, "There is no picture yet",
-		    "The terminal never got a release whole. See below whether the museum server "
-		    "answers; check [release] url and trust in gopura.conf.",
+		add(verdict, LEVEL_CRITICAL, "No picture is shown",
+		    "The terminal has not received a complete release yet. Check below whether the "
+		    "museum server responds, and check [release] url and trust in gopura.conf.",
 		    "%s", "");
 	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch_devices") == 0)
-		add(verdict, LEVEL_ILL, "No finger is felt",
-		    "No touchscreen answers. Check the cable between panel and computer (USB, mostly), "
-		    "then the panel's supply.",
+		add(verdict, LEVEL_CRITICAL, "The touchscreen does not work",
+		    "No touchscreen is connected. Check the cable between panel and computer "
+		    "(usually USB), then the power supply of the panel.",
 		    "%s", "");
 	metrics_label(buffer_bytes(&snapshot->answers[PROGRAM_KIOSK].text), "gopura_kiosk_gl_info",
 		      "renderer", renderer, sizeof(renderer));
 	if (strstr(renderer, "llvmpipe") || strstr(renderer, "softpipe"))
-		add(verdict, LEVEL_REMARK, "No graphics driver: the processor draws",
-		    "Pictures come slowly and the machine runs hot. This board's GPU needs a driver "
-		    "that the image does not have, or its kernel module did not load.",
+		add(verdict, LEVEL_WARNING, "The graphics driver is missing",
+		    "The processor draws the pictures, which is slow and makes the computer hot. The "
+		    "image has no driver for the GPU of this board, or its kernel module was not "
+		    "loaded. Contact the installer.",
 		    "%s", renderer);
 	else if (frames >= FRAMES_MIN && late > late_most * frames)
-		add(verdict, LEVEL_REMARK, "Pictures come late",
-		    "The board is too slow for what is asked of it: a smaller mode in gopura.conf "
-		    "or fewer triangles in the board's profile (docs/board.md).",
-		    "%.0f %% of the frames took longer than the panel waits.", 100 * late / frames);
+		add(verdict, LEVEL_WARNING, "The picture does not move smoothly",
+		    "The board is too slow for its settings. Set a smaller [panel] mode in "
+		    "gopura.conf, or fewer triangles in the board profile (docs/board.md).",
+		    "%.0f %% of the frames were late.", 100 * late / frames);
 }
 
 /* Judges refused releases. A fault in a release is found again at each look for a new one, so one
@@ -176,8 +179,9 @@ static void judge_refusal(struct verdict *verdict, const struct snapshot *snapsh
 	metrics_label(kiosk, "gopura_kiosk_refusal_info", "what", what, sizeof(what));
 	metrics_label(kiosk, "gopura_kiosk_refusal_info", "why", why, sizeof(why));
 	verdict_duration(ago, sizeof(ago), ago_s);
-	add(verdict, LEVEL_REMARK, "A new release was refused",
-	    "The one before is shown. Publish anew, or sign what has expired (docs/release.md).",
+	add(verdict, LEVEL_WARNING, "A new release was rejected",
+	    "Visitors see the previous release. Publish the release again, or renew the signature "
+	    "that has expired (docs/release.md).",
 	    "%s, %s ago: %s", what, ago, why);
 }
 
@@ -190,21 +194,24 @@ static void judge_content(struct verdict *verdict, const struct snapshot *snapsh
 
 	if (since_s > 0 && offline_s > OFFLINE_S) {
 		verdict_duration(gone, sizeof(gone), offline_s);
-		add(verdict, LEVEL_REMARK, "The museum server does not answer",
-		    "Visitors see what was brought before. Check the network cable or Wi-Fi, then "
-		    "whether [release] url in gopura.conf opens from another computer here.",
-		    "For %s.", gone);
+		add(verdict, LEVEL_WARNING, "The museum server does not respond",
+		    "Visitors see what was downloaded before. Check the network cable or Wi-Fi. Then "
+		    "check whether another computer in this network can open [release] url of "
+		    "gopura.conf.",
+		    "No response for %s.", gone);
 	}
 	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk_connected") == 0 &&
 	    figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds") > TOGETHER_S &&
 	    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_uptime_seconds") > TOGETHER_S)
-		add(verdict, LEVEL_REMARK, "The two programs do not talk with each other",
-		    "Nothing new is brought. Switch the terminal off and on.", "%s", "");
+		add(verdict, LEVEL_WARNING, "The two programs are not connected",
+		    "Nothing new is downloaded or shown. Switch the terminal off and on.", "%s",
+		    "");
 	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total") > 0)
-		add(verdict, LEVEL_REMARK, "The disk does not take what is to be kept",
-		    "It is full, or worn out: after a power cut less may be there to be shown. Look at "
-		    "the room below; replace the card or disk where there is enough.",
-		    "%.0f writes were refused.",
+		add(verdict, LEVEL_WARNING, "The disk cannot be written",
+		    "Downloads are not saved, so they may be missing after a power cut. The disk is "
+		    "full or worn out. Check the free space below; if there is enough, replace the "
+		    "card or disk.",
+		    "%.0f writes failed.",
 		    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total"));
 }
 
@@ -215,27 +222,29 @@ static void judge_machine(struct verdict *verdict, const struct snapshot *snapsh
 	const struct machine *m = &snapshot->machine;
 
 	if (m->temperature_c >= HOT_C)
-		add(verdict, m->temperature_c >= BURNING_C ? LEVEL_ILL : LEVEL_REMARK,
+		add(verdict, m->temperature_c >= BURNING_C ? LEVEL_CRITICAL : LEVEL_WARNING,
 		    "The computer is too hot",
-		    "It slows down, and ages. Free its air vents, check its fan, take it out of the sun.",
-		    "%.0f degrees Celsius.", m->temperature_c);
+		    "It slows down and wears out sooner. Clear its air vents, check its fan, and keep "
+		    "it out of the sun.",
+		    "%.0f °C.", m->temperature_c);
 	if (m->memory_free_bytes < memory_low * m->memory_bytes)
 		add(verdict,
-		    m->memory_free_bytes < memory_out * m->memory_bytes ? LEVEL_ILL : LEVEL_REMARK,
-		    "Memory runs short",
-		    "Switch the terminal off and on. If it comes back, lower texture_mib and "
-		    "geometry_mib in the board's profile.",
+		    m->memory_free_bytes < memory_out * m->memory_bytes ? LEVEL_CRITICAL
+									: LEVEL_WARNING,
+		    "Memory is low",
+		    "Programs may be ended by the system. Switch the terminal off and on. If this "
+		    "message returns, lower texture_mib and geometry_mib in the board profile.",
 		    "%.0f of %.0f MB are free.", m->memory_free_bytes / 1e6, m->memory_bytes / 1e6);
 	if (m->data_free_bytes < data_low * m->data_bytes)
-		add(verdict, LEVEL_REMARK, "The disk is nearly full",
-		    "What is on the panel stays. Lower [cache] mib in the board's profile, or use a "
-		    "larger card.",
+		add(verdict, LEVEL_WARNING, "The disk is nearly full",
+		    "Soon, downloads can no longer be saved. Lower [cache] mib in the board profile, or "
+		    "use a larger card or disk.",
 		    "%.0f of %.0f MB are free.", m->data_free_bytes / 1e6, m->data_bytes / 1e6);
 	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock_trusted") == 0 &&
 	    m->uptime_s > CLOCK_S)
-		add(verdict, LEVEL_REMARK, "The clock may be wrong",
-		    "No time server answered, so nobody can tell whether a release has expired. Check "
-		    "[network] ntp in gopura.conf.",
+		add(verdict, LEVEL_WARNING, "The clock may be wrong",
+		    "No time server has responded, so the terminal cannot tell whether a release has "
+		    "expired. Check [network] ntp in gopura.conf.",
 		    "%s", "");
 }
 
@@ -246,9 +255,9 @@ static void judge_faults(struct verdict *verdict, const char *faults)
 		const size_t size = strcspn(faults, "\n");
 
 		if (size > 0)
-			add(verdict, LEVEL_REMARK, "gopura.conf says what cannot be done",
-			    "Correct the line, and switch the terminal off and on; a stick need only "
-			    "be plugged in again.",
+			add(verdict, LEVEL_WARNING, "gopura.conf has an error",
+			    "The setting in this line is not used. Correct the line, then switch the terminal off "
+			    "and on. If the file is on a USB stick, plug the stick in again instead.",
 			    "%.*s", (int)size, faults);
 		faults += size + (faults[size] == '\n');
 	}
@@ -257,14 +266,14 @@ static void judge_faults(struct verdict *verdict, const char *faults)
 void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 {
 	memset(out, 0, sizeof(*out));
-	judge_silence(out, snapshot);
+	judge_programs(out, snapshot);
 	judge_picture(out, snapshot);
 	judge_content(out, snapshot);
 	judge_refusal(out, snapshot);
 	judge_machine(out, snapshot);
 	judge_restart(out, snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts_total",
-		      "gopura_kiosk_uptime_seconds", "The program that draws began anew");
+		      "gopura_kiosk_uptime_seconds", "The display program was restarted");
 	judge_restart(out, snapshot, PROGRAM_FETCH, "gopura_fetch_starts_total",
-		      "gopura_fetch_uptime_seconds", "The program that brings began anew");
+		      "gopura_fetch_uptime_seconds", "The download program was restarted");
 	judge_faults(out, snapshot->machine.faults);
 }

@@ -1,4 +1,4 @@
-/* Judges what is wrong and how to mend it, in plain words for people who did not build the
+/* Finds out what is wrong and what to do about it, in plain words for people who did not build the
  * terminal. Pure. docs/health.md has the rules as a table. */
 #ifndef GOPURA_HEALTH_VERDICT_H
 #define GOPURA_HEALTH_VERDICT_H
@@ -6,9 +6,9 @@
 #include "health/gather.h"
 
 enum level {
-	LEVEL_WELL,
-	LEVEL_REMARK, /* the terminal works; somebody should look */
-	LEVEL_ILL,    /* visitors notice: somebody must come */
+	LEVEL_OK,
+	LEVEL_WARNING,  /* the terminal works; somebody should look at it */
+	LEVEL_CRITICAL, /* visitors notice; somebody must come */
 	LEVEL_COUNT
 };
 
@@ -16,9 +16,9 @@ enum { FINDINGS_MAX = 24 };
 
 struct finding {
 	enum level level;
-	const char *what; /* static */
-	char detail[256]; /* may be "" */
-	const char *cure; /* static */
+	const char *what;   /* what is wrong; static */
+	char detail[256];   /* facts about it; may be "" */
+	const char *action; /* what it means and what to do; static */
 };
 
 struct verdict {

@@ -69,7 +69,7 @@ wait_for 60 "refusal of release 2" says 'refused release 2: objects of it cannot
 cp -n "$work"/aside/* "$work/release/locator/"
 wait_for 90 "a picture of release 1" says 'first picture'
 shows "$first" || fail "it is not release 1 that is shown"
-health_says /health '^remark: A new release was refused: release 2, .*: objects of it cannot be decoded' ||
+health_says /health '^warning: A new release was rejected: release 2, .*: objects of it cannot be decoded' ||
 	{ curl -s "http://127.0.0.1:$port/health"; fail "the health page does not say why"; }
 health_says /metrics '^gopura_kiosk_release_sequence 2$' || fail "the floor fell"
 # The eye is where release 1 begins, not where the other did, in which nobody saw anything.

@@ -12,30 +12,35 @@
 #include "health/server.h"
 #include "tests/check.h"
 
+enum { BODY_BYTES_MAX = 132 << 10 };
+
 static struct sockaddr_in address = { .sin_family = AF_INET };
 static size_t answer_bytes = 3;
 static int file = -1;
 static uint64_t file_bytes;
 
-/* "STATUS PAGE" and as many bytes as the test wants; to REQUEST_VISITS, the file. */
-static void answer(void *data, int status, const struct request *request, struct reply *reply)
+/* "PATH " and as many bytes as the test wants; for /file, the file; for others, nothing. */
+static void answer(void *data, const char *path, struct reply *reply)
 {
-	char text[32];
-
 	(void)data;
-	snprintf(text, sizeof(text), "%d %d ", status, (int)request->page);
-	buffer_put(&reply->text, text, strlen(text));
-	for (size_t i = 0; i < answer_bytes; i++)
-		buffer_put_u8(&reply->text, 'x');
-	if (status != 200 || request->page != REQUEST_VISITS)
-		return;
-	buffer_clear(&reply->text);
-	reply->file = dup(file);
-	reply->file_bytes = file_bytes;
+	if (strcmp(path, "/file") == 0) {
+		reply->status = 200;
+		reply->type = "text/csv";
+		reply->file = dup(file);
+		reply->file_bytes = file_bytes;
+	} else if (strcmp(path, "/") == 0 || strcmp(path, "/ill") == 0) {
+		reply->status = path[1] ? 503 : 200;
+		reply->type = "text/plain";
+		buffer_init(&reply->body, BODY_BYTES_MAX);
+		buffer_put(&reply->body, path, strlen(path));
+		buffer_put_u8(&reply->body, ' ');
+		for (size_t i = 0; i < answer_bytes; i++)
+			buffer_put_u8(&reply->body, 'x');
+	}
 }
 
 struct running {
-	int listener, rc;
+	int rc;
 	struct server_options options;
 	pthread_t thread;
 };
@@ -51,16 +56,14 @@ static void *serve(void *data)
 static void start(struct running *server, int64_t patience_ms, int64_t idle_ms)
 {
 	socklen_t size = sizeof(address);
-
-	server->listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	address.sin_port = 0;
 	address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-	CHECK(bind(server->listener, (struct sockaddr *)&address, sizeof(address)) == 0);
-	CHECK(listen(server->listener, 64) == 0);
-	CHECK(getsockname(server->listener, (struct sockaddr *)&address, &size) == 0);
+	CHECK(bind(listener, (struct sockaddr *)&address, sizeof(address)) == 0);
+	CHECK(listen(listener, 64) == 0);
+	CHECK(getsockname(listener, (struct sockaddr *)&address, &size) == 0);
 	server->options = (struct server_options){
-		.listeners = &server->listener,
-		.listener_count = 1,
+		.listener = listener,
 		.patience_ms = patience_ms,
 		.idle_ms = idle_ms,
 		.file_bytes_per_s = 1 << 20,
@@ -74,37 +77,49 @@ static void finish(struct running *server)
 {
 	pthread_join(server->thread, NULL);
 	CHECK(server->rc == 0);
-	close(server->listener);
 }
 
-static int visit(void)
+/* Connects from 127.0.0.HOST. */
+static int connect_from(uint8_t host)
 {
+	struct sockaddr_in from = { .sin_family = AF_INET,
+				    .sin_addr.s_addr = htonl(0x7f000000u | host) };
 	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 
+	CHECK(bind(fd, (struct sockaddr *)&from, sizeof(from)) == 0);
 	CHECK(connect(fd, (struct sockaddr *)&address, sizeof(address)) == 0);
 	return fd;
 }
 
-static void say(int fd, const char *text)
+static int connect_to_server(void)
+{
+	return connect_from(1);
+}
+
+static void send_text(int fd, const char *text)
 {
 	CHECK(send(fd, text, strlen(text), MSG_NOSIGNAL) == (ssize_t)strlen(text));
 }
 
-/* Asks for path and has room for little of the answer. */
-static int presence_slowly(const char *path)
+/* Requests a path from 127.0.0.HOST, with room for little of the answer. */
+static int request_slowly(const char *path, uint8_t host)
 {
-	const int little = 4096, fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	const int little = 4096;
+	struct sockaddr_in from = { .sin_family = AF_INET,
+				    .sin_addr.s_addr = htonl(0x7f000000u | host) };
+	const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	char text[64];
 
 	CHECK(setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &little, sizeof(little)) == 0);
+	CHECK(bind(fd, (struct sockaddr *)&from, sizeof(from)) == 0);
 	CHECK(connect(fd, (struct sockaddr *)&address, sizeof(address)) == 0);
 	snprintf(text, sizeof(text), "GET %s HTTP/1.1\r\n\r\n", path);
-	say(fd, text);
+	send_text(fd, text);
 	return fd;
 }
 
 /* All until the server hangs up; how much. */
-static size_t hear(int fd, char *text, size_t text_bytes)
+static size_t receive(int fd, char *text, size_t text_bytes)
 {
 	size_t size = 0;
 	ssize_t more;
@@ -115,113 +130,6 @@ static size_t hear(int fd, char *text, size_t text_bytes)
 	close(fd);
 	return size;
 }
-
-static void a_request_gets_its_answer_in_however_many_pieces(void **state)
-{
-	struct running server;
-	char text[64];
-	int fd;
-
-	(void)state;
-	start(&server, 60000, 200);
-	fd = visit();
-	say(fd, "GET /me");
-	usleep(20000);
-	say(fd, "trics HTTP/1.1\r\n\r");
-	say(fd, "\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 1 xxx") == 0);
-	fd = visit();
-	say(fd, "GET /none HTTP/1.1\r\n\r\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strncmp(text, "404 ", 4) == 0);
-	finish(&server);
-}
-
-/* More than the head may be: the answer arrives all the same, for what follows is read too. */
-static void a_request_that_is_too_long_is_told_so(void **state)
-{
-	static char much[200000];
-	struct running server;
-	char text[64];
-	int fd;
-
-	(void)state;
-	start(&server, 60000, 200);
-	fd = visit();
-	memset(much, 'a', sizeof(much));
-	CHECK(send(fd, much, sizeof(much), MSG_NOSIGNAL) == (ssize_t)sizeof(much));
-	shutdown(fd, SHUT_WR);
-	hear(fd, text, sizeof(text));
-	CHECK(strncmp(text, "431 ", 4) == 0);
-	finish(&server);
-}
-
-static void slow_clients_are_cut_and_others_are_served_meanwhile(void **state)
-{
-	struct running server;
-	char text[64];
-	int slow[SERVER_CLIENTS_MAX + 4], fd;
-
-	(void)state;
-	start(&server, 300, 200);
-	slow[0] = visit();
-	say(slow[0], "GET / HT");
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\n\r\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 0 xxx") == 0);
-	/* More than there are places: who comes later waits until those before are cut. */
-	for (size_t i = 1; i < ARRAY_COUNT(slow); i++)
-		slow[i] = visit();
-	fd = visit();
-	say(fd, "GET /health HTTP/1.1\r\n\r\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 2 xxx") == 0);
-	for (size_t i = 0; i < ARRAY_COUNT(slow); i++)
-		CHECK(hear(slow[i], text, sizeof(text)) == 0);
-	finish(&server);
-}
-
-static void who_does_not_take_the_answer_is_cut(void **state)
-{
-	static char text[300000];
-	struct running server;
-	size_t size;
-	int fd;
-
-	(void)state;
-	answer_bytes = 130000;
-	start(&server, 300, 200);
-	fd = presence_slowly("/");
-	finish(&server); /* did not wait for us */
-	close(fd);
-	start(&server, 60000, 200);
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\n\r\n");
-	size = hear(fd, text, sizeof(text));
-	CHECK(size == 130006);
-	finish(&server);
-	answer_bytes = 3;
-}
-
-static void an_answer_that_does_not_fit_is_none(void **state)
-{
-	struct running server;
-	char text[64];
-	int fd;
-
-	(void)state;
-	answer_bytes = 10 << 20;
-	start(&server, 60000, 200);
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\n\r\n");
-	CHECK(hear(fd, text, sizeof(text)) == 0);
-	finish(&server);
-	answer_bytes = 3;
-}
-
-/* ---- files */
 
 static uint8_t pattern(uint64_t at)
 {
@@ -248,13 +156,205 @@ static void drop_file(void)
 	file = -1;
 }
 
-/* How much comes until the server hangs up; each byte must be the file's. */
-static uint64_t hear_file(int fd)
+/* Receives a whole answer; checks its status and returns its body, terminated. */
+static const char *receive_answer(int fd, const char *status, char *text, size_t text_bytes)
+{
+	const char *body;
+
+	receive(fd, text, text_bytes);
+	CHECK(strncmp(text, "HTTP/1.1 ", 9) == 0 && strncmp(text + 9, status, strlen(status)) == 0);
+	body = strstr(text, "\r\n\r\n");
+	CHECK(body);
+	return body + 4;
+}
+
+static void a_request_gets_its_answer_in_however_many_pieces(void **state)
+{
+	struct running server;
+	char text[1024];
+	int fd;
+
+	(void)state;
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET /i");
+	usleep(20000);
+	send_text(fd, "ll?now HTTP/1.1\r\n\r");
+	send_text(fd, "\n");
+	CHECK(strcmp(receive_answer(fd, "503 ", text, sizeof(text)), "/ill xxx") == 0);
+	CHECK(strstr(text, "Content-Type: text/plain; charset=utf-8\r\n"));
+	CHECK(strstr(text, "Cache-Control: no-store\r\n"));
+	CHECK(strstr(text, "X-Content-Type-Options: nosniff\r\n"));
+	CHECK(strstr(text,
+		     "Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'\r\n"));
+	CHECK(strstr(text, "Connection: close\r\n"));
+	finish(&server);
+}
+
+static void a_head_request_gets_no_body(void **state)
+{
+	struct running server;
+	char text[1024];
+	int fd;
+
+	(void)state;
+	make_file(2000);
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "HEAD / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "") == 0);
+	CHECK(strstr(text, "Content-Length: 5\r\n"));
+	fd = connect_to_server();
+	send_text(fd, "HEAD /file HTTP/1.0\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "") == 0);
+	CHECK(strstr(text, "Content-Length: 2000\r\n"));
+	finish(&server);
+	drop_file();
+}
+
+static void refuses_what_it_does_not_serve(void **state)
+{
+	static const struct {
+		const char *request, *status, *body;
+	} cases[] = {
+		{ "GET /none HTTP/1.1\r\n\r\n", "404 ", "404 Not Found\n" },
+		{ "GET /../file HTTP/1.1\r\n\r\n", "404 ", "404 Not Found\n" },
+		{ "POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\nx=1", "405 ",
+		  "405 Method Not Allowed\n" },
+		{ "WELL / HTTP/1.1\r\n\r\n", "405 ", "405 Method Not Allowed\n" },
+		{ "GET / HTTP/3.0\r\n\r\n", "505 ", NULL },
+		{ "GET / FTP/1.1\r\n\r\n", "400 ", NULL },
+	};
+	struct running server;
+	char text[2048];
+
+	(void)state;
+	start(&server, 60000, 500);
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		int fd = connect_to_server();
+		const char *body;
+
+		send_text(fd, cases[i].request);
+		body = receive_answer(fd, cases[i].status, text, sizeof(text));
+		CHECK(!cases[i].body || strcmp(body, cases[i].body) == 0);
+		CHECK(cases[i].status[2] != '5' || cases[i].status[0] != '4' ||
+		      strstr(text, "Allow: GET, HEAD\r\n"));
+	}
+	finish(&server);
+}
+
+static void a_head_that_is_too_long_is_refused(void **state)
+{
+	static char much[20000];
+	struct running server;
+	char text[2048];
+	int fd;
+
+	(void)state;
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\nA: ");
+	memset(much, 'a', sizeof(much));
+	CHECK(send(fd, much, sizeof(much), MSG_NOSIGNAL) == (ssize_t)sizeof(much));
+	receive_answer(fd, "431 ", text, sizeof(text));
+	finish(&server);
+}
+
+static void slow_clients_are_disconnected_and_others_are_served_meanwhile(void **state)
+{
+	struct running server;
+	char text[1024];
+	int slow[SERVER_CLIENTS_MAX + 4], fd;
+
+	(void)state;
+	start(&server, 300, 500);
+	slow[0] = connect_to_server();
+	send_text(slow[0], "GET / HT");
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "/ xxx") == 0);
+	/* More than the server accepts: later ones wait until earlier ones are disconnected. */
+	for (size_t i = 1; i < ARRAY_COUNT(slow); i++)
+		slow[i] = connect_from((uint8_t)(1 + i % 5));
+	fd = connect_from(9);
+	send_text(fd, "GET /ill HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "503 ", text, sizeof(text)), "/ill xxx") == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(slow); i++)
+		CHECK(receive(slow[i], text, sizeof(text)) == 0);
+	finish(&server);
+}
+
+/* One address cannot take every place. */
+static void connections_of_one_address_are_limited(void **state)
+{
+	int silent[SERVER_CLIENTS_PER_ADDRESS_MAX], fd;
+	struct running server;
+	char text[1024];
+
+	(void)state;
+	start(&server, 60000, 500);
+	for (size_t i = 0; i < ARRAY_COUNT(silent); i++)
+		silent[i] = connect_from(1);
+	fd = connect_from(1);
+	CHECK(receive(fd, text, sizeof(text)) == 0); /* closed without an answer */
+	fd = connect_from(2);
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "/ xxx") == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(silent); i++)
+		close(silent[i]);
+	finish(&server);
+}
+
+static void who_does_not_read_the_answer_is_disconnected(void **state)
+{
+	static char text[300000];
+	struct running server;
+	int fd;
+
+	(void)state;
+	answer_bytes = 130000;
+	start(&server, 300, 500);
+	fd = request_slowly("/", 1);
+	finish(&server); /* did not wait for us */
+	close(fd);
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(strlen(receive_answer(fd, "200 ", text, sizeof(text))) == 130002);
+	finish(&server);
+	answer_bytes = 3;
+}
+
+static void an_answer_that_does_not_fit_is_not_sent(void **state)
+{
+	struct running server;
+	char text[64];
+	int fd;
+
+	(void)state;
+	answer_bytes = 10 << 20;
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(receive(fd, text, sizeof(text)) == 0);
+	finish(&server);
+	answer_bytes = 3;
+}
+
+/* ---- files */
+
+/* Receives an answer with the file; each byte must be right. Returns the size of its body. */
+static uint64_t receive_file(int fd)
 {
 	static uint8_t piece[1 << 16];
+	char head[1024] = "";
 	uint64_t at = 0;
 	ssize_t size;
 
+	for (size_t i = 0; i < sizeof(head) - 1 && !strstr(head, "\r\n\r\n"); i++)
+		if (recv(fd, &head[i], 1, 0) != 1)
+			break;
+	CHECK(strncmp(head, "HTTP/1.1 200 OK\r\n", 17) == 0);
 	while ((size = read(fd, piece, sizeof(piece))) > 0)
 		for (ssize_t i = 0; i < size; i++)
 			CHECK(piece[i] == pattern(at++));
@@ -268,8 +368,8 @@ static void a_file_of_many_megabytes_arrives_whole(void **state)
 
 	(void)state;
 	make_file(20 << 20);
-	start(&server, 60000, 200);
-	CHECK(hear_file(presence_slowly("/visits.csv")) == file_bytes);
+	start(&server, 60000, 500);
+	CHECK(receive_file(request_slowly("/file", 1)) == file_bytes);
 	finish(&server);
 	drop_file();
 }
@@ -289,50 +389,49 @@ static long resident_kib(void)
 	return kib;
 }
 
-/* As many as there are places ask for a file and do not read it: no copy of it is in memory, some
- * are refused, and who asks for something else is still served. */
+/* As many clients as there are places but one request a file and do not read it: no copy of it is
+ * in memory, some are refused, and a request for something else is still served. */
 static void slow_readers_of_a_file_take_no_memory_and_not_every_place(void **state)
 {
 	struct running server;
 	int slow[SERVER_CLIENTS_MAX - 1], refused = 0, fd;
-	char text[64];
+	char text[1024];
 	long before_kib;
 
 	(void)state;
 	make_file(8 << 20);
-	start(&server, 60000, 200);
+	start(&server, 60000, 500);
 	before_kib = resident_kib();
 	for (size_t i = 0; i < ARRAY_COUNT(slow); i++)
-		slow[i] = presence_slowly("/visits.csv");
-	fd = visit();
-	say(fd, "GET /health HTTP/1.1\r\n\r\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 2 xxx") == 0);
+		slow[i] = request_slowly("/file", (uint8_t)(1 + i % 5));
+	fd = connect_from(9);
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "/ xxx") == 0);
 	CHECK(resident_kib() - before_kib < 8 * 1024);
 	for (size_t i = 0; i < ARRAY_COUNT(slow); i++) {
-		CHECK(recv(slow[i], text, 4, MSG_WAITALL) == 4);
-		refused += memcmp(text, "503 ", 4) == 0;
+		CHECK(recv(slow[i], text, 13, MSG_WAITALL) == 13);
+		refused += memcmp(text, "HTTP/1.1 503 ", 13) == 0;
 		close(slow[i]);
 	}
 	CHECK(refused == (int)ARRAY_COUNT(slow) - SERVER_FILES_MAX);
 	/* Their places are free again. */
-	CHECK(hear_file(presence_slowly("/visits.csv")) == file_bytes);
+	CHECK(receive_file(request_slowly("/file", 1)) == file_bytes);
 	finish(&server);
 	drop_file();
 }
 
-static void who_reads_a_file_too_slowly_is_cut(void **state)
+static void who_reads_a_file_too_slowly_is_disconnected(void **state)
 {
 	struct running server;
 	int fd;
 
 	(void)state;
 	make_file(2 << 20);
-	start(&server, 100, 200);
+	start(&server, 100, 500);
 	server.options.file_bytes_per_s = 8 << 20;
-	fd = presence_slowly("/visits.csv");
+	fd = request_slowly("/file", 1);
 	finish(&server); /* did not wait for us */
-	CHECK(hear_file(fd) < file_bytes);
+	CHECK(receive_file(fd) < file_bytes);
 	drop_file();
 }
 
@@ -344,14 +443,14 @@ static void a_file_that_shrinks_ends_its_answer(void **state)
 
 	(void)state;
 	make_file(8 << 20);
-	start(&server, 60000, 200);
-	fd = presence_slowly("/visits.csv");
+	start(&server, 60000, 500);
+	fd = request_slowly("/file", 1);
 	CHECK(recv(fd, &first, 1, MSG_PEEK) == 1);
 	CHECK(ftruncate(file, 1 << 20) == 0);
-	CHECK(hear_file(fd) < file_bytes);
-	fd = visit();
-	say(fd, "GET /visits.csv HTTP/1.1\r\n\r\n");
-	CHECK(hear_file(fd) == 1 << 20); /* announced longer than it is by now */
+	CHECK(receive_file(fd) < file_bytes);
+	fd = connect_to_server();
+	send_text(fd, "GET /file HTTP/1.1\r\n\r\n");
+	CHECK(receive_file(fd) == 1 << 20); /* announced longer than it is by now */
 	finish(&server);
 	drop_file();
 }
@@ -359,20 +458,20 @@ static void a_file_that_shrinks_ends_its_answer(void **state)
 /* ---- clients that mean no good */
 
 /* Each byte comes in time, and the head never ends: the patience is for all of it. */
-static void a_request_that_trickles_in_is_cut(void **state)
+static void a_request_that_trickles_in_is_disconnected(void **state)
 {
 	struct running server;
 	char text[64];
 	int fd, sent;
 
 	(void)state;
-	start(&server, 300, 200);
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\nA: ");
+	start(&server, 300, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\nA: ");
 	for (sent = 0; sent < 1000 && send(fd, "a", 1, MSG_NOSIGNAL) == 1; sent++)
 		usleep(20000);
 	CHECK(sent < 1000);
-	hear(fd, text, sizeof(text));
+	receive(fd, text, sizeof(text));
 	CHECK(text[0] == '\0');
 	finish(&server);
 }
@@ -380,31 +479,28 @@ static void a_request_that_trickles_in_is_cut(void **state)
 static void of_requests_in_a_row_the_first_is_answered(void **state)
 {
 	struct running server;
-	char text[64];
+	char text[2048];
 	int fd;
 
 	(void)state;
-	start(&server, 60000, 200);
-	fd = visit();
-	for (int i = 0; i < 1000; i++)
-		say(fd, "GET /metrics HTTP/1.1\r\n\r\nGET /health HTTP/1.1\r\n\r\n");
-	shutdown(fd, SHUT_WR);
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 1 xxx") == 0);
+	start(&server, 60000, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\nGET /ill HTTP/1.1\r\n\r\nGET / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "/ xxx") == 0);
 	finish(&server);
 }
 
 /* It would keep a place by sending for ever: the patience ends that too. */
-static void who_talks_on_after_the_answer_is_cut(void **state)
+static void who_sends_on_after_the_answer_is_disconnected(void **state)
 {
 	static char much[65536];
 	struct running server;
 	int fd;
 
 	(void)state;
-	start(&server, 300, 200);
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\n\r\n");
+	start(&server, 300, 500);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
 	while (send(fd, much, sizeof(much), MSG_NOSIGNAL) > 0)
 		;
 	close(fd);
@@ -415,30 +511,32 @@ static void clients_that_vanish_are_no_matter(void **state)
 {
 	const struct linger at_once = { 1, 0 };
 	struct running server;
-	char text[64];
+	char text[1024];
 	int fd;
 
 	(void)state;
-	start(&server, 60000, 300);
+	start(&server, 60000, 500);
 	for (int i = 0; i < 50; i++) {
-		fd = visit();
+		fd = connect_to_server();
 		if (i % 3)
-			say(fd, i % 3 == 1 ? "GET / HTTP/1.1\r\n\r\n" : "GET");
+			send_text(fd, i % 3 == 1 ? "GET / HTTP/1.1\r\n\r\n" : "GET");
 		setsockopt(fd, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
 		close(fd);
 	}
-	fd = visit();
-	say(fd, "GET / HTTP/1.1\r\n\r\n");
-	hear(fd, text, sizeof(text));
-	CHECK(strcmp(text, "200 0 xxx") == 0);
+	fd = connect_to_server();
+	send_text(fd, "GET / HTTP/1.1\r\n\r\n");
+	CHECK(strcmp(receive_answer(fd, "200 ", text, sizeof(text)), "/ xxx") == 0);
 	finish(&server);
 }
 
-static void no_listener_is_an_error(void **state)
+static void what_is_no_listener_is_refused(void **state)
 {
-	const struct server_options options = { .answer = answer, .file_bytes_per_s = 1 };
+	struct server_options options = { .answer = answer, .patience_ms = 1000, .idle_ms = 1 };
 
 	(void)state;
+	options.listener = memfd_create("none", MFD_CLOEXEC);
+	CHECK(server_run(&options) == -EINVAL); /* no rate for files */
+	options.file_bytes_per_s = 1;
 	CHECK(server_run(&options) == -EINVAL);
 }
 
@@ -446,19 +544,22 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_request_gets_its_answer_in_however_many_pieces),
-		cmocka_unit_test(a_request_that_is_too_long_is_told_so),
-		cmocka_unit_test(slow_clients_are_cut_and_others_are_served_meanwhile),
-		cmocka_unit_test(who_does_not_take_the_answer_is_cut),
-		cmocka_unit_test(an_answer_that_does_not_fit_is_none),
+		cmocka_unit_test(a_head_request_gets_no_body),
+		cmocka_unit_test(refuses_what_it_does_not_serve),
+		cmocka_unit_test(a_head_that_is_too_long_is_refused),
+		cmocka_unit_test(slow_clients_are_disconnected_and_others_are_served_meanwhile),
+		cmocka_unit_test(connections_of_one_address_are_limited),
+		cmocka_unit_test(who_does_not_read_the_answer_is_disconnected),
+		cmocka_unit_test(an_answer_that_does_not_fit_is_not_sent),
 		cmocka_unit_test(a_file_of_many_megabytes_arrives_whole),
 		cmocka_unit_test(slow_readers_of_a_file_take_no_memory_and_not_every_place),
-		cmocka_unit_test(who_reads_a_file_too_slowly_is_cut),
+		cmocka_unit_test(who_reads_a_file_too_slowly_is_disconnected),
 		cmocka_unit_test(a_file_that_shrinks_ends_its_answer),
-		cmocka_unit_test(a_request_that_trickles_in_is_cut),
+		cmocka_unit_test(a_request_that_trickles_in_is_disconnected),
 		cmocka_unit_test(of_requests_in_a_row_the_first_is_answered),
-		cmocka_unit_test(who_talks_on_after_the_answer_is_cut),
+		cmocka_unit_test(who_sends_on_after_the_answer_is_disconnected),
 		cmocka_unit_test(clients_that_vanish_are_no_matter),
-		cmocka_unit_test(no_listener_is_an_error),
+		cmocka_unit_test(what_is_no_listener_is_refused),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,23 +32,23 @@ static bool finds(enum level level, const char *what)
 static bool finds_nothing(void)
 {
 	verdict_judge(&verdict, &snapshot);
-	return verdict.count == 0 && verdict.level == LEVEL_WELL;
+	return verdict.count == 0 && verdict.level == LEVEL_OK;
 }
 
-static void a_well_terminal_gets_no_remark(void **state)
+static void a_terminal_that_works_has_no_finding(void **state)
 {
 	(void)state;
 	CHECK(finds_nothing());
 }
 
-static void a_silent_program_is_ill_and_the_way_it_is_silent_is_told(void **state)
+static void a_program_that_does_not_respond_is_critical_and_its_state_is_told(void **state)
 {
 	static const struct {
 		int rc;
 		const char *detail;
 	} ways[] = {
-		{ -ENOENT, "does not run" },   { -ECONNREFUSED, "has ended" },
-		{ -ETIMEDOUT, "hangs" },       { -EBADMSG, "not what it should" },
+		{ -ENOENT, "not running" },    { -ECONNREFUSED, "has exited" },
+		{ -ETIMEDOUT, "hangs" },       { -EBADMSG, "not valid" },
 		{ -EACCES, "Permission den" },
 	};
 
@@ -56,21 +56,21 @@ static void a_silent_program_is_ill_and_the_way_it_is_silent_is_told(void **stat
 	for (size_t i = 0; i < ARRAY_COUNT(ways); i++) {
 		buffer_clear(&snapshot.answers[PROGRAM_FETCH].text);
 		snapshot.answers[PROGRAM_FETCH].rc = ways[i].rc;
-		CHECK(finds(LEVEL_ILL, "brings pictures"));
+		CHECK(finds(LEVEL_CRITICAL, "download program"));
 		CHECK(strstr(verdict.findings[0].detail, ways[i].detail));
-		CHECK(strstr(verdict.findings[0].cure, "switch the terminal off"));
+		CHECK(strstr(verdict.findings[0].action, "switch the terminal off"));
 	}
 	set_text(&snapshot, PROGRAM_FETCH, WELL_FETCH);
 	buffer_clear(&snapshot.answers[PROGRAM_KIOSK].text);
 	snapshot.answers[PROGRAM_KIOSK].rc = -ECONNREFUSED;
-	CHECK(finds(LEVEL_ILL, "draws the picture"));
+	CHECK(finds(LEVEL_CRITICAL, "display program"));
 }
 
 static void no_picture_is_ill_after_two_minutes(void **state)
 {
 	(void)state;
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_picture 1", "gopura_kiosk_picture 0");
-	CHECK(finds(LEVEL_ILL, "no picture"));
+	CHECK(finds(LEVEL_CRITICAL, "No picture"));
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds",
 	       "gopura_kiosk_uptime_seconds 100");
 	CHECK(finds_nothing());
@@ -80,7 +80,7 @@ static void no_touchscreen_is_ill_unless_none_was_looked_for(void **state)
 {
 	(void)state;
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch", "gopura_kiosk_touch_devices 0");
-	CHECK(finds(LEVEL_ILL, "No finger"));
+	CHECK(finds(LEVEL_CRITICAL, "touchscreen"));
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_touch", "");
 	CHECK(finds_nothing());
 }
@@ -90,10 +90,10 @@ static void a_slow_board_is_told_with_its_reason(void **state)
 	(void)state;
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_late",
 	       "gopura_kiosk_late_frames_total 1001");
-	CHECK(finds(LEVEL_REMARK, "come late"));
+	CHECK(finds(LEVEL_WARNING, "smoothly"));
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_gl_info",
 	       "gopura_kiosk_gl_info{renderer=\"llvmpipe (LLVM 15)\"} 1");
-	CHECK(finds(LEVEL_REMARK, "No graphics driver"));
+	CHECK(finds(LEVEL_WARNING, "graphics driver"));
 	set_text(&snapshot, PROGRAM_KIOSK, WELL_KIOSK);
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_late", "gopura_kiosk_late_frames_total 300");
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_frames", "gopura_kiosk_frames_total 400");
@@ -109,8 +109,8 @@ static void a_server_away_for_five_minutes_is_a_remark(void **state)
 	CHECK(finds_nothing());
 	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_offline",
 	       "gopura_fetch_offline_since_seconds 1699989000");
-	CHECK(finds(LEVEL_REMARK, "server does not answer"));
-	CHECK(strcmp(verdict.findings[0].detail, "For 3 hours.") == 0);
+	CHECK(finds(LEVEL_WARNING, "server does not respond"));
+	CHECK(strcmp(verdict.findings[0].detail, "No response for 3 hours.") == 0);
 }
 
 static void a_refusal_is_a_remark_for_a_day(void **state)
@@ -122,7 +122,7 @@ static void a_refusal_is_a_remark_for_a_day(void **state)
 		 "gopura_kiosk_refused_at_seconds 1699999400\n"
 		 "gopura_kiosk_refusal_info{what=\"release.json\",why=\"it has expired\"} 1\n");
 	set_text(&snapshot, PROGRAM_KIOSK, text);
-	CHECK(finds(LEVEL_REMARK, "refused"));
+	CHECK(finds(LEVEL_WARNING, "rejected"));
 	CHECK(strcmp(verdict.findings[0].detail, "release.json, 10 minutes ago: it has expired") ==
 	      0);
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_refused_at",
@@ -134,11 +134,11 @@ static void programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks(void *
 {
 	(void)state;
 	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk", "gopura_fetch_kiosk_connected 0");
-	CHECK(finds(LEVEL_REMARK, "do not talk"));
+	CHECK(finds(LEVEL_WARNING, "not connected"));
 	set_text(&snapshot, PROGRAM_FETCH, WELL_FETCH);
 	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_cache_ref",
 	       "gopura_fetch_cache_refused_total 3");
-	CHECK(finds(LEVEL_REMARK, "disk does not take"));
+	CHECK(finds(LEVEL_WARNING, "disk cannot be written"));
 }
 
 static void heat_and_want_of_memory_have_two_degrees(void **state)
@@ -149,26 +149,26 @@ static void heat_and_want_of_memory_have_two_degrees(void **state)
 	m->temperature_c = 79.9;
 	CHECK(finds_nothing());
 	m->temperature_c = 80;
-	CHECK(finds(LEVEL_REMARK, "too hot"));
+	CHECK(finds(LEVEL_WARNING, "too hot"));
 	m->temperature_c = 95;
-	CHECK(finds(LEVEL_ILL, "too hot"));
+	CHECK(finds(LEVEL_CRITICAL, "too hot"));
 	m->temperature_c = NAN;
 	CHECK(finds_nothing());
 	m->memory_free_bytes = 0.07 * m->memory_bytes;
-	CHECK(finds(LEVEL_REMARK, "Memory"));
+	CHECK(finds(LEVEL_WARNING, "Memory"));
 	m->memory_free_bytes = 0.02 * m->memory_bytes;
-	CHECK(finds(LEVEL_ILL, "Memory"));
+	CHECK(finds(LEVEL_CRITICAL, "Memory"));
 	m->memory_free_bytes = m->memory_bytes = NAN;
 	CHECK(finds_nothing());
 	m->data_free_bytes = 0.04 * m->data_bytes;
-	CHECK(finds(LEVEL_REMARK, "disk is nearly full"));
+	CHECK(finds(LEVEL_WARNING, "disk is nearly full"));
 }
 
 static void a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour(void **state)
 {
 	(void)state;
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock", "gopura_kiosk_clock_trusted 0");
-	CHECK(finds(LEVEL_REMARK, "clock"));
+	CHECK(finds(LEVEL_WARNING, "clock"));
 	snapshot.machine.uptime_s = 600;
 	CHECK(finds_nothing());
 }
@@ -179,12 +179,12 @@ static void a_restart_is_told_for_an_hour(void **state)
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts", "gopura_kiosk_starts_total 3");
 	CHECK(finds_nothing());
 	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime", "gopura_kiosk_uptime_seconds 130");
-	CHECK(finds(LEVEL_REMARK, "began anew"));
+	CHECK(finds(LEVEL_WARNING, "was restarted"));
 	CHECK(strcmp(verdict.findings[0].detail,
-		     "2 minutes ago; 2 restarts since the machine began.") == 0);
+		     "2 minutes ago; 2 restarts since the computer started.") == 0);
 }
 
-static void each_line_of_the_faults_is_a_remark_and_the_worst_stands_first(void **state)
+static void each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first(void **state)
 {
 	(void)state;
 	snprintf(snapshot.machine.faults, sizeof(snapshot.machine.faults),
@@ -192,8 +192,8 @@ static void each_line_of_the_faults_is_a_remark_and_the_worst_stands_first(void 
 	snapshot.answers[PROGRAM_FETCH].rc = -ENOENT;
 	buffer_clear(&snapshot.answers[PROGRAM_FETCH].text);
 	verdict_judge(&verdict, &snapshot);
-	CHECK(verdict.count == 3 && verdict.level == LEVEL_ILL);
-	CHECK(verdict.findings[0].level == LEVEL_ILL);
+	CHECK(verdict.count == 3 && verdict.level == LEVEL_CRITICAL);
+	CHECK(verdict.findings[0].level == LEVEL_CRITICAL);
 	CHECK(strcmp(verdict.findings[1].detail, "gopura.conf, line 3: no") == 0);
 	CHECK(strcmp(verdict.findings[2].detail, "gopura.conf, line 9: no") == 0);
 }
@@ -205,7 +205,7 @@ static void more_faults_than_have_room_leave_what_is_ill(void **state)
 		memcpy(snapshot.machine.faults + 6 * i, "again\n", 7);
 	snapshot.machine.temperature_c = 99;
 	verdict_judge(&verdict, &snapshot);
-	CHECK(verdict.count == FINDINGS_MAX && verdict.level == LEVEL_ILL);
+	CHECK(verdict.count == FINDINGS_MAX && verdict.level == LEVEL_CRITICAL);
 	CHECK(strstr(verdict.findings[0].what, "too hot"));
 }
 
@@ -234,8 +234,8 @@ static void durations_are_in_the_unit_that_says_most(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		CASE(a_well_terminal_gets_no_remark),
-		CASE(a_silent_program_is_ill_and_the_way_it_is_silent_is_told),
+		CASE(a_terminal_that_works_has_no_finding),
+		CASE(a_program_that_does_not_respond_is_critical_and_its_state_is_told),
 		CASE(no_picture_is_ill_after_two_minutes),
 		CASE(no_touchscreen_is_ill_unless_none_was_looked_for),
 		CASE(a_slow_board_is_told_with_its_reason),
@@ -245,7 +245,7 @@ int main(void)
 		CASE(heat_and_want_of_memory_have_two_degrees),
 		CASE(a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour),
 		CASE(a_restart_is_told_for_an_hour),
-		CASE(each_line_of_the_faults_is_a_remark_and_the_worst_stands_first),
+		CASE(each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first),
 		CASE(more_faults_than_have_room_leave_what_is_ill),
 		CASE(durations_are_in_the_unit_that_says_most),
 	};

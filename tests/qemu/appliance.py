@@ -83,8 +83,8 @@ class Appliance(Machine):
         """What the health page answers to a question from outside, whatever its status."""
         try:
             answer = urllib.request.urlopen(f"http://127.0.0.1:{self.health}{path}", timeout=60)
-        except urllib.error.HTTPError as ill:
-            answer = ill
+        except urllib.error.HTTPError as error:
+            answer = error
         return answer.read().decode()
 
     def temple(self, name):
@@ -184,12 +184,12 @@ def visit(machine, began):
 
 
 def well(machine):
-    """The health page, asked over the network, knows both programs and finds nothing ill."""
+    """The health page, asked over the network, knows both programs and finds nothing critical."""
     up = {f"gopura_{what} 1" for what in ("kiosk_up", "fetch_up", "kiosk_picture")}
     until = time.monotonic() + ANSWER_S
     while True:
         verdict, figures = machine.asked("/health"), machine.asked("/metrics")
-        if "ill" not in verdict.split() and up <= set(figures.splitlines()):
+        if "critical" not in verdict.split() and up <= set(figures.splitlines()):
             break
         if time.monotonic() > until:
             raise SystemExit("the health page is wrong:\n" + verdict + figures)
