@@ -146,7 +146,7 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 	@$(CC) $(CFLAGS) -c $< -o $@
 
 # Only what prints it carries the version, so that a commit does not rebuild the tree.
-$(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
+$(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 
 $(ARCHIVE): $(OBJECTS)
 	@rm -f $@

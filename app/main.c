@@ -7,11 +7,11 @@
 #include "app/kiosk.h"
 #include "app/modes/safe_mode.h"
 #include "app/modes/self_test.h"
-#include "app/options.h"
+#include "app/settings/options.h"
 
 int main(int argc, char **argv)
 {
-	static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
+	static struct kiosk kiosk;
 	int rc;
 
 	/* One malloc arena: those of the worker threads would hold 2 MB unused. */
@@ -29,7 +29,7 @@ int main(int argc, char **argv)
 	if (kiosk.options.safe_page) {
 		rc = safe_mode_run(&kiosk.options);
 	} else {
-		rc = kiosk_start(&kiosk); /* display, scene, input, fetcher */
+		rc = kiosk_start(&kiosk); /* display, touch, release, loop */
 		if (rc == 0)
 			rc = kiosk_run(&kiosk);
 		kiosk_stop(&kiosk); /* in reverse order; any part may be missing */

@@ -11,6 +11,14 @@ int64_t clock_now_ms(void);
 /* Returns the same clock in microseconds. */
 int64_t clock_now_us(void);
 
+/* Returns the earlier of two timeouts in milliseconds; -1 means none. */
+static inline int clock_sooner_ms(int a_ms, int b_ms)
+{
+	if (a_ms < 0 || b_ms < 0)
+		return a_ms < 0 ? b_ms : a_ms;
+	return a_ms < b_ms ? a_ms : b_ms;
+}
+
 /* Returns the CPU time of the calling thread, in microseconds. */
 int64_t clock_thread_us(void);
 

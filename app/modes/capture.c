@@ -21,7 +21,7 @@ enum {
 	VIEW_MOST_MS = 120000, /* longest wait for a view; then it is written with a warning */
 	QUIET_MS = 1200,       /* without a byte received; longer than the status interval */
 	FRAMES_MAX = 4096,
-	LOOK_MS = 20, /* interval of checks while no frame is drawn */
+	LOOK_MS = 20, /* interval of frames that are drawn to see whether all is quiet */
 };
 
 struct view {
@@ -35,6 +35,8 @@ struct shot {
 
 struct capture {
 	const char *folder;
+	bool overlay; /* draw it on pictures of views too */
+	struct redraw *redraw;
 	struct view *views; /* owned */
 	struct shot *shots; /* owned */
 	uint32_t count, at;
@@ -109,9 +111,8 @@ static int read_lines(struct capture *capture, const char *path, bool views)
 	return rc;
 }
 
-int capture_create(struct capture **out, const struct kiosk *kiosk)
+int capture_create(struct capture **out, const struct options *options, struct redraw *redraw)
 {
-	const struct options *options = &kiosk->options;
 	const bool views = options->views_path != NULL;
 	struct capture *capture;
 	char path[1024];
@@ -124,6 +125,8 @@ int capture_create(struct capture **out, const struct kiosk *kiosk)
 	if (!capture)
 		return -ENOMEM;
 	capture->folder = options->capture_dir;
+	capture->overlay = options->capture_overlay;
+	capture->redraw = redraw;
 	if (mkdir(capture->folder, 0777) < 0 && errno != EEXIST)
 		rc = -errno;
 	if (views) {
@@ -165,12 +168,12 @@ void capture_destroy(struct capture *capture)
 /* Writes the frame as PNG. With coverage, which is for pictures of the scene alone, alpha tells how
  * much of a pixel the model covers, and pixels without it are black, so that equal pictures have
  * equal bytes. Otherwise alpha is 255. */
-static int write_picture(const struct capture *capture, struct kiosk *kiosk, const char *name,
-			 bool coverage)
+static int write_picture(const struct capture *capture, const struct capture_frame *frame,
+			 const char *name, bool coverage)
 {
 	struct picture picture = {
-		.width = (uint32_t)display_width_px(kiosk->display),
-		.height = (uint32_t)display_height_px(kiosk->display),
+		.width = (uint32_t)display_width_px(frame->display),
+		.height = (uint32_t)display_height_px(frame->display),
 	};
 	const size_t count = (size_t)picture.width * picture.height;
 	struct buffer file;
@@ -180,9 +183,9 @@ static int write_picture(const struct capture *capture, struct kiosk *kiosk, con
 	buffer_init(&file, 256 << 20);
 	picture.rgba = malloc(count * 4);
 	if (picture.rgba)
-		rc = display_read(kiosk->display, picture.rgba);
-	if (rc == 0 && coverage && kiosk->shown.scene)
-		scene_unmix(kiosk->shown.scene, picture.rgba, count);
+		rc = display_read(frame->display, picture.rgba);
+	if (rc == 0 && coverage && frame->shown->scene)
+		scene_unmix(frame->shown->scene, picture.rgba, count);
 	for (size_t i = 0; rc == 0 && !coverage && i < count; i++)
 		picture.rgba[4 * i + 3] = 255;
 	if (rc == 0)
@@ -212,43 +215,44 @@ static double median_ms(struct capture *capture)
 	return capture->frame_us[capture->frames / 2] / 1000.0;
 }
 
-static void write_line(struct capture *capture, const struct kiosk *kiosk, bool settled,
+static void write_line(struct capture *capture, const struct capture_frame *frame, bool settled,
 		       int64_t now_ms)
 {
 	fprintf(capture->lines,
 		"{\"view\": %u, \"bytes_fetched\": %llu, \"objects\": %u, \"first_ms\": %lld, "
 		"\"settled_ms\": %lld, \"settled\": %s, \"frame_ms\": %.2f, \"triangles\": %u, "
 		"\"image_share\": %.4f}\n",
-		capture->at,
-		(unsigned long long)(kiosk->status.received_bytes - capture->bytes_before),
+		capture->at, (unsigned long long)(frame->received_bytes - capture->bytes_before),
 		capture->objects, (long long)(capture->first_ms - capture->began_ms),
 		(long long)((settled ? capture->quiet_since_ms : now_ms) - capture->began_ms),
-		settled ? "true" : "false", median_ms(capture), kiosk->shown.frame.triangles,
-		(double)kiosk->shown.frame.image_share);
+		settled ? "true" : "false", median_ms(capture), frame->shown->frame.triangles,
+		(double)frame->shown->frame.image_share);
 	fflush(capture->lines);
 }
 
 /* ---- views */
 
-static void begin_view(struct capture *capture, const struct kiosk *kiosk)
+static void begin_view(struct capture *capture, uint64_t received_bytes)
 {
 	capture->began_ms = clock_now_ms();
 	capture->first_ms = capture->quiet_since_ms = 0;
-	capture->bytes_before = capture->at == 0 ? 0 : kiosk->status.received_bytes;
+	capture->bytes_before = capture->at == 0 ? 0 : received_bytes;
 	capture->objects = 0;
 	capture->frames = 0;
 }
 
-void capture_aim(struct capture *capture, struct kiosk *kiosk)
+void capture_aim(struct capture *capture, struct eye *eye, const struct viewport *viewport,
+		 uint64_t received_bytes)
 {
 	const struct view *view = &capture->views[capture->at];
-	struct camera *camera = &kiosk->camera;
+	struct camera *camera = &eye->camera;
 
-	if (!capture->views || capture->at >= capture->count || !kiosk->navigator_ready)
+	if (!capture->views || capture->at >= capture->count || !eye->ready)
 		return;
 	if (!capture->began_ms)
-		begin_view(capture, kiosk);
-	frame_camera(kiosk, camera); /* clip distances, panel */
+		begin_view(capture, received_bytes);
+	navigator_camera(&eye->navigator, camera); /* clip distances */
+	viewport_set_camera(viewport, camera);
 	memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));
 	memcpy(camera->target_m, view->target_m, sizeof(camera->target_m));
 	camera->fov_deg = view->fov_deg;
@@ -256,12 +260,12 @@ void capture_aim(struct capture *capture, struct kiosk *kiosk)
 
 /* Returns whether the picture is complete: it has settled, and no byte has arrived for QUIET_MS, so
  * the fetcher's status counts every byte. */
-static bool is_quiet(struct capture *capture, const struct kiosk *kiosk, int64_t now_ms)
+static bool is_quiet(struct capture *capture, const struct capture_frame *frame, int64_t now_ms)
 {
-	if (!kiosk->shown.frame.settled || kiosk->words_move ||
-	    kiosk->status.received_bytes != capture->bytes_seen) {
+	if (!frame->shown->frame.settled || frame->words_move ||
+	    frame->received_bytes != capture->bytes_seen) {
 		capture->quiet_since_ms = 0;
-		capture->bytes_seen = kiosk->status.received_bytes;
+		capture->bytes_seen = frame->received_bytes;
 		return false;
 	}
 	if (!capture->quiet_since_ms)
@@ -269,7 +273,7 @@ static bool is_quiet(struct capture *capture, const struct kiosk *kiosk, int64_t
 	return now_ms - capture->quiet_since_ms >= QUIET_MS;
 }
 
-static int after_view(struct capture *capture, struct kiosk *kiosk)
+static int after_view(struct capture *capture, const struct capture_frame *frame)
 {
 	const int64_t now_ms = clock_now_ms();
 	bool quiet, late;
@@ -278,29 +282,28 @@ static int after_view(struct capture *capture, struct kiosk *kiosk)
 
 	if (!capture->began_ms)
 		return 0;
-	if (kiosk->shown.frame.patches > 0 && !capture->first_ms)
+	if (frame->shown->frame.patches > 0 && !capture->first_ms)
 		capture->first_ms = now_ms;
 	if (capture->frames < FRAMES_MAX)
-		capture->frame_us[capture->frames++] = kiosk->frame_us;
-	quiet = is_quiet(capture, kiosk, now_ms);
+		capture->frame_us[capture->frames++] = frame->work_us;
+	quiet = is_quiet(capture, frame, now_ms);
 	late = now_ms - capture->began_ms > VIEW_MOST_MS;
 	if (!quiet && !late)
 		return 0;
 	if (late)
 		log_warn("app", "view %u did not settle in %d s", capture->at, VIEW_MOST_MS / 1000);
 	snprintf(name, sizeof(name), "view-%04u", capture->at);
-	rc = write_picture(capture, kiosk, name, !kiosk->options.capture_overlay);
-	write_line(capture, kiosk, quiet, now_ms);
+	rc = write_picture(capture, frame, name, !capture->overlay);
+	write_line(capture, frame, quiet, now_ms);
 	capture->at++;
 	capture->began_ms = 0;
-	kiosk->quit = capture->at == capture->count;
-	kiosk_redraw(kiosk);
-	return rc;
+	redraw_ask(capture->redraw);
+	return rc == 0 && capture->at == capture->count ? 1 : rc;
 }
 
 /* ---- shots */
 
-static int after_replay_frame(struct capture *capture, struct kiosk *kiosk)
+static int after_replay_frame(struct capture *capture, const struct capture_frame *frame)
 {
 	const int64_t now_ms = clock_now_ms();
 	int rc = 0;
@@ -309,15 +312,15 @@ static int after_replay_frame(struct capture *capture, struct kiosk *kiosk)
 		capture->began_ms = now_ms;
 	while (rc == 0 && capture->at < capture->count &&
 	       now_ms - capture->began_ms >= capture->shots[capture->at].at_ms) {
-		rc = write_picture(capture, kiosk, capture->shots[capture->at].name, false);
+		rc = write_picture(capture, frame, capture->shots[capture->at].name, false);
 		capture->at++;
 	}
 	return rc;
 }
 
-int capture_after(struct capture *capture, struct kiosk *kiosk)
+int capture_after(struct capture *capture, const struct capture_frame *frame)
 {
-	return capture->views ? after_view(capture, kiosk) : after_replay_frame(capture, kiosk);
+	return capture->views ? after_view(capture, frame) : after_replay_frame(capture, frame);
 }
 
 void capture_object(struct capture *capture)
@@ -325,14 +328,14 @@ void capture_object(struct capture *capture)
 	capture->objects++;
 }
 
-int capture_wait_ms(const struct capture *capture)
+int capture_wait_ms(const struct capture *capture, int64_t frame_ms)
 {
-	int64_t left_ms;
+	int64_t due_ms = frame_ms + LOOK_MS, left_ms;
 
 	if (capture->at >= capture->count)
 		return -1;
-	if (capture->views || !capture->began_ms)
-		return LOOK_MS;
-	left_ms = capture->began_ms + capture->shots[capture->at].at_ms - clock_now_ms();
+	if (!capture->views && capture->began_ms)
+		due_ms = capture->began_ms + capture->shots[capture->at].at_ms;
+	left_ms = due_ms - clock_now_ms();
 	return left_ms > 0 ? (int)left_ms : 0;
 }

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/kiosk.h"
+#include "app/settings/provision.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/service.h"
@@ -161,7 +161,7 @@ static int wait_ms(const struct safe_mode *safe)
 
 	if (since >= FRAME_MS && canvas_ready(safe->canvas))
 		return 0;
-	return sooner(canvas_ms, since < FRAME_MS ? (int)(FRAME_MS - since) : FRAME_MS);
+	return clock_sooner_ms(canvas_ms, since < FRAME_MS ? (int)(FRAME_MS - since) : FRAME_MS);
 }
 
 static int turn(struct safe_mode *safe, bool *quit)

@@ -3,7 +3,7 @@
 #ifndef GOPURA_APP_MODES_SAFE_MODE_H
 #define GOPURA_APP_MODES_SAFE_MODE_H
 
-#include "app/options.h"
+#include "app/settings/options.h"
 
 /* Completes *options from gopura.conf, and takes the panel's rotation from it or the board profile.
  * Shows the page until SIGTERM or SIGINT. With options->capture_dir, writes safe-0.png and

@@ -15,13 +15,16 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include "app/folder.h"
-#include "app/kiosk.h"
-#include "app/release/provision.h"
+#include "app/settings/folder.h"
+#include "app/settings/provision.h"
+#include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "base/safe_open.h"
 #include "format/metadata.h"
+#include "input/touch.h"
+#include "render/display/display.h"
 #include "render/display/gl.h"
+#include "render/display/quads.h"
 #include "storage/state.h"
 
 enum {
@@ -158,7 +161,7 @@ static bool has_limit(struct self_test *test, GLenum name, int needed, const cha
 /* Returns whether all shaders compile and a scene with the profile's budgets can be created. */
 static bool has_scene(const struct self_test *test)
 {
-	struct scene_options options = kiosk_scene_options(&test->profile, test->options->mode);
+	struct scene_options options = scene_settings(&test->profile, test->options->mode);
 	struct quads *quads = NULL;
 	struct scene *scene = NULL;
 	int rc = quads_create(&quads);

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "app/options.h"
+#include "app/settings/options.h"
 
 /* Completes *options from gopura.conf and prints one line per check to standard output: "ok" or
  * "fail", what was checked, what was found and, if it failed, what to do. Returns whether all

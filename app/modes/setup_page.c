@@ -1,11 +1,13 @@
 /* Draws the page that lists the faults of gopura.conf, or says that the file is missing. The page
  * fades out after half a minute if the model can be shown. */
+#include "app/modes/setup_page.h"
+
 #include <stdio.h>
 #include <string.h>
 
-#include "app/kiosk.h"
 #include "base/clock.h"
 #include "ui/notice.h"
+#include "ui/overlay.h"
 
 enum {
 	PAGE_LEAST_MS = 30000,
@@ -14,15 +16,22 @@ enum {
 	HINTS_MAX = 3,
 };
 
-static int draw_page(struct kiosk *kiosk, const struct notice *notice)
+void setup_page_init(struct setup_page *page, const struct viewport *viewport,
+		     struct redraw *redraw)
 {
-	return notice_draw(&kiosk->setup_page.bitmap, notice, kiosk->px_per_mm,
-			   kiosk_width_px(kiosk), kiosk_height_px(kiosk), NULL);
+	*page = (struct setup_page){ .viewport = viewport, .redraw = redraw };
 }
 
-static int draw_faults(struct kiosk *kiosk)
+static int draw_page(struct setup_page *page, const struct notice *notice)
 {
-	const struct faults *faults = &kiosk->provision.faults;
+	return notice_draw(&page->bitmap, notice, page->viewport->px_per_mm,
+			   viewport_width_px(page->viewport), viewport_height_px(page->viewport),
+			   NULL);
+}
+
+static int draw_faults(struct setup_page *page, const struct provision *provision)
+{
+	const struct faults *faults = &provision->faults;
 	struct notice_item items[FAULTS_MAX];
 	char marks[FAULTS_MAX][20], lead[PATH_MAX + 64];
 	const struct notice notice = {
@@ -46,13 +55,12 @@ static int draw_faults(struct kiosk *kiosk)
 		}
 		items[i] = (struct notice_item){ .mark = marks[i], .text = text };
 	}
-	snprintf(lead, sizeof(lead), "%s. What is right in it is in use.", kiosk->provision.path);
-	return draw_page(kiosk, &notice);
+	snprintf(lead, sizeof(lead), "%s. What is right in it is in use.", provision->path);
+	return draw_page(page, &notice);
 }
 
-static int draw_missing(struct kiosk *kiosk)
+static int draw_missing(struct setup_page *page, const struct options *options)
 {
-	const struct options *options = &kiosk->options;
 	char where[OPTIONS_CONFS_MAX * 256] = "Save it as ";
 	const struct notice_item items[HINTS_MAX] = {
 		{ "1", "On any computer write a text file gopura.conf:\n"
@@ -80,59 +88,57 @@ static int draw_missing(struct kiosk *kiosk)
 	}
 	snprintf(where + strlen(where), sizeof(where) - strlen(where),
 		 ", and the release's root/1.json beside it as 1.json.");
-	return draw_page(kiosk, &notice);
+	return draw_page(page, &notice);
 }
 
-int setup_page_show(struct kiosk *kiosk)
+int setup_page_show(struct setup_page *page, const struct options *options,
+		    struct provision *provision, bool has_release)
 {
-	struct provision *provision = &kiosk->provision;
 	/* Nothing can be shown, and there is no trust root to check what may arrive. */
-	const bool is_unset =
-		kiosk->options.conf_count > 0 && !kiosk->options.trust_path && !kiosk->shown.scene;
+	const bool is_unset = options->conf_count > 0 && !options->trust_path && !has_release;
 
 	if (is_unset && !provision->path)
-		return draw_missing(kiosk);
+		return draw_missing(page, options);
 	if (is_unset && !provision->terminal.release_url[0] && provision->faults.count == 0)
 		faults_add(&provision->faults, 0,
 			   "under [release] the lines url = ... and trust = ... are missing; they "
 			   "say where the temple is and whose key to trust");
-	return provision->faults.count > 0 ? draw_faults(kiosk) : 0;
+	return provision->faults.count > 0 ? draw_faults(page, provision) : 0;
 }
 
-void setup_page_finish(struct kiosk *kiosk)
+void setup_page_finish(struct setup_page *page)
 {
-	bitmap_finish(&kiosk->setup_page.bitmap);
+	bitmap_finish(&page->bitmap);
 }
 
-bool setup_page_covers(const struct kiosk *kiosk)
+bool setup_page_covers(const struct setup_page *page)
 {
-	return kiosk->setup_page.bitmap.surface && kiosk->setup_page.leaves_ms == 0;
+	return page->bitmap.surface && page->leaves_ms == 0;
 }
 
 /* Returns in how many milliseconds the page is to fade out; -1: not by time, because the model
  * cannot be shown yet or the page was not drawn. */
-static int64_t leaves_in_ms(const struct kiosk *kiosk, int64_t now_ms)
+static int64_t leaves_in_ms(const struct setup_page *page, bool pictured, int64_t now_ms)
 {
-	const int64_t due_ms = kiosk->setup_page.since_ms + PAGE_LEAST_MS;
+	const int64_t due_ms = page->since_ms + PAGE_LEAST_MS;
 
-	if (!kiosk->pictured || kiosk->setup_page.since_ms == 0)
+	if (!pictured || page->since_ms == 0)
 		return -1;
 	return due_ms > now_ms ? due_ms - now_ms : 0;
 }
 
-static void draw_over(struct kiosk *kiosk, float alpha)
+static void draw_over(const struct setup_page *page, struct quads *quads, float alpha)
 {
-	const float w = (float)kiosk->setup_page.bitmap.width_px;
-	const float h = (float)kiosk->setup_page.bitmap.height_px;
+	const float w = (float)page->bitmap.width_px;
+	const float h = (float)page->bitmap.height_px;
 	const float corners[4][2] = { { 0, 0 }, { w, 0 }, { w, h }, { 0, h } };
 	const float whole[4] = { 0, 0, 1, 1 };
 
-	quads_draw(kiosk->quads, PAGE_TEXTURE, corners, whole, alpha);
+	quads_draw(quads, PAGE_TEXTURE, corners, whole, alpha);
 }
 
-int setup_page_draw(struct kiosk *kiosk, int64_t now_ms)
+int setup_page_draw(struct setup_page *page, struct quads *quads, bool pictured, int64_t now_ms)
 {
-	struct setup_page *page = &kiosk->setup_page;
 	const struct quads_pixels pixels = {
 		.id = PAGE_TEXTURE,
 		.revision = 1,
@@ -149,27 +155,27 @@ int setup_page_draw(struct kiosk *kiosk, int64_t now_ms)
 		return 0;
 	if (page->since_ms == 0)
 		page->since_ms = now_ms;
-	if (page->leaves_ms == 0 && leaves_in_ms(kiosk, now_ms) == 0)
+	if (page->leaves_ms == 0 && leaves_in_ms(page, pictured, now_ms) == 0)
 		page->leaves_ms = now_ms;
 	if (page->leaves_ms > 0) {
 		alpha = 1 - (float)(now_ms - page->leaves_ms) / PAGE_FADE_MS;
-		kiosk_redraw(kiosk);
+		redraw_ask(page->redraw);
 	}
 	if (alpha <= 0) {
-		quads_drop(kiosk->quads, PAGE_TEXTURE);
-		setup_page_finish(kiosk);
+		quads_drop(quads, PAGE_TEXTURE);
+		setup_page_finish(page);
 		return 0;
 	}
-	quads_begin(kiosk->quads, unmoved_px, display_width_px(kiosk->display),
-		    display_height_px(kiosk->display), kiosk->profile.rotation_deg);
-	rc = quads_upload(kiosk->quads, &pixels);
+	quads_begin(quads, unmoved_px, page->viewport->panel_width_px,
+		    page->viewport->panel_height_px, page->viewport->rotation_deg);
+	rc = quads_upload(quads, &pixels);
 	if (rc == 0)
-		draw_over(kiosk, alpha);
-	quads_end(kiosk->quads);
+		draw_over(page, quads, alpha);
+	quads_end(quads);
 	return rc;
 }
 
-int setup_page_wait_ms(const struct kiosk *kiosk)
+int setup_page_wait_ms(const struct setup_page *page, bool pictured)
 {
-	return setup_page_covers(kiosk) ? (int)leaves_in_ms(kiosk, clock_now_ms()) : -1;
+	return setup_page_covers(page) ? (int)leaves_in_ms(page, pictured, clock_now_ms()) : -1;
 }

@@ -1,63 +1,63 @@
-/* Tests whether a new release works: it is on trial from when it is first shown. If its picture
- * does not appear, the kiosk falls back to the release before it. */
-#include "app/kiosk.h"
-#include "app/release/updater.h"
-#include "base/clock.h"
+/* Measures how long a release has been visible, or blank. */
+#include "app/release/trial.h"
 
 enum {
-	PROVEN_MS = 10000, /* visible for so long without a crash: it works */
+	PASSES_MS = 10000, /* visible for so long without a crash: it works */
 	BLANK_MS = 60000,  /* everything wanted has arrived, but nothing is visible */
 };
 
-static int left_ms(int64_t since_ms, int64_t most_ms)
+static int left_ms(int64_t since_ms, int64_t most_ms, int64_t now_ms)
 {
-	const int64_t left = since_ms + most_ms - clock_now_ms();
+	const int64_t left = since_ms + most_ms - now_ms;
 
 	return left > 0 ? (int)left : 0;
 }
 
-bool trial_is_broken(const struct session *session)
+void trial_begin(struct trial *trial, int64_t now_ms)
 {
-	return session->scene &&
-	       (scene_refused(session->scene) > 0 || information_view_broken(session->view));
+	*trial = (struct trial){ .shown_ms = now_ms };
 }
 
-/* Returns whether nothing is visible although nothing more is wanted. While objects are wanted the
- * network may be down, which is no fault of the release. */
-static bool is_blank(const struct kiosk *kiosk)
+static bool is_judged(const struct trial *trial, const struct trial_sight *sight)
 {
-	return kiosk->shown.scene && kiosk->shown.frame.patches == 0 && kiosk->shown.root_here &&
-	       kiosk->wants.said_count == 0;
+	return sight->on_trial && trial->shown_ms != 0;
 }
 
-void trial_watch(struct kiosk *kiosk)
+static bool is_blank(const struct trial_sight *sight)
 {
-	struct session *shown = &kiosk->shown;
-
-	if (!updater_on_trial(kiosk->updater) || shown->shown_ms == 0)
-		return;
-	if (shown->frame.patches > 0 && shown->pictured_ms == 0 &&
-	    kiosk->last_frame_ms >= shown->shown_ms && !display_is_dark(kiosk->display))
-		shown->pictured_ms = kiosk->last_frame_ms;
-	if (shown->pictured_ms > 0 && left_ms(shown->pictured_ms, PROVEN_MS) == 0)
-		updater_prove(kiosk->updater);
-	else if (!updater_has_before(kiosk->updater) || kiosk->coming.scene)
-		return;
-	else if (shown->frame.patches == 0 && trial_is_broken(shown))
-		updater_fall_back(kiosk->updater, "objects of it cannot be decoded");
-	else if (is_blank(kiosk) && left_ms(shown->shown_ms, BLANK_MS) == 0)
-		updater_fall_back(kiosk->updater, "nothing of it was to be seen for a minute");
+	return !sight->is_pictured && sight->is_complete;
 }
 
-int trial_wait_ms(const struct kiosk *kiosk)
+static bool may_fail(const struct trial_sight *sight)
 {
-	const struct session *shown = &kiosk->shown;
+	return sight->has_before && !sight->is_replaced;
+}
 
-	if (!updater_on_trial(kiosk->updater) || shown->shown_ms == 0)
+enum trial_verdict trial_judge(struct trial *trial, const struct trial_sight *sight, int64_t now_ms)
+{
+	if (!is_judged(trial, sight))
+		return TRIAL_GOES_ON;
+	if (sight->is_pictured && trial->pictured_ms == 0 && sight->frame_ms >= trial->shown_ms &&
+	    !sight->is_dark)
+		trial->pictured_ms = sight->frame_ms;
+	if (trial->pictured_ms > 0 && left_ms(trial->pictured_ms, PASSES_MS, now_ms) == 0)
+		return TRIAL_PASSED;
+	if (!may_fail(sight))
+		return TRIAL_GOES_ON;
+	if (!sight->is_pictured && sight->is_broken)
+		return TRIAL_FAILED_BROKEN;
+	if (is_blank(sight) && left_ms(trial->shown_ms, BLANK_MS, now_ms) == 0)
+		return TRIAL_FAILED_BLANK;
+	return TRIAL_GOES_ON;
+}
+
+int trial_wait_ms(const struct trial *trial, const struct trial_sight *sight, int64_t now_ms)
+{
+	if (!is_judged(trial, sight))
 		return -1;
-	if (shown->pictured_ms > 0)
-		return left_ms(shown->pictured_ms, PROVEN_MS);
-	if (updater_has_before(kiosk->updater) && !kiosk->coming.scene && is_blank(kiosk))
-		return left_ms(shown->shown_ms, BLANK_MS);
+	if (trial->pictured_ms > 0)
+		return left_ms(trial->pictured_ms, PASSES_MS, now_ms);
+	if (may_fail(sight) && is_blank(sight))
+		return left_ms(trial->shown_ms, BLANK_MS, now_ms);
 	return -1;
 }

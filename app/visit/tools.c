@@ -1,9 +1,10 @@
 /* Handles the visitor's two tools, the raking light and the section: switches them on and off,
  * moves them with a finger on their discs, and passes them to scene and overlay. */
+#include "app/visit/tools.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "app/kiosk.h"
 #include "base/log.h"
 
 /* The first position of the raking light on its disc: from the upper left, as is usual in drawings,
@@ -12,24 +13,24 @@ static const float first_light[2] = { -0.62f, 0.52f };
 
 /* Returns the eye's heading about the vertical axis, in radians. On the discs, up points away from
  * the eye. */
-static float heading(const struct kiosk *kiosk)
+static float heading(const struct tools *tools)
 {
-	const float *eye = kiosk->camera.eye_m, *target = kiosk->camera.target_m;
+	const float *eye = tools->env.eye->camera.eye_m, *target = tools->env.eye->camera.target_m;
 
 	return atan2f(target[1] - eye[1], target[0] - eye[0]);
 }
 
-static unsigned offered(const struct kiosk *kiosk)
+static unsigned offered(const struct tools *tools)
 {
-	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	const struct overlay *overlay = exhibit_overlay(tools->env.shown);
 
 	return overlay ? overlay_tools_offered(overlay) : 0;
 }
 
-static void say(const struct kiosk *kiosk)
+static void log_state(const struct tools *tools)
 {
-	const struct rake *rake = &kiosk->tools.now.rake;
-	const struct section *section = &kiosk->tools.now.section;
+	const struct rake *rake = &tools->now.rake;
+	const struct section *section = &tools->now.section;
 
 	if (rake->on)
 		log_debug("app", "light at %.2f %.2f", (double)rake->at[0], (double)rake->at[1]);
@@ -45,63 +46,80 @@ static void let_go(struct tools *tools)
 	tools->held = OVERLAY_HANDLE_NONE;
 }
 
-void tools_press(struct kiosk *kiosk, unsigned tool)
+void tools_init(struct tools *tools, const struct tools_env *env)
 {
-	const struct navigator_options *o = &kiosk->navigator.options;
-	struct scene_tools *now = &kiosk->tools.now;
+	*tools = (struct tools){ .env = *env };
+}
 
-	let_go(&kiosk->tools);
+static void switch_section_on(struct tools *tools)
+{
+	const struct eye *eye = tools->env.eye;
+	const struct navigator_options *o = &eye->navigator.options;
+	float forward[3];
+
+	for (int k = 0; k < 3; k++)
+		forward[k] = eye->camera.target_m[k] - eye->camera.eye_m[k];
+	const float far = hypotf(hypotf(forward[0], forward[1]), forward[2]);
+	for (int k = 0; k < 3 && far > 0; k++)
+		forward[k] /= far;
+	section_init(&tools->now.section, o->box_min_m, o->box_max_m);
+	section_face(&tools->now.section, eye->camera.eye_m, forward);
+}
+
+/* The section changes what hides an anchor. */
+static void changed(struct tools *tools)
+{
+	anchors_test_again(tools->env.anchors);
+	redraw_ask(tools->env.redraw);
+}
+
+void tools_press(struct tools *tools, enum overlay_tool tool)
+{
+	struct scene_tools *now = &tools->now;
+
+	let_go(tools);
 	if (tool == OVERLAY_TOOL_LIGHT) {
 		now->rake.on = !now->rake.on;
 		rake_place(&now->rake, first_light[0], first_light[1]);
 	} else if (now->section.on) {
 		now->section.on = false;
 	} else {
-		float forward[3];
-
-		for (int k = 0; k < 3; k++)
-			forward[k] = kiosk->camera.target_m[k] - kiosk->camera.eye_m[k];
-		const float far = hypotf(hypotf(forward[0], forward[1]), forward[2]);
-		for (int k = 0; k < 3 && far > 0; k++)
-			forward[k] /= far;
-		section_init(&now->section, o->box_min_m, o->box_max_m);
-		section_face(&now->section, kiosk->camera.eye_m, forward);
+		switch_section_on(tools);
 	}
-	kiosk->anchors_to_look = OVERLAY_PARTS_MAX; /* the section changes what hides an anchor */
-	say(kiosk);
-	kiosk_redraw(kiosk);
+	log_state(tools);
+	changed(tools);
 }
 
-void tools_end(struct kiosk *kiosk)
+bool tools_are_used(const struct tools *tools)
 {
-	struct scene_tools *now = &kiosk->tools.now;
+	return tools->now.rake.on || tools->now.section.on;
+}
 
-	let_go(&kiosk->tools);
-	if (!now->rake.on && !now->section.on)
+void tools_end(struct tools *tools)
+{
+	let_go(tools);
+	if (!tools_are_used(tools))
 		return;
-	now->rake.on = now->section.on = false;
-	say(kiosk);
-	kiosk_redraw(kiosk);
+	tools->now.rake.on = tools->now.section.on = false;
+	log_state(tools);
+	redraw_ask(tools->env.redraw);
 }
 
 /* ---- fingers */
 
-static void grab(struct kiosk *kiosk, uint32_t contact, enum overlay_handle handle,
+static void grab(struct tools *tools, uint32_t contact, enum overlay_handle handle,
 		 const float at[2])
 {
-	struct tools *tools = &kiosk->tools;
-
 	tools->held = handle;
 	tools->contact = contact;
 	memcpy(tools->grabbed_at, at, sizeof(tools->grabbed_at));
 	tools->grabbed_push_m = tools->now.section.push_m;
 }
 
-static void move(struct kiosk *kiosk, const float at[2])
+static void move(struct tools *tools, const float at[2])
 {
-	struct tools *tools = &kiosk->tools;
 	struct section *section = &tools->now.section;
-	const float turn = section->turn_rad - heading(kiosk);
+	const float turn = section->turn_rad - heading(tools);
 
 	switch (tools->held) {
 	case OVERLAY_HANDLE_NONE:
@@ -111,7 +129,7 @@ static void move(struct kiosk *kiosk, const float at[2])
 		break;
 	case OVERLAY_HANDLE_TURN:
 		if (hypotf(at[0], at[1]) > 0.1f)
-			section_turn(section, heading(kiosk) + atan2f(-at[0], at[1]));
+			section_turn(section, heading(tools) + atan2f(-at[0], at[1]));
 		break;
 	case OVERLAY_HANDLE_PUSH:
 		/* Moves the section as far as the finger moved along its normal. */
@@ -121,54 +139,52 @@ static void move(struct kiosk *kiosk, const float at[2])
 						 (at[0] - tools->grabbed_at[0]) * sinf(turn)));
 		break;
 	}
-	kiosk->anchors_to_look = OVERLAY_PARTS_MAX;
-	kiosk_redraw(kiosk);
+	changed(tools);
 }
 
-bool tools_take_touch(struct kiosk *kiosk, const struct touch_event *event)
+bool tools_take_touch(struct tools *tools, const struct touch_event *event)
 {
-	struct tools *tools = &kiosk->tools;
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	struct overlay *overlay = exhibit_overlay(tools->env.shown);
 	const bool is_holder =
 		tools->held != OVERLAY_HANDLE_NONE && tools->contact == event->contact;
 	enum overlay_handle handle;
 	float at[2];
 
-	if (!overlay || !kiosk->navigator_ready)
+	if (!overlay || !tools->env.eye->ready)
 		return false;
 	if (event->phase == TOUCH_DOWN) {
 		handle = overlay_handle_at(overlay, event->x_px, event->y_px);
 		if (handle == OVERLAY_HANDLE_NONE || tools->held != OVERLAY_HANDLE_NONE)
 			return false;
 		overlay_handle_place(overlay, handle, event->x_px, event->y_px, at);
-		grab(kiosk, event->contact, handle, at);
-		move(kiosk, at);
+		grab(tools, event->contact, handle, at);
+		move(tools, at);
 		return true;
 	}
 	if (!is_holder)
 		return false;
 	if (event->phase == TOUCH_MOVE) {
 		overlay_handle_place(overlay, tools->held, event->x_px, event->y_px, at);
-		move(kiosk, at);
+		move(tools, at);
 		return true;
 	}
 	let_go(tools);
-	say(kiosk);
+	log_state(tools);
 	return true;
 }
 
 /* ---- a frame */
 
-void tools_say(struct kiosk *kiosk)
+void tools_show(struct tools *tools)
 {
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
-	struct scene_tools *now = &kiosk->tools.now;
+	struct overlay *overlay = exhibit_overlay(tools->env.shown);
+	struct scene_tools *now = &tools->now;
 
 	/* Another release may offer other tools. */
-	now->rake.on = now->rake.on && offered(kiosk) & OVERLAY_TOOL_LIGHT;
-	now->section.on = now->section.on && offered(kiosk) & OVERLAY_TOOL_SECTION;
-	if (kiosk->shown.scene)
-		scene_use(kiosk->shown.scene, now);
+	now->rake.on = now->rake.on && offered(tools) & OVERLAY_TOOL_LIGHT;
+	now->section.on = now->section.on && offered(tools) & OVERLAY_TOOL_SECTION;
+	if (tools->env.shown->scene)
+		scene_use(tools->env.shown->scene, now);
 	if (overlay)
 		overlay_show_tools(
 			overlay,
@@ -176,7 +192,7 @@ void tools_say(struct kiosk *kiosk)
 				.on = (now->rake.on ? OVERLAY_TOOL_LIGHT : 0u) |
 				      (now->section.on ? OVERLAY_TOOL_SECTION : 0u),
 				.light_at = { now->rake.at[0], now->rake.at[1] },
-				.turn_rad = now->section.turn_rad - heading(kiosk),
+				.turn_rad = now->section.turn_rad - heading(tools),
 				.push = now->section.on ? now->section.push_m / now->section.reach_m
 							: 0,
 			});

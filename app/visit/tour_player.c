@@ -1,11 +1,11 @@
-/* Plays guided tours in the kiosk: starts and halts them, flies the eye to their path, and shows
- * captions in the overlay. */
+/* Plays the tours of the release that is shown. The eye's flight to the path is the navigator's; on
+ * the path the tour leads it. */
+#include "app/visit/tour_player.h"
+
 #include <math.h>
-#include <string.h>
 
 #include <cglm/cglm.h>
 
-#include "app/kiosk.h"
 #include "base/clock.h"
 #include "base/log.h"
 
@@ -13,55 +13,51 @@
 
 enum { COME_LEAST_MS = 1200, COME_MOST_MS = 5000 };
 
+void tour_player_init(struct tour_player *player, const struct tour_player_env *env)
+{
+	*player = (struct tour_player){ .env = *env };
+}
+
 /* Returns the current tour, or NULL. */
-static const struct info_tour *flown(const struct kiosk *kiosk)
+static const struct info_tour *flown(const struct tour_player *player)
 {
-	const struct info *info = information_view_info(kiosk->shown.view);
+	const struct info *info = exhibit_info(player->env.shown);
 
-	if (kiosk->tour.state == TOUR_OFF || !info || kiosk->tour.which >= info_tour_count(info))
+	if (player->tour.state == TOUR_OFF || !info || player->tour.which >= info_tour_count(info))
 		return NULL;
-	return info_tour(info, kiosk->tour.which);
+	return info_tour(info, player->tour.which);
 }
 
-/* Logs the eye where a tour is halted or continues. */
-static void say_eye(const struct kiosk *kiosk, const char *what)
+static void come(struct tour_player *player)
 {
-	const float *eye_m = kiosk->navigator.eye_m;
-
-	log_debug("app", "tour %s: eye at %.3f %.3f %.3f", what, (double)eye_m[0], (double)eye_m[1],
-		  (double)eye_m[2]);
-}
-
-static void come(struct kiosk *kiosk)
-{
-	struct navigator *nav = &kiosk->navigator;
+	struct navigator *nav = &player->env.eye->navigator;
 	struct tour_pose pose;
 	float ms;
 
-	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	tour_path_pose(&player->tour.path, player->tour.at_ms, &pose);
 	ms = 1000 * glm_vec3_distance(nav->eye_m, pose.eye_m) /
 	     (CALM_SHARE * navigator_diagonal_m(nav));
 	navigator_fly(nav, pose.eye_m, pose.target_m, glm_clamp(ms, COME_LEAST_MS, COME_MOST_MS));
-	kiosk_redraw(kiosk);
+	redraw_ask(player->env.redraw);
 }
 
-static void begin(struct kiosk *kiosk, uint32_t which, bool loops)
+static void begin(struct tour_player *player, uint32_t which, bool loops)
 {
-	const struct info_tour *tour = info_tour(information_view_info(kiosk->shown.view), which);
+	const struct info_tour *tour = info_tour(exhibit_info(player->env.shown), which);
 
-	tour_begin(&kiosk->tour, which, tour, loops, navigator_diagonal_m(&kiosk->navigator),
-		   clock_now_ms());
+	tour_begin(&player->tour, which, tour, loops,
+		   navigator_diagonal_m(&player->env.eye->navigator), clock_now_ms());
 	log_debug("app", "tour %s%s", tour->id, loops ? " for nobody" : "");
-	come(kiosk);
+	come(player);
 }
 
-bool tour_player_go_round(struct kiosk *kiosk)
+bool tour_player_start_loop(struct tour_player *player)
 {
-	const struct info *info = information_view_info(kiosk->shown.view);
+	const struct info *info = exhibit_info(player->env.shown);
 
 	for (uint32_t i = 0; info && i < info_tour_count(info); i++)
 		if (info_tour(info, i)->attract) {
-			begin(kiosk, i, true);
+			begin(player, i, true);
 			return true;
 		}
 	return false;
@@ -77,73 +73,84 @@ static void clear(struct overlay *overlay)
 	overlay_show_card(overlay, -1);
 }
 
-void tour_player_start(struct kiosk *kiosk, int which)
+void tour_player_start(struct tour_player *player, int which)
 {
-	const struct info *info = information_view_info(kiosk->shown.view);
+	const struct info *info = exhibit_info(player->env.shown);
 
 	if (!info || which < 0 || (uint32_t)which >= info_tour_count(info))
 		return;
-	clear(information_view_overlay(kiosk->shown.view));
-	begin(kiosk, (uint32_t)which, false);
-	counting_id(kiosk, USAGE_TOUR, info_tour(info, (uint32_t)which)->id);
+	clear(exhibit_overlay(player->env.shown));
+	begin(player, (uint32_t)which, false);
+	counting_id(player->env.counting, USAGE_TOUR, info_tour(info, (uint32_t)which)->id);
 }
 
-void tour_player_halt(struct kiosk *kiosk)
+void tour_player_halt(struct tour_player *player)
 {
-	if (kiosk->tour.loops)
-		tour_end(&kiosk->tour); /* it ran for nobody, and now somebody came */
-	if (!tour_runs(&kiosk->tour))
+	if (player->tour.loops)
+		tour_end(&player->tour); /* it ran for nobody, and now somebody came */
+	if (!tour_runs(&player->tour))
 		return;
-	tour_halt(&kiosk->tour);
-	say_eye(kiosk, "halts");
+	tour_halt(&player->tour);
+	eye_log(player->env.eye, "tour halts");
 }
 
-void tour_player_go_on(struct kiosk *kiosk)
+/* Continues a halted tour from where it was. */
+static void go_on(struct tour_player *player)
 {
-	if (kiosk->tour.state != TOUR_HALTED)
-		return;
-	clear(information_view_overlay(kiosk->shown.view));
-	tour_go_on(&kiosk->tour);
+	clear(exhibit_overlay(player->env.shown));
+	tour_go_on(&player->tour);
 	log_debug("app", "tour goes on");
-	come(kiosk);
+	come(player);
 }
 
-void tour_player_end(struct kiosk *kiosk)
+void tour_player_end(struct tour_player *player)
 {
-	if (kiosk->tour.state != TOUR_OFF)
+	if (player->tour.state != TOUR_OFF)
 		log_debug("app", "tour ends");
-	tour_end(&kiosk->tour);
+	tour_end(&player->tour);
 }
 
-void tour_player_press(struct kiosk *kiosk)
+void tour_player_on_release(void *data, const struct exhibit_change *change)
 {
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
-	const struct info *info = information_view_info(kiosk->shown.view);
+	(void)change;
+	tour_player_end(data);
+}
 
-	if (kiosk->tour.state == TOUR_HALTED)
-		tour_player_go_on(kiosk);
-	else if (tour_runs(&kiosk->tour))
-		tour_player_halt(kiosk);
+bool tour_player_has_visitor(const struct tour_player *player)
+{
+	return player->tour.state != TOUR_OFF && !player->tour.loops;
+}
+
+void tour_player_press(struct tour_player *player)
+{
+	struct overlay *overlay = exhibit_overlay(player->env.shown);
+	const struct info *info = exhibit_info(player->env.shown);
+
+	if (player->tour.state == TOUR_HALTED)
+		go_on(player);
+	else if (tour_runs(&player->tour))
+		tour_player_halt(player);
 	else if (info_tour_count(info) == 1)
-		tour_player_start(kiosk, 0);
+		tour_player_start(player, 0);
 	else
 		overlay_show_tours(overlay, !overlay_choosing(overlay));
 }
 
-bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+bool tour_player_lead_eye(struct tour_player *player, int64_t now_ms, bool nobody)
 {
-	const enum tour_state before = kiosk->tour.state;
+	const enum tour_state before = player->tour.state;
 	struct tour_pose pose;
 
 	/* The release has changed, or somebody came. */
-	if (!flown(kiosk) || (kiosk->tour.loops && kiosk->presence.state != PRESENCE_NOBODY))
-		tour_end(&kiosk->tour);
-	if (!tour_step(&kiosk->tour, now_ms, kiosk->navigator.flight_left_ms <= 0, &pose))
+	if (!flown(player) || (player->tour.loops && !nobody))
+		tour_end(&player->tour);
+	if (!tour_step(&player->tour, now_ms, player->env.eye->navigator.flight_left_ms <= 0,
+		       &pose))
 		return false;
-	navigator_look(&kiosk->navigator, pose.eye_m, pose.target_m);
+	navigator_look(&player->env.eye->navigator, pose.eye_m, pose.target_m);
 	if (before == TOUR_COMING)
-		say_eye(kiosk, "flies");
-	if (kiosk->tour.state == TOUR_OFF)
+		eye_log(player->env.eye, "tour flies");
+	if (player->tour.state == TOUR_OFF)
 		log_debug("app", "tour ends");
 	return pose.moves;
 }
@@ -152,48 +159,48 @@ bool tour_player_leads_eye(struct kiosk *kiosk, int64_t now_ms)
 
 /* Returns the stop whose caption is shown: the current or next stop at which the tour stays. Stops
  * that are only passed have none. */
-static uint32_t spoken_stop(const struct kiosk *kiosk, const struct info_tour *tour)
+static uint32_t spoken_stop(const struct tour_player *player, const struct info_tour *tour)
 {
 	struct tour_pose pose;
 	uint32_t stop;
 
-	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	tour_path_pose(&player->tour.path, player->tour.at_ms, &pose);
 	stop = pose.stop;
 	while (tour->stops[stop].stay_s == 0)
 		stop = (stop + 1) % tour->stop_count; /* a tour always stays at its last stop */
 	return stop;
 }
 
-int tour_player_part(const struct kiosk *kiosk)
+int tour_player_part(const struct tour_player *player)
 {
-	const struct info_tour *tour = flown(kiosk);
+	const struct info_tour *tour = flown(player);
 	struct tour_pose pose;
 
-	if (!tour || kiosk->tour.state == TOUR_COMING)
+	if (!tour || player->tour.state == TOUR_COMING)
 		return -1;
-	tour_path_pose(&kiosk->tour.path, kiosk->tour.at_ms, &pose);
+	tour_path_pose(&player->tour.path, player->tour.at_ms, &pose);
 	return pose.moves ? -1 : tour->stops[pose.stop].part;
 }
 
-void tour_player_say(struct kiosk *kiosk)
+void tour_player_show(struct tour_player *player)
 {
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
-	const struct info *info = information_view_info(kiosk->shown.view);
-	const struct info_tour *tour = flown(kiosk);
-	struct overlay_tour_state state = { .paused = kiosk->tour.state == TOUR_HALTED };
+	struct overlay *overlay = exhibit_overlay(player->env.shown);
+	const struct info *info = exhibit_info(player->env.shown);
+	const struct info_tour *tour = flown(player);
+	struct overlay_tour_state state = { .paused = player->tour.state == TOUR_HALTED };
 	const char *language;
 	uint32_t stop;
 
 	if (!overlay || !info)
 		return;
-	if (!tour || kiosk->tour.loops) {
+	if (!tour || player->tour.loops) {
 		overlay_show_tour(overlay, NULL);
 		return;
 	}
-	language = information_view_language(kiosk->shown.view);
-	stop = spoken_stop(kiosk, tour);
-	state.tour = (int)kiosk->tour.which;
-	state.caption = info_stop_caption(info, kiosk->tour.which, stop, language);
+	language = information_view_language(player->env.shown->view);
+	stop = spoken_stop(player, tour);
+	state.tour = (int)player->tour.which;
+	state.caption = info_stop_caption(info, player->tour.which, stop, language);
 	if (!*state.caption && tour->stops[stop].part >= 0)
 		state.caption = info_text(info, (uint32_t)tour->stops[stop].part, language).caption;
 	for (uint32_t i = 0; i < tour->stop_count; i++) {

@@ -1,71 +1,99 @@
-/* Manages a visit: while nobody is there, the model presents itself; after a time without a touch
- * the visitor is asked; after a visit everything is reset for the next visitor. */
-#include "app/kiosk.h"
+/* Follows the state of presence: leads the eye while nobody is there, keeps the overlay's
+ * invitation and question up to date, and resets everything between two visitors. */
+#include "app/visit/visitor.h"
+
 #include "base/clock.h"
 #include "base/log.h"
 
 enum { HOMEWARD_MS = 2500 };
 
-static bool is_reading(const struct kiosk *kiosk)
+void visitor_init(struct visitor *visitor, const struct visitor_options *options,
+		  const struct visitor_env *env)
 {
-	const struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	*visitor = (struct visitor){ .options = *options, .env = *env, .asked_s = -1 };
+	presence_init(&visitor->presence, options->idle_s, clock_now_ms());
+	visitor->logged = visitor->presence.state;
+}
 
-	for (size_t i = 0; i < TOUCH_CONTACTS_MAX; i++)
-		if (kiosk->gestures.fingers[i].down)
-			return true;
+static bool is_off(const struct visitor *visitor)
+{
+	return visitor->options.off || !visitor->env.eye->ready;
+}
+
+static bool nobody_is_there(const struct visitor *visitor)
+{
+	return visitor->presence.state == PRESENCE_NOBODY;
+}
+
+/* Returns whether the visitor is busy with something that needs few touches. */
+static bool is_reading(const struct visitor *visitor)
+{
+	const struct overlay *overlay = exhibit_overlay(visitor->env.shown);
+
+	if ((visitor->down & ~visitor->answers) != 0)
+		return true;
 	return overlay && (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
 			   overlay_searching(overlay) || overlay_choosing(overlay) ||
-			   overlay_choosing_language(overlay) || kiosk->tour.state == TOUR_HALTED ||
-			   kiosk->tools.now.rake.on || kiosk->tools.now.section.on);
+			   overlay_choosing_language(overlay) ||
+			   visitor->env.tours->tour.state == TOUR_HALTED ||
+			   tools_are_used(visitor->env.tools));
+}
+
+/* ---- between two visitors */
+
+static void reset_overlay(const struct visitor *visitor, struct overlay *overlay)
+{
+	const struct exhibit *shown = visitor->env.shown;
+	const char *language = visitor->options.language;
+
+	overlay_close_page(overlay);
+	overlay_show_card(overlay, -1);
+	overlay_show_search(overlay, false);
+	overlay_show_tours(overlay, false);
+	overlay_show_languages(overlay, false);
+	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
+		log_debug("app", "comfort: forgotten");
+	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
+	information_view_set_language(shown->view,
+				      language ? language : info_language(exhibit_info(shown), 0));
 }
 
 /* Resets everything, so that nothing of one visitor is left for the next. */
-static void begin_anew(struct kiosk *kiosk)
+static void end_visit(struct visitor *visitor)
 {
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
-	const char *language = kiosk->options.language;
+	const struct visitor_env *env = &visitor->env;
+	struct overlay *overlay = exhibit_overlay(env->shown);
 
-	tour_player_end(kiosk);
-	tools_end(kiosk);
-	back_forget(kiosk);
-	if (overlay) {
-		overlay_close_page(overlay);
-		overlay_show_card(overlay, -1);
-		overlay_show_search(overlay, false);
-		overlay_show_tours(overlay, false);
-		overlay_show_languages(overlay, false);
-		if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
-			log_debug("app", "comfort: forgotten");
-		overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
-		information_view_set_language(
-			kiosk->shown.view,
-			language ? language
-				 : info_language(information_view_info(kiosk->shown.view), 0));
-	}
-	gesture_reset(&kiosk->gestures); /* fingers still on the glass belong to nobody */
-	kiosk->fingers_on_keys = 0;
-	if (kiosk->usage)
-		usage_write(kiosk->usage);
+	tour_player_end(env->tours);
+	tools_end(env->tools);
+	back_forget(env->back);
+	if (overlay)
+		reset_overlay(visitor, overlay);
+	visitor->down = 0;
+	env->ended(env->data);
+	counting_write(env->counting);
 }
 
 /* Starts the tour for the time while nobody is there, or flies the eye to the start of the attract
  * camera. */
-static void send_round(struct kiosk *kiosk, int64_t now_ms)
+static void start_presenting(struct visitor *visitor, int64_t now_ms)
 {
-	const struct navigator_options *o = &kiosk->navigator.options;
+	struct navigator *navigator = &visitor->env.eye->navigator;
+	const struct navigator_options *o = &navigator->options;
 	float eye_m[3], target_m[3];
 
-	if (tour_player_go_round(kiosk))
+	if (tour_player_start_loop(visitor->env.tours))
 		return;
-	attract_camera_init(&kiosk->attract, o->box_min_m, o->box_max_m, o->home_eye_m,
+	attract_camera_init(&visitor->attract, o->box_min_m, o->box_max_m, o->home_eye_m,
 			    o->home_target_m);
-	attract_camera_pose(&kiosk->attract, 0, eye_m, target_m);
-	navigator_fly(&kiosk->navigator, eye_m, target_m, HOMEWARD_MS);
-	kiosk->attract_camera_since_ms = now_ms + HOMEWARD_MS;
+	attract_camera_pose(&visitor->attract, 0, eye_m, target_m);
+	navigator_fly(navigator, eye_m, target_m, HOMEWARD_MS);
+	visitor->attract_since_ms = now_ms + HOMEWARD_MS;
 }
 
-/* Logs a change of the visitor's state. */
-static void say_state(struct kiosk *kiosk)
+/* ---- the loop */
+
+static void log_state(struct visitor *visitor)
 {
 	static const char *const states[] = {
 		[PRESENCE_NOBODY] = "nobody is there",
@@ -73,102 +101,131 @@ static void say_state(struct kiosk *kiosk)
 		[PRESENCE_ASKED] = "is somebody there?",
 	};
 
-	if (kiosk->presence_said != kiosk->presence.state)
-		log_debug("app", "%s", states[kiosk->presence.state]);
-	kiosk->presence_said = kiosk->presence.state;
-}
-
-static bool is_off(const struct kiosk *kiosk)
-{
-	return kiosk->options.views_path || !kiosk->navigator_ready;
+	if (visitor->logged != visitor->presence.state)
+		log_debug("app", "%s", states[visitor->presence.state]);
+	visitor->logged = visitor->presence.state;
 }
 
 /* Returns the milliseconds until the eye moves by itself; -1: it does not. */
-static int eye_wait_ms(const struct kiosk *kiosk, int64_t now_ms)
+static int eye_wait_ms(const struct visitor *visitor, int64_t now_ms)
 {
-	if (kiosk->tour.state != TOUR_OFF)
-		return tour_wait_ms(&kiosk->tour, now_ms);
-	return kiosk->presence.state == PRESENCE_NOBODY
-		       ? attract_camera_rest_ms(now_ms - kiosk->attract_camera_since_ms)
-		       : -1;
+	const struct tour *tour = &visitor->env.tours->tour;
+
+	if (tour->state != TOUR_OFF)
+		return tour_wait_ms(tour, now_ms);
+	return nobody_is_there(visitor) ? attract_camera_rest_ms(now_ms - visitor->attract_since_ms)
+					: -1;
 }
 
-void visitor_watch(struct kiosk *kiosk)
+/* The overlay may be new, so it is told each time. */
+static void tell_overlay(const struct visitor *visitor, int asked_s)
+{
+	struct overlay *overlay = exhibit_overlay(visitor->env.shown);
+
+	if (!overlay)
+		return;
+	overlay_invite(overlay, nobody_is_there(visitor));
+	overlay_ask(overlay, asked_s);
+	tour_player_show(visitor->env.tours);
+}
+
+void visitor_turn(struct visitor *visitor)
 {
 	const int64_t now_ms = clock_now_ms();
-	const enum presence_state before = kiosk->presence.state;
-	struct overlay *overlay = information_view_overlay(kiosk->shown.view);
+	const enum presence_state before = visitor->presence.state;
+	const struct tour *tour = &visitor->env.tours->tour;
 	int asked_s;
 
-	if (is_off(kiosk))
+	if (is_off(visitor))
 		return;
-	if (!kiosk->tour.loops && tour_runs(&kiosk->tour))
-		presence_keep(&kiosk->presence, now_ms);
-	presence_step(&kiosk->presence, now_ms, is_reading(kiosk));
-	say_state(kiosk);
-	if (kiosk->presence.state == PRESENCE_NOBODY && before != PRESENCE_NOBODY) {
-		begin_anew(kiosk);
-		send_round(kiosk, now_ms);
-	} else if (kiosk->presence.state == PRESENCE_NOBODY && kiosk->tour.state == TOUR_OFF) {
-		tour_player_go_round(kiosk); /* its database may have arrived late */
+	if (!tour->loops && tour_runs(tour))
+		presence_keep(&visitor->presence, now_ms);
+	presence_step(&visitor->presence, now_ms, is_reading(visitor));
+	log_state(visitor);
+	if (nobody_is_there(visitor) && before != PRESENCE_NOBODY) {
+		end_visit(visitor);
+		start_presenting(visitor, now_ms);
+	} else if (nobody_is_there(visitor) && tour->state == TOUR_OFF) {
+		tour_player_start_loop(visitor->env.tours); /* its database may arrive late */
 	}
-	asked_s = presence_asked_s(&kiosk->presence, now_ms);
-	if (overlay) { /* the overlay may be new, so tell it each time */
-		overlay_invite(overlay, kiosk->presence.state == PRESENCE_NOBODY);
-		overlay_ask(overlay, asked_s);
-		tour_player_say(kiosk);
-	}
-	if (kiosk->presence.state != before || asked_s != kiosk->asked_s)
-		kiosk_redraw(kiosk);
-	kiosk->asked_s = asked_s;
-	if (eye_wait_ms(kiosk, now_ms) == 0)
-		kiosk_redraw(kiosk);
+	asked_s = presence_asked_s(&visitor->presence, now_ms);
+	tell_overlay(visitor, asked_s);
+	if (visitor->presence.state != before || asked_s != visitor->asked_s ||
+	    eye_wait_ms(visitor, now_ms) == 0)
+		redraw_ask(visitor->env.redraw);
+	visitor->asked_s = asked_s;
 }
 
-int visitor_wait_ms(const struct kiosk *kiosk)
+int visitor_wait_ms(const struct visitor *visitor)
 {
 	const int64_t now_ms = clock_now_ms();
+	int eye_ms, presence_ms;
 
-	if (is_off(kiosk))
+	if (is_off(visitor))
 		return -1;
-	return sooner(eye_wait_ms(kiosk, now_ms), presence_wait_ms(&kiosk->presence, now_ms));
+	eye_ms = eye_wait_ms(visitor, now_ms);
+	presence_ms = presence_wait_ms(&visitor->presence, now_ms);
+	return clock_sooner_ms(eye_ms, presence_ms);
 }
 
-bool visitor_leads_eye(struct kiosk *kiosk, int64_t now_ms)
+bool visitor_lead_eye(struct visitor *visitor, int64_t now_ms)
 {
 	float eye_m[3], target_m[3];
 	bool moves;
 
-	if (is_off(kiosk))
+	if (is_off(visitor))
 		return false;
-	if (kiosk->tour.state != TOUR_OFF)
-		return tour_player_leads_eye(kiosk, now_ms);
-	if (kiosk->presence.state != PRESENCE_NOBODY || now_ms < kiosk->attract_camera_since_ms)
+	if (visitor->env.tours->tour.state != TOUR_OFF)
+		return tour_player_lead_eye(visitor->env.tours, now_ms, nobody_is_there(visitor));
+	if (!nobody_is_there(visitor) || now_ms < visitor->attract_since_ms)
 		return false;
-	moves = attract_camera_pose(&kiosk->attract, now_ms - kiosk->attract_camera_since_ms, eye_m,
+	moves = attract_camera_pose(&visitor->attract, now_ms - visitor->attract_since_ms, eye_m,
 				    target_m);
-	navigator_look(&kiosk->navigator, eye_m, target_m);
+	navigator_look(&visitor->env.eye->navigator, eye_m, target_m);
 	return moves;
 }
 
-bool visitor_takes_touch(struct kiosk *kiosk, const struct touch_event *event)
-{
-	const uint32_t bit = 1u << event->contact;
-	const bool asked = kiosk->presence.state == PRESENCE_ASKED;
+/* ---- touches */
 
-	if (!kiosk->presence.touched)
-		counting_part(kiosk, USAGE_VISIT, -1);
-	presence_touch(&kiosk->presence, clock_now_ms());
-	if (event->phase == TOUCH_DOWN)
-		kiosk->answers = asked ? kiosk->answers | bit : kiosk->answers & ~bit;
-	if (asked)
-		kiosk_redraw(kiosk);
-	return (kiosk->answers & bit) != 0;
+void visitor_stay(struct visitor *visitor)
+{
+	presence_touch(&visitor->presence, clock_now_ms());
 }
 
-int visitor_left_ms(const struct kiosk *kiosk)
+bool visitor_take_touch(struct visitor *visitor, const struct touch_event *event)
 {
-	if (!kiosk->presence.touched || kiosk->shown.frame.patches == 0)
+	const uint32_t bit = 1u << event->contact;
+	const bool asked = visitor->presence.state == PRESENCE_ASKED;
+
+	if (!visitor->presence.touched)
+		counting_part(visitor->env.counting, USAGE_VISIT, -1);
+	visitor_stay(visitor);
+	if (event->phase == TOUCH_DOWN) {
+		visitor->down |= bit;
+		visitor->answers = asked ? visitor->answers | bit : visitor->answers & ~bit;
+	} else if (event->phase != TOUCH_MOVE) {
+		visitor->down &= ~bit;
+	}
+	if (asked)
+		redraw_ask(visitor->env.redraw);
+	return (visitor->answers & bit) != 0;
+}
+
+void visitor_on_release(void *data, const struct exhibit_change *change)
+{
+	const char *language = information_view_language(change->before->view);
+	struct overlay *overlay = exhibit_overlay(change->shown);
+
+	(void)data;
+	if (language)
+		information_view_set_language(change->shown->view, language);
+	if (overlay) /* NULL if the panel is too small for it */
+		overlay_show_help(overlay, false);
+}
+
+int visitor_left_ms(const struct visitor *visitor)
+{
+	if (!visitor->presence.touched || visitor->env.shown->frame.patches == 0)
 		return 0;
-	return presence_left_ms(&kiosk->presence, clock_now_ms());
+	return presence_left_ms(&visitor->presence, clock_now_ms());
 }

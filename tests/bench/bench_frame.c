@@ -13,7 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/kiosk.h"
+#include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
@@ -340,7 +340,7 @@ int main(int argc, char **argv)
 		.width_px = 1280,
 		.height_px = 720,
 		.wall_clock = true,
-		.scene = kiosk_scene_options(&profile_default, SCENE_LUMIGRAPH),
+		.scene = scene_settings(&profile_default, SCENE_LUMIGRAPH),
 	};
 	options.scene.upload_budget_us = 100000; /* warm soon; then nothing is left to upload */
 	bench.frames = (uint32_t)frames;

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/kiosk.h"
+#include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
@@ -125,8 +125,8 @@ int main(int argc, char **argv)
 	printf("{\"sizes\": [\n");
 	for (int i = 0; i < 2; i++)
 		run(&(struct stage_options){ .release = argv[1],
-					     .scene = kiosk_scene_options(&profile_default,
-									  SCENE_LUMIGRAPH),
+					     .scene = scene_settings(&profile_default,
+								     SCENE_LUMIGRAPH),
 					     .width_px = sizes[i][0],
 					     .height_px = sizes[i][1],
 					     .wall_clock = true },

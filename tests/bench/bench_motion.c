@@ -20,7 +20,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/kiosk.h"
+#include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_parts.h"
@@ -480,8 +480,8 @@ int main(int argc, char **argv)
 						.height_px = 720,
 						.latency_us = 40000,
 						.bits_a_second = 10000000,
-						.scene = kiosk_scene_options(&profile_default,
-									     SCENE_LUMIGRAPH) };
+						.scene = scene_settings(&profile_default,
+									SCENE_LUMIGRAPH) };
 	bench.presence = argv[2];
 	bench.out = argv[3];
 	bench.fps = 30;

@@ -17,8 +17,8 @@
 #include "ui/overlay_state.h"
 
 /* The linker wraps these (Makefile). */
-int __real_frame_draw(struct kiosk *of);
-int __wrap_frame_draw(struct kiosk *of);
+int __real_frame_draw(struct frame *of);
+int __wrap_frame_draw(struct frame *of);
 void __real_fingers_on_touch(void *data, const struct touch_event *event);
 /* Of all threads: what it would take on cores of its own. */
 static int64_t process_us(void)
@@ -33,7 +33,7 @@ void __wrap_fingers_on_touch(void *data, const struct touch_event *event);
 bool __real_overlay_update(struct overlay *overlay, int64_t now_ms);
 bool __wrap_overlay_update(struct overlay *overlay, int64_t now_ms);
 
-static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
+static struct kiosk kiosk;
 static int64_t lifted_us, lifted_cpu_us, touch_us, words_us;
 static struct {
 	int part; /* -1: none opens */
@@ -116,7 +116,7 @@ static void look(const struct overlay *overlay)
 	printf("{\"part\": \"%s\", \"first_frame_ms\": %.1f, \"whole_ms\": %.1f, \"frames\": %u, "
 	       "\"with_pictures_ms\": %.1f, \"words_cpu_ms\": %.2f, \"first_frame_cpu_ms\": %.1f, "
 	       "\"whole_cpu_ms\": %.1f}\n",
-	       info_part(information_view_info(kiosk.shown.view), (uint32_t)part)->id,
+	       info_part(exhibit_info(&kiosk.releases.sessions.shown.exhibit), (uint32_t)part)->id,
 	       (double)(opening.first_us - opening.began_us) / 1000,
 	       (double)(opening.whole_us - opening.began_us) / 1000, opening.whole_frames,
 	       (double)(now_us - opening.began_us) / 1000, (double)opening.words_us / 1000,
@@ -124,10 +124,10 @@ static void look(const struct overlay *overlay)
 	opening.began_us = 0;
 }
 
-int __wrap_frame_draw(struct kiosk *of)
+int __wrap_frame_draw(struct frame *of)
 {
 	const int rc = __real_frame_draw(of);
-	const struct overlay *overlay = information_view_overlay(kiosk.shown.view);
+	const struct overlay *overlay = exhibit_overlay(&kiosk.releases.sessions.shown.exhibit);
 
 	if (overlay)
 		look(overlay);

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/kiosk.h"
+#include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "tests/bench/stage.h"
 
@@ -70,7 +70,7 @@ static void parse(struct bench *bench, int argc, char **argv)
 		.height_px = 720,
 		.frame_us = 100000,
 		.latency_us = 40000,
-		.scene = kiosk_scene_options(&profile_default, SCENE_LUMIGRAPH),
+		.scene = scene_settings(&profile_default, SCENE_LUMIGRAPH),
 	};
 	if (argc < 4)
 		stage_die("RELEASE VIEWS OUT are needed", -EINVAL);

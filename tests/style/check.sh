@@ -41,7 +41,9 @@ may_enter() {
 	pipeline/samples) echo import content material ;;
 	pipeline/release) echo keys import content hierarchy samples ;;
 	pipeline/temple) echo material ;;
-	app/*) echo . release visit modes ;; # one circle still, through app/kiosk.h
+	app/modes) echo settings view ;;
+	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
+	app/visit | app/release) echo view ;;
 	*) echo ;;
 	esac
 }
@@ -81,6 +83,10 @@ for file in $files; do
 		if [ "$folder" != tests ] && [ "${include%/*}" != "$room" ] && ! is_public "$include"; then
 			complain "$file: $include is private to ${include%/*}"
 		fi
+		case "$include $file" in
+		"app/kiosk.h app/kiosk.c" | "app/kiosk.h app/main.c" | "app/kiosk.h tests/"*) ;;
+		"app/kiosk.h "*) complain "$file: only the main program sees the whole kiosk: take what you need as parameters" ;;
+		esac
 		if [ "$folder" = app ] && [ "${include%%/*}" = net ] && [ "$include" != net/client.h ]; then
 			complain "$file: of net, app may include only net/client.h"
 		fi
@@ -91,6 +97,49 @@ for file in $files; do
 	case $file in
 	format/*.c) ! grep -nE '\blog_(error|warn|info|debug)\(' "$file" || complain "$file: format never logs" ;;
 	esac
+done
+
+# ---- a source has a header of its own: NAME.c has NAME.h beside it
+# Main programs, tests and the commands that pipeline/commands.h lists have none. These do not either yet: an entry
+# that has got one must go, and none may come.
+known_without_header="
+format/metadata_read.c format/metadata_sign.c
+pipeline/content/annotations_export.c pipeline/content/annotations_import.c pipeline/content/annotations_write.c
+pipeline/content/draft.c pipeline/content/info_credits.c pipeline/content/info_pages.c
+pipeline/content/info_parts.c pipeline/content/info_tours.c
+pipeline/hierarchy/master_cut.c pipeline/hierarchy/multires_job.c pipeline/hierarchy/multires_write.c
+pipeline/import/import_files.c pipeline/import/import_foreign.c pipeline/import/import_ply.c
+pipeline/import/import_report.c pipeline/import/import_scene.c pipeline/import/import_texture.c
+pipeline/import/ply_header.c pipeline/import/ply_input.c
+pipeline/release/inspect_release.c pipeline/release/publish_hierarchy.c pipeline/release/publish_info.c
+pipeline/release/publish_labels.c pipeline/release/publish_samples.c
+pipeline/samples/sample_file.c
+pipeline/temple/temple_doors.c pipeline/temple/temple_galleries.c pipeline/temple/temple_heads.c
+pipeline/temple/temple_terraces.c pipeline/temple/temple_towers.c
+render/display/display_drm.c render/display/display_headless.c render/display/display_window.c
+render/display/drm_flip.c render/plan/plan_quality.c
+render/scene/scene_draw.c render/scene/scene_labels.c render/scene/scene_mark.c render/scene/scene_objects.c
+render/scene/scene_plan.c render/scene/scene_visibility.c render/scene/scene_wants.c
+storage/cache_file.c storage/cache_room.c storage/info_ask.c storage/info_open.c storage/info_tools.c
+storage/info_tour.c
+ui/overlay_comfort.c ui/overlay_draw.c ui/overlay_gallery.c ui/overlay_layers.c
+ui/overlay_place.c ui/overlay_search.c ui/overlay_tools.c ui/overlay_tour.c
+"
+for file in $files; do
+	case $file in
+	tests/* | */main.c | pipeline/command_*.c) continue ;;
+	*.c) [ -f "${file%.c}.h" ] && continue ;;
+	*) continue ;;
+	esac
+	case "$(echo $known_without_header) " in
+	*"$file "*) ;;
+	*) complain "$file: has no ${file%.c}.h" ;;
+	esac
+done
+for file in $known_without_header; do
+	if [ ! -f "$file" ] || [ -f "${file%.c}.h" ]; then
+		complain "tests/style/check.sh: take $file off the list of sources without a header"
+	fi
 done
 
 # ---- what may not stand in a source

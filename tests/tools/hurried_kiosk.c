@@ -18,7 +18,7 @@
 #include <sys/timerfd.h>
 
 #include "app/kiosk.h"
-#include "app/options.h"
+#include "app/settings/options.h"
 #include "base/clock.h"
 #include "ui/overlay.h"
 
@@ -31,8 +31,8 @@ int __real_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 			   struct itimerspec *before);
 int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 			   struct itimerspec *before);
-int __real_frame_draw(struct kiosk *kiosk);
-int __wrap_frame_draw(struct kiosk *kiosk);
+int __real_frame_draw(struct frame *frame);
+int __wrap_frame_draw(struct frame *frame);
 void __real_fingers_on_touch(void *data, const struct touch_event *event);
 void __wrap_fingers_on_touch(void *data, const struct touch_event *event);
 
@@ -44,7 +44,7 @@ enum {
 	END_MOST_US = 1200000, /* of a turn, past when nobody should have been there */
 };
 
-static struct kiosk kiosk = { .epoll_fd = -1, .signal_fd = -1 };
+static struct kiosk kiosk;
 static _Atomic int64_t virtual_us = 1000000000;
 static struct {
 	int fd;
@@ -72,7 +72,7 @@ static void fail(const char *format, ...)
 	va_end(arguments);
 	fputc('\n', stderr);
 	failed = true;
-	kiosk.quit = true;
+	kiosk.loop.quit = true;
 }
 
 /* ---- time */
@@ -80,7 +80,7 @@ static void fail(const char *format, ...)
 /* Before the first picture no visitor comes. */
 static bool held(void)
 {
-	return !kiosk.pictured && virtual_us > 1000000000 + HELD_AT_US;
+	return !kiosk.frame.pictured && virtual_us > 1000000000 + HELD_AT_US;
 }
 
 int64_t __wrap_clock_now_us(void)
@@ -133,7 +133,7 @@ static void advance(int64_t by_us)
 
 	if (held())
 		return;
-	if (!kiosk.pictured && by_us > REAL_WAIT_MS * 1000)
+	if (!kiosk.frame.pictured && by_us > REAL_WAIT_MS * 1000)
 		by_us = REAL_WAIT_MS * 1000;
 	if (next_us - virtual_us < by_us)
 		by_us = next_us - virtual_us;
@@ -143,7 +143,9 @@ static void advance(int64_t by_us)
 
 int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_ms)
 {
-	const bool works = !kiosk.pictured || (!kiosk.shown.frame.settled && !kiosk.frame_wanted);
+	const bool works =
+		!kiosk.frame.pictured ||
+		(!kiosk.releases.sessions.shown.exhibit.frame.settled && !kiosk.redraw.wanted);
 	int count = __real_epoll_wait(fd, events, most, 0);
 
 	if (count != 0 || timeout_ms == 0)
@@ -162,17 +164,18 @@ int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_
 
 static void check_budgets(void)
 {
-	const struct scene_options budget = kiosk_scene_options(&kiosk.profile, kiosk.options.mode);
+	const struct exhibit *shown = &kiosk.releases.sessions.shown.exhibit;
+	const struct scene_options budget = kiosk.releases.sessions.options.scene;
 	static struct overlay_layer layers[OVERLAY_LAYERS_MAX + 1];
-	const struct scene_frame *frame = &kiosk.shown.frame;
+	const struct scene_frame *frame = &shown->frame;
 	struct scene_memory memory = { 0 };
 	uint32_t layer_count = 0;
 
-	if (kiosk.shown.scene)
-		scene_memory(kiosk.shown.scene, &memory);
-	if (information_view_overlay(kiosk.shown.view))
-		layer_count = overlay_layers(information_view_overlay(kiosk.shown.view), layers,
-					     OVERLAY_LAYERS_MAX + 1);
+	if (shown->scene)
+		scene_memory(shown->scene, &memory);
+	if (exhibit_overlay(shown))
+		layer_count =
+			overlay_layers(exhibit_overlay(shown), layers, OVERLAY_LAYERS_MAX + 1);
 	if (frame->triangles > budget.triangle_budget)
 		fail("%u triangles drawn, %u are the most", frame->triangles,
 		     budget.triangle_budget);
@@ -183,7 +186,7 @@ static void check_budgets(void)
 	if (layer_count >= OVERLAY_LAYERS_MAX)
 		fail("%u layers of words", layer_count);
 	for (int i = 0; i < 3; i++)
-		if (!isfinite(kiosk.camera.eye_m[i]) || !isfinite(kiosk.camera.target_m[i]))
+		if (!isfinite(kiosk.eye.camera.eye_m[i]) || !isfinite(kiosk.eye.camera.target_m[i]))
 			fail("the eye is nowhere");
 #define MOST(what, value) seen.what = seen.what > (value) ? seen.what : (value)
 	MOST(triangles, frame->triangles);
@@ -201,18 +204,19 @@ static void look_at_words(const struct overlay *overlay)
 	seen.typed += overlay_searching(overlay) && overlay_query(overlay)[0];
 	seen.large += overlay_comfort(overlay).large;
 	seen.reach += overlay_comfort(overlay).reach;
-	seen.tools += kiosk.tools.now.rake.on || kiosk.tools.now.section.on;
+	seen.tools += tools_are_used(&kiosk.tools);
 	seen.help += overlay_help(overlay);
-	seen.language += strcmp(information_view_language(kiosk.shown.view),
-				info_language(information_view_info(kiosk.shown.view), 0)) != 0;
+	seen.language +=
+		strcmp(information_view_language(kiosk.releases.sessions.shown.exhibit.view),
+		       info_language(exhibit_info(&kiosk.releases.sessions.shown.exhibit), 0)) != 0;
 }
 
 static bool somebody_is_led(void)
 {
-	return !kiosk.tour.loops && tour_runs(&kiosk.tour);
+	return !kiosk.tours.tour.loops && tour_runs(&kiosk.tours.tour);
 }
 
-int __wrap_frame_draw(struct kiosk *of)
+int __wrap_frame_draw(struct frame *of)
 {
 	int rc = __real_frame_draw(of);
 
@@ -221,18 +225,18 @@ int __wrap_frame_draw(struct kiosk *of)
 	if (somebody_is_led())
 		last_touch_us = virtual_us;
 	check_budgets();
-	if (information_view_overlay(kiosk.shown.view))
-		look_at_words(information_view_overlay(kiosk.shown.view));
+	if (exhibit_overlay(&kiosk.releases.sessions.shown.exhibit))
+		look_at_words(exhibit_overlay(&kiosk.releases.sessions.shown.exhibit));
 	return rc;
 }
 
 /* A finger's event: what was before it must have been right. */
 void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
 {
-	const int64_t idle_us = (int64_t)kiosk.presence.idle_ms * 1000;
+	const int64_t idle_us = (int64_t)kiosk.visitor.presence.idle_ms * 1000;
 	const int64_t most_us =
 		PRESENCE_READ_TIMES * idle_us + PRESENCE_ASK_MS * 1000 + END_MOST_US;
-	const enum presence_state state = kiosk.presence.state;
+	const enum presence_state state = kiosk.visitor.presence.state;
 
 	seen.asked += state == PRESENCE_ASKED;
 	if (seen.touches > 0 && !somebody_is_led() && virtual_us - last_touch_us > most_us) {
@@ -249,30 +253,31 @@ void __wrap_fingers_on_touch(void *data, const struct touch_event *event)
 /* Nothing of the last visitor is there. */
 static void check_attract(void)
 {
-	struct overlay *overlay = information_view_overlay(kiosk.shown.view);
+	struct overlay *overlay = exhibit_overlay(&kiosk.releases.sessions.shown.exhibit);
 
-	if (kiosk.presence.state != PRESENCE_NOBODY || !overlay) {
+	if (kiosk.visitor.presence.state != PRESENCE_NOBODY || !overlay) {
 		fail("it does not show itself at the end");
 		return;
 	}
 	if (overlay_card(overlay) >= 0 || overlay_page(overlay) >= 0 ||
 	    overlay_picture(overlay) >= 0 || overlay_searching(overlay) || overlay_help(overlay) ||
 	    overlay_choosing(overlay) || overlay_choosing_language(overlay) ||
-	    (kiosk.tour.state != TOUR_OFF && !kiosk.tour.loops))
+	    (kiosk.tours.tour.state != TOUR_OFF && !kiosk.tours.tour.loops))
 		fail("something is open while nobody is there");
 	if (overlay_comfort(overlay).large || overlay_comfort(overlay).reach)
 		fail("large type or reach stayed");
-	if (kiosk.tools.now.rake.on || kiosk.tools.now.section.on)
+	if (tools_are_used(&kiosk.tools))
 		fail("a tool stayed");
-	if (strcmp(information_view_language(kiosk.shown.view),
-		   info_language(information_view_info(kiosk.shown.view), 0)) != 0)
-		fail("the language stayed %s", information_view_language(kiosk.shown.view));
+	if (strcmp(information_view_language(kiosk.releases.sessions.shown.exhibit.view),
+		   info_language(exhibit_info(&kiosk.releases.sessions.shown.exhibit), 0)) != 0)
+		fail("the language stayed %s",
+		     information_view_language(kiosk.releases.sessions.shown.exhibit.view));
 	if (overlay_tap(overlay, 1, 1).kind != OVERLAY_NONE)
 		fail("something lies in the corner that is the model's");
 	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++)
-		if (kiosk.gestures.fingers[i].down)
+		if (kiosk.fingers.gestures.fingers[i].down)
 			fail("finger %d is still down", i);
-	if (kiosk.fingers_on_keys != 0)
+	if (kiosk.fingers.on_keys != 0)
 		fail("keys are still held");
 }
 
@@ -289,15 +294,17 @@ static int run(void)
 	rc = kiosk_run(&kiosk);
 	if (rc < 0 || failed || asked.shots_path)
 		return rc;
-	until_us = virtual_us + PRESENCE_READ_TIMES * (int64_t)kiosk.presence.idle_ms * 1000 +
+	until_us = virtual_us +
+		   PRESENCE_READ_TIMES * (int64_t)kiosk.visitor.presence.idle_ms * 1000 +
 		   PRESENCE_ASK_MS * 1000 + END_MOST_US;
-	while (rc == 0 && !failed && kiosk.presence.state != PRESENCE_NOBODY &&
+	while (rc == 0 && !failed && kiosk.visitor.presence.state != PRESENCE_NOBODY &&
 	       virtual_us < until_us) {
 		if (somebody_is_led()) /* which ends by itself, and then it is as after a touch */
-			until_us = virtual_us + kiosk.tour.path.duration_ms * 1000 +
-				   PRESENCE_READ_TIMES * (int64_t)kiosk.presence.idle_ms * 1000 +
+			until_us = virtual_us + kiosk.tours.tour.path.duration_ms * 1000 +
+				   PRESENCE_READ_TIMES * (int64_t)kiosk.visitor.presence.idle_ms *
+					   1000 +
 				   PRESENCE_ASK_MS * 1000 + END_MOST_US;
-		kiosk.quit = false; /* the replay ended: a turn sets it again */
+		kiosk.loop.quit = false; /* the replay ended: a turn sets it again */
 		rc = kiosk_run(&kiosk);
 	}
 	if (rc == 0 && !failed)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/navigator.h"
+#include "app/view/navigator.h"
 #include "geometry/vec.h"
 #include "tests/check.h"
 

@@ -1,0 +1,54 @@
+/* One frame: the eye moves, the scene is drawn from what is there, the words go over it, and the
+ * fetcher is asked for what is missing. Nothing here waits for disk, network or a decoder. */
+#ifndef GOPURA_APP_FRAME_H
+#define GOPURA_APP_FRAME_H
+
+#include "app/modes/setup_page.h"
+#include "app/release/sessions.h"
+#include "app/release/trial.h"
+#include "app/view/anchors.h"
+#include "app/visit/visitor.h"
+#include "render/display/display.h"
+
+enum { FRAME_BUDGET_US = 16667 }; /* duration of a frame at 60 Hz */
+
+struct frame_options {
+	int64_t started_ms; /* when the program started */
+	bool views;         /* the camera is set from outside, for pictures of views */
+	bool words;         /* draw the overlay */
+	/* What it draws and works with; borrowed. */
+	struct display *display;
+	struct quads *quads;
+	const struct viewport *viewport;
+	struct redraw *redraw;
+	struct eye *eye;
+	struct anchors *anchors;
+	struct sessions *sessions;
+	const struct trial *trial;
+	struct visitor *visitor;
+	struct tour_player *tours;
+	struct tools *tools;
+	struct back *back;
+	struct setup_page *setup_page;
+};
+
+struct frame {
+	struct frame_options options;
+	int64_t last_ms;            /* when the last frame was drawn; 0: none yet */
+	uint32_t work_us;           /* CPU time of this thread for it */
+	uint64_t count, late_count; /* frames drawn; those with work_us over FRAME_BUDGET_US */
+	bool words_move;            /* the overlay still changes */
+	bool pictured;              /* the model was drawn at least once */
+	bool memory_given_back;     /* done since the picture last settled */
+};
+
+/* Copies the options. */
+void frame_init(struct frame *frame, const struct frame_options *options);
+/* Draws and presents one frame, and updates the wants. Returns 0; -ENOTRECOVERABLE: the GPU lost
+ * its context; or a negative errno of the display. */
+must_check int frame_draw(struct frame *frame);
+/* Does what a frame does beside drawing, while no panel shows anything: loads the next release.
+ * Returns 0; -ENOTRECOVERABLE: the GPU lost its context. */
+must_check int frame_unseen(struct frame *frame);
+
+#endif

@@ -1,0 +1,332 @@
+/* Parses the command line of gopura-kiosk with getopt_long, checks each value, and prints the help
+ * text. */
+#include "app/settings/options.h"
+
+#include <ctype.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/visit/presence.h"
+#include "base/log.h"
+
+static const char help_text[] =
+	"gopura-kiosk: shows a temple on a panel and answers the fingers that touch it\n"
+	"\n"
+	"usage: gopura-kiosk [OPTIONS]\n"
+	"\n"
+	"  --conf FILE          the terminal's gopura.conf (docs/terminal.md); options of the command\n"
+	"                       line override it; given again: the first file that is there\n"
+	"  --boards DIR         profiles that gopura.conf may name (/usr/share/gopura/board)\n"
+	"  --release URL        museum server (https://..., http://... or a folder)\n"
+	"  --stick DIR          where a USB stick with a release may come to lie\n"
+	"  --trust FILE         root/1.json of that museum: needed once, then remembered\n"
+	"  --ca FILE            certificate authority of the server (default: the system's)\n"
+	"  --state DIR          what survives power loss, and the cache\n"
+	"                       (default: $XDG_STATE_HOME/gopura or ~/.local/state/gopura)\n"
+	"  --display KIND       drm, window, headless or auto (default)\n"
+	"  --device FILE        KMS card, such as /dev/dri/card0 (default: the first with a panel)\n"
+	"  --size WxH[@HZ]      window, picture in memory, or mode of the panel\n"
+	"  --board FILE         profile of the board (docs/board.md)\n"
+	"  --mode MODE          lumigraph (default), polygons, or corners (for comparison)\n"
+	"  --language CODE      first language, such as km\n"
+	"  --touch-replay FILE  fingers from a file instead of the panel (docs/input.md)\n"
+	"  --quit-after-replay  end when the file did\n"
+	"  --views FILE         draw these views and end: a view a line, eye x y z, target x y z,\n"
+	"                       vertical field of view in degrees (metres, z up)\n"
+	"  --capture DIR        pictures go here: view-0000.png and views.jsonl, or the shots\n"
+	"  --shots FILE         pictures during a replay: milliseconds and a name, a shot a line\n"
+	"  --overlay            callouts and all on the pictures of --views too\n"
+	"  --poll-s SECONDS     how often to look for a new release (1 to 86400; the fetcher's)\n"
+	"  --download HH:MM-HH:MM\n"
+	"                       time of day in which a new release is brought (default: any)\n"
+	"  --log LEVEL          error, warn, info (default) or debug\n"
+	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
+	"  --socket FILE        talk to a gopura-fetch that runs already\n"
+	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
+	"  --visits FILE        a copy of the counts of what visitors look at, for the health page\n"
+	"                       (docs/visitors.md)\n"
+	"  --hours TEXT         the panel is on, such as \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\"\n"
+	"                       (default: always); outside them a touch wakes it for a while\n"
+	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
+	"  --idle-s SECONDS     without a touch until the visitor is asked whether somebody is\n"
+	"                       there, and the model shows itself (5 to 3600; default: 60)\n"
+	"  --shift              move the picture by a pixel now and then, to spare the panel\n"
+	"  --self-test          check panel, GPU, touch, storage and trust, a line each, and end:\n"
+	"                       0 where all is well (docs/display.md)\n"
+	"  --safe-page          say that the terminal will be back, without GPU and release\n"
+	"                       (docs/display.md); with --capture: safe-0.png and safe-1.png\n"
+	"  --help, --version\n"
+	"\n"
+	"Examples:\n"
+	"  gopura-kiosk --release https://museum.example/temple --trust root.json\n"
+	"  gopura-kiosk --display window --release build/demo/release \\\n"
+	"               --trust build/demo/release/root/1.json\n"
+	"  gopura-kiosk --display headless --size 1280x720 --release build/demo/release \\\n"
+	"               --trust build/demo/release/root/1.json --views views.txt --capture out\n";
+
+enum {
+	OPTION_CONF = 256,
+	OPTION_BOARDS,
+	OPTION_RELEASE,
+	OPTION_TRUST,
+	OPTION_CA,
+	OPTION_STATE,
+	OPTION_DISPLAY,
+	OPTION_DEVICE,
+	OPTION_SIZE,
+	OPTION_BOARD,
+	OPTION_MODE,
+	OPTION_LANGUAGE,
+	OPTION_TOUCH_REPLAY,
+	OPTION_QUIT_AFTER_REPLAY,
+	OPTION_VIEWS,
+	OPTION_CAPTURE,
+	OPTION_SHOTS,
+	OPTION_OVERLAY,
+	OPTION_POLL,
+	OPTION_DOWNLOAD,
+	OPTION_STICK,
+	OPTION_FETCH,
+	OPTION_SOCKET,
+	OPTION_FIGURES,
+	OPTION_VISITS,
+	OPTION_LOG,
+	OPTION_HOURS,
+	OPTION_WAKE,
+	OPTION_IDLE,
+	OPTION_SHIFT,
+	OPTION_SELF_TEST,
+	OPTION_SAFE_PAGE,
+	OPTION_HELP,
+	OPTION_VERSION
+};
+
+static const struct option long_options[] = {
+	{ "conf", required_argument, NULL, OPTION_CONF },
+	{ "boards", required_argument, NULL, OPTION_BOARDS },
+	{ "release", required_argument, NULL, OPTION_RELEASE },
+	{ "trust", required_argument, NULL, OPTION_TRUST },
+	{ "ca", required_argument, NULL, OPTION_CA },
+	{ "state", required_argument, NULL, OPTION_STATE },
+	{ "display", required_argument, NULL, OPTION_DISPLAY },
+	{ "device", required_argument, NULL, OPTION_DEVICE },
+	{ "size", required_argument, NULL, OPTION_SIZE },
+	{ "board", required_argument, NULL, OPTION_BOARD },
+	{ "mode", required_argument, NULL, OPTION_MODE },
+	{ "language", required_argument, NULL, OPTION_LANGUAGE },
+	{ "touch-replay", required_argument, NULL, OPTION_TOUCH_REPLAY },
+	{ "quit-after-replay", no_argument, NULL, OPTION_QUIT_AFTER_REPLAY },
+	{ "views", required_argument, NULL, OPTION_VIEWS },
+	{ "capture", required_argument, NULL, OPTION_CAPTURE },
+	{ "shots", required_argument, NULL, OPTION_SHOTS },
+	{ "overlay", no_argument, NULL, OPTION_OVERLAY },
+	{ "poll-s", required_argument, NULL, OPTION_POLL },
+	{ "stick", required_argument, NULL, OPTION_STICK },
+	{ "download", required_argument, NULL, OPTION_DOWNLOAD },
+	{ "fetch", required_argument, NULL, OPTION_FETCH },
+	{ "socket", required_argument, NULL, OPTION_SOCKET },
+	{ "visits", required_argument, NULL, OPTION_VISITS },
+	{ "figures", required_argument, NULL, OPTION_FIGURES },
+	{ "log", required_argument, NULL, OPTION_LOG },
+	{ "hours", required_argument, NULL, OPTION_HOURS },
+	{ "wake-min", required_argument, NULL, OPTION_WAKE },
+	{ "idle-s", required_argument, NULL, OPTION_IDLE },
+	{ "shift", no_argument, NULL, OPTION_SHIFT },
+	{ "self-test", no_argument, NULL, OPTION_SELF_TEST },
+	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
+	{ "help", no_argument, NULL, OPTION_HELP },
+	{ "version", no_argument, NULL, OPTION_VERSION },
+	{ NULL, 0, NULL, 0 },
+};
+
+struct choice {
+	const char *name;
+	int value;
+};
+
+static const struct choice displays[] = { { "auto", DISPLAY_AUTO },
+					  { "drm", DISPLAY_DRM },
+					  { "window", DISPLAY_WINDOW },
+					  { "headless", DISPLAY_HEADLESS },
+					  { NULL, 0 } };
+static const struct choice modes[] = { { "lumigraph", SCENE_LUMIGRAPH },
+				       { "polygons", SCENE_POLYGONS },
+				       { "corners", SCENE_CORNERS },
+				       { NULL, 0 } };
+
+static const struct choice levels[] = { { "error", LOG_LEVEL_ERROR },
+					{ "warn", LOG_LEVEL_WARN },
+					{ "info", LOG_LEVEL_INFO },
+					{ "debug", LOG_LEVEL_DEBUG },
+					{ NULL, 0 } };
+
+static bool choose(const struct choice *choices, const char *name, int *value)
+{
+	for (; choices->name; choices++)
+		if (strcmp(choices->name, name) == 0) {
+			*value = choices->value;
+			return true;
+		}
+	return false;
+}
+
+static bool parse_size(const char *text, struct options *o)
+{
+	char end;
+	int count;
+
+	o->hz = 0;
+	count = sscanf(text, "%dx%d%c%d%c", &o->width_px, &o->height_px, &end, &o->hz, &end);
+	if (count != 2 && (count != 4 || !strchr(text, '@') || o->hz < 10 || o->hz > 500))
+		return false;
+	return o->width_px >= 64 && o->width_px <= 8192 && o->height_px >= 64 &&
+	       o->height_px <= 8192;
+}
+
+static bool parse_seconds(const char *text, uint32_t *out)
+{
+	char *end;
+	unsigned long value = strtoul(text, &end, 10);
+
+	*out = (uint32_t)value;
+	return *text && !*end && value >= 1 && value <= 86400;
+}
+
+static bool parse_whole(const char *text, unsigned long least, unsigned long most, int *out)
+{
+	char *end;
+	unsigned long value = strtoul(text, &end, 10);
+
+	*out = (int)value;
+	return isdigit((unsigned char)text[0]) && !*end && value >= least && value <= most;
+}
+
+static bool set_text(struct options *o, int option, const char *text)
+{
+	const struct {
+		int option;
+		const char **to;
+	} texts[] = {
+		{ OPTION_BOARDS, &o->boards_dir },   { OPTION_STICK, &o->stick_dir },
+		{ OPTION_RELEASE, &o->release_url }, { OPTION_TRUST, &o->trust_path },
+		{ OPTION_CA, &o->ca_path },          { OPTION_STATE, &o->state_dir },
+		{ OPTION_DEVICE, &o->device },       { OPTION_BOARD, &o->board_path },
+		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
+		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
+		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
+		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->metrics_path },
+		{ OPTION_VISITS, &o->visits_path },
+	};
+
+	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)
+		if (texts[i].option == option) {
+			*texts[i].to = text;
+			return true;
+		}
+	return false;
+}
+
+static bool set_value(struct options *o, int option, const char *text)
+{
+	int value = 0;
+	bool good;
+
+	switch (option) {
+	case OPTION_DISPLAY:
+		good = choose(displays, text, &value);
+		o->display = (enum display_kind)value;
+		return good;
+	case OPTION_MODE:
+		good = choose(modes, text, &value);
+		o->mode = (enum scene_mode)value;
+		return good;
+	case OPTION_LOG:
+		good = choose(levels, text, &value);
+		if (good)
+			log_set_level((enum log_level)value);
+		return good;
+	case OPTION_SIZE:
+		return parse_size(text, o);
+	case OPTION_POLL:
+		return parse_seconds(text, &o->poll_s);
+	case OPTION_CONF:
+		if (o->conf_count == OPTIONS_CONFS_MAX)
+			return false;
+		o->conf_paths[o->conf_count++] = text;
+		return true;
+	case OPTION_DOWNLOAD:
+		return daily_parse(&o->download, text) == 0;
+	case OPTION_OVERLAY:
+		o->capture_overlay = true;
+		return true;
+	case OPTION_HOURS:
+		return hours_parse(&o->hours, text);
+	case OPTION_WAKE:
+		return parse_whole(text, 0, 24 * 60, &o->wake_min);
+	case OPTION_IDLE:
+		return parse_whole(text, PRESENCE_IDLE_LEAST_S, PRESENCE_IDLE_MOST_S, &o->idle_s);
+	case OPTION_SHIFT:
+		o->shift = true;
+		return true;
+	case OPTION_SELF_TEST:
+		o->self_test = true;
+		return true;
+	case OPTION_SAFE_PAGE:
+		o->safe_page = true;
+		return true;
+	case OPTION_QUIT_AFTER_REPLAY:
+		o->quit_after_replay = true;
+		return true;
+	default:
+		return set_text(o, option, text);
+	}
+}
+
+static bool check_together(const struct options *o)
+{
+	if (o->safe_page || o->self_test)
+		return true;
+	if (!o->release_url && !o->stick_dir && !o->socket_path && o->conf_count == 0)
+		fputs("gopura-kiosk: --release or --conf is missing; see --help\n", stderr);
+	else if ((o->views_path || o->shots_path) && !o->capture_dir)
+		fputs("gopura-kiosk: --views and --shots need --capture DIR\n", stderr);
+	else if (o->quit_after_replay && !o->touch_replay_path)
+		fputs("gopura-kiosk: --quit-after-replay needs --touch-replay FILE\n", stderr);
+	else
+		return true;
+	return false;
+}
+
+enum options_result options_parse(struct options *out, int argc, char **argv)
+{
+	int option, which = 0;
+
+	*out = (struct options){ .mode = SCENE_LUMIGRAPH,
+				 .wake_min = -1,
+				 .boards_dir = "/usr/share/gopura/board" };
+	hours_always(&out->hours);
+	while ((option = getopt_long(argc, argv, "", long_options, &which)) != -1) {
+		if (option == OPTION_HELP) {
+			fputs(help_text, stdout);
+			return OPTIONS_DONE;
+		}
+		if (option == OPTION_VERSION) {
+			puts("gopura-kiosk " GOPURA_VERSION);
+			return OPTIONS_DONE;
+		}
+		if (option == '?')
+			return OPTIONS_BAD; /* getopt printed the reason */
+		if (!set_value(out, option, optarg)) {
+			fprintf(stderr, "gopura-kiosk: --%s cannot be '%s'; see --help\n",
+				long_options[which].name, optarg);
+			return OPTIONS_BAD;
+		}
+	}
+	if (optind < argc) {
+		fprintf(stderr, "gopura-kiosk: '%s' is not an option; see --help\n", argv[optind]);
+		return OPTIONS_BAD;
+	}
+	return check_together(out) ? OPTIONS_RUN : OPTIONS_BAD;
+}

@@ -1,0 +1,423 @@
+/* Loads a release's information page, database and pictures as they arrive, and fills the overlay
+ * with their texts. */
+#include "app/view/information_view.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "geometry/viewpoint.h"
+
+enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
+
+/* One picture of the release. */
+struct information_view_picture {
+	bool wanted;
+	bool broken;            /* arrived but cannot be decoded; it is not requested again */
+	struct picture decoded; /* rgba NULL: not loaded */
+	uint32_t used;          /* value of turn at its last use, to evict the oldest */
+};
+
+struct information_view {
+	struct information_view_options options;
+	char language[LANGUAGE_BYTES];
+	struct overlay *overlay;
+	struct info *info;
+
+	struct hash root;          /* zero: no release */
+	struct page_child page_at; /* the info page in the root page */
+	uint32_t page_offset;
+	bool page_here, database_here; /* arrived, intact or damaged: no longer wanted */
+	struct page page;              /* the info page; no children until it has arrived */
+	struct buffer page_bytes;      /* the bytes that page.payload points into */
+
+	struct information_view_picture pictures[PICTURES_MAX]; /* indexed like info_picture */
+	uint32_t turn;
+};
+
+int information_view_create(struct information_view **out,
+			    const struct information_view_options *options)
+{
+	struct information_view *view = calloc(1, sizeof(*view));
+
+	*out = NULL;
+	if (!view)
+		return -ENOMEM;
+	view->options = *options;
+	if (options->language)
+		snprintf(view->language, sizeof(view->language), "%s", options->language);
+	view->options.language = NULL;
+	buffer_init(&view->page_bytes, PAGE_BYTES_MAX);
+	*out = view;
+	return 0;
+}
+
+static void forget_pictures(struct information_view *view)
+{
+	for (size_t i = 0; i < PICTURES_MAX; i++)
+		picture_finish(&view->pictures[i].decoded);
+	memset(view->pictures, 0, sizeof(view->pictures));
+}
+
+void information_view_destroy(struct information_view *view)
+{
+	if (!view)
+		return;
+	overlay_destroy(view->overlay);
+	info_close(view->info);
+	forget_pictures(view);
+	page_finish(&view->page);
+	buffer_finish(&view->page_bytes);
+	free(view);
+}
+
+void information_view_open(struct information_view *view, struct hash root,
+			   const struct page *root_page)
+{
+	page_finish(&view->page);
+	view->page_here = view->database_here = false;
+	view->root = root;
+	view->page_at = root_page->children[ROOT_CHILD_INFO];
+	view->page_offset = (uint32_t)page_child_offset(root_page, ROOT_CHILD_INFO);
+}
+
+struct overlay *information_view_overlay(struct information_view *view)
+{
+	return view ? view->overlay : NULL;
+}
+
+const struct info *information_view_info(const struct information_view *view)
+{
+	return view ? view->info : NULL;
+}
+
+/* ---- pictures */
+
+static uint32_t picture_index(const struct information_view *view,
+			      const struct info_picture *picture)
+{
+	return (uint32_t)(picture - info_picture(view->info, 0));
+}
+
+static bool on_picture(void *data, const char *name, struct overlay_picture *out)
+{
+	struct information_view *view = data;
+	const struct info_picture *picture =
+		view->info ? info_find_picture(view->info, name) : NULL;
+	struct information_view_picture *own;
+
+	if (!picture || picture_index(view, picture) >= PICTURES_MAX)
+		return false;
+	own = &view->pictures[picture_index(view, picture)];
+	own->used = ++view->turn;
+	own->wanted = !own->decoded.rgba && !own->broken;
+	*out = (struct overlay_picture){
+		.picture = own->decoded.rgba ? &own->decoded : NULL,
+		.width_px = picture->width_px,
+		.height_px = picture->height_px,
+	};
+	return true;
+}
+
+/* Evicts the picture used longest ago if more than DECODED_MAX are decoded. It is requested again
+ * when it is needed. */
+static void let_oldest_picture_go(struct information_view *view)
+{
+	struct information_view_picture *oldest = NULL;
+	uint32_t count = 0;
+
+	for (size_t i = 0; i < PICTURES_MAX; i++) {
+		struct information_view_picture *own = &view->pictures[i];
+
+		if (!own->decoded.rgba)
+			continue;
+		count++;
+		if (!oldest || own->used < oldest->used)
+			oldest = own;
+	}
+	if (count > DECODED_MAX)
+		picture_finish(&oldest->decoded);
+}
+
+static void decode_picture(struct information_view_picture *own, const char *name,
+			   struct bytes object)
+{
+	const int rc = picture_decode_for_page(&own->decoded, object);
+
+	own->broken = rc < 0;
+	if (rc == -EFBIG)
+		log_error("app", "content bug: picture %s is larger than %d px a side", name,
+			  PICTURE_PAGE_SIDE_MOST_PX);
+	else if (rc < 0)
+		log_error("app", "content bug: picture %s cannot be shown", name);
+}
+
+static bool give_picture(struct information_view *view, struct hash hash, struct bytes object)
+{
+	bool ours = false;
+
+	if (!view->info || !view->overlay)
+		return false;
+	for (uint32_t i = 0; i < info_picture_count(view->info) && i < PICTURES_MAX; i++) {
+		const struct info_picture *picture = info_picture(view->info, i);
+		struct information_view_picture *own = &view->pictures[i];
+
+		if (!hash_equal(picture->hash, hash))
+			continue;
+		ours = true;
+		own->wanted = false;
+		if (!own->decoded.rgba)
+			decode_picture(own, picture->name, object);
+		let_oldest_picture_go(view);
+		overlay_picture_arrived(view->overlay, picture->name);
+	}
+	return ours;
+}
+
+/* ---- the database */
+
+static int tell_parts(struct information_view *view)
+{
+	const uint32_t count = info_part_count(view->info);
+	struct overlay_part *parts = calloc(count ? count : 1, sizeof(*parts));
+	int rc;
+
+	if (!parts)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < count; i++) {
+		const struct info_text text = info_text(view->info, i, view->language);
+
+		parts[i] = (struct overlay_part){
+			.title = text.title,
+			.caption = text.caption,
+			.thumbnail = text.thumbnail,
+			.has_page = info_part(view->info, i)->has_page,
+		};
+	}
+	rc = overlay_parts(view->overlay, parts, count);
+	free(parts);
+	return rc;
+}
+
+static int tell_tours(struct information_view *view)
+{
+	struct overlay_tour tours[INFO_TOURS_MAX];
+	const uint32_t count = info_tour_count(view->info);
+
+	for (uint32_t i = 0; i < count; i++) {
+		const struct info_text text = info_tour_text(view->info, i, view->language);
+
+		tours[i] = (struct overlay_tour){ text.title, text.caption, text.thumbnail };
+	}
+	return overlay_tours(view->overlay, tours, count) < 0 ? -ENOMEM : 0;
+}
+
+static int create_overlay(struct information_view *view)
+{
+	const char *languages[OVERLAY_LANGUAGES_MAX];
+	struct overlay_options options = {
+		.width_px = view->options.width_px,
+		.height_px = view->options.height_px,
+		.px_per_mm = view->options.px_per_mm,
+		.languages = languages,
+		.language_count = info_language_count(view->info),
+		.picture = on_picture,
+		.data = view,
+	};
+
+	if (options.language_count > OVERLAY_LANGUAGES_MAX)
+		options.language_count = OVERLAY_LANGUAGES_MAX;
+	for (uint32_t i = 0; i < options.language_count; i++)
+		languages[i] = info_language(view->info, i);
+	overlay_destroy(view->overlay);
+	return overlay_create(&view->overlay, &options);
+}
+
+_Static_assert((int)INFO_TOOL_LIGHT == (int)OVERLAY_TOOL_LIGHT &&
+		       (int)INFO_TOOL_SECTION == (int)OVERLAY_TOOL_SECTION,
+	       "one set of tools");
+
+static void give_database(struct information_view *view, struct bytes object)
+{
+	struct info *info;
+	int rc = info_open(&info, object);
+
+	if (rc < 0) {
+		log_error("app", "content bug: the release's information database is damaged");
+		return;
+	}
+	info_close(view->info);
+	view->info = info;
+	forget_pictures(view);
+	snprintf(view->language, sizeof(view->language), "%s",
+		 info_nearest_language(info, view->language));
+	rc = create_overlay(view);
+	if (rc == 0) {
+		overlay_language(view->overlay, view->language);
+		overlay_offer_tools(view->overlay, info_tools(info));
+		rc = tell_parts(view);
+		if (rc == 0)
+			rc = tell_tours(view);
+	}
+	if (rc < 0)
+		log_error("app", "the words over the model cannot be shown: %s", strerror(-rc));
+}
+
+bool information_view_give(struct information_view *view, struct hash hash, struct bytes object)
+{
+	if (hash_equal(hash, view->page_at.hash) && !view->page_here) {
+		view->page_here = true;
+		buffer_clear(&view->page_bytes);
+		buffer_put(&view->page_bytes, object.data, object.size);
+		if (view->page_bytes.error ||
+		    page_decode(&view->page, buffer_bytes(&view->page_bytes)) < 0 ||
+		    view->page.kind != PAGE_INFO || view->page.child_count == 0) {
+			log_error("app", "content bug: the release's info page is damaged");
+			page_finish(&view->page); /* another kind of page has no children for us */
+		}
+		return true;
+	}
+	if (!view->database_here && view->page.child_count > 0 &&
+	    hash_equal(hash, view->page.children[0].hash)) {
+		view->database_here = true;
+		give_database(view, object);
+		return true;
+	}
+	return give_picture(view, hash, object);
+}
+
+static struct message_want child_want(const struct information_view *view, uint32_t child)
+{
+	return (struct message_want){
+		.hash = view->page.children[child].hash,
+		.page = view->page_at.hash,
+		.offset = (uint32_t)page_child_offset(&view->page, child),
+		.size = view->page.children[child].size,
+		.priority = MESSAGE_PRIORITY_INDEX / 2,
+	};
+}
+
+uint32_t information_view_wants(const struct information_view *view, struct message_want *out,
+				uint32_t most)
+{
+	uint32_t count = 0;
+
+	if (hash_is_zero(view->root) || most == 0)
+		return 0;
+	if (!view->page_here) {
+		out[0] = (struct message_want){
+			.hash = view->page_at.hash,
+			.page = view->root,
+			.offset = view->page_offset,
+			.size = view->page_at.size,
+			.priority = MESSAGE_PRIORITY_INDEX,
+		};
+		return 1;
+	}
+	if (view->page.child_count > 0 && !view->database_here)
+		out[count++] = child_want(view, 0);
+	for (uint32_t i = 0; view->info && i < info_picture_count(view->info); i++) {
+		const struct hash hash = info_picture(view->info, i)->hash;
+
+		if (i >= PICTURES_MAX || !view->pictures[i].wanted)
+			continue;
+		for (uint32_t c = 1; c < view->page.child_count && count < most; c++)
+			if (hash_equal(view->page.children[c].hash, hash))
+				out[count++] = child_want(view, c);
+	}
+	return count;
+}
+
+bool information_view_broken(const struct information_view *view)
+{
+	return view->page_here && (view->page.child_count == 0 || view->database_here) &&
+	       !view->info;
+}
+
+const char *information_view_language(const struct information_view *view)
+{
+	return view && view->language[0] ? view->language : NULL;
+}
+
+void information_view_set_language(struct information_view *view, const char *language)
+{
+	int page;
+
+	if (view->info)
+		language = info_nearest_language(view->info, language);
+	if (strcmp(view->language, language) == 0)
+		return;
+	log_debug("app", "words in %s", language);
+	snprintf(view->language, sizeof(view->language), "%s", language);
+	if (!view->overlay)
+		return;
+	page = overlay_page(view->overlay);
+	overlay_language(view->overlay, view->language);
+	if (tell_parts(view) < 0 || tell_tours(view) < 0)
+		log_error("app", "out of memory for the words of parts and tours");
+	if (page >= 0)
+		information_view_open_page(view, (uint32_t)page);
+	if (overlay_searching(view->overlay))
+		information_view_search(view); /* results in the chosen language come first */
+}
+
+bool information_view_open_page(struct information_view *view, uint32_t part)
+{
+	struct bytes article;
+	int rc = info_page(view->info, part, view->language, &article, NULL);
+
+	if (rc == 0)
+		rc = overlay_show_page(view->overlay, (int)part, article,
+				       info_credits(view->info, part, view->language));
+	if (rc < 0 && rc != -ENOENT)
+		log_error("app", "content bug: page of %s: %s", info_part(view->info, part)->id,
+			  strerror(-rc));
+	return rc == 0;
+}
+
+void information_view_search(struct information_view *view)
+{
+	static uint32_t parts[FOUND_MAX];
+	const char *query = overlay_query(view->overlay);
+
+	if (*query)
+		overlay_found(view->overlay, parts,
+			      info_search(view->info, query, view->language, parts, FOUND_MAX));
+}
+
+/* ---- regions */
+
+bool information_view_region(const struct information_view *view, uint32_t part, struct region *out)
+{
+	*out = info_part(view->info, part)->region;
+	return out->kind != REGION_POINT;
+}
+
+int information_view_part_at(const struct information_view *view, const float point_m[3])
+{
+	float best_size = INFINITY;
+	int best = -1;
+
+	for (uint32_t i = 0; view->info && i < info_part_count(view->info); i++) {
+		const float size = region_size_m(&info_part(view->info, i)->region);
+		struct region region;
+
+		if (size < best_size && information_view_region(view, i, &region) &&
+		    region_contains(&region, point_m)) {
+			best = (int)i;
+			best_size = size;
+		}
+	}
+	return best;
+}
+
+void information_view_viewpoint(const struct information_view *view, uint32_t part, float least_m,
+				const float eye_m[3], float eye_out_m[3], float target_m[3])
+{
+	const struct info_part *info = info_part(view->info, part);
+
+	viewpoint_of_region(&info->region, info->anchor_m, least_m, eye_m, eye_out_m, target_m);
+}

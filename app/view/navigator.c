@@ -1,0 +1,322 @@
+/* Moves the eye: turning, zooming and panning about a pivot, flings that slow down, and timed
+ * flights. The eye stays within bounds; only a flight without a free path may pass a surface. */
+#include "app/view/navigator.h"
+
+#include <math.h>
+
+#include <cglm/cglm.h>
+
+#define PITCH_MAX      1.45f /* radians; beyond it "up" on the panel would flip */
+#define FLING_DECAY_MS 325.0f
+#define FLING_MIN      8.0f /* px/s; slower counts as stopped */
+/* Distances: in metres for a temple; for a model smaller than a house, as a share of its diagonal.
+ * The smaller of the two counts. */
+#define GROUND_LEAST_M     0.25f /* lowest height of the eye above the bottom of the box */
+#define GROUND_LEAST_SHARE 0.005f
+#define KEEP_OFF_M         0.35f /* smallest distance of the eye to a surface */
+#define KEEP_OFF_SHARE     0.02f
+#define BOW_MAX            2.0f /* largest factor by which a curved path prolongs a flight */
+#define FAR_SHARE          2.5f /* largest distance of the eye, in half diagonals of the model */
+#define FAR_OVER_HOME      1.1f /* or in distances of the first view, if more */
+
+static void view_direction(const struct navigator *nav, float out[3])
+{
+	out[0] = cosf(nav->pitch) * cosf(nav->yaw);
+	out[1] = cosf(nav->pitch) * sinf(nav->yaw);
+	out[2] = sinf(nav->pitch);
+}
+
+static void view_right(const struct navigator *nav, float out[3])
+{
+	out[0] = sinf(nav->yaw);
+	out[1] = -cosf(nav->yaw);
+	out[2] = 0;
+}
+
+float navigator_diagonal_m(const struct navigator *nav)
+{
+	return glm_vec3_distance((float *)nav->options.box_min_m, (float *)nav->options.box_max_m);
+}
+
+float navigator_keep_off_m(const struct navigator *nav)
+{
+	return fminf(KEEP_OFF_M, KEEP_OFF_SHARE * navigator_diagonal_m(nav));
+}
+
+static float lowest_m(const struct navigator *nav)
+{
+	return nav->options.box_min_m[2] +
+	       fminf(GROUND_LEAST_M, GROUND_LEAST_SHARE * navigator_diagonal_m(nav));
+}
+
+/* Returns the largest distance of the eye from the model's centre, which it writes to middle_m. */
+static float farthest_m(const struct navigator *nav, float middle_m[3])
+{
+	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
+		      middle_m);
+	return fmaxf(FAR_SHARE * navigator_diagonal_m(nav) / 2,
+		     FAR_OVER_HOME * glm_vec3_distance((float *)nav->options.home_eye_m, middle_m));
+}
+
+/* Moves eye_m to the nearest allowed place: near the model and above the ground. */
+static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
+{
+	float middle[3], from_middle[3], distance;
+	const float most = farthest_m(nav, middle);
+
+	glm_vec3_sub(eye_m, middle, from_middle);
+	distance = glm_vec3_norm(from_middle);
+	if (distance > most) {
+		glm_vec3_scale(from_middle, most / distance, from_middle);
+		glm_vec3_add(middle, from_middle, eye_m);
+	}
+	eye_m[2] = fmaxf(eye_m[2], lowest_m(nav));
+}
+
+/* Moves the eye towards to_m until something is in the way. Returns true if it got there. to_m is
+ * first moved into the bounds. */
+static bool move_eye(struct navigator *nav, float to_m[3])
+{
+	const struct navigator_options *o = &nav->options;
+	const float off = navigator_keep_off_m(nav);
+	float way[3], length, free_m;
+
+	keep_in_bounds(nav, to_m);
+	glm_vec3_sub(to_m, nav->eye_m, way);
+	length = glm_vec3_norm(way);
+	if (length < 1e-6f * navigator_diagonal_m(nav))
+		return true;
+	glm_vec3_scale(way, 1 / length, way);
+	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + off) : INFINITY;
+	if (free_m >= length + off) {
+		glm_vec3_copy(to_m, nav->eye_m);
+		return true;
+	}
+	free_m = fmaxf(0, free_m - off);
+	glm_vec3_muladds(way, fminf(free_m, length), nav->eye_m);
+	return false;
+}
+
+static void stop(struct navigator *nav)
+{
+	nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+	nav->flight_left_ms = 0;
+}
+
+static void angles_of(const float from[3], const float to[3], float *yaw, float *pitch)
+{
+	const float dx = to[0] - from[0], dy = to[1] - from[1], dz = to[2] - from[2];
+
+	*yaw = atan2f(dy, dx);
+	*pitch = glm_clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MAX, PITCH_MAX);
+}
+
+void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3])
+{
+	stop(nav);
+	glm_vec3_copy((float *)eye_m, nav->eye_m);
+	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	angles_of(eye_m, target_m, &nav->yaw, &nav->pitch);
+}
+
+void navigator_init(struct navigator *nav, const struct navigator_options *options)
+{
+	*nav = (struct navigator){ .options = *options };
+	navigator_look(nav, options->home_eye_m, options->home_target_m);
+}
+
+void navigator_grab(struct navigator *nav, const float pivot_m[3])
+{
+	stop(nav);
+	glm_vec3_copy((float *)pivot_m, nav->pivot_m);
+}
+
+/* Turns eye and view rigidly about the pivot, so that the pivot stays where it is on the panel.
+ * Where a wall or the ground holds the eye, the view does not turn either. */
+static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
+{
+	const float pitch = glm_clamp(nav->pitch + pitch_by, -PITCH_MAX, PITCH_MAX);
+	const struct navigator before = *nav;
+	float arm[3], right[3], eye[3];
+	float up[3] = { 0, 0, 1 };
+
+	glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
+	view_right(nav, right);
+	glm_vec3_rotate(arm, pitch - nav->pitch, right);
+	glm_vec3_rotate(arm, yaw_by, up);
+	glm_vec3_add(nav->pivot_m, arm, eye);
+	nav->pitch = pitch;
+	nav->yaw += yaw_by;
+	if (eye[2] < lowest_m(nav) || !move_eye(nav, eye)) {
+		*nav = before;
+		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+		if (yaw_by != 0 && pitch != nav->pitch)
+			turn_about_pivot(nav, yaw_by, 0); /* slide along the obstacle */
+	}
+}
+
+void navigator_turn(struct navigator *nav, float dx_px, float dy_px, float height_px)
+{
+	const float radians_per_px = (float)M_PI / height_px;
+
+	turn_about_pivot(nav, -dx_px * radians_per_px, dy_px * -radians_per_px);
+}
+
+void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_px, float twist,
+		     float height_px)
+{
+	const float focal_px = height_px / 2 / tanf(glm_rad(nav->options.fov_deg) / 2);
+	float direction[3], right[3], up[3], arm[3], eye[3], depth;
+
+	if (scale > 0 && isfinite(scale)) {
+		glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
+		glm_vec3_scale(arm, 1 / glm_clamp(scale, 0.2f, 5), arm);
+		glm_vec3_add(nav->pivot_m, arm, eye);
+		move_eye(nav, eye);
+	}
+	view_direction(nav, direction);
+	view_right(nav, right);
+	glm_vec3_cross(right, direction, up);
+	glm_vec3_sub(nav->pivot_m, nav->eye_m, arm);
+	depth = fmaxf(glm_vec3_dot(arm, direction), navigator_keep_off_m(nav) / 3);
+	glm_vec3_copy(nav->eye_m, eye);
+	glm_vec3_muladds(right, -dx_px * depth / focal_px, eye);
+	glm_vec3_muladds(up, dy_px * depth / focal_px, eye);
+	move_eye(nav, eye);
+	if (twist != 0)
+		turn_about_pivot(nav, twist, 0);
+}
+
+void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s)
+{
+	nav->fling_px_s[0] = vx_px_s;
+	nav->fling_px_s[1] = vy_px_s;
+}
+
+/* Returns whether the eye can go straight from from_m to to_m without passing a surface, and stand
+ * at to_m with no surface within the near plane's distance. */
+static bool way_is_free(void *data, const float from_m[3], const float to_m[3])
+{
+	const struct navigator *nav = data;
+	const struct navigator_options *o = &nav->options;
+	const float room_m = navigator_keep_off_m(nav) / 3;
+	float from[3], to[3], way[3], length;
+
+	if (!o->clearance)
+		return true;
+	glm_vec3_copy((float *)from_m, from);
+	glm_vec3_copy((float *)to_m, to);
+	keep_in_bounds(nav, from);
+	keep_in_bounds(nav, to);
+	glm_vec3_sub(to, from, way);
+	length = glm_vec3_norm(way);
+	if (length > 0) {
+		glm_vec3_scale(way, 1 / length, way);
+		if (o->clearance(o->data, from, way, length) < length)
+			return false;
+	}
+	for (int axis = 0; axis < 3; axis++) {
+		for (int sign = -1; sign <= 1; sign += 2) {
+			float direction[3] = { 0 };
+			direction[axis] = (float)sign;
+			if (o->clearance(o->data, to, direction, room_m) < room_m)
+				return false;
+		}
+	}
+	return true;
+}
+
+void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
+		   float duration_ms)
+{
+	float turn, straight_m, longer;
+
+	stop(nav);
+	flight_way_choose(&nav->way, nav->eye_m, eye_m,
+			  nav->options.box_max_m[2] - nav->options.box_min_m[2], way_is_free, nav);
+	straight_m = glm_vec3_distance(nav->eye_m, (float *)eye_m);
+	longer = straight_m > 0 ? flight_way_length_m(&nav->way) / straight_m : 1;
+	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	nav->from_yaw = nav->yaw;
+	nav->from_pitch = nav->pitch;
+	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
+	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the shorter way round */
+	nav->to_yaw = nav->from_yaw + turn;
+	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MAX), 1);
+}
+
+void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3])
+{
+	struct navigator there = *nav;
+	float direction[3];
+
+	if (nav->flight_left_ms > 0) {
+		glm_vec3_copy((float *)nav->way.to_m, there.eye_m);
+		there.yaw = nav->to_yaw;
+		there.pitch = nav->to_pitch;
+	}
+	view_direction(&there, direction);
+	glm_vec3_copy(there.eye_m, eye_m);
+	glm_vec3_copy(there.eye_m, target_m);
+	glm_vec3_muladds(direction, fmaxf(glm_vec3_distance(there.eye_m, there.pivot_m), 1e-3f),
+			 target_m);
+}
+
+bool navigator_is_left_alone(const struct navigator *nav)
+{
+	return nav->flight_left_ms > 0 ||
+	       (nav->flight_ms > 0 &&
+		glm_vec3_distance((float *)nav->eye_m, (float *)nav->way.to_m) < 1e-3f &&
+		fabsf(remainderf(nav->yaw - nav->to_yaw, 2 * (float)M_PI)) < 1e-4f &&
+		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
+}
+
+static void step_flight(struct navigator *nav, float dt_ms)
+{
+	float t, eye[3];
+
+	nav->flight_left_ms = fmaxf(0, nav->flight_left_ms - dt_ms);
+	t = 1 - nav->flight_left_ms / nav->flight_ms;
+	t = t * t * (3 - 2 * t);
+	flight_way_at(&nav->way, t, eye);
+	keep_in_bounds(nav, eye);
+	glm_vec3_copy(eye, nav->eye_m); /* even through a wall, if no path was free */
+	nav->yaw = glm_lerp(nav->from_yaw, nav->to_yaw, t);
+	nav->pitch = glm_lerp(nav->from_pitch, nav->to_pitch, t);
+}
+
+bool navigator_step(struct navigator *nav, float dt_ms, float height_px)
+{
+	float decay;
+
+	if (nav->flight_left_ms > 0) {
+		step_flight(nav, dt_ms);
+		return true;
+	}
+	if (hypotf(nav->fling_px_s[0], nav->fling_px_s[1]) < FLING_MIN) {
+		nav->fling_px_s[0] = nav->fling_px_s[1] = 0;
+		return false;
+	}
+	navigator_turn(nav, nav->fling_px_s[0] * dt_ms / 1000, nav->fling_px_s[1] * dt_ms / 1000,
+		       height_px);
+	decay = expf(-dt_ms / FLING_DECAY_MS);
+	nav->fling_px_s[0] *= decay;
+	nav->fling_px_s[1] *= decay;
+	return true;
+}
+
+void navigator_camera(const struct navigator *nav, struct camera *camera)
+{
+	float direction[3];
+	float middle[3];
+	const float reach = 2 * farthest_m(nav, middle) + navigator_diagonal_m(nav);
+
+	view_direction(nav, direction);
+	glm_vec3_copy((float *)nav->eye_m, camera->eye_m);
+	glm_vec3_add((float *)nav->eye_m, direction, camera->target_m);
+	camera->up[0] = camera->up[1] = 0;
+	camera->up[2] = 1;
+	camera->fov_deg = nav->options.fov_deg;
+	camera->near_m = navigator_keep_off_m(nav) / 3;
+	camera->far_m = reach;
+}

@@ -1,0 +1,75 @@
+/* Moves the eye as fingers ask. The pivot is the surface point that was touched: one finger turns
+ * about it; two fingers zoom towards it, pan with it and rotate about it. It stays under the
+ * fingers. A fling continues after the finger has left and slows down. The eye stays in its allowed
+ * space: outside of solid matter (by the clearance that the scene reports), above the ground, and
+ * near the model. Only a flight that finds no free path may pass through matter.
+ *
+ * Pure except for the clearance callback: no time, no scene, no GL. */
+#ifndef GOPURA_APP_VIEW_NAVIGATOR_H
+#define GOPURA_APP_VIEW_NAVIGATOR_H
+
+#include "app/view/flight_way.h"
+#include "geometry/camera.h"
+
+#include <stdbool.h>
+
+struct navigator_options {
+	float box_min_m[3], box_max_m[3]; /* bounding box of the model */
+	float home_eye_m[3], home_target_m[3];
+	float fov_deg; /* vertical */
+	/* Returns the free distance from a point along a unit direction, at most most_m. NULL: no
+	 * obstacles. */
+	float (*clearance)(void *data, const float from_m[3], const float direction[3],
+			   float most_m);
+	void *data;
+};
+
+struct navigator {
+	struct navigator_options options;
+	float eye_m[3];
+	float yaw, pitch; /* direction of view, radians; yaw 0 looks along +x, positive pitch looks
+			     up */
+	float pivot_m[3];
+	float fling_px_s[2];
+
+	/* A flight to another pose; flight_left_ms is 0 if there is none. */
+	float flight_left_ms, flight_ms;
+	struct flight_way way;
+	float from_yaw, to_yaw, from_pitch, to_pitch;
+};
+
+/* Copies *options and puts the eye at their home pose. */
+void navigator_init(struct navigator *nav, const struct navigator_options *options);
+
+/* Call it when a finger comes down on this surface point. Stops flings and flights. */
+void navigator_grab(struct navigator *nav, const float pivot_m[3]);
+/* One finger moved by that many pixels. height_px: of the panel; half of it turns the view by 90
+ * degrees. */
+void navigator_turn(struct navigator *nav, float dx_px, float dy_px, float height_px);
+/* Two fingers moved. scale: > 1 if they moved apart; limited to 0.2 to 5. dx_px, dy_px: pan in
+ * panel pixels; twist: radians, clockwise. */
+void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_px, float twist,
+		     float height_px);
+/* The finger left with this speed, which goes on as a fling. */
+void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
+/* Flies smoothly to a pose, around obstacles where a path is found; a touch stops it. duration_ms:
+ * for the straight path; a longer path takes proportionally longer, at most twice that time. */
+void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
+		   float duration_ms);
+/* Writes the pose that the eye has, or flies to. */
+void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3]);
+/* Returns whether the eye flies, or nobody has moved it since its last flight arrived. */
+bool navigator_is_left_alone(const struct navigator *nav);
+/* Moves the eye to a pose at once. Stops flings and flights. */
+void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3]);
+
+/* Advances flight or fling by dt_ms milliseconds. Returns true while the eye moves by itself. */
+bool navigator_step(struct navigator *nav, float dt_ms, float height_px);
+/* Returns the diagonal of the model's bounding box, in metres. */
+float navigator_diagonal_m(const struct navigator *nav);
+/* Returns how close the eye may come to a surface, in metres. */
+float navigator_keep_off_m(const struct navigator *nav);
+/* Sets eye, target, up, field of view and clip distances of *camera; leaves the panel's fields. */
+void navigator_camera(const struct navigator *nav, struct camera *camera);
+
+#endif

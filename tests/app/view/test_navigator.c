@@ -1,0 +1,378 @@
+#include "app/view/navigator.h"
+
+#include <math.h>
+
+#include <cglm/cglm.h>
+
+#include "tests/check.h"
+
+enum { HEIGHT_PX = 720 };
+
+static const struct navigator_options hall = {
+	.box_min_m = { -20, -20, 0 },
+	.box_max_m = { 20, 20, 24 },
+	.home_eye_m = { -50, 3, 12 },
+	.home_target_m = { 0, 0, 8 },
+	.fov_deg = 45,
+};
+
+/* Where a point is on the panel, in tangents of the view. */
+static void on_panel(const struct navigator *nav, const float point_m[3], float out[2])
+{
+	struct camera camera;
+	mat4 view;
+	vec4 at = { point_m[0], point_m[1], point_m[2], 1 };
+
+	navigator_camera(nav, &camera);
+	glm_lookat(camera.eye_m, camera.target_m, camera.up, view);
+	glm_mat4_mulv(view, at, at);
+	out[0] = at[0] / -at[2];
+	out[1] = at[1] / -at[2];
+}
+
+static void check_pivot_stays(const struct navigator *before, const struct navigator *after,
+			      const float pivot_m[3], float dx, float dy)
+{
+	float a[2], b[2];
+
+	on_panel(before, pivot_m, a);
+	on_panel(after, pivot_m, b);
+	CHECK(fabsf(b[0] - a[0] - dx) < 2e-3f);
+	CHECK(fabsf(b[1] - a[1] - dy) < 2e-3f);
+}
+
+static const float pivot[3] = { -12, 5, 6 };
+
+static void turning_keeps_the_touched_point_under_the_finger(void **state)
+{
+	struct navigator nav, before;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	navigator_turn(&nav, 120, 40, HEIGHT_PX);
+	CHECK(glm_vec3_distance(nav.eye_m, before.eye_m) > 5);
+	check_pivot_stays(&before, &nav, pivot, 0, 0);
+	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) -
+		    glm_vec3_distance(before.eye_m, (float *)pivot)) < 1e-2f);
+}
+
+static void a_finger_to_the_right_turns_the_model_to_the_right(void **state)
+{
+	struct navigator nav;
+	const float beside[3] = { -20, 0, 8 }; /* nearer to the eye than the pivot */
+	const float middle[3] = { 0, 0, 8 };
+	float a[2], b[2];
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, middle);
+	on_panel(&nav, beside, a);
+	navigator_turn(&nav, 50, 0, HEIGHT_PX);
+	on_panel(&nav, beside, b);
+	CHECK(b[0] > a[0]);
+	on_panel(&nav, beside, a);
+	navigator_turn(&nav, 0, 50, HEIGHT_PX); /* down: what is near comes down */
+	on_panel(&nav, beside, b);
+	CHECK(b[1] < a[1]);
+}
+
+static void parting_fingers_come_nearer_and_keep_the_point(void **state)
+{
+	struct navigator nav, before;
+	float was;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	was = glm_vec3_distance(nav.eye_m, (float *)pivot);
+	navigator_pinch(&nav, 2, 0, 0, 0, HEIGHT_PX);
+	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) - was / 2) < 0.05f);
+	check_pivot_stays(&before, &nav, pivot, 0, 0);
+}
+
+static void panning_moves_the_point_with_the_fingers(void **state)
+{
+	const float focal_px = HEIGHT_PX / 2 / tanf(glm_rad(45) / 2);
+	struct navigator nav, before;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	before = nav;
+	navigator_pinch(&nav, 1, 30, -20, 0, HEIGHT_PX);
+	check_pivot_stays(&before, &nav, pivot, 30 / focal_px, 20 / focal_px);
+}
+
+static float wall_at_minus_21(void *data, const float from[3], const float direction[3], float most)
+{
+	float d = direction[0] > 0 ? (-21 - from[0]) / direction[0] : INFINITY;
+
+	(void)data;
+	return d >= 0 && d < most ? d : INFINITY;
+}
+
+static void never_passes_a_wall(void **state)
+{
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = wall_at_minus_21;
+	navigator_init(&nav, &options);
+	navigator_grab(&nav, pivot); /* behind the wall */
+	for (int i = 0; i < 200; i++) {
+		navigator_pinch(&nav, 1.2f, 5, 3, 0.01f, HEIGHT_PX);
+		navigator_turn(&nav, 11, 7, HEIGHT_PX);
+		CHECK(nav.eye_m[0] < -21);
+	}
+}
+
+static void stays_above_ground_and_near(void **state)
+{
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	for (int i = 0; i < 300; i++) {
+		navigator_turn(&nav, 13, i < 150 ? -40 : 40, HEIGHT_PX);
+		navigator_pinch(&nav, 0.9f, 0, i % 50, 0, HEIGHT_PX);
+		CHECK(nav.eye_m[2] >= 0.24f);
+		CHECK(glm_vec3_norm(nav.eye_m) < 100);
+		CHECK(isfinite(nav.yaw) && isfinite(nav.pitch));
+	}
+}
+
+static void a_fling_slows_down_and_ends(void **state)
+{
+	struct navigator nav;
+	int steps = 0;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	navigator_grab(&nav, pivot);
+	navigator_fling(&nav, 900, 0);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(++steps < 400);
+	CHECK(steps > 20);
+	navigator_fling(&nav, 900, 0);
+	navigator_grab(&nav, pivot);
+	CHECK(!navigator_step(&nav, 16, HEIGHT_PX));
+}
+
+static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
+{
+	const float eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator nav;
+	struct camera camera;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	nav.yaw += 2 * (float)M_PI; /* turned once around before */
+	navigator_fly(&nav, eye, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(fabsf(nav.yaw - 2 * (float)M_PI) < 0.2f);
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+	navigator_camera(&nav, &camera);
+	CHECK(camera.near_m > 0 && camera.far_m > 100);
+}
+
+/* A temple of one box, 20 m wide and high, without a ceiling to look for: steps of 0.1 m find it.
+ */
+static float box_ahead(void *data, const float from[3], const float direction[3], float most)
+{
+	(void)data;
+	for (float m = 0; m < most; m += 0.1f) {
+		const float p[3] = { from[0] + m * direction[0], from[1] + m * direction[1],
+				     from[2] + m * direction[2] };
+		if (fabsf(p[0]) < 10 && fabsf(p[1]) < 10 && p[2] < 20)
+			return m;
+	}
+	return INFINITY;
+}
+
+/* From each side to the opposite one, low and high. */
+static void a_flight_leads_round_what_is_in_the_way(void **state)
+{
+	static const float middle[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	const float none[3] = { 0, 0, 1 };
+	int bows = 0;
+
+	(void)state;
+	options.clearance = box_ahead;
+	for (int i = 0; i < 32; i++) {
+		const float turn = (float)(i % 16) * 0.37f, far = i < 16 ? 18 : 40;
+		const float from[3] = { far * cosf(turn), far * sinf(turn), i % 3 ? 2 : 15 };
+		const float to[3] = { -from[0], -from[1], i % 4 ? 1.8f : 12 };
+		struct navigator nav;
+		navigator_init(&nav, &options);
+		navigator_look(&nav, from, middle);
+		navigator_fly(&nav, to, middle, 900);
+		while (navigator_step(&nav, 16, HEIGHT_PX)) {
+			CHECK(box_ahead(NULL, nav.eye_m, none, 0.05f) > 0.05f);
+			bows += nav.flight_ms > 910;
+		}
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)to) < 1e-3f);
+	}
+	CHECK(bows > 0);
+}
+
+/* Where it stands something is so near that no way is free, and it has hardly any to go. */
+static void a_step_is_no_reason_for_a_detour(void **state)
+{
+	const float here[3] = { -10.02f, 0, 5 }, there[3] = { -10.02f, 0.01f, 5 };
+	const float target[3] = { 0, 0, 5 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, here, target);
+	navigator_fly(&nav, there, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)here) < 0.05f);
+	navigator_fly(&nav, there, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(glm_vec3_distance(nav.eye_m, (float *)there) < 1e-3f);
+}
+
+static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
+{
+	const float eye[3] = { -50, -30, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+	float along[3], from[3], off[3];
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	glm_vec3_copy(nav.eye_m, from);
+	navigator_fly(&nav, eye, target, 800);
+	CHECK(fabsf(nav.flight_ms - 800) < 1);
+	glm_vec3_sub((float *)eye, from, along);
+	while (navigator_step(&nav, 16, HEIGHT_PX)) {
+		glm_vec3_sub(nav.eye_m, from, off);
+		glm_vec3_cross(off, along, off);
+		CHECK(glm_vec3_norm(off) / glm_vec3_norm(along) < 1e-3f);
+	}
+}
+
+/* Out of a room without a door: better through the wall than never. */
+static void a_flight_from_within_arrives_all_the_same(void **state)
+{
+	const float within[3] = { 0, 0, 5 }, eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.clearance = box_ahead;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, within, target);
+	navigator_fly(&nav, eye, target, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+}
+
+static void knows_whether_somebody_moved_it_since_a_flight(void **state)
+{
+	const float eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &hall);
+	CHECK(!navigator_is_left_alone(&nav)); /* there was none */
+	navigator_fly(&nav, eye, target, 800);
+	navigator_step(&nav, 16, HEIGHT_PX);
+	CHECK(navigator_is_left_alone(&nav));
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(navigator_is_left_alone(&nav));
+	navigator_grab(&nav, target); /* a tap is no look elsewhere */
+	CHECK(navigator_is_left_alone(&nav));
+	navigator_turn(&nav, 30, 0, HEIGHT_PX);
+	CHECK(!navigator_is_left_alone(&nav));
+	navigator_fly(&nav, eye, target, 800);
+	navigator_step(&nav, 16, HEIGHT_PX);
+	navigator_grab(&nav, target); /* a touch stops it on its way */
+	CHECK(!navigator_is_left_alone(&nav));
+}
+
+static float wall_before_bunny(void *data, const float from[3], const float direction[3],
+			       float most)
+{
+	float d = direction[0] > 0 ? (-0.08f - from[0]) / direction[0] : INFINITY;
+
+	(void)data;
+	return d >= 0 && d < most ? d : INFINITY;
+}
+
+/* What a hand can hold is looked at from a finger's breadth, and not cut open by the near plane. */
+static void a_small_model_is_approached_as_near_as_a_large_one(void **state)
+{
+	const struct navigator_options bunny = { .box_min_m = { -0.08f, -0.06f, 0.03f },
+						 .box_max_m = { 0.08f, 0.06f, 0.19f },
+						 .home_eye_m = { -0.5f, 0, 0.15f },
+						 .home_target_m = { 0, 0, 0.11f },
+						 .fov_deg = 45,
+						 .clearance = wall_before_bunny };
+	const float snout[3] = { -0.08f, 0, 0.1f };
+	struct navigator nav;
+	struct camera camera;
+
+	(void)state;
+	navigator_init(&nav, &bunny);
+	navigator_grab(&nav, snout);
+	for (int i = 0; i < 60; i++)
+		navigator_pinch(&nav, 1.3f, 0, 0, 0, HEIGHT_PX);
+	navigator_camera(&nav, &camera);
+	CHECK(glm_vec3_distance(nav.eye_m, (float *)snout) < 0.0055f);
+	CHECK(camera.near_m < glm_vec3_distance(nav.eye_m, (float *)snout));
+	for (int i = 0; i < 60; i++)
+		navigator_turn(&nav, 0, -40, HEIGHT_PX);
+	CHECK(nav.eye_m[2] > 0.03f);
+}
+
+static void going_home_leads_to_where_it_began_however_far(void **state)
+{
+	struct navigator_options options = hall;
+	struct navigator nav;
+
+	(void)state;
+	options.home_eye_m[0] = -130; /* beyond two and a half half diagonals */
+	navigator_init(&nav, &options);
+	navigator_grab(&nav, pivot);
+	navigator_pinch(&nav, 3, 0, 0, 0, HEIGHT_PX);
+	navigator_fly(&nav, options.home_eye_m, options.home_target_m, 800);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(glm_vec3_distance(nav.eye_m, options.home_eye_m) < 1e-3f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(turning_keeps_the_touched_point_under_the_finger),
+		cmocka_unit_test(a_finger_to_the_right_turns_the_model_to_the_right),
+		cmocka_unit_test(parting_fingers_come_nearer_and_keep_the_point),
+		cmocka_unit_test(panning_moves_the_point_with_the_fingers),
+		cmocka_unit_test(never_passes_a_wall),
+		cmocka_unit_test(stays_above_ground_and_near),
+		cmocka_unit_test(a_fling_slows_down_and_ends),
+		cmocka_unit_test(a_flight_ends_where_it_was_sent_the_short_way_round),
+		cmocka_unit_test(a_flight_leads_round_what_is_in_the_way),
+		cmocka_unit_test(a_step_is_no_reason_for_a_detour),
+		cmocka_unit_test(where_nothing_is_in_the_way_a_flight_is_straight),
+		cmocka_unit_test(a_flight_from_within_arrives_all_the_same),
+		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
+		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
+		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
