@@ -11,6 +11,7 @@
 #include "net/locators.h"
 #include "net/range_plan.h"
 #include "net/ranges.h"
+#include "net/token_bucket.h"
 #include "net/want_set.h"
 
 enum {
@@ -38,12 +39,9 @@ struct downloader {
 	int64_t plan_due_ms; /* when the first retry pause ends; INT64_MAX: no want is pausing */
 	struct range_item *items; /* scratch memory for planning */
 	size_t item_capacity;
-	struct buffer scratch; /* holds one object read from the cache */
-	bool was_down;         /* all wants were reported as offline */
-	/* with a rate limit: bytes that may be requested now for later releases; negative:
-	 * overdrawn */
-	int64_t allowance_bytes;
-	int64_t allowance_ms;                /* when allowance_bytes was computed */
+	struct buffer scratch;               /* holds one object read from the cache */
+	bool was_down;                       /* all wants were reported as offline */
+	struct token_bucket rate_limit;      /* for releases that are not shown yet */
 	bool later_waits;                    /* something waits only for the rate limit */
 	struct downloader_counters counters; /* without those that ranges keeps */
 };
@@ -304,33 +302,6 @@ void downloader_look_up_again(struct downloader *downloader)
 
 /* ---- the server */
 
-/* Adds what the rate limit allows since the last call. At most half a second's worth is saved
- * up. */
-static void refill_allowance(struct downloader *downloader)
-{
-	int64_t rate = (int64_t)downloader->options.rate_limit;
-	int64_t now_ms = clock_now_ms(), most = rate / 2;
-
-	downloader->allowance_bytes += (now_ms - downloader->allowance_ms) * rate / 1000;
-	if (downloader->allowance_bytes > most)
-		downloader->allowance_bytes = most;
-	downloader->allowance_ms = now_ms;
-}
-
-static bool is_overdrawn(const struct downloader *downloader)
-{
-	return downloader->options.rate_limit > 0 && downloader->allowance_bytes <= 0;
-}
-
-/* Returns when the rate limit allows requests for later releases again (clock_now_ms); 0: now. */
-static int64_t allowance_due_ms(const struct downloader *downloader)
-{
-	if (!is_overdrawn(downloader))
-		return 0;
-	return downloader->allowance_ms + 1 +
-	       -downloader->allowance_bytes * 1000 / (int64_t)downloader->options.rate_limit;
-}
-
 static bool reserve_items(struct downloader *downloader)
 {
 	size_t needed = want_set_count(&downloader->wants);
@@ -365,7 +336,8 @@ static size_t gather(struct downloader *downloader)
 
 		if (want->state != WANT_WAITING)
 			continue;
-		if (is_overdrawn(downloader) && is_for_later(want->asked.priority)) {
+		if (token_bucket_is_empty(&downloader->rate_limit) &&
+		    is_for_later(want->asked.priority)) {
 			downloader->later_waits = true;
 			continue;
 		}
@@ -441,9 +413,8 @@ static void request_ranges(struct downloader *downloader)
 	size_t count, first, taken;
 	uint32_t best;
 
-	if (downloader->options.rate_limit)
-		refill_allowance(downloader);
-	if (downloader->later_waits && !is_overdrawn(downloader))
+	token_bucket_refill(&downloader->rate_limit);
+	if (downloader->later_waits && !token_bucket_is_empty(&downloader->rate_limit))
 		downloader->plan_changed = true;
 	if (!downloader->plan_changed ||
 	    downloader->ranges.count >= ranges_max(downloader) + RANGES_FOR_PAGES ||
@@ -455,7 +426,7 @@ static void request_ranges(struct downloader *downloader)
 	while (best = best_priority(downloader->items, count),
 	       (taken = range_plan(downloader->items, count, limits_now(downloader, best),
 				   &first)) > 0) {
-		if (is_for_later(best) && is_overdrawn(downloader)) {
+		if (is_for_later(best) && token_bucket_is_empty(&downloader->rate_limit)) {
 			downloader->later_waits = true;
 			return;
 		}
@@ -464,8 +435,8 @@ static void request_ranges(struct downloader *downloader)
 			return;
 		}
 		if (ranges_request(&downloader->ranges, &downloader->items[first], taken) == 0)
-			downloader->allowance_bytes -=
-				later_bytes(&downloader->items[first], taken);
+			token_bucket_take(&downloader->rate_limit,
+					  later_bytes(&downloader->items[first], taken));
 	}
 }
 
@@ -526,8 +497,9 @@ int64_t downloader_due_ms(const struct downloader *downloader)
 	if (downloader->ranges.count < ranges_max(downloader)) {
 		int64_t plan_ms = downloader->plan_changed ? 0 : downloader->plan_due_ms;
 
-		if (downloader->later_waits && allowance_due_ms(downloader) < plan_ms)
-			plan_ms = allowance_due_ms(downloader);
+		if (downloader->later_waits &&
+		    token_bucket_due_ms(&downloader->rate_limit) < plan_ms)
+			plan_ms = token_bucket_due_ms(&downloader->rate_limit);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}
 	return link_due_ms(link, due_ms);
@@ -567,6 +539,7 @@ int downloader_create(struct downloader **out, const struct downloader_options *
 		return -ENOMEM;
 	downloader->options = *options;
 	downloader->plan_due_ms = INT64_MAX;
+	token_bucket_init(&downloader->rate_limit, options->rate_limit);
 	ranges_init(&downloader->ranges, &ranges);
 	locators_init(&downloader->locators, &locators);
 	buffer_init(&downloader->scratch, OBJECT_BYTES_MAX);
