@@ -618,7 +618,7 @@ void net_client_destroy(struct net_client *client)
 	free(client);
 }
 
-/* ---- what the kiosk asks for */
+/* ---- requests of the kiosk */
 
 static void add_release(struct net_client *client, struct hash root, uint32_t root_bytes, bool also)
 {

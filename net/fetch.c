@@ -273,14 +273,14 @@ static void send_status(struct fetch *fetch)
 
 static void write_refusal(const struct refusal *refusal, struct buffer *out)
 {
-	metrics_counter(out, "gopura_fetch_refusals_total",
-			"Files, objects and connections given up.", (double)refusal->count);
+	metrics_counter(out, "gopura_fetch_refusals_total", "Failed downloads and connections.",
+			(double)refusal->count);
 	if (refusal->count == 0)
 		return;
-	metrics_gauge(out, "gopura_fetch_refused_at_seconds", "When the last one was.",
+	metrics_gauge(out, "gopura_fetch_refused_at_seconds", "Time of the last one.",
 		      (double)refusal->at_s);
 	metrics_info(
-		out, "gopura_fetch_refusal_info", "What it was, and why.",
+		out, "gopura_fetch_refusal_info", "What failed last, and why.",
 		(const struct figure_label[]){ { "what", refusal->what }, { "why", refusal->why } },
 		2);
 }
@@ -295,33 +295,33 @@ static void write_metrics(void *data, struct buffer *out)
 	metrics_gauge(out, "gopura_fetch_online", "Whether the last request was answered.",
 		      link->online);
 	metrics_gauge(out, "gopura_fetch_offline_since_seconds",
-		      "When it was found offline (1970 is 0); 0 while online.",
+		      "Time since when the server is offline; 0 while online.",
 		      (double)link->offline_since_s);
-	metrics_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is here.",
+	metrics_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is connected.",
 		      fetch->has_kiosk);
 	metrics_gauge(out, "gopura_fetch_wanted", "Objects that the kiosk waits for.",
 		      downloader_wanted(fetch->downloader));
 	metrics_counter(out, "gopura_fetch_received_bytes_total",
-			"From the network, TLS and headers too.",
+			"Bytes from the network, including TLS and headers.",
 			(double)http_received_bytes(fetch->http));
-	metrics_counter(out, "gopura_fetch_requests_total", "Requests that ended, well or not.",
+	metrics_counter(out, "gopura_fetch_requests_total",
+			"Requests that ended, successful or not.",
 			(double)(link->answers + link->errors));
 	metrics_counter(out, "gopura_fetch_errors_total", "Requests without an answer.",
 			(double)link->errors);
-	metrics_counter(out, "gopura_fetch_damaged_total", "Objects with wrong bytes, refused.",
+	metrics_counter(out, "gopura_fetch_damaged_total", "Objects with wrong bytes, rejected.",
 			(double)objects.damaged);
-	metrics_counter(out, "gopura_fetch_from_cache_total", "Objects that the cache had.",
+	metrics_counter(out, "gopura_fetch_from_cache_total", "Objects read from the cache.",
 			(double)objects.from_cache);
-	metrics_counter(out, "gopura_fetch_from_server_total", "Objects that the server sent.",
-			(double)objects.from_server);
-	metrics_counter(out, "gopura_fetch_from_stick_total", "Objects that a stick had.",
+	metrics_counter(out, "gopura_fetch_from_server_total",
+			"Objects downloaded from the server.", (double)objects.from_server);
+	metrics_counter(out, "gopura_fetch_from_stick_total", "Objects read from a stick.",
 			(double)objects.from_stick);
-	metrics_gauge(out, "gopura_fetch_cache_bytes", "The cache on disk.",
+	metrics_gauge(out, "gopura_fetch_cache_bytes", "Size of the cache on disk.",
 		      (double)cache_file_bytes(fetch->cache));
-	metrics_gauge(out, "gopura_fetch_cache_budget_bytes", "What it may grow to.",
+	metrics_gauge(out, "gopura_fetch_cache_budget_bytes", "Maximum size of the cache.",
 		      (double)fetch->options->cache_budget_bytes);
-	metrics_counter(out, "gopura_fetch_cache_refused_total",
-			"Writes that the cache's disk did not take.",
+	metrics_counter(out, "gopura_fetch_cache_refused_total", "Failed writes to the cache.",
 			(double)cache_refused_writes(fetch->cache));
 	write_refusal(&fetch->refusal, out);
 }

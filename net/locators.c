@@ -157,7 +157,7 @@ static void read_from_cache(struct located_release *release)
 	if (rc == 0)
 		rc = take_locator(release, buffer_bytes(&file));
 	if (rc < 0 && rc != -ENOENT)
-		log_warn("net", "the locator in the cache is of no use: asking for it anew");
+		log_warn("net", "the locator in the cache is damaged and is downloaded again");
 	buffer_finish(&file);
 }
 
