@@ -61,13 +61,14 @@ TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
 SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
+CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check soak golden fuzz powercut image image-check qemu-test qemu arm64 unit unit-san check-style format bench bench-full clean
+.PHONY: all help deps demo test check soak golden fuzz powercut image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
-all: deps $(PROGRAMS) ## build the programs into build/
+all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
 
 help: ## list the targets
 	@grep -hE '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /make \1\t/' | expand -t 20
@@ -132,6 +133,10 @@ bench-full: all ## what takes hours: temples of 1, 6 and 18 million triangles, i
 check-style: deps ## clang-format, the include table, house rules
 	@tests/style/check.sh
 
+po: deps ## bring the texts for translators (ui/po) up to date with the sources
+	@ui/po/extract.sh >ui/po/gopura.pot
+	@for language in ui/po/*.po; do msgmerge -q --update --backup=none "$$language" ui/po/gopura.pot || exit; done
+
 format: ## let clang-format settle the white space
 	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
@@ -147,6 +152,7 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 
 # Only what prints it carries the version, so that a commit does not rebuild the tree.
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
+$(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 
 $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
@@ -154,9 +160,13 @@ $(ARCHIVE): $(OBJECTS)
 
 LINK = @echo '  link  $@' && $(CC) $(OPT) $(LDFLAGS) -o $@ $(filter %.o,$^) $(ARCHIVE) $(PKG_LIBS) $(EXTRA)
 
+$(BUILD)/locale/%/LC_MESSAGES/gopura.mo: ui/po/%.po | $(BUILD)/.deps
+	@mkdir -p $(@D)
+	@msgfmt -c -o $@ $<
+
 $(BUILD)/gopura-content: $(BUILD)/obj/pipeline/main.o $(ARCHIVE)
 	$(LINK)
-$(BUILD)/gopura-kiosk: $(BUILD)/obj/app/main.o $(ARCHIVE)
+$(BUILD)/gopura-kiosk: $(BUILD)/obj/app/main.o $(ARCHIVE) | $(CATALOGUES)
 	$(LINK)
 $(BUILD)/gopura-fetch: $(BUILD)/obj/net/main.o $(ARCHIVE)
 	$(LINK)
@@ -171,14 +181,14 @@ $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCH
 	$(LINK)
 $(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
 $(BUILD)/tests/bench/bench_page: EXTRA += $(addprefix -Wl$(comma)--wrap=,frame_draw fingers_on_touch overlay_update)
-$(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/stage.o $(ARCHIVE)
+$(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/stage.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
 $(BUILD)/tests/pipeline/keys/test_keys: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
 $(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw fingers_on_touch)
 $(BUILD)/tests/system/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
-$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE)
+$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 

@@ -160,17 +160,6 @@ static int start_touch(struct kiosk *kiosk)
 
 /* ---- start: state and releases */
 
-/* Writes the path of gopura-fetch in the folder of this program to out. */
-static void fetch_beside(char out[PATH_MAX])
-{
-	ssize_t length = readlink("/proc/self/exe", out, PATH_MAX - sizeof("gopura-fetch"));
-	char *slash;
-
-	out[length > 0 ? length : 0] = '\0';
-	slash = strrchr(out, '/');
-	memcpy(slash ? slash + 1 : out, "gopura-fetch", sizeof("gopura-fetch"));
-}
-
 static struct sessions_options sessions_options(struct kiosk *kiosk)
 {
 	return (struct sessions_options){
@@ -216,7 +205,7 @@ static int start_releases(struct kiosk *kiosk, const char *folder)
 	snprintf(cache, sizeof(cache), "%s/cache.db", folder);
 	snprintf(state, sizeof(state), "%s/state.db", folder);
 	if (!releases.net.program) {
-		fetch_beside(program);
+		folder_beside_program("gopura-fetch", program);
 		releases.net.program = program;
 	}
 	return releases_init(&kiosk->releases, &releases);
@@ -573,6 +562,7 @@ int kiosk_start(struct kiosk *kiosk)
 {
 	int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
 
+	folder_open_catalogues(kiosk->options.locale_dir);
 	kiosk->started_ms = clock_now_ms();
 	if (rc == 0)
 		rc = start_display(kiosk);

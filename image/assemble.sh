@@ -67,6 +67,10 @@ LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u |
 	[ -n "$(find "$tree/usr/lib" -name "$library" -print -quit)" ] ||
 		{ echo "image: no package of image/packages brings $library" >&2; exit 1; }
 done
+# The kiosk's texts. They need the locale C.UTF-8, which the C library brings (ui/translate.c).
+mkdir -p "$tree/usr/share/locale"
+cp -r build/appliance/locale/. "$tree/usr/share/locale/"
+[ -d "$tree/usr/lib/locale/C.utf8" ] || { echo "image: no package of image/packages brings the locale C.UTF-8" >&2; exit 1; }
 cp -r "$here/root/." "$tree/"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
 # What fontconfig knows of the fonts lies beside them: there is nothing it could find out at run time.

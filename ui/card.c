@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "ui/icon.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 /* Millimetres. */
 #define WIDTH_MM   118.0f
@@ -103,7 +103,7 @@ static int text_height(const struct theme *theme, enum text_style style, const c
 static int draw_more(const struct theme *theme, cairo_t *context, int card_px, int right_px,
 		     int bottom_px)
 {
-	const char *text = ui_string(UI_READ_MORE, theme->language);
+	const char *text = translate(theme->language, "Read more");
 	const enum icon onward = theme_is_right_to_left(theme) ? ICON_BACK : ICON_FORWARD;
 	PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, text, -1);
 	int width_px, height_px, arrow_px = theme_px(theme, 2.4f);

@@ -4,8 +4,8 @@
 #include <ctype.h>
 #include <stdio.h>
 
+#include "ui/endonym.h"
 #include "ui/icon.h"
-#include "ui/strings.h"
 
 #define BAR_MM     11.0f
 #define PADDING_MM 3.0f

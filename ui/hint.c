@@ -5,7 +5,7 @@
 
 #include "base/compiler.h"
 #include "ui/icon.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 /* Millimetres. */
 #define PADDING_MM 3.0f
@@ -44,11 +44,12 @@ int hint_draw(struct bitmap *out, const struct theme *theme, int most_width_px, 
 {
 	static const struct {
 		enum icon icon;
-		enum ui_string string;
+		const char *text;
 	} lines[CELLS] = {
-		{ ICON_TURN, UI_HELP_TURN },
-		{ ICON_ZOOM, UI_HELP_ZOOM },
-		{ ICON_TAP, UI_HELP_TAP },
+		/* Translators: three captions of pictures that show what fingers do. */
+		{ ICON_TURN, N_("Drag to rotate") },
+		{ ICON_ZOOM, N_("Pinch to zoom") },
+		{ ICON_TAP, N_("Tap a name to learn more") },
 	};
 	const int count = cells(has_names);
 	int padding = theme_px(theme, PADDING_MM), icon_px = theme_px(theme, ICON_MM);
@@ -61,9 +62,9 @@ int hint_draw(struct bitmap *out, const struct theme *theme, int most_width_px, 
 	for (int i = 0; i < count; i++) {
 		int height_px;
 
-		layouts[i] = theme_layout(theme, TEXT_CAPTION,
-					  ui_string(lines[i].string, theme->language),
-					  cell_px - padding > 1 ? cell_px - padding : 1);
+		layouts[i] =
+			theme_layout(theme, TEXT_CAPTION, translate(theme->language, lines[i].text),
+				     cell_px - padding > 1 ? cell_px - padding : 1);
 		pango_layout_set_alignment(layouts[i], PANGO_ALIGN_CENTER);
 		pango_layout_get_pixel_size(layouts[i], NULL, &height_px);
 		if (height_px > text_px)

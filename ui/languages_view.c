@@ -1,7 +1,7 @@
 /* Lays the languages' own names out in a grid above the bar. */
 #include "ui/languages_view.h"
 
-#include "ui/strings.h"
+#include "ui/endonym.h"
 
 #define COLUMN_MM  38.0f /* width of a name; down to NARROW_MM if there are many */
 #define NARROW_MM  22.0f

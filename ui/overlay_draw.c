@@ -6,7 +6,7 @@
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
 #include "ui/prompt.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 static int px(const struct overlay *overlay, float mm)
 {
@@ -201,8 +201,9 @@ void overlay_draw_card(struct overlay *overlay)
 void overlay_draw_close(const struct overlay *overlay, cairo_t *context, int width_px,
 			int height_px)
 {
-	PangoLayout *layout = theme_layout(&overlay->theme, TEXT_BUTTON,
-					   ui_string(UI_CLOSE, overlay->theme.language), -1);
+	/* Translators: a button that closes a page, a picture or the search. */
+	const char *text = translate(overlay->theme.language, "Close");
+	PangoLayout *layout = theme_layout(&overlay->theme, TEXT_BUTTON, text, -1);
 	int label_px, text_px, cross_px = px(overlay, 3.0f);
 	double x;
 

@@ -5,7 +5,7 @@
 
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 #define SIDE_MM    4.0f   /* margin beside field and rows */
 #define ROW_MM     18.0f  /* row of the list; higher on panels too tall for SEARCH_ROWS rows */
@@ -311,7 +311,8 @@ static void draw_query(cairo_t *context, const struct overlay *overlay, int x_px
 		       int height_px)
 {
 	const char *query = overlay->search.query;
-	const char *text = *query ? query : ui_string(UI_SEARCH, overlay->theme.language);
+	/* Translators: stands in the empty search field. */
+	const char *text = *query ? query : translate(overlay->theme.language, "Search");
 	PangoLayout *layout = theme_layout(&overlay->theme, TEXT_BODY, text, -1);
 	bool mirrored = theme_is_right_to_left(&overlay->theme), from_right = mirrored;
 	int text_px, tall_px, left_px, caret_px = px(overlay, 0.5f);
@@ -443,7 +444,7 @@ static void draw_row(struct overlay *overlay, uint32_t slot)
 		draw_part(context, overlay, &overlay->parts[row->part], width_px, height_px);
 	else
 		theme_show_line(context, &overlay->theme, TEXT_BODY, theme_ink_soft,
-				ui_string(UI_NOTHING_FOUND, overlay->theme.language),
+				translate(overlay->theme.language, "No results"),
 				px(overlay, SIDE_MM + PADDING_MM), px(overlay, 5.0f),
 				width_px - 2 * px(overlay, SIDE_MM + PADDING_MM));
 	overlay_end(overlay, id, context);

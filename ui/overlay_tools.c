@@ -5,7 +5,7 @@
 
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 #define DISC_MM    44.0f
 #define PADDING_MM 2.0f
@@ -191,7 +191,9 @@ void overlay_handle_place(const struct overlay *overlay, enum overlay_handle han
 
 static void draw_disc(struct overlay *overlay, int tool)
 {
-	static const enum ui_string names[OVERLAY_TOOL_COUNT] = { UI_LIGHT, UI_SECTION };
+	/* Translators: two tools: light from the side, which shows relief, and a cut model. */
+	static const char *const names[OVERLAY_TOOL_COUNT] = { N_("Raking light"),
+							       N_("Cross-section") };
 	const struct rect rect = overlay_tool_rect(overlay, tool);
 	const enum bitmap_id id = (enum bitmap_id)(BITMAP_DISC + tool);
 	cairo_t *context = overlay_begin(overlay, id, rect.width_px, rect.height_px);
@@ -210,7 +212,7 @@ static void draw_disc(struct overlay *overlay, int tool)
 	theme_set_source(context, theme_night, THEME_CHIP_ALPHA);
 	cairo_fill(context);
 	layout = theme_layout(&overlay->theme, TEXT_BUTTON,
-			      ui_string(names[tool], overlay->theme.language), -1);
+			      translate(overlay->theme.language, names[tool]), -1);
 	theme_limit_lines(layout, rect.width_px - 2 * padding, 1);
 	pango_layout_set_alignment(layout, PANGO_ALIGN_CENTER);
 	pango_layout_get_pixel_size(layout, NULL, &height_px);

@@ -7,7 +7,7 @@
 
 #include "ui/icon.h"
 #include "ui/overlay_state.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 #define WIDTH_MM   150.0f
 #define PADDING_MM 3.0f
@@ -171,7 +171,7 @@ static PangoLayout *lay_out_button(const struct overlay *overlay, int *width_px)
 {
 	PangoLayout *layout = theme_layout(
 		&overlay->theme, TEXT_BUTTON,
-		overlay->tour.paused ? ui_string(UI_GO_ON, overlay->theme.language) : "", -1);
+		overlay->tour.paused ? translate(overlay->theme.language, "Continue") : "", -1);
 	int label_px;
 
 	pango_layout_get_pixel_size(layout, &label_px, NULL);
@@ -403,7 +403,7 @@ static void draw_menu(struct overlay *overlay)
 {
 	struct menu menu = lay_out_menu(overlay);
 	int padding = px(overlay, PADDING_MM), width_px = menu.all.width_px, cross_px, text_px;
-	const char *head = ui_string(UI_TOURS, overlay->theme.language);
+	const char *head = translate(overlay->theme.language, "Guided tours");
 	cairo_t *context = overlay_begin(overlay, BITMAP_TOURS, width_px, menu.all.height_px);
 
 	if (!context)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "ui/icon.h"
-#include "ui/strings.h"
+#include "ui/translate.h"
 
 /* The invitation's lines. Below the first, they stand in columns if there are many. */
 enum { LINES_MAX = 24, COLUMN_LINES = 7, COLUMNS_MAX = 3 };
@@ -15,6 +15,9 @@ enum { LINES_MAX = 24, COLUMN_LINES = 7, COLUMNS_MAX = 3 };
 #define ICON_MM    16.0f
 #define LINE_MM    1.6f /* space between two lines */
 #define BUTTON_MM  12.0f
+
+/* Translators: shown while nobody is there, in every language of the terminal. */
+static const char invitation[] = N_("Touch to explore");
 
 static void measure(PangoLayout *layout, int *width_px, int *height_px)
 {
@@ -30,7 +33,7 @@ static void draw_text(cairo_t *context, PangoLayout *layout, double x, double y)
 static bool is_said(const char *const *languages, uint32_t before, const char *text)
 {
 	for (uint32_t i = 0; i < before; i++)
-		if (strcmp(ui_string(UI_TOUCH, languages[i]), text) == 0)
+		if (strcmp(translate(languages[i], invitation), text) == 0)
 			return true;
 	return false;
 }
@@ -45,7 +48,7 @@ static uint32_t lay_out_lines(PangoLayout **lines, struct theme *theme,
 
 	memcpy(language, theme->language, sizeof(language));
 	for (uint32_t i = 0; i < language_count && count < LINES_MAX; i++) {
-		const char *text = ui_string(UI_TOUCH, languages[i]);
+		const char *text = translate(languages[i], invitation);
 
 		if (is_said(languages, i, text))
 			continue;
@@ -159,15 +162,20 @@ int prompt_draw_question(struct bitmap *out, const struct theme *theme, int seco
 {
 	const int padding = theme_px(theme, PADDING_MM), gap = 2 * theme_px(theme, LINE_MM);
 	const int room_px = most_width_px > 3 * padding ? most_width_px - 2 * padding : padding;
-	const char *texts[] = { ui_string(UI_STILL_THERE, theme->language), NULL,
-				ui_string(UI_GO_ON, theme->language) };
+	/* Translators: asked of a visitor who has touched nothing for a minute. */
+	const char *texts[] = { translate(theme->language, "Are you still there?"), NULL,
+				translate(theme->language, "Continue") };
 	enum { QUESTION, COUNT_DOWN, BUTTON, COUNT };
 	int width[COUNT], height[COUNT], button_px, wide_px, rc;
 	PangoLayout *layouts[COUNT];
 	char count_down[160];
 
-	/* Each of these strings in strings.c contains one %d. */
-	snprintf(count_down, sizeof(count_down), ui_string(UI_ANEW, theme->language), seconds_left);
+	snprintf(count_down, sizeof(count_down),
+		 /* Translators: counts down from 15 while the question is shown. */
+		 translate_plural(theme->language, "Returning to the start in %d second",
+				  "Returning to the start in %d seconds",
+				  (unsigned long)seconds_left),
+		 seconds_left);
 	texts[COUNT_DOWN] = count_down;
 	for (int i = 0; i < COUNT; i++) {
 		static const enum text_style styles[] = { TEXT_TITLE, TEXT_CAPTION, TEXT_BUTTON };

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "ui/translate.h"
+
 enum {
 	STOREYS = 6,
 	LINE_MS = 3000,  /* how long one language is lit */
@@ -19,14 +21,8 @@ enum {
 #define TOWER_WIDTH  1.44  /* extent of its drawing */
 #define TOWER_HEIGHT 2.13
 
-static const struct {
-	const char *language, *text;
-} words[SAFE_PAGE_LINES_MAX] = {
-	{ "en", "We will be right back" },   { "fr", "Nous revenons dans un instant" },
-	{ "km", "យើងនឹងត្រឡប់មកវិញបន្តិចទៀតនេះ" }, { "ja", "まもなく再開します" },
-	{ "de", "Gleich geht es weiter" },   { "es", "Volvemos en un momento" },
-	{ "zh", "马上回来，请稍候" },        { "ar", "سنعود بعد قليل" },
-};
+static const char *const languages[SAFE_PAGE_LINES_MAX] = { "en", "fr", "km", "ja",
+							    "de", "es", "zh", "ar" };
 
 /* ---- creation */
 
@@ -40,13 +36,19 @@ static double shorter(const struct safe_page *page)
 	return is_wide(page) ? page->height_px : page->width_px;
 }
 
-/* Skips a language without a font: it would show as a row of boxes. */
-static void add_line(struct safe_page *page, const char *language, const char *text)
+/* Skips a language without a font, which would show as a row of boxes, and one without a
+ * catalogue. */
+static void add_line(struct safe_page *page, const char *language)
 {
+	/* Translators: shown while the terminal cannot show its model. */
+	static const char english[] = N_("We will be right back");
+	const char *text = translate(language, english);
 	struct safe_page_line *line = &page->lines[page->line_count];
 	PangoLayout *layout;
 	int width, height;
 
+	if (page->line_count > 0 && strcmp(text, english) == 0)
+		return;
 	theme_set_language(&page->theme, language);
 	layout = theme_layout(&page->theme, TEXT_TITLE, text, -1);
 	if (pango_layout_get_unknown_glyphs_count(layout) > 0) {
@@ -67,9 +69,9 @@ int safe_page_init(struct safe_page *out, int width_px, int height_px)
 	int rc;
 
 	*out = (struct safe_page){ .width_px = width_px, .height_px = height_px };
-	rc = theme_init(&out->theme, (float)shorter(out) / SHORTER_SIDE_MM, words[0].language);
+	rc = theme_init(&out->theme, (float)shorter(out) / SHORTER_SIDE_MM, languages[0]);
 	for (int i = 0; rc == 0 && i < SAFE_PAGE_LINES_MAX; i++)
-		add_line(out, words[i].language, words[i].text);
+		add_line(out, languages[i]);
 	return rc;
 }
 

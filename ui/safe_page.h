@@ -2,7 +2,8 @@
  * and the message in eight languages that it will be back soon. Everything moves slightly, so that
  * the terminal does not look dead and no pixel of the panel burns in.
  *
- * Drawn by Cairo alone. It needs no release, no file and no GPU. */
+ * Drawn by Cairo alone. It needs no release and no GPU; without the catalogues of ui/translate.h
+ * the message is in English only. */
 #ifndef GOPURA_UI_SAFE_PAGE_H
 #define GOPURA_UI_SAFE_PAGE_H
 

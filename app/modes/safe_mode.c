@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/settings/folder.h"
 #include "app/settings/provision.h"
 #include "base/clock.h"
 #include "base/log.h"
@@ -61,6 +62,7 @@ static int start(struct safe_mode *safe, struct options *options)
 	bool sideways;
 	int rc, width, height;
 
+	folder_open_catalogues(options->locale_dir);
 	/* A faulty profile may be why the kiosk failed: the valid entries are used. */
 	if (provision_read(&provision, options, &profile) < 0)
 		log_warn("app", "safe page: going on in spite of the profile");

@@ -35,14 +35,14 @@ static int draw_faults(struct setup_page *page, const struct provision *provisio
 	struct notice_item items[FAULTS_MAX];
 	char marks[FAULTS_MAX][20], lead[PATH_MAX + 64];
 	const struct notice notice = {
-		.title = "gopura.conf needs mending",
+		.title = "gopura.conf contains errors",
 		.lead = lead,
 		.items = items,
 		.count = faults->count,
 		.dropped = faults->dropped,
-		.foot = "Correct the file on any computer, then switch the terminal off and on; a "
-			"stick need only be plugged in again. gopura-setup --check gopura.conf "
-			"tells beforehand whether it is right.",
+		.foot = "Correct the file on any computer, then restart the terminal; if the file is "
+			"on a USB stick, just plug the stick in again. gopura-setup --check "
+			"gopura.conf checks the file on a computer.",
 	};
 
 	for (unsigned i = 0; i < faults->count; i++) {
@@ -55,7 +55,7 @@ static int draw_faults(struct setup_page *page, const struct provision *provisio
 		}
 		items[i] = (struct notice_item){ .mark = marks[i], .text = text };
 	}
-	snprintf(lead, sizeof(lead), "%s. What is right in it is in use.", provision->path);
+	snprintf(lead, sizeof(lead), "%s: the valid entries are in use.", provision->path);
 	return draw_page(page, &notice);
 }
 
@@ -63,21 +63,21 @@ static int draw_missing(struct setup_page *page, const struct options *options)
 {
 	char where[OPTIONS_CONFS_MAX * 256] = "Save it as ";
 	const struct notice_item items[HINTS_MAX] = {
-		{ "1", "On any computer write a text file gopura.conf:\n"
+		{ "1", "On any computer, create a text file named gopura.conf:\n"
 		       "[release]\n"
 		       "url = https://museum.example/temple/\n"
 		       "trust = 1.json" },
 		{ "2", where },
-		{ "3", "Switch the terminal off and on; a stick need only be plugged in." },
+		{ "3", "Restart the terminal; if you use a USB stick, just plug it in." },
 	};
 	const struct notice notice = {
 		.title = "This terminal is not set up yet",
-		.lead = "It does not know where its temple is.",
+		.lead = "No release is configured, so there is nothing to show.",
 		.items = items,
 		.count = HINTS_MAX,
-		.foot = "Of the appliance /efi is the partition gopura-esp of its disk, and "
-			"/run/gopura-stick any USB stick. What else the file may say stands in "
-			"docs/terminal.md: language, panel, opening hours, network, Wi-Fi.",
+		.foot = "On the appliance, /efi is the partition gopura-esp of its disk, and "
+			"/run/gopura-stick is any USB stick. docs/terminal.md describes the other "
+			"entries: language, panel, opening hours, network, Wi-Fi.",
 	};
 
 	for (uint32_t i = 0; i < options->conf_count; i++) {

@@ -1,5 +1,5 @@
-/* Finds and creates the state folder, and keeps the file touch.seen in it, which records that a
- * touchscreen was once connected. */
+/* Finds and creates the state folder, keeps the file touch.seen in it, which records that a
+ * touchscreen was once connected, and finds what lies beside the program. */
 #include "app/settings/folder.h"
 
 #include <errno.h>
@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "ui/translate.h"
 
 int folder_of_state(const char *dir, char out[PATH_MAX])
 {
@@ -72,4 +73,30 @@ bool folder_had_touch(const char *folder, char name[128])
 	fclose(file);
 	name[strcspn(name, "\n")] = '\0';
 	return true;
+}
+
+void folder_beside_program(const char *name, char out[PATH_MAX])
+{
+	ssize_t length = readlink("/proc/self/exe", out, PATH_MAX - 1);
+	char *slash;
+
+	out[length > 0 ? length : 0] = '\0';
+	slash = strrchr(out, '/');
+	slash = slash ? slash + 1 : out;
+	snprintf(slash, (size_t)(out + PATH_MAX - slash), "%s", name);
+}
+
+void folder_open_catalogues(const char *dir)
+{
+	char beside[PATH_MAX];
+	int rc;
+
+	folder_beside_program("locale", beside);
+	if (!dir)
+		dir = access(beside, R_OK | X_OK) == 0 ? beside : "/usr/share/locale";
+	rc = translate_open(dir);
+	if (rc < 0)
+		log_warn("app", "the kiosk's own texts are in English only: %s",
+			 rc == -ENOENT ? "the system has no locale C.UTF-8 (package libc-bin)"
+				       : strerror(-rc));
 }

@@ -31,6 +31,8 @@ static const char help_text[] =
 	"  --board FILE         profile of the board (docs/board.md)\n"
 	"  --mode MODE          lumigraph (default), polygons, or corners (for comparison)\n"
 	"  --language CODE      first language, such as km\n"
+	"  --locale DIR         catalogues of the kiosk's own texts (default: locale beside this\n"
+	"                       program, otherwise /usr/share/locale)\n"
 	"  --touch-replay FILE  fingers from a file instead of the panel (docs/input.md)\n"
 	"  --quit-after-replay  end when the file did\n"
 	"  --views FILE         draw these views and end: a view a line, eye x y z, target x y z,\n"
@@ -89,6 +91,7 @@ enum {
 	OPTION_DOWNLOAD,
 	OPTION_STICK,
 	OPTION_FETCH,
+	OPTION_LOCALE,
 	OPTION_SOCKET,
 	OPTION_FIGURES,
 	OPTION_VISITS,
@@ -126,6 +129,7 @@ static const struct option long_options[] = {
 	{ "stick", required_argument, NULL, OPTION_STICK },
 	{ "download", required_argument, NULL, OPTION_DOWNLOAD },
 	{ "fetch", required_argument, NULL, OPTION_FETCH },
+	{ "locale", required_argument, NULL, OPTION_LOCALE },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "visits", required_argument, NULL, OPTION_VISITS },
 	{ "figures", required_argument, NULL, OPTION_FIGURES },
@@ -217,7 +221,7 @@ static bool set_text(struct options *o, int option, const char *text)
 		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
 		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
 		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->metrics_path },
-		{ OPTION_VISITS, &o->visits_path },
+		{ OPTION_VISITS, &o->visits_path },  { OPTION_LOCALE, &o->locale_dir },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)

@@ -28,6 +28,7 @@ struct options {
 	const char *state_dir;   /* folder of state.db and cache.db */
 	const char *socket_path; /* of a running fetcher; NULL: the kiosk starts one */
 	const char *fetch_program;
+	const char *locale_dir;  /* catalogues of the kiosk's texts; NULL: folder.h finds them */
 	const char *visits_path; /* file for a copy of the counts of what visitors look at; NULL:
 				    none */
 	/* Socket on which metrics are offered (docs/health.md); NULL: none. */

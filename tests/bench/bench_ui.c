@@ -10,6 +10,7 @@
 #include "pipeline/content/page_compile.h"
 #include "storage/plain_page.h"
 #include "ui/overlay_state.h"
+#include "ui/translate.h"
 
 enum { PARTS = 200, ROUNDS = 60 };
 
@@ -165,7 +166,7 @@ int main(int argc, char **argv)
 
 	buffer_init(&html, 1 << 20);
 	buffer_init(&page, ARTICLE_BYTES_MAX);
-	if (argc != 2 || buffer_read_file(&html, argv[1]) < 0 ||
+	if (argc != 2 || buffer_read_file(&html, argv[1]) < 0 || translate_open(TEST_LOCALE) < 0 ||
 	    page_compile(&page, buffer_bytes(&html)) < 0 ||
 	    overlay_create(&overlay, &options) < 0 || give_parts() < 0) {
 		fprintf(stderr, "usage: bench_ui PAGE.html\n");

@@ -48,7 +48,7 @@ for name in ("read-again", "card", "list-again", "start", "nothing"):
 open(f"{sys.argv[1]}/fingers.touch", "w").write("\n".join(touches) + "\n")
 open(f"{sys.argv[1]}/shots.txt", "w").write("\n".join(shots) + "\n")
 P
-build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --display headless --size 960x540 \
+build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless --size 960x540 \
 	--release "$small/release" --trust "$small/release/root/1.json" --state "$work/state" --idle-s 60 \
 	--touch-replay "$work/fingers.touch" --shots "$work/shots.txt" --capture "$work/shots" --log debug \
 	>"$work/seen.json" 2>"$log" || { tail -n 20 "$log"; fail "the kiosk ended with an error"; }

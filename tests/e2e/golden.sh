@@ -25,7 +25,7 @@ mkdir -p "$work/differ"
 # take LANGUAGE: its pictures into $work/LANGUAGE/.
 take() {
 	rm -rf "$work/$1" "$work/state-$1"
-	build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --display headless --size 960x540 \
+	build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless --size 960x540 \
 		--release "$work/release" --trust "$work/release/root/1.json" --state "$work/state-$1" \
 		--language "$1" --idle-s 20 --touch-replay "$work/visit.touch" --shots "$work/shots.txt" \
 		--capture "$work/$1" --log debug >"$work/$1.json" 2>"$work/$1.log"

@@ -27,7 +27,7 @@ I
 # play EVENTS SEED: the line of what was seen goes to $work/SEED.json.
 play() {
 	build/tests/tools/random_touches "$1" "$2" 480 320 >"$work/$2.touch"
-	build/asan/tests/tools/hurried_kiosk --fetch build/asan/gopura-fetch --display headless --size 480x320 \
+	build/asan/tests/tools/hurried_kiosk --fetch build/asan/gopura-fetch --locale build/locale --display headless --size 480x320 \
 		--board "$work/board.ini" --release "$small/release" --trust "$small/release/root/1.json" \
 		--state "$work/state" --idle-s 5 --touch-replay "$work/$2.touch" --log debug \
 		>"$work/$2.json" 2>"$work/$2.log"

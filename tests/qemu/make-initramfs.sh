@@ -49,6 +49,9 @@ cp /usr/share/glvnd/egl_vendor.d/50_mesa.json "$root/usr/share/glvnd/egl_vendor.
 for font in NotoSans-Regular NotoSans-Bold NotoSansKhmer-Regular; do
 	cp "/usr/share/fonts/truetype/noto/$font.ttf" "$root/usr/share/fonts/" 2>/dev/null || true
 done
+mkdir -p "$root/usr/lib/locale/C.utf8"
+cp -r /usr/lib/locale/C.utf8/LC_MESSAGES "$root/usr/lib/locale/C.utf8/"
+cp -r build/locale "$root/usr/share/"
 cat >"$root/etc/fonts/fonts.conf" <<'C'
 <?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd">
 <fontconfig><dir>/usr/share/fonts</dir><cachedir>/tmp/fonts</cachedir></fontconfig>

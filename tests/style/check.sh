@@ -142,6 +142,17 @@ for file in $known_without_header; do
 	fi
 done
 
+# ---- texts of the kiosk: the template is the sources', and every language has every text
+if command -v xgettext >/dev/null; then
+	[ -z "$(ui/po/extract.sh | diff -q - ui/po/gopura.pot)" ] || complain "ui/po is older than the sources: run 'make po', then translate"
+	for language in ui/po/*.po; do
+		out=$(msgfmt -c -o /dev/null "$language" 2>&1 && msgcmp "$language" ui/po/gopura.pot 2>&1) ||
+			complain "$language is not complete:" "$out"
+	done
+else
+	complain "gettext is missing (see packages.txt)"
+fi
+
 # ---- what may not stand in a source
 out=$(git grep -nIE '\b(TODO|FIXME|XXX|HACK)\b' -- '*.c' '*.h' '*.sh' '*.py' '*.js' Makefile ':!tests/style' | head -5)
 [ -z "$out" ] || complain "unfinished by its own words:" "$out"

@@ -9,6 +9,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
+#include "ui/translate.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
 static const char *const titles[] = { "Central tower", "Tour centrale", "ប្រាង្គកណ្ដាល", "中央塔" };
@@ -505,5 +506,7 @@ int main(void)
 		cmocka_unit_test(a_panel_within_reach_as_a_whole_has_no_reach_mode),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, make_picture, drop_picture);
 }

@@ -10,6 +10,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
+#include "ui/translate.h"
 
 static const char *const languages[] = { "en", "ja" };
 static const char page[] =
@@ -300,5 +301,7 @@ int main(void)
 		WITH_PICTURES(what_closes_the_page_closes_its_pictures),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

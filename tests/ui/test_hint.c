@@ -7,6 +7,7 @@
 #include "ui/hint.h"
 #include "ui/overlay_state.h"
 #include "ui/prompt.h"
+#include "ui/translate.h"
 
 enum { WIDTH = 400, STEP_MS = 16 };
 
@@ -164,5 +165,7 @@ int main(void)
 		cmocka_unit_test(the_card_is_mirrored_with_its_language),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

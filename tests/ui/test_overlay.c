@@ -11,6 +11,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
+#include "ui/translate.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
 
@@ -680,5 +681,7 @@ int main(void)
 		cmocka_unit_test(the_help_speaks_of_names_where_there_are_some),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 
 #include "tests/check.h"
 #include "ui/bitmap.h"
+#include "ui/translate.h"
 
 static void draw(struct bitmap *bitmap, const struct safe_page *page, int64_t time_ms)
 {
@@ -132,5 +133,7 @@ int main(void)
 		cmocka_unit_test(draws_its_tower_without_words),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "ui/overlay_state.h"
+#include "ui/translate.h"
 
 enum { PARTS = 12, LANGUAGES = 17 };
 
@@ -491,5 +492,7 @@ int main(void)
 		cmocka_unit_test(a_late_thumbnail_comes_into_its_row),
 	};
 
+	if (translate_open(TEST_LOCALE) < 0)
+		return 1;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
