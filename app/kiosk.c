@@ -615,9 +615,9 @@ int kiosk_run(struct kiosk *kiosk)
 		return -EIO; /* counts as a crash: a restart would not help */
 	}
 	if (rc == -ENOTRECOVERABLE)
-		log_warn("app", "board bug: the GPU lost its context: starting anew");
+		log_warn("app", "board bug: the GPU lost its context; the kiosk restarts");
 	else if (rc == -ESTALE)
-		log_warn("app", "the panel is another one now: starting anew");
+		log_warn("app", "another panel is connected; the kiosk restarts");
 	else if (rc < 0)
 		log_error("app", "stopping: %s: %s",
 			  kiosk->loop.failed ? kiosk->loop.failed : "the loop", strerror(-rc));

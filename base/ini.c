@@ -92,12 +92,13 @@ static int unknown(struct reading *reading, const char *section, const char *nam
 	list_keys(reading, section, known, sizeof(known));
 	if (known[0])
 		return fault_set(reading->fault, -EBADMSG,
-				 "%s:%u: '%s' is no key of [%s]; it has: %s", reading->path,
-				 reading->line, name, section, known);
+				 "%s:%u: '%s' is not a key of [%s]; its keys are: %s",
+				 reading->path, reading->line, name, section, known);
 	list_sections(reading, known, sizeof(known));
-	return fault_set(reading->fault, -EBADMSG,
-			 "%s:%u: '%s' stands in [%s], which is no section here; there are: %s",
-			 reading->path, reading->line, name, section, known);
+	return fault_set(
+		reading->fault, -EBADMSG,
+		"%s:%u: '%s' is in [%s], which is not a section of this file; its sections are: %s",
+		reading->path, reading->line, name, section, known);
 }
 
 static int take(struct reading *reading, size_t index, const char *value)
@@ -106,7 +107,7 @@ static int take(struct reading *reading, size_t index, const char *value)
 
 	if (reading->seen_line[index])
 		return fault_set(reading->fault, -EBADMSG,
-				 "%s:%u: '%s' stands in line %u already; remove one (and begin no "
+				 "%s:%u: '%s' is set in line %u already; remove one (and begin no "
 				 "line with a space)",
 				 reading->path, reading->line, key->name,
 				 reading->seen_line[index]);

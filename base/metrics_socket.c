@@ -42,7 +42,7 @@ static uint64_t count_start(const char *path)
 		fclose(file);
 	file = fopen(name, "we");
 	if (!file) {
-		log_warn("base", "%s: %s: starts are not counted", name, strerror(errno));
+		log_warn("base", "%s: %s; the starts are not counted", name, strerror(errno));
 		return 1;
 	}
 	fprintf(file, "%llu\n", starts + 1);
@@ -87,7 +87,7 @@ int metrics_socket_create(struct metrics_socket **out, const struct metrics_sock
 		rc = -ENAMETOOLONG;
 	}
 	if (rc < 0) {
-		log_error("base", "%s: %s (choose another with --figures)", options->path,
+		log_error("base", "%s: %s (choose another with --metrics)", options->path,
 			  strerror(-rc));
 		metrics_socket_destroy(metrics);
 		return rc;
@@ -181,8 +181,9 @@ void metrics_socket_dispatch(struct metrics_socket *metrics)
 	metrics->options.write(metrics->options.data, &metrics->text);
 	write_common(metrics);
 	if (metrics->text.error)
-		log_warn("base", "kiosk bug: figures of more than %d bytes", METRICS_BYTES_MAX);
+		log_warn("base", "kiosk bug: the metrics have more than %d bytes",
+			 METRICS_BYTES_MAX);
 	else if (send(fd, metrics->text.data, metrics->text.size, MSG_NOSIGNAL) < 0)
-		log_debug("base", "figures did not go out: %s", strerror(errno));
+		log_debug("base", "the metrics could not be sent: %s", strerror(errno));
 	close(fd);
 }

@@ -167,13 +167,13 @@ const char *open_problem(int rc)
 	case EISDIR:
 		return "it is a folder; put a file there";
 	case ENOTSUP:
-		return "it is no regular file but a pipe, a device or a socket; put a file there";
+		return "it is not a regular file but a pipe, a device or a socket; put a file there";
 	case ELOOP:
 		return "it is a link, and links are not followed; copy the file itself";
 	case EXDEV:
-		return "it lies outside of its folder; copy it there";
+		return "it is outside its folder; copy it there";
 	case EFBIG:
-		return "it is too large; this is another file";
+		return "it is too large, so it is some other file";
 	default:
 		return strerror(-rc);
 	}

@@ -164,8 +164,8 @@ static void unknown_section(struct reading *reading, const char *name)
 		faults_add(reading->faults, reading->line,
 			   "there is no section [%s]; did you mean [%s]?", name, best);
 	else
-		faults_add(reading->faults, reading->line, "there is no section [%s]; there are %s",
-			   name, known);
+		faults_add(reading->faults, reading->line,
+			   "there is no section [%s]; the sections are %s", name, known);
 }
 
 static void unknown_name(struct reading *reading, const char *name)
@@ -202,7 +202,7 @@ static void unknown_name(struct reading *reading, const char *name)
 			   reading->section, name, known);
 	else
 		faults_add(reading->faults, reading->line,
-			   "'%s' stands before the first [section]; write its section above it",
+			   "'%s' comes before the first [section]; write its section above it",
 			   name);
 }
 
@@ -245,15 +245,14 @@ static char *bare_value(struct reading *reading, const struct setting *setting, 
 			return text + 1;
 		}
 		faults_add(reading->faults, reading->line,
-			   "%s begins with quotes that do not end; write \" behind the value too",
-			   setting->name);
+			   "%s has no closing quote; write \" after the value too", setting->name);
 		return NULL;
 	}
 	remark = find_remark(text);
 	if (remark && setting->free_text) {
 		faults_add(reading->faults, reading->line,
-			   "%s holds '%.2s': put the value in double quotes if that belongs to it, "
-			   "or write the remark on a line of its own",
+			   "%s contains '%.2s': if that is part of the value, put the value in "
+			   "double quotes; if it begins a comment, move that to a line of its own",
 			   setting->name, remark);
 		return NULL;
 	}
@@ -276,8 +275,8 @@ static void refuse(struct reading *reading, const struct setting *setting, char 
 	cut(value, QUOTED_MAX);
 	if (!*value)
 		faults_add(reading->faults, reading->line,
-			   "%s is empty; it must be %s, or take the line out", setting->name,
-			   expects);
+			   "%s has no value; it must be %s; otherwise remove the line",
+			   setting->name, expects);
 	else if (setting->secret)
 		faults_add(reading->faults, reading->line, "%s must be %s", setting->name, expects);
 	else
@@ -292,7 +291,7 @@ static void take(struct reading *reading, size_t index, char *text)
 
 	if (reading->seen[index]) {
 		faults_add(reading->faults, reading->line,
-			   "%s stands in line %u already; take one of the two out", setting->name,
+			   "%s is set in line %u already; remove one of the two", setting->name,
 			   reading->seen[index]);
 		return;
 	}
@@ -323,7 +322,7 @@ static void on_section(struct reading *reading, char *text)
 	reading->skipping = true;
 	if (!end) {
 		faults_add(reading->faults, reading->line,
-			   "the section's name has no end; write ] behind it");
+			   "the section name is not closed; write ] after it");
 		return;
 	}
 	*end = '\0';
@@ -362,8 +361,8 @@ static void on_line(struct reading *reading, char *line)
 	equals = strchr(line, '=');
 	if (!is_utf8(line)) {
 		faults_add(reading->faults, reading->line,
-			   "there are bytes that are no UTF-8 text; save the file as UTF-8 (in "
-			   "Notepad: Save as, Encoding: UTF-8)");
+			   "the line is not valid UTF-8; save the file as UTF-8 (in Notepad: Save "
+			   "as, Encoding: UTF-8)");
 	} else if (*line == '[') {
 		on_section(reading, line + 1);
 	} else if (reading->skipping) {
@@ -371,8 +370,8 @@ static void on_line(struct reading *reading, char *line)
 	} else if (!equals) {
 		cut(line, QUOTED_MAX);
 		faults_add(reading->faults, reading->line,
-			   "'%s' is neither a [section] nor name = value; write # before it if it "
-			   "is a remark",
+			   "'%s' is neither a [section] nor name = value; if it is a comment, "
+			   "write # before it",
 			   line);
 	} else {
 		*equals = '\0';
@@ -385,7 +384,7 @@ static void on_line(struct reading *reading, char *line)
 static bool is_text(struct bytes text, struct faults *faults)
 {
 	if (text.size > SETTINGS_FILE_MAX)
-		faults_add(faults, 0, "the file is larger than %d bytes: this is another file",
+		faults_add(faults, 0, "the file is larger than %d bytes, so it is some other file",
 			   SETTINGS_FILE_MAX);
 	else if (text.size >= 2 &&
 		 (memcmp(text.data, "\xff\xfe", 2) == 0 || memcmp(text.data, "\xfe\xff", 2) == 0))
@@ -393,7 +392,8 @@ static bool is_text(struct bytes text, struct faults *faults)
 			   "the file is saved as UTF-16; save it as UTF-8 (in Notepad: Save as, "
 			   "Encoding: UTF-8)");
 	else if (text.size > 0 && memchr(text.data, 0, text.size))
-		faults_add(faults, 0, "the file is no text; save it as plain text, in UTF-8");
+		faults_add(faults, 0,
+			   "the file contains zero bytes; save it as plain text in UTF-8");
 	else
 		return true;
 	return false;

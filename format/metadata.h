@@ -45,7 +45,7 @@ struct timestamp {
 };
 
 /* These decode a file and check its signatures against the role's keys in trust. They return
- *   -EBADMSG  not such a file            -EKEYREJECTED  fewer good signatures than the threshold
+ *   -EBADMSG  not such a file            -EKEYREJECTED  fewer valid signatures than the threshold
  * or -ENOMEM. why (may be NULL) is set to a static text for the health page if a file is refused.
  * The caller judges expiry and sequence: only it knows whether the clock is set. *out is zeroed on
  * failure.

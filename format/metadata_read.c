@@ -205,7 +205,7 @@ static int check_signatures(const struct envelope *envelope, enum meta_role role
 		good += key_signed(envelope, keys->keys[i], buffer_bytes(&message));
 	buffer_finish(&message);
 	if (rc == 0 && (keys->threshold == 0 || good < keys->threshold))
-		rc = refuse(why, -EKEYREJECTED, "fewer good signatures than the threshold");
+		rc = refuse(why, -EKEYREJECTED, "fewer valid signatures than the threshold");
 	return rc;
 }
 
@@ -279,7 +279,7 @@ static int open_root(struct trust_root *root, struct envelope *envelope, struct 
 	rc = json ? read_root(root, json) : -EBADMSG;
 	cJSON_Delete(json);
 	if (rc < 0)
-		return refuse(why, rc, "the root file's payload is not that of a root");
+		return refuse(why, rc, "the root file's payload is not a root's");
 	return check_signatures(envelope, META_ROOT, &root->roles[META_ROOT], why);
 }
 
@@ -363,7 +363,7 @@ int release_decode(struct release *out, const struct trust_root *trust, struct b
 	rc = read_release(&release, json);
 	cJSON_Delete(json);
 	if (rc < 0)
-		return refuse(why, rc, "the release file lacks a member or has a bad one");
+		return refuse(why, rc, "the release file lacks a member or has an invalid one");
 	*out = release;
 	return 0;
 }
@@ -397,7 +397,7 @@ int timestamp_decode(struct timestamp *out, const struct trust_root *trust, stru
 	rc = read_timestamp(&timestamp, json);
 	cJSON_Delete(json);
 	if (rc < 0)
-		return refuse(why, rc, "the timestamp file lacks a member or has a bad one");
+		return refuse(why, rc, "the timestamp file lacks a member or has an invalid one");
 	*out = timestamp;
 	return 0;
 }

@@ -27,25 +27,25 @@ enum {
 };
 
 static const char help[] =
-	"gopura-health: reports over HTTP whether the terminal works, and if not, what to do\n"
+	"gopura-health: serves the terminal's health page over HTTP (docs/health.md)\n"
 	"\n"
-	"  gopura-health [options]\n"
+	"usage: gopura-health [OPTIONS]\n"
 	"\n"
-	"  Pages: / for people, /metrics for Prometheus, /health (200 or 503) for scripts,\n"
-	"  /visits.csv with counts of what visitors look at (docs/visitors.md).\n"
-	"  systemd passes the listening socket (gopura-health.socket) and starts the program at\n"
-	"  the first request. Without systemd:\n"
+	"Pages: / for people, /metrics for Prometheus, /health (status 200 or 503) for scripts, and\n"
+	"/visits.csv with the visit counts (docs/visitors.md). systemd passes the listening socket\n"
+	"(gopura-health.socket) and starts the program on a request; without systemd, use --listen.\n"
 	"\n"
-	"  --listen ADDR:PORT  listen here, and do not exit when idle ([::1]:9100 for IPv6)\n"
-	"  --kiosk PATH        gopura-kiosk's --figures (/run/gopura-kiosk/figures)\n"
-	"  --fetch PATH        gopura-fetch's --figures (/run/gopura-fetch/figures)\n"
-	"  --faults FILE       errors in gopura.conf, one per line (/run/gopura/faults)\n"
-	"  --visits FILE       counts of what visitors look at (/run/gopura-kiosk/visits.csv)\n"
-	"  --data DIR          a folder on the partition whose free space is reported (/var/lib)\n"
-	"  --idle-s SECONDS    with systemd's socket: exit after so long without a request (30)\n"
-	"  --version, --help\n"
+	"  --listen ADDR:PORT  listen on this address and do not exit when idle ([::1]:9100 for IPv6)\n"
+	"  --kiosk PATH        metrics socket of gopura-kiosk (default: /run/gopura-kiosk/metrics)\n"
+	"  --fetch PATH        metrics socket of gopura-fetch (default: /run/gopura-fetch/metrics)\n"
+	"  --faults FILE       faults of gopura.conf, one a line (default: /run/gopura/faults)\n"
+	"  --visits FILE       visit counts (default: /run/gopura-kiosk/visits.csv)\n"
+	"  --data DIR          folder on the partition whose free space is reported (default: /var/lib)\n"
+	"  --idle-s SECONDS    with systemd's socket: exit after this time without a request\n"
+	"                      (default: 30)\n"
+	"  --help, --version\n"
 	"\n"
-	"Example\n"
+	"Example:\n"
 	"  gopura-health --listen 127.0.0.1:9100\n";
 
 enum {
@@ -276,7 +276,7 @@ int main(int argc, char **argv)
 {
 	static struct health health = {
 		.idle_s = IDLE_S,
-		.gather = { .sockets = { "/run/gopura-kiosk/figures", "/run/gopura-fetch/figures" },
+		.gather = { .sockets = { "/run/gopura-kiosk/metrics", "/run/gopura-fetch/metrics" },
 			    .patience_ms = PROGRAMS_MS,
 			    .machine = { .root = "",
 					 .faults = "/run/gopura/faults",

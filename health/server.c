@@ -49,7 +49,7 @@ static void begin_client(struct server *server, struct MHD_Connection *connectio
 
 	if (setsockopt(info->connect_fd, SOL_SOCKET, SO_SNDBUF, &send_buffer_bytes,
 		       sizeof(send_buffer_bytes)) < 0)
-		log_warn("health", "a send buffer keeps its size: %s", strerror(errno));
+		log_warn("health", "the size of a send buffer cannot be set: %s", strerror(errno));
 	while (client->busy) {
 		client++;
 		assert(client < server->clients + SERVER_CLIENTS_MAX); /* the connection limit */

@@ -39,7 +39,7 @@ int calibration_read(const char *path, float matrix[6])
 	if (sd_device_get_property_value(device, property, &text) >= 0) {
 		rc = calibration_parse(text, matrix);
 		if (rc == 0)
-			log_warn("input", "board bug: %s: %s is '%s', not six numbers", path,
+			log_warn("input", "board bug: %s: %s is '%s' instead of six numbers", path,
 				 property, text);
 	} else if (sd_device_get_is_initialized(device) == 0) {
 		rc = -EAGAIN;

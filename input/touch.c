@@ -79,7 +79,7 @@ static int watch(struct touch *touch, int fd, struct source *source)
 
 static void remove_source(struct touch *touch, struct source *source)
 {
-	log_info("input", "%s (%s) is gone", touch_device_name(source->device),
+	log_info("input", "%s (%s) was removed", touch_device_name(source->device),
 		 touch_device_path(source->device));
 	contacts_cancel(&touch->contacts, source->slots, clock_now_us());
 	epoll_ctl(touch->epoll_fd, EPOLL_CTL_DEL, touch_device_fd(source->device), NULL);
@@ -113,12 +113,12 @@ static void try_device(struct touch *touch, const char *name)
 	if (!source || touch_device_open(&source->device, path) < 0)
 		return;
 	if (watch(touch, touch_device_fd(source->device), source) < 0) {
-		log_error("input", "%s: cannot be waited for: %s", path, strerror(errno));
+		log_error("input", "%s: cannot be watched: %s", path, strerror(errno));
 		touch_device_close(source->device);
 		source->device = NULL;
 		return;
 	}
-	log_info("input", "%s (%s) is there", touch_device_name(source->device), path);
+	log_info("input", "%s (%s) is connected", touch_device_name(source->device), path);
 	calibrate(touch, source);
 }
 
@@ -152,7 +152,8 @@ static void watch_folder(struct touch *touch)
 		strrchr(parent, '/')[1] = 0;
 	touch->parent_watch = inotify_add_watch(touch->inotify_fd, parent, IN_CREATE | IN_MOVED_TO);
 	if (touch->parent_watch < 0)
-		log_warn("input", "%s cannot be watched (%s): devices plugged in later are missed",
+		log_warn("input",
+			 "%s cannot be watched (%s), so devices plugged in later are not found",
 			 touch->folder, strerror(errno));
 }
 

@@ -40,7 +40,8 @@ static bool read_axis(struct touch_device *device, unsigned code, struct axis *o
 	out->minimum = libevdev_get_abs_minimum(device->evdev, code);
 	out->maximum = libevdev_get_abs_maximum(device->evdev, code);
 	if (out->maximum <= out->minimum)
-		log_warn("input", "board bug: %s (%s) has axis %s from %d to %d, which is no range",
+		log_warn("input",
+			 "board bug: %s (%s) has axis %s from %d to %d, which is not a range",
 			 touch_device_name(device), device->path,
 			 libevdev_event_code_get_name(EV_ABS, code), out->minimum, out->maximum);
 	return out->maximum > out->minimum;
@@ -125,7 +126,7 @@ int touch_device_open(struct touch_device **out, const char *path)
 	/* Without the monotonic clock the kernel uses its wall clock, which is acceptable: only
 	 * time differences count. */
 	if (libevdev_set_clock_id(device->evdev, CLOCK_MONOTONIC) < 0)
-		log_debug("input", "%s: keeps the wall clock", path);
+		log_debug("input", "%s: keeps its timestamps in wall-clock time", path);
 	libevdev_set_device_log_function(device->evdev, hear_libevdev, LIBEVDEV_LOG_ERROR, NULL);
 	*out = device;
 	return 0;

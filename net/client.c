@@ -298,7 +298,7 @@ static void connect_now(struct net_client *client)
 		return;
 	}
 	if (client->failures == 0)
-		log_error("net", "no fetcher at %s: %s", what, strerror(-rc));
+		log_error("net", "cannot connect to the fetcher at %s: %s", what, strerror(-rc));
 	retry_later(client);
 }
 
@@ -310,7 +310,7 @@ static void disconnect(struct net_client *client, const char *why)
 	client->received_before += client->received_now;
 	client->received_now = 0;
 	if (watch(client, client->packets.fd, SOURCE_SOCKET, 0, EPOLL_CTL_DEL) < 0)
-		log_debug("net", "the fetcher's socket was not watched");
+		log_debug("net", "the fetcher's socket was not in epoll");
 	packets_finish(&client->packets);
 	if (client->pid)
 		kill(client->pid, SIGTERM); /* its closed socket ends it anyway */

@@ -52,7 +52,8 @@ void closer_close(int fd)
 	atomic_fetch_add(&running, 1);
 	rc = start_thread(fd);
 	if (rc != 0) /* the descriptor stays open; that is better than a loop that hangs */
-		log_error("net", "no thread to close a descriptor: %s", strerror(rc));
+		log_error("net", "cannot start the thread that closes descriptors: %s",
+			  strerror(rc));
 }
 
 bool closer_is_full(void)

@@ -100,7 +100,7 @@ void downloader_keep(struct downloader *downloader, struct hash hash)
 	int rc = cache_keep(downloader->options.cache, hash);
 
 	if (rc == -ENOSPC)
-		log_debug("net", "the cache keeps as much as it may");
+		log_debug("net", "the cache is full of objects in use");
 }
 
 void downloader_use_release(struct downloader *downloader, struct hash root, bool also)
@@ -110,7 +110,7 @@ void downloader_use_release(struct downloader *downloader, struct hash root, boo
 	if (locators_add(&downloader->locators, root) < 0)
 		return; /* the wants of this release are reported missing */
 	if (!also && cache_use_release(downloader->options.cache, root) < 0)
-		log_warn("net", "the cache cannot note which release is in use");
+		log_warn("net", "the cache cannot store which release is in use");
 }
 
 void downloader_clear(struct downloader *downloader)
@@ -154,7 +154,7 @@ static void note_damage(struct downloader *downloader, struct want *want)
 		return;
 	hash_to_hex(want->entry.key, hex);
 	if (want->reported != MISSING_DAMAGED) {
-		log_warn("net", "content bug: the server's bytes of object %s are damaged", hex);
+		log_warn("net", "content bug: object %s from the server is damaged", hex);
 		refusal_note(downloader->options.link->refusal, hex,
 			     "the server's bytes of this object are damaged");
 	}
@@ -262,7 +262,7 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 		     "the stick's bytes of this object are damaged");
 	/* logs only the first; there may be thousands */
 	if (downloader->counters.stick_damaged++ == 0)
-		log_warn("net", "the stick's bytes of object %s are damaged", hex);
+		log_warn("net", "object %s from the stick is damaged", hex);
 }
 
 void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,

@@ -78,7 +78,7 @@ static void disconnect_kiosk(struct fetch *fetch, const char *why)
 	log_info("net", "the kiosk is disconnected: %s", why);
 	fetch->has_kiosk = fetch->kiosk_waits = false;
 	if (watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, 0, EPOLL_CTL_DEL) < 0)
-		log_debug("net", "the kiosk's socket was not watched");
+		log_debug("net", "the kiosk's socket was not in epoll");
 	packets_finish(&fetch->kiosk);
 	downloader_clear(fetch->downloader);
 	poll_stop(fetch->poll);
@@ -131,7 +131,7 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 	if (bytes.size > MESSAGE_INLINE_MAX) {
 		passed = packets_seal(bytes);
 		if (passed < 0) {
-			log_error("net", "no memory for an object: %s", strerror(-passed));
+			log_error("net", "out of memory for an object: %s", strerror(-passed));
 			return;
 		}
 		message.object.bytes = (struct bytes){ NULL, 0 };
@@ -340,7 +340,7 @@ static void flush_cache(struct fetch *fetch)
 		return;
 	fetch->flush_ms = INT64_MAX;
 	if (cache_flush(fetch->cache) < 0)
-		log_debug("net", "the last objects are not in the cache");
+		log_debug("net", "the last objects were not cached");
 }
 
 static void work(struct fetch *fetch)

@@ -13,26 +13,28 @@
 static const char help[] =
 	"gopura-fetch: downloads the objects of a release for the kiosk and caches them\n"
 	"\n"
-	"  gopura-fetch --release URL --cache FILE (--socket PATH | --fd N) [options]\n"
+	"usage: gopura-fetch --release URL --cache FILE (--socket PATH | --fd N) [OPTIONS]\n"
 	"\n"
-	"  --release URL       https://..., http://..., or a folder\n"
-	"  --stick DIR         where a stick with a release may be mounted; used before the server,\n"
-	"                      or instead of it if there is no --release\n"
-	"  --cache FILE        the cache's database; created if missing, replaced if damaged\n"
-	"  --socket PATH       listen for the kiosk here\n"
-	"  --figures PATH      send metrics to whoever connects to this socket (docs/health.md)\n"
-	"  --fd N              or use this connected descriptor, and exit when it is closed\n"
-	"  --cache-budget MIB  maximum size of the database with its log (1024; at least 4)\n"
-	"  --ca FILE           certificate authority for https (the system's)\n"
-	"  --redirect-hosts A,B  other hosts that the server may redirect to, as NAME or NAME:PORT\n"
-	"                      (none)\n"
-	"  --poll-s SECONDS    between checks for a new release (60)\n"
-	"  --rate-limit KIB    average KiB per second for a release that is not shown yet (none)\n"
-	"  --stall-s SECONDS   a request fails after so long without a byte (15)\n"
+	"  --release URL       where the release is: https://..., http://... or a folder\n"
+	"  --stick DIR         folder in which a USB stick with a release may be mounted; it is asked\n"
+	"                      before the server, and replaces it if there is no --release\n"
+	"  --cache FILE        database of the cache; created if missing, replaced if damaged\n"
+	"  --socket PATH       listen for the kiosk on this socket\n"
+	"  --fd N              serve the kiosk on this connected socket, and exit when it closes\n"
+	"  --metrics PATH      socket on which metrics are offered (docs/health.md)\n"
+	"  --cache-budget MIB  largest size of the cache on disk (default: 1024; at least 4)\n"
+	"  --ca FILE           certificate authority of the server (default: the system's)\n"
+	"  --redirect-hosts A,B\n"
+	"                      other hosts that the server may redirect to, as NAME or NAME:PORT\n"
+	"                      (default: none)\n"
+	"  --poll-s SECONDS    interval of looking for a new release (default: 60)\n"
+	"  --rate-limit KIB    mean KiB per second for a release that is not shown yet\n"
+	"                      (default: no limit)\n"
+	"  --stall-s SECONDS   time without a byte after which a request has failed (default: 15)\n"
 	"  --verbose           log debug messages\n"
-	"  --version, --help\n"
+	"  --help, --version\n"
 	"\n"
-	"Examples\n"
+	"Examples:\n"
 	"  gopura-fetch --release https://museum.example/temple --cache /var/lib/gopura/cache.db \\\n"
 	"               --socket /run/gopura/fetch\n"
 	"  gopura-fetch --stick /run/gopura-stick --cache /tmp/cache.db --socket /tmp/fetch\n";
@@ -42,6 +44,7 @@ enum {
 	OPTION_STICK,
 	OPTION_CACHE,
 	OPTION_SOCKET,
+	OPTION_METRICS,
 	OPTION_FIGURES,
 	OPTION_FD,
 	OPTION_CACHE_BUDGET,
@@ -60,7 +63,8 @@ static const struct option long_options[] = {
 	{ "stick", required_argument, NULL, OPTION_STICK },
 	{ "cache", required_argument, NULL, OPTION_CACHE },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
-	{ "figures", required_argument, NULL, OPTION_FIGURES },
+	{ "metrics", required_argument, NULL, OPTION_METRICS },
+	{ "figures", required_argument, NULL, OPTION_FIGURES }, /* its name before */
 	{ "fd", required_argument, NULL, OPTION_FD },
 	{ "cache-budget", required_argument, NULL, OPTION_CACHE_BUDGET },
 	{ "ca", required_argument, NULL, OPTION_CA },
@@ -83,8 +87,8 @@ static uint64_t number(const char *name, const char *text, uint64_t least, uint6
 	errno = 0;
 	value = strtoull(text, &end, 10);
 	if (errno || *end || end == text || text[0] == '-' || value < least || value > most) {
-		fprintf(stderr, "gopura-fetch: --%s: %s is not a number from %llu to %llu\n", name,
-			text, (unsigned long long)least, (unsigned long long)most);
+		fprintf(stderr, "gopura-fetch: --%s: '%s' is not a number from %llu to %llu\n",
+			name, text, (unsigned long long)least, (unsigned long long)most);
 		exit(2);
 	}
 	return value;
@@ -105,9 +109,12 @@ static void take_option(struct fetch_options *options, int option)
 	case OPTION_SOCKET:
 		options->socket_path = optarg;
 		break;
-	case OPTION_FIGURES:
+	case OPTION_METRICS:
 		options->metrics_path = optarg;
 		break;
+	case OPTION_FIGURES:
+		fputs("gopura-fetch: --figures is called --metrics now\n", stderr);
+		exit(2);
 	case OPTION_FD:
 		options->fd = (int)number("fd", optarg, 0, 65535);
 		break;
@@ -153,16 +160,20 @@ static void parse(struct fetch_options *options, int argc, char **argv)
 		take_option(options, option);
 	if (!options->release_url || !*options->release_url)
 		options->release_url = options->stick_path;
-	if (optind < argc)
-		wrong = argv[optind];
-	else if (!options->release_url)
+	if (optind < argc) {
+		fprintf(stderr, "gopura-fetch: '%s' is not an option; see gopura-fetch --help\n",
+			argv[optind]);
+		exit(2);
+	}
+	if (!options->release_url)
 		wrong = "--release is missing";
 	else if (!options->cache_path)
 		wrong = "--cache is missing";
 	else if (!options->socket_path == (options->fd < 0))
-		wrong = "either --socket or --fd";
+		wrong = "give either --socket or --fd";
 	else if (!redirect_hosts_valid(options->redirect_hosts))
-		wrong = "--redirect-hosts: not up to 4 names such as cdn.example or cdn.example:8443";
+		wrong = "--redirect-hosts takes 1 to 4 names such as cdn.example or "
+			"cdn.example:8443, separated by commas";
 	if (!wrong)
 		return;
 	fprintf(stderr, "gopura-fetch: %s; see gopura-fetch --help\n", wrong);
@@ -180,7 +191,8 @@ int main(int argc, char **argv)
 	rc = fetch_run(&options);
 	if (rc < 0)
 		fprintf(stderr, "gopura-fetch: %s\n",
-			rc == -EINVAL ? "--release: neither https://, http:// nor a folder"
-				      : strerror(-rc));
+			rc == -EINVAL
+				? "--release is neither an https:// or http:// address nor a folder"
+				: strerror(-rc));
 	return rc < 0 ? 1 : 0;
 }

@@ -223,7 +223,8 @@ static void on_done(void *data, const struct http_result *result)
 	if (rc == 0 && !result->not_modified)
 		take_body(poll, result->etag);
 	else if (rc == -EFBIG || rc == -EBADMSG)
-		note_refusal(poll, path_of_stage(poll, path), "larger than such a file may be");
+		note_refusal(poll, path_of_stage(poll, path),
+			     "larger than the limit for such a file");
 	else if (rc < 0 && poll->stage != STAGE_ROOT) /* usually there is no newer root */
 		note_refusal(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {

@@ -12,23 +12,25 @@
 #include "pipeline/content/annotations.h"
 
 static const char help[] =
-	"gopura-content annotations: parts and pages to and from W3C Web Annotations (JSON-LD)\n"
+	"gopura-content annotations: export parts and pages as W3C Web Annotations, or import them\n"
 	"\n"
 	"usage: gopura-content annotations export CONTENT --out FILE [--languages LIST]\n"
 	"       gopura-content annotations import FILE --into CONTENT [OPTIONS]\n"
 	"\n"
 	"export writes one annotation for each part of CONTENT/parts.json, and the pictures beside FILE.\n"
-	"  --languages LIST  such as en,fr; the first must have every title. Default: those of the\n"
-	"                    titles, in the order they appear\n"
+	"  --languages LIST  such as en,fr; every part must have a title in the first one (default: the\n"
+	"                    languages of the titles, in the order in which they appear)\n"
 	"\n"
-	"import writes parts.json, pages/ and pictures/ into CONTENT, which must have no parts yet.\n"
-	"  --language CODE   of texts that do not say which (default: en)\n"
-	"  --up AXIS         of PointSelectors: z (default), or y as IIIF has it\n"
-	"  --skip-unknown    leave annotations out whose selectors say no place on a model; without it\n"
-	"                    they are refused\n"
+	"import writes parts.json, pages/ and pictures/ into CONTENT, which must not have parts yet.\n"
+	"  --language CODE   language of texts that do not name one (default: en)\n"
+	"  --up AXIS         up axis of PointSelectors: z (default), or y as in IIIF\n"
+	"  --skip-unknown    skip annotations whose selectors name no place on a model; without this\n"
+	"                    option they are refused\n"
 	"\n"
-	"docs/annotations.md has the format. Exit status: 0 done, 1 refused, 2 wrong command line.\n"
+	"The format is JSON-LD (docs/annotations.md). Exit status: 0 done, 1 refused, 2 wrong command\n"
+	"line.\n"
 	"\n"
+	"Examples:\n"
 	"  gopura-content annotations export temple --out exchange/temple.jsonld\n"
 	"  gopura-content annotations import exchange/temple.jsonld --into copy\n";
 
@@ -117,7 +119,7 @@ static int run_export(const char *content, const char *out, char *language_list)
 		options.languages = languages;
 		options.language_count = split_languages(language_list, languages);
 		if (options.language_count == 0)
-			return command_wrong("annotations", "--languages must be such as en,fr",
+			return command_wrong("annotations", "--languages takes codes such as en,fr",
 					     "");
 	}
 	rc = annotations_export(&annotations, &options);
@@ -198,7 +200,7 @@ int command_annotations(int argc, char **argv)
 		}
 	}
 	if (argc - optind != 2)
-		return command_wrong(argv[0], "say export CONTENT or import FILE", "");
+		return command_wrong(argv[0], "give export CONTENT or import FILE", "");
 	import.file = argv[optind + 1];
 	if (strcmp(argv[optind], "export") == 0)
 		return run_export(argv[optind + 1], out, languages);

@@ -13,23 +13,25 @@
 #include "pipeline/content/work_lock.h"
 
 static const char help[] =
-	"gopura-content build: from a content folder to a signed release, all that is needed\n"
+	"gopura-content build: make a signed release of a content folder\n"
 	"\n"
 	"usage: gopura-content build DIR [OPTIONS]\n"
 	"\n"
-	"  --out RELEASE     the release folder; by default DIR/../release\n"
-	"  --jobs N          threads and processes; by default one a core. The result is the same.\n"
-	"  --hierarchy KIND  groups or tree; by default as temple.ini says\n"
-	"  --comment TEXT    what is new, for people\n"
-	"  --keys FOLDER     the signing keys; by default ~/.config/gopura/keys/NAME of DIR (see keys)\n"
+	"  --out RELEASE     the release folder (default: DIR/../release)\n"
+	"  --jobs N          number of threads and processes (default: one per core); the result does\n"
+	"                    not depend on it\n"
+	"  --hierarchy KIND  groups or tree (default: as in temple.ini)\n"
+	"  --comment TEXT    what is new in this release, for people\n"
+	"  --keys FOLDER     the signing keys (default: ~/.config/gopura/keys/NAME of DIR; see keys)\n"
 	"\n"
-	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. What is made on the\n"
-	"way stays in DIR/.work, so that an interrupted build goes on where it stopped, and the next\n"
-	"one does only what changed. Signing keys are made at the first build (see keys).\n"
-	"Exit status: 0 done, 1 failed (the reason is printed), 2 the command line is wrong.\n"
+	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. The\n"
+	"intermediate files stay in DIR/.work: an interrupted build continues where it stopped, and a\n"
+	"later build does only what changed. The first build makes the signing keys (see keys).\n"
+	"Exit status: 0 done, 1 failed (the reason is printed), 2 wrong command line.\n"
 	"\n"
-	"examples: gopura-content build temple\n"
-	"          gopura-content build temple --out /srv/museum --jobs 8\n";
+	"Examples:\n"
+	"  gopura-content build temple\n"
+	"  gopura-content build temple --out /srv/museum --jobs 8\n";
 
 static void print_report(const struct build_report *report)
 {
@@ -71,8 +73,8 @@ static int run(const char *folder, const struct build_options *options, const ch
 		print_report(&report);
 	else
 		fprintf(stderr,
-			"gopura-content build: %s: %s; once that is mended, run it again: it goes on "
-			"where it stopped\n",
+			"gopura-content build: %s: %s; correct that and run it again; it "
+			"continues where it stopped\n",
 			folder, rc == -EINVAL ? "the content has faults" : strerror(-rc));
 	if (lock >= 0)
 		close(lock);

@@ -12,17 +12,18 @@
 #include "pipeline/import/mesh_file.h"
 
 static const char help[] =
-	"gopura-content import: read scans, say what was found and what was repaired\n"
+	"gopura-content import: read scans, report what was found and repaired\n"
 	"\n"
 	"usage: gopura-content import [OPTIONS] FILE...\n"
 	"\n"
-	"  --up AXIS       the axis that points up in the files: z (default), y or x\n"
-	"  --unit UNIT     m (default), cm, mm, in, or metres in one unit (0.0254)\n"
+	"  --up AXIS       axis that points up in the files: z (default), y or x\n"
+	"  --unit UNIT     unit of the files: m (default), cm, mm, in, or its length in metres (0.0254)\n"
 	"  --out FILE      save the mesh of all files together as a cache file\n"
 	"\n"
 	"Reads PLY, OBJ with MTL and JPEG or PNG pictures, STL, OFF, glTF and GLB.\n"
-	"Exit status: 0 all were read, 1 at least one was refused, 2 the command line is wrong.\n"
+	"Exit status: 0 all files were read, 1 at least one was refused, 2 wrong command line.\n"
 	"\n"
+	"Examples:\n"
 	"  gopura-content import statue.ply\n"
 	"  gopura-content import --up y --unit mm tower.obj gallery.obj --out temple.mesh\n";
 
@@ -47,7 +48,8 @@ static int read_one(struct mesh *all, const char *path, const struct settings *s
 		rc = mesh_append(all, &mesh);
 	mesh_finish(&mesh);
 	if (rc < 0)
-		fprintf(stderr, "%s: cannot be joined to the others: %s\n", path, strerror(-rc));
+		fprintf(stderr, "%s: cannot be merged with the other files: %s\n", path,
+			strerror(-rc));
 	return rc;
 }
 

@@ -10,18 +10,19 @@
 #include "pipeline/release/inspect.h"
 
 static const char help[] =
-	"gopura-content inspect: say what an object, a file or a release holds\n"
+	"gopura-content inspect: show what an object, a file or a release contains\n"
 	"\n"
 	"usage: gopura-content inspect FILE\n"
 	"       gopura-content inspect RELEASE [HASH ...] [--ca FILE]\n"
 	"\n"
 	"FILE is a locator, a signed file, an object in a file of its own, an information database or a\n"
-	"picture. RELEASE is a folder or a URL; without HASH its signed file, locator and first pages\n"
-	"are shown, with HASH where that object hangs and lies, and what it is.\n"
+	"picture. RELEASE is a folder or a URL: without HASH, shows its signed file, locator and first\n"
+	"pages; with HASH, shows that object, its page and its place in the packs.\n"
 	"\n"
-	"examples: gopura-content inspect release\n"
-	"          gopura-content inspect release 4ad8f0e51c5f3f36b2d1f0a6d6a5c7e1\n"
-	"          gopura-content inspect release/timestamp.json\n";
+	"Examples:\n"
+	"  gopura-content inspect release\n"
+	"  gopura-content inspect release 4ad8f0e51c5f3f36b2d1f0a6d6a5c7e1\n"
+	"  gopura-content inspect release/timestamp.json\n";
 
 static int inspect_file(const char *path)
 {
@@ -51,7 +52,7 @@ static int inspect_place(const char *place, const char *ca_file, char **names, i
 		rc = hash_from_hex(&object, names[i]);
 		if (rc < 0)
 			fprintf(stderr,
-				"gopura-content inspect: %s: a name has 32 digits of 0-9 a-f\n",
+				"gopura-content inspect: %s: an object's name is 32 digits of 0-9 and a-f\n",
 				names[i]);
 		else
 			rc = inspect_object(stdout, reader, object);

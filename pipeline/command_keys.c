@@ -9,23 +9,24 @@
 #include "pipeline/keys/keys_place.h"
 
 static const char help[] =
-	"gopura-content keys: make the signing keys of a content folder, or say where they are\n"
+	"gopura-content keys: make the signing keys of a content folder, or show where they are\n"
 	"\n"
 	"usage: gopura-content keys DIR [OPTIONS]\n"
 	"\n"
-	"  --keys FOLDER   where they are; by default $XDG_CONFIG_HOME/gopura/keys/NAME with DIR's own\n"
-	"                  name, and ~/.config where XDG_CONFIG_HOME is not set\n"
+	"  --keys FOLDER   folder of the keys (default: $XDG_CONFIG_HOME/gopura/keys/NAME, where NAME is\n"
+	"                  DIR's name, and XDG_CONFIG_HOME is ~/.config if it is not set)\n"
 	"\n"
 	"Makes root.key, release.key and timestamp.key (ed25519, readable by you alone) and root/1.json,\n"
-	"which names them and which every terminal is given. Keys that are there are never replaced.\n"
-	"`build` and `publish` make them too when there are none. Keys that an earlier program made in\n"
+	"which lists their public keys and which every terminal needs. Existing keys are never\n"
+	"replaced. `build` and `publish` make missing keys too. Keys that an earlier version made in\n"
 	"DIR/keys are moved out of it.\n"
 	"\n"
 	"Keep a copy of root.key in a safe place, off this machine; publishing needs only the other\n"
-	"two. Who has release.key can publish to every terminal.\n"
+	"two. Whoever has release.key can publish to every terminal.\n"
 	"\n"
-	"examples: gopura-content keys temple\n"
-	"          gopura-content keys temple --keys /media/safe/temple\n";
+	"Examples:\n"
+	"  gopura-content keys temple\n"
+	"  gopura-content keys temple --keys /media/safe/temple\n";
 
 static void print_key(const char *what, const uint8_t key[KEY_BYTES])
 {

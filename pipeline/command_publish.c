@@ -13,24 +13,25 @@
 #include "pipeline/release/publish_content.h"
 
 static const char help[] =
-	"gopura-content publish: make a signed release of a content folder\n"
+	"gopura-content publish: make a signed release from what is built, or undo a release\n"
 	"\n"
 	"usage: gopura-content publish DIR [OPTIONS]\n"
 	"\n"
-	"  --out RELEASE    the release folder; by default DIR/../release\n"
-	"  --comment TEXT   what is new, for people; at most 255 bytes\n"
-	"  --keys FOLDER    the signing keys; by default ~/.config/gopura/keys/NAME of DIR (see keys)\n"
-	"  --expires DAYS   how long terminals may take up this release; 1825 by default\n"
-	"  --undo           show the release before the current one again, under a new number\n"
-	"  --sequence N     show release N again, under a new number\n"
-	"  --renew          sign a new timestamp (it holds for 30 days) and nothing else\n"
+	"  --out RELEASE    the release folder (default: DIR/../release)\n"
+	"  --comment TEXT   what is new in this release, for people; at most 255 bytes\n"
+	"  --keys FOLDER    the signing keys (default: ~/.config/gopura/keys/NAME of DIR; see keys)\n"
+	"  --expires DAYS   days after which terminals refuse to install this release (default: 1825)\n"
+	"  --undo           publish the previous release again, under a new number\n"
+	"  --sequence N     publish release N again, under a new number\n"
+	"  --renew          only sign a new timestamp, which is valid for 30 days\n"
 	"\n"
-	"Hierarchy and samples must be made (see build, which does all). Objects are written first and\n"
-	"the signed files last, so terminals see the old release or the new one, whole. Nothing old is\n"
-	"rewritten or removed.\n"
+	"Needs hierarchy and samples (`build` makes everything). Objects are written first and the\n"
+	"signed files last, so terminals see either the whole old release or the whole new one.\n"
+	"Nothing old is changed or removed.\n"
 	"\n"
-	"examples: gopura-content publish temple --comment 'new pages of the east gate'\n"
-	"          gopura-content publish temple --undo\n";
+	"Examples:\n"
+	"  gopura-content publish temple --comment 'new pages of the east gate'\n"
+	"  gopura-content publish temple --undo\n";
 
 struct settings {
 	struct publish_content_options publish;
@@ -135,6 +136,7 @@ int command_publish(int argc, char **argv)
 	if (optind + 1 != argc)
 		return command_wrong(argv[0], "name one content folder", "");
 	if (settings.undo + settings.renew + (settings.sequence > 0) > 1)
-		return command_wrong(argv[0], "only one of --undo, --sequence and --renew", "");
+		return command_wrong(argv[0],
+				     "give give only one of --undo, --sequence and --renew", "");
 	return run(&settings, argv[optind]);
 }

@@ -9,19 +9,20 @@
 #include "pipeline/samples/reference.h"
 
 static const char help[] =
-	"gopura-content render: reference pictures of a content folder's scan at its finest\n"
+	"gopura-content render: draw reference pictures of a content folder's scan at full detail\n"
 	"\n"
 	"usage: gopura-content render DIR --views FILE --size WxH --out DIR [OPTIONS]\n"
 	"\n"
-	"  --views FILE      a view a line: eye x y z  target x y z  vertical field of view in\n"
-	"                    degrees; metres, z up; # starts a comment\n"
-	"  --size WxH        pixels, at most 4096 a side\n"
-	"  --out DIR         view-0000.png and so on; alpha is coverage\n"
-	"  --supersample N   N x N samples a pixel (default 1, at most 16)\n"
+	"  --views FILE      one view a line: eye x y z, target x y z, vertical field of view in\n"
+	"                    degrees; metres, z up; # begins a comment\n"
+	"  --size WxH        size in pixels, at most 4096 a side\n"
+	"  --out DIR         folder for view-0000.png and so on; their alpha is coverage\n"
+	"  --supersample N   N x N samples per pixel (default: 1, at most 16)\n"
 	"\n"
-	"A picture that is there already, of the same scan, view and options, is kept.\n"
-	"Exit status: 0 all pictures are there, 1 it failed, 2 the command line is wrong.\n"
+	"Keeps pictures that exist already for the same scan, view and options.\n"
+	"Exit status: 0 all pictures exist, 1 failed, 2 wrong command line.\n"
 	"\n"
+	"Example:\n"
 	"  gopura-content render temple --views path.txt --size 1280x720 --supersample 4 --out truth\n";
 
 struct settings {

@@ -13,16 +13,20 @@
 #include <unistd.h>
 
 static const char help[] =
-	"usage: gopura-content temple --triangles N [--seed S] [--regions FOLDER] --out FILE.ply\n"
+	"gopura-content temple: write the demo temple as a binary PLY file\n"
 	"\n"
-	"Writes the demo temple, a Khmer temple that never stood, as a binary PLY file.\n"
-	"  --triangles N  10000 to 100000000, met within 2 %; most lie in reliefs and mouldings\n"
-	"  --seed S       poses, stones out of line, what has fallen (default 1)\n"
-	"  --out FILE     the file; nothing is left of it when writing fails\n"
-	"  --regions DIR  also which faces each lion, each naga's hood and each flight of stairs is,\n"
-	"                 DIR/lion-1.faces and so on: a part's region can be such a list\n"
+	"usage: gopura-content temple --triangles N [--seed S] [--regions DIR] --out FILE.ply\n"
 	"\n"
-	"examples:\n"
+	"The demo temple is a procedural Khmer temple.\n"
+	"\n"
+	"  --triangles N   10000 to 100000000; the result has this number within 2 %, most of it in\n"
+	"                  reliefs and mouldings\n"
+	"  --seed S        varies poses, displaced stones and ruined parts (default: 1)\n"
+	"  --regions DIR   also list the faces of each lion, naga hood and flight of stairs, as\n"
+	"                  DIR/lion-1.faces and so on, for the regions of parts\n"
+	"  --out FILE      the file to write; removed if writing fails\n"
+	"\n"
+	"Examples:\n"
 	"  gopura-content temple --triangles 1500000 --out scan.ply\n"
 	"  gopura-content temple --triangles 100000000 --seed 7 --out large.ply\n";
 
@@ -114,7 +118,7 @@ static int read_options(int argc, char **argv, struct request *request)
 	if (good && optind == argc && request->path && request->triangles >= TEMPLE_TRIANGLES_MIN)
 		return 0;
 	fprintf(stderr,
-		"gopura-content temple: --triangles from %d to %d and --out FILE are needed; see "
+		"gopura-content temple: give --triangles (%d to %d) and --out FILE; see "
 		"--help\n",
 		TEMPLE_TRIANGLES_MIN, TEMPLE_TRIANGLES_MAX);
 	return 3;

@@ -12,20 +12,22 @@
 #include "pipeline/release/verify.h"
 
 static const char help[] =
-	"gopura-content verify: walk a whole release and check everything in it\n"
+	"gopura-content verify: check everything in a release\n"
 	"\n"
 	"usage: gopura-content verify URL|DIR [--trust root/1.json] [--ca FILE]\n"
 	"\n"
-	"  --trust FILE  the root that terminals were given; without it, the release's own root is\n"
-	"                believed, which proves that the release is whole, not whose it is\n"
+	"  --trust FILE  the root that terminals were given; without it the release's own root is\n"
+	"                trusted, which shows that the release is complete but not whose it is\n"
 	"  --ca FILE     certificate authority of an https server\n"
 	"\n"
 	"Checks signatures and expiry, the locator, the hash of every pack and object, that every page,\n"
-	"patch group, tile and the information database decodes, and that pages say the truth about\n"
-	"their children. Exit status 1 and one line that says what is wrong and where otherwise.\n"
+	"patch group, tile and the information database can be decoded, and that pages describe their\n"
+	"children correctly. If anything is wrong, prints one line that says what and where, and exits\n"
+	"with status 1.\n"
 	"\n"
-	"examples: gopura-content verify release --trust ~/.config/gopura/keys/temple/root/1.json\n"
-	"          gopura-content verify https://museum.example/ --ca ca.pem\n";
+	"Examples:\n"
+	"  gopura-content verify release --trust ~/.config/gopura/keys/temple/root/1.json\n"
+	"  gopura-content verify https://museum.example/ --ca ca.pem\n";
 
 static void print_day(const char *what, int64_t seconds)
 {
@@ -88,8 +90,8 @@ static void print_report(const struct verify_report *report, bool trusted)
 	printf("  published share: %" PRIu64 " of %" PRIu64 " triangles, %.2f %%\n",
 	       root->published_triangles, root->source_triangles,
 	       100.0 * (double)root->published_triangles / (double)root->source_triangles);
-	printf("verified: %" PRIu64 " bytes read, everything is as it should be%s\n",
-	       report->read_bytes, trusted ? "" : " (by its own root; --trust says whose it is)");
+	printf("verified: %" PRIu64 " bytes read, no faults found%s\n", report->read_bytes,
+	       trusted ? "" : " (against its own root; use --trust to check whose it is)");
 }
 
 static int verify(const char *place, const char *ca_file, const char *trust)

@@ -7,29 +7,31 @@
 #include "pipeline/commands.h"
 
 static const struct command commands[] = {
-	{ "build", "from a content folder to a signed release, all that is needed", command_build },
-	{ "import", "read scans, say what was found and repaired", command_import },
-	{ "temple", "write the demo temple, any number of triangles", command_temple },
-	{ "publish", "make a signed release of what is built, or undo one", command_publish },
-	{ "verify", "walk a whole release and check everything in it", command_verify },
-	{ "inspect", "say what an object, a file or a release holds", command_inspect },
-	{ "annotations", "parts and pages to and from W3C Web Annotations", command_annotations },
+	{ "build", "make a signed release of a content folder", command_build },
+	{ "import", "read scans, report what was found and repaired", command_import },
+	{ "temple", "write the demo temple with any number of triangles", command_temple },
+	{ "publish", "make a signed release from what is built, or undo a release",
+	  command_publish },
+	{ "verify", "check everything in a release", command_verify },
+	{ "inspect", "show what an object, a file or a release contains", command_inspect },
+	{ "annotations", "export parts and pages as W3C Web Annotations, or import them",
+	  command_annotations },
 	{ "keys", "make the signing keys of a content folder", command_keys },
 	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
 	  command_hierarchy },
-	{ "render", "draw reference pictures of the scan at its finest", command_render },
+	{ "render", "draw reference pictures of the scan at full detail", command_render },
 	{ "sample", "render the sampling images of a content folder", command_sample },
 	{ NULL, NULL, NULL },
 };
 
 static void print_help(void)
 {
-	puts("gopura-content: from scans to a signed release of static files\n"
+	puts("gopura-content: makes signed releases of static files from scans\n"
 	     "\n"
 	     "usage: gopura-content COMMAND [OPTIONS]\n");
 	for (const struct command *c = commands; c->name; c++)
 		printf("  %-11s %s\n", c->name, c->summary);
-	puts("\ngopura-content COMMAND --help says more, with examples.");
+	puts("\ngopura-content COMMAND --help explains a command, with examples.");
 }
 
 int main(int argc, char **argv)
@@ -47,7 +49,11 @@ int main(int argc, char **argv)
 		print_help();
 		return 0;
 	}
-	fprintf(stderr, "gopura-content: %s'%s'; see gopura-content --help\n",
-		*name ? "no such command: " : "a command is needed: ", name);
+	if (*name)
+		fprintf(stderr,
+			"gopura-content: there is no command '%s'; see gopura-content --help\n",
+			name);
+	else
+		fputs("gopura-content: give a command; see gopura-content --help\n", stderr);
 	return 2;
 }

@@ -74,7 +74,7 @@ void cache_destroy(struct cache *cache)
 	if (!cache)
 		return;
 	if (cache_flush(cache) < 0)
-		log_warn("storage", "%s: the last objects were not written", cache->path);
+		log_warn("storage", "%s: the last objects could not be written", cache->path);
 	cache_close(cache);
 	free(cache->path);
 	free(cache);

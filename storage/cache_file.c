@@ -177,7 +177,7 @@ static void start_over(struct cache *cache)
 	cache_close(cache);
 	cache->figures.set_aside++;
 	rc = db_set_aside(cache->path, BROKEN_BYTES_MAX);
-	log_warn("storage", "%s was damaged: set aside as %s.broken, filling a new one",
+	log_warn("storage", "%s was damaged; renamed to %s.broken, and a new cache begins",
 		 cache->path, cache->path);
 	if (rc == 0)
 		rc = open_db(cache);

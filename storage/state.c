@@ -202,14 +202,14 @@ static void recover(struct state *state, int rc)
 	record_init(&state->record);
 	if (damaged) {
 		close_db(state);
-		log_error("storage", "%s is damaged: set aside as %s.broken", state->path,
+		log_error("storage", "%s is damaged; renamed to %s.broken", state->path,
 			  state->path);
 		rc = db_set_aside(state->path, BROKEN_BYTES_MAX);
 		if (rc == 0)
 			rc = open_db(state);
 	}
 	if (rc < 0 && rc != -ENOENT) {
-		log_error("storage", "%s: %s; nothing can be remembered", state->path,
+		log_error("storage", "%s: %s; the state cannot be stored", state->path,
 			  state->db ? sqlite3_errmsg(state->db) : strerror(-rc));
 		close_db(state);
 	}
@@ -217,10 +217,11 @@ static void recover(struct state *state, int rc)
 		record_finish(&state->record);
 		record_init(&state->record);
 		if (damaged)
-			log_error("storage", "%s.second does not help: beginning anew",
+			log_error("storage",
+				  "%s.second cannot be used either; the state begins empty",
 				  state->path);
 	} else {
-		log_warn("storage", "state taken from %s.second", state->path);
+		log_warn("storage", "the state was restored from %s.second", state->path);
 	}
 	if (state->db && write_record(state->db, &state->record) < 0)
 		close_db(state);

@@ -179,8 +179,7 @@ static size_t sum_up(struct entry *entries, size_t count, const char *oldest)
 static void complain(struct usage *usage, const char *path, int rc)
 {
 	if (!usage->complained)
-		log_warn("storage", "%s: counts of what visitors look at: %s; going on without",
-			 path, strerror(-rc));
+		log_warn("storage", "%s: %s; visits are not counted", path, strerror(-rc));
 	usage->complained = true;
 }
 
@@ -197,7 +196,8 @@ static int tidy(struct buffer *text, const char *path, int64_t now_s)
 		hour_of(now_s - (int64_t)USAGE_KEPT_DAYS * DAY_S, oldest);
 	count = sum_up(entries, parse(text, entries, &bad), oldest);
 	if (bad > 0)
-		log_warn("storage", "%s: %zu lines are no counts and were left out", path, bad);
+		log_warn("storage", "%s: %zu lines are not valid counts and were skipped", path,
+			 bad);
 	buffer_clear(text);
 	buffer_put(text, header, sizeof(header) - 1);
 	for (size_t i = 0; i < count; i++)

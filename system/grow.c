@@ -44,10 +44,10 @@ static void renew_table(int fd, uint64_t disk_bytes, const char *disk)
 	int rc = disk_table_renew(fd, disk_bytes, "gopura-esp", &renewed);
 
 	if (rc < 0)
-		log_warn("setup", "%s: the disk keeps the identity of its image: %s", disk,
+		log_warn("setup", "%s: the disk could not get its own identity: %s", disk,
 			 strerror(-rc));
 	else if (renewed)
-		log_info("setup", "%s: the disk has an identity of its own now", disk);
+		log_info("setup", "%s: the disk has its own identity now", disk);
 }
 
 static int grow_table(const char *disk, const char *name, struct disk_part *part)
@@ -95,16 +95,16 @@ int grow(const char *disk, const char *name, const char *folder)
 	int rc = grow_table(disk, name, &part);
 
 	if (rc < 0) {
-		log_warn("setup", "%s: partition %s stays as large as it is: %s", disk, name,
+		log_warn("setup", "%s: partition %s could not be enlarged: %s", disk, name,
 			 strerror(-rc));
 		return rc;
 	}
 	if (part.grown)
-		log_info("setup", "%s: partition %s has %llu MiB now", disk, name,
+		log_info("setup", "%s: partition %s was enlarged to %llu MiB", disk, name,
 			 (unsigned long long)(part.size_bytes / MIB));
 	rc = grow_files(folder, part.size_bytes);
 	if (rc < 0)
-		log_warn("setup", "%s: the file system stays as large as it is: %s", folder,
+		log_warn("setup", "%s: the file system could not be enlarged: %s", folder,
 			 strerror(-rc));
 	return rc;
 }

@@ -12,26 +12,26 @@
 #include "system/setup.h"
 
 static const char help[] =
-	"gopura-setup: makes a terminal's gopura.conf hold for the system (docs/terminal.md)\n"
+	"gopura-setup: applies a terminal's gopura.conf to the system (docs/terminal.md)\n"
 	"\n"
-	"  gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
-	"  gopura-setup --check FILE [--boards DIR]\n"
-	"  gopura-setup --sum FILE\n"
-	"  gopura-setup --grow DISK --partition NAME --mounted DIR\n"
+	"usage: gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
+	"       gopura-setup --check FILE [--boards DIR]\n"
+	"       gopura-setup --checksum FILE\n"
+	"       gopura-setup --grow DISK --partition NAME --mounted DIR\n"
 	"\n"
-	"  --conf FILE    gopura.conf; given again: the first file that is there; where none is,\n"
-	"                 the terminal goes by what a network offers (DHCP)\n"
-	"  --out DIR      network, Wi-Fi, fetcher, health page, host name, time zone and faults\n"
-	"                 are written here, for units to link in\n"
-	"  --boards DIR   profiles that gopura.conf may name (/usr/share/gopura/board)\n"
-	"  --check FILE   only says what is wrong with the file, and ends with 1 if anything is\n"
-	"  --sum FILE     prints a checksum over the file and the files that it names: two that\n"
-	"                 have the same one mean the same\n"
-	"  --grow DISK    the partition NAME, the disk's last, becomes as large as the disk allows,\n"
-	"                 and so does its ext4 that is mounted at DIR\n"
-	"  --version, --help\n"
+	"  --conf FILE      gopura.conf; if given several times, the first file that exists is read;\n"
+	"                   if none exists, the network is configured by DHCP\n"
+	"  --out DIR        write the configuration of network, Wi-Fi, fetcher, health page, host\n"
+	"                   name and time zone, and the list of faults, to this folder\n"
+	"  --boards DIR     board profiles that gopura.conf may name\n"
+	"                   (default: /usr/share/gopura/board)\n"
+	"  --check FILE     print the faults of the file; exit status 1 if there are any\n"
+	"  --checksum FILE  print a checksum of the file and the files that it names\n"
+	"  --grow DISK      enlarge the last partition of the disk, NAME, and its ext4 file system,\n"
+	"                   mounted at DIR, to the end of the disk\n"
+	"  --help, --version\n"
 	"\n"
-	"Examples\n"
+	"Examples:\n"
 	"  gopura-setup --check gopura.conf\n"
 	"  gopura-setup --conf /efi/gopura.conf --conf /media/usb/gopura.conf --out /run/gopura\n";
 
@@ -50,6 +50,7 @@ enum {
 	OPTION_OUT,
 	OPTION_BOARDS,
 	OPTION_CHECK,
+	OPTION_CHECKSUM,
 	OPTION_SUM,
 	OPTION_GROW,
 	OPTION_PARTITION,
@@ -63,7 +64,8 @@ static const struct option long_options[] = {
 	{ "out", required_argument, NULL, OPTION_OUT },
 	{ "boards", required_argument, NULL, OPTION_BOARDS },
 	{ "check", required_argument, NULL, OPTION_CHECK },
-	{ "sum", required_argument, NULL, OPTION_SUM },
+	{ "checksum", required_argument, NULL, OPTION_CHECKSUM },
+	{ "sum", required_argument, NULL, OPTION_SUM }, /* its name before */
 	{ "grow", required_argument, NULL, OPTION_GROW },
 	{ "partition", required_argument, NULL, OPTION_PARTITION },
 	{ "mounted", required_argument, NULL, OPTION_MOUNTED },
@@ -78,13 +80,19 @@ static void usage(const char *wrong)
 	exit(2);
 }
 
+static void refuse_argument(const char *argument)
+{
+	fprintf(stderr, "gopura-setup: '%s' is not an option; see gopura-setup --help\n", argument);
+	exit(2);
+}
+
 /* Refuses file names that other programs could misread, because the names are passed on to them. */
 static void check_name(const char *name)
 {
 	for (const char *c = name; *c; c++)
 		if ((unsigned char)*c < 0x20 || *c == 0x7f || *c == '"' || *c == '\\')
-			usage("a folder's or file's name has quotes, backslashes or control "
-			      "characters; rename it");
+			usage("a file name contains quotes, backslashes or control characters; "
+			      "rename the file or folder");
 }
 
 static void take_option(struct command *command, int option)
@@ -94,7 +102,7 @@ static void take_option(struct command *command, int option)
 	switch (option) {
 	case OPTION_CONF:
 		if (command->count == CONFS_MAX)
-			usage("--conf stands there too often");
+			usage("--conf is given more than 4 times");
 		command->confs[command->count++] = optarg;
 		break;
 	case OPTION_OUT:
@@ -107,8 +115,11 @@ static void take_option(struct command *command, int option)
 	case OPTION_CHECK:
 		command->check = optarg;
 		break;
-	case OPTION_SUM:
+	case OPTION_CHECKSUM:
 		command->sum = optarg;
+		break;
+	case OPTION_SUM:
+		usage("--sum is called --checksum now");
 		break;
 	case OPTION_GROW:
 		command->grow = optarg;
@@ -126,7 +137,7 @@ static void take_option(struct command *command, int option)
 		fputs(help, stdout);
 		exit(0);
 	default: /* getopt has printed the error */
-		usage("wrong options");
+		usage("an option is wrong");
 	}
 }
 
@@ -137,17 +148,17 @@ static void parse(struct command *command, int argc, char **argv)
 	while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1)
 		take_option(command, option);
 	if (optind < argc)
-		usage(argv[optind]);
+		refuse_argument(argv[optind]);
 	if (command->grow || command->partition || command->mounted) {
 		if (!command->grow || !command->partition || !command->mounted)
-			usage("--grow, --partition and --mounted go together");
+			usage("--grow needs --partition and --mounted");
 		if (command->check || command->sum || command->count > 0 || command->out)
-			usage("--grow stands alone");
+			usage("--grow cannot be combined with other commands");
 		return;
 	}
 	if (command->check || command->sum) {
 		if ((command->check && command->sum) || command->count > 0 || command->out)
-			usage(command->check ? "--check stands alone" : "--sum stands alone");
+			usage("--check and --checksum cannot be combined with other commands");
 		return;
 	}
 	if (command->count == 0)
@@ -165,7 +176,7 @@ static int check(const struct command *command)
 
 	if (terminal_read(&terminal, command->check, command->boards_asked ? command->boards : NULL,
 			  &faults) < 0) {
-		fprintf(stderr, "gopura-setup: there is no file %s\n", command->check);
+		fprintf(stderr, "gopura-setup: %s: there is no such file\n", command->check);
 		return 1;
 	}
 	for (unsigned i = 0; i < faults.count; i++)
@@ -202,8 +213,8 @@ static int apply(const struct command *command)
 		log_info("setup", "%s: %u faults", setup.conf_path, faults.count + faults.dropped);
 	else
 		faults_add(&faults, 0,
-			   "there is no %s; write one (docs/terminal.md). Until then the terminal "
-			   "takes the network as it is offered",
+			   "%s does not exist: create it (docs/terminal.md); until then the "
+			   "network is configured by DHCP",
 			   command->confs[0]);
 	for (unsigned i = 0; i < faults.count; i++)
 		log_warn("setup", "%s", faults.list[i].text);

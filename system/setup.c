@@ -134,7 +134,10 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 	if (rc < 0)
 		log_error("setup", "%s: %s", setup->terminal->ca, open_problem(rc));
 	else if (!is_plain_word(out))
-		log_error("setup", "%s: choose an --out without spaces, quotes and the like", out);
+		log_error(
+			"setup",
+			"%s: choose an --out folder without spaces and special characters in its name",
+			out);
 	return rc == 0 && is_plain_word(out);
 }
 

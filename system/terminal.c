@@ -125,7 +125,7 @@ static const struct setting settings[] = {
 	  .offset = offsetof(struct terminal, shift) },
 	[AT_ADDRESS] = { .section = "network",
 			 .name = "address",
-			 .expects = "dhcp, or an address with its network's bits such as "
+			 .expects = "dhcp, or an address with its prefix length such as "
 				    "192.168.1.20/24",
 			 .set = terminal_set_address },
 	[AT_GATEWAY] = { .section = "network",
@@ -147,7 +147,7 @@ static const struct setting settings[] = {
 		      .free_text = true },
 	[AT_PASSPHRASE] = { .section = "wifi",
 			    .name = "passphrase",
-			    .expects = "8 to 63 letters, digits and signs (no accents), or 64 "
+			    .expects = "8 to 63 ASCII letters, digits and signs, or 64 "
 				       "hexadecimal digits",
 			    .set = terminal_set_passphrase,
 			    .free_text = true,
@@ -211,33 +211,33 @@ static void check_together(const struct terminal *t, const unsigned *lines, stru
 {
 	if (lines[AT_TRUST] && !lines[AT_URL])
 		faults_add(faults, 0,
-			   "under [release] the line url = ... is missing; say where the release "
-			   "is, such as https://museum.example/temple/");
+			   "section [release] has no url; add the address of the release, such as "
+			   "url = https://museum.example/temple/");
 	if (lines[AT_URL] && !lines[AT_TRUST])
 		faults_add(faults, 0,
-			   "under [release] the line trust = ... is missing; copy the release's "
-			   "root/1.json beside this file and write trust = 1.json");
+			   "section [release] has no trust; copy the release's root/1.json beside "
+			   "this file and add trust = 1.json");
 	if (t->gateway[0] && !lines[AT_ADDRESS])
 		faults_add(faults, lines[AT_GATEWAY],
-			   "gateway is of use only beside address = 192.168.1.20/24 or the like; "
-			   "write the address too, or take gateway out");
+			   "gateway needs a static address; add one, such as address = "
+			   "192.168.1.20/24, or remove gateway");
 	else if (t->gateway[0] && t->is_static &&
 		 !in_one_network(t->address, t->gateway, t->prefix_bits))
 		faults_add(faults, lines[AT_GATEWAY],
-			   "gateway %s cannot be reached from %s/%u; one of the two has a slip",
+			   "gateway %s is not in the network of %s/%u; correct one of the two",
 			   t->gateway, t->address, t->prefix_bits);
 	if (lines[AT_PASSPHRASE] && !lines[AT_SSID])
 		faults_add(faults, lines[AT_PASSPHRASE],
-			   "passphrase stands without ssid; write the network's name too");
+			   "passphrase needs ssid; add the name of the network");
 	if (lines[AT_SSID] && !lines[AT_COUNTRY])
 		faults_add(faults, lines[AT_SSID],
-			   "with ssid the line country = ... is needed: the radio must keep that "
-			   "country's rules");
+			   "ssid needs country, because the radio must keep that country's rules; "
+			   "add it, such as country = KH");
 	if (t->mdns && is_loopback(t->listen_address))
 		faults_add(faults, lines[AT_MDNS],
-			   "mdns tells the network of a page that answers nobody but the terminal; "
-			   "write listen = 0.0.0.0:9100 or the terminal's own address too, or take "
-			   "mdns out");
+			   "mdns announces the health page, but the page listens to the terminal "
+			   "alone; add listen = 0.0.0.0:9100 or the terminal's own address, or "
+			   "remove mdns");
 }
 
 static void parse(struct terminal *out, struct bytes text, unsigned *lines, struct faults *faults)
@@ -317,10 +317,10 @@ static void look_for_profile(const char *boards, char *name, unsigned line, stru
 		return;
 	list_profiles(boards, known, sizeof(known));
 	if (known[0])
-		faults_add(faults, line, "there is no board profile '%s'; there are %s", name,
-			   known);
+		faults_add(faults, line, "there is no board profile '%s'; the profiles are %s",
+			   name, known);
 	else
-		faults_add(faults, line, "there is no board profile '%s', nor any other in %s",
+		faults_add(faults, line, "there is no board profile '%s', and no other one in %s",
 			   name, boards);
 	*name = '\0';
 }

@@ -96,7 +96,7 @@ static int read_lines(struct capture *capture, const char *path, bool views)
 		if (capture->count == most ||
 		    !(views ? parse_view(line, &capture->views[capture->count])
 			    : parse_shot(line, &capture->shots[capture->count]))) {
-			log_error("app", "%s, line %u: not %s", path, number,
+			log_error("app", "%s, line %u: expected %s", path, number,
 				  views ? "eye x y z, target x y z, field of view in degrees"
 					: "milliseconds and a name of letters, digits, - and _");
 			rc = -EINVAL;
@@ -105,7 +105,7 @@ static int read_lines(struct capture *capture, const char *path, bool views)
 	}
 	fclose(file);
 	if (rc == 0 && capture->count == 0) {
-		log_error("app", "%s: nothing in it", path);
+		log_error("app", "%s: the file has no entries", path);
 		rc = -EINVAL;
 	}
 	return rc;

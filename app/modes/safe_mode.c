@@ -65,7 +65,8 @@ static int start(struct safe_mode *safe, struct options *options)
 	folder_open_catalogues(options->locale_dir);
 	/* A faulty profile may be why the kiosk failed: the valid entries are used. */
 	if (provision_read(&provision, options, &profile) < 0)
-		log_warn("app", "safe page: going on in spite of the profile");
+		log_warn("app",
+			 "safe page: the board profile has faults; its valid entries are used");
 	display = (struct display_options){
 		.kind = options->display,
 		.width_px = options->width_px,
@@ -197,7 +198,7 @@ int safe_mode_run(struct options *options)
 		rc = write_shots(&safe, options->capture_dir);
 		quit = true;
 	} else if (rc == 0) {
-		log_warn("app", "safe page: the terminal says that it will be back");
+		log_warn("app", "safe page: shown in place of the kiosk");
 	}
 	while (rc == 0 && !quit)
 		rc = turn(&safe, &quit);

@@ -67,17 +67,16 @@ static void check_settings(struct self_test *test, struct options *options)
 	const unsigned faults = provision->faults.count + provision->faults.dropped;
 
 	if (rc < 0)
-		say(test, false, "settings", "%s cannot be used: mend what the log says of it",
+		say(test, false, "settings", "%s cannot be used: correct what the log reports",
 		    test->options->board_path);
 	else if (faults > 0)
-		say(test, false, "settings", "%s: %u to mend, see the log", provision->path,
-		    faults);
+		say(test, false, "settings", "%s: %u faults, see the log", provision->path, faults);
 	else if (test->options->conf_count > 0 && !provision->path)
-		say(test, false, "settings", "there is no %s: write it (docs/terminal.md)",
+		say(test, false, "settings", "%s does not exist: create it (docs/terminal.md)",
 		    test->options->conf_paths[0]);
 	else
 		say(test, true, "settings", "%s",
-		    provision->path ? provision->path : "of the command line");
+		    provision->path ? provision->path : "given on the command line");
 }
 
 /* ---- panel and GPU */
@@ -109,7 +108,7 @@ static void check_panel(struct self_test *test)
 	static const char *const kinds[] = {
 		[DISPLAY_DRM] = "KMS",
 		[DISPLAY_WINDOW] = "a window",
-		[DISPLAY_HEADLESS] = "memory alone",
+		[DISPLAY_HEADLESS] = "in memory",
 	};
 	const struct options *o = test->options;
 	const struct display_options options = {
@@ -124,21 +123,21 @@ static void check_panel(struct self_test *test)
 
 	if (rc < 0) {
 		say(test, false, "panel",
-		    "none can be opened: see what the log says; is the kiosk running, is the user in "
-		    "the groups video and render?");
+		    "cannot be opened (see the log): stop a running kiosk, or add the user to the "
+		    "groups video and render");
 		return;
 	}
 	if (!display_is_dark(test->display))
 		rc = flip(test->display);
 	if (display_is_dark(test->display))
 		say(test, false, "panel",
-		    "none is connected, or another program has it: see to cable and power");
+		    "not connected, or in use by another program: check cable and power");
 	else if (rc < 0)
 		say(test, false, "panel",
-		    "no picture came onto it (%s): try another mode by --size, then another cable",
+		    "shows no picture (%s): try another mode with --size, then another cable",
 		    strerror(-rc));
 	else
-		say(test, true, "panel", "%d x %d, a picture came onto it (%s)",
+		say(test, true, "panel", "%d x %d, shows a picture (%s)",
 		    display_width_px(test->display), display_height_px(test->display),
 		    kinds[display_kind(test->display)]);
 }
@@ -152,8 +151,8 @@ static bool has_limit(struct self_test *test, GLenum name, int needed, const cha
 		has[0] = has[1];
 	if (has[0] >= needed)
 		return true;
-	say(test, false, "gpu", "%d %s, the kiosk needs %d: choose %s", has[0], what, needed,
-	    needed > GL_LIMIT_VERTEX_UNIFORMS ? "a smaller mode by --size, or another board"
+	say(test, false, "gpu", "%d %s, the kiosk needs %d: use %s", has[0], what, needed,
+	    needed > GL_LIMIT_VERTEX_UNIFORMS ? "a smaller mode (--size), or another board"
 					      : "another board or driver");
 	return false;
 }
@@ -179,7 +178,7 @@ static void check_gpu(struct self_test *test)
 	bool good;
 
 	if (!test->display) {
-		say(test, false, "gpu", "not tried, for want of a panel");
+		say(test, false, "gpu", "not tested, because there is no panel");
 		return;
 	}
 	width = display_width_px(test->display);
@@ -187,20 +186,20 @@ static void check_gpu(struct self_test *test)
 	side = width > height ? width : height;
 	good = has_limit(test, GL_MAX_TEXTURE_SIZE,
 			 side > GL_LIMIT_MEDIUMP_PX ? side : GL_LIMIT_MEDIUMP_PX,
-			 "pixels a side of a texture") &&
-	       has_limit(test, GL_MAX_VIEWPORT_DIMS, side, "pixels of a picture") &&
+			 "pixels per texture side") &&
+	       has_limit(test, GL_MAX_VIEWPORT_DIMS, side, "pixels per picture side") &&
 	       has_limit(test, GL_MAX_TEXTURE_IMAGE_UNITS, GL_LIMIT_UNITS, "texture units") &&
 	       has_limit(test, GL_MAX_VERTEX_ATTRIBS, GL_LIMIT_ATTRIBUTES, "vertex attributes") &&
 	       has_limit(test, GL_MAX_FRAGMENT_UNIFORM_VECTORS, GL_LIMIT_FRAGMENT_UNIFORMS,
-			 "uniforms of a fragment") &&
+			 "fragment uniforms") &&
 	       has_limit(test, GL_MAX_VERTEX_UNIFORM_VECTORS, GL_LIMIT_VERTEX_UNIFORMS,
-			 "uniforms of a vertex");
+			 "vertex uniforms");
 	if (good && has_scene(test))
 		say(test, true, "gpu", "%s", (const char *)glGetString(GL_RENDERER));
 	else if (good)
 		say(test, false, "gpu",
-		    "%s cannot draw the scene (see the log): less texture_mib in the profile, or another "
-		    "driver",
+		    "%s cannot draw the scene (see the log): reduce texture_mib in the board profile, "
+		    "or use another driver",
 		    (const char *)glGetString(GL_RENDERER));
 }
 
@@ -230,16 +229,16 @@ static void say_no_touch(struct self_test *test)
 	const bool had = test->folder[0] && folder_had_touch(test->folder, name);
 
 	if (!had)
-		say(test, true, "touch", "none, and there never was one here");
+		say(test, true, "touch", "none, and none was ever connected");
 	else if (is_locked_out(path, sizeof(path)))
 		say(test, false, "touch",
-		    "%s may not be read: put the user into the group input, and see the unit's "
+		    "%s may not be read: add the user to the group input, and check the unit's "
 		    "DeviceAllow",
 		    path);
 	else
 		say(test, false, "touch",
-		    "none that can be used (see the log), where there was '%s': see to its cable and "
-		    "power; if the terminal is to be without, remove %s/touch.seen",
+		    "'%s' was connected before and is not found (see the log): check its cable and "
+		    "power; if the terminal is to have no touchscreen, remove %s/touch.seen",
 		    name, test->folder);
 }
 
@@ -249,7 +248,7 @@ static void check_touch(struct self_test *test)
 	struct touch *touch = NULL;
 
 	if (touch_create(&touch, &options) < 0) {
-		say(test, false, "touch", "cannot be waited for: see the log");
+		say(test, false, "touch", "cannot be opened: see the log");
 		return;
 	}
 	for (uint32_t i = 0; i < touch_device_count(touch); i++) {
@@ -310,7 +309,8 @@ static void check_storage(struct self_test *test)
 		rc = -errno;
 	if (rc < 0) {
 		say(test, false, "storage",
-		    "%s cannot be written (%s): is it the user's, is its disk mounted and whole?",
+		    "%s cannot be written (%s): check its owner, and that its disk is mounted and "
+		    "healthy",
 		    test->folder, strerror(-rc));
 		test->folder[0] = '\0';
 		return;
@@ -320,7 +320,7 @@ static void check_storage(struct self_test *test)
 	if (free_mib < needed_mib)
 		say(test, false, "storage",
 		    "%s: %" PRIu64 " MiB free, %" PRIu64
-		    " needed: make room, or less mib under [cache] of the profile",
+		    " needed: free space, or reduce mib in section [cache] of the board profile",
 		    test->folder, free_mib, needed_mib);
 	else
 		say(test, true, "storage", "%s: %" PRIu64 " MiB free", test->folder, free_mib);
@@ -334,10 +334,10 @@ static void say_trust(struct self_test *test, const char *whose, struct bytes fi
 	const char *why = "";
 
 	if (trust_root_first(&root, file, &why) < 0)
-		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", whose, why);
+		say(test, false, "trust", "%s: %s: get root/1.json from the publisher", whose, why);
 	else if (clock_wall_is_set() && root.expires_s < clock_wall_s())
 		say(test, false, "trust",
-		    "%s has expired: who publishes must sign a new root, then give it by --trust",
+		    "%s has expired: the publisher must sign a new root; then give it with --trust",
 		    whose);
 	else
 		say(test, true, "trust", "%s, version %" PRIu32, whose, root.version);
@@ -356,7 +356,7 @@ static bool check_remembered_trust(struct self_test *test)
 		return false;
 	has = state_trust(state, &file) == 0;
 	if (has)
-		say_trust(test, "the remembered trust root", file);
+		say_trust(test, "the stored trust root", file);
 	state_destroy(state);
 	return has;
 }
@@ -371,13 +371,13 @@ static void check_trust(struct self_test *test)
 		return;
 	if (!path) {
 		say(test, false, "trust",
-		    "no trust root is remembered: give the museum's root/1.json by --trust once");
+		    "no trust root is stored: give the museum's root/1.json with --trust once");
 		return;
 	}
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc < 0)
-		say(test, false, "trust", "%s: %s: get root/1.json from who publishes", path,
+		say(test, false, "trust", "%s: %s: get root/1.json from the publisher", path,
 		    open_problem(rc));
 	else
 		say_trust(test, path, buffer_bytes(&file));

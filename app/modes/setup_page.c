@@ -101,8 +101,8 @@ int setup_page_show(struct setup_page *page, const struct options *options,
 		return draw_missing(page, options);
 	if (is_unset && !provision->terminal.release_url[0] && provision->faults.count == 0)
 		faults_add(&provision->faults, 0,
-			   "under [release] the lines url = ... and trust = ... are missing; they "
-			   "say where the temple is and whose key to trust");
+			   "section [release] has no url and no trust; add the address of the "
+			   "release and its root/1.json");
 	return provision->faults.count > 0 ? draw_faults(page, provision) : 0;
 }
 

@@ -308,14 +308,15 @@ void sessions_synced(struct sessions *sessions, bool done)
 	if (sessions->shown.syncing) { /* answers arrive in order */
 		sessions->shown.syncing = false;
 		if (done)
-			log_info("app", "the picture is safe on the disk");
+			log_info("app", "the objects of the picture are stored on the disk");
 		return;
 	}
 	if (!coming->exhibit.scene || !coming->syncing)
 		return;
 	coming->syncing = false;
 	if (!done) {
-		log_warn("app", "the new release is not safe on the disk yet: the old one stays");
+		log_warn("app",
+			 "the new release could not be stored on the disk; the current one stays");
 		return;
 	}
 	coming->remembering = true;

@@ -65,7 +65,7 @@ static void answer(struct state_writer *writer, const struct state_release *rele
 	writer->answered = true;
 	pthread_mutex_unlock(&writer->lock);
 	if (write(writer->fd, &one, sizeof(one)) < 0)
-		log_error("app", "kiosk bug: the keeper cannot answer");
+		log_error("app", "kiosk bug: the state writer cannot report its result");
 }
 
 /* Writes the requested changes. The trust root comes first, because the release may be signed by
@@ -74,14 +74,14 @@ static void fulfil(struct state_writer *writer, struct wish *wish)
 {
 	if (wish->trust_wanted &&
 	    state_set_trust(writer->state, buffer_bytes(&wish->trust), wish->clear) < 0)
-		log_warn("app", "the trust root could not be remembered");
+		log_warn("app", "the trust root could not be stored");
 	/* These two concern the release in use, not the one stored below. */
 	if (wish->proof_wanted && state_prove(writer->state) < 0)
-		log_warn("app", "that the release works could not be remembered");
+		log_warn("app", "the end of the release's trial could not be stored");
 	if (wish->return_wanted && state_fall_back(writer->state) < 0)
-		log_warn("app", "the return to the release before could not be remembered");
+		log_warn("app", "the return to the previous release could not be stored");
 	if (wish->time_floor_s > 0 && state_raise_time_floor(writer->state, wish->time_floor_s) < 0)
-		log_debug("app", "the time floor could not be written");
+		log_debug("app", "the time floor could not be stored");
 	if (wish->release_wanted) {
 		wish->release.file = buffer_bytes(&wish->release_file);
 		answer(writer, &wish->release, state_activate(writer->state, &wish->release));

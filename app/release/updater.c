@@ -49,10 +49,12 @@ static int find_trust(struct updater *updater, struct state *state)
 		rc = trust_pin(&updater->trust, file, &why);
 		if (rc == 0)
 			return 0;
-		log_error("app", "the remembered trust root: %s", why);
+		log_error("app", "the stored trust root: %s", why);
 	}
 	if (!updater->options.trust_path) {
-		log_warn("app", "no trust root yet: updates need --trust root/1.json once");
+		log_warn(
+			"app",
+			"no trust root is stored, so no release is accepted; start once with --trust root/1.json");
 		return 0;
 	}
 	buffer_init(&pinned, METADATA_FILE_BYTES_MAX);
@@ -62,7 +64,7 @@ static int find_trust(struct updater *updater, struct state *state)
 	else
 		rc = trust_pin(&updater->trust, buffer_bytes(&pinned), &why);
 	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned), STATE_CLEAR_NOTHING) < 0)
-		log_warn("app", "the trust root could not be remembered");
+		log_warn("app", "the trust root could not be stored");
 	if (rc < 0)
 		log_error("app", "%s: %s", updater->options.trust_path, why);
 	buffer_finish(&pinned);
@@ -94,10 +96,10 @@ static void judge_trial(struct updater *updater, struct state *state)
 		return;
 	if (state_tries(state) < STATE_TRIES_MAX) {
 		if (state_try(state) < 0)
-			log_warn("app", "a try of a new release could not be remembered");
+			log_warn("app", "the start of a release on trial could not be counted");
 	} else if (state_fall_back(state) == 0) {
 		note(updater, release.sequence,
-		     "it was started three times and never got to a picture");
+		     "it was started three times and never showed a picture");
 	}
 }
 
@@ -166,7 +168,8 @@ void updater_start(struct updater *updater)
 {
 	if (hash_is_zero(updater->shown.root))
 		return;
-	log_info("app", "release %llu is remembered", (unsigned long long)updater->shown.sequence);
+	log_info("app", "release %llu is stored in the state",
+		 (unsigned long long)updater->shown.sequence);
 	updater->options.begin(updater->options.data, updater->shown.root,
 			       updater->shown.root_bytes);
 }
@@ -239,10 +242,10 @@ static int take_root(struct updater *updater, struct bytes bytes, const char **w
 	if (updater->trust.time_floor_s < time_floor_s)
 		clear |= STATE_CLEAR_TIME_FLOOR;
 	if (clear != STATE_CLEAR_NOTHING)
-		log_info("app", "root %u takes keys away: what they had set is cleared",
+		log_info("app", "root %u revokes keys; the limits that they set are cleared",
 			 updater->trust.root.version);
 	if (state_writer_set_trust(updater->writer, bytes, clear) < 0)
-		log_warn("app", "the new trust root could not be remembered");
+		log_warn("app", "the new trust root could not be stored");
 	drop_distrusted(updater);
 	return 0;
 }
@@ -406,7 +409,7 @@ int updater_dispatch(struct updater *updater)
 	if (answer.sequence == updater->writing)
 		updater->writing = 0;
 	if (answer.rc < 0) {
-		log_error("app", "release %llu could not be remembered: %s",
+		log_error("app", "release %llu could not be stored: %s",
 			  (unsigned long long)answer.sequence, strerror(-answer.rc));
 	} else {
 		take_answer(updater, &answer);

@@ -12,53 +12,67 @@
 #include "base/log.h"
 
 static const char help_text[] =
-	"gopura-kiosk: shows a temple on a panel and answers the fingers that touch it\n"
+	"gopura-kiosk: shows a temple on a touch panel\n"
 	"\n"
 	"usage: gopura-kiosk [OPTIONS]\n"
 	"\n"
-	"  --conf FILE          the terminal's gopura.conf (docs/terminal.md); options of the command\n"
-	"                       line override it; given again: the first file that is there\n"
-	"  --boards DIR         profiles that gopura.conf may name (/usr/share/gopura/board)\n"
-	"  --release URL        museum server (https://..., http://... or a folder)\n"
-	"  --stick DIR          where a USB stick with a release may come to lie\n"
-	"  --trust FILE         root/1.json of that museum: needed once, then remembered\n"
+	"Release:\n"
+	"  --release URL        where the release is: https://..., http://... or a folder\n"
+	"  --trust FILE         root/1.json of the release; needed for the first start only\n"
 	"  --ca FILE            certificate authority of the server (default: the system's)\n"
-	"  --state DIR          what survives power loss, and the cache\n"
+	"  --stick DIR          folder in which a USB stick with a release may be mounted\n"
+	"  --state DIR          folder of the state and the cache\n"
 	"                       (default: $XDG_STATE_HOME/gopura or ~/.local/state/gopura)\n"
-	"  --display KIND       drm, window, headless or auto (default)\n"
-	"  --device FILE        KMS card, such as /dev/dri/card0 (default: the first with a panel)\n"
-	"  --size WxH[@HZ]      window, picture in memory, or mode of the panel\n"
+	"  --poll-s SECONDS     interval of looking for a new release, 1 to 86400\n"
+	"                       (default: the fetcher's)\n"
+	"  --download HH:MM-HH:MM\n"
+	"                       time of day for downloading a new release (default: any)\n"
+	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
+	"  --socket FILE        connect to a gopura-fetch that is already running\n"
+	"\n"
+	"Terminal:\n"
+	"  --conf FILE          gopura.conf of the terminal (docs/terminal.md); options on the command\n"
+	"                       line take precedence; if given several times, the first file that\n"
+	"                       exists is read\n"
+	"  --boards DIR         board profiles that gopura.conf may name\n"
+	"                       (default: /usr/share/gopura/board)\n"
 	"  --board FILE         profile of the board (docs/board.md)\n"
-	"  --mode MODE          lumigraph (default), polygons, or corners (for comparison)\n"
-	"  --language CODE      first language, such as km\n"
+	"  --display KIND       drm, window, headless or auto (default)\n"
+	"  --device FILE        KMS device, such as /dev/dri/card0 (default: the first with a panel)\n"
+	"  --size WxH[@HZ]      size of the window or picture, or mode of the panel\n"
+	"  --hours TEXT         hours in which the panel is on, such as\n"
+	"                       \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\" (default: always); at other\n"
+	"                       times a touch turns it on for a while\n"
+	"  --wake-min MINUTES   length of that while (default: 5; 0: a touch does not turn it on)\n"
+	"  --shift              shift the picture by a pixel now and then, against burn-in\n"
+	"  --idle-s SECONDS     time without a touch before the visitor is asked whether anybody is\n"
+	"                       still there, 5 to 3600 (default: 60)\n"
+	"  --language CODE      language at the start of a visit, such as km\n"
 	"  --locale DIR         catalogues of the kiosk's own texts (default: locale beside this\n"
 	"                       program, otherwise /usr/share/locale)\n"
-	"  --touch-replay FILE  fingers from a file instead of the panel (docs/input.md)\n"
-	"  --quit-after-replay  end when the file did\n"
-	"  --views FILE         draw these views and end: a view a line, eye x y z, target x y z,\n"
-	"                       vertical field of view in degrees (metres, z up)\n"
-	"  --capture DIR        pictures go here: view-0000.png and views.jsonl, or the shots\n"
-	"  --shots FILE         pictures during a replay: milliseconds and a name, a shot a line\n"
-	"  --overlay            callouts and all on the pictures of --views too\n"
-	"  --poll-s SECONDS     how often to look for a new release (1 to 86400; the fetcher's)\n"
-	"  --download HH:MM-HH:MM\n"
-	"                       time of day in which a new release is brought (default: any)\n"
-	"  --log LEVEL          error, warn, info (default) or debug\n"
-	"  --fetch FILE         gopura-fetch to start (default: beside this program)\n"
-	"  --socket FILE        talk to a gopura-fetch that runs already\n"
-	"  --figures FILE       tell whoever connects here how it goes (docs/health.md)\n"
-	"  --visits FILE        a copy of the counts of what visitors look at, for the health page\n"
+	"\n"
+	"Operation:\n"
+	"  --metrics FILE       socket on which metrics are offered (docs/health.md)\n"
+	"  --visits FILE        file for a copy of the visit counts, which the health page reads\n"
 	"                       (docs/visitors.md)\n"
-	"  --hours TEXT         the panel is on, such as \"Mo-Fr 09:00-18:00, Sa 10:00-17:00\"\n"
-	"                       (default: always); outside them a touch wakes it for a while\n"
-	"  --wake-min MINUTES   for how long (default: 5; 0: a touch does not wake it)\n"
-	"  --idle-s SECONDS     without a touch until the visitor is asked whether somebody is\n"
-	"                       there, and the model shows itself (5 to 3600; default: 60)\n"
-	"  --shift              move the picture by a pixel now and then, to spare the panel\n"
-	"  --self-test          check panel, GPU, touch, storage and trust, a line each, and end:\n"
-	"                       0 where all is well (docs/display.md)\n"
-	"  --safe-page          say that the terminal will be back, without GPU and release\n"
-	"                       (docs/display.md); with --capture: safe-0.png and safe-1.png\n"
+	"  --log LEVEL          error, warn, info (default) or debug\n"
+	"  --self-test          check panel, GPU, touch, storage and trust root, print a line for\n"
+	"                       each, and exit; exit status 0 if all is well (docs/display.md)\n"
+	"  --safe-page          show only the page that says the terminal will be back, without GPU\n"
+	"                       and release (docs/display.md); with --capture, write it to\n"
+	"                       safe-0.png and safe-1.png\n"
+	"\n"
+	"Tests:\n"
+	"  --mode MODE          lumigraph (default); polygons or corners for comparison\n"
+	"  --touch-replay FILE  read touches from a file instead of the panel (docs/input.md)\n"
+	"  --quit-after-replay  exit when the file ends\n"
+	"  --views FILE         draw these views and exit; one view a line: eye x y z, target x y z,\n"
+	"                       vertical field of view in degrees (metres, z up)\n"
+	"  --capture DIR        folder for pictures: view-0000.png ... and views.jsonl, or the\n"
+	"                       screenshots\n"
+	"  --shots FILE         take screenshots during a replay; one a line: milliseconds and name\n"
+	"  --overlay            draw the user interface on pictures of --views too\n"
+	"\n"
 	"  --help, --version\n"
 	"\n"
 	"Examples:\n"
@@ -93,6 +107,7 @@ enum {
 	OPTION_FETCH,
 	OPTION_LOCALE,
 	OPTION_SOCKET,
+	OPTION_METRICS,
 	OPTION_FIGURES,
 	OPTION_VISITS,
 	OPTION_LOG,
@@ -132,7 +147,8 @@ static const struct option long_options[] = {
 	{ "locale", required_argument, NULL, OPTION_LOCALE },
 	{ "socket", required_argument, NULL, OPTION_SOCKET },
 	{ "visits", required_argument, NULL, OPTION_VISITS },
-	{ "figures", required_argument, NULL, OPTION_FIGURES },
+	{ "metrics", required_argument, NULL, OPTION_METRICS },
+	{ "figures", required_argument, NULL, OPTION_FIGURES }, /* its name before */
 	{ "log", required_argument, NULL, OPTION_LOG },
 	{ "hours", required_argument, NULL, OPTION_HOURS },
 	{ "wake-min", required_argument, NULL, OPTION_WAKE },
@@ -220,7 +236,7 @@ static bool set_text(struct options *o, int option, const char *text)
 		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
 		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
 		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },  { OPTION_FIGURES, &o->metrics_path },
+		{ OPTION_SOCKET, &o->socket_path },  { OPTION_METRICS, &o->metrics_path },
 		{ OPTION_VISITS, &o->visits_path },  { OPTION_LOCALE, &o->locale_dir },
 	};
 
@@ -293,7 +309,7 @@ static bool check_together(const struct options *o)
 	if (o->safe_page || o->self_test)
 		return true;
 	if (!o->release_url && !o->stick_dir && !o->socket_path && o->conf_count == 0)
-		fputs("gopura-kiosk: --release or --conf is missing; see --help\n", stderr);
+		fputs("gopura-kiosk: give --release or --conf; see gopura-kiosk --help\n", stderr);
 	else if ((o->views_path || o->shots_path) && !o->capture_dir)
 		fputs("gopura-kiosk: --views and --shots need --capture DIR\n", stderr);
 	else if (o->quit_after_replay && !o->touch_replay_path)
@@ -322,14 +338,20 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 		}
 		if (option == '?')
 			return OPTIONS_BAD; /* getopt printed the reason */
+		if (option == OPTION_FIGURES) {
+			fputs("gopura-kiosk: --figures is called --metrics now\n", stderr);
+			return OPTIONS_BAD;
+		}
 		if (!set_value(out, option, optarg)) {
-			fprintf(stderr, "gopura-kiosk: --%s cannot be '%s'; see --help\n",
+			fprintf(stderr,
+				"gopura-kiosk: --%s does not accept '%s'; see gopura-kiosk --help\n",
 				long_options[which].name, optarg);
 			return OPTIONS_BAD;
 		}
 	}
 	if (optind < argc) {
-		fprintf(stderr, "gopura-kiosk: '%s' is not an option; see --help\n", argv[optind]);
+		fprintf(stderr, "gopura-kiosk: '%s' is not an option; see gopura-kiosk --help\n",
+			argv[optind]);
 		return OPTIONS_BAD;
 	}
 	return check_together(out) ? OPTIONS_RUN : OPTIONS_BAD;

@@ -139,10 +139,10 @@ int provision_read(struct provision *provision, struct options *options, struct 
 		log_error("app", "set-up bug: %s: %s", provision->path,
 			  provision->faults.list[i].text);
 	if (provision->faults.dropped > 0)
-		log_error("app", "set-up bug: %s: and %u more", provision->path,
+		log_error("app", "set-up bug: %s: and %u more faults", provision->path,
 			  provision->faults.dropped);
 	if (!provision->path && options->conf_count > 0)
-		log_warn("app", "there is no %s: going on without (docs/terminal.md)",
+		log_warn("app", "%s does not exist; the defaults are used (docs/terminal.md)",
 			 options->conf_paths[0]);
 	return rc;
 }

@@ -263,7 +263,7 @@ static void give_database(struct information_view *view, struct bytes object)
 			rc = tell_tours(view);
 	}
 	if (rc < 0)
-		log_error("app", "the words over the model cannot be shown: %s", strerror(-rc));
+		log_error("app", "the texts over the model cannot be shown: %s", strerror(-rc));
 }
 
 bool information_view_give(struct information_view *view, struct hash hash, struct bytes object)
@@ -357,7 +357,7 @@ void information_view_set_language(struct information_view *view, const char *la
 	page = overlay_page(view->overlay);
 	overlay_language(view->overlay, view->language);
 	if (tell_parts(view) < 0 || tell_tours(view) < 0)
-		log_error("app", "out of memory for the words of parts and tours");
+		log_error("app", "out of memory for the texts of parts and tours");
 	if (page >= 0)
 		information_view_open_page(view, (uint32_t)page);
 	if (overlay_searching(view->overlay))

@@ -349,10 +349,11 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 			build.language_count = 1;
 	}
 	if (rc == 0 && !draft_languages_are_sane(&build)) {
-		draft_complain(&draft, true, "parts.json", 0,
-			       "titles are in more than %d languages, or in what is no "
-			       "language's code: name those to take",
-			       INFO_LANGUAGES_MAX);
+		draft_complain(
+			&draft, true, "parts.json", 0,
+			"titles are in more than %d languages, or in something that is not a "
+			"language code: name those to take",
+			INFO_LANGUAGES_MAX);
 		rc = -EINVAL;
 	}
 	if (rc == 0)

@@ -209,7 +209,7 @@ static void read_body(struct importer *im, const cJSON *body)
 	if (!is_language(language)) {
 		importer_complain(
 			im, true, im->line,
-			"annotation \"%.80s\": \"%.40s\" is no language's code: write such as \"en\"",
+			"annotation \"%.80s\": \"%.40s\" is not a language code: write one such as \"en\"",
 			item_id(im), language);
 		return;
 	}
@@ -459,8 +459,9 @@ static int read_file(struct importer *im, cJSON **json, struct buffer *text)
 	*json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	if (*json)
 		return 0;
-	importer_complain(im, true, json_line_of((char *)text->data, end),
-			  "is not JSON from here on: look for a missing comma, quote or bracket");
+	importer_complain(
+		im, true, json_line_of((char *)text->data, end),
+		"is not valid JSON from here on: look for a missing comma, quote or bracket");
 	return -EINVAL;
 }
 

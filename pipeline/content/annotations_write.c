@@ -209,9 +209,9 @@ bool importer_has_room(struct importer *im)
 			continue;
 		if (access(path, F_OK) < 0)
 			continue;
-		importer_complain(
-			im, true, 0,
-			"%s is there already: import into a folder without parts and pages", path);
+		importer_complain(im, true, 0,
+				  "%s exists already: import into a folder without parts and pages",
+				  path);
 		return false;
 	}
 	return true;

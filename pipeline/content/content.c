@@ -288,7 +288,7 @@ static int complete_scan(struct content *content, uint32_t i, const char *ini, s
 				 strerror(-rc));
 	if (stat(path, &status) < 0)
 		return fault_set(fault, -errno,
-				 "%s: scans: %s: %s; put it into %s or mend its name", ini,
+				 "%s: scans: %s: %s; put it into %s, or correct its name", ini,
 				 content->scans[i], strerror(errno), content->folder);
 	if (!S_ISREG(status.st_mode))
 		return fault_set(fault, -EINVAL, "%s: scans: %s is not a regular file", ini,

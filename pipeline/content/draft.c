@@ -134,7 +134,7 @@ static void measure_picture(struct draft *draft, struct draft_picture *picture, 
 		rc = buffer_read_file(&bytes, path);
 	if (rc == -ENOENT) {
 		draft_complain(draft, true, file, line,
-			       "picture \"%s\" is not there: add the file, or mend the name",
+			       "picture \"%s\" is not there: add the file, or correct the name",
 			       picture->name);
 	} else if (rc == -EFBIG) {
 		draft_complain(draft, true, picture->name, 0,
@@ -149,7 +149,7 @@ static void measure_picture(struct draft *draft, struct draft_picture *picture, 
 			       PICTURE_PAGE_SIDE_MOST_PX);
 	} else if (rc < 0) {
 		draft_complain(draft, true, picture->name, 0,
-			       "is no whole JPEG or PNG picture: save it anew as one");
+			       "is not a complete JPEG or PNG picture: save it again as one");
 	} else {
 		picture->damaged = false;
 		picture->media_type = bytes.data[0] == 0x89 ? "image/png" : "image/jpeg";

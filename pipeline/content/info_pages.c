@@ -83,11 +83,12 @@ static void check_link(struct page_check *check, xmlNode *node)
 		draft_complain(check->draft, true, check->file, line,
 			       "link to \"%.80s\": no tour has that id; see tours.json", href);
 	else if (!to_page && !to_part && !to_tour)
-		draft_complain(check->draft, true, check->file, line,
-			       "link to \"%.80s\": a kiosk leads nowhere outside; link to "
-			       "\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
-			       "text",
-			       href);
+		draft_complain(
+			check->draft, true, check->file, line,
+			"link to \"%.80s\": the kiosk shows nothing outside the release; link to "
+			"\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
+			"text",
+			href);
 	else if (!to_tour && part < 0)
 		draft_complain(check->draft, true, check->file, line,
 			       "link to \"%.80s\": no part has that id; see parts.json", href);
@@ -239,7 +240,7 @@ static int read_page_file(struct page_check *check)
 	}
 	if (rc == -ELOOP) {
 		draft_complain(check->draft, true, check->file, 0,
-			       "is a link or no regular file: put the page itself there");
+			       "is a link or not a regular file: put the page itself there");
 	} else if (rc < 0) {
 		draft_complain(check->draft, true, check->file, 0,
 			       rc == -EFBIG ? "page is larger than %d KB: split it"
@@ -247,7 +248,7 @@ static int read_page_file(struct page_check *check)
 			       HTML_BYTES_MAX >> 10);
 	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
 		draft_complain(check->draft, true, check->file, 0,
-			       "is not UTF-8: save it with that encoding");
+			       "is not UTF-8: save it as UTF-8");
 	} else {
 		check->page->html = (char *)bytes.data; /* taken */
 		check->page->size = bytes.size - 1;

@@ -259,7 +259,7 @@ static int read_id(struct part_reader *r)
 			      "page's file)",
 			      id ? id : "", INFO_ID_BYTES_MAX);
 	else if (draft_find_part(r->draft, id) >= 0)
-		complain_part(r, "part \"%s\" is there twice: rename or remove one", id);
+		complain_part(r, "part \"%s\" is defined twice: rename or remove one", id);
 	r->part->id = strdup(id ? id : "");
 	return r->part->id ? 0 : -ENOMEM;
 }
@@ -333,9 +333,10 @@ static int read_array(struct draft *draft, const cJSON *json, const char *text)
 		if (cJSON_IsObject(item))
 			rc = read_part(draft, item, lines[i], credits);
 		else
-			draft_complain(draft, true, parts_file, 0,
-				       "entry %d of \"parts\" is no object: write {\"id\": ...}",
-				       i + 1);
+			draft_complain(
+				draft, true, parts_file, 0,
+				"entry %d of \"parts\" is not an object: write {\"id\": ...}",
+				i + 1);
 		i++;
 	}
 	free(lines);
@@ -355,18 +356,18 @@ static int parse_parts(struct draft *draft, struct buffer *text)
 	bad = json_not_utf8((char *)text->data);
 	if (bad) {
 		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, bad),
-			       "is not UTF-8 here: save it with that encoding");
+			       "is not UTF-8 from here on: save it as UTF-8");
 		return 0;
 	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
 	if (!json)
 		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, end),
-			       "is not JSON from here on: look for a missing comma, quote or "
+			       "is not valid JSON from here on: look for a missing comma, quote or "
 			       "bracket");
 	else if (!cJSON_IsArray(array))
 		draft_complain(draft, true, parts_file, 1,
-			       "must be {\"parts\": [...]} at the outside");
+			       "must be {\"parts\": [...]} at the top level");
 	else
 		rc = read_array(draft, json, (const char *)text->data);
 	cJSON_Delete(json);

@@ -51,7 +51,8 @@ static void check_keys(const struct tour_reader *r, const cJSON *json, const cha
 
 		snprintf(key, sizeof(key), " %.36s ", item->string);
 		if (!strstr(known, key))
-			complain(r, "\"%.40s\" is no key of it; it has:%s", item->string, known);
+			complain(r, "\"%.40s\" is not one of its keys, which are:%s", item->string,
+				 known);
 	}
 }
 
@@ -152,13 +153,13 @@ static void read_view(const struct tour_reader *r, const cJSON *json, struct dra
 		stop->has_target =
 			has_target && read_vector(r, json, "target", stop->view.target_m);
 	} else if (has_eye || has_target) {
-		complain(r, "\"%s\" alone is no view: add \"%s\": [x, y, z]",
+		complain(r, "\"%s\" alone is not a view: add \"%s\": [x, y, z]",
 			 has_eye ? "eye" : "target", has_eye ? "target" : "eye");
 	} else if (has_part && is_first) {
 		complain(r, "a part is shown from where the stop before stands, and the first has "
 			    "none: add \"eye\": [x, y, z]");
 	} else if (!cJSON_HasObjectItem(json, "part")) {
-		complain(r, "what does it look at? Add \"eye\" and \"target\": [x, y, z], or "
+		complain(r, "it has no view: add \"eye\" and \"target\": [x, y, z], or "
 			    "\"part\": \"ID\"");
 	}
 }
@@ -293,7 +294,7 @@ static int read_tour(struct draft *draft, const cJSON *json, const char *text, u
 	if (!draft_is_id(tour->id))
 		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
-		complain(&r, "is there twice: rename or remove one");
+		complain(&r, "is defined twice: rename or remove one");
 	check_keys(&r, json, " id title caption thumbnail attract stops ");
 	check_attract(&r, json);
 	rc = read_texts(&r, json, "title", tour->titles, true);
@@ -334,9 +335,10 @@ static int read_array(struct draft *draft, const cJSON *array, const char *text)
 		if (cJSON_IsObject(item))
 			rc = read_tour(draft, item, line_at(text, lines[i]), lines[i]);
 		else
-			draft_complain(draft, true, tours_file, 0,
-				       "entry %d of \"tours\" is no object: write {\"id\": ...}",
-				       i + 1);
+			draft_complain(
+				draft, true, tours_file, 0,
+				"entry %d of \"tours\" is not an object: write {\"id\": ...}",
+				i + 1);
 		i++;
 	}
 	return rc;
@@ -355,18 +357,18 @@ static int parse(struct draft *draft, struct buffer *text)
 	bad = json_not_utf8((char *)text->data);
 	if (bad) {
 		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, bad),
-			       "is not UTF-8 here: save it with that encoding");
+			       "is not UTF-8 from here on: save it as UTF-8");
 		return 0;
 	}
 	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
 	array = cJSON_GetObjectItemCaseSensitive(json, "tours");
 	if (!json)
 		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, end),
-			       "is not JSON from here on: look for a missing comma, quote or "
+			       "is not valid JSON from here on: look for a missing comma, quote or "
 			       "bracket");
 	else if (!cJSON_IsArray(array))
 		draft_complain(draft, true, tours_file, 1,
-			       "must be {\"tours\": [...]} at the outside");
+			       "must be {\"tours\": [...]} at the top level");
 	else
 		rc = read_array(draft, array, (const char *)text->data);
 	cJSON_Delete(json);

@@ -107,7 +107,7 @@ static int read_list(struct face_list *list, const struct part_faces_all *all,
 				 "\"regions/lintel.faces\"",
 				 faces->file);
 	if (content_file_path(scans_content(all->scans), faces->file, path) < 0)
-		return fault_set(fault, -EINVAL, "\"%.60s\" is no file within the folder",
+		return fault_set(fault, -EINVAL, "\"%.60s\" is not a file within the folder",
 				 faces->file);
 	rc = count_faces(all, scan, &face_count, fault);
 	if (rc == 0)

@@ -296,7 +296,7 @@ static void judge_pace(struct way *way)
 	int complained = -1;
 
 	if (way->path.duration_ms > TOUR_MINUTES_MAX * 60000)
-		complain(way, -1, "takes %.1f minutes, nobody stands so long: at most %d",
+		complain(way, -1, "takes %.1f minutes, the limit is %d",
 			 (double)way->path.duration_ms / 60000, TOUR_MINUTES_MAX);
 	tour_path_pose(&way->path, 0, &before);
 	for (int64_t ms = LOOK_MS; ms <= way->path.duration_ms; ms += LOOK_MS) {

@@ -53,7 +53,7 @@ static int read_number(struct text *text, uint32_t *out)
 		value = value > UINT32_MAX ? value : 10 * value + (uint64_t)(*text->at - '0');
 	if (text->at == from)
 		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: '%.*s' is no face: write numbers such as 17 and ranges "
+				 "%s:%u: '%.*s' is not a face: write numbers such as 17 and ranges "
 				 "such as 20-31",
 				 text->name, text->line, shown(from), from);
 	if (value >= text->face_count)

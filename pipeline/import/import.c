@@ -79,10 +79,11 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	report->file_bytes = (uint64_t)status.st_size;
 	*format = sniff(path, head, (size_t)got);
 	if (*format == SCAN_UNKNOWN)
-		return fault_set(fault, -EINVAL,
-				 "%s: no scan that is read here; give PLY, OBJ, STL, OFF, glTF or "
-				 "GLB",
-				 path);
+		return fault_set(
+			fault, -EINVAL,
+			"%s: not a supported scan format; give PLY, OBJ, STL, OFF, glTF or "
+			"GLB",
+			path);
 	snprintf(report->format, sizeof(report->format), "%s", format_names[*format]);
 	return 0;
 }
@@ -206,7 +207,7 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	if (mesh->triangle_count == 0)
 		return fault_set(fault, -EBADMSG,
 				 "%s: none of its faces is usable (%" PRIu32 " degenerate, %" PRIu32
-				 " with a corner that is no number); export it again",
+				 " with a corner that is not a number); export it again",
 				 path, report->repairs.degenerate_faces,
 				 report->repairs.lost_faces);
 	/* assimp gives every face its own vertices, so merging them is no repair of the scan. */

@@ -36,7 +36,7 @@ const char *import_files_why(int rc)
 	case -ELOOP:
 		return "is a link, or lies behind one";
 	case -EINVAL:
-		return "is no regular file";
+		return "is not a regular file";
 	case -EKEYREJECTED:
 		return "is a signing key";
 	default:

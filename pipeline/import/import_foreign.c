@@ -273,7 +273,7 @@ static int add_mesh(struct builder *builder, uint32_t index, const struct aiMatr
 			if (corner >= from->mNumVertices)
 				return fault_set(builder->fault, -EBADMSG,
 						 "%s: face %u of its part %u names vertex %u, but "
-						 "the part has %u; mend or remove it",
+						 "the part has %u; correct or remove it",
 						 builder->job->path, i, index, corner,
 						 from->mNumVertices);
 			triangle[k] = base + corner;
@@ -447,7 +447,7 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 	rc = mesh_file_read(out, no_key, parent->result_fd);
 	if (rc < 0)
 		return fault_set(fault, rc,
-				 "%s: its reader gave back nonsense: %s; export it again",
+				 "%s: its reader returned an invalid mesh: %s; export it again",
 				 parent->path, strerror(-rc));
 	return 0;
 }

@@ -11,8 +11,8 @@ static void print_count(FILE *to, uint64_t count, const char *one, const char *m
 
 static void print_repairs(FILE *to, const struct mesh_repairs *repairs)
 {
-	print_count(to, repairs->lost_faces, "face with a corner that is no number, dropped",
-		    "faces with a corner that is no number, dropped");
+	print_count(to, repairs->lost_faces, "face with a corner that is not a number, dropped",
+		    "faces with a corner that is not a number, dropped");
 	print_count(to, repairs->degenerate_faces, "degenerate face, dropped",
 		    "degenerate faces, dropped");
 	print_count(to, repairs->merged_vertices, "duplicate vertex, merged",

@@ -191,7 +191,7 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 		fault_set(fault, -EPERM, "%s: it names '%.200s', which %s; %s", seen_path,
 			  files.refused_name, import_files_why(files.refused),
 			  files.refused == -EKEYREJECTED
-				  ? "no scan needs one: do not trust whoever made it"
+				  ? "no scan needs one: do not trust its maker"
 				  : "copy that file beside the scan");
 		return NULL;
 	}

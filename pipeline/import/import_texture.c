@@ -11,7 +11,7 @@
 
 enum { PICTURE_FILE_MAX = 1 << 29 };
 
-static const char too_much[] = "makes its pictures too large together";
+static const char too_much[] = "makes the scan's pictures too large in total";
 
 int import_texture_plain(struct mesh_texture *out, const uint8_t plain[3])
 {
@@ -55,7 +55,7 @@ int import_texture_bytes(struct mesh_texture *out, const char *scan_path, const 
 		return tolerate(out, scan_path, name, "is over 16384 pixels a side", plain, report);
 	if (rc == -EBADMSG)
 		return tolerate(out, scan_path, name,
-				"is damaged, or no JPEG or PNG that can be read", plain, report);
+				"is damaged, or not a readable JPEG or PNG file", plain, report);
 	if (rc == 0)
 		rc = from_picture(out, &picture);
 	picture_finish(&picture);

@@ -95,11 +95,12 @@ static int next_number(struct pass *pass, enum ply_type type, bool cross_lines, 
 	case PLY_TOKEN_NUMBER:
 		return 0;
 	case PLY_TOKEN_LINE_END:
-		return element_fault(pass, -EBADMSG,
-				     "its line has fewer numbers than its properties need; mend or "
-				     "remove it");
+		return element_fault(
+			pass, -EBADMSG,
+			"its line has fewer numbers than its properties need; correct or "
+			"remove it");
 	case PLY_TOKEN_BAD:
-		snprintf(what, sizeof(what), "'%.40s' is not a number; mend or remove it", text);
+		snprintf(what, sizeof(what), "'%.40s' is not a number; correct or remove it", text);
 		return element_fault(pass, -EBADMSG, what);
 	default:
 		return ends_early(pass);
@@ -125,7 +126,7 @@ static int check_corner(struct pass *pass, double value)
 		return 0;
 	snprintf(what, sizeof(what),
 		 "names vertex %.10g, but the file has %" PRIu64
-		 " (the first is 0); mend or remove "
+		 " (the first is 0); correct or remove "
 		 "it",
 		 value, pass->ply->summary.vertex_count);
 	return element_fault(pass, -EBADMSG, what);
@@ -219,7 +220,7 @@ static int read_list(struct pass *pass, const struct ply_property *property, boo
 		return rc;
 	if (!(count >= 0 && count <= UINT32_MAX) || count != floor(count))
 		return element_fault(pass, -EBADMSG,
-				     "the length of its list is not a count; mend or remove it");
+				     "the length of its list is not a count; correct or remove it");
 	for (uint64_t i = 0; i < (uint64_t)count; i++) {
 		rc = next_number(pass, property->type, true, &value);
 		if (rc == 0)
@@ -314,7 +315,7 @@ static int end_line(struct pass *pass)
 		return 0;
 	default:
 		return element_fault(pass, -EBADMSG,
-				     "its line has more than its properties; mend or remove it");
+				     "its line has more than its properties; correct or remove it");
 	}
 }
 

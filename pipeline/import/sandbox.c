@@ -96,7 +96,8 @@ static void send_opened(int socket, int fd)
 	}
 	/* If the child does not listen any more, the way it ends tells why. */
 	if (sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
-		log_debug("pipeline", "a parser did not wait for its file: %s", strerror(errno));
+		log_debug("pipeline", "a reader process ended without waiting for its file: %s",
+			  strerror(errno));
 }
 
 /* Runs in the parent: answers one request. Returns false if the child will not ask again. */
@@ -265,15 +266,15 @@ static void tell_walls(const struct outcome *outcome, const char *name)
 {
 	static bool was_told;
 
-	log_debug("pipeline", "%s: its reader's walls: seccomp %s, Landlock %s", name,
+	log_debug("pipeline", "%s: sandbox of its reader: seccomp %s, Landlock %s", name,
 		  outcome->calls_wall ? "absent" : "stands",
 		  outcome->files_wall ? "absent" : "stands");
 	if (outcome->calls_wall == 0 || was_told)
 		return;
 	was_told = true;
 	log_warn("pipeline",
-		 "this kernel filters no system calls (seccomp: %s): foreign scans are read with "
-		 "less protection",
+		 "this kernel cannot filter system calls (seccomp: %s), so foreign scans are read "
+		 "with less protection",
 		 strerror(-outcome->calls_wall));
 }
 
@@ -283,22 +284,23 @@ static int judge(int watched, int status, struct outcome *outcome,
 	if (watched == -ETIMEDOUT || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
 		return fault_set(fault, -ETIMEDOUT,
 				 "%s: reading it took over %" PRIu32
-				 " s, so it was given up; it is "
+				 " s, so it was stopped; the file is "
 				 "damaged or too large: export it as PLY",
 				 name, options->timeout_s);
 	if (watched == -ENOMEM)
 		return fault_set(fault, -ENOMEM,
-				 "%s: reading it took over %" PRIu64 " MiB, so it was given up; it "
-				 "is damaged or too large: export it as PLY",
+				 "%s: reading it took over %" PRIu64 " MiB, so it was stopped; the "
+				 "file is damaged or too large: export it as PLY",
 				 name, options->memory_bytes >> 20);
 	if (watched < 0)
 		return fault_set(fault, watched, "%s: %s", name, strerror(-watched));
 	if (!outcome->finished)
 		return fault_set(fault, -EBADMSG,
-				 "%s: its reader crashed on it (%s); it is damaged: export it "
+				 "%s: its reader crashed (%s), so the file is damaged: export it "
 				 "again, or as PLY",
 				 name,
-				 WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it gave up");
+				 WIFSIGNALED(status) ? strsignal(WTERMSIG(status))
+						     : "the reader failed");
 	outcome->fault.text[FAULT_BYTES - 1] = '\0';
 	if (outcome->rc < 0)
 		return fault_set(fault, outcome->rc, "%s", outcome->fault.text);

@@ -181,7 +181,7 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 	buffer_init(&file, sizeof(text) - 1);
 	rc = buffer_read_file(&file, path);
 	if (rc == 0 && stat(path, &stat_of) == 0 && (stat_of.st_mode & 077)) {
-		log_error("pipeline", "%s: others may read this key; chmod 600 it", path);
+		log_error("pipeline", "%s: others may read this key; run chmod 600 on it", path);
 		buffer_finish(&file);
 		return -EPERM;
 	}
@@ -212,8 +212,8 @@ static int judge_order(const char *folder)
 		if (has_key(folder, (enum meta_role)role) &&
 		    !has_key(folder, (enum meta_role)(role - 1))) {
 			log_error("pipeline",
-				  "%s: %s.key is here, but %s.key and root/1.json are not: bring "
-				  "them back from your copy, or begin with an empty folder",
+				  "%s: %s.key exists, but %s.key and root/1.json do not: restore "
+				  "them from your copy, or begin with an empty folder",
 				  folder, role_names[role], role_names[role - 1]);
 			return -EEXIST;
 		}

@@ -39,8 +39,7 @@ static int default_base(char out[PATH_MAX])
 		size = snprintf(out, PATH_MAX, "%s/.config/gopura/keys", home);
 	else
 		return complain("signing keys", -ENOENT,
-				"; neither XDG_CONFIG_HOME nor HOME names a folder for them: give "
-				"--keys FOLDER");
+				"; neither XDG_CONFIG_HOME nor HOME is set: give --keys FOLDER");
 	return size < PATH_MAX ? 0
 			       : complain("signing keys", -ENAMETOOLONG, "; give --keys FOLDER");
 }
@@ -188,7 +187,7 @@ static void remove_files(const char *folder)
 		rmdir(path);
 	if (rmdir(folder) < 0 && errno != ENOENT)
 		log_warn("pipeline",
-			 "%s: its keys were moved, but something is left in it: take it away",
+			 "%s: the keys were moved out, but other files are left in it; remove them",
 			 folder);
 }
 
@@ -266,9 +265,10 @@ static void move_old(char folder[PATH_MAX], const char *content)
 		if (have_one_root(old, folder))
 			remove_files(old); /* the move was interrupted */
 		else
-			log_warn("pipeline",
-				 "%s holds keys too; those in %s are used: take the others away",
-				 old, folder);
+			log_warn(
+				"pipeline",
+				"%s contains keys too, but those in %s are used; remove the others",
+				old, folder);
 		return;
 	}
 	rc = rename(old, folder) < 0 ? -errno : keys_sync_parent(folder);
@@ -276,9 +276,10 @@ static void move_old(char folder[PATH_MAX], const char *content)
 		rc = copy_across(old, folder);
 	if (rc == 0) {
 		chmod(folder, 0700);
-		log_info("pipeline",
-			 "moved the signing keys of %s to %s: they do not belong among the content",
-			 content, folder);
+		log_info(
+			"pipeline",
+			"moved the signing keys of %s to %s, because they must not lie in the content folder",
+			content, folder);
 	} else {
 		log_warn("pipeline",
 			 "%s: the signing keys cannot be moved to %s (%s) and are used where they "
@@ -350,7 +351,7 @@ static void judge_place(const char *folder, const char *content)
 
 	if (realpath(folder, real) && strncmp(real, content, size) == 0 && real[size] == '/')
 		log_warn("pipeline",
-			 "%s: the signing keys lie in the content folder; keep them elsewhere "
+			 "%s: the signing keys are in the content folder; keep them elsewhere "
 			 "(--keys FOLDER)",
 			 folder);
 }

@@ -339,9 +339,10 @@ int inspect_bytes(FILE *to, struct bytes bytes)
 			continue;
 		rc = forms[i].print(to, bytes);
 		if (rc < 0)
-			fprintf(to, "damaged: begins as one of ours, and does not decode\n");
+			fprintf(to,
+				"damaged: begins like an object of a release, but cannot be decoded\n");
 		return rc;
 	}
-	fprintf(to, "%zu bytes of no form that is known here\n", bytes.size);
+	fprintf(to, "%zu bytes of an unknown format\n", bytes.size);
 	return rc;
 }

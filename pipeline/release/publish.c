@@ -131,8 +131,8 @@ static int pack(struct publish_report *report, const struct publish_target *targ
 		options.before = &locator;
 	else if (rc < 0)
 		log_warn("pipeline",
-			 "the locator of release %" PRIu64 " cannot be read (%s): everything is "
-			 "packed anew",
+			 "the locator of release %" PRIu64 " cannot be read (%s), so all "
+			 "objects are packed again",
 			 before->sequence, strerror(-rc));
 	rc = pack_release(&options, &report->packs);
 	progress_end(bar.progress);
@@ -182,7 +182,7 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 	*report = (struct publish_report){ 0 };
 	if (rc < 0) {
 		if (rc == -ENOENT)
-			log_error("pipeline", "%s: nothing was published there yet",
+			log_error("pipeline", "%s: nothing has been published there yet",
 				  target->release);
 		return rc;
 	}
@@ -192,7 +192,7 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 		log_error("pipeline", "%s: there was no release %" PRIu64, target->release,
 			  sequence);
 	else if (rc == -ENOENT)
-		log_error("pipeline", "%s: there is no earlier release to go back to",
+		log_error("pipeline", "%s: there is no earlier release to return to",
 			  target->release);
 	if (rc < 0)
 		return rc;

@@ -28,7 +28,7 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 		return rc;
 	log_warn("pipeline",
 		 "the coarsest cut alone is %.1f %% of the scan's %" PRIu64
-		 " triangles, more than the published share of %.1f %%",
+		 " triangles, more than the share of %.1f %% that may be published",
 		 100.0 * share_of_top(master), master->source_triangles, 100.0 * share);
 	return master_cut_create(cut, master, share_of_top(master));
 }

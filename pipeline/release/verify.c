@@ -177,7 +177,7 @@ static int look_into(struct verify_walk *walk, enum page_kind kind, const struct
 	hash_to_hex(page->name, hex);
 	if (page->page.kind != kind)
 		return verify_blame(walk->report, -EBADMSG,
-				    "page %s is of kind %d where kind %d belongs", hex,
+				    "page %s is of kind %d instead of kind %d", hex,
 				    page->page.kind, kind);
 	rc = check_block(walk, page);
 	if (rc == 0)

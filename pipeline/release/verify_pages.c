@@ -207,7 +207,7 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 			rc = hash_map_put(&children, page->page.children[i].hash, i);
 		}
 		if (rc == 0)
-			rc = blame_child(walk, page, i, "picture", "is there twice");
+			rc = blame_child(walk, page, i, "picture", "is contained twice");
 	}
 	for (uint32_t i = 0; rc >= 0 && i < info_picture_count(info); i++) {
 		const struct info_picture *picture = info_picture(info, i);
@@ -291,7 +291,7 @@ static const char *compare_labels(const struct verify_walk *walk, uint32_t index
 			return "are of another number of triangles than a patch of their group";
 	for (uint32_t p = 0; p < labels->part_count; p++)
 		if (info_find(walk->info, labels->parts[p].id) < 0)
-			return "name a part of which the information knows nothing";
+			return "name a part that the information database lacks";
 	return NULL;
 }
 

@@ -84,8 +84,7 @@ static int build_framebuffer(struct frame *frame)
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, frame->depth, 0);
 	rc = gl_check("making a frame");
 	if (rc == 0 && glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-		log_error("pipeline", "the driver refuses a frame of %d x %d pixels", width,
-			  height);
+		log_error("pipeline", "the GL driver cannot render %d x %d pixels", width, height);
 		rc = -ENOTSUP;
 	}
 	return rc;

@@ -127,7 +127,7 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 		*out = views;
 		return 0;
 	}
-	fault_set(fault, rc, "%s: no view in it; a view a line", name);
+	fault_set(fault, rc, "%s: the file has no view; write one a line", name);
 fail:
 	free(views);
 	*count = 0;

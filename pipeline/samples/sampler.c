@@ -259,7 +259,7 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 	if (rc == 0)
 		rc = work(sampling, renderer, done_fd);
 	if (rc < 0)
-		log_error("pipeline", "a process of the sampler ended: %s", strerror(-rc));
+		log_error("pipeline", "a sampler process failed: %s", strerror(-rc));
 	face_renderer_destroy(renderer);
 	drawing_destroy(options.drawing);
 	headless_destroy(headless);

@@ -84,7 +84,7 @@ static int open_panel(struct canvas *canvas, const struct display_options *optio
 	for (size_t i = 0; rc == 0 && i < ARRAY_COUNT(canvas->buffers); i++)
 		rc = create_dumb(canvas, &canvas->buffers[i]);
 	if (rc < 0)
-		log_error("render", "board bug: the card gives no memory to draw into: %s",
+		log_error("render", "board bug: the graphics card allocates no framebuffer: %s",
 			  strerror(-rc));
 	return rc;
 }

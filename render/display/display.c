@@ -31,7 +31,7 @@ static int try_window(struct display *display, const struct display_options *opt
 #ifdef GOPURA_NO_WINDOW
 	(void)display;
 	(void)options;
-	log_error("render", "this kiosk was built without a window: choose --display drm");
+	log_error("render", "this kiosk was built without the window display; use --display drm");
 	return -ENOTSUP;
 #else
 	return try_backend(display, &display_window, options);
@@ -149,7 +149,8 @@ bool display_take_stale(struct display *display)
 /* Draws a panel black that cannot be switched off. */
 static int show_black(struct display *display, int why)
 {
-	log_warn("render", "board bug: the panel cannot be switched off (%s): it is black instead",
+	log_warn("render",
+		 "board bug: the panel cannot be turned off (%s); it is made black instead",
 		 strerror(-why));
 	display_begin(display);
 	glClearColor(0, 0, 0, 1);

@@ -109,15 +109,15 @@ static void choose_mode(struct drm_card *card, const drmModeConnector *connector
 	reason = drm_mode_choose(&card->mode, connector->modes, connector->count_modes, edid != 0,
 				 wish);
 	if (!card->connected)
-		log_warn("render", "no panel is connected: going on unseen");
+		log_warn("render", "no panel is connected; the kiosk waits for one");
 	else if (reason == DRM_MODE_UNKNOWN)
-		log_warn("render", "board bug: the panel has no mode %d x %d, taking %d x %d",
+		log_warn("render", "board bug: the panel has no mode %d x %d; using %d x %d",
 			 wish->width_px, wish->height_px, card->mode.hdisplay, card->mode.vdisplay);
 	else if (reason == DRM_MODE_OTHER_RATE)
-		log_warn("render", "board bug: the panel has %d x %d not at %d Hz, taking %u",
+		log_warn("render", "board bug: the panel has no mode %d x %d at %d Hz; using %u Hz",
 			 wish->width_px, wish->height_px, wish->hz, card->mode.vrefresh);
 	else if (reason == DRM_MODE_MADE)
-		log_info("render", "the panel does not say what it can: taking %d x %d at %u Hz",
+		log_info("render", "the panel reports no modes; using %d x %d at %u Hz",
 			 card->mode.hdisplay, card->mode.vdisplay, card->mode.vrefresh);
 }
 
@@ -251,7 +251,7 @@ static const char *why_not(int rc)
 	case -ENXIO:
 		return "no connected panel that fits";
 	case -EBUSY:
-		return "another program shows pictures on it";
+		return "another program uses it";
 	case -ENODEV:
 		return "it drives no panel";
 	default:
@@ -314,16 +314,17 @@ static int open_when_free(struct drm_card *out, const struct drm_card_options *o
 	if (rc != -EBUSY || !options->may_wait)
 		return rc < 0 ? -ENODEV : 0;
 	snprintf(path, sizeof(path), "/dev/dri/card%d", taken);
-	log_warn("render", "another program shows pictures on %s: waiting until it ends", name);
+	log_warn("render", "another program uses %s; waiting until it ends", name);
 	while (rc == -EBUSY && clock_now_ms() < until_ms) {
 		nanosleep(&pause, NULL);
 		rc = open_once(out, true, &taken, options);
 	}
 	if (rc == -EBUSY)
-		log_error("render",
-			  "another program still shows pictures on %s: end it (a desktop, a boot "
-			  "splash, another kiosk), or name another card by --device",
-			  name);
+		log_error(
+			"render",
+			"another program still uses %s: end it (a desktop, a boot splash, another "
+			"kiosk), or name another card with --device",
+			name);
 	return rc < 0 ? -ENODEV : 0;
 }
 
@@ -348,13 +349,14 @@ int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
 	const int64_t until_ms = clock_now_ms() + CARD_WAIT_MS;
 
 	if (options->may_wait && is_late(options)) {
-		log_warn("render", "no graphics card yet: waiting for one");
+		log_warn("render", "no graphics card is found yet; waiting for one");
 		while (is_late(options) && clock_now_ms() < until_ms)
 			nanosleep(&pause, NULL);
 		if (is_late(options)) {
-			log_error("render",
-				  "no graphics card under /dev/dri that may be opened: has the "
-				  "system a driver for it, and is this user in the group video?");
+			log_error(
+				"render",
+				"no graphics card in /dev/dri can be opened: check that the system "
+				"has its driver, and that this user is in the group video");
 			return -ENODEV;
 		}
 	}

@@ -164,13 +164,13 @@ static int look(struct drm_panel *panel, bool refused)
 	switch (drm_panel_after_look(news, was_away, refused, panel->card.link_is_bad)) {
 	case DRM_PANEL_WAIT:
 		if (!was_away)
-			log_warn("render", "the panel is gone");
+			log_warn("render", "the panel was unplugged");
 		break;
 	case DRM_PANEL_ANEW:
 		return -ESTALE;
 	case DRM_PANEL_SET_MODE:
 		if (was_away)
-			log_info("render", "the panel is back");
+			log_info("render", "the panel is connected again");
 		panel->mode_is_set = false;
 		panel->stale = true;
 		if (panel->flip_pending) /* restart its timeout */
@@ -254,7 +254,8 @@ static int refused(struct drm_panel *panel, int rc)
 	panel->stale = true;
 	if (step == DRM_PANEL_LATER) {
 		if (!panel->taken_said)
-			log_info("render", "another program has the panel (%s): waiting for it",
+			log_info("render",
+				 "another program controls the panel (%s); waiting for it to end",
 				 strerror(-rc));
 		panel->taken = panel->taken_said = true;
 		panel->mode_is_set = false; /* the other program may change the mode */
@@ -266,7 +267,8 @@ static int refused(struct drm_panel *panel, int rc)
 		return rc;
 	}
 	panel->refusals++;
-	log_warn("render", "the panel refused a picture (%s): looking at it anew", strerror(-rc));
+	log_warn("render", "the panel refused a picture (%s); its modes are read again",
+		 strerror(-rc));
 	panel->retry_ms = clock_now_ms() + RETRY_MS;
 	return look(panel, true);
 }
@@ -279,7 +281,7 @@ int drm_panel_show(struct drm_panel *panel, uint32_t fb, bool *shown)
 	if (rc < 0)
 		return refused(panel, rc);
 	if (panel->taken_said)
-		log_info("render", "the panel is ours again");
+		log_info("render", "the kiosk controls the panel again");
 	panel->taken_said = false;
 	panel->refusals = 0;
 	panel->mode_is_set = true;
@@ -298,6 +300,6 @@ int drm_panel_sleep(struct drm_panel *panel, bool asleep)
 	panel->mode_is_set = false;
 	panel->stale = true;
 	if (drm_card_wake(&panel->card) < 0)
-		log_debug("render", "the panel is not told to wake up, but shown a picture");
+		log_debug("render", "the panel is woken by a picture instead of DPMS");
 	return look(panel, true);
 }

@@ -329,7 +329,7 @@ static int create_target(struct gl_target *out, int width_px, int height_px, boo
 		add_depth(out);
 	rc = gl_check("making a framebuffer");
 	if (rc == 0 && glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-		log_error("render", "the driver refuses a framebuffer of %d x %d", width_px,
+		log_error("render", "the driver cannot create a framebuffer of %d x %d", width_px,
 			  height_px);
 		rc = -EIO;
 	}

@@ -336,7 +336,7 @@ void scene_give(struct scene *scene, struct hash hash, struct bytes object)
 	scene->wants_are_stale = true;
 	int rc = take_object(scene, known, object);
 	if (rc == -ENOMEM)
-		log_warn("render", "no memory for an object; it stays wanted");
+		log_warn("render", "out of memory for an object; it is requested again later");
 	else if (rc < 0)
 		scene_refuse(scene, known, rc);
 	else if (known->kind == OBJECT_BRICK)

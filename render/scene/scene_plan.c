@@ -41,7 +41,7 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 	if (rc == -EBADMSG)
 		scene_refuse(scene, object, rc);
 	else if (rc < 0)
-		log_warn("render", "an object was not taken up: %s", strerror(-rc));
+		log_warn("render", "an object could not be used: %s", strerror(-rc));
 }
 
 void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out)

@@ -22,7 +22,7 @@ start_kiosk() { # LOG
 	log=$1
 	rm -f "$log"
 	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
-		--trust "$work/release1/root/1.json" --state "$work/state" --figures "$work/kiosk" 2>"$log" &
+		--trust "$work/release1/root/1.json" --state "$work/state" --metrics "$work/kiosk" 2>"$log" &
 	pid=$!
 }
 says() { grep -qE "$1" "$log" 2>/dev/null; }

@@ -22,7 +22,7 @@ ends() {
 	[ "$status" -lt 126 ] || fail "$name ended with $status: $(cat "$work/$name.log")"
 }
 says() { grep -q -- "$2" "$work/$1.log" || fail "$1 does not say '$2': $(cat "$work/$1.log")"; }
-pipe="it is no regular file but a pipe" link="it is a link"
+pipe="it is not a regular file but a pipe" link="it is a link"
 
 # ---- gopura-setup
 ends check-pipe build/gopura-setup --check "$work/pipe/gopura.conf"
@@ -39,7 +39,7 @@ for which in pipe device named; do
 	ends "setup-$which" build/gopura-setup --conf "$work/$which/gopura.conf" --out "$work/out-$which"
 	[ -s "$work/out-$which/faults" ] && [ -s "$work/out-$which/hostname" ] || fail "$which: the system is not set up"
 	! grep -q -- --ca "$work/out-$which/fetch.env" || fail "$which: the fetcher gets what cannot be read"
-	ends "sum-$which" build/gopura-setup --sum "$work/$which/gopura.conf"
+	ends "sum-$which" build/gopura-setup --checksum "$work/$which/gopura.conf"
 done
 
 # ---- the appliance's script, as root, when such a stick comes

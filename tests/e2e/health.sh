@@ -14,12 +14,12 @@ trap '{ kill -CONT $kiosk; kill $kiosk $fetch $health; } 2>/dev/null || true' EX
 
 start_fetch() {
 	build/gopura-fetch --release "$release" --cache "$work/cache.db" --socket "$work/socket" \
-		--figures "$work/fetch" >>"$work/fetch.log" 2>&1 &
+		--metrics "$work/fetch" >>"$work/fetch.log" 2>&1 &
 	fetch=$!
 }
 start_kiosk() {
 	build/gopura-kiosk --display headless --size 640x360 --socket "$work/socket" \
-		--trust "$release/root/1.json" --state "$work/state" --figures "$work/kiosk" \
+		--trust "$release/root/1.json" --state "$work/state" --metrics "$work/kiosk" \
 		--touch-replay tests/e2e/nothing.touch >>"$work/kiosk.log" 2>&1 &
 	kiosk=$!
 }

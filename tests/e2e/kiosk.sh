@@ -42,12 +42,12 @@ for command in annotations build import temple publish verify inspect keys hiera
 done
 
 # ---- wrong options
-says 2 "--size cannot be '12'" $kiosk --size 12
-says 2 "--display cannot be 'tv'" $kiosk --display tv
-says 2 "--mode cannot be 'best'" $kiosk --mode best
-says 2 "--poll-s cannot be '0'" $kiosk --poll-s 0
-says 2 "--download cannot be '22:00'" $kiosk --download 22:00
-says 2 "--log cannot be 'all'" $kiosk --log all
+says 2 "--size does not accept '12'" $kiosk --size 12
+says 2 "--display does not accept 'tv'" $kiosk --display tv
+says 2 "--mode does not accept 'best'" $kiosk --mode best
+says 2 "--poll-s does not accept '0'" $kiosk --poll-s 0
+says 2 "--download does not accept '22:00'" $kiosk --download 22:00
+says 2 "--log does not accept 'all'" $kiosk --log all
 says 2 "'more' is not an option" $kiosk more
 says 2 'need --capture' $kiosk --release . --views x
 says 2 'needs --touch-replay' $kiosk --release . --quit-after-replay
@@ -125,7 +125,7 @@ same healed 38
 [ -f "$state/state.db.broken" ] || fail "the damaged state.db was not set aside"
 garbage "$state/state.db"
 garbage "$state/state.db.second"
-starts forgot 'no trust root yet' --state "$state" --release "$offline"
+starts forgot 'no trust root is stored' --state "$state" --release "$offline"
 draws again --state "$state" --release "$release" --trust "$release/root/1.json"
 same again 38
 

@@ -112,7 +112,7 @@ hash=$(sed -nE 's/^  child +[0-9]+ +([0-9a-f]{32}) .*/\1/p' "$folder/log" | tail
 files >"$folder/before"
 echo 'here' >"$dir/regions/step.faces"
 "$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log" && fail "a list without faces was published"
-grep -q "regions/step.faces:1: 'here' is no face" "$folder/log" || fail "the message does not name the line: $(cat "$folder/log")"
+grep -q "regions/step.faces:1: 'here' is not a face" "$folder/log" || fail "the message does not name the line: $(cat "$folder/log")"
 echo '0-99' >"$dir/regions/step.faces"
 "$content" publish "$dir" --out "$release" >/dev/null
 files >"$folder/after"

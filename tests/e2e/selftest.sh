@@ -24,7 +24,7 @@ kiosk=(build/gopura-kiosk --self-test --display headless --size 640x360)
 test=("${kiosk[@]}" --state "$work/state" --trust "$trust")
 
 tests well '' "${test[@]}"
-says well 'there never was one'
+says well 'none was ever connected'
 
 # ---- settings
 printf '[panel]\nrotation = 45\n' >"$work/bad.ini"
@@ -43,7 +43,7 @@ says sync 'Input/output error'
 
 # ---- trust
 tests untrusted trust "${kiosk[@]}" --state "$work/state"
-says untrusted 'by --trust once'
+says untrusted 'with --trust once'
 sed 's/"payload": *"..../&AAAA/' "$trust" >"$work/forged.json"
 ! cmp -s "$trust" "$work/forged.json" || fail "nothing is forged"
 tests forged trust "${kiosk[@]}" --state "$work/state" --trust "$work/forged.json"
@@ -52,7 +52,7 @@ printf '1 0 0 2 2 2 45\n' >"$work/views.txt"
 build/gopura-kiosk --display headless --size 64x64 --release "$small/release" --trust "$trust" --state "$work/state" \
 	--views "$work/views.txt" --capture "$work/views" 2>"$work/kiosk.log" || fail "the kiosk does not run"
 tests remembered '' "${kiosk[@]}" --state "$work/state"
-says remembered 'the remembered trust root, version 1'
+says remembered 'the stored trust root, version 1'
 
 # ---- panel and GPU
 tests nopanel 'gpu panel' "${kiosk[@]}" --state "$work/state" --display drm --device /dev/dri/nothing
@@ -68,8 +68,8 @@ plugged() { umockdev-run -d $data/panel.umockdev -i "/dev/input/event5=$1" -- "$
 tests touch '' plugged $data/panel.ioctl "${test[@]}"
 says touch 'Gopura test panel: 0..4095 x 0..4095, 5 fingers'
 tests unplugged touch "${test[@]}"
-says unplugged "where there was 'Gopura test panel"
+says unplugged "'Gopura test panel.* was connected before"
 sed 's/^\(EVIOCGABS(5[34]) 0 \).*/\1000000000000000000000000000000000000000000000000/; s/^\(EVIOCGABS(1) 0 \).*/\1000000000000000000000000000000000000000000000000/' \
 	$data/panel.ioctl >"$work/flat.ioctl"
 tests range touch plugged "$work/flat.ioctl" "${test[@]}"
-grep -q 'which is no range' "$work/range.log" || { cat "$work/range.log"; fail "the range is not told of"; }
+grep -q 'which is not a range' "$work/range.log" || { cat "$work/range.log"; fail "the range is not told of"; }

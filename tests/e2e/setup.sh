@@ -39,17 +39,17 @@ evil=$work/$(printf 'x"\nLD_PRELOAD=evil.so\n#"')
 mkdir -p "$evil"
 cp "$work/gopura.conf" "$work/1.json" "$work/ca.pem" "$evil/"
 [ "$(status $setup --conf "$evil/gopura.conf" --boards board --out "$work/out")" = 2 ] || fail "taken: a folder's name with quotes"
-grep -q 'rename it' "$work/said" || fail "said: $(cat "$work/said")"
+grep -q 'rename the file' "$work/said" || fail "said: $(cat "$work/said")"
 [ "$(status $setup --conf "$work/gopura.conf" --boards board --out "$evil/out")" = 2 ] || fail "taken: a folder's name with quotes"
 ! grep -rq LD_PRELOAD "$work/out" || fail "a folder's name became a line of fetch.env"
 
 # No file: by DHCP, and it is told what to do. What was of an earlier file is gone.
 [ "$(status $setup --conf "$work/none" --out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
 grep -q DHCP=yes "$work/out/network/10-wired.network" || fail "no DHCP without a file"
-grep -q "there is no $work/none; write one" "$work/out/faults" || fail "nobody is told"
+grep -q "$work/none does not exist: create it" "$work/out/faults" || fail "nobody is told"
 [ ! -e "$work/out/network/20-wifi.network" ] || fail "the radio network of an earlier file is left"
 
-for wrong in "" "--check a --conf b" "--conf a" "--out a" "--nonsense" "--check a b" "--sum a --conf b" "--sum a --check b"; do
+for wrong in "" "--check a --conf b" "--conf a" "--out a" "--nonsense" "--check a b" "--checksum a --conf b" "--checksum a --check b" "--sum a"; do
 	# shellcheck disable=SC2086
 	[ "$(status $setup $wrong)" = 2 ] || fail "taken: '$wrong'"
 done

@@ -71,7 +71,7 @@ envelope["payload"] = base64.b64encode(payload).decode()
 json.dump(envelope, open(sys.argv[1], "w"))
 P
 plug "$work/forged"
-wait_for 30 "refusal of a forged stick" says 'refused release.json of the stick: fewer good signatures'
+wait_for 30 "refusal of a forged stick" says 'refused release.json of the stick: fewer valid signatures'
 ! says 'release 9 is' || fail "a forged release was begun"
 end_kiosk
 pull
@@ -96,7 +96,7 @@ for name in sys.argv[1:]:
 P
 start_kiosk "$work/both.log" "$url" --ca "$ca"
 wait_for 60 "release 4 of the stick" says 'release 4 is on the stick'
-wait_for 30 "notice of the damage" says "the stick's bytes of object"
+wait_for 30 "notice of the damage" says 'object .* from the stick is damaged'
 ! says 'release 4 is shown' || fail "a damaged stick was shown"
 cp -a "$work/release/." "$work/release3/"
 wait_for 90 "release 4, from the server" says 'release 4 is shown'

@@ -93,5 +93,5 @@ bar unset-late left
 mv "$work/state-right" "$work/state-lost"
 visit lost 4 --conf "$work/no/gopura.conf"
 bar lost-late nowhere
-grep -q 'going on without' "$work/lost.log" || fail "nobody was told of the missing file"
+grep -q 'does not exist; the defaults are used' "$work/lost.log" || fail "nobody was told of the missing file"
 echo "gopura.conf on the panel: right, faulty, overridden, trustless, missing, lost"

@@ -60,7 +60,7 @@ for program in $(sed -nE 's/^Exec[A-Za-z]+=[+!-]*([^ ]+).*/\1/p' systemd/*.servi
 done
 # gopura-health, which has no user or group of its own, reaches the figures, and a restart does not
 # forget how many there were.
-for unit in $(grep -l -e '--figures' systemd/*.service); do
+for unit in $(grep -l -e '--metrics' systemd/*.service); do
 	! grep -q '^RuntimeDirectoryMode=' "$unit" || grep -q '^RuntimeDirectoryMode=07[15][15]$' "$unit" ||
 		{ echo "$unit: its RuntimeDirectoryMode= keeps gopura-health out: 0755 (sockets have modes of their own)"; failed=1; }
 	grep -q '^RuntimeDirectoryPreserve=yes$' "$unit" ||
@@ -80,7 +80,7 @@ for unit in kiosk safe fetch; do
 done
 grep -qE '^InaccessiblePaths=.*-?/efi( |$)' systemd/gopura-fetch.service || { echo "gopura-fetch.service: it sees /efi"; failed=1; }
 # The self-test looks at the terminal that will run: both have the same options.
-options() { grep "^$1=" systemd/gopura-kiosk.service | grep -oE -e '--[a-z]+ [^ ]+' | grep -vE -e '--(figures|visits)'; }
+options() { grep "^$1=" systemd/gopura-kiosk.service | grep -oE -e '--[a-z]+ [^ ]+' | grep -vE -e '--(metrics|visits)'; }
 [ "$(options ExecStartPre)" = "$(options ExecStart)" ] ||
 	{ echo "gopura-kiosk.service: its self-test and its kiosk have other options"; failed=1; }
 exit $failed

@@ -261,7 +261,7 @@ static void refuses_endless_data(void **state)
 	end(asked(0), -EBADMSG); /* as net/http.c ends it */
 	CHECK(stage->passed[0] == '\0');
 	CHECK(stage->refusal.count == 1 && strcmp(stage->refusal.what, "root/2.json") == 0);
-	CHECK(strcmp(stage->refusal.why, "larger than such a file may be") == 0);
+	CHECK(strcmp(stage->refusal.why, "larger than the limit for such a file") == 0);
 	answer("timestamp.json", ""); /* goes on with the others */
 	answer("release.json", "R");
 	expect_passed(stage, "release0:R ");

@@ -171,7 +171,7 @@ def visit(machine, began):
     print("a tap opened a card")
     grown = re.search(r"gopura-data has (\d+) MiB now", machine.log())
     rest = DISK_BYTES - sum(part["size"] * 512 for part in table(machine.disk)[:-1])
-    if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "stays as large" in machine.log():
+    if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "could not be enlarged" in machine.log():
         raise SystemExit(f"the data partition did not grow to the disk's {rest >> 20} MiB that are left:\n" + machine.log()[:3000])
     print(grown.group(0))
     own(machine)

@@ -19,7 +19,7 @@ unplugged)
 		sleep 2
 		echo "init: unplugged"
 		echo off >"$status"
-		said 'the panel is gone'
+		said 'the panel was unplugged'
 		sleep 5
 		echo "init: plugged in again"
 		echo on >"$status"

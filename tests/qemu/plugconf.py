@@ -22,7 +22,7 @@ def make_stick(work):
 
 
 def set_up(machine, stick):
-    machine.said("there is no /efi/gopura.conf: going on without", BOOT_S)
+    machine.said("/efi/gopura.conf does not exist; the defaults are used", BOOT_S)
     machine.wait_for("page about the missing gopura.conf", ANSWER_S, lambda: paper(machine.picture("unset")) > 0.5)
     machine.plug(stick)
     print(machine.said("gopura-stick/gopura.conf holds from now on", ANSWER_S))

@@ -32,9 +32,9 @@ TOOLS = {**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
 # Which writes are cut at: a share of the cuts each, so that 200 MiB of an update do not hide four sectors of the loader's.
 SHARES = {"data": 0.55, "esp": 0.25, "table": 0.1, "slot": 0.1}
 SAME_SHARE = 0.2  # of the panel: two pictures of one release differ less, by what was not yet brought; of two releases more
-COMPLAINTS = ("corrupt", "malformed", "set aside", "beyond repair", "damaged", "EXT4-fs error", "SQUASHFS error", "environment block", "crashed",
+COMPLAINTS = ("corrupt", "malformed", ".broken", "beyond repair", "damaged", "EXT4-fs error", "SQUASHFS error", "environment block", "crashed",
               "core dump", "Failed with result", "gopura-safe.service", "self-test failed", "restarting in 10 s", "cannot be mounted")
-RELEASE = r"release (\d+) is (?:shown|remembered)"
+RELEASE = r"release (\d+) is (?:shown|stored)"
 # journald begins a new file after a cut, and says so in these words; the old one stays readable. The loader's FAT keeps a mark of a
 # cut while it was writable; nothing of its structure is ever changed.
 HARMLESS = r"systemd-journald\[\d+\]: File /\S+/journal/\S+ corrupted or uncleanly shut down|FAT-fs \(vda1\): Volume was not properly unmounted"
@@ -90,7 +90,7 @@ class Session:
         try:
             machine.plug(stick("first"))
             said("app: first picture", BOOT_S)
-            said("picture is safe on the disk")
+            said("objects of the picture are stored")
             self.mark("first is shown")
             machine.temple("first")
             machine.resting_picture("first")

@@ -15,7 +15,7 @@ def main():
     machine = Kiosk(kernel, initramfs, work)
     try:
         machine.wait_for("temple", BOOT_S, lambda: "app: showing" in machine.log() and tones(machine.picture("temple")) > 300)
-        if "ok    panel    640 x 360, a picture came onto it (KMS)" not in machine.log():
+        if "ok    panel    640 x 360, shows a picture (KMS)" not in machine.log():
             raise SystemExit("the self-test does not find the panel well:\n" + machine.log()[-2000:])
         print(f"first temple {time.monotonic() - began:.0f} s after QEMU's start")
         before = machine.resting_picture("temple")

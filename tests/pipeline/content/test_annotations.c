@@ -186,7 +186,7 @@ static void refuses_a_folder_that_is_at_fault(void **state)
 	CHECK(was_told(&complaints, "pages/gate.en.html", 2, "<script>"));
 	write_text("parts.json", "{\"parts\": [\n,]}");
 	CHECK(export_from(&annotations, folder) == -EINVAL);
-	CHECK(was_told(&complaints, "parts.json", 2, "not JSON"));
+	CHECK(was_told(&complaints, "parts.json", 2, "not valid JSON"));
 	snprintf(path, sizeof(path), "%s/parts.json", folder);
 	unlink(path);
 	CHECK(export_from(&annotations, folder) == -ENOENT);
@@ -244,7 +244,7 @@ static void names_the_place_of_what_it_refuses(void **state)
 		const char *text, *words;
 		unsigned line;
 	} cases[] = {
-		{ "{\"items\": [\n", "not JSON", 2 },
+		{ "{\"items\": [\n", "not valid JSON", 2 },
 		{ "{\"type\": \"Manifest\"}", "holds no annotations", 1 },
 		{ "{\"first\": \"https://example.org/1\"}", "is elsewhere", 1 },
 		{ "{\"first\": {\"items\": [], \"next\": \"x\"}}", "more pages", 1 },
@@ -259,7 +259,7 @@ static void names_the_place_of_what_it_refuses(void **state)
 		  "has no title", 3 },
 		{ "{\"items\": [\n{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": "
 		  "\"tagging\", \"language\": \"../x\"}], \"target\": {\"selector\": " POINT "}}]}",
-		  "no language's code", 2 },
+		  "not a language code", 2 },
 		{ "{\"items\": [\n{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": "
 		  "\"tagging\"}, {\"value\": \"y\", \"purpose\": \"identifying\"}], \"target\": "
 		  "{\"selector\": " POINT "}}]}",
@@ -349,7 +349,7 @@ static void writes_over_nothing(void **state)
 	write_text("exchange.jsonld", ITEM("#a", POINT));
 	CHECK(import_with(&report, false, false) == 0);
 	CHECK(import_with(&report, false, false) == -EINVAL);
-	CHECK(was_told(&complaints, file, 0, "is there already"));
+	CHECK(was_told(&complaints, file, 0, "exists already"));
 	CHECK(copy_says("parts.json", "\"a\""));
 }
 

@@ -98,7 +98,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "typo-cure", "[model]\ncolors = scan\n", "colours" },
 		{ "section", "[modle]\nscans = tower.ply\n", "[model]" },
 		{ "no-section", "scans = tower.ply\n", "temple.ini:1:" },
-		{ "twice", "[model]\nup = z\n\nup = y\n", "temple.ini:4: 'up' stands in line 2" },
+		{ "twice", "[model]\nup = z\n\nup = y\n", "temple.ini:4: 'up' is set in line 2" },
 		{ "not-a-line", "[model]\nscans tower.ply\n", "temple.ini:2: this is neither" },
 		{ "up", "[model]\nup = w\n", "temple.ini:2: up = w: it must be z, y or x" },
 		{ "unit", "[model]\nunit = yard\n", "metres in one unit" },

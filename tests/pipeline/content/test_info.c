@@ -128,8 +128,8 @@ static void names_the_line_of_a_bad_part(void **state)
 		const char *text, *words;
 		unsigned line;
 	} cases[] = {
-		{ "{\"parts\": [\n{\"id\": \"a\"\n\"title\"}]}", "not JSON", 3 },
-		{ "[1, 2]", "at the outside", 1 },
+		{ "{\"parts\": [\n{\"id\": \"a\"\n\"title\"}]}", "not valid JSON", 3 },
+		{ "[1, 2]", "at the top level", 1 },
 		{ "{\"parts\": [\n{\"id\": \"a\", \"anchor\": [0,0,0], \"page\": false,\n"
 		  "\"title\": {\"en\": \"caf\xe9\"}}]}",
 		  "not UTF-8", 3 },
@@ -183,11 +183,12 @@ static void names_the_line_of_a_bad_page(void **state)
 		const char *html, *words;
 		unsigned line;
 	} cases[] = {
-		{ "<p>x\n<a href=\"https://example.org\">out</a></p>", "leads nowhere outside", 2 },
+		{ "<p>x\n<a href=\"https://example.org\">out</a></p>",
+		  "shows nothing outside the release", 2 },
 		{ "<p>x</p>\n\n<p><a href=\"part:none\">y</a></p>", "no part has that id", 3 },
 		{ "<p>x</p>\n<a href=\"page:none\">y</a>", "no part has that id", 2 },
 		{ "<p>x</p>\n<a href=\"page:naga\">y</a>", "has no page; write \"part:naga\"", 2 },
-		{ "<p>x</p>\n<a href=\"page\">y</a>", "leads nowhere outside", 2 },
+		{ "<p>x</p>\n<a href=\"page\">y</a>", "shows nothing outside the release", 2 },
 		{ "<p>x</p>\n<img src=\"pictures/none.png\">", "is not there", 2 },
 		{ "<p>x</p>\n<img src=\"http://example.org/a.png\">", "pictures/NAME", 2 },
 		{ "<p>x</p>\n<script>alert(1)</script>", "<script>", 2 },
@@ -290,7 +291,7 @@ static void refuses_a_damaged_picture(void **state)
 	(void)state;
 	write_text("pictures/b.png", "\x89PNG\r\n\x1a\nrubbish");
 	CHECK(build(&built, &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "pictures/b.png", 0, "no whole JPEG or PNG"));
+	CHECK(was_told(&complaints, "pictures/b.png", 0, "not a complete JPEG or PNG"));
 }
 
 /* Every foreign key holds, and the schema refuses what breaks one. */

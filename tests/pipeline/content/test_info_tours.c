@@ -140,9 +140,9 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		const char *json, *words;
 		unsigned line;
 	} cases[] = {
-		{ "{\"tours\": [\n{]}", "is not JSON from here on", 2 },
-		{ "[]", "must be {\"tours\": [...]} at the outside", 1 },
-		{ "{\"tours\": [7]}", "entry 1 of \"tours\" is no object", 0 },
+		{ "{\"tours\": [\n{]}", "is not valid JSON from here on", 2 },
+		{ "[]", "must be {\"tours\": [...]} at the top level", 1 },
+		{ "{\"tours\": [7]}", "entry 1 of \"tours\" is not an object", 0 },
 		{ "{\"tours\": [\n{\"id\": \"A b\", \"title\": {\"en\": \"A\"}, \"stops\": [" STOP
 		  ", " STOP "]}]}",
 		  "use 1 to 64 of a-z", 2 },
@@ -153,7 +153,7 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		  "needs 2 to 64 \"stops\", it has 1", 1 },
 		{ "{\"tours\": [{\"id\": \"a\", \"titel\": 1, \"title\": {\"en\": \"A\"}, "
 		  "\"stops\": [" STOP "," STOP "]}]}",
-		  "\"titel\" is no key of it", 1 },
+		  "\"titel\" is not one of its keys", 1 },
 		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"attract\": 1, "
 		  "\"stops\": [" STOP "," STOP "]}]}",
 		  "\"attract\" must be true or false", 1 },
@@ -164,7 +164,7 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"stops\": [" STOP
 		  "," STOP "]},\n{\"id\": \"a\", \"title\": {\"en\": \"B\"}, \"stops\": [" STOP
 		  "," STOP "]}]}",
-		  "is there twice", 2 },
+		  "is defined twice", 2 },
 		{ "{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"}, \"thumbnail\": "
 		  "\"pictures/none.jpg\", \"stops\": [" STOP "," STOP "]}]}",
 		  "is not there", 1 },
@@ -173,9 +173,9 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		{ TOUR(STOP ",\n{\"eye\": [1, 2, 1e99], \"target\": [4, 5, 6]}"),
 		  "\"eye\" must be three numbers", 4 },
 		{ TOUR(STOP ",\n{\"eye\": [4, 5, 6], \"target\": [4, 5, 6]}"), "are one place", 4 },
-		{ TOUR(STOP ",\n{\"eye\": [1, 2, 3]}"), "\"eye\" alone is no view", 4 },
-		{ TOUR(STOP ",\n{\"target\": [1, 2, 3]}"), "\"target\" alone is no view", 4 },
-		{ TOUR(STOP ",\n{\"stay\": 3}"), "what does it look at?", 4 },
+		{ TOUR(STOP ",\n{\"eye\": [1, 2, 3]}"), "\"eye\" alone is not a view", 4 },
+		{ TOUR(STOP ",\n{\"target\": [1, 2, 3]}"), "\"target\" alone is not a view", 4 },
+		{ TOUR(STOP ",\n{\"stay\": 3}"), "it has no view: add", 4 },
 		{ TOUR(STOP ",\n{\"part\": \"gat\"}"), "part \"gat\": no part has that id", 4 },
 		{ TOUR("{\"part\": \"gate\"},\n" STOP), "stop 1: a part is shown from where", 3 },
 		{ TOUR(STOP ",\n" STOP ",\n{\"part\": \"naga\", \"stay\": 121}"),

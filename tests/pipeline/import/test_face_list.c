@@ -51,13 +51,13 @@ static void a_fault_names_file_line_and_cure(void **state)
 	} cases[] = {
 		{ "", "lintel.faces: names no face" },
 		{ "# nothing\n", "names no face" },
-		{ "1\n2\nx\n3", "lintel.faces:3: 'x' is no face" },
+		{ "1\n2\nx\n3", "lintel.faces:3: 'x' is not a face" },
 		{ "1\n100", "lintel.faces:2: face 100 is not in the scan, which has 100" },
 		{ "99999999999999999999999", "is not in the scan" },
 		{ "\n9-4", "lintel.faces:2: 9-4 runs backwards" },
 		{ "1,2", "put spaces between faces" },
-		{ "3-", "is no face" },
-		{ "-3", "is no face" },
+		{ "3-", "is not a face" },
+		{ "-3", "is not a face" },
 	};
 
 	(void)state;

@@ -372,7 +372,7 @@ static void refuses_what_is_no_surface(void **state)
 		const char *name, *text, *says;
 	} cases[] = {
 		{ "empty.obj", "", "empty" },
-		{ "scan.txt", "hello", "no scan that is read here" },
+		{ "scan.txt", "hello", "not a supported scan format" },
 		{ "nan.ply",
 		  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
 		  "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"

@@ -120,8 +120,8 @@ static const struct {
 	{ ".hidden/secret.bin", "outside the scan's folder" },
 	{ "link.bin", "a link" },
 	{ "link/release.key", "behind one" },
-	{ "fifo.bin", "no regular file" },
-	{ "deep", "no regular file" },
+	{ "fifo.bin", "not a regular file" },
+	{ "deep", "not a regular file" },
 	{ "ours.key", "a signing key" },
 };
 
@@ -293,7 +293,7 @@ static void pictures_have_a_limit_together(void **state)
 	CHECK(report.textures == 1 && mesh.texture_count == 3);
 	CHECK(mesh.textures[0].width == 5 && mesh.textures[1].width == 1 &&
 	      mesh.textures[2].width == 1);
-	CHECK(strstr(report.warning.text, "too large together"));
+	CHECK(strstr(report.warning.text, "too large in total"));
 	mesh_finish(&mesh);
 }
 

@@ -95,7 +95,7 @@ static void an_end_of_the_child_is_a_fault_that_names_the_file(void **state)
 		const char *says;
 	} cases[] = {
 		{ crashes, &limits, -EBADMSG, "crashed" },
-		{ gives_up, &limits, -EBADMSG, "gave up" },
+		{ gives_up, &limits, -EBADMSG, "the reader failed" },
 		{ hangs, &impatient, -ETIMEDOUT, "took over 1 s" },
 		/* "no memory" by its own words, "took over 512 MiB" where it was watched */
 		{ eats_memory, &limits, -ENOMEM, "o" },

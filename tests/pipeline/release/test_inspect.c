@@ -85,7 +85,7 @@ static void what_is_damaged_or_foreign_is_said_to_be(void **state)
 	CHECK(inspect_bytes(to, (struct bytes){ (const uint8_t *)"GPag1", 5 }) == -EBADMSG);
 	CHECK(says("damaged"));
 	CHECK(inspect_bytes(to, (struct bytes){ (const uint8_t *)"hello", 5 }) == -EBADMSG);
-	CHECK(says("no form that is known"));
+	CHECK(says("of an unknown format"));
 	CHECK(inspect_bytes(to, (struct bytes){ NULL, 0 }) == -EBADMSG);
 }
 

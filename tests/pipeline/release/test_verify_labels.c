@@ -118,7 +118,7 @@ static void a_part_that_there_is_not_is_found(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify("gate", 2, 2) == -EBADMSG);
-	CHECK(strstr(verified.why, "knows nothing"));
+	CHECK(strstr(verified.why, "database lacks"));
 }
 
 static void a_page_for_another_hierarchy_is_found(void **state)

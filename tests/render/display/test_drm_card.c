@@ -177,7 +177,7 @@ static void waits_for_a_card_that_another_program_has(void **state)
 	free_ms = now_ms + 7200;
 	CHECK(open_card(true) == 0);
 	CHECK(waits == 15 && opens == 16); /* opened anew each time: nothing else makes a master */
-	CHECK(errors == 0 && strstr(said, "another program shows pictures on /dev/null"));
+	CHECK(errors == 0 && strstr(said, "another program uses /dev/null"));
 	CHECK(!strstr(strstr(said, "waiting") + 1, "waiting")); /* said once */
 }
 
@@ -187,8 +187,7 @@ static void ends_with_the_cure_after_half_a_minute(void **state)
 	free_ms = NEVER_MS;
 	CHECK(open_card(true) == -ENODEV);
 	CHECK(now_ms == 130000 && errors == 1);
-	CHECK(strstr(said, "still shows pictures on /dev/null: end it") &&
-	      strstr(said, "--device"));
+	CHECK(strstr(said, "still uses /dev/null: end it") && strstr(said, "--device"));
 }
 
 static void waits_for_a_card_without_a_panel_too(void **state)
@@ -205,8 +204,7 @@ static void where_a_window_will_do_nobody_waits(void **state)
 	(void)state;
 	free_ms = NEVER_MS;
 	CHECK(open_card(false) == -ENODEV);
-	CHECK(waits == 0 && errors == 1 &&
-	      strstr(said, "/dev/null: another program shows pictures on it"));
+	CHECK(waits == 0 && errors == 1 && strstr(said, "/dev/null: another program uses it"));
 	has_panel = false;
 	CHECK(open_card(false) == -ENODEV && waits == 0);
 }
