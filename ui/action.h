@@ -42,4 +42,12 @@ struct overlay_action {
 	const char *link;     /* borrowed until the page changes; else NULL */
 };
 
+/* The handles of the tools. A finger that touches one keeps it until it lifts. */
+enum overlay_handle {
+	OVERLAY_HANDLE_NONE,
+	OVERLAY_HANDLE_LIGHT,
+	OVERLAY_HANDLE_PUSH,
+	OVERLAY_HANDLE_TURN,
+};
+
 #endif

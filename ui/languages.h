@@ -6,8 +6,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
-
-enum { OVERLAY_LANGUAGES_MAX = 64 };
+#include "ui/content.h"
 
 struct languages {
 	char *codes[OVERLAY_LANGUAGES_MAX]; /* owned: "en", "pt-BR" */

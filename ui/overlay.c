@@ -1,4 +1,5 @@
-/* The overlay: its creation and content, which element a tap hits, and the update of each frame. */
+/* Composes the views: which may be open at the same time, which one a tap hits, and the order in
+ * which they are drawn. Views know nothing of one another. */
 #include "ui/overlay.h"
 
 #include <assert.h>
@@ -7,41 +8,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ui/hint.h"
-#include "ui/overlay_state.h"
+#include "ui/overlay_layout.h"
 
-_Static_assert((int)LABELS >= 2 * (int)CALLOUTS_MAX, "labels that come and labels that go");
+enum { STEP_MOST_MS = 100 }; /* a longer pause counts as this long */
 
-enum {
-	PAGE_FADE_MS = 110, /* the page is fully visible within 150 ms of the tap */
-	STEP_MOST_MS = 100, /* a longer pause counts as this long */
-	LABELS_A_FRAME = 4, /* labels drawn in one update */
-	STRIPS_A_FRAME = 1, /* so that opening a page drops no frame */
-	FLING_SLOWDOWN_MS = 350,
-	FLING_LEAST_PX_PER_S = 20,
-};
+/* On a panel smaller than a hand everything shrinks; otherwise it would be cut off. */
+#define SHORTER_LEAST_MM 85.0f
 
-/* ---- creation ---- */
-
-void overlay_lay_out_chrome(struct overlay *overlay)
+struct rect overlay_scene_rect(const struct overlay *overlay)
 {
-	int gaps_px = 2 * theme_px(&overlay->theme, THEME_GAP_MM);
-	/* The bar must fit beside an open page. */
-	int most_px = overlay_is_portrait(overlay) ? overlay->width_px : overlay->width_px / 2;
-	const struct chrome_has has = {
-		.search = overlay->part_count > 0,
+	return overlay_screen(overlay).scene;
+}
+
+static void lay_out_bar(struct overlay *overlay)
+{
+	const struct screen screen = overlay_screen(overlay);
+	const struct bar_view_has has = {
+		.search = overlay->parts.count > 0,
 		.tours = overlay->tours.count > 0,
 		.light = overlay->tools.offered & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.offered & OVERLAY_TOOL_SECTION,
-		.reach = overlay_offers_reach(overlay),
+		.reach = screen_offers_reach(&screen),
 	};
 
-	chrome_layout(&overlay->chrome, &overlay->theme,
-		      (const char *const *)overlay->languages.codes, overlay->languages.count,
-		      most_px - gaps_px, has);
-	if (!overlay->chrome.menu)
+	bar_view_lay_out(&overlay->bar, &screen, &overlay->languages, has);
+	overlay->tools.fit = !overlay->bar.toolless;
+	if (!overlay->bar.menu)
 		overlay_show_languages(overlay, false);
-	overlay->chrome_dirty = true;
+}
+
+/* ---- creation ---- */
+
+static void start_views(struct overlay *overlay)
+{
+	const struct theme *theme = &overlay->theme;
+	struct screen screen;
+	uint32_t next_id = 0;
+
+	paper_init(&overlay->paper, theme, &next_id);
+	bar_view_init(&overlay->bar, &next_id);
+	callouts_view_init(&overlay->callouts, theme, &next_id);
+	card_view_init(&overlay->card, &next_id);
+	gallery_view_init(&overlay->gallery, theme, &next_id);
+	help_view_init(&overlay->help, theme, &next_id);
+	invitation_view_init(&overlay->invitation, &next_id);
+	languages_view_init(&overlay->languages_view, &next_id);
+	page_view_init(&overlay->page, theme, overlay->height_px, &next_id);
+	question_view_init(&overlay->question, &next_id);
+	search_view_init(&overlay->search, &next_id);
+	tools_view_init(&overlay->tools, &next_id);
+	tour_player_view_init(&overlay->tour, &next_id);
+	tours_view_init(&overlay->tours, &next_id);
+	assert(next_id <= OVERLAY_BITMAPS_MAX);
+	lay_out_bar(overlay);
+	screen = overlay_screen(overlay);
+	help_view_update(&overlay->help, &screen, false, 0); /* its size is needed for layout */
 }
 
 static int start(struct overlay *overlay, const struct overlay_options *options)
@@ -53,27 +74,19 @@ static int start(struct overlay *overlay, const struct overlay_options *options)
 
 	if (px_per_mm <= 0)
 		px_per_mm = theme_guess_px_per_mm(options->width_px, options->height_px);
-	/* On a panel smaller than a hand everything shrinks; otherwise it would be cut off. */
-	px_per_mm = fminf(px_per_mm, (float)shorter_px / 85.0f);
+	px_per_mm = fminf(px_per_mm, (float)shorter_px / SHORTER_LEAST_MM);
 	rc = theme_init(&overlay->theme, px_per_mm, options->languages[0]);
 	if (rc == 0)
 		rc = languages_copy(&overlay->languages, options->languages,
 				    options->language_count);
-	if (rc < 0)
-		return rc;
-	overlay_lay_out_chrome(overlay);
-	overlay_draw_fixed(overlay);
-	overlay->strip_px = options->height_px / (STRIPS - 4) > STRIP_PX
-				    ? options->height_px / (STRIPS - 4)
-				    : STRIP_PX;
-	overlay_draw_help(overlay); /* its size is needed for layout */
-	return 0;
+	if (rc == 0)
+		start_views(overlay);
+	return rc;
 }
 
 int overlay_create(struct overlay **out, const struct overlay_options *options)
 {
 	struct overlay *overlay;
-	uint32_t next_id = 0;
 	int rc;
 
 	*out = NULL;
@@ -87,15 +100,6 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	overlay->width_px = options->width_px;
 	overlay->height_px = options->height_px;
 	overlay->pictures = (struct picture_source){ options->picture, options->data };
-	sprites_init(overlay->sprites, BITMAP_COUNT, &next_id);
-	languages_view_init(&overlay->languages_view, &next_id);
-	assert(next_id <= OVERLAY_BITMAPS_MAX);
-	overlay->help.on = true;
-	overlay->card_part = overlay->page_part = overlay->search.pressed = -1;
-	for (uint32_t i = 0; i < LABELS; i++)
-		overlay->labels[i].part = -1;
-	for (uint32_t i = 0; i < STRIPS; i++)
-		overlay->strips[i].index = -1;
 	rc = start(overlay, options);
 	if (rc < 0) {
 		overlay_destroy(overlay);
@@ -105,27 +109,25 @@ int overlay_create(struct overlay **out, const struct overlay_options *options)
 	return 0;
 }
 
-static void drop_parts(struct part *parts, uint32_t count)
-{
-	for (uint32_t i = 0; parts && i < count; i++) {
-		free(parts[i].title);
-		free(parts[i].caption);
-		free(parts[i].thumbnail);
-	}
-	free(parts);
-}
-
 void overlay_destroy(struct overlay *overlay)
 {
 	if (!overlay)
 		return;
-	article_destroy(overlay->article);
-	drop_parts(overlay->parts, overlay->part_count);
-	free(overlay->anchors);
-	free(overlay->search.found);
-	overlay_drop_tours(overlay->tours.entries);
-	sprites_finish(overlay->sprites, BITMAP_COUNT);
+	bar_view_finish(&overlay->bar);
+	callouts_view_finish(&overlay->callouts);
+	card_view_finish(&overlay->card);
+	gallery_view_finish(&overlay->gallery);
+	help_view_finish(&overlay->help);
+	invitation_view_finish(&overlay->invitation);
 	languages_view_finish(&overlay->languages_view);
+	page_view_finish(&overlay->page);
+	question_view_finish(&overlay->question);
+	search_view_finish(&overlay->search);
+	tools_view_finish(&overlay->tools);
+	tour_player_view_finish(&overlay->tour);
+	tours_view_finish(&overlay->tours);
+	paper_finish(&overlay->paper);
+	parts_free(&overlay->parts);
 	languages_free(&overlay->languages);
 	theme_finish(&overlay->theme);
 	free(overlay);
@@ -133,73 +135,49 @@ void overlay_destroy(struct overlay *overlay)
 
 /* ---- content ---- */
 
-static int copy_part(struct part *to, const struct overlay_part *from)
-{
-	to->title = strdup(from->title);
-	to->caption = strdup(from->caption);
-	to->thumbnail = strdup(from->thumbnail);
-	to->has_page = from->has_page;
-	return to->title && to->caption && to->thumbnail ? 0 : -ENOMEM;
-}
-
-void overlay_forget_labels(struct overlay *overlay)
-{
-	for (uint32_t i = 0; i < LABELS; i++)
-		overlay->labels[i] = (struct label){ .part = -1 };
-	overlay->callouts.count = 0;
-	overlay->callouts_dirty = true;
-}
-
-static void drop_page(struct overlay *overlay)
-{
-	overlay->gallery = (struct gallery){ 0 };
-	article_destroy(overlay->article);
-	overlay->article = NULL;
-	overlay->page = (struct fade){ 0 };
-	overlay->page_part = -1;
-	overlay->page_wide = false;
-}
-
 int overlay_parts(struct overlay *overlay, const struct overlay_part *parts, uint32_t count)
 {
-	struct part *copies = calloc((size_t)count + 1, sizeof(*copies));
-	struct callout_anchor *anchors = calloc((size_t)count + 1, sizeof(*anchors));
-	int rc = copies && anchors ? 0 : -ENOMEM;
-	bool had_parts;
+	const bool had_parts = overlay->parts.count > 0;
+	struct screen screen;
+	struct parts copies;
+	int rc = count > OVERLAY_PARTS_MAX ? -EINVAL : 0;
 
-	if (count > OVERLAY_PARTS_MAX)
-		rc = -EINVAL;
-	for (uint32_t i = 0; rc == 0 && i < count; i++)
-		rc = copy_part(&copies[i], &parts[i]);
-	if (rc == 0 && count != overlay->part_count && overlay_search_parts(overlay, count) < 0)
-		rc = -ENOMEM;
-	if (rc < 0) {
-		drop_parts(copies, count > OVERLAY_PARTS_MAX ? 0 : count);
-		free(anchors);
+	if (rc == 0)
+		rc = search_view_reserve(&overlay->search, count);
+	if (rc == 0)
+		rc = callouts_view_reserve(&overlay->callouts, count);
+	if (rc == 0)
+		rc = parts_copy(&copies, parts, count);
+	if (rc < 0)
 		return rc;
+	if (count != overlay->parts.count) {
+		page_view_drop(&overlay->page);
+		gallery_view_drop(&overlay->gallery);
+		card_view_drop(&overlay->card);
 	}
-	if (count != overlay->part_count) {
-		drop_page(overlay);
-		overlay->card = overlay->search.fade = (struct fade){ 0 };
-		overlay->card_part = -1;
-	} else if (overlay->part_count > 0) {
-		memcpy(anchors, overlay->anchors, count * sizeof(*anchors));
-	}
-	drop_parts(overlay->parts, overlay->part_count);
-	free(overlay->anchors);
+	parts_free(&overlay->parts);
 	overlay->parts = copies;
-	overlay->anchors = anchors;
-	had_parts = overlay->part_count > 0;
-	overlay->part_count = count;
+	search_view_set_count(&overlay->search, count);
+	callouts_view_set_parts(&overlay->callouts, &overlay->theme, &overlay->parts);
 	if (had_parts != (count > 0)) {
-		overlay->help_dirty = true;
-		overlay_lay_out_chrome(overlay);
+		overlay->help.dirty = true;
+		lay_out_bar(overlay);
 	}
-	overlay_search_language(overlay); /* its rows have other texts now */
-	overlay_measure_labels(overlay);
-	overlay_forget_labels(overlay);
-	overlay->card_dirty = overlay->head_dirty = true;
+	screen = overlay_screen(overlay);
+	search_view_redraw(&overlay->search, &screen); /* its rows have other texts now */
+	overlay->card.dirty = overlay->page.head_dirty = true;
 	return 0;
+}
+
+/* Texts or the size of type changed. */
+static void redraw_words(struct overlay *overlay)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	search_view_redraw(&overlay->search, &screen);
+	overlay->help.dirty = overlay->card.dirty = overlay->page.head_dirty = true;
+	overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
+	overlay->languages_view.dirty = overlay->question.dirty = true;
 }
 
 void overlay_language(struct overlay *overlay, const char *language)
@@ -207,133 +185,165 @@ void overlay_language(struct overlay *overlay, const char *language)
 	if (!languages_set(&overlay->languages, language))
 		return;
 	theme_set_language(&overlay->theme, language);
-	overlay->chrome_dirty = overlay->help_dirty = true;
-	overlay->question_drawn_s = 0; /* draw it again in the new language */
-	overlay->card_dirty = overlay->head_dirty = true;
-	overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
-	overlay_search_language(overlay);
 	overlay_show_languages(overlay, false);
-	overlay->languages_view.dirty = true;
-	overlay_forget_labels(overlay);
+	redraw_words(overlay);
+	callouts_view_forget(&overlay->callouts);
 }
 
 void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count)
 {
-	for (uint32_t i = 0; i < count && i < overlay->part_count; i++) {
-		overlay->anchors[i].x_px = anchors[i].x_px;
-		overlay->anchors[i].y_px = anchors[i].y_px;
-		overlay->parts[i].size_px = anchors[i].size_px;
-		overlay->parts[i].in_view = anchors[i].visible;
-		overlay->parts[i].hidden = anchors[i].hidden;
-	}
-	overlay->callouts_dirty = true;
+	callouts_view_anchors(&overlay->callouts, anchors, count);
 }
+
+int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours, uint32_t count)
+{
+	const uint32_t before = overlay->tours.count;
+	int rc = tours_view_set(&overlay->tours, tours, count);
+
+	if (rc < 0)
+		return rc;
+	overlay->tour.dirty = true;
+	if (before == count)
+		return 0;
+	tour_player_view_drop(&overlay->tour);
+	lay_out_bar(overlay);
+	return 0;
+}
+
+void overlay_offer_tools(struct overlay *overlay, unsigned tools)
+{
+	if (tools == overlay->tools.offered)
+		return;
+	overlay->tools.offered = tools;
+	overlay->tools.dirty = true;
+	lay_out_bar(overlay);
+}
+
+unsigned overlay_tools_offered(const struct overlay *overlay)
+{
+	return overlay->tools.fit ? overlay->tools.offered : 0;
+}
+
+void overlay_offer_back(struct overlay *overlay, bool on)
+{
+	overlay->back = on;
+}
+
+void overlay_picture_arrived(struct overlay *overlay, const char *name)
+{
+	const int part = overlay->card.part;
+
+	page_view_picture_arrived(&overlay->page, name);
+	search_view_picture_arrived(&overlay->search, &overlay->parts, name);
+	if (overlay->page.article)
+		gallery_view_picture_arrived(&overlay->gallery, overlay->page.article, name);
+	tours_view_picture_arrived(&overlay->tours, name);
+	if (part >= 0 && strcmp(overlay->parts.list[part].thumbnail, name) == 0)
+		overlay->card.dirty = true;
+}
+
+/* ---- what is open ---- */
 
 void overlay_show_card(struct overlay *overlay, int part)
 {
-	if (part >= (int)overlay->part_count)
+	if (part >= (int)overlay->parts.count)
 		part = -1;
-	if (part == overlay->card_part)
+	if (part == overlay->card.part)
 		return;
 	if (part >= 0)
 		overlay_widen_page(overlay,
 				   false); /* a card is about the model, which must be visible */
-	overlay->card_part = part;
-	overlay->card.on = part >= 0;
-	overlay->callouts_dirty = true;
+	card_view_show(&overlay->card, part);
+	overlay->callouts.dirty = true;
 	if (part < 0)
 		return;
-	if (overlay->card_shown != part)
-		overlay->card.alpha = 0;
-	overlay->card_shown = part;
-	overlay->card_dirty = true;
 	overlay_show_help(overlay, false); /* card and help share their place */
 	overlay_show_tours(overlay, false);
 }
 
 int overlay_card(const struct overlay *overlay)
 {
-	return overlay->card_part;
+	return overlay->card.part;
 }
 
 int overlay_show_page(struct overlay *overlay, int part, struct bytes bytes, const char *credits)
 {
-	struct article_options options = { .theme = &overlay->theme,
-					   .pictures = overlay->pictures,
-					   .credits = credits };
-	struct article *article;
+	const struct screen screen = overlay_screen(overlay);
 	int rc;
 
-	if (part < 0 || part >= (int)overlay->part_count)
+	if (part < 0 || part >= (int)overlay->parts.count)
 		return -EINVAL;
-	if (overlay->page_part < 0)
-		overlay->page_wide = false;
-	options.width_px = overlay_view_rect(overlay).width_px;
-	options.view_px = overlay_view_rect(overlay).height_px;
-	rc = article_create(&article, &options, bytes);
+	rc = page_view_open(&overlay->page, &screen, part, bytes, credits, &overlay->pictures);
 	if (rc < 0)
 		return rc;
-	overlay->gallery = (struct gallery){ 0 };
-	article_destroy(overlay->article);
-	overlay->article = article;
-	overlay->page_part = overlay->page_titled = part;
-	overlay->page.on = true;
-	overlay->scroll_px = 0;
-	overlay->scroll_px_per_s = 0;
-	for (uint32_t i = 0; i < STRIPS; i++)
-		overlay->strips[i] = (struct strip){ .index = -1 };
-	overlay->head_dirty = true;
+	gallery_view_drop(&overlay->gallery);
 	overlay_show_search(overlay, false); /* the page takes its place */
 	overlay_show_card(overlay, -1);      /* the page has all its information */
 	overlay_show_help(overlay, false);
 	overlay_show_tours(overlay, false);
-	overlay->callouts_dirty = true;
+	overlay->callouts.dirty = true;
 	return 0;
 }
 
 void overlay_close_page(struct overlay *overlay)
 {
 	overlay_show_picture(overlay, -1);
-	overlay->page_part = -1;
-	overlay->page.on = false;
-	overlay->callouts_dirty = true;
-}
-
-float overlay_read(const struct overlay *overlay)
-{
-	return overlay->page_part >= 0
-		       ? overlay->scroll_px / (float)article_height_px(overlay->article)
-		       : 0;
-}
-
-void overlay_read_from(struct overlay *overlay, float share)
-{
-	if (overlay->page_part < 0)
-		return;
-	overlay->scroll_px_per_s = 0;
-	overlay->scroll_px = fminf(share * (float)article_height_px(overlay->article),
-				   (float)overlay_scroll_most(overlay));
-}
-
-void overlay_offer_back(struct overlay *overlay, bool on)
-{
-	overlay->chrome_dirty |= overlay->back != on;
-	overlay->back = on;
+	page_view_close(&overlay->page);
+	overlay->callouts.dirty = true;
 }
 
 int overlay_page(const struct overlay *overlay)
 {
-	return overlay->page_part;
+	return overlay->page.part;
+}
+
+void overlay_widen_page(struct overlay *overlay, bool on)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	if (!page_view_widen(&overlay->page, &screen, on))
+		return;
+	overlay->callouts.dirty = true;
+	if (overlay->page.part < 0) /* no memory to lay it out again */
+		overlay_close_page(overlay);
+}
+
+bool overlay_page_is_wide(const struct overlay *overlay)
+{
+	return overlay->page.wide;
+}
+
+float overlay_read(const struct overlay *overlay)
+{
+	return page_view_read(&overlay->page);
+}
+
+void overlay_read_from(struct overlay *overlay, float share)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	page_view_read_from(&overlay->page, &screen, share);
+}
+
+void overlay_show_picture(struct overlay *overlay, int picture)
+{
+	const struct screen screen = overlay_screen(overlay);
+	const struct article *article = overlay->page.article;
+
+	gallery_view_show(&overlay->gallery, &screen, picture,
+			  article ? (int)article_picture_count(article) : 0);
+}
+
+int overlay_picture(const struct overlay *overlay)
+{
+	return overlay->gallery.fade.on ? overlay->gallery.at : -1;
 }
 
 void overlay_show_help(struct overlay *overlay, bool on)
 {
-	if (overlay->help.on == on)
+	if (!help_view_show(&overlay->help, on))
 		return;
-	overlay->help.on = on;
-	overlay->help_dirty |= on;
-	overlay->help_ms = on ? 0 : overlay->help_ms;
-	overlay->chrome_dirty = overlay->callouts_dirty = true;
+	overlay->callouts.dirty = true;
 	if (!on)
 		return;
 	overlay_show_card(overlay, -1);
@@ -342,46 +352,101 @@ void overlay_show_help(struct overlay *overlay, bool on)
 
 bool overlay_help(const struct overlay *overlay)
 {
-	return overlay->help.on;
+	return overlay->help.fade.on;
 }
 
 void overlay_invite(struct overlay *overlay, bool on)
 {
-	if (overlay->invitation.on == on)
+	const struct screen screen = overlay_screen(overlay);
+
+	if (!invitation_view_show(&overlay->invitation, on))
 		return;
-	overlay->invitation.on = on;
-	if (on)
-		overlay_draw_invitation(overlay);
+	invitation_view_draw(&overlay->invitation, &screen, &overlay->theme, &overlay->languages);
 	overlay_show_help(overlay, !on);
-	overlay->callouts_dirty = true;
+	overlay->callouts.dirty = true;
 }
 
 void overlay_ask(struct overlay *overlay, int seconds_left)
 {
-	overlay->question.on = seconds_left >= 0;
-	if (seconds_left >= 0)
-		overlay->question_s = seconds_left;
+	question_view_ask(&overlay->question, seconds_left);
 }
 
-void overlay_picture_arrived(struct overlay *overlay, const char *name)
+void overlay_show_search(struct overlay *overlay, bool on)
 {
-	int from_px = overlay->article ? article_picture_arrived(overlay->article, name) : -1;
+	if (on == overlay->search.fade.on || (on && overlay->parts.count == 0))
+		return;
+	if (on) {
+		overlay->search.query[0] = 0;
+		overlay_search_again(overlay);
+		return;
+	}
+	search_view_close(&overlay->search);
+	overlay->callouts.dirty = true;
+}
 
-	overlay_search_picture(overlay, name);
-	overlay_gallery_arrived(overlay, name);
-	overlay_picture_of_tours(overlay, name);
-	for (uint32_t i = 0; from_px >= 0 && i < STRIPS; i++)
-		if ((overlay->strips[i].index + 1) * overlay->strip_px > from_px)
-			overlay->strips[i].stale = true;
-	if (overlay->card_part >= 0 &&
-	    strcmp(overlay->parts[overlay->card_part].thumbnail, name) == 0)
-		overlay->card_dirty = true;
+void overlay_search_again(struct overlay *overlay)
+{
+	struct screen screen;
+
+	if (overlay->search.fade.on || overlay->parts.count == 0)
+		return;
+	overlay_close_page(overlay);
+	overlay_show_card(overlay, -1);
+	overlay_show_help(overlay, false);
+	overlay_show_tours(overlay, false);
+	screen = overlay_screen(overlay);
+	search_view_open(&overlay->search, &screen);
+	overlay->callouts.dirty = true;
+}
+
+bool overlay_searching(const struct overlay *overlay)
+{
+	return overlay->search.fade.on;
+}
+
+const char *overlay_query(const struct overlay *overlay)
+{
+	return overlay->search.query;
+}
+
+bool overlay_press(struct overlay *overlay, int key)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	return search_view_press(&overlay->search, &screen, key);
+}
+
+void overlay_found(struct overlay *overlay, const uint32_t *parts, uint32_t count)
+{
+	search_view_set_found(&overlay->search, parts, count);
+}
+
+void overlay_show_tours(struct overlay *overlay, bool on)
+{
+	if (!tours_view_show(&overlay->tours, on))
+		return;
+	overlay->callouts.dirty = true;
+	if (!overlay->tours.fade.on)
+		return;
+	overlay_close_page(overlay);
+	overlay_show_search(overlay, false);
+	overlay_show_card(overlay, -1);
+	overlay_show_help(overlay, false);
+}
+
+bool overlay_choosing(const struct overlay *overlay)
+{
+	return overlay->tours.fade.on;
+}
+
+void overlay_show_tour(struct overlay *overlay, const struct overlay_tour_state *state)
+{
+	overlay->callouts.dirty |= tour_player_view_set(&overlay->tour, state);
 }
 
 void overlay_show_languages(struct overlay *overlay, bool on)
 {
-	overlay->chrome_dirty |=
-		languages_view_show(&overlay->languages_view, on && overlay->chrome.menu);
+	languages_view_show(&overlay->languages_view, on && overlay->bar.menu);
 }
 
 bool overlay_choosing_language(const struct overlay *overlay)
@@ -389,133 +454,99 @@ bool overlay_choosing_language(const struct overlay *overlay)
 	return overlay->languages_view.fade.on;
 }
 
+void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *state)
+{
+	const unsigned changed = overlay->tools.now.on ^ state->on;
+
+	overlay->tools.now = *state;
+	if (!changed)
+		return;
+	overlay->tools.dirty = overlay->callouts.dirty = true;
+	if (changed & state->on)
+		overlay_show_help(overlay,
+				  false); /* help and tools share their place on small panels */
+}
+
+/* ---- comfort ---- */
+
+struct overlay_comfort overlay_comfort(const struct overlay *overlay)
+{
+	return overlay->comfort;
+}
+
+void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort)
+{
+	struct screen screen = overlay_screen(overlay);
+	const bool had_page = overlay->page.part >= 0;
+
+	comfort.reach &= screen_offers_reach(&screen);
+	if (comfort.large == overlay->comfort.large && comfort.reach == overlay->comfort.reach)
+		return;
+	overlay->comfort = comfort;
+	overlay->theme.text_scale = comfort.large ? THEME_LARGE_TYPE : 1;
+	lay_out_bar(overlay);
+	redraw_words(overlay);
+	screen = overlay_screen(overlay);
+	callouts_view_measure(&overlay->callouts, &overlay->theme, &overlay->parts);
+	overlay->search.scroll = (struct scroll){ 0 };
+	page_view_lay_out(&overlay->page, &screen);
+	if (had_page && overlay->page.part < 0) /* no memory to lay it out again */
+		overlay_close_page(overlay);
+	invitation_view_draw(&overlay->invitation, &screen, &overlay->theme, &overlay->languages);
+	overlay->gallery.words_dirty = true;
+}
+
 /* ---- touch ---- */
 
-static int label_at(const struct overlay *overlay, float x_px, float y_px)
+static bool on_tools(const struct overlay *overlay, const struct screen *screen, float x_px,
+		     float y_px)
 {
-	for (uint32_t i = 0; i < LABELS; i++) {
-		const struct label *label = &overlay->labels[i];
-		struct rect rect = { label->place.x_px, label->place.y_px, label->place.width_px,
-				     overlay_row_px(overlay) };
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
 
-		if (label->part >= 0 && label->fade.on && rect_holds(rect, x_px, y_px))
-			return label->part;
-	}
-	return -1;
-}
-
-static struct overlay_action tap_page(const struct overlay *overlay, float x_px, float y_px)
-{
-	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->page_part };
-	struct rect view = overlay_view_rect(overlay);
-	int picture;
-
-	if (rect_holds(overlay_head_rect(overlay, overlay_page_rect(overlay)), x_px, y_px)) {
-		/* The whole right end of the head closes, so that a near miss closes too. */
-		if (x_px >= (float)overlay_close_rect(overlay).x_px)
-			action.kind = OVERLAY_CLOSE_PAGE;
-		else if (rect_holds(overlay_widen_rect(overlay), x_px, y_px))
-			action.kind = OVERLAY_WIDEN_PAGE;
-		return action;
-	}
-	if (!rect_holds(view, x_px, y_px))
-		return action;
-	x_px -= (float)view.x_px;
-	y_px += overlay->scroll_px - (float)view.y_px;
-	action.link = article_link_at(overlay->article, x_px, y_px);
-	picture = article_picture_at(overlay->article, x_px, y_px);
-	if (action.link)
-		action.kind = OVERLAY_LINK;
-	else if (picture >= 0)
-		action = (struct overlay_action){ .kind = OVERLAY_PICTURE,
-						  .part = overlay->page_part,
-						  .picture = picture };
-	return action;
-}
-
-static struct overlay_action tap_chrome(const struct overlay *overlay, float x_px)
-{
-	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
-	const struct chrome_button *button = chrome_button_at(&overlay->chrome, x_px);
-
-	if (!button)
-		return action;
-	if (button->kind == CHROME_HOME) {
-		action.kind = OVERLAY_HOME;
-	} else if (button->kind == CHROME_BACK) {
-		action.kind = overlay->back ? OVERLAY_BACK : OVERLAY_SWALLOWED;
-	} else if (button->kind == CHROME_HELP) {
-		action.kind = OVERLAY_HELP;
-	} else if (button->kind == CHROME_SEARCH) {
-		action.kind = OVERLAY_SEARCH;
-	} else if (button->kind == CHROME_TOURS) {
-		action.kind = OVERLAY_TOURS;
-	} else if (button->kind == CHROME_LIGHT) {
-		action.kind = OVERLAY_LIGHT;
-	} else if (button->kind == CHROME_SECTION) {
-		action.kind = OVERLAY_SECTION;
-	} else if (button->kind == CHROME_LARGE) {
-		action.kind = OVERLAY_LARGE;
-	} else if (button->kind == CHROME_REACH) {
-		action.kind = OVERLAY_REACH;
-	} else if (button->kind == CHROME_LANGUAGES) {
-		action.kind = OVERLAY_LANGUAGES;
-	} else if (button->language != overlay->languages.current) {
-		action.kind = OVERLAY_LANGUAGE;
-		action.language = overlay->languages.codes[button->language];
-	}
-	return action;
-}
-
-static struct overlay_action tap_card(const struct overlay *overlay, float x_px, float y_px)
-{
-	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = overlay->card_part };
-	struct rect card = overlay_card_rect(overlay);
-
-	if (card_closes(&overlay->theme, card.width_px, x_px - (float)card.x_px,
-			y_px - (float)card.y_px))
-		action.kind = OVERLAY_CLOSE_CARD;
-	else if (overlay->parts[overlay->card_part].has_page)
-		action.kind = OVERLAY_OPEN_PAGE;
-	return action;
+	return tools_view_covers(&overlay->tools, screen, &obstacles, x_px, y_px);
 }
 
 struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px)
 {
-	struct overlay_action action = { .kind = OVERLAY_NONE, .part = -1 };
 	const struct screen screen = overlay_screen(overlay);
-	struct rect chrome = screen.bar;
+	struct overlay_action action = { .kind = OVERLAY_NONE, .part = -1 };
 
-	if (rect_holds(chrome, x_px, y_px))
-		return tap_chrome(overlay, x_px - (float)chrome.x_px);
+	if (rect_holds(screen.bar, x_px, y_px))
+		return bar_view_tap(&overlay->bar, &screen, &overlay->languages, overlay->back,
+				    x_px);
 	if (overlay->languages_view.fade.on)
 		return languages_view_tap(&screen, &overlay->languages, x_px, y_px);
 	if (overlay->gallery.fade.on)
-		return overlay_gallery_tap(overlay, x_px, y_px);
-	if (overlay->search.fade.on && rect_holds(overlay_search_rect(overlay), x_px, y_px))
-		return overlay_search_tap(overlay, x_px, y_px);
-	if (overlay->card_part >= 0 && rect_holds(overlay_card_rect(overlay), x_px, y_px))
-		return tap_card(overlay, x_px, y_px);
-	if (overlay->page_part >= 0 && rect_holds(overlay_page_rect(overlay), x_px, y_px))
-		return tap_page(overlay, x_px, y_px);
-	if (overlay->tours.fade.on && rect_holds(overlay_menu_rect(overlay), x_px, y_px))
-		return overlay_menu_tap(overlay, x_px, y_px);
-	if (overlay_tour_shows(overlay) && rect_holds(overlay_tour_rect(overlay), x_px, y_px))
-		return overlay_tour_tap(overlay, x_px, y_px);
-	if (overlay_on_tools(overlay, x_px, y_px)) {
+		return gallery_view_tap(&overlay->gallery, &screen, x_px, y_px);
+	if (overlay->search.fade.on && rect_holds(search_view_rect(&screen), x_px, y_px))
+		return search_view_tap(&overlay->search, &screen, x_px, y_px);
+	if (overlay->card.part >= 0 && rect_holds(card_view_rect(&screen), x_px, y_px))
+		return card_view_tap(&overlay->card, &screen, &overlay->parts, x_px, y_px);
+	if (overlay->page.part >= 0 &&
+	    rect_holds(page_view_rect(&overlay->page, &screen), x_px, y_px))
+		return page_view_tap(&overlay->page, &screen, x_px, y_px);
+	if (overlay->tours.fade.on &&
+	    rect_holds(tours_view_rect(&overlay->tours, &screen), x_px, y_px))
+		return tours_view_tap(&overlay->tours, &screen, x_px, y_px);
+	if (overlay_tour_shows(overlay) &&
+	    rect_holds(tour_player_view_rect(&overlay->tour, &screen), x_px, y_px))
+		return tour_player_view_tap(&overlay->tour, &screen, x_px, y_px);
+	if (on_tools(overlay, &screen, x_px, y_px)) {
 		action.kind = OVERLAY_SWALLOWED;
 		return action;
 	}
-	if (overlay->help.on && rect_holds(overlay_help_rect(overlay), x_px, y_px)) {
+	if (overlay->help.fade.on &&
+	    rect_holds(help_view_rect(&overlay->help, &screen), x_px, y_px)) {
 		action.kind = OVERLAY_HELP;
 		return action;
 	}
-	action.part = label_at(overlay, x_px, y_px);
+	action.part = callouts_view_part_at(&overlay->callouts, &screen, x_px, y_px);
 	if (action.part >= 0)
 		action.kind = OVERLAY_OPEN_CARD;
 	return action;
 }
 
+/* Help and callouts do not cover: a gesture that begins there is the model's. */
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 {
 	const struct screen screen = overlay_screen(overlay);
@@ -525,195 +556,204 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 	if (overlay->languages_view.fade.on &&
 	    rect_holds(languages_view_rect(&screen, &overlay->languages), x_px, y_px))
 		return true;
-	if (rect_holds(overlay_chrome_rect(overlay), x_px, y_px))
+	if (rect_holds(screen.bar, x_px, y_px))
 		return true;
-	if (overlay->page_part >= 0 && rect_holds(overlay_page_rect(overlay), x_px, y_px))
+	if (overlay->page.part >= 0 &&
+	    rect_holds(page_view_rect(&overlay->page, &screen), x_px, y_px))
 		return true;
-	if (overlay->search.fade.on && rect_holds(overlay_search_rect(overlay), x_px, y_px))
+	if (overlay->search.fade.on && rect_holds(search_view_rect(&screen), x_px, y_px))
 		return true;
-	if (overlay->tours.fade.on && rect_holds(overlay_menu_rect(overlay), x_px, y_px))
+	if (overlay->tours.fade.on &&
+	    rect_holds(tours_view_rect(&overlay->tours, &screen), x_px, y_px))
 		return true;
-	if (overlay_tour_shows(overlay) && rect_holds(overlay_tour_rect(overlay), x_px, y_px))
+	if (overlay_tour_shows(overlay) &&
+	    rect_holds(tour_player_view_rect(&overlay->tour, &screen), x_px, y_px))
 		return true;
-	if (overlay_on_tools(overlay, x_px, y_px))
+	if (on_tools(overlay, &screen, x_px, y_px))
 		return true;
-	return overlay->card_part >= 0 && rect_holds(overlay_card_rect(overlay), x_px, y_px);
+	return overlay->card.part >= 0 && rect_holds(card_view_rect(&screen), x_px, y_px);
 }
 
-static void scroll_by(float *scroll_px, float *px_per_s, int most_px, float by_px)
+enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px, float y_px)
 {
-	float to_px = *scroll_px + by_px;
+	const struct screen screen = overlay_screen(overlay);
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, &screen);
 
-	*scroll_px = fminf(fmaxf(to_px, 0), (float)most_px);
-	if (*scroll_px != to_px)
-		*px_per_s = 0;
+	if (overlay->question.fade.on ||
+	    (overlay->languages_view.fade.on &&
+	     rect_holds(languages_view_rect(&screen, &overlay->languages), x_px, y_px)))
+		return OVERLAY_HANDLE_NONE;
+	return tools_view_handle_at(&overlay->tools, &screen, &obstacles, x_px, y_px);
+}
+
+void overlay_handle_place(const struct overlay *overlay, enum overlay_handle handle, float x_px,
+			  float y_px, float at[2])
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	tools_view_handle_place(&overlay->tools, &screen, handle, x_px, y_px, at);
 }
 
 void overlay_scroll(struct overlay *overlay, float dy_px)
 {
-	struct search *search = &overlay->search;
+	const struct screen screen = overlay_screen(overlay);
 
-	search->scroll_px_per_s = overlay->scroll_px_per_s = 0;
-	if (search->fade.on)
-		scroll_by(&search->scroll_px, &search->scroll_px_per_s,
-			  overlay_found_scroll_most(overlay), -dy_px);
+	overlay->search.scroll.px_per_s = overlay->page.scroll.px_per_s = 0;
+	if (overlay->search.fade.on)
+		scroll_by(&overlay->search.scroll,
+			  search_view_scroll_most(&overlay->search, &screen), -dy_px);
 	else
-		scroll_by(&overlay->scroll_px, &overlay->scroll_px_per_s,
-			  overlay_scroll_most(overlay), -dy_px);
+		scroll_by(&overlay->page.scroll, page_view_scroll_most(&overlay->page, &screen),
+			  -dy_px);
 }
 
 void overlay_fling(struct overlay *overlay, float vy_px_per_s)
 {
-	if (overlay->search.fade.on)
-		overlay->search.scroll_px_per_s = -vy_px_per_s;
-	else
-		overlay->scroll_px_per_s = -vy_px_per_s;
+	struct scroll *scroll =
+		overlay->search.fade.on ? &overlay->search.scroll : &overlay->page.scroll;
+
+	scroll->px_per_s = -vy_px_per_s;
+}
+
+void overlay_picture_drag(struct overlay *overlay, float dx_px, float dy_px)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	gallery_view_drag(&overlay->gallery, &screen, dx_px, dy_px);
+}
+
+void overlay_picture_drag_end(struct overlay *overlay, float vx_px_per_s)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	gallery_view_drag_end(&overlay->gallery, &screen, vx_px_per_s);
+}
+
+void overlay_picture_pinch(struct overlay *overlay, float x_px, float y_px, float scale,
+			   float dx_px, float dy_px)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	gallery_view_pinch(&overlay->gallery, &screen, x_px, y_px, scale, dx_px, dy_px);
+}
+
+void overlay_picture_double_tap(struct overlay *overlay, float x_px, float y_px)
+{
+	const struct screen screen = overlay_screen(overlay);
+
+	gallery_view_double_tap(&overlay->gallery, &screen, x_px, y_px);
 }
 
 /* ---- a frame ---- */
 
-static bool advance_scroll(float *scroll_px, float *px_per_s, int most_px, int64_t step_ms)
+static void update_bar(struct overlay *overlay, const struct screen *screen)
 {
-	if (*px_per_s == 0)
-		return false;
-	scroll_by(scroll_px, px_per_s, most_px, *px_per_s * (float)step_ms / 1000);
-	*px_per_s *= expf(-(float)step_ms / FLING_SLOWDOWN_MS);
-	if (fabsf(*px_per_s) < FLING_LEAST_PX_PER_S)
-		*px_per_s = 0;
-	return *px_per_s != 0;
+	const struct bar_view_state state = {
+		.back = overlay->back,
+		.help = overlay->help.fade.on,
+		.search = overlay->search.fade.on,
+		.tours = overlay->tours.fade.on || overlay->tour.runs,
+		.large = overlay->comfort.large,
+		.reach = overlay->comfort.reach,
+		.light = overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
+		.section = overlay->tools.now.on & OVERLAY_TOOL_SECTION,
+		.languages = overlay->languages_view.fade.on,
+	};
+
+	bar_view_update(&overlay->bar, screen, &overlay->languages, state);
 }
 
-/* Dims a label while its part is hidden. A short occlusion, as by a passing pillar, removes
- * nothing. */
-static bool watch_hidden(struct overlay *overlay, struct label *label, int64_t step_ms)
+static bool update_tour(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
 {
-	label->dim.on = overlay->parts[label->part].hidden;
-	if (!label->dim.on || !label->fade.on) {
-		label->hidden_ms = 0;
-		return fade_advance(&label->dim, step_ms);
-	}
-	label->hidden_ms += step_ms;
-	overlay->callouts_dirty |= label->hidden_ms >= OVERLAY_HIDDEN_MS;
-	fade_advance(&label->dim, step_ms);
-	return true;
+	const bool shows = overlay_tour_shows(overlay);
+
+	overlay->callouts.dirty |= overlay->tour.fade.on != shows;
+	return tour_player_view_update(&overlay->tour, screen, shows,
+				       overlay->tours.list[overlay->tour.tour].title, step_ms);
 }
 
-static bool update_labels(struct overlay *overlay, int64_t step_ms)
+static bool update_tools(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
 {
-	uint32_t budget = LABELS_A_FRAME;
-	bool moving = false;
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
 
-	for (uint32_t i = 0; i < LABELS; i++) {
-		struct label *label = &overlay->labels[i];
-		bool selected;
+	return tools_view_update(&overlay->tools, screen, &obstacles, step_ms,
+				 &overlay->callouts.dirty);
+}
 
-		if (label->part < 0)
-			continue;
-		selected = label->part == overlay->card_part || label->part == overlay->page_part;
-		if (label->fade.on &&
-		    (!label->drawn || label->drawn_selected != selected ||
-		     overlay->sprites[BITMAP_LABEL + i].bitmap.width_px != label->place.width_px)) {
-			if (budget == 0) {
-				moving = true;
-				continue;
-			}
-			overlay_draw_label(overlay, i);
-			budget--;
-		}
-		moving |= fade_advance(&label->fade, step_ms);
-		moving |= watch_hidden(overlay, label, step_ms);
-		if (!label->fade.on && label->fade.alpha == 0)
-			*label = (struct label){ .part = -1 };
-	}
+/* Callouts come after all that they must not touch. */
+static bool update_callouts(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
+{
+	const struct callouts_view_room room = overlay_callouts_room(overlay, screen);
+
+	return callouts_view_update(&overlay->callouts, screen, &overlay->parts, &room, step_ms);
+}
+
+static bool update_page(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
+{
+	const char *title =
+		overlay->page.part >= 0 ? overlay->parts.list[overlay->page.part].title : "";
+	bool moving = gallery_view_update(&overlay->gallery, screen, overlay->page.article,
+					  &overlay->pictures, step_ms);
+
+	moving |= page_view_update(&overlay->page, screen, title, step_ms);
+	if (!overlay->page.article)
+		gallery_view_drop(&overlay->gallery); /* its pictures are the page's */
 	return moving;
-}
-
-static bool update_strips(struct overlay *overlay, int64_t step_ms)
-{
-	struct rect view = overlay_view_rect(overlay);
-	int first = (int)overlay->scroll_px / overlay->strip_px;
-	/* One strip more than is visible, so that scrolling finds it drawn. */
-	int last = ((int)overlay->scroll_px + view.height_px) / overlay->strip_px + 1;
-	int end = article_height_px(overlay->article) / overlay->strip_px;
-	uint32_t budget = STRIPS_A_FRAME;
-	bool moving = false;
-
-	for (int index = first; index <= last && index <= end; index++) {
-		uint32_t slot = (uint32_t)index % STRIPS;
-		struct strip *strip = &overlay->strips[slot];
-
-		if (strip->index != index || strip->stale) {
-			if (budget == 0) {
-				moving = true;
-				continue;
-			}
-			strip->index = index;
-			strip->stale = false;
-			strip->fade.on = true;
-			if (overlay->page.alpha < 1) /* it appears together with its page */
-				strip->fade.alpha = 1;
-			overlay_draw_strip(overlay, slot);
-			budget--;
-		}
-		moving |= fade_advance(&strip->fade, step_ms);
-	}
-	return moving;
-}
-
-static void draw_what_changed(struct overlay *overlay)
-{
-	if (overlay->help_dirty)
-		overlay_draw_help(overlay);
-	if (overlay->chrome_dirty)
-		overlay_draw_chrome(overlay);
-	if (overlay->card_dirty && overlay->card_part >= 0)
-		overlay_draw_card(overlay);
-	if (overlay->head_dirty && overlay->page_part >= 0)
-		overlay_draw_page_head(overlay);
-	if (overlay->question.on && overlay->question_drawn_s != overlay->question_s)
-		overlay_draw_question(overlay);
-	overlay->help_dirty = overlay->chrome_dirty = false;
-	overlay->card_dirty = overlay->head_dirty = false;
 }
 
 bool overlay_update(struct overlay *overlay, int64_t now_ms)
 {
 	const struct screen screen = overlay_screen(overlay);
+	const struct picture_source *pictures = &overlay->pictures;
+	const struct parts *parts = &overlay->parts;
 	int64_t step_ms = overlay->then_ms ? now_ms - overlay->then_ms : 0;
 	bool moving;
 
 	if (step_ms < 0 || step_ms > STEP_MOST_MS)
 		step_ms = step_ms < 0 ? 0 : STEP_MOST_MS;
 	overlay->then_ms = now_ms;
-	draw_what_changed(overlay);
-	moving = overlay_update_tours(overlay, step_ms);
+	update_bar(overlay, &screen);
+	moving = help_view_update(&overlay->help, &screen, parts->count > 0, step_ms);
+	moving |= card_view_update(&overlay->card, &screen, parts, pictures, step_ms);
+	moving |= question_view_update(&overlay->question, &screen, step_ms);
+	moving |= invitation_view_update(&overlay->invitation, step_ms);
+	moving |= update_tour(overlay, &screen, step_ms);
+	moving |= tours_view_update(&overlay->tours, &screen, pictures, step_ms);
 	moving |= languages_view_update(&overlay->languages_view, &screen, &overlay->languages,
 					step_ms);
-	moving |= overlay_update_tools(overlay, step_ms);
-	if (overlay->callouts_dirty)
-		overlay_lay_out_callouts(overlay);
-	overlay->callouts_dirty = false;
-	moving |= fade_advance(&overlay->help, step_ms);
-	if (overlay->help.on && overlay->help_ms < HINT_MOVES_MS) {
-		overlay->help_ms += step_ms;
-		moving = true;
-	}
-	moving |= fade_advance(&overlay->invitation, step_ms);
-	moving |= fade_advance(&overlay->question, step_ms);
-	moving |= fade_advance(&overlay->card, step_ms);
-	moving |= fade_advance(&overlay->page, step_ms * FADE_MS / PAGE_FADE_MS);
-	moving |= advance_scroll(&overlay->scroll_px, &overlay->scroll_px_per_s,
-				 overlay_scroll_most(overlay), step_ms);
-	if (overlay->search.scroll_px_per_s != 0)
-		moving |=
-			advance_scroll(&overlay->search.scroll_px, &overlay->search.scroll_px_per_s,
-				       overlay_found_scroll_most(overlay), step_ms);
-	moving |= overlay_update_search(overlay, step_ms);
-	moving |= overlay_update_gallery(overlay, step_ms);
-	moving |= update_labels(overlay, step_ms);
-	if (!overlay->page.on && overlay->page.alpha == 0)
-		drop_page(overlay);
-	else if (overlay->article)
-		moving |= update_strips(overlay, step_ms);
+	moving |= update_tools(overlay, &screen, step_ms);
+	moving |= update_callouts(overlay, &screen, step_ms);
+	moving |= search_view_update(&overlay->search, &screen, parts, pictures, step_ms);
+	moving |= update_page(overlay, &screen, step_ms);
 	return moving;
+}
+
+uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *list, uint32_t most)
+{
+	const struct screen screen = overlay_screen(overlay);
+	struct layers layers = { .list = list, .most = most };
+
+	callouts_view_layers(&overlay->callouts, &layers);
+	tools_view_layers(&overlay->tools, &screen, &layers);
+	help_view_layers(&overlay->help, &screen, overlay->parts.count > 0, &layers);
+	invitation_view_layers(&overlay->invitation, &screen, &layers);
+	tour_player_view_layers(&overlay->tour, &screen, &layers);
+	tours_view_layers(&overlay->tours, &screen, &layers);
+	page_view_layers(&overlay->page, &screen, &overlay->paper, &layers);
+	card_view_layers(&overlay->card, &screen, &layers);
+	search_view_layers(&overlay->search, &screen, &overlay->paper, &layers);
+	gallery_view_layers(&overlay->gallery, &screen, &layers);
+	languages_view_layers(&overlay->languages_view, &screen, &overlay->languages, &layers);
+	bar_view_layers(&overlay->bar, &screen, &layers);
+	question_view_layers(&overlay->question, &screen, &layers);
+	return layers.count;
+}
+
+void overlay_paint(const struct overlay *overlay, cairo_t *context)
+{
+	struct overlay_layer list[OVERLAY_LAYERS_MAX];
+	const struct layers layers = { .list = list,
+				       .count = overlay_layers(overlay, list, OVERLAY_LAYERS_MAX) };
+
+	layers_paint(&layers, context);
 }

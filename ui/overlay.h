@@ -14,14 +14,12 @@
 
 #include "base/bytes.h"
 #include "ui/action.h"
-#include "ui/languages.h"
+#include "ui/content.h"
 #include "ui/layers.h"
 #include "ui/rect.h"
 #include "ui/source.h"
 
 enum {
-	OVERLAY_PARTS_MAX = 1000,
-	OVERLAY_TOURS_MAX = 8,
 	OVERLAY_LAYERS_MAX = 256,  /* in one frame */
 	OVERLAY_BITMAPS_MAX = 128, /* bitmap ids are below this */
 };
@@ -48,12 +46,6 @@ void overlay_destroy(struct overlay *overlay); /* NULL is fine */
 
 /* ---- content ---- */
 
-struct overlay_part {
-	const char *title, *caption; /* UTF-8; caption may be "" */
-	const char *thumbnail;       /* a picture's name, or "" */
-	bool has_page;
-};
-
 /* Sets the parts, in order of importance, in the current language; copied. Card, page and search
  * are closed if the count changes. Returns -EINVAL for more than OVERLAY_PARTS_MAX, or -ENOMEM;
  * then nothing changes. */
@@ -63,14 +55,7 @@ must_check int overlay_parts(struct overlay *overlay, const struct overlay_part 
  * one is open) again in that language. */
 void overlay_language(struct overlay *overlay, const char *language);
 
-/* The current position of each part's anchor on the panel; one entry per part. */
-struct overlay_anchor {
-	float x_px, y_px;
-	float size_px; /* size of the part on the panel; 0: a place without a size */
-	bool visible;  /* in front of the camera and inside the scene's rectangle */
-	bool hidden;   /* behind the model: its callout dims, and goes if this lasts */
-};
-/* Copies the anchors. Extra entries are ignored. */
+/* Copies the anchors, one per part. Extra entries are ignored. */
 void overlay_anchors(struct overlay *overlay, const struct overlay_anchor *anchors, uint32_t count);
 
 /* Opens the card of a part; -1 closes it. */
@@ -135,12 +120,8 @@ bool overlay_press(struct overlay *overlay, int key);
 void overlay_found(struct overlay *overlay, const uint32_t *parts, uint32_t count);
 
 /* Sets the guided tours of the menu, in the current language; copied. Returns -1 if memory runs out
- * or there are more than OVERLAY_TOURS_MAX; then nothing changes. Menu and tour panel close if the
+ * or there are more than OVERLAY_TOURS_MAX; then nothing changes. Menu and tour close if the
  * count changes. */
-struct overlay_tour {
-	const char *title, *caption; /* caption may be "" */
-	const char *thumbnail;       /* a picture's name, or "" */
-};
 must_check int overlay_tours(struct overlay *overlay, const struct overlay_tour *tours,
 			     uint32_t count);
 /* Opens or closes the menu of tours; opening closes what else is open. */
@@ -152,32 +133,15 @@ bool overlay_choosing(const struct overlay *overlay);
 void overlay_show_languages(struct overlay *overlay, bool on);
 /* Returns true if the menu of languages is open. */
 bool overlay_choosing_language(const struct overlay *overlay);
-/* The panel of the current tour. It is visible while nothing else takes its place. */
-struct overlay_tour_state {
-	int tour, stop, stop_count; /* only stops at which the tour stays are counted */
-	const char *caption;
-	bool paused;
-};
-/* Copies the state; NULL: no tour is running. */
+/* Shows the tour that runs, while nothing else takes its place. The state is copied; NULL: no tour
+ * is running. */
 void overlay_show_tour(struct overlay *overlay, const struct overlay_tour_state *state);
 
-/* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. None at first. */
-enum overlay_tool { OVERLAY_TOOL_LIGHT = 1, OVERLAY_TOOL_SECTION = 2 };
-enum { OVERLAY_TOOL_COUNT = 2 };
-/* Sets which tools the bar offers, a mask of enum overlay_tool. */
+/* Sets which tools the bar offers, none at first: a mask of enum overlay_tool. */
 void overlay_offer_tools(struct overlay *overlay, unsigned tools);
 /* Returns the offered tools that fit on the bar. */
 unsigned overlay_tools_offered(const struct overlay *overlay);
-/* State of the tools, to be set each frame. Directions are relative to the disc of the tool: the
- * ring has radius 1, up points away from the viewer. */
-struct overlay_tools {
-	/* mask of enum overlay_tool */
-	unsigned on;
-	float light_at[2]; /* right, up */
-	float turn_rad;    /* direction of the part cut away, from up to the left */
-	float push;        /* offset of the cut in that direction; 1 and -1 at the ring */
-};
-/* Copies the state. */
+/* Sets the state of the tools, each frame; copied. */
 void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *state);
 
 /* Tells that a picture that was asked for has arrived. */
@@ -208,13 +172,6 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 /* Returns true if a gesture that begins at that point belongs to the overlay (it scrolls the page
  * or is ignored), not to the model. */
 bool overlay_covers(const struct overlay *overlay, float x_px, float y_px);
-/* The handles of the tools. A finger that touches one keeps it until it lifts. */
-enum overlay_handle {
-	OVERLAY_HANDLE_NONE,
-	OVERLAY_HANDLE_LIGHT,
-	OVERLAY_HANDLE_PUSH,
-	OVERLAY_HANDLE_TURN,
-};
 /* Returns the handle at that point, or OVERLAY_HANDLE_NONE. */
 enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px, float y_px);
 /* Converts a finger's position to the coordinates of the handle's disc: right, up; the ring is at

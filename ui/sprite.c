@@ -29,6 +29,17 @@ void sprite_end(struct sprite *sprite, cairo_t *context)
 	bitmap_end(&sprite->bitmap, context);
 }
 
+void sprite_fill(struct sprite *sprite, struct colour colour)
+{
+	cairo_t *context = sprite_begin(sprite, 4, 4);
+
+	if (!context)
+		return;
+	theme_set_source(context, colour, 1);
+	cairo_paint(context);
+	sprite_end(sprite, context);
+}
+
 void sprite_take(struct sprite *sprite, const struct bitmap *fresh, int rc)
 {
 	bitmap_finish(&sprite->bitmap);

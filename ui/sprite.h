@@ -4,6 +4,7 @@
 #define GOPURA_UI_SPRITE_H
 
 #include "ui/bitmap.h"
+#include "ui/theme.h"
 
 struct sprite {
 	struct bitmap bitmap; /* empty: not drawn yet, or memory ran out; it is left out */
@@ -21,6 +22,8 @@ void sprites_finish(struct sprite *sprites, uint32_t count);
 cairo_t *sprite_begin(struct sprite *sprite, int width_px, int height_px);
 /* Ends a drawing. context is what sprite_begin returned. */
 void sprite_end(struct sprite *sprite, cairo_t *context);
+/* Makes it a few pixels of one colour, to be stretched. */
+void sprite_fill(struct sprite *sprite, struct colour colour);
 /* Takes over a bitmap that another module drew. rc is that module's result: if it is negative, the
  * sprite is empty. */
 void sprite_take(struct sprite *sprite, const struct bitmap *fresh, int rc);

@@ -14,7 +14,7 @@
 
 #include "app/kiosk.h"
 #include "base/clock.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 
 /* The linker wraps these (Makefile). */
 int __real_frame_draw(struct frame *of);
@@ -63,27 +63,27 @@ bool __wrap_overlay_update(struct overlay *overlay, int64_t now_ms)
 
 static bool is_whole(const struct overlay *overlay)
 {
-	const struct rect view = overlay_view_rect(overlay);
-	const int last = (view.height_px - 1) / overlay->strip_px;
-	const int end = article_height_px(overlay->article) / overlay->strip_px;
+	const struct rect view = page_window(overlay);
+	const int last = (view.height_px - 1) / overlay->page.strip_px;
+	const int end = article_height_px(overlay->page.article) / overlay->page.strip_px;
 
 	for (int i = 0; i <= last && i <= end; i++)
-		if (overlay->strips[i].index != i || overlay->strips[i].fade.alpha < 1)
+		if (overlay->page.strips[i].index != i || overlay->page.strips[i].fade.alpha < 1)
 			return false;
-	return overlay->page.alpha == 1;
+	return overlay->page.fade.alpha == 1;
 }
 
 static bool has_pictures(const struct overlay *overlay)
 {
-	for (uint32_t i = 0; i < article_picture_count(overlay->article); i++) {
+	for (uint32_t i = 0; i < article_picture_count(overlay->page.article); i++) {
 		struct overlay_picture found = { 0 };
-		const char *name = article_picture(overlay->article, i, NULL);
+		const char *name = article_picture(overlay->page.article, i, NULL);
 
 		if (overlay->pictures.get(overlay->pictures.data, name, &found) && !found.picture)
 			return false;
 	}
-	for (uint32_t i = 0; i < STRIPS; i++)
-		if (overlay->strips[i].index >= 0 && overlay->strips[i].stale)
+	for (uint32_t i = 0; i < PAGE_STRIPS; i++)
+		if (overlay->page.strips[i].index >= 0 && overlay->page.strips[i].stale)
 			return false;
 	return true;
 }

@@ -122,8 +122,6 @@ render/scene/scene_draw.c render/scene/scene_labels.c render/scene/scene_mark.c 
 render/scene/scene_plan.c render/scene/scene_visibility.c render/scene/scene_wants.c
 storage/cache_file.c storage/cache_room.c storage/info_ask.c storage/info_open.c storage/info_tools.c
 storage/info_tour.c
-ui/overlay_comfort.c ui/overlay_draw.c ui/overlay_gallery.c ui/overlay_layers.c
-ui/overlay_place.c ui/overlay_search.c ui/overlay_tools.c ui/overlay_tour.c
 "
 for file in $files; do
 	case $file in

@@ -8,7 +8,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
@@ -417,7 +417,7 @@ static void keys_are_fingers_wide_in_every_mode_and_language(void **state)
 				for (uint32_t i = 0; i < keyboard->key_count; i++)
 					CHECK(keyboard->keys[i].width_px >= least_px &&
 					      keyboard->keys[i].height_px >= least_px);
-				CHECK(overlay_found_rect(overlay).height_px >= least_px);
+				CHECK(list_place(overlay).height_px >= least_px);
 				overlay_show_search(overlay, false);
 			}
 		}
@@ -428,21 +428,21 @@ static void keys_are_fingers_wide_in_every_mode_and_language(void **state)
 static void the_bar_stays_where_it_is(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720);
-	struct chrome before = overlay->chrome;
-	struct rect bar = overlay_chrome_rect(overlay);
+	struct bar_view before = overlay->bar;
+	struct rect bar = bar_place(overlay);
 
 	(void)state;
 	for (int mode = 0; mode < 4; mode++) {
 		struct rect now;
 
 		overlay_set_comfort(overlay, (struct overlay_comfort){ mode & 1, mode & 2 });
-		now = overlay_chrome_rect(overlay);
+		now = bar_place(overlay);
 		CHECK(now.x_px == bar.x_px && now.y_px == bar.y_px &&
 		      now.height_px == bar.height_px);
-		CHECK(!overlay->chrome.codes && now.x_px + now.width_px < 640);
-		for (uint32_t i = 0; overlay->chrome.buttons[i].kind != CHROME_LANGUAGE; i++)
-			CHECK(overlay->chrome.buttons[i].kind == before.buttons[i].kind &&
-			      overlay->chrome.buttons[i].x_px == before.buttons[i].x_px);
+		CHECK(!overlay->bar.codes && now.x_px + now.width_px < 640);
+		for (uint32_t i = 0; overlay->bar.buttons[i].kind != BAR_LANGUAGE; i++)
+			CHECK(overlay->bar.buttons[i].kind == before.buttons[i].kind &&
+			      overlay->bar.buttons[i].x_px == before.buttons[i].x_px);
 	}
 	overlay_destroy(overlay);
 }
@@ -456,23 +456,23 @@ static void large_type_is_larger_and_keeps_the_place_that_is_read(void **state)
 	(void)state;
 	show_page(overlay);
 	settle(overlay);
-	height_px = article_height_px(overlay->article);
+	height_px = article_height_px(overlay->page.article);
 	overlay_scroll(overlay, -100);
-	read = overlay->scroll_px / (float)height_px;
+	read = overlay->page.scroll.px / (float)height_px;
 	overlay_set_comfort(overlay, (struct overlay_comfort){ .large = true });
 	settle(overlay);
 	CHECK(fabsf((float)theme_style_px(&overlay->theme, TEXT_BODY) -
 		    THEME_LARGE_TYPE * (float)usual_px) < 1.5f);
-	large_px = article_height_px(overlay->article);
+	large_px = article_height_px(overlay->page.article);
 	CHECK(large_px > height_px);
-	CHECK(fabsf(overlay->scroll_px / (float)article_height_px(overlay->article) - read) <
-	      0.001f);
+	CHECK(fabsf(overlay->page.scroll.px / (float)article_height_px(overlay->page.article) -
+		    read) < 0.001f);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
-	CHECK(article_height_px(overlay->article) == height_px);
+	CHECK(article_height_px(overlay->page.article) == height_px);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ .large = true });
 	show_page(
 		overlay); /* as a page is that opens so: no line is left as it was broken before */
-	CHECK(article_height_px(overlay->article) == large_px);
+	CHECK(article_height_px(overlay->page.article) == large_px);
 	overlay_destroy(overlay);
 }
 

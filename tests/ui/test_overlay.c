@@ -10,7 +10,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };
@@ -246,14 +246,14 @@ static void shows_every_screen_on_every_panel(void **state)
 			overlay_show_help(overlay, true);
 			snprintf(name, sizeof(name), "help-%s", languages[language]);
 			bitmap = screen(overlay, name);
-			CHECK(painted(&bitmap, overlay_help_rect(overlay)) > 100);
+			CHECK(painted(&bitmap, help_place(overlay)) > 100);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 
 			overlay_ask(overlay, 12);
 			snprintf(name, sizeof(name), "asked-%s", languages[language]);
 			bitmap = screen(overlay, name);
-			CHECK(painted(&bitmap, overlay_question_rect(overlay)) > 500);
+			CHECK(painted(&bitmap, question_place(overlay)) > 500);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 			overlay_ask(overlay, -1);
@@ -262,39 +262,60 @@ static void shows_every_screen_on_every_panel(void **state)
 			overlay_show_card(overlay, 0);
 			snprintf(name, sizeof(name), "card-%s", languages[language]);
 			bitmap = screen(overlay, name);
-			CHECK(painted(&bitmap, overlay_card_rect(overlay)) > 500);
+			CHECK(painted(&bitmap, card_place(overlay)) > 500);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 
 			CHECK(overlay_show_page(overlay, 0, compiled(pages[language]),
 						"© The museum · 1150") == 0);
-			CHECK(article_unknown_glyphs(overlay->article) == 0);
+			CHECK(article_unknown_glyphs(overlay->page.article) == 0);
 			give_anchors(overlay);
 			snprintf(name, sizeof(name), "page-%s", languages[language]);
 			bitmap = screen(overlay, name);
-			CHECK(painted(&bitmap, overlay_view_rect(overlay)) > 500);
+			CHECK(painted(&bitmap, page_window(overlay)) > 500);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 			overlay_widen_page(overlay, true);
 			snprintf(name, sizeof(name), "wide-%s", languages[language]);
 			bitmap = screen(overlay, name);
-			CHECK(painted(&bitmap, overlay_view_rect(overlay)) > 500);
+			CHECK(painted(&bitmap, page_window(overlay)) > 500);
 			bitmap_finish(&bitmap);
 			check_layers(overlay);
 			overlay_close_page(overlay);
 			give_anchors(overlay);
 			settle(overlay);
-			CHECK(overlay_page(overlay) == -1 && !overlay->article);
+			CHECK(overlay_page(overlay) == -1 && !overlay->page.article);
 		}
 		settle(overlay);
 		overlay_invite(overlay, true);
 		invited = screen(overlay, "invited");
-		CHECK(painted(&invited, overlay_invitation_rect(overlay)) > 500);
+		CHECK(painted(&invited, invitation_place(overlay)) > 500);
 		bitmap_finish(&invited);
 		check_layers(overlay);
 		overlay_destroy(overlay);
 	}
 	picture_finish(&album.picture);
+}
+
+static struct rect close_place(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return page_view_close_button(&overlay->page, &now);
+}
+
+static struct rect widen_place(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return page_view_widen_button(&overlay->page, &now);
+}
+
+static int scroll_most(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return page_view_scroll_most(&overlay->page, &now);
 }
 
 /* The middle of a rectangle. */
@@ -315,13 +336,13 @@ static void a_tap_means_what_is_under_it(void **state)
 	paint_album(&album);
 	overlay = open_overlay(&album, 1280, 720);
 	settle(overlay);
-	action = tap(overlay, overlay_help_rect(overlay));
+	action = tap(overlay, help_place(overlay));
 	CHECK(action.kind == OVERLAY_HELP && overlay_help(overlay));
 	overlay_show_help(overlay, false);
 	settle(overlay);
-	CHECK(overlay->callouts.count >= 6);
-	for (uint32_t i = 0; i < overlay->callouts.count; i++) {
-		const struct callout *c = &overlay->callouts.list[i];
+	CHECK(overlay->callouts.callouts.count >= 6);
+	for (uint32_t i = 0; i < overlay->callouts.callouts.count; i++) {
+		const struct callout *c = &overlay->callouts.callouts.list[i];
 
 		CHECK(c->part != 6); /* hidden */
 		action = overlay_tap(overlay, (float)c->x_px + 3, (float)c->y_px + 3);
@@ -331,17 +352,16 @@ static void a_tap_means_what_is_under_it(void **state)
 
 	overlay_show_card(overlay, 2);
 	settle(overlay);
-	action = tap(overlay, overlay_card_rect(overlay));
+	action = tap(overlay, card_place(overlay));
 	CHECK(action.kind == OVERLAY_OPEN_PAGE && action.part == 2);
-	action = overlay_tap(
-		overlay,
-		(float)(overlay_card_rect(overlay).x_px + overlay_card_rect(overlay).width_px) - 8,
-		(float)overlay_card_rect(overlay).y_px + 8);
+	action = overlay_tap(overlay,
+			     (float)(card_place(overlay).x_px + card_place(overlay).width_px) - 8,
+			     (float)card_place(overlay).y_px + 8);
 	CHECK(action.kind == OVERLAY_CLOSE_CARD);
 	overlay_show_card(overlay, 3); /* has no page */
-	CHECK(tap(overlay, overlay_card_rect(overlay)).kind == OVERLAY_SWALLOWED);
+	CHECK(tap(overlay, card_place(overlay)).kind == OVERLAY_SWALLOWED);
 
-	chrome = overlay_chrome_rect(overlay);
+	chrome = bar_place(overlay);
 	action = overlay_tap(overlay, (float)chrome.x_px + 4, (float)chrome.y_px + 4);
 	CHECK(action.kind == OVERLAY_HOME);
 	action = overlay_tap(overlay, (float)(chrome.x_px + chrome.width_px) - 4,
@@ -364,10 +384,10 @@ static void a_page_scrolls_links_and_closes(void **state)
 	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	CHECK(overlay_page(overlay) == 0 && overlay_scene_rect(overlay).width_px == 640);
 	settle(overlay);
-	view = overlay_view_rect(overlay);
+	view = page_window(overlay);
 	CHECK(overlay_covers(overlay, (float)view.x_px + 10, (float)view.y_px + 10));
 	CHECK(!overlay_covers(overlay, 200, 200));
-	CHECK(tap(overlay, overlay_close_rect(overlay)).kind == OVERLAY_CLOSE_PAGE);
+	CHECK(tap(overlay, close_place(overlay)).kind == OVERLAY_CLOSE_PAGE);
 
 	/* Somewhere in the first paragraphs lies the link to the gate. */
 	for (int y = view.y_px; y < view.y_px + 300 && !action.link; y += 4)
@@ -375,14 +395,14 @@ static void a_page_scrolls_links_and_closes(void **state)
 			action = overlay_tap(overlay, (float)x, (float)y);
 	CHECK(action.kind == OVERLAY_LINK && strcmp(action.link, "gate") == 0);
 
-	CHECK(overlay_scroll_most(overlay) > 200);
+	CHECK(scroll_most(overlay) > 200);
 	overlay_scroll(overlay, -150); /* the finger goes up */
-	CHECK(overlay->scroll_px == 150);
+	CHECK(overlay->page.scroll.px == 150);
 	overlay_scroll(overlay, 1000);
-	CHECK(overlay->scroll_px == 0);
+	CHECK(overlay->page.scroll.px == 0);
 	overlay_fling(overlay, -100000);
 	settle(overlay);
-	CHECK(overlay->scroll_px == (float)overlay_scroll_most(overlay));
+	CHECK(overlay->page.scroll.px == (float)scroll_most(overlay));
 	check_layers(overlay);
 	CHECK(overlay_show_page(overlay, 0, (struct bytes){ (const uint8_t *)"", 0 }, "x") ==
 	      -EBADMSG);
@@ -406,22 +426,23 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	CHECK(!overlay_page_is_wide(overlay));
 	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	settle(overlay);
-	half = overlay_page_rect(overlay);
-	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
+	half = page_place(overlay);
+	CHECK(tap(overlay, widen_place(overlay)).kind == OVERLAY_WIDEN_PAGE);
 	overlay_scroll(overlay, -150);
-	read = overlay->scroll_px / (float)article_height_px(overlay->article);
+	read = overlay->page.scroll.px / (float)article_height_px(overlay->page.article);
 
 	overlay_widen_page(overlay, true);
 	settle(overlay);
-	CHECK(overlay_page_is_wide(overlay) && overlay_page_rect(overlay).width_px == 1280);
-	CHECK(fabsf(overlay->scroll_px / (float)article_height_px(overlay->article) - read) < 0.1f);
-	bar = overlay_chrome_rect(overlay);
-	CHECK(overlay_view_rect(overlay).y_px + overlay_view_rect(overlay).height_px <= bar.y_px);
+	CHECK(overlay_page_is_wide(overlay) && page_place(overlay).width_px == 1280);
+	CHECK(fabsf(overlay->page.scroll.px / (float)article_height_px(overlay->page.article) -
+		    read) < 0.1f);
+	bar = bar_place(overlay);
+	CHECK(page_window(overlay).y_px + page_window(overlay).height_px <= bar.y_px);
 	CHECK(overlay_covers(overlay, 100, 300));
 	CHECK(overlay_tap(overlay, 100, 300).kind == OVERLAY_SWALLOWED);
 	CHECK(overlay_scene_rect(overlay).width_px == half.x_px); /* the eye stays where it is */
-	CHECK(tap(overlay, overlay_close_rect(overlay)).kind == OVERLAY_CLOSE_PAGE);
-	CHECK(tap(overlay, overlay_widen_rect(overlay)).kind == OVERLAY_WIDEN_PAGE);
+	CHECK(tap(overlay, close_place(overlay)).kind == OVERLAY_CLOSE_PAGE);
+	CHECK(tap(overlay, widen_place(overlay)).kind == OVERLAY_WIDEN_PAGE);
 	CHECK(overlay_show_page(overlay, 1, compiled(pages[0]), "") == 0); /* by a link */
 	CHECK(overlay_page_is_wide(overlay));
 
@@ -430,14 +451,14 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	overlay_show_card(overlay, -1);
 	overlay_widen_page(overlay, true);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ .reach = true });
-	CHECK(!overlay_page_is_wide(overlay) && overlay_widen_rect(overlay).width_px == 0);
+	CHECK(!overlay_page_is_wide(overlay) && widen_place(overlay).width_px == 0);
 	overlay_widen_page(overlay, true);
 	CHECK(!overlay_page_is_wide(overlay));
 	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
 	overlay_widen_page(overlay, true);
 	overlay_close_page(overlay);
 	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0); /* the next one */
-	CHECK(overlay_page_rect(overlay).x_px == half.x_px);
+	CHECK(page_place(overlay).x_px == half.x_px);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
@@ -456,14 +477,14 @@ static void a_late_picture_moves_nothing(void **state)
 	overlay = open_overlay(&album, 1280, 720);
 	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	CHECK(album.asked > 0);
-	height_px = article_height_px(overlay->article);
+	height_px = article_height_px(overlay->page.article);
 	before = screen(overlay, "page-waiting");
 	album.arrived = true;
 	overlay_picture_arrived(overlay, "pictures/other.png");
 	CHECK(!overlay_update(overlay, 100000000));
 	overlay_picture_arrived(overlay, "pictures/tower.png");
 	after = screen(overlay, "page-arrived");
-	CHECK(article_height_px(overlay->article) == height_px);
+	CHECK(article_height_px(overlay->page.article) == height_px);
 	CHECK(memcmp(before.pixels, after.pixels,
 		     (size_t)before.stride_bytes * (size_t)before.height_px) != 0);
 	bitmap_finish(&before);
@@ -493,7 +514,7 @@ static void nothing_pops(void **state)
 		overlay_update(overlay, now_ms);
 		count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 		for (uint32_t i = 0; i < count; i++)
-			if (layers[i].bitmap == BITMAP_CARD)
+			if (layers[i].bitmap == overlay->card.sprite.id)
 				alpha = layers[i].alpha;
 		CHECK(alpha >= last && alpha - last < 0.9f);
 		last = alpha;
@@ -510,9 +531,10 @@ static float label_alpha(struct overlay *overlay, int part)
 	const uint32_t count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 
 	for (uint32_t i = 0; i < count; i++)
-		if (layers[i].bitmap >= BITMAP_LABEL && layers[i].bitmap < BITMAP_LABEL + LABELS &&
-		    overlay->labels[layers[i].bitmap - BITMAP_LABEL].part == part)
-			return layers[i].alpha;
+		for (uint32_t k = 0; k < CALLOUT_LABELS; k++)
+			if (overlay->callouts.labels[k].sprite.id == layers[i].bitmap &&
+			    overlay->callouts.labels[k].part == part)
+				return layers[i].alpha;
 	return 0;
 }
 
@@ -563,10 +585,10 @@ static void the_invitation_takes_the_place_of_the_help(void **state)
 	overlay_show_help(overlay, false);
 	overlay_invite(overlay, true);
 	settle(overlay);
-	CHECK(!overlay_help(overlay) && overlay->invitation.alpha == 1);
+	CHECK(!overlay_help(overlay) && overlay->invitation.fade.alpha == 1);
 	overlay_invite(overlay, false); /* somebody came */
 	settle(overlay);
-	CHECK(overlay_help(overlay) && overlay->invitation.alpha == 0);
+	CHECK(overlay_help(overlay) && overlay->invitation.fade.alpha == 0);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
@@ -582,16 +604,16 @@ static void the_question_counts_down_in_the_language_that_is_set(void **state)
 	overlay = open_overlay(&album, 1280, 720);
 	overlay_ask(overlay, 9);
 	settle(overlay);
-	revision = overlay->sprites[BITMAP_QUESTION].revision;
+	revision = overlay->question.sprite.revision;
 	overlay_ask(overlay, 9);
 	settle(overlay);
-	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision);
+	CHECK(overlay->question.sprite.revision == revision);
 	overlay_ask(overlay, 8);
 	settle(overlay);
-	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision + 1);
+	CHECK(overlay->question.sprite.revision == revision + 1);
 	overlay_language(overlay, languages[1]);
 	settle(overlay);
-	CHECK(overlay->sprites[BITMAP_QUESTION].revision == revision + 2);
+	CHECK(overlay->question.sprite.revision == revision + 2);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
@@ -611,7 +633,7 @@ static void refuses_impossible_panels(void **state)
 	options.language_count = 1; /* no switch, no pictures, no parts */
 	CHECK(overlay_create(&overlay, &options) == 0);
 	settle(overlay);
-	CHECK(overlay->chrome.button_count == 5); /* home, back, help, large type, reach */
+	CHECK(overlay->bar.button_count == 5); /* home, back, help, large type, reach */
 	overlay_destroy(overlay);
 	overlay_destroy(NULL);
 }
@@ -627,9 +649,9 @@ static void the_way_back_answers_where_there_is_one(void **state)
 	(void)state;
 	paint_album(&album);
 	overlay = open_overlay(&album, 1280, 720);
-	bar = overlay_chrome_rect(overlay);
-	CHECK(overlay->chrome.buttons[1].kind == CHROME_BACK);
-	x = (float)(bar.x_px + overlay->chrome.buttons[1].x_px + 10);
+	bar = bar_place(overlay);
+	CHECK(overlay->bar.buttons[1].kind == BAR_BACK);
+	x = (float)(bar.x_px + overlay->bar.buttons[1].x_px + 10);
 	y = (float)(bar.y_px + 10);
 	CHECK(overlay_tap(overlay, x, y).kind == OVERLAY_SWALLOWED);
 	overlay_offer_back(overlay, true);
@@ -652,14 +674,14 @@ static void the_help_speaks_of_names_where_there_are_some(void **state)
 	paint_album(&album);
 	overlay = open_overlay(&album, 1280, 720);
 	settle(overlay);
-	with = overlay_help_rect(overlay);
+	with = help_place(overlay);
 	CHECK(overlay_parts(overlay, NULL, 0) == 0);
 	settle(overlay);
-	without = overlay_help_rect(overlay);
+	without = help_place(overlay);
 	CHECK(3 * without.width_px < 2 * with.width_px + with.width_px / 4);
 	give_parts(overlay, 0);
 	settle(overlay);
-	CHECK(overlay_help_rect(overlay).width_px == with.width_px);
+	CHECK(help_place(overlay).width_px == with.width_px);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }

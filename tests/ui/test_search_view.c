@@ -10,7 +10,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 #include "ui/translate.h"
 
 enum { PARTS = 12, LANGUAGES = 17 };
@@ -120,10 +120,39 @@ static struct bitmap screen(struct overlay *overlay, const char *name)
 }
 
 /* The middle of a key, on the panel. */
+static struct rect keyboard_place(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return search_view_keyboard(&overlay->search, &now);
+}
+
+static int row_px(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return search_view_row_px(&overlay->search, &now);
+}
+
+static int scroll_most(const struct overlay *overlay)
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return search_view_scroll_most(&overlay->search, &now);
+}
+
+static bool is_row(const struct overlay *overlay, uint32_t bitmap)
+{
+	for (uint32_t i = 0; i < SEARCH_ROWS; i++)
+		if (overlay->search.rows[i].sprite.id == bitmap)
+			return true;
+	return false;
+}
+
 static struct overlay_action tap_key(const struct overlay *overlay, int key)
 {
 	const struct keyboard_key *k = &overlay->search.keyboard.keys[key];
-	struct rect keys = overlay_keyboard_rect(overlay);
+	struct rect keys = keyboard_place(overlay);
 
 	return overlay_tap(overlay, (float)(keys.x_px + k->x_px) + (float)k->width_px / 2,
 			   (float)(keys.y_px + k->y_px) + (float)k->height_px / 2);
@@ -159,7 +188,7 @@ static const int sizes[][2] = { { 1920, 1080 }, { 1080, 1920 }, { 1280, 720 }, {
 /* Whether it all lies on the panel, beside one another, and keys are as large as a finger. */
 static void check_places(const struct overlay *overlay)
 {
-	struct rect all = overlay_search_rect(overlay), rows = overlay_found_rect(overlay);
+	struct rect all = search_place(overlay), rows = list_place(overlay);
 	const struct keyboard *keyboard = &overlay->search.keyboard;
 	struct rect bar;
 	int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
@@ -167,7 +196,7 @@ static void check_places(const struct overlay *overlay)
 	CHECK(all.x_px >= 0 && all.x_px + all.width_px <= overlay->width_px);
 	CHECK(all.y_px >= 0 && all.y_px + all.height_px <= overlay->height_px);
 	CHECK(rows.height_px >= theme_px(&overlay->theme, 17.9f));
-	bar = overlay_chrome_rect(overlay);
+	bar = bar_place(overlay);
 	CHECK(bar.x_px + bar.width_px <= overlay->width_px || overlay->width_px == 320);
 	CHECK(bar.x_px + bar.width_px <= all.x_px || bar.y_px >= all.y_px + all.height_px);
 	for (uint32_t i = 0; i < keyboard->key_count; i++) {
@@ -314,8 +343,8 @@ static void a_letter_is_taken_back_and_the_field_emptied(void **state)
 	CHECK(strcmp(before, overlay_query(overlay)) == 0);
 	CHECK(strlen(before) > SEARCH_QUERY_BYTES - 5);
 
-	rows = overlay_found_rect(overlay);
-	all = overlay_search_rect(overlay);
+	rows = list_place(overlay);
+	all = search_place(overlay);
 	for (int x = all.x_px; x < all.x_px + all.width_px && action.kind != OVERLAY_KEY; x += 4)
 		action = overlay_tap(overlay, (float)x, (float)rows.y_px - 20);
 	CHECK(action.kind == OVERLAY_KEY && action.key == OVERLAY_KEY_CLEAR);
@@ -341,14 +370,14 @@ static void what_is_found_is_listed_and_tapped(void **state)
 	overlay_found(overlay, found, 4); /* 99 is no part */
 	bitmap = screen(overlay, "found");
 	bitmap_finish(&bitmap);
-	rows = overlay_found_rect(overlay);
+	rows = list_place(overlay);
 	for (int i = 0; i < 3; i++) {
 		action = overlay_tap(overlay, (float)rows.x_px + 50,
-				     (float)(rows.y_px + i * overlay_found_row_px(overlay)) + 9);
+				     (float)(rows.y_px + i * row_px(overlay)) + 9);
 		CHECK(action.kind == OVERLAY_FOUND && action.part == (int)found[i]);
 	}
 	action = overlay_tap(overlay, (float)rows.x_px + 50,
-			     (float)(rows.y_px + 3 * overlay_found_row_px(overlay)) + 9);
+			     (float)(rows.y_px + 3 * row_px(overlay)) + 9);
 	CHECK(action.kind == OVERLAY_SWALLOWED); /* below the last */
 	CHECK(overlay_covers(overlay, (float)rows.x_px + 5, (float)rows.y_px + 5));
 	action = overlay_tap(overlay, (float)(rows.x_px + rows.width_px) - 20, 20);
@@ -377,7 +406,7 @@ static void arabic_begins_at_the_right(void **state)
 	overlay_show_search(overlay, true);
 	CHECK(type(overlay, "ب") && type(overlay, "ر"));
 	bitmap = screen(overlay, "ar-typed");
-	all = overlay_search_rect(overlay);
+	all = search_place(overlay);
 	CHECK(overlay_tap(overlay, (float)all.x_px + 45, 40).kind == OVERLAY_KEY);
 	for (int y = 10; y < 60; y++) { /* ink in either half of the field */
 		const uint32_t *line =
@@ -404,11 +433,11 @@ static void the_list_scrolls_and_stays_inside(void **state)
 	(void)state;
 	overlay_show_search(overlay, true);
 	settle(overlay);
-	rows = overlay_found_rect(overlay);
-	CHECK(overlay_found_scroll_most(overlay) > 0);
+	rows = list_place(overlay);
+	CHECK(scroll_most(overlay) > 0);
 	overlay_fling(overlay, -100000);
 	settle(overlay);
-	CHECK(overlay->search.scroll_px == (float)overlay_found_scroll_most(overlay));
+	CHECK(overlay->search.scroll.px == (float)scroll_most(overlay));
 	action = overlay_tap(overlay, (float)rows.x_px + 40,
 			     (float)(rows.y_px + rows.height_px) - 4);
 	CHECK(action.kind == OVERLAY_FOUND && action.part == PARTS - 1);
@@ -416,11 +445,11 @@ static void the_list_scrolls_and_stays_inside(void **state)
 	settle(overlay);
 	count = overlay_layers(overlay, layers, OVERLAY_LAYERS_MAX);
 	for (uint32_t i = 0; i < count; i++)
-		if (layers[i].bitmap >= BITMAP_ROW && layers[i].bitmap < BITMAP_ROW + SEARCH_ROWS)
+		if (is_row(overlay, layers[i].bitmap))
 			CHECK(layers[i].corners_px[0][1] >= (float)rows.y_px &&
 			      layers[i].corners_px[2][1] <= (float)(rows.y_px + rows.height_px));
 	overlay_scroll(overlay, 100000);
-	CHECK(overlay->search.scroll_px == 0);
+	CHECK(overlay->search.scroll.px == 0);
 	overlay_destroy(overlay);
 }
 
@@ -433,7 +462,7 @@ static void page_card_and_search_take_turns(void **state)
 
 	(void)state;
 	CHECK(overlay_show_page(overlay, 0, compiled(page), "") == 0);
-	bar = overlay_chrome_rect(overlay);
+	bar = bar_place(overlay);
 	for (int x = bar.x_px; x < bar.x_px + bar.width_px && action.kind != OVERLAY_SEARCH; x += 9)
 		action = overlay_tap(overlay, (float)x, (float)bar.y_px + 9);
 	CHECK(action.kind == OVERLAY_SEARCH);
@@ -466,7 +495,7 @@ static void a_late_thumbnail_comes_into_its_row(void **state)
 	before = screen(overlay, "waiting");
 	CHECK(asked > 0);
 	arrived = true;
-	overlay_search_picture(overlay, "pictures/other.png");
+	overlay_picture_arrived(overlay, "pictures/other.png");
 	CHECK(!overlay_update(overlay, 100000000));
 	overlay_picture_arrived(overlay, "pictures/a.png");
 	after = screen(overlay, "arrived");

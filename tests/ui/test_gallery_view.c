@@ -9,7 +9,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = { "en", "ja" };
@@ -109,9 +109,25 @@ static void screen(struct overlay *overlay, const char *name)
 	bitmap_finish(&bitmap);
 }
 
-static struct overlay_action tap_button(const struct overlay *overlay, enum gallery_button button)
+static struct rect gallery_rect(const struct overlay *overlay)
 {
-	struct rect rect = overlay_gallery_button(overlay, button);
+	const struct screen now = overlay_screen(overlay);
+
+	return gallery_view_rect(&now);
+}
+
+static bool place_of(const struct overlay *overlay, int picture, float place_px[4])
+{
+	const struct screen now = overlay_screen(overlay);
+
+	return gallery_view_place(&overlay->gallery, &now, picture, place_px);
+}
+
+static struct overlay_action tap_button(const struct overlay *overlay,
+					enum gallery_view_button button)
+{
+	const struct screen now = overlay_screen(overlay);
+	struct rect rect = gallery_view_button(&now, button);
 
 	return overlay_tap(overlay, (float)rect.x_px + (float)rect.width_px / 2,
 			   (float)rect.y_px + (float)rect.height_px / 2);
@@ -120,7 +136,7 @@ static struct overlay_action tap_button(const struct overlay *overlay, enum gall
 static void a_tap_on_a_figure_opens_it(void **state)
 {
 	struct overlay *overlay = open_page(1920, 1080);
-	struct rect view = overlay_view_rect(overlay);
+	struct rect view = page_window(overlay);
 	struct overlay_action action = { 0 };
 
 	(void)state;
@@ -154,14 +170,14 @@ static void fits_every_panel(void **state)
 	(void)state;
 	for (size_t s = 0; s < ARRAY_COUNT(sizes); s++) {
 		struct overlay *overlay = open_page(sizes[s][0], sizes[s][1]);
-		struct rect view = overlay_gallery_rect(overlay);
+		struct rect view = gallery_rect(overlay);
 
 		for (int picture = 0; picture < 3; picture++) {
 			float place[4];
 
 			overlay_show_picture(overlay, picture);
 			screen(overlay, picture == 0 ? "wide" : picture == 1 ? "tall" : "last");
-			CHECK(overlay_gallery_place(overlay, picture, place));
+			CHECK(place_of(overlay, picture, place));
 			CHECK(place[0] >= (float)view.x_px - 1 && place[1] >= (float)view.y_px - 1);
 			CHECK(place[0] + place[2] <= (float)(view.x_px + view.width_px) + 1);
 			CHECK(place[1] + place[3] <= (float)(view.y_px + view.height_px) + 1);
@@ -175,24 +191,24 @@ static void fits_every_panel(void **state)
 static void a_pinch_zooms_about_the_fingers(void **state)
 {
 	struct overlay *overlay = open_page(1920, 1080);
-	struct rect view = overlay_gallery_rect(overlay);
+	struct rect view = gallery_rect(overlay);
 	float before[4], after[4], at_x, at_y;
 
 	(void)state;
 	overlay_show_picture(overlay, 0);
 	settle(overlay);
-	CHECK(overlay_gallery_place(overlay, 0, before));
+	CHECK(place_of(overlay, 0, before));
 	at_x = before[0] + before[2] * 0.4f;
 	at_y = before[1] + before[3] * 0.6f;
 	overlay_picture_pinch(overlay, at_x, at_y, 2, 0, 0);
-	CHECK(overlay_gallery_place(overlay, 0, after));
+	CHECK(place_of(overlay, 0, after));
 	CHECK(fabsf(after[2] - 2 * before[2]) < 1);
 	CHECK(fabsf((at_x - after[0]) / after[2] - 0.4f) < 0.01f);
 	CHECK(fabsf((at_y - after[1]) / after[3] - 0.6f) < 0.01f);
 	screen(overlay, "zoomed");
 
 	overlay_picture_drag(overlay, 100000, 100000); /* no further than its edge */
-	CHECK(overlay_gallery_place(overlay, 0, after));
+	CHECK(place_of(overlay, 0, after));
 	CHECK(after[0] <= (float)view.x_px + 1 && after[1] <= (float)view.y_px + 1);
 	overlay_picture_drag_end(overlay, 90000);
 	CHECK(overlay_picture(overlay) == 0); /* zoomed: it moves and does not turn */
@@ -200,7 +216,7 @@ static void a_pinch_zooms_about_the_fingers(void **state)
 	overlay_picture_pinch(overlay, at_x, at_y, 1000, 0, 0);
 	CHECK(overlay->gallery.zoom < 5);
 	overlay_picture_pinch(overlay, at_x, at_y, 0.0001f, 0, 0);
-	CHECK(overlay_gallery_place(overlay, 0, after));
+	CHECK(place_of(overlay, 0, after));
 	CHECK(fabsf(after[0] - before[0]) < 1 && fabsf(after[2] - before[2]) < 1);
 	overlay_picture_double_tap(overlay, at_x, at_y);
 	CHECK(overlay->gallery.zoom > 2);
@@ -253,14 +269,14 @@ static void a_late_picture_fades_in(void **state)
 	overlay = open_page(1280, 720);
 	overlay_show_picture(overlay, 1);
 	settle(overlay);
-	CHECK(!overlay_gallery_place(overlay, 1, place));
+	CHECK(!place_of(overlay, 1, place));
 	overlay_picture_pinch(overlay, 9, 9, 3, 0, 0); /* nothing to zoom */
 	CHECK(overlay->gallery.zoom == 1);
 	arrived = true;
 	overlay_picture_arrived(overlay, "pictures/tall.png");
 	settle(overlay);
-	CHECK(overlay_gallery_place(overlay, 1, place));
-	CHECK(!overlay_gallery_place(overlay, 0, place)); /* the others are not here yet */
+	CHECK(place_of(overlay, 1, place));
+	CHECK(!place_of(overlay, 0, place)); /* the others are not here yet */
 	overlay_destroy(overlay);
 }
 
@@ -273,7 +289,7 @@ static void what_closes_the_page_closes_its_pictures(void **state)
 	overlay_close_page(overlay);
 	CHECK(overlay_picture(overlay) == -1);
 	settle(overlay);
-	CHECK(!overlay->article);
+	CHECK(!overlay->page.article);
 	overlay_show_picture(overlay, 0);
 	CHECK(overlay_picture(overlay) == -1); /* of no page */
 	CHECK(overlay_show_page(overlay, 0, compiled(page), "") == 0);

@@ -7,7 +7,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/overlay_state.h"
+#include "tests/ui/places.h"
 #include "ui/translate.h"
 
 enum { PARTS = 9, BOTH = OVERLAY_TOOL_LIGHT | OVERLAY_TOOL_SECTION, STEP_PX = 4 };
@@ -86,20 +86,20 @@ static void paint(struct overlay *overlay, const char *screen)
 	bitmap_finish(&bitmap);
 }
 
-static const struct chrome_button *button_of(const struct overlay *overlay,
-					     enum chrome_button_kind kind)
+static const struct bar_view_button *button_of(const struct overlay *overlay,
+					       enum bar_view_button_kind kind)
 {
-	for (uint32_t i = 0; i < overlay->chrome.button_count; i++)
-		if (overlay->chrome.buttons[i].kind == kind)
-			return &overlay->chrome.buttons[i];
+	for (uint32_t i = 0; i < overlay->bar.button_count; i++)
+		if (overlay->bar.buttons[i].kind == kind)
+			return &overlay->bar.buttons[i];
 	return NULL;
 }
 
 static enum overlay_action_kind tap_button(const struct overlay *overlay,
-					   enum chrome_button_kind kind)
+					   enum bar_view_button_kind kind)
 {
-	const struct chrome_button *button = button_of(overlay, kind);
-	const struct rect bar = overlay_chrome_rect(overlay);
+	const struct bar_view_button *button = button_of(overlay, kind);
+	const struct rect bar = bar_place(overlay);
 
 	return overlay_tap(overlay, (float)(bar.x_px + button->x_px) + (float)button->width_px / 2,
 			   (float)bar.y_px + (float)bar.height_px / 2)
@@ -112,25 +112,25 @@ static void the_bar_has_the_tools_of_the_content_and_no_others(void **state)
 	for (unsigned tools = 0; tools <= BOTH; tools++) {
 		struct overlay *overlay = open_overlay(1280, 720, tools);
 		const int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
-		const struct chrome before = overlay->chrome;
+		const struct bar_view before = overlay->bar;
 
-		CHECK(!!button_of(overlay, CHROME_LIGHT) == !!(tools & OVERLAY_TOOL_LIGHT));
-		CHECK(!!button_of(overlay, CHROME_SECTION) == !!(tools & OVERLAY_TOOL_SECTION));
+		CHECK(!!button_of(overlay, BAR_LIGHT) == !!(tools & OVERLAY_TOOL_LIGHT));
+		CHECK(!!button_of(overlay, BAR_SECTION) == !!(tools & OVERLAY_TOOL_SECTION));
 		CHECK(overlay_tools_offered(overlay) == tools);
 		if (tools & OVERLAY_TOOL_LIGHT)
-			CHECK(tap_button(overlay, CHROME_LIGHT) == OVERLAY_LIGHT &&
-			      button_of(overlay, CHROME_LIGHT)->width_px >= target_px);
+			CHECK(tap_button(overlay, BAR_LIGHT) == OVERLAY_LIGHT &&
+			      button_of(overlay, BAR_LIGHT)->width_px >= target_px);
 		if (tools & OVERLAY_TOOL_SECTION)
-			CHECK(tap_button(overlay, CHROME_SECTION) == OVERLAY_SECTION &&
-			      button_of(overlay, CHROME_SECTION)->width_px >= target_px);
+			CHECK(tap_button(overlay, BAR_SECTION) == OVERLAY_SECTION &&
+			      button_of(overlay, BAR_SECTION)->width_px >= target_px);
 		for (int mode = 0; mode < 8; mode++) { /* always in the same place */
 			overlay_set_comfort(overlay,
 					    (struct overlay_comfort){ mode & 1, mode & 2 });
 			overlay_language(overlay, languages[mode / 2]);
 			show(overlay, mode & 1 ? tools : 0);
-			for (uint32_t i = 0; before.buttons[i].kind != CHROME_LANGUAGE; i++)
-				CHECK(overlay->chrome.buttons[i].kind == before.buttons[i].kind &&
-				      overlay->chrome.buttons[i].x_px == before.buttons[i].x_px);
+			for (uint32_t i = 0; before.buttons[i].kind != BAR_LANGUAGE; i++)
+				CHECK(overlay->bar.buttons[i].kind == before.buttons[i].kind &&
+				      overlay->bar.buttons[i].x_px == before.buttons[i].x_px);
 		}
 		overlay_destroy(overlay);
 	}
@@ -141,7 +141,7 @@ static void a_panel_too_small_for_them_goes_without(void **state)
 	struct overlay *overlay = open_overlay(320, 320, BOTH);
 
 	(void)state;
-	CHECK(overlay_tools_offered(overlay) == 0 && !button_of(overlay, CHROME_LIGHT));
+	CHECK(overlay_tools_offered(overlay) == 0 && !button_of(overlay, BAR_LIGHT));
 	show(overlay, BOTH);
 	for (int y = 0; y < 320; y += STEP_PX)
 		for (int x = 0; x < 320; x += STEP_PX)
@@ -198,6 +198,10 @@ static void every_handle_is_9_mm_and_in_reach_mode_low(void **state)
 			show(overlay, BOTH);
 			paint(overlay, "both");
 			feel(overlay, felt);
+			const struct screen now = overlay_screen(overlay);
+			const struct tools_view_obstacles obstacles =
+				overlay_obstacles(overlay, &now);
+
 			for (int handle = 1; handle < 4; handle++) {
 				const struct felt *f = &felt[handle];
 
@@ -209,14 +213,17 @@ static void every_handle_is_9_mm_and_in_reach_mode_low(void **state)
 			/* The turn's ring is a finger wide wherever it is grasped. */
 			CHECK((felt[OVERLAY_HANDLE_TURN].bottom -
 			       felt[OVERLAY_HANDLE_PUSH].bottom) >= target_px - 1);
-			for (uint32_t i = 0; i < LABELS; i++) {
-				const struct label *label = &overlay->labels[i];
+			for (uint32_t i = 0; i < CALLOUT_LABELS; i++) {
+				const struct callouts_view_label *label =
+					&overlay->callouts.labels[i];
 
 				if (label->part >= 0 && label->fade.on)
-					CHECK(label->place.y_px + overlay_row_px(overlay) <=
-						      overlay_tools_top(overlay) ||
+					CHECK(label->place.y_px + callouts_view_row_px(&now) <=
+						      tools_view_top(&overlay->tools, &now,
+								     &obstacles) ||
 					      label->place.x_px + label->place.width_px <=
-						      overlay_tools_left(overlay));
+						      tools_view_left(&overlay->tools, &now,
+								      &obstacles));
 			}
 		}
 		overlay_destroy(overlay);
@@ -226,12 +233,13 @@ static void every_handle_is_9_mm_and_in_reach_mode_low(void **state)
 static void a_finger_on_the_ring_is_where_the_knob_comes_to(void **state)
 {
 	struct overlay *overlay = open_overlay(1280, 720, BOTH);
-	struct overlay_knobs knobs;
+	const struct screen now = overlay_screen(overlay);
+	struct tools_view_knobs knobs;
 	float at[2];
 
 	(void)state;
 	show(overlay, BOTH);
-	overlay_tool_knobs(overlay, &knobs);
+	tools_view_knobs(&overlay->tools, &now, &knobs);
 	CHECK(overlay_handle_at(overlay, knobs.light[0], knobs.light[1]) == OVERLAY_HANDLE_LIGHT);
 	overlay_handle_place(overlay, OVERLAY_HANDLE_LIGHT, knobs.light[0], knobs.light[1], at);
 	CHECK(fabsf(at[0] + 0.6f) < 1e-4f && fabsf(at[1] - 0.5f) < 1e-4f);
@@ -245,25 +253,35 @@ static void a_finger_on_the_ring_is_where_the_knob_comes_to(void **state)
 	overlay_destroy(overlay);
 }
 
+static bool shows(const struct overlay *overlay, int tool)
+{
+	const struct screen now = overlay_screen(overlay);
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, &now);
+
+	return tools_view_shows(&overlay->tools, &now, &obstacles, tool);
+}
+
 static void what_is_read_comes_before_what_is_held(void **state)
 {
 	static const char html[] = "<h1>A tower</h1><p>Of stone.</p>";
 	struct overlay *wide = open_overlay(1920, 1080, BOTH);
 	struct overlay *narrow = open_overlay(800, 1280, BOTH);
+	struct screen now;
 	struct rect rect;
 
 	(void)state;
 	show(wide, BOTH);
 	show(narrow, BOTH);
-	CHECK(overlay_tool_shows(narrow, 0) && overlay_tool_shows(narrow, 1));
+	CHECK(shows(narrow, 0) && shows(narrow, 1));
 	overlay_show_card(narrow, 0);
-	CHECK(!overlay_tool_shows(narrow, 0)); /* the card has that place; the light stays on */
+	CHECK(!shows(narrow, 0)); /* the card has that place; the light stays on */
 	overlay_show_card(narrow, -1);
-	CHECK(overlay_tool_shows(narrow, 0));
+	CHECK(shows(narrow, 0));
 	CHECK(overlay_show_page(wide, 0, compiled(html), "") == 0);
 	settle(wide);
-	rect = overlay_tool_rect(wide, 0);
-	CHECK(overlay_tool_shows(wide, 0) && rect.x_px + rect.width_px <= wide->width_px / 2);
+	now = overlay_screen(wide);
+	rect = tools_view_rect(&wide->tools, &now, 0);
+	CHECK(shows(wide, 0) && rect.x_px + rect.width_px <= wide->width_px / 2);
 	paint(wide, "page");
 	overlay_ask(wide, 9); /* whoever asks takes every touch */
 	CHECK(overlay_handle_at(wide, (float)rect.x_px + (float)rect.width_px / 2,
@@ -279,7 +297,7 @@ static void tools_at_rest_cost_no_frame(void **state)
 
 	(void)state;
 	show(overlay, BOTH);
-	const uint32_t drawn = overlay->sprites[BITMAP_DISC].revision;
+	const uint32_t drawn = overlay->tools.discs[0].revision;
 
 	CHECK(drawn > 0);
 	for (int i = 0; i < 20; i++) { /* a knob moves without being drawn anew */
@@ -287,7 +305,7 @@ static void tools_at_rest_cost_no_frame(void **state)
 				   &(struct overlay_tools){ .on = BOTH, .push = (float)i / 20 });
 		CHECK(!overlay_update(overlay, 100000 + 20 * i));
 	}
-	CHECK(overlay->sprites[BITMAP_DISC].revision == drawn);
+	CHECK(overlay->tools.discs[0].revision == drawn);
 	overlay_destroy(overlay);
 }
 

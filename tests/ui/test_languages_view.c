@@ -6,8 +6,8 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
+#include "tests/ui/places.h"
 #include "ui/endonym.h"
-#include "ui/overlay_state.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = {
@@ -68,18 +68,18 @@ static void leave_picture(struct overlay *overlay, const char *name)
 }
 
 /* The bar's button for all of them; NULL: they stand there themselves. */
-static const struct chrome_button *menu_button(const struct overlay *overlay)
+static const struct bar_view_button *menu_button(const struct overlay *overlay)
 {
-	for (uint32_t i = 0; i < overlay->chrome.button_count; i++)
-		if (overlay->chrome.buttons[i].kind == CHROME_LANGUAGES)
-			return &overlay->chrome.buttons[i];
+	for (uint32_t i = 0; i < overlay->bar.button_count; i++)
+		if (overlay->bar.buttons[i].kind == BAR_LANGUAGES)
+			return &overlay->bar.buttons[i];
 	return NULL;
 }
 
 static struct overlay_action tap_button(const struct overlay *overlay)
 {
-	const struct rect bar = overlay_chrome_rect(overlay);
-	const struct chrome_button *button = menu_button(overlay);
+	const struct rect bar = bar_place(overlay);
+	const struct bar_view_button *button = menu_button(overlay);
 
 	CHECK(button);
 	return overlay_tap(overlay, (float)(bar.x_px + button->x_px) + (float)button->width_px / 2,
@@ -96,14 +96,15 @@ static struct rect menu_rect(const struct overlay *overlay)
 /* Where the fingers that choose each language come down: as large as a finger, and each once. */
 static void check_cells(const struct overlay *overlay)
 {
-	const struct rect all = menu_rect(overlay);
+	const struct screen screen = overlay_screen(overlay);
+	const struct rect all = languages_view_rect(&screen, &overlay->languages);
 	const int target_px = theme_px(&overlay->theme, THEME_TARGET_MM);
 	const int least_px = target_px - STEP_PX; /* by so much less than it is */
 	uint32_t felt[MANY] = { 0 };
 
 	CHECK(all.x_px >= 0 && all.x_px + all.width_px <= overlay->width_px);
-	CHECK(all.y_px >= overlay_reach_top(overlay));
-	CHECK(all.y_px + all.height_px <= overlay_chrome_rect(overlay).y_px);
+	CHECK(all.y_px >= screen_reach_top(&screen));
+	CHECK(all.y_px + all.height_px <= bar_place(overlay).y_px);
 	for (int y = all.y_px; y < all.y_px + all.height_px; y += STEP_PX)
 		for (int x = all.x_px; x < all.x_px + all.width_px; x += STEP_PX) {
 			const struct overlay_action action =
@@ -200,7 +201,7 @@ static void every_language_is_invited(void **state)
 
 		overlay_invite(overlay, true);
 		leave_picture(overlay, "invited");
-		rect = overlay_invitation_rect(overlay);
+		rect = invitation_place(overlay);
 		CHECK(rect.x_px >= 0 && rect.x_px + rect.width_px <= overlay->width_px);
 		CHECK(rect.y_px >= 0 && rect.y_px + rect.height_px <= overlay->height_px);
 		overlay_destroy(overlay);
