@@ -175,41 +175,43 @@ static int make_master(const char *folder, struct scans *scans, struct hash stam
 	return rc;
 }
 
-static int build_hierarchy(struct build_report *report, struct scans *scans, uint32_t jobs)
+int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *made)
 {
 	const struct content *content = scans_content(scans);
 	struct master_options options;
 	struct fault fault = { "" };
-	struct master *master = NULL;
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
 	int rc = content_work_path(content, "master", folder);
 
+	*out = NULL;
+	*made = false;
 	build_master_options(&options, content, jobs);
 	if (rc == 0)
 		rc = scans_key(scans, &key, &fault);
 	if (rc < 0)
 		return fail(&fault, rc, strerror(-rc));
 	stamp = master_stamp(key, &options);
-	rc = master_open(&master, folder, &stamp);
-	if (rc < 0) {
-		report->hierarchy_made = true;
-		rc = make_master(folder, scans, stamp, &options);
-		if (rc == 0)
-			rc = master_open(&master, folder, &stamp);
-	}
+	rc = master_open(out, folder, &stamp);
 	if (rc == 0)
-		report->source_triangles = master->source_triangles;
-	master_destroy(master);
-	return rc;
+		return 0;
+	*made = true;
+	rc = make_master(folder, scans, stamp, &options);
+	return rc < 0 ? rc : master_open(out, folder, &stamp);
 }
 
-static int build_samples(struct scans *scans, uint32_t jobs)
+int build_samples(struct scans *scans, const struct master *master,
+		  const struct sampler_options *options)
 {
-	const struct sampler_options options = { .jobs = jobs };
+	struct sampler_options chosen = *options;
+	const struct scans_shape *shape;
 	struct fault fault = { "" };
-	int rc = sampler_run(scans, &options, &fault);
+	int rc = scans_get_shape(scans, &shape, &fault);
 
+	/* patches have no pictures */
+	chosen.master = rc == 0 && !shape->has_textures ? master : NULL;
+	if (rc == 0)
+		rc = sampler_run(scans, &chosen, &fault);
 	return rc < 0 ? fail(&fault, rc, strerror(-rc)) : 0;
 }
 
@@ -217,15 +219,20 @@ static int run_stages(struct build_report *report, uint32_t jobs,
 		      const struct publish_content_options *publish)
 {
 	struct scans *scans = sources_scans(publish->sources);
+	const struct sampler_options sampling = { .jobs = jobs };
+	struct master *master = NULL;
 	int64_t start = clock_now_ms(), at;
 	int rc = sources_check(publish->sources); /* before the long work, not after it */
 
 	if (rc == 0)
-		rc = build_hierarchy(report, scans, jobs);
+		rc = build_master(&master, scans, jobs, &report->hierarchy_made);
+	if (rc == 0)
+		report->source_triangles = master->source_triangles;
 	at = clock_now_ms();
 	report->hierarchy_ms = at - start;
 	if (rc == 0)
-		rc = build_samples(scans, jobs);
+		rc = build_samples(scans, master, &sampling);
+	master_destroy(master);
 	start = clock_now_ms();
 	report->samples_ms = start - at;
 	if (rc == 0)

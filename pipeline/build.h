@@ -3,7 +3,9 @@
 #ifndef GOPURA_PIPELINE_BUILD_H
 #define GOPURA_PIPELINE_BUILD_H
 
+#include "pipeline/hierarchy/master.h"
 #include "pipeline/release/publish_content.h"
+#include "pipeline/samples/sampler.h"
 
 struct build_options {
 	const char *out;     /* release folder; NULL: "release" beside the content folder */
@@ -25,8 +27,16 @@ struct build_report {
 must_check int build_content(struct build_report *report, const struct content *content,
 			     const struct build_options *options);
 
-struct master_options;
+/* ---- single stages */
+
 /* Fills in the options for making this content's master; jobs 0: one thread per core. */
 void build_master_options(struct master_options *out, const struct content *content, uint32_t jobs);
+/* Opens this content's master, and makes it if it is missing or its sources have changed; *made
+ * then is set. *out is owned by the caller; NULL on failure. Negative errno; errors are logged. */
+must_check int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *made);
+/* Renders the samples that are missing, with the master where the scans have no pictures; it is
+ * that of build_master. options->master is not used. Negative errno; errors are logged. */
+must_check int build_samples(struct scans *scans, const struct master *master,
+			     const struct sampler_options *options);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/samples/sampler.h"
+#include "pipeline/build.h"
 
 static const char help[] =
 	"gopura-content sample: render the sampling images of a content folder\n"
@@ -63,6 +63,19 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 	return argc == optind + 1;
 }
 
+/* The master comes first: what is far from a point is drawn from its coarser patches. */
+static int run(struct scans *scans, const struct sampler_options *options)
+{
+	struct master *master;
+	bool made;
+	int rc = build_master(&master, scans, options->jobs, &made);
+
+	if (rc == 0)
+		rc = build_samples(scans, master, options);
+	master_destroy(master);
+	return rc;
+}
+
 static void report(const char *dir)
 {
 	struct samples_store *store;
@@ -94,7 +107,7 @@ int command_sample(int argc, char **argv)
 	if (rc == 0)
 		rc = scans_create(&scans, &content);
 	if (rc == 0)
-		rc = sampler_run(scans, &options, &fault);
+		rc = run(scans, &options);
 	scans_destroy(scans);
 	content_release(&content);
 	if (rc < 0) {

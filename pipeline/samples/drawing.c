@@ -1,4 +1,5 @@
-/* Uploads the chunks of a scan and its textures, and draws the visible chunks from near to far. */
+/* Uploads the pieces of a surface and the scan's textures, and draws the visible pieces from near
+ * to far. */
 #include "pipeline/samples/drawing.h"
 
 #include <errno.h>
@@ -14,18 +15,35 @@
 
 enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
 
+/* How much of the surface is kept on the GPU. */
+enum { RESIDENT_BYTES = 256 << 20 };
+
+#define NONE UINT32_MAX
+
 struct order {
 	float distance;
-	uint32_t chunk;
+	uint32_t piece;
+};
+
+/* A piece on the GPU, in a list from the one drawn last to the one drawn longest ago. */
+struct resident {
+	GLuint vertices, uvs, indices; /* 0: it is not there */
+	uint32_t index_count, bytes;
+	uint32_t newer, older; /* pieces, or NONE */
 };
 
 struct drawing {
-	const struct chunks *chunks; /* borrowed */
-	GLuint program, vertices, uvs, indices;
+	struct model *model; /* borrowed */
+	uint32_t *pieces;    /* owned; chosen for the eye */
+	uint32_t piece_count;
+	struct resident *residents; /* owned; one per piece of the surface */
+	uint32_t newest, oldest;    /* of those that are there, or NONE */
+	uint64_t resident_bytes;
+	GLuint program;
 	GLint matrix_at, eye_at, px_at;
 	uint32_t texture_count;
 	GLuint *textures;    /* owned */
-	struct order *order; /* owned; room for every chunk */
+	struct order *order; /* owned; room for every piece */
 };
 
 static const char *const attributes[] = { "position", "normal", "colour", "uv", NULL };
@@ -156,61 +174,40 @@ static int upload_texture(GLuint texture, const struct mesh_texture *source)
 	return gl_check("uploading a scan's picture");
 }
 
-static int upload(struct drawing *drawing, const struct mesh *mesh)
+static int upload_textures(struct drawing *drawing, const struct mesh_texture *textures)
 {
-	const struct chunks *chunks = drawing->chunks;
 	int rc = 0;
 
-	glGenBuffers(1, &drawing->vertices);
-	glBindBuffer(GL_ARRAY_BUFFER, drawing->vertices);
-	glBufferData(GL_ARRAY_BUFFER,
-		     (GLsizeiptr)(chunks->vertex_count * sizeof(*chunks->vertices)),
-		     chunks->vertices, GL_STATIC_DRAW);
-	glGenBuffers(1, &drawing->indices);
-	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
-	glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-		     (GLsizeiptr)(chunks->index_count * sizeof(*chunks->indices)), chunks->indices,
-		     GL_STATIC_DRAW);
-	if (drawing->texture_count) {
-		glGenBuffers(1, &drawing->uvs);
-		glBindBuffer(GL_ARRAY_BUFFER, drawing->uvs);
-		glBufferData(GL_ARRAY_BUFFER,
-			     (GLsizeiptr)(chunks->vertex_count * sizeof(*chunks->uvs)), chunks->uvs,
-			     GL_STATIC_DRAW);
-		glGenTextures((GLsizei)drawing->texture_count, drawing->textures);
-	}
+	glGenTextures((GLsizei)drawing->texture_count, drawing->textures);
 	for (uint32_t i = 0; rc == 0 && i < drawing->texture_count; i++)
-		rc = upload_texture(drawing->textures[i], &mesh->textures[i]);
-	return rc == 0 ? gl_check("uploading the model") : rc;
+		rc = upload_texture(drawing->textures[i], &textures[i]);
+	return rc;
 }
 
-int drawing_create(struct drawing **out, const struct chunks *chunks, const struct mesh *mesh,
-		   const struct drawing_options *options)
+int drawing_create(struct drawing **out, struct model *model, const struct mesh_texture *textures,
+		   uint32_t texture_count, const struct drawing_options *options)
 {
 	struct drawing *drawing = calloc(1, sizeof(*drawing));
-	int rc;
+	size_t count = model->piece_count;
+	int rc = 0;
 
 	*out = NULL;
 	if (!drawing)
 		return -ENOMEM;
-	drawing->chunks = chunks;
-	drawing->order = malloc(chunks->count * sizeof(*drawing->order));
-	if (!drawing->order) {
-		free(drawing);
-		return -ENOMEM;
-	}
-	if (chunks->uvs && mesh->texture_count) {
-		drawing->textures = calloc(mesh->texture_count, sizeof(*drawing->textures));
-		if (!drawing->textures) {
-			free(drawing->order);
-			free(drawing);
-			return -ENOMEM;
-		}
-		drawing->texture_count = mesh->texture_count;
-	}
-	rc = build_program(drawing, options);
+	drawing->model = model;
+	drawing->newest = drawing->oldest = NONE;
+	drawing->order = malloc(count * sizeof(*drawing->order));
+	drawing->pieces = malloc(count * sizeof(*drawing->pieces));
+	drawing->residents = calloc(count, sizeof(*drawing->residents));
+	drawing->textures = calloc(texture_count + 1, sizeof(*drawing->textures));
+	if (!drawing->order || !drawing->pieces || !drawing->residents || !drawing->textures)
+		rc = -ENOMEM;
+	else
+		drawing->texture_count = texture_count;
 	if (rc == 0)
-		rc = upload(drawing, mesh);
+		rc = build_program(drawing, options);
+	if (rc == 0)
+		rc = upload_textures(drawing, textures);
 	if (rc < 0) {
 		drawing_destroy(drawing);
 		return rc;
@@ -219,30 +216,130 @@ int drawing_create(struct drawing **out, const struct chunks *chunks, const stru
 	return 0;
 }
 
+/* ---- pieces on the GPU */
+
+static void unlink_piece(struct drawing *drawing, uint32_t piece)
+{
+	const struct resident *resident = &drawing->residents[piece];
+
+	if (resident->newer == NONE)
+		drawing->newest = resident->older;
+	else
+		drawing->residents[resident->newer].older = resident->older;
+	if (resident->older == NONE)
+		drawing->oldest = resident->newer;
+	else
+		drawing->residents[resident->older].newer = resident->newer;
+}
+
+static void link_newest(struct drawing *drawing, uint32_t piece)
+{
+	struct resident *resident = &drawing->residents[piece];
+
+	resident->newer = NONE;
+	resident->older = drawing->newest;
+	if (drawing->newest == NONE)
+		drawing->oldest = piece;
+	else
+		drawing->residents[drawing->newest].newer = piece;
+	drawing->newest = piece;
+}
+
+static void evict(struct drawing *drawing, uint32_t piece)
+{
+	struct resident *resident = &drawing->residents[piece];
+	const GLuint buffers[3] = { resident->vertices, resident->uvs, resident->indices };
+
+	unlink_piece(drawing, piece);
+	drawing->resident_bytes -= resident->bytes;
+	glDeleteBuffers(3, buffers);
+	*resident = (struct resident){ 0 };
+}
+
+static GLuint upload_buffer(GLenum kind, const void *data, size_t bytes)
+{
+	GLuint buffer;
+
+	glGenBuffers(1, &buffer);
+	glBindBuffer(kind, buffer);
+	glBufferData(kind, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
+	return buffer;
+}
+
+/* Puts a piece on the GPU. */
+static int upload(struct drawing *drawing, uint32_t piece)
+{
+	struct resident *resident = &drawing->residents[piece];
+	struct model_mesh mesh;
+	size_t vertex_bytes, uv_bytes = 0, index_bytes;
+	int rc = model_load(drawing->model, piece, &mesh);
+
+	if (rc < 0)
+		return rc;
+	vertex_bytes = mesh.vertex_count * sizeof(*mesh.vertices);
+	index_bytes = mesh.index_count * sizeof(*mesh.indices);
+	resident->vertices = upload_buffer(GL_ARRAY_BUFFER, mesh.vertices, vertex_bytes);
+	if (drawing->texture_count && mesh.uvs) {
+		uv_bytes = mesh.vertex_count * sizeof(*mesh.uvs);
+		resident->uvs = upload_buffer(GL_ARRAY_BUFFER, mesh.uvs, uv_bytes);
+	}
+	resident->indices = upload_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices, index_bytes);
+	resident->index_count = mesh.index_count;
+	resident->bytes = (uint32_t)(vertex_bytes + uv_bytes + index_bytes);
+	drawing->resident_bytes += resident->bytes;
+	link_newest(drawing, piece);
+	while (drawing->resident_bytes > RESIDENT_BYTES && drawing->oldest != piece)
+		evict(drawing, drawing->oldest);
+	return gl_check("uploading the model");
+}
+
+static int make_resident(struct drawing *drawing, uint32_t piece)
+{
+	if (!drawing->residents[piece].vertices)
+		return upload(drawing, piece);
+	unlink_piece(drawing, piece);
+	link_newest(drawing, piece);
+	return 0;
+}
+
 void drawing_destroy(struct drawing *drawing)
 {
 	if (!drawing)
 		return;
+	while (drawing->residents && drawing->oldest != NONE)
+		evict(drawing, drawing->oldest);
 	glDeleteProgram(drawing->program);
-	glDeleteBuffers(1, &drawing->vertices);
-	glDeleteBuffers(1, &drawing->uvs);
-	glDeleteBuffers(1, &drawing->indices);
 	glDeleteTextures((GLsizei)drawing->texture_count, drawing->textures);
 	free(drawing->textures);
+	free(drawing->residents);
+	free(drawing->pieces);
 	free(drawing->order);
 	free(drawing);
 }
 
+/* ---- what is visible */
+
+void drawing_look(struct drawing *drawing, const float eye_m[3], float detail_rad)
+{
+	drawing->piece_count = model_choose(drawing->model, eye_m, detail_rad, drawing->pieces);
+}
+
+const uint32_t *drawing_pieces(const struct drawing *drawing, uint32_t *count)
+{
+	*count = drawing->piece_count;
+	return drawing->pieces;
+}
+
 /* Returns the distance of the box's farthest (sign +1) or nearest (sign -1) point along
  * direction. */
-static float reach(const struct chunk *chunk, const float eye_m[3], const float direction[3],
+static float reach(const struct model_piece *piece, const float eye_m[3], const float direction[3],
 		   float sign)
 {
 	float sum = 0;
 
 	for (int i = 0; i < 3; i++) {
-		float low = (chunk->low_m[i] - eye_m[i]) * direction[i];
-		float high = (chunk->high_m[i] - eye_m[i]) * direction[i];
+		float low = (piece->low_m[i] - eye_m[i]) * direction[i];
+		float high = (piece->high_m[i] - eye_m[i]) * direction[i];
 
 		sum += sign > 0 ? fmaxf(low, high) : fminf(low, high);
 	}
@@ -252,22 +349,23 @@ static float reach(const struct chunk *chunk, const float eye_m[3], const float 
 bool drawing_range(const struct drawing *drawing, const float eye_m[3], const float forward[3],
 		   float *near_m, float *far_m)
 {
-	const struct chunks *chunks = drawing->chunks;
+	const struct model *model = drawing->model;
 	float diagonal = 0, least, nearest = INFINITY, farthest = 0;
 
 	for (int i = 0; i < 3; i++) {
-		float side = chunks->high_m[i] - chunks->low_m[i];
+		float side = model->high_m[i] - model->low_m[i];
 
 		diagonal += side * side;
 	}
 	least = fminf(0.02f, sqrtf(diagonal) / 4000);
-	for (uint32_t n = 0; n < chunks->count; n++) {
-		float far = reach(&chunks->items[n], eye_m, forward, 1);
+	for (uint32_t n = 0; n < drawing->piece_count; n++) {
+		const struct model_piece *piece = &model->pieces[drawing->pieces[n]];
+		float far = reach(piece, eye_m, forward, 1);
 
 		if (far <= 0)
 			continue;
 		farthest = fmaxf(farthest, far);
-		nearest = fminf(nearest, reach(&chunks->items[n], eye_m, forward, -1));
+		nearest = fminf(nearest, reach(piece, eye_m, forward, -1));
 	}
 	if (farthest <= 0)
 		return false;
@@ -277,7 +375,7 @@ bool drawing_range(const struct drawing *drawing, const float eye_m[3], const fl
 }
 
 /* Returns true if all corners are outside one of the planes of clip space. */
-static bool is_outside(const struct chunk *chunk, const float m[16])
+static bool is_outside(const struct model_piece *piece, const float m[16])
 {
 	for (int plane = 0; plane < 6; plane++) {
 		float sign = plane % 2 ? -1.0f : 1.0f, most = 0, c[4];
@@ -286,7 +384,7 @@ static bool is_outside(const struct chunk *chunk, const float m[16])
 			c[column] = m[4 * column + 3] + sign * m[4 * column + plane / 2];
 		most = c[3];
 		for (int i = 0; i < 3; i++)
-			most += fmaxf(c[i] * chunk->low_m[i], c[i] * chunk->high_m[i]);
+			most += fmaxf(c[i] * piece->low_m[i], c[i] * piece->high_m[i]);
 		if (most < 0)
 			return true;
 	}
@@ -297,29 +395,29 @@ uint32_t drawing_visible(const struct drawing *drawing, const float matrix[16])
 {
 	uint32_t count = 0;
 
-	for (uint32_t n = 0; n < drawing->chunks->count; n++)
-		count += !is_outside(&drawing->chunks->items[n], matrix);
+	for (uint32_t n = 0; n < drawing->piece_count; n++)
+		count += !is_outside(&drawing->model->pieces[drawing->pieces[n]], matrix);
 	return count;
 }
 
-static void point_at(const struct drawing *drawing, const struct chunk *chunk)
+static void point_at(const struct drawing *drawing, uint32_t piece)
 {
-	const GLsizei stride = sizeof(struct chunk_vertex);
-	const char *base =
-		(const char *)0 + (size_t)chunk->first_vertex * sizeof(struct chunk_vertex);
+	const GLsizei stride = sizeof(struct model_vertex);
+	const struct resident *resident = &drawing->residents[piece];
+	const char *base = (const char *)0;
 
-	glBindBuffer(GL_ARRAY_BUFFER, drawing->vertices);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, resident->indices);
+	glBindBuffer(GL_ARRAY_BUFFER, resident->vertices);
 	glVertexAttribPointer(AT_POSITION, 3, GL_FLOAT, GL_FALSE, stride, base);
 	glVertexAttribPointer(AT_NORMAL, 4, GL_BYTE, GL_TRUE, stride,
-			      base + offsetof(struct chunk_vertex, normal));
+			      base + offsetof(struct model_vertex, normal));
 	glVertexAttribPointer(AT_COLOUR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
-			      base + offsetof(struct chunk_vertex, colour));
+			      base + offsetof(struct model_vertex, colour));
 	if (!drawing->texture_count)
 		return;
-	glBindBuffer(GL_ARRAY_BUFFER, drawing->uvs);
-	glVertexAttribPointer(AT_UV, 2, GL_FLOAT, GL_FALSE, 0,
-			      (const char *)0 + (size_t)chunk->first_vertex * 2 * sizeof(float));
-	glBindTexture(GL_TEXTURE_2D, drawing->textures[chunk->texture]);
+	glBindBuffer(GL_ARRAY_BUFFER, resident->uvs);
+	glVertexAttribPointer(AT_UV, 2, GL_FLOAT, GL_FALSE, 0, base);
+	glBindTexture(GL_TEXTURE_2D, drawing->textures[drawing->model->pieces[piece].texture]);
 }
 
 static int compare_order(const void *a, const void *b)
@@ -328,27 +426,27 @@ static int compare_order(const void *a, const void *b)
 
 	if (x->distance != y->distance)
 		return x->distance < y->distance ? -1 : 1;
-	return x->chunk < y->chunk ? -1 : x->chunk > y->chunk;
+	return x->piece < y->piece ? -1 : x->piece > y->piece;
 }
 
-/* Sorts visible chunks nearest first, so that the depth test avoids shading of hidden surface. */
+/* Sorts visible pieces nearest first, so that the depth test avoids shading of hidden model. */
 static uint32_t sort_visible(struct drawing *drawing, const float matrix[16], const float eye_m[3])
 {
 	uint32_t count = 0;
 
-	for (uint32_t n = 0; n < drawing->chunks->count; n++) {
-		const struct chunk *chunk = &drawing->chunks->items[n];
+	for (uint32_t n = 0; n < drawing->piece_count; n++) {
+		const struct model_piece *piece = &drawing->model->pieces[drawing->pieces[n]];
 		float square = 0;
 
-		if (is_outside(chunk, matrix))
+		if (is_outside(piece, matrix))
 			continue;
 		for (int i = 0; i < 3; i++) {
 			float away = fmaxf(
-				fmaxf(chunk->low_m[i] - eye_m[i], eye_m[i] - chunk->high_m[i]), 0);
+				fmaxf(piece->low_m[i] - eye_m[i], eye_m[i] - piece->high_m[i]), 0);
 
 			square += away * away;
 		}
-		drawing->order[count++] = (struct order){ square, n };
+		drawing->order[count++] = (struct order){ square, drawing->pieces[n] };
 	}
 	qsort(drawing->order, count, sizeof(*drawing->order), compare_order);
 	return count;
@@ -367,31 +465,32 @@ static void set_up(struct drawing *drawing)
 	glDisable(GL_BLEND);
 	glDisable(GL_DITHER);
 	glUseProgram(drawing->program);
-	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, drawing->indices);
 	glActiveTexture(GL_TEXTURE0);
 	for (GLuint i = AT_POSITION; i <= (drawing->texture_count ? AT_UV : AT_COLOUR); i++)
 		glEnableVertexAttribArray(i);
 }
 
-uint64_t drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
-		      float px_radians)
+int drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
+		 float px_radians)
 {
 	uint32_t count = sort_visible(drawing, matrix, eye_m);
-	uint64_t triangles = 0;
+	int rc = 0;
 
 	set_up(drawing);
 	glUniformMatrix4fv(drawing->matrix_at, 1, GL_FALSE, matrix);
 	glUniform3fv(drawing->eye_at, 1, eye_m);
 	glUniform1f(drawing->px_at, px_radians);
-	for (uint32_t n = 0; n < count; n++) {
-		const struct chunk *chunk = &drawing->chunks->items[drawing->order[n].chunk];
+	for (uint32_t n = 0; n < count && rc == 0; n++) {
+		uint32_t piece = drawing->order[n].piece;
 
-		point_at(drawing, chunk);
-		glDrawElements(GL_TRIANGLES, (GLsizei)chunk->index_count, GL_UNSIGNED_SHORT,
-			       (const char *)0 + (size_t)chunk->first_index * sizeof(uint16_t));
-		triangles += chunk->index_count / 3;
+		rc = make_resident(drawing, piece);
+		if (rc < 0)
+			break;
+		point_at(drawing, piece);
+		glDrawElements(GL_TRIANGLES, (GLsizei)drawing->residents[piece].index_count,
+			       GL_UNSIGNED_SHORT, NULL);
 	}
 	for (GLuint i = AT_POSITION; i <= AT_UV; i++)
 		glDisableVertexAttribArray(i);
-	return triangles;
+	return rc;
 }

@@ -174,9 +174,11 @@ static int render(struct face_renderer *renderer, struct shot *shot, const float
 	if (!*found)
 		return 0;
 	frame_bind(renderer->frame);
-	drawing_draw(renderer->options.drawing, matrix, point_m, 1 / camera_px_per_radian(&camera));
-	rc = frame_range(renderer->frame, camera.near_m, camera.far_m, found, &shot->near_m,
-			 &shot->far_m);
+	rc = drawing_draw(renderer->options.drawing, matrix, point_m,
+			  1 / camera_px_per_radian(&camera));
+	if (rc == 0)
+		rc = frame_range(renderer->frame, camera.near_m, camera.far_m, found, &shot->near_m,
+				 &shot->far_m);
 	if (rc < 0 || !*found)
 		return rc;
 	rc = shading_take(renderer->shading, &camera, &rgba);

@@ -9,7 +9,8 @@
 #include "pipeline/samples/pyramid.h"
 
 struct face_renderer_options {
-	struct drawing *drawing;      /* borrowed for the renderer's lifetime */
+	/* borrowed for the renderer's lifetime; drawing_look is called for each point first */
+	struct drawing *drawing;
 	struct drawing_options drawn; /* the options it was made with; surfaces if procedural */
 	uint32_t level_count;         /* 1 .. SAMPLE_LEVELS_MAX */
 	/* of tile_encode, 1..100 */

@@ -14,6 +14,7 @@
 #include "base/array.h"
 #include "base/progress.h"
 #include "format/picture.h"
+#include "pipeline/samples/chunks.h"
 #include "pipeline/samples/drawing.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
@@ -24,8 +25,7 @@ enum { REFERENCE_VERSION = 1, LINE_BYTES = 512, PNG_BYTES_MAX = 256 << 20, NUMBE
 struct easel {
 	const struct reference_options *options;
 	struct headless *headless;
-	struct mesh mesh;
-	struct chunks chunks;
+	struct model *model; /* owned */
 	struct drawing *drawing;
 	struct gl_target target;
 	uint32_t block;      /* samples per pixel and side in one frame */
@@ -210,9 +210,10 @@ static int set_up(struct easel *easel, struct scans *scans, struct fault *fault)
 		return -ENOMEM;
 	rc = headless_create(&easel->headless);
 	if (rc == 0)
-		rc = chunks_init(&easel->chunks, mesh, content->import.default_colour);
+		rc = chunks_create(&easel->model, mesh, content->import.default_colour);
 	if (rc == 0)
-		rc = drawing_create(&easel->drawing, &easel->chunks, mesh, &drawing);
+		rc = drawing_create(&easel->drawing, easel->model, mesh->textures,
+				    mesh->uvs ? mesh->texture_count : 0, &drawing);
 	if (rc == 0)
 		rc = gl_target_create(&easel->target, options->width_px * (int)easel->block,
 				      options->height_px * (int)easel->block);
@@ -226,7 +227,7 @@ static void take_down(struct easel *easel)
 		drawing_destroy(easel->drawing);
 	}
 	headless_destroy(easel->headless);
-	chunks_finish(&easel->chunks);
+	model_destroy(easel->model);
 	free(easel->sums);
 	free(easel->frame);
 }
@@ -268,6 +269,7 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 		forward[i] /= sqrtf(size);
 	camera.width_px = easel->target.width_px;
 	camera.height_px = easel->target.height_px;
+	drawing_look(easel->drawing, camera.eye_m, 0);
 	if (!drawing_range(easel->drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m))
 		return 0; /* everything is behind the eye */
 	camera_matrix(&camera, matrix);
@@ -285,9 +287,10 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 			shifted[4 * column + 1] += 2 * shift[1] / (float)camera.height_px * w;
 		}
 		gl_target_bind(&easel->target);
-		drawing_draw(easel->drawing, shifted, camera.eye_m,
-			     1 / camera_px_per_radian(&camera) / (float)jitters);
-		rc = gl_target_read(&easel->target, easel->frame);
+		rc = drawing_draw(easel->drawing, shifted, camera.eye_m,
+				  1 / camera_px_per_radian(&camera) / (float)jitters);
+		if (rc == 0)
+			rc = gl_target_read(&easel->target, easel->frame);
 		if (rc < 0)
 			return rc;
 		add_frame(easel);

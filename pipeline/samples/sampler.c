@@ -20,15 +20,18 @@
 #include "pipeline/samples/chunks.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"
+#include "pipeline/samples/model_master.h"
 #include "render/display/headless.h"
 
-enum { SAMPLER_VERSION = 7, JOBS_MAX = 64 };
+enum { SAMPLER_VERSION = 8, JOBS_MAX = 64 };
 
 /* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;
 /* A point is inside solid matter if its winding number is above winding_solid. For scans that are
  * open towards the point: if more than the share backs_solid of what it sees are back faces. */
 static const double winding_solid = 0.5, backs_solid = 0.5;
+/* What a face shows may be as coarse as this many of its texels: docs/samples.md. */
+static const float detail_texels = 1;
 
 /* Number of the next point; shared memory of the child processes. */
 struct queue {
@@ -37,8 +40,9 @@ struct queue {
 
 struct sampling {
 	const struct content *content;
-	const struct mesh *mesh;
-	struct chunks chunks;
+	struct model *model; /* owned */
+	const struct mesh_texture *textures;
+	uint32_t texture_count;
 	struct sample_grid grid;
 	struct drawing_options drawing;
 	struct hash key;
@@ -89,7 +93,9 @@ void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t 
 		out[i] = grid->origin_m[i] + grid->spacing_m[i] * (float)point[i];
 }
 
-static struct hash make_key(const struct sampling *sampling, struct hash mesh_key)
+/* master: NULL if the mesh itself is drawn. */
+static struct hash make_key(const struct sampling *sampling, struct hash mesh_key,
+			    const struct master *master)
 {
 	const struct drawing_options *drawing = &sampling->drawing;
 	const struct sample_grid *grid = &sampling->grid;
@@ -99,6 +105,8 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 	buffer_init(&text, 4096);
 	buffer_put_u32(&text, SAMPLER_VERSION);
 	buffer_put(&text, mesh_key.bytes, HASH_BYTES);
+	if (master)
+		buffer_put(&text, master->stamp.bytes, HASH_BYTES);
 	buffer_put_u8(&text, drawing->lit);
 	buffer_put_u8(&text, drawing->procedural);
 	for (int i = 0; i < 3; i++) {
@@ -140,16 +148,25 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 	return sampling->points ? 0 : -ENOMEM;
 }
 
-/* Returns true if the point can be skipped before anything is rendered. */
-static bool is_hopeless(const struct sampling *sampling, const float point_m[3],
-			enum sample_state *state)
+/* Sets *state to SAMPLE_GROUND or SAMPLE_INSIDE if the point can be skipped before anything is
+ * rendered; otherwise it stays. drawing_look was called. */
+static int judge_point(const struct sampling *sampling, const struct drawing *drawing,
+		       const float point_m[3], enum sample_state *state)
 {
-	if (!sampling->below_ground && point_m[2] < sampling->chunks.low_m[2]) {
+	const uint32_t *pieces;
+	uint32_t count;
+	double winding;
+	int rc;
+
+	if (!sampling->below_ground && point_m[2] < sampling->model->low_m[2]) {
 		*state = SAMPLE_GROUND;
-		return true;
+		return 0;
 	}
-	*state = SAMPLE_INSIDE;
-	return chunks_winding(&sampling->chunks, point_m) > winding_solid;
+	pieces = drawing_pieces(drawing, &count);
+	rc = model_winding(sampling->model, pieces, count, point_m, &winding);
+	if (rc == 0 && winding > winding_solid)
+		*state = SAMPLE_INSIDE;
+	return rc;
 }
 
 /* The six faces of a point, in the form that the store takes. */
@@ -179,18 +196,14 @@ static void describe_face(struct taken *taken, uint32_t n, int face, uint32_t le
 						.objects = taken->objects[face] };
 }
 
-static int take_point(const struct sampling *sampling, struct face_renderer *renderer,
-		      struct taken *taken, const uint32_t point[3])
+/* Renders the six faces. Returns how many show anything, or a negative errno; *state is
+ * SAMPLE_RENDERED, SAMPLE_EMPTY or SAMPLE_INSIDE. */
+static int take_faces(const struct sampling *sampling, struct face_renderer *renderer,
+		      struct taken *taken, const float place[3], enum sample_state *state)
 {
-	enum sample_state state = SAMPLE_EMPTY;
 	uint64_t covered = 0, backs = 0;
 	uint32_t count = 0;
-	float place[3];
 
-	sampler_point(place, &sampling->grid, point);
-	if (is_hopeless(sampling, place, &state))
-		return samples_store_put(sampling->content->folder, sampling->key, state, point,
-					 NULL, 0);
 	for (int face = 0; face < CUBE_FACES; face++) {
 		int rc = face_renderer_take(renderer, &taken->shots[face], place, face);
 
@@ -201,17 +214,37 @@ static int take_point(const struct sampling *sampling, struct face_renderer *ren
 		if (taken->shots[face].tile_count)
 			describe_face(taken, count++, face, sampling->grid.level_count);
 	}
-	state = count ? SAMPLE_RENDERED : SAMPLE_EMPTY;
-	if ((double)backs > backs_solid * (double)covered) {
-		state = SAMPLE_INSIDE;
-		count = 0;
+	*state = count ? SAMPLE_RENDERED : SAMPLE_EMPTY;
+	if ((double)backs <= backs_solid * (double)covered)
+		return (int)count;
+	*state = SAMPLE_INSIDE;
+	return 0;
+}
+
+static int take_point(const struct sampling *sampling, struct drawing *drawing,
+		      struct face_renderer *renderer, struct taken *taken, const uint32_t point[3])
+{
+	uint32_t face_px = (uint32_t)SAMPLE_TILE_PX << (sampling->grid.level_count - 1);
+	enum sample_state state = SAMPLE_RENDERED;
+	float place[3];
+	int rc, count = 0;
+
+	sampler_point(place, &sampling->grid, point);
+	drawing_look(drawing, place, detail_texels * 2 / (float)face_px);
+	rc = judge_point(sampling, drawing, place, &state);
+	if (rc == 0 && state == SAMPLE_RENDERED) {
+		count = take_faces(sampling, renderer, taken, place, &state);
+		rc = count < 0 ? count : 0;
 	}
+	if (rc < 0)
+		return rc;
 	return samples_store_put(sampling->content->folder, sampling->key, state, point,
-				 taken->faces, count);
+				 taken->faces, (uint32_t)count);
 }
 
 /* Processes points until none is left, and writes a byte into the pipe for each. */
-static int work(const struct sampling *sampling, struct face_renderer *renderer, int done_fd)
+static int work(const struct sampling *sampling, struct drawing *drawing,
+		struct face_renderer *renderer, int done_fd)
 {
 	struct taken *taken = calloc(1, sizeof(*taken));
 	int rc = 0;
@@ -225,7 +258,7 @@ static int work(const struct sampling *sampling, struct face_renderer *renderer,
 
 		if (n >= sampling->point_count)
 			break;
-		rc = take_point(sampling, renderer, taken, sampling->points[n]);
+		rc = take_point(sampling, drawing, renderer, taken, sampling->points[n]);
 		if (rc == 0 && write(done_fd, "", 1) != 1)
 			rc = -EPIPE;
 	}
@@ -252,12 +285,12 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 	setenv("LP_NUM_THREADS", threads, 0);
 	rc = headless_create(&headless);
 	if (rc == 0)
-		rc = drawing_create(&options.drawing, &sampling->chunks, sampling->mesh,
-				    &options.drawn);
+		rc = drawing_create(&options.drawing, sampling->model, sampling->textures,
+				    sampling->texture_count, &options.drawn);
 	if (rc == 0)
 		rc = face_renderer_create(&renderer, &options);
 	if (rc == 0)
-		rc = work(sampling, renderer, done_fd);
+		rc = work(sampling, options.drawing, renderer, done_fd);
 	if (rc < 0)
 		log_error("pipeline", "a sampler process failed: %s", strerror(-rc));
 	face_renderer_destroy(renderer);
@@ -323,25 +356,36 @@ static int run_children(struct sampling *sampling, uint32_t jobs)
 	return rc;
 }
 
-/* Renders the points of the list. */
-static int render(struct sampling *sampling, struct scans *scans, uint32_t jobs,
-		  struct fault *fault)
+/* Makes the model that is drawn: the master's, or the whole mesh. */
+static int make_model(struct sampling *sampling, struct scans *scans, const struct master *master,
+		      struct fault *fault)
 {
-	int rc = scans_get_mesh(scans, &sampling->mesh, fault);
+	const struct mesh *mesh;
+	int rc;
 
-	if (rc == 0)
-		rc = chunks_init(&sampling->chunks, sampling->mesh,
-				 sampling->content->import.default_colour);
+	if (master)
+		return model_of_master(&sampling->model, master);
+	rc = scans_get_mesh(scans, &mesh, fault);
 	if (rc < 0)
 		return rc;
+	sampling->textures = mesh->textures;
+	sampling->texture_count = mesh->uvs ? mesh->texture_count : 0;
+	return chunks_create(&sampling->model, mesh, sampling->content->import.default_colour);
+}
+
+/* Renders the points of the list. */
+static int render(struct sampling *sampling, uint32_t jobs)
+{
+	int rc;
+
 	jobs = jobs < sampling->point_count ? jobs : sampling->point_count;
 	jobs = jobs < JOBS_MAX ? jobs : JOBS_MAX;
 	sampling->queue = mmap(NULL, sizeof(*sampling->queue), PROT_READ | PROT_WRITE,
 			       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-	rc = sampling->queue == MAP_FAILED ? -ENOMEM : run_children(sampling, jobs);
-	if (sampling->queue != MAP_FAILED)
-		munmap(sampling->queue, sizeof(*sampling->queue));
-	chunks_finish(&sampling->chunks);
+	if (sampling->queue == MAP_FAILED)
+		return -ENOMEM;
+	rc = run_children(sampling, jobs);
+	munmap(sampling->queue, sizeof(*sampling->queue));
 	return rc;
 }
 
@@ -354,8 +398,12 @@ static int sample(struct sampling *sampling, struct scans *scans,
 
 	if (rc == 0)
 		rc = list_points(sampling, options);
-	if (rc == 0 && sampling->point_count > 0)
-		rc = render(sampling, scans, jobs, fault);
+	if (rc == 0 && sampling->point_count > 0) {
+		rc = make_model(sampling, scans, options->master, fault);
+		if (rc == 0)
+			rc = render(sampling, jobs);
+		model_destroy(sampling->model);
+	}
 	free(sampling->points);
 	return rc;
 }
@@ -378,7 +426,7 @@ int sampler_run(struct scans *scans, const struct sampler_options *options, stru
 	memcpy(sampling.drawing.sun, content->sun, sizeof(content->sun));
 	sampler_grid(&sampling.grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);
-	sampling.key = make_key(&sampling, mesh_key);
+	sampling.key = make_key(&sampling, mesh_key, options->master);
 	rc = sample(&sampling, scans, options, fault);
 	if (rc < 0)
 		fault_set(fault, rc, "%s: sampling failed: %s", content->folder, strerror(-rc));

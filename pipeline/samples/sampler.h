@@ -5,9 +5,13 @@
 #define GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 
 #include "pipeline/content/scans.h"
+#include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sample_store.h"
 
 struct sampler_options {
+	/* Of the same scans, borrowed: what is far from a point is drawn from coarser patches.
+	 * NULL: the whole mesh is drawn, as scans with pictures need. */
+	const struct master *master;
 	uint32_t jobs; /* processes; 0: one per core */
 	uint32_t shard,
 		shard_count; /* only points with number % shard_count == shard; count 0, 1: all */

@@ -38,7 +38,7 @@ may_enter() {
 	pipeline/import) echo keys ;; # refuses to hand one to the reader of a scan
 	pipeline/content) echo import ;;
 	pipeline/hierarchy) echo import material ;;
-	pipeline/samples) echo import content material ;;
+	pipeline/samples) echo import content material hierarchy ;;
 	pipeline/release) echo keys import content hierarchy samples ;;
 	pipeline/temple) echo material ;;
 	app/modes) echo settings view ;;

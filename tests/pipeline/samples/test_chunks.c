@@ -16,53 +16,74 @@ static struct mesh big_sphere(void)
 	return mesh;
 }
 
+static double winding(struct model *model, const float point_m[3])
+{
+	uint32_t *pieces = malloc(model->piece_count * sizeof(*pieces));
+	uint32_t count = model_choose(model, point_m, 0, pieces);
+	double found;
+
+	CHECK(count == model->piece_count);
+	CHECK(model_winding(model, pieces, count, point_m, &found) == 0);
+	free(pieces);
+	return found;
+}
+
 static void keeps_every_triangle_once(void **state)
 {
 	struct mesh mesh = big_sphere();
-	struct chunks chunks;
+	struct model *model;
 	double area[3] = { 0 };
+	uint64_t indices = 0;
 
 	(void)state;
-	CHECK(chunks_init(&chunks, &mesh, grey) == 0);
-	CHECK(chunks.count >= 9 && chunks.index_count == 3 * mesh.triangle_count);
-	for (uint32_t n = 0; n < chunks.count; n++) {
-		const struct chunk *chunk = &chunks.items[n];
+	CHECK(chunks_create(&model, &mesh, grey) == 0);
+	CHECK(model->piece_count >= 9);
+	for (uint32_t n = 0; n < model->piece_count; n++) {
+		const struct model_piece *piece = &model->pieces[n];
+		struct model_mesh part;
 
-		CHECK(chunk->index_count / 3 <= CHUNK_TRIANGLES_MAX);
-		for (uint32_t i = 0; i < chunk->index_count; i++) {
-			uint16_t index = chunks.indices[chunk->first_index + i];
+		CHECK(model_load(model, n, &part) == 0);
+		CHECK(part.index_count / 3 <= CHUNK_TRIANGLES_MAX);
+		indices += part.index_count;
+		for (uint32_t i = 0; i < part.index_count; i++) {
 			const float *p;
 
-			CHECK(index < chunk->vertex_count);
-			p = chunks.vertices[chunk->first_vertex + index].position_m;
+			CHECK(part.indices[i] < part.vertex_count);
+			p = part.vertices[part.indices[i]].position_m;
 			for (int c = 0; c < 3; c++)
-				CHECK(p[c] >= chunk->low_m[c] && p[c] <= chunk->high_m[c]);
+				CHECK(p[c] >= piece->low_m[c] && p[c] <= piece->high_m[c]);
 		}
 		for (int c = 0; c < 3; c++)
-			area[c] += chunk->area_m2[c];
+			area[c] += piece->area_m2[c];
 	}
+	CHECK(indices == 3 * mesh.triangle_count);
 	for (int c = 0; c < 3; c++)
 		CHECK(fabs(area[c]) < 1e-4); /* it is closed */
-	chunks_finish(&chunks);
+	model_destroy(model);
 	toy_free(&mesh);
 }
 
 static void points_normals_outward(void **state)
 {
 	struct mesh mesh = big_sphere();
-	struct chunks chunks;
+	struct model *model;
 
 	(void)state;
-	CHECK(chunks_init(&chunks, &mesh, grey) == 0);
-	for (uint32_t i = 0; i < chunks.vertex_count; i++) {
-		const struct chunk_vertex *v = &chunks.vertices[i];
+	CHECK(chunks_create(&model, &mesh, grey) == 0);
+	for (uint32_t n = 0; n < model->piece_count; n++) {
+		struct model_mesh part;
 
-		for (int c = 0; c < 3; c++)
-			CHECK(fabsf((float)v->normal[c] / 127 -
-				    (v->position_m[c] - (float)(c + 1)) / 2) < 0.03f);
-		CHECK(v->colour[0] == 100 && v->colour[3] == 255);
+		CHECK(model_load(model, n, &part) == 0);
+		for (uint32_t i = 0; i < part.vertex_count; i++) {
+			const struct model_vertex *v = &part.vertices[i];
+
+			for (int c = 0; c < 3; c++)
+				CHECK(fabsf((float)v->normal[c] / 127 -
+					    (v->position_m[c] - (float)(c + 1)) / 2) < 0.03f);
+			CHECK(v->colour[0] == 100 && v->colour[3] == 255);
+		}
 	}
-	chunks_finish(&chunks);
+	model_destroy(model);
 	toy_free(&mesh);
 }
 
@@ -73,38 +94,38 @@ static void winds_once_around_the_inside(void **state)
 		{ 1, 2, 5.1f }, { 30, 0, 0 }, { -1.2f, 2, 3 }, { 9, 9, 9 }
 	};
 	struct mesh mesh = big_sphere();
-	struct chunks chunks;
+	struct model *model;
 
 	(void)state;
-	CHECK(chunks_init(&chunks, &mesh, grey) == 0);
+	CHECK(chunks_create(&model, &mesh, grey) == 0);
 	for (size_t i = 0; i < ARRAY_COUNT(inside); i++)
-		CHECK(fabs(chunks_winding(&chunks, inside[i]) - 1) < 0.03);
+		CHECK(fabs(winding(model, inside[i]) - 1) < 0.03);
 	for (size_t i = 0; i < ARRAY_COUNT(outside); i++)
-		CHECK(fabs(chunks_winding(&chunks, outside[i])) < 0.03);
-	chunks_finish(&chunks);
+		CHECK(fabs(winding(model, outside[i])) < 0.03);
+	model_destroy(model);
 	toy_free(&mesh);
 }
 
 static void stays_meaningful_for_open_and_overlapping_scans(void **state)
 {
 	struct mesh mesh = toy_empty(600, 1200);
-	struct chunks chunks;
+	struct model *model;
 
 	(void)state;
 	toy_sphere(&mesh, (float[3]){ 0, 0, 0 }, 1, 10, grey);
 	toy_sphere(&mesh, (float[3]){ 1, 0, 0 }, 1, 10, grey);
-	CHECK(chunks_init(&chunks, &mesh, grey) == 0);
-	CHECK(chunks_winding(&chunks, (float[3]){ 0.5f, 0, 0 }) > 1.9);
-	CHECK(chunks_winding(&chunks, (float[3]){ -0.5f, 0, 0 }) > 0.9);
-	CHECK(fabs(chunks_winding(&chunks, (float[3]){ 0.5f, 0.97f, 0 })) < 0.1);
-	chunks_finish(&chunks);
+	CHECK(chunks_create(&model, &mesh, grey) == 0);
+	CHECK(winding(model, (float[3]){ 0.5f, 0, 0 }) > 1.9);
+	CHECK(winding(model, (float[3]){ -0.5f, 0, 0 }) > 0.9);
+	CHECK(fabs(winding(model, (float[3]){ 0.5f, 0.97f, 0 })) < 0.1);
+	model_destroy(model);
 	mesh.triangle_count = 380; /* of the first sphere a slice of a twentieth is gone */
-	CHECK(chunks_init(&chunks, &mesh, grey) == 0);
-	CHECK(chunks_winding(&chunks, (float[3]){ 0, 0, 0 }) > 0.9);
-	CHECK(fabs(chunks_winding(&chunks, (float[3]){ 0, 0, 1.3f })) < 0.2);
-	chunks_finish(&chunks);
+	CHECK(chunks_create(&model, &mesh, grey) == 0);
+	CHECK(winding(model, (float[3]){ 0, 0, 0 }) > 0.9);
+	CHECK(fabs(winding(model, (float[3]){ 0, 0, 1.3f })) < 0.2);
+	model_destroy(model);
 	mesh.triangle_count = 0;
-	CHECK(chunks_init(&chunks, &mesh, grey) == -EINVAL);
+	CHECK(chunks_create(&model, &mesh, grey) == -EINVAL);
 	toy_free(&mesh);
 }
 

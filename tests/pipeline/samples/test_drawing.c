@@ -4,6 +4,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/light.h"
+#include "pipeline/samples/chunks.h"
 #include "pipeline/samples/cube_frame.h"
 #include "pipeline/samples/drawing.h"
 #include "render/display/gl.h"
@@ -38,27 +39,28 @@ struct shot {
 static void shoot(struct shot *shot, struct mesh *mesh, const struct drawing_options *options,
 		  struct camera camera)
 {
-	struct chunks chunks;
+	struct model *model;
 	struct drawing *drawing;
 	float matrix[16], forward[3];
 
-	CHECK(chunks_init(&chunks, mesh, grey) == 0);
-	CHECK(drawing_create(&drawing, &chunks, mesh, options) == 0);
+	CHECK(chunks_create(&model, mesh, grey) == 0);
+	CHECK(drawing_create(&drawing, model, mesh->textures, mesh->texture_count, options) == 0);
 	CHECK(frame_create(&shot->frame, SIDE, SIDE) == 0);
 	camera.width_px = camera.height_px = SIDE;
 	for (int i = 0; i < 3; i++)
 		forward[i] = camera.target_m[i] - camera.eye_m[i];
+	drawing_look(drawing, camera.eye_m, 0);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
 	frame_bind(shot->frame);
-	drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera));
+	CHECK(drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera)) == 0);
 	CHECK(frame_range(shot->frame, camera.near_m, camera.far_m, &shot->found, &shot->near_m,
 			  &shot->far_m) == 0);
 	frame_bind(shot->frame);
 	glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_UNSIGNED_BYTE, shot->rgba);
 	CHECK(gl_check("reading a frame") == 0);
 	drawing_destroy(drawing);
-	chunks_finish(&chunks);
+	model_destroy(model);
 }
 
 static const uint8_t *pixel(const struct shot *shot, int x, int y_from_top)

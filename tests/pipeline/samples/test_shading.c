@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/samples/chunks.h"
 #include "pipeline/samples/shading.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
@@ -34,21 +35,22 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	size_t bytes = (size_t)side * (size_t)side * 4;
 	struct shading *shading;
 	struct drawing *drawing;
-	struct chunks chunks;
+	struct model *model;
 	struct frame *frame;
 	const uint8_t *rgba;
 	bool found;
 
-	CHECK(chunks_init(&chunks, mesh, grey) == 0);
-	CHECK(drawing_create(&drawing, &chunks, mesh, options) == 0);
+	CHECK(chunks_create(&model, mesh, grey) == 0);
+	CHECK(drawing_create(&drawing, model, mesh->textures, mesh->texture_count, options) == 0);
 	CHECK(frame_create(&frame, side, side) == 0);
 	CHECK(shading_create(&shading, frame, side, side, finer, options) == 0);
 	camera.width_px = camera.height_px = side;
 	camera_ray(&camera, (float)side / 2, (float)side / 2, forward);
+	drawing_look(drawing, camera.eye_m, 0);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
 	frame_bind(frame);
-	drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera));
+	CHECK(drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera)) == 0);
 	if (samples) {
 		*samples = malloc(bytes);
 		glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, *samples);
@@ -64,7 +66,7 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	shading_destroy(shading);
 	frame_destroy(frame);
 	drawing_destroy(drawing);
-	chunks_finish(&chunks);
+	model_destroy(model);
 }
 
 struct comparison {

@@ -1,0 +1,224 @@
+/* The master as a model: what is chosen covers the surface once, is coarser where it is far, and
+ * looks like the finest. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "geometry/camera.h"
+#include "pipeline/samples/cube_frame.h"
+#include "pipeline/samples/drawing.h"
+#include "pipeline/samples/model_master.h"
+#include "render/display/gl.h"
+#include "render/display/headless.h"
+#include "tests/check.h"
+#include "tests/pipeline/shapes.h"
+
+enum { SIDE = 256 };
+
+struct home {
+	char folder[64], master_folder[96];
+	struct master *master;
+	struct model *model;
+};
+
+static int home_start(void **state)
+{
+	static const struct hash stamp = { { 7 } };
+	static const struct master_options options = {
+		.multires = { .patch_triangles = 64, .top_triangles = 400, .jobs = 2 },
+	};
+	struct home *home = calloc(1, sizeof(*home));
+	struct mesh mesh = shape_relief(150);
+	struct master_report report;
+
+	memcpy(home->folder, "/tmp/gopura-model-XXXXXX", 25);
+	CHECK(mkdtemp(home->folder) != NULL);
+	snprintf(home->master_folder, sizeof(home->master_folder), "%s/master", home->folder);
+	CHECK(master_build(home->master_folder, &mesh, stamp, &options, &report) == 0);
+	CHECK(master_open(&home->master, home->master_folder, &stamp) == 0);
+	CHECK(model_of_master(&home->model, home->master) == 0);
+	mesh_finish(&mesh);
+	*state = home;
+	return 0;
+}
+
+static int home_stop(void **state)
+{
+	struct home *home = *state;
+	char command[160];
+
+	model_destroy(home->model);
+	master_destroy(home->master);
+	snprintf(command, sizeof(command), "rm -r %s", home->folder);
+	CHECK(system(command) == 0);
+	free(home);
+	return 0;
+}
+
+static void eye_at(const struct home *home, float sizes, float out[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = (home->model->low_m[i] + home->model->high_m[i]) / 2;
+	out[2] += sizes * (home->model->high_m[0] - home->model->low_m[0]);
+}
+
+/* Sums triangles, area as a vector, and checks that each vertex lies in its piece's box. */
+static uint64_t survey(struct model *model, const uint32_t *pieces, uint32_t count, double area[3])
+{
+	uint64_t triangles = 0;
+
+	memset(area, 0, 3 * sizeof(*area));
+	for (uint32_t n = 0; n < count; n++) {
+		const struct model_piece *piece = &model->pieces[pieces[n]];
+		struct model_mesh mesh;
+
+		CHECK(model_load(model, pieces[n], &mesh) == 0);
+		triangles += mesh.index_count / 3;
+		for (uint32_t i = 0; i < mesh.vertex_count; i++)
+			for (int c = 0; c < 3; c++) {
+				float at = mesh.vertices[i].position_m[c];
+
+				CHECK(at >= piece->low_m[c] - 1e-4f &&
+				      at <= piece->high_m[c] + 1e-4f);
+			}
+		for (int c = 0; c < 3; c++)
+			area[c] += piece->area_m2[c];
+	}
+	return triangles;
+}
+
+static void chooses_all_of_the_surface_and_fewer_triangles_from_afar(void **state)
+{
+	struct home *home = *state;
+	uint32_t *pieces = malloc(home->model->piece_count * sizeof(*pieces));
+	uint64_t finest = 0, before = UINT64_MAX;
+	double whole[3], area[3];
+
+	for (uint32_t p = 0; p < home->master->hierarchy.patch_count; p++)
+		if (home->master->hierarchy.patches[p].finer == HIERARCHY_NONE)
+			finest += home->master->hierarchy.patches[p].triangle_count;
+	for (int step = 0; step < 5; step++) {
+		float eye[3], sizes = powf(4, (float)step);
+		uint32_t count;
+		uint64_t triangles;
+
+		eye_at(home, sizes, eye);
+		count = model_choose(home->model, eye, 0, pieces);
+		CHECK(survey(home->model, pieces, count, whole) == finest);
+		count = model_choose(home->model, eye, 2.0f / 1000, pieces);
+		triangles = survey(home->model, pieces, count, area);
+		CHECK(triangles <= before);
+		before = triangles;
+		/* the area as a vector depends on the border alone, of which coarser cuts leave out
+		 * corners */
+		for (int c = 0; c < 3; c++)
+			CHECK(fabs(area[c] - whole[c]) <= 0.02 * fabs(whole[2]));
+	}
+	CHECK(before < finest / 4);
+	free(pieces);
+}
+
+static void shoot(struct drawing *drawing, struct frame *frame, const float eye[3],
+		  const float target[3], uint8_t *rgba)
+{
+	struct camera camera = {
+		.up = { 0, 1, 0 }, .fov_deg = 90, .width_px = SIDE, .height_px = SIDE
+	};
+	float matrix[16], forward[3] = { 0, 0, -1 };
+
+	memcpy(camera.eye_m, eye, sizeof(camera.eye_m));
+	memcpy(camera.target_m, target, sizeof(camera.target_m));
+	CHECK(drawing_range(drawing, eye, forward, &camera.near_m, &camera.far_m));
+	camera_matrix(&camera, matrix);
+	frame_bind(frame);
+	CHECK(drawing_draw(drawing, matrix, eye, 1 / camera_px_per_radian(&camera)) == 0);
+	frame_bind(frame);
+	glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+}
+
+/* Mean over 2 x 2 samples, as faces are made. */
+static double psnr(const uint8_t *a, const uint8_t *b)
+{
+	double sum = 0;
+
+	for (int y = 0; y < SIDE; y += 2)
+		for (int x = 0; x < SIDE; x += 2)
+			for (int c = 0; c < 3; c++) {
+				int difference = 0;
+
+				for (int k = 0; k < 4; k++) {
+					int at = 4 * ((y + k / 2) * SIDE + x + k % 2) + c;
+
+					difference += a[at] - b[at];
+				}
+				sum += difference * difference / 16.0;
+			}
+	return 10 * log10(255.0 * 255 / (sum / (SIDE / 2 * SIDE / 2 * 3) + 1e-9));
+}
+
+static void looks_like_the_finest(void **state)
+{
+	struct home *home = *state;
+	const struct drawing_options options = { .lit = true, .sun = { 0.48f, -0.6f, 0.64f } };
+	uint8_t *fine = malloc(SIDE * SIDE * 4), *coarse = malloc(SIDE * SIDE * 4);
+	struct headless *headless;
+	struct drawing *drawing;
+	struct frame *frame;
+
+	CHECK(headless_create(&headless) == 0);
+	CHECK(drawing_create(&drawing, home->model, NULL, 0, &options) == 0);
+	CHECK(frame_create(&frame, SIDE, SIDE) == 0);
+	for (int step = 0; step < 3; step++) {
+		float eye[3], target[3];
+		uint32_t all, chosen;
+
+		eye_at(home, powf(2, (float)step + 1), eye);
+		memcpy(target, eye, sizeof(target));
+		target[2] -= 1;
+		drawing_look(drawing, eye, 0);
+		drawing_pieces(drawing, &all);
+		shoot(drawing, frame, eye, target, fine);
+		drawing_look(drawing, eye, 2.0f / (SIDE / 2)); /* a texel is two samples */
+		drawing_pieces(drawing, &chosen);
+		CHECK(chosen < all);
+		shoot(drawing, frame, eye, target, coarse);
+		printf("%.1f sizes away: %u of %u pieces, %.1f dB\n", powf(2, (float)step + 1),
+		       chosen, all, psnr(fine, coarse));
+		CHECK(psnr(fine, coarse) > 50);
+		CHECK(memcmp(fine, coarse, SIDE * SIDE * 4) != 0);
+	}
+	frame_destroy(frame);
+	drawing_destroy(drawing);
+	headless_destroy(headless);
+	free(fine);
+	free(coarse);
+}
+
+static void says_so_where_the_master_is_damaged(void **state)
+{
+	struct home *home = *state;
+	char path[256], hex[HASH_HEX_BYTES];
+	struct model_mesh mesh;
+	struct model *model;
+
+	hash_to_hex(home->master->stamp, hex);
+	snprintf(path, sizeof(path), "%s/groups-%s", home->master_folder, hex);
+	CHECK(truncate(path, 100) == 0);
+	CHECK(model_of_master(&model, home->master) == 0);
+	CHECK(model_load(model, model->piece_count - 1, &mesh) == -EBADMSG);
+	model_destroy(model);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(chooses_all_of_the_surface_and_fewer_triangles_from_afar),
+		cmocka_unit_test(looks_like_the_finest),
+		cmocka_unit_test(says_so_where_the_master_is_damaged),
+	};
+
+	return cmocka_run_group_tests(tests, home_start, home_stop);
+}
