@@ -79,7 +79,7 @@ bar faulty-late nowhere
 grep -q 'gopura.conf: line 9: hours must be days and times such as' "$work/faulty.log" || fail "the log is silent"
 bar overridden-early left
 bar overridden-late left
-grep -q 'trust = ... is missing' "$work/overridden.log" || fail "what is missing was not said"
+grep -q 'section \[release\] has no trust' "$work/overridden.log" || fail "what is missing was not said"
 
 # ---- a trust file that is none ends nothing
 printf '[release]\nurl = %s\ntrust = gopura.conf\n' "$PWD/$small/release" >"$conf"
