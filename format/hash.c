@@ -24,6 +24,15 @@ struct hash hash_of(struct bytes object)
 	return hash;
 }
 
+map_key hash_key(struct hash hash)
+{
+	map_key key;
+
+	_Static_assert(sizeof(key) == HASH_BYTES, "a key holds a whole name");
+	memcpy(&key, hash.bytes, sizeof(key));
+	return key;
+}
+
 bool hash_equal(struct hash a, struct hash b)
 {
 	return memcmp(a.bytes, b.bytes, HASH_BYTES) == 0;

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "base/bytes.h"
+#include "base/map.h"
 
 enum { HASH_BYTES = 16, HASH_HEX_BYTES = 2 * HASH_BYTES + 1 /* with the final zero */ };
 
@@ -19,6 +20,7 @@ struct hash {
 
 /* Returns the name of an object: the 128-bit BLAKE2b of all its bytes. Any thread. */
 struct hash hash_of(struct bytes object);
+map_key hash_key(struct hash hash); /* the whole name as the key of a map */
 /* Comparisons of names. */
 bool hash_equal(struct hash a, struct hash b);
 int hash_compare(struct hash a, struct hash b); /* orders as memcmp */

@@ -8,7 +8,6 @@
 
 #include "base/array.h"
 #include "format/metadata.h"
-#include "pipeline/release/object_map.h"
 
 enum { LOCATOR_BYTES_MAX = 256 << 20 };
 
@@ -26,7 +25,7 @@ struct walk {
 	struct release release;
 	struct place *places; /* owned; in breadth-first order */
 	uint32_t count, room;
-	struct hash_map seen;
+	struct map seen;
 };
 
 static int complain(struct walk *walk, int rc, const char *text)
@@ -92,7 +91,7 @@ static int read_locator(struct walk *walk, bool show)
 
 static int add_place(struct walk *walk, const struct place *place)
 {
-	int rc = hash_map_put(&walk->seen, place->child.hash, 0);
+	int rc = map_add(&walk->seen, hash_key(place->child.hash), 0);
 
 	if (rc <= 0)
 		return rc;
@@ -118,7 +117,7 @@ static int start(struct walk *walk, bool show)
 static void finish(struct walk *walk)
 {
 	locator_finish(&walk->locator);
-	hash_map_finish(&walk->seen);
+	map_finish(&walk->seen);
 	free(walk->places);
 }
 

@@ -9,7 +9,6 @@
 
 #include "base/array.h"
 #include "base/log.h"
-#include "pipeline/release/object_map.h"
 
 struct stored {
 	uint8_t *memory; /* owned; NULL: it is in a file */
@@ -19,7 +18,7 @@ struct stored {
 };
 
 struct object_store {
-	struct hash_map index; /* hash to index into objects */
+	struct map index; /* hash to index into objects */
 	struct stored *objects;
 	uint32_t count, room;
 	char **paths;
@@ -49,7 +48,7 @@ void object_store_destroy(struct object_store *store)
 		close(store->open_fd);
 	free(store->paths);
 	free(store->objects);
-	hash_map_finish(&store->index);
+	map_finish(&store->index);
 	free(store);
 }
 
@@ -60,7 +59,7 @@ static int insert(struct object_store *store, struct hash hash, const struct sto
 
 	if (rc < 0)
 		return rc;
-	rc = hash_map_put(&store->index, hash, store->count);
+	rc = map_add(&store->index, hash_key(hash), store->count);
 	if (rc == 1)
 		store->objects[store->count++] = *object;
 	return rc;
@@ -77,7 +76,7 @@ int object_store_add(struct object_store *store, struct bytes bytes, struct page
 	hash = hash_of(bytes);
 	if (child)
 		*child = (struct page_child){ .hash = hash, .size = object.size };
-	if (hash_map_get(&store->index, hash, NULL))
+	if (map_get(&store->index, hash_key(hash)) != MAP_NONE)
 		return 0;
 	object.memory = malloc(bytes.size);
 	if (!object.memory)
@@ -156,11 +155,11 @@ static int read_stretch(struct object_store *store, const struct stored *object,
 int object_store_read(struct object_store *store, struct hash hash, struct buffer *out)
 {
 	const struct stored *object;
-	uint64_t index;
+	const uint64_t index = map_get(&store->index, hash_key(hash));
 	uint8_t *to;
 	int rc;
 
-	if (!hash_map_get(&store->index, hash, &index))
+	if (index == MAP_NONE)
 		return -ENOENT;
 	object = &store->objects[index];
 	if (object->memory) {
@@ -182,5 +181,5 @@ int object_store_read(struct object_store *store, struct hash hash, struct buffe
 
 bool object_store_has(const struct object_store *store, struct hash hash)
 {
-	return hash_map_get(&store->index, hash, NULL);
+	return map_get(&store->index, hash_key(hash)) != MAP_NONE;
 }

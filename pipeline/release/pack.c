@@ -12,7 +12,6 @@
 
 #include "base/array.h"
 #include "base/log.h"
-#include "pipeline/release/object_map.h"
 
 /* Marks a block in a new pack while the names of new packs are not known. */
 #define NEW_PACK (1u << 31)
@@ -20,7 +19,7 @@
 struct packer {
 	const struct pack_options *options;
 	struct pack_result *result;
-	struct hash_map seen;     /* pages that are queued or done */
+	struct map seen;          /* pages that are queued or done */
 	struct page_child *queue; /* owned; pages in breadth-first order */
 	uint32_t queue_count, queue_room;
 	struct locator_block *blocks; /* owned; pack is an index into before, or NEW_PACK | index */
@@ -43,7 +42,7 @@ static int path_of(char path[PATH_MAX], const char *release, const char *folder,
 
 static int queue_page(struct packer *packer, const struct page_child *page)
 {
-	int rc = hash_map_put(&packer->seen, page->hash, 0);
+	int rc = map_add(&packer->seen, hash_key(page->hash), 0);
 
 	if (rc <= 0)
 		return rc;
@@ -298,7 +297,7 @@ int pack_release(const struct pack_options *options, struct pack_result *result)
 	if (rc == 0)
 		rc = write_locator(&packer);
 	buffer_finish(&packer.pack);
-	hash_map_finish(&packer.seen);
+	map_finish(&packer.seen);
 	free(packer.queue);
 	free(packer.blocks);
 	free(packer.packs);

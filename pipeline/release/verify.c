@@ -268,7 +268,7 @@ int verify_release(struct verify_report *report, const struct verify_options *op
 	hierarchy_finish(&walk.hierarchy);
 	info_close(walk.info);
 	locator_finish(&walk.locator);
-	hash_map_finish(&walk.seen);
+	map_finish(&walk.seen);
 	free(walk.tasks);
 	return rc;
 }

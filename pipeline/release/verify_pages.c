@@ -196,7 +196,7 @@ int verify_face_page(struct verify_walk *walk, const struct verify_page *page)
 static int check_pictures(struct verify_walk *walk, const struct verify_page *page,
 			  const struct info *info)
 {
-	struct hash_map children = { 0 };
+	struct map children = { 0 };
 	struct bytes object;
 	int rc = 0;
 
@@ -204,7 +204,7 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 		rc = verify_child(walk, page, i, &object);
 		if (rc == 0) {
 			count(&walk->report->pictures, object);
-			rc = hash_map_put(&children, page->page.children[i].hash, i);
+			rc = map_add(&children, hash_key(page->page.children[i].hash), i);
 		}
 		if (rc == 0)
 			rc = blame_child(walk, page, i, "picture", "is contained twice");
@@ -212,12 +212,12 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 	for (uint32_t i = 0; rc >= 0 && i < info_picture_count(info); i++) {
 		const struct info_picture *picture = info_picture(info, i);
 
-		if (!hash_map_get(&children, picture->hash, NULL))
+		if (map_get(&children, hash_key(picture->hash)) == MAP_NONE)
 			rc = verify_blame(walk->report, -EBADMSG,
 					  "the information names %s, which is not in the release",
 					  picture->name);
 	}
-	hash_map_finish(&children);
+	map_finish(&children);
 	return rc < 0 ? rc : 0;
 }
 

@@ -37,7 +37,7 @@ int verify_child(struct verify_walk *walk, const struct verify_page *page, uint3
 
 int verify_queue(struct verify_walk *walk, const struct verify_task *task)
 {
-	int rc = hash_map_put(&walk->seen, task->child.hash, task->kind);
+	int rc = map_add(&walk->seen, hash_key(task->child.hash), task->kind);
 
 	if (rc <= 0)
 		return rc;

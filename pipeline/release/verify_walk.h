@@ -7,7 +7,6 @@
 #include "format/hierarchy.h"
 #include "format/samples.h"
 #include "format/tile.h"
-#include "pipeline/release/object_map.h"
 #include "pipeline/release/verify.h"
 #include "storage/info.h"
 
@@ -23,7 +22,7 @@ struct verify_walk {
 	const struct verify_options *options;
 	struct verify_report *report;
 	struct locator locator;
-	struct hash_map seen; /* pages that are queued or done */
+	struct map seen; /* pages that are queued or done */
 	struct verify_task *tasks;
 	uint32_t task_count, task_room;
 	uint32_t blocks_used;

@@ -7,6 +7,8 @@
 
 #include "base/clock.h"
 
+#define NO_SLOT UINT32_MAX
+
 static int make_textures(struct tiles *tiles)
 {
 	const struct gl_texture_options atlas = { .width_px = tiles->atlas_px,
@@ -153,7 +155,7 @@ static void uncover(struct tiles *tiles, struct tiles_face *face, struct tile_na
 							  .level = (uint8_t)level,
 							  .row = (uint8_t)(y / side),
 							  .column = (uint8_t)(x / side) };
-				uint32_t slot = map_get(&tiles->slot_of, tile_name_pack(name));
+				uint64_t slot = map_get(&tiles->slot_of, tile_name_pack(name));
 				if (slot == MAP_NONE)
 					continue;
 				face->slot[y][x] = (uint16_t)slot;
@@ -169,7 +171,7 @@ static void uncover(struct tiles *tiles, struct tiles_face *face, struct tile_na
 
 static struct tiles_face *face_of(const struct tiles *tiles, face_key key)
 {
-	uint32_t at = map_get(&tiles->face_of, key);
+	uint64_t at = map_get(&tiles->face_of, key);
 	return at == MAP_NONE ? NULL : &tiles->faces[at];
 }
 
@@ -217,19 +219,19 @@ static void drop_tile(struct tiles *tiles, uint32_t slot)
 		drop_face(tiles, face);
 }
 
-/* Returns a free slot, else the one used longest ago outside this round. MAP_NONE: there is
+/* Returns a free slot, else the one used longest ago outside this round. NO_SLOT: there is
  * none. */
 static uint32_t take_slot(struct tiles *tiles)
 {
-	uint32_t best = MAP_NONE;
+	uint32_t best = NO_SLOT;
 	for (uint32_t i = 0; i < tiles->slot_count; i++) {
 		if (!tiles->slot_name[i])
 			return i;
 		if (tiles->slot_stamp[i] != tiles->stamp &&
-		    (best == MAP_NONE || tiles->slot_stamp[i] < tiles->slot_stamp[best]))
+		    (best == NO_SLOT || tiles->slot_stamp[i] < tiles->slot_stamp[best]))
 			best = i;
 	}
-	if (best != MAP_NONE)
+	if (best != NO_SLOT)
 		drop_tile(tiles, best);
 	return best;
 }
@@ -255,7 +257,7 @@ static struct tiles_face *take_face(struct tiles *tiles, face_key key)
 				drop_tile(tiles, i);
 	memset(best, 0, sizeof(*best));
 	memset(best->level, -1, sizeof(best->level));
-	if (map_set(&tiles->face_of, key, (uint32_t)(best - tiles->faces)) < 0)
+	if (map_set(&tiles->face_of, key, (uint64_t)(best - tiles->faces)) < 0)
 		return NULL;
 	best->key = key;
 	best->used = true;
@@ -289,7 +291,7 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 	}
 	face->tile_count++; /* keeps the face while a slot is searched */
 	uint32_t slot = take_slot(tiles);
-	int rc = slot == MAP_NONE ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
+	int rc = slot == NO_SLOT ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
 	if (rc < 0) {
 		if (--face->tile_count == 0)
 			drop_face(tiles, face);
@@ -312,7 +314,7 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 
 int tiles_face_slot(const struct tiles *tiles, face_key face)
 {
-	uint32_t at = map_get(&tiles->face_of, face);
+	uint64_t at = map_get(&tiles->face_of, face);
 	return at == MAP_NONE ? -1 : (int)at;
 }
 

@@ -187,7 +187,7 @@ int repository_give_brick(struct repository *repository, uint32_t child, struct 
 
 static int face_add(struct repository *r, struct face_entry *face)
 {
-	int rc = ARRAY_RESERVE(r->faces, r->face_room, r->face_count + 1, MAP_NONE);
+	int rc = ARRAY_RESERVE(r->faces, r->face_room, r->face_count + 1, UINT32_MAX);
 	if (rc == 0)
 		rc = map_set(&r->face_of, face->key, r->face_count);
 	if (rc == 0)
@@ -300,7 +300,7 @@ uint32_t repository_levels(const struct repository *repository)
 bool repository_tile(const struct repository *repository, struct tile_name name,
 		     struct message_want *want)
 {
-	uint32_t index = map_get(&repository->face_of, name.face);
+	uint64_t index = map_get(&repository->face_of, name.face);
 	if (index == MAP_NONE)
 		return false;
 	const struct face_entry *face = repository->faces[index];

@@ -3,9 +3,9 @@
 #ifndef GOPURA_RENDER_PLAN_REPOSITORY_H
 #define GOPURA_RENDER_PLAN_REPOSITORY_H
 
+#include "base/map.h"
 #include "format/message.h"
 #include "format/samples.h"
-#include "render/plan/cell_map.h"
 
 /* A face_key is a face of a sampling point: point * CUBE_FACES + face, with point = (z * count_y +
  * y) * count_x + x. A tile is named by the face's key, level, row and column. */

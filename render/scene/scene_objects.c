@@ -166,19 +166,10 @@ const struct root_page *scene_root(const struct scene *scene)
 
 /* ---- objects in */
 
-static uint64_t hash_key(struct hash hash)
-{
-	uint64_t key;
-	memcpy(&key, hash.bytes, sizeof(key));
-	return key;
-}
-
 struct object *scene_object(struct scene *scene, struct hash hash)
 {
-	uint32_t at = map_get(&scene->object_of, hash_key(hash));
-	if (at == MAP_NONE || !hash_equal(scene->objects[at].hash, hash))
-		return NULL;
-	return &scene->objects[at];
+	uint64_t at = map_get(&scene->object_of, hash_key(hash));
+	return at == MAP_NONE ? NULL : &scene->objects[at];
 }
 
 struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,
@@ -193,7 +184,7 @@ struct object *scene_expect(struct scene *scene, struct hash hash, enum object_k
 		}
 		return known;
 	}
-	if (ARRAY_RESERVE(scene->objects, scene->object_room, scene->object_count + 1, MAP_NONE) <
+	if (ARRAY_RESERVE(scene->objects, scene->object_room, scene->object_count + 1, UINT32_MAX) <
 		    0 ||
 	    map_set(&scene->object_of, hash_key(hash), scene->object_count) < 0)
 		return NULL;
@@ -279,10 +270,10 @@ static int open_hierarchy(struct scene *scene, struct hash hash, struct bytes by
 static int decode_elsewhere(struct scene *scene, struct object *object, enum pool_kind kind,
 			    struct bytes bytes)
 {
-	int rc = map_set(&scene->decoding, hash_key(object->hash),
-			 (uint32_t)(object - scene->objects));
+	uint64_t id = (uint64_t)hash_key(object->hash);
+	int rc = map_set(&scene->decoding, id, (uint64_t)(object - scene->objects));
 	if (rc == 0)
-		rc = pool_give(scene->pool, kind, hash_key(object->hash), bytes);
+		rc = pool_give(scene->pool, kind, id, bytes);
 	if (rc == 0)
 		object->state = OBJECT_DECODING;
 	return rc;

@@ -9,6 +9,7 @@
 #ifndef GOPURA_RENDER_SCENE_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_SCENE_PARTS_H
 
+#include "base/map.h"
 #include "format/hierarchy.h"
 #include "render/lumigraph/accumulation.h"
 #include "render/lumigraph/depth.h"
@@ -20,7 +21,6 @@
 #include "render/patches/mark.h"
 #include "render/patches/patch_buffers.h"
 #include "render/patches/pool.h"
-#include "render/plan/cell_map.h"
 #include "render/plan/plan.h"
 #include "render/scene/scene.h"
 
@@ -68,7 +68,7 @@ struct scene {
 	uint32_t refused;       /* number of objects that could not be used */
 	struct object *objects; /* owned */
 	uint32_t object_count, object_room;
-	struct map object_of; /* first 8 bytes of a hash -> index of objects */
+	struct map object_of; /* name -> index of objects */
 	/* first 8 bytes of a hash -> index of objects: those with the workers */
 	struct map decoding;
 

@@ -18,7 +18,7 @@ static const float eye_moved = 0.02f;
 
 static void upload_one(struct scene *scene, struct pool_answer *answer, struct scene_frame *out)
 {
-	uint32_t at = map_get(&scene->decoding, answer->id);
+	uint64_t at = map_get(&scene->decoding, answer->id);
 	map_remove(&scene->decoding, answer->id);
 	if (at == MAP_NONE || at >= scene->object_count)
 		return;

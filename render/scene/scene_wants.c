@@ -149,12 +149,12 @@ struct gains {
 static void gain_add(struct gains *gains, enum object_kind kind, uint64_t id, float pixels)
 {
 	uint64_t key = id << 3 | kind;
-	uint32_t at = map_get(&gains->of, key);
+	uint64_t at = map_get(&gains->of, key);
 	if (at != MAP_NONE) {
 		gains->list[at].pixels += pixels;
 		return;
 	}
-	if (ARRAY_RESERVE(gains->list, gains->room, gains->count + 1, MAP_NONE) == 0 &&
+	if (ARRAY_RESERVE(gains->list, gains->room, gains->count + 1, UINT32_MAX) == 0 &&
 	    map_set(&gains->of, key, gains->count) == 0)
 		gains->list[gains->count++] = (struct gain){ id, pixels, kind };
 }

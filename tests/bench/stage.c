@@ -168,17 +168,9 @@ void stage_close(struct stage *stage)
 
 /* ---- the link */
 
-static uint64_t key_of(struct hash hash)
-{
-	uint64_t key;
-
-	memcpy(&key, hash.bytes, sizeof(key));
-	return key;
-}
-
 static bool was_had(const struct stage *stage, struct hash hash)
 {
-	return map_get(&stage->had, key_of(hash)) != MAP_NONE;
+	return map_get(&stage->had, hash_key(hash)) != MAP_NONE;
 }
 
 static void land(struct stage *stage, const struct message_want *want)
@@ -193,7 +185,7 @@ static void land(struct stage *stage, const struct message_want *want)
 	if (!was_had(stage, want->hash)) {
 		stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
 		stage->objects++;
-		stage_must(map_set(&stage->had, key_of(want->hash), 1), "memory");
+		stage_must(map_set(&stage->had, hash_key(want->hash), 1), "memory");
 	}
 	scene_give(stage->scene, want->hash, bytes);
 }

@@ -4,11 +4,11 @@
 #ifndef GOPURA_TESTS_BENCH_STAGE_H
 #define GOPURA_TESTS_BENCH_STAGE_H
 
+#include "base/map.h"
 #include "format/locator.h"
 #include "pipeline/release/release_reader.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
-#include "render/plan/cell_map.h"
 #include "render/scene/scene.h"
 
 enum {

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "pipeline/release/object_map.h"
 #include "tests/check.h"
 
 enum { LEAVES = 6, LEAF_BYTES = 100 };
@@ -206,31 +205,6 @@ static void refuses_objects_out_of_bounds(void **state)
 	CHECK(object_store_add_stretch(objects, "x", 0, &large) == -EFBIG);
 }
 
-static void a_map_keeps_the_first_value(void **state)
-{
-	struct hash_map map = { 0 };
-	uint64_t value;
-
-	(void)state;
-	for (uint32_t i = 0; i < 1000; i++) {
-		struct hash hash = hash_of((struct bytes){ (uint8_t *)&i, sizeof(i) });
-
-		CHECK(!hash_map_get(&map, hash, NULL));
-		CHECK(hash_map_put(&map, hash, i) == 1);
-		CHECK(hash_map_put(&map, hash, 7) == 0);
-	}
-	CHECK(map.count == 1000);
-	for (uint32_t i = 0; i < 1000; i++) {
-		struct hash hash = hash_of((struct bytes){ (uint8_t *)&i, sizeof(i) });
-
-		CHECK(hash_map_get(&map, hash, &value) && value == i);
-	}
-	CHECK(hash_map_put(&map, (struct hash){ 0 }, 3) == 1); /* the zero hash is a hash too */
-	CHECK(hash_map_get(&map, (struct hash){ 0 }, &value) && value == 3);
-	hash_map_finish(&map);
-	hash_map_finish(NULL);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -245,7 +219,6 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_stretch_of_a_file_is_checked_when_it_is_read,
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(refuses_objects_out_of_bounds, set_up, tear_down),
-		cmocka_unit_test(a_map_keeps_the_first_value),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
