@@ -14,8 +14,8 @@ comma   := ,
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
-# METIS, meshoptimizer and inih carry no pkg-config file in Debian 12.
-EXTRA   := -lmetis -lmeshoptimizer -linih -lm -pthread
+# METIS and meshoptimizer carry no pkg-config file in Debian 12.
+EXTRA   := -lmetis -lmeshoptimizer -lm -pthread
 
 # Asked for lazily and once: the packages may only arrive with the `deps` target.
 PKG_CFLAGS = $(eval PKG_CFLAGS := $(shell pkg-config --cflags $(LIBS)))$(PKG_CFLAGS)

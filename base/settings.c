@@ -11,6 +11,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/safe_open.h"
+
 enum { LINE_BYTES_MAX = 1000, NAME_MAX = 32, QUOTED_MAX = 60 };
 
 struct reading {
@@ -432,6 +434,23 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 		memcpy(lines, reading.seen, count * sizeof(*lines));
 }
 
+int settings_read_file(const char *path, const struct setting *settings, size_t count, void *target,
+		       struct faults *faults)
+{
+	const unsigned before = faults->count;
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, SETTINGS_FILE_MAX);
+	rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		settings_read(buffer_bytes(&file), settings, count, target, NULL, faults);
+	else
+		faults_add(faults, 0, "%s", open_problem(rc));
+	buffer_finish(&file);
+	return rc == 0 && faults->count > before ? -EINVAL : rc;
+}
+
 /* ---- values */
 
 bool settings_numbers(const struct setting *setting, const char *value, double *out, int wanted)
@@ -455,4 +474,19 @@ bool settings_whole(const struct setting *setting, void *target, const char *val
 		return false;
 	*(int *)((char *)target + setting->offset) = (int)number;
 	return true;
+}
+
+bool settings_read_yes_no(const char *value, bool *out)
+{
+	const bool yes = strcasecmp(value, "yes") == 0;
+
+	if (!yes && strcasecmp(value, "no") != 0)
+		return false;
+	*out = yes;
+	return true;
+}
+
+bool settings_yes_no(const struct setting *setting, void *target, const char *value)
+{
+	return settings_read_yes_no(value, (bool *)((char *)target + setting->offset));
 }

@@ -48,6 +48,11 @@ struct setting {
 void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
 		   unsigned *lines, struct faults *faults);
 
+/* As settings_read, for the file at a path that we or the operator chose. Returns 0; -EINVAL if it
+ * has faults; or the error of reading it, which is added to *faults too. */
+must_check int settings_read_file(const char *path, const struct setting *settings, size_t count,
+				  void *target, struct faults *faults);
+
 /* ---- for set functions; each number must lie from the setting's least to its most */
 
 /* Parses exactly `wanted` numbers, separated by spaces or commas. On false, out may have been
@@ -55,5 +60,8 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 bool settings_numbers(const struct setting *setting, const char *value, double *out, int wanted);
 /* A set function for one whole number, stored as int or uint32_t. */
 bool settings_whole(const struct setting *setting, void *target, const char *value);
+/* A set function for yes or no, in any case of letters, stored as bool. */
+bool settings_yes_no(const struct setting *setting, void *target, const char *value);
+bool settings_read_yes_no(const char *value, bool *out); /* false: it is neither */
 
 #endif

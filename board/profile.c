@@ -1,13 +1,10 @@
 /* The default profile and the table of settings that an ini file may contain. */
 #include "board/profile.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "base/log.h"
-#include "base/safe_open.h"
 #include "base/settings.h"
 
 const struct profile profile_default = {
@@ -84,22 +81,14 @@ static const struct setting settings[] = {
 int profile_read(struct profile *out, const char *path)
 {
 	struct faults faults = { .count = 0 };
-	struct buffer file;
 	int rc;
 
 	*out = profile_default;
 	if (!path)
 		return 0;
-	buffer_init(&file, SETTINGS_FILE_MAX);
-	rc = buffer_read_file(&file, path);
-	if (rc == 0)
-		settings_read(buffer_bytes(&file), settings, ARRAY_COUNT(settings), out, NULL,
-			      &faults);
-	else
-		log_error("board", "board bug: %s: %s", path, open_problem(rc));
-	buffer_finish(&file);
+	rc = settings_read_file(path, settings, ARRAY_COUNT(settings), out, &faults);
 	for (unsigned i = 0; i < faults.count; i++)
 		log_error("board", "board bug: %s, %s (see docs/board.md)", path,
 			  faults.list[i].text);
-	return faults.count > 0 ? -EINVAL : rc;
+	return rc;
 }

@@ -54,16 +54,12 @@ static void print_report(const struct build_report *report)
 static int run(const char *folder, const struct build_options *options, const char *kind)
 {
 	struct build_report report;
-	struct fault fault = { "" };
 	struct content content;
 	int lock = -1;
-	int rc = content_read(&content, folder, &fault);
+	int rc = command_read_content(&content, folder);
 
-	if (rc < 0) {
-		fprintf(stderr, "gopura-content build: %s\n",
-			fault.text[0] ? fault.text : strerror(-rc));
+	if (rc < 0)
 		return EXIT_FAILURE;
-	}
 	if (kind)
 		content.binary_tree = strcmp(kind, "tree") == 0;
 	rc = work_lock(&lock, &content);

@@ -144,15 +144,12 @@ static int make(const struct settings *settings, struct scans *scans)
 
 static int run(const struct settings *settings)
 {
-	struct fault fault = { "" };
 	struct content content;
 	struct scans *scans = NULL;
-	int rc = content_read(&content, settings->folder, &fault);
+	int rc = command_read_content(&content, settings->folder);
 
-	if (rc < 0) {
-		complain(settings->folder, rc, &fault);
+	if (rc < 0)
 		return EXIT_FAILURE;
-	}
 	if (settings->kind)
 		content.binary_tree = strcmp(settings->kind, "tree") == 0;
 	rc = scans_create(&scans, &content);

@@ -51,17 +51,13 @@ static int publish(struct publish_content_report *report, const struct settings 
 static int run(struct settings *settings, const char *folder)
 {
 	struct publish_content_report report;
-	struct fault fault = { "" };
 	struct content content;
 	struct sources *sources = NULL;
 	int lock = -1;
-	int rc = content_read(&content, folder, &fault);
+	int rc = command_read_content(&content, folder);
 
-	if (rc < 0) {
-		fprintf(stderr, "gopura-content publish: %s\n",
-			fault.text[0] ? fault.text : strerror(-rc));
+	if (rc < 0)
 		return EXIT_FAILURE;
-	}
 	rc = work_lock(&lock, &content);
 	if (rc == 0)
 		rc = sources_create(&sources, &content);

@@ -104,7 +104,7 @@ int command_render(int argc, char **argv)
 {
 	struct settings settings = { .reference = { .supersample = 1 } };
 	struct reference_report report;
-	struct content content = { 0 };
+	struct content content;
 	struct scans *scans = NULL;
 	struct camera *views = NULL;
 	struct fault fault = { "" };
@@ -117,9 +117,9 @@ int command_render(int argc, char **argv)
 		      stderr);
 		return 2;
 	}
+	if (command_read_content(&content, settings.dir) < 0)
+		return EXIT_FAILURE;
 	rc = read_views(settings.views, &views, &count, &fault);
-	if (rc == 0)
-		rc = content_read(&content, settings.dir, &fault);
 	if (rc == 0)
 		rc = scans_create(&scans, &content);
 	if (rc == 0)

@@ -103,9 +103,10 @@ int command_sample(int argc, char **argv)
 		fputs("gopura-content sample: give one content folder; see --help\n", stderr);
 		return 2;
 	}
-	rc = content_read(&content, dir, &fault);
-	if (rc == 0)
-		rc = scans_create(&scans, &content);
+	rc = command_read_content(&content, dir);
+	if (rc < 0)
+		return EXIT_FAILURE;
+	rc = scans_create(&scans, &content);
 	if (rc == 0)
 		rc = run(scans, &options);
 	scans_destroy(scans);

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "pipeline/content/content.h"
+
 struct command {
 	const char *name;
 	const char *summary; /* one line */
@@ -42,5 +44,9 @@ int command_wrong(const char *command, const char *what, const char *value);
 /* Parses a whole number in least..most; the text must contain nothing else. Returns false
  * otherwise; *out is then undefined. */
 bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *out);
+
+/* Reads a content folder, as content_read, and prints every fault of its temple.ini. Returns 0 or a
+ * negative errno. */
+must_check int command_read_content(struct content *out, const char *folder);
 
 #endif

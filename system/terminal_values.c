@@ -194,16 +194,6 @@ bool terminal_set_hours(const struct setting *setting, void *target, const char 
 	return true;
 }
 
-bool terminal_set_yes_no(const struct setting *setting, void *target, const char *value)
-{
-	const bool yes = strcasecmp(value, "yes") == 0;
-
-	if (!yes && strcasecmp(value, "no") != 0)
-		return false;
-	*(bool *)((char *)target + setting->offset) = yes;
-	return true;
-}
-
 /* ---- networks */
 
 static bool is_address(const char *text)

@@ -29,8 +29,6 @@ bool terminal_set_mode(const struct setting *setting, void *target, const char *
 bool terminal_set_rotation(const struct setting *setting, void *target, const char *value);
 /* [panel] hours: as system/hours.h reads them. */
 bool terminal_set_hours(const struct setting *setting, void *target, const char *value);
-/* yes or no, in any case of letters; stored at setting->offset. */
-bool terminal_set_yes_no(const struct setting *setting, void *target, const char *value);
 /* [network] address: dhcp, or an address with its prefix length. */
 bool terminal_set_address(const struct setting *setting, void *target, const char *value);
 /* [network] gateway: an IPv4 or IPv6 address. */

@@ -1,33 +1,36 @@
-/* Reads temple.ini with its table of keys, fills in defaults, and builds paths inside the content
- * folder. */
+/* Reads temple.ini with its table of settings, fills in defaults, and builds paths inside the
+ * content folder. */
 #include "pipeline/content/content.h"
 
 #include <errno.h>
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
-#include "base/ini.h"
 #include "storage/info.h"
 
-/* ---- keys */
+/* ---- settings */
 
-static bool set_name(void *target, const char *value)
+static bool set_name(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
 
-	return *value && snprintf(content->name, sizeof(content->name), "%s", value) <
-				 (int)sizeof(content->name);
+	(void)setting;
+	return snprintf(content->name, sizeof(content->name), "%s", value) <
+	       (int)sizeof(content->name);
 }
 
 /* Stores the names only. Paths are built when the whole file has been read. */
-static bool set_scans(void *target, const char *value)
+static bool set_scans(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
 
+	(void)setting;
 	while (*(value += strspn(value, " \t,"))) {
 		size_t length = strcspn(value, " \t,");
 		char *name = strndup(value, length);
@@ -44,48 +47,62 @@ static bool set_scans(void *target, const char *value)
 	return content->scan_count > 0;
 }
 
-static bool set_up(void *target, const char *value)
+static bool set_up(const struct setting *setting, void *target, const char *value)
 {
+	(void)setting;
 	return import_axis_named(value, &((struct content *)target)->import.up);
 }
 
-static bool set_unit(void *target, const char *value)
+static bool set_unit(const struct setting *setting, void *target, const char *value)
 {
+	(void)setting;
 	return import_unit_named(value, &((struct content *)target)->import.metres_per_unit);
 }
 
-static bool set_colours(void *target, const char *value)
+/* Reads #rrggbb. */
+static bool read_colour(const char *value, uint8_t rgb[3])
 {
-	static const char *const names[] = { "scan", "procedural", NULL };
-	struct content *content = target;
-	int which;
+	uint8_t read[3];
+	int length = 0;
 
-	if (ini_choice(value, names, &which)) {
-		content->colours = (enum content_colours)which;
-		return true;
-	}
-	content->colours = CONTENT_COLOURS_ONE;
-	content->import.override_colour = true;
-	return ini_colour(value, content->import.default_colour);
+	if (sscanf(value, "#%2hhx%2hhx%2hhx%n", &read[0], &read[1], &read[2], &length) != 3 ||
+	    length != 7 || value[7])
+		return false;
+	memcpy(rgb, read, 3);
+	return true;
 }
 
-static bool set_lit(void *target, const char *value)
+static bool set_colours(const struct setting *setting, void *target, const char *value)
+{
+	struct content *content = target;
+
+	(void)setting;
+	content->colours = strcasecmp(value, "scan") == 0         ? CONTENT_COLOURS_SCAN
+			   : strcasecmp(value, "procedural") == 0 ? CONTENT_COLOURS_PROCEDURAL
+								  : CONTENT_COLOURS_ONE;
+	if (content->colours != CONTENT_COLOURS_ONE)
+		return true;
+	content->import.override_colour = true;
+	return read_colour(value, content->import.default_colour);
+}
+
+static bool set_lit(const struct setting *setting, void *target, const char *value)
 {
 	bool yes;
 
-	if (!ini_yes_no(value, &yes))
+	(void)setting;
+	if (!settings_read_yes_no(value, &yes))
 		return false;
 	((struct content *)target)->lit = yes ? CONTENT_LIT_YES : CONTENT_LIT_NO;
 	return true;
 }
 
-static bool set_sun(void *target, const char *value)
+static bool set_sun(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
 	double v[3], length;
-	size_t count;
 
-	if (!ini_numbers(value, v, 3, &count) || count != 3)
+	if (!settings_numbers(setting, value, v, 3))
 		return false;
 	length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 	if (!(length > 1e-9) || !isfinite(length))
@@ -95,18 +112,19 @@ static bool set_sun(void *target, const char *value)
 	return true;
 }
 
-static bool set_background(void *target, const char *value)
+static bool set_background(const struct setting *setting, void *target, const char *value)
 {
-	return ini_colour(value, ((struct content *)target)->background);
+	(void)setting;
+	return read_colour(value, ((struct content *)target)->background);
 }
 
 /* Reads "eye 1 2 3 target 4 5 6"; the words may be omitted. */
-static bool set_start(void *target, const char *value)
+static bool set_start(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
 	char numbers[256];
 	double v[6];
-	size_t count, at = 0;
+	size_t at = 0;
 
 	for (; *value && at < sizeof(numbers) - 1; value++) {
 		if (strncmp(value, "eye", 3) == 0)
@@ -118,12 +136,9 @@ static bool set_start(void *target, const char *value)
 		numbers[at++] = *value;
 	}
 	numbers[at] = '\0';
-	if (!ini_numbers(numbers, v, 6, &count) || count != 6 ||
+	if (!settings_numbers(setting, numbers, v, 6) ||
 	    (v[0] == v[3] && v[1] == v[4] && v[2] == v[5]))
 		return false;
-	for (int k = 0; k < 6; k++)
-		if (!(fabs(v[k]) <= FLT_MAX))
-			return false;
 	for (int k = 0; k < 3; k++) {
 		content->start_eye_m[k] = (float)v[k];
 		content->start_target_m[k] = (float)v[3 + k];
@@ -132,10 +147,11 @@ static bool set_start(void *target, const char *value)
 	return true;
 }
 
-static bool set_tools(void *target, const char *value)
+static bool set_tools(const struct setting *setting, void *target, const char *value)
 {
 	unsigned *tools = &((struct content *)target)->tools;
 
+	(void)setting;
 	*tools = 0;
 	while (*(value += strspn(value, " \t,"))) {
 		const size_t length = strcspn(value, " \t,");
@@ -149,52 +165,25 @@ static bool set_tools(void *target, const char *value)
 	return true;
 }
 
-static bool set_whole(const char *value, long least, long most, uint32_t *out)
+static bool set_face_px(const struct setting *setting, void *target, const char *value)
 {
-	long number;
+	const uint32_t *px = &((struct content *)target)->face_px;
 
-	if (!ini_whole(value, least, most, &number))
-		return false;
-	*out = (uint32_t)number;
-	return true;
+	return settings_whole(setting, target, value) && (*px & (*px - 1)) == 0;
 }
 
-static bool set_points(void *target, const char *value)
+static bool set_kind(const struct setting *setting, void *target, const char *value)
 {
-	return set_whole(value, 4, 32, &((struct content *)target)->grid_points);
+	struct content *content = target;
+
+	(void)setting;
+	content->binary_tree = strcasecmp(value, "tree") == 0;
+	return content->binary_tree || strcasecmp(value, "groups") == 0;
 }
 
-static bool set_face_px(void *target, const char *value)
+static bool set_publish_share(const struct setting *setting, void *target, const char *value)
 {
-	uint32_t *px = &((struct content *)target)->face_px;
-
-	return set_whole(value, 128, 4096, px) && (*px & (*px - 1)) == 0;
-}
-
-static bool set_quality(void *target, const char *value)
-{
-	return set_whole(value, 1, 100, &((struct content *)target)->quality);
-}
-
-static bool set_kind(void *target, const char *value)
-{
-	static const char *const names[] = { "groups", "tree", NULL };
-	int which;
-
-	if (!ini_choice(value, names, &which))
-		return false;
-	((struct content *)target)->binary_tree = which == 1;
-	return true;
-}
-
-static bool set_patch_triangles(void *target, const char *value)
-{
-	return set_whole(value, 256, 4000, &((struct content *)target)->patch_triangles);
-}
-
-static bool set_publish_share(void *target, const char *value)
-{
-	return ini_number(value, 1e-6, 1, &((struct content *)target)->publish_share);
+	return settings_numbers(setting, value, &((struct content *)target)->publish_share, 1);
 }
 
 /* For example "en", "km" or "pt-BR". */
@@ -209,10 +198,11 @@ static bool is_language(const char *tag, size_t length)
 	return true;
 }
 
-static bool set_languages(void *target, const char *value)
+static bool set_languages(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
 
+	(void)setting;
 	content->language_count = 0;
 	while (*(value += strspn(value, " \t,"))) {
 		size_t length = strcspn(value, " \t,");
@@ -226,27 +216,45 @@ static bool set_languages(void *target, const char *value)
 	return content->language_count > 0;
 }
 
-static const struct ini_key keys[] = {
-	{ "model", "name", "the model's name, under 128 bytes", set_name },
-	{ "model", "scans",
-	  "up to 64 file names, separated by spaces, relative to this folder and inside it",
-	  set_scans },
-	{ "model", "up", "z, y or x: the axis that points up in the scans", set_up },
-	{ "model", "unit", "m, cm, mm, in, or metres in one unit of the scans", set_unit },
-	{ "model", "colours", "scan, procedural, or one colour as #rrggbb", set_colours },
-	{ "model", "lit", "yes or no", set_lit },
-	{ "model", "sun", "three numbers x y z, pointing to the sun", set_sun },
-	{ "model", "background", "a colour as #rrggbb", set_background },
-	{ "view", "start", "eye X Y Z target X Y Z in metres, two different places", set_start },
-	{ "view", "tools", "light, section, both, each once, or nothing", set_tools },
-	{ "grid", "points", "a whole number from 4 to 32", set_points },
-	{ "grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px },
-	{ "grid", "quality", "a whole number from 1 to 100", set_quality },
-	{ "hierarchy", "kind", "groups or tree", set_kind },
-	{ "hierarchy", "patch_triangles", "a whole number from 256 to 4000", set_patch_triangles },
-	{ "release", "publish_share", "a share above 0, at most 1", set_publish_share },
-	{ "release", "languages", "language tags, separated by spaces: en fr km ja",
-	  set_languages },
+#define SETTING(section, name, expects, set)                                                       \
+	{                                                                                          \
+		section, name, expects, set, 0, 0, 0, false, false                                 \
+	}
+#define NUMBERS(section, name, expects, set, field, least, most)                                   \
+	{                                                                                          \
+		section, name, expects, set, offsetof(struct content, field), least, most, false,  \
+			false                                                                      \
+	}
+
+static const struct setting settings[] = {
+	{ .section = "model",
+	  .name = "name",
+	  .expects = "the model's name, under 128 bytes",
+	  .set = set_name,
+	  .free_text = true },
+	SETTING("model", "scans",
+		"up to 64 file names, separated by spaces, relative to this folder and inside it",
+		set_scans),
+	SETTING("model", "up", "z, y or x: the axis that points up in the scans", set_up),
+	SETTING("model", "unit", "m, cm, mm, in, or metres in one unit of the scans", set_unit),
+	SETTING("model", "colours", "scan, procedural, or one colour as #rrggbb", set_colours),
+	SETTING("model", "lit", "yes or no", set_lit),
+	NUMBERS("model", "sun", "three numbers x y z, pointing to the sun", set_sun, sun, -FLT_MAX,
+		FLT_MAX),
+	SETTING("model", "background", "a colour as #rrggbb", set_background),
+	NUMBERS("view", "start", "eye X Y Z target X Y Z in metres, two different places",
+		set_start, start_eye_m, -FLT_MAX, FLT_MAX),
+	SETTING("view", "tools", "light, section, or both, each once", set_tools),
+	NUMBERS("grid", "points", NULL, settings_whole, grid_points, 4, 32),
+	NUMBERS("grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px, face_px, 128,
+		4096),
+	NUMBERS("grid", "quality", NULL, settings_whole, quality, 1, 100),
+	SETTING("hierarchy", "kind", "groups or tree", set_kind),
+	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),
+	NUMBERS("release", "publish_share", "a share above 0, at most 1", set_publish_share,
+		publish_share, 1e-6, 1),
+	SETTING("release", "languages", "language tags, separated by spaces: en fr km ja",
+		set_languages),
 };
 
 /* ---- the whole */
@@ -276,23 +284,27 @@ static void set_defaults(struct content *content, const char *folder)
 		 slash && slash[1] ? slash + 1 : content->folder);
 }
 
-static int complete_scan(struct content *content, uint32_t i, const char *ini, struct fault *fault)
+static int complete_scan(struct content *content, uint32_t i, struct faults *faults)
 {
 	char path[CONTENT_PATH_BYTES];
 	struct stat status;
 	int rc = content_file_path(content, content->scans[i], path);
 	char *owned;
 
-	if (rc < 0)
-		return fault_set(fault, rc, "%s: scans: %s: %s", ini, content->scans[i],
-				 strerror(-rc));
-	if (stat(path, &status) < 0)
-		return fault_set(fault, -errno,
-				 "%s: scans: %s: %s; put it into %s, or correct its name", ini,
-				 content->scans[i], strerror(errno), content->folder);
-	if (!S_ISREG(status.st_mode))
-		return fault_set(fault, -EINVAL, "%s: scans: %s is not a regular file", ini,
-				 content->scans[i]);
+	if (rc < 0) {
+		faults_add(faults, 0, "scans: %s: %s", content->scans[i], strerror(-rc));
+		return rc;
+	}
+	if (stat(path, &status) < 0) {
+		rc = -errno;
+		faults_add(faults, 0, "scans: %s: %s; put it into %s, or correct its name",
+			   content->scans[i], strerror(-rc), content->folder);
+		return rc;
+	}
+	if (!S_ISREG(status.st_mode)) {
+		faults_add(faults, 0, "scans: %s is not a regular file", content->scans[i]);
+		return -EINVAL;
+	}
 	owned = strdup(path);
 	if (!owned)
 		return -ENOMEM;
@@ -301,23 +313,38 @@ static int complete_scan(struct content *content, uint32_t i, const char *ini, s
 	return 0;
 }
 
-int content_read(struct content *out, const char *folder, struct fault *fault)
+static int complete(struct content *content, struct faults *faults)
+{
+	int rc = 0;
+
+	if (content->scan_count == 0) {
+		faults_add(faults, 0,
+			   "it names no scan; add 'scans = FILE' to its [model] section");
+		return -EBADMSG;
+	}
+	for (uint32_t i = 0; rc != -ENOMEM && i < content->scan_count; i++) {
+		int failed = complete_scan(content, i, faults);
+
+		rc = rc == 0 || failed == -ENOMEM ? failed : rc;
+	}
+	return rc;
+}
+
+int content_read(struct content *out, const char *folder, struct faults *faults)
 {
 	char ini[CONTENT_PATH_BYTES + 16];
 	int rc;
 
 	*out = (struct content){ 0 };
-	if (strlen(folder) == 0 || strlen(folder) > CONTENT_PATH_BYTES / 2)
-		return fault_set(fault, -EINVAL, "'%.100s': give a content folder", folder);
+	if (strlen(folder) == 0 || strlen(folder) > CONTENT_PATH_BYTES / 2) {
+		faults_add(faults, 0, "'%.100s' is no content folder; give one", folder);
+		return -EINVAL;
+	}
 	set_defaults(out, folder);
 	snprintf(ini, sizeof(ini), "%s/temple.ini", out->folder);
-	rc = ini_read(ini, keys, ARRAY_COUNT(keys), out, fault);
-	if (rc == 0 && out->scan_count == 0)
-		rc = fault_set(fault, -EBADMSG,
-			       "%s: it names no scan; add 'scans = FILE' to its [model] section",
-			       ini);
-	for (uint32_t i = 0; rc == 0 && i < out->scan_count; i++)
-		rc = complete_scan(out, i, ini, fault);
+	rc = settings_read_file(ini, settings, ARRAY_COUNT(settings), out, faults);
+	if (rc == 0)
+		rc = complete(out, faults);
 	if (rc < 0)
 		content_release(out);
 	return rc;

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/fault.h"
+#include "base/settings.h"
 #include "format/hash.h"
 #include "pipeline/import/import.h"
 
@@ -53,9 +54,10 @@ struct content {
 	char languages[CONTENT_LANGUAGES_MAX][CONTENT_LANGUAGE_BYTES];
 };
 
-/* Reads FOLDER/temple.ini. The scans must exist. On failure *out is zeroed and fault names the
- * file, the line and how to correct it. content_release frees it. */
-must_check int content_read(struct content *out, const char *folder, struct fault *fault);
+/* Reads FOLDER/temple.ini. The scans must exist. On failure *out is zeroed, and faults has every
+ * fault of the file with its line and how to correct it. -EINVAL, -ENOMEM, and the errors of
+ * reading a file. content_release frees it. */
+must_check int content_read(struct content *out, const char *folder, struct faults *faults);
 void content_release(struct content *content); /* Frees the contents. NULL and zeroed are fine. */
 
 /* Returns whether a name is relative, stays below the folder (no "..", absolute path or empty part)

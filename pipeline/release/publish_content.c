@@ -15,16 +15,16 @@
 #include "pipeline/release/start_view.h"
 
 /* The target folder and the signing keys. */
-struct setting {
+struct destination {
 	char keys_folder[PATH_MAX];
 	struct publisher_keys keys;
 	struct publish_target target;
 };
 
-static int open_keys(struct setting *setting, const struct publish_content_options *options)
+static int open_keys(struct destination *destination, const struct publish_content_options *options)
 {
 	bool made;
-	int rc = keys_open(&setting->keys, setting->keys_folder,
+	int rc = keys_open(&destination->keys, destination->keys_folder,
 			   sources_content(options->sources)->folder, options->keys, &made);
 
 	if (rc == 0 && made)
@@ -32,12 +32,12 @@ static int open_keys(struct setting *setting, const struct publish_content_optio
 			"pipeline",
 			"made signing keys in %s: keep a copy of root.key in a safe place, and give "
 			"terminals root/1.json",
-			setting->keys_folder);
+			destination->keys_folder);
 	return rc;
 }
 
-static int setting_init(struct setting *setting, char release[PATH_MAX],
-			const struct publish_content_options *options)
+static int destination_init(struct destination *destination, char release[PATH_MAX],
+			    const struct publish_content_options *options)
 {
 	const char *folder = sources_content(options->sources)->folder;
 	int size = options->out ? snprintf(release, PATH_MAX, "%s", options->out)
@@ -45,12 +45,12 @@ static int setting_init(struct setting *setting, char release[PATH_MAX],
 
 	if (size >= PATH_MAX)
 		return -ENAMETOOLONG;
-	setting->target = (struct publish_target){ .release = release,
-						   .keys_folder = setting->keys_folder,
-						   .keys = &setting->keys,
-						   .comment = options->comment,
-						   .release_life_s = options->release_life_s };
-	return open_keys(setting, options);
+	destination->target = (struct publish_target){ .release = release,
+						       .keys_folder = destination->keys_folder,
+						       .keys = &destination->keys,
+						       .comment = options->comment,
+						       .release_life_s = options->release_life_s };
+	return open_keys(destination, options);
 }
 
 /* Measures the current release by its locator. Returns -ENOENT if a pack is missing. */
@@ -178,50 +178,50 @@ int publish_content(struct publish_content_report *report,
 		    const struct publish_content_options *options)
 {
 	struct object_store *objects = NULL;
-	struct setting setting = { 0 };
+	struct destination destination = { 0 };
 	int rc;
 
 	*report = (struct publish_content_report){ 0 };
-	rc = setting_init(&setting, report->release, options);
+	rc = destination_init(&destination, report->release, options);
 	if (rc == 0)
 		rc = object_store_create(&objects);
 	if (rc == 0)
-		rc = publish_objects(report, &setting.target, objects, options->sources);
+		rc = publish_objects(report, &destination.target, objects, options->sources);
 	object_store_destroy(objects);
-	keys_finish(&setting.keys);
+	keys_finish(&destination.keys);
 	return rc < 0 ? rc : measure(report);
 }
 
 int publish_content_again(struct publish_content_report *report,
 			  const struct publish_content_options *options, uint64_t sequence)
 {
-	struct setting setting = { 0 };
+	struct destination destination = { 0 };
 	int rc;
 
 	*report = (struct publish_content_report){ 0 };
-	rc = setting_init(&setting, report->release, options);
+	rc = destination_init(&destination, report->release, options);
 	if (rc == 0)
-		rc = publish_again(&report->publish, &setting.target, sequence);
-	keys_finish(&setting.keys);
+		rc = publish_again(&report->publish, &destination.target, sequence);
+	keys_finish(&destination.keys);
 	return rc < 0 ? rc : measure(report);
 }
 
 static int look_at_current(struct publish_content_report *report,
 			   const struct publish_content_options *options, bool renew)
 {
-	struct setting setting = { 0 };
+	struct destination destination = { 0 };
 	int rc;
 
 	*report = (struct publish_content_report){ 0 };
-	rc = setting_init(&setting, report->release, options);
+	rc = destination_init(&destination, report->release, options);
 	if (rc == 0)
 		rc = release_files_current(&report->publish.release, report->release,
-					   &setting.keys);
+					   &destination.keys);
 	if (rc == 0)
 		rc = measure(report);
 	if (rc == 0 && renew)
-		rc = publish_renew(&setting.target);
-	keys_finish(&setting.keys);
+		rc = publish_renew(&destination.target);
+	keys_finish(&destination.keys);
 	return rc;
 }
 

@@ -1,6 +1,5 @@
 #include "base/map.h"
 
-
 #include "tests/check.h"
 
 enum { KEYS = 3000 };

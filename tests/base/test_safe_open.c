@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "base/bytes.h"
-#include "base/ini.h"
+#include "base/settings.h"
 #include "tests/check.h"
 
 enum { HANG_S = 60 };
@@ -212,8 +212,8 @@ static void does_so_where_openat2_is_missing_or_forbidden(void **state)
 
 static void a_path_of_ours_may_be_a_link_but_no_pipe_or_device(void **state)
 {
-	static const struct ini_key none[1];
-	struct fault fault = { "" };
+	static const struct setting none[1];
+	struct faults faults = { .count = 0 };
 	struct buffer file;
 	char path[128];
 
@@ -223,8 +223,8 @@ static void a_path_of_ours_may_be_a_link_but_no_pipe_or_device(void **state)
 	CHECK(buffer_read_file(&file, path) == 0 && file.size == 5);
 	path_of("fifo", path);
 	CHECK(buffer_read_file(&file, path) == -ENOTSUP);
-	CHECK(ini_read(path, none, 0, NULL, &fault) == -ENOTSUP);
-	CHECK(strstr(fault.text, "put a file there"));
+	CHECK(settings_read_file(path, none, 0, NULL, &faults) == -ENOTSUP);
+	CHECK(strstr(faults.list[0].text, "put a file there"));
 	path_of("zero", path);
 	CHECK(buffer_read_file(&file, path) == -ENOTSUP);
 	CHECK(buffer_read_file(&file, folder) == -EISDIR);

@@ -16,7 +16,7 @@ sed -i 's/^tools *=.*/tools = light, lens/' "$work/bad/temple.ini"
 if build/gopura-content publish "$work/bad" --out "$work/release" --keys "$small_keys" 2>"$work/bad.log"; then
 	fail "a tool that does not exist was published"
 fi
-grep -q 'temple.ini:[0-9]*: tools = light, lens: it must be light, section' "$work/bad.log" ||
+grep -q 'temple.ini, line [0-9]*: tools must be light, section, or both' "$work/bad.log" ||
 	{ cat "$work/bad.log"; fail "the tool has no name"; }
 
 # ---- at 960 x 540: the bar's light, its ring, the bar's light again, a touch on what stands in front; the section, the

@@ -35,11 +35,11 @@ static void defaults_need_only_a_scan(void **state)
 {
 	char folder[256];
 	struct content content;
-	struct fault fault = { "" };
+	struct faults faults = { .count = 0 };
 	(void)state;
 
 	make_folder(folder, "[model]\nscans = tower.ply\n");
-	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content_read(&content, folder, &faults) == 0);
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
 	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 80);
@@ -64,11 +64,11 @@ static void every_key_is_read(void **state)
 		"patch_triangles = 1000\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
 	struct content content;
-	struct fault fault = { "" };
+	struct faults faults = { .count = 0 };
 	(void)state;
 
 	make_folder(folder, ini);
-	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content_read(&content, folder, &faults) == 0);
 	CHECK(strcmp(content.name, "Banteay of the Test") == 0 && content.scan_count == 2);
 	CHECK(content.import.up == IMPORT_Y_UP && content.import.metres_per_unit == 0.001);
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
@@ -92,15 +92,18 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "no-scan", "[model]\nname = x\n", "scans = FILE" },
 		{ "missing", "[model]\nscans = tower.ply gone.ply\n", "gone.ply: No such file" },
 		{ "folder", "[model]\nscans = .work\n", "No such file" },
-		{ "outside", "[model]\nscans = ../tower.ply\n", "temple.ini:2: scans" },
+		{ "outside", "[model]\nscans = ../tower.ply\n", "line 2: scans" },
 		{ "absolute", "[model]\nscans = /etc/passwd\n", "inside it" },
-		{ "typo", "[model]\nscans = tower.ply\ncolors = scan\n", "temple.ini:3: 'colors'" },
-		{ "typo-cure", "[model]\ncolors = scan\n", "colours" },
-		{ "section", "[modle]\nscans = tower.ply\n", "[model]" },
-		{ "no-section", "scans = tower.ply\n", "temple.ini:1:" },
-		{ "twice", "[model]\nup = z\n\nup = y\n", "temple.ini:4: 'up' is set in line 2" },
-		{ "not-a-line", "[model]\nscans tower.ply\n", "temple.ini:2: this is neither" },
-		{ "up", "[model]\nup = w\n", "temple.ini:2: up = w: it must be z, y or x" },
+		{ "typo", "[model]\nscans = tower.ply\ncolors = scan\n",
+		  "line 3: [model] has no 'colors'; did you mean 'colours'?" },
+		{ "section", "[modle]\nscans = tower.ply\n",
+		  "line 1: there is no section [modle]; did you mean [model]?" },
+		{ "no-section", "scans = tower.ply\n", "line 1: scans belongs under [model]" },
+		{ "twice", "[model]\nup = z\n\nup = y\n", "line 4: up stands in line 2" },
+		{ "not-a-line", "[model]\nscans tower.ply\n",
+		  "line 2: 'scans tower.ply' is neither" },
+		{ "up", "[model]\nup = w\n",
+		  "line 2: up must be z, y or x: the axis that points up in the scans, not 'w'" },
 		{ "unit", "[model]\nunit = yard\n", "metres in one unit" },
 		{ "unit-zero", "[model]\nunit = 0\n", "metres in one unit" },
 		{ "sun", "[model]\nsun = 0 0 0\n", "three numbers" },
@@ -113,7 +116,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
 		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },
 		{ "tools", "[view]\n\ntools = light, lens\n",
-		  "temple.ini:3: tools = light, lens: it must be light, section" },
+		  "line 3: tools must be light, section, or both, each once, not 'light, lens'" },
 		{ "tools-twice", "[view]\ntools = light light\n", "each once" },
 		{ "share", "[release]\npublish_share = 0\n", "above 0" },
 		{ "languages", "[release]\nlanguages = en f\n", "language tags" },
@@ -123,39 +126,56 @@ static void faults_name_file_line_and_cure(void **state)
 	(void)state;
 
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		struct fault fault = { "" };
+		struct faults faults = { .count = 0 };
 
 		make_folder(folder, cases[i].ini);
-		if (content_read(&content, folder, &fault) >= 0 ||
-		    !strstr(fault.text, cases[i].says) || !strstr(fault.text, "temple.ini"))
-			fail_msg("%s: '%s'", cases[i].name, fault.text);
+		if (content_read(&content, folder, &faults) >= 0 ||
+		    !strstr(faults.list[0].text, cases[i].says))
+			fail_msg("%s: '%s'", cases[i].name, faults.list[0].text);
 		remove_folder(folder);
 	}
+}
+
+static void tells_all_faults_at_once(void **state)
+{
+	char folder[256];
+	struct content content;
+	struct faults faults = { .count = 0 };
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = gone.ply\nup = w\n[grid]\npoints = 40\n");
+	CHECK(content_read(&content, folder, &faults) == -EINVAL);
+	CHECK(faults.count == 2 && faults.list[0].line == 3 && faults.list[1].line == 5);
+	faults.count = 0;
+	remove_folder(folder);
+	make_folder(folder, "[model]\nscans = gone.ply tower.ply lost.ply\n");
+	CHECK(content_read(&content, folder, &faults) == -ENOENT && faults.count == 2);
+	CHECK(strstr(faults.list[0].text, "gone.ply") && strstr(faults.list[1].text, "lost.ply"));
+	remove_folder(folder);
 }
 
 static void says_what_is_no_content_folder(void **state)
 {
 	struct content content;
-	struct fault fault = { "" };
+	struct faults faults = { .count = 0 };
 	(void)state;
 
-	CHECK(content_read(&content, "/nowhere/at/all", &fault) == -ENOENT);
-	CHECK(strstr(fault.text, "/nowhere/at/all/temple.ini"));
-	fault.text[0] = '\0';
-	CHECK(content_read(&content, "", &fault) == -EINVAL && fault.text[0]);
+	CHECK(content_read(&content, "/nowhere/at/all", &faults) == -ENOENT && faults.count == 1);
+	faults.count = 0;
+	CHECK(content_read(&content, "", &faults) == -EINVAL && faults.count == 1);
 }
 
-static void a_line_longer_than_inih_holds_is_a_fault(void **state)
+static void a_line_that_is_too_long_is_a_fault(void **state)
 {
-	char ini[256], folder[256];
+	char ini[1100], folder[256];
 	struct content content;
-	struct fault fault = { "" };
+	struct faults faults = { .count = 0 };
 	(void)state;
 
-	snprintf(ini, sizeof(ini), "[model]\nscans = tower.ply\nname = %0200d\n", 7);
+	snprintf(ini, sizeof(ini), "[model]\nscans = tower.ply\nname = %01000d\n", 7);
 	make_folder(folder, ini);
-	CHECK(content_read(&content, folder, &fault) == -EBADMSG);
-	CHECK(strstr(fault.text, "temple.ini:3: the line is too long"));
+	CHECK(content_read(&content, folder, &faults) == -EINVAL);
+	CHECK(strstr(faults.list[0].text, "line 3: the line is longer than"));
 	remove_folder(folder);
 }
 
@@ -189,11 +209,12 @@ static void import_of(const char *folder, bool *from_cache, uint32_t *triangles)
 {
 	const ino_t before = mesh_number(folder);
 	struct content content;
+	struct faults faults = { .count = 0 };
 	struct fault fault = { "" };
 	const struct mesh *mesh;
 	struct scans *scans;
 
-	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content_read(&content, folder, &faults) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	if (scans_get_mesh(scans, &mesh, &fault) < 0)
 		fail_msg("%s", fault.text);
@@ -209,13 +230,14 @@ static void the_shape_is_known_without_the_mesh(void **state)
 	char folder[256], path[512];
 	const struct scans_shape *shape;
 	struct content content;
+	struct faults faults = { .count = 0 };
 	struct fault fault = { "" };
 	struct scans *scans;
 	FILE *file;
 	(void)state;
 
 	make_folder(folder, "[model]\nscans = tower.ply tower.ply\nunit = cm\n");
-	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content_read(&content, folder, &faults) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(scans_known_shape(scans) == NULL && mesh_number(folder) == 0);
 	CHECK(scans_get_shape(scans, &shape, &fault) == 0);
@@ -284,8 +306,9 @@ int main(void)
 		cmocka_unit_test(defaults_need_only_a_scan),
 		cmocka_unit_test(every_key_is_read),
 		cmocka_unit_test(faults_name_file_line_and_cure),
+		cmocka_unit_test(tells_all_faults_at_once),
 		cmocka_unit_test(says_what_is_no_content_folder),
-		cmocka_unit_test(a_line_longer_than_inih_holds_is_a_fault),
+		cmocka_unit_test(a_line_that_is_too_long_is_a_fault),
 		cmocka_unit_test(names_stay_inside_the_folder),
 		cmocka_unit_test(the_shape_is_known_without_the_mesh),
 		cmocka_unit_test(a_second_import_comes_from_the_cache_until_something_changes),

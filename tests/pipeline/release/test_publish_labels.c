@@ -99,6 +99,7 @@ static void write_parts(float radius_m)
 
 static int set_up(void **state)
 {
+	struct faults faults = { .count = 0 };
 	struct fault fault = { "" };
 	char regions[80];
 
@@ -111,7 +112,7 @@ static int set_up(void **state)
 	write_scan();
 	write_faces(-0.8f);
 	write_parts(0.6f);
-	CHECK(content_read(&content, folder, &fault) == 0);
+	CHECK(content_read(&content, folder, &faults) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(scans_get_mesh(scans, &scan, &fault) == 0);
 	return 0;

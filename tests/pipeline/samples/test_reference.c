@@ -93,6 +93,7 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 					     .height_px = side,
 					     .supersample = supersample };
 	struct reference_report report;
+	struct faults faults = { .count = 0 };
 	struct fault fault = { "" };
 	struct content content;
 	struct scans *scans;
@@ -104,7 +105,7 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 	snprintf(out_dir, sizeof(out_dir), "%s/out", dir);
 	options.out_dir = out_dir;
 	CHECK(read_views(&views, &count, views_text, &fault) == 0);
-	CHECK(content_read(&content, dir, &fault) == 0);
+	CHECK(content_read(&content, dir, &faults) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(reference_draw(scans, views, count, &options, &report, &fault) == 0);
 	CHECK(report.drawn == expected_drawn && report.kept == count - expected_drawn);
