@@ -99,7 +99,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "section", "[modle]\nscans = tower.ply\n",
 		  "line 1: there is no section [modle]; did you mean [model]?" },
 		{ "no-section", "scans = tower.ply\n", "line 1: scans belongs under [model]" },
-		{ "twice", "[model]\nup = z\n\nup = y\n", "line 4: up stands in line 2" },
+		{ "twice", "[model]\nup = z\n\nup = y\n", "line 4: up is set in line 2 already" },
 		{ "not-a-line", "[model]\nscans tower.ply\n",
 		  "line 2: 'scans tower.ply' is neither" },
 		{ "up", "[model]\nup = w\n",
