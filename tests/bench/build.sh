@@ -1,8 +1,10 @@
 #!/bin/bash
 # Build throughput: the demo temple of 300 000 triangles from nothing to a signed release, on all
-# cores, with its shares; hierarchy also in processor seconds. build/bench/build.json.
+# cores, with its shares; hierarchy also in processor seconds. And rows of larger scans, from the file to
+# the hierarchy (build_rows.py; 100 million by build_large.sh). build/bench/build.json.
 #
-#   TRIANGLES=N   of the temple (default 300000)
+#   TRIANGLES=N       of the temple (default 300000)
+#   MILLIONS="1 10"   of triangles, a row each
 set -eu
 cd "$(dirname "$0")/../.."
 make --no-print-directory build/gopura-content >/dev/null
@@ -11,7 +13,9 @@ rm -rf "$work"
 mkdir -p "$work"
 trap 'rm -rf "$work"' EXIT
 cp -r demo/content "$work/content"
-python3 - "$work" "${TRIANGLES:-300000}" >build/bench/build.json.new <<'P'
+# shellcheck disable=SC2086
+rows=$(python3 tests/bench/build_rows.py build/bench/build-rows ${MILLIONS:-1 10})
+python3 - "$work" "${TRIANGLES:-300000}" "$rows" >build/bench/build.json.new <<'P'
 import json
 import os
 import re
@@ -20,7 +24,7 @@ import subprocess
 import sys
 import time
 
-work, wanted = sys.argv[1], sys.argv[2]
+work, wanted, rows = sys.argv[1:]
 content = "build/gopura-content"
 
 
@@ -53,6 +57,7 @@ print(json.dumps({
     "sampling_faces_per_s": round(6 * points / sample_s, 2),
     "publish_s": round(publish_s, 2), "release_mb": round(size / 1e6, 2),
     "all_s": round(temple_s + hierarchy_s + sample_s + publish_s, 1),
+    "rows": json.loads(rows),
 }, indent=1))
 P
 mv build/bench/build.json.new build/bench/build.json

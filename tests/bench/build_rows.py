@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""build_rows.py FOLDER MILLIONS...: from a scan file to the hierarchy, a row of figures for each size.
+
+The demo temple with colours per vertex; its PLY is made first and not counted. The peak is that of the memory that
+all processes have together (Pss, without what is only a cached file's page of nobody), looked at ten times a second.
+Prints JSON: triangles, import_s, hierarchy_s, mtri_per_s, peak_mib. What is in FOLDER goes afterwards.
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+CONTENT = "build/gopura-content"
+
+
+def family(pid):
+    """The process and its descendants."""
+    found, at = [pid], 0
+    while at < len(found):
+        try:
+            with open(f"/proc/{found[at]}/task/{found[at]}/children", encoding="ascii") as file:
+                found += [int(child) for child in file.read().split()]
+        except OSError:
+            pass
+        at += 1
+    return found
+
+
+def pss_kib(pid):
+    try:
+        with open(f"/proc/{pid}/smaps_rollup", encoding="ascii") as file:
+            return int(re.search(r"^Pss:\s+(\d+) kB", file.read(), re.M)[1])
+    except (OSError, TypeError):
+        return 0
+
+
+def row(folder, millions):
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    scan = f"{folder}/scan.ply"
+    subprocess.run([CONTENT, "temple", "--triangles", str(int(millions * 1e6)), "--out", scan], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with open(f"{folder}/temple.ini", "w", encoding="ascii") as file:
+        file.write("[model]\nscans = scan.ply\n")
+    began, peak = time.monotonic(), 0
+    with open(f"{folder}/said", "w+", encoding="utf-8") as said:
+        process = subprocess.Popen([CONTENT, "hierarchy", folder], stdout=said, stderr=subprocess.DEVNULL)
+        while process.poll() is None:
+            peak = max(peak, sum(pss_kib(pid) for pid in family(process.pid)))
+            time.sleep(0.1)
+        all_s = time.monotonic() - began
+        said.seek(0)
+        text = said.read()
+    if process.returncode != 0:
+        sys.exit(f"the hierarchy of {millions} million triangles failed")
+    hierarchy_s = float(re.search(r"a vertex; ([0-9.]+) s", text)[1])
+    triangles = int(re.search(r"level  0: +(\d+) triangles", text)[1])
+    shutil.rmtree(folder)
+    return {"triangles": triangles, "import_s": round(all_s - hierarchy_s, 1), "hierarchy_s": hierarchy_s,
+            "mtri_per_s": round(triangles / all_s / 1e6, 3), "peak_mib": round(peak / 1024)}
+
+
+print(json.dumps([row(sys.argv[1], float(millions)) for millions in sys.argv[2:]]))
