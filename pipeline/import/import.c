@@ -15,6 +15,7 @@
 
 #include "base/clock.h"
 #include "base/spill.h"
+#include "pipeline/import/gltf_extensions.h"
 #include "pipeline/import/mesh_colour.h"
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };
@@ -254,6 +255,26 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
+enum { GLTF_LOOK_BYTES = 64 << 20 }; /* the JSON of a GLB comes first and is far smaller */
+
+/* Refuses a glTF file that cannot be read right, before anything is read of it. */
+static int look_for_extensions(const char *path, uint64_t file_bytes, struct fault *fault)
+{
+	size_t size = file_bytes < GLTF_LOOK_BYTES ? (size_t)file_bytes : GLTF_LOOK_BYTES;
+	uint8_t *text = malloc(size + 1);
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	int rc = fd < 0 ? -errno : text ? bytes_read_at(fd, text, size, 0) : -ENOMEM;
+
+	if (fd >= 0)
+		close(fd);
+	if (rc < 0)
+		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+	else
+		rc = gltf_extensions_check((struct bytes){ text, size }, path, fault);
+	free(text);
+	return rc;
+}
+
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
 		     struct fault *fault)
@@ -267,6 +288,12 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 
 	if (format == SCAN_PLY)
 		return import_ply(out, path, options, report, fault);
+	if (foreign.is_linear) {
+		int rc = look_for_extensions(path, report->file_bytes, fault);
+
+		if (rc < 0)
+			return rc;
+	}
 	return import_foreign(out, path, foreign, options, report, fault);
 }
 

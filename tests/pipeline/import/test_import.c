@@ -382,6 +382,19 @@ static void refuses_what_is_no_surface(void **state)
 		{ "index.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", "OBJ reader says" },
 		{ "half.gltf", "{\"asset\":{\"version\":\"2.0\"},", "glTF reader says" },
 		{ "half.glb", "glTF\2\0\0\0", "GLB reader says" },
+		{ "draco.gltf", "{\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
+		  "npx @gltf-transform/cli copy IN.glb OUT.glb" },
+		{ "quantised.gltf",
+		  "{ \"extensionsRequired\" : [ \"KHR_materials_unlit\", "
+		  "\"KHR_mesh_quantization\" ] }",
+		  "cli dequantize" },
+		{ "webp.gltf", "{\"extensionsRequired\":[\"EXT_texture_webp\"]}",
+		  "png --formats webp" },
+		{ "new.gltf", "{\"extensionsRequired\":[\"ACME_of_tomorrow\"]}",
+		  "requires the extension ACME_of_tomorrow" },
+		{ "harmless.gltf", "{\"extensionsRequired\":[\"KHR_materials_unlit\"],",
+		  "glTF reader says" },
+		{ "unended.gltf", "{\"extensionsRequired\":[\"KHR_draco", "glTF reader says" },
 	};
 	const struct import_options options = { 0 };
 	struct fault fault;

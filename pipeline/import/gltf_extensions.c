@@ -1,0 +1,107 @@
+/* Scans the text for the list: an extension's name has no escapes, and nothing is built from what
+ * the file says but the message. */
+#include "pipeline/import/gltf_extensions.h"
+
+#include <errno.h>
+#include <string.h>
+
+enum { GLB_HEAD_BYTES = 20, NAME_BYTES = 64 };
+
+/* Extensions that change neither places nor the base colour. */
+static const char *const harmless[] = { "KHR_materials_", "KHR_lights_punctual", "KHR_xmp" };
+
+static const struct {
+	const char *extension, *what, *command;
+} cures[] = {
+	{ "KHR_draco_mesh_compression", "its meshes are compressed with Draco", "copy" },
+	{ "EXT_meshopt_compression", "its meshes are compressed with meshoptimizer", "dequantize" },
+	{ "KHR_mesh_quantization", "its places are quantised", "dequantize" },
+	{ "EXT_texture_webp", "its pictures are WebP", "png --formats webp" },
+	{ "KHR_texture_basisu", "its pictures are KTX2", "ktxdecompress" },
+};
+
+/* The JSON of a GLB is its first chunk. */
+static struct bytes json_of(struct bytes file)
+{
+	uint32_t size;
+
+	if (file.size < GLB_HEAD_BYTES || memcmp(file.data, "glTF", 4) != 0)
+		return file;
+	size = (uint32_t)file.data[12] | (uint32_t)file.data[13] << 8 |
+	       (uint32_t)file.data[14] << 16 | (uint32_t)file.data[15] << 24;
+	file.data += GLB_HEAD_BYTES;
+	file.size -= GLB_HEAD_BYTES;
+	if (size < file.size)
+		file.size = size;
+	return file;
+}
+
+/* Moves *text behind the next occurrence of what. Returns false if there is none. */
+static bool skip_past(struct bytes *text, const char *what)
+{
+	const uint8_t *found = memmem(text->data, text->size, what, strlen(what));
+
+	if (!found)
+		return false;
+	found += strlen(what);
+	text->size -= (size_t)(found - text->data);
+	text->data = found;
+	return true;
+}
+
+/* Reads the next name of the list. Returns false at its end, or where it is none. */
+static bool next_name(struct bytes *list, char name[NAME_BYTES])
+{
+	size_t length = 0;
+
+	while (list->size > 0 && *list->data != '"' && *list->data != ']') {
+		list->data++;
+		list->size--;
+	}
+	if (list->size == 0 || *list->data == ']')
+		return false;
+	list->data++;
+	list->size--;
+	while (length < list->size && list->data[length] != '"')
+		length++;
+	if (length == list->size || length >= NAME_BYTES)
+		return false;
+	memcpy(name, list->data, length);
+	name[length] = '\0';
+	for (size_t i = 0; i < length; i++) /* it goes into a message */
+		if (name[i] < ' ' || name[i] > '~')
+			name[i] = '?';
+	list->data += length + 1;
+	list->size -= length + 1;
+	return true;
+}
+
+static int judge(const char *name, const char *path, struct fault *fault)
+{
+	for (size_t i = 0; i < ARRAY_COUNT(harmless); i++)
+		if (strncmp(name, harmless[i], strlen(harmless[i])) == 0)
+			return 0;
+	for (size_t i = 0; i < ARRAY_COUNT(cures); i++)
+		if (strcmp(name, cures[i].extension) == 0)
+			return fault_set(fault, -ENOTSUP,
+					 "%s: %s (%s), which is not read here; convert it: npx "
+					 "@gltf-transform/cli %s IN.glb OUT.glb",
+					 path, cures[i].what, name, cures[i].command);
+	return fault_set(fault, -ENOTSUP,
+			 "%s: it requires the extension %s, which is not read here; export it "
+			 "without",
+			 path, name);
+}
+
+int gltf_extensions_check(struct bytes file, const char *path, struct fault *fault)
+{
+	struct bytes text = json_of(file);
+	char name[NAME_BYTES];
+	int rc = 0;
+
+	if (!skip_past(&text, "\"extensionsRequired\"") || !skip_past(&text, "["))
+		return 0;
+	while (rc == 0 && next_name(&text, name))
+		rc = judge(name, path, fault);
+	return rc;
+}
