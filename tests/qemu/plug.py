@@ -15,7 +15,7 @@ def safe_page(kernel, initramfs, work):
         machine.wait_for("safe page", BOOT_S, lambda: "KMS canvas" in machine.log() and tones(machine.picture("safe")) > 20)
         before = machine.picture("safe")
         machine.wait_for("movement", ANSWER_S, lambda: share_that_differs(before, machine.picture("safe")) > 0.01)
-        machine.wait_for("kiosk that waits", ANSWER_S, lambda: "/dev/dri/card0: waiting until it ends" in machine.log())
+        machine.wait_for("kiosk that waits", ANSWER_S, lambda: "uses /dev/dri/card0; waiting until it ends" in machine.log())
         machine.wait_for("end of the safe page", ANSWER_S, lambda: "init: the safe page ends" in machine.log())
         machine.wait_for("temple after it", ANSWER_S, lambda: "app: first picture" in machine.log() and tones(machine.picture("after")) > 300)
     finally:
