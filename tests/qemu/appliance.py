@@ -169,7 +169,7 @@ def visit(machine, began):
         machine.qmp.tap(0.5, 0.38)
         time.sleep(5)
     print("a tap opened a card")
-    grown = re.search(r"gopura-data has (\d+) MiB now", machine.log())
+    grown = re.search(r"gopura-data was enlarged to (\d+) MiB", machine.log())
     rest = DISK_BYTES - sum(part["size"] * 512 for part in table(machine.disk)[:-1])
     if not grown or int(grown.group(1)) < (rest >> 20) - 3 or "could not be enlarged" in machine.log():
         raise SystemExit(f"the data partition did not grow to the disk's {rest >> 20} MiB that are left:\n" + machine.log()[:3000])
