@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/types.h>
@@ -24,10 +23,9 @@ struct running {
 
 struct crew {
 	const struct processes *plan;
-	bool *begun; /* for each piece */
+	uint32_t begun_count;
 	struct running running[WORKERS_MAX];
 	uint32_t running_count;
-	uint32_t done_count;
 	uint32_t failed_piece;
 	int rc;
 };
@@ -70,21 +68,7 @@ static void begin(struct crew *crew, uint32_t piece)
 		close(ends[0]);
 		return;
 	}
-	crew->begun[piece] = true;
 	crew->running[crew->running_count++] = (struct running){ pid, piece, ends[0] };
-}
-
-static void begin_what_is_ready(struct crew *crew)
-{
-	const struct processes *plan = crew->plan;
-	uint32_t most = plan->worker_count < 1             ? 1
-			: plan->worker_count > WORKERS_MAX ? WORKERS_MAX
-							   : plan->worker_count;
-
-	for (uint32_t p = 0; p < plan->piece_count && crew->rc == 0 && crew->running_count < most;
-	     p++)
-		if (!crew->begun[p] && (!plan->is_ready || plan->is_ready(plan->user, p)))
-			begin(crew, p);
 }
 
 /* Takes the status of a process that has ended. */
@@ -105,7 +89,6 @@ static void end(struct crew *crew, struct running running)
 	} else if (WEXITSTATUS(status) != 0) {
 		fail(crew, running.piece, -WEXITSTATUS(status));
 	} else {
-		crew->done_count++;
 		if (crew->plan->done)
 			crew->plan->done(crew->plan->user, running.piece);
 	}
@@ -132,20 +115,19 @@ static void wait_for_some(struct crew *crew)
 
 int processes_run(const struct processes *plan)
 {
-	struct crew crew = { .plan = plan,
-			     .begun = calloc(plan->piece_count + 1, sizeof(*crew.begun)) };
+	struct crew crew = { .plan = plan };
+	uint32_t most = plan->worker_count < 1             ? 1
+			: plan->worker_count > WORKERS_MAX ? WORKERS_MAX
+							   : plan->worker_count;
 
-	if (!crew.begun)
-		return -ENOMEM;
-	while (crew.done_count < plan->piece_count) {
-		begin_what_is_ready(&crew);
+	for (;;) {
+		while (crew.rc == 0 && crew.running_count < most &&
+		       crew.begun_count < plan->piece_count)
+			begin(&crew, crew.begun_count++);
 		if (crew.running_count == 0)
-			break;
+			return crew.rc;
 		wait_for_some(&crew);
 	}
-	free(crew.begun);
-	/* Nothing runs and something is left: its turn never comes. */
-	return crew.rc == 0 && crew.done_count < plan->piece_count ? -EDEADLK : crew.rc;
 }
 
 void *shared_memory_create(size_t size)

@@ -15,15 +15,12 @@ struct processes {
 	uint32_t piece_count;
 	/* Does one piece, in its process. Returns 0 or a negative errno, not below -255. */
 	int (*work)(void *user, uint32_t piece);
-	/* In the caller; may be NULL: every piece is ready. Returns true if the piece can begin. A
-	 * piece must not wait for one with a higher number. */
-	bool (*is_ready)(void *user, uint32_t piece);
 	/* In the caller, after a piece has succeeded; may be NULL. */
 	void (*done)(void *user, uint32_t piece);
 	void *user;
 };
 
-/* Runs all pieces; the lowest that is ready begins first. Returns 0, or the failure of the lowest
+/* Runs all pieces, begun in their order. Returns 0, or the failure of the lowest
  * piece that failed; -EIO if a process was killed, or the errno of fork. After a failure no new
  * piece is begun. If the caller dies, the processes are killed. */
 must_check int processes_run(const struct processes *processes);

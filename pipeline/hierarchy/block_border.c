@@ -49,7 +49,8 @@ static int compare_places(const void *left, const void *right)
 	return a < b ? -1 : a > b;
 }
 
-/* Places of vertices in the leaf's cells that have a triangle of another leaf; sorted, distinct. */
+/* Places of vertices in the block's cells that have a triangle of another block; sorted, distinct.
+ */
 struct places {
 	uint64_t *items;
 	uint32_t count;
@@ -73,8 +74,8 @@ static bool holds(const struct places *places, const uint16_t position[3])
 }
 
 static int find_places(struct places *places, const struct block_scan *scan,
-		       const struct block_tree *tree, const struct block_triangles *triangles,
-		       uint32_t leaf)
+		       const struct block_cells *cells, const struct block_triangles *triangles,
+		       uint32_t block)
 {
 	size_t most = 3 * (size_t)(triangles->count - triangles->own_count);
 	uint32_t kept = 0;
@@ -88,7 +89,7 @@ static int find_places(struct places *places, const struct block_scan *scan,
 
 		block_corners(corners, scan, triangles->items[t]);
 		for (int c = 0; c < 3; c++)
-			if (tree->leaf_of_cell[block_cell(corners[c])] == leaf)
+			if (cells->block_of_cell[block_cell(corners[c])] == block)
 				places->items[places->count++] = place_of(corners[c]);
 	}
 	qsort(places->items, places->count, sizeof(*places->items), compare_places);
@@ -122,9 +123,9 @@ static uint32_t keep_touching(struct block_triangles *triangles, const struct pl
 	return kept;
 }
 
-/* For each vertex, the first and the last leaf that own a triangle of it. */
+/* For each vertex, the first and the last block that own a triangle of it. */
 static int find_users(uint32_t *lows, uint32_t *highs, const struct lattice_mesh *mesh,
-		      const struct block_tree *tree)
+		      const struct block_cells *cells)
 {
 	if (!lows || !highs)
 		return -ENOMEM;
@@ -132,17 +133,17 @@ static int find_users(uint32_t *lows, uint32_t *highs, const struct lattice_mesh
 	memset(highs, 0, mesh->vertex_count * sizeof(*highs));
 	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
 		uint16_t corners[3][3];
-		uint32_t leaf;
+		uint32_t block;
 
 		for (int c = 0; c < 3; c++)
 			memcpy(corners[c], mesh->vertices[mesh->triangles[t][c]].position,
 			       sizeof(corners[c]));
-		leaf = tree->leaf_of_cell[block_cell_of_triangle((const uint16_t(*)[3])corners)];
+		block = cells->block_of_cell[block_cell_of_triangle((const uint16_t(*)[3])corners)];
 		for (int c = 0; c < 3; c++) {
 			uint32_t v = mesh->triangles[t][c];
 
-			lows[v] = leaf < lows[v] ? leaf : lows[v];
-			highs[v] = leaf > highs[v] ? leaf : highs[v];
+			lows[v] = block < lows[v] ? block : lows[v];
+			highs[v] = block > highs[v] ? block : highs[v];
 		}
 	}
 	return 0;
@@ -164,13 +165,13 @@ static int compare_borders(const void *left, const void *right)
 }
 
 static int put_border(struct buffer *out, const struct lattice_mesh *mesh,
-		      const struct places *places, const struct block_tree *tree)
+		      const struct places *places, const struct block_cells *cells)
 {
 	uint32_t *lows = malloc((mesh->vertex_count + (size_t)1) * sizeof(*lows));
 	uint32_t *highs = malloc((mesh->vertex_count + (size_t)1) * sizeof(*highs));
 	struct border_vertex *kept = malloc((mesh->vertex_count + (size_t)1) * sizeof(*kept));
 	uint32_t count = 0;
-	int rc = kept ? find_users(lows, highs, mesh, tree) : -ENOMEM;
+	int rc = kept ? find_users(lows, highs, mesh, cells) : -ENOMEM;
 
 	for (uint32_t v = 0; rc == 0 && v < mesh->vertex_count; v++)
 		if (holds(places, mesh->vertices[v].position))
@@ -186,19 +187,20 @@ static int put_border(struct buffer *out, const struct lattice_mesh *mesh,
 	return rc < 0 ? rc : out->error;
 }
 
-static int settle(struct buffer *out, const struct block_scan *scan, const struct block_tree *tree,
-		  const struct block_look *look, const char *folder, uint32_t leaf)
+static int settle(struct buffer *out, const struct block_scan *scan,
+		  const struct block_cells *cells, const struct block_look *look,
+		  const char *folder, uint32_t block)
 {
 	struct block_triangles triangles;
 	struct places places = { 0 };
 	struct lattice_mesh lattice_mesh = { 0 };
 	struct lattice_counts counts;
 	struct mesh mesh = { 0 };
-	int rc = block_triangles_read(&triangles, scan, tree, folder, leaf);
+	int rc = block_triangles_read(&triangles, scan, cells, folder, block);
 
 	if (rc < 0)
 		return rc;
-	rc = find_places(&places, scan, tree, &triangles, leaf);
+	rc = find_places(&places, scan, cells, &triangles, block);
 	if (rc == 0 && places.count > 0) {
 		uint32_t kept = keep_touching(&triangles, &places, scan);
 
@@ -214,7 +216,7 @@ static int settle(struct buffer *out, const struct block_scan *scan, const struc
 		block_look_apply(look, &scan->lattice, lattice_mesh.vertices,
 				 lattice_mesh.vertex_count);
 		if (rc == 0)
-			rc = put_border(out, &lattice_mesh, &places, tree);
+			rc = put_border(out, &lattice_mesh, &places, cells);
 	}
 	lattice_mesh_finish(&lattice_mesh);
 	mesh_finish(&mesh);
@@ -224,22 +226,23 @@ static int settle(struct buffer *out, const struct block_scan *scan, const struc
 	return rc;
 }
 
-static int border_path(char out[PATH_MAX], const char *folder, uint32_t leaf)
+static int border_path(char out[PATH_MAX], const char *folder, uint32_t block)
 {
-	return snprintf(out, PATH_MAX, "%s/border-%u", folder, leaf) < PATH_MAX ? 0 : -ENAMETOOLONG;
+	return snprintf(out, PATH_MAX, "%s/border-%u", folder, block) < PATH_MAX ? 0
+										 : -ENAMETOOLONG;
 }
 
-int block_border_write(const struct block_scan *scan, const struct block_tree *tree,
-		       const struct block_look *look, const char *folder, uint32_t leaf)
+int block_border_write(const struct block_scan *scan, const struct block_cells *cells,
+		       const struct block_look *look, const char *folder, uint32_t block)
 {
 	char path[PATH_MAX];
 	struct buffer file;
-	int rc = border_path(path, folder, leaf);
+	int rc = border_path(path, folder, block);
 
 	if (rc < 0 || access(path, F_OK) == 0)
 		return rc;
 	buffer_init(&file, BORDER_FILE_BYTES_MAX);
-	rc = settle(&file, scan, tree, look, folder, leaf);
+	rc = settle(&file, scan, cells, look, folder, block);
 	if (rc == 0)
 		rc = bytes_write_file(buffer_bytes(&file), path);
 	buffer_finish(&file);
@@ -255,14 +258,14 @@ static void get_vertex(struct border_vertex *out, struct reader *reader)
 	out->high = reader_u32(reader);
 }
 
-static int read_leaf(struct block_border *border, const char *folder, uint32_t leaf)
+static int read_block(struct block_border *border, const char *folder, uint32_t block)
 {
 	char path[PATH_MAX];
 	struct border_vertex *grown;
 	struct buffer file;
 	struct reader reader;
 	uint32_t count = 0;
-	int rc = border_path(path, folder, leaf);
+	int rc = border_path(path, folder, block);
 
 	buffer_init(&file, BORDER_FILE_BYTES_MAX);
 	if (rc == 0)
@@ -272,29 +275,29 @@ static int read_leaf(struct block_border *border, const char *folder, uint32_t l
 	if (rc == 0) {
 		count = (uint32_t)(file.size / BORDER_BYTES);
 		grown = realloc(border->vertices,
-				(border->first[leaf] + (size_t)count + 1) * sizeof(*grown));
+				(border->first[block] + (size_t)count + 1) * sizeof(*grown));
 		rc = grown ? 0 : -ENOMEM;
 		border->vertices = grown ? grown : border->vertices;
 	}
 	reader_init(&reader, buffer_bytes(&file));
 	for (uint32_t i = 0; rc == 0 && i < count; i++)
-		get_vertex(&border->vertices[border->first[leaf] + i], &reader);
-	border->first[leaf + 1] = border->first[leaf] + count;
+		get_vertex(&border->vertices[border->first[block] + i], &reader);
+	border->first[block + 1] = border->first[block] + count;
 	buffer_finish(&file);
 	return rc;
 }
 
-int block_border_read(struct block_border *out, const struct block_tree *tree, const char *folder)
+int block_border_read(struct block_border *out, const struct block_cells *cells, const char *folder)
 {
 	int rc;
 
 	*out = (struct block_border){
-		.first = calloc(tree->leaf_count + (size_t)1, sizeof(*out->first)),
-		.leaf_count = tree->leaf_count,
+		.first = calloc(cells->block_count + (size_t)1, sizeof(*out->first)),
+		.block_count = cells->block_count,
 	};
 	rc = out->first ? 0 : -ENOMEM;
-	for (uint32_t leaf = 0; rc == 0 && leaf < tree->leaf_count; leaf++)
-		rc = read_leaf(out, folder, leaf);
+	for (uint32_t block = 0; rc == 0 && block < cells->block_count; block++)
+		rc = read_block(out, folder, block);
 	if (rc < 0)
 		block_border_finish(out);
 	return rc;
@@ -309,11 +312,11 @@ void block_border_finish(struct block_border *border)
 	*border = (struct block_border){ 0 };
 }
 
-uint32_t block_border_find(const struct block_border *border, const struct block_tree *tree,
+uint32_t block_border_find(const struct block_border *border, const struct block_cells *cells,
 			   const uint16_t position[3])
 {
-	uint32_t leaf = tree->leaf_of_cell[block_cell(position)];
-	uint32_t low = border->first[leaf], end = border->first[leaf + 1], high = end;
+	uint32_t block = cells->block_of_cell[block_cell(position)];
+	uint32_t low = border->first[block], end = border->first[block + 1], high = end;
 	uint64_t place = place_of(position);
 
 	while (low < high) {

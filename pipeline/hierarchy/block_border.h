@@ -1,7 +1,6 @@
 /* The vertices that triangles of several blocks share. Whoever owns the cell of such a vertex has
  * all its triangles at hand (block_split.h) and settles once for all blocks what it looks like. So
- * every block has it equal bit for bit. It is locked until a node of the tree covers all its
- * users. */
+ * every block has it equal bit for bit. It is locked in the first stage of the build. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_BLOCK_BORDER_H
 #define GOPURA_PIPELINE_HIERARCHY_BLOCK_BORDER_H
 
@@ -22,30 +21,31 @@ void block_look_apply(const struct block_look *look, const struct lattice *latti
 
 struct border_vertex {
 	struct lattice_vertex vertex;
-	uint32_t low, high; /* the first and the last leaf that use it */
+	uint32_t low, high; /* the first and the last block that use it */
 };
 
 struct block_border {
-	struct border_vertex *vertices; /* owned; by leaves, in each by place */
-	uint32_t *first;                /* owned; for each leaf, and the number of all at the end */
-	uint32_t leaf_count;
+	struct border_vertex *vertices; /* owned; by blocks, in each by place */
+	uint32_t *first; /* owned; for each block, and the number of all at the end */
+	uint32_t block_count;
 };
 
 #define BORDER_NONE UINT32_MAX
 
-/* Writes folder/border-LEAF: the vertices in the leaf's cells that others use. What is there
+/* Writes folder/border-LEAF: the vertices in the block's cells that others use. What is there
  * already is kept. Any process. Returns -ENOMEM or the errors of the disk. */
-must_check int block_border_write(const struct block_scan *scan, const struct block_tree *tree,
-				  const struct block_look *look, const char *folder, uint32_t leaf);
+must_check int block_border_write(const struct block_scan *scan, const struct block_cells *cells,
+				  const struct block_look *look, const char *folder,
+				  uint32_t block);
 
-/* Reads the files of all leaves. *out is owned by the caller; zeroed on failure. Returns -EBADMSG
+/* Reads the files of all blocks. *out is owned by the caller; zeroed on failure. Returns -EBADMSG
  * if a file is damaged, -ENOMEM or the errors of the disk. */
-must_check int block_border_read(struct block_border *out, const struct block_tree *tree,
+must_check int block_border_read(struct block_border *out, const struct block_cells *cells,
 				 const char *folder);
 void block_border_finish(struct block_border *border); /* NULL and zeroed are fine */
 
 /* Returns the number of the border vertex at a place, or BORDER_NONE. */
-uint32_t block_border_find(const struct block_border *border, const struct block_tree *tree,
+uint32_t block_border_find(const struct block_border *border, const struct block_cells *cells,
 			   const uint16_t position[3]);
 
 #endif

@@ -1,4 +1,5 @@
-/* The order of the work: passes over the scan, borders, nodes, then everything in one list. */
+/* The order of the work: passes over the scan, borders, stage after stage, then everything in one
+ * list. */
 #include "pipeline/hierarchy/block_build.h"
 
 #include <errno.h>
@@ -7,29 +8,30 @@
 
 #include "base/processes.h"
 #include "base/progress.h"
+#include "format/patch.h"
 #include "pipeline/hierarchy/block_node.h"
 #include "pipeline/hierarchy/block_work.h"
 
 struct build {
 	struct block_site site;
-	bool *is_done; /* for each node */
+	uint32_t node_count; /* so far */
 	struct progress *progress;
 };
 
-/* ---- before the nodes */
+/* ---- before the stages */
 
-static int plant_tree(struct build *build)
+static int find_blocks(struct build *build)
 {
-	const size_t size = BLOCK_CELLS * sizeof(uint32_t);
+	const size_t size = sizeof(struct block_counts);
 	struct block_site *site = &build->site;
-	uint32_t *counts = shared_memory_create(size);
+	struct block_counts *counts = shared_memory_create(size);
 	uint32_t triangles = site->scan.mesh->triangle_count;
 	uint64_t edge_steps;
 	int rc = counts ? block_scan_count(&site->scan, counts, site->look.exposure, &edge_steps)
 			: -ENOMEM;
 
 	if (rc == 0)
-		rc = block_tree_create(&site->tree, counts, site->options.block_triangles);
+		rc = block_cells_create(&site->cells, counts, site->options.block_triangles);
 	shared_memory_destroy(counts, size);
 	if (rc == 0)
 		rc = exposure_close(site->look.exposure);
@@ -39,12 +41,12 @@ static int plant_tree(struct build *build)
 	return rc;
 }
 
-static int write_border(void *user, uint32_t leaf)
+static int write_border(void *user, uint32_t block)
 {
 	const struct build *build = user;
 	const struct block_site *site = &build->site;
 
-	return block_border_write(&site->scan, &site->tree, &site->look, site->folder, leaf);
+	return block_border_write(&site->scan, &site->cells, &site->look, site->folder, block);
 }
 
 static int settle_borders(struct build *build)
@@ -52,67 +54,84 @@ static int settle_borders(struct build *build)
 	struct block_site *site = &build->site;
 	const struct processes processes = {
 		.worker_count = site->options.jobs,
-		.piece_count = site->tree.leaf_count,
+		.piece_count = site->cells.block_count,
 		.work = write_border,
 		.user = build,
 	};
 	int rc = processes_run(&processes);
 
-	return rc < 0 ? rc : block_border_read(&site->border, &site->tree, site->folder);
+	return rc < 0 ? rc : block_border_read(&site->border, &site->cells, site->folder);
 }
 
-/* ---- nodes */
+/* ---- stages */
 
-static int work_on_node(void *user, uint32_t node)
+static int work_on_block(void *user, uint32_t block)
 {
 	const struct build *build = user;
 
-	return block_work(&build->site, node, 1);
+	return block_work(&build->site, block, 1);
 }
 
-static bool node_is_ready(void *user, uint32_t node)
-{
-	const struct build *build = user;
-
-	for (uint32_t n = 0; n < node; n++)
-		if (build->site.tree.nodes[n].parent == node && !build->is_done[n])
-			return false;
-	return true;
-}
-
-static void node_is_done(void *user, uint32_t node)
+static void block_is_done(void *user, uint32_t block)
 {
 	struct build *build = user;
 
-	build->is_done[node] = true;
-	if (node < build->site.tree.leaf_count)
-		progress_add(build->progress, build->site.tree.nodes[node].triangle_count);
+	if (build->site.stage.number == 0)
+		progress_add(build->progress, build->site.cells.triangle_counts[block]);
 }
 
-/* The root comes last and alone, so it is worked on here, with threads. */
-static int work_on_nodes(struct build *build)
+/* A single block is worked on here, with threads. */
+static int run_stage(struct build *build, uint32_t block_count)
 {
-	const struct block_site *site = &build->site;
-	uint32_t root = site->tree.node_count - 1;
+	struct block_site *site = &build->site;
 	const struct processes processes = {
 		.worker_count = site->options.jobs,
-		.piece_count = root,
-		.work = work_on_node,
-		.is_ready = node_is_ready,
-		.done = node_is_done,
+		.piece_count = block_count,
+		.work = work_on_block,
+		.done = block_is_done,
 		.user = build,
 	};
+
+	site->first_node = build->node_count;
+	site->is_last = block_count == 1;
+	build->node_count += block_count;
+	return block_count == 1 ? block_work(site, 0, site->options.jobs)
+				: processes_run(&processes);
+}
+
+/* Takes stage after stage until one block is left. Where locked borders hinder a stage, larger
+ * groups have less of them; where these do not help either, the rest is one block. */
+static int run_stages(struct build *build)
+{
+	struct block_site *site = &build->site;
+	uint64_t before = UINT64_MAX;
+	bool whole = false;
 	int rc;
 
-	build->is_done = calloc(site->tree.node_count, sizeof(*build->is_done));
-	if (!build->is_done)
-		return -ENOMEM;
-	if (root > 0)
+	if (site->cells.block_count > 1)
 		build->progress = progress_start("simplifying blocks", "triangles",
 						 site->scan.mesh->triangle_count);
-	rc = processes_run(&processes);
+	rc = run_stage(build, site->cells.block_count);
 	progress_end(build->progress);
-	return rc < 0 ? rc : block_work(site, root, site->options.jobs);
+	build->progress = NULL;
+	while (rc == 0 && !site->is_last) {
+		uint32_t number = site->stage.number + 1, first = site->first_node;
+
+		block_stage_finish(&site->stage);
+		rc = block_stage_create(&site->stage, site->folder, number, first,
+					build->node_count - first, site->options.block_triangles,
+					whole);
+		if (rc < 0)
+			break;
+		if (site->stage.triangle_count > before - before / 5) {
+			whole = site->options.group_patches >= GROUP_PATCHES_MAX / 2 ||
+				number >= MULTIRES_LEVELS_MAX / 2;
+			site->options.group_patches = GROUP_PATCHES_MAX / 2;
+		}
+		before = site->stage.triangle_count;
+		rc = run_stage(build, site->stage.block_count);
+	}
+	return rc;
 }
 
 /* ---- all groups in one list */
@@ -264,10 +283,10 @@ static int turn_round(struct hierarchy *out, const struct hierarchy *made)
 	return 0;
 }
 
-static int collect(struct block_build *out, const struct block_site *site,
+static int collect(struct block_build *out, const struct build *build,
 		   const struct multires_sink *sink)
 {
-	uint32_t nodes = site->tree.node_count;
+	uint32_t nodes = build->node_count;
 	struct collector collector = {
 		.out = out,
 		.bases = calloc(nodes + (size_t)1, sizeof(*collector.bases)),
@@ -276,7 +295,7 @@ static int collect(struct block_build *out, const struct block_site *site,
 	int rc = collector.bases ? 0 : -ENOMEM;
 
 	for (uint32_t n = 0; rc == 0 && n < nodes; n++)
-		rc = collect_node(&collector, site->folder, n);
+		rc = collect_node(&collector, build->site.folder, n);
 	if (rc == 0)
 		rc = turn_round(&out->hierarchy, &collector.made);
 	if (rc == 0)
@@ -294,13 +313,13 @@ static int run(struct build *build)
 	int rc = exposure_create(&site->look.exposure);
 
 	if (rc == 0)
-		rc = plant_tree(build);
+		rc = find_blocks(build);
 	if (rc == 0)
-		rc = block_split(&site->scan, &site->tree, site->folder);
+		rc = block_split(&site->scan, &site->cells, site->folder);
 	if (rc == 0)
 		rc = settle_borders(build);
 	if (rc == 0)
-		rc = work_on_nodes(build);
+		rc = run_stages(build);
 	return rc;
 }
 
@@ -322,14 +341,14 @@ int block_build(struct block_build *out, const char *folder, const struct mesh *
 	if (rc == 0)
 		rc = run(&build);
 	if (rc == 0)
-		rc = collect(out, site, sink);
+		rc = collect(out, &build, sink);
 	out->lattice = site->scan.lattice;
 	memcpy(out->box_min_m, site->scan.box_min_m, sizeof(out->box_min_m));
 	memcpy(out->box_max_m, site->scan.box_max_m, sizeof(out->box_max_m));
 	exposure_destroy(site->look.exposure);
-	block_tree_finish(&site->tree);
+	block_cells_finish(&site->cells);
 	block_border_finish(&site->border);
-	free(build.is_done);
+	block_stage_finish(&site->stage);
 	if (rc < 0)
 		block_build_finish(out);
 	return rc;

@@ -1,5 +1,5 @@
 /* Builds the hierarchy of a scan of any size in blocks (docs/hierarchy.md): passes over the scan,
- * then one process for each node of the block tree. */
+ * then stage after stage, with one process for each block. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_BLOCK_BUILD_H
 #define GOPURA_PIPELINE_HIERARCHY_BLOCK_BUILD_H
 

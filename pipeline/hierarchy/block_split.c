@@ -92,7 +92,7 @@ void block_corners(uint16_t out[3][3], const struct block_scan *scan, const uint
 
 struct count_pass {
 	const struct block_scan *scan;
-	uint32_t *triangles_in_cell;
+	struct block_counts *counts;
 	struct exposure *exposure;
 	uint64_t *lengths; /* shared; for each piece */
 };
@@ -112,8 +112,7 @@ static int count_piece(void *user, uint32_t piece)
 			if (triangle[c] >= mesh->vertex_count)
 				return -EINVAL;
 		block_corners(corners, pass->scan, triangle);
-		__atomic_fetch_add(&pass->triangles_in_cell[block_cell_of_triangle(at)], 1,
-				   __ATOMIC_RELAXED);
+		block_counts_add(pass->counts, at);
 		exposure_add(pass->exposure, at);
 		for (int i = 0; i < 3; i++)
 			length += (uint64_t)abs(corners[0][i] - corners[1][i]);
@@ -122,12 +121,12 @@ static int count_piece(void *user, uint32_t piece)
 	return 0;
 }
 
-int block_scan_count(const struct block_scan *scan, uint32_t *triangles_in_cell,
+int block_scan_count(const struct block_scan *scan, struct block_counts *counts,
 		     struct exposure *exposure, uint64_t *edge_steps)
 {
 	uint32_t pieces = pieces_of(scan->mesh->triangle_count);
 	size_t size = (pieces + (size_t)1) * sizeof(uint64_t);
-	struct count_pass pass = { scan, triangles_in_cell, exposure, shared_memory_create(size) };
+	struct count_pass pass = { scan, counts, exposure, shared_memory_create(size) };
 	const struct processes processes = {
 		.worker_count = scan->jobs,
 		.piece_count = pieces,
@@ -145,12 +144,12 @@ int block_scan_count(const struct block_scan *scan, uint32_t *triangles_in_cell,
 
 /* ---- sorting into blocks
  *
- * A file: for each leaf u32 own triangles and u32 triangles of others, then the triangles of leaf
- * after leaf, its own first; all in this machine's byte order. */
+ * A file: for each block u32 own triangles and u32 triangles of others, then the triangles of block
+ * after block, its own first; all in this machine's byte order. */
 
 struct split_pass {
 	const struct block_scan *scan;
-	const struct block_tree *tree;
+	const struct block_cells *cells;
 	const char *folder;
 };
 
@@ -159,28 +158,28 @@ static int split_path(char out[PATH_MAX], const char *folder, uint32_t piece)
 	return snprintf(out, PATH_MAX, "%s/split-%u", folder, piece) < PATH_MAX ? 0 : -ENAMETOOLONG;
 }
 
-/* The leaves that get a triangle: the owner, then others that have one of its corners. */
-static uint32_t leaves_of(uint32_t leaves[4], const struct block_scan *scan,
-			  const struct block_tree *tree, const uint32_t triangle[3])
+/* The blocks that get a triangle: the owner, then others that have one of its corners. */
+static uint32_t blocks_of(uint32_t blocks[4], const struct block_scan *scan,
+			  const struct block_cells *cells, const uint32_t triangle[3])
 {
 	uint16_t corners[3][3];
 	const uint16_t(*at)[3] = (const uint16_t(*)[3])corners;
 	uint32_t count = 1;
 
 	block_corners(corners, scan, triangle);
-	leaves[0] = tree->leaf_of_cell[block_cell_of_triangle(at)];
+	blocks[0] = cells->block_of_cell[block_cell_of_triangle(at)];
 	for (int c = 0; c < 3; c++) {
-		uint32_t leaf = tree->leaf_of_cell[block_cell(at[c])], i = 0;
+		uint32_t block = cells->block_of_cell[block_cell(at[c])], i = 0;
 
-		while (i < count && leaves[i] != leaf)
+		while (i < count && blocks[i] != block)
 			i++;
 		if (i == count)
-			leaves[count++] = leaf;
+			blocks[count++] = block;
 	}
 	return count;
 }
 
-/* Counts into heads, two for each leaf; or where rows is given, puts the triangles there and moves
+/* Counts into heads, two for each block; or where rows is given, puts the triangles there and moves
  * the heads on. */
 static void sort_piece(uint32_t *heads, uint32_t (*rows)[3], const struct split_pass *pass,
 		       uint32_t piece)
@@ -188,11 +187,11 @@ static void sort_piece(uint32_t *heads, uint32_t (*rows)[3], const struct split_
 	const struct mesh *mesh = pass->scan->mesh;
 
 	for (uint32_t t = piece * PIECE; t < piece_end(mesh->triangle_count, piece); t++) {
-		uint32_t leaves[4];
-		uint32_t count = leaves_of(leaves, pass->scan, pass->tree, mesh->triangles[t]);
+		uint32_t blocks[4];
+		uint32_t count = blocks_of(blocks, pass->scan, pass->cells, mesh->triangles[t]);
 
 		for (uint32_t i = 0; i < count; i++) {
-			uint32_t *head = &heads[2 * leaves[i] + (i > 0)];
+			uint32_t *head = &heads[2 * blocks[i] + (i > 0)];
 
 			if (rows)
 				memcpy(rows[*head], mesh->triangles[t], sizeof(*rows));
@@ -204,7 +203,7 @@ static void sort_piece(uint32_t *heads, uint32_t (*rows)[3], const struct split_
 static int split_piece(void *user, uint32_t piece)
 {
 	const struct split_pass *pass = user;
-	uint32_t head_count = 2 * pass->tree->leaf_count, total = 0;
+	uint32_t head_count = 2 * pass->cells->block_count, total = 0;
 	uint32_t *heads = calloc(head_count, sizeof(*heads));
 	struct buffer file;
 	char path[PATH_MAX];
@@ -237,9 +236,9 @@ static int split_piece(void *user, uint32_t piece)
 	return rc;
 }
 
-int block_split(const struct block_scan *scan, const struct block_tree *tree, const char *folder)
+int block_split(const struct block_scan *scan, const struct block_cells *cells, const char *folder)
 {
-	struct split_pass pass = { scan, tree, folder };
+	struct split_pass pass = { scan, cells, folder };
 	const struct processes processes = {
 		.worker_count = scan->jobs,
 		.piece_count = pieces_of(scan->mesh->triangle_count),
@@ -261,20 +260,20 @@ static int split_open(const char *folder, uint32_t piece)
 	return rc == 0 && fd < 0 ? -errno : fd;
 }
 
-/* Where the triangles of a leaf lie in a file: their number, own and others', and the place of the
+/* Where the triangles of a block lie in a file: their number, own and others', and the place of the
  * first. */
-static int find_leaf(uint32_t counts[2], uint64_t *place, int fd, uint32_t *heads,
-		     const struct block_tree *tree, uint32_t leaf)
+static int find_block(uint32_t counts[2], uint64_t *place, int fd, uint32_t *heads,
+		      const struct block_cells *cells, uint32_t block)
 {
-	int rc = bytes_read_at(fd, heads, 2 * (size_t)tree->leaf_count * sizeof(*heads), 0);
+	int rc = bytes_read_at(fd, heads, 2 * (size_t)cells->block_count * sizeof(*heads), 0);
 	uint64_t before = 0;
 
-	for (uint32_t h = 0; rc == 0 && h < 2 * leaf; h++)
+	for (uint32_t h = 0; rc == 0 && h < 2 * block; h++)
 		before += heads[h];
 	if (rc == 0) {
-		counts[0] = heads[2 * leaf];
-		counts[1] = heads[2 * leaf + 1];
-		*place = 2 * (uint64_t)tree->leaf_count * sizeof(*heads) +
+		counts[0] = heads[2 * block];
+		counts[1] = heads[2 * block + 1];
+		*place = 2 * (uint64_t)cells->block_count * sizeof(*heads) +
 			 before * sizeof(uint32_t[3]);
 	}
 	return rc;
@@ -282,7 +281,7 @@ static int find_leaf(uint32_t counts[2], uint64_t *place, int fd, uint32_t *head
 
 /* Visits the files twice: to count, then to read; own triangles go before those of others. */
 static int visit_pieces(struct block_triangles *out, uint32_t *heads, uint32_t pieces,
-			const struct block_tree *tree, const char *folder, uint32_t leaf)
+			const struct block_cells *cells, const char *folder, uint32_t block)
 {
 	uint32_t at[2] = { 0, out->own_count };
 	int rc = 0;
@@ -294,7 +293,7 @@ static int visit_pieces(struct block_triangles *out, uint32_t *heads, uint32_t p
 
 		if (fd < 0)
 			return fd;
-		rc = find_leaf(counts, &place, fd, heads, tree, leaf);
+		rc = find_block(counts, &place, fd, heads, cells, block);
 		for (int kind = 0; rc == 0 && kind < 2; kind++) {
 			size_t size = counts[kind] * sizeof(*out->items);
 
@@ -311,18 +310,18 @@ static int visit_pieces(struct block_triangles *out, uint32_t *heads, uint32_t p
 }
 
 int block_triangles_read(struct block_triangles *out, const struct block_scan *scan,
-			 const struct block_tree *tree, const char *folder, uint32_t leaf)
+			 const struct block_cells *cells, const char *folder, uint32_t block)
 {
 	uint32_t pieces = pieces_of(scan->mesh->triangle_count);
-	uint32_t *heads = malloc(2 * (size_t)tree->leaf_count * sizeof(*heads));
+	uint32_t *heads = malloc(2 * (size_t)cells->block_count * sizeof(*heads));
 	int rc;
 
 	*out = (struct block_triangles){ 0 };
-	rc = heads ? visit_pieces(out, heads, pieces, tree, folder, leaf) : -ENOMEM;
+	rc = heads ? visit_pieces(out, heads, pieces, cells, folder, block) : -ENOMEM;
 	if (rc == 0) {
 		out->count += out->own_count;
 		out->items = malloc((out->count + (size_t)1) * sizeof(*out->items));
-		rc = out->items ? visit_pieces(out, heads, pieces, tree, folder, leaf) : -ENOMEM;
+		rc = out->items ? visit_pieces(out, heads, pieces, cells, folder, block) : -ENOMEM;
 	}
 	free(heads);
 	if (rc < 0)

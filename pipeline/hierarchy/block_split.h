@@ -5,7 +5,7 @@
 #define GOPURA_PIPELINE_HIERARCHY_BLOCK_SPLIT_H
 
 #include "format/root_page.h"
-#include "pipeline/hierarchy/block_tree.h"
+#include "pipeline/hierarchy/block_cells.h"
 #include "pipeline/hierarchy/exposure.h"
 #include "pipeline/import/mesh.h"
 
@@ -20,20 +20,19 @@ struct block_scan {
  * errors of processes_run. */
 must_check int block_scan_init(struct block_scan *scan, const struct mesh *mesh, uint32_t jobs);
 
-/* Adds every triangle to its cell (BLOCK_CELLS entries of zeroed shared memory) and to the
- * exposure. *edge_steps is the sum of the lengths of the triangles' first edges, along all axes.
- * Returns -EINVAL if a triangle names a vertex that does not exist, or the errors of processes_run.
- */
-must_check int block_scan_count(const struct block_scan *scan, uint32_t *triangles_in_cell,
+/* Adds every triangle to the counts (zeroed shared memory) and to the exposure. *edge_steps is the
+ * sum of the lengths of the triangles' first edges, along all axes. Returns -EINVAL if a triangle
+ * names a vertex that does not exist, or the errors of processes_run. */
+must_check int block_scan_count(const struct block_scan *scan, struct block_counts *counts,
 				struct exposure *exposure, uint64_t *edge_steps);
 
-/* Writes the files folder/split-N, each with a piece of the scan sorted by leaves; what is there
+/* Writes the files folder/split-N, each with a piece of the scan sorted by blocks; what is there
  * already is kept. Returns the errors of the disk or of processes_run. */
-must_check int block_split(const struct block_scan *scan, const struct block_tree *tree,
+must_check int block_split(const struct block_scan *scan, const struct block_cells *cells,
 			   const char *folder);
 
-/* The triangles of a leaf, as indices of the scan's vertices, in the scan's order. First its own;
- * then those of other leaves that have a corner in its cells, so that every vertex in its cells has
+/* The triangles of a block, as indices of the scan's vertices, in the scan's order. First its own;
+ * then those of other blocks that have a corner in its cells, so that every vertex in its cells has
  * all its triangles here. */
 struct block_triangles {
 	uint32_t (*items)[3]; /* owned */
@@ -42,8 +41,8 @@ struct block_triangles {
 
 /* *out is owned by the caller; zeroed on failure. Returns the errors of the disk, or -ENOMEM. */
 must_check int block_triangles_read(struct block_triangles *out, const struct block_scan *scan,
-				    const struct block_tree *tree, const char *folder,
-				    uint32_t leaf);
+				    const struct block_cells *cells, const char *folder,
+				    uint32_t block);
 void block_triangles_finish(struct block_triangles *triangles); /* NULL and zeroed are fine */
 
 /* Puts the corners of a triangle on the lattice. */

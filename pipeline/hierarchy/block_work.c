@@ -1,4 +1,4 @@
-/* Prepares the mesh of a node, builds its levels and keeps what is left. */
+/* Prepares the mesh of a block, builds its levels and keeps what is left. */
 #include "pipeline/hierarchy/block_work.h"
 
 #include <errno.h>
@@ -10,25 +10,19 @@
 
 enum { PIECE_VERTICES = 4096 };
 
-/* A node while it is worked on. */
+/* A block while it is worked on. */
 struct worker {
 	const struct block_site *site;
-	uint32_t number;
-	const struct block_node *node;
+	uint32_t block;
 	struct multires_node work;
-	uint32_t *borders; /* for each vertex of the work, its border vertex or BORDER_NONE */
+	block_key
+		*keys; /* for each vertex of the work, its name as a shared one, or BLOCK_NO_KEY */
 	struct block_result result;
+	struct block_left left;
 	uint32_t size_room, other_room;
 };
 
-static bool is_used_outside(const struct worker *worker, uint32_t border)
-{
-	const struct border_vertex *vertex = &worker->site->border.vertices[border];
-
-	return vertex->low < worker->node->first_leaf || vertex->high > worker->node->last_leaf;
-}
-
-/* ---- a leaf */
+/* ---- a block of the scan */
 
 struct looker {
 	const struct block_site *site;
@@ -47,34 +41,38 @@ static int look_at_piece(void *user, uint32_t piece, uint32_t thread)
 	return 0;
 }
 
-static int name_borders(struct worker *worker)
+/* Finds the vertices that other blocks use too: they get their name, and look as it was settled for
+ * all. */
+static int take_borders(struct worker *worker)
 {
-	const struct block_site *site = worker->site;
+	const struct block_border *border = &worker->site->border;
 	const struct lattice_mesh *mesh = &worker->work.mesh;
 
-	worker->borders = malloc((mesh->vertex_count + (size_t)1) * sizeof(*worker->borders));
-	worker->work.pinned = calloc(mesh->vertex_count + (size_t)1, 1);
-	if (!worker->borders || !worker->work.pinned)
-		return -ENOMEM;
 	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-		uint32_t border =
-			block_border_find(&site->border, &site->tree, mesh->vertices[v].position);
+		uint32_t found =
+			block_border_find(border, &worker->site->cells, mesh->vertices[v].position);
 
-		worker->borders[v] = border;
-		worker->work.pinned[v] = border != BORDER_NONE && is_used_outside(worker, border);
+		if (found == BORDER_NONE)
+			continue;
+		mesh->vertices[v] = border->vertices[found].vertex;
+		if (border->vertices[found].low == border->vertices[found].high)
+			continue;
+		worker->keys[v] = block_key_of(BORDER_NODE, found);
+		worker->work.pinned[v] = 1;
 	}
 	return 0;
 }
 
-/* What other blocks use too looks as it was settled for all. */
-static void take_borders(struct worker *worker)
+static int make_room(struct worker *worker)
 {
-	struct lattice_mesh *mesh = &worker->work.mesh;
+	size_t count = worker->work.mesh.vertex_count + (size_t)1;
 
-	for (uint32_t v = 0; v < mesh->vertex_count; v++)
-		if (worker->borders[v] != BORDER_NONE)
-			mesh->vertices[v] =
-				worker->site->border.vertices[worker->borders[v]].vertex;
+	worker->keys = malloc(count * sizeof(*worker->keys));
+	worker->work.pinned = calloc(count, 1);
+	if (!worker->keys || !worker->work.pinned)
+		return -ENOMEM;
+	memset(worker->keys, 0xff, count * sizeof(*worker->keys));
+	return 0;
 }
 
 static int put_on_lattice(struct worker *worker)
@@ -82,8 +80,8 @@ static int put_on_lattice(struct worker *worker)
 	const struct block_site *site = worker->site;
 	struct block_triangles triangles;
 	struct mesh mesh = { 0 };
-	int rc = block_triangles_read(&triangles, &site->scan, &site->tree, site->folder,
-				      worker->number);
+	int rc = block_triangles_read(&triangles, &site->scan, &site->cells, site->folder,
+				      worker->block);
 
 	if (rc == 0)
 		rc = block_mesh(&mesh, &site->scan, triangles.items, triangles.own_count);
@@ -95,25 +93,25 @@ static int put_on_lattice(struct worker *worker)
 	return rc;
 }
 
-static int prepare_leaf(struct worker *worker, uint32_t jobs)
+static int prepare_scan_block(struct worker *worker, uint32_t jobs)
 {
 	struct lattice_mesh *mesh = &worker->work.mesh;
 	struct looker looker = { worker->site, mesh };
 	int rc = put_on_lattice(worker);
 
 	if (rc == 0)
-		rc = name_borders(worker);
-	if (rc == 0)
-		rc = lattice_mesh_find_borders(mesh, &worker->result.counts, worker->work.pinned);
+		rc = make_room(worker);
 	if (rc == 0)
 		rc = parallel_run(jobs, (mesh->vertex_count + PIECE_VERTICES - 1) / PIECE_VERTICES,
 				  look_at_piece, &looker);
 	if (rc == 0)
-		take_borders(worker);
+		rc = take_borders(worker);
+	if (rc == 0)
+		rc = lattice_mesh_find_borders(mesh, &worker->result.counts, worker->work.pinned);
 	return rc;
 }
 
-/* ---- an inner node */
+/* ---- a block of patches */
 
 static int add_other(struct worker *worker, struct block_group group, uint32_t *number)
 {
@@ -133,111 +131,184 @@ static int add_other(struct worker *worker, struct block_group group, uint32_t *
 	return 0;
 }
 
-/* Gives the groups that the child's patches name their numbers in this node. */
-static int rename_groups(struct worker *worker, struct block_result *child, uint32_t child_number)
+/* A node of the stage before, as this block sees it. */
+struct source {
+	struct block_left left;
+	uint32_t node, first_patch; /* its number, and that of its first patch in the stage */
+	uint32_t *lows, *highs;     /* for each vertex, the first and last block that use it */
+	uint32_t *names;            /* for each vertex, its index in the work, or NO_GROUP */
+};
+
+static void source_finish(struct source *source)
 {
-	uint32_t count = child->other_count + child->made.group_count;
-	uint32_t *numbers = malloc((count + (size_t)1) * sizeof(*numbers));
-	int rc = numbers ? 0 : -ENOMEM;
+	block_left_finish(&source->left);
+	free(source->lows);
+	free(source->highs);
+	free(source->names);
+}
 
-	if (numbers)
-		memset(numbers, 0xff, count * sizeof(*numbers));
-	for (uint32_t p = 0; rc == 0 && p < child->left.count; p++) {
-		uint32_t *finer = &child->left.items[p].finer, was = *finer;
-		struct block_group own = { child_number, was - child->other_count };
+static int source_read(struct source *source, const struct block_site *site, uint32_t n)
+{
+	const struct block_stage *stage = &site->stage;
+	struct block_left *left = &source->left;
+	size_t bytes;
+	int rc;
 
-		if (was == NO_GROUP)
-			continue;
-		if (was >= count)
-			rc = -EBADMSG;
-		else if (numbers[was] == NO_GROUP)
-			rc = add_other(worker, was < child->other_count ? child->others[was] : own,
-				       &numbers[was]);
-		if (rc == 0)
-			*finer = numbers[was];
+	*source = (struct source){ .node = stage->first_node + n,
+				   .first_patch = stage->first_patch[n] };
+	rc = block_left_read(left, site->folder, source->node);
+	if (rc == 0 && left->patches.count != stage->first_patch[n + 1] - source->first_patch)
+		rc = -EBADMSG;
+	if (rc < 0)
+		return rc;
+	bytes = (left->vertex_count + (size_t)1) * sizeof(uint32_t);
+	source->lows = malloc(bytes);
+	source->highs = calloc(1, bytes);
+	source->names = malloc(bytes);
+	if (!source->lows || !source->highs || !source->names)
+		return -ENOMEM;
+	memset(source->lows, 0xff, bytes);
+	memset(source->names, 0xff, bytes);
+	for (uint32_t p = 0; p < left->patches.count; p++) {
+		const struct live_patch *patch = &left->patches.items[p];
+		uint32_t block = stage->block_of_patch[source->first_patch + p];
+
+		for (uint32_t c = 0; c < 3 * patch->triangle_count; c++) {
+			uint32_t v = patch->triangles[c / 3][c % 3];
+
+			source->lows[v] = block < source->lows[v] ? block : source->lows[v];
+			source->highs[v] = block > source->highs[v] ? block : source->highs[v];
+		}
 	}
+	return 0;
+}
+
+/* Takes over a vertex that is used here. One that several nodes had becomes one again. */
+static int name_vertex(struct worker *worker, struct source *source, uint32_t v,
+		       uint32_t *name_of_shared)
+{
+	const struct block_stage *stage = &worker->site->stage;
+	block_key key = source->left.keys[v];
+	uint32_t name = worker->work.mesh.vertex_count, shared = BLOCK_NONE;
+	bool pinned = source->lows[v] != source->highs[v];
+
+	if (key == BLOCK_NO_KEY) {
+		key = block_key_of(source->node, v);
+	} else {
+		shared = block_stage_find(stage, key);
+		if (shared == BLOCK_NONE)
+			return -EBADMSG;
+		pinned = stage->shared[shared].low != stage->shared[shared].high;
+	}
+	if (shared != BLOCK_NONE && name_of_shared[shared] != NO_GROUP) {
+		source->names[v] = name_of_shared[shared];
+		return 0;
+	}
+	worker->work.mesh.vertices[name] = source->left.vertices[v];
+	worker->work.pinned[name] = pinned;
+	worker->keys[name] = pinned ? key : BLOCK_NO_KEY;
+	worker->work.mesh.vertex_count++;
+	source->names[v] = name;
+	if (shared != BLOCK_NONE)
+		name_of_shared[shared] = name;
+	return 0;
+}
+
+static int make_more_room(struct worker *worker, uint32_t more)
+{
+	struct multires_node *work = &worker->work;
+	size_t count = work->mesh.vertex_count + (size_t)more + 1;
+	void *vertices = realloc(work->mesh.vertices, count * sizeof(*work->mesh.vertices));
+	void *pinned = realloc(work->pinned, count * sizeof(*work->pinned));
+	void *keys = realloc(worker->keys, count * sizeof(*worker->keys));
+
+	work->mesh.vertices = vertices ? vertices : work->mesh.vertices;
+	work->pinned = pinned ? pinned : work->pinned;
+	worker->keys = keys ? keys : worker->keys;
+	return vertices && pinned && keys ? 0 : -ENOMEM;
+}
+
+/* Moves a patch into the work. numbers[group] is what a group of the node is called here. */
+static int take_patch(struct worker *worker, struct source *source, struct live_patch *patch,
+		      uint32_t *name_of_shared, uint32_t *numbers)
+{
+	int rc = 0;
+
+	for (uint32_t c = 0; rc == 0 && c < 3 * patch->triangle_count; c++) {
+		uint32_t *corner = &patch->triangles[c / 3][c % 3];
+
+		if (source->names[*corner] == NO_GROUP)
+			rc = name_vertex(worker, source, *corner, name_of_shared);
+		*corner = source->names[*corner];
+	}
+	if (rc == 0 && numbers[patch->finer] == NO_GROUP)
+		rc = add_other(worker, (struct block_group){ source->node, patch->finer },
+			       &numbers[patch->finer]);
+	if (rc < 0)
+		return rc;
+	patch->finer = numbers[patch->finer];
+	rc = live_patches_add(&worker->work.patches, *patch);
+	patch->triangles = NULL; /* taken */
+	return rc;
+}
+
+static int take_source(struct worker *worker, struct source *source, uint32_t *name_of_shared)
+{
+	const uint32_t *block_of_patch = worker->site->stage.block_of_patch;
+	struct live_patches *patches = &source->left.patches;
+	uint32_t *numbers, group_count = 0;
+	int rc = make_more_room(worker, source->left.vertex_count);
+
+	for (uint32_t p = 0; rc == 0 && p < patches->count; p++) {
+		if (patches->items[p].finer == NO_GROUP)
+			rc = -EBADMSG;
+		else if (patches->items[p].finer >= group_count)
+			group_count = patches->items[p].finer + 1;
+	}
+	numbers = rc == 0 ? malloc((group_count + (size_t)1) * sizeof(*numbers)) : NULL;
+	if (rc == 0 && !numbers)
+		rc = -ENOMEM;
+	if (numbers)
+		memset(numbers, 0xff, group_count * sizeof(*numbers));
+	for (uint32_t p = 0; rc == 0 && p < patches->count; p++)
+		if (block_of_patch[source->first_patch + p] == worker->block)
+			rc = take_patch(worker, source, &patches->items[p], name_of_shared,
+					numbers);
 	free(numbers);
 	return rc;
 }
 
-/* Moves the child's patches here. The children's border vertices become one again. */
-static int join_child(struct worker *worker, struct block_result *child, uint32_t *name_of_border)
+static bool has_patch_here(const struct worker *worker, uint32_t n)
 {
-	struct lattice_mesh *mesh = &worker->work.mesh;
-	size_t room = mesh->vertex_count + (size_t)child->vertex_count + 1;
-	struct lattice_vertex *vertices = realloc(mesh->vertices, room * sizeof(*vertices));
-	uint32_t *borders = realloc(worker->borders, room * sizeof(*borders));
-	uint32_t *names = malloc((child->vertex_count + (size_t)1) * sizeof(*names));
-	int rc = vertices && borders && names ? 0 : -ENOMEM;
+	const struct block_stage *stage = &worker->site->stage;
 
-	mesh->vertices = vertices ? vertices : mesh->vertices;
-	worker->borders = borders ? borders : worker->borders;
-	for (uint32_t v = 0; rc == 0 && v < child->vertex_count; v++) {
-		uint32_t border = child->borders[v];
+	for (uint32_t p = stage->first_patch[n]; p < stage->first_patch[n + 1]; p++)
+		if (stage->block_of_patch[p] == worker->block)
+			return true;
+	return false;
+}
 
-		if (border != BORDER_NONE && name_of_border[border] != NO_GROUP) {
-			names[v] = name_of_border[border];
+static int prepare_patch_block(struct worker *worker)
+{
+	const struct block_stage *stage = &worker->site->stage;
+	size_t count = stage->shared_count + (size_t)1;
+	uint32_t *name_of_shared = malloc(count * sizeof(*name_of_shared));
+	int rc = name_of_shared ? 0 : -ENOMEM;
+
+	worker->work.mesh.lattice = worker->site->scan.lattice;
+	if (name_of_shared)
+		memset(name_of_shared, 0xff, count * sizeof(*name_of_shared));
+	for (uint32_t n = 0; rc == 0 && n < stage->node_count; n++) {
+		struct source source;
+
+		if (!has_patch_here(worker, n))
 			continue;
-		}
-		names[v] = mesh->vertex_count++;
-		vertices[names[v]] = child->vertices[v];
-		borders[names[v]] = border;
-		if (border != BORDER_NONE)
-			name_of_border[border] = names[v];
+		rc = source_read(&source, worker->site, n);
+		if (rc == 0)
+			rc = take_source(worker, &source, name_of_shared);
+		source_finish(&source);
 	}
-	for (uint32_t p = 0; rc == 0 && p < child->left.count; p++) {
-		struct live_patch *patch = &child->left.items[p];
-
-		for (uint32_t c = 0; c < 3 * patch->triangle_count; c++)
-			patch->triangles[c / 3][c % 3] = names[patch->triangles[c / 3][c % 3]];
-		rc = live_patches_add(&worker->work.patches, *patch);
-		patch->triangles = NULL;
-	}
-	free(names);
-	return rc;
-}
-
-static int take_child(struct worker *worker, uint32_t number, uint32_t *name_of_border)
-{
-	const struct block_border *border = &worker->site->border;
-	struct block_result child;
-	int rc = block_result_read(&child, worker->site->folder, number);
-
-	for (uint32_t v = 0; rc == 0 && v < child.vertex_count; v++)
-		if (child.borders[v] != BORDER_NONE &&
-		    child.borders[v] >= border->first[border->leaf_count])
-			rc = -EBADMSG;
-	if (rc == 0)
-		rc = rename_groups(worker, &child, number);
-	if (rc == 0)
-		rc = join_child(worker, &child, name_of_border);
-	if (rc == 0 && child.stats.level_count > worker->work.level)
-		worker->work.level = child.stats.level_count;
-	block_result_finish(&child);
-	return rc;
-}
-
-static int prepare_inner(struct worker *worker)
-{
-	const struct block_site *site = worker->site;
-	uint32_t border_count = site->border.first[site->border.leaf_count];
-	uint32_t *name_of_border = malloc((border_count + (size_t)1) * sizeof(*name_of_border));
-	int rc = name_of_border ? 0 : -ENOMEM;
-
-	worker->work.mesh.lattice = site->scan.lattice;
-	if (name_of_border)
-		memset(name_of_border, 0xff, border_count * sizeof(*name_of_border));
-	for (uint32_t n = 0; rc == 0 && n < worker->number; n++)
-		if (site->tree.nodes[n].parent == worker->number)
-			rc = take_child(worker, n, name_of_border);
-	free(name_of_border);
-	if (rc == 0)
-		worker->work.pinned = calloc(worker->work.mesh.vertex_count + (size_t)1, 1);
-	if (rc == 0 && !worker->work.pinned)
-		rc = -ENOMEM;
-	for (uint32_t v = 0; rc == 0 && v < worker->work.mesh.vertex_count; v++)
-		worker->work.pinned[v] = worker->borders[v] != BORDER_NONE &&
-					 is_used_outside(worker, worker->borders[v]);
+	free(name_of_shared);
 	worker->work.first_number = worker->result.other_count;
 	return rc;
 }
@@ -271,38 +342,40 @@ static int keep_object(void *user, struct bytes object, float loss_m4)
 /* Copies the vertices that the patches still use, and names them anew. */
 static int keep_left(struct worker *worker)
 {
-	struct block_result *result = &worker->result;
+	struct block_left *left = &worker->left;
 	const struct lattice_mesh *mesh = &worker->work.mesh;
-	uint32_t *names = malloc((mesh->vertex_count + (size_t)1) * sizeof(*names));
+	size_t count = mesh->vertex_count + (size_t)1;
+	uint32_t *names = malloc(count * sizeof(*names));
 
-	result->left = worker->work.patches;
+	left->patches = worker->work.patches;
 	worker->work.patches = (struct live_patches){ 0 };
-	result->vertices = malloc((mesh->vertex_count + (size_t)1) * sizeof(*result->vertices));
-	result->borders = malloc((mesh->vertex_count + (size_t)1) * sizeof(*result->borders));
-	if (!names || !result->vertices || !result->borders) {
+	left->vertices = malloc(count * sizeof(*left->vertices));
+	left->keys = malloc(count * sizeof(*left->keys));
+	if (!names || !left->vertices || !left->keys) {
 		free(names);
 		return -ENOMEM;
 	}
-	memset(names, 0xff, mesh->vertex_count * sizeof(*names));
-	for (uint32_t p = 0; p < result->left.count; p++)
-		for (uint32_t c = 0; c < 3 * result->left.items[p].triangle_count; c++) {
-			uint32_t *corner = &result->left.items[p].triangles[c / 3][c % 3];
-			uint32_t v = *corner;
+	memset(names, 0xff, count * sizeof(*names));
+	for (uint32_t p = 0; p < left->patches.count; p++) {
+		struct live_patch *patch = &left->patches.items[p];
+
+		patch->finer -= worker->work.first_number; /* all are groups of this node */
+		for (uint32_t c = 0; c < 3 * patch->triangle_count; c++) {
+			uint32_t *corner = &patch->triangles[c / 3][c % 3], v = *corner;
 
 			if (names[v] == NO_GROUP) {
-				names[v] = result->vertex_count++;
-				result->vertices[names[v]] = mesh->vertices[v];
-				/* What nobody else uses may have moved. */
-				result->borders[names[v]] =
-					worker->work.pinned[v] ? worker->borders[v] : BORDER_NONE;
+				names[v] = left->vertex_count++;
+				left->vertices[names[v]] = mesh->vertices[v];
+				left->keys[names[v]] = worker->keys[v];
 			}
 			*corner = names[v];
 		}
+	}
 	free(names);
 	return 0;
 }
 
-static int build_node(struct worker *worker, uint32_t jobs)
+static int build_levels(struct worker *worker, uint32_t jobs)
 {
 	const struct multires_sink sink = { keep_object, worker };
 	struct multires_options options = worker->site->options;
@@ -317,28 +390,30 @@ static int build_node(struct worker *worker, uint32_t jobs)
 	return keep_left(worker);
 }
 
-int block_work(const struct block_site *site, uint32_t number, uint32_t jobs)
+int block_work(const struct block_site *site, uint32_t block, uint32_t jobs)
 {
-	const struct block_node *node = &site->tree.nodes[number];
+	uint32_t node = site->first_node + block;
 	struct worker worker = {
 		.site = site,
-		.number = number,
-		.node = node,
-		.work = { .scan_triangles = site->scan.mesh->triangle_count,
-			  .is_root = node->parent == BLOCK_NONE },
+		.block = block,
+		.work = { .level = site->stage.number,
+			  .scan_triangles = site->scan.mesh->triangle_count,
+			  .is_root = site->is_last },
 	};
 	int rc;
 
-	if (block_result_exists(site->folder, number))
+	if (block_node_exists(site->folder, node))
 		return 0;
 	block_result_init(&worker.result);
-	rc = number < site->tree.leaf_count ? prepare_leaf(&worker, jobs) : prepare_inner(&worker);
+	rc = site->stage.number == 0 ? prepare_scan_block(&worker, jobs)
+				     : prepare_patch_block(&worker);
 	if (rc == 0)
-		rc = build_node(&worker, jobs);
+		rc = build_levels(&worker, jobs);
 	if (rc == 0)
-		rc = block_result_write(&worker.result, site->folder, number);
+		rc = block_node_write(&worker.result, &worker.left, site->folder, node);
 	multires_node_finish(&worker.work);
-	free(worker.borders);
+	free(worker.keys);
 	block_result_finish(&worker.result);
+	block_left_finish(&worker.left);
 	return rc;
 }

@@ -11,7 +11,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "format/patch.h"
-#include "pipeline/hierarchy/block_tree.h"
 #include "pipeline/hierarchy/graph.h"
 #include "pipeline/hierarchy/multires_parts.h"
 #include "pipeline/hierarchy/partition.h"
@@ -445,25 +444,20 @@ static int top_level(struct builder *builder)
 	return rc;
 }
 
-/* Returns the number of triangles at which the levels of a node end. */
-static uint64_t goal_of(const struct builder *builder)
-{
-	uint64_t part = level_triangles(&builder->level) / BLOCK_FANOUT;
-
-	return builder->node->is_root ? builder->options.top_triangles : part;
-}
-
+/* A node that has a parent makes one level. The parent's groups lie elsewhere, so a border of
+ * blocks is locked for one level only, as a border of groups is. */
 static int build_groups(struct builder *builder)
 {
 	uint32_t group_patches = builder->options.group_patches;
-	uint64_t before = level_triangles(&builder->level), after, goal = goal_of(builder);
-	bool is_root = builder->node->is_root;
+	uint64_t before = level_triangles(&builder->level), after;
 	int rc = 0;
 
-	while (rc == 0 &&
-	       (before > goal || (is_root && builder->level.count > GROUP_PATCHES_MAX))) {
+	if (!builder->node->is_root)
+		return coarser_level(builder, group_patches);
+	while (rc == 0 && (before > builder->options.top_triangles ||
+			   builder->level.count > GROUP_PATCHES_MAX)) {
 		/* Close to the top, locked borders dominate: use a single group, which has none. */
-		if (is_root && before <= REDUCTION * goal)
+		if (before <= REDUCTION * (uint64_t)builder->options.top_triangles)
 			group_patches = GROUP_PATCHES_MAX;
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
@@ -473,13 +467,10 @@ static int build_groups(struct builder *builder)
 				break;
 			group_patches = group_patches > GROUP_PATCHES_MAX / 2 ? GROUP_PATCHES_MAX
 									      : 2 * group_patches;
-			/* The border of the block does not go away: the parent frees it. */
-			if (!is_root)
-				break;
 		}
 		before = after;
 	}
-	return rc < 0 || !is_root ? rc : top_level(builder);
+	return rc < 0 ? rc : top_level(builder);
 }
 
 /* ---- the binary tree */

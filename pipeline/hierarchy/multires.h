@@ -78,17 +78,17 @@ void live_patches_finish(struct live_patches *patches); /* NULL is fine */
 /* patch is taken, also on failure. Returns -ENOMEM. */
 must_check int live_patches_add(struct live_patches *patches, struct live_patch patch);
 
-/* What a node of the block tree (pipeline/hierarchy/block_tree.h) has to do. */
+/* What there is to do for one block of one stage (docs/hierarchy.md). */
 struct multires_node {
-	struct lattice_mesh mesh;    /* owned; in a leaf with its triangles */
-	uint8_t *pinned;             /* owned; for each vertex, 1: used outside of the node too */
-	struct live_patches patches; /* owned; an inner node's, what its children left over */
-	/* Groups of other nodes that patches name as finer have the numbers below this; the node's
-	 * own follow in the order of making. */
+	struct lattice_mesh mesh;    /* owned; of the scan, with its triangles */
+	uint8_t *pinned;             /* owned; for each vertex, 1: other blocks use it too */
+	struct live_patches patches; /* owned; not of the scan: what is left of it */
+	/* Groups of other nodes that patches name as finer have the numbers below this; those made
+	 * here follow in the order of making. */
 	uint32_t first_number;
-	uint32_t level;          /* number of levels below the node */
+	uint32_t level;          /* number of levels below */
 	uint64_t scan_triangles; /* of the whole scan */
-	bool is_root;
+	bool is_root;            /* nothing is pinned, and levels are made up to the coarsest cut */
 };
 
 /* Frees everything. NULL and zeroed are fine. */
@@ -97,11 +97,11 @@ void multires_node_finish(struct multires_node *node);
 /* Sets the values that options leave to the default, for a scan of so many triangles. */
 void multires_set_defaults(struct multires_options *options, uint64_t scan_triangles);
 
-/* Builds the levels of a node: the root's up to the coarsest cut; another's until it has a
- * BLOCK_FANOUT-th of its triangles, which stay in node->patches. *made are its rows in the order of
- * making, owned by the caller and zeroed on failure: group numbers count from first_number. Options
- * have no defaults left. Returns -ENOMEM, the sink's error, -E2BIG if the coarsest cut does not fit
- * in one group or there are too many levels, or -EINVAL if a surface cannot be divided. */
+/* Builds the levels of the root up to the coarsest cut, or one level; its coarser patches then stay
+ * in node->patches. *made are the rows in the order of making, owned by the caller and zeroed on
+ * failure: group numbers count from first_number. Options have no defaults left. Returns -ENOMEM,
+ * the sink's error, -E2BIG if the coarsest cut does not fit in one group or there are too many
+ * levels, or -EINVAL if a surface cannot be divided. */
 must_check int multires_build(struct hierarchy *made, struct multires_stats *stats,
 			      struct multires_node *node, const struct multires_options *options,
 			      const struct multires_sink *sink);

@@ -448,7 +448,7 @@ static const struct multires_options small_groups = {
 	.jobs = 2,
 };
 
-/* The same in blocks of few triangles: tens of leaves, and nodes over nodes. */
+/* The same in blocks of few triangles: tens of them, and several stages. */
 static const struct multires_options small_blocks = {
 	.kind = MULTIRES_GROUPS,
 	.patch_triangles = 256,
@@ -690,7 +690,8 @@ static void any_number_of_jobs_makes_the_same_bytes(void **state)
 
 static void what_is_missing_is_made_again(void **state)
 {
-	static const char *const starts[] = { "node-1", "border-", "node-", "split-", "" };
+	static const char *const starts[] = { "node-1", "border-", "left-", "digest-",
+					      "node-",  "split-",  "" };
 	struct objects first = { 0 };
 	struct folder folder = folder_make();
 
@@ -732,7 +733,7 @@ static bool has_file(const struct folder *folder, const char *name)
 	return access(path, F_OK) == 0;
 }
 
-/* Begins a build, waits until leaves are done, and kills every worker that it meets. Returns how
+/* Begins a build, waits until blocks are done, and kills every worker that it meets. Returns how
  * the build ended. */
 static int build_with_a_murder(const struct folder *folder)
 {
