@@ -127,7 +127,7 @@ arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qe
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
 
-bench-full: all ## what takes hours: temples of 1, 6 and 18 million triangles, into build/bench/growth.json
+bench-full: all ## what takes hours: temples of 1, 6 and 18 million triangles, and a hierarchy of 100 million, into build/bench/
 	@tests/bench/run.sh --full
 
 check-style: deps ## clang-format, the include table, house rules

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """build_rows.py FOLDER MILLIONS...: from a scan file to the hierarchy, a row of figures for each size.
 
-The demo temple with colours per vertex; its PLY is made first and not counted. The peak is that of the memory that
-all processes have together (Pss, without what is only a cached file's page of nobody), looked at ten times a second.
+The demo temple with colours per vertex; its PLY is made first and not counted. The peak is the largest sum of
+the proportional set sizes (Pss) of the program's processes, read ten times a second.
 Prints JSON: triangles, import_s, hierarchy_s, mtri_per_s, peak_mib. What is in FOLDER goes afterwards.
 """
 import json
