@@ -18,10 +18,11 @@ static bool holds(const struct map_slot *slot, map_key key)
 	return slot->low == (uint64_t)key && slot->high == (uint64_t)(key >> 64);
 }
 
-/* The finaliser of MurmurHash3, which spreads neighbouring keys. */
+/* The finaliser of MurmurHash3, which spreads neighbouring keys. The factor (2^64 divided by the
+ * golden ratio) keeps halves that are alike from cancelling each other. */
 static size_t home_of(const struct map *map, uint64_t low, uint64_t high)
 {
-	uint64_t bits = low ^ high;
+	uint64_t bits = low ^ high * 0x9e3779b97f4a7c15u;
 
 	bits ^= bits >> 33;
 	bits *= 0xff51afd7ed558ccdu;

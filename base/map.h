@@ -42,4 +42,12 @@ static inline void *map_get_pointer(const struct map *map, map_key key)
 	return value == MAP_NONE ? NULL : (void *)(uintptr_t)value;
 }
 
+/* map_next for values that are pointers; NULL after the last. */
+static inline void *map_next_pointer(const struct map *map, size_t *at)
+{
+	const uint64_t value = map_next(map, at);
+
+	return value == MAP_NONE ? NULL : (void *)(uintptr_t)value;
+}
+
 #endif

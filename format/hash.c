@@ -33,6 +33,14 @@ map_key hash_key(struct hash hash)
 	return key;
 }
 
+struct hash hash_from_key(map_key key)
+{
+	struct hash hash;
+
+	memcpy(hash.bytes, &key, sizeof(key));
+	return hash;
+}
+
 bool hash_equal(struct hash a, struct hash b)
 {
 	return memcmp(a.bytes, b.bytes, HASH_BYTES) == 0;

@@ -20,7 +20,8 @@ struct hash {
 
 /* Returns the name of an object: the 128-bit BLAKE2b of all its bytes. Any thread. */
 struct hash hash_of(struct bytes object);
-map_key hash_key(struct hash hash); /* the whole name as the key of a map */
+map_key hash_key(struct hash hash);     /* the whole name as the key of a map */
+struct hash hash_from_key(map_key key); /* the name again */
 /* Comparisons of names. */
 bool hash_equal(struct hash a, struct hash b);
 int hash_compare(struct hash a, struct hash b); /* orders as memcmp */

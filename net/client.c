@@ -20,7 +20,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "net/by_hash.h"
+#include "base/map.h"
 #include "net/closer.h"
 #include "net/packets.h"
 
@@ -43,11 +43,6 @@ enum {
 };
 
 enum source { SOURCE_SOCKET, SOURCE_CHILD, SOURCE_TIMER };
-
-struct wanted {
-	struct hash_entry entry;
-	struct message_want want;
-};
 
 struct in_use {
 	struct hash root;
@@ -72,13 +67,18 @@ struct net_client {
 	int64_t connected_ms, received_ms;
 	/* Bytes received by earlier fetchers, and by the current one. */
 	uint64_t received_before, received_now;
-	struct by_hash wants; /* struct wanted, owned */
-	struct by_hash keeps; /* struct hash_entry, owned */
+	struct map wants; /* from hash_key to struct message_want, owned */
+	struct map keeps; /* of hash_key; the values mean nothing */
 	struct in_use releases[MESSAGE_RELEASES_MAX];
 	size_t release_count;
 };
 
 /* ---- helpers */
+
+static struct message_want *find_want(const struct net_client *client, struct hash hash)
+{
+	return map_get_pointer(&client->wants, hash_key(hash));
+}
 
 static int watch(struct net_client *client, int fd, enum source source, uint32_t events, int how)
 {
@@ -150,22 +150,22 @@ static void send_trust(struct net_client *client)
 static void send_all_state(struct net_client *client)
 {
 	struct message message = { .kind = MESSAGE_ASK_META, .period_s = client->options.poll_s };
-	struct hash_entry *keep;
-	struct wanted *wanted;
+	map_key keep;
+	const struct message_want *want;
 	size_t at = 0;
 
 	send_releases(client);
 	send_trust(client);
 	send_message(client, &message);
 	message.kind = MESSAGE_KEEP;
-	while ((keep = by_hash_next(&client->keeps, &at))) {
-		message.keep = keep->key;
+	while (map_next_key(&client->keeps, &at, &keep)) {
+		message.keep = hash_from_key(keep);
 		send_message(client, &message);
 	}
 	at = 0;
 	message.kind = MESSAGE_WANT;
-	while ((wanted = by_hash_next(&client->wants, &at))) {
-		message.want = wanted->want;
+	while ((want = map_next_pointer(&client->wants, &at))) {
+		message.want = *want;
 		send_message(client, &message);
 	}
 }
@@ -383,11 +383,11 @@ static int count_unwanted(struct net_client *client)
 /* Verifies the hash and passes the object on. -EBADMSG: the bytes do not have that hash. */
 static int pass_on(struct net_client *client, struct hash hash, struct bytes bytes)
 {
-	struct wanted *wanted = by_hash_find(&client->wants, hash);
+	struct message_want *wanted = find_want(client, hash);
 
 	if (!hash_equal(hash_of(bytes), hash))
 		return -EBADMSG;
-	by_hash_remove(&client->wants, hash);
+	map_remove(&client->wants, hash_key(hash));
 	free(wanted);
 	client->options.events.object(client->options.data, hash, bytes);
 	return 0;
@@ -399,7 +399,7 @@ static int take_object(struct net_client *client, const struct message *message,
 	struct bytes mapped;
 	int rc;
 
-	if (!by_hash_find(&client->wants, message->object.hash)) {
+	if (!find_want(client, message->object.hash)) {
 		if (passed >= 0)
 			close(passed);
 		return count_unwanted(client);
@@ -433,7 +433,7 @@ static int handle_message(struct net_client *client, const struct message *messa
 	case MESSAGE_OBJECT:
 		return take_object(client, message, passed);
 	case MESSAGE_MISSING:
-		if (events->missing && by_hash_find(&client->wants, message->missing.hash))
+		if (events->missing && find_want(client, message->missing.hash))
 			events->missing(data, message->missing.hash, message->missing.reason);
 		return 0;
 	case MESSAGE_META:
@@ -586,14 +586,15 @@ static void end_fetcher(struct net_client *client)
 		close(client->pid_fd);
 }
 
-static void forget_entries(struct by_hash *map)
+static void forget_objects(struct net_client *client)
 {
-	struct hash_entry *entry;
+	struct message_want *wanted;
 	size_t at = 0;
 
-	while ((entry = by_hash_next(map, &at)))
-		free(entry);
-	by_hash_finish(map);
+	while ((wanted = map_next_pointer(&client->wants, &at)))
+		free(wanted);
+	map_finish(&client->wants);
+	map_finish(&client->keeps);
 }
 
 void net_client_destroy(struct net_client *client)
@@ -606,8 +607,7 @@ void net_client_destroy(struct net_client *client)
 		close(client->timer_fd);
 	if (client->epoll_fd >= 0)
 		close(client->epoll_fd);
-	forget_entries(&client->wants);
-	forget_entries(&client->keeps);
+	forget_objects(client);
 	free((char *)client->options.socket_path);
 	free((char *)client->options.program);
 	free((char *)client->options.release_url);
@@ -640,8 +640,7 @@ void net_client_use_release(struct net_client *client, struct hash root, uint32_
 	if (client->release_count == 1 && hash_equal(client->releases[0].root, root))
 		return;
 	client->late_count += client->wants.count;
-	forget_entries(&client->wants);
-	forget_entries(&client->keeps);
+	forget_objects(client);
 	client->release_count = 0;
 	add_release(client, root, root_bytes, false);
 }
@@ -657,9 +656,9 @@ void net_client_add_release(struct net_client *client, struct hash root, uint32_
 void net_client_want(struct net_client *client, const struct message_want *want)
 {
 	struct message message = { .kind = MESSAGE_WANT, .want = *want };
-	struct wanted *wanted = by_hash_find(&client->wants, want->hash);
+	struct message_want *wanted = find_want(client, want->hash);
 
-	if (wanted && wanted->want.priority == want->priority)
+	if (wanted && wanted->priority == want->priority)
 		return;
 	if (wanted) /* the object may be on its way already, and will then arrive twice */
 		client->late_count++;
@@ -667,24 +666,23 @@ void net_client_want(struct net_client *client, const struct message_want *want)
 		wanted = calloc(1, sizeof(*wanted));
 		if (!wanted)
 			return; /* the kiosk will request it again */
-		wanted->entry.key = want->hash;
-		if (by_hash_add(&client->wants, &wanted->entry) < 0) {
+		if (map_set(&client->wants, hash_key(want->hash), (uintptr_t)wanted) < 0) {
 			free(wanted);
 			return;
 		}
 	}
-	wanted->want = *want;
+	*wanted = *want;
 	send_message(client, &message);
 }
 
 void net_client_drop(struct net_client *client, struct hash hash)
 {
 	struct message message = { .kind = MESSAGE_DROP, .drop = hash };
-	struct wanted *wanted = by_hash_find(&client->wants, hash);
+	struct message_want *wanted = find_want(client, hash);
 
 	if (!wanted)
 		return;
-	by_hash_remove(&client->wants, hash);
+	map_remove(&client->wants, hash_key(hash));
 	free(wanted);
 	client->late_count++;
 	send_message(client, &message);
@@ -703,17 +701,7 @@ void net_client_trust(struct net_client *client, uint32_t root_version)
 void net_client_keep(struct net_client *client, struct hash hash)
 {
 	struct message message = { .kind = MESSAGE_KEEP, .keep = hash };
-	struct hash_entry *keep;
 
-	if (by_hash_find(&client->keeps, hash))
-		return;
-	keep = calloc(1, sizeof(*keep));
-	if (!keep)
-		return;
-	keep->key = hash;
-	if (by_hash_add(&client->keeps, keep) < 0) {
-		free(keep);
-		return;
-	}
-	send_message(client, &message);
+	if (map_add(&client->keeps, hash_key(hash), 0) > 0)
+		send_message(client, &message);
 }

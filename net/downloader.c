@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/page.h"
@@ -38,7 +39,7 @@ struct downloader {
 	bool plan_changed;   /* something may be requested that could not be before */
 	int64_t plan_due_ms; /* when the first retry pause ends; INT64_MAX: no want is pausing */
 	struct range_item *items; /* scratch memory for planning */
-	size_t item_capacity;
+	uint32_t item_room;
 	struct buffer scratch;               /* holds one object read from the cache */
 	bool was_down;                       /* all wants were reported as offline */
 	struct token_bucket rate_limit;      /* for releases that are not shown yet */
@@ -54,7 +55,7 @@ static void report(struct downloader *downloader, struct want *want, enum missin
 	if (want->reported == (int)reason)
 		return;
 	want->reported = (int)reason;
-	downloader->options.events.missing(downloader->options.data, want->entry.key, reason);
+	downloader->options.events.missing(downloader->options.data, want->asked.hash, reason);
 }
 
 static bool has_room(const struct downloader *downloader)
@@ -124,7 +125,7 @@ void downloader_clear(struct downloader *downloader)
 
 static void pass_on(struct downloader *downloader, struct want *want, struct bytes bytes)
 {
-	struct hash hash = want->entry.key;
+	struct hash hash = want->asked.hash;
 
 	want_set_remove(&downloader->wants, want);
 	downloader->options.events.object(downloader->options.data, hash, bytes);
@@ -133,7 +134,8 @@ static void pass_on(struct downloader *downloader, struct want *want, struct byt
 static void put_into_cache(struct downloader *downloader, const struct want *want,
 			   struct bytes bytes)
 {
-	int rc = cache_put(downloader->options.cache, want->entry.key, bytes, want->asked.priority);
+	int rc =
+		cache_put(downloader->options.cache, want->asked.hash, bytes, want->asked.priority);
 
 	if (rc < 0)
 		log_debug("net", "an object is not in the cache (%d)", rc);
@@ -152,7 +154,7 @@ static void note_damage(struct downloader *downloader, struct want *want)
 	downloader->plan_changed = true;
 	if (want->damages < 2)
 		return;
-	hash_to_hex(want->entry.key, hex);
+	hash_to_hex(want->asked.hash, hex);
 	if (want->reported != MISSING_DAMAGED) {
 		log_warn("net", "content bug: object %s from the server is damaged", hex);
 		refusal_note(downloader->options.link->refusal, hex,
@@ -226,7 +228,7 @@ static bool request_from_stick(struct downloader *downloader, const struct want 
 
 static void look_up(struct downloader *downloader, struct want *want)
 {
-	int rc = cache_get(downloader->options.cache, want->entry.key, want->asked.priority,
+	int rc = cache_get(downloader->options.cache, want->asked.hash, want->asked.priority,
 			   &downloader->scratch);
 
 	if (rc == 0) {
@@ -302,22 +304,6 @@ void downloader_look_up_again(struct downloader *downloader)
 
 /* ---- the server */
 
-static bool reserve_items(struct downloader *downloader)
-{
-	size_t needed = want_set_count(&downloader->wants);
-	struct range_item *larger;
-
-	if (needed <= downloader->item_capacity)
-		return true;
-	needed += needed / 2;
-	larger = realloc(downloader->items, needed * sizeof(*larger));
-	if (!larger)
-		return false;
-	downloader->items = larger;
-	downloader->item_capacity = needed;
-	return true;
-}
-
 /* Collects all wants that could be requested now into items, sorted by place. Returns their
  * count. */
 static size_t gather(struct downloader *downloader)
@@ -328,7 +314,8 @@ static size_t gather(struct downloader *downloader)
 
 	downloader->plan_due_ms = INT64_MAX;
 	downloader->later_waits = false;
-	if (!reserve_items(downloader))
+	if (ARRAY_RESERVE(downloader->items, downloader->item_room,
+			  want_set_count(&downloader->wants), WANTS_MAX) < 0)
 		return 0;
 	while ((want = want_set_next(&downloader->wants, &at))) {
 		struct range_item *item = &downloader->items[count];

@@ -145,7 +145,7 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 		struct want *want = items[i].want;
 
 		range->slots[i] =
-			(struct slot){ want->entry.key, items[i].place, items[i].size, want };
+			(struct slot){ want->asked.hash, items[i].place, items[i].size, want };
 		want->range = range;
 		want->state = WANT_IN_FLIGHT;
 	}

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/page.h"
@@ -76,7 +77,7 @@ struct stick {
 	size_t root_count;
 	struct request
 		*requests; /* owned; sorted by priority unless requests_changed; the best is last */
-	size_t request_count, request_capacity;
+	uint32_t request_count, request_room;
 	bool requests_changed;
 	uint64_t orders;
 };
@@ -278,24 +279,13 @@ void stick_trust(struct stick *stick, uint32_t root_version)
 		stick->root_version = root_version;
 }
 
-static bool grow(struct stick *stick)
-{
-	size_t capacity = stick->request_capacity ? stick->request_capacity * 2 : 64;
-	struct request *larger = realloc(stick->requests, capacity * sizeof(*larger));
-
-	if (!larger)
-		return false;
-	stick->requests = larger;
-	stick->request_capacity = capacity;
-	return true;
-}
-
 bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
 		   const struct message_want *want)
 {
 	if (!stick || !stick->is_here || stick->hangs)
 		return false;
-	if (stick->request_count == stick->request_capacity && !grow(stick))
+	if (ARRAY_RESERVE(stick->requests, stick->request_room, stick->request_count + 1,
+			  UINT32_MAX) < 0)
 		return false;
 	stick->root_count = count < MESSAGE_RELEASES_MAX ? count : MESSAGE_RELEASES_MAX;
 	memcpy(stick->roots, roots, stick->root_count * sizeof(*roots));
@@ -322,11 +312,11 @@ static void answer(struct stick *stick, struct hash hash, int rc, struct bytes b
 /* Answers all requests with -ENOENT, because there is no stick or it does not answer. */
 static void refuse_all(struct stick *stick)
 {
-	size_t count = stick->request_count;
+	const uint32_t count = stick->request_count;
 
 	stick->is_here = false;
 	stick->request_count = 0; /* the answer callback may ask for more; that is refused now */
-	for (size_t i = 0; i < count; i++)
+	for (uint32_t i = 0; i < count; i++)
 		answer(stick, stick->requests[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
 }
 

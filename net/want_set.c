@@ -5,47 +5,44 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "base/array.h"
+
 void want_set_finish(struct want_set *set)
 {
 	struct want *want;
 	size_t at = 0;
 
-	while ((want = by_hash_next(&set->by_hash, &at)))
+	while ((want = map_next_pointer(&set->wants, &at)))
 		if (want->state != WANT_QUEUED)
 			free(want);
-	for (size_t i = 0; i < set->queue_count; i++)
+	for (uint32_t i = 0; i < set->queue_count; i++)
 		free(set->queue[i]);
 	free(set->queue);
-	by_hash_finish(&set->by_hash);
+	map_finish(&set->wants);
 	*set = (struct want_set){ .orders = set->orders };
 }
 
 size_t want_set_count(const struct want_set *set)
 {
-	return set->by_hash.count;
+	return set->wants.count;
 }
 
 struct want *want_set_find(const struct want_set *set, struct hash hash)
 {
-	return by_hash_find(&set->by_hash, hash);
+	return map_get_pointer(&set->wants, hash_key(hash));
 }
 
 struct want *want_set_next(const struct want_set *set, size_t *at)
 {
-	return by_hash_next(&set->by_hash, at);
+	return map_next_pointer(&set->wants, at);
 }
 
 int want_set_requeue(struct want_set *set, struct want *want)
 {
-	if (set->queue_count == set->queue_capacity) {
-		size_t capacity = set->queue_capacity ? set->queue_capacity * 2 : 256;
-		struct want **larger = realloc(set->queue, capacity * sizeof(struct want *));
+	int rc = ARRAY_RESERVE(set->queue, set->queue_room, set->queue_count + 1, UINT32_MAX);
 
-		if (!larger)
-			return -ENOMEM;
-		set->queue = larger;
-		set->queue_capacity = capacity;
-	}
+	if (rc < 0)
+		return rc;
 	want->state = WANT_QUEUED;
 	set->queue[set->queue_count++] = want;
 	set->queue_changed = true;
@@ -57,20 +54,19 @@ int want_set_add(struct want_set *set, const struct message_want *asked)
 	struct want *want;
 	int rc;
 
-	if (set->by_hash.count >= WANTS_MAX)
+	if (set->wants.count >= WANTS_MAX)
 		return -ENOSPC;
 	want = calloc(1, sizeof(*want));
 	if (!want)
 		return -ENOMEM;
-	want->entry.key = asked->hash;
 	want->asked = *asked;
 	want->order = set->orders++;
 	want->reported = -1;
-	rc = by_hash_add(&set->by_hash, &want->entry);
+	rc = map_set(&set->wants, hash_key(asked->hash), (uintptr_t)want);
 	if (rc == 0) {
 		rc = want_set_requeue(set, want);
 		if (rc < 0)
-			by_hash_remove(&set->by_hash, asked->hash);
+			map_remove(&set->wants, hash_key(asked->hash));
 	}
 	if (rc < 0)
 		free(want);
@@ -85,7 +81,7 @@ void want_set_change_priority(struct want_set *set, struct want *want, uint32_t 
 
 void want_set_remove(struct want_set *set, struct want *want)
 {
-	by_hash_remove(&set->by_hash, want->entry.key);
+	map_remove(&set->wants, hash_key(want->asked.hash));
 	if (want->state == WANT_QUEUED)
 		want->removed = true;
 	else

@@ -3,8 +3,8 @@
 #ifndef GOPURA_NET_WANT_SET_H
 #define GOPURA_NET_WANT_SET_H
 
+#include "base/map.h"
 #include "format/message.h"
-#include "net/by_hash.h"
 
 enum { WANTS_MAX = 1 << 18 };
 
@@ -18,7 +18,6 @@ enum want_state {
 struct range; /* private to net/ranges.c */
 
 struct want {
-	struct hash_entry entry; /* key: the object's hash */
 	struct message_want asked;
 	enum want_state state;
 	uint64_t order;      /* order of arrival; a lower one came earlier */
@@ -32,10 +31,10 @@ struct want {
 
 /* A zeroed struct is a valid empty set. */
 struct want_set {
-	struct by_hash by_hash; /* struct want, owned */
+	struct map wants; /* from hash_key to struct want, owned */
 	/* Owned array; sorted by priority unless queue_changed. The most urgent one is last. */
 	struct want **queue;
-	size_t queue_count, queue_capacity;
+	uint32_t queue_count, queue_room;
 	bool queue_changed;
 	uint64_t orders; /* number of wants so far; gives want.order */
 };

@@ -27,6 +27,7 @@ static void hex_goes_both_ways(void **state)
 	CHECK(hash_from_hex(&back, hex) == 0);
 	CHECK(hash_equal(hash, back) && hash_compare(hash, back) == 0);
 	CHECK(!hash_is_zero(hash) && hash_is_zero((struct hash){ 0 }));
+	CHECK(hash_equal(hash_from_key(hash_key(hash)), hash));
 }
 
 static void refuses_what_is_not_32_lower_case_digits(void **state)

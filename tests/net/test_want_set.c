@@ -26,7 +26,7 @@ static struct want *expect(struct want_set *set, uint32_t n)
 {
 	struct want *want = want_set_dequeue(set);
 
-	CHECK(want && hash_equal(want->entry.key, name_of(n)));
+	CHECK(want && hash_equal(want->asked.hash, name_of(n)));
 	CHECK(want->state == WANT_WAITING);
 	return want;
 }
