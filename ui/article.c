@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "ui/bitmap.h"
 
 /* Millimetres. */
@@ -39,7 +40,7 @@ struct article {
 	struct item *items;           /* one for each block, then those of the note */
 	uint32_t item_count;
 	struct link_area *links;
-	uint32_t link_count;
+	uint32_t link_count, link_room;
 	int left_px, column_px; /* of the text */
 	int height_px;
 };
@@ -236,16 +237,12 @@ static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
 
 static int add_link_area(struct article *article, struct link_area area)
 {
-	struct link_area *grown = article->links;
+	int rc = ARRAY_RESERVE(article->links, article->link_room, article->link_count + 1,
+			       UINT32_MAX);
 
-	if ((article->link_count & (article->link_count - 1)) == 0)
-		grown = realloc(grown, (article->link_count ? 2 * (size_t)article->link_count : 1) *
-					       sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	article->links = grown;
-	grown[article->link_count++] = area;
-	return 0;
+	if (rc == 0)
+		article->links[article->link_count++] = area;
+	return rc;
 }
 
 /* Adds a rectangle for each line that the link touches. */

@@ -1,9 +1,10 @@
 /* Assigns callouts to labels, fades them and draws them with their leaders. */
 #include "ui/callouts_view.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "base/array.h"
 
 _Static_assert((int)CALLOUT_LABELS >= 2 * (int)CALLOUTS_MAX, "labels that come and labels that go");
 
@@ -83,21 +84,10 @@ void callouts_view_finish(struct callouts_view *view)
 
 int callouts_view_reserve(struct callouts_view *view, uint32_t part_count)
 {
-	struct callouts_view_part *parts;
-	struct callout_anchor *anchors;
+	int rc = ARRAY_RESERVE(view->parts, view->part_room, part_count, UINT32_MAX);
 
-	if (part_count <= view->room_count)
-		return 0;
-	parts = realloc(view->parts, part_count * sizeof(*parts));
-	if (!parts)
-		return -ENOMEM;
-	view->parts = parts;
-	anchors = realloc(view->anchors, part_count * sizeof(*anchors));
-	if (!anchors)
-		return -ENOMEM;
-	view->anchors = anchors;
-	view->room_count = part_count;
-	return 0;
+	return rc < 0 ? rc
+		      : ARRAY_RESERVE(view->anchors, view->anchor_room, part_count, UINT32_MAX);
 }
 
 void callouts_view_set_parts(struct callouts_view *view, const struct theme *theme,

@@ -30,7 +30,7 @@ struct callouts_view_part {
 struct callouts_view {
 	struct callouts_view_part *parts; /* owned */
 	struct callout_anchor *anchors;   /* owned; as many */
-	uint32_t part_count, room_count;
+	uint32_t part_count, part_room, anchor_room;
 	bool dirty;    /* lay out again */
 	int column_px; /* width of the widest label */
 	struct callouts callouts;

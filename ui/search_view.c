@@ -1,11 +1,11 @@
 /* Lays out field, list and keyboard, keeps the query, and draws the rows as they come into view. */
 #include "ui/search_view.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "ui/icon.h"
 #include "ui/translate.h"
 
@@ -166,16 +166,7 @@ static void list_all(struct search_view *view)
 
 int search_view_reserve(struct search_view *view, uint32_t part_count)
 {
-	uint32_t *found;
-
-	if (part_count <= view->room_count)
-		return 0;
-	found = realloc(view->found, part_count * sizeof(*found));
-	if (!found)
-		return -ENOMEM;
-	view->found = found;
-	view->room_count = part_count;
-	return 0;
+	return ARRAY_RESERVE(view->found, view->found_room, part_count, UINT32_MAX);
 }
 
 void search_view_set_count(struct search_view *view, uint32_t part_count)

@@ -29,7 +29,7 @@ struct search_view {
 	int pressed; /* the last pressed key, or -1 */
 	struct fade press;
 	uint32_t *found; /* owned; room for every part */
-	uint32_t found_count, part_count, room_count;
+	uint32_t found_count, found_room, part_count;
 	struct search_view_row rows[SEARCH_ROWS];
 	struct scroll scroll;
 	bool head_dirty, keyboard_dirty;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/json_lines.h"
@@ -149,24 +150,22 @@ static void read_credits(struct importer *im, const cJSON *from, cJSON *to)
 
 static void add_page(struct importer *im, const char *language, const char *html)
 {
-	struct page_file *grown = realloc(im->pages, (im->page_count + 1) * sizeof(*im->pages));
 	struct page_file page = { .html = html };
 
-	if (!grown) {
+	if (ARRAY_RESERVE(im->pages, im->page_room, im->page_count + 1, UINT32_MAX) < 0) {
 		im->failed = true;
 		return;
 	}
-	im->pages = grown;
 	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", string_of(im->part, "id"),
 		 language);
 	for (uint32_t i = 0; i < im->page_count; i++)
-		if (strcmp(grown[i].name, page.name) == 0) {
+		if (strcmp(im->pages[i].name, page.name) == 0) {
 			importer_complain(im, true, im->line,
 					  "annotation \"%.80s\": two pages in \"%.16s\": leave one",
 					  item_id(im), language);
 			return;
 		}
-	grown[im->page_count++] = page;
+	im->pages[im->page_count++] = page;
 }
 
 static const char *key_of_purpose(const char *purpose)
@@ -504,7 +503,7 @@ int annotations_import(struct annotations_imported *out,
 	rc = import(&im);
 	cJSON_Delete(im.parts_file);
 	free(im.pages);
-	for (size_t i = 0; i < im.written_count; i++)
+	for (uint32_t i = 0; i < im.written_count; i++)
 		free(im.written[i]);
 	free(im.written);
 	return rc;

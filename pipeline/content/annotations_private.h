@@ -45,9 +45,9 @@ struct importer {
 	cJSON *parts_file, *parts; /* parts_file is owned; parts is the array in it */
 	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
 	struct page_file *pages;   /* owned */
-	uint32_t page_count, error_count;
+	uint32_t page_count, page_room, error_count;
 	char **written; /* owned paths, in the order in which they were written */
-	size_t written_count;
+	uint32_t written_count, written_room;
 	bool failed; /* out of memory */
 	/* The annotation that is being read. */
 	const cJSON *item;

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "pipeline/content/annotations_private.h"
 
@@ -33,13 +34,15 @@ void importer_complain(struct importer *im, bool is_error, unsigned line, const 
 
 static int note_written(struct importer *im, const char *path)
 {
-	char **grown = realloc(im->written, (im->written_count + 1) * sizeof(*grown));
+	int rc = ARRAY_RESERVE(im->written, im->written_room, im->written_count + 1, UINT32_MAX);
 
-	if (!grown)
+	if (rc < 0)
+		return rc;
+	im->written[im->written_count] = strdup(path);
+	if (!im->written[im->written_count])
 		return -ENOMEM;
-	im->written = grown;
-	grown[im->written_count] = strdup(path);
-	return grown[im->written_count] ? (im->written_count++, 0) : -ENOMEM;
+	im->written_count++;
+	return 0;
 }
 
 static int write_file(struct importer *im, const char *name, struct bytes bytes)

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/log.h"
 #include "format/page.h"
 #include "format/picture.h"
@@ -164,7 +165,7 @@ static void measure_picture(struct draft *draft, struct draft_picture *picture, 
 
 int draft_add_picture(struct draft *draft, const char *name, const char *file, unsigned line)
 {
-	struct draft_picture *grown, *picture;
+	struct draft_picture *picture;
 
 	for (uint32_t i = 0; i < draft->picture_count; i++)
 		if (strcmp(draft->pictures[i].name, name) == 0)
@@ -176,11 +177,10 @@ int draft_add_picture(struct draft *draft, const char *name, const char *file, u
 			       name);
 		return -1;
 	}
-	grown = realloc(draft->pictures, (draft->picture_count + 1) * sizeof(*grown));
-	if (!grown)
+	if (ARRAY_RESERVE(draft->pictures, draft->picture_room, draft->picture_count + 1,
+			  INT32_MAX) < 0)
 		return -ENOMEM;
-	draft->pictures = grown;
-	picture = &grown[draft->picture_count];
+	picture = &draft->pictures[draft->picture_count];
 	*picture = (struct draft_picture){ .name = strdup(name) };
 	if (!picture->name)
 		return -ENOMEM;

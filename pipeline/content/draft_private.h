@@ -14,7 +14,7 @@ struct draft_page {
 	size_t size;
 	struct buffer article; /* made of html; empty if html was complained about */
 	uint32_t *pictures;    /* owned; indices into draft.pictures, in order of use, each once */
-	uint32_t picture_count;
+	uint32_t picture_count, picture_room;
 };
 
 /* One Dublin Core statement. */
@@ -76,7 +76,7 @@ struct draft {
 	struct draft_tour *tours;
 	uint32_t tour_count;
 	struct draft_picture *pictures;
-	uint32_t picture_count;
+	uint32_t picture_count, picture_room;
 	uint32_t error_count; /* number of complaints that are errors */
 };
 

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/array.h"
 #include "format/article.h"
 #include "format/html_elements.h"
 #include "format/html_tags.h"
@@ -32,17 +33,15 @@ static unsigned node_line(xmlNode *node)
 static int note_picture(struct page_check *check, int picture)
 {
 	struct draft_page *page = check->page;
-	uint32_t *grown;
+	int rc;
 
 	for (uint32_t i = 0; i < page->picture_count; i++)
 		if (page->pictures[i] == (uint32_t)picture)
 			return 0;
-	grown = realloc(page->pictures, (page->picture_count + 1) * sizeof(*grown));
-	if (!grown)
-		return -ENOMEM;
-	page->pictures = grown;
-	page->pictures[page->picture_count++] = (uint32_t)picture;
-	return 0;
+	rc = ARRAY_RESERVE(page->pictures, page->picture_room, page->picture_count + 1, UINT32_MAX);
+	if (rc == 0)
+		page->pictures[page->picture_count++] = (uint32_t)picture;
+	return rc;
 }
 
 static int check_image(struct page_check *check, xmlNode *node)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "geometry/vec.h"
 #include "pipeline/import/ply.h"
 
@@ -118,12 +119,11 @@ static int read_list(struct face_list *list, const struct part_faces_all *all,
 static int remember(struct part_faces_all *all, const char *id, struct face_list *list,
 		    uint32_t scan)
 {
-	struct part_faces *grown = realloc(all->parts, (all->part_count + 1) * sizeof(*all->parts));
 	struct part_faces part = { .scan = scan, .list = *list };
+	int rc = ARRAY_RESERVE(all->parts, all->part_room, all->part_count + 1, UINT32_MAX);
 
-	if (!grown)
-		return -ENOMEM;
-	all->parts = grown;
+	if (rc < 0)
+		return rc;
 	part.id = strdup(id);
 	if (!part.id)
 		return -ENOMEM;

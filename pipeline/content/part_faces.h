@@ -23,7 +23,7 @@ struct part_faces {
 struct part_faces_all {
 	struct scans *scans;      /* borrowed */
 	struct part_faces *parts; /* owned */
-	uint32_t part_count;
+	uint32_t part_count, part_room;
 	struct buffer kept; /* what .work/faces holds; empty until the first list is placed */
 	bool has_kept;
 };

@@ -9,6 +9,8 @@
 
 #include <metis.h>
 
+#include "base/array.h"
+
 enum { PARTS_BY_BISECTION_MAX = 8, NODES_A_PART = 64 };
 
 /* CLUSTERS_A_PART: METIS gets no more nodes than this for a part. A larger graph is shrunk first to
@@ -43,19 +45,14 @@ void graph_finish(struct graph *graph)
 
 int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight)
 {
+	int rc;
+
 	if (a == b)
 		return 0;
-	if (graph->edge_count == graph->edge_room) {
-		size_t room = graph->edge_room ? 2 * graph->edge_room : 256;
-		struct graph_edge *grown = realloc(graph->edges, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		graph->edges = grown;
-		graph->edge_room = room;
-	}
-	graph->edges[graph->edge_count++] = (struct graph_edge){ a, b, weight };
-	return 0;
+	rc = ARRAY_RESERVE(graph->edges, graph->edge_room, graph->edge_count + 1, UINT32_MAX);
+	if (rc == 0)
+		graph->edges[graph->edge_count++] = (struct graph_edge){ a, b, weight };
+	return rc;
 }
 
 /* ---- connecting parts that are near each other */

@@ -21,7 +21,8 @@ struct graph {
 	uint32_t node_count;
 	int32_t *node_weights; /* owned */
 	struct graph_edge *edges;
-	size_t edge_count, edge_room;
+	size_t edge_count;
+	uint32_t edge_room;
 };
 
 must_check int graph_init(struct graph *graph,
@@ -29,7 +30,7 @@ must_check int graph_init(struct graph *graph,
 /* Frees the graph. NULL and zeroed are fine. */
 void graph_finish(struct graph *graph);
 /* Adds an edge. The weights of edges between the same nodes add up; an edge from a node to itself
- * is ignored. Returns -ENOMEM. */
+ * is ignored. Returns -ENOMEM, or -EFBIG past UINT32_MAX edges. */
 must_check int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight);
 
 /* Connects the parts of a disconnected graph where they are near each other, by edges of that

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/clock.h"
 #include "pipeline/material/material.h"
 
@@ -68,16 +69,10 @@ static int write_object(void *user, struct bytes object, float loss_m4)
 {
 	struct writer *writer = user;
 	size_t done = 0;
+	int rc = ARRAY_RESERVE(writer->objects, writer->room, writer->count + 1, UINT32_MAX);
 
-	if (writer->count == writer->room) {
-		uint32_t room = writer->room ? 2 * writer->room : 256;
-		struct written *grown = realloc(writer->objects, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		writer->objects = grown;
-		writer->room = room;
-	}
+	if (rc < 0)
+		return rc;
 	writer->objects[writer->count++] = (struct written){ (uint32_t)object.size, loss_m4 };
 	while (done < object.size) {
 		ssize_t put = write(writer->fd, object.data + done, object.size - done);

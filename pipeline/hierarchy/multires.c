@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "format/patch.h"
@@ -295,23 +296,12 @@ static int sort_into_jobs(struct builder *builder, const uint32_t *labels)
 static int make_room(struct builder *builder, uint32_t groups, uint32_t patches)
 {
 	struct hierarchy *made = &builder->made;
-	void *grown;
+	int rc = ARRAY_RESERVE(made->groups, builder->group_room,
+			       (uint64_t)made->group_count + groups, UINT32_MAX);
 
-	if (made->group_count + groups > builder->group_room) {
-		builder->group_room = 2 * (made->group_count + groups);
-		grown = realloc(made->groups, builder->group_room * sizeof(*made->groups));
-		if (!grown)
-			return -ENOMEM;
-		made->groups = grown;
-	}
-	if (made->patch_count + patches > builder->patch_room) {
-		builder->patch_room = 2 * (made->patch_count + patches);
-		grown = realloc(made->patches, builder->patch_room * sizeof(*made->patches));
-		if (!grown)
-			return -ENOMEM;
-		made->patches = grown;
-	}
-	return 0;
+	return rc < 0 ? rc
+		      : ARRAY_RESERVE(made->patches, builder->patch_room,
+				      (uint64_t)made->patch_count + patches, UINT32_MAX);
 }
 
 static int keep_job(struct builder *builder, struct group_job *job)

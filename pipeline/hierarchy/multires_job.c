@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "format/patch.h"
 #include "pipeline/hierarchy/multires_parts.h"
 #include "pipeline/hierarchy/partition.h"
@@ -29,19 +30,13 @@ void live_patches_finish(struct live_patches *patches)
 
 int live_patches_add(struct live_patches *patches, struct live_patch patch)
 {
-	if (patches->count == patches->room) {
-		uint32_t room = patches->room ? 2 * patches->room : 16;
-		struct live_patch *grown = realloc(patches->items, room * sizeof(*grown));
+	int rc = ARRAY_RESERVE(patches->items, patches->room, patches->count + 1, UINT32_MAX);
 
-		if (!grown) {
-			live_patch_finish(&patch);
-			return -ENOMEM;
-		}
-		patches->items = grown;
-		patches->room = room;
-	}
-	patches->items[patches->count++] = patch;
-	return 0;
+	if (rc == 0)
+		patches->items[patches->count++] = patch;
+	else
+		live_patch_finish(&patch);
+	return rc;
 }
 
 /* The group's patches merged into one surface with local vertex indices. */

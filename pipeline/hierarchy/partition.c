@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "pipeline/hierarchy/graph.h"
 
 enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MAX = 10 };
@@ -83,16 +84,10 @@ static int32_t edge_weight(const struct look *a, const struct look *b)
 static int add_node(struct splitter *splitter, uint32_t *index)
 {
 	struct partition *out = splitter->out;
+	int rc = ARRAY_RESERVE(out->nodes, splitter->node_room, out->node_count + 1, UINT32_MAX);
 
-	if (out->node_count == splitter->node_room) {
-		uint32_t room = splitter->node_room ? 2 * splitter->node_room : 64;
-		struct partition_node *grown = realloc(out->nodes, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		out->nodes = grown;
-		splitter->node_room = room;
-	}
+	if (rc < 0)
+		return rc;
 	*index = out->node_count++;
 	out->nodes[*index] = (struct partition_node){
 		.first_leaf = out->leaf_count,

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "pipeline/hierarchy/quadric.h"
 
 #define NONE          UINT32_MAX
@@ -33,7 +34,7 @@ struct work {
 	uint32_t *versions;
 	uint32_t *marks, mark;
 	struct candidate *heap;
-	size_t heap_count, heap_room;
+	uint32_t heap_count, heap_room;
 	uint32_t alive_count;
 	double worst; /* squared error so far, lattice steps */
 	double most;  /* limit of worst */
@@ -47,16 +48,10 @@ struct work {
 static int push(struct work *work, struct candidate candidate)
 {
 	size_t at = work->heap_count;
+	int rc = ARRAY_RESERVE(work->heap, work->heap_room, at + 1, UINT32_MAX);
 
-	if (at == work->heap_room) {
-		size_t room = 2 * work->heap_room + 64;
-		struct candidate *grown = realloc(work->heap, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		work->heap = grown;
-		work->heap_room = room;
-	}
+	if (rc < 0)
+		return rc;
 	work->heap_count++;
 	while (at > 0 && work->heap[(at - 1) / 2].cost > candidate.cost) {
 		work->heap[at] = work->heap[(at - 1) / 2];
@@ -597,12 +592,11 @@ static int work_init(struct work *work, struct surface *surface)
 		.dead = calloc(triangles, sizeof(*work->dead)),
 		.versions = calloc(vertices, sizeof(*work->versions)),
 		.marks = calloc(vertices, sizeof(*work->marks)),
-		.heap_room = 5 * triangles,
 		.alive_count = surface->triangle_count,
 	};
-	work->heap = malloc(work->heap_room * sizeof(*work->heap));
 	if (!work->quadrics || !work->areas || !work->first || !work->next || !work->dead ||
-	    !work->versions || !work->marks || !work->heap)
+	    !work->versions || !work->marks ||
+	    ARRAY_RESERVE(work->heap, work->heap_room, 5 * triangles, UINT32_MAX) < 0)
 		return -ENOMEM;
 	memset(work->first, 0xff, vertices * sizeof(*work->first));
 	for (uint32_t corner = 0; corner < 3 * surface->triangle_count; corner++) {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "render/display/gl.h"
 
 struct quads_texture {
@@ -18,8 +19,8 @@ struct quads {
 	GLuint program;
 	GLint to_clip, alpha;
 	struct quads_texture textures[QUADS_TEXTURES_MAX];
-	uint8_t *rows; /* owned; scratch for bitmaps with padded rows */
-	size_t rows_bytes;
+	uint8_t *rows;      /* owned; scratch for bitmaps with padded rows */
+	uint32_t rows_room; /* bytes */
 };
 
 static const char vertex_source[] =
@@ -81,17 +82,11 @@ void quads_destroy(struct quads *quads)
 static const uint8_t *packed_rows(struct quads *quads, const struct quads_pixels *pixels)
 {
 	const size_t row = (size_t)pixels->width_px * 4, bytes = row * (size_t)pixels->height_px;
-	uint8_t *grown;
 
 	if ((size_t)pixels->stride_bytes == row)
 		return pixels->bgra;
-	if (bytes > quads->rows_bytes) {
-		grown = realloc(quads->rows, bytes);
-		if (!grown)
-			return NULL;
-		quads->rows = grown;
-		quads->rows_bytes = bytes;
-	}
+	if (ARRAY_RESERVE(quads->rows, quads->rows_room, bytes, UINT32_MAX) < 0)
+		return NULL;
 	for (int y = 0; y < pixels->height_px; y++)
 		memcpy(quads->rows + (size_t)y * row,
 		       pixels->bgra + (size_t)y * (size_t)pixels->stride_bytes, row);
