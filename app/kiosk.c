@@ -603,6 +603,7 @@ void kiosk_stop(struct kiosk *kiosk)
 	touch_destroy(kiosk->touch);
 	quads_destroy(kiosk->quads);
 	display_destroy(kiosk->display);
+	provision_finish(&kiosk->provision);
 }
 
 int kiosk_run(struct kiosk *kiosk)

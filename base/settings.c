@@ -1,10 +1,9 @@
-/* Parses a settings file line by line against a table of settings. Collects all faults, and
+/* Parses a settings file line by line against a table of settings. Reports all faults, and
  * suggests the nearest known name for a misspelt one. */
 #include "base/settings.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include <strings.h>
 
 #include "base/safe_open.h"
+#include "base/utf8.h"
 
 enum { LINE_BYTES_MAX = 1000, NAME_MAX = 32, QUOTED_MAX = 60 };
 
@@ -19,89 +19,12 @@ struct reading {
 	const struct setting *settings;
 	size_t count;
 	void *target;
-	struct faults *faults;
+	struct diagnostics *diagnostics;
 	unsigned line;
 	char section[NAME_MAX]; /* as written in the table; "": none yet */
 	bool skipping;          /* the section is unknown, which was reported */
 	unsigned seen[SETTINGS_MAX];
 };
-
-/* ---- faults */
-
-/* Returns the number of bytes of the UTF-8 character at text; 0 if it is invalid or a control
- * character. */
-static size_t utf8_bytes(const char *text)
-{
-	static const uint32_t least[] = { 0, 0, 0x80, 0x800, 0x10000 };
-	const uint8_t first = (uint8_t)*text;
-	const size_t n = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : 4;
-	uint32_t code = n == 1 ? first : first & (0xffu >> (n + 1));
-
-	if (first < 0x20 || first == 0x7f || (n == 4 && first >> 3 != 30))
-		return 0;
-	for (size_t i = 1; i < n; i++) {
-		if (((uint8_t)text[i] & 0xc0) != 0x80)
-			return 0;
-		code = code << 6 | ((uint8_t)text[i] & 0x3f);
-	}
-	return n > 1 && (code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-		       ? 0
-		       : n;
-}
-
-static void make_printable(char *text)
-{
-	while (*text) {
-		const size_t n = utf8_bytes(text);
-
-		if (n == 0)
-			*text = '?';
-		text += n > 0 ? n : 1;
-	}
-}
-
-/* Cuts the text to at most that many bytes, without splitting a character. */
-static void cut(char *text, size_t bytes)
-{
-	size_t at = 0;
-
-	while (text[at]) {
-		const size_t n = utf8_bytes(text + at);
-
-		if (at + (n > 0 ? n : 1) > bytes)
-			break;
-		at += n > 0 ? n : 1;
-	}
-	text[at] = '\0';
-}
-
-void faults_add(struct faults *faults, unsigned line, const char *text, ...)
-{
-	char sentence[2 * LINE_BYTES_MAX];
-	unsigned at = faults->count;
-	size_t length = 0;
-	va_list args;
-
-	if (faults->count == FAULTS_MAX) {
-		faults->dropped++;
-		return;
-	}
-	if (line > 0)
-		length = (size_t)snprintf(sentence, sizeof(sentence), "line %u: ", line);
-	va_start(args, text);
-	vsnprintf(sentence + length, sizeof(sentence) - length, text, args);
-	va_end(args);
-	while (at > 0 && line > 0 &&
-	       (faults->list[at - 1].line == 0 || faults->list[at - 1].line > line))
-		at--;
-	memmove(&faults->list[at + 1], &faults->list[at],
-		(faults->count - at) * sizeof(faults->list[0]));
-	make_printable(sentence);
-	cut(sentence, FAULT_TEXT_BYTES - 1);
-	faults->list[at].line = line;
-	memcpy(faults->list[at].text, sentence, strlen(sentence) + 1);
-	faults->count++;
-}
 
 /* ---- suggestions for unknown names */
 
@@ -163,11 +86,11 @@ static void unknown_section(struct reading *reading, const char *name)
 		}
 	}
 	if (best && is_near(nearest, name))
-		faults_add(reading->faults, reading->line,
-			   "there is no section [%s]; did you mean [%s]?", name, best);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"there is no section [%s]; did you mean [%s]?", name, best);
 	else
-		faults_add(reading->faults, reading->line,
-			   "there is no section [%s]; the sections are %s", name, known);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"there is no section [%s]; the sections are %s", name, known);
 }
 
 static void unknown_name(struct reading *reading, const char *name)
@@ -182,9 +105,9 @@ static void unknown_name(struct reading *reading, const char *name)
 		const int letters = distance(name, setting->name);
 
 		if (letters == 0) {
-			faults_add(reading->faults, reading->line,
-				   "%s belongs under [%s]; move it there", setting->name,
-				   setting->section);
+			diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+					"%s belongs under [%s]; move it there", setting->name,
+					setting->section);
 			return;
 		}
 		if (strcmp(setting->section, reading->section) != 0)
@@ -197,15 +120,16 @@ static void unknown_name(struct reading *reading, const char *name)
 		}
 	}
 	if (best && is_near(nearest, name))
-		faults_add(reading->faults, reading->line, "[%s] has no '%s'; did you mean '%s'?",
-			   reading->section, name, best);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"[%s] has no '%s'; did you mean '%s'?", reading->section, name,
+				best);
 	else if (best)
-		faults_add(reading->faults, reading->line, "[%s] has no '%s'; it has %s",
-			   reading->section, name, known);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"[%s] has no '%s'; it has %s", reading->section, name, known);
 	else
-		faults_add(reading->faults, reading->line,
-			   "'%s' comes before the first [section]; write its section above it",
-			   name);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"'%s' comes before the first [section]; write its section above it",
+				name);
 }
 
 /* ---- lines */
@@ -232,7 +156,7 @@ static char *find_remark(char *text)
 	return NULL;
 }
 
-/* Returns the value without quotes and comment; NULL after adding a fault. */
+/* Returns the value without quotes and comment; NULL after adding a diagnostic. */
 static char *bare_value(struct reading *reading, const struct setting *setting, char *text)
 {
 	char *remark;
@@ -246,16 +170,18 @@ static char *bare_value(struct reading *reading, const struct setting *setting, 
 			*end = '\0';
 			return text + 1;
 		}
-		faults_add(reading->faults, reading->line,
-			   "%s has no closing quote; write \" after the value too", setting->name);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"%s has no closing quote; write \" after the value too",
+				setting->name);
 		return NULL;
 	}
 	remark = find_remark(text);
 	if (remark && setting->free_text) {
-		faults_add(reading->faults, reading->line,
-			   "%s contains '%.2s': if that is part of the value, put the value in "
-			   "double quotes; if it begins a comment, move that to a line of its own",
-			   setting->name, remark);
+		diagnostics_add(
+			reading->diagnostics, -EINVAL, NULL, reading->line,
+			"%s contains '%.2s': if that is part of the value, put the value in "
+			"double quotes; if it begins a comment, move that to a line of its own",
+			setting->name, remark);
 		return NULL;
 	}
 	if (remark)
@@ -274,16 +200,17 @@ static void refuse(struct reading *reading, const struct setting *setting, char 
 		snprintf(expects, sizeof(expects), "a %snumber from %.10g to %.10g",
 			 setting->set == settings_whole ? "whole " : "", setting->least,
 			 setting->most);
-	cut(value, QUOTED_MAX);
+	utf8_cut(value, QUOTED_MAX);
 	if (!*value)
-		faults_add(reading->faults, reading->line,
-			   "%s has no value; it must be %s; otherwise remove the line",
-			   setting->name, expects);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"%s has no value; it must be %s; otherwise remove the line",
+				setting->name, expects);
 	else if (setting->secret)
-		faults_add(reading->faults, reading->line, "%s must be %s", setting->name, expects);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line, "%s must be %s",
+				setting->name, expects);
 	else
-		faults_add(reading->faults, reading->line, "%s must be %s, not '%s'", setting->name,
-			   expects, value);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"%s must be %s, not '%s'", setting->name, expects, value);
 }
 
 static void take(struct reading *reading, size_t index, char *text)
@@ -292,9 +219,9 @@ static void take(struct reading *reading, size_t index, char *text)
 	char *value;
 
 	if (reading->seen[index]) {
-		faults_add(reading->faults, reading->line,
-			   "%s is set in line %u already; remove one of the two", setting->name,
-			   reading->seen[index]);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"%s is set in line %u already; remove one of the two",
+				setting->name, reading->seen[index]);
 		return;
 	}
 	reading->seen[index] = reading->line;
@@ -307,7 +234,7 @@ static void on_entry(struct reading *reading, char *name, char *value)
 {
 	cut_space(name);
 	if (strlen(name) >= NAME_MAX)
-		cut(name, NAME_MAX - 1);
+		utf8_cut(name, NAME_MAX - 1);
 	for (size_t i = 0; i < reading->count; i++)
 		if (strcmp(reading->settings[i].section, reading->section) == 0 &&
 		    strcasecmp(reading->settings[i].name, name) == 0) {
@@ -323,14 +250,14 @@ static void on_section(struct reading *reading, char *text)
 
 	reading->skipping = true;
 	if (!end) {
-		faults_add(reading->faults, reading->line,
-			   "the section name is not closed; write ] after it");
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"the section name is not closed; write ] after it");
 		return;
 	}
 	*end = '\0';
 	text = skip_space(text);
 	cut_space(text);
-	cut(text, NAME_MAX - 1);
+	utf8_cut(text, NAME_MAX - 1);
 	for (size_t i = 0; i < reading->count; i++)
 		if (strcasecmp(reading->settings[i].section, text) == 0) {
 			snprintf(reading->section, NAME_MAX, "%s", reading->settings[i].section);
@@ -362,19 +289,20 @@ static void on_line(struct reading *reading, char *line)
 		return;
 	equals = strchr(line, '=');
 	if (!is_utf8(line)) {
-		faults_add(reading->faults, reading->line,
-			   "the line is not valid UTF-8; save the file as UTF-8 (in Notepad: Save "
-			   "as, Encoding: UTF-8)");
+		diagnostics_add(
+			reading->diagnostics, -EINVAL, NULL, reading->line,
+			"the line is not valid UTF-8; save the file as UTF-8 (in Notepad: Save "
+			"as, Encoding: UTF-8)");
 	} else if (*line == '[') {
 		on_section(reading, line + 1);
 	} else if (reading->skipping) {
 		return;
 	} else if (!equals) {
-		cut(line, QUOTED_MAX);
-		faults_add(reading->faults, reading->line,
-			   "'%s' is neither a [section] nor name = value; if it is a comment, "
-			   "write # before it",
-			   line);
+		utf8_cut(line, QUOTED_MAX);
+		diagnostics_add(reading->diagnostics, -EINVAL, NULL, reading->line,
+				"'%s' is neither a [section] nor name = value; if it is a comment, "
+				"write # before it",
+				line);
 	} else {
 		*equals = '\0';
 		on_entry(reading, line, equals + 1);
@@ -383,33 +311,35 @@ static void on_line(struct reading *reading, char *line)
 
 /* Returns whether the file can be read: not too large, not UTF-16 (which old versions of Notepad
  * call Unicode), and without zero bytes. */
-static bool is_text(struct bytes text, struct faults *faults)
+static bool is_text(struct bytes text, struct diagnostics *diagnostics)
 {
 	if (text.size > SETTINGS_FILE_MAX)
-		faults_add(faults, 0, "the file is larger than %d bytes, so it is some other file",
-			   SETTINGS_FILE_MAX);
+		diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				"the file is larger than %d bytes, so it is some other file",
+				SETTINGS_FILE_MAX);
 	else if (text.size >= 2 &&
 		 (memcmp(text.data, "\xff\xfe", 2) == 0 || memcmp(text.data, "\xfe\xff", 2) == 0))
-		faults_add(faults, 0,
-			   "the file is saved as UTF-16; save it as UTF-8 (in Notepad: Save as, "
-			   "Encoding: UTF-8)");
+		diagnostics_add(
+			diagnostics, -EINVAL, NULL, 0,
+			"the file is saved as UTF-16; save it as UTF-8 (in Notepad: Save as, "
+			"Encoding: UTF-8)");
 	else if (text.size > 0 && memchr(text.data, 0, text.size))
-		faults_add(faults, 0,
-			   "the file contains zero bytes; save it as plain text in UTF-8");
+		diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				"the file contains zero bytes; save it as plain text in UTF-8");
 	else
 		return true;
 	return false;
 }
 
 void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
-		   unsigned *lines, struct faults *faults)
+		   unsigned *lines, struct diagnostics *diagnostics)
 {
 	struct reading reading = {
-		.settings = settings, .count = count, .target = target, .faults = faults
+		.settings = settings, .count = count, .target = target, .diagnostics = diagnostics
 	};
 	size_t at = 0;
 
-	if (is_text(text, faults)) {
+	if (is_text(text, diagnostics)) {
 		if (text.size >= 3 && memcmp(text.data, "\xef\xbb\xbf", 3) == 0)
 			at = 3;
 		while (at < text.size) {
@@ -419,9 +349,9 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 
 			reading.line++;
 			if (size > LINE_BYTES_MAX) {
-				faults_add(faults, reading.line,
-					   "the line is longer than %d bytes; shorten it",
-					   LINE_BYTES_MAX);
+				diagnostics_add(diagnostics, -EINVAL, NULL, reading.line,
+						"the line is longer than %d bytes; shorten it",
+						LINE_BYTES_MAX);
 			} else {
 				memcpy(line, text.data + at, size);
 				line[size] = '\0';
@@ -435,20 +365,20 @@ void settings_read(struct bytes text, const struct setting *settings, size_t cou
 }
 
 int settings_read_file(const char *path, const struct setting *settings, size_t count, void *target,
-		       struct faults *faults)
+		       struct diagnostics *diagnostics)
 {
-	const unsigned before = faults->count;
+	const uint32_t before = diagnostics->error_count;
 	struct buffer file;
 	int rc;
 
 	buffer_init(&file, SETTINGS_FILE_MAX);
 	rc = buffer_read_file(&file, path);
 	if (rc == 0)
-		settings_read(buffer_bytes(&file), settings, count, target, NULL, faults);
+		settings_read(buffer_bytes(&file), settings, count, target, NULL, diagnostics);
 	else
-		faults_add(faults, 0, "%s", open_problem(rc));
+		diagnostics_add(diagnostics, rc, NULL, 0, "%s", open_problem(rc));
 	buffer_finish(&file);
-	return rc == 0 && faults->count > before ? -EINVAL : rc;
+	return rc == 0 && diagnostics->error_count > before ? -EINVAL : rc;
 }
 
 /* ---- values */

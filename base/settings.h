@@ -1,5 +1,5 @@
 /* Settings files with [section]s and name = value lines. The whole file is read: every fault is
- * collected with its line and its cure, and valid settings are set even if other lines are wrong.
+ * reported with its line and its cure, and valid settings are set even if other lines are wrong.
  * Files as Windows saves them (CRLF, a byte order mark) are accepted.
  *
  *   # or ; at a line's start          a comment; after a value: with a space before it
@@ -12,28 +12,15 @@
 
 #include "base/bytes.h"
 #include "base/compiler.h"
+#include "base/diagnostics.h"
 
-enum { FAULTS_MAX = 32, FAULT_TEXT_BYTES = 280, SETTINGS_MAX = 48, SETTINGS_FILE_MAX = 65536 };
-
-/* Faults in the order of their lines; those without a line come last. */
-struct faults {
-	struct {
-		unsigned line;               /* 0: the file as a whole */
-		char text[FAULT_TEXT_BYTES]; /* "line 7: ...": one sentence of printable UTF-8 */
-	} list[FAULTS_MAX];
-	unsigned count;   /* number in the list */
-	unsigned dropped; /* number that did not fit into the list */
-};
-
-/* Adds a fault, in the order of lines. line 0: no line. Bytes that cannot be printed become '?'; a
- * text too long is cut. */
-void faults_add(struct faults *faults, unsigned line, const char *text, ...) printf_like(3, 4);
+enum { SETTINGS_DIAGNOSTICS_MAX = 32, SETTINGS_MAX = 48, SETTINGS_FILE_MAX = 65536 };
 
 struct setting {
 	const char *section, *name;
 	/* For "NAME must be ..., not 'x'"; NULL: a number from least to most. */
 	const char *expects;
-	/* Sets the field in target. false: the value is not what the setting expects; report it. */
+	/* Sets the field in target. false: the value is not what the setting expects. */
 	bool (*set)(const struct setting *setting, void *target, const char *value);
 	size_t offset; /* offset of the field in the target */
 	double least, most;
@@ -44,14 +31,15 @@ struct setting {
 /* Reads a whole text against a table of `count` settings, at most SETTINGS_MAX, ordered by section.
  * Fields of target whose settings do not appear keep their values. lines, of `count` elements or
  * NULL, receives the line of each setting that appears, even if its value was refused; 0: it does
- * not appear. If a setting appears twice, the first one counts. Faults are added to *faults. */
+ * not appear. If a setting appears twice, the first one counts. Faults are added to *diagnostics,
+ * usually SETTINGS_DIAGNOSTICS_MAX at most, in the order of lines. */
 void settings_read(struct bytes text, const struct setting *settings, size_t count, void *target,
-		   unsigned *lines, struct faults *faults);
+		   unsigned *lines, struct diagnostics *diagnostics);
 
 /* As settings_read, for the file at a path that we or the operator chose. Returns 0; -EINVAL if it
- * has faults; or the error of reading it, which is added to *faults too. */
+ * has faults; or the error of reading it, which is added too. */
 must_check int settings_read_file(const char *path, const struct setting *settings, size_t count,
-				  void *target, struct faults *faults);
+				  void *target, struct diagnostics *diagnostics);
 
 /* ---- for set functions; each number must lie from the setting's least to its most */
 

@@ -80,15 +80,16 @@ static const struct setting settings[] = {
 
 int profile_read(struct profile *out, const char *path)
 {
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	int rc;
 
 	*out = profile_default;
 	if (!path)
 		return 0;
-	rc = settings_read_file(path, settings, ARRAY_COUNT(settings), out, &faults);
-	for (unsigned i = 0; i < faults.count; i++)
+	rc = settings_read_file(path, settings, ARRAY_COUNT(settings), out, &diagnostics);
+	for (unsigned i = 0; i < diagnostics.count; i++)
 		log_error("board", "board bug: %s, %s (see docs/board.md)", path,
-			  faults.list[i].text);
+			  diagnostics_get(&diagnostics, i)->text);
+	diagnostics_finish(&diagnostics);
 	return rc;
 }

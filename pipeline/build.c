@@ -19,9 +19,9 @@ enum { STAMP_TEXT_BYTES_MAX = 4 << 20, PROGRAM_BYTES_MAX = 256 << 20 };
 
 /* ---- has anything changed since the last build? */
 
-static int fail(const struct fault *fault, int rc, const char *what)
+static int fail(const struct diagnostics *diagnostics, int rc)
 {
-	log_error("pipeline", "%s", fault && fault->text[0] ? fault->text : what);
+	log_error("pipeline", "%s", diagnostics_cause(diagnostics, rc));
 	return rc;
 }
 
@@ -80,13 +80,13 @@ static int make_stamp(struct hash *out, struct sources *sources,
 {
 	const struct content *content = sources_content(sources);
 	static const char *const names[] = { "temple.ini", "parts.json", "tours.json" };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct hash scans;
 	struct buffer text;
-	int rc = scans_key(sources_scans(sources), &scans, &fault);
+	int rc = scans_key(sources_scans(sources), &scans, &diagnostics);
 
 	if (rc < 0)
-		return fail(&fault, rc, strerror(-rc));
+		return fail(&diagnostics, rc);
 	buffer_init(&text, STAMP_TEXT_BYTES_MAX);
 	rc = put_program(&text);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
@@ -160,12 +160,12 @@ static int make_master(const char *folder, struct scans *scans, struct hash stam
 		       const struct master_options *options)
 {
 	struct master_report report;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	const struct mesh *mesh;
-	int rc = scans_get_mesh(scans, &mesh, &fault);
+	int rc = scans_get_mesh(scans, &mesh, &diagnostics);
 
 	if (rc < 0)
-		return fail(&fault, rc, strerror(-rc));
+		return fail(&diagnostics, rc);
 	rc = master_build(folder, mesh, stamp, options, &report);
 	if (rc < 0)
 		log_error("pipeline", "%s: %s%s", folder, strerror(-rc),
@@ -179,7 +179,7 @@ int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *
 {
 	const struct content *content = scans_content(scans);
 	struct master_options options;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
 	int rc = content_work_path(content, "master", folder);
@@ -188,9 +188,9 @@ int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *
 	*made = false;
 	build_master_options(&options, content, jobs);
 	if (rc == 0)
-		rc = scans_key(scans, &key, &fault);
+		rc = scans_key(scans, &key, &diagnostics);
 	if (rc < 0)
-		return fail(&fault, rc, strerror(-rc));
+		return fail(&diagnostics, rc);
 	stamp = master_stamp(key, &options);
 	rc = master_open(out, folder, &stamp);
 	if (rc == 0)
@@ -205,14 +205,14 @@ int build_samples(struct scans *scans, const struct master *master,
 {
 	struct sampler_options chosen = *options;
 	const struct scans_shape *shape;
-	struct fault fault = { "" };
-	int rc = scans_get_shape(scans, &shape, &fault);
+	struct diagnostics diagnostics = { 0 };
+	int rc = scans_get_shape(scans, &shape, &diagnostics);
 
 	/* patches have no pictures */
 	chosen.master = rc == 0 && !shape->has_textures ? master : NULL;
 	if (rc == 0)
-		rc = sampler_run(scans, &chosen, &fault);
-	return rc < 0 ? fail(&fault, rc, strerror(-rc)) : 0;
+		rc = sampler_run(scans, &chosen, &diagnostics);
+	return rc < 0 ? fail(&diagnostics, rc) : 0;
 }
 
 static int run_stages(struct build_report *report, uint32_t jobs,

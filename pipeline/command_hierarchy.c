@@ -79,10 +79,10 @@ static void print_report(const struct master_report *report, uint64_t source_tri
 	       seconds, (double)source_triangles / 1e6 / (seconds > 0.0 ? seconds : 1e-3));
 }
 
-static int complain(const char *what, int rc, const struct fault *fault)
+static int complain(const char *what, int rc, const struct diagnostics *diagnostics)
 {
-	if (fault && fault->text[0])
-		fprintf(stderr, "gopura-content hierarchy: %s\n", fault->text);
+	if (diagnostics && diagnostics->count > 0)
+		fprintf(stderr, "gopura-content hierarchy: %s\n", diagnostics->first.text);
 	else if (rc == -E2BIG)
 		fprintf(stderr,
 			"gopura-content hierarchy: %s: the coarsest patches do not fit in one "
@@ -97,12 +97,12 @@ static int build(const char *folder, struct scans *scans, struct hash stamp,
 		 const struct master_options *options)
 {
 	struct master_report report;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	const struct mesh *mesh;
-	int rc = scans_get_mesh(scans, &mesh, &fault);
+	int rc = scans_get_mesh(scans, &mesh, &diagnostics);
 
 	if (rc < 0)
-		return complain(scans_content(scans)->folder, rc, &fault);
+		return complain(scans_content(scans)->folder, rc, &diagnostics);
 	rc = master_build(folder, mesh, stamp, options, &report);
 	if (rc < 0)
 		complain(folder, rc, NULL);
@@ -116,7 +116,7 @@ static int make(const struct settings *settings, struct scans *scans)
 {
 	const struct content *content = scans_content(scans);
 	struct master_options options;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct master *master = NULL;
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
@@ -124,9 +124,9 @@ static int make(const struct settings *settings, struct scans *scans)
 
 	build_master_options(&options, content, settings->jobs);
 	if (rc == 0)
-		rc = scans_key(scans, &key, &fault);
+		rc = scans_key(scans, &key, &diagnostics);
 	if (rc < 0)
-		return complain(content->folder, rc, &fault);
+		return complain(content->folder, rc, &diagnostics);
 	stamp = master_stamp(key, &options);
 	rc = settings->force ? -ENOENT : master_open(&master, folder, &stamp);
 	if (rc == 0) {

@@ -35,12 +35,12 @@ struct settings {
 static int read_one(struct mesh *all, const char *path, const struct settings *settings)
 {
 	struct import_report report;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
-	int rc = import_scan(&mesh, path, &settings->import, &report, &fault);
+	int rc = import_scan(&mesh, path, &settings->import, &report, &diagnostics);
 
 	if (rc < 0) {
-		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 		return rc;
 	}
 	import_report_print(stdout, path, &report);

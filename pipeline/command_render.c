@@ -85,7 +85,8 @@ static bool read_options(int argc, char **argv, struct settings *settings)
 	       settings->reference.width_px;
 }
 
-static int read_views(const char *path, struct camera **views, uint32_t *count, struct fault *fault)
+static int read_views(const char *path, struct camera **views, uint32_t *count,
+		      struct diagnostics *diagnostics)
 {
 	struct buffer text;
 	int rc;
@@ -93,9 +94,9 @@ static int read_views(const char *path, struct camera **views, uint32_t *count, 
 	buffer_init(&text, 16 << 20);
 	rc = buffer_read_file(&text, path);
 	if (rc < 0)
-		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+		diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc));
 	else
-		rc = reference_views(views, count, buffer_bytes(&text), path, fault);
+		rc = reference_views(views, count, buffer_bytes(&text), path, diagnostics);
 	buffer_finish(&text);
 	return rc;
 }
@@ -107,7 +108,7 @@ int command_render(int argc, char **argv)
 	struct content content;
 	struct scans *scans = NULL;
 	struct camera *views = NULL;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	uint32_t count;
 	int rc;
 
@@ -119,16 +120,17 @@ int command_render(int argc, char **argv)
 	}
 	if (command_read_content(&content, settings.dir) < 0)
 		return EXIT_FAILURE;
-	rc = read_views(settings.views, &views, &count, &fault);
+	rc = read_views(settings.views, &views, &count, &diagnostics);
 	if (rc == 0)
 		rc = scans_create(&scans, &content);
 	if (rc == 0)
-		rc = reference_draw(scans, views, count, &settings.reference, &report, &fault);
+		rc = reference_draw(scans, views, count, &settings.reference, &report,
+				    &diagnostics);
 	if (rc == 0)
 		printf("%s: %u pictures drawn, %u kept\n", settings.reference.out_dir, report.drawn,
 		       report.kept);
 	else
-		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 	scans_destroy(scans);
 	content_release(&content);
 	free(views);

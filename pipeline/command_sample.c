@@ -93,7 +93,7 @@ static void report(const char *dir)
 int command_sample(int argc, char **argv)
 {
 	struct sampler_options options = { .shard_count = 1 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct content content;
 	struct scans *scans = NULL;
 	const char *dir;
@@ -112,7 +112,7 @@ int command_sample(int argc, char **argv)
 	scans_destroy(scans);
 	content_release(&content);
 	if (rc < 0) {
-		fprintf(stderr, "%s\n", fault.text[0] ? fault.text : strerror(-rc));
+		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 		return EXIT_FAILURE;
 	}
 	if (options.shard_count <= 1)

@@ -2,6 +2,7 @@
 #include "pipeline/commands.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,12 +26,14 @@ bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *o
 
 int command_read_content(struct content *out, const char *folder)
 {
-	struct faults faults = { .count = 0 };
-	int rc = content_read(out, folder, &faults);
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	char before[PATH_MAX + 32];
+	int rc = content_read(out, folder, &diagnostics);
 
-	for (unsigned i = 0; i < faults.count; i++)
-		fprintf(stderr, "%s/temple.ini, %s\n", folder, faults.list[i].text);
-	if (rc < 0 && faults.count == 0)
+	snprintf(before, sizeof(before), "%s/temple.ini, ", folder);
+	diagnostics_print(&diagnostics, stderr, before);
+	if (rc < 0 && diagnostics.count == 0)
 		fprintf(stderr, "%s: %s\n", folder, strerror(-rc));
+	diagnostics_finish(&diagnostics);
 	return rc;
 }

@@ -2,6 +2,8 @@
  * its checksum, or enlarges the data partition. */
 #include <errno.h>
 #include <getopt.h>
+#include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,20 +174,22 @@ static void parse(struct command *command, int argc, char **argv)
 static int check(const struct command *command)
 {
 	static struct terminal terminal;
-	static struct faults faults;
+	static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	char before[PATH_MAX + 2];
+	bool bad;
 
 	if (terminal_read(&terminal, command->check, command->boards_asked ? command->boards : NULL,
-			  &faults) < 0) {
+			  &diagnostics) < 0) {
 		fprintf(stderr, "gopura-setup: %s: there is no such file\n", command->check);
 		return 1;
 	}
-	for (unsigned i = 0; i < faults.count; i++)
-		printf("%s: %s\n", command->check, faults.list[i].text);
-	if (faults.dropped > 0)
-		printf("%s: and %u more\n", command->check, faults.dropped);
-	if (faults.count == 0)
+	snprintf(before, sizeof(before), "%s: ", command->check);
+	diagnostics_print(&diagnostics, stdout, before);
+	if (diagnostics.count == 0)
 		printf("%s: no faults\n", command->check);
-	return faults.count > 0;
+	bad = diagnostics.count > 0;
+	diagnostics_finish(&diagnostics);
+	return bad;
 }
 
 static int print_sum(const char *path)
@@ -203,22 +207,28 @@ static int print_sum(const char *path)
 static int apply(const struct command *command)
 {
 	static struct terminal terminal;
-	static struct faults faults;
-	struct setup setup = { .terminal = &terminal, .faults = &faults, .out = command->out };
+	static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	struct setup setup = { .terminal = &terminal,
+			       .diagnostics = &diagnostics,
+			       .out = command->out };
+	int rc;
 
 	for (unsigned i = 0; i < command->count && !setup.conf_path; i++)
-		if (terminal_read(&terminal, command->confs[i], command->boards, &faults) == 0)
+		if (terminal_read(&terminal, command->confs[i], command->boards, &diagnostics) == 0)
 			setup.conf_path = command->confs[i];
 	if (setup.conf_path)
-		log_info("setup", "%s: %u faults", setup.conf_path, faults.count + faults.dropped);
+		log_info("setup", "%s: %u faults", setup.conf_path,
+			 diagnostics_total(&diagnostics));
 	else
-		faults_add(&faults, 0,
-			   "%s does not exist: create it (docs/terminal.md); until then the "
-			   "network is configured by DHCP",
-			   command->confs[0]);
-	for (unsigned i = 0; i < faults.count; i++)
-		log_warn("setup", "%s", faults.list[i].text);
-	return setup_write(&setup) < 0;
+		diagnostics_add(&diagnostics, -EINVAL, NULL, 0,
+				"%s does not exist: create it (docs/terminal.md); until then the "
+				"network is configured by DHCP",
+				command->confs[0]);
+	for (unsigned i = 0; i < diagnostics.count; i++)
+		log_warn("setup", "%s", diagnostics_get(&diagnostics, i)->text);
+	rc = setup_write(&setup);
+	diagnostics_finish(&diagnostics);
+	return rc < 0;
 }
 
 int main(int argc, char **argv)

@@ -385,12 +385,12 @@ static void write_host_name(struct writing *writing)
 
 static void write_faults(struct writing *writing)
 {
-	const struct faults *faults = writing->setup->faults;
+	const struct diagnostics *diagnostics = writing->setup->diagnostics;
 
-	for (unsigned i = 0; i < faults->count; i++)
-		put(writing, "%s\n", faults->list[i].text);
-	if (faults->dropped > 0)
-		put(writing, "and %u more\n", faults->dropped);
+	for (unsigned i = 0; i < diagnostics->count; i++)
+		put(writing, "%s\n", diagnostics_get(diagnostics, i)->text);
+	if (diagnostics->dropped > 0)
+		put(writing, "and %u more\n", diagnostics->dropped);
 	finish_file(writing, "faults");
 }
 

@@ -8,7 +8,7 @@
 struct setup {
 	/* borrowed, like all pointers here */
 	const struct terminal *terminal;
-	const struct faults *faults;
+	const struct diagnostics *diagnostics;
 	const char *conf_path; /* the file that was read; NULL: none was found */
 	const char *out;       /* the folder; created if missing */
 };

@@ -207,52 +207,59 @@ static bool is_loopback(const char *address)
 }
 
 /* Reports contradictions between valid lines. Invalid lines have been reported already. */
-static void check_together(const struct terminal *t, const unsigned *lines, struct faults *faults)
+static void check_together(const struct terminal *t, const unsigned *lines,
+			   struct diagnostics *diagnostics)
 {
 	if (lines[AT_TRUST] && !lines[AT_URL])
-		faults_add(faults, 0,
-			   "section [release] has no url; add the address of the release, such as "
-			   "url = https://museum.example/temple/");
+		diagnostics_add(
+			diagnostics, -EINVAL, NULL, 0,
+			"section [release] has no url; add the address of the release, such as "
+			"url = https://museum.example/temple/");
 	if (lines[AT_URL] && !lines[AT_TRUST])
-		faults_add(faults, 0,
-			   "section [release] has no trust; copy the release's root/1.json beside "
-			   "this file and add trust = 1.json");
+		diagnostics_add(
+			diagnostics, -EINVAL, NULL, 0,
+			"section [release] has no trust; copy the release's root/1.json beside "
+			"this file and add trust = 1.json");
 	if (t->gateway[0] && !lines[AT_ADDRESS])
-		faults_add(faults, lines[AT_GATEWAY],
-			   "gateway needs a static address; add one, such as address = "
-			   "192.168.1.20/24, or remove gateway");
+		diagnostics_add(diagnostics, -EINVAL, NULL, lines[AT_GATEWAY],
+				"gateway needs a static address; add one, such as address = "
+				"192.168.1.20/24, or remove gateway");
 	else if (t->gateway[0] && t->is_static &&
 		 !in_one_network(t->address, t->gateway, t->prefix_bits))
-		faults_add(faults, lines[AT_GATEWAY],
-			   "gateway %s is not in the network of %s/%u; correct one of the two",
-			   t->gateway, t->address, t->prefix_bits);
+		diagnostics_add(diagnostics, -EINVAL, NULL, lines[AT_GATEWAY],
+				"gateway %s is not in the network of %s/%u; correct one of the two",
+				t->gateway, t->address, t->prefix_bits);
 	if (lines[AT_PASSPHRASE] && !lines[AT_SSID])
-		faults_add(faults, lines[AT_PASSPHRASE],
-			   "passphrase needs ssid; add the name of the network");
+		diagnostics_add(diagnostics, -EINVAL, NULL, lines[AT_PASSPHRASE],
+				"passphrase needs ssid; add the name of the network");
 	if (lines[AT_SSID] && !lines[AT_COUNTRY])
-		faults_add(faults, lines[AT_SSID],
-			   "ssid needs country, because the radio must keep that country's rules; "
-			   "add it, such as country = KH");
+		diagnostics_add(
+			diagnostics, -EINVAL, NULL, lines[AT_SSID],
+			"ssid needs country, because the radio must keep that country's rules; "
+			"add it, such as country = KH");
 	if (t->mdns && is_loopback(t->listen_address))
-		faults_add(faults, lines[AT_MDNS],
-			   "mdns announces the health page, but the page listens to the terminal "
-			   "alone; add listen = 0.0.0.0:9100 or the terminal's own address, or "
-			   "remove mdns");
+		diagnostics_add(
+			diagnostics, -EINVAL, NULL, lines[AT_MDNS],
+			"mdns announces the health page, but the page listens to the terminal "
+			"alone; add listen = 0.0.0.0:9100 or the terminal's own address, or "
+			"remove mdns");
 }
 
-static void parse(struct terminal *out, struct bytes text, unsigned *lines, struct faults *faults)
+static void parse(struct terminal *out, struct bytes text, unsigned *lines,
+		  struct diagnostics *diagnostics)
 {
 	_Static_assert(ARRAY_COUNT(settings) <= SETTINGS_MAX, "each has a line");
 	*out = terminal_default;
-	settings_read(text, settings, ARRAY_COUNT(settings), out, lines, faults);
-	check_together(out, lines, faults);
+	settings_read(text, settings, ARRAY_COUNT(settings), out, lines, diagnostics);
+	check_together(out, lines, diagnostics);
+	diagnostics_sort(diagnostics);
 }
 
-void terminal_parse(struct terminal *out, struct bytes text, struct faults *faults)
+void terminal_parse(struct terminal *out, struct bytes text, struct diagnostics *diagnostics)
 {
 	unsigned lines[ARRAY_COUNT(settings)];
 
-	parse(out, text, lines, faults);
+	parse(out, text, lines, diagnostics);
 }
 
 int terminal_read_beside(struct buffer *out, const char *path, const char *name)
@@ -267,7 +274,8 @@ int terminal_read_beside(struct buffer *out, const char *path, const char *name)
 }
 
 /* Checks that a named file can be read. If not, reports it and clears the name. */
-static void look_beside(const char *path, char *name, unsigned line, struct faults *faults)
+static void look_beside(const char *path, char *name, unsigned line,
+			struct diagnostics *diagnostics)
 {
 	const char *slash = strrchr(path, '/'), *conf = slash ? slash + 1 : path;
 	struct buffer file;
@@ -281,11 +289,11 @@ static void look_beside(const char *path, char *name, unsigned line, struct faul
 	if (rc == 0)
 		return;
 	if (rc == -ENOENT)
-		faults_add(faults, line, "there is no file %s beside %s; copy it there", name,
-			   conf);
+		diagnostics_add(diagnostics, -EINVAL, NULL, line,
+				"there is no file %s beside %s; copy it there", name, conf);
 	else
-		faults_add(faults, line, "%s beside %s cannot be read: %s", name, conf,
-			   open_problem(rc));
+		diagnostics_add(diagnostics, rc, NULL, line, "%s beside %s cannot be read: %s",
+				name, conf, open_problem(rc));
 	*name = '\0';
 }
 
@@ -308,7 +316,8 @@ static void list_profiles(const char *boards, char *out, size_t bytes)
 	free(entries);
 }
 
-static void look_for_profile(const char *boards, char *name, unsigned line, struct faults *faults)
+static void look_for_profile(const char *boards, char *name, unsigned line,
+			     struct diagnostics *diagnostics)
 {
 	char path[PATH_MAX], known[160];
 
@@ -317,15 +326,17 @@ static void look_for_profile(const char *boards, char *name, unsigned line, stru
 		return;
 	list_profiles(boards, known, sizeof(known));
 	if (known[0])
-		faults_add(faults, line, "there is no board profile '%s'; the profiles are %s",
-			   name, known);
+		diagnostics_add(diagnostics, -EINVAL, NULL, line,
+				"there is no board profile '%s'; the profiles are %s", name, known);
 	else
-		faults_add(faults, line, "there is no board profile '%s', and no other one in %s",
-			   name, boards);
+		diagnostics_add(diagnostics, -EINVAL, NULL, line,
+				"there is no board profile '%s', and no other one in %s", name,
+				boards);
 	*name = '\0';
 }
 
-int terminal_read(struct terminal *out, const char *path, const char *boards, struct faults *faults)
+int terminal_read(struct terminal *out, const char *path, const char *boards,
+		  struct diagnostics *diagnostics)
 {
 	unsigned lines[ARRAY_COUNT(settings)];
 	struct buffer file;
@@ -335,13 +346,15 @@ int terminal_read(struct terminal *out, const char *path, const char *boards, st
 	buffer_init(&file, SETTINGS_FILE_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc == 0) {
-		parse(out, buffer_bytes(&file), lines, faults);
-		look_beside(path, out->trust, lines[AT_TRUST], faults);
-		look_beside(path, out->ca, lines[AT_CA], faults);
+		parse(out, buffer_bytes(&file), lines, diagnostics);
+		look_beside(path, out->trust, lines[AT_TRUST], diagnostics);
+		look_beside(path, out->ca, lines[AT_CA], diagnostics);
 		if (boards)
-			look_for_profile(boards, out->board, lines[AT_BOARD], faults);
+			look_for_profile(boards, out->board, lines[AT_BOARD], diagnostics);
+		diagnostics_sort(diagnostics);
 	} else if (rc != -ENOENT) {
-		faults_add(faults, 0, "the file cannot be read: %s", open_problem(rc));
+		diagnostics_add(diagnostics, rc, NULL, 0, "the file cannot be read: %s",
+				open_problem(rc));
 	}
 	buffer_finish(&file);
 	return rc == -ENOENT ? rc : 0;
@@ -362,7 +375,7 @@ static void sum_file(crypto_generichash_state *sum, const struct buffer *file)
 int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES])
 {
 	struct terminal terminal;
-	struct faults faults = { .count = 0 };
+	struct diagnostics ignored = { 0 };
 	const char *const names[] = { terminal.trust, terminal.ca };
 	uint8_t digest[(TERMINAL_SUM_BYTES - 1) / 2];
 	crypto_generichash_state sum;
@@ -374,7 +387,7 @@ int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES])
 	rc = buffer_read_foreign(&file, path);
 	if (rc == 0) {
 		sum_file(&sum, &file);
-		terminal_parse(&terminal, buffer_bytes(&file), &faults);
+		terminal_parse(&terminal, buffer_bytes(&file), &ignored);
 		for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
 			if (!*names[i] || terminal_read_beside(&file, path, names[i]) < 0)
 				buffer_clear(&file);

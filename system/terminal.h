@@ -80,14 +80,14 @@ struct terminal {
 extern const struct terminal terminal_default;
 
 /* Parses text. *out starts as terminal_default; valid lines are applied even if others are wrong.
- * Faults are added to *faults. */
-void terminal_parse(struct terminal *out, struct bytes text, struct faults *faults);
+ * Faults are added to *diagnostics, ordered by lines. */
+void terminal_parse(struct terminal *out, struct bytes text, struct diagnostics *diagnostics);
 /* Reads the file at path, and looks for the files it names beside it and for the board profile in
  * the folder `boards` (NULL: no check). A name without a readable file is reported and cleared.
- * -ENOENT: there is no file at path; this is not added to the faults. A file that cannot be read is
- * added to the faults, and the result is 0. */
+ * -ENOENT: there is no file at path; this is not added. A file that cannot be read is
+ * added, and the result is 0. */
 must_check int terminal_read(struct terminal *out, const char *path, const char *boards,
-			     struct faults *faults);
+			     struct diagnostics *diagnostics);
 
 /* Reads a file named by the gopura.conf at `path` into *out (cleared first). Only a regular file in
  * the same folder is read. Errors: base/safe_open.h. */

@@ -67,6 +67,7 @@ static int start(struct safe_mode *safe, struct options *options)
 	if (provision_read(&provision, options, &profile) < 0)
 		log_warn("app",
 			 "safe page: the board profile has faults; its valid entries are used");
+	provision_finish(&provision);
 	display = (struct display_options){
 		.kind = options->display,
 		.width_px = options->width_px,

@@ -64,7 +64,7 @@ static void check_settings(struct self_test *test, struct options *options)
 	static struct provision own; /* the options borrow from it */
 	const struct provision *provision = &own;
 	const int rc = provision_read(&own, options, &test->profile);
-	const unsigned faults = provision->faults.count + provision->faults.dropped;
+	const uint32_t faults = diagnostics_total(&provision->diagnostics);
 
 	if (rc < 0)
 		say(test, false, "settings", "%s cannot be used: correct what the log reports",
@@ -77,6 +77,7 @@ static void check_settings(struct self_test *test, struct options *options)
 	else
 		say(test, true, "settings", "%s",
 		    provision->path ? provision->path : "given on the command line");
+	provision_finish(&own);
 }
 
 /* ---- panel and GPU */

@@ -31,29 +31,29 @@ static int draw_page(struct setup_page *page, const struct notice *notice)
 
 static int draw_faults(struct setup_page *page, const struct provision *provision)
 {
-	const struct faults *faults = &provision->faults;
-	struct notice_item items[FAULTS_MAX];
-	char marks[FAULTS_MAX][20], lead[PATH_MAX + 64];
+	const struct diagnostics *diagnostics = &provision->diagnostics;
+	struct notice_item items[SETTINGS_DIAGNOSTICS_MAX];
+	char marks[SETTINGS_DIAGNOSTICS_MAX][20], lead[PATH_MAX + 64];
 	const struct notice notice = {
 		.title = "gopura.conf contains errors",
 		.lead = lead,
 		.items = items,
-		.count = faults->count,
-		.dropped = faults->dropped,
+		.count = diagnostics->count,
+		.dropped = diagnostics->dropped,
 		.foot = "Correct the file on any computer, then restart the terminal; if the file is "
 			"on a USB stick, just plug the stick in again. gopura-setup --check "
 			"gopura.conf checks the file on a computer.",
 	};
 
-	for (unsigned i = 0; i < faults->count; i++) {
-		const char *text = faults->list[i].text;
+	for (unsigned i = 0; i < diagnostics->count; i++) {
+		const struct diagnostic *found = diagnostics_get(diagnostics, i);
 
 		marks[i][0] = '\0';
-		if (faults->list[i].line > 0) {
-			snprintf(marks[i], sizeof(marks[i]), "line %u", faults->list[i].line);
-			text = strchr(text, ':') + 2; /* skip "line N: ", which the mark shows */
-		}
-		items[i] = (struct notice_item){ .mark = marks[i], .text = text };
+		if (found->line > 0)
+			snprintf(marks[i], sizeof(marks[i]), "line %u", found->line);
+		/* The mark shows the place. */
+		items[i] = (struct notice_item){ .mark = marks[i],
+						 .text = found->text + found->place_bytes };
 	}
 	snprintf(lead, sizeof(lead), "%s: the valid entries are in use.", provision->path);
 	return draw_page(page, &notice);
@@ -99,11 +99,11 @@ int setup_page_show(struct setup_page *page, const struct options *options,
 
 	if (is_unset && !provision->path)
 		return draw_missing(page, options);
-	if (is_unset && !provision->terminal.release_url[0] && provision->faults.count == 0)
-		faults_add(&provision->faults, 0,
-			   "section [release] has no url and no trust; add the address of the "
-			   "release and its root/1.json");
-	return provision->faults.count > 0 ? draw_faults(page, provision) : 0;
+	if (is_unset && !provision->terminal.release_url[0] && provision->diagnostics.count == 0)
+		diagnostics_add(&provision->diagnostics, -EINVAL, NULL, 0,
+				"section [release] has no url and no trust; add the address of the "
+				"release and its root/1.json");
+	return provision->diagnostics.count > 0 ? draw_faults(page, provision) : 0;
 }
 
 void setup_page_finish(struct setup_page *page)

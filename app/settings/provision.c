@@ -21,7 +21,7 @@ static void read_file(struct provision *provision, const struct options *options
 	for (uint32_t i = 0; i < options->conf_count && !provision->path; i++)
 		if (terminal_read(&provision->terminal, options->conf_paths[i],
 				  options->board_path ? NULL : options->boards_dir,
-				  &provision->faults) == 0)
+				  &provision->diagnostics) == 0)
 			provision->path = options->conf_paths[i];
 }
 
@@ -37,8 +37,8 @@ static const char *beside(const struct provision *provision, const char *name, c
 	return out;
 }
 
-/* Returns the path of the trust root that gopura.conf names, or NULL after adding a fault. The file
- * is checked here, because an invalid one would make every start fail. */
+/* Returns the path of the trust root that gopura.conf names, or NULL after adding a diagnostic. The
+ * file is checked here, because an invalid one would make every start fail. */
 static const char *checked_trust(struct provision *provision)
 {
 	const char *path = beside(provision, provision->terminal.trust, provision->trust_path);
@@ -58,9 +58,9 @@ static const char *checked_trust(struct provision *provision)
 	buffer_finish(&file);
 	if (rc == 0)
 		return path;
-	faults_add(&provision->faults, 0,
-		   "%s is no trust root (%s); copy the release's root/1.json there once more",
-		   provision->terminal.trust, why);
+	diagnostics_add(&provision->diagnostics, -EINVAL, NULL, 0,
+			"%s is no trust root (%s); copy the release's root/1.json there once more",
+			provision->terminal.trust, why);
 	return NULL;
 }
 
@@ -112,10 +112,11 @@ static int read_profile(struct provision *provision, const struct options *optio
 	}
 	rc = profile_read(out, path);
 	if (rc < 0 && path == provision->board_path) {
-		faults_add(&provision->faults, 0,
-			   "the profile of the board '%s' has faults (the log names them); what is "
-			   "right of it holds",
-			   terminal->board);
+		diagnostics_add(
+			&provision->diagnostics, -EINVAL, NULL, 0,
+			"the profile of the board '%s' has faults (the log names them); what is "
+			"right of it holds",
+			terminal->board);
 		rc = 0;
 	}
 	if (terminal->rotation_deg >= 0)
@@ -127,6 +128,7 @@ int provision_read(struct provision *provision, struct options *options, struct 
 {
 	int rc;
 
+	provision->diagnostics.max = SETTINGS_DIAGNOSTICS_MAX;
 	read_file(provision, options);
 	if (provision->path)
 		merge(provision, options);
@@ -135,14 +137,19 @@ int provision_read(struct provision *provision, struct options *options, struct 
 	if (options->idle_s == 0)
 		options->idle_s = (int)provision->terminal.idle_s;
 	rc = read_profile(provision, options, profile);
-	for (unsigned i = 0; i < provision->faults.count; i++)
+	for (unsigned i = 0; i < provision->diagnostics.count; i++)
 		log_error("app", "set-up bug: %s: %s", provision->path,
-			  provision->faults.list[i].text);
-	if (provision->faults.dropped > 0)
+			  diagnostics_get(&provision->diagnostics, i)->text);
+	if (provision->diagnostics.dropped > 0)
 		log_error("app", "set-up bug: %s: and %u more faults", provision->path,
-			  provision->faults.dropped);
+			  provision->diagnostics.dropped);
 	if (!provision->path && options->conf_count > 0)
 		log_warn("app", "%s does not exist; the defaults are used (docs/terminal.md)",
 			 options->conf_paths[0]);
 	return rc;
+}
+
+void provision_finish(struct provision *provision)
+{
+	diagnostics_finish(&provision->diagnostics);
 }

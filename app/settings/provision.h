@@ -11,7 +11,7 @@
 
 struct provision {
 	struct terminal terminal; /* terminal_default if there is no file */
-	struct faults faults;
+	struct diagnostics diagnostics;
 	const char *path; /* the file that was read; NULL: none exists, or none was asked for */
 	char trust_path[PATH_MAX], ca_path[PATH_MAX], board_path[PATH_MAX];
 };
@@ -22,5 +22,7 @@ struct provision {
  * has faults; *profile then has its valid entries. */
 must_check int provision_read(struct provision *provision, struct options *options,
 			      struct profile *profile);
+/* Frees the faults. Zeroed is fine. */
+void provision_finish(struct provision *provision);
 
 #endif

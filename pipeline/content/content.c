@@ -284,27 +284,23 @@ static void set_defaults(struct content *content, const char *folder)
 		 slash && slash[1] ? slash + 1 : content->folder);
 }
 
-static int complete_scan(struct content *content, uint32_t i, struct faults *faults)
+static int complete_scan(struct content *content, uint32_t i, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
 	struct stat status;
 	int rc = content_file_path(content, content->scans[i], path);
 	char *owned;
 
-	if (rc < 0) {
-		faults_add(faults, 0, "scans: %s: %s", content->scans[i], strerror(-rc));
-		return rc;
-	}
-	if (stat(path, &status) < 0) {
-		rc = -errno;
-		faults_add(faults, 0, "scans: %s: %s; put it into %s, or correct its name",
-			   content->scans[i], strerror(-rc), content->folder);
-		return rc;
-	}
-	if (!S_ISREG(status.st_mode)) {
-		faults_add(faults, 0, "scans: %s is not a regular file", content->scans[i]);
-		return -EINVAL;
-	}
+	if (rc < 0)
+		return diagnostics_add(diagnostics, rc, NULL, 0, "scans: %s: %s", content->scans[i],
+				       strerror(-rc));
+	if (stat(path, &status) < 0)
+		return diagnostics_add(diagnostics, -errno, NULL, 0,
+				       "scans: %s: %s; put it into %s, or correct its name",
+				       content->scans[i], strerror(errno), content->folder);
+	if (!S_ISREG(status.st_mode))
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "scans: %s is not a regular file", content->scans[i]);
 	owned = strdup(path);
 	if (!owned)
 		return -ENOMEM;
@@ -313,38 +309,36 @@ static int complete_scan(struct content *content, uint32_t i, struct faults *fau
 	return 0;
 }
 
-static int complete(struct content *content, struct faults *faults)
+static int complete(struct content *content, struct diagnostics *diagnostics)
 {
 	int rc = 0;
 
-	if (content->scan_count == 0) {
-		faults_add(faults, 0,
-			   "it names no scan; add 'scans = FILE' to its [model] section");
-		return -EBADMSG;
-	}
+	if (content->scan_count == 0)
+		return diagnostics_add(
+			diagnostics, -EBADMSG, NULL, 0,
+			"it names no scan; add 'scans = FILE' to its [model] section");
 	for (uint32_t i = 0; rc != -ENOMEM && i < content->scan_count; i++) {
-		int failed = complete_scan(content, i, faults);
+		int failed = complete_scan(content, i, diagnostics);
 
 		rc = rc == 0 || failed == -ENOMEM ? failed : rc;
 	}
 	return rc;
 }
 
-int content_read(struct content *out, const char *folder, struct faults *faults)
+int content_read(struct content *out, const char *folder, struct diagnostics *diagnostics)
 {
 	char ini[CONTENT_PATH_BYTES + 16];
 	int rc;
 
 	*out = (struct content){ 0 };
-	if (strlen(folder) == 0 || strlen(folder) > CONTENT_PATH_BYTES / 2) {
-		faults_add(faults, 0, "'%.100s' is no content folder; give one", folder);
-		return -EINVAL;
-	}
+	if (strlen(folder) == 0 || strlen(folder) > CONTENT_PATH_BYTES / 2)
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "'%.100s' is no content folder; give one", folder);
 	set_defaults(out, folder);
 	snprintf(ini, sizeof(ini), "%s/temple.ini", out->folder);
-	rc = settings_read_file(ini, settings, ARRAY_COUNT(settings), out, faults);
+	rc = settings_read_file(ini, settings, ARRAY_COUNT(settings), out, diagnostics);
 	if (rc == 0)
-		rc = complete(out, faults);
+		rc = complete(out, diagnostics);
 	if (rc < 0)
 		content_release(out);
 	return rc;

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/fault.h"
+#include "base/diagnostics.h"
 #include "base/settings.h"
 #include "format/hash.h"
 #include "pipeline/import/import.h"
@@ -54,10 +54,11 @@ struct content {
 	char languages[CONTENT_LANGUAGES_MAX][CONTENT_LANGUAGE_BYTES];
 };
 
-/* Reads FOLDER/temple.ini. The scans must exist. On failure *out is zeroed, and faults has every
- * fault of the file with its line and how to correct it. -EINVAL, -ENOMEM, and the errors of
+/* Reads FOLDER/temple.ini. The scans must exist. On failure *out is zeroed, and diagnostics has
+ * every fault of the file with its line and how to correct it. -EINVAL, -ENOMEM, and the errors of
  * reading a file. content_release frees it. */
-must_check int content_read(struct content *out, const char *folder, struct faults *faults);
+must_check int content_read(struct content *out, const char *folder,
+			    struct diagnostics *diagnostics);
 void content_release(struct content *content); /* Frees the contents. NULL and zeroed are fine. */
 
 /* Returns whether a name is relative, stays below the folder (no "..", absolute path or empty part)

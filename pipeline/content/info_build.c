@@ -493,14 +493,14 @@ static int place_faces(struct draft *draft)
 		struct info_faces faces = { .part = part->id,
 					    .file = part->faces_file,
 					    .scan = part->faces_scan };
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 
 		if (!part->faces_file)
 			continue;
-		rc = options->place_faces(options->faces_data, &faces, &fault);
+		rc = options->place_faces(options->faces_data, &faces, &diagnostics);
 		if (rc == -EINVAL) {
 			draft_complain(draft, true, "parts.json", part->line, "part \"%s\": %s",
-				       part->id, fault.text);
+				       part->id, diagnostics_cause(&diagnostics, rc));
 			rc = 0;
 		}
 		memcpy(part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));

@@ -3,7 +3,7 @@
 #ifndef GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 #define GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 
-#include "base/fault.h"
+#include "base/diagnostics.h"
 #include "storage/info.h"
 
 /* Reports one fault in the content folder. file is relative to the folder; line is 0 if there is
@@ -19,8 +19,8 @@ struct info_faces {
 	/* Results: where it lies, and a place on it. */
 	float centre_m[3], radius_m, anchor_m[3];
 };
-/* Works on one list. -EINVAL: fault says what is wrong and how to correct it. */
-typedef int info_faces_call(void *data, struct info_faces *faces, struct fault *fault);
+/* Works on one list. -EINVAL: diagnostics says what is wrong and how to correct it. */
+typedef int info_faces_call(void *data, struct info_faces *faces, struct diagnostics *diagnostics);
 
 struct info_build_options {
 	const char *folder; /* content folder: parts.json, tours.json, pages/, pictures/ */

@@ -161,7 +161,7 @@ static int read_faces(struct part_reader *r, const cJSON *json)
 	const char *file = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "file"));
 	const char *scan = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "scan"));
 	struct info_faces faces = { .part = part_name(r), .file = file, .scan = scan };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	int rc;
 
 	if (!file) {
@@ -176,9 +176,11 @@ static int read_faces(struct part_reader *r, const cJSON *json)
 	r->part->faces_scan = scan ? strdup(scan) : NULL;
 	if (!r->part->faces_file || (scan && !r->part->faces_scan))
 		return -ENOMEM;
-	rc = options->judge_faces ? options->judge_faces(options->faces_data, &faces, &fault) : 0;
+	rc = options->judge_faces ? options->judge_faces(options->faces_data, &faces, &diagnostics)
+				  : 0;
 	if (rc == -EINVAL)
-		complain_part(r, "part \"%s\": %s", part_name(r), fault.text);
+		complain_part(r, "part \"%s\": %s", part_name(r),
+			      diagnostics_cause(&diagnostics, rc));
 	return rc == -EINVAL ? 0 : rc;
 }
 

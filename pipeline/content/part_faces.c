@@ -53,29 +53,30 @@ static const char *scan_name(const struct content *content, uint32_t scan)
 }
 
 static int find_scan(const struct content *content, const struct info_faces *faces, uint32_t *out,
-		     struct fault *fault)
+		     struct diagnostics *diagnostics)
 {
 	*out = 0;
 	if (!faces->scan && content->scan_count > 1)
-		return fault_set(fault, -EINVAL,
-				 "there are %u scans: say of which the faces are, such as "
-				 "\"scan\": \"%s\"",
-				 content->scan_count, scan_name(content, 0));
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "there are %u scans: say of which the faces are, such as "
+				       "\"scan\": \"%s\"",
+				       content->scan_count, scan_name(content, 0));
 	for (uint32_t i = 0; faces->scan && i < content->scan_count; i++) {
 		*out = i;
 		if (strcmp(scan_name(content, i), faces->scan) == 0)
 			return 0;
 	}
-	return faces->scan ? fault_set(fault, -EINVAL,
-				       "\"%.60s\" is none of the scans of temple.ini; the first of "
-				       "them is \"%s\"",
-				       faces->scan, scan_name(content, 0))
+	return faces->scan ? diagnostics_add(
+				     diagnostics, -EINVAL, NULL, 0,
+				     "\"%.60s\" is none of the scans of temple.ini; the first of "
+				     "them is \"%s\"",
+				     faces->scan, scan_name(content, 0))
 			   : 0;
 }
 
 /* Counts the faces of a scan. Only PLY has face numbers that mean the same to every program. */
 static int count_faces(const struct part_faces_all *all, uint32_t scan, uint32_t *out,
-		       struct fault *fault)
+		       struct diagnostics *diagnostics)
 {
 	const struct scans_shape *shape = scans_known_shape(all->scans);
 	const struct content *content = scans_content(all->scans);
@@ -88,14 +89,15 @@ static int count_faces(const struct part_faces_all *all, uint32_t scan, uint32_t
 		*out = (uint32_t)ply_summary(ply)->face_count;
 	ply_close(ply);
 	return *out > 0 ? 0
-			: fault_set(fault, -EINVAL,
-				    "the faces of %s have no numbers: save it as PLY, or mark the "
-				    "part by a sphere, box or prism",
-				    scan_name(content, scan));
+			: diagnostics_add(
+				  diagnostics, -EINVAL, NULL, 0,
+				  "the faces of %s have no numbers: save it as PLY, or mark the "
+				  "part by a sphere, box or prism",
+				  scan_name(content, scan));
 }
 
 static int read_list(struct face_list *list, const struct part_faces_all *all,
-		     const struct info_faces *faces, uint32_t scan, struct fault *fault)
+		     const struct info_faces *faces, uint32_t scan, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
 	uint32_t face_count;
@@ -103,17 +105,17 @@ static int read_list(struct face_list *list, const struct part_faces_all *all,
 
 	/* A build checks only this folder for changes. */
 	if (strncmp(faces->file, "regions/", 8) != 0)
-		return fault_set(fault, -EINVAL,
-				 "\"%.60s\": lists of faces lie in regions/, such as "
-				 "\"regions/lintel.faces\"",
-				 faces->file);
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "\"%.60s\": lists of faces lie in regions/, such as "
+				       "\"regions/lintel.faces\"",
+				       faces->file);
 	if (content_file_path(scans_content(all->scans), faces->file, path) < 0)
-		return fault_set(fault, -EINVAL, "\"%.60s\" is not a file within the folder",
-				 faces->file);
-	rc = count_faces(all, scan, &face_count, fault);
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "\"%.60s\" is not a file within the folder", faces->file);
+	rc = count_faces(all, scan, &face_count, diagnostics);
 	if (rc == 0)
-		rc = face_list_read(list, path, faces->file, face_count, fault);
-	return rc == -ENOENT ? -EINVAL : rc; /* fault already says so */
+		rc = face_list_read(list, path, faces->file, face_count, diagnostics);
+	return rc == -ENOENT ? -EINVAL : rc; /* which the diagnostic already says */
 }
 
 static int remember(struct part_faces_all *all, const char *id, struct face_list *list,
@@ -132,15 +134,15 @@ static int remember(struct part_faces_all *all, const char *id, struct face_list
 	return 0;
 }
 
-int part_faces_judge(void *data, struct info_faces *faces, struct fault *fault)
+int part_faces_judge(void *data, struct info_faces *faces, struct diagnostics *diagnostics)
 {
 	struct part_faces_all *all = data;
 	struct face_list list = { 0 };
 	uint32_t scan;
-	int rc = find_scan(scans_content(all->scans), faces, &scan, fault);
+	int rc = find_scan(scans_content(all->scans), faces, &scan, diagnostics);
 
 	if (rc == 0)
-		rc = read_list(&list, all, faces, scan, fault);
+		rc = read_list(&list, all, faces, scan, diagnostics);
 	if (rc == 0)
 		rc = remember(all, faces->part, &list, scan);
 	face_list_finish(&list);
@@ -149,10 +151,11 @@ int part_faces_judge(void *data, struct info_faces *faces, struct fault *fault)
 
 /* ---- the triangles */
 
-static int find_triangles(struct part_faces_all *all, struct part_faces *part, struct fault *fault)
+static int find_triangles(struct part_faces_all *all, struct part_faces *part,
+			  struct diagnostics *diagnostics)
 {
 	const struct mesh *mesh;
-	int rc = part->triangles ? 0 : scans_get_mesh(all->scans, &mesh, fault);
+	int rc = part->triangles ? 0 : scans_get_mesh(all->scans, &mesh, diagnostics);
 
 	if (rc == 0 && !part->triangles)
 		rc = face_list_triangles(&part->triangles, &part->triangle_count, &part->list, mesh,
@@ -160,12 +163,12 @@ static int find_triangles(struct part_faces_all *all, struct part_faces *part, s
 	return rc;
 }
 
-int part_faces_find_all(struct part_faces_all *all, struct fault *fault)
+int part_faces_find_all(struct part_faces_all *all, struct diagnostics *diagnostics)
 {
 	int rc = 0;
 
 	for (uint32_t i = 0; rc == 0 && i < all->part_count; i++)
-		rc = find_triangles(all, &all->parts[i], fault);
+		rc = find_triangles(all, &all->parts[i], diagnostics);
 	return rc;
 }
 
@@ -265,25 +268,25 @@ static bool find_kept(struct part_faces_all *all, struct part_faces *part)
 }
 
 static int find_place(struct part_faces_all *all, struct part_faces *part,
-		      const struct info_faces *faces, struct fault *fault)
+		      const struct info_faces *faces, struct diagnostics *diagnostics)
 {
 	const struct mesh *mesh;
 	struct hash scans;
-	int rc = scans_key(all->scans, &scans, fault);
+	int rc = scans_key(all->scans, &scans, diagnostics);
 
 	if (rc < 0)
 		return rc;
 	part->key = key_of(part, scans);
 	if (find_kept(all, part))
 		return 0;
-	rc = find_triangles(all, part, fault);
+	rc = find_triangles(all, part, diagnostics);
 	if (rc == 0 && part->triangle_count == 0)
-		rc = fault_set(fault, -EINVAL,
-			       "%s: none of its faces is a face of the repaired scan: each has no "
-			       "area, or lies twice",
-			       faces->file);
+		rc = diagnostics_add(
+			diagnostics, -EINVAL, faces->file, 0,
+			"none of its faces is a face of the repaired scan: each has no "
+			"area, or lies twice");
 	if (rc == 0)
-		rc = scans_get_mesh(all->scans, &mesh, fault);
+		rc = scans_get_mesh(all->scans, &mesh, diagnostics);
 	if (rc < 0)
 		return rc;
 	measure(part, mesh);
@@ -291,14 +294,14 @@ static int find_place(struct part_faces_all *all, struct part_faces *part,
 	return 0;
 }
 
-int part_faces_place(void *data, struct info_faces *faces, struct fault *fault)
+int part_faces_place(void *data, struct info_faces *faces, struct diagnostics *diagnostics)
 {
 	struct part_faces_all *all = data;
 	struct part_faces *part = find(all, faces->part);
 	int rc = part ? 0 : -EINVAL;
 
 	if (rc == 0 && !part->placed)
-		rc = find_place(all, part, faces, fault);
+		rc = find_place(all, part, faces, diagnostics);
 	if (rc < 0)
 		return rc;
 	memcpy(faces->centre_m, part->place_m, sizeof(faces->centre_m));
@@ -307,7 +310,7 @@ int part_faces_place(void *data, struct info_faces *faces, struct fault *fault)
 	return 0;
 }
 
-int part_faces_keep(const struct part_faces_all *all, struct fault *fault)
+int part_faces_keep(const struct part_faces_all *all, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
 	struct hash whole = { 0 };
@@ -331,5 +334,7 @@ int part_faces_keep(const struct part_faces_all *all, struct fault *fault)
 			rc = bytes_write_file(buffer_bytes(&file), path);
 	}
 	buffer_finish(&file);
-	return rc < 0 ? fault_set(fault, rc, "%s: %s; is the disk full?", path, strerror(-rc)) : 0;
+	return rc < 0 ? diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
+					strerror(-rc))
+		      : 0;
 }

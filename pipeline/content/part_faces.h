@@ -33,16 +33,17 @@ void part_faces_init(struct part_faces_all *all, struct scans *scans);
 void part_faces_finish(struct part_faces_all *all); /* frees everything; zeroed is fine */
 
 /* Checks a list and remembers it: judge_faces of info_build_options, with a struct part_faces_all
- * as data. Reads at most the headers of the scans. -EINVAL with fault; -ENOMEM. */
-int part_faces_judge(void *data, struct info_faces *faces, struct fault *fault);
+ * as data. Reads at most the headers of the scans. -EINVAL with a diagnostic; -ENOMEM. */
+int part_faces_judge(void *data, struct info_faces *faces, struct diagnostics *diagnostics);
 /* Places a list that was judged: place_faces of info_build_options. Also the errors of
  * scans_get_mesh. */
-int part_faces_place(void *data, struct info_faces *faces, struct fault *fault);
-/* Keeps the places of all lists for the next time. Errors of the disk, with fault. */
-must_check int part_faces_keep(const struct part_faces_all *all, struct fault *fault);
+int part_faces_place(void *data, struct info_faces *faces, struct diagnostics *diagnostics);
+/* Keeps the places of all lists for the next time. Errors of the disk, with a diagnostic. */
+must_check int part_faces_keep(const struct part_faces_all *all, struct diagnostics *diagnostics);
 
-/* Finds the triangles of every list. -ENOMEM and the errors of scans_get_mesh, with fault. */
-must_check int part_faces_find_all(struct part_faces_all *all, struct fault *fault);
+/* Finds the triangles of every list. -ENOMEM and the errors of scans_get_mesh, with a
+ * diagnostic. */
+must_check int part_faces_find_all(struct part_faces_all *all, struct diagnostics *diagnostics);
 /* Returns the faces of a part, borrowed. NULL: its region is not a list of faces. */
 const struct part_faces *part_faces_of(const struct part_faces_all *all, const char *id);
 

@@ -119,13 +119,13 @@ static int make_key(const struct content *content, struct hash *out)
 	return rc;
 }
 
-int scans_key(struct scans *scans, struct hash *out, struct fault *fault)
+int scans_key(struct scans *scans, struct hash *out, struct diagnostics *diagnostics)
 {
 	int rc = scans->has_key ? 0 : make_key(scans->content, &scans->key);
 
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: its files cannot be listed: %s",
-				 scans->content->folder, strerror(-rc));
+		return diagnostics_add(diagnostics, rc, scans->content->folder, 0,
+				       "its files cannot be listed: %s", strerror(-rc));
 	scans->has_key = true;
 	*out = scans->key;
 	return 0;
@@ -136,14 +136,15 @@ int scans_key(struct scans *scans, struct hash *out, struct fault *fault)
 /* Refuses to join a scan with vertex colours to one with pictures, because faces of the joint mesh
  * take their colours from pictures. */
 static int judge_mix(const struct content *content, const struct mesh *mesh,
-		     const struct import_report *reports, uint32_t count, struct fault *fault)
+		     const struct import_report *reports, uint32_t count,
+		     struct diagnostics *diagnostics)
 {
 	if (!mesh->textures)
 		return 0;
 	for (uint32_t i = 0; i < count; i++)
 		if (reports[i].textures == 0 && reports[i].had_colours)
-			return fault_set(
-				fault, -EINVAL,
+			return diagnostics_add(
+				diagnostics, -EINVAL, NULL, 0,
 				"%s has colours of its own, another scan of the folder has "
 				"pictures: bake its colours into a picture too, or set "
 				"'colours = #rrggbb'",
@@ -152,7 +153,8 @@ static int judge_mix(const struct content *content, const struct mesh *mesh,
 }
 
 static int import_all(struct mesh *out, const struct content *content,
-		      struct import_report reports[CONTENT_SCANS_MAX], struct fault *fault)
+		      struct import_report reports[CONTENT_SCANS_MAX],
+		      struct diagnostics *diagnostics)
 {
 	uint32_t count = 0;
 	int rc = 0;
@@ -161,11 +163,11 @@ static int import_all(struct mesh *out, const struct content *content,
 		struct mesh mesh;
 
 		rc = import_scan(&mesh, content->scans[count], &content->import, &reports[count],
-				 fault);
+				 diagnostics);
 		if (rc < 0)
 			break;
-		if (reports[count].warning.text[0])
-			log_warn("pipeline", "%s", reports[count].warning.text);
+		if (reports[count].warning.first.text[0])
+			log_warn("pipeline", "%s", reports[count].warning.first.text);
 		if (count == 0) {
 			*out = mesh;
 			continue;
@@ -173,41 +175,43 @@ static int import_all(struct mesh *out, const struct content *content,
 		rc = mesh_append(out, &mesh);
 		mesh_finish(&mesh);
 		if (rc < 0)
-			fault_set(fault, rc, "%s: too large together with the scans before it",
-				  content->scans[count]);
+			diagnostics_add(diagnostics, rc, content->scans[count], 0,
+					"too large together with the scans before it");
 	}
-	return rc < 0 ? rc : judge_mix(content, out, reports, count, fault);
+	return rc < 0 ? rc : judge_mix(content, out, reports, count, diagnostics);
 }
 
-static int import_and_save(struct scans *scans, const char *path, struct fault *fault)
+static int import_and_save(struct scans *scans, const char *path, struct diagnostics *diagnostics)
 {
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
-	int rc = reports ? import_all(&scans->mesh, scans->content, reports, fault) : -ENOMEM;
+	int rc = reports ? import_all(&scans->mesh, scans->content, reports, diagnostics) : -ENOMEM;
 
 	free(reports);
 	if (rc == 0) {
 		rc = mesh_file_save(&scans->mesh, scans->key, path);
 		if (rc < 0)
-			fault_set(fault, rc, "%s: %s; is the disk full?", path, strerror(-rc));
+			diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
+					strerror(-rc));
 	}
 	if (rc < 0)
 		mesh_finish(&scans->mesh);
 	return rc;
 }
 
-static int load_mesh(struct scans *scans, struct fault *fault)
+static int load_mesh(struct scans *scans, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
 	struct hash key;
-	int rc = scans_key(scans, &key, fault);
+	int rc = scans_key(scans, &key, diagnostics);
 
 	if (rc < 0)
 		return rc;
 	rc = content_work_path(scans->content, "mesh", path);
 	if (rc < 0)
-		return fault_set(fault, rc, "%s/.work: %s", scans->content->folder, strerror(-rc));
+		return diagnostics_add(diagnostics, rc, NULL, 0, "%s/.work: %s",
+				       scans->content->folder, strerror(-rc));
 	if (mesh_file_load(&scans->mesh, key, path) < 0)
-		rc = import_and_save(scans, path, fault);
+		rc = import_and_save(scans, path, diagnostics);
 	scans->has_mesh = rc == 0;
 	return rc;
 }
@@ -284,7 +288,7 @@ const struct scans_shape *scans_known_shape(struct scans *scans)
 }
 
 /* Takes the shape of the mesh in memory and saves it. */
-static int take_shape(struct scans *scans, struct fault *fault)
+static int take_shape(struct scans *scans, struct diagnostics *diagnostics)
 {
 	struct scans_shape *shape = &scans->shape;
 	char path[CONTENT_PATH_BYTES];
@@ -302,29 +306,31 @@ static int take_shape(struct scans *scans, struct fault *fault)
 		rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
 	buffer_finish(&file);
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: %s; is the disk full?", path, strerror(-rc));
+		return diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
+				       strerror(-rc));
 	scans->has_shape = true;
 	return 0;
 }
 
 /* ---- for users */
 
-int scans_get_mesh(struct scans *scans, const struct mesh **out, struct fault *fault)
+int scans_get_mesh(struct scans *scans, const struct mesh **out, struct diagnostics *diagnostics)
 {
-	int rc = scans->has_mesh ? 0 : load_mesh(scans, fault);
+	int rc = scans->has_mesh ? 0 : load_mesh(scans, diagnostics);
 
 	*out = NULL;
 	if (rc == 0 && !scans_known_shape(scans))
-		rc = take_shape(scans, fault);
+		rc = take_shape(scans, diagnostics);
 	if (rc == 0)
 		*out = &scans->mesh;
 	return rc;
 }
 
-int scans_get_shape(struct scans *scans, const struct scans_shape **out, struct fault *fault)
+int scans_get_shape(struct scans *scans, const struct scans_shape **out,
+		    struct diagnostics *diagnostics)
 {
 	const struct mesh *mesh;
-	int rc = scans_known_shape(scans) ? 0 : scans_get_mesh(scans, &mesh, fault);
+	int rc = scans_known_shape(scans) ? 0 : scans_get_mesh(scans, &mesh, diagnostics);
 
 	*out = rc == 0 ? &scans->shape : NULL;
 	return rc;

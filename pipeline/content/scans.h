@@ -25,20 +25,21 @@ const struct content *scans_content(const struct scans *scans);
 
 /* Hashes everything the mesh is made from: names, sizes and modification times of the scans and of
  * the files beside them (mtl, pictures, buffers), and the import options. Equal keys mean equal
- * meshes. Negative errno, with fault. */
-must_check int scans_key(struct scans *scans, struct hash *out, struct fault *fault);
+ * meshes. Negative errno, with a diagnostic. */
+must_check int scans_key(struct scans *scans, struct hash *out, struct diagnostics *diagnostics);
 
 /* Gets the shape; the scans are imported only if nobody has imported them yet. *out is borrowed for
- * the lifetime. Negative errno, with fault. */
+ * the lifetime. Negative errno, with a diagnostic. */
 must_check int scans_get_shape(struct scans *scans, const struct scans_shape **out,
-			       struct fault *fault);
+			       struct diagnostics *diagnostics);
 /* Returns the shape if it is known already, else NULL. Reads no scan. */
 const struct scans_shape *scans_known_shape(struct scans *scans);
 
 /* Gets the mesh: from .work/mesh if its key matches, otherwise imported, repaired and saved there.
  * It stays in memory until scans_drop_mesh; *out is borrowed until then. Negative errno, with
- * fault. */
-must_check int scans_get_mesh(struct scans *scans, const struct mesh **out, struct fault *fault);
+ * diagnostic. */
+must_check int scans_get_mesh(struct scans *scans, const struct mesh **out,
+			      struct diagnostics *diagnostics);
 /* Frees the mesh, if it is in memory. The last user calls it. */
 void scans_drop_mesh(struct scans *scans);
 

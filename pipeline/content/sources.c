@@ -109,12 +109,13 @@ static bool are_known(const char *path, struct hash key)
 	return same;
 }
 
-static int check_ways(struct sources *sources, const struct info_built *built, struct fault *fault)
+static int check_ways(struct sources *sources, const struct info_built *built,
+		      struct diagnostics *diagnostics)
 {
 	struct tour_check_options options = { .complaint = complain, .complaint_data = sources };
 	char path[CONTENT_PATH_BYTES], hex[HASH_HEX_BYTES];
 	struct hash scans, key;
-	int rc = scans_key(sources->scans, &scans, fault);
+	int rc = scans_key(sources->scans, &scans, diagnostics);
 
 	if (rc == 0)
 		rc = tour_check_key(&key, built, scans);
@@ -122,7 +123,7 @@ static int check_ways(struct sources *sources, const struct info_built *built, s
 		rc = content_work_path(sources->content, "tours", path);
 	if (rc < 0 || are_known(path, key))
 		return rc;
-	rc = scans_get_mesh(sources->scans, &options.mesh, fault);
+	rc = scans_get_mesh(sources->scans, &options.mesh, diagnostics);
 	if (rc == 0)
 		rc = tour_check(built, &options);
 	if (rc < 0)
@@ -133,14 +134,14 @@ static int check_ways(struct sources *sources, const struct info_built *built, s
 
 /* ---- the information */
 
-static int compile(struct sources *sources, struct fault *fault)
+static int compile(struct sources *sources, struct diagnostics *diagnostics)
 {
 	int rc = info_compile(&sources->built, sources->draft);
 
 	if (rc == 0 && sources->faces.part_count > 0)
-		rc = part_faces_keep(&sources->faces, fault);
+		rc = part_faces_keep(&sources->faces, diagnostics);
 	if (rc == 0 && sources->built.tour_count > 0)
-		rc = check_ways(sources, &sources->built, fault);
+		rc = check_ways(sources, &sources->built, diagnostics);
 	if (rc < 0) {
 		info_built_finish(&sources->built);
 		return rc;
@@ -155,10 +156,10 @@ static int compile(struct sources *sources, struct fault *fault)
 }
 
 /* The faults of the folder have been logged as complaints; this logs any other. */
-static int tell(const struct sources *sources, int rc, const struct fault *fault)
+static int tell(const struct sources *sources, int rc, const struct diagnostics *diagnostics)
 {
-	if (rc < 0 && fault->text[0])
-		log_error("pipeline", "%s", fault->text);
+	if (rc < 0 && diagnostics->count > 0)
+		log_error("pipeline", "%s", diagnostics_cause(diagnostics, rc));
 	else if (rc < 0 && rc != -EINVAL)
 		log_error("pipeline", "%s: %s", sources->content->folder, strerror(-rc));
 	return rc;
@@ -167,34 +168,34 @@ static int tell(const struct sources *sources, int rc, const struct fault *fault
 int sources_check(struct sources *sources)
 {
 	const struct info_built *built;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	int rc = 0;
 
 	if (!sources->draft && !sources->is_built)
 		rc = info_read(&sources->draft, &sources->options);
 	if (rc == 0 && sources->draft && info_has_tours(sources->draft))
 		return sources_info(sources, &built);
-	return tell(sources, rc, &fault);
+	return tell(sources, rc, &diagnostics);
 }
 
 int sources_info(struct sources *sources, const struct info_built **out)
 {
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	int rc = 0;
 
 	*out = NULL;
 	if (!sources->draft && !sources->is_built)
 		rc = info_read(&sources->draft, &sources->options);
 	if (rc == 0 && !sources->is_built)
-		rc = compile(sources, &fault);
+		rc = compile(sources, &diagnostics);
 	if (rc == 0)
 		*out = &sources->built;
-	return tell(sources, rc, &fault);
+	return tell(sources, rc, &diagnostics);
 }
 
-int sources_find_faces(struct sources *sources, struct fault *fault)
+int sources_find_faces(struct sources *sources, struct diagnostics *diagnostics)
 {
-	return part_faces_find_all(&sources->faces, fault);
+	return part_faces_find_all(&sources->faces, diagnostics);
 }
 
 bool sources_faces_of(const struct sources *sources, const char *part, struct sources_faces *out)

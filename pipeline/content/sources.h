@@ -30,8 +30,9 @@ struct sources_faces {
 	const uint32_t *triangles;
 	uint32_t triangle_count;
 };
-/* Finds the triangles of all lists. Call it after sources_info. Negative errno, with fault. */
-must_check int sources_find_faces(struct sources *sources, struct fault *fault);
+/* Finds the triangles of all lists. Call it after sources_info. Negative errno, with a diagnostic.
+ */
+must_check int sources_find_faces(struct sources *sources, struct diagnostics *diagnostics);
 /* Returns false if the part's region is not a list of faces. Call it after sources_info. */
 bool sources_faces_of(const struct sources *sources, const char *part, struct sources_faces *out);
 

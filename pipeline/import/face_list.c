@@ -18,7 +18,7 @@ struct text {
 	const char *at, *name;
 	unsigned line;
 	uint32_t face_count;
-	struct fault *fault;
+	struct diagnostics *diagnostics;
 };
 
 /* Skips white space and comments. Returns false at the end. */
@@ -52,15 +52,15 @@ static int read_number(struct text *text, uint32_t *out)
 	for (; isdigit((unsigned char)*text->at); text->at++)
 		value = value > UINT32_MAX ? value : 10 * value + (uint64_t)(*text->at - '0');
 	if (text->at == from)
-		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: '%.*s' is not a face: write numbers such as 17 and ranges "
-				 "such as 20-31",
-				 text->name, text->line, shown(from), from);
+		return diagnostics_add(text->diagnostics, -EINVAL, text->name, text->line,
+				       "'%.*s' is not a face: write numbers such as 17 and ranges "
+				       "such as 20-31",
+				       shown(from), from);
 	if (value >= text->face_count)
-		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: face %" PRIu64 " is not in the scan, which has %" PRIu32
-				 " (the first is 0): is the list of another version of it?",
-				 text->name, text->line, value, text->face_count);
+		return diagnostics_add(text->diagnostics, -EINVAL, text->name, text->line,
+				       "face %" PRIu64 " is not in the scan, which has %" PRIu32
+				       " (the first is 0): is the list of another version of it?",
+				       value, text->face_count);
 	*out = (uint32_t)value;
 	return 0;
 }
@@ -77,14 +77,14 @@ static int read_range(struct text *text, struct face_range *out)
 	if (rc < 0)
 		return rc;
 	if (*text->at && *text->at != '#' && !isspace((unsigned char)*text->at))
-		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: '%.*s' behind a number: put spaces between faces",
-				 text->name, text->line, shown(text->at), text->at);
+		return diagnostics_add(text->diagnostics, -EINVAL, text->name, text->line,
+				       "'%.*s' behind a number: put spaces between faces",
+				       shown(text->at), text->at);
 	if (out->last < out->first)
-		return fault_set(text->fault, -EINVAL,
-				 "%s:%u: %" PRIu32 "-%" PRIu32
-				 " runs backwards: the lower number comes first",
-				 text->name, text->line, out->first, out->last);
+		return diagnostics_add(text->diagnostics, -EINVAL, text->name, text->line,
+				       "%" PRIu32 "-%" PRIu32
+				       " runs backwards: the lower number comes first",
+				       out->first, out->last);
 	return 0;
 }
 
@@ -135,16 +135,18 @@ static int read_all(struct face_list *list, struct text *text)
 			rc = add(list, &room, range);
 	}
 	if (rc == 0 && list->count == 0)
-		rc = fault_set(text->fault, -EINVAL, "%s: names no face", text->name);
+		rc = diagnostics_add(text->diagnostics, -EINVAL, text->name, 0, "names no face");
 	if (rc == 0)
 		join(list);
 	return rc;
 }
 
 int face_list_read(struct face_list *out, const char *path, const char *name, uint32_t face_count,
-		   struct fault *fault)
+		   struct diagnostics *diagnostics)
 {
-	struct text text = { .name = name, .line = 1, .face_count = face_count, .fault = fault };
+	struct text text = {
+		.name = name, .line = 1, .face_count = face_count, .diagnostics = diagnostics
+	};
 	struct buffer file;
 	int rc;
 
@@ -155,7 +157,7 @@ int face_list_read(struct face_list *out, const char *path, const char *name, ui
 	if (rc == 0)
 		rc = file.error;
 	if (rc < 0) {
-		fault_set(fault, rc, "%s: %s", name, strerror(-rc));
+		diagnostics_add(diagnostics, rc, name, 0, "%s", strerror(-rc));
 	} else {
 		text.at = (const char *)file.data;
 		rc = read_all(out, &text);

@@ -3,7 +3,7 @@
 #ifndef GOPURA_PIPELINE_IMPORT_FACE_LIST_H
 #define GOPURA_PIPELINE_IMPORT_FACE_LIST_H
 
-#include "base/fault.h"
+#include "base/diagnostics.h"
 #include "pipeline/import/mesh.h"
 
 struct face_range {
@@ -15,12 +15,12 @@ struct face_list {
 	uint32_t count;
 };
 
-/* Reads the list. path is opened; name is used in fault messages. face_count: faces of the scan,
+/* Reads the list. path is opened; name is used in messages. face_count: faces of the scan,
  * which are numbered from 0. The caller finishes *out; it is zeroed on failure. -EINVAL: not a
- * valid list; fault names the file, the line and how to correct it. Others: the file cannot be
- * read. */
+ * valid list; diagnostics names the file, the line and how to correct it. Others: the file cannot
+ * be read. */
 must_check int face_list_read(struct face_list *out, const char *path, const char *name,
-			      uint32_t face_count, struct fault *fault);
+			      uint32_t face_count, struct diagnostics *diagnostics);
 void face_list_finish(struct face_list *list); /* NULL and zeroed are fine */
 
 /* Finds the triangles of one scan of the mesh that come from these faces, in ascending order. *out

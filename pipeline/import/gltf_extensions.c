@@ -76,24 +76,24 @@ static bool next_name(struct bytes *list, char name[NAME_BYTES])
 	return true;
 }
 
-static int judge(const char *name, const char *path, struct fault *fault)
+static int judge(const char *name, const char *path, struct diagnostics *diagnostics)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(harmless); i++)
 		if (strncmp(name, harmless[i], strlen(harmless[i])) == 0)
 			return 0;
 	for (size_t i = 0; i < ARRAY_COUNT(cures); i++)
 		if (strcmp(name, cures[i].extension) == 0)
-			return fault_set(fault, -ENOTSUP,
-					 "%s: %s (%s), which is not read here; convert it: npx "
-					 "@gltf-transform/cli %s IN.glb OUT.glb",
-					 path, cures[i].what, name, cures[i].command);
-	return fault_set(fault, -ENOTSUP,
-			 "%s: it requires the extension %s, which is not read here; export it "
-			 "without",
-			 path, name);
+			return diagnostics_add(diagnostics, -ENOTSUP, path, 0,
+					       "%s (%s), which is not read here; convert it: npx "
+					       "@gltf-transform/cli %s IN.glb OUT.glb",
+					       cures[i].what, name, cures[i].command);
+	return diagnostics_add(diagnostics, -ENOTSUP, path, 0,
+			       "it requires the extension %s, which is not read here; export it "
+			       "without",
+			       name);
 }
 
-int gltf_extensions_check(struct bytes file, const char *path, struct fault *fault)
+int gltf_extensions_check(struct bytes file, const char *path, struct diagnostics *diagnostics)
 {
 	struct bytes text = json_of(file);
 	char name[NAME_BYTES];
@@ -102,6 +102,6 @@ int gltf_extensions_check(struct bytes file, const char *path, struct fault *fau
 	if (!skip_past(&text, "\"extensionsRequired\"") || !skip_past(&text, "["))
 		return 0;
 	while (rc == 0 && next_name(&text, name))
-		rc = judge(name, path, fault);
+		rc = judge(name, path, diagnostics);
 	return rc;
 }

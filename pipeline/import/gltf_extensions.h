@@ -4,12 +4,13 @@
 #define GOPURA_PIPELINE_IMPORT_GLTF_EXTENSIONS_H
 
 #include "base/bytes.h"
-#include "base/fault.h"
+#include "base/diagnostics.h"
 
 /* Looks for extensionsRequired in the JSON of a glTF or GLB file (its whole bytes, or as many as
- * hold the JSON). Returns -ENOTSUP, and fault names path, the extension and the command that makes
- * a file without it; 0 if nothing that matters is required, or the JSON cannot be found: its reader
- * will say why. */
-must_check int gltf_extensions_check(struct bytes file, const char *path, struct fault *fault);
+ * hold the JSON). Returns -ENOTSUP, and diagnostics names path, the extension and the command that
+ * makes a file without it; 0 if nothing that matters is required, or the JSON cannot be found: its
+ * reader will say why. */
+must_check int gltf_extensions_check(struct bytes file, const char *path,
+				     struct diagnostics *diagnostics);
 
 #endif

@@ -59,7 +59,7 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 }
 
 static int look(const char *path, enum scan_format *format, struct import_report *report,
-		struct fault *fault)
+		struct diagnostics *diagnostics)
 {
 	char head[64];
 	struct stat status;
@@ -68,23 +68,23 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 
 	if (fd < 0)
-		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
+		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
 	if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
 		got = read(fd, head, sizeof(head));
 	close(fd);
 	if (got < 0)
-		return fault_set(fault, -EINVAL, "%s: not a regular file that can be read", path);
+		return diagnostics_add(diagnostics, -EINVAL, path, 0,
+				       "not a regular file that can be read");
 	if (got == 0)
-		return fault_set(fault, -EBADMSG,
-				 "%s: the file is empty; copy it again from the source", path);
+		return diagnostics_add(diagnostics, -EBADMSG, path, 0,
+				       "the file is empty; copy it again from the source");
 	report->file_bytes = (uint64_t)status.st_size;
 	*format = sniff(path, head, (size_t)got);
 	if (*format == SCAN_UNKNOWN)
-		return fault_set(
-			fault, -EINVAL,
-			"%s: not a supported scan format; give PLY, OBJ, STL, OFF, glTF or "
-			"GLB",
-			path);
+		return diagnostics_add(
+			diagnostics, -EINVAL, path, 0,
+			"not a supported scan format; give PLY, OBJ, STL, OFF, glTF or "
+			"GLB");
 	snprintf(report->format, sizeof(report->format), "%s", format_names[*format]);
 	return 0;
 }
@@ -184,15 +184,16 @@ static void judge_box(struct mesh *mesh, const char *path, struct import_report 
 		size_m = fmaxf(size_m, report->high_m[k] - report->low_m[k]);
 	}
 	if (far_m > 1000 * size_m)
-		fault_set(&report->warning, 0,
-			  "%s: it lies %.0f m from the origin but is only %.2f m large, so places "
-			  "are known to %.1f mm; move it to the origin before export",
-			  path, far_m, size_m, 1000 * far_m * 6e-8);
+		diagnostics_add(
+			&report->warning, 0, path, 0,
+			"it lies %.0f m from the origin but is only %.2f m large, so places "
+			"are known to %.1f mm; move it to the origin before export",
+			far_m, size_m, 1000 * far_m * 6e-8);
 }
 
 static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 		  const struct import_options *options, struct import_report *report,
-		  struct fault *fault)
+		  struct diagnostics *diagnostics)
 {
 	int rc;
 
@@ -202,15 +203,15 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	if (rc == 0)
 		rc = settle_colours(mesh, options, report);
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: %s", path,
-				 rc == -ENOSPC ? "the disk has no room for the imported mesh"
-					       : "too large for this machine's memory");
+		return diagnostics_add(diagnostics, rc, path, 0, "%s",
+				       rc == -ENOSPC ? "the disk has no room for the imported mesh"
+						     : "too large for this machine's memory");
 	if (mesh->triangle_count == 0)
-		return fault_set(fault, -EBADMSG,
-				 "%s: none of its faces is usable (%" PRIu32 " degenerate, %" PRIu32
-				 " with a corner that is not a number); export it again",
-				 path, report->repairs.degenerate_faces,
-				 report->repairs.lost_faces);
+		return diagnostics_add(
+			diagnostics, -EBADMSG, path, 0,
+			"none of its faces is usable (%" PRIu32 " degenerate, %" PRIu32
+			" with a corner that is not a number); export it again",
+			report->repairs.degenerate_faces, report->repairs.lost_faces);
 	/* assimp gives every face its own vertices, so merging them is no repair of the scan. */
 	if (!is_indexed)
 		report->repairs.merged_vertices = 0;
@@ -258,7 +259,8 @@ bool import_unit_named(const char *name, double *out_metres)
 enum { GLTF_LOOK_BYTES = 64 << 20 }; /* the JSON of a GLB comes first and is far smaller */
 
 /* Refuses a glTF file that cannot be read right, before anything is read of it. */
-static int look_for_extensions(const char *path, uint64_t file_bytes, struct fault *fault)
+static int look_for_extensions(const char *path, uint64_t file_bytes,
+			       struct diagnostics *diagnostics)
 {
 	size_t size = file_bytes < GLTF_LOOK_BYTES ? (size_t)file_bytes : GLTF_LOOK_BYTES;
 	uint8_t *text = malloc(size + 1);
@@ -268,16 +270,16 @@ static int look_for_extensions(const char *path, uint64_t file_bytes, struct fau
 	if (fd >= 0)
 		close(fd);
 	if (rc < 0)
-		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+		diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc));
 	else
-		rc = gltf_extensions_check((struct bytes){ text, size }, path, fault);
+		rc = gltf_extensions_check((struct bytes){ text, size }, path, diagnostics);
 	free(text);
 	return rc;
 }
 
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
-		     struct fault *fault)
+		     struct diagnostics *diagnostics)
 {
 	static const char *const extensions[] = { ".ply", ".stl", ".off", ".obj", ".gltf", ".glb" };
 	const struct import_foreign_format foreign = {
@@ -287,18 +289,18 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 	};
 
 	if (format == SCAN_PLY)
-		return import_ply(out, path, options, report, fault);
+		return import_ply(out, path, options, report, diagnostics);
 	if (foreign.is_linear) {
-		int rc = look_for_extensions(path, report->file_bytes, fault);
+		int rc = look_for_extensions(path, report->file_bytes, diagnostics);
 
 		if (rc < 0)
 			return rc;
 	}
-	return import_foreign(out, path, foreign, options, report, fault);
+	return import_foreign(out, path, foreign, options, report, diagnostics);
 }
 
 int import_scan(struct mesh *out, const char *path, const struct import_options *options,
-		struct import_report *report, struct fault *fault)
+		struct import_report *report, struct diagnostics *diagnostics)
 {
 	struct import_report unwanted;
 	int64_t began_ms = clock_now_ms();
@@ -309,11 +311,11 @@ int import_scan(struct mesh *out, const char *path, const struct import_options 
 	if (!report)
 		report = &unwanted;
 	*report = (struct import_report){ 0 };
-	rc = look(path, &format, report, fault);
+	rc = look(path, &format, report, diagnostics);
 	if (rc == 0)
-		rc = read_scan(out, path, format, options, report, fault);
+		rc = read_scan(out, path, format, options, report, diagnostics);
 	if (rc == 0)
-		rc = finish(out, path, format == SCAN_PLY, options, report, fault);
+		rc = finish(out, path, format == SCAN_PLY, options, report, diagnostics);
 	if (rc < 0)
 		mesh_finish(out);
 	report->duration_ms = clock_now_ms() - began_ms;

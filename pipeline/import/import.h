@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "base/fault.h"
+#include "base/diagnostics.h"
 #include "pipeline/import/mesh.h"
 #include "pipeline/import/mesh_repair.h"
 
@@ -37,14 +37,15 @@ struct import_report {
 	uint32_t vertices, triangles; /* of the result */
 	float low_m[3], high_m[3];
 	struct mesh_repairs repairs;
-	struct fault warning; /* the first thing that was tolerated with loss; "" if none */
+	struct diagnostics warning; /* the first thing that was tolerated with loss; "" if none */
 };
 
 /* *out is owned by the caller; it is zeroed on failure. The result always has colours: those of the
  * scan, of its textures, or the default. Open sky is 255 if the scan does not give it. Returns a
- * negative errno, and fault names the file, the place and how to correct it. report may be NULL. */
+ * negative errno, and diagnostics names the file, the place and how to correct it. report may be
+ * NULL. */
 must_check int import_scan(struct mesh *out, const char *path, const struct import_options *options,
-			   struct import_report *report, struct fault *fault);
+			   struct import_report *report, struct diagnostics *diagnostics);
 
 /* Parses the name of an axis: "z", "y" or "x". False: not valid, and *out is unchanged. */
 bool import_axis_named(const char *name, enum import_axis *out);

@@ -40,7 +40,7 @@ struct job {
 struct builder {
 	const struct aiScene *scene;
 	struct job *job;
-	struct fault *fault;
+	struct diagnostics *diagnostics;
 	struct mesh mesh;
 	uint64_t vertices, triangles; /* sums over all instances, counted in the first pass */
 	uint64_t skipped;             /* points and lines that were skipped */
@@ -271,11 +271,11 @@ static int add_mesh(struct builder *builder, uint32_t index, const struct aiMatr
 			uint32_t corner = face->mIndices[mirrored ? 2 - k : k];
 
 			if (corner >= from->mNumVertices)
-				return fault_set(builder->fault, -EBADMSG,
-						 "%s: face %u of its part %u names vertex %u, but "
-						 "the part has %u; correct or remove it",
-						 builder->job->path, i, index, corner,
-						 from->mNumVertices);
+				return diagnostics_add(
+					builder->diagnostics, -EBADMSG, builder->job->path, 0,
+					"face %u of its part %u names vertex %u, but "
+					"the part has %u; correct or remove it",
+					i, index, corner, from->mNumVertices);
 			triangle[k] = base + corner;
 		}
 		if (mesh->materials)
@@ -293,8 +293,8 @@ static int walk(struct builder *builder, const struct aiNode *node,
 	int rc = 0;
 
 	if (depth > NODE_DEPTH_MAX)
-		return fault_set(builder->fault, -EBADMSG, "%s: its nodes are nested over %d deep",
-				 builder->job->path, NODE_DEPTH_MAX);
+		return diagnostics_add(builder->diagnostics, -EBADMSG, builder->job->path, 0,
+				       "its nodes are nested over %d deep", NODE_DEPTH_MAX);
 	aiMultiplyMatrix4(&place, &node->mTransformation);
 	for (uint32_t i = 0; i < node->mNumMeshes && rc == 0; i++)
 		rc = build ? add_mesh(builder, node->mMeshes[i], &place)
@@ -317,41 +317,41 @@ static int build(struct builder *builder)
 	if (rc == 0)
 		rc = walk(builder, builder->scene->mRootNode, &identity, 0, true);
 	if (rc == -ENOMEM)
-		return fault_set(builder->fault, rc, "%s: too large for this machine's memory",
-				 path);
+		return diagnostics_add(builder->diagnostics, rc, path, 0,
+				       "too large for this machine's memory");
 	if (rc == -EFBIG)
-		return fault_set(builder->fault, rc,
-				 "%s: too many triangles or materials; split it into several files",
-				 path);
+		return diagnostics_add(
+			builder->diagnostics, rc, path, 0,
+			"too many triangles or materials; split it into several files");
 	if (rc < 0)
-		return fault_set(builder->fault, rc, "%s: it contradicts itself; export it again",
-				 path);
+		return diagnostics_add(builder->diagnostics, rc, path, 0,
+				       "it contradicts itself; export it again");
 	if (builder->mesh.triangle_count == 0)
-		return fault_set(builder->fault, -EBADMSG,
-				 "%s: it holds no faces%s; export a surface", path,
-				 builder->skipped ? ", only points or lines" : "");
+		return diagnostics_add(builder->diagnostics, -EBADMSG, path, 0,
+				       "it holds no faces%s; export a surface",
+				       builder->skipped ? ", only points or lines" : "");
 	if (builder->skipped)
-		fault_set(&builder->job->report.warning, 0,
-			  "%s: %llu points or lines in it were left out", path,
-			  (unsigned long long)builder->skipped);
+		diagnostics_add(&builder->job->report.warning, 0, path, 0,
+				"%llu points or lines in it were left out",
+				(unsigned long long)builder->skipped);
 	builder->job->report.had_colours = builder->has_colours && !builder->has_textures;
 	return 0;
 }
 
-static int read_scene(void *shared, struct fault *fault)
+static int read_scene(void *shared, struct diagnostics *diagnostics)
 {
 	struct job *job = shared;
-	struct builder builder = { .job = job, .fault = fault };
+	struct builder builder = { .job = job, .diagnostics = diagnostics };
 	int rc;
 
-	builder.scene = import_scene(job->path, job->report.format, fault);
+	builder.scene = import_scene(job->path, job->report.format, diagnostics);
 	if (!builder.scene)
 		return -EBADMSG;
 	rc = build(&builder);
 	if (rc == 0)
 		rc = mesh_file_write(job->result_fd, &builder.mesh, no_key);
 	if (rc < 0)
-		fault_set(fault, rc, "%s: %s", job->path, strerror(-rc));
+		diagnostics_add(diagnostics, rc, job->path, 0, "%s", strerror(-rc));
 	return rc; /* the process ends now and releases everything */
 }
 
@@ -427,7 +427,8 @@ static void parent_finish(struct parent *parent)
 }
 
 static int run_job(struct mesh *out, struct job *job, struct parent *parent,
-		   const struct import_options *options, uint64_t file_bytes, struct fault *fault)
+		   const struct import_options *options, uint64_t file_bytes,
+		   struct diagnostics *diagnostics)
 {
 	/* By default about 200 times what an intact file of that size takes on an idle machine. */
 	const struct sandbox_options limits = {
@@ -438,17 +439,17 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 		.open = open_for_child,
 		.open_data = parent,
 	};
-	int rc = sandbox_run(read_scene, job, &limits, parent->path, fault);
+	int rc = sandbox_run(read_scene, job, &limits, parent->path, diagnostics);
 
 	if (rc < 0)
 		return rc;
 	if (lseek(parent->result_fd, 0, SEEK_SET) < 0)
-		return fault_set(fault, -errno, "%s: %s", parent->path, strerror(errno));
+		return diagnostics_add(diagnostics, -errno, parent->path, 0, "%s", strerror(errno));
 	rc = mesh_file_read(out, no_key, parent->result_fd);
 	if (rc < 0)
-		return fault_set(fault, rc,
-				 "%s: its reader returned an invalid mesh: %s; export it again",
-				 parent->path, strerror(-rc));
+		return diagnostics_add(diagnostics, rc, parent->path, 0,
+				       "its reader returned an invalid mesh: %s; export it again",
+				       strerror(-rc));
 	return 0;
 }
 
@@ -458,12 +459,14 @@ static void take_report(struct import_report *report, const struct import_report
 	/* the byte may have any value */
 	report->had_colours = *(const uint8_t *)&told->had_colours != 0;
 	report->textures = told->textures;
-	fault_set(&report->warning, 0, "%.*s", FAULT_BYTES - 1, told->warning.text);
+	if (told->warning.first.text[0])
+		diagnostics_add(&report->warning, 0, NULL, 0, "%.*s", DIAGNOSTIC_BYTES - 1,
+				told->warning.first.text);
 }
 
 int import_foreign(struct mesh *out, const char *path, struct import_foreign_format format,
 		   const struct import_options *options, struct import_report *report,
-		   struct fault *fault)
+		   struct diagnostics *diagnostics)
 {
 	struct job *job = sandbox_shared_create(sizeof(*job));
 	struct parent parent;
@@ -472,13 +475,13 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 	if (!job && rc == 0)
 		rc = -ENOMEM;
 	if (rc < 0) {
-		fault_set(fault, rc, "%s: %s", path, strerror(-rc));
+		diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc));
 	} else {
 		memcpy(job->path, parent.seen_path, sizeof(job->path));
 		job->format = format;
 		job->report = *report;
 		job->result_fd = parent.result_fd;
-		rc = run_job(out, job, &parent, options, report->file_bytes, fault);
+		rc = run_job(out, job, &parent, options, report->file_bytes, diagnostics);
 		take_report(report, &job->report);
 	}
 	parent_finish(&parent);

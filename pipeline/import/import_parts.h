@@ -8,7 +8,7 @@
 /* Reads a PLY. Like every reader, it gives the mesh in the file's unit and axes, with valid
  * indices, not repaired. Errors as import_scan. */
 must_check int import_ply(struct mesh *out, const char *path, const struct import_options *options,
-			  struct import_report *report, struct fault *fault);
+			  struct import_report *report, struct diagnostics *diagnostics);
 /* Returns how much memory decoding may use. Unless the options set it, it grows with the file,
  * because a small file should not need much. */
 static inline uint64_t import_memory_bytes(const struct import_options *options,
@@ -57,14 +57,14 @@ struct import_foreign_format {
 must_check int import_foreign(struct mesh *out, const char *path,
 			      struct import_foreign_format format,
 			      const struct import_options *options, struct import_report *report,
-			      struct fault *fault);
+			      struct diagnostics *diagnostics);
 
 struct aiScene;
 /* Runs assimp in the sandbox. The parent opens all files: seen_path stands for the scan, other
- * names are as the scan gives them. The scene is borrowed until the process ends. NULL: fault says
- * why. */
+ * names are as the scan gives them. The scene is borrowed until the process ends. NULL: diagnostics
+ * says why. */
 const struct aiScene *import_scene(const char *seen_path, const char *format_name,
-				   struct fault *fault);
+				   struct diagnostics *diagnostics);
 
 /* ---- pictures */
 

@@ -206,7 +206,7 @@ static int load_textures(struct collector *collector, const char *path,
 
 static int read_body(struct ply *ply, struct collector *collector, const char *path,
 		     const struct import_options *options, struct import_report *report,
-		     struct fault *fault)
+		     struct diagnostics *diagnostics)
 {
 	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
 	int rc = allocate(collector);
@@ -214,15 +214,15 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	collector->ply = ply;
 	collector->progress = progress_start("reading the scan", "KiB", ply_bytes_total(ply) >> 10);
 	if (rc == 0)
-		rc = ply_read(ply, &visitor, fault);
+		rc = ply_read(ply, &visitor, diagnostics);
 	progress_end(collector->progress);
 	if (rc == 0 && collector->corner_uvs)
 		rc = split_corners(collector);
 	if (rc == 0)
 		rc = load_textures(collector, path, options, report);
 	if (rc < 0)
-		return fault_set(
-			fault, rc, "%s: %s", path,
+		return diagnostics_add(
+			diagnostics, rc, path, 0, "%s",
 			rc == -ENOMEM ? "too large for this machine's memory"
 			: rc == -ENOSPC
 				? "the disk has no room for the imported mesh; make some, or set TMPDIR to "
@@ -233,11 +233,11 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 }
 
 int import_ply(struct mesh *out, const char *path, const struct import_options *options,
-	       struct import_report *report, struct fault *fault)
+	       struct import_report *report, struct diagnostics *diagnostics)
 {
 	struct collector collector = { 0 };
 	struct ply *ply;
-	int rc = ply_open(&ply, path, fault);
+	int rc = ply_open(&ply, path, diagnostics);
 
 	if (rc < 0)
 		return rc;
@@ -246,11 +246,13 @@ int import_ply(struct mesh *out, const char *path, const struct import_options *
 	report->had_open_sky = collector.summary->has_open_sky;
 	report->strange_lines = collector.summary->strange_lines;
 	if (collector.summary->vertex_count == 0)
-		rc = fault_set(fault, -EBADMSG, "%s: it holds no vertices; export it again", path);
+		rc = diagnostics_add(diagnostics, -EBADMSG, path, 0,
+				     "it holds no vertices; export it again");
 	else if (collector.summary->points_only)
-		rc = fault_set(fault, -EBADMSG, "%s: %s", path, collector.summary->points_only);
+		rc = diagnostics_add(diagnostics, -EBADMSG, path, 0, "%s",
+				     collector.summary->points_only);
 	if (rc == 0)
-		rc = read_body(ply, &collector, path, options, report, fault);
+		rc = read_body(ply, &collector, path, options, report, diagnostics);
 	report->trailing_bytes = ply_bytes_trailing(ply);
 	if (rc == 0) {
 		*out = collector.mesh;

@@ -50,6 +50,6 @@ void import_report_print(FILE *to, const char *path, const struct import_report 
 		    "header lines not understood, skipped");
 	print_count(to, report->trailing_bytes, "byte behind the last element, ignored",
 		    "bytes behind the last element, ignored");
-	if (report->warning.text[0])
-		fprintf(to, "  warning: %s\n", report->warning.text);
+	if (report->warning.first.text[0])
+		fprintf(to, "  warning: %s\n", report->warning.first.text);
 }

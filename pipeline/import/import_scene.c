@@ -178,7 +178,7 @@ static void files_close(struct aiFileIO *handle, struct aiFile *file)
 }
 
 const struct aiScene *import_scene(const char *seen_path, const char *format_name,
-				   struct fault *fault)
+				   struct diagnostics *diagnostics)
 {
 	const char *slash = strrchr(seen_path, '/');
 	struct files files = { .functions = { .OpenProc = files_open, .CloseProc = files_close },
@@ -188,15 +188,16 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 		aiImportFileEx(seen_path, aiProcess_Triangulate, &files.functions);
 
 	if (files.refused) {
-		fault_set(fault, -EPERM, "%s: it names '%.200s', which %s; %s", seen_path,
-			  files.refused_name, import_files_why(files.refused),
-			  files.refused == -EKEYREJECTED
-				  ? "no scan needs one: do not trust its maker"
-				  : "copy that file beside the scan");
+		diagnostics_add(
+			diagnostics, -EPERM, seen_path, 0, "it names '%.200s', which %s; %s",
+			files.refused_name, import_files_why(files.refused),
+			files.refused == -EKEYREJECTED ? "no scan needs one: do not trust its maker"
+						       : "copy that file beside the scan");
 		return NULL;
 	}
 	if (!scene || !scene->mRootNode)
-		fault_set(fault, -EBADMSG, "%s: its %s reader says: %s; export it again", seen_path,
-			  format_name, aiGetErrorString());
+		diagnostics_add(diagnostics, -EBADMSG, seen_path, 0,
+				"its %s reader says: %s; export it again", format_name,
+				aiGetErrorString());
 	return scene && scene->mRootNode ? scene : NULL;
 }

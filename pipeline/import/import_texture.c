@@ -40,8 +40,8 @@ static int from_picture(struct mesh_texture *out, const struct picture *picture)
 static int tolerate(struct mesh_texture *out, const char *scan_path, const char *name,
 		    const char *why, const uint8_t plain[3], struct import_report *report)
 {
-	fault_set(&report->warning, 0, "%s: its picture '%.200s' %s; a plain colour stands for it",
-		  scan_path, name, why);
+	diagnostics_add(&report->warning, 0, scan_path, 0,
+			"its picture '%.200s' %s; a plain colour stands for it", name, why);
 	return import_texture_plain(out, plain);
 }
 

@@ -15,7 +15,7 @@
 struct pass {
 	struct ply *ply;
 	const struct ply_visitor *visitor;
-	struct fault *fault;
+	struct diagnostics *diagnostics;
 	const struct ply_element *element;
 	uint64_t index; /* of the current element */
 	uint64_t faces; /* faces and strips in earlier elements */
@@ -54,25 +54,26 @@ static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)
 	}
 }
 
-/* Sets a fault such as "file.ply:40: face 12: ...". */
+/* Adds a diagnostic such as "file.ply:40: face 12: ...". */
 static int element_fault(const struct pass *pass, int error, const char *what)
 {
 	struct ply *ply = pass->ply;
 
 	if (ply->encoding == PLY_ASCII)
-		return fault_set(pass->fault, error, "%s:%" PRIu64 ": %s %" PRIu64 ": %s",
-				 ply->name, ply->input.line, pass->element->name, pass->index,
-				 what);
-	return fault_set(pass->fault, error, "%s: %s %" PRIu64 " (at byte %" PRIu64 "): %s",
-			 ply->name, pass->element->name, pass->index, ply_input_offset(&ply->input),
-			 what);
+		return diagnostics_add(pass->diagnostics, error, ply->name,
+				       (unsigned)ply->input.line, "%s %" PRIu64 ": %s",
+				       pass->element->name, pass->index, what);
+	return diagnostics_add(pass->diagnostics, error, ply->name, 0,
+			       "%s %" PRIu64 " (at byte %" PRIu64 "): %s", pass->element->name,
+			       pass->index, ply_input_offset(&ply->input), what);
 }
 
 static int ends_early(const struct pass *pass)
 {
 	if (pass->ply->input.error)
-		return fault_set(pass->fault, pass->ply->input.error, "%s: reading it fails: %s",
-				 pass->ply->name, strerror(-pass->ply->input.error));
+		return diagnostics_add(pass->diagnostics, pass->ply->input.error, pass->ply->name,
+				       0, "reading it fails: %s",
+				       strerror(-pass->ply->input.error));
 	return element_fault(pass, -EBADMSG,
 			     "the file ends here, short of what its header promises; copy it again "
 			     "from the source");
@@ -354,9 +355,9 @@ static int read_element(struct pass *pass, const struct ply_element *element)
 	return rc;
 }
 
-int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct fault *fault)
+int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct diagnostics *diagnostics)
 {
-	struct pass pass = { .ply = ply, .visitor = visitor, .fault = fault };
+	struct pass pass = { .ply = ply, .visitor = visitor, .diagnostics = diagnostics };
 
 	for (uint32_t i = 0; i < ply->element_count; i++) {
 		int rc = read_element(&pass, &ply->elements[i]);
@@ -374,27 +375,28 @@ int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct fault *f
 
 /* ---- opening */
 
-static int start(struct ply *ply, int fd, struct fault *fault)
+static int start(struct ply *ply, int fd, struct diagnostics *diagnostics)
 {
 	int rc = ply_input_init(&ply->input, fd);
 
 	if (rc == -EISDIR || rc == -ESPIPE)
-		return fault_set(fault, rc, "%s: not a regular file; give a PLY file", ply->name);
+		return diagnostics_add(diagnostics, rc, ply->name, 0,
+				       "not a regular file; give a PLY file");
 	ply->corners = malloc(PLY_CORNERS_MAX * sizeof(*ply->corners));
 	ply->corner_uvs = malloc(PLY_CORNERS_MAX * sizeof(*ply->corner_uvs));
 	if (rc == 0 && (!ply->corners || !ply->corner_uvs))
 		rc = -ENOMEM;
 	if (rc < 0)
-		return fault_set(fault, rc, "%s: %s", ply->name, strerror(-rc));
-	rc = ply_read_header(ply, fault);
+		return diagnostics_add(diagnostics, rc, ply->name, 0, "%s", strerror(-rc));
+	rc = ply_read_header(ply, diagnostics);
 	if (rc == 0)
-		rc = ply_judge_header(ply, fault);
+		rc = ply_judge_header(ply, diagnostics);
 	ply->summary.textures = (const char *const *)ply->textures;
 	ply->summary.is_ascii = ply->encoding == PLY_ASCII;
 	return rc;
 }
 
-int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault)
+int ply_open_fd(struct ply **out, int fd, const char *name, struct diagnostics *diagnostics)
 {
 	struct ply *ply = calloc(1, sizeof(*ply));
 	int rc;
@@ -402,10 +404,10 @@ int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault)
 	*out = NULL;
 	if (!ply) {
 		close(fd);
-		return fault_set(fault, -ENOMEM, "%s: %s", name, strerror(ENOMEM));
+		return diagnostics_add(diagnostics, -ENOMEM, name, 0, "%s", strerror(ENOMEM));
 	}
 	snprintf(ply->name, sizeof(ply->name), "%s", name);
-	rc = start(ply, fd, fault);
+	rc = start(ply, fd, diagnostics);
 	if (rc < 0) {
 		ply_close(ply);
 		return rc;
@@ -414,14 +416,14 @@ int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault)
 	return 0;
 }
 
-int ply_open(struct ply **out, const char *path, struct fault *fault)
+int ply_open(struct ply **out, const char *path, struct diagnostics *diagnostics)
 {
 	int fd = open(path, O_RDONLY | O_CLOEXEC);
 
 	*out = NULL;
 	if (fd < 0)
-		return fault_set(fault, -errno, "%s: %s", path, strerror(errno));
-	return ply_open_fd(out, fd, path, fault);
+		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
+	return ply_open_fd(out, fd, path, diagnostics);
 }
 
 void ply_close(struct ply *ply)

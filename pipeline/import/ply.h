@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
-#include "base/fault.h"
+#include "base/diagnostics.h"
 
 enum {
 	PLY_TEXTURES_MAX = 256,
@@ -61,19 +61,21 @@ struct ply_visitor {
 
 /* Opens the file and reads its header. *out is owned by the caller; it is NULL on failure.
  * -EBADMSG: not a readable PLY, or shorter than its header says. -ENOENT and others: the file
- * cannot be opened. fault says why. */
-must_check int ply_open(struct ply **out, const char *path, struct fault *fault);
+ * cannot be opened. diagnostics says why. */
+must_check int ply_open(struct ply **out, const char *path, struct diagnostics *diagnostics);
 /* The same from an open descriptor. It is taken: closed with the reader, or on failure. name is
  * used in messages. */
-must_check int ply_open_fd(struct ply **out, int fd, const char *name, struct fault *fault);
+must_check int ply_open_fd(struct ply **out, int fd, const char *name,
+			   struct diagnostics *diagnostics);
 void ply_close(struct ply *ply); /* NULL is fine */
 
 /* What the header declares; borrowed from the reader. */
 const struct ply_summary *ply_summary(const struct ply *ply);
 
-/* Reads everything after the header. Call it once. Returns 0, a negative errno with a fault, or
- * what a visitor returned. */
-must_check int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct fault *fault);
+/* Reads everything after the header. Call it once. Returns 0, a negative errno with a diagnostic,
+ * or what a visitor returned. */
+must_check int ply_read(struct ply *ply, const struct ply_visitor *visitor,
+			struct diagnostics *diagnostics);
 
 /* Returns the number of bytes of the file read so far, for progress. */
 uint64_t ply_bytes_read(const struct ply *ply);

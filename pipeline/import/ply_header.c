@@ -79,14 +79,15 @@ static enum ply_slot slot_named(enum ply_kind kind, const char *name, bool is_li
 	return PLY_SLOT_NONE;
 }
 
-static int line_fault(struct ply *ply, struct fault *fault, const char *what)
+static int line_fault(struct ply *ply, struct diagnostics *diagnostics, const char *what)
 {
-	return fault_set(fault, -EBADMSG, "%s:%" PRIu64 ": %s", ply->name, ply->input.line, what);
+	return diagnostics_add(diagnostics, -EBADMSG, ply->name, (unsigned)ply->input.line, "%s",
+			       what);
 }
 
 /* Reads a line without its end. A line ends with LF or CR LF, or with CR if the first line did
  * (then a LF after end_header is data). */
-static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct fault *fault)
+static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct diagnostics *diagnostics)
 {
 	struct ply_input *input = &ply->input;
 	size_t length = 0;
@@ -94,17 +95,18 @@ static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct fault *fau
 
 	while ((c = ply_input_peek(input)) >= 0 && c != '\n' && c != '\r') {
 		if (length == PLY_LINE_MAX - 1)
-			return line_fault(ply, fault,
+			return line_fault(ply, diagnostics,
 					  "a header line of over 4095 bytes; is this a PLY?");
 		line[length++] = (char)c;
 		input->at++;
 	}
 	line[length] = '\0';
 	if (c < 0)
-		return line_fault(ply, fault,
+		return line_fault(ply, diagnostics,
 				  "the file ends within its header; copy it again from the source");
 	if (ply_input_offset(input) > PLY_HEADER_MAX)
-		return line_fault(ply, fault, "the header goes on for over 1 MiB; is this a PLY?");
+		return line_fault(ply, diagnostics,
+				  "the header goes on for over 1 MiB; is this a PLY?");
 	input->at++;
 	if (c == '\r' && input->line == 1)
 		ply->cr_only = ply_input_peek(input) != '\n';
@@ -113,7 +115,7 @@ static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct fault *fau
 	return 0;
 }
 
-static int read_format(struct ply *ply, const char *words, struct fault *fault)
+static int read_format(struct ply *ply, const char *words, struct diagnostics *diagnostics)
 {
 	char name[32] = "", version[16] = "";
 
@@ -126,10 +128,11 @@ static int read_format(struct ply *ply, const char *words, struct fault *fault)
 		ply->encoding = PLY_BIG;
 	else
 		return line_fault(
-			ply, fault,
+			ply, diagnostics,
 			"format must be ascii, binary_little_endian or binary_big_endian");
 	if (strcmp(version, "1.0") != 0)
-		return line_fault(ply, fault, "the format's version must be 1.0; export it again");
+		return line_fault(ply, diagnostics,
+				  "the format's version must be 1.0; export it again");
 	return 0;
 }
 
@@ -142,66 +145,70 @@ static enum ply_kind kind_named(const char *name)
 	return strcmp(name, "tristrips") == 0 ? PLY_KIND_STRIP : PLY_KIND_OTHER;
 }
 
-static int read_element(struct ply *ply, const char *words, struct fault *fault)
+static int read_element(struct ply *ply, const char *words, struct diagnostics *diagnostics)
 {
 	struct ply_element *element = &ply->elements[ply->element_count];
 	char count[24] = "", more[2] = "", *end;
 
 	if (ply->element_count == PLY_ELEMENTS_MAX)
-		return line_fault(ply, fault, "over 32 kinds of elements; remove some");
+		return line_fault(ply, diagnostics, "over 32 kinds of elements; remove some");
 	*element = (struct ply_element){ 0 };
 	if (sscanf(words, "%63s %23s %1s", element->name, count, more) != 2)
-		return line_fault(ply, fault, "expected: element NAME COUNT");
+		return line_fault(ply, diagnostics, "expected: element NAME COUNT");
 	errno = 0;
 	element->count = strtoull(count, &end, 10);
 	if (errno || *end || count[0] < '0' || count[0] > '9')
-		return line_fault(ply, fault, "the element's count is not a number");
+		return line_fault(ply, diagnostics, "the element's count is not a number");
 	element->kind = kind_named(element->name);
 	for (uint32_t i = 0; i < ply->element_count; i++)
 		if (strcmp(ply->elements[i].name, element->name) == 0)
-			return line_fault(ply, fault, "this element stands in the header twice");
+			return line_fault(ply, diagnostics,
+					  "this element stands in the header twice");
 	if (strcmp(element->name, "range_grid") == 0)
 		ply->range_grid = true;
 	ply->element_count++;
 	return 0;
 }
 
-static int read_property(struct ply *ply, const char *words, struct fault *fault)
+static int read_property(struct ply *ply, const char *words, struct diagnostics *diagnostics)
 {
 	struct ply_element *element;
 	struct ply_property property = { .count_type = PLY_TYPE_NONE };
 	char first[16] = "", second[16] = "", third[16] = "";
 
 	if (ply->element_count == 0)
-		return line_fault(ply, fault, "a property before the first element");
+		return line_fault(ply, diagnostics, "a property before the first element");
 	element = &ply->elements[ply->element_count - 1];
 	if (element->property_count == PLY_PROPERTIES_MAX)
-		return line_fault(ply, fault, "over 128 properties in one element; remove some");
+		return line_fault(ply, diagnostics,
+				  "over 128 properties in one element; remove some");
 	if (sscanf(words, "%15s", first) == 1 && strcmp(first, "list") == 0) {
 		if (sscanf(words, "%*s %15s %15s %63s", second, third, property.name) != 3)
-			return line_fault(ply, fault, "expected: property list TYPE TYPE NAME");
+			return line_fault(ply, diagnostics,
+					  "expected: property list TYPE TYPE NAME");
 		property.count_type = type_named(second);
 		property.type = type_named(third);
 		if (property.count_type >= PLY_FLOAT32)
-			return line_fault(ply, fault, "a list's length must be of an integer type");
+			return line_fault(ply, diagnostics,
+					  "a list's length must be of an integer type");
 	} else if (sscanf(words, "%15s %63s", first, property.name) == 2) {
 		property.type = type_named(first);
 	} else {
-		return line_fault(ply, fault, "expected: property TYPE NAME");
+		return line_fault(ply, diagnostics, "expected: property TYPE NAME");
 	}
 	if (property.type == PLY_TYPE_NONE)
-		return line_fault(ply, fault,
+		return line_fault(ply, diagnostics,
 				  "unknown type; expected char, uchar, short, ushort, "
 				  "int, uint, float or double");
 	property.slot =
 		slot_named(element->kind, property.name, property.count_type != PLY_TYPE_NONE);
 	if (property.slot == PLY_SLOT_CORNERS && property.type >= PLY_FLOAT32)
-		return line_fault(ply, fault, "vertex indices must be of an integer type");
+		return line_fault(ply, diagnostics, "vertex indices must be of an integer type");
 	element->properties[element->property_count++] = property;
 	return 0;
 }
 
-static int read_comment(struct ply *ply, const char *words, struct fault *fault)
+static int read_comment(struct ply *ply, const char *words, struct diagnostics *diagnostics)
 {
 	char name[512];
 
@@ -210,7 +217,7 @@ static int read_comment(struct ply *ply, const char *words, struct fault *fault)
 	if (sscanf(words, "TextureFile %511[^\r\n]", name) != 1)
 		return 0;
 	if (ply->summary.texture_count == PLY_TEXTURES_MAX)
-		return line_fault(ply, fault, "over 256 textures; merge some");
+		return line_fault(ply, diagnostics, "over 256 textures; merge some");
 	ply->textures[ply->summary.texture_count] = strdup(name);
 	if (!ply->textures[ply->summary.texture_count])
 		return -ENOMEM;
@@ -231,52 +238,52 @@ static const char *after_word(const char *line, const char *word)
 }
 
 static int read_header_line(struct ply *ply, const char *line, bool *has_format,
-			    struct fault *fault)
+			    struct diagnostics *diagnostics)
 {
 	const char *words;
 
 	if ((words = after_word(line, "format"))) {
 		*has_format = true;
-		return read_format(ply, words, fault);
+		return read_format(ply, words, diagnostics);
 	}
 	if ((words = after_word(line, "element")))
-		return read_element(ply, words, fault);
+		return read_element(ply, words, diagnostics);
 	if ((words = after_word(line, "property")))
-		return read_property(ply, words, fault);
+		return read_property(ply, words, diagnostics);
 	if ((words = after_word(line, "comment")))
-		return read_comment(ply, words, fault);
+		return read_comment(ply, words, diagnostics);
 	if (!after_word(line, "obj_info") && line[0])
 		ply->summary.strange_lines++;
 	return 0;
 }
 
-int ply_read_header(struct ply *ply, struct fault *fault)
+int ply_read_header(struct ply *ply, struct diagnostics *diagnostics)
 {
 	char line[PLY_LINE_MAX];
 	bool has_format = false;
 	int rc;
 
 	if (ply_input_peek(&ply->input) < 0)
-		return fault_set(fault, -EBADMSG,
-				 "%s: the file is empty; copy it again from the source", ply->name);
-	rc = read_line(ply, line, fault);
+		return diagnostics_add(diagnostics, -EBADMSG, ply->name, 0,
+				       "the file is empty; copy it again from the source");
+	rc = read_line(ply, line, diagnostics);
 	if (rc < 0)
 		return rc;
 	if (strcmp(line, "ply") != 0)
-		return line_fault(ply, fault, "not a PLY: its first line is not 'ply'");
+		return line_fault(ply, diagnostics, "not a PLY: its first line is not 'ply'");
 	for (;;) {
 		ply->input.line++;
-		rc = read_line(ply, line, fault);
+		rc = read_line(ply, line, diagnostics);
 		if (rc < 0)
 			return rc;
 		if (after_word(line, "end_header"))
 			break;
-		rc = read_header_line(ply, line, &has_format, fault);
+		rc = read_header_line(ply, line, &has_format, diagnostics);
 		if (rc < 0)
 			return rc;
 	}
 	ply->input.line++;
-	return has_format ? 0 : line_fault(ply, fault, "the header has no 'format' line");
+	return has_format ? 0 : line_fault(ply, diagnostics, "the header has no 'format' line");
 }
 
 /* ---- checking the header against the file */
@@ -310,20 +317,23 @@ static uint64_t lay_out(struct ply_element *element, enum ply_encoding encoding)
 	return least;
 }
 
-static int judge_vertices(struct ply *ply, const struct ply_element *element, struct fault *fault)
+static int judge_vertices(struct ply *ply, const struct ply_element *element,
+			  struct diagnostics *diagnostics)
 {
 	struct ply_summary *summary = &ply->summary;
 
 	for (enum ply_slot slot = PLY_SLOT_X; slot <= PLY_SLOT_Z; slot++)
 		if (!has_slot(element, slot))
-			return fault_set(fault, -EBADMSG,
-					 "%s: its vertices have no property %c; export x, y and z",
-					 ply->name, 'x' + (int)(slot - PLY_SLOT_X));
+			return diagnostics_add(
+				diagnostics, -EBADMSG, ply->name, 0,
+				"its vertices have no property %c; export x, y and z",
+				'x' + (int)(slot - PLY_SLOT_X));
 	if (element->count >= UINT32_MAX)
-		return fault_set(fault, -EFBIG,
-				 "%s: %" PRIu64 " vertices are more than a 32-bit index can name; "
-				 "split the scan into several files",
-				 ply->name, element->count);
+		return diagnostics_add(diagnostics, -EFBIG, ply->name, 0,
+				       "%" PRIu64
+				       " vertices are more than a 32-bit index can name; "
+				       "split the scan into several files",
+				       element->count);
 	summary->vertex_count = element->count;
 	summary->has_colour = has_slot(element, PLY_SLOT_RED) &&
 			      has_slot(element, PLY_SLOT_GREEN) && has_slot(element, PLY_SLOT_BLUE);
@@ -342,7 +352,7 @@ static void note_why_points_only(struct ply *ply)
 				: "it holds points but no faces; reconstruct a surface first";
 }
 
-int ply_judge_header(struct ply *ply, struct fault *fault)
+int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics)
 {
 	uint64_t left = ply->input.file_bytes - ply_input_offset(&ply->input) + 1;
 
@@ -352,19 +362,19 @@ int ply_judge_header(struct ply *ply, struct fault *fault)
 		int rc = 0;
 
 		if (element->count > 0 && least == 0)
-			return fault_set(fault, -EBADMSG,
-					 "%s: element %s has no property; export it again",
-					 ply->name, element->name);
+			return diagnostics_add(diagnostics, -EBADMSG, ply->name, 0,
+					       "element %s has no property; export it again",
+					       element->name);
 		if (element->count > 0 && element->count > left / least)
-			return fault_set(fault, -EBADMSG,
-					 "%s: its header promises %" PRIu64 " of element %s, but "
-					 "only %" PRIu64
-					 " bytes are left in the file; it was cut off, or "
-					 "its header is wrong: copy it again from the source",
-					 ply->name, element->count, element->name, left - 1);
+			return diagnostics_add(diagnostics, -EBADMSG, ply->name, 0,
+					       "its header promises %" PRIu64 " of element %s, but "
+					       "only %" PRIu64
+					       " bytes are left in the file; it was cut off, or "
+					       "its header is wrong: copy it again from the source",
+					       element->count, element->name, left - 1);
 		left -= element->count * least;
 		if (element->kind == PLY_KIND_VERTEX)
-			rc = judge_vertices(ply, element, fault);
+			rc = judge_vertices(ply, element, diagnostics);
 		else if (element->kind != PLY_KIND_OTHER && has_slot(element, PLY_SLOT_CORNERS))
 			ply->summary.face_count += element->count;
 		ply->summary.has_corner_uv |=

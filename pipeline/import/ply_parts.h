@@ -124,10 +124,10 @@ struct ply {
 
 /* Returns the size of a binary value; 0 for PLY_TYPE_NONE. */
 size_t ply_type_bytes(enum ply_type type);
-/* Reads the header up to end_header. -EBADMSG with a fault; -ENOMEM. */
-must_check int ply_read_header(struct ply *ply, struct fault *fault);
+/* Reads the header up to end_header. -EBADMSG with a diagnostic; -ENOMEM. */
+must_check int ply_read_header(struct ply *ply, struct diagnostics *diagnostics);
 /* After the header: checks that its declarations make sense and that the file is long enough.
- * -EBADMSG or -EFBIG with a fault. */
-must_check int ply_judge_header(struct ply *ply, struct fault *fault);
+ * -EBADMSG or -EFBIG with a diagnostic. */
+must_check int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics);
 
 #endif

@@ -43,7 +43,7 @@ struct outcome {
 	int rc;
 	/* from pipeline/import/lockdown.h: 0, or why the restriction is not active */
 	int files_wall, calls_wall;
-	struct fault fault;
+	struct diagnostic cause;
 };
 
 /* In the child: the socket on which it asks for files. */
@@ -155,7 +155,7 @@ int sandbox_open(const char *name)
 
 /* ---- the child */
 
-/* Discards output of foreign code; everything important comes back as a fault. */
+/* Discards output of foreign code; everything important comes back as a diagnostic. */
 static void silence(void)
 {
 	int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
@@ -201,7 +201,7 @@ static void set_limits(const struct sandbox_options *options)
 _Noreturn static void child(sandbox_work work, void *shared, const struct sandbox_options *options,
 			    pid_t parent, struct outcome *outcome)
 {
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
@@ -211,8 +211,8 @@ _Noreturn static void child(sandbox_work work, void *shared, const struct sandbo
 	set_limits(options);
 	outcome->files_wall = lockdown_files();
 	outcome->calls_wall = lockdown_calls();
-	outcome->rc = work(shared, &fault);
-	outcome->fault = fault;
+	outcome->rc = work(shared, &diagnostics);
+	outcome->cause = diagnostics.first;
 	outcome->finished = true;
 	_exit(0); /* no destructors and no leak report, because the process is discarded */
 }
@@ -279,31 +279,33 @@ static void tell_walls(const struct outcome *outcome, const char *name)
 }
 
 static int judge(int watched, int status, struct outcome *outcome,
-		 const struct sandbox_options *options, const char *name, struct fault *fault)
+		 const struct sandbox_options *options, const char *name,
+		 struct diagnostics *diagnostics)
 {
 	if (watched == -ETIMEDOUT || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
-		return fault_set(fault, -ETIMEDOUT,
-				 "%s: reading it took over %" PRIu32
-				 " s, so it was stopped; the file is "
-				 "damaged or too large: export it as PLY",
-				 name, options->timeout_s);
+		return diagnostics_add(diagnostics, -ETIMEDOUT, name, 0,
+				       "reading it took over %" PRIu32
+				       " s, so it was stopped; the file is "
+				       "damaged or too large: export it as PLY",
+				       options->timeout_s);
 	if (watched == -ENOMEM)
-		return fault_set(fault, -ENOMEM,
-				 "%s: reading it took over %" PRIu64 " MiB, so it was stopped; the "
-				 "file is damaged or too large: export it as PLY",
-				 name, options->memory_bytes >> 20);
+		return diagnostics_add(diagnostics, -ENOMEM, name, 0,
+				       "reading it took over %" PRIu64
+				       " MiB, so it was stopped; the "
+				       "file is damaged or too large: export it as PLY",
+				       options->memory_bytes >> 20);
 	if (watched < 0)
-		return fault_set(fault, watched, "%s: %s", name, strerror(-watched));
+		return diagnostics_add(diagnostics, watched, name, 0, "%s", strerror(-watched));
 	if (!outcome->finished)
-		return fault_set(fault, -EBADMSG,
-				 "%s: its reader crashed (%s), so the file is damaged: export it "
-				 "again, or as PLY",
-				 name,
-				 WIFSIGNALED(status) ? strsignal(WTERMSIG(status))
-						     : "the reader failed");
-	outcome->fault.text[FAULT_BYTES - 1] = '\0';
-	if (outcome->rc < 0)
-		return fault_set(fault, outcome->rc, "%s", outcome->fault.text);
+		return diagnostics_add(diagnostics, -EBADMSG, name, 0,
+				       "its reader crashed (%s), so the file is damaged: export it "
+				       "again, or as PLY",
+				       WIFSIGNALED(status) ? strsignal(WTERMSIG(status))
+							   : "the reader failed");
+	outcome->cause.text[DIAGNOSTIC_BYTES - 1] = '\0';
+	if (outcome->rc < 0 && outcome->cause.text[0])
+		return diagnostics_add(diagnostics, outcome->rc, NULL, 0, "%s",
+				       outcome->cause.text);
 	return outcome->rc;
 }
 
@@ -337,17 +339,17 @@ static int start_and_watch(sandbox_work work, void *shared, const struct sandbox
 }
 
 int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
-		const char *name, struct fault *fault)
+		const char *name, struct diagnostics *diagnostics)
 {
 	struct outcome *outcome = sandbox_shared_create(sizeof(*outcome));
 	int status = 0, rc;
 
 	if (!outcome)
-		return fault_set(fault, -ENOMEM, "%s: %s", name, strerror(ENOMEM));
+		return diagnostics_add(diagnostics, -ENOMEM, name, 0, "%s", strerror(ENOMEM));
 	rc = start_and_watch(work, shared, options, outcome, &status);
 	if (rc == 0)
 		tell_walls(outcome, name);
-	rc = judge(rc, status, outcome, options, name, fault);
+	rc = judge(rc, status, outcome, options, name, diagnostics);
 	sandbox_shared_destroy(outcome, sizeof(*outcome));
 	return rc;
 }

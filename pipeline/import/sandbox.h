@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
-#include "base/fault.h"
+#include "base/diagnostics.h"
 
 struct sandbox_options {
 	uint32_t timeout_s; /* limit for wall-clock time and for processor time */
@@ -28,8 +28,9 @@ struct sandbox_options {
 
 /* The work of the child. Of the parent's descriptors it has only result_fd and the standard ones,
  * which lead to /dev/null (standard error stays open in a build with AddressSanitizer). Its memory
- * is a copy: changes are lost except in `shared`. Returns 0, or a negative errno with a fault. */
-typedef int (*sandbox_work)(void *shared, struct fault *fault);
+ * is a copy: changes are lost except in `shared`. Returns 0, or a negative errno with a diagnostic.
+ */
+typedef int (*sandbox_work)(void *shared, struct diagnostics *diagnostics);
 
 /* In the child: opens a file through options.open in the parent. Returns a descriptor owned by the
  * caller, or a negative errno. */
@@ -41,9 +42,9 @@ void *sandbox_shared_create(size_t size);
 void sandbox_shared_destroy(void *shared, size_t size); /* NULL is fine */
 
 /* Runs work in a child and returns its result. -ETIMEDOUT: it took too long. -ENOMEM: it used too
- * much memory. -EBADMSG: it crashed. fault is then "NAME: ...". `shared` comes from
+ * much memory. -EBADMSG: it crashed. diagnostics then says "NAME: ...". `shared` comes from
  * sandbox_shared_create. */
 must_check int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
-			   const char *name, struct fault *fault);
+			   const char *name, struct diagnostics *diagnostics);
 
 #endif

@@ -81,11 +81,12 @@ static int judge_light(bool *lit, struct scans *scans)
 {
 	const struct content *content = scans_content(scans);
 	const struct scans_shape *shape = NULL;
-	struct fault fault = { "" };
-	int rc = content->lit == CONTENT_LIT_AUTO ? scans_get_shape(scans, &shape, &fault) : 0;
+	struct diagnostics diagnostics = { 0 };
+	int rc =
+		content->lit == CONTENT_LIT_AUTO ? scans_get_shape(scans, &shape, &diagnostics) : 0;
 
 	if (rc < 0)
-		log_error("pipeline", "%s", fault.text[0] ? fault.text : strerror(-rc));
+		log_error("pipeline", "%s", diagnostics_cause(&diagnostics, rc));
 	else
 		*lit = content_is_lit(content, shape && shape->has_textures);
 	return rc;

@@ -205,14 +205,14 @@ static int add_page(struct labelling *l, struct page_child *out)
 }
 
 static int label_by_scan(struct labelling *l, struct label_source_part *parts, uint32_t count,
-			 struct sources *sources, struct fault *fault)
+			 struct sources *sources, struct diagnostics *diagnostics)
 {
 	struct label_source *source = NULL;
 	const struct mesh *mesh;
-	int rc = scans_get_mesh(sources_scans(sources), &mesh, fault);
+	int rc = scans_get_mesh(sources_scans(sources), &mesh, diagnostics);
 
 	if (rc == 0)
-		rc = sources_find_faces(sources, fault);
+		rc = sources_find_faces(sources, diagnostics);
 	for (uint32_t i = 0; rc == 0 && i < count; i++) {
 		struct sources_faces faces;
 
@@ -237,25 +237,25 @@ static int make_labels(struct labelling *l, struct label_source_part *parts, uin
 		       struct page_child *out)
 {
 	char path[CONTENT_PATH_BYTES];
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct hash scans, key;
 	int rc = open_groups(l, hierarchy);
 
 	if (rc == 0)
-		rc = scans_key(sources_scans(sources), &scans, &fault);
+		rc = scans_key(sources_scans(sources), &scans, &diagnostics);
 	if (rc == 0)
 		rc = label_cache_key(&key, scans, hierarchy->hash, parts, count);
 	if (rc == 0)
 		rc = content_work_path(sources_content(sources), "labels", path);
 	if (rc == 0 && label_cache_load(l->labels, l->page.child_count, key, path) < 0) {
-		rc = label_by_scan(l, parts, count, sources, &fault);
+		rc = label_by_scan(l, parts, count, sources, &diagnostics);
 		if (rc == 0)
 			rc = label_cache_save(l->labels, l->page.child_count, key, path);
 	}
 	if (rc == 0)
 		rc = add_page(l, out);
-	if (fault.text[0])
-		log_error("pipeline", "%s", fault.text);
+	if (diagnostics.count > 0)
+		log_error("pipeline", "%s", diagnostics_cause(&diagnostics, rc));
 	labelling_finish(l);
 	return rc;
 }

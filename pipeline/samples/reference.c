@@ -94,7 +94,7 @@ static bool next_line(struct bytes *text, char line[LINE_BYTES])
 }
 
 int reference_views(struct camera **out, uint32_t *count, struct bytes text, const char *name,
-		    struct fault *fault)
+		    struct diagnostics *diagnostics)
 {
 	struct camera *views = NULL;
 	uint32_t room = 0;
@@ -115,10 +115,11 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 		}
 		if (found != NUMBERS || *count == REFERENCE_VIEWS_MAX ||
 		    !view_from(&views[*count], numbers)) {
-			fault_set(fault, rc,
-				  "%s, line %u: give eye x y z, target x y z (another place) and "
-				  "the vertical field of view, 1 to 170 degrees",
-				  name, number);
+			diagnostics_add(
+				diagnostics, rc, NULL, 0,
+				"%s, line %u: give eye x y z, target x y z (another place) and "
+				"the vertical field of view, 1 to 170 degrees",
+				name, number);
 			goto fail;
 		}
 		++*count;
@@ -127,7 +128,7 @@ int reference_views(struct camera **out, uint32_t *count, struct bytes text, con
 		*out = views;
 		return 0;
 	}
-	fault_set(fault, rc, "%s: the file has no view; write one a line", name);
+	diagnostics_add(diagnostics, rc, name, 0, "the file has no view; write one a line");
 fail:
 	free(views);
 	*count = 0;
@@ -185,7 +186,7 @@ static bool is_there(const struct reference_options *options, uint32_t n, struct
 	return same;
 }
 
-static int set_up(struct easel *easel, struct scans *scans, struct fault *fault)
+static int set_up(struct easel *easel, struct scans *scans, struct diagnostics *diagnostics)
 {
 	const struct content *content = scans_content(scans);
 	const struct reference_options *options = easel->options;
@@ -194,7 +195,7 @@ static int set_up(struct easel *easel, struct scans *scans, struct fault *fault)
 	size_t pixels = (size_t)options->width_px * (size_t)options->height_px;
 	int side = options->width_px > options->height_px ? options->width_px : options->height_px;
 	const struct mesh *mesh;
-	int rc = scans_get_mesh(scans, &mesh, fault);
+	int rc = scans_get_mesh(scans, &mesh, diagnostics);
 
 	if (rc < 0)
 		return rc;
@@ -348,18 +349,19 @@ static int draw_view(struct easel *easel, const struct camera *view, uint32_t n,
 
 int reference_draw(struct scans *scans, const struct camera *views, uint32_t count,
 		   const struct reference_options *options, struct reference_report *report,
-		   struct fault *fault)
+		   struct diagnostics *diagnostics)
 {
 	struct easel easel = { .options = options };
 	struct progress *progress;
 	struct hash scans_hash;
-	int rc = scans_key(scans, &scans_hash, fault);
+	int rc = scans_key(scans, &scans_hash, diagnostics);
 
 	*report = (struct reference_report){ 0 };
 	if (rc < 0)
 		return rc;
 	if (mkdir(options->out_dir, 0777) < 0 && errno != EEXIST)
-		return fault_set(fault, -errno, "%s: %s", options->out_dir, strerror(errno));
+		return diagnostics_add(diagnostics, -errno, options->out_dir, 0, "%s",
+				       strerror(errno));
 	progress = progress_start("rendering", "views", count);
 	for (uint32_t n = 0; rc == 0 && n < count; n++) {
 		struct hash key = view_key(scans_content(scans), scans_hash, &views[n], options);
@@ -368,7 +370,7 @@ int reference_draw(struct scans *scans, const struct camera *views, uint32_t cou
 			report->kept++;
 		} else {
 			if (!easel.headless)
-				rc = set_up(&easel, scans, fault);
+				rc = set_up(&easel, scans, diagnostics);
 			if (rc == 0)
 				rc = draw_view(&easel, &views[n], n, key);
 			report->drawn += rc == 0;
@@ -378,6 +380,7 @@ int reference_draw(struct scans *scans, const struct camera *views, uint32_t cou
 	progress_end(progress);
 	take_down(&easel);
 	if (rc < 0)
-		fault_set(fault, rc, "%s: rendering failed: %s", options->out_dir, strerror(-rc));
+		diagnostics_add(diagnostics, rc, options->out_dir, 0, "rendering failed: %s",
+				strerror(-rc));
 	return rc;
 }

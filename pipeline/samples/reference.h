@@ -22,15 +22,15 @@ struct reference_report {
 /* Reads views from text, one per line: "eye x y z target x y z vertical field of view in degrees".
  * The words eye and target may be left out; # starts a comment. *out is owned by the caller (free);
  * size, near and far are not set. name is used in error messages. Returns -EINVAL with the line in
- * fault, or -ENOMEM. */
+ * diagnostic, or -ENOMEM. */
 must_check int reference_views(struct camera **out, uint32_t *count, struct bytes text,
-			       const char *name, struct fault *fault);
+			       const char *name, struct diagnostics *diagnostics);
 
 /* Writes OUT_DIR/view-0000.png and so on: sRGB, straight alpha that is coverage, colour 0 where
  * alpha is 0. Samples are averaged with a box filter, in sRGB as everywhere here. Errors are
- * described in fault. */
+ * described in diagnostics. */
 must_check int reference_draw(struct scans *scans, const struct camera *views, uint32_t count,
 			      const struct reference_options *options,
-			      struct reference_report *report, struct fault *fault);
+			      struct reference_report *report, struct diagnostics *diagnostics);
 
 #endif

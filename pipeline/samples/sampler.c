@@ -358,14 +358,14 @@ static int run_children(struct sampling *sampling, uint32_t jobs)
 
 /* Makes the model that is drawn: the master's, or the whole mesh. */
 static int make_model(struct sampling *sampling, struct scans *scans, const struct master *master,
-		      struct fault *fault)
+		      struct diagnostics *diagnostics)
 {
 	const struct mesh *mesh;
 	int rc;
 
 	if (master)
 		return model_of_master(&sampling->model, master);
-	rc = scans_get_mesh(scans, &mesh, fault);
+	rc = scans_get_mesh(scans, &mesh, diagnostics);
 	if (rc < 0)
 		return rc;
 	sampling->textures = mesh->textures;
@@ -390,7 +390,7 @@ static int render(struct sampling *sampling, uint32_t jobs)
 }
 
 static int sample(struct sampling *sampling, struct scans *scans,
-		  const struct sampler_options *options, struct fault *fault)
+		  const struct sampler_options *options, struct diagnostics *diagnostics)
 {
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	uint32_t jobs = options->jobs ? options->jobs : (uint32_t)(cores > 0 ? cores : 1);
@@ -399,7 +399,7 @@ static int sample(struct sampling *sampling, struct scans *scans,
 	if (rc == 0)
 		rc = list_points(sampling, options);
 	if (rc == 0 && sampling->point_count > 0) {
-		rc = make_model(sampling, scans, options->master, fault);
+		rc = make_model(sampling, scans, options->master, diagnostics);
 		if (rc == 0)
 			rc = render(sampling, jobs);
 		model_destroy(sampling->model);
@@ -408,16 +408,17 @@ static int sample(struct sampling *sampling, struct scans *scans,
 	return rc;
 }
 
-int sampler_run(struct scans *scans, const struct sampler_options *options, struct fault *fault)
+int sampler_run(struct scans *scans, const struct sampler_options *options,
+		struct diagnostics *diagnostics)
 {
 	const struct content *content = scans_content(scans);
 	struct sampling sampling = { .content = content, .below_ground = options->below_ground };
 	const struct scans_shape *shape;
 	struct hash mesh_key;
-	int rc = scans_key(scans, &mesh_key, fault);
+	int rc = scans_key(scans, &mesh_key, diagnostics);
 
 	if (rc == 0)
-		rc = scans_get_shape(scans, &shape, fault);
+		rc = scans_get_shape(scans, &shape, diagnostics);
 	if (rc < 0)
 		return rc;
 	sampling.drawing.lit = content_is_lit(content, shape->has_textures);
@@ -427,8 +428,9 @@ int sampler_run(struct scans *scans, const struct sampler_options *options, stru
 	sampler_grid(&sampling.grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);
 	sampling.key = make_key(&sampling, mesh_key, options->master);
-	rc = sample(&sampling, scans, options, fault);
+	rc = sample(&sampling, scans, options, diagnostics);
 	if (rc < 0)
-		fault_set(fault, rc, "%s: sampling failed: %s", content->folder, strerror(-rc));
+		diagnostics_add(diagnostics, rc, content->folder, 0, "sampling failed: %s",
+				strerror(-rc));
 	return rc;
 }

@@ -29,8 +29,8 @@ void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t 
 
 /* Renders all points that are missing, and shows progress. An interrupted run continues where it
  * stopped. The result depends only on the folder. The mesh is read only if a point is missing, and
- * stays with scans. Errors are described in fault. */
+ * stays with scans. Errors are described in diagnostics. */
 must_check int sampler_run(struct scans *scans, const struct sampler_options *options,
-			   struct fault *fault);
+			   struct diagnostics *diagnostics);
 
 #endif

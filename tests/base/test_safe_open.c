@@ -213,7 +213,7 @@ static void does_so_where_openat2_is_missing_or_forbidden(void **state)
 static void a_path_of_ours_may_be_a_link_but_no_pipe_or_device(void **state)
 {
 	static const struct setting none[1];
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct buffer file;
 	char path[128];
 
@@ -223,8 +223,8 @@ static void a_path_of_ours_may_be_a_link_but_no_pipe_or_device(void **state)
 	CHECK(buffer_read_file(&file, path) == 0 && file.size == 5);
 	path_of("fifo", path);
 	CHECK(buffer_read_file(&file, path) == -ENOTSUP);
-	CHECK(settings_read_file(path, none, 0, NULL, &faults) == -ENOTSUP);
-	CHECK(strstr(faults.list[0].text, "put a file there"));
+	CHECK(settings_read_file(path, none, 0, NULL, &diagnostics) == -ENOTSUP);
+	CHECK(strstr(diagnostics.first.text, "put a file there"));
 	path_of("zero", path);
 	CHECK(buffer_read_file(&file, path) == -ENOTSUP);
 	CHECK(buffer_read_file(&file, folder) == -EISDIR);

@@ -63,7 +63,7 @@ static void give_mesh(const uint8_t *mesh, size_t size)
 }
 
 int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
-		const char *name, struct fault *fault)
+		const char *name, struct diagnostics *diagnostics)
 {
 	const uint8_t *mesh = story.size ? memmem(story.data, story.size, "gopmesh", 7) : NULL;
 	const size_t told = mesh ? (size_t)(mesh - story.data) : story.size;
@@ -76,7 +76,7 @@ int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *o
 	for (size_t i = 0; bytes > 0 && i < shared_bytes; i++)
 		((uint8_t *)shared)[i] = story.data[from + i % bytes];
 	return story.size && story.data[0] == 'x'
-		       ? fault_set(fault, -EBADMSG, "%s: its reader crashed on it", name)
+		       ? diagnostics_add(diagnostics, -EBADMSG, name, 0, "its reader crashed on it")
 		       : 0;
 }
 
@@ -97,7 +97,7 @@ static void check(const struct mesh *mesh)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	const struct import_options options = { .metres_per_unit = 1 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct import_report report;
 	struct mesh mesh;
 	char path[128];
@@ -109,8 +109,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	}
 	story = (struct bytes){ data, size };
 	snprintf(path, sizeof(path), "%s", scratch_path("scan.obj"));
-	if (import_scan(&mesh, path, &options, &report, &fault) < 0) {
-		if (strncmp(fault.text, path, strlen(path)) != 0)
+	if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0) {
+		if (strncmp(diagnostics.first.text, path, strlen(path)) != 0)
 			abort();
 		return 0;
 	}

@@ -31,20 +31,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	uint64_t sum = 0;
 	const struct ply_visitor visitor = { &sum, see_vertex, see_triangle };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	int fd = memfd_create("ply", MFD_CLOEXEC);
 	struct ply *ply;
 	int rc;
 
 	if (fd < 0 || write(fd, data, size) != (ssize_t)size || lseek(fd, 0, SEEK_SET) != 0)
 		abort();
-	rc = ply_open_fd(&ply, fd, "fuzz.ply", &fault);
+	rc = ply_open_fd(&ply, fd, "fuzz.ply", &diagnostics);
 	if (rc == 0) {
 		vertex_count = ply_summary(ply)->vertex_count;
-		rc = ply_read(ply, &visitor, &fault);
+		rc = ply_read(ply, &visitor, &diagnostics);
 		ply_close(ply);
 	}
-	if ((rc < 0) != (strncmp(fault.text, "fuzz.ply", 8) == 0))
+	if ((rc < 0) != (strncmp(diagnostics.first.text, "fuzz.ply", 8) == 0))
 		abort();
 	return 0;
 }

@@ -30,7 +30,7 @@ static bool keeps_its_limits(const struct content *c)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct content content;
 
 	if (!scratch[0]) {
@@ -39,12 +39,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		scratch_write("b.obj", (const uint8_t *)"#\n", 2);
 	}
 	scratch_write("temple.ini", data, size);
-	if (content_read(&content, scratch, &faults) == 0) {
+	if (content_read(&content, scratch, &diagnostics) == 0) {
 		if (!keeps_its_limits(&content))
 			abort();
-	} else if (faults.count == 0 || content.scan_count) {
+	} else if (diagnostics.count == 0 || content.scan_count) {
 		abort();
 	}
 	content_release(&content);
+	diagnostics_finish(&diagnostics);
 	return 0;
 }

@@ -61,13 +61,15 @@ static char conf_path[256]; /* in folder/, with a ca.pem beside it */
 static void apply(const char *conf)
 {
 	static struct terminal terminal;
-	static struct faults faults;
-	const struct setup setup = {
-		.terminal = &terminal, .faults = &faults, .conf_path = conf_path, .out = out
-	};
+	static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	const struct setup setup = { .terminal = &terminal,
+				     .diagnostics = &diagnostics,
+				     .conf_path = conf_path,
+				     .out = out };
 
-	memset(&faults, 0, sizeof(faults));
-	terminal_parse(&terminal, (struct bytes){ (const uint8_t *)conf, strlen(conf) }, &faults);
+	diagnostics_finish(&diagnostics);
+	terminal_parse(&terminal, (struct bytes){ (const uint8_t *)conf, strlen(conf) },
+		       &diagnostics);
 	CHECK(setup_write(&setup) == 0);
 }
 
@@ -193,9 +195,9 @@ static void faults_are_written_a_line_each_and_the_rest_holds(void **state)
 static void says_where_it_cannot_write(void **state)
 {
 	static struct terminal terminal;
-	static struct faults faults;
+	static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	const struct setup setup = { .terminal = &terminal,
-				     .faults = &faults,
+				     .diagnostics = &diagnostics,
 				     .out = "/proc/nowhere" };
 
 	(void)state;

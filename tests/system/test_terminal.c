@@ -12,12 +12,12 @@
 #define RELEASE "[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n"
 
 static struct terminal terminal;
-static struct faults faults;
+static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 
 static void parse_bytes(const void *text, size_t size)
 {
-	memset(&faults, 0, sizeof(faults));
-	terminal_parse(&terminal, (struct bytes){ text, size }, &faults);
+	diagnostics_finish(&diagnostics);
+	terminal_parse(&terminal, (struct bytes){ text, size }, &diagnostics);
 }
 
 static void parse(const char *text)
@@ -27,19 +27,20 @@ static void parse(const char *text)
 
 static void says(const char *text)
 {
-	for (unsigned i = 0; i < faults.count; i++)
-		if (strstr(faults.list[i].text, text))
+	for (unsigned i = 0; i < diagnostics.count; i++)
+		if (strstr(diagnostics_get(&diagnostics, i)->text, text))
 			return;
-	for (unsigned i = 0; i < faults.count; i++)
-		print_message("  said: %s\n", faults.list[i].text);
+	for (unsigned i = 0; i < diagnostics.count; i++)
+		print_message("  said: %s\n", diagnostics_get(&diagnostics, i)->text);
 	fail_msg("not said: %s", text);
 }
 
 static void says_only(const char *text)
 {
 	says(text);
-	if (faults.count != 1)
-		fail_msg("%u faults, the second: %s", faults.count, faults.list[1].text);
+	if (diagnostics.count != 1)
+		fail_msg("%u faults, the second: %s", diagnostics.count,
+			 diagnostics_get(&diagnostics, 1)->text);
 }
 
 static void takes_every_value(void **state)
@@ -55,8 +56,8 @@ static void takes_every_value(void **state)
 	      "[wifi]\nssid = Musée d'Angkor\npassphrase = stone and water\ncountry = kh\n"
 	      "[health]\nlisten = [::]:9200\nmdns = yes\n"
 	      "[visit]\nidle_s = 90\n");
-	if (faults.count)
-		fail_msg("%s", faults.list[0].text);
+	if (diagnostics.count)
+		fail_msg("%s", diagnostics.first.text);
 	CHECK(strcmp(terminal.name, "East gate") == 0 && strcmp(terminal.language, "pt-BR") == 0);
 	CHECK(strcmp(terminal.time_zone, "Europe/Berlin") == 0);
 	CHECK(strcmp(terminal.board, "weak-arm") == 0);
@@ -85,7 +86,7 @@ static void keeps_defaults_where_nothing_is_said(void **state)
 {
 	(void)state;
 	parse(RELEASE);
-	CHECK(faults.count == 0);
+	CHECK(diagnostics.count == 0);
 	CHECK(terminal.rotation_deg == -1 && terminal.shift && !terminal.is_static);
 	CHECK(terminal.wake_min == 5 && !terminal.mdns && terminal.idle_s == 60);
 	CHECK(terminal.download.from_min == terminal.download.until_min && terminal.poll_s == 0 &&
@@ -93,7 +94,7 @@ static void keeps_defaults_where_nothing_is_said(void **state)
 	CHECK(hours_open_at(&terminal.hours, &(struct tm){ .tm_wday = 0, .tm_hour = 3 }));
 	CHECK(strcmp(terminal.listen_address, "127.0.0.1") == 0 && terminal.listen_port == 9100);
 	parse(RELEASE "[network]\naddress = dhcp\n");
-	CHECK(faults.count == 0 && !terminal.is_static);
+	CHECK(diagnostics.count == 0 && !terminal.is_static);
 }
 
 static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
@@ -167,8 +168,8 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		says_only(wrong[i].cure);
 		snprintf(begins, sizeof(begins), "line 7: %.*s ", (int)strcspn(wrong[i].line, " ="),
 			 wrong[i].line);
-		CHECK(strncmp(faults.list[0].text, begins, strlen(begins)) == 0);
-		CHECK(faults.list[0].line == 7);
+		CHECK(strncmp(diagnostics.first.text, begins, strlen(begins)) == 0);
+		CHECK(diagnostics.first.line == 7);
 	}
 }
 
@@ -193,7 +194,7 @@ static void refuses_addresses_that_are_none(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(good); i++) {
 		snprintf(text, sizeof(text), "[release]\nurl = %s\ntrust = 1.json\n", good[i]);
 		parse(text);
-		CHECK(faults.count == 0 && strcmp(terminal.release_url, good[i]) == 0);
+		CHECK(diagnostics.count == 0 && strcmp(terminal.release_url, good[i]) == 0);
 	}
 }
 
@@ -217,7 +218,7 @@ static void takes_hosts_that_the_server_may_redirect_to(void **state)
 		CHECK(terminal.redirect_hosts[0] == '\0');
 	}
 	parse(RELEASE "redirect_hosts = cdn.example, 192.168.1.4:8443\n");
-	CHECK(faults.count == 0);
+	CHECK(diagnostics.count == 0);
 	CHECK(strcmp(terminal.redirect_hosts, "cdn.example,192.168.1.4:8443") == 0);
 }
 
@@ -227,7 +228,7 @@ static void keeps_what_is_right_beside_what_is_wrong(void **state)
 	parse("[terminal]\nname = Gate\nlanguage = Khmer\n" RELEASE
 	      "[panel]\nrotation = upright\nmode = 1280x720\n[colours]\nred = 1\n[panel]\n"
 	      "shift = no\n");
-	CHECK(faults.count == 3);
+	CHECK(diagnostics.count == 3);
 	CHECK(strcmp(terminal.name, "Gate") == 0 && terminal.language[0] == '\0');
 	CHECK(terminal.width_px == 1280 && !terminal.shift && terminal.rotation_deg == -1);
 	CHECK(terminal.release_url[0] != '\0');
@@ -249,7 +250,7 @@ static void names_what_was_meant(void **state)
 	parse("colour = red\n" RELEASE);
 	says_only("line 1: 'colour' comes before the first [section]");
 	parse(RELEASE "[PANEL]\nRotation = 90\n");
-	CHECK(faults.count == 0 && terminal.rotation_deg == 90);
+	CHECK(diagnostics.count == 0 && terminal.rotation_deg == 90);
 }
 
 static void says_what_a_line_lacks(void **state)
@@ -263,14 +264,14 @@ static void says_what_a_line_lacks(void **state)
 	says_only("line 4: url is set in line 2 already");
 	CHECK(strcmp(terminal.release_url, "https://museum.example/temple/") == 0);
 	parse("[terminal]\nname = x\n"); /* its release may be inside */
-	CHECK(faults.count == 0);
+	CHECK(diagnostics.count == 0);
 	parse("[release]\ntrust = 1.json\n");
 	says_only("section [release] has no url");
-	CHECK(faults.list[0].line == 0);
+	CHECK(diagnostics.first.line == 0);
 	parse("[release]\nurl = https://museum.example/temple/\n");
 	says_only("section [release] has no trust");
 	parse("[release]\nurl = nonsense\ntrust = 1.json\n");
-	CHECK(faults.count == 1); /* not missing as well */
+	CHECK(diagnostics.count == 1); /* not missing as well */
 }
 
 static void sees_what_does_not_fit_together(void **state)
@@ -281,7 +282,7 @@ static void sees_what_does_not_fit_together(void **state)
 	parse(RELEASE "[network]\naddress = 10.0.0.5/8\ngateway = fe80::1\n");
 	says_only("is not in the network of");
 	parse(RELEASE "[network]\naddress = 2001:db8::5/64\ngateway = fe80::1\n");
-	CHECK(faults.count == 0);
+	CHECK(diagnostics.count == 0);
 	parse(RELEASE "[network]\ngateway = 192.168.2.1\n");
 	says_only("line 5: gateway needs a static address");
 	parse(RELEASE "[health]\nmdns = yes\n");
@@ -306,21 +307,21 @@ static void knows_names_and_passphrases_of_radio_networks(void **state)
 			 RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase=\"%.*s\"", (int)length,
 			 "gggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggg");
 		parse(text);
-		CHECK((faults.count == 0) == (length >= 8 && length <= 63));
+		CHECK((diagnostics.count == 0) == (length >= 8 && length <= 63));
 		snprintf(text, sizeof(text), RELEASE "[wifi]\nssid=\"%.*s\"\ncountry=DE\n",
 			 (int)length,
 			 "gggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggggg");
 		parse(text);
-		CHECK((faults.count == 0) == (length >= 1 && length <= 32));
+		CHECK((diagnostics.count == 0) == (length >= 1 && length <= 32));
 	}
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase="
 		      "0123456789abcdef0123456789ABCDEF0123456789abcdef0123456789abcdef\n");
-	CHECK(faults.count == 0 && strlen(terminal.passphrase) == 64);
+	CHECK(diagnostics.count == 0 && strlen(terminal.passphrase) == 64);
 	parse(RELEASE "[wifi]\ncountry=DE\nssid = \"East\tgate\"\n");
 	says_only("line 6: ssid must be a network's name of 1 to 32 bytes without control");
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase = Straße 12\n");
 	says_only("line 7: passphrase must be 8 to 63");
-	CHECK(!strstr(faults.list[0].text, "Stra")); /* it goes to logs and onto the panel */
+	CHECK(!strstr(diagnostics.first.text, "Stra")); /* it goes to logs and onto the panel */
 }
 
 static void never_cuts_a_passphrase_silently(void **state)
@@ -330,13 +331,13 @@ static void never_cuts_a_passphrase_silently(void **state)
 	says_only("line 7: passphrase contains ' #': if that is part of the value, put");
 	parse(RELEASE
 	      "[wifi]\nssid=s\ncountry=DE\npassphrase = \"stone #1 water\" # of the guests\n");
-	CHECK(faults.count == 0 && strcmp(terminal.passphrase, "stone #1 water") == 0);
+	CHECK(diagnostics.count == 0 && strcmp(terminal.passphrase, "stone #1 water") == 0);
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase = \" \"stone\";water\"\n");
-	CHECK(faults.count == 0 && strcmp(terminal.passphrase, " \"stone\";water") == 0);
+	CHECK(diagnostics.count == 0 && strcmp(terminal.passphrase, " \"stone\";water") == 0);
 	parse(RELEASE "[wifi]\nssid=s\ncountry=DE\npassphrase = \"stone and water\n");
 	says_only("line 7: passphrase has no closing quote");
 	parse(RELEASE "[panel]\nrotation = 90 ; upright\nshift = no\t# why\n");
-	CHECK(faults.count == 0 && terminal.rotation_deg == 90 && !terminal.shift);
+	CHECK(diagnostics.count == 0 && terminal.rotation_deg == 90 && !terminal.shift);
 }
 
 static void takes_files_as_windows_saves_them(void **state)
@@ -367,8 +368,11 @@ static void bounds_the_list_and_counts_the_rest(void **state)
 	for (int i = 0; i < 50; i++)
 		strncat(text, "what is this\n", sizeof(text) - strlen(text) - 1);
 	parse(text);
-	CHECK(faults.count == FAULTS_MAX && faults.dropped == 50 - FAULTS_MAX);
-	CHECK(faults.list[0].line == 4 && faults.list[FAULTS_MAX - 1].line == 3 + FAULTS_MAX);
+	CHECK(diagnostics.count == SETTINGS_DIAGNOSTICS_MAX &&
+	      diagnostics.dropped == 50 - SETTINGS_DIAGNOSTICS_MAX);
+	CHECK(diagnostics.first.line == 4 &&
+	      diagnostics_get(&diagnostics, SETTINGS_DIAGNOSTICS_MAX - 1)->line ==
+		      3 + SETTINGS_DIAGNOSTICS_MAX);
 	memset(value, 'x', sizeof(value) - 1);
 	value[sizeof(value) - 1] = '\0';
 	snprintf(text, sizeof(text), RELEASE "ca = %s\n", value);
@@ -379,7 +383,7 @@ static void bounds_the_list_and_counts_the_rest(void **state)
 		 RELEASE "[panel]\nshift = ប្រាសាទអង្គរវត្តប្រាសាទអង្គរវត្តប្រាសាទអង្គរវត្តប្រាសាទ\n");
 	parse(text);
 	says_only("yes or no, not '");
-	CHECK(!strchr(faults.list[0].text, '?') && strlen(faults.list[0].text) < 120);
+	CHECK(!strchr(diagnostics.first.text, '?') && strlen(diagnostics.first.text) < 120);
 }
 
 static void looks_for_the_files_it_names(void **state)
@@ -391,30 +395,31 @@ static void looks_for_the_files_it_names(void **state)
 	CHECK(mkdtemp(folder));
 	snprintf(path, sizeof(path), "%s/gopura.conf", folder);
 	snprintf(beside, sizeof(beside), "%s/1.json", folder);
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, path, NULL, &faults) == -ENOENT && faults.count == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, path, NULL, &diagnostics) == -ENOENT &&
+	      diagnostics.count == 0);
 	file = fopen(path, "w");
 	CHECK(file && fputs(RELEASE, file) >= 0 && fclose(file) == 0);
-	CHECK(terminal_read(&terminal, path, NULL, &faults) == 0);
+	CHECK(terminal_read(&terminal, path, NULL, &diagnostics) == 0);
 	says_only("line 3: there is no file 1.json beside gopura.conf; copy it there");
 	CHECK(terminal.trust[0] == '\0');
 	file = fopen(beside, "w");
 	CHECK(file && fclose(file) == 0);
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, path, NULL, &faults) == 0 && faults.count == 0);
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, folder, NULL, &faults) == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, path, NULL, &diagnostics) == 0 && diagnostics.count == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, folder, NULL, &diagnostics) == 0);
 	says_only("the file cannot be read: it is a folder; put a file there");
 	file = fopen(path, "w");
 	CHECK(file && fputs("[terminal]\nboard = toaster\n" RELEASE, file) >= 0 &&
 	      fclose(file) == 0);
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, path, "board", &faults) == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, path, "board", &diagnostics) == 0);
 	says_only("line 2: there is no board profile 'toaster'; the profiles are ");
 	says("generic");
 	CHECK(terminal.board[0] == '\0');
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, path, folder, &faults) == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, path, folder, &diagnostics) == 0);
 	says_only("line 2: there is no board profile 'toaster', and no other one in /tmp/");
 	unlink(beside);
 	unlink(path);
@@ -424,8 +429,8 @@ static void looks_for_the_files_it_names(void **state)
 /* What is wrong with gopura.conf at path, or with what stands beside it. */
 static void read_and_find(const char *path, const char *text)
 {
-	memset(&faults, 0, sizeof(faults));
-	CHECK(terminal_read(&terminal, path, NULL, &faults) == 0);
+	diagnostics_finish(&diagnostics);
+	CHECK(terminal_read(&terminal, path, NULL, &diagnostics) == 0);
 	says_only(text);
 }
 
@@ -521,8 +526,8 @@ static void the_example_is_without_fault(void **state)
 	CHECK(buffer_read_file(&file, "system/gopura.conf.example") == 0);
 	parse_bytes(file.data, file.size);
 	buffer_finish(&file);
-	if (faults.count)
-		fail_msg("%s", faults.list[0].text);
+	if (diagnostics.count)
+		fail_msg("%s", diagnostics.first.text);
 	CHECK(terminal.is_static && terminal.ssid[0] && terminal.download.from_min > 0);
 }
 

@@ -1,6 +1,7 @@
 /* When the page about gopura.conf is shown, and how it goes; its quads are counted, not drawn. */
 #include "app/modes/setup_page.h"
 
+#include <errno.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -121,14 +122,14 @@ static void a_file_that_names_no_release_is_a_fault(void **state)
 	(void)state;
 	provision.path = "/efi/gopura.conf";
 	CHECK(setup_page_show(&page, &options, &provision, false) == 0);
-	CHECK(provision.faults.count == 1 && setup_page_covers(&page));
+	CHECK(provision.diagnostics.count == 1 && setup_page_covers(&page));
 }
 
 static void faults_make_way_for_the_model_after_half_a_minute(void **state)
 {
 	(void)state;
 	provision.path = "/efi/gopura.conf";
-	faults_add(&provision.faults, 3, "[panel] rotation is 45");
+	diagnostics_add(&provision.diagnostics, -EINVAL, NULL, 3, "[panel] rotation is 45");
 	CHECK(setup_page_show(&page, &options, &provision, true) == 0);
 	CHECK(frame(true) && last_alpha == 1);
 	CHECK(setup_page_wait_ms(&page, true) == 30 * S);

@@ -29,6 +29,7 @@ static void write_text(const char *name, const char *text)
 /* As the command line leaves them that says no more than where the files are. */
 static void bare_options(void)
 {
+	provision_finish(&provision);
 	memset(&provision, 0, sizeof(provision));
 	options = (struct options){ .conf_paths = { none_path, conf_path },
 				    .conf_count = 2,
@@ -45,8 +46,8 @@ static int take(const char *text)
 
 static bool is_faulty(const char *text)
 {
-	for (unsigned i = 0; i < provision.faults.count; i++)
-		if (strstr(provision.faults.list[i].text, text))
+	for (unsigned i = 0; i < provision.diagnostics.count; i++)
+		if (strstr(diagnostics_get(&provision.diagnostics, i)->text, text))
 			return true;
 	return false;
 }
@@ -124,7 +125,7 @@ static void faults_are_told_and_stop_nothing(void **state)
 	bare_options();
 	CHECK(take("[panel]\nrotation = 90\nmode = 1080p\n[terminal]\nboard = toaster\n"
 		   "[release]\nurl = https://a.example/\ntrust = none.json\n") == 0);
-	CHECK(provision.faults.count == 3);
+	CHECK(provision.diagnostics.count == 3);
 	CHECK(is_faulty("line 3: mode") &&
 	      is_faulty("line 5: there is no board profile 'toaster'"));
 	CHECK(is_faulty("line 8: there is no file none.json"));
@@ -138,7 +139,7 @@ static void a_trust_file_that_is_none_is_not_used(void **state)
 	write_text("1.json", "{}");
 	bare_options();
 	CHECK(take("[release]\nurl = https://a.example/\ntrust = 1.json\n") == 0);
-	CHECK(provision.faults.count == 1 && is_faulty("1.json is no trust root ("));
+	CHECK(provision.diagnostics.count == 1 && is_faulty("1.json is no trust root ("));
 	CHECK(!options.trust_path);
 }
 
@@ -151,7 +152,7 @@ static void a_broken_profile_of_its_own_stops_nothing_but_one_of_the_command_lin
 	bare_options();
 	options.boards_dir = folder;
 	CHECK(take("[terminal]\nboard = ill\n") == 0);
-	CHECK(provision.faults.count == 1 &&
+	CHECK(provision.diagnostics.count == 1 &&
 	      is_faulty("the profile of the board 'ill' has faults"));
 	CHECK(profile.texture_mib == 32);
 	bare_options();
@@ -166,7 +167,7 @@ static void without_a_file_everything_is_as_the_command_line_has_it(void **state
 	unlink(conf_path);
 	bare_options();
 	CHECK(provision_read(&provision, &options, &profile) == 0);
-	CHECK(!provision.path && provision.faults.count == 0 && !options.shift);
+	CHECK(!provision.path && provision.diagnostics.count == 0 && !options.shift);
 	CHECK(options.wake_min == 5);
 	CHECK(memcmp(&profile, &profile_default, sizeof(profile)) == 0);
 }

@@ -35,11 +35,11 @@ static void defaults_need_only_a_scan(void **state)
 {
 	char folder[256];
 	struct content content;
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	(void)state;
 
 	make_folder(folder, "[model]\nscans = tower.ply\n");
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
 	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 80);
@@ -64,11 +64,11 @@ static void every_key_is_read(void **state)
 		"patch_triangles = 1000\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
 	struct content content;
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	(void)state;
 
 	make_folder(folder, ini);
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(strcmp(content.name, "Banteay of the Test") == 0 && content.scan_count == 2);
 	CHECK(content.import.up == IMPORT_Y_UP && content.import.metres_per_unit == 0.001);
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
@@ -126,12 +126,13 @@ static void faults_name_file_line_and_cure(void **state)
 	(void)state;
 
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		struct faults faults = { .count = 0 };
+		struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 
 		make_folder(folder, cases[i].ini);
-		if (content_read(&content, folder, &faults) >= 0 ||
-		    !strstr(faults.list[0].text, cases[i].says))
-			fail_msg("%s: '%s'", cases[i].name, faults.list[0].text);
+		if (content_read(&content, folder, &diagnostics) >= 0 ||
+		    !strstr(diagnostics.first.text, cases[i].says))
+			fail_msg("%s: '%s'", cases[i].name, diagnostics.first.text);
+		diagnostics_finish(&diagnostics);
 		remove_folder(folder);
 	}
 }
@@ -140,42 +141,48 @@ static void tells_all_faults_at_once(void **state)
 {
 	char folder[256];
 	struct content content;
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	(void)state;
 
 	make_folder(folder, "[model]\nscans = gone.ply\nup = w\n[grid]\npoints = 40\n");
-	CHECK(content_read(&content, folder, &faults) == -EINVAL);
-	CHECK(faults.count == 2 && faults.list[0].line == 3 && faults.list[1].line == 5);
-	faults.count = 0;
+	CHECK(content_read(&content, folder, &diagnostics) == -EINVAL);
+	CHECK(diagnostics.count == 2 && diagnostics.first.line == 3 &&
+	      diagnostics_get(&diagnostics, 1)->line == 5);
+	diagnostics_finish(&diagnostics);
 	remove_folder(folder);
 	make_folder(folder, "[model]\nscans = gone.ply tower.ply lost.ply\n");
-	CHECK(content_read(&content, folder, &faults) == -ENOENT && faults.count == 2);
-	CHECK(strstr(faults.list[0].text, "gone.ply") && strstr(faults.list[1].text, "lost.ply"));
+	CHECK(content_read(&content, folder, &diagnostics) == -ENOENT && diagnostics.count == 2);
+	CHECK(strstr(diagnostics.first.text, "gone.ply") &&
+	      strstr(diagnostics_get(&diagnostics, 1)->text, "lost.ply"));
+	diagnostics_finish(&diagnostics);
 	remove_folder(folder);
 }
 
 static void says_what_is_no_content_folder(void **state)
 {
 	struct content content;
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	(void)state;
 
-	CHECK(content_read(&content, "/nowhere/at/all", &faults) == -ENOENT && faults.count == 1);
-	faults.count = 0;
-	CHECK(content_read(&content, "", &faults) == -EINVAL && faults.count == 1);
+	CHECK(content_read(&content, "/nowhere/at/all", &diagnostics) == -ENOENT &&
+	      diagnostics.count == 1);
+	diagnostics_finish(&diagnostics);
+	CHECK(content_read(&content, "", &diagnostics) == -EINVAL && diagnostics.count == 1);
+	diagnostics_finish(&diagnostics);
 }
 
 static void a_line_that_is_too_long_is_a_fault(void **state)
 {
 	char ini[1100], folder[256];
 	struct content content;
-	struct faults faults = { .count = 0 };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	(void)state;
 
 	snprintf(ini, sizeof(ini), "[model]\nscans = tower.ply\nname = %01000d\n", 7);
 	make_folder(folder, ini);
-	CHECK(content_read(&content, folder, &faults) == -EINVAL);
-	CHECK(strstr(faults.list[0].text, "line 3: the line is longer than"));
+	CHECK(content_read(&content, folder, &diagnostics) == -EINVAL);
+	CHECK(strstr(diagnostics.first.text, "line 3: the line is longer than"));
+	diagnostics_finish(&diagnostics);
 	remove_folder(folder);
 }
 
@@ -209,15 +216,14 @@ static void import_of(const char *folder, bool *from_cache, uint32_t *triangles)
 {
 	const ino_t before = mesh_number(folder);
 	struct content content;
-	struct faults faults = { .count = 0 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	const struct mesh *mesh;
 	struct scans *scans;
 
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
-	if (scans_get_mesh(scans, &mesh, &fault) < 0)
-		fail_msg("%s", fault.text);
+	if (scans_get_mesh(scans, &mesh, &diagnostics) < 0)
+		fail_msg("%s", diagnostics.first.text);
 	*from_cache = mesh_number(folder) == before;
 	*triangles = mesh->triangle_count;
 	CHECK(content_is_lit(&content, mesh->textures != NULL));
@@ -230,17 +236,16 @@ static void the_shape_is_known_without_the_mesh(void **state)
 	char folder[256], path[512];
 	const struct scans_shape *shape;
 	struct content content;
-	struct faults faults = { .count = 0 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct scans *scans;
 	FILE *file;
 	(void)state;
 
 	make_folder(folder, "[model]\nscans = tower.ply tower.ply\nunit = cm\n");
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(scans_known_shape(scans) == NULL && mesh_number(folder) == 0);
-	CHECK(scans_get_shape(scans, &shape, &fault) == 0);
+	CHECK(scans_get_shape(scans, &shape, &diagnostics) == 0);
 	scans_destroy(scans);
 	snprintf(path, sizeof(path), "%s/.work/mesh", folder);
 	CHECK(unlink(path) == 0);
@@ -259,7 +264,7 @@ static void the_shape_is_known_without_the_mesh(void **state)
 	      fclose(file) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(scans_known_shape(scans) == NULL);
-	CHECK(scans_get_shape(scans, &shape, &fault) == 0 && shape->high_m[0] == 0.01f);
+	CHECK(scans_get_shape(scans, &shape, &diagnostics) == 0 && shape->high_m[0] == 0.01f);
 	scans_destroy(scans);
 	content_release(&content);
 	remove_folder(folder);

@@ -440,12 +440,12 @@ static void no_cut_of_a_real_scan_has_a_crack(void **state)
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(paths); i++) {
 		const struct import_options options = { .up = IMPORT_Y_UP };
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 		struct verdict verdict;
 		struct model model;
 		struct mesh mesh;
 
-		if (import_scan(&mesh, paths[i], &options, NULL, &fault) < 0)
+		if (import_scan(&mesh, paths[i], &options, NULL, &diagnostics) < 0)
 			continue;
 		seen++;
 		model_build(&model, mesh, &small_groups);

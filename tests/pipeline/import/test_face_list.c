@@ -9,7 +9,7 @@
 #include "tests/pipeline/import/scan_text.h"
 
 static struct face_list list;
-static struct fault fault;
+static struct diagnostics diagnostics;
 
 static int read_text(const char *text)
 {
@@ -17,8 +17,8 @@ static int read_text(const char *text)
 	int rc;
 
 	scan_write(path, "lintel.faces", text, strlen(text));
-	fault.text[0] = 0;
-	rc = face_list_read(&list, path, "lintel.faces", 100, &fault);
+	diagnostics = (struct diagnostics){ 0 };
+	rc = face_list_read(&list, path, "lintel.faces", 100, &diagnostics);
 	scan_remove(path);
 	return rc;
 }
@@ -63,8 +63,8 @@ static void a_fault_names_file_line_and_cure(void **state)
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
 		CHECK(read_text(cases[i].text) == -EINVAL);
-		if (!strstr(fault.text, cases[i].says))
-			fail_msg("\"%s\" says: %s", cases[i].text, fault.text);
+		if (!strstr(diagnostics.first.text, cases[i].says))
+			fail_msg("\"%s\" says: %s", cases[i].text, diagnostics.first.text);
 		CHECK(list.ranges == NULL);
 	}
 }
@@ -72,9 +72,10 @@ static void a_fault_names_file_line_and_cure(void **state)
 static void a_file_that_is_not_there_is_named(void **state)
 {
 	(void)state;
-	fault.text[0] = 0;
-	CHECK(face_list_read(&list, "/nonexistent/a.faces", "a.faces", 100, &fault) == -ENOENT);
-	CHECK(strstr(fault.text, "a.faces: ") != NULL);
+	diagnostics = (struct diagnostics){ 0 };
+	CHECK(face_list_read(&list, "/nonexistent/a.faces", "a.faces", 100, &diagnostics) ==
+	      -ENOENT);
+	CHECK(strstr(diagnostics.first.text, "a.faces: ") != NULL);
 }
 
 /* Faces are of one scan; a polygon's triangles all come from its one face. */

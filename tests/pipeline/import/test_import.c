@@ -10,16 +10,17 @@
 
 /* Imports text as a file of that name; a fault must name the file. */
 static int import_text(struct mesh *mesh, struct import_report *report, const char *name,
-		       const char *text, const struct import_options *options, struct fault *fault)
+		       const char *text, const struct import_options *options,
+		       struct diagnostics *diagnostics)
 {
 	char path[256];
 	int rc;
 
-	*fault = (struct fault){ "" };
+	*diagnostics = (struct diagnostics){ 0 };
 	scan_write(path, name, text, strlen(text));
-	rc = import_scan(mesh, path, options, report, fault);
-	if (rc < 0 && !strstr(fault->text, name))
-		fail_msg("the fault does not name %s: '%s'", name, fault->text);
+	rc = import_scan(mesh, path, options, report, diagnostics);
+	if (rc < 0 && !strstr(diagnostics->first.text, name))
+		fail_msg("the fault does not name %s: '%s'", name, diagnostics->first.text);
 	scan_remove(path);
 	return rc;
 }
@@ -43,11 +44,11 @@ static void repairs_and_counts(void **state)
 		"3 4 0 8\n" /* kept: the third on the edge 0-1 */;
 	const struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import_text(&mesh, &report, "odd.ply", text, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "odd.ply", text, &options, &diagnostics) == 0);
 	CHECK(mesh.triangle_count == 3 && mesh.vertex_count == 5);
 	CHECK(report.repairs.degenerate_faces == 2 && report.repairs.lost_faces == 1);
 	CHECK(report.repairs.merged_vertices == 2 && report.repairs.unused_vertices == 2);
@@ -72,11 +73,11 @@ static void turns_the_smaller_part_to_the_side_of_the_larger(void **state)
 		"3 6 8 7\n3 7 8 9\n3 9 10 8\n3 9 11 10\n";
 	const struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import_text(&mesh, &report, "strip.off", off, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "strip.off", off, &options, &diagnostics) == 0);
 	CHECK(report.repairs.turned_faces == 3 && report.repairs.turned_edges == 0);
 	CHECK(report.repairs.border_edges == 12 && mesh.triangle_count == 10);
 	for (uint32_t i = 0; i < mesh.triangle_count; i++) {
@@ -98,11 +99,11 @@ static void a_surface_with_one_side_stays_as_it_is(void **state)
 				  "3 1 3 2\n3 2 3 4\n3 3 0 4\n3 4 0 1\n";
 	const struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import_text(&mesh, &report, "band.off", off, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "band.off", off, &options, &diagnostics) == 0);
 	CHECK(report.repairs.turned_faces == 0 && report.repairs.turned_edges == 1);
 	mesh_finish(&mesh);
 }
@@ -117,11 +118,11 @@ static void colours_part_what_is_at_one_place(void **state)
 		"3 0 1 2\n3 3 4 5\n";
 	struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &diagnostics) == 0);
 	/* 1 and 3 are one; 0 and 4 differ in colour, but the edge between is no border. */
 	CHECK(mesh.vertex_count == 5 && report.repairs.merged_vertices == 1);
 	CHECK(report.repairs.border_edges == 4 && report.had_colours);
@@ -129,7 +130,7 @@ static void colours_part_what_is_at_one_place(void **state)
 
 	options.override_colour = true;
 	options.default_colour[0] = 200;
-	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "two.ply", text, &options, &diagnostics) == 0);
 	CHECK(mesh.vertex_count == 4 && mesh.colours[3][0] == 200 && mesh.colours[3][1] == 0);
 	mesh_finish(&mesh);
 }
@@ -145,7 +146,7 @@ static void turns_up_and_scales_to_metres(void **state)
 		{ IMPORT_Y_UP, { 1, -3, 2 }, { 0, -1, 0 } },
 		{ IMPORT_X_UP, { 2, 3, 1 }, { 0, 1, 0 } },
 	};
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
@@ -155,7 +156,7 @@ static void turns_up_and_scales_to_metres(void **state)
 		const float *n = cases[i].normal, *f = cases[i].first;
 		float a[3], b[3], cross[3];
 
-		CHECK(import_text(&mesh, NULL, "t.obj", obj, &options, &fault) == 0);
+		CHECK(import_text(&mesh, NULL, "t.obj", obj, &options, &diagnostics) == 0);
 		CHECK(mesh.triangle_count == 1 && mesh.vertex_count == 3);
 		CHECK(is_near(mesh.positions[0], f[0] / 100, f[1] / 100, f[2] / 100));
 		for (int k = 0; k < 3; k++) {
@@ -205,7 +206,7 @@ static void check_square(const struct mesh *mesh, const struct import_report *re
 		{ 0, 0, 255 }, { 255, 255, 255 }, { 255, 0, 0 }, { 0, 255, 0 }
 	};
 
-	CHECK(report->textures == 1 && report->warning.text[0] == '\0');
+	CHECK(report->textures == 1 && report->warning.first.text[0] == '\0');
 	CHECK(mesh->triangle_count == 2 && mesh->vertex_count == 4);
 	CHECK(mesh->texture_count > 0 && mesh->textures[mesh->materials[0]].width == 2);
 	for (int i = 0; i < 4; i++) {
@@ -230,7 +231,7 @@ static void obj_pictures_are_upright_and_found_past_foreign_paths(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
 		const struct import_options options = { 0 };
 		struct import_report report;
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 		struct mesh mesh;
 		char path[256], mtl[256];
 
@@ -238,8 +239,8 @@ static void obj_pictures_are_upright_and_found_past_foreign_paths(void **state)
 		scan_write(path, "square.obj", obj, strlen(obj));
 		scan_write_beside(path, "skin.mtl", mtl, strlen(mtl));
 		write_picture(path, "skin.png");
-		if (import_scan(&mesh, path, &options, &report, &fault) < 0)
-			fail_msg("%s: %s", names[i], fault.text);
+		if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0)
+			fail_msg("%s: %s", names[i], diagnostics.first.text);
 		check_square(&mesh, &report);
 		mesh_finish(&mesh);
 		scan_remove(path);
@@ -264,13 +265,13 @@ static void ply_pictures_are_upright_by_vertex_and_by_corner(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++) {
 		const struct import_options options = { 0 };
 		struct import_report report;
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 		struct mesh mesh;
 		char path[256];
 
 		scan_write(path, "square.ply", texts[i], strlen(texts[i]));
 		write_picture(path, "skin.png");
-		CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
+		CHECK(import_scan(&mesh, path, &options, &report, &diagnostics) == 0);
 		check_square(&mesh, &report);
 		mesh_finish(&mesh);
 		scan_remove(path);
@@ -303,7 +304,7 @@ static void gltf_pictures_are_upright(void **state)
 		   { 0, 1, 2, 0, 2, 3 } };
 	const struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	char path[256];
 	(void)state;
@@ -311,8 +312,8 @@ static void gltf_pictures_are_upright(void **state)
 	scan_write(path, "square.gltf", gltf, strlen(gltf));
 	scan_write_beside(path, "square.bin", &data, 92);
 	write_picture(path, "skin.png");
-	if (import_scan(&mesh, path, &options, &report, &fault) < 0)
-		fail_msg("%s", fault.text);
+	if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0)
+		fail_msg("%s", diagnostics.first.text);
 	check_square(&mesh, &report);
 	mesh_finish(&mesh);
 	scan_remove(path);
@@ -330,7 +331,7 @@ static void a_missing_or_damaged_picture_is_a_warning(void **state)
 	for (int damaged = 0; damaged < 2; damaged++) {
 		const struct import_options options = { 0 };
 		struct import_report report;
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 		struct mesh mesh;
 		char path[256];
 
@@ -338,9 +339,9 @@ static void a_missing_or_damaged_picture_is_a_warning(void **state)
 		scan_write_beside(path, "skin.mtl", mtl, strlen(mtl));
 		if (damaged)
 			scan_write_beside(path, "skin.jpg", "\xff\xd8\xff\xe0 no more", 12);
-		CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
-		CHECK(strstr(report.warning.text, says[damaged]));
-		CHECK(strstr(report.warning.text, "plain.obj"));
+		CHECK(import_scan(&mesh, path, &options, &report, &diagnostics) == 0);
+		CHECK(strstr(report.warning.first.text, says[damaged]));
+		CHECK(strstr(report.warning.first.text, "plain.obj"));
 		CHECK(mesh.colours[0][0] == 51 && mesh.colours[0][1] == 102);
 		mesh_finish(&mesh);
 		scan_remove(path);
@@ -354,14 +355,14 @@ static void reads_stl_and_off(void **state)
 	static const char off[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 	const struct import_options options = { 0 };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import_text(&mesh, &report, "a.stl", stl, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "a.stl", stl, &options, &diagnostics) == 0);
 	CHECK(mesh.triangle_count == 1 && strcmp(report.format, "STL") == 0);
 	mesh_finish(&mesh);
-	CHECK(import_text(&mesh, &report, "a.off", off, &options, &fault) == 0);
+	CHECK(import_text(&mesh, &report, "a.off", off, &options, &diagnostics) == 0);
 	CHECK(mesh.triangle_count == 2 && mesh.vertex_count == 4 && !report.had_colours);
 	mesh_finish(&mesh);
 }
@@ -397,19 +398,20 @@ static void refuses_what_is_no_surface(void **state)
 		{ "unended.gltf", "{\"extensionsRequired\":[\"KHR_draco", "glTF reader says" },
 	};
 	const struct import_options options = { 0 };
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		int rc = import_text(&mesh, NULL, cases[i].name, cases[i].text, &options, &fault);
+		int rc = import_text(&mesh, NULL, cases[i].name, cases[i].text, &options,
+				     &diagnostics);
 
-		if (rc >= 0 || !strstr(fault.text, cases[i].says) || mesh.positions)
-			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, fault.text);
+		if (rc >= 0 || !strstr(diagnostics.first.text, cases[i].says) || mesh.positions)
+			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, diagnostics.first.text);
 	}
-	fault.text[0] = '\0';
-	CHECK(import_scan(&mesh, "/nowhere.ply", &options, NULL, &fault) == -ENOENT);
-	CHECK(import_scan(&mesh, "/tmp", &options, NULL, &fault) == -EINVAL);
+	diagnostics = (struct diagnostics){ 0 };
+	CHECK(import_scan(&mesh, "/nowhere.ply", &options, NULL, &diagnostics) == -ENOENT);
+	CHECK(import_scan(&mesh, "/tmp", &options, NULL, &diagnostics) == -EINVAL);
 }
 
 static void names_of_axes_and_units(void **state)

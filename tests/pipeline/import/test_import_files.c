@@ -97,14 +97,14 @@ static void put_gltf(const char *name, const char *uri)
 }
 
 static int import(const char *name, struct mesh *mesh, struct import_report *report,
-		  struct fault *fault)
+		  struct diagnostics *diagnostics)
 {
 	const struct import_options options = { 0 };
 	char path[PATH_MAX];
 
-	*fault = (struct fault){ "" };
+	*diagnostics = (struct diagnostics){ 0 };
 	at(path, name);
-	return import_scan(mesh, path, &options, report, fault);
+	return import_scan(mesh, path, &options, report, diagnostics);
 }
 
 /* %s stands for the top folder. */
@@ -135,13 +135,13 @@ static void outside_name(char name[PATH_MAX], size_t i)
 
 static void must_be_refused(const char *scan, const char *name, const char *says)
 {
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
-	int rc = import(scan, &mesh, NULL, &fault);
+	int rc = import(scan, &mesh, NULL, &diagnostics);
 
-	if (rc >= 0 || !strstr(fault.text, scan) || !strstr(fault.text, name) ||
-	    !strstr(fault.text, says))
-		fail_msg("%s with %s: rc %d, '%s'", scan, name, rc, fault.text);
+	if (rc >= 0 || !strstr(diagnostics.first.text, scan) ||
+	    !strstr(diagnostics.first.text, name) || !strstr(diagnostics.first.text, says))
+		fail_msg("%s with %s: rc %d, '%s'", scan, name, rc, diagnostics.first.text);
 }
 
 static void refuses_a_gltf_buffer_from_elsewhere(void **state)
@@ -178,12 +178,12 @@ static void reads_a_buffer_below_and_one_that_was_copied_beside(void **state)
 
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
 		struct import_report report;
-		struct fault fault;
+		struct diagnostics diagnostics;
 		struct mesh mesh;
 
 		put_gltf("scans/b.gltf", names[i]);
-		if (import("scans/b.gltf", &mesh, &report, &fault) < 0)
-			fail_msg("%s: %s", names[i], fault.text);
+		if (import("scans/b.gltf", &mesh, &report, &diagnostics) < 0)
+			fail_msg("%s: %s", names[i], diagnostics.first.text);
 		CHECK(report.had_colours && mesh.triangle_count == 1);
 		mesh_finish(&mesh);
 	}
@@ -191,19 +191,20 @@ static void reads_a_buffer_below_and_one_that_was_copied_beside(void **state)
 
 static void a_missing_file_is_told_as_missing(void **state)
 {
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
 	put_gltf("scans/c.gltf", "nowhere.bin");
-	CHECK(import("scans/c.gltf", &mesh, NULL, &fault) < 0);
-	if (!strstr(fault.text, "nowhere.bin") || !strstr(fault.text, "could not open"))
-		fail_msg("'%s'", fault.text);
+	CHECK(import("scans/c.gltf", &mesh, NULL, &diagnostics) < 0);
+	if (!strstr(diagnostics.first.text, "nowhere.bin") ||
+	    !strstr(diagnostics.first.text, "could not open"))
+		fail_msg("'%s'", diagnostics.first.text);
 	/* As always, where only colours are lost; a drive's name is no place of this machine. */
 	put("scans/c.obj",
 	    "mtllib C:\\Users\\me\\c.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
 	    "f 1 2 3\n");
-	CHECK(import("scans/c.obj", &mesh, NULL, &fault) == 0);
+	CHECK(import("scans/c.obj", &mesh, NULL, &diagnostics) == 0);
 	mesh_finish(&mesh);
 }
 
@@ -249,14 +250,15 @@ static void pictures_from_elsewhere_are_not_read(void **state)
 				   "f 1/1 2/1 3/1\n");
 		for (size_t k = 0; k < ARRAY_COUNT(scans); k++) {
 			struct import_report report;
-			struct fault fault;
+			struct diagnostics diagnostics;
 			struct mesh mesh;
 
-			if (import(scans[k], &mesh, &report, &fault) < 0)
-				fail_msg("%s with %s: %s", scans[k], name, fault.text);
-			if (report.textures != 0 || !strstr(report.warning.text, name) ||
-			    !strstr(report.warning.text, outside[i].says))
-				fail_msg("%s with %s: '%s'", scans[k], name, report.warning.text);
+			if (import(scans[k], &mesh, &report, &diagnostics) < 0)
+				fail_msg("%s with %s: %s", scans[k], name, diagnostics.first.text);
+			if (report.textures != 0 || !strstr(report.warning.first.text, name) ||
+			    !strstr(report.warning.first.text, outside[i].says))
+				fail_msg("%s with %s: '%s'", scans[k], name,
+					 report.warning.first.text);
 			mesh_finish(&mesh);
 		}
 	}
@@ -269,7 +271,7 @@ static void pictures_have_a_limit_together(void **state)
 	uint8_t grey[5 * 5 * 4];
 	struct picture picture = { 5, 5, grey };
 	struct import_report report;
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct buffer png;
 	struct mesh mesh;
 	char path[PATH_MAX];
@@ -289,22 +291,22 @@ static void pictures_have_a_limit_together(void **state)
 	    "property list uchar int vertex_indices\nend_header\n"
 	    "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
 	at(path, "scans/f.ply");
-	CHECK(import_scan(&mesh, path, &options, &report, &fault) == 0);
+	CHECK(import_scan(&mesh, path, &options, &report, &diagnostics) == 0);
 	CHECK(report.textures == 1 && mesh.texture_count == 3);
 	CHECK(mesh.textures[0].width == 5 && mesh.textures[1].width == 1 &&
 	      mesh.textures[2].width == 1);
-	CHECK(strstr(report.warning.text, "too large in total"));
+	CHECK(strstr(report.warning.first.text, "too large in total"));
 	mesh_finish(&mesh);
 }
 
 static void a_fifo_is_no_scan(void **state)
 {
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
-	CHECK(import("scans/fifo.bin", &mesh, NULL, &fault) == -EINVAL);
-	CHECK(strstr(fault.text, "not a regular file"));
+	CHECK(import("scans/fifo.bin", &mesh, NULL, &diagnostics) == -EINVAL);
+	CHECK(strstr(diagnostics.first.text, "not a regular file"));
 }
 
 /* assimp knows some fifty formats: a name must not lead to a reader that is not meant. */
@@ -312,15 +314,15 @@ static void the_name_does_not_choose_another_reader(void **state)
 {
 	static const char *const names[] = { "scans/e.blend", "scans/e.fbx", "scans/e" };
 	struct import_report report;
-	struct fault fault;
+	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
 	(void)state;
 
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
 		put(names[i], "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
 			      "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
-		if (import(names[i], &mesh, &report, &fault) < 0)
-			fail_msg("%s: %s", names[i], fault.text);
+		if (import(names[i], &mesh, &report, &diagnostics) < 0)
+			fail_msg("%s: %s", names[i], diagnostics.first.text);
 		CHECK(mesh.triangle_count == 1 && strcmp(report.format, "STL") == 0);
 		mesh_finish(&mesh);
 	}

@@ -19,7 +19,7 @@ struct seen {
 	struct ply_summary summary;
 	char texture[64];
 	uint64_t trailing;
-	struct fault fault;
+	struct diagnostics diagnostics;
 };
 
 static int see_vertex(void *data, const struct ply_vertex *vertex)
@@ -51,13 +51,13 @@ static int read_bytes(struct seen *seen, const void *data, size_t size)
 
 	*seen = (struct seen){ 0 };
 	CHECK(fd >= 0 && write(fd, data, size) == (ssize_t)size && lseek(fd, 0, SEEK_SET) == 0);
-	rc = ply_open_fd(&ply, fd, "scan.ply", &seen->fault);
+	rc = ply_open_fd(&ply, fd, "scan.ply", &seen->diagnostics);
 	if (rc < 0)
 		return rc;
 	seen->summary = *ply_summary(ply);
 	if (seen->summary.texture_count > 0)
 		snprintf(seen->texture, sizeof(seen->texture), "%s", seen->summary.textures[0]);
-	rc = ply_read(ply, &visitor, &seen->fault);
+	rc = ply_read(ply, &visitor, &seen->diagnostics);
 	seen->trailing = ply_bytes_trailing(ply);
 	ply_close(ply);
 	return rc;
@@ -168,7 +168,7 @@ static void refuses_every_truncation(void **state)
 
 	for (size_t n = 0; n < size; n++) {
 		CHECK(read_bytes(&seen, bytes, n) == -EBADMSG);
-		CHECK(strstr(seen.fault.text, "scan.ply"));
+		CHECK(strstr(seen.diagnostics.first.text, "scan.ply"));
 	}
 }
 
@@ -295,9 +295,9 @@ static void refuses_what_cannot_be_right(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
 		int rc = read_text(&seen, cases[i].text);
 
-		if (rc != -EBADMSG || !strstr(seen.fault.text, cases[i].says) ||
-		    strncmp(seen.fault.text, "scan.ply", 8) != 0)
-			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, seen.fault.text);
+		if (rc != -EBADMSG || !strstr(seen.diagnostics.first.text, cases[i].says) ||
+		    strncmp(seen.diagnostics.first.text, "scan.ply", 8) != 0)
+			fail_msg("%s: rc %d, '%s'", cases[i].name, rc, seen.diagnostics.first.text);
 	}
 }
 

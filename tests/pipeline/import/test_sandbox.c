@@ -21,52 +21,53 @@
 static const struct sandbox_options limits = { .timeout_s = 60, .memory_bytes = 1ull << 29 };
 static const struct sandbox_options impatient = { .timeout_s = 1, .memory_bytes = 1ull << 29 };
 
-static int gives_back(void *shared, struct fault *fault)
+static int gives_back(void *shared, struct diagnostics *diagnostics)
 {
-	(void)fault;
+	(void)diagnostics;
 	memcpy(shared, "hello", 6);
 	return 7;
 }
 
-static int refuses(void *shared, struct fault *fault)
+static int refuses(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
-	return fault_set(fault, -ENOSPC, "scan.obj: face 3 is odd");
+	return diagnostics_add(diagnostics, -ENOSPC, NULL, 0, "scan.obj: face 3 is odd");
 }
 
-static int crashes(void *shared, struct fault *fault)
+static int crashes(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
-	(void)fault;
+	(void)diagnostics;
 	raise(SIGKILL); /* as the kernel does when memory runs out; sanitizers cannot catch it */
 	return 0;
 }
 
-static int gives_up(void *shared, struct fault *fault)
+static int gives_up(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
-	(void)fault;
+	(void)diagnostics;
 	_exit(3);
 }
 
-static int hangs(void *shared, struct fault *fault)
+static int hangs(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
-	(void)fault;
+	(void)diagnostics;
 	while (pause() < 0) /* always: no signal that is handled comes */
 		;
 	return 0;
 }
 
 /* Touches what it takes, for where resident memory is counted; ends itself where malloc fails. */
-static int eats_memory(void *shared, struct fault *fault)
+static int eats_memory(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
 	for (int i = 0; i < 1024; i++) {
 		char *more = malloc(1 << 24);
 
 		if (!more)
-			return fault_set(fault, -ENOMEM, "scan.obj: no memory");
+			return diagnostics_add(diagnostics, -ENOMEM, NULL, 0,
+					       "scan.obj: no memory");
 		memset(more, i, 1 << 24);
 		usleep(1000);
 	}
@@ -76,13 +77,13 @@ static int eats_memory(void *shared, struct fault *fault)
 static void gives_back_result_fault_and_shared_memory(void **state)
 {
 	char *shared = sandbox_shared_create(16);
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
-	CHECK(sandbox_run(gives_back, shared, &limits, "scan.obj", &fault) == 7);
-	CHECK(strcmp(shared, "hello") == 0 && fault.text[0] == '\0');
-	CHECK(sandbox_run(refuses, shared, &limits, "scan.obj", &fault) == -ENOSPC);
-	CHECK(strcmp(fault.text, "scan.obj: face 3 is odd") == 0);
+	CHECK(sandbox_run(gives_back, shared, &limits, "scan.obj", &diagnostics) == 7);
+	CHECK(strcmp(shared, "hello") == 0 && diagnostics.first.text[0] == '\0');
+	CHECK(sandbox_run(refuses, shared, &limits, "scan.obj", &diagnostics) == -ENOSPC);
+	CHECK(strcmp(diagnostics.first.text, "scan.obj: face 3 is odd") == 0);
 	sandbox_shared_destroy(shared, 16);
 }
 
@@ -103,12 +104,13 @@ static void an_end_of_the_child_is_a_fault_that_names_the_file(void **state)
 	(void)state;
 
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		struct fault fault = { "" };
-		int rc = sandbox_run(cases[i].work, NULL, cases[i].limits, "scan.obj", &fault);
+		struct diagnostics diagnostics = { 0 };
+		int rc =
+			sandbox_run(cases[i].work, NULL, cases[i].limits, "scan.obj", &diagnostics);
 
-		if (rc != cases[i].rc || strncmp(fault.text, "scan.obj: ", 10) != 0 ||
-		    !strstr(fault.text + 10, cases[i].says))
-			fail_msg("case %zu: rc %d, '%s'", i, rc, fault.text);
+		if (rc != cases[i].rc || strncmp(diagnostics.first.text, "scan.obj: ", 10) != 0 ||
+		    !strstr(diagnostics.first.text + 10, cases[i].says))
+			fail_msg("case %zu: rc %d, '%s'", i, rc, diagnostics.first.text);
 	}
 }
 
@@ -227,10 +229,10 @@ static const struct {
 };
 
 /* shared: an errno for each attempt, 0 where it was allowed. */
-static int tries_all(void *shared, struct fault *fault)
+static int tries_all(void *shared, struct diagnostics *diagnostics)
 {
 	int *errors = shared;
-	(void)fault;
+	(void)diagnostics;
 
 	for (size_t i = 0; i < ARRAY_COUNT(attempts); i++) {
 		errno = 0;
@@ -319,12 +321,12 @@ static void the_child_can_ask_the_kernel_for_nothing_else(void **state)
 {
 	const size_t size = ARRAY_COUNT(attempts) * sizeof(int);
 	int *errors = sandbox_shared_create(size);
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
 	if (in_a_child(is_filtered) == ABSENT)
 		skip();
-	CHECK(sandbox_run(tries_all, errors, &limits, "scan.obj", &fault) == 0);
+	CHECK(sandbox_run(tries_all, errors, &limits, "scan.obj", &diagnostics) == 0);
 	for (size_t i = 0; i < ARRAY_COUNT(attempts); i++)
 		if (errors[i] != EPERM)
 			fail_msg("%s: %s", attempts[i].name, strerror(errors[i]));
@@ -343,12 +345,12 @@ static int gives_one_file(void *data, const char *name)
 	return open("/etc/passwd", O_RDONLY | O_CLOEXEC);
 }
 
-static int asks(void *shared, struct fault *fault)
+static int asks(void *shared, struct diagnostics *diagnostics)
 {
 	static char long_name[8000];
 	int *told = shared;
 	char text[5] = "";
-	(void)fault;
+	(void)diagnostics;
 
 	memset(long_name, 'a', sizeof(long_name) - 1);
 	for (int i = 0; i < 100; i++) { /* more than it may have open at once */
@@ -371,23 +373,23 @@ static void the_parent_opens_what_it_likes_and_nothing_else(void **state)
 						     .open = gives_one_file,
 						     .open_data = "skin.jpg" };
 	int *told = sandbox_shared_create(4 * sizeof(*told));
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
-	CHECK(sandbox_run(asks, told, &open_limits, "scan.obj", &fault) == 0);
+	CHECK(sandbox_run(asks, told, &open_limits, "scan.obj", &diagnostics) == 0);
 	CHECK(told[0] == 4 && told[1] == -EXDEV && told[2] == -ENAMETOOLONG && told[3] == -ENOENT);
 	CHECK(opened == 101);
 	/* Without a function of the parent: nothing. */
-	CHECK(sandbox_run(asks, told, &limits, "scan.obj", &fault) == 0);
+	CHECK(sandbox_run(asks, told, &limits, "scan.obj", &diagnostics) == 0);
 	CHECK(told[0] == -EACCES && told[1] == -EACCES && opened == 101);
 	sandbox_shared_destroy(told, 4 * sizeof(*told));
 }
 
-static int reads_foreign_descriptors(void *shared, struct fault *fault)
+static int reads_foreign_descriptors(void *shared, struct diagnostics *diagnostics)
 {
 	const int *fds = shared;
 	char byte;
-	(void)fault;
+	(void)diagnostics;
 
 	return (read(fds[0], &byte, 1) < 0 && errno == EBADF) + 2 * (write(fds[1], "x", 1) == 1) +
 	       4 * (read(STDIN_FILENO, &byte, 1) == 0);
@@ -397,13 +399,13 @@ static void of_descriptors_only_the_result_stays_open(void **state)
 {
 	struct sandbox_options own = limits;
 	int *fds = sandbox_shared_create(2 * sizeof(*fds));
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
 	fds[0] = open("/etc/passwd", O_RDONLY); /* without O_CLOEXEC, as a library may */
 	fds[1] = own.result_fd = memfd_create("result", 0);
 	CHECK(fds[0] >= 0 && fds[1] >= 0);
-	CHECK(sandbox_run(reads_foreign_descriptors, fds, &own, "scan.obj", &fault) == 7);
+	CHECK(sandbox_run(reads_foreign_descriptors, fds, &own, "scan.obj", &diagnostics) == 7);
 	CHECK(lseek(fds[1], 0, SEEK_END) == 1);
 	close(fds[0]);
 	close(fds[1]);

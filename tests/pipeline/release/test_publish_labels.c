@@ -99,8 +99,7 @@ static void write_parts(float radius_m)
 
 static int set_up(void **state)
 {
-	struct faults faults = { .count = 0 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	char regions[80];
 
 	(void)state;
@@ -112,9 +111,9 @@ static int set_up(void **state)
 	write_scan();
 	write_faces(-0.8f);
 	write_parts(0.6f);
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
-	CHECK(scans_get_mesh(scans, &scan, &fault) == 0);
+	CHECK(scans_get_mesh(scans, &scan, &diagnostics) == 0);
 	return 0;
 }
 

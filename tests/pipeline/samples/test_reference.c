@@ -46,23 +46,24 @@ static int remove_dir(void **state)
 	return system(command);
 }
 
-static int read_views(struct camera **views, uint32_t *count, const char *text, struct fault *fault)
+static int read_views(struct camera **views, uint32_t *count, const char *text,
+		      struct diagnostics *diagnostics)
 {
 	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
 
-	return reference_views(views, count, bytes, "views.txt", fault);
+	return reference_views(views, count, bytes, "views.txt", diagnostics);
 }
 
 static void reads_views(void **state)
 {
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { 0 };
 	struct camera *views;
 	uint32_t count;
 
 	(void)state;
 	CHECK(read_views(&views, &count,
 			 "# a path\n\neye 1 2 3 target 4 5 6 45 # first\n1,2,3  4,5,7  60",
-			 &fault) == 0);
+			 &diagnostics) == 0);
 	CHECK(count == 2 && views[0].fov_deg == 45 && views[1].target_m[2] == 7);
 	CHECK(views[1].eye_m[1] == 2 && views[0].up[2] == 1);
 	free(views);
@@ -78,10 +79,10 @@ static void refuses_bad_views(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
-		struct fault fault = { "" };
+		struct diagnostics diagnostics = { 0 };
 
-		CHECK(read_views(&views, &count, bad[i], &fault) == -EINVAL && !views);
-		CHECK(strstr(fault.text, "views.txt, line 2:"));
+		CHECK(read_views(&views, &count, bad[i], &diagnostics) == -EINVAL && !views);
+		CHECK(strstr(diagnostics.first.text, "views.txt, line 2:"));
 	}
 	CHECK(read_views(&views, &count, "# nothing\n", NULL) == -EINVAL && !views);
 }
@@ -93,8 +94,7 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 					     .height_px = side,
 					     .supersample = supersample };
 	struct reference_report report;
-	struct faults faults = { .count = 0 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct content content;
 	struct scans *scans;
 	struct camera *views;
@@ -104,10 +104,10 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 
 	snprintf(out_dir, sizeof(out_dir), "%s/out", dir);
 	options.out_dir = out_dir;
-	CHECK(read_views(&views, &count, views_text, &fault) == 0);
-	CHECK(content_read(&content, dir, &faults) == 0);
+	CHECK(read_views(&views, &count, views_text, &diagnostics) == 0);
+	CHECK(content_read(&content, dir, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
-	CHECK(reference_draw(scans, views, count, &options, &report, &fault) == 0);
+	CHECK(reference_draw(scans, views, count, &options, &report, &diagnostics) == 0);
 	CHECK(report.drawn == expected_drawn && report.kept == count - expected_drawn);
 	snprintf(path, sizeof(path), "%s/view-%04u.png", out_dir, count - 1);
 	buffer_init(&file, 1 << 20);

@@ -57,15 +57,14 @@ static void sample(const char *folder, uint32_t jobs, uint32_t shard, uint32_t s
 	const struct sampler_options options = { .jobs = jobs,
 						 .shard = shard,
 						 .shard_count = shards };
-	struct faults faults = { .count = 0 };
-	struct fault fault = { "" };
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct content content;
 	struct scans *scans;
 
-	CHECK(content_read(&content, folder, &faults) == 0);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	content.grid_points = 6; /* -1.5 -0.9 -0.3 0.3 0.9 1.5: none on the surface */
-	CHECK(sampler_run(scans, &options, &fault) == 0);
+	CHECK(sampler_run(scans, &options, &diagnostics) == 0);
 	scans_destroy(scans);
 	content_release(&content);
 }
