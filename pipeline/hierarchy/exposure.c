@@ -6,10 +6,8 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 
-#include "base/parallel.h"
-#include "base/progress.h"
+#include "base/processes.h"
 
 enum {
 	SIDE = 256, /* voxels along the longest axis */
@@ -17,8 +15,7 @@ enum {
 	BRICKS = SIDE / BRICK,
 	MARGIN = 2,     /* voxels of air at the sides and above, where rays may start */
 	VIEWPOINTS = 8, /* of a voxel; neighbours have others, so a patch has many */
-	KNOWN = 1 << VIEWPOINTS,
-	PIECE_VERTICES = 4096
+	KNOWN = 1 << VIEWPOINTS
 };
 
 /* Distance in front of the surface at which rays start: outside the voxels that it fills itself. */
@@ -64,17 +61,13 @@ static int clamp_voxel(float at)
 
 int exposure_create(struct exposure **out)
 {
-	void *memory = mmap(NULL, sizeof(**out), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
-			    -1, 0);
-
-	*out = memory == MAP_FAILED ? NULL : memory;
+	*out = shared_memory_create(sizeof(**out));
 	return *out ? 0 : -ENOMEM;
 }
 
 void exposure_destroy(struct exposure *exposure)
 {
-	if (exposure)
-		munmap(exposure, sizeof(*exposure));
+	shared_memory_destroy(exposure, sizeof(*exposure));
 }
 
 /* Marks the voxels of sample points on the triangle, at most half a voxel apart. */
@@ -377,51 +370,4 @@ uint8_t exposure_of(struct exposure *exposure, const uint16_t position[3], const
 		}
 	}
 	return (uint8_t)(255 * fminf(1, 2 * seen / VIEWPOINTS) + 0.5f);
-}
-
-/* ---- a whole mesh */
-
-struct finder {
-	struct exposure *exposure;
-	struct lattice_mesh *mesh;
-	struct progress *progress; /* counts vertices */
-};
-
-static int find_piece(void *user, uint32_t piece, uint32_t worker)
-{
-	struct finder *finder = user;
-	struct lattice_mesh *mesh = finder->mesh;
-	uint32_t first = piece * PIECE_VERTICES, left = mesh->vertex_count - first;
-	uint32_t count = left < PIECE_VERTICES ? left : PIECE_VERTICES;
-
-	(void)worker;
-	for (uint32_t v = first; v < first + count; v++)
-		mesh->vertices[v].seen = exposure_of(finder->exposure, mesh->vertices[v].position,
-						     mesh->vertices[v].normal);
-	progress_add(finder->progress, count);
-	return 0;
-}
-
-int exposure_find(struct lattice_mesh *mesh, uint32_t jobs)
-{
-	uint32_t pieces = (mesh->vertex_count + PIECE_VERTICES - 1) / PIECE_VERTICES;
-	struct finder finder = { .mesh = mesh };
-	int rc = exposure_create(&finder.exposure);
-
-	for (uint32_t t = 0; rc == 0 && t < mesh->triangle_count; t++) {
-		uint16_t corners[3][3];
-
-		for (int c = 0; c < 3; c++)
-			for (int k = 0; k < 3; k++)
-				corners[c][k] = mesh->vertices[mesh->triangles[t][c]].position[k];
-		exposure_add(finder.exposure, (const uint16_t(*)[3])corners);
-	}
-	if (rc == 0)
-		rc = exposure_close(finder.exposure);
-	finder.progress = progress_start("looking", "vertices", mesh->vertex_count);
-	if (rc == 0)
-		rc = parallel_run(jobs, pieces, find_piece, &finder);
-	progress_end(finder.progress);
-	exposure_destroy(finder.exposure);
-	return rc;
 }

@@ -8,7 +8,9 @@
 #ifndef GOPURA_PIPELINE_HIERARCHY_EXPOSURE_H
 #define GOPURA_PIPELINE_HIERARCHY_EXPOSURE_H
 
-#include "pipeline/hierarchy/lattice_mesh.h"
+#include <stdint.h>
+
+#include "base/compiler.h"
 
 /* About 36 MiB at most, shared with processes that are forked later. */
 struct exposure;
@@ -27,9 +29,5 @@ must_check int exposure_close(struct exposure *exposure);
  * because the orientation of scans is not always right. Any thread and process, after
  * exposure_close. */
 uint8_t exposure_of(struct exposure *exposure, const uint16_t position[3], const float normal[3]);
-
-/* Does all of it for one mesh: sets `seen` of every vertex. The result is the same for any number
- * of jobs (threads). Returns -ENOMEM. */
-must_check int exposure_find(struct lattice_mesh *mesh, uint32_t jobs);
 
 #endif

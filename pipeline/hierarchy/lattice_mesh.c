@@ -9,35 +9,24 @@
 
 enum { STEPS = 65535 };
 
-static int find_lattice(struct lattice_mesh *out, const struct mesh *mesh)
+int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3])
 {
 	double longest = 0.0;
 
 	for (int i = 0; i < 3; i++) {
-		out->box_min_m[i] = INFINITY;
-		out->box_max_m[i] = -INFINITY;
+		out->origin_m[i] = min_m[i];
+		longest = fmax(longest, (double)max_m[i] - min_m[i]);
 	}
-	for (uint32_t v = 0; v < mesh->vertex_count; v++)
-		for (int i = 0; i < 3; i++) {
-			float at = mesh->positions[v][i];
-
-			if (!isfinite(at))
-				return -EINVAL;
-			out->box_min_m[i] = fminf(out->box_min_m[i], at);
-			out->box_max_m[i] = fmaxf(out->box_max_m[i], at);
-		}
-	for (int i = 0; i < 3; i++) {
-		out->lattice.origin_m[i] = out->box_min_m[i];
-		longest = fmax(longest, (double)out->box_max_m[i] - out->box_min_m[i]);
-	}
-	out->lattice.step_m = longest / STEPS;
+	out->step_m = longest / STEPS;
 	return longest > 0.0 && isfinite(longest) ? 0 : -EINVAL;
 }
 
-static void to_lattice(uint16_t out[3], const struct lattice *lattice, const float at_m[3])
+void lattice_place(uint16_t out[3], const struct lattice *lattice, const float at_m[3])
 {
 	for (int i = 0; i < 3; i++) {
-		double steps = round((at_m[i] - lattice->origin_m[i]) / lattice->step_m);
+		/* Half a step is added and the rest cut off: this is rounding, as no place is
+		 * negative. */
+		double steps = (at_m[i] - lattice->origin_m[i]) / lattice->step_m + 0.5;
 
 		out[i] = (uint16_t)(steps < 0 ? 0 : steps > STEPS ? STEPS : steps);
 	}
@@ -83,7 +72,7 @@ static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const
 		uint16_t position[3];
 		uint32_t at, id;
 
-		to_lattice(position, &out->lattice, mesh->positions[v]);
+		lattice_place(position, &out->lattice, mesh->positions[v]);
 		at = (uint32_t)mix(position[0] | (uint64_t)position[1] << 16 |
 				   (uint64_t)position[2] << 32) &
 		     mask;
@@ -130,13 +119,8 @@ static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *count
 	for (uint32_t t = 0; table && t < mesh->triangle_count; t++) {
 		uint32_t *kept = out->triangles[out->triangle_count], at;
 
-		for (int corner = 0; corner < 3; corner++) {
-			if (mesh->triangles[t][corner] >= mesh->vertex_count) {
-				free(table);
-				return -EINVAL;
-			}
+		for (int corner = 0; corner < 3; corner++)
 			kept[corner] = to[mesh->triangles[t][corner]];
-		}
 		if (kept[0] == kept[1] || kept[1] == kept[2] || kept[2] == kept[0]) {
 			counts->degenerate_triangles++;
 			continue;
@@ -211,7 +195,8 @@ static void add_normals(struct lattice_mesh *mesh)
 	}
 }
 
-static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts)
+int lattice_mesh_find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts,
+			      const uint8_t *shared)
 {
 	struct incidence incidence;
 	double crowded = 0.0;
@@ -226,6 +211,8 @@ static int find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts
 			uint32_t b = mesh->triangles[t][(corner + 1) % 3];
 			uint32_t runs[2];
 
+			if (shared && shared[a] && shared[b])
+				continue;
 			incidence_edge(runs, &incidence, mesh->triangles, a, b);
 			/* The edge is visited once from each of its triangles but counts as one. */
 			if (runs[0] + runs[1] > 2)
@@ -253,8 +240,6 @@ static int build(struct lattice_mesh *out, struct lattice_counts *counts, const 
 	out->vertices = calloc(mesh->vertex_count + 1, sizeof(*out->vertices));
 	out->triangles = malloc((mesh->triangle_count + 1) * sizeof(*out->triangles));
 	if (merged.to && merged.sum && merged.count && out->vertices && out->triangles)
-		rc = find_lattice(out, mesh);
-	if (rc == 0)
 		rc = merge_vertices(out, &merged, mesh, colour);
 	if (rc == 0) {
 		counts->merged_vertices = mesh->vertex_count - out->vertex_count;
@@ -265,18 +250,18 @@ static int build(struct lattice_mesh *out, struct lattice_counts *counts, const 
 	free(merged.count);
 	if (rc == 0)
 		rc = drop_unused(out);
-	if (rc < 0)
-		return rc;
-	add_normals(out);
-	return find_borders(out, counts);
+	if (rc == 0)
+		add_normals(out);
+	return rc;
 }
 
 int lattice_mesh_create(struct lattice_mesh *out, struct lattice_counts *counts,
-			const struct mesh *mesh, const uint8_t colour[3])
+			const struct mesh *mesh, const struct lattice *lattice,
+			const uint8_t colour[3])
 {
 	int rc;
 
-	*out = (struct lattice_mesh){ 0 };
+	*out = (struct lattice_mesh){ .lattice = *lattice };
 	*counts = (struct lattice_counts){ 0 };
 	rc = build(out, counts, mesh, colour);
 	if (rc < 0)
@@ -291,6 +276,29 @@ void lattice_mesh_finish(struct lattice_mesh *mesh)
 	free(mesh->vertices);
 	free(mesh->triangles);
 	*mesh = (struct lattice_mesh){ 0 };
+}
+
+void lattice_vertex_put(struct buffer *out, const struct lattice_vertex *vertex)
+{
+	for (int i = 0; i < 3; i++)
+		buffer_put_u16(out, vertex->position[i]);
+	buffer_put_u8(out, vertex->border);
+	buffer_put(out, vertex->colour, sizeof(vertex->colour));
+	buffer_put_u8(out, vertex->seen);
+	for (int i = 0; i < 3; i++)
+		buffer_put_f32(out, vertex->normal[i]);
+}
+
+void lattice_vertex_get(struct lattice_vertex *out, struct reader *reader)
+{
+	for (int i = 0; i < 3; i++)
+		out->position[i] = reader_u16(reader);
+	out->border = reader_u8(reader);
+	for (int i = 0; i < 4; i++)
+		out->colour[i] = reader_u8(reader);
+	out->seen = reader_u8(reader);
+	for (int i = 0; i < 3; i++)
+		out->normal[i] = reader_f32(reader);
 }
 
 int incidence_create(struct incidence *out, uint32_t (*triangles)[3], uint32_t triangle_count,

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "base/bytes.h"
 #include "format/root_page.h"
 #include "pipeline/import/mesh.h"
 
@@ -18,7 +19,6 @@ struct lattice_vertex {
 
 struct lattice_mesh {
 	struct lattice lattice;
-	float box_min_m[3], box_max_m[3];
 	uint32_t vertex_count, triangle_count;
 	struct lattice_vertex *vertices; /* owned; no two at one place, all are used */
 	uint32_t (*triangles)[3];        /* owned; three different vertices each, no duplicates */
@@ -33,12 +33,28 @@ struct lattice_counts {
 	uint32_t crowded_edges; /* used by more than two triangles; kept */
 };
 
-/* Puts a scan on its lattice. colour is for scans without colours. Returns -EINVAL if no triangle
- * is left, a position is not finite, or a triangle names a vertex that does not exist; or -ENOMEM.
- * On failure *out is zeroed. */
+/* Sets the lattice of a model with that bounding box. Returns -EINVAL if it has no extent. */
+must_check int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3]);
+/* Sets out to the nearest place of the lattice. */
+void lattice_place(uint16_t out[3], const struct lattice *lattice, const float at_m[3]);
+
+/* Puts a mesh, or a part of one, on its lattice. Positions must be finite and indices in range.
+ * colour is for scans without colours. Open edges are not known yet. Returns -EINVAL if no triangle
+ * is left, or -ENOMEM. On failure *out is zeroed. */
 must_check int lattice_mesh_create(struct lattice_mesh *out, struct lattice_counts *counts,
-				   const struct mesh *mesh, const uint8_t colour[3]);
+				   const struct mesh *mesh, const struct lattice *lattice,
+				   const uint8_t colour[3]);
+/* Finds the open edges, and sets `border` of their vertices. shared (may be NULL) is, for each
+ * vertex, whether it may have triangles that are not in this mesh: an edge between two of them is
+ * not judged. Returns -ENOMEM. */
+must_check int lattice_mesh_find_borders(struct lattice_mesh *mesh, struct lattice_counts *counts,
+					 const uint8_t *shared);
 void lattice_mesh_finish(struct lattice_mesh *mesh); /* NULL is fine */
+
+/* A vertex in the files of a build: LATTICE_VERTEX_BYTES. A failure is kept in out or reader. */
+enum { LATTICE_VERTEX_BYTES = 24 };
+void lattice_vertex_put(struct buffer *out, const struct lattice_vertex *vertex);
+void lattice_vertex_get(struct lattice_vertex *out, struct reader *reader);
 
 /* The triangles at each vertex: those of vertex v are items[first[v]] to items[first[v + 1] - 1],
  * ascending. Both owned by the caller (free). */

@@ -13,10 +13,10 @@
 
 #include "base/array.h"
 #include "base/clock.h"
-#include "pipeline/material/material.h"
+#include "pipeline/hierarchy/block_build.h"
 
 /* Raise BUILD_VERSION whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 7, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
+enum { BUILD_VERSION = 9, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -32,6 +32,7 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 	buffer_put_u32(&text, options->multires.patch_triangles);
 	buffer_put_u32(&text, options->multires.group_patches);
 	buffer_put_u32(&text, options->multires.top_triangles);
+	buffer_put_u32(&text, options->multires.block_triangles);
 	buffer_put_u8(&text, options->material_colours);
 	stamp = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
@@ -43,12 +44,13 @@ static int path_in(char out[PATH_MAX], const char *folder, const char *name)
 	return snprintf(out, PATH_MAX, "%s/%s", folder, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
 }
 
-static int groups_path(char out[PATH_MAX], const char *folder, struct hash stamp)
+/* kind: "groups", the file of objects, or "blocks", the folder of a build in progress. */
+static int stamped_path(char out[PATH_MAX], const char *folder, const char *kind, struct hash stamp)
 {
 	char hex[HASH_HEX_BYTES], name[HASH_HEX_BYTES + 16];
 
 	hash_to_hex(stamp, hex);
-	snprintf(name, sizeof(name), "groups-%s", hex);
+	snprintf(name, sizeof(name), "%s-%s", kind, hex);
 	return path_in(out, folder, name);
 }
 
@@ -83,36 +85,6 @@ static int write_object(void *user, struct bytes object, float loss_m4)
 			done += (size_t)put;
 	}
 	return 0;
-}
-
-static void colour_as_stone(struct lattice_mesh *mesh)
-{
-	const struct lattice *lattice = &mesh->lattice;
-	double length = 0.0;
-	float footprint;
-
-	for (uint32_t t = 0; t < mesh->triangle_count; t++)
-		for (int i = 0; i < 3; i++) {
-			const uint32_t *triangle = mesh->triangles[t];
-
-			length += abs(mesh->vertices[triangle[0]].position[i] -
-				      mesh->vertices[triangle[1]].position[i]);
-		}
-	footprint = (float)(length / mesh->triangle_count * lattice->step_m);
-	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-		struct lattice_vertex *vertex = &mesh->vertices[v];
-		float at[3], rgb[3];
-
-		for (int i = 0; i < 3; i++)
-			at[i] = (float)(lattice->origin_m[i] +
-					lattice->step_m * vertex->position[i]);
-		material_colour(rgb, at, vertex->normal, footprint);
-		for (int i = 0; i < 3; i++)
-			vertex->colour[i] = (uint8_t)(255.0f * (rgb[i] < 0.0f   ? 0.0f
-								: rgb[i] > 1.0f ? 1.0f
-										: rgb[i]) +
-						      0.5f);
-	}
 }
 
 static int put_index(struct buffer *out, const struct master *head,
@@ -164,8 +136,25 @@ static int write_index(const char *folder, const struct master *head,
 	return rc;
 }
 
-/* Removes the files of earlier builds, complete or not. */
-static void remove_other_files(const char *folder, const char *keep)
+/* Removes a folder of files, or a file. */
+static void remove_entry(const char *path)
+{
+	DIR *entries = opendir(path);
+	struct dirent *entry;
+	char inner[PATH_MAX];
+
+	while (entries && (entry = readdir(entries)))
+		if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
+		    path_in(inner, path, entry->d_name) == 0)
+			unlink(inner);
+	if (entries)
+		closedir(entries);
+	if (unlink(path) < 0)
+		rmdir(path);
+}
+
+/* Removes what earlier builds left, complete or not, but the index and what keep names. */
+static void remove_others(const char *folder, const char *keep)
 {
 	DIR *entries = opendir(folder);
 	struct dirent *entry;
@@ -175,37 +164,34 @@ static void remove_other_files(const char *folder, const char *keep)
 		if (entry->d_name[0] == '.' || strcmp(entry->d_name, "index") == 0 ||
 		    path_in(path, folder, entry->d_name) < 0 || strcmp(path, keep) == 0)
 			continue;
-		unlink(path);
+		remove_entry(path);
 	}
 	if (entries)
 		closedir(entries);
 }
 
-static int build_into(struct writer *writer, const char *folder, const struct mesh *mesh,
-		      struct hash stamp, const struct master_options *options,
-		      struct master_report *report)
+static int build_into(struct writer *writer, const char *folder, const char *blocks,
+		      const struct mesh *mesh, struct hash stamp,
+		      const struct master_options *options, struct master_report *report)
 {
-	static const uint8_t plain[3] = { 184, 172, 150 };
 	const struct multires_sink sink = { write_object, writer };
-	struct lattice_mesh lattice_mesh;
-	struct hierarchy hierarchy = { 0 };
 	struct master head = { .stamp = stamp, .source_triangles = mesh->triangle_count };
-	int rc = lattice_mesh_create(&lattice_mesh, &report->counts, mesh, plain);
+	struct block_build build;
+	int rc = block_build(&build, blocks, mesh, &options->multires, options->material_colours,
+			     &sink);
 
 	if (rc < 0)
 		return rc;
-	if (options->material_colours)
-		colour_as_stone(&lattice_mesh);
-	head.lattice = lattice_mesh.lattice;
-	memcpy(head.box_min_m, lattice_mesh.box_min_m, sizeof(head.box_min_m));
-	memcpy(head.box_max_m, lattice_mesh.box_max_m, sizeof(head.box_max_m));
-	rc = multires_build(&hierarchy, &report->stats, &lattice_mesh, &options->multires, &sink);
-	if (rc == 0 && fsync(writer->fd) < 0)
+	report->counts = build.counts;
+	report->stats = build.stats;
+	head.lattice = build.lattice;
+	memcpy(head.box_min_m, build.box_min_m, sizeof(head.box_min_m));
+	memcpy(head.box_max_m, build.box_max_m, sizeof(head.box_max_m));
+	if (fsync(writer->fd) < 0)
 		rc = -errno;
 	if (rc == 0)
-		rc = write_index(folder, &head, &hierarchy, writer);
-	hierarchy_finish(&hierarchy);
-	lattice_mesh_finish(&lattice_mesh);
+		rc = write_index(folder, &head, &build.hierarchy, writer);
+	block_build_finish(&build);
 	return rc;
 }
 
@@ -214,13 +200,16 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 {
 	struct writer writer = { .fd = -1 };
 	int64_t start_ms = clock_now_ms();
-	char path[PATH_MAX];
-	int rc = groups_path(path, folder, stamp);
+	char path[PATH_MAX], blocks[PATH_MAX];
+	int rc = stamped_path(path, folder, "groups", stamp);
 
 	*report = (struct master_report){ 0 };
+	if (rc == 0)
+		rc = stamped_path(blocks, folder, "blocks", stamp);
 	if (rc < 0)
 		return rc;
-	if (mkdir(folder, 0777) < 0 && errno != EEXIST)
+	if ((mkdir(folder, 0777) < 0 && errno != EEXIST) ||
+	    (mkdir(blocks, 0777) < 0 && errno != EEXIST))
 		return -errno;
 	/* Always make a new file, even if one has this name: an index may still point into the old
 	 * one. */
@@ -229,13 +218,14 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 	writer.fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 	if (writer.fd < 0)
 		return -errno;
-	rc = build_into(&writer, folder, mesh, stamp, options, report);
+	rc = build_into(&writer, folder, blocks, mesh, stamp, options, report);
 	close(writer.fd);
 	free(writer.objects);
+	/* What a killed build has done stays for the next one. */
 	if (rc < 0)
 		unlink(path);
 	else
-		remove_other_files(folder, path);
+		remove_others(folder, path);
 	report->duration_ms = clock_now_ms() - start_ms;
 	return rc;
 }
@@ -332,7 +322,7 @@ int master_open(struct master **out, const char *folder, const struct hash *stam
 		rc = get_index(master, buffer_bytes(&index), stamp);
 	buffer_finish(&index);
 	if (rc == 0)
-		rc = groups_path(path, folder, master->stamp);
+		rc = stamped_path(path, folder, "groups", master->stamp);
 	if (rc == 0)
 		rc = open_groups(master, path);
 	if (rc < 0) {

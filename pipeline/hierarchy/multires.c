@@ -12,7 +12,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "format/patch.h"
-#include "pipeline/hierarchy/exposure.h"
 #include "pipeline/hierarchy/graph.h"
 #include "pipeline/hierarchy/multires_parts.h"
 #include "pipeline/hierarchy/partition.h"
@@ -25,6 +24,7 @@ enum {
 	REDUCTION = 4, /* factor by which triangles decrease per level */
 	TOP_TRIANGLES = 6000,
 	TOP_PART = 40, /* a small scan's top has 1/40 of it, far less than is published */
+	BLOCK_TRIANGLES = 1 << 19,
 	VOXEL_TRIANGLES = 256,
 	CHUNK_TRIANGLES = 1 << 20,
 	TOUCH_WEIGHT = 4, /* for each vertex that two patches share */
@@ -34,7 +34,8 @@ enum {
 
 struct builder {
 	struct multires_options options;
-	struct lattice_mesh *mesh;
+	const struct multires_node *node;
+	struct lattice_mesh *mesh; /* the node's */
 	struct multires_stats *stats;
 	const struct multires_sink *sink;
 	struct job_site site;
@@ -50,16 +51,16 @@ struct builder {
 
 /* Patches are small enough that a view can choose among them, in small scans too; docs/hierarchy.md
  * has the figures. */
-static uint32_t patch_triangles_for(uint32_t triangle_count)
+static uint32_t patch_triangles_for(uint64_t triangle_count)
 {
-	uint32_t some = triangle_count / PATCHES;
+	uint64_t some = triangle_count / PATCHES;
 
 	return some > PATCH_TRIANGLES       ? PATCH_TRIANGLES
 	       : some < PATCH_TRIANGLES_MIN ? PATCH_TRIANGLES_MIN
-					    : some;
+					    : (uint32_t)some;
 }
 
-static void set_defaults(struct multires_options *options, uint32_t triangle_count)
+void multires_set_defaults(struct multires_options *options, uint64_t triangle_count)
 {
 	long processors = sysconf(_SC_NPROCESSORS_ONLN);
 
@@ -71,8 +72,13 @@ static void set_defaults(struct multires_options *options, uint32_t triangle_cou
 		options->group_patches = GROUP_PATCHES;
 	if (options->top_triangles == 0)
 		options->top_triangles = triangle_count / TOP_PART < TOP_TRIANGLES
-						 ? triangle_count / TOP_PART + 1
+						 ? (uint32_t)(triangle_count / TOP_PART) + 1
 						 : TOP_TRIANGLES;
+	if (options->block_triangles == 0)
+		options->block_triangles = BLOCK_TRIANGLES;
+	/* The paper's tree has its halves from the whole scan at once. */
+	if (options->kind == MULTIRES_TREE)
+		options->block_triangles = UINT32_MAX;
 	if (options->jobs == 0)
 		options->jobs = processors > 0 ? (uint32_t)processors : 1;
 }
@@ -318,7 +324,6 @@ static int keep_job(struct builder *builder, struct group_job *job)
 	memcpy(made->patches + made->patch_count, job->made, job->patch_count * sizeof(*job->made));
 	made->patch_count += job->patch_count;
 	stats->object_bytes += job->object.size;
-	stats->top_bytes = (uint32_t)job->object.size;
 	stats->vertex_count += job->vertex_count;
 	return builder->sink->put(builder->sink->user, buffer_bytes(&job->object), job->loss_m4);
 }
@@ -350,7 +355,8 @@ static int run_level(struct builder *builder, struct live_patches *next)
 	stats->level_count++;
 	level->group_count = builder->job_count;
 	for (uint32_t j = 0; j < builder->job_count; j++) {
-		builder->jobs[j].number = builder->made.group_count + j;
+		builder->jobs[j].number =
+			builder->node->first_number + builder->made.group_count + j;
 		level->patch_count += builder->jobs[j].patch_count;
 		for (uint32_t p = 0; p < builder->jobs[j].patch_count; p++)
 			level->triangle_count += builder->jobs[j].patches[p].triangle_count;
@@ -408,7 +414,7 @@ static int coarser_level(struct builder *builder, uint32_t group_patches)
 	free(labels);
 	for (uint32_t j = 0; rc == 0 && j < builder->job_count; j++) {
 		builder->jobs[j].target_triangles = target_of(&builder->jobs[j]);
-		builder->jobs[j].is_whole = builder->job_count == 1;
+		builder->jobs[j].is_whole = builder->node->is_root && builder->job_count == 1;
 	}
 	if (rc == 0)
 		rc = run_level(builder, &next);
@@ -428,12 +434,16 @@ static int top_level(struct builder *builder)
 	return rc;
 }
 
+/* A node that has a parent makes one level. The parent's groups lie elsewhere, so a border of
+ * blocks is locked for one level only, as a border of groups is. */
 static int build_groups(struct builder *builder)
 {
 	uint32_t group_patches = builder->options.group_patches;
 	uint64_t before = level_triangles(&builder->level), after;
 	int rc = 0;
 
+	if (!builder->node->is_root)
+		return coarser_level(builder, group_patches);
 	while (rc == 0 && (before > builder->options.top_triangles ||
 			   builder->level.count > GROUP_PATCHES_MAX)) {
 		/* Close to the top, locked borders dominate: use a single group, which has none. */
@@ -578,37 +588,6 @@ static int build_tree(struct builder *builder)
 
 /* ---- the whole */
 
-/* Reverses the order of groups: made finest first, stored coarsest first. */
-static int turn_round(struct hierarchy *out, const struct hierarchy *made)
-{
-	uint32_t last = made->group_count - 1;
-
-	*out = (struct hierarchy){
-		.group_count = made->group_count,
-		.groups = calloc(made->group_count, sizeof(*out->groups)),
-		.patches = calloc(made->patch_count, sizeof(*out->patches)),
-	};
-	if (!out->groups || !out->patches) {
-		hierarchy_finish(out);
-		return -ENOMEM;
-	}
-	for (uint32_t g = 0; g <= last; g++) {
-		const struct hierarchy_group *from = &made->groups[last - g];
-
-		out->groups[g] = *from;
-		out->groups[g].first_patch = out->patch_count;
-		for (uint32_t p = 0; p < from->patch_count; p++) {
-			struct hierarchy_patch *patch = &out->patches[out->patch_count++];
-
-			*patch = made->patches[from->first_patch + p];
-			patch->group = g;
-			if (patch->finer != NO_GROUP)
-				patch->finer = last - patch->finer;
-		}
-	}
-	return 0;
-}
-
 static int site_init(struct builder *builder)
 {
 	struct job_site *site = &builder->site;
@@ -616,6 +595,7 @@ static int site_init(struct builder *builder)
 
 	*site = (struct job_site){
 		.mesh = builder->mesh,
+		.pinned = builder->node->pinned,
 		.lows = malloc(bytes),
 		.highs = malloc(bytes),
 		.patch_triangles = builder->options.patch_triangles,
@@ -652,37 +632,64 @@ static uint64_t all_triangles(enum multires_kind kind, uint64_t finest)
 	return finest * reduction / (reduction - 1);
 }
 
-int multires_build(struct hierarchy *out, struct multires_stats *stats, struct lattice_mesh *mesh,
+static int run_node(struct builder *builder, struct multires_node *node)
+{
+	int rc = site_init(builder);
+
+	if (rc < 0)
+		return rc;
+	if (node->patches.count > 0) {
+		builder->level = node->patches;
+		node->patches = (struct live_patches){ 0 };
+	} else {
+		rc = partition_scan(builder);
+	}
+	if (rc == 0)
+		rc = builder->options.kind == MULTIRES_TREE ? build_tree(builder)
+							    : build_groups(builder);
+	if (rc == 0 && !node->is_root) {
+		node->patches = builder->level;
+		builder->level = (struct live_patches){ 0 };
+	}
+	return rc;
+}
+
+int multires_build(struct hierarchy *made, struct multires_stats *stats, struct multires_node *node,
 		   const struct multires_options *options, const struct multires_sink *sink)
 {
 	struct builder builder = {
 		.options = *options,
-		.mesh = mesh,
+		.node = node,
+		.mesh = &node->mesh,
 		.stats = stats,
 		.sink = sink,
 	};
-	const uint64_t finest_triangles = mesh->triangle_count;
+	const uint64_t triangles = node->patches.count > 0 ? level_triangles(&node->patches)
+							   : node->mesh.triangle_count;
 	int rc;
 
-	*out = (struct hierarchy){ 0 };
-	*stats = (struct multires_stats){ 0 };
-	set_defaults(&builder.options, mesh->triangle_count);
-	rc = site_init(&builder);
-	if (rc == 0)
-		rc = exposure_find(mesh, builder.options.jobs);
-	if (rc == 0)
-		rc = partition_scan(&builder);
-	builder.progress = progress_start("simplifying", "triangles",
-					  all_triangles(options->kind, finest_triangles));
-	if (rc == 0)
-		rc = options->kind == MULTIRES_TREE ? build_tree(&builder) : build_groups(&builder);
-	if (rc == 0)
-		rc = turn_round(out, &builder.made);
-	if (rc == 0)
-		rc = hierarchy_check(out) < 0 ? -EPROTO : 0;
-	if (rc < 0)
-		hierarchy_finish(out);
+	*made = (struct hierarchy){ 0 };
+	*stats = (struct multires_stats){ .level_count = node->level };
+	/* Only the root shows its own progress: the others are pieces of the whole. */
+	if (node->is_root)
+		builder.progress = progress_start("simplifying", "triangles",
+						  all_triangles(options->kind, triangles));
+	rc = run_node(&builder, node);
+	if (rc == 0) {
+		*made = builder.made;
+		builder.made = (struct hierarchy){ 0 };
+	}
 	progress_end(builder.progress);
 	builder_finish(&builder);
 	return rc;
+}
+
+void multires_node_finish(struct multires_node *node)
+{
+	if (!node)
+		return;
+	lattice_mesh_finish(&node->mesh);
+	free(node->pinned);
+	live_patches_finish(&node->patches);
+	*node = (struct multires_node){ 0 };
 }

@@ -22,6 +22,8 @@ void live_patch_finish(struct live_patch *patch)
 
 void live_patches_finish(struct live_patches *patches)
 {
+	if (!patches)
+		return;
 	for (uint32_t p = 0; p < patches->count; p++)
 		live_patch_finish(&patches->items[p]);
 	free(patches->items);
@@ -104,8 +106,9 @@ static int merge(struct merged *merged, const struct job_site *site, const struc
 		uint32_t global = merged->globals[v];
 
 		surface->vertices[v] = site->mesh->vertices[global];
-		surface->locked[v] =
-			site->lows[global] < job->low || site->highs[global] > job->high;
+		surface->locked[v] = (site->pinned && site->pinned[global]) ||
+				     site->lows[global] < job->low ||
+				     site->highs[global] > job->high;
 	}
 	return 0;
 }

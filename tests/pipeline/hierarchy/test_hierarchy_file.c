@@ -1,14 +1,22 @@
 /* The promise of the hierarchy: no cut has a crack. */
-#include "pipeline/hierarchy/multires.h"
+#include "pipeline/hierarchy/block_build.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "format/patch.h"
 #include "pipeline/import/import.h"
 #include "tests/check.h"
+#include "tests/pipeline/on_lattice.h"
 #include "tests/pipeline/shapes.h"
 
 enum { CUTS = 1000 };
@@ -34,6 +42,49 @@ static void objects_finish(struct objects *objects)
 	for (uint32_t i = 0; i < objects->count; i++)
 		buffer_finish(&objects->items[i]);
 	free(objects->items);
+}
+
+/* ---- a folder for the files of a build */
+
+struct folder {
+	char path[64];
+};
+
+static struct folder folder_make(void)
+{
+	struct folder folder = { "/tmp/gopura-blocks-XXXXXX" };
+
+	CHECK(mkdtemp(folder.path) != NULL);
+	return folder;
+}
+
+static int remove_entry(const struct folder *folder, const char *name)
+{
+	int fd = open(folder->path, O_DIRECTORY | O_RDONLY | O_CLOEXEC);
+	int rc = unlinkat(fd, name, 0);
+
+	close(fd);
+	return rc;
+}
+
+/* Removes files whose name begins so; "" for all. Returns how many. */
+static uint32_t remove_files(const struct folder *folder, const char *start)
+{
+	DIR *entries = opendir(folder->path);
+	struct dirent *entry;
+	uint32_t count = 0;
+
+	while ((entry = readdir(entries)))
+		if (entry->d_name[0] != '.' && strncmp(entry->d_name, start, strlen(start)) == 0)
+			count += remove_entry(folder, entry->d_name) == 0;
+	closedir(entries);
+	return count;
+}
+
+static void folder_remove(const struct folder *folder)
+{
+	remove_files(folder, "");
+	CHECK(rmdir(folder->path) == 0);
 }
 
 /* An edge of a patch's border; net: how often it runs from the smaller to the greater end, less the
@@ -245,32 +296,33 @@ static void take_patches(struct model *model, const struct objects *objects)
 static struct multires_stats model_build(struct model *model, struct mesh mesh,
 					 const struct multires_options *options)
 {
-	static const uint8_t grey[3] = { 128, 128, 128 };
+	struct folder folder = folder_make();
 	struct objects objects = { 0 };
 	const struct multires_sink sink = { keep_object, &objects };
 	struct lattice_mesh lattice_mesh;
 	struct lattice_counts counts;
-	struct multires_stats stats;
-	uint32_t triangle_count, finest = 0;
+	struct block_build build;
+	uint32_t finest = 0;
 
 	memset(model, 0, sizeof(*model));
-	CHECK(lattice_mesh_create(&lattice_mesh, &counts, &mesh, grey) == 0);
-	triangle_count = lattice_mesh.triangle_count;
+	CHECK(on_lattice(&lattice_mesh, &counts, &mesh) == 0);
 	find_open_places(model, &lattice_mesh);
-	CHECK(multires_build(&model->hierarchy, &stats, &lattice_mesh, options, &sink) == 0);
+	CHECK(block_build(&build, folder.path, &mesh, options, false, &sink) == 0);
+	model->hierarchy = build.hierarchy;
 	CHECK(hierarchy_check(&model->hierarchy) == 0);
 	CHECK(objects.count == model->hierarchy.group_count);
 	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
 		if (model->hierarchy.patches[p].finer == HIERARCHY_NONE)
 			finest += model->hierarchy.patches[p].triangle_count;
-	CHECK(finest == triangle_count);
+	CHECK(finest == lattice_mesh.triangle_count);
 	take_patches(model, &objects);
 	collect_vertices(model);
 	find_borders(model);
 	objects_finish(&objects);
 	lattice_mesh_finish(&lattice_mesh);
 	mesh_finish(&mesh);
-	return stats;
+	folder_remove(&folder);
+	return build.stats;
 }
 
 /* ---- cuts */
@@ -396,6 +448,46 @@ static const struct multires_options small_groups = {
 	.jobs = 2,
 };
 
+/* The same in blocks of few triangles: tens of them, and several stages. */
+static const struct multires_options small_blocks = {
+	.kind = MULTIRES_GROUPS,
+	.patch_triangles = 256,
+	.group_patches = 4,
+	.top_triangles = 600,
+	.block_triangles = 2000,
+	.jobs = 2,
+};
+
+static void no_cut_across_blocks_has_a_crack(void **state)
+{
+	struct model model;
+	struct verdict verdict;
+	struct multires_stats stats = model_build(&model, shape_temple(90), &small_blocks);
+
+	(void)state;
+	CHECK(stats.level_count >= 4);
+	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.shared > 100 * CUTS);
+	CHECK(verdict.cracks == 0);
+	CHECK(verdict.crowded == 0);
+	model_finish(&model);
+}
+
+static void no_cut_across_blocks_of_an_open_scan_has_a_crack(void **state)
+{
+	struct model model;
+	struct verdict verdict;
+
+	(void)state;
+	model_build(&model, shape_relief(120), &small_blocks);
+	verdict = walk_cuts(&model, CUTS);
+	CHECK(verdict.shared > 100 * CUTS && verdict.open > 10 * CUTS);
+	CHECK(verdict.cracks == 0);
+	CHECK(verdict.crowded == 0);
+	model_finish(&model);
+}
+
 static void no_cut_of_the_temple_has_a_crack(void **state)
 {
 	struct model model;
@@ -448,7 +540,7 @@ static void no_cut_of_a_real_scan_has_a_crack(void **state)
 		if (import_scan(&mesh, paths[i], &options, NULL, &diagnostics) < 0)
 			continue;
 		seen++;
-		model_build(&model, mesh, &small_groups);
+		model_build(&model, mesh, &small_blocks);
 		verdict = walk_cuts(&model, CUTS);
 		CHECK(verdict.shared > 100 * CUTS);
 		CHECK(verdict.cracks == 0);
@@ -549,35 +641,158 @@ static void one_lattice_step_is_found(void **state)
 	model_finish(&model);
 }
 
+/* ---- the same bytes */
+
+static int build_objects(struct objects *objects, const struct folder *folder, uint32_t jobs,
+			 uint32_t block_triangles)
+{
+	const struct multires_sink sink = { keep_object, objects };
+	struct multires_options options = small_blocks;
+	struct mesh mesh = shape_temple(60);
+	struct block_build build;
+	int rc;
+
+	options.jobs = jobs;
+	options.block_triangles = block_triangles;
+	rc = block_build(&build, folder->path, &mesh, &options, true, &sink);
+	block_build_finish(&build);
+	mesh_finish(&mesh);
+	return rc;
+}
+
+static void check_equal(const struct objects *a, const struct objects *b)
+{
+	CHECK(a->count == b->count && a->count > 20);
+	for (uint32_t i = 0; i < a->count; i++)
+		CHECK(a->items[i].size == b->items[i].size &&
+		      memcmp(a->items[i].data, b->items[i].data, a->items[i].size) == 0);
+}
+
 static void any_number_of_jobs_makes_the_same_bytes(void **state)
 {
-	struct objects objects[2] = { 0 };
+	static const uint32_t jobs[] = { 1, 2, 3, 5 };
 
 	(void)state;
-	for (uint32_t run = 0; run < 2; run++) {
-		static const uint8_t grey[3] = { 128, 128, 128 };
-		const struct multires_sink sink = { keep_object, &objects[run] };
-		struct multires_options options = small_groups;
-		struct mesh mesh = shape_temple(40);
-		struct lattice_mesh lattice_mesh;
-		struct lattice_counts counts;
-		struct multires_stats stats;
-		struct hierarchy hierarchy;
+	for (uint32_t blocks = 2000; blocks <= 200000; blocks *= 100) {
+		struct objects objects[ARRAY_COUNT(jobs)] = { 0 };
 
-		options.jobs = run == 0 ? 1 : 5;
-		CHECK(lattice_mesh_create(&lattice_mesh, &counts, &mesh, grey) == 0);
-		CHECK(multires_build(&hierarchy, &stats, &lattice_mesh, &options, &sink) == 0);
-		hierarchy_finish(&hierarchy);
-		lattice_mesh_finish(&lattice_mesh);
-		mesh_finish(&mesh);
+		for (size_t i = 0; i < ARRAY_COUNT(jobs); i++) {
+			struct folder folder = folder_make();
+
+			CHECK(build_objects(&objects[i], &folder, jobs[i], blocks) == 0);
+			folder_remove(&folder);
+			check_equal(&objects[0], &objects[i]);
+		}
+		for (size_t i = 0; i < ARRAY_COUNT(jobs); i++)
+			objects_finish(&objects[i]);
 	}
-	CHECK(objects[0].count == objects[1].count);
-	for (uint32_t i = 0; i < objects[0].count; i++)
-		CHECK(objects[0].items[i].size == objects[1].items[i].size &&
-		      memcmp(objects[0].items[i].data, objects[1].items[i].data,
-			     objects[0].items[i].size) == 0);
-	objects_finish(&objects[0]);
-	objects_finish(&objects[1]);
+}
+
+static void what_is_missing_is_made_again(void **state)
+{
+	static const char *const starts[] = { "node-1", "border-", "left-", "digest-",
+					      "node-",  "split-",  "" };
+	struct objects first = { 0 };
+	struct folder folder = folder_make();
+
+	(void)state;
+	CHECK(build_objects(&first, &folder, 2, 2000) == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(starts); i++) {
+		struct objects again = { 0 };
+
+		CHECK(remove_files(&folder, starts[i]) > 0);
+		CHECK(build_objects(&again, &folder, 2, 2000) == 0);
+		check_equal(&first, &again);
+		objects_finish(&again);
+	}
+	objects_finish(&first);
+	folder_remove(&folder);
+}
+
+/* The first child of a process, or 0. */
+static pid_t child_of(pid_t parent)
+{
+	char path[64], text[32] = "";
+	FILE *file;
+	long pid = 0;
+
+	snprintf(path, sizeof(path), "/proc/%d/task/%d/children", (int)parent, (int)parent);
+	file = fopen(path, "r");
+	if (file && fgets(text, sizeof(text), file))
+		pid = strtol(text, NULL, 10);
+	if (file)
+		fclose(file);
+	return (pid_t)pid;
+}
+
+static bool has_file(const struct folder *folder, const char *name)
+{
+	char path[96];
+
+	snprintf(path, sizeof(path), "%s/%s", folder->path, name);
+	return access(path, F_OK) == 0;
+}
+
+/* Begins a build, waits until blocks are done, and kills every worker that it meets. Returns how
+ * the build ended. */
+static int build_with_a_murder(const struct folder *folder)
+{
+	pid_t builder = fork(), worker;
+	int status = 0;
+
+	if (builder == 0) {
+		struct objects objects = { 0 };
+
+		_exit(-build_objects(&objects, folder, 2, 2000));
+	}
+	while (waitpid(builder, &status, WNOHANG) == 0) {
+		worker = has_file(folder, "node-3") ? child_of(builder) : 0;
+		if (worker > 0)
+			kill(worker, SIGKILL);
+		usleep(100);
+	}
+	return WEXITSTATUS(status);
+}
+
+static void a_killed_worker_costs_only_its_piece(void **state)
+{
+	struct objects whole = { 0 }, resumed = { 0 };
+	struct folder folder = folder_make();
+
+	(void)state;
+	CHECK(build_with_a_murder(&folder) == EIO);
+	CHECK(has_file(&folder, "node-3"));
+	CHECK(build_objects(&resumed, &folder, 2, 2000) == 0);
+	remove_files(&folder, "");
+	CHECK(build_objects(&whole, &folder, 2, 2000) == 0);
+	check_equal(&whole, &resumed);
+	objects_finish(&whole);
+	objects_finish(&resumed);
+	folder_remove(&folder);
+}
+
+static void refuses_what_is_no_mesh(void **state)
+{
+	struct mesh mesh = shape_temple(20);
+	struct folder folder = folder_make();
+	struct objects objects = { 0 };
+	const struct multires_sink sink = { keep_object, &objects };
+	struct block_build build;
+	float was = mesh.positions[2][1];
+	uint32_t index = mesh.triangles[5][1];
+
+	(void)state;
+	mesh.positions[2][1] = NAN;
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	mesh.positions[2][1] = was;
+	mesh.triangles[5][1] = mesh.vertex_count;
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	mesh.triangles[5][1] = index;
+	mesh.triangle_count = 0;
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	CHECK(!build.hierarchy.groups && objects.count == 0);
+	mesh_finish(&mesh);
+	folder_remove(&folder);
 }
 
 int main(void)
@@ -585,11 +800,16 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_cut_of_the_temple_has_a_crack),
 		cmocka_unit_test(no_cut_of_an_open_scan_has_a_crack),
+		cmocka_unit_test(no_cut_across_blocks_has_a_crack),
+		cmocka_unit_test(no_cut_across_blocks_of_an_open_scan_has_a_crack),
 		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
 		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
 		cmocka_unit_test(loose_stones_become_few),
 		cmocka_unit_test(one_lattice_step_is_found),
 		cmocka_unit_test(any_number_of_jobs_makes_the_same_bytes),
+		cmocka_unit_test(what_is_missing_is_made_again),
+		cmocka_unit_test(a_killed_worker_costs_only_its_piece),
+		cmocka_unit_test(refuses_what_is_no_mesh),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

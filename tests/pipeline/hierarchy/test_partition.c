@@ -7,16 +7,15 @@
 
 #include "pipeline/hierarchy/graph.h"
 #include "tests/check.h"
+#include "tests/pipeline/on_lattice.h"
 #include "tests/pipeline/shapes.h"
 
-static const uint8_t grey[3] = { 128, 128, 128 };
-
-static struct lattice_mesh on_lattice(struct mesh mesh)
+static struct lattice_mesh lattice_mesh_of(struct mesh mesh)
 {
 	struct lattice_mesh out;
 	struct lattice_counts counts;
 
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == 0);
+	CHECK(on_lattice(&out, &counts, &mesh) == 0);
 	mesh_finish(&mesh);
 	return out;
 }
@@ -57,7 +56,7 @@ static void leaves_are_within_the_limit_and_few(void **state)
 		{ 64, 1, 500, false },          /* voxels to the end */
 		{ 64, 4000, 500, true },
 	};
-	struct lattice_mesh mesh = on_lattice(shape_temple(60));
+	struct lattice_mesh mesh = lattice_mesh_of(shape_temple(60));
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(options); i++) {
@@ -74,7 +73,7 @@ static void leaves_are_within_the_limit_and_few(void **state)
 static void the_tree_covers_the_leaves_in_order(void **state)
 {
 	const struct partition_options options = { 64, 3000, 300, true };
-	struct lattice_mesh mesh = on_lattice(shape_relief(70));
+	struct lattice_mesh mesh = lattice_mesh_of(shape_relief(70));
 	struct partition partition = divide(&mesh, &options);
 
 	(void)state;
@@ -120,7 +119,7 @@ static void the_cut_follows_the_ridge(void **state)
 {
 	const uint32_t n = 40, ridge = 20;
 	struct mesh source = roof(n, ridge);
-	struct lattice_mesh mesh = on_lattice(source);
+	struct lattice_mesh mesh = lattice_mesh_of(source);
 	const struct partition_options options = { 64, UINT32_MAX, mesh.triangle_count * 3 / 5,
 						   true };
 	struct partition partition = divide(&mesh, &options);
@@ -147,7 +146,7 @@ static void the_cut_follows_the_ridge(void **state)
 static void loose_stones_stay_together_where_they_are_near(void **state)
 {
 	const struct partition_options options = { 64, UINT32_MAX, 240, false };
-	struct lattice_mesh mesh = on_lattice(shape_stones(400));
+	struct lattice_mesh mesh = lattice_mesh_of(shape_stones(400));
 	struct partition partition = divide(&mesh, &options);
 	double spread = 0.0;
 
@@ -175,7 +174,7 @@ static void loose_stones_stay_together_where_they_are_near(void **state)
 static void refuses_limits_of_zero(void **state)
 {
 	const struct partition_options options = { 64, 100, 0, false };
-	struct lattice_mesh mesh = on_lattice(shape_relief(8));
+	struct lattice_mesh mesh = lattice_mesh_of(shape_relief(8));
 	struct partition partition;
 
 	(void)state;
@@ -228,7 +227,7 @@ static void the_lattice_merges_drops_and_counts(void **state)
 	struct lattice_counts counts;
 
 	(void)state;
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == 0);
+	CHECK(on_lattice(&out, &counts, &mesh) == 0);
 	CHECK(out.vertex_count == 4 && out.triangle_count == 2);
 	CHECK(counts.merged_vertices == 1 && counts.degenerate_triangles == 1);
 	CHECK(counts.duplicate_triangles == 1 && counts.border_edges == 4);
@@ -251,27 +250,21 @@ static void the_lattice_counts_crowded_edges(void **state)
 	mesh.triangle_count = 2;
 	shape_vertex(&mesh, 0.0f, 0.0f, 1.0f);
 	shape_triangle(&mesh, 1, 2, 5); /* a fin on the edge that the two share */
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == 0);
+	CHECK(on_lattice(&out, &counts, &mesh) == 0);
 	CHECK(out.triangle_count == 3 && counts.crowded_edges == 1);
 	lattice_mesh_finish(&out);
 	mesh_finish(&mesh);
 }
 
-static void the_lattice_refuses_what_is_no_mesh(void **state)
+static void the_lattice_refuses_what_has_no_extent(void **state)
 {
 	struct mesh mesh = two_triangles_and_rubbish();
 	struct lattice_mesh out;
 	struct lattice_counts counts;
 
 	(void)state;
-	mesh.triangles[0][1] = 77;
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == -EINVAL);
-	CHECK(!out.vertices && !out.triangles);
-	mesh.triangles[0][1] = 1;
-	mesh.positions[2][1] = NAN;
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == -EINVAL);
 	memset(mesh.positions, 0, mesh.vertex_count * sizeof(*mesh.positions));
-	CHECK(lattice_mesh_create(&out, &counts, &mesh, grey) == -EINVAL);
+	CHECK(on_lattice(&out, &counts, &mesh) == -EINVAL);
 	mesh_finish(&mesh);
 }
 
@@ -286,7 +279,7 @@ int main(void)
 		cmocka_unit_test(a_graph_falls_apart_at_its_weakest),
 		cmocka_unit_test(the_lattice_merges_drops_and_counts),
 		cmocka_unit_test(the_lattice_counts_crowded_edges),
-		cmocka_unit_test(the_lattice_refuses_what_is_no_mesh),
+		cmocka_unit_test(the_lattice_refuses_what_has_no_extent),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

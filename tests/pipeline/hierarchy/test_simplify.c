@@ -5,9 +5,8 @@
 #include <string.h>
 
 #include "tests/check.h"
+#include "tests/pipeline/on_lattice.h"
 #include "tests/pipeline/shapes.h"
-
-static const uint8_t grey[3] = { 128, 128, 128 };
 
 struct subject {
 	struct lattice_mesh mesh;
@@ -19,7 +18,7 @@ static void subject_init(struct subject *subject, struct mesh mesh)
 {
 	struct lattice_counts counts;
 
-	CHECK(lattice_mesh_create(&subject->mesh, &counts, &mesh, grey) == 0);
+	CHECK(on_lattice(&subject->mesh, &counts, &mesh) == 0);
 	mesh_finish(&mesh);
 	subject->surface = (struct surface){
 		.vertex_count = subject->mesh.vertex_count,

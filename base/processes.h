@@ -1,0 +1,33 @@
+/* Runs pieces of work in processes of their own, each forked for one piece: what a piece allocates
+ * goes with it, and libraries with state per process do not meet. Results travel in files or in
+ * memory that is mapped shared before. To be called while the caller has one thread. */
+#ifndef GOPURA_BASE_PROCESSES_H
+#define GOPURA_BASE_PROCESSES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/compiler.h"
+
+struct processes {
+	uint32_t worker_count; /* most at one time; 64 at most, 0 counts as 1 */
+	uint32_t piece_count;
+	/* Does one piece, in its process. Returns 0 or a negative errno, not below -255. */
+	int (*work)(void *user, uint32_t piece);
+	/* In the caller, after a piece has succeeded; may be NULL. */
+	void (*done)(void *user, uint32_t piece);
+	void *user;
+};
+
+/* Runs all pieces, begun in their order. Returns 0, or the failure of the lowest
+ * piece that failed; -EIO if a process was killed, or the errno of fork. After a failure no new
+ * piece is begun. If the caller dies, the processes are killed. */
+must_check int processes_run(const struct processes *processes);
+
+/* Returns zeroed memory that processes forked later share with the caller; NULL if there is none.
+ * Pages take memory when they are first written. */
+void *shared_memory_create(size_t size);
+void shared_memory_destroy(void *memory, size_t size); /* NULL is fine */
+
+#endif
