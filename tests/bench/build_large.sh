@@ -1,6 +1,6 @@
 #!/bin/bash
-# By make bench-full: from a scan of 100 million triangles to its hierarchy, as the rows of build.sh. The hierarchy is
-# built in memory (docs/hierarchy.md). build/bench/build_large.json.
+# By make bench-full: from a scan of 100 million triangles to its hierarchy, as the rows of build.sh.
+# build/bench/build_large.json.
 #
 #   MILLIONS="100"  of triangles, a row each
 set -eu

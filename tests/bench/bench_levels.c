@@ -1,0 +1,372 @@
+/* How far each level of a hierarchy lies from its scan: bench_levels MESH MASTER, the mesh file and
+ * the folder of the master below a content folder's .work. A level is the cut with at least a half,
+ * a quarter, an eighth ... of the scan's triangles, refined by falling error. Beside each,
+ * meshoptimizer's simplification of the whole scan to as many triangles. Points are spread over one
+ * surface by area, and the nearest point of the other is found, both ways. JSON to standard output;
+ * lengths in millimetres. */
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <meshoptimizer.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "format/patch.h"
+#include "geometry/vec.h"
+#include "pipeline/hierarchy/master.h"
+#include "pipeline/import/mesh_file.h"
+#include "pipeline/release/nearest.h"
+
+enum { POINTS = 200000, PIECE_POINTS = 4096, HALVINGS = 9 };
+
+static void *need(void *memory)
+{
+	if (!memory) {
+		fputs("out of memory\n", stderr);
+		exit(EXIT_FAILURE);
+	}
+	return memory;
+}
+
+static void need_ok(int rc, const char *what)
+{
+	if (rc < 0) {
+		fprintf(stderr, "%s: %s\n", what, strerror(-rc));
+		exit(EXIT_FAILURE);
+	}
+}
+
+/* ---- surfaces */
+
+struct surface {
+	float (*positions)[3];
+	uint32_t (*triangles)[3];
+	uint32_t triangle_count;
+	struct nearest *nearest;
+};
+
+static void surface_index(struct surface *surface)
+{
+	need_ok(nearest_create(&surface->nearest, surface->positions, surface->triangles,
+			       surface->triangle_count),
+		"tree of boxes");
+}
+
+static double area_of(const struct surface *surface, uint32_t triangle)
+{
+	const uint32_t *corners = surface->triangles[triangle];
+	float ab[3], ac[3], normal[3];
+
+	vec_sub(ab, surface->positions[corners[1]], surface->positions[corners[0]]);
+	vec_sub(ac, surface->positions[corners[2]], surface->positions[corners[0]]);
+	vec_cross(normal, ab, ac);
+	return (double)vec_length(normal) / 2;
+}
+
+/* Returns the i-th element of the van der Corput sequence in base b: spread evenly, always the
+ * same. */
+static float spread(uint32_t i, uint32_t base)
+{
+	double value = 0, digit = 1;
+
+	for (; i > 0; i /= base) {
+		digit /= base;
+		value += digit * (i % base);
+	}
+	return (float)value;
+}
+
+/* POINTS points, equally many on equal areas. */
+static float (*spread_points(const struct surface *surface))[3]
+{
+	float(*points)[3] = need(malloc(POINTS * sizeof(*points)));
+	double all = 0, passed = 0;
+	uint32_t count = 0;
+
+	for (uint32_t t = 0; t < surface->triangle_count; t++)
+		all += area_of(surface, t);
+	for (uint32_t t = 0; t < surface->triangle_count; t++) {
+		const uint32_t *corners = surface->triangles[t];
+
+		passed += area_of(surface, t);
+		for (; count < POINTS && (count + 0.5) * all / POINTS <= passed; count++) {
+			float u = sqrtf(spread(count + 1, 2)), v = spread(count + 1, 3);
+
+			for (int i = 0; i < 3; i++)
+				points[count][i] = (1 - u) * surface->positions[corners[0]][i] +
+						   u * (1 - v) * surface->positions[corners[1]][i] +
+						   u * v * surface->positions[corners[2]][i];
+		}
+	}
+	for (; count > 0 && count < POINTS; count++)
+		memcpy(points[count], points[count - 1], sizeof(*points));
+	return points;
+}
+
+struct distances {
+	const struct surface *to;
+	float (*points)[3];
+	float *metres;
+};
+
+static int measure_piece(void *user, uint32_t piece, uint32_t thread)
+{
+	const struct distances *distances = user;
+
+	(void)thread;
+	for (uint32_t p = piece * PIECE_POINTS; p < POINTS && p < (piece + 1) * PIECE_POINTS; p++) {
+		struct nearest_place place;
+
+		nearest_find(distances->to->nearest, distances->points[p], NULL, INFINITY, &place);
+		distances->metres[p] = place.distance_m;
+	}
+	return 0;
+}
+
+struct error {
+	double rms_mm, max_mm;
+};
+
+/* From one surface to another. */
+static struct error error_between(const struct surface *from, const struct surface *to)
+{
+	struct distances distances = { to, spread_points(from),
+				       need(malloc(POINTS * sizeof(float))) };
+	struct error error = { 0, 0 };
+
+	need_ok(parallel_run(parallel_cores(), POINTS / PIECE_POINTS + 1, measure_piece,
+			     &distances),
+		"distances");
+	for (uint32_t p = 0; p < POINTS; p++) {
+		double mm = 1000 * (double)distances.metres[p];
+
+		error.rms_mm += mm * mm / POINTS;
+		error.max_mm = mm > error.max_mm ? mm : error.max_mm;
+	}
+	error.rms_mm = sqrt(error.rms_mm);
+	free(distances.points);
+	free(distances.metres);
+	return error;
+}
+
+static void print_errors(const char *name, struct surface *surface, const struct surface *scan)
+{
+	struct error out, back;
+
+	surface_index(surface);
+	out = error_between(scan, surface);
+	back = error_between(surface, scan);
+	nearest_destroy(surface->nearest);
+	printf("\"%s\": {\"triangles\": %u, \"rms_mm\": %.3f, \"max_mm\": %.1f, "
+	       "\"back_rms_mm\": %.3f, \"back_max_mm\": %.1f}",
+	       name, surface->triangle_count, out.rms_mm, out.max_mm, back.rms_mm, back.max_mm);
+	fflush(stdout);
+}
+
+/* ---- ours */
+
+/* A cut that is refined group by group. */
+struct cut {
+	const struct master *master;
+	bool *refined;   /* for each group */
+	uint32_t *order; /* groups by falling error */
+	uint32_t next;   /* in the order */
+	int64_t triangle_count;
+};
+
+static const struct hierarchy *sorted_hierarchy;
+
+static int compare_errors(const void *left, const void *right)
+{
+	uint32_t a = *(const uint32_t *)left, b = *(const uint32_t *)right;
+	float ea = sorted_hierarchy->groups[a].error_m, eb = sorted_hierarchy->groups[b].error_m;
+
+	if (ea != eb)
+		return ea > eb ? -1 : 1;
+	return a < b ? -1 : a > b;
+}
+
+static void cut_init(struct cut *cut, const struct master *master)
+{
+	uint32_t count = master->hierarchy.group_count;
+
+	*cut = (struct cut){ .master = master,
+			     .refined = need(calloc(count, sizeof(bool))),
+			     .order = need(malloc(count * sizeof(uint32_t))) };
+	for (uint32_t g = 0; g < count; g++)
+		cut->order[g] = g;
+	sorted_hierarchy = &master->hierarchy;
+	qsort(cut->order, count, sizeof(*cut->order), compare_errors);
+}
+
+/* Refines until the cut has that many triangles, or is the finest. */
+static void cut_refine(struct cut *cut, int64_t least, const int64_t *gains)
+{
+	while (cut->next < cut->master->hierarchy.group_count && cut->triangle_count < least) {
+		uint32_t group = cut->order[cut->next++];
+
+		cut->refined[group] = true;
+		cut->triangle_count += gains[group];
+	}
+}
+
+/* For each group, by how many triangles a cut grows that refines it. */
+static int64_t *find_gains(const struct hierarchy *hierarchy)
+{
+	int64_t *gains = need(calloc(hierarchy->group_count, sizeof(*gains)));
+
+	for (uint32_t p = 0; p < hierarchy->patch_count; p++) {
+		const struct hierarchy_patch *patch = &hierarchy->patches[p];
+
+		gains[patch->group] += patch->triangle_count;
+		if (patch->finer != HIERARCHY_NONE)
+			gains[patch->finer] -= patch->triangle_count;
+	}
+	return gains;
+}
+
+static void add_patch(struct surface *surface, const struct lattice *lattice,
+		      const struct patch_mesh *patch)
+{
+	for (uint32_t i = 0; i < 3 * patch->triangle_count; i++) {
+		const uint16_t *at = patch->vertices[patch->indices[i]].position;
+		uint32_t vertex = 3 * surface->triangle_count + i;
+
+		for (int k = 0; k < 3; k++)
+			surface->positions[vertex][k] =
+				(float)(lattice->origin_m[k] + lattice->step_m * at[k]);
+		surface->triangles[vertex / 3][i % 3] = vertex;
+	}
+	surface->triangle_count += patch->triangle_count;
+}
+
+static struct surface cut_surface(const struct cut *cut)
+{
+	const struct hierarchy *hierarchy = &cut->master->hierarchy;
+	size_t triangles = (size_t)cut->triangle_count;
+	struct surface surface = { .positions = need(malloc(triangles * sizeof(float[3][3]))),
+				   .triangles = need(malloc(triangles * sizeof(uint32_t[3]))) };
+	struct buffer object;
+
+	buffer_init(&object, OBJECT_BYTES_MAX);
+	for (uint32_t g = 0; g < hierarchy->group_count; g++) {
+		struct patch_mesh patches[GROUP_PATCHES_MAX];
+		uint32_t count;
+
+		if (!cut->refined[g])
+			continue;
+		buffer_clear(&object);
+		need_ok(master_read_group(cut->master, g, &object), "master");
+		need_ok(patch_group_decode(patches, &count, buffer_bytes(&object)), "patches");
+		for (uint32_t i = 0; i < count; i++) {
+			uint32_t finer =
+				hierarchy->patches[hierarchy->groups[g].first_patch + i].finer;
+
+			if (finer == HIERARCHY_NONE || !cut->refined[finer])
+				add_patch(&surface, &cut->master->lattice, &patches[i]);
+			patch_mesh_finish(&patches[i]);
+		}
+	}
+	buffer_finish(&object);
+	return surface;
+}
+
+/* ---- the peer */
+
+/* Corners at one place share a number, as the simplifier wants it: it leaves seams alone. */
+static uint32_t *weld(const struct mesh *mesh)
+{
+	size_t corners = 3 * (size_t)mesh->triangle_count;
+	uint32_t *indices = need(malloc(corners * sizeof(*indices)));
+
+	meshopt_generateShadowIndexBuffer(indices, mesh->triangles[0], corners, mesh->positions,
+					  mesh->vertex_count, sizeof(*mesh->positions),
+					  sizeof(*mesh->positions));
+	return indices;
+}
+
+static struct surface simplified(const struct mesh *mesh, const uint32_t *welded,
+				 uint32_t triangles)
+{
+	size_t corners = 3 * (size_t)mesh->triangle_count;
+	uint32_t *indices = need(malloc(corners * sizeof(*indices)));
+	size_t left =
+		meshopt_simplify(indices, welded, corners, mesh->positions[0], mesh->vertex_count,
+				 sizeof(*mesh->positions), 3 * (size_t)triangles, 1e9f, 0, NULL);
+
+	return (struct surface){ .positions = mesh->positions,
+				 .triangles = (uint32_t(*)[3])(void *)indices,
+				 .triangle_count = (uint32_t)(left / 3) };
+}
+
+/* ---- the whole */
+
+static void print_level(struct cut *cut, const struct surface *scan, const struct mesh *mesh,
+			const uint32_t *welded)
+{
+	struct surface ours = cut_surface(cut);
+	struct surface theirs = simplified(mesh, welded, ours.triangle_count);
+
+	fputs("  {", stdout);
+	print_errors("ours", &ours, scan);
+	fputs(", ", stdout);
+	print_errors("meshoptimizer", &theirs, scan);
+	fputs("}", stdout);
+	free(ours.positions);
+	free(ours.triangles);
+	free(theirs.triangles);
+}
+
+static struct hash key_of_file(const char *path)
+{
+	struct hash key;
+	FILE *file = fopen(path, "rb");
+
+	if (!file || fseek(file, 12, SEEK_SET) < 0 || fread(&key, sizeof(key), 1, file) != 1)
+		need_ok(-ENOENT, path);
+	fclose(file);
+	return key;
+}
+
+int main(int argc, char **argv)
+{
+	struct mesh mesh;
+	struct master *master;
+	struct surface scan;
+	struct cut cut;
+	uint32_t *welded;
+	int64_t *gains;
+
+	if (argc != 3) {
+		fputs("usage: bench_levels DIR/.work/mesh DIR/.work/master\n", stderr);
+		return 2;
+	}
+	need_ok(mesh_file_load(&mesh, key_of_file(argv[1]), argv[1]), argv[1]);
+	need_ok(master_open(&master, argv[2], NULL), argv[2]);
+	scan = (struct surface){ mesh.positions, mesh.triangles, mesh.triangle_count, NULL };
+	surface_index(&scan);
+	welded = weld(&mesh);
+	gains = find_gains(&master->hierarchy);
+	cut_init(&cut, master);
+	printf("{\"triangles\": %u, \"levels\": [", mesh.triangle_count);
+	for (int halving = HALVINGS; halving > 0; halving--) {
+		uint32_t before = cut.next;
+
+		cut_refine(&cut, mesh.triangle_count >> halving, gains);
+		if (cut.next == before)
+			continue; /* the cut of the row before has as many */
+		puts(before > 0 ? "," : "");
+		print_level(&cut, &scan, &mesh, welded);
+	}
+	puts("]}");
+	free(gains);
+	free(welded);
+	free(cut.order);
+	free(cut.refined);
+	nearest_destroy(scan.nearest);
+	master_destroy(master);
+	mesh_finish(&mesh);
+	return EXIT_SUCCESS;
+}
