@@ -1,5 +1,6 @@
 /* An array that grows: a typed pointer, a count and a room, side by side in the struct that owns
- * them. A zeroed pointer and room are an empty array; free() releases the pointer.
+ * them. A zeroed pointer and room are an empty array; free() releases the pointer. Arrays that may
+ * be larger than memory are base/spill.
  *
  *   rc = ARRAY_RESERVE(list->items, list->room, list->count + 1, ITEMS_MAX);
  *   if (rc == 0)

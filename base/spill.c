@@ -147,13 +147,22 @@ static void *copy_to(void *to, void *array, size_t bytes)
 	return to;
 }
 
-void *spill_resize(void *array, size_t old_bytes, size_t bytes)
+int spill_resize(void *array, size_t old_count, size_t count, size_t item_bytes)
 {
+	const size_t bytes = count * item_bytes;
 	struct large entry;
+	void *old, *resized;
 
-	if (bytes >= SPILL_MIN_BYTES && array && take(array, &entry))
-		return resize_large(entry, bytes);
-	return copy_to(spill_alloc(bytes), array, old_bytes < bytes ? old_bytes : bytes);
+	memcpy(&old, array, sizeof(old)); /* pointers to whatever type are kept alike */
+	if (bytes >= SPILL_MIN_BYTES && old && take(old, &entry))
+		resized = resize_large(entry, bytes);
+	else
+		resized = copy_to(spill_alloc(bytes), old,
+				  (old_count < count ? old_count : count) * item_bytes);
+	if (!resized)
+		return -errno;
+	memcpy(array, &resized, sizeof(resized));
+	return 0;
 }
 
 /* ---- mapping files */

@@ -25,9 +25,15 @@ void spill_set_folder(const char *folder);
 /* Returns zeroed memory; spill_free ends it. NULL: errno is ENOMEM, ENOSPC (the disk is full), or
  * an error of the folder. */
 must_check void *spill_alloc(size_t bytes);
-/* Changes the size of an array, which may also come from malloc, or be NULL with old_bytes 0;
- * memory that is added is zeroed. NULL: errno as above, and array is unchanged. */
-must_check void *spill_resize(void *array, size_t old_bytes, size_t bytes);
+/* Changes how many items of its type `array`, a pointer, has; it may also come from malloc, or be
+ * NULL with old_count 0. Items that are added are zeroed. Returns 0, or a negative errno as above:
+ * array is unchanged. */
+#define SPILL_RESIZE(array, old_count, count)                                                      \
+	spill_resize(&(array), (old_count), (count), sizeof(*(array)))
+
+/* For SPILL_RESIZE, and where the type is not known: array is the address of a pointer to items of
+ * item_bytes each. */
+must_check int spill_resize(void *array, size_t old_count, size_t count, size_t item_bytes);
 /* Maps part of a file for reading; a small part is copied. The file must not change while it is
  * mapped. The descriptor may be closed. NULL: errno. Writing to it is a fault of ours. */
 must_check void *spill_map(int fd, uint64_t offset, size_t bytes);

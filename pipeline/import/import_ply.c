@@ -54,16 +54,6 @@ static int take_vertex(void *data, const struct ply_vertex *vertex)
 	return 0;
 }
 
-static int grow(void **array, size_t old_count, size_t count, size_t item_bytes)
-{
-	void *grown = spill_resize(*array, old_count * item_bytes, count * item_bytes);
-
-	if (!grown)
-		return -errno;
-	*array = grown;
-	return 0;
-}
-
 /* Polygons become fans, so there may be more triangles than faces in the header. */
 static int grow_triangles(struct collector *collector)
 {
@@ -72,14 +62,13 @@ static int grow_triangles(struct collector *collector)
 	int rc = mesh->triangle_count == UINT32_MAX - 1 ? -EFBIG : 0;
 
 	if (rc == 0)
-		rc = grow((void **)&mesh->triangles, old, capacity, sizeof(*mesh->triangles));
+		rc = SPILL_RESIZE(mesh->triangles, old, capacity);
 	if (rc == 0)
-		rc = grow((void **)&mesh->faces, old, capacity, sizeof(*mesh->faces));
+		rc = SPILL_RESIZE(mesh->faces, old, capacity);
 	if (rc == 0 && mesh->materials)
-		rc = grow((void **)&mesh->materials, old, capacity, sizeof(*mesh->materials));
+		rc = SPILL_RESIZE(mesh->materials, old, capacity);
 	if (rc == 0 && collector->corner_uvs)
-		rc = grow((void **)&collector->corner_uvs, old, capacity,
-			  sizeof(*collector->corner_uvs));
+		rc = SPILL_RESIZE(collector->corner_uvs, old, capacity);
 	if (rc == 0)
 		collector->triangle_capacity = capacity;
 	return rc;

@@ -60,16 +60,16 @@ static void put(uint8_t *to, const uint8_t *from, int fill, size_t bytes)
 static int extend(void **array, size_t first_count, const void *second, size_t second_count,
 		  size_t item_bytes, int fill)
 {
-	size_t first_bytes = first_count * item_bytes, second_bytes = second_count * item_bytes;
-	bool filled = *array == NULL;
-	uint8_t *grown = spill_resize(*array, filled ? 0 : first_bytes, first_bytes + second_bytes);
+	const size_t first_bytes = first_count * item_bytes;
+	const bool filled = *array == NULL;
+	int rc = spill_resize(array, filled ? 0 : first_count, first_count + second_count,
+			      item_bytes);
 
-	if (!grown)
-		return -errno;
-	*array = grown;
+	if (rc < 0)
+		return rc;
 	if (filled)
-		put(grown, NULL, fill, first_bytes);
-	put(grown + first_bytes, second, fill, second_bytes);
+		put(*array, NULL, fill, first_bytes);
+	put((uint8_t *)*array + first_bytes, second, fill, second_count * item_bytes);
 	return 0;
 }
 

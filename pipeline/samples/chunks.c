@@ -241,16 +241,6 @@ static void add_vertex(struct builder *builder, uint32_t vertex)
 	builder->vertex_count++;
 }
 
-static int resize(void **array, size_t old_count, size_t count, size_t item_bytes)
-{
-	void *grown = spill_resize(*array, old_count * item_bytes, count * item_bytes);
-
-	if (!grown)
-		return -errno;
-	*array = grown;
-	return 0;
-}
-
 /* Makes room for one more chunk, even if its triangles share no vertices. */
 static int reserve(struct builder *builder)
 {
@@ -268,9 +258,9 @@ static int reserve(struct builder *builder)
 	if (wanted > UINT32_MAX)
 		return -EFBIG;
 	room = room < UINT32_MAX ? room : UINT32_MAX;
-	rc = resize((void **)&out->vertices, builder->vertex_room, room, sizeof(*out->vertices));
+	rc = SPILL_RESIZE(out->vertices, builder->vertex_room, room);
 	if (rc == 0 && builder->mesh->uvs)
-		rc = resize((void **)&out->uvs, builder->vertex_room, room, sizeof(*out->uvs));
+		rc = SPILL_RESIZE(out->uvs, builder->vertex_room, room);
 	if (rc == 0)
 		builder->vertex_room = (uint32_t)room;
 	return rc;

@@ -59,11 +59,7 @@ static void keeps_its_contents_as_it_grows_from_heap_to_file_and_back(void **sta
 
 	(void)state;
 	for (size_t s = 0; s < sizeof(counts) / sizeof(counts[0]); s++) {
-		uint64_t *resized =
-			spill_resize(array, count * sizeof(*array), counts[s] * sizeof(*array));
-
-		assert_non_null(resized);
-		array = resized;
+		assert_int_equal(SPILL_RESIZE(array, count, counts[s]), 0);
 		check(array, count < counts[s] ? count : counts[s]);
 		for (size_t i = count; i < counts[s]; i++)
 			assert_true(array[i] == 0);
@@ -80,8 +76,7 @@ static void takes_over_memory_of_malloc(void **state)
 
 	(void)state;
 	fill(array, 0, 100);
-	array = spill_resize(array, 100 * sizeof(*array), LARGE_BYTES);
-	assert_non_null(array);
+	assert_int_equal(SPILL_RESIZE(array, 100, LARGE_BYTES / sizeof(*array)), 0);
 	check(array, 100);
 	spill_free(array);
 	spill_free(malloc(8));
