@@ -28,7 +28,7 @@ static size_t format_place(char *out, size_t bytes, const char *file, unsigned l
 static void make_printable(char *text)
 {
 	while (*text) {
-		const size_t n = utf8_bytes(text);
+		const size_t n = utf8_bytes(text, SIZE_MAX);
 
 		if (n == 0)
 			*text = '?';

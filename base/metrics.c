@@ -7,35 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 static void put_text(struct buffer *out, const char *text)
 {
 	buffer_put(out, text, strlen(text));
-}
-
-/* Returns the number of bytes of the UTF-8 character at text; 0 if there is none, or it is a
- * control character. */
-static size_t character_bytes(const uint8_t *text, size_t left)
-{
-	static const uint32_t least[] = { 0, 0, 0x80, 0x800, 0x10000 };
-	const uint8_t first = left > 0 ? text[0] : 0;
-	const size_t size = first < 0x80   ? 1
-			    : first < 0xc0 ? 0
-			    : first < 0xe0 ? 2
-			    : first < 0xf0 ? 3
-					   : 4;
-	uint32_t code = first & (0xff >> (size + 1));
-
-	if (size == 1)
-		return first >= ' ' && first != 0x7f;
-	if (size == 0 || first > 0xf4 || size > left)
-		return 0;
-	for (size_t i = 1; i < size; i++) {
-		if ((text[i] & 0xc0) != 0x80)
-			return 0;
-		code = code << 6 | (text[i] & 0x3f);
-	}
-	return code >= least[size] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff) ? size
-											   : 0;
 }
 
 /* ---- writing */
@@ -71,7 +47,7 @@ static void put_escaped(struct buffer *out, const char *value)
 	size_t left = strlen(value);
 
 	while (left > 0) {
-		const size_t size = character_bytes((const uint8_t *)value, left);
+		const size_t size = utf8_bytes(value, left);
 
 		if (*value == '"' || *value == '\\')
 			put_text(out, "\\");
@@ -162,7 +138,7 @@ static bool take_quoted(struct cursor *line, struct bytes *out)
 		return false;
 	out->data = line->at;
 	while (line->at < line->end && *line->at != '"') {
-		size_t size = character_bytes(line->at, (size_t)(line->end - line->at));
+		size_t size = utf8_bytes((const char *)line->at, (size_t)(line->end - line->at));
 
 		if (*line->at == '\\') {
 			if (line->end - line->at < 2 || !strchr("\\\"n", line->at[1]) ||
@@ -221,7 +197,7 @@ static bool take_sample(struct cursor line, struct sample *out)
 static bool is_text(struct cursor line)
 {
 	while (line.at < line.end) {
-		const size_t size = character_bytes(line.at, (size_t)(line.end - line.at));
+		const size_t size = utf8_bytes((const char *)line.at, (size_t)(line.end - line.at));
 
 		if (size == 0)
 			return false;

@@ -270,7 +270,7 @@ static void on_section(struct reading *reading, char *text)
 static bool is_utf8(const char *text)
 {
 	while (*text) {
-		const size_t n = *text == '\t' ? 1 : utf8_bytes(text);
+		const size_t n = *text == '\t' ? 1 : utf8_bytes(text, SIZE_MAX);
 
 		if (n == 0)
 			return false;

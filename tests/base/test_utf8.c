@@ -1,6 +1,7 @@
 /* Lengths of characters, and texts that are cut. */
 #include "base/utf8.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/compiler.h"
@@ -9,9 +10,10 @@
 static void knows_the_length_of_a_character(void **state)
 {
 	(void)state;
-	CHECK(utf8_bytes("a") == 1 && utf8_bytes("é") == 2 && utf8_bytes("ក") == 3);
-	CHECK(utf8_bytes("\xf0\x9f\x8f\x9b") == 4);
-	CHECK(utf8_bytes("\xf4\x8f\xbf\xbf") == 4); /* U+10FFFF, the last one */
+	CHECK(utf8_bytes("a", SIZE_MAX) == 1 && utf8_bytes("é", SIZE_MAX) == 2 &&
+	      utf8_bytes("ក", SIZE_MAX) == 3);
+	CHECK(utf8_bytes("\xf0\x9f\x8f\x9b", SIZE_MAX) == 4);
+	CHECK(utf8_bytes("\xf4\x8f\xbf\xbf", SIZE_MAX) == 4); /* U+10FFFF, the last one */
 }
 
 static void refuses_what_is_no_character(void **state)
@@ -37,8 +39,22 @@ static void refuses_what_is_no_character(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(bad); i++)
-		if (utf8_bytes(bad[i]) != 0)
-			fail_msg("case %zu: %zu", i, utf8_bytes(bad[i]));
+		if (utf8_bytes(bad[i], SIZE_MAX) != 0)
+			fail_msg("case %zu: %zu", i, utf8_bytes(bad[i], SIZE_MAX));
+}
+
+static void reads_no_further_than_told(void **state)
+{
+	static const char temple[] = { '\xf0', '\x9f', '\x8f', '\x9b' };
+
+	(void)state;
+	for (size_t left = 0; left <= sizeof(temple); left++) {
+		char *exact = malloc(left ? left : 1); /* no slack for ASan */
+
+		memcpy(exact, temple, left);
+		CHECK(utf8_bytes(exact, left) == (left == sizeof(temple) ? left : 0));
+		free(exact);
+	}
 }
 
 static void cuts_between_characters(void **state)
@@ -60,6 +76,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(knows_the_length_of_a_character),
 		cmocka_unit_test(refuses_what_is_no_character),
+		cmocka_unit_test(reads_no_further_than_told),
 		cmocka_unit_test(cuts_between_characters),
 	};
 
