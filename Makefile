@@ -13,8 +13,8 @@ comma   := ,
 
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
-           pangocairo libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
-# METIS and meshoptimizer carry no pkg-config file in Debian 12.
+           pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
+# METIS and meshoptimizer carry no pkg-config file in Debian 12, nor does jsmn, which is a header alone.
 EXTRA   := -lmetis -lmeshoptimizer -lm -pthread
 
 # Asked for lazily and once: the packages may only arrive with the `deps` target.

@@ -10,7 +10,6 @@
 #include "base/array.h"
 #include "base/log.h"
 #include "pipeline/content/annotations_private.h"
-#include "pipeline/content/json_lines.h"
 
 static const char *string_of(const cJSON *object, const char *key)
 {
@@ -418,56 +417,40 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	return NULL;
 }
 
-static void read_items(struct importer *im, const cJSON *json, const char *text)
+static void read_items(struct importer *im, const struct json_text *json)
 {
-	const cJSON *items = find_items(im, json);
-	size_t count = cJSON_IsArray(items) ? (size_t)cJSON_GetArraySize(items) : 1, at = 0;
-	unsigned *lines;
+	const cJSON *items = find_items(im, json->root);
 
 	if (!items)
 		return;
-	lines = calloc(count + 1, sizeof(*lines));
-	if (!lines) {
-		im->failed = true;
-		return;
-	}
-	json_item_lines(text, "items", lines, count);
-	read_credits(im, json, im->parts_file);
+	read_credits(im, json->root, im->parts_file);
 	for (const cJSON *item = first_of(items); item && !im->failed; item = next_of(items, item))
-		read_item(im, item, lines[at++]);
-	free(lines);
+		read_item(im, item, json_text_line(json, item));
 }
 
 /* ---- the whole */
 
-static int read_file(struct importer *im, cJSON **json, struct buffer *text)
+static int read_file(struct importer *im, struct json_text *json, struct buffer *text)
 {
-	const char *end = NULL;
+	struct diagnostics diagnostics = { 0 };
+	const struct diagnostic *fault = &diagnostics.first;
 	int rc = buffer_read_file(text, im->options->file);
 
 	if (rc == 0)
-		buffer_put_u8(text, 0);
-	if (rc == 0 && text->error)
-		rc = text->error;
-	if (rc == -ENOMEM)
+		rc = json_text_parse(json, text, &diagnostics);
+	if (rc == 0 || rc == -ENOMEM)
 		return rc;
-	if (rc < 0) {
+	if (diagnostics.count > 0)
+		importer_complain(im, true, fault->line, "%s", fault->text + fault->place_bytes);
+	else
 		importer_complain(im, true, 0, "cannot be read: %s", strerror(-rc));
-		return -EINVAL;
-	}
-	*json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
-	if (*json)
-		return 0;
-	importer_complain(
-		im, true, json_line_of((char *)text->data, end),
-		"is not valid JSON from here on: look for a missing comma, quote or bracket");
 	return -EINVAL;
 }
 
 static int import(struct importer *im)
 {
+	struct json_text json = { 0 };
 	struct buffer text;
-	cJSON *json = NULL;
 	int rc;
 
 	buffer_init(&text, ANNOTATIONS_BYTES_MAX);
@@ -477,8 +460,8 @@ static int import(struct importer *im)
 		add(im, im->parts_file, "parts", cJSON_CreateArray());
 		im->parts = cJSON_GetObjectItemCaseSensitive(im->parts_file, "parts");
 		if (im->parts)
-			read_items(im, json, (const char *)text.data);
-		im->tours = cJSON_GetObjectItemCaseSensitive(json, "tours");
+			read_items(im, &json);
+		im->tours = cJSON_GetObjectItemCaseSensitive(json.root, "tours");
 		if (im->failed)
 			rc = -ENOMEM;
 	}
@@ -487,7 +470,7 @@ static int import(struct importer *im)
 	if (rc == 0)
 		rc = importer_write(im);
 	buffer_finish(&text);
-	cJSON_Delete(json);
+	json_text_finish(&json);
 	return rc;
 }
 

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <cjson/cJSON.h>
+
 #include "base/array.h"
 #include "base/log.h"
 #include "format/page.h"
@@ -77,6 +79,53 @@ void draft_finish(struct draft *draft)
 	free(draft->parts);
 	free(draft->pictures);
 	*draft = (struct draft){ .options = draft->options };
+}
+
+static int parse_json(struct draft *draft, const char *file, const char *key, struct json_text *out,
+		      struct buffer *text, const cJSON **array)
+{
+	struct diagnostics diagnostics = { 0 };
+	const struct diagnostic *fault = &diagnostics.first;
+	const cJSON *found;
+	int rc = json_text_parse(out, text, &diagnostics);
+
+	if (rc == -EBADMSG)
+		draft_complain(draft, true, file, fault->line, "%s",
+			       fault->text + fault->place_bytes);
+	if (rc < 0)
+		return rc == -EBADMSG ? 0 : rc;
+	found = cJSON_GetObjectItemCaseSensitive(out->root, key);
+	if (cJSON_IsArray(found))
+		*array = found;
+	else
+		draft_complain(draft, true, file, 1, "must be {\"%s\": [...]} at the top level",
+			       key);
+	return 0;
+}
+
+int draft_read_json(struct draft *draft, const char *file, const char *key, struct json_text *out,
+		    const cJSON **array)
+{
+	struct buffer text;
+	char path[PATH_MAX];
+	int rc;
+
+	*out = (struct json_text){ 0 };
+	*array = NULL;
+	if (!draft_path(draft, path, sizeof(path), file))
+		return -ENAMETOOLONG;
+	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
+	rc = buffer_read_file(&text, path);
+	if (rc == 0) {
+		rc = parse_json(draft, file, key, out, &text, array);
+	} else if (rc == -ENOENT) {
+		rc = 0; /* there may be no parts or tours yet */
+	} else if (rc != -ENOMEM) {
+		draft_complain(draft, true, file, 0, "cannot be read: %s", strerror(-rc));
+		rc = 0;
+	}
+	buffer_finish(&text);
+	return rc;
 }
 
 int draft_find_part(const struct draft *draft, const char *id)

@@ -4,6 +4,7 @@
 #define GOPURA_PIPELINE_CONTENT_DRAFT_PRIVATE_H
 
 #include "pipeline/content/info_build.h"
+#include "pipeline/content/json_text.h"
 
 struct cJSON;
 
@@ -114,6 +115,12 @@ int draft_find_tour(const struct draft *draft, const char *id);
 bool draft_has_faces(const struct draft *draft);
 /* Returns whether id may name a part or a tour. */
 bool draft_is_id(const char *id);
+
+/* Reads a JSON file of the folder that has {"KEY": [...]} at the top level. *array is NULL if there
+ * is no such file, or after a complaint. *out is for json_text_finish, also on failure. Negative
+ * errno: reading cannot go on. */
+must_check int draft_read_json(struct draft *draft, const char *file, const char *key,
+			       struct json_text *out, const struct cJSON **array);
 
 /* Builds the path of a file in the folder. Returns false if it does not fit. */
 bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name);

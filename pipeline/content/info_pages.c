@@ -2,6 +2,7 @@
  * own strict rules then refuse, with the line, what the kiosk cannot show or must not load. */
 #include <dirent.h>
 #include <errno.h>
+#include <glib.h>
 #include <libxml/HTMLparser.h>
 #include <limits.h>
 #include <stdio.h>
@@ -245,7 +246,7 @@ static int read_page_file(struct page_check *check)
 			       rc == -EFBIG ? "page is larger than %d KB: split it"
 					    : "cannot be read (at most %d KB)",
 			       HTML_BYTES_MAX >> 10);
-	} else if (memchr(bytes.data, 0, bytes.size - 1) || !xmlCheckUTF8(bytes.data)) {
+	} else if (!g_utf8_validate((char *)bytes.data, (gssize)bytes.size - 1, NULL)) {
 		draft_complain(check->draft, true, check->file, 0,
 			       "is not UTF-8: save it as UTF-8");
 	} else {

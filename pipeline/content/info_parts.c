@@ -1,13 +1,11 @@
 /* Reads parts.json into parts. */
 #include <cjson/cJSON.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pipeline/content/draft_private.h"
-#include "pipeline/content/json_lines.h"
 
 static const char parts_file[] = "parts.json";
 
@@ -308,12 +306,10 @@ static int read_part(struct draft *draft, const cJSON *json, unsigned line, cons
 	return rc;
 }
 
-static int read_array(struct draft *draft, const cJSON *json, const char *text)
+static int read_array(struct draft *draft, const struct json_text *json, const cJSON *array)
 {
-	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "parts");
-	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(json, "credits");
+	const cJSON *credits = cJSON_GetObjectItemCaseSensitive(json->root, "credits");
 	int count = cJSON_GetArraySize(array);
-	unsigned *lines;
 	const cJSON *item;
 	int rc = 0, i = 0;
 
@@ -322,78 +318,32 @@ static int read_array(struct draft *draft, const cJSON *json, const char *text)
 			       count, INFO_PARTS_MAX);
 		return 0;
 	}
-	lines = calloc((size_t)count + 1, sizeof(*lines));
 	draft->parts = calloc((size_t)count + 1, sizeof(*draft->parts));
-	if (!lines || !draft->parts)
-		rc = -ENOMEM;
-	else
-		json_item_lines(text, "parts", lines, (size_t)count);
+	if (!draft->parts)
+		return -ENOMEM;
 	cJSON_ArrayForEach(item, array)
 	{
+		i++;
 		if (rc < 0)
 			break;
 		if (cJSON_IsObject(item))
-			rc = read_part(draft, item, lines[i], credits);
+			rc = read_part(draft, item, json_text_line(json, item), credits);
 		else
 			draft_complain(
 				draft, true, parts_file, 0,
-				"entry %d of \"parts\" is not an object: write {\"id\": ...}",
-				i + 1);
-		i++;
+				"entry %d of \"parts\" is not an object: write {\"id\": ...}", i);
 	}
-	free(lines);
-	return rc;
-}
-
-static int parse_parts(struct draft *draft, struct buffer *text)
-{
-	const char *end = NULL, *bad;
-	const cJSON *array;
-	cJSON *json;
-	int rc = 0;
-
-	buffer_put_u8(text, 0);
-	if (text->error)
-		return text->error;
-	bad = json_not_utf8((char *)text->data);
-	if (bad) {
-		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, bad),
-			       "is not UTF-8 from here on: save it as UTF-8");
-		return 0;
-	}
-	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
-	array = cJSON_GetObjectItemCaseSensitive(json, "parts");
-	if (!json)
-		draft_complain(draft, true, parts_file, json_line_of((char *)text->data, end),
-			       "is not valid JSON from here on: look for a missing comma, quote or "
-			       "bracket");
-	else if (!cJSON_IsArray(array))
-		draft_complain(draft, true, parts_file, 1,
-			       "must be {\"parts\": [...]} at the top level");
-	else
-		rc = read_array(draft, json, (const char *)text->data);
-	cJSON_Delete(json);
 	return rc;
 }
 
 int draft_read_parts(struct draft *draft)
 {
-	struct buffer text;
-	char path[PATH_MAX];
-	int rc;
+	struct json_text json;
+	const cJSON *array;
+	int rc = draft_read_json(draft, parts_file, "parts", &json, &array);
 
-	if (!draft_path(draft, path, sizeof(path), parts_file))
-		return -ENAMETOOLONG;
-	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
-	rc = buffer_read_file(&text, path);
-	if (rc == 0) {
-		rc = parse_parts(draft, &text);
-	} else if (rc == -ENOENT) {
-		rc = 0; /* nothing has been written about this model yet */
-	} else if (rc != -ENOMEM) {
-		draft_complain(draft, true, parts_file, 0, "cannot be read: %s", strerror(-rc));
-		rc = 0;
-	}
-	buffer_finish(&text);
+	if (rc == 0 && array)
+		rc = read_array(draft, &json, array);
+	json_text_finish(&json);
 	return rc;
 }

@@ -2,7 +2,6 @@
  * pipeline/content/tour_check, where the scan is available. */
 #include <cjson/cJSON.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,7 +10,6 @@
 
 #include "geometry/viewpoint.h"
 #include "pipeline/content/draft_private.h"
-#include "pipeline/content/json_lines.h"
 
 static const char tours_file[] = "tours.json";
 
@@ -22,6 +20,7 @@ static const char tours_file[] = "tours.json";
 /* Shared by the functions that read a tour. stop: number of the current stop, from 1; 0: none. */
 struct tour_reader {
 	struct draft *draft;
+	const struct json_text *json;
 	struct draft_tour *tour;
 	unsigned line;
 	uint32_t stop;
@@ -184,11 +183,11 @@ static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 	return read_texts(r, json, "caption", stop->captions, false);
 }
 
-static int read_stops(struct tour_reader *r, const cJSON *json, const char *text, unsigned line)
+static int read_stops(struct tour_reader *r, const cJSON *json)
 {
 	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "stops");
 	int count = cJSON_IsArray(array) ? cJSON_GetArraySize(array) : 0, i = 0, rc = 0;
-	unsigned lines[INFO_STOPS_MAX] = { 0 };
+	const unsigned line = r->line;
 	const cJSON *item;
 
 	if (count < 2 || count > INFO_STOPS_MAX) {
@@ -198,10 +197,9 @@ static int read_stops(struct tour_reader *r, const cJSON *json, const char *text
 	r->tour->stops = calloc((size_t)count, sizeof(*r->tour->stops));
 	if (!r->tour->stops)
 		return -ENOMEM;
-	json_item_lines(text, "stops", lines, (size_t)count);
 	cJSON_ArrayForEach(item, array)
 	{
-		r->line = lines[i] > 0 ? line + lines[i] - 1 : line;
+		r->line = cJSON_IsObject(item) ? json_text_line(r->json, item) : line;
 		if (rc == 0)
 			rc = read_stop(r, item, i == 0 || i == count - 1);
 		i++;
@@ -276,16 +274,17 @@ static void check_attract(const struct tour_reader *r, const cJSON *json)
 				 r->draft->tours[i].id);
 }
 
-/* text begins at the tour. */
-static int read_tour(struct draft *draft, const cJSON *json, const char *text, unsigned line)
+static int read_tour(struct draft *draft, const struct json_text *text, const cJSON *json)
 {
 	struct draft_tour *tour = &draft->tours[draft->tour_count];
-	struct tour_reader r = { .draft = draft, .tour = tour, .line = line };
+	struct tour_reader r = {
+		.draft = draft, .json = text, .tour = tour, .line = json_text_line(text, json)
+	};
 	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(json, "id"));
 	const bool is_twice = id && draft_find_tour(draft, id) >= 0;
 	int rc;
 
-	tour->line = line;
+	tour->line = r.line;
 	tour->thumbnail_picture = -1;
 	tour->id = strdup(id ? id : "");
 	if (!tour->id)
@@ -302,20 +301,11 @@ static int read_tour(struct draft *draft, const cJSON *json, const char *text, u
 		rc = read_texts(&r, json, "caption", tour->captions, false);
 	if (rc == 0)
 		rc = read_thumbnail(&r, json);
-	return rc == 0 ? read_stops(&r, json, text, line) : rc;
+	return rc == 0 ? read_stops(&r, json) : rc;
 }
 
-/* Returns the start of this line. */
-static const char *line_at(const char *text, unsigned line)
+static int read_array(struct draft *draft, const struct json_text *json, const cJSON *array)
 {
-	for (; line > 1 && *text; text++)
-		line -= *text == '\n';
-	return text;
-}
-
-static int read_array(struct draft *draft, const cJSON *array, const char *text)
-{
-	unsigned lines[INFO_TOURS_MAX] = { 0 };
 	const cJSON *item;
 	int count = cJSON_GetArraySize(array), rc = 0, i = 0;
 
@@ -327,13 +317,12 @@ static int read_array(struct draft *draft, const cJSON *array, const char *text)
 	draft->tours = calloc((size_t)count + 1, sizeof(*draft->tours));
 	if (!draft->tours)
 		return -ENOMEM;
-	json_item_lines(text, "tours", lines, (size_t)count);
 	cJSON_ArrayForEach(item, array)
 	{
 		if (rc < 0)
 			break;
 		if (cJSON_IsObject(item))
-			rc = read_tour(draft, item, line_at(text, lines[i]), lines[i]);
+			rc = read_tour(draft, json, item);
 		else
 			draft_complain(
 				draft, true, tours_file, 0,
@@ -344,55 +333,14 @@ static int read_array(struct draft *draft, const cJSON *array, const char *text)
 	return rc;
 }
 
-static int parse(struct draft *draft, struct buffer *text)
-{
-	const char *end = NULL, *bad;
-	const cJSON *array;
-	cJSON *json;
-	int rc = 0;
-
-	buffer_put_u8(text, 0);
-	if (text->error)
-		return text->error;
-	bad = json_not_utf8((char *)text->data);
-	if (bad) {
-		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, bad),
-			       "is not UTF-8 from here on: save it as UTF-8");
-		return 0;
-	}
-	json = cJSON_ParseWithOpts((const char *)text->data, &end, true);
-	array = cJSON_GetObjectItemCaseSensitive(json, "tours");
-	if (!json)
-		draft_complain(draft, true, tours_file, json_line_of((char *)text->data, end),
-			       "is not valid JSON from here on: look for a missing comma, quote or "
-			       "bracket");
-	else if (!cJSON_IsArray(array))
-		draft_complain(draft, true, tours_file, 1,
-			       "must be {\"tours\": [...]} at the top level");
-	else
-		rc = read_array(draft, array, (const char *)text->data);
-	cJSON_Delete(json);
-	return rc;
-}
-
 int draft_read_tours(struct draft *draft)
 {
-	struct buffer text;
-	char path[PATH_MAX];
-	int rc;
+	struct json_text json;
+	const cJSON *array;
+	int rc = draft_read_json(draft, tours_file, "tours", &json, &array);
 
-	if (!draft_path(draft, path, sizeof(path), tours_file))
-		return -ENAMETOOLONG;
-	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
-	rc = buffer_read_file(&text, path);
-	if (rc == 0) {
-		rc = parse(draft, &text);
-	} else if (rc == -ENOENT) {
-		rc = 0; /* the model has no tours */
-	} else if (rc != -ENOMEM) {
-		draft_complain(draft, true, tours_file, 0, "cannot be read: %s", strerror(-rc));
-		rc = 0;
-	}
-	buffer_finish(&text);
+	if (rc == 0 && array)
+		rc = read_array(draft, &json, array);
+	json_text_finish(&json);
 	return rc;
 }

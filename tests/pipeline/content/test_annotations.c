@@ -7,7 +7,6 @@
 #include <limits.h>
 #include <unistd.h>
 
-#include "pipeline/content/json_lines.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static struct complaints complaints;
@@ -245,6 +244,7 @@ static void names_the_place_of_what_it_refuses(void **state)
 		unsigned line;
 	} cases[] = {
 		{ "{\"items\": [\n", "not valid JSON", 2 },
+		{ "{\"items\": [\n\"caf\xe9\"]}", "not UTF-8", 2 },
 		{ "{\"type\": \"Manifest\"}", "holds no annotations", 1 },
 		{ "{\"first\": \"https://example.org/1\"}", "is elsewhere", 1 },
 		{ "{\"first\": {\"items\": [], \"next\": \"x\"}}", "more pages", 1 },
@@ -368,18 +368,6 @@ static void refuses_every_truncation(void **state)
 	annotations_finish(&annotations);
 }
 
-static void finds_the_lines_of_a_lists_objects(void **state)
-{
-	unsigned lines[4] = { 0 };
-
-	(void)state;
-	json_item_lines(
-		"{\"a\": {\"b\": \"parts [{\"},\n\"credits\": [{}],\n\"parts\": [{\"c\": [{}]},\n\n"
-		"{\"d\": \"]\\\"\"}, [{}],\n{}], \"e\": [\n{}]}",
-		"parts", lines, 4);
-	CHECK(lines[0] == 3 && lines[1] == 5 && lines[2] == 6 && lines[3] == 0);
-}
-
 int main(void)
 {
 #define IN_A_FOLDER(claim) cmocka_unit_test_setup_teardown(claim, set_up_exchange, tear_down)
@@ -395,7 +383,6 @@ int main(void)
 		IN_A_FOLDER(takes_away_what_the_folder_cannot_be),
 		IN_A_FOLDER(writes_over_nothing),
 		IN_A_FOLDER(refuses_every_truncation),
-		cmocka_unit_test(finds_the_lines_of_a_lists_objects),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
