@@ -46,7 +46,7 @@ def shot(name, after):
     now += 500
 
 
-shots.append("8800 hint")
+shots.append("8800 help")
 move(((480, 200), (640, 200)))
 shot("far", 5000)
 move(((440, 260), (330, 260)), ((520, 260), (630, 260)))

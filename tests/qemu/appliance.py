@@ -163,7 +163,7 @@ def visit(machine, began):
     stages(machine.log())
     machine.resting_picture("temple")
     until = time.monotonic() + ANSWER_S
-    while paper(machine.picture("card")) < CARD_SHARE:  # the first touch may only take the hint away
+    while paper(machine.picture("card")) < CARD_SHARE:  # the first touch may only close the help
         if time.monotonic() > until:
             raise SystemExit("no tap opens a card:\n" + machine.log()[-3000:])
         machine.qmp.tap(0.5, 0.38)

@@ -108,7 +108,7 @@ class Machine:
         raise SystemExit(f"no {what} in {seconds} s:\n" + self.log()[-3000:])
 
     def tap_for_card(self):
-        """Taps a tower, above the hint, until its card is open: another touch may have been for something else."""
+        """Taps a tower, above the help, until its card is open: another touch may have been for something else."""
         until = time.monotonic() + ANSWER_S
         while "app: card of" not in self.log():
             if time.monotonic() > until:

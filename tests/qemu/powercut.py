@@ -60,8 +60,8 @@ def prepare(image, base):
     run("mcopy", "-o", "-i", f"{base}@@1M", conf, "::/gopura.conf")
 
 
-def above_the_hint(picture):
-    """A visitor is shown how to touch, below the temple's towers, until he has."""
+def above_the_help(picture):
+    """The upper part of the picture: the help covers the lower part until the visitor has touched the model."""
     return picture[: len(picture) * 2 // 5]
 
 
@@ -100,10 +100,10 @@ class Session:
             machine.plug(stick("next"))
             said(f"release {self.sequences[1]} is shown")
             self.mark("next is shown")
-            first = above_the_hint(read_png(self.path("first.png")))
+            first = above_the_help(read_png(self.path("first.png")))
             # The panel follows what is remembered, on a loaded machine by many seconds.
             machine.wait_for("newer release on the panel", ANSWER_S,
-                             lambda: share_that_differs(first, above_the_hint(machine.picture("next"))) > SAME_SHARE)
+                             lambda: share_that_differs(first, above_the_help(machine.picture("next"))) > SAME_SHARE)
             time.sleep(5)  # what fades in
             machine.resting_picture("next")
             machine.qmp.tap(0.5, 0.38)
@@ -244,7 +244,7 @@ def look(cut, work, sticks):
     seen["release"] = int(re.findall(RELEASE, log)[-1])
     seen["slot"] = re.findall(r"starting slot (\w)", log)[-1]
     seen["repaired"] = "repaired" in log
-    likeness = lambda name: share_that_differs(above_the_hint(picture), above_the_hint(read_png(session.path(name + ".png"))))
+    likeness = lambda name: share_that_differs(above_the_help(picture), above_the_help(read_png(session.path(name + ".png"))))
     seen["differs"] = {name: round(likeness(name), 3) for name in ("first", "next")}
     nearest = min(seen["differs"], key=seen["differs"].get)
     wrong = complaints(log)
