@@ -82,7 +82,8 @@ static void draw_help(cairo_t *c)
 	dot(c, 0, 0.86, 0.15);
 }
 
-/* The paths of the fingers. The fingertips are drawn over them, where help_view_fingers() puts them. */
+/* The paths of the fingers. The fingertips are drawn over them, where help_view_fingers() puts
+ * them. */
 static void draw_turn(cairo_t *c)
 {
 	line(c, -0.95, 0, 0.95, 0);
