@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,14 +35,17 @@ static const char help[] =
 	"  gopura-content annotations export temple --out exchange/temple.jsonld\n"
 	"  gopura-content annotations import exchange/temple.jsonld --into copy\n";
 
-static void say(void *data, bool is_error, const char *file, unsigned line, const char *text)
+/* Prints what was found, and empties the list. */
+static void print_found(struct diagnostics *diagnostics)
 {
-	char at[16] = "";
+	for (uint32_t i = 0; i < diagnostics->count; i++) {
+		const struct diagnostic *found = diagnostics_get(diagnostics, i);
 
-	(void)data;
-	if (line > 0)
-		snprintf(at, sizeof(at), ":%u", line);
-	fprintf(stderr, "%s: %s%s: %s\n", is_error ? "error" : "warning", file, at, text);
+		fprintf(stderr, "%s: %s\n", found->error < 0 ? "error" : "warning", found->text);
+	}
+	if (diagnostics->dropped > 0)
+		fprintf(stderr, "and %" PRIu32 " more\n", diagnostics->dropped);
+	diagnostics_finish(diagnostics);
 }
 
 /* Splits a list such as "en,fr" in place. Returns the count; 0: not a valid list. */
@@ -109,7 +113,8 @@ static int write_export(const struct annotations *annotations, const char *conte
 static int run_export(const char *content, const char *out, char *language_list)
 {
 	const char *languages[INFO_LANGUAGES_MAX];
-	struct annotations_export_options options = { .folder = content, .complaint = say };
+	struct diagnostics found = { .max = INFO_DIAGNOSTICS_MAX };
+	struct annotations_export_options options = { .folder = content, .diagnostics = &found };
 	struct annotations annotations;
 	int rc;
 
@@ -123,6 +128,7 @@ static int run_export(const char *content, const char *out, char *language_list)
 					     "");
 	}
 	rc = annotations_export(&annotations, &options);
+	print_found(&found);
 	if (rc < 0)
 		return fail(content, rc);
 	rc = write_export(&annotations, content, out);
@@ -135,14 +141,17 @@ static int run_export(const char *content, const char *out, char *language_list)
 
 /* ---- import */
 
-static int run_import(const struct annotations_import_options *options)
+static int run_import(struct annotations_import_options *options)
 {
+	struct diagnostics found = { .max = INFO_DIAGNOSTICS_MAX };
 	struct annotations_imported report;
 	int rc;
 
 	if (!options->folder)
 		return command_wrong("annotations", "import needs --into CONTENT", "");
+	options->diagnostics = &found;
 	rc = annotations_import(&report, options);
+	print_found(&found);
 	if (rc < 0)
 		return fail(options->file, rc);
 	printf("%s: %u parts, %u pages, %u pictures", options->folder, report.part_count,
@@ -165,7 +174,7 @@ int command_annotations(int argc, char **argv)
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
-	struct annotations_import_options import = { .complaint = say };
+	struct annotations_import_options import = { 0 };
 	const char *out = NULL;
 	char *languages = NULL;
 	int option;

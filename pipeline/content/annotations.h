@@ -14,8 +14,7 @@ struct annotations_export_options {
 	/* NULL: the languages of the titles, in order of appearance */
 	const char *const *languages;
 	uint32_t language_count;
-	info_complaint *complaint; /* NULL: complaints are logged */
-	void *complaint_data;
+	struct diagnostics *diagnostics; /* gets every fault and every warning; borrowed */
 };
 
 struct annotations {
@@ -29,7 +28,7 @@ struct annotations {
 };
 
 /* Converts the folder. The same folder gives the same bytes. The caller finishes *out; it is zeroed
- * on failure. -EINVAL: the folder has faults, and every fault was reported as a complaint. -ENOENT:
+ * on failure. -EINVAL: the folder has faults, which were added to the diagnostics. -ENOENT:
  * it has no parts.json. */
 must_check int annotations_export(struct annotations *out,
 				  const struct annotations_export_options *options);
@@ -43,9 +42,7 @@ struct annotations_import_options {
 	const char *language; /* of texts without a language; NULL: "en" */
 	bool y_is_up;         /* y is up in PointSelectors, as in IIIF; otherwise z */
 	bool skip_unknown;    /* skip annotations without a selector we know, with a warning */
-	/* NULL: complaints are logged */
-	info_complaint *complaint;
-	void *complaint_data;
+	struct diagnostics *diagnostics; /* gets every fault and every warning; borrowed */
 };
 
 struct annotations_imported {
@@ -54,7 +51,7 @@ struct annotations_imported {
 
 /* Writes parts.json, tours.json, pages/ and pictures/, and checks them as info_build does. On
  * failure everything it wrote is removed. *out gets the counts. -EINVAL: the file or the result has
- * faults, which were reported as complaints. */
+ * faults, which were added to the diagnostics. */
 must_check int annotations_import(struct annotations_imported *out,
 				  const struct annotations_import_options *options);
 

@@ -233,10 +233,10 @@ static void add_part(struct exporter *e, cJSON *items, const cJSON *part, uint32
 	}
 	add_bodies(e, item, part, index);
 	if (!e->failed && !add_target(e, item, part))
-		draft_complain((struct draft *)e->draft, true, "parts.json", read->line,
-			       "part \"%s\": no selector says a region of its kind, see "
-			       "docs/annotations.md; give it a box, sphere or prism",
-			       read->id);
+		diagnostics_add(e->draft->diagnostics, -EINVAL, "parts.json", read->line,
+				"part \"%s\": no selector says a region of its kind, see "
+				"docs/annotations.md; give it a box, sphere or prism",
+				read->id);
 }
 
 /* tours is the array of tours.json, which no other tool reads; NULL: none. */
@@ -308,7 +308,7 @@ static int write_collection(struct annotations *out, struct draft *draft, const 
 	cJSON_free(text);
 	cJSON_Delete(collection);
 	out->count = draft->part_count;
-	return rc == 0 && draft->error_count > 0 ? -EINVAL : rc;
+	return rc;
 }
 
 /* Parses a file of the folder as JSON. The folder's own readers check its contents. */
@@ -334,9 +334,9 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 	struct info_build_options build = { .folder = options->folder,
 					    .languages = options->languages,
 					    .language_count = options->language_count,
-					    .complaint = options->complaint,
-					    .complaint_data = options->complaint_data };
-	struct draft draft = { .options = &build };
+					    .diagnostics = options->diagnostics };
+	struct draft draft = { .options = &build, .diagnostics = build.diagnostics };
+	const uint32_t errors = build.diagnostics->error_count;
 	cJSON *json, *tours = NULL;
 	int rc = read_json(&json, &draft, "parts.json");
 
@@ -349,8 +349,8 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 			build.language_count = 1;
 	}
 	if (rc == 0 && !draft_languages_are_sane(&build)) {
-		draft_complain(
-			&draft, true, "parts.json", 0,
+		diagnostics_add(
+			draft.diagnostics, -EINVAL, "parts.json", 0,
 			"titles are in more than %d languages, or in something that is not a "
 			"language code: name those to take",
 			INFO_LANGUAGES_MAX);
@@ -364,11 +364,13 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 		rc = read_json(&tours, &draft, "tours.json");
 	if (rc == 0 && draft.part_count > 0)
 		rc = draft_read_pages(&draft);
-	if (rc == 0 && draft.error_count > 0)
+	if (rc == 0 && draft.diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)
 		rc = write_collection(out, &draft, json,
 				      cJSON_GetObjectItemCaseSensitive(tours, "tours"));
+	if (rc == 0 && draft.diagnostics->error_count > errors)
+		rc = -EINVAL;
 	if (rc == 0)
 		rc = list_pictures(out, &draft);
 	if (rc < 0)

@@ -75,14 +75,14 @@ static void read_id(struct importer *im)
 		if (!strchr("abcdefghijklmnopqrstuvwxyz0123456789-_", id[i]))
 			id[i] = '-';
 	if (size == 0)
-		importer_complain(
-			im, true, im->line,
+		diagnostics_add(
+			im->diagnostics, -EINVAL, im->options->file, im->line,
 			"annotation without an id that can name a part: give it an \"id\" such as "
 			"\"#gate\"");
 	for (const cJSON *other = im->parts->child; other; other = other->next)
 		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
-			importer_complain(
-				im, true, im->line,
+			diagnostics_add(
+				im->diagnostics, -EINVAL, im->options->file, im->line,
 				"annotation \"%.80s\": another one is part \"%s\" already: give it "
 				"another \"id\"",
 				iri, id);
@@ -159,9 +159,9 @@ static void add_page(struct importer *im, const char *language, const char *html
 		 language);
 	for (uint32_t i = 0; i < im->page_count; i++)
 		if (strcmp(im->pages[i].name, page.name) == 0) {
-			importer_complain(im, true, im->line,
-					  "annotation \"%.80s\": two pages in \"%.16s\": leave one",
-					  item_id(im), language);
+			diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
+					"annotation \"%.80s\": two pages in \"%.16s\": leave one",
+					item_id(im), language);
 			return;
 		}
 	im->pages[im->page_count++] = page;
@@ -197,16 +197,16 @@ static void read_body(struct importer *im, const cJSON *body)
 	if (!language)
 		language = im->language;
 	if (!value || !key) {
-		importer_complain(
-			im, false, im->line,
+		diagnostics_add(
+			im->diagnostics, 0, im->options->file, im->line,
 			"annotation \"%.80s\": a body %s is left out: what is kept are "
 			"TextualBody with purpose identifying, describing, commenting or tagging",
 			item_id(im), value ? "of another purpose" : "without \"value\"");
 		return;
 	}
 	if (!is_language(language)) {
-		importer_complain(
-			im, true, im->line,
+		diagnostics_add(
+			im->diagnostics, -EINVAL, im->options->file, im->line,
 			"annotation \"%.80s\": \"%.40s\" is not a language code: write one such as \"en\"",
 			item_id(im), language);
 		return;
@@ -216,9 +216,9 @@ static void read_body(struct importer *im, const cJSON *body)
 		return;
 	}
 	if (cJSON_HasObjectItem(object_of(im, im->part, key), language))
-		importer_complain(im, true, im->line,
-				  "annotation \"%.80s\": two %ss in \"%.16s\": leave one",
-				  item_id(im), key, language);
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
+				"annotation \"%.80s\": two %ss in \"%.16s\": leave one",
+				item_id(im), key, language);
 	else
 		add(im, object_of(im, im->part, key), language, cJSON_CreateString(value));
 }
@@ -232,13 +232,12 @@ static void read_bodies(struct importer *im)
 	     body = next_of(bodies, body))
 		read_body(im, body);
 	if (string_of(im->item, "bodyValue") && !bodies)
-		importer_complain(
-			im, false, im->line,
-			"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
-			item_id(im));
+		diagnostics_add(im->diagnostics, 0, im->options->file, im->line,
+				"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
+				item_id(im));
 	if (!cJSON_HasObjectItem(im->part, "title"))
-		importer_complain(
-			im, true, im->line,
+		diagnostics_add(
+			im->diagnostics, -EINVAL, im->options->file, im->line,
 			"annotation \"%.80s\" has no title: add a TextualBody with \"purpose\": "
 			"\"identifying\"",
 			item_id(im));
@@ -254,10 +253,10 @@ static void read_thumbnail(struct importer *im)
 	if (name)
 		add(im, im->part, "thumbnail", cJSON_CreateString(name));
 	else if (said)
-		importer_complain(im, false, im->line,
-				  "annotation \"%.80s\": its thumbnail is left out: "
-				  "write {\"id\": \"pictures/NAME\"}",
-				  item_id(im));
+		diagnostics_add(im->diagnostics, 0, im->options->file, im->line,
+				"annotation \"%.80s\": its thumbnail is left out: "
+				"write {\"id\": \"pictures/NAME\"}",
+				item_id(im));
 }
 
 /* ---- the target */
@@ -349,8 +348,9 @@ static bool read_target(struct importer *im)
 		return true;
 	selectors = first_of(selectors);
 	im->report->skipped_count += im->options->skip_unknown;
-	importer_complain(
-		im, !im->options->skip_unknown, im->line,
+	diagnostics_add(
+		im->diagnostics, !im->options->skip_unknown ? -EINVAL : 0, im->options->file,
+		im->line,
 		"annotation \"%.80s\": %s%.40s%s says no place on a model%s: use PointSelector with "
 		"x, y and z, SphereSelector, BoxSelector, PrismSelector or FaceListSelector",
 		item_id(im), selectors ? "selector \"" : "a target without selector",
@@ -384,7 +384,7 @@ static void read_item(struct importer *im, const cJSON *item, unsigned line)
 }
 
 /* Finds the annotations in a collection, a page, a list, or a single annotation. Returns NULL after
- * a complaint. */
+ * reporting it. */
 static const cJSON *find_items(struct importer *im, const cJSON *json)
 {
 	const cJSON *page = cJSON_GetObjectItemCaseSensitive(json, "first");
@@ -392,8 +392,8 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	if (cJSON_IsArray(json))
 		return json;
 	if (cJSON_IsString(page)) {
-		importer_complain(
-			im, true, 1,
+		diagnostics_add(
+			im->diagnostics, -EINVAL, im->options->file, 1,
 			"the collection's first page is elsewhere (\"%.80s\"): fetch it and import "
 			"that file",
 			page->valuestring);
@@ -401,17 +401,16 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	}
 	page = page ? page : json;
 	if (cJSON_HasObjectItem(page, "next")) {
-		importer_complain(
-			im, true, 1,
-			"there are more pages than the first: put all \"items\" into one");
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 1,
+				"there are more pages than the first: put all \"items\" into one");
 		return NULL;
 	}
 	if (cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(page, "items")))
 		return cJSON_GetObjectItemCaseSensitive(page, "items");
 	if (cJSON_HasObjectItem(json, "target"))
 		return json;
-	importer_complain(
-		im, true, 1,
+	diagnostics_add(
+		im->diagnostics, -EINVAL, im->options->file, 1,
 		"holds no annotations: write an AnnotationCollection whose \"first\" page has "
 		"\"items\"");
 	return NULL;
@@ -432,24 +431,23 @@ static void read_items(struct importer *im, const struct json_text *json)
 
 static int read_file(struct importer *im, struct json_text *json, struct buffer *text)
 {
-	struct diagnostics diagnostics = { 0 };
-	const struct diagnostic *fault = &diagnostics.first;
-	int rc = buffer_read_file(text, im->options->file);
+	const char *file = im->options->file;
+	int rc = buffer_read_file(text, file);
 
 	if (rc == 0)
-		rc = json_text_parse(json, text, &diagnostics);
+		rc = json_text_parse(json, text, file, im->diagnostics);
 	if (rc == 0 || rc == -ENOMEM)
 		return rc;
-	if (diagnostics.count > 0)
-		importer_complain(im, true, fault->line, "%s", fault->text + fault->place_bytes);
-	else
-		importer_complain(im, true, 0, "cannot be read: %s", strerror(-rc));
+	if (rc != -EBADMSG) /* which was reported */
+		diagnostics_add(im->diagnostics, -EINVAL, file, 0, "cannot be read: %s",
+				strerror(-rc));
 	return -EINVAL;
 }
 
 static int import(struct importer *im)
 {
 	struct json_text json = { 0 };
+	const uint32_t errors = im->diagnostics->error_count;
 	struct buffer text;
 	int rc;
 
@@ -465,7 +463,7 @@ static int import(struct importer *im)
 		if (im->failed)
 			rc = -ENOMEM;
 	}
-	if (rc == 0 && im->error_count > 0)
+	if (rc == 0 && im->diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)
 		rc = importer_write(im);
@@ -478,6 +476,7 @@ int annotations_import(struct annotations_imported *out,
 		       const struct annotations_import_options *options)
 {
 	struct importer im = { .options = options,
+			       .diagnostics = options->diagnostics,
 			       .report = out,
 			       .language = options->language ? options->language : "en" };
 	int rc;

@@ -40,12 +40,13 @@ struct page_file {
 
 struct importer {
 	const struct annotations_import_options *options;
+	struct diagnostics *diagnostics; /* of the options */
 	struct annotations_imported *report;
 	const char *language;
 	cJSON *parts_file, *parts; /* parts_file is owned; parts is the array in it */
 	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
 	struct page_file *pages;   /* owned */
-	uint32_t page_count, page_room, error_count;
+	uint32_t page_count, page_room;
 	char **written; /* owned paths, in the order in which they were written */
 	uint32_t written_count, written_room;
 	bool failed; /* out of memory */
@@ -55,10 +56,7 @@ struct importer {
 	cJSON *part;
 };
 
-/* Reports a fault in options->file at this line; 0: no line. */
-printf_like(4, 5) void importer_complain(struct importer *im, bool is_error, unsigned line,
-					 const char *text, ...);
-/* Returns whether the folder has no parts.json, tours.json and pages yet; otherwise it complains.
+/* Returns whether the folder has no parts.json, tours.json and pages yet; otherwise it says so.
  * Removes an empty pages/. */
 bool importer_has_room(struct importer *im);
 /* Writes what was read and checks it. On failure everything written is removed. Negative errno. */

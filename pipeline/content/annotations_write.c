@@ -3,7 +3,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,26 +10,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
-#include "base/log.h"
 #include "pipeline/content/annotations_private.h"
-
-void importer_complain(struct importer *im, bool is_error, unsigned line, const char *text, ...)
-{
-	const struct annotations_import_options *options = im->options;
-	char message[512];
-	va_list args;
-
-	va_start(args, text);
-	vsnprintf(message, sizeof(message), text, args);
-	va_end(args);
-	im->error_count += is_error;
-	if (options->complaint)
-		options->complaint(options->complaint_data, is_error, options->file, line, message);
-	else if (is_error)
-		log_error("storage", "%s:%u: %s", options->file, line, message);
-	else
-		log_warn("storage", "%s:%u: %s", options->file, line, message);
-}
 
 static int note_written(struct importer *im, const char *path)
 {
@@ -56,7 +36,8 @@ static int write_file(struct importer *im, const char *name, struct bytes bytes)
 	if (rc == 0)
 		rc = bytes_write_file(bytes, path);
 	if (rc < 0)
-		importer_complain(im, true, 0, "%s cannot be written: %s", path, strerror(-rc));
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
+				"%s cannot be written: %s", path, strerror(-rc));
 	return rc;
 }
 
@@ -70,7 +51,8 @@ static int make_folder(struct importer *im, const char *name)
 		return note_written(im, path);
 	if (errno == EEXIST)
 		return 0;
-	importer_complain(im, true, 0, "%s cannot be made: %s", path, strerror(errno));
+	diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0, "%s cannot be made: %s",
+			path, strerror(errno));
 	return -EIO;
 }
 
@@ -88,7 +70,8 @@ static int copy_picture(struct importer *im, const char *from, const char *name)
 	buffer_init(&file, 64 << 20);
 	rc = buffer_read_file(&file, from);
 	if (rc < 0)
-		importer_complain(im, true, 0, "%s cannot be read: %s", from, strerror(-rc));
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
+				"%s cannot be read: %s", from, strerror(-rc));
 	else
 		rc = write_file(im, relative, buffer_bytes(&file));
 	buffer_finish(&file);
@@ -180,8 +163,7 @@ static int check_written(struct importer *im)
 	const char *languages[INFO_LANGUAGES_MAX] = { "en" };
 	struct info_build_options build = { .folder = im->options->folder,
 					    .languages = languages,
-					    .complaint = im->options->complaint,
-					    .complaint_data = im->options->complaint_data };
+					    .diagnostics = im->options->diagnostics };
 	struct info_built built;
 	int rc;
 
@@ -212,9 +194,9 @@ bool importer_has_room(struct importer *im)
 			continue;
 		if (access(path, F_OK) < 0)
 			continue;
-		importer_complain(im, true, 0,
-				  "%s exists already: import into a folder without parts and pages",
-				  path);
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
+				"%s exists already: import into a folder without parts and pages",
+				path);
 		return false;
 	}
 	return true;

@@ -1,10 +1,8 @@
-/* Shared helpers of the readers of a content folder: complaints, searching, freeing, and checking
- * pictures. */
+/* Shared helpers of the readers of a content folder: searching, freeing, and checking pictures. */
 #include "pipeline/content/draft_private.h"
 
 #include <errno.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,30 +10,8 @@
 #include <cjson/cJSON.h>
 
 #include "base/array.h"
-#include "base/log.h"
 #include "format/page.h"
 #include "format/picture.h"
-
-void draft_complain(struct draft *draft, bool is_error, const char *file, unsigned line,
-		    const char *text, ...)
-{
-	const struct info_build_options *options = draft->options;
-	char message[512];
-	va_list args;
-
-	va_start(args, text);
-	vsnprintf(message, sizeof(message), text, args);
-	va_end(args);
-	draft->error_count += is_error;
-	if (options->complaint) {
-		options->complaint(options->complaint_data, is_error, file, line, message);
-		return;
-	}
-	if (is_error)
-		log_error("storage", "%s/%s:%u: %s", options->folder, file, line, message);
-	else
-		log_warn("storage", "%s/%s:%u: %s", options->folder, file, line, message);
-}
 
 static void part_finish(struct draft_part *part)
 {
@@ -84,22 +60,17 @@ void draft_finish(struct draft *draft)
 static int parse_json(struct draft *draft, const char *file, const char *key, struct json_text *out,
 		      struct buffer *text, const cJSON **array)
 {
-	struct diagnostics diagnostics = { 0 };
-	const struct diagnostic *fault = &diagnostics.first;
 	const cJSON *found;
-	int rc = json_text_parse(out, text, &diagnostics);
+	int rc = json_text_parse(out, text, file, draft->diagnostics);
 
-	if (rc == -EBADMSG)
-		draft_complain(draft, true, file, fault->line, "%s",
-			       fault->text + fault->place_bytes);
 	if (rc < 0)
 		return rc == -EBADMSG ? 0 : rc;
 	found = cJSON_GetObjectItemCaseSensitive(out->root, key);
 	if (cJSON_IsArray(found))
 		*array = found;
 	else
-		draft_complain(draft, true, file, 1, "must be {\"%s\": [...]} at the top level",
-			       key);
+		diagnostics_add(draft->diagnostics, -EINVAL, file, 1,
+				"must be {\"%s\": [...]} at the top level", key);
 	return 0;
 }
 
@@ -121,7 +92,8 @@ int draft_read_json(struct draft *draft, const char *file, const char *key, stru
 	} else if (rc == -ENOENT) {
 		rc = 0; /* there may be no parts or tours yet */
 	} else if (rc != -ENOMEM) {
-		draft_complain(draft, true, file, 0, "cannot be read: %s", strerror(-rc));
+		diagnostics_add(draft->diagnostics, -EINVAL, file, 0, "cannot be read: %s",
+				strerror(-rc));
 		rc = 0;
 	}
 	buffer_finish(&text);
@@ -183,23 +155,24 @@ static void measure_picture(struct draft *draft, struct draft_picture *picture, 
 	if (draft_path(draft, path, sizeof(path), picture->name))
 		rc = buffer_read_file(&bytes, path);
 	if (rc == -ENOENT) {
-		draft_complain(draft, true, file, line,
-			       "picture \"%s\" is not there: add the file, or correct the name",
-			       picture->name);
+		diagnostics_add(draft->diagnostics, -EINVAL, file, line,
+				"picture \"%s\" is not there: add the file, or correct the name",
+				picture->name);
 	} else if (rc == -EFBIG) {
-		draft_complain(draft, true, picture->name, 0,
-			       "picture is larger than %u MB: save it smaller",
-			       OBJECT_BYTES_MAX >> 20);
+		diagnostics_add(draft->diagnostics, -EINVAL, picture->name, 0,
+				"picture is larger than %u MB: save it smaller",
+				OBJECT_BYTES_MAX >> 20);
 	} else if (rc < 0) {
-		draft_complain(draft, true, picture->name, 0, "cannot be read: %s", strerror(-rc));
+		diagnostics_add(draft->diagnostics, -EINVAL, picture->name, 0, "cannot be read: %s",
+				strerror(-rc));
 	} else if ((rc = picture_decode_for_page(&decoded, buffer_bytes(&bytes))) == -EFBIG) {
-		draft_complain(draft, true, picture->name, 0,
-			       "picture is larger than %d pixels a side, which terminals do not "
-			       "show: save it smaller",
-			       PICTURE_PAGE_SIDE_MOST_PX);
+		diagnostics_add(draft->diagnostics, -EINVAL, picture->name, 0,
+				"picture is larger than %d pixels a side, which terminals do not "
+				"show: save it smaller",
+				PICTURE_PAGE_SIDE_MOST_PX);
 	} else if (rc < 0) {
-		draft_complain(draft, true, picture->name, 0,
-			       "is not a complete JPEG or PNG picture: save it again as one");
+		diagnostics_add(draft->diagnostics, -EINVAL, picture->name, 0,
+				"is not a complete JPEG or PNG picture: save it again as one");
 	} else {
 		picture->damaged = false;
 		picture->media_type = bytes.data[0] == 0x89 ? "image/png" : "image/jpeg";
@@ -220,10 +193,10 @@ int draft_add_picture(struct draft *draft, const char *name, const char *file, u
 		if (strcmp(draft->pictures[i].name, name) == 0)
 			return draft->pictures[i].damaged ? -1 : (int)i;
 	if (!is_picture_name(name)) {
-		draft_complain(draft, true, file, line,
-			       "picture \"%.80s\": write it as \"pictures/NAME\", a file of the "
-			       "content folder; nothing is loaded from elsewhere",
-			       name);
+		diagnostics_add(draft->diagnostics, -EINVAL, file, line,
+				"picture \"%.80s\": write it as \"pictures/NAME\", a file of the "
+				"content folder; nothing is loaded from elsewhere",
+				name);
 		return -1;
 	}
 	if (ARRAY_RESERVE(draft->pictures, draft->picture_room, draft->picture_count + 1,

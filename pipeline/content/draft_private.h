@@ -13,7 +13,7 @@ enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 struct draft_page {
 	char *html; /* owned, null-terminated; NULL: none */
 	size_t size;
-	struct buffer article; /* made of html; empty if html was complained about */
+	struct buffer article; /* made of html; empty if html has a fault */
 	uint32_t *pictures;    /* owned; indices into draft.pictures, in order of use, each once */
 	uint32_t picture_count, picture_room;
 };
@@ -67,28 +67,25 @@ struct draft_picture {
 	const char *media_type;
 	struct hash hash;
 	uint32_t size, width_px, height_px;
-	bool damaged; /* has been complained about */
+	bool damaged; /* has been reported */
 };
 
 struct draft {
 	const struct info_build_options *options;
+	struct diagnostics *diagnostics; /* of the options */
 	struct draft_part *parts;
 	uint32_t part_count;
 	struct draft_tour *tours;
 	uint32_t tour_count;
 	struct draft_picture *pictures;
 	uint32_t picture_count, picture_room;
-	uint32_t error_count; /* number of complaints that are errors */
 };
 
-/* Reports a complaint. file and line are as in info_complaint. */
-void draft_complain(struct draft *draft, bool is_error, const char *file, unsigned line,
-		    const char *text, ...) printf_like(5, 6);
 /* Frees everything that was read. options stays. */
 void draft_finish(struct draft *draft);
 
-/* Reads parts.json. Like the other readers, it returns 0 even after complaints; a negative errno
- * means that reading cannot go on. */
+/* Reads parts.json. Like the other readers, it returns 0 even after faults, which it reports; a
+ * negative errno means that reading cannot go on. */
 must_check int draft_read_parts(struct draft *draft);
 /* Reads and checks the pages of the parts. Call it after draft_read_parts and draft_read_tours,
  * because pages may link to both. */
@@ -98,12 +95,12 @@ must_check int draft_read_tours(struct draft *draft);
 /* Computes and checks the views of stops that name a part. Call it when all parts have a place. */
 void draft_place_stops(struct draft *draft);
 /* Adds the credits of a part: `json` is the part's own "credits", and `all` those stated for all
- * parts, used for elements that json lacks. Either may be NULL. Complains with the part's line.
- * -ENOMEM. */
+ * parts, used for elements that json lacks. Either may be NULL. Reports faults with the part's
+ * line. -ENOMEM. */
 must_check int draft_read_credits(struct draft *draft, struct draft_part *part,
 				  const struct cJSON *json, const struct cJSON *all);
-/* Reads and checks a picture that file:line refers to. Returns its index, -1 after a complaint, or
- * -ENOMEM. */
+/* Reads and checks a picture that file:line refers to. Returns its index, -1 after reporting a
+ * fault, or -ENOMEM. */
 int draft_add_picture(struct draft *draft, const char *name, const char *file, unsigned line);
 /* Returns whether there are 1 to INFO_LANGUAGES_MAX valid codes, each once. */
 bool draft_languages_are_sane(const struct info_build_options *options);

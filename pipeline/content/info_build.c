@@ -355,9 +355,9 @@ static int encode(struct buffer *out, struct draft *draft)
 	sqlite3_close(w.db);
 	if (rc != -EFBIG)
 		return rc;
-	draft_complain(draft, true, "parts.json", 0,
-		       "titles and pages together are larger than %d MB: shorten the pages",
-		       OBJECT_BYTES_MAX >> 20);
+	diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", 0,
+			"titles and pages together are larger than %d MB: shorten the pages",
+			OBJECT_BYTES_MAX >> 20);
 	return -EINVAL;
 }
 
@@ -428,15 +428,15 @@ bool draft_languages_are_sane(const struct info_build_options *options)
 	return true;
 }
 
-/* Reads everything; returns 0 also if there were complaints. */
+/* Reads everything; returns 0 also if there were faults. */
 static int read_all(struct draft *draft)
 {
 	int rc = 0;
 
 	if (!draft_languages_are_sane(draft->options)) {
-		draft_complain(draft, true, "temple.ini", 0,
-			       "languages: give 1 to %d codes such as \"en fr km\", each once",
-			       INFO_LANGUAGES_MAX);
+		diagnostics_add(draft->diagnostics, -EINVAL, "temple.ini", 0,
+				"languages: give 1 to %d codes such as \"en fr km\", each once",
+				INFO_LANGUAGES_MAX);
 		return 0;
 	}
 	rc = draft_read_parts(draft);
@@ -451,6 +451,7 @@ static int read_all(struct draft *draft)
 
 int info_read(struct draft **out, const struct info_build_options *options)
 {
+	const uint32_t errors = options->diagnostics->error_count;
 	struct draft *draft = calloc(1, sizeof(*draft));
 	int rc;
 
@@ -458,8 +459,9 @@ int info_read(struct draft **out, const struct info_build_options *options)
 	if (!draft)
 		return -ENOMEM;
 	draft->options = options;
+	draft->diagnostics = options->diagnostics;
 	rc = read_all(draft);
-	if (rc == 0 && draft->error_count > 0)
+	if (rc == 0 && draft->diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)
 		*out = draft;
@@ -499,8 +501,9 @@ static int place_faces(struct draft *draft)
 			continue;
 		rc = options->place_faces(options->faces_data, &faces, &diagnostics);
 		if (rc == -EINVAL) {
-			draft_complain(draft, true, "parts.json", part->line, "part \"%s\": %s",
-				       part->id, diagnostics_cause(&diagnostics, rc));
+			diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", part->line,
+					"part \"%s\": %s", part->id,
+					diagnostics_cause(&diagnostics, rc));
 			rc = 0;
 		}
 		memcpy(part->region.centre_m, faces.centre_m, sizeof(faces.centre_m));
@@ -513,6 +516,7 @@ static int place_faces(struct draft *draft)
 
 int info_compile(struct info_built *out, struct draft *draft)
 {
+	const uint32_t errors = draft->diagnostics->error_count;
 	int rc = 0;
 
 	*out = (struct info_built){ 0 };
@@ -522,7 +526,7 @@ int info_compile(struct info_built *out, struct draft *draft)
 		if (rc == 0)
 			draft_place_stops(draft);
 	}
-	if (rc == 0 && draft->error_count > 0)
+	if (rc == 0 && draft->diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)
 		rc = encode(&out->database, draft);

@@ -6,10 +6,8 @@
 #include "base/diagnostics.h"
 #include "storage/info.h"
 
-/* Reports one fault in the content folder. file is relative to the folder; line is 0 if there is
- * none; text says what is wrong and how to correct it. All are borrowed for the call. */
-typedef void info_complaint(void *data, bool is_error, const char *file, unsigned line,
-			    const char *text);
+/* For diagnostics.max: more than anybody corrects at once. */
+enum { INFO_DIAGNOSTICS_MAX = 100000 };
 
 /* A region that is a list of faces of a scan. */
 struct info_faces {
@@ -27,8 +25,8 @@ struct info_build_options {
 	const char *const *languages; /* such as "en"; every title must exist in the first one */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MAX */
 	unsigned tools;               /* bits of enum info_tool */
-	info_complaint *complaint;    /* NULL: complaints are logged */
-	void *complaint_data;
+	/* Gets every fault and every warning; files are relative to the folder. Borrowed. */
+	struct diagnostics *diagnostics;
 	info_faces_call *judge_faces; /* checks a list without the scan; NULL: none is checked */
 	info_faces_call *place_faces; /* fills in its place; NULL: all are at 0 0 0 */
 	void *faces_data;
@@ -40,7 +38,7 @@ struct info_picture_file {
 	char *name;       /* owned; such as "pictures/gate.jpg", relative to the content folder */
 };
 
-/* Lines in tours.json of a tour and its stops, for complaints about its path. */
+/* Lines in tours.json of a tour and its stops, for diagnostics of its path. */
 struct info_tour_lines {
 	unsigned tour, stops[INFO_STOPS_MAX];
 };
@@ -57,7 +55,7 @@ struct draft;
 
 /* Reads and checks the folder; a list of faces only by judge_faces. A folder without parts.json has
  * no parts. options is borrowed for the draft's lifetime. *out is owned by the caller; NULL on
- * failure. -EINVAL: the content has faults, and every fault was reported as a complaint. -ENOMEM,
+ * failure. -EINVAL: the content has faults, and every one was added to the diagnostics. -ENOMEM,
  * -EIO. */
 must_check int info_read(struct draft **out, const struct info_build_options *options);
 void info_draft_destroy(struct draft *draft); /* NULL is fine */

@@ -19,12 +19,12 @@ static bool is_element(const char *key)
 	return false;
 }
 
-static void complain(struct draft *draft, const struct draft_part *part, const char *key)
+static void report(struct draft *draft, const struct draft_part *part, const char *key)
 {
-	draft_complain(draft, true, "parts.json", part->line,
-		       "part \"%s\": credits: \"%.40s\" must be a text, a list of texts, or "
-		       "texts by language: {\"en\": \"...\"}",
-		       part->id, key);
+	diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", part->line,
+			"part \"%s\": credits: \"%.40s\" must be a text, a list of texts, or "
+			"texts by language: {\"en\": \"...\"}",
+			part->id, key);
 }
 
 /* Returns the language's index, or -1 if the release does not have it. */
@@ -43,13 +43,13 @@ static int add(struct draft *draft, struct draft_part *part, const char *element
 	struct draft_credit *credit = &part->credits[part->credit_count];
 
 	if (!text || strspn(text, " \t\r\n") == strlen(text)) {
-		complain(draft, part, element);
+		report(draft, part, element);
 		return 0;
 	}
 	if (part->credit_count == DRAFT_CREDITS_MAX) {
-		draft_complain(draft, true, "parts.json", part->line,
-			       "part \"%s\": more than %d statements in its credits: shorten them",
-			       part->id, DRAFT_CREDITS_MAX);
+		diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", part->line,
+				"part \"%s\": more than %d statements in its credits: shorten them",
+				part->id, DRAFT_CREDITS_MAX);
 		return 0;
 	}
 	*credit = (struct draft_credit){ element, language, strdup(text) };
@@ -72,11 +72,11 @@ static int add_by_language(struct draft *draft, struct draft_part *part, const c
 			rc = add(draft, part, element, i, text);
 	}
 	if (!json->child)
-		complain(draft, part, element);
+		report(draft, part, element);
 	/* Texts in other languages must be strings too, although this release does not use them. */
 	for (const cJSON *text = json->child; text; text = text->next)
 		if (find_language(draft, text->string) < 0 && !cJSON_IsString(text))
-			complain(draft, part, element);
+			report(draft, part, element);
 	return rc;
 }
 
@@ -84,11 +84,11 @@ static void check_elements(struct draft *draft, const struct draft_part *part, c
 {
 	for (const cJSON *item = json ? json->child : NULL; item; item = item->next)
 		if (item->string && !is_element(item->string))
-			draft_complain(draft, true, "parts.json", part->line,
-				       "part \"%s\": credits: \"%.40s\" is none of creator, "
-				       "contributor, publisher, date, source, rights, subject, "
-				       "coverage, relation",
-				       part->id, item->string);
+			diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", part->line,
+					"part \"%s\": credits: \"%.40s\" is none of creator, "
+					"contributor, publisher, date, source, rights, subject, "
+					"coverage, relation",
+					part->id, item->string);
 }
 
 int draft_read_credits(struct draft *draft, struct draft_part *part, const cJSON *json,
@@ -97,7 +97,7 @@ int draft_read_credits(struct draft *draft, struct draft_part *part, const cJSON
 	int rc = 0;
 
 	if ((json && !cJSON_IsObject(json)) || (all && !cJSON_IsObject(all)))
-		complain(draft, part, "credits");
+		report(draft, part, "credits");
 	check_elements(draft, part, json);
 	if (draft->part_count == 1) /* reported only once, with the first part */
 		check_elements(draft, part, all);

@@ -52,16 +52,17 @@ static int check_image(struct page_check *check, xmlNode *node)
 	int picture = -1;
 
 	if (!src)
-		draft_complain(check->draft, true, check->file, line,
-			       "<img> without src: write src=\"pictures/NAME\"");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"<img> without src: write src=\"pictures/NAME\"");
 	else
 		picture = draft_add_picture(check->draft, src, check->file, line);
 	xmlFree(src);
 	if (picture == -ENOMEM)
 		return -ENOMEM;
 	if (picture >= 0 && check->page->picture_count == INFO_PAGE_PICTURES_MAX) {
-		draft_complain(check->draft, true, check->file, line,
-			       "more than %d pictures on a page: split it", INFO_PAGE_PICTURES_MAX);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"more than %d pictures on a page: split it",
+				INFO_PAGE_PICTURES_MAX);
 		return 0;
 	}
 	return picture >= 0 ? note_picture(check, picture) : 0;
@@ -77,26 +78,26 @@ static void check_link(struct page_check *check, xmlNode *node)
 	unsigned line = node_line(node);
 
 	if (!href)
-		draft_complain(check->draft, true, check->file, line,
-			       "<a> without href: write href=\"part:ID\", or remove it");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"<a> without href: write href=\"part:ID\", or remove it");
 	else if (to_tour && draft_find_tour(check->draft, href + 5) < 0)
-		draft_complain(check->draft, true, check->file, line,
-			       "link to \"%.80s\": no tour has that id; see tours.json", href);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"link to \"%.80s\": no tour has that id; see tours.json", href);
 	else if (!to_page && !to_part && !to_tour)
-		draft_complain(
-			check->draft, true, check->file, line,
+		diagnostics_add(
+			check->draft->diagnostics, -EINVAL, check->file, line,
 			"link to \"%.80s\": the kiosk shows nothing outside the release; link to "
 			"\"part:ID\", \"page:ID\" or \"tour:ID\", or write the address as "
 			"text",
 			href);
 	else if (!to_tour && part < 0)
-		draft_complain(check->draft, true, check->file, line,
-			       "link to \"%.80s\": no part has that id; see parts.json", href);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"link to \"%.80s\": no part has that id; see parts.json", href);
 	else if (to_page && check->draft->parts[part].without_page)
-		draft_complain(check->draft, true, check->file, line,
-			       "link to \"%.80s\": that part has no page; write \"part:%.64s\", "
-			       "which shows it on the model",
-			       href, href + 5);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, line,
+				"link to \"%.80s\": that part has no page; write \"part:%.64s\", "
+				"which shows it on the model",
+				href, href + 5);
 	xmlFree(href);
 }
 
@@ -106,11 +107,12 @@ static void check_attributes(struct page_check *check, xmlNode *node)
 		const char *name = (const char *)a->name;
 
 		if (strncmp(name, "on", 2) == 0)
-			draft_complain(check->draft, true, check->file, node_line(node),
-				       "attribute %.40s: pages run no scripts; remove it", name);
+			diagnostics_add(check->draft->diagnostics, -EINVAL, check->file,
+					node_line(node),
+					"attribute %.40s: pages run no scripts; remove it", name);
 		else if (strcmp(name, "style") == 0)
-			draft_complain(check->draft, false, check->file, node_line(node),
-				       "style is ignored: the kiosk has one look for all pages");
+			diagnostics_add(check->draft->diagnostics, 0, check->file, node_line(node),
+					"style is ignored: the kiosk has one look for all pages");
 	}
 }
 
@@ -119,10 +121,10 @@ static int check_element(struct page_check *check, xmlNode *node)
 	const char *name = (const char *)node->name;
 
 	if (!html_element(name, strlen(name))->is_allowed)
-		draft_complain(check->draft, true, check->file, node_line(node),
-			       "<%.40s> cannot be shown: see docs/information.md for the "
-			       "elements that can",
-			       name);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, node_line(node),
+				"<%.40s> cannot be shown: see docs/information.md for the "
+				"elements that can",
+				name);
 	check_attributes(check, node);
 	if (strcmp(name, "a") == 0)
 		check_link(check, node);
@@ -164,12 +166,12 @@ static void hear_parser(void *data, xmlError *error)
 		return;
 	snprintf(text, sizeof(text), "%s", error->message ? error->message : "malformed HTML");
 	text[strcspn(text, "\n")] = 0;
-	draft_complain(check->draft, false, check->file, (unsigned)error->line,
-		       "%s: check that every tag is closed in order", text);
+	diagnostics_add(check->draft->diagnostics, 0, check->file, (unsigned)error->line,
+			"%s: check that every tag is closed in order", text);
 }
 
 /* Checks the number of attributes before the parser runs, which would be slow with many. Returns
- * false after a complaint. */
+ * false after reporting a fault. */
 static bool check_tags(struct page_check *check)
 {
 	const struct bytes html = { (const uint8_t *)check->page->html, check->page->size };
@@ -181,10 +183,10 @@ static bool check_tags(struct page_check *check)
 	rc = html_tags_reduce(&reduced, html, &found);
 	buffer_finish(&reduced);
 	if (rc == 0 && found.attribute_count > HTML_TAG_ATTRIBUTES_MAX)
-		draft_complain(check->draft, true, check->file, found.line,
-			       "a tag with %u attributes: at most %d are read, and only src and "
-			       "href mean anything; remove the others",
-			       found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, found.line,
+				"a tag with %u attributes: at most %d are read, and only src and "
+				"href mean anything; remove the others",
+				found.attribute_count, HTML_TAG_ATTRIBUTES_MAX);
 	return rc < 0 || found.attribute_count <= HTML_TAG_ATTRIBUTES_MAX;
 }
 
@@ -204,8 +206,8 @@ static int parse_page(struct page_check *check)
 	if (doc)
 		rc = check_tree(check, doc);
 	if (rc == 0 && check->text_bytes == 0)
-		draft_complain(check->draft, true, check->file, 1,
-			       "there is no text on this page: write some, or remove the file");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, 1,
+				"there is no text on this page: write some, or remove the file");
 	xmlFreeDoc(doc);
 	htmlFreeParserCtxt(parser);
 	return rc;
@@ -239,16 +241,16 @@ static int read_page_file(struct page_check *check)
 		return rc == -ENOMEM ? rc : 0;
 	}
 	if (rc == -ELOOP) {
-		draft_complain(check->draft, true, check->file, 0,
-			       "is a link or not a regular file: put the page itself there");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, 0,
+				"is a link or not a regular file: put the page itself there");
 	} else if (rc < 0) {
-		draft_complain(check->draft, true, check->file, 0,
-			       rc == -EFBIG ? "page is larger than %d KB: split it"
-					    : "cannot be read (at most %d KB)",
-			       HTML_BYTES_MAX >> 10);
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, 0,
+				rc == -EFBIG ? "page is larger than %d KB: split it"
+					     : "cannot be read (at most %d KB)",
+				HTML_BYTES_MAX >> 10);
 	} else if (!g_utf8_validate((char *)bytes.data, (gssize)bytes.size - 1, NULL)) {
-		draft_complain(check->draft, true, check->file, 0,
-			       "is not UTF-8: save it as UTF-8");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, 0,
+				"is not UTF-8: save it as UTF-8");
 	} else {
 		check->page->html = (char *)bytes.data; /* taken */
 		check->page->size = bytes.size - 1;
@@ -258,7 +260,7 @@ static int read_page_file(struct page_check *check)
 	return 0;
 }
 
-/* Makes the article. What was complained about is not published, so it needs none. */
+/* Makes the article. What has a fault is not published, so it needs none. */
 static int compile_page(struct page_check *check)
 {
 	struct draft_page *page = check->page;
@@ -268,22 +270,22 @@ static int compile_page(struct page_check *check)
 	buffer_init(&page->article, ARTICLE_BYTES_MAX);
 	rc = page_compile(&page->article, html);
 	if (rc == -EFBIG)
-		draft_complain(
-			check->draft, true, check->file, 0,
+		diagnostics_add(
+			check->draft->diagnostics, -EINVAL, check->file, 0,
 			"more than %d paragraphs, pictures and cells, or links: split the page",
 			ARTICLE_BLOCKS_MAX);
 	else if (rc == -EBADMSG)
-		draft_complain(check->draft, true, check->file, 1,
-			       "there is no text on this page: write some, or remove the file");
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, 1,
+				"there is no text on this page: write some, or remove the file");
 	return rc == -ENOMEM ? rc : 0;
 }
 
 static int check_page(struct page_check *check)
 {
-	const uint32_t errors = check->draft->error_count;
+	const uint32_t errors = check->draft->diagnostics->error_count;
 	int rc = check_tags(check) ? parse_page(check) : 0;
 
-	if (rc == 0 && check->draft->error_count == errors)
+	if (rc == 0 && check->draft->diagnostics->error_count == errors)
 		rc = compile_page(check);
 	return rc;
 }
@@ -303,11 +305,11 @@ static int read_part_pages(struct draft *draft, struct draft_part *part)
 		if (rc == 0 && part->pages[i].html)
 			rc = check_page(&check);
 		else if (rc == 0 && !part->without_page)
-			draft_complain(draft, i == 0, file, 0,
-				       i == 0 ? "is missing: write it, or give the part "
-						"\"page\": false in parts.json"
-					      : "is missing: the page in another language is "
-						"shown instead");
+			diagnostics_add(draft->diagnostics, i == 0 ? -EINVAL : 0, file, 0,
+					i == 0 ? "is missing: write it, or give the part "
+						 "\"page\": false in parts.json"
+					       : "is missing: the page in another language is "
+						 "shown instead");
 		if (rc < 0)
 			return rc;
 	}
@@ -350,9 +352,9 @@ static void find_stray_pages(struct draft *draft)
 
 		if (name[0] != '.' && !is_expected(draft, name)) {
 			snprintf(file, sizeof(file), "pages/%s", name);
-			draft_complain(draft, false, file, 0,
-				       "belongs to no part and language of this release: name it "
-				       "ID.LANGUAGE.html after a part of parts.json");
+			diagnostics_add(draft->diagnostics, 0, file, 0,
+					"belongs to no part and language of this release: name it "
+					"ID.LANGUAGE.html after a part of parts.json");
 		}
 		free(entries[i]);
 	}

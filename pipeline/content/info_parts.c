@@ -18,8 +18,9 @@ struct part_reader {
 	const cJSON *json;
 };
 
-#define complain_part(reader, ...)                                                                 \
-	draft_complain((reader)->draft, true, parts_file, (reader)->part->line, __VA_ARGS__)
+#define report_part(reader, ...)                                                                   \
+	diagnostics_add((reader)->draft->diagnostics, -EINVAL, parts_file, (reader)->part->line,   \
+			__VA_ARGS__)
 
 static const char *part_name(const struct part_reader *r)
 {
@@ -55,8 +56,8 @@ static bool read_vector(const struct part_reader *r, const cJSON *object, const 
 {
 	if (read_numbers(cJSON_GetObjectItemCaseSensitive(object, key), out, 3))
 		return true;
-	complain_part(r, "part \"%s\": \"%s\" must be three numbers, metres: [x, y, z]",
-		      part_name(r), key);
+	report_part(r, "part \"%s\": \"%s\" must be three numbers, metres: [x, y, z]", part_name(r),
+		    key);
 	return false;
 }
 
@@ -67,8 +68,8 @@ static void read_sphere(struct part_reader *r, const cJSON *json)
 	region->kind = REGION_SPHERE;
 	read_vector(r, json, "centre", region->centre_m);
 	if (!read_number(json, "radius", &region->radius_m) || region->radius_m <= 0)
-		complain_part(r, "part \"%s\": \"radius\" must be a positive number of metres",
-			      part_name(r));
+		report_part(r, "part \"%s\": \"radius\" must be a positive number of metres",
+			    part_name(r));
 }
 
 static void read_box(struct part_reader *r, const cJSON *json)
@@ -79,10 +80,10 @@ static void read_box(struct part_reader *r, const cJSON *json)
 	read_vector(r, json, "centre", region->centre_m);
 	if (read_vector(r, json, "half", region->half_m) &&
 	    !(region->half_m[0] > 0 && region->half_m[1] > 0 && region->half_m[2] > 0))
-		complain_part(r, "part \"%s\": \"half\" must be positive: half the box's sides",
-			      part_name(r));
+		report_part(r, "part \"%s\": \"half\" must be positive: half the box's sides",
+			    part_name(r));
 	if (cJSON_HasObjectItem(json, "turn") && !read_number(json, "turn", &region->turn_deg))
-		complain_part(r, "part \"%s\": \"turn\" must be a number of degrees", part_name(r));
+		report_part(r, "part \"%s\": \"turn\" must be a number of degrees", part_name(r));
 }
 
 /* Returns twice the area; positive if counter-clockwise. */
@@ -118,14 +119,14 @@ static bool read_corners(struct part_reader *r, const cJSON *corners)
 	int count = cJSON_IsArray(corners) ? cJSON_GetArraySize(corners) : 0;
 
 	if (count < 3 || count > REGION_CORNERS_MAX) {
-		complain_part(r, "part \"%s\": a prism needs 3 to %d \"corners\", it has %d",
-			      part_name(r), REGION_CORNERS_MAX, count);
+		report_part(r, "part \"%s\": a prism needs 3 to %d \"corners\", it has %d",
+			    part_name(r), REGION_CORNERS_MAX, count);
 		return false;
 	}
 	for (int i = 0; i < count; i++) {
 		if (!read_numbers(cJSON_GetArrayItem(corners, i), region->corners_m[i], 2)) {
-			complain_part(r, "part \"%s\": corner %d must be two numbers: [x, y]",
-				      part_name(r), i + 1);
+			report_part(r, "part \"%s\": corner %d must be two numbers: [x, y]",
+				    part_name(r), i + 1);
 			return false;
 		}
 		region->centre_m[0] += region->corners_m[i][0] / (float)count;
@@ -142,14 +143,14 @@ static void read_prism(struct part_reader *r, const cJSON *json)
 	region->kind = REGION_PRISM;
 	if (!read_number(json, "floor", &region->floor_m) ||
 	    !read_number(json, "roof", &region->roof_m) || region->roof_m <= region->floor_m)
-		complain_part(r, "part \"%s\": \"floor\" and \"roof\" must be heights, roof above",
-			      part_name(r));
+		report_part(r, "part \"%s\": \"floor\" and \"roof\" must be heights, roof above",
+			    part_name(r));
 	region->centre_m[2] = (region->floor_m + region->roof_m) / 2;
 	if (!read_corners(r, cJSON_GetObjectItemCaseSensitive(json, "corners")))
 		return;
 	make_counter_clockwise(region);
 	if (area_twice(region) == 0)
-		complain_part(r, "part \"%s\": the corners enclose no area", part_name(r));
+		report_part(r, "part \"%s\": the corners enclose no area", part_name(r));
 }
 
 /* Keeps the list's names, and lets judge_faces check it. */
@@ -163,11 +164,10 @@ static int read_faces(struct part_reader *r, const cJSON *json)
 	int rc;
 
 	if (!file) {
-		complain_part(
-			r,
-			"part \"%s\": a region of faces needs a \"file\" that lists them, such "
-			"as \"regions/lintel.faces\"",
-			part_name(r));
+		report_part(r,
+			    "part \"%s\": a region of faces needs a \"file\" that lists them, such "
+			    "as \"regions/lintel.faces\"",
+			    part_name(r));
 		return 0;
 	}
 	r->part->faces_file = strdup(file);
@@ -177,8 +177,8 @@ static int read_faces(struct part_reader *r, const cJSON *json)
 	rc = options->judge_faces ? options->judge_faces(options->faces_data, &faces, &diagnostics)
 				  : 0;
 	if (rc == -EINVAL)
-		complain_part(r, "part \"%s\": %s", part_name(r),
-			      diagnostics_cause(&diagnostics, rc));
+		report_part(r, "part \"%s\": %s", part_name(r),
+			    diagnostics_cause(&diagnostics, rc));
 	return rc == -EINVAL ? 0 : rc;
 }
 
@@ -203,10 +203,10 @@ static int read_region(struct part_reader *r)
 	else if (kind && strcmp(kind, "point") == 0)
 		read_vector(r, json, "centre", r->part->region.centre_m);
 	else
-		complain_part(r,
-			      "part \"%s\": region kind \"%.40s\" is none of point, sphere, box, "
-			      "prism, faces",
-			      part_name(r), kind ? kind : "");
+		report_part(r,
+			    "part \"%s\": region kind \"%.40s\" is none of point, sphere, box, "
+			    "prism, faces",
+			    part_name(r), kind ? kind : "");
 	memcpy(r->part->anchor_m, r->part->region.centre_m, sizeof(r->part->anchor_m));
 	r->part->has_anchor = anchor != NULL;
 	if (anchor)
@@ -232,11 +232,12 @@ static int read_texts(struct part_reader *r, const char *key, char *texts[], boo
 		if (text && !(texts[i] = strdup(text)))
 			return -ENOMEM;
 		if (!text && needed)
-			draft_complain(r->draft, i == 0, parts_file, r->part->line,
-				       "part \"%s\" has no %s in \"%s\"%s: add \"%s\": {\"%s\": "
-				       "\"...\"}",
-				       part_name(r), key, language,
-				       i == 0 ? ", the first language" : "", key, language);
+			diagnostics_add(r->draft->diagnostics, i == 0 ? -EINVAL : 0, parts_file,
+					r->part->line,
+					"part \"%s\" has no %s in \"%s\"%s: add \"%s\": {\"%s\": "
+					"\"...\"}",
+					part_name(r), key, language,
+					i == 0 ? ", the first language" : "", key, language);
 	}
 	return 0;
 }
@@ -254,12 +255,12 @@ static int read_id(struct part_reader *r)
 	const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(r->json, "id"));
 
 	if (!id || !draft_is_id(id))
-		complain_part(r,
-			      "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
-			      "page's file)",
-			      id ? id : "", INFO_ID_BYTES_MAX);
+		report_part(r,
+			    "part id \"%.70s\": use 1 to %d of a-z, 0-9, - and _ (it names the "
+			    "page's file)",
+			    id ? id : "", INFO_ID_BYTES_MAX);
 	else if (draft_find_part(r->draft, id) >= 0)
-		complain_part(r, "part \"%s\" is defined twice: rename or remove one", id);
+		report_part(r, "part \"%s\" is defined twice: rename or remove one", id);
 	r->part->id = strdup(id ? id : "");
 	return r->part->id ? 0 : -ENOMEM;
 }
@@ -314,8 +315,8 @@ static int read_array(struct draft *draft, const struct json_text *json, const c
 	int rc = 0, i = 0;
 
 	if (count > INFO_PARTS_MAX) {
-		draft_complain(draft, true, parts_file, 0, "%d parts: at most %d are possible",
-			       count, INFO_PARTS_MAX);
+		diagnostics_add(draft->diagnostics, -EINVAL, parts_file, 0,
+				"%d parts: at most %d are possible", count, INFO_PARTS_MAX);
 		return 0;
 	}
 	draft->parts = calloc((size_t)count + 1, sizeof(*draft->parts));
@@ -329,8 +330,8 @@ static int read_array(struct draft *draft, const struct json_text *json, const c
 		if (cJSON_IsObject(item))
 			rc = read_part(draft, item, json_text_line(json, item), credits);
 		else
-			draft_complain(
-				draft, true, parts_file, 0,
+			diagnostics_add(
+				draft->diagnostics, -EINVAL, parts_file, 0,
 				"entry %d of \"parts\" is not an object: write {\"id\": ...}", i);
 	}
 	return rc;

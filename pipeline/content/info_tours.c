@@ -26,9 +26,9 @@ struct tour_reader {
 	uint32_t stop;
 };
 
-static void complain(const struct tour_reader *r, const char *text, ...) printf_like(2, 3);
+static void report(const struct tour_reader *r, const char *text, ...) printf_like(2, 3);
 
-static void complain(const struct tour_reader *r, const char *text, ...)
+static void report(const struct tour_reader *r, const char *text, ...)
 {
 	char message[400], where[120] = "";
 	va_list args;
@@ -38,11 +38,11 @@ static void complain(const struct tour_reader *r, const char *text, ...)
 	va_end(args);
 	if (r->stop > 0)
 		snprintf(where, sizeof(where), ", stop %u", r->stop);
-	draft_complain(r->draft, true, tours_file, r->line, "tour \"%.64s\"%s: %s",
-		       r->tour->id ? r->tour->id : "?", where, message);
+	diagnostics_add(r->draft->diagnostics, -EINVAL, tours_file, r->line, "tour \"%.64s\"%s: %s",
+			r->tour->id ? r->tour->id : "?", where, message);
 }
 
-/* Complains about unknown keys, which are usually misspelt. */
+/* Reports unknown keys, which are usually misspelt. */
 static void check_keys(const struct tour_reader *r, const cJSON *json, const char *known)
 {
 	for (const cJSON *item = json->child; item; item = item->next) {
@@ -50,8 +50,8 @@ static void check_keys(const struct tour_reader *r, const cJSON *json, const cha
 
 		snprintf(key, sizeof(key), " %.36s ", item->string);
 		if (!strstr(known, key))
-			complain(r, "\"%.40s\" is not one of its keys, which are:%s", item->string,
-				 known);
+			report(r, "\"%.40s\" is not one of its keys, which are:%s", item->string,
+			       known);
 	}
 }
 
@@ -68,7 +68,7 @@ static bool read_vector(const struct tour_reader *r, const cJSON *json, const ch
 		is_vector = isfinite(out[i]);
 	}
 	if (!is_vector)
-		complain(r, "\"%s\" must be three numbers, metres: [x, y, z]", key);
+		report(r, "\"%s\" must be three numbers, metres: [x, y, z]", key);
 	return is_vector;
 }
 
@@ -84,8 +84,8 @@ static float read_seconds(const struct tour_reader *r, const cJSON *json, const 
 	if (seconds >= 1 && seconds <= SECONDS_MAX)
 		return (float)seconds;
 	if (seconds != 0 || !may_be_none)
-		complain(r, "\"%s\" must be %s1 to %.0f seconds", key, may_be_none ? "0 or " : "",
-			 (double)SECONDS_MAX);
+		report(r, "\"%s\" must be %s1 to %.0f seconds", key, may_be_none ? "0 or " : "",
+		       (double)SECONDS_MAX);
 	return 0;
 }
 
@@ -98,8 +98,8 @@ static int read_texts(const struct tour_reader *r, const cJSON *json, const char
 	const cJSON *object = cJSON_GetObjectItemCaseSensitive(json, key);
 
 	if (object && !cJSON_IsObject(object))
-		complain(r, "\"%s\" must be texts by language: {\"%s\": \"...\"}", key,
-			 options->languages[0]);
+		report(r, "\"%s\" must be texts by language: {\"%s\": \"...\"}", key,
+		       options->languages[0]);
 	for (uint32_t i = 0; i < options->language_count; i++) {
 		const char *text = cJSON_GetStringValue(
 			cJSON_GetObjectItemCaseSensitive(object, options->languages[i]));
@@ -109,13 +109,12 @@ static int read_texts(const struct tour_reader *r, const cJSON *json, const char
 			if (!texts[i])
 				return -ENOMEM;
 		} else if (i == 0 && (needed || object)) {
-			complain(
-				r,
-				"no %s in \"%s\", the first language: add \"%s\": {\"%s\": \"...\"}",
-				key, options->languages[i], key, options->languages[i]);
+			report(r,
+			       "no %s in \"%s\", the first language: add \"%s\": {\"%s\": \"...\"}",
+			       key, options->languages[i], key, options->languages[i]);
 		} else if (object) {
-			draft_complain(
-				r->draft, false, tours_file, r->line,
+			diagnostics_add(
+				r->draft->diagnostics, 0, tours_file, r->line,
 				"tour \"%.64s\": no %s in \"%s\": that of another language is "
 				"shown instead",
 				r->tour->id, key, options->languages[i]);
@@ -136,7 +135,7 @@ static void read_part(const struct tour_reader *r, const cJSON *json, struct inf
 		return;
 	stop->part = id ? draft_find_part(r->draft, id) : -1;
 	if (stop->part < 0)
-		complain(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
+		report(r, "part \"%.64s\": no part has that id; see parts.json", id ? id : "");
 }
 
 /* Reads the stop's own eye and target; place_stop computes what it leaves to its part. */
@@ -152,14 +151,14 @@ static void read_view(const struct tour_reader *r, const cJSON *json, struct dra
 		stop->has_target =
 			has_target && read_vector(r, json, "target", stop->view.target_m);
 	} else if (has_eye || has_target) {
-		complain(r, "\"%s\" alone is not a view: add \"%s\": [x, y, z]",
-			 has_eye ? "eye" : "target", has_eye ? "target" : "eye");
+		report(r, "\"%s\" alone is not a view: add \"%s\": [x, y, z]",
+		       has_eye ? "eye" : "target", has_eye ? "target" : "eye");
 	} else if (has_part && is_first) {
-		complain(r, "a part is shown from where the stop before stands, and the first has "
-			    "none: add \"eye\": [x, y, z]");
+		report(r, "a part is shown from where the stop before stands, and the first has "
+			  "none: add \"eye\": [x, y, z]");
 	} else if (!cJSON_HasObjectItem(json, "part")) {
-		complain(r, "it has no view: add \"eye\" and \"target\": [x, y, z], or "
-			    "\"part\": \"ID\"");
+		report(r, "it has no view: add \"eye\" and \"target\": [x, y, z], or "
+			  "\"part\": \"ID\"");
 	}
 }
 
@@ -172,7 +171,7 @@ static int read_stop(struct tour_reader *r, const cJSON *json, bool is_end)
 	r->stop = ++r->tour->stop_count; /* from here on draft_finish frees it */
 	stop->view.part = -1;
 	if (!cJSON_IsObject(json)) {
-		complain(r, "must be an object: {\"eye\": [x, y, z], \"target\": [x, y, z]}");
+		report(r, "must be an object: {\"eye\": [x, y, z], \"target\": [x, y, z]}");
 		return 0;
 	}
 	check_keys(r, json, " eye target part stay travel caption ");
@@ -191,7 +190,7 @@ static int read_stops(struct tour_reader *r, const cJSON *json)
 	const cJSON *item;
 
 	if (count < 2 || count > INFO_STOPS_MAX) {
-		complain(r, "a tour needs 2 to %d \"stops\", it has %d", INFO_STOPS_MAX, count);
+		report(r, "a tour needs 2 to %d \"stops\", it has %d", INFO_STOPS_MAX, count);
 		return 0;
 	}
 	r->tour->stops = calloc((size_t)count, sizeof(*r->tour->stops));
@@ -229,8 +228,8 @@ static void place_stop(const struct tour_reader *r, struct draft_stop *stop,
 	for (int i = 0; i < 3; i++)
 		apart = fmaxf(apart, fabsf(view->eye_m[i] - view->target_m[i]));
 	if ((part || stop->has_target) && apart < 0.01f)
-		complain(r, "\"eye\" and \"target\" are one place: move the target to what is to "
-			    "be seen");
+		report(r, "\"eye\" and \"target\" are one place: move the target to what is to "
+			  "be seen");
 }
 
 void draft_place_stops(struct draft *draft)
@@ -264,14 +263,14 @@ static void check_attract(const struct tour_reader *r, const cJSON *json)
 	const cJSON *attract = cJSON_GetObjectItemCaseSensitive(json, "attract");
 
 	if (attract && !cJSON_IsBool(attract))
-		complain(r, "\"attract\" must be true or false");
+		report(r, "\"attract\" must be true or false");
 	r->tour->attract = cJSON_IsTrue(attract);
 	for (uint32_t i = 0; r->tour->attract && i + 1 < r->draft->tour_count; i++)
 		if (r->draft->tours[i].attract)
-			complain(r,
-				 "tour \"%s\" has \"attract\" too: only one can be shown while "
-				 "nobody is there",
-				 r->draft->tours[i].id);
+			report(r,
+			       "tour \"%s\" has \"attract\" too: only one can be shown while "
+			       "nobody is there",
+			       r->draft->tours[i].id);
 }
 
 static int read_tour(struct draft *draft, const struct json_text *text, const cJSON *json)
@@ -291,9 +290,9 @@ static int read_tour(struct draft *draft, const struct json_text *text, const cJ
 		return -ENOMEM;
 	draft->tour_count++; /* from here on draft_finish frees it */
 	if (!draft_is_id(tour->id))
-		complain(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
+		report(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
-		complain(&r, "is defined twice: rename or remove one");
+		report(&r, "is defined twice: rename or remove one");
 	check_keys(&r, json, " id title caption thumbnail attract stops ");
 	check_attract(&r, json);
 	rc = read_texts(&r, json, "title", tour->titles, true);
@@ -310,8 +309,8 @@ static int read_array(struct draft *draft, const struct json_text *json, const c
 	int count = cJSON_GetArraySize(array), rc = 0, i = 0;
 
 	if (count > INFO_TOURS_MAX) {
-		draft_complain(draft, true, tours_file, 0, "%d tours: at most %d are possible",
-			       count, INFO_TOURS_MAX);
+		diagnostics_add(draft->diagnostics, -EINVAL, tours_file, 0,
+				"%d tours: at most %d are possible", count, INFO_TOURS_MAX);
 		return 0;
 	}
 	draft->tours = calloc((size_t)count + 1, sizeof(*draft->tours));
@@ -324,8 +323,8 @@ static int read_array(struct draft *draft, const struct json_text *json, const c
 		if (cJSON_IsObject(item))
 			rc = read_tour(draft, json, item);
 		else
-			draft_complain(
-				draft, true, tours_file, 0,
+			diagnostics_add(
+				draft->diagnostics, -EINVAL, tours_file, 0,
 				"entry %d of \"tours\" is not an object: write {\"id\": ...}",
 				i + 1);
 		i++;

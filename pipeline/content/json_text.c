@@ -85,7 +85,8 @@ static int find_lines(struct json_text *out, const char *text)
 	return rc;
 }
 
-int json_text_parse(struct json_text *out, struct buffer *buffer, struct diagnostics *diagnostics)
+int json_text_parse(struct json_text *out, struct buffer *buffer, const char *file,
+		    struct diagnostics *diagnostics)
 {
 	const char *text, *end;
 
@@ -95,11 +96,11 @@ int json_text_parse(struct json_text *out, struct buffer *buffer, struct diagnos
 		return buffer->error;
 	text = (const char *)buffer->data;
 	if (!g_utf8_validate(text, -1, &end)) /* cJSON does not check this */
-		return diagnostics_add(diagnostics, -EBADMSG, NULL, line_of(text, end),
+		return diagnostics_add(diagnostics, -EBADMSG, file, line_of(text, end),
 				       "is not UTF-8 from here on: save it as UTF-8");
 	out->root = cJSON_ParseWithOpts(text, &end, true);
 	if (!out->root)
-		return diagnostics_add(diagnostics, -EBADMSG, NULL, line_of(text, end),
+		return diagnostics_add(diagnostics, -EBADMSG, file, line_of(text, end),
 				       "is not valid JSON from here on: look for a missing comma, "
 				       "quote or bracket");
 	return find_lines(out, text);

@@ -15,9 +15,9 @@ struct json_text {
 };
 
 /* Parses what the buffer holds, after a zero that is added to it. *out is for json_text_finish,
- * also on failure. -EBADMSG: it is not UTF-8 or not JSON; diagnostics has the line from which on.
- * -EFBIG: the buffer has no room for the zero. -ENOMEM. */
-must_check int json_text_parse(struct json_text *out, struct buffer *text,
+ * also on failure. -EBADMSG: it is not UTF-8 or not JSON; diagnostics names file and the line from
+ * which on. -EFBIG: the buffer has no room for the zero. -ENOMEM. */
+must_check int json_text_parse(struct json_text *out, struct buffer *text, const char *file,
 			       struct diagnostics *diagnostics);
 /* Frees everything. Zeroed is fine. */
 void json_text_finish(struct json_text *json);

@@ -21,20 +21,21 @@ struct sources {
 	struct draft *draft; /* NULL: not read yet, or compiled */
 	struct info_built built;
 	bool is_built;
-	uint32_t warnings;
+	struct diagnostics found;  /* in the files of the folder */
+	uint32_t logged, warnings; /* how many of them were logged, and how many are warnings */
 };
 
-static void complain(void *data, bool is_error, const char *file, unsigned line, const char *text)
+/* Logs what was found since the last call. */
+static void log_found(struct sources *sources)
 {
-	struct sources *sources = data;
-	char at[16] = "";
+	for (; sources->logged < sources->found.count; sources->logged++) {
+		const struct diagnostic *found = diagnostics_get(&sources->found, sources->logged);
 
-	if (line > 0)
-		snprintf(at, sizeof(at), ":%u", line);
-	if (is_error)
-		log_error("pipeline", "%s%s: %s", file, at, text);
-	else if (++sources->warnings <= WARNINGS_SHOWN)
-		log_warn("pipeline", "%s%s: %s", file, at, text);
+		if (found->error < 0)
+			log_error("pipeline", "%s", found->text);
+		else if (++sources->warnings <= WARNINGS_SHOWN)
+			log_warn("pipeline", "%s", found->text);
+	}
 }
 
 static void set_options(struct sources *sources)
@@ -47,8 +48,7 @@ static void set_options(struct sources *sources)
 							.languages = sources->languages,
 							.language_count = content->language_count,
 							.tools = content->tools,
-							.complaint = complain,
-							.complaint_data = sources,
+							.diagnostics = &sources->found,
 							.judge_faces = part_faces_judge,
 							.place_faces = part_faces_place,
 							.faces_data = &sources->faces };
@@ -65,6 +65,7 @@ int sources_create(struct sources **out, const struct content *content)
 		return rc;
 	}
 	sources->content = content;
+	sources->found.max = INFO_DIAGNOSTICS_MAX;
 	part_faces_init(&sources->faces, sources->scans);
 	set_options(sources);
 	*out = sources;
@@ -79,6 +80,7 @@ void sources_destroy(struct sources *sources)
 	info_draft_destroy(sources->draft);
 	part_faces_finish(&sources->faces);
 	scans_destroy(sources->scans);
+	diagnostics_finish(&sources->found);
 	free(sources);
 }
 
@@ -112,7 +114,7 @@ static bool are_known(const char *path, struct hash key)
 static int check_ways(struct sources *sources, const struct info_built *built,
 		      struct diagnostics *diagnostics)
 {
-	struct tour_check_options options = { .complaint = complain, .complaint_data = sources };
+	struct tour_check_options options = { .diagnostics = &sources->found };
 	char path[CONTENT_PATH_BYTES], hex[HASH_HEX_BYTES];
 	struct hash scans, key;
 	int rc = scans_key(sources->scans, &scans, diagnostics);
@@ -134,6 +136,14 @@ static int check_ways(struct sources *sources, const struct info_built *built,
 
 /* ---- the information */
 
+static int read_folder(struct sources *sources)
+{
+	int rc = info_read(&sources->draft, &sources->options);
+
+	log_found(sources);
+	return rc;
+}
+
 static int compile(struct sources *sources, struct diagnostics *diagnostics)
 {
 	int rc = info_compile(&sources->built, sources->draft);
@@ -142,6 +152,7 @@ static int compile(struct sources *sources, struct diagnostics *diagnostics)
 		rc = part_faces_keep(&sources->faces, diagnostics);
 	if (rc == 0 && sources->built.tour_count > 0)
 		rc = check_ways(sources, &sources->built, diagnostics);
+	log_found(sources);
 	if (rc < 0) {
 		info_built_finish(&sources->built);
 		return rc;
@@ -155,9 +166,12 @@ static int compile(struct sources *sources, struct diagnostics *diagnostics)
 	return 0;
 }
 
-/* The faults of the folder have been logged as complaints; this logs any other. */
+/* The faults of the folder have been logged; this logs any other. */
 static int tell(const struct sources *sources, int rc, const struct diagnostics *diagnostics)
 {
+	if (rc < 0 && sources->found.dropped > 0)
+		log_error("pipeline", "%s: and %u more", sources->content->folder,
+			  sources->found.dropped);
 	if (rc < 0 && diagnostics->count > 0)
 		log_error("pipeline", "%s", diagnostics_cause(diagnostics, rc));
 	else if (rc < 0 && rc != -EINVAL)
@@ -172,7 +186,7 @@ int sources_check(struct sources *sources)
 	int rc = 0;
 
 	if (!sources->draft && !sources->is_built)
-		rc = info_read(&sources->draft, &sources->options);
+		rc = read_folder(sources);
 	if (rc == 0 && sources->draft && info_has_tours(sources->draft))
 		return sources_info(sources, &built);
 	return tell(sources, rc, &diagnostics);
@@ -185,7 +199,7 @@ int sources_info(struct sources *sources, const struct info_built **out)
 
 	*out = NULL;
 	if (!sources->draft && !sources->is_built)
-		rc = info_read(&sources->draft, &sources->options);
+		rc = read_folder(sources);
 	if (rc == 0 && !sources->is_built)
 		rc = compile(sources, &diagnostics);
 	if (rc == 0)

@@ -54,14 +54,14 @@ struct way {
 };
 
 /* leg is -1 for faults of the whole tour. */
-static void complain(struct way *way, int leg, const char *text, ...) printf_like(3, 4);
+static void report(struct way *way, int leg, const char *text, ...) printf_like(3, 4);
 
-static void complain(struct way *way, int leg, const char *text, ...)
+static void report(struct way *way, int leg, const char *text, ...)
 {
 	const struct info_tour_lines *lines = &way->built->tour_lines[way->number];
 	const uint32_t count = way->tour->stop_count;
 	const uint32_t to = leg < 0 ? 0 : ((uint32_t)leg + 1) % count;
-	char message[300], all[480], where[60] = "";
+	char message[300], where[60] = "";
 	va_list args;
 
 	va_start(args, text);
@@ -69,10 +69,10 @@ static void complain(struct way *way, int leg, const char *text, ...)
 	va_end(args);
 	if (leg >= 0)
 		snprintf(where, sizeof(where), ", from stop %d to stop %u", leg + 1, to + 1);
-	snprintf(all, sizeof(all), "tour \"%.64s\"%s: %s", way->tour->id, where, message);
 	way->faults++;
-	way->options->complaint(way->options->complaint_data, true, "tours.json",
-				leg < 0 ? lines->tour : lines->stops[to], all);
+	diagnostics_add(way->options->diagnostics, -EINVAL, "tours.json",
+			leg < 0 ? lines->tour : lines->stops[to], "tour \"%.64s\"%s: %s",
+			way->tour->id, where, message);
 }
 
 /* ---- steps along the path, and their tree */
@@ -85,7 +85,7 @@ static int take_steps(struct way *way)
 	for (uint32_t leg = 0; leg < way->path.leg_count; leg++)
 		count += (uint64_t)(tour_path_leg_m(&way->path, leg) / step_m) + 2;
 	if (count > STEPS_MAX) {
-		complain(way, -1, "its way is too long: stops are far outside of the model");
+		report(way, -1, "its way is too long: stops are far outside of the model");
 		return -EINVAL;
 	}
 	way->steps = malloc(count * sizeof(*way->steps));
@@ -245,15 +245,14 @@ static void judge_clearance(struct way *way)
 
 		if (n->distance_m >= way->clearance_m)
 			continue;
-		complain(
-			way, (int)leg,
-			is_through
-				? "the way leads through the scan at %.2f %.2f %.2f: lead it "
-				  "round by a stop between with \"stay\": 0 (%.2f m off it are needed)"
-				: "the way is too near to the scan at %.2f %.2f %.2f, less than "
-				  "%.2f m: move a stop, or add one between with \"stay\": 0",
-			(double)n->at_m[0], (double)n->at_m[1], (double)n->at_m[2],
-			(double)way->clearance_m);
+		report(way, (int)leg,
+		       is_through
+			       ? "the way leads through the scan at %.2f %.2f %.2f: lead it "
+				 "round by a stop between with \"stay\": 0 (%.2f m off it are needed)"
+			       : "the way is too near to the scan at %.2f %.2f %.2f, less than "
+				 "%.2f m: move a stop, or add one between with \"stay\": 0",
+		       (double)n->at_m[0], (double)n->at_m[1], (double)n->at_m[2],
+		       (double)way->clearance_m);
 	}
 }
 
@@ -262,7 +261,7 @@ static void judge_clearance(struct way *way)
 static void judge_bounds(struct way *way)
 {
 	const float ground_m = way->box_min_m[2] + GROUND_SHARE * way->clearance_m;
-	int complained = -1;
+	int reported = -1;
 
 	for (uint32_t s = 0; s < way->step_count; s++) {
 		const struct step *step = &way->steps[s];
@@ -270,34 +269,34 @@ static void judge_bounds(struct way *way)
 
 		for (int i = 0; i < 3; i++)
 			middle[i] = (way->box_min_m[i] + way->box_max_m[i]) / 2;
-		if ((int)step->leg <= complained)
+		if ((int)step->leg <= reported)
 			continue;
-		complained = (int)step->leg;
+		reported = (int)step->leg;
 		if (step->at_m[2] < ground_m)
-			complain(way, (int)step->leg,
-				 "the way is under the ground at %.2f %.2f %.2f: the eye stays "
-				 "above %.2f m",
-				 (double)step->at_m[0], (double)step->at_m[1],
-				 (double)step->at_m[2], (double)ground_m);
+			report(way, (int)step->leg,
+			       "the way is under the ground at %.2f %.2f %.2f: the eye stays "
+			       "above %.2f m",
+			       (double)step->at_m[0], (double)step->at_m[1], (double)step->at_m[2],
+			       (double)ground_m);
 		else if (vec_distance(step->at_m, middle) > FAR_SHARE * way->diagonal_m)
-			complain(way, (int)step->leg,
-				 "the way is too far away at %.2f %.2f %.2f: the eye stays within "
-				 "%.0f m of the model's middle",
-				 (double)step->at_m[0], (double)step->at_m[1],
-				 (double)step->at_m[2], (double)(FAR_SHARE * way->diagonal_m));
+			report(way, (int)step->leg,
+			       "the way is too far away at %.2f %.2f %.2f: the eye stays within "
+			       "%.0f m of the model's middle",
+			       (double)step->at_m[0], (double)step->at_m[1], (double)step->at_m[2],
+			       (double)(FAR_SHARE * way->diagonal_m));
 		else
-			complained--;
+			reported--;
 	}
 }
 
 static void judge_pace(struct way *way)
 {
 	struct tour_pose before, pose;
-	int complained = -1;
+	int reported = -1;
 
 	if (way->path.duration_ms > TOUR_MINUTES_MAX * 60000)
-		complain(way, -1, "takes %.1f minutes, the limit is %d",
-			 (double)way->path.duration_ms / 60000, TOUR_MINUTES_MAX);
+		report(way, -1, "takes %.1f minutes, the limit is %d",
+		       (double)way->path.duration_ms / 60000, TOUR_MINUTES_MAX);
 	tour_path_pose(&way->path, 0, &before);
 	for (int64_t ms = LOOK_MS; ms <= way->path.duration_ms; ms += LOOK_MS) {
 		const uint32_t stops = way->tour->stop_count;
@@ -310,12 +309,12 @@ static void judge_pace(struct way *way)
 		turn = acosf(fminf(vec_dot(from, to), 1)) * 1000 / LOOK_MS;
 		leg = (int)((pose.stop + stops - 1) % stops);
 		before = pose;
-		if (turn <= TURN_MOST_RAD || leg <= complained)
+		if (turn <= TURN_MOST_RAD || leg <= reported)
 			continue;
-		complained = leg;
-		complain(way, leg,
-			 "the view turns too fast, by %.0f degrees a second: raise \"travel\"",
-			 (double)turn * 180 / M_PI);
+		reported = leg;
+		report(way, leg,
+		       "the view turns too fast, by %.0f degrees a second: raise \"travel\"",
+		       (double)turn * 180 / M_PI);
 	}
 }
 

@@ -9,10 +9,8 @@
 enum { TOUR_MINUTES_MAX = 10 };
 
 struct tour_check_options {
-	const struct mesh *mesh; /* all scans; borrowed */
-	/* must not be NULL */
-	info_complaint *complaint;
-	void *complaint_data;
+	const struct mesh *mesh;         /* all scans; borrowed */
+	struct diagnostics *diagnostics; /* gets every fault; borrowed */
 };
 
 /* Hashes everything that the check depends on: the ways, and the scans by their key. Errors as
@@ -20,7 +18,7 @@ struct tour_check_options {
 must_check int tour_check_key(struct hash *out, const struct info_built *built, struct hash scans);
 
 /* built is the result of info_build. -EINVAL: there are faults; for each leg the worst one was
- * reported as a complaint. -ENOMEM. -EBADMSG: the database cannot be read. */
+ * added to the diagnostics. -ENOMEM. -EBADMSG: the database cannot be read. */
 must_check int tour_check(const struct info_built *built, const struct tour_check_options *options);
 
 #endif

@@ -8,13 +8,6 @@
 
 enum { ROUNDS = 50, FOUND_MAX = 100 };
 
-static void quiet(void *data, bool is_error, const char *file, unsigned line, const char *text)
-{
-	(void)data;
-	if (is_error)
-		fprintf(stderr, "%s:%u: %s\n", file, line, text);
-}
-
 static double ms_since(int64_t start_us)
 {
 	return (double)(clock_thread_us() - start_us) / 1000;
@@ -59,15 +52,17 @@ static double read_pages(struct info *info)
 int main(int argc, char **argv)
 {
 	static const char *const languages[] = { "en", "fr", "km", "ja" };
+	struct diagnostics diagnostics = { 0 };
 	struct info_build_options options = { .folder = argc == 2 ? argv[1] : "",
 					      .languages = languages,
 					      .language_count = 4,
-					      .complaint = quiet };
+					      .diagnostics = &diagnostics };
 	struct info_built built;
 	struct info *info;
 	int64_t start_us = clock_thread_us();
 
 	if (argc != 2 || info_build(&built, &options) < 0) {
+		diagnostics_print(&diagnostics, stderr, "");
 		fprintf(stderr, "usage: bench_info FOLDER\n");
 		return 1;
 	}

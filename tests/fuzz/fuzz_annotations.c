@@ -1,4 +1,4 @@
-/* A file of annotations of anybody's: refused with a complaint and nothing left behind, or a
+/* A file of annotations of anybody's: refused with a diagnostic and nothing left behind, or a
  * content folder that goes out again. */
 #include <errno.h>
 #include <stdio.h>
@@ -12,12 +12,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static char base[64], file[100], folder[100];
 
-static void count(void *data, bool is_error, const char *name, unsigned line, const char *text)
+/* Each says something. Returns how many are errors, and empties the list. */
+static uint32_t count_errors(struct diagnostics *diagnostics)
 {
-	(void)name, (void)line;
-	if (strlen(text) < 10)
-		abort();
-	*(int *)data += is_error;
+	const uint32_t errors = diagnostics->error_count;
+
+	for (uint32_t i = 0; i < diagnostics->count; i++) {
+		const struct diagnostic *found = diagnostics_get(diagnostics, i);
+
+		if (strlen(found->text + found->place_bytes) < 10)
+			abort();
+	}
+	diagnostics_finish(diagnostics);
+	return errors;
 }
 
 static void clean(void)
@@ -49,23 +56,24 @@ static void begin(void)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	int errors = 0, rc;
+	struct diagnostics diagnostics = { .max = INFO_DIAGNOSTICS_MAX };
 	const struct annotations_import_options options = { .file = file,
 							    .folder = folder,
 							    .skip_unknown = size % 2,
-							    .complaint = count,
-							    .complaint_data = &errors };
+							    .diagnostics = &diagnostics };
 	const struct annotations_export_options export = { .folder = folder,
-							   .complaint = count,
-							   .complaint_data = &errors };
+							   .diagnostics = &diagnostics };
 	struct annotations_imported report;
 	struct annotations annotations;
 	char command[150];
+	uint32_t errors;
+	int rc;
 
 	if (!base[0])
 		begin();
 	write_input(data, size);
 	rc = annotations_import(&report, &options);
+	errors = count_errors(&diagnostics);
 	if (rc != 0 && (rc != -EINVAL || errors == 0 || access(folder, F_OK) == 0))
 		abort();
 	if (rc != 0)
@@ -74,6 +82,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	    annotations.count != report.part_count)
 		abort();
 	annotations_finish(&annotations);
+	count_errors(&diagnostics);
 	snprintf(command, sizeof(command), "rm -rf %s", folder);
 	if (system(command) != 0)
 		abort();

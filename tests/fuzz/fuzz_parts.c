@@ -1,5 +1,5 @@
 /* parts.json and tours.json of a content folder, with a line "====" between them: refused with
- * complaints, or a database that opens and has as many parts and tours. */
+ * diagnostics, or a database that opens and has as many parts and tours. */
 #include <errno.h>
 
 #include "pipeline/content/info_build.h"
@@ -7,12 +7,19 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static void count(void *data, bool is_error, const char *file, unsigned line, const char *text)
+/* Each names its file and says something. Returns how many are errors, and empties the list. */
+static uint32_t count_errors(struct diagnostics *diagnostics)
 {
-	(void)line;
-	if (strlen(text) < 10 || strlen(file) < 3)
-		abort();
-	*(int *)data += is_error;
+	const uint32_t errors = diagnostics->error_count;
+
+	for (uint32_t i = 0; i < diagnostics->count; i++) {
+		const struct diagnostic *found = diagnostics_get(diagnostics, i);
+
+		if (found->place_bytes < 5 || strlen(found->text + found->place_bytes) < 10)
+			abort();
+	}
+	diagnostics_finish(diagnostics);
+	return errors;
 }
 
 static void write_files(const uint8_t *data, size_t size)
@@ -46,19 +53,19 @@ static void begin(void)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	static const char *const languages[] = { "en", "km" };
-	int errors = 0, rc;
+	struct diagnostics diagnostics = { .max = INFO_DIAGNOSTICS_MAX };
 	const struct info_build_options options = { .folder = scratch,
 						    .languages = languages,
 						    .language_count = ARRAY_COUNT(languages),
-						    .complaint = count,
-						    .complaint_data = &errors };
+						    .diagnostics = &diagnostics };
 	struct info_built built;
 	struct info *info;
+	int rc;
 
 	begin();
 	write_files(data, size);
 	rc = info_build(&built, &options);
-	if ((rc == -EINVAL) != (errors > 0) || (rc != 0 && rc != -EINVAL))
+	if ((rc == -EINVAL) != (count_errors(&diagnostics) > 0) || (rc != 0 && rc != -EINVAL))
 		abort();
 	if (rc < 0)
 		return 0;

@@ -40,7 +40,10 @@ static void spoiled_hierarchy(struct object_store *objects, struct page_child *o
 int main(int argc, char **argv)
 {
 	static const char *const languages[] = { "en" };
-	struct info_build_options info = { .languages = languages, .language_count = 1 };
+	struct diagnostics diagnostics = { 0 };
+	struct info_build_options info = { .languages = languages,
+					   .language_count = 1,
+					   .diagnostics = &diagnostics };
 	struct page_child children[ROOT_CHILD_COUNT];
 	struct publisher_keys keys;
 	struct publish_target target = { .keys = &keys, .pack_bytes = 1 << 20 };

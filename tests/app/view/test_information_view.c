@@ -114,9 +114,11 @@ static void name_object(struct release *release, uint32_t child, struct bytes ob
 static void make_release(struct release *release)
 {
 	static const char *const languages[] = { "en", "km" };
+	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options options = { .folder = folder,
 						    .languages = languages,
-						    .language_count = 2 };
+						    .language_count = 2,
+						    .diagnostics = &diagnostics };
 	const struct page page = { .kind = PAGE_INFO,
 				   .child_count = 1 + PICTURES,
 				   .children = release->children };

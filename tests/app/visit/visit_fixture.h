@@ -80,11 +80,13 @@ static inline void show_words(void)
 	const struct information_view_options options = { .width_px = 1920,
 							  .height_px = 1080,
 							  .px_per_mm = 4 };
+	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options build_options = { .folder = folder,
 							  .languages = languages,
 							  .language_count = 2,
 							  .tools = INFO_TOOL_LIGHT |
-								   INFO_TOOL_SECTION };
+								   INFO_TOOL_SECTION,
+							  .diagnostics = &diagnostics };
 	struct page_child root_children[ROOT_CHILD_COUNT], child;
 	struct page page = { .kind = PAGE_INFO, .child_count = 1, .children = &child };
 	struct page root = { .kind = PAGE_ROOT,

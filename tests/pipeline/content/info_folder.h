@@ -11,43 +11,24 @@
 #include "pipeline/content/info_build.h"
 #include "tests/check.h"
 
-enum { COMPLAINTS_MAX = 32 };
-
-struct complaints {
-	struct {
-		bool is_error;
-		char file[200];
-		unsigned line;
-		char text[400];
-	} list[COMPLAINTS_MAX];
-	uint32_t count;
-};
-
 static char folder[64];
+static struct diagnostics told = { .max = INFO_DIAGNOSTICS_MAX }; /* by the last build */
 
-static inline void note(void *data, bool is_error, const char *file, unsigned line,
-			const char *text)
+/* An error about file:line whose sentence holds words. */
+static inline bool was_told(const char *file, unsigned line, const char *words)
 {
-	struct complaints *complaints = data;
+	char place[200];
 
-	if (complaints->count == COMPLAINTS_MAX)
-		return;
-	complaints->list[complaints->count].is_error = is_error;
-	complaints->list[complaints->count].line = line;
-	snprintf(complaints->list[complaints->count].file, 200, "%s", file);
-	snprintf(complaints->list[complaints->count].text, 400, "%s", text);
-	complaints->count++;
-}
+	snprintf(place, sizeof(place), line > 0 ? "%s:%u: " : "%s: ", file, line);
+	for (uint32_t i = 0; i < told.count; i++) {
+		const struct diagnostic *found = diagnostics_get(&told, i);
 
-/* An error about file:line whose text holds words. */
-static inline bool was_told(const struct complaints *complaints, const char *file, unsigned line,
-			    const char *words)
-{
-	for (uint32_t i = 0; i < complaints->count; i++)
-		if (complaints->list[i].is_error && complaints->list[i].line == line &&
-		    strcmp(complaints->list[i].file, file) == 0 &&
-		    strstr(complaints->list[i].text, words))
+		if (found->error < 0 && found->line == line &&
+		    found->place_bytes == strlen(place) &&
+		    strncmp(found->text, place, strlen(place)) == 0 &&
+		    strstr(found->text + found->place_bytes, words))
 			return true;
+	}
 	return false;
 }
 
@@ -124,20 +105,19 @@ static inline int tear_down(void **state)
 	char command[100];
 
 	(void)state;
+	diagnostics_finish(&told);
 	snprintf(command, sizeof(command), "rm -rf %s", folder);
 	return system(command);
 }
 
-static inline int build(struct info_built *out, struct complaints *complaints)
+static inline int build(struct info_built *out)
 {
 	static const char *const languages[] = { "en", "km" };
-	const struct info_build_options options = { .folder = folder,
-						    .languages = languages,
-						    .language_count = 2,
-						    .complaint = note,
-						    .complaint_data = complaints };
+	const struct info_build_options options = {
+		.folder = folder, .languages = languages, .language_count = 2, .diagnostics = &told
+	};
 
-	complaints->count = 0;
+	diagnostics_finish(&told);
 	return info_build(out, &options);
 }
 

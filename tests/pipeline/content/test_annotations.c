@@ -9,7 +9,6 @@
 
 #include "tests/pipeline/content/info_folder.h"
 
-static struct complaints complaints;
 static char copy[100], file[100]; /* where imports go, and what they read */
 
 static int set_up_exchange(void **state)
@@ -44,11 +43,9 @@ static int set_up_exchange(void **state)
 
 static int export_from(struct annotations *out, const char *from)
 {
-	const struct annotations_export_options options = { .folder = from,
-							    .complaint = note,
-							    .complaint_data = &complaints };
+	const struct annotations_export_options options = { .folder = from, .diagnostics = &told };
 
-	complaints.count = 0;
+	diagnostics_finish(&told);
 	return annotations_export(out, &options);
 }
 
@@ -58,10 +55,9 @@ static int import_with(struct annotations_imported *report, bool y_is_up, bool s
 							    .folder = copy,
 							    .y_is_up = y_is_up,
 							    .skip_unknown = skip_unknown,
-							    .complaint = note,
-							    .complaint_data = &complaints };
+							    .diagnostics = &told };
 
-	complaints.count = 0;
+	diagnostics_finish(&told);
 	return annotations_import(report, &options);
 }
 
@@ -98,7 +94,7 @@ static void comes_back_byte_for_byte(void **state)
 	CHECK(first.count == 6 && first.picture_count == 2);
 	write_file("exchange.jsonld", first.json.data, first.json.size);
 	if (import_with(&report, false, false) != 0)
-		fail_msg("%s", complaints.list[0].text);
+		fail_msg("%s", told.first.text);
 	CHECK(report.part_count == 6 && report.page_count == 3 && report.picture_count == 2);
 	CHECK(export_from(&second, copy) == 0);
 	CHECK(second.json.size == first.json.size);
@@ -130,7 +126,7 @@ static void tours_come_back_with_the_parts(void **state)
 	CHECK(first.picture_count == 2); /* one that only the tour shows */
 	write_file("exchange.jsonld", first.json.data, first.json.size);
 	if (import_with(&report, false, false) != 0)
-		fail_msg("%s", complaints.list[0].text);
+		fail_msg("%s", told.first.text);
 	CHECK(copy_says("tours.json", "2.5"));
 	CHECK(export_from(&second, copy) == 0);
 	CHECK(second.json.size == first.json.size);
@@ -139,7 +135,7 @@ static void tours_come_back_with_the_parts(void **state)
 	annotations_finish(&second);
 	write_text("tours.json", "{\"tours\": [{\"id\": \"walk\"}]}");
 	CHECK(export_from(&first, folder) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 1, "no title in"));
+	CHECK(was_told("tours.json", 1, "no title in"));
 }
 
 /* What the standards ask for, and where our own terms are used. */
@@ -182,10 +178,10 @@ static void refuses_a_folder_that_is_at_fault(void **state)
 	(void)state;
 	write_text("pages/gate.en.html", "<p>x</p>\n<script></script>");
 	CHECK(export_from(&annotations, folder) == -EINVAL);
-	CHECK(was_told(&complaints, "pages/gate.en.html", 2, "<script>"));
+	CHECK(was_told("pages/gate.en.html", 2, "<script>"));
 	write_text("parts.json", "{\"parts\": [\n,]}");
 	CHECK(export_from(&annotations, folder) == -EINVAL);
-	CHECK(was_told(&complaints, "parts.json", 2, "not valid JSON"));
+	CHECK(was_told("parts.json", 2, "not valid JSON"));
 	snprintf(path, sizeof(path), "%s/parts.json", folder);
 	unlink(path);
 	CHECK(export_from(&annotations, folder) == -ENOENT);
@@ -215,9 +211,9 @@ static void takes_what_another_tool_wrote(void **state)
 		"  \"Scene\"}], \"selector\": [{\"type\": \"PointSelector\", \"x\": 1, \"y\": 2,\n"
 		"  \"z\": 3}]}}]}\n");
 	if (import_with(&report, true, false) != 0)
-		fail_msg("%s", complaints.list[complaints.count - 1].text);
+		fail_msg("%s", diagnostics_get(&told, told.count - 1)->text);
 	CHECK(report.part_count == 1 && report.page_count == 1);
-	CHECK(complaints.count >= 1 && !complaints.list[0].is_error); /* the image */
+	CHECK(told.count >= 1 && told.first.error == 0); /* the image */
 	CHECK(copy_says("parts.json", "\"id\":\t\"east-gate\""));
 	CHECK(copy_says("parts.json", "[1, -3, 2]"));
 	CHECK(copy_says("parts.json", "\"creator\":\t\"A. Scholar\""));
@@ -272,9 +268,9 @@ static void names_the_place_of_what_it_refuses(void **state)
 		write_text("exchange.jsonld", cases[i].text);
 		if (import_with(&report, false, false) != -EINVAL)
 			fail_msg("case %zu was taken", i);
-		if (!was_told(&complaints, file, cases[i].line, cases[i].words))
-			fail_msg("case %zu: \"%s\" at line %u", i, complaints.list[0].text,
-				 complaints.list[0].line);
+		if (!was_told(file, cases[i].line, cases[i].words))
+			fail_msg("case %zu: \"%s\" at line %u", i, told.first.text,
+				 told.first.line);
 		CHECK(nothing_is_left());
 	}
 }
@@ -288,7 +284,7 @@ static void leaves_unknown_selectors_out_where_told_to(void **state)
 		   "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("#b", SVG) "]}");
 	CHECK(import_with(&report, false, true) == 0);
 	CHECK(report.part_count == 1 && report.skipped_count == 1);
-	CHECK(complaints.list[0].line == 3 && strstr(complaints.list[0].text, "left out"));
+	CHECK(told.first.line == 3 && strstr(told.first.text, "left out"));
 	CHECK(copy_says("parts.json", "\"a\"") && !copy_says("parts.json", "\"b\""));
 }
 
@@ -328,15 +324,19 @@ static void takes_away_what_the_folder_cannot_be(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
-		bool told = false;
+		bool is_told = false;
 
 		write_text("exchange.jsonld", cases[i].text);
 		CHECK(import_with(&report, false, false) == -EINVAL);
-		for (uint32_t k = 0; k < complaints.count; k++)
-			told |= strcmp(complaints.list[k].file, cases[i].file) == 0 &&
-				strstr(complaints.list[k].text, cases[i].words);
-		if (!told)
-			fail_msg("case %zu: %s", i, complaints.list[0].text);
+		for (uint32_t k = 0; k < told.count; k++) {
+			const struct diagnostic *found = diagnostics_get(&told, k);
+
+			is_told |=
+				strncmp(found->text, cases[i].file, strlen(cases[i].file)) == 0 &&
+				strstr(found->text + found->place_bytes, cases[i].words);
+		}
+		if (!is_told)
+			fail_msg("case %zu: %s", i, told.first.text);
 		CHECK(nothing_is_left());
 	}
 }
@@ -349,7 +349,7 @@ static void writes_over_nothing(void **state)
 	write_text("exchange.jsonld", ITEM("#a", POINT));
 	CHECK(import_with(&report, false, false) == 0);
 	CHECK(import_with(&report, false, false) == -EINVAL);
-	CHECK(was_told(&complaints, file, 0, "exists already"));
+	CHECK(was_told(file, 0, "exists already"));
 	CHECK(copy_says("parts.json", "\"a\""));
 }
 

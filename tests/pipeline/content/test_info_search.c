@@ -42,26 +42,24 @@ static int set_up_search(void **state)
 	return rc;
 }
 
-static void build_folder(struct info_built *out, struct complaints *complaints, int expected)
+static void build_folder(struct info_built *out, int expected)
 {
 	const struct info_build_options options = { .folder = folder,
 						    .languages = languages,
 						    .language_count = ARRAY_COUNT(languages),
-						    .complaint = note,
-						    .complaint_data = complaints };
+						    .diagnostics = &told };
 
-	complaints->count = 0;
+	diagnostics_finish(&told);
 	if (info_build(out, &options) != expected)
-		fail_msg("%s", complaints->count ? complaints->list[0].text : "no complaint");
+		fail_msg("%s", told.count ? told.first.text : "no diagnostic");
 }
 
 static struct info *open_folder(void)
 {
-	struct complaints complaints;
 	struct info_built built;
 	struct info *info;
 
-	build_folder(&built, &complaints, 0);
+	build_folder(&built, 0);
 	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
 	info_built_finish(&built);
 	return info;
@@ -197,7 +195,8 @@ static void languages_stand_in_for_one_another(void **state)
 	static const char *const others[] = { "en", "km", "pt-BR", "pt" };
 	const struct info_build_options options = { .folder = folder,
 						    .languages = others,
-						    .language_count = ARRAY_COUNT(others) };
+						    .language_count = ARRAY_COUNT(others),
+						    .diagnostics = &told };
 	const char *language;
 	struct info_built built;
 	struct bytes article;
@@ -265,14 +264,13 @@ static void no_text_is_an_error_of_syntax(void **state)
 					      "-",    "gate", "塔",  "\xe5", "\xff",  "\x01",
 					      "ក្",    "\t",   "'",   ";",    "\\",    "--",
 					      "a",    "é" };
-	struct complaints complaints;
 	struct info_built built;
 	unsigned char *image;
 	uint32_t random = 3, found = 0;
 	sqlite3 *db;
 
 	(void)state;
-	build_folder(&built, &complaints, 0);
+	build_folder(&built, 0);
 	CHECK(sqlite3_open(":memory:", &db) == SQLITE_OK);
 	image = sqlite3_malloc64(built.database.size);
 	memcpy(image, built.database.data, built.database.size);
@@ -350,7 +348,6 @@ static void credits_that_are_no_dublin_core_are_refused(void **state)
 		{ "{\"rights\": {\"de\": 3}}", "\"rights\" must be a text" },
 		{ "[]", "\"credits\" must be a text" },
 	};
-	struct complaints complaints;
 	struct info_built built;
 	char text[400];
 
@@ -369,21 +366,20 @@ static void credits_that_are_no_dublin_core_are_refused(void **state)
 				 "false, \"title\": {\"en\": \"x\"}, \"credits\": %s}]}",
 				 credits);
 		write_text("parts.json", text);
-		build_folder(&built, &complaints, -EINVAL);
-		if (!was_told(&complaints, "parts.json", 2, cases[i / 2].words))
-			fail_msg("case %zu: %s", i, complaints.list[0].text);
+		build_folder(&built, -EINVAL);
+		if (!was_told("parts.json", 2, cases[i / 2].words))
+			fail_msg("case %zu: %s", i, told.first.text);
 	}
 }
 
 /* Damage of the index alone finds less; nothing breaks, and the texts are there. */
 static void a_damaged_index_finds_less_and_breaks_nothing(void **state)
 {
-	struct complaints complaints;
 	struct info_built built;
 	uint32_t random = 7, list[8];
 
 	(void)state;
-	build_folder(&built, &complaints, 0);
+	build_folder(&built, 0);
 	for (int i = 0; i < 400; i++) {
 		struct buffer *image = &built.database;
 		size_t at = (random = random * 1664525u + 1013904223u) % image->size;

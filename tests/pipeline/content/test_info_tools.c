@@ -7,13 +7,11 @@
 static void build_with(struct info_built *out, unsigned tools)
 {
 	static const char *const languages[] = { "en", "km" };
-	struct complaints complaints = { 0 };
 	const struct info_build_options options = { .folder = folder,
 						    .languages = languages,
 						    .language_count = 2,
 						    .tools = tools,
-						    .complaint = note,
-						    .complaint_data = &complaints };
+						    .diagnostics = &told };
 
 	CHECK(info_build(out, &options) == 0);
 }

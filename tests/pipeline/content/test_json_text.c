@@ -19,7 +19,7 @@ static int parse(struct json_text *out, const char *text)
 	diagnostics = (struct diagnostics){ 0 };
 	buffer_init(&buffer, 1 << 20);
 	buffer_put(&buffer, text, strlen(text));
-	rc = json_text_parse(out, &buffer, &diagnostics);
+	rc = json_text_parse(out, &buffer, "parts.json", &diagnostics);
 	buffer_finish(&buffer);
 	return rc;
 }
@@ -121,7 +121,7 @@ static void refuses_what_has_no_room_for_its_end(void **state)
 	(void)state;
 	buffer_init(&buffer, 2);
 	buffer_put(&buffer, "[]", 2);
-	CHECK(json_text_parse(&json, &buffer, NULL) == -EFBIG);
+	CHECK(json_text_parse(&json, &buffer, "parts.json", NULL) == -EFBIG);
 	json_text_finish(&json);
 	buffer_finish(&buffer);
 }

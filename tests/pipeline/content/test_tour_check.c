@@ -48,9 +48,9 @@ static int tear_down_wall(void **state)
 	return tear_down(state);
 }
 
-static int judge(const char *stops, const char *more, struct complaints *complaints)
+static int judge(const char *stops, const char *more)
 {
-	const struct tour_check_options options = { &mesh, note, complaints };
+	const struct tour_check_options options = { &mesh, &told };
 	struct info_built built;
 	char json[2000];
 	int rc;
@@ -60,8 +60,8 @@ static int judge(const char *stops, const char *more, struct complaints *complai
 		"{\"tours\": [{\"id\": \"walk\", \"title\": {\"en\": \"Walk\"}%s, \"stops\": [\n%s\n]}]}",
 		more, stops);
 	write_text("tours.json", json);
-	CHECK(build(&built, complaints) == 0);
-	complaints->count = 0;
+	CHECK(build(&built) == 0);
+	diagnostics_finish(&told);
 	rc = tour_check(&built, &options);
 	info_built_finish(&built);
 	return rc;
@@ -71,43 +71,35 @@ static int judge(const char *stops, const char *more, struct complaints *complai
 
 static void a_way_through_the_gate_is_free(void **state)
 {
-	struct complaints complaints;
-
 	(void)state;
 	CHECK(judge(AT(15, 0, 2) ",\n" AT(3, 0, 2) ",\n"
 						   "{\"eye\": [-9, 0, 2], \"target\": [-20, 0, 2]}",
-		    "", &complaints) == 0);
-	CHECK(complaints.count == 0);
+		    "") == 0);
+	CHECK(told.count == 0);
 }
 
 static void a_way_through_the_wall_is_refused_with_leg_and_place(void **state)
 {
-	struct complaints complaints;
-
 	(void)state;
 	CHECK(judge(AT(15, 0, 2) ",\n" AT(9, 5, 5) ",\n"
 						   "{\"eye\": [-9, 5, 5], \"target\": [-20, 0, 2]}",
-		    "", &complaints) == -EINVAL);
-	CHECK(complaints.count == 1);
-	CHECK(was_told(&complaints, "tours.json", 4,
-		       "from stop 2 to stop 3: the way leads through"));
-	CHECK(strstr(complaints.list[0].text, "at 0.0") ||
-	      strstr(complaints.list[0].text, "at -0.0"));
+		    "") == -EINVAL);
+	CHECK(told.count == 1);
+	CHECK(was_told("tours.json", 4, "from stop 2 to stop 3: the way leads through"));
+	CHECK(strstr(told.first.text, "at 0.0") || strstr(told.first.text, "at -0.0"));
 }
 
 /* The wall's edge is beside the way: nothing is crossed, and a near plane would cut it open. */
 static void a_way_too_near_to_the_wall_is_refused(void **state)
 {
-	struct complaints complaints;
-
 	(void)state;
-	CHECK(judge(AT(9, 0.9, 2) ",\n{\"eye\": [-9, 0.9, 2], \"target\": [-20, 0.9, 2]}", "",
-		    &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 3, "is too near to the scan at"));
-	CHECK(judge(AT(9, 0.8, 2) ",\n{\"eye\": [-9, 0.8, 2], \"target\": [-20, 0.8, 2]}", "",
-		    &complaints) == 0);
-	CHECK(judge(AT(9, 0, 2) ",\n{\"eye\": [9, 9, 0.1], \"target\": [0, 9, 2]}", "",
-		    &complaints) == -EINVAL); /* the ground */
+	CHECK(judge(AT(9, 0.9, 2) ",\n{\"eye\": [-9, 0.9, 2], \"target\": [-20, 0.9, 2]}", "") ==
+	      -EINVAL);
+	CHECK(was_told("tours.json", 3, "is too near to the scan at"));
+	CHECK(judge(AT(9, 0.8, 2) ",\n{\"eye\": [-9, 0.8, 2], \"target\": [-20, 0.8, 2]}", "") ==
+	      0);
+	CHECK(judge(AT(9, 0, 2) ",\n{\"eye\": [9, 9, 0.1], \"target\": [0, 9, 2]}", "") ==
+	      -EINVAL); /* the ground */
 }
 
 /* Where nobody is there the way is closed, and its last leg is one like the others. */
@@ -117,34 +109,30 @@ static void the_way_back_is_judged_where_it_is_flown(void **state)
 				    "{\"eye\": [3, 0, 2], \"target\": [0, 0, 2]},\n"
 				    "{\"eye\": [-6, 0, 2], \"target\": [-20, 0, 2]},\n"
 				    "{\"eye\": [-12, 7, 3], \"target\": [0, 6, 3]}";
-	struct complaints complaints;
 
 	(void)state;
-	CHECK(judge(stops, "", &complaints) == 0);
-	CHECK(judge(stops, ", \"attract\": true", &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 2,
-		       "from stop 4 to stop 1: the way leads through"));
+	CHECK(judge(stops, "") == 0);
+	CHECK(judge(stops, ", \"attract\": true") == -EINVAL);
+	CHECK(was_told("tours.json", 2, "from stop 4 to stop 1: the way leads through"));
 }
 
 static void what_no_visitor_could_do_is_refused(void **state)
 {
-	struct complaints complaints;
-
 	(void)state;
-	CHECK(judge(AT(15, 0, 2) ",\n" AT(400, 0, 20), "", &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 3, "the way is too far away at"));
-	CHECK(judge(AT(25, 0, 2) ",\n" AT(25, 0, -1), "", &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 3, "the way is under the ground at"));
+	CHECK(judge(AT(15, 0, 2) ",\n" AT(400, 0, 20), "") == -EINVAL);
+	CHECK(was_told("tours.json", 3, "the way is too far away at"));
+	CHECK(judge(AT(25, 0, 2) ",\n" AT(25, 0, -1), "") == -EINVAL);
+	CHECK(was_told("tours.json", 3, "the way is under the ground at"));
 	CHECK(judge(AT(15, 0, 2) ",\n{\"eye\": [15, 0, 2], \"target\": [30, 0, 2], \"travel\": 1}",
-		    "", &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 3, "the view turns too fast, by "));
+		    "") == -EINVAL);
+	CHECK(was_told("tours.json", 3, "the view turns too fast, by "));
 	CHECK(judge("{\"eye\": [15, 0, 2], \"target\": [0, 0, 2], \"stay\": 120},\n"
 		    "{\"eye\": [14, 0, 2], \"target\": [0, 0, 2], \"stay\": 120},\n"
 		    "{\"eye\": [15, 1, 2], \"target\": [0, 0, 2], \"stay\": 120},\n"
 		    "{\"eye\": [14, 2, 2], \"target\": [0, 0, 2], \"stay\": 120},\n"
 		    "{\"eye\": [15, 3, 2], \"target\": [0, 0, 2], \"stay\": 120}",
-		    "", &complaints) == -EINVAL);
-	CHECK(was_told(&complaints, "tours.json", 1, "minutes, the limit is"));
+		    "") == -EINVAL);
+	CHECK(was_told("tours.json", 1, "minutes, the limit is"));
 }
 
 /* Against a search by hand: every step of the way, every triangle, by sampling its face. */
@@ -158,7 +146,6 @@ static void no_triangle_is_missed(void **state)
 	for (int trial = 0; trial < 60; trial++) {
 		struct tour_view views[2] = { { { 0 }, { 0, 0, 5 }, 6, 0 },
 					      { { 0 }, { 0, 0, 5 }, 6, 0 } };
-		struct complaints complaints;
 		float nearest = INFINITY, clearance, low[3], high[3];
 		char stops[300];
 		int rc;
@@ -173,7 +160,7 @@ static void no_triangle_is_missed(void **state)
 			 "{\"eye\": [-8, %.9g, %.9g], \"target\": [0, 0, 5], \"travel\": 60}",
 			 (double)views[0].eye_m[1], (double)views[0].eye_m[2],
 			 (double)views[1].eye_m[1], (double)views[1].eye_m[2]);
-		rc = judge(stops, "", &complaints);
+		rc = judge(stops, "");
 		mesh_box(&mesh, low, high);
 		tour_path_init(
 			&path, views, 2, false,

@@ -506,14 +506,6 @@ static void points_alone_need_no_labels(void **state)
 	made_finish(&made);
 }
 
-static char told[400]; /* the last complaint */
-
-static void note(void *data, bool is_error, const char *file, unsigned line, const char *text)
-{
-	(void)data, (void)is_error, (void)file, (void)line;
-	snprintf(told, sizeof(told), "%s", text);
-}
-
 static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 {
 	static const struct {
@@ -534,11 +526,12 @@ static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 	write_text("regions/bad.faces", "1\n99999999\n");
 	empty_mesh();
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct diagnostics told = { 0 };
 		struct part_faces_all faces;
 		const struct info_build_options options = { .folder = folder,
 							    .languages = languages,
 							    .language_count = 1,
-							    .complaint = note,
+							    .diagnostics = &told,
 							    .judge_faces = part_faces_judge,
 							    .faces_data = &faces };
 		struct draft *draft;
@@ -551,8 +544,8 @@ static void faces_that_cannot_be_are_told_before_the_long_work(void **state)
 		write_text("parts.json", text);
 		part_faces_init(&faces, scans);
 		CHECK(info_read(&draft, &options) == -EINVAL);
-		if (!strstr(told, cases[i].says))
-			fail_msg("case %zu says: %s", i, told);
+		if (!strstr(told.first.text, cases[i].says))
+			fail_msg("case %zu says: %s", i, told.first.text);
 		part_faces_finish(&faces);
 	}
 	CHECK(!is_mesh_back());

@@ -54,9 +54,11 @@ static void add_database(struct object_store *objects, struct bytes database, st
 static void add_info_page(struct object_store *objects, struct bytes body, struct page_child *out)
 {
 	static const char *const languages[] = { "en" };
+	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options options = { .folder = tiny.content,
 						    .languages = languages,
-						    .language_count = 1 };
+						    .language_count = 1,
+						    .diagnostics = &diagnostics };
 	struct page_child children[8];
 	struct page page = { .kind = PAGE_INFO, .children = children };
 	struct info_built built;

@@ -71,9 +71,11 @@ static void add_page(struct object_store *objects, const char *part, uint32_t tr
 static int publish_and_verify(const char *part, uint32_t triangles, uint32_t groups)
 {
 	static const char *const languages[] = { "en" };
+	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options info = { .folder = tiny.content,
 						 .languages = languages,
-						 .language_count = 1 };
+						 .language_count = 1,
+						 .diagnostics = &diagnostics };
 	const struct publish_target target = tiny_target(&tiny);
 	const struct release_reader_options options = { .place = tiny.release };
 	struct verify_options verify = { 0 };

@@ -202,9 +202,11 @@ static inline struct publish_target tiny_target(const struct tiny *tiny)
 static inline struct publish_report tiny_publish(const struct tiny *tiny, const char *comment)
 {
 	static const char *const languages[] = { "en" };
+	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options info = { .folder = tiny->content,
 						 .languages = languages,
-						 .language_count = 1 };
+						 .language_count = 1,
+						 .diagnostics = &diagnostics };
 	struct publish_target target = tiny_target(tiny);
 	struct page_child children[ROOT_CHILD_COUNT];
 	struct publish_report report;
