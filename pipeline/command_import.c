@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/import/alignment.h"
 #include "pipeline/import/import.h"
 #include "pipeline/import/mesh_file.h"
 
@@ -15,6 +16,8 @@ static const char help[] =
 	"gopura-content import: read scans, report what was found and repaired\n"
 	"\n"
 	"usage: gopura-content import [OPTIONS] FILE...\n"
+	"\n"
+	"FILE is a scan, or an alignment of MeshLab (.aln, .mlp): the scans it names, each in its place.\n"
 	"\n"
 	"  --up AXIS       axis that points up in the files: z (default), y or x\n"
 	"  --unit UNIT     unit of the files: m (default), cm, mm, in, or its length in metres (0.0254)\n"
@@ -25,20 +28,25 @@ static const char help[] =
 	"\n"
 	"Examples:\n"
 	"  gopura-content import statue.ply\n"
-	"  gopura-content import --up y --unit mm tower.obj gallery.obj --out temple.mesh\n";
+	"  gopura-content import --up y --unit mm tower.obj gallery.obj --out temple.mesh\n"
+	"  gopura-content import site.mlp\n";
 
 struct settings {
 	struct import_options import;
 	const char *out; /* borrowed from argv */
 };
 
-static int read_one(struct mesh *all, const char *path, const struct settings *settings)
+static int read_scan(struct mesh *all, const char *path, const struct transform *transform,
+		     const struct settings *settings)
 {
+	struct import_options options = settings->import;
 	struct import_report report;
 	struct diagnostics diagnostics = { 0 };
 	struct mesh mesh;
-	int rc = import_scan(&mesh, path, &settings->import, &report, &diagnostics);
+	int rc;
 
+	options.transform = transform;
+	rc = import_scan(&mesh, path, &options, &report, &diagnostics);
 	if (rc < 0) {
 		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 		return rc;
@@ -51,6 +59,31 @@ static int read_one(struct mesh *all, const char *path, const struct settings *s
 		fprintf(stderr, "%s: cannot be merged with the other files: %s\n", path,
 			strerror(-rc));
 	return rc;
+}
+
+static int read_alignment(struct mesh *all, const char *path, const struct settings *settings)
+{
+	struct diagnostics diagnostics = { .max = ALIGNMENT_SCANS_MAX };
+	struct alignment alignment;
+	int rc = alignment_read(&alignment, path, &diagnostics);
+
+	if (rc < 0)
+		diagnostics_print(&diagnostics, stderr, "");
+	for (uint32_t i = 0; i < alignment.count; i++) {
+		const struct alignment_scan *scan = &alignment.scans[i];
+		int failed = read_scan(all, scan->path, &scan->transform, settings);
+
+		rc = rc == 0 ? failed : rc;
+	}
+	alignment_finish(&alignment);
+	diagnostics_finish(&diagnostics);
+	return rc;
+}
+
+static int read_one(struct mesh *all, const char *path, const struct settings *settings)
+{
+	return alignment_is_named(path) ? read_alignment(all, path, settings)
+					: read_scan(all, path, NULL, settings);
 }
 
 static int read_all(char **paths, int count, const struct settings *settings)

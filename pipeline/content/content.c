@@ -12,6 +12,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "pipeline/import/alignment.h"
 #include "storage/info.h"
 
 /* ---- settings */
@@ -233,7 +234,7 @@ static const struct setting settings[] = {
 	  .set = set_name,
 	  .free_text = true },
 	SETTING("model", "scans",
-		"up to 64 file names, separated by spaces, relative to this folder and inside it",
+		"up to 256 file names, separated by spaces, relative to this folder and inside it",
 		set_scans),
 	SETTING("model", "up", "z, y or x: the axis that points up in the scans", set_up),
 	SETTING("model", "unit", "m, cm, mm, in, or metres in one unit of the scans", set_unit),
@@ -284,43 +285,81 @@ static void set_defaults(struct content *content, const char *folder)
 		 slash && slash[1] ? slash + 1 : content->folder);
 }
 
-static int complete_scan(struct content *content, uint32_t i, struct diagnostics *diagnostics)
+static int check_name(const struct content *content, const char *name,
+		      char path[CONTENT_PATH_BYTES], struct diagnostics *diagnostics)
 {
-	char path[CONTENT_PATH_BYTES];
 	struct stat status;
-	int rc = content_file_path(content, content->scans[i], path);
-	char *owned;
+	int rc = content_file_path(content, name, path);
 
 	if (rc < 0)
-		return diagnostics_add(diagnostics, rc, NULL, 0, "scans: %s: %s", content->scans[i],
+		return diagnostics_add(diagnostics, rc, NULL, 0, "scans: %s: %s", name,
 				       strerror(-rc));
 	if (stat(path, &status) < 0)
 		return diagnostics_add(diagnostics, -errno, NULL, 0,
-				       "scans: %s: %s; put it into %s, or correct its name",
-				       content->scans[i], strerror(errno), content->folder);
+				       "scans: %s: %s; put it into %s, or correct its name", name,
+				       strerror(errno), content->folder);
 	if (!S_ISREG(status.st_mode))
 		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
-				       "scans: %s is not a regular file", content->scans[i]);
-	owned = strdup(path);
-	if (!owned)
-		return -ENOMEM;
-	free(content->scans[i]);
-	content->scans[i] = owned;
+				       "scans: %s is not a regular file", name);
 	return 0;
 }
 
+/* Adds a scan. path is copied; transform is copied, or NULL. */
+static int add_scan(struct content *content, const char *path, const struct transform *transform,
+		    struct diagnostics *diagnostics)
+{
+	const uint32_t i = content->scan_count;
+
+	if (i == CONTENT_SCANS_MAX)
+		return diagnostics_add(diagnostics, -EFBIG, NULL, 0,
+				       "over %d scans with those that alignments name; join some",
+				       CONTENT_SCANS_MAX);
+	content->scans[i] = strdup(path);
+	content->transforms[i] = transform ? malloc(sizeof(*transform)) : NULL;
+	content->scan_count++;
+	if (!content->scans[i] || (transform && !content->transforms[i]))
+		return -ENOMEM;
+	if (transform)
+		*content->transforms[i] = *transform;
+	return 0;
+}
+
+/* Adds the scans that an alignment names. */
+static int add_alignment(struct content *content, const char *path, struct diagnostics *diagnostics)
+{
+	struct alignment alignment;
+	int rc = alignment_read(&alignment, path, diagnostics);
+
+	for (uint32_t i = 0; rc == 0 && i < alignment.count; i++)
+		rc = add_scan(content, alignment.scans[i].path, &alignment.scans[i].transform,
+			      diagnostics);
+	alignment_finish(&alignment);
+	return rc;
+}
+
+/* Replaces the names by paths of scans. */
 static int complete(struct content *content, struct diagnostics *diagnostics)
 {
+	char *names[CONTENT_SCANS_MAX], path[CONTENT_PATH_BYTES];
+	const uint32_t count = content->scan_count;
 	int rc = 0;
 
-	if (content->scan_count == 0)
+	if (count == 0)
 		return diagnostics_add(
 			diagnostics, -EBADMSG, NULL, 0,
 			"it names no scan; add 'scans = FILE' to its [model] section");
-	for (uint32_t i = 0; rc != -ENOMEM && i < content->scan_count; i++) {
-		int failed = complete_scan(content, i, diagnostics);
+	memcpy(names, content->scans, sizeof(names));
+	memset(content->scans, 0, sizeof(content->scans));
+	content->scan_count = 0;
+	for (uint32_t i = 0; i < count; i++) {
+		int failed = check_name(content, names[i], path, diagnostics);
 
+		if (failed == 0)
+			failed = alignment_is_named(path)
+					 ? add_alignment(content, path, diagnostics)
+					 : add_scan(content, path, NULL, diagnostics);
 		rc = rc == 0 || failed == -ENOMEM ? failed : rc;
+		free(names[i]);
 	}
 	return rc;
 }
@@ -348,8 +387,10 @@ void content_release(struct content *content)
 {
 	if (!content)
 		return;
-	for (uint32_t i = 0; i < content->scan_count; i++)
+	for (uint32_t i = 0; i < content->scan_count; i++) {
 		free(content->scans[i]);
+		free(content->transforms[i]);
+	}
 	*content = (struct content){ 0 };
 }
 

@@ -13,7 +13,7 @@
 
 enum {
 	CONTENT_PATH_BYTES = 4096,
-	CONTENT_SCANS_MAX = 64,
+	CONTENT_SCANS_MAX = MESH_SCANS_MAX,
 	CONTENT_LANGUAGES_MAX = 64,
 	CONTENT_LANGUAGE_BYTES = 12,
 };
@@ -34,7 +34,8 @@ struct content {
 	char folder[CONTENT_PATH_BYTES]; /* as given, without a trailing slash */
 	char name[128];                  /* UTF-8; by default the name of the folder */
 	char *scans[CONTENT_SCANS_MAX];  /* paths including the folder; owned */
-	uint32_t scan_count;             /* at least 1 */
+	struct transform *transforms[CONTENT_SCANS_MAX]; /* of each scan; owned; NULL: none */
+	uint32_t scan_count;                             /* at least 1 */
 	struct import_options import;
 	enum content_colours colours;
 	enum content_lit lit;

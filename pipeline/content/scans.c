@@ -15,7 +15,7 @@
 #include "pipeline/import/mesh_file.h"
 
 /* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files. */
-enum { IMPORT_VERSION = 2, SHAPE_VERSION = 1, KEY_TEXT_MAX = 1 << 22, SHAPE_BYTES_MAX = 4096 };
+enum { IMPORT_VERSION = 2, SHAPE_VERSION = 1, KEY_TEXT_MAX = 1 << 26, SHAPE_BYTES_MAX = 4096 };
 
 struct scans {
 	const struct content *content;
@@ -95,6 +95,12 @@ static int put_companions(struct buffer *text, const struct content *content, co
 	return 0;
 }
 
+static void put_transform(struct buffer *text, const struct transform *transform)
+{
+	for (int k = 0; k < 12; k++)
+		buffer_put_f64(text, transform->rows[k / 4][k % 4]);
+}
+
 static int make_key(const struct content *content, struct hash *out)
 {
 	const struct import_options *import = &content->import;
@@ -109,6 +115,8 @@ static int make_key(const struct content *content, struct hash *out)
 	buffer_put_u8(&text, import->override_colour);
 	for (uint32_t i = 0; i < content->scan_count && rc == 0; i++) {
 		put_file(&text, content, content->scans[i]);
+		if (content->transforms[i])
+			put_transform(&text, content->transforms[i]);
 		rc = put_companions(&text, content, content->scans[i]);
 	}
 	if (rc == 0)
@@ -160,9 +168,11 @@ static int import_all(struct mesh *out, const struct content *content,
 	int rc = 0;
 
 	for (; count < content->scan_count && rc == 0; count++) {
+		struct import_options options = content->import;
 		struct mesh mesh;
 
-		rc = import_scan(&mesh, content->scans[count], &content->import, &reports[count],
+		options.transform = content->transforms[count];
+		rc = import_scan(&mesh, content->scans[count], &options, &reports[count],
 				 diagnostics);
 		if (rc < 0)
 			break;

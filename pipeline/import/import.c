@@ -89,7 +89,33 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	return 0;
 }
 
-/* ---- converting axes, unit and colours */
+/* ---- placing the scan, and converting axes, unit and colours */
+
+static void move(struct mesh *mesh, const struct transform *transform)
+{
+	double place[3];
+
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		for (int k = 0; k < 3; k++)
+			place[k] = mesh->positions[i][k];
+		transform_point(transform, place, place);
+		for (int k = 0; k < 3; k++)
+			mesh->positions[i][k] = (float)place[k];
+		spill_pass(i);
+	}
+}
+
+/* A mirrored surface would show its inside. */
+static void reverse_faces(struct mesh *mesh)
+{
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+		uint32_t second = mesh->triangles[i][1];
+
+		mesh->triangles[i][1] = mesh->triangles[i][2];
+		mesh->triangles[i][2] = second;
+		spill_pass(i);
+	}
+}
 
 /* Rotates the file's up axis to z. Only rotations are used, so right-handed stays right-handed. */
 static void turn_up(const float from[3], enum import_axis up, double to[3])
@@ -197,6 +223,10 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 {
 	int rc;
 
+	if (options->transform && !is_indexed)
+		move(mesh, options->transform);
+	if (options->transform && transform_mirrors(options->transform))
+		reverse_faces(mesh);
 	to_metres(mesh, options);
 	drop_colours(mesh, options);
 	rc = mesh_repair(mesh, &report->repairs);

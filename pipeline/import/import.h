@@ -10,12 +10,15 @@
 #include "base/diagnostics.h"
 #include "pipeline/import/mesh.h"
 #include "pipeline/import/mesh_repair.h"
+#include "pipeline/import/transform.h"
 
 enum import_axis { IMPORT_Z_UP, IMPORT_Y_UP, IMPORT_X_UP };
 
 struct import_options {
 	enum import_axis up;
-	double metres_per_unit;    /* 0: 1 m */
+	double metres_per_unit; /* 0: 1 m */
+	/* of this scan, in the file's unit and axes; borrowed; NULL: it stays where it is */
+	const struct transform *transform;
 	uint8_t default_colour[3]; /* for a scan without colours; all 0: sandstone */
 	bool override_colour;      /* use default_colour even if the scan has colours */
 	/* wall-clock limit of a foreign parser; 0: depends on the file's size */

@@ -6,7 +6,8 @@
 #include "pipeline/import/import.h"
 
 /* Reads a PLY. Like every reader, it gives the mesh in the file's unit and axes, with valid
- * indices, not repaired. Errors as import_scan. */
+ * indices, not repaired. It applies the transform, because places may have more digits in the file
+ * than in a mesh. Errors as import_scan. */
 must_check int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 			  struct import_report *report, struct diagnostics *diagnostics);
 /* Returns how much memory decoding may use. Unless the options set it, it grows with the file,
@@ -52,7 +53,8 @@ struct import_foreign_format {
 	bool has_materials;    /* false: ignore the grey material that assimp adds */
 };
 
-/* Reads a scan with assimp in a sandbox, with the same result as import_ply. Also -ETIMEDOUT,
+/* Reads a scan with assimp in a sandbox, with the same result as import_ply but for the transform,
+ * which is not applied. Also -ETIMEDOUT,
  * -ENOMEM, -EBADMSG as sandbox_run. */
 must_check int import_foreign(struct mesh *out, const char *path,
 			      struct import_foreign_format format,

@@ -15,6 +15,7 @@
 /* Collects what the PLY reader delivers. */
 struct collector {
 	const struct ply_summary *summary;
+	const struct transform *transform; /* borrowed; NULL: none */
 	struct mesh mesh;
 	float (*corner_uvs)[3][2]; /* of each triangle's corners, if the file has them; owned */
 	size_t triangle_capacity;
@@ -43,9 +44,13 @@ static int take_vertex(void *data, const struct ply_vertex *vertex)
 	struct collector *collector = data;
 	struct mesh *mesh = &collector->mesh;
 	uint32_t i = mesh->vertex_count++;
+	double place[3];
 
+	memcpy(place, vertex->position, sizeof(place));
+	if (collector->transform)
+		transform_point(collector->transform, place, place);
 	for (int k = 0; k < 3; k++)
-		mesh->positions[i][k] = (float)vertex->position[k];
+		mesh->positions[i][k] = (float)place[k];
 	if (mesh->colours)
 		memcpy(mesh->colours[i], vertex->colour, sizeof(mesh->colours[i]));
 	if (mesh->uvs)
@@ -224,7 +229,7 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 	       struct import_report *report, struct diagnostics *diagnostics)
 {
-	struct collector collector = { 0 };
+	struct collector collector = { .transform = options->transform };
 	struct ply *ply;
 	int rc = ply_open(&ply, path, diagnostics);
 

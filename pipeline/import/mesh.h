@@ -9,7 +9,7 @@
 
 #include "base/compiler.h"
 
-enum { MESH_TEXTURES_MAX = UINT16_MAX, MESH_SCANS_MAX = 64 };
+enum { MESH_TEXTURES_MAX = UINT16_MAX, MESH_SCANS_MAX = 256 };
 
 #define MESH_NO_FACE UINT32_MAX
 

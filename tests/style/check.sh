@@ -53,7 +53,7 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="import mesh mesh_edges mesh_file face_list ply" ;;
+	pipeline/import/*) names="alignment import mesh mesh_edges mesh_file face_list ply transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations work_lock" ;;
 	pipeline/hierarchy/*) names="master" ;;
 	pipeline/samples/*) names="sampler sample_store reference" ;;

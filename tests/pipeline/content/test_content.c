@@ -120,6 +120,8 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "tools-twice", "[view]\ntools = light light\n", "each once" },
 		{ "share", "[release]\npublish_share = 0\n", "above 0" },
 		{ "languages", "[release]\nlanguages = en f\n", "language tags" },
+		{ "alignment", "[model]\nscans = tower.ply gone.aln\n", "gone.aln: No such file" },
+		{ "alignment-outside", "[model]\nscans = ../site.aln\n", "line 2: scans" },
 	};
 	char folder[256];
 	struct content content;
@@ -200,6 +202,56 @@ static void names_stay_inside_the_folder(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(good); i++)
 		if (!content_name_is_safe(good[i]))
 			fail_msg("taken for unsafe: '%s'", good[i]);
+}
+
+static const char site_aln[] = "2\ntower.ply\n#\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+			       "tower.ply\n#\n1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0\n";
+
+static void an_alignment_stands_for_its_scans(void **state)
+{
+	char folder[256], path[512];
+	struct content content;
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply in/site.aln tower.ply\n");
+	snprintf(path, sizeof(path), "%s/in", folder);
+	CHECK(mkdir(path, 0700) == 0);
+	snprintf(path, sizeof(path), "%s/temple.ini", folder);
+	scan_write_beside(path, "in/site.aln", site_aln, strlen(site_aln));
+	CHECK(content_read(&content, folder, &diagnostics) == -ENOENT && diagnostics.count == 2);
+	CHECK(strstr(diagnostics.first.text, "in/site.aln:2: scan "));
+	CHECK(strstr(diagnostics_get(&diagnostics, 1)->text, "in/site.aln:8: scan "));
+	diagnostics_finish(&diagnostics);
+
+	scan_write_beside(path, "in/tower.ply", triangle, strlen(triangle));
+	CHECK(content_read(&content, folder, &diagnostics) == 0 && content.scan_count == 4);
+	CHECK(!content.transforms[0] && !content.transforms[3]);
+	CHECK(strcmp(content.scans[1] + strlen(folder), "/in/tower.ply") == 0);
+	CHECK(content.transforms[1]->rows[0][3] == 0 && content.transforms[2]->rows[0][3] == 5);
+	content_release(&content);
+	remove_folder(folder);
+}
+
+static void alignments_do_not_name_more_scans_than_fit(void **state)
+{
+	char folder[256], path[512], ini[1000];
+	size_t length = (size_t)snprintf(ini, sizeof(ini), "[model]\nscans =");
+	struct content content;
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	(void)state;
+
+	/* 129 alignments of two scans each */
+	for (int i = 0; i < 129; i++)
+		length += (size_t)snprintf(ini + length, sizeof(ini) - length, " s.aln");
+	CHECK(length < sizeof(ini) - 1);
+	make_folder(folder, ini);
+	snprintf(path, sizeof(path), "%s/temple.ini", folder);
+	scan_write_beside(path, "s.aln", site_aln, strlen(site_aln));
+	CHECK(content_read(&content, folder, &diagnostics) == -EFBIG);
+	CHECK(strstr(diagnostics.first.text, "over 256 scans"));
+	diagnostics_finish(&diagnostics);
+	remove_folder(folder);
 }
 
 /* The number of the file .work/mesh, which is another whenever the mesh is saved; 0: none. */
@@ -305,6 +357,34 @@ static void a_second_import_comes_from_the_cache_until_something_changes(void **
 	remove_folder(folder);
 }
 
+static void another_place_of_a_scan_is_another_mesh(void **state)
+{
+	char folder[256], path[512], other[sizeof(site_aln)];
+	bool from_cache;
+	uint32_t triangles;
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = site.aln\n");
+	snprintf(path, sizeof(path), "%s/temple.ini", folder);
+	scan_write_beside(path, "site.aln", site_aln, strlen(site_aln));
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache && triangles == 2);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(from_cache);
+
+	memcpy(other, site_aln, sizeof(other));
+	*strchr(other, '5') = '6';
+	scan_write_beside(path, "site.aln", other, strlen(other));
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache);
+	/* Where no scan moves, none is imported again. */
+	scan_write_beside(path, "copy.aln", other, strlen(other));
+	scan_write_beside(path, "temple.ini", "[model]\nscans = copy.aln\n", 25);
+	import_of(folder, &from_cache, &triangles);
+	CHECK(from_cache);
+	remove_folder(folder);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -315,8 +395,11 @@ int main(void)
 		cmocka_unit_test(says_what_is_no_content_folder),
 		cmocka_unit_test(a_line_that_is_too_long_is_a_fault),
 		cmocka_unit_test(names_stay_inside_the_folder),
+		cmocka_unit_test(an_alignment_stands_for_its_scans),
+		cmocka_unit_test(alignments_do_not_name_more_scans_than_fit),
 		cmocka_unit_test(the_shape_is_known_without_the_mesh),
 		cmocka_unit_test(a_second_import_comes_from_the_cache_until_something_changes),
+		cmocka_unit_test(another_place_of_a_scan_is_another_mesh),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

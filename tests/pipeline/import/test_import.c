@@ -30,6 +30,16 @@ static bool is_near(const float a[3], float x, float y, float z)
 	return fabsf(a[0] - x) < 1e-5f && fabsf(a[1] - y) < 1e-5f && fabsf(a[2] - z) < 1e-5f;
 }
 
+/* Above 0 if a face shows its outside to +z. */
+static float up_of(const struct mesh *mesh, uint32_t i)
+{
+	const float *a = mesh->positions[mesh->triangles[i][0]];
+	const float *b = mesh->positions[mesh->triangles[i][1]];
+	const float *c = mesh->positions[mesh->triangles[i][2]];
+
+	return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
 static void repairs_and_counts(void **state)
 {
 	static const char text[] =
@@ -80,15 +90,9 @@ static void turns_the_smaller_part_to_the_side_of_the_larger(void **state)
 	CHECK(import_text(&mesh, &report, "strip.off", off, &options, &diagnostics) == 0);
 	CHECK(report.repairs.turned_faces == 3 && report.repairs.turned_edges == 0);
 	CHECK(report.repairs.border_edges == 12 && mesh.triangle_count == 10);
-	for (uint32_t i = 0; i < mesh.triangle_count; i++) {
-		const float *a = mesh.positions[mesh.triangles[i][0]];
-		const float *b = mesh.positions[mesh.triangles[i][1]];
-		const float *c = mesh.positions[mesh.triangles[i][2]];
-		float up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-
-		if (!(up > 0))
+	for (uint32_t i = 0; i < mesh.triangle_count; i++)
+		if (!(up_of(&mesh, i) > 0))
 			fail_msg("face %u shows the wrong side", i);
-	}
 	mesh_finish(&mesh);
 }
 
@@ -170,6 +174,90 @@ static void turns_up_and_scales_to_metres(void **state)
 		CHECK(is_near(cross, n[0] * 9e-4f, n[1] * 9e-4f, n[2] * 9e-4f));
 		mesh_finish(&mesh);
 	}
+}
+
+/* First the matrix, in the file's unit and axes, then axes and unit: a quarter turn about x, and a
+ * shift. */
+static void places_a_scan_before_turning_and_scaling_it(void **state)
+{
+	static const char *const names[] = { "t.obj", "t.ply" };
+	static const char *const texts[] = {
+		"v 1 2 3\nv 4 2 3\nv 1 5 3\nf 1 2 3\n",
+		"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+		"property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+		"end_header\n1 2 3\n4 2 3\n1 5 3\n3 0 1 2\n",
+	};
+	static const struct transform turn = {
+		{ { 1, 0, 0, 10 }, { 0, 0, -1, 20 }, { 0, 1, 0, 30 } }
+	};
+	const struct import_options options = { .up = IMPORT_Y_UP,
+						.metres_per_unit = 0.01,
+						.transform = &turn };
+	struct diagnostics diagnostics;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		CHECK(import_text(&mesh, NULL, names[i], texts[i], &options, &diagnostics) == 0);
+		/* 1 2 3 is placed at 11 17 32, which with y up is 11 -32 17 */
+		CHECK(is_near(mesh.positions[0], 0.11f, -0.32f, 0.17f));
+		CHECK(is_near(mesh.positions[1], 0.14f, -0.32f, 0.17f));
+		CHECK(is_near(mesh.positions[2], 0.11f, -0.35f, 0.17f));
+		CHECK(up_of(&mesh, 0) < 0);
+		mesh_finish(&mesh);
+	}
+}
+
+/* A mirrored scan still shows its outside. */
+static void a_mirrored_scan_keeps_its_outside(void **state)
+{
+	static const char *const names[] = { "t.off", "t.ply" };
+	static const char *const texts[] = {
+		"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+		"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+		"property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+		"end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+	};
+	static const struct transform mirror = {
+		{ { -1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } }
+	};
+	const struct import_options options = { .transform = &mirror };
+	struct diagnostics diagnostics;
+	struct import_report report;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		CHECK(import_text(&mesh, &report, names[i], texts[i], &options, &diagnostics) == 0);
+		CHECK(mesh.triangle_count == 2 && up_of(&mesh, 0) > 0 && up_of(&mesh, 1) > 0);
+		CHECK(report.low_m[0] == -1 && report.high_m[0] == 0);
+		mesh_finish(&mesh);
+	}
+}
+
+/* A float knows places there to 0.1 m: the file's doubles are moved before they become floats. */
+static void a_ply_of_doubles_is_placed_with_all_its_digits(void **state)
+{
+	static const char ply[] =
+		"ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+		"property double z\nelement face 1\nproperty list uchar int vertex_indices\n"
+		"end_header\n448210.001 1484770.002 0\n448211.003 1484770.002 0\n"
+		"448210.001 1484771.004 0\n3 0 1 2\n";
+	static const struct transform home = {
+		{ { 1, 0, 0, -448210 }, { 0, 1, 0, -1484770 }, { 0, 0, 1, 0 } }
+	};
+	const struct import_options options = { .transform = &home };
+	struct diagnostics diagnostics;
+	struct import_report report;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "far.ply", ply, &options, &diagnostics) == 0);
+	CHECK(is_near(mesh.positions[0], 0.001f, 0.002f, 0));
+	CHECK(is_near(mesh.positions[1], 1.003f, 0.002f, 0));
+	CHECK(is_near(mesh.positions[2], 0.001f, 1.004f, 0));
+	CHECK(report.warning.count == 0);
+	mesh_finish(&mesh);
 }
 
 /* Two by two: red green on top, blue white at the bottom. */
@@ -437,6 +525,9 @@ int main(void)
 		cmocka_unit_test(a_surface_with_one_side_stays_as_it_is),
 		cmocka_unit_test(colours_part_what_is_at_one_place),
 		cmocka_unit_test(turns_up_and_scales_to_metres),
+		cmocka_unit_test(places_a_scan_before_turning_and_scaling_it),
+		cmocka_unit_test(a_mirrored_scan_keeps_its_outside),
+		cmocka_unit_test(a_ply_of_doubles_is_placed_with_all_its_digits),
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
 		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
 		cmocka_unit_test(gltf_pictures_are_upright),

@@ -1,0 +1,413 @@
+/* Parses MeshLab's alignments and projects, and checks names, matrices and files. */
+#include "pipeline/import/alignment.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include <libxml/parser.h>
+#include <libxml/tree.h>
+
+#include "base/array.h"
+#include "base/bytes.h"
+
+enum { FILE_BYTES_MAX = 16 << 20, SHOWN_BYTES = 60 };
+
+/* One reading of a file. */
+struct reading {
+	const char *path;
+	struct alignment *alignment;
+	struct diagnostics *diagnostics;
+	unsigned line; /* of an alignment, from 1 */
+	char *at;      /* the next line of an alignment */
+};
+
+static bool ends_with(const char *name, const char *extension)
+{
+	const size_t length = strlen(name), extension_length = strlen(extension);
+
+	return length > extension_length &&
+	       strcasecmp(name + length - extension_length, extension) == 0;
+}
+
+bool alignment_is_named(const char *name)
+{
+	return ends_with(name, ".aln") || ends_with(name, ".mlp");
+}
+
+void alignment_finish(struct alignment *alignment)
+{
+	if (!alignment)
+		return;
+	for (uint32_t i = 0; i < alignment->count; i++)
+		free(alignment->scans[i].path);
+	free(alignment->scans);
+	*alignment = (struct alignment){ 0 };
+}
+
+/* ---- one scan */
+
+/* Returns whether a name stays below the folder: neither absolute nor with "..". */
+static bool stays_below(const char *name)
+{
+	if (name[0] == '/' || strchr(name, ':'))
+		return false;
+	for (const char *c = name; *c; c += *c == '/') {
+		const size_t length = strcspn(c, "/");
+
+		if (length == 2 && c[0] == '.' && c[1] == '.')
+			return false;
+		c += length;
+	}
+	return true;
+}
+
+/* Checks the name of a scan and joins it with the folder of the file. *out is owned by the caller.
+ */
+static int join_path(const struct reading *reading, unsigned line, const char *name, char **out)
+{
+	const char *slash = strrchr(reading->path, '/');
+	const int folder_length = slash ? (int)(slash - reading->path) + 1 : 0;
+	char path[PATH_MAX], *c;
+
+	if (!name[0])
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, line,
+				       "a scan without a file name; save it again from MeshLab");
+	while (name[0] == '.' && (name[1] == '/' || name[1] == '\\'))
+		name += 2;
+	if (snprintf(path, sizeof(path), "%.*s%s", folder_length, reading->path, name) >=
+	    (int)sizeof(path))
+		return diagnostics_add(reading->diagnostics, -ENAMETOOLONG, reading->path, line,
+				       "the name of a scan is too long; shorten it");
+	for (c = path + folder_length; *c; c++)
+		if (*c == '\\')
+			*c = '/';
+	if (!stays_below(path + folder_length))
+		return diagnostics_add(reading->diagnostics, -EXDEV, reading->path, line,
+				       "scan %.*s lies outside the folder of this file; copy it "
+				       "there and write its name only",
+				       SHOWN_BYTES, name);
+	if (alignment_is_named(path))
+		return diagnostics_add(reading->diagnostics, -EINVAL, reading->path, line,
+				       "%.*s is no scan; name its scans here", SHOWN_BYTES, name);
+	*out = strdup(path);
+	return *out ? 0 : -ENOMEM;
+}
+
+static int add_scan(struct reading *reading, unsigned line, const char *name,
+		    const double matrix[16])
+{
+	struct alignment *alignment = reading->alignment;
+	struct alignment_scan scan = { .line = line };
+	const char *why = transform_set(&scan.transform, matrix);
+	int rc;
+
+	if (why)
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, line,
+				       "the matrix of scan %.*s %s; align the scans and save again",
+				       SHOWN_BYTES, name, why);
+	rc = ARRAY_RESERVE(alignment->scans, alignment->room, alignment->count + 1,
+			   ALIGNMENT_SCANS_MAX);
+	if (rc == -EFBIG)
+		return diagnostics_add(reading->diagnostics, rc, reading->path, line,
+				       "over %d scans; join some of them into one file",
+				       ALIGNMENT_SCANS_MAX);
+	if (rc == 0)
+		rc = join_path(reading, line, name, &scan.path);
+	if (rc == 0)
+		alignment->scans[alignment->count++] = scan;
+	return rc;
+}
+
+/* Reads up to `wanted` numbers apart by white space. Returns how many were read; *end is what
+ * follows them: "" if that was all. */
+static int read_numbers(const char *text, double *out, int wanted, const char **end)
+{
+	int count = 0;
+
+	for (; count < wanted; count++) {
+		char *after;
+
+		out[count] = strtod(text, &after);
+		if (after == text || (*after && !strchr(" \t\r\n", *after)))
+			break;
+		text = after;
+	}
+	*end = text + strspn(text, " \t\r\n");
+	return count;
+}
+
+/* ---- alignments: a count; for each scan its name, a line with # and four rows; then 0 */
+
+/* Returns the next line that is not empty, without white space around it; NULL at the end. */
+static char *next_line(struct reading *reading)
+{
+	while (*reading->at) {
+		char *line = reading->at + strspn(reading->at, " \t\r");
+		char *end = reading->at + strcspn(reading->at, "\n");
+
+		reading->at = *end ? end + 1 : end;
+		reading->line++;
+		while (end > line && strchr(" \t\r", end[-1]))
+			end--;
+		if (end > line) {
+			*end = '\0';
+			return line;
+		}
+	}
+	return NULL;
+}
+
+/* The same, past lines with # */
+static char *next_content(struct reading *reading)
+{
+	char *line;
+
+	do
+		line = next_line(reading);
+	while (line && line[0] == '#');
+	return line;
+}
+
+static int ends_early(const struct reading *reading, unsigned long wanted)
+{
+	return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, reading->line,
+			       "the file ends after %u of the %lu scans that its first line says; "
+			       "correct the count, or save it again from MeshLab",
+			       reading->alignment->count, wanted);
+}
+
+static int read_aln_scan(struct reading *reading, unsigned long wanted)
+{
+	char *name = next_line(reading), *row;
+	const unsigned line = reading->line;
+	double matrix[16];
+	const char *end;
+
+	if (!name || strcmp(name, "0") == 0)
+		return ends_early(reading, wanted);
+	for (int r = 0; r < 4; r++) {
+		row = next_content(reading);
+		if (!row)
+			return ends_early(reading, wanted);
+		if (read_numbers(row, matrix + 4 * r, 4, &end) != 4 || *end)
+			return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path,
+					       reading->line,
+					       "row %d of the matrix of scan %.*s must be four "
+					       "numbers, not '%.*s'",
+					       r + 1, SHOWN_BYTES, name, SHOWN_BYTES, row);
+	}
+	return add_scan(reading, line, name, matrix);
+}
+
+static int read_aln(struct reading *reading, char *text)
+{
+	const char *line;
+	char *end = NULL;
+	unsigned long count;
+	int rc = 0;
+
+	reading->at = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text;
+	line = next_content(reading);
+	count = line ? strtoul(line, &end, 10) : 0;
+	if (!line || !isdigit((unsigned char)line[0]) || *end || count == 0)
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, reading->line,
+				       "must begin with the number of its scans, not '%.*s'",
+				       SHOWN_BYTES, line ? line : "");
+	while (rc == 0 && reading->alignment->count < count)
+		rc = read_aln_scan(reading, count);
+	if (rc < 0)
+		return rc;
+	line = next_content(reading);
+	if (line && strcmp(line, "0") != 0)
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, reading->line,
+				       "'%.*s' follows the %lu scans that its first line says; "
+				       "correct the count",
+				       SHOWN_BYTES, line, count);
+	return 0;
+}
+
+/* ---- projects: MeshLabProject, MeshGroup, and an MLMesh with an MLMatrix44 for each scan */
+
+static bool is_element(const xmlNode *node, const char *name)
+{
+	return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0;
+}
+
+static unsigned line_of(const xmlNode *node)
+{
+	const long line = xmlGetLineNo(node);
+
+	return line > 0 ? (unsigned)line : 0;
+}
+
+/* A layer without a matrix lies where it was scanned. */
+static int read_matrix(const struct reading *reading, const xmlNode *layer, const char *name,
+		       double matrix[16])
+{
+	const xmlNode *node = layer->children;
+	const char *end;
+	char *text;
+	int count, rc = 0;
+
+	for (int i = 0; i < 16; i++)
+		matrix[i] = i % 5 == 0;
+	while (node && !is_element(node, "MLMatrix44"))
+		node = node->next;
+	if (!node)
+		return 0;
+	text = (char *)xmlNodeGetContent(node);
+	if (!text)
+		return -ENOMEM;
+	count = read_numbers(text, matrix, 16, &end);
+	if (count != 16 || *end)
+		rc = diagnostics_add(
+			reading->diagnostics, -EBADMSG, reading->path, line_of(node),
+			"the matrix of scan %.*s must be 16 numbers, but after %d there is '%.20s'; "
+			"save the project again as .mlp",
+			SHOWN_BYTES, name, count, end);
+	xmlFree(text);
+	return rc;
+}
+
+/* Some formats hold several layers in one file, which is imported whole, once. */
+static bool is_later_layer(const xmlNode *layer)
+{
+	char *text = (char *)xmlGetProp((xmlNode *)layer, BAD_CAST "idInFile");
+	const bool is_later = text && strtol(text, NULL, 10) > 0;
+
+	xmlFree(text);
+	return is_later;
+}
+
+static int read_layer(struct reading *reading, const xmlNode *layer)
+{
+	char *name = (char *)xmlGetProp((xmlNode *)layer, BAD_CAST "filename");
+	double matrix[16];
+	int rc;
+
+	if (!name)
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path,
+				       line_of(layer),
+				       "a layer (MLMesh) without a filename; save it as a file in "
+				       "MeshLab, then the project again");
+	if (is_later_layer(layer))
+		rc = diagnostics_add(
+			reading->diagnostics, -EINVAL, reading->path, line_of(layer),
+			"%.*s holds several layers; save each as a file of its own in MeshLab, "
+			"then the project again",
+			SHOWN_BYTES, name);
+	else
+		rc = read_matrix(reading, layer, name, matrix);
+	if (rc == 0)
+		rc = add_scan(reading, line_of(layer), name, matrix);
+	xmlFree(name);
+	return rc;
+}
+
+static int read_project(struct reading *reading, const xmlNode *root)
+{
+	int rc = 0;
+
+	if (!root || !is_element(root, "MeshLabProject"))
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path,
+				       root ? line_of(root) : 0,
+				       "is no MeshLab project: it does not begin with "
+				       "<MeshLabProject>");
+	for (const xmlNode *group = root->children; group; group = group->next)
+		for (const xmlNode *layer = is_element(group, "MeshGroup") ? group->children : NULL;
+		     layer && rc == 0; layer = layer->next)
+			if (is_element(layer, "MLMesh"))
+				rc = read_layer(reading, layer);
+	if (rc == 0 && reading->alignment->count == 0)
+		rc = diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, 0,
+				     "the project has no layer (MLMesh)");
+	return rc;
+}
+
+static int broken_xml(const struct reading *reading, xmlParserCtxt *parser)
+{
+	const xmlError *error = xmlCtxtGetLastError(parser);
+	const char *message = error && error->message ? error->message : "it is empty";
+
+	return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path,
+			       error && error->line > 0 ? (unsigned)error->line : 0,
+			       "is not whole as XML: %.*s; save the project again from MeshLab",
+			       (int)strcspn(message, "\n"), message);
+}
+
+/* Neither entities nor files or addresses that the document names are followed. */
+static int read_mlp(struct reading *reading, struct bytes file)
+{
+	const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING;
+	xmlParserCtxt *parser = xmlNewParserCtxt();
+	xmlDoc *document;
+	int rc;
+
+	if (!parser)
+		return -ENOMEM;
+	document = xmlCtxtReadMemory(parser, (const char *)file.data, (int)file.size, NULL, NULL,
+				     options);
+	rc = document ? read_project(reading, xmlDocGetRootElement(document))
+		      : broken_xml(reading, parser);
+	xmlFreeDoc(document);
+	xmlFreeParserCtxt(parser);
+	return rc;
+}
+
+/* ---- the whole */
+
+static int check_files(const struct reading *reading)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < reading->alignment->count; i++) {
+		const struct alignment_scan *scan = &reading->alignment->scans[i];
+		struct stat status;
+		int failed = stat(scan->path, &status) < 0 ? -errno : 0;
+
+		if (failed == 0 && !S_ISREG(status.st_mode))
+			failed = -EINVAL;
+		if (failed < 0)
+			rc = diagnostics_add(
+				reading->diagnostics, failed, reading->path, scan->line,
+				"scan %s: %s; put it there, or correct its name", scan->path,
+				failed == -EINVAL ? "not a regular file" : strerror(-failed));
+	}
+	return rc;
+}
+
+int alignment_read(struct alignment *out, const char *path, struct diagnostics *diagnostics)
+{
+	struct reading reading = { .path = path, .alignment = out, .diagnostics = diagnostics };
+	struct buffer file;
+	int rc;
+
+	*out = (struct alignment){ 0 };
+	buffer_init(&file, FILE_BYTES_MAX);
+	rc = buffer_read_file(&file, path);
+	buffer_put_u8(&file, 0); /* ends the text of an alignment */
+	if (rc == 0)
+		rc = file.error;
+	if (rc < 0)
+		diagnostics_add(diagnostics, rc, path, 0, "%s",
+				rc == -EFBIG ? "over 16 MiB; is it an alignment of scans?"
+					     : strerror(-rc));
+	else if (ends_with(path, ".mlp"))
+		rc = read_mlp(&reading, (struct bytes){ file.data, file.size - 1 });
+	else
+		rc = read_aln(&reading, (char *)file.data);
+	if (rc == 0)
+		rc = check_files(&reading);
+	if (rc == -ENOMEM)
+		diagnostics_add(diagnostics, rc, path, 0, "too large for this machine's memory");
+	buffer_finish(&file);
+	if (rc < 0)
+		alignment_finish(out);
+	return rc;
+}
