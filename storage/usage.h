@@ -2,9 +2,10 @@
  * part's card or page was opened, a language was chosen, the search was opened, a tour was started.
  * Counts are kept for 400 days in one text file, the CSV that is handed out (docs/visitors.md).
  *
- * Counts are collected in memory and appended as lines to the file, without waiting for the disk. A
- * power cut costs the last half minute at most. An incomplete line is dropped at the next start,
- * and repeated entries are then added up. One thread. */
+ * Counts are collected in memory. usage_write, called when a visit ends, appends them to the file
+ * without waiting for the disk. A power cut loses what was counted since then, and what the kernel
+ * had not yet written. An incomplete line is dropped at the next start, and repeated entries are
+ * then added up. One thread. */
 #ifndef GOPURA_STORAGE_USAGE_H
 #define GOPURA_STORAGE_USAGE_H
 
