@@ -43,7 +43,7 @@ static void write_release(const struct vitals *vitals, struct buffer *out)
 
 static void write_refusal(const struct vitals *vitals, struct buffer *out)
 {
-	const struct refusal *refusal = updater_refusal(vitals->updater);
+	const struct metrics_refusal *refusal = updater_refusal(vitals->updater);
 
 	metrics_counter(out, "gopura_kiosk_refusals_total", "Releases and their files refused.",
 			(double)refusal->count);

@@ -157,8 +157,8 @@ static void note_damage(struct downloader *downloader, struct want *want)
 	hash_to_hex(want->asked.hash, hex);
 	if (want->reported != MISSING_DAMAGED) {
 		log_warn("net", "content bug: object %s from the server is damaged", hex);
-		refusal_note(downloader->options.link->refusal, hex,
-			     "the server's bytes of this object are damaged");
+		metrics_refusal_note(downloader->options.link->refusal, hex,
+				     "the server's bytes of this object are damaged");
 	}
 	want->retry_at_ms += link_pause_ms(want->failures);
 	report(downloader, want, MISSING_DAMAGED);
@@ -260,8 +260,8 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 	char hex[HASH_HEX_BYTES];
 
 	hash_to_hex(hash, hex);
-	refusal_note(downloader->options.link->refusal, hex,
-		     "the stick's bytes of this object are damaged");
+	metrics_refusal_note(downloader->options.link->refusal, hex,
+			     "the stick's bytes of this object are damaged");
 	/* logs only the first; there may be thousands */
 	if (downloader->counters.stick_damaged++ == 0)
 		log_warn("net", "object %s from the stick is damaged", hex);

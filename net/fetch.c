@@ -50,7 +50,7 @@ struct fetch {
 	struct http *http;
 	struct cache *cache;
 	struct link link;
-	struct refusal refusal; /* the last refusal of something from the server */
+	struct metrics_refusal refusal; /* the last refusal of something from the server */
 	struct downloader *downloader;
 	struct poll *poll;
 	struct stick *stick;            /* NULL: no stick is used */
@@ -271,7 +271,7 @@ static void send_status(struct fetch *fetch)
 
 /* ---- metrics for monitoring; docs/health.md lists them */
 
-static void write_refusal(const struct refusal *refusal, struct buffer *out)
+static void write_refusal(const struct metrics_refusal *refusal, struct buffer *out)
 {
 	metrics_counter(out, "gopura_fetch_refusals_total", "Failed downloads and connections.",
 			(double)refusal->count);

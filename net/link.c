@@ -46,7 +46,7 @@ void link_failed(struct link *link, const char *url, const char *why)
 		return;
 	if (link->online || link->failures == 0) {
 		log_warn("net", "offline: %s: %s", url, why);
-		refusal_note(link->refusal, url, why);
+		metrics_refusal_note(link->refusal, url, why);
 	}
 	if (link->online)
 		link->offline_since_s = (uint64_t)clock_wall_s();

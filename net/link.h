@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/refusal.h"
+#include "base/metrics_refusal.h"
 
 struct link {
 	uint32_t failures; /* in a row, since the last answer */
@@ -15,8 +15,8 @@ struct link {
 	bool online;              /* the last request was answered; false before the first one */
 	uint64_t offline_since_s; /* wall clock; 0 while online */
 	uint32_t in_flight;       /* number of requests in flight */
-	struct refusal *refusal;  /* where refusals are noted; borrowed; NULL: nowhere */
-	uint64_t answers, errors; /* requests that ended this way since link_init */
+	struct metrics_refusal *refusal; /* where refusals are noted; borrowed; NULL: nowhere */
+	uint64_t answers, errors;        /* requests that ended this way since link_init */
 };
 
 /* Returns the pause in ms after the n-th failure in a row (n from 1): half a second, doubling up to

@@ -99,7 +99,7 @@ static void note_failure(struct located_release *release, int rc, const char *wh
 	if (release->failures > 1)
 		return;
 	log_warn("net", "content bug: locator/%s: %s", hex, why);
-	refusal_note(release->locators->options.link->refusal, hex, why);
+	metrics_refusal_note(release->locators->options.link->refusal, hex, why);
 }
 
 static void on_done(void *data, const struct http_result *result)

@@ -199,7 +199,7 @@ static void note_refusal(struct poll *poll, const char *path, const char *why)
 	if (!poll->logged_refusal)
 		log_warn("net", "content bug: cannot get %s: %s", path, why);
 	poll->logged_refusal = true;
-	refusal_note(poll->options.link->refusal, path, why);
+	metrics_refusal_note(poll->options.link->refusal, path, why);
 }
 
 static void request_file(struct poll *poll);

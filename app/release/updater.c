@@ -29,7 +29,7 @@ struct updater {
 	struct buffer shown_file;   /* release.json of shown; empty: not known */
 	uint64_t writing; /* sequence that the state writer was asked to store last; 0: stored */
 	const char *said; /* reason logged last; static; "": none since an accepted release */
-	struct refusal refusal;
+	struct metrics_refusal refusal;
 	bool stamp_refused;      /* timestamp.json was: a refused release.json follows from it */
 	struct release next;     /* being loaded; sequence 0: none */
 	struct buffer next_file; /* release.json of next */
@@ -76,7 +76,7 @@ static void note(struct updater *updater, uint64_t sequence, const char *why)
 	char what[32];
 
 	snprintf(what, sizeof(what), "release %llu", (unsigned long long)sequence);
-	refusal_note(&updater->refusal, what, why);
+	metrics_refusal_note(&updater->refusal, what, why);
 	log_warn("app", "refused %s: %s", what, why);
 }
 
@@ -289,7 +289,7 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		if (why != updater->said) /* do not log the same reason every minute */
 			log_warn("app", "refused %s: %s", name, why);
 		updater->said = why;
-		refusal_note(&updater->refusal, name, why);
+		metrics_refusal_note(&updater->refusal, name, why);
 	}
 	if (role == META_TIMESTAMP)
 		updater->stamp_refused = rc < 0;
@@ -330,7 +330,7 @@ uint64_t updater_sequence(const struct updater *updater)
 						 : updater->shown.sequence;
 }
 
-const struct refusal *updater_refusal(const struct updater *updater)
+const struct metrics_refusal *updater_refusal(const struct updater *updater)
 {
 	return &updater->refusal;
 }

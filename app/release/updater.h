@@ -5,7 +5,7 @@
 #ifndef GOPURA_APP_RELEASE_UPDATER_H
 #define GOPURA_APP_RELEASE_UPDATER_H
 
-#include "base/refusal.h"
+#include "base/metrics_refusal.h"
 #include "net/client.h"
 
 struct updater;
@@ -57,7 +57,7 @@ void updater_fall_back(struct updater *updater, const char *why);
 void updater_refuse(struct updater *updater, struct hash root, const char *why);
 /* Returns the last refusal of an offered release or its files. Borrowed; its counter rises with
  * each. */
-const struct refusal *updater_refusal(const struct updater *updater);
+const struct metrics_refusal *updater_refusal(const struct updater *updater);
 /* Returns a descriptor, borrowed, that is readable when updater_dispatch has something to do. */
 int updater_fd(const struct updater *updater);
 /* Handles an answer of the state writer and calls `remembered`. Returns 0. */

@@ -54,7 +54,7 @@ void draft_finish(struct draft *draft)
 		free(draft->pictures[i].name);
 	free(draft->parts);
 	free(draft->pictures);
-	*draft = (struct draft){ .options = draft->options };
+	*draft = (struct draft){ .options = draft->options, .diagnostics = draft->diagnostics };
 }
 
 static int parse_json(struct draft *draft, const char *file, const char *key, struct json_text *out,

@@ -81,7 +81,7 @@ struct draft {
 	uint32_t picture_count, picture_room;
 };
 
-/* Frees everything that was read. options stays. */
+/* Frees everything that was read. options and diagnostics stay. */
 void draft_finish(struct draft *draft);
 
 /* Reads parts.json. Like the other readers, it returns 0 even after faults, which it reports; a

@@ -13,7 +13,7 @@ static struct {
 	bool is_full;
 	bool cached[OBJECTS], locator_cached; /* what the cache has */
 	struct link link;
-	struct refusal refusal;
+	struct metrics_refusal refusal;
 } world;
 
 static uint8_t pack[OBJECTS * OBJECT_BYTES];

@@ -14,7 +14,7 @@ struct stage {
 	char folder[64];
 	struct cache *cache;
 	struct link link;
-	struct refusal refusal;
+	struct metrics_refusal refusal;
 	struct downloader *downloader;
 	uint8_t pack[OBJECTS * OBJECT_BYTES];
 	struct hash names[OBJECTS], page, pack_name, root;

@@ -13,7 +13,7 @@ struct stage {
 	char folder[64];
 	struct cache *cache;
 	struct link link;
-	struct refusal refusal;
+	struct metrics_refusal refusal;
 	struct locators locators;
 	int changes;
 };

@@ -6,7 +6,7 @@
 struct stage {
 	struct link link;
 	struct poll *poll;
-	struct refusal refusal;
+	struct metrics_refusal refusal;
 	char passed[256]; /* "root1 timestamp ..." */
 };
 

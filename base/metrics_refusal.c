@@ -1,11 +1,11 @@
-/* Records the latest refusal with its time. */
-#include "base/refusal.h"
+/* Counts refusals and records the last one with its time. */
+#include "base/metrics_refusal.h"
 
 #include <stdio.h>
 
 #include "base/clock.h"
 
-void refusal_note(struct refusal *refusal, const char *what, const char *why)
+void metrics_refusal_note(struct metrics_refusal *refusal, const char *what, const char *why)
 {
 	if (!refusal)
 		return;
