@@ -27,7 +27,7 @@ struct border_vertex {
 struct block_border {
 	struct border_vertex *vertices; /* owned; by blocks, in each by place */
 	uint32_t *first; /* owned; for each block, and the number of all at the end */
-	uint32_t block_count;
+	uint32_t block_count, vertex_room;
 };
 
 #define BORDER_NONE UINT32_MAX

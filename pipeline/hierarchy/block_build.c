@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/processes.h"
 #include "base/progress.h"
 #include "format/patch.h"
@@ -147,25 +148,13 @@ struct collector {
 static int make_room(struct collector *collector, const struct hierarchy *more)
 {
 	struct hierarchy *made = &collector->made;
-	uint32_t groups = made->group_count + more->group_count;
-	uint32_t patches = made->patch_count + more->patch_count;
-	void *grown;
+	int rc = ARRAY_RESERVE(made->groups, collector->group_room,
+			       (uint64_t)made->group_count + more->group_count, UINT32_MAX);
 
-	if (groups > collector->group_room) {
-		collector->group_room = 2 * groups;
-		grown = realloc(made->groups, collector->group_room * sizeof(*made->groups));
-		if (!grown)
-			return -ENOMEM;
-		made->groups = grown;
-	}
-	if (patches > collector->patch_room) {
-		collector->patch_room = 2 * patches;
-		grown = realloc(made->patches, collector->patch_room * sizeof(*made->patches));
-		if (!grown)
-			return -ENOMEM;
-		made->patches = grown;
-	}
-	return 0;
+	if (rc == 0)
+		rc = ARRAY_RESERVE(made->patches, collector->patch_room,
+				   (uint64_t)made->patch_count + more->patch_count, UINT32_MAX);
+	return rc;
 }
 
 static int resolve(uint32_t *finer, const struct collector *collector,

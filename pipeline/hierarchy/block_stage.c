@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "pipeline/hierarchy/graph.h"
 
 enum { PATCHES_A_BLOCK_MIN = 16, TOUCH_WEIGHT = 4 /* for each vertex; joints weigh 1 */ };
@@ -35,12 +36,11 @@ static int compare_shared(const void *left, const void *right)
 /* One entry for each use, with the patch in place of the block; later equal keys become one. */
 static int add_uses(struct block_stage *stage, const struct block_digest *digest, uint32_t node)
 {
-	size_t room = stage->shared_count + (size_t)digest->use_count + 1;
-	struct block_shared *grown = realloc(stage->shared, room * sizeof(*grown));
+	int rc = ARRAY_RESERVE(stage->shared, stage->shared_room,
+			       (uint64_t)stage->shared_count + digest->use_count, UINT32_MAX);
 
-	if (!grown)
-		return -ENOMEM;
-	stage->shared = grown;
+	if (rc < 0)
+		return rc;
 	for (uint32_t u = 0; u < digest->use_count; u++) {
 		uint32_t patch = stage->first_patch[node] + digest->uses[u].patch;
 

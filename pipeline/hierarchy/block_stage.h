@@ -22,7 +22,7 @@ struct block_stage {
 		*first_patch; /* owned; for each of these nodes, and the number of all at the end */
 	uint32_t *block_of_patch;    /* owned; for each patch of all these nodes, in their order */
 	struct block_shared *shared; /* owned; sorted by key */
-	uint32_t shared_count;
+	uint32_t shared_count, shared_room;
 	uint64_t triangle_count; /* of all patches */
 };
 

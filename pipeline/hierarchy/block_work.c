@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/parallel.h"
 #include "pipeline/hierarchy/block_node.h"
 
@@ -19,7 +20,7 @@ struct worker {
 		*keys; /* for each vertex of the work, its name as a shared one, or BLOCK_NO_KEY */
 	struct block_result result;
 	struct block_left left;
-	uint32_t size_room, other_room;
+	uint32_t vertex_room, pinned_room, key_room, size_room, loss_room, other_room;
 };
 
 /* ---- a block of the scan */
@@ -116,16 +117,11 @@ static int prepare_scan_block(struct worker *worker, uint32_t jobs)
 static int add_other(struct worker *worker, struct block_group group, uint32_t *number)
 {
 	struct block_result *result = &worker->result;
+	int rc = ARRAY_RESERVE(result->others, worker->other_room, result->other_count + 1,
+			       UINT32_MAX);
 
-	if (result->other_count == worker->other_room) {
-		uint32_t room = 2 * worker->other_room + 64;
-		struct block_group *grown = realloc(result->others, room * sizeof(*grown));
-
-		if (!grown)
-			return -ENOMEM;
-		result->others = grown;
-		worker->other_room = room;
-	}
+	if (rc < 0)
+		return rc;
 	*number = result->other_count++;
 	result->others[*number] = group;
 	return 0;
@@ -217,15 +213,14 @@ static int name_vertex(struct worker *worker, struct source *source, uint32_t v,
 static int make_more_room(struct worker *worker, uint32_t more)
 {
 	struct multires_node *work = &worker->work;
-	size_t count = work->mesh.vertex_count + (size_t)more + 1;
-	void *vertices = realloc(work->mesh.vertices, count * sizeof(*work->mesh.vertices));
-	void *pinned = realloc(work->pinned, count * sizeof(*work->pinned));
-	void *keys = realloc(worker->keys, count * sizeof(*worker->keys));
+	const uint64_t count = (uint64_t)work->mesh.vertex_count + more;
+	int rc = ARRAY_RESERVE(work->mesh.vertices, worker->vertex_room, count, UINT32_MAX);
 
-	work->mesh.vertices = vertices ? vertices : work->mesh.vertices;
-	work->pinned = pinned ? pinned : work->pinned;
-	worker->keys = keys ? keys : worker->keys;
-	return vertices && pinned && keys ? 0 : -ENOMEM;
+	if (rc == 0)
+		rc = ARRAY_RESERVE(work->pinned, worker->pinned_room, count, UINT32_MAX);
+	if (rc == 0)
+		rc = ARRAY_RESERVE(worker->keys, worker->key_room, count, UINT32_MAX);
+	return rc;
 }
 
 /* Moves a patch into the work. numbers[group] is what a group of the node is called here. */
@@ -320,18 +315,12 @@ static int keep_object(void *user, struct bytes object, float loss_m4)
 	struct worker *worker = user;
 	struct block_result *result = &worker->result;
 	uint32_t count = result->made.group_count;
+	int rc = ARRAY_RESERVE(result->sizes, worker->size_room, count + 1, UINT32_MAX);
 
-	if (count == worker->size_room) {
-		uint32_t room = 2 * worker->size_room + 64;
-		uint32_t *sizes = realloc(result->sizes, room * sizeof(*sizes));
-		float *losses = realloc(result->losses_m4, room * sizeof(*losses));
-
-		result->sizes = sizes ? sizes : result->sizes;
-		result->losses_m4 = losses ? losses : result->losses_m4;
-		if (!sizes || !losses)
-			return -ENOMEM;
-		worker->size_room = room;
-	}
+	if (rc == 0)
+		rc = ARRAY_RESERVE(result->losses_m4, worker->loss_room, count + 1, UINT32_MAX);
+	if (rc < 0)
+		return rc;
 	result->sizes[count] = (uint32_t)object.size;
 	result->losses_m4[count] = loss_m4;
 	result->made.group_count++; /* the rows come at the end */
