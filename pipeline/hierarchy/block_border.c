@@ -8,7 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/bytes.h"
+#include "base/map.h"
 #include "pipeline/material/material.h"
 
 enum { BORDER_BYTES = LATTICE_VERTEX_BYTES + 8, BORDER_FILE_BYTES_MAX = 1 << 30 };
@@ -42,71 +44,31 @@ static uint64_t place_of(const uint16_t position[3])
 	return (uint64_t)position[2] << 32 | (uint64_t)position[1] << 16 | position[0];
 }
 
-static int compare_places(const void *left, const void *right)
+static bool holds(const struct map *places, const uint16_t position[3])
 {
-	uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-
-	return a < b ? -1 : a > b;
+	return map_get(places, place_of(position)) != MAP_NONE;
 }
 
-/* Places of vertices in the block's cells that have a triangle of another block; sorted, distinct.
- */
-struct places {
-	uint64_t *items;
-	uint32_t count;
-	uint64_t *filter; /* bits by hash: most places are not among the items */
-};
-
-enum { FILTER_BITS = 1 << 20 };
-
-static uint32_t filter_bit(uint64_t place)
-{
-	return (uint32_t)(place * 0x9e3779b97f4a7c15u >> 40) % FILTER_BITS;
-}
-
-static bool holds(const struct places *places, const uint16_t position[3])
-{
-	uint64_t place = place_of(position);
-	uint32_t bit = filter_bit(place);
-
-	return places->filter[bit / 64] >> bit % 64 & 1 &&
-	       bsearch(&place, places->items, places->count, sizeof(place), compare_places);
-}
-
-static int find_places(struct places *places, const struct block_scan *scan,
+/* Finds the places of vertices in the block's cells that have a triangle of another block. */
+static int find_places(struct map *places, const struct block_scan *scan,
 		       const struct block_cells *cells, const struct block_triangles *triangles,
 		       uint32_t block)
 {
-	size_t most = 3 * (size_t)(triangles->count - triangles->own_count);
-	uint32_t kept = 0;
+	int rc = 0;
 
-	places->items = malloc((most + 1) * sizeof(*places->items));
-	places->filter = calloc(FILTER_BITS / 64, sizeof(*places->filter));
-	if (!places->items || !places->filter)
-		return -ENOMEM;
-	for (uint32_t t = triangles->own_count; t < triangles->count; t++) {
+	for (uint32_t t = triangles->own_count; rc == 0 && t < triangles->count; t++) {
 		uint16_t corners[3][3];
 
 		block_corners(corners, scan, triangles->items[t]);
-		for (int c = 0; c < 3; c++)
+		for (int c = 0; rc == 0 && c < 3; c++)
 			if (cells->block_of_cell[block_cell(corners[c])] == block)
-				places->items[places->count++] = place_of(corners[c]);
+				rc = map_set(places, place_of(corners[c]), 0);
 	}
-	qsort(places->items, places->count, sizeof(*places->items), compare_places);
-	for (uint32_t i = 0; i < places->count; i++)
-		if (kept == 0 || places->items[i] != places->items[kept - 1])
-			places->items[kept++] = places->items[i];
-	places->count = kept;
-	for (uint32_t i = 0; i < kept; i++) {
-		uint32_t bit = filter_bit(places->items[i]);
-
-		places->filter[bit / 64] |= UINT64_C(1) << bit % 64;
-	}
-	return 0;
+	return rc;
 }
 
 /* Moves the triangles that have a corner among the places to the front. */
-static uint32_t keep_touching(struct block_triangles *triangles, const struct places *places,
+static uint32_t keep_touching(struct block_triangles *triangles, const struct map *places,
 			      const struct block_scan *scan)
 {
 	uint32_t kept = 0;
@@ -164,8 +126,8 @@ static int compare_borders(const void *left, const void *right)
 	return a < b ? -1 : a > b;
 }
 
-static int put_border(struct buffer *out, const struct lattice_mesh *mesh,
-		      const struct places *places, const struct block_cells *cells)
+static int put_border(struct buffer *out, const struct lattice_mesh *mesh, const struct map *places,
+		      const struct block_cells *cells)
 {
 	uint32_t *lows = malloc((mesh->vertex_count + (size_t)1) * sizeof(*lows));
 	uint32_t *highs = malloc((mesh->vertex_count + (size_t)1) * sizeof(*highs));
@@ -192,7 +154,7 @@ static int settle(struct buffer *out, const struct block_scan *scan,
 		  const char *folder, uint32_t block)
 {
 	struct block_triangles triangles;
-	struct places places = { 0 };
+	struct map places = { 0 };
 	struct lattice_mesh lattice_mesh = { 0 };
 	struct lattice_counts counts;
 	struct mesh mesh = { 0 };
@@ -220,8 +182,7 @@ static int settle(struct buffer *out, const struct block_scan *scan,
 	}
 	lattice_mesh_finish(&lattice_mesh);
 	mesh_finish(&mesh);
-	free(places.items);
-	free(places.filter);
+	map_finish(&places);
 	block_triangles_finish(&triangles);
 	return rc;
 }
@@ -261,7 +222,6 @@ static void get_vertex(struct border_vertex *out, struct reader *reader)
 static int read_block(struct block_border *border, const char *folder, uint32_t block)
 {
 	char path[PATH_MAX];
-	struct border_vertex *grown;
 	struct buffer file;
 	struct reader reader;
 	uint32_t count = 0;
@@ -274,10 +234,8 @@ static int read_block(struct block_border *border, const char *folder, uint32_t 
 		rc = -EBADMSG;
 	if (rc == 0) {
 		count = (uint32_t)(file.size / BORDER_BYTES);
-		grown = realloc(border->vertices,
-				(border->first[block] + (size_t)count + 1) * sizeof(*grown));
-		rc = grown ? 0 : -ENOMEM;
-		border->vertices = grown ? grown : border->vertices;
+		rc = ARRAY_RESERVE(border->vertices, border->vertex_room,
+				   (uint64_t)border->first[block] + count, UINT32_MAX);
 	}
 	reader_init(&reader, buffer_bytes(&file));
 	for (uint32_t i = 0; rc == 0 && i < count; i++)

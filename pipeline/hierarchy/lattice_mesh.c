@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/map.h"
+
 enum { STEPS = 65535 };
 
 int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3])
@@ -32,26 +34,6 @@ void lattice_place(uint16_t out[3], const struct lattice *lattice, const float a
 	}
 }
 
-static uint64_t mix(uint64_t key)
-{
-	key ^= key >> 31;
-	key *= 0x9e3779b97f4a7c15u;
-	key ^= key >> 29;
-	key *= 0xbf58476d1ce4e5b9u;
-	return key ^ key >> 32;
-}
-
-/* Hash table with open addressing; entries are an index plus one, 0 is free. */
-static uint32_t *table_create(uint32_t *mask, uint32_t count)
-{
-	uint64_t size = 64;
-
-	while (size < 2 * (uint64_t)count)
-		size *= 2;
-	*mask = (uint32_t)(size - 1);
-	return calloc(size, sizeof(uint32_t));
-}
-
 struct merged {
 	uint32_t *to;       /* for each vertex of the scan, its vertex on the lattice */
 	uint32_t (*sum)[4]; /* sums of colours */
@@ -62,34 +44,31 @@ struct merged {
 static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const struct mesh *mesh,
 			  const uint8_t colour[3])
 {
-	uint32_t mask, *table = table_create(&mask, mesh->vertex_count);
 	const uint8_t plain[4] = { colour[0], colour[1], colour[2], 255 };
+	struct map vertex_at = { 0 };
+	int rc = 0;
 
-	if (!table)
-		return -ENOMEM;
-	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+	for (uint32_t v = 0; rc == 0 && v < mesh->vertex_count; v++) {
 		const uint8_t *own = mesh->colours ? mesh->colours[v] : plain;
 		uint16_t position[3];
-		uint32_t at, id;
+		uint64_t place, id;
 
 		lattice_place(position, &out->lattice, mesh->positions[v]);
-		at = (uint32_t)mix(position[0] | (uint64_t)position[1] << 16 |
-				   (uint64_t)position[2] << 32) &
-		     mask;
-		while (table[at] && memcmp(out->vertices[table[at] - 1].position, position,
-					   sizeof(position)) != 0)
-			at = (at + 1) & mask;
-		if (!table[at]) {
-			table[at] = ++out->vertex_count;
-			memcpy(out->vertices[table[at] - 1].position, position, sizeof(position));
+		place = position[0] | (uint64_t)position[1] << 16 | (uint64_t)position[2] << 32;
+		id = map_get(&vertex_at, place);
+		if (id == MAP_NONE) {
+			id = out->vertex_count++;
+			memcpy(out->vertices[id].position, position, sizeof(position));
+			rc = map_set(&vertex_at, place, id);
 		}
-		id = table[at] - 1;
-		merged->to[v] = id;
+		merged->to[v] = (uint32_t)id;
 		merged->count[id]++;
 		for (int i = 0; i < 4; i++)
 			merged->sum[id][i] += own[i];
 	}
-	free(table);
+	map_finish(&vertex_at);
+	if (rc < 0)
+		return rc;
 	for (uint32_t v = 0; v < out->vertex_count; v++) {
 		out->vertices[v].seen = 255;
 		for (int i = 0; i < 4; i++)
@@ -114,10 +93,11 @@ static void turn_smallest_first(uint32_t triangle[3])
 static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *counts,
 			  const struct mesh *mesh, const uint32_t *to)
 {
-	uint32_t mask, *table = table_create(&mask, mesh->triangle_count);
+	struct map seen = { 0 };
+	int rc = 0;
 
-	for (uint32_t t = 0; table && t < mesh->triangle_count; t++) {
-		uint32_t *kept = out->triangles[out->triangle_count], at;
+	for (uint32_t t = 0; rc >= 0 && t < mesh->triangle_count; t++) {
+		uint32_t *kept = out->triangles[out->triangle_count];
 
 		for (int corner = 0; corner < 3; corner++)
 			kept[corner] = to[mesh->triangles[t][corner]];
@@ -126,19 +106,15 @@ static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *count
 			continue;
 		}
 		turn_smallest_first(kept);
-		at = (uint32_t)mix(mix(kept[0] | (uint64_t)kept[1] << 32) + kept[2]) & mask;
-		while (table[at] &&
-		       memcmp(out->triangles[table[at] - 1], kept, sizeof(*out->triangles)) != 0)
-			at = (at + 1) & mask;
-		if (table[at]) {
+		rc = map_add(&seen, (map_key)kept[2] << 64 | (uint64_t)kept[1] << 32 | kept[0], t);
+		if (rc > 0)
+			out->triangle_count++;
+		else if (rc == 0)
 			counts->duplicate_triangles++;
-			continue;
-		}
-		table[at] = ++out->triangle_count;
 	}
-	free(table);
-	if (!table)
-		return -ENOMEM;
+	map_finish(&seen);
+	if (rc < 0)
+		return rc;
 	return out->triangle_count > 0 ? 0 : -EINVAL;
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/map.h"
 #include "pipeline/hierarchy/graph.h"
 
 enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MAX = 10 };
@@ -274,33 +275,26 @@ static uint64_t voxel_of_triangle(const struct splitter *splitter, uint32_t t, i
 /* Voxels are numbered in the order in which triangles meet them. */
 static int number_voxels(struct splitter *splitter, int level, uint32_t *fullest)
 {
-	uint32_t size = 64, *table, *fill;
-	uint64_t *cells;
+	uint32_t *fill = calloc(splitter->triangle_count + 1, sizeof(*fill));
+	struct map voxel_of_cell = { 0 };
+	int rc = fill ? 0 : -ENOMEM;
 
-	while (size < 2 * (uint64_t)splitter->triangle_count)
-		size *= 2;
-	table = calloc(size, sizeof(*table));
-	cells = malloc((splitter->triangle_count + 1) * sizeof(*cells));
-	fill = calloc(splitter->triangle_count + 1, sizeof(*fill));
 	splitter->voxel_count = *fullest = 0;
-	for (uint32_t t = 0; table && cells && fill && t < splitter->triangle_count; t++) {
-		uint64_t cell = voxel_of_triangle(splitter, t, level);
-		uint32_t at = (uint32_t)(cell * 0x9e3779b97f4a7c15u >> 32) & (size - 1);
+	for (uint32_t t = 0; rc == 0 && t < splitter->triangle_count; t++) {
+		const uint64_t cell = voxel_of_triangle(splitter, t, level);
+		uint64_t voxel = map_get(&voxel_of_cell, cell);
 
-		while (table[at] && cells[table[at] - 1] != cell)
-			at = (at + 1) & (size - 1);
-		if (!table[at]) {
-			cells[splitter->voxel_count] = cell;
-			table[at] = ++splitter->voxel_count;
+		if (voxel == MAP_NONE) {
+			voxel = splitter->voxel_count++;
+			rc = map_set(&voxel_of_cell, cell, voxel);
 		}
-		splitter->voxel_of[t] = table[at] - 1;
-		if (++fill[table[at] - 1] > *fullest)
-			*fullest = fill[table[at] - 1];
+		splitter->voxel_of[t] = (uint32_t)voxel;
+		if (++fill[voxel] > *fullest)
+			*fullest = fill[voxel];
 	}
-	free(table);
-	free(cells);
+	map_finish(&voxel_of_cell);
 	free(fill);
-	return table && cells && fill ? 0 : -ENOMEM;
+	return rc;
 }
 
 /* Refines until each voxel holds fewer triangles than required, or until refining gains little. */
