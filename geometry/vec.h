@@ -1,4 +1,6 @@
-/* Vectors of three floats. Inline functions, because a call would cost more than the work. */
+/* Vectors of three floats, and 4 x 4 matrices of 16 floats in column-major order. Inline functions,
+ * because a call would cost more than the work. The result comes first and may be an operand,
+ * except in matrix_multiply. */
 #ifndef GOPURA_GEOMETRY_VEC_H
 #define GOPURA_GEOMETRY_VEC_H
 
@@ -23,11 +25,32 @@ static inline float vec_dot(const float a[3], const float b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* out = a */
+static inline void vec_copy(float out[3], const float a[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = a[i];
+}
+
 /* out = a - b */
 static inline void vec_sub(float out[3], const float a[3], const float b[3])
 {
 	for (int i = 0; i < 3; i++)
 		out[i] = a[i] - b[i];
+}
+
+/* out = a + b */
+static inline void vec_add(float out[3], const float a[3], const float b[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = a[i] + b[i];
+}
+
+/* out = scale * a */
+static inline void vec_scale(float out[3], float scale, const float a[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = scale * a[i];
 }
 
 /* out = a + scale * b */
@@ -37,7 +60,14 @@ static inline void vec_add_scaled(float out[3], const float a[3], float scale, c
 		out[i] = a[i] + scale * b[i];
 }
 
-/* out = a x b; out may be a or b. */
+/* out = a + share * (b - a): a where share is 0, b where it is 1. */
+static inline void vec_mix(float out[3], const float a[3], const float b[3], float share)
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = a[i] + share * (b[i] - a[i]);
+}
+
+/* out = a x b */
 static inline void vec_cross(float out[3], const float a[3], const float b[3])
 {
 	float x = a[1] * b[2] - a[2] * b[1];
@@ -68,6 +98,19 @@ static inline float vec_normalise(float a[3])
 	for (int i = 0; i < 3 && length > 0; i++)
 		a[i] /= length;
 	return length;
+}
+
+/* out = a b: what b does, and then what a does. */
+static inline void matrix_multiply(float out[16], const float a[16], const float b[16])
+{
+	for (int column = 0; column < 4; column++) {
+		for (int row = 0; row < 4; row++) {
+			float sum = 0;
+			for (int k = 0; k < 4; k++)
+				sum += a[4 * k + row] * b[4 * column + k];
+			out[4 * column + row] = sum;
+		}
+	}
 }
 
 #endif

@@ -19,11 +19,7 @@ static void set_matrix(struct view *view, const struct camera *camera)
 	/* Relative to the eye the view matrix is a rotation only, which stays precise however far
 	 * the model is from the origin. */
 	turn[12] = turn[13] = turn[14] = 0;
-	for (int column = 0; column < 4; column++)
-		for (int row = 0; row < 4; row++)
-			for (int k = 0; k < 4; k++)
-				view->clip[4 * column + row] +=
-					projection[4 * k + row] * turn[4 * column + k];
+	matrix_multiply(view->clip, projection, turn);
 }
 
 static void set_sides(struct view *view)

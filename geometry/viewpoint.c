@@ -16,10 +16,8 @@ void viewpoint_of_region(const struct region *region, const float anchor_m[3], f
 	const float size = fmaxf(region_size_m(region), least_m);
 	float away[3], distance;
 
-	for (int i = 0; i < 3; i++) {
-		away[i] = from_m[i] - anchor_m[i];
-		target_m[i] = anchor_m[i];
-	}
+	vec_copy(target_m, anchor_m);
+	vec_sub(away, from_m, anchor_m);
 	distance = vec_normalise(away);
 	if (distance < least_m / 5) {
 		away[0] = 0;
@@ -30,6 +28,5 @@ void viewpoint_of_region(const struct region *region, const float anchor_m[3], f
 	away[2] = fminf(fmaxf(away[2], STEEP_MIN), STEEP_MAX);
 	vec_normalise(away);
 	distance = fminf(distance, DISTANCE_SIZES * size);
-	for (int i = 0; i < 3; i++)
-		eye_m[i] = target_m[i] + distance * away[i];
+	vec_add_scaled(eye_m, target_m, distance, away);
 }

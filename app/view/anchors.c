@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include <cglm/cglm.h>
+#include "geometry/vec.h"
 
 enum { TESTS_A_FRAME = 3 };
 
@@ -13,11 +13,11 @@ static bool is_hidden(const struct eye *eye, const float anchor_m[3])
 	const float off = navigator_keep_off_m(&eye->navigator);
 	float direction[3], distance, free_m;
 
-	glm_vec3_sub((float *)anchor_m, (float *)eye->camera.eye_m, direction);
-	distance = glm_vec3_norm(direction);
+	vec_sub(direction, anchor_m, eye->camera.eye_m);
+	distance = vec_length(direction);
 	if (distance < off / 35)
 		return false;
-	glm_vec3_scale(direction, 1 / distance, direction);
+	vec_scale(direction, 1 / distance, direction);
 	free_m = scene_clearance(eye->shown->scene, eye->camera.eye_m, direction, distance);
 	return free_m < distance - fmaxf(off, 0.03f * distance);
 }
@@ -46,7 +46,7 @@ static void test_some(struct anchors *anchors, const struct eye *eye, uint32_t c
 /* Returns the diameter of the part on the panel, in pixels; 0 if it is only a point. */
 static float size_on_panel(const struct camera *camera, const struct info_part *part)
 {
-	const float distance_m = glm_vec3_distance((float *)part->anchor_m, (float *)camera->eye_m);
+	const float distance_m = vec_distance(part->anchor_m, camera->eye_m);
 
 	return 2 * region_size_m(&part->region) * camera_px_per_radian(camera) /
 	       fmaxf(distance_m, 0.01f);

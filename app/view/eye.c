@@ -5,9 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include <cglm/cglm.h>
-
 #include "base/log.h"
+#include "geometry/vec.h"
 
 #define PART_LEAST_M     0.5f  /* smallest size of a part for a flight to it */
 #define PART_LEAST_SHARE 0.03f /* on a small model: a share of its diagonal */
@@ -103,12 +102,11 @@ bool eye_pick(const struct eye *eye, const struct viewport *viewport, float x_px
 	if (scene_pick(eye->shown->scene, &eye->camera, x_px, y_px, point_m))
 		return true;
 	camera_ray(&eye->camera, x_px, y_px, direction);
-	glm_vec3_lerp((float *)o->box_min_m, (float *)o->box_max_m, 0.5f, middle);
-	glm_vec3_copy((float *)eye->camera.eye_m, point_m);
-	glm_vec3_muladds(
-		direction,
-		fmaxf(navigator_keep_off_m(&eye->navigator), glm_vec3_distance(middle, point_m)),
-		point_m);
+	vec_mix(middle, o->box_min_m, o->box_max_m, 0.5f);
+	vec_copy(point_m, eye->camera.eye_m);
+	vec_add_scaled(point_m, point_m,
+		       fmaxf(navigator_keep_off_m(&eye->navigator), vec_distance(middle, point_m)),
+		       direction);
 	return false;
 }
 
@@ -127,7 +125,7 @@ void eye_fly_to_part(struct eye *eye, const struct viewport *viewport, uint32_t 
 	const struct rect rect = overlay_scene_rect(exhibit_overlay(eye->shown));
 	const float w = (float)viewport_width_px(viewport);
 	const float h = (float)viewport_height_px(viewport);
-	const float tangent = tanf(glm_rad(eye->navigator.options.fov_deg) / 2);
+	const float tangent = tanf(eye->navigator.options.fov_deg * (float)M_PI / 360);
 	const float side = ((float)rect.x_px + (float)rect.width_px / 2) / w * 2 - 1;
 	const float height = 1 - ((float)rect.y_px + (float)rect.height_px / 2) / h * 2;
 	const float least =
@@ -136,14 +134,14 @@ void eye_fly_to_part(struct eye *eye, const struct viewport *viewport, uint32_t 
 
 	information_view_viewpoint(eye->shown->view, part, least, eye->navigator.eye_m, eye_m,
 				   target);
-	glm_vec3_sub(target, eye_m, forward);
-	distance = glm_vec3_norm(forward);
-	glm_vec3_cross(forward, (vec3){ 0, 0, 1 }, right);
-	glm_vec3_normalize(right);
-	glm_vec3_cross(right, forward, up);
-	glm_vec3_normalize(up);
-	glm_vec3_muladds(right, -side * tangent * w / h * distance, target);
-	glm_vec3_muladds(up, -height * tangent * distance, target);
+	vec_sub(forward, target, eye_m);
+	distance = vec_length(forward);
+	vec_cross(right, forward, (float[]){ 0, 0, 1 });
+	vec_normalise(right);
+	vec_cross(up, right, forward);
+	vec_normalise(up);
+	vec_add_scaled(target, target, -side * tangent * w / h * distance, right);
+	vec_add_scaled(target, target, -height * tangent * distance, up);
 	navigator_fly(&eye->navigator, eye_m, target, EYE_FLIGHT_MS);
 }
 

@@ -3,9 +3,11 @@
  * short segments. */
 #include "app/view/flight_way.h"
 
-#include <cglm/cglm.h>
+#include <math.h>
+#include <stddef.h>
 
 #include "base/compiler.h"
+#include "geometry/vec.h"
 
 enum { STEPS = 16 };
 
@@ -24,9 +26,9 @@ float flight_way_length_m(const struct flight_way *way)
 
 	flight_way_at(way, 0, to);
 	for (int i = 1; i <= STEPS; i++) {
-		glm_vec3_copy(to, from);
+		vec_copy(from, to);
 		flight_way_at(way, (float)i / STEPS, to);
-		length += glm_vec3_distance(from, to);
+		length += vec_distance(from, to);
 	}
 	return length;
 }
@@ -37,7 +39,7 @@ static bool way_is_free(const struct flight_way *way, flight_way_free *is_free, 
 
 	flight_way_at(way, 0, to);
 	for (int i = 1; i <= STEPS; i++) {
-		glm_vec3_copy(to, from);
+		vec_copy(from, to);
 		flight_way_at(way, (float)i / STEPS, to);
 		if (!is_free(data, from, to))
 			return false;
@@ -55,28 +57,29 @@ void flight_way_choose(struct flight_way *way, const float from_m[3], const floa
 	static const float bows[] = { 0.25f, 0.5f, 1, 1.6f, 2.4f };
 	float across[3], side[3], middle[3], length_m, reach_m;
 
-	glm_vec3_copy((float *)from_m, way->from_m);
-	glm_vec3_copy((float *)to_m, way->to_m);
-	glm_vec3_lerp(way->from_m, way->to_m, 0.5f, middle);
-	glm_vec3_copy(middle, way->over_m);
+	vec_copy(way->from_m, from_m);
+	vec_copy(way->to_m, to_m);
+	vec_mix(middle, way->from_m, way->to_m, 0.5f);
+	vec_copy(way->over_m, middle);
 	if (way_is_free(way, is_free, data))
 		return;
-	glm_vec3_sub(way->to_m, way->from_m, across);
-	length_m = glm_vec3_norm(across);
+	vec_sub(across, way->to_m, way->from_m);
+	length_m = vec_length(across);
 	/* A short move gets no large detour. */
 	reach_m = fmaxf(length_m / 2, fminf(size_m / 2, 2 * length_m));
-	glm_vec3_copy((vec3){ -across[1], across[0], 0 }, side);
-	if (glm_vec3_norm(side) < 1e-6f * reach_m)
+	vec_copy(side, (float[]){ -across[1], across[0], 0 });
+	if (vec_length(side) < 1e-6f * reach_m)
 		side[0] = 1; /* the flight is vertical: any side will do */
-	glm_vec3_normalize(side);
+	vec_normalise(side);
 	for (size_t i = 0; i < ARRAY_COUNT(bows); i++) {
 		for (size_t k = 0; k < ARRAY_COUNT(bends); k++) {
-			glm_vec3_copy(middle, way->over_m);
+			vec_copy(way->over_m, middle);
 			way->over_m[2] += bows[i] * bends[k][0] * reach_m;
-			glm_vec3_muladds(side, bows[i] * bends[k][1] * reach_m, way->over_m);
+			vec_add_scaled(way->over_m, way->over_m, bows[i] * bends[k][1] * reach_m,
+				       side);
 			if (way_is_free(way, is_free, data))
 				return;
 		}
 	}
-	glm_vec3_copy(middle, way->over_m);
+	vec_copy(way->over_m, middle);
 }

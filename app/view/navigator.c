@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include <cglm/cglm.h>
+#include "geometry/vec.h"
 
 #define PITCH_MAX      1.45f /* radians; beyond it "up" on the panel would flip */
 #define FLING_DECAY_MS 325.0f
@@ -33,9 +33,27 @@ static void view_right(const struct navigator *nav, float out[3])
 	out[2] = 0;
 }
 
+static float clamp(float value, float least, float most)
+{
+	return fminf(fmaxf(value, least), most);
+}
+
+/* Rotates v by an angle about an axis, a unit vector; anticlockwise where the axis points to the
+ * viewer. Rodrigues' rotation formula. */
+static void rotate(float v[3], float angle, const float axis[3])
+{
+	const float along = vec_dot(axis, v) * (1 - cosf(angle));
+	float across[3];
+
+	vec_cross(across, axis, v);
+	vec_scale(v, cosf(angle), v);
+	vec_add_scaled(v, v, sinf(angle), across);
+	vec_add_scaled(v, v, along, axis);
+}
+
 float navigator_diagonal_m(const struct navigator *nav)
 {
-	return glm_vec3_distance((float *)nav->options.box_min_m, (float *)nav->options.box_max_m);
+	return vec_distance(nav->options.box_min_m, nav->options.box_max_m);
 }
 
 float navigator_keep_off_m(const struct navigator *nav)
@@ -52,10 +70,9 @@ static float lowest_m(const struct navigator *nav)
 /* Returns the largest distance of the eye from the model's centre, which it writes to middle_m. */
 static float farthest_m(const struct navigator *nav, float middle_m[3])
 {
-	glm_vec3_lerp((float *)nav->options.box_min_m, (float *)nav->options.box_max_m, 0.5f,
-		      middle_m);
+	vec_mix(middle_m, nav->options.box_min_m, nav->options.box_max_m, 0.5f);
 	return fmaxf(FAR_SHARE * navigator_diagonal_m(nav) / 2,
-		     FAR_OVER_HOME * glm_vec3_distance((float *)nav->options.home_eye_m, middle_m));
+		     FAR_OVER_HOME * vec_distance(nav->options.home_eye_m, middle_m));
 }
 
 /* Moves eye_m to the nearest allowed place: near the model and above the ground. */
@@ -64,11 +81,11 @@ static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
 	float middle[3], from_middle[3], distance;
 	const float most = farthest_m(nav, middle);
 
-	glm_vec3_sub(eye_m, middle, from_middle);
-	distance = glm_vec3_norm(from_middle);
+	vec_sub(from_middle, eye_m, middle);
+	distance = vec_length(from_middle);
 	if (distance > most) {
-		glm_vec3_scale(from_middle, most / distance, from_middle);
-		glm_vec3_add(middle, from_middle, eye_m);
+		vec_scale(from_middle, most / distance, from_middle);
+		vec_add(eye_m, middle, from_middle);
 	}
 	eye_m[2] = fmaxf(eye_m[2], lowest_m(nav));
 }
@@ -82,18 +99,18 @@ static bool move_eye(struct navigator *nav, float to_m[3])
 	float way[3], length, free_m;
 
 	keep_in_bounds(nav, to_m);
-	glm_vec3_sub(to_m, nav->eye_m, way);
-	length = glm_vec3_norm(way);
+	vec_sub(way, to_m, nav->eye_m);
+	length = vec_length(way);
 	if (length < 1e-6f * navigator_diagonal_m(nav))
 		return true;
-	glm_vec3_scale(way, 1 / length, way);
+	vec_scale(way, 1 / length, way);
 	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + off) : INFINITY;
 	if (free_m >= length + off) {
-		glm_vec3_copy(to_m, nav->eye_m);
+		vec_copy(nav->eye_m, to_m);
 		return true;
 	}
 	free_m = fmaxf(0, free_m - off);
-	glm_vec3_muladds(way, fminf(free_m, length), nav->eye_m);
+	vec_add_scaled(nav->eye_m, nav->eye_m, fminf(free_m, length), way);
 	return false;
 }
 
@@ -108,14 +125,14 @@ static void angles_of(const float from[3], const float to[3], float *yaw, float 
 	const float dx = to[0] - from[0], dy = to[1] - from[1], dz = to[2] - from[2];
 
 	*yaw = atan2f(dy, dx);
-	*pitch = glm_clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MAX, PITCH_MAX);
+	*pitch = clamp(atan2f(dz, hypotf(dx, dy)), -PITCH_MAX, PITCH_MAX);
 }
 
 void navigator_look(struct navigator *nav, const float eye_m[3], const float target_m[3])
 {
 	stop(nav);
-	glm_vec3_copy((float *)eye_m, nav->eye_m);
-	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	vec_copy(nav->eye_m, eye_m);
+	vec_copy(nav->pivot_m, target_m);
 	angles_of(eye_m, target_m, &nav->yaw, &nav->pitch);
 }
 
@@ -128,23 +145,23 @@ void navigator_init(struct navigator *nav, const struct navigator_options *optio
 void navigator_grab(struct navigator *nav, const float pivot_m[3])
 {
 	stop(nav);
-	glm_vec3_copy((float *)pivot_m, nav->pivot_m);
+	vec_copy(nav->pivot_m, pivot_m);
 }
 
 /* Turns eye and view rigidly about the pivot, so that the pivot stays where it is on the panel.
  * Where a wall or the ground holds the eye, the view does not turn either. */
 static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
 {
-	const float pitch = glm_clamp(nav->pitch + pitch_by, -PITCH_MAX, PITCH_MAX);
+	const float pitch = clamp(nav->pitch + pitch_by, -PITCH_MAX, PITCH_MAX);
 	const struct navigator before = *nav;
 	float arm[3], right[3], eye[3];
 	float up[3] = { 0, 0, 1 };
 
-	glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
+	vec_sub(arm, nav->eye_m, nav->pivot_m);
 	view_right(nav, right);
-	glm_vec3_rotate(arm, pitch - nav->pitch, right);
-	glm_vec3_rotate(arm, yaw_by, up);
-	glm_vec3_add(nav->pivot_m, arm, eye);
+	rotate(arm, pitch - nav->pitch, right);
+	rotate(arm, yaw_by, up);
+	vec_add(eye, nav->pivot_m, arm);
 	nav->pitch = pitch;
 	nav->yaw += yaw_by;
 	if (eye[2] < lowest_m(nav) || !move_eye(nav, eye)) {
@@ -165,23 +182,23 @@ void navigator_turn(struct navigator *nav, float dx_px, float dy_px, float heigh
 void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_px, float twist,
 		     float height_px)
 {
-	const float focal_px = height_px / 2 / tanf(glm_rad(nav->options.fov_deg) / 2);
+	const float focal_px = height_px / 2 / tanf(nav->options.fov_deg * (float)M_PI / 360);
 	float direction[3], right[3], up[3], arm[3], eye[3], depth;
 
 	if (scale > 0 && isfinite(scale)) {
-		glm_vec3_sub(nav->eye_m, nav->pivot_m, arm);
-		glm_vec3_scale(arm, 1 / glm_clamp(scale, 0.2f, 5), arm);
-		glm_vec3_add(nav->pivot_m, arm, eye);
+		vec_sub(arm, nav->eye_m, nav->pivot_m);
+		vec_scale(arm, 1 / clamp(scale, 0.2f, 5), arm);
+		vec_add(eye, nav->pivot_m, arm);
 		move_eye(nav, eye);
 	}
 	view_direction(nav, direction);
 	view_right(nav, right);
-	glm_vec3_cross(right, direction, up);
-	glm_vec3_sub(nav->pivot_m, nav->eye_m, arm);
-	depth = fmaxf(glm_vec3_dot(arm, direction), navigator_keep_off_m(nav) / 3);
-	glm_vec3_copy(nav->eye_m, eye);
-	glm_vec3_muladds(right, -dx_px * depth / focal_px, eye);
-	glm_vec3_muladds(up, dy_px * depth / focal_px, eye);
+	vec_cross(up, right, direction);
+	vec_sub(arm, nav->pivot_m, nav->eye_m);
+	depth = fmaxf(vec_dot(arm, direction), navigator_keep_off_m(nav) / 3);
+	vec_copy(eye, nav->eye_m);
+	vec_add_scaled(eye, eye, -dx_px * depth / focal_px, right);
+	vec_add_scaled(eye, eye, dy_px * depth / focal_px, up);
 	move_eye(nav, eye);
 	if (twist != 0)
 		turn_about_pivot(nav, twist, 0);
@@ -204,14 +221,14 @@ static bool way_is_free(void *data, const float from_m[3], const float to_m[3])
 
 	if (!o->clearance)
 		return true;
-	glm_vec3_copy((float *)from_m, from);
-	glm_vec3_copy((float *)to_m, to);
+	vec_copy(from, from_m);
+	vec_copy(to, to_m);
 	keep_in_bounds(nav, from);
 	keep_in_bounds(nav, to);
-	glm_vec3_sub(to, from, way);
-	length = glm_vec3_norm(way);
+	vec_sub(way, to, from);
+	length = vec_length(way);
 	if (length > 0) {
-		glm_vec3_scale(way, 1 / length, way);
+		vec_scale(way, 1 / length, way);
 		if (o->clearance(o->data, from, way, length) < length)
 			return false;
 	}
@@ -234,9 +251,9 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	stop(nav);
 	flight_way_choose(&nav->way, nav->eye_m, eye_m,
 			  nav->options.box_max_m[2] - nav->options.box_min_m[2], way_is_free, nav);
-	straight_m = glm_vec3_distance(nav->eye_m, (float *)eye_m);
+	straight_m = vec_distance(nav->eye_m, eye_m);
 	longer = straight_m > 0 ? flight_way_length_m(&nav->way) / straight_m : 1;
-	glm_vec3_copy((float *)target_m, nav->pivot_m);
+	vec_copy(nav->pivot_m, target_m);
 	nav->from_yaw = nav->yaw;
 	nav->from_pitch = nav->pitch;
 	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
@@ -251,22 +268,21 @@ void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[
 	float direction[3];
 
 	if (nav->flight_left_ms > 0) {
-		glm_vec3_copy((float *)nav->way.to_m, there.eye_m);
+		vec_copy(there.eye_m, nav->way.to_m);
 		there.yaw = nav->to_yaw;
 		there.pitch = nav->to_pitch;
 	}
 	view_direction(&there, direction);
-	glm_vec3_copy(there.eye_m, eye_m);
-	glm_vec3_copy(there.eye_m, target_m);
-	glm_vec3_muladds(direction, fmaxf(glm_vec3_distance(there.eye_m, there.pivot_m), 1e-3f),
-			 target_m);
+	vec_copy(eye_m, there.eye_m);
+	vec_copy(target_m, there.eye_m);
+	vec_add_scaled(target_m, target_m, fmaxf(vec_distance(there.eye_m, there.pivot_m), 1e-3f),
+		       direction);
 }
 
 bool navigator_is_left_alone(const struct navigator *nav)
 {
 	return nav->flight_left_ms > 0 ||
-	       (nav->flight_ms > 0 &&
-		glm_vec3_distance((float *)nav->eye_m, (float *)nav->way.to_m) < 1e-3f &&
+	       (nav->flight_ms > 0 && vec_distance(nav->eye_m, nav->way.to_m) < 1e-3f &&
 		fabsf(remainderf(nav->yaw - nav->to_yaw, 2 * (float)M_PI)) < 1e-4f &&
 		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
 }
@@ -280,9 +296,9 @@ static void step_flight(struct navigator *nav, float dt_ms)
 	t = t * t * (3 - 2 * t);
 	flight_way_at(&nav->way, t, eye);
 	keep_in_bounds(nav, eye);
-	glm_vec3_copy(eye, nav->eye_m); /* even through a wall, if no path was free */
-	nav->yaw = glm_lerp(nav->from_yaw, nav->to_yaw, t);
-	nav->pitch = glm_lerp(nav->from_pitch, nav->to_pitch, t);
+	vec_copy(nav->eye_m, eye); /* even through a wall, if no path was free */
+	nav->yaw = nav->from_yaw + t * (nav->to_yaw - nav->from_yaw);
+	nav->pitch = nav->from_pitch + t * (nav->to_pitch - nav->from_pitch);
 }
 
 bool navigator_step(struct navigator *nav, float dt_ms, float height_px)
@@ -312,8 +328,8 @@ void navigator_camera(const struct navigator *nav, struct camera *camera)
 	const float reach = 2 * farthest_m(nav, middle) + navigator_diagonal_m(nav);
 
 	view_direction(nav, direction);
-	glm_vec3_copy((float *)nav->eye_m, camera->eye_m);
-	glm_vec3_add((float *)nav->eye_m, direction, camera->target_m);
+	vec_copy(camera->eye_m, nav->eye_m);
+	vec_add(camera->target_m, nav->eye_m, direction);
 	camera->up[0] = camera->up[1] = 0;
 	camera->up[2] = 1;
 	camera->fov_deg = nav->options.fov_deg;

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include <cglm/cglm.h>
-
 #define CLEAR_SHARE 0.6f /* of the box's diagonal in plan: the circle then lies around the box */
 
 enum { PLACE_MS = ATTRACT_CAMERA_REST_MS + ATTRACT_CAMERA_MOVE_MS };
@@ -58,7 +56,7 @@ bool attract_camera_pose(const struct attract_camera *attract, int64_t ms, float
 	const int64_t place = ms / PLACE_MS, since = ms % PLACE_MS - ATTRACT_CAMERA_REST_MS;
 	const float part = since > 0 ? (float)since / ATTRACT_CAMERA_MOVE_MS : 0;
 	const float eased = part * part * (3 - 2 * part);
-	const float angle = ((float)(place % ATTRACT_CAMERA_PLACES) + eased) * 2 * GLM_PIf /
+	const float angle = ((float)(place % ATTRACT_CAMERA_PLACES) + eased) * 2 * (float)M_PI /
 			    ATTRACT_CAMERA_PLACES;
 
 	turn(attract, angle, attract->eye_m, eye_m);

@@ -4,10 +4,9 @@
 
 #include <math.h>
 
-#include <cglm/cglm.h>
-
 #include "base/clock.h"
 #include "base/log.h"
+#include "geometry/vec.h"
 
 #define CALM_SHARE 0.1f /* of the model's diagonal per second: speed of the flight to the path */
 
@@ -35,9 +34,9 @@ static void come(struct tour_player *player)
 	float ms;
 
 	tour_path_pose(&player->tour.path, player->tour.at_ms, &pose);
-	ms = 1000 * glm_vec3_distance(nav->eye_m, pose.eye_m) /
-	     (CALM_SHARE * navigator_diagonal_m(nav));
-	navigator_fly(nav, pose.eye_m, pose.target_m, glm_clamp(ms, COME_LEAST_MS, COME_MOST_MS));
+	ms = 1000 * vec_distance(nav->eye_m, pose.eye_m) / (CALM_SHARE * navigator_diagonal_m(nav));
+	navigator_fly(nav, pose.eye_m, pose.target_m,
+		      fminf(fmaxf(ms, COME_LEAST_MS), COME_MOST_MS));
 	redraw_ask(player->env.redraw);
 }
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include <cglm/cglm.h>
+#include "geometry/vec.h"
 
 #define SAME_VIEW 0.999f /* cosine of 2.5 degrees */
 
@@ -17,12 +17,11 @@ static bool is_same(const struct place *a, const struct place *b, float near_m)
 		return false;
 	if (a->on_tour)
 		return true; /* both are on a tour, which moves the eye */
-	glm_vec3_sub((float *)a->target_m, (float *)a->eye_m, from);
-	glm_vec3_sub((float *)b->target_m, (float *)b->eye_m, to);
-	glm_vec3_normalize(from);
-	glm_vec3_normalize(to);
-	return glm_vec3_distance((float *)a->eye_m, (float *)b->eye_m) <= near_m &&
-	       glm_vec3_dot(from, to) >= SAME_VIEW;
+	vec_sub(from, a->target_m, a->eye_m);
+	vec_sub(to, b->target_m, b->eye_m);
+	vec_normalise(from);
+	vec_normalise(to);
+	return vec_distance(a->eye_m, b->eye_m) <= near_m && vec_dot(from, to) >= SAME_VIEW;
 }
 
 void way_back_note(struct way_back *way, const struct place *here)

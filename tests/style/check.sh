@@ -157,5 +157,8 @@ out=$(git grep -nIE '\b(TODO|FIXME|XXX|HACK)\b' -- '*.c' '*.h' '*.sh' '*.py' '*.
 out=$(git grep -nE '\b(strcpy|strcat|sprintf|gets|strtok|atoi|atof)\(' -- '*.c' | head -5)
 [ -z "$out" ] || complain "banned functions (use the bounded or checked ones):" "$out"
 
+out=$(git grep -nE '\b(glm_|cglm/)' -- '*.[ch]' | head -5)
+[ -z "$out" ] || complain "vectors are geometry/vec.h's:" "$out"
+
 [ "$bad" = 0 ] && echo "style: $(printf '%s\n' $files | wc -l) files, clean"
 exit "$bad"

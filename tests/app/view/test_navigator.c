@@ -2,8 +2,7 @@
 
 #include <math.h>
 
-#include <cglm/cglm.h>
-
+#include "geometry/vec.h"
 #include "tests/check.h"
 
 enum { HEIGHT_PX = 720 };
@@ -19,15 +18,14 @@ static const struct navigator_options hall = {
 /* Where a point is on the panel, in tangents of the view. */
 static void on_panel(const struct navigator *nav, const float point_m[3], float out[2])
 {
-	struct camera camera;
-	mat4 view;
-	vec4 at = { point_m[0], point_m[1], point_m[2], 1 };
+	/* 90 degrees high and 2 pixels: a pixel is 1. */
+	struct camera camera = { .width_px = 2, .height_px = 2 };
 
 	navigator_camera(nav, &camera);
-	glm_lookat(camera.eye_m, camera.target_m, camera.up, view);
-	glm_mat4_mulv(view, at, at);
-	out[0] = at[0] / -at[2];
-	out[1] = at[1] / -at[2];
+	camera.fov_deg = 90;
+	CHECK(camera_pixel(&camera, point_m, &out[0], &out[1]));
+	out[0] -= 1;
+	out[1] = 1 - out[1];
 }
 
 static void check_pivot_stays(const struct navigator *before, const struct navigator *after,
@@ -52,10 +50,9 @@ static void turning_keeps_the_touched_point_under_the_finger(void **state)
 	navigator_grab(&nav, pivot);
 	before = nav;
 	navigator_turn(&nav, 120, 40, HEIGHT_PX);
-	CHECK(glm_vec3_distance(nav.eye_m, before.eye_m) > 5);
+	CHECK(vec_distance(nav.eye_m, before.eye_m) > 5);
 	check_pivot_stays(&before, &nav, pivot, 0, 0);
-	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) -
-		    glm_vec3_distance(before.eye_m, (float *)pivot)) < 1e-2f);
+	CHECK(fabsf(vec_distance(nav.eye_m, pivot) - vec_distance(before.eye_m, pivot)) < 1e-2f);
 }
 
 static void a_finger_to_the_right_turns_the_model_to_the_right(void **state)
@@ -87,15 +84,15 @@ static void parting_fingers_come_nearer_and_keep_the_point(void **state)
 	navigator_init(&nav, &hall);
 	navigator_grab(&nav, pivot);
 	before = nav;
-	was = glm_vec3_distance(nav.eye_m, (float *)pivot);
+	was = vec_distance(nav.eye_m, pivot);
 	navigator_pinch(&nav, 2, 0, 0, 0, HEIGHT_PX);
-	CHECK(fabsf(glm_vec3_distance(nav.eye_m, (float *)pivot) - was / 2) < 0.05f);
+	CHECK(fabsf(vec_distance(nav.eye_m, pivot) - was / 2) < 0.05f);
 	check_pivot_stays(&before, &nav, pivot, 0, 0);
 }
 
 static void panning_moves_the_point_with_the_fingers(void **state)
 {
-	const float focal_px = HEIGHT_PX / 2 / tanf(glm_rad(45) / 2);
+	const float focal_px = HEIGHT_PX / 2 / tanf(45 * (float)M_PI / 360);
 	struct navigator nav, before;
 
 	(void)state;
@@ -141,7 +138,7 @@ static void stays_above_ground_and_near(void **state)
 		navigator_turn(&nav, 13, i < 150 ? -40 : 40, HEIGHT_PX);
 		navigator_pinch(&nav, 0.9f, 0, i % 50, 0, HEIGHT_PX);
 		CHECK(nav.eye_m[2] >= 0.24f);
-		CHECK(glm_vec3_norm(nav.eye_m) < 100);
+		CHECK(vec_length(nav.eye_m) < 100);
 		CHECK(isfinite(nav.yaw) && isfinite(nav.pitch));
 	}
 }
@@ -175,7 +172,7 @@ static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
 	navigator_fly(&nav, eye, target, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
 		CHECK(fabsf(nav.yaw - 2 * (float)M_PI) < 0.2f);
-	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+	CHECK(vec_distance(nav.eye_m, eye) < 1e-3f);
 	navigator_camera(&nav, &camera);
 	CHECK(camera.near_m > 0 && camera.far_m > 100);
 }
@@ -216,7 +213,7 @@ static void a_flight_leads_round_what_is_in_the_way(void **state)
 			CHECK(box_ahead(NULL, nav.eye_m, none, 0.05f) > 0.05f);
 			bows += nav.flight_ms > 910;
 		}
-		CHECK(glm_vec3_distance(nav.eye_m, (float *)to) < 1e-3f);
+		CHECK(vec_distance(nav.eye_m, to) < 1e-3f);
 	}
 	CHECK(bows > 0);
 }
@@ -235,10 +232,10 @@ static void a_step_is_no_reason_for_a_detour(void **state)
 	navigator_look(&nav, here, target);
 	navigator_fly(&nav, there, target, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
-		CHECK(glm_vec3_distance(nav.eye_m, (float *)here) < 0.05f);
+		CHECK(vec_distance(nav.eye_m, here) < 0.05f);
 	navigator_fly(&nav, there, target, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
-		CHECK(glm_vec3_distance(nav.eye_m, (float *)there) < 1e-3f);
+		CHECK(vec_distance(nav.eye_m, there) < 1e-3f);
 }
 
 static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
@@ -251,14 +248,14 @@ static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
 	(void)state;
 	options.clearance = box_ahead;
 	navigator_init(&nav, &options);
-	glm_vec3_copy(nav.eye_m, from);
+	vec_copy(from, nav.eye_m);
 	navigator_fly(&nav, eye, target, 800);
 	CHECK(fabsf(nav.flight_ms - 800) < 1);
-	glm_vec3_sub((float *)eye, from, along);
+	vec_sub(along, eye, from);
 	while (navigator_step(&nav, 16, HEIGHT_PX)) {
-		glm_vec3_sub(nav.eye_m, from, off);
-		glm_vec3_cross(off, along, off);
-		CHECK(glm_vec3_norm(off) / glm_vec3_norm(along) < 1e-3f);
+		vec_sub(off, nav.eye_m, from);
+		vec_cross(off, off, along);
+		CHECK(vec_length(off) / vec_length(along) < 1e-3f);
 	}
 }
 
@@ -276,7 +273,7 @@ static void a_flight_from_within_arrives_all_the_same(void **state)
 	navigator_fly(&nav, eye, target, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
 		;
-	CHECK(glm_vec3_distance(nav.eye_m, (float *)eye) < 1e-3f);
+	CHECK(vec_distance(nav.eye_m, eye) < 1e-3f);
 }
 
 static void knows_whether_somebody_moved_it_since_a_flight(void **state)
@@ -331,8 +328,8 @@ static void a_small_model_is_approached_as_near_as_a_large_one(void **state)
 	for (int i = 0; i < 60; i++)
 		navigator_pinch(&nav, 1.3f, 0, 0, 0, HEIGHT_PX);
 	navigator_camera(&nav, &camera);
-	CHECK(glm_vec3_distance(nav.eye_m, (float *)snout) < 0.0055f);
-	CHECK(camera.near_m < glm_vec3_distance(nav.eye_m, (float *)snout));
+	CHECK(vec_distance(nav.eye_m, snout) < 0.0055f);
+	CHECK(camera.near_m < vec_distance(nav.eye_m, snout));
 	for (int i = 0; i < 60; i++)
 		navigator_turn(&nav, 0, -40, HEIGHT_PX);
 	CHECK(nav.eye_m[2] > 0.03f);
@@ -351,7 +348,7 @@ static void going_home_leads_to_where_it_began_however_far(void **state)
 	navigator_fly(&nav, options.home_eye_m, options.home_target_m, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
 		;
-	CHECK(glm_vec3_distance(nav.eye_m, options.home_eye_m) < 1e-3f);
+	CHECK(vec_distance(nav.eye_m, options.home_eye_m) < 1e-3f);
 }
 
 int main(void)
