@@ -1,5 +1,4 @@
-/* Builds the BVH of a patch by median splits, cuts it into pieces and runs the ray queries over
- * it. */
+/* Builds the BVH of a patch, cuts it into pieces and runs the ray queries over it. */
 #include "geometry/patch_bvh.h"
 
 #include <errno.h>
@@ -7,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/bvh.h"
 #include "geometry/vec.h"
-
-enum { LEAF_TRIANGLES = 8, DEPTH_MAX = 48 };
 
 static const float flat_enough = 0.8f;
 
@@ -20,125 +18,83 @@ static void vertex_m(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
 		out[i] = (float)(bvh->lattice.origin_m[i] + bvh->lattice.step_m * at[i]);
 }
 
-/* ---- building */
+/* ---- the tree */
 
-struct builder {
-	struct patch_bvh *bvh;
-	uint16_t *indices; /* the mesh's index buffer, sorted in place */
-	/* The sort keys of each triangle: three times its centre, then its unit normal. */
-	float (*key)[6];
-};
+/* The keys by which triangles are sorted: three times the centre, then the unit normal. */
+enum { NORMAL_KEY = 3, KEYS = 6 };
 
-static void swap_triangles(struct builder *b, uint32_t i, uint32_t j)
+static void set_keys(const struct patch_bvh *bvh, const uint16_t index[3], float keys[KEYS])
 {
-	for (int k = 0; k < 3; k++) {
-		uint16_t index = b->indices[3 * i + k];
-		b->indices[3 * i + k] = b->indices[3 * j + k];
-		b->indices[3 * j + k] = index;
-	}
-	uint16_t number = b->bvh->order[i];
-	b->bvh->order[i] = b->bvh->order[j];
-	b->bvh->order[j] = number;
-	for (int k = 0; k < 6; k++) {
-		float key = b->key[i][k];
-		b->key[i][k] = b->key[j][k];
-		b->key[j][k] = key;
-	}
+	float corner[3][3], ab[3], ac[3];
+	for (int c = 0; c < 3; c++)
+		vertex_m(bvh, index[c], corner[c]);
+	for (int i = 0; i < 3; i++)
+		keys[i] = corner[0][i] + corner[1][i] + corner[2][i];
+	vec_sub(ab, corner[1], corner[0]);
+	vec_sub(ac, corner[2], corner[0]);
+	vec_cross(&keys[NORMAL_KEY], ab, ac);
+	vec_normalise(&keys[NORMAL_KEY]);
 }
 
-/* Wirth's selection algorithm: moves the median triangle along an axis to the middle of the
- * range. */
-static void split_at_median(struct builder *b, uint32_t first, uint32_t count, int axis)
+static void extend_by_triangle(const void *data, uint32_t triangle, float low[3], float high[3])
 {
-	int64_t low = first, high = first + count - 1, middle = first + count / 2;
-	while (low < high) {
-		float pivot = b->key[middle][axis];
-		int64_t i = low, j = high;
-		while (i <= j) {
-			while (b->key[i][axis] < pivot)
-				i++;
-			while (b->key[j][axis] > pivot)
-				j--;
-			if (i <= j)
-				swap_triangles(b, (uint32_t)i++, (uint32_t)j--);
-		}
-		if (j < middle)
-			low = i;
-		if (middle < i)
-			high = j;
-	}
-}
-
-static void bound(const struct builder *b, struct patch_bvh_node *node)
-{
-	for (int i = 0; i < 3; i++) {
-		node->low[i] = UINT16_MAX;
-		node->high[i] = 0;
-	}
-	const uint32_t first = 3u * node->first, end = first + 3u * node->count;
-	for (uint32_t k = first; k < end; k++) {
-		const uint16_t *at = b->bvh->positions[b->indices[k]];
+	const struct patch_bvh *bvh = data;
+	for (int c = 0; c < 3; c++) {
+		const uint16_t *at = bvh->positions[bvh->indices[3 * triangle + (uint32_t)c]];
 		for (int i = 0; i < 3; i++) {
-			node->low[i] = at[i] < node->low[i] ? at[i] : node->low[i];
-			node->high[i] = at[i] > node->high[i] ? at[i] : node->high[i];
+			low[i] = vec_least(low[i], at[i]);
+			high[i] = vec_most(high[i], at[i]);
 		}
 	}
 }
 
 /* Returns the length of the mean normal of a range: 1 flat, 0 facing all directions. */
-static float flatness_of(const struct builder *b, uint32_t first, uint32_t count)
+static float flatness_of(const struct bvh_items *items, uint32_t first, uint32_t count)
 {
 	float sum[3] = { 0 };
 	for (uint32_t t = first; t < first + count; t++)
-		for (int i = 0; i < 3; i++)
-			sum[i] += b->key[t][3 + i];
+		vec_add(sum, sum, &items->keys[KEYS * t + NORMAL_KEY]);
 	return vec_length(sum) / (float)count;
 }
 
 /* Returns the key along which a range is longest. In a range larger than a piece the normals count
  * too, so that the sides of a pillar go to different pieces. */
-static int longest_axis(const struct builder *b, const struct patch_bvh_node *node)
+static int longest_key(const struct bvh_items *items, uint32_t first, uint32_t count)
 {
-	float least[6], most[6], longest = 0;
-	int axis = 0;
-	bool bends = node->count > PIECE_TRIANGLES_BENT &&
-		     flatness_of(b, node->first, node->count) < flat_enough;
-	for (int k = 0; k < 6; k++) {
-		least[k] = INFINITY;
-		most[k] = -INFINITY;
-		for (uint32_t t = node->first; t < (uint32_t)node->first + node->count; t++) {
-			least[k] = vec_least(least[k], b->key[t][k]);
-			most[k] = vec_most(most[k], b->key[t][k]);
-		}
-		if (k < 3 && most[k] - least[k] > longest) {
-			longest = most[k] - least[k];
-			axis = k;
+	float longest = 0;
+	int key = 0;
+	bool bends = count > PIECE_TRIANGLES_BENT && count <= 8 * PIECE_TRIANGLES_MAX &&
+		     flatness_of(items, first, count) < flat_enough;
+	for (int k = 0; k < NORMAL_KEY; k++) {
+		float extent = bvh_extent(items, first, count, k);
+		if (extent > longest) {
+			longest = extent;
+			key = k;
 		}
 	}
 	/* A bend of 90 degrees counts as much as the length of the range. */
 	float scale = longest / 1.4f;
-	for (int k = 3; k < 6 && bends && node->count <= 8 * PIECE_TRIANGLES_MAX; k++) {
-		if ((most[k] - least[k]) * scale > longest) {
-			longest = (most[k] - least[k]) * scale;
-			axis = k;
+	for (int k = NORMAL_KEY; k < KEYS && bends; k++) {
+		float extent = bvh_extent(items, first, count, k) * scale;
+		if (extent > longest) {
+			longest = extent;
+			key = k;
 		}
 	}
-	return axis;
+	return key;
 }
 
-static uint32_t build_node(struct builder *b, uint32_t first, uint32_t count)
+/* Keeps a node's box in lattice units, where it is exact. */
+static struct patch_bvh_node pack_node(const struct bvh_node *node)
 {
-	uint32_t self = b->bvh->node_count++;
-	struct patch_bvh_node *node = &b->bvh->nodes[self];
-	*node = (struct patch_bvh_node){ .first = (uint16_t)first, .count = (uint16_t)count };
-	bound(b, node);
-	if (count <= LEAF_TRIANGLES)
-		return self;
-	split_at_median(b, first, count, longest_axis(b, node));
-	build_node(b, first, count / 2);
-	uint32_t right = build_node(b, first + count / 2, count - count / 2);
-	b->bvh->nodes[self].right = (uint16_t)right;
-	return self;
+	struct patch_bvh_node out = { .first = (uint16_t)node->first,
+				      .count = (uint16_t)node->count,
+				      .right = (uint16_t)node->right };
+	for (int i = 0; i < 3; i++) {
+		out.low[i] = (uint16_t)node->low[i];
+		out.high[i] = (uint16_t)node->high[i];
+	}
+	return out;
 }
 
 /* ---- pieces */
@@ -155,8 +111,7 @@ static void measure_piece(const struct patch_bvh *bvh, struct piece *piece)
 		vec_sub(b, b, a);
 		vec_sub(c, c, a);
 		vec_cross(n, b, c);
-		for (int i = 0; i < 3; i++)
-			piece->normal[i] += n[i];
+		vec_add(piece->normal, piece->normal, n);
 		area2 += vec_length(n);
 	}
 	/* There are two triangles per vertex, and each vertex stands for a cell of spacing
@@ -201,7 +156,7 @@ static void set_extents(const struct patch_bvh *bvh, struct piece *piece)
 }
 
 /* Returns whether one choice of samples may suit all triangles of the node. */
-static bool is_one_piece(const struct builder *b, const struct patch_bvh_node *node)
+static bool is_one_piece(const struct bvh_items *items, const struct patch_bvh_node *node)
 {
 	if (!node->right || node->count <= PIECE_TRIANGLES_MIN)
 		return true;
@@ -211,22 +166,21 @@ static bool is_one_piece(const struct builder *b, const struct patch_bvh_node *n
 	if (node->count > PIECE_TRIANGLES_MAX || wide)
 		return false;
 	return node->count <= PIECE_TRIANGLES_BENT ||
-	       flatness_of(b, node->first, node->count) >= flat_enough;
+	       flatness_of(items, node->first, node->count) >= flat_enough;
 }
 
-static void collect_pieces(const struct builder *b, uint32_t at)
+static void collect_pieces(struct patch_bvh *bvh, const struct bvh_items *items, uint32_t at)
 {
-	struct patch_bvh *bvh = b->bvh;
 	const struct patch_bvh_node *node = &bvh->nodes[at];
-	if (!is_one_piece(b, node)) {
-		collect_pieces(b, at + 1);
-		collect_pieces(b, node->right);
+	if (!is_one_piece(items, node)) {
+		collect_pieces(bvh, items, at + 1);
+		collect_pieces(bvh, items, node->right);
 		return;
 	}
 	struct piece *piece = &bvh->pieces[bvh->piece_count++];
 	*piece = (struct piece){ .first_triangle = node->first,
 				 .triangle_count = node->count,
-				 .flatness = flatness_of(b, node->first, node->count) };
+				 .flatness = flatness_of(items, node->first, node->count) };
 	float diagonal[3];
 	for (int i = 0; i < 3; i++) {
 		float middle = (float)(node->low[i] + node->high[i]) / 2;
@@ -239,58 +193,108 @@ static void collect_pieces(const struct builder *b, uint32_t at)
 	set_extents(bvh, piece);
 }
 
-static void set_key(const struct patch_bvh *bvh, const uint16_t index[3], float key[6])
+/* Allocates for the worst case and gives back what is left over. */
+static int find_pieces(struct patch_bvh *bvh, const struct bvh_items *items)
 {
-	float corner[3][3], ab[3], ac[3];
-	for (int c = 0; c < 3; c++)
-		vertex_m(bvh, index[c], corner[c]);
-	for (int i = 0; i < 3; i++)
-		key[i] = corner[0][i] + corner[1][i] + corner[2][i];
-	vec_sub(ab, corner[1], corner[0]);
-	vec_sub(ac, corner[2], corner[0]);
-	vec_cross(&key[3], ab, ac);
-	vec_normalise(&key[3]);
+	bvh->pieces = calloc(items->count / (PIECE_TRIANGLES_MIN / 2) + 1, sizeof(*bvh->pieces));
+	if (!bvh->pieces)
+		return -ENOMEM;
+	collect_pieces(bvh, items, 0);
+	struct piece *smaller = realloc(bvh->pieces, bvh->piece_count * sizeof(*bvh->pieces));
+	if (smaller)
+		bvh->pieces = smaller;
+	return 0;
 }
 
-/* Reduces a block, allocated for the worst case, to the bytes used. Where realloc fails the block
- * stays as it is. */
-static void *shrink(void *block, size_t bytes)
-{
-	void *smaller = realloc(block, bytes);
+/* ---- building */
 
-	return smaller ? smaller : block;
+/* What building needs for a moment. */
+struct scratch {
+	struct bvh_node *nodes;
+	uint16_t (*triangles)[3]; /* in the mesh's order */
+	struct bvh_items items;
+};
+
+static void scratch_finish(struct scratch *scratch)
+{
+	free(scratch->nodes);
+	free(scratch->triangles);
+	free(scratch->items.order);
+	free(scratch->items.keys);
+}
+
+static int scratch_init(struct scratch *scratch, const struct patch_bvh *bvh, uint32_t count)
+{
+	*scratch = (struct scratch){ .items = { .count = count,
+						.key_count = KEYS,
+						.extend = extend_by_triangle,
+						.choose_key = longest_key,
+						.data = bvh } };
+	scratch->nodes = malloc(bvh_nodes_max(count) * sizeof(*scratch->nodes));
+	scratch->triangles = malloc(count * sizeof(*scratch->triangles));
+	scratch->items.order = malloc(count * sizeof(*scratch->items.order));
+	scratch->items.keys = malloc(count * KEYS * sizeof(*scratch->items.keys));
+	if (!scratch->nodes || !scratch->triangles || !scratch->items.order ||
+	    !scratch->items.keys) {
+		scratch_finish(scratch);
+		return -ENOMEM;
+	}
+	memcpy(scratch->triangles, bvh->indices, count * sizeof(*scratch->triangles));
+	for (uint32_t t = 0; t < count; t++) {
+		scratch->items.order[t] = t;
+		set_keys(bvh, scratch->triangles[t], &scratch->items.keys[KEYS * t]);
+	}
+	return 0;
+}
+
+static int copy_positions(struct patch_bvh *bvh, const struct patch_mesh *mesh)
+{
+	bvh->positions = malloc(mesh->vertex_count * sizeof(*bvh->positions));
+	if (!bvh->positions)
+		return -ENOMEM;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		memcpy(bvh->positions[v], mesh->vertices[v].position, sizeof(*bvh->positions));
+	bvh->vertex_count = mesh->vertex_count;
+	return 0;
+}
+
+/* Takes over the sorted triangles and the nodes. */
+static int keep(struct patch_bvh *bvh, struct patch_mesh *mesh, const struct scratch *scratch)
+{
+	const uint32_t *order = scratch->items.order;
+	bvh->order = malloc(mesh->triangle_count * sizeof(*bvh->order));
+	bvh->nodes = malloc(bvh->node_count * sizeof(*bvh->nodes));
+	if (!bvh->order || !bvh->nodes)
+		return -ENOMEM;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		bvh->order[t] = (uint16_t)order[t];
+		memcpy(&mesh->indices[3 * t], scratch->triangles[order[t]],
+		       sizeof(*scratch->triangles));
+	}
+	for (uint32_t n = 0; n < bvh->node_count; n++)
+		bvh->nodes[n] = pack_node(&scratch->nodes[n]);
+	return 0;
 }
 
 int patch_bvh_init(struct patch_bvh *out, struct patch_mesh *mesh, const struct lattice *lattice)
 {
+	struct scratch scratch;
 	*out = (struct patch_bvh){ .indices = mesh->indices, .lattice = *lattice };
-	uint32_t count = mesh->triangle_count;
-	if (count == 0)
+	if (mesh->triangle_count == 0)
 		return 0;
-	struct builder builder = { .bvh = out, .indices = mesh->indices };
-	builder.key = malloc(count * sizeof(*builder.key));
-	out->nodes = calloc(2 * (size_t)count, sizeof(*out->nodes));
-	out->pieces = calloc(count / (PIECE_TRIANGLES_MIN / 2) + 1, sizeof(*out->pieces));
-	out->positions = malloc(mesh->vertex_count * sizeof(*out->positions));
-	out->order = malloc(count * sizeof(*out->order));
-	if (!builder.key || !out->nodes || !out->pieces || !out->positions || !out->order) {
-		free(builder.key);
+	if (copy_positions(out, mesh) < 0 ||
+	    scratch_init(&scratch, out, mesh->triangle_count) < 0) {
 		patch_bvh_finish(out);
 		return -ENOMEM;
 	}
-	for (uint32_t v = 0; v < mesh->vertex_count; v++)
-		memcpy(out->positions[v], mesh->vertices[v].position, sizeof(*out->positions));
-	out->vertex_count = mesh->vertex_count;
-	for (uint32_t t = 0; t < count; t++) {
-		set_key(out, &mesh->indices[3 * t], builder.key[t]);
-		out->order[t] = (uint16_t)t;
-	}
-	build_node(&builder, 0, count);
-	collect_pieces(&builder, 0);
-	free(builder.key);
-	out->nodes = shrink(out->nodes, out->node_count * sizeof(*out->nodes));
-	out->pieces = shrink(out->pieces, out->piece_count * sizeof(*out->pieces));
-	return 0;
+	out->node_count = bvh_build(scratch.nodes, &scratch.items);
+	int rc = keep(out, mesh, &scratch);
+	if (rc == 0)
+		rc = find_pieces(out, &scratch.items);
+	scratch_finish(&scratch);
+	if (rc < 0)
+		patch_bvh_finish(out);
+	return rc;
 }
 
 void patch_bvh_finish(struct patch_bvh *bvh)
@@ -384,7 +388,7 @@ static bool meets_triangle(struct cast *cast, uint32_t triangle)
 static bool run_cast(struct cast *cast, bool any)
 {
 	const struct patch_bvh *bvh = cast->bvh;
-	uint32_t stack[DEPTH_MAX], depth = 0;
+	uint32_t stack[BVH_STACK_MAX], depth = 0;
 	bool hit = false;
 	if (bvh->node_count > 0)
 		stack[depth++] = 0;

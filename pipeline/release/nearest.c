@@ -1,4 +1,4 @@
-/* A bounding-volume tree over triangles, split at the median, and its nearest-point search. */
+/* The nearest-point search over a BVH of triangles. */
 #include "pipeline/release/nearest.h"
 
 #include <errno.h>
@@ -6,21 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/bvh.h"
 #include "geometry/vec.h"
-
-enum { LEAF_TRIANGLES = 8, DEPTH_MAX = 64 };
-
-struct node {
-	float low[3], high[3];
-	uint32_t first, count; /* a run of order; an inner node's children: the next, right */
-	uint32_t right;        /* 0: a leaf */
-};
 
 struct nearest {
 	float (*positions)[3];
 	uint32_t (*triangles)[3];
-	uint32_t *order;    /* owned; the triangles in tree order */
-	struct node *nodes; /* owned */
+	uint32_t *order;        /* owned; the triangles in tree order */
+	struct bvh_node *nodes; /* owned */
 	uint32_t node_count;
 };
 
@@ -31,75 +24,40 @@ static const float *corner(const struct nearest *n, uint32_t triangle, int k)
 	return n->positions[n->triangles[triangle][k]];
 }
 
-static float key_of(const struct nearest *n, uint32_t triangle, int axis)
+static void extend_by_triangle(const void *data, uint32_t triangle, float low[3], float high[3])
 {
-	return corner(n, triangle, 0)[axis] + corner(n, triangle, 1)[axis] +
-	       corner(n, triangle, 2)[axis];
-}
+	const struct nearest *n = data;
 
-static void bound(const struct nearest *n, struct node *node)
-{
-	for (int i = 0; i < 3; i++) {
-		node->low[i] = INFINITY;
-		node->high[i] = -INFINITY;
-	}
-	for (uint32_t t = node->first; t < node->first + node->count; t++)
-		for (int k = 0; k < 3; k++) {
-			const float *at = corner(n, n->order[t], k);
+	for (int k = 0; k < 3; k++) {
+		const float *at = corner(n, triangle, k);
 
-			for (int i = 0; i < 3; i++) {
-				node->low[i] = vec_least(node->low[i], at[i]);
-				node->high[i] = vec_most(node->high[i], at[i]);
-			}
+		for (int i = 0; i < 3; i++) {
+			low[i] = vec_least(low[i], at[i]);
+			high[i] = vec_most(high[i], at[i]);
 		}
-}
-
-/* Wirth's selection: moves the median triangle along an axis to the middle of the run. */
-static void split_at_median(struct nearest *n, const struct node *node, int axis)
-{
-	int64_t low = node->first, high = low + node->count - 1, middle = low + node->count / 2;
-
-	while (low < high) {
-		float pivot = key_of(n, n->order[middle], axis);
-		int64_t i = low, j = high;
-
-		while (i <= j) {
-			while (key_of(n, n->order[i], axis) < pivot)
-				i++;
-			while (key_of(n, n->order[j], axis) > pivot)
-				j--;
-			if (i <= j) {
-				uint32_t kept = n->order[i];
-
-				n->order[i++] = n->order[j];
-				n->order[j--] = kept;
-			}
-		}
-		if (j < middle)
-			low = i;
-		if (middle < i)
-			high = j;
 	}
 }
 
-static uint32_t build(struct nearest *n, uint32_t first, uint32_t count)
+static int build(struct nearest *n, uint32_t triangle_count)
 {
-	uint32_t self = n->node_count++, right;
-	struct node *node = &n->nodes[self];
-	int axis = 0;
+	struct bvh_items items = { .count = triangle_count,
+				   .order = n->order,
+				   .key_count = 3,
+				   .extend = extend_by_triangle,
+				   .data = n };
 
-	*node = (struct node){ .first = first, .count = count };
-	bound(n, node);
-	if (count <= LEAF_TRIANGLES)
-		return self;
-	for (int i = 1; i < 3; i++)
-		if (node->high[i] - node->low[i] > node->high[axis] - node->low[axis])
-			axis = i;
-	split_at_median(n, node, axis);
-	build(n, first, count / 2);
-	right = build(n, first + count / 2, count - count / 2);
-	n->nodes[self].right = right;
-	return self;
+	items.keys = malloc((size_t)triangle_count * 3 * sizeof(*items.keys));
+	if (!items.keys)
+		return -ENOMEM;
+	for (uint32_t t = 0; t < triangle_count; t++) {
+		n->order[t] = t;
+		for (size_t i = 0; i < 3; i++)
+			items.keys[3 * (size_t)t + i] =
+				corner(n, t, 0)[i] + corner(n, t, 1)[i] + corner(n, t, 2)[i];
+	}
+	n->node_count = bvh_build(n->nodes, &items);
+	free(items.keys);
+	return 0;
 }
 
 int nearest_create(struct nearest **out, float (*positions)[3], uint32_t (*triangles)[3],
@@ -112,17 +70,12 @@ int nearest_create(struct nearest **out, float (*positions)[3], uint32_t (*trian
 		return -ENOMEM;
 	n->positions = positions;
 	n->triangles = triangles;
-	/* A split leaves at least four triangles in a leaf, unless the tree is a single leaf. */
-	n->nodes = calloc((size_t)triangle_count / 2 + 1, sizeof(*n->nodes));
+	n->nodes = malloc(bvh_nodes_max(triangle_count) * sizeof(*n->nodes));
 	n->order = malloc(((size_t)triangle_count + 1) * sizeof(*n->order));
-	if (!n->nodes || !n->order) {
+	if (!n->nodes || !n->order || (triangle_count > 0 && build(n, triangle_count) < 0)) {
 		nearest_destroy(n);
 		return -ENOMEM;
 	}
-	for (uint32_t t = 0; t < triangle_count; t++)
-		n->order[t] = t;
-	if (triangle_count > 0)
-		build(n, 0, triangle_count);
 	*out = n;
 	return 0;
 }
@@ -137,12 +90,6 @@ void nearest_destroy(struct nearest *nearest)
 }
 
 /* ---- queries */
-
-static void point_between(float out[3], const float a[3], const float b[3], float share)
-{
-	for (int i = 0; i < 3; i++)
-		out[i] = a[i] + share * (b[i] - a[i]);
-}
 
 /* Nearest point of a triangle, by the Voronoi region of corner, edge or face that contains p
  * (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). */
@@ -166,14 +113,13 @@ static void nearest_of_triangle(float out[3], const float p[3], const float a[3]
 	else if (d3 >= 0 && d4 <= d3)
 		memcpy(out, b, 3 * sizeof(*out));
 	else if (vc <= 0 && d1 >= 0 && d3 <= 0)
-		point_between(out, a, b, d1 > d3 ? d1 / (d1 - d3) : 0);
+		vec_mix(out, a, b, d1 > d3 ? d1 / (d1 - d3) : 0);
 	else if (d6 >= 0 && d5 <= d6)
 		memcpy(out, c, 3 * sizeof(*out));
 	else if (vb <= 0 && d2 >= 0 && d6 <= 0)
-		point_between(out, a, c, d2 > d6 ? d2 / (d2 - d6) : 0);
+		vec_mix(out, a, c, d2 > d6 ? d2 / (d2 - d6) : 0);
 	else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-		point_between(out, b, c,
-			      d4 - d3 + d5 - d6 > 0 ? (d4 - d3) / (d4 - d3 + d5 - d6) : 0);
+		vec_mix(out, b, c, d4 - d3 + d5 - d6 > 0 ? (d4 - d3) / (d4 - d3 + d5 - d6) : 0);
 	else
 		for (int i = 0; i < 3; i++)
 			out[i] = a[i] + (vb * ab[i] + vc * ac[i]) / (va + vb + vc);
@@ -189,7 +135,7 @@ bool nearest_faces(const struct nearest *n, uint32_t triangle, const float facin
 	return vec_dot(normal, facing) > 0;
 }
 
-static float box_distance2(const struct node *node, const float p[3])
+static float box_distance2(const struct bvh_node *node, const float p[3])
 {
 	float sum = 0;
 
@@ -209,7 +155,7 @@ struct search {
 	bool found;
 };
 
-static void look(struct search *s, const struct node *node)
+static void look(struct search *s, const struct bvh_node *node)
 {
 	const struct nearest *n = s->nearest;
 
@@ -238,14 +184,14 @@ bool nearest_find(const struct nearest *nearest, const float point_m[3], const f
 		  float most_m, struct nearest_place *out)
 {
 	struct search s = { nearest, point_m, facing, most_m * most_m, out, false };
-	uint32_t stack[DEPTH_MAX], depth = 0;
+	uint32_t stack[BVH_STACK_MAX], depth = 0;
 
 	if (nearest->node_count > 0)
 		stack[depth++] = 0;
 	while (depth > 0) {
 		uint32_t at = stack[--depth];
-		const struct node *node = &nearest->nodes[at];
-		const struct node *left = node + 1, *right = &nearest->nodes[node->right];
+		const struct bvh_node *node = &nearest->nodes[at];
+		const struct bvh_node *left = node + 1, *right = &nearest->nodes[node->right];
 
 		if (box_distance2(node, point_m) > s.best2)
 			continue;
