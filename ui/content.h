@@ -1,4 +1,4 @@
-/* What the app gives the overlay to show: plain data that the overlay passes to its views. */
+/* What the app gives the overlay: plain data that the overlay passes to its views. */
 #ifndef GOPURA_UI_CONTENT_H
 #define GOPURA_UI_CONTENT_H
 
@@ -48,6 +48,12 @@ struct overlay_tools {
 	float light_at[2]; /* right, up */
 	float turn_rad;    /* direction of the part cut away, from up to the left */
 	float push;        /* offset of the cut in that direction; 1 and -1 at the ring */
+};
+
+/* Settings of one visitor; they are reset for the next one. */
+struct overlay_comfort {
+	bool large; /* large type, THEME_LARGE_TYPE times as large */
+	bool reach; /* all controls are in the lower third, for seated or small visitors */
 };
 
 #endif

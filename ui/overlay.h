@@ -156,12 +156,6 @@ struct rect overlay_scene_rect(const struct overlay *overlay);
 
 /* ---- touch ---- */
 
-/* Settings of one visitor; they are reset for the next one. */
-struct overlay_comfort {
-	bool large; /* large type, THEME_LARGE_TYPE times as large */
-	bool reach; /* all controls are in the lower third, for seated or small visitors */
-};
-
 /* Sets large type and reach mode. Reach stays off on a panel that is too small for it. */
 void overlay_set_comfort(struct overlay *overlay, struct overlay_comfort comfort);
 /* Returns the current settings. */

@@ -9,6 +9,7 @@
 #include "format/article.h"
 #include "pipeline/content/page_compile.h"
 #include "storage/plain_page.h"
+#include "ui/overlay.h"
 #include "ui/overlay_state.h"
 #include "ui/translate.h"
 

@@ -9,6 +9,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "tests/ui/places.h"
+#include "ui/overlay.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = { "en", "fr", "km", "ja" };

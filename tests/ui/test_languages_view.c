@@ -8,6 +8,7 @@
 #include "tests/ui/compiled.h"
 #include "tests/ui/places.h"
 #include "ui/endonym.h"
+#include "ui/overlay.h"
 #include "ui/translate.h"
 
 static const char *const languages[] = {

@@ -8,6 +8,7 @@
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
 #include "tests/ui/places.h"
+#include "ui/overlay.h"
 #include "ui/translate.h"
 
 enum { PARTS = 9, BOTH = OVERLAY_TOOL_LIGHT | OVERLAY_TOOL_SECTION, STEP_PX = 4 };
