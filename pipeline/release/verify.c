@@ -13,15 +13,15 @@ enum { ROOTS_MAX = 1000, LOCATOR_BYTES_MAX = 256 << 20 };
 
 /* ---- signed metadata ---- */
 
-static int read_roots(struct verify_walk *walk, struct buffer *file)
+/* Follows the chain of roots; first is the trusted one, or empty: the release's own. */
+static int read_roots(struct verify_walk *walk, struct bytes first, struct buffer *file)
 {
 	struct verify_report *report = walk->report;
-	struct bytes first = walk->options->trusted_root;
 	const char *why = "";
 	int rc = 0;
 
 	if (first.size == 0) {
-		rc = release_reader_file(walk->options->reader, "root/1.json", file);
+		rc = release_reader_file(walk->reader, "root/1.json", file);
 		if (rc < 0)
 			return verify_blame_reader(walk, rc);
 		first = buffer_bytes(file);
@@ -33,7 +33,7 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 		char name[32];
 
 		snprintf(name, sizeof(name), "root/%u.json", report->trust.version + 1);
-		rc = release_reader_file(walk->options->reader, name, file);
+		rc = release_reader_file(walk->reader, name, file);
 		if (rc == -ENOENT)
 			return 0;
 		if (rc < 0)
@@ -45,12 +45,13 @@ static int read_roots(struct verify_walk *walk, struct buffer *file)
 	return verify_blame(report, -EBADMSG, "more than %d roots", ROOTS_MAX);
 }
 
-static int check_expiry(struct verify_walk *walk, const char *name, int64_t expires_s)
+static int check_expiry(struct verify_walk *walk, int64_t now_s, const char *name,
+			int64_t expires_s)
 {
-	if (walk->options->now_s == 0 || walk->options->now_s < expires_s)
+	if (now_s == 0 || now_s < expires_s)
 		return 0;
 	return verify_blame(walk->report, -EKEYEXPIRED, "%s: expired %" PRId64 " days ago", name,
-			    (walk->options->now_s - expires_s) / 86400);
+			    (now_s - expires_s) / 86400);
 }
 
 static int read_release(struct verify_walk *walk, struct buffer *file)
@@ -58,14 +59,14 @@ static int read_release(struct verify_walk *walk, struct buffer *file)
 	struct verify_report *report = walk->report;
 	const char *why = "";
 	struct hash name;
-	int rc = release_reader_file(walk->options->reader, "timestamp.json", file);
+	int rc = release_reader_file(walk->reader, "timestamp.json", file);
 
 	if (rc < 0)
 		return verify_blame_reader(walk, rc);
 	rc = timestamp_decode(&report->timestamp, &report->trust, buffer_bytes(file), &why);
 	if (rc < 0)
 		return verify_blame(report, rc, "timestamp.json: %s", why);
-	rc = release_reader_file(walk->options->reader, "release.json", file);
+	rc = release_reader_file(walk->reader, "release.json", file);
 	if (rc < 0)
 		return verify_blame_reader(walk, rc);
 	rc = release_decode(&report->release, &report->trust, buffer_bytes(file), &why);
@@ -78,21 +79,24 @@ static int read_release(struct verify_walk *walk, struct buffer *file)
 	return 0;
 }
 
-static int read_metadata(struct verify_walk *walk)
+static int read_metadata(struct verify_walk *walk, const struct verify_options *options)
 {
 	struct buffer file;
 	int rc;
 
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
-	rc = read_roots(walk, &file);
+	rc = read_roots(walk, options->trusted_root, &file);
 	if (rc == 0)
-		rc = check_expiry(walk, "the newest root", walk->report->trust.expires_s);
+		rc = check_expiry(walk, options->now_s, "the newest root",
+				  walk->report->trust.expires_s);
 	if (rc == 0)
 		rc = read_release(walk, &file);
 	if (rc == 0)
-		rc = check_expiry(walk, "release.json", walk->report->release.expires_s);
+		rc = check_expiry(walk, options->now_s, "release.json",
+				  walk->report->release.expires_s);
 	if (rc == 0)
-		rc = check_expiry(walk, "timestamp.json", walk->report->timestamp.expires_s);
+		rc = check_expiry(walk, options->now_s, "timestamp.json",
+				  walk->report->timestamp.expires_s);
 	buffer_finish(&file);
 	return rc;
 }
@@ -107,7 +111,7 @@ static int read_locator(struct verify_walk *walk)
 
 	hash_to_hex(walk->report->release.root, name + strlen(name));
 	buffer_init(&file, LOCATOR_BYTES_MAX);
-	rc = release_reader_file(walk->options->reader, name, &file);
+	rc = release_reader_file(walk->reader, name, &file);
 	if (rc < 0) {
 		verify_blame_reader(walk, rc);
 	} else {
@@ -193,8 +197,8 @@ static int do_task(struct verify_walk *walk, const struct verify_task *task)
 	struct verify_page page = { .name = task->child.hash };
 	struct buffer copy;
 	struct bytes bytes;
-	int rc = release_reader_child(walk->options->reader, &walk->locator, task->parent,
-				      task->offset, &task->child, &bytes);
+	int rc = release_reader_child(walk->reader, &walk->locator, task->parent, task->offset,
+				      &task->child, &bytes);
 
 	if (rc < 0)
 		return verify_blame_reader(walk, rc);
@@ -245,12 +249,12 @@ static int walk_all(struct verify_walk *walk)
 
 int verify_release(struct verify_report *report, const struct verify_options *options)
 {
-	struct verify_walk walk = { .options = options, .report = report };
+	struct verify_walk walk = { .reader = options->reader, .report = report };
 	uint64_t bytes = 0;
 	int rc;
 
 	*report = (struct verify_report){ 0 };
-	rc = read_metadata(&walk);
+	rc = read_metadata(&walk, options);
 	if (rc == 0)
 		rc = read_locator(&walk);
 	if (rc == 0)

@@ -21,13 +21,13 @@ int verify_blame(struct verify_report *report, int rc, const char *text, ...)
 
 int verify_blame_reader(struct verify_walk *walk, int rc)
 {
-	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->options->reader));
+	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->reader));
 }
 
 int verify_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
 		 struct bytes *out)
 {
-	int rc = release_reader_child(walk->options->reader, &walk->locator, page->name,
+	int rc = release_reader_child(walk->reader, &walk->locator, page->name,
 				      page_child_offset(&page->page, child),
 				      &page->page.children[child], out);
 

@@ -7,7 +7,8 @@
 #include "format/hierarchy.h"
 #include "format/samples.h"
 #include "format/tile.h"
-#include "pipeline/release/verify.h"
+#include "pipeline/release/release_reader.h"
+#include "pipeline/release/verify_report.h"
 #include "storage/info.h"
 
 /* A page that is still to be verified: where it is, and which kind it must have. */
@@ -19,7 +20,7 @@ struct verify_task {
 };
 
 struct verify_walk {
-	const struct verify_options *options;
+	struct release_reader *reader;
 	struct verify_report *report;
 	struct locator locator;
 	struct map seen; /* pages that are queued or done */

@@ -1,0 +1,31 @@
+/* What the verification of a release found. */
+#ifndef GOPURA_PIPELINE_RELEASE_VERIFY_REPORT_H
+#define GOPURA_PIPELINE_RELEASE_VERIFY_REPORT_H
+
+#include "format/metadata.h"
+#include "format/root_page.h"
+
+enum { VERIFY_WHY_BYTES = 1280 };
+
+/* Number and size of objects of one kind. */
+struct verify_sum {
+	uint64_t count, bytes;
+};
+
+struct verify_report {
+	struct trust_root trust;
+	struct release release;
+	struct timestamp timestamp;
+	struct root_page root;
+	uint32_t locator_bytes, pack_count;
+	uint64_t read_bytes; /* of all files; packs may hold blocks of other releases too */
+	struct verify_sum pages[PAGE_LABELS + 1]; /* indexed by enum page_kind */
+	struct verify_sum groups, tiles, pictures, database, labels;
+	uint64_t hierarchy_triangles; /* in all published patches */
+	uint32_t patches;
+	uint32_t points, faces; /* which show something */
+	uint32_t parts;
+	char why[VERIFY_WHY_BYTES]; /* the first error and its place; "" if none */
+};
+
+#endif
