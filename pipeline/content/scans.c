@@ -160,12 +160,25 @@ static int judge_mix(const struct content *content, const struct mesh *mesh,
 	return 0;
 }
 
+/* Tells what is wrong with any scan before the first is imported, which may take long. */
+static int check_all(const struct content *content, struct diagnostics *diagnostics)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < content->scan_count; i++) {
+		int failed = import_check(content->scans[i], diagnostics);
+
+		rc = rc == 0 ? failed : rc;
+	}
+	return rc;
+}
+
 static int import_all(struct mesh *out, const struct content *content,
 		      struct import_report reports[CONTENT_SCANS_MAX],
 		      struct diagnostics *diagnostics)
 {
 	uint32_t count = 0;
-	int rc = 0;
+	int rc = check_all(content, diagnostics);
 
 	for (; count < content->scan_count && rc == 0; count++) {
 		struct import_options options = content->import;

@@ -307,6 +307,26 @@ static int look_for_extensions(const char *path, uint64_t file_bytes,
 	return rc;
 }
 
+/* Refuses early what its reader would refuse, or read wrong. */
+static int check_format(const char *path, enum scan_format format, uint64_t file_bytes,
+			struct diagnostics *diagnostics)
+{
+	if (format == SCAN_PLY)
+		return import_ply_check(path, diagnostics);
+	if (format == SCAN_GLTF || format == SCAN_GLB)
+		return look_for_extensions(path, file_bytes, diagnostics);
+	return 0;
+}
+
+int import_check(const char *path, struct diagnostics *diagnostics)
+{
+	struct import_report report = { .file_bytes = 0 };
+	enum scan_format format = SCAN_UNKNOWN;
+	int rc = look(path, &format, &report, diagnostics);
+
+	return rc < 0 ? rc : check_format(path, format, report.file_bytes, diagnostics);
+}
+
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
 		     const struct import_options *options, struct import_report *report,
 		     struct diagnostics *diagnostics)
@@ -318,14 +338,13 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 		.has_materials = format != SCAN_STL && format != SCAN_OFF,
 	};
 
+	int rc;
+
 	if (format == SCAN_PLY)
 		return import_ply(out, path, options, report, diagnostics);
-	if (foreign.is_linear) {
-		int rc = look_for_extensions(path, report->file_bytes, diagnostics);
-
-		if (rc < 0)
-			return rc;
-	}
+	rc = check_format(path, format, report->file_bytes, diagnostics);
+	if (rc < 0)
+		return rc;
 	return import_foreign(out, path, foreign, options, report, diagnostics);
 }
 

@@ -50,6 +50,11 @@ struct import_report {
 must_check int import_scan(struct mesh *out, const char *path, const struct import_options *options,
 			   struct import_report *report, struct diagnostics *diagnostics);
 
+/* Checks cheaply, by the first bytes, what import_scan would refuse: a format that is not read, a
+ * PLY without faces or shorter than its header says, a glTF that requires an extension. Errors as
+ * import_scan. */
+must_check int import_check(const char *path, struct diagnostics *diagnostics);
+
 /* Parses the name of an axis: "z", "y" or "x". False: not valid, and *out is unchanged. */
 bool import_axis_named(const char *name, enum import_axis *out);
 /* Parses a unit: "m", "cm", "mm", "in", or the metres in one unit, above 0 and at most 1e9. False:

@@ -344,7 +344,8 @@ static int read_scene(void *shared, struct diagnostics *diagnostics)
 	struct builder builder = { .job = job, .diagnostics = diagnostics };
 	int rc;
 
-	builder.scene = import_scene(job->path, job->report.format, diagnostics);
+	builder.scene =
+		import_scene(job->path, job->report.format, &job->report.warning, diagnostics);
 	if (!builder.scene)
 		return -EBADMSG;
 	rc = build(&builder);

@@ -10,6 +10,8 @@
  * than in a mesh. Errors as import_scan. */
 must_check int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 			  struct import_report *report, struct diagnostics *diagnostics);
+/* Reads only the header of a PLY, and refuses one that has no surface. Errors as import_scan. */
+must_check int import_ply_check(const char *path, struct diagnostics *diagnostics);
 /* Returns how much memory decoding may use. Unless the options set it, it grows with the file,
  * because a small file should not need much. */
 static inline uint64_t import_memory_bytes(const struct import_options *options,
@@ -64,9 +66,9 @@ must_check int import_foreign(struct mesh *out, const char *path,
 struct aiScene;
 /* Runs assimp in the sandbox. The parent opens all files: seen_path stands for the scan, other
  * names are as the scan gives them. The scene is borrowed until the process ends. NULL: diagnostics
- * says why. */
+ * says why. warning names a file that the scan names and that is missing. */
 const struct aiScene *import_scene(const char *seen_path, const char *format_name,
-				   struct diagnostics *diagnostics);
+				   struct diagnostics *warning, struct diagnostics *diagnostics);
 
 /* ---- pictures */
 

@@ -226,6 +226,30 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	return 0;
 }
 
+/* Refuses what the header says has no surface. */
+static int judge(const struct ply *ply, const char *path, struct diagnostics *diagnostics)
+{
+	const struct ply_summary *summary = ply_summary(ply);
+
+	if (summary->vertex_count == 0)
+		return diagnostics_add(diagnostics, -EBADMSG, path, 0,
+				       "it holds no vertices; export it again");
+	if (summary->points_only)
+		return diagnostics_add(diagnostics, -EBADMSG, path, 0, "%s", summary->points_only);
+	return 0;
+}
+
+int import_ply_check(const char *path, struct diagnostics *diagnostics)
+{
+	struct ply *ply;
+	int rc = ply_open(&ply, path, diagnostics);
+
+	if (rc == 0)
+		rc = judge(ply, path, diagnostics);
+	ply_close(ply);
+	return rc;
+}
+
 int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 	       struct import_report *report, struct diagnostics *diagnostics)
 {
@@ -239,15 +263,14 @@ int import_ply(struct mesh *out, const char *path, const struct import_options *
 	report->had_colours = collector.summary->has_colour;
 	report->had_open_sky = collector.summary->has_open_sky;
 	report->strange_lines = collector.summary->strange_lines;
-	if (collector.summary->vertex_count == 0)
-		rc = diagnostics_add(diagnostics, -EBADMSG, path, 0,
-				     "it holds no vertices; export it again");
-	else if (collector.summary->points_only)
-		rc = diagnostics_add(diagnostics, -EBADMSG, path, 0, "%s",
-				     collector.summary->points_only);
+	rc = judge(ply, path, diagnostics);
 	if (rc == 0)
 		rc = read_body(ply, &collector, path, options, report, diagnostics);
 	report->trailing_bytes = ply_bytes_trailing(ply);
+	if (ply_lines_skipped(ply) > 0)
+		diagnostics_add(&report->warning, 0, path, 0,
+				"%" PRIu64 " points or lines in it were left out",
+				ply_lines_skipped(ply));
 	if (rc == 0) {
 		*out = collector.mesh;
 		out->scans[0].face_count = (uint32_t)collector.summary->face_count;

@@ -2,6 +2,7 @@
  * process for every file (pipeline/import/sandbox.h). */
 #include <errno.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,6 +30,7 @@ struct files {
 	int refused;         /* why the first refused file was refused; 0: none was */
 	char refused_name[256];
 	char missing[PATH_MAX]; /* path of the last file that was not found */
+	char missing_name[256]; /* the first one, as the scan names it */
 };
 
 /* ---- one file */
@@ -116,9 +118,13 @@ static bool is_another_try(const struct files *files, const char *asked, const c
 
 static void note_failure(struct files *files, const char *asked, const char *name, int rc)
 {
+	const bool is_new = !is_another_try(files, asked, name);
+
+	if (rc == -ENOENT && is_new && !files->missing_name[0])
+		snprintf(files->missing_name, sizeof(files->missing_name), "%s", name);
 	if (rc == -ENOENT)
 		with_slashes(files->missing, files->seen_path, files->folder_bytes, name);
-	if (files->refused || is_another_try(files, asked, name))
+	if (files->refused || !is_new)
 		return;
 	if (rc == -EXDEV || rc == -ELOOP || rc == -EINVAL || rc == -EKEYREJECTED) {
 		files->refused = rc;
@@ -177,8 +183,18 @@ static void files_close(struct aiFileIO *handle, struct aiFile *file)
 	free(file);
 }
 
+/* assimp's own words are for programmers. */
+static const char *plain_error(const char *said)
+{
+	if (said[0] == '\0' || strstr(said, "No suitable reader"))
+		return "it is damaged, or its name tells another format";
+	if (strstr(said, "bad_alloc"))
+		return "it promises more than it holds, or is too large for this machine's memory";
+	return said;
+}
+
 const struct aiScene *import_scene(const char *seen_path, const char *format_name,
-				   struct diagnostics *diagnostics)
+				   struct diagnostics *warning, struct diagnostics *diagnostics)
 {
 	const char *slash = strrchr(seen_path, '/');
 	struct files files = { .functions = { .OpenProc = files_open, .CloseProc = files_close },
@@ -195,9 +211,19 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 						       : "copy that file beside the scan");
 		return NULL;
 	}
-	if (!scene || !scene->mRootNode)
+	if (!scene || !scene->mRootNode) {
+		const char *error = plain_error(aiGetErrorString());
+		const size_t length = strlen(error);
+
 		diagnostics_add(diagnostics, -EBADMSG, seen_path, 0,
-				"its %s reader says: %s; export it again", format_name,
-				aiGetErrorString());
-	return scene && scene->mRootNode ? scene : NULL;
+				"its %s reader says: %.*s; export it again", format_name,
+				(int)(error[length - 1] == '.' ? length - 1 : length), error);
+		return NULL;
+	}
+	if (files.missing_name[0])
+		diagnostics_add(warning, 0, seen_path, 0,
+				"it names '%.200s', which is not beside it: its colours are left "
+				"out; copy that file beside the scan",
+				files.missing_name);
+	return scene;
 }

@@ -179,6 +179,7 @@ static int end_face(struct pass *pass)
 		return element_fault(
 			pass, -EBADMSG,
 			"its texcoord list must hold two numbers a corner; export it again");
+	ply->lines_skipped += ply->corner_count < 3;
 	pass->triangle.texture = texture > 0 && texture < PLY_TEXTURES_MAX ? (uint32_t)texture : 0;
 	for (uint32_t i = 2; i < ply->corner_count; i++) {
 		const uint32_t at[3] = { 0, i - 1, i };
@@ -352,6 +353,8 @@ static int read_element(struct pass *pass, const struct ply_element *element)
 		rc = read_one(pass, types);
 	if (element->kind == PLY_KIND_FACE || element->kind == PLY_KIND_STRIP)
 		pass->faces += element->count;
+	if (strcmp(element->name, "edge") == 0)
+		pass->ply->lines_skipped += element->count;
 	return rc;
 }
 
@@ -451,6 +454,11 @@ uint64_t ply_bytes_read(const struct ply *ply)
 uint64_t ply_bytes_total(const struct ply *ply)
 {
 	return ply->input.file_bytes;
+}
+
+uint64_t ply_lines_skipped(const struct ply *ply)
+{
+	return ply->lines_skipped;
 }
 
 uint64_t ply_bytes_trailing(const struct ply *ply)

@@ -80,6 +80,8 @@ must_check int ply_read(struct ply *ply, const struct ply_visitor *visitor,
 /* Returns the number of bytes of the file read so far, for progress. */
 uint64_t ply_bytes_read(const struct ply *ply);
 uint64_t ply_bytes_total(const struct ply *ply); /* size of the file in bytes */
+/* After ply_read: number of edges, and of faces with less than three corners; they are skipped. */
+uint64_t ply_lines_skipped(const struct ply *ply);
 /* After ply_read: number of bytes after the last element; they were ignored. */
 uint64_t ply_bytes_trailing(const struct ply *ply);
 

@@ -347,9 +347,10 @@ static void note_why_points_only(struct ply *ply)
 	if (ply->summary.face_count > 0)
 		return;
 	ply->summary.points_only =
-		ply->range_grid ? "it is one range image (a range_grid of points), not a surface; "
-				  "align and merge the range images first"
-				: "it holds points but no faces; reconstruct a surface first";
+		ply->range_grid
+			? "it is one range image (a range_grid of points), not a surface; "
+			  "align and merge the range images first"
+			: "it holds points or lines but no faces; reconstruct a surface first";
 }
 
 int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics)

@@ -254,6 +254,35 @@ static void alignments_do_not_name_more_scans_than_fit(void **state)
 	remove_folder(folder);
 }
 
+/* Four scans, the last two of which no reader would take: both are told, and nothing is imported.
+ */
+static void every_bad_scan_is_told_before_the_first_is_imported(void **state)
+{
+	static const char points[] = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+				     "property float y\nproperty float z\nend_header\n0 0 0\n";
+	char folder[256], path[512];
+	struct content content;
+	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	const struct mesh *mesh;
+	struct scans *scans;
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply tower.ply points.ply notes.txt\n");
+	snprintf(path, sizeof(path), "%s/temple.ini", folder);
+	scan_write_beside(path, "points.ply", points, strlen(points));
+	scan_write_beside(path, "notes.txt", "a note", 6);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_get_mesh(scans, &mesh, &diagnostics) < 0 && diagnostics.count == 2);
+	CHECK(strstr(diagnostics.first.text, "/points.ply: it holds points or lines but no faces"));
+	CHECK(strstr(diagnostics_get(&diagnostics, 1)->text,
+		     "/notes.txt: not a supported scan format"));
+	diagnostics_finish(&diagnostics);
+	scans_destroy(scans);
+	content_release(&content);
+	remove_folder(folder);
+}
+
 /* The number of the file .work/mesh, which is another whenever the mesh is saved; 0: none. */
 static ino_t mesh_number(const char *folder)
 {
@@ -397,6 +426,7 @@ int main(void)
 		cmocka_unit_test(names_stay_inside_the_folder),
 		cmocka_unit_test(an_alignment_stands_for_its_scans),
 		cmocka_unit_test(alignments_do_not_name_more_scans_than_fit),
+		cmocka_unit_test(every_bad_scan_is_told_before_the_first_is_imported),
 		cmocka_unit_test(the_shape_is_known_without_the_mesh),
 		cmocka_unit_test(a_second_import_comes_from_the_cache_until_something_changes),
 		cmocka_unit_test(another_place_of_a_scan_is_another_mesh),

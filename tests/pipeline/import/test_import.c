@@ -436,6 +436,39 @@ static void a_missing_or_damaged_picture_is_a_warning(void **state)
 	}
 }
 
+static void what_was_left_out_is_a_warning(void **state)
+{
+	static const struct {
+		const char *name, *text, *says;
+	} cases[] = {
+		{ "mtl.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl skin\nf 1 2 3\n",
+		  "mtl.obj: it names 'gone.mtl', which is not beside it: its colours are left out; "
+		  "copy" },
+		{ "line.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl 1 2\np 3\n",
+		  "line.obj: 2 points or lines in it were left out" },
+		{ "edge.ply",
+		  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+		  "property float z\nelement face 3\nproperty list uchar int vertex_indices\n"
+		  "element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+		  "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n2 0 1\n1 0\n0 1\n1 2\n",
+		  "edge.ply: 4 points or lines in it were left out" },
+	};
+	const struct import_options options = { 0 };
+	struct diagnostics diagnostics;
+	struct import_report report;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		CHECK(import_text(&mesh, &report, cases[i].name, cases[i].text, &options,
+				  &diagnostics) == 0);
+		CHECK(mesh.triangle_count == 1);
+		if (!strstr(report.warning.first.text, cases[i].says))
+			fail_msg("%s: '%s'", cases[i].name, report.warning.first.text);
+		mesh_finish(&mesh);
+	}
+}
+
 static void reads_stl_and_off(void **state)
 {
 	static const char stl[] = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
@@ -469,8 +502,14 @@ static void refuses_what_is_no_surface(void **state)
 		  "none of its faces is usable" },
 		{ "line.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 2 2\nl 1 2\nl 3 4\n", "no faces" },
 		{ "index.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", "OBJ reader says" },
-		{ "half.gltf", "{\"asset\":{\"version\":\"2.0\"},", "glTF reader says" },
-		{ "half.glb", "glTF\2\0\0\0", "GLB reader says" },
+		{ "half.gltf", "{\"asset\":{\"version\":\"2.0\"},",
+		  "glTF reader says: it is damaged, or its name tells another format; export" },
+		{ "half.glb", "glTF\2\0\0\0", "GLB reader says: it is damaged" },
+		{ "edges.ply",
+		  "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+		  "property float z\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n"
+		  "end_header\n0 0 0\n1 0 0\n0 1\n",
+		  "points or lines but no faces; reconstruct a surface first" },
 		{ "draco.gltf", "{\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
 		  "npx @gltf-transform/cli copy IN.glb OUT.glb" },
 		{ "quantised.gltf",
@@ -532,6 +571,7 @@ int main(void)
 		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
 		cmocka_unit_test(gltf_pictures_are_upright),
 		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
+		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),
 		cmocka_unit_test(refuses_what_is_no_surface),
 		cmocka_unit_test(names_of_axes_and_units),
