@@ -27,12 +27,12 @@ enum stream {
 
 enum {
 	VERSION = 2,
-	ZSTD_LEVEL = 12,
 	INDEX_BYTES_MAX = 8 * PATCH_TRIANGLES_MAX,
 	NORMAL_ZEROS_MAX = 6,
 	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
 };
 
+static const int zstd_levels[] = { [PATCH_FAST] = 2, [PATCH_SMALL] = 12 };
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
 static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1 };
 
@@ -264,13 +264,13 @@ static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
 	return out->error;
 }
 
-static int put_streams(struct buffer *out, const struct streams *streams)
+static int put_streams(struct buffer *out, const struct streams *streams, enum patch_effort effort)
 {
 	for (int i = 0; i < STREAM_COUNT; i++) {
 		size_t bound = ZSTD_compressBound(streams->size[i]);
 		uint8_t *packed = malloc(bound);
 		size_t size = packed ? ZSTD_compress(packed, bound, streams->data[i],
-						     streams->size[i], ZSTD_LEVEL)
+						     streams->size[i], zstd_levels[effort])
 				     : 0;
 
 		if (!packed || ZSTD_isError(size)) {
@@ -314,7 +314,7 @@ static struct precision precision_of(const struct patch_mesh *patches, uint32_t 
 
 /* Writes header and streams of patches whose indices are already packed. */
 static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t patch_count,
-		     const uint32_t *index_bytes, struct bytes indices)
+		     const uint32_t *index_bytes, struct bytes indices, enum patch_effort effort)
 {
 	struct precision precision = precision_of(decoded, patch_count);
 	struct streams streams;
@@ -339,12 +339,13 @@ static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t pa
 	for (uint32_t p = 0; rc == 0 && p < patch_count; p++)
 		rc = code_vertices(&streams, &decoded[p], &precision, true);
 	if (rc == 0)
-		rc = put_streams(out, &streams);
+		rc = put_streams(out, &streams, effort);
 	streams_finish(&streams);
 	return rc;
 }
 
-int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count)
+int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count,
+		       enum patch_effort effort)
 {
 	struct patch_mesh decoded[GROUP_PATCHES_MAX] = { 0 };
 	uint32_t index_bytes[GROUP_PATCHES_MAX];
@@ -367,7 +368,8 @@ int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uin
 			rc = -EINVAL;
 	}
 	if (rc == 0)
-		rc = put_group(out, decoded, patch_count, index_bytes, buffer_bytes(&indices));
+		rc = put_group(out, decoded, patch_count, index_bytes, buffer_bytes(&indices),
+			       effort);
 	for (uint32_t p = 0; p < patch_count; p++)
 		free(decoded[p].indices);
 	buffer_finish(&indices);

@@ -9,11 +9,17 @@
 
 enum { GROUP_PATCHES_MAX = 64 };
 
+/* What the encoder is to care for. */
+enum patch_effort {
+	PATCH_FAST, /* for what stays at home: a few percent more bytes in a fifth of the time */
+	PATCH_SMALL /* for what is published */
+};
+
 /* Appends the object. The caller chooses the order of vertices and triangles (cache-coherent). The
  * decoder may return a triangle with its corners rotated. Returns -EINVAL if a count or an index is
  * out of range, -ENOMEM or the error of out. */
 must_check int patch_group_encode(struct buffer *out, const struct patch_mesh *patches,
-				  uint32_t patch_count);
+				  uint32_t patch_count, enum patch_effort effort);
 /* Fills at most GROUP_PATCHES_MAX meshes, owned by the caller: end each with patch_mesh_finish().
  * Returns -EBADMSG for anything that the encoder cannot have written, indices out of range
  * included, or -ENOMEM. On failure nothing is owned. */

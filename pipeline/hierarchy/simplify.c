@@ -43,7 +43,11 @@ struct work {
 	uint32_t collapse_count;
 };
 
-/* ---- the heap */
+/* ---- the heap
+ *
+ * Four children a node: half the levels of two, and the four lie in one line of the cache. */
+
+enum { CHILDREN = 4 };
 
 static int push(struct work *work, struct candidate candidate)
 {
@@ -53,9 +57,9 @@ static int push(struct work *work, struct candidate candidate)
 	if (rc < 0)
 		return rc;
 	work->heap_count++;
-	while (at > 0 && work->heap[(at - 1) / 2].cost > candidate.cost) {
-		work->heap[at] = work->heap[(at - 1) / 2];
-		at = (at - 1) / 2;
+	while (at > 0 && work->heap[(at - 1) / CHILDREN].cost > candidate.cost) {
+		work->heap[at] = work->heap[(at - 1) / CHILDREN];
+		at = (at - 1) / CHILDREN;
 	}
 	work->heap[at] = candidate;
 	return 0;
@@ -63,16 +67,21 @@ static int push(struct work *work, struct candidate candidate)
 
 static struct candidate pop(struct work *work)
 {
-	struct candidate least = work->heap[0], last = work->heap[--work->heap_count];
-	size_t at = 0, child;
+	const struct candidate *heap = work->heap;
+	struct candidate least = heap[0], last = heap[--work->heap_count];
+	size_t at = 0, first;
 
-	while ((child = 2 * at + 1) < work->heap_count) {
-		if (child + 1 < work->heap_count &&
-		    work->heap[child + 1].cost < work->heap[child].cost)
-			child++;
-		if (work->heap[child].cost >= last.cost)
+	while ((first = CHILDREN * at + 1) < work->heap_count) {
+		size_t end =
+			first + CHILDREN < work->heap_count ? first + CHILDREN : work->heap_count;
+		size_t child = first;
+
+		for (size_t other = first + 1; other < end; other++)
+			if (heap[other].cost < heap[child].cost)
+				child = other;
+		if (heap[child].cost >= last.cost)
 			break;
-		work->heap[at] = work->heap[child];
+		work->heap[at] = heap[child];
 		at = child;
 	}
 	work->heap[at] = last;
@@ -327,9 +336,11 @@ static int push_edge(struct work *work, uint32_t a, uint32_t b)
 }
 
 /* Both triangles of an edge would push it, one in each direction. Push it only from the smaller
- * end, or if the edge is open. */
+ * end, or if the edge is open: then both ends lie on a border. (Both ends of an edge that is open
+ * because the other triangle belongs to another group are locked, and it cannot collapse.) */
 static int push_all_edges(struct work *work)
 {
+	const struct lattice_vertex *vertices = work->surface->vertices;
 	int rc = 0;
 
 	work->heap_count = 0;
@@ -338,7 +349,8 @@ static int push_all_edges(struct work *work)
 			uint32_t a = work->surface->triangles[t][corner];
 			uint32_t b = work->surface->triangles[t][(corner + 1) % 3];
 
-			if (a < b || edge_is_open(work, a, b))
+			if (a < b ||
+			    (vertices[a].border && vertices[b].border && edge_is_open(work, a, b)))
 				rc = push_edge(work, a, b);
 		}
 	return rc;
