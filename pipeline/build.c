@@ -146,9 +146,9 @@ static bool is_built(struct build_report *report, const char *stamp_path, struct
 
 /* ---- the stages */
 
-void build_master_options(struct master_options *out, const struct content *content, uint32_t jobs)
+static struct master_options master_options(const struct content *content, uint32_t jobs)
 {
-	*out = (struct master_options){
+	return (struct master_options){
 		.multires = { .kind = content->binary_tree ? MULTIRES_TREE : MULTIRES_GROUPS,
 			      .patch_triangles = content->patch_triangles,
 			      .jobs = jobs },
@@ -157,84 +157,91 @@ void build_master_options(struct master_options *out, const struct content *cont
 }
 
 static int make_master(const char *folder, struct scans *scans, struct hash stamp,
-		       const struct master_options *options)
+		       const struct master_options *options, struct master_report *report,
+		       struct diagnostics *diagnostics)
 {
-	struct master_report report;
-	struct diagnostics diagnostics = { 0 };
 	const struct mesh *mesh;
-	int rc = scans_get_mesh(scans, &mesh, &diagnostics);
+	int rc = scans_get_mesh(scans, &mesh, diagnostics);
 
-	if (rc < 0)
-		return fail(&diagnostics, rc);
-	rc = master_build(folder, mesh, stamp, options, &report);
-	if (rc < 0)
-		log_error("pipeline", "%s: %s%s", folder, strerror(-rc),
-			  rc == -E2BIG ? "; the coarsest patches do not fit in one group, use "
-					 "--hierarchy groups"
-				       : "");
+	if (rc == 0)
+		rc = master_build(folder, mesh, stamp, options, report);
+	if (rc == -E2BIG)
+		diagnostics_add(diagnostics, rc, folder, 0,
+				"%s; the coarsest patches do not fit in one group, use "
+				"--hierarchy groups",
+				strerror(-rc));
 	return rc;
 }
 
-int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *made)
+int build_master(struct master **out, struct scans *scans,
+		 const struct build_master_options *options, struct build_master_report *report,
+		 struct diagnostics *diagnostics)
 {
 	const struct content *content = scans_content(scans);
-	struct master_options options;
-	struct diagnostics diagnostics = { 0 };
+	const struct master_options master = master_options(content, options->jobs);
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
 	int rc = content_work_path(content, "master", folder);
 
 	*out = NULL;
-	*made = false;
-	build_master_options(&options, content, jobs);
+	*report = (struct build_master_report){ 0 };
 	if (rc == 0)
-		rc = scans_key(scans, &key, &diagnostics);
+		rc = scans_key(scans, &key, diagnostics);
 	if (rc < 0)
-		return fail(&diagnostics, rc);
-	stamp = master_stamp(key, &options);
-	rc = master_open(out, folder, &stamp);
-	if (rc == 0)
+		return diagnostics_add(diagnostics, rc, content->folder, 0, "%s", strerror(-rc));
+	stamp = master_stamp(key, &master);
+	if (!options->force && master_open(out, folder, &stamp) == 0)
 		return 0;
-	*made = true;
-	rc = make_master(folder, scans, stamp, &options);
-	return rc < 0 ? rc : master_open(out, folder, &stamp);
+	report->made = true;
+	rc = make_master(folder, scans, stamp, &master, &report->master, diagnostics);
+	if (rc == 0)
+		rc = master_open(out, folder, &stamp);
+	return rc < 0 ? diagnostics_add(diagnostics, rc, folder, 0, "%s", strerror(-rc)) : 0;
 }
 
 int build_samples(struct scans *scans, const struct master *master,
-		  const struct sampler_options *options)
+		  const struct sampler_options *options, struct diagnostics *diagnostics)
 {
 	struct sampler_options chosen = *options;
 	const struct scans_shape *shape;
-	struct diagnostics diagnostics = { 0 };
-	int rc = scans_get_shape(scans, &shape, &diagnostics);
+	int rc = scans_get_shape(scans, &shape, diagnostics);
 
 	/* patches have no pictures */
 	chosen.master = rc == 0 && !shape->has_textures ? master : NULL;
+	return rc == 0 ? sampler_run(scans, &chosen, diagnostics) : rc;
+}
+
+static int make_master_and_samples(struct build_report *report, uint32_t jobs, struct scans *scans)
+{
+	const struct build_master_options mastering = { .jobs = jobs };
+	const struct sampler_options sampling = { .jobs = jobs };
+	struct diagnostics diagnostics = { 0 };
+	struct build_master_report made;
+	struct master *master;
+	int64_t start = clock_now_ms(), at;
+	int rc = build_master(&master, scans, &mastering, &made, &diagnostics);
+
+	report->hierarchy_made = made.made;
 	if (rc == 0)
-		rc = sampler_run(scans, &chosen, &diagnostics);
+		report->source_triangles = master->source_triangles;
+	at = clock_now_ms();
+	report->hierarchy_ms = at - start;
+	if (rc == 0)
+		rc = build_samples(scans, master, &sampling, &diagnostics);
+	report->samples_ms = clock_now_ms() - at;
+	master_destroy(master);
 	return rc < 0 ? fail(&diagnostics, rc) : 0;
 }
 
 static int run_stages(struct build_report *report, uint32_t jobs,
 		      const struct publish_content_options *publish)
 {
-	struct scans *scans = sources_scans(publish->sources);
-	const struct sampler_options sampling = { .jobs = jobs };
-	struct master *master = NULL;
-	int64_t start = clock_now_ms(), at;
 	int rc = sources_check(publish->sources); /* before the long work, not after it */
+	int64_t start;
 
 	if (rc == 0)
-		rc = build_master(&master, scans, jobs, &report->hierarchy_made);
-	if (rc == 0)
-		report->source_triangles = master->source_triangles;
-	at = clock_now_ms();
-	report->hierarchy_ms = at - start;
-	if (rc == 0)
-		rc = build_samples(scans, master, &sampling);
-	master_destroy(master);
+		rc = make_master_and_samples(report, jobs, sources_scans(publish->sources));
 	start = clock_now_ms();
-	report->samples_ms = start - at;
 	if (rc == 0)
 		rc = publish_content(&report->publish, publish);
 	report->publish_ms = clock_now_ms() - start;

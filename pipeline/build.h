@@ -29,14 +29,25 @@ must_check int build_content(struct build_report *report, const struct content *
 
 /* ---- single stages */
 
-/* Fills in the options for making this content's master; jobs 0: one thread per core. */
-void build_master_options(struct master_options *out, const struct content *content, uint32_t jobs);
-/* Opens this content's master, and makes it if it is missing or its sources have changed; *made
- * then is set. *out is owned by the caller; NULL on failure. Negative errno; errors are logged. */
-must_check int build_master(struct master **out, struct scans *scans, uint32_t jobs, bool *made);
+struct build_master_options {
+	uint32_t jobs; /* threads; 0: one per core */
+	bool force;    /* make it again even if nothing changed */
+};
+
+struct build_master_report {
+	bool made;                   /* it was made, not opened */
+	struct master_report master; /* if it was made */
+};
+
+/* Opens this content's master, and makes it if it is missing or its sources have changed. *out is
+ * owned by the caller; NULL on failure. *report is filled in. Negative errno, with a diagnostic. */
+must_check int build_master(struct master **out, struct scans *scans,
+			    const struct build_master_options *options,
+			    struct build_master_report *report, struct diagnostics *diagnostics);
 /* Renders the samples that are missing, with the master where the scans have no pictures; it is
- * that of build_master. options->master is not used. Negative errno; errors are logged. */
+ * that of build_master. options->master is not used. Negative errno, with a diagnostic. */
 must_check int build_samples(struct scans *scans, const struct master *master,
-			     const struct sampler_options *options);
+			     const struct sampler_options *options,
+			     struct diagnostics *diagnostics);
 
 #endif

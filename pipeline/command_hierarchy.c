@@ -2,7 +2,6 @@
  * levels. */
 #include "pipeline/commands.h"
 
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -79,67 +78,26 @@ static void print_report(const struct master_report *report, uint64_t source_tri
 	       seconds, (double)source_triangles / 1e6 / (seconds > 0.0 ? seconds : 1e-3));
 }
 
-static int complain(const char *what, int rc, const struct diagnostics *diagnostics)
-{
-	if (diagnostics && diagnostics->count > 0)
-		fprintf(stderr, "gopura-content hierarchy: %s\n", diagnostics->first.text);
-	else if (rc == -E2BIG)
-		fprintf(stderr,
-			"gopura-content hierarchy: %s: the coarsest patches do not fit in one "
-			"group; use --hierarchy groups\n",
-			what);
-	else
-		fprintf(stderr, "gopura-content hierarchy: %s: %s\n", what, strerror(-rc));
-	return rc;
-}
-
-static int build(const char *folder, struct scans *scans, struct hash stamp,
-		 const struct master_options *options)
-{
-	struct master_report report;
-	struct diagnostics diagnostics = { 0 };
-	const struct mesh *mesh;
-	int rc = scans_get_mesh(scans, &mesh, &diagnostics);
-
-	if (rc < 0)
-		return complain(scans_content(scans)->folder, rc, &diagnostics);
-	rc = master_build(folder, mesh, stamp, options, &report);
-	if (rc < 0)
-		complain(folder, rc, NULL);
-	else
-		print_report(&report, mesh->triangle_count);
-	scans_drop_mesh(scans);
-	return rc;
-}
-
 static int make(const struct settings *settings, struct scans *scans)
 {
-	const struct content *content = scans_content(scans);
-	struct master_options options;
+	const struct build_master_options options = { settings->jobs, settings->force };
 	struct diagnostics diagnostics = { 0 };
-	struct master *master = NULL;
-	char folder[CONTENT_PATH_BYTES];
-	struct hash key, stamp;
-	int rc = content_work_path(content, "master", folder);
+	struct build_master_report report;
+	struct master *master;
+	int rc = build_master(&master, scans, &options, &report, &diagnostics);
 
-	build_master_options(&options, content, settings->jobs);
-	if (rc == 0)
-		rc = scans_key(scans, &key, &diagnostics);
-	if (rc < 0)
-		return complain(content->folder, rc, &diagnostics);
-	stamp = master_stamp(key, &options);
-	rc = settings->force ? -ENOENT : master_open(&master, folder, &stamp);
-	if (rc == 0) {
-		puts("nothing changed");
-	} else {
-		rc = build(folder, scans, stamp, &options);
-		if (rc == 0)
-			rc = master_open(&master, folder, &stamp);
+	if (rc < 0) {
+		fprintf(stderr, "gopura-content hierarchy: %s\n",
+			diagnostics_cause(&diagnostics, rc));
+		return rc;
 	}
-	if (rc == 0)
-		print_master(master, content->publish_share);
+	if (report.made)
+		print_report(&report.master, master->source_triangles);
+	else
+		puts("nothing changed");
+	print_master(master, scans_content(scans)->publish_share);
 	master_destroy(master);
-	return rc;
+	return 0;
 }
 
 static int run(const struct settings *settings)

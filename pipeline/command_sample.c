@@ -64,14 +64,16 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 }
 
 /* The master comes first: what is far from a point is drawn from its coarser patches. */
-static int run(struct scans *scans, const struct sampler_options *options)
+static int run(struct scans *scans, const struct sampler_options *options,
+	       struct diagnostics *diagnostics)
 {
+	const struct build_master_options mastering = { .jobs = options->jobs };
+	struct build_master_report report;
 	struct master *master;
-	bool made;
-	int rc = build_master(&master, scans, options->jobs, &made);
+	int rc = build_master(&master, scans, &mastering, &report, diagnostics);
 
 	if (rc == 0)
-		rc = build_samples(scans, master, options);
+		rc = build_samples(scans, master, options, diagnostics);
 	master_destroy(master);
 	return rc;
 }
@@ -108,7 +110,7 @@ int command_sample(int argc, char **argv)
 		return EXIT_FAILURE;
 	rc = scans_create(&scans, &content);
 	if (rc == 0)
-		rc = run(scans, &options);
+		rc = run(scans, &options, &diagnostics);
 	scans_destroy(scans);
 	content_release(&content);
 	if (rc < 0) {
