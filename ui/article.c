@@ -139,14 +139,14 @@ static float space_before_mm(const struct article_block *block, const struct art
  * guess. */
 static void measure_picture(struct article *article, struct item *item)
 {
-	struct overlay_picture found = { 0 };
+	struct found_picture found = { 0 };
 	double width = 4, height = 3;
 	int most_px = article->options.view_px * 3 / 4;
 
 	if (!article->options.pictures.get ||
 	    !article->options.pictures.get(article->options.pictures.data, item->block->text,
 					   &found))
-		found = (struct overlay_picture){ 0 };
+		found = (struct found_picture){ 0 };
 	if (found.picture) {
 		width = found.picture->width;
 		height = found.picture->height;

@@ -112,7 +112,7 @@ static int draw_thumbnail(const struct theme *theme, cairo_t *context, const cha
 	int padding = theme_px(theme, SHADOW_MM) + theme_px(theme, PADDING_MM) / 2;
 	int side = height_px - 2 * padding;
 	int x_px = mirrored(theme, width_px, padding, side);
-	struct overlay_picture found = { 0 };
+	struct found_picture found = { 0 };
 	struct bitmap scaled;
 
 	if (!*name || !pictures->get || !pictures->get(pictures->data, name, &found))

@@ -297,7 +297,7 @@ struct overlay_action gallery_view_tap(const struct gallery_view *view, const st
 static bool draw_picture(struct sprite *sprite, const struct picture_source *pictures,
 			 const char *name)
 {
-	struct overlay_picture found = { 0 };
+	struct found_picture found = { 0 };
 	struct bitmap fresh = { 0 };
 	float width, height, shrink;
 	int rc = -1;

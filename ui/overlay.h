@@ -33,7 +33,7 @@ struct overlay_options {
 	/* Returns a picture by the name that a page or thumbnail gives ("pictures/gate.jpg").
 	 * false: no picture has that name. Asking also requests it: the app fetches it and then
 	 * calls overlay_picture_arrived. NULL: no pictures. */
-	bool (*picture)(void *data, const char *name, struct overlay_picture *out);
+	bool (*picture)(void *data, const char *name, struct found_picture *out);
 	void *data;
 };
 

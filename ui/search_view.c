@@ -369,7 +369,7 @@ static void draw_thumbnail(cairo_t *context, const struct screen *screen,
 			   const struct picture_source *pictures, const char *name, int x_px,
 			   int y_px, int side_px)
 {
-	struct overlay_picture found = { 0 };
+	struct found_picture found = { 0 };
 	struct bitmap scaled;
 
 	cairo_save(context);

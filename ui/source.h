@@ -6,7 +6,8 @@
 
 #include "format/picture.h"
 
-struct overlay_picture {
+/* What the app has of a picture. */
+struct found_picture {
 	const struct picture *picture; /* borrowed until the next call; NULL: not arrived yet */
 	uint32_t width_px,
 		height_px; /* size if known before it arrives, so that text does not jump; else 0 */
@@ -16,7 +17,7 @@ struct picture_source {
 	/* Returns a picture by the name that a page or thumbnail gives ("pictures/gate.jpg").
 	 * false: no picture has that name. Asking also requests it: it is fetched, and the app
 	 * tells when it has arrived. */
-	bool (*get)(void *data, const char *name, struct overlay_picture *out);
+	bool (*get)(void *data, const char *name, struct found_picture *out);
 	void *data;
 };
 

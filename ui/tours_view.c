@@ -139,7 +139,7 @@ static void draw_tour(cairo_t *context, const struct screen *screen,
 	int gap_px = screen_px(screen, THEME_GAP_MM), side_px = at.height_px - gap_px;
 	int title_px = theme_line_px(theme, TEXT_BUTTON, tour->title);
 	int caption_px = theme_line_px(theme, TEXT_FIGURE, tour->caption), y_px;
-	struct overlay_picture found = { 0 };
+	struct found_picture found = { 0 };
 	struct bitmap scaled;
 
 	cairo_rectangle(context, at.x_px, at.y_px, at.width_px, 1);

@@ -102,7 +102,7 @@ static uint32_t picture_index(const struct information_view *view,
 	return (uint32_t)(picture - info_picture(view->info, 0));
 }
 
-static bool on_picture(void *data, const char *name, struct overlay_picture *out)
+static bool on_picture(void *data, const char *name, struct found_picture *out)
 {
 	struct information_view *view = data;
 	const struct info_picture *picture =
@@ -114,7 +114,7 @@ static bool on_picture(void *data, const char *name, struct overlay_picture *out
 	own = &view->pictures[picture_index(view, picture)];
 	own->used = ++view->turn;
 	own->wanted = !own->decoded.rgba && !own->broken;
-	*out = (struct overlay_picture){
+	*out = (struct found_picture){
 		.picture = own->decoded.rgba ? &own->decoded : NULL,
 		.width_px = picture->width_px,
 		.height_px = picture->height_px,

@@ -76,7 +76,7 @@ static bool is_whole(const struct overlay *overlay)
 static bool has_pictures(const struct overlay *overlay)
 {
 	for (uint32_t i = 0; i < article_picture_count(overlay->page.article); i++) {
-		struct overlay_picture found = { 0 };
+		struct found_picture found = { 0 };
 		const char *name = article_picture(overlay->page.article, i, NULL);
 
 		if (overlay->pictures.get(overlay->pictures.data, name, &found) && !found.picture)

@@ -112,11 +112,11 @@ static void every_text_stands_out_from_its_ground(void **state)
 
 static struct picture painted = { .width = 400, .height = 260 };
 
-static bool get_picture(void *data, const char *name, struct overlay_picture *out)
+static bool get_picture(void *data, const char *name, struct found_picture *out)
 {
 	(void)data;
 	(void)name;
-	*out = (struct overlay_picture){ &painted, painted.width, painted.height };
+	*out = (struct found_picture){ &painted, painted.width, painted.height };
 	return true;
 }
 

@@ -34,13 +34,12 @@ static void paint(struct picture *picture, uint32_t width, uint32_t height)
 	}
 }
 
-static bool get_picture(void *data, const char *name, struct overlay_picture *out)
+static bool get_picture(void *data, const char *name, struct found_picture *out)
 {
 	const struct picture *picture = strstr(name, "wide") ? &wide : &tall;
 
 	(void)data;
-	*out = (struct overlay_picture){ arrived ? picture : NULL, picture->width,
-					 picture->height };
+	*out = (struct found_picture){ arrived ? picture : NULL, picture->width, picture->height };
 	return true;
 }
 

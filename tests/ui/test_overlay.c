@@ -70,15 +70,15 @@ struct album {
 	uint32_t asked;
 };
 
-static bool get_picture(void *data, const char *name, struct overlay_picture *out)
+static bool get_picture(void *data, const char *name, struct found_picture *out)
 {
 	struct album *album = data;
 
 	if (strcmp(name, "pictures/tower.png") != 0)
 		return false;
 	album->asked++;
-	*out = (struct overlay_picture){ album->arrived ? &album->picture : NULL,
-					 album->picture.width, album->picture.height };
+	*out = (struct found_picture){ album->arrived ? &album->picture : NULL,
+				       album->picture.width, album->picture.height };
 	return true;
 }
 

@@ -52,11 +52,11 @@ static struct picture thumbnail = { 8, 8, pixels };
 static bool arrived = true;
 static uint32_t asked;
 
-static bool get_picture(void *data, const char *name, struct overlay_picture *out)
+static bool get_picture(void *data, const char *name, struct found_picture *out)
 {
 	(void)data;
 	asked++;
-	*out = (struct overlay_picture){ arrived ? &thumbnail : NULL, 8, 8 };
+	*out = (struct found_picture){ arrived ? &thumbnail : NULL, 8, 8 };
 	return strcmp(name, "pictures/a.png") == 0;
 }
 
