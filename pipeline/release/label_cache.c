@@ -10,6 +10,26 @@ enum {
 	FILE_BYTES_MAX = 256 << 20,
 };
 
+static void put_floats(struct buffer *text, const float *values, uint32_t count)
+{
+	for (uint32_t i = 0; i < count; i++)
+		buffer_put_f32(text, values[i]);
+}
+
+static void put_region(struct buffer *text, const struct region *region)
+{
+	buffer_put_u32(text, (uint32_t)region->kind);
+	put_floats(text, region->centre_m, 3);
+	buffer_put_f32(text, region->radius_m);
+	put_floats(text, region->half_m, 3);
+	buffer_put_f32(text, region->turn_deg);
+	buffer_put_f32(text, region->floor_m);
+	buffer_put_f32(text, region->roof_m);
+	buffer_put_u32(text, region->corner_count);
+	for (uint32_t i = 0; i < region->corner_count; i++)
+		put_floats(text, region->corners_m[i], 2);
+}
+
 int label_cache_key(struct hash *out, struct hash scans, struct hash hierarchy,
 		    const struct label_source_part *parts, uint32_t part_count)
 {
@@ -22,7 +42,7 @@ int label_cache_key(struct hash *out, struct hash scans, struct hash hierarchy,
 	buffer_put(&text, hierarchy.bytes, HASH_BYTES);
 	for (uint32_t i = 0; i < part_count; i++) {
 		buffer_put_string(&text, parts[i].id);
-		buffer_put(&text, &parts[i].region, sizeof(parts[i].region));
+		put_region(&text, &parts[i].region);
 		buffer_put_u8(&text, parts[i].is_list);
 		buffer_put(&text, parts[i].list.bytes, HASH_BYTES);
 	}
