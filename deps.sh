@@ -1,5 +1,5 @@
 #!/bin/sh
-# deps.sh [LIST]: install the packages of the list (packages.txt) that are missing. Root, or a user with sudo.
+# deps.sh [LIST]: installs the packages of the list (packages.txt) that are missing. Needs root, or a user with sudo.
 set -eu
 cd "$(dirname "$0")"
 list=${1:-packages.txt}
@@ -9,7 +9,7 @@ done)
 [ -n "$missing" ] || exit 0
 if [ "$(id -u)" = 0 ]; then as_root=; else
 	as_root=sudo
-	command -v sudo >/dev/null || { echo "deps.sh: be root, or install sudo; missing:" $missing >&2; exit 1; }
+	command -v sudo >/dev/null || { echo "deps.sh: run this as root, or install sudo; missing:" $missing >&2; exit 1; }
 fi
 echo "Installing $(echo "$missing" | wc -l) Debian packages (see $list) ..."
 $as_root apt-get update -qq
@@ -17,4 +17,4 @@ $as_root apt-get update -qq
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
 	-o Dpkg::Progress-Fancy=0 -o Dpkg::Use-Pty=0 $missing </dev/null >build/deps.log 2>&1 ||
 	{ tail -20 build/deps.log >&2; exit 1; }
-echo "Packages are there."
+echo "Packages are installed."

@@ -1,5 +1,5 @@
-/* Routes each touch to who may take it, and what is left to the gesture recogniser; its gestures
- * move the eye, or what the overlay shows. */
+/* Routes each touch to the module that handles it, or to the gesture recogniser, whose gestures
+ * move the eye or what the overlay shows. */
 #include "app/fingers.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Draws the scene of the release that is shown, its overlay as textured quads, and the set-up page;
- * the parts of the visit are told before, the fetcher after. */
+/* Draws the scene of the release that is shown, its overlay as textured quads, and the set-up page.
+ * Updates the modules of the visit before, and the fetcher's list of wants after. */
 #include "app/frame.h"
 
 #include <errno.h>

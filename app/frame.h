@@ -1,5 +1,5 @@
-/* One frame: the eye moves, the scene is drawn from what is there, the words go over it, and the
- * fetcher is asked for what is missing. Nothing here waits for disk, network or a decoder. */
+/* One frame: moves the eye, draws the scene from what is loaded, draws the overlay over it, and
+ * asks the fetcher for what is missing. Nothing here waits for disk, network or a decoder. */
 #ifndef GOPURA_APP_FRAME_H
 #define GOPURA_APP_FRAME_H
 

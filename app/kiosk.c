@@ -1,5 +1,5 @@
-/* Connects the kiosk's modules: what each of them works with, who is told of which event, and what
- * the loop does in a turn. */
+/* Connects the kiosk's modules: gives each what it works with, passes events between them, and
+ * lists the sources and tasks of the loop. */
 #include "app/kiosk.h"
 
 #include <errno.h>

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The demo's content with a procedural temple as its scan; a temple that is there already stays, unless it
-# has another number of triangles or its plan has changed since.
+# Makes the demo's content with a procedural temple as its scan. An existing temple is kept unless it has another number
+# of triangles or its plan has changed.
 #
 #   demo/make-content.sh FOLDER TRIANGLES
 set -eu
@@ -9,7 +9,7 @@ content=$1 triangles=$2
 mkdir -p "$content"
 cp -ru demo/content/. "$content/"
 temple="$triangles $(cat pipeline/temple/temple*.[ch] pipeline/material/material.[ch] | cksum)"
-# Of what the scan was made, beside the folder: in it lies only content.
+# Records what the scan was made from. The file is beside the folder, because the folder holds only content.
 made=${content%/}.scan
 if [ ! -f "$content/scan.ply" ] || [ "$(cat "$made" 2>/dev/null)" != "$temple" ]; then
 	echo "Making the temple: $triangles triangles ..."

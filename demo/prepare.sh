@@ -1,6 +1,6 @@
 #!/bin/bash
-# The demo temple and its signed release in build/demo/. Without a number of triangles the temple that is there stays as
-# large as it was asked for; at first it is of 2 million.
+# Makes the demo temple and its signed release in build/demo/. Without a number of triangles an existing temple keeps
+# its size; a new one has 2 million.
 #
 #   demo/prepare.sh [TRIANGLES]
 set -eu

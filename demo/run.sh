@@ -1,11 +1,10 @@
 #!/bin/bash
-# make demo: the demo temple from nothing to a panel. Ctrl-C ends everything this started.
+# make demo: builds the demo temple and shows it on a panel. Ctrl-C ends everything that this script started.
 #
 #   demo/run.sh [--triangles N] [KIOSK OPTIONS]
 #
-# Everything lands in build/demo/: content/ (the scan and what is known about it), release/ (what a
-# museum server holds), server/ (nginx's own folder), state/ (the kiosk's). A second run finds all
-# of it done and starts at once.
+# Everything is in build/demo/: content/ (the scan and the information about it), release/ (the files of the museum
+# server), server/ (nginx's run folder), state/ (the kiosk's). A second run reuses all of it and starts at once.
 set -eu
 cd "$(dirname "$0")/.."
 [ "${1:-}" != --help ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; exit 0; }
@@ -39,18 +38,18 @@ echo "Museum server: $(cat "$demo/server/url")"
 
 kiosk=(build/gopura-kiosk --release "$(cat "$demo/server/url")" --ca "$demo/server/ca.pem"
 	--trust "$release/root/1.json" --state "$demo/state")
-# In the background, so that a signal to this script ends it at once and not after the kiosk.
+# The kiosk runs in the background, so that a signal ends this script at once and not only after the kiosk.
 show() {
 	"${kiosk[@]}" "$@" &
 	kiosk_pid=$!
 	wait "$kiosk_pid"
 }
-# A panel that is free, or a desktop: the kiosk takes it. Else a visit is played and photographed.
+# The kiosk uses a free panel or a desktop. Without either, a recorded visit is played and its pictures are saved.
 if [ $# -gt 0 ] || [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || compgen -G '/dev/dri/card*' >/dev/null; then
-	echo "Starting the kiosk; Ctrl-C ends it. With a mouse: drag to turn, wheel to come nearer."
+	echo "Starting the kiosk; Ctrl-C ends it. With a mouse: drag to turn, wheel to zoom."
 	show "$@"
 else
-	echo "No panel and no desktop here: playing a visit without them (about half a minute) ..."
+	echo "No panel and no desktop found: playing a recorded visit (about half a minute) ..."
 	show --display headless --size 1280x720 --touch-replay demo/visit.touch \
 		--quit-after-replay --shots demo/visit.shots --capture "$demo"
 	echo "Pictures of the visit:"

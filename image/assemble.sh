@@ -1,6 +1,6 @@
 #!/bin/bash
-# assemble.sh: called by build.sh beneath fakeroot, with its variables: base.tar, kernel and programs into
-# tree/, that into the images of a slot, those into a disk.
+# assemble.sh: called by build.sh under fakeroot, with its variables. Puts base.tar, the kernel and the programs into
+# tree/, makes the images of a slot from tree/, and a disk from those.
 set -eu
 tree=$out/tree kernel=$out/kernel
 version=$(basename "$kernel"/lib/modules/*)
@@ -11,7 +11,7 @@ tar -x --exclude=./dev -C "$tree" -f "$out/base.tar"
 : >"$out/left-out.txt"
 left_out() { echo "$*" >>"$out/left-out.txt"; }
 
-# ---- what only builds or administers a Debian, and no terminal
+# ---- remove what only serves to build or administer a Debian system
 mv "$tree/packages.txt" "$out/packages.txt"
 for path in usr/bin/perl* usr/lib/x86_64-linux-gnu/perl* usr/lib/x86_64-linux-gnu/libperl* usr/share/perl* \
 	usr/bin/apt* usr/bin/dpkg* usr/lib/apt usr/lib/dpkg var/lib/dpkg var/lib/apt var/cache var/log \
@@ -31,7 +31,7 @@ find "$tree/usr/share/fonts" -type f -name '*.tt[fc]' | sort | while read -r fon
 done
 
 list "$here/fonts" | while read -r font; do
-	[ -n "$(find "$tree/usr/share/fonts" -name "$font" -print -quit)" ] || { echo "image/fonts: no package has $font" >&2; exit 1; }
+	[ -n "$(find "$tree/usr/share/fonts" -name "$font" -print -quit)" ] || { echo "image/fonts: no package contains $font" >&2; exit 1; }
 done
 
 # ---- kernel modules, by list
@@ -39,7 +39,7 @@ modules=$tree/usr/lib/modules/$version
 mkdir -p "$modules"
 cp "$kernel/lib/modules/$version"/modules.{order,builtin,builtin.modinfo} "$modules/"
 depmod -b "$kernel" "$version"
-# wanted TO NAME...: the modules and all they need
+# wanted TO NAME...: copies the modules and all their dependencies
 wanted() {
 	local to=$1 name
 	shift
@@ -59,21 +59,21 @@ wanted "$modules" $(list "$here/modules" | sed 's/^early //')
 done
 depmod -b "$tree/usr" -m /lib/modules "$version" 2>/dev/null || depmod -b "$tree" "$version"
 
-# ---- ours
+# ---- our programs
 for program in gopura-kiosk gopura-fetch gopura-setup gopura-health; do
 	install -m 755 -s "build/appliance/$program" "$tree/usr/bin/$program"
 done
 LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u | while read -r library; do
 	[ -n "$(find "$tree/usr/lib" -name "$library" -print -quit)" ] ||
-		{ echo "image: no package of image/packages brings $library" >&2; exit 1; }
+		{ echo "image: no package of image/packages contains $library" >&2; exit 1; }
 done
 # The kiosk's texts. They need the locale C.UTF-8, which the C library brings (ui/translate.c).
 mkdir -p "$tree/usr/share/locale"
 cp -r build/appliance/locale/. "$tree/usr/share/locale/"
-[ -d "$tree/usr/lib/locale/C.utf8" ] || { echo "image: no package of image/packages brings the locale C.UTF-8" >&2; exit 1; }
+[ -d "$tree/usr/lib/locale/C.utf8" ] || { echo "image: no package of image/packages contains the locale C.UTF-8" >&2; exit 1; }
 cp -r "$here/root/." "$tree/"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
-# What fontconfig knows of the fonts lies beside them: there is nothing it could find out at run time.
+# The font cache is made here, because fontconfig has nothing to find out at run time.
 sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fonts/cache</cachedir>|' \
 	-e '/<cachedir prefix="xdg"/d' -e '/<cachedir>~/d' "$tree/etc/fonts/fonts.conf"
 mkdir -p "$tree/usr/share/fonts/cache"
@@ -87,7 +87,7 @@ if [ -n "${RELEASE:-}" ]; then
 fi
 systemd-sysusers --root="$tree"
 rm -rf "$tree"/etc/systemd/system/*.wants
-# No shell on any console, whatever asks for one.
+# No shell on any console, whatever unit asks for one.
 for unit in getty.target getty@.service autovt@.service serial-getty@.service console-getty.service container-getty@.service \
 	debug-shell.service emergency.service emergency.target rescue.service rescue.target systemd-logind.service ctrl-alt-del.target; do
 	ln -sfn /dev/null "$tree/etc/systemd/system/$unit"
@@ -104,7 +104,7 @@ rm -rf "$tree"/{boot,media,mnt,opt} "$tree"/{home,srv}/*  # systemd-tmpfiles wan
 find "$tree" -newermt "@$SOURCE_DATE_EPOCH" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
 fc-cache -s -y "$tree"
 
-# ---- the slot: kernel and first program of the boot, and the root
+# ---- the slot: kernel, initramfs and root
 early=$out/early
 rm -rf "$early"
 mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
@@ -129,7 +129,7 @@ rm -f "$out/boot.img"
 export E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH
 mke2fs -q -t ext2 -U 6f707572-6100-4000-8000-000000000000 \
 	-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$out/boot.img" "${boot_mib}M" 2>/dev/null
-# It takes the times when the files came into $boot along, which no touch can set.
+# mke2fs copies the change times of the files in $boot, which touch cannot set.
 for file in initrd vmlinuz; do
 	echo "set_inode_field $file ctime @$SOURCE_DATE_EPOCH"
 done | debugfs -w -f - "$out/boot.img" >/dev/null 2>&1
@@ -169,7 +169,7 @@ mcopy -i "$esp" system/gopura.conf.example ::/gopura.conf.example
 # ---- the disk
 disk=$out/gopura.img
 rm -f "$disk" "$out/data.ext4"
-# Blocks and inodes as a large disk has them: what is small here grows (image/init).
+# Blocks and inodes are sized as on a large disk, because the small file system grows later (image/init).
 mke2fs -q -t ext4 -b 4096 -I 256 -i 16384 -L gopura-data "$out/data.ext4" "${data_mib}M" 2>/dev/null
 table=$out/disk.sfdisk
 printf '%s\n' 'label: gpt' 'label-id: 6F707572-6100-4000-8000-0000000000FF' >"$table"

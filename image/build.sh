@@ -1,18 +1,18 @@
 #!/bin/bash
-# image/build.sh: the bootable disk image of a terminal, build/image/gopura.img, from Debian 12 packages and
-# the programs of this tree. As root or as a user (then with user namespaces, which mmdebstrap needs).
+# image/build.sh: builds the bootable disk image of a terminal, build/image/gopura.img, from Debian 12 packages and the
+# programs of this tree. Runs as root or as a user (mmdebstrap then needs user namespaces).
 #
 #   MIRROR=URL      of Debian (default: deb.debian.org); a date of snapshot.debian.org pins every package
-#   RELEASE=FOLDER  lies in the image as well, for a terminal that never gets a network
-#   CONF=FILE       the gopura.conf of the image; the files that it names are taken from beside it
-#   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, made where missing)
-#   SEQUENCE=N      of this system and its update bundle: a terminal installs nothing with a lower one than it found good
+#   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
+#   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
+#   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, created if missing)
+#   SEQUENCE=N      of this system and its update bundle: a terminal installs none with a lower number than one it found good
 #                   (default: the time of the commit, in seconds since 1970)
 #   OUT=FOLDER      instead of build/image
 #
-# What is made: base.tar (the packages), tree/ (the root as it will be), root.squashfs and boot.img (a slot),
-# esp.vfat, gopura.img, gopura.raucb (an update to the same), and left-out.txt: what the packages would have brought.
-# docs/image.md tells the layout of the disk and why.
+# Output: base.tar (the packages), tree/ (the complete root), root.squashfs and boot.img (a slot), esp.vfat, gopura.img,
+# gopura.raucb (an update to the same system), and left-out.txt: files of the packages that are not in the image.
+# docs/image.md explains the layout of the disk.
 set -eu
 cd "$(dirname "$0")/.."
 here=$PWD/image out=${OUT:-build/image} mirror=${MIRROR:-http://deb.debian.org}
@@ -24,7 +24,7 @@ out=$(cd "$out" && pwd)
 say() { echo "image: $*"; }
 list() { grep -v '^#' "$1"; }
 
-# ---- Debian's packages, as long as their list and the mirror stay
+# ---- Debian's packages; made again only if their list or the mirror changes
 key=$({ list image/packages; echo "$mirror"; } | sha256sum | cut -c1-16)
 if [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
 	say "installing packages into base.tar"
@@ -41,11 +41,11 @@ if [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
 fi
 image/kernel.sh "$out/kernel"
 
-# ---- the programs, without the window of a desktop
+# ---- the programs, without support for a desktop window
 make --no-print-directory -j"$(nproc)" WINDOW=no BUILD=build/appliance \
 	build/appliance/gopura-{kiosk,fetch,setup,health}
 
-# ---- who may sign updates
+# ---- the key that signs updates
 keys=${KEYS:-build/image-keys}
 if [ ! -f "$keys/key.pem" ]; then
 	mkdir -p "$keys"
@@ -54,8 +54,8 @@ if [ ! -f "$keys/key.pem" ]; then
 	say "made keys for updates in $keys: keep a copy of key.pem in a safe place"
 fi
 
-# ---- root, slot and disk, all files root's
-say "putting the root together"
+# ---- root, slot and disk; all files belong to root
+say "assembling the root"
 version_text=${VERSION:-$(git describe --always --dirty)}
 sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
 export here out keys version_text sequence slot_mib boot_mib esp_mib data_mib

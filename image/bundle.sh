@@ -1,19 +1,21 @@
 #!/bin/bash
-# bundle.sh FOLDER: root.squashfs and boot.img there as a signed update, gopura.raucb (KEYS, VERSION and SEQUENCE as in build.sh).
+# bundle.sh FOLDER: makes a signed update, gopura.raucb, from root.squashfs and boot.img in FOLDER (KEYS, VERSION and
+# SEQUENCE as in build.sh).
 set -eu
 cd "$(dirname "$0")/.."
 out=$1 keys=${keys:-${KEYS:-build/image-keys}}
 work=$out/bundle
 version=${version_text:-${VERSION:-$(git describe --always --dirty)}}
 sequence=${sequence:-${SEQUENCE:-${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}}}
-# A terminal never goes below a sequence that it found good. One by mistake too high would shut out every later update.
+# A terminal never accepts a sequence below one that it found good. A sequence that is too high by mistake would block
+# every later update.
 case $sequence in '' | *[!0-9]*) echo "bundle: SEQUENCE must be a number, not '$sequence'" >&2; exit 1 ;; esac
 [ "$sequence" -le $(($(date +%s) + 86400)) ] || {
-	echo "bundle: SEQUENCE $sequence is later than tomorrow; take \$(date +%s)" >&2
+	echo "bundle: SEQUENCE $sequence is later than tomorrow; use \$(date +%s)" >&2
 	exit 1
 }
 case $version in
-*[!A-Za-z0-9._+~-]*) echo "bundle: VERSION has letters, digits and . _ + ~ - only, not '$version'" >&2; exit 1 ;;
+*[!A-Za-z0-9._+~-]*) echo "bundle: VERSION may contain only letters, digits and . _ + ~ -, not '$version'" >&2; exit 1 ;;
 esac
 rm -rf "$work" "$out/gopura.raucb"
 mkdir -p "$work"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# check.sh: two builds from nothing give the same slot, byte by byte. With MIRROR at a date of snapshot.debian.org also those of
-# another day do; without, both must meet the same state of the mirror.
+# check.sh: checks that two builds from scratch give the same slot, byte by byte. With MIRROR at a date of
+# snapshot.debian.org the builds may be on different days; without, both must see the same state of the mirror.
 set -eu
 cd "$(dirname "$0")/.."
 work=build/image-check

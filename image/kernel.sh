@@ -1,6 +1,6 @@
 #!/bin/bash
-# kernel.sh FOLDER: Debian's generic kernel, unpacked into the folder and not installed (the cloud kernel has no
-# GPU). Exit status 77 where none is to be had.
+# kernel.sh FOLDER: unpacks Debian's generic kernel into the folder without installing it (the cloud kernel has no GPU
+# drivers). Exit status 77 if no kernel can be downloaded.
 set -eu
 folder=$1
 ls "$folder"/boot/vmlinuz-* >/dev/null 2>&1 && exit 0

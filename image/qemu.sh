@@ -1,11 +1,11 @@
 #!/bin/bash
-# qemu.sh: the appliance's image in QEMU, for a person: a window on a desktop, else a screen for a VNC viewer; the mouse is a
-# finger. With a release inside: that of the demo where it was made, else a small one.
+# qemu.sh: runs the appliance's image in QEMU for trying it out, in a window on a desktop, else on a screen for a VNC
+# viewer; the mouse acts as a finger. The image contains the demo's release if that was made, else a small one.
 #
-#   KVM=yes     the processor's own virtualisation, many times faster, where it works
+#   KVM=yes     use the processor's virtualisation, many times faster, if available
 #   SIZE=WxH    of the panel (1280x720)
 #
-# The disk keeps what the terminal writes: build/qemu-image/person.img; remove it to begin anew.
+# The disk keeps what the terminal writes: build/qemu-image/person.img; remove it to start anew.
 set -eu
 cd "$(dirname "$0")/.."
 work=build/qemu-image release=build/demo/release size=${SIZE:-1280x720}

@@ -1,10 +1,10 @@
 #!/bin/bash
-# Serve a release folder with nginx over TLS and HTTP/2, in the foreground; a signal ends it.
+# Serves a release folder with nginx over TLS and HTTP/2, in the foreground; a signal ends it.
 #
 #   server/serve.sh RELEASE PORT RUN [NAME ...]
 #
-# See server/setup.sh, which this calls. PORT 0 takes a free one. When it listens, RUN/url holds the
-# address and RUN/ca.pem is the certificate authority to trust:
+# Calls server/setup.sh. PORT 0 takes a free port. When nginx listens, RUN/url holds the address and RUN/ca.pem the
+# certificate authority to trust:
 #
 #   curl --cacert RUN/ca.pem "$(cat RUN/url)release.json"
 set -eu
@@ -19,7 +19,7 @@ if [ "$port" = 0 ]; then
 	port=$((20000 + RANDOM % 12000))
 	while taken "$port"; do port=$((20000 + RANDOM % 12000)); done
 elif taken "$port"; then
-	echo "serve.sh: something listens on port $port already; give another, or 0 for a free one" >&2
+	echo "serve.sh: port $port is in use; give another one, or 0 for a free port" >&2
 	exit 1
 fi
 mkdir -p "$run"
@@ -29,7 +29,7 @@ run=$(cd "$run" && pwd)
 echo "serving $release"
 echo "url https://localhost:$port/"
 echo "ca $run/ca.pem"
-# Written by a child once the port answers, so that whoever waits for the file waits long enough.
+# A child process writes the file once the port answers, so a program that waits for the file also waits for the server.
 (for _ in $(seq 100); do
 	if taken "$port"; then
 		echo "https://localhost:$port/" >"$run/url.new"

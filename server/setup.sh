@@ -1,5 +1,5 @@
 #!/bin/bash
-# Prepare a run folder for nginx: certificate authority, certificate, configuration.
+# Prepares a run folder for nginx: certificate authority, certificate, configuration.
 #
 #   server/setup.sh RELEASE PORT RUN [NAME ...]
 #
@@ -10,7 +10,7 @@
 #
 # GOPURA_LISTEN  address to listen on, default 127.0.0.1 (0.0.0.0 for all)
 #
-# Terminals are given RUN/ca.pem. Its key stays in RUN/tls (mode 0600): keep that folder to yourself.
+# Copy RUN/ca.pem to the terminals. Its key stays in RUN/tls (mode 0600): keep that folder private.
 set -eu
 usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; }
 [ "${1:-}" != --help ] || { usage; exit 0; }
@@ -19,14 +19,14 @@ here=$(cd "$(dirname "$0")" && pwd)
 release=$1 port=$2 run=$3
 shift 3
 [ -d "$release" ] || { echo "setup.sh: no such folder: $release" >&2; exit 1; }
-case $release in *[\"\$\;]*) echo "setup.sh: the folder's path may hold no \" \$ ;" >&2; exit 1 ;; esac
+case $release in *[\"\$\;]*) echo "setup.sh: the folder's path must not contain \" \$ ;" >&2; exit 1 ;; esac
 case $port in '' | *[!0-9]*) echo "setup.sh: not a port: $port" >&2; exit 2 ;; esac
 release=$(cd "$release" && pwd)
 mkdir -p "$run/logs" "$run/temp" "$run/tls"
 chmod 0700 "$run/tls"
 run=$(cd "$run" && pwd)
 
-# ---- certificate: ten years, for a terminal that nobody looks after; remade when names change
+# ---- certificate: valid for ten years, because nobody maintains a terminal; renewed when the names change
 names="DNS:localhost,IP:127.0.0.1"
 for name in "$@"; do
 	case $name in
@@ -55,7 +55,7 @@ if [ ! -f server.pem ] || [ "$(cat names 2>/dev/null)" != "$names" ] ||
 fi
 cd "$run"
 
-# ---- configuration. Started by root, the workers would be somebody who may not read the release.
+# ---- configuration. If started by root, nginx would run its workers as a user that may not read the release.
 user=
 [ "$(id -u)" != 0 ] || user="user $(stat -c %U "$release") $(stat -c %G "$release");"
 sed_text() { printf '%s' "$1" | sed 's/[\\&|]/\\&/g'; }

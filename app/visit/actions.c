@@ -1,4 +1,5 @@
-/* One row for each action of the overlay: what carries it out, and what else it is to a visit. */
+/* One row for each action of the overlay: the function that carries it out, and whether it is a
+ * step for the back button or halts a tour. */
 #include "app/visit/actions.h"
 
 #include <string.h>

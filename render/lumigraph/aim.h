@@ -4,7 +4,8 @@
  * Fragment shaders may have only mediump with 11 bits, and a face has as many pixels per side. So a
  * fragment computes relative to a cell of the face near the piece and to a depth near it, which are
  * integers and therefore exact; the vertex shader, which always has highp, subtracts them. Pure;
- * the fragment shader's part is in surface.c, and tests/render/test_mediump.c repeats it. */
+ * the fragment shader's part is in surface.c; tests/render/lumigraph/test_mediump.c computes the
+ * same. */
 #ifndef GOPURA_RENDER_LUMIGRAPH_AIM_H
 #define GOPURA_RENDER_LUMIGRAPH_AIM_H
 

@@ -167,7 +167,7 @@ static const char blended_vertex[] =
 
 /* Constants shared by C and GLSL are prepended (set_constants). Cells and depths are relative to
  * those of the aim, which are integers, so all of it works in mediump
- * (tests/render/test_mediump.c). */
+ * (tests/render/lumigraph/test_mediump.c). */
 static const char blended_fragment[] =
 	"uniform sampler2D u_tiles;\n"
 	"uniform FINE sampler2D u_cells, u_depths[FACES];\n" /* the default is lowp */

@@ -121,7 +121,7 @@ asked "stop rauc.service" || fail "the loader's partition stays open for writing
 # ---- one bundle that cannot be installed does not keep the next from it; strange names are left alone
 plugged "a=torn 140" "b (1)=v140 140" "c;d=v150 150"
 asked "install $stick/b (1).raucb" && asked "mark-active other" || fail "the second bundle is not installed: $(cat "$work/said")"
-! grep -q ';' "$work/asked" && said 'a bundle is left alone: rename it' || fail "a strange name: $(cat "$work/said" "$work/asked")"
+! grep -q ';' "$work/asked" && said 'a bundle is ignored: rename it' || fail "a strange name: $(cat "$work/said" "$work/asked")"
 
 # ---- the loader went back to the older slot: it runs, is good, and lowers nothing
 runs A v100 100

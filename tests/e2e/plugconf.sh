@@ -64,7 +64,7 @@ plugged
 grep -q 'rotation must be 0, 90, 180 or 270' "$work/out/faults" || fail "the fault is not told"
 asked gopura-kiosk.service || fail "the panel does not show the fault"
 
-# The disk's comes first; whoever plugs in another is told.
+# The disk's file has priority, and the log says so to the person who plugged in another one.
 printf '[terminal]\nname = Disk\n' >"$work/efi/gopura.conf"
 "$work/set-up" 2>"$work/log"
 plugged

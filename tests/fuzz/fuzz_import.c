@@ -3,7 +3,7 @@
  * believes of such a child is ours. Here the sandbox is this file: the first byte says whether the
  * child gives back a result, the rest is what it writes into the memory that it shares with its
  * parent, and after a "gopmesh", the mesh it claims to have read (with its hash made right). The
- * files themselves are left to tests/pipeline/test_import.c. */
+ * files themselves are left to tests/pipeline/import/test_import.c. */
 #include <errno.h>
 #include <math.h>
 #include <sys/mman.h>

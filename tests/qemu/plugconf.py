@@ -25,7 +25,7 @@ def set_up(machine, stick):
     machine.said("/efi/gopura.conf does not exist; the defaults are used", BOOT_S)
     machine.wait_for("page about the missing gopura.conf", ANSWER_S, lambda: paper(machine.picture("unset")) > 0.5)
     machine.plug(stick)
-    print(machine.said("gopura-stick/gopura.conf holds from now on", ANSWER_S))
+    print(machine.said("gopura-stick/gopura.conf is applied", ANSWER_S))
     machine.said("app: first picture", ANSWER_S)
     machine.temple("set-up")
     machine.unplug()

@@ -1,14 +1,14 @@
-# floor.sh: the version floor, for the scripts that source it. A slot that was found good raises it to its own sequence
+# floor.sh: the version floor, to be sourced by scripts. A slot that is found good raises it to its own sequence
 # (IMAGE_SEQUENCE of os-release, `build` of a bundle's manifest); no bundle below it is installed (docs/image.md).
 
-# is_sequence TEXT: digits, and few enough for the shell's arithmetic
+# is_sequence TEXT: only digits, and few enough for the shell's arithmetic
 is_sequence() {
 	case $1 in '' | *[!0-9]*) return 1 ;; esac
 	[ ${#1} -le 12 ]
 }
 
-# read_floor FILE: sets floor and floor_version. Where no slot was ever found good, or the data partition was made anew, what
-# runs is the floor, and the status is 1.
+# read_floor FILE: sets floor and floor_version. If no slot was ever found good, or the data partition was created anew,
+# the running system is the floor, and the status is 1.
 read_floor() {
 	floor='' floor_version=''
 	[ ! -f "$1" ] || read -r floor floor_version <"$1" || true
@@ -18,7 +18,7 @@ read_floor() {
 	return 1
 }
 
-# raise_floor FILE: to what runs; never lower
+# raise_floor FILE: raises it to the running system's sequence; never lowers it
 raise_floor() {
 	is_sequence "${IMAGE_SEQUENCE:-}" || return 0
 	! read_floor "$1" || [ "$IMAGE_SEQUENCE" -gt "$floor" ] || return 0
