@@ -341,7 +341,8 @@ static int broken_xml(const struct reading *reading, xmlParserCtxt *parser)
 			       (int)strcspn(message, "\n"), message);
 }
 
-/* Neither entities nor files or addresses that the document names are followed. */
+/* Files and addresses that the document names are not followed. Entities, which may stand for more
+ * than fits in memory, are refused: MeshLab writes none. */
 static int read_mlp(struct reading *reading, struct bytes file)
 {
 	const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING;
@@ -353,8 +354,14 @@ static int read_mlp(struct reading *reading, struct bytes file)
 		return -ENOMEM;
 	document = xmlCtxtReadMemory(parser, (const char *)file.data, (int)file.size, NULL, NULL,
 				     options);
-	rc = document ? read_project(reading, xmlDocGetRootElement(document))
-		      : broken_xml(reading, parser);
+	if (!document)
+		rc = broken_xml(reading, parser);
+	else if (document->intSubset && document->intSubset->entities)
+		rc = diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, 0,
+				     "declares entities (<!ENTITY ...>); save the project again "
+				     "from MeshLab");
+	else
+		rc = read_project(reading, xmlDocGetRootElement(document));
 	xmlFreeDoc(document);
 	xmlFreeParserCtxt(parser);
 	return rc;

@@ -7,7 +7,8 @@
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 
-#define ROWS "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+#define ROWS        "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+#define EIGHT(text) text text text text text text text text
 #define LAYER(name, matrix)                                                                        \
 	"<MLMesh visible=\"1\" label=\"x\" filename=\"" name "\"><MLMatrix44>" matrix              \
 	"</MLMatrix44></MLMesh>\n"
@@ -173,7 +174,31 @@ static void refuses_with_line_and_cure(void **state)
 		  "<!DOCTYPE MeshLabProject [<!ENTITY e SYSTEM \"file:///etc/hostname\">]>"
 		  "<MeshLabProject><MeshGroup><MLMesh filename=\"a.ply\"><MLMatrix44>&e;"
 		  "</MLMatrix44></MLMesh></MeshGroup></MeshLabProject>",
-		  "but after 0 there is ''" },
+		  "declares entities" },
+		{ "laughs.mlp",
+		  "<!DOCTYPE p [<!ENTITY a \"1 1 1 1 1 1 1 1\"><!ENTITY b \"" EIGHT(
+			  "&a;") "\">"
+				 "<!ENTITY c \"" EIGHT("&b;") "\"><!ENTITY d \"" EIGHT(
+					 "&c;") "\">"
+						"<!ENTITY e \"" EIGHT("&d;") "\"><!ENTITY f \"" EIGHT(
+							"&e;") "\">"
+							       "<!ENTITY g \"" EIGHT("&f;") "\"><!ENTITY h \"" EIGHT(
+								       "&g;") "\">]>\n"
+									      "<MeshLabProject><MeshGroup><MLMesh filename=\"a.ply\"><MLMatrix44>&h;"
+									      "</MLMatrix44></MLMesh></MeshGroup></MeshLabProject>",
+		  "ntit" },
+		{ "loud.mlp",
+		  "<!DOCTYPE p [<!ENTITY a \"1 1 1 1 1 1 1 1\"><!ENTITY b \"" EIGHT(
+			  "&a;") "\">"
+				 "<!ENTITY c \"" EIGHT("&b;") "\"><!ENTITY d \"" EIGHT(
+					 "&c;") "\">"
+						"<!ENTITY e \"" EIGHT("&d;") "\"><!ENTITY f \"" EIGHT(
+							"&e;") "\">"
+							       "<!ENTITY g \"" EIGHT("&f;") "\"><!ENTITY h \"" EIGHT(
+								       "&g;") "\">]>\n"
+									      "<MeshLabProject><MeshGroup><MLMesh filename=\"&h;\"/></MeshGroup>"
+									      "</MeshLabProject>",
+		  "ntit" },
 	};
 	(void)state;
 
