@@ -167,9 +167,8 @@ static int make_master(const char *folder, struct scans *scans, struct hash stam
 		rc = master_build(folder, mesh, stamp, options, report);
 	if (rc == -E2BIG)
 		diagnostics_add(diagnostics, rc, folder, 0,
-				"%s; the coarsest patches do not fit in one group, use "
-				"--hierarchy groups",
-				strerror(-rc));
+				"the coarsest patches do not fit in one group; use --hierarchy "
+				"groups");
 	return rc;
 }
 
