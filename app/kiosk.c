@@ -4,10 +4,8 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include "app/settings/folder.h"
@@ -504,19 +502,6 @@ static int replay_step(void *data)
 	return 0;
 }
 
-/* SIGINT and SIGTERM end the loop. */
-static int start_signals(struct kiosk *kiosk)
-{
-	sigset_t signals;
-
-	sigemptyset(&signals);
-	sigaddset(&signals, SIGINT);
-	sigaddset(&signals, SIGTERM);
-	sigprocmask(SIG_BLOCK, &signals, NULL);
-	kiosk->signal_fd = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-	return kiosk->signal_fd < 0 ? -errno : 0;
-}
-
 static int start_loop(struct kiosk *kiosk)
 {
 	const int touch_fd_or_none = kiosk->touch ? touch_fd(kiosk->touch) : -1;
@@ -577,8 +562,10 @@ int kiosk_start(struct kiosk *kiosk)
 		rc = capture_create(&kiosk->capture, &kiosk->options, &kiosk->redraw);
 	if (rc == 0)
 		rc = start_metrics(kiosk);
-	if (rc == 0)
-		rc = start_signals(kiosk);
+	if (rc == 0) {
+		kiosk->signal_fd = service_stop_fd();
+		rc = kiosk->signal_fd < 0 ? kiosk->signal_fd : 0;
+	}
 	if (rc == 0)
 		rc = start_loop(kiosk);
 	if (rc == 0) {

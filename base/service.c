@@ -1,6 +1,11 @@
-/* Sends sd_notify messages to systemd, and computes when the next watchdog message is due. */
+/* Sends sd_notify messages to systemd, takes its signals to stop, and computes when the next
+ * watchdog message is due. */
 #include "base/service.h"
 
+#include <errno.h>
+#include <signal.h>
+#include <stddef.h>
+#include <sys/signalfd.h>
 #include <systemd/sd-daemon.h>
 
 #include "base/clock.h"
@@ -9,6 +14,19 @@
 enum { KEEP = 0 };
 
 static int64_t alive_ms; /* time of the last message */
+
+int service_stop_fd(void)
+{
+	sigset_t signals;
+	int fd;
+
+	sigemptyset(&signals);
+	sigaddset(&signals, SIGINT);
+	sigaddset(&signals, SIGTERM);
+	sigprocmask(SIG_BLOCK, &signals, NULL);
+	fd = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+	return fd < 0 ? -errno : fd;
+}
 
 void service_ready(void)
 {

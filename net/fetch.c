@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
-#include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -456,16 +455,10 @@ static int listen_on(struct fetch *fetch, const char *path)
 
 static int watch_signals(struct fetch *fetch)
 {
-	sigset_t set;
-
-	sigemptyset(&set);
-	sigaddset(&set, SIGTERM);
-	sigaddset(&set, SIGINT);
-	sigprocmask(SIG_BLOCK, &set, NULL);
 	signal(SIGPIPE, SIG_IGN);
-	fetch->signal_fd = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+	fetch->signal_fd = service_stop_fd();
 	if (fetch->signal_fd < 0)
-		return -errno;
+		return fetch->signal_fd;
 	return watch(fetch, fetch->signal_fd, SOURCE_SIGNAL, EPOLLIN, EPOLL_CTL_ADD);
 }
 

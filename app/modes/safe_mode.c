@@ -5,10 +5,8 @@
 #include <errno.h>
 #include <limits.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -58,7 +56,6 @@ static int start(struct safe_mode *safe, struct options *options)
 	static struct provision provision; /* the options borrow from it */
 	struct display_options display;
 	struct profile profile;
-	sigset_t signals;
 	bool sideways;
 	int rc, width, height;
 
@@ -75,13 +72,9 @@ static int start(struct safe_mode *safe, struct options *options)
 		.hz = options->hz,
 		.device = options->device,
 	};
-	sigemptyset(&signals);
-	sigaddset(&signals, SIGINT);
-	sigaddset(&signals, SIGTERM);
-	sigprocmask(SIG_BLOCK, &signals, NULL);
-	safe->signal_fd = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+	safe->signal_fd = service_stop_fd();
 	if (safe->signal_fd < 0)
-		return -errno;
+		return safe->signal_fd;
 	rc = canvas_create(&safe->canvas, &display);
 	if (rc < 0)
 		return rc;

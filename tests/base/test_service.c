@@ -1,13 +1,16 @@
 #include <errno.h>
+#include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/compiler.h"
 #include "base/service.h"
 #include "tests/check.h"
 
@@ -67,10 +70,28 @@ static void the_manager_hears_what_is_said_and_is_due_after_a_third(void **state
 	CHECK(recv(manager, &before_ms, 1, 0) < 0 && errno == EAGAIN);
 }
 
+static void a_signal_to_stop_is_read_and_ends_nothing(void **state)
+{
+	static const int signals[] = { SIGTERM, SIGINT };
+	const int fd = service_stop_fd();
+	struct signalfd_siginfo info;
+
+	(void)state;
+	CHECK(fd >= 0);
+	CHECK(read(fd, &info, sizeof(info)) == -1 && errno == EAGAIN);
+	for (size_t i = 0; i < ARRAY_COUNT(signals); i++) {
+		CHECK(raise(signals[i]) == 0);
+		CHECK(read(fd, &info, sizeof(info)) == sizeof(info));
+		CHECK(info.ssi_signo == (uint32_t)signals[i]);
+	}
+	close(fd);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_manager_hears_what_is_said_and_is_due_after_a_third),
+		cmocka_unit_test(a_signal_to_stop_is_read_and_ends_nothing),
 	};
 
 	return cmocka_run_group_tests(tests, be_managed, leave);
