@@ -7,6 +7,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+static const char alignment[] = "2\nscan.ply\n#\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+				"b.obj\n#\n1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0\n";
+
 static bool keeps_its_limits(const struct content *c)
 {
 	const float length = c->sun[0] * c->sun[0] + c->sun[1] * c->sun[1] + c->sun[2] * c->sun[2];
@@ -37,6 +40,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		scratch_begin();
 		scratch_write("scan.ply", (const uint8_t *)"ply\n", 4);
 		scratch_write("b.obj", (const uint8_t *)"#\n", 2);
+		scratch_write("s.aln", (const uint8_t *)alignment, strlen(alignment));
 	}
 	scratch_write("temple.ini", data, size);
 	if (content_read(&content, scratch, &diagnostics) == 0) {
