@@ -347,17 +347,17 @@ int bytes_write_file(struct bytes bytes, const char *path)
 	return rc < 0 ? rc : sync_folder_of(path);
 }
 
-/* Returns whether entry is a temporary file of name, as mkostemp names it: "state.db.second.a1B2c3"
- * for "state.db.second". */
-static bool is_leftover(const char *entry, const char *name)
+/* Returns whether entry is a temporary file as mkostemp names it, "state.db.second.a1B2c3" for
+ * "state.db.second", and sets *length to that of the name. */
+static bool is_leftover(const char *entry, size_t *length)
 {
-	const size_t length = strlen(name);
-	const char *end = entry + length + 1;
+	const char *end = strrchr(entry, '.');
 
-	if (strncmp(entry, name, length) != 0 || entry[length] != '.' || strlen(end) != 6)
+	if (!end || strlen(end + 1) != 6)
 		return false;
-	while (isalnum((unsigned char)*end))
-		end++;
+	*length = (size_t)(end - entry);
+	for (end++; isalnum((unsigned char)*end); end++)
+		;
 	return *end == '\0';
 }
 
@@ -367,12 +367,30 @@ void bytes_drop_leftovers(const char *path)
 	const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
 	struct dirent *entry;
 	DIR *entries;
+	size_t length;
 
 	snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(slash - path) + 1 : 1,
 		 slash ? path : ".");
 	entries = opendir(folder);
 	while (entries && (entry = readdir(entries)))
-		if (is_leftover(entry->d_name, name))
+		if (is_leftover(entry->d_name, &length) && length == strlen(name) &&
+		    memcmp(entry->d_name, name, length) == 0)
+			unlinkat(dirfd(entries), entry->d_name, 0);
+	if (entries)
+		closedir(entries);
+}
+
+void bytes_sweep_folder(const char *folder, int64_t before_s)
+{
+	DIR *entries = opendir(folder);
+	struct dirent *entry;
+	struct stat status;
+	size_t length;
+
+	while (entries && (entry = readdir(entries)))
+		if (is_leftover(entry->d_name, &length) &&
+		    fstatat(dirfd(entries), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) == 0 &&
+		    S_ISREG(status.st_mode) && status.st_mtim.tv_sec < before_s)
 			unlinkat(dirfd(entries), entry->d_name, 0);
 	if (entries)
 		closedir(entries);

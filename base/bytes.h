@@ -101,5 +101,8 @@ must_check int bytes_write_file(struct bytes bytes, const char *path);
 /* Removes temporary files of path that were left by power cuts. Call it only while nobody writes
  * path. */
 void bytes_drop_leftovers(const char *path);
+/* Removes temporary files of any path in a folder that were last changed before a time, in seconds
+ * since 1970; another process may be writing younger ones. A missing folder is fine. */
+void bytes_sweep_folder(const char *folder, int64_t before_s);
 
 #endif

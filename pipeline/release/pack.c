@@ -268,14 +268,17 @@ static int write_locator(struct packer *packer)
 	return rc;
 }
 
+/* Makes a folder, or removes what a publisher that was killed left there. */
 static int make_folder(const char *release, const char *name)
 {
 	char path[PATH_MAX];
 
 	if (snprintf(path, sizeof(path), "%s/%s", release, name) >= PATH_MAX)
 		return -ENAMETOOLONG;
-	if (mkdir(path, 0755) == 0 || errno == EEXIST)
+	if (mkdir(path, 0755) == 0 || errno == EEXIST) {
+		bytes_sweep_folder(path, INT64_MAX);
 		return 0;
+	}
 	log_error("pipeline", "%s: %s", path, strerror(errno));
 	return -errno;
 }

@@ -41,8 +41,10 @@ static int write_file(const char *release, const char *name, struct bytes bytes)
 	int rc = make_path(path, release, name);
 	const bool again = rc == 0 && stat(path, &before) == 0;
 
-	if (rc == 0)
+	if (rc == 0) {
+		bytes_drop_leftovers(path); /* of a publisher that was killed */
 		rc = bytes_write_file(bytes, path);
+	}
 	if (rc == 0 && again)
 		rc = make_later(path, before.st_mtim.tv_sec);
 	if (rc < 0)

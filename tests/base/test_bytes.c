@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -124,6 +126,33 @@ static void drops_what_a_cut_left_of_a_file_and_nothing_else(void **state)
 	CHECK(system(command) == 0);
 }
 
+/* The process that made a young one may still live. */
+static void sweeps_a_folder_of_old_leftovers_alone(void **state)
+{
+	static const char *const others[] = { "", ".a1B2c", ".a1B2c3.json", ".a1B-c3" };
+	char folder[] = "/tmp/gopura-bytes-XXXXXX", path[64], inner[96], command[64];
+
+	(void)state;
+	CHECK(mkdtemp(folder));
+	snprintf(path, sizeof(path), "%s/pack", folder);
+	for (size_t i = 0; i < ARRAY_COUNT(others); i++)
+		touch_beside(path, others[i]);
+	snprintf(inner, sizeof(inner), "%s.FOLDER", path);
+	CHECK(mkdir(inner, 0700) == 0);
+	touch_beside(path, ".a1B2c3");
+	touch_beside(path, "2.ZZZZZZ");
+	bytes_sweep_folder(folder, time(NULL) - 100);
+	CHECK(is_beside(path, ".a1B2c3") && is_beside(path, "2.ZZZZZZ"));
+	bytes_sweep_folder(folder, INT64_MAX);
+	CHECK(!is_beside(path, ".a1B2c3") && !is_beside(path, "2.ZZZZZZ"));
+	CHECK(is_beside(path, ".FOLDER"));
+	for (size_t i = 0; i < ARRAY_COUNT(others); i++)
+		CHECK(is_beside(path, others[i]));
+	bytes_sweep_folder("/nonexistent", INT64_MAX);
+	snprintf(command, sizeof(command), "rm -r %s", folder);
+	CHECK(system(command) == 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -132,6 +161,7 @@ int main(void)
 		cmocka_unit_test(refuses_to_pass_its_ceiling),
 		cmocka_unit_test(writes_a_file_whole_or_not_at_all),
 		cmocka_unit_test(drops_what_a_cut_left_of_a_file_and_nothing_else),
+		cmocka_unit_test(sweeps_a_folder_of_old_leftovers_alone),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
