@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/types.h>
@@ -113,21 +114,59 @@ static void wait_for_some(struct crew *crew)
 	crew->running_count = left;
 }
 
-int processes_run(const struct processes *plan)
+/* ---- the order of a shard */
+
+void shard_order(struct shard shard, uint32_t *order, uint32_t piece_count)
 {
-	struct crew crew = { .plan = plan };
+	uint64_t count = shard.count > 1 ? shard.count : 1, number = count > 1 ? shard.number : 0;
+	uint32_t first = (uint32_t)(piece_count * number / count);
+	uint32_t own = (uint32_t)(piece_count * (number + 1) / count) - first;
+	uint64_t random = number;
+
+	for (uint32_t n = 0; n < piece_count; n++)
+		order[n] = (uint32_t)(((uint64_t)first + n) % piece_count);
+	/* Fisher and Yates, with the random numbers of Knuth's MMIX. */
+	for (uint32_t left = piece_count - own; left > 1; left--) {
+		uint32_t *last = &order[own + left - 1], *other, kept = *last;
+
+		random = random * 6364136223846793005u + 1442695040888963407u;
+		other = &order[own + (random >> 32) % left];
+		*last = *other;
+		*other = kept;
+	}
+}
+
+/* ---- running */
+
+static int run_all(struct crew *crew, const uint32_t *order)
+{
+	const struct processes *plan = crew->plan;
 	uint32_t most = plan->worker_count < 1             ? 1
 			: plan->worker_count > WORKERS_MAX ? WORKERS_MAX
 							   : plan->worker_count;
 
 	for (;;) {
-		while (crew.rc == 0 && crew.running_count < most &&
-		       crew.begun_count < plan->piece_count)
-			begin(&crew, crew.begun_count++);
-		if (crew.running_count == 0)
-			return crew.rc;
-		wait_for_some(&crew);
+		while (crew->rc == 0 && crew->running_count < most &&
+		       crew->begun_count < plan->piece_count)
+			begin(crew, order[crew->begun_count++]);
+		if (crew->running_count == 0)
+			return crew->rc;
+		wait_for_some(crew);
 	}
+}
+
+int processes_run(const struct processes *plan)
+{
+	uint32_t *order = malloc((plan->piece_count + (size_t)1) * sizeof(*order));
+	struct crew crew = { .plan = plan };
+	int rc = -ENOMEM;
+
+	if (order) {
+		shard_order(plan->shard, order, plan->piece_count);
+		rc = run_all(&crew, order);
+	}
+	free(order);
+	return rc;
 }
 
 void *shared_memory_create(size_t size)

@@ -15,7 +15,7 @@
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sampler.h"
 
-enum { STAMP_TEXT_BYTES_MAX = 4 << 20, PROGRAM_BYTES_MAX = 256 << 20 };
+enum { STAMP_TEXT_BYTES_MAX = 4 << 20, PROGRAM_BYTES_MAX = 256 << 20, LEFTOVER_AGE_S = 3600 };
 
 /* ---- has anything changed since the last build? */
 
@@ -146,12 +146,15 @@ static bool is_built(struct build_report *report, const char *stamp_path, struct
 
 /* ---- the stages */
 
-static struct master_options master_options(const struct content *content, uint32_t jobs)
+static struct master_options master_options(const struct content *content,
+					    const struct build_master_options *options)
 {
 	return (struct master_options){
 		.multires = { .kind = content->binary_tree ? MULTIRES_TREE : MULTIRES_GROUPS,
 			      .patch_triangles = content->patch_triangles,
-			      .jobs = jobs },
+			      .block_triangles = content->block_triangles,
+			      .jobs = options->jobs,
+			      .shard = options->shard },
 		.material_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
 	};
 }
@@ -177,7 +180,7 @@ int build_master(struct master **out, struct scans *scans,
 		 struct diagnostics *diagnostics)
 {
 	const struct content *content = scans_content(scans);
-	const struct master_options master = master_options(content, options->jobs);
+	const struct master_options master = master_options(content, options);
 	char folder[CONTENT_PATH_BYTES];
 	struct hash key, stamp;
 	int rc = content_work_path(content, "master", folder);
@@ -189,8 +192,10 @@ int build_master(struct master **out, struct scans *scans,
 	if (rc < 0)
 		return diagnostics_add(diagnostics, rc, content->folder, 0, "%s", strerror(-rc));
 	stamp = master_stamp(key, &master);
-	if (!options->force && master_open(out, folder, &stamp) == 0)
+	if (!options->force && master_open(out, folder, &stamp) == 0) {
+		master_drop_leftovers(folder, stamp);
 		return 0;
+	}
 	report->made = true;
 	rc = make_master(folder, scans, stamp, &master, &report->master, diagnostics);
 	if (rc == 0)
@@ -247,6 +252,18 @@ static int run_stages(struct build_report *report, uint32_t jobs,
 	return rc;
 }
 
+/* Removes temporary files of builds that were killed; young ones may be those of a shard that works
+ * beside us (docs/cluster.md). */
+static void sweep_work(const struct content *content)
+{
+	static const char *const folders[] = { "", "samples", "master" };
+	char path[CONTENT_PATH_BYTES];
+
+	for (size_t i = 0; i < ARRAY_COUNT(folders); i++)
+		if (content_work_path(content, folders[i], path) == 0)
+			bytes_sweep_folder(path, clock_wall_s() - LEFTOVER_AGE_S);
+}
+
 static int build_from(struct build_report *report, struct sources *sources,
 		      const struct build_options *options)
 {
@@ -259,6 +276,7 @@ static int build_from(struct build_report *report, struct sources *sources,
 	struct hash stamp;
 	int rc = content_work_path(sources_content(sources), "built", stamp_path);
 
+	sweep_work(sources_content(sources));
 	if (rc == 0)
 		rc = make_stamp(&stamp, sources, options);
 	if (rc < 0)

@@ -30,8 +30,9 @@ must_check int build_content(struct build_report *report, const struct content *
 /* ---- single stages */
 
 struct build_master_options {
-	uint32_t jobs; /* threads; 0: one per core */
-	bool force;    /* make it again even if nothing changed */
+	uint32_t jobs;      /* threads; 0: one per core */
+	struct shard shard; /* of several machines that do this at once */
+	bool force;         /* make it again even if nothing changed */
 };
 
 struct build_master_report {

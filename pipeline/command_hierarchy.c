@@ -20,6 +20,8 @@ static const char help[] =
 	"  --hierarchy KIND   groups or tree (default: as in temple.ini, [hierarchy] kind)\n"
 	"  --jobs N           number of threads (default: one per core); the result does not depend on\n"
 	"                     it\n"
+	"  --shard I/N        for N machines that share DIR: each begins with another part of the work\n"
+	"                     and goes on with what is left; I is counted from 0\n"
 	"  --force            make it again even if nothing changed\n"
 	"\n"
 	"Reads the scans named in DIR/temple.ini and writes DIR/.work/master. Does nothing if scans and\n"
@@ -28,12 +30,14 @@ static const char help[] =
 	"\n"
 	"Examples:\n"
 	"  gopura-content hierarchy temple\n"
-	"  gopura-content hierarchy temple --hierarchy tree --jobs 8\n";
+	"  gopura-content hierarchy temple --hierarchy tree --jobs 8\n"
+	"  parallel gopura-content hierarchy --shard {}/4 temple ::: 0 1 2 3\n";
 
 struct settings {
 	const char *folder; /* borrowed from argv */
 	const char *kind;   /* NULL: as in temple.ini */
 	uint32_t jobs;
+	struct shard shard;
 	bool force;
 };
 
@@ -63,6 +67,10 @@ static void print_report(const struct master_report *report, uint64_t source_tri
 	const struct multires_stats *stats = &report->stats;
 	double seconds = (double)report->duration_ms / 1000.0;
 
+	if (stats->level_count == 0) {
+		puts("another process completed it");
+		return;
+	}
 	for (uint32_t i = 0; i < stats->level_count; i++)
 		printf("level %2" PRIu32 ": %9" PRIu64 " triangles, %6" PRIu32 " patches, %5" PRIu32
 		       " groups\n",
@@ -80,7 +88,9 @@ static void print_report(const struct master_report *report, uint64_t source_tri
 
 static int make(const struct settings *settings, struct scans *scans)
 {
-	const struct build_master_options options = { settings->jobs, settings->force };
+	const struct build_master_options options = { .jobs = settings->jobs,
+						      .shard = settings->shard,
+						      .force = settings->force };
 	struct diagnostics diagnostics = { 0 };
 	struct build_master_report report;
 	struct master *master;
@@ -123,6 +133,7 @@ int command_hierarchy(int argc, char **argv)
 	static const struct option options[] = {
 		{ "hierarchy", required_argument, NULL, 'k' },
 		{ "jobs", required_argument, NULL, 'j' },
+		{ "shard", required_argument, NULL, 's' },
 		{ "force", no_argument, NULL, 'f' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
@@ -145,6 +156,12 @@ int command_hierarchy(int argc, char **argv)
 				return command_wrong(argv[0], "--jobs must be 1 to 64, not ",
 						     optarg);
 			settings.jobs = (uint32_t)jobs;
+			break;
+		case 's':
+			if (!command_shard(optarg, &settings.shard))
+				return command_wrong(argv[0],
+						     "--shard must be I/N with I below N, not ",
+						     optarg);
 			break;
 		case 'f':
 			settings.force = true;

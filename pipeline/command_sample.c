@@ -14,8 +14,8 @@ static const char help[] =
 	"usage: gopura-content sample [OPTIONS] DIR\n"
 	"\n"
 	"  --jobs N        number of processes (default: one per core)\n"
-	"  --shard I/N     only part I of N equal parts, counted from 0; different machines that share\n"
-	"                  DIR may render the parts, in any order\n"
+	"  --shard I/N     only part I of N equal parts, counted from 0, for machines that share DIR;\n"
+	"                  where the hierarchy is missing, they make it together\n"
 	"  --below-ground  also sample points below the lowest point of the model\n"
 	"\n"
 	"Section [grid] of DIR/temple.ini sets grid and resolution. The images stay in\n"
@@ -33,20 +33,19 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 					       { "below-ground", no_argument, NULL, 'b' },
 					       { "help", no_argument, NULL, 'h' },
 					       { NULL, 0, NULL, 0 } };
+	uint64_t jobs;
 	int option;
-	char rest;
 
 	optind = 1;
 	while ((option = getopt_long(argc, argv, "h", names, NULL)) != -1) {
 		switch (option) {
 		case 'j':
-			if (sscanf(optarg, "%u%c", &options->jobs, &rest) != 1 || !options->jobs)
+			if (!command_number(optarg, 1, 64, &jobs))
 				return false;
+			options->jobs = (uint32_t)jobs;
 			break;
 		case 's':
-			if (sscanf(optarg, "%u/%u%c", &options->shard, &options->shard_count,
-				   &rest) != 2 ||
-			    options->shard >= options->shard_count)
+			if (!command_shard(optarg, &options->shard))
 				return false;
 			break;
 		case 'b':
@@ -67,7 +66,8 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 static int run(struct scans *scans, const struct sampler_options *options,
 	       struct diagnostics *diagnostics)
 {
-	const struct build_master_options mastering = { .jobs = options->jobs };
+	const struct build_master_options mastering = { .jobs = options->jobs,
+							.shard = options->shard };
 	struct build_master_report report;
 	struct master *master;
 	int rc = build_master(&master, scans, &mastering, &report, diagnostics);
@@ -94,7 +94,7 @@ static void report(const char *dir)
 
 int command_sample(int argc, char **argv)
 {
-	struct sampler_options options = { .shard_count = 1 };
+	struct sampler_options options = { 0 };
 	struct diagnostics diagnostics = { 0 };
 	struct content content;
 	struct scans *scans = NULL;
@@ -117,7 +117,7 @@ int command_sample(int argc, char **argv)
 		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 		return EXIT_FAILURE;
 	}
-	if (options.shard_count <= 1)
+	if (options.shard.count <= 1)
 		report(dir);
 	return EXIT_SUCCESS;
 }

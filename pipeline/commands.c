@@ -24,6 +24,14 @@ bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *o
 	       *out <= most;
 }
 
+bool command_shard(const char *text, struct shard *out)
+{
+	char rest;
+
+	return sscanf(text, "%u/%u%c", &out->number, &out->count, &rest) == 2 &&
+	       out->number < out->count;
+}
+
 int command_read_content(struct content *out, const char *folder)
 {
 	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };

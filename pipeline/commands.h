@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/processes.h"
 #include "pipeline/content/content.h"
 
 struct command {
@@ -44,6 +45,9 @@ int command_wrong(const char *command, const char *what, const char *value);
 /* Parses a whole number in least..most; the text must contain nothing else. Returns false
  * otherwise; *out is then undefined. */
 bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *out);
+
+/* Parses I/N, I below N. Returns false otherwise; *out is then undefined. */
+bool command_shard(const char *text, struct shard *out);
 
 /* Reads a content folder, as content_read, and prints every fault of its temple.ini. Returns 0 or a
  * negative errno. */

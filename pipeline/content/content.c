@@ -252,6 +252,8 @@ static const struct setting settings[] = {
 	NUMBERS("grid", "quality", NULL, settings_whole, quality, 1, 100),
 	SETTING("hierarchy", "kind", "groups or tree", set_kind),
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),
+	NUMBERS("hierarchy", "block_triangles", NULL, settings_whole, block_triangles, 2000,
+		16000000),
 	NUMBERS("release", "publish_share", "a share above 0, at most 1", set_publish_share,
 		publish_share, 1e-6, 1),
 	SETTING("release", "languages", "language tags, separated by spaces: en fr km ja",

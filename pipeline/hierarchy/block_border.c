@@ -204,7 +204,7 @@ int block_border_write(const struct block_scan *scan, const struct block_cells *
 		return rc;
 	buffer_init(&file, BORDER_FILE_BYTES_MAX);
 	rc = settle(&file, scan, cells, look, folder, block);
-	if (rc == 0)
+	if (rc == 0 && access(path, F_OK) < 0)
 		rc = bytes_write_file(buffer_bytes(&file), path);
 	buffer_finish(&file);
 	return rc;

@@ -56,6 +56,7 @@ static int settle_borders(struct build *build)
 	const struct processes processes = {
 		.worker_count = site->options.jobs,
 		.piece_count = site->cells.block_count,
+		.shard = site->options.shard,
 		.work = write_border,
 		.user = build,
 	};
@@ -88,6 +89,7 @@ static int run_stage(struct build *build, uint32_t block_count)
 	const struct processes processes = {
 		.worker_count = site->options.jobs,
 		.piece_count = block_count,
+		.shard = site->options.shard,
 		.work = work_on_block,
 		.done = block_is_done,
 		.user = build,
@@ -327,6 +329,7 @@ int block_build(struct block_build *out, const char *folder, const struct mesh *
 	*out = (struct block_build){ 0 };
 	multires_set_defaults(&site->options, mesh->triangle_count);
 	rc = block_scan_init(&site->scan, mesh, site->options.jobs);
+	site->scan.shard = site->options.shard;
 	if (rc == 0)
 		rc = run(&build);
 	if (rc == 0)

@@ -410,7 +410,8 @@ static int get_digest(void *to, struct reader *reader)
 
 /* ---- the files */
 
-/* Writes a file if rc is 0. */
+/* Writes a file if rc is 0. One that is there stays: it holds the same, and another machine may be
+ * reading it. */
 static int write_file(struct buffer *file, const char *folder, const char *kind, uint32_t node,
 		      int rc)
 {
@@ -421,7 +422,7 @@ static int write_file(struct buffer *file, const char *folder, const char *kind,
 	if (rc == 0)
 		rc = file->error;
 	if (rc == 0)
-		rc = bytes_write_file(buffer_bytes(file), path);
+		rc = access(path, F_OK) == 0 ? 0 : bytes_write_file(buffer_bytes(file), path);
 	buffer_clear(file);
 	return rc;
 }

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include "base/bytes.h"
-#include "base/processes.h"
 #include "pipeline/hierarchy/lattice_mesh.h"
 
 enum { PIECE = 1 << 20 /* vertices or triangles that one process takes */ };
@@ -229,7 +228,8 @@ static int split_piece(void *user, uint32_t piece)
 	rc = rows ? 0 : file.error;
 	if (rc == 0) {
 		sort_piece(heads, (uint32_t(*)[3])(void *)rows, pass, piece);
-		rc = bytes_write_file(buffer_bytes(&file), path);
+		if (access(path, F_OK) < 0)
+			rc = bytes_write_file(buffer_bytes(&file), path);
 	}
 	buffer_finish(&file);
 	free(heads);
@@ -242,6 +242,7 @@ int block_split(const struct block_scan *scan, const struct block_cells *cells, 
 	const struct processes processes = {
 		.worker_count = scan->jobs,
 		.piece_count = pieces_of(scan->mesh->triangle_count),
+		.shard = scan->shard,
 		.work = split_piece,
 		.user = &pass,
 	};

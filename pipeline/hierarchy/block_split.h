@@ -4,6 +4,7 @@
 #ifndef GOPURA_PIPELINE_HIERARCHY_BLOCK_SPLIT_H
 #define GOPURA_PIPELINE_HIERARCHY_BLOCK_SPLIT_H
 
+#include "base/processes.h"
 #include "format/root_page.h"
 #include "pipeline/hierarchy/block_cells.h"
 #include "pipeline/hierarchy/exposure.h"
@@ -14,6 +15,7 @@ struct block_scan {
 	struct lattice lattice;
 	float box_min_m[3], box_max_m[3];
 	uint32_t jobs; /* processes at a time */
+	struct shard shard;
 };
 
 /* Finds box and lattice. Returns -EINVAL if a position is not finite or there is no extent, or the

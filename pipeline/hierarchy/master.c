@@ -170,38 +170,60 @@ static void remove_others(const char *folder, const char *keep)
 		closedir(entries);
 }
 
-static int build_into(struct writer *writer, const char *folder, const char *blocks,
-		      const struct mesh *mesh, struct hash stamp,
-		      const struct master_options *options, struct master_report *report)
+static void take_report(struct master_report *report, struct master *head,
+			const struct block_build *build)
 {
-	const struct multires_sink sink = { write_object, writer };
+	report->counts = build->counts;
+	report->stats = build->stats;
+	head->lattice = build->lattice;
+	memcpy(head->box_min_m, build->box_min_m, sizeof(head->box_min_m));
+	memcpy(head->box_max_m, build->box_max_m, sizeof(head->box_max_m));
+}
+
+/* Builds into a temporary file and renames it to groups, then writes the index. */
+static int build_files(const char *folder, const char *groups, const char *blocks,
+		       const struct mesh *mesh, struct hash stamp,
+		       const struct master_options *options, struct master_report *report)
+{
+	struct writer writer = { .fd = -1 };
+	const struct multires_sink sink = { write_object, &writer };
 	struct master head = { .stamp = stamp, .source_triangles = mesh->triangle_count };
 	struct block_build build;
-	int rc = block_build(&build, blocks, mesh, &options->multires, options->material_colours,
-			     &sink);
+	char temporary[BYTES_PATH_MAX];
+	int rc;
 
-	if (rc < 0)
-		return rc;
-	report->counts = build.counts;
-	report->stats = build.stats;
-	head.lattice = build.lattice;
-	memcpy(head.box_min_m, build.box_min_m, sizeof(head.box_min_m));
-	memcpy(head.box_max_m, build.box_max_m, sizeof(head.box_max_m));
-	if (fsync(writer->fd) < 0)
+	writer.fd = bytes_begin_file(temporary, groups);
+	if (writer.fd < 0)
+		return writer.fd;
+	rc = block_build(&build, blocks, mesh, &options->multires, options->material_colours,
+			 &sink);
+	if (rc == 0 && fsync(writer.fd) < 0)
 		rc = -errno;
-	if (rc == 0)
-		rc = write_index(folder, &head, &build.hierarchy, writer);
+	rc = bytes_end_file(writer.fd, temporary, groups, rc);
+	if (rc == 0) {
+		take_report(report, &head, &build);
+		rc = write_index(folder, &head, &build.hierarchy, &writer);
+	}
 	block_build_finish(&build);
+	free(writer.objects);
 	return rc;
+}
+
+static bool is_complete(const char *folder, struct hash stamp)
+{
+	struct master *master;
+	int rc = master_open(&master, folder, &stamp);
+
+	master_destroy(master);
+	return rc == 0;
 }
 
 int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 		 const struct master_options *options, struct master_report *report)
 {
-	struct writer writer = { .fd = -1 };
 	int64_t start_ms = clock_now_ms();
-	char path[PATH_MAX], blocks[PATH_MAX];
-	int rc = stamped_path(path, folder, "groups", stamp);
+	char groups[PATH_MAX], blocks[PATH_MAX];
+	int rc = stamped_path(groups, folder, "groups", stamp);
 
 	*report = (struct master_report){ 0 };
 	if (rc == 0)
@@ -211,23 +233,23 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 	if ((mkdir(folder, 0777) < 0 && errno != EEXIST) ||
 	    (mkdir(blocks, 0777) < 0 && errno != EEXIST))
 		return -errno;
-	/* Always make a new file, even if one has this name: an index may still point into the old
-	 * one. */
-	if (unlink(path) < 0 && errno != ENOENT)
-		return -errno;
-	writer.fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-	if (writer.fd < 0)
-		return -errno;
-	rc = build_into(&writer, folder, blocks, mesh, stamp, options, report);
-	close(writer.fd);
-	free(writer.objects);
+	rc = build_files(folder, groups, blocks, mesh, stamp, options, report);
 	/* What a killed build has done stays for the next one. */
-	if (rc < 0)
-		unlink(path);
-	else
-		remove_others(folder, path);
+	if (rc == 0)
+		remove_others(folder, groups);
+	/* Files that vanish were removed by the machine that completed this master. */
+	else if ((rc == -ENOENT || rc == -ESTALE) && is_complete(folder, stamp))
+		rc = 0;
 	report->duration_ms = clock_now_ms() - start_ms;
 	return rc;
+}
+
+void master_drop_leftovers(const char *folder, struct hash stamp)
+{
+	char groups[PATH_MAX];
+
+	if (stamped_path(groups, folder, "groups", stamp) == 0)
+		remove_others(folder, groups);
 }
 
 /* ---- opening */

@@ -1,7 +1,8 @@
 /* The master: the complete hierarchy of a content folder. It stays local, in the folder .work, and
  * is never published as it is. .work/master/groups-STAMP holds the objects of all groups one after
  * the other; .work/master/index describes them. The index is written last. So either both files
- * belong together, or there is no valid master. */
+ * belong together, or there is no valid master. Several processes and machines may build one master
+ * at once (docs/cluster.md): all make the same bytes. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_MASTER_H
 #define GOPURA_PIPELINE_HIERARCHY_MASTER_H
 
@@ -39,10 +40,14 @@ struct master_report {
 struct hash master_stamp(struct hash scans_key, const struct master_options *options);
 
 /* Builds a master in folder (DIR/.work/master). The folder is created if needed, and older files in
- * it are removed. The mesh is borrowed. *report is always set. Returns -EINVAL if no triangle has
- * an area, the errors of multires_build, or those of the disk. */
+ * it are removed. The mesh is borrowed. *report is always set; it has no levels if another process
+ * was faster, completed this master and removed what both worked on. Returns -EINVAL if no triangle
+ * has an area, the errors of multires_build, or those of the disk. */
 must_check int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 			    const struct master_options *options, struct master_report *report);
+
+/* Removes from the folder of a complete master with that stamp what killed builds left there. */
+void master_drop_leftovers(const char *folder, struct hash stamp);
 
 /* Opens the master of a folder. *out is owned by the caller; NULL on failure. Returns -ENOENT if
  * there is none, -ESTALE if its stamp or version differs (stamp may be NULL: any will do), -EBADMSG

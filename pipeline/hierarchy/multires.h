@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 
+#include "base/processes.h"
 #include "format/hierarchy.h"
 #include "pipeline/hierarchy/lattice_mesh.h"
 
@@ -23,9 +24,10 @@ struct multires_options {
 	uint32_t patch_triangles; /* maximum in a patch, 1..PATCH_TRIANGLES_MAX; 0: the default */
 	uint32_t group_patches;   /* about so many in a group, 2..32; else the default */
 	uint32_t top_triangles;   /* maximum in the coarsest cut; 0: the default */
-	uint32_t block_triangles; /* maximum of the scan's in a leaf of the block tree; 0: the
-				     default */
-	uint32_t jobs; /* threads or processes; 0: one per processor. The result is the same. */
+	uint32_t block_triangles; /* about so many of the scan in a block; 0: the default */
+	/* These two decide no byte of the result. */
+	uint32_t jobs;      /* threads or processes; 0: one per processor */
+	struct shard shard; /* of several machines that build it together */
 };
 
 enum { MULTIRES_LEVELS_MAX = 64 };

@@ -126,6 +126,7 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 static int list_points(struct sampling *sampling, const struct sampler_options *options)
 {
 	const uint32_t *count = sampling->grid.count;
+	const struct shard shard = options->shard;
 	uint32_t total = count[0] * count[1] * count[2];
 	struct samples_store *store;
 	int rc = samples_store_look(&store, sampling->content->folder);
@@ -136,7 +137,7 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 	for (uint32_t n = 0; sampling->points && n < total; n++) {
 		uint32_t *point = sampling->points[sampling->point_count];
 
-		if (options->shard_count > 1 && n % options->shard_count != options->shard)
+		if (shard.count > 1 && n % shard.count != shard.number)
 			continue;
 		point[0] = n % count[0];
 		point[1] = n / count[0] % count[1];

@@ -4,6 +4,7 @@
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLER_H
 
+#include "base/processes.h"
 #include "pipeline/content/scans.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sample_store.h"
@@ -12,10 +13,9 @@ struct sampler_options {
 	/* Of the same scans, borrowed: what is far from a point is drawn from coarser patches.
 	 * NULL: the whole mesh is drawn, as scans with pictures need. */
 	const struct master *master;
-	uint32_t jobs; /* processes; 0: one per core */
-	uint32_t shard,
-		shard_count; /* only points with number % shard_count == shard; count 0, 1: all */
-	bool below_ground;   /* place points also below the lowest point of the model */
+	uint32_t jobs;      /* processes; 0: one per core */
+	struct shard shard; /* only points with number % count == number of the shard */
+	bool below_ground;  /* place points also below the lowest point of the model */
 };
 
 /* Places the sampling points of a model: over a box 1.5 times as large, `points` along the longest

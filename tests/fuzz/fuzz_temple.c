@@ -20,6 +20,8 @@ static bool keeps_its_limits(const struct content *c)
 		    c->face_px <= 4096 && c->quality >= 1 && c->quality <= 100 &&
 		    (c->patch_triangles == 0 ||
 		     (c->patch_triangles >= 256 && c->patch_triangles <= 4000)) &&
+		    (c->block_triangles == 0 ||
+		     (c->block_triangles >= 2000 && c->block_triangles <= 16000000)) &&
 		    c->publish_share > 0 && c->publish_share <= 1 && c->language_count >= 1 &&
 		    c->language_count <= CONTENT_LANGUAGES_MAX;
 

@@ -1,10 +1,13 @@
 #include "pipeline/hierarchy/master.h"
 
 #include <errno.h>
+#include <glob.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "format/patch.h"
@@ -202,6 +205,159 @@ static void a_new_build_leaves_nothing_of_the_old(void **state)
 	home_finish(&home);
 }
 
+/* ---- several at once (docs/cluster.md) */
+
+static const struct master_options shared = {
+	.multires = { .patch_triangles = 64,
+		      .top_triangles = 400,
+		      .block_triangles = 400,
+		      .jobs = 2 },
+};
+
+/* Builds a master as one of several shards, in a process of its own. */
+static pid_t begin_shard(const char *folder, uint32_t number, uint32_t count)
+{
+	struct master_options shard_options = shared;
+	struct master_report report;
+	struct mesh mesh;
+	pid_t pid = fork();
+	int rc;
+
+	CHECK(pid >= 0);
+	if (pid > 0)
+		return pid;
+	mesh = shape_temple(24);
+	shard_options.multires.shard = (struct shard){ number, count };
+	rc = master_build(folder, &mesh, master_stamp((struct hash){ { 7 } }, &shared),
+			  &shard_options, &report);
+	mesh_finish(&mesh);
+	_exit(-rc);
+}
+
+static int end_shard(pid_t pid)
+{
+	int status;
+
+	CHECK(waitpid(pid, &status, 0) == pid && WIFEXITED(status));
+	return WEXITSTATUS(status);
+}
+
+static void home_of_shards(struct home *home)
+{
+	char hex[HASH_HEX_BYTES];
+
+	memcpy(home->folder, "/tmp/gopura-master-XXXXXX", 26);
+	CHECK(mkdtemp(home->folder) != NULL);
+	home->stamp = master_stamp((struct hash){ { 7 } }, &shared);
+	hash_to_hex(home->stamp, hex);
+	snprintf(home->master, sizeof(home->master), "%s/master", home->folder);
+	snprintf(home->index, sizeof(home->index), "%s/index", home->master);
+	snprintf(home->groups, sizeof(home->groups), "%s/groups-%s", home->master, hex);
+}
+
+static void check_same_file(const char *a, const char *b)
+{
+	struct buffer left, right;
+
+	buffer_init(&left, 64 << 20);
+	buffer_init(&right, 64 << 20);
+	CHECK(buffer_read_file(&left, a) == 0 && buffer_read_file(&right, b) == 0);
+	CHECK(left.size > 0 && left.size == right.size &&
+	      memcmp(left.data, right.data, left.size) == 0);
+	buffer_finish(&left);
+	buffer_finish(&right);
+}
+
+/* Compares with the master of one machine, and finishes the home. */
+static void check_against_one_machine(struct home *home)
+{
+	struct home alone;
+
+	home_of_shards(&alone);
+	CHECK(end_shard(begin_shard(alone.master, 0, 0)) == 0);
+	check_same_file(home->groups, alone.groups);
+	check_same_file(home->index, alone.index);
+	home_finish(&alone);
+	master_drop_leftovers(home->master, home->stamp);
+	home_finish(home);
+}
+
+static void shards_at_once_make_the_same_bytes(void **state)
+{
+	static const uint32_t numbers[] = { 0, 1, 2, 1 }; /* one is doubled */
+	pid_t pids[ARRAY_COUNT(numbers)];
+	struct home home;
+
+	(void)state;
+	home_of_shards(&home);
+	for (size_t i = 0; i < ARRAY_COUNT(numbers); i++)
+		pids[i] = begin_shard(home.master, numbers[i], 3);
+	for (size_t i = 0; i < ARRAY_COUNT(numbers); i++)
+		CHECK(end_shard(pids[i]) == 0);
+	check_against_one_machine(&home);
+}
+
+static void wait_for_the_first_node(const struct home *home)
+{
+	char hex[HASH_HEX_BYTES], pattern[256];
+	glob_t found;
+
+	hash_to_hex(home->stamp, hex);
+	snprintf(pattern, sizeof(pattern), "%s/blocks-%s/node-*", home->master, hex);
+	while (glob(pattern, GLOB_NOSORT, NULL, &found) != 0)
+		usleep(200);
+	globfree(&found);
+}
+
+static void a_shard_that_comes_last_ends_well(void **state)
+{
+	struct home home;
+	pid_t slow;
+
+	(void)state;
+	home_of_shards(&home);
+	slow = begin_shard(home.master, 1, 2);
+	wait_for_the_first_node(&home);
+	CHECK(kill(slow, SIGSTOP) == 0);
+	CHECK(end_shard(begin_shard(home.master, 0, 2)) == 0);
+	CHECK(access(home.index, F_OK) == 0);
+	CHECK(kill(slow, SIGCONT) == 0);
+	CHECK(end_shard(slow) == 0);
+	check_against_one_machine(&home);
+}
+
+static void a_killed_shard_costs_nothing(void **state)
+{
+	struct home home;
+	pid_t killed;
+	int status;
+
+	(void)state;
+	home_of_shards(&home);
+	killed = begin_shard(home.master, 0, 2);
+	wait_for_the_first_node(&home);
+	CHECK(kill(killed, SIGKILL) == 0 && waitpid(killed, &status, 0) == killed);
+	CHECK(WIFSIGNALED(status) && access(home.index, F_OK) < 0);
+	CHECK(end_shard(begin_shard(home.master, 1, 2)) == 0);
+	check_against_one_machine(&home);
+}
+
+/* That it was there before is no excuse for a build that failed. */
+static void a_failure_is_told_where_a_master_is_there(void **state)
+{
+	struct home home;
+	struct mesh mesh = shape_temple(50);
+	struct master_report report;
+
+	(void)state;
+	home_init(&home);
+	mesh.triangles[5][1] = mesh.vertex_count;
+	CHECK(master_build(home.master, &mesh, home.stamp, &options, &report) == -EINVAL);
+	master_drop_leftovers(home.master, home.stamp);
+	mesh_finish(&mesh);
+	home_finish(&home);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -210,6 +366,10 @@ int main(void)
 		cmocka_unit_test(refuses_damaged_files),
 		cmocka_unit_test(publishes_no_more_than_the_share),
 		cmocka_unit_test(a_new_build_leaves_nothing_of_the_old),
+		cmocka_unit_test(shards_at_once_make_the_same_bytes),
+		cmocka_unit_test(a_shard_that_comes_last_ends_well),
+		cmocka_unit_test(a_killed_shard_costs_nothing),
+		cmocka_unit_test(a_failure_is_told_where_a_master_is_there),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -54,9 +54,7 @@ static void put_box(const char *folder)
 
 static void sample(const char *folder, uint32_t jobs, uint32_t shard, uint32_t shards)
 {
-	const struct sampler_options options = { .jobs = jobs,
-						 .shard = shard,
-						 .shard_count = shards };
+	const struct sampler_options options = { .jobs = jobs, .shard = { shard, shards } };
 	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
 	struct content content;
 	struct scans *scans;
