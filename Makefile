@@ -65,7 +65,7 @@ CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wi
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check soak golden fuzz powercut image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo test check soak golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -112,6 +112,9 @@ powercut: all ## the power goes: at every write of cache and state (minutes), an
 	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
 	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
 	@CUTS=$(or $(CUTS),100) bash tests/qemu/powercut.sh system
+
+interrupted: all ## builds killed and out of disk at random moments, then resumed: the same release; KILLS=50 FULL=20 SEED=1
+	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 
 qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick, which disk is started from
 	@bash tests/qemu/image.sh updates
