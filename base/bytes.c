@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <libgen.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,6 +112,29 @@ void buffer_put_f64(struct buffer *buffer, double value)
 
 	memcpy(&bits, &value, sizeof(bits));
 	buffer_put_u64(buffer, bits);
+}
+
+void buffer_put_text(struct buffer *buffer, const char *text)
+{
+	buffer_put(buffer, text, strlen(text));
+}
+
+void buffer_print(struct buffer *buffer, const char *format, ...)
+{
+	va_list args, again;
+	size_t size;
+	char *to;
+
+	va_start(args, format);
+	va_copy(again, args);
+	size = (size_t)vsnprintf(NULL, 0, format, args) + 1;
+	to = (char *)buffer_extend(buffer, size);
+	if (to) {
+		vsnprintf(to, size, format, again);
+		buffer->size--;
+	}
+	va_end(again);
+	va_end(args);
 }
 
 void buffer_put_string(struct buffer *buffer, const char *text)

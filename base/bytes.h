@@ -42,6 +42,9 @@ void buffer_put_u32(struct buffer *buffer, uint32_t value); /* 4 bytes */
 void buffer_put_u64(struct buffer *buffer, uint64_t value); /* 8 bytes */
 void buffer_put_f32(struct buffer *buffer, float value);    /* IEEE 754 single precision */
 void buffer_put_f64(struct buffer *buffer, double value);   /* IEEE 754 double precision */
+/* Append text without its final zero. The formatted one needs room for a zero after it. */
+void buffer_put_text(struct buffer *buffer, const char *text);
+void buffer_print(struct buffer *buffer, const char *format, ...) printf_like(2, 3);
 /* Appends the length as u16, then the bytes without terminator. Text longer than 65535 bytes sets
  * -EFBIG. */
 void buffer_put_string(struct buffer *buffer, const char *text);

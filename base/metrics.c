@@ -3,43 +3,25 @@
 #include "base/metrics.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/utf8.h"
 
-static void put_text(struct buffer *out, const char *text)
-{
-	buffer_put(out, text, strlen(text));
-}
-
 /* ---- writing */
 
 static void put_head(struct buffer *out, const char *name, const char *kind, const char *help)
 {
-	put_text(out, "# HELP ");
-	put_text(out, name);
-	put_text(out, " ");
-	put_text(out, help);
-	put_text(out, "\n# TYPE ");
-	put_text(out, name);
-	put_text(out, " ");
-	put_text(out, kind);
-	put_text(out, "\n");
-	put_text(out, name);
+	buffer_print(out, "# HELP %s %s\n# TYPE %s %s\n%s", name, help, name, kind, name);
 }
 
 /* Whole numbers are written in full, because byte counts need more than six digits. */
 static void put_value(struct buffer *out, double value)
 {
-	char text[40];
-
 	if (value == floor(value) && fabs(value) < 9e15)
-		snprintf(text, sizeof(text), " %.0f\n", value);
+		buffer_print(out, " %.0f\n", value);
 	else
-		snprintf(text, sizeof(text), " %.6g\n", value);
-	put_text(out, text);
+		buffer_print(out, " %.6g\n", value);
 }
 
 static void put_escaped(struct buffer *out, const char *value)
@@ -50,7 +32,7 @@ static void put_escaped(struct buffer *out, const char *value)
 		const size_t size = utf8_bytes(value, left);
 
 		if (*value == '"' || *value == '\\')
-			put_text(out, "\\");
+			buffer_put_text(out, "\\");
 		buffer_put(out, size > 0 ? value : "?", size > 0 ? size : 1);
 		value += size > 0 ? size : 1;
 		left -= size > 0 ? size : 1;
@@ -74,13 +56,11 @@ void metrics_info(struct buffer *out, const char *name, const char *help,
 {
 	put_head(out, name, "gauge", help);
 	for (size_t i = 0; i < count; i++) {
-		put_text(out, i == 0 ? "{" : ",");
-		put_text(out, labels[i].name);
-		put_text(out, "=\"");
+		buffer_print(out, "%s%s=\"", i == 0 ? "{" : ",", labels[i].name);
 		put_escaped(out, labels[i].value);
-		put_text(out, "\"");
+		buffer_put_text(out, "\"");
 	}
-	put_text(out, count > 0 ? "} 1\n" : " 1\n");
+	buffer_put_text(out, count > 0 ? "} 1\n" : " 1\n");
 }
 
 /* ---- reading: a cursor moves over one line; each take_ function moves it past what it read */

@@ -72,11 +72,6 @@ static void skip_past(struct scanner *s, const char *mark)
 	skip_to(s, found ? found + size : s->end);
 }
 
-static void put(struct scanner *s, const char *text)
-{
-	buffer_put(s->out, text, strlen(text));
-}
-
 static struct piece read_name(struct scanner *s)
 {
 	struct piece name = { s->at, 0 };
@@ -128,17 +123,17 @@ static void read_attribute(struct scanner *s, struct piece *name, struct piece *
 
 static void put_attribute(struct scanner *s, const char *name, struct piece value)
 {
-	put(s, " ");
-	put(s, name);
-	put(s, "=\"");
+	buffer_put_text(s->out, " ");
+	buffer_put_text(s->out, name);
+	buffer_put_text(s->out, "=\"");
 	for (size_t i = 0; i < value.size; i++)
 		if (value.text[i] == '"')
-			put(s, "&quot;");
+			buffer_put_text(s->out, "&quot;");
 		else if (value.text[i] == '<')
-			put(s, "&lt;");
+			buffer_put_text(s->out, "&lt;");
 		else
 			buffer_put_u8(s->out, (uint8_t)value.text[i]);
-	put(s, "\"");
+	buffer_put_text(s->out, "\"");
 }
 
 /* ---- tags */
@@ -202,11 +197,11 @@ static void read_start_tag(struct scanner *s)
 			skip_raw(s, name);
 		return;
 	}
-	put(s, "<");
+	buffer_put_text(s->out, "<");
 	buffer_put(s->out, name.text, name.size);
 	if (kept.text)
 		put_attribute(s, element->attribute, kept);
-	put(s, is_empty ? "/>" : ">");
+	buffer_put_text(s->out, is_empty ? "/>" : ">");
 }
 
 static void read_end_tag(struct scanner *s)
@@ -216,9 +211,9 @@ static void read_end_tag(struct scanner *s)
 	s->at += 2;
 	name = read_name(s);
 	skip_past(s, ">");
-	put(s, "</");
+	buffer_put_text(s->out, "</");
 	buffer_put(s->out, name.text, name.size);
-	put(s, ">");
+	buffer_put_text(s->out, ">");
 }
 
 static void read_markup(struct scanner *s)
@@ -233,7 +228,7 @@ static void read_markup(struct scanner *s)
 	} else if (look(s, 1) == '!' || look(s, 1) == '?' || look(s, 1) == '/') {
 		skip_past(s, ">");
 	} else {
-		put(s, "&lt;");
+		buffer_put_text(s->out, "&lt;");
 		s->at++;
 	}
 }

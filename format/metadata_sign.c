@@ -14,9 +14,7 @@ const char *const metadata_role_names[] = { "root", "release", "timestamp" };
 int metadata_message(struct buffer *out, enum meta_role role, struct bytes payload)
 {
 	buffer_init(out, METADATA_FILE_BYTES_MAX + 64);
-	buffer_put(out, "gopura-", 7);
-	buffer_put(out, metadata_role_names[role], strlen(metadata_role_names[role]));
-	buffer_put(out, "-v1\n", 4);
+	buffer_print(out, "gopura-%s-v1\n", metadata_role_names[role]);
 	buffer_put(out, payload.data, payload.size);
 	return out->error;
 }
@@ -68,7 +66,7 @@ static int put_envelope(struct buffer *out, enum meta_role role, struct bytes pa
 	if (good)
 		text = cJSON_PrintUnformatted(json);
 	if (text) {
-		buffer_put(out, text, strlen(text));
+		buffer_put_text(out, text);
 		buffer_put_u8(out, '\n');
 	}
 	rc = rc < 0 ? rc : text ? out->error : -ENOMEM;

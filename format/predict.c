@@ -8,7 +8,8 @@
 #include <string.h>
 
 /* Hash table (open addressing) of the directed edges of the triangles so far, with the opposite
- * vertex of each. */
+ * vertex of each. Its size is known and a slot takes 6 bytes, so it stays in the nearest cache;
+ * docs/patch.md has what base/map would cost. */
 struct edge_table {
 	uint32_t *keys; /* (from << 16 | to) + 1; 0: free */
 	uint16_t *apexes;

@@ -3,11 +3,8 @@
 #include "health/overview.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
-
-#include "health/text.h"
 
 /* No script, no image and nothing from other servers: the page must open in any browser, on a
  * network without internet. */
@@ -52,6 +49,20 @@ struct facts {
 	const struct snapshot *snapshot;
 };
 
+/* Appends text as the content of an element or a quoted attribute: &, <, > and quotes are escaped.
+ * Control characters and non-ASCII bytes are passed, because the page is UTF-8. */
+static void put_html(struct buffer *out, const char *text)
+{
+	while (*text) {
+		const size_t plain = strcspn(text, "&<>\"'");
+
+		buffer_put(out, text, plain);
+		text += plain;
+		if (*text)
+			buffer_print(out, "&#%d;", *text++);
+	}
+}
+
 static double figure(const struct facts *facts, enum program program, const char *name)
 {
 	double value = NAN;
@@ -62,7 +73,7 @@ static double figure(const struct facts *facts, enum program program, const char
 
 static void row(const struct facts *facts, const char *name)
 {
-	text_format(facts->out, "<tr><th scope=row>%s<td>", name);
+	buffer_print(facts->out, "<tr><th scope=row>%s<td>", name);
 }
 
 static void put_bytes(struct buffer *out, double bytes)
@@ -72,7 +83,7 @@ static void put_bytes(struct buffer *out, double bytes)
 
 	for (; bytes >= 999.5 && unit + 1 < ARRAY_COUNT(units); unit++)
 		bytes /= 1000;
-	text_format(out, bytes < 10 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+	buffer_print(out, bytes < 10 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
 }
 
 /* Writes how much of a whole is used; nothing if it is not known. */
@@ -80,12 +91,12 @@ static void put_share(const struct facts *facts, double used, double whole, cons
 {
 	if (!(whole > 0) || !(used >= 0))
 		return;
-	text_format(facts->out, "<meter min=0 max=1 high=.93 optimum=.2 value=%.3f></meter>",
-		    used / whole);
+	buffer_print(facts->out, "<meter min=0 max=1 high=.93 optimum=.2 value=%.3f></meter>",
+		     used / whole);
 	put_bytes(facts->out, used);
-	text_put(facts->out, " of ");
+	buffer_put_text(facts->out, " of ");
 	put_bytes(facts->out, whole);
-	text_format(facts->out, " %s<br>", what);
+	buffer_print(facts->out, " %s<br>", what);
 }
 
 static void put_duration(struct buffer *out, double seconds)
@@ -93,7 +104,7 @@ static void put_duration(struct buffer *out, double seconds)
 	char text[40];
 
 	verdict_duration(text, sizeof(text), seconds);
-	text_put(out, text);
+	buffer_put_text(out, text);
 }
 
 /* ---- rows */
@@ -106,16 +117,16 @@ static void write_release(const struct facts *facts)
 
 	row(facts, "Release");
 	if (!metrics_label(kiosk, "gopura_kiosk_release_info", "root", root, sizeof(root))) {
-		text_put(facts->out, kiosk.size ? "none" : "unknown");
+		buffer_put_text(facts->out, kiosk.size ? "none" : "unknown");
 		return;
 	}
 	metrics_label(kiosk, "gopura_kiosk_release_info", "name", name, sizeof(name));
-	text_put_html(facts->out, name);
+	put_html(facts->out, name);
 	if (sequence > 0)
-		text_format(facts->out, ", version %.0f", sequence);
-	text_put(facts->out, " <small>(");
-	text_put_html(facts->out, root);
-	text_put(facts->out, ")</small>");
+		buffer_print(facts->out, ", version %.0f", sequence);
+	buffer_put_text(facts->out, " <small>(");
+	put_html(facts->out, root);
+	buffer_put_text(facts->out, ")</small>");
 }
 
 static void write_server(const struct facts *facts)
@@ -125,20 +136,20 @@ static void write_server(const struct facts *facts)
 
 	row(facts, "Museum server");
 	if (isnan(online)) {
-		text_put(facts->out, "unknown");
+		buffer_put_text(facts->out, "unknown");
 		return;
 	}
 	if (online == 0 && since_s > 0) {
-		text_put(facts->out, "has not responded for ");
+		buffer_put_text(facts->out, "has not responded for ");
 		put_duration(facts->out, (double)facts->snapshot->taken_wall_s - since_s);
 	} else {
-		text_put(facts->out, online > 0 ? "responds" : "does not respond");
+		buffer_put_text(facts->out, online > 0 ? "responds" : "does not respond");
 	}
-	text_put(facts->out, "; ");
+	buffer_put_text(facts->out, "; ");
 	put_bytes(facts->out, figure(facts, PROGRAM_FETCH, "gopura_fetch_received_bytes_total"));
-	text_format(facts->out, " received; %.0f of %.0f requests failed",
-		    figure(facts, PROGRAM_FETCH, "gopura_fetch_errors_total"),
-		    figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
+	buffer_print(facts->out, " received; %.0f of %.0f requests failed",
+		     figure(facts, PROGRAM_FETCH, "gopura_fetch_errors_total"),
+		     figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
 }
 
 static void write_refusal(const struct facts *facts, enum program program, const char *name,
@@ -151,12 +162,12 @@ static void write_refusal(const struct facts *facts, enum program program, const
 		return;
 	metrics_label(text, info, "why", why, sizeof(why));
 	row(facts, name);
-	text_put_html(facts->out, what);
-	text_put(facts->out, ", ");
+	put_html(facts->out, what);
+	buffer_put_text(facts->out, ", ");
 	put_duration(facts->out,
 		     (double)facts->snapshot->taken_wall_s - figure(facts, program, at));
-	text_put(facts->out, " ago: ");
-	text_put_html(facts->out, why);
+	buffer_put_text(facts->out, " ago: ");
+	put_html(facts->out, why);
 }
 
 static void write_panel(const struct facts *facts)
@@ -168,18 +179,18 @@ static void write_panel(const struct facts *facts)
 	if (kiosk.size == 0)
 		return;
 	row(facts, "Frames");
-	text_format(facts->out, "%.0f drawn, %.0f of them late; the last one ",
-		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_frames_total"),
-		    figure(facts, PROGRAM_KIOSK, "gopura_kiosk_late_frames_total"));
+	buffer_print(facts->out, "%.0f drawn, %.0f of them late; the last one ",
+		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_frames_total"),
+		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_late_frames_total"));
 	put_duration(facts->out,
 		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_last_frame_age_seconds"));
-	text_put(facts->out, " ago (none are drawn while nothing moves)");
+	buffer_put_text(facts->out, " ago (none are drawn while nothing moves)");
 	row(facts, "Graphics");
 	metrics_label(kiosk, "gopura_kiosk_gl_info", "renderer", renderer, sizeof(renderer));
-	text_put_html(facts->out, renderer);
+	put_html(facts->out, renderer);
 	if (!isnan(touch)) {
 		row(facts, "Touchscreens");
-		text_format(facts->out, "%.0f", touch);
+		buffer_print(facts->out, "%.0f", touch);
 	}
 	row(facts, "Graphics memory");
 	put_share(facts, figure(facts, PROGRAM_KIOSK, "gopura_kiosk_texture_bytes"),
@@ -195,7 +206,7 @@ static void write_machine(const struct facts *facts)
 
 	if (!isnan(m->temperature_c)) {
 		row(facts, "Temperature");
-		text_format(facts->out, "%.0f °C", m->temperature_c);
+		buffer_print(facts->out, "%.0f °C", m->temperature_c);
 	}
 	row(facts, "Memory");
 	put_share(facts, m->memory_bytes - m->memory_free_bytes, m->memory_bytes, "in use");
@@ -207,14 +218,14 @@ static void write_machine(const struct facts *facts)
 	if (!isnan(m->written_bytes)) {
 		row(facts, "Written to disks");
 		put_bytes(facts->out, m->written_bytes);
-		text_put(facts->out, " since the computer started");
+		buffer_put_text(facts->out, " since the computer started");
 	}
 	row(facts, "Running for");
 	put_duration(facts->out, m->uptime_s);
 	if (m->slot[0]) {
 		row(facts, "Firmware");
-		text_put(facts->out, "slot ");
-		text_put_html(facts->out, m->slot);
+		buffer_put_text(facts->out, "slot ");
+		put_html(facts->out, m->slot);
 	}
 }
 
@@ -223,13 +234,13 @@ static void write_program(const struct facts *facts, enum program program, const
 {
 	row(facts, name);
 	if (facts->snapshot->answers[program].rc < 0) {
-		text_put(facts->out, "does not respond");
+		buffer_put_text(facts->out, "does not respond");
 		return;
 	}
-	text_put(facts->out, "running for ");
+	buffer_put_text(facts->out, "running for ");
 	put_duration(facts->out, figure(facts, program, uptime));
-	text_format(facts->out, ", started %.0f time%s, uses ", figure(facts, program, starts),
-		    figure(facts, program, starts) == 1 ? "" : "s");
+	buffer_print(facts->out, ", started %.0f time%s, uses ", figure(facts, program, starts),
+		     figure(facts, program, starts) == 1 ? "" : "s");
 	put_bytes(facts->out, figure(facts, program, memory));
 }
 
@@ -243,19 +254,19 @@ static void write_head(const struct facts *facts, const struct verdict *verdict)
 
 	if (verdict->level == LEVEL_WARNING && verdict->count > 1)
 		word = "Works, with warnings";
-	text_put(facts->out, "<!doctype html><html lang=en><meta charset=utf-8>"
-			     "<meta name=viewport content='width=device-width'>"
-			     "<meta http-equiv=refresh content=10><title>");
-	text_put_html(facts->out, facts->snapshot->machine.name);
-	text_format(facts->out, ": %s</title><style>", word);
-	text_put(facts->out, style);
-	text_format(facts->out,
-		    "</style><header class=%s><div><svg viewBox='0 0 48 48' fill=none stroke=#fff "
-		    "stroke-width=4 stroke-linecap=round stroke-linejoin=round aria-hidden=true>"
-		    "<circle cx=24 cy=24 r=21 />%s</svg><div><h1>%s</h1><p>",
-		    classes[verdict->level], signs[verdict->level], word);
-	text_put_html(facts->out, facts->snapshot->machine.name);
-	text_put(facts->out, "</div></div></header><main>");
+	buffer_put_text(facts->out, "<!doctype html><html lang=en><meta charset=utf-8>"
+				    "<meta name=viewport content='width=device-width'>"
+				    "<meta http-equiv=refresh content=10><title>");
+	put_html(facts->out, facts->snapshot->machine.name);
+	buffer_print(facts->out, ": %s</title><style>", word);
+	buffer_put_text(facts->out, style);
+	buffer_print(facts->out,
+		     "</style><header class=%s><div><svg viewBox='0 0 48 48' fill=none stroke=#fff "
+		     "stroke-width=4 stroke-linecap=round stroke-linejoin=round aria-hidden=true>"
+		     "<circle cx=24 cy=24 r=21 />%s</svg><div><h1>%s</h1><p>",
+		     classes[verdict->level], signs[verdict->level], word);
+	put_html(facts->out, facts->snapshot->machine.name);
+	buffer_put_text(facts->out, "</div></div></header><main>");
 }
 
 static void write_findings(struct buffer *out, const struct verdict *verdict)
@@ -263,16 +274,16 @@ static void write_findings(struct buffer *out, const struct verdict *verdict)
 	for (size_t i = 0; i < verdict->count; i++) {
 		const struct finding *finding = &verdict->findings[i];
 
-		text_format(out, "<article class=%s><h3>", classes[finding->level]);
-		text_put_html(out, finding->what);
-		text_put(out, "</h3>");
+		buffer_print(out, "<article class=%s><h3>", classes[finding->level]);
+		put_html(out, finding->what);
+		buffer_put_text(out, "</h3>");
 		if (finding->detail[0]) {
-			text_put(out, "<p class=detail>");
-			text_put_html(out, finding->detail);
+			buffer_put_text(out, "<p class=detail>");
+			put_html(out, finding->detail);
 		}
-		text_put(out, "<p>");
-		text_put_html(out, finding->action);
-		text_put(out, "</article>");
+		buffer_put_text(out, "<p>");
+		put_html(out, finding->action);
+		buffer_put_text(out, "</article>");
 	}
 }
 
@@ -286,7 +297,7 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 
 	write_head(&facts, verdict);
 	write_findings(out, verdict);
-	text_put(out, "<h2>Content</h2><table>");
+	buffer_put_text(out, "<h2>Content</h2><table>");
 	write_release(&facts);
 	write_server(&facts);
 	write_refusal(&facts, PROGRAM_KIOSK, "Last rejected release",
@@ -294,14 +305,14 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 	write_refusal(&facts, PROGRAM_FETCH, "Last failed download",
 		      "gopura_fetch_refused_at_seconds", "gopura_fetch_refusal_info");
 	write_panel(&facts);
-	text_put(out, "</table><h2>Computer</h2><table>");
+	buffer_put_text(out, "</table><h2>Computer</h2><table>");
 	write_machine(&facts);
 	write_program(&facts, PROGRAM_KIOSK, "gopura-kiosk", "gopura_kiosk_uptime_seconds",
 		      "gopura_kiosk_starts_total", "gopura_kiosk_resident_bytes");
 	write_program(&facts, PROGRAM_FETCH, "gopura-fetch", "gopura_fetch_uptime_seconds",
 		      "gopura_fetch_starts_total", "gopura_fetch_resident_bytes");
 	strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", localtime_r(&taken_s, &local));
-	text_format(
+	buffer_print(
 		out,
 		"</table><footer>Measured at %s (clock of this terminal). The page reloads every 10 "
 		"seconds.<br><a href=/metrics>Metrics</a> for Prometheus · <a href=/health>status</a> "

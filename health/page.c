@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "health/overview.h"
-#include "health/text.h"
 
 static const char *const level_names[LEVEL_COUNT] = { "ok", "warning", "critical" };
 
@@ -31,11 +30,11 @@ enum page page_of_path(const char *path)
 
 static int write_health(struct buffer *out, const struct verdict *verdict)
 {
-	text_format(out, "%s\n", level_names[verdict->level]);
+	buffer_print(out, "%s\n", level_names[verdict->level]);
 	for (size_t i = 0; i < verdict->count; i++)
-		text_format(out, "%s: %s%s%s\n", level_names[verdict->findings[i].level],
-			    verdict->findings[i].what, verdict->findings[i].detail[0] ? ": " : "",
-			    verdict->findings[i].detail);
+		buffer_print(out, "%s: %s%s%s\n", level_names[verdict->findings[i].level],
+			     verdict->findings[i].what, verdict->findings[i].detail[0] ? ": " : "",
+			     verdict->findings[i].detail);
 	return verdict->level == LEVEL_CRITICAL ? 503 : 200;
 }
 

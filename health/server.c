@@ -110,17 +110,14 @@ static int64_t file_ms(const struct server_options *options, uint64_t bytes)
 /* Replaces the reply by the status in words. */
 static void refuse(struct reply *reply, unsigned status)
 {
-	char text[64];
-
 	if (reply->file >= 0)
 		close(reply->file);
 	reply->file = -1;
 	reply->status = (int)status;
 	reply->type = "text/plain";
-	snprintf(text, sizeof(text), "%u %s\n", status, MHD_get_reason_phrase_for(status));
 	buffer_finish(&reply->body);
-	buffer_init(&reply->body, sizeof(text));
-	buffer_put(&reply->body, text, strlen(text));
+	buffer_init(&reply->body, 64);
+	buffer_print(&reply->body, "%u %s\n", status, MHD_get_reason_phrase_for(status));
 }
 
 /* Reads a piece of the file at *data, which starts at place. */

@@ -55,7 +55,7 @@ static int read_credits(struct info *info, uint32_t part, uint32_t language)
 		if (!value || !g_utf8_validate(value, -1, NULL))
 			code = SQLITE_CORRUPT;
 		else if (info->credits.size > 0)
-			buffer_put(&info->credits, " · ", strlen(" · "));
+			buffer_put_text(&info->credits, " · ");
 		if (code == SQLITE_OK)
 			put_in_one_line(&info->credits, value);
 	}

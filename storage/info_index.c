@@ -24,7 +24,7 @@ static int read_text(struct buffer *text, struct bytes page)
 		const struct article_block *block = &article.blocks[i];
 
 		if (block->kind == ARTICLE_TEXT) {
-			buffer_put(text, block->text, strlen(block->text));
+			buffer_put_text(text, block->text);
 			buffer_put_u8(text, ' ');
 		}
 	}
@@ -149,7 +149,7 @@ static int find_in(sqlite3_stmt *statement, const char *columns, struct bytes wo
 
 	buffer_init(&query, words.size + 100);
 	buffer_put_u8(&query, '{');
-	buffer_put(&query, columns, strlen(columns));
+	buffer_put_text(&query, columns);
 	buffer_put(&query, "} : (", 5);
 	buffer_put(&query, words.data, words.size);
 	buffer_put_u8(&query, ')');

@@ -51,11 +51,8 @@ static void hour_of(int64_t now_s, char out[HOUR_BYTES])
 
 static void put_line(struct buffer *out, const struct entry *entry)
 {
-	char line[HOUR_BYTES + WHAT_BYTES + LANGUAGE_BYTES + 40];
-
-	snprintf(line, sizeof(line), "%s,%s,%s,%s,%llu\n", entry->hour, kind_names[entry->kind],
-		 entry->what, entry->language, (unsigned long long)entry->count);
-	buffer_put(out, line, strlen(line));
+	buffer_print(out, "%s,%s,%s,%s,%llu\n", entry->hour, kind_names[entry->kind], entry->what,
+		     entry->language, (unsigned long long)entry->count);
 }
 
 static bool is_word(const char *text)

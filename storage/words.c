@@ -79,7 +79,7 @@ static void put_char(struct buffer *out, gunichar c)
 
 	for (size_t i = 0; i < ARRAY_COUNT(spellings); i++)
 		if (spellings[i].from == c) {
-			buffer_put(out, spellings[i].to, strlen(spellings[i].to));
+			buffer_put_text(out, spellings[i].to);
 			return;
 		}
 	buffer_put(out, utf8, (size_t)g_unichar_to_utf8(c, utf8));

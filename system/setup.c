@@ -5,7 +5,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,22 +25,6 @@ struct writing {
 	struct buffer text;
 	int rc;
 };
-
-static void put(struct writing *writing, const char *text, ...) printf_like(2, 3);
-static void put(struct writing *writing, const char *text, ...)
-{
-	char line[2048];
-	va_list args;
-	int length;
-
-	va_start(args, text);
-	length = vsnprintf(line, sizeof(line), text, args);
-	va_end(args);
-	if (length < 0 || (size_t)length >= sizeof(line))
-		writing->text.error = -EMSGSIZE;
-	else
-		buffer_put(&writing->text, line, (size_t)length);
-}
 
 static void path_of(const struct writing *writing, const char *name, char out[PATH_MAX])
 {
@@ -166,7 +149,7 @@ static void write_fetch_address(struct writing *writing)
 			 (int)strcspn(host, host[-1] == '[' ? "]%" : ":/"), host);
 	}
 	if (is_denied(address))
-		put(writing, "%s\n", address);
+		buffer_print(&writing->text, "%s\n", address);
 	finish_file(writing, "fetch-address");
 }
 
@@ -178,17 +161,17 @@ static void write_fetcher(struct writing *writing)
 
 	/* A release on the stick is read by the fetcher's stick thread, not treated as a server. */
 	if (t->release_url[0] && !terminal_url_is_of_stick(t->release_url))
-		put(writing, "RELEASE_URL=\"%s\"\n", t->release_url);
-	put(writing, "FETCH_OPTIONS=\"");
+		buffer_print(&writing->text, "RELEASE_URL=\"%s\"\n", t->release_url);
+	buffer_print(&writing->text, "FETCH_OPTIONS=\"");
 	if (t->poll_s > 0)
-		put(writing, " --poll-s %u", t->poll_s);
+		buffer_print(&writing->text, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)
-		put(writing, " --rate-limit %u", t->rate_limit_kib);
+		buffer_print(&writing->text, " --rate-limit %u", t->rate_limit_kib);
 	if (t->redirect_hosts[0])
-		put(writing, " --redirect-hosts %s", t->redirect_hosts);
+		buffer_print(&writing->text, " --redirect-hosts %s", t->redirect_hosts);
 	if (has_authority)
-		put(writing, " --ca %s", authority);
-	put(writing, "\"\n");
+		buffer_print(&writing->text, " --ca %s", authority);
+	buffer_print(&writing->text, "\"\n");
 	finish_file(writing, "fetch.env");
 	write_fetch_address(writing);
 }
@@ -198,8 +181,8 @@ static void write_health(struct writing *writing)
 	const struct terminal *t = writing->setup->terminal;
 	const bool brackets = strchr(t->listen_address, ':');
 
-	put(writing, "%s%s%s:%u\n", brackets ? "[" : "", t->listen_address, brackets ? "]" : "",
-	    t->listen_port);
+	buffer_print(&writing->text, "%s%s%s:%u\n", brackets ? "[" : "", t->listen_address,
+		     brackets ? "]" : "", t->listen_port);
 	finish_file(writing, "health-address");
 }
 
@@ -212,8 +195,9 @@ static void write_announcement(struct writing *writing)
 	empty_folder(writing, "dnssd");
 	if (!t->mdns)
 		return;
-	put(writing, "[Service]\nName=%%H\nType=_http._tcp\nPort=%u\nTxtText=path=/\n",
-	    t->listen_port);
+	buffer_print(&writing->text,
+		     "[Service]\nName=%%H\nType=_http._tcp\nPort=%u\nTxtText=path=/\n",
+		     t->listen_port);
 	finish_file(writing, "dnssd/gopura-health.dnssd");
 }
 
@@ -223,7 +207,7 @@ static void put_servers(struct writing *writing, const char *name,
 			const struct terminal_servers *servers)
 {
 	for (uint32_t i = 0; i < servers->count; i++)
-		put(writing, "%s=%s\n", name, servers->names[i]);
+		buffer_print(&writing->text, "%s=%s\n", name, servers->names[i]);
 }
 
 /* Servers named in gopura.conf replace those that the network offers. */
@@ -231,11 +215,11 @@ static void put_uses(struct writing *writing, const char *section, bool has_ntp)
 {
 	const struct terminal *t = writing->setup->terminal;
 
-	put(writing, "\n[%s]\n", section);
+	buffer_print(&writing->text, "\n[%s]\n", section);
 	if (t->dns.count > 0)
-		put(writing, "UseDNS=no\n");
+		buffer_print(&writing->text, "UseDNS=no\n");
 	if (t->ntp.count > 0 && has_ntp)
-		put(writing, "UseNTP=no\n");
+		buffer_print(&writing->text, "UseNTP=no\n");
 }
 
 static void write_network(struct writing *writing, const char *file, const char *type, int metric,
@@ -247,27 +231,31 @@ static void write_network(struct writing *writing, const char *file, const char 
 	terminal_host_name(t, host);
 	/* udev sets this property (70-gopura-usb.rules) for network cards on the board and for
 	 * those allowed under [usb]. */
-	put(writing,
-	    "[Match]\nType=%s\nProperty=GOPURA_NETWORK=yes\n\n[Link]\nRequiredForOnline=no\n\n"
-	    "[Network]\n",
-	    type);
+	buffer_print(
+		&writing->text,
+		"[Match]\nType=%s\nProperty=GOPURA_NETWORK=yes\n\n[Link]\nRequiredForOnline=no\n\n"
+		"[Network]\n",
+		type);
 	if (t->mdns)
-		put(writing, "MulticastDNS=yes\n");
+		buffer_print(&writing->text, "MulticastDNS=yes\n");
 	if (!is_static)
-		put(writing, "DHCP=yes\n");
+		buffer_print(&writing->text, "DHCP=yes\n");
 	else
-		put(writing, "DHCP=no\nAddress=%s/%u\n", t->address, t->prefix_bits);
+		buffer_print(&writing->text, "DHCP=no\nAddress=%s/%u\n", t->address,
+			     t->prefix_bits);
 	put_servers(writing, "DNS", &t->dns);
 	put_servers(writing, "NTP", &t->ntp);
 	if (is_static && t->gateway[0])
-		put(writing, "\n[Route]\nGateway=%s\nMetric=%d\n", t->gateway, metric);
+		buffer_print(&writing->text, "\n[Route]\nGateway=%s\nMetric=%d\n", t->gateway,
+			     metric);
 	if (!is_static) {
 		put_uses(writing, "DHCPv4", true);
-		put(writing, "RouteMetric=%d\nUseHostname=no\nSendHostname=yes\nHostname=%s\n",
-		    metric, host);
+		buffer_print(&writing->text,
+			     "RouteMetric=%d\nUseHostname=no\nSendHostname=yes\nHostname=%s\n",
+			     metric, host);
 		put_uses(writing, "DHCPv6", true);
 		put_uses(writing, "IPv6AcceptRA", false);
-		put(writing, "RouteMetric=%d\n", metric);
+		buffer_print(&writing->text, "RouteMetric=%d\n", metric);
 	}
 	finish_file(writing, file);
 }
@@ -295,11 +283,11 @@ void setup_wifi_name(const struct terminal *terminal, char out[SETUP_WIFI_NAME_B
 static void put_escaped(struct writing *writing, const char *text)
 {
 	if (*text == ' ') {
-		put(writing, "\\s");
+		buffer_print(&writing->text, "\\s");
 		text++;
 	}
 	for (; *text; text++)
-		put(writing, "%s%c", *text == '\\' ? "\\" : "", *text);
+		buffer_print(&writing->text, "%s%c", *text == '\\' ? "\\" : "", *text);
 }
 
 static void write_wifi(struct writing *writing)
@@ -316,19 +304,19 @@ static void write_wifi(struct writing *writing)
 		return;
 	}
 	if (strlen(t->passphrase) == 64) {
-		put(writing, "[Security]\nPreSharedKey=%s\n", t->passphrase);
+		buffer_print(&writing->text, "[Security]\nPreSharedKey=%s\n", t->passphrase);
 	} else if (t->passphrase[0]) {
-		put(writing, "[Security]\nPassphrase=");
+		buffer_print(&writing->text, "[Security]\nPassphrase=");
 		put_escaped(writing, t->passphrase);
-		put(writing, "\n");
+		buffer_print(&writing->text, "\n");
 	} else {
-		put(writing, "[Settings]\nAutoConnect=true\n");
+		buffer_print(&writing->text, "[Settings]\nAutoConnect=true\n");
 	}
 	setup_wifi_name(t, name);
 	snprintf(path, sizeof(path), "iwd/%s", name);
 	finish_file(writing, path);
 	if (t->country[0]) {
-		put(writing, "[General]\nCountry=%s\n", t->country);
+		buffer_print(&writing->text, "[General]\nCountry=%s\n", t->country);
 		finish_file(writing, "iwd/main.conf");
 	}
 	write_network(writing, "network/20-wifi.network", "wlan", WIFI_METRIC, t->is_static);
@@ -355,7 +343,7 @@ static void write_usb(struct writing *writing)
 
 	terminal_usb_words(writing->setup->terminal, words);
 	if (words[0])
-		put(writing, "%s\n", words);
+		buffer_print(&writing->text, "%s\n", words);
 	finish_file(writing, "usb");
 }
 
@@ -379,7 +367,7 @@ static void write_host_name(struct writing *writing)
 	char host[TERMINAL_NAME_BYTES];
 
 	terminal_host_name(writing->setup->terminal, host);
-	put(writing, "%s\n", host);
+	buffer_print(&writing->text, "%s\n", host);
 	finish_file(writing, "hostname");
 }
 
@@ -388,9 +376,9 @@ static void write_faults(struct writing *writing)
 	const struct diagnostics *diagnostics = writing->setup->diagnostics;
 
 	for (unsigned i = 0; i < diagnostics->count; i++)
-		put(writing, "%s\n", diagnostics_get(diagnostics, i)->text);
+		buffer_print(&writing->text, "%s\n", diagnostics_get(diagnostics, i)->text);
 	if (diagnostics->dropped > 0)
-		put(writing, "and %u more\n", diagnostics->dropped);
+		buffer_print(&writing->text, "and %u more\n", diagnostics->dropped);
 	finish_file(writing, "faults");
 }
 

@@ -301,7 +301,7 @@ static int write_collection(struct annotations *out, struct draft *draft, const 
 	int rc = text ? 0 : -ENOMEM;
 
 	if (text) {
-		buffer_put(&out->json, text, strlen(text));
+		buffer_put_text(&out->json, text);
 		buffer_put_u8(&out->json, '\n');
 		rc = out->json.error;
 	}

@@ -40,6 +40,24 @@ static void gives_back_what_was_put(void **state)
 	buffer_finish(&buffer);
 }
 
+static void appends_text_without_its_zero(void **state)
+{
+	struct buffer buffer;
+
+	(void)state;
+	buffer_init(&buffer, 300);
+	buffer_put_text(&buffer, "stone");
+	buffer_print(&buffer, " %d%s", 12, "");
+	buffer_print(&buffer, "%290s", ""); /* beyond the first memory */
+	CHECK(buffer.error == 0 && buffer.size == 298);
+	CHECK(memcmp(buffer.data, "stone 12  ", 10) == 0 && buffer.data[297] == ' ');
+	buffer_print(&buffer, "%d", 7); /* with its zero, exactly to the ceiling */
+	CHECK(buffer.error == 0 && buffer.size == 299);
+	buffer_print(&buffer, "%d", 7);
+	CHECK(buffer.error == -EFBIG && buffer.size == 299);
+	buffer_finish(&buffer);
+}
+
 static void stays_failed_past_the_end(void **state)
 {
 	const uint8_t three[3] = { 1, 2, 3 };
@@ -157,6 +175,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gives_back_what_was_put),
+		cmocka_unit_test(appends_text_without_its_zero),
 		cmocka_unit_test(stays_failed_past_the_end),
 		cmocka_unit_test(refuses_to_pass_its_ceiling),
 		cmocka_unit_test(writes_a_file_whole_or_not_at_all),
