@@ -1,11 +1,12 @@
 /* Writes and signs metadata files for the publisher: the payload as JSON, then the envelope. */
+#include "format/metadata_sign.h"
+
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "format/metadata.h"
 #include "format/metadata_parts.h"
 
 const char *const metadata_role_names[] = { "root", "release", "timestamp" };

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 
 #include "pipeline/content/annotations.h"
+#include "pipeline/content/annotations_export.h"
+#include "pipeline/content/annotations_import.h"
 
 static const char help[] =
 	"gopura-content annotations: export parts and pages as W3C Web Annotations, or import them\n"

@@ -11,6 +11,7 @@
 #include "pipeline/build.h"
 #include "pipeline/content/scans.h"
 #include "pipeline/hierarchy/master.h"
+#include "pipeline/hierarchy/master_cut.h"
 
 static const char help[] =
 	"gopura-content hierarchy: make the multiresolution hierarchy of a content folder\n"

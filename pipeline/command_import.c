@@ -10,6 +10,7 @@
 
 #include "pipeline/import/alignment.h"
 #include "pipeline/import/import.h"
+#include "pipeline/import/import_report.h"
 #include "pipeline/import/mesh_file.h"
 
 static const char help[] =

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "pipeline/release/inspect.h"
+#include "pipeline/release/inspect_release.h"
 
 static const char help[] =
 	"gopura-content inspect: show what an object, a file or a release contains\n"

@@ -9,7 +9,9 @@
 #include <sys/stat.h>
 
 #include "base/log.h"
+#include "storage/cache_file.h"
 #include "storage/cache_private.h"
+#include "storage/cache_room.h"
 
 enum {
 	LOG_BYTES_MAX = 64 << 20,

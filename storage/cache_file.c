@@ -1,6 +1,6 @@
 /* Opens the cache's database, prepares its statements, and replaces a damaged file with a new
  * one. */
-#include "storage/cache_private.h"
+#include "storage/cache_file.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* What the sources of the cache share: cache_file.c opens the file and handles damage, cache_room.c
- * keeps the budget, cache.c has the calls. */
+/* The struct that the sources of the cache share: cache_file.c opens the file and handles damage,
+ * cache_room.c keeps the budget, cache.c has the calls. */
 #ifndef GOPURA_STORAGE_CACHE_PRIVATE_H
 #define GOPURA_STORAGE_CACHE_PRIVATE_H
 
@@ -47,35 +47,5 @@ struct cache {
 	int faults;           /* failed reads since the last success */
 	struct cache_figures figures;
 };
-
-/* -- cache_file.c */
-
-/* Returns true if a database is open; tries to open one from time to time. */
-bool cache_ready(struct cache *cache);
-/* Closes the database and resets the state that depends on it. */
-void cache_close(struct cache *cache);
-/* Handles every result of SQLite: logs, notices a lost transaction, and starts over if the file is
- * damaged (then the statements are new ones: look them up again). Returns the error to pass on. */
-must_check int cache_judge(struct cache *cache, int rc, const char *doing);
-/* Sets page size, journal mode and limits. */
-must_check int cache_set_pragmas(struct cache *cache);
-/* Returns the single integer that a statement gives; -1 on failure. */
-int64_t cache_integer(struct cache *cache, enum statement which);
-
-/* -- cache_room.c */
-
-must_check int cache_begin(struct cache *cache); /* begins a transaction if none is open */
-/* Ends the transaction if that many more changed pages would make it too long. */
-must_check int cache_reserve_pages(struct cache *cache, int64_t pages);
-/* Counts changed pages, and ends a transaction that has become too long. */
-must_check int cache_count_pages(struct cache *cache, int64_t pages);
-/* Evicts until that many pages are free; a transaction is then open. Returns -ENOSPC if everything
- * that is left is kept. */
-must_check int cache_make_room(struct cache *cache, int64_t pages);
-/* Returns how many pages may still be written within the budget. */
-int64_t cache_free_pages(struct cache *cache);
-int64_t cache_tick(const struct cache *cache); /* seconds of use */
-/* Returns pages to the disk if the file is larger than the budget now allows. */
-void cache_shrink(struct cache *cache);
 
 #endif

@@ -1,11 +1,12 @@
 /* Keeps the cache within its budget: transactions, checkpoints of the log, eviction and
  * shrinking. */
-#include "storage/cache_private.h"
+#include "storage/cache_room.h"
 
 #include <errno.h>
 #include <stdio.h>
 
 #include "base/clock.h"
+#include "storage/cache_file.h"
 
 /* How the budget is kept. It is split once, into the database file and its write-ahead log:
  *

@@ -20,11 +20,6 @@ enum {
 	INFO_STOPS_MAX = 64, /* in a tour */
 };
 
-/* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
-enum info_tool { INFO_TOOL_LIGHT = 1, INFO_TOOL_SECTION = 2 };
-/* Returns the tool of a name ("light" or "section"); 0: neither. */
-unsigned info_tool_named(const char *name, size_t length);
-
 /* An open database. One thread. */
 struct info;
 
@@ -83,47 +78,6 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
  */
 must_check int info_page(struct info *info, uint32_t part, const char *language,
 			 struct bytes *article, const char **language_found);
-
-/* Returns the credits of a part's information in one line (creator, date, source, rights and so
- * on), "" if nothing is known. Borrowed until the next info_credits or info_close. */
-const char *info_credits(struct info *info, uint32_t part, const char *language);
-
-/* Searches for parts that contain every word of query; the end of each word may be missing. Parts
- * found in that language come first, and among them titles before captions before pages. Writes at
- * most `most` parts and returns how many; 0 for a query without words. */
-uint32_t info_search(struct info *info, const char *query, const char *language, uint32_t *parts,
-		     uint32_t most);
-
-/* Returns the tools that the content offers, a mask of enum info_tool; unknown ones are left
- * out. */
-unsigned info_tools(const struct info *info);
-
-/* ---- guided tours: docs/tours.md ---- */
-
-struct info_stop {
-	float eye_m[3], target_m[3];
-	float stay_s,
-		travel_s; /* stay 0: the tour passes without a stop; travel 0: chosen by distance */
-	int part;         /* the part to highlight, or -1 */
-};
-
-struct info_tour {
-	const char *id;
-	bool attract; /* runs in a loop while no visitor is present; its path is closed */
-	uint32_t stop_count;
-	struct info_stop stops[INFO_STOPS_MAX];
-};
-
-/* Tours; none in images before version 3. Borrowed until info_close; texts as from info_text. */
-uint32_t info_tour_count(const struct info *info);
-/* tour < info_tour_count(). */
-const struct info_tour *info_tour(const struct info *info, uint32_t tour);
-int info_find_tour(const struct info *info, const char *id); /* the tour's index, or -ENOENT */
-/* Returns title, caption and thumbnail of a tour. */
-struct info_text info_tour_text(const struct info *info, uint32_t tour, const char *language);
-/* Returns the text at a stop, or "". */
-const char *info_stop_caption(const struct info *info, uint32_t tour, uint32_t stop,
-			      const char *language);
 
 /* All pictures of the database, sorted by name. Borrowed until info_close. */
 uint32_t info_picture_count(const struct info *info);

@@ -1,5 +1,7 @@
 /* Queries that run in SQLite while the kiosk runs, except for pages: credits and search. Their work
  * is limited, so that no image can block a frame for long. */
+#include "storage/info_ask.h"
+
 #include <errno.h>
 #include <glib.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include "storage/info.h"
+#include "storage/info_tour.h"
 
 enum {
 	INFO_CALLS_MAX = 100000, /* 10^8 steps of SQLite's virtual machine while opening */
@@ -56,12 +57,5 @@ struct info {
 	struct info_picture *pictures; /* names owned */
 	uint32_t picture_count, picture_room;
 };
-
-/* info_tools.c: the table of tools may exist in any version. */
-must_check int info_load_tools(struct info *info);
-/* info_tour.c: call it after parts and pictures are loaded. */
-must_check int info_load_tours(struct info *info);
-/* Frees the tours. */
-void info_drop_tours(struct info *info);
 
 #endif

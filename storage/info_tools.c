@@ -1,6 +1,8 @@
 /* Reads which tools the content offers to visitors. They have their own table, which exists only if
  * there are any. Programs that know no tools never read it, and the schema version stays the same
  * for them. */
+#include "storage/info_tools.h"
+
 #include <string.h>
 
 #include "storage/info_rows.h"

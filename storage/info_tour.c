@@ -1,5 +1,7 @@
 /* Loads the tours of an information database from an image that is not trusted, and answers queries
  * about them. */
+#include "storage/info_tour.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,6 +10,9 @@
 
 #include "base/log.h"
 #include "geometry/viewpoint.h"
+#include "storage/info_ask.h"
+#include "storage/info_tools.h"
+#include "storage/info_tour.h"
 
 enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
 

@@ -6,6 +6,7 @@
 
 #include "base/compiler.h"
 #include "base/log.h"
+#include "storage/info_tour.h"
 
 static struct overlay *overlay_of(const struct actions *actions)
 {

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "storage/info_tour.h"
+
 enum { STEP_MOST_MS = 50 }; /* longest step of the eye: after a delay it does not jump */
 
 _Static_assert((int)TOUR_STOPS_MAX == (int)INFO_STOPS_MAX, "stops of a tour");

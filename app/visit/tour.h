@@ -6,6 +6,7 @@
 
 #include "geometry/tour_path.h"
 #include "storage/info.h"
+#include "storage/info_tour.h"
 
 enum tour_state {
 	TOUR_OFF,

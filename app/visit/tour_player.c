@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
+#include "storage/info_tour.h"
 
 #define CALM_SHARE 0.1f /* of the model's diagonal per second: speed of the flight to the path */
 

@@ -1,12 +1,17 @@
 /* Converts parts.json, tours.json and pages/ to one annotation collection. Values are copied as
  * written in the folder (numbers keep their digits); info_build's own readers check them. */
+#include "pipeline/content/annotations_export.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/content/annotations.h"
 #include "pipeline/content/annotations_private.h"
+#include "pipeline/content/draft.h"
+#include "pipeline/content/info_pages.h"
+#include "pipeline/content/info_parts.h"
+#include "pipeline/content/info_tours.h"
 
 /* Defines the terms that the W3C context lacks; see docs/annotations.md. */
 static const char context[] =

@@ -1,6 +1,8 @@
 /* Converts a file of annotations, ours or that of another tool, to parts.json, pages/ and
  * pictures/. Everything is read and checked before anything is written. info_build's own readers
  * then check the result; if they refuse it, it is removed again. */
+#include "pipeline/content/annotations_import.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -10,6 +12,8 @@
 #include "base/array.h"
 #include "base/log.h"
 #include "pipeline/content/annotations_private.h"
+#include "pipeline/content/annotations_write.h"
+#include "pipeline/content/draft.h"
 
 static const char *string_of(const cJSON *object, const char *key)
 {

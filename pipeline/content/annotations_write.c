@@ -1,5 +1,7 @@
 /* Writes an imported content folder, and removes the files again if the folder's own readers refuse
  * them. */
+#include "pipeline/content/annotations_write.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
@@ -10,7 +12,6 @@
 #include <unistd.h>
 
 #include "base/array.h"
-#include "pipeline/content/annotations_private.h"
 
 static int note_written(struct importer *im, const char *path)
 {

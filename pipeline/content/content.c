@@ -14,6 +14,7 @@
 
 #include "pipeline/import/alignment.h"
 #include "storage/info.h"
+#include "storage/info_tools.h"
 
 /* ---- settings */
 

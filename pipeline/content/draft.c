@@ -1,13 +1,12 @@
 /* Shared helpers of the readers of a content folder: searching, freeing, and checking pictures. */
-#include "pipeline/content/draft_private.h"
+#include "pipeline/content/draft.h"
 
+#include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cjson/cJSON.h>
 
 #include "base/array.h"
 #include "format/page.h"

@@ -9,7 +9,10 @@
 
 #include "base/log.h"
 #include "format/page.h"
-#include "pipeline/content/draft_private.h"
+#include "pipeline/content/draft.h"
+#include "pipeline/content/info_pages.h"
+#include "pipeline/content/info_parts.h"
+#include "pipeline/content/info_tours.h"
 #include "storage/info_index.h"
 #include "storage/info_schema.h"
 

@@ -1,10 +1,10 @@
 /* Reads "credits" of parts.json: Dublin Core statements about one part or all parts. */
+#include "pipeline/content/info_credits.h"
+
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "pipeline/content/draft_private.h"
 
 /* In the order in which a page shows them. Title, description, language, format and identifier are
  * already known from the part itself. */

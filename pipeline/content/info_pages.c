@@ -1,5 +1,7 @@
 /* Reads pages/ID.LANG.html and makes articles of them. libxml2's HTML parser tolerates errors; our
  * own strict rules then refuse, with the line, what the kiosk cannot show or must not load. */
+#include "pipeline/content/info_pages.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <glib.h>
@@ -14,7 +16,6 @@
 #include "format/article.h"
 #include "format/html_elements.h"
 #include "format/html_tags.h"
-#include "pipeline/content/draft_private.h"
 #include "pipeline/content/page_compile.h"
 
 struct page_check {

@@ -1,11 +1,13 @@
 /* Reads parts.json into parts. */
+#include "pipeline/content/info_parts.h"
+
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "pipeline/content/draft_private.h"
+#include "pipeline/content/info_credits.h"
 
 static const char parts_file[] = "parts.json";
 

@@ -1,5 +1,7 @@
 /* Reads tours.json into tours. Whether a path leads through a wall is checked in
  * pipeline/content/tour_check, where the scan is available. */
+#include "pipeline/content/info_tours.h"
+
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
@@ -9,7 +11,7 @@
 #include <string.h>
 
 #include "geometry/viewpoint.h"
-#include "pipeline/content/draft_private.h"
+#include "pipeline/content/info_parts.h"
 
 static const char tours_file[] = "tours.json";
 

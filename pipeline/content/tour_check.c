@@ -14,6 +14,7 @@
 
 #include "geometry/tour_path.h"
 #include "geometry/vec.h"
+#include "storage/info_tour.h"
 
 /* Raise VERSION when the check refuses what it let pass before. */
 enum { VERSION = 1, LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100, KEY_TEXT_MAX = 1 << 20 };

@@ -1,10 +1,10 @@
 /* Selects the part of a master that is published, by greedy choice of the groups with the largest
  * loss. */
+#include "pipeline/hierarchy/master_cut.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "pipeline/hierarchy/master.h"
 
 struct ranked {
 	float loss_m4;

@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "format/patch.h"
 #include "pipeline/hierarchy/graph.h"
-#include "pipeline/hierarchy/multires_parts.h"
+#include "pipeline/hierarchy/multires_job.h"
 #include "pipeline/hierarchy/partition.h"
 
 enum {

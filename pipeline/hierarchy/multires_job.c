@@ -1,5 +1,7 @@
 /* Processes one group of a level: writes its object, merges its patches, simplifies them and
  * divides them again. */
+#include "pipeline/hierarchy/multires_job.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +9,7 @@
 
 #include "base/array.h"
 #include "format/patch.h"
-#include "pipeline/hierarchy/multires_parts.h"
+#include "pipeline/hierarchy/multires_write.h"
 #include "pipeline/hierarchy/partition.h"
 #include "pipeline/hierarchy/simplify.h"
 

@@ -1,15 +1,15 @@
 /* Turns the patches of a group into its object and its rows of the hierarchy, with bounding spheres
  * and normal cones. */
+#include "pipeline/hierarchy/multires_write.h"
+
 #include <errno.h>
 #include <math.h>
+#include <meshoptimizer.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <meshoptimizer.h>
-
 #include "format/normal.h"
 #include "format/patch.h"
-#include "pipeline/hierarchy/multires_parts.h"
 
 static void to_metres(double out[3], const struct lattice *lattice, const uint16_t position[3])
 {

@@ -1,6 +1,6 @@
 /* Imports one scan: detects the format, calls the reader, converts to metres with z up, repairs the
  * mesh, and gives every vertex a colour. */
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -16,6 +16,8 @@
 #include "base/clock.h"
 #include "base/spill.h"
 #include "pipeline/import/gltf_extensions.h"
+#include "pipeline/import/import_foreign.h"
+#include "pipeline/import/import_ply.h"
 #include "pipeline/import/mesh_colour.h"
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };

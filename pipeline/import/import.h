@@ -61,7 +61,4 @@ bool import_axis_named(const char *name, enum import_axis *out);
  * not valid, and *out_metres is unchanged. */
 bool import_unit_named(const char *name, double *out_metres);
 
-/* Prints a summary for people: what was read, and one line for each kind of repair. */
-void import_report_print(FILE *to, const char *path, const struct import_report *report);
-
 #endif

@@ -1,6 +1,8 @@
 /* Opens files that a scan names. Whoever made the scan chose these names, so they are opened one
  * folder at a time from the scan's own folder: neither "..", nor a link, nor an absolute path leads
  * out of it. */
+#include "pipeline/import/import_files.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -9,7 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "pipeline/import/import_parts.h"
 #include "pipeline/import/sandbox.h"
 #include "pipeline/keys/keys.h"
 

@@ -1,7 +1,10 @@
 /* Reads OBJ, STL, OFF and glTF with assimp in a sandboxed child process. assimp's output is not
  * trusted either: every index is checked. */
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import_foreign.h"
 
+#include <assimp/cimport.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -13,10 +16,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <assimp/cimport.h>
-#include <assimp/material.h>
-#include <assimp/scene.h>
-
+#include "pipeline/import/import_files.h"
+#include "pipeline/import/import_limits.h"
+#include "pipeline/import/import_scene.h"
+#include "pipeline/import/import_texture.h"
 #include "pipeline/import/mesh_file.h"
 #include "pipeline/import/sandbox.h"
 

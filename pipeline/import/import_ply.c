@@ -1,6 +1,6 @@
 /* Reads a PLY scan: collects the vertices and triangles of the streaming reader into a mesh, and
  * loads its textures. */
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import_ply.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -10,6 +10,9 @@
 
 #include "base/progress.h"
 #include "base/spill.h"
+#include "pipeline/import/import_files.h"
+#include "pipeline/import/import_limits.h"
+#include "pipeline/import/import_texture.h"
 #include "pipeline/import/ply.h"
 
 /* Collects what the PLY reader delivers. */

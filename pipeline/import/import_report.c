@@ -1,5 +1,5 @@
 /* Prints the import report as text. */
-#include "pipeline/import/import.h"
+#include "pipeline/import/import_report.h"
 
 #include <inttypes.h>
 

@@ -1,5 +1,11 @@
 /* Runs assimp inside the sandbox. It reads through our own file functions, which ask the parent
  * process for every file (pipeline/import/sandbox.h). */
+#include "pipeline/import/import_scene.h"
+
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdbool.h>
@@ -9,12 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <assimp/cfileio.h>
-#include <assimp/cimport.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import_files.h"
 #include "pipeline/import/sandbox.h"
 
 struct file {

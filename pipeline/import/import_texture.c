@@ -1,6 +1,6 @@
 /* Decodes the pictures of a scan into textures. Unusable pictures are replaced by a plain colour
  * with a warning. */
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import_texture.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "format/picture.h"
+#include "pipeline/import/import_files.h"
 
 enum { PICTURE_FILE_MAX = 1 << 29 };
 

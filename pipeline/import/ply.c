@@ -1,5 +1,6 @@
 /* Reads the body of a PLY: one element after another; each property is decoded or skipped. */
-#include "pipeline/import/ply_parts.h"
+#include "pipeline/import/ply_header.h"
+#include "pipeline/import/ply_input.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* Reads the header of a PLY: lines of words, from "ply" to "end_header". */
-#include "pipeline/import/ply_parts.h"
+#include "pipeline/import/ply_header.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 /* Buffered input for the PLY reader: views of binary data, and fast parsing of ASCII numbers. */
-#include "pipeline/import/ply_parts.h"
+#include "pipeline/import/ply_input.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "pipeline/import/ply_header.h"
 
 int ply_input_init(struct ply_input *input, int fd)
 {

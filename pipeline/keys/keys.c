@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "format/metadata_sign.h"
 
 /* A root must stay valid longer than the terminals that were shipped with it live. */
 #define ROOT_LIFE_S (20ll * 365 * 86400)

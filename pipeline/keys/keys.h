@@ -10,6 +10,7 @@
 #define GOPURA_PIPELINE_KEYS_KEYS_H
 
 #include "format/metadata.h"
+#include "format/metadata_sign.h"
 
 struct publisher_keys {
 	struct signing_key release, timestamp;

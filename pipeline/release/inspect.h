@@ -11,12 +11,4 @@
  * line says so). */
 must_check int inspect_bytes(FILE *to, struct bytes bytes);
 
-/* Summarises a whole release: its signed file, its locator, its root page and the root's first
- * three children. Errors are printed to `to` as they occur. */
-must_check int inspect_release(FILE *to, struct release_reader *reader);
-
-/* Finds one object of the release, prints where it is, and summarises it. Returns -ENOENT if the
- * release has no such object. */
-must_check int inspect_object(FILE *to, struct release_reader *reader, struct hash object);
-
 #endif

@@ -1,5 +1,5 @@
 /* Walks through the pages of a release, to summarise it or to find one of its objects. */
-#include "pipeline/release/inspect.h"
+#include "pipeline/release/inspect_release.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "format/metadata.h"
+#include "pipeline/release/inspect.h"
 
 enum { LOCATOR_BYTES_MAX = 256 << 20 };
 

@@ -11,7 +11,10 @@
 #include "base/log.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/keys/keys_place.h"
-#include "pipeline/release/publish_sources.h"
+#include "pipeline/release/publish_hierarchy.h"
+#include "pipeline/release/publish_info.h"
+#include "pipeline/release/publish_labels.h"
+#include "pipeline/release/publish_samples.h"
 #include "pipeline/release/start_view.h"
 
 /* The target folder and the signing keys. */

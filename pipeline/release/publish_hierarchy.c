@@ -1,5 +1,7 @@
 /* Publishes the coarse part of the master: cuts it, reduces the precision of normals and colours,
  * and makes the hierarchy page. */
+#include "pipeline/release/publish_hierarchy.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -7,7 +9,7 @@
 
 #include "base/log.h"
 #include "format/patch.h"
-#include "pipeline/release/publish_sources.h"
+#include "pipeline/hierarchy/master_cut.h"
 
 /* Returns the smallest share that contains the top group. */
 static double share_of_top(const struct master *master)

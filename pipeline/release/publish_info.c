@@ -1,4 +1,6 @@
 /* Publishes the information page: adds the database and its pictures. */
+#include "pipeline/release/publish_info.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -6,7 +8,6 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "pipeline/release/publish_sources.h"
 
 /* Adds a picture. The file is read again and must still have the hash that the database names. */
 static int add_picture(struct object_store *objects, const char *folder,

@@ -1,5 +1,7 @@
 /* Publishes the labels page: labels every published patch group by the scan, or takes the labels
  * from the cache. */
+#include "pipeline/release/publish_labels.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,6 @@
 #include "geometry/vec.h"
 #include "pipeline/release/label_cache.h"
 #include "pipeline/release/label_patch.h"
-#include "pipeline/release/publish_sources.h"
 
 /* The groups as published, and their labels. */
 struct labelling {

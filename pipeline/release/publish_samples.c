@@ -1,12 +1,13 @@
 /* Publishes the sample pages: turns the faces of the sample store into face, brick and samples
  * pages. */
+#include "pipeline/release/publish_samples.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/log.h"
-#include "pipeline/release/publish_sources.h"
 #include "pipeline/samples/sample_store.h"
 
 struct children {

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "format/metadata_sign.h"
 
 static int make_path(char path[PATH_MAX], const char *release, const char *name)
 {

@@ -1,5 +1,5 @@
 /* Encodes and decodes the files of the sample store. */
-#include "pipeline/samples/sample_file_private.h"
+#include "pipeline/samples/sample_file.h"
 
 #include <errno.h>
 #include <string.h>

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
-#include "pipeline/samples/sample_file_private.h"
+#include "pipeline/samples/sample_file.h"
 
 enum { GRID_BYTES_MAX = 1 << 20, INDEX_BYTES_MAX = 512 << 20, YOUNG_S = 2 };
 

@@ -1,5 +1,8 @@
 /* Puts the whole temple together: terraces, then galleries, then towers. */
 #include "pipeline/temple/temple_compose.h"
+#include "pipeline/temple/temple_galleries.h"
+#include "pipeline/temple/temple_terraces.h"
+#include "pipeline/temple/temple_towers.h"
 
 int plan_create(struct plan *plan, uint32_t seed)
 {

@@ -1,9 +1,9 @@
 /* Carvings of doors and gables: lintel, pediment, false door, window and antefix. */
-#include "pipeline/temple/temple_figures.h"
-
-#include "pipeline/temple/temple_carve.h"
+#include "pipeline/temple/temple_doors.h"
 
 #include <math.h>
+
+#include "pipeline/temple/temple_carve.h"
 
 static float disc(float x, float y, float cx, float cy, float rx, float ry)
 {

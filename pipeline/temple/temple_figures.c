@@ -1,11 +1,11 @@
 /* Basic carving shapes, the devata and the procession of walkers and elephants. */
 #include "pipeline/temple/temple_figures.h"
 
-#include "base/compiler.h"
-#include "pipeline/temple/temple_carve.h"
-
 #include <math.h>
 #include <stddef.h>
+
+#include "base/compiler.h"
+#include "pipeline/temple/temple_carve.h"
 
 static float limbs(float x, float y, const float (*list)[6], size_t count)
 {

@@ -12,21 +12,5 @@
 float figure_devata(float x, float y, float aspect, uint32_t seed);
 /* A procession, in metres from the lower left corner, for a field of any width. */
 float figure_march(float x_m, float y_m, float height_m, uint32_t seed);
-/* A kala's head over a garland. */
-float figure_lintel(float x, float y, float aspect);
-/* A pediment: naga arch, deity, worshippers. */
-float figure_tympanum(float x, float y, float aspect, float shape);
-/* A false door. */
-float figure_door(float x, float y, float aspect);
-/* A window with turned balusters. */
-float figure_window(float x, float y, float aspect);
-/* A great smiling face. */
-float figure_face(float x, float y, float aspect);
-/* The mask of a lion; its height may be negative outside the mane. */
-float figure_lion(float x, float y);
-/* The seven heads of a naga; aspect is not used. */
-float figure_hood(float x, float y, float aspect);
-/* An antefix: flames around a seated figure. */
-float figure_flame(float x, float y, float aspect, float shape);
 
 #endif

@@ -1,9 +1,10 @@
 /* Lays out the galleries: a moulded base, walls or rows of pillars, and a vault of carved roof
  * stones with a crest. */
-#include "pipeline/temple/temple_carve.h"
-#include "pipeline/temple/temple_plan.h"
+#include "pipeline/temple/temple_galleries.h"
 
 #include <math.h>
+
+#include "pipeline/temple/temple_carve.h"
 
 static const struct profile_point base_points[] = {
 	{ 1.0f, 0, RELIEF_PLAIN, 0, 0 },        { 1.0f, 0.3f, RELIEF_PETALS, 0.04f, 0.16f },

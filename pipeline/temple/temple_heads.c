@@ -1,9 +1,9 @@
 /* Carvings of heads: the smiling face, the lion mask and the naga hood. */
-#include "pipeline/temple/temple_figures.h"
-
-#include "pipeline/temple/temple_carve.h"
+#include "pipeline/temple/temple_heads.h"
 
 #include <math.h>
+
+#include "pipeline/temple/temple_carve.h"
 
 static float bump(float x, float y, float cx, float cy, float rx, float ry)
 {

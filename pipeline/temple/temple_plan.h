@@ -62,33 +62,4 @@ void plan_refine(struct plan *plan, uint32_t from, float factor);
 /* Declares the sheets added since `from` as one carving. kind is a static string. */
 void plan_body(struct plan *plan, const char *kind, uint32_t from);
 
-/* The ground, the terraces, stairs and balustrades. */
-void plan_terraces(struct plan *plan);
-/* The outer galleries and those on the top terrace. */
-void plan_galleries(struct plan *plan);
-/* The towers and the gates. */
-void plan_towers(struct plan *plan);
-/* A lotus-bud tower on a redented plan. half_m is half the width and body_m the height of its body,
- * top_m about its total height, tiers the number of storeys above the body. */
-void plan_tower(struct plan *plan, const struct frame *frame, float half_m, float body_m,
-		float top_m, uint32_t tiers);
-/* A tower with a face on each side; half_m is half its width. */
-void plan_face_tower(struct plan *plan, const struct frame *frame, float half_m);
-/* A doorway with colonettes, lintel and pediment on a porch that projects depth_m from the front of
- * the frame. */
-void plan_porch(struct plan *plan, const struct frame *frame, float half_m, float depth_m,
-		float height_m);
-/* A flight of stairs that climbs against the frame's direction, with side walls and lions. */
-void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, float run_m,
-		 float rise_m);
-/* A gallery along the frame's x axis; the frame is in the middle of its floor. */
-struct gallery {
-	float length_m, half_m, wall_m;
-	bool open;    /* columns in front instead of a wall */
-	bool reliefs; /* a procession along the back wall of an open gallery */
-	bool windows; /* not used: every wall gets windows */
-};
-/* Adds a gallery. */
-void plan_gallery(struct plan *plan, const struct frame *frame, const struct gallery *gallery);
-
 #endif

@@ -2,7 +2,9 @@
 #include "pipeline/temple/temple_relief.h"
 
 #include "pipeline/temple/temple_carve.h"
+#include "pipeline/temple/temple_doors.h"
 #include "pipeline/temple/temple_figures.h"
+#include "pipeline/temple/temple_heads.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Lays out the temple mountain: the ground, three terraces, the stairs on the four axes, and the
  * naga balustrades. */
-#include "pipeline/temple/temple_plan.h"
+#include "pipeline/temple/temple_terraces.h"
 
 #include <math.h>
 

@@ -1,9 +1,11 @@
 /* Lays out the towers: five lotus buds on the summit, smaller ones at the corners of the outer
  * gallery, and towers with four faces over its gates. */
-#include "pipeline/temple/temple_carve.h"
-#include "pipeline/temple/temple_plan.h"
+#include "pipeline/temple/temple_towers.h"
 
 #include <math.h>
+
+#include "pipeline/temple/temple_carve.h"
+#include "pipeline/temple/temple_terraces.h"
 
 static const struct profile_point plinth_points[] = {
 	{ 1.0f, 0, RELIEF_PLAIN, 0, 0 },

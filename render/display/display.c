@@ -7,6 +7,9 @@
 
 #include "base/log.h"
 #include "render/display/display_backend.h"
+#include "render/display/display_drm.h"
+#include "render/display/display_headless.h"
+#include "render/display/display_window.h"
 #include "render/display/gl.h"
 
 static int try_backend(struct display *display, const struct display_backend *backend,

@@ -31,6 +31,4 @@ struct display {
 	bool asleep, woken;
 };
 
-extern const struct display_backend display_drm, display_window, display_headless;
-
 #endif

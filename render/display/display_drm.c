@@ -1,17 +1,17 @@
 /* The KMS backend: draws through GBM and EGL and shows buffers by page flips. Mesa finds the GPU
  * that renders for the card, so display node and render node may differ. */
-#include <errno.h>
-#include <stdlib.h>
+#include "render/display/display_drm.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <drm_fourcc.h>
+#include <errno.h>
 #include <gbm.h>
+#include <stdlib.h>
 
 #include "base/log.h"
 #include "render/display/context.h"
 #include "render/display/display.h"
-#include "render/display/display_backend.h"
 #include "render/display/drm_panel.h"
 #include "render/display/gl.h"
 

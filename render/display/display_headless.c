@@ -1,9 +1,10 @@
 /* The headless backend: draws into a texture, for tests, captures and machines without a panel. */
+#include "render/display/display_headless.h"
+
 #include <errno.h>
 #include <stdlib.h>
 
 #include "render/display/display.h"
-#include "render/display/display_backend.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 

@@ -1,16 +1,16 @@
 /* The window backend, by SDL2, for development; the mouse acts as one finger. SDL has no descriptor
  * to wait on, so a timer descriptor polls it. That costs wake-ups, which is acceptable because a
  * window never runs unattended. */
+#include "render/display/display_window.h"
+
+#include <SDL.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-#include <SDL.h>
-
 #include "base/log.h"
 #include "render/display/display.h"
-#include "render/display/display_backend.h"
 #include "render/display/gl.h"
 
 enum { POLL_MS = 8 };

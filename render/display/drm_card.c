@@ -2,6 +2,7 @@
  * mode, and looks again after a hot-plug. */
 #include "render/display/drm_card.h"
 
+#include <drm_fourcc.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -9,8 +10,6 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <drm_fourcc.h>
 #include <xf86drm.h>
 
 #include "base/clock.h"

@@ -64,18 +64,4 @@ enum drm_card_news {
  * change. */
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options);
 
-/* Shows framebuffer fb on the next vertical blank; a flip event with data follows. set_mode also
- * sets the mode: needed in the first call, after a change of panel and after drm_card_sleep. On
- * failure returns the negative errno of the kernel. */
-must_check int drm_card_flip(struct drm_card *card, uint32_t fb, bool set_mode, void *data);
-
-/* Returns whether a negative errno means that another program or a suspend has the card for now;
- * then nothing is broken. */
-bool drm_card_is_taken(int rc);
-
-/* Switches the panel off. Negative errno of the kernel; -EOPNOTSUPP: the driver knows no DPMS. */
-must_check int drm_card_sleep(struct drm_card *card);
-/* Prepares the panel: the next flip that sets the mode switches it on. Errors as drm_card_sleep. */
-must_check int drm_card_wake(struct drm_card *card);
-
 #endif

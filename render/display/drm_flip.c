@@ -1,11 +1,11 @@
 /* Page flips and switching the panel off and on, atomic or legacy. Part of drm_card.h. */
+#include "render/display/drm_flip.h"
+
 #include <errno.h>
 #include <string.h>
-
 #include <xf86drm.h>
 
 #include "base/log.h"
-#include "render/display/drm_card.h"
 
 /* Collects the errors of all additions; they are checked once, before the commit. */
 struct atomic {

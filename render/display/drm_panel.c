@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "render/display/drm_flip.h"
 #include "render/display/uevent.h"
 
 enum {

@@ -8,6 +8,7 @@
 #include "geometry/light.h"
 #include "geometry/vec.h"
 #include "render/lumigraph/aim.h"
+#include "render/plan/plan_quality.h"
 
 enum { DEPTH_UNIT = 2 }; /* first of the units for depths, one for each face of a piece */
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "geometry/vec.h"
+#include "render/plan/plan_quality.h"
 
 enum {
 	POINTS_BEST = 12,    /* best points considered for a piece */

@@ -1,4 +1,6 @@
 /* The quality formula of plan.h and what follows from it: worth, levels and priorities. */
+#include "render/plan/plan_quality.h"
+
 #include <math.h>
 
 #include "geometry/vec.h"

@@ -1,4 +1,6 @@
 /* Draws a frame: updates what is shown, draws depth maps and pieces, and accumulates at rest. */
+#include "render/scene/scene_draw.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +8,10 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
-#include "render/scene/scene_parts.h"
+#include "render/scene/scene_mark.h"
+#include "render/scene/scene_plan.h"
+#include "render/scene/scene_visibility.h"
+#include "render/scene/scene_wants.h"
 
 enum {
 	PLAN_BUDGET_US = 5000,

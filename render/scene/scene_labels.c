@@ -1,11 +1,11 @@
 /* Loads the labels of the release, finds the part under a pixel, and makes the outline lines of the
  * marked part. */
+#include "render/scene/scene_labels.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "render/scene/scene_parts.h"
 
 bool scene_has_labels(const struct scene *scene)
 {

@@ -1,9 +1,11 @@
 /* Draws the marked part over the picture: by its labels, and by its region where the labels are
  * missing. */
+#include "render/scene/scene_mark.h"
+
 #include <string.h>
 
 #include "base/log.h"
-#include "render/scene/scene_parts.h"
+#include "render/scene/scene_labels.h"
 
 bool scene_note_mark(struct scene *scene, const struct scene_mark *mark)
 {

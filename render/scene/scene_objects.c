@@ -1,5 +1,7 @@
 /* Creates the scene, takes the objects that arrive and opens them by kind, and answers ray
  * queries. */
+#include "render/scene/scene_objects.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +10,7 @@
 #include "base/array.h"
 #include "base/log.h"
 #include "geometry/vec.h"
-#include "render/scene/scene_parts.h"
+#include "render/scene/scene_labels.h"
 
 enum {
 	DEPTH_FACE_PX = 512,

@@ -1,11 +1,4 @@
-/* What the sources of the scene share; private to them.
- *   scene_objects.c     creation, incoming objects, rays
- *   scene_wants.c       the list of wanted objects
- *   scene_labels.c      which part a place belongs to
- *   scene_plan.c        what is shown: cut, pieces, blends
- *   scene_visibility.c  the visibility pass: which pieces are visible
- *   scene_draw.c        the frame
- *   scene_mark.c        the marked part drawn over it */
+/* The struct of the scene. Private to render/scene. */
 #ifndef GOPURA_RENDER_SCENE_SCENE_PARTS_H
 #define GOPURA_RENDER_SCENE_SCENE_PARTS_H
 
@@ -131,54 +124,5 @@ struct scene {
 	struct region marked_region;
 	uint32_t mark_serial; /* counts changes of the marked part */
 };
-
-/* scene_objects.c: returns the object with this hash, or NULL. Borrowed until the next
- * scene_expect. */
-struct object *scene_object(struct scene *scene, struct hash hash);
-/* Registers what an object is for and returns it; NULL: out of memory. */
-struct object *scene_expect(struct scene *scene, struct hash hash, enum object_kind kind,
-			    uint64_t id);
-/* Logs a content bug; the object is not wanted again. error is a negative errno. */
-void scene_refuse(struct scene *scene, struct object *object, int error);
-
-/* scene_labels.c: takes the labels page; needs the hierarchy. -EBADMSG, -ENOMEM. */
-must_check int scene_open_labels(struct scene *scene, struct bytes bytes);
-/* Frees what the labels page gave. */
-void scene_drop_labels(struct scene *scene);
-/* Returns whether the release has labels, here already or not. */
-bool scene_has_labels(const struct scene *scene);
-/* Provides the outline lines of the marked part on a patch, and makes them where they are missing.
- * Returns false where the labels are not here, no part is marked, or memory is short. */
-bool scene_outline(struct scene *scene, uint32_t patch);
-
-/* scene_wants.c: rebuilds scene->wants, most wanted first. */
-void scene_list_wants(struct scene *scene);
-
-/* scene_visibility.c: runs a visibility pass where one is due, or half of one while the eye moves.
- * Returns whether anything was drawn for it. */
-bool scene_take_visibility(struct scene *scene, bool moved);
-
-/* scene_plan.c, in the order of a frame. passed_ms is the time since the last frame. */
-/* Takes decoded objects until until_us. */
-void scene_upload(struct scene *scene, int64_t until_us, struct scene_frame *out);
-/* Drops groups over the budget, updates the cut and steps the dissolve. */
-void scene_update_cut(struct scene *scene, float passed_ms);
-/* After the visibility pass: computes which groups are desired. */
-void scene_desire(struct scene *scene);
-/* Lists the pieces in the frustum, front to back. */
-void scene_list_pieces(struct scene *scene);
-/* Plans pieces that need it, for at most budget_us. */
-void scene_plan_pieces(struct scene *scene, int64_t budget_us);
-/* Moves the weights of the blends towards what was chosen. */
-void scene_fade_blends(struct scene *scene, float passed_ms);
-/* scene_draw.c: draws missing depth maps until until_us, then at most one outdated one. */
-void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out);
-/* scene_mark.c: stores what is marked (NULL: nothing). Returns whether it differs from the frame
- * before. */
-bool scene_note_mark(struct scene *scene, const struct scene_mark *mark);
-/* Draws the mark over the picture that is bound. */
-void scene_draw_mark(struct scene *scene, const struct view *view);
-/* scene_plan.c: returns the geometric error of a patch against the scan, metres. */
-float scene_patch_error_m(const struct scene *scene, uint32_t patch);
 
 #endif

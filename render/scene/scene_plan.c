@@ -1,5 +1,7 @@
 /* Takes decoded objects, grows the cut, lists the pieces in the frustum, plans which faces colour
  * them, and fades between faces. */
+#include "render/scene/scene_plan.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +11,8 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
-#include "render/scene/scene_parts.h"
+#include "render/plan/plan_quality.h"
+#include "render/scene/scene_objects.h"
 
 /* A piece is planned again when the eye has moved by this share of its distance. */
 static const float eye_moved = 0.02f;

@@ -1,11 +1,12 @@
 /* Runs the visibility pass when it is due, counts the visible pixels of pieces and patches, and
  * moves the probes. */
+#include "render/scene/scene_visibility.h"
+
 #include <string.h>
 
 #include "base/array.h"
 #include "base/clock.h"
 #include "geometry/vec.h"
-#include "render/scene/scene_parts.h"
 
 enum {
 	MOVING_US = 120000, /* between two passes while the eye moves */

@@ -1,12 +1,15 @@
 /* Lists what the scene wants, pages, geometry, labels and tiles, each with a priority by gain per
  * byte. */
+#include "render/scene/scene_wants.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
-
-#include "render/scene/scene_parts.h"
+#include "render/plan/plan_quality.h"
+#include "render/scene/scene_labels.h"
+#include "render/scene/scene_objects.h"
 
 /* A coarse tile, two levels up, stands in for 16 fine ones: it comes first where no image is shown
  * yet. */

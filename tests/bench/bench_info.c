@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "pipeline/content/info_build.h"
+#include "storage/info_ask.h"
 
 enum { ROUNDS = 50, FOUND_MAX = 100 };
 

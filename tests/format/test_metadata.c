@@ -4,6 +4,7 @@
 #include <sodium.h>
 #include <string.h>
 
+#include "format/metadata_sign.h"
 #include "tests/check.h"
 #include "tests/format/bend.h"
 

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include "pipeline/content/annotations.h"
+#include "pipeline/content/annotations_export.h"
+#include "pipeline/content/annotations_import.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

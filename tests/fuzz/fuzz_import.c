@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 
 #include "pipeline/import/import.h"
+#include "pipeline/import/import_report.h"
 #include "pipeline/import/sandbox.h"
 #include "tests/fuzz/scratch.h"
 

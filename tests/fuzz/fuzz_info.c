@@ -7,6 +7,9 @@
 #include <string.h>
 
 #include "storage/info.h"
+#include "storage/info_ask.h"
+#include "storage/info_tools.h"
+#include "storage/info_tour.h"
 
 enum { STEPS_PER_CALL = 1000, CALLS_MAX = 200, SQL_BYTES_MAX = 64 << 10 };
 

@@ -1,6 +1,7 @@
 /* The index of a master (the hierarchy at home in .work), as it is and with the right hash at its
  * end; the groups' file beside it has 64 KiB. */
 #include "pipeline/hierarchy/master.h"
+#include "pipeline/hierarchy/master_cut.h"
 #include "tests/fuzz/scratch.h"
 
 enum { STAMP_AT = 8 };

@@ -3,6 +3,7 @@
 #include <errno.h>
 
 #include "pipeline/content/info_build.h"
+#include "storage/info_tour.h"
 #include "tests/fuzz/scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "format/metadata.h"
+#include "format/metadata_sign.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -7,7 +7,9 @@
 
 #include "format/article.h"
 #include "storage/info.h"
+#include "storage/info_ask.h"
 #include "storage/info_schema.h"
+#include "storage/info_tour.h"
 #include "tests/check.h"
 
 /* ---- the schemas as they were written */

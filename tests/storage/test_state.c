@@ -1,3 +1,4 @@
+#include "format/metadata_sign.h"
 #include "storage/state.h"
 
 #include <errno.h>

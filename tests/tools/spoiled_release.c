@@ -3,6 +3,8 @@
 #include <stdio.h>
 
 #include "pipeline/content/info_build.h"
+#include "pipeline/release/publish_info.h"
+#include "pipeline/release/publish_samples.h"
 #include "tests/pipeline/release/tiny_release.h"
 
 static void spoiled_hierarchy(struct object_store *objects, struct page_child *out)

@@ -5,6 +5,7 @@
 
 #include <sodium.h>
 
+#include "format/metadata_sign.h"
 #include "tests/check.h"
 
 enum { NOW_S = 1700000000, DAY_S = 86400, POOL = 4 };

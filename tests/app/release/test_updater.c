@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "format/metadata.h"
+#include "format/metadata_sign.h"
 #include "tests/check.h"
 
 enum { DAY_S = 86400, TODAY_S = 1800000000 };

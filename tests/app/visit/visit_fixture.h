@@ -7,6 +7,7 @@
 #include "app/visit/actions.h"
 #include "app/visit/visitor.h"
 #include "base/clock.h"
+#include "storage/info_tools.h"
 #include "tests/pipeline/content/info_folder.h"
 
 enum { S = 1000, IDLE_S = 60 };

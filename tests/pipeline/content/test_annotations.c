@@ -7,6 +7,8 @@
 #include <limits.h>
 #include <unistd.h>
 
+#include "pipeline/content/annotations_export.h"
+#include "pipeline/content/annotations_import.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static char copy[100], file[100]; /* where imports go, and what they read */

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "storage/info_tools.h"
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 

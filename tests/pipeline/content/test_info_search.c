@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sqlite3.h>
 
+#include "storage/info_ask.h"
 #include "storage/info_index.h"
 #include "storage/words.h"
 #include "tests/pipeline/content/info_folder.h"

@@ -2,6 +2,7 @@
 #include <sqlite3.h>
 
 #include "storage/info_schema.h"
+#include "storage/info_tools.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static void build_with(struct info_built *out, unsigned tools)

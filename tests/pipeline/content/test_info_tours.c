@@ -6,6 +6,7 @@
 
 #include "geometry/viewpoint.h"
 #include "storage/info_schema.h"
+#include "storage/info_tour.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static const char good_tours[] =

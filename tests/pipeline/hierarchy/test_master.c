@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "format/patch.h"
+#include "pipeline/hierarchy/master_cut.h"
 #include "tests/check.h"
 #include "tests/pipeline/shapes.h"
 

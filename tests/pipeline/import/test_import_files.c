@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "format/picture.h"
-#include "pipeline/import/import_parts.h"
+#include "pipeline/import/import_files.h"
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 

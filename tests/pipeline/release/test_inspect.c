@@ -2,6 +2,7 @@
 
 #include <errno.h>
 
+#include "pipeline/release/inspect_release.h"
 #include "tests/pipeline/release/tiny_release.h"
 
 static struct tiny tiny;

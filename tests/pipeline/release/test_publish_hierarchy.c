@@ -8,7 +8,7 @@
 
 #include "format/page.h"
 #include "format/patch.h"
-#include "pipeline/release/publish_sources.h"
+#include "pipeline/release/publish_hierarchy.h"
 #include "tests/check.h"
 
 enum { GROUPS = 6, PATCHES = 12 };

@@ -13,7 +13,9 @@
 #include "pipeline/content/part_faces.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/release/nearest.h"
-#include "pipeline/release/publish_sources.h"
+#include "pipeline/release/publish_hierarchy.h"
+#include "pipeline/release/publish_info.h"
+#include "pipeline/release/publish_labels.h"
 #include "tests/check.h"
 #include "tests/pipeline/shapes.h"
 

@@ -1,5 +1,6 @@
 /* verify looks into pages: that each is an article, and shows only pictures that there are. */
 #include "pipeline/content/info_build.h"
+#include "pipeline/release/publish_samples.h"
 #include "pipeline/release/verify.h"
 
 #include <errno.h>

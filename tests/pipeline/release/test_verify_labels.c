@@ -1,5 +1,7 @@
 /* verify looks into labels: that they are of their groups, and of parts that there are. */
 #include "pipeline/content/info_build.h"
+#include "pipeline/release/publish_info.h"
+#include "pipeline/release/publish_samples.h"
 #include "pipeline/release/verify.h"
 
 #include <errno.h>

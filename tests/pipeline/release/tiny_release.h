@@ -15,7 +15,8 @@
 #include "format/picture.h"
 #include "format/tile.h"
 #include "pipeline/release/publish.h"
-#include "pipeline/release/publish_sources.h"
+#include "pipeline/release/publish_info.h"
+#include "pipeline/release/publish_samples.h"
 #include "pipeline/samples/sample_store.h"
 #include "tests/check.h"
 

@@ -1,5 +1,6 @@
 /* The panel's life on a card that is played: what drm_card.h and libdrm would answer, and a clock
  * that only the test moves. */
+#include "render/display/drm_flip.h"
 #include "render/display/drm_panel.h"
 
 #include <errno.h>

@@ -3,6 +3,7 @@
 
 #include "geometry/vec.h"
 #include "render/plan/plan.h"
+#include "render/plan/plan_quality.h"
 #include "tests/check.h"
 
 static const struct plan_eye eye = { { 0, -10, 0 }, 800, 1.2f };

@@ -1,10 +1,11 @@
 /* A content folder's parts, pages, tours and pictures in memory, as info_build reads and checks
  * them before anything is written. Private to pipeline/content. */
-#ifndef GOPURA_PIPELINE_CONTENT_DRAFT_PRIVATE_H
-#define GOPURA_PIPELINE_CONTENT_DRAFT_PRIVATE_H
+#ifndef GOPURA_PIPELINE_CONTENT_DRAFT_H
+#define GOPURA_PIPELINE_CONTENT_DRAFT_H
 
 #include "pipeline/content/info_build.h"
 #include "pipeline/content/json_text.h"
+#include "storage/info_tour.h"
 
 struct cJSON;
 
@@ -84,21 +85,6 @@ struct draft {
 /* Frees everything that was read. options and diagnostics stay. */
 void draft_finish(struct draft *draft);
 
-/* Reads parts.json. Like the other readers, it returns 0 even after faults, which it reports; a
- * negative errno means that reading cannot go on. */
-must_check int draft_read_parts(struct draft *draft);
-/* Reads and checks the pages of the parts. Call it after draft_read_parts and draft_read_tours,
- * because pages may link to both. */
-must_check int draft_read_pages(struct draft *draft);
-/* Reads tours.json. Call it after draft_read_parts, because stops may name parts. */
-must_check int draft_read_tours(struct draft *draft);
-/* Computes and checks the views of stops that name a part. Call it when all parts have a place. */
-void draft_place_stops(struct draft *draft);
-/* Adds the credits of a part: `json` is the part's own "credits", and `all` those stated for all
- * parts, used for elements that json lacks. Either may be NULL. Reports faults with the part's
- * line. -ENOMEM. */
-must_check int draft_read_credits(struct draft *draft, struct draft_part *part,
-				  const struct cJSON *json, const struct cJSON *all);
 /* Reads and checks a picture that file:line refers to. Returns its index, -1 after reporting a
  * fault, or -ENOMEM. */
 int draft_add_picture(struct draft *draft, const char *name, const char *file, unsigned line);
@@ -110,8 +96,6 @@ int draft_find_part(const struct draft *draft, const char *id);
 int draft_find_tour(const struct draft *draft, const char *id);
 /* Returns whether a part's region is a list of faces. */
 bool draft_has_faces(const struct draft *draft);
-/* Returns whether id may name a part or a tour. */
-bool draft_is_id(const char *id);
 
 /* Reads a JSON file of the folder that has {"KEY": [...]} at the top level. *array is NULL if there
  * is no such file, or after a complaint. *out is for json_text_finish, also on failure. Negative

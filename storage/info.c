@@ -2,6 +2,8 @@
  * parts in eight languages are a few hundred KB, and no frame ever waits for SQLite. The image may
  * come from a damaged cache or a stranger. So the schema is not trusted (it cannot run functions),
  * the pages of the file are checked, and work is limited. */
+#include "storage/info.h"
+
 #include <errno.h>
 #include <sqlite3.h>
 #include <stdio.h>
@@ -15,6 +17,8 @@
 #include "storage/info_languages.h"
 #include "storage/info_rows.h"
 #include "storage/info_schema.h"
+#include "storage/info_tools.h"
+#include "storage/info_tour.h"
 #include "storage/plain_page.h"
 
 enum {

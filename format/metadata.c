@@ -1,5 +1,7 @@
 /* Reads signed metadata files: strict JSON, base64, ed25519 signatures, then the fields of each
  * role. */
+#include "format/metadata.h"
+
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>

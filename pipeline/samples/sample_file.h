@@ -1,7 +1,7 @@
 /* The files of the sample store: a sealed frame around the contents, and the summary of a point's
  * file, which has the tiles' hashes in place of their bytes. docs/samples.md has the bytes. */
-#ifndef GOPURA_PIPELINE_SAMPLES_SAMPLE_FILE_PRIVATE_H
-#define GOPURA_PIPELINE_SAMPLES_SAMPLE_FILE_PRIVATE_H
+#ifndef GOPURA_PIPELINE_SAMPLES_SAMPLE_FILE_H
+#define GOPURA_PIPELINE_SAMPLES_SAMPLE_FILE_H
 
 #include "format/hash.h"
 #include "pipeline/samples/sample_store.h"

@@ -1,6 +1,6 @@
-/* What the sources of the hierarchy build share. Private to multires*.c. */
-#ifndef GOPURA_PIPELINE_HIERARCHY_MULTIRES_PARTS_H
-#define GOPURA_PIPELINE_HIERARCHY_MULTIRES_PARTS_H
+/* Makes one group of the hierarchy and the coarser patches above it. Private to multires*.c. */
+#ifndef GOPURA_PIPELINE_HIERARCHY_MULTIRES_JOB_H
+#define GOPURA_PIPELINE_HIERARCHY_MULTIRES_JOB_H
 
 #include "pipeline/hierarchy/multires.h"
 
@@ -35,10 +35,5 @@ struct job_site {
 must_check int group_job_run(const struct job_site *site, struct group_job *job, uint32_t worker);
 /* Frees the results. */
 void group_job_finish(struct group_job *job);
-
-/* Writes the object and the hierarchy rows of a group's patches. Returns -ENOMEM or encoder
- * errors. */
-must_check int group_job_write(const struct job_site *site, struct group_job *job,
-			       uint32_t *local_of);
 
 #endif

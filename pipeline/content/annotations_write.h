@@ -1,0 +1,38 @@
+/* Writes imported annotations into a content folder. Private to pipeline/content/annotations*.c. */
+#ifndef GOPURA_PIPELINE_CONTENT_ANNOTATIONS_WRITE_H
+#define GOPURA_PIPELINE_CONTENT_ANNOTATIONS_WRITE_H
+
+#include "pipeline/content/annotations_import.h"
+#include "pipeline/content/annotations_private.h"
+#include "pipeline/content/draft.h"
+
+struct page_file {
+	char name[INFO_ID_BYTES_MAX + 40]; /* for example "pages/gate.en.html" */
+	const char *html;                  /* borrowed from the file's JSON */
+};
+
+struct importer {
+	const struct annotations_import_options *options;
+	struct diagnostics *diagnostics; /* of the options */
+	struct annotations_imported *report;
+	const char *language;
+	cJSON *parts_file, *parts; /* parts_file is owned; parts is the array in it */
+	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
+	struct page_file *pages;   /* owned */
+	uint32_t page_count, page_room;
+	char **written; /* owned paths, in the order in which they were written */
+	uint32_t written_count, written_room;
+	bool failed; /* out of memory */
+	/* The annotation that is being read. */
+	const cJSON *item;
+	unsigned line;
+	cJSON *part;
+};
+
+/* Returns whether the folder has no parts.json, tours.json and pages yet; otherwise it says so.
+ * Removes an empty pages/. */
+bool importer_has_room(struct importer *im);
+/* Writes what was read and checks it. On failure everything written is removed. Negative errno. */
+must_check int importer_write(struct importer *im);
+
+#endif

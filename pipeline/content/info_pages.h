@@ -1,0 +1,11 @@
+/* Reads and compiles the pages of the parts into the draft. Private to pipeline/content. */
+#ifndef GOPURA_PIPELINE_CONTENT_INFO_PAGES_H
+#define GOPURA_PIPELINE_CONTENT_INFO_PAGES_H
+
+#include "pipeline/content/draft.h"
+
+/* Reads and checks the pages of the parts. Call it after draft_read_parts and draft_read_tours,
+ * because pages may link to both. */
+must_check int draft_read_pages(struct draft *draft);
+
+#endif

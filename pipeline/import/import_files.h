@@ -1,0 +1,34 @@
+/* Opens the files that a scan names, safely. Private to pipeline/import/import*.c. */
+#ifndef GOPURA_PIPELINE_IMPORT_IMPORT_FILES_H
+#define GOPURA_PIPELINE_IMPORT_IMPORT_FILES_H
+
+#include "base/compiler.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Opens a file that a scan names. The name is looked up as given, if that stays below the scan's
+ * folder, and else by its last component in the folder itself (exporters like to write
+ * C:\Users\...). Only regular files; no link is followed, no hidden file or folder used, no signing
+ * key opened. Returns a descriptor owned by the caller, or: -ENOENT: not found; -EXDEV: outside the
+ * folder; -ELOOP: a link; -EINVAL: not a regular file; -EKEYREJECTED: a signing key; other negative
+ * errno. */
+must_check int import_files_open_at(int folder_fd, const char *name);
+/* Opens the folder of a scan for import_files_open_at. Returns a descriptor owned by the caller, or
+ * a negative errno. */
+must_check int import_files_open_folder(const char *scan_path);
+
+struct import_files {
+	const char *scan_path; /* borrowed; for messages */
+	int folder_fd;         /* borrowed; not used in the sandbox */
+	/* the parent opens files, and the sandbox limits the memory for pictures */
+	bool in_sandbox;
+	uint64_t picture_bytes_left; /* outside the sandbox: for all decoded pictures together */
+};
+
+/* Opens a file that the scan names, directly or through the sandbox's parent. Results as
+ * import_files_open_at. */
+must_check int import_files_open(const struct import_files *files, const char *name);
+/* Returns the error as a phrase about the file, such as "is not beside it". Borrowed. */
+const char *import_files_why(int rc);
+
+#endif

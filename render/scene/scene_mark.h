@@ -1,0 +1,13 @@
+/* Marks a part in the picture of the scene. Private to render/scene. */
+#ifndef GOPURA_RENDER_SCENE_SCENE_MARK_H
+#define GOPURA_RENDER_SCENE_SCENE_MARK_H
+
+#include "render/scene/scene_parts.h"
+
+/* Stores what is marked (NULL: nothing). Returns whether it differs from the frame
+ * before. */
+bool scene_note_mark(struct scene *scene, const struct scene_mark *mark);
+/* Draws the mark over the picture that is bound. */
+void scene_draw_mark(struct scene *scene, const struct view *view);
+
+#endif

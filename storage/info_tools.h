@@ -1,0 +1,19 @@
+/* The tools that the content offers to visitors, in the information database. */
+#ifndef GOPURA_STORAGE_INFO_TOOLS_H
+#define GOPURA_STORAGE_INFO_TOOLS_H
+
+#include "storage/info.h"
+
+/* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
+enum info_tool { INFO_TOOL_LIGHT = 1, INFO_TOOL_SECTION = 2 };
+/* Returns the tool of a name ("light" or "section"); 0: neither. */
+unsigned info_tool_named(const char *name, size_t length);
+
+/* Returns the tools that the content offers, a mask of enum info_tool; unknown ones are left
+ * out. */
+unsigned info_tools(const struct info *info);
+
+/* For opening: reads the table of tools, which may exist in any version. */
+must_check int info_load_tools(struct info *info);
+
+#endif
