@@ -1,6 +1,8 @@
 /* gopura-kiosk on a clock that does not wait: where a kiosk would wait for time alone (a visitor, a
  * fade, the next frame) time jumps, so that hours of visits pass in minutes. Where it waits for
- * the fetcher or a decoder it waits.
+ * the fetcher or a decoder it waits. With --shots time stands still meanwhile, so that a picture
+ * does not depend on how busy the machine is, and the frames of a moving eye are as far apart as
+ * its longest step.
  *
  *   hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE [--log debug]
  *
@@ -16,10 +18,12 @@
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/timerfd.h>
+#include <time.h>
 
 #include "app/kiosk.h"
 #include "app/settings/options.h"
 #include "base/clock.h"
+#include "render/scene/scene_parts.h"
 #include "ui/overlay.h"
 
 /* The linker wraps these (Makefile). */
@@ -40,8 +44,11 @@ enum {
 	TIMERS_MAX = 8,
 	LOOK_US = 100,         /* a look at the clock takes so long, so budgets of time end */
 	REAL_WAIT_MS = 2,      /* a look at what others do */
+	GATHER_MS = 50,        /* of real time without an event */
 	HELD_AT_US = 2000000,  /* of the kiosk's life, until there is a picture */
 	END_MOST_US = 1200000, /* of a turn, past when nobody should have been there */
+	SHOT_FRAME_US = 44000, /* of a frame; the eye's longest step is 50 ms */
+	STILL_MOST_MS = 60000, /* of real time; then what is waited for is taken not to come */
 };
 
 static struct kiosk kiosk;
@@ -52,6 +59,9 @@ static struct {
 } timers[TIMERS_MAX];
 static uint32_t timer_count;
 static bool failed;
+static bool heard; /* an event came since the last frame */
+static bool stands_still;
+static int64_t still_since_ms; /* in real time; 0: since the last frame nothing is waited for */
 
 static struct {
 	uint64_t frames, touches, jumps_us;
@@ -77,10 +87,19 @@ static void fail(const char *format, ...)
 
 /* ---- time */
 
-/* Before the first picture no visitor comes. */
+static int64_t real_ms(void)
+{
+	struct timespec now;
+
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+/* Time stands still before the first picture, when no visitor comes, and while a picture of which
+ * shots are taken waits for others. */
 static bool held(void)
 {
-	return !kiosk.frame.pictured && virtual_us > 1000000000 + HELD_AT_US;
+	return stands_still || (!kiosk.frame.pictured && virtual_us > 1000000000 + HELD_AT_US);
 }
 
 int64_t __wrap_clock_now_us(void)
@@ -141,22 +160,63 @@ static void advance(int64_t by_us)
 	ring_timers();
 }
 
+/* Whether a picture that is to be taken comes to be: neither eye nor finger moves it. */
+static bool at_rest(void)
+{
+	bool down = false;
+
+	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++)
+		down = down || kiosk.fingers.gestures.fingers[i].down;
+	return kiosk.options.shots_path && kiosk.frame.pictured && !kiosk.eye.moves && !down;
+}
+
+/* Whether decoders work at what the next frame would show. What they have done before that frame is
+ * an event, or waits to be uploaded. */
+static bool decoders_work(const struct scene *scene)
+{
+	return scene && !heard && !scene->uploads_wait && pool_busy(scene->pool) > 0;
+}
+
+static bool others_work(void)
+{
+	const struct exhibit *shown = &kiosk.releases.sessions.shown.exhibit;
+
+	if (!kiosk.frame.pictured || (!shown->frame.settled && !kiosk.redraw.wanted))
+		return true;
+	return at_rest() && decoders_work(shown->scene);
+}
+
+/* Whether time stands still for what others work at. */
+static bool is_awaited(bool works)
+{
+	if (!works || !at_rest())
+		return false;
+	if (still_since_ms == 0)
+		still_since_ms = real_ms();
+	return real_ms() - still_since_ms < STILL_MOST_MS;
+}
+
 int __wrap_epoll_wait(int fd, struct epoll_event *events, int most, int timeout_ms)
 {
-	const bool works =
-		!kiosk.frame.pictured ||
-		(!kiosk.releases.sessions.shown.exhibit.frame.settled && !kiosk.redraw.wanted);
+	const bool works = others_work();
 	int count = __real_epoll_wait(fd, events, most, 0);
 
+	heard = heard || count > 0;
+	stands_still = is_awaited(works);
 	if (count != 0 || timeout_ms == 0)
 		return count;
-	if (works) {
-		count = __real_epoll_wait(fd, events, most, REAL_WAIT_MS);
+	if (works || (heard && at_rest())) { /* a frame shows what came together */
+		count = __real_epoll_wait(fd, events, most, works ? REAL_WAIT_MS : GATHER_MS);
+		if (count > 0 && at_rest()) {
+			heard = true;
+			return count;
+		}
+	}
+	if (works)
 		advance(REAL_WAIT_MS * 1000);
-	} else {
+	else
 		/* No wait is cut that something else could end but time: look first. */
 		advance(timeout_ms < 0 ? INT64_MAX / 2 : (int64_t)timeout_ms * 1000);
-	}
 	return count != 0 ? count : __real_epoll_wait(fd, events, most, 0);
 }
 
@@ -218,8 +278,18 @@ static bool somebody_is_led(void)
 
 int __wrap_frame_draw(struct frame *of)
 {
-	int rc = __real_frame_draw(of);
+	const int64_t next_us = virtual_us + SHOT_FRAME_US;
+	int rc;
 
+	heard = stands_still = false;
+	still_since_ms = 0;
+	rc = __real_frame_draw(of);
+	/* Frames that refine a picture at rest are as close as ever: time is not for them to pass.
+	 */
+	if (kiosk.options.shots_path && virtual_us < next_us &&
+	    (!at_rest() || kiosk.releases.sessions.shown.exhibit.frame.settled))
+		virtual_us = next_us;
+	ring_timers(); /* the next frame may be due too */
 	seen.frames++;
 	seen.tour += somebody_is_led();
 	if (somebody_is_led())
