@@ -13,7 +13,7 @@ mkdir -p "$work/content"
 make --no-print-directory -j"$(nproc)" build/tests/tools/hurried_kiosk build/tests/tools/golden >/dev/null
 small_release
 # The small temple with the demo's words (other tests write into its own copy) and Arabic ones.
-cp -ru "$small/content/." "$work/content/"
+cp -au "$small/content/." "$work/content/"
 rm -rf "$work/content/pages" "$work/differ"
 cp -r demo/content/pages demo/content/parts.json demo/content/tours.json "$work/content/"
 python3 tests/golden/content.py "$work/content"
