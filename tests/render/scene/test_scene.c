@@ -440,7 +440,8 @@ static int free_release(void **state)
 	return 0;
 }
 
-int main(void)
+/* test_scene [NAME]: that test alone. */
+int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(images_show_what_vertices_cannot),
@@ -456,5 +457,7 @@ int main(void)
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
 		cmocka_unit_test(regions_know_what_is_in_them),
 	};
+	if (argc > 1)
+		cmocka_set_test_filter(argv[1]);
 	return cmocka_run_group_tests(tests, make_release, free_release);
 }
