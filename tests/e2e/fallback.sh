@@ -21,7 +21,7 @@ health=$!
 start_kiosk() { # LOG
 	log=$1
 	rm -f "$log"
-	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 --log debug \
+	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 --log debug \
 		--trust "$work/release1/root/1.json" --state "$work/state" --metrics "$work/kiosk" 2>"$log" &
 	pid=$!
 }

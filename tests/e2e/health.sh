@@ -18,7 +18,7 @@ start_fetch() {
 	fetch=$!
 }
 start_kiosk() {
-	build/gopura-kiosk --display headless --size 640x360 --socket "$work/socket" \
+	build/gopura-kiosk --display headless --size 320x180 --socket "$work/socket" \
 		--trust "$release/root/1.json" --state "$work/state" --metrics "$work/kiosk" \
 		--touch-replay tests/e2e/nothing.touch >>"$work/kiosk.log" 2>&1 &
 	kiosk=$!

@@ -11,7 +11,7 @@ mkdir -p "$work"
 small_release
 release=$small/release pid=
 trap 'kill $pid 2>/dev/null || true' EXIT
-kiosk=(build/gopura-kiosk --display headless --size 640x360 --release "$release"
+kiosk=(build/gopura-kiosk --display headless --size 320x180 --release "$release"
 	--trust "$release/root/1.json" --state "$work/state")
 
 # loses WAY SECONDS STATUS: told as LOST_GL_BY says, so long after the first picture.

@@ -19,7 +19,7 @@ start_fetch() { # OPTION...
 	fetch=$!
 }
 start_fetch --rate-limit 4
-build/gopura-kiosk --display headless --size 640x360 --socket "$work/socket" --trust "$work/release/root/1.json" \
+build/gopura-kiosk --display headless --size 320x180 --socket "$work/socket" --trust "$work/release/root/1.json" \
 	--poll-s 1 --state "$work/state" --log debug 2>"$log" &
 kiosk=$!
 wait_for 60 "whole picture beside the limit" says 'the picture has settled'

@@ -16,7 +16,7 @@ trap '[ -z "$pid" ] || kill -9 "$pid" 2>/dev/null || true; stop_server' EXIT
 start_kiosk() { # LOG URL OPTION...
 	log=$1
 	rm -f "$log"
-	build/gopura-kiosk --display headless --size 640x360 --release "$2" --stick "$work/mount" --poll-s 1 \
+	build/gopura-kiosk --display headless --size 320x180 --release "$2" --stick "$work/mount" --poll-s 1 \
 		--log debug --trust "$small/release/root/1.json" --state "$work/state" "${@:3}" 2>"$log" &
 	pid=$!
 }

@@ -18,7 +18,7 @@ start_kiosk() { # LOG OPTION...
 	log=$1
 	shift
 	rm -f "$log" # of the start before
-	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 \
+	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 \
 		--log debug --idle-s 5 --trust "$work/release/root/1.json" --state "$work/state" "$@" 2>"$log" &
 	pid=$!
 }
@@ -65,7 +65,7 @@ wait_for 60 "first release" says 'release 1 is shown'
 prove
 end_kiosk
 for ((ms = 1000; ms < 26000; ms += 2000)); do
-	printf '%d down 0 320 180\n%d move 0 360 180\n%d up 0\n' "$ms" $((ms + 300)) $((ms + 600))
+	printf '%d down 0 160 90\n%d move 0 180 90\n%d up 0\n' "$ms" $((ms + 300)) $((ms + 600))
 done >"$work/drags.touch"
 start_kiosk "$work/visit.log" --touch-replay "$work/drags.touch"
 wait_for 60 "a finger" says 'drag begins'

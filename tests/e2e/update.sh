@@ -14,7 +14,7 @@ cp -a "$small/release" "$work/release"
 cp -a "$work/release" "$work/release1"
 serve "$work/release" "$work/server"
 start_kiosk() {
-	build/gopura-kiosk --display headless --size 640x360 --release "$url" --ca "$ca" --poll-s 1 \
+	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 \
 		--log debug --trust "$work/release/root/1.json" --state "$work/state" 2>"$1" &
 	pid=$!
 }
