@@ -156,14 +156,33 @@ struct felt {
 	int run; /* the longest without a gap across */
 };
 
+/* Where handles are, found in steps that are smaller than any of them. */
+static struct rect handles_rect(const struct overlay *overlay)
+{
+	int left = overlay->width_px, top = overlay->height_px, right = 0, bottom = 0;
+
+	for (int y = 0; y < overlay->height_px; y += STEP_PX)
+		for (int x = 0; x < overlay->width_px; x += STEP_PX) {
+			if (overlay_handle_at(overlay, (float)x, (float)y) == OVERLAY_HANDLE_NONE)
+				continue;
+			left = x - STEP_PX < left ? x - STEP_PX : left;
+			top = y - STEP_PX < top ? y - STEP_PX : top;
+			right = x + STEP_PX > right ? x + STEP_PX : right;
+			bottom = y + STEP_PX > bottom ? y + STEP_PX : bottom;
+		}
+	return (struct rect){ left, top, right - left, bottom - top };
+}
+
 static void feel(const struct overlay *overlay, struct felt felt[4])
 {
+	const struct rect where = handles_rect(overlay);
+
 	for (int i = 0; i < 4; i++)
 		felt[i] = (struct felt){ 1 << 20, 1 << 20, -1, -1, 0 };
-	for (int y = 0; y < overlay->height_px; y++) {
+	for (int y = where.y_px; y < where.y_px + where.height_px; y++) {
 		int before = OVERLAY_HANDLE_NONE, run = 0;
 
-		for (int x = 0; x < overlay->width_px; x++) {
+		for (int x = where.x_px; x < where.x_px + where.width_px; x++) {
 			const int at = (int)overlay_handle_at(overlay, (float)x, (float)y);
 			struct felt *f = &felt[at];
 
