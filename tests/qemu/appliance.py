@@ -115,7 +115,7 @@ def keyboard(machine):
         machine.qmp.press(*keys)
     time.sleep(15)
     if tones(machine.picture("after-keys")) < 300:
-        raise SystemExit("a keyboard took the panel away: " + os.path.join(machine.work, "after-keys.png"))
+        raise SystemExit("a keyboard took the panel away: " + os.path.join(machine.work, "after-keys.ppm"))
     if "Received SIGINT" not in machine.log()[said:]:  # of Ctrl-Alt-Del
         raise SystemExit("no key came to the system:\n" + machine.log()[said:][-3000:])
     answer = re.search("GRUB|login:|[Rr]ebooting|Stopping gopura-kiosk|Started .*(getty|shell)|sysrq: (Resetting|SAK)", machine.log()[said:])

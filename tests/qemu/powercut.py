@@ -24,7 +24,7 @@ import zlib
 sys.path.insert(0, os.path.dirname(__file__))
 import writelog
 from appliance import ANSWER_S, BOOT_S, INSTALL_S, Appliance, table
-from machine import read_png, share_that_differs
+from machine import read_ppm, share_that_differs
 
 CARD_MIB = 2048  # the card is larger than the image
 MIB = 1 << 20
@@ -100,7 +100,7 @@ class Session:
             machine.plug(stick("next"))
             said(f"release {self.sequences[1]} is shown")
             self.mark("next is shown")
-            first = above_the_help(read_png(self.path("first.png")))
+            first = above_the_help(read_ppm(self.path("first.ppm")))
             # The panel follows what is remembered, on a loaded machine by many seconds.
             machine.wait_for("newer release on the panel", ANSWER_S,
                              lambda: share_that_differs(first, above_the_help(machine.picture("next"))) > SAME_SHARE)
@@ -244,7 +244,7 @@ def look(cut, work, sticks):
     seen["release"] = int(re.findall(RELEASE, log)[-1])
     seen["slot"] = re.findall(r"starting slot (\w)", log)[-1]
     seen["repaired"] = "repaired" in log
-    likeness = lambda name: share_that_differs(above_the_help(picture), above_the_help(read_png(session.path(name + ".png"))))
+    likeness = lambda name: share_that_differs(above_the_help(picture), above_the_help(read_ppm(session.path(name + ".ppm"))))
     seen["differs"] = {name: round(likeness(name), 3) for name in ("first", "next")}
     nearest = min(seen["differs"], key=seen["differs"].get)
     wrong = complaints(log)
@@ -293,7 +293,7 @@ def main():
                 os.makedirs(kept, exist_ok=True)
                 cut.__init__(session, seed, number, lies)
                 cut.disk(os.path.join(kept, "disk.img"))
-                for name in ("cut.log", "cut.png"):
+                for name in ("cut.log", "cut.ppm"):
                     if os.path.exists(os.path.join(work, name)):
                         shutil.copy(os.path.join(work, name), kept)
                 print(f"  kept in {kept}; again: CUT={number} SEED={seed} make powercut")

@@ -45,4 +45,4 @@ class Qmp:
         time.sleep(0.3)
 
     def screendump(self, path):
-        self.command("screendump", filename=path, format="png")
+        self.command("screendump", filename=path, format="ppm")
