@@ -6,8 +6,7 @@
 #   tests/run.sh only NAME...   the tests alone whose path has one of these words in it: test_cut, e2e/kiosk, net/
 #
 # A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
-# tests, and after them end-to-end tests and machines in QEMU, run beside one another: each has a
-# port and a folder of its own.
+# tests, end-to-end tests and machines in QEMU run beside one another: each has a port and a folder of its own.
 set -u
 cd "$(dirname "$0")/.."
 logs=$PWD/build/test-logs
@@ -42,18 +41,6 @@ if [ "${1:-}" = one ]; then
 	exit 0
 fi
 
-if [ "${1:-}" = lane ]; then
-	shift
-	# A machine in QEMU has watchdogs and deadlines in real time: it goes before tests that only compute.
-	for name; do
-		case $name in
-		qemu/*) run_one "$name.sh" 2400 bash "tests/$name.sh" ;;
-		*) run_one "$name.sh" 2400 nice -n 5 bash "tests/$name.sh" ;;
-		esac
-	done
-	exit 0
-fi
-
 # unit BUILD LABEL [WORDS]: the programs of tests/ as built there, or those whose path has one of the words.
 unit() {
 	local program
@@ -68,6 +55,29 @@ unit() {
 		done
 	} | grep -E "${3:-.}" | xargs -r -P "$jobs" -L 1 tests/run.sh one
 }
+
+if [ "${1:-}" = lane ]; then
+	shift
+	# A machine in QEMU has watchdogs and deadlines in real time: it goes before tests that only compute.
+	for name; do
+		case $name in
+		units)
+			unit build/asan san
+			unit build unit
+			;;
+		release-*)
+			run_one "$name" 2400 env -u RELEASES_MADE nice -n 5 bash -c ". tests/e2e/lib.sh; ${name#release-}_release"
+			;;
+		qemu/arm64 | e2e/*)
+			case $name in e2e/weak | e2e/pictures) release=demo ;; *) release=small ;; esac
+			until [ -z "${RELEASES_MADE:-}" ] || [ -e "$logs/release-$release.log.verdict" ]; do sleep 1; done
+			run_one "$name.sh" 2400 nice -n 5 bash "tests/$name.sh"
+			;;
+		*) run_one "$name.sh" 2400 bash "tests/$name.sh" ;;
+		esac
+	done
+	exit 0
+fi
 
 scripts() { find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' | sed 's/^tests\///; s/\.sh$//' | sort; }
 
@@ -107,23 +117,17 @@ run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=bui
 run_one check-circles 120 tests/style/circles.py build/asan/obj
 if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests benches
-	# What the end-to-end tests show, made beside the unit tests: much of it is the work of one core.
-	run_one releases 2400 bash -c '. tests/e2e/lib.sh; small_release; demo_release' &
-fi
-unit build/asan san
-if [ "$mode" = all ]; then
-	unit build unit
-	wait
 	export RELEASES_MADE=yes
-	# A line is what runs in turn, as it shares what it makes. Those that take long come first, so that
-	# none of them is left over in the end; those that compute alternate with those that mostly wait, and
-	# so there is one more at a time than there are cores.
-	{
-		echo qemu/kiosk qemu/image qemu/disks qemu/powercut
-		printf '%s\n' e2e/weak e2e/switch e2e/golden e2e/tours qemu/arm64 e2e/tools e2e/pictures e2e/visit
-		scripts
-	} | awk '!seen[$1]++ { print } { for (i = 2; i <= NF; i++) seen[$i]++ }' |
-		xargs -P "$((jobs + 1))" -L 1 tests/run.sh lane
+	# A line is what runs in turn, as it shares what it makes. What computes has a lane for each core, those that
+	# take long first; beside it, in as many lanes, runs what mostly waits. End-to-end tests wait for their release.
+	computes=$(printf '%s\n' 'qemu/kiosk qemu/image qemu/disks qemu/powercut' 'release-small release-demo' units e2e/golden \
+		qemu/arm64 e2e/weak e2e/pictures e2e/monkey e2e/tours e2e/tools e2e/scans e2e/visitor e2e/back)
+	lanes() { xargs -P "$1" -L 1 tests/run.sh lane; }
+	lanes "$jobs" <<<"$computes" &
+	{ echo e2e/switch; scripts; } | awk '!seen[$0]++' | grep -vxF "$(tr ' ' '\n' <<<"$computes")" | lanes "$jobs" &
+	wait
+else
+	unit build/asan san
 fi
 
 summary
