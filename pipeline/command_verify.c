@@ -115,7 +115,8 @@ static int verify(const char *place, const char *ca_file, const char *trust)
 	} else {
 		rc = verify_release(&report, &options);
 		if (rc < 0)
-			fprintf(stderr, "gopura-content verify: %s\n", report.why);
+			fprintf(stderr, "gopura-content verify: %s\n",
+				diagnostics_cause(&report.diagnostics, rc));
 		else
 			print_report(&report, trust != NULL);
 		release_reader_destroy(options.reader);

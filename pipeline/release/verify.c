@@ -28,7 +28,8 @@ static int read_roots(struct verify_walk *walk, struct bytes first, struct buffe
 	}
 	rc = trust_root_first(&report->trust, first, &why);
 	if (rc < 0)
-		return verify_blame(report, rc, "the first root: %s", why);
+		return diagnostics_add(&report->diagnostics, rc, NULL, 0, "the first root: %s",
+				       why);
 	while (report->trust.version < ROOTS_MAX) {
 		char name[32];
 
@@ -40,9 +41,10 @@ static int read_roots(struct verify_walk *walk, struct bytes first, struct buffe
 			return verify_blame_reader(walk, rc);
 		rc = trust_root_next(&report->trust, buffer_bytes(file), &why);
 		if (rc < 0)
-			return verify_blame(report, rc, "%s: %s", name, why);
+			return diagnostics_add(&report->diagnostics, rc, name, 0, "%s", why);
 	}
-	return verify_blame(report, -EBADMSG, "more than %d roots", ROOTS_MAX);
+	return diagnostics_add(&report->diagnostics, -EBADMSG, NULL, 0, "more than %d roots",
+			       ROOTS_MAX);
 }
 
 static int check_expiry(struct verify_walk *walk, int64_t now_s, const char *name,
@@ -50,8 +52,8 @@ static int check_expiry(struct verify_walk *walk, int64_t now_s, const char *nam
 {
 	if (now_s == 0 || now_s < expires_s)
 		return 0;
-	return verify_blame(walk->report, -EKEYEXPIRED, "%s: expired %" PRId64 " days ago", name,
-			    (now_s - expires_s) / 86400);
+	return diagnostics_add(&walk->report->diagnostics, -EKEYEXPIRED, name, 0,
+			       "expired %" PRId64 " days ago", (now_s - expires_s) / 86400);
 }
 
 static int read_release(struct verify_walk *walk, struct buffer *file)
@@ -65,17 +67,18 @@ static int read_release(struct verify_walk *walk, struct buffer *file)
 		return verify_blame_reader(walk, rc);
 	rc = timestamp_decode(&report->timestamp, &report->trust, buffer_bytes(file), &why);
 	if (rc < 0)
-		return verify_blame(report, rc, "timestamp.json: %s", why);
+		return diagnostics_add(&report->diagnostics, rc, "timestamp.json", 0, "%s", why);
 	rc = release_reader_file(walk->reader, "release.json", file);
 	if (rc < 0)
 		return verify_blame_reader(walk, rc);
 	rc = release_decode(&report->release, &report->trust, buffer_bytes(file), &why);
 	if (rc < 0)
-		return verify_blame(report, rc, "release.json: %s", why);
+		return diagnostics_add(&report->diagnostics, rc, "release.json", 0, "%s", why);
 	name = hash_of(buffer_bytes(file));
 	if (!hash_equal(name, report->timestamp.release) ||
 	    report->release.sequence != report->timestamp.sequence)
-		return verify_blame(report, -EBADMSG, "timestamp.json names another release.json");
+		return diagnostics_add(&report->diagnostics, -EBADMSG, NULL, 0,
+				       "timestamp.json names another release.json");
 	return 0;
 }
 
@@ -117,7 +120,8 @@ static int read_locator(struct verify_walk *walk)
 	} else {
 		rc = locator_decode(&walk->locator, buffer_bytes(&file));
 		if (rc < 0)
-			verify_blame(walk->report, rc, "%s: damaged, or not a locator", name);
+			diagnostics_add(&walk->report->diagnostics, rc, name, 0,
+					"damaged, or not a locator");
 	}
 	walk->report->locator_bytes = (uint32_t)file.size;
 	walk->report->pack_count = walk->locator.pack_count;
@@ -140,9 +144,10 @@ static int check_packs_used(struct verify_walk *walk)
 	free(used);
 	return count == walk->locator.pack_count
 		       ? 0
-		       : verify_blame(walk->report, -EBADMSG,
-				      "the locator names %u packs that hold nothing of the release",
-				      walk->locator.pack_count - count);
+		       : diagnostics_add(
+				 &walk->report->diagnostics, -EBADMSG, NULL, 0,
+				 "the locator names %u packs that hold nothing of the release",
+				 walk->locator.pack_count - count);
 }
 
 /* ---- the walk ---- */
@@ -157,12 +162,12 @@ static int check_block(struct verify_walk *walk, const struct verify_page *page)
 		return 0;
 	hash_to_hex(page->name, hex);
 	if (!block)
-		return verify_blame(walk->report, -ENOENT, "the locator has no block of page %s",
-				    hex);
+		return diagnostics_add(&walk->report->diagnostics, -ENOENT, NULL, 0,
+				       "the locator has no block of page %s", hex);
 	if (block->size != size)
-		return verify_blame(walk->report, -EBADMSG,
-				    "the block of page %s has %u bytes, its children %" PRIu64, hex,
-				    block->size, size);
+		return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+				       "the block of page %s has %u bytes, its children %" PRIu64,
+				       hex, block->size, size);
 	walk->blocks_used++;
 	return 0;
 }
@@ -180,15 +185,15 @@ static int look_into(struct verify_walk *walk, enum page_kind kind, const struct
 
 	hash_to_hex(page->name, hex);
 	if (page->page.kind != kind)
-		return verify_blame(walk->report, -EBADMSG,
-				    "page %s is of kind %d instead of kind %d", hex,
-				    page->page.kind, kind);
+		return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+				       "page %s is of kind %d instead of kind %d", hex,
+				       page->page.kind, kind);
 	rc = check_block(walk, page);
 	if (rc == 0)
 		rc = looks[kind](walk, page);
 	if (rc < 0)
-		verify_blame(walk->report, rc, "page %s: %s", hex,
-			     rc == -EBADMSG ? "its payload does not decode" : strerror(-rc));
+		diagnostics_add(&walk->report->diagnostics, rc, NULL, 0, "page %s: %s", hex,
+				rc == -EBADMSG ? "its payload does not decode" : strerror(-rc));
 	return rc;
 }
 
@@ -210,7 +215,8 @@ static int do_task(struct verify_walk *walk, const struct verify_task *task)
 		char hex[HASH_HEX_BYTES];
 
 		hash_to_hex(page.name, hex);
-		verify_blame(walk->report, rc, "object %s is not a page", hex);
+		diagnostics_add(&walk->report->diagnostics, rc, NULL, 0, "object %s is not a page",
+				hex);
 	} else {
 		walk->report->pages[page.page.kind].count++;
 		walk->report->pages[page.page.kind].bytes += bytes.size;
@@ -236,12 +242,12 @@ static int walk_all(struct verify_walk *walk)
 		rc = do_task(walk, &task);
 	}
 	if (rc == 0 && walk->blocks_used != walk->locator.block_count)
-		rc = verify_blame(walk->report, -EBADMSG,
-				  "the locator has %u blocks, the release has %u",
-				  walk->locator.block_count, walk->blocks_used);
+		rc = diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+				     "the locator has %u blocks, the release has %u",
+				     walk->locator.block_count, walk->blocks_used);
 	if (rc == 0 && walk->report->hierarchy_triangles != walk->report->root.published_triangles)
-		rc = verify_blame(
-			walk->report, -EBADMSG,
+		rc = diagnostics_add(
+			&walk->report->diagnostics, -EBADMSG, NULL, 0,
 			"the root page says %" PRIu64 " published triangles, there are %" PRIu64,
 			walk->report->root.published_triangles, walk->report->hierarchy_triangles);
 	return rc;
@@ -266,7 +272,7 @@ int verify_release(struct verify_report *report, const struct verify_options *op
 		rc = walk_all(&walk);
 	progress_end(walk.progress);
 	if (rc < 0)
-		verify_blame(report, rc, "%s", strerror(-rc));
+		diagnostics_add(&report->diagnostics, rc, NULL, 0, "%s", strerror(-rc));
 	report->read_bytes = release_reader_bytes(options->reader);
 	samples_page_finish(&walk.samples);
 	hierarchy_finish(&walk.hierarchy);

@@ -13,8 +13,8 @@ struct verify_options {
 	int64_t now_s;             /* the time for expiry checks, seconds since 1970; 0: no check */
 };
 
-/* Returns 0 if everything is correct. Otherwise report->why describes the first error, and the rest
- * of the report is filled as far as verification got. */
+/* Returns 0 if everything is correct. Otherwise report->diagnostics has the first error, and the
+ * rest of the report is filled as far as verification got. */
 must_check int verify_release(struct verify_report *report, const struct verify_options *options);
 
 #endif

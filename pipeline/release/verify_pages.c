@@ -13,7 +13,8 @@ static int blame_page(struct verify_walk *walk, const struct verify_page *page, 
 	char hex[HASH_HEX_BYTES];
 
 	hash_to_hex(page->name, hex);
-	return verify_blame(walk->report, -EBADMSG, "page %s: %s", hex, text);
+	return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0, "page %s: %s", hex,
+			       text);
 }
 
 static int blame_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
@@ -23,8 +24,9 @@ static int blame_child(struct verify_walk *walk, const struct verify_page *page,
 
 	hash_to_hex(page->name, hex);
 	hash_to_hex(page->page.children[child].hash, child_hex);
-	return verify_blame(walk->report, -EBADMSG, "%s %s (child %u of page %s): %s", what,
-			    child_hex, child, hex, text);
+	return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+			       "%s %s (child %u of page %s): %s", what, child_hex, child, hex,
+			       text);
 }
 
 static void count(struct verify_sum *sum, struct bytes object)
@@ -213,9 +215,10 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 		const struct info_picture *picture = info_picture(info, i);
 
 		if (map_get(&children, hash_key(picture->hash)) == MAP_NONE)
-			rc = verify_blame(walk->report, -EBADMSG,
-					  "the information names %s, which is not in the release",
-					  picture->name);
+			rc = diagnostics_add(
+				&walk->report->diagnostics, -EBADMSG, NULL, 0,
+				"the information names %s, which is not in the release",
+				picture->name);
 	}
 	map_finish(&children);
 	return rc < 0 ? rc : 0;
@@ -241,13 +244,13 @@ static int check_articles(struct verify_walk *walk, struct info *info)
 			    !info_find_picture(info, article.blocks[k].text))
 				missing = article.blocks[k].text;
 		if (missing)
-			rc = verify_blame(walk->report, -EBADMSG,
-					  "the page of %s in %s shows %s, which the information "
-					  "has not",
-					  part, language, missing);
+			rc = diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+					     "the page of %s in %s shows %s, which the information "
+					     "has not",
+					     part, language, missing);
 		else if (rc == -EBADMSG)
-			rc = verify_blame(walk->report, rc, "the page of %s in %s is damaged", part,
-					  language);
+			rc = diagnostics_add(&walk->report->diagnostics, rc, NULL, 0,
+					     "the page of %s in %s is damaged", part, language);
 		else if (rc == -ENOENT)
 			rc = 0;
 		article_finish(&article);

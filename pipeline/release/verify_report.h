@@ -2,10 +2,9 @@
 #ifndef GOPURA_PIPELINE_RELEASE_VERIFY_REPORT_H
 #define GOPURA_PIPELINE_RELEASE_VERIFY_REPORT_H
 
+#include "base/diagnostics.h"
 #include "format/metadata.h"
 #include "format/root_page.h"
-
-enum { VERIFY_WHY_BYTES = 1280 };
 
 /* Number and size of objects of one kind. */
 struct verify_sum {
@@ -25,7 +24,7 @@ struct verify_report {
 	uint32_t patches;
 	uint32_t points, faces; /* which show something */
 	uint32_t parts;
-	char why[VERIFY_WHY_BYTES]; /* the first error and its place; "" if none */
+	struct diagnostics diagnostics; /* the first error and its place; empty if none */
 };
 
 #endif

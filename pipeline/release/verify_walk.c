@@ -1,27 +1,14 @@
-/* The queue of pages that are still to be checked, and how a fault is said. */
+/* The queue of pages that are still to be checked, and what the reader of the release says. */
 #include "pipeline/release/verify_walk.h"
 
 #include <errno.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 #include "base/array.h"
 
-int verify_blame(struct verify_report *report, int rc, const char *text, ...)
-{
-	va_list args;
-
-	if (report->why[0] == '\0') {
-		va_start(args, text);
-		vsnprintf(report->why, sizeof(report->why), text, args);
-		va_end(args);
-	}
-	return rc;
-}
-
 int verify_blame_reader(struct verify_walk *walk, int rc)
 {
-	return verify_blame(walk->report, rc, "%s", release_reader_why(walk->reader));
+	return diagnostics_add(&walk->report->diagnostics, rc, NULL, 0, "%s",
+			       release_reader_why(walk->reader));
 }
 
 int verify_child(struct verify_walk *walk, const struct verify_page *page, uint32_t child,
@@ -59,5 +46,6 @@ int verify_later(struct verify_walk *walk, const struct verify_page *page, uint3
 	if (task.child.is_page)
 		return verify_queue(walk, &task);
 	hash_to_hex(page->name, hex);
-	return verify_blame(walk->report, -EBADMSG, "page %s: child %u is not a page", hex, child);
+	return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+			       "page %s: child %u is not a page", hex, child);
 }

@@ -40,9 +40,7 @@ struct verify_page {
 	struct page page;
 };
 
-/* Records what is wrong, unless an error was recorded already. Returns rc. */
-int verify_blame(struct verify_report *report, int rc, const char *text, ...) printf_like(3, 4);
-/* The same with what the reader of the release says. */
+/* Adds what the reader of the release says to the diagnostics of the report. Returns rc. */
 int verify_blame_reader(struct verify_walk *walk, int rc);
 
 /* Reads a child of a page and checks its hash; borrowed until the next call. */

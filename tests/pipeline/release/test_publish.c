@@ -34,7 +34,7 @@ static int verify_at(int64_t now_s)
 	CHECK(release_reader_create(&verify.reader, &options) == 0);
 	rc = verify_release(&verified, &verify);
 	release_reader_destroy(verify.reader);
-	CHECK((rc == 0) == (verified.why[0] == '\0'));
+	CHECK((rc == 0) == (verified.diagnostics.count == 0));
 	return rc;
 }
 
@@ -176,9 +176,9 @@ static void expiry_is_judged_by_the_clock_that_is_given(void **state)
 	(void)state;
 	tiny_publish(&tiny, NULL);
 	CHECK(verify_at(now + (TIMESTAMP_LIFE_DAYS + 1) * 86400) == -EKEYEXPIRED);
-	CHECK(strstr(verified.why, "timestamp.json") != NULL);
+	CHECK(strstr(verified.diagnostics.first.text, "timestamp.json") != NULL);
 	CHECK(verify_at(now + (RELEASE_LIFE_DAYS + 1ll) * 86400) == -EKEYEXPIRED);
-	CHECK(strstr(verified.why, "release.json") != NULL);
+	CHECK(strstr(verified.diagnostics.first.text, "release.json") != NULL);
 	CHECK(verify_at(0) == 0);
 }
 
@@ -234,7 +234,7 @@ static void check_flip(const char *path, struct buffer *file, size_t at)
 	file->data[at] ^= 0x20;
 	if (strstr(path, "/packs/")) { /* the message names the file */
 		snprintf(name, sizeof(name), "%s", strrchr(path, '/') + 1);
-		CHECK(strstr(verified.why, name) != NULL);
+		CHECK(strstr(verified.diagnostics.first.text, name) != NULL);
 	}
 }
 
@@ -293,7 +293,7 @@ static void a_root_page_that_lies_is_found(void **state)
 	tiny.root.published_triangles = 5;
 	tiny_publish(&tiny, NULL);
 	CHECK(verify() == -EBADMSG);
-	CHECK(strstr(verified.why, "published triangles") != NULL);
+	CHECK(strstr(verified.diagnostics.first.text, "published triangles") != NULL);
 }
 
 int main(void)

@@ -126,7 +126,7 @@ static void a_page_that_is_an_article_is_taken(void **state)
 	(void)state;
 
 	if (publish_and_verify(buffer_bytes(&article)) != 0)
-		fail_msg("%s", verified.why);
+		fail_msg("%s", verified.diagnostics.first.text);
 	buffer_finish(&article);
 }
 
@@ -137,8 +137,8 @@ static void a_page_that_is_no_article_is_found(void **state)
 
 	article.data[article.size - 2] = 0xff;
 	CHECK(publish_and_verify(buffer_bytes(&article)) == -EBADMSG);
-	if (!strstr(verified.why, "page of tower in en is damaged"))
-		fail_msg("%s", verified.why);
+	if (!strstr(verified.diagnostics.first.text, "page of tower in en is damaged"))
+		fail_msg("%s", verified.diagnostics.first.text);
 	buffer_finish(&article);
 }
 
@@ -148,8 +148,8 @@ static void a_picture_that_there_is_not_is_found(void **state)
 	(void)state;
 
 	CHECK(publish_and_verify(buffer_bytes(&article)) == -EBADMSG);
-	if (!strstr(verified.why, "pictures/none.png"))
-		fail_msg("%s", verified.why);
+	if (!strstr(verified.diagnostics.first.text, "pictures/none.png"))
+		fail_msg("%s", verified.diagnostics.first.text);
 	buffer_finish(&article);
 }
 

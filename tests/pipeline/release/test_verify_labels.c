@@ -115,21 +115,21 @@ static void labels_of_other_triangles_are_found(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify("tower", 3, 2) == -EBADMSG);
-	CHECK(strstr(verified.why, "another number of triangles"));
+	CHECK(strstr(verified.diagnostics.first.text, "another number of triangles"));
 }
 
 static void a_part_that_there_is_not_is_found(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify("gate", 2, 2) == -EBADMSG);
-	CHECK(strstr(verified.why, "database lacks"));
+	CHECK(strstr(verified.diagnostics.first.text, "database lacks"));
 }
 
 static void a_page_for_another_hierarchy_is_found(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify("tower", 2, 9) == -EBADMSG);
-	CHECK(strstr(verified.why, "page"));
+	CHECK(strstr(verified.diagnostics.first.text, "page"));
 }
 
 int main(void)
