@@ -349,7 +349,7 @@ static void note_why_points_only(struct ply *ply)
 	ply->summary.points_only =
 		ply->range_grid
 			? "it is one range image (a range_grid of points), not a surface; "
-			  "align and merge the range images first"
+			  "save it as a mesh, or merge the aligned range images into one"
 			: "it holds points or lines but no faces; reconstruct a surface first";
 }
 
