@@ -97,7 +97,7 @@ static int add_plain(struct mesh *to, const struct mesh *of)
 }
 
 /* A mesh without textures gets a plain one, because its triangles need a material. *base is the
- * index of the second mesh's first texture. */
+ * index of the second mesh's first texture. The array gets its exact size: a mesh keeps no room. */
 static int extend_textures(struct mesh *mesh, const struct mesh *other, uint32_t *base)
 {
 	size_t room = (size_t)mesh->texture_count + other->texture_count + 2;
