@@ -1,5 +1,5 @@
 #!/bin/bash
-# What becomes of the two addresses of gopura.conf in the service manager's files: an address goes through, any other text does not.
+# The two addresses of gopura.conf in the service manager's files: an address is passed on, any other text is not.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The demo's parts and pages out as W3C Web Annotations, into an empty folder, and out again: the
-# same bytes; and a foreign file is refused by name and place.
+# Exports the demo's parts and pages as W3C Web Annotations, imports them into an empty folder and exports them again:
+# the bytes are the same. A foreign file is refused with its name and the place.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

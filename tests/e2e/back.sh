@@ -1,6 +1,6 @@
 #!/bin/bash
-# The bar's way back, step by step: from a link's page to the page that has it, where it was read, to its card, to the
-# search as it was left, to the first view; and then there is none.
+# The back button of the bar, step by step: from a page reached by a link to the page with that link, where it was read,
+# to its card, to the search as it was left, to the first view; then no step is left.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Malformed and odd files through every reader that could meet them, under sanitizers: each ends
-# within ten seconds, without a crash, and a refusal names the file and says why. Pictures are
-# also met as the texture of a scan.
+# Passes malformed and unusual files to every reader that could meet them, under sanitizers: each run ends within ten
+# seconds without a crash, and a refusal names the file and the reason. Pictures are also tested as the texture of a
+# scan.
 set -u
 cd "$(dirname "$0")/../.."
 scans=../shared/scans/badinput

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What the service manager is told of a kiosk that has ended, counted by the appliance's own script: which ends are
-# crashes, how many bring the safe page, and that a GPU that is lost again and again does too.
+# How the appliance's own script counts the ends of a kiosk: which ends are crashes, how many bring up the safe page,
+# and that a GPU that is lost again and again does so too.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

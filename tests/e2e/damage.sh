@@ -1,7 +1,7 @@
 #!/bin/bash
-# A server that serves damaged packs to a kiosk under sanitizers: flipped bytes, a pack cut short, a
-# locator of rubbish. What is damaged is refused and told; after the repair all of it comes, and the
-# pictures are those of the undamaged release.
+# A server with damaged packs and a kiosk under sanitizers: flipped bytes, a truncated pack, a locator of random bytes.
+# Damaged objects are refused and reported; after the repair all objects arrive, and the pictures are those of the
+# undamaged release.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

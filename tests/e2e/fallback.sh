@@ -1,6 +1,7 @@
 #!/bin/bash
-# A release that is signed and whole and yet shows nothing, on a kiosk that runs: it goes back to the one before by itself,
-# says why on the health page, does not take the same one up again, nor an older one, and takes the next.
+# A release that is signed and complete but shows nothing, on a running kiosk: the kiosk goes back to the previous
+# release by itself, gives the reason on the health page, accepts neither the same one again nor an older one, and
+# accepts the next one.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

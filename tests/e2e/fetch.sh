@@ -1,6 +1,6 @@
 #!/bin/bash
-# The fetcher and its client against real nginx: coalesced ranges, damage, a server and a fetcher
-# that die half-way, no network at all, a budget that holds.
+# The fetcher and its client against real nginx: joined ranges, damage, a server and a fetcher that are killed half-way,
+# no network at all, a cache limit that is kept.
 set -eu
 cd "$(dirname "$0")/../.."
 command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }

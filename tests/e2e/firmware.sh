@@ -1,7 +1,7 @@
 #!/bin/bash
-# Updates from a stick: the appliance's own scripts, with RAUC, loader and service manager played. What is older than what was
-# good here is refused, whatever a hostile stick shows first; what was good raises the floor, and nothing lowers it. (The whole,
-# in a machine: tests/qemu/image.sh updates.)
+# Updates from a stick: the appliance's own scripts, with RAUC, loader and service manager simulated. A version below
+# the floor is refused, whatever a hostile stick shows first; a version that was found good raises the floor, and
+# nothing lowers it. (tests/qemu/image.sh updates tests the whole in a virtual machine.)
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

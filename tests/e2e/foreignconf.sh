@@ -1,6 +1,6 @@
 #!/bin/bash
-# A gopura.conf that is a pipe, a device or a link, or that names one: gopura-setup, kiosk, self-test and safe page tell of it
-# and go on. None waits for it or reads it.
+# A gopura.conf that is a pipe, a device or a link, or that names one: gopura-setup, kiosk, self-test and safe page
+# report it and continue. None waits for it or reads it.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

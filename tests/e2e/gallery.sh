@@ -1,6 +1,6 @@
 #!/bin/bash
-# A visitor looks at the picture of a page: it opens over the whole panel, two fingers zoom it, two
-# taps show it whole again, and its control closes it.
+# A visitor opens the picture of a page: it covers the whole panel, two fingers zoom it, a double tap shows it whole
+# again, and its control closes it.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

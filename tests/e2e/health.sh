@@ -1,6 +1,6 @@
 #!/bin/bash
-# A terminal's health from outside: real kiosk, fetcher and gopura-health; what Prometheus would
-# read is read strictly; programs that end or hang turn the page red with the reason, and back.
+# A terminal's health from outside, with real kiosk, fetcher and gopura-health: a strict parser reads the metrics as
+# Prometheus would; programs that exit or hang turn the page red with the reason, and back.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,8 +1,8 @@
 #!/bin/bash
-# The fetcher against a server that is ill-meant, or somebody who answers in its place: a captive portal, bodies and
-# headers without end, a byte a second, redirections, wrong ranges, broken connections. The fetcher takes no wrong
-# object, visits nobody else, stays small, tells that it lives, and brings all once the server is good again. Then the
-# root after a portal, through the fetcher alone.
+# The fetcher against a hostile server, or somebody who answers in its place: a captive portal, endless bodies and
+# headers, a byte per second, redirections, wrong ranges, broken connections. The fetcher accepts no wrong object,
+# contacts no other server, stays small, keeps sending its status, and loads everything once the server is good again.
+# Then a new root after a portal, through the fetcher alone.
 set -eu
 cd "$(dirname "$0")/../.."
 tool=build/tests/tools/fetch_tool fetch=build/gopura-fetch

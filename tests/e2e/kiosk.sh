@@ -1,7 +1,6 @@
 #!/bin/bash
-# The kiosk's start, under sanitizers: what its programs say of themselves, wrong options, trust that
-# is missing or wrong, damaged state and cache, folders that cannot be written, a panel that hangs
-# turned.
+# The kiosk's start, under sanitizers: the help texts of the programs, wrong options, a missing or wrong trust root,
+# damaged state and cache, folders that cannot be written, a panel that is mounted rotated.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,5 +1,4 @@
-# What the end-to-end tests share. Source it from the top of the tree's tests/e2e.
-# Everything a test writes is below build/e2e/.
+# Functions that the end-to-end tests share. Source it from the top of the tree. Tests write only below build/e2e/.
 
 skip() {
 	echo "$*"
@@ -11,8 +10,8 @@ fail() {
 	exit 1
 }
 
-# A small temple and its release, built once for all tests: build/e2e/small/{content,release}. Who publishes
-# to a copy of that release signs with its keys: --keys "$small_keys".
+# A small temple and its release, built once for all tests: build/e2e/small/{content,release}. To publish to a copy of
+# that release, sign with its keys: --keys "$small_keys".
 small=build/e2e/small small_keys=build/e2e/small/keys
 export XDG_CONFIG_HOME=$PWD/build/e2e/config # nothing is written into the home
 small_release() {
@@ -21,7 +20,7 @@ small_release() {
 	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' \
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
 	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
-	# The tests count from 1; a program that makes other bytes of the same content has made a second one.
+	# The tests expect release 1; a program that makes other bytes from the same content has published release 2.
 	grep -q '^release 1 ' "$small/log" && return 0
 	rm -rf "$small/release"
 	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys"
@@ -41,7 +40,7 @@ demo_release() {
 . tests/e2e/lib-server.sh
 trap stop_server EXIT
 
-# serve RELEASE RUN [PORT]: start_server, or skip where there is no nginx; sets url, port and ca.
+# serve RELEASE RUN [PORT]: calls start_server, or skips the test if nginx is missing; sets url, port and ca.
 serve() {
 	command -v nginx >/dev/null || skip "nginx is not installed"
 	start_server "$@" || fail "nginx did not start"
@@ -49,7 +48,7 @@ serve() {
 	port=${url##*:} port=${port%/}
 }
 
-# wait_for SECONDS WHAT COMMAND...: until the command succeeds.
+# wait_for SECONDS WHAT COMMAND...: waits until the command succeeds.
 wait_for() {
 	local until=$((SECONDS + $1)) what=$2
 	shift 2

@@ -1,7 +1,6 @@
 #!/bin/bash
-# The GPU loses its context in the middle of a visit (tests/tools/lost_gl.c plays it): the kiosk says
-# so in one line and ends with the status that asks to be started anew, and the next one shows the
-# temple again from its cache.
+# The GPU context is lost in the middle of a visit (simulated by tests/tools/lost_gl.c): the kiosk logs one line and
+# exits with the status that requests a restart, and the next one shows the temple again from its cache.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Random fingers on the whole kiosk under sanitizers, on a clock that does not wait: whatever was done
-# to it, a terminal that is left alone shows itself again with nothing of the visitor left, no frame is
-# over the board's budgets, and nothing leaks. EVENTS=1000 SEED=3; make soak has 20000.
+# Random touches on the whole kiosk under sanitizers, on a clock that skips waiting times. Whatever was touched, a
+# terminal that is left alone returns to its state for nobody with nothing of the visitor left, no frame exceeds the
+# board's budgets, and nothing leaks. EVENTS=1000 SEED=3; make soak uses 20000.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -14,7 +14,7 @@ make --no-print-directory -j"$(nproc)" SAN=1 BUILD=build/asan build/asan/tests/t
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 small_release
-# A weak board, so that its budgets have something to hold back; large enough for reach mode, tools and languages on the bar.
+# A weak board, so that its budgets are reached; large enough for reach mode, tools and languages on the bar.
 cat >"$work/board.ini" <<'I'
 [panel]
 width_mm = 270
@@ -24,7 +24,7 @@ texture_mib = 24
 geometry_mib = 8
 I
 
-# play EVENTS SEED: the line of what was seen goes to $work/SEED.json.
+# play EVENTS SEED: writes the line of results to $work/SEED.json.
 play() {
 	build/tests/tools/random_touches "$1" "$2" 480 320 >"$work/$2.touch"
 	build/asan/tests/tools/hurried_kiosk --fetch build/asan/gopura-fetch --locale build/locale --display headless --size 480x320 \
@@ -33,11 +33,12 @@ play() {
 		>"$work/$2.json" 2>"$work/$2.log"
 }
 
-# holds EVENTS SEED: it was played, and nothing is wrong.
+# holds EVENTS SEED: plays it and fails if anything is wrong.
 holds() {
 	local events=$1 seed=$2 status=0
 	play "$events" "$seed" || status=$?
-	# The leak checker itself dies now and then while it stops llvmpipe's threads: that says nothing.
+	# The leak checker itself sometimes crashes while it stops llvmpipe's threads: that says nothing about the
+	# kiosk.
 	if [ "$status" -ne 0 ] && grep -q 'LeakSanitizer has encountered a fatal error' "$work/$seed.log"; then
 		status=0
 		play "$events" "$seed" || status=$?
@@ -48,7 +49,7 @@ holds() {
 		{ grep -E -A 20 'Sanitizer|runtime error' "$work/$seed.log"; fail "EVENTS=$events SEED=$seed"; }
 }
 
-# reached: the fingers came wherever there is something to touch.
+# reached: succeeds if the touches reached every kind of control.
 reached() {
 	python3 - "$work"/*.json <<'P'
 import json
@@ -61,8 +62,8 @@ sys.exit(f"the fingers never reached {never}" if never or not any(one["left_alon
 P
 }
 
-# What a finger meets depends on how soon the temple comes, which no clock of ours rules: where the
-# first ones reach too little, others follow.
+# What a touch meets depends on how soon the temple is loaded, which the simulated clock does not control. If the first
+# seeds reach too little, others follow.
 events=${EVENTS:-1000} first=${SEED:-3}
 for seed in $(seq "$first" $((first + 3))); do
 	holds "$events" "$seed"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A stick with a gopura.conf, plugged into a terminal that runs: the appliance's own script with the real gopura-setup; only
-# the service manager is played. (The whole, in a machine: tests/qemu/image.sh.)
+# A stick with a gopura.conf, plugged into a running terminal: the appliance's own script with the real gopura-setup;
+# only the service manager is simulated. (tests/qemu/image.sh tests the whole in a virtual machine.)
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -71,7 +71,7 @@ plugged
 plugged
 [ ! -s "$work/asked" ] && [ "$(host)" = disk ] || fail "the stick came before the disk"
 [ "$(grep -c 'of the stick is not used' "$work/out/faults")" = 1 ] || fail "nobody is told: $(cat "$work/out/faults")"
-# Pulled out, the disk's without: nothing is in use any more, and the same stick holds again.
+# The stick is pulled out and the disk's file removed: no file is in use any more, and the same stick is applied again.
 rm "$work/efi/gopura.conf"
 mv "$work/stick" "$work/pocket"
 "$work/set-up" 2>"$work/log"

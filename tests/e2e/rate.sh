@@ -1,5 +1,6 @@
 #!/bin/bash
-# A limit that would take minutes for the first picture: what is shown comes all the same at once, a new release does not.
+# A rate limit that would take minutes for the first picture: objects of the shown release arrive at once nevertheless,
+# those of a new release do not.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

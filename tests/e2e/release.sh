@@ -1,6 +1,6 @@
 #!/bin/bash
-# From a scan to a release on a museum server: build (cut off and resumed), verify over TLS, change,
-# undo, and what was tampered with is found.
+# From a scan to a release on a museum server: build (interrupted and resumed), verify over TLS, change, undo, and find
+# what was tampered with.
 set -eu
 cd "$(dirname "$0")/../.."
 command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }

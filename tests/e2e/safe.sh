@@ -1,6 +1,6 @@
 #!/bin/bash
-# The safe page: drawn where EGL finds no driver and nothing else of the kiosk's is there, upright on a
-# turned panel, moving, and with a broken profile too.
+# The safe page: it is drawn although EGL finds no driver and nothing else of the kiosk is there, upright on a rotated
+# panel, moving, and with a broken profile too.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,9 +1,8 @@
 #!/bin/bash
-# Real scans from the file to the kiosk's pictures: a textured statue 2 m tall, a bust with 25
-# pictures said in millimetres, one without colours, one as small as a hand, one with colours of
-# its vertices that calls itself 130 m tall, and two overlapping scans of the small one that an
-# alignment places. Every picture is held against the reference, and must
-# be nearer to it than the same polygons without images. docs/scans.md has the figures at full size.
+# Real scans from the file to the kiosk's pictures: a textured statue 2 m tall, a bust with 25 pictures in millimetres,
+# one without colours, one as small as a hand, one with vertex colours that claims to be 130 m tall. Every picture is
+# compared with the reference, and must be nearer to it than the same polygons without images. docs/scans.md has the
+# figures at full size.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Real scans are read whole: triangles (those of the file less the degenerate ones), pictures,
-# colours, and nothing lost on the way into the cache file.
+# Real scans are read completely: triangles (those of the file minus the degenerate ones), pictures, colours; and
+# nothing is lost in the cache file.
 set -u
 cd "$(dirname "$0")/../.."
 scans=../shared/scans

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A visitor searches: the search opens from the bar, letters come from the keyboard on the panel, what
-# is found has its picture, and a tap on it opens its card and brings the eye there.
+# A visitor searches: the search opens from the bar, letters are typed on the panel's keyboard, results have their
+# pictures, and a tap on one opens its card and flies the camera there.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The self-test: all is well, and each thing that may be wrong is found, with its cure, and nothing else.
+# The self-test: it passes if everything is in order; each fault is found, with a remedy, and no other fault is
+# reported.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,5 +1,5 @@
 #!/bin/bash
-# gopura-setup as an engineer and as a unit call it: a check at a desk, the first file that is there, none at all.
+# gopura-setup as an engineer and as a unit call it: a check at a desk, the first file that exists, no file at all.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

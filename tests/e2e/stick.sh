@@ -1,7 +1,7 @@
 #!/bin/bash
-# Releases from a USB stick: a terminal that never had a network gets its first one and an update;
-# what is older or not signed is refused with the reason; beside a server the newer one wins, and
-# what is damaged on the stick comes from the server.
+# Releases from a USB stick: a terminal that never had a network gets its first release and an update; an older or
+# unsigned release is refused with the reason; beside a server the newer release wins, and objects that are damaged on
+# the stick come from the server.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Which sticks are taken, and that of two each keeps its own: the appliance's own script, with udev and the service manager
-# played. (The whole, in a machine, with hostile file systems: tests/qemu/image.sh updates.)
+# Which sticks are accepted, and that each of two keeps its own mount: the appliance's own script, with udev and the
+# service manager simulated. (tests/qemu/image.sh updates tests the whole in a virtual machine, with hostile file
+# systems.)
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

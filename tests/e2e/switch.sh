@@ -1,7 +1,6 @@
 #!/bin/bash
-# The change from one release to the next where things go wrong: patches that are none, visitors in the middle of it, a
-# release on trial that crashes, a kill at any moment of the switch, and a time of day in which
-# nothing is brought.
+# The switch from one release to the next under difficult conditions: invalid patches, visitors in the middle of it, a
+# release on trial that crashes, a kill at any moment of the switch, and a time of day in which nothing is loaded.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

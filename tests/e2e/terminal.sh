@@ -1,6 +1,6 @@
 #!/bin/bash
-# gopura.conf on the panel: what is right in it is taken, the command line overrides it, its faults stand on the panel
-# for half a minute and then give way to the temple, and a terminal without the file says what to do.
+# gopura.conf on the panel: its valid lines are used, the command line overrides them, its errors are shown on the panel
+# for half a minute before the temple, and a terminal without the file shows what to do.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

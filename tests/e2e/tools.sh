@@ -1,6 +1,6 @@
 #!/bin/bash
-# A visitor holds the raking light and the section: on, moved, off by a second tap, and gone with the
-# visitor. Whatever is cut away hides no label and takes no touch; a tool at rest draws nothing.
+# A visitor uses the raking light and the section: on, moved, off by a second tap, and off after the visit. Whatever is
+# cut away hides no label and receives no touch; a tool at rest draws nothing.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,6 @@
 #!/bin/bash
-# A visitor's two fingers on a real device: a multitouch panel that umockdev puts under /dev/input,
-# read by libevdev. Parting fingers bring the eye nearer, one turns it, a tap opens a card; the
-# server dies between two gestures.
+# A visitor's two fingers on a real device: a multitouch panel that umockdev creates under /dev/input, read by libevdev.
+# Spreading fingers zoom in, one finger turns, a tap opens a card; the server is killed between two gestures.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,6 @@
 #!/bin/bash
-# A visitor who chooses a guided tour, takes the eye in hand on its way, lets it go on and watches it to its
-# end; then nobody, whom the content's own tour shows the temple. And a tour through a wall, which
-# is not published.
+# A visitor who chooses a guided tour, touches the model during it, continues it and watches it to its end; then nobody
+# is there, and the content's own tour runs. Also a tour through a wall, which is not published.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,5 +1,5 @@
 #!/bin/bash
-# How much each unit is exposed, by systemd's own measure, and what must not be in any of them.
+# The exposure of each unit by systemd-analyze security, and settings that no unit may have.
 set -eu
 cd "$(dirname "$0")/../.."
 command -v systemd-analyze >/dev/null || { echo "systemd-analyze is not installed"; exit 77; }

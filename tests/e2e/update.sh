@@ -1,7 +1,7 @@
 #!/bin/bash
-# A content update while the kiosk runs: version 2 arrives in the background and, nobody being there,
-# is switched to at once; a bad signature, an older sequence and a server that dies leave what is shown; a kiosk that
-# remembers a release nobody has any more shows the next one.
+# A content update while the kiosk runs: version 2 arrives in the background and is switched to at once because nobody
+# is there; a bad signature, an older sequence and a server that dies leave the current release; a kiosk that remembers
+# a release that no longer exists anywhere shows the next one.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What may be plugged in by USB (gopura-usb, which udev calls): each interface of a device by what would drive it, in a folder
-# that stands for /sys. tests/qemu/usb.py plugs devices into a machine.
+# Which USB devices are accepted (gopura-usb, which udev calls): each interface of a device is judged by its drivers, in
+# a folder that stands for /sys. tests/qemu/usb.py plugs devices into a virtual machine.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,6 @@
 #!/bin/bash
-# A visit with real nginx: turn, come nearer, touch a part, read its page; the server dies half-way
-# and comes back, the fetcher is killed, and the visitor notices nothing. Afterwards the kiosk
-# starts from its cache with no network at all.
+# A visit with real nginx: turn, zoom, touch a part, read its page; the server is killed half-way and comes back, the
+# fetcher is killed, and the visitor notices nothing. Afterwards the kiosk starts from its cache without a network.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,7 +1,6 @@
 #!/bin/bash
-# A visitor who chooses another language and large type, taps a part and walks away: the terminal asks, counts
-# down, forgets both and shows the temple round until somebody touches it again, who is
-# taken at the first touch.
+# A visitor who chooses another language and large type, taps a part and walks away: the terminal asks, counts down,
+# resets both and shows the temple until the next visitor, whose first touch counts.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What a service manager hears: ready once there is a picture, well as long as pictures come onto the
-# panel, at rest too, and nothing of a program that hangs; the fetcher likewise.
+# What a service manager receives: a ready message once there is a picture, keep-alives as long as pictures reach the
+# panel, at rest too, and none from a program that hangs; the same for the fetcher.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
