@@ -38,7 +38,7 @@ meet() {
 	judge $? "$log" "$file" import
 	timeout -k 1 10 "$content" inspect "$file" >"$log" 2>&1 </dev/null
 	status=$?
-	# inspect says on standard output what it was given; the name is on the command line.
+	# inspect prints its result to standard output; the name is on the command line.
 	echo "$file: inspected" >>"$log"
 	judge $status "$log" "$file" inspect
 	case $file in *.jpg | *.jpeg | *.png | *.gif)

@@ -38,7 +38,7 @@ visits() {
 		--state "$work/state-$1" --views "$work/views.txt" --capture "$work/$1" >"$work/$1.log" 2>&1 &
 	pid=$!
 }
-# ended NAME: the visit ended well, every picture settled.
+# ended NAME: checks that the visit ended without an error and that every picture settled.
 ended() {
 	local status=0
 	wait "$pid" || status=$?
@@ -99,7 +99,7 @@ repair
 ended cut
 same cut clean-lumigraph 30
 
-# ---- a locator that is none
+# ---- a locator that is not valid
 for locator in "$release"/locator/*; do head -c 5000 /dev/urandom >"$locator"; done
 visits lost lumigraph
 wait_for 60 "first release" grep -q 'is published' "$work/lost.log"

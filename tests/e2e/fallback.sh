@@ -57,8 +57,8 @@ first=$(root_of)
 [ -n "$first" ] || fail "the health page does not say what is shown"
 end_kiosk
 
-# ---- release 2, whose patches are none, comes while release 1 is not to be had: its cache is lost, and the server has it
-# not at this time. So release 2 goes onto the panel before all of it was looked at, and is found out there.
+# ---- release 2 has invalid patches and comes while release 1 is unavailable: its cache is lost, and the server does
+# not have it at this time. So release 2 goes onto the panel before all of it was checked, and its fault is found there.
 rm -f "$work"/state/cache.db*
 mkdir "$work/aside"
 mv "$work"/release/locator/* "$work/aside/"
@@ -73,7 +73,7 @@ shows "$first" || fail "it is not release 1 that is shown"
 health_says /health '^warning: A new release was rejected: release 2, .*: objects of it cannot be decoded' ||
 	{ curl -s "http://127.0.0.1:$port/health"; fail "the health page does not say why"; }
 health_says /metrics '^gopura_kiosk_release_sequence 2$' || fail "the floor fell"
-# The eye is where release 1 begins, not where the other did, in which nobody saw anything.
+# The eye is at the start view of release 1, not at that of the other, in which nothing was visible.
 wait_for 10 "eye at the start of release 1" eye_is_at "$(sed -n 's/^start *= *\([-0-9.]*\) .*/\1/p' "$work/content/temple.ini")"
 sleep 4 # several looks at the server, which offers release 2 still
 { [ "$(grep -c 'release 2 is shown' "$log")" = 1 ] && shows "$first"; } || fail "what was refused was taken up again"

@@ -66,7 +66,7 @@ is dropped "$line" -gt 100
 is came "$line" -eq "$(figure wanted "$line")"
 [ "$(packs_asked)" -le $(($(figure came "$line") + $(figure dropped "$line"))) ] || fail "more requests than objects"
 
-# ---- damage: refused, told, and well after repair
+# ---- damage: refused and reported; correct again after the repair
 damage_and_repair() { # CACHE HOW
 	(sleep 8; cp "$folder/whole" "$pack") &
 	line=$(walk "$1" --most-s 90) || fail "$2: not all came after the repair: $line"
@@ -84,12 +84,12 @@ cp "$folder/whole" "$pack"
 truncate -s 9000000 "$pack"
 damage_and_repair cut.db "a pack cut short" not_found
 
-# ---- the server dies half-way and comes back
+# ---- the server is killed half-way and started again
 slow_fetch=$fetch fetch=$folder/slow
 (walk dies.db --unseen --most-s 60 >"$folder/line"; echo $? >"$folder/rc") &
 sleep 2
 end_nginx
-# What was under way when it died still comes out of buffers for a while.
+# Bytes in flight when it was killed still arrive from buffers for a while.
 for _ in $(seq 300); do ! grep -q offline: "$folder/walk.log" || break; sleep 0.1; done
 sleep 2
 begin_nginx
@@ -115,7 +115,7 @@ is received "$line" -eq 0
 line=$(walk empty.db --most-s 3) && fail "objects from nowhere"
 is offline "$line" -gt 0
 
-# ---- a damaged cache is set aside, and a folder serves as well as a server
+# ---- a damaged cache is set aside; a folder works like a server
 printf 'this is not a database any more' | dd of="$folder/one.db" conv=notrunc status=none
 line=$("$tool" walk --fetch "$fetch" --release "$release" --cache "$folder/one.db" \
 	--root "$root" --bytes "$bytes" 2>"$folder/walk.log") || fail "not all came from a folder: $line"

@@ -17,7 +17,7 @@ for script in floor.sh gopura-bundle gopura-firmware gopura-good gopura-self-tes
 	sed -E "s#/(run|var|efi|etc|proc|usr/lib/gopura)/#$root/\1/#g" "image/root/usr/lib/gopura/$script" >"$root/usr/lib/gopura/$script"
 done
 
-# A bundle is a line here: what is read of it at first (version, sequence), and what at the second reading.
+# A bundle is one line here: what the first read returns (version, sequence), and what the second returns.
 cat >"$work/bin/rauc" <<END
 #!/bin/sh
 case \$1 in

@@ -13,7 +13,7 @@ printf '[release]\nurl = https://museum.example/\ntrust = 1.json\nca = ca.pem\n'
 mkfifo "$work/named/1.json"
 ln -s ../../../../../../../../dev/zero "$work/named/ca.pem"
 
-# ends NAME COMMAND...: it ends, whatever it says, with any status; what it says is in NAME.log.
+# ends NAME COMMAND...: checks that it exits, with any status; its output is in NAME.log.
 ends() {
 	local name=$1 status=0
 	shift
@@ -42,7 +42,7 @@ for which in pipe device named; do
 	ends "sum-$which" build/gopura-setup --checksum "$work/$which/gopura.conf"
 done
 
-# ---- the appliance's script, as root, when such a stick comes
+# ---- the appliance's script, as root, when such a stick is plugged in
 ln -s "$PWD/build/gopura-setup" "$work/bin/gopura-setup"
 printf '#!/bin/sh\n' >"$work/bin/systemctl"
 chmod +x "$work/bin/systemctl"

@@ -28,7 +28,7 @@ url=http://127.0.0.1:$port
 options=(--kiosk "$work/kiosk" --fetch "$work/fetch" --faults "$work/faults" --data "$work"
 	--visits "$work/visits.csv")
 
-# says STATUS PATTERN PATH...: what is answered to it now.
+# says STATUS PATTERN PATH...: checks the response to a request
 says() {
 	local want=$1 pattern=$2
 	shift 2
@@ -37,7 +37,7 @@ says() {
 }
 becomes() { wait_for 60 "'$2' with $1 from $3" says "$@"; }
 
-# ---- as systemd starts it: by the first question, ending when there are none any more
+# ---- started as systemd does, by the first request; it exits when no more requests come
 if command -v systemd-socket-activate >/dev/null; then
 	systemd-socket-activate -l "127.0.0.1:$port" build/gopura-health --idle-s 1 "${options[@]}" \
 		>"$work/activate.log" 2>&1 &
@@ -50,7 +50,7 @@ fi
 ! build/gopura-health 2>"$work/log" || fail "it runs without a socket"
 grep -q -- '--listen ADDR:PORT' "$work/log" || fail "without a socket: no cure is told"
 
-# ---- well
+# ---- everything works
 start_fetch
 start_kiosk
 build/gopura-health --listen "127.0.0.1:$port" "${options[@]}" >"$work/health.log" 2>&1 &
@@ -90,7 +90,7 @@ assert seen["gopura_kiosk_texture_bytes"] <= seen["gopura_kiosk_texture_budget_b
 assert seen["gopura_fetch_cache_bytes"] <= seen["gopura_fetch_cache_budget_bytes"]
 P
 
-# ---- asked what it does not answer
+# ---- requests that it does not answer
 says 404 '^404' "$url/figures" || fail "another page"
 says 404 '^404' --path-as-is "$url/../../etc/hostname" || fail "a file"
 says 405 '^405' -d x=1 "$url/" || fail "a POST"
@@ -137,7 +137,7 @@ P
 says 200 '' "$url/visits.csv" || fail "no counts"
 cmp "$work/answer" "$work/counts" || fail "the counts did not arrive as they are"
 [ "$(curl -sI "$url/visits.csv" | grep -i '^content-length' | tr -dc 0-9)" = 40000000 ] || fail "HEAD of the counts"
-# The kiosk puts another file there while somebody reads: the reader gets the one before, whole.
+# The kiosk replaces the file while somebody reads it: the reader gets the previous one completely.
 rm "$work/answer"
 curl -s --max-time 60 --limit-rate 20M -o "$work/answer" "$url/visits.csv" &
 reader=$!
@@ -153,7 +153,7 @@ echo "gopura.conf, line 4: [panel] mode <big> is no mode" >"$work/faults"
 becomes 200 'line 4: \[panel\] mode &#60;big&#62; is no mode' "$url/"
 rm "$work/faults"
 
-# ---- ill, and well again
+# ---- failures, and recovery
 kill -KILL "$fetch"
 wait "$fetch" 2>/dev/null || true
 becomes 503 '^critical: The download program does not respond: It has exited' "$url/health"

@@ -65,11 +65,11 @@ says 2 '--release' "${headless[@]}" --state "$work/s"
 echo 'a file' >"$work/file"
 says 1 "$work/file/state: .*--state" "${headless[@]}" --state "$work/file/state" --release "$release"
 
-# ---- trust: none, a file that is none, another museum's
+# ---- trust root: missing, not valid, another museum's
 says 1 'absent.json' "${headless[@]}" --state "$work/trust" --release "$release" --trust "$work/absent.json"
 says 1 'file: ' "${headless[@]}" --state "$work/trust" --release "$release" --trust "$work/file"
 
-# starts NAME PATTERN OPTIONS...: a kiosk that goes on until it is told to end, and says that.
+# starts NAME PATTERN OPTIONS...: checks that a kiosk keeps running until it gets a signal, and logs PATTERN
 starts() {
 	local name=$1 pattern=$2 got=0
 	shift 2
@@ -116,7 +116,7 @@ draws first --state "$state" --release "$release" --trust "$release/root/1.json"
 draws offline --state "$state" --release "$offline"
 same offline 38
 
-# ---- damaged state: its second copy serves; both damaged: it starts anew, and needs trust again
+# ---- damaged state: the second copy is used; both damaged: it starts from nothing and needs a trust root again
 garbage() { head -c 3000 /dev/zero | tr '\0' 'x' | dd of="$1" conv=notrunc status=none; }
 garbage "$state/state.db"
 draws healed --state "$state" --release "$offline"
@@ -128,7 +128,7 @@ starts forgot 'no trust root is stored' --state "$state" --release "$offline"
 draws again --state "$state" --release "$release" --trust "$release/root/1.json"
 same again 38
 
-# ---- a damaged cache: filled anew
+# ---- a damaged cache: filled again
 garbage "$state/cache.db"
 draws refilled --state "$state" --release "$release"
 same refilled 38

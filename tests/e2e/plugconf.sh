@@ -57,7 +57,7 @@ echo another >"$work/stick/ca.pem"
 plugged
 asked gopura-kiosk.service || fail "another authority beside the same gopura.conf was not taken"
 
-# What is wrong in it is told, and what is right holds.
+# Its errors are reported, and its valid lines are applied.
 sed -i -e 's/^name .*/name = West gate/' -e 's/^rotation .*/rotation = 45/' "$work/stick/gopura.conf"
 plugged
 [ "$(host)" = west-gate ] || fail "a fault kept the rest from holding"

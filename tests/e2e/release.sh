@@ -35,7 +35,7 @@ parts() { # TITLE
 }
 mkdir -p "$dir/regions"
 echo '0-399 # the first that were made' >"$dir/regions/step.faces"
-# ---- what is wrong with the words is told before the long work, not after it
+# ---- errors in the texts are reported before the long work, not after it
 parts Tower
 "$content" build "$dir" --out "$release" >"$folder/log" 2>&1 && fail "a part without its page was built"
 grep -q 'pages/tower.en.html' "$folder/log" || fail "the message does not name the page: $(cat "$folder/log")"
@@ -45,7 +45,7 @@ echo '<h1>Tower</h1><p>The mountain in the middle.</p>' >"$dir/pages/tower.en.ht
 root_of() { sed -nE 's/.*root ([0-9a-f]{32})$/\1/p' "$1"; }
 files() { (cd "$release" && find packs locator -type f | sort); }
 
-# ---- a build that is killed goes on where it stopped, and makes what an undisturbed one makes
+# ---- a build that is killed continues where it stopped, and gives the same result as an undisturbed one
 for seconds in 1 3; do
 	timeout -s KILL "$seconds" "$content" build "$dir" --out "$release" >"$folder/log" 2>&1 || true
 	[ ! -f "$release/timestamp.json" ] || "$content" verify "$release" >/dev/null || fail "a cut-off build left a bad release"
@@ -123,7 +123,7 @@ echo '0-199' >"$dir/regions/step.faces"
 "$content" build "$dir" --out "$release" | grep -q '^release' || fail "a build did not see another list of faces"
 "$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "another region, but not whole"
 
-# ---- a byte that is not what it was, at rest or on the way
+# ---- a changed byte, at rest or in transit
 pack=$(ls -S "$release"/packs/* | head -n 1) # the tiles; a smaller one may be of an older release alone
 cp "$pack" "$folder/pack"
 printf 'x' | dd of="$pack" bs=1 seek=50000 conv=notrunc status=none

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/../.."
 work=build/e2e/safe
 rm -rf "$work"
 mkdir -p "$work"
-# No driver, no home, no state: what may be ill.
+# No driver, no home, no state: everything that may fail is missing.
 bare=(env -i PATH=/nowhere __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null LIBGL_DRIVERS_PATH=/nowhere)
 ! "${bare[@]}" "$PWD/build/gopura-kiosk" --display headless --release build/e2e/nothing --state "$work/state" \
 	2>"$work/kiosk.log" || fail "the kiosk needs no GPU: nothing is tested here"
@@ -24,7 +24,7 @@ grep -q 'broken.ini' "$work/broken.log" || fail "the broken profile is not told 
 ! cmp -s "$work/flat/safe-0.png" "$work/flat/safe-1.png" || fail "the safe page stands still"
 cmp -s "$work/flat/safe-1.png" "$work/broken/safe-1.png" || fail "a broken profile spoils the page"
 
-# A panel that hangs turned turns what is drawn: the visitor sees the same page.
+# For a panel that is mounted rotated the picture is rotated too: the visitor sees the same page.
 mkdir -p "$work/truth"
 cp "$work/flat/safe-1.png" "$work/truth/view-0000.png"
 for turn in 90 180 270; do
@@ -36,7 +36,7 @@ for turn in 90 180 270; do
 	python3 -c "import json, sys; sys.exit(json.load(open('$work/$turn.json'))['psnr_db'] < 25)" ||
 		{ cat "$work/$turn.json"; fail "turned by $turn degrees it is another page"; }
 done
-# gopura.conf says as well how the panel hangs, whatever else it says.
+# gopura.conf can set the rotation too, whatever else is in it.
 printf '[panel]\nrotation = 90\nhours = never\n' >"$work/gopura.conf"
 "${bare[@]}" "$PWD/build/gopura-kiosk" --safe-page --display headless --size 360x640 --conf "$work/gopura.conf" \
 	--capture "$work/conf" 2>"$work/conf.log" || fail "no safe page by gopura.conf"

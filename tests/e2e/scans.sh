@@ -21,7 +21,7 @@ content() {
 		printf '%s\n' "${@:3}"
 		printf '[grid]\npoints = 6\nface_px = 256\n'
 	} >"$work/temple.ini"
-	# Equal text keeps its time of change, and the build what it made.
+	# An unchanged file keeps its modification time, and the build its results.
 	cmp -s "$work/temple.ini" "$folder/temple.ini" || cp "$work/temple.ini" "$folder/temple.ini"
 }
 

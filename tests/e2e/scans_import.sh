@@ -38,7 +38,7 @@ expect 70000 0 none 0 nefertiti/nefertiti-lowres.obj
 # Venus has 377 faces that show their inside; lighting and culling would make holes of them.
 build/gopura-content import "$scans/venus-cc0-textured/decoded/venus.obj" | grep -q "  377 faces showing the wrong side, turned" || { echo "FAIL venus: faces not turned"; bad=1; }
 
-# One range image is no surface, and that is what is said.
+# A single range image has no surface, and the message says so.
 said=$(build/gopura-content import "$scans/happy-buddha-range/happyStandRight_0.ply" 2>&1) && bad=1
 grep -q 'range image' <<<"$said" || { echo "FAIL range image: $said"; bad=1; }
 exit $bad

@@ -8,7 +8,7 @@ rm -rf "$work"
 mkdir -p "$work/stick"
 setup=build/gopura-setup
 
-# status COMMAND...: its exit status; what it says is in $work/said.
+# status COMMAND...: prints its exit status; its output is in $work/said.
 status() { "$@" >"$work/said" 2>&1 && echo 0 || echo $?; }
 
 cp system/gopura.conf.example "$work/gopura.conf"
@@ -20,7 +20,7 @@ line=$(grep -n '^rotation' "$work/gopura.conf" | cut -d: -f1)
 grep -qx "$work/gopura.conf: line $line: rotation must be 0, 90, 180 or 270, not '45'" "$work/said" || fail "said: $(cat "$work/said")"
 [ "$(status $setup --check "$work/none")" = 1 ] || fail "a file that is not there is right"
 
-# The first file that is there is the one, and its faults stop nothing.
+# The first file that exists is used, and its errors stop nothing.
 printf '[terminal]\nname = Stick\n' >"$work/stick/gopura.conf"
 [ "$(status $setup --conf "$work/none" --conf "$work/gopura.conf" --conf "$work/stick/gopura.conf" --boards board \
 	--out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
@@ -43,7 +43,7 @@ grep -q 'rename the file' "$work/said" || fail "said: $(cat "$work/said")"
 [ "$(status $setup --conf "$work/gopura.conf" --boards board --out "$evil/out")" = 2 ] || fail "taken: a folder's name with quotes"
 ! grep -rq LD_PRELOAD "$work/out" || fail "a folder's name became a line of fetch.env"
 
-# No file: by DHCP, and it is told what to do. What was of an earlier file is gone.
+# No file: DHCP is used, and a message says what to do. Results of an earlier file are gone.
 [ "$(status $setup --conf "$work/none" --out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
 grep -q DHCP=yes "$work/out/network/10-wired.network" || fail "no DHCP without a file"
 grep -q "$work/none does not exist: create it" "$work/out/faults" || fail "nobody is told"

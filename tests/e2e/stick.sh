@@ -40,7 +40,7 @@ plug() { # RELEASE [BELOW]: whole at once, as a mount is: what is looked for com
 pull() { rm -rf "${work:?}/mount/"*; }
 nowhere=https://localhost:1/
 
-# ---- never a network: the stick comes while the kiosk waits
+# ---- without a network: the stick is plugged in while the kiosk waits
 start_kiosk "$work/first.log" $nowhere
 wait_for 30 "word that there is no network" says 'offline'
 plug "$work/release" /release

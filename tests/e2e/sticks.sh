@@ -38,7 +38,8 @@ hold() {
 	PATH=$work/bin:$PATH "$work/gopura-stick" "$1" >"$work/$1.log" 2>&1 &
 	declare -g "$1=$!"
 }
-# let_go NAME: the device is gone; the script is told first, then what it waits with is killed (KillMode=mixed)
+# let_go NAME: the device is gone; the script gets its signal first, then the processes it waits with are killed
+# (KillMode=mixed)
 let_go() {
 	local waits
 	waits=$(pgrep -P "${!1}" || true)

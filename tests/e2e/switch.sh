@@ -58,7 +58,7 @@ cp -a "$small/content/." "$work/content/"
 rm -rf "$work/release"/* "$work/state"
 cp -a "$small/release/." "$work/release/"
 
-# ---- visitors: drags for half a minute, and a release that comes meanwhile
+# ---- a visitor drags for half a minute, and a release arrives meanwhile
 start_kiosk "$work/first.log"
 wait_for 60 "first release" says 'release 1 is shown'
 prove
@@ -75,7 +75,7 @@ wait_for 90 "release 2 after the visit" says 'release 2 is shown'
 [ "$(grep -c 'drag ends' "$log")" = 13 ] || fail "the visit was cut short"
 wait_for 20 "release 2 on the panel" grep -cq 'app: showing' "$log"
 
-# ---- it crashes on trial: three starts that get to no picture, and the one before is back
+# ---- a release crashes on trial: after three starts without a picture the previous one is back
 crash_kiosk
 stop_server
 printf '#!/bin/sh\nexec sleep 20\n' >"$work/silent"
@@ -101,7 +101,7 @@ wait_for 90 "release 3" says 'release 3 is shown'
 prove
 end_kiosk
 
-# ---- killed during the switch, at other moments each time: old or new, and it shows
+# ---- killed during the switch, at different moments: the old or the new release is shown
 news=0
 for delay in 0 0.1 0.2 0.4 0.8; do
 	start_kiosk "$work/kill.log"

@@ -57,7 +57,7 @@ bar() {
 	[ "$found" = "$2" ] || fail "$1: the bar of the page is $found and not $2"
 }
 
-# ---- right: no page; the release comes from where the file says
+# ---- a valid file: no error page; the release comes from where the file says
 printf '[release]\nurl = %s\ntrust = 1.json\n[terminal]\nlanguage = km\nboard = generic\n' \
 	"$PWD/$small/release" >"$conf"
 visit right 8 --conf "$work/no/gopura.conf" --conf "$conf"
@@ -65,7 +65,7 @@ bar right-early nowhere
 ! grep -q 'set-up bug' "$work/right.log" || fail "a right file has faults"
 grep -q 'app: showing' "$work/right.log" || fail "the release of gopura.conf was not shown"
 
-# ---- one fault: it is said, the rest is in use (a turned panel), and the temple comes afterwards
+# ---- one error: it is shown, the other lines are used (a rotated panel), and the temple follows
 printf '[panel]\nrotation = 90\nhours = nine to five\n' >>"$conf"
 visit faulty 40 --conf "$conf" &
 faulty=$!
@@ -81,7 +81,7 @@ bar overridden-early left
 bar overridden-late left
 grep -q 'section \[release\] has no trust' "$work/overridden.log" || fail "what is missing was not said"
 
-# ---- a trust file that is none ends nothing
+# ---- an invalid trust file does not end the kiosk
 printf '[release]\nurl = %s\ntrust = gopura.conf\n' "$PWD/$small/release" >"$conf"
 visit trustless 4 --conf "$conf"
 bar trustless-late left

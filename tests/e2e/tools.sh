@@ -9,7 +9,7 @@ rm -rf "$work"
 mkdir -p "$work"
 small_release
 
-# ---- a tool that there is none of
+# ---- an unknown tool
 mkdir "$work/bad"
 cp -r "$small/content/." "$work/bad/"
 sed -i 's/^tools *=.*/tools = light, lens/' "$work/bad/temple.ini"
@@ -85,5 +85,5 @@ assert sections[0][0] == 0 and sections[1][0] < -2, sections  # away from the vi
 assert sections[2][0] == sections[1][0] and abs(sections[2][1] - sections[1][1]) > 0.5, sections
 P
 
-# ---- as pictures: how much of each differs from the one with the light put down again
+# ---- pictures: how much of each differs from the one after the light was switched off again
 python3 tests/e2e/tools.py "$work/shots"

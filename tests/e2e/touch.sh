@@ -13,7 +13,7 @@ serve "$small/release" "$work/server"
 kiosk=(build/gopura-kiosk --display headless --size 960x540 --release "$url" --ca "$ca"
 	--trust "$small/release/root/1.json" --state "$work/state" --log debug)
 
-# A first visit fills the cache with what the second one sees first.
+# A first visit fills the cache with the objects that the second one needs first.
 head -n 3 <(grep -v '^#' tests/bench/views.txt) >"$work/views.txt"
 "${kiosk[@]}" --views "$work/views.txt" --capture "$work/views" 2>"$work/first.log" ||
 	{ tail -n 20 "$work/first.log"; fail "the kiosk ended with an error"; }

@@ -59,12 +59,12 @@ assert [what for what in said if what != "tour flies"] == [
     "tour guardians", "tour halts", "drag begins", "tour goes on", "tour ends", "is somebody there", "nobody is there",
     "tour round for nobody", "somebody is there"], said
 
-# The eye: it comes back to where it was taken from the tour, and never jumps but in the visitor's hand.
+# The eye returns to where it left the tour, and jumps only while the visitor moves it.
 place = r": eye at (\S+) (\S+) (\S+)"
 taken, back = (tuple(map(float, re.findall("app: tour " + what + place, log)[at]))
                for what, at in (("halts", 0), ("flies", said[:said.index("tour halts")].count("tour flies"))))
 print(f"taken at {taken}, back at {back}")
-# On a machine so slow that the eye was still on its way to the first stop, that is where it comes to.
+# On a slow machine, where the eye was still flying to the first stop, it returns to that flight.
 assert math.dist(taken, back) < 0.002 or said[1] == "tour halts", said
 own = log[:log.index("tour halts")], log[log.index("tour goes on"):]
 longest = 0

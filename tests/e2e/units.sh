@@ -35,7 +35,7 @@ done
 # RAUC's own, by what the image lays over it.
 printf '[Service]\nType=dbus\nBusName=de.pengutronix.rauc\nExecStart=/usr/bin/rauc service\n' >"$work/rauc.packaged"
 most rauc.service 30 "$work/rauc.packaged" image/root/etc/systemd/system/rauc.service.d/gopura.conf
-# A line with all privileges stands outside what is measured.
+# A command line with all privileges is not covered by the measure.
 ! grep -nE '^Exec[A-Za-z]+=[-@:|]*[+!]' systemd/*.service || { echo "a command runs outside its unit's confinement"; failed=1; }
 # Who takes text from a stick, a network or a finger has a user without privileges, and none of them is root.
 for name in kiosk fetch safe health setup conf bundle; do
@@ -79,7 +79,7 @@ for unit in kiosk safe fetch; do
 	[ "$has" = "$wants" ] || { echo "gopura-$unit.service: in the group $group: $has, not $wants"; failed=1; }
 done
 grep -qE '^InaccessiblePaths=.*-?/efi( |$)' systemd/gopura-fetch.service || { echo "gopura-fetch.service: it sees /efi"; failed=1; }
-# The self-test looks at the terminal that will run: both have the same options.
+# The self-test checks the terminal that will run, so both have the same options.
 options() { grep "^$1=" systemd/gopura-kiosk.service | grep -oE -e '--[a-z]+ [^ ]+' | grep -vE -e '--(metrics|visits)'; }
 [ "$(options ExecStartPre)" = "$(options ExecStart)" ] ||
 	{ echo "gopura-kiosk.service: its self-test and its kiosk have other options"; failed=1; }

@@ -43,7 +43,7 @@ wait_for 90 "version 2" shown 2
 on_panel() { [ "$(grep -c 'app: showing' "$work/kiosk.log")" = "$1" ]; }
 wait_for 20 "version 2 on the panel" on_panel 2 # remembered first, then shown, by two threads
 
-# ---- an older one comes back
+# ---- an older release is offered
 cp "$work/release/release.json" "$work/release/timestamp.json" "$work/"
 cp "$work/release1/release.json" "$work/release1/timestamp.json" "$work/release/"
 wait_for 20 "refusal of an older release" grep -q 'refused timestamp.json: .*older' "$work/kiosk.log"

@@ -9,7 +9,7 @@ rm -rf "$work"
 mkdir -p "$work/bin" "$work/sys/bus/usb"
 policy=$PWD/image/root/usr/lib/gopura/gopura-usb
 
-# Of the image's modules: which there are for a device that says this, and where they lie
+# modules of the image that exist for a device that identifies itself so, and where they are
 cat >"$work/bin/modprobe" <<'P'
 #!/bin/sh
 case $2 in
@@ -106,7 +106,7 @@ device "ff 00 00 radio"; judged "a radio beside networks by cable" 0
 rm "$work/allowed"
 ! "$policy" allows keyboard || fail "nothing is allowed where nothing was said"
 
-# ---- what was at work before it was judged goes on, or ends
+# ---- devices that were in use before they were checked stay, or are removed
 device "$stick" "$keyboard"
 for at in "$folder"/*:*; do echo 1 >"$at/authorized"; done
 : >"$work/sys/bus/usb/drivers_probe"

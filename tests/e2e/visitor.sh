@@ -41,7 +41,7 @@ said = [m["language"] or m["comfort"] or m[1].split()[0] for m in re.finditer(ma
 assert said == ["fr", "large", "card", "is", "somebody", "is", "nobody", "forgotten", "en", "somebody", "drag"], said
 P
 
-# ---- what is counted of it, and nothing of him; handed out by the health page
+# ---- the counts of the visit, without personal data, as the health page serves them
 cat "$work/visits.csv"
 cmp "$work/visits.csv" "$work/state/visits.csv" || fail "the copy says something else"
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')

@@ -11,8 +11,7 @@ small_release
 release=$small/release pid=
 trap '{ kill -USR2 $pid && kill $pid; } 2>/dev/null || true' EXIT
 
-# managed NAME COMMAND...: as systemd would start it with WatchdogSec=3; what it says goes to
-# $work/NAME, a line each: seconds and the word.
+# managed NAME COMMAND...: starts it as systemd would with WatchdogSec=3; its messages go to $work/NAME, one per line with its time in seconds
 managed() {
 	local name=$1
 	shift
@@ -45,7 +44,8 @@ P
 }
 heard() { [ "$(grep -c "$2" "$work/$1")" -ge "$3" ]; }
 
-# is_well NAME: ready, then pings less than WatchdogSec apart; none while it was stopped, some after.
+# is_well NAME: checks that it was ready, then sent pings less than WatchdogSec apart; none while it was stopped, some
+# after.
 is_well() {
 	local before
 	wait_for 60 "$1 to be ready" heard "$1" READY=1 1

@@ -10,8 +10,7 @@ rm -rf "$work"
 mkdir -p "$work"
 shim=$PWD/build/tests/tools/weak_gl.so
 
-# ---- the shim takes away what it says, and nothing else
-# probes LIMIT REFUSED...: these and no others are refused ("more than mediump" depends on the CPU).
+# ---- the shim removes what it names, and nothing else
 probes() {
 	local limit=$1 want
 	shift
