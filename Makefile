@@ -1,6 +1,6 @@
-# Gopura: one entry. `make help` lists the targets.
+# Gopura. `make help` lists the targets.
 #
-# The folders are the architecture, so the build is read off them: every C file of a folder and its rooms
+# The folders are the architecture, so the build follows them: every C file of a folder and its rooms
 # goes into one archive, each program is its main file plus what it pulls from that archive, and each
 # test_*.c below tests/ is a program of its own.
 
@@ -14,10 +14,10 @@ comma   := ,
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
-# METIS and meshoptimizer carry no pkg-config file in Debian 12, nor does jsmn, which is a header alone.
+# METIS, meshoptimizer and jsmn (only a header) have no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lmeshoptimizer -lm -pthread
 
-# Asked for lazily and once: the packages may only arrive with the `deps` target.
+# Evaluated lazily and once, because the `deps` target may install the packages first.
 PKG_CFLAGS = $(eval PKG_CFLAGS := $(shell pkg-config --cflags $(LIBS)))$(PKG_CFLAGS)
 PKG_LIBS   = $(eval PKG_LIBS := $(shell pkg-config --libs $(LIBS)))$(PKG_LIBS)
 
@@ -29,12 +29,12 @@ OPT     := -O2 -g
 CFLAGS   = -std=c11 -D_GNU_SOURCE -I. $(WARN) $(OPT) -ffp-contract=off -MMD -MP $(PKG_CFLAGS)
 LDFLAGS  = -Wl,--as-needed
 ifneq ($(SAN),)
-# Locals that nothing set have the same wrong bits in every run: a read of one is found every time.
+# Uninitialised locals get the same wrong bits in every run, so a read of one is always found.
 OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
            -ftrivial-auto-var-init=pattern
 endif
 
-# A fuzz target by itself is driven over its corpus by tests/fuzz/main.c; FUZZER=yes links it to clang's libFuzzer.
+# tests/fuzz/main.c runs a fuzz target over its corpus; FUZZER=yes links it with clang's libFuzzer instead.
 FUZZ_MAIN = $(BUILD)/obj/tests/fuzz/main.o
 ifneq ($(FUZZER),)
 CC      := $(if $(shell command -v ccache),ccache )clang
@@ -75,7 +75,7 @@ help: ## list the targets
 
 deps: $(BUILD)/.deps
 
-# Re-checked only when the list changes; asks apt for nothing that is there.
+# Checked again only when the list changes; installs nothing that is there.
 $(BUILD)/.deps: packages.txt
 	@mkdir -p $(@D)
 	@./deps.sh
@@ -90,25 +90,25 @@ test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, f
 check: all ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
 
-soak: all ## random fingers on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
+soak: all ## random touches on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
 	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
 
-golden: all ## pictures of every state in four languages into build/golden/, beside those that were kept; KEEP=yes keeps them
+golden: all ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
 	@LANGUAGES="$(LANGUAGES)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt
 	@image/build.sh
 
-image-check: all ## two images from nothing have the same slots
+image-check: all ## check that two builds of the image have the same slots
 	@./deps.sh image/tools.txt
 	@image/check.sh
 
-fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each; TARGET=NAME for one; KEEP=yes adds what it found to the corpora
+fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each; TARGET=NAME for one; KEEP=yes adds inputs that it found to the corpora
 	@./deps.sh tests/fuzz/tools.txt
 	@TIME="$(TIME)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
 
-powercut: all ## the power goes: at every write of cache and state (minutes), and 100 times in the appliance (hours); CUTS=N, SEED=N
+powercut: all ## power cuts: at every write of cache and state (minutes), and 100 of the appliance (hours); CUTS=N, SEED=N
 	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
 	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
 	@CUTS=$(or $(CUTS),100) bash tests/qemu/powercut.sh system
@@ -116,11 +116,11 @@ powercut: all ## the power goes: at every write of cache and state (minutes), an
 interrupted: all ## builds killed and out of disk at random moments, then resumed: the same release; KILLS=50 FULL=20 SEED=1
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 
-qemu-test: all ## the image in QEMU, by itself: the temple, a tap, updates that are good, tampered with, blank or hang, a gopura.conf on a stick, which disk is started from
+qemu-test: all ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk
 	@bash tests/qemu/image.sh updates
 	@bash tests/qemu/disks.sh all
 
-qemu: all ## boot the image for a person: a window, or a VNC screen
+qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC screen
 	@./deps.sh image/tools.txt
 	@image/qemu.sh
 
@@ -130,7 +130,7 @@ arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qe
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
 
-bench-full: all ## what takes hours: temples of 1, 6 and 18 million triangles, and a hierarchy of 100 million, into build/bench/
+bench-full: all ## benchmarks that take hours: temples of 1, 6 and 18 million triangles, and a hierarchy of 100 million, into build/bench/
 	@tests/bench/run.sh --full
 
 check-style: deps ## clang-format, the include table, house rules
@@ -140,7 +140,7 @@ po: deps ## bring the texts for translators (ui/po) up to date with the sources
 	@ui/po/extract.sh >ui/po/gopura.pot
 	@for language in ui/po/*.po; do msgmerge -q --update --backup=none "$$language" ui/po/gopura.pot || exit; done
 
-format: ## let clang-format settle the white space
+format: ## format the sources with clang-format
 	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
 clean: ## remove build/ (the demo content and its caches too)
@@ -153,7 +153,7 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 	@echo '  cc    $<'
 	@$(CC) $(CFLAGS) -c $< -o $@
 
-# Only what prints it carries the version, so that a commit does not rebuild the tree.
+# Only files that print the version depend on it, so that a commit does not rebuild the tree.
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 
@@ -178,7 +178,7 @@ $(BUILD)/gopura-health: $(BUILD)/obj/health/main.o $(ARCHIVE)
 $(BUILD)/gopura-setup: $(BUILD)/obj/system/main.o $(ARCHIVE)
 	$(LINK)
 
-# A test may define a function of the archive itself: its own object wins.
+# A test may define a function of the archive itself; its own object has priority.
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
@@ -195,7 +195,7 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 
-# Preloaded by tests of weak and failing boards; of no program.
+# Libraries that tests of weak and failing boards preload; part of no program.
 $(SHIMS:%=$(BUILD)/%.so): $(BUILD)/%.so: %.c | $(BUILD)/.deps
 	@mkdir -p $(@D)
 	@echo '  link  $@'

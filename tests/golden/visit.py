@@ -1,6 +1,6 @@
-"""One visit through every state, for a panel of 960 x 540: visit.py FOLDER writes visit.touch (docs/input.md)
-and shots.txt. The bar, the first row of the search, a card and what closes stand in the same place in
-every language; where a page has its picture says GALLERY."""
+"""Writes one visit through every state, for a panel of 960 x 540: visit.py FOLDER makes visit.touch
+(docs/input.md) and shots.txt. The bar, the first row of the search, a card and the closing controls are at the
+same place in every language."""
 import sys
 
 HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 128, 163, 199, 234, 269, 304)]

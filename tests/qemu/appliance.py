@@ -1,5 +1,5 @@
-"""appliance.py IMAGE WORK [STICKS]: starts the appliance's image as a box would, waits for the temple, taps it, expects a card,
-and reads the journal on the way. With STICKS, a folder of update bundles by name (docs/image.md): each is plugged in as a stick."""
+"""appliance.py IMAGE WORK [STICKS]: boots the appliance's image, waits for the temple, taps it, expects a card, and checks the journal.
+STICKS is a folder of update bundles by name (docs/image.md); each is plugged in as a stick."""
 import json
 import os
 import re

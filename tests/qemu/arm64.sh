@@ -1,7 +1,7 @@
 #!/bin/bash
-# The programs for arm64: cross-compiled against Debian's packages for it, unpacked into build/arm64
-# and not installed; unit tests, and a kiosk's first picture, under qemu-user. docs/arm64.md says what
-# that shows and what it does not.
+# The programs for arm64: cross-compiled against Debian's packages, which are unpacked into build/arm64 and not
+# installed; unit tests and a kiosk's first picture run under qemu-user. docs/arm64.md says what this shows and what it
+# does not.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh

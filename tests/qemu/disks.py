@@ -1,5 +1,5 @@
-"""disks.py BOOT WORK [all]: kernel and initrd of BOOT meet the disks own.img, stick.img (the same names) and copy.img (the same identities
-too) of WORK, which disks.sh makes. Whichever is found first, the disk that the loader names is started and used, or none is."""
+"""disks.py BOOT WORK [all]: boots kernel and initrd of BOOT with the disks own.img, stick.img (the same names) and copy.img (the same
+GUIDs too) of WORK, which disks.sh makes. Whichever is found first, the disk that the loader names is started and used, or none."""
 import os
 import re
 import subprocess

@@ -1,7 +1,7 @@
 #!/bin/bash
-# disks.sh [all]: which disk the terminal starts from, in QEMU: the first program of the boot (image/init) meets the terminal's disk and a
-# stick that has partitions of the same names, or of the same identities too. Not the whole appliance: kernel and initrd of
-# its image, and slots that say whose they are and end. BOOT=FOLDER has others.
+# disks.sh [all]: tests in QEMU which disk the terminal starts from: image/init finds the terminal's disk and a stick
+# whose partitions have the same names, or the same GUIDs too. It does not boot the whole appliance, only kernel and
+# initrd of its image, and slots that print whose they are and end. BOOT=FOLDER has others.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }
@@ -11,7 +11,7 @@ image=build/qemu-image/image work=build/qemu-disks
 mkdir -p "$work"
 tests/qemu/lib-image.sh "$image"
 
-# disk NAME: a disk whose slot, loader's partition and data partition say NAME
+# disk NAME: makes a disk whose slot, loader's partition and data partition print NAME
 disk() {
 	local tree=$work/tree disk=$work/$1.img
 	rm -rf "$tree" "$disk"

@@ -1,8 +1,8 @@
 #!/bin/bash
-# The appliance's own image, started as a box would start it, in QEMU without KVM: the loader, the slot, systemd, the temple on the
-# panel, a tap and its card. With "updates" also what happens to updates from sticks: one that is good, one that was tampered with,
-# one that is older, one that shows nothing and one that hangs; to sticks with other file systems, and to two at once; then to a network by USB, and to a
-# gopura.conf on a stick. Pictures and the journal: build/qemu-image.
+# Boots the appliance's own image in QEMU without KVM: the loader, the slot, systemd, the temple on the panel, a tap and
+# its card. With "updates" also updates from sticks (a good one, a tampered one, an older one, one that shows nothing
+# and one that hangs), sticks with other file systems, two sticks at once, a USB network adapter, and a gopura.conf on a
+# stick. Pictures and the journal are in build/qemu-image.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The kiosk on a real KMS card, inside QEMU without KVM: virtio-gpu, virtio-tablet, an initramfs
-# with nothing but the kiosk and a small release. A tap through QMP opens a card, which the
-# screendump shows. Then the panel is unplugged and plugged in. Pictures: build/qemu/*.ppm.
+# The kiosk on a KMS card, inside QEMU without KVM: virtio-gpu, virtio-tablet, an initramfs with only the kiosk and a
+# small release. A tap through QMP opens a card, which the screendump shows. Then the panel is unplugged and plugged in.
+# Pictures: build/qemu/*.ppm.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }

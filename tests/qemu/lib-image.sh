@@ -1,6 +1,6 @@
 #!/bin/bash
-# lib-image.sh FOLDER: the appliance's image as the tests start it, FOLDER/gopura.img: a small release inside, the journal on the serial
-# line. What is there stays while nothing that it is made of is newer.
+# lib-image.sh FOLDER: makes the appliance's image for the tests, FOLDER/gopura.img, with a small release inside and the
+# journal on the serial line. An existing one is kept unless something that it is made of is newer.
 set -eu
 cd "$(dirname "$0")/../.."
 out=$1

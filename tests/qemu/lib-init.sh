@@ -1,4 +1,4 @@
-# Part of the guest's init: the kiosk, and what happens to its panel (gopura.case= of the command line).
+# Part of the guest's init: starts the kiosk and changes its panel (gopura.case= of the command line).
 preload=
 case $(sed -n 's/.*gopura\.case=\([a-z]*\).*/\1/p' /proc/cmdline) in
 visit)

@@ -1,5 +1,5 @@
 #!/bin/bash
-# make-initramfs.sh KERNEL_DIR RELEASE OUT: the smallest system that runs the kiosk on a KMS card.
+# make-initramfs.sh KERNEL_DIR RELEASE OUT: makes the smallest system that runs the kiosk on a KMS card.
 set -eu
 kernel=$1 release=$2 out=$3
 root=$(dirname "$out")/root
@@ -10,7 +10,7 @@ cp /bin/busybox "$root/bin/"
 for name in sh mount insmod mkdir sleep poweroff cat ls grep tee sed date; do ln -s busybox "$root/bin/$name"; done
 cp -r "$release/." "$root/release/"
 
-# Modules, in the order they need each other.
+# Modules, in the order of their dependencies.
 for name in virtio_ring virtio virtio_pci_legacy_dev virtio_pci_modern_dev virtio_pci virtio_dma_buf \
 	drm drm_kms_helper drm_shmem_helper virtio-gpu evdev virtio_input; do
 	module=$(find "$kernel/lib/modules" -name "$name.ko*" | head -1)

@@ -1,5 +1,5 @@
 #!/bin/bash
-# make-release.sh WORK: a small release of the demo's content, WORK/release.
+# make-release.sh WORK: publishes a small release of the demo's content as WORK/release.
 set -eu
 work=$1
 demo/make-content.sh "$work/content" 60000

@@ -1,7 +1,7 @@
 #!/bin/bash
-# make-sticks.sh IMAGE_FOLDER WORK: update bundles on sticks, for appliance.py: next (the same, newer), tampered (one byte of next
-# is another), older (the image's own system, below what next makes the floor), blank (boots, but its kiosk shows nothing), hangs
-# (the kernel stops half a minute after the start).
+# make-sticks.sh IMAGE_FOLDER WORK: makes update bundles for the sticks of appliance.py: next (the same system, newer),
+# tampered (next with one byte changed), older (the image's own system, below the floor that next sets), blank (boots,
+# but its kiosk shows nothing), hangs (the kernel stops half a minute after the start).
 set -eu
 cd "$(dirname "$0")/../.."
 image=$1 work=$2

@@ -1,5 +1,5 @@
-"""plug.py KERNEL INITRAMFS WORK: the safe page on a panel, and a kiosk that waits for its end; then the kiosk starts without a panel, which is then plugged in, out and in
-again, and the GPU is reset at last; no process ends but to fit the panel that came first, and for the GPU."""
+"""plug.py KERNEL INITRAMFS WORK: shows the safe page on a panel while a kiosk waits for its end. Then the kiosk starts without a panel,
+which is plugged in, out and in again, and at last the GPU is reset. A process exits only to fit the first panel, and for the GPU."""
 import os
 import sys
 import time

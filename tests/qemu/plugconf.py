@@ -1,4 +1,4 @@
-"""plugconf.py IMAGE WORK: the appliance's image without a gopura.conf says so on the panel; one on a stick holds as soon as the
+"""plugconf.py IMAGE WORK: the appliance's image without a gopura.conf says so on the panel; one on a stick is applied as soon as the
 stick is plugged in, and a second time changes nothing (docs/terminal.md). WORK has the gopura.conf and root.json of the image."""
 import os
 import subprocess

@@ -1,15 +1,14 @@
-"""powercut.py IMAGE STICKS WORK: the power goes while the appliance runs (docs/powercut.md).
+"""powercut.py IMAGE STICKS WORK: cuts the power while the appliance runs (docs/powercut.md).
 
-A session is run once, its disk behind a log of all writes: first start on a larger card, provisioning, a release from a stick, a tap, a
-newer release, the slot found good; where STICKS has an update of the system, that too. Then, for each cut, the disk as it may be
-when the power went at some point of the log, started and looked at.
+A session runs once, with a log of all writes of its disk: first start on a larger card, provisioning, a release from a stick, a tap, a
+newer release, marking the slot as good; if STICKS has an update of the system, that too. Then, for each cut, a disk is made as it may
+be after a power cut at some point of the log, started and checked.
 
-  CUTS=N      how many cuts are started (100)         SEED=N      other cuts and other losses
-  GLANCES=N   how many more disks are only looked at, by the tools of the loader and the file system (3 times as many)
-  CUT=N       cut N alone, in the session that is there: the same disk again, bit by bit
-  AGAIN=yes   more cuts in the session that is there
-  LIES=yes    the disk acknowledges flushes and forgets: what must be found
-"""
+  CUTS=N      number of cuts that are started (100)   SEED=N      other cuts and other losses
+  GLANCES=N   number of disks that are only checked by the tools of the loader and the file system (3 times as many)
+  CUT=N       only cut N, in the existing session: the same disk again, bit by bit
+  AGAIN=yes   more cuts in the existing session
+  LIES=yes    the disk acknowledges flushes but does not perform them: damage must be found"""
 import json
 import os
 import random

@@ -1,7 +1,8 @@
 #!/bin/bash
-# The power goes while the appliance runs, in QEMU: at points of the log of everything that its disk was told (powercut.py, docs/powercut.md).
-# CUTS=N of them (3), SEED=N others; "system": an update of the system is a part of the session. What failed is kept in
-# build/qemu-image/powercut, and CUT=N with its SEED makes the same disk again while the session there is the same.
+# Cuts the power while the appliance runs in QEMU, at points of the log of its disk's writes (powercut.py,
+# docs/powercut.md). CUTS=N cuts (3), SEED=N others; "system": the session contains an update of the system. Failed cuts
+# are kept in build/qemu-image/powercut, and CUT=N with its SEED makes the same disk again while the same session
+# exists.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }

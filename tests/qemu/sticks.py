@@ -1,5 +1,5 @@
-"""sticks.py IMAGE WORK: sticks that are plugged into the running appliance. A file system of a kind that is not taken does nothing,
-least of all an ext4 that orders the kernel to panic; FAT and exFAT are taken; of two sticks each keeps its own."""
+"""sticks.py IMAGE WORK: plugs sticks into the running appliance. A stick with another file system has no effect, not even an ext4 that
+tells the kernel to panic; FAT and exFAT are accepted; each of two sticks keeps its own mount."""
 import os
 import re
 import struct

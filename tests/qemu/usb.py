@@ -1,5 +1,5 @@
-"""usb.py IMAGE WORK: a network by USB that is there before gopura.conf was read. Where [usb] allows it, it gets an address; where
-nothing is said, none. WORK has the gopura.conf of the image."""
+"""usb.py IMAGE WORK: a USB network adapter that is plugged in before gopura.conf is read. It gets an address if [usb] allows it, and
+none otherwise. WORK has the gopura.conf of the image."""
 import os
 import re
 import subprocess

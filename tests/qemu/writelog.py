@@ -1,9 +1,9 @@
-"""What a disk was told, as QEMU's driver blklogwrites notes it (the format of dm-log-writes), and the disk as it may be after the power
-went at a point of it.
+"""Reads the writes of a disk as QEMU's driver blklogwrites records them (the format of dm-log-writes), and makes the disk as it may be
+after a power cut at a point of that log.
 
-What was written before the last flush is on the disk. Of what came after, any part may be: each write is there, is not, or is torn between
-sectors of 512 bytes. A write that forces itself through (FUA) is there. The driver notes a write when it is done, so one that was on
-its way while a flush was counts as flushed if it was done first; the guest relies on no more."""
+What was written before the last flush is on the disk. Each later write is there, is missing, or is torn between sectors of 512 bytes.
+A forced write (FUA) is there. The driver records a write when it is finished, so a write that was in flight during a flush counts as
+flushed if it finished first; the guest relies on no more than that."""
 import random
 import struct
 import sys

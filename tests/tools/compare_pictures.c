@@ -1,11 +1,12 @@
-/* How near pictures are to the truth.
+/* Compares pictures with the truth.
  *
  *   compare_pictures TRUTH_DIR OTHER_DIR
  *
  * For every view-NNNN.png of TRUTH_DIR: PSNR and SSIM against the file of the same name in
- * OTHER_DIR, over the union of both silhouettes (alpha = coverage), both laid on one fixed
- * background, so that a fat outline costs. A JSON line per view, then one with the means and the
- * mean of the worst 5 % (at least one view). SSIM after Wang et al. 2004 on luma, 8 x 8 windows. */
+ * OTHER_DIR, over the union of both silhouettes (alpha = coverage), both on one fixed background,
+ * so that an outline that is too wide counts as an error. Prints a JSON line per view, then one
+ * with the means and the mean of the worst 5 % (at least one view). SSIM after Wang et al. 2004 on
+ * luma, 8 x 8 windows. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

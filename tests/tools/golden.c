@@ -1,11 +1,12 @@
-/* Pictures that were looked at and kept (tests/golden).
+/* Keeps reviewed pictures (tests/golden), and compares fresh ones with them.
  *
- *   golden keep FRESH.png GOLDEN.png          as it is kept: 16 levels a channel, so that it is
- * small golden compare GOLDEN.png FRESH.png SIDE  the worst square of 24 px, root of the mean
- * square; past the tolerance SIDE is written: kept, fresh, difference
+ *   golden keep FRESH.png GOLDEN.png
+ *     writes GOLDEN.png with 16 levels per channel, so that it is small
+ *   golden compare GOLDEN.png FRESH.png SIDE.png
+ *     prints the root mean square of the worst square of 24 px; beyond the tolerance it writes
+ *     SIDE.png: kept picture, fresh picture, difference
  *
- * A mean over the picture would forgive a label that is gone: it is the worst square that counts.
- */
+ * The worst square counts, because a mean over the picture would not notice a missing label. */
 #include <errno.h>
 #include <math.h>
 #include <png.h>

@@ -1,14 +1,14 @@
-/* gopura-kiosk on a clock that does not wait: where a kiosk would wait for time alone (a visitor, a
- * fade, the next frame) time jumps, so that hours of visits pass in minutes. Where it waits for
- * the fetcher or a decoder it waits. With --shots time stands still meanwhile, so that a picture
- * does not depend on how busy the machine is, and the frames of a moving eye are as far apart as
- * its longest step.
+/* gopura-kiosk on a clock that does not wait: where a kiosk would only wait for time (a visitor, a
+ * fade, the next frame) time jumps, so that hours of visits pass in minutes. For the fetcher and
+ * the decoders it really waits. With --shots time stands still during that, so that a picture does
+ * not depend on how busy the machine is, and the frames of a moving eye are as far apart as its
+ * longest step.
  *
  *   hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE [--log debug]
  *
- * After each frame the budgets of the board are looked at, and in each turn whether a terminal that
- * nobody touched for long shows itself, with nothing left of the visitor. It goes on after the
- * replay's end until nobody is there. Ends with 1, and says why, where anything of that fails. */
+ * After each frame it checks the budgets of the board, and in each turn of the loop that a terminal
+ * which nobody has touched for long shows itself, with nothing left of the visitor. It continues
+ * after the replay's end until nobody is there. Exits with 1 and a reason if a check fails. */
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>

@@ -1,9 +1,9 @@
-/* A GPU that is reset, played on one that is not: preloaded (LD_PRELOAD) before EGL and GLES2. From
- * the moment that the file named by LOST_GL exists the context is lost, and what LOST_GL_BY names
- * tells of it, as drivers differ:
+/* Simulates a GPU reset: preloaded (LD_PRELOAD) before EGL and GLES2. As soon as the file named by
+ * LOST_GL exists, the context is lost. LOST_GL_BY names how the driver reports it, since drivers
+ * differ:
  *
- *   status  glGetGraphicsResetStatus (what a driver with robustness says)
- *   error   glGetError says GL_CONTEXT_LOST, for ever
+ *   status  glGetGraphicsResetStatus (as a driver with robustness does)
+ *   error   glGetError returns GL_CONTEXT_LOST from then on
  *   swap    eglSwapBuffers fails with EGL_CONTEXT_LOST
  */
 #include <dlfcn.h>

@@ -1,12 +1,12 @@
-/* Random fingers as a replay file (docs/input.md), the same for the same seed:
+/* Random touches as a replay file (docs/input.md), the same for the same seed:
  *
  *   random_touches EVENTS SEED WIDTH HEIGHT >FILE
  *
- * What is thought up is what a device says, a table of slots a frame; input/contacts.c makes
- * fingers of it, as in the kiosk. So frames may be lost (SYN_DROPPED: the table jumps), a slot may
- * be another finger without a lift, contacts may grow to palms, a device may be pulled out, and up
- * to ten fingers and more are down at once. Between bursts there are taps on controls, drags out of
- * the panel, rests and, now and then, a visitor who leaves. */
+ * It generates what a device reports, a table of slots per frame; input/contacts.c turns this into
+ * fingers, as in the kiosk. So frames may be lost (SYN_DROPPED: the table jumps), a slot may become
+ * another finger without a lift, contacts may grow to palms, a device may be unplugged, and ten or
+ * more fingers may be down at once. Between bursts there are taps on controls, drags off the panel,
+ * rests and, now and then, a visitor who leaves. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

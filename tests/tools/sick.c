@@ -1,8 +1,8 @@
-/* A sick machine, played on a healthy one: preloaded (LD_PRELOAD), it takes away what SICK names:
+/* Simulates a failing machine: preloaded (LD_PRELOAD), it removes what SICK names:
  *
  *   units  the GPU has four texture units
  *   room   every disk has one megabyte left
- *   sync   fsync fails: the disk is dying
+ *   sync   fsync fails, as on a disk that is failing
  */
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,5 +1,5 @@
-/* spoiled_release KEYS RELEASE: publishes into the folder RELEASE, signed as it should be, a
- * release whose patches are none. All hashes hold: only who decodes them finds out. */
+/* spoiled_release KEYS RELEASE: publishes a correctly signed release with invalid patches into the
+ * folder RELEASE. All hashes are right, so only decoding finds the fault. */
 #include <stdio.h>
 
 #include "pipeline/content/info_build.h"

@@ -1,4 +1,4 @@
-/* Turns a picture by quarters clockwise, as a panel that hangs turned does.
+/* Rotates a picture clockwise by quarter turns, as a rotated panel does.
  *
  *   turn_picture QUARTERS IN.png OUT.png */
 #include <stdio.h>

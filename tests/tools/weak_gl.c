@@ -1,7 +1,8 @@
-/* A weak board, played on a strong one: preloaded (LD_PRELOAD) before GLES2, it hides what such a
- * board lacks and refuses it as such a driver does. WEAK_GL names the limits that hold, by commas:
+/* Simulates a weak board on a strong one: preloaded (LD_PRELOAD) before GLES2, it hides what such a
+ * board lacks and rejects what such a driver rejects. WEAK_GL names the limits, separated by
+ * commas:
  *
- *   size     textures, renderbuffers and viewports of at most 2048 pixels a side
+ *   size     textures, renderbuffers and viewports of at most 2048 pixels per side
  *   units    eight texture units, none for vertices
  *   mediump  no highp in fragment shaders; Mesa's llvmpipe then computes them in 16 bits
  *   rgba8    no GL_OES_rgb8_rgba8: renderbuffers of RGBA4, RGB565, RGB5_A1 and depth
@@ -9,9 +10,9 @@
  *   depth24  no GL_OES_depth24: 16 bits of depth
  *   all      all of them
  *
- * At the end a line of JSON goes to the file that WEAK_GL_REPORT names: how often something was
- * refused, and the most bytes of textures that were held at once, of RGB (tiles and depths: what a
- * board's budget is for) and of all. Every refusal is told on stderr. */
+ * At exit it writes a line of JSON to the file that WEAK_GL_REPORT names: how often something was
+ * rejected, and the maximum bytes of textures at once, of RGB (tiles and depths, which a board's
+ * budget covers) and of all. Every rejection is printed on stderr. */
 #include <dlfcn.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Asks GLES2 for what a weak board lacks, one after the other, and says of each whether it was
- * given: so a test of weak boards knows that weak_gl takes away what it says. */
+/* Requests from GLES2 what a weak board lacks, one thing after the other, and prints whether each
+ * was given. A test of weak boards uses it to check that weak_gl removes what it names. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
