@@ -1,7 +1,7 @@
 #!/bin/bash
-# Every state in four languages, as it was looked at and kept in tests/golden/STATE-LANGUAGE.png, within a
-# tolerance: a visit (tests/golden/visit.py) is played in each language on a clock that jumps. What
-# differs is named, and lies beside the kept picture in build/golden/differ/.
+# Compares every state in four languages with the reviewed pictures tests/golden/STATE-LANGUAGE.png, within a tolerance:
+# a visit (tests/golden/visit.py) is played in each language on a clock that jumps. States that differ are named, and
+# their pictures are saved in build/golden/differ/.
 #
 #   make golden [LANGUAGES="en km"] [STATES=card]   takes them anew into build/golden/, compares
 #   make golden KEEP=yes ...                        and keeps what was taken: look at each first
@@ -12,7 +12,7 @@ work=build/golden
 mkdir -p "$work/content"
 make --no-print-directory -j"$(nproc)" build/tests/tools/hurried_kiosk build/tests/tools/golden >/dev/null
 small_release
-# The small temple with the demo's words (other tests write into its own copy) and Arabic ones.
+# The small temple with the demo's texts (other tests change its own copy) and Arabic ones.
 cp -au "$small/content/." "$work/content/"
 rm -rf "$work/content/pages" "$work/differ"
 cp -r demo/content/pages demo/content/parts.json demo/content/tours.json "$work/content/"

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The kiosk's settled pictures of the demo temple against the reference, over the whole path: nginx,
-# fetcher, cache: 16 of the first 40 views of the bench's path (VIEWS=N: N of them, spread over it; DEMO=build/demo
-# SIZE=1280x720: the temple of make demo itself).
+# Compares the kiosk's settled pictures of the demo temple with the reference, through nginx, fetcher and cache: 16 of
+# the first 40 views of the bench's path (VIEWS=N: N of them, spread over it; DEMO=build/demo SIZE=1280x720: the temple
+# of make demo itself).
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
