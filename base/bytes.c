@@ -292,7 +292,7 @@ int buffer_read_foreign(struct buffer *out, const char *path)
 	return buffer_read_beneath(out, folder, slash + 1);
 }
 
-static int write_all(int fd, struct bytes bytes)
+int bytes_fill_file(int fd, struct bytes bytes)
 {
 	size_t done = 0;
 
@@ -306,7 +306,7 @@ static int write_all(int fd, struct bytes bytes)
 	return fsync(fd) < 0 ? -errno : 0;
 }
 
-static int sync_folder_of(const char *path)
+int bytes_sync_folder_of(const char *path)
 {
 	char copy[PATH_MAX];
 	int fd, rc;
@@ -367,8 +367,8 @@ int bytes_write_file(struct bytes bytes, const char *path)
 
 	if (fd < 0)
 		return fd;
-	rc = bytes_end_file(fd, temporary, path, write_all(fd, bytes));
-	return rc < 0 ? rc : sync_folder_of(path);
+	rc = bytes_end_file(fd, temporary, path, bytes_fill_file(fd, bytes));
+	return rc < 0 ? rc : bytes_sync_folder_of(path);
 }
 
 /* Returns whether entry is a temporary file as mkostemp names it, "state.db.second.a1B2c3" for

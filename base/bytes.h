@@ -94,10 +94,15 @@ enum { BYTES_PATH_MAX = 4096 };
 /* Begins to replace a file: creates a temporary file beside path, and writes its name to temporary.
  * Returns its descriptor, owned by the caller, or a negative errno. */
 must_check int bytes_begin_file(char temporary[BYTES_PATH_MAX], const char *path);
+/* Writes all bytes to a descriptor and calls fsync. Returns 0 or a negative errno. */
+must_check int bytes_fill_file(int fd, struct bytes bytes);
 /* Ends it: closes fd and renames the temporary file to path, so path is replaced only when the new
  * file is complete. If rc is negative, because writing failed, removes it and returns rc. Does not
  * call fsync. */
 must_check int bytes_end_file(int fd, const char *temporary, const char *path, int rc);
+/* Calls fsync on the folder of path, so that a renamed file stays. Returns 0 or a negative errno.
+ */
+must_check int bytes_sync_folder_of(const char *path);
 /* Writes a file atomically: temporary file beside it, fsync, rename, fsync of the folder. Returns 0
  * or a negative errno. */
 must_check int bytes_write_file(struct bytes bytes, const char *path);

@@ -22,35 +22,60 @@ static int make_path(char path[PATH_MAX], const char *release, const char *name)
 /* Servers distinguish versions of a file by its size and the second of its modification (ETag,
  * Last-Modified). Two versions within one second would look equal, and a client with the first one
  * would always be told that it is current. So the new file gets a later time than the old one. */
-static int make_later(const char *path, time_t than_s)
+static int make_later(int fd, time_t than_s)
 {
 	struct timespec times[2] = { { .tv_nsec = UTIME_OMIT } };
 	struct stat now;
 
-	if (stat(path, &now) < 0)
+	if (fstat(fd, &now) < 0)
 		return -errno;
 	if (now.st_mtim.tv_sec > than_s)
 		return 0;
 	times[1].tv_sec = than_s + 1;
-	return utimensat(AT_FDCWD, path, times, 0) < 0 ? -errno : 0;
+	return futimens(fd, times) < 0 ? -errno : 0;
+}
+
+/* A file that is complete beside its place and not yet renamed to it. */
+struct pending {
+	char path[PATH_MAX], temporary[BYTES_PATH_MAX];
+	int fd; /* -1: there is none */
+};
+
+/* Writes what is to replace a file. *out is to be ended by replace, also on failure. */
+static int prepare(struct pending *out, const char *release, const char *name, struct bytes bytes)
+{
+	struct stat before;
+	int rc = make_path(out->path, release, name);
+
+	out->fd = -1;
+	if (rc == 0) {
+		bytes_drop_leftovers(out->path); /* of a publisher that was killed */
+		out->fd = bytes_begin_file(out->temporary, out->path);
+		rc = out->fd < 0 ? out->fd : bytes_fill_file(out->fd, bytes);
+	}
+	if (rc == 0 && stat(out->path, &before) == 0)
+		rc = make_later(out->fd, before.st_mtim.tv_sec);
+	if (rc < 0)
+		log_error("pipeline", "%s/%s: %s", release, name, strerror(-rc));
+	return rc;
+}
+
+/* Replaces the file; if rc is negative, only drops what was prepared and returns rc. */
+static int replace(struct pending *file, int rc)
+{
+	int ended = file->fd < 0 ? 0 : bytes_end_file(file->fd, file->temporary, file->path, rc);
+
+	if (ended < 0 && rc == 0)
+		log_error("pipeline", "%s: %s", file->path, strerror(-ended));
+	return rc < 0 ? rc : ended;
 }
 
 static int write_file(const char *release, const char *name, struct bytes bytes)
 {
-	char path[PATH_MAX];
-	struct stat before;
-	int rc = make_path(path, release, name);
-	const bool again = rc == 0 && stat(path, &before) == 0;
+	struct pending file;
+	int rc = replace(&file, prepare(&file, release, name, bytes));
 
-	if (rc == 0) {
-		bytes_drop_leftovers(path); /* of a publisher that was killed */
-		rc = bytes_write_file(bytes, path);
-	}
-	if (rc == 0 && again)
-		rc = make_later(path, before.st_mtim.tv_sec);
-	if (rc < 0)
-		log_error("pipeline", "%s/%s: %s", release, name, strerror(-rc));
-	return rc;
+	return rc < 0 ? rc : bytes_sync_folder_of(file.path);
 }
 
 static int read_release(struct release *out, const char *release, const char *name,
@@ -144,8 +169,10 @@ static int copy_roots(const char *release, const char *keys_folder, uint32_t new
 	return rc;
 }
 
-static int write_timestamp(const char *release, const struct publisher_keys *keys,
-			   uint64_t sequence, struct bytes release_file, int64_t life_s)
+/* Prepares the timestamp that names a release.json of these bytes. */
+static int prepare_timestamp(struct pending *out, const char *release,
+			     const struct publisher_keys *keys, uint64_t sequence,
+			     struct bytes release_file, int64_t life_s)
 {
 	const int64_t now_s = clock_wall_s();
 	struct timestamp timestamp = { .sequence = sequence,
@@ -155,12 +182,29 @@ static int write_timestamp(const char *release, const struct publisher_keys *key
 	struct buffer file;
 	int rc;
 
+	out->fd = -1;
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = timestamp_encode(&file, &timestamp, &keys->timestamp, 1);
 	if (rc == 0)
-		rc = write_file(release, "timestamp.json", buffer_bytes(&file));
+		rc = prepare(out, release, "timestamp.json", buffer_bytes(&file));
 	buffer_finish(&file);
 	return rc;
+}
+
+/* Replaces release.json and the timestamp that names it. Both are complete before, so neither a
+ * full disk nor, but for the moment between two renames, a kill leaves one without the other. */
+static int replace_both(const char *release, const struct publisher_keys *keys, uint64_t sequence,
+			struct bytes release_file, int64_t timestamp_life_s)
+{
+	struct pending first, second = { .fd = -1 };
+	int rc = prepare(&first, release, "release.json", release_file);
+
+	if (rc == 0)
+		rc = prepare_timestamp(&second, release, keys, sequence, release_file,
+				       timestamp_life_s);
+	rc = replace(&first, rc);
+	rc = replace(&second, rc);
+	return rc < 0 ? rc : bytes_sync_folder_of(second.path);
 }
 
 int release_files_write(const char *release, const char *keys_folder,
@@ -180,10 +224,8 @@ int release_files_write(const char *release, const char *keys_folder,
 	if (rc == 0)
 		rc = write_file(release, name, buffer_bytes(&file));
 	if (rc == 0)
-		rc = write_file(release, "release.json", buffer_bytes(&file));
-	if (rc == 0)
-		rc = write_timestamp(release, keys, what->sequence, buffer_bytes(&file),
-				     timestamp_life_s);
+		rc = replace_both(release, keys, what->sequence, buffer_bytes(&file),
+				  timestamp_life_s);
 	buffer_finish(&file);
 	return rc;
 }
@@ -191,6 +233,7 @@ int release_files_write(const char *release, const char *keys_folder,
 int release_files_renew(const char *release, const struct publisher_keys *keys,
 			int64_t timestamp_life_s)
 {
+	struct pending timestamp = { .fd = -1 };
 	struct release current;
 	char path[PATH_MAX];
 	struct buffer file;
@@ -202,8 +245,9 @@ int release_files_renew(const char *release, const struct publisher_keys *keys,
 	if (rc == 0)
 		rc = buffer_read_file(&file, path);
 	if (rc == 0)
-		rc = write_timestamp(release, keys, current.sequence, buffer_bytes(&file),
-				     timestamp_life_s);
+		rc = prepare_timestamp(&timestamp, release, keys, current.sequence,
+				       buffer_bytes(&file), timestamp_life_s);
+	rc = replace(&timestamp, rc);
 	buffer_finish(&file);
-	return rc;
+	return rc < 0 ? rc : bytes_sync_folder_of(timestamp.path);
 }

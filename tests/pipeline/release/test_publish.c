@@ -11,6 +11,21 @@
 static struct tiny tiny;
 static struct verify_report verified;
 
+static int syncs_left = -1; /* before the disk is full; -1: it never is */
+
+int __real_fsync(int fd);
+int __wrap_fsync(int fd);
+
+int __wrap_fsync(int fd)
+{
+	if (syncs_left == 0) {
+		errno = ENOSPC;
+		return -1;
+	}
+	syncs_left -= syncs_left > 0;
+	return __real_fsync(fd);
+}
+
 static int set_up(void **state)
 {
 	(void)state;
@@ -169,6 +184,28 @@ static void undo_shows_the_old_root_under_a_higher_sequence(void **state)
 	CHECK(verify() == 0);
 }
 
+/* release.json without the timestamp that names it would be refused by every terminal. */
+static void a_full_disk_leaves_one_release_or_the_other(void **state)
+{
+	const struct publish_target target = tiny_target(&tiny);
+	struct publish_report undone;
+	int rc = -1, failures = 0;
+
+	(void)state;
+	tiny_publish(&tiny, NULL);
+	tiny_parts(&tiny, "High tower");
+	tiny_publish(&tiny, NULL);
+	for (int n = 0; rc < 0; n++) {
+		syncs_left = n;
+		rc = publish_again(&undone, &target, 0);
+		syncs_left = -1;
+		CHECK(rc == 0 || rc == -ENOSPC);
+		CHECK(verify() == 0 && verified.release.sequence >= 2);
+		failures += rc < 0;
+	}
+	CHECK(failures > 4 && verified.release.sequence > 2);
+}
+
 static void expiry_is_judged_by_the_clock_that_is_given(void **state)
 {
 	int64_t now = clock_wall_s();
@@ -308,6 +345,8 @@ int main(void)
 						tear_down),
 		cmocka_unit_test_setup_teardown(undo_shows_the_old_root_under_a_higher_sequence,
 						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(a_full_disk_leaves_one_release_or_the_other, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(expiry_is_judged_by_the_clock_that_is_given, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(foreign_keys_never_overwrite_a_release, set_up,
