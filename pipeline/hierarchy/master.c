@@ -234,12 +234,13 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 	    (mkdir(blocks, 0777) < 0 && errno != EEXIST))
 		return -errno;
 	rc = build_files(folder, groups, blocks, mesh, stamp, options, report);
-	/* What a killed build has done stays for the next one. */
+	/* Files that vanish were removed by the machine that completed this master. */
+	if ((rc == -ENOENT || rc == -ESTALE) && is_complete(folder, stamp))
+		rc = 0;
+	/* What a killed build has done stays for the next one. Of several, the last to end removes
+	 * what it wrote while another was removing. */
 	if (rc == 0)
 		remove_others(folder, groups);
-	/* Files that vanish were removed by the machine that completed this master. */
-	else if ((rc == -ENOENT || rc == -ESTALE) && is_complete(folder, stamp))
-		rc = 0;
 	report->duration_ms = clock_now_ms() - start_ms;
 	return rc;
 }
