@@ -256,12 +256,13 @@ static int run_stages(struct build_report *report, uint32_t jobs,
  * beside us (docs/cluster.md). */
 static void sweep_work(const struct content *content)
 {
-	static const char *const folders[] = { "", "samples", "master" };
-	char path[CONTENT_PATH_BYTES];
+	static const char *const folders[] = { ".work", ".work/samples", ".work/master" };
+	char path[CONTENT_PATH_BYTES + 16];
 
-	for (size_t i = 0; i < ARRAY_COUNT(folders); i++)
-		if (content_work_path(content, folders[i], path) == 0)
-			bytes_sweep_folder(path, clock_wall_s() - LEFTOVER_AGE_S);
+	for (size_t i = 0; i < ARRAY_COUNT(folders); i++) {
+		snprintf(path, sizeof(path), "%s/%s", content->folder, folders[i]);
+		bytes_sweep_folder(path, clock_wall_s() - LEFTOVER_AGE_S);
+	}
 }
 
 static int build_from(struct build_report *report, struct sources *sources,
