@@ -203,6 +203,22 @@ int build_master(struct master **out, struct scans *scans,
 	return rc < 0 ? diagnostics_add(diagnostics, rc, folder, 0, "%s", strerror(-rc)) : 0;
 }
 
+void build_known_master(struct master **out, struct scans *scans)
+{
+	const struct content *content = scans_content(scans);
+	const struct build_master_options none = { .jobs = 0 };
+	const struct master_options options = master_options(content, &none);
+	char folder[CONTENT_PATH_BYTES];
+	struct hash key, stamp;
+
+	*out = NULL;
+	if (content_work_path(content, "master", folder) < 0 || scans_key(scans, &key, NULL) < 0)
+		return;
+	stamp = master_stamp(key, &options);
+	if (master_open(out, folder, &stamp) < 0)
+		*out = NULL;
+}
+
 int build_samples(struct scans *scans, const struct master *master,
 		  const struct sampler_options *options, struct diagnostics *diagnostics)
 {

@@ -45,6 +45,8 @@ struct build_master_report {
 must_check int build_master(struct master **out, struct scans *scans,
 			    const struct build_master_options *options,
 			    struct build_master_report *report, struct diagnostics *diagnostics);
+/* Opens this content's master if it is there and of these scans; otherwise *out is NULL. */
+void build_known_master(struct master **out, struct scans *scans);
 /* Renders the samples that are missing, with the master where the scans have no pictures; it is
  * that of build_master. options->master is not used. Negative errno, with a diagnostic. */
 must_check int build_samples(struct scans *scans, const struct master *master,

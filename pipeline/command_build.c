@@ -11,6 +11,7 @@
 
 #include "pipeline/build.h"
 #include "pipeline/content/work_lock.h"
+#include "pipeline/estimate.h"
 
 static const char help[] =
 	"gopura-content build: make a signed release of a content folder\n"
@@ -23,6 +24,8 @@ static const char help[] =
 	"  --hierarchy KIND  groups or tree (default: as in temple.ini)\n"
 	"  --comment TEXT    what is new in this release, for people\n"
 	"  --keys FOLDER     the signing keys (default: ~/.config/gopura/keys/NAME of DIR; see keys)\n"
+	"  --dry-run         build nothing: check the content, and say what time, memory and disk a\n"
+	"                    build would take\n"
 	"\n"
 	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. The\n"
 	"intermediate files stay in DIR/.work: an interrupted build continues where it stopped, and a\n"
@@ -30,6 +33,7 @@ static const char help[] =
 	"Exit status: 0 done, 1 failed (the reason is printed), 2 wrong command line.\n"
 	"\n"
 	"Examples:\n"
+	"  gopura-content build temple --dry-run\n"
 	"  gopura-content build temple\n"
 	"  gopura-content build temple --out /srv/museum --jobs 8\n";
 
@@ -78,6 +82,27 @@ static int run(const char *folder, const struct build_options *options, const ch
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
+static int run_dry(const char *folder, const struct build_options *options, const char *kind)
+{
+	struct estimate estimate;
+	struct content content;
+	int rc = command_read_content(&content, folder);
+
+	if (rc < 0)
+		return EXIT_FAILURE;
+	if (kind)
+		content.binary_tree = strcmp(kind, "tree") == 0;
+	rc = estimate_build(&estimate, &content, options);
+	if (rc == 0)
+		estimate_print(stdout, &estimate);
+	else
+		fprintf(stderr, "gopura-content build: %s: %s\n", folder,
+			rc == -EINVAL ? "the content has faults; correct them first"
+				      : strerror(-rc));
+	content_release(&content);
+	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
 int command_build(int argc, char **argv)
 {
 	static const struct option options[] = {
@@ -86,11 +111,13 @@ int command_build(int argc, char **argv)
 		{ "hierarchy", required_argument, NULL, 'k' },
 		{ "comment", required_argument, NULL, 'c' },
 		{ "keys", required_argument, NULL, 'K' },
+		{ "dry-run", no_argument, NULL, 'n' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
 	struct build_options build = { 0 };
 	const char *kind = NULL;
+	bool is_dry = false;
 	int option;
 	uint64_t jobs = 0;
 
@@ -118,6 +145,9 @@ int command_build(int argc, char **argv)
 		case 'K':
 			build.keys = optarg;
 			break;
+		case 'n':
+			is_dry = true;
+			break;
 		case 'h':
 			fputs(help, stdout);
 			return 0;
@@ -127,5 +157,5 @@ int command_build(int argc, char **argv)
 	}
 	if (optind + 1 != argc)
 		return command_wrong(argv[0], "name one content folder", "");
-	return run(argv[optind], &build, kind);
+	return is_dry ? run_dry(argv[optind], &build, kind) : run(argv[optind], &build, kind);
 }

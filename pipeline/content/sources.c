@@ -179,6 +179,16 @@ static int tell(const struct sources *sources, int rc, const struct diagnostics 
 	return rc;
 }
 
+int sources_check_texts(struct sources *sources)
+{
+	const struct diagnostics none = { 0 };
+	int rc = 0;
+
+	if (!sources->draft && !sources->is_built)
+		rc = read_folder(sources);
+	return tell(sources, rc, &none);
+}
+
 int sources_check(struct sources *sources)
 {
 	const struct info_built *built;

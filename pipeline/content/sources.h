@@ -20,6 +20,8 @@ struct scans *sources_scans(struct sources *sources);
  * are imported only if there are tours, whose ways must not lead through them. -EINVAL: every fault
  * was logged. Other errors are logged too. */
 must_check int sources_check(struct sources *sources);
+/* The same without the ways of tours: no scan is read. */
+must_check int sources_check_texts(struct sources *sources);
 /* Gets the compiled parts, pages and tours, checked likewise. *out is borrowed for the lifetime. */
 must_check int sources_info(struct sources *sources, const struct info_built **out);
 

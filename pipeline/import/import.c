@@ -24,9 +24,12 @@ static const uint8_t sandstone[3] = { 186, 166, 136 };
 
 /* ---- detecting the format */
 
-enum scan_format { SCAN_PLY, SCAN_STL, SCAN_OFF, SCAN_OBJ, SCAN_GLTF, SCAN_GLB, SCAN_UNKNOWN };
+const char *import_format_name(enum scan_format format)
+{
+	static const char *const names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB" };
 
-static const char *const format_names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB" };
+	return format < SCAN_UNKNOWN ? names[format] : "";
+}
 
 static bool has_extension(const char *path, const char *extension)
 {
@@ -60,8 +63,8 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 	return size >= 6 && memcmp(head, "solid ", 6) == 0 ? SCAN_STL : SCAN_UNKNOWN;
 }
 
-static int look(const char *path, enum scan_format *format, struct import_report *report,
-		struct diagnostics *diagnostics)
+int import_detect(enum scan_format *format, uint64_t *file_bytes, const char *path,
+		  struct diagnostics *diagnostics)
 {
 	char head[64];
 	struct stat status;
@@ -80,14 +83,13 @@ static int look(const char *path, enum scan_format *format, struct import_report
 	if (got == 0)
 		return diagnostics_add(diagnostics, -EBADMSG, path, 0,
 				       "the file is empty; copy it again from the source");
-	report->file_bytes = (uint64_t)status.st_size;
+	*file_bytes = (uint64_t)status.st_size;
 	*format = sniff(path, head, (size_t)got);
 	if (*format == SCAN_UNKNOWN)
 		return diagnostics_add(
 			diagnostics, -EINVAL, path, 0,
 			"not a supported scan format; give PLY, OBJ, STL, OFF, glTF or "
 			"GLB");
-	snprintf(report->format, sizeof(report->format), "%s", format_names[*format]);
 	return 0;
 }
 
@@ -128,6 +130,21 @@ static void turn_up(const float from[3], enum import_axis up, double to[3])
 		to[k] = from[axis[up][k]];
 	if (up == IMPORT_Y_UP)
 		to[1] = -to[1];
+}
+
+void import_place(float out_m[3], const float from[3], const struct import_options *options)
+{
+	double scale = options->metres_per_unit > 0 ? options->metres_per_unit : 1;
+	double place[3] = { (double)from[0], (double)from[1], (double)from[2] }, turned[3];
+	float moved[3];
+
+	if (options->transform)
+		transform_point(options->transform, place, place);
+	for (int k = 0; k < 3; k++)
+		moved[k] = (float)place[k];
+	turn_up(moved, options->up, turned);
+	for (int k = 0; k < 3; k++)
+		out_m[k] = (float)(turned[k] * scale);
 }
 
 static void to_metres(struct mesh *mesh, const struct import_options *options)
@@ -322,11 +339,11 @@ static int check_format(const char *path, enum scan_format format, uint64_t file
 
 int import_check(const char *path, struct diagnostics *diagnostics)
 {
-	struct import_report report = { .file_bytes = 0 };
 	enum scan_format format = SCAN_UNKNOWN;
-	int rc = look(path, &format, &report, diagnostics);
+	uint64_t file_bytes = 0;
+	int rc = import_detect(&format, &file_bytes, path, diagnostics);
 
-	return rc < 0 ? rc : check_format(path, format, report.file_bytes, diagnostics);
+	return rc < 0 ? rc : check_format(path, format, file_bytes, diagnostics);
 }
 
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,
@@ -362,7 +379,8 @@ int import_scan(struct mesh *out, const char *path, const struct import_options 
 	if (!report)
 		report = &unwanted;
 	*report = (struct import_report){ 0 };
-	rc = look(path, &format, report, diagnostics);
+	rc = import_detect(&format, &report->file_bytes, path, diagnostics);
+	snprintf(report->format, sizeof(report->format), "%s", import_format_name(format));
 	if (rc == 0)
 		rc = read_scan(out, path, format, options, report, diagnostics);
 	if (rc == 0)

@@ -43,6 +43,16 @@ struct import_report {
 	struct diagnostics warning; /* the first thing that was tolerated with loss; "" if none */
 };
 
+enum scan_format { SCAN_PLY, SCAN_STL, SCAN_OFF, SCAN_OBJ, SCAN_GLTF, SCAN_GLB, SCAN_UNKNOWN };
+
+/* Returns the name of a format as reports have it, such as "PLY". */
+const char *import_format_name(enum scan_format format);
+/* Detects the format of a file and measures it. Errors as import_scan. */
+must_check int import_detect(enum scan_format *format, uint64_t *file_bytes, const char *path,
+			     struct diagnostics *diagnostics);
+/* Converts a place of the file to metres with z up, as import_scan does. */
+void import_place(float out_m[3], const float from[3], const struct import_options *options);
+
 /* *out is owned by the caller; it is zeroed on failure. The result always has colours: those of the
  * scan, of its textures, or the default. Open sky is 255 if the scan does not give it. Returns a
  * negative errno, and diagnostics names the file, the place and how to correct it. report may be

@@ -12,6 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/bytes.h"
+
 /* State of one pass over the body. */
 struct pass {
 	struct ply *ply;
@@ -356,6 +358,26 @@ static int read_element(struct pass *pass, const struct ply_element *element)
 		pass->faces += element->count;
 	if (strcmp(element->name, "edge") == 0)
 		pass->ply->lines_skipped += element->count;
+	return rc;
+}
+
+int ply_place(float out[3], const struct ply *ply, const struct ply_element *element, int fd,
+	      uint64_t offset)
+{
+	uint8_t bytes[sizeof(double)];
+	int rc = 0;
+
+	for (uint32_t i = 0; rc == 0 && i < element->property_count; i++) {
+		const struct ply_property *property = &element->properties[i];
+
+		if (property->slot > PLY_SLOT_Z)
+			continue;
+		rc = bytes_read_at(fd, bytes, ply_type_bytes(property->type),
+				   offset + property->offset);
+		if (rc == 0)
+			out[property->slot - PLY_SLOT_X] = (float)decode_number(
+				bytes, property->type, ply->encoding == PLY_BIG);
+	}
 	return rc;
 }
 

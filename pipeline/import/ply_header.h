@@ -91,4 +91,12 @@ must_check int ply_read_header(struct ply *ply, struct diagnostics *diagnostics)
  * -EBADMSG or -EFBIG with a diagnostic. */
 must_check int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics);
 
+/* ---- ply.c */
+
+/* Reads the place of the vertex that begins at that offset of the file, without reading what lies
+ * before. element: binary vertices, of the summary's file. fd: the file. -EBADMSG: it is cut off;
+ * errors of the disk. */
+must_check int ply_place(float out[3], const struct ply *ply, const struct ply_element *element,
+			 int fd, uint64_t offset);
+
 #endif

@@ -401,6 +401,14 @@ bool samples_store_has(struct samples_store *store, const uint32_t point[3])
 
 /* ---- writing */
 
+int samples_store_stat(const struct samples_store *store, const uint32_t point[3], struct stat *out)
+{
+	char path[PATH_MAX];
+
+	point_path(path, store->dir, point);
+	return stat(path, out) < 0 ? -errno : 0;
+}
+
 static int make_dirs(const char *content_dir)
 {
 	static const char *const below[] = { ".work", ".work/samples" };

@@ -8,6 +8,8 @@
 #ifndef GOPURA_PIPELINE_SAMPLES_SAMPLE_STORE_H
 #define GOPURA_PIPELINE_SAMPLES_SAMPLE_STORE_H
 
+#include <sys/stat.h>
+
 #include "format/hash.h"
 #include "format/samples.h"
 
@@ -78,6 +80,9 @@ must_check int samples_store_begin(const char *content_dir, const struct sample_
 must_check int samples_store_look(struct samples_store **out, const char *content_dir);
 /* Returns true if the point's file exists, is complete and has the key of the grid. */
 bool samples_store_has(struct samples_store *store, const uint32_t point[3]);
+/* Gets the size and the time of change of a point's file. -ENOENT and other errors of stat. */
+must_check int samples_store_stat(const struct samples_store *store, const uint32_t point[3],
+				  struct stat *out);
 /* Writes the file of a point. faces: face_count of them, in ascending order of face, for
  * SAMPLE_RENDERED; none for other states. */
 must_check int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,

@@ -409,29 +409,111 @@ static int sample(struct sampling *sampling, struct scans *scans,
 	return rc;
 }
 
+/* Chooses grid and light for the scans' shape, and the key. */
+static int prepare(struct sampling *sampling, struct scans *scans, const struct scans_shape *shape,
+		   const struct sampler_options *options, struct diagnostics *diagnostics)
+{
+	const struct content *content = sampling->content;
+	struct hash mesh_key;
+	int rc = scans_key(scans, &mesh_key, diagnostics);
+
+	if (rc < 0)
+		return rc;
+	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
+	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
+	sampling->drawing.surfaces = sampling->drawing.procedural;
+	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));
+	sampler_grid(&sampling->grid, shape->low_m, shape->high_m, content->grid_points,
+		     content->face_px, options->below_ground);
+	sampling->key = make_key(sampling, mesh_key, options->master);
+	return 0;
+}
+
 int sampler_run(struct scans *scans, const struct sampler_options *options,
 		struct diagnostics *diagnostics)
 {
 	const struct content *content = scans_content(scans);
 	struct sampling sampling = { .content = content, .below_ground = options->below_ground };
 	const struct scans_shape *shape;
-	struct hash mesh_key;
-	int rc = scans_key(scans, &mesh_key, diagnostics);
+	int rc = scans_get_shape(scans, &shape, diagnostics);
 
 	if (rc == 0)
-		rc = scans_get_shape(scans, &shape, diagnostics);
+		rc = prepare(&sampling, scans, shape, options, diagnostics);
 	if (rc < 0)
 		return rc;
-	sampling.drawing.lit = content_is_lit(content, shape->has_textures);
-	sampling.drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
-	sampling.drawing.surfaces = sampling.drawing.procedural;
-	memcpy(sampling.drawing.sun, content->sun, sizeof(content->sun));
-	sampler_grid(&sampling.grid, shape->low_m, shape->high_m, content->grid_points,
-		     content->face_px, options->below_ground);
-	sampling.key = make_key(&sampling, mesh_key, options->master);
 	rc = sample(&sampling, scans, options, diagnostics);
 	if (rc < 0)
 		diagnostics_add(diagnostics, rc, content->folder, 0, "sampling failed: %s",
 				strerror(-rc));
+	return rc;
+}
+
+/* ---- a look without a run */
+
+static int by_time(const void *a, const void *b)
+{
+	const double *x = a, *y = b;
+
+	return (*x > *y) - (*x < *y);
+}
+
+/* Returns the median of the distances between times; the pauses between runs are few. */
+static double median_gap(double *times_s, uint32_t count)
+{
+	qsort(times_s, count, sizeof(*times_s), by_time);
+	for (uint32_t i = 0; i + 1 < count; i++)
+		times_s[i] = times_s[i + 1] - times_s[i];
+	if (count < 8) /* too few to tell */
+		return 0;
+	qsort(times_s, count - 1, sizeof(*times_s), by_time);
+	return times_s[(count - 1) / 2];
+}
+
+static int look_at_points(struct sampler_progress *out, struct samples_store *store)
+{
+	const uint32_t *count = out->grid.count;
+	double *times_s = calloc(out->point_count, sizeof(*times_s));
+
+	if (!times_s)
+		return -ENOMEM;
+	for (uint32_t n = 0; n < out->point_count; n++) {
+		uint32_t point[3] = { n % count[0], n / count[0] % count[1],
+				      n / count[0] / count[1] };
+		struct stat file;
+
+		if (!samples_store_has(store, point) || samples_store_stat(store, point, &file) < 0)
+			continue;
+		out->done_bytes += (uint64_t)file.st_size;
+		times_s[out->done_count++] =
+			(double)file.st_mtim.tv_sec + 1e-9 * (double)file.st_mtim.tv_nsec;
+	}
+	out->seconds_a_point = median_gap(times_s, out->done_count);
+	free(times_s);
+	return 0;
+}
+
+int sampler_look(struct sampler_progress *out, struct scans *scans,
+		 const struct sampler_options *options, struct diagnostics *diagnostics)
+{
+	struct sampling sampling = { .content = scans_content(scans) };
+	const struct scans_shape *shape = scans_known_shape(scans);
+	char path[CONTENT_PATH_BYTES + 32];
+	struct samples_store *store;
+	int rc;
+
+	*out = (struct sampler_progress){ 0 };
+	if (!shape)
+		return -ENOENT;
+	rc = prepare(&sampling, scans, shape, options, diagnostics);
+	if (rc < 0)
+		return rc;
+	out->grid = sampling.grid;
+	out->point_count = out->grid.count[0] * out->grid.count[1] * out->grid.count[2];
+	snprintf(path, sizeof(path), "%s/.work/samples/grid", sampling.content->folder);
+	if (access(path, R_OK) < 0 || samples_store_look(&store, sampling.content->folder) < 0)
+		return 0; /* nothing was sampled, or it is done again */
+	if (hash_equal(samples_store_key(store), sampling.key))
+		rc = look_at_points(out, store);
+	samples_store_close(store);
 	return rc;
 }

@@ -33,4 +33,18 @@ void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t 
 must_check int sampler_run(struct scans *scans, const struct sampler_options *options,
 			   struct diagnostics *diagnostics);
 
+/* What a run of the sampler would find. */
+struct sampler_progress {
+	struct sample_grid grid;
+	uint32_t point_count, done_count;
+	uint64_t done_bytes; /* of the files of the points that are done */
+	/* The median time between two points of the runs before; 0: unknown. */
+	double seconds_a_point;
+};
+
+/* Fills in *out without drawing anything. Returns -ENOENT if the shape of the scans is not known
+ * yet, or another error with a diagnostic. */
+must_check int sampler_look(struct sampler_progress *out, struct scans *scans,
+			    const struct sampler_options *options, struct diagnostics *diagnostics);
+
 #endif

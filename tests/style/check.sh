@@ -53,10 +53,10 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="alignment import import_report mesh mesh_edges mesh_file face_list ply transform" ;;
+	pipeline/import/*) names="alignment import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut" ;;
-	pipeline/samples/*) names="sampler sample_store reference" ;;
+	pipeline/samples/*) names="sampler sample_store reference sampling_forecast sampling_trial" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release" ;;
 	pipeline/keys/*) names="keys keys_place" ;;
 	pipeline/material/*) names="material" ;;
