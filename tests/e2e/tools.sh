@@ -59,10 +59,10 @@ cat >"$work/fingers.touch" <<'T'
 T
 printf '%s\n' '11700 light' '18700 lower' '25700 whole-again' '32700 section' '39700 pushed' '46700 turned' \
 	'53700 whole-at-last' '61000 both' '96500 nobody' >"$work/shots.txt"
-build/gopura-kiosk --display headless --size 960x540 --release "$small/release" \
-	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 8 \
-	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
-	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
+build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless \
+	--size 960x540 --release "$small/release" --trust "$small/release/root/1.json" --state "$work/state" \
+	--log debug --idle-s 8 --touch-replay "$work/fingers.touch" --capture "$work/shots" --shots "$work/shots.txt" \
+	>"$work/seen.json" 2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
 grep -E 'app: (light|section|no tools|nobody|is somebody)' "$work/kiosk.log"
 python3 - "$work/kiosk.log" <<'P'
 import re

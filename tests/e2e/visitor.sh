@@ -27,10 +27,11 @@ cat >"$work/fingers.touch" <<'T'
 67050 up 0
 T
 printf '%s\n' '5500 language' '25500 asked' '28000 answered' '48000 asked-again' '62500 nobody' '66500 somebody' >"$work/shots.txt"
-build/gopura-kiosk --display headless --size 960x540 --release "$small/release" \
-	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 --visits "$work/visits.csv" \
-	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
-	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
+build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless \
+	--size 960x540 --release "$small/release" --trust "$small/release/root/1.json" --state "$work/state" \
+	--log debug --idle-s 5 --visits "$work/visits.csv" --touch-replay "$work/fingers.touch" --capture "$work/shots" \
+	--shots "$work/shots.txt" >"$work/seen.json" 2>"$work/kiosk.log" ||
+	{ tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
 grep -E 'app: (card of|nobody|somebody|is somebody|drag|comfort|words in)' "$work/kiosk.log"
 python3 - "$work/kiosk.log" <<'P'
 import re
