@@ -1,5 +1,5 @@
-/* Marks the voxels that sheets touch, casts rays from free voxels next to them, and interpolates
- * the result. */
+/* Marks the voxels that sheets touch, casts rays from free voxels next to them when one is asked
+ * for, and interpolates the result. */
 #include "pipeline/temple/temple_sky.h"
 
 #include <errno.h>
@@ -8,11 +8,11 @@
 
 enum { WIDE = 152, HIGH = 92, STATIONS_MAX = 4096, RAYS = 26, REACH = 30 };
 static const float voxel_m = 0.3f;
-enum { SOLID = 1 };
+enum { FREE, SOLID, NEAR }; /* near: free, beside solid ones */
 
 struct sky {
-	uint8_t solid[HIGH][WIDE][WIDE];
-	/* 1..255, for free voxels near solid ones; 0: not computed */
+	uint8_t kind[HIGH][WIDE][WIDE];
+	/* 1..255, for near voxels; 0: not computed yet, or never */
 	uint8_t open[HIGH][WIDE][WIDE];
 };
 
@@ -45,7 +45,7 @@ static void mark_quad(struct sky *sky, const float a[3], const float b[3], const
 			int x = cell(p[0], low_m[0]), y = cell(p[1], low_m[1]),
 			    z = cell(p[2], low_m[2]);
 			if (inside(x, y, z))
-				sky->solid[z][y][x] = SOLID;
+				sky->kind[z][y][x] = SOLID;
 		}
 	}
 }
@@ -87,7 +87,7 @@ static uint8_t look_up(const struct sky *sky, int x, int y, int z)
 			int i = (int)at[0], j = (int)at[1], k = (int)at[2];
 			if (!inside(i, j, k))
 				break;
-			free = !sky->solid[k][j][i];
+			free = sky->kind[k][j][i] != SOLID;
 		}
 		float weight = 0.3f + up;
 		seen += free ? weight : 0;
@@ -96,15 +96,14 @@ static uint8_t look_up(const struct sky *sky, int x, int y, int z)
 	return (uint8_t)(1 + 254 * seen / all);
 }
 
-/* Computes the free voxels that a vertex in this solid voxel may ask for; 0 means not computed
- * yet. */
-static void look_around(struct sky *sky, int x, int y, int z)
+/* Marks the free voxels that a vertex in this solid voxel may ask for. */
+static void mark_around(struct sky *sky, int x, int y, int z)
 {
 	for (int k = z - 2; k <= z + 2; k++)
 		for (int j = y - 2; j <= y + 2; j++)
 			for (int i = x - 2; i <= x + 2; i++)
-				if (inside(i, j, k) && !sky->solid[k][j][i] && !sky->open[k][j][i])
-					sky->open[k][j][i] = look_up(sky, i, j, k);
+				if (inside(i, j, k) && sky->kind[k][j][i] == FREE)
+					sky->kind[k][j][i] = NEAR;
 }
 
 int sky_create(struct sky **out, const struct plan *plan)
@@ -124,8 +123,8 @@ int sky_create(struct sky **out, const struct plan *plan)
 	for (int z = 0; z < HIGH; z++)
 		for (int y = 0; y < WIDE; y++)
 			for (int x = 0; x < WIDE; x++)
-				if (sky->solid[z][y][x])
-					look_around(sky, x, y, z);
+				if (sky->kind[z][y][x] == SOLID)
+					mark_around(sky, x, y, z);
 	*out = sky;
 	return 0;
 }
@@ -137,7 +136,7 @@ void sky_destroy(struct sky *sky)
 
 /* Interpolates between the eight voxels around a point in front of the surface; solid ones do not
  * count. */
-float sky_open(const struct sky *sky, const float position_m[3], const float normal[3])
+float sky_open(struct sky *sky, const float position_m[3], const float normal[3])
 {
 	float at[3], sum = 0, weights = 0;
 	int base[3];
@@ -151,8 +150,10 @@ float sky_open(const struct sky *sky, const float position_m[3], const float nor
 		int x = base[0] + (c & 1), y = base[1] + (c >> 1 & 1), z = base[2] + (c >> 2);
 		float weight = (c & 1 ? at[0] : 1 - at[0]) * (c & 2 ? at[1] : 1 - at[1]) *
 			       (c & 4 ? at[2] : 1 - at[2]);
-		if (!inside(x, y, z) || sky->solid[z][y][x])
+		if (!inside(x, y, z) || sky->kind[z][y][x] == SOLID)
 			continue;
+		if (sky->kind[z][y][x] == NEAR && !sky->open[z][y][x])
+			sky->open[z][y][x] = look_up(sky, x, y, z);
 		sum += weight * (float)sky->open[z][y][x];
 		weights += weight;
 	}

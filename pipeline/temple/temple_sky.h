@@ -11,7 +11,8 @@ struct sky;
  * call. -ENOMEM. */
 must_check int sky_create(struct sky **out, const struct plan *plan);
 void sky_destroy(struct sky *sky); /* Frees it. NULL is fine. */
-/* Returns 0 (enclosed) to 1 (the whole upper hemisphere visible). */
-float sky_open(const struct sky *sky, const float position_m[3], const float normal[3]);
+/* Returns 0 (enclosed) to 1 (the whole upper hemisphere visible). Notes in the grid what it
+ * computes for it: one thread at a time. */
+float sky_open(struct sky *sky, const float position_m[3], const float normal[3]);
 
 #endif
