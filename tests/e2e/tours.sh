@@ -34,16 +34,16 @@ cat >"$work/fingers.touch" <<'T'
 30800 up 0
 34000 down 0 480 470
 34080 up 0
-160000 down 0 480 150
-160080 up 0
-162000 down 0 480 20
-162050 up 0
+102000 down 0 480 150
+102080 up 0
+104000 down 0 480 20
+104050 up 0
 T
-printf '%s\n' '5800 menu' '28000 flown' '33000 halted' '44000 goes-on' '158000 nobody' '161500 somebody' >"$work/shots.txt"
-build/gopura-kiosk --display headless --size 960x540 --release "$small/release" \
-	--trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 --visits "$work/visits.csv" \
-	--touch-replay "$work/fingers.touch" --quit-after-replay --capture "$work/shots" --shots "$work/shots.txt" \
-	2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
+printf '%s\n' '5800 menu' '28000 flown' '33000 halted' '44000 goes-on' '100000 nobody' '103500 somebody' >"$work/shots.txt"
+build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless --size 960x540 \
+	--release "$small/release" --trust "$small/release/root/1.json" --state "$work/state" --log debug --idle-s 5 \
+	--visits "$work/visits.csv" --touch-replay "$work/fingers.touch" --capture "$work/shots" --shots "$work/shots.txt" \
+	>"$work/seen.json" 2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
 grep -E 'app: (tour|nobody|somebody|is somebody|drag)' "$work/kiosk.log"
 python3 - "$work/kiosk.log" "$work/visits.csv" <<'P'
 import collections
