@@ -452,7 +452,7 @@ static int build_groups(struct builder *builder)
 		rc = coarser_level(builder, group_patches);
 		after = level_triangles(&builder->level);
 		/* Locked borders prevent collapses. Fewer and larger groups have less of them. */
-		if (after > before - before / 5) {
+		if (after >= before || after > before - before / 5) {
 			if (group_patches == GROUP_PATCHES_MAX && after >= before)
 				break;
 			group_patches = group_patches > GROUP_PATCHES_MAX / 2 ? GROUP_PATCHES_MAX

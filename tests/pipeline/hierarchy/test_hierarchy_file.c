@@ -582,6 +582,27 @@ static void loose_stones_become_few(void **state)
 	model_finish(&model);
 }
 
+/* It cannot get coarser, and is built all the same. */
+static void a_tetrahedron_stays_one(void **state)
+{
+	struct mesh mesh = { .vertex_count = 4,
+			     .triangle_count = 4,
+			     .positions = calloc(4, sizeof(*mesh.positions)),
+			     .triangles = calloc(4, sizeof(*mesh.triangles)) };
+	const uint32_t faces[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } };
+	struct multires_stats stats;
+	struct model model;
+
+	(void)state;
+	CHECK(mesh.positions && mesh.triangles);
+	for (int i = 0; i < 3; i++)
+		mesh.positions[i + 1][i] = 1;
+	memcpy(mesh.triangles, faces, sizeof(faces));
+	stats = model_build(&model, mesh, &(struct multires_options){ .jobs = 1 });
+	CHECK(stats.levels[stats.level_count - 1].triangle_count == 4);
+	model_finish(&model);
+}
+
 /* A cut that shows the patch: its group with all it depends on. */
 static void show_patch(const struct hierarchy *hierarchy, bool *refined, uint32_t p)
 {
@@ -805,6 +826,7 @@ int main(void)
 		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
 		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
 		cmocka_unit_test(loose_stones_become_few),
+		cmocka_unit_test(a_tetrahedron_stays_one),
 		cmocka_unit_test(one_lattice_step_is_found),
 		cmocka_unit_test(any_number_of_jobs_makes_the_same_bytes),
 		cmocka_unit_test(what_is_missing_is_made_again),
