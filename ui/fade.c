@@ -1,4 +1,4 @@
-/* Moves the alpha of what comes and goes. */
+/* Moves the alpha of something that appears or disappears. */
 #include "ui/fade.h"
 
 #include <math.h>

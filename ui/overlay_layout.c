@@ -1,4 +1,4 @@
-/* Computes what each view has to know of the others: where they leave room. */
+/* Computes the room that the open views leave for each view. */
 #include "ui/overlay_layout.h"
 
 /* What page or search leave of the panel. */

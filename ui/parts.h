@@ -1,4 +1,4 @@
-/* The parts of the model as visitors read of them: copies of their texts. */
+/* The texts about the parts of the model, as copies. */
 #ifndef GOPURA_UI_PARTS_H
 #define GOPURA_UI_PARTS_H
 

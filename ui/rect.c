@@ -1,4 +1,4 @@
-/* Asks what lies in a rectangle. */
+/* Tests whether points lie in rectangles, and whether rectangles overlap. */
 #include "ui/rect.h"
 
 bool rect_holds(struct rect rect, float x_px, float y_px)
