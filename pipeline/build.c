@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/usage.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sampler.h"
 
@@ -231,6 +232,33 @@ int build_samples(struct scans *scans, const struct master *master,
 	return rc == 0 ? sampler_run(scans, &chosen, diagnostics) : rc;
 }
 
+/* Measures a stage: from begin_stage to end_stage. */
+struct stopwatch {
+	int64_t ms;
+	struct usage usage;
+};
+
+static void begin_stage(struct stopwatch *watch)
+{
+	usage_reset_own();
+	watch->ms = clock_now_ms();
+	usage_now(&watch->usage);
+}
+
+/* The largest child is known only if no earlier one was larger. */
+static void end_stage(const struct stopwatch *watch, struct report_stage *stage, const char *name)
+{
+	struct usage now;
+
+	usage_now(&now);
+	stage->name = name;
+	stage->ms = clock_now_ms() - watch->ms;
+	stage->processor_us = now.processor_us - watch->usage.processor_us;
+	stage->memory_bytes = now.own_bytes;
+	if (now.child_bytes > watch->usage.child_bytes && now.child_bytes > stage->memory_bytes)
+		stage->memory_bytes = now.child_bytes;
+}
+
 static int make_master_and_samples(struct build_report *report, uint32_t jobs, struct scans *scans)
 {
 	const struct build_master_options mastering = { .jobs = jobs };
@@ -238,17 +266,19 @@ static int make_master_and_samples(struct build_report *report, uint32_t jobs, s
 	struct diagnostics diagnostics = { 0 };
 	struct build_master_report made;
 	struct master *master;
-	int64_t start = clock_now_ms(), at;
-	int rc = build_master(&master, scans, &mastering, &made, &diagnostics);
+	struct stopwatch watch;
+	int rc;
 
-	report->hierarchy_made = made.made;
+	begin_stage(&watch);
+	rc = build_master(&master, scans, &mastering, &made, &diagnostics);
 	if (rc == 0)
 		report->source_triangles = master->source_triangles;
-	at = clock_now_ms();
-	report->hierarchy_ms = at - start;
+	end_stage(&watch, &report->stages[BUILD_HIERARCHY], "import and hierarchy");
+	report->stages[BUILD_HIERARCHY].was_there = !made.made;
+	begin_stage(&watch);
 	if (rc == 0)
 		rc = build_samples(scans, master, &sampling, &diagnostics);
-	report->samples_ms = clock_now_ms() - at;
+	end_stage(&watch, &report->stages[BUILD_SAMPLES], "samples");
 	master_destroy(master);
 	return rc < 0 ? fail(&diagnostics, rc) : 0;
 }
@@ -257,15 +287,27 @@ static int run_stages(struct build_report *report, uint32_t jobs,
 		      const struct publish_content_options *publish)
 {
 	int rc = sources_check(publish->sources); /* before the long work, not after it */
-	int64_t start;
+	struct stopwatch watch;
 
 	if (rc == 0)
 		rc = make_master_and_samples(report, jobs, sources_scans(publish->sources));
-	start = clock_now_ms();
+	begin_stage(&watch);
 	if (rc == 0)
 		rc = publish_content(&report->publish, publish);
-	report->publish_ms = clock_now_ms() - start;
+	end_stage(&watch, &report->stages[BUILD_PUBLISHING], "publishing");
 	return rc;
+}
+
+/* A release without a report is a release. */
+static void write_report(struct build_report *report, struct sources *sources)
+{
+	const struct report_options options = { .sources = sources,
+						.publish = &report->publish,
+						.stages = report->stages,
+						.stage_count = BUILD_STAGES };
+
+	if (report_write(&options, report->page) < 0)
+		report->page[0] = '\0';
 }
 
 /* Removes temporary files of builds that were killed; young ones may be those of a shard that works
@@ -304,6 +346,7 @@ static int build_from(struct build_report *report, struct sources *sources,
 	rc = run_stages(report, options->jobs, &publish);
 	if (rc < 0)
 		return rc;
+	write_report(report, sources);
 	file = stamp_text(stamp, report->publish.publish.release.root);
 	return bytes_write_file((struct bytes){ (uint8_t *)file.text, strlen(file.text) },
 				stamp_path);

@@ -5,6 +5,7 @@
 
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/release/publish_content.h"
+#include "pipeline/report/report.h"
 #include "pipeline/samples/sampler.h"
 
 struct build_options {
@@ -14,10 +15,13 @@ struct build_options {
 	uint32_t jobs;       /* processes and threads; 0: one per core */
 };
 
+enum build_stage { BUILD_HIERARCHY, BUILD_SAMPLES, BUILD_PUBLISHING, BUILD_STAGES };
+
 struct build_report {
 	bool nothing_changed; /* since the last build; only the timestamp is new */
-	bool hierarchy_made;  /* it was made again, not reused */
-	int64_t hierarchy_ms, samples_ms, publish_ms, all_ms;
+	struct report_stage stages[BUILD_STAGES];
+	int64_t all_ms;
+	char page[CONTENT_PATH_BYTES]; /* the report for people; "" if it was not written */
 	uint64_t source_triangles;
 	struct publish_content_report publish;
 };

@@ -39,6 +39,8 @@ static const char help[] =
 
 static void print_report(const struct build_report *report)
 {
+	const struct report_stage *stages = report->stages;
+
 	publish_content_print(stdout, &report->publish);
 	if (report->nothing_changed) {
 		printf("nothing changed since the last build; %.1f s\n",
@@ -50,9 +52,12 @@ static void print_report(const struct build_report *report)
 	       100.0 * (double)report->publish.published_triangles /
 		       (double)report->source_triangles);
 	printf("hierarchy %.1f s%s, samples %.1f s, publishing %.1f s; all %.1f s\n",
-	       (double)report->hierarchy_ms / 1000.0, report->hierarchy_made ? "" : " (was there)",
-	       (double)report->samples_ms / 1000.0, (double)report->publish_ms / 1000.0,
-	       (double)report->all_ms / 1000.0);
+	       (double)stages[BUILD_HIERARCHY].ms / 1000.0,
+	       stages[BUILD_HIERARCHY].was_there ? " (was there)" : "",
+	       (double)stages[BUILD_SAMPLES].ms / 1000.0,
+	       (double)stages[BUILD_PUBLISHING].ms / 1000.0, (double)report->all_ms / 1000.0);
+	if (report->page[0])
+		printf("report for people: %s\n", report->page);
 }
 
 static int run(const char *folder, const struct build_options *options, const char *kind)

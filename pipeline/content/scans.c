@@ -16,6 +16,7 @@
 
 /* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files. */
 enum { IMPORT_VERSION = 2, SHAPE_VERSION = 1, KEY_TEXT_MAX = 1 << 26, SHAPE_BYTES_MAX = 4096 };
+enum { REPORTS_VERSION = 1, REPORTS_BYTES_MAX = 4 << 20 };
 
 struct scans {
 	const struct content *content;
@@ -204,18 +205,136 @@ static int import_all(struct mesh *out, const struct content *content,
 	return rc < 0 ? rc : judge_mix(content, out, reports, count, diagnostics);
 }
 
+/* ---- what the import reported */
+
+/* What is kept of the counts, in the order of the file. */
+static uint32_t *count_of(struct import_report *report, int i)
+{
+	struct mesh_repairs *repairs = &report->repairs;
+	uint32_t *const counts[] = {
+		&report->textures,         &report->vertices,          &report->triangles,
+		&repairs->lost_faces,      &repairs->degenerate_faces, &repairs->merged_vertices,
+		&repairs->unused_vertices, &repairs->border_edges,     &repairs->non_manifold_edges,
+		&repairs->turned_faces,    &repairs->turned_edges,     &repairs->place_step,
+		&repairs->place_count,
+	};
+
+	return i < (int)ARRAY_COUNT(counts) ? counts[i] : NULL;
+}
+
+static void encode_report(struct buffer *file, struct import_report *report)
+{
+	const struct mesh_repairs *repairs = &report->repairs;
+
+	buffer_put_string(file, report->format);
+	buffer_put_u8(file, report->had_colours);
+	buffer_put_u64(file, report->file_bytes);
+	for (int i = 0; count_of(report, i); i++)
+		buffer_put_u32(file, *count_of(report, i));
+	for (uint32_t i = 0; i < repairs->place_count; i++) {
+		buffer_put_u8(file, (uint8_t)repairs->places[i].kind);
+		for (int k = 0; k < 3; k++)
+			buffer_put_f32(file, repairs->places[i].place_m[k]);
+	}
+}
+
+static bool decode_report(struct import_report *report, struct reader *reader)
+{
+	struct mesh_repairs *repairs = &report->repairs;
+
+	reader_string(reader, report->format, sizeof(report->format));
+	report->had_colours = reader_u8(reader);
+	report->file_bytes = reader_u64(reader);
+	for (int i = 0; count_of(report, i); i++)
+		*count_of(report, i) = reader_u32(reader);
+	if (reader->failed || repairs->place_count > MESH_FAULT_PLACES_MAX)
+		return false;
+	for (uint32_t i = 0; i < repairs->place_count; i++) {
+		uint8_t kind = reader_u8(reader);
+
+		if (kind >= MESH_FAULTS)
+			return false;
+		repairs->places[i].kind = (enum mesh_fault)kind;
+		for (int k = 0; k < 3; k++)
+			repairs->places[i].place_m[k] = reader_f32(reader);
+	}
+	return !reader->failed;
+}
+
+/* The file contains: version, the key of the scans, the number of reports, and each. */
+static int save_reports(const struct scans *scans, struct import_report *reports)
+{
+	char path[CONTENT_PATH_BYTES];
+	struct buffer file;
+	int rc = content_work_path(scans->content, "imported", path);
+
+	buffer_init(&file, REPORTS_BYTES_MAX);
+	buffer_put_u32(&file, REPORTS_VERSION);
+	buffer_put(&file, scans->key.bytes, HASH_BYTES);
+	buffer_put_u32(&file, scans->content->scan_count);
+	for (uint32_t i = 0; i < scans->content->scan_count; i++)
+		encode_report(&file, &reports[i]);
+	if (rc == 0)
+		rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	return rc;
+}
+
+static int decode_reports(struct import_report *reports, struct bytes file, struct hash key)
+{
+	struct reader reader;
+	uint32_t version, count;
+	struct bytes of;
+
+	reader_init(&reader, file);
+	version = reader_u32(&reader);
+	of = reader_bytes(&reader, HASH_BYTES);
+	count = reader_u32(&reader);
+	if (reader.failed || version != REPORTS_VERSION || count > CONTENT_SCANS_MAX ||
+	    memcmp(of.data, key.bytes, HASH_BYTES) != 0)
+		return -ENOENT;
+	for (uint32_t i = 0; i < count; i++)
+		if (!decode_report(&reports[i], &reader))
+			return -ENOENT;
+	return (int)count;
+}
+
+int scans_get_reports(struct scans *scans, struct import_report *reports)
+{
+	char path[CONTENT_PATH_BYTES];
+	struct buffer file;
+	struct hash key;
+	int rc = scans_key(scans, &key, NULL);
+
+	if (rc == 0)
+		rc = content_work_path(scans->content, "imported", path);
+	if (rc < 0)
+		return rc;
+	buffer_init(&file, REPORTS_BYTES_MAX);
+	rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		rc = decode_reports(reports, buffer_bytes(&file), key);
+	buffer_finish(&file);
+	return rc;
+}
+
 static int import_and_save(struct scans *scans, const char *path, struct diagnostics *diagnostics)
 {
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
 	int rc = reports ? import_all(&scans->mesh, scans->content, reports, diagnostics) : -ENOMEM;
 
-	free(reports);
 	if (rc == 0) {
 		rc = mesh_file_save(&scans->mesh, scans->key, path);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
 					strerror(-rc));
 	}
+	if (rc == 0 && save_reports(scans, reports) < 0)
+		log_warn("pipeline",
+			 "%s/.work/imported cannot be written: the report will lack "
+			 "the counts of the import",
+			 scans->content->folder);
+	free(reports);
 	if (rc < 0)
 		mesh_finish(&scans->mesh);
 	return rc;

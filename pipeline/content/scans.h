@@ -40,6 +40,10 @@ const struct scans_shape *scans_known_shape(struct scans *scans);
  * diagnostic. */
 must_check int scans_get_mesh(struct scans *scans, const struct mesh **out,
 			      struct diagnostics *diagnostics);
+/* Reads what the import reported of each scan, in the order of temple.ini; kept in .work/imported.
+ * reports has room for CONTENT_SCANS_MAX; returns how many there are, or -ENOENT if the scans have
+ * not been imported since they changed. -ENOMEM and errors of the disk. */
+must_check int scans_get_reports(struct scans *scans, struct import_report *reports);
 /* Frees the mesh, if it is in memory. The last user calls it. */
 void scans_drop_mesh(struct scans *scans);
 

@@ -111,13 +111,58 @@ static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh
 
 /* ---- edges */
 
+struct counting {
+	const struct mesh *mesh;
+	struct mesh_repairs *repairs;
+	uint32_t fault_count;
+};
+
+/* Keeps every place_step-th place; when there is no more room, every second of these goes. */
+static void keep_place(struct counting *counting, enum mesh_fault kind, const uint32_t ends[2])
+{
+	struct mesh_repairs *repairs = counting->repairs;
+	const struct mesh *mesh = counting->mesh;
+	struct mesh_fault_place *place;
+
+	if (counting->fault_count++ % repairs->place_step > 0)
+		return;
+	if (repairs->place_count == MESH_FAULT_PLACES_MAX) {
+		repairs->place_step *= 2;
+		repairs->place_count /= 2;
+		for (uint32_t i = 0; i < repairs->place_count; i++)
+			repairs->places[i] = repairs->places[2 * i];
+	}
+	place = &repairs->places[repairs->place_count++];
+	place->kind = kind;
+	for (int k = 0; k < 3; k++)
+		place->place_m[k] = (mesh->positions[ends[0]][k] + mesh->positions[ends[1]][k]) / 2;
+}
+
 static void count_edge(void *data, const struct mesh_edge *edge)
 {
-	struct mesh_repairs *repairs = data;
+	struct counting *counting = data;
+	struct mesh_repairs *repairs = counting->repairs;
 
 	repairs->border_edges += edge->face_count == 1;
 	repairs->non_manifold_edges += edge->face_count > 2;
 	repairs->turned_edges += edge->turned;
+	if (edge->face_count != 2 || edge->turned)
+		keep_place(counting,
+			   edge->turned            ? MESH_FAULT_TURNED
+			   : edge->face_count == 1 ? MESH_FAULT_BORDER
+						   : MESH_FAULT_NON_MANIFOLD,
+			   edge->ends);
+}
+
+static int count_edges(const struct mesh_edges *edges, const struct mesh *mesh,
+		       struct mesh_repairs *repairs)
+{
+	struct counting counting = { mesh, repairs, 0 };
+
+	repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
+	repairs->place_count = 0;
+	repairs->place_step = 1;
+	return mesh_edges_each(edges, count_edge, &counting);
 }
 
 /* Counts the edges. Only if faces disagree must the correct orientation be found, and the edges be
@@ -129,13 +174,11 @@ static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
 
 	if (rc < 0)
 		return rc;
-	rc = mesh_edges_each(&edges, count_edge, repairs);
+	rc = count_edges(&edges, mesh, repairs);
 	if (rc == 0 && repairs->turned_edges > 0)
 		rc = mesh_orient(mesh, &edges, &repairs->turned_faces);
-	if (rc == 0 && repairs->turned_faces > 0) {
-		repairs->border_edges = repairs->non_manifold_edges = repairs->turned_edges = 0;
-		rc = mesh_edges_each(&edges, count_edge, repairs);
-	}
+	if (rc == 0 && repairs->turned_faces > 0)
+		rc = count_edges(&edges, mesh, repairs);
 	mesh_edges_finish(&edges);
 	return rc;
 }

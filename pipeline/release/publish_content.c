@@ -175,6 +175,9 @@ static int publish_objects(struct publish_content_report *report,
 	if (rc >= 0)
 		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
 	report->published_triangles = root.published_triangles;
+	memcpy(report->start_eye_m, root.start_eye_m, sizeof(root.start_eye_m));
+	memcpy(report->start_target_m, root.start_target_m, sizeof(root.start_target_m));
+	report->lit = root.lit;
 	return rc;
 }
 

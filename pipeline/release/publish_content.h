@@ -21,7 +21,10 @@ struct publish_content_report {
 	char release[PATH_MAX];
 	uint64_t release_bytes; /* size of all objects of the current release */
 	uint32_t release_packs;
-	uint64_t published_triangles; /* set by publish_content */
+	/* Set by publish_content: what the root page says. */
+	uint64_t published_triangles;
+	float start_eye_m[3], start_target_m[3];
+	bool lit;
 };
 
 /* Publishes the content folder. Makes signing keys if there are none. Returns -ENOENT if hierarchy

@@ -360,6 +360,16 @@ void samples_store_rewind(struct samples_store *store)
 	store->summary.faces_left = 0;
 }
 
+enum sample_state samples_store_state(const struct samples_store *store, const uint32_t point[3])
+{
+	struct sample_summary summary;
+
+	if (!point_exists(&store->grid, point) ||
+	    !sample_summary_open(&summary, store->points[number_of(&store->grid, point)].summary))
+		return SAMPLE_EMPTY; /* not after survey */
+	return summary.state;
+}
+
 void samples_store_states(const struct samples_store *store, uint32_t counts[SAMPLE_STATES])
 {
 	memcpy(counts, store->states, sizeof(store->states));

@@ -68,6 +68,8 @@ struct hash samples_store_key(const struct samples_store *store);
 must_check int samples_store_next(struct samples_store *store, struct sample_face *out);
 /* Starts again with the first face. */
 void samples_store_rewind(struct samples_store *store);
+/* Returns the state of a point of a store that samples_store_open has opened. */
+enum sample_state samples_store_state(const struct samples_store *store, const uint32_t point[3]);
 /* Counts the points in each state, for reports. */
 void samples_store_states(const struct samples_store *store, uint32_t counts[SAMPLE_STATES]);
 
