@@ -298,16 +298,19 @@ static int run_stages(struct build_report *report, uint32_t jobs,
 	return rc;
 }
 
-/* A release without a report is a release. */
-static void write_report(struct build_report *report, struct sources *sources)
+/* A release without a report is a release; but a full disk must be told. */
+static int write_report(struct build_report *report, struct sources *sources)
 {
 	const struct report_options options = { .sources = sources,
 						.publish = &report->publish,
 						.stages = report->stages,
 						.stage_count = BUILD_STAGES };
 
-	if (report_write(&options, report->page) < 0)
+	int rc = report_write(&options, report->page);
+
+	if (rc < 0)
 		report->page[0] = '\0';
+	return rc == -ENOSPC ? rc : 0;
 }
 
 /* Removes temporary files of builds that were killed; young ones may be those of a shard that works
@@ -346,7 +349,9 @@ static int build_from(struct build_report *report, struct sources *sources,
 	rc = run_stages(report, options->jobs, &publish);
 	if (rc < 0)
 		return rc;
-	write_report(report, sources);
+	rc = write_report(report, sources);
+	if (rc < 0)
+		return rc;
 	file = stamp_text(stamp, report->publish.publish.release.root);
 	return bytes_write_file((struct bytes){ (uint8_t *)file.text, strlen(file.text) },
 				stamp_path);
