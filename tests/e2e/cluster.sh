@@ -15,6 +15,16 @@ export PARALLEL_HOME=$folder/parallel
 mkdir -p "$PARALLEL_HOME"
 : >"$PARALLEL_HOME/will-cite" # otherwise it asks to be cited in articles
 
+# kill_when PID PATTERN: kills a shard as soon as such a file is there. Sampling begins after the index of the master.
+kill_when() {
+	until compgen -G "$2" >/dev/null; do
+		kill -0 "$1" 2>/dev/null || fail "the shard ended before it was killed"
+		sleep 0.01
+	done
+	kill -9 "$1" || fail "the shard ended before it was killed"
+	wait "$1" 2>/dev/null || true
+}
+
 tiny_content "$folder/alone" 60000 5000
 touch -d '2026-01-01' "$folder"/alone/*
 cp -rp "$folder/alone" "$folder/shared"
@@ -25,9 +35,7 @@ cp -r "$folder/keys" "$folder/keys-shared"
 # ---- the hierarchy alone: a shard that is killed while it works, then all, one of them twice
 master=$folder/geometry/.work/master
 "$content" hierarchy --jobs 1 --shard 1/4 "$folder/geometry" >"$folder/killed" 2>&1 &
-wait_for 120 "block of the first shard" compgen -G "$master/blocks-*/node-*"
-kill -9 $!
-wait $! 2>/dev/null || true
+kill_when $! "$master/blocks-*/node-*"
 [ ! -e "$master/index" ] || fail "the shard was done before it was killed"
 parallel -j 5 "$content" hierarchy --jobs 1 --shard {}/4 "$folder/geometry" ::: 0 1 2 3 2 >"$folder/log" 2>&1 ||
 	{ cat "$folder/log"; fail "a shard of the hierarchy"; }
@@ -36,9 +44,7 @@ diff -r "$folder/alone/.work/master" "$master" || fail "shards made another mast
 
 # ---- the whole, as a person begins it; of the shards that ran before, one was killed and one finished
 "$content" sample --jobs 1 --shard 0/4 "$folder/shared" >"$folder/killed" 2>&1 &
-wait_for 120 "sample of a shard" compgen -G "$folder/shared/.work/samples/0*"
-kill -9 $!
-wait $! 2>/dev/null || true
+kill_when $! "$folder/shared/.work/master/index"
 "$content" sample --jobs 1 --shard 2/4 "$folder/shared" >"$folder/log" 2>&1 || { cat "$folder/log"; fail "shard 2"; }
 mv "$folder/keys-shared" "$folder/config-keys"
 XDG_CONFIG_HOME=$folder/config
