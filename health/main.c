@@ -14,8 +14,8 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "health/page.h"
 #include "health/server.h"
+#include "health/web_page.h"
 
 enum {
 	FRESH_MS = 1000,    /* a snapshot answers all requests for so long */
@@ -231,12 +231,12 @@ static void answer_visits(const struct health *health, struct reply *reply)
 /* See server_options.answer. */
 static void answer(void *data, const char *path, struct reply *reply)
 {
-	const enum page page = page_of_path(path);
+	const enum web_page page = web_page_of_path(path);
 	struct health *health = data;
 
-	if (page == PAGE_NONE)
+	if (page == WEB_PAGE_NONE)
 		return;
-	if (page == PAGE_VISITS) {
+	if (page == WEB_PAGE_VISITS) {
 		answer_visits(health, reply);
 		return;
 	}
@@ -245,9 +245,9 @@ static void answer(void *data, const char *path, struct reply *reply)
 		snapshot_take(&health->snapshot, &health->gather);
 		verdict_judge(&health->verdict, &health->snapshot);
 	}
-	buffer_init(&reply->body, PAGE_BYTES_MAX);
-	reply->status =
-		page_write(&reply->body, &reply->type, page, &health->snapshot, &health->verdict);
+	buffer_init(&reply->body, WEB_PAGE_BYTES_MAX);
+	reply->status = web_page_write(&reply->body, &reply->type, page, &health->snapshot,
+				       &health->verdict);
 }
 
 static int run(struct health *health)

@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/usage.h"
+#include "base/resource_usage.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sampler.h"
 
@@ -235,22 +235,22 @@ int build_samples(struct scans *scans, const struct master *master,
 /* Measures a stage: from begin_stage to end_stage. */
 struct stopwatch {
 	int64_t ms;
-	struct usage usage;
+	struct resource_usage usage;
 };
 
 static void begin_stage(struct stopwatch *watch)
 {
-	usage_reset_own();
+	resource_usage_reset_own();
 	watch->ms = clock_now_ms();
-	usage_now(&watch->usage);
+	resource_usage_now(&watch->usage);
 }
 
 /* The largest child is known only if no earlier one was larger. */
 static void end_stage(const struct stopwatch *watch, struct report_stage *stage, const char *name)
 {
-	struct usage now;
+	struct resource_usage now;
 
-	usage_now(&now);
+	resource_usage_now(&now);
 	stage->name = name;
 	stage->ms = clock_now_ms() - watch->ms;
 	stage->processor_us = now.processor_us - watch->usage.processor_us;

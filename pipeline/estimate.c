@@ -14,7 +14,7 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
-#include "base/usage.h"
+#include "base/resource_usage.h"
 #include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/import/scan_look.h"
 #include "pipeline/samples/sampling_forecast.h"
@@ -211,7 +211,7 @@ static int try_hierarchy(struct looking *looking)
 	struct master_options options = { .multires = { .jobs = 1 } };
 	char folder[CONTENT_PATH_BYTES];
 	struct master_report report;
-	struct usage before, after;
+	struct resource_usage before, after;
 	struct mesh mesh;
 	int rc = content_work_path(looking->content, "trial-XXXXXX", folder);
 
@@ -222,10 +222,10 @@ static int try_hierarchy(struct looking *looking)
 		return rc;
 	}
 	rc = sampling_trial_mesh(&mesh, TRIAL_MESH);
-	usage_now(&before);
+	resource_usage_now(&before);
 	if (rc == 0)
 		rc = master_build(folder, &mesh, (struct hash){ { 0 } }, &options, &report);
-	usage_now(&after);
+	resource_usage_now(&after);
 	looking->speeds.hierarchy_s = (double)(after.processor_us - before.processor_us) / 1e6 /
 				      (4.0 * TRIAL_MESH * TRIAL_MESH);
 	mesh_finish(&mesh);

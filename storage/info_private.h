@@ -30,7 +30,7 @@ struct part {
 	struct text texts[INFO_LANGUAGES_MAX];
 };
 
-struct tour {
+struct tour_row {
 	struct info_tour public;                                         /* id owned */
 	uint32_t thumbnail;                                              /* as in struct part */
 	char *titles[INFO_LANGUAGES_MAX], *captions[INFO_LANGUAGES_MAX]; /* owned or NULL */
@@ -50,7 +50,7 @@ struct info {
 	uint32_t language_count;
 	struct part *parts;
 	uint32_t part_count, part_room;
-	struct tour *tours;
+	struct tour_row *tours;
 	uint32_t tour_count, tour_room;
 	unsigned tools;
 	bool has_tools;

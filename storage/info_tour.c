@@ -20,7 +20,7 @@ static uint32_t column_index(sqlite3_stmt *row, int column, uint32_t count)
 
 static int read_tour(struct info *info, sqlite3_stmt *row)
 {
-	struct tour *tour;
+	struct tour_row *tour;
 	int rc;
 
 	if (info->tour_count == INFO_TOURS_MAX || sqlite3_column_int64(row, 0) != info->tour_count)
@@ -176,7 +176,7 @@ int info_find_tour(const struct info *info, const char *id)
 
 struct info_text info_tour_text(const struct info *info, uint32_t tour, const char *language)
 {
-	const struct tour *t = &info->tours[tour];
+	const struct tour_row *t = &info->tours[tour];
 	const struct info_order order = info_order_of(info, language);
 	const char *caption = info_first_of(&order, t->captions, NULL);
 	uint32_t found = 0;

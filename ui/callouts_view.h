@@ -4,9 +4,9 @@
 #define GOPURA_UI_CALLOUTS_VIEW_H
 
 #include "ui/callout.h"
-#include "ui/content.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
+#include "ui/overlay_data.h"
 #include "ui/parts.h"
 #include "ui/screen.h"
 

@@ -170,14 +170,15 @@ void gallery_view_drop(struct gallery_view *view)
 	view->dragging = view->words_dirty = false;
 }
 
-void gallery_view_picture_arrived(struct gallery_view *view, const struct article *article,
+void gallery_view_picture_arrived(struct gallery_view *view, const struct article_layout *article,
 				  const char *name)
 {
 	for (int i = 0; i < GALLERY_SLOTS; i++) {
 		struct gallery_view_slot *slot = &view->slots[i];
 
 		if (slot->picture >= 0 &&
-		    strcmp(article_picture(article, (uint32_t)slot->picture, NULL), name) == 0)
+		    strcmp(article_layout_picture(article, (uint32_t)slot->picture, NULL), name) ==
+			    0)
 			slot->picture = -1; /* draw it again */
 	}
 }
@@ -315,7 +316,7 @@ static bool draw_picture(struct sprite *sprite, const struct picture_source *pic
 }
 
 static void draw_words(struct gallery_view *view, const struct screen *screen,
-		       const struct article *article)
+		       const struct article_layout *article)
 {
 	struct rect fit = gallery_view_rect(screen);
 	cairo_t *context =
@@ -326,7 +327,7 @@ static void draw_words(struct gallery_view *view, const struct screen *screen,
 
 	if (!context)
 		return;
-	article_picture(article, (uint32_t)view->at, &caption);
+	article_layout_picture(article, (uint32_t)view->at, &caption);
 	snprintf(count, sizeof(count), "%d / %d", view->at + 1, view->count);
 	text = view->count > 1 ? g_strconcat(count, *caption ? " · " : "", caption, NULL)
 			       : g_strdup(caption);
@@ -344,7 +345,7 @@ static void draw_words(struct gallery_view *view, const struct screen *screen,
 /* ---- a frame ---- */
 
 /* Draws the current picture first, then its neighbours, one per frame. */
-static bool update_slots(struct gallery_view *view, const struct article *article,
+static bool update_slots(struct gallery_view *view, const struct article_layout *article,
 			 const struct picture_source *pictures, int64_t step_ms)
 {
 	static const int order[] = { 0, 1, -1 };
@@ -364,9 +365,9 @@ static bool update_slots(struct gallery_view *view, const struct article *articl
 		if (slot->picture != picture) {
 			slot->picture = picture;
 			slot->fade.alpha = 0;
-			slot->fade.on =
-				draw_picture(&slot->sprite, pictures,
-					     article_picture(article, (uint32_t)picture, NULL));
+			slot->fade.on = draw_picture(
+				&slot->sprite, pictures,
+				article_layout_picture(article, (uint32_t)picture, NULL));
 			drew = true;
 		}
 		moving |= fade_advance(&slot->fade, step_ms);
@@ -375,8 +376,8 @@ static bool update_slots(struct gallery_view *view, const struct article *articl
 }
 
 bool gallery_view_update(struct gallery_view *view, const struct screen *screen,
-			 const struct article *article, const struct picture_source *pictures,
-			 int64_t step_ms)
+			 const struct article_layout *article,
+			 const struct picture_source *pictures, int64_t step_ms)
 {
 	bool moving = fade_advance(&view->fade, step_ms);
 

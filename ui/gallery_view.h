@@ -4,7 +4,7 @@
 #define GOPURA_UI_GALLERY_VIEW_H
 
 #include "ui/action.h"
-#include "ui/article.h"
+#include "ui/article_layout.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
 #include "ui/screen.h"
@@ -39,7 +39,7 @@ void gallery_view_show(struct gallery_view *view, const struct screen *screen, i
 /* The page is gone: closes at once and forgets its pictures. */
 void gallery_view_drop(struct gallery_view *view);
 /* A picture of the page arrived: draws it again if it is shown. */
-void gallery_view_picture_arrived(struct gallery_view *view, const struct article *article,
+void gallery_view_picture_arrived(struct gallery_view *view, const struct article_layout *article,
 				  const char *name);
 
 /* Gestures, as in ui/overlay.h. */
@@ -64,8 +64,8 @@ struct overlay_action gallery_view_tap(const struct gallery_view *view, const st
 /* Draws what changed and advances by step_ms. article is the open page's, NULL: none. Returns true
  * if something still moves. */
 bool gallery_view_update(struct gallery_view *view, const struct screen *screen,
-			 const struct article *article, const struct picture_source *pictures,
-			 int64_t step_ms);
+			 const struct article_layout *article,
+			 const struct picture_source *pictures, int64_t step_ms);
 void gallery_view_layers(const struct gallery_view *view, const struct screen *screen,
 			 struct layers *layers);
 

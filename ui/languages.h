@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
-#include "ui/content.h"
+#include "ui/overlay_data.h"
 
 struct languages {
 	char *codes[OVERLAY_LANGUAGES_MAX]; /* owned: "en", "pt-BR" */

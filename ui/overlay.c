@@ -328,10 +328,10 @@ void overlay_read_from(struct overlay *overlay, float share)
 void overlay_show_picture(struct overlay *overlay, int picture)
 {
 	const struct screen screen = overlay_screen(overlay);
-	const struct article *article = overlay->page.article;
+	const struct article_layout *article = overlay->page.article;
 
 	gallery_view_show(&overlay->gallery, &screen, picture,
-			  article ? (int)article_picture_count(article) : 0);
+			  article ? (int)article_layout_picture_count(article) : 0);
 }
 
 int overlay_picture(const struct overlay *overlay)

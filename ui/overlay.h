@@ -14,8 +14,8 @@
 
 #include "base/bytes.h"
 #include "ui/action.h"
-#include "ui/content.h"
 #include "ui/layers.h"
+#include "ui/overlay_data.h"
 #include "ui/rect.h"
 #include "ui/source.h"
 

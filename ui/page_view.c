@@ -60,7 +60,7 @@ void page_view_init(struct page_view *view, const struct theme *theme, int heigh
 
 void page_view_finish(struct page_view *view)
 {
-	article_destroy(view->article);
+	article_layout_destroy(view->article);
 	for (uint32_t i = 0; i < PAGE_STRIPS; i++)
 		sprites_finish(&view->strips[i].sprite, 1);
 	sprites_finish(&view->head, 1);
@@ -114,7 +114,7 @@ struct rect page_view_widen_button(const struct page_view *view, const struct sc
 
 int page_view_scroll_most(const struct page_view *view, const struct screen *screen)
 {
-	int most_px = view->article ? article_height_px(view->article) -
+	int most_px = view->article ? article_layout_height_px(view->article) -
 					      page_view_window(view, screen).height_px
 				    : 0;
 
@@ -126,10 +126,10 @@ int page_view_scroll_most(const struct page_view *view, const struct screen *scr
 int page_view_open(struct page_view *view, const struct screen *screen, int part,
 		   struct bytes bytes, const char *credits, const struct picture_source *pictures)
 {
-	struct article_options options = { .theme = screen->theme,
-					   .pictures = *pictures,
-					   .credits = credits };
-	struct article *article;
+	struct article_layout_options options = { .theme = screen->theme,
+						  .pictures = *pictures,
+						  .credits = credits };
+	struct article_layout *article;
 	struct rect window;
 	int rc;
 
@@ -138,10 +138,10 @@ int page_view_open(struct page_view *view, const struct screen *screen, int part
 	window = page_view_window(view, screen);
 	options.width_px = window.width_px;
 	options.view_px = window.height_px;
-	rc = article_create(&article, &options, bytes);
+	rc = article_layout_create(&article, &options, bytes);
 	if (rc < 0)
 		return rc;
-	article_destroy(view->article);
+	article_layout_destroy(view->article);
 	view->article = article;
 	view->part = part;
 	view->fade.on = true;
@@ -159,7 +159,7 @@ void page_view_close(struct page_view *view)
 
 void page_view_drop(struct page_view *view)
 {
-	article_destroy(view->article);
+	article_layout_destroy(view->article);
 	view->article = NULL;
 	view->fade = (struct fade){ 0 };
 	view->part = -1;
@@ -186,10 +186,10 @@ void page_view_lay_out(struct page_view *view, const struct screen *screen)
 	if (!view->article)
 		return;
 	window = page_view_window(view, screen);
-	read = view->scroll.px / (float)article_height_px(view->article);
-	if (article_lay_out(view->article, window.width_px, window.height_px) < 0)
+	read = view->scroll.px / (float)article_layout_height_px(view->article);
+	if (article_layout_resize(view->article, window.width_px, window.height_px) < 0)
 		page_view_close(view); /* no memory for the links */
-	height_px = (float)article_height_px(view->article);
+	height_px = (float)article_layout_height_px(view->article);
 	most_px = (float)page_view_scroll_most(view, screen);
 	view->scroll = (struct scroll){ .px = fminf(read * height_px, most_px) };
 	forget_strips(view);
@@ -197,7 +197,7 @@ void page_view_lay_out(struct page_view *view, const struct screen *screen)
 
 void page_view_picture_arrived(struct page_view *view, const char *name)
 {
-	int from_px = view->article ? article_picture_arrived(view->article, name) : -1;
+	int from_px = view->article ? article_layout_picture_arrived(view->article, name) : -1;
 
 	for (uint32_t i = 0; from_px >= 0 && i < PAGE_STRIPS; i++)
 		if ((view->strips[i].index + 1) * view->strip_px > from_px)
@@ -206,7 +206,8 @@ void page_view_picture_arrived(struct page_view *view, const char *name)
 
 float page_view_read(const struct page_view *view)
 {
-	return view->part >= 0 ? view->scroll.px / (float)article_height_px(view->article) : 0;
+	return view->part >= 0 ? view->scroll.px / (float)article_layout_height_px(view->article)
+			       : 0;
 }
 
 void page_view_read_from(struct page_view *view, const struct screen *screen, float share)
@@ -214,7 +215,7 @@ void page_view_read_from(struct page_view *view, const struct screen *screen, fl
 	if (view->part < 0)
 		return;
 	view->scroll.px_per_s = 0;
-	view->scroll.px = fminf(share * (float)article_height_px(view->article),
+	view->scroll.px = fminf(share * (float)article_layout_height_px(view->article),
 				(float)page_view_scroll_most(view, screen));
 }
 
@@ -239,8 +240,8 @@ struct overlay_action page_view_tap(const struct page_view *view, const struct s
 		return action;
 	x_px -= (float)window.x_px;
 	y_px += view->scroll.px - (float)window.y_px;
-	action.link = article_link_at(view->article, x_px, y_px);
-	picture = article_picture_at(view->article, x_px, y_px);
+	action.link = article_layout_link_at(view->article, x_px, y_px);
+	picture = article_layout_picture_at(view->article, x_px, y_px);
 	if (action.link)
 		action.kind = OVERLAY_LINK;
 	else if (picture >= 0)
@@ -290,7 +291,7 @@ static void draw_strip(struct page_view *view, const struct screen *screen,
 
 	if (!context)
 		return;
-	article_draw(view->article, context, strip->index * view->strip_px, view->strip_px);
+	article_layout_draw(view->article, context, strip->index * view->strip_px, view->strip_px);
 	sprite_end(&strip->sprite, context);
 }
 
@@ -302,7 +303,7 @@ static bool update_strips(struct page_view *view, const struct screen *screen, i
 	int first = (int)view->scroll.px / view->strip_px;
 	/* One strip more than is visible, so that scrolling finds it drawn. */
 	int last = ((int)view->scroll.px + window_px) / view->strip_px + 1;
-	int end = article_height_px(view->article) / view->strip_px;
+	int end = article_layout_height_px(view->article) / view->strip_px;
 	uint32_t budget = STRIPS_A_FRAME;
 	bool moving = false;
 

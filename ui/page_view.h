@@ -4,7 +4,7 @@
 #define GOPURA_UI_PAGE_VIEW_H
 
 #include "ui/action.h"
-#include "ui/article.h"
+#include "ui/article_layout.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
 #include "ui/paper.h"
@@ -21,7 +21,7 @@ struct page_view_strip {
 };
 
 struct page_view {
-	struct article *article; /* owned; NULL when no page is open or fading out */
+	struct article_layout *article; /* owned; NULL when no page is open or fading out */
 	struct fade fade;
 	int part;        /* -1 when closed */
 	bool wide;       /* over the whole panel; also while fading out */

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "base/compiler.h"
-#include "ui/content.h"
+#include "ui/overlay_data.h"
 
 struct parts {
 	struct overlay_part *list; /* owned, and so are its texts; in order of importance */

@@ -5,9 +5,9 @@
 #define GOPURA_UI_TOOLS_VIEW_H
 
 #include "ui/action.h"
-#include "ui/content.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
+#include "ui/overlay_data.h"
 #include "ui/screen.h"
 
 /* Places that something open takes. Text has priority over controls: a disc hides, but its tool

@@ -4,9 +4,9 @@
 #define GOPURA_UI_TOUR_PLAYER_VIEW_H
 
 #include "ui/action.h"
-#include "ui/content.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
+#include "ui/overlay_data.h"
 #include "ui/screen.h"
 
 enum { TOUR_CAPTION_BYTES = 1024 };

@@ -3,9 +3,9 @@
 #define GOPURA_UI_TOURS_VIEW_H
 
 #include "ui/action.h"
-#include "ui/content.h"
 #include "ui/fade.h"
 #include "ui/layers.h"
+#include "ui/overlay_data.h"
 #include "ui/screen.h"
 #include "ui/source.h"
 

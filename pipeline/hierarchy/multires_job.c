@@ -45,8 +45,8 @@ int live_patches_add(struct live_patches *patches, struct live_patch patch)
 
 /* The group's patches merged into one surface with local vertex indices. */
 struct merged {
-	struct surface surface; /* owned */
-	uint32_t *globals;      /* owned; for each vertex, its index in the scan */
+	struct simplify_surface surface; /* owned */
+	uint32_t *globals;               /* owned; for each vertex, its index in the scan */
 };
 
 static void merged_finish(struct merged *merged)
@@ -68,7 +68,7 @@ static uint32_t triangles_of(const struct group_job *job)
 
 static void name_corners(struct merged *merged, const struct group_job *job, uint32_t *local_of)
 {
-	struct surface *surface = &merged->surface;
+	struct simplify_surface *surface = &merged->surface;
 
 	for (uint32_t p = 0; p < job->patch_count; p++)
 		for (uint32_t t = 0; t < job->patches[p].triangle_count; t++) {
@@ -92,7 +92,7 @@ static void name_corners(struct merged *merged, const struct group_job *job, uin
 static int merge(struct merged *merged, const struct job_site *site, const struct group_job *job,
 		 uint32_t *local_of)
 {
-	struct surface *surface = &merged->surface;
+	struct simplify_surface *surface = &merged->surface;
 	size_t count = triangles_of(job);
 
 	*merged = (struct merged){ .globals = malloc(3 * count * sizeof(*merged->globals)) };
@@ -154,7 +154,7 @@ static int add_coarser(struct group_job *job, const struct merged *merged, const
 
 static int divide(struct group_job *job, const struct merged *merged, uint32_t patch_triangles)
 {
-	const struct surface *surface = &merged->surface;
+	const struct simplify_surface *surface = &merged->surface;
 	const struct partition_options options = {
 		.voxel_triangles = patch_triangles,
 		.chunk_triangles = UINT32_MAX,

@@ -25,7 +25,7 @@ struct candidate {
 };
 
 struct work {
-	struct surface *surface;
+	struct simplify_surface *surface;
 	struct quadric *quadrics;
 	double *areas; /* for each vertex, to average normals and colours */
 	/* Linked list of the corners at each vertex: corner 3 t + i is corner i of triangle t. */
@@ -226,7 +226,7 @@ static void add_triangle(struct work *work, uint32_t t)
  * themselves. */
 static bool may_leave(struct work *work, uint32_t gone, uint32_t keep, bool open)
 {
-	const struct surface *surface = work->surface;
+	const struct simplify_surface *surface = work->surface;
 
 	if (surface->locked[gone])
 		return false;
@@ -590,7 +590,7 @@ static int collapse_until(struct work *work, uint32_t target)
 	return rc;
 }
 
-static int work_init(struct work *work, struct surface *surface)
+static int work_init(struct work *work, struct simplify_surface *surface)
 {
 	size_t vertices = (size_t)surface->vertex_count + 1;
 	size_t triangles = (size_t)surface->triangle_count + 1;
@@ -634,7 +634,7 @@ static void work_finish(struct work *work)
 	free(work->heap);
 }
 
-int simplify(struct surface *surface, uint32_t target_triangles, double error_most_steps,
+int simplify(struct simplify_surface *surface, uint32_t target_triangles, double error_most_steps,
 	     struct simplify_result *result)
 {
 	struct work work;

@@ -11,7 +11,7 @@
 
 #include "pipeline/hierarchy/lattice_mesh.h"
 
-struct surface {
+struct simplify_surface {
 	uint32_t vertex_count, triangle_count;
 	struct lattice_vertex *vertices;
 	uint8_t *locked; /* for each vertex; 1: it must stay */
@@ -33,7 +33,7 @@ struct simplify_result {
  * an error above error_most_steps (INFINITY: no limit). Remaining triangles move to the front.
  * Vertices keep their index; those that moved are changed. At least one triangle stays. Returns
  * -ENOMEM; the surface is then unusable. */
-must_check int simplify(struct surface *surface, uint32_t target_triangles, double error_most_steps,
-			struct simplify_result *result);
+must_check int simplify(struct simplify_surface *surface, uint32_t target_triangles,
+			double error_most_steps, struct simplify_result *result);
 
 #endif

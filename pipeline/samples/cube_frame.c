@@ -12,7 +12,7 @@
 
 enum { BLOCK_PX = 8, STEPS = 65534 };
 
-struct frame {
+struct cube_frame {
 	int width_px, height_px;
 	GLuint framebuffer, colour, depth;
 	struct gl_target blocks; /* nearest and farthest of each square of BLOCK_PX */
@@ -48,7 +48,7 @@ static const char fragment_text[] =
 	"		: vec4(bytes(floor(share(low))), bytes(ceil(share(high))));\n"
 	"}\n";
 
-static int build_program(struct frame *frame)
+static int build_program(struct cube_frame *frame)
 {
 	const char *const vertex[] = { gl_square_vertex, NULL };
 	const char *const fragment[] = { fragment_text, NULL };
@@ -71,14 +71,14 @@ static GLuint make_texture(int width, int height, GLenum format, GLenum type)
 	return texture;
 }
 
-static int build_framebuffer(struct frame *frame)
+static int build_framebuffer(struct cube_frame *frame)
 {
 	int width = frame->width_px, height = frame->height_px, rc;
 
 	frame->colour = make_texture(width, height, GL_RGBA, GL_UNSIGNED_BYTE);
 	frame->depth = make_texture(width, height, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
 	glGenFramebuffers(1, &frame->framebuffer);
-	frame_bind(frame);
+	cube_frame_bind(frame);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, frame->colour,
 			       0);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, frame->depth, 0);
@@ -90,9 +90,9 @@ static int build_framebuffer(struct frame *frame)
 	return rc;
 }
 
-int frame_create(struct frame **out, int width_px, int height_px)
+int cube_frame_create(struct cube_frame **out, int width_px, int height_px)
 {
-	struct frame *frame = calloc(1, sizeof(*frame));
+	struct cube_frame *frame = calloc(1, sizeof(*frame));
 	int rc;
 
 	*out = NULL;
@@ -116,14 +116,14 @@ int frame_create(struct frame **out, int width_px, int height_px)
 	if (rc == 0)
 		rc = build_framebuffer(frame);
 	if (rc < 0) {
-		frame_destroy(frame);
+		cube_frame_destroy(frame);
 		return rc;
 	}
 	*out = frame;
 	return 0;
 }
 
-void frame_destroy(struct frame *frame)
+void cube_frame_destroy(struct cube_frame *frame)
 {
 	if (!frame)
 		return;
@@ -140,21 +140,21 @@ void frame_destroy(struct frame *frame)
 	free(frame);
 }
 
-void frame_bind(const struct frame *frame)
+void cube_frame_bind(const struct cube_frame *frame)
 {
 	glBindFramebuffer(GL_FRAMEBUFFER, frame->framebuffer);
 	glViewport(0, 0, frame->width_px, frame->height_px);
 }
 
-void frame_bind_textures(const struct frame *frame, unsigned colour_unit, unsigned depth_unit,
-			 unsigned blocks_unit)
+void cube_frame_bind_textures(const struct cube_frame *frame, unsigned colour_unit,
+			      unsigned depth_unit, unsigned blocks_unit)
 {
 	gl_bind_texture(colour_unit, frame->colour);
 	gl_bind_texture(depth_unit, frame->depth);
 	gl_bind_texture(blocks_unit, frame->blocks.colour);
 }
 
-static void draw_blocks(struct frame *frame, float plane_near_m, float plane_far_m)
+static void draw_blocks(struct cube_frame *frame, float plane_near_m, float plane_far_m)
 {
 	gl_target_bind(&frame->blocks);
 	glDisable(GL_DEPTH_TEST);
@@ -168,8 +168,8 @@ static void draw_blocks(struct frame *frame, float plane_near_m, float plane_far
 	gl_draw_square();
 }
 
-int frame_range(struct frame *frame, float plane_near_m, float plane_far_m, bool *found,
-		float *near_m, float *far_m)
+int cube_frame_range(struct cube_frame *frame, float plane_near_m, float plane_far_m, bool *found,
+		     float *near_m, float *far_m)
 {
 	int low = STEPS + 1, high = -1, count = frame->blocks.width_px * frame->blocks.height_px;
 	float ratio = plane_far_m / plane_near_m;

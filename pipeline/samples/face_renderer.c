@@ -15,7 +15,7 @@ enum { OBJECTS_BYTES_MAX = 128 << 20 };
 
 struct face_renderer {
 	struct face_renderer_options options;
-	struct frame *frame;
+	struct cube_frame *frame;
 	struct shading *shading;
 	struct pyramid pyramid;
 	int frame_px;
@@ -42,7 +42,7 @@ int face_renderer_create(struct face_renderer **out, const struct face_renderer_
 	renderer->frame_px = (int)side * samples;
 	rc = pyramid_init(&renderer->pyramid, side);
 	if (rc == 0)
-		rc = frame_create(&renderer->frame, renderer->frame_px, renderer->frame_px);
+		rc = cube_frame_create(&renderer->frame, renderer->frame_px, renderer->frame_px);
 	if (rc == 0)
 		rc = shading_create(&renderer->shading, renderer->frame, renderer->frame_px,
 				    renderer->frame_px, samples, &options->drawn);
@@ -59,7 +59,7 @@ void face_renderer_destroy(struct face_renderer *renderer)
 	if (!renderer)
 		return;
 	shading_destroy(renderer->shading);
-	frame_destroy(renderer->frame);
+	cube_frame_destroy(renderer->frame);
 	pyramid_finish(&renderer->pyramid);
 	free(renderer);
 }
@@ -173,12 +173,12 @@ static int render(struct face_renderer *renderer, struct shot *shot, const float
 	*found = drawing_visible(renderer->options.drawing, matrix) > 0;
 	if (!*found)
 		return 0;
-	frame_bind(renderer->frame);
+	cube_frame_bind(renderer->frame);
 	rc = drawing_draw(renderer->options.drawing, matrix, point_m,
 			  1 / camera_px_per_radian(&camera));
 	if (rc == 0)
-		rc = frame_range(renderer->frame, camera.near_m, camera.far_m, found, &shot->near_m,
-				 &shot->far_m);
+		rc = cube_frame_range(renderer->frame, camera.near_m, camera.far_m, found,
+				      &shot->near_m, &shot->far_m);
 	if (rc < 0 || !*found)
 		return rc;
 	rc = shading_take(renderer->shading, &camera, &rgba);

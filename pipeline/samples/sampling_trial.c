@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/processes.h"
-#include "base/usage.h"
+#include "base/resource_usage.h"
 #include "pipeline/samples/chunks.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"
@@ -73,9 +73,9 @@ struct stand {
 
 static double processor_s(void)
 {
-	struct usage usage;
+	struct resource_usage usage;
 
-	usage_now(&usage);
+	resource_usage_now(&usage);
 	return (double)usage.processor_us / 1e6;
 }
 
@@ -170,7 +170,7 @@ static int work(void *user, uint32_t piece)
 	const struct job *job = user;
 	struct face_renderer_options options = { .quality = (int)job->content->quality };
 	struct headless *headless = NULL;
-	struct usage usage;
+	struct resource_usage usage;
 	double extra = 1;
 	int rc;
 
@@ -191,7 +191,7 @@ static int work(void *user, uint32_t piece)
 		rc = measure(job->out, &options);
 	headless_destroy(headless);
 	job->out->face_s *= extra;
-	usage_now(&usage);
+	resource_usage_now(&usage);
 	job->out->process_bytes = usage.own_bytes;
 	return rc;
 }

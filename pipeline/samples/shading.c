@@ -10,9 +10,9 @@
 #include "render/display/gl.h"
 
 struct shading {
-	const struct frame *frame; /* borrowed */
-	int width_px, height_px;   /* of the frame */
-	int side;                  /* samples per pixel and axis */
+	const struct cube_frame *frame; /* borrowed */
+	int width_px, height_px;        /* of the frame */
+	int side;                       /* samples per pixel and axis */
 	struct gl_target picture;
 	GLuint mask, program;
 	uint8_t *pixels; /* owned */
@@ -204,8 +204,8 @@ static int build_program(struct shading *shading, const struct drawing_options *
 	return gl_check("making the shading");
 }
 
-int shading_create(struct shading **out, const struct frame *frame, int width_px, int height_px,
-		   int side, const struct drawing_options *options)
+int shading_create(struct shading **out, const struct cube_frame *frame, int width_px,
+		   int height_px, int side, const struct drawing_options *options)
 {
 	struct shading *shading = calloc(1, sizeof(*shading));
 	int rc;
@@ -286,7 +286,7 @@ int shading_take(struct shading *shading, const struct camera *camera, const uin
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	glEnable(GL_DEPTH_TEST);
 	glDisable(GL_BLEND);
-	frame_bind_textures(shading->frame, 0, 1, 2);
+	cube_frame_bind_textures(shading->frame, 0, 1, 2);
 	glUseProgram(shading->mask);
 	glDepthFunc(GL_LESS);
 	gl_draw_square();

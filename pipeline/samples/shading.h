@@ -20,7 +20,7 @@ struct shading;
 /* *out is owned by the caller; NULL on failure. width_px and height_px are the frame's and even; a
  * drawing with these options is drawn into it. side: samples per pixel and axis, 1 or 2. The frame
  * is borrowed for the shading's lifetime. Returns -ENOMEM or the errors of GL. */
-must_check int shading_create(struct shading **out, const struct frame *frame, int width_px,
+must_check int shading_create(struct shading **out, const struct cube_frame *frame, int width_px,
 			      int height_px, int side, const struct drawing_options *options);
 void shading_destroy(struct shading *shading); /* NULL is fine */
 

@@ -11,7 +11,7 @@ static const struct profile_point base_points[] = {
 	{ 0.5f, 0.6f, RELIEF_ROUND, 0.04f, 0 }, { 0.5f, 0.85f, RELIEF_PLAIN, 0, 0 },
 	{ 0.2f, 1.0f, RELIEF_PLAIN, 0, 0 },     { -1.5f, 1.0f, RELIEF_PLAIN, 0, 0 },
 };
-static const struct profile base = { ARRAY_COUNT(base_points), base_points };
+static const struct temple_profile base = { ARRAY_COUNT(base_points), base_points };
 
 /* From the front eave over the ridge to the back eave. */
 static const struct profile_point vault_points[] = {
@@ -23,7 +23,7 @@ static const struct profile_point vault_points[] = {
 	{ -0.92f, 0.38f, RELIEF_TILES, 0.13f, 0.5f }, { -0.98f, 0.13f, RELIEF_DROPS, 0.05f, 0.22f },
 	{ -1.0f, 0.0f, RELIEF_PLAIN, 0, 0 },          { -0.86f, -0.10f, RELIEF_PLAIN, 0, 0 },
 };
-static const struct profile vault = { ARRAY_COUNT(vault_points), vault_points };
+static const struct temple_profile vault = { ARRAY_COUNT(vault_points), vault_points };
 
 /* The inside of the vault, seen from below. */
 static const struct profile_point ceiling_points[] = {
@@ -31,7 +31,7 @@ static const struct profile_point ceiling_points[] = {
 	{ 0.0f, 0.88f, RELIEF_PLAIN, 0, 0 },   { 0.72f, 0.35f, RELIEF_PLAIN, 0, 0 },
 	{ 0.80f, -0.1f, RELIEF_PLAIN, 0, 0 },
 };
-static const struct profile ceiling = { ARRAY_COUNT(ceiling_points), ceiling_points };
+static const struct temple_profile ceiling = { ARRAY_COUNT(ceiling_points), ceiling_points };
 
 static const struct profile_point pillar_points[] = {
 	{ 1.0f, 0, RELIEF_PLAIN, 0, 0 },
@@ -44,7 +44,7 @@ static const struct profile_point pillar_points[] = {
 	{ 1.0f, 0.95f, RELIEF_PLAIN, 0, 0 },
 	{ 1.0f, 1.0f, RELIEF_PLAIN, 0, 0 },
 };
-static const struct profile pillar = { ARRAY_COUNT(pillar_points), pillar_points };
+static const struct temple_profile pillar = { ARRAY_COUNT(pillar_points), pillar_points };
 
 static const struct profile_point beam_points[] = {
 	{ 0.0f, 0, RELIEF_PLAIN, 0, 0 },
@@ -54,10 +54,11 @@ static const struct profile_point beam_points[] = {
 	{ 1.6f, 1.0f, RELIEF_PLAIN, 0, 0 },
 	{ 0.0f, 1.0f, RELIEF_PLAIN, 0, 0 },
 };
-static const struct profile beam = { ARRAY_COUNT(beam_points), beam_points };
+static const struct temple_profile beam = { ARRAY_COUNT(beam_points), beam_points };
 
 /* A row of small leaves on the ridge; 12 % of them have fallen. */
-static void plan_crest(struct plan *plan, const struct frame *middle, float length_m, float z_m)
+static void plan_crest(struct plan *plan, const struct temple_frame *middle, float length_m,
+		       float z_m)
 {
 	int count = (int)(length_m / 0.5f);
 
@@ -66,7 +67,7 @@ static void plan_crest(struct plan *plan, const struct frame *middle, float leng
 			continue;
 		float x = ((float)i + 0.5f) / (float)count * length_m - length_m * 0.5f;
 		for (int side = 0; side < 2; side++) {
-			struct frame foot =
+			struct temple_frame foot =
 				frame_within(middle, x, side ? 0.04f : -0.04f, z_m, side ? 2 : 0);
 			struct sheet *leaf =
 				plan_panel(plan, &foot, 0.36f, 0.5f, RELIEF_FLAME, 0.05f, 0);
@@ -77,15 +78,15 @@ static void plan_crest(struct plan *plan, const struct frame *middle, float leng
 	}
 }
 
-static void plan_colonnade(struct plan *plan, const struct frame *row, float length_m,
+static void plan_colonnade(struct plan *plan, const struct temple_frame *row, float length_m,
 			   float height_m)
 {
 	int count = (int)fmaxf(2, roundf(length_m / 1.35f) + 1);
-	struct frame above = frame_within(row, 0, 0, height_m - 0.34f, 0);
+	struct temple_frame above = frame_within(row, 0, 0, height_m - 0.34f, 0);
 
 	for (int i = 0; i < count; i++) {
 		float x = ((float)i / (float)(count - 1) - 0.5f) * (length_m - 0.5f);
-		struct frame foot = frame_within(row, x, 0, 0, 0);
+		struct temple_frame foot = frame_within(row, x, 0, 0, 0);
 		struct sheet *sheet = plan_sheet(plan, &foot, &outline_square, &pillar, 0.15f,
 						 0.06f, height_m - 0.34f);
 		sheet->interest = 1.3f;
@@ -97,22 +98,23 @@ static void plan_colonnade(struct plan *plan, const struct frame *row, float len
 }
 
 /* The front wall: windows and devatas alternate, with a frieze above. */
-static void plan_front(struct plan *plan, const struct frame *wall, const struct gallery *gallery)
+static void plan_front(struct plan *plan, const struct temple_frame *wall,
+		       const struct gallery *gallery)
 {
 	int count = (int)fmaxf(1, roundf(gallery->length_m / 1.5f));
 	float step = gallery->length_m / (float)count, height = gallery->wall_m;
-	struct frame frieze = frame_within(wall, 0, -0.02f, height - 0.3f, 0);
+	struct temple_frame frieze = frame_within(wall, 0, -0.02f, height - 0.3f, 0);
 
 	plan_panel(plan, &frieze, gallery->length_m, 0.3f, RELIEF_SCROLL, 0.04f, 0.5f)->rim_m = 0;
 	for (int i = 0; i < count; i++) {
 		float x = ((float)i + 0.5f) * step - gallery->length_m * 0.5f;
 		if (i % 2 == 0) {
-			struct frame at = frame_within(wall, x, -0.10f, height * 0.22f, 0);
+			struct temple_frame at = frame_within(wall, x, -0.10f, height * 0.22f, 0);
 			plan_panel(plan, &at, fminf(1.3f, step * 0.95f), height * 0.56f,
 				   RELIEF_WINDOW, 0.16f, 0)
 				->interest = 1.8f;
 		} else {
-			struct frame at = frame_within(wall, x, -0.03f, height * 0.16f, 0);
+			struct temple_frame at = frame_within(wall, x, -0.03f, height * 0.16f, 0);
 			plan_panel(plan, &at, fminf(0.72f, step * 0.8f), height * 0.66f,
 				   RELIEF_DEVATA, 0.12f, 0)
 				->interest = 2.4f;
@@ -120,10 +122,11 @@ static void plan_front(struct plan *plan, const struct frame *wall, const struct
 	}
 }
 
-static void plan_vault(struct plan *plan, const struct frame *frame, const struct gallery *gallery)
+static void plan_vault(struct plan *plan, const struct temple_frame *frame,
+		       const struct gallery *gallery)
 {
 	float rise = gallery->half_m * 1.25f;
-	struct frame eave = frame_within(frame, 0, 0, gallery->wall_m, 0);
+	struct temple_frame eave = frame_within(frame, 0, 0, gallery->wall_m, 0);
 	struct sheet *roof = plan_sheet(plan, &eave, &outline_line, &vault,
 					gallery->length_m + 0.2f, gallery->half_m + 0.32f, rise);
 
@@ -133,15 +136,16 @@ static void plan_vault(struct plan *plan, const struct frame *frame, const struc
 	plan_crest(plan, &eave, gallery->length_m, rise * 0.97f);
 }
 
-void plan_gallery(struct plan *plan, const struct frame *frame, const struct gallery *gallery)
+void plan_gallery(struct plan *plan, const struct temple_frame *frame,
+		  const struct gallery *gallery)
 {
 	float foot_m = 0.38f, half = gallery->half_m, wall = gallery->wall_m - foot_m;
-	struct frame floor = frame_within(frame, 0, 0, foot_m, 0);
-	struct frame back = frame_within(&floor, 0, half - 0.15f, 0, 0);
-	struct frame inside = frame_within(&floor, 0, half - 0.32f, 0.25f, 0);
-	struct frame court = frame_within(&floor, 0, half + 0.01f, 0, 2);
-	struct frame row = frame_within(&floor, 0, -half + 0.2f, 0, 0);
-	struct frame front = frame_within(&floor, 0, -half, 0, 0);
+	struct temple_frame floor = frame_within(frame, 0, 0, foot_m, 0);
+	struct temple_frame back = frame_within(&floor, 0, half - 0.15f, 0, 0);
+	struct temple_frame inside = frame_within(&floor, 0, half - 0.32f, 0.25f, 0);
+	struct temple_frame court = frame_within(&floor, 0, half + 0.01f, 0, 2);
+	struct temple_frame row = frame_within(&floor, 0, -half + 0.2f, 0, 0);
+	struct temple_frame front = frame_within(&floor, 0, -half, 0, 0);
 	struct gallery inner = *gallery;
 
 	struct sheet *foot = plan_sheet(plan, frame, &outline_square, &base,
@@ -159,7 +163,7 @@ void plan_gallery(struct plan *plan, const struct frame *frame, const struct gal
 				   RELIEF_MARCH, 0.07f, 0)
 				->interest = 2.6f;
 	} else {
-		struct frame outer = frame_within(&floor, 0, -half + 0.15f, 0, 0);
+		struct temple_frame outer = frame_within(&floor, 0, -half + 0.15f, 0, 0);
 		plan_box(plan, &outer, gallery->length_m * 0.5f, 0.15f, wall);
 		plan_front(plan, &front, &inner);
 	}
@@ -169,16 +173,17 @@ void plan_gallery(struct plan *plan, const struct frame *frame, const struct gal
 void plan_galleries(struct plan *plan)
 {
 	for (int turn = 0; turn < 4; turn++) {
-		struct frame side = frame_at(0, 0, 0, turn);
+		struct temple_frame side = frame_at(0, 0, 0, turn);
 		for (int half = -1; half <= 1; half += 2) {
 			struct gallery outer = { 10.7f, 1.15f, 2.75f, true, true, false };
-			struct frame at = frame_within(&side, (float)half * 8.55f, -15.0f, 2.4f, 0);
+			struct temple_frame at =
+				frame_within(&side, (float)half * 8.55f, -15.0f, 2.4f, 0);
 			uint32_t first = plan->count;
 			plan_gallery(plan, &at, &outer);
 			plan_refine(plan, first, turn == 0 && half == 1 ? 1.25f : 0.9f);
 		}
 		struct gallery upper = { 9.1f, 0.85f, 2.3f, false, false, true };
-		struct frame at = frame_within(&side, 0, -6.2f, 8.2f, 0);
+		struct temple_frame at = frame_within(&side, 0, -6.2f, 8.2f, 0);
 		uint32_t first = plan->count;
 		plan_gallery(plan, &at, &upper);
 		plan_refine(plan, first, turn == 0 ? 1.4f : 1.0f);

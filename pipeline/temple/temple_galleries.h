@@ -14,6 +14,7 @@ struct gallery {
 	bool windows; /* not used: every wall gets windows */
 };
 /* Adds a gallery. */
-void plan_gallery(struct plan *plan, const struct frame *frame, const struct gallery *gallery);
+void plan_gallery(struct plan *plan, const struct temple_frame *frame,
+		  const struct gallery *gallery);
 
 #endif

@@ -9,21 +9,21 @@
 
 #include "base/array.h"
 
-const struct outline outline_line = { OUTLINE_LINE, 2, { { -0.5f, 0 }, { 0.5f, 0 } } };
-const struct outline outline_square = { OUTLINE_CLOSED,
-					4,
-					{ { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } } };
-const struct outline outline_circle = { OUTLINE_ROUND, 1, { { 1, 0 } } };
-const struct outline outline_octagon = { OUTLINE_CLOSED,
-					 8,
-					 { { 1, 0.414f },
-					   { 0.414f, 1 },
-					   { -0.414f, 1 },
-					   { -1, 0.414f },
-					   { -1, -0.414f },
-					   { -0.414f, -1 },
-					   { 0.414f, -1 },
-					   { 1, -0.414f } } };
+const struct temple_outline outline_line = { OUTLINE_LINE, 2, { { -0.5f, 0 }, { 0.5f, 0 } } };
+const struct temple_outline outline_square = { OUTLINE_CLOSED,
+					       4,
+					       { { -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } } };
+const struct temple_outline outline_circle = { OUTLINE_ROUND, 1, { { 1, 0 } } };
+const struct temple_outline outline_octagon = { OUTLINE_CLOSED,
+						8,
+						{ { 1, 0.414f },
+						  { 0.414f, 1 },
+						  { -0.414f, 1 },
+						  { -1, 0.414f },
+						  { -1, -0.414f },
+						  { -0.414f, -1 },
+						  { 0.414f, -1 },
+						  { 1, -0.414f } } };
 
 /* The corners of a quarter, rotated into the other three. */
 #define QUARTERS(ax, bx, by)                                                                       \
@@ -36,25 +36,28 @@ const struct outline outline_octagon = { OUTLINE_CLOSED,
 		1, -ax                                                                             \
 	}
 
-const struct outline outline_redented = { OUTLINE_CLOSED, 28, { QUARTERS(0.42f, 0.88f, 0.68f) } };
-const struct outline outline_redented_deep = { OUTLINE_CLOSED,
-					       28,
-					       { QUARTERS(0.24f, 0.965f, 0.90f) } };
+const struct temple_outline outline_redented = { OUTLINE_CLOSED,
+						 28,
+						 { QUARTERS(0.42f, 0.88f, 0.68f) } };
+const struct temple_outline outline_redented_deep = { OUTLINE_CLOSED,
+						      28,
+						      { QUARTERS(0.24f, 0.965f, 0.90f) } };
 
-struct frame frame_at(float x_m, float y_m, float z_m, int quarter_turns)
+struct temple_frame frame_at(float x_m, float y_m, float z_m, int quarter_turns)
 {
 	static const float turns[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
 	const float *turn = turns[quarter_turns & 3];
 
-	return (struct frame){ { x_m, y_m, z_m }, { turn[0], turn[1] } };
+	return (struct temple_frame){ { x_m, y_m, z_m }, { turn[0], turn[1] } };
 }
 
-struct frame frame_within(const struct frame *frame, float x_m, float y_m, float z_m, int turns)
+struct temple_frame frame_within(const struct temple_frame *frame, float x_m, float y_m, float z_m,
+				 int turns)
 {
-	struct frame step = frame_at(x_m, y_m, z_m, turns);
+	struct temple_frame step = frame_at(x_m, y_m, z_m, turns);
 	float c = frame->turn[0], s = frame->turn[1];
 
-	return (struct frame){
+	return (struct temple_frame){
 		{ frame->origin_m[0] + c * x_m - s * y_m, frame->origin_m[1] + s * x_m + c * y_m,
 		  frame->origin_m[2] + z_m },
 		{ c * step.turn[0] - s * step.turn[1], s * step.turn[0] + c * step.turn[1] },
@@ -74,9 +77,9 @@ static struct sheet *plan_room(struct plan *plan)
 	return &plan->sheets[plan->count++];
 }
 
-struct sheet *plan_sheet(struct plan *plan, const struct frame *frame,
-			 const struct outline *outline, const struct profile *profile, float size_m,
-			 float reach_m, float height_m)
+struct sheet *plan_sheet(struct plan *plan, const struct temple_frame *frame,
+			 const struct temple_outline *outline, const struct temple_profile *profile,
+			 float size_m, float reach_m, float height_m)
 {
 	struct sheet *sheet = plan_room(plan);
 
@@ -97,12 +100,12 @@ struct sheet *plan_sheet(struct plan *plan, const struct frame *frame,
 
 static const struct profile_point upright_points[] = { { 0, 0, RELIEF_SHEET, 0, 0 },
 						       { 0, 1, RELIEF_PLAIN, 0, 0 } };
-static const struct profile upright = { 2, upright_points };
+static const struct temple_profile upright = { 2, upright_points };
 static const struct profile_point level_points[] = { { 1, 0, RELIEF_SHEET, 0, 0 },
 						     { -1, 0, RELIEF_PLAIN, 0, 0 } };
-static const struct profile level = { 2, level_points };
+static const struct temple_profile level = { 2, level_points };
 
-struct sheet *plan_panel(struct plan *plan, const struct frame *frame, float width_m,
+struct sheet *plan_panel(struct plan *plan, const struct temple_frame *frame, float width_m,
 			 float height_m, enum relief relief, float depth_m, float period_m)
 {
 	struct sheet *sheet =
@@ -114,7 +117,7 @@ struct sheet *plan_panel(struct plan *plan, const struct frame *frame, float wid
 	return sheet;
 }
 
-void plan_floor(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
+void plan_floor(struct plan *plan, const struct temple_frame *frame, float half_x_m, float half_y_m,
 		enum relief relief, float depth_m, float period_m)
 {
 	struct sheet *sheet =
@@ -124,10 +127,10 @@ void plan_floor(struct plan *plan, const struct frame *frame, float half_x_m, fl
 	sheet->interest = 0.35f;
 }
 
-void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
+void plan_box(struct plan *plan, const struct temple_frame *frame, float half_x_m, float half_y_m,
 	      float height_m)
 {
-	struct frame top = frame_within(frame, 0, 0, height_m, 0);
+	struct temple_frame top = frame_within(frame, 0, 0, height_m, 0);
 	struct sheet *sheet =
 		plan_sheet(plan, frame, &outline_square, &upright, half_x_m, 1, height_m);
 

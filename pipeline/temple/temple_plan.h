@@ -27,33 +27,34 @@ void plan_destroy(struct plan *plan); /* Frees the plan. NULL and a zeroed plan 
 /* ---- for the sources that lay it out */
 
 /* A position with a direction: its local -y axis points that way. */
-struct frame {
+struct temple_frame {
 	float origin_m[3];
 	float turn[2];
 };
 
 /* A frame in the temple's own axes. quarter_turns are counter-clockwise. */
-struct frame frame_at(float x_m, float y_m, float z_m, int quarter_turns);
+struct temple_frame frame_at(float x_m, float y_m, float z_m, int quarter_turns);
 /* A frame given in the axes of another one. turns: quarter turns counter-clockwise. */
-struct frame frame_within(const struct frame *frame, float x_m, float y_m, float z_m, int turns);
+struct temple_frame frame_within(const struct temple_frame *frame, float x_m, float y_m, float z_m,
+				 int turns);
 
-extern const struct outline outline_line, outline_square, outline_circle, outline_octagon,
+extern const struct temple_outline outline_line, outline_square, outline_circle, outline_octagon,
 	outline_redented, outline_redented_deep;
 
 /* Adds a sheet of the profile, standing at the frame; the caller then changes what differs. Never
  * NULL: when memory has run out, it returns a sheet that belongs to no plan. Borrowed until the
  * next sheet. */
-struct sheet *plan_sheet(struct plan *plan, const struct frame *frame,
-			 const struct outline *outline, const struct profile *profile, float size_m,
-			 float reach_m, float height_m);
+struct sheet *plan_sheet(struct plan *plan, const struct temple_frame *frame,
+			 const struct temple_outline *outline, const struct temple_profile *profile,
+			 float size_m, float reach_m, float height_m);
 /* Adds an upright relief; the frame is the middle of its lower edge. Returns as plan_sheet. */
-struct sheet *plan_panel(struct plan *plan, const struct frame *frame, float width_m,
+struct sheet *plan_panel(struct plan *plan, const struct temple_frame *frame, float width_m,
 			 float height_m, enum relief relief, float depth_m, float period_m);
 /* Adds a level rectangle that faces up; the frame is its middle. */
-void plan_floor(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
+void plan_floor(struct plan *plan, const struct temple_frame *frame, float half_x_m, float half_y_m,
 		enum relief relief, float depth_m, float period_m);
 /* Adds a plain upright box with a lid; the frame is the middle of its base. */
-void plan_box(struct plan *plan, const struct frame *frame, float half_x_m, float half_y_m,
+void plan_box(struct plan *plan, const struct temple_frame *frame, float half_x_m, float half_y_m,
 	      float height_m);
 
 /* Multiplies the divisions of the reliefs added since `from` (a plan->count): what a visitor meets

@@ -10,14 +10,14 @@ bool sheet_wraps(const struct sheet *sheet)
 	return sheet->outline->kind != OUTLINE_LINE;
 }
 
-static uint32_t outline_segments(const struct outline *outline)
+static uint32_t outline_segments(const struct temple_outline *outline)
 {
 	return outline->kind == OUTLINE_CLOSED ? outline->count : 1;
 }
 
 static float across_length_m(const struct sheet *sheet, uint32_t segment)
 {
-	const struct outline *o = sheet->outline;
+	const struct temple_outline *o = sheet->outline;
 	const float *a = o->corners[segment], *b = o->corners[(segment + 1) % o->count];
 
 	if (o->kind == OUTLINE_LINE)
@@ -196,7 +196,7 @@ static float shape_width(enum sheet_shape shape, float t)
 }
 
 /* Computes the offset at a corner that moves both edges outwards by one metre. */
-static void mitre(const struct outline *o, uint32_t corner, float out[2])
+static void mitre(const struct temple_outline *o, uint32_t corner, float out[2])
 {
 	const float *a = o->corners[(corner + o->count - 1) % o->count];
 	const float *b = o->corners[corner], *c = o->corners[(corner + 1) % o->count];
@@ -217,7 +217,7 @@ struct foot {
 static void foot_at(const struct sheet *sheet, const struct station *across, float width,
 		    struct foot *foot)
 {
-	const struct outline *o = sheet->outline;
+	const struct temple_outline *o = sheet->outline;
 	uint32_t next = (across->segment + 1) % o->count;
 	const float *a = o->corners[across->segment], *b = o->corners[next];
 	float t = across->at, from[2], to[2], angle = t * turn_rad;

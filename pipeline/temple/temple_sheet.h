@@ -21,7 +21,7 @@ enum outline_kind { OUTLINE_LINE, OUTLINE_CLOSED, OUTLINE_ROUND };
 enum { OUTLINE_CORNERS_MAX = 28 };
 
 /* Its half size is 1 (a line runs from -0.5 to 0.5); sheets scale it. */
-struct outline {
+struct temple_outline {
 	enum outline_kind kind;
 	uint32_t count; /* number of corners; 1 for a round one */
 	float corners[OUTLINE_CORNERS_MAX][2];
@@ -35,7 +35,7 @@ struct profile_point {
 	float period_m; /* width of one motif */
 };
 
-struct profile {
+struct temple_profile {
 	uint32_t count;
 	const struct profile_point *points; /* borrowed */
 };
@@ -44,8 +44,8 @@ struct profile {
 enum sheet_shape { SHAPE_FULL, SHAPE_PEDIMENT, SHAPE_LEAF, SHAPE_HOOD };
 
 struct sheet {
-	const struct outline *outline; /* borrowed; must outlive the plan */
-	const struct profile *profile; /* borrowed likewise */
+	const struct temple_outline *outline; /* borrowed; must outlive the plan */
+	const struct temple_profile *profile; /* borrowed likewise */
 	float origin_m[3];
 	float turn[2];           /* cosine and sine of the rotation about the vertical */
 	float size_m;            /* scale of the outline */

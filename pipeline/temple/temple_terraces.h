@@ -7,7 +7,7 @@
 /* The ground, the terraces, stairs and balustrades. */
 void plan_terraces(struct plan *plan);
 /* A flight of stairs that climbs against the frame's direction, with side walls and lions. */
-void plan_stairs(struct plan *plan, const struct frame *frame, float half_m, float run_m,
+void plan_stairs(struct plan *plan, const struct temple_frame *frame, float half_m, float run_m,
 		 float rise_m);
 
 #endif

@@ -65,7 +65,7 @@ static bool is_whole(const struct overlay *overlay)
 {
 	const struct rect view = page_window(overlay);
 	const int last = (view.height_px - 1) / overlay->page.strip_px;
-	const int end = article_height_px(overlay->page.article) / overlay->page.strip_px;
+	const int end = article_layout_height_px(overlay->page.article) / overlay->page.strip_px;
 
 	for (int i = 0; i <= last && i <= end; i++)
 		if (overlay->page.strips[i].index != i || overlay->page.strips[i].fade.alpha < 1)
@@ -75,9 +75,9 @@ static bool is_whole(const struct overlay *overlay)
 
 static bool has_pictures(const struct overlay *overlay)
 {
-	for (uint32_t i = 0; i < article_picture_count(overlay->page.article); i++) {
+	for (uint32_t i = 0; i < article_layout_picture_count(overlay->page.article); i++) {
 		struct found_picture found = { 0 };
-		const char *name = article_picture(overlay->page.article, i, NULL);
+		const char *name = article_layout_picture(overlay->page.article, i, NULL);
 
 		if (overlay->pictures.get(overlay->pictures.data, name, &found) && !found.picture)
 			return false;

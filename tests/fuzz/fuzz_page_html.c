@@ -5,22 +5,25 @@
 
 #include "pipeline/content/page_compile.h"
 #include "storage/plain_page.h"
-#include "ui/article.h"
+#include "ui/article_layout.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void lay_out(struct bytes bytes)
 {
 	static struct theme theme;
-	struct article_options options = { .theme = &theme, .width_px = 400, .view_px = 300 };
-	struct article *article;
+	struct article_layout_options options = { .theme = &theme,
+						  .width_px = 400,
+						  .view_px = 300 };
+	struct article_layout *article;
 
 	if (!theme.context && theme_init(&theme, 4, "en") < 0)
 		return;
-	if (article_create(&article, &options, bytes) < 0 || article_height_px(article) <= 0)
+	if (article_layout_create(&article, &options, bytes) < 0 ||
+	    article_layout_height_px(article) <= 0)
 		abort();
-	article_link_at(article, 100, 100);
-	article_destroy(article);
+	article_layout_link_at(article, 100, 100);
+	article_layout_destroy(article);
 }
 
 static void check(int rc, struct buffer *bytes, bool is_laid_out)

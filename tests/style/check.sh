@@ -110,6 +110,10 @@ for file in $files; do
 	esac
 done
 
+# ---- one name, one file
+out=$(printf '%s\n' $files | grep -v '/main\.c$' | sed 's|.*/||' | sort | uniq -d)
+[ -z "$out" ] || complain "two files of one name:" "$out"
+
 # ---- texts of the kiosk: the template is the sources', and every language has every text
 if command -v xgettext >/dev/null; then
 	[ -z "$(ui/po/extract.sh | diff -q - ui/po/gopura.pot)" ] || complain "ui/po is older than the sources: run 'make po', then translate"

@@ -457,23 +457,24 @@ static void large_type_is_larger_and_keeps_the_place_that_is_read(void **state)
 	(void)state;
 	show_page(overlay);
 	settle(overlay);
-	height_px = article_height_px(overlay->page.article);
+	height_px = article_layout_height_px(overlay->page.article);
 	overlay_scroll(overlay, -100);
 	read = overlay->page.scroll.px / (float)height_px;
 	overlay_set_comfort(overlay, (struct overlay_comfort){ .large = true });
 	settle(overlay);
 	CHECK(fabsf((float)theme_style_px(&overlay->theme, TEXT_BODY) -
 		    THEME_LARGE_TYPE * (float)usual_px) < 1.5f);
-	large_px = article_height_px(overlay->page.article);
+	large_px = article_layout_height_px(overlay->page.article);
 	CHECK(large_px > height_px);
-	CHECK(fabsf(overlay->page.scroll.px / (float)article_height_px(overlay->page.article) -
+	CHECK(fabsf(overlay->page.scroll.px /
+			    (float)article_layout_height_px(overlay->page.article) -
 		    read) < 0.001f);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ 0 });
-	CHECK(article_height_px(overlay->page.article) == height_px);
+	CHECK(article_layout_height_px(overlay->page.article) == height_px);
 	overlay_set_comfort(overlay, (struct overlay_comfort){ .large = true });
 	show_page(
 		overlay); /* as a page is that opens so: no line is left as it was broken before */
-	CHECK(article_height_px(overlay->page.article) == large_px);
+	CHECK(article_layout_height_px(overlay->page.article) == large_px);
 	overlay_destroy(overlay);
 }
 

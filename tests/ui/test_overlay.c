@@ -268,7 +268,7 @@ static void shows_every_screen_on_every_panel(void **state)
 
 			CHECK(overlay_show_page(overlay, 0, compiled(pages[language]),
 						"© The museum · 1150") == 0);
-			CHECK(article_unknown_glyphs(overlay->page.article) == 0);
+			CHECK(article_layout_unknown_glyphs(overlay->page.article) == 0);
 			give_anchors(overlay);
 			snprintf(name, sizeof(name), "page-%s", languages[language]);
 			bitmap = screen(overlay, name);
@@ -429,12 +429,13 @@ static void a_page_takes_the_whole_panel_on_request(void **state)
 	half = page_place(overlay);
 	CHECK(tap(overlay, widen_place(overlay)).kind == OVERLAY_WIDEN_PAGE);
 	overlay_scroll(overlay, -150);
-	read = overlay->page.scroll.px / (float)article_height_px(overlay->page.article);
+	read = overlay->page.scroll.px / (float)article_layout_height_px(overlay->page.article);
 
 	overlay_widen_page(overlay, true);
 	settle(overlay);
 	CHECK(overlay_page_is_wide(overlay) && page_place(overlay).width_px == 1280);
-	CHECK(fabsf(overlay->page.scroll.px / (float)article_height_px(overlay->page.article) -
+	CHECK(fabsf(overlay->page.scroll.px /
+			    (float)article_layout_height_px(overlay->page.article) -
 		    read) < 0.1f);
 	bar = bar_place(overlay);
 	CHECK(page_window(overlay).y_px + page_window(overlay).height_px <= bar.y_px);
@@ -477,14 +478,14 @@ static void a_late_picture_moves_nothing(void **state)
 	overlay = open_overlay(&album, 1280, 720);
 	CHECK(overlay_show_page(overlay, 0, compiled(pages[0]), "") == 0);
 	CHECK(album.asked > 0);
-	height_px = article_height_px(overlay->page.article);
+	height_px = article_layout_height_px(overlay->page.article);
 	before = screen(overlay, "page-waiting");
 	album.arrived = true;
 	overlay_picture_arrived(overlay, "pictures/other.png");
 	CHECK(!overlay_update(overlay, 100000000));
 	overlay_picture_arrived(overlay, "pictures/tower.png");
 	after = screen(overlay, "page-arrived");
-	CHECK(article_height_px(overlay->page.article) == height_px);
+	CHECK(article_layout_height_px(overlay->page.article) == height_px);
 	CHECK(memcmp(before.pixels, after.pixels,
 		     (size_t)before.stride_bytes * (size_t)before.height_px) != 0);
 	bitmap_finish(&before);

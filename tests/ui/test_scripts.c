@@ -6,7 +6,7 @@
 
 #include "tests/check.h"
 #include "tests/ui/compiled.h"
-#include "ui/article.h"
+#include "ui/article_layout.h"
 #include "ui/theme.h"
 
 enum { WIDTH_PX = 420, VIEW_PX = 900, PX_PER_MM = 5, TEXT_BYTES = 2000 };
@@ -56,19 +56,19 @@ static cairo_surface_t *blank(void)
 /* The page of one paragraph, as the kiosk draws it. */
 static cairo_surface_t *page_of(const struct theme *theme, const char *text, int *unknown)
 {
-	const struct article_options options = { .theme = theme,
-						 .width_px = WIDTH_PX,
-						 .view_px = VIEW_PX };
+	const struct article_layout_options options = { .theme = theme,
+							.width_px = WIDTH_PX,
+							.view_px = VIEW_PX };
 	cairo_surface_t *surface = blank();
 	cairo_t *context = cairo_create(surface);
-	struct article *article;
+	struct article_layout *article;
 	char html[TEXT_BYTES];
 
 	snprintf(html, sizeof(html), "<p>%s</p>", text);
-	CHECK(article_create(&article, &options, compiled(html)) == 0);
-	*unknown = article_unknown_glyphs(article);
-	article_draw(article, context, 0, VIEW_PX);
-	article_destroy(article);
+	CHECK(article_layout_create(&article, &options, compiled(html)) == 0);
+	*unknown = article_layout_unknown_glyphs(article);
+	article_layout_draw(article, context, 0, VIEW_PX);
+	article_layout_destroy(article);
 	cairo_destroy(context);
 	cairo_surface_flush(surface);
 	return surface;

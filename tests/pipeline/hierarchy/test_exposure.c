@@ -152,7 +152,7 @@ static uint32_t left_inside(bool exposed)
 {
 	struct lattice_mesh mesh;
 	struct simplify_result result;
-	struct surface surface;
+	struct simplify_surface surface;
 	uint32_t inside = 0;
 
 	make(&mesh, false);
@@ -163,11 +163,11 @@ static uint32_t left_inside(bool exposed)
 			mesh.vertices[v].position[k] =
 				(uint16_t)(512 + mesh.vertices[v].position[k] / 66 * 64 +
 					   (v * 7919 + k * 104729) % 509);
-	surface = (struct surface){ .vertex_count = mesh.vertex_count,
-				    .triangle_count = mesh.triangle_count,
-				    .vertices = mesh.vertices,
-				    .locked = calloc(mesh.vertex_count, 1),
-				    .triangles = mesh.triangles };
+	surface = (struct simplify_surface){ .vertex_count = mesh.vertex_count,
+					     .triangle_count = mesh.triangle_count,
+					     .vertices = mesh.vertices,
+					     .locked = calloc(mesh.vertex_count, 1),
+					     .triangles = mesh.triangles };
 	CHECK(simplify(&surface, BOX_TRIANGLES / 2, INFINITY, &result) == 0);
 	for (uint32_t t = 0; t < surface.triangle_count; t++)
 		inside += is_inside(&mesh.vertices[surface.triangles[t][0]]);

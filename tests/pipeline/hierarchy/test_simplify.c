@@ -10,7 +10,7 @@
 
 struct subject {
 	struct lattice_mesh mesh;
-	struct surface surface;
+	struct simplify_surface surface;
 };
 
 /* The mesh is taken. */
@@ -20,7 +20,7 @@ static void subject_init(struct subject *subject, struct mesh mesh)
 
 	CHECK(on_lattice(&subject->mesh, &counts, &mesh) == 0);
 	mesh_finish(&mesh);
-	subject->surface = (struct surface){
+	subject->surface = (struct simplify_surface){
 		.vertex_count = subject->mesh.vertex_count,
 		.triangle_count = subject->mesh.triangle_count,
 		.vertices = subject->mesh.vertices,
@@ -35,13 +35,13 @@ static void subject_finish(struct subject *subject)
 	lattice_mesh_finish(&subject->mesh);
 }
 
-static void place(double out[3], const struct surface *surface, uint32_t t, int corner)
+static void place(double out[3], const struct simplify_surface *surface, uint32_t t, int corner)
 {
 	for (int i = 0; i < 3; i++)
 		out[i] = surface->vertices[surface->triangles[t][corner]].position[i];
 }
 
-static void cross(double out[3], const struct surface *surface, uint32_t t)
+static void cross(double out[3], const struct simplify_surface *surface, uint32_t t)
 {
 	double at[3][3], u[3], v[3];
 
@@ -55,7 +55,7 @@ static void cross(double out[3], const struct surface *surface, uint32_t t)
 		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
 }
 
-static double area(const struct surface *surface)
+static double area(const struct simplify_surface *surface)
 {
 	double sum = 0.0, n[3];
 
@@ -103,7 +103,7 @@ static int compare_keys(const void *left, const void *right)
 }
 
 /* The directed edges without another the other way, sorted; returns how many. */
-static uint32_t open_edges(uint64_t **out, const struct surface *surface)
+static uint32_t open_edges(uint64_t **out, const struct simplify_surface *surface)
 {
 	uint32_t count = 3 * surface->triangle_count, kept = 0;
 	uint64_t *edges = malloc(count * sizeof(*edges)), *open = malloc(count * sizeof(*open));
@@ -174,7 +174,7 @@ static void nothing_folds_over(void **state)
 }
 
 /* Vertices less edges plus triangles; every edge must have two triangles. */
-static int euler(const struct surface *surface)
+static int euler(const struct simplify_surface *surface)
 {
 	uint32_t corners = 3 * surface->triangle_count;
 	uint64_t *edges = malloc(corners * sizeof(*edges));
@@ -237,7 +237,8 @@ static void a_ring_stays_a_ring(void **state)
 }
 
 /* Squared distance from p to the triangle: to its edges, and to its plane above it. */
-static double distance_to_triangle(const double p[3], const struct surface *surface, uint32_t t)
+static double distance_to_triangle(const double p[3], const struct simplify_surface *surface,
+				   uint32_t t)
 {
 	double best = INFINITY, at[3][3], n[3], length;
 

@@ -30,7 +30,7 @@ static int stop(void **state)
 }
 
 struct shot {
-	struct frame *frame;
+	struct cube_frame *frame;
 	uint8_t rgba[SIDE * SIDE * 4]; /* lowest row first */
 	float near_m, far_m;
 	bool found;
@@ -45,18 +45,18 @@ static void shoot(struct shot *shot, struct mesh *mesh, const struct drawing_opt
 
 	CHECK(chunks_create(&model, mesh, grey) == 0);
 	CHECK(drawing_create(&drawing, model, mesh->textures, mesh->texture_count, options) == 0);
-	CHECK(frame_create(&shot->frame, SIDE, SIDE) == 0);
+	CHECK(cube_frame_create(&shot->frame, SIDE, SIDE) == 0);
 	camera.width_px = camera.height_px = SIDE;
 	for (int i = 0; i < 3; i++)
 		forward[i] = camera.target_m[i] - camera.eye_m[i];
 	drawing_look(drawing, camera.eye_m, 0);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
-	frame_bind(shot->frame);
+	cube_frame_bind(shot->frame);
 	CHECK(drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera)) == 0);
-	CHECK(frame_range(shot->frame, camera.near_m, camera.far_m, &shot->found, &shot->near_m,
-			  &shot->far_m) == 0);
-	frame_bind(shot->frame);
+	CHECK(cube_frame_range(shot->frame, camera.near_m, camera.far_m, &shot->found,
+			       &shot->near_m, &shot->far_m) == 0);
+	cube_frame_bind(shot->frame);
 	glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_UNSIGNED_BYTE, shot->rgba);
 	CHECK(gl_check("reading a frame") == 0);
 	drawing_destroy(drawing);
@@ -99,7 +99,7 @@ static void draws_a_box_where_it_is(void **state)
 	}
 	CHECK(shot.found && shot.near_m <= 2 && shot.near_m > 1.997f);
 	CHECK(shot.far_m >= 2 && shot.far_m < 2.003f);
-	frame_destroy(shot.frame);
+	cube_frame_destroy(shot.frame);
 	toy_free(&mesh);
 }
 
@@ -119,7 +119,7 @@ static void marks_backs_seen_from_inside(void **state)
 		CHECK(shot.rgba[4 * i + 3] == DRAWING_BACK);
 	CHECK(pixel(&shot, SIDE / 4, SIDE / 2)[2] == 250); /* +y */
 	CHECK(pixel(&shot, SIDE - 1, SIDE / 2)[0] == 250); /* +x, half a metre to the right */
-	frame_destroy(shot.frame);
+	cube_frame_destroy(shot.frame);
 	toy_free(&mesh);
 }
 
@@ -158,7 +158,7 @@ static void lights_a_sphere_by_its_normals(void **state)
 	}
 	CHECK(inside > 300);
 	CHECK(fabsf(shot.near_m - 19) < 0.05f && shot.far_m > 19.8f && shot.far_m < 20.05f);
-	frame_destroy(shot.frame);
+	cube_frame_destroy(shot.frame);
 	toy_free(&mesh);
 }
 
@@ -200,7 +200,7 @@ static void draws_the_scans_pictures(void **state)
 	CHECK(abs(pixel(&shot, 16, 96)[2] - 200) < 12); /* bottom left */
 	CHECK(abs(pixel(&shot, 100, 64)[0] - 50) < 2);  /* the other picture */
 	CHECK(abs(pixel(&shot, 100, 64)[2] - 70) < 2);
-	frame_destroy(shot.frame);
+	cube_frame_destroy(shot.frame);
 	toy_free(&mesh);
 }
 

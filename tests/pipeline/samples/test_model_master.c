@@ -121,7 +121,7 @@ static void chooses_all_of_the_surface_and_fewer_triangles_from_afar(void **stat
 	free(pieces);
 }
 
-static void shoot(struct drawing *drawing, struct frame *frame, const float eye[3],
+static void shoot(struct drawing *drawing, struct cube_frame *frame, const float eye[3],
 		  const float target[3], uint8_t *rgba)
 {
 	struct camera camera = {
@@ -133,9 +133,9 @@ static void shoot(struct drawing *drawing, struct frame *frame, const float eye[
 	memcpy(camera.target_m, target, sizeof(camera.target_m));
 	CHECK(drawing_range(drawing, eye, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
-	frame_bind(frame);
+	cube_frame_bind(frame);
 	CHECK(drawing_draw(drawing, matrix, eye, 1 / camera_px_per_radian(&camera)) == 0);
-	frame_bind(frame);
+	cube_frame_bind(frame);
 	glReadPixels(0, 0, SIDE, SIDE, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
 }
 
@@ -166,11 +166,11 @@ static void looks_like_the_finest(void **state)
 	uint8_t *fine = malloc(SIDE * SIDE * 4), *coarse = malloc(SIDE * SIDE * 4);
 	struct headless *headless;
 	struct drawing *drawing;
-	struct frame *frame;
+	struct cube_frame *frame;
 
 	CHECK(headless_create(&headless) == 0);
 	CHECK(drawing_create(&drawing, home->model, NULL, 0, &options) == 0);
-	CHECK(frame_create(&frame, SIDE, SIDE) == 0);
+	CHECK(cube_frame_create(&frame, SIDE, SIDE) == 0);
 	for (int step = 0; step < 3; step++) {
 		float eye[3], target[3];
 		uint32_t all, chosen;
@@ -190,7 +190,7 @@ static void looks_like_the_finest(void **state)
 		CHECK(psnr(fine, coarse) > 50);
 		CHECK(memcmp(fine, coarse, SIDE * SIDE * 4) != 0);
 	}
-	frame_destroy(frame);
+	cube_frame_destroy(frame);
 	drawing_destroy(drawing);
 	headless_destroy(headless);
 	free(fine);

@@ -36,27 +36,27 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 	struct shading *shading;
 	struct drawing *drawing;
 	struct model *model;
-	struct frame *frame;
+	struct cube_frame *frame;
 	const uint8_t *rgba;
 	bool found;
 
 	CHECK(chunks_create(&model, mesh, grey) == 0);
 	CHECK(drawing_create(&drawing, model, mesh->textures, mesh->texture_count, options) == 0);
-	CHECK(frame_create(&frame, side, side) == 0);
+	CHECK(cube_frame_create(&frame, side, side) == 0);
 	CHECK(shading_create(&shading, frame, side, side, finer, options) == 0);
 	camera.width_px = camera.height_px = side;
 	camera_ray(&camera, (float)side / 2, (float)side / 2, forward);
 	drawing_look(drawing, camera.eye_m, 0);
 	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
-	frame_bind(frame);
+	cube_frame_bind(frame);
 	CHECK(drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera)) == 0);
 	if (samples) {
 		*samples = malloc(bytes);
 		glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, *samples);
 		CHECK(gl_check("reading a frame") == 0);
 	}
-	CHECK(frame_range(frame, camera.near_m, camera.far_m, &found, &near_m, &far_m) == 0);
+	CHECK(cube_frame_range(frame, camera.near_m, camera.far_m, &found, &near_m, &far_m) == 0);
 	CHECK(shading_take(shading, &camera, &rgba) == 0);
 	if (picture) {
 		bytes /= (size_t)(finer * finer);
@@ -64,7 +64,7 @@ static void shoot(struct mesh *mesh, const struct drawing_options *options, stru
 		memcpy(*picture, rgba, bytes);
 	}
 	shading_destroy(shading);
-	frame_destroy(frame);
+	cube_frame_destroy(frame);
 	drawing_destroy(drawing);
 	model_destroy(model);
 }

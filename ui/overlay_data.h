@@ -1,6 +1,6 @@
 /* What the app gives the overlay: plain data that the overlay passes to its views. */
-#ifndef GOPURA_UI_CONTENT_H
-#define GOPURA_UI_CONTENT_H
+#ifndef GOPURA_UI_OVERLAY_DATA_H
+#define GOPURA_UI_OVERLAY_DATA_H
 
 #include <stdbool.h>
 

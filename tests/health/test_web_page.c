@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "health/page.h"
+#include "health/web_page.h"
 #include "tests/health/snapshots.h"
 
 static struct snapshot snapshot;
@@ -15,7 +15,7 @@ static int begin(void **state)
 {
 	(void)state;
 	make_well(&snapshot);
-	buffer_init(&out, PAGE_BYTES_MAX + 1);
+	buffer_init(&out, WEB_PAGE_BYTES_MAX + 1);
 	return 0;
 }
 
@@ -28,11 +28,11 @@ static int end(void **state)
 }
 
 /* The body of a page, terminated, and its status and type. */
-static const char *body_of(enum page page)
+static const char *body_of(enum web_page page)
 {
 	verdict_judge(&verdict, &snapshot);
 	buffer_clear(&out);
-	status = page_write(&out, &type, page, &snapshot, &verdict);
+	status = web_page_write(&out, &type, page, &snapshot, &verdict);
 	buffer_put_u8(&out, '\0');
 	CHECK(out.error == 0 && out.size > 1);
 	return (char *)out.data;
@@ -46,28 +46,32 @@ static bool begins(const char *text, const char *with)
 static void a_path_names_its_page(void **state)
 {
 	(void)state;
-	CHECK(page_of_path("/") == PAGE_OVERVIEW && page_of_path("/metrics") == PAGE_METRICS);
-	CHECK(page_of_path("/health") == PAGE_HEALTH && page_of_path("/visits.csv") == PAGE_VISITS);
-	CHECK(page_of_path("") == PAGE_NONE && page_of_path("/health/") == PAGE_NONE);
-	CHECK(page_of_path("/../visits.csv") == PAGE_NONE && page_of_path("metrics") == PAGE_NONE);
+	CHECK(web_page_of_path("/") == WEB_PAGE_OVERVIEW &&
+	      web_page_of_path("/metrics") == WEB_PAGE_METRICS);
+	CHECK(web_page_of_path("/health") == WEB_PAGE_HEALTH &&
+	      web_page_of_path("/visits.csv") == WEB_PAGE_VISITS);
+	CHECK(web_page_of_path("") == WEB_PAGE_NONE &&
+	      web_page_of_path("/health/") == WEB_PAGE_NONE);
+	CHECK(web_page_of_path("/../visits.csv") == WEB_PAGE_NONE &&
+	      web_page_of_path("metrics") == WEB_PAGE_NONE);
 }
 
 static void health_is_one_word_and_a_status(void **state)
 {
 	(void)state;
-	CHECK(strcmp(body_of(PAGE_HEALTH), "ok\n") == 0 && status == 200);
+	CHECK(strcmp(body_of(WEB_PAGE_HEALTH), "ok\n") == 0 && status == 200);
 	CHECK(strcmp(type, "text/plain") == 0);
 	snapshot.machine.temperature_c = 85;
-	CHECK(strcmp(body_of(PAGE_HEALTH), "warning\nwarning: The computer is too hot: 85 °C.\n") ==
-	      0);
+	CHECK(strcmp(body_of(WEB_PAGE_HEALTH),
+		     "warning\nwarning: The computer is too hot: 85 °C.\n") == 0);
 	CHECK(status == 200);
 	snapshot.machine.temperature_c = 99;
-	CHECK(begins(body_of(PAGE_HEALTH), "critical\ncritical: ") && status == 503);
+	CHECK(begins(body_of(WEB_PAGE_HEALTH), "critical\ncritical: ") && status == 503);
 }
 
 static void metrics_are_the_programs_own_and_the_machines(void **state)
 {
-	const char *body = body_of(PAGE_METRICS);
+	const char *body = body_of(WEB_PAGE_METRICS);
 	double value = -1;
 	struct bytes text;
 
@@ -93,20 +97,20 @@ static void what_is_not_known_is_not_told(void **state)
 	snapshot.machine.written_bytes = NAN;
 	snapshot.answers[PROGRAM_KIOSK].rc = -ETIMEDOUT;
 	buffer_clear(&snapshot.answers[PROGRAM_KIOSK].text);
-	body = body_of(PAGE_METRICS);
+	body = body_of(WEB_PAGE_METRICS);
 	text = (struct bytes){ (const uint8_t *)body, strlen(body) };
 	CHECK(metrics_valid(text, "gopura_"));
 	CHECK(metrics_find(text, "gopura_kiosk_up", &value) && value == 0);
 	CHECK(metrics_find(text, "gopura_terminal_level", &value) && value == 2);
 	CHECK(!strstr(body, "temperature") && !strstr(body, "nan"));
-	body = body_of(PAGE_OVERVIEW);
+	body = body_of(WEB_PAGE_OVERVIEW);
 	CHECK(!strstr(body, "nan") && !strstr(body, "Temperature"));
 	CHECK(strstr(body, "it hangs"));
 }
 
 static void the_page_says_what_is_wrong_and_escapes_what_others_wrote(void **state)
 {
-	const char *body = body_of(PAGE_OVERVIEW);
+	const char *body = body_of(WEB_PAGE_OVERVIEW);
 
 	(void)state;
 	CHECK(status == 200 && strcmp(type, "text/html") == 0);
@@ -120,7 +124,7 @@ static void the_page_says_what_is_wrong_and_escapes_what_others_wrote(void **sta
 	       "gopura_fetch_requests_total 9\ngopura_fetch_refused_at_seconds 1699999400\n"
 	       "gopura_fetch_refusal_info{what=\"<x>\",why=\"too slow\"} 1");
 	snprintf(snapshot.machine.faults, sizeof(snapshot.machine.faults), "line 3: '\"<&>\"'");
-	body = body_of(PAGE_OVERVIEW);
+	body = body_of(WEB_PAGE_OVERVIEW);
 	CHECK(strstr(body, "Needs attention") && strstr(body, "The touchscreen does not work"));
 	CHECK(strstr(body, "&#60;x&#62;, 10 minutes ago: too slow"));
 	CHECK(strstr(body, "line 3: &#39;&#34;&#60;&#38;&#62;&#34;&#39;"));
@@ -143,8 +147,8 @@ static void a_page_of_the_longest_texts_fits(void **state)
 	memset(snapshot.machine.faults, '<', sizeof(snapshot.machine.faults) - 1);
 	for (size_t i = 0; i + 1 < sizeof(snapshot.machine.faults); i += 100)
 		snapshot.machine.faults[i] = '\n';
-	body_of(PAGE_OVERVIEW);
-	body_of(PAGE_METRICS);
+	body_of(WEB_PAGE_OVERVIEW);
+	body_of(WEB_PAGE_METRICS);
 }
 
 #define CASE(name) cmocka_unit_test_setup_teardown(name, begin, end)

@@ -1,6 +1,6 @@
 /* Lays out the blocks of an article with Pango, draws them with Cairo and finds links and pictures
  * by position. */
-#include "ui/article.h"
+#include "ui/article_layout.h"
 
 #include <errno.h>
 #include <math.h>
@@ -32,8 +32,8 @@ struct link_area {
 	int link;
 };
 
-struct article {
-	struct article_options options;
+struct article_layout {
+	struct article_layout_options options;
 	struct article_blocks content;
 	struct article_block note[2]; /* the rule and the small print below it */
 	char *note_text;              /* owned; NULL: no note */
@@ -94,8 +94,8 @@ static enum text_style style_of(const struct article_block *block)
 	return styles[block->style];
 }
 
-static PangoLayout *make_layout(const struct article *article, const struct article_block *block,
-				int width_px)
+static PangoLayout *make_layout(const struct article_layout *article,
+				const struct article_block *block, int width_px)
 {
 	PangoLayout *layout =
 		theme_layout(article->options.theme, style_of(block), block->text, width_px);
@@ -110,7 +110,7 @@ static PangoLayout *make_layout(const struct article *article, const struct arti
 
 /* ---- layout ---- */
 
-static int px(const struct article *article, float mm)
+static int px(const struct article_layout *article, float mm)
 {
 	return theme_px(article->options.theme, mm);
 }
@@ -137,7 +137,7 @@ static float space_before_mm(const struct article_block *block, const struct art
 
 /* Sets the size of a picture's place: from the picture, or from its announced size, or from a
  * guess. */
-static void measure_picture(struct article *article, struct item *item)
+static void measure_picture(struct article_layout *article, struct item *item)
 {
 	struct found_picture found = { 0 };
 	double width = 4, height = 3;
@@ -176,7 +176,8 @@ static void measure_picture(struct article *article, struct item *item)
 		bitmap_finish(&item->picture);
 }
 
-static void place_item(struct article *article, struct item *item, int x_px, int y_px, int width_px)
+static void place_item(struct article_layout *article, struct item *item, int x_px, int y_px,
+		       int width_px)
 {
 	const struct article_block *block = item->block;
 	int indent_px = (int)block->indent * px(article, INDENT_MM) +
@@ -207,7 +208,7 @@ static void place_item(struct article *article, struct item *item, int x_px, int
 
 /* Places the blocks of one table row, from block first on. Returns how many there are and moves
  * *y_px below the row. */
-static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
+static uint32_t place_row(struct article_layout *article, uint32_t first, int *y_px)
 {
 	const struct item *items = &article->items[first];
 	const uint32_t row = items->block->row, columns = items->block->column_count;
@@ -235,7 +236,7 @@ static uint32_t place_row(struct article *article, uint32_t first, int *y_px)
 	return count;
 }
 
-static int add_link_area(struct article *article, struct link_area area)
+static int add_link_area(struct article_layout *article, struct link_area area)
 {
 	int rc = ARRAY_RESERVE(article->links, article->link_room, article->link_count + 1,
 			       UINT32_MAX);
@@ -246,7 +247,7 @@ static int add_link_area(struct article *article, struct link_area area)
 }
 
 /* Adds a rectangle for each line that the link touches. */
-static int find_link_areas(struct article *article, const struct item *item,
+static int find_link_areas(struct article_layout *article, const struct item *item,
 			   const struct article_span *span)
 {
 	PangoLayoutIter *iter = pango_layout_get_iter(item->layout);
@@ -276,7 +277,7 @@ static int find_link_areas(struct article *article, const struct item *item,
 	return rc;
 }
 
-static int find_links(struct article *article)
+static int find_links(struct article_layout *article)
 {
 	int rc = 0;
 
@@ -291,7 +292,7 @@ static int find_links(struct article *article)
 	return rc;
 }
 
-static int lay_out(struct article *article)
+static int lay_out(struct article_layout *article)
 {
 	uint32_t i = 0;
 	int y_px = 0;
@@ -316,7 +317,7 @@ static int lay_out(struct article *article)
 	return find_links(article);
 }
 
-static void drop_layouts(struct article *article)
+static void drop_layouts(struct article_layout *article)
 {
 	for (uint32_t i = 0; i < article->item_count; i++) {
 		struct item *item = &article->items[i];
@@ -329,7 +330,7 @@ static void drop_layouts(struct article *article)
 	}
 }
 
-int article_lay_out(struct article *article, int width_px, int view_px)
+int article_layout_resize(struct article_layout *article, int width_px, int view_px)
 {
 	int measure_px = MEASURE_EMS * theme_style_px(article->options.theme, TEXT_BODY);
 	int rc;
@@ -350,7 +351,7 @@ int article_lay_out(struct article *article, int width_px, int view_px)
 }
 
 /* Lists the blocks of the article and, where there are credits, a rule and the credits. */
-static int make_items(struct article *article, const char *credits)
+static int make_items(struct article_layout *article, const char *credits)
 {
 	const uint32_t count = article->content.block_count;
 
@@ -374,9 +375,10 @@ static int make_items(struct article *article, const char *credits)
 	return 0;
 }
 
-int article_create(struct article **out, const struct article_options *options, struct bytes bytes)
+int article_layout_create(struct article_layout **out, const struct article_layout_options *options,
+			  struct bytes bytes)
 {
-	struct article *article = calloc(1, sizeof(*article));
+	struct article_layout *article = calloc(1, sizeof(*article));
 	int rc;
 
 	*out = NULL;
@@ -388,16 +390,16 @@ int article_create(struct article **out, const struct article_options *options, 
 	if (rc == 0)
 		rc = make_items(article, options->credits);
 	if (rc == 0)
-		rc = article_lay_out(article, options->width_px, options->view_px);
+		rc = article_layout_resize(article, options->width_px, options->view_px);
 	if (rc < 0) {
-		article_destroy(article);
+		article_layout_destroy(article);
 		return rc;
 	}
 	*out = article;
 	return 0;
 }
 
-void article_destroy(struct article *article)
+void article_layout_destroy(struct article_layout *article)
 {
 	if (!article)
 		return;
@@ -417,7 +419,7 @@ void article_destroy(struct article *article)
 
 /* ---- queries and drawing ---- */
 
-int article_height_px(const struct article *article)
+int article_layout_height_px(const struct article_layout *article)
 {
 	return article->height_px;
 }
@@ -439,7 +441,8 @@ static struct colour colour_of(enum article_style style)
 	return style == ARTICLE_FIGURE || style == ARTICLE_QUOTE ? theme_ink_soft : theme_ink;
 }
 
-static void draw_quote_bar(const struct article *article, const struct item *item, cairo_t *context)
+static void draw_quote_bar(const struct article_layout *article, const struct item *item,
+			   cairo_t *context)
 {
 	int x_px = item->x_px - px(article, QUOTE_MM) + px(article, 1.0f);
 
@@ -448,7 +451,8 @@ static void draw_quote_bar(const struct article *article, const struct item *ite
 	cairo_fill(context);
 }
 
-static void draw_item(const struct article *article, const struct item *item, cairo_t *context)
+static void draw_item(const struct article_layout *article, const struct item *item,
+		      cairo_t *context)
 {
 	if (item->block->kind == ARTICLE_RULE) {
 		cairo_rectangle(context, item->x_px, item->y_px, item->width_px, item->height_px);
@@ -480,7 +484,7 @@ static void draw_item(const struct article *article, const struct item *item, ca
 }
 
 /* Draws a hairline below each table row, after the row's last block. */
-static void draw_row_line(const struct article *article, uint32_t i, cairo_t *context)
+static void draw_row_line(const struct article_layout *article, uint32_t i, cairo_t *context)
 {
 	const struct item *items = article->items;
 	uint32_t row = items[i].block->row;
@@ -497,7 +501,8 @@ static void draw_row_line(const struct article *article, uint32_t i, cairo_t *co
 	cairo_fill(context);
 }
 
-void article_draw(const struct article *article, cairo_t *context, int top_px, int height_px)
+void article_layout_draw(const struct article_layout *article, cairo_t *context, int top_px,
+			 int height_px)
 {
 	int slack_px = px(article, 4.0f); /* swashes and marks reach beyond their boxes */
 
@@ -522,7 +527,7 @@ static float outside(float at, float low, float size)
 	return at < low ? low - at : at > low + size ? at - low - size : 0;
 }
 
-const char *article_link_at(const struct article *article, float x_px, float y_px)
+const char *article_layout_link_at(const struct article_layout *article, float x_px, float y_px)
 {
 	float nearest_px = LINK_TOLERANCE_MM * article->options.theme->px_per_mm;
 	const char *found = NULL;
@@ -540,7 +545,7 @@ const char *article_link_at(const struct article *article, float x_px, float y_p
 	return found;
 }
 
-uint32_t article_picture_count(const struct article *article)
+uint32_t article_layout_picture_count(const struct article_layout *article)
 {
 	uint32_t count = 0;
 
@@ -549,7 +554,8 @@ uint32_t article_picture_count(const struct article *article)
 	return count;
 }
 
-const char *article_picture(const struct article *article, uint32_t picture, const char **caption)
+const char *article_layout_picture(const struct article_layout *article, uint32_t picture,
+				   const char **caption)
 {
 	const struct item *items = article->items;
 	const struct article_block *below;
@@ -565,7 +571,7 @@ const char *article_picture(const struct article *article, uint32_t picture, con
 	return i < article->item_count ? items[i].block->text : "";
 }
 
-int article_picture_at(const struct article *article, float x_px, float y_px)
+int article_layout_picture_at(const struct article_layout *article, float x_px, float y_px)
 {
 	int picture = 0;
 
@@ -582,7 +588,7 @@ int article_picture_at(const struct article *article, float x_px, float y_px)
 	return -1;
 }
 
-int article_picture_arrived(struct article *article, const char *name)
+int article_layout_picture_arrived(struct article_layout *article, const char *name)
 {
 	for (uint32_t i = 0; i < article->item_count; i++) {
 		const struct item *item = &article->items[i];
@@ -597,7 +603,7 @@ int article_picture_arrived(struct article *article, const char *name)
 	return -1;
 }
 
-int article_unknown_glyphs(const struct article *article)
+int article_layout_unknown_glyphs(const struct article_layout *article)
 {
 	int count = 0;
 

@@ -1,5 +1,5 @@
 /* Writes the body of each page but the file of visits. */
-#include "health/page.h"
+#include "health/web_page.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,22 +8,22 @@
 
 static const char *const level_names[LEVEL_COUNT] = { "ok", "warning", "critical" };
 
-enum page page_of_path(const char *path)
+enum web_page web_page_of_path(const char *path)
 {
 	static const struct {
 		const char *path;
-		enum page page;
+		enum web_page page;
 	} pages[] = {
-		{ "/", PAGE_OVERVIEW },
-		{ "/metrics", PAGE_METRICS },
-		{ "/health", PAGE_HEALTH },
-		{ "/visits.csv", PAGE_VISITS },
+		{ "/", WEB_PAGE_OVERVIEW },
+		{ "/metrics", WEB_PAGE_METRICS },
+		{ "/health", WEB_PAGE_HEALTH },
+		{ "/visits.csv", WEB_PAGE_VISITS },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(pages); i++)
 		if (strcmp(path, pages[i].path) == 0)
 			return pages[i].page;
-	return PAGE_NONE;
+	return WEB_PAGE_NONE;
 }
 
 /* ---- /health */
@@ -81,23 +81,23 @@ static void write_metrics(struct buffer *out, const struct snapshot *snapshot,
 
 /* ---- any page */
 
-int page_write(struct buffer *out, const char **type, enum page page,
-	       const struct snapshot *snapshot, const struct verdict *verdict)
+int web_page_write(struct buffer *out, const char **type, enum web_page page,
+		   const struct snapshot *snapshot, const struct verdict *verdict)
 {
 	switch (page) {
-	case PAGE_OVERVIEW:
+	case WEB_PAGE_OVERVIEW:
 		*type = "text/html";
 		overview_write(out, snapshot, verdict);
 		return 200;
-	case PAGE_METRICS:
+	case WEB_PAGE_METRICS:
 		*type = "text/plain; version=0.0.4";
 		write_metrics(out, snapshot, verdict);
 		return 200;
-	case PAGE_HEALTH:
+	case WEB_PAGE_HEALTH:
 		*type = "text/plain";
 		return write_health(out, verdict);
-	case PAGE_VISITS:
-	case PAGE_NONE:
+	case WEB_PAGE_VISITS:
+	case WEB_PAGE_NONE:
 		break;
 	}
 	return 404;

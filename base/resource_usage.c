@@ -1,5 +1,5 @@
 /* Asks the kernel for processor time and resident memory. */
-#include "base/usage.h"
+#include "base/resource_usage.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@ static int64_t processor_us(const struct rusage *usage)
 	       usage->ru_utime.tv_usec + usage->ru_stime.tv_usec;
 }
 
-/* The kernel's high-water mark, which usage_reset_own resets; 0 if it does not tell. */
+/* The kernel's high-water mark, which resource_usage_reset_own resets; 0 if it does not tell. */
 static uint64_t resident_peak_bytes(void)
 {
 	FILE *status = fopen("/proc/self/status", "re");
@@ -28,7 +28,7 @@ static uint64_t resident_peak_bytes(void)
 	return (uint64_t)kib * 1024;
 }
 
-void usage_now(struct usage *out)
+void resource_usage_now(struct resource_usage *out)
 {
 	struct rusage own = { 0 }, children = { 0 };
 
@@ -41,7 +41,7 @@ void usage_now(struct usage *out)
 	out->child_bytes = (uint64_t)children.ru_maxrss * 1024;
 }
 
-void usage_reset_own(void)
+void resource_usage_reset_own(void)
 {
 	int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
 
