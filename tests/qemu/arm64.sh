@@ -22,7 +22,7 @@ declare -A left_out=(
 	[net/test_hostile_fetcher]="the same"
 	[pipeline/import/test_sandbox]="qemu-user holds no child to its memory"
 )
-for name in pipeline/{content/{demo_content,page_compile},hierarchy/{hierarchy_file,master},release/publish_labels,samples/{reference,sampler,shading},temple/temple} \
+for name in pipeline/{estimate,content/{demo_content,page_compile},hierarchy/{hierarchy_file,master},release/publish_labels,samples/{reference,sampler,shading},temple/temple} \
 	render/{lumigraph/mediump,scene/{scene,scene_labels,scene_tools}} storage/{cache,powercut} ui/{comfort,tools_view}; do
 	left_out[${name%/*}/test_${name##*/}]="over 20 s there"
 done
