@@ -73,7 +73,6 @@ static int look_at_scan(struct looking *looking, struct scan_look *look, uint32_
 
 	options.transform = looking->content->transforms[scan];
 	rc = scan_look(look, looking->content->scans[scan], &options, &diagnostics);
-
 	if (rc < 0)
 		return fail(&diagnostics, rc);
 	work->triangle_count += look->triangle_count;

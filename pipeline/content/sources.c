@@ -192,14 +192,11 @@ int sources_check_texts(struct sources *sources)
 int sources_check(struct sources *sources)
 {
 	const struct info_built *built;
-	struct diagnostics diagnostics = { 0 };
-	int rc = 0;
+	int rc = sources_check_texts(sources);
 
-	if (!sources->draft && !sources->is_built)
-		rc = read_folder(sources);
 	if (rc == 0 && sources->draft && info_has_tours(sources->draft))
 		return sources_info(sources, &built);
-	return tell(sources, rc, &diagnostics);
+	return rc;
 }
 
 int sources_info(struct sources *sources, const struct info_built **out)

@@ -383,7 +383,7 @@ static int look_ply(struct look *look, const char *path, struct diagnostics *dia
 	out->has_colours = ply->summary.has_colour;
 	out->has_pictures = ply->summary.texture_count > 0 &&
 			    (ply->summary.has_uv || ply->summary.has_corner_uv);
-	if (rc == 0 && first->kind == PLY_KIND_VERTEX)
+	if (first->kind == PLY_KIND_VERTEX)
 		rc = look_at_vertices(look, ply, first);
 	ply_close(ply);
 	return rc;

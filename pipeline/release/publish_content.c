@@ -134,17 +134,19 @@ static int open_master(struct master **master, const struct content *content)
 }
 
 static int add_hierarchy(struct object_store *objects, struct root_page *root,
-			 struct sources *sources, struct page_child *out)
+			 struct sources *sources, struct page_child *out, uint64_t *patch_bytes)
 {
 	const struct content *content = sources_content(sources);
+	struct published_patches published = { 0 };
 	struct master *master;
 	int rc = open_master(&master, content);
 
 	if (rc == 0)
 		rc = fill_root(root, sources_scans(sources), master);
 	if (rc == 0)
-		rc = publish_hierarchy(objects, master, content->publish_share, out,
-				       &root->published_triangles);
+		rc = publish_hierarchy(objects, master, content->publish_share, out, &published);
+	root->published_triangles = published.triangle_count;
+	*patch_bytes = published.bytes;
 	master_destroy(master);
 	return rc;
 }
@@ -158,7 +160,8 @@ static int publish_objects(struct publish_content_report *report,
 	uint32_t child_count = ROOT_CHILD_COUNT;
 	const struct info_built *info;
 	struct root_page root = { 0 };
-	int rc = add_hierarchy(objects, &root, sources, &children[ROOT_CHILD_HIERARCHY]);
+	int rc = add_hierarchy(objects, &root, sources, &children[ROOT_CHILD_HIERARCHY],
+			       &report->patch_bytes);
 
 	if (rc == 0)
 		rc = publish_samples(objects, folder, &children[ROOT_CHILD_SAMPLES]);

@@ -23,6 +23,7 @@ struct publish_content_report {
 	uint32_t release_packs;
 	/* Set by publish_content: what the root page says. */
 	uint64_t published_triangles;
+	uint64_t patch_bytes; /* of the published groups */
 	float start_eye_m[3], start_target_m[3];
 	bool lit;
 };

@@ -115,7 +115,7 @@ static int add_page(struct object_store *objects, const struct hierarchy *hierar
 }
 
 int publish_hierarchy(struct object_store *objects, const struct master *master, double share,
-		      struct page_child *out, uint64_t *published_triangles)
+		      struct page_child *out, struct published_patches *published)
 {
 	struct page_child *children = NULL;
 	struct master_cut cut = { 0 };
@@ -130,7 +130,9 @@ int publish_hierarchy(struct object_store *objects, const struct master *master,
 	if (rc < 0)
 		log_error("pipeline", "the hierarchy: %s%s", strerror(-rc),
 			  rc == -EFBIG ? "; publish a smaller share" : "");
-	*published_triangles = cut.triangle_count;
+	*published = (struct published_patches){ .triangle_count = cut.triangle_count };
+	for (uint32_t i = 0; rc == 0 && i < cut.hierarchy.group_count; i++)
+		published->bytes += children[i].size;
 	master_cut_finish(&cut);
 	free(children);
 	return rc;

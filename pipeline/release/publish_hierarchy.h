@@ -6,11 +6,17 @@
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/release/object_store.h"
 
+/* What was published of the geometry. */
+struct published_patches {
+	uint64_t triangle_count; /* of all patches, coarse and fine together */
+	uint64_t bytes;          /* of all groups, as they lie in the release */
+};
+
 /* Adds the hierarchy page and its groups: the part of the master within the share. If not even the
  * top group fits, the top group alone is published, with a warning: there must be something to
- * show. *published_triangles counts all patches. Errors are logged. */
+ * show. Errors are logged. */
 must_check int publish_hierarchy(struct object_store *objects, const struct master *master,
 				 double share, struct page_child *out,
-				 uint64_t *published_triangles);
+				 struct published_patches *published);
 
 #endif

@@ -8,8 +8,10 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "geometry/vec.h"
 #include "pipeline/report/html.h"
 #include "pipeline/report/report_data.h"
+#include "pipeline/samples/sampler.h"
 #include "storage/info.h"
 
 static const char style[] =
@@ -72,6 +74,13 @@ static void put_fact_end(FILE *to, const char *text)
 	fprintf(to, "</b><span>%s</span></div>\n", text);
 }
 
+static void put_count(FILE *to, uint64_t count, const char *text)
+{
+	put_fact_begin(to);
+	html_count(to, count);
+	put_fact_end(to, text);
+}
+
 static void put_head(FILE *to, const struct report_data *data)
 {
 	const struct publish_content_report *publish = data->options->publish;
@@ -103,17 +112,14 @@ static void put_head(FILE *to, const struct report_data *data)
 		processor_us += (uint64_t)data->options->stages[i].processor_us;
 	}
 	fputs("<div class=\"facts\">\n", to);
-	put_fact_begin(to);
-	html_count(to, data->master->source_triangles);
-	put_fact_end(to, "triangles in the scan");
+	put_count(to, data->master->source_triangles, "triangles in the scan");
 	put_fact_begin(to);
 	html_count(to, publish->published_triangles);
 	fprintf(to, "</b><span>triangles published, %.1f&#8239;%%</span></div>\n",
 		100 * (double)publish->published_triangles /
 			(double)data->master->source_triangles);
-	put_fact_begin(to);
-	html_count(to, (uint64_t)grid->count[0] * grid->count[1] * grid->count[2]);
-	put_fact_end(to, "sampling points");
+	put_count(to, (uint64_t)grid->count[0] * grid->count[1] * grid->count[2],
+		  "sampling points");
 	put_fact_begin(to);
 	html_bytes(to, publish->release_bytes);
 	put_fact_end(to, "release");
@@ -305,7 +311,8 @@ static void put_levels(FILE *to, const struct report_data *data)
 		if (data->levels[i].triangle_count > most)
 			most = data->levels[i].triangle_count;
 	fputs("<div class=\"scroll card\"><table><tr><th>level</th><th>triangles</th>"
-	      "<th>patches</th><th>groups</th><th>mean error</th><th>largest</th><th>bytes</th>"
+	      "<th>patches</th><th>groups</th><th>mean error</th><th>largest</th>"
+	      "<th>bytes at home</th>"
 	      "<th>published</th></tr>\n",
 	      to);
 	for (uint32_t n = data->level_count; n-- > 0;) {
@@ -398,8 +405,7 @@ static void put_point(FILE *to, const struct report_data *data, const uint32_t p
 	float place[3], x, y;
 	uint32_t count = 0;
 
-	for (int k = 0; k < 3; k++)
-		place[k] = grid->origin_m[k] + grid->spacing_m[k] * (float)point[k];
+	sampler_point(place, grid, point);
 	if (!camera_pixel(&data->portraits[REPORT_ABOVE].camera, place, &x, &y))
 		return;
 	for (int face = 0; face < CUBE_FACES; face++)
@@ -476,24 +482,12 @@ static void put_samples(FILE *to, const struct report_data *data)
 		"the face that looks down, the ring the one that looks up. A cross is a point "
 		"in solid matter, an empty circle one that sees nothing.");
 	fputs("<div class=\"facts\">\n", to);
-	put_fact_begin(to);
-	html_count(to, data->states[SAMPLE_RENDERED]);
-	put_fact_end(to, "points rendered");
-	put_fact_begin(to);
-	html_count(to, data->states[SAMPLE_EMPTY]);
-	put_fact_end(to, "see nothing");
-	put_fact_begin(to);
-	html_count(to, data->states[SAMPLE_INSIDE]);
-	put_fact_end(to, "inside solid matter");
-	put_fact_begin(to);
-	html_count(to, data->states[SAMPLE_GROUND]);
-	put_fact_end(to, "below the ground");
-	put_fact_begin(to);
-	html_count(to, data->face_count);
-	put_fact_end(to, "faces");
-	put_fact_begin(to);
-	html_count(to, data->tile_count);
-	put_fact_end(to, "tiles");
+	put_count(to, data->states[SAMPLE_RENDERED], "points rendered");
+	put_count(to, data->states[SAMPLE_EMPTY], "see nothing");
+	put_count(to, data->states[SAMPLE_INSIDE], "inside solid matter");
+	put_count(to, data->states[SAMPLE_GROUND], "below the ground");
+	put_count(to, data->face_count, "faces");
+	put_count(to, data->tile_count, "tiles");
 	fputs("</div>\n", to);
 	put_layers(to, data);
 	put_thumbnails(to, data);
@@ -540,14 +534,12 @@ static const char *part_at(struct info *info, const float place_m[3])
 
 	for (uint32_t i = 0; info && i < info_part_count(info); i++) {
 		const struct region *region = &info_part(info, i)->region;
-		float away = 0, size = region_size_m(region);
+		float size = region_size_m(region);
 		bool inside = region_contains(region, place_m);
 
-		for (int k = 0; k < 3; k++)
-			away += powf(place_m[k] - region->centre_m[k], 2);
 		if (region->kind == REGION_POINT) {
 			size = region->radius_m;
-			inside = away <= size * size;
+			inside = vec_distance(place_m, region->centre_m) <= size;
 		}
 		if (inside && size < smallest) {
 			smallest = size;
@@ -565,7 +557,7 @@ static void put_costly(FILE *to, const struct report_data *data)
 	begin_section(
 		to, "The ten costliest places",
 		"What takes most of the release: faces of sampling points, and groups of "
-		"patches. Fine relief seen from near is rightly among them; plants and cables "
+		"patches as they lie in the master. Fine relief seen from near is rightly among them; plants and cables "
 		"that nobody wants to see may be cut out of the scan.");
 	if (sources_info(data->options->sources, &built) < 0 ||
 	    info_open(&info, buffer_bytes(&built->database)) < 0)

@@ -11,6 +11,8 @@
 
 #include "base/array.h"
 #include "base/log.h"
+#include "geometry/vec.h"
+#include "pipeline/samples/sampler.h"
 
 /* ---- the hierarchy */
 
@@ -80,7 +82,6 @@ static int read_published(struct report_data *data, const uint8_t *level_of)
 
 	if (rc == -ERANGE) { /* then the coarsest group is published alone */
 		data->levels[0].published_group_count = 1;
-		data->patch_bytes = data->master->sizes[0];
 		return 0;
 	}
 	if (rc < 0)
@@ -91,7 +92,6 @@ static int read_published(struct report_data *data, const uint8_t *level_of)
 						.count = group->patch_count };
 
 		data->levels[level_of[cut.groups[i]]].published_group_count++;
-		data->patch_bytes += costly.bytes;
 		memcpy(costly.centre_m, group->centre_m, sizeof(costly.centre_m));
 		add_costly(data, &costly);
 	}
@@ -131,12 +131,10 @@ uint32_t report_data_point(const struct report_data *data, const uint32_t point[
 /* What a face shows is taken to lie in its middle, between its nearest and farthest. */
 static void centre_of(const struct report_data *data, const struct sample_face *face, float out[3])
 {
-	const struct sample_grid *grid = samples_store_grid(data->store);
 	float depth_m = (face->near_m + face->far_m) / 2;
 
-	for (int k = 0; k < 3; k++)
-		out[k] = grid->origin_m[k] + grid->spacing_m[k] * (float)face->point[k] +
-			 depth_m * cube_axes[face->face].forward[k];
+	sampler_point(out, samples_store_grid(data->store), face->point);
+	vec_add_scaled(out, out, depth_m, cube_axes[face->face].forward);
 }
 
 static int add_face(struct report_data *data, const struct sample_face *face)
@@ -322,6 +320,7 @@ int report_data_read(struct report_data *out, const struct report_options *optio
 	int rc;
 
 	*out = (struct report_data){ .options = options,
+				     .patch_bytes = options->publish->patch_bytes,
 				     .content = sources_content(options->sources) };
 	for (int i = 0; i < REPORT_PICTURES; i++)
 		buffer_init(&out->pictures[i], 4 << 20);

@@ -109,20 +109,23 @@ static uint64_t publish(double share, struct page *page, struct hierarchy *back)
 {
 	static struct buffer object;
 	struct page_child child;
-	uint64_t triangles;
+	struct published_patches published;
 
 	buffer_finish(&object);
 	buffer_init(&object, PAGE_BYTES_MAX);
-	CHECK(publish_hierarchy(objects, &master, share, &child, &triangles) == 0);
+	CHECK(publish_hierarchy(objects, &master, share, &child, &published) == 0);
 	CHECK(child.is_page);
 	CHECK(object_store_read(objects, child.hash, &object) == 0);
 	CHECK(page_decode(page, buffer_bytes(&object)) == 0);
 	CHECK(page->kind == PAGE_HIERARCHY);
+	for (uint32_t i = 0; i < page->child_count; i++)
+		published.bytes -= page->children[i].size;
+	CHECK(published.bytes == 0);
 	CHECK(hierarchy_decode(back, page->payload) == 0); /* checks every rule */
 	CHECK(page->child_count == back->group_count);
 	for (uint32_t i = 0; i < page->child_count; i++)
 		CHECK(object_store_has(objects, page->children[i].hash));
-	return triangles;
+	return published.triangle_count;
 }
 
 static void what_is_published_is_a_hierarchy_within_the_share(void **state)
@@ -228,11 +231,11 @@ static void the_top_is_published_whatever_the_share(void **state)
 static void a_master_that_was_cut_off_is_found(void **state)
 {
 	struct page_child child;
-	uint64_t triangles;
+	struct published_patches published;
 
 	(void)state;
 	CHECK(ftruncate(master.fd, 0) == 0);
-	CHECK(publish_hierarchy(objects, &master, 0.1, &child, &triangles) == -EBADMSG);
+	CHECK(publish_hierarchy(objects, &master, 0.1, &child, &published) == -EBADMSG);
 }
 
 int main(void)

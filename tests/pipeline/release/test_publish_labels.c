@@ -176,7 +176,7 @@ static struct made make(uint32_t patch_triangles)
 	made.root.lattice = master->lattice;
 	CHECK(object_store_create(&made.objects) == 0);
 	CHECK(publish_hierarchy(made.objects, master, 0.6, &made.children[ROOT_CHILD_HIERARCHY],
-				&made.root.published_triangles) == 0);
+				&(struct published_patches){ 0 }) == 0);
 	master_destroy(master);
 	empty_mesh();
 	CHECK(sources_create(&sources, &content) == 0);
