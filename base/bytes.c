@@ -419,3 +419,17 @@ void bytes_sweep_folder(const char *folder, int64_t before_s)
 	if (entries)
 		closedir(entries);
 }
+
+void bytes_remove_folder(const char *path)
+{
+	DIR *entries = opendir(path);
+	struct dirent *entry;
+
+	while (entries && (entry = readdir(entries)))
+		if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+			unlinkat(dirfd(entries), entry->d_name, 0);
+	if (entries)
+		closedir(entries);
+	if (unlink(path) < 0)
+		rmdir(path);
+}

@@ -112,5 +112,7 @@ void bytes_drop_leftovers(const char *path);
 /* Removes temporary files of any path in a folder that were last changed before a time, in seconds
  * since 1970; another process may be writing younger ones. A missing folder is fine. */
 void bytes_sweep_folder(const char *folder, int64_t before_s);
+/* Removes a folder and the files in it, or a file. Folders in it stay, and it with them. */
+void bytes_remove_folder(const char *path);
 
 #endif

@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/proc_number.h"
 
 enum { WAIT_MAX = 8 /* most connections that may wait for an answer */ };
 
@@ -115,24 +116,6 @@ int metrics_socket_fd(const struct metrics_socket *metrics)
 }
 
 /* ---- metrics that all programs have */
-
-/* Finds the first line of a file of /proc that matches scan, a sscanf format with one number.
- * Returns false if there is none. */
-static bool proc_number(const char *path, const char *scan, unsigned long long *out)
-{
-	char text[1024];
-	FILE *file = fopen(path, "re");
-	size_t size = file ? fread(text, 1, sizeof(text) - 1, file) : 0;
-	const char *at = text;
-
-	if (file)
-		fclose(file);
-	text[size] = '\0';
-	for (; at && *at; at = strchr(at, '\n'), at += at ? 1 : 0)
-		if (sscanf(at, scan, out) == 1)
-			return true;
-	return false;
-}
 
 struct common {
 	const char *name, *help;

@@ -6,7 +6,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -167,17 +166,4 @@ int processes_run(const struct processes *plan)
 	}
 	free(order);
 	return rc;
-}
-
-void *shared_memory_create(size_t size)
-{
-	void *memory = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-
-	return memory == MAP_FAILED ? NULL : memory;
-}
-
-void shared_memory_destroy(void *memory, size_t size)
-{
-	if (memory)
-		munmap(memory, size);
 }

@@ -1,11 +1,9 @@
 /* Runs pieces of work in processes of their own, each forked for one piece: what a piece allocates
  * goes with it, and libraries with state per process do not meet. Results travel in files or in
- * memory that is mapped shared before. To be called while the caller has one thread. */
+ * shared memory (base/shared_memory.h). To be called while the caller has one thread. */
 #ifndef GOPURA_BASE_PROCESSES_H
 #define GOPURA_BASE_PROCESSES_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "base/compiler.h"
@@ -35,10 +33,5 @@ void shard_order(struct shard shard, uint32_t *order, uint32_t piece_count);
  * piece that failed; -EIO if a process was killed, -ENOMEM, or the errno of fork. After a failure
  * no new piece is begun. If the caller dies, the processes are killed. */
 must_check int processes_run(const struct processes *processes);
-
-/* Returns zeroed memory that processes forked later share with the caller; NULL if there is none.
- * Pages take memory when they are first written. */
-void *shared_memory_create(size_t size);
-void shared_memory_destroy(void *memory, size_t size); /* NULL is fine */
 
 #endif

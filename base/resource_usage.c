@@ -2,10 +2,10 @@
 #include "base/resource_usage.h"
 
 #include <fcntl.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+#include "base/proc_number.h"
 
 static int64_t processor_us(const struct rusage *usage)
 {
@@ -16,16 +16,9 @@ static int64_t processor_us(const struct rusage *usage)
 /* The kernel's high-water mark, which resource_usage_reset_own resets; 0 if it does not tell. */
 static uint64_t resident_peak_bytes(void)
 {
-	FILE *status = fopen("/proc/self/status", "re");
-	unsigned long kib = 0;
-	char line[256];
+	unsigned long long kib;
 
-	while (status && fgets(line, sizeof(line), status))
-		if (sscanf(line, "VmHWM: %lu", &kib) == 1)
-			break;
-	if (status)
-		fclose(status);
-	return (uint64_t)kib * 1024;
+	return proc_number("/proc/self/status", "VmHWM: %llu", &kib) ? kib * 1024 : 0;
 }
 
 void resource_usage_now(struct resource_usage *out)

@@ -117,6 +117,32 @@ static void transpose(uint8_t *out, const uint8_t *in, size_t rows, size_t width
 			out[column * rows + row] = in[row * width + column];
 }
 
+void hierarchy_patch_put(struct buffer *out, const struct hierarchy_patch *patch)
+{
+	buffer_put_u32(out, patch->finer);
+	buffer_put_u16(out, patch->triangle_count);
+	buffer_put_u16(out, patch->vertex_count);
+	for (int i = 0; i < 3; i++)
+		buffer_put_f32(out, patch->centre_m[i]);
+	buffer_put_f32(out, patch->radius_m);
+	for (int i = 0; i < 3; i++)
+		buffer_put_f32(out, patch->cone_axis[i]);
+	buffer_put_f32(out, patch->cone_cos);
+}
+
+void hierarchy_patch_get(struct hierarchy_patch *out, struct reader *reader)
+{
+	out->finer = reader_u32(reader);
+	out->triangle_count = reader_u16(reader);
+	out->vertex_count = reader_u16(reader);
+	for (int i = 0; i < 3; i++)
+		out->centre_m[i] = reader_f32(reader);
+	out->radius_m = reader_f32(reader);
+	for (int i = 0; i < 3; i++)
+		out->cone_axis[i] = reader_f32(reader);
+	out->cone_cos = reader_f32(reader);
+}
+
 static void put_rows(struct buffer *out, const struct hierarchy *hierarchy)
 {
 	for (uint32_t g = 0; g < hierarchy->group_count; g++) {
@@ -128,19 +154,8 @@ static void put_rows(struct buffer *out, const struct hierarchy *hierarchy)
 			buffer_put_f32(out, group->centre_m[i]);
 		buffer_put_f32(out, group->radius_m);
 	}
-	for (uint32_t p = 0; p < hierarchy->patch_count; p++) {
-		const struct hierarchy_patch *patch = &hierarchy->patches[p];
-
-		buffer_put_u32(out, patch->finer);
-		buffer_put_u16(out, patch->triangle_count);
-		buffer_put_u16(out, patch->vertex_count);
-		for (int i = 0; i < 3; i++)
-			buffer_put_f32(out, patch->centre_m[i]);
-		buffer_put_f32(out, patch->radius_m);
-		for (int i = 0; i < 3; i++)
-			buffer_put_f32(out, patch->cone_axis[i]);
-		buffer_put_f32(out, patch->cone_cos);
-	}
+	for (uint32_t p = 0; p < hierarchy->patch_count; p++)
+		hierarchy_patch_put(out, &hierarchy->patches[p]);
 }
 
 static int put_packed(struct buffer *out, struct bytes columns)
@@ -205,19 +220,8 @@ static void get_rows(struct hierarchy *out, struct bytes rows)
 			out->patches[p].group = g;
 		first += group->patch_count;
 	}
-	for (uint32_t p = 0; p < out->patch_count; p++) {
-		struct hierarchy_patch *patch = &out->patches[p];
-
-		patch->finer = reader_u32(&reader);
-		patch->triangle_count = reader_u16(&reader);
-		patch->vertex_count = reader_u16(&reader);
-		for (int i = 0; i < 3; i++)
-			patch->centre_m[i] = reader_f32(&reader);
-		patch->radius_m = reader_f32(&reader);
-		for (int i = 0; i < 3; i++)
-			patch->cone_axis[i] = reader_f32(&reader);
-		patch->cone_cos = reader_f32(&reader);
-	}
+	for (uint32_t p = 0; p < out->patch_count; p++)
+		hierarchy_patch_get(&out->patches[p], &reader);
 }
 
 /* Turns columns of bytes back into rows. The caller owns both and sizes them by the counts of

@@ -57,6 +57,9 @@ must_check int hierarchy_encode(struct buffer *out, const struct hierarchy *hier
 /* *out is owned by the caller: end it with hierarchy_finish(). It is zeroed on failure. Returns
  * -EBADMSG if the payload is damaged or breaks a rule above, or -ENOMEM. */
 must_check int hierarchy_decode(struct hierarchy *out, struct bytes payload);
+/* Appends the row of a patch, all but its group; reads it. Failures are kept in out and reader. */
+void hierarchy_patch_put(struct buffer *out, const struct hierarchy_patch *patch);
+void hierarchy_patch_get(struct hierarchy_patch *out, struct reader *reader);
 /* Frees the arrays and zeroes the struct. NULL and zeroed are fine. */
 void hierarchy_finish(struct hierarchy *hierarchy);
 

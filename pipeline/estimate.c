@@ -2,7 +2,6 @@
  * The factors were measured: docs/estimate.md. */
 #include "pipeline/estimate.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -14,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/proc_number.h"
 #include "base/resource_usage.h"
 #include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/import/scan_look.h"
@@ -189,22 +189,6 @@ static int look_for_samples(struct looking *looking)
 
 /* ---- this machine */
 
-static void remove_folder(const char *folder)
-{
-	char path[CONTENT_PATH_BYTES + 300];
-	DIR *directory = opendir(folder);
-	const struct dirent *entry;
-
-	while (directory && (entry = readdir(directory))) {
-		snprintf(path, sizeof(path), "%s/%s", folder, entry->d_name);
-		if (entry->d_name[0] != '.')
-			unlink(path);
-	}
-	if (directory)
-		closedir(directory);
-	rmdir(folder);
-}
-
 static int try_hierarchy(struct looking *looking)
 {
 	struct master_options options = { .multires = { .jobs = 1 } };
@@ -228,7 +212,7 @@ static int try_hierarchy(struct looking *looking)
 	looking->speeds.hierarchy_s = (double)(after.processor_us - before.processor_us) / 1e6 /
 				      (4.0 * TRIAL_MESH * TRIAL_MESH);
 	mesh_finish(&mesh);
-	remove_folder(folder);
+	bytes_remove_folder(folder);
 	return rc;
 }
 
@@ -435,16 +419,9 @@ static void judge(struct looking *looking)
 
 static uint64_t available_memory(void)
 {
-	FILE *file = fopen("/proc/meminfo", "re");
-	unsigned long kib = 0;
-	char line[128];
+	unsigned long long kib;
 
-	while (file && fgets(line, sizeof(line), file))
-		if (sscanf(line, "MemAvailable: %lu", &kib) == 1)
-			break;
-	if (file)
-		fclose(file);
-	return (uint64_t)kib * 1024;
+	return proc_number("/proc/meminfo", "MemAvailable: %llu", &kib) ? kib * 1024 : 0;
 }
 
 static void look_at_room(struct looking *looking)

@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "base/processes.h"
 #include "base/progress.h"
+#include "base/shared_memory.h"
 #include "format/patch.h"
 #include "pipeline/hierarchy/block_node.h"
 #include "pipeline/hierarchy/block_work.h"

@@ -86,32 +86,6 @@ static void get_group(struct hierarchy_group *out, struct reader *reader)
 	out->radius_m = reader_f32(reader);
 }
 
-static void put_row(struct buffer *out, const struct hierarchy_patch *patch)
-{
-	buffer_put_u32(out, patch->finer);
-	buffer_put_u16(out, patch->triangle_count);
-	buffer_put_u16(out, patch->vertex_count);
-	for (int i = 0; i < 3; i++)
-		buffer_put_f32(out, patch->centre_m[i]);
-	buffer_put_f32(out, patch->radius_m);
-	for (int i = 0; i < 3; i++)
-		buffer_put_f32(out, patch->cone_axis[i]);
-	buffer_put_f32(out, patch->cone_cos);
-}
-
-static void get_row(struct hierarchy_patch *out, struct reader *reader)
-{
-	out->finer = reader_u32(reader);
-	out->triangle_count = reader_u16(reader);
-	out->vertex_count = reader_u16(reader);
-	for (int i = 0; i < 3; i++)
-		out->centre_m[i] = reader_f32(reader);
-	out->radius_m = reader_f32(reader);
-	for (int i = 0; i < 3; i++)
-		out->cone_axis[i] = reader_f32(reader);
-	out->cone_cos = reader_f32(reader);
-}
-
 static void put_rows(struct buffer *out, const struct block_result *result)
 {
 	buffer_put_u32(out, result->other_count);
@@ -127,7 +101,7 @@ static void put_rows(struct buffer *out, const struct block_result *result)
 		buffer_put_u32(out, result->sizes[g]);
 	}
 	for (uint32_t p = 0; p < result->made.patch_count; p++)
-		put_row(out, &result->made.patches[p]);
+		hierarchy_patch_put(out, &result->made.patches[p]);
 }
 
 /* Counts come from the file: no more is allocated than it can hold. */
@@ -173,7 +147,7 @@ static int get_rows(struct block_result *out, struct reader *reader)
 		out->sizes[g] = reader_u32(reader);
 	}
 	for (uint32_t p = 0; p < patches; p++)
-		get_row(&out->made.patches[p], reader);
+		hierarchy_patch_get(&out->made.patches[p], reader);
 	return first == patches ? 0 : -EBADMSG;
 }
 

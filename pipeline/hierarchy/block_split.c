@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/bytes.h"
+#include "base/shared_memory.h"
 #include "pipeline/hierarchy/lattice_mesh.h"
 
 enum { PIECE = 1 << 20 /* vertices or triangles that one process takes */ };

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "base/processes.h"
+#include "base/shared_memory.h"
 
 enum {
 	SIDE = 256, /* voxels along the longest axis */

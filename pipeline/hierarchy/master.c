@@ -136,23 +136,6 @@ static int write_index(const char *folder, const struct master *head,
 	return rc;
 }
 
-/* Removes a folder of files, or a file. */
-static void remove_entry(const char *path)
-{
-	DIR *entries = opendir(path);
-	struct dirent *entry;
-	char inner[PATH_MAX];
-
-	while (entries && (entry = readdir(entries)))
-		if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
-		    path_in(inner, path, entry->d_name) == 0)
-			unlink(inner);
-	if (entries)
-		closedir(entries);
-	if (unlink(path) < 0)
-		rmdir(path);
-}
-
 /* Removes what earlier builds left, complete or not, but the index and what keep names. */
 static void remove_others(const char *folder, const char *keep)
 {
@@ -164,7 +147,7 @@ static void remove_others(const char *folder, const char *keep)
 		if (entry->d_name[0] == '.' || strcmp(entry->d_name, "index") == 0 ||
 		    path_in(path, folder, entry->d_name) < 0 || strcmp(path, keep) == 0)
 			continue;
-		remove_entry(path);
+		bytes_remove_folder(path);
 	}
 	if (entries)
 		closedir(entries);

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 #include <libxml/parser.h>
@@ -15,6 +14,7 @@
 
 #include "base/array.h"
 #include "base/bytes.h"
+#include "pipeline/import/import_files.h"
 
 enum { FILE_BYTES_MAX = 16 << 20, SHOWN_BYTES = 60 };
 
@@ -27,17 +27,9 @@ struct reading {
 	char *at;      /* the next line of an alignment */
 };
 
-static bool ends_with(const char *name, const char *extension)
-{
-	const size_t length = strlen(name), extension_length = strlen(extension);
-
-	return length > extension_length &&
-	       strcasecmp(name + length - extension_length, extension) == 0;
-}
-
 bool alignment_is_named(const char *name)
 {
-	return ends_with(name, ".aln") || ends_with(name, ".mlp");
+	return import_has_extension(name, ".aln") || import_has_extension(name, ".mlp");
 }
 
 void alignment_finish(struct alignment *alignment)
@@ -405,7 +397,7 @@ int alignment_read(struct alignment *out, const char *path, struct diagnostics *
 		diagnostics_add(diagnostics, rc, path, 0, "%s",
 				rc == -EFBIG ? "over 16 MiB; is it an alignment of scans?"
 					     : strerror(-rc));
-	else if (ends_with(path, ".mlp"))
+	else if (import_has_extension(path, ".mlp"))
 		rc = read_mlp(&reading, (struct bytes){ file.data, file.size - 1 });
 	else
 		rc = read_aln(&reading, (char *)file.data);

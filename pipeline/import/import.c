@@ -9,13 +9,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/spill.h"
 #include "pipeline/import/gltf_extensions.h"
+#include "pipeline/import/import_files.h"
 #include "pipeline/import/import_foreign.h"
 #include "pipeline/import/import_ply.h"
 #include "pipeline/import/mesh_colour.h"
@@ -29,14 +29,6 @@ const char *import_format_name(enum scan_format format)
 	static const char *const names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB" };
 
 	return format < SCAN_UNKNOWN ? names[format] : "";
-}
-
-static bool has_extension(const char *path, const char *extension)
-{
-	size_t length = strlen(path), extension_length = strlen(extension);
-
-	return length > extension_length &&
-	       strcasecmp(path + length - extension_length, extension) == 0;
 }
 
 /* Detects the format by the first bytes if they are distinctive, otherwise by the file name: OBJ
@@ -58,7 +50,7 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 	if (size >= 3 && memcmp(head, "OFF", 3) == 0)
 		return SCAN_OFF;
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
-		if (has_extension(path, names[i].extension))
+		if (import_has_extension(path, names[i].extension))
 			return names[i].format;
 	return size >= 6 && memcmp(head, "solid ", 6) == 0 ? SCAN_STL : SCAN_UNKNOWN;
 }

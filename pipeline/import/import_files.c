@@ -8,11 +8,20 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "pipeline/import/sandbox.h"
 #include "pipeline/keys/keys.h"
+
+bool import_has_extension(const char *name, const char *extension)
+{
+	size_t length = strlen(name), extension_length = strlen(extension);
+
+	return length > extension_length &&
+	       strcasecmp(name + length - extension_length, extension) == 0;
+}
 
 int import_files_open_folder(const char *scan_path)
 {

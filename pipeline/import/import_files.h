@@ -6,6 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Returns whether a name ends with the extension (".ply") after at least one other character, in
+ * any case of letters. */
+bool import_has_extension(const char *name, const char *extension);
+
 /* Opens a file that a scan names. The name is looked up as given, if that stays below the scan's
  * folder, and else by its last component in the folder itself (exporters like to write
  * C:\Users\...). Only regular files; no link is followed, no hidden file or folder used, no signing

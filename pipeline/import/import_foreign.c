@@ -11,11 +11,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/shared_memory.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_limits.h"
 #include "pipeline/import/import_scene.h"
@@ -383,9 +383,7 @@ static int open_for_child(void *data, const char *name)
 /* Copies the path, and appends the format's extension if it has another one or none. */
 static int make_seen_path(char seen[PATH_MAX], const char *path, const char *extension)
 {
-	size_t length = strlen(path), extension_length = strlen(extension);
-	bool has = length > extension_length &&
-		   strcasecmp(path + length - extension_length, extension) == 0;
+	bool has = import_has_extension(path, extension);
 
 	return snprintf(seen, PATH_MAX, "%s%s", path, has ? "" : extension) < PATH_MAX
 		       ? 0
@@ -472,7 +470,7 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 		   const struct import_options *options, struct import_report *report,
 		   struct diagnostics *diagnostics)
 {
-	struct job *job = sandbox_shared_create(sizeof(*job));
+	struct job *job = shared_memory_create(sizeof(*job));
 	struct parent parent;
 	int rc = parent_init(&parent, path, format.extension);
 
@@ -489,6 +487,6 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 		take_report(report, &job->report);
 	}
 	parent_finish(&parent);
-	sandbox_shared_destroy(job, sizeof(*job));
+	shared_memory_destroy(job, sizeof(*job));
 	return rc;
 }

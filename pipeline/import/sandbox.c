@@ -21,6 +21,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/shared_memory.h"
 #include "pipeline/import/lockdown.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -48,19 +49,6 @@ struct outcome {
 
 /* In the child: the socket on which it asks for files. */
 static int asking_fd = -1;
-
-void *sandbox_shared_create(size_t size)
-{
-	void *shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-
-	return shared == MAP_FAILED ? NULL : shared;
-}
-
-void sandbox_shared_destroy(void *shared, size_t size)
-{
-	if (shared)
-		munmap(shared, size);
-}
 
 static void limit(int resource, rlim_t most)
 {
@@ -341,7 +329,7 @@ static int start_and_watch(sandbox_work work, void *shared, const struct sandbox
 int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
 		const char *name, struct diagnostics *diagnostics)
 {
-	struct outcome *outcome = sandbox_shared_create(sizeof(*outcome));
+	struct outcome *outcome = shared_memory_create(sizeof(*outcome));
 	int status = 0, rc;
 
 	if (!outcome)
@@ -350,6 +338,6 @@ int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *o
 	if (rc == 0)
 		tell_walls(outcome, name);
 	rc = judge(rc, status, outcome, options, name, diagnostics);
-	sandbox_shared_destroy(outcome, sizeof(*outcome));
+	shared_memory_destroy(outcome, sizeof(*outcome));
 	return rc;
 }

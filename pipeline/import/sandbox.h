@@ -36,14 +36,10 @@ typedef int (*sandbox_work)(void *shared, struct diagnostics *diagnostics);
  * caller, or a negative errno. */
 must_check int sandbox_open(const char *name);
 
-/* Makes zeroed shared memory for the child's results. Do not trust its contents, not even that a
- * string has an end. NULL: no memory. */
-void *sandbox_shared_create(size_t size);
-void sandbox_shared_destroy(void *shared, size_t size); /* NULL is fine */
-
 /* Runs work in a child and returns its result. -ETIMEDOUT: it took too long. -ENOMEM: it used too
  * much memory. -EBADMSG: it crashed. diagnostics then says "NAME: ...". `shared` comes from
- * sandbox_shared_create. */
+ * shared_memory_create; do not trust what the child left in it, not even that a string has an end.
+ */
 must_check int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *options,
 			   const char *name, struct diagnostics *diagnostics);
 

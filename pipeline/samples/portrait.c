@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/processes.h"
+#include "base/shared_memory.h"
 #include "format/picture.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/model_master.h"

@@ -9,6 +9,7 @@
 
 #include "base/processes.h"
 #include "base/resource_usage.h"
+#include "base/shared_memory.h"
 #include "pipeline/samples/chunks.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"

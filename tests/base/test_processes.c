@@ -2,9 +2,11 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/shared_memory.h"
 #include "tests/check.h"
 
 enum { PIECES = 20 };

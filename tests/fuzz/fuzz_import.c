@@ -8,6 +8,7 @@
 #include <math.h>
 #include <sys/mman.h>
 
+#include "base/shared_memory.h"
 #include "pipeline/import/import.h"
 #include "pipeline/import/import_report.h"
 #include "pipeline/import/sandbox.h"
@@ -33,7 +34,7 @@ int memfd_create(const char *name, unsigned flags)
 	return fd;
 }
 
-void *sandbox_shared_create(size_t size)
+void *shared_memory_create(size_t size)
 {
 	if (size > SHARED_BYTES_MAX)
 		abort();
@@ -41,7 +42,7 @@ void *sandbox_shared_create(size_t size)
 	return calloc(1, size);
 }
 
-void sandbox_shared_destroy(void *shared, size_t size)
+void shared_memory_destroy(void *shared, size_t size)
 {
 	if (shared && size != shared_bytes)
 		abort();

@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/shared_memory.h"
 #include "pipeline/import/lockdown.h"
 #include "tests/check.h"
 
@@ -76,7 +77,7 @@ static int eats_memory(void *shared, struct diagnostics *diagnostics)
 
 static void gives_back_result_fault_and_shared_memory(void **state)
 {
-	char *shared = sandbox_shared_create(16);
+	char *shared = shared_memory_create(16);
 	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
@@ -84,7 +85,7 @@ static void gives_back_result_fault_and_shared_memory(void **state)
 	CHECK(strcmp(shared, "hello") == 0 && diagnostics.first.text[0] == '\0');
 	CHECK(sandbox_run(refuses, shared, &limits, "scan.obj", &diagnostics) == -ENOSPC);
 	CHECK(strcmp(diagnostics.first.text, "scan.obj: face 3 is odd") == 0);
-	sandbox_shared_destroy(shared, 16);
+	shared_memory_destroy(shared, 16);
 }
 
 static void an_end_of_the_child_is_a_fault_that_names_the_file(void **state)
@@ -320,7 +321,7 @@ static void seccomp_alone_closes_files_and_network(void **state)
 static void the_child_can_ask_the_kernel_for_nothing_else(void **state)
 {
 	const size_t size = ARRAY_COUNT(attempts) * sizeof(int);
-	int *errors = sandbox_shared_create(size);
+	int *errors = shared_memory_create(size);
 	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
@@ -330,7 +331,7 @@ static void the_child_can_ask_the_kernel_for_nothing_else(void **state)
 	for (size_t i = 0; i < ARRAY_COUNT(attempts); i++)
 		if (errors[i] != EPERM)
 			fail_msg("%s: %s", attempts[i].name, strerror(errors[i]));
-	sandbox_shared_destroy(errors, size);
+	shared_memory_destroy(errors, size);
 }
 
 /* ---- files that the parent opens */
@@ -372,7 +373,7 @@ static void the_parent_opens_what_it_likes_and_nothing_else(void **state)
 						     .memory_bytes = 1ull << 29,
 						     .open = gives_one_file,
 						     .open_data = "skin.jpg" };
-	int *told = sandbox_shared_create(4 * sizeof(*told));
+	int *told = shared_memory_create(4 * sizeof(*told));
 	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
@@ -382,7 +383,7 @@ static void the_parent_opens_what_it_likes_and_nothing_else(void **state)
 	/* Without a function of the parent: nothing. */
 	CHECK(sandbox_run(asks, told, &limits, "scan.obj", &diagnostics) == 0);
 	CHECK(told[0] == -EACCES && told[1] == -EACCES && opened == 101);
-	sandbox_shared_destroy(told, 4 * sizeof(*told));
+	shared_memory_destroy(told, 4 * sizeof(*told));
 }
 
 static int reads_foreign_descriptors(void *shared, struct diagnostics *diagnostics)
@@ -398,7 +399,7 @@ static int reads_foreign_descriptors(void *shared, struct diagnostics *diagnosti
 static void of_descriptors_only_the_result_stays_open(void **state)
 {
 	struct sandbox_options own = limits;
-	int *fds = sandbox_shared_create(2 * sizeof(*fds));
+	int *fds = shared_memory_create(2 * sizeof(*fds));
 	struct diagnostics diagnostics = { 0 };
 	(void)state;
 
@@ -409,7 +410,7 @@ static void of_descriptors_only_the_result_stays_open(void **state)
 	CHECK(lseek(fds[1], 0, SEEK_END) == 1);
 	close(fds[0]);
 	close(fds[1]);
-	sandbox_shared_destroy(fds, 2 * sizeof(*fds));
+	shared_memory_destroy(fds, 2 * sizeof(*fds));
 }
 
 int main(void)
