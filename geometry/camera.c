@@ -31,11 +31,16 @@ float camera_px_per_radian(const struct camera *camera)
 	return (float)seen_height / (2 * tangent_of(camera));
 }
 
+void camera_forward(const struct camera *camera, float out[3])
+{
+	vec_sub(out, camera->target_m, camera->eye_m);
+	vec_normalise(out);
+}
+
 /* Writes the eye's axes, unit vectors perpendicular to one another. */
 static void axes_of(const struct camera *camera, float right[3], float up[3], float forward[3])
 {
-	vec_sub(forward, camera->target_m, camera->eye_m);
-	vec_normalise(forward);
+	camera_forward(camera, forward);
 	vec_copy(up, camera->up);
 	vec_normalise(up);
 	vec_cross(right, forward, up);

@@ -42,6 +42,8 @@ float camera_aspect(const struct camera *camera);
  * the middle of the picture. */
 float camera_px_per_radian(const struct camera *camera);
 
+/* Writes the direction (a unit vector) from the eye to the target. */
+void camera_forward(const struct camera *camera, float out[3]);
 /* Writes the direction (a unit vector, from the eye) in which a pixel of the framebuffer looks. */
 void camera_ray(const struct camera *camera, float x_px, float y_px, float direction[3]);
 /* Projects a point to framebuffer pixels. Returns false where the point is behind the eye; then the

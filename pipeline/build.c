@@ -176,6 +176,20 @@ static int make_master(const char *folder, struct scans *scans, struct hash stam
 	return rc;
 }
 
+/* Finds where the master lies and what its stamp must be. */
+static int locate_master(char folder[CONTENT_PATH_BYTES], struct hash *stamp, struct scans *scans,
+			 const struct master_options *options, struct diagnostics *diagnostics)
+{
+	struct hash key;
+	int rc = content_work_path(scans_content(scans), "master", folder);
+
+	if (rc == 0)
+		rc = scans_key(scans, &key, diagnostics);
+	if (rc == 0)
+		*stamp = master_stamp(key, options);
+	return rc;
+}
+
 int build_master(struct master **out, struct scans *scans,
 		 const struct build_master_options *options, struct build_master_report *report,
 		 struct diagnostics *diagnostics)
@@ -183,16 +197,13 @@ int build_master(struct master **out, struct scans *scans,
 	const struct content *content = scans_content(scans);
 	const struct master_options master = master_options(content, options);
 	char folder[CONTENT_PATH_BYTES];
-	struct hash key, stamp;
-	int rc = content_work_path(content, "master", folder);
+	struct hash stamp;
+	int rc = locate_master(folder, &stamp, scans, &master, diagnostics);
 
 	*out = NULL;
 	*report = (struct build_master_report){ 0 };
-	if (rc == 0)
-		rc = scans_key(scans, &key, diagnostics);
 	if (rc < 0)
 		return diagnostics_add(diagnostics, rc, content->folder, 0, "%s", strerror(-rc));
-	stamp = master_stamp(key, &master);
 	if (!options->force && master_open(out, folder, &stamp) == 0) {
 		master_drop_leftovers(folder, stamp);
 		return 0;
@@ -206,17 +217,14 @@ int build_master(struct master **out, struct scans *scans,
 
 void build_known_master(struct master **out, struct scans *scans)
 {
-	const struct content *content = scans_content(scans);
 	const struct build_master_options none = { .jobs = 0 };
-	const struct master_options options = master_options(content, &none);
+	const struct master_options options = master_options(scans_content(scans), &none);
 	char folder[CONTENT_PATH_BYTES];
-	struct hash key, stamp;
+	struct hash stamp;
 
 	*out = NULL;
-	if (content_work_path(content, "master", folder) < 0 || scans_key(scans, &key, NULL) < 0)
-		return;
-	stamp = master_stamp(key, &options);
-	if (master_open(out, folder, &stamp) < 0)
+	if (locate_master(folder, &stamp, scans, &options, NULL) < 0 ||
+	    master_open(out, folder, &stamp) < 0)
 		*out = NULL;
 }
 
@@ -305,7 +313,6 @@ static int write_report(struct build_report *report, struct sources *sources)
 						.publish = &report->publish,
 						.stages = report->stages,
 						.stage_count = BUILD_STAGES };
-
 	int rc = report_write(&options, report->page);
 
 	if (rc < 0)

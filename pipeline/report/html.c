@@ -1,8 +1,10 @@
-/* Escaping, units and base64. */
+/* Escaping, units and data in the page. */
 #include "pipeline/report/html.h"
 
 #include <inttypes.h>
 #include <math.h>
+
+#include <sodium.h>
 
 void html_text(FILE *to, const char *text)
 {
@@ -78,20 +80,16 @@ void html_time(FILE *to, int64_t ms)
 
 void html_data(FILE *to, const char *type, struct bytes file)
 {
-	static const char digits[] =
-		"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+	enum { PIECE = 3 * 1024 }; /* a multiple of 3 ends without padding */
+	char text[sodium_base64_ENCODED_LEN(PIECE, sodium_base64_VARIANT_ORIGINAL)];
 
 	fprintf(to, "data:%s;base64,", type);
-	for (size_t i = 0; i < file.size; i += 3) {
-		size_t left = file.size - i;
-		uint32_t bits = (uint32_t)file.data[i] << 16 |
-				(left > 1 ? (uint32_t)file.data[i + 1] << 8 : 0) |
-				(left > 2 ? (uint32_t)file.data[i + 2] : 0);
+	for (size_t at = 0; at < file.size; at += PIECE) {
+		size_t size = file.size - at < PIECE ? file.size - at : PIECE;
 
-		fputc(digits[bits >> 18], to);
-		fputc(digits[bits >> 12 & 63], to);
-		fputc(left > 1 ? digits[bits >> 6 & 63] : '=', to);
-		fputc(left > 2 ? digits[bits & 63] : '=', to);
+		fputs(sodium_bin2base64(text, sizeof(text), file.data + at, size,
+					sodium_base64_VARIANT_ORIGINAL),
+		      to);
 	}
 }
 

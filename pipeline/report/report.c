@@ -81,35 +81,40 @@ static void put_count(FILE *to, uint64_t count, const char *text)
 	put_fact_end(to, text);
 }
 
+/* Names a picture that the style draws behind marks; one that could not be drawn is left out. */
+static void put_background(FILE *to, const char *name, const struct buffer *picture)
+{
+	if (picture->size == 0)
+		return;
+	fprintf(to, ".%s{background-image:url(", name);
+	html_data(to, "image/jpeg", buffer_bytes(picture));
+	fputs(")}\n", to);
+}
+
 static void put_head(FILE *to, const struct report_data *data)
 {
-	const struct publish_content_report *publish = data->options->publish;
-	const struct sample_grid *grid = samples_store_grid(data->store);
-	uint64_t processor_us = 0;
-	int64_t all_ms = 0;
-
 	fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
 	      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
 	      to);
 	html_text(to, data->content->name);
 	fprintf(to, ": report of the build</title>\n<style>%s\n", style);
-	if (data->pictures[REPORT_ABOVE].size > 0) {
-		fputs(".above{background-image:url(", to);
-		html_data(to, "image/jpeg", buffer_bytes(&data->pictures[REPORT_ABOVE]));
-		fputs(")}\n", to);
-	}
-	if (data->pictures[REPORT_MODEL].size > 0) {
-		fputs(".front{background-image:url(", to);
-		html_data(to, "image/jpeg", buffer_bytes(&data->pictures[REPORT_MODEL]));
-		fputs(")}\n", to);
-	}
+	put_background(to, "above", &data->pictures[REPORT_ABOVE]);
+	put_background(to, "front", &data->pictures[REPORT_MODEL]);
 	fputs("</style></head>\n<body><main>\n<h1>", to);
 	html_text(to, data->content->name);
 	fprintf(to, "</h1><p>Release %" PRIu64 ". What its build found, made and cost.</p>\n",
-		publish->publish.release.sequence);
+		data->options->publish->publish.release.sequence);
+}
+
+static void put_facts(FILE *to, const struct report_data *data)
+{
+	const struct publish_content_report *publish = data->options->publish;
+	const struct sample_grid *grid = samples_store_grid(data->store);
+	int64_t processor_us = 0, all_ms = 0;
+
 	for (uint32_t i = 0; i < data->options->stage_count; i++) {
 		all_ms += data->options->stages[i].ms;
-		processor_us += (uint64_t)data->options->stages[i].processor_us;
+		processor_us += data->options->stages[i].processor_us;
 	}
 	fputs("<div class=\"facts\">\n", to);
 	put_count(to, data->master->source_triangles, "triangles in the scan");
@@ -127,7 +132,7 @@ static void put_head(FILE *to, const struct report_data *data)
 	html_time(to, all_ms);
 	put_fact_end(to, "time of this build");
 	put_fact_begin(to);
-	html_time(to, (int64_t)(processor_us / 1000));
+	html_time(to, processor_us / 1000);
 	put_fact_end(to, "processor time");
 	fputs("</div>\n", to);
 }
@@ -632,6 +637,7 @@ static int write_page(const struct report_data *data, const char *path)
 	if (!to)
 		return -errno;
 	put_head(to, data);
+	put_facts(to, data);
 	put_pictures(to, data);
 	put_scan_section(to, data);
 	put_levels(to, data);

@@ -140,17 +140,12 @@ static void halve(struct picture *out, const uint8_t *frame, const uint8_t backg
 static int draw_frame(struct drawing *drawing, const struct gl_target *target, struct camera camera,
 		      uint8_t *frame)
 {
-	float forward[3], length = 0, matrix[16];
+	float forward[3], matrix[16];
 	int rc;
 
 	camera.width_px = target->width_px;
 	camera.height_px = target->height_px;
-	for (int k = 0; k < 3; k++) {
-		forward[k] = camera.target_m[k] - camera.eye_m[k];
-		length += forward[k] * forward[k];
-	}
-	for (int k = 0; k < 3; k++)
-		forward[k] /= sqrtf(length);
+	camera_forward(&camera, forward);
 	drawing_look(drawing, camera.eye_m, BLOCK / camera_px_per_radian(&camera));
 	if (!drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m))
 		return -EINVAL;

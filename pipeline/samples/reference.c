@@ -260,14 +260,9 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 {
 	struct camera camera = *view;
 	uint32_t jitters = easel->options->supersample / easel->block;
-	float forward[3], size = 0, matrix[16];
+	float forward[3], matrix[16];
 
-	for (int i = 0; i < 3; i++) {
-		forward[i] = camera.target_m[i] - camera.eye_m[i];
-		size += forward[i] * forward[i];
-	}
-	for (int i = 0; i < 3; i++)
-		forward[i] /= sqrtf(size);
+	camera_forward(&camera, forward);
 	camera.width_px = easel->target.width_px;
 	camera.height_px = easel->target.height_px;
 	drawing_look(easel->drawing, camera.eye_m, 0);

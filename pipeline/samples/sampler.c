@@ -52,6 +52,15 @@ struct sampling {
 	struct queue *queue;
 };
 
+uint32_t sampler_levels(uint32_t face_px)
+{
+	uint32_t count = 0;
+
+	while (((uint32_t)SAMPLE_TILE_PX << count) <= face_px)
+		count++;
+	return count;
+}
+
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground)
 {
@@ -60,9 +69,7 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 	for (int i = 0; i < 3; i++)
 		longest = fmaxf(longest, grid_reach * (high_m[i] - low_m[i]));
 	spacing = longest / (float)(points - 1);
-	*out = (struct sample_grid){ 0 };
-	while (((uint32_t)SAMPLE_TILE_PX << out->level_count) <= face_px)
-		out->level_count++;
+	*out = (struct sample_grid){ .level_count = sampler_levels(face_px) };
 	for (int i = 0; i < 3; i++) {
 		float middle = (low_m[i] + high_m[i]) / 2,
 		      half = grid_reach / 2 * (high_m[i] - low_m[i]);

@@ -24,6 +24,8 @@ struct sampler_options {
  * SAMPLE_TILE_PX << n. */
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground);
+/* Returns how many levels a face of that resolution has; see sampler_grid. */
+uint32_t sampler_levels(uint32_t face_px);
 /* Sets out to the position of a point, metres. */
 void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3]);
 

@@ -90,7 +90,7 @@ void sampling_forecast(struct sampling_forecast *out, const struct sample_grid *
 		       const float (*places_m)[3], uint32_t place_count, const float low_m[3],
 		       const float high_m[3])
 {
-	static struct face_cells cells[CUBE_FACES];
+	struct face_cells cells[CUBE_FACES];
 	uint32_t side = 1u << (grid->level_count - 1);
 	double area = 0, spacing, share = 0;
 

@@ -13,6 +13,7 @@
 #include "pipeline/samples/chunks.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"
+#include "pipeline/samples/sampler.h"
 #include "render/display/headless.h"
 
 /* Faces of more levels are not drawn: their cost grows with their pixels. With fewer, the ball is
@@ -180,8 +181,7 @@ static int work(void *user, uint32_t piece)
 	options.drawn.procedural = job->content->colours == CONTENT_COLOURS_PROCEDURAL;
 	options.drawn.surfaces = options.drawn.procedural;
 	memcpy(options.drawn.sun, job->content->sun, sizeof(options.drawn.sun));
-	while (((uint32_t)SAMPLE_TILE_PX << options.level_count) <= job->content->face_px)
-		options.level_count++;
+	options.level_count = sampler_levels(job->content->face_px);
 	for (; options.level_count > TRIAL_LEVELS_MAX; options.level_count--)
 		extra *= 4;
 	for (; options.level_count < TRIAL_LEVELS_MIN; options.level_count++)
