@@ -15,12 +15,28 @@ enum {
 	ROOT_CHILDREN_MAX
 };
 
-/* The single quantisation lattice of a model: metres = origin + step * lattice, with lattice in
- * 0..65535 on each axis. So a border shared by two patches is equal bit for bit at every level. */
+enum {
+	LATTICE_BITS = 16, /* the longest side of most models has 2 to this power of steps */
+	LATTICE_FINE_BITS_MAX = 8, /* and a place is exact as a float */
+	LATTICE_PLACES_MAX = 1 << (LATTICE_BITS + LATTICE_FINE_BITS_MAX)
+};
+
+/* The single quantisation lattice of a model: metres = origin + step * place, with place in
+ * 0..(65536 << fine_bits) - 1 on each axis. So a border shared by two patches is equal bit for bit
+ * at every level. */
 struct lattice {
 	double origin_m[3];
 	double step_m;
+	uint8_t fine_bits; /* 0 to LATTICE_FINE_BITS_MAX; above 0 only for large sites */
 };
+
+/* Sets out to the position of a place, in metres. */
+static inline void lattice_metres(double out[3], const struct lattice *lattice,
+				  const int32_t place[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = lattice->origin_m[i] + lattice->step_m * place[i];
+}
 
 struct root_page {
 	char name[128]; /* the model's name, UTF-8 */

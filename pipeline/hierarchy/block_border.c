@@ -21,13 +21,16 @@ void block_look_apply(const struct block_look *look, const struct lattice *latti
 	for (uint32_t v = 0; v < count; v++) {
 		struct lattice_vertex *vertex = &vertices[v];
 		float at[3], rgb[3];
+		uint16_t coarse[3];
+		double at_m[3];
 
-		vertex->seen = exposure_of(look->exposure, vertex->position, vertex->normal);
+		lattice_coarse(coarse, lattice, vertex->position);
+		vertex->seen = exposure_of(look->exposure, coarse, vertex->normal);
 		if (!look->is_stone)
 			continue;
+		lattice_metres(at_m, lattice, vertex->position);
 		for (int i = 0; i < 3; i++)
-			at[i] = (float)(lattice->origin_m[i] +
-					lattice->step_m * vertex->position[i]);
+			at[i] = (float)at_m[i];
 		material_colour(rgb, at, vertex->normal, look->footprint_m);
 		for (int i = 0; i < 3; i++)
 			vertex->colour[i] = (uint8_t)(255.0f * (rgb[i] < 0.0f   ? 0.0f
@@ -39,14 +42,18 @@ void block_look_apply(const struct block_look *look, const struct lattice *latti
 
 /* ---- settling */
 
-static uint64_t place_of(const uint16_t position[3])
+static bool holds(const struct map *places, const int32_t place[3])
 {
-	return (uint64_t)position[2] << 32 | (uint64_t)position[1] << 16 | position[0];
+	return map_get(places, lattice_key(place)) != MAP_NONE;
 }
 
-static bool holds(const struct map *places, const uint16_t position[3])
+static uint32_t block_at(const struct block_cells *cells, const struct lattice *lattice,
+			 const int32_t place[3])
 {
-	return map_get(places, place_of(position)) != MAP_NONE;
+	uint16_t coarse[3];
+
+	lattice_coarse(coarse, lattice, place);
+	return cells->block_of_cell[block_cell(coarse)];
 }
 
 /* Finds the places of vertices in the block's cells that have a triangle of another block. */
@@ -57,12 +64,12 @@ static int find_places(struct map *places, const struct block_scan *scan,
 	int rc = 0;
 
 	for (uint32_t t = triangles->own_count; rc == 0 && t < triangles->count; t++) {
-		uint16_t corners[3][3];
+		int32_t corners[3][3];
 
 		block_corners(corners, scan, triangles->items[t]);
 		for (int c = 0; rc == 0 && c < 3; c++)
-			if (cells->block_of_cell[block_cell(corners[c])] == block)
-				rc = map_set(places, place_of(corners[c]), 0);
+			if (block_at(cells, &scan->lattice, corners[c]) == block)
+				rc = map_set(places, lattice_key(corners[c]), 0);
 	}
 	return rc;
 }
@@ -74,7 +81,7 @@ static uint32_t keep_touching(struct block_triangles *triangles, const struct ma
 	uint32_t kept = 0;
 
 	for (uint32_t t = 0; t < triangles->count; t++) {
-		uint16_t corners[3][3];
+		int32_t corners[3][3];
 
 		block_corners(corners, scan, triangles->items[t]);
 		if (holds(places, corners[0]) || holds(places, corners[1]) ||
@@ -98,8 +105,8 @@ static int find_users(uint32_t *lows, uint32_t *highs, const struct lattice_mesh
 		uint32_t block;
 
 		for (int c = 0; c < 3; c++)
-			memcpy(corners[c], mesh->vertices[mesh->triangles[t][c]].position,
-			       sizeof(corners[c]));
+			lattice_coarse(corners[c], &mesh->lattice,
+				       mesh->vertices[mesh->triangles[t][c]].position);
 		block = cells->block_of_cell[block_cell_of_triangle((const uint16_t(*)[3])corners)];
 		for (int c = 0; c < 3; c++) {
 			uint32_t v = mesh->triangles[t][c];
@@ -120,8 +127,8 @@ static void put_vertex(struct buffer *out, const struct border_vertex *border)
 
 static int compare_borders(const void *left, const void *right)
 {
-	uint64_t a = place_of(((const struct border_vertex *)left)->vertex.position);
-	uint64_t b = place_of(((const struct border_vertex *)right)->vertex.position);
+	map_key a = lattice_key(((const struct border_vertex *)left)->vertex.position);
+	map_key b = lattice_key(((const struct border_vertex *)right)->vertex.position);
 
 	return a < b ? -1 : a > b;
 }
@@ -271,20 +278,21 @@ void block_border_finish(struct block_border *border)
 }
 
 uint32_t block_border_find(const struct block_border *border, const struct block_cells *cells,
-			   const uint16_t position[3])
+			   const struct lattice *lattice, const int32_t position[3])
 {
-	uint32_t block = cells->block_of_cell[block_cell(position)];
+	uint32_t block = block_at(cells, lattice, position);
 	uint32_t low = border->first[block], end = border->first[block + 1], high = end;
-	uint64_t place = place_of(position);
+	map_key place = lattice_key(position);
 
 	while (low < high) {
 		uint32_t middle = low + (high - low) / 2;
 
-		if (place_of(border->vertices[middle].vertex.position) < place)
+		if (lattice_key(border->vertices[middle].vertex.position) < place)
 			low = middle + 1;
 		else
 			high = middle;
 	}
-	return low < end && place_of(border->vertices[low].vertex.position) == place ? low
-										     : BORDER_NONE;
+	return low < end && lattice_key(border->vertices[low].vertex.position) == place
+		       ? low
+		       : BORDER_NONE;
 }

@@ -46,6 +46,6 @@ void block_border_finish(struct block_border *border); /* NULL and zeroed are fi
 
 /* Returns the number of the border vertex at a place, or BORDER_NONE. */
 uint32_t block_border_find(const struct block_border *border, const struct block_cells *cells,
-			   const uint16_t position[3]);
+			   const struct lattice *lattice, const int32_t position[3]);
 
 #endif

@@ -51,7 +51,7 @@ struct block_digest {
 	uint32_t patch_count;
 	struct block_digest_patch {
 		uint32_t triangle_count;
-		float centre[3]; /* lattice steps */
+		float centre[3]; /* coarse steps */
 	} * patches;             /* owned */
 	uint32_t use_count;
 	struct block_use {

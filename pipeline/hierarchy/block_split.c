@@ -84,7 +84,7 @@ int block_scan_init(struct block_scan *scan, const struct mesh *mesh, uint32_t j
 
 /* ---- counting */
 
-void block_corners(uint16_t out[3][3], const struct block_scan *scan, const uint32_t triangle[3])
+void block_corners(int32_t out[3][3], const struct block_scan *scan, const uint32_t triangle[3])
 {
 	for (int c = 0; c < 3; c++)
 		lattice_place(out[c], &scan->lattice, scan->mesh->positions[triangle[c]]);
@@ -105,13 +105,16 @@ static int count_piece(void *user, uint32_t piece)
 
 	for (uint32_t t = piece * PIECE; t < piece_end(mesh->triangle_count, piece); t++) {
 		const uint32_t *triangle = mesh->triangles[t];
-		uint16_t corners[3][3];
-		const uint16_t(*at)[3] = (const uint16_t(*)[3])corners;
+		int32_t corners[3][3];
+		uint16_t coarse[3][3];
+		const uint16_t(*at)[3] = (const uint16_t(*)[3])coarse;
 
 		for (int c = 0; c < 3; c++)
 			if (triangle[c] >= mesh->vertex_count)
 				return -EINVAL;
 		block_corners(corners, pass->scan, triangle);
+		for (int c = 0; c < 3; c++)
+			lattice_coarse(coarse[c], &pass->scan->lattice, corners[c]);
 		block_counts_add(pass->counts, at);
 		exposure_add(pass->exposure, at);
 		for (int i = 0; i < 3; i++)
@@ -162,11 +165,14 @@ static int split_path(char out[PATH_MAX], const char *folder, uint32_t piece)
 static uint32_t blocks_of(uint32_t blocks[4], const struct block_scan *scan,
 			  const struct block_cells *cells, const uint32_t triangle[3])
 {
-	uint16_t corners[3][3];
-	const uint16_t(*at)[3] = (const uint16_t(*)[3])corners;
+	int32_t corners[3][3];
+	uint16_t coarse[3][3];
+	const uint16_t(*at)[3] = (const uint16_t(*)[3])coarse;
 	uint32_t count = 1;
 
 	block_corners(corners, scan, triangle);
+	for (int c = 0; c < 3; c++)
+		lattice_coarse(coarse[c], &scan->lattice, corners[c]);
 	blocks[0] = cells->block_of_cell[block_cell_of_triangle(at)];
 	for (int c = 0; c < 3; c++) {
 		uint32_t block = cells->block_of_cell[block_cell(at[c])], i = 0;

@@ -48,7 +48,7 @@ must_check int block_triangles_read(struct block_triangles *out, const struct bl
 void block_triangles_finish(struct block_triangles *triangles); /* NULL and zeroed are fine */
 
 /* Puts the corners of a triangle on the lattice. */
-void block_corners(uint16_t out[3][3], const struct block_scan *scan, const uint32_t triangle[3]);
+void block_corners(int32_t out[3][3], const struct block_scan *scan, const uint32_t triangle[3]);
 
 /* Copies some triangles with their vertices: positions and colours, in the scan's order. *out is
  * owned by the caller: end it with mesh_finish(). Returns -ENOMEM. */

@@ -50,8 +50,8 @@ static int take_borders(struct worker *worker)
 	const struct lattice_mesh *mesh = &worker->work.mesh;
 
 	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-		uint32_t found =
-			block_border_find(border, &worker->site->cells, mesh->vertices[v].position);
+		uint32_t found = block_border_find(border, &worker->site->cells, &mesh->lattice,
+						   mesh->vertices[v].position);
 
 		if (found == BORDER_NONE)
 			continue;

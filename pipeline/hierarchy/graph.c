@@ -76,7 +76,7 @@ static bool unite(uint32_t *parents, uint32_t a, uint32_t b)
 	return true;
 }
 
-/* Spreads the bits of a lattice coordinate, with two zeros after each. */
+/* Spreads the bits of a coordinate in coarse steps, with two zeros after each. */
 static uint64_t spread(uint64_t bits)
 {
 	bits &= 0xffff;

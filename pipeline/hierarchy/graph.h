@@ -34,7 +34,7 @@ void graph_finish(struct graph *graph);
 must_check int graph_add(struct graph *graph, uint32_t a, uint32_t b, int32_t weight);
 
 /* Connects the parts of a disconnected graph where they are near each other, by edges of that
- * weight. at[node] is a node's position in lattice steps. Returns -ENOMEM. */
+ * weight. at[node] is a node's position in coarse steps. Returns -ENOMEM. */
 must_check int graph_connect(struct graph *graph, float (*at)[3], int32_t weight);
 
 /* Divides the graph. Sets labels[node] to 0..part_count-1; no part is empty if there are enough

@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/map.h"
-
-enum { STEPS = 65535 };
-
 int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3])
 {
 	double longest = 0.0;
@@ -19,19 +15,39 @@ int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[
 		out->origin_m[i] = min_m[i];
 		longest = fmax(longest, (double)max_m[i] - min_m[i]);
 	}
-	out->step_m = longest / STEPS;
+	out->fine_bits = 0;
+	out->step_m = longest / lattice_last(out);
 	return longest > 0.0 && isfinite(longest) ? 0 : -EINVAL;
 }
 
-void lattice_place(uint16_t out[3], const struct lattice *lattice, const float at_m[3])
+void lattice_place(int32_t out[3], const struct lattice *lattice, const float at_m[3])
 {
+	const int32_t last = lattice_last(lattice);
+
 	for (int i = 0; i < 3; i++) {
 		/* Half a step is added and the rest cut off: this is rounding, as no place is
 		 * negative. */
 		double steps = (at_m[i] - lattice->origin_m[i]) / lattice->step_m + 0.5;
 
-		out[i] = (uint16_t)(steps < 0 ? 0 : steps > STEPS ? STEPS : steps);
+		out[i] = (int32_t)(steps < 0 ? 0 : steps > last ? last : steps);
 	}
+}
+
+void lattice_coarse(uint16_t out[3], const struct lattice *lattice, const int32_t place[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = (uint16_t)(place[i] >> lattice->fine_bits);
+}
+
+int32_t lattice_last(const struct lattice *lattice)
+{
+	return (1 << (LATTICE_BITS + lattice->fine_bits)) - 1;
+}
+
+map_key lattice_key(const int32_t place[3])
+{
+	return (map_key)(uint32_t)place[2] << 64 | (uint64_t)(uint32_t)place[1] << 32 |
+	       (uint32_t)place[0];
 }
 
 struct merged {
@@ -50,11 +66,12 @@ static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const
 
 	for (uint32_t v = 0; rc == 0 && v < mesh->vertex_count; v++) {
 		const uint8_t *own = mesh->colours ? mesh->colours[v] : plain;
-		uint16_t position[3];
-		uint64_t place, id;
+		int32_t position[3];
+		map_key place;
+		uint64_t id;
 
 		lattice_place(position, &out->lattice, mesh->positions[v]);
-		place = position[0] | (uint64_t)position[1] << 16 | (uint64_t)position[2] << 32;
+		place = lattice_key(position);
 		id = map_get(&vertex_at, place);
 		if (id == MAP_NONE) {
 			id = out->vertex_count++;
@@ -257,7 +274,7 @@ void lattice_mesh_finish(struct lattice_mesh *mesh)
 void lattice_vertex_put(struct buffer *out, const struct lattice_vertex *vertex)
 {
 	for (int i = 0; i < 3; i++)
-		buffer_put_u16(out, vertex->position[i]);
+		buffer_put_u32(out, (uint32_t)vertex->position[i]);
 	buffer_put_u8(out, vertex->border);
 	buffer_put(out, vertex->colour, sizeof(vertex->colour));
 	buffer_put_u8(out, vertex->seen);
@@ -267,8 +284,12 @@ void lattice_vertex_put(struct buffer *out, const struct lattice_vertex *vertex)
 
 void lattice_vertex_get(struct lattice_vertex *out, struct reader *reader)
 {
-	for (int i = 0; i < 3; i++)
-		out->position[i] = reader_u16(reader);
+	for (int i = 0; i < 3; i++) {
+		uint32_t place = reader_u32(reader);
+
+		reader->failed |= place >= LATTICE_PLACES_MAX;
+		out->position[i] = (int32_t)(place % LATTICE_PLACES_MAX);
+	}
 	out->border = reader_u8(reader);
 	for (int i = 0; i < 4; i++)
 		out->colour[i] = reader_u8(reader);

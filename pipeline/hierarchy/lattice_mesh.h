@@ -1,16 +1,19 @@
 /* A scan on the single lattice of its model, the input of partition, simplification and patches.
- * Positions are lattice steps (0..65535 per axis), so that "the same place" means equal bits. */
+ * Positions are places of the lattice, whole numbers, so that "the same place" means equal bits.
+ * What only needs to be near (cells, voxels, centres) counts in coarse steps: 65536 along the
+ * longest side, which are the lattice's own unless the site is large. */
 #ifndef GOPURA_PIPELINE_HIERARCHY_LATTICE_MESH_H
 #define GOPURA_PIPELINE_HIERARCHY_LATTICE_MESH_H
 
 #include <stdint.h>
 
 #include "base/bytes.h"
+#include "base/map.h"
 #include "format/root_page.h"
 #include "pipeline/import/mesh.h"
 
 struct lattice_vertex {
-	uint16_t position[3];
+	int32_t position[3];
 	uint8_t border;    /* 1: on an open edge of the scan */
 	uint8_t colour[4]; /* sRGB; [3] is the share of open sky */
 	uint8_t seen;      /* visibility, 0: never seen; set by exposure_find, 255 before */
@@ -36,7 +39,14 @@ struct lattice_counts {
 /* Sets the lattice of a model with that bounding box. Returns -EINVAL if it has no extent. */
 must_check int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3]);
 /* Sets out to the nearest place of the lattice. */
-void lattice_place(uint16_t out[3], const struct lattice *lattice, const float at_m[3]);
+void lattice_place(int32_t out[3], const struct lattice *lattice, const float at_m[3]);
+/* Sets out to the coarse steps of a place. */
+void lattice_coarse(uint16_t out[3], const struct lattice *lattice, const int32_t place[3]);
+/* Returns the highest place on an axis. */
+int32_t lattice_last(const struct lattice *lattice);
+/* Returns a number that no other place has. Places in its order go along x first, then y, then z.
+ */
+map_key lattice_key(const int32_t place[3]);
 
 /* Puts a mesh, or a part of one, on its lattice. Positions must be finite and indices in range.
  * colour is for scans without colours. Open edges are not known yet. Returns -EINVAL if no triangle
@@ -52,7 +62,7 @@ must_check int lattice_mesh_find_borders(struct lattice_mesh *mesh, struct latti
 void lattice_mesh_finish(struct lattice_mesh *mesh); /* NULL is fine */
 
 /* A vertex in the files of a build: LATTICE_VERTEX_BYTES. A failure is kept in out or reader. */
-enum { LATTICE_VERTEX_BYTES = 24 };
+enum { LATTICE_VERTEX_BYTES = 30 };
 void lattice_vertex_put(struct buffer *out, const struct lattice_vertex *vertex);
 void lattice_vertex_get(struct lattice_vertex *out, struct reader *reader);
 

@@ -89,6 +89,7 @@ static int make_leaves(struct builder *builder)
 {
 	struct lattice_mesh *mesh = builder->mesh;
 	struct partition *partition = &builder->partition;
+	const float coarse = 1.0f / (float)(1 << mesh->lattice.fine_bits);
 	uint32_t *counts = calloc(partition->leaf_count, sizeof(*counts));
 	int rc = counts ? 0 : -ENOMEM;
 
@@ -111,6 +112,7 @@ static int make_leaves(struct builder *builder)
 		for (int corner = 0; corner < 3; corner++)
 			for (int i = 0; i < 3; i++)
 				patch->centre[i] +=
+					coarse *
 					(float)mesh->vertices[mesh->triangles[t][corner]]
 						.position[i] /
 					(3.0f * (float)count);
@@ -129,6 +131,7 @@ static int partition_scan(struct builder *builder)
 		.chunk_triangles = CHUNK_TRIANGLES,
 		.patch_triangles = builder->options.patch_triangles,
 		.binary = builder->options.kind == MULTIRES_TREE,
+		.fine_bits = mesh->lattice.fine_bits,
 	};
 	int rc = partition_create(&builder->partition, mesh->vertices, mesh->vertex_count,
 				  mesh->triangles, mesh->triangle_count, &options);

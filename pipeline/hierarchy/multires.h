@@ -66,7 +66,7 @@ struct live_patch {
 	uint32_t finer;          /* number of the group that replaces it, or NO_GROUP */
 	double error_m, loss_m4; /* of that group; 0 if there is none */
 	struct sphere finer_sphere;
-	float centre[3]; /* lattice steps; approximate position */
+	float centre[3]; /* coarse steps; approximate position */
 };
 
 struct live_patches {

@@ -102,6 +102,7 @@ static int merge(struct merged *merged, const struct job_site *site, const struc
 	name_corners(merged, job, local_of);
 	surface->vertices = malloc(surface->vertex_count * sizeof(*surface->vertices));
 	surface->locked = malloc(surface->vertex_count);
+	surface->fine_bits = site->mesh->lattice.fine_bits;
 	if (!surface->vertices || !surface->locked)
 		return -ENOMEM;
 	for (uint32_t v = 0; v < surface->vertex_count; v++) {
@@ -134,6 +135,7 @@ static int add_coarser(struct group_job *job, const struct merged *merged, const
 		.loss_m4 = job->loss_m4,
 		.finer_sphere = { .radius = job->group.radius_m },
 	};
+	const float coarse = 1.0f / (float)(1 << merged->surface.fine_bits);
 
 	if (!patch.triangles)
 		return -ENOMEM;
@@ -146,6 +148,7 @@ static int add_coarser(struct group_job *job, const struct merged *merged, const
 			patch.triangles[t][corner] = merged->globals[local];
 			for (int i = 0; i < 3; i++)
 				patch.centre[i] +=
+					coarse *
 					(float)merged->surface.vertices[local].position[i] /
 					(3.0f * (float)count);
 		}
@@ -159,6 +162,7 @@ static int divide(struct group_job *job, const struct merged *merged, uint32_t p
 		.voxel_triangles = patch_triangles,
 		.chunk_triangles = UINT32_MAX,
 		.patch_triangles = patch_triangles,
+		.fine_bits = surface->fine_bits,
 	};
 	struct partition partition;
 	uint32_t *sorted = malloc(surface->triangle_count * sizeof(*sorted));

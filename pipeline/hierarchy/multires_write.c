@@ -11,12 +11,6 @@
 #include "format/normal.h"
 #include "format/patch.h"
 
-static void to_metres(double out[3], const struct lattice *lattice, const uint16_t position[3])
-{
-	for (int i = 0; i < 3; i++)
-		out[i] = lattice->origin_m[i] + lattice->step_m * position[i];
-}
-
 static double distance(const double a[3], const double b[3])
 {
 	double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -87,7 +81,8 @@ static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
 		const struct lattice_vertex *from = &mesh->vertices[globals[v]];
 		struct patch_vertex *to = &out->vertices[v];
 
-		memcpy(to->position, from->position, sizeof(to->position));
+		for (int i = 0; i < 3; i++)
+			to->position[i] = (uint16_t)from->position[i];
 		memcpy(to->colour, from->colour, sizeof(to->colour));
 		normal_encode(to->normal, from->normal);
 	}
@@ -117,7 +112,9 @@ static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *pa
 		centre[i] = out->centre_m[i];
 	}
 	for (uint32_t v = 0; v < patch->vertex_count; v++) {
-		to_metres(at, lattice, patch->vertices[v].position);
+		const uint16_t *p = patch->vertices[v].position;
+
+		lattice_metres(at, lattice, (const int32_t[3]){ p[0], p[1], p[2] });
 		radius = fmax(radius, distance(at, centre));
 	}
 	out->radius_m = nextafterf((float)radius, INFINITY);

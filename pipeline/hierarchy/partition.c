@@ -17,7 +17,7 @@ enum { NORMAL_WEIGHT = 8, JOIN_WEIGHT = 1, LEVELS_MAX = 10 };
 struct look {
 	float normal[3]; /* area-weighted sum; a unit vector after look_settle */
 	float colour[3]; /* sum; the mean after look_settle */
-	float centre[3]; /* likewise, lattice steps */
+	float centre[3]; /* likewise, coarse steps */
 	uint32_t triangle_count;
 };
 
@@ -39,6 +39,7 @@ struct splitter {
 static void look_add(struct look *look, const struct splitter *splitter, uint32_t t)
 {
 	const struct lattice_vertex *corner[3];
+	const float coarse = 1.0f / (float)(1 << splitter->options.fine_bits);
 	float u[3], v[3];
 
 	for (int c = 0; c < 3; c++)
@@ -47,7 +48,7 @@ static void look_add(struct look *look, const struct splitter *splitter, uint32_
 		u[i] = (float)(corner[1]->position[i] - corner[0]->position[i]);
 		v[i] = (float)(corner[2]->position[i] - corner[0]->position[i]);
 		for (int c = 0; c < 3; c++) {
-			look->centre[i] += (float)corner[c]->position[i] / 3.0f;
+			look->centre[i] += coarse * (float)corner[c]->position[i] / 3.0f;
 			look->colour[i] += (float)corner[c]->colour[i] / 3.0f;
 		}
 	}
@@ -252,12 +253,14 @@ static int split_triangles(struct splitter *splitter, uint32_t *set, uint32_t co
 
 /* ---- voxels */
 
-static uint64_t cell_at(const uint16_t position[3], int level)
+static uint64_t cell_at(const struct splitter *splitter, uint32_t vertex, int level)
 {
+	const int32_t *position = splitter->vertices[vertex].position;
+	const int down = LATTICE_BITS + splitter->options.fine_bits - level;
 	uint64_t cell = 0;
 
 	for (int i = 0; i < 3; i++)
-		cell = cell << 16 | (uint64_t)(position[i] >> (16 - level));
+		cell = cell << 16 | (uint64_t)(position[i] >> down);
 	return cell;
 }
 
@@ -267,8 +270,7 @@ static uint64_t voxel_of_triangle(const struct splitter *splitter, uint32_t t, i
 	uint64_t cells[3];
 
 	for (int corner = 0; corner < 3; corner++)
-		cells[corner] =
-			cell_at(splitter->vertices[splitter->triangles[t][corner]].position, level);
+		cells[corner] = cell_at(splitter, splitter->triangles[t][corner], level);
 	return cells[1] == cells[2] ? cells[1] : cells[0];
 }
 

@@ -17,6 +17,7 @@ struct partition_options {
 	uint32_t chunk_triangles; /* N_n: at most so many are divided triangle by triangle */
 	uint32_t patch_triangles; /* N_l: maximum in a patch, 1 or more */
 	bool binary;              /* only halve, and keep the tree of the halves */
+	uint8_t fine_bits;        /* of the lattice */
 };
 
 /* A node of the binary tree covers the leaves first_leaf to first_leaf + leaf_count - 1. */

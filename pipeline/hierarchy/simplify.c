@@ -238,10 +238,12 @@ static bool is_fixed(const struct work *work, uint32_t vertex)
 	return work->surface->locked[vertex] || work->surface->vertices[vertex].border;
 }
 
-static void round_to_lattice(double at[3])
+static void round_to_lattice(double at[3], uint8_t fine_bits)
 {
+	const double last = (1 << (LATTICE_BITS + fine_bits)) - 1;
+
 	for (int i = 0; i < 3; i++)
-		at[i] = fmin(fmax(round(at[i]), 0.0), 65535.0);
+		at[i] = fmin(fmax(round(at[i]), 0.0), last);
 }
 
 static double squared_distance(const double a[3], const double b[3])
@@ -254,7 +256,7 @@ static double squared_distance(const double a[3], const double b[3])
 /* Places the vertex of a collapse between two free vertices: at the best point, or in the middle if
  * the best point is far away. */
 static double free_place(double out[3], const struct quadric *sum, const double a[3],
-			 const double b[3])
+			 const double b[3], uint8_t fine_bits)
 {
 	double middle[3], square = squared_distance(a, b);
 
@@ -263,7 +265,7 @@ static double free_place(double out[3], const struct quadric *sum, const double 
 	quadric_least(out, sum, middle);
 	if (!(squared_distance(out, middle) <= square))
 		memcpy(out, middle, sizeof(middle));
-	round_to_lattice(out);
+	round_to_lattice(out, fine_bits);
 	return quadric_at(sum, out);
 }
 
@@ -286,7 +288,7 @@ static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, stru
 	place_of(at_a, work, a);
 	place_of(at_b, work, b);
 	if (!is_fixed(work, a) && !is_fixed(work, b))
-		return free_place(out, &sum, at_a, at_b);
+		return free_place(out, &sum, at_a, at_b, work->surface->fine_bits);
 	/* One end stays in its place: the one that may not leave, or the fixed one, or the better
 	 * one. */
 	value_a = b_may ? quadric_at(&sum, at_a) : INFINITY;
@@ -565,7 +567,7 @@ static int collapse(struct work *work, const struct candidate *candidate)
 	if (!work->surface->locked[keep])
 		blend(work, keep, gone);
 	for (int i = 0; i < 3; i++)
-		vertices[keep].position[i] = (uint16_t)at[i];
+		vertices[keep].position[i] = (int32_t)at[i];
 	quadric_add(&work->quadrics[keep], &work->quadrics[gone]);
 	work->areas[keep] += work->areas[gone];
 	join_corners(work, keep, gone);

@@ -16,6 +16,7 @@ struct simplify_surface {
 	struct lattice_vertex *vertices;
 	uint8_t *locked; /* for each vertex; 1: it must stay */
 	uint32_t (*triangles)[3];
+	uint8_t fine_bits; /* of the lattice */
 };
 
 struct simplify_result {

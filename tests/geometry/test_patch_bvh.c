@@ -8,7 +8,7 @@
 
 enum { SIDE = 30 }; /* vertices a side of a bumpy square */
 
-static const struct lattice lattice = { { -10, -10, -10 }, 0.001 };
+static const struct lattice lattice = { { -10, -10, -10 }, 0.001, 0 };
 
 static void make_bumps(struct patch_mesh *mesh)
 {

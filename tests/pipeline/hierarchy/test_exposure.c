@@ -57,7 +57,7 @@ static void add_triangle(struct exposure *exposure, const struct lattice_mesh *m
 
 	for (int c = 0; c < 3; c++)
 		for (int k = 0; k < 3; k++)
-			corners[c][k] = mesh->vertices[mesh->triangles[t][c]].position[k];
+			corners[c][k] = (uint16_t)mesh->vertices[mesh->triangles[t][c]].position[k];
 	exposure_add(exposure, (const uint16_t(*)[3])corners);
 }
 
@@ -73,8 +73,10 @@ static void look(struct lattice_mesh *mesh, bool backwards)
 	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
 		struct lattice_vertex *vertex =
 			&mesh->vertices[backwards ? mesh->vertex_count - 1 - i : i];
+		uint16_t coarse[3];
 
-		vertex->seen = exposure_of(exposure, vertex->position, vertex->normal);
+		lattice_coarse(coarse, &mesh->lattice, vertex->position);
+		vertex->seen = exposure_of(exposure, coarse, vertex->normal);
 	}
 	exposure_destroy(exposure);
 }
@@ -160,9 +162,9 @@ static uint32_t left_inside(bool exposed)
 		look(&mesh, false);
 	for (uint32_t v = 0; v < mesh.vertex_count; v++)
 		for (uint32_t k = 0; k < 3; k++)
-			mesh.vertices[v].position[k] =
-				(uint16_t)(512 + mesh.vertices[v].position[k] / 66 * 64 +
-					   (v * 7919 + k * 104729) % 509);
+			mesh.vertices[v].position[k] = 512 +
+						       mesh.vertices[v].position[k] / 66 * 64 +
+						       (int32_t)((v * 7919 + k * 104729) % 509);
 	surface = (struct simplify_surface){ .vertex_count = mesh.vertex_count,
 					     .triangle_count = mesh.triangle_count,
 					     .vertices = mesh.vertices,

@@ -117,9 +117,10 @@ struct model {
 	int32_t *nets, *uses; /* of each edge, in the cut at hand */
 };
 
-static uint64_t place_key(const uint16_t position[3])
+/* Of places with at most 21 bits an axis. */
+static uint64_t place_key(const int32_t place[3])
 {
-	return position[0] | (uint64_t)position[1] << 16 | (uint64_t)position[2] << 32;
+	return (uint64_t)place[0] | (uint64_t)place[1] << 21 | (uint64_t)place[2] << 42;
 }
 
 static int compare_vertices(const void *a, const void *b)
@@ -386,7 +387,8 @@ struct verdict {
 
 static bool is_open_place(const struct model *model, uint32_t vertex)
 {
-	uint64_t key = place_key(model->vertices[vertex].position);
+	const uint16_t *at = model->vertices[vertex].position;
+	uint64_t key = place_key((const int32_t[3]){ at[0], at[1], at[2] });
 
 	return bsearch(&key, model->open, model->open_count, sizeof(key), compare_keys) != NULL;
 }

@@ -51,10 +51,10 @@ static uint32_t check_leaves(const struct partition *partition, const struct lat
 static void leaves_are_within_the_limit_and_few(void **state)
 {
 	static const struct partition_options options[] = {
-		{ 64, UINT32_MAX, 500, false }, /* triangle by triangle */
-		{ 64, 4000, 500, false },       /* by voxels first */
-		{ 64, 1, 500, false },          /* voxels to the end */
-		{ 64, 4000, 500, true },
+		{ 64, UINT32_MAX, 500, false, 0 }, /* triangle by triangle */
+		{ 64, 4000, 500, false, 0 },       /* by voxels first */
+		{ 64, 1, 500, false, 0 },          /* voxels to the end */
+		{ 64, 4000, 500, true, 0 },
 	};
 	struct lattice_mesh mesh = lattice_mesh_of(shape_temple(60));
 
@@ -72,7 +72,7 @@ static void leaves_are_within_the_limit_and_few(void **state)
 
 static void the_tree_covers_the_leaves_in_order(void **state)
 {
-	const struct partition_options options = { 64, 3000, 300, true };
+	const struct partition_options options = { 64, 3000, 300, true, 0 };
 	struct lattice_mesh mesh = lattice_mesh_of(shape_relief(70));
 	struct partition partition = divide(&mesh, &options);
 
@@ -121,7 +121,7 @@ static void the_cut_follows_the_ridge(void **state)
 	struct mesh source = roof(n, ridge);
 	struct lattice_mesh mesh = lattice_mesh_of(source);
 	const struct partition_options options = { 64, UINT32_MAX, mesh.triangle_count * 3 / 5,
-						   true };
+						   true, 0 };
 	struct partition partition = divide(&mesh, &options);
 	uint32_t wrong = 0, left_leaf = UINT32_MAX;
 	float middle = 65535.0f * (float)ridge / (float)n;
@@ -145,7 +145,7 @@ static void the_cut_follows_the_ridge(void **state)
 
 static void loose_stones_stay_together_where_they_are_near(void **state)
 {
-	const struct partition_options options = { 64, UINT32_MAX, 240, false };
+	const struct partition_options options = { 64, UINT32_MAX, 240, false, 0 };
 	struct lattice_mesh mesh = lattice_mesh_of(shape_stones(400));
 	struct partition partition = divide(&mesh, &options);
 	double spread = 0.0;
@@ -173,7 +173,7 @@ static void loose_stones_stay_together_where_they_are_near(void **state)
 
 static void refuses_limits_of_zero(void **state)
 {
-	const struct partition_options options = { 64, 100, 0, false };
+	const struct partition_options options = { 64, 100, 0, false, 0 };
 	struct lattice_mesh mesh = lattice_mesh_of(shape_relief(8));
 	struct partition partition;
 

@@ -40,7 +40,7 @@ static const float little_boxes[LITTLE_BOXES][2][3] = {
 	{ { 3, -5, 0 }, { 5, -3, 5 } },     { { -5, 3, 0 }, { -3, 5, 5 } },
 	{ { 3, 3, 0 }, { 5, 5, 5 } },
 };
-static const struct lattice little_lattice = { { -8, -8, -8 }, 1.0 / 4095 };
+static const struct lattice little_lattice = { { -8, -8, -8 }, 1.0 / 4095, 0 };
 
 /* ---- the truth */
 
