@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define NO_VERTEX   UINT32_MAX
+#define NO_TRIANGLE UINT32_MAX
+
 int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3])
 {
 	double longest = 0.0;
@@ -56,36 +59,72 @@ struct merged {
 	uint32_t *count;
 };
 
+/* Vertices by their place: open addressing, at most half full, as there is no more than one for
+ * each vertex of the scan. */
+struct places {
+	uint32_t *slots; /* indices of vertices, or NO_VERTEX */
+	size_t mask;
+};
+
+static int places_init(struct places *places, uint32_t vertex_count)
+{
+	size_t capacity = 64;
+
+	while (capacity < 2 * (size_t)vertex_count)
+		capacity *= 2;
+	places->mask = capacity - 1;
+	places->slots = malloc(capacity * sizeof(*places->slots));
+	if (!places->slots)
+		return -ENOMEM;
+	memset(places->slots, 0xff, capacity * sizeof(*places->slots));
+	return 0;
+}
+
+/* Returns the slot of the vertex at that position, or the free one where it would be. */
+static uint32_t *places_slot(const struct places *places, const struct lattice_vertex *vertices,
+			     const int32_t position[3])
+{
+	uint64_t place =
+		(uint64_t)position[0] ^ (uint64_t)position[1] << 20 ^ (uint64_t)position[2] << 40;
+	size_t at = (size_t)(place * 0x9e3779b97f4a7c15u >> 32) & places->mask;
+	uint32_t *slot;
+
+	for (;;) {
+		slot = &places->slots[at];
+		if (*slot == NO_VERTEX ||
+		    memcmp(vertices[*slot].position, position, sizeof(int32_t[3])) == 0)
+			return slot;
+		at = (at + 1) & places->mask;
+	}
+}
+
 /* Merges vertices at one place, in the order of their first appearance. */
 static int merge_vertices(struct lattice_mesh *out, struct merged *merged, const struct mesh *mesh,
 			  const uint8_t colour[3])
 {
 	const uint8_t plain[4] = { colour[0], colour[1], colour[2], 255 };
-	struct map vertex_at = { 0 };
-	int rc = 0;
+	struct places places;
+	int rc = places_init(&places, mesh->vertex_count);
 
-	for (uint32_t v = 0; rc == 0 && v < mesh->vertex_count; v++) {
-		const uint8_t *own = mesh->colours ? mesh->colours[v] : plain;
-		int32_t position[3];
-		map_key place;
-		uint64_t id;
-
-		lattice_place(position, &out->lattice, mesh->positions[v]);
-		place = lattice_key(position);
-		id = map_get(&vertex_at, place);
-		if (id == MAP_NONE) {
-			id = out->vertex_count++;
-			memcpy(out->vertices[id].position, position, sizeof(position));
-			rc = map_set(&vertex_at, place, id);
-		}
-		merged->to[v] = (uint32_t)id;
-		merged->count[id]++;
-		for (int i = 0; i < 4; i++)
-			merged->sum[id][i] += own[i];
-	}
-	map_finish(&vertex_at);
 	if (rc < 0)
 		return rc;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		const uint8_t *own = mesh->colours ? mesh->colours[v] : plain;
+		int32_t position[3];
+		uint32_t *slot;
+
+		lattice_place(position, &out->lattice, mesh->positions[v]);
+		slot = places_slot(&places, out->vertices, position);
+		if (*slot == NO_VERTEX) {
+			*slot = out->vertex_count++;
+			memcpy(out->vertices[*slot].position, position, sizeof(position));
+		}
+		merged->to[v] = *slot;
+		merged->count[*slot]++;
+		for (int i = 0; i < 4; i++)
+			merged->sum[*slot][i] += own[i];
+	}
+	free(places.slots);
 	for (uint32_t v = 0; v < out->vertex_count; v++) {
 		out->vertices[v].seen = 255;
 		for (int i = 0; i < 4; i++)
@@ -110,11 +149,15 @@ static void turn_smallest_first(uint32_t triangle[3])
 static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *counts,
 			  const struct mesh *mesh, const uint32_t *to)
 {
-	struct map seen = { 0 };
-	int rc = 0;
+	/* Of each vertex, a list of the triangles that have it as their smallest. */
+	uint32_t *first = malloc((out->vertex_count + (size_t)1) * sizeof(*first));
+	uint32_t *next = malloc((mesh->triangle_count + (size_t)1) * sizeof(*next));
+	int rc = first && next ? 0 : -ENOMEM;
 
-	for (uint32_t t = 0; rc >= 0 && t < mesh->triangle_count; t++) {
-		uint32_t *kept = out->triangles[out->triangle_count];
+	if (rc == 0)
+		memset(first, 0xff, out->vertex_count * sizeof(*first));
+	for (uint32_t t = 0; rc == 0 && t < mesh->triangle_count; t++) {
+		uint32_t *kept = out->triangles[out->triangle_count], other;
 
 		for (int corner = 0; corner < 3; corner++)
 			kept[corner] = to[mesh->triangles[t][corner]];
@@ -123,13 +166,19 @@ static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *count
 			continue;
 		}
 		turn_smallest_first(kept);
-		rc = map_add(&seen, (map_key)kept[2] << 64 | (uint64_t)kept[1] << 32 | kept[0], t);
-		if (rc > 0)
-			out->triangle_count++;
-		else if (rc == 0)
+		other = first[kept[0]];
+		while (other != NO_TRIANGLE &&
+		       memcmp(out->triangles[other], kept, sizeof(*out->triangles)) != 0)
+			other = next[other];
+		if (other != NO_TRIANGLE) {
 			counts->duplicate_triangles++;
+			continue;
+		}
+		next[out->triangle_count] = first[kept[0]];
+		first[kept[0]] = out->triangle_count++;
 	}
-	map_finish(&seen);
+	free(first);
+	free(next);
 	if (rc < 0)
 		return rc;
 	return out->triangle_count > 0 ? 0 : -EINVAL;

@@ -18,29 +18,50 @@
 #define FOLD_COSINE   0.2   /* minimum cosine between a triangle's normals before and after */
 #define UNSEEN_WEIGHT 0.03  /* of invisible surface, relative to surface seen from all sides */
 
+/* What is asked of a vertex, in two lines of the cache. */
+struct node {
+	struct quadric quadric;
+	double at[3];      /* its position */
+	double area;       /* to average normals and colours */
+	double importance; /* of what is seen of it */
+	uint32_t first;    /* its first corner, or NONE */
+	uint32_t version;
+	uint32_t mark;
+	uint8_t locked, border;
+};
+
+/* Corner 4 t + i is corner i of triangle t. The corners at a vertex are a linked list. */
+struct face {
+	uint32_t corners[3];
+	uint32_t next[3];
+	bool dead;
+};
+
 struct candidate {
-	float cost;
 	uint32_t a, b;
 	uint32_t stamp; /* sum of both vertices' versions; they only increase */
 };
 
+/* Costs are not negative, so their bits are in the order of their values. */
+struct entry {
+	uint32_t candidate, cost;
+};
+
 struct work {
 	struct simplify_surface *surface;
-	struct quadric *quadrics;
-	double *areas; /* for each vertex, to average normals and colours */
-	/* Linked list of the corners at each vertex: corner 3 t + i is corner i of triangle t. */
-	uint32_t *first, *next;
-	uint8_t *dead; /* for each triangle */
-	uint32_t *versions;
-	uint32_t *marks, mark;
-	struct candidate *heap;
-	uint32_t heap_count, heap_room;
+	struct node *nodes; /* for each vertex */
+	struct face *faces; /* for each triangle */
+	uint32_t mark;
+	struct candidate *candidates; /* all that were ever in the heap */
+	struct entry *heap;
+	uint32_t candidate_count, candidate_room, heap_count, heap_room;
 	uint32_t alive_count;
 	double worst; /* squared error so far, lattice steps */
 	double most;  /* limit of worst */
 	double loss;  /* loss of the costliest collapse */
 	bool loose;   /* topology may change: the surface may pinch */
 	uint32_t collapse_count;
+	double colour_squares[256]; /* a third of the square of a difference of so many 255ths */
 };
 
 /* ---- the heap
@@ -49,64 +70,110 @@ struct work {
 
 enum { CHILDREN = 4 };
 
-static int push(struct work *work, struct candidate candidate)
+static int push(struct work *work, float cost, struct candidate candidate)
 {
+	struct entry entry = { .candidate = work->candidate_count };
 	size_t at = work->heap_count;
 	int rc = ARRAY_RESERVE(work->heap, work->heap_room, at + 1, UINT32_MAX);
 
+	if (rc == 0)
+		rc = ARRAY_RESERVE(work->candidates, work->candidate_room,
+				   (uint64_t)work->candidate_count + 1, UINT32_MAX);
 	if (rc < 0)
 		return rc;
+	memcpy(&entry.cost, &cost, sizeof(cost));
+	work->candidates[work->candidate_count++] = candidate;
 	work->heap_count++;
-	while (at > 0 && work->heap[(at - 1) / CHILDREN].cost > candidate.cost) {
+	while (at > 0 && work->heap[(at - 1) / CHILDREN].cost > entry.cost) {
 		work->heap[at] = work->heap[(at - 1) / CHILDREN];
 		at = (at - 1) / CHILDREN;
 	}
-	work->heap[at] = candidate;
+	work->heap[at] = entry;
 	return 0;
 }
 
+/* Returns the least of the children that start there, of equals the first, without a branch: which
+ * it is cannot be foretold. */
+static size_t least_child(const struct entry *heap, size_t first)
+{
+	uint64_t keys[CHILDREN], low, high;
+
+	for (size_t i = 0; i < CHILDREN; i++)
+		keys[i] = (uint64_t)heap[first + i].cost << 32 | i;
+	low = keys[0] < keys[1] ? keys[0] : keys[1];
+	high = keys[2] < keys[3] ? keys[2] : keys[3];
+	return first + (uint32_t)(low < high ? low : high);
+}
+
+/* The hole at the top sinks to the last level, and from there the last entry rises: it mostly stays
+ * near. */
 static struct candidate pop(struct work *work)
 {
-	const struct candidate *heap = work->heap;
-	struct candidate least = heap[0], last = heap[--work->heap_count];
+	struct entry *heap = work->heap, least = heap[0], last = heap[--work->heap_count];
 	size_t at = 0, first;
 
-	while ((first = CHILDREN * at + 1) < work->heap_count) {
-		size_t end =
-			first + CHILDREN < work->heap_count ? first + CHILDREN : work->heap_count;
-		size_t child = first;
+	while ((first = CHILDREN * at + 1) + CHILDREN <= work->heap_count) {
+		size_t child = least_child(heap, first);
 
-		for (size_t other = first + 1; other < end; other++)
-			if (heap[other].cost < heap[child].cost)
-				child = other;
-		if (heap[child].cost >= last.cost)
-			break;
-		work->heap[at] = heap[child];
+		heap[at] = heap[child];
 		at = child;
 	}
-	work->heap[at] = last;
-	return least;
+	if (first < work->heap_count) {
+		size_t child = first;
+
+		for (size_t other = first + 1; other < work->heap_count; other++)
+			if (heap[other].cost < heap[child].cost)
+				child = other;
+		heap[at] = heap[child];
+		at = child;
+	}
+	while (at > 0 && heap[(at - 1) / CHILDREN].cost >= last.cost) {
+		heap[at] = heap[(at - 1) / CHILDREN];
+		at = (at - 1) / CHILDREN;
+	}
+	heap[at] = last;
+	return work->candidates[least.candidate];
 }
 
 /* ---- the surface */
 
-static bool has(const uint32_t triangle[3], uint32_t vertex)
+static uint32_t *corners_of(const struct work *work, uint32_t corner)
 {
-	return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+	return work->faces[corner / 4].corners;
+}
+
+/* The corners of its triangle that follow a corner. */
+static uint32_t after(const struct work *work, uint32_t corner)
+{
+	static const uint8_t next[4] = { 1, 2, 0, 0 };
+
+	return corners_of(work, corner)[next[corner % 4]];
+}
+
+static uint32_t before(const struct work *work, uint32_t corner)
+{
+	static const uint8_t next[4] = { 2, 0, 1, 0 };
+
+	return corners_of(work, corner)[next[corner % 4]];
+}
+
+static uint32_t *next_of(const struct work *work, uint32_t corner)
+{
+	return &work->faces[corner / 4].next[corner % 4];
 }
 
 /* Returns the next living corner at a vertex, and unlinks dead ones on the way. */
-static uint32_t living(struct work *work, uint32_t *link)
+static uint32_t living(const struct work *work, uint32_t *link)
 {
-	while (*link != NONE && work->dead[*link / 3])
-		*link = work->next[*link];
+	while (*link != NONE && work->faces[*link / 4].dead)
+		*link = *next_of(work, *link);
 	return *link;
 }
 
 #define EACH_CORNER(work, vertex, corner)                                                          \
-	for (uint32_t *link_##corner = &(work)->first[vertex], corner;                             \
+	for (uint32_t *link_##corner = &(work)->nodes[vertex].first, corner;                       \
 	     (corner = living(work, link_##corner)) != NONE;                                       \
-	     link_##corner = &(work)->next[corner])
+	     link_##corner = next_of(work, corner))
 
 static void cross_of(double out[3], const double a[3], const double b[3], const double c[3])
 {
@@ -125,19 +192,10 @@ static double dot(const double a[3], const double b[3])
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void place_of(double out[3], const struct work *work, uint32_t vertex)
+static void cross_of_triangle(double out[3], const struct work *work, const uint32_t corners[3])
 {
-	for (int i = 0; i < 3; i++)
-		out[i] = work->surface->vertices[vertex].position[i];
-}
-
-static void cross_of_triangle(double out[3], const struct work *work, uint32_t t)
-{
-	double at[3][3];
-
-	for (int corner = 0; corner < 3; corner++)
-		place_of(at[corner], work, work->surface->triangles[t][corner]);
-	cross_of(out, at[0], at[1], at[2]);
+	cross_of(out, work->nodes[corners[0]].at, work->nodes[corners[1]].at,
+		 work->nodes[corners[2]].at);
 }
 
 /* Counts the triangles at an edge; *forth is how many of them run from a to b. */
@@ -148,12 +206,8 @@ static uint32_t triangles_at_edge(struct work *work, uint32_t a, uint32_t b, uin
 	*forth = 0;
 	EACH_CORNER(work, a, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
-
-		if (!has(triangle, b))
-			continue;
-		count++;
-		*forth += triangle[(corner % 3 + 1) % 3] == b;
+		count += after(work, corner) == b || before(work, corner) == b;
+		*forth += after(work, corner) == b;
 	}
 	return count;
 }
@@ -176,12 +230,11 @@ static double importance(const struct lattice_vertex *vertex)
 static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const double normal[3],
 			  double weight)
 {
-	double at[3], to[3], along[3], side[3], length;
+	const double *at = work->nodes[a].at;
+	double along[3], side[3], length;
 
-	place_of(at, work, a);
-	place_of(to, work, b);
 	for (int i = 0; i < 3; i++)
-		along[i] = to[i] - at[i];
+		along[i] = work->nodes[b].at[i] - at[i];
 	for (int i = 0; i < 3; i++)
 		side[i] = along[(i + 1) % 3] * normal[(i + 2) % 3] -
 			  along[(i + 2) % 3] * normal[(i + 1) % 3];
@@ -191,31 +244,31 @@ static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const doubl
 	for (int i = 0; i < 3; i++)
 		side[i] /= length;
 	weight *= BORDER_WEIGHT * dot(along, along);
-	quadric_add_plane(&work->quadrics[a], side, at, weight);
-	quadric_add_plane(&work->quadrics[b], side, at, weight);
+	quadric_add_plane(&work->nodes[a].quadric, side, at, weight);
+	quadric_add_plane(&work->nodes[b].quadric, side, at, weight);
 }
 
 static void add_triangle(struct work *work, uint32_t t)
 {
-	const uint32_t *triangle = work->surface->triangles[t];
-	const struct lattice_vertex *vertices = work->surface->vertices;
-	double normal[3], at[3], length, weight = 0.0;
+	const uint32_t *corners = work->faces[t].corners;
+	double normal[3], length, weight = 0.0;
 
-	cross_of_triangle(normal, work, t);
+	cross_of_triangle(normal, work, corners);
 	length = sqrt(dot(normal, normal));
 	if (length <= 0.0)
 		return;
 	for (int i = 0; i < 3; i++)
 		normal[i] /= length;
-	place_of(at, work, triangle[0]);
 	for (int corner = 0; corner < 3; corner++)
-		weight += importance(&vertices[triangle[corner]]) / 3.0;
+		weight += work->nodes[corners[corner]].importance / 3.0;
 	for (int corner = 0; corner < 3; corner++) {
-		uint32_t a = triangle[corner], b = triangle[(corner + 1) % 3];
+		uint32_t a = corners[corner], b = corners[(corner + 1) % 3];
+		struct node *node = &work->nodes[a];
 
-		quadric_add_plane(&work->quadrics[a], normal, at, weight * length / 6.0);
-		work->areas[a] += length / 6.0;
-		if (vertices[a].border && vertices[b].border && edge_is_open(work, a, b))
+		quadric_add_plane(&node->quadric, normal, work->nodes[corners[0]].at,
+				  weight * length / 6.0);
+		node->area += length / 6.0;
+		if (node->border && work->nodes[b].border && edge_is_open(work, a, b))
 			add_open_edge(work, a, b, normal, weight);
 	}
 }
@@ -224,26 +277,25 @@ static void add_triangle(struct work *work, uint32_t t)
 
 /* Returns true if gone may be removed while keep stays. Open edges are only shortened along
  * themselves. */
-static bool may_leave(struct work *work, uint32_t gone, uint32_t keep, bool open)
+static bool may_leave(const struct node *gone, const struct node *keep, bool open)
 {
-	const struct simplify_surface *surface = work->surface;
-
-	if (surface->locked[gone])
-		return false;
-	return !surface->vertices[gone].border || (surface->vertices[keep].border && open);
+	return !gone->locked && (!gone->border || (keep->border && open));
 }
 
-static bool is_fixed(const struct work *work, uint32_t vertex)
+static bool is_fixed(const struct node *node)
 {
-	return work->surface->locked[vertex] || work->surface->vertices[vertex].border;
+	return node->locked || node->border;
 }
 
 static void round_to_lattice(double at[3], uint8_t fine_bits)
 {
 	const double last = (1 << (LATTICE_BITS + fine_bits)) - 1;
 
-	for (int i = 0; i < 3; i++)
-		at[i] = fmin(fmax(round(at[i]), 0.0), last);
+	for (int i = 0; i < 3; i++) {
+		double steps = (at[i] > 0.0 ? at[i] : 0.0) + 0.5;
+
+		at[i] = (int)(steps < last ? steps : last);
+	}
 }
 
 static double squared_distance(const double a[3], const double b[3])
@@ -274,67 +326,66 @@ static double free_place(double out[3], const struct quadric *sum, const double 
 static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, struct work *work,
 			     uint32_t a, uint32_t b)
 {
-	bool open = work->surface->vertices[a].border && work->surface->vertices[b].border &&
-		    edge_is_open(work, a, b);
-	bool a_may = may_leave(work, a, b, open), b_may = may_leave(work, b, a, open);
-	struct quadric sum = work->quadrics[a];
-	double at_a[3], at_b[3], value_a, value_b;
+	const struct node *node_a = &work->nodes[a], *node_b = &work->nodes[b];
+	bool open = node_a->border && node_b->border && edge_is_open(work, a, b);
+	bool a_may = may_leave(node_a, node_b, open), b_may = may_leave(node_b, node_a, open);
+	bool a_fixed = is_fixed(node_a), b_fixed = is_fixed(node_b);
+	double value_a, value_b;
+	struct quadric sum;
 
 	*keep = a;
 	*gone = b;
 	if (!a_may && !b_may)
 		return -1.0;
-	quadric_add(&sum, &work->quadrics[b]);
-	place_of(at_a, work, a);
-	place_of(at_b, work, b);
-	if (!is_fixed(work, a) && !is_fixed(work, b))
-		return free_place(out, &sum, at_a, at_b, work->surface->fine_bits);
+	sum = node_a->quadric;
+	quadric_add(&sum, &node_b->quadric);
+	if (!a_fixed && !b_fixed)
+		return free_place(out, &sum, node_a->at, node_b->at, work->surface->fine_bits);
 	/* One end stays in its place: the one that may not leave, or the fixed one, or the better
 	 * one. */
-	value_a = b_may ? quadric_at(&sum, at_a) : INFINITY;
-	value_b = a_may ? quadric_at(&sum, at_b) : INFINITY;
-	if (b_may && is_fixed(work, a) && !is_fixed(work, b))
+	value_a = b_may ? quadric_at(&sum, node_a->at) : INFINITY;
+	value_b = a_may ? quadric_at(&sum, node_b->at) : INFINITY;
+	if (b_may && a_fixed && !b_fixed)
 		value_b = INFINITY;
-	if (a_may && is_fixed(work, b) && !is_fixed(work, a))
+	if (a_may && b_fixed && !a_fixed)
 		value_a = INFINITY;
 	if (value_b < value_a) {
 		*keep = b;
 		*gone = a;
 	}
-	memcpy(out, value_b < value_a ? at_b : at_a, sizeof(at_a));
-	return fmin(value_a, value_b);
+	memcpy(out, work->nodes[*keep].at, sizeof(node_a->at));
+	return value_b < value_a ? value_b : value_a;
 }
 
-static double colour_distance(const struct lattice_vertex *a, const struct lattice_vertex *b)
+static double colour_distance(const struct work *work, uint32_t a, uint32_t b)
 {
+	const uint8_t *from = work->surface->vertices[a].colour;
+	const uint8_t *to = work->surface->vertices[b].colour;
 	double sum = 0.0;
 
-	for (int i = 0; i < 3; i++) {
-		double d = (a->colour[i] - b->colour[i]) / 255.0;
-
-		sum += d * d / 3.0;
-	}
+	for (int i = 0; i < 3; i++)
+		sum += work->colour_squares[abs(from[i] - to[i])];
 	return sum;
 }
 
 static int push_edge(struct work *work, uint32_t a, uint32_t b)
 {
-	const struct lattice_vertex *vertices = work->surface->vertices;
-	double at[3], from[3], to[3], square, cost;
+	const struct node *node_a = &work->nodes[a], *node_b = &work->nodes[b];
+	double at[3], square, cost;
 	uint32_t keep, gone;
 
 	cost = place_collapse(at, &keep, &gone, work, a, b);
 	if (cost < 0.0)
 		return 0;
-	place_of(from, work, a);
-	place_of(to, work, b);
-	square = squared_distance(from, to);
-	cost += square * fmin(work->areas[a], work->areas[b]) * COLOUR_WEIGHT *
-		fmin(importance(&vertices[a]), importance(&vertices[b])) *
-		colour_distance(&vertices[a], &vertices[b]);
+	square = squared_distance(node_a->at, node_b->at);
+	cost += square * (node_a->area < node_b->area ? node_a->area : node_b->area) *
+		COLOUR_WEIGHT *
+		(node_a->importance < node_b->importance ? node_a->importance
+							 : node_b->importance) *
+		colour_distance(work, a, b);
 	cost += square * square * SHAPE_WEIGHT;
-	return push(work,
-		    (struct candidate){ (float)cost, a, b, work->versions[a] + work->versions[b] });
+	return push(work, (float)cost,
+		    (struct candidate){ a, b, node_a->version + node_b->version });
 }
 
 /* Both triangles of an edge would push it, one in each direction. Push it only from the smaller
@@ -342,17 +393,16 @@ static int push_edge(struct work *work, uint32_t a, uint32_t b)
  * because the other triangle belongs to another group are locked, and it cannot collapse.) */
 static int push_all_edges(struct work *work)
 {
-	const struct lattice_vertex *vertices = work->surface->vertices;
 	int rc = 0;
 
-	work->heap_count = 0;
+	work->heap_count = work->candidate_count = 0;
 	for (uint32_t t = 0; rc == 0 && t < work->surface->triangle_count; t++)
-		for (int corner = 0; rc == 0 && !work->dead[t] && corner < 3; corner++) {
-			uint32_t a = work->surface->triangles[t][corner];
-			uint32_t b = work->surface->triangles[t][(corner + 1) % 3];
+		for (int corner = 0; rc == 0 && !work->faces[t].dead && corner < 3; corner++) {
+			uint32_t a = work->faces[t].corners[corner];
+			uint32_t b = work->faces[t].corners[(corner + 1) % 3];
 
-			if (a < b ||
-			    (vertices[a].border && vertices[b].border && edge_is_open(work, a, b)))
+			if (a < b || (work->nodes[a].border && work->nodes[b].border &&
+				      edge_is_open(work, a, b)))
 				rc = push_edge(work, a, b);
 		}
 	return rc;
@@ -365,10 +415,8 @@ static void mark_neighbours(struct work *work, uint32_t vertex)
 	work->mark++;
 	EACH_CORNER(work, vertex, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
-
 		for (int i = 0; i < 3; i++)
-			work->marks[triangle[i]] = work->mark;
+			work->nodes[corners_of(work, corner)[i]].mark = work->mark;
 	}
 }
 
@@ -381,16 +429,16 @@ static bool link_is_sound(struct work *work, uint32_t a, uint32_t b)
 	mark_neighbours(work, a);
 	EACH_CORNER(work, b, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
+		const uint32_t others[2] = { after(work, corner), before(work, corner) };
 
-		across += has(triangle, a);
-		for (uint32_t i = 1; i < 3; i++) {
-			uint32_t other = triangle[(corner % 3 + i) % 3];
+		across += others[0] == a || others[1] == a;
+		for (int i = 0; i < 2; i++) {
+			struct node *other = &work->nodes[others[i]];
 
-			if (other == a || work->marks[other] != work->mark)
+			if (others[i] == a || other->mark != work->mark)
 				continue;
 			common++;
-			work->marks[other] = work->mark - 1; /* count it once */
+			other->mark = work->mark - 1; /* count it once */
 		}
 	}
 	return common <= across;
@@ -400,14 +448,11 @@ static bool link_is_sound(struct work *work, uint32_t a, uint32_t b)
  * it. */
 static bool is_cancelled(struct work *work, uint32_t corner, uint32_t other_end)
 {
-	const uint32_t *triangle = work->surface->triangles[corner / 3];
-	uint32_t p = triangle[(corner % 3 + 1) % 3], q = triangle[(corner % 3 + 2) % 3];
+	uint32_t p = after(work, corner), q = before(work, corner);
 
 	EACH_CORNER(work, other_end, facing)
 	{
-		const uint32_t *across = work->surface->triangles[facing / 3];
-
-		if (across[(facing % 3 + 1) % 3] == q && across[(facing % 3 + 2) % 3] == p)
+		if (after(work, facing) == q && before(work, facing) == p)
 			return true;
 	}
 	return false;
@@ -431,23 +476,21 @@ static bool folds(struct work *work, uint32_t vertex, uint32_t other_end, const 
 {
 	EACH_CORNER(work, vertex, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
-		double p[3], q[3], before[3], after[3], turned;
+		const uint32_t *triangle = corners_of(work, corner);
+		uint32_t p = after(work, corner), q = before(work, corner);
+		double was[3], becomes[3], turned, square;
 
-		if (has(triangle, other_end))
+		if (p == other_end || q == other_end)
 			continue;
-		cross_of_triangle(before, work, corner / 3);
-		place_of(p, work, triangle[(corner % 3 + 1) % 3]);
-		place_of(q, work, triangle[(corner % 3 + 2) % 3]);
-		cross_of(after, at, p, q);
-		turned = dot(before, after);
+		cross_of_triangle(was, work, triangle);
+		cross_of(becomes, at, work->nodes[p].at, work->nodes[q].at);
+		turned = dot(was, becomes);
+		square = dot(was, was);
 		if (turned > 0.0 &&
-		    turned * turned >
-			    FOLD_COSINE * FOLD_COSINE * dot(before, before) * dot(after, after) &&
-		    (faces_as_scan(work, triangle, after) ||
-		     !faces_as_scan(work, triangle, before)))
+		    turned * turned > FOLD_COSINE * FOLD_COSINE * square * dot(becomes, becomes) &&
+		    (faces_as_scan(work, triangle, becomes) || !faces_as_scan(work, triangle, was)))
 			continue;
-		if (dot(before, before) > 0.0 && !is_cancelled(work, corner, other_end))
+		if (square > 0.0 && !is_cancelled(work, corner, other_end))
 			return true;
 	}
 	return false;
@@ -459,14 +502,15 @@ static void blend(struct work *work, uint32_t keep, uint32_t gone)
 {
 	struct lattice_vertex *to = &work->surface->vertices[keep];
 	const struct lattice_vertex *from = &work->surface->vertices[gone];
-	double sum = work->areas[keep] + work->areas[gone];
-	double share = sum > 0.0 ? work->areas[gone] / sum : 0.5;
+	double sum = work->nodes[keep].area + work->nodes[gone].area;
+	double share = sum > 0.0 ? work->nodes[gone].area / sum : 0.5;
 	double normal[3], length;
 
 	for (int i = 0; i < 4; i++)
 		to->colour[i] =
 			(uint8_t)(to->colour[i] + lrint(share * (from->colour[i] - to->colour[i])));
 	to->seen = (uint8_t)(to->seen + lrint(share * (from->seen - to->seen)));
+	work->nodes[keep].importance = importance(to);
 	for (int i = 0; i < 3; i++)
 		normal[i] = (1.0 - share) * to->normal[i] + share * from->normal[i];
 	length = sqrt(dot(normal, normal));
@@ -474,9 +518,9 @@ static void blend(struct work *work, uint32_t keep, uint32_t gone)
 		to->normal[i] = (float)(normal[i] / length);
 }
 
-static void kill(struct work *work, uint32_t t)
+static void kill(struct work *work, uint32_t corner)
 {
-	work->dead[t] = 1;
+	work->faces[corner / 4].dead = true;
 	work->alive_count--;
 }
 
@@ -485,20 +529,17 @@ static void cancel_pairs(struct work *work, uint32_t vertex)
 {
 	EACH_CORNER(work, vertex, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
-		uint32_t p = triangle[(corner % 3 + 1) % 3], q = triangle[(corner % 3 + 2) % 3];
+		uint32_t p = after(work, corner), q = before(work, corner);
 
-		for (uint32_t other = work->next[corner]; other != NONE;
-		     other = work->next[other]) {
-			const uint32_t *facing = work->surface->triangles[other / 3];
-
-			if (work->dead[other / 3] || facing[(other % 3 + 1) % 3] != q ||
-			    facing[(other % 3 + 2) % 3] != p)
+		for (uint32_t other = *next_of(work, corner); other != NONE;
+		     other = *next_of(work, other)) {
+			if (after(work, other) != q || before(work, other) != p ||
+			    work->faces[other / 4].dead)
 				continue;
 			if (work->alive_count <= 2)
 				return; /* at least one triangle must stay */
-			kill(work, corner / 3);
-			kill(work, other / 3);
+			kill(work, corner);
+			kill(work, other);
 			break;
 		}
 	}
@@ -506,19 +547,19 @@ static void cancel_pairs(struct work *work, uint32_t vertex)
 
 static void join_corners(struct work *work, uint32_t keep, uint32_t gone)
 {
-	uint32_t *end = &work->first[keep];
+	uint32_t *end = &work->nodes[keep].first;
 
 	EACH_CORNER(work, gone, corner)
 	{
-		if (has(work->surface->triangles[corner / 3], keep))
-			kill(work, corner / 3);
+		if (after(work, corner) == keep || before(work, corner) == keep)
+			kill(work, corner);
 		else
-			work->surface->triangles[corner / 3][corner % 3] = keep;
+			corners_of(work, corner)[corner % 4] = keep;
 	}
 	while (*end != NONE)
-		end = &work->next[*end];
-	*end = work->first[gone];
-	work->first[gone] = NONE;
+		end = next_of(work, *end);
+	*end = work->nodes[gone].first;
+	work->nodes[gone].first = NONE;
 }
 
 static int push_edges_of(struct work *work, uint32_t vertex)
@@ -526,15 +567,15 @@ static int push_edges_of(struct work *work, uint32_t vertex)
 	work->mark++;
 	EACH_CORNER(work, vertex, corner)
 	{
-		const uint32_t *triangle = work->surface->triangles[corner / 3];
+		const uint32_t others[2] = { after(work, corner), before(work, corner) };
 
-		for (uint32_t i = 1; i < 3; i++) {
-			uint32_t other = triangle[(corner % 3 + i) % 3];
+		for (int i = 0; i < 2; i++) {
+			struct node *other = &work->nodes[others[i]];
 
-			if (work->marks[other] == work->mark)
+			if (other->mark == work->mark)
 				continue;
-			work->marks[other] = work->mark;
-			if (push_edge(work, vertex, other) < 0)
+			other->mark = work->mark;
+			if (push_edge(work, vertex, others[i]) < 0)
 				return -ENOMEM;
 		}
 	}
@@ -552,28 +593,33 @@ static bool is_last(struct work *work, uint32_t a, uint32_t b)
 static int collapse(struct work *work, const struct candidate *candidate)
 {
 	struct lattice_vertex *vertices = work->surface->vertices;
+	struct node *kept, *left;
 	uint32_t keep, gone;
 	double at[3], value, weight;
 
 	value = place_collapse(at, &keep, &gone, work, candidate->a, candidate->b);
-	weight = work->quadrics[keep].weight + work->quadrics[gone].weight;
+	kept = &work->nodes[keep];
+	left = &work->nodes[gone];
+	weight = kept->quadric.weight + left->quadric.weight;
 	if (value < 0.0 || value > weight * work->most || is_last(work, keep, gone) ||
 	    (!work->loose && !link_is_sound(work, keep, gone)) || folds(work, gone, keep, at) ||
-	    (!is_fixed(work, keep) && folds(work, keep, gone, at)))
+	    (!is_fixed(kept) && folds(work, keep, gone, at)))
 		return 0;
 	if (weight > 0.0 && value / weight > work->worst)
 		work->worst = value / weight;
 	work->loss = fmax(work->loss, value);
-	if (!work->surface->locked[keep])
+	if (!kept->locked)
 		blend(work, keep, gone);
-	for (int i = 0; i < 3; i++)
+	for (int i = 0; i < 3; i++) {
+		kept->at[i] = at[i];
 		vertices[keep].position[i] = (int32_t)at[i];
-	quadric_add(&work->quadrics[keep], &work->quadrics[gone]);
-	work->areas[keep] += work->areas[gone];
+	}
+	quadric_add(&kept->quadric, &left->quadric);
+	kept->area += left->area;
 	join_corners(work, keep, gone);
 	cancel_pairs(work, keep);
-	work->versions[keep]++;
-	work->versions[gone]++;
+	kept->version++;
+	left->version++;
 	work->collapse_count++;
 	return push_edges_of(work, keep);
 }
@@ -584,12 +630,24 @@ static int collapse_until(struct work *work, uint32_t target)
 
 	while (rc == 0 && work->alive_count > target && work->heap_count > 0) {
 		struct candidate least = pop(work);
+		const struct node *a = &work->nodes[least.a], *b = &work->nodes[least.b];
 
-		if (work->first[least.a] != NONE && work->first[least.b] != NONE &&
-		    least.stamp == work->versions[least.a] + work->versions[least.b])
+		if (a->first != NONE && b->first != NONE && least.stamp == a->version + b->version)
 			rc = collapse(work, &least);
 	}
 	return rc;
+}
+
+static void node_init(struct node *node, const struct lattice_vertex *vertex, uint8_t locked)
+{
+	*node = (struct node){
+		.importance = importance(vertex),
+		.first = NONE,
+		.locked = locked,
+		.border = vertex->border,
+	};
+	for (int i = 0; i < 3; i++)
+		node->at[i] = vertex->position[i];
 }
 
 static int work_init(struct work *work, struct simplify_surface *surface)
@@ -599,25 +657,29 @@ static int work_init(struct work *work, struct simplify_surface *surface)
 
 	*work = (struct work){
 		.surface = surface,
-		.quadrics = calloc(vertices, sizeof(*work->quadrics)),
-		.areas = calloc(vertices, sizeof(*work->areas)),
-		.first = malloc(vertices * sizeof(*work->first)),
-		.next = malloc(3 * triangles * sizeof(*work->next)),
-		.dead = calloc(triangles, sizeof(*work->dead)),
-		.versions = calloc(vertices, sizeof(*work->versions)),
-		.marks = calloc(vertices, sizeof(*work->marks)),
+		.nodes = malloc(vertices * sizeof(*work->nodes)),
+		.faces = malloc(triangles * sizeof(*work->faces)),
 		.alive_count = surface->triangle_count,
 	};
-	if (!work->quadrics || !work->areas || !work->first || !work->next || !work->dead ||
-	    !work->versions || !work->marks ||
-	    ARRAY_RESERVE(work->heap, work->heap_room, 5 * triangles, UINT32_MAX) < 0)
+	if (!work->nodes || !work->faces ||
+	    ARRAY_RESERVE(work->heap, work->heap_room, 5 * triangles, UINT32_MAX) < 0 ||
+	    ARRAY_RESERVE(work->candidates, work->candidate_room, 5 * triangles, UINT32_MAX) < 0)
 		return -ENOMEM;
-	memset(work->first, 0xff, vertices * sizeof(*work->first));
-	for (uint32_t corner = 0; corner < 3 * surface->triangle_count; corner++) {
-		uint32_t vertex = surface->triangles[corner / 3][corner % 3];
+	for (uint32_t i = 0; i < ARRAY_COUNT(work->colour_squares); i++)
+		work->colour_squares[i] = i / 255.0 * (i / 255.0) / 3.0;
+	for (uint32_t v = 0; v < surface->vertex_count; v++)
+		node_init(&work->nodes[v], &surface->vertices[v], surface->locked[v]);
+	for (uint32_t t = 0; t < surface->triangle_count; t++) {
+		struct face *face = &work->faces[t];
 
-		work->next[corner] = work->first[vertex];
-		work->first[vertex] = corner;
+		face->dead = false;
+		for (uint32_t i = 0; i < 3; i++) {
+			struct node *node = &work->nodes[surface->triangles[t][i]];
+
+			face->corners[i] = surface->triangles[t][i];
+			face->next[i] = node->first;
+			node->first = 4 * t + i;
+		}
 	}
 	for (uint32_t t = 0; t < surface->triangle_count; t++)
 		add_triangle(work, t);
@@ -626,13 +688,9 @@ static int work_init(struct work *work, struct simplify_surface *surface)
 
 static void work_finish(struct work *work)
 {
-	free(work->quadrics);
-	free(work->areas);
-	free(work->first);
-	free(work->next);
-	free(work->dead);
-	free(work->versions);
-	free(work->marks);
+	free(work->nodes);
+	free(work->faces);
+	free(work->candidates);
 	free(work->heap);
 }
 
@@ -657,9 +715,9 @@ int simplify(struct simplify_surface *surface, uint32_t target_triangles, double
 	} while (rc == 0 && work.alive_count > target_triangles &&
 		 work.alive_count < before - before / 16);
 	for (uint32_t t = 0; rc == 0 && t < surface->triangle_count; t++)
-		if (!work.dead[t])
-			memmove(surface->triangles[kept++], surface->triangles[t],
-				sizeof(*surface->triangles));
+		if (!work.faces[t].dead)
+			memcpy(surface->triangles[kept++], work.faces[t].corners,
+			       sizeof(*surface->triangles));
 	if (rc == 0) {
 		surface->triangle_count = kept;
 		result->error_steps = sqrt(work.worst);
