@@ -304,19 +304,25 @@ static bool is_free(const struct exposure *exposure, const float from[3], const 
 	}
 }
 
-/* The n-th viewpoint of a voxel, in the box of twice the model's size above its lowest point. It is
- * a low-discrepancy sequence: multiples of powers of a root of x^4 = x + 1, as the golden ratio is
- * used in one dimension. It starts elsewhere for each voxel. */
-static void viewpoint(float out[3], const struct exposure *exposure, uint32_t voxel, uint32_t n)
+/* Sets out[k][n] to coordinate k of the n-th viewpoint of a voxel, in the box of twice the model's
+ * size above its lowest point. It is a low-discrepancy sequence: multiples of powers of a root of
+ * x^4 = x + 1, as the golden ratio is used in one dimension. It starts elsewhere for each voxel. */
+static void viewpoints(float out[3][VIEWPOINTS], const struct exposure *exposure, uint32_t voxel)
 {
 	static const uint32_t steps[3] = { 3518319155u, 2882110345u, 2360945575u }; /* of 2^32 */
 	static const uint32_t starts[3] = { 2654435761u, 2246822519u, 3266489917u };
 
 	for (int k = 0; k < 3; k++) {
 		float low = exposure->low[k], half = (exposure->high[k] - low) / 2;
-		float t = (float)(((voxel + 1) * starts[k] + steps[k] * n) >> 8) / 16777216.0f;
+		float begin = k == 2 ? low : low - half, wide = k == 2 ? 3 : 4;
+		uint32_t at = (voxel + 1) * starts[k];
 
-		out[k] = k == 2 ? low + t * 3 * half : low - half + t * 4 * half;
+		for (uint32_t n = 0; n < VIEWPOINTS; n++) {
+			/* Signed, because vectors are converted from that. */
+			float t = (float)(int32_t)((at + steps[k] * n) >> 8) / 16777216.0f;
+
+			out[k][n] = begin + t * wide * half;
+		}
 	}
 }
 
@@ -325,19 +331,33 @@ static uint32_t seen_from(struct exposure *exposure, uint32_t voxel, const int a
 {
 	uint16_t *place = &exposure->seen_from[voxel];
 	uint32_t seen = __atomic_load_n(place, __ATOMIC_RELAXED);
+	float eyes[3][VIEWPOINTS];
 
 	if (seen & KNOWN)
 		return seen;
+	viewpoints(eyes, exposure, voxel);
 	for (uint32_t n = 0; n < VIEWPOINTS && !is_solid(exposure, at); n++) {
 		const float from[3] = { (float)at[0] + 0.5f, (float)at[1] + 0.5f,
 					(float)at[2] + 0.5f };
-		float eye[3];
+		const float eye[3] = { eyes[0][n], eyes[1][n], eyes[2][n] };
 
-		viewpoint(eye, exposure, voxel, n);
 		seen |= is_free(exposure, from, eye) ? 1u << n : 0;
 	}
 	__atomic_store_n(place, (uint16_t)(seen | KNOWN), __ATOMIC_RELAXED);
 	return seen;
+}
+
+/* The cosine of the direction of each viewpoint with the normal. */
+static void shares_of(float out[VIEWPOINTS], const float eyes[3][VIEWPOINTS], const float at[3],
+		      const float normal[3])
+{
+	for (int n = 0; n < VIEWPOINTS; n++) {
+		float x = eyes[0][n] - at[0], y = eyes[1][n] - at[1], z = eyes[2][n] - at[2];
+		float square = x * x + y * y + z * z;
+		float cosine = x * normal[0] + y * normal[1] + z * normal[2];
+
+		out[n] = cosine / sqrtf(square);
+	}
 }
 
 uint8_t exposure_of(struct exposure *exposure, const uint16_t position[3], const float normal[3])
@@ -347,26 +367,25 @@ uint8_t exposure_of(struct exposure *exposure, const uint16_t position[3], const
 	for (int k = 0; k < 3; k++)
 		at[k] = to_voxels(position[k], k);
 	for (int side = -1; side < 2; side += 2) {
+		float eyes[3][VIEWPOINTS], shares[VIEWPOINTS];
 		uint32_t voxel, from;
 		int start[3];
 
 		for (int k = 0; k < 3; k++)
 			start[k] = clamp_voxel(at[k] + (float)side * START_VOXELS * normal[k]);
 		voxel = (uint32_t)((start[2] * SIDE + start[1]) * SIDE + start[0]);
-		from = seen_from(exposure, voxel, start);
-		for (uint32_t n = 0; n < VIEWPOINTS; n++) {
-			float eye[3], cosine = 0, square = 0;
+		from = seen_from(exposure, voxel, start) % KNOWN;
+		if (!from)
+			continue;
+		viewpoints(eyes, exposure, voxel);
+		shares_of(shares, (const float(*)[VIEWPOINTS])eyes, at, normal);
+		/* The other side has viewpoints of its own. Where one is in the vertex itself its
+		 * share is no number, and not above 0. */
+		for (; from; from &= from - 1) {
+			float share = shares[__builtin_ctz(from)];
 
-			if (!(from >> n & 1))
-				continue;
-			viewpoint(eye, exposure, voxel, n);
-			for (int k = 0; k < 3; k++) {
-				cosine += (eye[k] - at[k]) * normal[k];
-				square += (eye[k] - at[k]) * (eye[k] - at[k]);
-			}
-			/* The other side has viewpoints of its own. */
-			if (square > 0 && cosine * (float)side > 0)
-				seen += fabsf(cosine) / sqrtf(square);
+			if (share * (float)side > 0)
+				seen += fabsf(share);
 		}
 	}
 	return (uint8_t)(255 * fminf(1, 2 * seen / VIEWPOINTS) + 0.5f);

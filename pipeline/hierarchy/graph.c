@@ -101,13 +101,25 @@ struct placed {
 	uint32_t node;
 };
 
-static int compare_placed(const void *left, const void *right)
+/* Sorts by place, and keeps the order of nodes that have the same: by 12 bits at a time, the lowest
+ * first. other has room for as many. The result is in placed. */
+static void sort_placed(struct placed *placed, struct placed *other, uint32_t count)
 {
-	const struct placed *a = left, *b = right;
+	enum { BITS = 12, ENDS = 1 << BITS };
 
-	if (a->place != b->place)
-		return a->place < b->place ? -1 : 1;
-	return a->node < b->node ? -1 : a->node > b->node;
+	for (int shift = 0; shift < 48; shift += BITS) {
+		uint32_t starts[ENDS + 1] = { 0 };
+		struct placed *sorted = other;
+
+		for (uint32_t i = 0; i < count; i++)
+			starts[(placed[i].place >> shift) % ENDS + 1]++;
+		for (uint32_t d = 0; d < ENDS; d++)
+			starts[d + 1] += starts[d];
+		for (uint32_t i = 0; i < count; i++)
+			sorted[starts[(placed[i].place >> shift) % ENDS]++] = placed[i];
+		other = placed;
+		placed = sorted;
+	}
 }
 
 /* Nodes of one cell are near each other. Connects the parts within each cell, for ever larger
@@ -141,12 +153,12 @@ int graph_connect(struct graph *graph, float (*at)[3], int32_t weight)
 	for (size_t e = 0; rc == 0 && e < graph->edge_count; e++)
 		part_count -= unite(parents, graph->edges[e].a, graph->edges[e].b);
 	if (rc == 0 && part_count > 1) {
-		placed = malloc(graph->node_count * sizeof(*placed));
+		placed = malloc(2 * (size_t)graph->node_count * sizeof(*placed));
 		rc = placed ? 0 : -ENOMEM;
 		for (uint32_t i = 0; rc == 0 && i < graph->node_count; i++)
 			placed[i] = (struct placed){ place_on_curve(at[i]), i };
 		if (rc == 0) {
-			qsort(placed, graph->node_count, sizeof(*placed), compare_placed);
+			sort_placed(placed, placed + graph->node_count, graph->node_count);
 			rc = connect_runs(graph, parents, placed, weight, part_count);
 		}
 	}

@@ -24,31 +24,6 @@ void quadric_add_plane(struct quadric *quadric, const double normal[3], const do
 	quadric->weight += weight;
 }
 
-void quadric_add(struct quadric *quadric, const struct quadric *other)
-{
-	quadric->xx += other->xx;
-	quadric->xy += other->xy;
-	quadric->xz += other->xz;
-	quadric->yy += other->yy;
-	quadric->yz += other->yz;
-	quadric->zz += other->zz;
-	quadric->x += other->x;
-	quadric->y += other->y;
-	quadric->z += other->z;
-	quadric->constant += other->constant;
-	quadric->weight += other->weight;
-}
-
-double quadric_at(const struct quadric *q, const double point[3])
-{
-	double x = point[0], y = point[1], z = point[2];
-	double value = x * (q->xx * x + 2.0 * (q->xy * y + q->xz * z + q->x)) +
-		       y * (q->yy * y + 2.0 * (q->yz * z + q->y)) + z * (q->zz * z + 2.0 * q->z) +
-		       q->constant;
-
-	return value > 0.0 ? value : 0.0;
-}
-
 void quadric_least(double out[3], const struct quadric *q, const double near[3])
 {
 	double hold = HOLD * (q->xx + q->yy + q->zz) + 1e-9;
