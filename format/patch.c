@@ -22,6 +22,7 @@ enum stream {
 	STREAM_GREEN,
 	STREAM_TINT, /* red - green, blue - green */
 	STREAM_OPEN,
+	STREAM_POSITION_TOP, /* only in a wide group */
 	STREAM_COUNT
 };
 
@@ -29,29 +30,40 @@ enum {
 	VERSION = 2,
 	INDEX_BYTES_MAX = 8 * PATCH_TRIANGLES_MAX,
 	NORMAL_ZEROS_MAX = 6,
-	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
+	BITS_MIN = 4, /* fewer bits cannot fill eight by one repetition */
+	PLACED = 0x80 /* beside the number of patches: a range follows */
 };
 
 static const int zstd_levels[] = { [PATCH_FAST] = 2, [PATCH_SMALL] = 12 };
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
-static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1 };
+static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1, 3 };
 
 /* The fewest bits that express every vertex of a group without loss. */
 struct precision {
 	uint8_t normal_zeros; /* low bits that are zero in every normal */
 	uint8_t colour_bits, open_bits;
+	struct predict_range range;
 };
+
+static const struct predict_range narrow = { .most = UINT16_MAX };
+static const int32_t wide_most = LATTICE_PLACES_MAX - 1;
+
+static bool is_wide(const struct predict_range *range)
+{
+	return range->most > UINT16_MAX;
+}
 
 struct streams {
 	uint8_t *data[STREAM_COUNT]; /* owned */
 	size_t size[STREAM_COUNT];
 	size_t at[STREAM_COUNT];
+	int count; /* of streams that there are */
 };
 
-static int streams_init(struct streams *streams, size_t index_bytes, size_t vertex_count)
+static int streams_init(struct streams *streams, size_t index_bytes, size_t vertex_count, bool wide)
 {
-	*streams = (struct streams){ 0 };
-	for (int i = 0; i < STREAM_COUNT; i++) {
+	*streams = (struct streams){ .count = wide ? STREAM_COUNT : STREAM_POSITION_TOP };
+	for (int i = 0; i < streams->count; i++) {
 		streams->size[i] =
 			i == STREAM_INDICES ? index_bytes : bytes_a_vertex[i] * vertex_count;
 		streams->data[i] = malloc(streams->size[i]);
@@ -78,14 +90,17 @@ static uint8_t get(struct streams *streams, enum stream stream)
 }
 
 /* Maps small differences of either sign to small numbers (zigzag). Differences wrap around. */
-static uint16_t fold16(uint16_t difference)
+static uint32_t fold_place(int32_t difference, int32_t most)
 {
-	return (uint16_t)(difference << 1 ^ (difference & 0x8000 ? 0xffff : 0));
+	uint32_t wrapped = (uint32_t)difference & (uint32_t)most;
+
+	return (wrapped << 1 & (uint32_t)most) ^
+	       (wrapped > (uint32_t)most / 2 ? (uint32_t)most : 0);
 }
 
-static uint16_t unfold16(uint16_t folded)
+static int32_t unfold_place(uint32_t folded, int32_t most)
 {
-	return (uint16_t)(folded >> 1 ^ (folded & 1 ? 0xffff : 0));
+	return (int32_t)(folded >> 1) ^ (folded & 1 ? most : 0);
 }
 
 static uint8_t fold8(uint8_t difference)
@@ -123,16 +138,19 @@ static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
 {
 	const struct patch_vertex *vertex = &mesh->vertices[step->vertex];
 	int zeros = precision->normal_zeros;
-	uint16_t position[3];
+	int32_t position[3];
 	uint8_t colour[4], difference[4];
 
-	predict_position(position, step, mesh->vertices);
+	predict_position(position, step, mesh->vertices, &precision->range);
 	predict_colour(colour, step, mesh->vertices);
 	for (int i = 0; i < 3; i++) {
-		uint16_t folded = fold16((uint16_t)(vertex->position[i] - position[i]));
+		uint32_t folded =
+			fold_place(vertex->position[i] - position[i], precision->range.most);
 
 		put(streams, STREAM_POSITION_LOW, (uint8_t)folded);
 		put(streams, STREAM_POSITION_HIGH, (uint8_t)(folded >> 8));
+		if (is_wide(&precision->range))
+			put(streams, STREAM_POSITION_TOP, (uint8_t)(folded >> 16));
 	}
 	for (int i = 0; i < 2; i++)
 		put(streams, STREAM_NORMAL,
@@ -149,19 +167,25 @@ static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
 	put(streams, STREAM_OPEN, fold8(difference[3]));
 }
 
-static void get_position(struct streams *streams, struct patch_mesh *mesh,
-			 const struct predict_step *step)
+static int get_position(struct streams *streams, struct patch_mesh *mesh,
+			const struct predict_step *step, const struct predict_range *range)
 {
 	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
-	uint16_t position[3];
+	int32_t position[3], off;
 
-	predict_position(position, step, mesh->vertices);
+	predict_position(position, step, mesh->vertices, range);
 	for (int i = 0; i < 3; i++) {
-		uint16_t folded = get(streams, STREAM_POSITION_LOW);
+		uint32_t folded = get(streams, STREAM_POSITION_LOW);
 
-		folded |= (uint16_t)(get(streams, STREAM_POSITION_HIGH) << 8);
-		vertex->position[i] = (uint16_t)(position[i] + unfold16(folded));
+		folded |= (uint32_t)get(streams, STREAM_POSITION_HIGH) << 8;
+		if (is_wide(range))
+			folded |= (uint32_t)get(streams, STREAM_POSITION_TOP) << 16;
+		off = position[i] - range->base[i] + unfold_place(folded, range->most);
+		vertex->position[i] = range->base[i] + (off & range->most);
+		if (vertex->position[i] >= LATTICE_PLACES_MAX)
+			return -EBADMSG;
 	}
+	return 0;
 }
 
 static uint8_t get_colour(uint8_t guess, uint8_t difference, int bits)
@@ -205,7 +229,7 @@ static int code_vertices(struct streams *streams, struct patch_mesh *mesh,
 	int rc = steps && normals ? predict_steps(steps, mesh) : -ENOMEM;
 
 	for (uint32_t i = 0; rc == 0 && !encoding && i < mesh->vertex_count; i++)
-		get_position(streams, mesh, &steps[i]);
+		rc = get_position(streams, mesh, &steps[i], &precision->range);
 	if (rc == 0)
 		rc = predict_normals(normals, mesh);
 	for (uint32_t i = 0; rc == 0 && i < mesh->vertex_count; i++) {
@@ -266,7 +290,7 @@ static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
 
 static int put_streams(struct buffer *out, const struct streams *streams, enum patch_effort effort)
 {
-	for (int i = 0; i < STREAM_COUNT; i++) {
+	for (int i = 0; i < streams->count; i++) {
 		size_t bound = ZSTD_compressBound(streams->size[i]);
 		uint8_t *packed = malloc(bound);
 		size_t size = packed ? ZSTD_compress(packed, bound, streams->data[i],
@@ -304,12 +328,51 @@ static void tell_vertex(struct precision *precision, const struct patch_vertex *
 
 static struct precision precision_of(const struct patch_mesh *patches, uint32_t patch_count)
 {
-	struct precision precision = { NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN };
+	struct precision precision = { NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN, narrow };
 
 	for (uint32_t p = 0; p < patch_count; p++)
 		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
 			tell_vertex(&precision, &patches[p].vertices[v]);
 	return precision;
+}
+
+/* Returns -EINVAL if a place is none of a lattice. A group near the lattice's origin needs no base,
+ * and so no group of a small site. */
+static int find_range(struct predict_range *out, const struct patch_mesh *patches,
+		      uint32_t patch_count)
+{
+	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX }, high[3] = { 0 };
+
+	for (uint32_t p = 0; p < patch_count; p++)
+		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
+			for (int i = 0; i < 3; i++) {
+				int32_t at = patches[p].vertices[v].position[i];
+
+				if (at < 0 || at >= LATTICE_PLACES_MAX)
+					return -EINVAL;
+				low[i] = at < low[i] ? at : low[i];
+				high[i] = at > high[i] ? at : high[i];
+			}
+	*out = narrow;
+	if (high[0] <= UINT16_MAX && high[1] <= UINT16_MAX && high[2] <= UINT16_MAX)
+		return 0;
+	memcpy(out->base, low, sizeof(low));
+	for (int i = 0; i < 3; i++)
+		if (high[i] - low[i] > UINT16_MAX)
+			out->most = wide_most;
+	return 0;
+}
+
+static bool has_base(const struct predict_range *range)
+{
+	return range->base[0] != 0 || range->base[1] != 0 || range->base[2] != 0 || is_wide(range);
+}
+
+static void put_range(struct buffer *out, const struct predict_range *range)
+{
+	buffer_put_u8(out, is_wide(range) ? 3 : 2);
+	for (int i = 0; i < 3; i++)
+		buffer_put_u32(out, (uint32_t)range->base[i]);
 }
 
 /* Writes header and streams of patches whose indices are already packed. */
@@ -319,21 +382,26 @@ static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t pa
 	struct precision precision = precision_of(decoded, patch_count);
 	struct streams streams;
 	size_t vertex_count = 0;
-	int rc;
+	int rc = find_range(&precision.range, decoded, patch_count);
+	bool placed = rc == 0 && has_base(&precision.range);
 
+	if (rc < 0)
+		return rc;
 	buffer_put(out, magic, sizeof(magic));
 	buffer_put_u8(out, VERSION);
-	buffer_put_u8(out, (uint8_t)patch_count);
+	buffer_put_u8(out, (uint8_t)(patch_count | (placed ? PLACED : 0)));
 	buffer_put_u8(out, precision.normal_zeros);
 	buffer_put_u8(out, precision.colour_bits);
 	buffer_put_u8(out, precision.open_bits);
+	if (placed)
+		put_range(out, &precision.range);
 	for (uint32_t p = 0; p < patch_count; p++) {
 		buffer_put_u16(out, (uint16_t)decoded[p].vertex_count);
 		buffer_put_u16(out, (uint16_t)decoded[p].triangle_count);
 		buffer_put_u16(out, (uint16_t)index_bytes[p]);
 		vertex_count += decoded[p].vertex_count;
 	}
-	rc = streams_init(&streams, indices.size, vertex_count);
+	rc = streams_init(&streams, indices.size, vertex_count, is_wide(&precision.range));
 	if (rc == 0)
 		memcpy(streams.data[STREAM_INDICES], indices.data, indices.size);
 	for (uint32_t p = 0; rc == 0 && p < patch_count; p++)
@@ -385,17 +453,36 @@ static bool get_precision(struct reader *reader, struct precision *out)
 	       out->colour_bits <= 8 && out->open_bits >= BITS_MIN && out->open_bits <= 8;
 }
 
+static bool get_range(struct reader *reader, struct predict_range *out)
+{
+	uint8_t bytes = reader_u8(reader);
+	bool good = bytes == 2 || bytes == 3;
+
+	out->most = bytes == 3 ? wide_most : UINT16_MAX;
+	for (int i = 0; i < 3; i++) {
+		uint32_t base = reader_u32(reader);
+
+		good = good && base < LATTICE_PLACES_MAX;
+		out->base[i] = (int32_t)(base % LATTICE_PLACES_MAX);
+	}
+	return good;
+}
+
 static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_t *patch_count,
 		      uint32_t *index_bytes, struct precision *precision)
 {
 	struct bytes start = reader_bytes(reader, sizeof(magic));
+	bool placed;
 
 	if (reader->failed || memcmp(start.data, magic, sizeof(magic)) != 0 ||
 	    reader_u8(reader) != VERSION)
 		return -EBADMSG;
 	*patch_count = reader_u8(reader);
+	placed = *patch_count & PLACED;
+	*patch_count &= ~(uint32_t)PLACED;
+	precision->range = narrow;
 	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MAX ||
-	    !get_precision(reader, precision))
+	    !get_precision(reader, precision) || (placed && !get_range(reader, &precision->range)))
 		return -EBADMSG;
 	for (uint32_t p = 0; p < *patch_count; p++) {
 		patches[p].vertex_count = reader_u16(reader);
@@ -409,7 +496,7 @@ static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_
 
 static int get_streams(struct reader *reader, struct streams *streams)
 {
-	for (int i = 0; i < STREAM_COUNT; i++) {
+	for (int i = 0; i < streams->count; i++) {
 		struct bytes packed = reader_bytes(reader, reader_u32(reader));
 
 		if (reader->failed ||
@@ -457,7 +544,7 @@ int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MAX], uint32_t *p
 		vertex_total += patches[p].vertex_count;
 	}
 	if (rc == 0)
-		rc = streams_init(&streams, index_total, vertex_total);
+		rc = streams_init(&streams, index_total, vertex_total, is_wide(&precision.range));
 	if (rc == 0)
 		rc = get_streams(&reader, &streams);
 	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++)

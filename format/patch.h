@@ -16,8 +16,8 @@ enum patch_effort {
 };
 
 /* Appends the object. The caller chooses the order of vertices and triangles (cache-coherent). The
- * decoder may return a triangle with its corners rotated. Returns -EINVAL if a count or an index is
- * out of range, -ENOMEM or the error of out. */
+ * decoder may return a triangle with its corners rotated. Returns -EINVAL if a count, an index
+ * or a position is out of range, -ENOMEM or the error of out. */
 must_check int patch_group_encode(struct buffer *out, const struct patch_mesh *patches,
 				  uint32_t patch_count, enum patch_effort effort);
 /* Fills at most GROUP_PATCHES_MAX meshes, owned by the caller: end each with patch_mesh_finish().

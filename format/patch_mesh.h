@@ -1,4 +1,4 @@
-/* The triangles of a patch in the layout that the GPU uses. */
+/* The triangles of a patch. */
 #ifndef GOPURA_FORMAT_PATCH_MESH_H
 #define GOPURA_FORMAT_PATCH_MESH_H
 
@@ -9,13 +9,13 @@ enum {
 	PATCH_VERTICES_MAX = 3 * PATCH_TRIANGLES_MAX,
 };
 
-/* As uploaded to the GPU: 12 bytes. */
 struct patch_vertex {
-	uint16_t position[3]; /* lattice coordinates, see struct lattice */
-	int8_t normal[2];     /* octahedral (format/normal.h), x and y in -127..127 */
-	uint8_t colour[4];    /* sRGB; [3] is the share of open sky, 255 = all of it */
+	int32_t position[3]; /* a place of the lattice, see struct lattice */
+	int8_t normal[2];    /* octahedral (format/normal.h), x and y in -127..127 */
+	uint8_t colour[4];   /* sRGB; [3] is the share of open sky, 255 = all of it */
+	uint8_t zero[2];     /* equal vertices are equal bytes */
 };
-_Static_assert(sizeof(struct patch_vertex) == 12, "one layout on GPU and wire");
+_Static_assert(sizeof(struct patch_vertex) == 20, "no padding");
 
 struct patch_mesh {
 	uint32_t vertex_count, triangle_count;

@@ -123,11 +123,12 @@ int predict_steps(struct predict_step *steps, const struct patch_mesh *mesh)
 	return rc;
 }
 
-void predict_position(uint16_t out[3], const struct predict_step *step,
-		      const struct patch_vertex *vertices)
+void predict_position(int32_t out[3], const struct predict_step *step,
+		      const struct patch_vertex *vertices, const struct predict_range *range)
 {
 	for (int axis = 0; axis < 3; axis++) {
-		int32_t at[3] = { 0, 0, 0 }, guess;
+		const int32_t least = range->base[axis], last = least + range->most;
+		int32_t at[3] = { least, 0, 0 }, guess;
 
 		for (int i = 0; i < step->known_count; i++)
 			at[i] = vertices[step->from[i]].position[axis];
@@ -137,7 +138,7 @@ void predict_position(uint16_t out[3], const struct predict_step *step,
 			guess = (at[0] + at[1]) / 2;
 		else
 			guess = at[0];
-		out[axis] = (uint16_t)(guess < 0 ? 0 : guess > UINT16_MAX ? UINT16_MAX : guess);
+		out[axis] = guess < least ? least : guess > last ? last : guess;
 	}
 }
 
@@ -156,8 +157,9 @@ void predict_colour(uint8_t out[4], const struct predict_step *step,
 	}
 }
 
-/* The normal with the length of twice the area; at most 2^35 per axis. */
-static void triangle_cross(int64_t out[3], const uint16_t *a, const uint16_t *b, const uint16_t *c)
+/* The normal with the length of twice the area; at most 2^49 per axis, and 2^33 where places have
+ * 16 bits. */
+static void triangle_cross(int64_t out[3], const int32_t *a, const int32_t *b, const int32_t *c)
 {
 	int64_t u[3], v[3];
 
@@ -179,12 +181,16 @@ static int64_t magnitude(int64_t value)
 	return value < 0 ? -value : value;
 }
 
-/* normal_encode in integers. Sums stay under 2^49, so that 127 times a sum fits in 64 bits. */
-static void octahedral(int8_t out[2], const int64_t n[3])
+/* normal_encode in integers. 127 times a sum must fit in 64 bits; only the sums of large triangles
+ * on a large site are halved for it. */
+static void octahedral(int8_t out[2], int64_t n[3])
 {
-	int64_t sum = magnitude(n[0]) + magnitude(n[1]) + magnitude(n[2]);
-	int64_t x, y;
+	int64_t sum, x, y;
 
+	while (magnitude(n[0]) >> 49 || magnitude(n[1]) >> 49 || magnitude(n[2]) >> 49)
+		for (int i = 0; i < 3; i++)
+			n[i] /= 2;
+	sum = magnitude(n[0]) + magnitude(n[1]) + magnitude(n[2]);
 	if (sum == 0) {
 		out[0] = out[1] = 0;
 		return;

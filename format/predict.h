@@ -9,6 +9,7 @@
 
 #include "base/compiler.h"
 #include "format/patch_mesh.h"
+#include "format/root_page.h"
 
 /* One step per vertex, in the order in which vertices are coded: first in the order in which the
  * triangles name them, then those that no triangle names. */
@@ -21,9 +22,15 @@ struct predict_step {
 /* Fills steps, which has room for mesh->vertex_count. Reads only counts and indices of the mesh;
  * the indices must be in range. Returns -ENOMEM. */
 must_check int predict_steps(struct predict_step *steps, const struct patch_mesh *mesh);
+/* The places of a group: from base to base + most on each axis. */
+struct predict_range {
+	int32_t base[3];
+	int32_t most; /* 2^n - 1, so that differences within it wrap */
+};
+
 /* Predict one vertex from those that its step names, which must be decoded already. */
-void predict_position(uint16_t out[3], const struct predict_step *step,
-		      const struct patch_vertex *vertices);
+void predict_position(int32_t out[3], const struct predict_step *step,
+		      const struct patch_vertex *vertices, const struct predict_range *range);
 void predict_colour(uint8_t out[4], const struct predict_step *step,
 		    const struct patch_vertex *vertices);
 /* Predicts the normal of every vertex from positions and triangles alone. out has room for

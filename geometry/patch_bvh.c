@@ -13,9 +13,15 @@ static const float flat_enough = 0.8f;
 
 static void vertex_m(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
 {
-	const uint16_t *at = bvh->positions[vertex];
+	float steps[3];
+	double at[3];
+	patch_bvh_corner(bvh, vertex, steps);
+	lattice_metres(at, &bvh->lattice,
+		       (const int32_t[3]){ bvh->base[0] + (int32_t)steps[0],
+					   bvh->base[1] + (int32_t)steps[1],
+					   bvh->base[2] + (int32_t)steps[2] });
 	for (int i = 0; i < 3; i++)
-		out[i] = (float)(bvh->lattice.origin_m[i] + bvh->lattice.step_m * at[i]);
+		out[i] = (float)at[i];
 }
 
 /* ---- the tree */
@@ -40,7 +46,8 @@ static void extend_by_triangle(const void *data, uint32_t triangle, float low[3]
 {
 	const struct patch_bvh *bvh = data;
 	for (int c = 0; c < 3; c++) {
-		const uint16_t *at = bvh->positions[bvh->indices[3 * triangle + (uint32_t)c]];
+		float at[3];
+		patch_bvh_corner(bvh, bvh->indices[3 * triangle + (uint32_t)c], at);
 		for (int i = 0; i < 3; i++) {
 			low[i] = vec_least(low[i], at[i]);
 			high[i] = vec_most(high[i], at[i]);
@@ -84,15 +91,16 @@ static int longest_key(const struct bvh_items *items, uint32_t first, uint32_t c
 	return key;
 }
 
-/* Keeps a node's box in lattice units, where it is exact. */
-static struct patch_bvh_node pack_node(const struct bvh_node *node)
+/* Keeps a node's box in lattice units, where it is exact; in a wide patch, in larger ones, rounded
+ * outwards. */
+static struct patch_bvh_node pack_node(const struct bvh_node *node, uint8_t shift)
 {
 	struct patch_bvh_node out = { .first = (uint16_t)node->first,
 				      .count = (uint16_t)node->count,
 				      .right = (uint16_t)node->right };
 	for (int i = 0; i < 3; i++) {
-		out.low[i] = (uint16_t)node->low[i];
-		out.high[i] = (uint16_t)node->high[i];
+		out.low[i] = (uint16_t)((int32_t)node->low[i] >> shift);
+		out.high[i] = (uint16_t)(((int32_t)node->high[i] + (1 << shift) - 1) >> shift);
 	}
 	return out;
 }
@@ -156,13 +164,16 @@ static void set_extents(const struct patch_bvh *bvh, struct piece *piece)
 }
 
 /* Returns whether one choice of samples may suit all triangles of the node. */
-static bool is_one_piece(const struct bvh_items *items, const struct patch_bvh_node *node)
+static bool is_one_piece(const struct patch_bvh *bvh, const struct bvh_items *items,
+			 const struct patch_bvh_node *node)
 {
+	const int32_t most = ((1 << (LATTICE_BITS + bvh->lattice.fine_bits)) - 1) / PIECES_ACROSS;
+
 	if (!node->right || node->count <= PIECE_TRIANGLES_MIN)
 		return true;
 	bool wide = false;
 	for (int i = 0; i < 3; i++)
-		wide |= node->high[i] - node->low[i] > UINT16_MAX / PIECES_ACROSS;
+		wide |= (node->high[i] - node->low[i]) << bvh->box_shift > most;
 	if (node->count > PIECE_TRIANGLES_MAX || wide)
 		return false;
 	return node->count <= PIECE_TRIANGLES_BENT ||
@@ -172,7 +183,7 @@ static bool is_one_piece(const struct bvh_items *items, const struct patch_bvh_n
 static void collect_pieces(struct patch_bvh *bvh, const struct bvh_items *items, uint32_t at)
 {
 	const struct patch_bvh_node *node = &bvh->nodes[at];
-	if (!is_one_piece(items, node)) {
+	if (!is_one_piece(bvh, items, node)) {
 		collect_pieces(bvh, items, at + 1);
 		collect_pieces(bvh, items, node->right);
 		return;
@@ -181,12 +192,13 @@ static void collect_pieces(struct patch_bvh *bvh, const struct bvh_items *items,
 	*piece = (struct piece){ .first_triangle = node->first,
 				 .triangle_count = node->count,
 				 .flatness = flatness_of(items, node->first, node->count) };
+	const float unit = (float)(1 << bvh->box_shift);
 	float diagonal[3];
 	for (int i = 0; i < 3; i++) {
-		float middle = (float)(node->low[i] + node->high[i]) / 2;
+		double middle = bvh->base[i] + unit * (float)(node->low[i] + node->high[i]) / 2;
 		piece->centre_m[i] =
 			(float)(bvh->lattice.origin_m[i] + bvh->lattice.step_m * middle);
-		diagonal[i] = (float)(node->high[i] - node->low[i]);
+		diagonal[i] = unit * (float)(node->high[i] - node->low[i]);
 	}
 	piece->radius_m = vec_length(diagonal) / 2 * (float)bvh->lattice.step_m;
 	measure_piece(bvh, piece);
@@ -247,13 +259,45 @@ static int scratch_init(struct scratch *scratch, const struct patch_bvh *bvh, ui
 	return 0;
 }
 
+/* Sets base and box_shift. Returns whether the patch is wider than 65535 steps. */
+static bool find_base(struct patch_bvh *bvh, const struct patch_mesh *mesh)
+{
+	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX }, high[3] = { 0 }, extent = 0, last = 0;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
+			int32_t at = mesh->vertices[v].position[i];
+			low[i] = at < low[i] ? at : low[i];
+			high[i] = at > high[i] ? at : high[i];
+		}
+	for (int i = 0; i < 3; i++)
+		last = high[i] > last ? high[i] : last;
+	if (last <= UINT16_MAX)
+		return false;
+	memcpy(bvh->base, low, sizeof(low));
+	for (int i = 0; i < 3; i++)
+		extent = high[i] - low[i] > extent ? high[i] - low[i] : extent;
+	while (extent >> bvh->box_shift >= UINT16_MAX)
+		bvh->box_shift++;
+	return extent > UINT16_MAX;
+}
+
 static int copy_positions(struct patch_bvh *bvh, const struct patch_mesh *mesh)
 {
-	bvh->positions = malloc(mesh->vertex_count * sizeof(*bvh->positions));
-	if (!bvh->positions)
+	bool wide = find_base(bvh, mesh);
+	if (wide)
+		bvh->wide = malloc(mesh->vertex_count * sizeof(*bvh->wide));
+	else
+		bvh->positions = malloc(mesh->vertex_count * sizeof(*bvh->positions));
+	if (!bvh->wide && !bvh->positions)
 		return -ENOMEM;
 	for (uint32_t v = 0; v < mesh->vertex_count; v++)
-		memcpy(bvh->positions[v], mesh->vertices[v].position, sizeof(*bvh->positions));
+		for (int i = 0; i < 3; i++) {
+			int32_t steps = mesh->vertices[v].position[i] - bvh->base[i];
+			if (wide)
+				bvh->wide[v][i] = (float)steps;
+			else
+				bvh->positions[v][i] = (uint16_t)steps;
+		}
 	bvh->vertex_count = mesh->vertex_count;
 	return 0;
 }
@@ -272,7 +316,7 @@ static int keep(struct patch_bvh *bvh, struct patch_mesh *mesh, const struct scr
 		       sizeof(*scratch->triangles));
 	}
 	for (uint32_t n = 0; n < bvh->node_count; n++)
-		bvh->nodes[n] = pack_node(&scratch->nodes[n]);
+		bvh->nodes[n] = pack_node(&scratch->nodes[n], bvh->box_shift);
 	return 0;
 }
 
@@ -302,6 +346,7 @@ void patch_bvh_finish(struct patch_bvh *bvh)
 	free(bvh->nodes);
 	free(bvh->pieces);
 	free(bvh->positions);
+	free(bvh->wide);
 	free(bvh->order);
 	memset(bvh, 0, sizeof(*bvh));
 }
@@ -309,7 +354,7 @@ void patch_bvh_finish(struct patch_bvh *bvh)
 size_t patch_bvh_bytes(const struct patch_bvh *bvh)
 {
 	return bvh->node_count * sizeof(*bvh->nodes) + bvh->piece_count * sizeof(*bvh->pieces) +
-	       bvh->vertex_count * sizeof(*bvh->positions) +
+	       bvh->vertex_count * (bvh->wide ? sizeof(*bvh->wide) : sizeof(*bvh->positions)) +
 	       (bvh->node_count ? bvh->nodes[0].count * sizeof(*bvh->order) : 0);
 }
 
@@ -327,11 +372,12 @@ bool ray_meets_sphere(const float from_m[3], const float direction[3], float mos
 	return vec_dot(off, off) <= radius_m * radius_m;
 }
 
-/* A ray in lattice units, where vertices are whole numbers. */
+/* A ray in lattice units from the base, where vertices are whole numbers. */
 struct cast {
 	const struct patch_bvh *bvh;
 	float from[3], direction[3], inverse[3];
 	float least, distance;
+	float unit; /* of boxes, lattice steps */
 	struct patch_bvh_hit hit;
 };
 
@@ -339,19 +385,12 @@ static bool meets_box(const struct cast *cast, const struct patch_bvh_node *node
 {
 	float low = 0, high = cast->distance;
 	for (int i = 0; i < 3; i++) {
-		float a = ((float)node->low[i] - cast->from[i]) * cast->inverse[i];
-		float b = ((float)node->high[i] - cast->from[i]) * cast->inverse[i];
+		float a = (cast->unit * (float)node->low[i] - cast->from[i]) * cast->inverse[i];
+		float b = (cast->unit * (float)node->high[i] - cast->from[i]) * cast->inverse[i];
 		low = vec_most(low, vec_least(a, b));
 		high = vec_least(high, vec_most(a, b));
 	}
 	return low <= high;
-}
-
-static void corner_of(const struct cast *cast, uint16_t index, float out[3])
-{
-	const uint16_t *at = cast->bvh->positions[index];
-	for (int i = 0; i < 3; i++)
-		out[i] = at[i];
 }
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. */
@@ -359,9 +398,9 @@ static bool meets_triangle(struct cast *cast, uint32_t triangle)
 {
 	const uint16_t *index = &cast->bvh->indices[3 * triangle];
 	float a[3], ab[3], ac[3], p[3], t[3], q[3];
-	corner_of(cast, index[0], a);
-	corner_of(cast, index[1], ab);
-	corner_of(cast, index[2], ac);
+	patch_bvh_corner(cast->bvh, index[0], a);
+	patch_bvh_corner(cast->bvh, index[1], ab);
+	patch_bvh_corner(cast->bvh, index[2], ac);
 	vec_sub(ab, ab, a);
 	vec_sub(ac, ac, a);
 	vec_cross(p, cast->direction, ac);
@@ -411,10 +450,11 @@ static bool run_cast(struct cast *cast, bool any)
 static struct cast begin_cast(const struct patch_bvh *bvh, const float from_m[3],
 			      const float direction[3])
 {
-	struct cast cast = { .bvh = bvh };
+	struct cast cast = { .bvh = bvh, .unit = (float)(1 << bvh->box_shift) };
 	for (int i = 0; i < 3; i++) {
 		cast.from[i] =
-			(float)((from_m[i] - bvh->lattice.origin_m[i]) / bvh->lattice.step_m);
+			(float)((from_m[i] - bvh->lattice.origin_m[i]) / bvh->lattice.step_m -
+				bvh->base[i]);
 		cast.direction[i] = direction[i];
 		cast.inverse[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
 	}

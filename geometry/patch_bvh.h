@@ -42,7 +42,7 @@ struct piece_probe {
 
 /* Kept small: about one node exists for every three triangles in memory. */
 struct patch_bvh_node {
-	uint16_t low[3], high[3]; /* bounding box, in lattice units */
+	uint16_t low[3], high[3]; /* bounding box, in units of 2^box_shift steps from the base */
 	/* range of triangles; the children of an inner node are node + 1 and right */
 	uint16_t first, count;
 	uint16_t right; /* index of the right child; 0: a leaf */
@@ -53,7 +53,12 @@ struct patch_bvh {
 	uint32_t node_count;
 	struct piece *pieces; /* owned */
 	uint32_t piece_count;
-	uint16_t (*positions)[3]; /* owned; in lattice units */
+	int32_t base[3]; /* a place of the lattice; all 0 unless the site is large */
+	/* Owned; lattice steps from the base. One of the two is NULL: wide is only for a patch that
+	 * is wider than 65535 steps. */
+	uint16_t (*positions)[3];
+	float (*wide)[3];
+	uint8_t box_shift;
 	uint32_t vertex_count;
 	const uint16_t *indices; /* borrowed from the mesh, which must outlive the BVH */
 	/* owned; the number each triangle had in the mesh before sorting */
@@ -67,6 +72,12 @@ must_check int patch_bvh_init(struct patch_bvh *out, struct patch_mesh *mesh,
 			      const struct lattice *lattice);
 /* Frees what patch_bvh_init allocated; a BVH of zero bytes is fine. */
 void patch_bvh_finish(struct patch_bvh *bvh);
+/* Sets out to the position of a vertex, in lattice steps from the base: whole numbers. */
+static inline void patch_bvh_corner(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = bvh->wide ? bvh->wide[vertex][i] : (float)bvh->positions[vertex][i];
+}
 /* Returns the memory it holds, in bytes. */
 size_t patch_bvh_bytes(const struct patch_bvh *bvh);
 

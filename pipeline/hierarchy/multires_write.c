@@ -73,7 +73,7 @@ static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
 	if (indices)
 		rc = name_vertices(indices, &globals, &out->vertex_count, patch, local_of);
 	if (rc == 0) {
-		out->vertices = malloc(out->vertex_count * sizeof(*out->vertices));
+		out->vertices = calloc(out->vertex_count, sizeof(*out->vertices));
 		out->indices = malloc(count * sizeof(*out->indices));
 		rc = out->vertices && out->indices ? 0 : -ENOMEM;
 	}
@@ -81,8 +81,7 @@ static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
 		const struct lattice_vertex *from = &mesh->vertices[globals[v]];
 		struct patch_vertex *to = &out->vertices[v];
 
-		for (int i = 0; i < 3; i++)
-			to->position[i] = (uint16_t)from->position[i];
+		memcpy(to->position, from->position, sizeof(to->position));
 		memcpy(to->colour, from->colour, sizeof(to->colour));
 		normal_encode(to->normal, from->normal);
 	}
@@ -96,12 +95,12 @@ static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
 static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *patch,
 			const struct lattice *lattice)
 {
-	uint16_t low[3] = { UINT16_MAX, UINT16_MAX, UINT16_MAX }, high[3] = { 0 };
+	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX }, high[3] = { 0 };
 	double centre[3], at[3], radius = 0.0;
 
 	for (uint32_t v = 0; v < patch->vertex_count; v++)
 		for (int i = 0; i < 3; i++) {
-			uint16_t p = patch->vertices[v].position[i];
+			int32_t p = patch->vertices[v].position[i];
 
 			low[i] = p < low[i] ? p : low[i];
 			high[i] = p > high[i] ? p : high[i];
@@ -112,9 +111,7 @@ static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *pa
 		centre[i] = out->centre_m[i];
 	}
 	for (uint32_t v = 0; v < patch->vertex_count; v++) {
-		const uint16_t *p = patch->vertices[v].position;
-
-		lattice_metres(at, lattice, (const int32_t[3]){ p[0], p[1], p[2] });
+		lattice_metres(at, lattice, patch->vertices[v].position);
 		radius = fmax(radius, distance(at, centre));
 	}
 	out->radius_m = nextafterf((float)radius, INFINITY);
@@ -122,7 +119,7 @@ static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *pa
 
 static void triangle_normal(double out[3], const struct patch_mesh *patch, uint32_t t)
 {
-	const uint16_t *at[3];
+	const int32_t *at[3];
 	double u[3], v[3], length;
 
 	for (int corner = 0; corner < 3; corner++)

@@ -41,10 +41,11 @@ static void place_triangle(struct writer *w, const struct patch_mesh *patch, uin
 	for (int k = 0; k < 3; k++) {
 		const struct patch_vertex *v =
 			&patch->vertices[patch->indices[3 * t + (uint32_t)k]];
+		double at[3];
 
+		lattice_metres(at, w->lattice, v->position);
 		for (int i = 0; i < 3; i++) {
-			w->corner[k][i] = (float)(w->lattice->origin_m[i] +
-						  w->lattice->step_m * v->position[i]);
+			w->corner[k][i] = (float)at[i];
 			w->centre[i] += w->corner[k][i] / 3;
 		}
 		normal_decode(w->normal[k], v->normal);
@@ -283,14 +284,15 @@ static uint32_t list_near(const struct writer *w, const struct patch_mesh *mesh,
 	float high[3] = { -INFINITY, -INFINITY, -INFINITY }, centre[3], diagonal[3];
 	uint32_t count = 0;
 
-	for (uint32_t v = 0; v < mesh->vertex_count; v++)
-		for (int i = 0; i < 3; i++) {
-			float at = (float)(w->lattice->origin_m[i] +
-					   w->lattice->step_m * mesh->vertices[v].position[i]);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		double at[3];
 
-			low[i] = fminf(low[i], at);
-			high[i] = fmaxf(high[i], at);
+		lattice_metres(at, w->lattice, mesh->vertices[v].position);
+		for (int i = 0; i < 3; i++) {
+			low[i] = fminf(low[i], (float)at[i]);
+			high[i] = fmaxf(high[i], (float)at[i]);
 		}
+	}
 	for (int i = 0; i < 3; i++)
 		centre[i] = (low[i] + high[i]) / 2;
 	vec_sub(diagonal, high, low);

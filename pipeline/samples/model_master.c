@@ -162,12 +162,13 @@ static void convert(struct model_master *model, const struct patch_mesh *patch)
 		const struct patch_vertex *from = &patch->vertices[i];
 		struct model_vertex *to = &model->vertices[i];
 		float normal[3];
+		double at[3];
 
 		*to = (struct model_vertex){ 0 };
 		normal_decode(normal, from->normal);
+		lattice_metres(at, lattice, from->position);
 		for (int k = 0; k < 3; k++) {
-			to->position_m[k] =
-				(float)(lattice->origin_m[k] + lattice->step_m * from->position[k]);
+			to->position_m[k] = (float)at[k];
 			to->normal[k] = (int8_t)lrintf(normal[k] * 127);
 		}
 		memcpy(to->colour, from->colour, sizeof(to->colour));

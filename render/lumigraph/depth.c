@@ -10,7 +10,7 @@
 #include "render/lumigraph/aim.h"
 
 static const char draw_vertex[] =
-	"attribute vec3 a_position;\n"
+	"attribute vec3 a_position, a_base;\n"
 	"uniform vec4 u_lattice;\n" /* lattice origin relative to the point, metres; step */
 	"uniform mat3 u_axes;\n"
 	"uniform float u_far;\n"
@@ -18,7 +18,7 @@ static const char draw_vertex[] =
 	"uniform vec2 u_base;\n" /* reference depth in units; metres per unit */
 	"varying float v_depth;\n"
 	"void main() {\n"
-	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * a_position);\n"
+	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * (a_base + a_position));\n"
 	/* Sampling points are as far apart, and as far from the model, as its size allows. */
 	"	float n = u_far * 0.0007;\n"
 	/* Row 0 of a face is at the top, row 0 of a texture at the bottom: y is flipped. */
@@ -69,7 +69,8 @@ static int build_programs(struct depth *depth)
 		.name = "face depth",
 		.vertex = (const char *const[]){ draw_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, draw_fragment, NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = (const char *const[]){ "a_position", "a_normal", "a_colour", "a_base",
+						     NULL },
 	};
 	const struct gl_program_source grow = {
 		.name = "face depth, grown",

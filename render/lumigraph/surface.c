@@ -15,7 +15,7 @@ enum { DEPTH_UNIT = 2 }; /* first of the units for depths, one for each face of 
 /* Positions are in metres relative to the eye, so that floats suffice anywhere in the model. */
 static const char vertex_common[] =
 	"invariant gl_Position;\n" /* the mark is drawn over it at equal depth */
-	"attribute vec3 a_position;\n"
+	"attribute vec3 a_position, a_base;\n"
 	"attribute vec2 a_normal;\n"
 	"attribute vec4 a_colour;\n"
 	"uniform mat4 u_clip;\n"
@@ -50,13 +50,14 @@ static const char vertex_common[] =
 	"	return min(a_colour.rgb * l, 1.0);\n"
 	"}\n";
 
-static const char plain_vertex[] = "void main() {\n"
-				   "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-				   "	vec3 n = unit_normal();\n"
-				   "	v_colour = vec4(own_colour(n), 1.0);\n"
-				   "	use_tools(p, n);\n"
-				   "	gl_Position = u_clip * vec4(p, 1.0);\n"
-				   "}\n";
+static const char plain_vertex[] =
+	"void main() {\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
+	"	vec3 n = unit_normal();\n"
+	"	v_colour = vec4(own_colour(n), 1.0);\n"
+	"	use_tools(p, n);\n"
+	"	gl_Position = u_clip * vec4(p, 1.0);\n"
+	"}\n";
 
 /* Visible back faces are where the plane cuts solid matter: one flat colour, as in a section
  * drawing. In programs that look up textures, fragments that are cut away or dissolved are
@@ -148,7 +149,7 @@ static const char blended_vertex[] =
 	"}\n"
 	"float sharpen(float k) { return k * k * k * k; }\n"
 	"void main() {\n"
-	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	vec3 n = unit_normal();\n"
 	"	float most = 0.0;\n"
 	"	for (int i = 0; i < FACES; i++) {\n"
@@ -260,7 +261,7 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 		 tiles->slots_before);
 }
 
-static const char *const attributes[] = { "a_position", "a_normal", "a_colour", NULL };
+static const char *const attributes[] = { "a_position", "a_normal", "a_colour", "a_base", NULL };
 
 static const char *const tool_defines[SURFACE_TOOLS] = {
 	[0] = "",

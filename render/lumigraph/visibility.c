@@ -11,7 +11,7 @@
 static const float far_m = 1000; /* far limit of depths, which have 16 bits: steps of 15 mm */
 
 static const char visibility_vertex[] =
-	"attribute vec3 a_position;\n"
+	"attribute vec3 a_position, a_base;\n"
 	"uniform vec4 u_lattice;\n"
 	/* right and up are divided by the tangents of the field of view */
 	"uniform vec3 u_right, u_up, u_forward;\n"
@@ -21,7 +21,7 @@ static const char visibility_vertex[] =
 	"varying float v_cut;\n"
 	"#endif\n"
 	"void main() {\n"
-	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	float z = dot(p, u_forward), n = 0.05, f = 1000.0;\n"
 	"	v_depth = z / f * 65535.0 / 256.0;\n"
 	"#ifdef CUT\n"
@@ -55,7 +55,8 @@ static int build(struct visibility_program *out, const char *defines)
 		.vertex = (const char *const[]){ defines, visibility_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, defines, visibility_fragment,
 						   NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = (const char *const[]){ "a_position", "a_normal", "a_colour", "a_base",
+						     NULL },
 	};
 	int rc = gl_program_build(&out->program, &source);
 	if (rc < 0)

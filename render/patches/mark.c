@@ -6,7 +6,7 @@
 
 static const char mark_vertex[] =
 	"invariant gl_Position;\n"
-	"attribute vec3 a_position;\n"
+	"attribute vec3 a_position, a_base;\n"
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
 	"uniform vec4 u_middle;\n" /* middle of the region from the eye; focal_px */
@@ -14,7 +14,7 @@ static const char mark_vertex[] =
 	"varying float v_cut;\n" /* metres in front of the section plane */
 	"varying vec4 v_at;\n"   /* position from the region's middle; width of a pixel in metres */
 	"void main() {\n"
-	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"	v_at = vec4(p - u_middle.xyz, length(p) / u_middle.w);\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
@@ -80,7 +80,8 @@ int mark_init(struct mark *mark)
 		.vertex = (const char *const[]){ mark_vertex, NULL },
 		.fragment = (const char *const[]){ mark_extensions, gl_fine_fragment, mark_fragment,
 						   NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = (const char *const[]){ "a_position", "a_normal", "a_colour", "a_base",
+						     NULL },
 	};
 	int rc = gl_program_build(&mark->program, &source);
 	mark->clip = glGetUniformLocation(mark->program, "u_clip");

@@ -88,8 +88,7 @@ static bool add_divided(struct outline *o, const struct patch_bvh *bvh, uint32_t
 	const int n = 1 << level;
 
 	for (int k = 0; k < 3; k++)
-		for (int i = 0; i < 3; i++)
-			at[k][i] = bvh->positions[index[k]][i];
+		patch_bvh_corner(bvh, index[k], at[k]);
 	vec_sub(ab, at[1], at[0]);
 	vec_sub(ac, at[2], at[0]);
 	vec_cross(normal, ab, ac);

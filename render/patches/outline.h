@@ -1,5 +1,5 @@
 /* The outline of a part on one patch, and the area of the patch inside it, computed from the
- * labels. Pure; positions are in lattice units. */
+ * labels. Pure; positions are in lattice steps from the base of the BVH. */
 #ifndef GOPURA_RENDER_PATCHES_OUTLINE_H
 #define GOPURA_RENDER_PATCHES_OUTLINE_H
 

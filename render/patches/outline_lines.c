@@ -21,7 +21,7 @@ struct vertex {
  * that the line does not sink into a surface seen at a grazing angle, and a little nearer, so that
  * it lies on top. */
 static const char line_vertex[] =
-	"attribute vec3 a_position;\n"
+	"attribute vec3 a_position, a_base;\n"
 	"attribute vec3 a_other;\n"
 	"attribute vec4 a_side;\n" /* normal; side as in struct vertex */
 	"uniform mat4 u_clip;\n"
@@ -32,10 +32,10 @@ static const char line_vertex[] =
 	"varying vec3 v_at;\n"   /* pixels along and across the line; its length */
 	"void main() {\n"
 	"	const float reach = 3.5;\n"
-	"	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"	vec4 here = u_clip * vec4(p, 1.0);\n"
-	"	vec4 there = u_clip * vec4(u_lattice.xyz + u_lattice.w * a_other, 1.0);\n"
+	"	vec4 there = u_clip * vec4(u_lattice.xyz + u_lattice.w * (a_base + a_other), 1.0);\n"
 	/* an end is nearer than the near plane */
 	"	if (here.z < -here.w || there.z < -there.w) {\n"
 	"		gl_Position = vec4(2.0, 2.0, 2.0, 1.0);\n"
@@ -69,17 +69,18 @@ static const char line_fragment[] =
 	"	gl_FragColor = vec4(1.0, 0.78, 0.25, alpha);\n"
 	"}\n";
 
-static const char tint_vertex[] = "invariant gl_Position;\n"
-				  "attribute vec3 a_position;\n"
-				  "uniform mat4 u_clip;\n"
-				  "uniform vec4 u_lattice;\n"
-				  "uniform vec4 u_cut;\n"
-				  "varying float v_cut;\n"
-				  "void main() {\n"
-				  "	vec3 p = u_lattice.xyz + u_lattice.w * a_position;\n"
-				  "	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
-				  "	gl_Position = u_clip * vec4(p, 1.0);\n"
-				  "}\n";
+static const char tint_vertex[] =
+	"invariant gl_Position;\n"
+	"attribute vec3 a_position, a_base;\n"
+	"uniform mat4 u_clip;\n"
+	"uniform vec4 u_lattice;\n"
+	"uniform vec4 u_cut;\n"
+	"varying float v_cut;\n"
+	"void main() {\n"
+	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
+	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
+	"	gl_Position = u_clip * vec4(p, 1.0);\n"
+	"}\n";
 
 static const char tint_fragment[] = "varying float v_cut;\n"
 				    "void main() {\n"
@@ -121,13 +122,15 @@ int outline_renderer_init(struct outline_renderer *outlines)
 		.name = "outline",
 		.vertex = (const char *const[]){ line_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, line_fragment, NULL },
-		.attributes = (const char *const[]){ "a_position", "a_other", "a_side", NULL },
+		.attributes =
+			(const char *const[]){ "a_position", "a_other", "a_side", "a_base", NULL },
 	};
 	const struct gl_program_source tint = {
 		.name = "tint",
 		.vertex = (const char *const[]){ tint_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, tint_fragment, NULL },
-		.attributes = (const char *const[]){ "a_position", NULL },
+		.attributes = (const char *const[]){ "a_position", "a_normal", "a_colour", "a_base",
+						     NULL },
 	};
 	int rc = build(&outlines->line, &line);
 	if (rc == 0)

@@ -29,9 +29,10 @@ static void patch_finish(struct geometry_patch *patch)
 		glDeleteBuffers(1, &patch->vertices);
 	if (patch->indices)
 		glDeleteBuffers(1, &patch->indices);
+	if (patch->wide)
+		glDeleteBuffers(1, &patch->wide);
 	outline_lines_finish(&patch->lines);
-	patch_bvh_finish(&patch->content.bvh);
-	patch_mesh_finish(&patch->content.mesh);
+	pool_patch_finish(&patch->content);
 	free(patch->pieces);
 	memset(patch, 0, sizeof(*patch));
 }
@@ -56,18 +57,26 @@ void geometry_finish(struct geometry *geometry)
  * positions. */
 static int upload(struct geometry_patch *patch)
 {
-	struct patch_mesh *mesh = &patch->content.mesh;
+	const struct patch_mesh *mesh = &patch->content.mesh;
+	const struct patch_bvh *bvh = &patch->content.bvh;
 	glGenBuffers(1, &patch->vertices);
 	glBindBuffer(GL_ARRAY_BUFFER, patch->vertices);
-	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->vertex_count * sizeof(*mesh->vertices)),
-		     mesh->vertices, GL_STATIC_DRAW);
+	glBufferData(GL_ARRAY_BUFFER,
+		     (GLsizeiptr)(mesh->vertex_count * sizeof(*patch->content.vertices)),
+		     patch->content.vertices, GL_STATIC_DRAW);
+	if (bvh->wide) {
+		glGenBuffers(1, &patch->wide);
+		glBindBuffer(GL_ARRAY_BUFFER, patch->wide);
+		glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->vertex_count * sizeof(*bvh->wide)),
+			     bvh->wide, GL_STATIC_DRAW);
+	}
 	glGenBuffers(1, &patch->indices);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, patch->indices);
 	glBufferData(GL_ELEMENT_ARRAY_BUFFER,
 		     (GLsizeiptr)(3 * mesh->triangle_count * sizeof(*mesh->indices)), mesh->indices,
 		     GL_STATIC_DRAW);
-	free(mesh->vertices);
-	mesh->vertices = NULL;
+	free(patch->content.vertices);
+	patch->content.vertices = NULL;
 	return gl_check("uploading a patch");
 }
 
@@ -75,8 +84,10 @@ static size_t patch_bytes(const struct geometry_patch *patch)
 {
 	const struct patch_mesh *mesh = &patch->content.mesh;
 	size_t indices = 3 * mesh->triangle_count * sizeof(*mesh->indices);
-	return mesh->vertex_count * sizeof(*mesh->vertices) + 2 * indices +
-	       patch_bvh_bytes(&patch->content.bvh) +
+	size_t vertex = sizeof(*patch->content.vertices);
+	if (patch->content.bvh.wide)
+		vertex += sizeof(*patch->content.bvh.wide);
+	return mesh->vertex_count * vertex + 2 * indices + patch_bvh_bytes(&patch->content.bvh) +
 	       patch->content.bvh.piece_count * sizeof(*patch->pieces);
 }
 
@@ -212,13 +223,24 @@ void geometry_bind(const struct geometry *geometry, uint32_t patch)
 	const struct geometry_patch *p = &geometry->patches[patch];
 	glBindBuffer(GL_ARRAY_BUFFER, p->vertices);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, p->indices);
-	GLsizei stride = sizeof(struct patch_vertex);
+	GLsizei stride = sizeof(struct packed_vertex);
 	glVertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, stride,
-			      (void *)offsetof(struct patch_vertex, position));
+			      (void *)offsetof(struct packed_vertex, position));
 	glVertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, stride,
-			      (void *)offsetof(struct patch_vertex, normal));
+			      (void *)offsetof(struct packed_vertex, normal));
 	glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
-			      (void *)offsetof(struct patch_vertex, colour));
+			      (void *)offsetof(struct packed_vertex, colour));
+	if (p->wide) {
+		glBindBuffer(GL_ARRAY_BUFFER, p->wide);
+		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, NULL);
+	}
+	geometry_bind_base(geometry, patch);
+}
+
+void geometry_bind_base(const struct geometry *geometry, uint32_t patch)
+{
+	const int32_t *base = geometry->patches[patch].content.bvh.base;
+	glVertexAttrib3f(3, (float)base[0], (float)base[1], (float)base[2]);
 }
 
 void geometry_cull(const struct geometry *geometry, uint32_t patch)

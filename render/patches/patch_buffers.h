@@ -45,6 +45,7 @@ enum geometry_sides {
 
 struct geometry_patch {
 	GLuint vertices, indices;
+	GLuint wide; /* positions as floats, of a wide patch (struct packed_vertex); mostly 0 */
 	struct pool_patch content;
 	struct piece_state *pieces; /* owned; one for each of content.bvh.pieces */
 	enum geometry_sides sides;
@@ -79,9 +80,13 @@ must_check int geometry_label(struct geometry *geometry, uint32_t group,
 /* Marks the groups that the cut desires, then drops others until the budget holds. */
 void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t budget_bytes);
 
-/* Binds the buffers of a patch. Attribute 0 is the position, 1 the normal (octahedral,
- * unconverted), 2 the colour. */
+/* Binds the buffers of a patch. Attribute 0 is the position from the base, 1 the normal
+ * (octahedral, unconverted), 2 the colour, 3 the base, which all vertices of a patch share. The sum
+ * of position and base is a place of the lattice, exact as a float, so vertices that patches share
+ * are drawn at equal bits. */
 void geometry_bind(const struct geometry *geometry, uint32_t patch);
+/* Sets only attribute 3, for what is drawn from buffers that count from the base too. */
+void geometry_bind_base(const struct geometry *geometry, uint32_t patch);
 /* Sets face culling for a patch: back faces are culled where only front faces were found visible,
  * which halves the triangles of a closed model. Otherwise both sides are drawn. */
 void geometry_cull(const struct geometry *geometry, uint32_t patch);

@@ -71,13 +71,19 @@ static void queue_empty(struct queue *queue)
 		job_destroy(job);
 }
 
+void pool_patch_finish(struct pool_patch *patch)
+{
+	patch_bvh_finish(&patch->bvh);
+	patch_mesh_finish(&patch->mesh);
+	free(patch->vertices);
+	patch->vertices = NULL;
+}
+
 void pool_answer_finish(struct pool_answer *answer)
 {
 	free(answer->rgb);
-	for (uint32_t i = 0; i < answer->patch_count; i++) {
-		patch_bvh_finish(&answer->patches[i].bvh);
-		patch_mesh_finish(&answer->patches[i].mesh);
-	}
+	for (uint32_t i = 0; i < answer->patch_count; i++)
+		pool_patch_finish(&answer->patches[i]);
 	free(answer->patches);
 	label_group_finish(&answer->labels);
 	answer->rgb = NULL;
@@ -96,6 +102,27 @@ static int decode_tile(struct job *job)
 	return tile_decode(job->answer.rgb, SAMPLE_IMAGE_PX, object);
 }
 
+/* Replaces the vertices of the mesh by packed ones. */
+static int pack(struct pool_patch *patch)
+{
+	struct patch_mesh *mesh = &patch->mesh;
+	patch->vertices = malloc(mesh->vertex_count * sizeof(*patch->vertices));
+	if (!patch->vertices)
+		return -ENOMEM;
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		const struct patch_vertex *from = &mesh->vertices[v];
+		struct packed_vertex *to = &patch->vertices[v];
+		*to = (struct packed_vertex){ 0 };
+		for (int i = 0; i < 3 && patch->bvh.positions; i++)
+			to->position[i] = patch->bvh.positions[v][i];
+		memcpy(to->normal, from->normal, sizeof(to->normal));
+		memcpy(to->colour, from->colour, sizeof(to->colour));
+	}
+	free(mesh->vertices);
+	mesh->vertices = NULL;
+	return 0;
+}
+
 static int decode_group(struct job *job, const struct lattice *lattice)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
@@ -112,10 +139,12 @@ static int decode_group(struct job *job, const struct lattice *lattice)
 	}
 	job->answer.patch_count = count;
 	for (uint32_t i = 0; i < count; i++) {
-		job->answer.patches[i].mesh = meshes[i];
+		struct pool_patch *patch = &job->answer.patches[i];
+		patch->mesh = meshes[i];
 		if (rc == 0)
-			rc = patch_bvh_init(&job->answer.patches[i].bvh,
-					    &job->answer.patches[i].mesh, lattice);
+			rc = patch_bvh_init(&patch->bvh, &patch->mesh, lattice);
+		if (rc == 0)
+			rc = pack(patch);
 	}
 	return rc;
 }

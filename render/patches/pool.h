@@ -10,11 +10,23 @@
 
 enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS };
 
-/* A decoded patch: its mesh and the BVH over it. */
+/* A vertex as uploaded to the GPU: 12 bytes. */
+struct packed_vertex {
+	uint16_t position[3]; /* steps from the base of the BVH; 0 in a wide patch, see bvh.wide */
+	int8_t normal[2];
+	uint8_t colour[4];
+};
+_Static_assert(sizeof(struct packed_vertex) == 12, "the stride on the GPU");
+
+/* A decoded patch: its mesh, whose vertices are packed, and the BVH over it. */
 struct pool_patch {
-	struct patch_mesh mesh;
+	struct patch_mesh mesh;         /* its vertices are NULL */
+	struct packed_vertex *vertices; /* owned; NULL after the upload */
 	struct patch_bvh bvh;
 };
+
+/* Frees everything. Zeroed is fine. */
+void pool_patch_finish(struct pool_patch *patch);
 
 struct pool_answer {
 	enum pool_kind kind;

@@ -71,6 +71,7 @@ static void draw_tint(struct scene *scene, uint32_t patch)
 
 static void draw_lines(struct scene *scene, uint32_t patch)
 {
+	geometry_bind_base(&scene->geometry, patch);
 	outline_lines_lines(&scene->geometry.patches[patch].lines);
 }
 

@@ -51,20 +51,22 @@ static void make_programs(struct bench *bench)
 					    "}\n",
 					    NULL };
 	static const char *const plain[] = {
-		"attribute vec3 position;\n"
+		"attribute vec3 position, base;\n"
 		"uniform mat4 clip;\n"
 		"uniform vec4 lattice;\n"
 		"varying vec2 at;\n"
 		"void main() {\n"
-		"	gl_Position = clip * vec4(lattice.xyz + lattice.w * position, 1.0);\n"
+		"	gl_Position = clip * vec4(lattice.xyz + lattice.w * (base + position), 1.0);\n"
 		"	at = gl_Position.xy / gl_Position.w * 0.5 + 0.5;\n"
 		"}\n",
 		NULL
 	};
 	const struct gl_program_source quad_source = { "quad", quad, textured_fragment,
 						       (const char *const[]){ "corner", NULL } };
-	const struct gl_program_source plain_source = { "plain", plain, textured_fragment,
-							(const char *const[]){ "position", NULL } };
+	const struct gl_program_source plain_source = {
+		"plain", plain, textured_fragment,
+		(const char *const[]){ "position", "normal", "colour", "base", NULL }
+	};
 	const struct gl_texture_options texture = {
 		.width_px = 1024, .height_px = 1024, .format = GL_RGBA, .filter = GL_LINEAR
 	};

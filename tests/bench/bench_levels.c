@@ -231,12 +231,12 @@ static void add_patch(struct surface *surface, const struct lattice *lattice,
 		      const struct patch_mesh *patch)
 {
 	for (uint32_t i = 0; i < 3 * patch->triangle_count; i++) {
-		const uint16_t *at = patch->vertices[patch->indices[i]].position;
+		double at[3];
 		uint32_t vertex = 3 * surface->triangle_count + i;
 
+		lattice_metres(at, lattice, patch->vertices[patch->indices[i]].position);
 		for (int k = 0; k < 3; k++)
-			surface->positions[vertex][k] =
-				(float)(lattice->origin_m[k] + lattice->step_m * at[k]);
+			surface->positions[vertex][k] = (float)at[k];
 		surface->triangles[vertex / 3][i % 3] = vertex;
 	}
 	surface->triangle_count += patch->triangle_count;

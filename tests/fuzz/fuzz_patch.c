@@ -5,8 +5,9 @@
 
 #include "tests/fuzz/repack.h"
 
-/* docs/patch.md: of the streams behind the indices, bytes a vertex. */
-static const uint8_t bytes_a_vertex[] = { 3, 3, 2, 1, 2, 1 };
+/* docs/patch.md: of the streams behind the indices, bytes a vertex; the last is of wide groups. */
+static const uint8_t bytes_a_vertex[] = { 3, 3, 2, 1, 2, 1, 3 };
+enum { PLACED = 0x80 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -40,7 +41,7 @@ static void put_stream(struct buffer *object, struct reader *in, size_t size)
 /* 'R', the header from its number of patches on, and what the streams hold, one after the other. */
 static void pack_and_decode(const uint8_t *data, size_t size)
 {
-	size_t index_bytes = 0, vertices = 0;
+	size_t index_bytes = 0, vertices = 0, streams = sizeof(bytes_a_vertex) - 1;
 	struct buffer object;
 	struct reader in;
 	uint8_t count;
@@ -52,7 +53,15 @@ static void pack_and_decode(const uint8_t *data, size_t size)
 	buffer_put_u8(&object, count);
 	for (int i = 0; i < 3; i++)
 		buffer_put_u8(&object, reader_u8(&in));
-	for (uint8_t p = 0; p < count; p++) {
+	if (count & PLACED) {
+		const uint8_t bytes = reader_u8(&in);
+
+		streams += bytes == 3;
+		buffer_put_u8(&object, bytes);
+		for (int i = 0; i < 3; i++)
+			buffer_put_u32(&object, reader_u32(&in));
+	}
+	for (uint8_t p = 0; p < (count & ~PLACED); p++) {
 		const uint16_t of_patch = reader_u16(&in) % 2000, triangles = reader_u16(&in);
 		const uint16_t of_indices = reader_u16(&in) % 4000;
 
@@ -63,7 +72,7 @@ static void pack_and_decode(const uint8_t *data, size_t size)
 		buffer_put_u16(&object, of_indices);
 	}
 	put_stream(&object, &in, index_bytes);
-	for (size_t i = 0; i < sizeof(bytes_a_vertex); i++)
+	for (size_t i = 0; i < streams; i++)
 		put_stream(&object, &in, bytes_a_vertex[i] * vertices);
 	decode(buffer_bytes(&object));
 	buffer_finish(&object);

@@ -18,10 +18,10 @@ static void make_bumps(struct patch_mesh *mesh)
 	for (int y = 0; y < SIDE; y++) {
 		for (int x = 0; x < SIDE; x++) {
 			float z = 10 + 0.8f * sinf((float)x) * cosf((float)y * 0.7f);
-			uint16_t *at = mesh->vertices[mesh->vertex_count++].position;
-			at[0] = (uint16_t)(5000 + 300 * x);
-			at[1] = (uint16_t)(5000 + 300 * y);
-			at[2] = (uint16_t)(1000 * z);
+			int32_t *at = mesh->vertices[mesh->vertex_count++].position;
+			at[0] = 5000 + 300 * x;
+			at[1] = 5000 + 300 * y;
+			at[2] = (int32_t)(1000 * z);
 		}
 	}
 	for (int y = 0; y + 1 < SIDE; y++) {
@@ -145,12 +145,62 @@ static void triangles_in_one_place_do_not_hang_the_split(void **state)
 	patch_mesh_finish(&mesh);
 }
 
+/* The same surface at the far corner of a large site, and as a wide patch there: rays hit where
+ * they hit near the origin. */
+static void far_and_wide_patches_are_hit_at_the_same_places(void **state)
+{
+	(void)state;
+	static const int32_t far[3] = { 900000, 16000000, 500000 };
+	for (int stretch = 0; stretch < 7; stretch += 3) {
+		struct lattice fine = { .step_m = 0.001 / (1 << stretch), .fine_bits = 8 };
+		struct patch_mesh near_mesh, mesh;
+		struct patch_bvh near, bvh;
+		uint32_t seed = 3, hits = 0;
+		make_bumps(&near_mesh);
+		make_bumps(&mesh);
+		for (uint32_t v = 0; v < mesh.vertex_count; v++)
+			for (int i = 0; i < 3; i++)
+				mesh.vertices[v].position[i] =
+					far[i] + (mesh.vertices[v].position[i] << stretch);
+		for (int i = 0; i < 3; i++)
+			fine.origin_m[i] = lattice.origin_m[i] - fine.step_m * far[i];
+		CHECK(patch_bvh_init(&near, &near_mesh, &lattice) == 0);
+		CHECK(patch_bvh_init(&bvh, &mesh, &fine) == 0);
+		CHECK((bvh.wide != NULL) == (stretch > 2) && !near.wide && near.base[0] == 0);
+		CHECK(bvh.base[1] >= far[1] && bvh.vertex_count == near.vertex_count);
+		for (int i = 0; i < 1000; i++) {
+			float from[3], direction[3], was = 100, is = 100;
+			for (int k = 0; k < 3; k++) {
+				from[k] = 12 * uniform(&seed) - 6;
+				direction[k] = uniform(&seed) - 0.5f;
+			}
+			from[2] = 5;
+			direction[2] = -1;
+			vec_normalise(direction);
+			bool hit = patch_bvh_ray(&near, from, direction, 0, &was, NULL);
+			CHECK(patch_bvh_ray(&bvh, from, direction, 0, &is, NULL) == hit);
+			CHECK(patch_bvh_blocks(&bvh, from, direction, 100) == hit);
+			CHECK(fabsf(is - was) < 1e-4f);
+			hits += hit;
+		}
+		CHECK(hits > 200);
+		for (uint32_t p = 0; p < bvh.piece_count; p++)
+			for (int k = 0; k < 3; k++)
+				CHECK(fabsf(bvh.pieces[p].centre_m[k]) < 10);
+		patch_bvh_finish(&near);
+		patch_bvh_finish(&bvh);
+		patch_mesh_finish(&near_mesh);
+		patch_mesh_finish(&mesh);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_ray_meets_what_every_triangle_tried_alone_says),
 		cmocka_unit_test(pieces_hold_every_triangle_once),
 		cmocka_unit_test(an_empty_patch_is_met_by_nothing),
+		cmocka_unit_test(far_and_wide_patches_are_hit_at_the_same_places),
 		cmocka_unit_test(triangles_in_one_place_do_not_hang_the_split),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -387,8 +387,7 @@ struct verdict {
 
 static bool is_open_place(const struct model *model, uint32_t vertex)
 {
-	const uint16_t *at = model->vertices[vertex].position;
-	uint64_t key = place_key((const int32_t[3]){ at[0], at[1], at[2] });
+	uint64_t key = place_key(model->vertices[vertex].position);
 
 	return bsearch(&key, model->open, model->open_count, sizeof(key), compare_keys) != NULL;
 }

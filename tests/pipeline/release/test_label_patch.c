@@ -66,7 +66,7 @@ static struct patch_mesh patch_of(const struct mesh *mesh)
 	}
 	for (uint32_t v = 0; v < mesh->vertex_count; v++)
 		for (int i = 0; i < 3; i++)
-			out.vertices[v].position[i] = (uint16_t)lrint(
+			out.vertices[v].position[i] = (int32_t)lrint(
 				(mesh->positions[v][i] - lattice.origin_m[i]) / lattice.step_m);
 	return out;
 }
@@ -226,7 +226,7 @@ static void a_part_that_ends_with_the_surface_is_outlined_all_around(void **stat
 		uint32_t first;
 
 		for (uint32_t k = 0; k < 3; k++) {
-			const uint16_t *at = patch.vertices[patch.indices[3 * t + k]].position;
+			const int32_t *at = patch.vertices[patch.indices[3 * t + k]].position;
 
 			at_rim |= at[0] == 1024 || at[0] == 3072 || at[1] == 1024 || at[1] == 3072;
 		}

@@ -25,7 +25,7 @@ static struct object_store *objects;
 static int put_object(uint32_t group)
 {
 	struct patch_vertex vertices[3] = {
-		{ .position = { (uint16_t)group, 9, 7 },
+		{ .position = { (int32_t)group, 9, 7 },
 		  .normal = { 127, -127 },
 		  .colour = { 0, 255, 100, 255 } },
 		{ .position = { 1001, 9, 7 }, .normal = { 1, -2 }, .colour = { 1, 2, 3, 9 } },

@@ -118,8 +118,8 @@ static inline void tiny_group(struct object_store *objects, struct page_child *o
 	struct buffer object;
 
 	for (uint16_t i = 0; i < 4; i++) {
-		vertices[i].position[0] = (uint16_t)(i % 2 * 1000 + seed);
-		vertices[i].position[1] = (uint16_t)(i / 2 * 1000);
+		vertices[i].position[0] = i % 2 * 1000 + seed;
+		vertices[i].position[1] = i / 2 * 1000;
 		vertices[i].normal[0] = 1;
 	}
 	buffer_init(&object, 1 << 20);

@@ -129,8 +129,8 @@ static uint16_t little_vertex(struct little_mesh *m, const float at[3], const fl
 	struct patch_vertex *v = &m->mesh.vertices[m->mesh.vertex_count];
 	float inside[3], rgb[3];
 	for (int i = 0; i < 3; i++) {
-		v->position[i] = (uint16_t)lrintf((at[i] - (float)little_lattice.origin_m[i]) /
-						  (float)little_lattice.step_m);
+		v->position[i] = (int32_t)lrintf((at[i] - (float)little_lattice.origin_m[i]) /
+						 (float)little_lattice.step_m);
 		inside[i] = at[i] + 1e-3f * normal[i];
 		m->min[i] = fminf(m->min[i], at[i]);
 		m->max[i] = fmaxf(m->max[i], at[i]);
