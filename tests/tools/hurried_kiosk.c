@@ -1,8 +1,8 @@
 /* gopura-kiosk on a clock that does not wait: where a kiosk would only wait for time (a visitor, a
  * fade, the next frame) time jumps, so that hours of visits pass in minutes. For the fetcher and
  * the decoders it really waits. With --shots time stands still during that, so that a picture does
- * not depend on how busy the machine is, and the frames of a moving eye are as far apart as its
- * longest step.
+ * not depend on how busy the machine is; the frames of a moving eye are as far apart as its longest
+ * step, and only a corner of those is drawn of which no picture is taken.
  *
  *   hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE [--log debug]
  *
@@ -23,6 +23,7 @@
 #include "app/kiosk.h"
 #include "app/settings/options.h"
 #include "base/clock.h"
+#include "render/display/gl.h"
 #include "render/scene/scene_parts.h"
 #include "ui/overlay.h"
 
@@ -35,6 +36,8 @@ int __real_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 			   struct itimerspec *before);
 int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 			   struct itimerspec *before);
+void __real_gl_place_bind(const struct gl_place *place, int width_px, int height_px);
+void __wrap_gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 int __real_frame_draw(struct frame *frame);
 int __wrap_frame_draw(struct frame *frame);
 void __real_fingers_on_touch(void *data, const struct touch_event *event);
@@ -48,6 +51,8 @@ enum {
 	HELD_AT_US = 2000000,  /* of the kiosk's life, until there is a picture */
 	END_MOST_US = 1200000, /* of a turn, past when nobody should have been there */
 	SHOT_FRAME_US = 44000, /* of a frame; the eye's longest step is 50 ms */
+	SHOT_NEAR_MS = 200,    /* frames this near to a shot are drawn whole */
+	SHOTS_MAX = 256,
 	STILL_MOST_MS = 60000, /* of real time; then what is waited for is taken not to come */
 };
 
@@ -70,6 +75,9 @@ static struct {
 	uint32_t nobody, asked, card, page, picture, search, typed, large, reach, tools, help,
 		language, tour;
 } seen;
+static int64_t shots_ms[SHOTS_MAX]; /* since the first frame */
+static uint32_t shot_count;
+static int64_t first_frame_us;
 static int64_t last_touch_us; /* or when somebody was last led about */
 
 static void fail(const char *format, ...)
@@ -276,18 +284,47 @@ static bool somebody_is_led(void)
 	return !kiosk.tours.tour.loops && tour_runs(&kiosk.tours.tour);
 }
 
+/* Whether a frame is replaced by the next one before a picture of it is taken. */
+static bool nobody_sees_frame(void)
+{
+	const struct scene *scene = kiosk.releases.sessions.shown.exhibit.scene;
+	const int64_t now_ms = (virtual_us - first_frame_us) / 1000;
+
+	if (!kiosk.options.shots_path || !scene || !scene->was_moving)
+		return false;
+	for (uint32_t i = 0; i < shot_count; i++)
+		if (llabs(shots_ms[i] - now_ms) < SHOT_NEAR_MS)
+			return false;
+	return true;
+}
+
+/* From here to the end of a frame everything is drawn to the panel. */
+void __wrap_gl_place_bind(const struct gl_place *place, int width_px, int height_px)
+{
+	__real_gl_place_bind(place, width_px, height_px);
+	if (!nobody_sees_frame())
+		return;
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(0, 0, 1, 1);
+}
+
 int __wrap_frame_draw(struct frame *of)
 {
+	const struct exhibit *shown = &kiosk.releases.sessions.shown.exhibit;
 	const int64_t next_us = virtual_us + SHOT_FRAME_US;
 	int rc;
+
+	if (first_frame_us == 0)
+		first_frame_us = virtual_us;
 
 	heard = stands_still = false;
 	still_since_ms = 0;
 	rc = __real_frame_draw(of);
-	/* Frames that refine a picture at rest are as close as ever: time is not for them to pass.
-	 */
+	glDisable(GL_SCISSOR_TEST);
+	/* Frames that refine a picture at rest are as close as ever, unless something fades in:
+	 * time is not for the others to pass. */
 	if (kiosk.options.shots_path && virtual_us < next_us &&
-	    (!at_rest() || kiosk.releases.sessions.shown.exhibit.frame.settled))
+	    (!at_rest() || shown->frame.settled || (shown->scene && shown->scene->fading)))
 		virtual_us = next_us;
 	ring_timers(); /* the next frame may be due too */
 	seen.frames++;
@@ -382,6 +419,17 @@ static int run(void)
 	return rc;
 }
 
+static void read_shots(const char *path)
+{
+	FILE *file = fopen(path, "r");
+	long long at_ms;
+
+	while (file && shot_count < SHOTS_MAX && fscanf(file, "%lld %*s", &at_ms) == 1)
+		shots_ms[shot_count++] = at_ms;
+	if (file)
+		fclose(file);
+}
+
 int main(int argc, char **argv)
 {
 	int rc;
@@ -391,6 +439,8 @@ int main(int argc, char **argv)
 		fputs("usage: hurried_kiosk [KIOSK OPTIONS] --touch-replay FILE\n", stderr);
 		return 2;
 	}
+	if (kiosk.options.shots_path)
+		read_shots(kiosk.options.shots_path);
 	rc = kiosk_start(&kiosk);
 	if (rc == 0)
 		rc = run();
