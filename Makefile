@@ -50,7 +50,6 @@ endif
 MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c
 SOURCES  := $(filter-out $(MAINS),$(shell find $(FOLDERS) -name '*.c' | sort))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
-SOURCES  := $(filter-out render/display/display_window.c,$(SOURCES))
 LIBS     := $(filter-out sdl2,$(LIBS))
 CFLAGS   += -DGOPURA_NO_WINDOW
 endif
@@ -159,9 +158,20 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 
+ifeq ($(WINDOW),yes)
 $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
+else # the objects of build/, but for those that know of the window
+$(ARCHIVE): $(BUILD)/obj/render/display/display.o build/libgopura.a
+	@cp build/libgopura.a $@
+	@ar d $@ display_window.o
+	@ar rs $@ $<
+
+build/libgopura.a: FORCE
+	@$(MAKE) --no-print-directory WINDOW=yes BUILD=build $@
+FORCE:
+endif
 
 LINK = @echo '  link  $@' && $(CC) $(OPT) $(LDFLAGS) -o $@ $(filter %.o,$^) $(ARCHIVE) $(PKG_LIBS) $(EXTRA)
 
