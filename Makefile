@@ -32,7 +32,7 @@ CFLAGS   = -std=c11 -D_GNU_SOURCE -I. $(WARN) $(OPT) -ffp-contract=off -MMD -MP 
 LDFLAGS  = -Wl,--as-needed
 ifneq ($(SAN),)
 # Uninitialised locals get the same wrong bits in every run, so a read of one is always found.
-OPT     := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
+OPT     := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
            -ftrivial-auto-var-init=pattern
 endif
 
@@ -157,6 +157,12 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 # Only files that print the version depend on it, so that a commit does not rebuild the tree.
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
+# The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.
+ifeq ($(FUZZER),)
+$(BUILD)/obj/tests/%.o: OPT := $(patsubst -O%,-O0,$(OPT))
+$(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/tools/%.o: OPT := $(OPT)
+endif
+$(BUILD)/tests/%: LDFLAGS += -fuse-ld=gold
 
 ifeq ($(WINDOW),yes)
 $(ARCHIVE): $(OBJECTS)
