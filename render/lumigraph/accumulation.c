@@ -132,6 +132,13 @@ void accumulation_add(struct accumulation *accumulation, const struct gl_place *
 	draw_square(accumulation, accumulation->sum.colour);
 }
 
+void accumulation_show_frame(const struct accumulation *accumulation, const struct gl_place *place)
+{
+	gl_place_bind(place, accumulation->frame.width_px, accumulation->frame.height_px);
+	glDisable(GL_DEPTH_TEST);
+	draw_square(accumulation, accumulation->frame.colour);
+}
+
 bool accumulation_is_done(const struct accumulation *accumulation)
 {
 	return accumulation->same >= ACCUMULATION_FRAMES;

@@ -1,4 +1,4 @@
-/* The shader that computes the distance to a region per fragment, and the state to draw with it. */
+/* The shader that computes the distance to a region per fragment. */
 #include "render/patches/mark.h"
 
 #include <math.h>
@@ -9,14 +9,14 @@ static const char mark_vertex[] =
 	"attribute vec3 a_position, a_base;\n"
 	"uniform mat4 u_clip;\n"
 	"uniform vec4 u_lattice;\n"
-	"uniform vec4 u_middle;\n" /* middle of the region from the eye; focal_px */
+	"uniform vec3 u_middle;\n" /* middle of the region from the eye */
 	"uniform vec4 u_cut;\n"
 	"varying float v_cut;\n" /* metres in front of the section plane */
-	"varying vec4 v_at;\n"   /* position from the region's middle; width of a pixel in metres */
+	"varying vec3 v_at;\n"   /* position from the region's middle */
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
-	"	v_at = vec4(p - u_middle.xyz, length(p) / u_middle.w);\n"
+	"	v_at = p - u_middle;\n"
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
@@ -24,12 +24,10 @@ static const char mark_vertex[] =
  * count, floor, roof; [1].w: radius; [2]: half sides, 0; [3].xy: cosine and sine of the rotation.
  * u_corners: x, y, two corners to a vector. All positions count from the region's middle, so that
  * mediump suffices. */
-static const char mark_extensions[] = "#extension GL_OES_standard_derivatives : enable\n";
-
 static const char mark_fragment[] =
 	"uniform vec4 u_region[4];\n"
 	"uniform vec4 u_corners[8];\n"
-	"varying vec4 v_at;\n"
+	"varying vec3 v_at;\n"
 	"varying float v_cut;\n"
 	"float polygon(vec2 p) {\n"
 	"	float nearest = 6e4, side = 1.0;\n"
@@ -59,17 +57,8 @@ static const char mark_fragment[] =
 	"	return max(q.x, max(q.y, q.z));\n"
 	"}\n"
 	"void main() {\n"
-	"	float d = region_distance(v_at.xyz);\n"
-	"	float pixel = v_at.w;\n"
-	"#ifdef GL_OES_standard_derivatives\n"
-	/* A surface along the boundary would be all line: use the width along the surface. */
-	"	pixel = clamp(length(vec2(dFdx(d), dFdy(d))), 0.05 * pixel, pixel);\n"
-	"#endif\n"
-	"	float line = 1.0 - smoothstep(2.0, 3.0, abs(d) / pixel);\n"
-	"	float tint = d < 0.0 ? 0.14 : 0.0;\n"
-	"	float alpha = max(line, tint);\n"
-	"	if (alpha <= 0.0 || v_cut > 0.0) discard;\n"
-	"	gl_FragColor = vec4(1.0, 0.78, 0.25, alpha);\n"
+	"	if (region_distance(v_at) > 0.0 || v_cut > 0.0) discard;\n"
+	"	gl_FragColor = vec4(1.0);\n"
 	"}\n";
 
 int mark_init(struct mark *mark)
@@ -78,8 +67,7 @@ int mark_init(struct mark *mark)
 	const struct gl_program_source source = {
 		.name = "mark",
 		.vertex = (const char *const[]){ mark_vertex, NULL },
-		.fragment = (const char *const[]){ mark_extensions, gl_fine_fragment, mark_fragment,
-						   NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, mark_fragment, NULL },
 		.attributes = (const char *const[]){ "a_position", "a_normal", "a_colour", "a_base",
 						     NULL },
 	};
@@ -152,19 +140,9 @@ void mark_begin(const struct mark *mark, const struct view *view, const struct r
 	glUniform4fv(mark->cut, 1, view->cut);
 	float middle[3];
 	find_middle(middle, region);
-	glUniform4f(mark->middle, middle[0] - eye[0], middle[1] - eye[1], middle[2] - eye[2],
-		    view->focal_px);
+	glUniform3f(mark->middle, middle[0] - eye[0], middle[1] - eye[1], middle[2] - eye[2]);
 	set_region(mark, middle, region);
-	glEnable(GL_BLEND);
-	/* Keep the alpha (coverage) that the surface wrote. */
-	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-	glDepthFunc(GL_LEQUAL);
-	glDepthMask(GL_FALSE);
-}
-
-void mark_end(void)
-{
-	glDepthMask(GL_TRUE);
-	glDepthFunc(GL_LESS);
-	glDisable(GL_BLEND);
+	glEnableVertexAttribArray(0);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
 }

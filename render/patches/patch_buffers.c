@@ -31,7 +31,7 @@ static void patch_finish(struct geometry_patch *patch)
 		glDeleteBuffers(1, &patch->indices);
 	if (patch->wide)
 		glDeleteBuffers(1, &patch->wide);
-	outline_lines_finish(&patch->lines);
+	part_buffers_finish(&patch->part);
 	pool_patch_finish(&patch->content);
 	free(patch->pieces);
 	memset(patch, 0, sizeof(*patch));
@@ -234,12 +234,7 @@ void geometry_bind(const struct geometry *geometry, uint32_t patch)
 		glBindBuffer(GL_ARRAY_BUFFER, p->wide);
 		glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, NULL);
 	}
-	geometry_bind_base(geometry, patch);
-}
-
-void geometry_bind_base(const struct geometry *geometry, uint32_t patch)
-{
-	const int32_t *base = geometry->patches[patch].content.bvh.base;
+	const int32_t *base = p->content.bvh.base;
 	glVertexAttrib3f(3, (float)base[0], (float)base[1], (float)base[2]);
 }
 

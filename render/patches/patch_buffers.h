@@ -8,7 +8,7 @@
 #include "format/hierarchy.h"
 #include "render/display/gl.h"
 #include "render/patches/cut.h"
-#include "render/patches/outline_lines.h"
+#include "render/patches/part_buffers.h"
 #include "render/patches/pool.h"
 #include "render/plan/plan.h"
 
@@ -49,7 +49,7 @@ struct geometry_patch {
 	struct pool_patch content;
 	struct piece_state *pieces; /* owned; one for each of content.bvh.pieces */
 	enum geometry_sides sides;
-	struct outline_lines lines; /* the outline of the part marked last */
+	struct part_buffers part; /* the area of the part marked last */
 };
 
 struct geometry {
@@ -85,8 +85,6 @@ void geometry_evict(struct geometry *geometry, const struct cut *cut, uint64_t b
  * of position and base is a place of the lattice, exact as a float, so vertices that patches share
  * are drawn at equal bits. */
 void geometry_bind(const struct geometry *geometry, uint32_t patch);
-/* Sets only attribute 3, for what is drawn from buffers that count from the base too. */
-void geometry_bind_base(const struct geometry *geometry, uint32_t patch);
 /* Sets face culling for a patch: back faces are culled where only front faces were found visible,
  * which halves the triangles of a closed model. Otherwise both sides are drawn. */
 void geometry_cull(const struct geometry *geometry, uint32_t patch);

@@ -184,8 +184,6 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.shares = shares,
 	};
 	draw_pieces(scene, &frame);
-	if (!shares)
-		scene_draw_mark(scene, view);
 }
 
 /* Returns the share of the model's pixels that images colour, from a small picture. */
@@ -272,6 +270,41 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
 }
 
+/* The mask of the marked part needs the depth of the picture, so a moving one is drawn aside. */
+static void show_moving(struct scene *scene, const struct gl_place *place)
+{
+	const struct view *view = &scene->view;
+	const struct gl_target *frame = &scene->accumulation.frame;
+	if (!scene->is_marked ||
+	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0) {
+		gl_place_bind(place, view->width_px, view->height_px);
+		begin_picture(scene);
+		draw_picture(scene, view, false);
+		return;
+	}
+	gl_target_bind(frame);
+	begin_picture(scene);
+	draw_picture(scene, view, false);
+	scene_draw_mask(scene, view, frame);
+	accumulation_show_frame(&scene->accumulation, place);
+	outline_draw(&scene->outline, place, view->width_px, view->height_px);
+}
+
+static void draw_jittered(struct scene *scene, bool changed)
+{
+	const struct gl_target *frame = &scene->accumulation.frame;
+	const struct gl_place place = { .framebuffer = frame->framebuffer };
+	struct view jittered = scene->view;
+	float x, y;
+	accumulation_offset(&scene->accumulation, changed, &x, &y);
+	view_jitter(&jittered, x, y);
+	gl_target_bind(frame);
+	begin_picture(scene);
+	draw_picture(scene, &jittered, false);
+	scene_draw_mask(scene, &jittered, frame);
+	outline_draw(&scene->outline, &place, frame->width_px, frame->height_px);
+}
+
 /* Draws to the given place: at rest through accumulation, while moving directly. */
 static void show(struct scene *scene, const struct gl_place *place, bool moved, bool changed)
 {
@@ -281,20 +314,11 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 	const bool draws = changed || !accumulation_is_done(&scene->accumulation);
 	if (moved || accumulation_prepare(&scene->accumulation, view->width_px, view->height_px,
 					  draws) < 0) {
-		gl_place_bind(place, view->width_px, view->height_px);
-		begin_picture(scene);
-		draw_picture(scene, view, false);
+		show_moving(scene, place);
 		return;
 	}
-	if (draws) {
-		struct view jittered = *view;
-		float x, y;
-		accumulation_offset(&scene->accumulation, changed, &x, &y);
-		view_jitter(&jittered, x, y);
-		gl_target_bind(&scene->accumulation.frame);
-		begin_picture(scene);
-		draw_picture(scene, &jittered, false);
-	}
+	if (draws)
+		draw_jittered(scene, changed);
 	accumulation_add(&scene->accumulation, place, changed);
 }
 
@@ -345,6 +369,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	out->image_share = scene->image_share;
 	if (!still)
 		return;
+	outline_let_go(&scene->outline);
 	accumulation_let_go(&scene->accumulation, &place);
 	gl_place_bind(&place, camera->width_px, camera->height_px);
 }

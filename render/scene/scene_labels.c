@@ -1,5 +1,5 @@
-/* Loads the labels of the release, finds the part under a pixel, and makes the outline lines of the
- * marked part. */
+/* Loads the labels of the release, finds the part under a pixel, and makes the area of the marked
+ * part. */
 #include "render/scene/scene_labels.h"
 
 #include <errno.h>
@@ -76,23 +76,23 @@ const char *scene_part(struct scene *scene, const struct camera *camera, float x
 	return part < 0 ? "" : labels->parts[part].id;
 }
 
-static int make_outline(struct scene *scene, uint32_t patch, const struct label_group *labels)
+static int make_area(struct scene *scene, uint32_t patch, const struct label_group *labels)
 {
 	const struct hierarchy_patch *known = &scene->hierarchy.patches[patch];
 	struct geometry_patch *out = &scene->geometry.patches[patch];
-	struct outline outline = { 0 };
+	struct part_area area = { 0 };
 	int part = label_find(labels, scene->marked_part), rc = 0;
 	if (part >= 0)
-		rc = outline_create(&outline, &out->content.bvh, labels,
-				    patch - scene->hierarchy.groups[known->group].first_patch,
-				    (uint32_t)part);
+		rc = part_area_create(&area, &out->content.bvh, labels,
+				      patch - scene->hierarchy.groups[known->group].first_patch,
+				      (uint32_t)part);
 	if (rc == 0)
-		rc = outline_lines_make(&out->lines, &outline, scene->mark_serial);
-	outline_finish(&outline);
+		rc = part_buffers_make(&out->part, &area, scene->mark_serial);
+	part_area_finish(&area);
 	return rc;
 }
 
-bool scene_outline(struct scene *scene, uint32_t patch)
+bool scene_part_area(struct scene *scene, uint32_t patch)
 {
 	const uint32_t group = scene->hierarchy.patches[patch].group;
 	const struct label_group *labels = &scene->geometry.labels[group];
@@ -102,7 +102,7 @@ bool scene_outline(struct scene *scene, uint32_t patch)
 		return true;
 	if (labels->patch_count == 0)
 		return false;
-	if (scene->geometry.patches[patch].lines.serial == scene->mark_serial)
+	if (scene->geometry.patches[patch].part.serial == scene->mark_serial)
 		return true;
-	return make_outline(scene, patch, labels) == 0;
+	return make_area(scene, patch, labels) == 0;
 }

@@ -1,5 +1,5 @@
-/* The labels of the release, for the scene: loads them, and makes the outline lines of the marked
- * part. Private to render/scene. */
+/* The labels of the release, for the scene: loads them, and makes the area of the marked part
+ * on each patch. Private to render/scene. */
 #ifndef GOPURA_RENDER_SCENE_SCENE_LABELS_H
 #define GOPURA_RENDER_SCENE_SCENE_LABELS_H
 
@@ -11,8 +11,8 @@ must_check int scene_open_labels(struct scene *scene, struct bytes bytes);
 void scene_drop_labels(struct scene *scene);
 /* Returns whether the release has labels, here already or not. */
 bool scene_has_labels(const struct scene *scene);
-/* Provides the outline lines of the marked part on a patch, and makes them where they are missing.
- * Returns false where the labels are not here, no part is marked, or memory is short. */
-bool scene_outline(struct scene *scene, uint32_t patch);
+/* Provides the area of the marked part on a patch, and makes it where it is missing. Returns false
+ * where the labels are not here, no part is marked, or memory is short. */
+bool scene_part_area(struct scene *scene, uint32_t patch);
 
 #endif

@@ -1,5 +1,5 @@
-/* Draws the marked part over the picture: by its labels, and by its region where the labels are
- * missing. */
+/* Draws the mask of the marked part: by its labels, and by its region where the labels are missing.
+ */
 #include "render/scene/scene_mark.h"
 
 #include <string.h>
@@ -24,68 +24,68 @@ bool scene_note_mark(struct scene *scene, const struct scene_mark *mark)
 	return changed;
 }
 
-/* Draws the region, only on patches whose labels are not here. */
-static void draw_region(struct scene *scene, const struct view *view)
+/* Calls visit for each visible piece that the marked part may cover: by its labels, and by its
+ * region on patches whose labels are not here. */
+static void each_piece(struct scene *scene, bool by_labels,
+		       void (*visit)(struct scene *, const struct visible_piece *))
 {
-	const struct region *region = &scene->marked_region;
-	uint32_t bound = HIERARCHY_NONE;
-	mark_begin(&scene->mark, view, &scene->root, region);
-	glEnableVertexAttribArray(0);
-	glDisableVertexAttribArray(1);
-	glDisableVertexAttribArray(2);
+	if (!by_labels && scene->marked_region.kind == REGION_POINT)
+		return;
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 		const struct piece *piece = &patch->content.bvh.pieces[v->piece];
-		if (!region_meets_sphere(region, piece->centre_m, piece->radius_m) ||
-		    scene_outline(scene, v->patch))
+		const bool has_labels = scene_part_area(scene, v->patch);
+		if (has_labels != by_labels)
 			continue;
-		if (v->patch != bound)
-			geometry_bind(&scene->geometry, v->patch);
-		bound = v->patch;
-		geometry_draw(piece->first_triangle, piece->triangle_count);
-	}
-	mark_end();
-}
-
-/* Calls draw for each visible patch whose outline lines are known. */
-static void each_outlined_patch(struct scene *scene, void (*draw)(struct scene *, uint32_t patch))
-{
-	uint32_t before = HIERARCHY_NONE;
-	for (uint32_t i = 0; i < scene->visible_count; i++) {
-		const uint32_t patch = scene->visible[i].patch;
-		if (patch != before && scene_outline(scene, patch))
-			draw(scene, patch);
-		before = patch;
+		if (has_labels ? !part_buffers_are_empty(&patch->part)
+			       : region_meets_sphere(&scene->marked_region, piece->centre_m,
+						     piece->radius_m))
+			visit(scene, v);
 	}
 }
 
-static void draw_tint(struct scene *scene, uint32_t patch)
+static void include(struct scene *scene, const struct visible_piece *v)
 {
-	const struct outline_lines *lines = &scene->geometry.patches[patch].lines;
-	if (lines->whole_count + lines->within_count == 0)
+	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+	const struct piece *piece = &patch->content.bvh.pieces[v->piece];
+	outline_include(&scene->outline, &scene->view, piece->centre_m, piece->radius_m);
+}
+
+static void draw_region(struct scene *scene, const struct visible_piece *v)
+{
+	const struct piece *piece = &scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
+	geometry_bind(&scene->geometry, v->patch);
+	geometry_draw(piece->first_triangle, piece->triangle_count);
+}
+
+/* The area of a part is that of the whole patch, so the first of its pieces draws it. */
+static void draw_area(struct scene *scene, const struct visible_piece *v)
+{
+	if (v > scene->visible && v[-1].patch == v->patch)
 		return;
-	geometry_bind(&scene->geometry, patch);
-	outline_lines_tint(lines);
+	geometry_bind(&scene->geometry, v->patch);
+	part_buffers_draw(&scene->geometry.patches[v->patch].part);
 }
 
-static void draw_lines(struct scene *scene, uint32_t patch)
+void scene_draw_mask(struct scene *scene, const struct view *view, const struct gl_target *picture)
 {
-	geometry_bind_base(&scene->geometry, patch);
-	outline_lines_lines(&scene->geometry.patches[patch].lines);
-}
-
-void scene_draw_mark(struct scene *scene, const struct view *view)
-{
+	outline_clear(&scene->outline);
 	if (!scene->is_marked)
 		return;
-	if (scene->marked_region.kind != REGION_POINT)
-		draw_region(scene, view);
-	if (!scene->labels || !scene->marked_part[0])
+	each_piece(scene, true, include);
+	each_piece(scene, false, include);
+	if (outline_is_empty(&scene->outline))
 		return;
-	outline_renderer_begin_tints(&scene->outlines, view, &scene->root);
-	each_outlined_patch(scene, draw_tint);
-	outline_renderer_begin_lines(&scene->outlines, view, &scene->root);
-	each_outlined_patch(scene, draw_lines);
-	outline_renderer_end();
+	int rc = outline_begin(&scene->outline, picture);
+	if (rc < 0) {
+		log_warn("render", "no outline of a part: %s", strerror(-rc));
+		outline_clear(&scene->outline);
+		return;
+	}
+	mark_begin(&scene->mark, view, &scene->root, &scene->marked_region);
+	each_piece(scene, false, draw_region);
+	part_renderer_begin(&scene->part, view, &scene->root);
+	each_piece(scene, true, draw_area);
+	outline_end(&scene->outline);
 }

@@ -7,7 +7,8 @@
 /* Stores what is marked (NULL: nothing). Returns whether it differs from the frame
  * before. */
 bool scene_note_mark(struct scene *scene, const struct scene_mark *mark);
-/* Draws the mark over the picture that is bound. */
-void scene_draw_mark(struct scene *scene, const struct view *view);
+/* Draws the mask of the marked part for a picture that was just drawn, for outline_draw; binds
+ * another framebuffer. */
+void scene_draw_mask(struct scene *scene, const struct view *view, const struct gl_target *picture);
 
 #endif

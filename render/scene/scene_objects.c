@@ -79,7 +79,9 @@ int scene_create(struct scene **out, const struct scene_options *options)
 	if (rc == 0)
 		rc = mark_init(&scene->mark);
 	if (rc == 0)
-		rc = outline_renderer_init(&scene->outlines);
+		rc = part_renderer_init(&scene->part);
+	if (rc == 0)
+		rc = outline_init(&scene->outline);
 	if (rc == 0)
 		rc = visibility_init(&scene->visibility);
 	if (rc < 0) {
@@ -132,7 +134,8 @@ void scene_destroy(struct scene *scene)
 		forget(scene);
 	pool_destroy(scene->pool);
 	mark_finish(&scene->mark);
-	outline_renderer_finish(&scene->outlines);
+	part_renderer_finish(&scene->part);
+	outline_finish(&scene->outline);
 	accumulation_finish(&scene->accumulation);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);

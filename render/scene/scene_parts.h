@@ -6,6 +6,7 @@
 #include "format/hierarchy.h"
 #include "render/lumigraph/accumulation.h"
 #include "render/lumigraph/depth.h"
+#include "render/lumigraph/outline.h"
 #include "render/lumigraph/surface.h"
 #include "render/lumigraph/tiles.h"
 #include "render/lumigraph/visibility.h"
@@ -54,7 +55,8 @@ struct scene {
 	struct depth depth;
 	struct surface surface;
 	struct mark mark;
-	struct outline_renderer outlines;
+	struct part_renderer part;
+	struct outline outline;
 	struct accumulation accumulation;
 	struct visibility visibility;
 

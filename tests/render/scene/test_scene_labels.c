@@ -221,10 +221,10 @@ static int difference(const uint8_t *a, const uint8_t *b, int x, int y)
 	return most;
 }
 
-static void an_outline_lies_where_the_region_ends(void **state)
+static void an_area_ends_where_the_region_ends(void **state)
 {
 	struct stage stage;
-	uint32_t lines = 0, corners = 0;
+	uint32_t border = 0, corners = 0;
 
 	(void)state;
 	raise_stage(&stage, true, false);
@@ -233,34 +233,25 @@ static void an_outline_lies_where_the_region_ends(void **state)
 	for (uint32_t i = 0; i < stage.scene->cut.patch_count; i++) {
 		const uint32_t p = stage.scene->cut.patches[i];
 		const uint32_t g = stage.scene->hierarchy.patches[p].group;
-		struct outline outline;
+		struct part_area area;
 
-		CHECK(outline_create(&outline, &geometry->patches[p].content.bvh,
-				     &geometry->labels[g],
-				     p - stage.scene->hierarchy.groups[g].first_patch, 0) == 0);
-		for (uint32_t k = 0; k < 2 * outline.line_count; k++) {
-			const float *on = outline.lines[k / 2].at[k % 2];
-			float at[3];
-
-			for (int x = 0; x < 3; x++)
-				at[x] = (float)(little_lattice.origin_m[x] +
-						little_lattice.step_m * (double)on[x]);
-			CHECK(fabsf(region_distance(&ball, at)) < 0.03f);
-		}
-		for (uint32_t k = 0; k < outline.within_count; k++) {
-			float at[3];
+		CHECK(part_area_create(&area, &geometry->patches[p].content.bvh,
+				       &geometry->labels[g],
+				       p - stage.scene->hierarchy.groups[g].first_patch, 0) == 0);
+		for (uint32_t k = 0; k < area.within_count; k++) {
+			float at[3], distance;
 
 			for (int x = 0; x < 3; x++)
 				at[x] = (float)(little_lattice.origin_m[x] +
-						little_lattice.step_m *
-							(double)outline.within[k][x]);
-			CHECK(region_distance(&ball, at) < 0.03f);
+						little_lattice.step_m * (double)area.within[k][x]);
+			distance = region_distance(&ball, at);
+			CHECK(distance < 0.03f);
+			border += distance > -0.03f;
 		}
-		lines += outline.line_count;
-		corners += outline.whole_count + outline.within_count;
-		outline_finish(&outline);
+		corners += area.whole_count + area.within_count;
+		part_area_finish(&area);
 	}
-	CHECK(lines > 50 && corners > 150);
+	CHECK(border > 100 && corners > 150);
 	strike_stage(&stage);
 }
 
@@ -335,6 +326,118 @@ static void the_model_hides_the_border(void **state)
 	strike_stage(&stage);
 }
 
+/* The middle of the picture, in which each pixel is asked for its part. */
+enum { LEFT = 150, RIGHT = 330, BOTTOM = 70, TOP = 200 };
+
+/* Writes which pixels show the part. */
+static void find_part(struct stage *stage, const struct camera *camera, bool *is_part)
+{
+	for (int y = BOTTOM; y < TOP; y++)
+		for (int x = LEFT; x < RIGHT; x++) {
+			const char *part =
+				scene_part(stage->scene, camera, (float)x + 0.5f, (float)y + 0.5f);
+
+			is_part[y * WIDTH + x] = part && strcmp(part, marked.part) == 0;
+		}
+}
+
+/* Returns how many of the pixels within reach of a pixel show the part, and how many there are. */
+static int count_near(const bool *is_part, int x, int y, int reach, int *all)
+{
+	int count = 0;
+
+	*all = 0;
+	for (int v = y - reach; v <= y + reach; v++)
+		for (int u = x - reach; u <= x + reach; u++) {
+			if (u < LEFT || v < BOTTOM || u >= RIGHT || v >= TOP)
+				continue;
+			count += is_part[v * WIDTH + u];
+			(*all)++;
+		}
+	return count;
+}
+
+/* The line is closed: it is on every pixel where what is seen of the part ends, be it its border,
+ * its silhouette against the sky or what stands in front of it; and nowhere else. */
+static void check_line(struct stage *stage, const struct camera *camera, const char *name)
+{
+	uint8_t *plain = malloc(4 * WIDTH * HEIGHT), *bold = malloc(4 * WIDTH * HEIGHT);
+	bool *is_part = malloc(WIDTH * HEIGHT * sizeof(*is_part));
+	uint32_t ends = 0, missing = 0, stray = 0;
+
+	settle_with(stage, camera, NULL, plain);
+	settle_with(stage, camera, &marked, bold);
+	find_part(stage, camera, is_part);
+	for (int y = BOTTOM + 4; y < TOP - 4; y++)
+		for (int x = LEFT + 4; x < RIGHT - 4; x++) {
+			const int by = difference(plain, bold, x, y);
+			int all, near = count_near(is_part, x, y, 1, &all);
+			const bool end = near > 2 && near < all - 2;
+
+			ends += end;
+			missing += end && by < 50;
+			near = count_near(is_part, x, y, 4, &all);
+			stray += (near == 0 && by > 16) || (near == all && by > 50);
+		}
+	if (ends < 200 || missing > ends / 100 || stray > 0)
+		fail_msg("%s: %u pixels where the part ends, %u without a line; %u lines elsewhere",
+			 name, ends, missing, stray);
+	free(plain);
+	free(bold);
+	free(is_part);
+}
+
+static void the_line_is_closed(void **state)
+{
+	static const struct {
+		const char *name;
+		float eye_m[3], target_m[3];
+	} views[] = {
+		{ "before the sky", { 4, -12, 0.4f }, { 4, -5, 1.5f } },
+		{ "from above", { 5, -8, 9 }, { 4, -5, 1 } },
+		{ "from behind the pillar", { 4, 3, 3 }, { 4, -5, 1 } },
+	};
+	struct stage stage;
+
+	(void)state;
+	raise_stage(&stage, true, false);
+	for (size_t i = 0; i < sizeof(views) / sizeof(views[0]); i++) {
+		struct camera camera = usual_camera;
+
+		memcpy(camera.eye_m, views[i].eye_m, sizeof(camera.eye_m));
+		memcpy(camera.target_m, views[i].target_m, sizeof(camera.target_m));
+		check_line(&stage, &camera, views[i].name);
+	}
+	strike_stage(&stage);
+}
+
+/* The first frame of another view has the line too, although its picture is not settled. */
+static void a_moving_picture_has_the_line(void **state)
+{
+	struct stage stage;
+	struct camera camera = usual_camera;
+	uint8_t *plain = malloc(4 * WIDTH * HEIGHT), *bold = malloc(4 * WIDTH * HEIGHT);
+	uint32_t lines = 0;
+
+	(void)state;
+	raise_stage(&stage, true, false);
+	settle_with(&stage, &usual_camera, &marked, bold);
+	camera.eye_m[0] += 0.01f;
+	gl_target_bind(&stage.target);
+	scene_draw(stage.scene, &camera, NULL, &stage.frame);
+	CHECK(gl_target_read(&stage.target, plain) == 0);
+	camera.eye_m[0] += 0.001f;
+	gl_target_bind(&stage.target);
+	scene_draw(stage.scene, &camera, &marked, &stage.frame);
+	CHECK(gl_target_read(&stage.target, bold) == 0);
+	for (int i = 0; i < WIDTH * HEIGHT; i++)
+		lines += difference(plain, bold, i % WIDTH, i / WIDTH) > 60;
+	CHECK(lines > 150 && lines < WIDTH * HEIGHT / 4);
+	free(plain);
+	free(bold);
+	strike_stage(&stage);
+}
+
 static bool all_as_before(const uint8_t *before, const uint8_t *after)
 {
 	for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -373,9 +476,11 @@ int main(void)
 		cmocka_unit_test(a_release_without_labels_leaves_it_to_regions),
 		cmocka_unit_test(labels_that_do_not_decode_are_not_wanted_again),
 		cmocka_unit_test(labels_go_with_their_geometry),
-		cmocka_unit_test(an_outline_lies_where_the_region_ends),
+		cmocka_unit_test(an_area_ends_where_the_region_ends),
 		cmocka_unit_test(the_border_is_as_bold_from_near_as_from_afar),
 		cmocka_unit_test(the_model_hides_the_border),
+		cmocka_unit_test(the_line_is_closed),
+		cmocka_unit_test(a_moving_picture_has_the_line),
 		cmocka_unit_test(no_mark_leaves_no_trace),
 	};
 

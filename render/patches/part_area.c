@@ -1,12 +1,11 @@
 /* Divides labelled triangles into small ones and cuts them where the label value changes sign. */
-#include "render/patches/outline.h"
+#include "render/patches/part_area.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
-#include "geometry/vec.h"
 
 /* A corner of a small triangle: its position, and how far inside it is. */
 struct corner {
@@ -25,15 +24,16 @@ static void cross(float out[3], const struct corner *a, const struct corner *b)
 		out[i] = in->at[i] + share * (off->at[i] - in->at[i]);
 }
 
-static void add_triangle(struct outline *o, const float a[3], const float b[3], const float c[3])
+static void add_triangle(struct part_area *area, const float a[3], const float b[3],
+			 const float c[3])
 {
-	memcpy(o->within[o->within_count++], a, sizeof(*o->within));
-	memcpy(o->within[o->within_count++], b, sizeof(*o->within));
-	memcpy(o->within[o->within_count++], c, sizeof(*o->within));
+	memcpy(area->within[area->within_count++], a, sizeof(*area->within));
+	memcpy(area->within[area->within_count++], b, sizeof(*area->within));
+	memcpy(area->within[area->within_count++], c, sizeof(*area->within));
 }
 
-/* Adds a small triangle: at most one line, and two triangles of its inner area. */
-static bool add_small(struct outline *o, const struct corner *corner[3], const float normal[3])
+/* Adds the inner area of a small triangle: at most two triangles. */
+static bool add_small(struct part_area *area, const struct corner *corner[3])
 {
 	float ab[3], ac[3];
 	int within = 0, alone = 0;
@@ -42,11 +42,10 @@ static bool add_small(struct outline *o, const struct corner *corner[3], const f
 		within += corner[k]->value > 0;
 	if (within == 0)
 		return true;
-	if (ARRAY_RESERVE(o->lines, o->line_room, o->line_count + 1, UINT32_MAX) < 0 ||
-	    ARRAY_RESERVE(o->within, o->within_room, o->within_count + 6, UINT32_MAX) < 0)
+	if (ARRAY_RESERVE(area->within, area->within_room, area->within_count + 6, UINT32_MAX) < 0)
 		return false;
 	if (within == 3) {
-		add_triangle(o, corner[0]->at, corner[1]->at, corner[2]->at);
+		add_triangle(area, corner[0]->at, corner[1]->at, corner[2]->at);
 		return true;
 	}
 	/* Find the corner that is alone on its side. */
@@ -57,15 +56,11 @@ static bool add_small(struct outline *o, const struct corner *corner[3], const f
 	cross(ab, a, b);
 	cross(ac, a, c);
 	if (within == 1) {
-		add_triangle(o, a->at, ab, ac);
+		add_triangle(area, a->at, ab, ac);
 	} else {
-		add_triangle(o, ab, b->at, c->at);
-		add_triangle(o, ab, c->at, ac);
+		add_triangle(area, ab, b->at, c->at);
+		add_triangle(area, ab, c->at, ac);
 	}
-	struct outline_line *line = &o->lines[o->line_count++];
-	memcpy(line->at[0], ab, sizeof(ab));
-	memcpy(line->at[1], ac, sizeof(ac));
-	memcpy(line->normal, normal, sizeof(line->normal));
 	return true;
 }
 
@@ -80,19 +75,15 @@ static void place_corner(struct corner *out, float at[3][3], int level, const in
 }
 
 /* Divides a triangle that the outline crosses. */
-static bool add_divided(struct outline *o, const struct patch_bvh *bvh, uint32_t triangle,
+static bool add_divided(struct part_area *area, const struct patch_bvh *bvh, uint32_t triangle,
 			const int8_t *values, int level)
 {
 	const uint16_t *index = &bvh->indices[3 * triangle];
-	float at[3][3], ab[3], ac[3], normal[3];
+	float at[3][3];
 	const int n = 1 << level;
 
 	for (int k = 0; k < 3; k++)
 		patch_bvh_corner(bvh, index[k], at[k]);
-	vec_sub(ab, at[1], at[0]);
-	vec_sub(ac, at[2], at[0]);
-	vec_cross(normal, ab, ac);
-	vec_normalise(normal);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n - i; j++) {
 			struct corner corner[4];
@@ -102,18 +93,18 @@ static bool add_divided(struct outline *o, const struct patch_bvh *bvh, uint32_t
 			place_corner(&corner[0], at, level, values, i, j);
 			place_corner(&corner[1], at, level, values, i + 1, j);
 			place_corner(&corner[2], at, level, values, i, j + 1);
-			if (!add_small(o, up, normal))
+			if (!add_small(area, up))
 				return false;
 			if (i + j + 2 > n)
 				continue;
 			place_corner(&corner[3], at, level, values, i + 1, j + 1);
-			if (!add_small(o, down, normal))
+			if (!add_small(area, down))
 				return false;
 		}
 	return true;
 }
 
-static bool add_of(struct outline *o, const struct patch_bvh *bvh, uint32_t triangle,
+static bool add_of(struct part_area *area, const struct patch_bvh *bvh, uint32_t triangle,
 		   const struct label_group *labels, uint32_t patch, uint32_t part)
 {
 	const struct label_patch *of = &labels->patches[patch];
@@ -121,38 +112,39 @@ static bool add_of(struct outline *o, const struct patch_bvh *bvh, uint32_t tria
 	uint32_t first, count;
 
 	if (label_holds(labels, patch, known_as, part)) {
-		if (ARRAY_RESERVE(o->whole, o->whole_room, o->whole_count + 3, UINT32_MAX) < 0)
+		if (ARRAY_RESERVE(area->whole, area->whole_room, area->whole_count + 3,
+				  UINT32_MAX) < 0)
 			return false;
-		memcpy(&o->whole[o->whole_count], &bvh->indices[3 * triangle],
-		       3 * sizeof(*o->whole));
-		o->whole_count += 3;
+		memcpy(&area->whole[area->whole_count], &bvh->indices[3 * triangle],
+		       3 * sizeof(*area->whole));
+		area->whole_count += 3;
 		return true;
 	}
 	count = label_borders(of, known_as, &first);
 	for (uint32_t b = first; b < first + count; b++)
 		if (of->borders[b].part == part)
-			return add_divided(o, bvh, triangle, &labels->values[of->borders[b].first],
+			return add_divided(area, bvh, triangle,
+					   &labels->values[of->borders[b].first],
 					   of->borders[b].level);
 	return true;
 }
 
-int outline_create(struct outline *out, const struct patch_bvh *bvh,
-		   const struct label_group *labels, uint32_t patch, uint32_t part)
+int part_area_create(struct part_area *out, const struct patch_bvh *bvh,
+		     const struct label_group *labels, uint32_t patch, uint32_t part)
 {
-	*out = (struct outline){ 0 };
+	*out = (struct part_area){ 0 };
 	for (uint32_t t = 0; t < labels->patches[patch].triangle_count; t++) {
 		if (add_of(out, bvh, t, labels, patch, part))
 			continue;
-		outline_finish(out);
+		part_area_finish(out);
 		return -ENOMEM;
 	}
 	return 0;
 }
 
-void outline_finish(struct outline *outline)
+void part_area_finish(struct part_area *area)
 {
-	free(outline->lines);
-	free(outline->whole);
-	free(outline->within);
-	*outline = (struct outline){ 0 };
+	free(area->whole);
+	free(area->within);
+	*area = (struct part_area){ 0 };
 }

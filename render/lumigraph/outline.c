@@ -1,0 +1,241 @@
+/* Keeps the mask of the marked part, and draws the line around it. */
+#include "render/lumigraph/outline.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+	LINE_PX = 4,           /* no pixel of the line is farther from the part */
+	MASK_PX = LINE_PX + 6, /* no pixel of the mask that the line depends on */
+};
+
+/* Blurs the mask to half its size by a kernel that is close to a Gaussian. Each of the 16 points
+ * lies between four pixels, whose mean it is. */
+static const char soft_fragment[] =
+	"uniform sampler2D u_mask;\n"
+	"uniform FINE vec2 u_step;\n" /* from a pixel of the mask to the next */
+	"uniform FINE vec2 u_scale;\n"
+	"varying FINE vec2 v_at;\n"
+	"vec4 row(FINE float y) {\n"
+	"	FINE vec2 at = v_at * u_scale + vec2(0.0, y) * u_step;\n"
+	"	FINE vec2 near = vec2(u_step.x, 0.0), far = 3.0 * near;\n"
+	"	return vec4(texture2D(u_mask, at - far).r, texture2D(u_mask, at - near).r,\n"
+	"		    texture2D(u_mask, at + near).r, texture2D(u_mask, at + far).r);\n"
+	"}\n"
+	"void main() {\n"
+	"	const vec4 weights = vec4(0.118, 0.382, 0.382, 0.118);\n"
+	"	vec4 sum = 0.382 * (row(-1.0) + row(1.0)) + 0.118 * (row(-3.0) + row(3.0));\n"
+	"	gl_FragColor = vec4(dot(sum, weights));\n"
+	"}\n";
+
+/* The blur's standard deviation is 1.95 pixels. On a straight border the share of the part is a
+ * half, 2.2 pixels from it 0.13, 2.85 pixels from it 0.07, in any direction. A speck of a pixel
+ * reaches 0.04 and has no line. */
+static const char line_fragment[] =
+	"uniform sampler2D u_mask;\n"
+	"uniform FINE vec2 u_scale;\n"
+	"varying FINE vec2 v_at;\n"
+	"void main() {\n"
+	"	float within = texture2D(u_mask, v_at * u_scale).r;\n"
+	"	float line = smoothstep(0.07, 0.13, min(within, 1.0 - within));\n"
+	"	gl_FragColor = vec4(1.0, 0.78, 0.25, max(line, within > 0.5 ? 0.14 : 0.0));\n"
+	"}\n";
+
+static int build(struct outline_program *out, const char *name, const char *fragment)
+{
+	const struct gl_program_source source = {
+		.name = name,
+		.vertex = (const char *const[]){ gl_square_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, fragment, NULL },
+		.attributes = gl_square_attributes,
+	};
+	int rc = gl_program_build(&out->program, &source);
+	if (rc < 0)
+		return rc;
+	glUseProgram(out->program);
+	glUniform1i(glGetUniformLocation(out->program, "u_mask"), 0);
+	out->step = glGetUniformLocation(out->program, "u_step");
+	out->scale = glGetUniformLocation(out->program, "u_scale");
+	return 0;
+}
+
+int outline_init(struct outline *outline)
+{
+	memset(outline, 0, sizeof(*outline));
+	outline_clear(outline);
+	int rc = build(&outline->line, "outline", line_fragment);
+	return rc < 0 ? rc : build(&outline->blur, "outline blur", soft_fragment);
+}
+
+void outline_let_go(struct outline *outline)
+{
+	gl_target_destroy(&outline->mask);
+	gl_target_destroy(&outline->soft);
+}
+
+void outline_finish(struct outline *outline)
+{
+	outline_let_go(outline);
+	if (outline->line.program)
+		glDeleteProgram(outline->line.program);
+	if (outline->blur.program)
+		glDeleteProgram(outline->blur.program);
+	memset(outline, 0, sizeof(*outline));
+}
+
+/* ---- where the part may be */
+
+void outline_clear(struct outline *outline)
+{
+	for (int k = 0; k < 2; k++) {
+		outline->low[k] = 1;
+		outline->high[k] = -1;
+	}
+}
+
+bool outline_is_empty(const struct outline *outline)
+{
+	return outline->low[0] >= outline->high[0] || outline->low[1] >= outline->high[1];
+}
+
+void outline_include(struct outline *outline, const struct view *view, const float centre_m[3],
+		     float radius_m)
+{
+	const float *clip = view->clip, *eye = view->eye_m;
+	const float to[3] = { centre_m[0] - eye[0], centre_m[1] - eye[1], centre_m[2] - eye[2] };
+	const float w = clip[3] * to[0] + clip[7] * to[1] + clip[11] * to[2] + clip[15];
+	for (int k = 0; k < 2; k++) {
+		float x =
+			clip[k] * to[0] + clip[4 + k] * to[1] + clip[8 + k] * to[2] + clip[12 + k];
+		float scale = hypotf(hypotf(clip[k], clip[4 + k]), clip[8 + k]);
+		float reach = 2;
+		if (w > 1.01f * radius_m)
+			reach = radius_m * (scale + fabsf(x / w)) / (w - radius_m);
+		float low = w > 1.01f * radius_m ? x / w - reach : -1;
+		float high = w > 1.01f * radius_m ? x / w + reach : 1;
+		outline->low[k] = fmaxf(-1, fminf(outline->low[k], low));
+		outline->high[k] = fminf(1, fmaxf(outline->high[k], high));
+	}
+}
+
+/* Limits drawing to the rectangle, enlarged by margin_px, of a picture at a place. */
+static void limit(const struct outline *outline, const struct gl_place *place, int width_px,
+		  int height_px, int margin_px)
+{
+	const int size[2] = { width_px, height_px };
+	int low[2], high[2];
+	for (int k = 0; k < 2; k++) {
+		low[k] = (int)floorf((outline->low[k] / 2 + 0.5f) * (float)size[k]) - margin_px;
+		high[k] = (int)ceilf((outline->high[k] / 2 + 0.5f) * (float)size[k]) + margin_px;
+		low[k] = low[k] > 0 ? low[k] : 0;
+		high[k] = high[k] < size[k] ? high[k] : size[k];
+	}
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(place->x_px + low[0], place->y_px + low[1], high[0] - low[0], high[1] - low[1]);
+}
+
+/* ---- the mask */
+
+static int create_linear(struct gl_target *out, int width_px, int height_px)
+{
+	int rc = gl_target_create_flat(out, width_px, height_px);
+	if (rc < 0)
+		return rc;
+	gl_bind_texture(0, out->colour);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	return 0;
+}
+
+static int prepare_masks(struct outline *outline, const struct gl_target *picture)
+{
+	if (outline->mask.framebuffer && outline->mask.width_px == picture->width_px &&
+	    outline->mask.height_px == picture->height_px)
+		return 0;
+	outline_let_go(outline);
+	int rc = create_linear(&outline->soft, (picture->width_px + 1) / 2,
+			       (picture->height_px + 1) / 2);
+	if (rc == 0)
+		rc = create_linear(&outline->mask, picture->width_px, picture->height_px);
+	if (rc < 0)
+		outline_let_go(outline);
+	return rc;
+}
+
+int outline_begin(struct outline *outline, const struct gl_target *picture)
+{
+	int rc = prepare_masks(outline, picture);
+	if (rc < 0)
+		return rc;
+	gl_target_bind(&outline->mask);
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+				  picture->depth);
+	const struct gl_place all = { .framebuffer = outline->mask.framebuffer };
+	limit(outline, &all, picture->width_px, picture->height_px, MASK_PX);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_LEQUAL);
+	glDepthMask(GL_FALSE);
+	return 0;
+}
+
+static void draw_square(GLuint texture)
+{
+	gl_bind_texture(0, texture);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	gl_draw_square();
+}
+
+/* The soft mask may be larger than half the mask by half a pixel: from its coordinates to those of
+ * the mask. */
+static void set_scale(const struct outline *outline, GLint uniform, bool to_soft)
+{
+	float x = 2 * (float)outline->soft.width_px / (float)outline->mask.width_px;
+	float y = 2 * (float)outline->soft.height_px / (float)outline->mask.height_px;
+	glUniform2f(uniform, to_soft ? 1 / x : x, to_soft ? 1 / y : y);
+}
+
+static void blur(const struct outline *outline)
+{
+	const struct gl_target *mask = &outline->mask, *soft = &outline->soft;
+	const struct gl_place all = { .framebuffer = soft->framebuffer };
+	gl_target_bind(soft);
+	limit(outline, &all, soft->width_px, soft->height_px, MASK_PX / 2);
+	glDisable(GL_DEPTH_TEST);
+	glUseProgram(outline->blur.program);
+	glUniform2f(outline->blur.step, 1 / (float)mask->width_px, 1 / (float)mask->height_px);
+	set_scale(outline, outline->blur.scale, false);
+	draw_square(mask->colour);
+	glEnable(GL_DEPTH_TEST);
+}
+
+void outline_end(struct outline *outline)
+{
+	/* The picture's depth may be freed before the mask. */
+	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, 0);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	blur(outline);
+	glDisable(GL_SCISSOR_TEST);
+}
+
+void outline_draw(const struct outline *outline, const struct gl_place *place, int width_px,
+		  int height_px)
+{
+	if (outline_is_empty(outline) || !outline->mask.framebuffer)
+		return;
+	gl_place_bind(place, width_px, height_px);
+	limit(outline, place, width_px, height_px, LINE_PX);
+	glDisable(GL_DEPTH_TEST);
+	glEnable(GL_BLEND);
+	/* Keep the alpha (coverage) that the surface wrote. */
+	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+	glUseProgram(outline->line.program);
+	set_scale(outline, outline->line.scale, true);
+	draw_square(outline->soft.colour);
+	glDisable(GL_BLEND);
+	glDisable(GL_SCISSOR_TEST);
+	glEnable(GL_DEPTH_TEST);
+}

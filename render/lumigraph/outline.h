@@ -1,0 +1,49 @@
+/* The outline of a part: a bold line of constant width around everything that is seen of it, and a
+ * slight tint inside, as in Okamoto et al., Fig. 4. Whatever ends the part in the picture (its own
+ * border, its silhouette, or something in front of it) is one and the same line, because it is
+ * found in the picture: visible pixels of the part are drawn white into a mask, and the line lies
+ * where the mask changes. */
+#ifndef GOPURA_RENDER_LUMIGRAPH_OUTLINE_H
+#define GOPURA_RENDER_LUMIGRAPH_OUTLINE_H
+
+#include "geometry/view.h"
+#include "render/display/gl.h"
+
+struct outline_program {
+	GLuint program;
+	GLint step, scale;
+};
+
+struct outline {
+	struct outline_program line, blur;
+	struct gl_target mask,
+		soft;          /* soft: blurred, at half size; absent until a part is marked */
+	float low[2], high[2]; /* the rectangle that may hold the part, in clip space, -1..1 */
+};
+
+/* Builds the programs; needs a current GL context, as everything here. Errors as gl_program_build;
+ * then call outline_finish. */
+must_check int outline_init(struct outline *outline);
+void outline_finish(struct outline *outline); /* Frees everything; zeroed is fine. */
+/* Frees the masks; the next outline_begin makes them again. */
+void outline_let_go(struct outline *outline);
+
+/* Starts a new frame, which has no pixel of the part yet. */
+void outline_clear(struct outline *outline);
+/* The part may be visible inside this sphere. */
+void outline_include(struct outline *outline, const struct view *view, const float centre_m[3],
+		     float radius_m);
+/* Returns whether no sphere was included. */
+bool outline_is_empty(const struct outline *outline);
+
+/* Binds the mask, with the depth of the picture that was just drawn. Then draw the part white, and
+ * call outline_end. On failure (as gl_target_create) nothing is bound. */
+must_check int outline_begin(struct outline *outline, const struct gl_target *picture);
+/* Restores the GL state that the scene expects, but another framebuffer is bound. */
+void outline_end(struct outline *outline);
+/* Draws line and tint over a picture of that size, which may be larger than the mask; keeps its
+ * alpha. */
+void outline_draw(const struct outline *outline, const struct gl_place *place, int width_px,
+		  int height_px);
+
+#endif
