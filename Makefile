@@ -156,6 +156,9 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 
 # Only files that print the version depend on it, so that a commit does not rebuild the tree.
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
+# Loops over arrays of numbers, which the compiler turns into vector instructions.
+VECTORS := pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
+$(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 # The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.
 ifeq ($(FUZZER),)

@@ -5,37 +5,50 @@
 #include "pipeline/material/material.h"
 
 #include <math.h>
+#include <stdbool.h>
 
-static float mod289(float x)
+#include "base/compiler.h"
+
+vector_inline float mod289(float x)
 {
 	return x - floorf((x + 0.25f) * (1.0f / 289.0f)) * 289.0f;
 }
 
 /* Permutes an integer 0..577, the sum of two remainders. */
-static float permute(float x)
+vector_inline float permute(float x)
 {
 	return mod289((34.0f * x + 1.0f) * x);
 }
 
-static float hash(float i, float j, float k)
+vector_inline float hash(float i, float j, float k)
 {
 	return permute(permute(permute(mod289(i)) + mod289(j)) + mod289(k)) * (1.0f / 289.0f);
 }
 
-static float blend(float a, float b, float t)
+vector_inline float blend(float a, float b, float t)
 {
 	return a + (b - a) * t;
 }
 
-static float ramp(float from, float to, float x)
+vector_inline float at_least(float x, float least)
 {
-	float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
+	return x > least ? x : least;
+}
+
+vector_inline float at_most(float x, float most)
+{
+	return x < most ? x : most;
+}
+
+vector_inline float ramp(float from, float to, float x)
+{
+	float t = at_most(at_least((x - from) / (to - from), 0.0f), 1.0f);
 
 	return t * t * (3.0f - 2.0f * t);
 }
 
 /* Returns value noise, 0..1, with cells of 1 / (fx, fy, fz) metres. */
-static float noise(const float p[3], float fx, float fy, float fz)
+vector_inline float noise(const float p[3], float fx, float fy, float fz)
 {
 	float x = p[0] * fx, y = p[1] * fy, z = p[2] * fz;
 	float i = floorf(x), j = floorf(y), k = floorf(z);
@@ -58,12 +71,12 @@ static float noise(const float p[3], float fx, float fy, float fz)
 
 /* Returns the share of detail of size 1 / frequency that is kept; it falls as the footprint
  * grows. */
-static float kept(float frequency, float footprint_m)
+vector_inline float kept(float frequency, float footprint_m)
 {
-	return fminf(fmaxf(1.6f - 1.6f * frequency * footprint_m, 0.0f), 1.0f);
+	return at_most(at_least(1.6f - 1.6f * frequency * footprint_m, 0.0f), 1.0f);
 }
 
-static void mix3(float rgb[3], float r, float g, float b, float t)
+vector_inline void mix3(float rgb[3], float r, float g, float b, float t)
 {
 	rgb[0] = blend(rgb[0], r, t);
 	rgb[1] = blend(rgb[1], g, t);
@@ -72,30 +85,23 @@ static void mix3(float rgb[3], float r, float g, float b, float t)
 
 /* Returns noise of one frequency, which fades to its mean where the footprint is too coarse for
  * it. */
-static float detail(const float p[3], float frequency, float footprint_m)
+vector_inline float detail(const float p[3], float frequency, float footprint_m)
 {
-	float share = kept(frequency, footprint_m);
-
-	if (share <= 0.0f)
-		return 0.5f;
-	return blend(0.5f, noise(p, frequency, frequency, frequency), share);
+	return blend(0.5f, noise(p, frequency, frequency, frequency), kept(frequency, footprint_m));
 }
 
 /* Courses of blocks: along a wall and up it; on a floor, both ways along it. Writes for the block:
  * tone, tint, the share of a joint here, and the distance from the joint's middle (metres or
  * more). */
-static void block_at(float block[4], const float p[3], const float n[3], float footprint_m)
+vector_inline void block_at(float block[4], const float p[3], const float n[3], float footprint_m)
 {
-	float along = fabsf(n[0]) > fabsf(n[1]) ? p[1] : p[0], up = p[2] * 2.3f;
-	if (fabsf(n[2]) > 0.75f) {
-		along = p[0];
-		up = p[1] * 1.3f;
-	}
+	bool floor_like = fabsf(n[2]) > 0.75f, along_y = !floor_like & (fabsf(n[0]) > fabsf(n[1]));
+	float along = along_y ? p[1] : p[0], up = floor_like ? p[1] * 1.3f : p[2] * 2.3f;
 	float row = floorf(up);
 	float across = along * 1.17f + hash(row, 5.0f, 1.0f);
 	float stone = floorf(across);
-	float edge = fminf(fminf(across - stone, stone + 1.0f - across) * 0.85f,
-			   fminf(up - row, row + 1.0f - up) * 0.43f);
+	float edge = at_most(at_most(across - stone, stone + 1.0f - across) * 0.85f,
+			     at_most(up - row, row + 1.0f - up) * 0.43f);
 
 	block[0] = hash(stone, row, 9.0f);
 	block[1] = hash(row, stone, 23.0f);
@@ -104,12 +110,12 @@ static void block_at(float block[4], const float p[3], const float n[3], float f
 }
 
 /* Everything but the finest detail; inch and grain are its noises. */
-static void paint(float rgb[3], const float p[3], const float n[3], float footprint_m,
-		  const float block[4], float inch, float grain)
+vector_inline void paint(float rgb[3], const float p[3], const float n[3], float footprint_m,
+			 const float block[4], float inch, float grain)
 {
 	float wide = noise(p, 0.31f, 0.31f, 0.31f), metre = noise(p, 1.3f, 1.3f, 1.3f);
 	float hand = detail(p, 6.1f, footprint_m), tone = block[0], tint = block[1];
-	float upward = ramp(0.35f, 0.85f, n[2]), upright = 1.0f - fminf(fabsf(n[2]), 1.0f);
+	float upward = ramp(0.35f, 0.85f, n[2]), upright = 1.0f - at_most(fabsf(n[2]), 1.0f);
 
 	/* Sandstone: ochre grey, some blocks pinker, some greyer. */
 	rgb[0] = 0.90f, rgb[1] = 0.785f, rgb[2] = 0.61f;
@@ -117,7 +123,7 @@ static void paint(float rgb[3], const float p[3], const float n[3], float footpr
 	mix3(rgb, 0.77f, 0.735f, 0.62f, ramp(0.45f, 0.05f, tint) * 0.6f);
 	mix3(rgb, 0.97f, 0.88f, 0.70f, ramp(0.45f, 0.75f, wide) * 0.6f);
 	/* Laterite: the wall of the lowest terrace, red brown and full of holes. */
-	float far = fmaxf(fabsf(p[0]), fabsf(p[1]));
+	float far = at_least(fabsf(p[0]), fabsf(p[1]));
 	float red = ramp(17.4f, 17.6f, far) * ramp(2.05f, 1.95f, p[2] + 0.1f * hand) * upright;
 	mix3(rgb, 0.68f, 0.41f, 0.26f, red * 0.85f);
 	mix3(rgb, 0.27f, 0.15f, 0.10f, red * ramp(0.60f, 0.72f, inch) * 0.7f);
@@ -159,6 +165,68 @@ void material_colour(float rgb[3], const float p[3], const float n[3], float foo
 	block_at(block, p, n, footprint_m);
 	paint(rgb, p, n, footprint_m, block, detail(p, 23.0f, footprint_m),
 	      detail(p, 97.0f, footprint_m));
+}
+
+/* ---- many places at once, in loops that the compiler turns into vector instructions */
+
+vector_clones void material_details(float *out, const struct material_places *places,
+				    float frequency)
+{
+	const float *x = places->x, *restrict y = places->y, *restrict z = places->z;
+	const float *footprint = places->footprint_m;
+
+#pragma GCC ivdep
+	for (uint32_t i = 0; i < places->count; i++) {
+		const float p[3] = { x[i], y[i], z[i] };
+
+		out[i] = detail(p, frequency, footprint[i]);
+	}
+}
+
+vector_clones void material_blocks(const struct material_blocks *out,
+				   const struct material_places *places)
+{
+	const float *x = places->x, *restrict y = places->y, *restrict z = places->z;
+	const float *nx = places->normal_x, *restrict ny = places->normal_y;
+	const float *nz = places->normal_z, *restrict footprint = places->footprint_m;
+	float *tone = out->tone, *restrict tint = out->tint;
+	float *joint = out->joint, *restrict edge_m = out->edge_m;
+
+#pragma GCC ivdep
+	for (uint32_t i = 0; i < places->count; i++) {
+		const float p[3] = { x[i], y[i], z[i] }, n[3] = { nx[i], ny[i], nz[i] };
+		float block[4];
+
+		block_at(block, p, n, footprint[i]);
+		tone[i] = block[0];
+		tint[i] = block[1];
+		joint[i] = block[2];
+		edge_m[i] = block[3];
+	}
+}
+
+vector_clones void material_paints(float *const rgb[3], const struct material_places *places,
+				   const struct material_blocks *blocks, const float *inch,
+				   const float *grain)
+{
+	const float *x = places->x, *restrict y = places->y, *restrict z = places->z;
+	const float *nx = places->normal_x, *restrict ny = places->normal_y;
+	const float *nz = places->normal_z, *restrict footprint = places->footprint_m;
+	const float *tone = blocks->tone, *restrict tint = blocks->tint;
+	const float *joint = blocks->joint;
+	float *r = rgb[0], *restrict g = rgb[1], *restrict b = rgb[2];
+
+#pragma GCC ivdep
+	for (uint32_t i = 0; i < places->count; i++) {
+		const float p[3] = { x[i], y[i], z[i] }, n[3] = { nx[i], ny[i], nz[i] };
+		const float block[4] = { tone[i], tint[i], joint[i], 0 };
+		float colour[3];
+
+		paint(colour, p, n, footprint[i], block, inch[i], grain[i]);
+		r[i] = colour[0];
+		g[i] = colour[1];
+		b[i] = colour[2];
+	}
 }
 
 const char material_glsl[] =

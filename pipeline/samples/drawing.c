@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "geometry/light.h"
 #include "pipeline/material/material.h"
+#include "pipeline/samples/recency.h"
 #include "render/display/gl.h"
 
 enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
@@ -18,32 +19,22 @@ enum { AT_POSITION, AT_NORMAL, AT_COLOUR, AT_UV };
 /* How much of the surface is kept on the GPU. */
 enum { RESIDENT_BYTES = 256 << 20 };
 
-#define NONE UINT32_MAX
-
-struct order {
-	float distance;
-	uint32_t piece;
-};
-
-/* A piece on the GPU, in a list from the one drawn last to the one drawn longest ago. */
+/* A piece on the GPU. */
 struct resident {
 	GLuint vertices, uvs, indices; /* 0: it is not there */
 	uint32_t index_count, bytes;
-	uint32_t newer, older; /* pieces, or NONE */
 };
 
 struct drawing {
-	struct model *model; /* borrowed */
-	uint32_t *pieces;    /* owned; chosen for the eye */
-	uint32_t piece_count;
+	struct model *model;        /* borrowed */
+	struct sight *sight;        /* owned */
 	struct resident *residents; /* owned; one per piece of the surface */
-	uint32_t newest, oldest;    /* of those that are there, or NONE */
+	struct recency recency;     /* of those that are there */
 	uint64_t resident_bytes;
 	GLuint program;
 	GLint matrix_at, eye_at, px_at;
 	uint32_t texture_count;
-	GLuint *textures;    /* owned */
-	struct order *order; /* owned; room for every piece */
+	GLuint *textures; /* owned */
 };
 
 static const char *const attributes[] = { "position", "normal", "colour", "uv", NULL };
@@ -80,15 +71,6 @@ static const char fragment_main[] =
 	"			    gl_FrontFacing ? 1.0 : 254.0 / 255.0);\n"
 	"}\n";
 
-/* Writes the normal, and in alpha the share of open sky: 1..127 for a back, 128..255 for a front, 0
- * for nothing. Eight bits are enough: vertices have no more. The shader does little on purpose:
- * where triangles are small it runs several times per pixel. */
-static const char surface_main[] =
-	"void main() {\n"
-	"	float open = gl_FrontFacing ? 128.0 + 127.0 * v_colour.a : 1.0 + 126.0 * v_colour.a;\n"
-	"	gl_FragColor = vec4(v_normal * 0.5 + 0.5, open / 255.0);\n"
-	"}\n";
-
 static int build_program(struct drawing *drawing, const struct drawing_options *options)
 {
 	const char *colour = options->procedural      ? material
@@ -102,10 +84,7 @@ static int build_program(struct drawing *drawing, const struct drawing_options *
 					 options->lit ? sun_light : no_light,
 					 fragment_main,
 					 NULL };
-	const char *const surface[] = { fragment_head, surface_main, NULL };
-	const struct gl_program_source source = { "drawing", vertex,
-						  options->surfaces ? surface : fragment,
-						  attributes };
+	const struct gl_program_source source = { "drawing", vertex, fragment, attributes };
 	int rc = gl_program_build(&drawing->program, &source);
 
 	if (rc < 0)
@@ -195,15 +174,16 @@ int drawing_create(struct drawing **out, struct model *model, const struct mesh_
 	if (!drawing)
 		return -ENOMEM;
 	drawing->model = model;
-	drawing->newest = drawing->oldest = NONE;
-	drawing->order = malloc(count * sizeof(*drawing->order));
-	drawing->pieces = malloc(count * sizeof(*drawing->pieces));
 	drawing->residents = calloc(count, sizeof(*drawing->residents));
 	drawing->textures = calloc(texture_count + 1, sizeof(*drawing->textures));
-	if (!drawing->order || !drawing->pieces || !drawing->residents || !drawing->textures)
+	if (!drawing->residents || !drawing->textures)
 		rc = -ENOMEM;
 	else
 		drawing->texture_count = texture_count;
+	if (rc == 0)
+		rc = recency_init(&drawing->recency, model->piece_count);
+	if (rc == 0)
+		rc = sight_create(&drawing->sight, model);
 	if (rc == 0)
 		rc = build_program(drawing, options);
 	if (rc == 0)
@@ -218,39 +198,12 @@ int drawing_create(struct drawing **out, struct model *model, const struct mesh_
 
 /* ---- pieces on the GPU */
 
-static void unlink_piece(struct drawing *drawing, uint32_t piece)
-{
-	const struct resident *resident = &drawing->residents[piece];
-
-	if (resident->newer == NONE)
-		drawing->newest = resident->older;
-	else
-		drawing->residents[resident->newer].older = resident->older;
-	if (resident->older == NONE)
-		drawing->oldest = resident->newer;
-	else
-		drawing->residents[resident->older].newer = resident->newer;
-}
-
-static void link_newest(struct drawing *drawing, uint32_t piece)
-{
-	struct resident *resident = &drawing->residents[piece];
-
-	resident->newer = NONE;
-	resident->older = drawing->newest;
-	if (drawing->newest == NONE)
-		drawing->oldest = piece;
-	else
-		drawing->residents[drawing->newest].newer = piece;
-	drawing->newest = piece;
-}
-
 static void evict(struct drawing *drawing, uint32_t piece)
 {
 	struct resident *resident = &drawing->residents[piece];
 	const GLuint buffers[3] = { resident->vertices, resident->uvs, resident->indices };
 
-	unlink_piece(drawing, piece);
+	recency_remove(&drawing->recency, piece);
 	drawing->resident_bytes -= resident->bytes;
 	glDeleteBuffers(3, buffers);
 	*resident = (struct resident){ 0 };
@@ -287,9 +240,9 @@ static int upload(struct drawing *drawing, uint32_t piece)
 	resident->index_count = mesh.index_count;
 	resident->bytes = (uint32_t)(vertex_bytes + uv_bytes + index_bytes);
 	drawing->resident_bytes += resident->bytes;
-	link_newest(drawing, piece);
-	while (drawing->resident_bytes > RESIDENT_BYTES && drawing->oldest != piece)
-		evict(drawing, drawing->oldest);
+	recency_add(&drawing->recency, piece);
+	while (drawing->resident_bytes > RESIDENT_BYTES && drawing->recency.oldest != piece)
+		evict(drawing, drawing->recency.oldest);
 	return gl_check("uploading the model");
 }
 
@@ -297,8 +250,8 @@ static int make_resident(struct drawing *drawing, uint32_t piece)
 {
 	if (!drawing->residents[piece].vertices)
 		return upload(drawing, piece);
-	unlink_piece(drawing, piece);
-	link_newest(drawing, piece);
+	recency_remove(&drawing->recency, piece);
+	recency_add(&drawing->recency, piece);
 	return 0;
 }
 
@@ -306,98 +259,15 @@ void drawing_destroy(struct drawing *drawing)
 {
 	if (!drawing)
 		return;
-	while (drawing->residents && drawing->oldest != NONE)
-		evict(drawing, drawing->oldest);
+	while (drawing->recency.links && drawing->recency.oldest != RECENCY_NONE)
+		evict(drawing, drawing->recency.oldest);
 	glDeleteProgram(drawing->program);
 	glDeleteTextures((GLsizei)drawing->texture_count, drawing->textures);
 	free(drawing->textures);
 	free(drawing->residents);
-	free(drawing->pieces);
-	free(drawing->order);
+	recency_finish(&drawing->recency);
+	sight_destroy(drawing->sight);
 	free(drawing);
-}
-
-/* ---- what is visible */
-
-void drawing_look(struct drawing *drawing, const float eye_m[3], float detail_rad)
-{
-	drawing->piece_count = model_choose(drawing->model, eye_m, detail_rad, drawing->pieces);
-}
-
-const uint32_t *drawing_pieces(const struct drawing *drawing, uint32_t *count)
-{
-	*count = drawing->piece_count;
-	return drawing->pieces;
-}
-
-/* Returns the distance of the box's farthest (sign +1) or nearest (sign -1) point along
- * direction. */
-static float reach(const struct model_piece *piece, const float eye_m[3], const float direction[3],
-		   float sign)
-{
-	float sum = 0;
-
-	for (int i = 0; i < 3; i++) {
-		float low = (piece->low_m[i] - eye_m[i]) * direction[i];
-		float high = (piece->high_m[i] - eye_m[i]) * direction[i];
-
-		sum += sign > 0 ? fmaxf(low, high) : fminf(low, high);
-	}
-	return sum;
-}
-
-bool drawing_range(const struct drawing *drawing, const float eye_m[3], const float forward[3],
-		   float *near_m, float *far_m)
-{
-	const struct model *model = drawing->model;
-	float diagonal = 0, least, nearest = INFINITY, farthest = 0;
-
-	for (int i = 0; i < 3; i++) {
-		float side = model->high_m[i] - model->low_m[i];
-
-		diagonal += side * side;
-	}
-	least = fminf(0.02f, sqrtf(diagonal) / 4000);
-	for (uint32_t n = 0; n < drawing->piece_count; n++) {
-		const struct model_piece *piece = &model->pieces[drawing->pieces[n]];
-		float far = reach(piece, eye_m, forward, 1);
-
-		if (far <= 0)
-			continue;
-		farthest = fmaxf(farthest, far);
-		nearest = fminf(nearest, reach(piece, eye_m, forward, -1));
-	}
-	if (farthest <= 0)
-		return false;
-	*near_m = fmaxf(nearest * 0.999f, least);
-	*far_m = fmaxf(farthest * 1.001f, *near_m * 2);
-	return true;
-}
-
-/* Returns true if all corners are outside one of the planes of clip space. */
-static bool is_outside(const struct model_piece *piece, const float m[16])
-{
-	for (int plane = 0; plane < 6; plane++) {
-		float sign = plane % 2 ? -1.0f : 1.0f, most = 0, c[4];
-
-		for (int column = 0; column < 4; column++)
-			c[column] = m[4 * column + 3] + sign * m[4 * column + plane / 2];
-		most = c[3];
-		for (int i = 0; i < 3; i++)
-			most += fmaxf(c[i] * piece->low_m[i], c[i] * piece->high_m[i]);
-		if (most < 0)
-			return true;
-	}
-	return false;
-}
-
-uint32_t drawing_visible(const struct drawing *drawing, const float matrix[16])
-{
-	uint32_t count = 0;
-
-	for (uint32_t n = 0; n < drawing->piece_count; n++)
-		count += !is_outside(&drawing->model->pieces[drawing->pieces[n]], matrix);
-	return count;
 }
 
 static void point_at(const struct drawing *drawing, uint32_t piece)
@@ -420,38 +290,6 @@ static void point_at(const struct drawing *drawing, uint32_t piece)
 	glBindTexture(GL_TEXTURE_2D, drawing->textures[drawing->model->pieces[piece].texture]);
 }
 
-static int compare_order(const void *a, const void *b)
-{
-	const struct order *x = a, *y = b;
-
-	if (x->distance != y->distance)
-		return x->distance < y->distance ? -1 : 1;
-	return x->piece < y->piece ? -1 : x->piece > y->piece;
-}
-
-/* Sorts visible pieces nearest first, so that the depth test avoids shading of hidden model. */
-static uint32_t sort_visible(struct drawing *drawing, const float matrix[16], const float eye_m[3])
-{
-	uint32_t count = 0;
-
-	for (uint32_t n = 0; n < drawing->piece_count; n++) {
-		const struct model_piece *piece = &drawing->model->pieces[drawing->pieces[n]];
-		float square = 0;
-
-		if (is_outside(piece, matrix))
-			continue;
-		for (int i = 0; i < 3; i++) {
-			float away = fmaxf(
-				fmaxf(piece->low_m[i] - eye_m[i], eye_m[i] - piece->high_m[i]), 0);
-
-			square += away * away;
-		}
-		drawing->order[count++] = (struct order){ square, drawing->pieces[n] };
-	}
-	qsort(drawing->order, count, sizeof(*drawing->order), compare_order);
-	return count;
-}
-
 static void set_up(struct drawing *drawing)
 {
 	glClearColor(0, 0, 0, 0);
@@ -470,10 +308,16 @@ static void set_up(struct drawing *drawing)
 		glEnableVertexAttribArray(i);
 }
 
+struct sight *drawing_sight(struct drawing *drawing)
+{
+	return drawing->sight;
+}
+
 int drawing_draw(struct drawing *drawing, const float matrix[16], const float eye_m[3],
 		 float px_radians)
 {
-	uint32_t count = sort_visible(drawing, matrix, eye_m);
+	uint32_t count;
+	const uint32_t *pieces = sight_visible(drawing->sight, matrix, eye_m, &count);
 	int rc = 0;
 
 	set_up(drawing);
@@ -481,7 +325,7 @@ int drawing_draw(struct drawing *drawing, const float matrix[16], const float ey
 	glUniform3fv(drawing->eye_at, 1, eye_m);
 	glUniform1f(drawing->px_at, px_radians);
 	for (uint32_t n = 0; n < count && rc == 0; n++) {
-		uint32_t piece = drawing->order[n].piece;
+		uint32_t piece = pieces[n];
 
 		rc = make_resident(drawing, piece);
 		if (rc < 0)

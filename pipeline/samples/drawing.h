@@ -2,9 +2,8 @@
  * on the GPU is bounded: pieces are uploaded when they are drawn, and those that were drawn longest
  * ago go. The colour comes from the scan's vertices, its textures, or the procedural material,
  * times the light if the model is lit (geometry/light.h). Alpha tells what a pixel shows: 255 the
- * front of a surface, 254 its back (DRAWING_BACK), 0 nothing. With the option `surfaces`, it draws
- * surface properties instead of colours; shading.h unpacks them. Both sides of triangles are drawn,
- * as the open border of a scan requires.
+ * front of a surface, 254 its back (DRAWING_BACK), 0 nothing. Both sides of triangles are drawn, as
+ * the open border of a scan requires.
  *
  * Call everything from the thread that owns the GL context. */
 #ifndef GOPURA_PIPELINE_SAMPLES_DRAWING_H
@@ -13,7 +12,7 @@
 #include <stdbool.h>
 
 #include "pipeline/import/mesh.h"
-#include "pipeline/samples/model.h"
+#include "pipeline/samples/sight.h"
 
 enum { DRAWING_BACK = 254 };
 
@@ -21,7 +20,6 @@ struct drawing_options {
 	bool lit;
 	float sun[3];    /* unit vector */
 	bool procedural; /* colours from pipeline/material/material.h */
-	bool surfaces;   /* procedural only: draw the surface properties that shading.h needs */
 };
 
 struct drawing;
@@ -34,19 +32,9 @@ must_check int drawing_create(struct drawing **out, struct model *model,
 			      const struct drawing_options *options);
 void drawing_destroy(struct drawing *drawing); /* NULL is fine */
 
-/* Chooses what of the surface is drawn for an eye; see model_choose. To be called before the
- * functions below, and again when the eye moves. */
-void drawing_look(struct drawing *drawing, const float eye_m[3], float detail_rad);
-/* Returns the chosen pieces; borrowed until the next drawing_look. */
-const uint32_t *drawing_pieces(const struct drawing *drawing, uint32_t *count);
-
-/* Sets near and far planes that contain everything in front of an eye that looks along forward
- * (unit vector), with a ratio that depth buffers can handle: near is at least 2 cm or 1/4000 of the
- * model's diagonal, whichever is less. Returns false if nothing is in front of the eye. */
-bool drawing_range(const struct drawing *drawing, const float eye_m[3], const float forward[3],
-		   float *near_m, float *far_m);
-/* Returns how many chosen pieces may be visible in that clip space. */
-uint32_t drawing_visible(const struct drawing *drawing, const float matrix[16]);
+/* Returns what chooses the pieces that are drawn: call sight_look before drawing_draw, and again
+ * when the eye moves. Borrowed for the drawing's lifetime. */
+struct sight *drawing_sight(struct drawing *drawing);
 /* Clears the bound framebuffer and draws. matrix: world to clip space, as camera_matrix.
  * px_radians: the size of a pixel at distance one; procedural detail finer than a pixel is left
  * out. Errors as model_load, or of GL. */

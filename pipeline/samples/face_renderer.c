@@ -1,5 +1,5 @@
-/* Renders a face with drawing and shading, and turns the picture into encoded tiles with a
- * pyramid. */
+/* Renders a face, with GL if the scan has pictures and else with a raster, and turns the picture
+ * into encoded tiles with a pyramid. */
 #include "pipeline/samples/face_renderer.h"
 
 #include <errno.h>
@@ -9,16 +9,26 @@
 
 #include "geometry/camera.h"
 #include "pipeline/samples/cube_frame.h"
+#include "pipeline/samples/pieces.h"
+#include "pipeline/samples/raster.h"
+#include "pipeline/samples/resolve.h"
 #include "pipeline/samples/shading.h"
 
 enum { OBJECTS_BYTES_MAX = 128 << 20 };
 
 struct face_renderer {
 	struct face_renderer_options options;
+	/* if the scan has pictures */
+	struct drawing *drawing;
 	struct cube_frame *frame;
 	struct shading *shading;
+	/* if it has none */
+	struct sight *sight;
+	struct pieces *pieces;
+	struct raster *raster;
+	struct resolve *resolve;
 	struct pyramid pyramid;
-	int frame_px;
+	int frame_px, samples; /* of the frame; per pixel and axis */
 	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 };
 
@@ -26,6 +36,37 @@ struct face_renderer {
 static uint32_t level_px(uint32_t level)
 {
 	return (uint32_t)SAMPLE_IMAGE_PX << level;
+}
+
+static int create_gl(struct face_renderer *renderer)
+{
+	const struct face_renderer_options *options = &renderer->options;
+	int side = renderer->frame_px;
+	int rc = drawing_create(&renderer->drawing, options->model, options->textures,
+				options->texture_count, &options->drawn);
+
+	if (rc == 0)
+		rc = cube_frame_create(&renderer->frame, side, side);
+	if (rc == 0)
+		rc = shading_create(&renderer->shading, renderer->frame, side, side,
+				    renderer->samples);
+	return rc;
+}
+
+static int create_raster(struct face_renderer *renderer)
+{
+	const struct drawing_options *drawn = &renderer->options.drawn;
+	struct model *model = renderer->options.model;
+	int rc = sight_create(&renderer->sight, model);
+
+	if (rc == 0)
+		rc = pieces_create(&renderer->pieces, model);
+	if (rc == 0)
+		rc = raster_create(&renderer->raster, (uint32_t)renderer->frame_px,
+				   !drawn->procedural);
+	if (rc == 0)
+		rc = resolve_create(&renderer->resolve, renderer->raster, drawn, renderer->samples);
+	return rc;
 }
 
 int face_renderer_create(struct face_renderer **out, const struct face_renderer_options *options)
@@ -38,14 +79,11 @@ int face_renderer_create(struct face_renderer **out, const struct face_renderer_
 	if (!renderer)
 		return -ENOMEM;
 	renderer->options = *options;
-	int samples = options->level_count < SAMPLE_LEVELS_MAX ? 2 : 1;
-	renderer->frame_px = (int)side * samples;
+	renderer->samples = options->level_count < SAMPLE_LEVELS_MAX ? 2 : 1;
+	renderer->frame_px = (int)side * renderer->samples;
 	rc = pyramid_init(&renderer->pyramid, side);
 	if (rc == 0)
-		rc = cube_frame_create(&renderer->frame, renderer->frame_px, renderer->frame_px);
-	if (rc == 0)
-		rc = shading_create(&renderer->shading, renderer->frame, renderer->frame_px,
-				    renderer->frame_px, samples, &options->drawn);
+		rc = options->texture_count ? create_gl(renderer) : create_raster(renderer);
 	if (rc < 0) {
 		face_renderer_destroy(renderer);
 		return rc;
@@ -60,8 +98,18 @@ void face_renderer_destroy(struct face_renderer *renderer)
 		return;
 	shading_destroy(renderer->shading);
 	cube_frame_destroy(renderer->frame);
+	drawing_destroy(renderer->drawing);
+	resolve_destroy(renderer->resolve);
+	raster_destroy(renderer->raster);
+	pieces_destroy(renderer->pieces);
+	sight_destroy(renderer->sight);
 	pyramid_finish(&renderer->pyramid);
 	free(renderer);
+}
+
+struct sight *face_renderer_sight(struct face_renderer *renderer)
+{
+	return renderer->drawing ? drawing_sight(renderer->drawing) : renderer->sight;
 }
 
 void shot_init(struct shot *shot)
@@ -94,14 +142,8 @@ static struct camera face_camera(const struct face_renderer *renderer, const flo
 static bool shows(const struct face_renderer *renderer, uint32_t level, uint32_t x, uint32_t y,
 		  uint32_t side)
 {
-	uint32_t k = renderer->options.level_count - 1 - level, width = level_px(level);
-	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])renderer->pyramid.levels[k];
-
-	for (uint32_t row = y - 1; row < y + side + 1; row++)
-		for (uint32_t column = x - 1; column < x + side + 1; column++)
-			if (pixels[(size_t)row * width + column][3])
-				return true;
-	return false;
+	return pyramid_shows(&renderer->pyramid, renderer->options.level_count - 1 - level, x - 1,
+			     y - 1, side + 2);
 }
 
 static uint16_t find_coverage(const struct face_renderer *renderer)
@@ -121,13 +163,8 @@ static uint16_t find_coverage(const struct face_renderer *renderer)
 static int encode_tile(struct face_renderer *renderer, struct shot *shot, uint32_t level,
 		       uint32_t x, uint32_t y)
 {
-	uint32_t k = renderer->options.level_count - 1 - level, width = level_px(level);
-	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])renderer->pyramid.levels[k];
-	uint8_t *to = renderer->tile;
-
-	for (uint32_t row = 0; row < SAMPLE_IMAGE_PX; row++)
-		for (uint32_t column = 0; column < SAMPLE_IMAGE_PX; column++, to += 3)
-			memcpy(to, pixels[(size_t)(y + row) * width + x + column], 3);
+	pyramid_sharpen(&renderer->pyramid, renderer->options.level_count - 1 - level, x, y,
+			SAMPLE_IMAGE_PX, renderer->tile);
 	return tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX,
 			   renderer->options.quality);
 }
@@ -157,35 +194,85 @@ static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t
 }
 
 /* Renders into the pyramid's finest level. *found is false if nothing shows. */
-static int render(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
-		  int face, bool *found)
+static int render_gl(struct face_renderer *renderer, struct shot *shot, const struct camera *camera,
+		     bool *found)
 {
-	struct camera camera = face_camera(renderer, point_m, face);
 	const uint8_t *rgba;
 	float matrix[16];
 	int rc;
 
-	*found = drawing_range(renderer->options.drawing, point_m, cube_axes[face].forward,
-			       &camera.near_m, &camera.far_m);
-	if (!*found)
-		return 0;
-	camera_matrix(&camera, matrix);
-	*found = drawing_visible(renderer->options.drawing, matrix) > 0;
-	if (!*found)
-		return 0;
+	camera_matrix(camera, matrix);
 	cube_frame_bind(renderer->frame);
-	rc = drawing_draw(renderer->options.drawing, matrix, point_m,
-			  1 / camera_px_per_radian(&camera));
+	rc = drawing_draw(renderer->drawing, matrix, camera->eye_m,
+			  1 / camera_px_per_radian(camera));
 	if (rc == 0)
-		rc = cube_frame_range(renderer->frame, camera.near_m, camera.far_m, found,
+		rc = cube_frame_range(renderer->frame, camera->near_m, camera->far_m, found,
 				      &shot->near_m, &shot->far_m);
 	if (rc < 0 || !*found)
 		return rc;
-	rc = shading_take(renderer->shading, &camera, &rgba);
+	rc = shading_take(renderer->shading, &rgba);
 	if (rc < 0)
 		return rc;
-	pyramid_set(&renderer->pyramid, rgba, &shot->covered, &shot->backs);
+	memcpy(renderer->pyramid.levels[0], rgba,
+	       (size_t)renderer->pyramid.side_px[0] * renderer->pyramid.side_px[0] * 4);
 	return 0;
+}
+
+/* Draws what no nearer piece hides. */
+static int draw_pieces(struct face_renderer *renderer, const struct camera *camera)
+{
+	const struct model *model = renderer->options.model;
+	const uint32_t *pieces;
+	float matrix[16];
+	uint32_t count;
+
+	raster_begin(renderer->raster, camera);
+	camera_matrix(camera, matrix);
+	pieces = sight_visible(renderer->sight, matrix, camera->eye_m, &count);
+	for (uint32_t n = 0; n < count; n++) {
+		const struct model_piece *piece = &model->pieces[pieces[n]];
+		struct model_mesh mesh;
+		int rc;
+
+		if (raster_hides(renderer->raster, piece->low_m, piece->high_m))
+			continue;
+		rc = pieces_get(renderer->pieces, pieces[n], &mesh);
+		if (rc < 0)
+			return rc;
+		raster_draw(renderer->raster, &mesh);
+	}
+	return 0;
+}
+
+/* As render_gl. */
+static int render_raster(struct face_renderer *renderer, struct shot *shot,
+			 const struct camera *camera, bool *found)
+{
+	int rc = draw_pieces(renderer, camera);
+
+	if (rc < 0)
+		return rc;
+	*found = raster_range(renderer->raster, &shot->near_m, &shot->far_m);
+	if (*found)
+		resolve_take(renderer->resolve, camera, renderer->pyramid.levels[0]);
+	return 0;
+}
+
+static int render(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
+		  int face, bool *found)
+{
+	struct camera camera = face_camera(renderer, point_m, face);
+	int rc;
+
+	*found = sight_range(face_renderer_sight(renderer), point_m, cube_axes[face].forward,
+			     &camera.near_m, &camera.far_m);
+	if (!*found)
+		return 0;
+	rc = renderer->drawing ? render_gl(renderer, shot, &camera, found)
+			       : render_raster(renderer, shot, &camera, found);
+	if (rc == 0 && *found)
+		pyramid_count(&renderer->pyramid, &shot->covered, &shot->backs);
+	return rc;
 }
 
 int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
@@ -206,7 +293,6 @@ int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const 
 		return 0;
 	pyramid_reduce(&renderer->pyramid);
 	pyramid_fill(&renderer->pyramid);
-	rc = pyramid_sharpen(&renderer->pyramid);
 	for (uint32_t level = 0; rc == 0 && level < renderer->options.level_count; level++)
 		rc = cut_level(renderer, shot, level);
 	return rc;

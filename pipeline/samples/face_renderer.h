@@ -1,5 +1,6 @@
 /* Renders one face of one sampling point, fills its background, cuts it into tiles at every level
- * and encodes them (docs/samples.md). Call everything from the thread that owns the GL context. */
+ * and encodes them (docs/samples.md). If there are textures, call everything from the thread that
+ * owns the GL context; otherwise no context is needed. */
 #ifndef GOPURA_PIPELINE_SAMPLES_FACE_RENDERER_H
 #define GOPURA_PIPELINE_SAMPLES_FACE_RENDERER_H
 
@@ -9,10 +10,11 @@
 #include "pipeline/samples/pyramid.h"
 
 struct face_renderer_options {
-	/* borrowed for the renderer's lifetime; drawing_look is called for each point first */
-	struct drawing *drawing;
-	struct drawing_options drawn; /* the options it was made with; surfaces if procedural */
-	uint32_t level_count;         /* 1 .. SAMPLE_LEVELS_MAX */
+	struct model *model;                 /* borrowed for the renderer's lifetime */
+	const struct mesh_texture *textures; /* borrowed while the renderer is made */
+	uint32_t texture_count;
+	struct drawing_options drawn;
+	uint32_t level_count; /* 1 .. SAMPLE_LEVELS_MAX */
 	/* of tile_encode, 1..100 */
 	int quality;
 };
@@ -35,6 +37,10 @@ struct face_renderer;
 must_check int face_renderer_create(struct face_renderer **out,
 				    const struct face_renderer_options *options);
 void face_renderer_destroy(struct face_renderer *renderer); /* NULL is fine */
+
+/* Returns what chooses the pieces that are drawn: call sight_look for each point first. Borrowed
+ * for the renderer's lifetime. */
+struct sight *face_renderer_sight(struct face_renderer *renderer);
 
 /* Prepares an empty shot. */
 void shot_init(struct shot *shot);

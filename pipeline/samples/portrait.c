@@ -146,8 +146,9 @@ static int draw_frame(struct drawing *drawing, const struct gl_target *target, s
 	camera.width_px = target->width_px;
 	camera.height_px = target->height_px;
 	camera_forward(&camera, forward);
-	drawing_look(drawing, camera.eye_m, BLOCK / camera_px_per_radian(&camera));
-	if (!drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m))
+	sight_look(drawing_sight(drawing), camera.eye_m, BLOCK / camera_px_per_radian(&camera));
+	if (!sight_range(drawing_sight(drawing), camera.eye_m, forward, &camera.near_m,
+			 &camera.far_m))
 		return -EINVAL;
 	camera_matrix(&camera, matrix);
 	gl_target_bind(target);

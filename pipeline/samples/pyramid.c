@@ -12,6 +12,9 @@
 int pyramid_init(struct pyramid *pyramid, uint32_t side_px)
 {
 	*pyramid = (struct pyramid){ 0 };
+	pyramid->weighed = malloc((side_px / 2 + 3) * sizeof(*pyramid->weighed));
+	if (!pyramid->weighed)
+		return -ENOMEM;
 	for (uint32_t side = side_px;; side = (side + 1) / 2) {
 		uint32_t level = pyramid->level_count++;
 
@@ -33,23 +36,50 @@ void pyramid_finish(struct pyramid *pyramid)
 		return;
 	for (uint32_t level = 0; level < pyramid->level_count; level++)
 		free(pyramid->levels[level]);
+	free(pyramid->weighed);
 	*pyramid = (struct pyramid){ 0 };
 }
 
-void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs)
+vector_clones void pyramid_count(struct pyramid *pyramid, uint64_t *covered, uint64_t *backs)
 {
-	size_t count = (size_t)pyramid->side_px[0] * pyramid->side_px[0];
+	uint32_t side = pyramid->side_px[0];
 
 	*covered = *backs = 0;
-	memcpy(pyramid->levels[0], rgba, count * 4);
-	for (size_t i = 0; i < count; i++) {
-		uint8_t *alpha = &pyramid->levels[0][i][3];
-		unsigned samples = *alpha / SHADING_COVERED;
+	for (uint32_t y = 0; y < side; y++) {
+		uint8_t(*row)[4] = pyramid->levels[0] + (size_t)y * side;
+		uint32_t covered_here = 0, backs_here = 0;
 
-		*covered += samples;
-		*backs += *alpha % SHADING_COVERED;
-		*alpha = (uint8_t)(samples * 255 / SHADING_SAMPLES);
+#pragma GCC ivdep
+		for (uint32_t x = 0; x < side; x++) {
+			uint32_t pixel, samples;
+
+			memcpy(&pixel, row[x], sizeof(pixel));
+			samples = (pixel >> 24) / SHADING_COVERED;
+			covered_here += samples;
+			backs_here += (pixel >> 24) % SHADING_COVERED;
+			pixel = (pixel & 0xffffff) | samples * 255 / SHADING_SAMPLES << 24;
+			memcpy(row[x], &pixel, sizeof(pixel));
+		}
+		*covered += covered_here;
+		*backs += backs_here;
 	}
+}
+
+vector_clones bool pyramid_shows(const struct pyramid *pyramid, uint32_t level, uint32_t x,
+				 uint32_t y, uint32_t side_px)
+{
+	const uint8_t(*pixels)[4] = (const uint8_t(*)[4])pyramid->levels[level];
+
+	for (uint32_t row = y; row < y + side_px; row++) {
+		const uint8_t(*from)[4] = pixels + (size_t)row * pyramid->side_px[level] + x;
+		uint32_t any = 0;
+
+		for (uint32_t column = 0; column < side_px; column++)
+			any |= from[column][3];
+		if (any)
+			return true;
+	}
+	return false;
 }
 
 /* Averages the existing ones of four pixels, weighted by coverage. */
@@ -109,86 +139,109 @@ void pyramid_reduce(struct pyramid *pyramid)
 		reduce(pyramid, level);
 }
 
+/* Four bytes as four numbers of 16 bits, and back. */
+vector_inline uint64_t widen(const uint8_t bytes[4])
+{
+	uint32_t packed;
+
+	memcpy(&packed, bytes, sizeof(packed));
+	return (packed & 255) | (uint64_t)(packed >> 8 & 255) << 16 |
+	       (uint64_t)(packed >> 16 & 255) << 32 | (uint64_t)(packed >> 24) << 48;
+}
+
+vector_inline uint32_t narrow(uint64_t wide)
+{
+	return (uint32_t)(wide & 255) | (uint32_t)(wide >> 16 & 255) << 8 |
+	       (uint32_t)(wide >> 32 & 255) << 16;
+}
+
+/* Sets the uncovered pixels of a row at `first` and every second one after it from the row of the
+ * coarser level, whose pixels have been weighed vertically (4 times as large). */
+vector_inline void fill_pixels(uint8_t (*row)[4], const uint64_t *near, const uint64_t *far,
+			       uint32_t count)
+{
+	const uint64_t sixteenths = 0x0fff0fff0fff0fff, half = 0x0008000800080008;
+
+#pragma GCC ivdep
+	for (uint32_t n = 0; n < count; n++) {
+		uint32_t before, filled = narrow((3 * near[n] + far[n] + half) >> 4 & sixteenths);
+
+		memcpy(&before, row[2 * n], sizeof(before));
+		before = before >> 24 ? before : filled;
+		memcpy(row[2 * n], &before, sizeof(before));
+	}
+}
+
 /* Fills bilinearly: the centre of a fine pixel is a quarter of a coarse pixel away from the coarse
- * one's. */
-static void fill(const struct pyramid *pyramid, uint32_t level)
+ * one's. weighed: room for two more than a row of the coarser level. */
+static vector_clones void fill(const struct pyramid *pyramid, uint32_t level, uint64_t *weighed)
 {
 	uint32_t side = pyramid->side_px[level], coarser = pyramid->side_px[level + 1];
 	const uint8_t(*from)[4] = (const uint8_t(*)[4])pyramid->levels[level + 1];
 
 	for (uint32_t y = 0; y < side; y++) {
 		uint32_t near_y = y / 2, far_y = y % 2 ? near_y + 1 : near_y - (near_y > 0);
+		uint8_t(*row)[4] = pyramid->levels[level] + (size_t)y * side;
+		const uint8_t(*near)[4] = from + (size_t)near_y * coarser;
+		const uint8_t(*far)[4];
 
 		if (far_y >= coarser)
 			far_y = coarser - 1;
-		for (uint32_t x = 0; x < side; x++) {
-			uint8_t *to = pyramid->levels[level][(size_t)y * side + x];
-			uint32_t near_x = x / 2, far_x = x % 2 ? near_x + 1 : near_x - (near_x > 0);
-
-			if (to[3])
-				continue;
-			if (far_x >= coarser)
-				far_x = coarser - 1;
-			for (int c = 0; c < 3; c++)
-				to[c] = (uint8_t)((9 * from[(size_t)near_y * coarser + near_x][c] +
-						   3 * from[(size_t)near_y * coarser + far_x][c] +
-						   3 * from[(size_t)far_y * coarser + near_x][c] +
-						   from[(size_t)far_y * coarser + far_x][c] + 8) /
-						  16);
-		}
+		far = from + (size_t)far_y * coarser;
+#pragma GCC ivdep
+		for (uint32_t x = 0; x < coarser; x++)
+			weighed[x + 1] = 3 * widen(near[x]) + widen(far[x]);
+		weighed[0] = weighed[1];
+		weighed[coarser + 1] = weighed[coarser];
+		fill_pixels(row, weighed + 1, weighed, (side + 1) / 2);
+		fill_pixels(row + 1, weighed + 1, weighed + 2, side / 2);
 	}
 }
 
 void pyramid_fill(struct pyramid *pyramid)
 {
 	for (uint32_t level = pyramid->level_count - 1; level > 0; level--)
-		fill(pyramid, level - 1);
+		fill(pyramid, level - 1, pyramid->weighed);
 }
 
 /* The share, in 64ths, of the difference to each of its four neighbours that is added to a
  * pixel. */
 enum { SHARPENING = 8 };
 
-static void sharpen_row(uint8_t (*to)[4], const uint8_t (*above)[4], const uint8_t (*row)[4],
-			const uint8_t (*below)[4], uint32_t side)
+/* Sharpens a row of a square: the row, the one above and the one below, each 4 bytes per pixel. The
+ * neighbours to the left and right are 4 bytes away. */
+static vector_clones void sharpen_row(uint8_t *to, const uint8_t *row, const uint8_t *above,
+				      const uint8_t *below, size_t bytes)
 {
-	for (uint32_t x = 0; x < side; x++) {
-		const uint8_t *left = row[x - (x > 0)], *right = row[x + (x + 1 < side)];
+#pragma GCC ivdep
+	for (size_t i = 0; i < bytes; i++) {
+		int bend = 4 * row[i] - row[i - 4] - row[i + 4] - above[i] - below[i];
+		int value = (64 * row[i] + SHARPENING * bend + 32) >> 6;
 
-		for (int c = 0; c < 3; c++) {
-			int bend = 4 * row[x][c] - left[c] - right[c] - above[x][c] - below[x][c];
-			int value = (64 * row[x][c] + SHARPENING * bend + 32) >> 6;
+		to[i] = (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+	}
+}
 
-			to[x][c] = (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+void pyramid_sharpen(const struct pyramid *pyramid, uint32_t level, uint32_t x, uint32_t y,
+		     uint32_t side_px, uint8_t *rgb)
+{
+	uint32_t side = pyramid->side_px[level], last = side - 1;
+	uint8_t rows[3][(PYRAMID_SQUARE_MAX + 2) * 4], sharp[PYRAMID_SQUARE_MAX * 4];
+
+	assert(side_px <= PYRAMID_SQUARE_MAX);
+	for (uint32_t row = 0; row < side_px; row++) {
+		for (uint32_t k = 0; k < 3; k++) {
+			uint32_t from = y + row + k < 1 ? 0 : y + row + k - 1;
+			const uint8_t(*at)[4] = (const uint8_t(*)[4])pyramid->levels[level] +
+						(size_t)(from < last ? from : last) * side;
+
+			memcpy(rows[k] + 4, at[x], (size_t)side_px * 4);
+			memcpy(rows[k], at[x > 0 ? x - 1 : 0], 4);
+			memcpy(rows[k] + 4 * (size_t)(side_px + 1),
+			       at[x + side_px < side ? x + side_px : last], 4);
 		}
+		sharpen_row(sharp, rows[1] + 4, rows[0] + 4, rows[2] + 4, (size_t)side_px * 4);
+		for (uint32_t column = 0; column < side_px; column++, rgb += 3)
+			memcpy(rgb, sharp + 4 * (size_t)column, 3);
 	}
-}
-
-/* rows: room for two rows, which keep their old values while the picture changes. */
-static void sharpen(const struct pyramid *pyramid, uint32_t level, uint8_t (*rows)[4])
-{
-	uint32_t side = pyramid->side_px[level];
-
-	for (uint32_t y = 0; y < side; y++) {
-		uint8_t(*at)[4] = pyramid->levels[level] + (size_t)y * side;
-		uint8_t(*row)[4] = rows + (y % 2 ? side : 0);
-		const uint8_t(*above)[4] = (const uint8_t(*)[4])rows + (y % 2 ? 0 : side);
-		const uint8_t(*below)[4] = (const uint8_t(*)[4])at + side;
-
-		memcpy(row, at, side * sizeof(*row));
-		sharpen_row(at, y > 0 ? above : (const uint8_t(*)[4])row, (const uint8_t(*)[4])row,
-			    y + 1 < side ? below : (const uint8_t(*)[4])row, side);
-	}
-}
-
-int pyramid_sharpen(struct pyramid *pyramid)
-{
-	uint8_t(*rows)[4] = malloc(2 * pyramid->side_px[0] * sizeof(*rows));
-
-	if (!rows)
-		return -ENOMEM;
-	for (uint32_t level = 0; level < pyramid->level_count; level++)
-		sharpen(pyramid, level, rows);
-	free(rows);
-	return 0;
 }

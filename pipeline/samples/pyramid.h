@@ -9,30 +9,36 @@
 
 #include "base/compiler.h"
 
-enum { PYRAMID_LEVELS_MAX = 16 };
+enum { PYRAMID_LEVELS_MAX = 16, PYRAMID_SQUARE_MAX = 128 };
 
 /* Square pictures; straight sRGB and coverage (255: all), row 0 on top. */
 struct pyramid {
 	uint32_t level_count; /* level 0 is the finest, the last is one pixel */
 	uint32_t side_px[PYRAMID_LEVELS_MAX];
 	uint8_t (*levels[PYRAMID_LEVELS_MAX])[4]; /* owned */
+	uint64_t *weighed;                        /* owned; for pyramid_fill */
 };
 
 /* Allocates all levels. Returns -ENOMEM; zeroed then. */
 must_check int pyramid_init(struct pyramid *pyramid, uint32_t side_px);
 void pyramid_finish(struct pyramid *pyramid); /* NULL and zeroed are fine */
 
-/* Sets level 0 from a picture of shading_take. Sets *covered to the number of its samples that show
- * anything, and *backs to how many of these show a back. */
-void pyramid_set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs);
+/* Level 0 has a picture whose alpha is as shading.h has it: replaces it by coverage, 0..255. Sets
+ * *covered to the number of samples that show anything, and *backs to how many of these show a
+ * back. */
+void pyramid_count(struct pyramid *pyramid, uint64_t *covered, uint64_t *backs);
+/* Returns true if a pixel of the square, which lies within the level, shows anything. */
+bool pyramid_shows(const struct pyramid *pyramid, uint32_t level, uint32_t x, uint32_t y,
+		   uint32_t side_px);
 /* Makes all other levels with a box filter weighted by coverage. A pixel that shows anything has a
  * coverage of at least 1 at every level. */
 void pyramid_reduce(struct pyramid *pyramid);
 /* Sets the colours of uncovered pixels from the next coarser level. Coverage stays. */
 void pyramid_fill(struct pyramid *pyramid);
-/* Sharpens every level to compensate for the blur of display: texels are means over their squares,
- * and the kiosk interpolates between them. Colours are clamped to 0..255. Call it last. Returns
- * -ENOMEM. */
-must_check int pyramid_sharpen(struct pyramid *pyramid);
+/* Copies a square of a level, sharpened to compensate for the blur of display: texels are means
+ * over their squares, and the kiosk interpolates between them. The square lies within the level;
+ * side_px is at most PYRAMID_SQUARE_MAX. rgb: side_px * side_px * 3 bytes. */
+void pyramid_sharpen(const struct pyramid *pyramid, uint32_t level, uint32_t x, uint32_t y,
+		     uint32_t side_px, uint8_t *rgb);
 
 #endif

@@ -265,8 +265,9 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 	camera_forward(&camera, forward);
 	camera.width_px = easel->target.width_px;
 	camera.height_px = easel->target.height_px;
-	drawing_look(easel->drawing, camera.eye_m, 0);
-	if (!drawing_range(easel->drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m))
+	sight_look(drawing_sight(easel->drawing), camera.eye_m, 0);
+	if (!sight_range(drawing_sight(easel->drawing), camera.eye_m, forward, &camera.near_m,
+			 &camera.far_m))
 		return 0; /* everything is behind the eye */
 	camera_matrix(&camera, matrix);
 	for (uint32_t n = 0; n < jitters * jitters; n++) {

@@ -18,12 +18,11 @@
 #include "base/progress.h"
 #include "format/tile.h"
 #include "pipeline/samples/chunks.h"
-#include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"
 #include "pipeline/samples/model_master.h"
 #include "render/display/headless.h"
 
-enum { SAMPLER_VERSION = 8, JOBS_MAX = 64 };
+enum { SAMPLER_VERSION = 9, JOBS_MAX = 64 };
 
 /* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;
@@ -157,8 +156,8 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 }
 
 /* Sets *state to SAMPLE_GROUND or SAMPLE_INSIDE if the point can be skipped before anything is
- * rendered; otherwise it stays. drawing_look was called. */
-static int judge_point(const struct sampling *sampling, const struct drawing *drawing,
+ * rendered; otherwise it stays. sight_look was called. */
+static int judge_point(const struct sampling *sampling, const struct sight *sight,
 		       const float point_m[3], enum sample_state *state)
 {
 	const uint32_t *pieces;
@@ -170,7 +169,7 @@ static int judge_point(const struct sampling *sampling, const struct drawing *dr
 		*state = SAMPLE_GROUND;
 		return 0;
 	}
-	pieces = drawing_pieces(drawing, &count);
+	pieces = sight_pieces(sight, &count);
 	rc = model_winding(sampling->model, pieces, count, point_m, &winding);
 	if (rc == 0 && winding > winding_solid)
 		*state = SAMPLE_INSIDE;
@@ -229,17 +228,18 @@ static int take_faces(const struct sampling *sampling, struct face_renderer *ren
 	return 0;
 }
 
-static int take_point(const struct sampling *sampling, struct drawing *drawing,
-		      struct face_renderer *renderer, struct taken *taken, const uint32_t point[3])
+static int take_point(const struct sampling *sampling, struct face_renderer *renderer,
+		      struct taken *taken, const uint32_t point[3])
 {
+	struct sight *sight = face_renderer_sight(renderer);
 	uint32_t face_px = (uint32_t)SAMPLE_TILE_PX << (sampling->grid.level_count - 1);
 	enum sample_state state = SAMPLE_RENDERED;
 	float place[3];
 	int rc, count = 0;
 
 	sampler_point(place, &sampling->grid, point);
-	drawing_look(drawing, place, detail_texels * 2 / (float)face_px);
-	rc = judge_point(sampling, drawing, place, &state);
+	sight_look(sight, place, detail_texels * 2 / (float)face_px);
+	rc = judge_point(sampling, sight, place, &state);
 	if (rc == 0 && state == SAMPLE_RENDERED) {
 		count = take_faces(sampling, renderer, taken, place, &state);
 		rc = count < 0 ? count : 0;
@@ -251,8 +251,7 @@ static int take_point(const struct sampling *sampling, struct drawing *drawing,
 }
 
 /* Processes points until none is left, and writes a byte into the pipe for each. */
-static int work(const struct sampling *sampling, struct drawing *drawing,
-		struct face_renderer *renderer, int done_fd)
+static int work(const struct sampling *sampling, struct face_renderer *renderer, int done_fd)
 {
 	struct taken *taken = calloc(1, sizeof(*taken));
 	int rc = 0;
@@ -266,7 +265,7 @@ static int work(const struct sampling *sampling, struct drawing *drawing,
 
 		if (n >= sampling->point_count)
 			break;
-		rc = take_point(sampling, drawing, renderer, taken, sampling->points[n]);
+		rc = take_point(sampling, renderer, taken, sampling->points[n]);
 		if (rc == 0 && write(done_fd, "", 1) != 1)
 			rc = -EPIPE;
 	}
@@ -279,30 +278,30 @@ static int work(const struct sampling *sampling, struct drawing *drawing,
 /* The body of a child process. */
 static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd)
 {
-	struct face_renderer_options options = { .drawn = sampling->drawing,
+	struct face_renderer_options options = { .model = sampling->model,
+						 .textures = sampling->textures,
+						 .texture_count = sampling->texture_count,
+						 .drawn = sampling->drawing,
 						 .level_count = sampling->grid.level_count,
 						 .quality = (int)sampling->content->quality };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	struct headless *headless = NULL;
 	struct face_renderer *renderer = NULL;
 	char threads[24];
-	int rc;
+	int rc = 0;
 
 	/* Otherwise a software rasteriser starts one thread per core in every process. */
 	snprintf(threads, sizeof(threads), "%ld", cores > (long)jobs ? cores / (long)jobs : 1);
 	setenv("LP_NUM_THREADS", threads, 0);
-	rc = headless_create(&headless);
-	if (rc == 0)
-		rc = drawing_create(&options.drawing, sampling->model, sampling->textures,
-				    sampling->texture_count, &options.drawn);
+	if (options.texture_count)
+		rc = headless_create(&headless);
 	if (rc == 0)
 		rc = face_renderer_create(&renderer, &options);
 	if (rc == 0)
-		rc = work(sampling, options.drawing, renderer, done_fd);
+		rc = work(sampling, renderer, done_fd);
 	if (rc < 0)
 		log_error("pipeline", "a sampler process failed: %s", strerror(-rc));
 	face_renderer_destroy(renderer);
-	drawing_destroy(options.drawing);
 	headless_destroy(headless);
 	return rc;
 }
@@ -377,7 +376,8 @@ static int make_model(struct sampling *sampling, struct scans *scans, const stru
 	if (rc < 0)
 		return rc;
 	sampling->textures = mesh->textures;
-	sampling->texture_count = mesh->uvs ? mesh->texture_count : 0;
+	if (mesh->uvs && !sampling->drawing.procedural)
+		sampling->texture_count = mesh->texture_count;
 	return chunks_create(&sampling->model, mesh, sampling->content->import.default_colour);
 }
 
@@ -428,7 +428,6 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 		return rc;
 	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
 	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
-	sampling->drawing.surfaces = sampling->drawing.procedural;
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));
 	sampler_grid(&sampling->grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);

@@ -11,10 +11,8 @@
 #include "base/resource_usage.h"
 #include "base/shared_memory.h"
 #include "pipeline/samples/chunks.h"
-#include "pipeline/samples/drawing.h"
 #include "pipeline/samples/face_renderer.h"
 #include "pipeline/samples/sampler.h"
-#include "render/display/headless.h"
 
 /* Faces of more levels are not drawn: their cost grows with their pixels. With fewer, the ball is
  * in as many tiles from afar as from near. */
@@ -67,7 +65,6 @@ int sampling_trial_mesh(struct mesh *out, uint32_t n)
 /* What is drawn with, and the costs of one face. */
 struct stand {
 	struct model *model;
-	struct drawing *drawing;
 	struct face_renderer *renderer;
 	struct shot shot;
 	double seconds;
@@ -92,9 +89,7 @@ static int stand_init(struct stand *stand, struct face_renderer_options options,
 	if (rc == 0)
 		rc = chunks_create(&stand->model, &mesh, colour);
 	mesh_finish(&mesh);
-	if (rc == 0)
-		rc = drawing_create(&stand->drawing, stand->model, NULL, 0, &options.drawn);
-	options.drawing = stand->drawing;
+	options.model = stand->model;
 	if (rc == 0)
 		rc = face_renderer_create(&stand->renderer, &options);
 	return rc;
@@ -103,7 +98,6 @@ static int stand_init(struct stand *stand, struct face_renderer_options options,
 static void stand_finish(struct stand *stand)
 {
 	face_renderer_destroy(stand->renderer);
-	drawing_destroy(stand->drawing);
 	model_destroy(stand->model);
 	shot_finish(&stand->shot);
 }
@@ -114,7 +108,7 @@ static int take(struct stand *stand, const float point_m[3])
 {
 	int rc;
 
-	drawing_look(stand->drawing, point_m, 0);
+	sight_look(face_renderer_sight(stand->renderer), point_m, 0);
 	rc = face_renderer_take(stand->renderer, &stand->shot, point_m, 0);
 	stand->seconds = INFINITY;
 	for (int batch = 0; batch < BATCHES; batch++) {
@@ -171,7 +165,6 @@ static int work(void *user, uint32_t piece)
 {
 	const struct job *job = user;
 	struct face_renderer_options options = { .quality = (int)job->content->quality };
-	struct headless *headless = NULL;
 	struct resource_usage usage;
 	double extra = 1;
 	int rc;
@@ -179,18 +172,13 @@ static int work(void *user, uint32_t piece)
 	(void)piece;
 	options.drawn.lit = job->lit;
 	options.drawn.procedural = job->content->colours == CONTENT_COLOURS_PROCEDURAL;
-	options.drawn.surfaces = options.drawn.procedural;
 	memcpy(options.drawn.sun, job->content->sun, sizeof(options.drawn.sun));
 	options.level_count = sampler_levels(job->content->face_px);
 	for (; options.level_count > TRIAL_LEVELS_MAX; options.level_count--)
 		extra *= 4;
 	for (; options.level_count < TRIAL_LEVELS_MIN; options.level_count++)
 		extra /= 4;
-	setenv("LP_NUM_THREADS", "1", 0);
-	rc = headless_create(&headless);
-	if (rc == 0)
-		rc = measure(job->out, &options);
-	headless_destroy(headless);
+	rc = measure(job->out, &options);
 	job->out->face_s *= extra;
 	resource_usage_now(&usage);
 	job->out->process_bytes = usage.own_bytes;

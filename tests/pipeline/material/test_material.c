@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/compiler.h"
 #include "render/display/gl.h"
@@ -115,6 +116,45 @@ static void agrees_with_its_twin(void **state)
 	free(rgba);
 }
 
+/* With every number of places up to one more than vectors are wide. */
+static void is_the_same_for_many_places_at_once(void **state)
+{
+	enum { COUNT = 33 };
+	static float x[COUNT], y[COUNT], z[COUNT], nx[COUNT], ny[COUNT], nz[COUNT], size[COUNT];
+	static float block[4][COUNT], detail[2][COUNT], rgb[3][COUNT];
+	const struct material_blocks blocks = { block[0], block[1], block[2], block[3] };
+	float *const colours[3] = { rgb[0], rgb[1], rgb[2] };
+
+	(void)state;
+	for (size_t i = 0; i < COUNT; i++) {
+		const struct square *s = &squares[i % ARRAY_COUNT(squares)];
+
+		x[i] = s->origin[0] + 0.37f * (float)i;
+		y[i] = s->origin[1] + 0.11f * (float)i;
+		z[i] = s->origin[2] + 0.05f * (float)i;
+		nx[i] = s->normal[0];
+		ny[i] = s->normal[1];
+		nz[i] = s->normal[2];
+		size[i] = s->footprint_m;
+	}
+	for (uint32_t count = 0; count <= COUNT; count++) {
+		const struct material_places places = { count, x, y, z, nx, ny, nz, size };
+
+		material_details(detail[0], &places, 23);
+		material_details(detail[1], &places, 97);
+		material_blocks(&blocks, &places);
+		material_paints(colours, &places, &blocks, detail[0], detail[1]);
+		for (uint32_t i = 0; i < count; i++) {
+			float one[3];
+
+			material_colour(one, (float[3]){ x[i], y[i], z[i] },
+					(float[3]){ nx[i], ny[i], nz[i] }, size[i]);
+			for (int c = 0; c < 3; c++)
+				CHECK(memcmp(&one[c], &rgb[c][i], sizeof(float)) == 0);
+		}
+	}
+}
+
 static void is_a_colour_with_detail_down_to_a_centimetre(void **state)
 {
 	const struct square *wall = &squares[0];
@@ -141,6 +181,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(agrees_with_its_twin),
+		cmocka_unit_test(is_the_same_for_many_places_at_once),
 		cmocka_unit_test(is_a_colour_with_detail_down_to_a_centimetre),
 	};
 

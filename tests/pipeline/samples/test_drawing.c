@@ -49,8 +49,9 @@ static void shoot(struct shot *shot, struct mesh *mesh, const struct drawing_opt
 	camera.width_px = camera.height_px = SIDE;
 	for (int i = 0; i < 3; i++)
 		forward[i] = camera.target_m[i] - camera.eye_m[i];
-	drawing_look(drawing, camera.eye_m, 0);
-	CHECK(drawing_range(drawing, camera.eye_m, forward, &camera.near_m, &camera.far_m));
+	sight_look(drawing_sight(drawing), camera.eye_m, 0);
+	CHECK(sight_range(drawing_sight(drawing), camera.eye_m, forward, &camera.near_m,
+			  &camera.far_m));
 	camera_matrix(&camera, matrix);
 	cube_frame_bind(shot->frame);
 	CHECK(drawing_draw(drawing, matrix, camera.eye_m, 1 / camera_px_per_radian(&camera)) == 0);

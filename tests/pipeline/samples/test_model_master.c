@@ -11,6 +11,7 @@
 #include "pipeline/samples/cube_frame.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/model_master.h"
+#include "pipeline/samples/raster.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 #include "tests/check.h"
@@ -131,7 +132,7 @@ static void shoot(struct drawing *drawing, struct cube_frame *frame, const float
 
 	memcpy(camera.eye_m, eye, sizeof(camera.eye_m));
 	memcpy(camera.target_m, target, sizeof(camera.target_m));
-	CHECK(drawing_range(drawing, eye, forward, &camera.near_m, &camera.far_m));
+	CHECK(sight_range(drawing_sight(drawing), eye, forward, &camera.near_m, &camera.far_m));
 	camera_matrix(&camera, matrix);
 	cube_frame_bind(frame);
 	CHECK(drawing_draw(drawing, matrix, eye, 1 / camera_px_per_radian(&camera)) == 0);
@@ -178,11 +179,12 @@ static void looks_like_the_finest(void **state)
 		eye_at(home, powf(2, (float)step + 1), eye);
 		memcpy(target, eye, sizeof(target));
 		target[2] -= 1;
-		drawing_look(drawing, eye, 0);
-		drawing_pieces(drawing, &all);
+		sight_look(drawing_sight(drawing), eye, 0);
+		sight_pieces(drawing_sight(drawing), &all);
 		shoot(drawing, frame, eye, target, fine);
-		drawing_look(drawing, eye, 2.0f / (SIDE / 2)); /* a texel is two samples */
-		drawing_pieces(drawing, &chosen);
+		sight_look(drawing_sight(drawing), eye,
+			   2.0f / (SIDE / 2)); /* a texel is two samples */
+		sight_pieces(drawing_sight(drawing), &chosen);
 		CHECK(chosen < all);
 		shoot(drawing, frame, eye, target, coarse);
 		printf("%.1f sizes away: %u of %u pieces, %.1f dB\n", powf(2, (float)step + 1),
@@ -195,6 +197,90 @@ static void looks_like_the_finest(void **state)
 	headless_destroy(headless);
 	free(fine);
 	free(coarse);
+}
+
+/* Looks down at the relief past a wall, which hides the left half. */
+static void start_raster(const struct home *home, struct raster *raster, struct camera *camera)
+{
+	static const uint16_t indices[6] = { 0, 1, 2, 0, 2, 3 };
+	struct model_vertex vertices[4] = { 0 };
+	const struct model_mesh wall = {
+		.vertex_count = 4, .index_count = 6, .vertices = vertices, .indices = indices
+	};
+	float side = home->model->high_m[0] - home->model->low_m[0];
+
+	*camera = (struct camera){ .up = { 0, 0, 1 },
+				   .fov_deg = 60,
+				   .near_m = 0.001f * side,
+				   .width_px = SIDE,
+				   .height_px = SIDE };
+	for (int i = 0; i < 3; i++)
+		camera->target_m[i] = (home->model->low_m[i] + home->model->high_m[i]) / 2;
+	memcpy(camera->eye_m, camera->target_m, sizeof(camera->eye_m));
+	camera->up[1] = 1;
+	camera->up[2] = 0;
+	camera->eye_m[2] += 1.2f * side;
+	raster_begin(raster, camera);
+	for (int k = 0; k < 4; k++) {
+		vertices[k].position_m[0] = camera->eye_m[0] - (k == 1 || k == 2 ? 0 : side);
+		vertices[k].position_m[1] = camera->eye_m[1] + (k < 2 ? -side : side);
+		vertices[k].position_m[2] = camera->eye_m[2] - 0.5f * side;
+	}
+	raster_draw(raster, &wall);
+}
+
+static void draw_piece(const struct home *home, struct raster *raster, uint32_t piece)
+{
+	struct model_mesh mesh;
+
+	CHECK(model_load(home->model, piece, &mesh) == 0);
+	raster_draw(raster, &mesh);
+}
+
+static void is_the_same_without_what_is_hidden(void **state)
+{
+	struct home *home = *state;
+	struct raster *all, *some;
+	struct camera camera;
+	struct sight *sight;
+	const uint32_t *pieces;
+	uint32_t count, hidden = 0;
+	float matrix[16];
+
+	CHECK(sight_create(&sight, home->model) == 0);
+	CHECK(raster_create(&all, SIDE, false) == 0);
+	CHECK(raster_create(&some, SIDE, false) == 0);
+	start_raster(home, all, &camera);
+	start_raster(home, some, &camera);
+	camera.far_m = 1000;
+	camera_matrix(&camera, matrix);
+	sight_look(sight, camera.eye_m, 0);
+	pieces = sight_visible(sight, matrix, camera.eye_m, &count);
+	for (uint32_t n = 0; n < count; n++) {
+		const struct model_piece *piece = &home->model->pieces[pieces[n]];
+
+		draw_piece(home, all, pieces[n]);
+		if (raster_hides(some, piece->low_m, piece->high_m))
+			hidden++;
+		else
+			draw_piece(home, some, pieces[n]);
+	}
+	printf("%u of %u pieces are hidden\n", hidden, count);
+	CHECK(hidden > count / 4 && hidden < count * 3 / 4);
+	for (uint32_t i = 0; i < SIDE / 8 * SIDE / 8; i++) {
+		uint32_t column = i % (SIDE / 8), row = i / (SIDE / 8);
+		struct raster_block a, b;
+		bool shows = raster_get_block(all, column, row, &a);
+
+		CHECK(raster_get_block(some, column, row, &b) == shows);
+		for (int k = 0; shows && k < RASTER_BLOCK_SAMPLES; k++) {
+			CHECK(a.inverse_m[k] == b.inverse_m[k]);
+			CHECK(a.inverse_m[k] == 0 || a.surface[k] == b.surface[k]);
+		}
+	}
+	raster_destroy(some);
+	raster_destroy(all);
+	sight_destroy(sight);
 }
 
 static void says_so_where_the_master_is_damaged(void **state)
@@ -217,6 +303,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(chooses_all_of_the_surface_and_fewer_triangles_from_afar),
 		cmocka_unit_test(looks_like_the_finest),
+		cmocka_unit_test(is_the_same_without_what_is_hidden),
 		cmocka_unit_test(says_so_where_the_master_is_damaged),
 	};
 

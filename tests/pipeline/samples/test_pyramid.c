@@ -18,6 +18,12 @@ static uint8_t *picture(void)
 	return rgba;
 }
 
+static void set(struct pyramid *pyramid, const uint8_t *rgba, uint64_t *covered, uint64_t *backs)
+{
+	memcpy(pyramid->levels[0], rgba, SIDE * SIDE * 4);
+	pyramid_count(pyramid, covered, backs);
+}
+
 static void counts_samples(void **state)
 {
 	struct pyramid pyramid;
@@ -26,7 +32,7 @@ static void counts_samples(void **state)
 
 	(void)state;
 	CHECK(pyramid_init(&pyramid, SIDE) == 0);
-	pyramid_set(&pyramid, rgba, &covered, &backs);
+	set(&pyramid, rgba, &covered, &backs);
 	CHECK(covered == SIDE * SIDE && backs == 1);
 	for (int y = 0; y < SIDE; y++) {
 		for (int x = 0; x < SIDE; x++) {
@@ -49,7 +55,7 @@ static void covers_silhouettes_in_part(void **state)
 	(void)state;
 	rgba[4 * (SIDE - 1) + 3] = 8; /* a sample of the upper right corner, black */
 	CHECK(pyramid_init(&pyramid, SIDE) == 0);
-	pyramid_set(&pyramid, rgba, &covered, &backs);
+	set(&pyramid, rgba, &covered, &backs);
 	pyramid_reduce(&pyramid);
 	CHECK(pyramid.levels[0][SIDE - 1][3] == 63 && pyramid.levels[0][SIDE - 1][0] == 0);
 	/* Whatever shows anything still shows it in the coarsest, in its own colour. */
@@ -69,7 +75,7 @@ static void fills_only_the_background(void **state)
 
 	(void)state;
 	CHECK(pyramid_init(&pyramid, SIDE) == 0);
-	pyramid_set(&pyramid, rgba, &covered, &backs);
+	set(&pyramid, rgba, &covered, &backs);
 	pyramid_reduce(&pyramid);
 	pyramid_fill(&pyramid);
 	for (int i = 0; i < SIDE * SIDE; i++) {
@@ -91,7 +97,7 @@ static void stays_black_where_nothing_is(void **state)
 
 	(void)state;
 	CHECK(pyramid_init(&pyramid, SIDE) == 0);
-	pyramid_set(&pyramid, rgba, &covered, &backs);
+	set(&pyramid, rgba, &covered, &backs);
 	pyramid_reduce(&pyramid);
 	pyramid_fill(&pyramid);
 	CHECK(covered == 0 && backs == 0);
@@ -113,21 +119,29 @@ static void sharpens_edges_alone(void **state)
 		memcpy(rgba + (size_t)4 * i, i % SIDE < SIDE / 2 ? "ddd\040" : "\244\244\244\040",
 		       4);
 	CHECK(pyramid_init(&pyramid, SIDE) == 0);
-	pyramid_set(&pyramid, rgba, &covered, &backs);
+	set(&pyramid, rgba, &covered, &backs);
 	pyramid_reduce(&pyramid);
 	pyramid_fill(&pyramid);
-	CHECK(pyramid_sharpen(&pyramid) == 0);
-	for (int level = 0; level < 2; level++) {
+	for (uint32_t level = 0; level < 2; level++) {
 		int side = SIDE >> level, edge = side / 2;
+		uint8_t sharp[SIDE * SIDE * 3], part[4 * 4 * 3];
 
+		pyramid_sharpen(&pyramid, level, 0, 0, (uint32_t)side, sharp);
 		for (int i = 0; i < side * side; i++) {
-			const uint8_t *row = pyramid.levels[level][i / side * side];
-			int x = i % side, over = row[4 * edge] - 164;
+			const uint8_t *row = sharp + (size_t)(i / side * side) * 3;
+			int x = i % side, over = row[3 * edge] - 164;
 
-			CHECK(over > 0 && over < 16 && row[4 * (edge - 1)] == 100 - over);
+			CHECK(over > 0 && over < 16 && row[3 * (edge - 1)] == 100 - over);
 			if (x != edge && x != edge - 1)
-				CHECK(row[4 * x + 1] == (x < edge ? 100 : 164));
+				CHECK(row[3 * x + 1] == (x < edge ? 100 : 164));
 		}
+		/* a part has the same pixels as the whole */
+		pyramid_sharpen(&pyramid, level, (uint32_t)edge - 2, 3, 4, part);
+		for (int y = 0; y < 4; y++)
+			CHECK(memcmp(part + (size_t)y * 12,
+				     sharp + ((size_t)(y + 3) * (size_t)side + (size_t)edge - 2) *
+						     3,
+				     12) == 0);
 	}
 	pyramid_finish(&pyramid);
 	free(rgba);
