@@ -3,12 +3,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
-#include <malloc.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -16,7 +13,7 @@
 
 #include "base/log.h"
 
-enum { WORKERS_MAX = 64, RESERVE_BYTES = 256 << 20, HUGE_PAGE_BYTES = 2 << 20 };
+enum { WORKERS_MAX = 64 };
 
 struct running {
 	pid_t pid;
@@ -41,24 +38,6 @@ static void fail(struct crew *crew, uint32_t piece, int rc)
 	}
 }
 
-/* What a piece frees is kept for what it allocates next, and comes in huge pages: otherwise one in
- * ten of its seconds goes into fresh pages. Only what is used takes memory. */
-static void prepare_memory(void)
-{
-#ifndef __SANITIZE_ADDRESS__
-	uint8_t *reserve;
-	size_t lead;
-
-	mallopt(M_MMAP_MAX, 0);
-	mallopt(M_TRIM_THRESHOLD, INT_MAX);
-	reserve = malloc(RESERVE_BYTES);
-	lead = HUGE_PAGE_BYTES - (uintptr_t)reserve % HUGE_PAGE_BYTES;
-	if (reserve)
-		(void)madvise(reserve + lead, RESERVE_BYTES - lead, MADV_HUGEPAGE);
-	free(reserve);
-#endif
-}
-
 static void be_worker(const struct processes *plan, uint32_t piece, pid_t parent)
 {
 	int rc;
@@ -66,7 +45,6 @@ static void be_worker(const struct processes *plan, uint32_t piece, pid_t parent
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
 		_exit(EIO);
-	prepare_memory();
 	rc = plan->work(plan->user, piece);
 	_exit(rc < 0 ? -rc : 0);
 }

@@ -15,6 +15,8 @@
 #include "base/shared_memory.h"
 #include "pipeline/hierarchy/lattice_mesh.h"
 
+#define NO_BLOCK UINT32_MAX
+
 enum { PIECE = 1 << 20 /* vertices or triangles that one process takes */ };
 
 static uint32_t pieces_of(uint32_t count)
@@ -185,17 +187,20 @@ static uint32_t blocks_of(uint32_t blocks[4], const struct block_scan *scan,
 	return count;
 }
 
-/* Counts into heads, two for each block; or where rows is given, puts the triangles there and moves
- * the heads on. */
-static void sort_piece(uint32_t *heads, uint32_t (*rows)[3], const struct split_pass *pass,
-		       uint32_t piece)
+/* Counts into heads, two for each block, and sets only[] of each triangle to the block that alone
+ * gets it, or to NO_BLOCK. Then, where rows is given, puts the triangles there and moves the
+ * heads on. */
+static void sort_piece(uint32_t *heads, uint32_t *only, uint32_t (*rows)[3],
+		       const struct split_pass *pass, uint32_t piece)
 {
 	const struct mesh *mesh = pass->scan->mesh;
 
 	for (uint32_t t = piece * PIECE; t < piece_end(mesh->triangle_count, piece); t++) {
-		uint32_t blocks[4];
-		uint32_t count = blocks_of(blocks, pass->scan, pass->cells, mesh->triangles[t]);
+		uint32_t *alone = &only[t - piece * PIECE], blocks[4] = { *alone }, count = 1;
 
+		if (!rows || *alone == NO_BLOCK)
+			count = blocks_of(blocks, pass->scan, pass->cells, mesh->triangles[t]);
+		*alone = count == 1 ? blocks[0] : NO_BLOCK;
 		for (uint32_t i = 0; i < count; i++) {
 			uint32_t *head = &heads[2 * blocks[i] + (i > 0)];
 
@@ -211,18 +216,20 @@ static int split_piece(void *user, uint32_t piece)
 	const struct split_pass *pass = user;
 	uint32_t head_count = 2 * pass->cells->block_count, total = 0;
 	uint32_t *heads = calloc(head_count, sizeof(*heads));
+	uint32_t *only = calloc(PIECE, sizeof(*only));
 	struct buffer file;
 	char path[PATH_MAX];
 	uint8_t *rows;
 	int rc = split_path(path, pass->folder, piece);
 
-	if (!heads)
+	if (!heads || !only)
 		rc = -ENOMEM;
 	if (rc < 0 || access(path, F_OK) == 0) {
 		free(heads);
+		free(only);
 		return rc;
 	}
-	sort_piece(heads, NULL, pass, piece);
+	sort_piece(heads, only, NULL, pass, piece);
 	buffer_init(&file, SIZE_MAX);
 	buffer_put(&file, heads, head_count * sizeof(*heads));
 	for (uint32_t h = 0; h < head_count; h++) {
@@ -234,12 +241,13 @@ static int split_piece(void *user, uint32_t piece)
 	rows = buffer_extend(&file, total * sizeof(uint32_t[3]));
 	rc = rows ? 0 : file.error;
 	if (rc == 0) {
-		sort_piece(heads, (uint32_t(*)[3])(void *)rows, pass, piece);
+		sort_piece(heads, only, (uint32_t(*)[3])(void *)rows, pass, piece);
 		if (access(path, F_OK) < 0)
 			rc = bytes_write_file(buffer_bytes(&file), path);
 	}
 	buffer_finish(&file);
 	free(heads);
+	free(only);
 	return rc;
 }
 

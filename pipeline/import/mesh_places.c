@@ -62,7 +62,7 @@ struct search {
 	uint32_t *first;
 };
 
-enum { PART_VERTICES = 3 << 20 }; /* a table of 64 MB */
+enum { PART_VERTICES = 12 << 20 }; /* a table of 256 MB, for each core */
 
 /* An entry of the table: the upper half of the hash, then the vertex. Returns false if more than
  * half of the table fills, which a file can bring about that was made for it. */
