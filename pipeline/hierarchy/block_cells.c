@@ -6,7 +6,8 @@
 
 #include "pipeline/hierarchy/graph.h"
 
-#define NO_NODE UINT32_MAX
+#define NO_NODE  UINT32_MAX
+#define NO_BLOCK UINT32_MAX
 
 enum { WEIGHT_MAX = 1 << 20 };
 
@@ -123,42 +124,44 @@ static int connect(struct divider *divider)
 
 /* ---- blocks */
 
-/* A cell without triangles may have corners of some. It goes to the block of a cell beside it. */
-static uint32_t block_beside(const struct divider *divider, const uint32_t *labels, uint32_t cell)
+/* The cells around one without a block get its block. */
+static void name_cells_beside(const struct block_cells *out, uint32_t cell, uint32_t block)
 {
 	for (int z = -1; z <= 1; z++)
 		for (int y = -1; y <= 1; y++)
 			for (int x = -1; x <= 1; x++) {
 				const int step[3] = { x, y, z };
 				int64_t beside = cell;
-				uint32_t node;
 
 				for (int k = 0; k < 3; k++)
 					beside += step[k] * (int64_t)stride[k];
-				if (beside < 0 || beside >= BLOCK_CELLS)
-					continue;
-				node = divider->node_of[beside];
-				if (node != NO_NODE)
-					return labels[node];
+				if (beside >= 0 && beside < BLOCK_CELLS &&
+				    out->block_of_cell[beside] == NO_BLOCK)
+					out->block_of_cell[beside] = block;
 			}
-	return 0;
 }
 
 static int name_blocks(struct divider *divider, const uint32_t *labels)
 {
 	struct block_cells *out = divider->out;
+	const uint32_t *cell_of = divider->cell_of, nodes = divider->graph.node_count;
 
 	out->block_of_cell = malloc(BLOCK_CELLS * sizeof(*out->block_of_cell));
 	out->triangle_counts = calloc(out->block_count, sizeof(*out->triangle_counts));
 	if (!out->block_of_cell || !out->triangle_counts)
 		return -ENOMEM;
-	for (uint32_t cell = 0; cell < BLOCK_CELLS; cell++) {
-		uint32_t node = divider->node_of[cell];
-
-		out->block_of_cell[cell] =
-			node != NO_NODE ? labels[node] : block_beside(divider, labels, cell);
-		out->triangle_counts[out->block_of_cell[cell]] += divider->counts->triangles[cell];
+	for (uint32_t cell = 0; cell < BLOCK_CELLS; cell++)
+		out->block_of_cell[cell] = NO_BLOCK;
+	for (uint32_t i = 0; i < nodes; i++) {
+		out->block_of_cell[cell_of[i]] = labels[i];
+		out->triangle_counts[labels[i]] += divider->counts->triangles[cell_of[i]];
 	}
+	/* A cell without triangles may have corners of some: the first cell beside it decides. */
+	for (uint32_t i = 0; i < nodes; i++)
+		name_cells_beside(out, cell_of[i], labels[i]);
+	for (uint32_t cell = 0; cell < BLOCK_CELLS; cell++)
+		if (out->block_of_cell[cell] == NO_BLOCK)
+			out->block_of_cell[cell] = 0;
 	return 0;
 }
 
