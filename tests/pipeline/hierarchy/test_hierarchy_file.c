@@ -19,10 +19,12 @@
 #include "tests/pipeline/on_lattice.h"
 #include "tests/pipeline/shapes.h"
 
-#ifdef __SANITIZE_ADDRESS__ /* ten times slower; a cut that is wrong is as wrong without */
-enum { CUTS = 200 };
+/* Sizes of the scans. Sanitized, which is ten times slower, the smaller ones go through the same
+ * code. */
+#ifdef __SANITIZE_ADDRESS__
+enum { CUTS = 200, TEMPLE = 60, RELIEF = 80, TREE = 40, STONES = 1000 };
 #else
-enum { CUTS = 1000 };
+enum { CUTS = 1000, TEMPLE = 90, RELIEF = 120, TREE = 60, STONES = 2000 };
 #endif
 
 struct objects {
@@ -467,7 +469,7 @@ static void no_cut_across_blocks_has_a_crack(void **state)
 {
 	struct model model;
 	struct verdict verdict;
-	struct multires_stats stats = model_build(&model, shape_temple(90), &small_blocks);
+	struct multires_stats stats = model_build(&model, shape_temple(TEMPLE), &small_blocks);
 
 	(void)state;
 	CHECK(stats.level_count >= 4);
@@ -485,7 +487,7 @@ static void no_cut_across_blocks_of_an_open_scan_has_a_crack(void **state)
 	struct verdict verdict;
 
 	(void)state;
-	model_build(&model, shape_relief(120), &small_blocks);
+	model_build(&model, shape_relief(RELIEF), &small_blocks);
 	verdict = walk_cuts(&model, CUTS);
 	CHECK(verdict.shared > 100 * CUTS && verdict.open > 10 * CUTS);
 	CHECK(verdict.cracks == 0);
@@ -497,7 +499,7 @@ static void no_cut_of_the_temple_has_a_crack(void **state)
 {
 	struct model model;
 	struct verdict verdict;
-	struct multires_stats stats = model_build(&model, shape_temple(90), &small_groups);
+	struct multires_stats stats = model_build(&model, shape_temple(TEMPLE), &small_groups);
 
 	(void)state;
 	CHECK(stats.level_count >= 4);
@@ -514,7 +516,7 @@ static void no_cut_of_an_open_scan_has_a_crack(void **state)
 {
 	struct model model;
 	struct verdict verdict;
-	struct multires_stats stats = model_build(&model, shape_relief(120), &small_groups);
+	struct multires_stats stats = model_build(&model, shape_relief(RELIEF), &small_groups);
 
 	(void)state;
 	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);
@@ -566,7 +568,7 @@ static void no_cut_of_the_binary_tree_has_a_crack(void **state)
 	struct verdict verdict;
 
 	(void)state;
-	model_build(&model, shape_temple(60), &options);
+	model_build(&model, shape_temple(TREE), &options);
 	verdict = walk_cuts(&model, CUTS);
 	CHECK(verdict.shared > 100 * CUTS);
 	CHECK(verdict.cracks == 0);
@@ -578,7 +580,7 @@ static void loose_stones_become_few(void **state)
 {
 	struct model model;
 	struct verdict verdict;
-	struct multires_stats stats = model_build(&model, shape_stones(2000), &small_groups);
+	struct multires_stats stats = model_build(&model, shape_stones(STONES), &small_groups);
 
 	(void)state;
 	CHECK(stats.levels[stats.level_count - 1].triangle_count <= 600);

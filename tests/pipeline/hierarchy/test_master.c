@@ -51,16 +51,30 @@ static void home_finish(struct home *home)
 	CHECK(rmdir(home->folder) == 0); /* nothing else was left */
 }
 
+static struct home kept; /* which tests only read */
+
+static int make_kept(void **state)
+{
+	(void)state;
+	home_init(&kept);
+	return 0;
+}
+
+static int finish_kept(void **state)
+{
+	(void)state;
+	home_finish(&kept);
+	return 0;
+}
+
 static void gives_every_group_back(void **state)
 {
-	struct home home;
 	struct master *master;
 	struct buffer object;
 	uint64_t finest = 0;
 
 	(void)state;
-	home_init(&home);
-	CHECK(master_open(&master, home.master, &home.stamp) == 0);
+	CHECK(master_open(&master, kept.master, &kept.stamp) == 0);
 	buffer_init(&object, OBJECT_BYTES_MAX);
 	for (uint32_t g = 0; g < master->hierarchy.group_count; g++) {
 		const struct hierarchy_group *group = &master->hierarchy.groups[g];
@@ -85,28 +99,24 @@ static void gives_every_group_back(void **state)
 	CHECK(master_read_group(master, master->hierarchy.group_count, &object) == -EINVAL);
 	buffer_finish(&object);
 	master_destroy(master);
-	home_finish(&home);
 }
 
 static void knows_what_it_was_made_from(void **state)
 {
 	static const struct hash other_key = { { 8 } };
 	struct master_options other_options = options;
-	struct home home;
 	struct master *master;
 	struct hash other = master_stamp(other_key, &options);
 
 	(void)state;
-	home_init(&home);
-	CHECK(master_open(&master, home.master, &other) == -ESTALE && !master);
-	CHECK(master_open(&master, home.master, NULL) == 0);
+	CHECK(master_open(&master, kept.master, &other) == -ESTALE && !master);
+	CHECK(master_open(&master, kept.master, NULL) == 0);
 	master_destroy(master);
-	CHECK(master_open(&master, home.folder, NULL) == -ENOENT);
+	CHECK(master_open(&master, kept.folder, NULL) == -ENOENT);
 	other_options.multires.jobs = 7; /* makes the same bytes */
-	CHECK(hash_equal(home.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
+	CHECK(hash_equal(kept.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
 	other_options.multires.kind = MULTIRES_TREE;
-	CHECK(!hash_equal(home.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
-	home_finish(&home);
+	CHECK(!hash_equal(kept.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
 }
 
 static void refuses_damaged_files(void **state)
@@ -150,13 +160,11 @@ static uint64_t triangles_in(const struct hierarchy *hierarchy)
 static void publishes_no_more_than_the_share(void **state)
 {
 	static const double shares[] = { 0.1, 0.2, 0.5, 0.99 };
-	struct home home;
 	struct master *master;
 	struct master_cut cut;
 
 	(void)state;
-	home_init(&home);
-	CHECK(master_open(&master, home.master, NULL) == 0);
+	CHECK(master_open(&master, kept.master, NULL) == 0);
 	for (size_t i = 0; i < ARRAY_COUNT(shares); i++) {
 		double most = shares[i] * (double)master->source_triangles;
 
@@ -178,7 +186,6 @@ static void publishes_no_more_than_the_share(void **state)
 	CHECK(master_cut_create(&cut, master, 0.001) == -ERANGE);
 	CHECK(!cut.groups && !cut.hierarchy.groups);
 	master_destroy(master);
-	home_finish(&home);
 }
 
 static void a_new_build_leaves_nothing_of_the_old(void **state)
@@ -373,5 +380,5 @@ int main(void)
 		cmocka_unit_test(a_failure_is_told_where_a_master_is_there),
 	};
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, make_kept, finish_kept);
 }
