@@ -163,7 +163,8 @@ $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 # The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.
 ifeq ($(FUZZER),)
 $(BUILD)/obj/tests/%.o: OPT := $(patsubst -O%,-O0,$(OPT))
-$(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/tools/%.o: OPT := $(OPT)
+# But those of pictures compute what they compare with.
+$(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/tools/%.o $(BUILD)/obj/tests/render/%.o: OPT := $(OPT)
 endif
 $(BUILD)/tests/%: LDFLAGS += -fuse-ld=gold
 

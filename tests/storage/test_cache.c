@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -69,11 +70,11 @@ static struct cache *open_cache(uint64_t budget)
 /* Object n: its own bytes, from its number. Borrowed until the next call. */
 static struct bytes object(uint32_t n, size_t size)
 {
-	uint32_t x = n * 2654435761u + 12345;
+	uint64_t x = n * UINT64_C(2654435761) + 12345;
 
-	for (size_t i = 0; i < size; i++) {
-		x = x * 1664525 + 1013904223;
-		store[i] = (uint8_t)(x >> 24);
+	for (size_t i = 0; i < size; i += sizeof(x)) {
+		x = x * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+		memcpy(store + i, &x, size - i < sizeof(x) ? size - i : sizeof(x));
 	}
 	return (struct bytes){ store, size };
 }

@@ -57,15 +57,18 @@ static void little_colour(const float at[3], float rgb[3])
 /* false: sky. */
 static bool little_cast(const float from[3], const float direction[3], float rgb[3])
 {
-	float nearest = INFINITY;
+	float nearest = INFINITY, per_m[3];
+	for (int i = 0; i < 3; i++)
+		per_m[i] = 1 / (fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f);
 	for (int b = 0; b < LITTLE_BOXES; b++) {
 		float low = 0, high = INFINITY;
-		for (int i = 0; i < 3; i++) {
-			float d = fabsf(direction[i]) > 1e-9f ? direction[i] : 1e-9f;
-			float a = (little_boxes[b][0][i] - from[i]) / d;
-			float c = (little_boxes[b][1][i] - from[i]) / d;
-			low = fmaxf(low, fminf(a, c));
-			high = fminf(high, fmaxf(a, c));
+		/* Comparisons, because fminf and fmaxf are calls, and millions of rays are cast. */
+		for (int i = 0; i < 3 && low <= high; i++) {
+			float a = (little_boxes[b][0][i] - from[i]) * per_m[i];
+			float c = (little_boxes[b][1][i] - from[i]) * per_m[i];
+			float enters = a < c ? a : c, leaves = a < c ? c : a;
+			low = enters > low ? enters : low;
+			high = leaves < high ? leaves : high;
 		}
 		if (low <= high && low > 0 && low < nearest)
 			nearest = low;

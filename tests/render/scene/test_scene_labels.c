@@ -35,10 +35,13 @@ static const struct region ball = { .kind = REGION_SPHERE,
 				    .centre_m = { 4, -5, 1 },
 				    .radius_m = 2 };
 
+static struct little_release *release; /* made once for all tests */
+static struct hash root_without_labels;
+static uint32_t bytes_without_labels;
+
 struct stage {
 	struct headless *headless;
 	struct gl_target target;
-	struct little_release *release;
 	struct scene *scene;
 	struct scene_frame frame;
 };
@@ -46,13 +49,14 @@ struct stage {
 static void raise_stage(struct stage *stage, bool labels, bool spoiled)
 {
 	*stage = (struct stage){ 0 };
-	stage->release = little_release_make(2);
+	release->root = root_without_labels;
+	release->root_bytes = bytes_without_labels;
 	if (labels)
-		little_label(stage->release, "ball", &ball, spoiled);
+		little_label(release, "ball", &ball, spoiled);
 	CHECK(headless_create(&stage->headless) == 0);
 	CHECK(gl_target_create(&stage->target, WIDTH, HEIGHT) == 0);
 	CHECK(scene_create(&stage->scene, &usual) == 0);
-	CHECK(scene_open(stage->scene, stage->release->root, stage->release->root_bytes) == 0);
+	CHECK(scene_open(stage->scene, release->root, release->root_bytes) == 0);
 }
 
 static void strike_stage(struct stage *stage)
@@ -61,7 +65,6 @@ static void strike_stage(struct stage *stage)
 	gl_target_destroy(&stage->target);
 	CHECK(gl_check("the test") == 0);
 	headless_destroy(stage->headless);
-	little_release_free(stage->release);
 }
 
 static void draw(struct stage *stage)
@@ -79,7 +82,7 @@ static void settle_with(struct stage *stage, const struct camera *camera,
 		gl_target_bind(&stage->target);
 		CHECK(scene_dispatch(stage->scene) == 0);
 		scene_draw(stage->scene, camera, mark, &stage->frame);
-		little_release_serve(stage->release, stage->scene, 1);
+		little_release_serve(release, stage->scene, 1);
 		if (!stage->frame.settled)
 			continue;
 		if (seen)
@@ -142,7 +145,7 @@ static void labels_come_after_what_is_to_be_seen(void **state)
 		if (count > 0 && wants[0].priority == 1)
 			break;
 		CHECK(scene_part(stage.scene, &usual_camera, WIDTH / 2, HEIGHT / 2) == NULL);
-		little_release_serve(stage.release, stage.scene, 1);
+		little_release_serve(release, stage.scene, 1);
 		CHECK(!stage.frame.settled);
 	}
 	CHECK(stage.scene->geometry.loaded[0]);
@@ -195,7 +198,7 @@ static void labels_go_with_their_geometry(void **state)
 	scene_memory(stage.scene, &before);
 	labels = bytes_of_labels(&stage);
 	CHECK(labels > 0 && before.geometry_bytes > labels);
-	CHECK(scene_open(stage.scene, stage.release->root, stage.release->root_bytes) == 0);
+	CHECK(scene_open(stage.scene, release->root, release->root_bytes) == 0);
 	scene_memory(stage.scene, &after);
 	CHECK(after.geometry_bytes == 0);
 	settle(&stage);
@@ -468,6 +471,22 @@ static void no_mark_leaves_no_trace(void **state)
 	strike_stage(&stage);
 }
 
+static int make_release(void **state)
+{
+	(void)state;
+	release = little_release_make(2);
+	root_without_labels = release->root;
+	bytes_without_labels = release->root_bytes;
+	return 0;
+}
+
+static int free_release(void **state)
+{
+	(void)state;
+	little_release_free(release);
+	return 0;
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -484,5 +503,5 @@ int main(void)
 		cmocka_unit_test(no_mark_leaves_no_trace),
 	};
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, make_release, free_release);
 }
