@@ -126,7 +126,7 @@ qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC scre
 	@image/qemu.sh
 
 arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user
-	@bash tests/qemu/arm64.sh
+	@bash tests/qemu/arm64.sh all
 
 bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
