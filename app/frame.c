@@ -17,6 +17,16 @@ enum { STEP_MOST_MS = 50 };
 void frame_init(struct frame *frame, const struct frame_options *options)
 {
 	*frame = (struct frame){ .options = *options };
+	governor_init(
+		&frame->governor,
+		&(struct governor_bounds){ .scale_least = options->scale_least,
+					   .refresh_us = display_refresh_us(options->display) });
+	gpu_timer_init(&frame->timer);
+}
+
+void frame_finish(struct frame *frame)
+{
+	gpu_timer_finish(&frame->timer);
 }
 
 static struct exhibit *shown_by(const struct frame *frame)
@@ -56,9 +66,13 @@ static void draw_scene(struct frame *frame)
 		     (float)(root ? root->background[1] : 22) / 255,
 		     (float)(root ? root->background[2] : 20) / 255, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-	if (shown->scene && o->eye->ready)
+	if (shown->scene && o->eye->ready) {
+		const struct scene_effort effort = governor_effort(&frame->governor);
+
+		scene_spend(shown->scene, &effort);
 		scene_draw(shown->scene, &o->eye->camera,
 			   o->words ? marked_part(frame, &mark) : NULL, &shown->frame);
+	}
 }
 
 /* ---- the words over it */
@@ -101,6 +115,39 @@ static int draw_words(struct frame *frame, int64_t now_ms)
 	anchors_place(o->anchors, o->eye, o->viewport, &o->tools->now.section);
 	frame->words_move = overlay_update(overlay, now_ms);
 	return draw_layers(frame, overlay);
+}
+
+/* ---- its time */
+
+/* Where nothing is governed, the clock is not asked: a simulated one advances with each look. */
+static int64_t measured_us(const struct frame *frame)
+{
+	return governor_is_fixed(&frame->governor) ? 0 : clock_now_us();
+}
+
+void frame_note_shown(struct frame *frame)
+{
+	const int64_t target_us = governor_target_us(&frame->governor);
+	int64_t spent_us = frame->spent_us, late_us, gpu_us;
+
+	if (!frame->pending || !display_ready(frame->options.display))
+		return;
+	frame->pending = false;
+	/* A panel shows a frame at its next refresh, so only more than that tells anything. */
+	late_us = measured_us(frame) - frame->began_us;
+	gpu_us = gpu_timer_take_us(&frame->timer);
+	if (late_us > target_us * 3 / 2 && late_us > spent_us)
+		spent_us = late_us;
+	governor_note(&frame->governor, gpu_us > spent_us ? gpu_us : spent_us);
+}
+
+int frame_period_ms(const struct frame *frame)
+{
+	const bool moved = shown_by(frame)->frame.moved;
+
+	return (int)((moved ? governor_target_us(&frame->governor)
+			    : frame->governor.bounds.refresh_us) /
+		     1000);
 }
 
 /* ---- after it */
@@ -176,17 +223,23 @@ int frame_draw(struct frame *frame)
 	if (context_is_lost())
 		return -ENOTRECOVERABLE;
 	o->redraw->wanted = false;
+	frame->began_us = measured_us(frame);
 	move_eye(frame, now_ms);
 	frame->last_ms = now_ms;
 	tools_show(o->tools);
 	back_show(o->back);
 	sessions_warm(o->sessions);
+	gpu_timer_begin(&frame->timer);
 	rc = draw(frame, now_ms);
+	gpu_timer_end(&frame->timer);
 	frame->work_us = (uint32_t)(clock_thread_us() - began_us);
 	frame->count++;
 	frame->late_count += frame->work_us > FRAME_BUDGET_US;
 	if (rc == 0)
 		rc = display_present(o->display);
+	frame->spent_us = measured_us(frame) - frame->began_us;
+	frame->pending = shown_by(frame)->frame.moved;
+	frame_note_shown(frame);
 	log_first_picture(frame);
 	sessions_keep_first(o->sessions, o->trial->pictured_ms);
 	sessions_ask(o->sessions);

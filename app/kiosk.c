@@ -16,10 +16,7 @@
 #include "base/service.h"
 #include "ui/theme.h"
 
-enum {
-	FRAME_MS = 16, /* frame period if no panel sets the pace */
-	LOST_LEAST_MS = 5000,
-};
+enum { LOST_LEAST_MS = 5000 };
 
 /* ---- the event that another release is shown */
 
@@ -280,23 +277,24 @@ static void connect_panel(struct kiosk *kiosk)
 					    .tours = &kiosk->tours,
 					    .viewport = &kiosk->viewport,
 					    .redraw = &kiosk->redraw });
-	frame_init(&kiosk->frame, &(struct frame_options){ .started_ms = kiosk->started_ms,
-							   .views = options->views_path,
-							   .words = options->capture_overlay ||
-								    !options->views_path,
-							   .display = kiosk->display,
-							   .quads = kiosk->quads,
-							   .viewport = &kiosk->viewport,
-							   .redraw = &kiosk->redraw,
-							   .eye = &kiosk->eye,
-							   .anchors = &kiosk->anchors,
-							   .sessions = &kiosk->releases.sessions,
-							   .trial = &kiosk->releases.trial,
-							   .visitor = &kiosk->visitor,
-							   .tours = &kiosk->tours,
-							   .tools = &kiosk->tools,
-							   .back = &kiosk->back,
-							   .setup_page = &kiosk->setup_page });
+	frame_init(&kiosk->frame, &(struct frame_options){
+					  .started_ms = kiosk->started_ms,
+					  .views = options->views_path,
+					  .words = options->capture_overlay || !options->views_path,
+					  .scale_least = kiosk->profile.scale_least,
+					  .display = kiosk->display,
+					  .quads = kiosk->quads,
+					  .viewport = &kiosk->viewport,
+					  .redraw = &kiosk->redraw,
+					  .eye = &kiosk->eye,
+					  .anchors = &kiosk->anchors,
+					  .sessions = &kiosk->releases.sessions,
+					  .trial = &kiosk->releases.trial,
+					  .visitor = &kiosk->visitor,
+					  .tours = &kiosk->tours,
+					  .tools = &kiosk->tools,
+					  .back = &kiosk->back,
+					  .setup_page = &kiosk->setup_page });
 }
 
 /* ---- start: the loop */
@@ -313,7 +311,10 @@ static int dispatch_display(void *data)
 {
 	struct kiosk *kiosk = data;
 
-	return display_dispatch(kiosk->display);
+	const int rc = display_dispatch(kiosk->display);
+
+	frame_note_shown(&kiosk->frame);
+	return rc;
 }
 
 static int dispatch_net(void *data)
@@ -453,12 +454,16 @@ static int frame_wait(void *data)
 {
 	const struct kiosk *kiosk = data;
 	const int64_t since_ms = clock_now_ms() - kiosk->frame.last_ms;
+	const int panel_ms = (int)(display_refresh_us(kiosk->display) / 1000);
+	const int period_ms = frame_period_ms(&kiosk->frame);
 
 	if (!kiosk->redraw.wanted || !display_ready(kiosk->display))
 		return -1;
-	if (display_kind(kiosk->display) == DISPLAY_DRM || since_ms >= FRAME_MS)
-		return 0; /* a panel sets the pace by being ready */
-	return (int)(FRAME_MS - since_ms);
+	/* A panel sets the pace by being ready; only at a divisor of its rate refreshes are let
+	 * pass. */
+	if (panel_ms > 0 && period_ms < 2 * panel_ms)
+		return 0;
+	return since_ms >= period_ms ? 0 : (int)(period_ms - since_ms);
 }
 
 static int draw_captured(struct kiosk *kiosk)
@@ -589,6 +594,7 @@ void kiosk_stop(struct kiosk *kiosk)
 	setup_page_finish(&kiosk->setup_page);
 	touch_destroy(kiosk->touch);
 	quads_destroy(kiosk->quads);
+	frame_finish(&kiosk->frame);
 	display_destroy(kiosk->display);
 	provision_finish(&kiosk->provision);
 }

@@ -19,6 +19,7 @@ struct profile {
 	uint32_t triangles;    /* most triangles per frame */
 	uint32_t texture_mib;  /* tiles and depth maps */
 	uint32_t geometry_mib; /* patches, on the GPU and in memory */
+	float scale_least;     /* of the picture's sides while the eye moves; 1: full size */
 	float error_px;        /* error on the screen above which a finer patch is wanted */
 	float price_px_per_kb; /* pixels that a fetched kilobyte must improve */
 	uint32_t upload_us;    /* time for uploads per frame */

@@ -116,6 +116,11 @@ int display_width_mm(const struct display *display)
 	return display->width_mm;
 }
 
+uint32_t display_refresh_us(const struct display *display)
+{
+	return display->refresh_us;
+}
+
 int display_fd(const struct display *display)
 {
 	return display->fd;

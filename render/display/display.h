@@ -52,6 +52,9 @@ int display_height_px(const struct display *display);
 /* Returns the width of the visible area in millimetres, from the panel's EDID; 0: not known. */
 int display_width_mm(const struct display *display);
 
+/* Returns the time between two refreshes of the panel in microseconds; 0: not known. */
+uint32_t display_refresh_us(const struct display *display);
+
 /* Returns a descriptor, borrowed, that is readable when display_dispatch has work: a flip
  * completed, or the window has events. -1: there is none. */
 int display_fd(const struct display *display);

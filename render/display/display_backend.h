@@ -3,6 +3,7 @@
 #define GOPURA_RENDER_DISPLAY_DISPLAY_BACKEND_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct display;
 struct display_options;
@@ -27,6 +28,7 @@ struct display {
 	const struct display_backend *backend;
 	void *state; /* the backend's own */
 	int width_px, height_px, width_mm;
+	uint32_t refresh_us; /* 0: not known */
 	int fd;
 	bool asleep, woken;
 };

@@ -121,6 +121,8 @@ static int create(struct display *display, const struct display_options *options
 	display->width_px = drm->panel.card.mode.hdisplay;
 	display->height_px = drm->panel.card.mode.vdisplay;
 	display->width_mm = drm->panel.card.width_mm;
+	if (drm->panel.card.mode.vrefresh > 0)
+		display->refresh_us = 1000000 / drm->panel.card.mode.vrefresh;
 	display->fd = drm_panel_fd(&drm->panel);
 	return 0;
 }

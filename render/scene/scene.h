@@ -31,6 +31,16 @@ struct scene_options {
 	uint32_t worker_count;     /* 0: scene_give decodes on the calling thread */
 };
 
+/* What a frame costs while the eye moves (render/scene/governor.h chooses it). At rest everything
+ * is drawn at full effort. */
+struct scene_effort {
+	float scale;   /* of the sides of the picture that is drawn and then enlarged; 1: none is */
+	float coarser; /* factor of patch_error_px for what is shown; 1: none */
+	uint32_t faces; /* most that colour a piece */
+	float budget;   /* share of the time for uploads and planning, 0 to 1 */
+};
+extern const struct scene_effort scene_effort_full;
+
 struct scene;
 
 /* Creates the scene and starts the workers; needs a current GL context, as drawing does. options
@@ -63,6 +73,7 @@ must_check int scene_dispatch(struct scene *scene);
 size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most);
 
 struct scene_frame {
+	bool moved;   /* the view differs from that of the last frame */
 	bool moving;  /* a fade is in progress or an upload waits: draw again soon */
 	bool settled; /* nothing is wanted, decoding or fading, and accumulation is complete */
 	uint32_t triangles, patches, tiles_uploaded, depth_faces_drawn;
@@ -82,6 +93,9 @@ struct scene_mark {
  * be NULL. It is borrowed for the call. */
 void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
 		struct scene_frame *out);
+
+/* Sets the effort from the next frame on; initially it is full. *effort is copied. */
+void scene_spend(struct scene *scene, const struct scene_effort *effort);
 
 /* The visitor's tools. They apply to pictures and to rays; initially both are off. */
 struct scene_tools {

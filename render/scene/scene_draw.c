@@ -18,6 +18,7 @@ enum {
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	SEASON_US = 1000000,         /* longest season of the tiles while the eye moves */
 	SHARE_PX_MAX = 320,          /* width of the picture from which image_share is counted */
+	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
 /* ---- depth of faces */
@@ -186,6 +187,18 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 	draw_pieces(scene, &frame);
 }
 
+/* Draws only the depths of the surface. */
+static void draw_surface_depth(struct scene *scene, const struct view *view)
+{
+	const struct surface_frame frame = { .view = view,
+					     .root = &scene->root,
+					     .depth = &scene->depth,
+					     .repository = &scene->repository };
+	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+	draw_pieces(scene, &frame);
+	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 /* Returns the share of the model's pixels that images colour, from a small picture. */
 static float count_share(struct scene *scene)
 {
@@ -250,7 +263,9 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	float passed_ms =
 		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
 	scene->frame_us = now_us;
-	scene_upload(scene, now_us + scene->options.upload_budget_us, out);
+	const int64_t upload_us =
+		(int64_t)((float)scene->options.upload_budget_us * scene->used.budget);
+	scene_upload(scene, now_us + upload_us, out);
 	scene_update_cut(scene, passed_ms);
 	scene_list_pieces(scene);
 	bool counted = scene_take_visibility(scene, moved);
@@ -261,13 +276,48 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		return;
 	}
 	keep_season(scene, moved, now_us);
-	scene_plan_pieces(scene, moved ? PLAN_BUDGET_US : PLAN_BUDGET_REST_US);
+	scene_plan_pieces(scene, moved ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
+				       : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, passed_ms);
 	if (moved && counted)
 		/* beside the picture one further pass per frame is enough */
 		scene->depth_is_stale = true;
 	else
-		scene_draw_depth(scene, clock_now_us() + scene->options.upload_budget_us, out);
+		scene_draw_depth(scene, clock_now_us() + upload_us, out);
+}
+
+/* Draws the mask of the marked part at full size, from the depths of the surface alone. */
+static void mask_alone(struct scene *scene)
+{
+	const struct view *view = &scene->view;
+	const struct gl_target *frame = &scene->accumulation.frame;
+	outline_clear(&scene->outline);
+	if (!scene->is_marked ||
+	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0)
+		return;
+	gl_target_bind(frame);
+	begin_picture(scene);
+	draw_surface_depth(scene, view);
+	scene_draw_mask(scene, view, frame);
+}
+
+/* Returns whether the picture was drawn smaller and enlarged. The line around the marked part is as
+ * wide and as sharp as ever. */
+static bool show_enlarged(struct scene *scene, const struct gl_place *place)
+{
+	const struct view *view = &scene->view;
+	struct view small;
+	if (scene->used.scale >= 1)
+		return false;
+	enlargement_view(&small, view, scene->used.scale);
+	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
+		return false;
+	begin_picture(scene);
+	draw_picture(scene, &small, false);
+	mask_alone(scene);
+	enlargement_end(&scene->enlargement, place, view->width_px, view->height_px);
+	outline_draw(&scene->outline, place, view->width_px, view->height_px);
+	return true;
 }
 
 /* The mask of the marked part needs the depth of the picture, so a moving one is drawn aside. */
@@ -311,6 +361,8 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 	const struct view *view = &scene->view;
 	if (moved)
 		accumulation_break(&scene->accumulation);
+	if (show_enlarged(scene, place))
+		return;
 	const bool draws = changed || !accumulation_is_done(&scene->accumulation);
 	if (moved || accumulation_prepare(&scene->accumulation, view->width_px, view->height_px,
 					  draws) < 0) {
@@ -320,6 +372,11 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 	if (draws)
 		draw_jittered(scene, changed);
 	accumulation_add(&scene->accumulation, place, changed);
+}
+
+void scene_spend(struct scene *scene, const struct scene_effort *effort)
+{
+	scene->effort = *effort;
 }
 
 static void draw_nothing(const struct camera *camera)
@@ -347,6 +404,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	section_cut(&scene->tools.section, view.eye_m, view.cut);
 	bool moved = view_changed(scene, &view) || scene->tools_moved;
 	scene->tools_moved = false;
+	scene->still_frames = moved ? 0 : scene->still_frames + 1;
+	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, out);
@@ -361,6 +420,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	/* Wanted objects may never arrive, so memory is freed without waiting for them. */
 	bool still = !moved && !changed && accumulation_is_done(&scene->accumulation);
 	out->settled = still && scene->want_count == 0;
+	out->moved = moved;
 	out->moving = is_busy(scene) || moved || !accumulation_is_done(&scene->accumulation);
 	if (!out->settled)
 		scene->image_share = -1;
@@ -369,6 +429,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	out->image_share = scene->image_share;
 	if (!still)
 		return;
+	enlargement_let_go(&scene->enlargement);
 	outline_let_go(&scene->outline);
 	accumulation_let_go(&scene->accumulation, &place);
 	gl_place_bind(&place, camera->width_px, camera->height_px);

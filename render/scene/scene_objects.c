@@ -63,6 +63,10 @@ static int make_atlases(struct scene *scene)
 
 /* ---- life */
 
+const struct scene_effort scene_effort_full = {
+	.scale = 1, .coarser = 1, .faces = PLAN_ENTRIES, .budget = 1
+};
+
 int scene_create(struct scene **out, const struct scene_options *options)
 {
 	struct scene *scene = calloc(1, sizeof(*scene));
@@ -71,6 +75,7 @@ int scene_create(struct scene **out, const struct scene_options *options)
 		return -ENOMEM;
 	scene->options = *options;
 	scene->image_share = -1;
+	scene->effort = scene->used = scene_effort_full;
 	int rc = pool_create(&scene->pool, options->worker_count);
 	if (rc == 0)
 		rc = make_atlases(scene);
@@ -137,6 +142,7 @@ void scene_destroy(struct scene *scene)
 	part_renderer_finish(&scene->part);
 	outline_finish(&scene->outline);
 	accumulation_finish(&scene->accumulation);
+	enlargement_finish(&scene->enlargement);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);
 	depth_finish(&scene->depth);

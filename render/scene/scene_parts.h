@@ -6,6 +6,7 @@
 #include "format/hierarchy.h"
 #include "render/lumigraph/accumulation.h"
 #include "render/lumigraph/depth.h"
+#include "render/lumigraph/enlargement.h"
 #include "render/lumigraph/outline.h"
 #include "render/lumigraph/surface.h"
 #include "render/lumigraph/tiles.h"
@@ -58,6 +59,7 @@ struct scene {
 	struct part_renderer part;
 	struct outline outline;
 	struct accumulation accumulation;
+	struct enlargement enlargement;
 	struct visibility visibility;
 
 	uint32_t refused;       /* number of objects that could not be used */
@@ -91,6 +93,9 @@ struct scene {
 	uint32_t *group_priority; /* used while the wants are listed; owned */
 	struct repository repository;
 
+	struct scene_effort effort; /* while the eye moves */
+	struct scene_effort used;   /* in this frame */
+	uint32_t still_frames;      /* since the eye last moved */
 	struct scene_tools tools;
 	bool tools_moved; /* changed since the last frame */
 	/* The current frame. */

@@ -71,8 +71,9 @@ static struct cut_options cut_options_of(const struct scene *scene)
 
 void scene_update_cut(struct scene *scene, float passed_ms)
 {
-	const struct cut_options options = cut_options_of(scene);
+	struct cut_options options = cut_options_of(scene);
 	struct geometry *geometry = &scene->geometry;
+	options.error_px *= scene->used.coarser;
 	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->changes;
@@ -262,9 +263,16 @@ void scene_plan_pieces(struct scene *scene, int64_t budget_us)
 
 /* ---- fades */
 
-static bool blend_is_chosen(const struct plan_choice *choice, struct blend *blend)
+/* Returns how many of the entries, which are in the order of what they add, may be used. */
+static uint32_t entries_used(const struct scene *scene, const struct plan_choice *choice)
 {
-	for (uint32_t i = 0; i < choice->entry_count; i++) {
+	const uint32_t most = scene->used.faces;
+	return choice->entry_count < most ? choice->entry_count : most;
+}
+
+static bool blend_is_chosen(const struct plan_choice *choice, uint32_t entries, struct blend *blend)
+{
+	for (uint32_t i = 0; i < entries; i++) {
 		if (choice->entry[i].face != blend->face)
 			continue;
 		blend->half_px = choice->entry[i].half_px;
@@ -299,6 +307,7 @@ static void take_up(struct piece_state *state, const struct plan_entry *entry)
 /* Returns whether any weight still changes. */
 static bool fade_piece(struct scene *scene, struct piece_state *state, float step)
 {
+	const uint32_t entries = entries_used(scene, &state->choice);
 	bool moving = false;
 	for (int i = 0; i < PLAN_ENTRIES; i++) {
 		struct blend *blend = &state->blend[i];
@@ -311,7 +320,7 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 			moving = true;
 			continue;
 		}
-		bool chosen = blend_is_chosen(&state->choice, blend);
+		bool chosen = blend_is_chosen(&state->choice, entries, blend);
 		if (chosen && !depth_ready(&scene->depth, slot, blend->face))
 			continue; /* its depths are not drawn yet */
 		float left = blend->target - blend->weight;
@@ -320,7 +329,7 @@ static bool fade_piece(struct scene *scene, struct piece_state *state, float ste
 		if (!chosen && blend->weight <= 0)
 			*blend = (struct blend){ 0 };
 	}
-	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
+	for (uint32_t i = 0; i < entries; i++) {
 		face_key face = state->choice.entry[i].face;
 		if (is_blended(state, face) || tiles_face_slot(&scene->tiles, face) < 0)
 			continue;
@@ -348,7 +357,8 @@ static void touch_piece(struct scene *scene, const struct piece *piece,
 /* Returns whether every face chosen for the piece has reached its weight. */
 static bool is_dressed(const struct scene *scene, const struct piece_state *state)
 {
-	for (uint32_t i = 0; i < state->choice.entry_count; i++) {
+	const uint32_t entries = entries_used(scene, &state->choice);
+	for (uint32_t i = 0; i < entries; i++) {
 		const struct plan_entry *entry = &state->choice.entry[i];
 		bool held = tiles_face_slot(&scene->tiles, entry->face) < 0;
 		for (int k = 0; k < PLAN_ENTRIES; k++)

@@ -3,10 +3,11 @@
  * Everything in one run, each frame finished before the clock stops. And how much of the picture
  * changes when the eye crosses the border between two cells of the grid by a millimetre a frame.
  *
- *   bench_frame RELEASE VIEWS [FRAMES [frames]]
+ *   bench_frame RELEASE VIEWS [FRAMES [frames|levels]]
  *
  * Prints JSON: medians over the views of VIEWS (eye x y z, target x y z, vertical field of view in
- * degrees), for 1280 x 720 and 1920 x 1080. "frames": of the Lumigraph alone, and no crossing. */
+ * degrees), for 1280 x 720 and 1920 x 1080. "frames": of the Lumigraph alone, and no crossing.
+ * "levels": instead, at 1920 x 1080, what a frame costs at levels of the governor. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@
 
 #include "app/settings/scene_settings.h"
 #include "base/clock.h"
+#include "render/scene/governor.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
@@ -28,6 +30,7 @@ struct bench {
 	struct scene_frame frame; /* drawn last */
 	uint32_t views, frames, unsettled;
 	bool frames_alone;
+	struct governor governor; /* its level is set, not governed: loads of the machine differ */
 };
 
 /* ---- the measures: the same triangles, and a quad, with one texture */
@@ -250,7 +253,10 @@ static void draw_moving(struct bench *bench)
 {
 	bench->moving.eye_m[0] += 0.001f;
 	bench->moving.target_m[0] += 0.001f;
+	const struct scene_effort effort = governor_effort(&bench->governor);
+
 	clear(bench);
+	scene_spend(bench->stage.scene, &effort);
 	scene_draw(bench->stage.scene, &bench->moving, NULL, &bench->frame);
 }
 
@@ -328,9 +334,36 @@ static void measure(struct bench *bench, const struct stage_options *options, bo
 	stage_close(&bench->stage);
 }
 
+/* At each level all views, the measure beside them. */
+static void measure_levels(struct bench *bench, const struct stage_options *options)
+{
+	static const float levels[] = { 1, 0.8f, 0.6f, 0.4f, 0.3f, 0.2f, 0.1f, 0 };
+
+	stage_open(&bench->stage, options);
+	make_programs(bench);
+	for (size_t i = 0; i < ARRAY_COUNT(levels); i++) {
+		struct scene_effort effort;
+		struct cost cost;
+
+		bench->governor.level = levels[i];
+		effort = governor_effort(&bench->governor);
+		cost = mode_cost(bench, SCENE_LUMIGRAPH);
+		printf(" {\"level\": %.1f, \"scale\": %.2f, \"coarser\": %.2f, \"faces\": %u, "
+		       "\"plain_cpu_ms\": %.1f, \"lumigraph_cpu_ms\": %.1f, "
+		       "\"cpu_per_plain\": %.2f, \"lumigraph_per_plain\": %.2f}%s\n",
+		       (double)levels[i], (double)effort.scale, (double)effort.coarser,
+		       effort.faces, cost.plain.cpu_ms, cost.scene.cpu_ms,
+		       cost.scene.cpu_ms / cost.plain.cpu_ms, cost.scene.ms / cost.plain.ms,
+		       i + 1 < ARRAY_COUNT(levels) ? "," : "");
+		fflush(stdout);
+	}
+	stage_close(&bench->stage);
+}
+
 int main(int argc, char **argv)
 {
 	static struct bench bench;
+	bool levels;
 	unsigned long frames = argc > 3 ? strtoul(argv[3], NULL, 10) : 60;
 
 	if (argc < 3 || frames < 1 || frames > FRAMES_MAX) {
@@ -346,13 +379,22 @@ int main(int argc, char **argv)
 	};
 	options.scene.upload_budget_us = 100000; /* warm soon; then nothing is left to upload */
 	bench.frames = (uint32_t)frames;
+	levels = argc > 4 && strcmp(argv[4], "levels") == 0;
 	bench.frames_alone = argc > 4;
 	bench.views = stage_read_views(bench.cameras, VIEWS_MAX, argv[2], 0, 0);
 	printf("{\"views\": %u, \"frames\": %u, \"sizes\": [\n", bench.views, bench.frames);
-	measure(&bench, &options, false);
-	options.width_px = 1920;
-	options.height_px = 1080;
-	measure(&bench, &options, true);
+	governor_init(&bench.governor,
+		      &(struct governor_bounds){ .scale_least = profile_default.scale_least });
+	if (levels) {
+		options.width_px = 1920;
+		options.height_px = 1080;
+		measure_levels(&bench, &options);
+	} else {
+		measure(&bench, &options, false);
+		options.width_px = 1920;
+		options.height_px = 1080;
+		measure(&bench, &options, true);
+	}
 	printf("], \"unsettled\": %u}\n", bench.unsettled);
 	return 0;
 }

@@ -3,7 +3,10 @@
  * frame costs while tiles arrive, and whether anything pops.
  *
  *   bench_motion RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--fps N] [--link MBIT]
- *                [--latency MS] [--price PX] [--fault none|patch|tile|sample] [--mode M]
+ *                [--latency MS] [--price PX] [--level L] [--fault none|patch|tile|sample] [--mode
+ * M]
+ *
+ * --level is of the governor while the eye moves (1, the default: full effort).
  *
  * Writes OUT/views.txt first: the frames that are judged, a line each, for `gopura-content render
  * --views`; without --truth and --fault that is all. Then OUT/view-NNNN.png of those and
@@ -23,6 +26,7 @@
 #include "app/settings/scene_settings.h"
 #include "base/clock.h"
 #include "geometry/vec.h"
+#include "render/scene/governor.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
@@ -53,6 +57,7 @@ struct bench {
 	const char *presence, *out, *truth;
 	struct stage_options options;
 	struct stage stage;
+	float level;
 	bool tries_fault;
 	enum harm harm;
 	struct leg leg[LEGS_MAX];
@@ -453,6 +458,8 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		bench->options.bits_a_second = (uint64_t)(strtod(value, NULL) * 1e6);
 	else if (!strcmp(name, "--latency"))
 		bench->options.latency_us = (uint32_t)(strtod(value, NULL) * 1000);
+	else if (!strcmp(name, "--level"))
+		bench->level = strtof(value, NULL);
 	else if (!strcmp(name, "--price"))
 		bench->options.scene.price_px_per_kb = strtof(value, NULL);
 	else if (!strcmp(name, "--mode"))
@@ -467,6 +474,18 @@ static void read_option(struct bench *bench, const char *name, const char *value
 							 : HARM_NONE;
 	} else
 		stage_die(name, -EINVAL);
+}
+
+static void spend(struct bench *bench)
+{
+	struct governor governor;
+	struct scene_effort effort;
+
+	governor_init(&governor,
+		      &(struct governor_bounds){ .scale_least = profile_default.scale_least });
+	governor.level = bench->level;
+	effort = governor_effort(&governor);
+	scene_spend(bench->stage.scene, &effort);
 }
 
 int main(int argc, char **argv)
@@ -485,6 +504,7 @@ int main(int argc, char **argv)
 	bench.presence = argv[2];
 	bench.out = argv[3];
 	bench.fps = 30;
+	bench.level = 1;
 	for (int i = 4; i + 1 < argc; i += 2)
 		read_option(&bench, argv[i], argv[i + 1]);
 	plan_visit(&bench);
@@ -493,6 +513,7 @@ int main(int argc, char **argv)
 	/* A frame is drawn twice while the eye moves, so each takes half of its time. */
 	bench.options.frame_us = 500000 / bench.fps;
 	stage_open(&bench.stage, &bench.options);
+	spend(&bench);
 	for (uint32_t i = 0; i < bench.moment_count; i++) {
 		struct scene_frame frame;
 

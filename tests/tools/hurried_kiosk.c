@@ -442,6 +442,7 @@ int main(int argc, char **argv)
 	if (kiosk.options.shots_path)
 		read_shots(kiosk.options.shots_path);
 	rc = kiosk_start(&kiosk);
+	kiosk.frame.governor.bounds.scale_least = 1; /* its clock tells nothing about a frame */
 	if (rc == 0)
 		rc = run();
 	printf("{\"touches\": %llu, \"frames\": %llu, \"seconds\": %.1f,\n"

@@ -370,6 +370,128 @@ static void a_millimetre_changes_next_to_nothing(void **state)
 	strike_stage(&stage);
 }
 
+/* Draws one frame from a camera that differs a little each time, as a moving eye. */
+static void draw_moving(struct stage *stage, float scale, const struct region *region,
+			uint8_t *rgba)
+{
+	static float moved_m;
+	struct scene_effort effort = scene_effort_full;
+	struct camera camera = usual_camera;
+	effort.scale = scale;
+	moved_m += 1e-5f;
+	camera.eye_m[0] += moved_m;
+	scene_spend(stage->scene, &effort);
+	draw(stage, &camera, region);
+	CHECK(stage->frame.moved);
+	CHECK(gl_target_read(&stage->target, rgba) == 0);
+}
+
+/* Writes the mean of the colours and the centre of what is covered. */
+static void summarise(const uint8_t *rgba, double colour[3], double centre_px[2])
+{
+	double covered = 0;
+	memset(colour, 0, 3 * sizeof(*colour));
+	centre_px[0] = centre_px[1] = 0;
+	for (int i = 0; i < WIDTH * HEIGHT; i++) {
+		for (int k = 0; k < 3; k++)
+			colour[k] += rgba[4 * i + k] / (double)(WIDTH * HEIGHT);
+		covered += rgba[4 * i + 3];
+		centre_px[0] += rgba[4 * i + 3] * (double)(i % WIDTH);
+		centre_px[1] += rgba[4 * i + 3] * (double)(i / WIDTH);
+	}
+	centre_px[0] /= covered;
+	centre_px[1] /= covered;
+}
+
+static double difference(const uint8_t *a, const uint8_t *b)
+{
+	double sum = 0;
+	for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
+		sum += (a[i] - b[i]) * (a[i] - b[i]);
+	return sum / (4.0 * WIDTH * HEIGHT);
+}
+
+/* At several scales, of which most do not divide the size. */
+static void an_enlarged_picture_has_the_same_colours_at_the_same_place(void **state)
+{
+	static const float scales[] = { 0.9f, 0.75f, 0.6f, 0.5f };
+	uint8_t *full = malloc(4 * WIDTH * HEIGHT), *small = malloc(4 * WIDTH * HEIGHT);
+	double colour[2][3], centre_px[2][2];
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	draw_moving(&stage, 1, NULL, full);
+	summarise(full, colour[0], centre_px[0]);
+	for (int i = 0; i < 4; i++) {
+		draw_moving(&stage, scales[i], NULL, small);
+		keep_picture("enlarged", small);
+		summarise(small, colour[1], centre_px[1]);
+		CHECK(difference(full, small) > 1); /* it is another picture */
+		for (int k = 0; k < 3; k++)
+			CHECK(fabs(colour[0][k] - colour[1][k]) < 0.5);
+		for (int k = 0; k < 2; k++)
+			CHECK(fabs(centre_px[0][k] - centre_px[1][k]) < 0.25);
+	}
+	free(full);
+	free(small);
+	strike_stage(&stage);
+}
+
+static void a_picture_is_sharp_in_the_second_frame_of_a_stop(void **state)
+{
+	uint8_t *full = malloc(4 * WIDTH * HEIGHT), *small = malloc(4 * WIDTH * HEIGHT);
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	draw_moving(&stage, 1, NULL, full);
+	draw_moving(&stage, 0.5f, NULL, small);
+	const double soft = difference(full, small);
+	draw(&stage, &usual_camera, NULL); /* back by a hundredth of a millimetre, and stays */
+	draw(&stage, &usual_camera, NULL);
+	draw(&stage, &usual_camera, NULL);
+	CHECK(!stage.frame.moved);
+	CHECK(gl_target_read(&stage.target, small) == 0);
+	CHECK(difference(full, small) < soft / 2); /* shifted within its pixel, but sharp */
+	free(full);
+	free(small);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(!stage.scene->enlargement.small.framebuffer); /* at rest it takes no memory */
+	strike_stage(&stage);
+}
+
+/* Pixels of the line's own colour, which enlarging would mix with its surroundings. */
+static uint32_t line_pixels(const uint8_t *rgba)
+{
+	uint32_t count = 0;
+	for (int i = 0; i < WIDTH * HEIGHT; i++, rgba += 4)
+		count += rgba[0] > 252 && abs(rgba[1] - 199) < 3 && abs(rgba[2] - 64) < 3;
+	return count;
+}
+
+/* Over an enlarged picture, where the surface itself is soft. */
+static void a_mark_is_drawn_at_full_size(void **state)
+{
+	const struct region pillar = { .kind = REGION_BOX,
+				       .centre_m = { 4, -4, 2.2f },
+				       .half_m = { 1.2f, 1.2f, 1.7f } };
+	uint8_t *full = malloc(4 * WIDTH * HEIGHT), *small = malloc(4 * WIDTH * HEIGHT);
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	draw_moving(&stage, 1, &pillar, full);
+	draw_moving(&stage, 0.5f, &pillar, small);
+	keep_picture("enlarged-mark", small);
+	CHECK(difference(full, small) > 1);
+	CHECK(line_pixels(full) > 150);
+	CHECK(abs((int)line_pixels(full) - (int)line_pixels(small)) <= 5);
+	free(full);
+	free(small);
+	strike_stage(&stage);
+}
+
 static void a_mark_draws_its_border_and_leaves_the_rest(void **state)
 {
 	struct stage stage;
@@ -454,6 +576,9 @@ int main(int argc, char **argv)
 		cmocka_unit_test(rays_meet_what_is_shown),
 		cmocka_unit_test(backs_are_drawn_where_they_show),
 		cmocka_unit_test(a_millimetre_changes_next_to_nothing),
+		cmocka_unit_test(an_enlarged_picture_has_the_same_colours_at_the_same_place),
+		cmocka_unit_test(a_picture_is_sharp_in_the_second_frame_of_a_stop),
+		cmocka_unit_test(a_mark_is_drawn_at_full_size),
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
 		cmocka_unit_test(regions_know_what_is_in_them),
 	};

@@ -1,0 +1,142 @@
+/* Integrates the load of frames into a level, and maps the level to an effort. */
+#include "render/scene/governor.h"
+
+#include <math.h>
+
+#include "render/plan/plan.h"
+
+enum {
+	REFRESH_US = 16667,
+	SLOWEST_US = 34000,         /* the longest frame it aims at: 30 a second */
+	PATIENCE_LEAST_US = 400000, /* quiet time before the level rises */
+	PATIENCE_MOST_US = 6400000,
+	RELAPSE_US = 2000000, /* a fall so soon after a rise means that the rise was too much */
+	FORGET_US = 8000000,  /* without a fall, patience becomes shorter again */
+};
+
+/* A load is the time of a frame as a share of its target. Between the two nothing changes. */
+static const float load_low = 0.85f, load_high = 1.0f, load_goal = 0.9f;
+/* The level's change for each unit of load too much, its largest fall, and its rise. A rise adds at
+ * most an eighth to a load, so it never leads from below the dead band to above it. */
+static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
+/* Below this level, or with such a load, a lower rate of frames harms less than a still smaller
+ * picture. */
+static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
+/* Where the parts of the effort begin to give way: the scale first. */
+static const float level_triangles = 0.4f, level_faces = 0.2f, level_budget = 0.1f;
+/* At the lowest level: how much coarser patches are, and the share of the time budgets. */
+static const float coarser_most = 2, budget_least = 0.25f;
+enum { FACES_LEAST = 1 };
+
+void governor_init(struct governor *governor, const struct governor_bounds *bounds)
+{
+	*governor = (struct governor){ .bounds = *bounds,
+				       .level = 1,
+				       .divisor = 1,
+				       .patience_us = PATIENCE_LEAST_US,
+				       .risen_us = RELAPSE_US };
+	if (governor->bounds.refresh_us == 0)
+		governor->bounds.refresh_us = REFRESH_US;
+}
+
+bool governor_is_fixed(const struct governor *governor)
+{
+	return governor->bounds.scale_least >= 1;
+}
+
+int64_t governor_target_us(const struct governor *governor)
+{
+	return (int64_t)governor->bounds.refresh_us * governor->divisor;
+}
+
+static bool may_slow_down(const struct governor *governor)
+{
+	return (int64_t)governor->bounds.refresh_us * (governor->divisor + 1) <= SLOWEST_US;
+}
+
+static void be_quiet(struct governor *governor)
+{
+	governor->quiet_us = 0;
+	governor->most = 0;
+}
+
+/* Two late frames in a row count, because one may have had more to load. */
+static void fall(struct governor *governor, float load)
+{
+	if (governor->risen_us < RELAPSE_US && governor->patience_us < PATIENCE_MOST_US)
+		governor->patience_us *= 2;
+	governor->risen_us = RELAPSE_US;
+	governor->held_us = 0;
+	while (load > load_high && may_slow_down(governor) &&
+	       (load > load_of_rate || governor->level <= level_of_rate)) {
+		load *= (float)governor->divisor / (float)(governor->divisor + 1);
+		governor->divisor++;
+	}
+	if (load > load_high)
+		governor->level -= fminf(gain * (load - load_goal), fall_most);
+	governor->level = fmaxf(governor->level, 0);
+}
+
+/* The rate rises last, and only if a frame then still has room. */
+static void come_back(struct governor *governor)
+{
+	const float divisor = (float)governor->divisor;
+	if (governor->level < 1) {
+		governor->level = fminf(governor->level + rise, 1);
+		governor->risen_us = 0;
+	} else if (governor->divisor > 1 && governor->most * divisor < load_low * (divisor - 1)) {
+		governor->divisor--;
+		governor->risen_us = 0;
+	}
+}
+
+void governor_note(struct governor *governor, int64_t spent_us)
+{
+	const int64_t target_us = governor_target_us(governor);
+	const float load = (float)spent_us / (float)target_us;
+	const int64_t passed_us = spent_us > target_us ? spent_us : target_us;
+	if (governor_is_fixed(governor))
+		return;
+	governor->quiet_us += passed_us;
+	governor->risen_us += passed_us;
+	governor->held_us += passed_us;
+	governor->most = fmaxf(governor->most, load);
+	if (load > load_high) {
+		const float both = fminf(load, governor->over);
+		governor->over = load;
+		if (both > 0)
+			fall(governor, both);
+		be_quiet(governor);
+		return;
+	}
+	governor->over = 0;
+	if (governor->most > load_low)
+		be_quiet(governor);
+	if (governor->held_us > FORGET_US && governor->patience_us > PATIENCE_LEAST_US) {
+		governor->patience_us /= 2;
+		governor->held_us = 0;
+	}
+	if (governor->quiet_us < governor->patience_us)
+		return;
+	come_back(governor);
+	be_quiet(governor);
+}
+
+/* Returns where a level lies between two, 0 to 1. */
+static float between(float level, float low, float high)
+{
+	return fminf(fmaxf((level - low) / (high - low), 0), 1);
+}
+
+struct scene_effort governor_effort(const struct governor *governor)
+{
+	const float level = governor->level, least = governor->bounds.scale_least;
+	const float faces = between(level, level_budget, level_faces);
+	return (struct scene_effort){
+		.scale = least + (1 - least) * between(level, level_triangles, 1),
+		.coarser = coarser_most -
+			   (coarser_most - 1) * between(level, level_faces, level_triangles),
+		.faces = FACES_LEAST + (uint32_t)lroundf((PLAN_ENTRIES - FACES_LEAST) * faces),
+		.budget = budget_least + (1 - budget_least) * between(level, 0, level_budget),
+	};
+}

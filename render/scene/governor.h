@@ -1,0 +1,42 @@
+/* The frame-time governor: a feedback controller that holds the frames of a moving eye at the
+ * panel's rate, or at the highest divisor of it that the board can hold down to 30 a second. It
+ * takes what harms least first: the picture's scale, then triangles, then faces per piece, then the
+ * time for uploads and planning. A board needs no description for that; bounds are optional.
+ *
+ * It gives way at once and comes back slowly, and there is a dead band between the two loads
+ * (hysteresis), so that the picture does not breathe. Pure: no GL, no clock. */
+#ifndef GOPURA_RENDER_SCENE_GOVERNOR_H
+#define GOPURA_RENDER_SCENE_GOVERNOR_H
+
+#include "render/scene/scene.h"
+
+struct governor_bounds {
+	float scale_least;   /* least scale of the picture while the eye moves, 0 to 1; 1: nothing
+				is governed */
+	uint32_t refresh_us; /* the panel's period; 0: 60 Hz */
+};
+
+struct governor {
+	struct governor_bounds bounds;
+	float level;      /* 1: everything at full effort, 0: the least */
+	uint32_t divisor; /* refreshes of the panel for each frame */
+	float over;       /* load of the last frame, if it was too much; else 0 */
+	int64_t quiet_us; /* time of moving frames since the level last changed or one was late */
+	float most;       /* largest load in that time */
+	int64_t patience_us; /* how long it must be quiet before the level rises */
+	int64_t risen_us;    /* time of moving frames since the level last rose */
+	int64_t held_us;     /* since it last fell */
+};
+
+/* Starts at full effort and at the panel's rate. */
+void governor_init(struct governor *governor, const struct governor_bounds *bounds);
+/* Takes the time that a frame of a moving eye took, in microseconds. */
+void governor_note(struct governor *governor, int64_t spent_us);
+/* Returns whether its bounds leave nothing to govern. */
+bool governor_is_fixed(const struct governor *governor);
+/* Returns the time that a frame may take now. */
+int64_t governor_target_us(const struct governor *governor);
+/* Returns what the next frame of a moving eye may cost. */
+struct scene_effort governor_effort(const struct governor *governor);
+
+#endif
