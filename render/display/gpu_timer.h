@@ -21,7 +21,7 @@ void gpu_timer_finish(struct gpu_timer *timer); /* zeroed is fine */
 void gpu_timer_begin(struct gpu_timer *timer);
 void gpu_timer_end(struct gpu_timer *timer);
 /* Returns the microseconds of the latest frame that the GPU has finished since the last call; 0:
- * none, or the clock was interrupted. */
+ * none, the clock was interrupted, or the driver's answer cannot be true. */
 int64_t gpu_timer_take_us(struct gpu_timer *timer);
 
 #endif

@@ -1,8 +1,9 @@
 /* The governor over simulated boards: what a frame costs follows from the effort. */
-#include "render/scene/governor.h"
-#include "tests/check.h"
 #include <math.h>
 #include <stdlib.h>
+
+#include "render/scene/governor.h"
+#include "tests/check.h"
 
 enum { REFRESH_US = 16667 };
 
