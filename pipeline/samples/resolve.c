@@ -497,7 +497,8 @@ static void add_block(struct resolve *r, const struct raster_block *block, uint3
 			float any = 0;
 
 			for (uint32_t k = 0; k < (uint32_t)r->sample_count; k++) {
-				uint32_t at = first + k / samples * RASTER_BLOCK_PX + k % samples;
+				/* a single one is where the first of four is */
+				uint32_t at = first + k / 2 * RASTER_BLOCK_PX + k % 2;
 
 				r->inverse_m[k][i] = block->inverse_m[at];
 				r->surface[k][i] = block->surface[at];

@@ -22,7 +22,7 @@
 #include "pipeline/samples/model_master.h"
 #include "render/display/headless.h"
 
-enum { SAMPLER_VERSION = 9, JOBS_MAX = 64 };
+enum { SAMPLER_VERSION = 10, JOBS_MAX = 64 };
 
 /* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;

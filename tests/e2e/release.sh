@@ -44,6 +44,7 @@ echo '<h1>Tower</h1><p>The mountain in the middle.</p>' >"$dir/pages/tower.en.ht
 
 root_of() { sed -nE 's/.*root ([0-9a-f]{32})$/\1/p' "$1"; }
 files() { (cd "$release" && find packs locator -type f | sort); }
+points() { (cd "$dir/.work/samples" && stat -c '%n %i %Y %s' [0-9]* | sort); }
 
 # ---- a build that is killed continues where it stopped, and gives the same result as an undisturbed one
 for seconds in 1 3; do
@@ -85,7 +86,10 @@ files | diff "$folder/before" - || fail "files were written for nothing"
 [ -f "$keys/content/release.key" ] && [ ! -e "$dir/keys" ] || fail "the keys stayed among the content"
 
 # ---- a new title: a few small blocks, samples untouched
+points >"$folder/points"
+[ "$(wc -l <"$folder/points")" -gt 100 ] || fail "there are hardly any samples"
 parts 'High tower'
+echo '<h1>Tower</h1><p>Another page.</p>' >"$dir/pages/tower.en.html"
 "$content" build "$dir" --out "$release" --comment 'a better title' >"$folder/second"
 grep -q '^release 2 ' "$folder/second" || fail "no second release"
 files >"$folder/after"
@@ -121,6 +125,7 @@ new=$(comm -13 "$folder/before" "$folder/after" | (cd "$release" && xargs cat | 
 "$content" build "$dir" --out "$release" >/dev/null
 echo '0-199' >"$dir/regions/step.faces"
 "$content" build "$dir" --out "$release" | grep -q '^release' || fail "a build did not see another list of faces"
+points | diff "$folder/points" - || fail "a title, a page or a region touched samples"
 "$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "another region, but not whole"
 
 # ---- a changed byte, at rest or in transit
