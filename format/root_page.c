@@ -4,6 +4,18 @@
 #include <errno.h>
 #include <math.h>
 
+void lattice_fit(struct lattice *lattice, const float box_min_m[3], const float box_max_m[3])
+{
+	double longest = 0;
+
+	for (int axis = 0; axis < 3; axis++)
+		longest = fmax(longest, (double)box_max_m[axis] - box_min_m[axis]);
+	lattice->fine_bits = 0;
+	while (lattice->fine_bits < LATTICE_FINE_BITS_MAX &&
+	       longest / lattice->step_m > (1 << (LATTICE_BITS + lattice->fine_bits)) - 0.5)
+		lattice->fine_bits++;
+}
+
 static void put_vector(struct buffer *out, const float vector[3])
 {
 	for (int axis = 0; axis < 3; axis++)
@@ -85,6 +97,7 @@ int root_page_decode(struct root_page *out, struct bytes payload)
 	root.published_triangles = reader_u64(&reader);
 	if (reader.failed || reader_left(&reader) > 0 || !good || !is_sane(&root))
 		return -EBADMSG;
+	lattice_fit(&root.lattice, root.box_min_m, root.box_max_m);
 	*out = root;
 	return 0;
 }

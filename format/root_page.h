@@ -27,9 +27,11 @@ enum {
 struct lattice {
 	double origin_m[3];
 	double step_m;
-	uint8_t fine_bits; /* 0 to LATTICE_FINE_BITS_MAX; above 0 only for large sites */
+	uint8_t fine_bits; /* 0 to LATTICE_FINE_BITS_MAX; above 0 on large sites */
 };
 
+/* Sets fine_bits to what a model with that box needs. Formats do not store it. */
+void lattice_fit(struct lattice *lattice, const float box_min_m[3], const float box_max_m[3]);
 /* Sets out to the position of a place, in metres. */
 static inline void lattice_metres(double out[3], const struct lattice *lattice,
 				  const int32_t place[3])

@@ -183,6 +183,11 @@ static bool set_kind(const struct setting *setting, void *target, const char *va
 	return content->binary_tree || strcasecmp(value, "groups") == 0;
 }
 
+static bool set_lattice_mm(const struct setting *setting, void *target, const char *value)
+{
+	return settings_numbers(setting, value, &((struct content *)target)->lattice_mm, 1);
+}
+
 static bool set_publish_share(const struct setting *setting, void *target, const char *value)
 {
 	return settings_numbers(setting, value, &((struct content *)target)->publish_share, 1);
@@ -255,6 +260,8 @@ static const struct setting settings[] = {
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),
 	NUMBERS("hierarchy", "block_triangles", NULL, settings_whole, block_triangles, 2000,
 		16000000),
+	NUMBERS("hierarchy", "lattice_mm", "millimetres from 0.05 to 100", set_lattice_mm,
+		lattice_mm, 0.05, 100),
 	NUMBERS("release", "publish_share", "a share above 0, at most 1", set_publish_share,
 		publish_share, 1e-6, 1),
 	SETTING("release", "languages", "language tags, separated by spaces: en fr km ja",

@@ -50,6 +50,7 @@ struct content {
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */
 	uint32_t block_triangles; /* of the scan in one block, 2000..16000000; 0: the default */
+	double lattice_mm;        /* the largest step of the lattice, 0.05..100; 0: the default */
 	double publish_share;     /* share of the scan's triangles; above 0, at most 1 */
 	uint32_t language_count;
 	/* the first is the default */

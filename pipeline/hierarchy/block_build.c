@@ -329,7 +329,7 @@ int block_build(struct block_build *out, const char *folder, const struct mesh *
 
 	*out = (struct block_build){ 0 };
 	multires_set_defaults(&site->options, mesh->triangle_count);
-	rc = block_scan_init(&site->scan, mesh, site->options.jobs);
+	rc = block_scan_init(&site->scan, mesh, site->options.step_max_m, site->options.jobs);
 	site->scan.shard = site->options.shard;
 	if (rc == 0)
 		rc = run(&build);

@@ -58,7 +58,8 @@ static int find_box(void *user, uint32_t piece)
 	return 0;
 }
 
-int block_scan_init(struct block_scan *scan, const struct mesh *mesh, uint32_t jobs)
+int block_scan_init(struct block_scan *scan, const struct mesh *mesh, double step_max_m,
+		    uint32_t jobs)
 {
 	uint32_t pieces = pieces_of(mesh->vertex_count);
 	size_t size = (pieces + (size_t)1) * sizeof(struct box);
@@ -81,7 +82,9 @@ int block_scan_init(struct block_scan *scan, const struct mesh *mesh, uint32_t j
 				       : fmaxf(*high, pass.boxes[p].high[i]);
 		}
 	shared_memory_destroy(pass.boxes, size);
-	return rc < 0 ? rc : lattice_of_box(&scan->lattice, scan->box_min_m, scan->box_max_m);
+	return rc < 0 ? rc
+		      : lattice_of_box(&scan->lattice, scan->box_min_m, scan->box_max_m,
+				       step_max_m);
 }
 
 /* ---- counting */

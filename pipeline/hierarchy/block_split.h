@@ -20,7 +20,8 @@ struct block_scan {
 
 /* Finds box and lattice. Returns -EINVAL if a position is not finite or there is no extent, or the
  * errors of processes_run. */
-must_check int block_scan_init(struct block_scan *scan, const struct mesh *mesh, uint32_t jobs);
+must_check int block_scan_init(struct block_scan *scan, const struct mesh *mesh, double step_max_m,
+			       uint32_t jobs);
 
 /* Adds every triangle to the counts (zeroed shared memory) and to the exposure. *edge_steps is the
  * sum of the lengths of the triangles' first edges, along all axes. Returns -EINVAL if a triangle

@@ -10,7 +10,8 @@
 #define NO_VERTEX   UINT32_MAX
 #define NO_TRIANGLE UINT32_MAX
 
-int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3])
+int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3],
+		   double step_max_m)
 {
 	double longest = 0.0;
 
@@ -19,6 +20,8 @@ int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[
 		longest = fmax(longest, (double)max_m[i] - min_m[i]);
 	}
 	out->fine_bits = 0;
+	while (out->fine_bits < LATTICE_FINE_BITS_MAX && longest / lattice_last(out) > step_max_m)
+		out->fine_bits++;
 	out->step_m = longest / lattice_last(out);
 	return longest > 0.0 && isfinite(longest) ? 0 : -EINVAL;
 }

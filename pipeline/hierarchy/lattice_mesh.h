@@ -36,8 +36,14 @@ struct lattice_counts {
 	uint32_t crowded_edges; /* used by more than two triangles; kept */
 };
 
-/* Sets the lattice of a model with that bounding box. Returns -EINVAL if it has no extent. */
-must_check int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3]);
+/* The largest step, unless options ask for another: scans of large sites keep a millimetre. */
+#define LATTICE_STEP_MAX_M 0.001
+
+/* Sets the lattice of a model with that bounding box: 65536 steps along its longest side, or that
+ * times the smallest power of two with steps of at most step_max_m, but no more than
+ * LATTICE_PLACES_MAX. Returns -EINVAL if the box has no extent. */
+must_check int lattice_of_box(struct lattice *out, const float min_m[3], const float max_m[3],
+			      double step_max_m);
 /* Sets out to the nearest place of the lattice. */
 void lattice_place(int32_t out[3], const struct lattice *lattice, const float at_m[3]);
 /* Sets out to the coarse steps of a place. */

@@ -16,7 +16,7 @@
 #include "pipeline/hierarchy/block_build.h"
 
 /* Raise BUILD_VERSION whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 9, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
+enum { BUILD_VERSION = 10, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -33,6 +33,7 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 	buffer_put_u32(&text, options->multires.group_patches);
 	buffer_put_u32(&text, options->multires.top_triangles);
 	buffer_put_u32(&text, options->multires.block_triangles);
+	buffer_put_f64(&text, options->multires.step_max_m);
 	buffer_put_u8(&text, options->material_colours);
 	stamp = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
@@ -259,6 +260,7 @@ static int get_head(struct master *master, struct reader *reader, const struct h
 		master->box_min_m[i] = reader_f32(reader);
 	for (int i = 0; i < 3; i++)
 		master->box_max_m[i] = reader_f32(reader);
+	lattice_fit(&master->lattice, master->box_min_m, master->box_max_m);
 	master->source_triangles = reader_u64(reader);
 	return reader->failed ? -EBADMSG : 0;
 }

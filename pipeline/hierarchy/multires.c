@@ -76,6 +76,8 @@ void multires_set_defaults(struct multires_options *options, uint64_t triangle_c
 						 : TOP_TRIANGLES;
 	if (options->block_triangles == 0)
 		options->block_triangles = BLOCK_TRIANGLES;
+	if (options->step_max_m <= 0)
+		options->step_max_m = LATTICE_STEP_MAX_M;
 	/* The paper's tree has its halves from the whole scan at once. */
 	if (options->kind == MULTIRES_TREE)
 		options->block_triangles = UINT32_MAX;

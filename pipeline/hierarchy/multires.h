@@ -25,6 +25,7 @@ struct multires_options {
 	uint32_t group_patches;   /* about so many in a group, 2..32; else the default */
 	uint32_t top_triangles;   /* maximum in the coarsest cut; 0: the default */
 	uint32_t block_triangles; /* about so many of the scan in a block; 0: the default */
+	double step_max_m;        /* the largest step of the lattice; 0: the default */
 	/* These two decide no byte of the result. */
 	uint32_t jobs;      /* threads or processes; 0: one per processor */
 	struct shard shard; /* of several machines that build it together */

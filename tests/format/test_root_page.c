@@ -57,6 +57,7 @@ static void gives_back_every_field(void **state)
 	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
 	CHECK(strcmp(back.name, root.name) == 0);
 	CHECK(back.lattice.origin_m[1] == -20 && back.lattice.step_m == 0.001);
+	CHECK(back.lattice.fine_bits == 0);
 	CHECK(back.box_min_m[1] == -20 && back.box_max_m[2] == 30);
 	CHECK(back.start_eye_m[0] == 50 && back.start_target_m[2] == 8);
 	CHECK(back.sun[0] == 0.6f && back.lit == 1 && back.background[2] == 255);

@@ -22,6 +22,7 @@ static bool keeps_its_limits(const struct content *c)
 		     (c->patch_triangles >= 256 && c->patch_triangles <= 4000)) &&
 		    (c->block_triangles == 0 ||
 		     (c->block_triangles >= 2000 && c->block_triangles <= 16000000)) &&
+		    (c->lattice_mm == 0 || (c->lattice_mm >= 0.05 && c->lattice_mm <= 100)) &&
 		    c->publish_share > 0 && c->publish_share <= 1 && c->language_count >= 1 &&
 		    c->language_count <= CONTENT_LANGUAGES_MAX;
 

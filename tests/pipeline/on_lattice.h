@@ -13,7 +13,7 @@ static inline int on_lattice(struct lattice_mesh *out, struct lattice_counts *co
 	int rc;
 
 	mesh_box(mesh, low, high);
-	rc = lattice_of_box(&lattice, low, high);
+	rc = lattice_of_box(&lattice, low, high, LATTICE_STEP_MAX_M);
 	if (rc == 0)
 		rc = lattice_mesh_create(out, counts, mesh, &lattice, grey);
 	return rc < 0 ? rc : lattice_mesh_find_borders(out, counts, NULL);

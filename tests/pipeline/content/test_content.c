@@ -63,7 +63,7 @@ static void every_key_is_read(void **state)
 		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
 		"tools = section, light\n[grid]\n"
 		"points = 32\nface_px = 1024\nquality = 90\n[hierarchy]\nkind = tree\n"
-		"patch_triangles = 1000\nblock_triangles = 2000\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
+		"patch_triangles = 1000\nblock_triangles = 2000\nlattice_mm = 0.5\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
 	struct content content;
 	struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
@@ -80,7 +80,7 @@ static void every_key_is_read(void **state)
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
 	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
 	CHECK(content.binary_tree && content.patch_triangles == 1000);
-	CHECK(content.block_triangles == 2000);
+	CHECK(content.block_triangles == 2000 && content.lattice_mm == 0.5);
 	CHECK(content.publish_share == 0.5 && content.language_count == 4);
 	CHECK(strcmp(content.languages[3], "pt-BR") == 0);
 	content_release(&content);

@@ -465,6 +465,116 @@ static const struct multires_options small_blocks = {
 	.jobs = 2,
 };
 
+/* ---- a large site */
+
+#define SITE_M 290.0f /* the radius of the ball */
+
+/* A tetrahedron of side_m with a corner at x, y, z. */
+static void add_stone(struct mesh *mesh, float x, float y, float z, float side_m)
+{
+	uint32_t a = shape_vertex(mesh, x, y, z), b = shape_vertex(mesh, x + side_m, y, z);
+	uint32_t c = shape_vertex(mesh, x, y + side_m, z), d = shape_vertex(mesh, x, y, z + side_m);
+
+	shape_triangle(mesh, a, c, b);
+	shape_triangle(mesh, a, b, d);
+	shape_triangle(mesh, a, d, c);
+	shape_triangle(mesh, b, c, d);
+}
+
+/* The temple with a radius of 290 m and, at a corner of its box, two stones of 6 mm, 2 mm apart. */
+static struct mesh shape_site(uint32_t n, float stones[2][3])
+{
+	struct mesh mesh = shape_temple(n);
+	const uint32_t vertices = mesh.vertex_count, triangles = mesh.triangle_count;
+	float low[3], high[3];
+
+	mesh_box(&mesh, low, high);
+	mesh.positions = realloc(mesh.positions, (vertices + 8) * sizeof(*mesh.positions));
+	mesh.colours = realloc(mesh.colours, (vertices + 8) * sizeof(*mesh.colours));
+	mesh.triangles = realloc(mesh.triangles, (triangles + 8) * sizeof(*mesh.triangles));
+	for (uint32_t v = 0; v < vertices; v++)
+		for (int i = 0; i < 3; i++)
+			mesh.positions[v][i] *= SITE_M;
+	for (int s = 0; s < 2; s++) {
+		stones[s][0] = SITE_M * high[0] + 0.008f * (float)s;
+		stones[s][1] = SITE_M * high[1];
+		stones[s][2] = SITE_M * high[2];
+		add_stone(&mesh, stones[s][0], stones[s][1], stones[s][2], 0.006f);
+	}
+	return mesh;
+}
+
+/* Returns whether the finest level has a vertex within a millimetre of a place, and where in x. */
+static bool finest_has(const struct model *model, const struct lattice *lattice,
+		       const float at_m[3], double *x_m)
+{
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++)
+		for (uint32_t v = 0; model->hierarchy.patches[p].finer == HIERARCHY_NONE &&
+				     v < model->patches[p].vertex_count;
+		     v++) {
+			double place[3], off = 0;
+
+			lattice_metres(place, lattice, model->patches[p].vertices[v].position);
+			for (int i = 0; i < 3; i++)
+				off = fmax(off, fabs(place[i] - (double)at_m[i]));
+			*x_m = place[0];
+			if (off < 0.001)
+				return true;
+		}
+	return false;
+}
+
+/* How many patches have a base, and how many of them are wider than 16 bits. */
+static void count_placed(const struct model *model, uint32_t *placed, uint32_t *wide)
+{
+	*placed = *wide = 0;
+	for (uint32_t p = 0; p < model->hierarchy.patch_count; p++) {
+		int32_t low = INT32_MAX, high = 0;
+
+		for (uint32_t v = 0; v < model->patches[p].vertex_count; v++) {
+			int32_t at = model->patches[p].vertices[v].position[0];
+
+			low = at < low ? at : low;
+			high = at > high ? at : high;
+		}
+		*placed += low > UINT16_MAX;
+		*wide += high - low > UINT16_MAX;
+	}
+}
+
+static void no_cut_of_a_site_of_a_kilometre_has_a_crack_and_a_millimetre_stays_one(void **state)
+{
+	const struct multires_options *ways[] = { &small_groups, &small_blocks };
+
+	(void)state;
+	for (size_t w = 0; w < ARRAY_COUNT(ways); w++) {
+		float stones[2][3], low[3], high[3];
+		struct mesh mesh = shape_site(60, stones);
+		struct lattice lattice;
+		struct model model;
+		struct verdict verdict;
+		uint32_t placed, wide;
+		double x_m[2];
+
+		mesh_box(&mesh, low, high);
+		CHECK(lattice_of_box(&lattice, low, high, LATTICE_STEP_MAX_M) == 0);
+		CHECK(lattice.fine_bits == 4 && lattice.step_m < 0.001 && lattice.step_m > 0.0009);
+		model_build(&model, mesh, ways[w]);
+		count_placed(&model, &placed, &wide);
+		CHECK(placed > 20 && wide > 5 && wide < model.hierarchy.patch_count);
+		for (int s = 0; s < 2; s++)
+			CHECK(finest_has(&model, &lattice, stones[s], &x_m[s]));
+		CHECK(fabs(x_m[1] - x_m[0] - 0.008) < 0.001);
+		verdict = walk_cuts(&model, 200);
+		print_message(
+			"site: %u placed, %u wide of %u patches; %u shared edges, %u cracks\n",
+			placed, wide, model.hierarchy.patch_count, verdict.shared, verdict.cracks);
+		CHECK(verdict.cracks == 0 && verdict.crowded == 0 && verdict.open == 0 &&
+		      verdict.shared > 10000);
+		model_finish(&model);
+	}
+}
+
 static void no_cut_across_blocks_has_a_crack(void **state)
 {
 	struct model model;
@@ -830,6 +940,8 @@ int main(void)
 		cmocka_unit_test(no_cut_of_an_open_scan_has_a_crack),
 		cmocka_unit_test(no_cut_across_blocks_has_a_crack),
 		cmocka_unit_test(no_cut_across_blocks_of_an_open_scan_has_a_crack),
+		cmocka_unit_test(
+			no_cut_of_a_site_of_a_kilometre_has_a_crack_and_a_millimetre_stays_one),
 		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
 		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
 		cmocka_unit_test(loose_stones_become_few),

@@ -240,6 +240,42 @@ static void the_lattice_merges_drops_and_counts(void **state)
 	mesh_finish(&mesh);
 }
 
+/* At 65 m a step is a millimetre; from there on it halves where it would be larger. */
+static void the_lattice_of_a_large_site_keeps_a_millimetre(void **state)
+{
+	static const struct {
+		float size_m;
+		double step_max_m;
+		uint8_t fine_bits;
+	} sites[] = {
+		{ 1e-3f, 0.001, 0 }, { 42, 0.001, 0 },   { 65, 0.001, 0 },    { 66, 0.001, 1 },
+		{ 100, 0.001, 1 },   { 1000, 0.001, 4 }, { 1000, 0.016, 0 },  { 1000, 0.002, 3 },
+		{ 10, 0.0001, 1 },   { 5e4f, 0.001, 8 }, { 1e9f, 1e-300, 8 },
+	};
+	const float low[3] = { -1, -2, -3 };
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(sites) / sizeof(*sites); i++) {
+		const float size = sites[i].size_m;
+		const float high[3] = { -1, -2 + size, -3 + size / 3 };
+		const double longest = (double)high[1] - low[1];
+		struct lattice lattice, again;
+		int32_t place[3];
+		uint16_t coarse[3];
+
+		CHECK(lattice_of_box(&lattice, low, high, sites[i].step_max_m) == 0);
+		CHECK(lattice.fine_bits == sites[i].fine_bits);
+		CHECK(fabs(lattice.step_m * lattice_last(&lattice) - longest) < 1e-9 * longest);
+		again = lattice;
+		lattice_fit(&again, low, high);
+		CHECK(again.fine_bits == lattice.fine_bits);
+		lattice_place(place, &lattice, high);
+		CHECK(place[1] == lattice_last(&lattice) && place[0] == 0);
+		lattice_coarse(coarse, &lattice, place);
+		CHECK(coarse[1] == 65535);
+	}
+}
+
 static void the_lattice_counts_crowded_edges(void **state)
 {
 	struct mesh mesh = two_triangles_and_rubbish();
@@ -278,6 +314,7 @@ int main(void)
 		cmocka_unit_test(refuses_limits_of_zero),
 		cmocka_unit_test(a_graph_falls_apart_at_its_weakest),
 		cmocka_unit_test(the_lattice_merges_drops_and_counts),
+		cmocka_unit_test(the_lattice_of_a_large_site_keeps_a_millimetre),
 		cmocka_unit_test(the_lattice_counts_crowded_edges),
 		cmocka_unit_test(the_lattice_refuses_what_has_no_extent),
 	};

@@ -40,7 +40,18 @@ static const float little_boxes[LITTLE_BOXES][2][3] = {
 	{ { 3, -5, 0 }, { 5, -3, 5 } },     { { -5, 3, 0 }, { -3, 5, 5 } },
 	{ { 3, 3, 0 }, { 5, 5, 5 } },
 };
-static const struct lattice little_lattice = { { -8, -8, -8 }, 1.0 / 4095, 0 };
+static struct lattice little_lattice = { { -8, -8, -8 }, 1.0 / 4095, 0 };
+static int32_t little_base[3]; /* the place of the lattice at (-8, -8, -8) */
+
+/* Puts releases that are made after this on a lattice whose origin is far away. */
+static inline void little_move(const int32_t base[3], double step_m)
+{
+	little_lattice.step_m = step_m;
+	for (int i = 0; i < 3; i++) {
+		little_base[i] = base[i];
+		little_lattice.origin_m[i] = -8 - step_m * base[i];
+	}
+}
 
 /* ---- the truth */
 
@@ -132,8 +143,8 @@ static uint16_t little_vertex(struct little_mesh *m, const float at[3], const fl
 	struct patch_vertex *v = &m->mesh.vertices[m->mesh.vertex_count];
 	float inside[3], rgb[3];
 	for (int i = 0; i < 3; i++) {
-		v->position[i] = (int32_t)lrintf((at[i] - (float)little_lattice.origin_m[i]) /
-						 (float)little_lattice.step_m);
+		v->position[i] = little_base[i] +
+				 (int32_t)lrintf((at[i] + 8) / (float)little_lattice.step_m);
 		inside[i] = at[i] + 1e-3f * normal[i];
 		m->min[i] = fminf(m->min[i], at[i]);
 		m->max[i] = fmaxf(m->max[i], at[i]);

@@ -519,6 +519,67 @@ static void a_mark_draws_its_border_and_leaves_the_rest(void **state)
 	strike_stage(&stage);
 }
 
+/* The pictures of a release at three places a millimetre apart, the last with a mark. */
+enum { SITE_PICTURES = 3, SITE_BYTES = 4 * WIDTH * HEIGHT };
+
+static void take_pictures(uint8_t *out, const int32_t base[3], double step_m, enum scene_mode mode,
+			  bool wide)
+{
+	static const int32_t none[3];
+	const struct region ball = { .kind = REGION_SPHERE,
+				     .centre_m = { 3, -5, 3 },
+				     .radius_m = 2 };
+	struct little_release *before = release;
+	struct scene_options options = usual;
+	struct camera camera = usual_camera;
+	struct stage stage;
+	little_move(base, step_m);
+	release = little_release_make(2);
+	options.mode = mode;
+	raise_stage(&stage, &options);
+	for (int i = 0; i < SITE_PICTURES; i++) {
+		camera.eye_m[0] += 0.001f;
+		settle(&stage, &camera, i == 2 ? &ball : NULL);
+		memcpy(out + i * SITE_BYTES, stage.seen, SITE_BYTES);
+	}
+	const struct geometry_patch *floor = &stage.scene->geometry.patches[0];
+	CHECK((floor->wide != 0) == wide && (floor->content.bvh.base[0] != 0) == (base[0] != 0));
+	strike_stage(&stage);
+	little_release_free(release);
+	release = before;
+	little_move(none, 1.0 / 4095);
+}
+
+/* The model stands a kilometre from the lattice's origin: with places that count from a base, and
+ * on a lattice so fine that the floor is a wide patch. A crack or a jitter would show as pixels
+ * that differ from the same model at the origin. */
+static void the_far_corner_of_a_site_looks_like_the_near_one(void **state)
+{
+	static const int32_t near[3] = { 0, 0, 0 }, far[3] = { 4000000, 3900000, 70000 };
+	static const int32_t fine[3] = { 16000000, 100000, 15900000 };
+	uint8_t *was = malloc(SITE_PICTURES * SITE_BYTES), *is = malloc(SITE_PICTURES * SITE_BYTES);
+	(void)state;
+	for (enum scene_mode mode = SCENE_POLYGONS; mode <= SCENE_LUMIGRAPH; mode++) {
+		if (mode != SCENE_POLYGONS && mode != SCENE_LUMIGRAPH)
+			continue;
+		take_pictures(was, near, 1.0 / 4095, mode, false);
+		for (int wide = 0; wide < 2; wide++) {
+			take_pictures(is, wide ? fine : far, 1.0 / (wide ? 16380 : 4095), mode,
+				      wide);
+			for (int i = 0; i < SITE_PICTURES; i++) {
+				uint32_t off = pixels_changed(was + i * SITE_BYTES,
+							      is + i * SITE_BYTES, 24);
+				print_message("mode %d, wide %d, picture %d: %u pixels differ\n",
+					      (int)mode, wide, i, off);
+				CHECK(off < 20);
+			}
+		}
+	}
+	keep_picture("site", is);
+	free(was);
+	free(is);
+}
+
 static void regions_know_what_is_in_them(void **state)
 {
 	(void)state;
@@ -580,6 +641,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(a_picture_is_sharp_in_the_second_frame_of_a_stop),
 		cmocka_unit_test(a_mark_is_drawn_at_full_size),
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
+		cmocka_unit_test(the_far_corner_of_a_site_looks_like_the_near_one),
 		cmocka_unit_test(regions_know_what_is_in_them),
 	};
 	if (argc > 1)
