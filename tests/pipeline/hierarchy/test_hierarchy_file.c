@@ -467,7 +467,8 @@ static const struct multires_options small_blocks = {
 
 /* ---- a large site */
 
-#define SITE_M 290.0f /* the radius of the ball */
+#define SITE_M 290.0f
+#define HUT_M  2.0f
 
 /* A tetrahedron of side_m with a corner at x, y, z. */
 static void add_stone(struct mesh *mesh, float x, float y, float z, float side_m)
@@ -481,26 +482,28 @@ static void add_stone(struct mesh *mesh, float x, float y, float z, float side_m
 	shape_triangle(mesh, b, c, d);
 }
 
-/* The temple with a radius of 290 m and, at a corner of its box, two stones of 6 mm, 2 mm apart. */
+/* The temple with a radius of 290 m, one of 2 m inside it, and at a corner of its box two stones of
+ * 6 mm, 2 mm apart. */
 static struct mesh shape_site(uint32_t n, float stones[2][3])
 {
-	struct mesh mesh = shape_temple(n);
-	const uint32_t vertices = mesh.vertex_count, triangles = mesh.triangle_count;
+	struct mesh mesh = shape_temple(n), hut = shape_temple(n), pair;
 	float low[3], high[3];
 
-	mesh_box(&mesh, low, high);
-	mesh.positions = realloc(mesh.positions, (vertices + 8) * sizeof(*mesh.positions));
-	mesh.colours = realloc(mesh.colours, (vertices + 8) * sizeof(*mesh.colours));
-	mesh.triangles = realloc(mesh.triangles, (triangles + 8) * sizeof(*mesh.triangles));
-	for (uint32_t v = 0; v < vertices; v++)
-		for (int i = 0; i < 3; i++)
+	for (uint32_t v = 0; v < mesh.vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
 			mesh.positions[v][i] *= SITE_M;
+			hut.positions[v][i] *= HUT_M;
+		}
+	mesh_box(&mesh, low, high);
+	shape_room(&pair, 8, 8);
 	for (int s = 0; s < 2; s++) {
-		stones[s][0] = SITE_M * high[0] + 0.008f * (float)s;
-		stones[s][1] = SITE_M * high[1];
-		stones[s][2] = SITE_M * high[2];
-		add_stone(&mesh, stones[s][0], stones[s][1], stones[s][2], 0.006f);
+		memcpy(stones[s], high, sizeof(high));
+		stones[s][0] += 0.008f * (float)s;
+		add_stone(&pair, stones[s][0], stones[s][1], stones[s][2], 0.006f);
 	}
+	CHECK(mesh_append(&mesh, &hut) == 0 && mesh_append(&mesh, &pair) == 0);
+	mesh_finish(&hut);
+	mesh_finish(&pair);
 	return mesh;
 }
 
@@ -933,7 +936,8 @@ static void refuses_what_is_no_mesh(void **state)
 	folder_remove(&folder);
 }
 
-int main(void)
+/* test_hierarchy_file [NAME]: that test alone. */
+int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_cut_of_the_temple_has_a_crack),
@@ -953,5 +957,7 @@ int main(void)
 		cmocka_unit_test(refuses_what_is_no_mesh),
 	};
 
+	if (argc > 1)
+		cmocka_set_test_filter(argv[1]);
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
