@@ -1,28 +1,28 @@
 #!/bin/bash
-# The test runner: runs every part, prints a line each, ends with "N passed, N failed, N skipped".
+# The test runner. It prints one line for each test and ends with "N passed, N failed, N skipped".
 #
-#   tests/run.sh quick   style, and the unit tests and fuzz corpora under sanitizers
-#   tests/run.sh all     those, the unit tests as built for the field, and tests/e2e, tests/qemu
-#   tests/run.sh only NAME...   the tests alone whose path has one of these words in it: test_cut, e2e/kiosk, net/
+#   tests/run.sh quick          style; unit tests and fuzz corpora under sanitizers
+#   tests/run.sh all            the same, then the unit tests as built for release, tests/e2e and tests/qemu
+#   tests/run.sh only NAME...   only tests whose path contains one of the names: test_cut, e2e/kiosk, net/
 #
-# A test passes with exit status 0, skips with 77 (its last line says why), fails otherwise. Unit
-# tests, end-to-end tests and machines in QEMU run beside one another: each has a port and a folder of its own.
+# A test passes with exit status 0. With 77 it is skipped, and its last line says why. Any other status is a failure.
+# Unit tests, end-to-end tests and virtual machines run at the same time; each uses its own port and its own folder.
 set -u
 cd "$(dirname "$0")/.."
 logs=$PWD/build/test-logs
 jobs=$(nproc)
 export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1
-# Third-party libraries keep small one-time allocations; ours are never listed there.
+# The file lists third-party libraries that keep small one-time allocations, and none of our own code.
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 
-# run_one NAME SECONDS COMMAND...: a line on the terminal, a log and a verdict beside it.
+# run_one NAME SECONDS COMMAND...: runs a test, prints its line, and writes its log and, beside that, its verdict.
 run_one() {
 	local name=$1 limit=$2 log=$logs/${1//\//-}.log start=$SECONDS status
 	shift 2
 	timeout --kill-after=10 "$limit" "$@" >"$log" 2>&1 </dev/null
 	status=$?
-	# The leak checker itself dies now and then while it stops the threads of Mesa's llvmpipe
-	# ("Tracer caught signal 11"): that says nothing of the test, which is run once more.
+	# The leak checker itself sometimes crashes while it stops the threads of Mesa's llvmpipe ("Tracer caught signal
+	# 11"). That says nothing about the test, so the test runs once more.
 	if [ "$status" -ne 0 ] && grep -q 'LeakSanitizer has encountered a fatal error' "$log"; then
 		timeout --kill-after=10 "$limit" "$@" >"$log" 2>&1 </dev/null
 		status=$?
@@ -41,7 +41,7 @@ if [ "${1:-}" = one ]; then
 	exit 0
 fi
 
-# unit BUILD LABEL [WORDS]: the programs of tests/ as built there, or those whose path has one of the words.
+# unit BUILD LABEL [PATTERN]: runs the test programs in BUILD, or only those whose path matches PATTERN.
 unit() {
 	local program
 	{
@@ -58,7 +58,7 @@ unit() {
 
 if [ "${1:-}" = lane ]; then
 	shift
-	# A machine in QEMU has watchdogs and deadlines in real time: it goes before tests that only compute.
+	# A virtual machine has watchdogs and deadlines in real time, so tests that only compute get a lower priority.
 	for name; do
 		case $name in
 		units)
@@ -118,8 +118,9 @@ run_one check-circles 120 tests/style/circles.py build/asan/obj
 if [ "$mode" = all ]; then
 	run_one build-field 1500 make --no-print-directory -j"$jobs" tests benches
 	export RELEASES_MADE=yes
-	# A line is what runs in turn, as it shares what it makes. What computes has a lane for each core, those that
-	# take long first; beside it, in as many lanes, runs what mostly waits. End-to-end tests wait for their release.
+	# The tests of one line run one after another, because each uses what those before it made. There is one lane for
+	# each core for tests that compute, the longest first. Tests that mostly wait run beside them in as many lanes
+	# again. An end-to-end test waits until the release that it uses is made.
 	computes=$(printf '%s\n' 'qemu/kiosk qemu/image qemu/disks qemu/powercut' 'release-small release-demo' units e2e/golden \
 		qemu/arm64 e2e/weak e2e/pictures e2e/monkey e2e/tours e2e/tools e2e/scans e2e/visitor e2e/back)
 	lanes() { xargs -P "$1" -L 1 tests/run.sh lane; }
