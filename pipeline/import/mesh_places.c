@@ -62,9 +62,7 @@ struct search {
 	uint32_t *first;
 };
 
-/* A part has a table of at most 256 MB. Every part goes through all vertices, so there are no more
- * than memory or cores ask for. */
-enum { PART_VERTICES = 12 << 20, CORE_VERTICES = 3 << 20 };
+enum { PART_VERTICES = 3 << 20 }; /* a table of 64 MB */
 
 /* An entry of the table: the upper half of the hash, then the vertex. Returns false if more than
  * half of the table fills, which a file can bring about that was made for it. */
@@ -113,21 +111,12 @@ static int find_part(void *user, uint32_t part, uint32_t worker)
 	return 0;
 }
 
-static uint32_t part_count(uint32_t vertex_count)
-{
-	uint32_t cores = parallel_cores(), most = vertex_count / CORE_VERTICES + 1;
-
-	if (cores > most)
-		cores = most;
-	return cores * (vertex_count / cores / PART_VERTICES + 1);
-}
-
 /* first[i] is the first vertex that equals vertex i. Owned by the caller; NULL: errno. */
 static uint32_t *find_first_equals(const struct mesh *mesh, bool place_only)
 {
 	struct search search = { .mesh = mesh,
 				 .place_only = place_only,
-				 .parts = part_count(mesh->vertex_count),
+				 .parts = mesh->vertex_count / PART_VERTICES + 1,
 				 .slots = 16 };
 	int rc;
 
