@@ -159,6 +159,10 @@ $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGO
 # Loops over arrays of numbers, which the compiler turns into vector instructions.
 VECTORS := pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
 $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
+# Kiosks decode patches all the time: with these loops unrolled, a fifth faster.
+ifeq ($(SAN)$(FUZZER),)
+$(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o: OPT := -O3 -g
+endif
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 # The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.
 ifeq ($(FUZZER),)

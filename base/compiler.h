@@ -6,6 +6,8 @@
 #define must_check __attribute__((warn_unused_result))
 #define printf_like(format_index, first_index)                                                     \
 	__attribute__((format(printf, format_index, first_index)))
+/* For a function so short and so often called that the call itself would take much of its time. */
+#define force_inline inline __attribute__((always_inline))
 
 /* For functions with loops over many numbers: compiled once more for each kind of vector unit, and
  * the processor's own is chosen when the program starts. All give the same bits. */

@@ -1,116 +1,62 @@
-/* Encodes and decodes the geometry of a patch group as zstd streams of indices and predicted
- * vertices. */
+/* Encodes and decodes the geometry of a patch group: connectivity, then the vertices as differences
+ * from predictions. docs/patch.md describes the bytes. */
 #include "format/patch.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <meshoptimizer.h>
-#include <zstd.h>
-
-#include "format/predict.h"
-
-/* docs/patch.md describes the bytes. Each stream holds one kind of number of all patches of the
- * group. So zstd sees uniform statistics in each stream, and a small patch needs no stream
- * headers. */
-enum stream {
-	STREAM_INDICES, /* meshoptimizer's index codec, patch after patch */
-	STREAM_POSITION_LOW,
-	STREAM_POSITION_HIGH,
-	STREAM_NORMAL,
-	STREAM_GREEN,
-	STREAM_TINT, /* red - green, blue - green */
-	STREAM_OPEN,
-	STREAM_POSITION_TOP, /* only in a wide group */
-	STREAM_COUNT
-};
+#include "format/connectivity.h"
 
 enum {
-	VERSION = 2,
-	INDEX_BYTES_MAX = 8 * PATCH_TRIANGLES_MAX,
-	NORMAL_ZEROS_MAX = 6,
-	BITS_MIN = 4, /* fewer bits cannot fill eight by one repetition */
-	PLACED = 0x80 /* beside the number of patches: a range follows */
+	VERSION = 3,
+	POSITION_ZEROS_MAX = 12,
+	NORMAL_ZEROS_MAX = 4,
+	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
 };
 
-static const int zstd_levels[] = { [PATCH_FAST] = 2, [PATCH_SMALL] = 12 };
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
-static const uint8_t bytes_a_vertex[STREAM_COUNT] = { 0, 3, 3, 2, 1, 2, 1, 3 };
 
-/* The fewest bits that express every vertex of a group without loss. */
+/* The fewest bits that express every vertex of a group without loss. While vertices are coded, they
+ * are without the bits that are omitted. */
 struct precision {
-	uint8_t normal_zeros; /* low bits that are zero in every normal */
+	uint8_t position_zeros, normal_zeros; /* low bits that are zero in all of them */
 	uint8_t colour_bits, open_bits;
-	struct predict_range range;
 };
 
-static const struct predict_range narrow = { .most = UINT16_MAX };
-static const int32_t wide_most = LATTICE_PLACES_MAX - 1;
-
-static bool is_wide(const struct predict_range *range)
-{
-	return range->most > UINT16_MAX;
-}
-
-struct streams {
-	uint8_t *data[STREAM_COUNT]; /* owned */
-	size_t size[STREAM_COUNT];
-	size_t at[STREAM_COUNT];
-	int count; /* of streams that there are */
+/* One group while it is coded, in either direction. */
+struct group {
+	struct symbol_encoder encoder;
+	struct symbol_coder coder;
+	struct precision precision;
+	struct connectivity mesh;
+	struct patch_vertex *vertices; /* owned; mesh.vertex_count of them */
+	struct symbol_model positions[PREDICT_POSITION_MODELS], normals[2];
+	struct symbol_model greens[PREDICT_COLOUR_MODELS], tints[2], opens[PREDICT_OPEN_MODELS];
 };
 
-static int streams_init(struct streams *streams, size_t index_bytes, size_t vertex_count, bool wide)
+/* Maps small differences of either sign to small numbers (zigzag): 0, -1, 1, -2 ... */
+static uint32_t fold(int32_t difference)
 {
-	*streams = (struct streams){ .count = wide ? STREAM_COUNT : STREAM_POSITION_TOP };
-	for (int i = 0; i < streams->count; i++) {
-		streams->size[i] =
-			i == STREAM_INDICES ? index_bytes : bytes_a_vertex[i] * vertex_count;
-		streams->data[i] = malloc(streams->size[i]);
-		if (!streams->data[i])
-			return -ENOMEM;
-	}
-	return 0;
+	return (uint32_t)difference << 1 ^ (difference < 0 ? UINT32_MAX : 0);
 }
 
-static void streams_finish(struct streams *streams)
+static int32_t unfold(uint32_t folded)
 {
-	for (int i = 0; i < STREAM_COUNT; i++)
-		free(streams->data[i]);
+	return (int32_t)(folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0));
 }
 
-static void put(struct streams *streams, enum stream stream, uint8_t value)
+/* Codes the difference of two numbers of bits bits, which wraps around. Returns it in that many
+ * bits. */
+static force_inline int32_t code_difference(struct symbol_coder *coder, struct symbol_model *model,
+			       int32_t difference, int bits)
 {
-	streams->data[stream][streams->at[stream]++] = value;
-}
+	int32_t mask = (1 << bits) - 1;
 
-static uint8_t get(struct streams *streams, enum stream stream)
-{
-	return streams->data[stream][streams->at[stream]++];
-}
-
-/* Maps small differences of either sign to small numbers (zigzag). Differences wrap around. */
-static uint32_t fold_place(int32_t difference, int32_t most)
-{
-	uint32_t wrapped = (uint32_t)difference & (uint32_t)most;
-
-	return (wrapped << 1 & (uint32_t)most) ^
-	       (wrapped > (uint32_t)most / 2 ? (uint32_t)most : 0);
-}
-
-static int32_t unfold_place(uint32_t folded, int32_t most)
-{
-	return (int32_t)(folded >> 1) ^ (folded & 1 ? most : 0);
-}
-
-static uint8_t fold8(uint8_t difference)
-{
-	return (uint8_t)(difference << 1 ^ (difference & 0x80 ? 0xff : 0));
-}
-
-static uint8_t unfold8(uint8_t folded)
-{
-	return (uint8_t)(folded >> 1 ^ (folded & 1 ? 0xff : 0));
+	difference &= mask;
+	if (difference > mask / 2)
+		difference -= mask + 1;
+	return unfold(symbol_code_number(coder, model, fold(difference), (uint32_t)bits)) & mask;
 }
 
 /* Widens a value of bits bits to eight by repeating its bits, so that all zeros and all ones stay
@@ -132,116 +78,177 @@ static int shorten_normal(int guess, int zeros)
 	return (guess + ((1 << zeros) >> 1)) >> zeros;
 }
 
-static void put_vertex(struct streams *streams, const struct patch_mesh *mesh,
-		       const struct predict_step *step, const int8_t normal[2],
-		       const struct precision *precision)
+static struct patch_vertex shorten(const struct precision *precision,
+				   const struct patch_vertex *vertex)
 {
-	const struct patch_vertex *vertex = &mesh->vertices[step->vertex];
-	int zeros = precision->normal_zeros;
-	int32_t position[3];
-	uint8_t colour[4], difference[4];
+	struct patch_vertex out = *vertex;
 
-	predict_position(position, step, mesh->vertices, &precision->range);
-	predict_colour(colour, step, mesh->vertices);
-	for (int i = 0; i < 3; i++) {
-		uint32_t folded =
-			fold_place(vertex->position[i] - position[i], precision->range.most);
-
-		put(streams, STREAM_POSITION_LOW, (uint8_t)folded);
-		put(streams, STREAM_POSITION_HIGH, (uint8_t)(folded >> 8));
-		if (is_wide(&precision->range))
-			put(streams, STREAM_POSITION_TOP, (uint8_t)(folded >> 16));
-	}
+	for (int i = 0; i < 3; i++)
+		out.position[i] >>= precision->position_zeros;
 	for (int i = 0; i < 2; i++)
-		put(streams, STREAM_NORMAL,
-		    fold8((uint8_t)((vertex->normal[i] >> zeros) -
-				    shorten_normal(normal[i], zeros))));
-	for (int i = 0; i < 4; i++) {
-		int dropped = 8 - (i < 3 ? precision->colour_bits : precision->open_bits);
-
-		difference[i] = (uint8_t)((vertex->colour[i] >> dropped) - (colour[i] >> dropped));
-	}
-	put(streams, STREAM_GREEN, fold8(difference[1]));
-	put(streams, STREAM_TINT, fold8((uint8_t)(difference[0] - difference[1])));
-	put(streams, STREAM_TINT, fold8((uint8_t)(difference[2] - difference[1])));
-	put(streams, STREAM_OPEN, fold8(difference[3]));
+		out.normal[i] = (int8_t)(out.normal[i] >> precision->normal_zeros);
+	for (int i = 0; i < 4; i++)
+		out.colour[i] >>= 8 - (i < 3 ? precision->colour_bits : precision->open_bits);
+	return out;
 }
 
-static int get_position(struct streams *streams, struct patch_mesh *mesh,
-			const struct predict_step *step, const struct predict_range *range)
+static struct patch_vertex lengthen(const struct precision *precision,
+				    const struct patch_vertex *vertex)
 {
-	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
-	int32_t position[3], off;
+	struct patch_vertex out = *vertex;
 
-	predict_position(position, step, mesh->vertices, range);
-	for (int i = 0; i < 3; i++) {
-		uint32_t folded = get(streams, STREAM_POSITION_LOW);
+	for (int i = 0; i < 3; i++)
+		out.position[i] = (uint16_t)(out.position[i] << precision->position_zeros);
+	for (int i = 0; i < 2; i++)
+		out.normal[i] = (int8_t)(uint8_t)((uint32_t)out.normal[i] << precision->normal_zeros);
+	for (int i = 0; i < 4; i++)
+		out.colour[i] = widen(out.colour[i],
+				      i < 3 ? precision->colour_bits : precision->open_bits);
+	return out;
+}
 
-		folded |= (uint32_t)get(streams, STREAM_POSITION_HIGH) << 8;
-		if (is_wide(range))
-			folded |= (uint32_t)get(streams, STREAM_POSITION_TOP) << 16;
-		off = position[i] - range->base[i] + unfold_place(folded, range->most);
-		vertex->position[i] = range->base[i] + (off & range->most);
-		if (vertex->position[i] >= LATTICE_PLACES_MAX)
-			return -EBADMSG;
+/* ---- vertices, in both directions: what is encoded is in group->vertices already */
+
+/* The functions that end in _of are compiled once for each direction. */
+
+static force_inline int code_positions_of(struct group *group, struct symbol_encoder *encoder)
+{
+	struct symbol_coder coder = { encoder, group->coder.decoder };
+	int32_t most = UINT16_MAX >> group->precision.position_zeros;
+	uint32_t bits = 17 - (uint32_t)group->precision.position_zeros;
+
+	for (uint32_t v = 0; v < group->mesh.vertex_count; v++) {
+		uint16_t *position = group->vertices[v].position;
+		uint32_t models[3];
+		int32_t guess[3], at;
+
+		predict_position(guess, models, &group->mesh.steps[v], group->vertices, most);
+		for (int i = 0; i < 3; i++) {
+			at = guess[i] + unfold(symbol_code_number(
+						&coder, &group->positions[models[i]],
+						fold(position[i] - guess[i]), bits));
+			if (at < 0 || at > most)
+				return -EBADMSG;
+			position[i] = (uint16_t)at;
+		}
 	}
+	group->coder.decoder = coder.decoder;
 	return 0;
 }
 
-static uint8_t get_colour(uint8_t guess, uint8_t difference, int bits)
+static force_inline void code_normals_of(struct group *group, struct symbol_encoder *encoder,
+					 const int64_t (*sums)[3])
 {
-	uint8_t value = (uint8_t)((guess >> (8 - bits)) + difference);
+	struct symbol_coder coder = { encoder, group->coder.decoder };
+	int zeros = group->precision.normal_zeros, bits = 8 - zeros;
 
-	return widen((uint8_t)(value & ((1 << bits) - 1)), bits);
-}
+	for (uint32_t v = 0; v < group->mesh.vertex_count; v++) {
+		int8_t *normal = group->vertices[v].normal, guess[2];
 
-static void get_rest(struct streams *streams, struct patch_mesh *mesh,
-		     const struct predict_step *step, const int8_t normal[2],
-		     const struct precision *precision)
-{
-	struct patch_vertex *vertex = &mesh->vertices[step->vertex];
-	int zeros = precision->normal_zeros, bits = precision->colour_bits;
-	uint8_t colour[4], green, red, blue;
+		predict_octahedral(guess, sums[v]);
+		for (int i = 0; i < 2; i++) {
+			int32_t value = shorten_normal(guess[i], zeros);
 
-	predict_colour(colour, step, mesh->vertices);
-	for (int i = 0; i < 2; i++) {
-		int value = shorten_normal(normal[i], zeros) + unfold8(get(streams, STREAM_NORMAL));
-
-		vertex->normal[i] = (int8_t)(uint8_t)((uint32_t)value << zeros);
+			value += code_difference(&coder, &group->normals[i], normal[i] - value,
+						 bits);
+			/* The sign is the highest of the bits. */
+			normal[i] = (int8_t)((int8_t)(uint8_t)((uint32_t)value << zeros) >> zeros);
+		}
 	}
-	green = unfold8(get(streams, STREAM_GREEN));
-	red = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
-	blue = (uint8_t)(green + unfold8(get(streams, STREAM_TINT)));
-	vertex->colour[0] = get_colour(colour[0], red, bits);
-	vertex->colour[1] = get_colour(colour[1], green, bits);
-	vertex->colour[2] = get_colour(colour[2], blue, bits);
-	vertex->colour[3] =
-		get_colour(colour[3], unfold8(get(streams, STREAM_OPEN)), precision->open_bits);
+	group->coder.decoder = coder.decoder;
 }
 
-/* Writes the vertices of one patch to the streams, or reads them. The indices of the mesh must be
- * in range. */
-static int code_vertices(struct streams *streams, struct patch_mesh *mesh,
-			 const struct precision *precision, bool encoding)
+/* Red and blue change with green. */
+static force_inline void code_colours_of(struct group *group, struct symbol_encoder *encoder)
 {
-	struct predict_step *steps = malloc(mesh->vertex_count * sizeof(*steps));
-	int8_t(*normals)[2] = malloc(mesh->vertex_count * sizeof(*normals));
-	int rc = steps && normals ? predict_steps(steps, mesh) : -ENOMEM;
+	struct symbol_coder coder = { encoder, group->coder.decoder };
+	int bits = group->precision.colour_bits, open_bits = group->precision.open_bits;
+	int32_t mask = (1 << bits) - 1, open_mask = (1 << open_bits) - 1;
+	uint8_t grey = (uint8_t)(mask / 2);
+	const uint8_t unknown[4] = { grey, grey, grey, (uint8_t)open_mask };
 
-	for (uint32_t i = 0; rc == 0 && !encoding && i < mesh->vertex_count; i++)
-		rc = get_position(streams, mesh, &steps[i], &precision->range);
+	for (uint32_t v = 0; v < group->mesh.vertex_count; v++) {
+		uint8_t *colour = group->vertices[v].colour, guess[4];
+		uint32_t colour_model, open_model;
+		int32_t green, red, blue, open;
+
+		predict_colour(guess, &colour_model, &open_model, &group->mesh.steps[v],
+			       group->vertices, unknown);
+		green = code_difference(&coder, &group->greens[colour_model], colour[1] - guess[1],
+					bits);
+		red = green + code_difference(&coder, &group->tints[0],
+					      colour[0] - guess[0] - green, bits);
+		blue = green + code_difference(&coder, &group->tints[1],
+					       colour[2] - guess[2] - green, bits);
+		open = code_difference(&coder, &group->opens[open_model], colour[3] - guess[3],
+				       open_bits);
+		colour[0] = (uint8_t)((guess[0] + red) & mask);
+		colour[1] = (uint8_t)((guess[1] + green) & mask);
+		colour[2] = (uint8_t)((guess[2] + blue) & mask);
+		colour[3] = (uint8_t)((guess[3] + open) & open_mask);
+	}
+	group->coder.decoder = coder.decoder;
+}
+
+static int code_positions(struct group *group)
+{
+	return group->coder.encoder ? code_positions_of(group, group->coder.encoder)
+				    : code_positions_of(group, NULL);
+}
+
+static int code_normals(struct group *group)
+{
+	const struct connectivity *mesh = &group->mesh;
+	int64_t(*sums)[3] = calloc(mesh->vertex_count, sizeof(*sums));
+	const uint32_t *members = mesh->members;
+	const uint16_t *indices = mesh->indices;
+
+	if (!sums)
+		return -ENOMEM;
+	for (uint32_t p = 0; p < mesh->patch_count; p++) {
+		predict_add_normals(sums, group->vertices, members, indices,
+				    mesh->patch_triangles[p]);
+		members += mesh->patch_vertices[p];
+		indices += 3 * (size_t)mesh->patch_triangles[p];
+	}
+	if (group->coder.encoder)
+		code_normals_of(group, group->coder.encoder, (const int64_t(*)[3])sums);
+	else
+		code_normals_of(group, NULL, (const int64_t(*)[3])sums);
+	free(sums);
+	return 0;
+}
+
+static void code_colours(struct group *group)
+{
+	if (group->coder.encoder)
+		code_colours_of(group, group->coder.encoder);
+	else
+		code_colours_of(group, NULL);
+}
+
+static int code_vertices(struct group *group)
+{
+	int rc = code_positions(group);
+
 	if (rc == 0)
-		rc = predict_normals(normals, mesh);
-	for (uint32_t i = 0; rc == 0 && i < mesh->vertex_count; i++) {
-		if (encoding)
-			put_vertex(streams, mesh, &steps[i], normals[steps[i].vertex], precision);
-		else
-			get_rest(streams, mesh, &steps[i], normals[steps[i].vertex], precision);
-	}
-	free(steps);
-	free(normals);
+		rc = code_normals(group);
+	if (rc == 0)
+		code_colours(group);
 	return rc;
 }
+
+static void group_destroy(struct group *group)
+{
+	if (!group)
+		return;
+	symbol_encoder_finish(&group->encoder);
+	connectivity_finish(&group->mesh);
+	free(group->vertices);
+	free(group);
+}
+
+/* ---- encoding */
 
 static bool counts_fit(uint32_t vertex_count, uint32_t triangle_count)
 {
@@ -257,57 +264,6 @@ static bool indices_fit(const struct patch_mesh *mesh)
 	return true;
 }
 
-/* The index codec may rotate the corners of a triangle. The encoder must predict vertices from the
- * same triangles as the decoder. So *decoded is the patch with its indices as the decoder will see
- * them; these are owned by the caller. */
-static int encode_indices(struct buffer *out, struct patch_mesh *decoded,
-			  const struct patch_mesh *mesh)
-{
-	size_t count = 3 * (size_t)mesh->triangle_count, size;
-	uint32_t wide[3 * PATCH_TRIANGLES_MAX];
-	uint8_t *packed;
-
-	for (size_t i = 0; i < count; i++)
-		wide[i] = mesh->indices[i];
-	size = meshopt_encodeIndexBufferBound(count, mesh->vertex_count);
-	packed = malloc(size);
-	if (!packed)
-		return -ENOMEM;
-	size = meshopt_encodeIndexBuffer(packed, size, wide, count);
-	buffer_put(out, packed, size);
-	*decoded = *mesh;
-	decoded->indices = malloc(count * sizeof(*decoded->indices));
-	if (!decoded->indices ||
-	    meshopt_decodeIndexBuffer(decoded->indices, count, 2, packed, size) != 0) {
-		free(decoded->indices);
-		decoded->indices = NULL;
-		free(packed);
-		return -ENOMEM;
-	}
-	free(packed);
-	return out->error;
-}
-
-static int put_streams(struct buffer *out, const struct streams *streams, enum patch_effort effort)
-{
-	for (int i = 0; i < streams->count; i++) {
-		size_t bound = ZSTD_compressBound(streams->size[i]);
-		uint8_t *packed = malloc(bound);
-		size_t size = packed ? ZSTD_compress(packed, bound, streams->data[i],
-						     streams->size[i], zstd_levels[effort])
-				     : 0;
-
-		if (!packed || ZSTD_isError(size)) {
-			free(packed);
-			return -ENOMEM;
-		}
-		buffer_put_u32(out, (uint32_t)size);
-		buffer_put(out, packed, size);
-		free(packed);
-	}
-	return out->error;
-}
-
 static uint8_t bits_of(uint8_t value, uint8_t bits)
 {
 	while (widen((uint8_t)(value >> (8 - bits)), bits) != value)
@@ -315,110 +271,82 @@ static uint8_t bits_of(uint8_t value, uint8_t bits)
 	return bits;
 }
 
-static void tell_vertex(struct precision *precision, const struct patch_vertex *vertex)
+/* Lowers zeros until no more low bits are omitted than are zero in digits. */
+static void allow_bits(uint8_t *zeros, int digits)
 {
-	int digits = vertex->normal[0] | vertex->normal[1];
+	while (digits & ((1 << *zeros) - 1))
+		--*zeros;
+}
 
-	while (digits & ((1 << precision->normal_zeros) - 1))
-		precision->normal_zeros--;
+static void allow_vertex(struct precision *precision, const struct patch_vertex *vertex)
+{
+	const uint16_t *position = vertex->position;
+
+	allow_bits(&precision->position_zeros, position[0] | position[1] | position[2]);
+	allow_bits(&precision->normal_zeros, vertex->normal[0] | vertex->normal[1]);
 	for (int i = 0; i < 3; i++)
 		precision->colour_bits = bits_of(vertex->colour[i], precision->colour_bits);
 	precision->open_bits = bits_of(vertex->colour[3], precision->open_bits);
 }
 
-static struct precision precision_of(const struct patch_mesh *patches, uint32_t patch_count)
+static struct precision precision_of(const struct patch_source *source)
 {
-	struct precision precision = { NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN, narrow };
+	struct precision precision = { POSITION_ZEROS_MAX, NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN };
 
-	for (uint32_t p = 0; p < patch_count; p++)
-		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
-			tell_vertex(&precision, &patches[p].vertices[v]);
+	for (uint32_t v = 0; v < source->vertex_count; v++)
+		allow_vertex(&precision, &source->vertices[v]);
 	return precision;
 }
 
-/* Returns -EINVAL if a place is none of a lattice. A group near the lattice's origin needs no base,
- * and so no group of a small site. */
-static int find_range(struct predict_range *out, const struct patch_mesh *patches,
-		      uint32_t patch_count)
+static void put_header(struct buffer *out, const struct group *group)
 {
-	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX }, high[3] = { 0 };
+	buffer_put(out, magic, sizeof(magic));
+	buffer_put_u8(out, VERSION);
+	buffer_put_u8(out, 0);
+	buffer_put_u8(out, (uint8_t)group->mesh.patch_count);
+	buffer_put_u8(out, group->precision.position_zeros);
+	buffer_put_u8(out, group->precision.normal_zeros);
+	buffer_put_u8(out, group->precision.colour_bits);
+	buffer_put_u8(out, group->precision.open_bits);
+	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
+		buffer_put_u16(out, (uint16_t)group->mesh.patch_vertices[p]);
+		buffer_put_u16(out, (uint16_t)group->mesh.patch_triangles[p]);
+	}
+}
 
-	for (uint32_t p = 0; p < patch_count; p++)
-		for (uint32_t v = 0; v < patches[p].vertex_count; v++)
-			for (int i = 0; i < 3; i++) {
-				int32_t at = patches[p].vertices[v].position[i];
-
-				if (at < 0 || at >= LATTICE_PLACES_MAX)
-					return -EINVAL;
-				low[i] = at < low[i] ? at : low[i];
-				high[i] = at > high[i] ? at : high[i];
-			}
-	*out = narrow;
-	if (high[0] <= UINT16_MAX && high[1] <= UINT16_MAX && high[2] <= UINT16_MAX)
-		return 0;
-	memcpy(out->base, low, sizeof(low));
-	for (int i = 0; i < 3; i++)
-		if (high[i] - low[i] > UINT16_MAX)
-			out->most = wide_most;
+/* Puts the vertices in the order in which they are coded, shortened. */
+static int take_vertices(struct group *group, const struct patch_source *source)
+{
+	group->vertices = malloc(group->mesh.vertex_count * sizeof(*group->vertices));
+	if (!group->vertices)
+		return -ENOMEM;
+	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
+		group->vertices[v] =
+			shorten(&group->precision, &source->vertices[group->mesh.sources[v]]);
 	return 0;
 }
 
-static bool has_base(const struct predict_range *range)
+static int encode_source(struct buffer *out, struct group *group, struct patch_source *source)
 {
-	return range->base[0] != 0 || range->base[1] != 0 || range->base[2] != 0 || is_wide(range);
-}
+	int rc;
 
-static void put_range(struct buffer *out, const struct predict_range *range)
-{
-	buffer_put_u8(out, is_wide(range) ? 3 : 2);
-	for (int i = 0; i < 3; i++)
-		buffer_put_u32(out, (uint32_t)range->base[i]);
-}
-
-/* Writes header and streams of patches whose indices are already packed. */
-static int put_group(struct buffer *out, struct patch_mesh *decoded, uint32_t patch_count,
-		     const uint32_t *index_bytes, struct bytes indices, enum patch_effort effort)
-{
-	struct precision precision = precision_of(decoded, patch_count);
-	struct streams streams;
-	size_t vertex_count = 0;
-	int rc = find_range(&precision.range, decoded, patch_count);
-	bool placed = rc == 0 && has_base(&precision.range);
-
+	group->precision = precision_of(source);
+	rc = connectivity_code(&group->mesh, &group->coder, source);
+	if (rc == 0)
+		rc = take_vertices(group, source);
+	if (rc == 0)
+		rc = code_vertices(group);
 	if (rc < 0)
 		return rc;
-	buffer_put(out, magic, sizeof(magic));
-	buffer_put_u8(out, VERSION);
-	buffer_put_u8(out, (uint8_t)(patch_count | (placed ? PLACED : 0)));
-	buffer_put_u8(out, precision.normal_zeros);
-	buffer_put_u8(out, precision.colour_bits);
-	buffer_put_u8(out, precision.open_bits);
-	if (placed)
-		put_range(out, &precision.range);
-	for (uint32_t p = 0; p < patch_count; p++) {
-		buffer_put_u16(out, (uint16_t)decoded[p].vertex_count);
-		buffer_put_u16(out, (uint16_t)decoded[p].triangle_count);
-		buffer_put_u16(out, (uint16_t)index_bytes[p]);
-		vertex_count += decoded[p].vertex_count;
-	}
-	rc = streams_init(&streams, indices.size, vertex_count, is_wide(&precision.range));
-	if (rc == 0)
-		memcpy(streams.data[STREAM_INDICES], indices.data, indices.size);
-	for (uint32_t p = 0; rc == 0 && p < patch_count; p++)
-		rc = code_vertices(&streams, &decoded[p], &precision, true);
-	if (rc == 0)
-		rc = put_streams(out, &streams, effort);
-	streams_finish(&streams);
-	return rc;
+	put_header(out, group);
+	return symbol_encoder_put(&group->encoder, out);
 }
 
-int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count,
-		       enum patch_effort effort)
+int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uint32_t patch_count)
 {
-	struct patch_mesh decoded[GROUP_PATCHES_MAX] = { 0 };
-	uint32_t index_bytes[GROUP_PATCHES_MAX];
-	struct buffer indices;
-	int rc = 0;
+	struct patch_source source = { 0 };
+	struct group *group;
+	int rc;
 
 	if (patch_count < 1 || patch_count > GROUP_PATCHES_MAX)
 		return -EINVAL;
@@ -426,135 +354,123 @@ int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uin
 		if (!counts_fit(patches[p].vertex_count, patches[p].triangle_count) ||
 		    !indices_fit(&patches[p]))
 			return -EINVAL;
-	buffer_init(&indices, GROUP_PATCHES_MAX * INDEX_BYTES_MAX);
-	for (uint32_t p = 0; rc == 0 && p < patch_count; p++) {
-		size_t before = indices.size;
-
-		rc = encode_indices(&indices, &decoded[p], &patches[p]);
-		index_bytes[p] = (uint32_t)(indices.size - before);
-		if (rc == 0 && index_bytes[p] > UINT16_MAX)
-			rc = -EINVAL;
+	group = calloc(1, sizeof(*group));
+	if (!group)
+		return -ENOMEM;
+	symbol_encoder_init(&group->encoder);
+	group->coder.encoder = &group->encoder;
+	group->mesh.patch_count = patch_count;
+	for (uint32_t p = 0; p < patch_count; p++) {
+		group->mesh.patch_vertices[p] = patches[p].vertex_count;
+		group->mesh.patch_triangles[p] = patches[p].triangle_count;
 	}
+	rc = patch_source_init(&source, patches, patch_count);
 	if (rc == 0)
-		rc = put_group(out, decoded, patch_count, index_bytes, buffer_bytes(&indices),
-			       effort);
-	for (uint32_t p = 0; p < patch_count; p++)
-		free(decoded[p].indices);
-	buffer_finish(&indices);
+		rc = encode_source(out, group, &source);
+	patch_source_finish(&source);
+	group_destroy(group);
 	return rc;
 }
 
+/* ---- decoding */
+
 static bool get_precision(struct reader *reader, struct precision *out)
 {
+	out->position_zeros = reader_u8(reader);
 	out->normal_zeros = reader_u8(reader);
 	out->colour_bits = reader_u8(reader);
 	out->open_bits = reader_u8(reader);
-	return out->normal_zeros <= NORMAL_ZEROS_MAX && out->colour_bits >= BITS_MIN &&
-	       out->colour_bits <= 8 && out->open_bits >= BITS_MIN && out->open_bits <= 8;
+	return out->position_zeros <= POSITION_ZEROS_MAX && out->normal_zeros <= NORMAL_ZEROS_MAX &&
+	       out->colour_bits >= BITS_MIN && out->colour_bits <= 8 &&
+	       out->open_bits >= BITS_MIN && out->open_bits <= 8;
 }
 
-static bool get_range(struct reader *reader, struct predict_range *out)
+static int get_header(struct reader *reader, struct group *group)
 {
-	uint8_t bytes = reader_u8(reader);
-	bool good = bytes == 2 || bytes == 3;
-
-	out->most = bytes == 3 ? wide_most : UINT16_MAX;
-	for (int i = 0; i < 3; i++) {
-		uint32_t base = reader_u32(reader);
-
-		good = good && base < LATTICE_PLACES_MAX;
-		out->base[i] = (int32_t)(base % LATTICE_PLACES_MAX);
-	}
-	return good;
-}
-
-static int get_header(struct reader *reader, struct patch_mesh *patches, uint32_t *patch_count,
-		      uint32_t *index_bytes, struct precision *precision)
-{
+	struct connectivity *mesh = &group->mesh;
 	struct bytes start = reader_bytes(reader, sizeof(magic));
-	bool placed;
 
 	if (reader->failed || memcmp(start.data, magic, sizeof(magic)) != 0 ||
-	    reader_u8(reader) != VERSION)
+	    reader_u8(reader) != VERSION || reader_u8(reader) != 0)
 		return -EBADMSG;
-	*patch_count = reader_u8(reader);
-	placed = *patch_count & PLACED;
-	*patch_count &= ~(uint32_t)PLACED;
-	precision->range = narrow;
-	if (*patch_count < 1 || *patch_count > GROUP_PATCHES_MAX ||
-	    !get_precision(reader, precision) || (placed && !get_range(reader, &precision->range)))
+	mesh->patch_count = reader_u8(reader);
+	if (mesh->patch_count < 1 || mesh->patch_count > GROUP_PATCHES_MAX ||
+	    !get_precision(reader, &group->precision))
 		return -EBADMSG;
-	for (uint32_t p = 0; p < *patch_count; p++) {
-		patches[p].vertex_count = reader_u16(reader);
-		patches[p].triangle_count = reader_u16(reader);
-		index_bytes[p] = reader_u16(reader);
-		if (!counts_fit(patches[p].vertex_count, patches[p].triangle_count))
+	for (uint32_t p = 0; p < mesh->patch_count; p++) {
+		mesh->patch_vertices[p] = reader_u16(reader);
+		mesh->patch_triangles[p] = reader_u16(reader);
+		if (!counts_fit(mesh->patch_vertices[p], mesh->patch_triangles[p]))
 			return -EBADMSG;
 	}
 	return reader->failed ? -EBADMSG : 0;
 }
 
-static int get_streams(struct reader *reader, struct streams *streams)
+static int decode_group(struct group *group, struct reader *reader)
 {
-	for (int i = 0; i < streams->count; i++) {
-		struct bytes packed = reader_bytes(reader, reader_u32(reader));
+	int rc = symbol_decoder_init(&group->coder.decoder, reader);
 
-		if (reader->failed ||
-		    ZSTD_getFrameContentSize(packed.data, packed.size) != streams->size[i])
-			return -EBADMSG;
-		if (ZSTD_decompress(streams->data[i], streams->size[i], packed.data, packed.size) !=
-		    streams->size[i])
-			return -EBADMSG;
-	}
-	return reader_left(reader) == 0 ? 0 : -EBADMSG;
+	if (rc == 0 && reader_left(reader) != 0)
+		rc = -EBADMSG;
+	if (rc == 0)
+		rc = connectivity_code(&group->mesh, &group->coder, NULL);
+	if (rc < 0)
+		return rc;
+	group->vertices = calloc(group->mesh.vertex_count, sizeof(*group->vertices));
+	if (!group->vertices)
+		return -ENOMEM;
+	rc = code_vertices(group);
+	return rc == 0 && !symbol_decoder_complete(&group->coder.decoder) ? -EBADMSG : rc;
 }
 
-static int decode_patch(struct patch_mesh *mesh, struct streams *streams, uint32_t index_bytes,
-			const struct precision *precision)
+/* Fills the patches of a decoded group. */
+static int give_patches(struct patch_mesh *patches, const struct group *group)
 {
-	const uint8_t *packed = streams->data[STREAM_INDICES] + streams->at[STREAM_INDICES];
+	const uint32_t *members = group->mesh.members;
+	const uint16_t *indices = group->mesh.indices;
 
-	mesh->vertices = calloc(mesh->vertex_count, sizeof(*mesh->vertices));
-	mesh->indices = calloc(3 * (size_t)mesh->triangle_count, sizeof(*mesh->indices));
-	if (!mesh->vertices || !mesh->indices)
-		return -ENOMEM;
-	streams->at[STREAM_INDICES] += index_bytes;
-	if (meshopt_decodeIndexBuffer(mesh->indices, 3 * (size_t)mesh->triangle_count, 2, packed,
-				      index_bytes) != 0 ||
-	    !indices_fit(mesh))
-		return -EBADMSG;
-	return code_vertices(streams, mesh, precision, false);
+	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
+		group->vertices[v] = lengthen(&group->precision, &group->vertices[v]);
+	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
+		struct patch_mesh *mesh = &patches[p];
+		size_t index_count = 3 * (size_t)group->mesh.patch_triangles[p];
+
+		mesh->vertex_count = group->mesh.patch_vertices[p];
+		mesh->triangle_count = group->mesh.patch_triangles[p];
+		mesh->vertices = malloc(mesh->vertex_count * sizeof(*mesh->vertices));
+		mesh->indices = malloc(index_count * sizeof(*mesh->indices));
+		if (!mesh->vertices || !mesh->indices)
+			return -ENOMEM;
+		for (uint32_t v = 0; v < mesh->vertex_count; v++)
+			mesh->vertices[v] = group->vertices[members[v]];
+		memcpy(mesh->indices, indices, index_count * sizeof(*mesh->indices));
+		members += mesh->vertex_count;
+		indices += index_count;
+	}
+	return 0;
 }
 
 int patch_group_decode(struct patch_mesh patches[GROUP_PATCHES_MAX], uint32_t *patch_count,
 		       struct bytes object)
 {
-	uint32_t index_bytes[GROUP_PATCHES_MAX];
-	size_t index_total = 0, vertex_total = 0;
-	struct precision precision = { 0 };
-	struct streams streams = { 0 };
+	struct group *group = calloc(1, sizeof(*group));
 	struct reader reader;
-	int rc;
+	int rc = group ? 0 : -ENOMEM;
 
 	memset(patches, 0, GROUP_PATCHES_MAX * sizeof(*patches));
+	*patch_count = 0;
 	reader_init(&reader, object);
-	rc = get_header(&reader, patches, patch_count, index_bytes, &precision);
-	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++) {
-		index_total += index_bytes[p];
-		vertex_total += patches[p].vertex_count;
-	}
 	if (rc == 0)
-		rc = streams_init(&streams, index_total, vertex_total, is_wide(&precision.range));
+		rc = get_header(&reader, group);
 	if (rc == 0)
-		rc = get_streams(&reader, &streams);
-	for (uint32_t p = 0; rc == 0 && p < *patch_count; p++)
-		rc = decode_patch(&patches[p], &streams, index_bytes[p], &precision);
-	streams_finish(&streams);
-	if (rc < 0) {
-		for (uint32_t p = 0; p < GROUP_PATCHES_MAX; p++)
-			patch_mesh_finish(&patches[p]);
-		*patch_count = 0;
-	}
+		rc = decode_group(group, &reader);
+	if (rc == 0)
+		rc = give_patches(patches, group);
+	if (rc == 0)
+		*patch_count = group->mesh.patch_count;
+	for (uint32_t p = 0; rc < 0 && p < GROUP_PATCHES_MAX; p++)
+		patch_mesh_finish(&patches[p]);
+	group_destroy(group);
 	return rc;
 }
 

@@ -239,7 +239,7 @@ int group_job_write(const struct job_site *site, struct group_job *job, uint32_t
 	buffer_init(&job->object, OBJECT_BYTES_MAX);
 	if (rc == 0) {
 		bound_group(job);
-		rc = patch_group_encode(&job->object, meshes, job->patch_count, PATCH_FAST);
+		rc = patch_group_encode(&job->object, meshes, job->patch_count);
 	}
 	for (uint32_t p = 0; meshes && p < job->patch_count; p++)
 		patch_mesh_finish(&meshes[p]);

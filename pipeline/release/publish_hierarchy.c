@@ -71,7 +71,7 @@ static int round_group(struct buffer *object)
 		}
 	}
 	buffer_clear(object);
-	rc = patch_group_encode(object, meshes, count, PATCH_SMALL);
+	rc = patch_group_encode(object, meshes, count);
 	for (uint32_t p = 0; p < count; p++)
 		patch_mesh_finish(&meshes[p]);
 	return rc;

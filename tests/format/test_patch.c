@@ -76,7 +76,7 @@ static void gives_back_every_bit_of_every_patch(void **state)
 	(void)state;
 	patches[2].vertices[4].normal[0] = -128; /* odd, but it is the caller's */
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, patches, 3, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, patches, 3) == 0);
 	CHECK(object.size < 24 * (SIDE * SIDE + 4 + 81));
 	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == 0);
 	CHECK(count == 3);
@@ -102,7 +102,7 @@ static void tells_round_numbers_in_fewer_bytes(void **state)
 			mesh.vertices[v].colour[i] =
 				(uint8_t)((4 * v + i + 1) * 2654435761u >> 11 & 0xff);
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
 	exact_bytes = object.size;
 	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
 		struct patch_vertex *vertex = &mesh.vertices[v];
@@ -115,7 +115,7 @@ static void tells_round_numbers_in_fewer_bytes(void **state)
 		vertex->colour[3] = (uint8_t)((vertex->colour[3] & 0xf0) | vertex->colour[3] >> 4);
 	}
 	buffer_clear(&object);
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
 	CHECK(object.size < 9 * exact_bytes / 10);
 	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == 0);
 	CHECK(count == 1);
@@ -135,7 +135,7 @@ static void keeps_vertices_that_no_triangle_names(void **state)
 	mesh.triangle_count = 2;
 	mesh.indices[1] = mesh.indices[0]; /* and triangles without area */
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
 	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == 0);
 	check_equal(&mesh, &back[0]);
 	patch_mesh_finish(&back[0]);
@@ -150,12 +150,12 @@ static void refuses_to_encode_what_is_no_patch(void **state)
 
 	(void)state;
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, &mesh, 0, PATCH_SMALL) == -EINVAL);
-	CHECK(patch_group_encode(&object, &mesh, GROUP_PATCHES_MAX + 1, PATCH_SMALL) == -EINVAL);
+	CHECK(patch_group_encode(&object, &mesh, 0) == -EINVAL);
+	CHECK(patch_group_encode(&object, &mesh, GROUP_PATCHES_MAX + 1) == -EINVAL);
 	mesh.indices[5] = (uint16_t)mesh.vertex_count;
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == -EINVAL);
+	CHECK(patch_group_encode(&object, &mesh, 1) == -EINVAL);
 	mesh.triangle_count = 0;
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == -EINVAL);
+	CHECK(patch_group_encode(&object, &mesh, 1) == -EINVAL);
 	patch_mesh_finish(&mesh);
 	buffer_finish(&object);
 }
@@ -184,7 +184,7 @@ static void refuses_every_truncation_and_anything_behind(void **state)
 
 	(void)state;
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, patches, 2, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, patches, 2) == 0);
 	for (size_t n = 0; n < object.size; n++)
 		CHECK(decode_exact(object.data, n) == -EBADMSG);
 	CHECK(decode_exact(object.data, object.size) == 0);
@@ -202,7 +202,7 @@ static void survives_every_flipped_bit_of_the_header(void **state)
 
 	(void)state;
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
 	for (size_t bit = 0; bit < 8 * 15; bit++) {
 		object.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
 		int rc = decode_exact(object.data, object.size);

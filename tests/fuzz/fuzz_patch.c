@@ -20,7 +20,7 @@ static void decode(struct bytes object)
 	if (patch_group_decode(patches, &patch_count, object) < 0)
 		return;
 	buffer_init(&again, 64 << 20);
-	if (patch_group_encode(&again, patches, patch_count, PATCH_SMALL) < 0)
+	if (patch_group_encode(&again, patches, patch_count) < 0)
 		abort();
 	buffer_finish(&again);
 	for (uint32_t p = 0; p < patch_count; p++)

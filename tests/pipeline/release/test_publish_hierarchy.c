@@ -39,7 +39,7 @@ static int put_object(uint32_t group)
 	int rc;
 
 	buffer_init(&object, OBJECT_BYTES_MAX);
-	rc = patch_group_encode(&object, &mesh, 1, PATCH_SMALL);
+	rc = patch_group_encode(&object, &mesh, 1);
 	places[group] = group == 0 ? 0 : places[group - 1] + sizes[group - 1];
 	sizes[group] = (uint32_t)object.size;
 	if (rc == 0 && write(master.fd, object.data, object.size) != (ssize_t)object.size)

@@ -123,7 +123,7 @@ static inline void tiny_group(struct object_store *objects, struct page_child *o
 		vertices[i].normal[0] = 1;
 	}
 	buffer_init(&object, 1 << 20);
-	CHECK(patch_group_encode(&object, &mesh, 1, PATCH_SMALL) == 0);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
 	CHECK(object_store_add(objects, buffer_bytes(&object), out) == 0);
 	buffer_finish(&object);
 }

@@ -233,7 +233,7 @@ static struct page_child little_hierarchy(struct little_release *r)
 			little_describe(&patches[g * LITTLE_BOXES + (uint32_t)b], &m, g,
 					g == 0 ? 1 : HIERARCHY_NONE);
 		}
-		CHECK(patch_group_encode(&out, meshes, LITTLE_BOXES, PATCH_SMALL) == 0);
+		CHECK(patch_group_encode(&out, meshes, LITTLE_BOXES) == 0);
 		for (int b = 0; b < LITTLE_BOXES; b++)
 			patch_mesh_finish(&meshes[b]);
 		children[g] = little_add(r, &out, false);
