@@ -143,8 +143,8 @@ static struct predict_step step_after(const struct walk *walk)
 
 static force_inline bool add_triangle(struct walk *walk, const uint32_t corners[3])
 {
-	uint16_t *indices = walk->mesh->indices +
-			    3 * (size_t)(walk->first_triangle + walk->triangle_count);
+	uint16_t *indices =
+		walk->mesh->indices + 3 * (size_t)(walk->first_triangle + walk->triangle_count);
 
 	for (int i = 0; i < 3; i++) {
 		struct corner *corner = &walk->corners[corners[i]];
@@ -344,8 +344,8 @@ static force_inline int code_gate(struct walk *walk, struct symbol_coder *coder,
 
 	if (coder->encoder)
 		choice = choose(walk, gate);
-	choice.operation = symbol_code(coder, operation_model(walk, gate), OP_COUNT,
-				       choice.operation);
+	choice.operation =
+		symbol_code(coder, operation_model(walk, gate), OP_COUNT, choice.operation);
 	if (choice.operation == OP_LATER)
 		return code_later(walk, coder, at, choice.distance);
 	gate->state = choice.operation == OP_OPEN ? GATE_OPEN : GATE_CLOSED;
@@ -375,8 +375,7 @@ static force_inline int code_gate(struct walk *walk, struct symbol_coder *coder,
 		grow_alone(walk, gate, corners[2]);
 		break;
 	default:
-		choice.distance = choice.operation == OP_NEXT_2 ||
-						  choice.operation == OP_PREVIOUS_2
+		choice.distance = choice.operation == OP_NEXT_2 || choice.operation == OP_PREVIOUS_2
 					  ? 2
 					  : code_far(walk, coder, choice.distance);
 		if (choice.distance == 0)
@@ -442,8 +441,7 @@ static force_inline int code_patch(struct walk *walk, struct symbol_coder *coder
 		if (gate != NONE)
 			rc = code_gate(walk, coder, gate);
 		else
-			rc = code_seed(walk, coder,
-				       coder->encoder ? take_seed(walk, &seed) : NULL);
+			rc = code_seed(walk, coder, coder->encoder ? take_seed(walk, &seed) : NULL);
 	}
 	while (rc == 0 && walk->member_count < walk->mesh->patch_vertices[walk->patch]) {
 		uint32_t source = walk->source ? walk->source->loose[walk->loose++] : NONE;

@@ -1,6 +1,6 @@
 /* Codes which vertices the triangles of a patch group connect, by the cut-border machine (Gumhold
- * and Strasser 1998, "Real time compression of triangle mesh connectivity"): triangles are added one
- * by one to the edges of those before, and a symbol says where the third corner is. Private to
+ * and Strasser 1998, "Real time compression of triangle mesh connectivity"): triangles are added
+ * one by one to the edges of those before, and a symbol says where the third corner is. Private to
  * format/.
  *
  * Encoder and decoder run the same machine; only what the encoder looks up in its source differs.

@@ -11,7 +11,6 @@
 enum {
 	VERSION = 3,
 	POSITION_ZEROS_MAX = 12,
-	NORMAL_ZEROS_MAX = 4,
 	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
 };
 
@@ -20,8 +19,8 @@ static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
 /* The fewest bits that express every vertex of a group without loss. While vertices are coded, they
  * are without the bits that are omitted. */
 struct precision {
-	uint8_t position_zeros, normal_zeros; /* low bits that are zero in all of them */
-	uint8_t colour_bits, open_bits;
+	uint8_t position_zeros; /* low bits that are zero in all of them */
+	uint8_t normal_bits, colour_bits, open_bits;
 };
 
 /* One group while it is coded, in either direction. */
@@ -49,7 +48,7 @@ static int32_t unfold(uint32_t folded)
 /* Codes the difference of two numbers of bits bits, which wraps around. Returns it in that many
  * bits. */
 static force_inline int32_t code_difference(struct symbol_coder *coder, struct symbol_model *model,
-			       int32_t difference, int bits)
+					    int32_t difference, int bits)
 {
 	int32_t mask = (1 << bits) - 1;
 
@@ -73,9 +72,28 @@ uint8_t patch_round_colour(uint8_t value, int bits)
 	return widen((uint8_t)((value * most + 127) / 255), bits);
 }
 
-static int shorten_normal(int guess, int zeros)
+/* -127, 0 and 127 stay what they are. -128 is no normal, and needs 8 bits. */
+static int8_t shorten_normal(int8_t value, int bits)
 {
-	return (guess + ((1 << zeros) >> 1)) >> zeros;
+	int most = (1 << (bits - 1)) - 1;
+
+	if (bits == 8)
+		return value;
+	return (int8_t)((value * most + (value < 0 ? -63 : 63)) / 127);
+}
+
+static int8_t widen_normal(int8_t value, int bits)
+{
+	int most = (1 << (bits - 1)) - 1;
+
+	if (bits == 8)
+		return value;
+	return (int8_t)((value * 127 + (value < 0 ? -most / 2 : most / 2)) / most);
+}
+
+int8_t patch_round_normal(int8_t value, int bits)
+{
+	return widen_normal(shorten_normal(value, bits), bits);
 }
 
 static struct patch_vertex shorten(const struct precision *precision,
@@ -86,7 +104,7 @@ static struct patch_vertex shorten(const struct precision *precision,
 	for (int i = 0; i < 3; i++)
 		out.position[i] >>= precision->position_zeros;
 	for (int i = 0; i < 2; i++)
-		out.normal[i] = (int8_t)(out.normal[i] >> precision->normal_zeros);
+		out.normal[i] = shorten_normal(out.normal[i], precision->normal_bits);
 	for (int i = 0; i < 4; i++)
 		out.colour[i] >>= 8 - (i < 3 ? precision->colour_bits : precision->open_bits);
 	return out;
@@ -100,10 +118,10 @@ static struct patch_vertex lengthen(const struct precision *precision,
 	for (int i = 0; i < 3; i++)
 		out.position[i] = (uint16_t)(out.position[i] << precision->position_zeros);
 	for (int i = 0; i < 2; i++)
-		out.normal[i] = (int8_t)(uint8_t)((uint32_t)out.normal[i] << precision->normal_zeros);
+		out.normal[i] = widen_normal(out.normal[i], precision->normal_bits);
 	for (int i = 0; i < 4; i++)
-		out.colour[i] = widen(out.colour[i],
-				      i < 3 ? precision->colour_bits : precision->open_bits);
+		out.colour[i] =
+			widen(out.colour[i], i < 3 ? precision->colour_bits : precision->open_bits);
 	return out;
 }
 
@@ -124,9 +142,9 @@ static force_inline int code_positions_of(struct group *group, struct symbol_enc
 
 		predict_position(guess, models, &group->mesh.steps[v], group->vertices, most);
 		for (int i = 0; i < 3; i++) {
-			at = guess[i] + unfold(symbol_code_number(
-						&coder, &group->positions[models[i]],
-						fold(position[i] - guess[i]), bits));
+			at = guess[i] +
+			     unfold(symbol_code_number(&coder, &group->positions[models[i]],
+						       fold(position[i] - guess[i]), bits));
 			if (at < 0 || at > most)
 				return -EBADMSG;
 			position[i] = (uint16_t)at;
@@ -140,19 +158,20 @@ static force_inline void code_normals_of(struct group *group, struct symbol_enco
 					 const int64_t (*sums)[3])
 {
 	struct symbol_coder coder = { encoder, group->coder.decoder };
-	int zeros = group->precision.normal_zeros, bits = 8 - zeros;
+	int bits = group->precision.normal_bits;
 
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++) {
 		int8_t *normal = group->vertices[v].normal, guess[2];
 
 		predict_octahedral(guess, sums[v]);
 		for (int i = 0; i < 2; i++) {
-			int32_t value = shorten_normal(guess[i], zeros);
+			int32_t value = shorten_normal(guess[i], bits);
 
 			value += code_difference(&coder, &group->normals[i], normal[i] - value,
 						 bits);
 			/* The sign is the highest of the bits. */
-			normal[i] = (int8_t)((int8_t)(uint8_t)((uint32_t)value << zeros) >> zeros);
+			normal[i] = (int8_t)((int8_t)(uint8_t)((uint32_t)value << (8 - bits)) >>
+					     (8 - bits));
 		}
 	}
 	group->coder.decoder = coder.decoder;
@@ -176,8 +195,8 @@ static force_inline void code_colours_of(struct group *group, struct symbol_enco
 			       group->vertices, unknown);
 		green = code_difference(&coder, &group->greens[colour_model], colour[1] - guess[1],
 					bits);
-		red = green + code_difference(&coder, &group->tints[0],
-					      colour[0] - guess[0] - green, bits);
+		red = green +
+		      code_difference(&coder, &group->tints[0], colour[0] - guess[0] - green, bits);
 		blue = green + code_difference(&coder, &group->tints[1],
 					       colour[2] - guess[2] - green, bits);
 		open = code_difference(&coder, &group->opens[open_model], colour[3] - guess[3],
@@ -264,6 +283,13 @@ static bool indices_fit(const struct patch_mesh *mesh)
 	return true;
 }
 
+static uint8_t bits_of_normal(int8_t value, uint8_t bits)
+{
+	while (bits < 8 && patch_round_normal(value, bits) != value)
+		bits++;
+	return bits;
+}
+
 static uint8_t bits_of(uint8_t value, uint8_t bits)
 {
 	while (widen((uint8_t)(value >> (8 - bits)), bits) != value)
@@ -271,19 +297,14 @@ static uint8_t bits_of(uint8_t value, uint8_t bits)
 	return bits;
 }
 
-/* Lowers zeros until no more low bits are omitted than are zero in digits. */
-static void allow_bits(uint8_t *zeros, int digits)
-{
-	while (digits & ((1 << *zeros) - 1))
-		--*zeros;
-}
-
 static void allow_vertex(struct precision *precision, const struct patch_vertex *vertex)
 {
-	const uint16_t *position = vertex->position;
+	int digits = vertex->position[0] | vertex->position[1] | vertex->position[2];
 
-	allow_bits(&precision->position_zeros, position[0] | position[1] | position[2]);
-	allow_bits(&precision->normal_zeros, vertex->normal[0] | vertex->normal[1]);
+	while (digits & ((1 << precision->position_zeros) - 1))
+		precision->position_zeros--;
+	for (int i = 0; i < 2; i++)
+		precision->normal_bits = bits_of_normal(vertex->normal[i], precision->normal_bits);
 	for (int i = 0; i < 3; i++)
 		precision->colour_bits = bits_of(vertex->colour[i], precision->colour_bits);
 	precision->open_bits = bits_of(vertex->colour[3], precision->open_bits);
@@ -291,7 +312,7 @@ static void allow_vertex(struct precision *precision, const struct patch_vertex 
 
 static struct precision precision_of(const struct patch_source *source)
 {
-	struct precision precision = { POSITION_ZEROS_MAX, NORMAL_ZEROS_MAX, BITS_MIN, BITS_MIN };
+	struct precision precision = { POSITION_ZEROS_MAX, BITS_MIN, BITS_MIN, BITS_MIN };
 
 	for (uint32_t v = 0; v < source->vertex_count; v++)
 		allow_vertex(&precision, &source->vertices[v]);
@@ -305,7 +326,7 @@ static void put_header(struct buffer *out, const struct group *group)
 	buffer_put_u8(out, 0);
 	buffer_put_u8(out, (uint8_t)group->mesh.patch_count);
 	buffer_put_u8(out, group->precision.position_zeros);
-	buffer_put_u8(out, group->precision.normal_zeros);
+	buffer_put_u8(out, group->precision.normal_bits);
 	buffer_put_u8(out, group->precision.colour_bits);
 	buffer_put_u8(out, group->precision.open_bits);
 	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
@@ -374,15 +395,19 @@ int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uin
 
 /* ---- decoding */
 
+static bool bits_fit(uint8_t bits)
+{
+	return bits >= BITS_MIN && bits <= 8;
+}
+
 static bool get_precision(struct reader *reader, struct precision *out)
 {
 	out->position_zeros = reader_u8(reader);
-	out->normal_zeros = reader_u8(reader);
+	out->normal_bits = reader_u8(reader);
 	out->colour_bits = reader_u8(reader);
 	out->open_bits = reader_u8(reader);
-	return out->position_zeros <= POSITION_ZEROS_MAX && out->normal_zeros <= NORMAL_ZEROS_MAX &&
-	       out->colour_bits >= BITS_MIN && out->colour_bits <= 8 &&
-	       out->open_bits >= BITS_MIN && out->open_bits <= 8;
+	return out->position_zeros <= POSITION_ZEROS_MAX && bits_fit(out->normal_bits) &&
+	       bits_fit(out->colour_bits) && bits_fit(out->open_bits);
 }
 
 static int get_header(struct reader *reader, struct group *group)

@@ -26,5 +26,7 @@ void patch_mesh_finish(struct patch_mesh *mesh);
 /* Returns the nearest value that bits bits can express (4 to 8); 0 and 255 stay. A group takes
  * fewer bytes if all its colours need at most so many bits. */
 uint8_t patch_round_colour(uint8_t value, int bits);
+/* The same for a component of a normal; -127, 0 and 127 stay. */
+int8_t patch_round_normal(int8_t value, int bits);
 
 #endif

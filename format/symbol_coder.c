@@ -7,7 +7,7 @@
 
 enum {
 	SCALE = SYMBOL_SCALE,
-	TOTAL_MAX = 30000,             /* then the past is worth half */
+	TOTAL_MAX = 30000, /* then the past is worth half */
 	PERIOD_MIN = 8,
 	PERIOD_MAX = 1024
 };
@@ -95,8 +95,8 @@ void symbol_encode(struct symbol_encoder *encoder, struct symbol_model *model, u
 	model->symbols[symbol].count += SYMBOL_COUNT_STEP;
 }
 
-void symbol_encode_number(struct symbol_encoder *encoder, struct symbol_model *model, uint32_t number,
-			  uint32_t bits)
+void symbol_encode_number(struct symbol_encoder *encoder, struct symbol_model *model,
+			  uint32_t number, uint32_t bits)
 {
 	uint32_t symbol = number, plain = 0;
 

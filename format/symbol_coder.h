@@ -28,9 +28,9 @@ enum {
 struct symbol_model {
 	uint16_t left, period; /* symbols until the next update; between two of them */
 	uint16_t size;         /* number of symbols; 0: not used yet */
-		struct {
-		uint16_t start, count; /* start: cumulated probability, out of SYMBOL_SCALE */
-	} symbols[SYMBOLS_MAX + 1];    /* the last one ends the one before */
+	struct {
+		uint16_t start, count;  /* start: cumulated probability, out of SYMBOL_SCALE */
+	} symbols[SYMBOLS_MAX + 1];     /* the last one ends the one before */
 	uint8_t at[SYMBOL_BUCKETS + 8]; /* the symbol at the first place of each bucket; a fill may
 					 * write 7 more */
 };

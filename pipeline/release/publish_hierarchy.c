@@ -36,7 +36,10 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 }
 
 /* Vertex colours are seen only where there is no image, and need no more precision. */
-enum { COLOUR_BITS = 6, OPEN_BITS = 4 };
+enum { COLOUR_BITS = 5, OPEN_BITS = 4, NORMAL_BITS = 5, ZEROS_MAX = 12 };
+
+/* Positions are rounded to steps that are at most this part of the error of the finest shown. */
+#define ERROR_SHARE 8
 
 static void round_colours(uint8_t colour[4])
 {
@@ -44,19 +47,98 @@ static void round_colours(uint8_t colour[4])
 		colour[i] = patch_round_colour(colour[i], i < 3 ? COLOUR_BITS : OPEN_BITS);
 }
 
-/* Rounds to multiples of 4, halves away from zero. -128 is no valid normal. */
 static void round_normal(int8_t normal[2])
 {
-	for (int i = 0; i < 2; i++) {
-		int value = (normal[i] + (normal[i] < 0 ? -2 : 2)) / 4 * 4;
+	for (int i = 0; i < 2; i++)
+		normal[i] = patch_round_normal(normal[i], NORMAL_BITS);
+}
 
-		normal[i] = (int8_t)(value > 124 ? 124 : value < -124 ? -124 : value);
+/* Rounds to multiples of 2^zeros, below 2^16. */
+static void round_position(uint16_t position[3], int zeros)
+{
+	int step = 1 << zeros, most = (1 << 16) - step;
+
+	for (int i = 0; i < 3; i++) {
+		int value = (position[i] + step / 2) / step * step;
+
+		position[i] = (uint16_t)(value > most ? most : value);
 	}
 }
 
-/* Reduces precision equally for equal vertices, so that neighbours still agree. Positions stay
- * unchanged: they decide which image is seen where (docs/patch.md has the figures). */
-static int round_group(struct buffer *object)
+struct patch_error {
+	float error_m;
+	uint32_t triangle_count;
+};
+
+static int compare_errors(const void *a, const void *b)
+{
+	float left = ((const struct patch_error *)a)->error_m;
+	float right = ((const struct patch_error *)b)->error_m;
+
+	return (left > right) - (left < right);
+}
+
+/* Sets *out to the error of the finest that a release shows: half of the triangles that nothing
+ * published refines are at least as wrong. */
+static int median_error(float *out, const struct master *master, const struct master_cut *cut)
+{
+	const struct hierarchy *hierarchy = &cut->hierarchy;
+	struct patch_error *errors = calloc(hierarchy->patch_count, sizeof(*errors));
+	uint64_t triangles = 0, below = 0;
+	uint32_t count = 0;
+
+	if (!errors)
+		return -ENOMEM;
+	for (uint32_t p = 0; p < hierarchy->patch_count; p++) {
+		const struct hierarchy_patch *patch = &hierarchy->patches[p];
+		const struct hierarchy_group *whole =
+			&master->hierarchy.groups[cut->groups[patch->group]];
+		uint32_t at = p - hierarchy->groups[patch->group].first_patch;
+		uint32_t finer = master->hierarchy.patches[whole->first_patch + at].finer;
+
+		if (patch->finer != HIERARCHY_NONE)
+			continue;
+		errors[count++] = (struct patch_error){
+			finer == HIERARCHY_NONE ? 0 : master->hierarchy.groups[finer].error_m,
+			patch->triangle_count
+		};
+		triangles += patch->triangle_count;
+	}
+	qsort(errors, count, sizeof(*errors), compare_errors);
+	*out = 0;
+	for (uint32_t i = 0; 2 * below < triangles; i++) {
+		below += errors[i].triangle_count;
+		*out = errors[i].error_m;
+	}
+	free(errors);
+	return 0;
+}
+
+/* Returns how many low bits of positions say less than an ERROR_SHARE-th of the error. They are the
+ * same for the whole release, so that neighbours still meet. */
+static int position_zeros(float error_m, double step_m)
+{
+	int zeros = 0;
+
+	while (zeros < ZEROS_MAX && ERROR_SHARE * step_m * (2 << zeros) <= error_m)
+		zeros++;
+	return zeros;
+}
+
+/* Spheres must hold what rounding moves; all grow alike, so those that enclose others still do. */
+static void grow_spheres(struct hierarchy *hierarchy, double step_m, int zeros)
+{
+	float by_m = zeros > 0 ? (float)(0.87 * step_m * (1 << zeros)) : 0; /* sqrt(3) / 2 */
+
+	for (uint32_t i = 0; i < hierarchy->group_count; i++)
+		hierarchy->groups[i].radius_m += by_m;
+	for (uint32_t i = 0; i < hierarchy->patch_count; i++)
+		hierarchy->patches[i].radius_m += by_m;
+}
+
+/* Reduces precision equally for equal vertices, so that neighbours still agree (docs/patch.md has
+ * the figures). */
+static int round_group(struct buffer *object, int zeros)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count;
@@ -66,6 +148,7 @@ static int round_group(struct buffer *object)
 		return rc;
 	for (uint32_t p = 0; p < count; p++) {
 		for (uint32_t v = 0; v < meshes[p].vertex_count; v++) {
+			round_position(meshes[p].vertices[v].position, zeros);
 			round_colours(meshes[p].vertices[v].colour);
 			round_normal(meshes[p].vertices[v].normal);
 		}
@@ -78,7 +161,7 @@ static int round_group(struct buffer *object)
 }
 
 static int add_groups(struct object_store *objects, const struct master *master,
-		      const struct master_cut *cut, struct page_child *children)
+		      const struct master_cut *cut, int zeros, struct page_child *children)
 {
 	struct buffer object;
 	int rc = 0;
@@ -88,7 +171,7 @@ static int add_groups(struct object_store *objects, const struct master *master,
 		buffer_clear(&object);
 		rc = master_read_group(master, cut->groups[i], &object);
 		if (rc == 0)
-			rc = round_group(&object);
+			rc = round_group(&object, zeros);
 		if (rc == 0)
 			rc = object_store_add(objects, buffer_bytes(&object), &children[i]);
 	}
@@ -119,11 +202,16 @@ int publish_hierarchy(struct object_store *objects, const struct master *master,
 {
 	struct page_child *children = NULL;
 	struct master_cut cut = { 0 };
-	int rc = make_cut(&cut, master, share);
+	float error_m = 0;
+	int rc = make_cut(&cut, master, share), zeros = 0;
 
+	if (rc == 0)
+		rc = median_error(&error_m, master, &cut);
 	if (rc == 0) {
+		zeros = position_zeros(error_m, master->lattice.step_m);
+		grow_spheres(&cut.hierarchy, master->lattice.step_m, zeros);
 		children = calloc(cut.hierarchy.group_count, sizeof(*children));
-		rc = children ? add_groups(objects, master, &cut, children) : -ENOMEM;
+		rc = children ? add_groups(objects, master, &cut, zeros, children) : -ENOMEM;
 	}
 	if (rc == 0)
 		rc = add_page(objects, &cut.hierarchy, children, out);

@@ -1,87 +1,91 @@
-/* Any bytes as a patch group: refused, or a group that encodes and decodes to itself. */
+/* Any bytes as a patch group: refused, or a group that encodes and decodes to itself. And any
+ * triangles as patches: they encode, and decode to as many. */
 #include "format/patch.h"
 
 #include <stdlib.h>
 
 #include "tests/fuzz/repack.h"
 
-/* docs/patch.md: of the streams behind the indices, bytes a vertex; the last is of wide groups. */
-static const uint8_t bytes_a_vertex[] = { 3, 3, 2, 1, 2, 1, 3 };
-enum { PLACED = 0x80 };
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void check_round_trip(const struct patch_mesh *patches, uint32_t patch_count)
+{
+	struct patch_mesh back[GROUP_PATCHES_MAX];
+	struct buffer object;
+	uint32_t count;
+
+	buffer_init(&object, 64 << 20);
+	if (patch_group_encode(&object, patches, patch_count) < 0 ||
+	    patch_group_decode(back, &count, buffer_bytes(&object)) < 0 || count != patch_count)
+		abort();
+	for (uint32_t p = 0; p < count; p++) {
+		if (back[p].vertex_count != patches[p].vertex_count ||
+		    back[p].triangle_count != patches[p].triangle_count)
+			abort();
+		patch_mesh_finish(&back[p]);
+	}
+	buffer_finish(&object);
+}
 
 static void decode(struct bytes object)
 {
 	struct patch_mesh patches[GROUP_PATCHES_MAX];
 	uint32_t patch_count;
-	struct buffer again;
 
 	if (patch_group_decode(patches, &patch_count, object) < 0)
 		return;
-	buffer_init(&again, 64 << 20);
-	if (patch_group_encode(&again, patches, patch_count) < 0)
-		abort();
-	buffer_finish(&again);
+	check_round_trip(patches, patch_count);
 	for (uint32_t p = 0; p < patch_count; p++)
 		patch_mesh_finish(&patches[p]);
 }
 
-static void put_stream(struct buffer *object, struct reader *in, size_t size)
+/* Counts of vertices and triangles, then for each vertex its place and the rest from two bytes, so
+ * that patches easily share some, then the corners of the triangles. */
+static struct patch_mesh read_mesh(struct reader *in)
 {
-	struct buffer frame;
+	struct patch_mesh mesh = { .vertex_count = 1u + reader_u8(in),
+				   .triangle_count = 1u + reader_u8(in) };
 
-	buffer_init(&frame, REPACK_BYTES_MAX);
-	repack_put(&frame, in, size);
-	buffer_put_u32(object, (uint32_t)frame.size);
-	buffer_put(object, frame.data, frame.size);
-	buffer_finish(&frame);
+	mesh.vertices = calloc(mesh.vertex_count, sizeof(*mesh.vertices));
+	mesh.indices = calloc(3 * mesh.triangle_count, sizeof(*mesh.indices));
+	if (!mesh.vertices || !mesh.indices)
+		abort();
+	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+		struct patch_vertex *vertex = &mesh.vertices[v];
+		const uint8_t place = reader_u8(in), rest = reader_u8(in);
+
+		for (int i = 0; i < 3; i++)
+			vertex->position[i] = (uint16_t)(place << 8 >> 3 * i);
+		for (int i = 0; i < 4; i++)
+			vertex->colour[i] = (uint8_t)(rest << i);
+		vertex->normal[0] = (int8_t)rest;
+		vertex->normal[1] = (int8_t)(place ^ rest);
+	}
+	for (uint32_t i = 0; i < 3 * mesh.triangle_count; i++)
+		mesh.indices[i] = (uint16_t)(reader_u8(in) % mesh.vertex_count);
+	return mesh;
 }
 
-/* 'R', the header from its number of patches on, and what the streams hold, one after the other. */
-static void pack_and_decode(const uint8_t *data, size_t size)
+/* 'R', the number of patches, and what read_mesh reads for each. */
+static void encode(struct bytes bytes)
 {
-	size_t index_bytes = 0, vertices = 0, streams = sizeof(bytes_a_vertex) - 1;
-	struct buffer object;
+	struct patch_mesh patches[4];
 	struct reader in;
-	uint8_t count;
+	uint32_t patch_count;
 
-	reader_init(&in, (struct bytes){ data + 1, size - 1 });
-	buffer_init(&object, REPACK_BYTES_MAX);
-	buffer_put(&object, "GPpg\2", 5);
-	count = reader_u8(&in);
-	buffer_put_u8(&object, count);
-	for (int i = 0; i < 3; i++)
-		buffer_put_u8(&object, reader_u8(&in));
-	if (count & PLACED) {
-		const uint8_t bytes = reader_u8(&in);
-
-		streams += bytes == 3;
-		buffer_put_u8(&object, bytes);
-		for (int i = 0; i < 3; i++)
-			buffer_put_u32(&object, reader_u32(&in));
-	}
-	for (uint8_t p = 0; p < (count & ~PLACED); p++) {
-		const uint16_t of_patch = reader_u16(&in) % 2000, triangles = reader_u16(&in);
-		const uint16_t of_indices = reader_u16(&in) % 4000;
-
-		vertices += of_patch;
-		index_bytes += of_indices;
-		buffer_put_u16(&object, of_patch);
-		buffer_put_u16(&object, triangles);
-		buffer_put_u16(&object, of_indices);
-	}
-	put_stream(&object, &in, index_bytes);
-	for (size_t i = 0; i < streams; i++)
-		put_stream(&object, &in, bytes_a_vertex[i] * vertices);
-	decode(buffer_bytes(&object));
-	buffer_finish(&object);
+	reader_init(&in, bytes);
+	patch_count = 1 + reader_u8(&in) % 4u;
+	for (uint32_t p = 0; p < patch_count; p++)
+		patches[p] = read_mesh(&in);
+	check_round_trip(patches, patch_count);
+	for (uint32_t p = 0; p < patch_count; p++)
+		patch_mesh_finish(&patches[p]);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	if (repack_is_raw(data, size))
-		pack_and_decode(data, size);
+		encode((struct bytes){ data + 1, size - 1 });
 	else
 		decode((struct bytes){ data, size });
 	return 0;

@@ -84,7 +84,8 @@ static int set_up(void **state)
 						      .radius_m = 20 - (float)i };
 		losses_m4[i] = errors[i];
 	}
-	master = (struct master){ .source_triangles = 10000,
+	master = (struct master){ .lattice = { .step_m = 1 },
+				  .source_triangles = 10000,
 				  .hierarchy = { GROUPS, PATCHES, groups, patches },
 				  .places = places,
 				  .sizes = sizes,
@@ -195,9 +196,34 @@ static void colours_are_rounded_and_places_are_not(void **state)
 	CHECK(publish(0.02, &page, &back) == 200);
 	vertex = read_object(page.children[0].hash);
 	CHECK(vertex.position[0] == 0 && vertex.position[1] == 9 && vertex.position[2] == 7);
-	CHECK(vertex.normal[0] == 124 && vertex.normal[1] == -124);
+	CHECK(vertex.normal[0] == 127 && vertex.normal[1] == -127);
 	CHECK(vertex.colour[0] == 0 && vertex.colour[1] == 255 && vertex.colour[3] == 255);
-	CHECK(vertex.colour[2] == 101); /* 25 of 63 */
+	CHECK(vertex.colour[2] == 99); /* 12 of 31 */
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
+/* Group 0 alone is wrong by 3 m and 4 m: an eighth of 3 m are 37 steps, so positions are multiples
+ * of 32, and the spheres hold what moved. With everything, nothing is wrong, and nothing is
+ * rounded. */
+static void places_are_rounded_as_the_finest_is_wrong(void **state)
+{
+	struct patch_vertex vertex;
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	master.lattice.step_m = 0.01;
+	CHECK(publish(0.02, &page, &back) == 200);
+	vertex = read_object(page.children[0].hash);
+	CHECK(vertex.position[0] % 32 == 0 && vertex.position[1] % 32 == 0);
+	CHECK(back.patches[0].radius_m >= 1 + sqrtf(3) * 0.16f && back.patches[0].radius_m < 1.3f);
+	CHECK(back.groups[0].radius_m > 20.27f);
+	hierarchy_finish(&back);
+	page_finish(&page);
+	CHECK(publish(1.0, &page, &back) == 1200);
+	vertex = read_object(page.children[0].hash);
+	CHECK(vertex.position[1] == 9 && back.patches[0].radius_m == 1);
 	hierarchy_finish(&back);
 	page_finish(&page);
 }
@@ -245,6 +271,8 @@ int main(void)
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(objects_go_with_their_groups, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(colours_are_rounded_and_places_are_not, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(places_are_rounded_as_the_finest_is_wrong, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(what_costs_most_goes_first, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(the_top_is_published_whatever_the_share, set_up,
