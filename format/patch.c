@@ -7,9 +7,13 @@
 #include <string.h>
 
 #include "format/connectivity.h"
+#include "format/root_page.h"
 
 enum {
 	VERSION = 3,
+	FLAG_BASE = 1, /* a base follows the precision */
+	NARROW_BITS = 16,
+	WIDE_BITS = 24,
 	POSITION_ZEROS_MAX = 12,
 	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
 };
@@ -23,11 +27,20 @@ struct precision {
 	uint8_t normal_bits, colour_bits, open_bits;
 };
 
+/* The places of a group: positions count from base and have so many bits. */
+struct range {
+	int32_t base[3];
+	int bits;
+};
+
+static const struct range narrow = { .bits = NARROW_BITS };
+
 /* One group while it is coded, in either direction. */
 struct group {
 	struct symbol_encoder encoder;
 	struct symbol_coder coder;
 	struct precision precision;
+	struct range range;
 	struct connectivity mesh;
 	struct patch_vertex *vertices; /* owned; mesh.vertex_count of them */
 	struct symbol_model positions[PREDICT_POSITION_MODELS], normals[2];
@@ -96,13 +109,14 @@ int8_t patch_round_normal(int8_t value, int bits)
 	return widen_normal(shorten_normal(value, bits), bits);
 }
 
-static struct patch_vertex shorten(const struct precision *precision,
-				   const struct patch_vertex *vertex)
+static struct patch_vertex shorten(const struct group *group, const struct patch_vertex *vertex)
 {
+	const struct precision *precision = &group->precision;
 	struct patch_vertex out = *vertex;
 
 	for (int i = 0; i < 3; i++)
-		out.position[i] >>= precision->position_zeros;
+		out.position[i] =
+			(out.position[i] - group->range.base[i]) >> precision->position_zeros;
 	for (int i = 0; i < 2; i++)
 		out.normal[i] = shorten_normal(out.normal[i], precision->normal_bits);
 	for (int i = 0; i < 4; i++)
@@ -110,13 +124,14 @@ static struct patch_vertex shorten(const struct precision *precision,
 	return out;
 }
 
-static struct patch_vertex lengthen(const struct precision *precision,
-				    const struct patch_vertex *vertex)
+static struct patch_vertex lengthen(const struct group *group, const struct patch_vertex *vertex)
 {
+	const struct precision *precision = &group->precision;
 	struct patch_vertex out = *vertex;
 
 	for (int i = 0; i < 3; i++)
-		out.position[i] = (uint16_t)(out.position[i] << precision->position_zeros);
+		out.position[i] =
+			group->range.base[i] + (out.position[i] << precision->position_zeros);
 	for (int i = 0; i < 2; i++)
 		out.normal[i] = widen_normal(out.normal[i], precision->normal_bits);
 	for (int i = 0; i < 4; i++)
@@ -127,16 +142,30 @@ static struct patch_vertex lengthen(const struct precision *precision,
 
 /* ---- vertices, in both directions: what is encoded is in group->vertices already */
 
+/* The largest shortened position on each axis, so that no place lies beyond the lattice. */
+static void positions_most(int32_t most[3], const struct group *group)
+{
+	for (int i = 0; i < 3; i++) {
+		int32_t in_range = (1 << group->range.bits) - 1;
+		int32_t in_lattice = LATTICE_PLACES_MAX - 1 - group->range.base[i];
+
+		most[i] = (in_range < in_lattice ? in_range : in_lattice) >>
+			  group->precision.position_zeros;
+	}
+}
+
 /* The functions that end in _of are compiled once for each direction. */
 
 static force_inline int code_positions_of(struct group *group, struct symbol_encoder *encoder)
 {
 	struct symbol_coder coder = { encoder, group->coder.decoder };
-	int32_t most = UINT16_MAX >> group->precision.position_zeros;
-	uint32_t bits = 17 - (uint32_t)group->precision.position_zeros;
+	/* differences have a bit more */
+	uint32_t bits = (uint32_t)(group->range.bits + 1 - group->precision.position_zeros);
+	int32_t most[3];
 
+	positions_most(most, group);
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++) {
-		uint16_t *position = group->vertices[v].position;
+		int32_t *position = group->vertices[v].position;
 		uint32_t models[3];
 		int32_t guess[3], at;
 
@@ -145,9 +174,9 @@ static force_inline int code_positions_of(struct group *group, struct symbol_enc
 			at = guess[i] +
 			     unfold(symbol_code_number(&coder, &group->positions[models[i]],
 						       fold(position[i] - guess[i]), bits));
-			if (at < 0 || at > most)
+			if (at < 0 || at > most[i])
 				return -EBADMSG;
-			position[i] = (uint16_t)at;
+			position[i] = at;
 		}
 	}
 	group->coder.decoder = coder.decoder;
@@ -319,16 +348,52 @@ static struct precision precision_of(const struct patch_source *source)
 	return precision;
 }
 
+/* A group near the lattice's origin needs no base, and so no group of a small site. Returns -EINVAL
+ * if a place is none of a lattice. */
+static int find_range(struct range *out, const struct patch_source *source)
+{
+	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX }, high[3] = { 0 };
+
+	for (uint32_t v = 0; v < source->vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
+			int32_t at = source->vertices[v].position[i];
+
+			if (at < 0 || at >= LATTICE_PLACES_MAX)
+				return -EINVAL;
+			low[i] = at < low[i] ? at : low[i];
+			high[i] = at > high[i] ? at : high[i];
+		}
+	*out = narrow;
+	if (high[0] <= UINT16_MAX && high[1] <= UINT16_MAX && high[2] <= UINT16_MAX)
+		return 0;
+	memcpy(out->base, low, sizeof(low));
+	for (int i = 0; i < 3; i++)
+		if (high[i] - low[i] > UINT16_MAX)
+			out->bits = WIDE_BITS;
+	return 0;
+}
+
+static bool has_base(const struct range *range)
+{
+	return range->base[0] != 0 || range->base[1] != 0 || range->base[2] != 0 ||
+	       range->bits != NARROW_BITS;
+}
+
 static void put_header(struct buffer *out, const struct group *group)
 {
 	buffer_put(out, magic, sizeof(magic));
 	buffer_put_u8(out, VERSION);
-	buffer_put_u8(out, 0);
+	buffer_put_u8(out, has_base(&group->range) ? FLAG_BASE : 0);
 	buffer_put_u8(out, (uint8_t)group->mesh.patch_count);
 	buffer_put_u8(out, group->precision.position_zeros);
 	buffer_put_u8(out, group->precision.normal_bits);
 	buffer_put_u8(out, group->precision.colour_bits);
 	buffer_put_u8(out, group->precision.open_bits);
+	if (has_base(&group->range)) {
+		buffer_put_u8(out, (uint8_t)(group->range.bits / 8));
+		for (int i = 0; i < 3; i++)
+			buffer_put_u32(out, (uint32_t)group->range.base[i]);
+	}
 	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
 		buffer_put_u16(out, (uint16_t)group->mesh.patch_vertices[p]);
 		buffer_put_u16(out, (uint16_t)group->mesh.patch_triangles[p]);
@@ -342,15 +407,16 @@ static int take_vertices(struct group *group, const struct patch_source *source)
 	if (!group->vertices)
 		return -ENOMEM;
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
-		group->vertices[v] =
-			shorten(&group->precision, &source->vertices[group->mesh.sources[v]]);
+		group->vertices[v] = shorten(group, &source->vertices[group->mesh.sources[v]]);
 	return 0;
 }
 
 static int encode_source(struct buffer *out, struct group *group, struct patch_source *source)
 {
-	int rc;
+	int rc = find_range(&group->range, source);
 
+	if (rc < 0)
+		return rc;
 	group->precision = precision_of(source);
 	rc = connectivity_code(&group->mesh, &group->coder, source);
 	if (rc == 0)
@@ -410,17 +476,39 @@ static bool get_precision(struct reader *reader, struct precision *out)
 	       bits_fit(out->colour_bits) && bits_fit(out->open_bits);
 }
 
+static bool get_range(struct reader *reader, struct range *out)
+{
+	uint8_t bytes = reader_u8(reader);
+	bool good = bytes == NARROW_BITS / 8 || bytes == WIDE_BITS / 8;
+
+	out->bits = 8 * bytes;
+	for (int i = 0; i < 3; i++) {
+		uint32_t base = reader_u32(reader);
+
+		good = good && base < LATTICE_PLACES_MAX;
+		out->base[i] = (int32_t)(base % LATTICE_PLACES_MAX);
+	}
+	return good;
+}
+
 static int get_header(struct reader *reader, struct group *group)
 {
 	struct connectivity *mesh = &group->mesh;
 	struct bytes start = reader_bytes(reader, sizeof(magic));
+	uint8_t flags;
 
 	if (reader->failed || memcmp(start.data, magic, sizeof(magic)) != 0 ||
-	    reader_u8(reader) != VERSION || reader_u8(reader) != 0)
+	    reader_u8(reader) != VERSION)
+		return -EBADMSG;
+	flags = reader_u8(reader);
+	if (flags & ~FLAG_BASE)
 		return -EBADMSG;
 	mesh->patch_count = reader_u8(reader);
 	if (mesh->patch_count < 1 || mesh->patch_count > GROUP_PATCHES_MAX ||
 	    !get_precision(reader, &group->precision))
+		return -EBADMSG;
+	group->range = narrow;
+	if (flags & FLAG_BASE && !get_range(reader, &group->range))
 		return -EBADMSG;
 	for (uint32_t p = 0; p < mesh->patch_count; p++) {
 		mesh->patch_vertices[p] = reader_u16(reader);
@@ -455,7 +543,7 @@ static int give_patches(struct patch_mesh *patches, const struct group *group)
 	const uint16_t *indices = group->mesh.indices;
 
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
-		group->vertices[v] = lengthen(&group->precision, &group->vertices[v]);
+		group->vertices[v] = lengthen(group, &group->vertices[v]);
 	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
 		struct patch_mesh *mesh = &patches[p];
 		size_t index_count = 3 * (size_t)group->mesh.patch_triangles[p];

@@ -10,8 +10,8 @@
 
 enum { GROUP_PATCHES_MAX = 64 };
 
-/* Appends the object. Returns -EINVAL if a count or an index is out of range, -ENOMEM or the error
- * of out. */
+/* Appends the object. Returns -EINVAL if a count, an index or a position is out of range, -ENOMEM
+ * or the error of out. */
 must_check int patch_group_encode(struct buffer *out, const struct patch_mesh *patches,
 				  uint32_t patch_count);
 /* Fills at most GROUP_PATCHES_MAX meshes, owned by the caller: end each with patch_mesh_finish().

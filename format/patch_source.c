@@ -23,10 +23,10 @@ static uint32_t table_size(uint32_t entries)
 
 static uint32_t vertex_hash(const struct patch_vertex *vertex)
 {
-	uint32_t words[3], hash = 0;
+	uint32_t words[sizeof(*vertex) / sizeof(uint32_t)], hash = 0;
 
 	memcpy(words, vertex, sizeof(words));
-	for (int i = 0; i < 3; i++)
+	for (size_t i = 0; i < ARRAY_COUNT(words); i++)
 		hash = (hash ^ words[i]) * 2654435761u;
 	return hash ^ hash >> 15;
 }

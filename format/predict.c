@@ -27,11 +27,11 @@ static uint32_t position_model(int32_t extent, int32_t largest)
 }
 
 void predict_position(int32_t out[3], uint32_t models[3], const struct predict_step *step,
-		      const struct patch_vertex *vertices, int32_t most)
+		      const struct patch_vertex *vertices, const int32_t most[3])
 {
-	const uint16_t *a = vertices[step->from[0]].position;
-	const uint16_t *b = vertices[step->from[1]].position;
-	const uint16_t *c = vertices[step->from[2]].position;
+	const int32_t *a = vertices[step->from[0]].position;
+	const int32_t *b = vertices[step->from[1]].position;
+	const int32_t *c = vertices[step->from[2]].position;
 	int32_t extents[3], largest = 0;
 
 	if (step->known_count < 2) {
@@ -50,7 +50,7 @@ void predict_position(int32_t out[3], uint32_t models[3], const struct predict_s
 		for (int i = 0; i < 3; i++) {
 			int32_t guess = a[i] + b[i] - c[i];
 
-			out[i] = guess < 0 ? 0 : guess > most ? most : guess;
+			out[i] = guess < 0 ? 0 : guess > most[i] ? most[i] : guess;
 			extents[i] = larger(distance(a[i], b[i]), distance(a[i], c[i]));
 		}
 	}
@@ -73,8 +73,9 @@ void predict_colour(uint8_t out[4], uint32_t *colour_model, uint32_t *open_model
 	*open_model = open < PREDICT_OPEN_MODELS ? open : PREDICT_OPEN_MODELS - 1;
 }
 
-/* The normal with the length of twice the area; at most 2^35 per axis. */
-static void triangle_cross(int64_t out[3], const uint16_t *a, const uint16_t *b, const uint16_t *c)
+/* The normal with the length of twice the area; at most 2^49 per axis, and 2^33 where positions
+ * have 16 bits. */
+static void triangle_cross(int64_t out[3], const int32_t *a, const int32_t *b, const int32_t *c)
 {
 	int64_t u[3], v[3];
 
@@ -96,12 +97,16 @@ static int64_t magnitude(int64_t value)
 	return value < 0 ? -value : value;
 }
 
-/* A sum of all normals of a group stays under 2^55, so that 127 times a sum fits in 64 bits. */
-void predict_octahedral(int8_t out[2], const int64_t n[3])
+/* 127 times the length must fit in 64 bits; only the sums of large triangles on a large site are
+ * halved for it. */
+void predict_octahedral(int8_t out[2], const int64_t sum[3])
 {
-	int64_t length = magnitude(n[0]) + magnitude(n[1]) + magnitude(n[2]);
-	int64_t x, y;
+	int64_t n[3] = { sum[0], sum[1], sum[2] }, length, x, y;
 
+	while (magnitude(n[0]) >> 49 || magnitude(n[1]) >> 49 || magnitude(n[2]) >> 49)
+		for (int i = 0; i < 3; i++)
+			n[i] /= 2;
+	length = magnitude(n[0]) + magnitude(n[1]) + magnitude(n[2]);
 	if (length == 0) {
 		out[0] = out[1] = 0;
 		return;

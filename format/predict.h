@@ -19,18 +19,19 @@ struct predict_step {
 };
 
 /* Models of differences: predict_position and predict_colours return numbers below these. */
-enum { PREDICT_POSITION_MODELS = 2 + 4 * 17, PREDICT_COLOUR_MODELS = 7, PREDICT_OPEN_MODELS = 6 };
+enum { PREDICT_POSITION_MODELS = 2 + 4 * 25, PREDICT_COLOUR_MODELS = 7, PREDICT_OPEN_MODELS = 6 };
 
 /* Predict one vertex from those that its step names. vertices hold numbers without their omitted
- * low bits; so do the guesses, which are 0 to most. models receives which model to use. */
+ * low bits, positions also without the base of the group; so are the guesses, which are 0 to most
+ * on each axis. models receives which model to use. */
 void predict_position(int32_t out[3], uint32_t models[3], const struct predict_step *step,
-		      const struct patch_vertex *vertices, int32_t most);
+		      const struct patch_vertex *vertices, const int32_t most[3]);
 /* Predicts the normals of all vertices of a group from positions and triangles alone. Call it for
  * each patch with sums that start at zero, then octahedral for each vertex. */
 void predict_add_normals(int64_t (*sums)[3], const struct patch_vertex *vertices,
 			 const uint32_t *members, const uint16_t *indices, uint32_t triangle_count);
-/* Encodes a sum of normals as normal_encode does, in integers; rounded to whole bytes. */
-void predict_octahedral(int8_t out[2], const int64_t n[3]);
+/* Encodes a sum of normals as normal_encode does, in integers. */
+void predict_octahedral(int8_t out[2], const int64_t sum[3]);
 /* unknown: the guess where no vertex is known. Component 3 is the share of open sky. */
 void predict_colour(uint8_t out[4], uint32_t *colour_model, uint32_t *open_model,
 		    const struct predict_step *step, const struct patch_vertex *vertices,

@@ -18,7 +18,7 @@ enum {
 	SYMBOL_BUCKETS = SYMBOL_SCALE >> SYMBOL_BUCKET_BITS,
 	SYMBOL_COUNT_STEP = 32,
 	SYMBOL_NUMBERS_WHOLE = 8, /* numbers that are symbols of their own */
-	SYMBOL_NUMBER_BITS = 24
+	SYMBOL_NUMBER_BITS = 25
 };
 
 /* A state stays in 2^31 .. 2^63 - 1 and moves by words of 32 bits. */
@@ -165,7 +165,7 @@ static force_inline uint32_t symbol_code(struct symbol_coder *coder, struct symb
 	return symbol;
 }
 
-/* Codes a number below 2^bits (4 to SYMBOL_NUMBER_BITS, the same in every call with this model);
+/* Codes a number below 2^bits (3 to SYMBOL_NUMBER_BITS, the same in every call with this model);
  * small numbers take few bits. From SYMBOL_NUMBERS_WHOLE on, a symbol says the highest bit of a
  * number and the bit below it; the rest are plain bits. */
 static force_inline uint32_t symbol_code_number(struct symbol_coder *coder,

@@ -53,15 +53,15 @@ static void round_normal(int8_t normal[2])
 		normal[i] = patch_round_normal(normal[i], NORMAL_BITS);
 }
 
-/* Rounds to multiples of 2^zeros, below 2^16. */
-static void round_position(uint16_t position[3], int zeros)
+/* Rounds to multiples of 2^zeros. places: how many the lattice has along an axis. */
+static void round_position(int32_t position[3], int zeros, int32_t places)
 {
-	int step = 1 << zeros, most = (1 << 16) - step;
+	int32_t step = 1 << zeros;
 
 	for (int i = 0; i < 3; i++) {
-		int value = (position[i] + step / 2) / step * step;
+		int32_t value = (position[i] + step / 2) / step * step;
 
-		position[i] = (uint16_t)(value > most ? most : value);
+		position[i] = value < places ? value : places - step;
 	}
 }
 
@@ -138,7 +138,7 @@ static void grow_spheres(struct hierarchy *hierarchy, double step_m, int zeros)
 
 /* Reduces precision equally for equal vertices, so that neighbours still agree (docs/patch.md has
  * the figures). */
-static int round_group(struct buffer *object, int zeros)
+static int round_group(struct buffer *object, int zeros, int32_t places)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count;
@@ -148,7 +148,7 @@ static int round_group(struct buffer *object, int zeros)
 		return rc;
 	for (uint32_t p = 0; p < count; p++) {
 		for (uint32_t v = 0; v < meshes[p].vertex_count; v++) {
-			round_position(meshes[p].vertices[v].position, zeros);
+			round_position(meshes[p].vertices[v].position, zeros, places);
 			round_colours(meshes[p].vertices[v].colour);
 			round_normal(meshes[p].vertices[v].normal);
 		}
@@ -163,6 +163,7 @@ static int round_group(struct buffer *object, int zeros)
 static int add_groups(struct object_store *objects, const struct master *master,
 		      const struct master_cut *cut, int zeros, struct page_child *children)
 {
+	int32_t places = 1 << (LATTICE_BITS + master->lattice.fine_bits);
 	struct buffer object;
 	int rc = 0;
 
@@ -171,7 +172,7 @@ static int add_groups(struct object_store *objects, const struct master *master,
 		buffer_clear(&object);
 		rc = master_read_group(master, cut->groups[i], &object);
 		if (rc == 0)
-			rc = round_group(&object, zeros);
+			rc = round_group(&object, zeros, places);
 		if (rc == 0)
 			rc = object_store_add(objects, buffer_bytes(&object), &children[i]);
 	}

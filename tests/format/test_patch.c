@@ -1,4 +1,5 @@
 #include "format/patch.h"
+#include "format/root_page.h"
 
 #include <errno.h>
 #include <math.h>
@@ -24,9 +25,9 @@ static struct patch_mesh sheet(uint32_t side, uint32_t seed)
 		struct patch_vertex *vertex = &mesh.vertices[mesh.vertex_count - 1 - v];
 		float normal[3] = { sinf((float)(v + seed)), 0.3f, 1.0f };
 
-		vertex->position[0] = (uint16_t)(500 * (v % side));
-		vertex->position[1] = (uint16_t)(65535 - 400 * (v / side));
-		vertex->position[2] = (uint16_t)((v * 7919 + seed) % 97);
+		vertex->position[0] = (int32_t)(500 * (v % side));
+		vertex->position[1] = (int32_t)(65535 - 400 * (v / side));
+		vertex->position[2] = (int32_t)((v * 7919 + seed) % 97);
 		normal_encode(vertex->normal, normal);
 		for (uint32_t i = 0; i < 4; i++)
 			vertex->colour[i] = (uint8_t)(v * (i + 3) + seed);
@@ -223,7 +224,7 @@ static void gives_back_the_smallest_and_the_largest(void **state)
 	large.indices = calloc(3 * (size_t)large.triangle_count, sizeof(*large.indices));
 	for (uint32_t v = 0; v < large.vertex_count; v++) {
 		large.indices[v] = (uint16_t)v;
-		large.vertices[v].position[v % 3] = (uint16_t)(v % 2 ? 65535 - v : v);
+		large.vertices[v].position[v % 3] = (int32_t)(v % 2 ? 65535 - v : v);
 	}
 	round_trip(&large, 1);
 	patch_mesh_finish(&large);
@@ -242,14 +243,14 @@ static void tells_round_numbers_in_fewer_bytes(void **state)
 		for (uint32_t i = 0; i < 4; i++)
 			mesh.vertices[v].colour[i] =
 				(uint8_t)((4 * v + i + 1) * 2654435761u >> 11 & 0xff);
-		mesh.vertices[v].position[2] = (uint16_t)(v * 2654435761u >> 7);
+		mesh.vertices[v].position[2] = (int32_t)(v * 2654435761u >> 16);
 	}
 	exact_bytes = round_trip(&mesh, 1);
 	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
 		struct patch_vertex *vertex = &mesh.vertices[v];
 
 		for (int i = 0; i < 3; i++)
-			vertex->position[i] = (uint16_t)(vertex->position[i] & 0xfff8);
+			vertex->position[i] &= 0xfff8;
 		for (int i = 0; i < 2; i++)
 			vertex->normal[i] = patch_round_normal(vertex->normal[i], 6);
 		for (int i = 0; i < 3; i++)
@@ -389,7 +390,7 @@ static void rounds_components_of_normals(void **state)
 		for (int value = -127; value <= 127; value++) {
 			int8_t rounded = patch_round_normal((int8_t)value, bits);
 
-			CHECK(fabs(rounded - value) <= step / 2 + 0.5);
+			CHECK(abs(rounded - value) <= step / 2 + 0.5);
 			CHECK(patch_round_normal(rounded, bits) == rounded);
 			CHECK(patch_round_normal((int8_t)-value, bits) == -rounded);
 		}
@@ -425,6 +426,82 @@ static void decodes_a_unit_vector_from_any_two_bytes(void **state)
 	}
 }
 
+/* Moves a patch, and stretches it by 2 to a power. */
+static void place(struct patch_mesh *mesh, const int32_t base[3], int stretch)
+{
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		for (int i = 0; i < 3; i++)
+			mesh->vertices[v].position[i] =
+				base[i] + (mesh->vertices[v].position[i] << stretch);
+}
+
+enum { BASE_BYTES = 13 };
+
+static void places_of_a_large_site_come_back_and_cost_thirteen_bytes_a_group(void **state)
+{
+	static const int32_t far[3] = { 12345678, LATTICE_PLACES_MAX - 65536, 70000 };
+	static const int32_t nowhere[3] = { 0, 0, 0 };
+	struct patch_mesh patches[2] = { sheet(SIDE, 1), sheet(9, 3) };
+	const size_t small = round_trip(patches, 2);
+
+	(void)state;
+	for (int p = 0; p < 2; p++)
+		place(&patches[p], far, 0);
+	/* The first vertex is predicted at the base, so the streams may differ by a few bytes. */
+	CHECK(round_trip(patches, 2) <= small + BASE_BYTES + 16);
+	patch_mesh_finish(&patches[0]);
+	patches[0] = sheet(SIDE, 1);
+	/* One patch near the origin and one far away: a wide group. */
+	CHECK(round_trip(patches, 2) > 0);
+	patch_mesh_finish(&patches[1]);
+	place(&patches[0], nowhere, 8);
+	CHECK(round_trip(patches, 1) > 0);
+	patch_mesh_finish(&patches[0]);
+}
+
+static void refuses_places_that_are_none(void **state)
+{
+	static const int32_t places[] = { -1, LATTICE_PLACES_MAX, INT32_MAX, INT32_MIN };
+	struct patch_mesh mesh = sheet(9, 3);
+	struct buffer object;
+
+	(void)state;
+	buffer_init(&object, 64 << 20);
+	for (size_t i = 0; i < sizeof(places) / sizeof(*places); i++) {
+		mesh.vertices[7].position[i % 3] = places[i];
+		CHECK(patch_group_encode(&object, &mesh, 1) == -EINVAL);
+		mesh.vertices[7].position[i % 3] = 0;
+	}
+	patch_mesh_finish(&mesh);
+	buffer_finish(&object);
+}
+
+/* The base stands behind magic, version, flags, number of patches and precision. */
+enum { FLAGS_AT = 5, BASE_AT = 11 };
+
+static void refuses_a_base_that_leads_out_of_the_lattice(void **state)
+{
+	static const int32_t base[3] = { 100000, 100000, 100000 };
+	struct patch_mesh mesh = sheet(SIDE, 1), back[GROUP_PATCHES_MAX];
+	struct buffer object;
+	uint32_t count;
+
+	(void)state;
+	place(&mesh, base, 0);
+	buffer_init(&object, 64 << 20);
+	CHECK(patch_group_encode(&object, &mesh, 1) == 0);
+	CHECK(object.data[FLAGS_AT] == 1 && object.data[BASE_AT] == 2);
+	/* 65535 steps up from the highest place that a base may have. */
+	memset(object.data + BASE_AT + 5, 0xff, 3);
+	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == -EBADMSG);
+	object.data[BASE_AT + 8] = 1;
+	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == -EBADMSG);
+	object.data[BASE_AT] = 4;
+	CHECK(patch_group_decode(back, &count, buffer_bytes(&object)) == -EBADMSG);
+	buffer_finish(&object);
+	patch_mesh_finish(&mesh);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -440,6 +517,9 @@ int main(void)
 		cmocka_unit_test(refuses_every_truncation_and_anything_behind),
 		cmocka_unit_test(survives_every_flipped_bit),
 		cmocka_unit_test(survives_bytes_at_random),
+		cmocka_unit_test(places_of_a_large_site_come_back_and_cost_thirteen_bytes_a_group),
+		cmocka_unit_test(refuses_places_that_are_none),
+		cmocka_unit_test(refuses_a_base_that_leads_out_of_the_lattice),
 		cmocka_unit_test(rounds_components_of_normals),
 		cmocka_unit_test(brings_normals_back_within_a_degree),
 		cmocka_unit_test(decodes_a_unit_vector_from_any_two_bytes),

@@ -40,8 +40,8 @@ static void decode(struct bytes object)
 }
 
 /* Counts of vertices and triangles, then for each vertex its place and the rest from two bytes, so
- * that patches easily share some, then the corners of the triangles. */
-static struct patch_mesh read_mesh(struct reader *in)
+ * that patches easily share some, then the corners of the triangles. shift is that of places. */
+static struct patch_mesh read_mesh(struct reader *in, int shift)
 {
 	struct patch_mesh mesh = { .vertex_count = 1u + reader_u8(in),
 				   .triangle_count = 1u + reader_u8(in) };
@@ -55,7 +55,7 @@ static struct patch_mesh read_mesh(struct reader *in)
 		const uint8_t place = reader_u8(in), rest = reader_u8(in);
 
 		for (int i = 0; i < 3; i++)
-			vertex->position[i] = (uint16_t)(place << 8 >> 3 * i);
+			vertex->position[i] = (place << 8 >> 3 * i) << shift;
 		for (int i = 0; i < 4; i++)
 			vertex->colour[i] = (uint8_t)(rest << i);
 		vertex->normal[0] = (int8_t)rest;
@@ -66,17 +66,19 @@ static struct patch_mesh read_mesh(struct reader *in)
 	return mesh;
 }
 
-/* 'R', the number of patches, and what read_mesh reads for each. */
+/* 'R', the number of patches beside the shift of places, and what read_mesh reads for each. */
 static void encode(struct bytes bytes)
 {
 	struct patch_mesh patches[4];
 	struct reader in;
 	uint32_t patch_count;
+	uint8_t first;
 
 	reader_init(&in, bytes);
-	patch_count = 1 + reader_u8(&in) % 4u;
+	first = reader_u8(&in);
+	patch_count = 1 + first % 4u;
 	for (uint32_t p = 0; p < patch_count; p++)
-		patches[p] = read_mesh(&in);
+		patches[p] = read_mesh(&in, first / 4 % 9);
 	check_round_trip(patches, patch_count);
 	for (uint32_t p = 0; p < patch_count; p++)
 		patch_mesh_finish(&patches[p]);
