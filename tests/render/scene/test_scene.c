@@ -519,11 +519,11 @@ static void a_mark_draws_its_border_and_leaves_the_rest(void **state)
 	strike_stage(&stage);
 }
 
-/* The pictures of a release at three places a millimetre apart, the last with a mark. Returns the
- * quality of the first. */
+/* Up to three pictures of a release, a millimetre apart, the last with a mark. Returns the quality
+ * of the first. */
 enum { SITE_PICTURES = 3, SITE_BYTES = 4 * WIDTH * HEIGHT };
 
-static double take_pictures(uint8_t *out, const int32_t base[3], double step_m,
+static double take_pictures(uint8_t *out, int count, const int32_t base[3], double step_m,
 			    enum scene_mode mode, bool wide)
 {
 	static const int32_t none[3];
@@ -539,7 +539,7 @@ static double take_pictures(uint8_t *out, const int32_t base[3], double step_m,
 	release = little_release_make(2);
 	options.mode = mode;
 	raise_stage(&stage, &options);
-	for (int i = 0; i < SITE_PICTURES; i++) {
+	for (int i = 0; i < count; i++) {
 		camera.eye_m[0] += 0.001f;
 		settle(&stage, &camera, i == 2 ? &ball : NULL);
 		memcpy(out + i * SITE_BYTES, stage.seen, SITE_BYTES);
@@ -565,17 +565,18 @@ static void the_far_corner_of_a_site_looks_like_the_near_one(void **state)
 	(void)state;
 	for (int images = 0; images < 2; images++) {
 		const enum scene_mode mode = images ? SCENE_LUMIGRAPH : SCENE_POLYGONS;
-		double quality = take_pictures(was, near, 1.0 / 4095, mode, false);
-		for (int wide = 0; wide < 2; wide++) {
-			double other = take_pictures(is, wide ? fine : far,
+		const int count = images ? 1 : SITE_PICTURES;
+		double quality = take_pictures(was, count, near, 1.0 / 4095, mode, false);
+		for (int wide = images; wide < 2; wide++) {
+			double other = take_pictures(is, count, wide ? fine : far,
 						     1.0 / (wide ? 16380 : 4095), mode, wide);
+			print_message("images %d, wide %d: %.2f dB at the origin, %.2f far away\n",
+				      images, wide, quality, other);
 			/* Which images are blended depends on the order in which they came. */
-			CHECK(fabs(other - quality) < 0.3);
+			CHECK(fabs(other - quality) < (images ? 1 : 0.01));
 			for (int i = 0; i < SITE_PICTURES && !images; i++)
 				CHECK(pixels_changed(was + i * SITE_BYTES, is + i * SITE_BYTES,
 						     24) < 20);
-			print_message("images %d, wide %d: %.2f dB at the origin, %.2f far away\n",
-				      images, wide, quality, other);
 		}
 	}
 	keep_picture("site", is);
