@@ -124,20 +124,19 @@ static struct patch_vertex shorten(const struct group *group, const struct patch
 	return out;
 }
 
-static struct patch_vertex lengthen(const struct group *group, const struct patch_vertex *vertex)
+/* In place: a copy that is read in one piece would wait for the bytes that were just written. */
+static void lengthen(const struct group *group, struct patch_vertex *vertex)
 {
 	const struct precision *precision = &group->precision;
-	struct patch_vertex out = *vertex;
 
 	for (int i = 0; i < 3; i++)
-		out.position[i] =
-			group->range.base[i] + (out.position[i] << precision->position_zeros);
+		vertex->position[i] =
+			group->range.base[i] + (vertex->position[i] << precision->position_zeros);
 	for (int i = 0; i < 2; i++)
-		out.normal[i] = widen_normal(out.normal[i], precision->normal_bits);
+		vertex->normal[i] = widen_normal(vertex->normal[i], precision->normal_bits);
 	for (int i = 0; i < 4; i++)
-		out.colour[i] =
-			widen(out.colour[i], i < 3 ? precision->colour_bits : precision->open_bits);
-	return out;
+		vertex->colour[i] = widen(vertex->colour[i],
+					  i < 3 ? precision->colour_bits : precision->open_bits);
 }
 
 /* ---- vertices, in both directions: what is encoded is in group->vertices already */
@@ -543,7 +542,7 @@ static int give_patches(struct patch_mesh *patches, const struct group *group)
 	const uint16_t *indices = group->mesh.indices;
 
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
-		group->vertices[v] = lengthen(group, &group->vertices[v]);
+		lengthen(group, &group->vertices[v]);
 	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
 		struct patch_mesh *mesh = &patches[p];
 		size_t index_count = 3 * (size_t)group->mesh.patch_triangles[p];

@@ -23,14 +23,17 @@ static void spread(struct symbol_model *model)
 		total += model->symbols[s].count;
 	per_count = ((SCALE - size) << 15) / total;
 	for (uint32_t s = 0; s < size; s++) {
+		uint64_t eight = s * 0x0101010101010101u;
 		uint32_t end, last;
 
 		sum += model->symbols[s].count;
 		end = s + 1 < size ? s + 1 + (sum * per_count >> 15) : SCALE;
 		model->symbols[s + 1].start = (uint16_t)end;
 		last = (end + (1 << SYMBOL_BUCKET_BITS) - 1) >> SYMBOL_BUCKET_BITS;
-		for (uint64_t eight = s * 0x0101010101010101u; at < last; at += 8)
+		do {
 			memcpy(model->at + at, &eight, sizeof(eight));
+			at += 8;
+		} while (at < last);
 		at = last;
 	}
 	if (total > TOTAL_MAX)

@@ -122,6 +122,8 @@ static force_inline uint32_t symbol_decode(struct symbol_decoder *decoder,
 {
 	uint64_t state = decoder->state;
 	uint32_t place = state & (SYMBOL_SCALE - 1), symbol, start;
+	uint64_t word;
+	bool low;
 
 	if (model->left == 0)
 		symbol_model_prepare(model, size);
@@ -133,12 +135,14 @@ static force_inline uint32_t symbol_decode(struct symbol_decoder *decoder,
 	state = (model->symbols[symbol + 1].start - start) * (state >> SYMBOL_SCALE_BITS) + place -
 		start;
 	model->symbols[symbol].count += SYMBOL_COUNT_STEP;
-	if (state < SYMBOL_STATE_MIN) {
-		state <<= 32;
-		if (decoder->word_at < decoder->word_count)
-			state |= symbol_word(decoder->words + 4 * decoder->word_at);
-		decoder->word_at++;
-	}
+	word = decoder->word_at < decoder->word_count
+		       ? symbol_word(decoder->words + 4 * decoder->word_at)
+		       : 0;
+	word |= state << 32;
+	/* Written so that the compiler makes no branch of it, which no processor could foresee. */
+	low = state < SYMBOL_STATE_MIN;
+	state = low ? word : state;
+	decoder->word_at += low;
 	decoder->state = decoder->state_after;
 	decoder->state_after = state;
 	return symbol;
