@@ -14,8 +14,8 @@ comma   := ,
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
-# METIS, meshoptimizer and jsmn (only a header) have no pkg-config file in Debian 12.
-EXTRA   := -lmetis -lmeshoptimizer -lm -pthread
+# METIS and jsmn (only a header) have no pkg-config file in Debian 12.
+EXTRA   := -lmetis -lm -pthread
 
 # Evaluated lazily and once, because the `deps` target may install the packages first.
 PKG_CFLAGS = $(eval PKG_CFLAGS := $(shell pkg-config --cflags $(LIBS)))$(PKG_CFLAGS)
@@ -208,7 +208,7 @@ $(BUILD)/gopura-setup: $(BUILD)/obj/system/main.o $(ARCHIVE)
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
-$(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
+$(BUILD)/tests/bench/%: EXTRA += -lmeshoptimizer -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
 $(BUILD)/tests/bench/bench_page: EXTRA += $(addprefix -Wl$(comma)--wrap=,frame_draw fingers_on_touch overlay_update)
 $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/obj/tests/bench/stage.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)

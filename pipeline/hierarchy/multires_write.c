@@ -4,12 +4,12 @@
 
 #include <errno.h>
 #include <math.h>
-#include <meshoptimizer.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "format/normal.h"
 #include "format/patch.h"
+#include "pipeline/hierarchy/normal_cone.h"
 
 static double distance(const double a[3], const double b[3])
 {
@@ -18,78 +18,46 @@ static double distance(const double a[3], const double b[3])
 	return sqrt(x * x + y * y + z * z);
 }
 
-/* Numbers the vertices of a patch, after its triangles are sorted for the vertex cache. */
-static int name_vertices(unsigned int *indices, unsigned int **globals, uint32_t *vertex_count,
-			 const struct live_patch *patch, uint32_t *local_of)
+/* Numbers the vertices of a patch as its triangles name them: out->indices, and named, of 3 a
+ * triangle. */
+static void name_vertices(struct patch_mesh *out, uint32_t *named, const struct live_patch *patch,
+			  uint32_t *local_of)
 {
-	size_t count = 3 * (size_t)patch->triangle_count;
-	unsigned int *order = malloc(count * sizeof(*order)), *named;
-
-	*vertex_count = 0;
-	*globals = named = malloc(count * sizeof(*named));
-	if (!order || !named) {
-		free(order);
-		return -ENOMEM;
-	}
-	for (size_t i = 0; i < count; i++) {
-		uint32_t *name = &local_of[patch->triangles[i / 3][i % 3]];
+	for (uint32_t i = 0; i < 3 * patch->triangle_count; i++) {
+		uint32_t vertex = patch->triangles[i / 3][i % 3], *name = &local_of[vertex];
 
 		if (*name == NO_GROUP) {
-			named[*vertex_count] = patch->triangles[i / 3][i % 3];
-			*name = (*vertex_count)++;
+			named[out->vertex_count] = vertex;
+			*name = out->vertex_count++;
 		}
-		order[i] = *name;
+		out->indices[i] = (uint16_t)*name;
 	}
-	for (uint32_t v = 0; v < *vertex_count; v++)
+	for (uint32_t v = 0; v < out->vertex_count; v++)
 		local_of[named[v]] = NO_GROUP;
-	meshopt_optimizeVertexCache(indices, order, count, *vertex_count);
-	/* Number them again in the new order, so that vertices come in the order of first use. */
-	for (size_t i = 0; i < count; i++)
-		order[i] = named[indices[i]];
-	*vertex_count = 0;
-	for (size_t i = 0; i < count; i++) {
-		uint32_t *name = &local_of[order[i]];
-
-		if (*name == NO_GROUP) {
-			named[*vertex_count] = order[i];
-			*name = (*vertex_count)++;
-		}
-		indices[i] = *name;
-	}
-	for (uint32_t v = 0; v < *vertex_count; v++)
-		local_of[named[v]] = NO_GROUP;
-	free(order);
-	return 0;
 }
 
 static int fill_mesh(struct patch_mesh *out, const struct lattice_mesh *mesh,
 		     const struct live_patch *patch, uint32_t *local_of)
 {
 	size_t count = 3 * (size_t)patch->triangle_count;
-	unsigned int *indices = malloc(count * sizeof(*indices)), *globals = NULL;
-	int rc = -ENOMEM;
+	uint32_t *named = malloc(count * sizeof(*named));
 
-	*out = (struct patch_mesh){ .triangle_count = patch->triangle_count };
-	if (indices)
-		rc = name_vertices(indices, &globals, &out->vertex_count, patch, local_of);
-	if (rc == 0) {
+	*out = (struct patch_mesh){ .triangle_count = patch->triangle_count,
+				    .indices = malloc(count * sizeof(*out->indices)) };
+	if (named && out->indices) {
+		name_vertices(out, named, patch, local_of);
 		out->vertices = calloc(out->vertex_count, sizeof(*out->vertices));
-		out->indices = malloc(count * sizeof(*out->indices));
-		rc = out->vertices && out->indices ? 0 : -ENOMEM;
 	}
-	for (uint32_t v = 0; rc == 0 && v < out->vertex_count; v++) {
-		const struct lattice_vertex *from = &mesh->vertices[globals[v]];
+	for (uint32_t v = 0; out->vertices && v < out->vertex_count; v++) {
+		const struct lattice_vertex *from = &mesh->vertices[named[v]];
 		struct patch_vertex *to = &out->vertices[v];
 
 		memcpy(to->position, from->position, sizeof(to->position));
 		memcpy(to->colour, from->colour, sizeof(to->colour));
 		normal_encode(to->normal, from->normal);
 	}
-	for (size_t i = 0; rc == 0 && i < count; i++)
-		out->indices[i] = (uint16_t)indices[i];
-	free(indices);
-	free(globals);
-	return rc;
+	free(named);
+	return out->vertices ? 0 : -ENOMEM;
 }
 
 static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *patch,
@@ -115,48 +83,6 @@ static void bound_patch(struct hierarchy_patch *out, const struct patch_mesh *pa
 		radius = fmax(radius, distance(at, centre));
 	}
 	out->radius_m = nextafterf((float)radius, INFINITY);
-}
-
-static void triangle_normal(double out[3], const struct patch_mesh *patch, uint32_t t)
-{
-	const int32_t *at[3];
-	double u[3], v[3], length;
-
-	for (int corner = 0; corner < 3; corner++)
-		at[corner] = patch->vertices[patch->indices[3 * t + (uint32_t)corner]].position;
-	for (int i = 0; i < 3; i++) {
-		u[i] = at[1][i] - at[0][i];
-		v[i] = at[2][i] - at[0][i];
-	}
-	for (int i = 0; i < 3; i++)
-		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-	length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-	for (int i = 0; i < 3; i++)
-		out[i] = length > 0.0 ? out[i] / length : 0.0;
-}
-
-/* Uses the triangles' own normals, since these decide which triangles face the camera. */
-static void bound_normals(struct hierarchy_patch *out, const struct patch_mesh *patch)
-{
-	double axis[3] = { 0.0, 0.0, 0.0 }, normal[3], length, least = 1.0;
-
-	for (uint32_t t = 0; t < patch->triangle_count; t++) {
-		triangle_normal(normal, patch, t);
-		for (int i = 0; i < 3; i++)
-			axis[i] += normal[i];
-	}
-	length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-	for (int i = 0; i < 3; i++)
-		out->cone_axis[i] = length > 1e-9 ? (float)(axis[i] / length) : (i == 2);
-	for (uint32_t t = 0; t < patch->triangle_count; t++) {
-		double dot = 0.0;
-
-		triangle_normal(normal, patch, t);
-		for (int i = 0; i < 3; i++)
-			dot += out->cone_axis[i] * normal[i];
-		least = fmin(least, dot);
-	}
-	out->cone_cos = length > 1e-9 ? (float)fmax(-1.0, least - 1e-6) : -1.0f;
 }
 
 /* Finds the farthest point of all spheres that the group's sphere must enclose. Returns its
@@ -234,7 +160,7 @@ int group_job_write(const struct job_site *site, struct group_job *job, uint32_t
 		made->vertex_count = (uint16_t)meshes[p].vertex_count;
 		job->vertex_count += meshes[p].vertex_count;
 		bound_patch(made, &meshes[p], &site->mesh->lattice);
-		bound_normals(made, &meshes[p]);
+		normal_cone_bound(made, &meshes[p]);
 	}
 	buffer_init(&job->object, OBJECT_BYTES_MAX);
 	if (rc == 0) {

@@ -56,7 +56,7 @@ is_public() {
 	*_private.h | *_parts.h) return 1 ;;
 	pipeline/import/*) names="alignment import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
-	pipeline/hierarchy/*) names="master master_cut" ;;
+	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
 	pipeline/samples/*) names="sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release" ;;
 	pipeline/report/*) names="report" ;;
