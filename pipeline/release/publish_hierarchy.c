@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "format/patch.h"
 #include "pipeline/hierarchy/master_cut.h"
+#include "pipeline/hierarchy/normal_cone.h"
 
 /* Returns the smallest share that contains the top group. */
 static double share_of_top(const struct master *master)
@@ -137,9 +138,12 @@ static void grow_spheres(struct hierarchy *hierarchy, double step_m, int zeros)
 }
 
 /* Reduces precision equally for equal vertices, so that neighbours still agree (docs/patch.md has
- * the figures). */
-static int round_group(struct buffer *object, int zeros, int32_t places)
+ * the figures). The group's rows receive the normal cones of what is left: rounding turns a
+ * triangle that is hardly larger than a step. */
+static int round_group(struct buffer *object, struct hierarchy *hierarchy, uint32_t group,
+		       int zeros, int32_t places)
 {
+	struct hierarchy_patch *rows = &hierarchy->patches[hierarchy->groups[group].first_patch];
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
 	uint32_t count;
 	int rc = patch_group_decode(meshes, &count, buffer_bytes(object));
@@ -152,6 +156,8 @@ static int round_group(struct buffer *object, int zeros, int32_t places)
 			round_colours(meshes[p].vertices[v].colour);
 			round_normal(meshes[p].vertices[v].normal);
 		}
+		if (zeros > 0 && p < hierarchy->groups[group].patch_count)
+			normal_cone_bound(&rows[p], &meshes[p]);
 	}
 	buffer_clear(object);
 	rc = patch_group_encode(object, meshes, count);
@@ -161,18 +167,19 @@ static int round_group(struct buffer *object, int zeros, int32_t places)
 }
 
 static int add_groups(struct object_store *objects, const struct master *master,
-		      const struct master_cut *cut, int zeros, struct page_child *children)
+		      struct master_cut *cut, int zeros, struct page_child *children)
 {
 	int32_t places = 1 << (LATTICE_BITS + master->lattice.fine_bits);
+	struct hierarchy *hierarchy = &cut->hierarchy;
 	struct buffer object;
 	int rc = 0;
 
 	buffer_init(&object, OBJECT_BYTES_MAX);
-	for (uint32_t i = 0; rc == 0 && i < cut->hierarchy.group_count; i++) {
+	for (uint32_t i = 0; rc == 0 && i < hierarchy->group_count; i++) {
 		buffer_clear(&object);
 		rc = master_read_group(master, cut->groups[i], &object);
 		if (rc == 0)
-			rc = round_group(&object, zeros, places);
+			rc = round_group(&object, hierarchy, i, zeros, places);
 		if (rc == 0)
 			rc = object_store_add(objects, buffer_bytes(&object), &children[i]);
 	}

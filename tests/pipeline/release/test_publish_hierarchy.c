@@ -21,7 +21,7 @@ static float losses_m4[GROUPS];
 static struct master master;
 static struct object_store *objects;
 
-/* Colours and normals with more digits than are published. */
+/* Colours and normals with more digits than are published; a triangle that is a little steep. */
 static int put_object(uint32_t group)
 {
 	struct patch_vertex vertices[3] = {
@@ -29,7 +29,7 @@ static int put_object(uint32_t group)
 		  .normal = { 127, -127 },
 		  .colour = { 0, 255, 100, 255 } },
 		{ .position = { 1001, 9, 7 }, .normal = { 1, -2 }, .colour = { 1, 2, 3, 9 } },
-		{ .position = { 1001, 907, 7 },
+		{ .position = { 1001, 907, 20 },
 		  .normal = { 2, -1 },
 		  .colour = { 252, 253, 254, 0 } },
 	};
@@ -76,7 +76,7 @@ static int set_up(void **state)
 						       .vertex_count = 60,
 						       .radius_m = 1,
 						       .cone_axis = { 0, 0, 1 },
-						       .cone_cos = 0.5f };
+						       .cone_cos = 0.9998f };
 	for (uint32_t i = 0; i < GROUPS; i++) {
 		groups[i] = (struct hierarchy_group){ .first_patch = 2 * i,
 						      .patch_count = 2,
@@ -148,11 +148,10 @@ static void what_is_published_is_a_hierarchy_within_the_share(void **state)
 	}
 }
 
-/* The first vertex of a published group that holds the triangle of put_object. */
-static struct patch_vertex read_object(struct hash hash)
+/* The corners of a published group that holds the triangle of put_object. */
+static void read_triangle(struct patch_vertex corners[3], struct hash hash)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
-	struct patch_vertex first;
 	struct buffer object;
 	uint32_t count;
 
@@ -160,10 +159,35 @@ static struct patch_vertex read_object(struct hash hash)
 	CHECK(object_store_read(objects, hash, &object) == 0);
 	CHECK(patch_group_decode(meshes, &count, buffer_bytes(&object)) == 0);
 	CHECK(count == 1 && meshes[0].vertex_count == 3);
-	first = meshes[0].vertices[0];
+	for (int i = 0; i < 3; i++)
+		corners[i] = meshes[0].vertices[meshes[0].indices[i]];
 	patch_mesh_finish(&meshes[0]);
 	buffer_finish(&object);
-	return first;
+}
+
+static struct patch_vertex read_object(struct hash hash)
+{
+	struct patch_vertex corners[3];
+
+	read_triangle(corners, hash);
+	return corners[0];
+}
+
+/* Whether a cone holds the normal of a triangle. */
+static bool holds_normal(const struct hierarchy_patch *patch, const struct patch_vertex corners[3])
+{
+	double u[3], v[3], normal[3], square = 0, along = 0;
+
+	for (int i = 0; i < 3; i++) {
+		u[i] = corners[1].position[i] - corners[0].position[i];
+		v[i] = corners[2].position[i] - corners[0].position[i];
+	}
+	for (int i = 0; i < 3; i++) {
+		normal[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+		square += normal[i] * normal[i];
+		along += normal[i] * patch->cone_axis[i];
+	}
+	return along >= patch->cone_cos * sqrt(square);
 }
 
 static void objects_go_with_their_groups(void **state)
@@ -228,6 +252,28 @@ static void places_are_rounded_as_the_finest_is_wrong(void **state)
 	page_finish(&page);
 }
 
+/* Rounding makes the triangle twice as steep. */
+static void cones_hold_the_normals_of_what_was_rounded(void **state)
+{
+	struct patch_vertex corners[3];
+	struct hierarchy back;
+	struct page page;
+
+	(void)state;
+	CHECK(publish(1.0, &page, &back) == 1200);
+	read_triangle(corners, page.children[0].hash);
+	CHECK(back.patches[0].cone_cos == 0.9998f && holds_normal(&back.patches[0], corners));
+	hierarchy_finish(&back);
+	page_finish(&page);
+	master.lattice.step_m = 0.01;
+	CHECK(publish(0.02, &page, &back) == 200);
+	read_triangle(corners, page.children[0].hash);
+	CHECK(!holds_normal(&patches[0], corners)); /* what the master says is wrong now */
+	CHECK(holds_normal(&back.patches[0], corners));
+	hierarchy_finish(&back);
+	page_finish(&page);
+}
+
 /* Group 2 is less wrong than 1 and costs more where it is missing: it goes first. */
 static void what_costs_most_goes_first(void **state)
 {
@@ -273,6 +319,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(colours_are_rounded_and_places_are_not, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(places_are_rounded_as_the_finest_is_wrong, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(cones_hold_the_normals_of_what_was_rounded, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(what_costs_most_goes_first, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(the_top_is_published_whatever_the_share, set_up,
