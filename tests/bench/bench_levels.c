@@ -1,9 +1,10 @@
 /* How far each level of a hierarchy lies from its scan: bench_levels MESH MASTER, the mesh file and
  * the folder of the master below a content folder's .work. A level is the cut with at least a half,
  * a quarter, an eighth ... of the scan's triangles, refined by falling error. Beside each,
- * meshoptimizer's simplification of the whole scan to as many triangles. Points are spread over one
- * surface by area, and the nearest point of the other is found, both ways. JSON to standard output;
- * lengths in millimetres. */
+ * meshoptimizer's simplification of the whole scan to as many triangles. The same for the finest
+ * that a release shows (a tenth, all levels counted), as it is in the master and as it is
+ * published, with rounded positions. Points are spread over one surface by area, and the nearest
+ * point of the other is found, both ways. JSON to standard output; lengths in millimetres. */
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -15,11 +16,14 @@
 #include "base/parallel.h"
 #include "format/patch.h"
 #include "geometry/vec.h"
-#include "pipeline/hierarchy/master.h"
+#include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/import/mesh_file.h"
 #include "pipeline/release/nearest.h"
+#include "pipeline/release/publish_hierarchy.h"
 
 enum { POINTS = 200000, PIECE_POINTS = 4096, HALVINGS = 9 };
+
+static const double published_share = 0.1;
 
 static void *need(void *memory)
 {
@@ -242,35 +246,85 @@ static void add_patch(struct surface *surface, const struct lattice *lattice,
 	surface->triangle_count += patch->triangle_count;
 }
 
+static struct surface surface_of(int64_t triangle_count)
+{
+	size_t triangles = (size_t)triangle_count;
+
+	return (struct surface){ .positions = need(malloc(triangles * sizeof(float[3][3]))),
+				 .triangles = need(malloc(triangles * sizeof(uint32_t[3]))) };
+}
+
+/* Adds those patches of a group that nothing refines. refined: for each group; NULL: all are. */
+static void add_group(struct surface *surface, const struct lattice *lattice,
+		      const struct hierarchy *hierarchy, uint32_t group, const bool *refined,
+		      struct bytes object)
+{
+	struct patch_mesh patches[GROUP_PATCHES_MAX];
+	uint32_t count;
+
+	need_ok(patch_group_decode(patches, &count, object), "patches");
+	for (uint32_t i = 0; i < count; i++) {
+		uint32_t finer = hierarchy->patches[hierarchy->groups[group].first_patch + i].finer;
+
+		if (finer == HIERARCHY_NONE || (refined && !refined[finer]))
+			add_patch(surface, lattice, &patches[i]);
+		patch_mesh_finish(&patches[i]);
+	}
+}
+
 static struct surface cut_surface(const struct cut *cut)
 {
-	const struct hierarchy *hierarchy = &cut->master->hierarchy;
-	size_t triangles = (size_t)cut->triangle_count;
-	struct surface surface = { .positions = need(malloc(triangles * sizeof(float[3][3]))),
-				   .triangles = need(malloc(triangles * sizeof(uint32_t[3]))) };
+	const struct master *master = cut->master;
+	struct surface surface = surface_of(cut->triangle_count);
 	struct buffer object;
 
 	buffer_init(&object, OBJECT_BYTES_MAX);
-	for (uint32_t g = 0; g < hierarchy->group_count; g++) {
-		struct patch_mesh patches[GROUP_PATCHES_MAX];
-		uint32_t count;
-
+	for (uint32_t g = 0; g < master->hierarchy.group_count; g++) {
 		if (!cut->refined[g])
 			continue;
 		buffer_clear(&object);
-		need_ok(master_read_group(cut->master, g, &object), "master");
-		need_ok(patch_group_decode(patches, &count, buffer_bytes(&object)), "patches");
-		for (uint32_t i = 0; i < count; i++) {
-			uint32_t finer =
-				hierarchy->patches[hierarchy->groups[g].first_patch + i].finer;
-
-			if (finer == HIERARCHY_NONE || !cut->refined[finer])
-				add_patch(&surface, &cut->master->lattice, &patches[i]);
-			patch_mesh_finish(&patches[i]);
-		}
+		need_ok(master_read_group(master, g, &object), "master");
+		add_group(&surface, &master->lattice, &master->hierarchy, g, cut->refined,
+			  buffer_bytes(&object));
 	}
 	buffer_finish(&object);
 	return surface;
+}
+
+/* The finest that is published: as the master has it, and as the release has it. */
+static void published_surfaces(struct surface *whole, struct surface *rounded,
+			       const struct master *master)
+{
+	struct published_patches published;
+	struct object_store *store;
+	struct page_child child;
+	struct master_cut cut;
+	struct buffer object;
+	struct page page;
+
+	need_ok(master_cut_create(&cut, master, published_share), "cut");
+	need_ok(object_store_create(&store), "objects");
+	need_ok(publish_hierarchy(store, master, published_share, &child, &published), "publish");
+	*whole = surface_of((int64_t)published.triangle_count);
+	*rounded = surface_of((int64_t)published.triangle_count);
+	buffer_init(&object, OBJECT_BYTES_MAX);
+	need_ok(object_store_read(store, child.hash, &object), "page");
+	need_ok(page_decode(&page, buffer_bytes(&object)), "page");
+	for (uint32_t g = 0; g < page.child_count; g++) {
+		struct buffer group;
+
+		buffer_init(&group, OBJECT_BYTES_MAX);
+		need_ok(master_read_group(master, cut.groups[g], &group), "master");
+		add_group(whole, &master->lattice, &cut.hierarchy, g, NULL, buffer_bytes(&group));
+		buffer_clear(&group);
+		need_ok(object_store_read(store, page.children[g].hash, &group), "group");
+		add_group(rounded, &master->lattice, &cut.hierarchy, g, NULL, buffer_bytes(&group));
+		buffer_finish(&group);
+	}
+	page_finish(&page);
+	buffer_finish(&object);
+	object_store_destroy(store);
+	master_cut_finish(&cut);
 }
 
 /* ---- the peer */
@@ -319,6 +373,25 @@ static void print_level(struct cut *cut, const struct surface *scan, const struc
 	free(theirs.triangles);
 }
 
+static void print_published(const struct master *master, const struct surface *scan,
+			    const struct mesh *mesh, const uint32_t *welded)
+{
+	struct surface whole, rounded, theirs;
+
+	published_surfaces(&whole, &rounded, master);
+	theirs = simplified(mesh, welded, whole.triangle_count);
+	print_errors("whole", &whole, scan);
+	fputs(", ", stdout);
+	print_errors("rounded", &rounded, scan);
+	fputs(", ", stdout);
+	print_errors("meshoptimizer", &theirs, scan);
+	free(whole.positions);
+	free(whole.triangles);
+	free(rounded.positions);
+	free(rounded.triangles);
+	free(theirs.triangles);
+}
+
 static struct hash key_of_file(const char *path)
 {
 	struct hash key;
@@ -360,7 +433,9 @@ int main(int argc, char **argv)
 		puts(before > 0 ? "," : "");
 		print_level(&cut, &scan, &mesh, welded);
 	}
-	puts("]}");
+	fputs("],\n \"published\": {", stdout);
+	print_published(master, &scan, &mesh, welded);
+	puts("}}");
 	free(gains);
 	free(welded);
 	free(cut.order);

@@ -7,7 +7,7 @@
 #   MILLIONS="1 10"   of triangles, a row each
 set -eu
 cd "$(dirname "$0")/../.."
-make --no-print-directory build/gopura-content >/dev/null
+make --no-print-directory build/gopura-content build/tests/bench/bench_loaded >/dev/null
 work=build/bench/build-work
 rm -rf "$work"
 mkdir -p "$work"

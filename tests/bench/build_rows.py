@@ -3,11 +3,13 @@
 
 The demo temple with colours per vertex; its PLY is made first and not counted. The peak is the largest sum of
 the proportional set sizes (Pss) of the program's processes, read ten times a second.
-Prints JSON: triangles, import_s, hierarchy_s, mtri_per_s, peak_mib. What is in FOLDER goes afterwards.
+Prints JSON: triangles, import_s, hierarchy_s, cpu_s (both steps, all processes), mtri_per_s, peak_mib, and what
+views of tests/bench/path.txt need of the whole (bench_loaded). What is in FOLDER goes afterwards.
 """
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -37,6 +39,11 @@ def pss_kib(pid):
         return 0
 
 
+def cpu_s():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def row(folder, millions):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
@@ -45,22 +52,25 @@ def row(folder, millions):
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with open(f"{folder}/temple.ini", "w", encoding="ascii") as file:
         file.write("[model]\nscans = scan.ply\n")
-    began, peak = time.monotonic(), 0
+    began, before, peak = time.monotonic(), cpu_s(), 0
     with open(f"{folder}/said", "w+", encoding="utf-8") as said:
         process = subprocess.Popen([CONTENT, "hierarchy", folder], stdout=said, stderr=subprocess.DEVNULL)
         while process.poll() is None:
             peak = max(peak, sum(pss_kib(pid) for pid in family(process.pid)))
             time.sleep(0.1)
-        all_s = time.monotonic() - began
+        all_s, used_s = time.monotonic() - began, cpu_s() - before
         said.seek(0)
         text = said.read()
     if process.returncode != 0:
         sys.exit(f"the hierarchy of {millions} million triangles failed")
     hierarchy_s = float(re.search(r"a vertex; ([0-9.]+) s", text)[1])
     triangles = int(re.search(r"level  0: +(\d+) triangles", text)[1])
+    loaded = json.loads(subprocess.run(["build/tests/bench/bench_loaded", f"{folder}/.work/master",
+                                        "tests/bench/path.txt"], check=True, stdout=subprocess.PIPE).stdout)
     shutil.rmtree(folder)
     return {"triangles": triangles, "import_s": round(all_s - hierarchy_s, 1), "hierarchy_s": hierarchy_s,
-            "mtri_per_s": round(triangles / all_s / 1e6, 3), "peak_mib": round(peak / 1024)}
+            "cpu_s": round(used_s, 1), "load": round(os.getloadavg()[0], 1),
+            "mtri_per_s": round(triangles / all_s / 1e6, 3), "peak_mib": round(peak / 1024), **loaded}
 
 
 print(json.dumps([row(sys.argv[1], float(millions)) for millions in sys.argv[2:]]))
