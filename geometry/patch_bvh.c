@@ -24,20 +24,27 @@ static void vertex_m(const struct patch_bvh *bvh, uint32_t vertex, float out[3])
 		out[i] = (float)at[i];
 }
 
+/* What building needs for a moment. */
+struct scratch {
+	struct bvh_node *nodes;
+	float (*places_m)[3];     /* of the vertices */
+	uint16_t (*triangles)[3]; /* in the mesh's order */
+	struct bvh_items items;
+};
+
 /* ---- the tree */
 
 /* The keys by which triangles are sorted: three times the centre, then the unit normal. */
 enum { NORMAL_KEY = 3, KEYS = 6 };
 
-static void set_keys(const struct patch_bvh *bvh, const uint16_t index[3], float keys[KEYS])
+static void set_keys(const float (*places_m)[3], const uint16_t index[3], float keys[KEYS])
 {
-	float corner[3][3], ab[3], ac[3];
-	for (int c = 0; c < 3; c++)
-		vertex_m(bvh, index[c], corner[c]);
+	const float *a = places_m[index[0]], *b = places_m[index[1]], *c = places_m[index[2]];
+	float ab[3], ac[3];
 	for (int i = 0; i < 3; i++)
-		keys[i] = corner[0][i] + corner[1][i] + corner[2][i];
-	vec_sub(ab, corner[1], corner[0]);
-	vec_sub(ac, corner[2], corner[0]);
+		keys[i] = a[i] + b[i] + c[i];
+	vec_sub(ab, b, a);
+	vec_sub(ac, c, a);
 	vec_cross(&keys[NORMAL_KEY], ab, ac);
 	vec_normalise(&keys[NORMAL_KEY]);
 }
@@ -107,18 +114,17 @@ static struct patch_bvh_node pack_node(const struct bvh_node *node, uint8_t shif
 
 /* ---- pieces */
 
-static void measure_piece(const struct patch_bvh *bvh, struct piece *piece)
+static void measure_piece(const struct patch_bvh *bvh, const float (*places_m)[3],
+			  struct piece *piece)
 {
 	float area2 = 0;
 	for (uint32_t t = piece->first_triangle; t < piece->first_triangle + piece->triangle_count;
 	     t++) {
-		float a[3], b[3], c[3], n[3];
-		vertex_m(bvh, bvh->indices[3 * t], a);
-		vertex_m(bvh, bvh->indices[3 * t + 1], b);
-		vertex_m(bvh, bvh->indices[3 * t + 2], c);
-		vec_sub(b, b, a);
-		vec_sub(c, c, a);
-		vec_cross(n, b, c);
+		const float *a = places_m[bvh->indices[3 * t]];
+		float ab[3], ac[3], n[3];
+		vec_sub(ab, places_m[bvh->indices[3 * t + 1]], a);
+		vec_sub(ac, places_m[bvh->indices[3 * t + 2]], a);
+		vec_cross(n, ab, ac);
 		vec_add(piece->normal, piece->normal, n);
 		area2 += vec_length(n);
 	}
@@ -148,17 +154,17 @@ struct piece_probe patch_bvh_probe(const struct patch_bvh *bvh, const struct pie
 	return out;
 }
 
-static void set_extents(const struct patch_bvh *bvh, struct piece *piece)
+static void set_extents(const struct patch_bvh *bvh, const float (*places_m)[3],
+			struct piece *piece)
 {
 	uint32_t first = 3 * piece->first_triangle, end = first + 3 * piece->triangle_count;
 	for (uint32_t k = first; k < end; k++) {
-		float at[3];
-		vertex_m(bvh, bvh->indices[k], at);
+		const float *at = places_m[bvh->indices[k]];
 		for (int i = 0; i < 6; i++) {
 			const float *was = piece->extent_m[i];
 			bool farther = i & 1 ? at[i / 2] > was[i / 2] : at[i / 2] < was[i / 2];
 			if (k == first || farther)
-				memcpy(piece->extent_m[i], at, sizeof(at));
+				memcpy(piece->extent_m[i], at, sizeof(piece->extent_m[i]));
 		}
 	}
 }
@@ -180,12 +186,13 @@ static bool is_one_piece(const struct patch_bvh *bvh, const struct bvh_items *it
 	       flatness_of(items, node->first, node->count) >= flat_enough;
 }
 
-static void collect_pieces(struct patch_bvh *bvh, const struct bvh_items *items, uint32_t at)
+static void collect_pieces(struct patch_bvh *bvh, const struct scratch *scratch, uint32_t at)
 {
+	const struct bvh_items *items = &scratch->items;
 	const struct patch_bvh_node *node = &bvh->nodes[at];
 	if (!is_one_piece(bvh, items, node)) {
-		collect_pieces(bvh, items, at + 1);
-		collect_pieces(bvh, items, node->right);
+		collect_pieces(bvh, scratch, at + 1);
+		collect_pieces(bvh, scratch, node->right);
 		return;
 	}
 	struct piece *piece = &bvh->pieces[bvh->piece_count++];
@@ -201,17 +208,18 @@ static void collect_pieces(struct patch_bvh *bvh, const struct bvh_items *items,
 		diagonal[i] = unit * (float)(node->high[i] - node->low[i]);
 	}
 	piece->radius_m = vec_length(diagonal) / 2 * (float)bvh->lattice.step_m;
-	measure_piece(bvh, piece);
-	set_extents(bvh, piece);
+	measure_piece(bvh, (const float(*)[3])scratch->places_m, piece);
+	set_extents(bvh, (const float(*)[3])scratch->places_m, piece);
 }
 
 /* Allocates for the worst case and gives back what is left over. */
-static int find_pieces(struct patch_bvh *bvh, const struct bvh_items *items)
+static int find_pieces(struct patch_bvh *bvh, const struct scratch *scratch)
 {
-	bvh->pieces = calloc(items->count / (PIECE_TRIANGLES_MIN / 2) + 1, sizeof(*bvh->pieces));
+	bvh->pieces =
+		calloc(scratch->items.count / (PIECE_TRIANGLES_MIN / 2) + 1, sizeof(*bvh->pieces));
 	if (!bvh->pieces)
 		return -ENOMEM;
-	collect_pieces(bvh, items, 0);
+	collect_pieces(bvh, scratch, 0);
 	struct piece *smaller = realloc(bvh->pieces, bvh->piece_count * sizeof(*bvh->pieces));
 	if (smaller)
 		bvh->pieces = smaller;
@@ -220,16 +228,10 @@ static int find_pieces(struct patch_bvh *bvh, const struct bvh_items *items)
 
 /* ---- building */
 
-/* What building needs for a moment. */
-struct scratch {
-	struct bvh_node *nodes;
-	uint16_t (*triangles)[3]; /* in the mesh's order */
-	struct bvh_items items;
-};
-
 static void scratch_finish(struct scratch *scratch)
 {
 	free(scratch->nodes);
+	free(scratch->places_m);
 	free(scratch->triangles);
 	free(scratch->items.order);
 	free(scratch->items.keys);
@@ -243,18 +245,22 @@ static int scratch_init(struct scratch *scratch, const struct patch_bvh *bvh, ui
 						.choose_key = longest_key,
 						.data = bvh } };
 	scratch->nodes = malloc(bvh_nodes_max(count) * sizeof(*scratch->nodes));
+	scratch->places_m = malloc(bvh->vertex_count * sizeof(*scratch->places_m));
 	scratch->triangles = malloc(count * sizeof(*scratch->triangles));
 	scratch->items.order = malloc(count * sizeof(*scratch->items.order));
 	scratch->items.keys = malloc(count * KEYS * sizeof(*scratch->items.keys));
-	if (!scratch->nodes || !scratch->triangles || !scratch->items.order ||
+	if (!scratch->nodes || !scratch->places_m || !scratch->triangles || !scratch->items.order ||
 	    !scratch->items.keys) {
 		scratch_finish(scratch);
 		return -ENOMEM;
 	}
 	memcpy(scratch->triangles, bvh->indices, count * sizeof(*scratch->triangles));
+	for (uint32_t v = 0; v < bvh->vertex_count; v++)
+		vertex_m(bvh, v, scratch->places_m[v]);
 	for (uint32_t t = 0; t < count; t++) {
 		scratch->items.order[t] = t;
-		set_keys(bvh, scratch->triangles[t], &scratch->items.keys[KEYS * t]);
+		set_keys((const float(*)[3])scratch->places_m, scratch->triangles[t],
+			 &scratch->items.keys[KEYS * t]);
 	}
 	return 0;
 }
@@ -334,7 +340,7 @@ int patch_bvh_init(struct patch_bvh *out, struct patch_mesh *mesh, const struct 
 	out->node_count = bvh_build(scratch.nodes, &scratch.items);
 	int rc = keep(out, mesh, &scratch);
 	if (rc == 0)
-		rc = find_pieces(out, &scratch.items);
+		rc = find_pieces(out, &scratch);
 	scratch_finish(&scratch);
 	if (rc < 0)
 		patch_bvh_finish(out);
