@@ -74,12 +74,32 @@ vector_clones bool pyramid_shows(const struct pyramid *pyramid, uint32_t level, 
 		const uint8_t(*from)[4] = pixels + (size_t)row * pyramid->side_px[level] + x;
 		uint32_t any = 0;
 
-		for (uint32_t column = 0; column < side_px; column++)
-			any |= from[column][3];
-		if (any)
+		for (uint32_t column = 0; column < side_px; column++) {
+			uint32_t pixel;
+
+			memcpy(&pixel, from[column], sizeof(pixel));
+			any |= pixel;
+		}
+		if (any >> 24)
 			return true;
 	}
 	return false;
+}
+
+/* Four bytes as four numbers of 16 bits, and back. */
+vector_inline uint64_t widen(const uint8_t bytes[4])
+{
+	uint32_t packed;
+
+	memcpy(&packed, bytes, sizeof(packed));
+	return (packed & 255) | (uint64_t)(packed >> 8 & 255) << 16 |
+	       (uint64_t)(packed >> 16 & 255) << 32 | (uint64_t)(packed >> 24) << 48;
+}
+
+vector_inline uint32_t narrow(uint64_t wide)
+{
+	return (uint32_t)(wide & 255) | (uint32_t)(wide >> 16 & 255) << 8 |
+	       (uint32_t)(wide >> 32 & 255) << 16 | (uint32_t)(wide >> 48) << 24;
 }
 
 /* Averages the existing ones of four pixels, weighted by coverage. */
@@ -97,39 +117,68 @@ static void reduce_pixel(uint8_t to[4], const uint8_t *const four[4], unsigned c
 	to[3] = (uint8_t)((weight + 3) / 4);
 }
 
+/* Reduces the pixels of a row whose four finer ones all show the surface, or none; the others are
+ * set to 0. Returns true if there are others. upper, lower: twice as many finer pixels. */
+static vector_clones bool reduce_row(uint8_t (*to)[4], const uint8_t (*upper)[4],
+				     const uint8_t (*lower)[4], uint32_t count)
+{
+	const uint64_t half = 0x0002000200020002, quarters = 0x3fff3fff3fff3fff;
+	uint32_t others = 0;
+
+#pragma GCC ivdep
+	for (uint32_t x = 0; x < count; x++) {
+		size_t first = 2 * (size_t)x;
+		uint64_t sum = widen(upper[first]) + widen(upper[first + 1]) + widen(lower[first]) +
+			       widen(lower[first + 1]);
+		uint32_t covered = (uint32_t)(sum >> 48);
+		uint32_t mean = narrow((sum + half) >> 2 & quarters);
+
+		mean = covered == 4 * 255 ? mean : 0;
+		others |= covered > 0 && covered < 4 * 255 ? 1 : 0;
+		memcpy(to[x], &mean, sizeof(mean));
+	}
+	return others;
+}
+
+/* As reduce_row, for the pixels that are 0 in the row: they may be covered in part, or lie at an
+ * edge of odd length. */
+static void reduce_others(const struct pyramid *pyramid, uint32_t level, uint32_t y)
+{
+	uint32_t side = pyramid->side_px[level], finer = pyramid->side_px[level - 1];
+	const uint8_t(*from)[4] = (const uint8_t(*)[4])pyramid->levels[level - 1];
+
+	for (uint32_t x = 0; x < side; x++) {
+		const uint8_t *first = from[(size_t)2 * y * finer + 2 * x], *four[4];
+		uint8_t *to = pyramid->levels[level][(size_t)y * side + x];
+		bool right = 2 * x + 1 < finer, below = 2 * y + 1 < finer;
+		unsigned count = 0;
+
+		if (to[3])
+			continue;
+		four[count++] = first;
+		if (right)
+			four[count++] = first + 4;
+		if (below)
+			four[count++] = first + (size_t)4 * finer;
+		if (right && below)
+			four[count++] = first + (size_t)4 * finer + 4;
+		reduce_pixel(to, four, count);
+	}
+}
+
 static void reduce(const struct pyramid *pyramid, uint32_t level)
 {
 	uint32_t side = pyramid->side_px[level], finer = pyramid->side_px[level - 1];
 	const uint8_t(*from)[4] = (const uint8_t(*)[4])pyramid->levels[level - 1];
 
 	for (uint32_t y = 0; y < side; y++) {
-		for (uint32_t x = 0; x < side; x++) {
-			const uint8_t *first = from[(size_t)2 * y * finer + 2 * x], *four[4];
-			uint8_t *to = pyramid->levels[level][(size_t)y * side + x];
-			bool right = 2 * x + 1 < finer, below = 2 * y + 1 < finer;
-			unsigned count = 0, covered = 0;
+		const uint8_t(*upper)[4] = from + (size_t)2 * y * finer;
+		uint8_t(*to)[4] = pyramid->levels[level] + (size_t)y * side;
 
-			four[count++] = first;
-			if (right)
-				four[count++] = first + 4;
-			if (below)
-				four[count++] = first + (size_t)4 * finer;
-			if (right && below)
-				four[count++] = first + (size_t)4 * finer + 4;
-			for (unsigned k = 0; k < count; k++)
-				covered += four[k][3];
-			if (covered == 0) {
-				memset(to, 0, 4);
-			} else if (covered == 4 * 255) {
-				for (int c = 0; c < 3; c++)
-					to[c] = (uint8_t)((four[0][c] + four[1][c] + four[2][c] +
-							   four[3][c] + 2) /
-							  4);
-				to[3] = 255;
-			} else {
-				reduce_pixel(to, four, count);
-			}
-		}
+		if (finer % 2)
+			memset(to, 0, (size_t)side * sizeof(*to));
+		if (finer % 2 || reduce_row(to, upper, upper + finer, side))
+			reduce_others(pyramid, level, y);
 	}
 }
 
@@ -137,22 +186,6 @@ void pyramid_reduce(struct pyramid *pyramid)
 {
 	for (uint32_t level = 1; level < pyramid->level_count; level++)
 		reduce(pyramid, level);
-}
-
-/* Four bytes as four numbers of 16 bits, and back. */
-vector_inline uint64_t widen(const uint8_t bytes[4])
-{
-	uint32_t packed;
-
-	memcpy(&packed, bytes, sizeof(packed));
-	return (packed & 255) | (uint64_t)(packed >> 8 & 255) << 16 |
-	       (uint64_t)(packed >> 16 & 255) << 32 | (uint64_t)(packed >> 24) << 48;
-}
-
-vector_inline uint32_t narrow(uint64_t wide)
-{
-	return (uint32_t)(wide & 255) | (uint32_t)(wide >> 16 & 255) << 8 |
-	       (uint32_t)(wide >> 32 & 255) << 16;
 }
 
 /* Sets the uncovered pixels of a row at `first` and every second one after it from the row of the
@@ -166,6 +199,7 @@ vector_inline void fill_pixels(uint8_t (*row)[4], const uint64_t *near, const ui
 	for (uint32_t n = 0; n < count; n++) {
 		uint32_t before, filled = narrow((3 * near[n] + far[n] + half) >> 4 & sixteenths);
 
+		filled &= 0xffffff;
 		memcpy(&before, row[2 * n], sizeof(before));
 		before = before >> 24 ? before : filled;
 		memcpy(row[2 * n], &before, sizeof(before));
@@ -222,6 +256,25 @@ static vector_clones void sharpen_row(uint8_t *to, const uint8_t *row, const uin
 	}
 }
 
+/* Leaves out every fourth byte; four pixels at once make three numbers. */
+static vector_clones void pack_row(uint8_t *rgb, const uint8_t *rgba, uint32_t count)
+{
+	uint32_t whole = count / 4;
+
+#pragma GCC ivdep
+	for (uint32_t n = 0; n < whole; n++) {
+		uint32_t four[4], three[3];
+
+		memcpy(four, rgba + (size_t)n * 16, sizeof(four));
+		three[0] = (four[0] & 0xffffff) | four[1] << 24;
+		three[1] = (four[1] >> 8 & 0xffff) | four[2] << 16;
+		three[2] = (four[2] >> 16 & 0xff) | four[3] << 8;
+		memcpy(rgb + (size_t)n * 12, three, sizeof(three));
+	}
+	for (uint32_t n = 4 * whole; n < count; n++)
+		memcpy(rgb + (size_t)n * 3, rgba + (size_t)n * 4, 3);
+}
+
 void pyramid_sharpen(const struct pyramid *pyramid, uint32_t level, uint32_t x, uint32_t y,
 		     uint32_t side_px, uint8_t *rgb)
 {
@@ -241,7 +294,7 @@ void pyramid_sharpen(const struct pyramid *pyramid, uint32_t level, uint32_t x, 
 			       at[x + side_px < side ? x + side_px : last], 4);
 		}
 		sharpen_row(sharp, rows[1] + 4, rows[0] + 4, rows[2] + 4, (size_t)side_px * 4);
-		for (uint32_t column = 0; column < side_px; column++, rgb += 3)
-			memcpy(rgb, sharp + 4 * (size_t)column, 3);
+		pack_row(rgb, sharp, side_px);
+		rgb += 3 * (size_t)side_px;
 	}
 }

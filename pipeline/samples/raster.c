@@ -544,27 +544,39 @@ bool raster_hides(struct raster *raster, const float low_m[3], const float high_
 
 /* ---- what was drawn */
 
-bool raster_range(const struct raster *raster, float *near_m, float *far_m)
+/* Adds the samples of a block to the largest of the inverse distances and to the least above 0. */
+vector_inline void add_range(const float *at, floats *nearest, floats *farthest)
+{
+	for (int y = 0; y < RASTER_BLOCK_PX; y++) {
+		floats row;
+		ints nearer, farther;
+
+		memcpy(&row, at + (size_t)y * RASTER_BLOCK_PX, sizeof(row));
+		nearer = row > *nearest;
+		farther = (row > 0) & (row < *farthest);
+		*nearest = (floats)(((ints)row & nearer) | ((ints)*nearest & ~nearer));
+		*farthest = (floats)(((ints)row & farther) | ((ints)*farthest & ~farther));
+	}
+}
+
+vector_clones bool raster_range(const struct raster *raster, float *near_m, float *far_m)
 {
 	size_t blocks = (size_t)raster->side_blocks * raster->side_blocks;
-	float nearest = 0, farthest = INFINITY;
+	floats nearest = { 0 }, farthest = nearest + INFINITY;
+	float near = 0, far = INFINITY;
 
-	for (size_t block = 0; block < blocks; block++) {
-		const float *at = raster->inverse_m + block * RASTER_BLOCK_SAMPLES;
-
-		if (raster->states[block] == BLOCK_EMPTY)
-			continue;
-		for (int i = 0; i < RASTER_BLOCK_SAMPLES; i++) {
-			float there = at[i] > 0 ? at[i] : INFINITY;
-
-			nearest = at[i] > nearest ? at[i] : nearest;
-			farthest = there < farthest ? there : farthest;
-		}
+	for (size_t block = 0; block < blocks; block++)
+		if (raster->states[block] != BLOCK_EMPTY)
+			add_range(raster->inverse_m + block * RASTER_BLOCK_SAMPLES, &nearest,
+				  &farthest);
+	for (int x = 0; x < RASTER_BLOCK_PX; x++) {
+		near = nearest[x] > near ? nearest[x] : near;
+		far = farthest[x] < far ? farthest[x] : far;
 	}
-	if (nearest <= 0)
+	if (near <= 0)
 		return false;
-	*near_m = 0.9999f / nearest;
-	*far_m = 1.0001f / farthest;
+	*near_m = 0.9999f / near;
+	*far_m = 1.0001f / far;
 	return true;
 }
 

@@ -406,11 +406,23 @@ static void paint(struct resolve *r, uint32_t count)
 			r->sum[c][r->pixel[i]] += r->rgb[c][i];
 }
 
+static vector_clones bool any_is_left(const struct resolve *r, uint32_t count)
+{
+	uint32_t any = 0;
+
+	for (int k = 0; k < SAMPLES_MAX; k++)
+		for (uint32_t i = 0; i < count; i++)
+			any |= r->left[k][i] > 0.5f ? 1 : 0;
+	return any;
+}
+
 /* Moves the pixels that have samples left to the front. Returns how many there are. */
 static uint32_t keep_what_is_left(struct resolve *r, uint32_t count)
 {
 	uint32_t kept = 0;
 
+	if (!any_is_left(r, count))
+		return 0;
 	for (uint32_t i = 0; i < count; i++) {
 		if (r->left[0][i] + r->left[1][i] + r->left[2][i] + r->left[3][i] < 0.5f)
 			continue;
@@ -447,19 +459,24 @@ static void sum_material(struct resolve *r)
 static vector_clones void write_pixels(struct resolve *r)
 {
 	float weight = (float)(SHADING_SAMPLES / r->sample_count);
-	uint32_t count = r->count;
+	uint32_t count = r->count, pixels[BATCH];
 
+#pragma GCC ivdep
 	for (uint32_t i = 0; i < count; i++) {
-		uint8_t *to = r->rgba[r->place[i]];
+		uint32_t pixel = 0;
 
 		for (int c = 0; c < 3; c++) {
 			float value = r->sum[c][i] / r->covered[i] * 255 + 0.5f;
 
-			to[c] = (uint8_t)(int32_t)(value > 0 ? value : 0);
+			pixel |= ((uint32_t)(int32_t)(value > 0 ? value : 0) & 255) << 8 * c;
 		}
-		to[3] = (uint8_t)(int32_t)(weight *
-					   (r->covered[i] * SHADING_COVERED + r->backs[i]));
+		pixel |= (uint32_t)(int32_t)(weight *
+					     (r->covered[i] * SHADING_COVERED + r->backs[i]))
+			 << 24;
+		pixels[i] = pixel;
 	}
+	for (uint32_t i = 0; i < count; i++)
+		memcpy(r->rgba[r->place[i]], &pixels[i], sizeof(pixels[i]));
 }
 
 static void finish_batch(struct resolve *r)
@@ -485,34 +502,78 @@ static void finish_batch(struct resolve *r)
 	r->count = 0;
 }
 
+/* Copies a number of each sample of a block to the batch's array of samples, sample by sample. */
+vector_inline void sort_samples(void *to, const void *block, uint32_t samples)
+{
+	uint32_t side = RASTER_BLOCK_PX / samples;
+
+	for (uint32_t k = 0; k < samples * samples; k++)
+		for (uint32_t y = 0; y < side; y++)
+			for (uint32_t x = 0; x < side; x++) {
+				uint32_t row = y * samples + k / samples;
+				uint32_t column = x * samples + k % samples;
+
+				memcpy((uint8_t *)to + 4 * (size_t)(k * BATCH + y * side + x),
+				       (const uint8_t *)block +
+					       4 * (size_t)(row * RASTER_BLOCK_PX + column),
+				       4);
+			}
+}
+
+vector_inline void copy_block(struct resolve *r, const struct raster_block *block, uint32_t samples)
+{
+	sort_samples(&r->inverse_m[0][r->count], block->inverse_m, samples);
+	sort_samples(&r->surface[0][r->count], block->surface, samples);
+	if (block->colour)
+		sort_samples(&r->colour[0][r->count], block->colour, samples);
+}
+
+static vector_clones void copy_samples(struct resolve *r, const struct raster_block *block)
+{
+	if (r->samples == 2)
+		copy_block(r, block, 2);
+	else
+		copy_block(r, block, 1);
+}
+
+static void move_pixel(struct resolve *r, uint32_t to, uint32_t from)
+{
+	for (int k = 0; k < r->sample_count; k++) {
+		r->inverse_m[k][to] = r->inverse_m[k][from];
+		r->surface[k][to] = r->surface[k][from];
+		r->colour[k][to] = r->colour[k][from];
+	}
+	r->x[to] = r->x[from];
+	r->y[to] = r->y[from];
+	r->place[to] = r->place[from];
+}
+
 /* Adds the pixels of a block that show anything to the batch. */
 static void add_block(struct resolve *r, const struct raster_block *block, uint32_t x, uint32_t y,
 		      uint32_t width_px)
 {
-	uint32_t samples = (uint32_t)r->samples;
+	uint32_t samples = (uint32_t)r->samples, side = RASTER_BLOCK_PX / samples;
+	uint32_t first = r->count, end = first + side * side;
 
-	for (uint32_t row = 0; row < RASTER_BLOCK_PX; row += samples) {
-		for (uint32_t column = 0; column < RASTER_BLOCK_PX; column += samples) {
-			uint32_t i = r->count, first = row * RASTER_BLOCK_PX + column;
-			float any = 0;
+	copy_samples(r, block);
+	for (uint32_t row = 0; row < side; row++)
+		for (uint32_t column = 0; column < side; column++) {
+			uint32_t i = first + row * side + column;
 
-			for (uint32_t k = 0; k < (uint32_t)r->sample_count; k++) {
-				/* a single one is where the first of four is */
-				uint32_t at = first + k / 2 * RASTER_BLOCK_PX + k % 2;
-
-				r->inverse_m[k][i] = block->inverse_m[at];
-				r->surface[k][i] = block->surface[at];
-				if (block->colour)
-					r->colour[k][i] = block->colour[at];
-				any += block->inverse_m[at];
-			}
-			if (any <= 0)
-				continue;
-			r->x[i] = (float)(x + column);
-			r->y[i] = (float)(y + row);
-			r->place[i] = (y + row) / samples * width_px + (x + column) / samples;
-			r->count++;
+			r->x[i] = (float)(x + column * samples);
+			r->y[i] = (float)(y + row * samples);
+			r->place[i] = (y / samples + row) * width_px + x / samples + column;
 		}
+	for (uint32_t i = first; i < end; i++) {
+		float any = 0;
+
+		for (int k = 0; k < r->sample_count; k++)
+			any += r->inverse_m[k][i];
+		if (any <= 0)
+			continue;
+		if (i > r->count)
+			move_pixel(r, r->count, i);
+		r->count++;
 	}
 }
 
@@ -535,6 +596,7 @@ void resolve_take(struct resolve *resolve, const struct camera *camera, uint8_t 
 {
 	uint32_t side_px = (uint32_t)camera->width_px, blocks = side_px / RASTER_BLOCK_PX;
 	uint32_t width_px = side_px / (uint32_t)resolve->samples;
+	uint32_t block_px = RASTER_BLOCK_SAMPLES / (uint32_t)resolve->sample_count;
 	struct raster_block block;
 
 	resolve->rgba = rgba;
@@ -544,7 +606,7 @@ void resolve_take(struct resolve *resolve, const struct camera *camera, uint8_t 
 		for (uint32_t column = 0; column < blocks; column++) {
 			if (!raster_get_block(resolve->raster, column, row, &block))
 				continue;
-			if (resolve->count + RASTER_BLOCK_SAMPLES > BATCH)
+			if (resolve->count + block_px > BATCH)
 				finish_batch(resolve);
 			add_block(resolve, &block, column * RASTER_BLOCK_PX, row * RASTER_BLOCK_PX,
 				  width_px);
