@@ -174,6 +174,15 @@ static bool set_face_px(const struct setting *setting, void *target, const char 
 	return settings_whole(setting, target, value) && (*px & (*px - 1)) == 0;
 }
 
+static bool set_effort(const struct setting *setting, void *target, const char *value)
+{
+	bool quick = strcasecmp(value, "quick") == 0;
+
+	(void)setting;
+	((struct content *)target)->effort = quick ? TILE_QUICK : TILE_THOROUGH;
+	return quick || strcasecmp(value, "thorough") == 0;
+}
+
 static bool set_kind(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
@@ -256,6 +265,7 @@ static const struct setting settings[] = {
 	NUMBERS("grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px, face_px, 128,
 		4096),
 	NUMBERS("grid", "quality", NULL, settings_whole, quality, 1, 100),
+	SETTING("grid", "effort", "thorough or quick", set_effort),
 	SETTING("hierarchy", "kind", "groups or tree", set_kind),
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),
 	NUMBERS("hierarchy", "block_triangles", NULL, settings_whole, block_triangles, 2000,

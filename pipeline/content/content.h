@@ -9,6 +9,7 @@
 #include "base/diagnostics.h"
 #include "base/settings.h"
 #include "format/hash.h"
+#include "format/tile.h"
 #include "pipeline/import/import.h"
 
 enum {
@@ -47,6 +48,7 @@ struct content {
 	uint32_t grid_points;     /* 4..32, along the longest side of the bounding box */
 	uint32_t face_px;         /* size of the finest sampling face: 128, 256 ... 4096 */
 	uint32_t quality;         /* 1..100 */
+	enum tile_effort effort;  /* of tiles */
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */
 	uint32_t block_triangles; /* of the scan in one block, 2000..16000000; 0: the default */

@@ -166,7 +166,7 @@ static int encode_tile(struct face_renderer *renderer, struct shot *shot, uint32
 	pyramid_sharpen(&renderer->pyramid, renderer->options.level_count - 1 - level, x, y,
 			SAMPLE_IMAGE_PX, renderer->tile);
 	return tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX,
-			   renderer->options.quality);
+			   renderer->options.quality, renderer->options.effort);
 }
 
 static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t level)

@@ -15,8 +15,9 @@ struct face_renderer_options {
 	uint32_t texture_count;
 	struct drawing_options drawn;
 	uint32_t level_count; /* 1 .. SAMPLE_LEVELS_MAX */
-	/* of tile_encode, 1..100 */
-	int quality;
+	/* of tile_encode */
+	int quality; /* 1..100 */
+	enum tile_effort effort;
 };
 
 struct shot {

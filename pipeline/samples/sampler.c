@@ -123,6 +123,8 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 	}
 	buffer_put_u32(&text, grid->level_count);
 	buffer_put_u32(&text, sampling->content->quality);
+	if (sampling->content->effort != TILE_THOROUGH)
+		buffer_put_u8(&text, (uint8_t)sampling->content->effort);
 	key = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
 	return key;
@@ -283,7 +285,8 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 						 .texture_count = sampling->texture_count,
 						 .drawn = sampling->drawing,
 						 .level_count = sampling->grid.level_count,
-						 .quality = (int)sampling->content->quality };
+						 .quality = (int)sampling->content->quality,
+						 .effort = sampling->content->effort };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	struct headless *headless = NULL;
 	struct face_renderer *renderer = NULL;

@@ -164,7 +164,8 @@ struct job {
 static int work(void *user, uint32_t piece)
 {
 	const struct job *job = user;
-	struct face_renderer_options options = { .quality = (int)job->content->quality };
+	struct face_renderer_options options = { .quality = (int)job->content->quality,
+						 .effort = job->content->effort };
 	struct resource_usage usage;
 	double extra = 1;
 	int rc;

@@ -24,6 +24,22 @@ static uint8_t *smooth_picture(void)
 	return rgb;
 }
 
+/* Edges of several sizes, and grain as stone has it. */
+static uint8_t *rough_picture(void)
+{
+	uint8_t *rgb = malloc(PIXELS_BYTES);
+	uint32_t random = 1;
+
+	for (int i = 0; i < PIXELS_BYTES; i++) {
+		int x = i / 3 % SIDE, y = i / 3 / SIDE, c = i % 3;
+
+		random = random * 1664525 + 1013904223;
+		rgb[i] = (uint8_t)(128 + 40 * sin(x * 0.07 + c) + 20 * sin(x * 0.11 + y * 0.37) +
+				   12 * sin(x * 0.9 - y * 0.53) + (random >> 29));
+	}
+	return rgb;
+}
+
 static double psnr(const uint8_t *a, const uint8_t *b)
 {
 	double sum = 0;
@@ -36,7 +52,7 @@ static double psnr(const uint8_t *a, const uint8_t *b)
 static void encode(struct buffer *tile, const uint8_t *rgb)
 {
 	buffer_init(tile, 1000000);
-	CHECK(tile_encode(tile, rgb, SIDE, 80) == 0);
+	CHECK(tile_encode(tile, rgb, SIDE, 80, TILE_THOROUGH) == 0);
 }
 
 static void gives_back_the_picture(void **state)
@@ -51,6 +67,27 @@ static void gives_back_the_picture(void **state)
 	CHECK(tile_decode(back, SIDE / 2, buffer_bytes(&tile)) == -EBADMSG);
 	CHECK(tile_decode(back, 0, buffer_bytes(&tile)) == -EINVAL);
 	buffer_finish(&tile);
+	free(rgb);
+	free(back);
+}
+
+static void takes_more_bytes_for_less_effort(void **state)
+{
+	uint8_t *rgb = rough_picture(), *back = malloc(PIXELS_BYTES);
+	struct buffer thorough, quick;
+	double best;
+
+	(void)state;
+	encode(&thorough, rgb);
+	buffer_init(&quick, 1000000);
+	CHECK(tile_encode(&quick, rgb, SIDE, 80, TILE_QUICK) == 0);
+	CHECK(quick.size > thorough.size && quick.size < thorough.size + thorough.size / 10);
+	CHECK(tile_decode(back, SIDE, buffer_bytes(&thorough)) == 0);
+	best = psnr(rgb, back);
+	CHECK(tile_decode(back, SIDE, buffer_bytes(&quick)) == 0);
+	CHECK(fabs(psnr(rgb, back) - best) < 0.2);
+	buffer_finish(&thorough);
+	buffer_finish(&quick);
 	free(rgb);
 	free(back);
 }
@@ -161,6 +198,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gives_back_the_picture),
+		cmocka_unit_test(takes_more_bytes_for_less_effort),
 		cmocka_unit_test(is_a_webp_picture_without_its_container),
 		cmocka_unit_test(refuses_other_kinds_of_webp),
 		cmocka_unit_test(is_the_same_bytes_every_time),

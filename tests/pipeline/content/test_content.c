@@ -44,6 +44,7 @@ static void defaults_need_only_a_scan(void **state)
 	CHECK(content.scan_count == 1 && strstr(content.scans[0], "/tower.ply"));
 	CHECK(strcmp(content.name, strrchr(folder, '/') + 1) == 0);
 	CHECK(content.grid_points == 8 && content.face_px == 512 && content.quality == 80);
+	CHECK(content.effort == TILE_THOROUGH);
 	CHECK(content.patch_triangles == 0 && content.block_triangles == 0 &&
 	      content.publish_share == 0.10);
 	CHECK(content.language_count == 1 && strcmp(content.languages[0], "en") == 0);
@@ -62,7 +63,7 @@ static void every_key_is_read(void **state)
 		"up = y\nunit = mm\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
 		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
 		"tools = section, light\n[grid]\n"
-		"points = 32\nface_px = 1024\nquality = 90\n[hierarchy]\nkind = tree\n"
+		"points = 32\nface_px = 1024\nquality = 90\neffort = quick\n[hierarchy]\nkind = tree\n"
 		"patch_triangles = 1000\nblock_triangles = 2000\nlattice_mm = 0.5\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
 	struct content content;
@@ -79,6 +80,7 @@ static void every_key_is_read(void **state)
 	CHECK(content.tools == (INFO_TOOL_LIGHT | INFO_TOOL_SECTION));
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
 	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
+	CHECK(content.effort == TILE_QUICK);
 	CHECK(content.binary_tree && content.patch_triangles == 1000);
 	CHECK(content.block_triangles == 2000 && content.lattice_mm == 0.5);
 	CHECK(content.publish_share == 0.5 && content.language_count == 4);
@@ -115,6 +117,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "lit", "[model]\nlit = perhaps\n", "yes or no" },
 		{ "points", "[grid]\npoints = 33\n", "from 4 to 32" },
 		{ "points-text", "[grid]\npoints = 8x\n", "from 4 to 32" },
+		{ "effort", "[grid]\neffort = little\n", "thorough or quick" },
 		{ "face", "[grid]\nface_px = 500\n", "512" },
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
 		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },

@@ -86,7 +86,8 @@ static inline void tiny_samples(const struct tiny *tiny, uint8_t shade, uint8_t 
 			/* Only the last point changes with shade. */
 			memset(rgb, (x == 4 ? shade : 10 * (int)x) + i, sizeof(rgb));
 			buffer_init(&encoded[i], 1 << 20);
-			CHECK(tile_encode(&encoded[i], rgb, SAMPLE_IMAGE_PX, 75) == 0);
+			CHECK(tile_encode(&encoded[i], rgb, SAMPLE_IMAGE_PX, 75, TILE_THOROUGH) ==
+			      0);
 			objects[i] = buffer_bytes(&encoded[i]);
 		}
 		faces[0] = (struct sample_face){ .face = 1,

@@ -291,7 +291,7 @@ static bool little_face(struct little_release *r, const float point[3], int face
 			uint32_t row = at >> level, column = at & ((1u << level) - 1);
 			if (!little_tile(point, face, level, row, column, rgb))
 				continue;
-			CHECK(tile_encode(&bytes, rgb, SAMPLE_IMAGE_PX, 95) == 0);
+			CHECK(tile_encode(&bytes, rgb, SAMPLE_IMAGE_PX, 95, TILE_THOROUGH) == 0);
 			page.tile_child[face_tile_index(level, row, column)] = count;
 			children[count++] = little_add(r, &bytes, false);
 		}
