@@ -9,6 +9,9 @@ SAN     ?=
 JOBS    ?= $(shell nproc)
 WINDOW  ?= yes
 MAKEFLAGS += --no-builtin-rules
+ifeq ($(MAKELEVEL)$(filter clean,$(MAKECMDGOALS)),0) # unless the command line says otherwise
+MAKEFLAGS += -j$(JOBS)
+endif
 comma   := ,
 
 FOLDERS := base geometry format board system render ui input storage net app pipeline health
@@ -59,6 +62,7 @@ PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch 
             $(BUILD)/gopura-setup
 TEST_SOURCES := $(shell find tests -name 'test_*.c' | sort)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
+TEST_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(shell find tests -name '*.c'))
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
 SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
@@ -82,19 +86,23 @@ $(BUILD)/.deps: packages.txt
 	@./deps.sh
 	@touch $@
 
+$(BUILD)/.test-deps: tests/tools.txt | $(BUILD)/.deps
+	@./deps.sh tests/tools.txt
+	@touch $@
+
 demo: all ## build and show the demo temple (Ctrl-C ends it)
 	@demo/run.sh
 
-test: all ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU; T=NAME: one, as T=test_cut or T=e2e/kiosk
+test: all $(BUILD)/.test-deps ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU; T=NAME: one, as T=test_cut or T=e2e/kiosk
 	@tests/run.sh $(if $(T),only $(T),all)
 
-check: all ## the quick loop: format, include rules, unit tests under sanitizers
+check: all $(BUILD)/.test-deps ## the quick loop: format, include rules, unit tests under sanitizers
 	@tests/run.sh quick
 
-soak: all ## random touches on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
+soak: all $(BUILD)/.test-deps ## random touches on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
 	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
 
-golden: all ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
+golden: all $(BUILD)/.test-deps ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
 	@LANGUAGES="$(LANGUAGES)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
@@ -109,15 +117,15 @@ fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds eac
 	@./deps.sh tests/fuzz/tools.txt
 	@TIME="$(TIME)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
 
-powercut: all ## power cuts: at every write of cache and state (minutes), and 100 of the appliance (hours); CUTS=N, SEED=N
+powercut: all $(BUILD)/.test-deps ## power cuts: at every write of cache and state (minutes), and 100 of the appliance (hours); CUTS=N, SEED=N
 	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
 	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
 	@CUTS=$(or $(CUTS),100) bash tests/qemu/powercut.sh system
 
-interrupted: all ## builds killed and out of disk at random moments, then resumed: the same release; KILLS=50 FULL=20 SEED=1
+interrupted: all $(BUILD)/.test-deps ## builds killed and out of disk at random moments, then resumed: the same release; KILLS=50 FULL=20 SEED=1
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 
-qemu-test: all ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk
+qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk
 	@bash tests/qemu/image.sh updates
 	@bash tests/qemu/disks.sh all
 
@@ -125,23 +133,23 @@ qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC scre
 	@./deps.sh image/tools.txt
 	@image/qemu.sh
 
-arm64: all ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user
+arm64: all $(BUILD)/.test-deps ## cross-compile for arm64, run unit tests and a kiosk of it under qemu-user
 	@bash tests/qemu/arm64.sh all
 
-bench: all ## measure into build/bench/NAME.json (BENCH=NAME for one)
+bench: all $(BUILD)/.test-deps ## measure into build/bench/NAME.json (BENCH=NAME for one)
 	@tests/bench/run.sh $(BENCH)
 
-bench-full: all ## benchmarks that take hours: temples of 1, 6 and 18 million triangles, and a hierarchy of 100 million, into build/bench/
+bench-full: all $(BUILD)/.test-deps ## benchmarks that take hours: temples of 1, 6 and 18 million triangles, and a hierarchy of 100 million, into build/bench/
 	@tests/bench/run.sh --full
 
-check-style: deps ## clang-format, the include table, house rules
+check-style: $(BUILD)/.test-deps ## clang-format, the include table, house rules
 	@tests/style/check.sh
 
 po: deps ## bring the texts for translators (ui/po) up to date with the sources
 	@ui/po/extract.sh >ui/po/gopura.pot
 	@for language in ui/po/*.po; do msgmerge -q --update --backup=none "$$language" ui/po/gopura.pot || exit; done
 
-format: ## format the sources with clang-format
+format: $(BUILD)/.test-deps ## format the sources with clang-format
 	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
 clean: ## remove build/ (the demo content and its caches too)
@@ -163,6 +171,7 @@ $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math 
 ifeq ($(SAN)$(FUZZER),)
 $(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o: OPT := -O3 -g
 endif
+$(TEST_OBJECTS): | $(BUILD)/.test-deps
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 # The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.
 ifeq ($(FUZZER),)

@@ -42,7 +42,7 @@ apt_arm64() {
 }
 unpack_sysroot() {
 	local packages=$PWD/$build/packages wanted link deb
-	wanted=$(grep -- '-dev$' packages.txt)
+	wanted=$(grep -h -- '-dev$' packages.txt tests/tools.txt)
 	[ "$wanted" != "$(cat "$root/.of" 2>/dev/null)" ] || return 0
 	rm -rf "$root" "$packages"
 	mkdir -p "$root" "$packages"/{lists,cache/archives}/partial

@@ -11,7 +11,7 @@ if command -v clang-format >/dev/null; then
 	out=$(printf '%s\n' $files | xargs clang-format --dry-run 2>&1 | grep -E 'warning:' | head -5)
 	[ -z "$out" ] || complain "run 'make format':" "$out"
 else
-	complain "clang-format is missing (see packages.txt)"
+	complain "clang-format is missing (see tests/tools.txt)"
 fi
 
 # ---- the include table: FOLDER may include FOLDERS (itself always)
