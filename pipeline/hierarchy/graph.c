@@ -345,8 +345,8 @@ static int half_of_graph(struct graph *half, uint32_t *names, const struct graph
 	return rc;
 }
 
-/* With few heavy nodes per part, METIS cannot divide into many parts at once. So divide into
- * halves, step by step, and check each. */
+/* With few heavy nodes per part, or one that outweighs a part, METIS cannot divide into many parts
+ * at once. So divide into halves, step by step, and check each. */
 static int divide_by_halves(uint32_t *labels, const struct graph *graph, uint32_t part_count)
 {
 	uint32_t parts[2] = { part_count / 2, part_count - part_count / 2 }, counts[2] = { 0, 0 };
@@ -380,10 +380,25 @@ static int divide_by_halves(uint32_t *labels, const struct graph *graph, uint32_
 	return rc;
 }
 
+/* Whether a node is heavier than a part may be. METIS then puts no node beside it, and complains
+ * that nothing is left to divide. */
+static bool has_giant(const struct graph *graph, uint32_t part_count)
+{
+	int64_t total = 0, heaviest = 0;
+
+	for (uint32_t i = 0; i < graph->node_count; i++) {
+		total += graph->node_weights[i];
+		if (graph->node_weights[i] > heaviest)
+			heaviest = graph->node_weights[i];
+	}
+	return heaviest * part_count * 1000 > total * (1000 + IMBALANCE);
+}
+
 static int divide_unclustered(uint32_t *labels, const struct graph *graph, uint32_t part_count,
 			      const float *shares)
 {
-	if (part_count > 2 && graph->node_count < NODES_A_PART * part_count)
+	if (part_count > 2 &&
+	    (graph->node_count < NODES_A_PART * part_count || has_giant(graph, part_count)))
 		return divide_by_halves(labels, graph, part_count);
 	return divide_at_once(labels, graph, part_count, shares);
 }

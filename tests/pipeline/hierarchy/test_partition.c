@@ -2,8 +2,10 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "pipeline/hierarchy/graph.h"
 #include "tests/check.h"
@@ -304,6 +306,42 @@ static void the_lattice_refuses_what_has_no_extent(void **state)
 	mesh_finish(&mesh);
 }
 
+/* A square of nodes, one of which weighs as much as all the others: what METIS cannot divide, it
+ * complains about on standard output. */
+static void a_node_heavier_than_a_part_is_no_trouble(void **state)
+{
+	enum { SIDE = 33, NODES = SIDE * SIDE, PARTS = 15 };
+	uint32_t *labels = malloc(NODES * sizeof(*labels)), counts[PARTS] = { 0 };
+	FILE *said = tmpfile();
+	int standard_output;
+	struct graph graph;
+
+	(void)state;
+	CHECK(graph_init(&graph, NODES) == 0);
+	for (uint32_t i = 0; i < NODES; i++) {
+		if (i % SIDE + 1 < SIDE)
+			CHECK(graph_add(&graph, i, i + 1, 1) == 0);
+		if (i + SIDE < NODES)
+			CHECK(graph_add(&graph, i, i + SIDE, 1) == 0);
+	}
+	graph.node_weights[NODES / 2] = NODES;
+	CHECK(said && fflush(stdout) == 0);
+	standard_output = dup(STDOUT_FILENO);
+	CHECK(dup2(fileno(said), STDOUT_FILENO) >= 0);
+	CHECK(graph_divide(labels, &graph, PARTS, NULL) == 0);
+	fflush(stdout);
+	CHECK(dup2(standard_output, STDOUT_FILENO) >= 0);
+	CHECK(fseek(said, 0, SEEK_END) == 0 && ftell(said) == 0);
+	for (uint32_t i = 0; i < NODES; i++)
+		counts[labels[i]]++;
+	for (uint32_t part = 0; part < PARTS; part++)
+		CHECK(counts[part] > 0 && counts[part] < NODES / 4);
+	close(standard_output);
+	fclose(said);
+	graph_finish(&graph);
+	free(labels);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -313,6 +351,7 @@ int main(void)
 		cmocka_unit_test(loose_stones_stay_together_where_they_are_near),
 		cmocka_unit_test(refuses_limits_of_zero),
 		cmocka_unit_test(a_graph_falls_apart_at_its_weakest),
+		cmocka_unit_test(a_node_heavier_than_a_part_is_no_trouble),
 		cmocka_unit_test(the_lattice_merges_drops_and_counts),
 		cmocka_unit_test(the_lattice_of_a_large_site_keeps_a_millimetre),
 		cmocka_unit_test(the_lattice_counts_crowded_edges),
