@@ -25,23 +25,17 @@
 
 #include "app/settings/scene_settings.h"
 #include "base/clock.h"
-#include "geometry/vec.h"
 #include "render/scene/governor.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
+#include "tests/bench/visit.h"
 
-enum { FRAMES_MAX = 6000, LEGS_MAX = 2000, BLOCK = 8, POP = 16, HOLE = 16 };
+enum { FRAMES_MAX = 6000, BLOCK = 8, POP = 16, HOLE = 16 };
 
 /* Of the model's blocks, how many may pop in one frame before it shows. */
 static const double pop_share = 0.002;
 
-enum gait { GAIT_START, GAIT_GO, GAIT_ON, GAIT_FLING, GAIT_REST };
 enum harm { HARM_NONE, HARM_PATCH, HARM_TILE, HARM_SAMPLE };
-
-struct leg {
-	float seconds, eye_m[3], target_m[3];
-	enum gait gait;
-};
 
 /* What is known of a frame. */
 struct moment {
@@ -60,97 +54,25 @@ struct bench {
 	float level;
 	bool tries_fault;
 	enum harm harm;
-	struct leg leg[LEGS_MAX];
-	uint32_t leg_count, fps;
+	struct visit visit;
+	uint32_t fps;
 	struct moment moment[FRAMES_MAX];
 	uint32_t moment_count, judged;
 };
 
 /* ---- the visit */
 
-static enum gait gait_of(const char *name)
-{
-	static const char *const names[] = { "start", "go", "on", "fling", "rest" };
-
-	for (int i = 0; i < 5; i++)
-		if (!strcmp(name, names[i]))
-			return (enum gait)i;
-	stage_die(name, -EINVAL);
-	return GAIT_REST;
-}
-
-static void read_visit(struct bench *bench)
-{
-	FILE *file = fopen(bench->presence, "re");
-	char line[256], gait[16];
-
-	if (!file)
-		stage_die(bench->presence, -errno);
-	while (bench->leg_count < LEGS_MAX && fgets(line, sizeof(line), file)) {
-		struct leg *leg = &bench->leg[bench->leg_count];
-		float *e = leg->eye_m, *t = leg->target_m;
-
-		if (sscanf(line, "%f %f %f %f %f %f %f %15s", &leg->seconds, &e[0], &e[1], &e[2],
-			   &t[0], &t[1], &t[2], gait) == 8) {
-			leg->gait = gait_of(gait);
-		} else if (sscanf(line, "%f %15s", &leg->seconds, gait) == 2 &&
-			   bench->leg_count > 0) {
-			*leg = (struct leg){ .seconds = leg->seconds, .gait = gait_of(gait) };
-			memcpy(e, leg[-1].eye_m, sizeof(leg->eye_m));
-			memcpy(t, leg[-1].target_m, sizeof(leg->target_m));
-		} else {
-			continue;
-		}
-		bench->leg_count++;
-	}
-	fclose(file);
-	if (bench->leg_count < 2)
-		stage_die(bench->presence, -EINVAL);
-}
-
-static float eased(enum gait gait, float t)
-{
-	return gait == GAIT_GO      ? t * t * (3 - 2 * t)
-	       : gait == GAIT_FLING ? 1 - (1 - t) * (1 - t) * (1 - t)
-				    : t;
-}
-
-/* Round the vertical axis, the shorter way. */
-static void turn(float out[3], const float from[3], const float to[3], float t)
-{
-	const float r0 = hypotf(from[0], from[1]), r1 = hypotf(to[0], to[1]);
-	const float a0 = atan2f(from[1], from[0]);
-	float by = atan2f(to[1], to[0]) - a0;
-
-	if (by > (float)M_PI)
-		by -= 2 * (float)M_PI;
-	if (by < -(float)M_PI)
-		by += 2 * (float)M_PI;
-	out[0] = (r0 + t * (r1 - r0)) * cosf(a0 + t * by);
-	out[1] = (r0 + t * (r1 - r0)) * sinf(a0 + t * by);
-	out[2] = from[2] + t * (to[2] - from[2]);
-}
-
 /* Judged: four frames a second of what moves, of a rest all with its last frame's truth. */
-static void add_moment(struct bench *bench, const struct leg *leg, const struct leg *before,
-		       uint32_t i, uint32_t count)
+static void add_moment(struct bench *bench, uint32_t leg, uint32_t i, uint32_t count)
 {
 	struct moment *m = &bench->moment[bench->moment_count++];
-	const float t = eased(leg->gait, (float)(i + 1) / (float)count);
 
 	if (bench->moment_count == FRAMES_MAX)
 		stage_die("the visit is too long", -E2BIG);
-	m->camera = (struct camera){ .up = { 0, 0, 1 },
-				     .near_m = 0.1f,
-				     .far_m = 2000,
-				     .fov_deg = 45,
-				     .width_px = bench->options.width_px,
+	m->camera = (struct camera){ .width_px = bench->options.width_px,
 				     .height_px = bench->options.height_px };
-	turn(m->camera.eye_m, before->eye_m, leg->eye_m, t);
-	for (int k = 0; k < 3; k++)
-		m->camera.target_m[k] =
-			before->target_m[k] + t * (leg->target_m[k] - before->target_m[k]);
-	m->rests = leg->gait == GAIT_REST;
+	visit_camera(&m->camera, &bench->visit, leg, (float)(i + 1) / (float)count);
+	m->rests = bench->visit.leg[leg].gait == VISIT_REST;
 	if (m->rests ? i == 0 : i % (bench->fps / 4) == 0)
 		bench->judged++;
 	if (m->rests || i % (bench->fps / 4) == 0)
@@ -184,13 +106,13 @@ static void write_views(const struct bench *bench)
 
 static void plan_visit(struct bench *bench)
 {
-	read_visit(bench);
-	for (uint32_t l = 1; l < bench->leg_count; l++) {
-		const struct leg *leg = &bench->leg[l];
-		const uint32_t count = (uint32_t)(leg->seconds * (float)bench->fps + 0.5f);
+	visit_read(&bench->visit, bench->presence);
+	for (uint32_t leg = 1; leg < bench->visit.leg_count; leg++) {
+		const float seconds = bench->visit.leg[leg].seconds;
+		const uint32_t count = (uint32_t)(seconds * (float)bench->fps + 0.5f);
 
 		for (uint32_t i = 0; i < count; i++)
-			add_moment(bench, leg, leg - 1, i, count);
+			add_moment(bench, leg, i, count);
 	}
 	write_views(bench);
 }
@@ -373,7 +295,7 @@ static double settling_ms(const struct bench *bench, uint32_t first, uint32_t co
 
 static void report(const struct bench *bench)
 {
-	static double cpu[FRAMES_MAX], stops[LEGS_MAX], rests[LEGS_MAX];
+	static double cpu[FRAMES_MAX], stops[VISIT_LEGS_MAX], rests[VISIT_LEGS_MAX];
 	uint32_t cpus = 0, stop_count = 0, moving = 0, popping = 0, holes = 0, popped_most = 0;
 	double moving_sum = 0, moving_least = 99, accumulation_sum = 0, median;
 	char path[512];

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -23,6 +24,9 @@ enum {
 
 static bool is_virtual;
 static int64_t virtual_us = 1000000000;
+/* Within a frame of the work clock: this thread's processor time at its begin. */
+static int64_t work_from_us = -1;
+static float work_slowness = 1;
 
 int64_t __real_clock_now_us(void);
 int64_t __wrap_clock_now_us(void);
@@ -32,6 +36,9 @@ int64_t __wrap_clock_now_us(void)
 {
 	if (!is_virtual)
 		return __real_clock_now_us();
+	if (work_from_us >= 0)
+		return virtual_us +
+		       (int64_t)((float)(clock_thread_us() - work_from_us) * work_slowness);
 	return virtual_us += LOOK_US;
 }
 
@@ -148,6 +155,8 @@ void stage_open(struct stage *stage, const struct stage_options *options)
 	stage->options = *options;
 	if (stage->options.frame_us == 0)
 		stage->options.frame_us = FRAME_US;
+	stage->cores = 2;
+	stage->slowness = 1;
 	is_virtual = !options->wall_clock;
 	open_release(stage);
 	stage_must(headless_create(&stage->headless), "no GL");
@@ -204,7 +213,11 @@ static void send_for(struct stage *stage, int64_t now_us)
 	struct message_want wants[2 * STAGE_IN_FLIGHT];
 	size_t count = scene_wants(stage->scene, wants, 2 * STAGE_IN_FLIGHT);
 	const uint64_t rate = stage->options.bits_a_second;
-	uint64_t ahead = 0;
+	uint64_t ahead = 0, window = WINDOW_BYTES;
+
+	/* A fetcher does not wait for frames: in a long one the line carries more. */
+	if (stage->options.work_clock)
+		window += rate / 8 * (uint64_t)stage->passed_us / 1000000;
 
 	for (uint32_t i = 0; i < stage->flights; i++)
 		ahead += stage->flight[i].want.size;
@@ -215,7 +228,7 @@ static void send_for(struct stage *stage, int64_t now_us)
 			continue;
 		if (stage->bytes + ahead >= stage->bytes_most)
 			return;
-		if (rate > 0 && ahead > 0 && ahead + wants[i].size > WINDOW_BYTES)
+		if (rate > 0 && ahead > 0 && ahead + wants[i].size > window)
 			return;
 		ahead += wants[i].size;
 		if (rate > 0 && !was_had(stage, wants[i].hash)) {
@@ -248,21 +261,59 @@ static void pass_link(struct stage *stage)
 
 /* ---- frames */
 
-void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
+static int64_t process_us(void)
 {
-	const int64_t began_us = virtual_us, work_us = clock_thread_us();
+	struct timespec now;
 
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+	return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+static void draw(struct stage *stage, const struct camera *camera, struct scene_frame *out)
+{
+	const int64_t work_us = clock_thread_us(), all_us = process_us(),
+		      wall_us = __real_clock_now_us();
+	int64_t beside_us;
+
+	if (stage->options.work_clock) {
+		work_from_us = work_us;
+		work_slowness = stage->slowness;
+	}
 	gl_target_bind(&stage->target);
 	stage_must(scene_dispatch(stage->scene), "scene");
 	scene_draw(stage->scene, camera, NULL, out);
 	glFinish();
+	work_from_us = -1;
+	stage->wall_us = __real_clock_now_us() - wall_us;
 	stage->work_us = clock_thread_us() - work_us;
+	beside_us = process_us() - all_us - stage->work_us + stage->decoded_us;
+	stage->spent_us =
+		(int64_t)((float)(stage->work_us + beside_us / stage->cores) * stage->slowness);
+	stage->decoded_us = 0;
+}
+
+void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
+{
+	const int64_t began_us = virtual_us;
+	int64_t work_us;
+
+	draw(stage, camera, out);
+	if (stage->options.work_clock)
+		virtual_us = began_us + stage->spent_us;
 	if (is_virtual) {
 		const int64_t next_us = began_us + stage->options.frame_us;
 
 		virtual_us = next_us > virtual_us ? next_us : virtual_us;
 	}
+	stage->passed_us = virtual_us - began_us;
+	work_us = clock_thread_us();
 	pass_link(stage);
+	stage->decoded_us = clock_thread_us() - work_us;
+}
+
+int64_t stage_now_us(void)
+{
+	return is_virtual ? virtual_us : __real_clock_now_us();
 }
 
 uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t most_ms,

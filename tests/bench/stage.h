@@ -22,6 +22,7 @@ struct stage_options {
 	struct scene_options scene;
 	int width_px, height_px;
 	bool wall_clock;        /* the machine's time and its workers */
+	bool work_clock;        /* a frame takes the time that its work takes on `cores` cores */
 	uint32_t frame_us;      /* between frames of the stage's clock; 0: 16667 */
 	uint64_t bits_a_second; /* 0: what is asked for is there in the next frame */
 	uint32_t latency_us;
@@ -48,7 +49,15 @@ struct stage {
 	struct map had;          /* by hash: what a cache would hold */
 	uint64_t bytes, objects; /* that came for the first time, with what their transport adds */
 	int64_t work_us;         /* of this thread, for the last frame */
-	uint64_t bytes_most;     /* nothing is sent for past them; UINT64_MAX from the start */
+	int64_t wall_us;         /* of the machine's clock, for the last frame */
+	/* With work_clock: what the last frame took. The drawing thread's processor time, and its
+	 * share of that of the driver's threads and of decoding, which run beside it. */
+	int64_t spent_us;
+	int64_t passed_us;  /* of the stage's clock in the last frame */
+	int64_t decoded_us; /* time of decoding since then, of which the next frame has its share */
+	uint32_t cores;     /* with work_clock: that the process has; 2 from the start */
+	float slowness;     /* with work_clock: factor of all times; 1 from the start */
+	uint64_t bytes_most; /* nothing is sent for past them; UINT64_MAX from the start */
 };
 
 /* Ends the program with a line on standard error. */
@@ -68,6 +77,8 @@ void stage_close(struct stage *stage);
 void stage_begin(struct stage *stage, const struct scene_options *options);
 /* Draws a frame into stage->target, then lets time pass and objects come. */
 void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out);
+/* The stage's clock, which this call does not advance. */
+int64_t stage_now_us(void);
 /* Frames until the picture is settled or so much time has passed; frames drawn. */
 uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t most_ms,
 		      struct scene_frame *out);

@@ -11,7 +11,7 @@
 # finer than vertices), venus-70 and zeus-70 (real scans, textured); demo (2 M triangles, colours finer
 # than vertices) has the 40 farther apart of tests/e2e/pictures.sh.
 # What is built stays in build/bench/view; build/bench/view.json has a row for each, and what the
-# benchmarks frame, motion, footprint and start left.
+# benchmarks frame, motion, visit, footprint and start left.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib-server.sh
