@@ -9,6 +9,11 @@
 #include "app/modes/self_test.h"
 #include "app/settings/options.h"
 
+enum {
+	FREED_BYTES_MAX = 64 << 20,   /* that malloc keeps while the eye moves */
+	MAPPED_BYTES_LEAST = 1 << 20, /* of an allocation that is a mapping of its own */
+};
+
 int main(int argc, char **argv)
 {
 	static struct kiosk kiosk;
@@ -16,6 +21,10 @@ int main(int argc, char **argv)
 
 	/* One malloc arena: those of the worker threads would hold 2 MB unused. */
 	mallopt(M_ARENA_MAX, 1);
+	/* A driver that draws on the processor frees megabytes in each frame, and would fault them
+	 * in again in the next. app/frame.c gives them back when the picture has settled. */
+	mallopt(M_TRIM_THRESHOLD, FREED_BYTES_MAX);
+	mallopt(M_MMAP_THRESHOLD, MAPPED_BYTES_LEAST);
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:
 		return EXIT_SUCCESS;

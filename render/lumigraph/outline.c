@@ -9,11 +9,12 @@ enum {
 	MASK_PX = LINE_PX + 6, /* no pixel of the mask that the line depends on */
 };
 
-/* Blurs the mask to half its size by a kernel that is close to a Gaussian. Each of the 16 points
- * lies between four pixels, whose mean it is. */
+/* Blurs the mask to half the size of what is shown by a kernel that is close to a Gaussian. Where
+ * the mask has that size itself, each of the 16 points lies between four pixels, whose mean it is.
+ */
 static const char soft_fragment[] =
 	"uniform sampler2D u_mask;\n"
-	"uniform FINE vec2 u_step;\n" /* from a pixel of the mask to the next */
+	"uniform FINE vec2 u_step;\n" /* from a pixel of what is shown to the next */
 	"uniform FINE vec2 u_scale;\n"
 	"varying FINE vec2 v_at;\n"
 	"vec4 row(FINE float y) {\n"
@@ -147,14 +148,17 @@ static int create_linear(struct gl_target *out, int width_px, int height_px)
 	return 0;
 }
 
-static int prepare_masks(struct outline *outline, const struct gl_target *picture)
+static int prepare_masks(struct outline *outline, const struct gl_target *picture, int width_px,
+			 int height_px)
 {
 	if (outline->mask.framebuffer && outline->mask.width_px == picture->width_px &&
-	    outline->mask.height_px == picture->height_px)
+	    outline->mask.height_px == picture->height_px && outline->width_px == width_px &&
+	    outline->height_px == height_px)
 		return 0;
 	outline_let_go(outline);
-	int rc = create_linear(&outline->soft, (picture->width_px + 1) / 2,
-			       (picture->height_px + 1) / 2);
+	outline->width_px = width_px;
+	outline->height_px = height_px;
+	int rc = create_linear(&outline->soft, (width_px + 1) / 2, (height_px + 1) / 2);
 	if (rc == 0)
 		rc = create_linear(&outline->mask, picture->width_px, picture->height_px);
 	if (rc < 0)
@@ -162,9 +166,10 @@ static int prepare_masks(struct outline *outline, const struct gl_target *pictur
 	return rc;
 }
 
-int outline_begin(struct outline *outline, const struct gl_target *picture)
+int outline_begin(struct outline *outline, const struct gl_target *picture, int width_px,
+		  int height_px)
 {
-	int rc = prepare_masks(outline, picture);
+	int rc = prepare_masks(outline, picture, width_px, height_px);
 	if (rc < 0)
 		return rc;
 	gl_target_bind(&outline->mask);
@@ -188,12 +193,12 @@ static void draw_square(GLuint texture)
 	gl_draw_square();
 }
 
-/* The soft mask may be larger than half the mask by half a pixel: from its coordinates to those of
- * the mask. */
+/* The soft mask may be larger than half of what is shown by half a pixel: from its coordinates to
+ * those of the mask. */
 static void set_scale(const struct outline *outline, GLint uniform, bool to_soft)
 {
-	float x = 2 * (float)outline->soft.width_px / (float)outline->mask.width_px;
-	float y = 2 * (float)outline->soft.height_px / (float)outline->mask.height_px;
+	float x = 2 * (float)outline->soft.width_px / (float)outline->width_px;
+	float y = 2 * (float)outline->soft.height_px / (float)outline->height_px;
 	glUniform2f(uniform, to_soft ? 1 / x : x, to_soft ? 1 / y : y);
 }
 
@@ -205,7 +210,8 @@ static void blur(const struct outline *outline)
 	limit(outline, &all, soft->width_px, soft->height_px, MASK_PX / 2);
 	glDisable(GL_DEPTH_TEST);
 	glUseProgram(outline->blur.program);
-	glUniform2f(outline->blur.step, 1 / (float)mask->width_px, 1 / (float)mask->height_px);
+	glUniform2f(outline->blur.step, 1 / (float)outline->width_px,
+		    1 / (float)outline->height_px);
 	set_scale(outline, outline->blur.scale, false);
 	draw_square(mask->colour);
 	glEnable(GL_DEPTH_TEST);

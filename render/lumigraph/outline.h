@@ -16,8 +16,8 @@ struct outline_program {
 
 struct outline {
 	struct outline_program line, blur;
-	struct gl_target mask,
-		soft;          /* soft: blurred, at half size; absent until a part is marked */
+	struct gl_target mask, soft; /* soft: blurred; absent until a part is marked */
+	int width_px, height_px;     /* of what is shown, of which soft has half the size */
 	float low[2], high[2]; /* the rectangle that may hold the part, in clip space, -1..1 */
 };
 
@@ -36,13 +36,14 @@ void outline_include(struct outline *outline, const struct view *view, const flo
 /* Returns whether no sphere was included. */
 bool outline_is_empty(const struct outline *outline);
 
-/* Binds the mask, with the depth of the picture that was just drawn. Then draw the part white, and
- * call outline_end. On failure (as gl_target_create) nothing is bound. */
-must_check int outline_begin(struct outline *outline, const struct gl_target *picture);
+/* Binds the mask, with the depth of the picture that was just drawn and will be shown at that size,
+ * which may be larger. Then draw the part white, and call outline_end. On failure (as
+ * gl_target_create) nothing is bound. */
+must_check int outline_begin(struct outline *outline, const struct gl_target *picture, int width_px,
+			     int height_px);
 /* Restores the GL state that the scene expects, but another framebuffer is bound. */
 void outline_end(struct outline *outline);
-/* Draws line and tint over a picture of that size, which may be larger than the mask; keeps its
- * alpha. */
+/* Draws line and tint over the picture, shown at that size; keeps its alpha. */
 void outline_draw(const struct outline *outline, const struct gl_place *place, int width_px,
 		  int height_px);
 

@@ -15,7 +15,10 @@ static const char visibility_vertex[] =
 	"uniform vec4 u_lattice;\n"
 	/* right and up are divided by the tangents of the field of view */
 	"uniform vec3 u_right, u_up, u_forward;\n"
-	"varying float v_depth;\n"
+	/* The number goes through the vertices: drivers that draw on the processor copy all state
+	 * of the fragments where one of their uniforms changes, and it changes with each piece. */
+	"uniform vec2 u_number;\n"
+	"varying vec3 v_depth;\n" /* and the number */
 	"#ifdef CUT\n"
 	"uniform vec4 u_cut;\n"
 	"varying float v_cut;\n"
@@ -23,7 +26,7 @@ static const char visibility_vertex[] =
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
 	"	float z = dot(p, u_forward), n = 0.05, f = 1000.0;\n"
-	"	v_depth = z / f * 65535.0 / 256.0;\n"
+	"	v_depth = vec3(z / f * 65535.0 / 256.0, u_number);\n"
 	"#ifdef CUT\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"#endif\n"
@@ -32,8 +35,7 @@ static const char visibility_vertex[] =
 	"}\n";
 
 static const char visibility_fragment[] =
-	"uniform vec2 u_number;\n"
-	"varying float v_depth;\n"
+	"varying vec3 v_depth;\n"
 	"#ifdef CUT\n"
 	"varying float v_cut;\n"
 	"#endif\n"
@@ -42,10 +44,10 @@ static const char visibility_fragment[] =
 	"	if (v_cut > 0.0)\n"
 	"		discard;\n"
 	"#endif\n"
-	"	float high = floor(v_depth);\n"
-	"	float low = floor((v_depth - high) * 256.0);\n"
+	"	float high = floor(v_depth.x);\n"
+	"	float low = floor((v_depth.x - high) * 256.0);\n"
 	"	float back = gl_FrontFacing ? 0.0 : 128.0;\n"
-	"	gl_FragColor = vec4(back / 255.0 + u_number.x, u_number.y, vec2(high, low) / 255.0);\n"
+	"	gl_FragColor = vec4(back / 255.0 + v_depth.y, v_depth.z, vec2(high, low) / 255.0);\n"
 	"}\n";
 
 static int build(struct visibility_program *out, const char *defines)

@@ -22,8 +22,9 @@ static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
 /* Below this level, or with such a load, a lower rate of frames harms less than a still smaller
  * picture. */
 static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
-/* Where the parts of the effort begin to give way: the scale first. */
-static const float level_triangles = 0.4f, level_faces = 0.2f, level_budget = 0.1f;
+/* Where the parts of the effort begin to give way, in the order of what a picture loses for the
+ * time that is gained (docs/figures.md, Levels of the governor): the scale first. */
+static const float level_faces = 0.4f, level_triangles = 0.2f, level_budget = 0.1f;
 /* At the lowest level: how much coarser patches are, and the share of the time budgets. */
 static const float coarser_most = 2, budget_least = 0.25f;
 enum { FACES_LEAST = 1 };
@@ -131,11 +132,11 @@ static float between(float level, float low, float high)
 struct scene_effort governor_effort(const struct governor *governor)
 {
 	const float level = governor->level, least = governor->bounds.scale_least;
-	const float faces = between(level, level_budget, level_faces);
+	const float faces = between(level, level_triangles, level_faces);
+	const float coarser = 1 - between(level, level_budget, level_triangles);
 	return (struct scene_effort){
-		.scale = least + (1 - least) * between(level, level_triangles, 1),
-		.coarser = coarser_most -
-			   (coarser_most - 1) * between(level, level_faces, level_triangles),
+		.scale = least + (1 - least) * between(level, level_faces, 1),
+		.coarser = 1 + (coarser_most - 1) * coarser,
 		.faces = FACES_LEAST + (uint32_t)lroundf((PLAN_ENTRIES - FACES_LEAST) * faces),
 		.budget = budget_least + (1 - budget_least) * between(level, 0, level_budget),
 	};

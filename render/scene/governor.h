@@ -1,6 +1,6 @@
 /* The frame-time governor: a feedback controller that holds the frames of a moving eye at the
  * panel's rate, or at the highest divisor of it that the board can hold down to 30 a second. It
- * takes what harms least first: the picture's scale, then triangles, then faces per piece, then the
+ * takes what harms least first: the picture's scale, then faces per piece, then triangles, then the
  * time for uploads and planning. A board needs no description for that; bounds are optional.
  *
  * It gives way at once and comes back slowly, and there is a dead band between the two loads

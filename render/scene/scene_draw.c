@@ -16,8 +16,9 @@
 enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
-	SEASON_US = 1000000,         /* longest season of the tiles while the eye moves */
-	SHARE_PX_MAX = 320,          /* width of the picture from which image_share is counted */
+	UPLOAD_BUDGET_REST_US = 25000,
+	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
+	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
@@ -133,6 +134,18 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 	run->count += piece->triangle_count;
 }
 
+/* Returns the program that draws a piece. While the eye moves and frames take too long, a piece of
+ * which nothing was visible of late has its own colours: it costs no uniforms of its own. */
+static int choose_program(const struct scene *scene, const struct surface_frame *frame,
+			  const struct visible_piece *v)
+{
+	static const struct blend none[PLAN_ENTRIES];
+	const struct piece_state *state = &scene->geometry.patches[v->patch].pieces[v->piece];
+	const bool hidden = state->counted && state->seen_px <= 0;
+	return surface_choose(frame, scene->used.scale < 1 && hidden ? none : state->blend,
+			      v->range);
+}
+
 /* Draws program by program, so that each sets its uniforms once. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
@@ -140,9 +153,7 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 	uint32_t with[SURFACE_PROGRAMS] = { 0 };
 	for (uint32_t i = 0; i < count; i++) {
 		struct visible_piece *v = &scene->visible[i];
-		const struct piece_state *state =
-			&scene->geometry.patches[v->patch].pieces[v->piece];
-		v->program = surface_choose(frame, state->blend, v->range);
+		v->program = choose_program(scene, frame, v);
 		if (v->program >= 0)
 			with[v->program]++;
 	}
@@ -185,18 +196,6 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.shares = shares,
 	};
 	draw_pieces(scene, &frame);
-}
-
-/* Draws only the depths of the surface. */
-static void draw_surface_depth(struct scene *scene, const struct view *view)
-{
-	const struct surface_frame frame = { .view = view,
-					     .root = &scene->root,
-					     .depth = &scene->depth,
-					     .repository = &scene->repository };
-	glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-	draw_pieces(scene, &frame);
-	glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 /* Returns the share of the model's pixels that images colour, from a small picture. */
@@ -263,8 +262,10 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	float passed_ms =
 		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
 	scene->frame_us = now_us;
-	const int64_t upload_us =
-		(int64_t)((float)scene->options.upload_budget_us * scene->used.budget);
+	int64_t upload_us = (int64_t)((float)scene->options.upload_budget_us * scene->used.budget);
+	/* Where a frame at full size takes long, the usual time would load little in a second. */
+	if (scene->still_frames > STILL_FRAMES && upload_us < UPLOAD_BUDGET_REST_US)
+		upload_us = UPLOAD_BUDGET_REST_US;
 	scene_upload(scene, now_us + upload_us, out);
 	scene_update_cut(scene, passed_ms);
 	scene_list_pieces(scene);
@@ -286,23 +287,8 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 		scene_draw_depth(scene, clock_now_us() + upload_us, out);
 }
 
-/* Draws the mask of the marked part at full size, from the depths of the surface alone. */
-static void mask_alone(struct scene *scene)
-{
-	const struct view *view = &scene->view;
-	const struct gl_target *frame = &scene->accumulation.frame;
-	outline_clear(&scene->outline);
-	if (!scene->is_marked ||
-	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0)
-		return;
-	gl_target_bind(frame);
-	begin_picture(scene);
-	draw_surface_depth(scene, view);
-	scene_draw_mask(scene, view, frame);
-}
-
-/* Returns whether the picture was drawn smaller and enlarged. The line around the marked part is as
- * wide and as sharp as ever. */
+/* Returns whether the picture was drawn smaller and enlarged. The mask of the marked part is as
+ * small as the picture, whose depths it needs; the line is as wide as ever. */
 static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 {
 	const struct view *view = &scene->view;
@@ -314,7 +300,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 		return false;
 	begin_picture(scene);
 	draw_picture(scene, &small, false);
-	mask_alone(scene);
+	scene_draw_mask(scene, &small, &scene->enlargement.small);
 	enlargement_end(&scene->enlargement, place, view->width_px, view->height_px);
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
 	return true;

@@ -77,7 +77,8 @@ void scene_draw_mask(struct scene *scene, const struct view *view, const struct 
 	each_piece(scene, false, include);
 	if (outline_is_empty(&scene->outline))
 		return;
-	int rc = outline_begin(&scene->outline, picture);
+	int rc = outline_begin(&scene->outline, picture, scene->view.width_px,
+			       scene->view.height_px);
 	if (rc < 0) {
 		log_warn("render", "no outline of a part: %s", strerror(-rc));
 		outline_clear(&scene->outline);

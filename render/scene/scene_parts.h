@@ -107,11 +107,12 @@ struct scene {
 	uint32_t visible_count, leaving_count, visible_room;
 	struct visible_piece *counted; /* those numbered in the current visibility pass; owned */
 	uint32_t counted_count, counted_room;
-	uint64_t counting_cut; /* cut_signature when the pass began */
-	bool counting;         /* half of the pass is drawn */
-	uint32_t epoch;        /* counts changes of what planning depends on: pages */
-	int64_t visibility_us; /* time of the last visibility pass; 0: none yet */
-	int64_t season_us;     /* when the current season of the tiles began */
+	uint64_t counting_cut;  /* cut_signature when the pass began */
+	bool counting;          /* a part of the pass is drawn */
+	uint32_t counted_drawn; /* that many of its pieces */
+	uint32_t epoch;         /* counts changes of what planning depends on: pages */
+	int64_t visibility_us;  /* time of the last visibility pass; 0: none yet */
+	int64_t season_us;      /* when the current season of the tiles began */
 	bool was_moving;
 	float visibility_eye_m[3];
 	float visibility_forward[3];

@@ -10,6 +10,8 @@
 
 enum {
 	MOVING_US = 120000, /* between two passes while the eye moves */
+	PARTS = 2,          /* of a pass while the eye moves, each drawn in a frame of its own */
+	MOST_PARTS = 4,     /* the same, where frames take too long */
 	PROBE_MOVES = 2,    /* rounds of moving probes per pass */
 };
 
@@ -65,21 +67,34 @@ static bool begin(struct scene *scene)
 	return true;
 }
 
-/* While the eye moves a pass is drawn in two frames, so that neither takes much longer than others.
- * Returns whether the pass is complete. */
+/* Returns in how many frames a pass is drawn, so that none takes much longer than others. */
+static uint32_t parts_of(const struct scene *scene, bool moved)
+{
+	if (!moved)
+		return 1;
+	return scene->used.scale < 1 ? MOST_PARTS : PARTS;
+}
+
+/* Draws the next part of a pass. Returns whether the pass is complete. */
 static bool draw(struct scene *scene, bool moved)
 {
+	uint32_t parts = parts_of(scene, moved);
 	if (scene->counting && moved && scene->counting_cut == scene->cut_signature) {
-		scene->counting = false;
 		visibility_resume(&scene->visibility, &scene->root);
-		draw_numbers(scene, scene->counted_count / 2, scene->counted_count);
-		return true;
+	} else {
+		/* A pass that had to begin again is drawn at once, or it might never end. */
+		parts = scene->counting ? 1 : parts;
+		if (!begin(scene))
+			return false;
+		scene->counted_drawn = 0;
 	}
-	if (!begin(scene))
-		return false;
-	scene->counting = moved;
-	draw_numbers(scene, 0, moved ? scene->counted_count / 2 : scene->counted_count);
-	return !moved;
+	const uint32_t left = scene->counted_count - scene->counted_drawn;
+	const uint32_t part = (scene->counted_count + parts - 1) / parts;
+	const uint32_t to = scene->counted_drawn + (part < left ? part : left);
+	draw_numbers(scene, scene->counted_drawn, to);
+	scene->counted_drawn = to;
+	scene->counting = to < scene->counted_count;
+	return !scene->counting;
 }
 
 static int nearest_probe(const struct piece_state *state, const float at_m[3])

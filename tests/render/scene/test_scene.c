@@ -470,8 +470,8 @@ static uint32_t line_pixels(const uint8_t *rgba)
 	return count;
 }
 
-/* Over an enlarged picture, where the surface itself is soft. */
-static void a_mark_is_drawn_at_full_size(void **state)
+/* Its mask is as small as the picture. */
+static void a_mark_is_as_wide_over_an_enlarged_picture(void **state)
 {
 	const struct region pillar = { .kind = REGION_BOX,
 				       .centre_m = { 4, -4, 2.2f },
@@ -486,7 +486,7 @@ static void a_mark_is_drawn_at_full_size(void **state)
 	keep_picture("enlarged-mark", small);
 	CHECK(difference(full, small) > 1);
 	CHECK(line_pixels(full) > 150);
-	CHECK(abs((int)line_pixels(full) - (int)line_pixels(small)) <= 5);
+	CHECK(abs((int)line_pixels(full) - (int)line_pixels(small)) <= (int)line_pixels(full) / 10);
 	free(full);
 	free(small);
 	strike_stage(&stage);
@@ -643,7 +643,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(a_millimetre_changes_next_to_nothing),
 		cmocka_unit_test(an_enlarged_picture_has_the_same_colours_at_the_same_place),
 		cmocka_unit_test(a_picture_is_sharp_in_the_second_frame_of_a_stop),
-		cmocka_unit_test(a_mark_is_drawn_at_full_size),
+		cmocka_unit_test(a_mark_is_as_wide_over_an_enlarged_picture),
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
 		cmocka_unit_test(the_far_corner_of_a_site_looks_like_the_near_one),
 		cmocka_unit_test(regions_know_what_is_in_them),
