@@ -84,6 +84,31 @@ int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work
 	return crew.rc;
 }
 
+struct division {
+	uint32_t item_count, range_items;
+	parallel_range_work work;
+	void *user;
+};
+
+static int run_range(void *user, uint32_t piece, uint32_t worker)
+{
+	const struct division *division = user;
+	uint32_t first = piece * division->range_items, left = division->item_count - first;
+
+	return division->work(division->user, first,
+			      first + (left < division->range_items ? left : division->range_items),
+			      worker);
+}
+
+int parallel_ranges(uint32_t worker_count, uint32_t item_count, uint32_t range_items,
+		    parallel_range_work work, void *user)
+{
+	struct division division = { item_count, range_items, work, user };
+
+	return parallel_run(worker_count, item_count / range_items + (item_count % range_items > 0),
+			    run_range, &division);
+}
+
 uint32_t parallel_cores(void)
 {
 	cpu_set_t set;

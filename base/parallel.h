@@ -16,6 +16,14 @@ typedef int (*parallel_work)(void *user, uint32_t piece, uint32_t worker);
 must_check int parallel_run(uint32_t worker_count, uint32_t piece_count, parallel_work work,
 			    void *user);
 
+/* Does items first to after - 1. worker as in parallel_work. Returns 0 or a negative errno. */
+typedef int (*parallel_range_work)(void *user, uint32_t first, uint32_t after, uint32_t worker);
+
+/* Divides items 0 to item_count - 1 into ranges of range_items each, the last one shorter, and runs
+ * them as parallel_run does its pieces. first / range_items numbers a range. */
+must_check int parallel_ranges(uint32_t worker_count, uint32_t item_count, uint32_t range_items,
+			       parallel_range_work work, void *user);
+
 /* Returns how many processors this process may use, at most 8: more would wait for memory. */
 uint32_t parallel_cores(void);
 
