@@ -31,9 +31,9 @@ static void print_repairs(FILE *to, const struct mesh_repairs *repairs)
 
 void import_report_print(FILE *to, const char *path, const struct import_report *report)
 {
-	fprintf(to, "%s: %s, %" PRIu32 " triangles, %" PRIu32 " vertices, %.1f s\n", path,
-		report->format, report->triangles, report->vertices,
-		(double)report->duration_ms / 1000);
+	fprintf(to, "%s: %s, %" PRIu32 " %s, %" PRIu32 " vertices, %.1f s\n", path, report->format,
+		report->triangles, report->triangles == 1 ? "triangle" : "triangles",
+		report->vertices, (double)report->duration_ms / 1000);
 	fprintf(to, "  box %.3f %.3f %.3f to %.3f %.3f %.3f m\n", report->low_m[0],
 		report->low_m[1], report->low_m[2], report->high_m[0], report->high_m[1],
 		report->high_m[2]);
