@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +13,7 @@
 
 #include <sodium.h>
 
+#include "base/parallel.h"
 #include "base/spill.h"
 
 enum {
@@ -23,75 +23,17 @@ enum {
 	HAS_MATERIALS = 4,
 	HAS_FACES = 8,
 	COUNTS = 5,
-	CHUNK_BYTES = 1 << 20,
-	ALIGNMENT = 8, /* of each array in the file */
+	CHUNK_BYTES = 1 << 20, /* hashed by one thread */
+	ALIGNMENT = 8,         /* of each array in the file */
+	HEAD_BYTES_MAX = 1 << 20,
+	CHECKED_TRIANGLES = 1 << 16, /* by one thread at a time */
 };
 
-static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 3 };
-
-/* A file and the hash of the bytes that passed through it. The first error is kept. */
-struct stream {
-	int fd;
-	int error;
-	crypto_generichash_state hash;
-};
-
-static void stream_init(struct stream *stream, int fd)
-{
-	*stream = (struct stream){ .fd = fd };
-	crypto_generichash_init(&stream->hash, NULL, 0, HASH_BYTES);
-}
-
-static void put(struct stream *stream, const void *data, size_t size)
-{
-	const uint8_t *bytes = data;
-
-	while (size > 0 && !stream->error) {
-		size_t chunk = size < CHUNK_BYTES ? size : CHUNK_BYTES;
-		ssize_t done = write(stream->fd, bytes, chunk);
-
-		if (done < 0 && errno != EINTR)
-			stream->error = -errno;
-		if (done <= 0)
-			continue;
-		crypto_generichash_update(&stream->hash, bytes, (size_t)done);
-		bytes += done;
-		size -= (size_t)done;
-		spill_breathe();
-	}
-}
+static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 4 };
 
 static size_t padded(size_t bytes)
 {
 	return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
-static void put_array(struct stream *stream, const void *data, size_t bytes)
-{
-	static const uint8_t zeros[ALIGNMENT];
-
-	put(stream, data, bytes);
-	put(stream, zeros, padded(bytes) - bytes);
-}
-
-static void get(struct stream *stream, void *data, size_t size)
-{
-	uint8_t *bytes = data;
-
-	while (size > 0 && !stream->error) {
-		size_t chunk = size < CHUNK_BYTES ? size : CHUNK_BYTES;
-		ssize_t done = read(stream->fd, bytes, chunk);
-
-		if (done == 0)
-			stream->error = -EBADMSG;
-		if (done < 0 && errno != EINTR)
-			stream->error = -errno;
-		if (done <= 0)
-			continue;
-		crypto_generichash_update(&stream->hash, bytes, (size_t)done);
-		bytes += done;
-		size -= (size_t)done;
-	}
 }
 
 /* The arrays of a mesh, in file order. */
@@ -122,38 +64,190 @@ static size_t texture_bytes(const struct mesh_texture *texture)
 	return (size_t)texture->width * texture->height * 3;
 }
 
+/* ---- the hash: of the hashes of the chunks, so that several threads can compute it */
+
+struct hashes {
+	uint32_t count;
+	uint8_t (*chunks)[HASH_BYTES]; /* owned */
+};
+
+static int hashes_init(struct hashes *hashes, uint64_t bytes)
+{
+	*hashes = (struct hashes){ .count = (uint32_t)((bytes + CHUNK_BYTES - 1) / CHUNK_BYTES) };
+	hashes->chunks = calloc((size_t)hashes->count + 1, sizeof(*hashes->chunks));
+	return hashes->chunks ? 0 : -ENOMEM;
+}
+
+static void hashes_end(struct hashes *hashes, uint8_t digest[HASH_BYTES])
+{
+	crypto_generichash(digest, HASH_BYTES, hashes->chunks[0],
+			   hashes->count * sizeof(*hashes->chunks), NULL, 0);
+	free(hashes->chunks);
+}
+
+/* ---- writing */
+
+/* Bytes that follow one another in the file. */
+struct span {
+	const uint8_t *data; /* NULL: zeros */
+	uint64_t at;         /* from the start of the mesh */
+	uint64_t bytes;
+};
+
+struct writing {
+	int fd;
+	off_t from; /* where the mesh starts in the file */
+	struct span *spans;
+	uint32_t span_count;
+	uint64_t bytes;
+	struct hashes hashes;
+};
+
+static void add_span(struct writing *writing, const void *data, uint64_t bytes)
+{
+	if (bytes > 0)
+		writing->spans[writing->span_count++] =
+			(struct span){ data, writing->bytes, bytes };
+	writing->bytes += bytes;
+}
+
+static void add_array(struct writing *writing, const void *data, size_t bytes)
+{
+	add_span(writing, data, bytes);
+	add_span(writing, NULL, padded(bytes) - bytes);
+}
+
+static int write_at(int fd, const uint8_t *bytes, size_t size, off_t at)
+{
+	while (size > 0) {
+		ssize_t done = pwrite(fd, bytes, size, at);
+
+		if (done < 0 && errno != EINTR)
+			return -errno;
+		if (done <= 0)
+			continue;
+		bytes += done;
+		at += done;
+		size -= (size_t)done;
+	}
+	return 0;
+}
+
+/* Returns the span that the byte lies in. */
+static uint32_t span_at(const struct writing *writing, uint64_t at)
+{
+	uint32_t low = 0, high = writing->span_count - 1;
+
+	while (low < high) {
+		uint32_t middle = (low + high + 1) / 2;
+
+		if (writing->spans[middle].at <= at)
+			low = middle;
+		else
+			high = middle - 1;
+	}
+	return low;
+}
+
+static int write_chunk(void *user, uint32_t chunk, uint32_t worker)
+{
+	static const uint8_t zeros[ALIGNMENT];
+	const struct writing *writing = user;
+	const uint64_t first = (uint64_t)chunk * CHUNK_BYTES, left = writing->bytes - first;
+	const uint64_t end = first + (left < CHUNK_BYTES ? left : CHUNK_BYTES);
+	crypto_generichash_state hash;
+	uint64_t at = first;
+	int rc = 0;
+
+	(void)worker;
+	spill_breathe();
+	crypto_generichash_init(&hash, NULL, 0, HASH_BYTES);
+	for (uint32_t i = span_at(writing, first); rc == 0 && at < end; i++) {
+		const struct span *span = &writing->spans[i];
+		const uint64_t span_end = span->at + span->bytes;
+		const size_t size = (size_t)((span_end < end ? span_end : end) - at);
+		const uint8_t *data = span->data ? span->data + (at - span->at) : zeros;
+
+		crypto_generichash_update(&hash, data, size);
+		rc = write_at(writing->fd, data, size, writing->from + (off_t)at);
+		at += size;
+	}
+	crypto_generichash_final(&hash, writing->hashes.chunks[chunk], HASH_BYTES);
+	return rc;
+}
+
+/* Everything before the arrays. */
+static void encode_head(struct buffer *head, const struct mesh *mesh, struct hash key,
+			uint32_t flags)
+{
+	const uint32_t numbers[] = { mesh->vertex_count, mesh->triangle_count, mesh->texture_count,
+				     flags, mesh->scan_count };
+	const uint32_t probe = BYTE_ORDER_PROBE;
+
+	buffer_put(head, magic, sizeof(magic));
+	buffer_put(head, &probe, sizeof(probe));
+	buffer_put(head, key.bytes, HASH_BYTES);
+	buffer_put(head, numbers, sizeof(numbers));
+	for (uint32_t i = 0; i < mesh->scan_count; i++)
+		buffer_put(head,
+			   (uint32_t[]){ mesh->scans[i].triangle_count, mesh->scans[i].face_count },
+			   8);
+	for (uint32_t i = 0; i < mesh->texture_count; i++)
+		buffer_put(head, (uint32_t[]){ mesh->textures[i].width, mesh->textures[i].height },
+			   8);
+}
+
+/* The offset is moved behind the mesh. Where the kernel does not tell how many cores there are, as
+ * in the sandbox, which has no threads, the caller alone writes. */
+static int write_spans(struct writing *writing)
+{
+	uint8_t digest[HASH_BYTES];
+	int rc = hashes_init(&writing->hashes, writing->bytes);
+
+	if (rc < 0)
+		return rc;
+	rc = parallel_run(parallel_cores(), writing->hashes.count, write_chunk, writing);
+	hashes_end(&writing->hashes, digest);
+	if (rc == 0)
+		rc = write_at(writing->fd, digest, sizeof(digest),
+			      writing->from + (off_t)writing->bytes);
+	if (rc == 0 && lseek(writing->fd, writing->from + (off_t)(writing->bytes + sizeof(digest)),
+			     SEEK_SET) < 0)
+		rc = -errno;
+	return rc;
+}
+
 int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 {
-	struct mesh shape = *mesh;
-	uint32_t head[5] = { BYTE_ORDER_PROBE };
-	uint32_t counts[COUNTS] = { mesh->vertex_count, mesh->triangle_count, mesh->texture_count,
-				    (mesh->colours ? HAS_COLOURS : 0u) |
-					    (mesh->uvs ? HAS_UVS : 0u) |
-					    (mesh->materials ? HAS_MATERIALS : 0u) |
-					    (mesh->faces ? HAS_FACES : 0u),
-				    mesh->scan_count };
+	const uint32_t flags = (mesh->colours ? HAS_COLOURS : 0u) | (mesh->uvs ? HAS_UVS : 0u) |
+			       (mesh->materials ? HAS_MATERIALS : 0u) |
+			       (mesh->faces ? HAS_FACES : 0u);
+	struct writing writing = { .fd = fd, .from = lseek(fd, 0, SEEK_CUR) };
 	struct section sections[SECTIONS];
-	struct stream stream;
-	uint8_t digest[HASH_BYTES];
+	struct mesh shape = *mesh;
+	struct buffer head;
+	int rc;
 
-	stream_init(&stream, fd);
-	put(&stream, magic, sizeof(magic));
-	put(&stream, head, sizeof(head[0]));
-	put(&stream, key.bytes, HASH_BYTES);
-	put(&stream, counts, sizeof(counts));
-	for (uint32_t i = 0; i < mesh->scan_count; i++)
-		put(&stream,
-		    (uint32_t[]){ mesh->scans[i].triangle_count, mesh->scans[i].face_count }, 8);
-	for (uint32_t i = 0; i < mesh->texture_count; i++)
-		put(&stream, (uint32_t[]){ mesh->textures[i].width, mesh->textures[i].height }, 8);
-	lay_out(&shape, counts[3], sections);
-	for (int i = 0; i < SECTIONS; i++)
-		put_array(&stream, *sections[i].data, sections[i].bytes);
-	for (uint32_t i = 0; i < mesh->texture_count; i++)
-		put_array(&stream, mesh->textures[i].rgb, texture_bytes(&mesh->textures[i]));
-	crypto_generichash_final(&stream.hash, digest, sizeof(digest));
-	put(&stream, digest, sizeof(digest));
-	return stream.error;
+	if (writing.from < 0)
+		return -errno;
+	writing.spans =
+		malloc((1 + 2 * (SECTIONS + (size_t)mesh->texture_count)) * sizeof(*writing.spans));
+	buffer_init(&head, HEAD_BYTES_MAX);
+	encode_head(&head, mesh, key, flags);
+	rc = head.error ? head.error : writing.spans ? 0 : -ENOMEM;
+	if (rc == 0) {
+		add_span(&writing, head.data, head.size);
+		lay_out(&shape, flags, sections);
+		for (int i = 0; i < SECTIONS; i++)
+			add_array(&writing, *sections[i].data, sections[i].bytes);
+		for (uint32_t i = 0; i < mesh->texture_count; i++)
+			add_array(&writing, mesh->textures[i].rgb,
+				  texture_bytes(&mesh->textures[i]));
+		rc = write_spans(&writing);
+	}
+	buffer_finish(&head);
+	free(writing.spans);
+	return rc;
 }
 
 int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
@@ -168,14 +262,33 @@ int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 
 /* ---- reading: allocates only what the file is long enough for */
 
-static int64_t bytes_left(int fd)
+/* A file that is read; the first error is kept. */
+struct stream {
+	int fd;
+	int error;
+	uint64_t from, at, end; /* offsets: of the mesh, of the next byte, of the file's end */
+};
+
+static int stream_init(struct stream *stream, int fd)
 {
 	struct stat status;
 	off_t at = lseek(fd, 0, SEEK_CUR);
 
 	if (at < 0 || fstat(fd, &status) < 0)
 		return -errno;
-	return status.st_size - at;
+	*stream = (struct stream){ .fd = fd, .from = (uint64_t)at, .at = (uint64_t)at };
+	stream->end = status.st_size < at ? stream->at : (uint64_t)status.st_size;
+	return 0;
+}
+
+static void get(struct stream *stream, void *data, size_t size)
+{
+	if (!stream->error && size > stream->end - stream->at)
+		stream->error = -EBADMSG;
+	if (!stream->error)
+		stream->error = bytes_read_at(stream->fd, data, size, stream->at);
+	if (!stream->error)
+		stream->at += size;
 }
 
 static int read_textures_sizes(struct stream *stream, struct mesh *mesh, int64_t *left)
@@ -202,18 +315,6 @@ static int read_textures_sizes(struct stream *stream, struct mesh *mesh, int64_t
 	return 0;
 }
 
-/* Hashes size bytes of the file without keeping them. */
-static void skip(struct stream *stream, int64_t size)
-{
-	uint8_t *chunk = malloc(CHUNK_BYTES);
-
-	if (!chunk)
-		stream->error = -ENOMEM;
-	for (int64_t left = size; left > 0 && !stream->error; left -= CHUNK_BYTES)
-		get(stream, chunk, left < CHUNK_BYTES ? (size_t)left : CHUNK_BYTES);
-	free(chunk);
-}
-
 /* Maps bytes of the file at *offset to *out, and moves *offset behind them. */
 static int map_array(int fd, uint64_t *offset, void **out, size_t bytes)
 {
@@ -224,25 +325,72 @@ static int map_array(int fd, uint64_t *offset, void **out, size_t bytes)
 
 static int read_arrays(struct stream *stream, struct mesh *mesh, uint32_t flags, int64_t left)
 {
-	off_t at = lseek(stream->fd, 0, SEEK_CUR);
-	uint64_t offset = (uint64_t)at;
+	uint64_t offset = stream->at;
 	struct section sections[SECTIONS];
 	int rc = 0;
 
 	lay_out(mesh, flags, sections);
 	for (int i = 0; i < SECTIONS; i++)
 		left -= (int64_t)padded(sections[i].bytes);
-	if (at < 0 || left != HASH_BYTES)
-		return at < 0 ? -errno : -EBADMSG;
+	if (left != HASH_BYTES)
+		return -EBADMSG;
 	for (int i = 0; i < SECTIONS && rc == 0; i++)
 		if (sections[i].bytes > 0 || i == 0 || i == 3)
 			rc = map_array(stream->fd, &offset, sections[i].data, sections[i].bytes);
 	for (uint32_t i = 0; i < mesh->texture_count && rc == 0; i++)
 		rc = map_array(stream->fd, &offset, (void **)&mesh->textures[i].rgb,
 			       texture_bytes(&mesh->textures[i]));
+	stream->at = offset;
+	return rc;
+}
+
+struct checking {
+	const struct stream *stream;
+	uint64_t bytes; /* from the start of the mesh */
+	struct hashes hashes;
+	uint8_t **buffers; /* of each worker, of CHUNK_BYTES; owned */
+};
+
+static int check_chunk(void *user, uint32_t chunk, uint32_t worker)
+{
+	const struct checking *checking = user;
+	const uint64_t at = (uint64_t)chunk * CHUNK_BYTES, left = checking->bytes - at;
+	const size_t size = left < CHUNK_BYTES ? (size_t)left : CHUNK_BYTES;
+	int rc;
+
+	if (!checking->buffers[worker])
+		checking->buffers[worker] = malloc(CHUNK_BYTES);
+	if (!checking->buffers[worker])
+		return -ENOMEM;
+	rc = bytes_read_at(checking->stream->fd, checking->buffers[worker], size,
+			   checking->stream->from + at);
 	if (rc == 0)
-		skip(stream, (int64_t)offset - at);
-	return rc < 0 ? rc : stream->error;
+		crypto_generichash(checking->hashes.chunks[chunk], HASH_BYTES,
+				   checking->buffers[worker], size, NULL, 0);
+	return rc;
+}
+
+/* Compares the hash of everything before the stream's place with the one that is stored there. */
+static int check_hash(struct stream *stream)
+{
+	const uint32_t jobs = parallel_cores();
+	struct checking checking = { .stream = stream, .bytes = stream->at - stream->from };
+	uint8_t digest[HASH_BYTES], stored[HASH_BYTES] = { 0 };
+	int rc = hashes_init(&checking.hashes, checking.bytes);
+
+	if (rc < 0)
+		return rc;
+	checking.buffers = calloc(jobs, sizeof(*checking.buffers));
+	rc = checking.buffers ? parallel_run(jobs, checking.hashes.count, check_chunk, &checking)
+			      : -ENOMEM;
+	for (uint32_t i = 0; checking.buffers && i < jobs; i++)
+		free(checking.buffers[i]);
+	free(checking.buffers);
+	hashes_end(&checking.hashes, digest);
+	get(stream, stored, sizeof(stored));
+	if (rc == 0)
+		rc = stream->error;
+	return rc == 0 && memcmp(digest, stored, sizeof(digest)) != 0 ? -EBADMSG : rc;
 }
 
 static bool scans_are_sound(const struct mesh *mesh)
@@ -278,26 +426,35 @@ static int read_scans(struct stream *stream, struct mesh *mesh, uint32_t count, 
 	return stream->error;
 }
 
-/* The hash detects accidental damage. These checks also catch a file with a correct hash but bad
- * indices. */
-static bool is_sound(const struct mesh *mesh)
+static int check_triangles(void *user, uint32_t first, uint32_t after, uint32_t worker)
 {
-	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+	const struct mesh *mesh = user;
+	bool sound = true;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++)
 		for (int k = 0; k < 3; k++)
-			if (mesh->triangles[i][k] >= mesh->vertex_count)
-				return false;
-		spill_pass(i);
-	}
-	for (uint32_t i = 0; mesh->materials && i < mesh->triangle_count; i++)
-		if (mesh->materials[i] >= mesh->texture_count)
-			return false;
-	return scans_are_sound(mesh);
+			sound &= mesh->triangles[i][k] < mesh->vertex_count;
+	for (uint32_t i = first; mesh->materials && i < after; i++)
+		sound &= mesh->materials[i] < mesh->texture_count;
+	return sound ? 0 : -EBADMSG;
 }
 
-static int read_body(struct stream *stream, struct mesh *mesh, struct hash key, int64_t left)
+/* The hash detects accidental damage. These checks also catch a file with a correct hash but bad
+ * indices. */
+static bool is_sound(struct mesh *mesh)
 {
+	return parallel_ranges(parallel_cores(), mesh->triangle_count, CHECKED_TRIANGLES,
+			       check_triangles, mesh) == 0 &&
+	       scans_are_sound(mesh);
+}
+
+static int read_body(struct stream *stream, struct mesh *mesh, struct hash key)
+{
+	int64_t left = (int64_t)(stream->end - stream->at);
 	uint32_t probe = 0, counts[COUNTS] = { 0 };
-	uint8_t start[sizeof(magic)] = { 0 }, digest[HASH_BYTES], stored[HASH_BYTES] = { 0 };
+	uint8_t start[sizeof(magic)] = { 0 };
 	struct hash made_from = { { 0 } };
 	int rc;
 
@@ -323,26 +480,19 @@ static int read_body(struct stream *stream, struct mesh *mesh, struct hash key, 
 		rc = read_textures_sizes(stream, mesh, &left);
 	if (rc == 0)
 		rc = read_arrays(stream, mesh, counts[3], left);
-	if (rc < 0)
-		return rc;
-	crypto_generichash_final(&stream->hash, digest, sizeof(digest));
-	get(stream, stored, sizeof(stored));
-	if (stream->error || memcmp(digest, stored, sizeof(digest)) != 0 || !is_sound(mesh))
-		return -EBADMSG;
-	return 0;
+	if (rc == 0)
+		rc = check_hash(stream);
+	return rc == 0 && !is_sound(mesh) ? -EBADMSG : rc;
 }
 
 int mesh_file_read(struct mesh *out, struct hash key, int fd)
 {
 	struct stream stream;
-	int64_t left = bytes_left(fd);
-	int rc;
+	int rc = stream_init(&stream, fd);
 
 	*out = (struct mesh){ 0 };
-	if (left < 0)
-		return (int)left;
-	stream_init(&stream, fd);
-	rc = read_body(&stream, out, key, left);
+	if (rc == 0)
+		rc = read_body(&stream, out, key);
 	if (rc < 0)
 		mesh_finish(out);
 	return rc;

@@ -1,8 +1,9 @@
 /* A mesh as a cache file (DIR/.work/mesh). Arrays are stored as in memory, so in this machine's
  * byte order; such a file is never published. Large arrays of a mesh that is loaded are the file
- * itself, mapped: loading takes no memory. It ends with a BLAKE2b hash of everything before.
+ * itself, mapped: loading takes no memory. It ends with a hash of everything before, which all
+ * cores compute.
  *
- *   8 bytes   "gopmesh" and the version, 3
+ *   8 bytes   "gopmesh" and the version, 4
  *   u32       0x01020304, shows the byte order
  *   16 bytes  key: what the mesh was made from
  *   u32 x 5   vertices, triangles, textures, flags (1 colours, 2 uvs, 4 materials, 8 faces), scans
@@ -10,7 +11,7 @@
  *   u32 x 2   width and height of each texture
  *   arrays    positions, colours, uvs, triangles, materials, faces, pixels of each texture,
  *             each filled up with zeros to 8 bytes
- *   16 bytes  BLAKE2b of everything before */
+ *   16 bytes  BLAKE2b of the BLAKE2b (16 bytes each) of each MiB of everything before */
 #ifndef GOPURA_PIPELINE_IMPORT_MESH_FILE_H
 #define GOPURA_PIPELINE_IMPORT_MESH_FILE_H
 
