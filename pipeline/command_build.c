@@ -69,6 +69,7 @@ static int run(const char *folder, const struct build_options *options, const ch
 
 	if (rc < 0)
 		return EXIT_FAILURE;
+	content.import.jobs = options->jobs;
 	if (kind)
 		content.binary_tree = strcmp(kind, "tree") == 0;
 	rc = work_lock(&lock, &content);

@@ -119,6 +119,7 @@ static int run(const struct settings *settings)
 
 	if (rc < 0)
 		return EXIT_FAILURE;
+	content.import.jobs = settings->jobs;
 	if (settings->kind)
 		content.binary_tree = strcmp(settings->kind, "tree") == 0;
 	rc = scans_create(&scans, &content);

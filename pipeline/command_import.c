@@ -23,6 +23,7 @@ static const char help[] =
 	"  --up AXIS       axis that points up in the files: z (default), y or x\n"
 	"  --unit UNIT     unit of the files: m (default), cm, mm, in, or its length in metres (0.0254)\n"
 	"  --out FILE      save the mesh of all files together as a cache file\n"
+	"  --jobs N        number of threads (default: one per core); the result does not depend on it\n"
 	"\n"
 	"Reads PLY, OBJ with MTL and JPEG or PNG pictures, STL, OFF, glTF and GLB.\n"
 	"Exit status: 0 all files were read, 1 at least one was refused, 2 wrong command line.\n"
@@ -53,8 +54,12 @@ static int read_scan(struct mesh *all, const char *path, const struct transform 
 		return rc;
 	}
 	import_report_print(stdout, path, &report);
-	if (settings->out)
+	if (settings->out && all->scan_count == 0) {
+		*all = mesh;
+		mesh = (struct mesh){ 0 };
+	} else if (settings->out) {
 		rc = mesh_append(all, &mesh);
+	}
 	mesh_finish(&mesh);
 	if (rc < 0)
 		fprintf(stderr, "%s: cannot be merged with the other files: %s\n", path,
@@ -111,13 +116,12 @@ static int read_all(char **paths, int count, const struct settings *settings)
 int command_import(int argc, char **argv)
 {
 	static const struct option options[] = {
-		{ "up", required_argument, NULL, 'a' },
-		{ "unit", required_argument, NULL, 'u' },
-		{ "out", required_argument, NULL, 'o' },
-		{ "help", no_argument, NULL, 'h' },
-		{ NULL, 0, NULL, 0 },
+		{ "up", required_argument, NULL, 'a' },  { "unit", required_argument, NULL, 'u' },
+		{ "out", required_argument, NULL, 'o' }, { "jobs", required_argument, NULL, 'j' },
+		{ "help", no_argument, NULL, 'h' },      { NULL, 0, NULL, 0 },
 	};
 	struct settings settings = { 0 };
+	uint64_t jobs;
 	int option;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
@@ -135,6 +139,12 @@ int command_import(int argc, char **argv)
 			break;
 		case 'o':
 			settings.out = optarg;
+			break;
+		case 'j':
+			if (!command_number(optarg, 1, 64, &jobs))
+				return command_wrong(argv[0], "--jobs must be 1 to 64, not ",
+						     optarg);
+			settings.import.jobs = (uint32_t)jobs;
 			break;
 		case 'h':
 			fputs(help, stdout);

@@ -108,6 +108,7 @@ int command_sample(int argc, char **argv)
 	rc = command_read_content(&content, dir);
 	if (rc < 0)
 		return EXIT_FAILURE;
+	content.import.jobs = options.jobs;
 	rc = scans_create(&scans, &content);
 	if (rc == 0)
 		rc = run(scans, &options, &diagnostics);

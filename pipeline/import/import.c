@@ -13,10 +13,12 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "base/spill.h"
 #include "pipeline/import/gltf_extensions.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_foreign.h"
+#include "pipeline/import/import_limits.h"
 #include "pipeline/import/import_ply.h"
 #include "pipeline/import/mesh_colour.h"
 
@@ -87,31 +89,14 @@ int import_detect(enum scan_format *format, uint64_t *file_bytes, const char *pa
 
 /* ---- placing the scan, and converting axes, unit and colours */
 
-static void move(struct mesh *mesh, const struct transform *transform)
-{
-	double place[3];
+enum { RANGE_ITEMS = 1 << 16 /* that one thread converts at a time */ };
 
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		for (int k = 0; k < 3; k++)
-			place[k] = mesh->positions[i][k];
-		transform_point(transform, place, place);
-		for (int k = 0; k < 3; k++)
-			mesh->positions[i][k] = (float)place[k];
-		spill_pass(i);
-	}
-}
-
-/* A mirrored surface would show its inside. */
-static void reverse_faces(struct mesh *mesh)
-{
-	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
-		uint32_t second = mesh->triangles[i][1];
-
-		mesh->triangles[i][1] = mesh->triangles[i][2];
-		mesh->triangles[i][2] = second;
-		spill_pass(i);
-	}
-}
+struct conversion {
+	struct mesh *mesh;
+	const struct transform *transform; /* NULL: the scan is in its place */
+	enum import_axis up;
+	double metres_per_unit;
+};
 
 /* Rotates the file's up axis to z. Only rotations are used, so right-handed stays right-handed. */
 static void turn_up(const float from[3], enum import_axis up, double to[3])
@@ -139,17 +124,65 @@ void import_place(float out_m[3], const float from[3], const struct import_optio
 		out_m[k] = (float)(turned[k] * scale);
 }
 
-static void to_metres(struct mesh *mesh, const struct import_options *options)
+static int convert_vertices(void *user, uint32_t first, uint32_t after, uint32_t worker)
 {
-	double scale = options->metres_per_unit > 0 ? options->metres_per_unit : 1;
-	double turned[3];
+	const struct conversion *conversion = user;
+	struct mesh *mesh = conversion->mesh;
+	double place[3];
 
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		turn_up(mesh->positions[i], options->up, turned);
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++) {
+		float *position = mesh->positions[i];
+
 		for (int k = 0; k < 3; k++)
-			mesh->positions[i][k] = (float)(turned[k] * scale);
-		spill_pass(i);
+			place[k] = position[k];
+		if (conversion->transform)
+			transform_point(conversion->transform, place, place);
+		for (int k = 0; k < 3; k++)
+			position[k] = (float)place[k];
+		turn_up(position, conversion->up, place);
+		for (int k = 0; k < 3; k++)
+			position[k] = (float)(place[k] * conversion->metres_per_unit);
 	}
+	return 0;
+}
+
+/* A mirrored surface would show its inside. */
+static int reverse_faces(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct mesh *mesh = user;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++) {
+		uint32_t second = mesh->triangles[i][1];
+
+		mesh->triangles[i][1] = mesh->triangles[i][2];
+		mesh->triangles[i][2] = second;
+	}
+	return 0;
+}
+
+/* is_placed: the reader has applied the transformation. */
+static int convert(struct mesh *mesh, bool is_placed, const struct import_options *options)
+{
+	const uint32_t jobs = import_jobs(options);
+	struct conversion conversion = {
+		.mesh = mesh,
+		.transform = is_placed ? NULL : options->transform,
+		.up = options->up,
+		.metres_per_unit = options->metres_per_unit > 0 ? options->metres_per_unit : 1,
+	};
+	int rc = 0;
+
+	if (options->transform && transform_mirrors(options->transform))
+		rc = parallel_ranges(jobs, mesh->triangle_count, RANGE_ITEMS, reverse_faces, mesh);
+	if (rc < 0 || (!conversion.transform && conversion.up == IMPORT_Z_UP &&
+		       conversion.metres_per_unit == 1))
+		return rc;
+	return parallel_ranges(jobs, mesh->vertex_count, RANGE_ITEMS, convert_vertices,
+			       &conversion);
 }
 
 static void drop_textures(struct mesh *mesh)
@@ -192,7 +225,7 @@ static int settle_colours(struct mesh *mesh, const struct import_options *option
 	uint8_t rgb[3];
 
 	if (mesh->textures)
-		return mesh_colours_from_textures(mesh);
+		return mesh_colours_from_textures(mesh, import_jobs(options));
 	if (report->had_colours && !options->override_colour)
 		return 0;
 	if (!mesh->colours) {
@@ -234,13 +267,10 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 {
 	int rc;
 
-	if (options->transform && !is_indexed)
-		move(mesh, options->transform);
-	if (options->transform && transform_mirrors(options->transform))
-		reverse_faces(mesh);
-	to_metres(mesh, options);
+	rc = convert(mesh, is_indexed, options);
 	drop_colours(mesh, options);
-	rc = mesh_repair(mesh, &report->repairs);
+	if (rc == 0)
+		rc = mesh_repair(mesh, import_jobs(options), &report->repairs);
 	if (rc == 0)
 		rc = settle_colours(mesh, options, report);
 	if (rc < 0)

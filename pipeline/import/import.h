@@ -26,6 +26,7 @@ struct import_options {
 	/* limit for a foreign parser and for the pictures of a PLY; 0: depends on the file's
 	 * size */
 	uint64_t memory_bytes;
+	uint32_t jobs; /* number of threads; 0: one per core. The result does not depend on it */
 };
 
 struct import_report {

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -22,52 +23,44 @@ struct collector {
 	struct mesh mesh;
 	float (*corner_uvs)[3][2]; /* of each triangle's corners, if the file has them; owned */
 	size_t triangle_capacity;
-	const struct ply *ply;
 	struct progress *progress; /* counts KiB of the file */
-	uint64_t shown_kib;
+	atomic_ullong bytes_read;
 };
 
-/* progress is updated once per so many items */
-enum { ITEMS_PER_LOOK = 1 << 14 };
-
-static void show_progress(struct collector *collector, uint32_t items)
+static void show_progress(void *data, uint64_t bytes)
 {
-	uint64_t kib;
+	struct collector *collector = data;
+	uint64_t before = atomic_fetch_add(&collector->bytes_read, bytes);
 
-	if (items % ITEMS_PER_LOOK != 0)
-		return;
 	spill_breathe();
-	kib = ply_bytes_read(collector->ply) >> 10;
-	progress_add(collector->progress, kib - collector->shown_kib);
-	collector->shown_kib = kib;
+	progress_add(collector->progress, ((before + bytes) >> 10) - (before >> 10));
 }
 
-static int take_vertex(void *data, const struct ply_vertex *vertex)
+static int take_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
 {
 	struct collector *collector = data;
 	struct mesh *mesh = &collector->mesh;
-	uint32_t i = mesh->vertex_count++;
 	double place[3];
 
 	memcpy(place, vertex->position, sizeof(place));
 	if (collector->transform)
 		transform_point(collector->transform, place, place);
 	for (int k = 0; k < 3; k++)
-		mesh->positions[i][k] = (float)place[k];
+		mesh->positions[index][k] = (float)place[k];
 	if (mesh->colours)
-		memcpy(mesh->colours[i], vertex->colour, sizeof(mesh->colours[i]));
+		memcpy(mesh->colours[index], vertex->colour, sizeof(mesh->colours[index]));
 	if (mesh->uvs)
-		memcpy(mesh->uvs[i], vertex->uv, sizeof(mesh->uvs[i]));
-	show_progress(collector, i);
+		memcpy(mesh->uvs[index], vertex->uv, sizeof(mesh->uvs[index]));
 	return 0;
 }
 
-/* Polygons become fans, so there may be more triangles than faces in the header. */
+/* Polygons become fans, so there may be more triangles than faces in the header. These come one
+ * after the other. */
 static int grow_triangles(struct collector *collector)
 {
 	struct mesh *mesh = &collector->mesh;
 	size_t old = collector->triangle_capacity, capacity = old + old / 2 + 64;
-	int rc = mesh->triangle_count == UINT32_MAX - 1 ? -EFBIG : 0;
+	int rc = old >= UINT32_MAX - 1 ? -EFBIG : 0;
 
 	if (rc == 0)
 		rc = SPILL_RESIZE(mesh->triangles, old, capacity);
@@ -82,29 +75,26 @@ static int grow_triangles(struct collector *collector)
 	return rc;
 }
 
-static int take_triangle(void *data, const struct ply_triangle *triangle)
+static int take_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
 {
 	struct collector *collector = data;
 	struct mesh *mesh = &collector->mesh;
-	uint32_t i = mesh->triangle_count;
 
-	if (i == collector->triangle_capacity) {
+	if (index == collector->triangle_capacity) {
 		int rc = grow_triangles(collector);
 
 		if (rc < 0)
 			return rc;
 	}
-	memcpy(mesh->triangles[i], triangle->corner, sizeof(mesh->triangles[i]));
-	mesh->faces[i] = triangle->face;
+	memcpy(mesh->triangles[index], triangle->corner, sizeof(mesh->triangles[index]));
+	mesh->faces[index] = triangle->face;
 	if (mesh->materials)
-		mesh->materials[i] =
+		mesh->materials[index] =
 			(uint16_t)(triangle->texture < collector->summary->texture_count
 					   ? triangle->texture
 					   : 0);
 	if (collector->corner_uvs)
-		memcpy(collector->corner_uvs[i], triangle->uv, sizeof(triangle->uv));
-	mesh->triangle_count++;
-	show_progress(collector, i);
+		memcpy(collector->corner_uvs[index], triangle->uv, sizeof(triangle->uv));
 	return 0;
 }
 
@@ -136,39 +126,69 @@ static int allocate(struct collector *collector)
 	return 0;
 }
 
+struct corners {
+	struct mesh *mesh;
+	float (*const corner_uvs)[3][2];
+	/* of each corner; owned */
+	float (*positions)[3], (*uvs)[2];
+	uint8_t (*colours)[4]; /* NULL: the scan has none */
+};
+
+static int copy_corners(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	const struct corners *corners = user;
+	struct mesh *mesh = corners->mesh;
+
+	(void)worker;
+	spill_breathe();
+	for (size_t i = 3 * (size_t)first; i < 3 * (size_t)after; i++) {
+		uint32_t *corner = &mesh->triangles[i / 3][i % 3];
+
+		memcpy(corners->positions[i], mesh->positions[*corner],
+		       sizeof(corners->positions[i]));
+		memcpy(corners->uvs[i], corners->corner_uvs[i / 3][i % 3], sizeof(corners->uvs[i]));
+		if (corners->colours)
+			memcpy(corners->colours[i], mesh->colours[*corner],
+			       sizeof(corners->colours[i]));
+		*corner = (uint32_t)i;
+	}
+	return 0;
+}
+
+enum { RANGE_TRIANGLES = 1 << 16 /* that one thread does at a time */ };
+
 /* Gives every corner its own vertex; the repair merges equal ones again. */
-static int split_corners(struct collector *collector)
+static int split_corners(struct collector *collector, uint32_t jobs)
 {
 	struct mesh *mesh = &collector->mesh;
 	size_t count = (size_t)mesh->triangle_count * 3;
-	float(*positions)[3] = spill_alloc((count + 1) * sizeof(*positions));
-	float(*uvs)[2] = spill_alloc((count + 1) * sizeof(*uvs));
-	uint8_t(*colours)[4] = mesh->colours ? spill_alloc((count + 1) * sizeof(*colours)) : NULL;
-	int rc = positions && uvs && (!mesh->colours || colours) ? 0 : -errno;
+	struct corners corners = {
+		.mesh = mesh,
+		.corner_uvs = collector->corner_uvs,
+		.positions = spill_alloc((count + 1) * sizeof(*corners.positions)),
+		.uvs = spill_alloc((count + 1) * sizeof(*corners.uvs)),
+		.colours =
+			mesh->colours ? spill_alloc((count + 1) * sizeof(*corners.colours)) : NULL,
+	};
+	int rc = corners.positions && corners.uvs && (!mesh->colours || corners.colours) ? 0
+											 : -errno;
 
 	if (count >= UINT32_MAX)
 		rc = -EFBIG;
-	for (size_t i = 0; i < count && rc == 0; i++) {
-		uint32_t *corner = &mesh->triangles[i / 3][i % 3];
-
-		memcpy(positions[i], mesh->positions[*corner], sizeof(positions[i]));
-		memcpy(uvs[i], collector->corner_uvs[i / 3][i % 3], sizeof(uvs[i]));
-		if (colours)
-			memcpy(colours[i], mesh->colours[*corner], sizeof(colours[i]));
-		*corner = (uint32_t)i;
-		spill_pass(i);
-	}
+	if (rc == 0)
+		rc = parallel_ranges(jobs, mesh->triangle_count, RANGE_TRIANGLES, copy_corners,
+				     &corners);
 	if (rc < 0) {
-		spill_free(positions);
-		spill_free(uvs);
-		spill_free(colours);
+		spill_free(corners.positions);
+		spill_free(corners.uvs);
+		spill_free(corners.colours);
 		return rc;
 	}
 	spill_free(mesh->positions);
 	spill_free(mesh->colours);
-	mesh->positions = positions;
-	mesh->colours = colours;
-	mesh->uvs = uvs;
+	mesh->positions = corners.positions;
+	mesh->colours = corners.colours;
+	mesh->uvs = corners.uvs;
 	mesh->vertex_count = (uint32_t)count;
 	return 0;
 }
@@ -205,16 +225,22 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 		     const struct import_options *options, struct import_report *report,
 		     struct diagnostics *diagnostics)
 {
-	const struct ply_visitor visitor = { collector, take_vertex, take_triangle };
+	const struct ply_visitor visitor = { collector, take_vertex, take_triangle, show_progress,
+					     import_jobs(options) };
 	int rc = allocate(collector);
 
-	collector->ply = ply;
 	collector->progress = progress_start("reading the scan", "KiB", ply_bytes_total(ply) >> 10);
 	if (rc == 0)
 		rc = ply_read(ply, &visitor, diagnostics);
 	progress_end(collector->progress);
+	if (rc == 0 && ply_triangles(ply) >= UINT32_MAX)
+		rc = -EFBIG;
+	if (rc == 0) {
+		collector->mesh.vertex_count = (uint32_t)collector->summary->vertex_count;
+		collector->mesh.triangle_count = (uint32_t)ply_triangles(ply);
+	}
 	if (rc == 0 && collector->corner_uvs)
-		rc = split_corners(collector);
+		rc = split_corners(collector, import_jobs(options));
 	if (rc == 0)
 		rc = load_textures(collector, path, options, report);
 	if (rc < 0)

@@ -29,12 +29,16 @@ void mesh_finish(struct mesh *mesh)
 
 void mesh_box(const struct mesh *mesh, float low[3], float high[3])
 {
-	for (int k = 0; k < 3; k++)
-		low[k] = high[k] = mesh->vertex_count ? mesh->positions[0][k] : 0;
-	for (uint32_t i = 1; i < mesh->vertex_count; i++) {
+	for (int k = 0; k < 3; k++) {
+		low[k] = mesh->vertex_count ? INFINITY : 0;
+		high[k] = mesh->vertex_count ? -INFINITY : 0;
+	}
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
 		for (int k = 0; k < 3; k++) {
-			low[k] = fminf(low[k], mesh->positions[i][k]);
-			high[k] = fmaxf(high[k], mesh->positions[i][k]);
+			const float at = mesh->positions[i][k];
+
+			low[k] = at < low[k] ? at : low[k];
+			high[k] = at > high[k] ? at : high[k];
 		}
 		spill_pass(i);
 	}

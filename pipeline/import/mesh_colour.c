@@ -57,7 +57,8 @@ static void add_face(const struct mesh *mesh, uint32_t face, const uint32_t *pla
 {
 	const uint32_t *t = mesh->triangles[face];
 	const struct mesh_texture *texture = &mesh->textures[mesh->materials[face]];
-	const uint32_t places[3] = { place[t[0]], place[t[1]], place[t[2]] };
+	const uint32_t places[3] = { place ? place[t[0]] : t[0], place ? place[t[1]] : t[1],
+				     place ? place[t[2]] : t[2] };
 	int cells = cells_of(mesh, t, texture);
 	float share = 1 / (float)(cells * cells); /* every face has the same weight */
 
@@ -84,23 +85,25 @@ static int give_colours(struct mesh *mesh)
 	return 0;
 }
 
-int mesh_colours_from_textures(struct mesh *mesh)
+int mesh_colours_from_textures(struct mesh *mesh, uint32_t jobs)
 {
 	uint32_t *place;
-	struct sum *sums;
+	struct sum *sums = NULL;
 	int rc;
 
 	if (!mesh->textures || !mesh->uvs || !mesh->materials)
 		return 0;
-	place = mesh_places(mesh);
-	sums = spill_alloc(((size_t)mesh->vertex_count + 1) * sizeof(*sums));
-	rc = place && sums ? give_colours(mesh) : -errno;
+	rc = mesh_places(&place, mesh, jobs);
+	if (rc == 0) {
+		sums = spill_alloc(((size_t)mesh->vertex_count + 1) * sizeof(*sums));
+		rc = sums ? give_colours(mesh) : -errno;
+	}
 	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++) {
 		add_face(mesh, i, place, sums);
 		spill_pass(i);
 	}
 	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
-		const struct sum *sum = &sums[place[i]];
+		const struct sum *sum = &sums[place ? place[i] : i];
 
 		for (int k = 0; k < 3 && sum->weight > 0; k++)
 			mesh->colours[i][k] = (uint8_t)(sum->rgb[k] / sum->weight + 0.5f);

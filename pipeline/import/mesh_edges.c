@@ -1,12 +1,16 @@
 /* Goes through the edges by ranges of their lower end: those of a range are collected by counting
  * sort, so that equal edges become neighbours. Faces of a scan that are near each other in the file
- * mostly share vertices that are, so a range needs few of the blocks of faces. */
+ * mostly share vertices that are, so a range needs few of the blocks of faces. Several threads
+ * collect ranges at a time; they take turns to visit them. */
 #include "pipeline/import/mesh_edges.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+#include "base/parallel.h"
 #include "base/spill.h"
 #include "pipeline/import/mesh_places.h"
 
@@ -16,7 +20,9 @@ enum {
 	FEW = 64,
 	EDGES_BIN = 4096,
 	EDGES_BLOCK = 4096,
-	RANGE_ITEMS = 8 << 20, /* 64 MB */
+	BLOCKS_PER_JOB = 16,
+	COLLECTED_ITEMS = 16 << 20, /* of the ranges of all threads together: 128 MB */
+	RANGE_ITEMS_MIN = 1 << 20,
 };
 
 static void sort_few(uint64_t *values, uint64_t count)
@@ -42,8 +48,12 @@ static int compare_u64(const void *a, const void *b)
 static uint32_t edge_of(const struct mesh_edges *edges, uint32_t face, int k, uint64_t *item)
 {
 	const uint32_t *triangle = edges->mesh->triangles[face];
-	uint32_t a = edges->place[triangle[k]], b = edges->place[triangle[(k + 1) % 3]];
+	uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
 
+	if (edges->place) {
+		a = edges->place[a];
+		b = edges->place[b];
+	}
 	*item = (uint64_t)(a < b ? b : a) << 33 | (uint64_t)(a < b) << 32 | face;
 	return a < b ? a : b;
 }
@@ -58,41 +68,60 @@ static uint32_t bin_count(const struct mesh *mesh)
 	return mesh->vertex_count / EDGES_BIN + 1;
 }
 
-static void survey(struct mesh_edges *edges)
+static int survey(void *user, uint32_t first, uint32_t after, uint32_t worker)
 {
+	struct mesh_edges *edges = user;
+	uint32_t *bound = NULL, bin = 0, count = 0;
 	uint64_t item;
 
-	for (uint32_t i = 0; i < block_count(edges->mesh); i++)
-		edges->bounds[i][0] = UINT32_MAX;
-	for (uint32_t i = 0; i < edges->mesh->triangle_count; i++) {
-		uint32_t *bound = edges->bounds[i / EDGES_BLOCK];
-
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++) {
+		if (i % EDGES_BLOCK == 0) {
+			bound = edges->bounds[i / EDGES_BLOCK];
+			bound[0] = UINT32_MAX;
+		}
 		for (int k = 0; k < 3; k++) {
 			uint32_t low = edge_of(edges, i, k, &item);
 
-			edges->bins[low / EDGES_BIN]++;
+			/* Neighbours are mostly of one bin, so threads seldom meet there. */
+			if (low / EDGES_BIN != bin) {
+				atomic_fetch_add(&edges->bins[bin], count);
+				bin = low / EDGES_BIN;
+				count = 0;
+			}
+			count++;
 			bound[0] = low < bound[0] ? low : bound[0];
 			bound[1] = low > bound[1] ? low : bound[1];
 		}
-		spill_pass(i);
 	}
+	atomic_fetch_add(&edges->bins[bin], count);
+	return 0;
 }
 
-int mesh_edges_init(struct mesh_edges *out, const struct mesh *mesh)
+int mesh_edges_init_placed(struct mesh_edges *out, const struct mesh *mesh, uint32_t *place,
+			   uint32_t jobs)
 {
-	int rc;
+	int rc = -ENOMEM;
 
-	*out = (struct mesh_edges){ .mesh = mesh, .place = mesh_places(mesh) };
-	rc = out->place ? 0 : -errno;
+	*out = (struct mesh_edges){ .mesh = mesh, .place = place, .jobs = jobs };
 	out->bins = calloc(bin_count(mesh), sizeof(*out->bins));
 	out->bounds = calloc(block_count(mesh), sizeof(*out->bounds));
-	if (rc == 0 && (!out->bins || !out->bounds))
-		rc = -ENOMEM;
-	if (rc == 0)
-		survey(out);
-	else
+	if (out->bins && out->bounds)
+		rc = parallel_ranges(jobs, mesh->triangle_count, BLOCKS_PER_JOB * EDGES_BLOCK,
+				     survey, out);
+	if (rc < 0)
 		mesh_edges_finish(out);
 	return rc;
+}
+
+int mesh_edges_init(struct mesh_edges *out, const struct mesh *mesh, uint32_t jobs)
+{
+	uint32_t *place;
+	int rc = mesh_places(&place, mesh, jobs);
+
+	*out = (struct mesh_edges){ 0 };
+	return rc < 0 ? rc : mesh_edges_init_placed(out, mesh, place, jobs);
 }
 
 void mesh_edges_finish(struct mesh_edges *edges)
@@ -111,8 +140,15 @@ void mesh_edges_finish(struct mesh_edges *edges)
 struct range {
 	uint32_t low, end;
 	uint64_t item_count;
-	uint32_t *start; /* index of the first item of each lower end, and the end; owned */
-	uint64_t *items; /* sorted for each lower end; owned */
+	uint32_t *start; /* index of the first item of each lower end, and the end */
+	uint64_t *items; /* sorted for each lower end */
+};
+
+/* What a worker collects its ranges in. */
+struct room {
+	size_t start_bytes, item_bytes;
+	uint32_t *start; /* owned */
+	uint64_t *items; /* owned */
 };
 
 /* Calls take for each edge of the range. */
@@ -193,10 +229,26 @@ static void visit_range(const struct range *range,
 	}
 }
 
-/* Advances range to the next bins that fit together, at least one. Returns false at the end. */
+/* The ranges, and whose turn it is. */
+struct division {
+	const struct mesh_edges *edges;
+	void (*visit)(void *data, const struct mesh_edge *edge);
+	void *data;
+	uint32_t count;
+	struct range *ranges; /* without items; owned */
+	struct room *rooms;   /* of each worker; owned */
+	pthread_mutex_t lock; /* guards the fields below */
+	pthread_cond_t moved;
+	uint32_t turn; /* the range to be visited next */
+	bool failed;
+};
+
+/* Moves range to the next bins that fit together, at least one. Returns false at the end. */
 static bool next_range(const struct mesh_edges *edges, struct range *range)
 {
 	const struct mesh *mesh = edges->mesh;
+	const uint64_t share = COLLECTED_ITEMS / edges->jobs;
+	const uint64_t most = share > RANGE_ITEMS_MIN ? share : RANGE_ITEMS_MIN;
 	uint32_t bin = range->end / EDGES_BIN;
 
 	range->low = range->end;
@@ -205,39 +257,115 @@ static bool next_range(const struct mesh_edges *edges, struct range *range)
 		return false;
 	do
 		range->item_count += edges->bins[bin++];
-	while (bin < bin_count(mesh) && range->item_count + edges->bins[bin] <= RANGE_ITEMS);
+	while (bin < bin_count(mesh) && range->item_count + edges->bins[bin] <= most);
 	range->end = bin < bin_count(mesh) ? bin * EDGES_BIN : mesh->vertex_count;
 	return true;
 }
 
+static int divide(struct division *division)
+{
+	struct range range = { 0 };
+	uint32_t room = 0;
+
+	while (next_range(division->edges, &range)) {
+		int rc = ARRAY_RESERVE(division->ranges, room, division->count + 1, UINT32_MAX);
+
+		if (rc < 0)
+			return rc;
+		division->ranges[division->count++] = range;
+	}
+	return 0;
+}
+
+/* Waits until all ranges before are visited. Ranges are begun in order, so the threads that have
+ * those do not wait for this one. Returns false if one of them failed. */
+static bool await_turn(struct division *division, uint32_t number)
+{
+	bool failed;
+
+	pthread_mutex_lock(&division->lock);
+	while (division->turn != number)
+		pthread_cond_wait(&division->moved, &division->lock);
+	failed = division->failed;
+	pthread_mutex_unlock(&division->lock);
+	return !failed;
+}
+
+static void end_turn(struct division *division, int rc)
+{
+	pthread_mutex_lock(&division->lock);
+	division->turn++;
+	division->failed |= rc < 0;
+	pthread_cond_broadcast(&division->moved);
+	pthread_mutex_unlock(&division->lock);
+}
+
+/* Makes sure that *memory has so many bytes, whose contents are undefined. */
+static int ensure(void *memory, size_t *has_bytes, size_t bytes)
+{
+	void *old, *larger;
+
+	if (*has_bytes >= bytes)
+		return 0;
+	memcpy(&old, memory, sizeof(old));
+	free(old);
+	larger = malloc(bytes);
+	memcpy(memory, &larger, sizeof(larger));
+	*has_bytes = larger ? bytes : 0;
+	return larger ? 0 : -ENOMEM;
+}
+
 /* One vertex may have 4 thousand million edges, so a count needs all of its 32 bits, and no more: a
  * range of one bin has the edges of at most all faces. */
-static int each_of_range(const struct mesh_edges *edges, struct range *range,
-			 void (*visit)(void *data, const struct mesh_edge *edge), void *data)
+static int make_room(struct range *range, struct room *room)
 {
-	int rc = -ENOMEM;
+	int rc = range->item_count > UINT32_MAX - 2 ? -EFBIG : 0;
 
-	if (range->item_count > UINT32_MAX - 2)
-		return -EFBIG;
-	range->start = malloc(((size_t)(range->end - range->low) + 2) * sizeof(*range->start));
-	range->items = malloc((size_t)range->item_count * sizeof(*range->items) + 1);
-	if (range->start && range->items) {
-		collect(edges, range);
-		visit_range(range, visit, data);
-		rc = 0;
-	}
-	free(range->start);
-	free(range->items);
+	if (rc == 0)
+		rc = ensure(&room->start, &room->start_bytes,
+			    ((size_t)(range->end - range->low) + 2) * sizeof(*room->start));
+	if (rc == 0)
+		rc = ensure(&room->items, &room->item_bytes,
+			    (size_t)range->item_count * sizeof(*room->items) + 1);
+	range->start = room->start;
+	range->items = room->items;
+	return rc;
+}
+
+static int do_range(void *user, uint32_t number, uint32_t worker)
+{
+	struct division *division = user;
+	struct range range = division->ranges[number];
+	int rc = make_room(&range, &division->rooms[worker]);
+
+	if (rc == 0)
+		collect(division->edges, &range);
+	if (await_turn(division, number) && rc == 0)
+		visit_range(&range, division->visit, division->data);
+	end_turn(division, rc);
 	return rc;
 }
 
 int mesh_edges_each(const struct mesh_edges *edges,
 		    void (*visit)(void *data, const struct mesh_edge *edge), void *data)
 {
-	struct range range = { 0 };
-	int rc = 0;
+	struct division division = { .edges = edges, .visit = visit, .data = data };
+	int rc = divide(&division);
 
-	while (rc == 0 && next_range(edges, &range))
-		rc = each_of_range(edges, &range, visit, data);
+	division.rooms = calloc(edges->jobs, sizeof(*division.rooms));
+	if (rc == 0 && !division.rooms)
+		rc = -ENOMEM;
+	pthread_mutex_init(&division.lock, NULL);
+	pthread_cond_init(&division.moved, NULL);
+	if (rc == 0)
+		rc = parallel_run(edges->jobs, division.count, do_range, &division);
+	pthread_cond_destroy(&division.moved);
+	pthread_mutex_destroy(&division.lock);
+	for (uint32_t i = 0; division.rooms && i < edges->jobs; i++) {
+		free(division.rooms[i].start);
+		free(division.rooms[i].items);
+	}
+	free(division.rooms);
+	free(division.ranges);
 	return rc;
 }

@@ -3,27 +3,64 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "base/spill.h"
 #include "pipeline/import/mesh_edges.h"
 #include "pipeline/import/mesh_orient.h"
 #include "pipeline/import/mesh_places.h"
 
-#define NO_VERTEX UINT32_MAX
+enum { RANGE_ITEMS = 1 << 16 /* that one thread does at a time */ };
 
-/* Turns minus zero into zero; otherwise equal places would differ in their bytes. */
-static void settle_zeros(struct mesh *mesh)
+struct repair {
+	struct mesh *mesh;
+	uint32_t jobs;
+	atomic_bool has_strange; /* a coordinate that is not finite */
+	/* The first vertex at the place of each, and the first that is equal to it. NULL: no two
+	 * are at one place. Owned; first may be place. */
+	uint32_t *place, *first;
+	/* Set for the vertices of the faces that stay; a bit for each vertex. Owned. */
+	_Atomic uint64_t *used;
+	uint32_t *used_before;     /* how many are set before each word of used; owned */
+	struct face_counts *faces; /* for each range of faces; owned */
+	atomic_uint merged_vertices;
+};
+
+struct face_counts {
+	uint32_t kept, lost, degenerate;
+};
+
+/* Turns minus zero into zero; otherwise equal places would differ in their bytes. Writes only what
+ * changes, so that no other page has to be written out. */
+static void settle_zero(float *number)
 {
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		for (int k = 0; k < 3; k++)
-			mesh->positions[i][k] += 0.0f;
+	if (*number == 0 && signbit(*number))
+		*number = 0;
+}
+
+static int settle_vertices(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct repair *repair = user;
+	struct mesh *mesh = repair->mesh;
+	bool finite = true;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++) {
+		for (int k = 0; k < 3; k++) {
+			settle_zero(&mesh->positions[i][k]);
+			finite &= isfinite(mesh->positions[i][k]) != 0;
+		}
 		for (int k = 0; k < 2 && mesh->uvs; k++)
-			mesh->uvs[i][k] += 0.0f;
-		spill_pass(i);
+			settle_zero(&mesh->uvs[i][k]);
 	}
+	if (!finite)
+		atomic_store(&repair->has_strange, true);
+	return 0;
 }
 
 /* ---- faces */
@@ -34,79 +71,225 @@ static bool is_finite_vertex(const struct mesh *mesh, uint32_t i)
 	       isfinite(mesh->positions[i][2]);
 }
 
-static bool same_place(const struct mesh *mesh, uint32_t a, uint32_t b)
+static bool is_finite_face(const struct mesh *mesh, const uint32_t t[3])
 {
-	return memcmp(mesh->positions[a], mesh->positions[b], sizeof(mesh->positions[a])) == 0;
+	return is_finite_vertex(mesh, t[0]) && is_finite_vertex(mesh, t[1]) &&
+	       is_finite_vertex(mesh, t[2]);
 }
 
-static bool is_degenerate(const struct mesh *mesh, const uint32_t t[3])
+static uint32_t mapped(const uint32_t *map, uint32_t vertex)
 {
-	return same_place(mesh, t[0], t[1]) || same_place(mesh, t[1], t[2]) ||
-	       same_place(mesh, t[2], t[0]);
+	return map ? map[vertex] : vertex;
 }
 
-static void filter_faces(struct mesh *mesh, const uint32_t *first, struct mesh_repairs *repairs)
+static bool is_degenerate(const struct repair *repair, const uint32_t t[3])
 {
-	uint32_t kept = 0;
+	const uint32_t a = mapped(repair->place, t[0]), b = mapped(repair->place, t[1]),
+		       c = mapped(repair->place, t[2]);
 
-	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+	return a == b || b == c || c == a;
+}
+
+static bool is_used(const struct repair *repair, uint32_t vertex)
+{
+	return atomic_load_explicit(&repair->used[vertex >> 6], memory_order_relaxed) >>
+		       (vertex & 63) &
+	       1;
+}
+
+static void use(struct repair *repair, uint32_t vertex)
+{
+	if (!is_used(repair, vertex))
+		atomic_fetch_or_explicit(&repair->used[vertex >> 6], (uint64_t)1 << (vertex & 63),
+					 memory_order_relaxed);
+}
+
+/* Moves the faces that stay to the front of the range, with their merged corners. */
+static int filter_faces(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct repair *repair = user;
+	struct mesh *mesh = repair->mesh;
+	struct face_counts *counts = &repair->faces[first / RANGE_ITEMS];
+	const bool has_strange = atomic_load(&repair->has_strange);
+	uint32_t kept = first;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++) {
 		const uint32_t *t = mesh->triangles[i];
-		uint32_t merged[3] = { first[t[0]], first[t[1]], first[t[2]] };
+		uint32_t merged[3];
 
-		spill_pass(i);
-		if (!is_finite_vertex(mesh, t[0]) || !is_finite_vertex(mesh, t[1]) ||
-		    !is_finite_vertex(mesh, t[2])) {
-			repairs->lost_faces++;
+		if (has_strange && !is_finite_face(mesh, t)) {
+			counts->lost++;
 			continue;
 		}
-		if (is_degenerate(mesh, merged)) {
-			repairs->degenerate_faces++;
+		if (is_degenerate(repair, t)) {
+			counts->degenerate++;
 			continue;
 		}
-		memcpy(mesh->triangles[kept], merged, sizeof(merged));
-		if (mesh->materials)
+		for (int k = 0; k < 3; k++) {
+			merged[k] = mapped(repair->first, t[k]);
+			use(repair, merged[k]);
+		}
+		if (memcmp(mesh->triangles[kept], merged, sizeof(merged)) != 0)
+			memcpy(mesh->triangles[kept], merged, sizeof(merged));
+		if (mesh->materials && kept != i)
 			mesh->materials[kept] = mesh->materials[i];
-		if (mesh->faces)
+		if (mesh->faces && kept != i)
 			mesh->faces[kept] = mesh->faces[i];
 		kept++;
+	}
+	counts->kept = kept - first;
+	return 0;
+}
+
+/* Moves what stays of each range behind that of the range before. */
+static void close_gaps(struct repair *repair, struct mesh_repairs *repairs)
+{
+	struct mesh *mesh = repair->mesh;
+	uint32_t kept = 0;
+
+	for (uint32_t from = 0; from < mesh->triangle_count;) {
+		const struct face_counts *counts = &repair->faces[from / RANGE_ITEMS];
+		size_t count = counts->kept;
+
+		if (kept != from) {
+			memmove(mesh->triangles[kept], mesh->triangles[from],
+				count * sizeof(*mesh->triangles));
+			if (mesh->materials)
+				memmove(mesh->materials + kept, mesh->materials + from,
+					count * sizeof(*mesh->materials));
+			if (mesh->faces)
+				memmove(mesh->faces + kept, mesh->faces + from,
+					count * sizeof(*mesh->faces));
+			spill_breathe();
+		}
+		kept += counts->kept;
+		from += counts->kept + counts->lost + counts->degenerate;
+		repairs->lost_faces += counts->lost;
+		repairs->degenerate_faces += counts->degenerate;
 	}
 	mesh->triangle_count = kept;
 }
 
-/* Moves the used vertices to the front. `first` becomes the map from old to new indices. */
-static void drop_unused_vertices(struct mesh *mesh, uint32_t *first, struct mesh_repairs *repairs)
+/* ---- vertices */
+
+static uint32_t words_of(const struct mesh *mesh)
 {
+	return mesh->vertex_count / 64 + 1;
+}
+
+/* Returns the number of used vertices. */
+static uint32_t count_used(struct repair *repair)
+{
+	uint32_t sum = 0;
+
+	for (uint32_t i = 0; i < words_of(repair->mesh); i++) {
+		repair->used_before[i] = sum;
+		sum += (uint32_t)__builtin_popcountll(repair->used[i]);
+	}
+	return sum;
+}
+
+/* The index of a used vertex once the others are removed. */
+static uint32_t new_index(const struct repair *repair, uint32_t vertex)
+{
+	uint64_t before = repair->used[vertex >> 6] & (((uint64_t)1 << (vertex & 63)) - 1);
+
+	return repair->used_before[vertex >> 6] + (uint32_t)__builtin_popcountll(before);
+}
+
+static int count_merged(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct repair *repair = user;
+	uint32_t merged = 0;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++)
+		merged += repair->first[i] != i;
+	atomic_fetch_add(&repair->merged_vertices, merged);
+	return 0;
+}
+
+static int renumber_corners(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct repair *repair = user;
+	struct mesh *mesh = repair->mesh;
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++)
+		for (int k = 0; k < 3; k++)
+			mesh->triangles[i][k] = new_index(repair, mesh->triangles[i][k]);
+	return 0;
+}
+
+/* Where the first vertex at a place is removed, the first that stays stands for the place. */
+static void replace_removed_places(struct repair *repair)
+{
+	uint32_t *place = repair->place;
+
+	for (uint32_t i = 0; i < repair->mesh->vertex_count; i++) {
+		uint32_t at = place[i];
+
+		spill_pass(i);
+		if (!is_used(repair, i) || at == i || is_used(repair, at))
+			continue;
+		if (place[at] == at)
+			place[at] = i;
+		place[i] = place[at];
+	}
+}
+
+/* Moves the used vertices to the front. */
+static void move_used(struct repair *repair)
+{
+	struct mesh *mesh = repair->mesh;
 	uint32_t kept = 0;
 
 	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		if (first[i] != i)
-			repairs->merged_vertices++;
-		first[i] = NO_VERTEX;
 		spill_pass(i);
-	}
-	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
-		for (int k = 0; k < 3; k++)
-			first[mesh->triangles[i][k]] = 0;
-		spill_pass(i);
-	}
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-		spill_pass(i);
-		if (first[i] == NO_VERTEX)
+		if (!is_used(repair, i))
 			continue;
-		memmove(mesh->positions[kept], mesh->positions[i], sizeof(mesh->positions[i]));
-		if (mesh->colours)
-			memmove(mesh->colours[kept], mesh->colours[i], sizeof(mesh->colours[i]));
-		if (mesh->uvs)
-			memmove(mesh->uvs[kept], mesh->uvs[i], sizeof(mesh->uvs[i]));
-		first[i] = kept++;
+		if (kept != i) {
+			memmove(mesh->positions[kept], mesh->positions[i],
+				sizeof(mesh->positions[i]));
+			if (mesh->colours)
+				memmove(mesh->colours[kept], mesh->colours[i],
+					sizeof(mesh->colours[i]));
+			if (mesh->uvs)
+				memmove(mesh->uvs[kept], mesh->uvs[i], sizeof(mesh->uvs[i]));
+		}
+		if (repair->place)
+			repair->place[kept] = new_index(repair, repair->place[i]);
+		kept++;
 	}
-	repairs->unused_vertices = mesh->vertex_count - kept - repairs->merged_vertices;
 	mesh->vertex_count = kept;
-	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
-		for (int k = 0; k < 3; k++)
-			mesh->triangles[i][k] = first[mesh->triangles[i][k]];
-		spill_pass(i);
-	}
+}
+
+static int drop_unused_vertices(struct repair *repair, struct mesh_repairs *repairs)
+{
+	struct mesh *mesh = repair->mesh;
+	uint32_t used = count_used(repair);
+	int rc = 0;
+
+	if (used == mesh->vertex_count)
+		return 0;
+	if (repair->first)
+		rc = parallel_ranges(repair->jobs, mesh->vertex_count, RANGE_ITEMS, count_merged,
+				     repair);
+	repairs->merged_vertices = atomic_load(&repair->merged_vertices);
+	repairs->unused_vertices = mesh->vertex_count - used - repairs->merged_vertices;
+	if (rc == 0)
+		rc = parallel_ranges(repair->jobs, mesh->triangle_count, RANGE_ITEMS,
+				     renumber_corners, repair);
+	if (rc < 0)
+		return rc;
+	if (repair->place)
+		replace_removed_places(repair);
+	move_used(repair);
+	return 0;
 }
 
 /* ---- edges */
@@ -167,11 +350,13 @@ static int count_edges(const struct mesh_edges *edges, const struct mesh *mesh,
 
 /* Counts the edges. Only if faces disagree must the correct orientation be found, and the edges be
  * counted again. */
-static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
+static int settle_edges(struct repair *repair, struct mesh_repairs *repairs)
 {
+	struct mesh *mesh = repair->mesh;
 	struct mesh_edges edges;
-	int rc = mesh_edges_init(&edges, mesh);
+	int rc = mesh_edges_init_placed(&edges, mesh, repair->place, repair->jobs);
 
+	repair->place = NULL;
 	if (rc < 0)
 		return rc;
 	rc = count_edges(&edges, mesh, repairs);
@@ -183,17 +368,61 @@ static int settle_edges(struct mesh *mesh, struct mesh_repairs *repairs)
 	return rc;
 }
 
-int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs)
+static int find_equals(struct repair *repair)
 {
-	uint32_t *first;
+	int rc = parallel_ranges(repair->jobs, repair->mesh->vertex_count, RANGE_ITEMS,
+				 settle_vertices, repair);
+
+	if (rc == 0)
+		rc = mesh_places(&repair->place, repair->mesh, repair->jobs);
+	if (rc == 0)
+		rc = mesh_equals(&repair->first, repair->mesh, repair->place, repair->jobs);
+	return rc;
+}
+
+static int drop_faces_and_vertices(struct repair *repair, struct mesh_repairs *repairs)
+{
+	struct mesh *mesh = repair->mesh;
+	const uint32_t words = words_of(mesh);
+	int rc;
+
+	repair->used = spill_alloc(words * sizeof(*repair->used));
+	repair->used_before = spill_alloc(words * sizeof(*repair->used_before));
+	if (!repair->used || !repair->used_before)
+		return -errno;
+	repair->faces = calloc(mesh->triangle_count / RANGE_ITEMS + 1, sizeof(*repair->faces));
+	if (!repair->faces)
+		return -ENOMEM;
+	rc = parallel_ranges(repair->jobs, mesh->triangle_count, RANGE_ITEMS, filter_faces, repair);
+	if (rc < 0)
+		return rc;
+	close_gaps(repair, repairs);
+	return drop_unused_vertices(repair, repairs);
+}
+
+/* Frees what only finding and dropping needed. */
+static void end_dropping(struct repair *repair)
+{
+	if (repair->first != repair->place)
+		spill_free(repair->first);
+	repair->first = NULL;
+	spill_free(repair->used);
+	spill_free(repair->used_before);
+	free(repair->faces);
+}
+
+int mesh_repair(struct mesh *mesh, uint32_t jobs, struct mesh_repairs *repairs)
+{
+	struct repair repair = { .mesh = mesh, .jobs = jobs };
+	int rc;
 
 	*repairs = (struct mesh_repairs){ 0 };
-	settle_zeros(mesh);
-	first = mesh_equals(mesh);
-	if (!first)
-		return -errno;
-	filter_faces(mesh, first, repairs);
-	drop_unused_vertices(mesh, first, repairs);
-	spill_free(first);
-	return mesh->vertex_count >> 31 ? 0 : settle_edges(mesh, repairs);
+	rc = find_equals(&repair);
+	if (rc == 0)
+		rc = drop_faces_and_vertices(&repair, repairs);
+	end_dropping(&repair);
+	if (rc == 0 && mesh->vertex_count >> 31 == 0)
+		rc = settle_edges(&repair, repairs);
+	spill_free(repair.place);
+	return rc;
 }

@@ -30,8 +30,8 @@ struct mesh_repairs {
 
 /* Repairs mesh in place and keeps the order of what remains. Edges are compared by place, so a
  * texture seam is not a border. Edges are not examined from 2^31 vertices on. Indices must be below
- * vertex_count. *repairs gets the counts. -ENOMEM,
- * -ENOSPC. */
-must_check int mesh_repair(struct mesh *mesh, struct mesh_repairs *repairs);
+ * vertex_count. jobs: number of threads; the result does not depend on it. *repairs gets the
+ * counts. -ENOMEM, -ENOSPC. */
+must_check int mesh_repair(struct mesh *mesh, uint32_t jobs, struct mesh_repairs *repairs);
 
 #endif

@@ -1,6 +1,8 @@
 /* Reads the body of a PLY: one element after another; each property is decoded or skipped. */
+#include "pipeline/import/ply_decode.h"
 #include "pipeline/import/ply_header.h"
 #include "pipeline/import/ply_input.h"
+#include "pipeline/import/ply_runs.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -20,42 +22,15 @@ struct pass {
 	const struct ply_visitor *visitor;
 	struct diagnostics *diagnostics;
 	const struct ply_element *element;
-	uint64_t index; /* of the current element */
-	uint64_t faces; /* faces and strips in earlier elements */
+	uint64_t index;     /* of the current element */
+	uint64_t faces;     /* faces and strips in earlier elements */
+	uint64_t triangles; /* delivered */
+	uint64_t told;      /* the visitor knows that the file was read up to this offset */
 	double values[PLY_SLOT_NONE];
 	struct ply_triangle triangle;
 	/* the last two corners of the current strip, and its length */
 	uint32_t strip[2], strip_length;
 };
-
-static double decode_number(const uint8_t *bytes, enum ply_type type, bool big)
-{
-	uint64_t word = 0;
-	size_t size = ply_type_bytes(type);
-	double wide;
-	float narrow;
-	uint32_t half;
-
-	for (size_t i = 0; i < size; i++)
-		word |= (uint64_t)bytes[big ? size - 1 - i : i] << (8 * i);
-	switch (type) {
-	case PLY_INT8:
-		return (int8_t)word;
-	case PLY_INT16:
-		return (int16_t)word;
-	case PLY_INT32:
-		return (int32_t)word;
-	case PLY_FLOAT32:
-		half = (uint32_t)word;
-		memcpy(&narrow, &half, sizeof(narrow));
-		return narrow;
-	case PLY_FLOAT64:
-		memcpy(&wide, &word, sizeof(wide));
-		return wide;
-	default:
-		return (double)word;
-	}
-}
 
 /* Adds a diagnostic such as "file.ply:40: face 12: ...". */
 static int element_fault(const struct pass *pass, int error, const char *what)
@@ -92,7 +67,7 @@ static int next_number(struct pass *pass, enum ply_type type, bool cross_lines, 
 		bytes = ply_input_take(&ply->input, ply_type_bytes(type));
 		if (!bytes)
 			return ends_early(pass);
-		*out = decode_number(bytes, type, ply->encoding == PLY_BIG);
+		*out = ply_number(bytes, type, ply->encoding == PLY_BIG);
 		return 0;
 	}
 	switch (ply_input_number(&ply->input, cross_lines, out, text)) {
@@ -119,7 +94,7 @@ static int emit(struct pass *pass, uint32_t a, uint32_t b, uint32_t c)
 	pass->triangle.corner[1] = b;
 	pass->triangle.corner[2] = c;
 	pass->triangle.face = (uint32_t)(pass->faces + pass->index);
-	return pass->visitor->triangle(pass->visitor->data, &pass->triangle);
+	return pass->visitor->triangle(pass->visitor->data, pass->triangles++, &pass->triangle);
 }
 
 static int check_corner(struct pass *pass, double value)
@@ -176,14 +151,13 @@ static int end_face(struct pass *pass)
 {
 	struct ply *ply = pass->ply;
 	bool has_uv = ply->corner_uv_floats > 0;
-	double texture = pass->values[PLY_SLOT_TEXTURE];
 
 	if (has_uv && ply->corner_uv_floats != 2 * ply->corner_count)
 		return element_fault(
 			pass, -EBADMSG,
 			"its texcoord list must hold two numbers a corner; export it again");
 	ply->lines_skipped += ply->corner_count < 3;
-	pass->triangle.texture = texture > 0 && texture < PLY_TEXTURES_MAX ? (uint32_t)texture : 0;
+	pass->triangle.texture = ply_texture_from(pass->values[PLY_SLOT_TEXTURE]);
 	for (uint32_t i = 2; i < ply->corner_count; i++) {
 		const uint32_t at[3] = { 0, i - 1, i };
 		int rc;
@@ -236,33 +210,12 @@ static int read_list(struct pass *pass, const struct ply_property *property, boo
 	return 0;
 }
 
-/* Converts a colour of any type to 0..255. Floats range over 0..1, 16-bit integers up to 65535. */
-static uint8_t colour_byte(double value, enum ply_type type)
-{
-	if (type >= PLY_FLOAT32)
-		value *= 255;
-	else if (type == PLY_UINT16 || type == PLY_INT16)
-		value /= 257;
-	if (!(value > 0))
-		return 0;
-	return value < 255 ? (uint8_t)(value + 0.5) : 255;
-}
-
 static int end_vertex(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE])
 {
-	const struct ply_summary *summary = &pass->ply->summary;
-	struct ply_vertex vertex = { .colour = { 255, 255, 255, 255 } };
+	struct ply_vertex vertex;
 
-	for (int k = 0; k < 3; k++)
-		vertex.position[k] = pass->values[PLY_SLOT_X + k];
-	for (int k = 0; k < 3 && summary->has_colour; k++)
-		vertex.colour[k] =
-			colour_byte(pass->values[PLY_SLOT_RED + k], types[PLY_SLOT_RED + k]);
-	if (summary->has_open_sky)
-		vertex.colour[3] = colour_byte(pass->values[PLY_SLOT_ALPHA], types[PLY_SLOT_ALPHA]);
-	for (int k = 0; k < 2 && summary->has_uv; k++)
-		vertex.uv[k] = (float)pass->values[PLY_SLOT_U + k];
-	return pass->visitor->vertex(pass->visitor->data, &vertex);
+	ply_vertex_from(&vertex, &pass->ply->summary, pass->values, types);
+	return pass->visitor->vertex(pass->visitor->data, (uint32_t)pass->index, &vertex);
 }
 
 /* Reads a binary element without lists; decodes only the properties that we use. */
@@ -278,8 +231,8 @@ static int read_packed(struct pass *pass)
 
 		if (property->slot != PLY_SLOT_NONE)
 			pass->values[property->slot] =
-				decode_number(bytes + property->offset, property->type,
-					      pass->ply->encoding == PLY_BIG);
+				ply_number(bytes + property->offset, property->type,
+					   pass->ply->encoding == PLY_BIG);
 	}
 	return 0;
 }
@@ -341,19 +294,49 @@ static int read_one(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE])
 	return rc;
 }
 
+/* The visitor learns how far the reading is once for so many elements. */
+enum { ELEMENTS_PER_ADVANCE = 1 << 14 };
+
+static void advance(struct pass *pass)
+{
+	uint64_t offset = ply_input_offset(&pass->ply->input);
+
+	if (pass->visitor->advance)
+		pass->visitor->advance(pass->visitor->data, offset - pass->told);
+	pass->told = offset;
+}
+
+/* Reads what several threads can read. */
+static int read_run(struct pass *pass)
+{
+	int rc;
+
+	/* the index of a triangle is known in advance only if all before are triangles too */
+	if (pass->element->kind == PLY_KIND_FACE && pass->faces > 0)
+		return 0;
+	rc = ply_runs_read(&pass->index, pass->ply, pass->element, pass->visitor);
+	if (pass->element->kind == PLY_KIND_FACE)
+		pass->triangles += pass->index;
+	pass->told = ply_input_offset(&pass->ply->input);
+	return rc;
+}
+
 static int read_element(struct pass *pass, const struct ply_element *element)
 {
-	enum ply_type types[PLY_SLOT_NONE] = { 0 };
-	int rc = 0;
+	enum ply_type types[PLY_SLOT_NONE];
+	int rc;
 
 	pass->element = element;
 	memset(pass->values, 0, sizeof(pass->values));
 	memset(&pass->triangle, 0, sizeof(pass->triangle));
-	for (uint32_t i = 0; i < element->property_count; i++)
-		if (element->properties[i].slot != PLY_SLOT_NONE)
-			types[element->properties[i].slot] = element->properties[i].type;
-	for (pass->index = 0; pass->index < element->count && rc == 0; pass->index++)
+	ply_types_of(types, element);
+	pass->index = 0;
+	rc = read_run(pass);
+	for (; pass->index < element->count && rc == 0; pass->index++) {
 		rc = read_one(pass, types);
+		if (pass->index % ELEMENTS_PER_ADVANCE == 0)
+			advance(pass);
+	}
 	if (element->kind == PLY_KIND_FACE || element->kind == PLY_KIND_STRIP)
 		pass->faces += element->count;
 	if (strcmp(element->name, "edge") == 0)
@@ -375,8 +358,8 @@ int ply_place(float out[3], const struct ply *ply, const struct ply_element *ele
 		rc = bytes_read_at(fd, bytes, ply_type_bytes(property->type),
 				   offset + property->offset);
 		if (rc == 0)
-			out[property->slot - PLY_SLOT_X] = (float)decode_number(
-				bytes, property->type, ply->encoding == PLY_BIG);
+			out[property->slot - PLY_SLOT_X] =
+				(float)ply_number(bytes, property->type, ply->encoding == PLY_BIG);
 	}
 	return rc;
 }
@@ -391,6 +374,7 @@ int ply_read(struct ply *ply, const struct ply_visitor *visitor, struct diagnost
 		if (rc)
 			return rc;
 	}
+	ply->triangles = pass.triangles;
 	while (ply->encoding == PLY_ASCII && isspace(ply_input_peek(&ply->input)))
 		ply_input_take(&ply->input, 1);
 	ply->trailing = ply->input.file_bytes > ply_input_offset(&ply->input)
@@ -469,14 +453,14 @@ const struct ply_summary *ply_summary(const struct ply *ply)
 	return &ply->summary;
 }
 
-uint64_t ply_bytes_read(const struct ply *ply)
-{
-	return ply_input_offset(&ply->input);
-}
-
 uint64_t ply_bytes_total(const struct ply *ply)
 {
 	return ply->input.file_bytes;
+}
+
+uint64_t ply_triangles(const struct ply *ply)
+{
+	return ply->triangles;
 }
 
 uint64_t ply_lines_skipped(const struct ply *ply)

@@ -1,11 +1,11 @@
 /* Streaming reader of PLY scans (Greg Turk's format, 1994): ASCII, or binary in either byte order;
  * properties in any order and of any type; unknown elements and properties are skipped. Memory does
- * not grow with the file: one buffer, and the corners of one polygon.
+ * not grow with the file: a buffer for each thread, and the corners of one polygon.
  *
  * Polygons are delivered as fans of triangles, and triangle strips (element tristrips, where -1
  * starts a new strip) as triangles. Indices are checked against the vertex count. Coordinates may
  * have any float value, even a non-finite one. docs/import.md lists names and limits. Each reader
- * belongs to one thread. */
+ * belongs to one thread, which may let others read with it. */
 #ifndef GOPURA_PIPELINE_IMPORT_PLY_H
 #define GOPURA_PIPELINE_IMPORT_PLY_H
 
@@ -51,12 +51,19 @@ struct ply_triangle {
 	uint32_t face;      /* number of its face or strip, from 0 */
 };
 
-/* Called in file order; arguments are borrowed for the call. A result other than 0 ends the reading
- * and becomes its result. */
+/* Arguments are borrowed for the call. index counts the vertices and the triangles of the file. A
+ * negative result ends the reading and becomes its result. Calls come in file order, with one
+ * exception: from up to jobs threads at a time, in any order, for binary vertices without lists and
+ * for the triangles at the start of binary faces. Where these are followed by a face that is no
+ * triangle, some triangles with an index below the file's face count are delivered that are none;
+ * those that belong there are delivered afterwards. */
 struct ply_visitor {
 	void *data;
-	int (*vertex)(void *data, const struct ply_vertex *vertex);
-	int (*triangle)(void *data, const struct ply_triangle *triangle);
+	int (*vertex)(void *data, uint32_t index, const struct ply_vertex *vertex);
+	int (*triangle)(void *data, uint64_t index, const struct ply_triangle *triangle);
+	/* Another so many bytes of the file were read; NULL: not wanted. */
+	void (*advance)(void *data, uint64_t bytes);
+	uint32_t jobs; /* number of threads; 0: only the caller's */
 };
 
 /* Opens the file and reads its header. *out is owned by the caller; it is NULL on failure.
@@ -72,14 +79,14 @@ void ply_close(struct ply *ply); /* NULL is fine */
 /* What the header declares; borrowed from the reader. */
 const struct ply_summary *ply_summary(const struct ply *ply);
 
-/* Reads everything after the header. Call it once. Returns 0, a negative errno with a diagnostic,
- * or what a visitor returned. */
+/* Reads everything after the header. Call it once. Returns 0, or a negative errno, with a
+ * diagnostic unless it is what a visitor returned. */
 must_check int ply_read(struct ply *ply, const struct ply_visitor *visitor,
 			struct diagnostics *diagnostics);
 
-/* Returns the number of bytes of the file read so far, for progress. */
-uint64_t ply_bytes_read(const struct ply *ply);
 uint64_t ply_bytes_total(const struct ply *ply); /* size of the file in bytes */
+/* After ply_read: number of triangles; each below it was delivered. */
+uint64_t ply_triangles(const struct ply *ply);
 /* After ply_read: number of edges, and of faces with less than three corners; they are skipped. */
 uint64_t ply_lines_skipped(const struct ply *ply);
 /* After ply_read: number of bytes after the last element; they were ignored. */

@@ -76,7 +76,7 @@ struct ply {
 	char *textures[PLY_TEXTURES_MAX]; /* owned */
 	bool cr_only;                     /* lines end with CR alone */
 	bool gopura_open, range_grid;
-	uint64_t trailing, lines_skipped;
+	uint64_t trailing, lines_skipped, triangles;
 	/* Corners of the current polygon, PLY_CORNERS_MAX each; owned. */
 	uint32_t *corners;
 	float (*corner_uvs)[2];

@@ -79,6 +79,13 @@ uint64_t ply_input_offset(const struct ply_input *input)
 	return input->base + input->at;
 }
 
+int ply_input_seek(struct ply_input *input, uint64_t offset)
+{
+	input->at = input->end = 0;
+	input->base = offset;
+	return lseek(input->fd, (off_t)offset, SEEK_SET) < 0 ? -errno : 0;
+}
+
 /* ---- numbers */
 
 static bool is_blank(int c)

@@ -36,6 +36,9 @@ int ply_input_peek(struct ply_input *input);
 /* Returns the file offset of the next byte. */
 uint64_t ply_input_offset(const struct ply_input *input);
 
+/* Continues at that file offset. The line number stays. Negative errno. */
+must_check int ply_input_seek(struct ply_input *input, uint64_t offset);
+
 enum ply_token {
 	PLY_TOKEN_NUMBER,
 	PLY_TOKEN_LINE_END, /* the line has no further number; the line end is not consumed */

@@ -79,7 +79,7 @@ static int find_outline(struct outline *outline, const struct mesh *mesh,
 	int rc = copy_triangles(&own, mesh, part);
 
 	if (rc == 0)
-		rc = mesh_edges_init(&edges, &own);
+		rc = mesh_edges_init(&edges, &own, 1);
 	if (rc == 0)
 		rc = mesh_edges_each(&edges, note_edge, outline);
 	if (rc == 0 && outline->failed)

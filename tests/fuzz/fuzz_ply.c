@@ -10,15 +10,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static uint64_t vertex_count;
 
-static int see_vertex(void *data, const struct ply_vertex *vertex)
+static int see_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
 {
+	if (index >= vertex_count)
+		abort();
 	*(uint64_t *)data += vertex->colour[0];
 	return 0;
 }
 
 /* The reader's promise: corners are in range. */
-static int see_triangle(void *data, const struct ply_triangle *triangle)
+static int see_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
 {
+	(void)index;
 	for (int k = 0; k < 3; k++)
 		if (triangle->corner[k] >= vertex_count)
 			abort();
@@ -30,7 +33,9 @@ static int see_triangle(void *data, const struct ply_triangle *triangle)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	uint64_t sum = 0;
-	const struct ply_visitor visitor = { &sum, see_vertex, see_triangle };
+	const struct ply_visitor visitor = { .data = &sum,
+					     .vertex = see_vertex,
+					     .triangle = see_triangle };
 	struct diagnostics diagnostics = { 0 };
 	int fd = memfd_create("ply", MFD_CLOEXEC);
 	struct ply *ply;

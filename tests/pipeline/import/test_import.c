@@ -541,6 +541,98 @@ static void refuses_what_is_no_surface(void **state)
 	CHECK(import_scan(&mesh, "/tmp", &options, NULL, &diagnostics) == -EINVAL);
 }
 
+/* ---- several threads */
+
+enum { SIDE = 400 }; /* several ranges of vertices and faces */
+
+static void put_f32(struct buffer *file, float value)
+{
+	buffer_put(file, &value, sizeof(value));
+}
+
+static void put_face(struct buffer *file, uint32_t a, uint32_t b, uint32_t c)
+{
+	const uint32_t corners[3] = { a, b, c };
+
+	buffer_put_u8(file, 3);
+	buffer_put(file, corners, sizeof(corners));
+}
+
+/* A hill whose every square has vertices of its own, with all that is repaired: vertices at one
+ * place of equal and of different colours, not finite, or unused; faces turned, or without area. */
+static void write_dirty_hill(struct buffer *file)
+{
+	static char head[1024];
+	const uint32_t squares = SIDE * SIDE;
+
+	buffer_put(
+		file, head,
+		(size_t)snprintf(head, sizeof(head),
+				 "ply\nformat binary_little_endian 1.0\nelement vertex %u\n"
+				 "property float x\nproperty float y\nproperty float z\n"
+				 "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+				 "element face %u\nproperty list uchar uint vertex_indices\n"
+				 "end_header\n",
+				 5 * squares, 2 * squares));
+	for (uint32_t i = 0; i < 5 * squares; i++) {
+		uint32_t x = i / 5 % SIDE + (i % 5 == 1 || i % 5 == 2);
+		uint32_t y = i / 5 / SIDE + (i % 5 == 2 || i % 5 == 3);
+
+		put_f32(file, i % 9973 == 0 ? NAN : (float)x);
+		put_f32(file, (float)y * -1 + 0);
+		put_f32(file, (float)((x * 31 + y * 17) % 5) * 0.1f);
+		for (int k = 0; k < 3; k++)
+			buffer_put_u8(file, i % 5 == 4 ? 7 : (uint8_t)(i % 30 == 0));
+	}
+	for (uint32_t i = 0; i < squares; i++) {
+		uint32_t at = 5 * i;
+		bool turned = i % 1000 > 980;
+
+		put_face(file, at, turned ? at + 2 : at + 1, turned ? at + 1 : at + 2);
+		put_face(file, at, at + 2, i % 777 == 0 ? at + 2 : at + 3);
+	}
+}
+
+static void any_number_of_threads_makes_the_same_mesh(void **state)
+{
+	struct import_options options = { .jobs = 1, .up = IMPORT_Y_UP, .metres_per_unit = 0.5 };
+	struct import_report first_report, report;
+	struct diagnostics diagnostics = { 0 };
+	struct mesh first, mesh;
+	struct buffer file;
+	char path[256];
+	(void)state;
+
+	buffer_init(&file, 32 << 20);
+	write_dirty_hill(&file);
+	CHECK(!file.error);
+	scan_write(path, "hill.ply", file.data, file.size);
+	buffer_finish(&file);
+	CHECK(import_scan(&first, path, &options, &first_report, &diagnostics) == 0);
+	CHECK(first_report.repairs.lost_faces > 0 && first_report.repairs.degenerate_faces > 200 &&
+	      first_report.repairs.merged_vertices > SIDE * SIDE &&
+	      first_report.repairs.unused_vertices > 0 &&
+	      first_report.repairs.turned_faces > 1000 && first_report.repairs.place_count > 0);
+	for (options.jobs = 2; options.jobs <= 5; options.jobs += 3) {
+		CHECK(import_scan(&mesh, path, &options, &report, &diagnostics) == 0);
+		report.duration_ms = first_report.duration_ms;
+		CHECK(memcmp(&report, &first_report, sizeof(report)) == 0);
+		CHECK(mesh.vertex_count == first.vertex_count &&
+		      mesh.triangle_count == first.triangle_count);
+		CHECK(memcmp(mesh.positions, first.positions,
+			     mesh.vertex_count * sizeof(*mesh.positions)) == 0);
+		CHECK(memcmp(mesh.colours, first.colours,
+			     mesh.vertex_count * sizeof(*mesh.colours)) == 0);
+		CHECK(memcmp(mesh.triangles, first.triangles,
+			     mesh.triangle_count * sizeof(*mesh.triangles)) == 0);
+		CHECK(memcmp(mesh.faces, first.faces, mesh.triangle_count * sizeof(*mesh.faces)) ==
+		      0);
+		mesh_finish(&mesh);
+	}
+	mesh_finish(&first);
+	scan_remove(path);
+}
+
 static void names_of_axes_and_units(void **state)
 {
 	enum import_axis axis = IMPORT_Z_UP;
@@ -574,6 +666,7 @@ int main(void)
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),
 		cmocka_unit_test(refuses_what_is_no_surface),
+		cmocka_unit_test(any_number_of_threads_makes_the_same_mesh),
 		cmocka_unit_test(names_of_axes_and_units),
 	};
 

@@ -74,7 +74,7 @@ static void vertex_colours_come_from_the_texture_and_keep_the_sky(void **state)
 	(void)state;
 
 	memset(mesh.textures[0].rgb, 40, 12);
-	CHECK(mesh_colours_from_textures(&mesh) == 0);
+	CHECK(mesh_colours_from_textures(&mesh, 2) == 0);
 	for (int i = 0; i < 4; i++)
 		CHECK(mesh.colours[i][1] == 40 && mesh.colours[i][3] == 77);
 	mesh_finish(&mesh);
@@ -103,14 +103,14 @@ static void no_vertex_takes_the_colour_between_charts(void **state)
 	for (int i = 0; i < 4; i++)
 		for (int axis = 0; axis < 2; axis++)
 			mesh.uvs[i][axis] = mesh.uvs[i][axis] > 0 ? 0.5f : 0;
-	CHECK(mesh_colours_from_textures(&mesh) == 0);
+	CHECK(mesh_colours_from_textures(&mesh, 2) == 0);
 	for (int i = 0; i < 4; i++)
 		CHECK(mesh.colours[i][0] == 200);
 
 	memcpy(mesh.positions[3], mesh.positions[1], sizeof(mesh.positions[1]));
 	for (int axis = 0; axis < 2; axis++)
 		mesh.uvs[3][axis] = 0.9f; /* into the black */
-	CHECK(mesh_colours_from_textures(&mesh) == 0);
+	CHECK(mesh_colours_from_textures(&mesh, 2) == 0);
 	CHECK(memcmp(mesh.colours[3], mesh.colours[1], 3) == 0);
 	CHECK(mesh.colours[1][0] > 20 && mesh.colours[1][0] < 180);
 	mesh_finish(&mesh);

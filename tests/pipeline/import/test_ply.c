@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -22,20 +23,22 @@ struct seen {
 	struct diagnostics diagnostics;
 };
 
-static int see_vertex(void *data, const struct ply_vertex *vertex)
+static int see_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
 {
 	struct seen *seen = data;
 
+	CHECK(index == seen->vertices);
 	if (seen->vertices < MOST)
 		seen->vertex[seen->vertices] = *vertex;
 	seen->vertices++;
 	return 0;
 }
 
-static int see_triangle(void *data, const struct ply_triangle *triangle)
+static int see_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
 {
 	struct seen *seen = data;
 
+	CHECK(index == seen->triangles);
 	if (seen->triangles < MOST)
 		seen->triangle[seen->triangles] = *triangle;
 	seen->triangles++;
@@ -44,7 +47,9 @@ static int see_triangle(void *data, const struct ply_triangle *triangle)
 
 static int read_bytes(struct seen *seen, const void *data, size_t size)
 {
-	const struct ply_visitor visitor = { seen, see_vertex, see_triangle };
+	const struct ply_visitor visitor = { .data = seen,
+					     .vertex = see_vertex,
+					     .triangle = see_triangle };
 	int fd = memfd_create("ply", MFD_CLOEXEC);
 	struct ply *ply;
 	int rc;
@@ -335,6 +340,159 @@ static void refills_its_buffer_without_losing_its_place(void **state)
 	CHECK(seen.vertices == VERTICES && seen.vertex[63].position[2] == 191);
 }
 
+/* ---- several threads */
+
+enum { GRID_FACES = 150000, GRID_VERTICES = 100000 }; /* several ranges */
+
+/* What each index got last. */
+struct grid {
+	uint8_t *bytes;
+	size_t size;
+	double x[GRID_VERTICES];
+	struct ply_triangle triangle[GRID_FACES + 64];
+	uint64_t triangles;
+	struct diagnostics diagnostics;
+};
+
+static int keep_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
+{
+	struct grid *grid = data;
+
+	grid->x[index] = vertex->position[0];
+	return 0;
+}
+
+static int keep_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
+{
+	struct grid *grid = data;
+
+	if (index >= GRID_FACES + 64)
+		return -ERANGE;
+	grid->triangle[index] = *triangle;
+	return 0;
+}
+
+static void put_bytes(struct grid *grid, const void *bytes, size_t size, bool big)
+{
+	for (size_t i = 0; i < size; i++)
+		grid->bytes[grid->size++] = ((const uint8_t *)bytes)[big ? size - 1 - i : i];
+}
+
+static uint32_t grid_corner(uint32_t face, uint32_t k)
+{
+	return (face * 7 + k * 1013) % GRID_VERTICES;
+}
+
+/* Faces with texture coordinates and the number of a picture. The face `odd` has odd_corners. */
+static void write_grid(struct grid *grid, bool big, uint32_t odd, uint8_t odd_corners)
+{
+	grid->size = (size_t)snprintf(
+		(char *)grid->bytes, 1000,
+		"ply\nformat binary_%s_endian 1.0\ncomment TextureFile a.png\nelement vertex %d\n"
+		"property uchar stray\nproperty double x\nproperty float y\nproperty float z\n"
+		"element face %d\nproperty list uchar uint vertex_indices\n"
+		"property list uchar float texcoord\nproperty short texnumber\nend_header\n",
+		big ? "big" : "little", GRID_VERTICES, GRID_FACES);
+	for (uint32_t i = 0; i < GRID_VERTICES; i++) {
+		double x = i + 0.5;
+
+		put_bytes(grid, "!", 1, big);
+		put_bytes(grid, &x, 8, big);
+		put_bytes(grid, &(float){ 1 }, 4, big);
+		put_bytes(grid, &(float){ 2 }, 4, big);
+	}
+	for (uint32_t face = 0; face < GRID_FACES; face++) {
+		uint8_t corners = face == odd ? odd_corners : 3, numbers = (uint8_t)(2 * corners);
+
+		put_bytes(grid, &corners, 1, big);
+		for (uint32_t k = 0; k < corners; k++)
+			put_bytes(grid, &(uint32_t){ grid_corner(face, k) }, 4, big);
+		put_bytes(grid, &numbers, 1, big);
+		for (uint32_t k = 0; k < numbers; k++)
+			put_bytes(grid, &(float){ (float)(face + k) }, 4, big);
+		put_bytes(grid, &(int16_t){ (int16_t)(face % 7) }, 2, big);
+	}
+}
+
+static int read_grid(struct grid *grid, uint32_t jobs)
+{
+	const struct ply_visitor visitor = {
+		.data = grid, .vertex = keep_vertex, .triangle = keep_triangle, .jobs = jobs
+	};
+	int fd = memfd_create("ply", MFD_CLOEXEC), rc;
+	struct ply *ply;
+
+	CHECK(fd >= 0 && write(fd, grid->bytes, grid->size) == (ssize_t)grid->size &&
+	      lseek(fd, 0, SEEK_SET) == 0);
+	grid->diagnostics = (struct diagnostics){ 0 };
+	CHECK(ply_open_fd(&ply, fd, "grid.ply", &grid->diagnostics) == 0);
+	rc = ply_read(ply, &visitor, &grid->diagnostics);
+	grid->triangles = ply_triangles(ply);
+	ply_close(ply);
+	return rc;
+}
+
+static void check_grid(const struct grid *grid, uint32_t odd, uint32_t odd_corners)
+{
+	uint64_t at = 0;
+
+	CHECK(grid->triangles == GRID_FACES + odd_corners - 3);
+	for (uint32_t i = 0; i < GRID_VERTICES; i++)
+		CHECK(grid->x[i] == i + 0.5);
+	for (uint32_t face = 0; face < GRID_FACES; face++)
+		for (uint32_t fan = 2; fan < (face == odd ? odd_corners : 3); fan++, at++) {
+			const struct ply_triangle *triangle = &grid->triangle[at];
+
+			CHECK(triangle->face == face && triangle->texture == face % 7);
+			CHECK(corners_are(triangle, grid_corner(face, 0),
+					  grid_corner(face, fan - 1), grid_corner(face, fan)));
+			CHECK(triangle->uv[0][1] == (float)(face + 1) &&
+			      triangle->uv[2][1] == (float)(face + 2 * fan + 1));
+		}
+}
+
+/* A face that is no triangle ends what is read in parallel. */
+static void any_number_of_threads_delivers_the_same(void **state)
+{
+	static const struct {
+		uint32_t face;
+		uint8_t corners;
+	} odds[] = { { 0, 3 }, { 0, 5 }, { 70000, 5 }, { 70000, 2 }, { GRID_FACES - 1, 4 } };
+	struct grid *grid = calloc(1, sizeof(*grid));
+	(void)state;
+
+	CHECK(grid);
+	grid->bytes = malloc(1000 + GRID_VERTICES * 17 + GRID_FACES * 40 + 1000);
+	CHECK(grid->bytes);
+	for (size_t i = 0; i < sizeof(odds) / sizeof(odds[0]); i++)
+		for (uint32_t jobs = 0; jobs <= 3; jobs += 3) {
+			write_grid(grid, i % 2, odds[i].face, odds[i].corners);
+			CHECK(read_grid(grid, jobs) == 0);
+			check_grid(grid, odds[i].face, odds[i].corners);
+		}
+	free(grid->bytes);
+	free(grid);
+}
+
+static void a_fault_is_told_alike_by_any_number_of_threads(void **state)
+{
+	struct grid *grid = calloc(1, sizeof(*grid));
+	char told[DIAGNOSTIC_BYTES];
+	(void)state;
+
+	CHECK(grid);
+	grid->bytes = malloc(1000 + GRID_VERTICES * 17 + GRID_FACES * 40 + 1000);
+	CHECK(grid->bytes);
+	write_grid(grid, false, 0, 3);
+	memset(grid->bytes + grid->size - 40 * 20000 + 1, 0xff, 4); /* the first corner of a face */
+	CHECK(read_grid(grid, 0) == -EBADMSG &&
+	      strstr(grid->diagnostics.first.text, "face 130000 (at byte "));
+	snprintf(told, sizeof(told), "%s", grid->diagnostics.first.text);
+	CHECK(read_grid(grid, 3) == -EBADMSG && strcmp(told, grid->diagnostics.first.text) == 0);
+	free(grid->bytes);
+	free(grid);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -348,6 +506,8 @@ int main(void)
 		cmocka_unit_test(refuses_what_cannot_be_right),
 		cmocka_unit_test(says_why_a_scan_has_no_surface),
 		cmocka_unit_test(refills_its_buffer_without_losing_its_place),
+		cmocka_unit_test(any_number_of_threads_delivers_the_same),
+		cmocka_unit_test(a_fault_is_told_alike_by_any_number_of_threads),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
