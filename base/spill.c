@@ -194,6 +194,29 @@ void *spill_map(int fd, uint64_t offset, size_t bytes)
 	return add(entry);
 }
 
+/* Whether the part lies in an array that is a file of its own. */
+static bool is_in_file(const uint8_t *part)
+{
+	bool found = false;
+
+	pthread_mutex_lock(&lock);
+	for (uint32_t i = 0; i < large_count && !found; i++)
+		found = large[i].fd >= 0 && part >= large[i].base &&
+			part < large[i].base + large[i].bytes;
+	pthread_mutex_unlock(&lock);
+	return found;
+}
+
+void spill_discard(void *part, size_t bytes)
+{
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+	const size_t lead = (page - (uintptr_t)part % page) % page;
+
+	/* If the file system cannot do it, the space is freed with the array. */
+	if (bytes >= lead + page && is_in_file(part))
+		madvise((uint8_t *)part + lead, (bytes - lead) / page * page, MADV_REMOVE);
+}
+
 void spill_free(void *array)
 {
 	struct large entry;

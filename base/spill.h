@@ -37,6 +37,9 @@ must_check int spill_resize(void *array, size_t old_count, size_t count, size_t 
 /* Maps part of a file for reading; a small part is copied. The file must not change while it is
  * mapped. The descriptor may be closed. NULL: errno. Writing to it is a fault of ours. */
 must_check void *spill_map(int fd, uint64_t offset, size_t bytes);
+/* Gives back the memory and the space on the disk of a part of an array whose contents are no
+ * longer needed; they become undefined. Does nothing for small arrays. */
+void spill_discard(void *part, size_t bytes);
 /* Frees an array of this module or of malloc. NULL is fine. */
 void spill_free(void *array);
 

@@ -102,7 +102,7 @@ static int read_all(char **paths, int count, const struct settings *settings)
 		if (read_one(&all, paths[i], settings) < 0)
 			status = EXIT_FAILURE;
 	if (settings->out && status == EXIT_SUCCESS) {
-		int rc = mesh_file_save(&all, no_key, settings->out);
+		int rc = mesh_file_move(&all, no_key, settings->out);
 
 		if (rc < 0) {
 			fprintf(stderr, "%s: %s\n", settings->out, strerror(-rc));

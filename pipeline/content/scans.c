@@ -324,7 +324,7 @@ static int import_and_save(struct scans *scans, const char *path, struct diagnos
 	int rc = reports ? import_all(&scans->mesh, scans->content, reports, diagnostics) : -ENOMEM;
 
 	if (rc == 0) {
-		rc = mesh_file_save(&scans->mesh, scans->key, path);
+		rc = mesh_file_move(&scans->mesh, scans->key, path);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
 					strerror(-rc));

@@ -2,6 +2,7 @@
  * anything. */
 #include "pipeline/import/mesh_file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -89,8 +90,8 @@ static void hashes_end(struct hashes *hashes, uint8_t digest[HASH_BYTES])
 
 /* Bytes that follow one another in the file. */
 struct span {
-	const uint8_t *data; /* NULL: zeros */
-	uint64_t at;         /* from the start of the mesh */
+	uint8_t *data; /* NULL: zeros */
+	uint64_t at;   /* from the start of the mesh */
 	uint64_t bytes;
 };
 
@@ -100,10 +101,11 @@ struct writing {
 	struct span *spans;
 	uint32_t span_count;
 	uint64_t bytes;
+	bool discards; /* what is written is no longer needed in memory */
 	struct hashes hashes;
 };
 
-static void add_span(struct writing *writing, const void *data, uint64_t bytes)
+static void add_span(struct writing *writing, void *data, uint64_t bytes)
 {
 	if (bytes > 0)
 		writing->spans[writing->span_count++] =
@@ -111,7 +113,7 @@ static void add_span(struct writing *writing, const void *data, uint64_t bytes)
 	writing->bytes += bytes;
 }
 
-static void add_array(struct writing *writing, const void *data, size_t bytes)
+static void add_array(struct writing *writing, void *data, size_t bytes)
 {
 	add_span(writing, data, bytes);
 	add_span(writing, NULL, padded(bytes) - bytes);
@@ -166,22 +168,30 @@ static int write_chunk(void *user, uint32_t chunk, uint32_t worker)
 		const struct span *span = &writing->spans[i];
 		const uint64_t span_end = span->at + span->bytes;
 		const size_t size = (size_t)((span_end < end ? span_end : end) - at);
-		const uint8_t *data = span->data ? span->data + (at - span->at) : zeros;
+		uint8_t *from = span->data ? span->data + (at - span->at) : NULL;
+		const uint8_t *data = from ? from : zeros;
 
 		crypto_generichash_update(&hash, data, size);
 		rc = write_at(writing->fd, data, size, writing->from + (off_t)at);
+		if (from && writing->discards)
+			spill_discard(from, size);
 		at += size;
 	}
 	crypto_generichash_final(&hash, writing->hashes.chunks[chunk], HASH_BYTES);
 	return rc;
 }
 
+static uint32_t flags_of(const struct mesh *mesh)
+{
+	return (mesh->colours ? HAS_COLOURS : 0u) | (mesh->uvs ? HAS_UVS : 0u) |
+	       (mesh->materials ? HAS_MATERIALS : 0u) | (mesh->faces ? HAS_FACES : 0u);
+}
+
 /* Everything before the arrays. */
-static void encode_head(struct buffer *head, const struct mesh *mesh, struct hash key,
-			uint32_t flags)
+static void encode_head(struct buffer *head, const struct mesh *mesh, struct hash key)
 {
 	const uint32_t numbers[] = { mesh->vertex_count, mesh->triangle_count, mesh->texture_count,
-				     flags, mesh->scan_count };
+				     flags_of(mesh), mesh->scan_count };
 	const uint32_t probe = BYTE_ORDER_PROBE;
 
 	buffer_put(head, magic, sizeof(magic));
@@ -195,6 +205,12 @@ static void encode_head(struct buffer *head, const struct mesh *mesh, struct has
 	for (uint32_t i = 0; i < mesh->texture_count; i++)
 		buffer_put(head, (uint32_t[]){ mesh->textures[i].width, mesh->textures[i].height },
 			   8);
+}
+
+static uint64_t head_bytes(const struct mesh *mesh)
+{
+	return sizeof(magic) + sizeof(uint32_t) + HASH_BYTES + COUNTS * sizeof(uint32_t) +
+	       8 * ((uint64_t)mesh->scan_count + mesh->texture_count);
 }
 
 /* The offset is moved behind the mesh. Where the kernel does not tell how many cores there are, as
@@ -217,12 +233,9 @@ static int write_spans(struct writing *writing)
 	return rc;
 }
 
-int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
+static int write_mesh(int fd, const struct mesh *mesh, struct hash key, bool discards)
 {
-	const uint32_t flags = (mesh->colours ? HAS_COLOURS : 0u) | (mesh->uvs ? HAS_UVS : 0u) |
-			       (mesh->materials ? HAS_MATERIALS : 0u) |
-			       (mesh->faces ? HAS_FACES : 0u);
-	struct writing writing = { .fd = fd, .from = lseek(fd, 0, SEEK_CUR) };
+	struct writing writing = { .fd = fd, .from = lseek(fd, 0, SEEK_CUR), .discards = discards };
 	struct section sections[SECTIONS];
 	struct mesh shape = *mesh;
 	struct buffer head;
@@ -233,11 +246,12 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 	writing.spans =
 		malloc((1 + 2 * (SECTIONS + (size_t)mesh->texture_count)) * sizeof(*writing.spans));
 	buffer_init(&head, HEAD_BYTES_MAX);
-	encode_head(&head, mesh, key, flags);
+	encode_head(&head, mesh, key);
 	rc = head.error ? head.error : writing.spans ? 0 : -ENOMEM;
 	if (rc == 0) {
+		assert(head.size == head_bytes(mesh));
 		add_span(&writing, head.data, head.size);
-		lay_out(&shape, flags, sections);
+		lay_out(&shape, flags_of(mesh), sections);
 		for (int i = 0; i < SECTIONS; i++)
 			add_array(&writing, *sections[i].data, sections[i].bytes);
 		for (uint32_t i = 0; i < mesh->texture_count; i++)
@@ -250,6 +264,32 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 	return rc;
 }
 
+int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
+{
+	return write_mesh(fd, mesh, key, false);
+}
+
+/* Replaces the large arrays by their places in the file, which starts with the mesh. */
+static int map_written(int fd, struct mesh *mesh)
+{
+	struct section sections[SECTIONS];
+	uint64_t offset = head_bytes(mesh);
+
+	lay_out(mesh, flags_of(mesh), sections);
+	for (int i = 0; i < SECTIONS; i++) {
+		if (sections[i].bytes >= SPILL_MIN_BYTES) {
+			void *mapped = spill_map(fd, offset, sections[i].bytes);
+
+			if (!mapped)
+				return -errno;
+			spill_free(*sections[i].data);
+			*sections[i].data = mapped;
+		}
+		offset += padded(sections[i].bytes);
+	}
+	return 0;
+}
+
 int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 {
 	char temporary[BYTES_PATH_MAX];
@@ -257,7 +297,20 @@ int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)
 
 	if (fd < 0)
 		return fd;
-	return bytes_end_file(fd, temporary, path, mesh_file_write(fd, mesh, key));
+	return bytes_end_file(fd, temporary, path, write_mesh(fd, mesh, key, false));
+}
+
+int mesh_file_move(struct mesh *mesh, struct hash key, const char *path)
+{
+	char temporary[BYTES_PATH_MAX];
+	int fd = bytes_begin_file(temporary, path), rc;
+
+	if (fd < 0)
+		return fd;
+	rc = write_mesh(fd, mesh, key, true);
+	if (rc == 0)
+		rc = map_written(fd, mesh);
+	return bytes_end_file(fd, temporary, path, rc);
 }
 
 /* ---- reading: allocates only what the file is long enough for */

@@ -22,6 +22,10 @@
  * errno. */
 must_check int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path);
 
+/* The same, and large arrays of the mesh become the file, mapped, as after loading: that halves the
+ * memory and the space on the disk. On failure the mesh is only to be finished. */
+must_check int mesh_file_move(struct mesh *mesh, struct hash key, const char *path);
+
 /* *out is owned by the caller; it is zeroed on failure. -ENOENT: there is no file. -ESTALE: it has
  * another key. -EBADMSG: it is damaged. In these cases make the mesh again and save it. */
 must_check int mesh_file_load(struct mesh *out, struct hash key, const char *path);

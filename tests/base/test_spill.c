@@ -83,6 +83,40 @@ static void takes_over_memory_of_malloc(void **state)
 	spill_free(NULL);
 }
 
+static uint64_t resident_kib(void)
+{
+	unsigned long long kib = 0;
+	char line[256];
+	FILE *file = fopen("/proc/self/status", "r");
+
+	while (fgets(line, sizeof(line), file))
+		if (sscanf(line, "VmRSS: %llu", &kib) == 1)
+			break;
+	fclose(file);
+	return kib;
+}
+
+static void what_is_discarded_takes_nothing_with_it(void **state)
+{
+	const size_t count = 32u << 20, first = 1001, end = count - 77;
+	uint64_t *array = spill_alloc(count * sizeof(*array)), small[10];
+	uint64_t before_kib;
+
+	(void)state;
+	fill(array, 0, count);
+	fill(small, 0, 10);
+	before_kib = resident_kib();
+	spill_discard(array + first, (end - first) * sizeof(*array));
+	spill_discard(small + 1, 8 * sizeof(*small));
+	spill_discard(array + 3, 8);
+	check(array, first);
+	for (size_t i = end; i < count; i++)
+		assert_true(array[i] == value_at(i));
+	check(small, 10);
+	assert_true(before_kib - resident_kib() > (count * sizeof(*array) >> 10) / 2);
+	spill_free(array);
+}
+
 static void maps_any_part_of_a_file(void **state)
 {
 	const size_t count = 8u << 20;
@@ -114,19 +148,6 @@ static void maps_any_part_of_a_file(void **state)
 	assert_null(spill_map(fd, count * sizeof(*part), 80));
 	assert_int_equal(errno, EBADMSG);
 	close(fd);
-}
-
-static uint64_t resident_kib(void)
-{
-	unsigned long long kib = 0;
-	char line[256];
-	FILE *file = fopen("/proc/self/status", "r");
-
-	while (fgets(line, sizeof(line), file))
-		if (sscanf(line, "VmRSS: %llu", &kib) == 1)
-			break;
-	fclose(file);
-	return kib;
 }
 
 static void what_is_resident_stays_bounded(void **state)
@@ -168,6 +189,7 @@ int main(void)
 		cmocka_unit_test(new_memory_is_zeroed_whatever_its_size),
 		cmocka_unit_test(keeps_its_contents_as_it_grows_from_heap_to_file_and_back),
 		cmocka_unit_test(takes_over_memory_of_malloc),
+		cmocka_unit_test(what_is_discarded_takes_nothing_with_it),
 		cmocka_unit_test(maps_any_part_of_a_file),
 		cmocka_unit_test(what_is_resident_stays_bounded),
 		cmocka_unit_test(says_what_lacks),

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/spill.h"
 #include "pipeline/import/mesh_colour.h"
 #include "pipeline/import/mesh_file.h"
 #include "tests/check.h"
@@ -180,6 +181,69 @@ static void a_saved_mesh_loads_equal_under_its_key_only(void **state)
 	}
 }
 
+static struct mesh make_large_mesh(void)
+{
+	enum { COUNT = 3000000 }; /* positions and triangles are larger than SPILL_MIN_BYTES */
+	struct mesh mesh = { .vertex_count = COUNT,
+			     .triangle_count = COUNT,
+			     .positions = spill_alloc(COUNT * sizeof(*mesh.positions)),
+			     .triangles = spill_alloc(COUNT * sizeof(*mesh.triangles)),
+			     .scan_count = 1,
+			     .scans = { { COUNT, 0 } } };
+
+	CHECK(mesh.positions && mesh.triangles);
+	for (uint32_t i = 0; i < COUNT; i++)
+		for (uint32_t k = 0; k < 3; k++) {
+			mesh.positions[i][k] = (float)i + 0.25f * (float)k;
+			mesh.triangles[i][k] = (i * 7 + k) % COUNT;
+		}
+	return mesh;
+}
+
+static void check_large_mesh(const struct mesh *mesh)
+{
+	struct mesh right = make_large_mesh();
+
+	CHECK(mesh->vertex_count == right.vertex_count &&
+	      mesh->triangle_count == right.triangle_count);
+	CHECK(memcmp(mesh->positions, right.positions,
+		     right.vertex_count * sizeof(*right.positions)) == 0);
+	CHECK(memcmp(mesh->triangles, right.triangles,
+		     right.triangle_count * sizeof(*right.triangles)) == 0);
+	mesh_finish(&right);
+}
+
+/* Its chunks are hashed by several threads. */
+static void a_moved_mesh_is_its_file(void **state)
+{
+	static const off_t places[] = { 100, (1 << 20) - 1, 1 << 20, 40 << 20, 60 << 20 };
+	struct mesh mesh = make_large_mesh(), loaded;
+	char path[256];
+	int fd;
+	(void)state;
+
+	scan_write(path, "mesh", "", 0);
+	CHECK(mesh_file_move(&mesh, key, path) == 0);
+	check_large_mesh(&mesh);
+	mesh_finish(&mesh);
+	CHECK(mesh_file_load(&loaded, key, path) == 0);
+	check_large_mesh(&loaded);
+	mesh_finish(&loaded);
+	fd = open(path, O_RDWR | O_CLOEXEC);
+	for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+		uint8_t byte;
+
+		CHECK(pread(fd, &byte, 1, places[i]) == 1);
+		byte ^= 1;
+		CHECK(pwrite(fd, &byte, 1, places[i]) == 1);
+		CHECK(mesh_file_load(&loaded, key, path) == -EBADMSG && !loaded.positions);
+		byte ^= 1;
+		CHECK(pwrite(fd, &byte, 1, places[i]) == 1);
+	}
+	close(fd);
+	scan_remove(path);
+}
+
 static int read_back(const uint8_t *bytes, size_t size)
 {
 	int fd = memfd_create("mesh", MFD_CLOEXEC);
@@ -227,6 +291,7 @@ int main(void)
 		cmocka_unit_test(no_vertex_takes_the_colour_between_charts),
 		cmocka_unit_test(appending_shifts_indices_and_fills_what_is_missing),
 		cmocka_unit_test(a_saved_mesh_loads_equal_under_its_key_only),
+		cmocka_unit_test(a_moved_mesh_is_its_file),
 		cmocka_unit_test(every_truncation_and_every_flipped_byte_is_noticed),
 	};
 
