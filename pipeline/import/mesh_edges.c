@@ -43,19 +43,28 @@ static int compare_u64(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
-/* Returns the lower end of edge k of the face. *item is other end << 33 | (runs from lower to
- * other) << 32 | face. */
-static uint32_t edge_of(const struct mesh_edges *edges, uint32_t face, int k, uint64_t *item)
+/* An edge of a face: its lower end, and other end << 33 | (runs from lower to other) << 32 | face.
+ */
+struct item {
+	uint32_t low;
+	uint64_t value;
+};
+
+/* Inline, as is pass: both are the inner loop. */
+static force_inline void edges_of(const struct mesh_edges *edges, uint32_t face,
+				  struct item items[3])
 {
 	const uint32_t *triangle = edges->mesh->triangles[face];
-	uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+	uint32_t ends[3];
 
-	if (edges->place) {
-		a = edges->place[a];
-		b = edges->place[b];
+	for (int k = 0; k < 3; k++)
+		ends[k] = edges->place ? edges->place[triangle[k]] : triangle[k];
+	for (int k = 0; k < 3; k++) {
+		uint32_t a = ends[k], b = ends[(k + 1) % 3];
+
+		items[k].low = a < b ? a : b;
+		items[k].value = (uint64_t)(a < b ? b : a) << 33 | (uint64_t)(a < b) << 32 | face;
 	}
-	*item = (uint64_t)(a < b ? b : a) << 33 | (uint64_t)(a < b) << 32 | face;
-	return a < b ? a : b;
 }
 
 static uint32_t block_count(const struct mesh *mesh)
@@ -72,17 +81,18 @@ static int survey(void *user, uint32_t first, uint32_t after, uint32_t worker)
 {
 	struct mesh_edges *edges = user;
 	uint32_t *bound = NULL, bin = 0, count = 0;
-	uint64_t item;
+	struct item items[3];
 
 	(void)worker;
 	spill_breathe();
 	for (uint32_t i = first; i < after; i++) {
+		edges_of(edges, i, items);
 		if (i % EDGES_BLOCK == 0) {
 			bound = edges->bounds[i / EDGES_BLOCK];
 			bound[0] = UINT32_MAX;
 		}
 		for (int k = 0; k < 3; k++) {
-			uint32_t low = edge_of(edges, i, k, &item);
+			uint32_t low = items[k].low;
 
 			/* Neighbours are mostly of one bin, so threads seldom meet there. */
 			if (low / EDGES_BIN != bin) {
@@ -152,8 +162,8 @@ struct room {
 };
 
 /* Calls take for each edge of the range. */
-static void pass(const struct mesh_edges *edges, struct range *range,
-		 void (*take)(struct range *range, uint32_t low, uint64_t item))
+static force_inline void pass(const struct mesh_edges *edges, struct range *range,
+			      void (*take)(struct range *range, uint32_t low, uint64_t item))
 {
 	const uint32_t faces = edges->mesh->triangle_count;
 
@@ -163,14 +173,14 @@ static void pass(const struct mesh_edges *edges, struct range *range,
 
 		if (edges->bounds[block][0] >= range->end || edges->bounds[block][1] < range->low)
 			continue;
-		for (uint32_t i = first; i < after; i++)
-			for (int k = 0; k < 3; k++) {
-				uint64_t item;
-				uint32_t low = edge_of(edges, i, k, &item);
+		for (uint32_t i = first; i < after; i++) {
+			struct item items[3];
 
-				if (low >= range->low && low < range->end)
-					take(range, low - range->low, item);
-			}
+			edges_of(edges, i, items);
+			for (int k = 0; k < 3; k++)
+				if (items[k].low >= range->low && items[k].low < range->end)
+					take(range, items[k].low - range->low, items[k].value);
+		}
 		spill_pass(first);
 	}
 }

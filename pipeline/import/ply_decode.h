@@ -4,9 +4,10 @@
 
 #include <string.h>
 
+#include "base/compiler.h"
 #include "pipeline/import/ply_header.h"
 
-static inline uint64_t ply_word(const uint8_t *bytes, uint32_t size, bool big)
+static force_inline uint64_t ply_word(const uint8_t *bytes, uint32_t size, bool big)
 {
 	uint64_t word = 0;
 
@@ -16,7 +17,7 @@ static inline uint64_t ply_word(const uint8_t *bytes, uint32_t size, bool big)
 }
 
 /* type: not PLY_TYPE_NONE. Each case has a size of its own, so that it becomes one load. */
-static inline double ply_number(const uint8_t *bytes, enum ply_type type, bool big)
+static force_inline double ply_number(const uint8_t *bytes, enum ply_type type, bool big)
 {
 	double wide;
 	float narrow;
