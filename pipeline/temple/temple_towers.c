@@ -89,6 +89,8 @@ static const struct temple_profile colonnette = { ARRAY_COUNT(colonnette_points)
 static void plan_pediment(struct plan *plan, const struct temple_frame *foot, float width_m,
 			  float height_m)
 {
+	const uint32_t first = plan->count;
+
 	for (int side = 0; side < 2; side++) {
 		struct temple_frame face =
 			frame_within(foot, 0, side ? 0.12f : -0.12f, 0, side ? 2 : 0);
@@ -98,6 +100,7 @@ static void plan_pediment(struct plan *plan, const struct temple_frame *foot, fl
 		sheet->rim_m = 0.13f;
 		sheet->interest = side ? 0.8f : 3.0f;
 	}
+	plan_body(plan, "pediment", first);
 }
 
 /* The frame of a doorway: colonettes, lintel and pediment; z = 0 at the sill. */
@@ -120,6 +123,7 @@ static void plan_doorway(struct plan *plan, const struct temple_frame *sill, flo
 						 0.05f, opening);
 		sheet->interest = 2;
 		sheet->optional = true;
+		plan_body(plan, "column", plan->count - 1);
 		plan_panel(plan, &pilaster, half_m * 0.3f, height_m, RELIEF_SCROLL_UP, 0.05f, 0.34f)
 			->interest = 1.6f;
 	}
@@ -127,6 +131,7 @@ static void plan_doorway(struct plan *plan, const struct temple_frame *sill, flo
 		plan_panel(plan, &over, half_m * 1.5f, height_m - opening, RELIEF_LINTEL, 0.16f, 0);
 	lintel->interest = 3;
 	lintel->rim_m = 0.2f;
+	plan_body(plan, "lintel", plan->count - 1);
 	plan_pediment(plan, &gable, half_m * 2.7f, half_m * 1.75f);
 }
 
@@ -190,6 +195,7 @@ static void plan_antefix(struct plan *plan, const struct temple_frame *frame, fl
 	leaf->rim_m = fminf(0.12f, 0.2f * width_m);
 	leaf->lean = -0.18f;
 	leaf->interest = 3.9f;
+	plan_body(plan, "antefix", plan->count - 1);
 }
 
 /* Antefixes on a cornice: one on each axis and one across each corner; where there is room, two
@@ -244,6 +250,7 @@ static void plan_bud(struct plan *plan, const struct temple_frame *frame, float 
 	struct sheet *lotus = plan_sheet(plan, &top, &outline_circle, &crown, 0.01f, half_m * 0.46f,
 					 rise_m * 0.24f);
 	lotus->interest = 1.6f;
+	plan_body(plan, "lotus", plan->count - 1);
 }
 
 /* Devatas in the bays of the body, beside the porches. */
@@ -296,6 +303,7 @@ void plan_face_tower(struct plan *plan, const struct temple_frame *frame, float 
 						 head_m * 0.42f, 0);
 		sheet->interest = 3.4f;
 		sheet->rim_m = 0.2f;
+		plan_body(plan, "face", plan->count - 1);
 	}
 	plan_bud(plan, &bud, half_m * 0.8f, 3.6f, 3);
 }
