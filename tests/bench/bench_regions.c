@@ -24,7 +24,7 @@
 #include "pipeline/import/import.h"
 #include "pipeline/samples/chunks.h"
 
-enum { WIDTH = 1280, HEIGHT = 720, PIXELS = WIDTH * HEIGHT, POINTS_MAX = 20000 };
+enum { WIDTH = 1280, HEIGHT = 720, PIXELS = WIDTH * HEIGHT, SEEDS = 5, POINTS_MAX = 20000 };
 enum tool { TOOL_LASSO, TOOL_MARKUP, TOOL_HEAVY, TOOLS };
 static const char *const tool_names[TOOLS] = { "lasso", "mark-up", "heavy lasso" };
 
@@ -33,9 +33,6 @@ static const char *const tool_names[TOOLS] = { "lasso", "mark-up", "heavy lasso"
  * after a moment. */
 static const float steer_s = 0.1f, begin_s = 0.8f, fastest_px_s = 1000;
 static const float lasso_width_px = 6, heavy_width_px = 28, markup_width_px = 14;
-
-static uint32_t seeds = 5;
-static int only = TOOLS;
 
 struct path {
 	float (*points)[2];
@@ -660,10 +657,10 @@ static void do_part(struct world *world, const char *regions, const char *name, 
 	printf("%s\n  {\"part\": \"%s\", \"faces\": %u, \"shown\": %u, \"superpixels\": %u, \"superpixels_ms\": %.1f, \"tools\": [",
 	       first ? "" : ",", name, count, view.part_faces, view.superpixels.count,
 	       view.superpixels_ms);
-	for (int tool = only < TOOLS ? only : 0; tool < TOOLS; tool++) {
-		printf("%s\n    {\"tool\": \"%s\", \"runs\": [",
-		       tool > 0 && only == TOOLS ? "," : "", tool_names[tool]);
-		for (uint32_t seed = 0; seed < seeds; seed++) {
+	for (int tool = 0; tool < TOOLS; tool++) {
+		printf("%s\n    {\"tool\": \"%s\", \"runs\": [", tool > 0 ? "," : "",
+		       tool_names[tool]);
+		for (uint32_t seed = 0; seed < SEEDS; seed++) {
 			struct outcome outcome;
 			char picture[256];
 
@@ -694,10 +691,6 @@ int main(int argc, char **argv)
 	bool first = true;
 	char name[64];
 
-	if (getenv("TOOL"))
-		only = (int)strtol(getenv("TOOL"), NULL, 10);
-	if (getenv("SEEDS"))
-		seeds = (uint32_t)strtoul(getenv("SEEDS"), NULL, 10);
 	if (argc != 4) {
 		fprintf(stderr, "usage: bench_regions TEMPLE.ply REGIONS PICTURES < parts\n");
 		return 2;
