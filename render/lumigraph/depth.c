@@ -16,7 +16,8 @@ static const char draw_vertex[] =
 	"uniform float u_far;\n"
 	"uniform vec4 u_window;\n"
 	"uniform vec2 u_base;\n" /* reference depth in units; metres per unit */
-	"varying float v_depth;\n"
+	"uniform float u_high;\n"
+	"varying vec2 v_depth;\n" /* y: higher byte of the base, the same at all vertices */
 	"void main() {\n"
 	"	vec3 q = u_axes * (u_lattice.xyz + u_lattice.w * (a_base + a_position));\n"
 	/* Sampling points are as far apart, and as far from the model, as its size allows. */
@@ -25,17 +26,16 @@ static const char draw_vertex[] =
 	"	vec2 at = (q.xy - u_window.xy * q.z) / u_window.zw;\n"
 	"	gl_Position = vec4(at.x, -at.y, ((u_far + n) * q.z - 2.0 * u_far * n) / (u_far - n),\n"
 	"			   q.z);\n"
-	"	v_depth = q.z / u_base.y - u_base.x;\n"
+	"	v_depth = vec2(q.z / u_base.y - u_base.x, u_high);\n"
 	"}\n";
 
 /* Writes two bytes. A unit (32 steps) is an eighth of the higher byte. */
 static const char draw_fragment[] =
-	"uniform float u_high;\n"
-	"varying float v_depth;\n"
+	"varying vec2 v_depth;\n"
 	"void main() {\n"
-	"	float high = floor(v_depth / 8.0);\n"
-	"	float low = floor((v_depth - 8.0 * high) * 32.0);\n"
-	"	gl_FragColor = vec4(clamp(u_high + high, 0.0, 255.0), low, 0.0, 255.0) / 255.0;\n"
+	"	float high = floor(v_depth.x / 8.0);\n"
+	"	float low = floor((v_depth.x - 8.0 * high) * 32.0);\n"
+	"	gl_FragColor = vec4(clamp(floor(v_depth.y + 0.5) + high, 0.0, 255.0), low, 0.0, 255.0) / 255.0;\n"
 	"}\n";
 
 /* The two bytes stay separate, because mediump cannot hold 16 bits; 11 bits suffice to compare
@@ -229,8 +229,8 @@ static void find_window(float window[4], const struct cube_axes *axes, const flo
 
 /* ---- faces */
 
-void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
-		 const struct root_page *root)
+void depth_resume(struct depth *depth, face_key face, const float sample_m[3],
+		  const struct root_page *root)
 {
 	const struct lattice *lattice = &root->lattice;
 	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
@@ -240,15 +240,12 @@ void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
 		columns[3 * i + 1] = axes->up[i];
 		columns[3 * i + 2] = axes->forward[i];
 	}
-	find_window(depth->begun, axes, sample_m, root, depth->layout.face_px);
 	gl_target_bind(&depth->raw);
 	glDisable(GL_BLEND);
 	glDisable(GL_CULL_FACE);
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	glClearColor(0, 0, 0, 0);
-	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 	glUseProgram(depth->draw_program);
 	glUniform4f(depth->lattice, (float)(lattice->origin_m[0] - sample_m[0]),
 		    (float)(lattice->origin_m[1] - sample_m[1]),
@@ -258,6 +255,16 @@ void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
 	glUniform4fv(depth->window, 1, depth->begun);
 	memcpy(depth->forward, axes->forward, sizeof(depth->forward));
 	depth->point_m = vec_dot(axes->forward, sample_m);
+}
+
+void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
+		 const struct root_page *root)
+{
+	find_window(depth->begun, &cube_axes[face % CUBE_FACES], sample_m, root,
+		    depth->layout.face_px);
+	depth_resume(depth, face, sample_m, root);
+	glClearColor(0, 0, 0, 0);
+	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 void depth_patch(const struct depth *depth, const float centre_m[3])

@@ -56,6 +56,9 @@ float depth_slack_m(const struct depth *depth);
  * bounding box is visible; from outside the model this makes texels several times smaller. */
 void depth_begin(struct depth *depth, face_key face, const float sample_m[3],
 		 const struct root_page *root);
+/* Goes on with the face that was begun with these, after others have drawn. */
+void depth_resume(struct depth *depth, face_key face, const float sample_m[3],
+		  const struct root_page *root);
 /* Prepares one patch: fragments compute depths relative to its centre, so that mediump resolves all
  * steps. */
 void depth_patch(const struct depth *depth, const float centre_m[3]);

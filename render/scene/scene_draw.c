@@ -39,37 +39,68 @@ static bool face_sees(const struct cube_axes *axes, const float sample[3], const
 	       fabsf(vec_dot(to, axes->up)) < depth + reach;
 }
 
-static void draw_depth_face(struct scene *scene, int slot, face_key face)
+/* Draws the patches of the face that was begun, in the order of the list, up to `to`. */
+static void draw_depth_patches(struct scene *scene, uint32_t to)
 {
-	const struct cut_options options = { .error_px = depth_error_px,
-					     .triangle_budget = scene->options.triangle_budget };
-	const struct cube_axes *axes = &cube_axes[face % CUBE_FACES];
-	float sample[3];
-	repository_point_m(&scene->repository, face / CUBE_FACES, sample);
-	cut_update_around(&scene->around, sample, (float)scene->depth.layout.face_px / 2,
-			  scene->geometry.loaded, &options);
-	depth_begin(&scene->depth, face, sample, &scene->root);
+	struct depth_task *task = &scene->depth_task;
+	const struct cube_axes *axes = &cube_axes[task->face % CUBE_FACES];
 	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
-	for (uint32_t i = 0; i < scene->around.patch_count; i++) {
-		uint32_t p = scene->around.patches[i];
+	for (; task->drawn < to; task->drawn++) {
+		uint32_t p = scene->around.patches[task->drawn];
 		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
-		if (!face_sees(axes, sample, patch->centre_m, patch->radius_m))
+		if (!face_sees(axes, task->sample_m, patch->centre_m, patch->radius_m))
 			continue;
 		geometry_bind(&scene->geometry, p);
 		depth_patch(&scene->depth, patch->centre_m);
 		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
 	}
-	depth_end(&scene->depth, slot, face, scene->cut_signature);
+	if (to == scene->around.patch_count) {
+		depth_end(&scene->depth, task->slot, task->face, scene->cut_signature);
+		task->is_begun = false;
+	}
+}
+
+/* Draws the depths of a face, or where frames take too long the first half of them. */
+static void draw_depth_face(struct scene *scene, int slot, face_key face, bool halved)
+{
+	const struct cut_options options = { .error_px = depth_error_px,
+					     .triangle_budget = scene->options.triangle_budget };
+	struct depth_task *task = &scene->depth_task;
+	/* What had to be begun again is drawn at once, or it might never end. */
+	halved = halved && !task->is_begun;
+	*task = (struct depth_task){
+		.is_begun = true, .slot = slot, .face = face, .cut = scene->cut_signature
+	};
+	repository_point_m(&scene->repository, face / CUBE_FACES, task->sample_m);
+	cut_update_around(&scene->around, task->sample_m, (float)scene->depth.layout.face_px / 2,
+			  scene->geometry.loaded, &options);
+	depth_begin(&scene->depth, face, task->sample_m, &scene->root);
+	draw_depth_patches(scene, scene->around.patch_count / (halved ? 2 : 1));
+}
+
+/* Draws the other half of a face, if it is still wanted and no patch has come or gone. */
+static bool complete_depth_face(struct scene *scene)
+{
+	struct depth_task *task = &scene->depth_task;
+	const struct tiles_face *face = &scene->tiles.faces[task->slot];
+	if (!task->is_begun || task->cut != scene->cut_signature || !face->used ||
+	    face->key != task->face)
+		return false;
+	depth_resume(&scene->depth, task->face, task->sample_m, &scene->root);
+	draw_depth_patches(scene, scene->around.patch_count);
+	return true;
 }
 
 /* Draws faces without depths first, within the time; then one whose depths are from an older state
  * of the mesh. */
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
 {
+	const bool halved = scene->used.scale < 1;
 	int outdated = -1;
 	scene->depth_is_stale = false;
+	out->depth_faces_drawn += complete_depth_face(scene);
 	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
 		const struct tiles_face *face = &scene->tiles.faces[i];
 		if (!face->used || face->stamp != scene->tiles.stamp)
@@ -79,19 +110,20 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 				outdated = i;
 			continue;
 		}
-		if (out->depth_faces_drawn > 0 && clock_now_us() >= until_us) {
+		if (out->depth_faces_drawn > 0 && (halved || clock_now_us() >= until_us)) {
 			scene->depth_is_stale = true;
 			return;
 		}
-		draw_depth_face(scene, i, face->key);
+		draw_depth_face(scene, i, face->key, halved);
 		out->depth_faces_drawn++;
+		scene->depth_is_stale = scene->depth_task.is_begun;
 	}
 	if (outdated < 0)
 		return;
 	scene->depth_is_stale = true;
 	if (out->depth_faces_drawn > 0)
 		return;
-	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key);
+	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key, halved);
 	out->depth_faces_drawn++;
 }
 

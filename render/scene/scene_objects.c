@@ -128,7 +128,7 @@ static void forget(struct scene *scene)
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
 	scene->counted_count = scene->want_count = 0;
-	scene->counting = false;
+	scene->counting = scene->depth_task.is_begun = false;
 }
 
 void scene_destroy(struct scene *scene)

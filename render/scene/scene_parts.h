@@ -49,11 +49,22 @@ struct visible_piece {
 	struct dissolve_range range;
 };
 
+/* A face whose depths are being drawn from the patches of scene.around. */
+struct depth_task {
+	bool is_begun; /* and not complete */
+	int slot;
+	face_key face;
+	float sample_m[3];
+	uint32_t drawn; /* of the patches, the first that are */
+	uint64_t cut;   /* cut_signature when it began */
+};
+
 struct scene {
 	struct scene_options options;
 	struct pool *pool;
 	struct tiles tiles;
 	struct depth depth;
+	struct depth_task depth_task;
 	struct surface surface;
 	struct mark mark;
 	struct part_renderer part;

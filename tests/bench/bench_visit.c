@@ -342,6 +342,8 @@ static void report_motion(const struct bench *bench, FILE *file)
 		judged++;
 		least = fmin(least, shot->psnr);
 	}
+	if (judged == 0)
+		return;
 	for (int i = 0; i < SECONDS_MAX; i++)
 		if (count[i] >= 1)
 			worst = fmin(worst, sum[i] / count[i]);
