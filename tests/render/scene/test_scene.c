@@ -572,8 +572,9 @@ static void the_far_corner_of_a_site_looks_like_the_near_one(void **state)
 						     1.0 / (wide ? 16380 : 4095), mode, wide);
 			print_message("images %d, wide %d: %.2f dB at the origin, %.2f far away\n",
 				      images, wide, quality, other);
-			/* Which images are blended depends on the order in which they came. */
-			CHECK(fabs(other - quality) < (images ? 1 : 0.01));
+			/* Which images are blended depends on the order in which they came, and
+			 * which back faces were noticed on when visibility passes were drawn. */
+			CHECK(fabs(other - quality) < (images ? 1 : 0.1));
 			for (int i = 0; i < SITE_PICTURES && !images; i++)
 				CHECK(pixels_changed(was + i * SITE_BYTES, is + i * SITE_BYTES,
 						     24) < 20);
