@@ -1,15 +1,21 @@
 /* Frees, measures and joins meshes, and reads texture pixels. */
 #include "pipeline/import/mesh.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "base/spill.h"
 
-enum { PUT_BYTES = 16 << 20 };
+enum {
+	PUT_BYTES = 16 << 20,
+	BOX_VERTICES = 1 << 18, /* measured by one thread at a time */
+};
 
 void mesh_finish(struct mesh *mesh)
 {
@@ -27,21 +33,50 @@ void mesh_finish(struct mesh *mesh)
 	*mesh = (struct mesh){ 0 };
 }
 
-void mesh_box(const struct mesh *mesh, float low[3], float high[3])
+struct box {
+	const struct mesh *mesh;
+	pthread_mutex_t lock; /* guards the fields below */
+	float *low, *high;
+};
+
+static int add_to_box(void *user, uint32_t first, uint32_t after, uint32_t worker)
 {
-	for (int k = 0; k < 3; k++) {
-		low[k] = mesh->vertex_count ? INFINITY : 0;
-		high[k] = mesh->vertex_count ? -INFINITY : 0;
-	}
-	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+	struct box *box = user;
+	float low[3] = { INFINITY, INFINITY, INFINITY };
+	float high[3] = { -INFINITY, -INFINITY, -INFINITY };
+
+	(void)worker;
+	spill_breathe();
+	for (uint32_t i = first; i < after; i++)
 		for (int k = 0; k < 3; k++) {
-			const float at = mesh->positions[i][k];
+			const float at = box->mesh->positions[i][k];
 
 			low[k] = at < low[k] ? at : low[k];
 			high[k] = at > high[k] ? at : high[k];
 		}
-		spill_pass(i);
+	pthread_mutex_lock(&box->lock);
+	for (int k = 0; k < 3; k++) {
+		box->low[k] = low[k] < box->low[k] ? low[k] : box->low[k];
+		box->high[k] = high[k] > box->high[k] ? high[k] : box->high[k];
 	}
+	pthread_mutex_unlock(&box->lock);
+	return 0;
+}
+
+void mesh_box(const struct mesh *mesh, float low[3], float high[3])
+{
+	struct box box = { .mesh = mesh, .low = low, .high = high };
+	int rc;
+
+	for (int k = 0; k < 3; k++) {
+		low[k] = mesh->vertex_count ? INFINITY : 0;
+		high[k] = mesh->vertex_count ? -INFINITY : 0;
+	}
+	pthread_mutex_init(&box.lock, NULL);
+	rc = parallel_ranges(parallel_cores(), mesh->vertex_count, BOX_VERTICES, add_to_box, &box);
+	assert(rc == 0); /* no range fails */
+	(void)rc;
+	pthread_mutex_destroy(&box.lock);
 }
 
 /* ---- appending */
