@@ -67,7 +67,7 @@ FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
 SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
-BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o
+BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o $(BUILD)/obj/tests/bench/hand.o
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
