@@ -20,6 +20,7 @@
 #include "pipeline/samples/sampling_forecast.h"
 #include "pipeline/samples/sampling_trial.h"
 
+enum { MESA_BYTES = 110 << 20 }; /* of a process that draws with it */
 enum { TRIAL_MESH = 100, PLACES_MAX = SCAN_LOOK_PLACES_MAX, JOBS_MAX = 64 };
 
 /* What this machine takes. */
@@ -242,14 +243,20 @@ static const double
 	/* of the scan's triangles, to the power of which that cost falls */
 	hierarchy_fall = 0.13,
 	/* bytes of a tile to those of the trial's */
-	bytes_plain = 2.33, bytes_pictures = 1.45, bytes_procedural = 5.5,
+	bytes_plain = 2.33, bytes_pictures = 2.0, bytes_procedural = 5.5,
+	/* processor time of a tile's bytes beyond those of the trial's, in costs of such a tile for
+	 * each 1000 of them */
+	more_thorough = 0.65, more_quick = 0.25,
+	/* of a tile whose face is drawn by Mesa, which a scan with pictures needs, to the trial's
+	 */
+	tile_pictures = 2.4,
 	/* processor time of a triangle that is drawn: those of the trial are far away, and most of
 	 * them smaller than a pixel */
 	triangle_real = 5, triangle_pictures = 3.5,
 	/* bytes of the objects of all groups, for each triangle of the scan */
-	master_bytes = 4.8,
+	master_bytes = 4.2,
 	/* of published patches, for each of their triangles */
-	published_bytes = 3.4,
+	published_bytes = 2.7,
 	/* processor time of publishing, for each byte */
 	publish_s_a_byte = 14e-9;
 
@@ -307,10 +314,21 @@ static double content_tile_bytes(const struct looking *looking)
 	return factor * looking->speeds.sampling.tile_bytes;
 }
 
+/* Tiles that show more than the trial's take the encoder longer. */
+static double content_tile_s(const struct looking *looking)
+{
+	const struct sampling_trial *trial = &looking->speeds.sampling;
+	double more = looking->content->effort == TILE_QUICK ? more_quick : more_thorough;
+	double bytes = fmax(0, content_tile_bytes(looking) - trial->tile_bytes);
+
+	return trial->tile_s * (1 + more * bytes / 1000) *
+	       (looking->out->work.has_pictures ? tile_pictures : 1);
+}
+
 /* What a process of the sampler keeps of the surface, beyond what the trial has. */
 static uint64_t surface_bytes(const struct estimate_work *work)
 {
-	enum { TRIAL_BYTES = 20 << 20, A_TRIANGLE = 165, MOST = 340 << 20 };
+	enum { TRIAL_BYTES = 20 << 20, A_TRIANGLE = 250, MOST = 90 << 20 };
 	uint64_t bytes = work->triangle_count * A_TRIANGLE;
 
 	bytes = bytes < MOST ? bytes : MOST;
@@ -346,13 +364,14 @@ static void judge_samples(struct looking *looking)
 		jobs * trial->start_s +
 		todo * ((double)work->face_count *
 				(trial->face_s + each * trial->triangle_s * triangles) +
-			(double)work->tile_count * trial->tile_s);
+			(double)work->tile_count * content_tile_s(looking));
 	stage->time_s = stage->processor_s / jobs;
 	if (work->seconds_a_point > 0) {
 		stage->time_s = work->seconds_a_point * (work->point_count - work->points_done);
 		stage->processor_s = stage->time_s * jobs;
 	}
-	stage->memory_bytes = (uint64_t)jobs * (trial->process_bytes + surface_bytes(work));
+	stage->memory_bytes = (uint64_t)jobs * (trial->process_bytes + surface_bytes(work) +
+						(work->has_pictures ? MESA_BYTES : 0));
 }
 
 static void judge_publishing(struct looking *looking)

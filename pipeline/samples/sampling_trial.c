@@ -161,12 +161,22 @@ struct job {
 	struct sampling_trial *out; /* shared with the process */
 };
 
+/* What a process keeps of a face: its samples and its pyramid. */
+static uint64_t face_bytes(uint32_t level_count, bool procedural)
+{
+	uint64_t side_px = (uint64_t)SAMPLE_IMAGE_PX << (level_count - 1);
+	uint64_t samples = level_count < SAMPLE_LEVELS_MAX ? 4 : 1;
+
+	return side_px * side_px * (samples * (procedural ? 8 : 12) + 5);
+}
+
 static int work(void *user, uint32_t piece)
 {
 	const struct job *job = user;
 	struct face_renderer_options options = { .quality = (int)job->content->quality,
 						 .effort = job->content->effort };
 	struct resource_usage usage;
+	uint32_t level_count = sampler_levels(job->content->face_px);
 	double extra = 1;
 	int rc;
 
@@ -174,7 +184,7 @@ static int work(void *user, uint32_t piece)
 	options.drawn.lit = job->lit;
 	options.drawn.procedural = job->content->colours == CONTENT_COLOURS_PROCEDURAL;
 	memcpy(options.drawn.sun, job->content->sun, sizeof(options.drawn.sun));
-	options.level_count = sampler_levels(job->content->face_px);
+	options.level_count = level_count;
 	for (; options.level_count > TRIAL_LEVELS_MAX; options.level_count--)
 		extra *= 4;
 	for (; options.level_count < TRIAL_LEVELS_MIN; options.level_count++)
@@ -183,6 +193,10 @@ static int work(void *user, uint32_t piece)
 	job->out->face_s *= extra;
 	resource_usage_now(&usage);
 	job->out->process_bytes = usage.own_bytes;
+	if (level_count > options.level_count)
+		job->out->process_bytes +=
+			face_bytes(level_count, options.drawn.procedural) -
+			face_bytes(options.level_count, options.drawn.procedural);
 	return rc;
 }
 
