@@ -18,7 +18,8 @@ static const char help[] =
 	"\n"
 	"usage: gopura-content import [OPTIONS] FILE...\n"
 	"\n"
-	"FILE is a scan, or an alignment of MeshLab (.aln, .mlp): the scans it names, each in its place.\n"
+	"FILE is a scan, an alignment of MeshLab (.aln, .mlp) or a IIIF manifest (.json): the scans it\n"
+	"names, each in its place.\n"
 	"\n"
 	"  --up AXIS       axis that points up in the files: z (default), y or x\n"
 	"  --unit UNIT     unit of the files: m (default), cm, mm, in, or its length in metres (0.0254)\n"
@@ -75,6 +76,12 @@ static int read_alignment(struct mesh *all, const char *path, const struct setti
 
 	if (rc < 0)
 		diagnostics_print(&diagnostics, stderr, "");
+	diagnostics_print(&alignment.left_out, stderr, "warning: ");
+	if (rc == 0 && alignment.y_is_up && settings->import.up != IMPORT_Y_UP) {
+		fprintf(stderr, "%s: in a manifest y is up: give --up y\n", path);
+		alignment_finish(&alignment);
+		return -EINVAL;
+	}
 	for (uint32_t i = 0; i < alignment.count; i++) {
 		const struct alignment_scan *scan = &alignment.scans[i];
 		int failed = read_scan(all, scan->path, &scan->transform, settings);

@@ -11,9 +11,11 @@
 
 #include "base/array.h"
 #include "base/log.h"
+#include "pipeline/content/annotations_iiif_import.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/annotations_write.h"
 #include "pipeline/content/draft.h"
+#include "pipeline/import/manifest.h"
 
 static const char *string_of(const cJSON *object, const char *key)
 {
@@ -60,6 +62,24 @@ static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
 
 /* ---- the id */
 
+static bool is_taken(const struct importer *im, const char *id)
+{
+	for (const cJSON *other = im->parts->child; other; other = other->next)
+		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
+			return true;
+	return false;
+}
+
+/* Appends -2, -3, ... until no other part has the id. */
+static void make_differ(const struct importer *im, char id[INFO_ID_BYTES_MAX + 1])
+{
+	const size_t size = strlen(id), room = INFO_ID_BYTES_MAX - 12;
+	char *end = id + (size < room ? size : room);
+
+	for (int n = 2; n < 10000 && is_taken(im, id); n++)
+		snprintf(end, 13, "-%d", n);
+}
+
 /* Makes the part's id from the end of the IRI, after the last '#', '/' or ':', using only
  * characters that an id may contain. */
 static void read_id(struct importer *im)
@@ -83,10 +103,10 @@ static void read_id(struct importer *im)
 			im->diagnostics, -EINVAL, im->options->file, im->line,
 			"annotation without an id that can name a part: give it an \"id\" such as "
 			"\"#gate\"");
-	for (const cJSON *other = im->parts->child; other; other = other->next)
-		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
-			diagnostics_add(
-				im->diagnostics, -EINVAL, im->options->file, im->line,
+	if (im->makes_ids && size > 0)
+		make_differ(im, id);
+	if (is_taken(im, id))
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
 				"annotation \"%.80s\": another one is part \"%s\" already: give it "
 				"another \"id\"",
 				iri, id);
@@ -275,8 +295,8 @@ static cJSON *point_of(const struct importer *im, const cJSON *selector)
 	if (!cJSON_IsNumber(x) || !cJSON_IsNumber(y) || !cJSON_IsNumber(z))
 		return NULL;
 	values[0] = x->valuedouble;
-	values[1] = im->options->y_is_up ? -z->valuedouble : y->valuedouble;
-	values[2] = im->options->y_is_up ? y->valuedouble : z->valuedouble;
+	values[1] = im->y_is_up ? -z->valuedouble : y->valuedouble;
+	values[2] = im->y_is_up ? y->valuedouble : z->valuedouble;
 	return cJSON_CreateDoubleArray(values, 3);
 }
 
@@ -420,6 +440,24 @@ static const cJSON *find_items(struct importer *im, const cJSON *json)
 	return NULL;
 }
 
+/* The texts of a page are borrowed from the annotations, which the importer owns therefore. */
+static int read_comments(struct importer *im, const struct json_text *json)
+{
+	struct annotations_comments comments;
+	int rc = annotations_iiif_convert(&comments, json, im->options, im->language);
+	const cJSON *item;
+	uint32_t i = 0;
+
+	im->comments = comments.items;
+	im->report->skipped_count += comments.skipped_count;
+	im->y_is_up = false;
+	im->makes_ids = true;
+	cJSON_ArrayForEach(item, comments.items) if (rc == 0 && !im->failed)
+		read_item(im, item, comments.lines[i++]);
+	free(comments.lines);
+	return rc;
+}
+
 static void read_items(struct importer *im, const struct json_text *json)
 {
 	const cJSON *items = find_items(im, json->root);
@@ -461,7 +499,9 @@ static int import(struct importer *im)
 		im->parts_file = cJSON_CreateObject();
 		add(im, im->parts_file, "parts", cJSON_CreateArray());
 		im->parts = cJSON_GetObjectItemCaseSensitive(im->parts_file, "parts");
-		if (im->parts)
+		if (im->parts && manifest_is(json.root))
+			rc = read_comments(im, &json);
+		else if (im->parts)
 			read_items(im, &json);
 		im->tours = cJSON_GetObjectItemCaseSensitive(json.root, "tours");
 		if (im->failed)
@@ -482,12 +522,14 @@ int annotations_import(struct annotations_imported *out,
 	struct importer im = { .options = options,
 			       .diagnostics = options->diagnostics,
 			       .report = out,
-			       .language = options->language ? options->language : "en" };
+			       .language = options->language ? options->language : "en",
+			       .y_is_up = options->y_is_up };
 	int rc;
 
 	*out = (struct annotations_imported){ 0 };
 	rc = import(&im);
 	cJSON_Delete(im.parts_file);
+	cJSON_Delete(im.comments);
 	free(im.pages);
 	for (uint32_t i = 0; i < im.written_count; i++)
 		free(im.written[i]);

@@ -1,5 +1,5 @@
-/* Converts W3C Web Annotations to the parts of a content folder. docs/annotations.md has the
- * format. Used by the publisher. */
+/* Converts W3C Web Annotations, and the comments of IIIF manifests, to the parts of a content
+ * folder. docs/annotations.md and docs/iiif.md have the formats. Used by the publisher. */
 #ifndef GOPURA_PIPELINE_CONTENT_ANNOTATIONS_IMPORT_H
 #define GOPURA_PIPELINE_CONTENT_ANNOTATIONS_IMPORT_H
 
@@ -10,7 +10,7 @@ struct annotations_import_options {
 	/* created if missing; must not have parts.json, tours.json or pages yet */
 	const char *folder;
 	const char *language; /* of texts without a language; NULL: "en" */
-	bool y_is_up;         /* y is up in PointSelectors, as in IIIF; otherwise z */
+	bool y_is_up;         /* y is up in PointSelectors; otherwise z; in a manifest always y */
 	bool skip_unknown;    /* skip annotations without a selector we know, with a warning */
 	struct diagnostics *diagnostics; /* gets every fault and every warning; borrowed */
 };

@@ -16,7 +16,10 @@ struct importer {
 	struct diagnostics *diagnostics; /* of the options */
 	struct annotations_imported *report;
 	const char *language;
+	bool y_is_up;              /* in PointSelectors */
+	bool makes_ids;            /* equal ids get a number; otherwise they are refused */
 	cJSON *parts_file, *parts; /* parts_file is owned; parts is the array in it */
+	cJSON *comments;           /* owned; of a manifest; NULL: the file holds annotations */
 	const cJSON *tours;        /* borrowed from the file's JSON; NULL: none */
 	struct page_file *pages;   /* owned */
 	uint32_t page_count, page_room;

@@ -12,6 +12,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "base/log.h"
 #include "pipeline/import/alignment.h"
 #include "storage/info.h"
 #include "storage/info_tools.h"
@@ -350,6 +351,13 @@ static int add_alignment(struct content *content, const char *path, struct diagn
 	struct alignment alignment;
 	int rc = alignment_read(&alignment, path, diagnostics);
 
+	for (uint32_t i = 0; i < alignment.left_out.count; i++)
+		log_warn("pipeline", "%s", diagnostics_get(&alignment.left_out, i)->text);
+	if (rc == 0 && alignment.y_is_up && content->import.up != IMPORT_Y_UP)
+		rc = diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				     "scans: in %s, a manifest, y is up: write 'up = y' into "
+				     "[model]",
+				     path);
 	for (uint32_t i = 0; rc == 0 && i < alignment.count; i++)
 		rc = add_scan(content, alignment.scans[i].path, &alignment.scans[i].transform,
 			      diagnostics);

@@ -3,8 +3,8 @@
 #ifndef GOPURA_PIPELINE_CONTENT_DRAFT_H
 #define GOPURA_PIPELINE_CONTENT_DRAFT_H
 
+#include "base/json_text.h"
 #include "pipeline/content/info_build.h"
-#include "pipeline/content/json_text.h"
 #include "storage/info_tour.h"
 
 struct cJSON;

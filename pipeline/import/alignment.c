@@ -1,4 +1,5 @@
-/* Parses MeshLab's alignments and projects, and checks names, matrices and files. */
+/* Parses MeshLab's alignments and projects, takes the models of manifests, and checks names,
+ * matrices and files. */
 #include "pipeline/import/alignment.h"
 
 #include <ctype.h>
@@ -14,7 +15,9 @@
 
 #include "base/array.h"
 #include "base/bytes.h"
+#include "base/json_text.h"
 #include "pipeline/import/import_files.h"
+#include "pipeline/import/manifest.h"
 
 enum { FILE_BYTES_MAX = 16 << 20, SHOWN_BYTES = 60 };
 
@@ -29,7 +32,8 @@ struct reading {
 
 bool alignment_is_named(const char *name)
 {
-	return import_has_extension(name, ".aln") || import_has_extension(name, ".mlp");
+	return import_has_extension(name, ".aln") || import_has_extension(name, ".mlp") ||
+	       import_has_extension(name, ".json");
 }
 
 void alignment_finish(struct alignment *alignment)
@@ -39,6 +43,7 @@ void alignment_finish(struct alignment *alignment)
 	for (uint32_t i = 0; i < alignment->count; i++)
 		free(alignment->scans[i].path);
 	free(alignment->scans);
+	diagnostics_finish(&alignment->left_out);
 	*alignment = (struct alignment){ 0 };
 }
 
@@ -359,6 +364,125 @@ static int read_mlp(struct reading *reading, struct bytes file)
 	return rc;
 }
 
+/* ---- manifests */
+
+/* Decodes %20 and the like. Returns false if the address is too long for a file's name. */
+static bool decode_address(const char *address, char out[PATH_MAX])
+{
+	size_t size = 0;
+
+	for (const char *c = address; *c && !strchr("?#", *c); c++) {
+		unsigned byte;
+
+		if (size == PATH_MAX - 1)
+			return false;
+		out[size++] = *c;
+		if (*c == '%' && isxdigit((unsigned char)c[1]) && isxdigit((unsigned char)c[2]) &&
+		    sscanf(c + 1, "%2x", &byte) == 1 && byte > 0) {
+			out[size - 1] = (char)byte;
+			c += 2;
+		}
+	}
+	out[size] = '\0';
+	return size > 0;
+}
+
+static bool is_beside(const struct reading *reading, const char *name)
+{
+	const char *slash = strrchr(reading->path, '/');
+	const int folder_length = slash ? (int)(slash - reading->path) + 1 : 0;
+	char path[PATH_MAX];
+	struct stat status;
+
+	return name[0] && stays_below(name) && !strchr(name, '\\') &&
+	       snprintf(path, sizeof(path), "%.*s%s", folder_length, reading->path, name) <
+		       (int)sizeof(path) &&
+	       stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+/* Finds the model's file: the longest end of its address that exists beside the manifest. Addresses
+ * are never fetched. */
+static int add_model(struct reading *reading, const struct manifest_item *item)
+{
+	const char *address = manifest_id(item->resource);
+	double matrix[16] = { [15] = 1 };
+	char decoded[PATH_MAX];
+	const char *name, *scheme;
+
+	if (!address || !decode_address(address, decoded))
+		return diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, item->line,
+				       "a model without an address: give it an \"id\" that ends "
+				       "with its file's name");
+	memcpy(matrix, item->place.rows, sizeof(item->place.rows));
+	scheme = strstr(decoded, "://");
+	name = scheme ? scheme + 3 + strcspn(scheme + 3, "/") : decoded;
+	for (name += strspn(name, "/"); !is_beside(reading, name); name += strspn(name, "/")) {
+		const char *slash = strchr(name, '/');
+
+		if (!slash)
+			return diagnostics_add(reading->diagnostics, -ENOENT, reading->path,
+					       item->line,
+					       "model %.300s is not beside the manifest; fetch it "
+					       "and put it there as %.100s",
+					       address, name);
+		name = slash;
+	}
+	return add_scan(reading, item->line, name, matrix);
+}
+
+/* A content folder has one first view; whether it is this one the author decides. */
+static void leave_out_camera(struct reading *reading, const struct manifest *manifest,
+			     const struct manifest_item *item)
+{
+	double eye[3], target[3];
+
+	manifest_view(manifest, item, eye, target);
+	manifest_z_up(eye, eye);
+	manifest_z_up(target, target);
+	diagnostics_add(&reading->alignment->left_out, 0, reading->path, item->line,
+			"a camera is left out: as the first view write 'start = eye %g %g %g "
+			"target %g %g %g' into [view] of temple.ini, if a unit is a metre",
+			eye[0], eye[1], eye[2], target[0], target[1], target[2]);
+}
+
+static int read_models(struct reading *reading, struct manifest *manifest)
+{
+	int rc = 0;
+
+	reading->alignment->y_is_up = true;
+	reading->alignment->left_out = manifest->left_out;
+	manifest->left_out = (struct diagnostics){ 0 };
+	for (uint32_t i = 0; i < manifest->count && rc != -EFBIG && rc != -ENOMEM; i++) {
+		const struct manifest_item *item = &manifest->items[i];
+		int failed = 0;
+
+		if (item->kind == MANIFEST_MODEL)
+			failed = add_model(reading, item);
+		else if (item->kind == MANIFEST_CAMERA)
+			leave_out_camera(reading, manifest, item);
+		rc = rc == 0 || failed == -ENOMEM || failed == -EFBIG ? failed : rc;
+	}
+	if (rc == 0 && reading->alignment->count == 0)
+		rc = diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, 1,
+				     "its scenes have no model: paint one with an Annotation");
+	return rc;
+}
+
+static int read_manifest(struct reading *reading, struct buffer *file)
+{
+	struct json_text json;
+	struct manifest manifest = { 0 };
+	int rc = json_text_parse(&json, file, reading->path, reading->diagnostics);
+
+	if (rc == 0)
+		rc = manifest_read(&manifest, &json, reading->path, reading->diagnostics);
+	if (rc == 0)
+		rc = read_models(reading, &manifest);
+	manifest_finish(&manifest);
+	json_text_finish(&json);
+	return rc;
+}
+
 /* ---- the whole */
 
 static int check_files(const struct reading *reading)
@@ -397,6 +521,8 @@ int alignment_read(struct alignment *out, const char *path, struct diagnostics *
 		diagnostics_add(diagnostics, rc, path, 0, "%s",
 				rc == -EFBIG ? "over 16 MiB; is it an alignment of scans?"
 					     : strerror(-rc));
+	else if (import_has_extension(path, ".json"))
+		rc = read_manifest(&reading, &file);
 	else if (import_has_extension(path, ".mlp"))
 		rc = read_mlp(&reading, (struct bytes){ file.data, file.size - 1 });
 	else

@@ -1,5 +1,5 @@
-/* Reads which scans belong together and where each of them lies, as MeshLab saves it: alignments
- * (.aln, text) and projects (.mlp, XML). docs/import.md has both formats. */
+/* Reads which scans belong together and where each of them lies: MeshLab's alignments (.aln, text)
+ * and projects (.mlp, XML), and IIIF manifests (.json). docs/import.md has the formats. */
 #ifndef GOPURA_PIPELINE_IMPORT_ALIGNMENT_H
 #define GOPURA_PIPELINE_IMPORT_ALIGNMENT_H
 
@@ -18,9 +18,11 @@ struct alignment_scan {
 struct alignment {
 	uint32_t count, room;
 	struct alignment_scan *scans; /* owned */
+	bool y_is_up; /* as in a manifest; otherwise the file does not say which axis is up */
+	struct diagnostics left_out; /* warnings: what of a manifest is not imported */
 };
 
-/* Returns whether the name ends with .aln or .mlp, in any case of letters. */
+/* Returns whether the name ends with .aln, .mlp or .json, in any case of letters. */
 bool alignment_is_named(const char *name);
 
 /* Reads the file and checks that every scan it names is a file in its folder or below. *out is

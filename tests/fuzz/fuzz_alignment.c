@@ -1,5 +1,6 @@
-/* An alignment of scans: what begins with '<' as MeshLab's project, all else as text. It is refused
- * with its name, or every scan of it lies in its folder and has a matrix that can be applied. */
+/* An alignment of scans: what begins with '<' as MeshLab's project, with '{' as a manifest, all
+ * else as text. It is refused with its name, or every scan of it lies in its folder and has a
+ * matrix that can be applied. */
 #include <math.h>
 
 #include "pipeline/import/alignment.h"
@@ -19,7 +20,9 @@ static bool is_placed(const struct alignment_scan *scan)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	const char *name = size > 0 && data[0] == '<' ? "site.mlp" : "site.aln";
+	const char *name = size > 0 && data[0] == '<'   ? "site.mlp"
+			   : size > 0 && data[0] == '{' ? "site.json"
+							: "site.aln";
 	struct diagnostics diagnostics = { 0 };
 	struct alignment alignment;
 	char path[128];

@@ -55,7 +55,7 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="alignment import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
+	pipeline/import/*) names="alignment manifest import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
 	pipeline/samples/*) names="model model_master raster chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;

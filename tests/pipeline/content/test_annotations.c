@@ -243,7 +243,8 @@ static void names_the_place_of_what_it_refuses(void **state)
 	} cases[] = {
 		{ "{\"items\": [\n", "not valid JSON", 2 },
 		{ "{\"items\": [\n\"caf\xe9\"]}", "not UTF-8", 2 },
-		{ "{\"type\": \"Manifest\"}", "holds no annotations", 1 },
+		{ "{\"type\": \"Collection\"}", "holds no annotations", 1 },
+		{ "{\"type\": \"Manifest\"}", "no scene", 1 },
 		{ "{\"first\": \"https://example.org/1\"}", "is elsewhere", 1 },
 		{ "{\"first\": {\"items\": [], \"next\": \"x\"}}", "more pages", 1 },
 		{ "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("#b", SVG) "]}", "SvgSelector",
@@ -275,6 +276,71 @@ static void names_the_place_of_what_it_refuses(void **state)
 				 told.first.line);
 		CHECK(nothing_is_left());
 	}
+}
+
+#define COMMENT(id, body, target)                                                                  \
+	"{\"id\": \"https://x.org/" id "\", \"type\": \"Annotation\", \"motivation\": "            \
+	"[\"commenting\"], " body ", \"target\": {\"source\": {\"id\": \"s\"}, \"selector\": "     \
+	"[{\"type\": " target "}]}}"
+#define ON_POINT "\"PointSelector\", \"x\": 1, \"y\": 2, \"z\": 3"
+#define SAID(t)  "{\"type\": \"TextualBody\", " t "}"
+
+static void takes_the_comments_of_a_manifest(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text(
+		"exchange.jsonld",
+		"{\"type\": \"Manifest\", \"items\": [{\"id\": \"s\", \"type\": \"Scene\",\n"
+		"\"items\": [{\"items\": [{\"id\": \"m\", \"motivation\": \"painting\", \"body\":\n"
+		"{\"id\": \"c\", \"type\": \"PerspectiveCamera\"}, \"target\": {\"selector\": "
+		"{\"type\": \"PointSelector\", \"z\": 9}}}]}],\n"
+		"\"annotations\": [{\"items\": [\n" COMMENT("1/eye", "\"bodyValue\": \"Eye\"", ON_POINT) ",\n" COMMENT(
+			"2/eye",
+			"\"body\": [{\"type\": \"Choice\", \"items\": [" SAID("\"value\": \"Brow\", \"language\": \"en\"") "," SAID(
+				"\"value\": \"Front\", \"language\": \"fr\"") "]}, " SAID("\"value\": \"It is high.\", \"language\": \"en\"") "]",
+			"\"PolygonZSelector\", \"value\": \"POLYGONZ((0 1 0, 2 1 0, 2 1 2, 0 1 0))\"") ",\n" COMMENT("wall",
+														     "\"body\": " SAID(
+															     "\"format\": \"text/html\", \"value\": \"<p>A text of more than sixty "
+															     "characters&nbsp;&amp; with <i>an end</i> that a title has no room for"
+															     "</p>\""),
+														     "\"PolygonZSelector\", \"value\": \"POLYGON Z((0 0 0, 2 0 0, 2 2 0, 0 2 0))\"") ",\n" COMMENT("none",
+																										   "\"bodyValue\": \"None\"",
+																										   "\"SvgSelector\"") "]}]}]}\n");
+	if (import_with(&report, false, false) != 0)
+		fail_msg("%s", told.first.text);
+	CHECK(report.part_count == 3 && report.page_count == 1 && report.skipped_count == 1);
+	CHECK(copy_says("parts.json", "\"id\":\t\"eye\",\n\t\t\t\"anchor\":\t[1, -3, 2]"));
+	CHECK(copy_says("parts.json", "\"id\":\t\"eye-2\""));
+	CHECK(copy_says("parts.json", "\"fr\":\t\"Front\""));
+	CHECK(copy_says("parts.json", "\"en\":\t\"It is high.\""));
+	CHECK(copy_says("parts.json", "\"corners\":\t[[0, 0], [2, 0], [2, -2]]"));
+	CHECK(copy_says("parts.json", "\"floor\":\t0.9,\n"));
+	CHECK(copy_says("parts.json", "\"centre\":\t[1, 0, 1]"));
+	CHECK(copy_says("parts.json",
+			"\"A text of more than sixty characters & with an end that a…\""));
+	CHECK(copy_says("pages/wall.en.html", "<i>an end</i>"));
+	/* three are read from one camera, one has no place; what has no French title is told after
+	 */
+	CHECK(told.count > 4 && told.error_count == 0);
+	CHECK(strstr(diagnostics_get(&told, 0)->text, "start = eye 0 -9 0 target 1 -3 2"));
+	CHECK(strstr(diagnostics_get(&told, 3)->text, "\"https://x.org/none\" is left out"));
+	CHECK(diagnostics_get(&told, 3)->line == 8);
+}
+
+static void refuses_a_manifest_without_comments(void **state)
+{
+	struct annotations_imported report;
+
+	(void)state;
+	write_text("exchange.jsonld",
+		   "{\"type\": \"Manifest\", \"items\": [{\"type\": \"Scene\"}]}");
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(file, 1, "has no comments"));
+	write_text("exchange.jsonld", "{\"type\": \"Manifest\", \"items\": []}");
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(file, 1, "no scene"));
 }
 
 static void leaves_unknown_selectors_out_where_told_to(void **state)
@@ -380,6 +446,8 @@ int main(void)
 		IN_A_FOLDER(refuses_a_folder_that_is_at_fault),
 		IN_A_FOLDER(takes_what_another_tool_wrote),
 		IN_A_FOLDER(names_the_place_of_what_it_refuses),
+		IN_A_FOLDER(takes_the_comments_of_a_manifest),
+		IN_A_FOLDER(refuses_a_manifest_without_comments),
 		IN_A_FOLDER(leaves_unknown_selectors_out_where_told_to),
 		IN_A_FOLDER(takes_the_selector_that_it_knows),
 		IN_A_FOLDER(takes_away_what_the_folder_cannot_be),

@@ -1,7 +1,6 @@
-/* JSON that people wrote: cJSON's tree of a text, and the line of each object in it. Private to
- * pipeline/content. */
-#ifndef GOPURA_PIPELINE_CONTENT_JSON_TEXT_H
-#define GOPURA_PIPELINE_CONTENT_JSON_TEXT_H
+/* JSON that people wrote: cJSON's tree of a text, and the line of each object in it. */
+#ifndef GOPURA_BASE_JSON_TEXT_H
+#define GOPURA_BASE_JSON_TEXT_H
 
 #include "base/bytes.h"
 #include "base/diagnostics.h"

@@ -1,6 +1,6 @@
 /* Parses JSON by cJSON, which keeps no positions, and finds lines by jsmn, which keeps little else.
  */
-#include "pipeline/content/json_text.h"
+#include "base/json_text.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -95,6 +95,9 @@ int json_text_parse(struct json_text *out, struct buffer *buffer, const char *fi
 	if (buffer->error)
 		return buffer->error;
 	text = (const char *)buffer->data;
+	if (!text[strspn(text, " \t\r\n")])
+		return diagnostics_add(diagnostics, -EBADMSG, file, 1,
+				       "is empty, not JSON: copy or save it again");
 	if (!g_utf8_validate(text, -1, &end)) /* cJSON does not check this */
 		return diagnostics_add(diagnostics, -EBADMSG, file, line_of(text, end),
 				       "is not UTF-8 from here on: save it as UTF-8");

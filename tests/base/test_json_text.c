@@ -1,5 +1,5 @@
 /* JSON and the lines of its objects. */
-#include "pipeline/content/json_text.h"
+#include "base/json_text.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -91,7 +91,7 @@ static void names_the_line_of_what_it_refuses(void **state)
 		const char *text, *words;
 		unsigned line;
 	} cases[] = {
-		{ "", "not valid JSON", 1 },
+		{ "", "is empty", 1 },
 		{ "[1,\n2,\n3", "not valid JSON", 3 },
 		{ "{\"a\": 1}\n{}", "not valid JSON", 2 },
 		{ "{\"a\": 1\n\n\"b\": 2}", "not valid JSON", 3 },
