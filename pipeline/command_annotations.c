@@ -1,4 +1,4 @@
-/* gopura-content annotations: exports and imports W3C Web Annotations. */
+/* gopura-content annotations: exports and imports W3C Web Annotations and IIIF manifests. */
 #include "pipeline/commands.h"
 
 #include <errno.h>
@@ -15,14 +15,19 @@
 #include "pipeline/content/annotations_import.h"
 
 static const char help[] =
-	"gopura-content annotations: export parts and pages as W3C Web Annotations, or import them\n"
+	"gopura-content annotations: export parts and pages as W3C Web Annotations or as a IIIF manifest,\n"
+	"or import them\n"
 	"\n"
-	"usage: gopura-content annotations export CONTENT --out FILE [--languages LIST]\n"
+	"usage: gopura-content annotations export CONTENT --out FILE [OPTIONS]\n"
 	"       gopura-content annotations import FILE --into CONTENT [OPTIONS]\n"
 	"\n"
 	"export writes one annotation for each part of CONTENT/parts.json, and the pictures beside FILE.\n"
 	"  --languages LIST  such as en,fr; every part must have a title in the first one (default: the\n"
 	"                    languages of the titles, in the order in which they appear)\n"
+	"  --iiif            write a IIIF manifest: the scans of temple.ini, and a comment for each part\n"
+	"                    (docs/iiif.md)\n"
+	"  --base ADDRESS    where the manifest and the scans will be published (default:\n"
+	"                    https://example.org/iiif/)\n"
 	"\n"
 	"import writes parts.json, pages/ and pictures/ into CONTENT, which must not have parts yet. FILE\n"
 	"may be a IIIF manifest of 3D scenes, whose comments become parts (docs/iiif.md).\n"
@@ -31,11 +36,12 @@ static const char help[] =
 	"  --skip-unknown    skip annotations whose selectors name no place on a model; without this\n"
 	"                    option they are refused\n"
 	"\n"
-	"The format is JSON-LD (docs/annotations.md). Exit status: 0 done, 1 refused, 2 wrong command\n"
+	"The formats are in docs/annotations.md and docs/iiif.md. Exit status: 0 done, 1 refused, 2 wrong command\n"
 	"line.\n"
 	"\n"
 	"Examples:\n"
 	"  gopura-content annotations export temple --out exchange/temple.jsonld\n"
+	"  gopura-content annotations export temple --iiif --out exchange/temple.json\n"
 	"  gopura-content annotations import exchange/temple.jsonld --into copy\n";
 
 /* Prints what was found, and empties the list. */
@@ -113,11 +119,14 @@ static int write_export(const struct annotations *annotations, const char *conte
 	return rc;
 }
 
-static int run_export(const char *content, const char *out, char *language_list)
+static int run_export(const char *content, const char *out, char *language_list,
+		      const char *manifest_base)
 {
 	const char *languages[INFO_LANGUAGES_MAX];
 	struct diagnostics found = { .max = INFO_DIAGNOSTICS_MAX };
-	struct annotations_export_options options = { .folder = content, .diagnostics = &found };
+	struct annotations_export_options options = { .folder = content,
+						      .manifest_base = manifest_base,
+						      .diagnostics = &found };
 	struct annotations annotations;
 	int rc;
 
@@ -172,6 +181,8 @@ int command_annotations(int argc, char **argv)
 		{ "into", required_argument, NULL, 'i' },
 		{ "languages", required_argument, NULL, 'L' },
 		{ "language", required_argument, NULL, 'l' },
+		{ "iiif", no_argument, NULL, 'm' },
+		{ "base", required_argument, NULL, 'b' },
 		{ "up", required_argument, NULL, 'u' },
 		{ "skip-unknown", no_argument, NULL, 's' },
 		{ "help", no_argument, NULL, 'h' },
@@ -179,6 +190,8 @@ int command_annotations(int argc, char **argv)
 	};
 	struct annotations_import_options import = { 0 };
 	const char *out = NULL;
+	const char *base = "https://example.org/iiif/";
+	bool is_manifest = false;
 	char *languages = NULL;
 	int option;
 
@@ -201,6 +214,12 @@ int command_annotations(int argc, char **argv)
 				return command_wrong(argv[0], "--up must be y or z, not ", optarg);
 			import.y_is_up = *optarg == 'y';
 			break;
+		case 'm':
+			is_manifest = true;
+			break;
+		case 'b':
+			base = optarg;
+			break;
 		case 's':
 			import.skip_unknown = true;
 			break;
@@ -215,7 +234,7 @@ int command_annotations(int argc, char **argv)
 		return command_wrong(argv[0], "give export CONTENT or import FILE", "");
 	import.file = argv[optind + 1];
 	if (strcmp(argv[optind], "export") == 0)
-		return run_export(argv[optind + 1], out, languages);
+		return run_export(argv[optind + 1], out, languages, is_manifest ? base : NULL);
 	if (strcmp(argv[optind], "import") == 0)
 		return run_import(&import);
 	return command_wrong(argv[0], "export or import, not ", argv[optind]);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pipeline/content/annotations_iiif_export.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/draft.h"
 #include "pipeline/content/info_pages.h"
@@ -297,13 +298,22 @@ static int list_pictures(struct annotations *out, const struct draft *draft)
 	return 0;
 }
 
-static int write_collection(struct annotations *out, struct draft *draft, const cJSON *json,
-			    const cJSON *tours)
+/* manifest_base as in the options. */
+static int write_json(struct annotations *out, struct draft *draft, const cJSON *json,
+		      const cJSON *tours, const char *manifest_base)
 {
 	struct exporter exporter = { .draft = draft };
-	cJSON *collection = make_collection(&exporter, json, tours);
-	char *text = collection ? cJSON_Print(collection) : NULL;
-	int rc = text ? 0 : -ENOMEM;
+	cJSON *made = NULL;
+	char *text;
+	int rc = 0;
+
+	if (manifest_base)
+		rc = annotations_iiif_make(&made, draft, json, manifest_base);
+	else
+		made = make_collection(&exporter, json, tours);
+	text = made ? cJSON_Print(made) : NULL;
+	if (rc == 0 && !text)
+		rc = -ENOMEM;
 
 	if (text) {
 		buffer_put_text(&out->json, text);
@@ -311,7 +321,7 @@ static int write_collection(struct annotations *out, struct draft *draft, const 
 		rc = out->json.error;
 	}
 	cJSON_free(text);
-	cJSON_Delete(collection);
+	cJSON_Delete(made);
 	out->count = draft->part_count;
 	return rc;
 }
@@ -372,8 +382,8 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 	if (rc == 0 && draft.diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)
-		rc = write_collection(out, &draft, json,
-				      cJSON_GetObjectItemCaseSensitive(tours, "tours"));
+		rc = write_json(out, &draft, json, cJSON_GetObjectItemCaseSensitive(tours, "tours"),
+				options->manifest_base);
 	if (rc == 0 && draft.diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)

@@ -1,5 +1,5 @@
 /* Converts the parts of a content folder to W3C Web Annotations. docs/annotations.md has the
- * format. Used by the publisher. */
+ * format. Or to a IIIF manifest, docs/iiif.md. Used by the publisher. */
 #ifndef GOPURA_PIPELINE_CONTENT_ANNOTATIONS_EXPORT_H
 #define GOPURA_PIPELINE_CONTENT_ANNOTATIONS_EXPORT_H
 
@@ -11,6 +11,9 @@ struct annotations_export_options {
 	/* NULL: the languages of the titles, in order of appearance */
 	const char *const *languages;
 	uint32_t language_count;
+	/* NULL: an annotation collection. Otherwise a IIIF manifest of the scans and the parts, and
+	 * the address where it will be published */
+	const char *manifest_base;
 	struct diagnostics *diagnostics; /* gets every fault and every warning; borrowed */
 };
 

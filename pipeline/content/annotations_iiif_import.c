@@ -210,10 +210,13 @@ static void join(GString **to, const char *text, const char *between)
 		g_string_append_printf(*to, "%s%s", between, text);
 }
 
-/* The first body is the title. What of it does not fit, and what the others say, is the caption, or
- * the page if it is HTML. */
+/* What a text may become: titles are cut to their length, unless other bodies say the rest. */
+enum use { TITLE, WHOLE_TITLE, NO_TITLE };
+
+/* The first text in a language is its title. What of it does not fit, and what the others say, is
+ * the caption, or the page if it is HTML. */
 static void take_text(struct converter *c, const char *value, const char *language, bool is_html,
-		      bool is_first)
+		      enum use use)
 {
 	struct said *said = said_in(c, language);
 	GString *text;
@@ -222,8 +225,8 @@ static void take_text(struct converter *c, const char *value, const char *langua
 	if (!said)
 		return;
 	text = plain_of(value, is_html);
-	if (is_first && !said->title && text->len > 0) {
-		is_longer = shorten(text) ||
+	if (use != NO_TITLE && !said->title && text->len > 0) {
+		is_longer = (use == TITLE && shorten(text)) ||
 			    (is_html && (strstr(value, "<img") || strstr(value, "<a ")));
 		said->title = text;
 		text = NULL;
@@ -239,7 +242,7 @@ static void take_text(struct converter *c, const char *value, const char *langua
 	said->count++;
 }
 
-static void take_body(struct converter *c, const cJSON *body, bool is_first, int depth)
+static void take_body(struct converter *c, const cJSON *body, enum use use, int depth)
 {
 	const char *value = string_of(body, "value"), *format = string_of(body, "format");
 	const char *language =
@@ -257,10 +260,10 @@ static void take_body(struct converter *c, const cJSON *body, bool is_first, int
 		     comment_id(c->item));
 	for (const cJSON *one = first_of(inner); one && depth < BODIES_DEEP;
 	     one = next_of(inner, one))
-		take_body(c, one, is_first, depth + 1);
+		take_body(c, one, use, depth + 1);
 	if (value)
 		take_text(c, value, language ? language : c->language,
-			  format && strcmp(format, "text/html") == 0, is_first);
+			  format && strcmp(format, "text/html") == 0, use);
 	else if (!inner)
 		warn(c, "comment \"%.80s\": a body of type \"%.40s\" is left out: texts are kept",
 		     comment_id(c->item), string_of(body, "type") ? string_of(body, "type") : "");
@@ -291,12 +294,16 @@ static void convert_texts(struct converter *c, cJSON *made)
 	const char *value = string_of(c->item->annotation, "bodyValue");
 	const cJSON *body = first_of(list);
 	cJSON *bodies = cJSON_CreateArray();
+	/* a Choice before others has the title in every language */
+	enum use use = body && is_type(body, "Choice") && next_of(list, body) ? WHOLE_TITLE : TITLE;
 
 	c->said_count = 0;
-	for (bool is_first = true; body; body = next_of(list, body), is_first = false)
-		take_body(c, body, is_first, 0);
+	for (; body; body = next_of(list, body)) {
+		take_body(c, body, use, 0);
+		use = use == TITLE ? TITLE : NO_TITLE;
+	}
 	if (value)
-		take_text(c, value, c->language, false, true);
+		take_text(c, value, c->language, false, TITLE);
 	add(c, made, "body", bodies);
 	for (uint32_t i = 0; i < c->said_count; i++) {
 		struct said *said = &c->said[i];

@@ -34,3 +34,48 @@ grep -q 'foreign.jsonld:2: .*SvgSelector.*PointSelector' "$work/foreign.log" ||
 [ ! -e "$work/foreign" ] || fail "something was left"
 "$gopura" annotations import "$work/foreign.jsonld" --into "$work/foreign" --skip-unknown ||
 	fail "cannot be left out"
+
+# A manifest has the shape of those that others publish: no member that theirs lack, and each of the same type.
+mkdir -p "$work/temple"
+printf '[model]\nscans = a.glb b.glb\n' >"$work/temple/temple.ini"
+touch "$work/temple/a.glb" "$work/temple/b.glb"
+cat >"$work/temple/parts.json" <<'P'
+{"parts": [{"id": "eye", "anchor": [1, 2, 3], "page": false, "title": {"en": "Eye", "es": "Ojo"},
+ "caption": {"en": "It looks east."}}]}
+P
+"$gopura" annotations export "$work/temple" --iiif --base https://example.org/t --out "$work/temple/scene.json"
+"$gopura" annotations import "$work/temple/scene.json" --into "$work/iiif"
+grep -q '"It looks east."' "$work/iiif/parts.json" || fail "the caption did not come back"
+theirs=../shared/conformance/iiif3d/manifests
+if [ -d "$theirs" ]; then
+	python3 - "$work/temple/scene.json" "$theirs" <<'P'
+import json
+import pathlib
+import sys
+
+
+def shape(value, path, into):
+    """Adds (path, type) of every value; lists add nothing to a path, nor do the languages of texts."""
+    into.add((path, type(value).__name__ if not isinstance(value, (int, float)) else "number"))
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            is_text = path.endswith("/label")
+            shape(inner, path + "/" + ("LANGUAGE" if is_text else key), into)
+    elif isinstance(value, list):
+        for inner in value:
+            shape(inner, path, into)
+    return into
+
+
+ours = shape(json.load(open(sys.argv[1])), "", set())
+theirs = set()
+for name in pathlib.Path(sys.argv[2]).glob("*/*.json"):
+    text = name.read_text()
+    if text:
+        shape(json.loads(text), "", theirs)
+assert len(ours) > 30 and len(theirs) > 30, (len(ours), len(theirs))
+assert ours <= theirs, sorted(ours - theirs)
+P
+else
+	echo "$theirs is not here: the shape of the manifest is not compared"
+fi

@@ -5,10 +5,13 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <unistd.h>
 
 #include "pipeline/content/annotations_export.h"
 #include "pipeline/content/annotations_import.h"
+#include "pipeline/import/alignment.h"
+#include "pipeline/import/import.h"
 #include "tests/pipeline/content/info_folder.h"
 
 static char copy[100], file[100]; /* where imports go, and what they read */
@@ -329,6 +332,132 @@ static void takes_the_comments_of_a_manifest(void **state)
 	CHECK(diagnostics_get(&told, 3)->line == 8);
 }
 
+static int export_manifest(struct annotations *out)
+{
+	const struct annotations_export_options options = { .folder = folder,
+							    .manifest_base = "https://x.org/t",
+							    .diagnostics = &told };
+
+	diagnostics_finish(&told);
+	return annotations_export(out, &options);
+}
+
+/* The parts come back byte for byte, and the scan lies where it lay. */
+static void writes_a_manifest_that_comes_back(void **state)
+{
+	struct annotations first, second, manifest;
+	struct annotations_imported report;
+	struct alignment alignment;
+	const double from[3] = { 1, 2, 3 };
+	double to[3];
+	char path[200];
+
+	(void)state;
+	write_text("temple.ini", "[model]\nscans = a.ply\n");
+	write_text("a.ply", "ply\n");
+	write_text("parts.json",
+		   "{\"parts\": [{\"id\": \"tower\", \"anchor\": [0.1, -1e-7, 25],\n"
+		   "\"title\": {\"en\": \"A title of more than sixty characters, which is not cut "
+		   "as a caption follows\", \"km\": \"ប្រាង្គ\"}, \"caption\": {\"en\": \"High\"}},\n"
+		   "{\"id\": \"bud\", \"anchor\": [4, 0, 0], \"page\": false,\n"
+		   "\"title\": {\"en\": \"Bud\"}}]}\n");
+	write_text("pages/tower.en.html", "<p>It is <b>high</b> &amp; old.</p>\n");
+	if (export_from(&first, folder) != 0)
+		fail_msg("%s", told.first.text);
+	if (export_manifest(&manifest) != 0)
+		fail_msg("%s", told.first.text);
+	CHECK(told.error_count == 0);
+	write_file("exchange.jsonld", manifest.json.data, manifest.json.size);
+	write_file("exchange.json", manifest.json.data, manifest.json.size);
+	if (import_with(&report, false, false) != 0)
+		fail_msg("%s", told.first.text);
+	CHECK(export_from(&second, copy) == 0);
+	CHECK(second.json.size == first.json.size);
+	CHECK(memcmp(second.json.data, first.json.data, first.json.size) == 0);
+	CHECK(strstr((char *)manifest.json.data, "\"https://x.org/t/a.ply\""));
+	snprintf(path, sizeof(path), "%s/exchange.json", folder);
+	CHECK(alignment_read(&alignment, path, &told) == 0);
+	CHECK(alignment.count == 1 && alignment.left_out.count == 0);
+	transform_point(&alignment.scans[0].transform, from, to); /* y up */
+	CHECK(to[0] == 1 && to[1] == 3 && to[2] == -2);
+	alignment_finish(&alignment);
+	annotations_finish(&first);
+	annotations_finish(&second);
+	annotations_finish(&manifest);
+}
+
+/* Every place that a manifest can say is written so that it is read as the same. */
+static void writes_the_places_of_scans(void **state)
+{
+	static const char *const ups[] = { "x", "y", "z" };
+	static const char aln[] =
+		"2\na.ply\n#\n0 -2 0 5\n2 0 0 6\n0 0 2 7\n0 0 0 1\n"
+		"a.ply\n#\n0.36 -0.48 -0.8 1\n0.8 0.6 0 2\n0.48 -0.64 0.6 3\n0 0 0 1\n0\n";
+	struct alignment site, again;
+	char path[200], ini[100];
+
+	(void)state;
+	write_text("a.ply", "ply\n");
+	write_text("site.aln", aln);
+	snprintf(path, sizeof(path), "%s/site.aln", folder);
+	CHECK(alignment_read(&site, path, &told) == 0);
+	snprintf(path, sizeof(path), "%s/exchange.json", folder);
+	for (size_t i = 0; i < ARRAY_COUNT(ups); i++) {
+		struct annotations manifest;
+
+		snprintf(ini, sizeof(ini), "[model]\nscans = site.aln\nup = %s\nunit = cm\n",
+			 ups[i]);
+		write_text("temple.ini", ini);
+		if (export_manifest(&manifest) != 0)
+			fail_msg("%s", told.first.text);
+		write_file("exchange.json", manifest.json.data, manifest.json.size);
+		CHECK(alignment_read(&again, path, &told) == 0 && again.count == 2);
+		for (uint32_t k = 0; k < 2; k++) {
+			const float from[3] = { 10, 20, 30 };
+			struct import_options options = { .metres_per_unit = 0.01,
+							  .transform = &site.scans[k].transform };
+			float placed[3], back[3];
+
+			CHECK(import_axis_named(ups[i], &options.up));
+			import_place(placed, from, &options);
+			options = (struct import_options){ .up = IMPORT_Y_UP,
+							   .transform = &again.scans[k].transform };
+			import_place(back, from, &options);
+			for (int c = 0; c < 3; c++)
+				CHECK(fabsf(placed[c] - back[c]) < 1e-6f);
+		}
+		alignment_finish(&again);
+		annotations_finish(&manifest);
+	}
+	alignment_finish(&site);
+}
+
+static void names_what_a_manifest_cannot_say(void **state)
+{
+	static const char *const words[] = { "\"tower\": its region", "\"reading\"",
+					     "\"thumbnail\"",         "\"credits\"",
+					     "credits of all parts",  "a.ply is left out" };
+	struct annotations manifest;
+
+	(void)state;
+	write_text("temple.ini", "[model]\nscans = site.aln\n");
+	write_text("a.ply", "ply\n");
+	write_text("site.aln", "1\na.ply\n#\n1 0.5 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0\n");
+	CHECK(export_manifest(&manifest) == 0);
+	for (size_t i = 0; i < ARRAY_COUNT(words); i++) {
+		bool found = false;
+
+		for (uint32_t k = 0; k < told.count; k++)
+			found = found || strstr(diagnostics_get(&told, k)->text, words[i]);
+		if (!found)
+			fail_msg("not told: %s", words[i]);
+	}
+	CHECK(told.error_count == 0);
+	annotations_finish(&manifest);
+	write_text("temple.ini", "[model]\nscans = none.ply\n");
+	CHECK(export_manifest(&manifest) == -EINVAL && told.error_count > 0);
+}
+
 static void refuses_a_manifest_without_comments(void **state)
 {
 	struct annotations_imported report;
@@ -448,6 +577,9 @@ int main(void)
 		IN_A_FOLDER(names_the_place_of_what_it_refuses),
 		IN_A_FOLDER(takes_the_comments_of_a_manifest),
 		IN_A_FOLDER(refuses_a_manifest_without_comments),
+		IN_A_FOLDER(writes_a_manifest_that_comes_back),
+		IN_A_FOLDER(writes_the_places_of_scans),
+		IN_A_FOLDER(names_what_a_manifest_cannot_say),
 		IN_A_FOLDER(leaves_unknown_selectors_out_where_told_to),
 		IN_A_FOLDER(takes_the_selector_that_it_knows),
 		IN_A_FOLDER(takes_away_what_the_folder_cannot_be),
