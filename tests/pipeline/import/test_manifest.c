@@ -254,6 +254,49 @@ static void lands_in_a_content_folder(void **state)
 	scan_remove(path);
 }
 
+/* A real model, read from its file: its box, turned, mirrored and placed, in metres with z up. */
+static void imports_a_model_in_its_place(void **state)
+{
+	static const char gltf[] =
+		"{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+		"\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+		"{\"POSITION\":0}}]}],\"buffers\":[{\"uri\":\"t.bin\",\"byteLength\":36}],"
+		"\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+		"\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
+		"\"max\":[1,2,4]}]}";
+	static const float corners[3][3] = { { 0, 0, 0 }, { 1, 0, 4 }, { 1, 2, 4 } };
+	static const char text[] = SCENE(
+		"", PAINTING("{\"type\": \"SpecificResource\", \"source\": {\"id\": "
+			     "\"https://example.org/t.gltf\", \"type\": \"Model\"}, \"transform\": "
+			     "[" SCALE("\"x\": -1") "," TURN("\"y\": 90") "]}",
+			     AT("\"x\": 10, \"y\": 20, \"z\": 30")));
+	/* x becomes -x; then z points to x and x to -z; then z up: x, -z, y */
+	static const float low[3] = { 10, -31, 20 }, high[3] = { 14, -30, 22 };
+	struct import_options options = { .up = IMPORT_Y_UP };
+	struct import_report report;
+	struct alignment alignment;
+	struct mesh mesh;
+	float low_m[3], high_m[3];
+	char path[256];
+	(void)state;
+
+	told = (struct diagnostics){ 0 };
+	scan_write(path, "scene.json", text, strlen(text));
+	scan_write_beside(path, "t.gltf", gltf, strlen(gltf));
+	scan_write_beside(path, "t.bin", corners, sizeof(corners));
+	if (alignment_read(&alignment, path, &told) < 0)
+		fail_msg("%s", told.first.text);
+	options.transform = &alignment.scans[0].transform;
+	if (import_scan(&mesh, alignment.scans[0].path, &options, &report, &told) < 0)
+		fail_msg("%s", told.first.text);
+	mesh_box(&mesh, low_m, high_m);
+	for (int k = 0; k < 3; k++)
+		CHECK(fabsf(low_m[k] - low[k]) < 1e-5f && fabsf(high_m[k] - high[k]) < 1e-5f);
+	mesh_finish(&mesh);
+	alignment_finish(&alignment);
+	scan_remove(path);
+}
+
 /* ---- the manifests that the IIIF 3D group published, where they are */
 
 struct tally {
@@ -338,6 +381,7 @@ int main(void)
 		cmocka_unit_test(refuses_what_cannot_be_read),
 		cmocka_unit_test(names_what_has_no_place),
 		cmocka_unit_test(lands_in_a_content_folder),
+		cmocka_unit_test(imports_a_model_in_its_place),
 		cmocka_unit_test(opens_the_published_manifests),
 	};
 
