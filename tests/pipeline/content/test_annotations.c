@@ -288,6 +288,26 @@ static void names_the_place_of_what_it_refuses(void **state)
 #define ON_POINT "\"PointSelector\", \"x\": 1, \"y\": 2, \"z\": 3"
 #define SAID(t)  "{\"type\": \"TextualBody\", " t "}"
 
+#define EYE COMMENT("1/eye", "\"bodyValue\": \"Eye\"", ON_POINT)
+#define BROW                                                                                                                               \
+	COMMENT("2/eye",                                                                                                                   \
+		"\"body\": [{\"type\": \"Choice\", \"items\": [" SAID("\"value\": \"Brow\", \"language\": \"en\"") "," SAID(               \
+			"\"value\": \"Front\", \"language\": \"fr\"") "]}, " SAID("\"value\": \"It is high.\", \"language\": \"en\"") "]", \
+		"\"PolygonZSelector\", \"value\": \"POLYGONZ((0 1 0, 2 1 0, 2 1 2, 0 1 0))\"")
+#define WALL                                                                                       \
+	COMMENT("wall",                                                                            \
+		"\"body\": " SAID(                                                                 \
+			"\"format\": \"text/html\", \"value\": \"<p>A text of more than "          \
+			"sixty characters&nbsp;&amp; with <i>an end</i> that a title "             \
+			"has no room for</p>\""),                                                  \
+		"\"PolygonZSelector\", \"value\": \"POLYGON Z((0 0 0, 2 0 0, 2 2 0, 0 2 0))\"")
+#define NONE COMMENT("none", "\"bodyValue\": \"None\"", "\"SvgSelector\"")
+#define LID                                                                                        \
+	COMMENT("list",                                                                            \
+		"\"body\": [" SAID("\"value\": \"Lid\", \"language\": \"en\"") ", " SAID(          \
+			"\"value\": \"Paupière\", \"language\": \"fr\"") "]",                      \
+		ON_POINT)
+
 static void takes_the_comments_of_a_manifest(void **state)
 {
 	struct annotations_imported report;
@@ -299,24 +319,15 @@ static void takes_the_comments_of_a_manifest(void **state)
 		"\"items\": [{\"items\": [{\"id\": \"m\", \"motivation\": \"painting\", \"body\":\n"
 		"{\"id\": \"c\", \"type\": \"PerspectiveCamera\"}, \"target\": {\"selector\": "
 		"{\"type\": \"PointSelector\", \"z\": 9}}}]}],\n"
-		"\"annotations\": [{\"items\": [\n" COMMENT("1/eye", "\"bodyValue\": \"Eye\"", ON_POINT) ",\n" COMMENT(
-			"2/eye",
-			"\"body\": [{\"type\": \"Choice\", \"items\": [" SAID("\"value\": \"Brow\", \"language\": \"en\"") "," SAID(
-				"\"value\": \"Front\", \"language\": \"fr\"") "]}, " SAID("\"value\": \"It is high.\", \"language\": \"en\"") "]",
-			"\"PolygonZSelector\", \"value\": \"POLYGONZ((0 1 0, 2 1 0, 2 1 2, 0 1 0))\"") ",\n" COMMENT("wall",
-														     "\"body\": " SAID(
-															     "\"format\": \"text/html\", \"value\": \"<p>A text of more than sixty "
-															     "characters&nbsp;&amp; with <i>an end</i> that a title has no room for"
-															     "</p>\""),
-														     "\"PolygonZSelector\", \"value\": \"POLYGON Z((0 0 0, 2 0 0, 2 2 0, 0 2 0))\"") ",\n" COMMENT("none",
-																										   "\"bodyValue\": \"None\"",
-																										   "\"SvgSelector\"") "]}]}]}\n");
+		"\"annotations\": [{\"items\": [\n" EYE ",\n" BROW ",\n" WALL ",\n" NONE ",\n" LID
+		"]}]}]}\n");
 	if (import_with(&report, false, false) != 0)
 		fail_msg("%s", told.first.text);
-	CHECK(report.part_count == 3 && report.page_count == 1 && report.skipped_count == 1);
+	CHECK(report.part_count == 4 && report.page_count == 1 && report.skipped_count == 1);
 	CHECK(copy_says("parts.json", "\"id\":\t\"eye\",\n\t\t\t\"anchor\":\t[1, -3, 2]"));
 	CHECK(copy_says("parts.json", "\"id\":\t\"eye-2\""));
 	CHECK(copy_says("parts.json", "\"fr\":\t\"Front\""));
+	CHECK(copy_says("parts.json", "\"en\":\t\"Lid\",\n\t\t\t\t\"fr\":\t\"Paupière\""));
 	CHECK(copy_says("parts.json", "\"en\":\t\"It is high.\""));
 	CHECK(copy_says("parts.json", "\"corners\":\t[[0, 0], [2, 0], [2, -2]]"));
 	CHECK(copy_says("parts.json", "\"floor\":\t0.9,\n"));
@@ -324,7 +335,7 @@ static void takes_the_comments_of_a_manifest(void **state)
 	CHECK(copy_says("parts.json",
 			"\"A text of more than sixty characters & with an end that a…\""));
 	CHECK(copy_says("pages/wall.en.html", "<i>an end</i>"));
-	/* three are read from one camera, one has no place; what has no French title is told after
+	/* four are read from one camera, one has no place; what has no French title is told after
 	 */
 	CHECK(told.count > 4 && told.error_count == 0);
 	CHECK(strstr(diagnostics_get(&told, 0)->text, "start = eye 0 -9 0 target 1 -3 2"));
