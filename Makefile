@@ -16,7 +16,8 @@ comma   := ,
 
 FOLDERS := base geometry format board system render ui input storage net app pipeline curator health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
-           pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd
+           pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd \
+           libwebsockets
 # METIS and jsmn (only a header) have no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lm -pthread
 
@@ -50,7 +51,7 @@ FUZZ_MAIN =
 $(BUILD)/tests/fuzz/fuzz_%: EXTRA += -fsanitize=fuzzer
 endif
 
-MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c
+MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c curator/main.c
 SOURCES  := $(filter-out $(MAINS),$(shell find $(FOLDERS) -name '*.c' | sort))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
 LIBS     := $(filter-out sdl2,$(LIBS))
@@ -59,7 +60,7 @@ endif
 OBJECTS  := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 ARCHIVE  := $(BUILD)/libgopura.a
 PROGRAMS := $(BUILD)/gopura-content $(BUILD)/gopura-kiosk $(BUILD)/gopura-fetch $(BUILD)/gopura-health \
-            $(BUILD)/gopura-setup
+            $(BUILD)/gopura-setup $(BUILD)/gopura-curator
 TEST_SOURCES := $(shell find tests -name 'test_*.c' | sort)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(shell find tests -name '*.c'))
@@ -213,6 +214,9 @@ $(BUILD)/gopura-health: $(BUILD)/obj/health/main.o $(ARCHIVE)
 	$(LINK)
 $(BUILD)/gopura-setup: $(BUILD)/obj/system/main.o $(ARCHIVE)
 	$(LINK)
+$(BUILD)/gopura-curator: $(BUILD)/obj/curator/main.o $(ARCHIVE)
+	$(LINK)
+$(BUILD)/obj/curator/server/web_files.o: $(wildcard curator/web/*)
 
 # A test may define a function of the archive itself; its own object has priority.
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)

@@ -12,6 +12,7 @@ struct view_image {
 	float px_per_radian;          /* of its camera: camera_px_per_radian */
 	uint8_t (*colours)[3];        /* sRGB, of the surface itself, without light */
 	int8_t (*normals)[3];         /* unit vectors times 127 */
+	uint8_t *open; /* share of open sky, 255 for all; for its light alone, may be NULL */
 	/* One over the distance along the line of sight. It is linear over a plane, so its second
 	 * difference shows where a surface ends. 0: nothing shows. */
 	float *inverse_m;

@@ -14,6 +14,7 @@ struct view_draw {
 	struct raster *raster;                            /* owned, as all below */
 	uint8_t (*colours)[3];
 	int8_t (*normals)[3];
+	uint8_t *open;
 	float *inverse_m;
 	uint32_t *pieces, piece_room;
 	struct distance *order;
@@ -42,9 +43,10 @@ int view_draw_create(struct view_draw **out, uint32_t width_px, uint32_t height_
 	draw->top = (draw->side_px - height_px) / 2;
 	draw->colours = malloc(pixels * sizeof(*draw->colours));
 	draw->normals = malloc(pixels * sizeof(*draw->normals));
+	draw->open = malloc(pixels);
 	draw->inverse_m = malloc(pixels * sizeof(*draw->inverse_m));
 	rc = raster_create(&draw->raster, draw->side_px, true);
-	if (rc < 0 || !draw->colours || !draw->normals || !draw->inverse_m) {
+	if (rc < 0 || !draw->colours || !draw->normals || !draw->open || !draw->inverse_m) {
 		view_draw_destroy(draw);
 		return -ENOMEM;
 	}
@@ -59,6 +61,7 @@ void view_draw_destroy(struct view_draw *draw)
 	raster_destroy(draw->raster);
 	free(draw->colours);
 	free(draw->normals);
+	free(draw->open);
 	free(draw->inverse_m);
 	free(draw->pieces);
 	free(draw->order);
@@ -135,10 +138,12 @@ static int draw_pieces(struct view_draw *draw, struct model *model, const struct
 static void copy_sample(struct view_draw *draw, const struct raster_block *block, uint32_t sample,
 			uint32_t at)
 {
-	const uint32_t surface = block->surface[sample], colour = block->colour[sample];
+	const uint32_t surface = block->surface[sample], colour = block->colour[sample],
+		       sky = surface >> 24;
 	float normal[3];
 
 	draw->inverse_m[at] = block->inverse_m[sample];
+	draw->open[at] = (uint8_t)(sky >= 128 ? (sky - 128) * 255 / 127 : (sky - 1) * 255 / 126);
 	for (int i = 0; i < 3; i++) {
 		normal[i] = (float)(surface >> 8 * i & 0xff) / 127.5f - 1;
 		draw->colours[at][i] = (uint8_t)(colour >> 8 * i);
@@ -182,6 +187,7 @@ int view_draw_image(struct view_draw *draw, struct model *model, const struct ca
 	memset(draw->inverse_m, 0, pixels * sizeof(*draw->inverse_m));
 	memset(draw->colours, 0, pixels * sizeof(*draw->colours));
 	memset(draw->normals, 0, pixels * sizeof(*draw->normals));
+	memset(draw->open, 0, pixels);
 	for (uint32_t row = 0; row < blocks; row++)
 		for (uint32_t column = 0; column < blocks; column++)
 			copy_block(draw, column, row);
@@ -190,6 +196,7 @@ int view_draw_image(struct view_draw *draw, struct model *model, const struct ca
 				    .px_per_radian = camera_px_per_radian(camera),
 				    .colours = draw->colours,
 				    .normals = draw->normals,
+				    .open = draw->open,
 				    .inverse_m = draw->inverse_m };
 	return 0;
 }

@@ -42,7 +42,9 @@ may_enter() {
 	pipeline/release) echo keys import content hierarchy samples ;;
 	pipeline/report) echo import content hierarchy samples release ;;
 	pipeline/temple) echo material ;;
-	curator/view) echo select ;;
+	curator/view | curator/region) echo select ;;
+	curator/session) echo select view region ;;
+	curator/server) echo session ;;
 	app/modes) echo settings view ;;
 	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
 	app/visit | app/release) echo view ;;
@@ -58,7 +60,7 @@ is_public() {
 	pipeline/import/*) names="alignment manifest import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
-	pipeline/samples/*) names="model model_master raster chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
+	pipeline/samples/*) names="model model_master pieces raster chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/keys/*) names="keys keys_place" ;;

@@ -1,0 +1,565 @@
+/* The queues between the server's thread and the session's, and what the latter does. */
+#include "curator/session/session.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "curator/session/message.h"
+#include "curator/session/painter.h"
+#include "curator/session/part_store.h"
+#include "curator/session/tools.h"
+#include "geometry/vec.h"
+
+enum {
+	COMMANDS_MAX = 64,
+	TEXTS_MAX = 256,
+	FRAMES_UNDERWAY_MAX = 2, /* pictures sent whose arrival is not yet known */
+	PREPARE_AFTER_MS = 250,  /* at rest for so long, the tools get ready */
+	FRAME_SHARP = 1,
+	TEXT_BYTES_MAX = 4 << 20,
+};
+
+struct session {
+	struct session_options options;
+	pthread_t thread;
+	/* Of the thread alone. */
+	struct region_set set;
+	struct painter *painter; /* owned */
+	struct tools tools;
+	uint32_t sharp_view; /* the number of the sharp view's camera */
+	bool region_changed, prepared;
+
+	pthread_mutex_t lock;
+	pthread_cond_t changed;
+	/* Under the lock. */
+	bool ending, lost;
+	struct message commands[COMMANDS_MAX]; /* a ring */
+	uint32_t command_first, command_count;
+	struct message camera; /* the newest */
+	bool camera_is_new;
+	char *texts[TEXTS_MAX]; /* owned; a ring */
+	uint32_t text_first, text_count;
+	struct buffer frame; /* the one that waits; empty: none */
+	uint32_t frames_underway;
+};
+
+/* ---- to the browser */
+
+/* text is taken; NULL is fine. */
+static void send_text(struct session *session, char *text)
+{
+	pthread_mutex_lock(&session->lock);
+	if (session->text_count == TEXTS_MAX) {
+		session->lost = true;
+		free(text);
+	} else if (text) {
+		session->texts[(session->text_first + session->text_count++) % TEXTS_MAX] = text;
+	}
+	pthread_mutex_unlock(&session->lock);
+	session->options.wake(session->options.user);
+}
+
+/* json is taken. */
+static void send_json(struct session *session, cJSON *json)
+{
+	send_text(session, cJSON_PrintUnformatted(json));
+	cJSON_Delete(json);
+}
+
+static cJSON *message_of(const char *type)
+{
+	cJSON *json = cJSON_CreateObject();
+
+	cJSON_AddStringToObject(json, "type", type);
+	return json;
+}
+
+static void send_error(struct session *session, const char *text)
+{
+	cJSON *json = message_of("error");
+
+	cJSON_AddStringToObject(json, "message", text);
+	send_json(session, json);
+}
+
+static void send_region(struct session *session)
+{
+	const struct region_set *set = &session->set;
+	cJSON *json = message_of("region");
+
+	cJSON_AddNumberToObject(json, "triangles", set->count);
+	cJSON_AddNumberToObject(json, "undo", set->done_count);
+	cJSON_AddNumberToObject(json, "redo", set->step_count - set->done_count);
+	cJSON_AddBoolToObject(json, "marks", session->tools.has_marks);
+	send_json(session, json);
+}
+
+static void add_point(cJSON *json, const char *key, const float point[3])
+{
+	cJSON_AddItemToObject(json, key, cJSON_CreateFloatArray(point, 3));
+}
+
+static void send_parts(struct session *session, const char *saved)
+{
+	struct diagnostics diagnostics = { 0 };
+	struct buffer parts;
+	cJSON *json;
+	int rc;
+
+	buffer_init(&parts, TEXT_BYTES_MAX);
+	rc = part_store_list(session->options.site, &parts, &diagnostics);
+	if (rc == 0)
+		rc = parts.error;
+	if (rc < 0) {
+		send_error(session, diagnostics_cause(&diagnostics, rc));
+	} else {
+		json = message_of("parts");
+		cJSON_AddItemToObject(json, "parts",
+				      cJSON_ParseWithLength((const char *)parts.data, parts.size));
+		if (saved)
+			cJSON_AddStringToObject(json, "saved", saved);
+		send_json(session, json);
+	}
+	buffer_finish(&parts);
+}
+
+static void send_hello(struct session *session)
+{
+	const struct site *site = session->options.site;
+	const struct content *content = &site->content;
+	cJSON *json = message_of("hello"), *languages;
+
+	cJSON_AddStringToObject(json, "name", content->name);
+	cJSON_AddNumberToObject(json, "triangles", site->mesh->triangle_count);
+	add_point(json, "low", site->master->box_min_m);
+	add_point(json, "high", site->master->box_max_m);
+	if (content->has_start) {
+		add_point(json, "eye", content->start_eye_m);
+		add_point(json, "target", content->start_target_m);
+	}
+	languages = cJSON_AddArrayToObject(json, "languages");
+	for (uint32_t n = 0; n < content->language_count; n++)
+		cJSON_AddItemToArray(languages, cJSON_CreateString(content->languages[n]));
+	send_json(session, json);
+	send_parts(session, NULL);
+	send_region(session);
+}
+
+/* ---- what the browser asks for */
+
+static const char *sentence(int rc)
+{
+	switch (rc) {
+	case -ESTALE:
+		return "the picture has changed since: wait until it is sharp";
+	case -EINVAL:
+		return "that marks nothing: mark some of the part, or go around it";
+	default:
+		return strerror(-rc);
+	}
+}
+
+static int work_with_tools(struct session *session, const struct message *message)
+{
+	struct tools *tools = &session->tools;
+	float point_m[3];
+	cJSON *json;
+
+	if (!tools->image || message->view != session->sharp_view)
+		return -ESTALE;
+	if (message->kind == MESSAGE_STROKE)
+		return tools_stroke(tools, message);
+	if (message->kind == MESSAGE_APPLY)
+		return tools_apply(tools, message->take, message->through);
+	json = message_of("point");
+	if (tools_pick(tools, message->points_px[0], point_m))
+		add_point(json, "at", point_m);
+	send_json(session, json);
+	return 0;
+}
+
+static int change_region(struct session *session, enum message_kind kind)
+{
+	struct region_set *set = &session->set;
+
+	switch (kind) {
+	case MESSAGE_UNDO:
+		region_set_undo(set); /* false: there was nothing to undo */
+		return 0;
+	case MESSAGE_REDO:
+		region_set_redo(set);
+		return 0;
+	case MESSAGE_GROW:
+		return region_set_grow(set, session->options.site->mesh);
+	case MESSAGE_SHRINK:
+		return region_set_shrink(set, session->options.site->mesh);
+	default:
+		region_set_begin(set);
+		region_set_put_all(set, false);
+		return region_set_commit(set);
+	}
+}
+
+static void use_parts(struct session *session, const struct message *message)
+{
+	struct site *site = session->options.site;
+	struct diagnostics diagnostics = { 0 };
+	int rc;
+
+	if (message->kind == MESSAGE_OPEN)
+		rc = part_store_open(site, &session->set, message->id, &diagnostics);
+	else
+		rc = part_store_save(site, &session->set, message->id, message->title,
+				     message->language, &diagnostics);
+	if (rc < 0) {
+		send_error(session, diagnostics_cause(&diagnostics, rc));
+		return;
+	}
+	if (message->kind == MESSAGE_SAVE) {
+		log_info("curator", "saved part %s with %" PRIu32 " triangles", message->id,
+			 session->set.count);
+		send_parts(session, message->id);
+	}
+}
+
+static void carry_out(struct session *session, const struct message *message)
+{
+	const uint32_t steps = session->set.done_count, triangles = session->set.count;
+	int rc = 0;
+
+	switch (message->kind) {
+	case MESSAGE_STROKE:
+	case MESSAGE_APPLY:
+	case MESSAGE_PICK:
+		rc = work_with_tools(session, message);
+		break;
+	case MESSAGE_CLEAR:
+		tools_clear(&session->tools);
+		break;
+	case MESSAGE_SAVE:
+	case MESSAGE_OPEN:
+		use_parts(session, message);
+		break;
+	default:
+		rc = change_region(session, message->kind);
+	}
+	if (rc < 0)
+		send_error(session, sentence(rc));
+	if (session->set.done_count != steps || session->set.count != triangles)
+		session->region_changed = true;
+	if (message->kind != MESSAGE_PICK)
+		send_region(session);
+}
+
+/* ---- pictures */
+
+/* Begins a picture: the number of its camera, and whether it is sharp. */
+static void begin_frame(struct buffer *frame, uint32_t view, bool sharp)
+{
+	buffer_init(frame, SESSION_MESSAGE_BYTES_MAX);
+	buffer_put_u32(frame, view);
+	buffer_put_u32(frame, sharp ? FRAME_SHARP : 0);
+}
+
+/* frame is taken. */
+static void send_frame(struct session *session, struct buffer *frame, int rc)
+{
+	if (rc == 0)
+		rc = frame->error;
+	if (rc < 0) {
+		log_error("curator", "a picture cannot be drawn: %s", strerror(-rc));
+		send_error(session, "the picture cannot be drawn");
+		buffer_finish(frame);
+		return;
+	}
+	pthread_mutex_lock(&session->lock);
+	session->frame = *frame;
+	session->frames_underway++;
+	pthread_mutex_unlock(&session->lock);
+	session->options.wake(session->options.user);
+}
+
+static void set_depths(const struct site *site, struct camera *camera)
+{
+	float size_m[3];
+
+	vec_sub(size_m, site->master->box_max_m, site->master->box_min_m);
+	camera->near_m = vec_length(size_m) / 5000;
+	camera->far_m = vec_length(size_m) * 100;
+}
+
+static void draw(struct session *session, const struct message *camera)
+{
+	struct camera eye = camera->camera;
+	const struct view_image *image;
+	struct buffer frame;
+	int rc;
+
+	set_depths(session->options.site, &eye);
+	begin_frame(&frame, camera->view, !camera->moving);
+	if (!camera->moving) {
+		rc = tools_look(&session->tools, NULL, NULL);
+		(void)rc; /* it drops the view, and allocates nothing */
+	}
+	rc = painter_draw(session->painter, &eye, !camera->moving, &frame);
+	send_frame(session, &frame, rc);
+	session->region_changed = false;
+	if (camera->moving || rc < 0)
+		return;
+	image = painter_view(session->painter, &eye);
+	rc = tools_look(&session->tools, image, &eye);
+	if (rc < 0)
+		send_error(session, strerror(-rc));
+	session->sharp_view = camera->view;
+	session->prepared = false;
+}
+
+/* Shows the last sharp view with the region as it is now. */
+static void draw_again(struct session *session)
+{
+	struct buffer frame;
+	int rc;
+
+	begin_frame(&frame, session->sharp_view, true);
+	rc = painter_draw_again(session->painter, &frame);
+	send_frame(session, &frame, rc);
+	session->region_changed = false;
+}
+
+/* ---- the thread */
+
+/* What is next; under the lock. */
+enum task { TASK_NONE, TASK_END, TASK_COMMAND, TASK_DRAW, TASK_AGAIN };
+
+static enum task next_task(const struct session *session)
+{
+	const bool may_draw =
+		session->frame.size == 0 && session->frames_underway < FRAMES_UNDERWAY_MAX;
+
+	if (session->ending)
+		return TASK_END;
+	if (session->command_count > 0)
+		return TASK_COMMAND;
+	if (may_draw && session->camera_is_new)
+		return TASK_DRAW;
+	if (may_draw && session->region_changed && session->tools.image && !session->camera.moving)
+		return TASK_AGAIN;
+	return TASK_NONE;
+}
+
+/* Returns false after PREPARE_AFTER_MS without news. */
+static bool wait_for_news(struct session *session)
+{
+	struct timespec until;
+
+	if (session->prepared || !session->tools.image) {
+		pthread_cond_wait(&session->changed, &session->lock);
+		return true;
+	}
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_nsec += PREPARE_AFTER_MS * 1000000L;
+	until.tv_sec += until.tv_nsec / 1000000000;
+	until.tv_nsec %= 1000000000;
+	return pthread_cond_timedwait(&session->changed, &session->lock, &until) != ETIMEDOUT;
+}
+
+/* Waits for the next task, and takes what it is about. The tools get ready meanwhile. */
+static enum task take_task(struct session *session, struct message *about)
+{
+	enum task task;
+	bool idle = false;
+
+	pthread_mutex_lock(&session->lock);
+	while ((task = next_task(session)) == TASK_NONE && !idle)
+		idle = !wait_for_news(session);
+	if (task == TASK_COMMAND) {
+		*about = session->commands[session->command_first];
+		session->command_first = (session->command_first + 1) % COMMANDS_MAX;
+		session->command_count--;
+	} else if (task == TASK_DRAW) {
+		*about = session->camera;
+		session->camera_is_new = false;
+	}
+	pthread_mutex_unlock(&session->lock);
+	return task;
+}
+
+static void prepare(struct session *session)
+{
+	int rc = tools_prepare(&session->tools);
+
+	session->prepared = true;
+	if (rc < 0)
+		log_warn("curator", "the tools cannot get ready: %s", strerror(-rc));
+}
+
+static void *work(void *user)
+{
+	struct session *session = user;
+	struct message about;
+
+	send_hello(session);
+	for (;;)
+		switch (take_task(session, &about)) {
+		case TASK_END:
+			return NULL;
+		case TASK_COMMAND:
+			carry_out(session, &about);
+			message_finish(&about);
+			break;
+		case TASK_DRAW:
+			draw(session, &about);
+			break;
+		case TASK_AGAIN:
+			draw_again(session);
+			break;
+		case TASK_NONE:
+			prepare(session);
+			break;
+		}
+}
+
+int session_create(struct session **out, const struct session_options *options)
+{
+	struct session *session = calloc(1, sizeof(*session));
+	pthread_condattr_t attributes;
+	int rc;
+
+	*out = NULL;
+	if (!session)
+		return -ENOMEM;
+	session->options = *options;
+	pthread_mutex_init(&session->lock, NULL);
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(&session->changed, &attributes);
+	pthread_condattr_destroy(&attributes);
+	rc = region_set_init(&session->set, options->site->mesh->triangle_count);
+	tools_init(&session->tools, options->site, &session->set);
+	if (rc == 0)
+		rc = painter_create(&session->painter, options->site, &session->set);
+	if (rc == 0)
+		rc = -pthread_create(&session->thread, NULL, work, session);
+	if (rc < 0) {
+		session->ending = true; /* there is no thread */
+		session_destroy(session);
+		return rc;
+	}
+	*out = session;
+	return 0;
+}
+
+static void end_thread(struct session *session)
+{
+	bool runs;
+
+	pthread_mutex_lock(&session->lock);
+	runs = !session->ending;
+	session->ending = true;
+	pthread_cond_signal(&session->changed);
+	pthread_mutex_unlock(&session->lock);
+	if (runs)
+		pthread_join(session->thread, NULL);
+}
+
+void session_destroy(struct session *session)
+{
+	if (!session)
+		return;
+	end_thread(session);
+	for (uint32_t n = 0; n < session->command_count; n++)
+		message_finish(&session->commands[(session->command_first + n) % COMMANDS_MAX]);
+	for (uint32_t n = 0; n < session->text_count; n++)
+		free(session->texts[(session->text_first + n) % TEXTS_MAX]);
+	buffer_finish(&session->frame);
+	tools_finish(&session->tools);
+	painter_destroy(session->painter);
+	region_set_finish(&session->set);
+	pthread_cond_destroy(&session->changed);
+	pthread_mutex_destroy(&session->lock);
+	free(session);
+}
+
+/* ---- the server's side */
+
+/* Under the lock. Returns false if the queue is full; otherwise the message is taken. */
+static bool enqueue(struct session *session, const struct message *message)
+{
+	switch (message->kind) {
+	case MESSAGE_CAMERA:
+		session->camera = *message;
+		session->camera_is_new = true;
+		return true;
+	case MESSAGE_GOT:
+		if (session->frames_underway > 0)
+			session->frames_underway--;
+		return true;
+	default:
+		if (session->command_count == COMMANDS_MAX)
+			return false;
+		session->commands[(session->command_first + session->command_count++) %
+				  COMMANDS_MAX] = *message;
+		return true;
+	}
+}
+
+void session_receive(struct session *session, const char *text, size_t bytes)
+{
+	char problem[MESSAGE_PROBLEM_BYTES];
+	struct message message;
+	bool taken;
+
+	if (message_parse(&message, text, bytes, problem) < 0) {
+		send_error(session, problem);
+		return;
+	}
+	pthread_mutex_lock(&session->lock);
+	taken = enqueue(session, &message);
+	pthread_cond_signal(&session->changed);
+	pthread_mutex_unlock(&session->lock);
+	if (taken)
+		return;
+	message_finish(&message);
+	send_error(session, "too much at once: wait for the answers");
+}
+
+bool session_next(struct session *session, struct buffer *out, bool *binary)
+{
+	bool has = true;
+
+	pthread_mutex_lock(&session->lock);
+	if (session->text_count > 0) {
+		char *text = session->texts[session->text_first];
+
+		session->text_first = (session->text_first + 1) % TEXTS_MAX;
+		session->text_count--;
+		buffer_put_text(out, text);
+		free(text);
+		*binary = false;
+	} else if (session->frame.size > 0) {
+		buffer_put(out, session->frame.data, session->frame.size);
+		buffer_finish(&session->frame);
+		session->frame = (struct buffer){ 0 };
+		*binary = true;
+		pthread_cond_signal(&session->changed);
+	} else {
+		has = false;
+	}
+	pthread_mutex_unlock(&session->lock);
+	return has;
+}
+
+bool session_is_lost(struct session *session)
+{
+	bool lost;
+
+	pthread_mutex_lock(&session->lock);
+	lost = session->lost;
+	pthread_mutex_unlock(&session->lock);
+	return lost;
+}

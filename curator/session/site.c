@@ -1,0 +1,62 @@
+/* Opens a content folder for sessions. */
+#include "curator/session/site.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "pipeline/build.h"
+#include "pipeline/content/work_lock.h"
+
+/* The scans are imported if they have changed, which writes into the folder. */
+static int read_mesh(struct site *site, struct diagnostics *diagnostics)
+{
+	int lock, rc = work_lock(&lock, &site->content);
+
+	if (rc < 0)
+		return diagnostics_add(diagnostics, rc, site->content.folder, 0,
+				       "another program works there: start when it has ended");
+	rc = scans_get_mesh(site->scans, &site->mesh, diagnostics);
+	close(lock);
+	return rc;
+}
+
+int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics)
+{
+	int rc;
+
+	*site = (struct site){ 0 };
+	pthread_mutex_init(&site->saving, NULL);
+	rc = content_read(&site->content, folder, diagnostics);
+	if (rc == 0)
+		rc = scans_create(&site->scans, &site->content);
+	if (rc == 0)
+		build_known_master(&site->master, site->scans);
+	if (rc == 0 && !site->master)
+		rc = diagnostics_add(diagnostics, -ENOENT, folder, 0,
+				     "has no hierarchy of its scans: make it with 'gopura-content "
+				     "hierarchy %s'",
+				     folder);
+	if (rc == 0)
+		rc = read_mesh(site, diagnostics);
+	if (rc == 0)
+		rc = face_blocks_make(&site->blocks, site->mesh);
+	if (rc < 0) {
+		site_close(site);
+		return rc;
+	}
+	site->lit = content_is_lit(&site->content, site->mesh->texture_count > 0);
+	return 0;
+}
+
+void site_close(struct site *site)
+{
+	if (!site->content.folder[0])
+		return;
+	face_blocks_finish(&site->blocks);
+	master_destroy(site->master);
+	scans_destroy(site->scans);
+	content_release(&site->content);
+	pthread_mutex_destroy(&site->saving);
+	*site = (struct site){ 0 };
+}

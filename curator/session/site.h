@@ -1,0 +1,27 @@
+/* What all sessions share: a content folder, its master to draw, and its scans to mark. */
+#ifndef GOPURA_CURATOR_SESSION_SITE_H
+#define GOPURA_CURATOR_SESSION_SITE_H
+
+#include <pthread.h>
+
+#include "curator/select/face_pick.h"
+#include "pipeline/content/scans.h"
+#include "pipeline/hierarchy/master.h"
+
+struct site {
+	struct content content;
+	struct scans *scans;       /* owned */
+	struct master *master;     /* owned */
+	const struct mesh *mesh;   /* borrowed from scans */
+	struct face_blocks blocks; /* of the mesh */
+	bool lit;
+	pthread_mutex_t saving; /* held while files of the folder are read or written */
+};
+
+/* Opens the folder, whose master must be there and of its scans. Takes the folder's lock only while
+ * it reads the scans, so that gopura-content may build beside it. *site is zeroed on failure.
+ * Negative errno, with a diagnostic. */
+must_check int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics);
+void site_close(struct site *site); /* zeroed is fine */
+
+#endif
