@@ -205,7 +205,8 @@ static int change_region(struct session *session, enum message_kind kind)
 	}
 }
 
-static void use_parts(struct session *session, const struct message *message)
+/* Answers by itself, but where the region was opened. */
+static bool use_parts(struct session *session, const struct message *message)
 {
 	struct site *site = session->options.site;
 	struct diagnostics diagnostics = { 0 };
@@ -218,18 +219,21 @@ static void use_parts(struct session *session, const struct message *message)
 				     message->language, &diagnostics);
 	if (rc < 0) {
 		send_error(session, diagnostics_cause(&diagnostics, rc));
-		return;
+		return true;
 	}
-	if (message->kind == MESSAGE_SAVE) {
-		log_info("curator", "saved part %s with %" PRIu32 " triangles", message->id,
-			 session->set.count);
-		send_parts(session, message->id);
-	}
+	if (message->kind == MESSAGE_OPEN)
+		return false;
+	log_info("curator", "saved part %s with %" PRIu32 " triangles", message->id,
+		 session->set.count);
+	send_parts(session, message->id);
+	return true;
 }
 
+/* Every message has one answer: an error, what was asked for, or the state of the region. */
 static void carry_out(struct session *session, const struct message *message)
 {
 	const uint32_t steps = session->set.done_count, triangles = session->set.count;
+	bool answered = message->kind == MESSAGE_PICK;
 	int rc = 0;
 
 	switch (message->kind) {
@@ -243,16 +247,16 @@ static void carry_out(struct session *session, const struct message *message)
 		break;
 	case MESSAGE_SAVE:
 	case MESSAGE_OPEN:
-		use_parts(session, message);
+		answered = use_parts(session, message);
 		break;
 	default:
 		rc = change_region(session, message->kind);
 	}
-	if (rc < 0)
-		send_error(session, sentence(rc));
 	if (session->set.done_count != steps || session->set.count != triangles)
 		session->region_changed = true;
-	if (message->kind != MESSAGE_PICK)
+	if (rc < 0)
+		send_error(session, sentence(rc));
+	else if (!answered)
 		send_region(session);
 }
 

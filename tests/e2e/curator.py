@@ -1,0 +1,378 @@
+"""A browser for gopura-curator: opens its WebSocket by hand and checks what it answers.
+
+    tests/e2e/curator.py PORT FOLDER check     everything that docs/curator.md promises
+    tests/e2e/curator.py PORT FOLDER measure   prints the time from an input to its picture
+
+Standard library only."""
+
+import base64
+import json
+import math
+import os
+import socket
+import statistics
+import struct
+import sys
+import time
+
+WIDTH, HEIGHT = 1280, 720
+
+
+class Browser:
+    """A connection. Texts are kept until they are asked for; pictures are told to have arrived at once."""
+
+    def __init__(self, port, origin=None, host=None, width=WIDTH, height=HEIGHT):
+        self.port, self.width, self.height = port, width, height
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=120)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.data, self.texts, self.view = b"", [], 0
+        host = host or f"127.0.0.1:{port}"
+        key = base64.b64encode(os.urandom(16)).decode()
+        lines = ["GET /socket HTTP/1.1", f"Host: {host}", "Upgrade: websocket", "Connection: Upgrade",
+                 f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
+        if origin:
+            lines.append(f"Origin: {origin}")
+        self.socket.sendall("\r\n".join(lines + ["", ""]).encode())
+        while b"\r\n\r\n" not in self.data:
+            self.more()
+        head, self.data = self.data.split(b"\r\n\r\n", 1)
+        if b" 101 " not in head.split(b"\r\n")[0]:
+            raise ConnectionError(head.split(b"\r\n")[0].decode())
+
+    def more(self):
+        piece = self.socket.recv(1 << 16)
+        if not piece:
+            raise ConnectionError("closed")
+        self.data += piece
+
+    def take(self, size):
+        while len(self.data) < size:
+            self.more()
+        piece, self.data = self.data[:size], self.data[size:]
+        return piece
+
+    def send_raw(self, payload, opcode=1):
+        head = struct.pack("!B", 0x80 | opcode)
+        if len(payload) < 126:
+            head += struct.pack("!B", 0x80 | len(payload))
+        elif len(payload) < 1 << 16:
+            head += struct.pack("!BH", 0x80 | 126, len(payload))
+        else:
+            head += struct.pack("!BQ", 0x80 | 127, len(payload))
+        mask = os.urandom(4)
+        long_mask = (mask * (len(payload) // 4 + 1))[:len(payload)]
+        masked = (int.from_bytes(payload, "big") ^ int.from_bytes(long_mask, "big")).to_bytes(len(payload), "big")
+        self.socket.sendall(head + mask + masked)
+
+    def send(self, kind, **values):
+        self.send_raw(json.dumps({"type": kind, **values}).encode())
+
+    def receive(self):
+        """Returns ("text", object) or ("picture", view, sharp, jpeg)."""
+        whole = b""
+        while True:
+            first, second = self.take(2)
+            size = second & 127
+            if size == 126:
+                size = struct.unpack("!H", self.take(2))[0]
+            elif size == 127:
+                size = struct.unpack("!Q", self.take(8))[0]
+            payload, opcode = self.take(size), first & 15
+            if opcode == 8:
+                raise ConnectionError("closed")
+            if opcode == 9:
+                self.send_raw(payload, 10)
+                continue
+            if opcode in (1, 2):
+                kind = opcode
+            whole += payload
+            if first & 0x80:
+                break
+        if kind == 1:
+            return ("text", json.loads(whole))
+        self.send("got")
+        view, flags = struct.unpack("<II", whole[:8])
+        return ("picture", view, bool(flags & 1), whole[8:])
+
+    def text(self, kind):
+        """Returns the next text of that kind; pictures and other texts before it are dropped."""
+        while True:
+            got = self.receive()
+            if got[0] == "text" and got[1]["type"] == kind:
+                return got[1]
+            if got[0] == "text" and got[1]["type"] == "error":
+                raise AssertionError(got[1]["message"])
+
+    def look(self, eye, target, moving=False):
+        self.view += 1
+        self.send("camera", view=self.view, eye=eye, target=target, fov=40, width=self.width, height=self.height,
+                  moving=moving)
+
+    def picture(self, sharp=True):
+        """Returns the next picture of the newest camera."""
+        while True:
+            got = self.receive()
+            if got[0] == "text" and got[1]["type"] == "error":
+                raise AssertionError(got[1]["message"])
+            if got[0] == "picture" and got[1] == self.view and got[2] == sharp:
+                return got[3]
+
+    def stroke(self, tool, points, **values):
+        self.send("stroke", view=self.view, tool=tool, width=12, points=[c for p in points for c in p], **values)
+
+    def ask(self, kind, **values):
+        """Sends it and returns the state of the region after it."""
+        self.send(kind, **values)
+        return self.text("region")
+
+
+def jpeg_size(data):
+    """Walks the segments of a JPEG and returns its width and height."""
+    assert data[:2] == b"\xff\xd8" and data[-2:] == b"\xff\xd9", "not a whole JPEG"
+    at = 2
+    while True:
+        marker, size = struct.unpack("!xBH", data[at:at + 4])
+        if marker in (0xc0, 0xc1, 0xc2):
+            height, width = struct.unpack("!HH", data[at + 5:at + 9])
+            return width, height
+        at += 2 + size
+
+
+def circle(radius, middle=(WIDTH / 2, HEIGHT / 2), count=60):
+    return [(middle[0] + radius * math.cos(2 * math.pi * i / count),
+             middle[1] + radius * math.sin(2 * math.pi * i / count)) for i in range(count)]
+
+
+def start(port, **options):
+    browser = Browser(port, **options)
+    hello = browser.text("hello")
+    parts = browser.text("parts")["parts"]
+    region = browser.text("region")
+    assert region["triangles"] == 0 and region["undo"] == 0 and region["redo"] == 0, region
+    return browser, hello, parts
+
+
+def error_of(browser):
+    while True:
+        got = browser.receive()
+        if got[0] == "text" and got[1]["type"] == "error":
+            return got[1]["message"]
+
+
+def refused(port, **options):
+    try:
+        Browser(port, **options)
+    except ConnectionError:
+        return
+    raise AssertionError(f"a socket was opened for {options}")
+
+
+def check_malformed(browser):
+    view = browser.view
+    good = {"type": "stroke", "view": view, "tool": "lasso", "width": 12, "points": [1, 1, 9, 1, 9, 9]}
+    for text in ("", "no JSON", "[]", "7", "{}", '{"type": 5}', '{"type": "unknown"}', "{" * 1000, '{"type": "undo"'):
+        browser.send_raw(text.encode())
+        assert error_of(browser)
+    for change in ({"points": [1]}, {"points": [1, 2, 3]}, {"points": "many"}, {"points": [1, "2"]}, {"points": []},
+                   {"points": [1, 1e9]}, {"points": [0] * 50002}, {"tool": "axe"}, {"tool": 1}, {"width": -1},
+                   {"width": None}, {"take": 1}, {"through": "yes"}, {"view": -1}, {"view": 1e99}):
+        browser.send_raw(json.dumps({**good, **change}).encode())
+        assert error_of(browser)
+    browser.send_raw(json.dumps(good).replace("9", "NaN").encode())
+    assert error_of(browser)
+    browser.send_raw(json.dumps(good).replace("9", "1e999").encode())
+    assert error_of(browser)
+    camera = {"type": "camera", "view": 1, "eye": [0, 0, 0], "target": [1, 0, 0], "fov": 40, "width": 640,
+              "height": 360}
+    for change in ({"eye": [0, 0]}, {"eye": [0, 0, 1e99]}, {"eye": [1, 0, 0]}, {"fov": 0}, {"width": 1e6},
+                   {"height": 0}, {"width": "640"}, {"moving": 2}):
+        browser.send_raw(json.dumps({**camera, **change}).encode())
+        assert error_of(browser)
+    for part in ("../x", "", "A", "x" * 65, 5, "a/b"):
+        browser.send("save", id=part, title="x")
+        assert error_of(browser)
+    browser.send("save", id="x", title="two\nlines")
+    assert error_of(browser)
+    browser.send("stroke", view=view + 7, tool="lasso", width=12, points=good["points"])
+    assert "changed" in error_of(browser)
+    browser.stroke("lasso", [(5, 5)])
+    assert "nothing" in error_of(browser)
+    browser.send("open", id="no-such-part")
+    assert "no-such-part" in error_of(browser)
+
+
+def check_tools(browser):
+    """Marks the middle of the sharp picture with each tool, and goes back and forth."""
+    browser.stroke("lasso", circle(150))
+    seen = browser.text("region")
+    assert seen["triangles"] > 100 and seen["undo"] == 1, seen
+    assert jpeg_size(browser.picture()) == (WIDTH, HEIGHT)
+    browser.stroke("lasso", circle(150), through=True)
+    through = browser.text("region")
+    assert through["triangles"] > seen["triangles"], (seen, through)
+    browser.stroke("lasso", circle(60), take=True, through=True)
+    less = browser.text("region")
+    assert less["triangles"] < through["triangles"], (through, less)
+    for wanted in (through, seen):
+        assert browser.ask("undo")["triangles"] == wanted["triangles"]
+    state = browser.ask("undo")
+    assert state["triangles"] == 0 and state["undo"] == 0 and state["redo"] == 3, state
+    assert browser.ask("undo")["triangles"] == 0
+    for wanted in (seen, through, less):
+        state = browser.ask("redo")
+        assert state["triangles"] == wanted["triangles"]
+    assert state["redo"] == 0 and browser.ask("redo")["triangles"] == less["triangles"]
+    grown = browser.ask("grow")
+    assert grown["triangles"] > less["triangles"]
+    assert browser.ask("shrink")["triangles"] < grown["triangles"]
+    assert browser.ask("empty")["triangles"] == 0
+    browser.stroke("heavy", circle(150))
+    assert browser.text("region")["triangles"] > 100
+    assert browser.ask("undo")["triangles"] == 0
+    browser.stroke("part", [(600, 360), (680, 360)])
+    state = browser.text("region")
+    assert state["marks"] and state["triangles"] == 0, state
+    browser.stroke("rest", circle(340))
+    assert browser.text("region")["triangles"] == 0
+    state = browser.ask("apply", view=browser.view)
+    assert state["triangles"] > 100 and not state["marks"], state
+    assert browser.ask("undo")["triangles"] == 0
+    browser.send("pick", view=browser.view, points=[WIDTH / 2, HEIGHT / 2])
+    assert len(browser.text("point")["at"]) == 3
+    browser.send("pick", view=browser.view, points=[0.5, 0.5])
+    assert "at" not in browser.text("point")
+
+
+def check_parts(browser, port, folder):
+    before = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
+    browser.send("save", id="the-middle", title="The middle")
+    assert "nothing is marked" in error_of(browser)
+    browser.stroke("lasso", circle(120))
+    marked = browser.text("region")["triangles"]
+    browser.send("save", id="the-middle")
+    assert "title" in error_of(browser)
+    browser.send("save", id="the-middle", title="The \"middle\" \u17a2")
+    saved = browser.text("parts")
+    assert saved["saved"] == "the-middle"
+    assert {"id": "the-middle", "title": "The \"middle\" \u17a2", "faces": True} in saved["parts"]
+    after = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
+    assert after["parts"].pop() == {"id": "the-middle", "region": {"kind": "faces",
+                                    "file": "regions/the-middle.faces"}, "title": {"en": "The \"middle\" \u17a2"}}
+    assert after == before, "something else in parts.json has changed"
+    other, _, parts = start(port)
+    assert any(part["id"] == "the-middle" for part in parts)
+    assert other.ask("open", id="the-middle")["triangles"] == marked
+    shape = next(part["id"] for part in parts if not part["faces"])
+    other.send("open", id=shape)
+    assert "shape" in error_of(other)
+    # Saved again under the same id: the region is replaced, the title stays.
+    assert other.ask("open", id="the-middle")["triangles"] == marked
+    more = other.ask("grow")["triangles"]
+    other.send("save", id="the-middle")
+    other.text("parts")
+    assert browser.ask("open", id="the-middle")["triangles"] == more
+    last = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
+    assert last["parts"][-1]["title"] == {"en": "The \"middle\" \u17a2"} and len(last["parts"]) == len(after["parts"]) + 1
+
+
+def check_two(port, eye, target):
+    """Neither of two browsers that move at once waits for the other to stop."""
+    browsers = [start(port)[0] for _ in range(2)]
+    counts = [0, 0]
+    for step in range(10):
+        for browser in browsers:
+            browser.look([eye[0] + 0.1 * step, eye[1], eye[2]], target, moving=True)
+        for n, browser in enumerate(browsers):
+            assert jpeg_size(browser.picture(sharp=False)) == (WIDTH / 2, HEIGHT / 2)
+            counts[n] += 1
+    assert counts == [10, 10]
+    # Many cameras at once: the newest wins, and no picture of most others is drawn.
+    for step in range(200):
+        browsers[0].look([eye[0] - 0.01 * step, eye[1], eye[2]], target, moving=True)
+    browsers[0].look(eye, target)
+    pictures = 0
+    while True:
+        got = browsers[0].receive()
+        pictures += got[0] == "picture"
+        if got[0] == "picture" and got[1] == browsers[0].view:
+            break
+    assert pictures < 150, f"{pictures} pictures of 201 cameras"
+
+
+def check(port, folder):
+    for host, origin in ((None, "http://evil.example"), (f"evil.example:{port}", None),
+                         (None, f"http://127.0.0.1:{port + 1}"), (None, "null")):
+        refused(port, host=host, origin=origin)
+    Browser(port, origin=f"http://localhost:{port}", host=f"localhost:{port}")
+    browser, hello, parts = start(port, origin=f"http://127.0.0.1:{port}")
+    assert hello["triangles"] > 1000 and parts, hello
+    eye, target = hello["eye"], hello["target"]
+    browser.look(eye, target, moving=True)
+    assert jpeg_size(browser.picture(sharp=False)) == (WIDTH / 2, HEIGHT / 2)
+    browser.look(eye, target)
+    assert jpeg_size(browser.picture()) == (WIDTH, HEIGHT)
+    check_malformed(browser)
+    check_tools(browser)
+    check_parts(browser, port, folder)
+    check_two(port, eye, target)
+    # A message beyond the limit ends its own connection only.
+    rude = Browser(port)
+    try:
+        rude.send_raw(b"x" * (1 << 20))
+        while True:
+            rude.receive()
+    except (ConnectionError, BrokenPipeError):
+        pass
+    assert browser.ask("empty")["triangles"] == 0
+    print("all is as promised")
+
+
+def orbit(eye, target, angle):
+    x, y = eye[0] - target[0], eye[1] - target[1]
+    return [target[0] + x * math.cos(angle) - y * math.sin(angle),
+            target[1] + x * math.sin(angle) + y * math.cos(angle), eye[2]]
+
+
+def measure(port, count=60):
+    browser, hello, _ = start(port)
+    eye, target = hello["eye"], hello["target"]
+    moving, sharp = [], []
+    for n in range(count):
+        begun = time.monotonic()
+        browser.look(orbit(eye, target, 0.02 * n), target, moving=True)
+        bytes_moving = len(browser.picture(sharp=False))
+        moving.append(1000 * (time.monotonic() - begun))
+    for n in range(10):
+        begun = time.monotonic()
+        browser.look(orbit(eye, target, 0.3 * n), target)
+        bytes_sharp = len(browser.picture())
+        sharp.append(1000 * (time.monotonic() - begun))
+    begun = time.monotonic()
+    browser.stroke("lasso", circle(150))
+    region = browser.text("region")["triangles"]
+    lasso = 1000 * (time.monotonic() - begun)
+    browser.picture()
+    shown = 1000 * (time.monotonic() - begun)
+    begun = time.monotonic()
+    browser.stroke("heavy", circle(150))
+    browser.text("region")
+    heavy = 1000 * (time.monotonic() - begun)
+    for n in range(count):
+        begun = time.monotonic()
+        browser.look(orbit(eye, target, 2.7 + 0.02 * n), target, moving=True)
+        browser.picture(sharp=False)
+        if n == 0:
+            with_region = []
+        with_region.append(1000 * (time.monotonic() - begun))
+    print(f"{hello['triangles']} triangles, {browser.width} x {browser.height}; milliseconds from input to picture")
+    for name, values in (("moving", moving), ("moving, with the region", with_region), ("sharp", sharp)):
+        print(f"{name}: median {statistics.median(values):.0f}, worst {max(values):.0f}")
+    print(f"lasso of {region} triangles: {lasso:.0f} to the count, {shown:.0f} to the picture; heavy lasso {heavy:.0f}")
+    print(f"a picture: {bytes_moving // 1024} KB moving, {bytes_sharp // 1024} KB sharp")
+
+
+if __name__ == "__main__":
+    if sys.argv[3] == "measure":
+        measure(int(sys.argv[1]))
+    else:
+        check(int(sys.argv[1]), sys.argv[2])
