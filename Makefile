@@ -72,7 +72,7 @@ BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo test check soak golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo curator test check soak golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -94,6 +94,9 @@ $(BUILD)/.test-deps: tests/tools.txt | $(BUILD)/.deps
 
 demo: all ## build and show the demo temple (Ctrl-C ends it)
 	@demo/run.sh
+
+curator: all ## build, and serve the demo temple to a curator's browser (Ctrl-C ends it); TRIANGLES=1000000
+	@demo/curator.sh $(TRIANGLES)
 
 test: all $(BUILD)/.test-deps ## everything: build, unit, sanitizers, pictures, end-to-end, style, fuzz, QEMU; T=NAME: one, as T=test_cut or T=e2e/kiosk
 	@tests/run.sh $(if $(T),only $(T),all)

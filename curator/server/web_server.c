@@ -11,14 +11,14 @@
 
 #include "base/log.h"
 #include "curator/server/web_files.h"
-#include "curator/session/message.h"
+#include "curator/session/request.h"
 #include "curator/session/session.h"
 
 enum { HOST_BYTES = 64, HEADER_BYTES = 2048, PIECE_BYTES = 64 << 10 };
 
 /* What a browser gets is asked for by the page itself, and by nobody else. */
 static const char policy[] =
-	"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+	"default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; "
 	"connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 struct web_server {
@@ -132,7 +132,7 @@ static int open_session(struct lws *wsi, struct client *client)
 		log_warn("curator", "refused a browser: %d are connected", WEB_SERVER_SESSIONS_MAX);
 		return -1;
 	}
-	buffer_init(&client->input, MESSAGE_BYTES_MAX);
+	buffer_init(&client->input, REQUEST_BYTES_MAX);
 	buffer_init(&client->output, LWS_PRE + SESSION_MESSAGE_BYTES_MAX);
 	rc = session_create(&client->session, &options);
 	if (rc < 0) {

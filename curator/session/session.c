@@ -9,10 +9,10 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "curator/session/message.h"
 #include "curator/session/painter.h"
 #include "curator/session/part_store.h"
-#include "curator/session/tools.h"
+#include "curator/session/request.h"
+#include "curator/session/selection.h"
 #include "geometry/vec.h"
 
 enum {
@@ -30,7 +30,7 @@ struct session {
 	/* Of the thread alone. */
 	struct region_set set;
 	struct painter *painter; /* owned */
-	struct tools tools;
+	struct selection selection;
 	uint32_t sharp_view; /* the number of the sharp view's camera */
 	bool region_changed, prepared;
 
@@ -38,9 +38,9 @@ struct session {
 	pthread_cond_t changed;
 	/* Under the lock. */
 	bool ending, lost;
-	struct message commands[COMMANDS_MAX]; /* a ring */
+	struct request commands[COMMANDS_MAX]; /* a ring */
 	uint32_t command_first, command_count;
-	struct message camera; /* the newest */
+	struct request camera; /* the newest */
 	bool camera_is_new;
 	char *texts[TEXTS_MAX]; /* owned; a ring */
 	uint32_t text_first, text_count;
@@ -95,7 +95,7 @@ static void send_region(struct session *session)
 	cJSON_AddNumberToObject(json, "triangles", set->count);
 	cJSON_AddNumberToObject(json, "undo", set->done_count);
 	cJSON_AddNumberToObject(json, "redo", set->step_count - set->done_count);
-	cJSON_AddBoolToObject(json, "marks", session->tools.has_marks);
+	cJSON_AddBoolToObject(json, "marks", session->selection.has_marks);
 	send_json(session, json);
 }
 
@@ -164,39 +164,39 @@ static const char *sentence(int rc)
 	}
 }
 
-static int work_with_tools(struct session *session, const struct message *message)
+static int work_with_tools(struct session *session, const struct request *request)
 {
-	struct tools *tools = &session->tools;
+	struct selection *selection = &session->selection;
 	float point_m[3];
 	cJSON *json;
 
-	if (!tools->image || message->view != session->sharp_view)
+	if (!selection->image || request->view != session->sharp_view)
 		return -ESTALE;
-	if (message->kind == MESSAGE_STROKE)
-		return tools_stroke(tools, message);
-	if (message->kind == MESSAGE_APPLY)
-		return tools_apply(tools, message->take, message->through);
+	if (request->kind == REQUEST_STROKE)
+		return selection_stroke(selection, request);
+	if (request->kind == REQUEST_APPLY)
+		return selection_apply(selection, request->take, request->through);
 	json = message_of("point");
-	if (tools_pick(tools, message->points_px[0], point_m))
+	if (selection_pick(selection, request->points_px[0], point_m))
 		add_point(json, "at", point_m);
 	send_json(session, json);
 	return 0;
 }
 
-static int change_region(struct session *session, enum message_kind kind)
+static int change_region(struct session *session, enum request_kind kind)
 {
 	struct region_set *set = &session->set;
 
 	switch (kind) {
-	case MESSAGE_UNDO:
+	case REQUEST_UNDO:
 		region_set_undo(set); /* false: there was nothing to undo */
 		return 0;
-	case MESSAGE_REDO:
+	case REQUEST_REDO:
 		region_set_redo(set);
 		return 0;
-	case MESSAGE_GROW:
+	case REQUEST_GROW:
 		return region_set_grow(set, session->options.site->mesh);
-	case MESSAGE_SHRINK:
+	case REQUEST_SHRINK:
 		return region_set_shrink(set, session->options.site->mesh);
 	default:
 		region_set_begin(set);
@@ -206,51 +206,51 @@ static int change_region(struct session *session, enum message_kind kind)
 }
 
 /* Answers by itself, but where the region was opened. */
-static bool use_parts(struct session *session, const struct message *message)
+static bool use_parts(struct session *session, const struct request *request)
 {
 	struct site *site = session->options.site;
 	struct diagnostics diagnostics = { 0 };
 	int rc;
 
-	if (message->kind == MESSAGE_OPEN)
-		rc = part_store_open(site, &session->set, message->id, &diagnostics);
+	if (request->kind == REQUEST_OPEN)
+		rc = part_store_open(site, &session->set, request->id, &diagnostics);
 	else
-		rc = part_store_save(site, &session->set, message->id, message->title,
-				     message->language, &diagnostics);
+		rc = part_store_save(site, &session->set, request->id, request->title,
+				     request->language, &diagnostics);
 	if (rc < 0) {
 		send_error(session, diagnostics_cause(&diagnostics, rc));
 		return true;
 	}
-	if (message->kind == MESSAGE_OPEN)
+	if (request->kind == REQUEST_OPEN)
 		return false;
-	log_info("curator", "saved part %s with %" PRIu32 " triangles", message->id,
+	log_info("curator", "saved part %s with %" PRIu32 " triangles", request->id,
 		 session->set.count);
-	send_parts(session, message->id);
+	send_parts(session, request->id);
 	return true;
 }
 
 /* Every message has one answer: an error, what was asked for, or the state of the region. */
-static void carry_out(struct session *session, const struct message *message)
+static void carry_out(struct session *session, const struct request *request)
 {
 	const uint32_t steps = session->set.done_count, triangles = session->set.count;
-	bool answered = message->kind == MESSAGE_PICK;
+	bool answered = request->kind == REQUEST_PICK;
 	int rc = 0;
 
-	switch (message->kind) {
-	case MESSAGE_STROKE:
-	case MESSAGE_APPLY:
-	case MESSAGE_PICK:
-		rc = work_with_tools(session, message);
+	switch (request->kind) {
+	case REQUEST_STROKE:
+	case REQUEST_APPLY:
+	case REQUEST_PICK:
+		rc = work_with_tools(session, request);
 		break;
-	case MESSAGE_CLEAR:
-		tools_clear(&session->tools);
+	case REQUEST_CLEAR:
+		selection_clear(&session->selection);
 		break;
-	case MESSAGE_SAVE:
-	case MESSAGE_OPEN:
-		answered = use_parts(session, message);
+	case REQUEST_SAVE:
+	case REQUEST_OPEN:
+		answered = use_parts(session, request);
 		break;
 	default:
-		rc = change_region(session, message->kind);
+		rc = change_region(session, request->kind);
 	}
 	if (session->set.done_count != steps || session->set.count != triangles)
 		session->region_changed = true;
@@ -297,7 +297,7 @@ static void set_depths(const struct site *site, struct camera *camera)
 	camera->far_m = vec_length(size_m) * 100;
 }
 
-static void draw(struct session *session, const struct message *camera)
+static void draw(struct session *session, const struct request *camera)
 {
 	struct camera eye = camera->camera;
 	const struct view_image *image;
@@ -307,7 +307,7 @@ static void draw(struct session *session, const struct message *camera)
 	set_depths(session->options.site, &eye);
 	begin_frame(&frame, camera->view, !camera->moving);
 	if (!camera->moving) {
-		rc = tools_look(&session->tools, NULL, NULL);
+		rc = selection_look(&session->selection, NULL, NULL);
 		(void)rc; /* it drops the view, and allocates nothing */
 	}
 	rc = painter_draw(session->painter, &eye, !camera->moving, &frame);
@@ -316,7 +316,7 @@ static void draw(struct session *session, const struct message *camera)
 	if (camera->moving || rc < 0)
 		return;
 	image = painter_view(session->painter, &eye);
-	rc = tools_look(&session->tools, image, &eye);
+	rc = selection_look(&session->selection, image, &eye);
 	if (rc < 0)
 		send_error(session, strerror(-rc));
 	session->sharp_view = camera->view;
@@ -351,7 +351,8 @@ static enum task next_task(const struct session *session)
 		return TASK_COMMAND;
 	if (may_draw && session->camera_is_new)
 		return TASK_DRAW;
-	if (may_draw && session->region_changed && session->tools.image && !session->camera.moving)
+	if (may_draw && session->region_changed && session->selection.image &&
+	    !session->camera.moving)
 		return TASK_AGAIN;
 	return TASK_NONE;
 }
@@ -361,7 +362,7 @@ static bool wait_for_news(struct session *session)
 {
 	struct timespec until;
 
-	if (session->prepared || !session->tools.image) {
+	if (session->prepared || !session->selection.image) {
 		pthread_cond_wait(&session->changed, &session->lock);
 		return true;
 	}
@@ -373,7 +374,7 @@ static bool wait_for_news(struct session *session)
 }
 
 /* Waits for the next task, and takes what it is about. The tools get ready meanwhile. */
-static enum task take_task(struct session *session, struct message *about)
+static enum task take_task(struct session *session, struct request *about)
 {
 	enum task task;
 	bool idle = false;
@@ -395,7 +396,7 @@ static enum task take_task(struct session *session, struct message *about)
 
 static void prepare(struct session *session)
 {
-	int rc = tools_prepare(&session->tools);
+	int rc = selection_prepare(&session->selection);
 
 	session->prepared = true;
 	if (rc < 0)
@@ -405,7 +406,7 @@ static void prepare(struct session *session)
 static void *work(void *user)
 {
 	struct session *session = user;
-	struct message about;
+	struct request about;
 
 	send_hello(session);
 	for (;;)
@@ -414,7 +415,7 @@ static void *work(void *user)
 			return NULL;
 		case TASK_COMMAND:
 			carry_out(session, &about);
-			message_finish(&about);
+			request_finish(&about);
 			break;
 		case TASK_DRAW:
 			draw(session, &about);
@@ -444,7 +445,7 @@ int session_create(struct session **out, const struct session_options *options)
 	pthread_cond_init(&session->changed, &attributes);
 	pthread_condattr_destroy(&attributes);
 	rc = region_set_init(&session->set, options->site->mesh->triangle_count);
-	tools_init(&session->tools, options->site, &session->set);
+	selection_init(&session->selection, options->site, &session->set);
 	if (rc == 0)
 		rc = painter_create(&session->painter, options->site, &session->set);
 	if (rc == 0)
@@ -477,11 +478,11 @@ void session_destroy(struct session *session)
 		return;
 	end_thread(session);
 	for (uint32_t n = 0; n < session->command_count; n++)
-		message_finish(&session->commands[(session->command_first + n) % COMMANDS_MAX]);
+		request_finish(&session->commands[(session->command_first + n) % COMMANDS_MAX]);
 	for (uint32_t n = 0; n < session->text_count; n++)
 		free(session->texts[(session->text_first + n) % TEXTS_MAX]);
 	buffer_finish(&session->frame);
-	tools_finish(&session->tools);
+	selection_finish(&session->selection);
 	painter_destroy(session->painter);
 	region_set_finish(&session->set);
 	pthread_cond_destroy(&session->changed);
@@ -492,14 +493,14 @@ void session_destroy(struct session *session)
 /* ---- the server's side */
 
 /* Under the lock. Returns false if the queue is full; otherwise the message is taken. */
-static bool enqueue(struct session *session, const struct message *message)
+static bool enqueue(struct session *session, const struct request *request)
 {
-	switch (message->kind) {
-	case MESSAGE_CAMERA:
-		session->camera = *message;
+	switch (request->kind) {
+	case REQUEST_CAMERA:
+		session->camera = *request;
 		session->camera_is_new = true;
 		return true;
-	case MESSAGE_GOT:
+	case REQUEST_GOT:
 		if (session->frames_underway > 0)
 			session->frames_underway--;
 		return true;
@@ -507,28 +508,28 @@ static bool enqueue(struct session *session, const struct message *message)
 		if (session->command_count == COMMANDS_MAX)
 			return false;
 		session->commands[(session->command_first + session->command_count++) %
-				  COMMANDS_MAX] = *message;
+				  COMMANDS_MAX] = *request;
 		return true;
 	}
 }
 
 void session_receive(struct session *session, const char *text, size_t bytes)
 {
-	char problem[MESSAGE_PROBLEM_BYTES];
-	struct message message;
+	char problem[REQUEST_PROBLEM_BYTES];
+	struct request request;
 	bool taken;
 
-	if (message_parse(&message, text, bytes, problem) < 0) {
+	if (request_parse(&request, text, bytes, problem) < 0) {
 		send_error(session, problem);
 		return;
 	}
 	pthread_mutex_lock(&session->lock);
-	taken = enqueue(session, &message);
+	taken = enqueue(session, &request);
 	pthread_cond_signal(&session->changed);
 	pthread_mutex_unlock(&session->lock);
 	if (taken)
 		return;
-	message_finish(&message);
+	request_finish(&request);
 	send_error(session, "too much at once: wait for the answers");
 }
 

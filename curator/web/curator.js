@@ -189,9 +189,10 @@ function pixelOf(event) {
 }
 
 function extend(event) {
-  for (const one of event.getCoalescedEvents ? [event, ...event.getCoalescedEvents()].slice(-Math.max(1, event.getCoalescedEvents().length)) : [event]) {
+  const between = event.getCoalescedEvents ? event.getCoalescedEvents() : [];
+  for (const one of between.length ? between : [event]) {
     const [x, y] = pixelOf(one), last = stroke.points.length;
-    if (last >= 2 && Math.hypot(x - stroke.points[last - 2], y - stroke.points[last - 1]) < 1.5) continue;
+    if (Math.hypot(x - stroke.points[last - 2], y - stroke.points[last - 1]) < 1.5) continue;
     if (last < 2 * STROKE_POINTS_MAX) stroke.points.push(x, y);
   }
   drawStrokes();

@@ -1,13 +1,13 @@
 /* The tools of a session: strokes on the sharp view become changes of the region. One thread. */
-#ifndef GOPURA_CURATOR_SESSION_TOOLS_H
-#define GOPURA_CURATOR_SESSION_TOOLS_H
+#ifndef GOPURA_CURATOR_SESSION_SELECTION_H
+#define GOPURA_CURATOR_SESSION_SELECTION_H
 
 #include "curator/region/region_set.h"
 #include "curator/select/superpixels.h"
-#include "curator/session/message.h"
+#include "curator/session/request.h"
 #include "curator/session/site.h"
 
-struct tools {
+struct selection {
 	struct site *site;               /* borrowed, as all but what is owned */
 	struct region_set *set;          /* changed by strokes */
 	const struct view_image *image;  /* NULL: no view */
@@ -18,24 +18,24 @@ struct tools {
 };
 
 /* site and set are borrowed. */
-void tools_init(struct tools *tools, struct site *site, struct region_set *set);
-void tools_finish(struct tools *tools); /* zeroed is fine */
+void selection_init(struct selection *selection, struct site *site, struct region_set *set);
+void selection_finish(struct selection *selection); /* zeroed is fine */
 
 /* Works on another view, or NULL: on none; strokes that are kept are dropped. The image is borrowed
  * until the next call. -ENOMEM; then there is no view. */
-must_check int tools_look(struct tools *tools, const struct view_image *image,
-			  const struct camera *camera);
+must_check int selection_look(struct selection *selection, const struct view_image *image,
+			      const struct camera *camera);
 /* Prepares for the first stroke, if that is not done. -ENOMEM. */
-must_check int tools_prepare(struct tools *tools);
+must_check int selection_prepare(struct selection *selection);
 
 /* Carries out a stroke: a lasso or a heavy lasso changes the region, the others are kept.
  * -ESTALE: there is no view. -EINVAL: it marks nothing. -ENOMEM. */
-must_check int tools_stroke(struct tools *tools, const struct message *stroke);
+must_check int selection_stroke(struct selection *selection, const struct request *stroke);
 /* Finds the part from the strokes kept, and changes the region. Errors likewise. */
-must_check int tools_apply(struct tools *tools, bool take, bool through);
-void tools_clear(struct tools *tools);
+must_check int selection_apply(struct selection *selection, bool take, bool through);
+void selection_clear(struct selection *selection);
 
 /* Finds where the surface is at a pixel. Returns false if there is none. */
-bool tools_pick(const struct tools *tools, const float at_px[2], float point_m[3]);
+bool selection_pick(const struct selection *selection, const float at_px[2], float point_m[3]);
 
 #endif

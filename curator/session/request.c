@@ -1,5 +1,5 @@
 /* Reads a browser's JSON; nothing in it is trusted. */
-#include "curator/session/message.h"
+#include "curator/session/request.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -20,7 +20,7 @@ struct parse {
 
 static int wrong(const struct parse *parse, const char *key, const char *expects)
 {
-	snprintf(parse->problem, MESSAGE_PROBLEM_BYTES, "\"%s\" must be %s", key, expects);
+	snprintf(parse->problem, REQUEST_PROBLEM_BYTES, "\"%s\" must be %s", key, expects);
 	return -EINVAL;
 }
 
@@ -91,7 +91,7 @@ static int read_flag(const struct parse *parse, const char *key, bool *out)
 	return 0;
 }
 
-static int read_flags(const struct parse *parse, struct message *out)
+static int read_flags(const struct parse *parse, struct request *out)
 {
 	int rc = read_flag(parse, "take", &out->take);
 
@@ -100,7 +100,7 @@ static int read_flags(const struct parse *parse, struct message *out)
 
 /* ---- kinds */
 
-static int read_camera(const struct parse *parse, struct message *out)
+static int read_camera(const struct parse *parse, struct request *out)
 {
 	struct camera *camera = &out->camera;
 	double fov_deg;
@@ -127,7 +127,7 @@ static int read_camera(const struct parse *parse, struct message *out)
 }
 
 /* x0, y0, x1, y1 and so on. */
-static int read_points(const struct parse *parse, struct message *out, uint32_t most)
+static int read_points(const struct parse *parse, struct request *out, uint32_t most)
 {
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(parse->root, "points"), *item;
 	const int count = cJSON_IsArray(list) ? cJSON_GetArraySize(list) : 0;
@@ -151,20 +151,20 @@ static int read_points(const struct parse *parse, struct message *out, uint32_t 
 	return 0;
 }
 
-static int read_tool(const struct parse *parse, enum message_tool *out)
+static int read_tool(const struct parse *parse, enum request_tool *out)
 {
 	static const char *const names[] = { "lasso", "part", "rest", "heavy" };
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(parse->root, "tool");
 
 	for (unsigned n = 0; cJSON_IsString(item) && n < ARRAY_COUNT(names); n++)
 		if (strcmp(item->valuestring, names[n]) == 0) {
-			*out = (enum message_tool)n;
+			*out = (enum request_tool)n;
 			return 0;
 		}
 	return wrong(parse, "tool", "lasso, part, rest or heavy");
 }
 
-static int read_stroke(const struct parse *parse, struct message *out)
+static int read_stroke(const struct parse *parse, struct request *out)
 {
 	double width_px;
 	int rc = read_view(parse, &out->view);
@@ -181,21 +181,21 @@ static int read_stroke(const struct parse *parse, struct message *out)
 	return read_points(parse, out, STROKE_POINTS_MAX);
 }
 
-static int read_apply(const struct parse *parse, struct message *out)
+static int read_apply(const struct parse *parse, struct request *out)
 {
 	int rc = read_view(parse, &out->view);
 
 	return rc == 0 ? read_flags(parse, out) : rc;
 }
 
-static int read_pick(const struct parse *parse, struct message *out)
+static int read_pick(const struct parse *parse, struct request *out)
 {
 	int rc = read_view(parse, &out->view);
 
 	return rc == 0 ? read_points(parse, out, 1) : rc;
 }
 
-static int read_open(const struct parse *parse, struct message *out)
+static int read_open(const struct parse *parse, struct request *out)
 {
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(parse->root, "id");
 	const char *id = cJSON_IsString(item) ? item->valuestring : "";
@@ -228,7 +228,7 @@ static int read_text(const struct parse *parse, const char *key, char *out, size
 	return 0;
 }
 
-static int read_save(const struct parse *parse, struct message *out)
+static int read_save(const struct parse *parse, struct request *out)
 {
 	int rc = read_open(parse, out);
 
@@ -239,7 +239,7 @@ static int read_save(const struct parse *parse, struct message *out)
 	return rc;
 }
 
-static int read_nothing(const struct parse *parse, struct message *out)
+static int read_nothing(const struct parse *parse, struct request *out)
 {
 	(void)parse;
 	(void)out;
@@ -248,53 +248,53 @@ static int read_nothing(const struct parse *parse, struct message *out)
 
 static const struct {
 	const char *name;
-	int (*read)(const struct parse *parse, struct message *out);
+	int (*read)(const struct parse *parse, struct request *out);
 } kinds[] = {
-	[MESSAGE_CAMERA] = { "camera", read_camera },  [MESSAGE_GOT] = { "got", read_nothing },
-	[MESSAGE_STROKE] = { "stroke", read_stroke },  [MESSAGE_APPLY] = { "apply", read_apply },
-	[MESSAGE_CLEAR] = { "clear", read_nothing },   [MESSAGE_UNDO] = { "undo", read_nothing },
-	[MESSAGE_REDO] = { "redo", read_nothing },     [MESSAGE_GROW] = { "grow", read_nothing },
-	[MESSAGE_SHRINK] = { "shrink", read_nothing }, [MESSAGE_EMPTY] = { "empty", read_nothing },
-	[MESSAGE_PICK] = { "pick", read_pick },        [MESSAGE_SAVE] = { "save", read_save },
-	[MESSAGE_OPEN] = { "open", read_open },
+	[REQUEST_CAMERA] = { "camera", read_camera },  [REQUEST_GOT] = { "got", read_nothing },
+	[REQUEST_STROKE] = { "stroke", read_stroke },  [REQUEST_APPLY] = { "apply", read_apply },
+	[REQUEST_CLEAR] = { "clear", read_nothing },   [REQUEST_UNDO] = { "undo", read_nothing },
+	[REQUEST_REDO] = { "redo", read_nothing },     [REQUEST_GROW] = { "grow", read_nothing },
+	[REQUEST_SHRINK] = { "shrink", read_nothing }, [REQUEST_EMPTY] = { "empty", read_nothing },
+	[REQUEST_PICK] = { "pick", read_pick },        [REQUEST_SAVE] = { "save", read_save },
+	[REQUEST_OPEN] = { "open", read_open },
 };
 
-static int read_kind(const struct parse *parse, struct message *out)
+static int read_kind(const struct parse *parse, struct request *out)
 {
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(parse->root, "type");
 
 	for (unsigned n = 0; cJSON_IsString(item) && n < ARRAY_COUNT(kinds); n++)
 		if (strcmp(item->valuestring, kinds[n].name) == 0) {
-			out->kind = (enum message_kind)n;
+			out->kind = (enum request_kind)n;
 			return kinds[n].read(parse, out);
 		}
 	return wrong(parse, "type", "one that docs/curator.md lists");
 }
 
-int message_parse(struct message *out, const char *text, size_t bytes,
-		  char problem[MESSAGE_PROBLEM_BYTES])
+int request_parse(struct request *out, const char *text, size_t bytes,
+		  char problem[REQUEST_PROBLEM_BYTES])
 {
 	cJSON *root = NULL;
 	int rc = -EINVAL;
 
-	*out = (struct message){ 0 };
-	snprintf(problem, MESSAGE_PROBLEM_BYTES, "is not an object of JSON");
-	if (bytes <= MESSAGE_BYTES_MAX)
+	*out = (struct request){ 0 };
+	snprintf(problem, REQUEST_PROBLEM_BYTES, "is not an object of JSON");
+	if (bytes <= REQUEST_BYTES_MAX)
 		root = cJSON_ParseWithLength(text, bytes);
 	if (cJSON_IsObject(root))
 		rc = read_kind(&(struct parse){ root, problem }, out);
 	cJSON_Delete(root);
 	if (rc == -ENOMEM)
-		snprintf(problem, MESSAGE_PROBLEM_BYTES, "no memory is left");
+		snprintf(problem, REQUEST_PROBLEM_BYTES, "no memory is left");
 	if (rc < 0)
-		message_finish(out);
+		request_finish(out);
 	return rc;
 }
 
-void message_finish(struct message *message)
+void request_finish(struct request *request)
 {
-	if (!message)
+	if (!request)
 		return;
-	free(message->points_px);
-	*message = (struct message){ 0 };
+	free(request->points_px);
+	*request = (struct request){ 0 };
 }

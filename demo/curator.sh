@@ -1,0 +1,15 @@
+#!/bin/bash
+# make curator: serves the demo temple to a curator's browser. Ctrl-C ends it.
+#
+#   demo/curator.sh [TRIANGLES]
+#
+# The content is that of make demo, in build/demo/content; without a number of triangles an existing temple keeps its
+# size, and a new one has a million. Only its hierarchy is made, which takes a minute, not a release.
+set -eu
+cd "$(dirname "$0")/.."
+content=build/demo/content
+triangles=${1:-$(cat build/demo/triangles 2>/dev/null || echo 1000000)}
+demo/make-content.sh "$content" "$triangles"
+echo "$triangles" >build/demo/triangles
+build/gopura-content hierarchy "$content"
+exec build/gopura-curator "$content"

@@ -1,0 +1,47 @@
+#!/bin/bash
+# A curator at work: a browser of our own (curator.py) turns the small temple, marks parts with every tool, undoes, saves
+# and opens them; wrong messages and strange pages are refused; then gopura-content takes the folder.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+work=build/e2e/curator
+rm -rf "$work"
+mkdir -p "$work"
+small_release
+cp -a "$small/content" "$work/content" # with the times of its scan, so the hierarchy is still its own
+curator=
+trap '[ -z "$curator" ] || kill $curator 2>/dev/null || true' EXIT
+
+# ---- what cannot be served is told with its remedy
+mkdir "$work/none"
+! build/gopura-curator "$work/none" 2>"$work/log" || fail "it serves a folder without temple.ini"
+grep -q 'temple.ini' "$work/log" || fail "without temple.ini: $(cat "$work/log")"
+mkdir "$work/fresh"
+cp "$work/content/"{temple.ini,scan.ply} "$work/fresh"
+! build/gopura-curator "$work/fresh" 2>"$work/log" || fail "it serves a folder without a hierarchy"
+grep -q "gopura-content hierarchy $work/fresh" "$work/log" || fail "without a hierarchy: $(cat "$work/log")"
+status=0
+build/gopura-curator --port 99999 "$work/content" 2>/dev/null || status=$?
+[ "$status" = 2 ] || fail "a wrong port ends with $status"
+
+# ---- a session
+build/gopura-curator "$work/content" --port 0 >"$work/curator.log" 2>&1 &
+curator=$!
+wait_for 60 "address" grep -q 'open http://127.0.0.1:' "$work/curator.log"
+port=$(sed -nE 's|.*http://127.0.0.1:([0-9]+)/.*|\1|p' "$work/curator.log")
+if command -v curl >/dev/null; then
+	curl -sf -D "$work/headers" "http://127.0.0.1:$port/" | grep -q curator.js || fail "no page"
+	grep -qi "^content-security-policy: default-src 'none'" "$work/headers" || fail "no policy"
+	! curl -sf --path-as-is "http://127.0.0.1:$port/../temple.ini" >/dev/null || fail "it serves other files"
+fi
+python3 tests/e2e/curator.py "$port" "$work/content" check || { tail "$work/curator.log"; fail "the session"; }
+kill "$curator"
+wait "$curator" || { tail "$work/curator.log"; fail "it did not end well"; }
+curator=
+
+# ---- what it saved is content like any other
+grep -qE '^[0-9]+(-[0-9]+)?$' "$work/content/regions/the-middle.faces" || fail "no list of faces"
+[ -z "$(find "$work/content" -name '*.tmp*' -o -name '*.part')" ] || fail "temporary files are left"
+build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >"$work/log" 2>&1 || { cat "$work/log"; fail "its parts are refused"; }
+build/gopura-content annotations export "$work/content" --out "$work/parts.jsonld" >"$work/log" 2>&1 || { cat "$work/log"; fail "its parts cannot be exported"; }
+grep -q regions/the-middle.faces "$work/parts.jsonld" || fail "the part is not among them"
