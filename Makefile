@@ -12,6 +12,7 @@ MAKEFLAGS += --no-builtin-rules
 ifeq ($(MAKELEVEL)$(filter clean,$(MAKECMDGOALS)),0) # unless the command line says otherwise
 MAKEFLAGS += -j$(JOBS)
 endif
+unexport MAKEFLAGS # scripts that call make say for themselves how many jobs
 comma   := ,
 
 FOLDERS := base geometry format board system render ui input storage net app pipeline curator health

@@ -204,7 +204,8 @@ static bool set_item(cJSON *object, const char *key, cJSON *item)
 	return cJSON_AddItemToObject(object, key, item);
 }
 
-/* Returns the part, which is new if there is none of that id. NULL: no memory is left. */
+/* Returns the part, which is new, and has a card alone, if there is none of that id. NULL: no
+ * memory is left. */
 static cJSON *get_part(cJSON *root, const char *id)
 {
 	cJSON *part = find_part(root, id), *parts;
@@ -215,7 +216,8 @@ static cJSON *get_part(cJSON *root, const char *id)
 	if (!parts)
 		parts = cJSON_AddArrayToObject(root, "parts");
 	part = cJSON_CreateObject();
-	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddItemToArray(parts, part)) {
+	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddFalseToObject(part, "page") ||
+	    !cJSON_AddItemToArray(parts, part)) {
 		cJSON_Delete(part);
 		return NULL;
 	}

@@ -2,6 +2,7 @@
 #include "curator/session/site.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -21,13 +22,27 @@ static int read_mesh(struct site *site, struct diagnostics *diagnostics)
 	return rc;
 }
 
+/* Its faults name a line, but not the file. */
+static int read_settings(struct site *site, const char *folder, struct diagnostics *diagnostics)
+{
+	struct diagnostics found = { 0 };
+	char file[CONTENT_PATH_BYTES];
+	int rc = content_read(&site->content, folder, &found);
+
+	snprintf(file, sizeof(file), "%s/temple.ini", folder);
+	if (rc < 0)
+		diagnostics_add(diagnostics, rc, file, 0, "%s", diagnostics_cause(&found, rc));
+	diagnostics_finish(&found);
+	return rc;
+}
+
 int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics)
 {
 	int rc;
 
 	*site = (struct site){ 0 };
 	pthread_mutex_init(&site->saving, NULL);
-	rc = content_read(&site->content, folder, diagnostics);
+	rc = read_settings(site, folder, diagnostics);
 	if (rc == 0)
 		rc = scans_create(&site->scans, &site->content);
 	if (rc == 0)

@@ -256,7 +256,7 @@ def check_parts(browser, port, folder):
     assert saved["saved"] == "the-middle"
     assert {"id": "the-middle", "title": "The \"middle\" \u17a2", "faces": True} in saved["parts"]
     after = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
-    assert after["parts"].pop() == {"id": "the-middle", "region": {"kind": "faces",
+    assert after["parts"].pop() == {"id": "the-middle", "page": False, "region": {"kind": "faces",
                                     "file": "regions/the-middle.faces"}, "title": {"en": "The \"middle\" \u17a2"}}
     assert after == before, "something else in parts.json has changed"
     other, _, parts = start(port)
