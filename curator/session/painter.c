@@ -85,14 +85,15 @@ void painter_destroy(struct painter *painter)
 {
 	if (!painter)
 		return;
-	canvas_finish(&painter->sharp);
+	canvas_finish(&painter->sharp); /* before the models that they borrow */
 	canvas_finish(&painter->fast);
 	model_destroy(painter->model);
 	model_destroy(painter->region);
 	free(painter);
 }
 
-static int canvas_resize(struct canvas *canvas, uint32_t width_px, uint32_t height_px)
+static int canvas_resize(struct painter *painter, struct canvas *canvas, uint32_t width_px,
+			 uint32_t height_px)
 {
 	const size_t pixels = (size_t)width_px * height_px;
 	int rc;
@@ -104,9 +105,9 @@ static int canvas_resize(struct canvas *canvas, uint32_t width_px, uint32_t heig
 	canvas->picture = (struct picture){ width_px, height_px, malloc(4 * pixels) };
 	rc = canvas->marked && canvas->picture.rgba ? 0 : -ENOMEM;
 	if (rc == 0)
-		rc = view_draw_create(&canvas->model, width_px, height_px);
+		rc = view_draw_create(&canvas->model, painter->model, width_px, height_px);
 	if (rc == 0)
-		rc = view_draw_create(&canvas->region, width_px, height_px);
+		rc = view_draw_create(&canvas->region, painter->region, width_px, height_px);
 	if (rc < 0) {
 		canvas_finish(canvas);
 		return rc;
@@ -131,7 +132,7 @@ static int mark_region(struct painter *painter, struct canvas *canvas, const str
 	memset(canvas->marked, 0, pixels);
 	if (painter->set->count == 0)
 		return 0;
-	rc = view_draw_image(canvas->region, painter->region, camera, 0, &region);
+	rc = view_draw_image(canvas->region, camera, 0, &region);
 	if (rc < 0)
 		return rc;
 	for (size_t i = 0; i < pixels; i++)
@@ -200,12 +201,12 @@ static int paint(const struct painter *painter, struct canvas *canvas, int quali
 
 static int draw_sharp(struct painter *painter, const struct camera *camera, struct buffer *out)
 {
-	int rc = canvas_resize(&painter->sharp, (uint32_t)camera->width_px,
+	int rc = canvas_resize(painter, &painter->sharp, (uint32_t)camera->width_px,
 			       (uint32_t)camera->height_px);
 
 	painter->has_sharp = false;
 	if (rc == 0)
-		rc = view_draw_image(painter->sharp.model, painter->model, camera, detail_sharp_px,
+		rc = view_draw_image(painter->sharp.model, camera, detail_sharp_px,
 				     &painter->sharp.view);
 	if (rc < 0)
 		return rc;
@@ -232,10 +233,11 @@ static int draw_fast(struct painter *painter, const struct camera *camera, struc
 
 	half.width_px = camera->width_px / 4 * 2;
 	half.height_px = camera->height_px / 4 * 2;
-	rc = canvas_resize(&painter->fast, (uint32_t)half.width_px, (uint32_t)half.height_px);
+	rc = canvas_resize(painter, &painter->fast, (uint32_t)half.width_px,
+			   (uint32_t)half.height_px);
 	if (rc == 0)
-		rc = view_draw_image(painter->fast.model, painter->model, &half,
-				     painter->detail_fast_px, &painter->fast.view);
+		rc = view_draw_image(painter->fast.model, &half, painter->detail_fast_px,
+				     &painter->fast.view);
 	if (rc == 0)
 		rc = mark_region(painter, &painter->fast, &half, painter->detail_fast_px);
 	if (rc == 0)

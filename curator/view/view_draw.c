@@ -8,25 +8,21 @@
 
 #include "geometry/vec.h"
 #include "pipeline/samples/raster.h"
+#include "pipeline/samples/sight.h"
 
 struct view_draw {
+	struct model *model;                              /* borrowed */
 	uint32_t width_px, height_px, side_px, left, top; /* where the view is in the square */
 	struct raster *raster;                            /* owned, as all below */
 	uint8_t (*colours)[3];
 	int8_t (*normals)[3];
 	uint8_t *open;
 	float *inverse_m;
-	uint32_t *pieces, piece_room;
-	struct distance *order;
+	struct sight *sight;
 };
 
-/* Pieces are drawn from near to far, so that what is hidden is not decoded. */
-struct distance {
-	float m;
-	uint32_t piece;
-};
-
-int view_draw_create(struct view_draw **out, uint32_t width_px, uint32_t height_px)
+int view_draw_create(struct view_draw **out, struct model *model, uint32_t width_px,
+		     uint32_t height_px)
 {
 	struct view_draw *draw = calloc(1, sizeof(*draw));
 	const uint32_t longest = width_px > height_px ? width_px : height_px;
@@ -36,6 +32,7 @@ int view_draw_create(struct view_draw **out, uint32_t width_px, uint32_t height_
 	*out = NULL;
 	if (!draw)
 		return -ENOMEM;
+	draw->model = model;
 	draw->width_px = width_px;
 	draw->height_px = height_px;
 	draw->side_px = (longest + RASTER_BLOCK_PX - 1) / RASTER_BLOCK_PX * RASTER_BLOCK_PX;
@@ -46,6 +43,8 @@ int view_draw_create(struct view_draw **out, uint32_t width_px, uint32_t height_
 	draw->open = malloc(pixels);
 	draw->inverse_m = malloc(pixels * sizeof(*draw->inverse_m));
 	rc = raster_create(&draw->raster, draw->side_px, true);
+	if (rc == 0)
+		rc = sight_create(&draw->sight, model);
 	if (rc < 0 || !draw->colours || !draw->normals || !draw->open || !draw->inverse_m) {
 		view_draw_destroy(draw);
 		return -ENOMEM;
@@ -63,69 +62,29 @@ void view_draw_destroy(struct view_draw *draw)
 	free(draw->normals);
 	free(draw->open);
 	free(draw->inverse_m);
-	free(draw->pieces);
-	free(draw->order);
+	sight_destroy(draw->sight);
 	free(draw);
 }
 
-static int by_distance(const void *a, const void *b)
+/* From near to far, so that what is hidden is not decoded. */
+static int draw_pieces(struct view_draw *draw, const struct camera *square, float detail_px)
 {
-	const struct distance *left = a, *right = b;
-
-	if (left->m != right->m)
-		return left->m < right->m ? -1 : 1;
-	return (left->piece > right->piece) - (left->piece < right->piece);
-}
-
-static int make_room(struct view_draw *draw, uint32_t count)
-{
-	if (count <= draw->piece_room)
-		return 0;
-	free(draw->pieces);
-	free(draw->order);
-	draw->pieces = malloc(count * sizeof(*draw->pieces));
-	draw->order = malloc(count * sizeof(*draw->order));
-	draw->piece_room = draw->pieces && draw->order ? count : 0;
-	return draw->piece_room ? 0 : -ENOMEM;
-}
-
-/* Of the nearest point of a box. */
-static float distance_to_box(const struct model_piece *piece, const float eye_m[3])
-{
-	float sum = 0;
-
-	for (int i = 0; i < 3; i++) {
-		const float away = vec_most(
-			0, vec_most(piece->low_m[i] - eye_m[i], eye_m[i] - piece->high_m[i]));
-		sum += away * away;
-	}
-	return sqrtf(sum);
-}
-
-static int draw_pieces(struct view_draw *draw, struct model *model, const struct camera *square,
-		       float detail_px)
-{
+	const uint32_t *pieces;
 	uint32_t count;
-	int rc = make_room(draw, model->piece_count);
+	float matrix[16];
 
-	if (rc < 0)
-		return rc;
-	count = model_choose(model, square->eye_m, detail_px / camera_px_per_radian(square),
-			     draw->pieces);
-	for (uint32_t n = 0; n < count; n++) {
-		draw->order[n].piece = draw->pieces[n];
-		draw->order[n].m = distance_to_box(&model->pieces[draw->pieces[n]], square->eye_m);
-	}
-	qsort(draw->order, count, sizeof(*draw->order), by_distance);
+	camera_matrix(square, matrix);
+	sight_look(draw->sight, square->eye_m, detail_px / camera_px_per_radian(square));
+	pieces = sight_visible(draw->sight, matrix, square->eye_m, &count);
 	raster_begin(draw->raster, square);
 	for (uint32_t n = 0; n < count; n++) {
-		const uint32_t piece = draw->order[n].piece;
-		const struct model_piece *its = &model->pieces[piece];
+		const struct model_piece *piece = &draw->model->pieces[pieces[n]];
 		struct model_mesh mesh;
+		int rc;
 
-		if (raster_hides(draw->raster, its->low_m, its->high_m))
+		if (raster_hides(draw->raster, piece->low_m, piece->high_m))
 			continue;
-		rc = model_load(model, piece, &mesh);
+		rc = model_load(draw->model, pieces[n], &mesh);
 		if (rc < 0)
 			return rc;
 		raster_draw(draw->raster, &mesh);
@@ -169,8 +128,8 @@ static void copy_block(struct view_draw *draw, uint32_t column, uint32_t row)
 	}
 }
 
-int view_draw_image(struct view_draw *draw, struct model *model, const struct camera *camera,
-		    float detail_px, struct view_image *out)
+int view_draw_image(struct view_draw *draw, const struct camera *camera, float detail_px,
+		    struct view_image *out)
 {
 	const float half = tanf(camera->fov_deg * (float)M_PI / 360);
 	const uint32_t blocks = draw->side_px / RASTER_BLOCK_PX;
@@ -181,7 +140,7 @@ int view_draw_image(struct view_draw *draw, struct model *model, const struct ca
 	square.width_px = square.height_px = (int)draw->side_px;
 	square.fov_deg =
 		atanf(half * (float)draw->side_px / (float)draw->height_px) * 360 / (float)M_PI;
-	rc = draw_pieces(draw, model, &square, detail_px);
+	rc = draw_pieces(draw, &square, detail_px);
 	if (rc < 0)
 		return rc;
 	memset(draw->inverse_m, 0, pixels * sizeof(*draw->inverse_m));

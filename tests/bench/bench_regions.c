@@ -145,6 +145,7 @@ static void find_truth(struct world *world, struct view *view, const uint32_t *t
 {
 	struct mesh painted = world->mesh;
 	struct view_image image;
+	struct view_draw *draw;
 	struct model *model;
 
 	painted.colours = malloc((size_t)painted.vertex_count * sizeof(*painted.colours));
@@ -153,9 +154,11 @@ static void find_truth(struct world *world, struct view *view, const uint32_t *t
 		for (int k = 0; k < 3; k++)
 			memset(painted.colours[painted.triangles[triangles[n]][k]], 255, 4);
 	must(chunks_create(&model, &painted, (const uint8_t[3]){ 0 }), "paint the part");
-	must(view_draw_image(world->draw, model, &view->camera, 0, &image), "draw the part");
+	must(view_draw_create(&draw, model, WIDTH, HEIGHT), "picture");
+	must(view_draw_image(draw, &view->camera, 0, &image), "draw the part");
 	for (uint32_t at = 0; at < PIXELS; at++)
 		view->truth[at] = image.colours[at][0] > 127;
+	view_draw_destroy(draw);
 	model_destroy(model);
 	free(painted.colours);
 }
@@ -166,7 +169,7 @@ static void open_view(struct world *world, struct view *view)
 	struct face_view all = { .camera = &view->camera, .image = &view->image };
 	uint8_t *whole = malloc(PIXELS);
 
-	must(view_draw_image(world->draw, world->model, &view->camera, 0, &view->image), "draw");
+	must(view_draw_image(world->draw, &view->camera, 0, &view->image), "draw");
 	const double began = spent_ms();
 	must(superpixels_make(&view->superpixels, &view->image), "superpixels");
 	view->superpixels_ms = spent_ms() - began;
@@ -525,7 +528,7 @@ int main(int argc, char **argv)
 	must(face_blocks_make(&world.blocks, &world.mesh), "blocks");
 	must(chunks_create(&world.model, &world.mesh, (const uint8_t[3]){ 180, 170, 150 }),
 	     "chunks");
-	must(view_draw_create(&world.draw, WIDTH, HEIGHT), "picture");
+	must(view_draw_create(&world.draw, world.model, WIDTH, HEIGHT), "picture");
 	world.shown = calloc(world.mesh.triangle_count, 1);
 	printf("{\"rows\": [");
 	while (fgets(line, sizeof(line), stdin)) {

@@ -57,10 +57,10 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="alignment manifest import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
+	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
-	pipeline/samples/*) names="model model_master pieces raster chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
+	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/keys/*) names="keys keys_place" ;;

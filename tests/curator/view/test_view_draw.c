@@ -68,8 +68,8 @@ static void raise_stage(struct stage *stage)
 {
 	make_mesh(&stage->mesh);
 	CHECK(chunks_create(&stage->model, &stage->mesh, (const uint8_t[3]){ 0 }) == 0);
-	CHECK(view_draw_create(&stage->draw, WIDTH, HEIGHT) == 0);
-	CHECK(view_draw_image(stage->draw, stage->model, &camera, 0, &stage->image) == 0);
+	CHECK(view_draw_create(&stage->draw, stage->model, WIDTH, HEIGHT) == 0);
+	CHECK(view_draw_image(stage->draw, &camera, 0, &stage->image) == 0);
 	CHECK(face_blocks_make(&stage->blocks, &stage->mesh) == 0);
 }
 
@@ -149,7 +149,7 @@ static void what_turns_away_is_not_seen(void **state)
 	(void)state;
 	raise_stage(&stage);
 	behind.eye_m[1] = 9;
-	CHECK(view_draw_image(stage.draw, stage.model, &behind, 0, &stage.image) == 0);
+	CHECK(view_draw_image(stage.draw, &behind, 0, &stage.image) == 0);
 	memset(all, 1, sizeof(all));
 	struct face_view view = { &behind, &stage.image, all, false };
 	face_pick(&view, &stage.mesh, &stage.blocks, note, counts);
