@@ -40,7 +40,7 @@ struct request {
 	struct camera camera; /* near_m and far_m are not set */
 	bool moving;
 	enum request_tool tool;
-	bool take, through;
+	bool take, through;    /* takes away from the region; through the whole depth */
 	float (*points_px)[2]; /* stroke, and one for pick; owned */
 	uint32_t point_count;
 	float width_px;

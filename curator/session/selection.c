@@ -14,7 +14,7 @@ void selection_init(struct selection *selection, struct site *site, struct regio
 	*selection = (struct selection){ .site = site, .set = set };
 }
 
-static void drop_view(struct selection *selection)
+void selection_leave(struct selection *selection)
 {
 	if (selection->has_superpixels)
 		superpixels_finish(&selection->superpixels);
@@ -25,11 +25,6 @@ static void drop_view(struct selection *selection)
 	selection->image = NULL;
 }
 
-void selection_finish(struct selection *selection)
-{
-	drop_view(selection);
-}
-
 static size_t pixel_count(const struct selection *selection)
 {
 	return (size_t)selection->image->width_px * selection->image->height_px;
@@ -38,15 +33,13 @@ static size_t pixel_count(const struct selection *selection)
 int selection_look(struct selection *selection, const struct view_image *image,
 		   const struct camera *camera)
 {
-	drop_view(selection);
-	if (!image)
-		return 0;
+	selection_leave(selection);
 	selection->image = image;
 	selection->camera = *camera;
 	selection->marks = calloc(pixel_count(selection), 1); /* MARK_UNKNOWN */
 	selection->in_part = malloc(pixel_count(selection));
 	if (!selection->marks || !selection->in_part) {
-		drop_view(selection);
+		selection_leave(selection);
 		return -ENOMEM;
 	}
 	return 0;

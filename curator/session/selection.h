@@ -17,14 +17,14 @@ struct selection {
 	uint8_t *marks, *in_part;        /* for each pixel; owned */
 };
 
-/* site and set are borrowed. */
+/* site and set are borrowed. There is no view yet. */
 void selection_init(struct selection *selection, struct site *site, struct region_set *set);
-void selection_finish(struct selection *selection); /* zeroed is fine */
 
-/* Works on another view, or NULL: on none; strokes that are kept are dropped. The image is borrowed
- * until the next call. -ENOMEM; then there is no view. */
+/* Works on another view; strokes that are kept are dropped. The image is borrowed until the next
+ * call or selection_leave, which frees what belongs to the view. -ENOMEM; then there is no view. */
 must_check int selection_look(struct selection *selection, const struct view_image *image,
 			      const struct camera *camera);
+void selection_leave(struct selection *selection); /* works on no view; zeroed is fine */
 /* Prepares for the first stroke, if that is not done. -ENOMEM. */
 must_check int selection_prepare(struct selection *selection);
 

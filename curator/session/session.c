@@ -306,10 +306,8 @@ static void draw(struct session *session, const struct request *camera)
 
 	set_depths(session->options.site, &eye);
 	begin_frame(&frame, camera->view, !camera->moving);
-	if (!camera->moving) {
-		rc = selection_look(&session->selection, NULL, NULL);
-		(void)rc; /* it drops the view, and allocates nothing */
-	}
+	if (!camera->moving)
+		selection_leave(&session->selection);
 	rc = painter_draw(session->painter, &eye, !camera->moving, &frame);
 	send_frame(session, &frame, rc);
 	session->region_changed = false;
@@ -482,7 +480,7 @@ void session_destroy(struct session *session)
 	for (uint32_t n = 0; n < session->text_count; n++)
 		free(session->texts[(session->text_first + n) % TEXTS_MAX]);
 	buffer_finish(&session->frame);
-	selection_finish(&session->selection);
+	selection_leave(&session->selection);
 	painter_destroy(session->painter);
 	region_set_finish(&session->set);
 	pthread_cond_destroy(&session->changed);
