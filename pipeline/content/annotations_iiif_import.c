@@ -12,6 +12,7 @@
 #include <libxml/HTMLparser.h>
 
 #include "geometry/region.h"
+#include "pipeline/import/json.h"
 #include "pipeline/import/manifest.h"
 
 enum { TITLE_CHARACTERS = 60, CORNERS_MAX = 4096, BODIES_DEEP = 8 };
@@ -35,31 +36,16 @@ struct converter {
 	uint32_t said_count;
 };
 
-static const char *string_of(const cJSON *object, const char *key)
-{
-	return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
-}
-
-static const cJSON *first_of(const cJSON *one_or_many)
-{
-	return cJSON_IsArray(one_or_many) ? one_or_many->child : one_or_many;
-}
-
-static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
-{
-	return cJSON_IsArray(one_or_many) ? at->next : NULL;
-}
-
 static bool is_type(const cJSON *object, const char *type)
 {
-	const char *said = string_of(object, "type");
+	const char *said = json_string(object, "type");
 
 	return said && strcmp(said, type) == 0;
 }
 
 static const char *comment_id(const struct manifest_item *item)
 {
-	const char *id = string_of(item->annotation, "id");
+	const char *id = json_string(item->annotation, "id");
 
 	return id ? id : "without id";
 }
@@ -244,9 +230,9 @@ static void take_text(struct converter *c, const char *value, const char *langua
 
 static void take_body(struct converter *c, const cJSON *body, enum use use, int depth)
 {
-	const char *value = string_of(body, "value"), *format = string_of(body, "format");
-	const char *language =
-		cJSON_GetStringValue(first_of(cJSON_GetObjectItemCaseSensitive(body, "language")));
+	const char *value = json_string(body, "value"), *format = json_string(body, "format");
+	const char *language = cJSON_GetStringValue(
+		json_first(cJSON_GetObjectItemCaseSensitive(body, "language")));
 	const cJSON *inner = NULL;
 
 	if (is_type(body, "Choice"))
@@ -258,15 +244,16 @@ static void take_body(struct converter *c, const cJSON *body, enum use use, int 
 		     "comment \"%.80s\": where its label stands is left out: the kiosk shows it "
 		     "beside the part",
 		     comment_id(c->item));
-	for (const cJSON *one = first_of(inner); one && depth < BODIES_DEEP;
-	     one = next_of(inner, one))
+	for (const cJSON *one = json_first(inner); one && depth < BODIES_DEEP;
+	     one = json_next(inner, one))
 		take_body(c, one, use, depth + 1);
 	if (value)
 		take_text(c, value, language ? language : c->language,
 			  format && strcmp(format, "text/html") == 0, use);
 	else if (!inner)
 		warn(c, "comment \"%.80s\": a body of type \"%.40s\" is left out: texts are kept",
-		     comment_id(c->item), string_of(body, "type") ? string_of(body, "type") : "");
+		     comment_id(c->item),
+		     json_string(body, "type") ? json_string(body, "type") : "");
 }
 
 static void add_body(struct converter *c, cJSON *bodies, const struct said *said, GString **text,
@@ -291,14 +278,15 @@ static void add_body(struct converter *c, cJSON *bodies, const struct said *said
 static void convert_texts(struct converter *c, cJSON *made)
 {
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(c->item->annotation, "body");
-	const char *value = string_of(c->item->annotation, "bodyValue");
-	const cJSON *body = first_of(list);
+	const char *value = json_string(c->item->annotation, "bodyValue");
+	const cJSON *body = json_first(list);
 	cJSON *bodies = cJSON_CreateArray();
 	/* a Choice before others has the title in every language */
-	enum use use = body && is_type(body, "Choice") && next_of(list, body) ? WHOLE_TITLE : TITLE;
+	enum use use =
+		body && is_type(body, "Choice") && json_next(list, body) ? WHOLE_TITLE : TITLE;
 
 	c->said_count = 0;
-	for (; body; body = next_of(list, body)) {
+	for (; body; body = json_next(list, body)) {
 		take_body(c, body, use, 0);
 		use = use == TITLE ? TITLE : NO_TITLE;
 	}
@@ -455,14 +443,14 @@ static bool convert_place(struct converter *c, cJSON *selectors, double place[3]
 {
 	static const char *const axes[] = { "x", "y", "z" };
 	const cJSON *target =
-		first_of(cJSON_GetObjectItemCaseSensitive(c->item->annotation, "target"));
+		json_first(cJSON_GetObjectItemCaseSensitive(c->item->annotation, "target"));
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(target, "selector");
 	bool is_found = false;
 	cJSON *point;
 
-	for (const cJSON *s = first_of(list); s && !is_found; s = next_of(list, s)) {
+	for (const cJSON *s = json_first(list); s && !is_found; s = json_next(list, s)) {
 		if (is_type(s, "PolygonZSelector")) {
-			is_found = convert_polygon(c, selectors, string_of(s, "value"), place);
+			is_found = convert_polygon(c, selectors, json_string(s, "value"), place);
 		} else if (manifest_point(s, place)) {
 			transform_point(&c->item->place, place, place);
 			manifest_z_up(place, place);
@@ -491,7 +479,7 @@ static cJSON *begin_annotation(struct converter *c)
 
 	for (size_t i = 0; made && i < G_N_ELEMENTS(converted); i++)
 		cJSON_DeleteItemFromObjectCaseSensitive(made, converted[i]);
-	if (made && !string_of(made, "id")) {
+	if (made && !json_string(made, "id")) {
 		cJSON_DeleteItemFromObjectCaseSensitive(made, "id");
 		add(c, made, "id", cJSON_CreateString("#comment"));
 	}
@@ -503,7 +491,7 @@ static cJSON *begin_annotation(struct converter *c)
 static void tell_camera(struct converter *c, const double place[3])
 {
 	const struct manifest_item *found = NULL;
-	const char *id = string_of(c->item->annotation, "id");
+	const char *id = json_string(c->item->annotation, "id");
 	uint32_t cameras = 0;
 	double eye[3], target[3];
 
@@ -513,8 +501,8 @@ static void tell_camera(struct converter *c, const double place[3])
 
 		if (item->kind != MANIFEST_CAMERA)
 			continue;
-		look_at =
-			string_of(cJSON_GetObjectItemCaseSensitive(item->resource, "lookAt"), "id");
+		look_at = json_string(cJSON_GetObjectItemCaseSensitive(item->resource, "lookAt"),
+				      "id");
 		if (cameras++ == 0 || (id && look_at && strcmp(id, look_at) == 0))
 			found = item;
 		if (id && look_at && strcmp(id, look_at) == 0) {

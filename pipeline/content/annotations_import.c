@@ -15,16 +15,12 @@
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/annotations_write.h"
 #include "pipeline/content/draft.h"
+#include "pipeline/import/json.h"
 #include "pipeline/import/manifest.h"
-
-static const char *string_of(const cJSON *object, const char *key)
-{
-	return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
-}
 
 static const char *item_id(const struct importer *im)
 {
-	const char *id = string_of(im->item, "id");
+	const char *id = json_string(im->item, "id");
 
 	return id ? id : "without id";
 }
@@ -48,24 +44,12 @@ static cJSON *object_of(struct importer *im, cJSON *parent, const char *key)
 	return cJSON_GetObjectItemCaseSensitive(parent, key);
 }
 
-/* For a value that may be one thing or a list: first_of returns the first thing, next_of the
- * next. */
-static const cJSON *first_of(const cJSON *one_or_many)
-{
-	return cJSON_IsArray(one_or_many) ? one_or_many->child : one_or_many;
-}
-
-static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
-{
-	return cJSON_IsArray(one_or_many) ? at->next : NULL;
-}
-
 /* ---- the id */
 
 static bool is_taken(const struct importer *im, const char *id)
 {
 	for (const cJSON *other = im->parts->child; other; other = other->next)
-		if (other != im->part && strcmp(string_of(other, "id"), id) == 0)
+		if (other != im->part && strcmp(json_string(other, "id"), id) == 0)
 			return true;
 	return false;
 }
@@ -84,7 +68,7 @@ static void make_differ(const struct importer *im, char id[INFO_ID_BYTES_MAX + 1
  * characters that an id may contain. */
 static void read_id(struct importer *im)
 {
-	const char *iri = string_of(im->item, "id");
+	const char *iri = json_string(im->item, "id");
 	char id[INFO_ID_BYTES_MAX + 1];
 	size_t size = 0;
 
@@ -117,7 +101,7 @@ static void read_id(struct importer *im)
 
 static bool is_tagged(const cJSON *value)
 {
-	return string_of(value, "@value") && string_of(value, "@language");
+	return json_string(value, "@value") && json_string(value, "@language");
 }
 
 /* Converts {"@value": ..., "@language": ...}, or a list of them, to texts by language. */
@@ -125,24 +109,24 @@ static cJSON *untagged(struct importer *im, const cJSON *said)
 {
 	cJSON *texts = cJSON_CreateObject();
 
-	for (const cJSON *one = first_of(said); one && texts; one = next_of(said, one))
+	for (const cJSON *one = json_first(said); one && texts; one = json_next(said, one))
 		if (is_tagged(one))
-			add(im, texts, string_of(one, "@language"),
-			    cJSON_CreateString(string_of(one, "@value")));
+			add(im, texts, json_string(one, "@language"),
+			    cJSON_CreateString(json_string(one, "@value")));
 	return texts;
 }
 
 static cJSON *credit_of(struct importer *im, const cJSON *said)
 {
-	const cJSON *first = first_of(said);
-	const char *name = string_of(first, "name"); /* of an agent, such as the W3C creator */
+	const cJSON *first = json_first(said);
+	const char *name = json_string(first, "name"); /* of an agent, such as the W3C creator */
 
 	if (first && is_tagged(first))
 		return untagged(im, said);
 	if (name)
 		return cJSON_CreateString(name);
-	if (string_of(first, "id"))
-		return cJSON_CreateString(string_of(first, "id"));
+	if (json_string(first, "id"))
+		return cJSON_CreateString(json_string(first, "id"));
 	return cJSON_Duplicate(said, true);
 }
 
@@ -179,7 +163,7 @@ static void add_page(struct importer *im, const char *language, const char *html
 		im->failed = true;
 		return;
 	}
-	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", string_of(im->part, "id"),
+	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", json_string(im->part, "id"),
 		 language);
 	for (uint32_t i = 0; i < im->page_count; i++)
 		if (strcmp(im->pages[i].name, page.name) == 0) {
@@ -210,12 +194,12 @@ static bool is_language(const char *code)
 
 static void read_body(struct importer *im, const cJSON *body)
 {
-	const char *value = cJSON_IsString(body) ? NULL : string_of(body, "value");
-	const char *language =
-		cJSON_GetStringValue(first_of(cJSON_GetObjectItemCaseSensitive(body, "language")));
+	const char *value = cJSON_IsString(body) ? NULL : json_string(body, "value");
+	const char *language = cJSON_GetStringValue(
+		json_first(cJSON_GetObjectItemCaseSensitive(body, "language")));
 	const char *purpose =
-		cJSON_GetStringValue(first_of(cJSON_GetObjectItemCaseSensitive(body, "purpose")));
-	const char *format = string_of(body, "format");
+		cJSON_GetStringValue(json_first(cJSON_GetObjectItemCaseSensitive(body, "purpose")));
+	const char *format = json_string(body, "format");
 	const char *key = key_of_purpose(purpose ? purpose : "describing");
 
 	if (!language)
@@ -252,10 +236,10 @@ static void read_bodies(struct importer *im)
 	const cJSON *bodies = cJSON_GetObjectItemCaseSensitive(im->item, "body");
 	const uint32_t pages_before = im->page_count;
 
-	for (const cJSON *body = first_of(bodies); body && !im->failed;
-	     body = next_of(bodies, body))
+	for (const cJSON *body = json_first(bodies); body && !im->failed;
+	     body = json_next(bodies, body))
 		read_body(im, body);
-	if (string_of(im->item, "bodyValue") && !bodies)
+	if (json_string(im->item, "bodyValue") && !bodies)
 		diagnostics_add(im->diagnostics, 0, im->options->file, im->line,
 				"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
 				item_id(im));
@@ -272,7 +256,7 @@ static void read_bodies(struct importer *im)
 static void read_thumbnail(struct importer *im)
 {
 	const cJSON *said = cJSON_GetObjectItemCaseSensitive(im->item, "schema:thumbnailUrl");
-	const char *name = cJSON_IsObject(said) ? string_of(said, "id") : NULL;
+	const char *name = cJSON_IsObject(said) ? json_string(said, "id") : NULL;
 
 	if (name)
 		add(im, im->part, "thumbnail", cJSON_CreateString(name));
@@ -302,7 +286,7 @@ static cJSON *point_of(const struct importer *im, const cJSON *selector)
 
 static cJSON *region_of(struct importer *im, const cJSON *selector)
 {
-	const char *type = string_of(selector, "type");
+	const char *type = json_string(selector, "type");
 
 	for (size_t i = 0; type && i < ANNOTATION_SELECTORS; i++) {
 		const struct annotation_selector *ours = &annotation_selectors[i];
@@ -344,7 +328,7 @@ static void take_point(struct importer *im, cJSON *point)
 
 static void read_selector(struct importer *im, const cJSON *selector)
 {
-	const char *type = string_of(selector, "type");
+	const char *type = json_string(selector, "type");
 	cJSON *found;
 
 	if (type && strcmp(type, "PointSelector") == 0) {
@@ -363,14 +347,14 @@ static void read_selector(struct importer *im, const cJSON *selector)
 /* Returns false if the target does not say where on a model the part is. */
 static bool read_target(struct importer *im)
 {
-	const cJSON *target = first_of(cJSON_GetObjectItemCaseSensitive(im->item, "target"));
+	const cJSON *target = json_first(cJSON_GetObjectItemCaseSensitive(im->item, "target"));
 	const cJSON *selectors = cJSON_GetObjectItemCaseSensitive(target, "selector");
 
-	for (const cJSON *s = first_of(selectors); s && !im->failed; s = next_of(selectors, s))
+	for (const cJSON *s = json_first(selectors); s && !im->failed; s = json_next(selectors, s))
 		read_selector(im, s);
 	if (cJSON_HasObjectItem(im->part, "region") || cJSON_HasObjectItem(im->part, "anchor"))
 		return true;
-	selectors = first_of(selectors);
+	selectors = json_first(selectors);
 	im->report->skipped_count += im->options->skip_unknown;
 	diagnostics_add(
 		im->diagnostics, !im->options->skip_unknown ? -EINVAL : 0, im->options->file,
@@ -378,7 +362,7 @@ static bool read_target(struct importer *im)
 		"annotation \"%.80s\": %s%.40s%s says no place on a model%s: use PointSelector with "
 		"x, y and z, SphereSelector, BoxSelector, PrismSelector or FaceListSelector",
 		item_id(im), selectors ? "selector \"" : "a target without selector",
-		selectors && string_of(selectors, "type") ? string_of(selectors, "type") : "",
+		selectors && json_string(selectors, "type") ? json_string(selectors, "type") : "",
 		selectors ? "\"" : "", im->options->skip_unknown ? ", left out" : "");
 	return false;
 }
@@ -465,7 +449,8 @@ static void read_items(struct importer *im, const struct json_text *json)
 	if (!items)
 		return;
 	read_credits(im, json->root, im->parts_file);
-	for (const cJSON *item = first_of(items); item && !im->failed; item = next_of(items, item))
+	for (const cJSON *item = json_first(items); item && !im->failed;
+	     item = json_next(items, item))
 		read_item(im, item, json_text_line(json, item));
 }
 

@@ -7,10 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <cjson/cJSON.h>
-
 #include "base/array.h"
 #include "pipeline/import/import_files.h"
+#include "pipeline/import/json.h"
 
 enum {
 	SHOWN_BYTES = 80,
@@ -42,30 +41,9 @@ static const struct transform identity = { { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0
 
 /* ---- JSON */
 
-static const cJSON *member(const cJSON *object, const char *key)
-{
-	return cJSON_IsObject(object) ? cJSON_GetObjectItemCaseSensitive(object, key) : NULL;
-}
-
-static const char *string_of(const cJSON *object, const char *key)
-{
-	return cJSON_GetStringValue(member(object, key));
-}
-
-/* For what may be one thing or a list of things. */
-static const cJSON *first_of(const cJSON *one_or_many)
-{
-	return cJSON_IsArray(one_or_many) ? one_or_many->child : one_or_many;
-}
-
-static const cJSON *next_of(const cJSON *one_or_many, const cJSON *at)
-{
-	return cJSON_IsArray(one_or_many) ? at->next : NULL;
-}
-
 static const char *type_of(const cJSON *object)
 {
-	const char *type = string_of(object, "type");
+	const char *type = json_string(object, "type");
 
 	return type ? type : "";
 }
@@ -86,7 +64,7 @@ const char *manifest_id(const cJSON *resource)
 {
 	const char *id = cJSON_GetStringValue(resource);
 
-	return id ? id : string_of(resource, "id");
+	return id ? id : json_string(resource, "id");
 }
 
 static const char *shown_id(const cJSON *resource)
@@ -142,14 +120,14 @@ static void leave_out_members(struct walk *walk, const cJSON *object)
 		{ "timeMode", "a release has no time" },
 		{ "structures", "tours are written in tours.json" },
 	};
-	const char *colour = string_of(object, "backgroundColor");
+	const char *colour = json_string(object, "backgroundColor");
 	char key[32];
 
 	if (colour)
 		leave_out(walk, object, "backgroundColor", colour,
 			  "write it as 'background' into [model] of temple.ini");
 	for (size_t i = 0; i < ARRAY_COUNT(members); i++) {
-		if (!member(object, members[i].key))
+		if (!json_member(object, members[i].key))
 			continue;
 		snprintf(key, sizeof(key), "\"%s\" of", members[i].key);
 		leave_out(walk, object, key, shown_id(object), members[i].cure);
@@ -184,7 +162,7 @@ static void read_xyz(const cJSON *object, double missing, double out[3])
 	static const char *const keys[] = { "x", "y", "z" };
 
 	for (int k = 0; k < 3; k++) {
-		const cJSON *number = member(object, keys[k]);
+		const cJSON *number = json_member(object, keys[k]);
 
 		out[k] = cJSON_IsNumber(number) ? number->valuedouble : missing;
 	}
@@ -254,8 +232,8 @@ static void transform_by(struct walk *walk, struct transform *place, const cJSON
 /* The first of the list is done first, so it stands last in the product. */
 static void append_transforms(struct walk *walk, struct transform *place, const cJSON *resource)
 {
-	const cJSON *list = member(resource, "transform");
-	const cJSON *at = first_of(list);
+	const cJSON *list = json_member(resource, "transform");
+	const cJSON *at = json_first(list);
 
 	if (!at)
 		return;
@@ -277,19 +255,19 @@ bool manifest_point(const cJSON *selector, double out[3])
 /* Appends where the target says that the body lies. */
 static void append_position(struct walk *walk, struct transform *place, const cJSON *target)
 {
-	const cJSON *selectors = member(target, "selector");
+	const cJSON *selectors = json_member(target, "selector");
 	double point[3];
 
-	for (const cJSON *s = first_of(selectors); s; s = next_of(selectors, s)) {
+	for (const cJSON *s = json_first(selectors); s; s = json_next(selectors, s)) {
 		leave_out_members(walk, s);
 		if (manifest_point(s, point)) {
 			translate(place, point);
 			return;
 		}
 	}
-	if (first_of(selectors))
-		leave_out(walk, first_of(selectors), "a selector of type",
-			  type_of(first_of(selectors)),
+	if (json_first(selectors))
+		leave_out(walk, json_first(selectors), "a selector of type",
+			  type_of(json_first(selectors)),
 			  "what is painted there lies at the scene's origin; give a "
 			  "PointSelector");
 }
@@ -319,9 +297,9 @@ static const cJSON *find_scene(const struct walk *walk, const char *id)
 
 	if (!id)
 		return NULL;
-	cJSON_ArrayForEach(item, member(walk->root, "items"))
+	cJSON_ArrayForEach(item, json_member(walk->root, "items"))
 	{
-		const char *other = string_of(item, "id");
+		const char *other = json_string(item, "id");
 
 		if (is_type(item, "Scene") && other && strcmp(id, other) == 0)
 			return item;
@@ -335,19 +313,19 @@ static const cJSON *resource_of(struct walk *walk, const cJSON *annotation, cons
 				struct transform *place)
 {
 	for (int i = 0; i < STEPS_MAX && body; i++) {
-		const cJSON *first = first_of(body);
+		const cJSON *first = json_first(body);
 
-		if (first && next_of(body, first))
+		if (first && json_next(body, first))
 			leave_out(walk, annotation, "all but the first of several bodies of",
 				  shown_id(annotation), "write an annotation for each");
 		body = first;
 		if (is_type(body, "SpecificResource")) {
 			append_transforms(walk, place, body);
-			body = member(body, "source");
+			body = json_member(body, "source");
 		} else if (is_type(body, "Choice")) {
 			leave_out(walk, annotation, "all but the first of the Choice in",
 				  shown_id(annotation), "visitors have no choice of models");
-			body = member(body, "items");
+			body = json_member(body, "items");
 		} else {
 			return body;
 		}
@@ -385,7 +363,8 @@ static bool is_model(const cJSON *resource)
 static int paint(struct walk *walk, const struct scene *scene, const cJSON *annotation)
 {
 	struct transform place = scene->place, own = identity;
-	const cJSON *resource = resource_of(walk, annotation, member(annotation, "body"), &own);
+	const cJSON *resource =
+		resource_of(walk, annotation, json_member(annotation, "body"), &own);
 	const cJSON *nested = find_scene(walk, resource ? manifest_id(resource) : NULL);
 	const bool is_camera = ends_with(type_of(resource), "Camera");
 
@@ -393,7 +372,7 @@ static int paint(struct walk *walk, const struct scene *scene, const cJSON *anno
 		leave_out_type(walk, annotation, resource);
 		return 0;
 	}
-	append_position(walk, &place, first_of(member(annotation, "target")));
+	append_position(walk, &place, json_first(json_member(annotation, "target")));
 	append(&place, &own);
 	if (nested)
 		return paint_scene(walk, scene, annotation, nested, &place);
@@ -405,13 +384,13 @@ static int paint(struct walk *walk, const struct scene *scene, const cJSON *anno
 static struct transform axes_of(const struct walk *walk, const struct scene *scene,
 				const cJSON *source)
 {
-	const char *id = manifest_id(source), *scene_id = string_of(scene->json, "id");
+	const char *id = manifest_id(source), *scene_id = json_string(scene->json, "id");
 
 	if (!id || (scene_id && strcmp(id, scene_id) == 0))
 		return scene->place;
 	for (uint32_t i = scene->first; i < walk->out->count; i++) {
 		const struct manifest_item *item = &walk->out->items[i];
-		const char *annotation = string_of(item->annotation, "id");
+		const char *annotation = json_string(item->annotation, "id");
 		const char *resource = item->resource ? manifest_id(item->resource) : NULL;
 
 		if (item->kind == MANIFEST_MODEL && ((annotation && strcmp(id, annotation) == 0) ||
@@ -423,8 +402,8 @@ static struct transform axes_of(const struct walk *walk, const struct scene *sce
 
 static int comment(struct walk *walk, const struct scene *scene, const cJSON *annotation)
 {
-	const cJSON *target = first_of(member(annotation, "target"));
-	struct transform place = axes_of(walk, scene, first_of(member(target, "source")));
+	const cJSON *target = json_first(json_member(annotation, "target"));
+	struct transform place = axes_of(walk, scene, json_first(json_member(target, "source")));
 
 	append_transforms(walk, &place, target);
 	return add_item(walk, MANIFEST_COMMENT, annotation, NULL, &place);
@@ -432,9 +411,9 @@ static int comment(struct walk *walk, const struct scene *scene, const cJSON *an
 
 static bool has_motivation(const cJSON *annotation, const char *wanted)
 {
-	const cJSON *said = member(annotation, "motivation");
+	const cJSON *said = json_member(annotation, "motivation");
 
-	for (const cJSON *one = first_of(said); one; one = next_of(said, one))
+	for (const cJSON *one = json_first(said); one; one = json_next(said, one))
 		if (cJSON_IsString(one) && strcmp(one->valuestring, wanted) == 0)
 			return true;
 	return false;
@@ -447,7 +426,7 @@ static int walk_annotation(struct walk *walk, const struct scene *scene, const c
 	if (is_type(annotation, "Choice")) {
 		leave_out(walk, annotation, "all but the first of the Choice", shown_id(annotation),
 			  "visitors have no choice of views");
-		annotation = first_of(member(annotation, "items"));
+		annotation = json_first(json_member(annotation, "items"));
 	}
 	if (++walk->seen > MANIFEST_ITEMS_MAX * 16)
 		return diagnostics_add(walk->diagnostics, -EFBIG, walk->path, 0,
@@ -469,12 +448,12 @@ static int walk_pages(struct walk *walk, const struct scene *scene, const char *
 	const cJSON *page, *annotation;
 	int rc = 0;
 
-	cJSON_ArrayForEach(page, member(scene->json, key))
+	cJSON_ArrayForEach(page, json_member(scene->json, key))
 	{
-		if (cJSON_IsObject(page) && !member(page, "items"))
+		if (cJSON_IsObject(page) && !json_member(page, "items"))
 			leave_out(walk, page, "page", shown_id(page),
 				  "it is in another file; fetch it and put its \"items\" here");
-		cJSON_ArrayForEach(annotation, member(page, "items")) if (rc == 0) rc =
+		cJSON_ArrayForEach(annotation, json_member(page, "items")) if (rc == 0) rc =
 			walk_annotation(walk, scene, annotation);
 	}
 	return rc;
@@ -511,13 +490,13 @@ static void find_painted(const struct walk *walk, struct painted *painted)
 	const cJSON *scene, *page, *annotation;
 
 	painted->count = 0;
-	cJSON_ArrayForEach(scene, member(walk->root, "items"))
-		cJSON_ArrayForEach(page, member(scene, "items"))
-			cJSON_ArrayForEach(annotation, member(page, "items"))
+	cJSON_ArrayForEach(scene, json_member(walk->root, "items"))
+		cJSON_ArrayForEach(page, json_member(scene, "items"))
+			cJSON_ArrayForEach(annotation, json_member(page, "items"))
 	{
 		struct transform place = identity;
 		const cJSON *resource =
-			resource_of(&look, annotation, member(annotation, "body"), &place);
+			resource_of(&look, annotation, json_member(annotation, "body"), &place);
 		const cJSON *found = find_scene(walk, resource ? manifest_id(resource) : NULL);
 
 		if (found && found != scene && !is_painted(painted, found))
@@ -532,13 +511,13 @@ static int walk_manifest(struct walk *walk)
 	uint32_t scenes = 0;
 	int rc = 0;
 
-	if (cJSON_GetArraySize(member(walk->root, "items")) > SCENES_MAX)
+	if (cJSON_GetArraySize(json_member(walk->root, "items")) > SCENES_MAX)
 		return diagnostics_add(walk->diagnostics, -EFBIG, walk->path, 1,
 				       "over %d scenes and canvases; split the manifest",
 				       SCENES_MAX);
 	leave_out_members(walk, walk->root);
 	find_painted(walk, &painted);
-	cJSON_ArrayForEach(item, member(walk->root, "items"))
+	cJSON_ArrayForEach(item, json_member(walk->root, "items"))
 	{
 		const struct scene scene = { item, identity, walk->out->count, 0 };
 
@@ -600,10 +579,11 @@ void manifest_finish(struct manifest *manifest)
 /* Returns the annotation's place: that of its first PointSelector, or of its axes. */
 static void place_of(const struct manifest_item *item, double out[3])
 {
-	const cJSON *selectors = member(first_of(member(item->annotation, "target")), "selector");
+	const cJSON *selectors =
+		json_member(json_first(json_member(item->annotation, "target")), "selector");
 	double point[3] = { 0, 0, 0 };
 
-	if (item->kind == MANIFEST_COMMENT && !manifest_point(first_of(selectors), point))
+	if (item->kind == MANIFEST_COMMENT && !manifest_point(json_first(selectors), point))
 		memset(point, 0, sizeof(point));
 	transform_point(&item->place, point, out);
 }
@@ -612,7 +592,7 @@ void manifest_view(const struct manifest *manifest, const struct manifest_item *
 		   double eye[3], double target[3])
 {
 	static const double origin[3] = { 0, 0, 0 };
-	const cJSON *look_at = member(camera->resource, "lookAt");
+	const cJSON *look_at = json_member(camera->resource, "lookAt");
 	const char *id = manifest_id(look_at);
 	double ahead[3] = { 0, 0, -1 };
 
@@ -620,7 +600,7 @@ void manifest_view(const struct manifest *manifest, const struct manifest_item *
 	if (manifest_point(look_at, target))
 		return;
 	for (uint32_t i = 0; id && i < manifest->count; i++) {
-		const char *other = string_of(manifest->items[i].annotation, "id");
+		const char *other = json_string(manifest->items[i].annotation, "id");
 
 		if (other && strcmp(id, other) == 0) {
 			place_of(&manifest->items[i], target);
