@@ -97,7 +97,7 @@ static bool complete_depth_face(struct scene *scene)
  * of the mesh. */
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
 {
-	const bool halved = scene->used.scale < 1;
+	const bool halved = scene_gives_way(scene);
 	int outdated = -1;
 	scene->depth_is_stale = false;
 	out->depth_faces_drawn += complete_depth_face(scene);
@@ -174,7 +174,7 @@ static int choose_program(const struct scene *scene, const struct surface_frame 
 	static const struct blend none[PLAN_ENTRIES];
 	const struct piece_state *state = &scene->geometry.patches[v->patch].pieces[v->piece];
 	const bool hidden = state->counted && state->seen_px <= 0;
-	return surface_choose(frame, scene->used.scale < 1 && hidden ? none : state->blend,
+	return surface_choose(frame, scene_gives_way(scene) && hidden ? none : state->blend,
 			      v->range);
 }
 
@@ -325,7 +325,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 {
 	const struct view *view = &scene->view;
 	struct view small;
-	if (scene->used.scale >= 1)
+	if (!scene_gives_way(scene))
 		return false;
 	enlargement_view(&small, view, scene->used.scale);
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)

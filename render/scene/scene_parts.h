@@ -144,4 +144,11 @@ struct scene {
 	uint32_t mark_serial; /* counts changes of the marked part */
 };
 
+/* Whether frames take too long, so that the governor has them drawn smaller: then other work gives
+ * way too. */
+static inline bool scene_gives_way(const struct scene *scene)
+{
+	return scene->used.scale < 1;
+}
+
 #endif

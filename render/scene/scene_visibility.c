@@ -72,7 +72,7 @@ static uint32_t parts_of(const struct scene *scene, bool moved)
 {
 	if (!moved)
 		return 1;
-	return scene->used.scale < 1 ? MOST_PARTS : PARTS;
+	return scene_gives_way(scene) ? MOST_PARTS : PARTS;
 }
 
 /* Draws the next part of a pass. Returns whether the pass is complete. */
