@@ -1,30 +1,20 @@
 /* The program gopura-kiosk, which owns panel and touch and has no network: parses the options, then
  * runs the self test, the safe page or the kiosk, and maps the result to an exit status. */
 #include <errno.h>
-#include <malloc.h>
 #include <stdlib.h>
 
 #include "app/kiosk.h"
 #include "app/modes/safe_mode.h"
 #include "app/modes/self_test.h"
+#include "app/settings/heap.h"
 #include "app/settings/options.h"
-
-enum {
-	FREED_BYTES_MAX = 64 << 20,   /* that malloc keeps while the eye moves */
-	MAPPED_BYTES_LEAST = 1 << 20, /* of an allocation that is a mapping of its own */
-};
 
 int main(int argc, char **argv)
 {
 	static struct kiosk kiosk;
 	int rc;
 
-	/* One malloc arena: those of the worker threads would hold 2 MB unused. */
-	mallopt(M_ARENA_MAX, 1);
-	/* A driver that draws on the processor frees megabytes in each frame, and would fault them
-	 * in again in the next. app/frame.c gives them back when the picture has settled. */
-	mallopt(M_TRIM_THRESHOLD, FREED_BYTES_MAX);
-	mallopt(M_MMAP_THRESHOLD, MAPPED_BYTES_LEAST);
+	heap_prepare();
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:
 		return EXIT_SUCCESS;

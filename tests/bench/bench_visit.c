@@ -2,9 +2,8 @@
  * drawn at, and what the picture on the panel at that moment is worth.
  *
  *   bench_visit RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--link MBIT] [--latency MS]
- *               [--price PX] [--load none|core|heat] [--level L] [--effort
- * SCALE,COARSER,FACES,BUDGET]
- *               [--times N] [--keep yes]
+ *               [--price PX] [--load none|core|heat] [--level L] [--times N]
+ *               [--effort SCALE,COARSER,FACES,BUDGET] [--keep yes]
  *
  * A frame takes the time that its work takes on two cores (stage.h, work_clock), so other work on
  * the machine hardly changes what is measured, and neither does the comparison with the truth. The
@@ -19,13 +18,13 @@
  * rest, for `gopura-content render --views`; without --truth that is all. Then OUT/visit.json and
  * OUT/frames.jsonl; with --keep, pictures of the judged moments. --truth none: times alone. */
 #include <errno.h>
-#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/settings/heap.h"
 #include "app/settings/scene_settings.h"
 #include "render/scene/governor.h"
 #include "tests/bench/stage.h"
@@ -467,9 +466,7 @@ int main(int argc, char **argv)
 {
 	static struct bench bench;
 
-	/* As app/main.c has it. */
-	mallopt(M_TRIM_THRESHOLD, 64 << 20);
-	mallopt(M_MMAP_THRESHOLD, 1 << 20);
+	heap_prepare();
 	if (argc < 4)
 		stage_die("RELEASE VISIT OUT are needed", -EINVAL);
 	bench.options = (struct stage_options){ .release = argv[1],
