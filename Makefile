@@ -220,7 +220,12 @@ $(BUILD)/gopura-setup: $(BUILD)/obj/system/main.o $(ARCHIVE)
 	$(LINK)
 $(BUILD)/gopura-curator: $(BUILD)/obj/curator/main.o $(ARCHIVE)
 	$(LINK)
-$(BUILD)/obj/curator/server/web_files.o: $(wildcard curator/web/*)
+# The pages of a curator's browser, as they are and zipped, are part of the program.
+$(BUILD)/obj/curator/server/web_files.o: $(patsubst %,$(BUILD)/obj/%.gz,$(wildcard curator/web/*))
+$(BUILD)/obj/curator/server/web_files.o: CFLAGS += -Wa,-I$(BUILD)/obj
+$(BUILD)/obj/curator/web/%.gz: curator/web/%
+	@mkdir -p $(@D)
+	@gzip -9nc $< >$@.part && mv $@.part $@
 
 # A test may define a function of the archive itself; its own object has priority.
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)

@@ -1,34 +1,57 @@
-/* Lets the assembler include the files, so that the program needs no folder of them. */
+/* Lets the assembler include the files, so that the program needs no folder of them. The Makefile
+ * makes the zipped ones. */
 #include "curator/server/web_files.h"
 
 #include <string.h>
 
-#define INCLUDE_FILE(name, file)                                                                   \
+#define INCLUDE_BYTES(symbol, file)                                                                \
 	__asm__(".section .rodata\n"                                                               \
-		".global web_" #name "\n"                                                          \
-		".global web_" #name "_end\n"                                                      \
-		"web_" #name ":\n"                                                                 \
-		".incbin \"curator/web/" file "\"\n"                                               \
-		"web_" #name "_end:\n"                                                             \
+		".global " symbol "\n"                                                             \
+		".global " symbol "_end\n" symbol ":\n"                                            \
+		".incbin \"" file "\"\n" symbol "_end:\n"                                          \
 		".byte 0\n"                                                                        \
-		".previous\n");                                                                    \
-	extern const uint8_t web_##name[], web_##name##_end[]
+		".previous\n")
 
-INCLUDE_FILE(page, "index.html");
-INCLUDE_FILE(script, "curator.js");
-INCLUDE_FILE(style, "curator.css");
+#define INCLUDE_FILE(name, path, file, type)                                                       \
+	INCLUDE_BYTES("web_" #name, "curator/web/" file);                                          \
+	INCLUDE_BYTES("web_" #name "_zipped", "curator/web/" file ".gz");                          \
+	extern const uint8_t web_##name[], web_##name##_end[], web_##name##_zipped[],              \
+		web_##name##_zipped_end[];
+
+#define HTML   "text/html; charset=utf-8"
+#define SCRIPT "text/javascript; charset=utf-8"
+#define STYLE  "text/css; charset=utf-8"
+
+/* A line for each file: a name for the linker, the path of a request, the file, its type. */
+#define FILES(FILE)                                                                                \
+	FILE(page, "/", "index.html", HTML)                                                        \
+	FILE(script, "/curator.js", "curator.js", SCRIPT)                                          \
+	FILE(style, "/curator.css", "curator.css", STYLE)
+
+FILES(INCLUDE_FILE)
+
+#define ROW(name, path, file, type)                                                                \
+	{ path, type, { web_##name, 0 }, { web_##name##_zipped, 0 }, "" },
+#define ENDS(name, path, file, type) { web_##name##_end, web_##name##_zipped_end },
+
+static struct web_file files[] = { FILES(ROW) };
+
+/* The sizes are known to the linker alone. */
+static void measure(void)
+{
+	static const uint8_t *const ends[][2] = { FILES(ENDS) };
+
+	for (size_t n = 0; n < ARRAY_COUNT(files); n++) {
+		files[n].bytes.size = (size_t)(ends[n][0] - files[n].bytes.data);
+		files[n].zipped.size = (size_t)(ends[n][1] - files[n].zipped.data);
+		hash_to_hex(hash_of(files[n].bytes), files[n].tag);
+	}
+}
 
 const struct web_file *web_file_find(const char *path)
 {
-	static struct web_file files[] = {
-		{ "/", "text/html; charset=utf-8", { web_page, 0 } },
-		{ "/curator.js", "text/javascript; charset=utf-8", { web_script, 0 } },
-		{ "/curator.css", "text/css; charset=utf-8", { web_style, 0 } },
-	};
-
-	files[0].bytes.size = (size_t)(web_page_end - web_page);
-	files[1].bytes.size = (size_t)(web_script_end - web_script);
-	files[2].bytes.size = (size_t)(web_style_end - web_style);
+	if (!files[0].tag[0])
+		measure();
 	for (size_t n = 0; n < ARRAY_COUNT(files); n++)
 		if (strcmp(path, files[n].path) == 0)
 			return &files[n];

@@ -1,5 +1,6 @@
-/* HTTP and WebSocket for curators' browsers, by libwebsockets: three files, and a socket at /socket
- * for each session. Listens on the loopback address only: there are no accounts yet. */
+/* HTTP and WebSocket for curators' browsers, by libwebsockets: the page's files, the interface at
+ * /api/ and a socket at /socket for each session. Listens on the loopback address only: there are
+ * no accounts yet. */
 #ifndef GOPURA_CURATOR_SERVER_WEB_SERVER_H
 #define GOPURA_CURATOR_SERVER_WEB_SERVER_H
 

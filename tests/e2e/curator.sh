@@ -29,11 +29,7 @@ build/gopura-curator "$work/content" --port 0 >"$work/curator.log" 2>&1 &
 curator=$!
 wait_for 60 "address" grep -q 'open http://127.0.0.1:' "$work/curator.log"
 port=$(sed -nE 's|.*http://127.0.0.1:([0-9]+)/.*|\1|p' "$work/curator.log")
-if command -v curl >/dev/null; then
-	curl -sf -D "$work/headers" "http://127.0.0.1:$port/" | grep -q curator.js || fail "no page"
-	grep -qi "^content-security-policy: default-src 'none'" "$work/headers" || fail "no policy"
-	! curl -sf --path-as-is "http://127.0.0.1:$port/../temple.ini" >/dev/null || fail "it serves other files"
-fi
+python3 tests/e2e/curator_http.py "$port" || { tail "$work/curator.log"; fail "its answers over HTTP"; }
 python3 tests/e2e/curator.py "$port" "$work/content" check || { tail "$work/curator.log"; fail "the session"; }
 kill "$curator"
 wait "$curator" || { tail "$work/curator.log"; fail "it did not end well"; }

@@ -43,8 +43,9 @@ may_enter() {
 	pipeline/report) echo import content hierarchy samples release ;;
 	pipeline/temple) echo material ;;
 	curator/view | curator/region) echo select ;;
-	curator/session) echo select view region ;;
-	curator/server) echo session ;;
+	curator/api) echo accounts ;;
+	curator/session) echo accounts api select view region ;;
+	curator/server) echo accounts api session ;;
 	app/modes) echo settings view ;;
 	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
 	app/visit | app/release) echo view ;;
