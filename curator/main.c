@@ -7,32 +7,50 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "curator/accounts/gate.h"
 #include "curator/server/web_server.h"
 #include "curator/session/site.h"
+#include "curator/user_command.h"
 
 static const char help[] =
 	"gopura-curator: mark parts on the model in a web browser (docs/curator.md)\n"
 	"\n"
-	"usage: gopura-curator DIR [--port N]\n"
+	"usage: gopura-curator DIR [OPTIONS]\n"
+	"       gopura-curator user add|password|role|remove|list DIR [NAME] [OPTIONS]\n"
 	"\n"
 	"DIR is a content folder whose hierarchy has been made ('gopura-content hierarchy DIR'; a build\n"
 	"makes it too). Marked parts are saved in DIR/parts.json and DIR/regions, and the next build\n"
-	"takes them up. Open the address that the program prints. It listens on this machine only\n"
-	"(127.0.0.1), and whoever may use the machine may use it: there are no accounts.\n"
+	"takes them up. Open the address that the program prints, and sign in with an account that\n"
+	"'gopura-curator user add DIR NAME' has made.\n"
 	"\n"
 	"  --port N            default: 8780; 0: a free one\n"
+	"  --listen ADDRESS    default: 127.0.0.1, this machine alone; or unix:PATH, for a proxy. Put\n"
+	"                      nginx with TLS in front before others reach it\n"
+	"  --host NAME         the name under which a proxy serves it; up to four times\n"
+	"  --sign-on HEADER    the museum's own sign-on: a proxy on this machine names in this header\n"
+	"                      who has signed on; roles are those of the accounts\n"
 	"  --help, --version\n"
 	"\n"
 	"Exit status: 0 ended by a signal, 1 failed (the reason is printed), 2 wrong command line.\n"
 	"\n"
-	"Example:\n"
-	"  gopura-curator temple\n";
+	"Examples:\n"
+	"  gopura-curator user add temple ana --role publisher\n"
+	"  gopura-curator temple\n"
+	"  gopura-curator temple --listen unix:/run/gopura-curator/socket --host curator.museum.example\n";
 
-enum { OPTION_PORT = 256, OPTION_HELP, OPTION_VERSION, PORT_DEFAULT = 8780 };
+enum {
+	OPTION_PORT = 256,
+	OPTION_LISTEN,
+	OPTION_HOST,
+	OPTION_SIGN_ON,
+	OPTION_HELP,
+	OPTION_VERSION,
+	PORT_DEFAULT = 8780
+};
 
 struct settings {
-	const char *folder; /* borrowed from argv */
-	int port;
+	const char *folder; /* borrowed from argv, as all below */
+	struct web_server_options server;
 };
 
 static struct web_server *running; /* for the signals */
@@ -43,29 +61,69 @@ static void on_signal(int number)
 	web_server_stop(running);
 }
 
+static void wrong(const char *what, const char *value)
+{
+	fprintf(stderr, "gopura-curator: %s%s\n", what, value);
+	exit(2);
+}
+
+static int parse_port(const char *text)
+{
+	char *end;
+	const long port = strtol(text, &end, 10);
+
+	if (!*text || *end || port < 0 || port > 65535)
+		wrong("--port must be 0 to 65535, not ", text);
+	return (int)port;
+}
+
+static void add_host(struct web_server_options *server, const char *name)
+{
+	if (server->host_count == WEB_SERVER_HOSTS_MAX)
+		wrong("--host may be given four times", "");
+	server->hosts[server->host_count++] = name;
+}
+
+/* Believing a header of anybody else than a proxy on this machine would let anybody in. */
+static void check(const struct settings *settings)
+{
+	const struct web_server_options *server = &settings->server;
+
+	if (server->sign_on && strncmp(server->listen, "127.", 4) != 0 &&
+	    strncmp(server->listen, "unix:", 5) != 0)
+		wrong("--sign-on needs a proxy on this machine, so --listen must be 127.0.0.1 or "
+		      "unix:PATH, not ",
+		      server->listen);
+	if (strncmp(server->listen, "unix:", 5) == 0 && server->host_count == 0)
+		wrong("--listen unix:PATH needs the --host under which a proxy serves it", "");
+}
+
 static void parse(struct settings *settings, int argc, char **argv)
 {
 	static const struct option options[] = {
 		{ "port", required_argument, NULL, OPTION_PORT },
+		{ "listen", required_argument, NULL, OPTION_LISTEN },
+		{ "host", required_argument, NULL, OPTION_HOST },
+		{ "sign-on", required_argument, NULL, OPTION_SIGN_ON },
 		{ "help", no_argument, NULL, OPTION_HELP },
 		{ "version", no_argument, NULL, OPTION_VERSION },
 		{ 0 },
 	};
 	int option;
-	long port;
-	char *end;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) != -1)
 		switch (option) {
 		case OPTION_PORT:
-			port = strtol(optarg, &end, 10);
-			if (!*optarg || *end || port < 0 || port > 65535) {
-				fprintf(stderr,
-					"gopura-curator: --port must be 0 to 65535, not %s\n",
-					optarg);
-				exit(2);
-			}
-			settings->port = (int)port;
+			settings->server.port = parse_port(optarg);
+			break;
+		case OPTION_LISTEN:
+			settings->server.listen = optarg;
+			break;
+		case OPTION_HOST:
+			add_host(&settings->server, optarg);
+			break;
+		case OPTION_SIGN_ON:
+			settings->server.sign_on = optarg;
 			break;
 		case OPTION_HELP:
 			fputs(help, stdout);
@@ -77,28 +135,43 @@ static void parse(struct settings *settings, int argc, char **argv)
 			fputs("gopura-curator: see gopura-curator --help\n", stderr);
 			exit(2);
 		}
-	if (optind + 1 != argc) {
-		fputs("gopura-curator: name one content folder; see gopura-curator --help\n",
-		      stderr);
-		exit(2);
-	}
+	if (optind + 1 != argc)
+		wrong("name one content folder; see gopura-curator --help", "");
 	settings->folder = argv[optind];
+	check(settings);
 }
 
-static int run(struct site *site, int port)
+static void print_address(const struct site *site, const struct web_server_options *options)
+{
+	const char *name = site->content.name;
+
+	if (options->host_count > 0)
+		printf("%s: a proxy serves it as %s; listens at %s", name, options->hosts[0],
+		       options->listen);
+	else
+		printf("%s: open http://%s:%d/ in a browser%s", name, options->listen,
+		       web_server_port(running),
+		       strncmp(options->listen, "127.", 4) == 0 ? " on this machine" : "");
+	if (options->host_count > 0 && web_server_port(running) > 0)
+		printf(":%d", web_server_port(running));
+	puts("; Ctrl-C ends");
+	fflush(stdout);
+}
+
+static int serve(const struct web_server_options *options)
 {
 	const struct sigaction action = { .sa_handler = on_signal };
-	int rc = web_server_create(&running, site, port);
+	int rc = web_server_create(&running, options);
 
 	if (rc < 0) {
-		fprintf(stderr, "gopura-curator: port %d: %s\n", port, strerror(-rc));
+		fprintf(stderr, "gopura-curator: %s, port %d: %s\n", options->listen, options->port,
+			rc == -EINVAL ? "a --host or the header of --sign-on is not one"
+				      : strerror(-rc));
 		return rc;
 	}
 	sigaction(SIGINT, &action, NULL);
 	sigaction(SIGTERM, &action, NULL);
-	printf("%s: open http://127.0.0.1:%d/ in a browser on this machine; Ctrl-C ends\n",
-	       site->content.name, web_server_port(running));
-	fflush(stdout);
+	print_address(options->site, options);
 	web_server_run(running);
 	signal(SIGINT, SIG_IGN);
 	signal(SIGTERM, SIG_IGN);
@@ -109,16 +182,24 @@ static int run(struct site *site, int port)
 int main(int argc, char **argv)
 {
 	static struct site site;
-	struct settings settings = { .port = PORT_DEFAULT };
+	struct settings settings = { .server = { .listen = "127.0.0.1", .port = PORT_DEFAULT } };
 	struct diagnostics diagnostics = { 0 };
+	struct gate *gate = NULL;
 	int rc;
 
+	if (argc > 1 && strcmp(argv[1], "user") == 0)
+		return user_command(argc - 1, argv + 1);
 	parse(&settings, argc, argv);
 	rc = site_open(&site, settings.folder, &diagnostics);
+	if (rc == 0)
+		rc = gate_create(&gate, settings.folder, &diagnostics);
+	settings.server.site = &site;
+	settings.server.gate = gate;
 	if (rc < 0)
 		fprintf(stderr, "gopura-curator: %s\n", diagnostics_cause(&diagnostics, rc));
 	else
-		rc = run(&site, settings.port);
+		rc = serve(&settings.server);
+	gate_destroy(gate);
 	site_close(&site);
 	return rc == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -4,7 +4,8 @@
 #   demo/curator.sh [TRIANGLES]
 #
 # The content is that of make demo, in build/demo/content; without a number of triangles an existing temple keeps its
-# size, and a new one has a million. Only its hierarchy is made, which takes a minute, not a release.
+# size, and a new one has a million. Only its hierarchy is made, which takes a minute, not a release. The account
+# "demo" gets a new password each time, which is printed with the address.
 set -eu
 cd "$(dirname "$0")/.."
 content=build/demo/content
@@ -12,4 +13,11 @@ triangles=${1:-$(cat build/demo/triangles 2>/dev/null || echo 1000000)}
 demo/make-content.sh "$content" "$triangles"
 echo "$triangles" >build/demo/triangles
 build/gopura-content hierarchy "$content"
+password=$(od -An -N9 -tx1 /dev/urandom | tr -d ' \n' | sed 's/....../&-/g; s/-$//')
+if build/gopura-curator user list "$content" | grep -q ' demo$'; then
+	build/gopura-curator user password "$content" demo <<<"$password"
+else
+	build/gopura-curator user add "$content" demo --role publisher <<<"$password"
+fi
+echo "Sign in as demo with the password $password"
 exec build/gopura-curator "$content"

@@ -21,6 +21,8 @@ enum {
 	API_PARAMETERS_MAX = 4,
 	API_TAGS_BYTES = 512, /* If-Match, If-None-Match */
 	API_TYPE_BYTES = 128,
+	API_ADDRESS_BYTES = 46,
+	API_SECRET_BYTES = 65,
 	API_HEADERS_MAX = 6,
 	API_HEADER_BYTES = 256,
 	API_JSON_BYTES_MAX = 64 << 10,   /* of a request's body, for routes of JSON */
@@ -46,7 +48,13 @@ struct api_request {
 	size_t query_bytes;
 	char if_match[API_TAGS_BYTES], if_none_match[API_TAGS_BYTES]; /* "": there is none */
 	char content_type[API_TYPE_BYTES];
-	struct buffer body; /* whole; within the route's limit */
+	/* For signing in and out. */
+	char address[API_ADDRESS_BYTES];  /* of the browser, or of its network; "": not known */
+	bool is_secure;                   /* it came by https, as a proxy says */
+	char cookie[API_SECRET_BYTES];    /* "": there is none */
+	char token[API_SECRET_BYTES];     /* what the page must send to change something */
+	char sign_on[ACCOUNT_NAME_BYTES]; /* whom a museum's own sign-on has named; "": nobody */
+	struct buffer body;               /* whole; within the route's limit */
 };
 
 struct api_header {

@@ -216,12 +216,8 @@ static int judge(struct exchange *exchange, const struct request_head *head)
 {
 	struct api_job *job = exchange->job;
 
-	if (!origin_is_welcome(exchange->env->names, head->host, head->origin)) {
-		api_fail(&job->response, 403,
-			 "this server has another name, or another site's page asks");
-		return -1;
-	}
-	if (find_route(exchange) < 0)
+	if (find_route(exchange) < 0 ||
+	    access_judge(job->route->role, head, &job->request, &job->response) < 0)
 		return -1;
 	return head->body_bytes > 0 ? admit_body(exchange, head->body_bytes) : 0;
 }
@@ -250,30 +246,57 @@ static int enlist(struct exchange *exchange, struct exchange_env *env, struct lw
 	return exchange->job ? 0 : -1;
 }
 
+/* The page itself is for whoever is signed in, its files are for everybody. Returns whether it is a
+ * file, which is then answered. */
+static bool begin_file(struct exchange *exchange, const struct request_head *head)
+{
+	struct api_job *job = exchange->job;
+	const struct web_file *file = web_file_find(job->request.path);
+
+	if (!file || job->request.method != API_GET || head->body_bytes > 0)
+		return false;
+	if (!file->is_open && job->request.caller.role == ROLE_NONE) {
+		api_fail(&job->response, 303, "sign in first");
+		api_add_header(&job->response, "location:", "/sign-in");
+		answer(exchange);
+	} else {
+		answer_file(exchange, file, head->takes_gzip);
+	}
+	return true;
+}
+
+/* Reads the headers. Returns -1 if there is an answer already, after which the connection must be
+ * closed. */
+static int read_head(struct exchange *exchange, struct request_head *head, const char *path)
+{
+	struct api_job *job = exchange->job;
+	const int status = request_head_read(head, &job->request, exchange->wsi, path,
+					     &exchange->env->access->head);
+
+	if (status == 0)
+		return 0;
+	api_fail(&job->response, status, "the request is not one that is answered here");
+	return -1;
+}
+
 int exchange_begin(struct exchange *exchange, struct exchange_env *env, struct lws *wsi,
 		   const char *path)
 {
 	struct request_head head;
-	const struct web_file *file = web_file_find(path);
-	int status;
+	struct api_job *job;
+	bool may_go_on;
 
 	exchange_finish(exchange);
 	if (enlist(exchange, env, wsi) < 0)
 		return -1;
-	status = request_head_read(&head, &exchange->job->request, wsi, path);
-	if (status > 0) {
-		api_fail(&exchange->job->response, status,
-			 "the request is not one of HTTP/1.1 "
-			 "that is answered here");
+	job = exchange->job;
+	if (read_head(exchange, &head, path) < 0)
 		return answer_and_close(exchange);
-	}
-	if (file && exchange->job->request.method == API_GET && head.body_bytes == 0 &&
-	    origin_is_welcome(env->names, head.host, head.origin)) {
-		answer_file(exchange, file, head.takes_gzip);
+	may_go_on = access_identify(env->access, &head, &job->request, &job->response) == 0;
+	if (may_go_on && begin_file(exchange, &head))
 		return 0;
-	}
 	exchange->has_body = head.body_bytes > 0;
-	if (judge(exchange, &head) == 0) {
+	if (may_go_on && judge(exchange, &head) == 0) {
 		if (!exchange->has_body)
 			run(exchange);
 		return 0;
@@ -289,7 +312,7 @@ int exchange_begin(struct exchange *exchange, struct exchange_env *env, struct l
 int exchange_take_body(struct exchange *exchange, const void *piece, size_t bytes)
 {
 	if (!exchange->job || !exchange->has_body)
-		return -1;
+		return bytes == 0 ? 0 : -1;
 	if (exchange->announced_bytes > 0)
 		buffer_put(&exchange->job->request.body, piece, bytes);
 	return exchange->job->request.body.error ? -1 : 0;

@@ -5,14 +5,14 @@
 #define GOPURA_CURATOR_SERVER_EXCHANGE_H
 
 #include "curator/api/worker.h"
-#include "curator/server/origin.h"
+#include "curator/server/access.h"
 
 struct exchange;
 struct lws;
 
 /* What all exchanges need; borrowed. */
 struct exchange_env {
-	const struct origin_names *names;
+	const struct access *access;
 	const struct api_routes *tables;
 	uint32_t table_count;
 	struct workers *workers;

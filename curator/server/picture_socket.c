@@ -2,10 +2,28 @@
 #include "curator/server/picture_socket.h"
 
 #include <libwebsockets.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/log.h"
 #include "curator/session/request.h"
+
+void picture_socket_set_caller(struct picture_socket *socket, struct gate *gate,
+			       const struct caller *caller, const char *key)
+{
+	socket->gate = gate;
+	socket->caller = *caller;
+	snprintf(socket->key, sizeof(socket->key), "%s", key);
+}
+
+static bool is_still_in(const struct picture_socket *socket, enum gate_use use)
+{
+	struct gate_visitor visitor;
+
+	return gate_identify(socket->gate, socket->key, use, &visitor) == 0 &&
+	       visitor.caller.role == socket->caller.role &&
+	       strcmp(visitor.caller.name, socket->caller.name) == 0;
+}
 
 int picture_socket_open(struct picture_socket *socket, const struct session_options *options)
 {
@@ -30,6 +48,8 @@ int picture_socket_receive(struct picture_socket *socket, struct lws *wsi, const
 		return -1;
 	if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
 		return 0;
+	if (!is_still_in(socket, GATE_MESSAGE))
+		return -1;
 	session_receive(socket->session, (const char *)socket->input.data, socket->input.size);
 	buffer_clear(&socket->input);
 	return 0;
@@ -40,7 +60,7 @@ int picture_socket_write(struct picture_socket *socket, struct lws *wsi)
 	bool binary;
 	size_t size;
 
-	if (session_is_lost(socket->session))
+	if (session_is_lost(socket->session) || !is_still_in(socket, GATE_LOOK))
 		return -1;
 	buffer_clear(&socket->output);
 	buffer_extend(&socket->output, LWS_PRE);

@@ -1,11 +1,15 @@
 /* Reads a request's headers. */
 #include "curator/server/request_head.h"
 
+#include <arpa/inet.h>
 #include <libwebsockets.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 
-enum { ACCEPT_BYTES = 256 };
+#include "curator/accounts/accounts.h"
+
+enum { ACCEPT_BYTES = 256, COOKIES_BYTES = 4096, FORWARDED_BYTES = 1024 };
 
 /* Returns false if it is too long for out. Missing is "". */
 static bool copy(struct lws *wsi, enum lws_token_indexes token, char *out, size_t out_bytes)
@@ -38,6 +42,63 @@ bool request_head_takes_gzip(const char *text)
 	weight = at + 1 + strspn(at + 1, " ");
 	return strncmp(weight, "q=0", 3) != 0 ||
 	       strcspn(weight + 3, "123456789") < strcspn(weight + 3, ",");
+}
+
+bool request_head_cookie(const char *header, const char *name, char *out, size_t out_bytes)
+{
+	const size_t name_bytes = strlen(name);
+
+	out[0] = '\0';
+	while (*header) {
+		size_t bytes;
+
+		header += strspn(header, " \t;");
+		bytes = strcspn(header, ";");
+		if (bytes > name_bytes && strncmp(header, name, name_bytes) == 0 &&
+		    header[name_bytes] == '=') {
+			bytes -= name_bytes + 1;
+			if (bytes >= out_bytes)
+				return false;
+			memcpy(out, header + name_bytes + 1, bytes);
+			out[bytes] = '\0';
+			return true;
+		}
+		header += bytes;
+	}
+	return false;
+}
+
+void request_head_address(const char *text, char out[API_ADDRESS_BYTES])
+{
+	struct in6_addr wide;
+	struct in_addr narrow;
+
+	out[0] = '\0';
+	if (inet_pton(AF_INET, text, &narrow) == 1) {
+		inet_ntop(AF_INET, &narrow, out, API_ADDRESS_BYTES);
+	} else if (inet_pton(AF_INET6, text, &wide) == 1 && IN6_IS_ADDR_V4MAPPED(&wide)) {
+		inet_ntop(AF_INET, wide.s6_addr + 12, out, API_ADDRESS_BYTES);
+	} else if (inet_pton(AF_INET6, text, &wide) == 1) {
+		memset(wide.s6_addr + 8, 0, 8);
+		inet_ntop(AF_INET6, &wide, out, API_ADDRESS_BYTES);
+	}
+}
+
+void request_head_forwarded(const char *header, char out[API_ADDRESS_BYTES])
+{
+	const char *last = strrchr(header, ',');
+	char text[API_ADDRESS_BYTES];
+	size_t bytes;
+
+	last = last ? last + 1 : header;
+	last += strspn(last, " \t");
+	bytes = strcspn(last, " \t");
+	out[0] = '\0';
+	if (bytes >= sizeof(text))
+		return;
+	memcpy(text, last, bytes);
+	text[bytes] = '\0';
+	request_head_address(text, out);
 }
 
 static bool read_method(struct lws *wsi, enum api_method *out)
@@ -89,8 +150,62 @@ static int read_length(struct request_head *head, struct lws *wsi, enum api_meth
 	return request_head_length(text, &head->body_bytes) ? 0 : 400;
 }
 
+/* ---- who asks */
+
+/* "": there is none, or it is too long for out. */
+static void copy_custom(struct lws *wsi, const char *name, char *out, size_t out_bytes)
+{
+	if (lws_hdr_custom_copy(wsi, out, (int)out_bytes, name, (int)strlen(name)) < 0)
+		out[0] = '\0';
+}
+
+/* Fills in the address of the other end. Returns whether that is on this machine. */
+static bool read_peer(struct lws *wsi, char out[API_ADDRESS_BYTES])
+{
+	struct sockaddr_storage peer = { 0 };
+	socklen_t bytes = sizeof(peer);
+	char text[INET6_ADDRSTRLEN] = "";
+
+	out[0] = '\0';
+	if (getpeername(lws_get_socket_fd(wsi), (struct sockaddr *)&peer, &bytes) < 0)
+		return false;
+	if (peer.ss_family == AF_UNIX)
+		return true;
+	if (peer.ss_family == AF_INET)
+		inet_ntop(AF_INET, &((struct sockaddr_in *)&peer)->sin_addr, text, sizeof(text));
+	else if (peer.ss_family == AF_INET6)
+		inet_ntop(AF_INET6, &((struct sockaddr_in6 *)&peer)->sin6_addr, text, sizeof(text));
+	request_head_address(text, out);
+	return strncmp(out, "127.", 4) == 0 || strcmp(text, "::1") == 0;
+}
+
+static void read_caller(struct request_head *head, struct api_request *request, struct lws *wsi,
+			const struct request_head_options *options)
+{
+	char text[COOKIES_BYTES];
+	const bool is_local = read_peer(wsi, request->address);
+
+	if (copy(wsi, WSI_TOKEN_HTTP_COOKIE, text, sizeof(text)))
+		request_head_cookie(text, options->cookie, request->cookie,
+				    sizeof(request->cookie));
+	copy_custom(wsi, "x-gopura-token:", head->token, sizeof(head->token));
+	if (!is_local)
+		return;
+	if (options->sign_on[0]) {
+		copy_custom(wsi, options->sign_on, request->sign_on, sizeof(request->sign_on));
+		if (!account_name_is_valid(request->sign_on))
+			request->sign_on[0] = '\0';
+	}
+	if (!options->is_proxied)
+		return;
+	if (copy(wsi, WSI_TOKEN_X_FORWARDED_FOR, text, FORWARDED_BYTES) && text[0])
+		request_head_forwarded(text, request->address);
+	copy_custom(wsi, "x-forwarded-proto:", text, sizeof(text));
+	request->is_secure = strcmp(text, "https") == 0;
+}
+
 int request_head_read(struct request_head *head, struct api_request *request, struct lws *wsi,
-		      const char *path)
+		      const char *path, const struct request_head_options *options)
 {
 	char accept[ACCEPT_BYTES];
 
@@ -110,5 +225,6 @@ int request_head_read(struct request_head *head, struct api_request *request, st
 		return 431;
 	head->takes_gzip = copy(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING, accept, sizeof(accept)) &&
 			   request_head_takes_gzip(accept);
+	read_caller(head, request, wsi, options);
 	return read_length(head, wsi, request->method);
 }

@@ -12,7 +12,7 @@
 		".byte 0\n"                                                                        \
 		".previous\n")
 
-#define INCLUDE_FILE(name, path, file, type)                                                       \
+#define INCLUDE_FILE(name, path, file, type, is_open)                                              \
 	INCLUDE_BYTES("web_" #name, "curator/web/" file);                                          \
 	INCLUDE_BYTES("web_" #name "_zipped", "curator/web/" file ".gz");                          \
 	extern const uint8_t web_##name[], web_##name##_end[], web_##name##_zipped[],              \
@@ -22,17 +22,23 @@
 #define SCRIPT "text/javascript; charset=utf-8"
 #define STYLE  "text/css; charset=utf-8"
 
-/* A line for each file: a name for the linker, the path of a request, the file, its type. */
+/* A line for each file: a name for the linker, the path of a request, the file, its type,
+ * and whether those who are not signed in get it. */
 #define FILES(FILE)                                                                                \
-	FILE(page, "/", "index.html", HTML)                                                        \
-	FILE(script, "/curator.js", "curator.js", SCRIPT)                                          \
-	FILE(style, "/curator.css", "curator.css", STYLE)
+	FILE(page, "/", "index.html", HTML, false)                                                 \
+	FILE(script, "/curator.js", "curator.js", SCRIPT, true)                                    \
+	FILE(api, "/api.js", "api.js", SCRIPT, true)                                               \
+	FILE(account, "/account.js", "account.js", SCRIPT, true)                                   \
+	FILE(style, "/curator.css", "curator.css", STYLE, true)                                    \
+	FILE(sign_in, "/sign-in", "sign_in.html", HTML, true)                                      \
+	FILE(sign_in_script, "/sign_in.js", "sign_in.js", SCRIPT, true)                            \
+	FILE(sign_in_style, "/sign_in.css", "sign_in.css", STYLE, true)
 
 FILES(INCLUDE_FILE)
 
-#define ROW(name, path, file, type)                                                                \
-	{ path, type, { web_##name, 0 }, { web_##name##_zipped, 0 }, "" },
-#define ENDS(name, path, file, type) { web_##name##_end, web_##name##_zipped_end },
+#define ROW(name, path, file, type, is_open)                                                       \
+	{ path, type, is_open, { web_##name, 0 }, { web_##name##_zipped, 0 }, "" },
+#define ENDS(name, path, file, type, is_open) { web_##name##_end, web_##name##_zipped_end },
 
 static struct web_file files[] = { FILES(ROW) };
 

@@ -8,6 +8,7 @@
 
 struct web_file {
 	const char *path, *type;    /* as in the request, and its MIME type */
+	bool is_open;               /* for those who are not signed in, too */
 	struct bytes bytes, zipped; /* as it is, and by gzip */
 	char tag[HASH_HEX_BYTES];
 };

@@ -2,27 +2,38 @@
  * thread; the threads of sessions and workers only interrupt its wait. */
 #include "curator/server/web_server.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <libwebsockets.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/log.h"
 #include "curator/server/exchange.h"
 #include "curator/server/picture_socket.h"
+#include "curator/server/sign_in_routes.h"
 #include "curator/session/part_routes.h"
 
-enum { RECEIVE_BYTES = 64 << 10, HEADERS_BYTES = 8192, WORKER_THREADS = 2 };
+enum {
+	RECEIVE_BYTES = 64 << 10,
+	HEADERS_BYTES = 8192,
+	WORKER_THREADS = 2,
+	LOOK_AGAIN_S = 20, /* for sockets of those whose session has ended */
+};
 
 struct web_server {
 	struct site *site; /* borrowed */
 	struct lws_context *context;
 	struct lws_vhost *vhost;
 	const struct lws_protocols *protocol;
+	lws_sorted_usec_list_t timer;
 	struct origin_names names;
-	struct api_routes tables[1];
+	struct access access;
+	struct sign_in_place sign_in;
+	struct api_routes tables[2];
 	struct workers *workers; /* owned */
 	struct exchange_env env;
 	uint32_t session_count;
@@ -49,22 +60,35 @@ static void wake(void *user)
 
 /* ---- sockets */
 
-static bool is_welcome(struct lws *wsi)
+/* A page of another site has neither the token nor the origin. */
+static int admit_socket(struct lws *wsi, struct client *client)
 {
-	char host[ORIGIN_NAME_BYTES] = "", origin[ORIGIN_NAME_BYTES + 8] = "";
+	struct web_server *server = server_of(wsi);
+	struct api_job *job = api_job_create(); /* its request is too large for a stack */
+	struct request_head head;
+	const char *token;
+	int rc = -1;
 
-	if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) <= 0)
-		return false;
-	if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > 0 &&
-	    lws_hdr_copy(wsi, origin, sizeof(origin), WSI_TOKEN_ORIGIN) <= 0)
-		return false; /* too long */
-	return origin_is_welcome(&server_of(wsi)->names, host, origin);
+	if (job && client &&
+	    request_head_read(&head, &job->request, wsi, "/socket", &server->access.head) == 0 &&
+	    access_identify(&server->access, &head, &job->request, &job->response) == 0 &&
+	    access_judge(ROLE_READER, &head, &job->request, &job->response) == 0) {
+		token = api_query(&job->request, "token");
+		if (token && sign_in_secret_is(job->request.token, token)) {
+			picture_socket_set_caller(&client->socket, server->access.gate,
+						  &job->request.caller, job->request.cookie);
+			rc = 0;
+		}
+	}
+	api_job_destroy(job);
+	return rc;
 }
 
 static int open_socket(struct lws *wsi, struct client *client)
 {
 	struct web_server *server = server_of(wsi);
-	const struct session_options options = { server->site, wake, server };
+	const struct session_options options = { server->site, client->socket.caller, wake,
+						 server };
 
 	if (server->session_count == WEB_SERVER_SESSIONS_MAX) {
 		log_warn("curator", "refused a browser: %d are connected", WEB_SERVER_SESSIONS_MAX);
@@ -73,7 +97,8 @@ static int open_socket(struct lws *wsi, struct client *client)
 	if (picture_socket_open(&client->socket, &options) < 0)
 		return -1;
 	server->session_count++;
-	log_info("curator", "a browser has connected; %u are", server->session_count);
+	log_info("curator", "a browser of %s has connected; %u are", client->socket.caller.name,
+		 server->session_count);
 	return 0;
 }
 
@@ -105,7 +130,7 @@ static int callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return exchange_write(&client->exchange);
 	case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-		return is_welcome(wsi) ? 0 : -1;
+		return admit_socket(wsi, client);
 	case LWS_CALLBACK_ESTABLISHED:
 		return open_socket(wsi, client);
 	case LWS_CALLBACK_RECEIVE:
@@ -151,27 +176,97 @@ static void say(int level, const char *line)
 		log_warn("curator", "libwebsockets: %.*s", (int)strcspn(line, "\n"), line);
 }
 
-/* Listens, and names the address. */
-static int listen_at(struct web_server *server, const struct lws_context_creation_info *info)
+/* ---- the server */
+
+static void look_again(lws_sorted_usec_list_t *timer)
 {
-	static const char *const names[] = { "127.0.0.1", "localhost" };
+	struct web_server *server = lws_container_of(timer, struct web_server, timer);
+
+	lws_callback_on_writable_all_protocol_vhost(server->vhost, server->protocol);
+	lws_sul_schedule(server->context, 0, timer, look_again, LOOK_AGAIN_S * LWS_US_PER_SEC);
+}
+
+/* The names under which it is asked. */
+static int set_names(struct web_server *server, const struct web_server_options *options)
+{
+	const int port = web_server_port(server);
+	bool good = true;
+
+	if (port > 0) {
+		good = origin_add(&server->names, "127.0.0.1", port, false) &&
+		       origin_add(&server->names, "localhost", port, false);
+		if (good && strcmp(options->listen, "127.0.0.1") != 0)
+			good = origin_add(&server->names, options->listen, port, false);
+	}
+	for (unsigned n = 0; good && n < options->host_count; n++)
+		good = origin_add(&server->names, options->hosts[n], 0, true);
+	return good ? 0 : -EINVAL;
+}
+
+static bool is_unix(const struct web_server_options *options)
+{
+	return strncmp(options->listen, "unix:", 5) == 0;
+}
+
+/* Cookies belong to a host without its port, so two servers on one machine need two names. */
+static void set_access(struct web_server *server, const struct web_server_options *options)
+{
+	struct request_head_options *head = &server->access.head;
+
+	server->access.gate = options->gate;
+	server->access.names = &server->names;
+	snprintf(head->cookie, sizeof(head->cookie), "gopura-curator-%d", web_server_port(server));
+	if (options->sign_on)
+		snprintf(head->sign_on, sizeof(head->sign_on), "%s:", options->sign_on);
+	for (char *at = head->sign_on; *at; at++)
+		*at = (char)tolower((unsigned char)*at);
+	head->is_proxied = options->host_count > 0;
+	server->sign_in = (struct sign_in_place){ .gate = options->gate,
+						  .cookie = head->cookie,
+						  .temple = server->site->content.name,
+						  .is_sign_on = options->sign_on != NULL,
+						  .wake = wake,
+						  .user = server };
+	server->tables[0] = sign_in_routes(&server->sign_in);
+	server->tables[1] = part_routes(server->site);
+}
+
+/* Those that libwebsockets knows cannot be asked for by name. */
+static bool is_usable_header(const char *name)
+{
+	const size_t bytes = strlen(name);
+
+	for (int n = 0; n < WSI_TOKEN_COUNT; n++) {
+		const unsigned char *known = lws_token_to_string((enum lws_token_indexes)n);
+
+		if (known && strcasecmp((const char *)known, name) == 0)
+			return false;
+	}
+	return bytes > 1 && strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789-") == bytes - 1;
+}
+
+static int listen_at(struct web_server *server, const struct lws_context_creation_info *info,
+		     const struct web_server_options *options)
+{
+	int rc;
 
 	server->vhost = lws_create_vhost(server->context, info);
 	if (!server->vhost)
 		return -EADDRINUSE;
 	server->protocol = lws_vhost_name_to_protocol(server->vhost, protocols[0].name);
-	for (unsigned n = 0; n < ARRAY_COUNT(names); n++)
-		if (!origin_add(&server->names, names[n], web_server_port(server), false))
-			return -EINVAL;
-	return 0;
+	rc = set_names(server, options);
+	if (rc < 0)
+		return rc;
+	set_access(server, options);
+	return options->sign_on && !is_usable_header(server->access.head.sign_on) ? -EINVAL : 0;
 }
 
-int web_server_create(struct web_server **out, struct site *site, int port)
+int web_server_create(struct web_server **out, const struct web_server_options *options)
 {
 	struct web_server *server = calloc(1, sizeof(*server));
 	const struct lws_context_creation_info info = {
-		.iface = "127.0.0.1",
-		.port = port,
+		.iface = is_unix(options) ? options->listen + 5 : options->listen,
+		.port = is_unix(options) ? 0 : options->port,
 		.protocols = protocols,
 		.server_string = "gopura-curator",
 		.max_http_header_data2 = HEADERS_BYTES,
@@ -180,7 +275,8 @@ int web_server_create(struct web_server **out, struct site *site, int port)
 		.gid = (gid_t)-1,
 		.uid = (uid_t)-1,
 		.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS |
-			   LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND,
+			   LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
+			   (is_unix(options) ? LWS_SERVER_OPTION_UNIX_SOCK : 0),
 		.user = server,
 	};
 	int rc;
@@ -189,20 +285,21 @@ int web_server_create(struct web_server **out, struct site *site, int port)
 	if (!server)
 		return -ENOMEM;
 	lws_set_log_level(LLL_ERR | LLL_WARN, say);
-	server->site = site;
-	server->tables[0] = part_routes(site);
+	server->site = options->site;
 	server->context = lws_create_context(&info);
-	rc = server->context ? listen_at(server, &info) : -ENOMEM;
+	rc = server->context ? listen_at(server, &info, options) : -ENOMEM;
 	if (rc == 0)
 		rc = workers_create(&server->workers, WORKER_THREADS, wake, server);
 	if (rc < 0) {
 		web_server_destroy(server);
 		return rc;
 	}
-	server->env = (struct exchange_env){ .names = &server->names,
+	server->env = (struct exchange_env){ .access = &server->access,
 					     .tables = server->tables,
 					     .table_count = ARRAY_COUNT(server->tables),
 					     .workers = server->workers };
+	lws_sul_schedule(server->context, 0, &server->timer, look_again,
+			 LOOK_AGAIN_S * LWS_US_PER_SEC);
 	*out = server;
 	return 0;
 }
@@ -213,6 +310,7 @@ void web_server_destroy(struct web_server *server)
 {
 	if (!server)
 		return;
+	lws_sul_cancel(&server->timer);
 	server->vhost = NULL;
 	workers_end(server->workers);
 	if (server->context)

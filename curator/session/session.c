@@ -208,10 +208,16 @@ static int change_region(struct session *session, enum request_kind kind)
 /* Answers by itself, but where the region was opened. */
 static bool use_parts(struct session *session, const struct request *request)
 {
+	const struct caller *caller = &session->options.caller;
 	struct site *site = session->options.site;
 	struct diagnostics diagnostics = { 0 };
 	int rc;
 
+	if (request->kind == REQUEST_SAVE && caller->role < ROLE_EDITOR) {
+		send_error(session, "a reader cannot save: whoever administers gopura-curator can "
+				    "make you an editor");
+		return true;
+	}
 	if (request->kind == REQUEST_OPEN)
 		rc = part_store_open(site, &session->set, request->id, &diagnostics);
 	else
@@ -223,8 +229,8 @@ static bool use_parts(struct session *session, const struct request *request)
 	}
 	if (request->kind == REQUEST_OPEN)
 		return false;
-	log_info("curator", "saved part %s with %" PRIu32 " triangles", request->id,
-		 session->set.count);
+	log_info("curator", "%s saved part %s with %" PRIu32 " triangles", caller->name,
+		 request->id, session->set.count);
 	send_parts(session, request->id);
 	return true;
 }

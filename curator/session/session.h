@@ -5,6 +5,7 @@
 #define GOPURA_CURATOR_SESSION_SESSION_H
 
 #include "base/bytes.h"
+#include "curator/accounts/role.h"
 #include "curator/session/site.h"
 
 enum { SESSION_MESSAGE_BYTES_MAX = 32 << 20 }; /* of what is sent to a browser */
@@ -13,6 +14,7 @@ struct session;
 
 struct session_options {
 	struct site *site; /* borrowed */
+	struct caller caller;
 	/* Called by the session's thread when session_next has something; may be called while
 	 * session_destroy waits. */
 	void (*wake)(void *user);

@@ -1,6 +1,7 @@
 /* The curator's page: sends the camera and finished strokes, shows the pictures that come back.
  * docs/curator.md has the messages. */
-"use strict";
+import { loadSession, may, token } from "./api.js";
+import { showAccount } from "./account.js";
 
 const byId = id => document.getElementById(id);
 const stage = byId("stage"), picture = byId("picture"), strokes = byId("strokes");
@@ -26,12 +27,13 @@ function send(message) {
 }
 
 function connect() {
-  socket = new WebSocket(`ws://${location.host}/socket`);
+  socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket?token=${token()}`);
   socket.binaryType = "arraybuffer";
   socket.onmessage = event => typeof event.data === "string" ? onText(JSON.parse(event.data)) : onPicture(event.data);
   socket.onclose = () => {
     byId("connection").textContent = hello ? "Connection lost. What was not saved is gone; reload the page." : "No connection: is gopura-curator running?";
     byId("connection").classList.add("lost");
+    loadSession().then(session => { if (session.role === "nobody") location.assign("/sign-in"); }).catch(() => {});
   };
 }
 
@@ -319,6 +321,7 @@ function showRegion() {
   byId("undo").disabled = !region.undo;
   byId("redo").disabled = !region.redo;
   byId("grow").disabled = byId("shrink").disabled = byId("save").disabled = !region.triangles;
+  if (!may("editor")) byId("save").disabled = true;
   if (!region.marks && kept.length) { kept = []; drawStrokes(); }
   showMarks();
 }
@@ -403,4 +406,11 @@ document.addEventListener("keydown", event => {
 
 chooseTool(0);
 new ResizeObserver(() => { if (camera) resize(); }).observe(stage);
-connect();
+loadSession().then(session => {
+  showAccount(session);
+  byId("no-save").hidden = may("editor");
+  connect();
+}).catch(failure => {
+  byId("connection").textContent = failure.message;
+  byId("connection").classList.add("lost");
+});

@@ -1,11 +1,12 @@
 """A browser for gopura-curator: opens its WebSocket by hand and checks what it answers.
 
-    tests/e2e/curator.py PORT FOLDER check     everything that docs/curator.md promises
+    tests/e2e/curator.py PORT FOLDER check     signs in as ana, an editor, and checks everything that docs/curator.md promises
     tests/e2e/curator.py PORT FOLDER measure   prints the time from an input to its picture
 
 Standard library only."""
 
 import base64
+import http.client
 import json
 import math
 import os
@@ -18,17 +19,35 @@ import time
 WIDTH, HEIGHT = 1280, 720
 
 
+sign_ins = {}
+
+
+def sign_in(port, name="ana"):
+    """Returns the cookie and the token of an account, whose password the test has chosen."""
+    if (port, name) not in sign_ins:
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+        connection.request("POST", "/api/session", json.dumps({"name": name, "password": f"password of {name}"}),
+                           {"Content-Type": "application/json"})
+        answer = connection.getresponse()
+        body = json.loads(answer.read())
+        assert answer.status == 200, body
+        sign_ins[port, name] = answer.headers["set-cookie"].split(";")[0], body["token"]
+    return sign_ins[port, name]
+
+
 class Browser:
     """A connection. Texts are kept until they are asked for; pictures are told to have arrived at once."""
 
-    def __init__(self, port, origin=None, host=None, width=WIDTH, height=HEIGHT):
+    def __init__(self, port, origin=None, host=None, width=WIDTH, height=HEIGHT, name="ana", cookie=None, token=None):
         self.port, self.width, self.height = port, width, height
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=120)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.data, self.texts, self.view = b"", [], 0
         host = host or f"127.0.0.1:{port}"
+        own = sign_in(port, name)
+        cookie, token = own[0] if cookie is None else cookie, own[1] if token is None else token
         key = base64.b64encode(os.urandom(16)).decode()
-        lines = ["GET /socket HTTP/1.1", f"Host: {host}", "Upgrade: websocket", "Connection: Upgrade",
+        lines = [f"GET /socket?token={token} HTTP/1.1", f"Host: {host}", f"Cookie: theme=dark; {cookie}", "Upgrade: websocket", "Connection: Upgrade",
                  f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
         if origin:
             lines.append(f"Origin: {origin}")
@@ -299,10 +318,23 @@ def check_two(port, eye, target):
     assert pictures < 150, f"{pictures} pictures of 201 cameras"
 
 
+def check_reader(port, eye, target):
+    """Whoever may look marks for himself, and saves nothing."""
+    reader = start(port, name="rolf")[0]
+    reader.look(eye, target)
+    reader.picture()
+    reader.stroke("lasso", circle(120))
+    assert reader.text("region")["triangles"] > 0
+    reader.send("save", id="of-a-reader", title="No")
+    assert "reader" in error_of(reader)
+
+
 def check(port, folder):
     for host, origin in ((None, "http://evil.example"), (f"evil.example:{port}", None),
                          (None, f"http://127.0.0.1:{port + 1}"), (None, "null")):
         refused(port, host=host, origin=origin)
+    for cookie, token in (("", ""), ("", None), (None, ""), (None, "0" * 64), ("gopura-curator=1", None)):
+        refused(port, cookie=cookie, token=token)
     Browser(port, origin=f"http://localhost:{port}", host=f"localhost:{port}")
     browser, hello, parts = start(port, origin=f"http://127.0.0.1:{port}")
     assert hello["triangles"] > 1000 and parts, hello
@@ -315,6 +347,7 @@ def check(port, folder):
     check_tools(browser)
     check_parts(browser, port, folder)
     check_two(port, eye, target)
+    check_reader(port, eye, target)
     # A message beyond the limit ends its own connection only.
     rude = Browser(port)
     try:

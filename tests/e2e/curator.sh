@@ -24,12 +24,29 @@ status=0
 build/gopura-curator --port 99999 "$work/content" 2>/dev/null || status=$?
 [ "$status" = 2 ] || fail "a wrong port ends with $status"
 
+# ---- accounts, whose passwords the tests know
+status=0
+build/gopura-curator "$work/content" --port 0 2>"$work/log" || status=$?
+[ "$status" = 1 ] || fail "without accounts it ends with $status"
+grep -q "gopura-curator user add $work/content NAME" "$work/log" || fail "without accounts: $(cat "$work/log")"
+user() { build/gopura-curator user "$@" >"$work/log" 2>&1; }
+for one in ana:editor rolf:reader petra:publisher; do
+	echo "password of ${one%:*}" | user add "$work/content" "${one%:*}" --role "${one#*:}" || fail "$one: $(cat "$work/log")"
+done
+[ "$(stat -c %a "$work/content/.curator/accounts.json")" = 600 ] || fail "others may read the accounts"
+! grep -q 'password of' "$work/content/.curator/accounts.json" || fail "a password is kept as it is"
+! echo 'password of ana' | user add "$work/content" ana || fail "an account is made twice"
+! echo 'too short' | user add "$work/content" otto || fail "a short password is taken"
+! echo 'long enough, but' | user add "$work/content" 'a b' || fail "a name with a space is taken"
+! user remove "$work/content" otto || fail "it removes whom it does not know"
+user list "$work/content" && grep -q '^editor  *ana$' "$work/log" || fail "the list: $(cat "$work/log")"
+
 # ---- a session
 build/gopura-curator "$work/content" --port 0 >"$work/curator.log" 2>&1 &
 curator=$!
 wait_for 60 "address" grep -q 'open http://127.0.0.1:' "$work/curator.log"
 port=$(sed -nE 's|.*http://127.0.0.1:([0-9]+)/.*|\1|p' "$work/curator.log")
-python3 tests/e2e/curator_http.py "$port" || { tail "$work/curator.log"; fail "its answers over HTTP"; }
+python3 tests/e2e/curator_http.py "$port" "$work/content" || { tail "$work/curator.log"; fail "its answers over HTTP"; }
 python3 tests/e2e/curator.py "$port" "$work/content" check || { tail "$work/curator.log"; fail "the session"; }
 kill "$curator"
 wait "$curator" || { tail "$work/curator.log"; fail "it did not end well"; }
