@@ -1,4 +1,4 @@
-/* Projects the middles of triangles into the view and compares their depth with what it shows. */
+/* Projects points of triangles into the view and compares their depth with what it shows. */
 #include "curator/select/face_pick.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 #include "base/spill.h"
 #include "geometry/vec.h"
 
-/* A middle may lie behind what its pixel shows by so many widths of a pixel there: the picture has
+/* A point may lie behind what its pixel shows by so many widths of a pixel there: the picture has
  * the surface at the pixel's middle, and is drawn from simpler patches. */
 static const float behind_px = 2;
 
@@ -95,17 +95,11 @@ static bool box_may_be_in(const struct picker *picker, float box[2][3])
 	       low[1] < (float)picker->bottom && high[1] >= (float)picker->top;
 }
 
-/* Whether the view shows a triangle there: it faces the eye, and nothing is before it. */
-static bool is_shown(const struct picker *picker, const float middle[3], const float normal[3],
-		     uint32_t x, uint32_t y, float inverse_m)
+/* Whether nothing is before a point. */
+static bool is_shown(const struct view_image *image, uint32_t x, uint32_t y, float inverse_m)
 {
-	const struct view_image *image = picker->view->image;
-	float away[3], farthest = INFINITY;
+	float farthest = INFINITY;
 
-	vec_sub(away, middle, picker->view->camera->eye_m);
-	const float facing = -vec_dot(normal, away) / (vec_length(away) * vec_length(normal));
-	if (!(facing > 0))
-		return false;
 	/* On a surface seen at a slant, depth differs within a pixel. */
 	for (uint32_t row = y > 0 ? y - 1 : 0; row <= y + 1 && row < image->height_px; row++) {
 		for (uint32_t column = x > 0 ? x - 1 : 0;
@@ -119,29 +113,62 @@ static bool is_shown(const struct picker *picker, const float middle[3], const f
 	return inverse_m >= farthest * (1 - behind_px / image->px_per_radian);
 }
 
-static bool is_in(const struct picker *picker, const struct mesh *mesh, uint32_t triangle)
+static bool faces_eye(const struct picker *picker, const float *const corners[3])
+{
+	float ab[3], ac[3], normal[3], away[3];
+
+	vec_sub(ab, corners[1], corners[0]);
+	vec_sub(ac, corners[2], corners[0]);
+	vec_cross(normal, ab, ac);
+	vec_sub(away, corners[0], picker->view->camera->eye_m);
+	return vec_dot(normal, away) < 0;
+}
+
+/* What the picture says of a point: 1, it is in the part; -1, it is not; 0, it is not shown. */
+static int vote(const struct picker *picker, const float at[3])
 {
 	const struct view_image *image = picker->view->image;
-	const uint32_t *corners = mesh->triangles[triangle];
-	const float *a = mesh->positions[corners[0]], *b = mesh->positions[corners[1]],
-		    *c = mesh->positions[corners[2]];
-	float middle[3], ab[3], ac[3], normal[3], px[2];
+	float px[2];
+	const float inverse_m = project(picker, at, px);
 
-	for (int i = 0; i < 3; i++)
-		middle[i] = (a[i] + b[i] + c[i]) / 3;
-	const float inverse_m = project(picker, middle, px);
-	if (inverse_m <= 0 || px[0] < (float)picker->left || px[0] >= (float)picker->right ||
-	    px[1] < (float)picker->top || px[1] >= (float)picker->bottom)
-		return false;
+	if (inverse_m <= 0 || px[0] < 0 || px[0] >= (float)image->width_px || px[1] < 0 ||
+	    px[1] >= (float)image->height_px)
+		return 0;
 	const uint32_t x = (uint32_t)px[0], y = (uint32_t)px[1];
-	if (!picker->view->in_part[y * image->width_px + x])
+	if (!picker->view->through && !is_shown(image, x, y, inverse_m))
+		return 0;
+	return picker->view->in_part[y * image->width_px + x] ? 1 : -1;
+}
+
+/* A triangle of which the middle is seen belongs to where most of what is seen of it lies. */
+static bool is_in(const struct picker *picker, const struct mesh *mesh, uint32_t triangle)
+{
+	/* Points of equal areas: the middle, and about halfway from it to corners and sides. */
+	static const float points[][3] = {
+		{ 1 / 3.f, 1 / 3.f, 1 / 3.f },   { 2 / 3.f, 1 / 6.f, 1 / 6.f },
+		{ 1 / 6.f, 2 / 3.f, 1 / 6.f },   { 1 / 6.f, 1 / 6.f, 2 / 3.f },
+		{ 5 / 12.f, 5 / 12.f, 1 / 6.f }, { 5 / 12.f, 1 / 6.f, 5 / 12.f },
+		{ 1 / 6.f, 5 / 12.f, 5 / 12.f },
+	};
+	const float *corners[3];
+	int sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		corners[k] = mesh->positions[mesh->triangles[triangle][k]];
+	if (!picker->view->through && !faces_eye(picker, corners))
 		return false;
-	if (picker->view->through)
-		return true;
-	vec_sub(ab, b, a);
-	vec_sub(ac, c, a);
-	vec_cross(normal, ab, ac);
-	return is_shown(picker, middle, normal, x, y, inverse_m);
+	for (unsigned n = 0; n < ARRAY_COUNT(points); n++) {
+		float at[3];
+
+		for (int i = 0; i < 3; i++)
+			at[i] = points[n][0] * corners[0][i] + points[n][1] * corners[1][i] +
+				points[n][2] * corners[2][i];
+		const int its = vote(picker, at);
+		if (n == 0 && its == 0)
+			return false;
+		sum += its;
+	}
+	return sum > 0;
 }
 
 /* Where the part is. Returns false if it has no pixel. */

@@ -32,8 +32,8 @@ struct face_view {
 	bool through;           /* also what is behind what is seen, or turned away */
 };
 
-/* Calls found for every triangle whose middle lies in the part, in ascending order: those that the
- * view shows, or with `through` all. */
+/* Calls found for every triangle of the part in ascending order: of those whose middle the view
+ * shows, or with `through` of all, those that lie mostly in the part. */
 void face_pick(const struct face_view *view, const struct mesh *mesh,
 	       const struct face_blocks *blocks, void (*found)(void *user, uint32_t triangle),
 	       void *user);

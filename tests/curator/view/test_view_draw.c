@@ -160,12 +160,41 @@ static void what_turns_away_is_not_seen(void **state)
 	strike_stage(&stage);
 }
 
+/* A triangle of the front square fills about five pixels. */
+static void a_pixel_at_its_middle_does_not_decide_over_a_face(void **state)
+{
+	uint8_t pixels[WIDTH * HEIGHT];
+	struct stage stage;
+	uint32_t counts[SQUARES] = { 0 };
+	float middle[3] = { 0 }, px[2];
+
+	(void)state;
+	raise_stage(&stage);
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			middle[i] += stage.mesh.positions[stage.mesh.triangles[421][k]][i] / 3;
+	CHECK(camera_pixel(&camera, middle, &px[0], &px[1]));
+	const uint32_t pixel = (uint32_t)px[1] * WIDTH + (uint32_t)px[0];
+	struct face_view view = { &camera, &stage.image, pixels, false };
+	memset(pixels, 1, sizeof(pixels));
+	pixels[pixel] = 0;
+	face_pick(&view, &stage.mesh, &stage.blocks, note, counts);
+	CHECK(counts[0] == 2 * SIDE * SIDE);
+	memset(pixels, 0, sizeof(pixels));
+	pixels[pixel] = 1;
+	counts[0] = 0;
+	face_pick(&view, &stage.mesh, &stage.blocks, note, counts);
+	CHECK(counts[0] == 0);
+	strike_stage(&stage);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_view_shows_the_model_where_the_camera_says),
 		cmocka_unit_test(a_part_takes_what_is_seen_or_all_behind_it),
 		cmocka_unit_test(what_turns_away_is_not_seen),
+		cmocka_unit_test(a_pixel_at_its_middle_does_not_decide_over_a_face),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
