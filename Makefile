@@ -18,7 +18,7 @@ comma   := ,
 FOLDERS := base geometry format board system render ui input storage net app pipeline curator health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd \
-           libwebsockets
+           libwebsockets libgit2
 # METIS and jsmn (only a header) have no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lm -pthread
 
@@ -240,6 +240,7 @@ $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mk
 $(BUILD)/tests/pipeline/release/test_publish: EXTRA += -Wl,--wrap=fsync
 $(BUILD)/tests/pipeline/keys/test_keys: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
 $(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw gl_place_bind fingers_on_touch)
+$(BUILD)/tests/curator/store/test_documents: EXTRA += -Wl,--wrap=rename,--wrap=fsync
 $(BUILD)/tests/system/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)

@@ -1,60 +1,20 @@
-/* Reads and writes parts.json with cJSON, which keeps what it does not know. */
+/* Reads and changes parts.json and the lists of faces as documents. */
 #include "curator/session/part_store.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-enum { PARTS_BYTES_MAX = 64 << 20, FACES_BYTES_MAX = 256 << 20 };
+#include "curator/store/parts_file.h"
+
+enum { FACES_BYTES_MAX = DOCUMENT_BYTES_MAX };
 
 static int fail(struct diagnostics *diagnostics, int rc, const char *file)
 {
 	return diagnostics_add(diagnostics, rc, file, 0, "%s", strerror(-rc));
-}
-
-/* *out is owned by the caller (cJSON_Delete); an empty object if there is no file. */
-static int read_parts(const struct site *site, cJSON **out, struct diagnostics *diagnostics)
-{
-	char path[CONTENT_PATH_BYTES];
-	struct buffer text;
-	int rc = content_file_path(&site->content, "parts.json", path);
-
-	*out = NULL;
-	buffer_init(&text, PARTS_BYTES_MAX);
-	if (rc == 0)
-		rc = buffer_read_file(&text, path);
-	if (rc == 0)
-		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
-	else if (rc == -ENOENT)
-		*out = cJSON_CreateObject();
-	else
-		fail(diagnostics, rc, "parts.json");
-	buffer_finish(&text);
-	if ((rc == 0 || rc == -ENOENT) && !cJSON_IsObject(*out))
-		rc = diagnostics_add(diagnostics, -EINVAL, "parts.json", 0,
-				     "is not valid: 'gopura-content build' names the line");
-	if (rc == 0 || rc == -ENOENT)
-		return 0;
-	cJSON_Delete(*out);
-	*out = NULL;
-	return rc;
-}
-
-static cJSON *find_part(const cJSON *root, const char *id)
-{
-	cJSON *part;
-
-	cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(root, "parts"))
-	{
-		const cJSON *its = cJSON_GetObjectItemCaseSensitive(part, "id");
-
-		if (cJSON_IsString(its) && strcmp(its->valuestring, id) == 0)
-			return part;
-	}
-	return NULL;
 }
 
 /* Returns the file of a part's list of faces, borrowed. NULL: its region is another kind. */
@@ -101,25 +61,22 @@ static void add_row(const struct site *site, cJSON *rows, const cJSON *part)
 
 int part_store_list(struct site *site, struct buffer *out, struct diagnostics *diagnostics)
 {
-	cJSON *root, *rows = cJSON_CreateArray();
+	cJSON *rows = cJSON_CreateArray();
+	struct parts_file parts;
 	const cJSON *part;
 	char *text = NULL;
-	int rc;
+	int rc = parts_file_read(&parts, site->documents, diagnostics);
 
-	pthread_mutex_lock(&site->saving);
-	rc = read_parts(site, &root, diagnostics);
-	pthread_mutex_unlock(&site->saving);
 	if (rc == 0) {
-		cJSON_ArrayForEach(part, cJSON_GetObjectItemCaseSensitive(root, "parts"))
-			add_row(site, rows, part);
+		cJSON_ArrayForEach(part, parts_file_list(&parts)) add_row(site, rows, part);
 		text = cJSON_PrintUnformatted(rows);
-		rc = text ? 0 : fail(diagnostics, -ENOMEM, "parts.json");
+		rc = text ? 0 : fail(diagnostics, -ENOMEM, PARTS_FILE);
 	}
 	if (rc == 0)
 		buffer_put_text(out, text);
 	cJSON_free(text);
 	cJSON_Delete(rows);
-	cJSON_Delete(root);
+	parts_file_finish(&parts);
 	return rc;
 }
 
@@ -163,61 +120,37 @@ static void print_faces(struct buffer *out, const struct face_list *faces)
 				     faces->ranges[n].last);
 }
 
+/* Appends the text of a list of faces. */
 static int write_faces(const struct site *site, const struct region_set *set, uint32_t scan,
-		       const char *name, struct diagnostics *diagnostics)
+		       struct buffer *out, struct diagnostics *diagnostics)
 {
-	char path[CONTENT_PATH_BYTES];
 	struct face_list faces;
-	struct buffer text;
 	int rc = region_set_faces(&faces, set, site->mesh, scan);
 
-	buffer_init(&text, FACES_BYTES_MAX);
-	print_faces(&text, &faces);
+	print_faces(out, &faces);
 	if (rc == 0)
-		rc = text.error;
-	if (rc == 0)
-		rc = content_file_path(&site->content, "regions", path);
-	if (rc == 0 && mkdir(path, 0777) < 0 && errno != EEXIST)
-		rc = -errno;
-	if (rc == 0)
-		rc = content_file_path(&site->content, name, path);
+		rc = out->error;
 	if (rc < 0)
-		fail(diagnostics, rc, name);
+		fail(diagnostics, rc, NULL);
 	else if (faces.count == 0)
 		rc = diagnostics_add(diagnostics, -EINVAL, site->content.scans[scan], 0,
 				     "its faces have no numbers: only regions of a PLY file can be "
 				     "saved");
-	else if ((rc = bytes_write_file(buffer_bytes(&text), path)) < 0)
-		fail(diagnostics, rc, name);
-	buffer_finish(&text);
 	face_list_finish(&faces);
 	return rc;
 }
 
-/* cJSON's own replace functions add nothing that is missing. */
-static bool set_item(cJSON *object, const char *key, cJSON *item)
-{
-	if (!item)
-		return false;
-	if (cJSON_GetObjectItemCaseSensitive(object, key))
-		return cJSON_ReplaceItemInObjectCaseSensitive(object, key, item);
-	return cJSON_AddItemToObject(object, key, item);
-}
-
 /* Returns the part, which is new, and has a card alone, if there is none of that id. NULL: no
  * memory is left. */
-static cJSON *get_part(cJSON *root, const char *id)
+static cJSON *get_part(const struct parts_file *parts, const char *id)
 {
-	cJSON *part = find_part(root, id), *parts;
+	cJSON *part = parts_file_find(parts, id);
 
 	if (part)
 		return part;
-	parts = cJSON_GetObjectItemCaseSensitive(root, "parts");
-	if (!parts)
-		parts = cJSON_AddArrayToObject(root, "parts");
 	part = cJSON_CreateObject();
 	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddFalseToObject(part, "page") ||
-	    !cJSON_AddItemToArray(parts, part)) {
+	    !cJSON_AddItemToArray(parts_file_list(parts), part)) {
 		cJSON_Delete(part);
 		return NULL;
 	}
@@ -238,7 +171,7 @@ static bool set_region(const struct site *site, cJSON *part, uint32_t scan, cons
 		cJSON_Delete(region);
 		return false;
 	}
-	return set_item(part, "region", region);
+	return json_set(part, "region", region);
 }
 
 static bool set_title(cJSON *part, const char *language, const char *title)
@@ -247,74 +180,67 @@ static bool set_title(cJSON *part, const char *language, const char *title)
 
 	if (!cJSON_IsObject(titles)) {
 		titles = cJSON_CreateObject();
-		if (!set_item(part, "title", titles))
+		if (!json_set(part, "title", titles))
 			return false;
 	}
-	return set_item(titles, language, cJSON_CreateString(title));
+	return json_set(titles, language, cJSON_CreateString(title));
 }
 
-static int write_parts(const struct site *site, const cJSON *root, struct diagnostics *diagnostics)
+static bool change_part(const struct site *site, const struct parts_file *parts, uint32_t scan,
+			const char *file, const struct part_to_save *save)
 {
-	char path[CONTENT_PATH_BYTES], *text = cJSON_Print(root);
-	struct buffer file;
-	int rc = content_file_path(&site->content, "parts.json", path);
+	const char *language = *save->language ? save->language : site->content.languages[0];
+	cJSON *part = get_part(parts, save->id);
 
-	buffer_init(&file, PARTS_BYTES_MAX);
-	if (text) {
-		buffer_put_text(&file, text);
-		buffer_put_u8(&file, '\n');
-	}
-	if (rc == 0)
-		rc = text ? file.error : -ENOMEM;
-	if (rc == 0)
-		rc = bytes_write_file(buffer_bytes(&file), path);
-	if (rc < 0)
-		fail(diagnostics, rc, "parts.json");
-	buffer_finish(&file);
-	cJSON_free(text);
-	return rc;
+	return part && set_region(site, part, scan, file) &&
+	       (!*save->title || set_title(part, language, save->title));
 }
 
-/* root is changed. */
-static int save(const struct site *site, cJSON *root, const struct region_set *set, const char *id,
-		const char *title, const char *language, struct diagnostics *diagnostics)
+/* parts is changed. */
+static int save_part(const struct site *site, const struct parts_file *parts,
+		     const struct region_set *set, const struct part_to_save *save,
+		     struct diagnostics *diagnostics)
 {
-	const cJSON *parts = cJSON_GetObjectItemCaseSensitive(root, "parts");
-	char name[CONTENT_PATH_BYTES];
-	cJSON *part;
+	char name[DOCUMENT_NAME_BYTES], what[HISTORY_WHAT_BYTES];
+	struct document_change changes[2] = { { .name = name }, { .name = PARTS_FILE } };
+	struct buffer faces, text;
 	int rc, scan = scan_of(site, set, diagnostics);
 
 	if (scan < 0)
 		return scan;
-	if (parts && !cJSON_IsArray(parts))
-		return diagnostics_add(diagnostics, -EINVAL, "parts.json", 0,
-				       "\"parts\" is not a list");
-	if (!find_part(root, id) && !*title)
+	if (!parts_file_find(parts, save->id) && !*save->title)
 		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
 				       "a new part needs a title: write it beside Save");
-	snprintf(name, sizeof(name), "regions/%s.faces", id);
-	rc = write_faces(site, set, (uint32_t)scan, name, diagnostics);
-	if (rc < 0)
-		return rc;
-	part = get_part(root, id);
-	if (!part || !set_region(site, part, (uint32_t)scan, name) ||
-	    (*title && !set_title(part, *language ? language : site->content.languages[0], title)))
-		return fail(diagnostics, -ENOMEM, "parts.json");
-	return write_parts(site, root, diagnostics);
+	buffer_init(&faces, FACES_BYTES_MAX);
+	buffer_init(&text, PARTS_FILE_BYTES_MAX);
+	snprintf(name, sizeof(name), "regions/%s.faces", save->id);
+	snprintf(what, sizeof(what), "region of %s", save->id);
+	rc = write_faces(site, set, (uint32_t)scan, &faces, diagnostics);
+	if (rc == 0 && !change_part(site, parts, (uint32_t)scan, name, save))
+		rc = fail(diagnostics, -ENOMEM, PARTS_FILE);
+	if (rc == 0 && (rc = parts_file_print(parts, &text)) < 0)
+		fail(diagnostics, rc, PARTS_FILE);
+	changes[0].text = buffer_bytes(&faces);
+	changes[1].text = buffer_bytes(&text);
+	if (rc == 0)
+		rc = documents_save(site->documents, changes, 2, save->author, what, diagnostics);
+	buffer_finish(&text);
+	buffer_finish(&faces);
+	return rc;
 }
 
-int part_store_save(struct site *site, const struct region_set *set, const char *id,
-		    const char *title, const char *language, struct diagnostics *diagnostics)
+int part_store_save(struct site *site, const struct region_set *set,
+		    const struct part_to_save *save, struct diagnostics *diagnostics)
 {
-	cJSON *root;
+	struct parts_file parts;
 	int rc;
 
-	pthread_mutex_lock(&site->saving);
-	rc = read_parts(site, &root, diagnostics);
+	documents_lock(site->documents);
+	rc = parts_file_read(&parts, site->documents, diagnostics);
 	if (rc == 0)
-		rc = save(site, root, set, id, title, language, diagnostics);
-	pthread_mutex_unlock(&site->saving);
-	cJSON_Delete(root);
+		rc = save_part(site, &parts, set, save, diagnostics);
+	documents_unlock(site->documents);
+	parts_file_finish(&parts);
 	return rc;
 }
 
@@ -361,10 +287,10 @@ static int put_faces(const struct site *site, struct region_set *set, const char
 	return rc;
 }
 
-static int open_part(const struct site *site, const cJSON *root, struct region_set *set,
-		     const char *id, struct diagnostics *diagnostics)
+static int open_part(const struct site *site, const struct parts_file *parts,
+		     struct region_set *set, const char *id, struct diagnostics *diagnostics)
 {
-	const cJSON *part = find_part(root, id);
+	const cJSON *part = parts_file_find(parts, id);
 	const char *file = faces_file(part);
 	int scan;
 
@@ -384,14 +310,14 @@ static int open_part(const struct site *site, const cJSON *root, struct region_s
 int part_store_open(struct site *site, struct region_set *set, const char *id,
 		    struct diagnostics *diagnostics)
 {
-	cJSON *root;
+	struct parts_file parts;
 	int rc;
 
-	pthread_mutex_lock(&site->saving);
-	rc = read_parts(site, &root, diagnostics);
+	documents_lock(site->documents);
+	rc = parts_file_read(&parts, site->documents, diagnostics);
 	if (rc == 0)
-		rc = open_part(site, root, set, id, diagnostics);
-	pthread_mutex_unlock(&site->saving);
-	cJSON_Delete(root);
+		rc = open_part(site, &parts, set, id, diagnostics);
+	documents_unlock(site->documents);
+	parts_file_finish(&parts);
 	return rc;
 }

@@ -4,8 +4,10 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -209,6 +211,8 @@ static int change_region(struct session *session, enum request_kind kind)
 static bool use_parts(struct session *session, const struct request *request)
 {
 	const struct caller *caller = &session->options.caller;
+	const struct part_to_save save = { request->id, request->title, request->language,
+					   caller->name };
 	struct site *site = session->options.site;
 	struct diagnostics diagnostics = { 0 };
 	int rc;
@@ -221,8 +225,7 @@ static bool use_parts(struct session *session, const struct request *request)
 	if (request->kind == REQUEST_OPEN)
 		rc = part_store_open(site, &session->set, request->id, &diagnostics);
 	else
-		rc = part_store_save(site, &session->set, request->id, request->title,
-				     request->language, &diagnostics);
+		rc = part_store_save(site, &session->set, &save, &diagnostics);
 	if (rc < 0) {
 		send_error(session, diagnostics_cause(&diagnostics, rc));
 		return true;

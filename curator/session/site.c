@@ -41,7 +41,6 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 	int rc;
 
 	*site = (struct site){ 0 };
-	pthread_mutex_init(&site->saving, NULL);
 	rc = read_settings(site, folder, diagnostics);
 	if (rc == 0)
 		rc = scans_create(&site->scans, &site->content);
@@ -56,6 +55,8 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 		rc = read_mesh(site, diagnostics);
 	if (rc == 0)
 		rc = face_blocks_make(&site->blocks, site->mesh);
+	if (rc == 0)
+		rc = documents_open(&site->documents, folder, diagnostics);
 	if (rc < 0) {
 		site_close(site);
 		return rc;
@@ -72,6 +73,6 @@ void site_close(struct site *site)
 	master_destroy(site->master);
 	scans_destroy(site->scans);
 	content_release(&site->content);
-	pthread_mutex_destroy(&site->saving);
+	documents_close(site->documents);
 	*site = (struct site){ 0 };
 }

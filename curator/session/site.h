@@ -2,9 +2,8 @@
 #ifndef GOPURA_CURATOR_SESSION_SITE_H
 #define GOPURA_CURATOR_SESSION_SITE_H
 
-#include <pthread.h>
-
 #include "curator/select/face_pick.h"
+#include "curator/store/documents.h"
 #include "pipeline/content/scans.h"
 #include "pipeline/hierarchy/master.h"
 
@@ -15,7 +14,7 @@ struct site {
 	const struct mesh *mesh;   /* borrowed from scans */
 	struct face_blocks blocks; /* of the mesh */
 	bool lit;
-	pthread_mutex_t saving; /* held while files of the folder are read or written */
+	struct documents *documents; /* owned; every file of it that is changed */
 };
 
 /* Opens the folder, whose master must be there and of its scans. Takes the folder's lock only while

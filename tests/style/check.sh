@@ -44,7 +44,7 @@ may_enter() {
 	pipeline/temple) echo material ;;
 	curator/view | curator/region) echo select ;;
 	curator/api) echo accounts ;;
-	curator/session) echo accounts api select view region ;;
+	curator/session) echo accounts api select store view region ;;
 	curator/server) echo accounts api session ;;
 	app/modes) echo settings view ;;
 	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
