@@ -130,6 +130,7 @@ powercut: all $(BUILD)/.test-deps ## power cuts: at every write of cache and sta
 
 interrupted: all $(BUILD)/.test-deps ## builds killed and out of disk at random moments, then resumed: the same release; KILLS=50 FULL=20 SEED=1
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
+	@KILLS=20 SEED=$(or $(SEED),1) bash tests/e2e/publish.sh
 
 qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk
 	@bash tests/qemu/image.sh updates

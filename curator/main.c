@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "curator/accounts/gate.h"
+#include "curator/publisher_command.h"
 #include "curator/server/web_server.h"
 #include "curator/session/site.h"
 #include "curator/user_command.h"
@@ -17,6 +18,7 @@ static const char help[] =
 	"\n"
 	"usage: gopura-curator DIR [OPTIONS]\n"
 	"       gopura-curator user add|password|role|remove|list DIR [NAME] [OPTIONS]\n"
+	"       gopura-curator publisher DIR --out RELEASE [OPTIONS]\n"
 	"\n"
 	"DIR is a content folder whose hierarchy has been made ('gopura-content hierarchy DIR'; a build\n"
 	"makes it too). Marked parts are saved in DIR/parts.json and DIR/regions, and the next build\n"
@@ -27,6 +29,8 @@ static const char help[] =
 	"  --listen ADDRESS    default: 127.0.0.1, this machine alone; or unix:PATH, for a proxy. Put\n"
 	"                      nginx with TLS in front before others reach it\n"
 	"  --host NAME         the name under which a proxy serves it; up to four times\n"
+	"  --release RELEASE   the release folder, which is only read: the page then shows what would\n"
+	"                      change, and 'gopura-curator publisher' publishes\n"
 	"  --sign-on HEADER    the museum's own sign-on: a proxy on this machine names in this header\n"
 	"                      who has signed on; roles are those of the accounts\n"
 	"  --help, --version\n"
@@ -42,6 +46,7 @@ enum {
 	OPTION_PORT = 256,
 	OPTION_LISTEN,
 	OPTION_HOST,
+	OPTION_RELEASE,
 	OPTION_SIGN_ON,
 	OPTION_HELP,
 	OPTION_VERSION,
@@ -104,6 +109,7 @@ static void parse(struct settings *settings, int argc, char **argv)
 		{ "port", required_argument, NULL, OPTION_PORT },
 		{ "listen", required_argument, NULL, OPTION_LISTEN },
 		{ "host", required_argument, NULL, OPTION_HOST },
+		{ "release", required_argument, NULL, OPTION_RELEASE },
 		{ "sign-on", required_argument, NULL, OPTION_SIGN_ON },
 		{ "help", no_argument, NULL, OPTION_HELP },
 		{ "version", no_argument, NULL, OPTION_VERSION },
@@ -121,6 +127,9 @@ static void parse(struct settings *settings, int argc, char **argv)
 			break;
 		case OPTION_HOST:
 			add_host(&settings->server, optarg);
+			break;
+		case OPTION_RELEASE:
+			settings->server.release = optarg;
 			break;
 		case OPTION_SIGN_ON:
 			settings->server.sign_on = optarg;
@@ -189,6 +198,8 @@ int main(int argc, char **argv)
 
 	if (argc > 1 && strcmp(argv[1], "user") == 0)
 		return user_command(argc - 1, argv + 1);
+	if (argc > 1 && strcmp(argv[1], "publisher") == 0)
+		return publisher_command(argc - 1, argv + 1);
 	parse(&settings, argc, argv);
 	rc = site_open(&site, settings.folder, &diagnostics);
 	if (rc == 0)

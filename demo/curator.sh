@@ -20,4 +20,11 @@ else
 	build/gopura-curator user add "$content" demo --role publisher <<<"$password"
 fi
 echo "Sign in as demo with the password $password"
-exec build/gopura-curator "$content"
+# Where make demo has made a release, the page publishes the next one.
+release=()
+if [ -f build/demo/release/release.json ]; then
+	release=(--release build/demo/release)
+	build/gopura-curator publisher "$content" --out build/demo/release --keys build/demo/keys &
+	trap 'kill $! 2>/dev/null; wait' EXIT
+fi
+build/gopura-curator "$content" "${release[@]}"

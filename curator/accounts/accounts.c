@@ -151,7 +151,7 @@ int accounts_read(struct accounts *out, const char *folder, struct diagnostics *
 	return rc == -ENOENT ? 0 : rc;
 }
 
-static int make_folder(const char *folder, struct diagnostics *diagnostics)
+int accounts_make_folder(const char *folder, struct diagnostics *diagnostics)
 {
 	static const char ignored[] = "*\n"; /* a history of the content has no passwords */
 	char path[PATH_MAX];
@@ -159,7 +159,8 @@ static int make_folder(const char *folder, struct diagnostics *diagnostics)
 
 	if (rc < 0)
 		return rc;
-	if (mkdir(path, 0700) < 0 && errno != EEXIST)
+	/* Others find what they know the name of; accounts.json itself is 0600. */
+	if (mkdir(path, 0711) < 0 && errno != EEXIST)
 		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
 	rc = path_of(path, folder, ".curator/.gitignore", diagnostics);
 	if (rc == 0 && access(path, F_OK) < 0)
@@ -193,7 +194,7 @@ int accounts_write(const struct accounts *accounts, const char *folder,
 {
 	char path[PATH_MAX];
 	struct buffer text;
-	int rc = make_folder(folder, diagnostics);
+	int rc = accounts_make_folder(folder, diagnostics);
 
 	if (rc == 0)
 		rc = path_of(path, folder, file_name, diagnostics);
@@ -213,7 +214,7 @@ int accounts_write(const struct accounts *accounts, const char *folder,
 int accounts_lock(const char *folder, struct diagnostics *diagnostics)
 {
 	char path[PATH_MAX];
-	int fd, rc = make_folder(folder, diagnostics);
+	int fd, rc = accounts_make_folder(folder, diagnostics);
 
 	if (rc == 0)
 		rc = path_of(path, folder, ".curator/lock", diagnostics);

@@ -50,7 +50,9 @@ void accounts_print(struct buffer *out, const struct accounts *accounts);
  * Errors of reading, with a diagnostic. */
 must_check int accounts_read(struct accounts *out, const char *folder,
 			     struct diagnostics *diagnostics);
-/* Replaces the file, whole or not at all; makes DIR/.curator, mode 0700, if it is missing. */
+/* Makes DIR/.curator if it is missing. Errors of the disk, with a diagnostic. */
+must_check int accounts_make_folder(const char *folder, struct diagnostics *diagnostics);
+/* Replaces the file, whole or not at all; makes DIR/.curator if it is missing. */
 must_check int accounts_write(const struct accounts *accounts, const char *folder,
 			      struct diagnostics *diagnostics);
 /* Waits for other processes that change the accounts. Returns a descriptor whose closing lets the

@@ -29,6 +29,8 @@
 	FILE(script, "/curator.js", "curator.js", SCRIPT, true)                                    \
 	FILE(api, "/api.js", "api.js", SCRIPT, true)                                               \
 	FILE(account, "/account.js", "account.js", SCRIPT, true)                                   \
+	FILE(publish, "/publish.js", "publish.js", SCRIPT, true)                                   \
+	FILE(publish_style, "/publish.css", "publish.css", STYLE, true)                            \
 	FILE(style, "/curator.css", "curator.css", STYLE, true)                                    \
 	FILE(sign_in, "/sign-in", "sign_in.html", HTML, true)                                      \
 	FILE(sign_in_script, "/sign_in.js", "sign_in.js", SCRIPT, true)                            \

@@ -12,6 +12,7 @@
 #include <strings.h>
 
 #include "base/log.h"
+#include "curator/publish/publish_routes.h"
 #include "curator/server/exchange.h"
 #include "curator/server/picture_socket.h"
 #include "curator/server/sign_in_routes.h"
@@ -33,7 +34,8 @@ struct web_server {
 	struct origin_names names;
 	struct access access;
 	struct sign_in_place sign_in;
-	struct api_routes tables[2];
+	struct api_routes tables[3];
+	struct publish_place publish;
 	struct workers *workers; /* owned */
 	struct exchange_env env;
 	uint32_t session_count;
@@ -229,6 +231,7 @@ static void set_access(struct web_server *server, const struct web_server_option
 						  .user = server };
 	server->tables[0] = sign_in_routes(&server->sign_in);
 	server->tables[1] = part_routes(server->site);
+	server->tables[2] = publish_routes(&server->publish);
 }
 
 /* Those that libwebsockets knows cannot be asked for by name. */
@@ -286,6 +289,7 @@ int web_server_create(struct web_server **out, const struct web_server_options *
 		return -ENOMEM;
 	lws_set_log_level(LLL_ERR | LLL_WARN, say);
 	server->site = options->site;
+	publish_place_init(&server->publish, server->site->content.folder, options->release);
 	server->context = lws_create_context(&info);
 	rc = server->context ? listen_at(server, &info, options) : -ENOMEM;
 	if (rc == 0)
@@ -316,6 +320,7 @@ void web_server_destroy(struct web_server *server)
 	if (server->context)
 		lws_context_destroy(server->context);
 	workers_destroy(server->workers);
+	publish_place_finish(&server->publish);
 	free(server);
 }
 

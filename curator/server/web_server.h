@@ -19,6 +19,7 @@ struct web_server_options {
 	int port;                                /* 0: a free one */
 	const char *hosts[WEB_SERVER_HOSTS_MAX]; /* names under which a proxy serves it */
 	unsigned host_count;
+	const char *release; /* the release folder, to compare with; NULL: nothing is published */
 	const char *sign_on; /* the header in which a proxy names who has signed on; NULL: none */
 };
 

@@ -4,23 +4,8 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "pipeline/build.h"
-#include "pipeline/content/work_lock.h"
-
-/* The scans are imported if they have changed, which writes into the folder. */
-static int read_mesh(struct site *site, struct diagnostics *diagnostics)
-{
-	int lock, rc = work_lock(&lock, &site->content);
-
-	if (rc < 0)
-		return diagnostics_add(diagnostics, rc, site->content.folder, 0,
-				       "another program works there: start when it has ended");
-	rc = scans_get_mesh(site->scans, &site->mesh, diagnostics);
-	close(lock);
-	return rc;
-}
 
 /* Its faults name a line, but not the file. */
 static int read_settings(struct site *site, const char *folder, struct diagnostics *diagnostics)
@@ -52,7 +37,7 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 				     "hierarchy %s'",
 				     folder);
 	if (rc == 0)
-		rc = read_mesh(site, diagnostics);
+		rc = scans_get_mesh(site->scans, &site->mesh, diagnostics);
 	if (rc == 0)
 		rc = face_blocks_make(&site->blocks, site->mesh);
 	if (rc == 0)

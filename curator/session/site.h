@@ -17,8 +17,8 @@ struct site {
 	struct documents *documents; /* owned; every file of it that is changed */
 };
 
-/* Opens the folder, whose master must be there and of its scans. Takes the folder's lock only while
- * it reads the scans, so that gopura-content may build beside it. *site is zeroed on failure.
+/* Opens the folder, whose master must be there and of its scans. Takes no lock, because files of
+ * .work are replaced whole: gopura-content may build meanwhile. *site is zeroed on failure.
  * Negative errno, with a diagnostic. */
 must_check int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics);
 void site_close(struct site *site); /* zeroed is fine */

@@ -2,6 +2,7 @@
  * docs/curator.md has the messages. */
 import { loadSession, may, token } from "./api.js";
 import { showAccount } from "./account.js";
+import { setUpPublishing } from "./publish.js";
 
 const byId = id => document.getElementById(id);
 const stage = byId("stage"), picture = byId("picture"), strokes = byId("strokes");
@@ -386,7 +387,7 @@ byId("fresh").addEventListener("click", () => {
 const ZOOM_KEYS = { "+": 0.8, "=": 0.8, "-": 1.25 };
 const TURN_KEYS = { ArrowLeft: [-30, 0], ArrowRight: [30, 0], ArrowUp: [0, -30], ArrowDown: [0, 30] };
 document.addEventListener("keydown", event => {
-  if (!camera || event.target.matches("input, select")) return;
+  if (!camera || event.target.matches("input, select") || document.querySelector("dialog[open]")) return;
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, control = event.ctrlKey || event.metaKey;
   let done = true;
   if (control && key === "z") send({ type: event.shiftKey ? "redo" : "undo" });
@@ -408,6 +409,7 @@ chooseTool(0);
 new ResizeObserver(() => { if (camera) resize(); }).observe(stage);
 loadSession().then(session => {
   showAccount(session);
+  setUpPublishing();
   byId("no-save").hidden = may("editor");
   connect();
 }).catch(failure => {

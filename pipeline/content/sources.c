@@ -21,14 +21,15 @@ struct sources {
 	struct draft *draft; /* NULL: not read yet, or compiled */
 	struct info_built built;
 	bool is_built;
-	struct diagnostics found;  /* in the files of the folder */
+	struct diagnostics found; /* in the files of the folder */
+	bool is_quiet;
 	uint32_t logged, warnings; /* how many of them were logged, and how many are warnings */
 };
 
 /* Logs what was found since the last call. */
 static void log_found(struct sources *sources)
 {
-	for (; sources->logged < sources->found.count; sources->logged++) {
+	for (; !sources->is_quiet && sources->logged < sources->found.count; sources->logged++) {
 		const struct diagnostic *found = diagnostics_get(&sources->found, sources->logged);
 
 		if (found->error < 0)
@@ -92,6 +93,16 @@ const struct content *sources_content(const struct sources *sources)
 struct scans *sources_scans(struct sources *sources)
 {
 	return sources->scans;
+}
+
+void sources_be_quiet(struct sources *sources)
+{
+	sources->is_quiet = true;
+}
+
+const struct diagnostics *sources_found(const struct sources *sources)
+{
+	return &sources->found;
 }
 
 /* ---- the ways of the tours */
@@ -169,6 +180,8 @@ static int compile(struct sources *sources, struct diagnostics *diagnostics)
 /* The faults of the folder have been logged; this logs any other. */
 static int tell(const struct sources *sources, int rc, const struct diagnostics *diagnostics)
 {
+	if (sources->is_quiet)
+		return rc;
 	if (rc < 0 && sources->found.dropped > 0)
 		log_error("pipeline", "%s: and %u more", sources->content->folder,
 			  sources->found.dropped);

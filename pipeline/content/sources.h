@@ -16,6 +16,11 @@ const struct content *sources_content(const struct sources *sources);
 /* The scans, borrowed. */
 struct scans *sources_scans(struct sources *sources);
 
+/* Nothing is logged from now on: sources_found has every fault and warning. */
+void sources_be_quiet(struct sources *sources);
+/* Returns what was found in the folder's files, borrowed until the next call. */
+const struct diagnostics *sources_found(const struct sources *sources);
+
 /* Checks parts, pages, pictures and tours, so that faults are found before the long work. The scans
  * are imported only if there are tours, whose ways must not lead through them. -EINVAL: every fault
  * was logged. Other errors are logged too. */

@@ -41,6 +41,9 @@ done
 ! user remove "$work/content" otto || fail "it removes whom it does not know"
 user list "$work/content" && grep -q '^editor  *ana$' "$work/log" || fail "the list: $(cat "$work/log")"
 
+bytes=$(cat curator/web/* | wc -c)
+[ "$bytes" -lt 153600 ] || fail "the pages have $bytes bytes"
+
 # ---- a session
 build/gopura-curator "$work/content" --port 0 >"$work/curator.log" 2>&1 &
 curator=$!

@@ -44,8 +44,9 @@ may_enter() {
 	pipeline/temple) echo material ;;
 	curator/view | curator/region) echo select ;;
 	curator/api) echo accounts ;;
+	curator/publish) echo accounts api ;;
 	curator/session) echo accounts api select store view region ;;
-	curator/server) echo accounts api session ;;
+	curator/server) echo accounts api publish session ;;
 	app/modes) echo settings view ;;
 	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
 	app/visit | app/release) echo view ;;
@@ -62,7 +63,7 @@ is_public() {
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
-	pipeline/release/*) names="publish_content verify inspect inspect_release" ;;
+	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/keys/*) names="keys keys_place" ;;
 	pipeline/material/*) names="material" ;;
