@@ -73,6 +73,7 @@ cp -r build/appliance/locale/. "$tree/usr/share/locale/"
 [ -d "$tree/usr/lib/locale/C.utf8" ] || { echo "image: no package of image/packages contains the locale C.UTF-8" >&2; exit 1; }
 cp -r "$here/root/." "$tree/"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
+rm "$tree"/usr/lib/systemd/system/gopura-{curator,publisher}.service # for the machine with the scans
 # The font cache is made here, because fontconfig has nothing to find out at run time.
 sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fonts/cache</cachedir>|' \
 	-e '/<cachedir prefix="xdg"/d' -e '/<cachedir>~/d' "$tree/etc/fonts/fonts.conf"

@@ -155,12 +155,16 @@ int accounts_make_folder(const char *folder, struct diagnostics *diagnostics)
 {
 	static const char ignored[] = "*\n"; /* a history of the content has no passwords */
 	char path[PATH_MAX];
+	struct stat is;
 	int rc = path_of(path, folder, ".curator", diagnostics);
 
 	if (rc < 0)
 		return rc;
-	/* Others find what they know the name of; accounts.json itself is 0600. */
 	if (mkdir(path, 0711) < 0 && errno != EEXIST)
+		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
+	/* The publisher, which may be another user, finds what it knows the name of. What is secret
+	 * has a mode of its own. Whoever does not own the folder leaves it as it is. */
+	if (stat(path, &is) < 0 || (chmod(path, (is.st_mode & 07777) | 0711) < 0 && errno != EPERM))
 		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
 	rc = path_of(path, folder, ".curator/.gitignore", diagnostics);
 	if (rc == 0 && access(path, F_OK) < 0)
@@ -227,6 +231,8 @@ int accounts_lock(const char *folder, struct diagnostics *diagnostics)
 			close(fd);
 		return rc;
 	}
+	if (path_of(path, folder, file_name, NULL) == 0)
+		bytes_drop_leftovers(path); /* of a command that was killed */
 	return fd;
 }
 

@@ -248,7 +248,7 @@ int publish_files_make(const char *folder, struct diagnostics *diagnostics)
 		rc = publish_file_path(path, folder, "");
 	if (rc < 0)
 		return rc;
-	/* The publisher may be another user of the folder's group. */
+	/* The publisher may be another user of the folder's group, which the umask must allow. */
 	if (mkdir(path, 0770) < 0 && errno != EEXIST)
 		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
 	return 0;
@@ -328,6 +328,14 @@ int publish_state_write(const struct publish_state *state, const char *folder)
 int publish_releases_write(const struct publish_releases *releases, const char *folder)
 {
 	return write_file(print_releases(releases), folder, "releases.json");
+}
+
+void publish_drop_leftovers(const char *folder, const char *name)
+{
+	char path[PATH_MAX];
+
+	if (publish_file_path(path, folder, name) == 0)
+		bytes_drop_leftovers(path);
 }
 
 /* ---- the lock */

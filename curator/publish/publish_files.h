@@ -73,6 +73,10 @@ must_check int publish_request_write(const struct publish_request *request, cons
 must_check int publish_state_write(const struct publish_state *state, const char *folder);
 must_check int publish_releases_write(const struct publish_releases *releases, const char *folder);
 
+/* Removes what a process that was killed left half written of a file. Only for the one that writes
+ * it. */
+void publish_drop_leftovers(const char *folder, const char *name);
+
 /* The parsers alone: the publisher trusts nothing that the web process wrote. -EBADMSG, -ENOMEM. */
 must_check int publish_request_parse(struct publish_request *out, struct bytes text);
 must_check int publish_state_parse(struct publish_state *out, struct bytes text);

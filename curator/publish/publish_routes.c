@@ -15,7 +15,14 @@
 
 void publish_place_init(struct publish_place *place, const char *folder, const char *release)
 {
+	struct diagnostics diagnostics = { 0 };
+	int rc;
+
 	*place = (struct publish_place){ .folder = folder, .release = release };
+	rc = release ? publish_files_make(folder, &diagnostics) : 0;
+	if (rc < 0)
+		log_error("curator", "%s", diagnostics_cause(&diagnostics, rc));
+	publish_drop_leftovers(folder, "request.json");
 	pthread_mutex_init(&place->asking, NULL);
 	pthread_mutex_init(&place->comparing, NULL);
 }

@@ -15,6 +15,8 @@ struct publish_place {
 	pthread_mutex_t comparing; /* held while changes are found, which takes memory */
 };
 
+/* With a release, makes the folder that the publisher waits at. Errors of the disk are logged: then
+ * nobody can publish. */
 void publish_place_init(struct publish_place *place, const char *folder, const char *release);
 void publish_place_finish(struct publish_place *place);
 

@@ -276,6 +276,8 @@ int publisher_run(const struct publisher_options *options, struct diagnostics *d
 	int rc = start(&publisher, diagnostics), done = 0;
 
 	if (rc == 0) {
+		publish_drop_leftovers(options->folder, "state.json");
+		publish_drop_leftovers(options->folder, "releases.json");
 		rc = write_releases(&publisher, NULL);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, options->release, 0, "%s", strerror(-rc));

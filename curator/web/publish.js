@@ -135,7 +135,7 @@ function releaseRow(release) {
   text.append(element("strong", `Release ${release.sequence}`), element("span", release.comment || "no comment", release.comment ? "" : "quiet"),
     element("small", [release.by, when(release.at)].filter(Boolean).join(" · ") || "made on the command line"));
   item.append(text);
-  if (release.current) item.append(element("em", "shown"));
+  if (release.current) item.append(element("em", release === state.releases[0] ? "current" : "the same"));
   else if (may("publisher")) {
     const back = element("button", "Go back");
     back.type = "button";

@@ -18,18 +18,39 @@ import time
 from curator_http import Client
 
 
+# As systemd/gopura-curator.service and gopura-publisher.service: two users who share a group. No such users need exist.
+WEB, PUBLISHER = {"user": 61001, "group": 61001, "extra_groups": [61003], "umask": 0o007}, \
+    {"user": 61002, "group": 61003, "extra_groups": [], "umask": 0o007}
+
+
+def share(work):
+    """Gives each user what is his, as root; returns whether that could be done."""
+    folders = [work.absolute(), *work.absolute().parents]
+    if os.geteuid() != 0 or any(not folder.stat().st_mode & 1 for folder in folders):
+        return False
+    subprocess.run(["chown", "-R", "61002:61003", work / "content", work / "release", work / "keys"], check=True)
+    subprocess.run(["chown", "-R", "61001:61003", work / "content/.curator"], check=True)
+    subprocess.run(["chmod", "-R", "g+rwX", work / "content"], check=True)
+    subprocess.run(["find", work / "content", "-type", "d", "-exec", "chmod", "2770", "{}", "+"], check=True)
+    subprocess.run(["chmod", "2711", work / "content/.curator"], check=True)
+    subprocess.run(["chmod", "600", work / "content/.curator/accounts.json"], check=True)
+    return True
+
+
 class Desk:
-    """The web process and the publisher of a content folder."""
+    """The web process and the publisher of a content folder, as two users where that can be done."""
 
     def __init__(self, work):
         self.work, self.port, self.web, self.publisher = work, 0, None, None
+        self.are_two = share(work)
         self.start_web()
         self.start_publisher()
 
     def start_web(self):
         with open(self.work / "web.log", "wb") as log:
             self.web = subprocess.Popen(["build/gopura-curator", self.work / "content", "--port", "0", "--release",
-                                         self.work / "release"], stdout=log, stderr=log)
+                                         self.work / "release"], stdout=log, stderr=log,
+                                        **(WEB if self.are_two else {}))
         until = time.monotonic() + 60
         while not (found := re.search(rb"http://127.0.0.1:(\d+)/", (self.work / "web.log").read_bytes())):
             assert self.web.poll() is None and time.monotonic() < until, "the web process does not start"
@@ -40,7 +61,7 @@ class Desk:
         with open(self.work / "publisher.log", "ab") as log:
             self.publisher = subprocess.Popen(["build/gopura-curator", "publisher", self.work / "content", "--out",
                                                self.work / "release", "--keys", self.work / "keys", "--jobs", "2"],
-                                              stdout=log, stderr=log)
+                                              stdout=log, stderr=log, **(PUBLISHER if self.are_two else {}))
 
     def sign_in(self, name):
         client = Client(self.port)
@@ -93,6 +114,17 @@ def settled(client, seconds=120):
 def publish(client, comment, **more):
     status, _, answer = client.ask("POST", "/api/publish", json.dumps({"comment": comment, **more}))
     assert status == 202, answer
+
+
+def check_users(desk, work):
+    """The page's process can neither read the keys nor change the release, and the publisher reads no password."""
+    if not desk.are_two:
+        print("not root, or its folders are closed to others: one user for both")
+        return
+    key, accounts = work / "keys/release.key", work / "content/.curator/accounts.json"
+    for path, who in ((key, WEB), (accounts, PUBLISHER)):
+        assert subprocess.run(["cat", path], capture_output=True, **who).returncode != 0, f"{path} is open to {who}"
+    assert subprocess.run(["touch", work / "release/release.json"], capture_output=True, **WEB).returncode != 0
 
 
 def set_title(work, title):
@@ -209,6 +241,7 @@ def main(work, kills, seed):
     second = subprocess.run(["build/gopura-curator", "publisher", work / "content", "--out", work / "release"],
                             capture_output=True, text=True)
     assert second.returncode == 1 and "runs already" in second.stderr, second
+    check_users(desk, work)
     check_changes(work, ana)
     check_wishes(ana, petra)
     check_releases(work, petra)

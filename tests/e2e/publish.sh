@@ -21,4 +21,4 @@ build/gopura-curator publisher "$work/content" 2>/dev/null || status=$?
 [ "$status" = 2 ] || fail "a publisher without --out ends with $status"
 python3 tests/e2e/publish.py "$work" "${KILLS:-3}" "${SEED:-1}" || { tail -n 5 "$work"/*.log; fail "publishing"; }
 build/gopura-content verify "$work/release" >/dev/null || fail "the last release is not whole"
-[ -z "$(find "$work/content/.curator" -name '*.??????' -newer "$work/log" | grep -v gitignore)" ] || fail "temporary files are left"
+[ -z "$(find "$work"/content/.curator/{publish,accounts.json*} -name '*.json.*')" ] || fail "temporary files are left"

@@ -7,7 +7,7 @@ failed=0
 
 # Every unit, and lower where one meets strangers' bytes with nothing in between.
 usual=30
-declare -A lower=([gopura-kiosk]=10 [gopura-fetch]=15 [gopura-safe]=15 [gopura-health]=5 [gopura-setup]=10 [gopura-conf]=10 [gopura-bundle]=10)
+declare -A lower=([gopura-kiosk]=10 [gopura-fetch]=15 [gopura-safe]=15 [gopura-health]=5 [gopura-setup]=10 [gopura-conf]=10 [gopura-bundle]=10 [gopura-curator]=15 [gopura-publisher]=15)
 work=build/e2e/units
 rm -rf "$work"
 mkdir -p "$work"
@@ -38,7 +38,7 @@ most rauc.service 30 "$work/rauc.packaged" image/root/etc/systemd/system/rauc.se
 # A command line with all privileges is not covered by the measure.
 ! grep -nE '^Exec[A-Za-z]+=[-@:|]*[+!]' systemd/*.service || { echo "a command runs outside its unit's confinement"; failed=1; }
 # Who takes text from a stick, a network or a finger has a user without privileges, and none of them is root.
-for name in kiosk fetch safe health setup conf bundle; do
+for name in kiosk fetch safe health setup conf bundle curator publisher; do
 	grep -qE '^(User=gopura-|DynamicUser=yes)' "systemd/gopura-$name.service" || { echo "gopura-$name.service runs as root"; failed=1; }
 done
 # Everyone has a ceiling for memory and tasks.
@@ -79,6 +79,13 @@ for unit in kiosk safe fetch; do
 	[ "$has" = "$wants" ] || { echo "gopura-$unit.service: in the group $group: $has, not $wants"; failed=1; }
 done
 grep -qE '^InaccessiblePaths=.*-?/efi( |$)' systemd/gopura-fetch.service || { echo "gopura-fetch.service: it sees /efi"; failed=1; }
+# The signing keys are the publisher's: the page's process neither is its user nor sees the folder.
+keys=$(sed -nE 's|^ExecStart=.* --keys (/[^ ]*)/keys$|\1|p' systemd/gopura-publisher.service)
+grep -q "^StateDirectory=${keys#/var/lib/}$" systemd/gopura-publisher.service && grep -q '^StateDirectoryMode=0700$' systemd/gopura-publisher.service ||
+	{ echo "gopura-publisher.service: others may read the keys"; failed=1; }
+grep -q "^InaccessiblePaths=-$keys$" systemd/gopura-curator.service || { echo "gopura-curator.service: it sees the keys"; failed=1; }
+[ "$(grep '^User=' systemd/gopura-curator.service)" != "$(grep '^User=' systemd/gopura-publisher.service)" ] ||
+	{ echo "the page's process is the publisher's user"; failed=1; }
 # The self-test checks the terminal that will run, so both have the same options.
 options() { grep "^$1=" systemd/gopura-kiosk.service | grep -oE -e '--[a-z]+ [^ ]+' | grep -vE -e '--(metrics|visits)'; }
 [ "$(options ExecStartPre)" = "$(options ExecStart)" ] ||
