@@ -12,6 +12,10 @@
 #include <strings.h>
 
 #include "base/log.h"
+#include "curator/pages/history_routes.h"
+#include "curator/pages/information_routes.h"
+#include "curator/pages/page_routes.h"
+#include "curator/pages/picture_routes.h"
 #include "curator/publish/publish_routes.h"
 #include "curator/server/exchange.h"
 #include "curator/server/picture_socket.h"
@@ -34,7 +38,7 @@ struct web_server {
 	struct origin_names names;
 	struct access access;
 	struct sign_in_place sign_in;
-	struct api_routes tables[3];
+	struct api_routes tables[7];
 	struct publish_place publish;
 	struct workers *workers; /* owned */
 	struct exchange_env env;
@@ -232,6 +236,10 @@ static void set_access(struct web_server *server, const struct web_server_option
 	server->tables[0] = sign_in_routes(&server->sign_in);
 	server->tables[1] = part_routes(server->site);
 	server->tables[2] = publish_routes(&server->publish);
+	server->tables[3] = information_routes(server->site);
+	server->tables[4] = page_routes(server->site);
+	server->tables[5] = history_routes(server->site);
+	server->tables[6] = picture_routes(server->site);
 }
 
 /* Those that libwebsockets knows cannot be asked for by name. */

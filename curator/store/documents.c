@@ -326,6 +326,20 @@ int documents_read(struct documents *documents, const char *name, struct buffer 
 	return rc == -ENOENT ? rc : documents_report(diagnostics, rc, name);
 }
 
+int documents_each(struct documents *documents,
+		   int (*call)(void *user, const char *name, const char *tag), void *user,
+		   struct diagnostics *diagnostics)
+{
+	int rc;
+
+	documents_lock(documents);
+	rc = documents_take_in(documents, diagnostics);
+	for (uint32_t n = 0; rc == 0 && n < documents->files.count; n++)
+		rc = call(user, documents->files.list[n].name, documents->files.list[n].id);
+	documents_unlock(documents);
+	return rc;
+}
+
 /* ---- saving */
 
 /* Judges a change by what is there now, and keeps its text. */

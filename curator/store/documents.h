@@ -18,7 +18,7 @@ enum {
 	DOCUMENT_TAG_BYTES = HISTORY_ID_BYTES,
 	DOCUMENT_NAME_BYTES = 256,
 	DOCUMENT_BYTES_MAX = 256 << 20, /* larger files are no documents */
-	DOCUMENTS_CHANGES_MAX = 16,
+	DOCUMENTS_CHANGES_MAX = 80,     /* a part and its pages in all languages */
 };
 
 struct documents;
@@ -61,5 +61,10 @@ must_check int documents_read(struct documents *documents, const char *name, str
 must_check int documents_save(struct documents *documents, struct document_change *changes,
 			      uint32_t count, const char *author, const char *what,
 			      struct diagnostics *diagnostics);
+
+/* Calls for each document that is there, by name; a negative result ends it and is returned. */
+must_check int documents_each(struct documents *documents,
+			      int (*call)(void *user, const char *name, const char *tag),
+			      void *user, struct diagnostics *diagnostics);
 
 #endif

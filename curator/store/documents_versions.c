@@ -43,7 +43,7 @@ static int merge(struct documents *documents, const char *base, struct bytes min
 	int rc;
 
 	buffer_init(&from, DOCUMENT_BYTES_MAX);
-	rc = history_get(documents->history, base, &from);
+	rc = *base ? history_get(documents->history, base, &from) : 0;
 	if (rc == 0)
 		rc = text_merge(out, buffer_bytes(&from), mine, theirs, is_clean);
 	buffer_finish(&from);

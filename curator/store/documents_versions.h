@@ -4,9 +4,9 @@
 
 #include "curator/store/documents.h"
 
-/* Merges a text that began from `base` with the one that is there, as text_merge does. tag is that
- * of the latter, from which the merged text then begins. -ENOENT: there is none, or the history has
- * no such base. -EINVAL: not text. With a diagnostic. */
+/* Merges a text that began from `base` ("": from nothing) with the one that is there, as text_merge
+ * does. tag is that of the latter, from which the merged text then begins. -ENOENT: there is none,
+ * or the history has no such base. -EINVAL: not text. With a diagnostic. */
 must_check int documents_merge(struct documents *documents, const char *name, const char *base,
 			       struct bytes mine, struct buffer *out, bool *is_clean,
 			       char tag[DOCUMENT_TAG_BYTES], struct diagnostics *diagnostics);

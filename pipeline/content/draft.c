@@ -7,8 +7,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/array.h"
+#include "base/safe_open.h"
 #include "format/page.h"
 #include "format/picture.h"
 
@@ -73,19 +75,38 @@ static int parse_json(struct draft *draft, const char *file, const char *key, st
 	return 0;
 }
 
+int draft_read_text(const struct draft *draft, const char *name, struct buffer *out)
+{
+	const struct info_build_options *options = draft->options;
+	char path[PATH_MAX];
+
+	for (uint32_t n = 0; n < options->instead_count; n++) {
+		const struct info_text_instead *instead = &options->instead[n];
+
+		if (strcmp(instead->name, name) != 0)
+			continue;
+		if (!instead->text.data)
+			return -ENOENT;
+		buffer_put(out, instead->text.data, instead->text.size);
+		return out->error;
+	}
+	if (!draft_path(draft, path, sizeof(path), name))
+		return -ENAMETOOLONG;
+	return buffer_read_file(out, path);
+}
+
 int draft_read_json(struct draft *draft, const char *file, const char *key, struct json_text *out,
 		    const cJSON **array)
 {
 	struct buffer text;
-	char path[PATH_MAX];
 	int rc;
 
 	*out = (struct json_text){ 0 };
 	*array = NULL;
-	if (!draft_path(draft, path, sizeof(path), file))
-		return -ENAMETOOLONG;
 	buffer_init(&text, INFO_PARTS_FILE_BYTES_MAX);
-	rc = buffer_read_file(&text, path);
+	rc = draft_read_text(draft, file, &text);
+	if (rc == -ENAMETOOLONG)
+		return rc;
 	if (rc == 0) {
 		rc = parse_json(draft, file, key, out, &text, array);
 	} else if (rc == -ENOENT) {
@@ -141,6 +162,31 @@ static bool is_picture_name(const char *name)
 	return *rest && *rest != '.' && strlen(rest) <= 200 && !strpbrk(rest, "/\\\"<>?#%");
 }
 
+static void skim_picture(struct draft *draft, struct draft_picture *picture, const char *file,
+			 unsigned line)
+{
+	uint8_t start[4] = { 0 };
+	char path[PATH_MAX];
+	int fd = draft_path(draft, path, sizeof(path), picture->name) ? open_regular(path)
+								      : -ENAMETOOLONG;
+
+	picture->damaged = true; /* until its start was seen */
+	if (fd < 0) {
+		diagnostics_add(draft->diagnostics, -EINVAL, file, line,
+				"picture \"%s\" is not there: add the file, or correct the name",
+				picture->name);
+	} else if (bytes_read_at(fd, start, sizeof(start), 0) < 0 ||
+		   (memcmp(start, "\x89PNG", 4) != 0 && memcmp(start, "\xff\xd8\xff", 3) != 0)) {
+		diagnostics_add(draft->diagnostics, -EINVAL, picture->name, 0,
+				"is not a complete JPEG or PNG picture: save it again as one");
+	} else {
+		picture->damaged = false;
+		picture->media_type = start[0] == 0x89 ? "image/png" : "image/jpeg";
+	}
+	if (fd >= 0)
+		close(fd);
+}
+
 static void measure_picture(struct draft *draft, struct draft_picture *picture, const char *file,
 			    unsigned line)
 {
@@ -149,6 +195,10 @@ static void measure_picture(struct draft *draft, struct draft_picture *picture, 
 	char path[PATH_MAX];
 	int rc = -ENAMETOOLONG;
 
+	if (draft->options->skims_pictures) {
+		skim_picture(draft, picture, file, line);
+		return;
+	}
 	picture->damaged = true; /* until it was decoded */
 	buffer_init(&bytes, OBJECT_BYTES_MAX);
 	if (draft_path(draft, path, sizeof(path), picture->name))

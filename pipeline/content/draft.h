@@ -103,6 +103,10 @@ bool draft_has_faces(const struct draft *draft);
 must_check int draft_read_json(struct draft *draft, const char *file, const char *key,
 			       struct json_text *out, const struct cJSON **array);
 
+/* Reads a text of the folder into *out, or what the options have instead. A negative errno, as of
+ * buffer_read_file. */
+must_check int draft_read_text(const struct draft *draft, const char *name, struct buffer *out);
+
 /* Builds the path of a file in the folder. Returns false if it does not fit. */
 bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name);
 

@@ -20,11 +20,23 @@ struct info_faces {
 /* Works on one list. -EINVAL: diagnostics says what is wrong and how to correct it. */
 typedef int info_faces_call(void *data, struct info_faces *faces, struct diagnostics *diagnostics);
 
+/* A text that is taken instead of a file's, as if it had been saved: parts.json, tours.json or a
+ * page. data NULL: as if there were no such file. */
+struct info_text_instead {
+	const char *name; /* relative to the folder */
+	struct bytes text;
+};
+
 struct info_build_options {
 	const char *folder; /* content folder: parts.json, tours.json, pages/, pictures/ */
 	const char *const *languages; /* such as "en"; every title must exist in the first one */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MAX */
 	unsigned tools;               /* bits of enum info_tool */
+	const struct info_text_instead *instead;
+	uint32_t instead_count;
+	/* Looks at no more than the first bytes of pictures, for a check while somebody waits.
+	 * Their sizes and hashes are then 0, so nothing can be published. */
+	bool skims_pictures;
 	/* Gets every fault and every warning; files are relative to the folder. Borrowed. */
 	struct diagnostics *diagnostics;
 	info_faces_call *judge_faces; /* checks a list without the scan; NULL: none is checked */

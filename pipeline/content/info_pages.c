@@ -232,7 +232,8 @@ static int read_page_file(struct page_check *check)
 
 	buffer_init(&bytes, HTML_BYTES_MAX + 1);
 	if (draft_path(check->draft, path, sizeof(path), check->file))
-		rc = is_plain_file(path) ? buffer_read_file(&bytes, path) : -ELOOP;
+		rc = is_plain_file(path) ? draft_read_text(check->draft, check->file, &bytes)
+					 : -ELOOP;
 	if (rc == 0) {
 		buffer_put_u8(&bytes, 0);
 		rc = bytes.error;

@@ -46,7 +46,8 @@ may_enter() {
 	curator/api) echo accounts ;;
 	curator/publish) echo accounts api ;;
 	curator/session) echo accounts api select store view region ;;
-	curator/server) echo accounts api publish session ;;
+	curator/pages) echo accounts api session store ;;
+	curator/server) echo accounts api pages publish session ;;
 	app/modes) echo settings view ;;
 	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
 	app/visit | app/release) echo view ;;
@@ -59,7 +60,7 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply scan_look transform" ;;
+	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;

@@ -1,0 +1,11 @@
+/* The history of documents, over HTTP: docs/curator.md lists the addresses. */
+#ifndef GOPURA_CURATOR_PAGES_HISTORY_ROUTES_H
+#define GOPURA_CURATOR_PAGES_HISTORY_ROUTES_H
+
+#include "curator/api/route.h"
+#include "curator/session/site.h"
+
+/* site is borrowed for the lifetime of the table. */
+struct api_routes history_routes(struct site *site);
+
+#endif

@@ -1,0 +1,11 @@
+/* Pictures of pages over HTTP: docs/curator.md lists the addresses. */
+#ifndef GOPURA_CURATOR_PAGES_PICTURE_ROUTES_H
+#define GOPURA_CURATOR_PAGES_PICTURE_ROUTES_H
+
+#include "curator/api/route.h"
+#include "curator/session/site.h"
+
+/* site is borrowed for the lifetime of the table. */
+struct api_routes picture_routes(struct site *site);
+
+#endif

@@ -1,0 +1,185 @@
+"""Curators write over HTTP: texts, pages, pictures, and what becomes of them when two do so at once, or the program is
+killed.
+
+    tests/e2e/pages.py PORT check          # as curators
+    tests/e2e/pages.py PORT save COUNTER   # saves one page again and again, and notes what was acknowledged in a file
+
+The content is that of the small temple, with the accounts rolf, ana and petra. Standard library only."""
+
+import json
+import struct
+import sys
+import zlib
+
+from curator_http import Client, signed_in
+
+PAGE = "/api/pages/lions.en"
+
+
+def save(client, path, html, tag):
+    headers = {"If_Match": f'"{tag}"'} if tag else {"If_None_Match": "*"}
+    return client.ask("PUT", path, json.dumps({"html": html}), **headers)
+
+
+def page(client, path=PAGE):
+    status, _, answer = client.ask("GET", path)
+    assert status == 200, answer
+    return answer["html"], answer["tag"]
+
+
+def post(client, path, **body):
+    status, _, answer = client.ask("POST", path, json.dumps(body))
+    return status, answer
+
+
+def change(client, part, **fields):
+    return post(client, f"/api/parts/{part}/texts", changes=[fields])
+
+
+def part_of(client, name):
+    _, _, information = client.ask("GET", "/api/information")
+    return next((part for part in information["parts"] if part["id"] == name), None)
+
+
+def check_information(client):
+    status, headers, information = client.ask("GET", "/api/information")
+    assert status == 200 and "en" in information["languages"] and not [p for p in information["problems"] if p["error"]]
+    assert "pictures/lions.jpg" in information["pictures"]
+    assert next(p for p in information["parts"] if p["id"] == "lions")["pages"]["en"]
+    assert client.ask("GET", "/api/information", If_None_Match=headers["etag"])[0] == 304
+
+
+def check_texts(ana, petra):
+    old = part_of(ana, "lions")["caption"]["en"]
+    assert change(ana, "lions", field="caption", language="en", **{"from": old}, to="By Ana.")[0] == 200
+    status, answer = change(petra, "lions", field="caption", language="en", **{"from": old}, to="By Petra.")
+    assert status == 409 and answer["theirs"] == "By Ana."
+    assert change(petra, "lions", field="caption", language="en", **{"from": "By Ana."}, to="By both.")[0] == 200
+    assert part_of(ana, "lions")["caption"]["en"] == "By both."
+    assert change(ana, "lions", field="creator", language="", **{"from": ""}, to="Ana\nPetra")[0] == 200
+    assert part_of(ana, "lions")["credits"]["creator"] == ["Ana", "Petra"]
+    title = part_of(ana, "lions")["title"]["en"]
+    status, answer = change(ana, "lions", field="title", language="en", **{"from": title}, to="")
+    assert status == 422 and "title" in answer["problems"][0]["text"], answer
+    assert change(ana, "lions", field="thumbnail", language="", **{"from": "pictures/lions.jpg"}, to="../x")[0] == 422
+    assert change(ana, "lions", field="region", language="", **{"from": ""}, to="x")[0] == 422
+    assert change(ana, "nobody", field="title", language="en", **{"from": ""}, to="x")[0] == 404
+
+
+def check_order(ana):
+    order = lambda: [part["id"] for part in ana.ask("GET", "/api/information")[2]["parts"]]
+    first, second = order()[:2]
+    assert post(ana, f"/api/parts/{second}/place", before=first)[0] == 200
+    assert order()[:2] == [second, first]
+    assert post(ana, f"/api/parts/{second}/place", before="nobody")[0] == 404
+    status, _, answer = ana.ask("DELETE", "/api/parts/central-tower")
+    assert status == 422 and answer["problems"], "a part is removed to which pages link"
+    assert ana.ask("DELETE", "/api/parts/spare")[0] == 200
+    assert "spare" not in order() and page(ana, "/api/pages/spare.en") == ("", "")
+
+
+def check_pages(ana, petra):
+    html, tag = page(ana)
+    for wrong in ("<p>x</p><script>alert(1)</script>", "<p onclick='x()'>y</p>", '<p><a href="http://x.example">y</a></p>',
+                  '<p>x<img src="//x.example/y.png"></p>', "", '<p><a href="page:nobody">x</a></p>'):
+        status, _, answer = save(ana, PAGE, wrong, tag)
+        assert status == 422 and answer["problems"][0]["file"] == "pages/lions.en.html", (wrong, answer)
+    assert page(ana) == (html, tag)
+    assert ana.ask("PUT", PAGE, json.dumps({"html": html}))[0] == 428
+    assert ana.ask("PUT", "/api/pages/lions.xx", json.dumps({"html": html}), If_None_Match="*")[0] == 404
+    # Two at once, in different paragraphs.
+    status, _, answer = save(ana, PAGE, html.replace("</body>", "<p>The end, by Ana.</p>\n</body>"), tag)
+    assert status == 200 and not answer["merged"] and not answer["problems"]
+    status, _, answer = save(petra, PAGE, html.replace("<p>", "<p>By Petra. ", 1), tag)
+    assert status == 200 and answer["merged"]
+    now, merged_tag = page(ana)
+    assert "by Ana" in now and "By Petra" in now and (now, merged_tag) == (answer["html"], answer["tag"])
+    # Two at once, in the same one.
+    assert save(ana, PAGE, now.replace("The end, by Ana", "No end, by Ana"), merged_tag)[0] == 200
+    status, _, answer = save(petra, PAGE, now.replace("The end, by Ana", "The end, by both"), merged_tag)
+    assert status == 409 and "No end, by Ana" in answer["html"] and "The end, by both" in answer["html"]
+    assert "<<<<<<< mine" in answer["html"]
+    decided = page(ana)[0].replace("No end, by Ana", "The arrived end, by both")
+    assert save(petra, PAGE, decided, answer["tag"])[0] == 200
+
+
+def check_history(ana):
+    document = "pages/lions.en.html"
+    versions = ana.ask("GET", f"/api/versions?document={document}")[2]["versions"]
+    assert [v["author"] for v in versions] == ["petra", "ana", "petra", "ana", ""], versions
+    oldest = versions[-1]["version"]
+    lines = ana.ask("GET", f"/api/difference?document={document}&from={oldest}")[2]["lines"].split("\n")
+    assert any(line.startswith("+") and "arrived" in line for line in lines)
+    old = ana.ask("GET", f"/api/version?document={document}&version={oldest}")[2]["text"]
+    status, answer = post(ana, "/api/restore", document=document, version=oldest, tag=page(ana)[1])
+    assert status == 200 and page(ana) == (old, answer["tag"])
+    assert post(ana, "/api/restore", document=document, version=versions[0]["version"], tag=page(ana)[1])[0] == 200
+    assert ana.ask("GET", f"/api/version?document={document}&version={'0' * 40}")[0] == 404
+    for name in ("temple.ini", "../x", ".curator/accounts.json", "/etc/passwd", ""):
+        assert ana.ask("GET", f"/api/version?document={name}&version=")[0] in (404, 422), name
+        assert post(ana, "/api/restore", document=name, version=oldest)[0] in (404, 422), name
+
+
+def png(width, height, pixel):
+    row = b"\0" + bytes(pixel) * width
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b"")
+
+
+def check_pictures(ana):
+    send = lambda name, data: ana.ask("POST", f"/api/pictures?name={name}", data, Content_Type="application/octet-stream")
+    status, _, answer = send("My%20Gate%20(1).PNG", png(40, 30, (200, 100, 50)))
+    assert (status, answer) == (200, {"name": "pictures/my-gate-1.png"}), answer
+    assert send("my-gate-1.png", png(40, 30, (200, 100, 50)))[2]["name"] == "pictures/my-gate-1.png"
+    assert send("my-gate-1.png", png(40, 30, (0, 0, 0)))[2]["name"] == "pictures/my-gate-1-2.png"
+    status, headers, data = ana.ask("GET", "/api/picture?name=pictures/my-gate-1.png")
+    assert status == 200 and headers["content-type"] == "image/png" and data[:4] == b"\x89PNG"
+    assert send("..%2f..%2fetc%2fx.png", png(4, 4, (1, 2, 3)))[2]["name"] == "pictures/etc-x.png"
+    for wrong in (b"", b"GIF89a", b"<svg/>", png(40, 30, (9, 9, 9))[:-30]):
+        assert send("x.png", wrong)[0] in (400, 422), wrong
+    assert ana.ask("GET", "/api/picture?name=temple.ini")[0] == 404
+    assert ana.ask("GET", "/api/picture?name=pictures/../temple.ini")[0] == 422
+    html, tag = page(ana)
+    figure = '<figure><img src="pictures/my-gate-1.png" alt="A gate"><figcaption>A gate</figcaption></figure>'
+    assert save(ana, PAGE, html.replace("</body>", figure + "\n</body>"), tag)[0] == 200
+
+
+def check_roles(rolf):
+    html, tag = page(rolf)
+    assert save(rolf, PAGE, html, tag)[0] == 403
+    assert change(rolf, "lions", field="title", language="en", **{"from": ""}, to="x")[0] == 403
+    assert rolf.ask("DELETE", "/api/parts/lions")[0] == 403
+    assert rolf.ask("POST", "/api/pictures?name=x", png(4, 4, (1, 2, 3)))[0] == 403
+
+
+def keep_saving(port, counter):
+    ana = signed_in(port, "ana")
+    html, tag = page(ana)
+    for n in range(100000):
+        text = html.replace("</body>", f"<p>Number {n}.</p>\n</body>")
+        status, _, answer = save(ana, PAGE, text, tag)
+        assert status == 200, answer
+        tag = answer["tag"]
+        with open(counter, "w") as file:
+            file.write(str(n))
+
+
+def main():
+    port = int(sys.argv[1])
+    if sys.argv[2] == "save":
+        keep_saving(port, sys.argv[3])
+        return
+    assert Client(port).ask("GET", "/api/information")[0] == 401
+    ana, petra, rolf = (signed_in(port, name) for name in ("ana", "petra", "rolf"))
+    check_information(ana)
+    check_texts(ana, petra)
+    check_order(ana)
+    check_pages(ana, petra)
+    check_history(ana)
+    check_pictures(ana)
+    check_roles(rolf)
+
+
+if __name__ == "__main__":
+    main()
