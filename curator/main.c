@@ -167,6 +167,16 @@ static void print_address(const struct site *site, const struct web_server_optio
 	fflush(stdout);
 }
 
+/* Plain HTTP on a network shows passwords and cookies to whoever listens there. */
+static void warn_of_network(const struct web_server_options *options)
+{
+	if (strncmp(options->listen, "127.", 4) != 0 && strncmp(options->listen, "unix:", 5) != 0)
+		fprintf(stderr,
+			"gopura-curator: %s speaks plain HTTP, also of passwords: put nginx with "
+			"TLS in front of it (docs/curator.md)\n",
+			options->listen);
+}
+
 static int serve(const struct web_server_options *options)
 {
 	const struct sigaction action = { .sa_handler = on_signal };
@@ -181,6 +191,7 @@ static int serve(const struct web_server_options *options)
 	sigaction(SIGINT, &action, NULL);
 	sigaction(SIGTERM, &action, NULL);
 	print_address(options->site, options);
+	warn_of_network(options);
 	web_server_run(running);
 	signal(SIGINT, SIG_IGN);
 	signal(SIGTERM, SIG_IGN);

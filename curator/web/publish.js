@@ -13,7 +13,7 @@ function element(name, text = "", className = "") {
 }
 
 const plural = (n, one, many = `${one}s`) => `${n.toLocaleString()} ${n === 1 ? one : many}`;
-const sentence = text => text && text[0].toUpperCase() + text.slice(1);
+const sentence = text => text && `${text[0].toUpperCase()}${text.slice(1)}${/[.:…?]$/.test(text) ? "" : "."}`;
 const when = seconds => seconds ? new Date(seconds * 1000).toLocaleString([], { dateStyle: "medium", timeStyle: "short" }) : "";
 
 function bytes(n) {
@@ -108,22 +108,25 @@ function outcome() {
   const wish = state.sequence ? `going back to release ${state.sequence}` : "publishing";
   switch (state.step) {
   case "waiting": return ["", `${state.by} asked for it; the publisher begins soon.`];
-  case "running": return ["busy", `${sentence(wish)} for ${state.by} since ${when(state.begun)} …`];
+  case "running": return ["busy", `${wish[0].toUpperCase()}${wish.slice(1)} for ${state.by} since ${when(state.begun)} …`];
   case "done": return ["good", state.after > state.before ? `Release ${state.after} was published on ${when(state.ended)}.` : "Nothing had changed, so there is no new release."];
-  case "failed": return ["problem", `${sentence(wish)} failed: ${state.message.replace(/^error: (pipeline: )?/, "")}`];
+  case "failed": return ["problem", `${wish[0].toUpperCase()}${wish.slice(1)} failed: ${state.message.replace(/^error: (pipeline: )?/, "")}`];
   default: return ["", ""];
   }
 }
 
 function showState() {
   const [kind, text] = outcome();
+  byId("publish-form").hidden = !state.set_up; // the changes say why
   const line = byId("publish-state");
   if (line.textContent !== text) line.textContent = text; // a screen reader says only what is new
   line.className = `state ${kind}`;
-  const problem = !state.set_up ? "Publishing is not set up on this server." : !state.publisher && !isPending() ? "The publisher does not run, so nothing can be published now." :
+  const problem = !state.publisher && !isPending() ? "The publisher does not run, so nothing can be published now." :
     !state.publisher ? "The publisher does not run: the request waits for it." : !may("publisher") ? "Only publishers can publish." : "";
   byId("publish-problem").textContent = problem;
   byId("publish-problem").hidden = !problem;
+  const last = (state.log || "").trimEnd().split("\n").pop();
+  byId("publish-progress").textContent = state.step === "running" ? last : "";
   byId("publish-log").textContent = state.log || "";
   byId("publish-log-box").hidden = !state.log;
   showReleases();

@@ -30,7 +30,7 @@ byId("sign-in").addEventListener("submit", async event => {
     await signIn(byId("name").value.trim(), byId("password").value);
     location.replace("/");
   } catch (failure) {
-    tell(`${failure.message[0].toUpperCase()}${failure.message.slice(1)}.`.replace(/([.:])\.$/, "$1"));
+    tell(`${failure.message[0].toUpperCase()}${failure.message.slice(1)}${/[.?]$/.test(failure.message) ? "" : "."}`);
     byId("password").select();
     byId("password").focus();
   }

@@ -329,6 +329,21 @@ def check_reader(port, eye, target):
     assert "reader" in error_of(reader)
 
 
+def check_end(port):
+    """Who has signed out has no socket any more, neither the old one nor a new one."""
+    rolf = start(port, name="rolf")[0]
+    cookie, token = sign_ins.pop((port, "rolf"))
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection.request("DELETE", "/api/session", headers={"Cookie": cookie, "X-Gopura-Token": token})
+    assert connection.getresponse().status == 200
+    try:
+        while True:
+            rolf.receive()
+    except ConnectionError:
+        pass
+    refused(port, cookie=cookie, token=token)
+
+
 def check(port, folder):
     for host, origin in ((None, "http://evil.example"), (f"evil.example:{port}", None),
                          (None, f"http://127.0.0.1:{port + 1}"), (None, "null")):
@@ -348,6 +363,7 @@ def check(port, folder):
     check_parts(browser, port, folder)
     check_two(port, eye, target)
     check_reader(port, eye, target)
+    check_end(port)
     # A message beyond the limit ends its own connection only.
     rude = Browser(port)
     try:

@@ -55,6 +55,20 @@ kill "$curator"
 wait "$curator" || { tail "$work/curator.log"; fail "it did not end well"; }
 curator=
 
+# ---- on a network it warns, and answers to that address
+build/gopura-curator "$work/content" --port 0 --listen 127.0.0.2 >"$work/curator.log" 2>&1 &
+curator=$!
+wait_for 60 "address" grep -q 'open http://127.0.0.2:' "$work/curator.log"
+! grep -q 'plain HTTP' "$work/curator.log" || fail "it warns of this machine"
+kill "$curator"
+wait "$curator" || fail "it did not end well at another address"
+build/gopura-curator "$work/content" --port 0 --listen 0.0.0.0 >"$work/curator.log" 2>&1 &
+curator=$!
+wait_for 60 "warning" grep -q 'plain HTTP' "$work/curator.log"
+kill "$curator"
+wait "$curator" || fail "it did not end well on a network"
+curator=
+
 # ---- what it saved is content like any other
 grep -qE '^[0-9]+(-[0-9]+)?$' "$work/content/regions/the-middle.faces" || fail "no list of faces"
 [ -z "$(find "$work/content" -name '*.tmp*' -o -name '*.part')" ] || fail "temporary files are left"
