@@ -66,7 +66,7 @@ must_check int accounts_add(struct accounts *accounts, const char *name, enum ro
 /* -ENOENT. */
 must_check int accounts_remove(struct accounts *accounts, const char *name);
 
-/* Takes about a tenth of a second and 64 MB. -EINVAL: too short or too long. -ENOMEM. */
+/* Takes a few tenths of a second and 64 MB. -EINVAL: too short or too long. -ENOMEM. */
 must_check int account_set_password(struct account *account, const char *password);
 /* Takes as long, also for account NULL and for one without a password, which both fail. */
 bool account_verify(const struct account *account, const char *password);

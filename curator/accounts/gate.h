@@ -21,7 +21,7 @@ struct gate_visitor {
 must_check int gate_create(struct gate **out, const char *folder, struct diagnostics *diagnostics);
 void gate_destroy(struct gate *gate); /* NULL is fine */
 
-/* Signs in with a password, which takes about a tenth of a second. key gets the cookie, *out the
+/* Signs in with a password, which takes a few tenths of a second. key gets the cookie, *out the
  * rest. -EACCES: name or password is wrong. -EAGAIN: not before *wait_ms. */
 must_check int gate_sign_in(struct gate *gate, const char *name, const char *password,
 			    const char *address, char key[SIGN_IN_SECRET_BYTES],
