@@ -6,12 +6,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/log.h"
 #include "curator/accounts/gate.h"
 #include "curator/publisher_command.h"
 #include "curator/server/web_server.h"
 #include "curator/session/site.h"
 #include "curator/user_command.h"
+#include "ui/translate.h"
 
 static const char help[] =
 	"gopura-curator: mark parts on the model in a web browser (docs/curator.md)\n"
@@ -199,6 +202,24 @@ static int serve(const struct web_server_options *options)
 	return 0;
 }
 
+/* The terminal's own texts, for previews: beside the program while it is developed. */
+static void open_texts(void)
+{
+	static const char folder[] = "locale";
+	char path[4096];
+	const ssize_t bytes = readlink("/proc/self/exe", path, sizeof(path) - sizeof(folder));
+	char *slash;
+	int rc;
+
+	path[bytes > 0 ? bytes : 0] = '\0';
+	slash = strrchr(path, '/');
+	if (slash)
+		memcpy(slash + 1, folder, sizeof(folder));
+	rc = translate_open(slash && access(path, R_OK | X_OK) == 0 ? path : "/usr/share/locale");
+	if (rc < 0)
+		log_warn("curator", "the terminal's own texts are in English only in previews");
+}
+
 int main(int argc, char **argv)
 {
 	static struct site site;
@@ -212,6 +233,7 @@ int main(int argc, char **argv)
 	if (argc > 1 && strcmp(argv[1], "publisher") == 0)
 		return publisher_command(argc - 1, argv + 1);
 	parse(&settings, argc, argv);
+	open_texts();
 	rc = site_open(&site, settings.folder, &diagnostics);
 	if (rc == 0)
 		rc = gate_create(&gate, settings.folder, &diagnostics);

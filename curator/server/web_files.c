@@ -31,6 +31,16 @@
 	FILE(account, "/account.js", "account.js", SCRIPT, true)                                   \
 	FILE(publish, "/publish.js", "publish.js", SCRIPT, true)                                   \
 	FILE(publish_style, "/publish.css", "publish.css", STYLE, true)                            \
+	FILE(information, "/information", "information.html", HTML, false)                         \
+	FILE(information_script, "/information.js", "information.js", SCRIPT, true)                \
+	FILE(information_style, "/information.css", "information.css", STYLE, true)                \
+	FILE(about, "/about.js", "about.js", SCRIPT, true)                                         \
+	FILE(clean, "/clean.js", "clean.js", SCRIPT, true)                                         \
+	FILE(editor, "/editor.js", "editor.js", SCRIPT, true)                                      \
+	FILE(history, "/history.js", "history.js", SCRIPT, true)                                   \
+	FILE(part_list, "/part_list.js", "part_list.js", SCRIPT, true)                             \
+	FILE(pictures, "/pictures.js", "pictures.js", SCRIPT, true)                                \
+	FILE(preview, "/preview.js", "preview.js", SCRIPT, true)                                   \
 	FILE(style, "/curator.css", "curator.css", STYLE, true)                                    \
 	FILE(sign_in, "/sign-in", "sign_in.html", HTML, true)                                      \
 	FILE(sign_in_script, "/sign_in.js", "sign_in.js", SCRIPT, true)                            \

@@ -16,6 +16,7 @@
 #include "curator/pages/information_routes.h"
 #include "curator/pages/page_routes.h"
 #include "curator/pages/picture_routes.h"
+#include "curator/pages/preview_routes.h"
 #include "curator/publish/publish_routes.h"
 #include "curator/server/exchange.h"
 #include "curator/server/picture_socket.h"
@@ -38,7 +39,8 @@ struct web_server {
 	struct origin_names names;
 	struct access access;
 	struct sign_in_place sign_in;
-	struct api_routes tables[7];
+	struct preview *preview; /* owned */
+	struct api_routes tables[8];
 	struct publish_place publish;
 	struct workers *workers; /* owned */
 	struct exchange_env env;
@@ -240,6 +242,7 @@ static void set_access(struct web_server *server, const struct web_server_option
 	server->tables[4] = page_routes(server->site);
 	server->tables[5] = history_routes(server->site);
 	server->tables[6] = picture_routes(server->site);
+	server->tables[7] = preview_routes(server->preview);
 }
 
 /* Those that libwebsockets knows cannot be asked for by name. */
@@ -298,8 +301,11 @@ int web_server_create(struct web_server **out, const struct web_server_options *
 	lws_set_log_level(LLL_ERR | LLL_WARN, say);
 	server->site = options->site;
 	publish_place_init(&server->publish, server->site->content.folder, options->release);
-	server->context = lws_create_context(&info);
-	rc = server->context ? listen_at(server, &info, options) : -ENOMEM;
+	rc = preview_create(&server->preview, options->site);
+	if (rc == 0)
+		server->context = lws_create_context(&info);
+	if (rc == 0)
+		rc = server->context ? listen_at(server, &info, options) : -ENOMEM;
 	if (rc == 0)
 		rc = workers_create(&server->workers, WORKER_THREADS, wake, server);
 	if (rc < 0) {
@@ -329,6 +335,7 @@ void web_server_destroy(struct web_server *server)
 		lws_context_destroy(server->context);
 	workers_destroy(server->workers);
 	publish_place_finish(&server->publish);
+	preview_destroy(server->preview);
 	free(server);
 }
 

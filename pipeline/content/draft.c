@@ -182,6 +182,7 @@ static void skim_picture(struct draft *draft, struct draft_picture *picture, con
 	} else {
 		picture->damaged = false;
 		picture->media_type = start[0] == 0x89 ? "image/png" : "image/jpeg";
+		picture->width_px = picture->height_px = 1;
 	}
 	if (fd >= 0)
 		close(fd);

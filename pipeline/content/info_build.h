@@ -35,7 +35,7 @@ struct info_build_options {
 	const struct info_text_instead *instead;
 	uint32_t instead_count;
 	/* Looks at no more than the first bytes of pictures, for a check while somebody waits.
-	 * Their sizes and hashes are then 0, so nothing can be published. */
+	 * Their size is then 1 by 1 and their hash 0, so nothing can be published. */
 	bool skims_pictures;
 	/* Gets every fault and every warning; files are relative to the folder. Borrowed. */
 	struct diagnostics *diagnostics;

@@ -24,7 +24,7 @@ may_include() {
 	net) echo base format storage ;;
 	app) echo base format geometry board system render ui input storage net ;;
 	pipeline) echo base format geometry render storage ;;
-	curator) echo base format geometry render storage pipeline ;;
+	curator) echo base format geometry render ui storage pipeline ;;
 	tests) echo base format geometry board system render ui input storage net app pipeline curator health ;;
 	*) echo ;;
 	esac
@@ -61,7 +61,7 @@ is_public() {
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
 	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
-	pipeline/content/*) names="content scans sources info_build annotations annotations_export annotations_import work_lock" ;;
+	pipeline/content/*) names="content scans sources info_build part_faces annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;

@@ -1,0 +1,215 @@
+// The page of a part, edited as it looks: the toolbar, pasting, figures, and places where two people wrote at once.
+import { clean, pictureAddress, textOf } from "./clean.js";
+
+const byId = id => document.getElementById(id);
+const page = byId("page"), style = byId("style");
+let changed = () => {}, before = "", after = "", range = null, editable = true;
+
+// What stands around the body in the file stays as it is.
+function split(html) {
+  const start = html.search(/<body[^>]*>/i), end = html.search(/<\/body>/i);
+  if (start < 0 || end < start) return ["", html, ""];
+  const first = start + html.slice(start).indexOf(">") + 1;
+  return [html.slice(0, first), html.slice(first, end), html.slice(end)];
+}
+
+function show(blocks) {
+  for (const image of blocks.querySelectorAll("img")) image.src = pictureAddress(image.getAttribute("src"));
+  for (const figure of blocks.querySelectorAll("figure")) {
+    figure.contentEditable = "false";
+    figure.tabIndex = 0;
+  }
+  page.replaceChildren(...blocks.childNodes);
+}
+
+// Both texts of an overlap, each with a button that keeps it alone.
+function showOverlap(marked) {
+  const html = marked.replace(/^<{7} .*$/gm, "@@mine@@").replace(/^={7}$/gm, "@@theirs@@").replace(/^>{7} .*$/gm, "@@end@@");
+  const parts = html.split(/@@(mine|theirs|end)@@/), out = document.createElement("div");
+  for (let n = 0; n < parts.length; n++) {
+    if (n % 2) continue;
+    const side = n ? parts[n - 1] : "end", blocks = clean(parts[n]);
+    if (side === "end") { out.append(...blocks.childNodes); continue; }
+    const box = document.createElement("div"), choice = document.createElement("div"), button = document.createElement("button");
+    box.dataset.overlap = side;
+    choice.className = "choice";
+    choice.contentEditable = "false";
+    choice.textContent = side === "mine" ? "Yours" : "Somebody else's";
+    button.type = "button";
+    button.textContent = "Keep this alone";
+    button.addEventListener("click", () => {
+      const other = side === "mine" ? box.nextElementSibling : box.previousElementSibling;
+      if (other && other.dataset.overlap) other.remove();
+      choice.remove();
+      box.replaceWith(...box.childNodes);
+      changed();
+    });
+    choice.append(button);
+    box.append(choice, ...blocks.childNodes);
+    out.append(box);
+  }
+  show(out);
+}
+
+export function setPage(html, isMarked = false) {
+  const [head, body, tail] = split(html);
+  before = head;
+  after = tail;
+  if (!isMarked) { show(clean(body)); return; }
+  showOverlap(body);
+  page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+}
+
+// "" if there is nothing on it. A new page has no frame around it.
+export function pageText() {
+  const copy = page.cloneNode(true);
+  for (const choice of copy.querySelectorAll(".choice")) choice.remove();
+  const text = textOf(clean(copy.innerHTML));
+  if (!text) return "";
+  return before ? `${before}\n${text}\n${after}` : `${text}\n`;
+}
+
+export function allowEditing(on) {
+  editable = on;
+  page.contentEditable = String(on);
+  page.setAttribute("aria-readonly", String(!on));
+  for (const control of document.querySelectorAll(".toolbar button, .toolbar select")) control.disabled = !on;
+}
+
+// ---- the selection
+
+function keepRange() {
+  const selection = getSelection();
+  if (selection.rangeCount && page.contains(selection.anchorNode)) range = selection.getRangeAt(0).cloneRange();
+}
+
+function restoreRange() {
+  page.focus();
+  const selection = getSelection();
+  selection.removeAllRanges();
+  if (!range || !page.contains(range.startContainer)) {
+    range = document.createRange();
+    range.selectNodeContents(page);
+    range.collapse(false);
+  }
+  selection.addRange(range);
+}
+
+function around(tags) {
+  let node = getSelection().anchorNode;
+  for (; node && node !== page; node = node.parentNode)
+    if (node.nodeType === Node.ELEMENT_NODE && tags.includes(node.tagName)) return node;
+  return null;
+}
+
+function showState() {
+  keepRange();
+  if (!page.contains(getSelection().anchorNode)) return;
+  const block = around(["H1", "H2", "H3", "BLOCKQUOTE", "P"]);
+  style.value = block ? block.tagName.toLowerCase() : "p";
+  for (const button of document.querySelectorAll("[data-command]"))
+    if (["bold", "italic", "insertUnorderedList", "insertOrderedList"].includes(button.dataset.command))
+      button.setAttribute("aria-pressed", String(document.queryCommandState(button.dataset.command)));
+}
+
+function run(command, value) {
+  restoreRange();
+  document.execCommand(command, false, value);
+  showState();
+  changed();
+}
+
+export function insertBlocks(blocks) {
+  const last = [...page.children].at(-1);
+  for (const image of blocks.querySelectorAll("img")) image.src = pictureAddress(image.getAttribute("src"));
+  for (const figure of blocks.querySelectorAll("figure")) {
+    figure.contentEditable = "false";
+    figure.tabIndex = 0;
+  }
+  let at = range && page.contains(range.startContainer) ? range.startContainer : last;
+  while (at && at.parentNode !== page) at = at === page ? page.lastChild : at.parentNode;
+  const added = [...blocks.childNodes];
+  if (at) at.after(...added);
+  else page.append(...added);
+  if (!page.lastElementChild || page.lastElementChild.tagName === "FIGURE") {
+    const empty = document.createElement("p");
+    empty.append(document.createElement("br"));
+    page.append(empty);
+  }
+  changed();
+  added.at(-1)?.scrollIntoView?.({ block: "nearest" });
+}
+
+// ---- links
+
+export function setUpLinks(targets) {
+  const dialog = byId("link-dialog"), choice = byId("link-target");
+  const open = () => {
+    if (!editable) return;
+    keepRange();
+    const link = around(["A"]);
+    choice.replaceChildren(...targets().map(({ label, options }) => {
+      const group = document.createElement("optgroup");
+      group.label = label;
+      group.append(...options.map(([value, text]) => new Option(text, value)));
+      return group;
+    }));
+    if (link) choice.value = link.getAttribute("href");
+    dialog.querySelector("[value=remove]").hidden = !link;
+    dialog.returnValue = "";
+    dialog.showModal();
+  };
+  byId("link").addEventListener("click", open);
+  choice.addEventListener("dblclick", () => dialog.close("ok"));
+  dialog.addEventListener("close", () => {
+    restoreRange();
+    const link = around(["A"]);
+    if (dialog.returnValue === "remove" && link) link.replaceWith(...link.childNodes);
+    else if (dialog.returnValue !== "ok" || !choice.value) return;
+    else if (link) link.setAttribute("href", choice.value);
+    else if (getSelection().isCollapsed) {
+      const fresh = document.createElement("a");
+      fresh.setAttribute("href", choice.value);
+      fresh.textContent = choice.selectedOptions[0].textContent;
+      range.insertNode(fresh);
+    } else document.execCommand("createLink", false, choice.value);
+    changed();
+  });
+  return open;
+}
+
+// ---- setting up
+
+export function setUpEditor(onChange, openLink, openFigure, takeFiles) {
+  changed = onChange;
+  document.execCommand("defaultParagraphSeparator", false, "p");
+  document.addEventListener("selectionchange", showState);
+  page.addEventListener("input", () => {
+    if (!page.textContent && !page.querySelector("img")) page.innerHTML = "<p><br></p>";
+    changed();
+  });
+  style.addEventListener("change", () => run("formatBlock", style.value));
+  for (const button of document.querySelectorAll("[data-command]")) {
+    button.addEventListener("mousedown", event => event.preventDefault());
+    button.addEventListener("click", () => run(button.dataset.command));
+  }
+  page.addEventListener("keydown", event => {
+    const control = event.ctrlKey || event.metaKey;
+    if (control && event.key.toLowerCase() === "k") { event.preventDefault(); openLink(); }
+    if (event.target.tagName === "FIGURE" && (event.key === "Enter" || event.key === " ")) { event.preventDefault(); openFigure(event.target); }
+    if (event.target.tagName === "FIGURE" && (event.key === "Delete" || event.key === "Backspace")) { event.preventDefault(); event.target.remove(); changed(); }
+  });
+  page.addEventListener("click", event => {
+    const figure = event.target.closest("figure");
+    if (figure && editable) openFigure(figure);
+    else if (event.target.closest("a")) event.preventDefault();
+  });
+  page.addEventListener("paste", event => {
+    event.preventDefault();
+    const data = event.clipboardData;
+    if (data.files.length && !data.getData("text/html")) { takeFiles([...data.files]); return; }
+    const blocks = clean(data.getData("text/html") || data.getData("text/plain").split(/\n{2,}/).map(text => `<p>${text.replace(/[&<]/g, c => c === "&" ? "&amp;" : "&lt;")}</p>`).join(""));
+    const isLine = blocks.children.length === 1 && blocks.firstElementChild.tagName === "P";
+    document.execCommand("insertHTML", false, isLine ? blocks.firstElementChild.innerHTML : textOf(blocks));
+  });
+}

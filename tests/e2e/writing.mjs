@@ -1,0 +1,106 @@
+// A curator at the page on which texts are written, in a real browser: pages.sh's claims, seen from the other side.
+//
+//     node tests/e2e/writing.mjs PORT FOLDER_FOR_PICTURES
+import assert from "node:assert/strict";
+import { openBrowser } from "../tools/browser.mjs";
+
+const [port, folder] = process.argv.slice(2), home = `http://127.0.0.1:${port}`;
+const CONTROL = 2;
+
+async function signIn(browser, name) {
+  await browser.go(`${home}/sign-in`);
+  const status = await browser.evaluate(`fetch("/api/session", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ name: "${name}", password: "password of ${name}" }) }).then(answer => answer.status)`);
+  assert.equal(status, 200);
+}
+
+async function open(browser, part) {
+  await browser.go(`${home}/information#${part}`);
+  await browser.until(`document.querySelector("#page h1")`, "the page of a part");
+}
+
+const saved = browser => browser.until(`document.querySelector("#save").disabled && /Saved/.test(document.querySelector("#state").textContent + document.querySelector("#message").textContent)`, "saving");
+const html = browser => browser.evaluate(`fetch("/api/pages/lions.en").then(answer => answer.json()).then(page => page.html)`);
+// Puts the caret at the end of the n-th paragraph.
+const caret = (browser, n) => browser.evaluate(`(() => { const p = document.querySelectorAll("#page p")[${n}]; document.querySelector("#page").focus(); const range = document.createRange(); range.selectNodeContents(p); range.collapse(false); getSelection().removeAllRanges(); getSelection().addRange(range); })()`);
+const paste = (browser, text) => browser.evaluate(`(() => { const data = new DataTransfer(); data.setData("text/html", ${JSON.stringify(text)}); document.querySelector("#page").dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true })); })()`);
+
+async function writes(browser) {
+  await open(browser, "lions.en");
+  const before = await html(browser);
+  assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true, "nothing was changed");
+  await caret(browser, 0);
+  await browser.type(" Written in a browser & <seen>.");
+  await browser.key("s", CONTROL, 83);
+  await saved(browser);
+  const after = await html(browser);
+  assert.match(after, /wrestler's\. Written in a browser &amp; &lt;seen&gt;\.<\/p>/);
+  // Nothing else of the file has changed.
+  assert.equal(after.replace(" Written in a browser &amp; &lt;seen&gt;.", ""), before);
+}
+
+async function pastes(browser) {
+  await caret(browser, 1);
+  await paste(browser, `<h2 style="color:red" onclick="x()">From elsewhere</h2><p class="MsoNormal">With <b>weight</b>, <span style="font-style:italic">slope</span>, <a href="https://x.example">a link</a><script>alert(1)</script><img src="https://x.example/x.png"></p>`);
+  await browser.click("#save");
+  await saved(browser);
+  const text = await html(browser);
+  assert.match(text, /<h2>From elsewhere<\/h2>/);
+  assert.match(text, /<strong>weight<\/strong>, <em>slope<\/em>, a link/);
+  assert.doesNotMatch(text, /script|onclick|x\.example|Mso|color/);
+}
+
+async function changesCaption(browser) {
+  await browser.evaluate(`(() => { const field = document.querySelector("#caption"); field.value = "A caption from the browser."; field.dispatchEvent(new Event("input")); })()`);
+  await browser.click("#save");
+  await saved(browser);
+  await browser.click("#tab-history");
+  await browser.until(`document.querySelector("#history li")`, "the history");
+  assert.match(await browser.evaluate(`document.querySelector("#history li").textContent`), /^ana/);
+}
+
+async function meets(ana, petra) {
+  await open(petra, "lions.en");
+  await caret(petra, 0);
+  await petra.type(" Petra's end.");
+  await caret(ana, 0);
+  await ana.type(" Ana's end.");
+  await ana.click("#save");
+  await saved(ana);
+  await petra.click("#save");
+  await petra.until(`document.querySelectorAll("#page [data-overlap]").length === 2`, "both texts");
+  await petra.picture(`${folder}/overlap.png`);
+  const shown = await petra.evaluate(`document.querySelector("#page").textContent`);
+  assert.match(shown, /Ana's end/);
+  assert.match(shown, /Petra's end/);
+  await petra.click("#page [data-overlap=mine] .choice button");
+  await petra.click("#save");
+  await saved(petra);
+  const text = await html(petra);
+  assert.match(text, /Petra's end/);
+  assert.doesNotMatch(text, /Ana's end|&lt;&lt;|overlap|choice/);
+}
+
+async function previews(browser) {
+  await browser.click("#tab-preview");
+  await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 3`, "three previews", 60000);
+}
+
+const ana = await openBrowser(), petra = await openBrowser({ width: 1024, height: 768, dark: true });
+try {
+  await signIn(ana, "ana");
+  await signIn(petra, "petra");
+  await writes(ana);
+  await pastes(ana);
+  await changesCaption(ana);
+  await meets(ana, petra);
+  await previews(ana);
+  await ana.picture(`${folder}/writing.png`);
+  await petra.picture(`${folder}/tablet.png`);
+  // The browser remarks on the answer 409 of the overlap, on a picture of the sign-in page, and on the foreign style and
+  // script that were pasted, which the policy forbids.
+  const thrown = [...ana.complaints, ...petra.complaints].filter(text => !/status of (404|409)|Content Security Policy/.test(text));
+  assert.deepEqual(thrown, []);
+} finally {
+  await ana.close();
+  await petra.close();
+}
