@@ -145,6 +145,23 @@ def check_pictures(ana):
     assert save(ana, PAGE, html.replace("</body>", figure + "\n</body>"), tag)[0] == 200
 
 
+def check_preview(ana):
+    ask = lambda **body: ana.ask("POST", "/api/preview", json.dumps(body))
+    pictures = []
+    for kind in ("near", "card", "page"):
+        status, headers, picture = ask(part="lions", language="en", kind=kind)
+        assert status == 200 and headers["content-type"] == "image/jpeg" and picture[:2] == b"\xff\xd8"
+        pictures.append(picture)
+    assert len(set(pictures)) == 3
+    assert ask(part="lions", language="en", kind="page")[2] == pictures[2]
+    assert ask(part="lions", language="en", kind="page", html="<p>Other words.</p>")[2] != pictures[2]
+    assert ask(part="lions", language="km", kind="card")[2] != pictures[1]
+    assert ask(part="lions", language="en", kind="page", html="<script>x</script>")[0] == 422
+    assert ask(part="nobody", language="en", kind="card")[0] == 404
+    assert ask(part="lions", language="en", kind="other")[0] == 400
+    assert ask(part="lions", language="zz", kind="card")[0] == 200  # as a terminal: in the nearest language
+
+
 def check_roles(rolf):
     html, tag = page(rolf)
     assert save(rolf, PAGE, html, tag)[0] == 403
@@ -178,6 +195,7 @@ def main():
     check_pages(ana, petra)
     check_history(ana)
     check_pictures(ana)
+    check_preview(ana)
     check_roles(rolf)
 
 
