@@ -89,25 +89,35 @@ async function openVersion(item, button, document_, version, older, restored) {
   item.append(box);
 }
 
+async function versionsOf(document_, restored) {
+  const { versions } = await ask("GET", `/api/versions?document=${encodeURIComponent(document_)}`);
+  const list = document.createElement("ul");
+  list.className = "versions";
+  list.append(...versions.map((version, n) => {
+    const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
+    button.type = "button";
+    button.setAttribute("aria-expanded", "false");
+    button.textContent = version.author || "Outside this program";
+    small.textContent = `${when(version.time)} – ${version.what}${n === 0 ? " (now)" : ""}`;
+    button.append(small);
+    const older = versions[n + 1] && !versions[n + 1].removed ? versions[n + 1].version : "";
+    button.addEventListener("click", () => openVersion(item, button, document_, version, older, n > 0 ? restored : null));
+    item.append(button);
+    return item;
+  }));
+  return versions.length ? list : "Nothing has been written yet.";
+}
+
+function heading(text) {
+  return Object.assign(document.createElement("h2"), { textContent: text });
+}
+
+// Of a page, which can go back, and of what parts.json has of all parts, which cannot: others' texts are in it too.
 export async function showHistory(document_, restored) {
   panel.textContent = "Loading …";
   try {
-    const { versions } = await ask("GET", `/api/versions?document=${encodeURIComponent(document_)}`);
-    const list = document.createElement("ul");
-    list.className = "versions";
-    list.append(...versions.map((version, n) => {
-      const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
-      button.type = "button";
-      button.setAttribute("aria-expanded", "false");
-      button.textContent = version.author || "Outside this program";
-      small.textContent = `${when(version.time)} – ${version.what}${n === 0 ? " (now)" : ""}`;
-      button.append(small);
-      const older = versions[n + 1] && !versions[n + 1].removed ? versions[n + 1].version : "";
-      button.addEventListener("click", () => openVersion(item, button, document_, version, older, n > 0 ? restored : null));
-      item.append(button);
-      return item;
-    }));
-    panel.replaceChildren(versions.length ? list : "Nothing has been written yet.");
+    const page = await versionsOf(document_, restored), parts = await versionsOf("parts.json", null);
+    panel.replaceChildren(heading("This page"), page, heading("Titles, captions, credits and order of all parts"), parts);
   } catch (failure) {
     panel.textContent = failure.message;
   }
