@@ -92,6 +92,12 @@ class Desk:
             process.terminate()
             assert process.wait(timeout=60) == 0, "it did not end well"
 
+    def leave_nothing(self):
+        """Also after a failure."""
+        for process in (self.web, self.publisher):
+            if process and process.poll() is None:
+                process.kill()
+
 
 def parent_of(process):
     try:
@@ -231,8 +237,7 @@ def check_kills(desk, work, kills, seed):
     print(f"{kills} kills: each time a whole release")
 
 
-def main(work, kills, seed):
-    desk = Desk(work)
+def check(desk, work, kills, seed):
     ana, petra = desk.sign_in("ana"), desk.sign_in("petra")
     until = time.monotonic() + 30
     while not (state := ana.ask("GET", "/api/publish")[2])["publisher"] or not state["releases"]:
@@ -248,6 +253,14 @@ def main(work, kills, seed):
     check_page(desk, work)
     check_kills(desk, work, kills, seed)
     desk.stop()
+
+
+def main(work, kills, seed):
+    desk = Desk(work)
+    try:
+        check(desk, work, kills, seed)
+    finally:
+        desk.leave_nothing()
 
 
 if __name__ == "__main__":
