@@ -5,6 +5,8 @@ const RENAMED = { STRONG: "STRONG", B: "STRONG", EM: "EM", I: "EM", CITE: "CITE"
 const HEADINGS = { H4: "H3", H5: "H3", H6: "H3" };
 const DROPPED = new Set(["SCRIPT", "STYLE", "TEMPLATE", "IFRAME", "OBJECT", "EMBED", "NOSCRIPT", "SVG", "MATH", "HEAD", "TITLE", "META", "LINK", "BUTTON", "INPUT", "SELECT", "TEXTAREA", "CANVAS", "VIDEO", "AUDIO"]);
 const INSIDE = { UL: ["LI"], OL: ["LI"], TABLE: ["CAPTION", "TR"] };
+// What is made here loads nothing: its pictures are named as in a page, not by an address.
+const inert = document.implementation.createHTMLDocument("");
 const PICTURE = "/api/picture?name=";
 
 export const pictureAddress = name => PICTURE + encodeURIComponent(name);
@@ -26,9 +28,9 @@ function cleanInline(from, to) {
       continue;
     }
     if (node.nodeType !== Node.ELEMENT_NODE || DROPPED.has(node.tagName)) continue;
-    if (node.tagName === "BR") { to.append(document.createElement("br")); continue; }
+    if (node.tagName === "BR") { to.append(inert.createElement("br")); continue; }
     if (node.tagName === "A" && /^(part|page|tour):[a-z0-9_-]+$/.test(node.getAttribute("href") || "")) {
-      const link = document.createElement("a");
+      const link = inert.createElement("a");
       link.setAttribute("href", node.getAttribute("href"));
       cleanInline(node, link);
       to.append(link);
@@ -41,7 +43,7 @@ function cleanInline(from, to) {
       if (BLOCKS.has(node.tagName) || node.tagName === "DIV" || node.tagName === "LI") to.append(" ");
       continue;
     }
-    const kept = document.createElement(name);
+    const kept = inert.createElement(name);
     cleanInline(node, kept);
     to.append(kept);
   }
@@ -51,12 +53,12 @@ function cleanFigure(from, to) {
   const image = from.tagName === "IMG" ? from : from.querySelector("img");
   const name = image ? pictureName(image.getAttribute("src") || "") : "";
   if (!name) return;
-  const figure = document.createElement("figure"), kept = document.createElement("img"), words = from.querySelector("figcaption");
+  const figure = inert.createElement("figure"), kept = inert.createElement("img"), words = from.querySelector("figcaption");
   kept.setAttribute("src", name);
   kept.setAttribute("alt", image.getAttribute("alt") || "");
   figure.append(kept);
   if (words && !isBlank(words)) {
-    const caption = document.createElement("figcaption");
+    const caption = inert.createElement("figcaption");
     cleanInline(words, caption);
     figure.append(caption);
   }
@@ -67,15 +69,15 @@ function cleanRows(from, to) {
   for (const node of from.children) {
     if (["THEAD", "TBODY", "TFOOT"].includes(node.tagName)) { cleanRows(node, to); continue; }
     if (node.tagName === "CAPTION") {
-      const caption = document.createElement("caption");
+      const caption = inert.createElement("caption");
       cleanInline(node, caption);
       to.append(caption);
     }
     if (node.tagName !== "TR") continue;
-    const row = document.createElement("tr");
+    const row = inert.createElement("tr");
     for (const cell of node.children) {
       if (cell.tagName !== "TD" && cell.tagName !== "TH") continue;
-      const kept = document.createElement(cell.tagName);
+      const kept = inert.createElement(cell.tagName);
       cleanInline(cell, kept);
       row.append(kept);
     }
@@ -84,13 +86,13 @@ function cleanRows(from, to) {
 }
 
 function cleanList(from, to, name) {
-  const list = document.createElement(name);
+  const list = inert.createElement(name);
   for (const node of from.children) {
     if (node.tagName === "UL" || node.tagName === "OL") { // as browsers nest lists
       cleanList(node, list.lastElementChild || list, node.tagName);
       continue;
     }
-    const item = document.createElement("li"), words = node.cloneNode(true);
+    const item = inert.createElement("li"), words = node.cloneNode(true);
     for (const inner of words.querySelectorAll("ul, ol")) inner.remove();
     cleanInline(words, item);
     for (const inner of node.querySelectorAll(":scope > ul, :scope > ol")) cleanList(inner, item, inner.tagName);
@@ -105,12 +107,12 @@ function cleanBlocks(from, to) {
   const close = () => { if (loose && !isBlank(loose)) to.append(loose); loose = null; };
   for (const node of from.childNodes) {
     const name = node.nodeType === Node.ELEMENT_NODE ? HEADINGS[node.tagName] || node.tagName : "";
-    if (DROPPED.has(name) || node.nodeType === Node.COMMENT_NODE) continue;
+    if (DROPPED.has(name) || node.nodeType === Node.COMMENT_NODE || (name && node.classList.contains("choice"))) continue;
     const isInline = !name || RENAMED[name] || ["A", "SPAN", "BR", "FONT", "U", "CODE"].includes(name);
     if (isInline && !(name && node.querySelector && node.querySelector("p, div, h1, h2, h3, ul, ol, table, img"))) {
       if (!loose && !name && !node.textContent.trim()) continue;
-      if (!loose) loose = document.createElement("p");
-      const wrap = document.createElement("div");
+      if (!loose) loose = inert.createElement("p");
+      const wrap = inert.createElement("div");
       wrap.append(node.cloneNode(true));
       cleanInline(wrap, loose);
       continue;
@@ -119,16 +121,16 @@ function cleanBlocks(from, to) {
     if (name === "FIGURE" || name === "IMG") cleanFigure(node, to);
     else if (name === "UL" || name === "OL") cleanList(node, to, name);
     else if (name === "TABLE") {
-      const table = document.createElement("table");
+      const table = inert.createElement("table");
       cleanRows(node, table);
       if (table.querySelector("tr")) to.append(table);
-    } else if (name === "HR") to.append(document.createElement("hr"));
+    } else if (name === "HR") to.append(inert.createElement("hr"));
     else if (BLOCKS.has(name) && !node.querySelector("p, div, ul, ol, table, figure, img")) {
-      const block = document.createElement(name);
+      const block = inert.createElement(name);
       cleanInline(node, block);
       if (!isBlank(block)) to.append(block);
     } else if (name === "BLOCKQUOTE") {
-      const quote = document.createElement("blockquote");
+      const quote = inert.createElement("blockquote");
       cleanBlocks(node, quote);
       if (!isBlank(quote)) to.append(quote);
     } else cleanBlocks(node, to);
@@ -138,7 +140,7 @@ function cleanBlocks(from, to) {
 
 // A fragment of blocks, with pictures named as in a page.
 export function clean(html) {
-  const parsed = new DOMParser().parseFromString(html, "text/html"), to = document.createElement("div");
+  const parsed = new DOMParser().parseFromString(html, "text/html"), to = inert.createElement("div");
   cleanBlocks(parsed.body, to);
   return to;
 }

@@ -13,13 +13,14 @@ function split(html) {
   return [html.slice(0, first), html.slice(first, end), html.slice(end)];
 }
 
-function show(blocks) {
-  for (const image of blocks.querySelectorAll("img")) image.src = pictureAddress(image.getAttribute("src"));
+// Gives cleaned blocks the addresses of their pictures, before they come to the page.
+function named(blocks) {
+  for (const image of blocks.querySelectorAll("img")) image.setAttribute("src", pictureAddress(image.getAttribute("src")));
   for (const figure of blocks.querySelectorAll("figure")) {
-    figure.contentEditable = "false";
-    figure.tabIndex = 0;
+    figure.setAttribute("contenteditable", "false");
+    figure.setAttribute("tabindex", "0");
   }
-  page.replaceChildren(...blocks.childNodes);
+  return blocks;
 }
 
 // Both texts of an overlap, each with a button that keeps it alone.
@@ -29,7 +30,7 @@ function showOverlap(marked) {
   for (let n = 0; n < parts.length; n++) {
     if (n % 2) continue;
     const side = n ? parts[n - 1] : "end", blocks = clean(parts[n]);
-    if (side === "end") { out.append(...blocks.childNodes); continue; }
+    if (side === "end") { out.append(...named(blocks).childNodes); continue; }
     const box = document.createElement("div"), choice = document.createElement("div"), button = document.createElement("button");
     box.dataset.overlap = side;
     choice.className = "choice";
@@ -45,26 +46,24 @@ function showOverlap(marked) {
       changed();
     });
     choice.append(button);
-    box.append(choice, ...blocks.childNodes);
+    box.append(choice, ...named(blocks).childNodes);
     out.append(box);
   }
-  show(out);
+  page.replaceChildren(...out.childNodes);
 }
 
 export function setPage(html, isMarked = false) {
   const [head, body, tail] = split(html);
   before = head;
   after = tail;
-  if (!isMarked) { show(clean(body)); return; }
+  if (!isMarked) { page.replaceChildren(...named(clean(body)).childNodes); return; }
   showOverlap(body);
   page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
 }
 
 // "" if there is nothing on it. A new page has no frame around it.
 export function pageText() {
-  const copy = page.cloneNode(true);
-  for (const choice of copy.querySelectorAll(".choice")) choice.remove();
-  const text = textOf(clean(copy.innerHTML));
+  const text = textOf(clean(page.innerHTML));
   if (!text) return "";
   return before ? `${before}\n${text}\n${after}` : `${text}\n`;
 }
@@ -121,11 +120,7 @@ function run(command, value) {
 
 export function insertBlocks(blocks) {
   const last = [...page.children].at(-1);
-  for (const image of blocks.querySelectorAll("img")) image.src = pictureAddress(image.getAttribute("src"));
-  for (const figure of blocks.querySelectorAll("figure")) {
-    figure.contentEditable = "false";
-    figure.tabIndex = 0;
-  }
+  named(blocks);
   let at = range && page.contains(range.startContainer) ? range.startContainer : last;
   while (at && at.parentNode !== page) at = at === page ? page.lastChild : at.parentNode;
   const added = [...blocks.childNodes];
@@ -210,6 +205,6 @@ export function setUpEditor(onChange, openLink, openFigure, takeFiles) {
     if (data.files.length && !data.getData("text/html")) { takeFiles([...data.files]); return; }
     const blocks = clean(data.getData("text/html") || data.getData("text/plain").split(/\n{2,}/).map(text => `<p>${text.replace(/[&<]/g, c => c === "&" ? "&amp;" : "&lt;")}</p>`).join(""));
     const isLine = blocks.children.length === 1 && blocks.firstElementChild.tagName === "P";
-    document.execCommand("insertHTML", false, isLine ? blocks.firstElementChild.innerHTML : textOf(blocks));
+    document.execCommand("insertHTML", false, isLine ? blocks.firstElementChild.innerHTML : named(blocks).innerHTML);
   });
 }

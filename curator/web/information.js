@@ -3,7 +3,7 @@
 import { showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
-import { clean } from "./clean.js";
+import { clean, pictureAddress } from "./clean.js";
 import { allowEditing, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
 import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
@@ -290,8 +290,8 @@ function openFigure(figure) {
   pickPicture(readFigure(figure), true, picked => {
     if (picked) {
       const fresh = makeFigure(picked).firstElementChild;
+      fresh.querySelector("img").setAttribute("src", pictureAddress(picked.name));
       figure.replaceChildren(...fresh.childNodes);
-      figure.querySelector("img").src = `/api/picture?name=${encodeURIComponent(picked.name)}`;
     } else figure.remove();
     setDirty(true);
   });

@@ -96,7 +96,7 @@ export function readFigure(figure) {
 // Blocks for the editor.
 export function makeFigure({ name, alt, caption, credit }) {
   const out = document.createElement("div"), figure = document.createElement("figure"), image = document.createElement("img");
-  image.setAttribute("src", name);
+  image.setAttribute("src", pictureAddress(name));
   image.alt = alt;
   figure.append(image);
   if (caption || credit) {

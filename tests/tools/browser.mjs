@@ -28,7 +28,7 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
       else resolve(message.result);
     }
     if (message.method === "Runtime.exceptionThrown") complaints.push(message.params.exceptionDetails.exception?.description || message.params.exceptionDetails.text);
-    if (message.method === "Log.entryAdded" && message.params.entry.level === "error") complaints.push(message.params.entry.text);
+    if (message.method === "Log.entryAdded" && message.params.entry.level === "error") complaints.push(`${message.params.entry.text} ${message.params.entry.url || ""}`);
     if (message.method === "Page.javascriptDialogOpening") send("Page.handleJavaScriptDialog", { accept: true });
   }
   function send(method, params = {}, own = session) {
