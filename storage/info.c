@@ -17,6 +17,7 @@
 #include "storage/info_languages.h"
 #include "storage/info_rows.h"
 #include "storage/info_schema.h"
+#include "storage/info_spoken.h"
 #include "storage/info_tools.h"
 #include "storage/info_tour.h"
 #include "storage/plain_page.h"
@@ -320,6 +321,8 @@ static int open_image(struct info *info, struct bytes image)
 		rc = info_load_tours(info);
 	if (rc == 0)
 		rc = info_load_tools(info);
+	if (rc == 0)
+		rc = info_load_spoken(info);
 	if (rc == 0 && info->version < INFO_SCHEMA_SEARCH)
 		rc = complete_version_1(info);
 	return rc;
@@ -354,6 +357,7 @@ void info_close(struct info *info)
 	buffer_finish(&info->credits);
 	free(info->contents);
 	info_drop_tours(info);
+	info_drop_spoken(info);
 	for (uint32_t i = 0; i < info->part_count; i++) {
 		free((char *)info->parts[i].public.id);
 		for (size_t k = 0; k < INFO_LANGUAGES_MAX; k++) {
@@ -422,22 +426,10 @@ struct info_text info_text(const struct info *info, uint32_t part, const char *l
 	return text;
 }
 
-/* Returns the best language that has a page, or language_count if none has. */
-static uint32_t page_language(const struct info *info, const struct part *part,
-			      const char *language)
-{
-	const struct info_order order = info_order_of(info, language);
-
-	for (uint32_t i = 0; i < order.count; i++)
-		if (part->texts[order.languages[i]].has_page)
-			return order.languages[i];
-	return info->language_count;
-}
-
 int info_page(struct info *info, uint32_t part, const char *language, struct bytes *article,
 	      const char **language_found)
 {
-	uint32_t found = page_language(info, &info->parts[part], language);
+	uint32_t found = info_page_language(info, &info->parts[part], language);
 	int code, rc = 0;
 
 	*article = (struct bytes){ 0 };

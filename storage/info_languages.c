@@ -44,3 +44,13 @@ uint32_t info_language_index(const struct info *info, const char *language)
 {
 	return info_order_of(info, language).languages[0];
 }
+
+uint32_t info_page_language(const struct info *info, const struct part *part, const char *language)
+{
+	const struct info_order order = info_order_of(info, language);
+
+	for (uint32_t i = 0; i < order.count; i++)
+		if (part->texts[order.languages[i]].has_page)
+			return order.languages[i];
+	return info->language_count;
+}

@@ -15,5 +15,7 @@ struct info_order info_order_of(const struct info *info, const char *language);
 const char *info_first_of(const struct info_order *order, char *const *texts, uint32_t *found);
 /* Returns the index of the best match for a language. */
 uint32_t info_language_index(const struct info *info, const char *language);
+/* Returns the best language in which a part has a page, or language_count if none has. */
+uint32_t info_page_language(const struct info *info, const struct part *part, const char *language);
 
 #endif

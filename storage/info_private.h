@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include "storage/info.h"
+#include "storage/info_spoken.h"
 #include "storage/info_tour.h"
 
 enum {
@@ -53,7 +54,9 @@ struct info {
 	struct tour_row *tours;
 	uint32_t tour_count, tour_room;
 	unsigned tools;
-	bool has_tools;
+	bool has_tools, has_spoken;
+	struct info_cue *cues; /* of the last info_spoken; owned */
+	uint32_t cue_count;
 	struct info_picture *pictures; /* names owned */
 	uint32_t picture_count, picture_room;
 };

@@ -4,6 +4,7 @@
 #define GOPURA_PIPELINE_CONTENT_DRAFT_H
 
 #include "base/json_text.h"
+#include "pipeline/content/cues.h"
 #include "pipeline/content/info_build.h"
 #include "storage/info_tour.h"
 
@@ -11,12 +12,23 @@ struct cJSON;
 
 enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
+enum { DRAFT_SPOKEN_NAME_BYTES = INFO_ID_BYTES_MAX + 40 };
+
+/* The spoken text of a page. */
+struct draft_spoken {
+	char name[DRAFT_SPOKEN_NAME_BYTES]; /* of the file, in the folder */
+	struct hash hash;
+	uint32_t size, duration_ms; /* 0: there is none */
+	struct cues cues;
+};
+
 struct draft_page {
 	char *html; /* owned, null-terminated; NULL: none */
 	size_t size;
 	struct buffer article; /* made of html; empty if html has a fault */
 	uint32_t *pictures;    /* owned; indices into draft.pictures, in order of use, each once */
 	uint32_t picture_count, picture_room;
+	struct draft_spoken spoken;
 };
 
 /* One Dublin Core statement. */

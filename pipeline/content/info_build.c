@@ -184,11 +184,16 @@ static void write_part(struct writer *w, int64_t id, const struct draft_part *pa
 	}
 }
 
+static int64_t content_id_of(int64_t information, uint32_t language)
+{
+	return information * INFO_LANGUAGES_MAX + language;
+}
+
 static void write_content(struct writer *w, int64_t information, uint32_t language,
 			  const struct draft_part *part)
 {
 	const struct draft_page *page = &part->pages[language];
-	int64_t content_id = information * INFO_LANGUAGES_MAX + language;
+	const int64_t content_id = content_id_of(information, language);
 
 	if (!part->titles[language] && !part->captions[language] && !page->html)
 		return;
@@ -312,6 +317,56 @@ static void write_tools(struct writer *w, unsigned tools)
 	}
 }
 
+static bool has_spoken(const struct draft *draft)
+{
+	for (uint32_t p = 0; p < draft->part_count; p++)
+		for (uint32_t i = 0; i < draft->options->language_count; i++)
+			if (draft->parts[p].pages[i].spoken.duration_ms > 0)
+				return true;
+	return false;
+}
+
+static void write_spoken_text(struct writer *w, int64_t content_id,
+			      const struct draft_spoken *spoken)
+{
+	prepare(w, "INSERT INTO spoken VALUES(?,?,?,?)");
+	bind_int(w, content_id);
+	bind_blob(w, (struct bytes){ spoken->hash.bytes, HASH_BYTES });
+	bind_int(w, spoken->size);
+	bind_int(w, spoken->duration_ms);
+	insert(w);
+	for (uint32_t i = 0; i < spoken->cues.count; i++) {
+		prepare(w, "INSERT INTO spoken_cue VALUES(?,?,?,?,?)");
+		bind_int(w, content_id);
+		bind_int(w, i);
+		bind_int(w, spoken->cues.all[i].begin_ms);
+		bind_int(w, spoken->cues.all[i].end_ms);
+		bind_text(w, spoken->cues.all[i].text);
+		insert(w);
+	}
+}
+
+/* Without spoken texts there are no tables of them (storage/info_spoken.h). */
+static void write_spoken(struct writer *w, const struct draft *draft)
+{
+	static const char tables[] =
+		"CREATE TABLE spoken(content_id INTEGER PRIMARY KEY REFERENCES information_contents,"
+		" hash BLOB NOT NULL CHECK(length(hash) = 16), bytes INTEGER NOT NULL,"
+		" duration_ms INTEGER NOT NULL);"
+		"CREATE TABLE spoken_cue(content_id INTEGER NOT NULL REFERENCES spoken,"
+		" position INTEGER NOT NULL, begin_ms INTEGER NOT NULL, end_ms INTEGER NOT NULL,"
+		" text TEXT NOT NULL, PRIMARY KEY(content_id, position)) WITHOUT ROWID;";
+
+	if (!has_spoken(draft))
+		return;
+	run(w, tables);
+	for (uint32_t p = 0; p < draft->part_count; p++)
+		for (uint32_t i = 0; i < draft->options->language_count; i++)
+			if (draft->parts[p].pages[i].spoken.duration_ms > 0)
+				write_spoken_text(w, content_id_of(p, i),
+						  &draft->parts[p].pages[i].spoken);
+}
+
 static void write_database(struct writer *w, const struct draft *draft)
 {
 	char pragmas[100];
@@ -330,6 +385,7 @@ static void write_database(struct writer *w, const struct draft *draft)
 	for (uint32_t i = 0; i < draft->tour_count; i++)
 		write_tour(w, i, &draft->tours[i]);
 	write_tools(w, draft->options->tools);
+	write_spoken(w, draft);
 	if (w->code == SQLITE_OK)
 		w->code = info_index_make(w->db, INFO_SCHEMA_VERSION);
 	run(w, "COMMIT");
@@ -366,36 +422,62 @@ static int encode(struct buffer *out, struct draft *draft)
 
 static int by_hash(const void *a, const void *b)
 {
-	const struct info_picture_file *left = a, *right = b;
+	const struct info_file *left = a, *right = b;
 
 	return hash_compare(left->hash, right->hash);
 }
 
-/* Lists the pictures by hash. Files with the same bytes become one object. */
-static int list_pictures(struct info_built *out, struct draft *draft)
+static int add_file(struct info_built *out, struct hash hash, uint32_t size, const char *name)
 {
-	uint32_t kept = 0;
+	struct info_file *file = &out->files[out->file_count];
 
-	out->pictures = calloc(draft->picture_count + 1, sizeof(*out->pictures));
-	if (!out->pictures)
+	*file = (struct info_file){ hash, size, strdup(name) };
+	if (!file->name)
 		return -ENOMEM;
-	for (uint32_t i = 0; i < draft->picture_count; i++) {
-		struct draft_picture *picture = &draft->pictures[i];
+	out->file_count++;
+	return 0;
+}
 
-		out->pictures[i] = (struct info_picture_file){ picture->hash, picture->size,
-							       strdup(picture->name) };
-		out->picture_count = i + 1;
-		if (!out->pictures[i].name)
-			return -ENOMEM;
-	}
-	qsort(out->pictures, out->picture_count, sizeof(*out->pictures), by_hash);
-	for (uint32_t i = 0; i < out->picture_count; i++) {
-		if (kept > 0 && hash_equal(out->pictures[kept - 1].hash, out->pictures[i].hash))
-			free(out->pictures[i].name);
+static int add_spoken_files(struct info_built *out, const struct draft *draft)
+{
+	int rc = 0;
+
+	for (uint32_t p = 0; p < draft->part_count; p++)
+		for (uint32_t i = 0; i < draft->options->language_count && rc == 0; i++) {
+			const struct draft_spoken *spoken = &draft->parts[p].pages[i].spoken;
+
+			if (spoken->duration_ms > 0)
+				rc = add_file(out, spoken->hash, spoken->size, spoken->name);
+		}
+	return rc;
+}
+
+/* Lists pictures and spoken texts by hash. Files with the same bytes become one object. */
+static int list_files(struct info_built *out, const struct draft *draft)
+{
+	const size_t most =
+		draft->picture_count + (size_t)draft->part_count * draft->options->language_count;
+	uint32_t kept = 0;
+	int rc = 0;
+
+	out->files = calloc(most + 1, sizeof(*out->files));
+	if (!out->files)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < draft->picture_count && rc == 0; i++)
+		rc = add_file(out, draft->pictures[i].hash, draft->pictures[i].size,
+			      draft->pictures[i].name);
+	if (rc == 0)
+		rc = add_spoken_files(out, draft);
+	if (rc < 0)
+		return rc;
+	qsort(out->files, out->file_count, sizeof(*out->files), by_hash);
+	for (uint32_t i = 0; i < out->file_count; i++) {
+		if (kept > 0 && hash_equal(out->files[kept - 1].hash, out->files[i].hash))
+			free(out->files[i].name);
 		else
-			out->pictures[kept++] = out->pictures[i];
+			out->files[kept++] = out->files[i];
 	}
-	out->picture_count = kept;
+	out->file_count = kept;
 	return 0;
 }
 
@@ -534,7 +616,7 @@ int info_compile(struct info_built *out, struct draft *draft)
 	if (rc == 0)
 		rc = encode(&out->database, draft);
 	if (rc == 0)
-		rc = list_pictures(out, draft);
+		rc = list_files(out, draft);
 	if (rc == 0)
 		count(out, draft);
 	else
@@ -559,8 +641,8 @@ void info_built_finish(struct info_built *built)
 	if (!built)
 		return;
 	buffer_finish(&built->database);
-	for (uint32_t i = 0; i < built->picture_count; i++)
-		free(built->pictures[i].name);
-	free(built->pictures);
+	for (uint32_t i = 0; i < built->file_count; i++)
+		free(built->files[i].name);
+	free(built->files);
 	*built = (struct info_built){ 0 };
 }

@@ -1,5 +1,6 @@
-/* Compiles the parts, pages, tours and pictures of a content folder into one SQLite image. The same
- * folder gives the same bytes. storage/info.h reads it; docs/information.md has the tables. */
+/* Compiles the parts, pages, tours, pictures and spoken texts of a content folder into one SQLite
+ * image. The same folder gives the same bytes. storage/info.h reads it; docs/information.md has the
+ * tables. */
 #ifndef GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 #define GOPURA_PIPELINE_CONTENT_INFO_BUILD_H
 
@@ -44,7 +45,8 @@ struct info_build_options {
 	void *faces_data;
 };
 
-struct info_picture_file {
+/* A picture, or a spoken text. */
+struct info_file {
 	struct hash hash; /* of the file's bytes; it is the name of the object */
 	uint32_t size;    /* bytes */
 	char *name;       /* owned; such as "pictures/gate.jpg", relative to the content folder */
@@ -57,9 +59,9 @@ struct info_tour_lines {
 
 struct info_built {
 	struct buffer database; /* the SQLite image */
-	uint32_t part_count, page_count, picture_count, tour_count;
+	uint32_t part_count, page_count, file_count, tour_count;
 	struct info_tour_lines tour_lines[INFO_TOURS_MAX];
-	struct info_picture_file *pictures; /* owned; sorted by hash, each hash once */
+	struct info_file *files; /* owned; sorted by hash, each hash once */
 };
 
 /* A folder as read and checked: everything but where its lists of faces lie. */

@@ -17,6 +17,7 @@
 #include "format/html_elements.h"
 #include "format/html_tags.h"
 #include "pipeline/content/page_compile.h"
+#include "pipeline/content/spoken_text.h"
 
 struct page_check {
 	struct draft *draft;
@@ -312,10 +313,18 @@ static int read_part_pages(struct draft *draft, struct draft_part *part)
 						 "\"page\": false in parts.json"
 					       : "is missing: the page in another language is "
 						 "shown instead");
+		if (rc == 0)
+			rc = spoken_text_read(draft, part, i);
 		if (rc < 0)
 			return rc;
 	}
 	return 0;
+}
+
+static bool has_known_ending(const char *ending)
+{
+	return strcmp(ending, ".html") == 0 || strcmp(ending, ".opus") == 0 ||
+	       strcmp(ending, ".vtt") == 0;
 }
 
 static bool is_expected(const struct draft *draft, const char *name)
@@ -331,7 +340,7 @@ static bool is_expected(const struct draft *draft, const char *name)
 			size_t n = strlen(options->languages[i]);
 
 			if (strncmp(name + size + 1, options->languages[i], n) == 0 &&
-			    strcmp(name + size + 1 + n, ".html") == 0)
+			    has_known_ending(name + size + 1 + n))
 				return true;
 		}
 	}
@@ -354,9 +363,10 @@ static void find_stray_pages(struct draft *draft)
 
 		if (name[0] != '.' && !is_expected(draft, name)) {
 			snprintf(file, sizeof(file), "pages/%s", name);
-			diagnostics_add(draft->diagnostics, 0, file, 0,
-					"belongs to no part and language of this release: name it "
-					"ID.LANGUAGE.html after a part of parts.json");
+			diagnostics_add(
+				draft->diagnostics, 0, file, 0,
+				"belongs to no part and language of this release: name it "
+				"ID.LANGUAGE.html (or .opus, .vtt) after a part of parts.json");
 		}
 		free(entries[i]);
 	}

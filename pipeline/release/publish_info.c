@@ -1,4 +1,4 @@
-/* Publishes the information page: adds the database and its pictures. */
+/* Publishes the information page: adds the database, pictures and spoken texts. */
 #include "pipeline/release/publish_info.h"
 
 #include <errno.h>
@@ -9,15 +9,16 @@
 
 #include "base/log.h"
 
-/* Adds a picture. The file is read again and must still have the hash that the database names. */
-static int add_picture(struct object_store *objects, const char *folder,
-		       const struct info_picture_file *picture, struct page_child *out)
+/* Adds a picture or spoken text. The file is read again and must still have the hash that the
+ * database names. */
+static int add_file(struct object_store *objects, const char *folder, const struct info_file *named,
+		    struct page_child *out)
 {
 	char path[PATH_MAX];
 	struct buffer file;
 	int rc;
 
-	if (snprintf(path, sizeof(path), "%s/%s", folder, picture->name) >= PATH_MAX)
+	if (snprintf(path, sizeof(path), "%s/%s", folder, named->name) >= PATH_MAX)
 		return -ENAMETOOLONG;
 	buffer_init(&file, OBJECT_BYTES_MAX);
 	rc = buffer_read_file(&file, path);
@@ -25,7 +26,7 @@ static int add_picture(struct object_store *objects, const char *folder,
 		rc = object_store_add(objects, buffer_bytes(&file), out);
 	if (rc < 0)
 		log_error("pipeline", "%s: %s", path, strerror(-rc));
-	if (rc == 0 && !hash_equal(out->hash, picture->hash)) {
+	if (rc == 0 && !hash_equal(out->hash, named->hash)) {
 		log_error("pipeline", "%s: changed while it was published; run the command again",
 			  path);
 		rc = -EBADMSG;
@@ -37,7 +38,7 @@ static int add_picture(struct object_store *objects, const char *folder,
 int publish_info(struct object_store *objects, const struct info_built *info, const char *folder,
 		 struct page_child *out)
 {
-	struct page page = { .kind = PAGE_INFO, .child_count = info->picture_count + 1 };
+	struct page page = { .kind = PAGE_INFO, .child_count = info->file_count + 1 };
 	int rc;
 
 	page.children = calloc(page.child_count, sizeof(*page.children));
@@ -49,8 +50,8 @@ int publish_info(struct object_store *objects, const struct info_built *info, co
 			  "%s: the information database has %zu bytes, more than an object may "
 			  "have (%d)",
 			  folder, info->database.size, OBJECT_BYTES_MAX);
-	for (uint32_t i = 0; rc == 0 && i < info->picture_count; i++)
-		rc = add_picture(objects, folder, &info->pictures[i], &page.children[i + 1]);
+	for (uint32_t i = 0; rc == 0 && i < info->file_count; i++)
+		rc = add_file(objects, folder, &info->files[i], &page.children[i + 1]);
 	if (rc == 0)
 		rc = object_store_add_page(objects, &page, out);
 	free(page.children);

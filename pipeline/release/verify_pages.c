@@ -195,9 +195,31 @@ int verify_face_page(struct verify_walk *walk, const struct verify_page *page)
 
 /* ---- information ---- */
 
-static int check_pictures(struct verify_walk *walk, const struct verify_page *page,
-			  const struct info *info)
+/* Whether what is spoken on a part's page in a language is among the children. */
+static int check_spoken(struct verify_walk *walk, const struct map *children, struct info *info,
+			uint32_t part, const char *language)
 {
+	struct info_spoken spoken;
+	int rc = info_spoken(info, part, language, &spoken);
+
+	if (rc == -ENOENT)
+		return 0;
+	if (rc < 0)
+		return rc == -EBADMSG ? diagnostics_add(&walk->report->diagnostics, rc, NULL, 0,
+							"the spoken text of %s in %s is damaged",
+							info_part(info, part)->id, language)
+				      : rc;
+	if (map_get(children, hash_key(spoken.hash)) != MAP_NONE)
+		return 0;
+	return diagnostics_add(&walk->report->diagnostics, -EBADMSG, NULL, 0,
+			       "the spoken text of %s in %s is not in the release",
+			       info_part(info, part)->id, language);
+}
+
+/* Pictures and spoken texts. */
+static int check_files(struct verify_walk *walk, const struct verify_page *page, struct info *info)
+{
+	const uint32_t languages = info_language_count(info);
 	struct map children = { 0 };
 	struct bytes object;
 	int rc = 0;
@@ -205,11 +227,12 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 	for (uint32_t i = 1; rc >= 0 && i < page->page.child_count; i++) {
 		rc = verify_child(walk, page, i, &object);
 		if (rc == 0) {
-			count(&walk->report->pictures, object);
+			count(&walk->report->files, object);
 			rc = map_add(&children, hash_key(page->page.children[i].hash), i);
 		}
 		if (rc == 0)
-			rc = blame_child(walk, page, i, "picture", "is contained twice");
+			rc = blame_child(walk, page, i, "picture or spoken text",
+					 "is contained twice");
 	}
 	for (uint32_t i = 0; rc >= 0 && i < info_picture_count(info); i++) {
 		const struct info_picture *picture = info_picture(info, i);
@@ -220,6 +243,9 @@ static int check_pictures(struct verify_walk *walk, const struct verify_page *pa
 				"the information names %s, which is not in the release",
 				picture->name);
 	}
+	for (uint32_t i = 0; rc >= 0 && i < info_part_count(info) * languages; i++)
+		rc = check_spoken(walk, &children, info, i / languages,
+				  info_language(info, i % languages));
 	map_finish(&children);
 	return rc < 0 ? rc : 0;
 }
@@ -276,7 +302,7 @@ int verify_info_page(struct verify_walk *walk, const struct verify_page *page)
 				      : rc;
 	walk->report->parts = info_part_count(walk->info);
 	rc = check_articles(walk, walk->info);
-	return rc < 0 ? rc : check_pictures(walk, page, walk->info);
+	return rc < 0 ? rc : check_files(walk, page, walk->info);
 }
 
 /* ---- labels ---- */

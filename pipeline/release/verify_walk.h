@@ -9,7 +9,7 @@
 #include "format/tile.h"
 #include "pipeline/release/release_reader.h"
 #include "pipeline/release/verify_report.h"
-#include "storage/info.h"
+#include "storage/info_spoken.h"
 
 /* A page that is still to be verified: where it is, and which kind it must have. */
 struct verify_task {

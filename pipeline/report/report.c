@@ -503,14 +503,14 @@ static void put_samples(FILE *to, const struct report_data *data)
 static void put_storage(FILE *to, const struct report_data *data)
 {
 	const uint64_t all = data->options->publish->release_bytes;
-	const uint64_t known = data->tile_bytes + data->patch_bytes + data->picture_bytes;
+	const uint64_t known = data->tile_bytes + data->patch_bytes + data->file_bytes;
 	const struct {
 		const char *name;
 		uint64_t bytes;
 	} kinds[] = {
 		{ "Tiles: pictures of the scan", data->tile_bytes },
 		{ "Patches: its geometry", data->patch_bytes },
-		{ "Pictures of pages", data->picture_bytes },
+		{ "Pictures and spoken texts of pages", data->file_bytes },
 		{ "Texts, labels, and the pages that name the others",
 		  all > known ? all - known : 0 },
 	};

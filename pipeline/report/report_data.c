@@ -252,8 +252,8 @@ static int read_information(struct report_data *data)
 
 	if (rc < 0)
 		return rc;
-	for (uint32_t i = 0; i < info->picture_count; i++)
-		data->picture_bytes += info->pictures[i].size;
+	for (uint32_t i = 0; i < info->file_count; i++)
+		data->file_bytes += info->files[i].size;
 	return 0;
 }
 

@@ -63,7 +63,7 @@ struct report_data {
 	uint32_t (*face_at)[CUBE_FACES];
 	uint64_t tile_count;
 	/* bytes of the release */
-	uint64_t tile_bytes, patch_bytes, picture_bytes;
+	uint64_t tile_bytes, patch_bytes, file_bytes;
 	struct report_costly costly[REPORT_COSTLY_MAX]; /* the largest first */
 	uint32_t costly_count;
 	struct portrait portraits[REPORT_PICTURES];

@@ -126,11 +126,11 @@ static void make_release(struct release *release)
 
 	memset(release, 0, sizeof(*release));
 	CHECK(info_build(&release->built, &options) == 0);
-	CHECK(release->built.picture_count == PICTURES);
+	CHECK(release->built.file_count == PICTURES);
 	name_object(release, 0, buffer_bytes(&release->built.database));
 	for (uint32_t n = 0; n < PICTURES; n++) {
 		buffer_init(&release->pictures[n], 1 << 20);
-		snprintf(path, sizeof(path), "%s/%s", folder, release->built.pictures[n].name);
+		snprintf(path, sizeof(path), "%s/%s", folder, release->built.files[n].name);
 		CHECK(buffer_read_file(&release->pictures[n], path) == 0);
 		name_object(release, 1 + n, buffer_bytes(&release->pictures[n]));
 	}

@@ -23,7 +23,7 @@ static void gives_back_what_the_folder_says(void **state)
 
 	(void)state;
 	CHECK(build(&built) == 0);
-	CHECK(built.part_count == 3 && built.page_count == 3 && built.picture_count == 2);
+	CHECK(built.part_count == 3 && built.page_count == 3 && built.file_count == 2);
 	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
 	CHECK(info_part_count(info) == 3 && info_language_count(info) == 2);
 	CHECK(strcmp(info_language(info, 1), "km") == 0);
@@ -51,10 +51,10 @@ static void gives_back_what_the_folder_says(void **state)
 	CHECK(info_picture_count(info) == 2);
 	CHECK(info_find_picture(info, "pictures/b.png")->width_px == 20);
 	CHECK(!info_find_picture(info, "pictures/c.png"));
-	for (uint32_t i = 0; i < built.picture_count; i++) {
-		const struct info_picture *found = info_find_picture(info, built.pictures[i].name);
+	for (uint32_t i = 0; i < built.file_count; i++) {
+		const struct info_picture *found = info_find_picture(info, built.files[i].name);
 
-		CHECK(found && hash_equal(found->hash, built.pictures[i].hash));
+		CHECK(found && hash_equal(found->hash, built.files[i].hash));
 	}
 	info_close(info);
 	info_built_finish(&built);

@@ -64,19 +64,19 @@ static void add_info_page(struct object_store *objects, struct bytes body, struc
 	struct page page = { .kind = PAGE_INFO, .children = children };
 	struct info_built built;
 
-	CHECK(info_build(&built, &options) == 0 && built.picture_count < 8);
+	CHECK(info_build(&built, &options) == 0 && built.file_count < 8);
 	add_database(objects, buffer_bytes(&built.database), body, &children[0]);
-	for (uint32_t i = 0; i < built.picture_count; i++) {
+	for (uint32_t i = 0; i < built.file_count; i++) {
 		struct buffer file;
 		char path[300];
 
-		snprintf(path, sizeof(path), "%s/%s", tiny.content, built.pictures[i].name);
+		snprintf(path, sizeof(path), "%s/%s", tiny.content, built.files[i].name);
 		buffer_init(&file, OBJECT_BYTES_MAX);
 		CHECK(buffer_read_file(&file, path) == 0);
 		CHECK(object_store_add(objects, buffer_bytes(&file), &children[i + 1]) == 0);
 		buffer_finish(&file);
 	}
-	page.child_count = built.picture_count + 1;
+	page.child_count = built.file_count + 1;
 	CHECK(object_store_add_page(objects, &page, out) == 0);
 	info_built_finish(&built);
 }
