@@ -18,14 +18,14 @@ fi
 may_include() {
 	case $1 in
 	base) echo ;;
-	format | board | input | health | system) echo base ;;
+	format | board | input | sound | health | system) echo base ;;
 	geometry | ui) echo base format ;;
 	render | storage) echo base format geometry ;;
 	net) echo base format storage ;;
-	app) echo base format geometry board system render ui input storage net ;;
+	app) echo base format geometry board system render ui input sound storage net ;;
 	pipeline) echo base format geometry render storage ;;
 	curator) echo base format geometry render ui storage pipeline ;;
-	tests) echo base format geometry board system render ui input storage net app pipeline curator health ;;
+	tests) echo base format geometry board system render ui input sound storage net app pipeline curator health ;;
 	*) echo ;;
 	esac
 }
