@@ -37,6 +37,7 @@ static void on_release_changed(void *data, const struct exhibit_change *change)
 		{ visitor_on_release, &kiosk->visitor },
 		{ tour_player_on_release, &kiosk->tours },
 		{ back_on_release, &kiosk->back },
+		{ listening_on_release, &kiosk->listening },
 		{ anchors_on_release, &kiosk->anchors },
 		{ eye_on_release, &kiosk->eye },
 		{ forget_textures, kiosk->quads },
@@ -162,7 +163,8 @@ static struct sessions_options sessions_options(struct kiosk *kiosk)
 		.view = { .width_px = viewport_width_px(&kiosk->viewport),
 			  .height_px = viewport_height_px(&kiosk->viewport),
 			  .px_per_mm = kiosk->viewport.px_per_mm,
-			  .language = kiosk->options.language },
+			  .language = kiosk->options.language,
+			  .sound = kiosk->options.loudness > 0 },
 		.download = kiosk->options.download,
 		.eye = &kiosk->eye,
 		.redraw = &kiosk->redraw,
@@ -236,9 +238,10 @@ static void connect_visit(struct kiosk *kiosk)
 		&kiosk->tours,
 		&(struct tour_player_env){ shown, &kiosk->eye, &kiosk->counting, &kiosk->redraw });
 	back_init(&kiosk->back, &(struct back_env){ shown, &kiosk->eye, &kiosk->tours });
-	kiosk->actions =
-		(struct actions){ shown,         &kiosk->eye,  &kiosk->viewport, &kiosk->tours,
-				  &kiosk->tools, &kiosk->back, &kiosk->counting };
+	kiosk->actions = (struct actions){
+		shown,         &kiosk->eye,  &kiosk->viewport, &kiosk->tours,
+		&kiosk->tools, &kiosk->back, &kiosk->counting, &kiosk->listening
+	};
 	visitor_init(&kiosk->visitor,
 		     &(struct visitor_options){ .idle_s = kiosk->options.idle_s,
 						.language = kiosk->options.language,
@@ -413,6 +416,21 @@ static int visitor_step(void *data)
 	return 0;
 }
 
+static int listening_wait(void *data)
+{
+	const struct kiosk *kiosk = data;
+
+	return listening_wait_ms(&kiosk->listening);
+}
+
+static int listening_step(void *data)
+{
+	struct kiosk *kiosk = data;
+
+	listening_turn(&kiosk->listening);
+	return 0;
+}
+
 static int setup_page_wait(void *data)
 {
 	const struct kiosk *kiosk = data;
@@ -524,6 +542,7 @@ static int start_loop(struct kiosk *kiosk)
 		{ "panel", panel_wait, panel_step, kiosk },
 		{ "releases", releases_wait, releases_step, kiosk },
 		{ "visitor", visitor_wait, visitor_step, kiosk },
+		{ "listening", listening_wait, listening_step, kiosk },
 		{ "set-up page", setup_page_wait, setup_page_step, kiosk },
 		{ "capture", capture_wait, capture_step, kiosk },
 		{ "frame", frame_wait, frame_step, kiosk },
@@ -561,8 +580,12 @@ int kiosk_start(struct kiosk *kiosk)
 	if (rc == 0) {
 		connect_visit(kiosk);
 		connect_panel(kiosk);
-		rc = start_state(kiosk);
+		rc = listening_init(&kiosk->listening,
+				    &(struct listening_env){ kiosk->actions.shown, &kiosk->redraw },
+				    (uint32_t)kiosk->options.loudness);
 	}
+	if (rc == 0)
+		rc = start_state(kiosk);
 	if (rc == 0)
 		rc = capture_create(&kiosk->capture, &kiosk->options, &kiosk->redraw);
 	if (rc == 0)
@@ -589,6 +612,7 @@ void kiosk_stop(struct kiosk *kiosk)
 		close(kiosk->signal_fd);
 	metrics_socket_destroy(kiosk->metrics);
 	capture_destroy(kiosk->capture);
+	listening_finish(&kiosk->listening);
 	releases_finish(&kiosk->releases);
 	counting_finish(&kiosk->counting);
 	setup_page_finish(&kiosk->setup_page);

@@ -58,6 +58,7 @@ struct kiosk {
 	struct tools tools;
 	struct back back;
 	struct counting counting;
+	struct listening listening;
 
 	struct setup_page setup_page;
 	struct capture *capture; /* NULL: normal operation */

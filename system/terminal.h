@@ -73,7 +73,8 @@ struct terminal {
 	/* [usb] */
 	uint32_t usb_allow; /* bits of enum terminal_usb */
 	/* [visit] */
-	uint32_t idle_s; /* seconds without a touch before the visitor is asked; 5 .. 3600 */
+	uint32_t idle_s;   /* seconds without a touch before the visitor is asked; 5 .. 3600 */
+	uint32_t loudness; /* of spoken texts, up to 100; 0: they are not offered */
 };
 
 /* The values that hold for everything the file does not set. */

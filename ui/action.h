@@ -10,6 +10,7 @@ enum overlay_action_kind {
 	OVERLAY_CLOSE_CARD,
 	OVERLAY_CLOSE_PAGE,
 	OVERLAY_WIDEN_PAGE, /* toggle the whole-panel page (overlay_page_is_wide) */
+	OVERLAY_LISTEN,     /* begin or end the spoken text of the page */
 	OVERLAY_LANGUAGE,   /* set language */
 	OVERLAY_LANGUAGES,  /* toggle their menu (overlay_choosing_language) */
 	OVERLAY_LINK,       /* link: a link's target, a part's id or "tour:" and a tour's id */

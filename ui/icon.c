@@ -226,6 +226,27 @@ static void draw_pause(cairo_t *c)
 	line(c, 0.4, -0.7, 0.4, 0.7);
 }
 
+static void draw_listen(cairo_t *c)
+{
+	cairo_move_to(c, -0.95, -0.3);
+	cairo_line_to(c, -0.55, -0.3);
+	cairo_line_to(c, -0.1, -0.75);
+	cairo_line_to(c, -0.1, 0.75);
+	cairo_line_to(c, -0.55, 0.3);
+	cairo_line_to(c, -0.95, 0.3);
+	cairo_close_path(c);
+	for (int wave = 1; wave <= 2; wave++) {
+		cairo_new_sub_path(c);
+		cairo_arc(c, -0.1, 0, 0.2 + 0.4 * wave, -0.75, 0.75);
+	}
+}
+
+static void draw_stop(cairo_t *c)
+{
+	cairo_rectangle(c, -0.6, -0.6, 1.2, 1.2);
+	cairo_fill_preserve(c);
+}
+
 static void draw_backspace(cairo_t *c)
 {
 	cairo_move_to(c, -1.2, 0);
@@ -252,6 +273,7 @@ void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size
 		[ICON_WIDEN] = draw_widen,     [ICON_NARROW] = draw_narrow,
 		[ICON_LANGUAGES] = draw_globe, [ICON_RETURN] = draw_return,
 		[ICON_PAUSE] = draw_pause,     [ICON_BACKSPACE] = draw_backspace,
+		[ICON_LISTEN] = draw_listen,   [ICON_STOP] = draw_stop,
 	};
 
 	cairo_save(context);

@@ -21,6 +21,8 @@ enum icon {
 	ICON_REACH, /* a person in a wheelchair */
 	ICON_TOUR,  /* a path from stop to stop */
 	ICON_PAUSE,
+	ICON_LISTEN, /* a loudspeaker */
+	ICON_STOP,
 	ICON_LIGHT,   /* a lamp low beside a relief */
 	ICON_SECTION, /* a solid that is cut */
 	ICON_PUSH,    /* two arrows, to and fro */

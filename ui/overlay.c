@@ -297,6 +297,16 @@ int overlay_page(const struct overlay *overlay)
 	return overlay->page.part;
 }
 
+void overlay_offer_spoken(struct overlay *overlay, bool offered)
+{
+	page_view_offer_spoken(&overlay->page, offered && overlay->page.part >= 0);
+}
+
+void overlay_show_spoken(struct overlay *overlay, const struct overlay_spoken *spoken)
+{
+	page_view_show_spoken(&overlay->page, overlay->page.part >= 0 ? spoken : NULL);
+}
+
 void overlay_widen_page(struct overlay *overlay, bool on)
 {
 	const struct screen screen = overlay_screen(overlay);

@@ -21,7 +21,7 @@
 
 enum {
 	OVERLAY_LAYERS_MAX = 256,  /* in one frame */
-	OVERLAY_BITMAPS_MAX = 128, /* bitmap ids are below this */
+	OVERLAY_BITMAPS_MAX = 136, /* bitmap ids are below this */
 };
 
 struct overlay_options {
@@ -83,6 +83,12 @@ bool overlay_page_is_wide(const struct overlay *overlay);
 float overlay_read(const struct overlay *overlay);
 /* Scrolls to such a share. */
 void overlay_read_from(struct overlay *overlay, float share);
+
+/* Offers the spoken text of the open page with a button in its head; not offered when a page is
+ * opened. */
+void overlay_offer_spoken(struct overlay *overlay, bool offered);
+/* Shows that it is spoken, and which words; copied. NULL: it is not. A page that closes ends it. */
+void overlay_show_spoken(struct overlay *overlay, const struct overlay_spoken *spoken);
 
 /* The help: how to touch the model, in pictures and words. It is on at first; the app turns it off
  * at the first touch. */

@@ -37,6 +37,12 @@ struct overlay_tour_state {
 	bool paused;
 };
 
+/* A spoken text that is heard. */
+struct overlay_spoken {
+	const char *words; /* that are said now; "": not known, or a pause */
+	float share;       /* of the text that was heard, 0..1 */
+};
+
 /* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
 enum overlay_tool { OVERLAY_TOOL_LIGHT = 1, OVERLAY_TOOL_SECTION = 2 };
 

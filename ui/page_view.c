@@ -54,6 +54,7 @@ void page_view_init(struct page_view *view, const struct theme *theme, int heigh
 		sprites_init(&view->strips[i].sprite, 1, next_id);
 	sprites_init(&view->head, 1, next_id);
 	sprites_init(&view->foot, 1, next_id);
+	spoken_view_init(&view->spoken, next_id);
 	forget_strips(view);
 	draw_foot(&view->foot, theme);
 }
@@ -65,6 +66,7 @@ void page_view_finish(struct page_view *view)
 		sprites_finish(&view->strips[i].sprite, 1);
 	sprites_finish(&view->head, 1);
 	sprites_finish(&view->foot, 1);
+	spoken_view_finish(&view->spoken);
 }
 
 /* ---- layout ---- */
@@ -112,6 +114,31 @@ struct rect page_view_widen_button(const struct page_view *view, const struct sc
 			      side_px, side_px };
 }
 
+struct rect page_view_listen_button(const struct page_view *view, const struct screen *screen)
+{
+	const struct rect close = page_view_close_button(view, screen),
+			  widen = page_view_widen_button(view, screen);
+	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px,
+		  side_px = screen_px(screen, THEME_TARGET_MM);
+
+	if (!view->is_spoken)
+		return (struct rect){ 0 };
+	return (struct rect){ end_px - screen_px(screen, THEME_GAP_MM) - side_px, close.y_px,
+			      side_px, side_px };
+}
+
+void page_view_offer_spoken(struct page_view *view, bool offered)
+{
+	view->head_dirty |= offered != view->is_spoken;
+	view->is_spoken = offered;
+}
+
+void page_view_show_spoken(struct page_view *view, const struct overlay_spoken *spoken)
+{
+	view->head_dirty |= view->spoken.fade.on != (spoken != NULL);
+	spoken_view_set(&view->spoken, spoken);
+}
+
 int page_view_scroll_most(const struct page_view *view, const struct screen *screen)
 {
 	int most_px = view->article ? article_layout_height_px(view->article) -
@@ -145,6 +172,8 @@ int page_view_open(struct page_view *view, const struct screen *screen, int part
 	view->article = article;
 	view->part = part;
 	view->fade.on = true;
+	view->is_spoken = false;
+	spoken_view_set(&view->spoken, NULL);
 	view->scroll = (struct scroll){ 0 };
 	forget_strips(view);
 	view->head_dirty = true;
@@ -155,13 +184,14 @@ void page_view_close(struct page_view *view)
 {
 	view->part = -1;
 	view->fade.on = false;
+	spoken_view_set(&view->spoken, NULL);
 }
 
 void page_view_drop(struct page_view *view)
 {
 	article_layout_destroy(view->article);
 	view->article = NULL;
-	view->fade = (struct fade){ 0 };
+	view->fade = view->spoken.fade = (struct fade){ 0 };
 	view->part = -1;
 	view->wide = false;
 }
@@ -234,6 +264,8 @@ struct overlay_action page_view_tap(const struct page_view *view, const struct s
 			action.kind = OVERLAY_CLOSE_PAGE;
 		else if (rect_holds(page_view_widen_button(view, screen), x_px, y_px))
 			action.kind = OVERLAY_WIDEN_PAGE;
+		else if (rect_holds(page_view_listen_button(view, screen), x_px, y_px))
+			action.kind = OVERLAY_LISTEN;
 		return action;
 	}
 	if (!rect_holds(window, x_px, y_px))
@@ -259,8 +291,11 @@ static void draw_head(struct page_view *view, const struct screen *screen, const
 	const struct rect head = head_rect(view, screen);
 	const struct rect close = page_view_close_button(view, screen);
 	const struct rect widen = page_view_widen_button(view, screen);
+	const struct rect listen = page_view_listen_button(view, screen);
 	const int left_px = screen_px(screen, MARGIN_MM);
-	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px;
+	const int end_px = listen.width_px > 0  ? listen.x_px
+			   : widen.width_px > 0 ? widen.x_px
+						: close.x_px;
 	const int room_px = end_px - head.x_px - left_px - screen_px(screen, THEME_GAP_MM);
 	cairo_t *context = sprite_begin(&view->head, head.width_px, head.height_px);
 	PangoLayout *layout;
@@ -280,6 +315,11 @@ static void draw_head(struct page_view *view, const struct screen *screen, const
 		icon_draw(context, view->wide ? ICON_NARROW : ICON_WIDEN,
 			  widen.x_px - head.x_px + widen.width_px / 2.0,
 			  widen.y_px - head.y_px + widen.height_px / 2.0, screen_px(screen, 4.5f));
+	if (listen.width_px > 0)
+		icon_draw(context, view->spoken.fade.on ? ICON_STOP : ICON_LISTEN,
+			  listen.x_px - head.x_px + listen.width_px / 2.0,
+			  listen.y_px - head.y_px + listen.height_px / 2.0,
+			  screen_px(screen, view->spoken.fade.on ? 4 : 5));
 	sprite_end(&view->head, context);
 }
 
@@ -337,6 +377,8 @@ bool page_view_update(struct page_view *view, const struct screen *screen, const
 		draw_head(view, screen, title);
 	view->head_dirty = false;
 	moving = fade_advance(&view->fade, step_ms * FADE_MS / PAGE_FADE_MS);
+	moving |=
+		spoken_view_update(&view->spoken, screen, page_view_window(view, screen), step_ms);
 	moving |= scroll_advance(&view->scroll, page_view_scroll_most(view, screen), step_ms);
 	if (!view->fade.on && view->fade.alpha == 0)
 		page_view_drop(view);
@@ -374,4 +416,5 @@ void page_view_layers(const struct page_view *view, const struct screen *screen,
 			(float)window.width_px, foot_px);
 	paper_add_mark(paper, layers, slide, window, view->scroll.px, most_px);
 	paper_add_at(layers, &view->head, slide, paper_head(screen, page));
+	spoken_view_layers(&view->spoken, screen, window, layers);
 }

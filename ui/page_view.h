@@ -10,6 +10,7 @@
 #include "ui/paper.h"
 #include "ui/screen.h"
 #include "ui/scroll.h"
+#include "ui/spoken_view.h"
 
 enum { PAGE_STRIPS = 16 };
 
@@ -30,6 +31,8 @@ struct page_view {
 	struct page_view_strip strips[PAGE_STRIPS];
 	struct scroll scroll;
 	struct sprite head, foot; /* foot: text fades out if there is more below */
+	bool is_spoken;           /* the page has a spoken text, which can be heard */
+	struct spoken_view spoken;
 };
 
 /* height_px is the panel's. */
@@ -55,6 +58,11 @@ void page_view_lay_out(struct page_view *view, const struct screen *screen);
 /* A picture arrived: draws the strips again from there on. */
 void page_view_picture_arrived(struct page_view *view, const char *name);
 
+/* Whether the page has a spoken text that can be heard. */
+void page_view_offer_spoken(struct page_view *view, bool offered);
+/* Shows what is spoken now; copied. NULL: nothing. */
+void page_view_show_spoken(struct page_view *view, const struct overlay_spoken *spoken);
+
 /* The share of the page that is above the visible part, 0..1; 0 without a page. */
 float page_view_read(const struct page_view *view);
 /* Scrolls to such a share. */
@@ -69,6 +77,8 @@ struct rect page_view_window(const struct page_view *view, const struct screen *
 struct rect page_view_close_button(const struct page_view *view, const struct screen *screen);
 /* Beside the close control; empty if the page cannot be widened. */
 struct rect page_view_widen_button(const struct page_view *view, const struct screen *screen);
+/* Beside these; empty if the page has no spoken text. */
+struct rect page_view_listen_button(const struct page_view *view, const struct screen *screen);
 /* Returns what a tap on the open page means. */
 struct overlay_action page_view_tap(const struct page_view *view, const struct screen *screen,
 				    float x_px, float y_px);

@@ -10,6 +10,7 @@
 
 #include "app/visit/presence.h"
 #include "base/log.h"
+#include "sound/speaker.h"
 
 static const char help_text[] =
 	"gopura-kiosk: shows a temple on a touch panel\n"
@@ -47,6 +48,8 @@ static const char help_text[] =
 	"  --shift              shift the picture by a pixel now and then, against burn-in\n"
 	"  --idle-s SECONDS     time without a touch before the visitor is asked whether anybody is\n"
 	"                       still there, 5 to 3600 (default: 60)\n"
+	"  --loudness N         how loud spoken texts are, 1 to 100; 0: they are not offered (default:\n"
+	"                       as gopura.conf says, else 0; docs/sound.md)\n"
 	"  --language CODE      language at the start of a visit, such as km\n"
 	"  --locale DIR         catalogues of the kiosk's own texts (default: locale beside this\n"
 	"                       program, otherwise /usr/share/locale)\n"
@@ -114,6 +117,7 @@ enum {
 	OPTION_HOURS,
 	OPTION_WAKE,
 	OPTION_IDLE,
+	OPTION_LOUDNESS,
 	OPTION_SHIFT,
 	OPTION_SELF_TEST,
 	OPTION_SAFE_PAGE,
@@ -153,6 +157,7 @@ static const struct option long_options[] = {
 	{ "hours", required_argument, NULL, OPTION_HOURS },
 	{ "wake-min", required_argument, NULL, OPTION_WAKE },
 	{ "idle-s", required_argument, NULL, OPTION_IDLE },
+	{ "loudness", required_argument, NULL, OPTION_LOUDNESS },
 	{ "shift", no_argument, NULL, OPTION_SHIFT },
 	{ "self-test", no_argument, NULL, OPTION_SELF_TEST },
 	{ "safe-page", no_argument, NULL, OPTION_SAFE_PAGE },
@@ -287,6 +292,8 @@ static bool set_value(struct options *o, int option, const char *text)
 		return parse_whole(text, 0, 24 * 60, &o->wake_min);
 	case OPTION_IDLE:
 		return parse_whole(text, PRESENCE_IDLE_LEAST_S, PRESENCE_IDLE_MOST_S, &o->idle_s);
+	case OPTION_LOUDNESS:
+		return parse_whole(text, 0, SPEAKER_LOUDNESS_MAX, &o->loudness);
 	case OPTION_SHIFT:
 		o->shift = true;
 		return true;
@@ -325,6 +332,7 @@ enum options_result options_parse(struct options *out, int argc, char **argv)
 
 	*out = (struct options){ .mode = SCENE_LUMIGRAPH,
 				 .wake_min = -1,
+				 .loudness = -1,
 				 .boards_dir = "/usr/share/gopura/board" };
 	hours_always(&out->hours);
 	while ((option = getopt_long(argc, argv, "", long_options, &which)) != -1) {

@@ -51,6 +51,7 @@ struct options {
 	int wake_min; /* minutes that a touch keeps it on outside them; 0: it does not; -1: as
 			 gopura.conf says */
 	int idle_s;   /* seconds without a touch until a visitor is asked; 0: as gopura.conf says */
+	int loudness; /* of spoken texts, up to 100; 0: none; -1: as gopura.conf says */
 	bool shift;   /* shift the picture by a pixel now and then */
 	bool quit_after_replay;
 	bool safe_page; /* run app/modes/safe_mode.h instead of the kiosk */

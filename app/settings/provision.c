@@ -134,6 +134,8 @@ int provision_read(struct provision *provision, struct options *options, struct 
 		merge(provision, options);
 	if (options->wake_min < 0)
 		options->wake_min = (int)provision->terminal.wake_min;
+	if (options->loudness < 0)
+		options->loudness = (int)provision->terminal.loudness;
 	if (options->idle_s == 0)
 		options->idle_s = (int)provision->terminal.idle_s;
 	rc = read_profile(provision, options, profile);

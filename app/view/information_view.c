@@ -38,6 +38,8 @@ struct information_view {
 	struct buffer page_bytes;      /* the bytes that page.payload points into */
 
 	struct information_view_picture pictures[PICTURES_MAX]; /* indexed like info_picture */
+	struct hash spoken_hash; /* of the spoken text that was asked for last; zero: none */
+	struct buffer spoken;    /* its bytes; empty: they have not arrived */
 	uint32_t turn;
 };
 
@@ -54,6 +56,7 @@ int information_view_create(struct information_view **out,
 		snprintf(view->language, sizeof(view->language), "%s", options->language);
 	view->options.language = NULL;
 	buffer_init(&view->page_bytes, PAGE_BYTES_MAX);
+	buffer_init(&view->spoken, INFO_SPOKEN_BYTES_MAX);
 	*out = view;
 	return 0;
 }
@@ -74,6 +77,7 @@ void information_view_destroy(struct information_view *view)
 	forget_pictures(view);
 	page_finish(&view->page);
 	buffer_finish(&view->page_bytes);
+	buffer_finish(&view->spoken);
 	free(view);
 }
 
@@ -180,6 +184,43 @@ static bool give_picture(struct information_view *view, struct hash hash, struct
 	return ours;
 }
 
+/* ---- spoken texts */
+
+static bool give_spoken(struct information_view *view, struct hash hash, struct bytes object)
+{
+	if (hash_is_zero(view->spoken_hash) || !hash_equal(view->spoken_hash, hash))
+		return false;
+	if (view->spoken.size == 0)
+		buffer_put(&view->spoken, object.data, object.size);
+	return true;
+}
+
+static void forget_spoken(struct information_view *view)
+{
+	view->spoken_hash = (struct hash){ 0 };
+	buffer_finish(&view->spoken);
+	buffer_init(&view->spoken, INFO_SPOKEN_BYTES_MAX);
+}
+
+int information_view_spoken(struct information_view *view, struct info_spoken *spoken,
+			    struct bytes *bytes)
+{
+	const int part = view->overlay ? overlay_page(view->overlay) : -1;
+	int rc = view->info && part >= 0
+			 ? info_spoken(view->info, (uint32_t)part, view->language, spoken)
+			 : -ENOENT;
+
+	*bytes = (struct bytes){ 0 };
+	if (rc < 0)
+		return rc;
+	if (!hash_equal(view->spoken_hash, spoken->hash)) {
+		forget_spoken(view);
+		view->spoken_hash = spoken->hash;
+	}
+	*bytes = buffer_bytes(&view->spoken);
+	return view->spoken.error;
+}
+
 /* ---- the database */
 
 static int tell_parts(struct information_view *view)
@@ -255,6 +296,7 @@ static void give_database(struct information_view *view, struct bytes object)
 	info_close(view->info);
 	view->info = info;
 	forget_pictures(view);
+	forget_spoken(view);
 	snprintf(view->language, sizeof(view->language), "%s",
 		 info_nearest_language(info, view->language));
 	rc = create_overlay(view);
@@ -289,7 +331,7 @@ bool information_view_give(struct information_view *view, struct hash hash, stru
 		give_database(view, object);
 		return true;
 	}
-	return give_picture(view, hash, object);
+	return give_spoken(view, hash, object) || give_picture(view, hash, object);
 }
 
 static struct message_want child_want(const struct information_view *view, uint32_t child)
@@ -301,6 +343,16 @@ static struct message_want child_want(const struct information_view *view, uint3
 		.size = view->page.children[child].size,
 		.priority = MESSAGE_PRIORITY_INDEX / 2,
 	};
+}
+
+/* Adds the child of the info page with that name. Returns how many there are then. */
+static uint32_t add_want(const struct information_view *view, struct hash hash,
+			 struct message_want *out, uint32_t count, uint32_t most)
+{
+	for (uint32_t c = 1; c < view->page.child_count && count < most; c++)
+		if (hash_equal(view->page.children[c].hash, hash))
+			out[count++] = child_want(view, c);
+	return count;
 }
 
 uint32_t information_view_wants(const struct information_view *view, struct message_want *out,
@@ -322,15 +374,11 @@ uint32_t information_view_wants(const struct information_view *view, struct mess
 	}
 	if (view->page.child_count > 0 && !view->database_here)
 		out[count++] = child_want(view, 0);
-	for (uint32_t i = 0; view->info && i < info_picture_count(view->info); i++) {
-		const struct hash hash = info_picture(view->info, i)->hash;
-
-		if (i >= PICTURES_MAX || !view->pictures[i].wanted)
-			continue;
-		for (uint32_t c = 1; c < view->page.child_count && count < most; c++)
-			if (hash_equal(view->page.children[c].hash, hash))
-				out[count++] = child_want(view, c);
-	}
+	if (!hash_is_zero(view->spoken_hash) && view->spoken.size == 0)
+		count = add_want(view, view->spoken_hash, out, count, most);
+	for (uint32_t i = 0; view->info && i < info_picture_count(view->info); i++)
+		if (i < PICTURES_MAX && view->pictures[i].wanted)
+			count = add_want(view, info_picture(view->info, i)->hash, out, count, most);
 	return count;
 }
 
@@ -369,6 +417,7 @@ void information_view_set_language(struct information_view *view, const char *la
 
 bool information_view_open_page(struct information_view *view, uint32_t part)
 {
+	struct info_spoken spoken;
 	struct bytes article;
 	int rc = info_page(view->info, part, view->language, &article, NULL);
 
@@ -378,6 +427,9 @@ bool information_view_open_page(struct information_view *view, uint32_t part)
 	if (rc < 0 && rc != -ENOENT)
 		log_error("app", "content bug: page of %s: %s", info_part(view->info, part)->id,
 			  strerror(-rc));
+	if (rc == 0 && view->options.sound)
+		overlay_offer_spoken(view->overlay,
+				     info_spoken(view->info, part, view->language, &spoken) == 0);
 	return rc == 0;
 }
 

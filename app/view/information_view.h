@@ -6,7 +6,7 @@
 #include "format/message.h"
 #include "format/root_page.h"
 #include "render/scene/scene.h"
-#include "storage/info.h"
+#include "storage/info_spoken.h"
 #include "ui/overlay.h"
 
 struct information_view;
@@ -15,6 +15,7 @@ struct information_view_options {
 	int width_px, height_px; /* of the picture as the visitor sees it */
 	float px_per_mm;         /* 0: estimated */
 	const char *language;    /* copied; NULL: the first language of the release */
+	bool sound;              /* spoken texts are offered */
 };
 
 /* Creates a view without a release. *out is owned by the caller; it is NULL on failure. Returns 0
@@ -65,5 +66,11 @@ void information_view_viewpoint(const struct information_view *view, uint32_t pa
 /* Opens a part's page beside the model. Returns false if there is none, or it cannot be shown
  * (logged). */
 bool information_view_open_page(struct information_view *view, uint32_t part);
+
+/* Finds the spoken text of the open page, as info_spoken, and asks for its object. Returns its
+ * bytes; empty: they have not arrived. *spoken is borrowed until the next call, and so are the
+ * bytes. -ENOENT: there is none, or no page is open. Other errors as of info_spoken. */
+must_check int information_view_spoken(struct information_view *view, struct info_spoken *spoken,
+				       struct bytes *bytes);
 
 #endif

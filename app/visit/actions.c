@@ -66,6 +66,7 @@ void actions_show_part_at(const struct actions *actions, float x_px, float y_px)
 {
 	const int part = part_under(actions, x_px, y_px);
 
+	listening_end(actions->listening);
 	if (part >= 0 && part != overlay_card(overlay_of(actions)))
 		back_note(actions->back);
 	show_card(actions, part);
@@ -75,6 +76,7 @@ void actions_open_part_at(const struct actions *actions, float x_px, float y_px)
 {
 	const int part = part_under(actions, x_px, y_px);
 
+	listening_end(actions->listening);
 	if (part < 0)
 		return;
 	back_note(actions->back);
@@ -241,6 +243,12 @@ static void do_press_tool(const struct actions *actions, const struct overlay_ac
 		    action->kind == OVERLAY_LIGHT ? OVERLAY_TOOL_LIGHT : OVERLAY_TOOL_SECTION);
 }
 
+static void do_listen(const struct actions *actions, const struct overlay_action *action)
+{
+	(void)action;
+	listening_press(actions->listening);
+}
+
 static void do_show_picture(const struct actions *actions, const struct overlay_action *action)
 {
 	overlay_show_picture(overlay_of(actions), action->picture);
@@ -293,6 +301,7 @@ static const struct {
 	[OVERLAY_CLOSE_CARD] = { do_close_card, 0 },
 	[OVERLAY_CLOSE_PAGE] = { do_close_page, 0 },
 	[OVERLAY_WIDEN_PAGE] = { do_widen_page, 0 },
+	[OVERLAY_LISTEN] = { do_listen, HALTS_TOUR },
 	[OVERLAY_LANGUAGE] = { do_set_language, 0 },
 	[OVERLAY_LANGUAGES] = { do_choose_language, 0 },
 	[OVERLAY_LINK] = { do_follow_link, STEP | HALTS_TOUR },
@@ -337,6 +346,8 @@ void actions_carry_out(const struct actions *actions, const struct overlay_actio
 		back_note(actions->back);
 	if (table[action->kind].is & HALTS_TOUR)
 		tour_player_halt(actions->tours);
+	if (action->kind != OVERLAY_LISTEN && action->kind != OVERLAY_SWALLOWED)
+		listening_end(actions->listening);
 	if (action->kind != OVERLAY_LANGUAGES && action->kind != OVERLAY_NONE)
 		overlay_show_languages(overlay, false);
 	if (action->kind == OVERLAY_BACK && chose_language)

@@ -5,6 +5,7 @@
 
 #include "app/visit/back.h"
 #include "app/visit/counting.h"
+#include "app/visit/listening.h"
 #include "app/visit/tools.h"
 #include "app/visit/tour_player.h"
 
@@ -17,6 +18,7 @@ struct actions {
 	struct tools *tools;
 	struct back *back;
 	struct counting *counting;
+	struct listening *listening;
 };
 
 /* All functions need an overlay. Positions are in the visitor's pixels. */

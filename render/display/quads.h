@@ -8,7 +8,7 @@
 
 #include "base/compiler.h"
 
-enum { QUADS_TEXTURES_MAX = 129 };
+enum { QUADS_TEXTURES_MAX = 137 };
 
 struct quads;
 

@@ -34,7 +34,8 @@ static void bare_options(void)
 	options = (struct options){ .conf_paths = { none_path, conf_path },
 				    .conf_count = 2,
 				    .boards_dir = "board",
-				    .wake_min = -1 };
+				    .wake_min = -1,
+				    .loudness = -1 };
 	hours_always(&options.hours);
 }
 

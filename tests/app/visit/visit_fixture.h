@@ -10,7 +10,7 @@
 #include "storage/info_tools.h"
 #include "tests/pipeline/content/info_folder.h"
 
-enum { S = 1000, IDLE_S = 60 };
+enum { S = 1000, IDLE_S = 60, CHILDREN_MAX = 16 };
 
 static int64_t now_ms;
 
@@ -44,6 +44,7 @@ static struct {
 	struct tools tools;
 	struct tour_player tours;
 	struct back back;
+	struct listening listening;
 	struct actions actions;
 	struct visitor visitor;
 	int ended; /* visits */
@@ -78,9 +79,9 @@ static inline void write_tour(const char *id, bool attract)
 static inline void show_words(void)
 {
 	static const char *const languages[] = { "en", "km" };
-	const struct information_view_options options = { .width_px = 1920,
-							  .height_px = 1080,
-							  .px_per_mm = 4 };
+	const struct information_view_options options = {
+		.width_px = 1920, .height_px = 1080, .px_per_mm = 4, .sound = true
+	};
 	struct diagnostics diagnostics = { 0 };
 	const struct info_build_options build_options = { .folder = folder,
 							  .languages = languages,
@@ -88,8 +89,8 @@ static inline void show_words(void)
 							  .tools = INFO_TOOL_LIGHT |
 								   INFO_TOOL_SECTION,
 							  .diagnostics = &diagnostics };
-	struct page_child root_children[ROOT_CHILD_COUNT], child;
-	struct page page = { .kind = PAGE_INFO, .child_count = 1, .children = &child };
+	struct page_child root_children[ROOT_CHILD_COUNT], children[CHILDREN_MAX];
+	struct page page = { .kind = PAGE_INFO, .children = children };
 	struct page root = { .kind = PAGE_ROOT,
 			     .child_count = ROOT_CHILD_COUNT,
 			     .children = root_children };
@@ -97,8 +98,13 @@ static inline void show_words(void)
 	struct buffer file;
 
 	CHECK(info_build(&built, &build_options) == 0);
-	child = (struct page_child){ .hash = hash_of(buffer_bytes(&built.database)),
-				     .size = (uint32_t)built.database.size };
+	CHECK(built.file_count < CHILDREN_MAX);
+	page.child_count = 1 + built.file_count;
+	children[0] = (struct page_child){ .hash = hash_of(buffer_bytes(&built.database)),
+					   .size = (uint32_t)built.database.size };
+	for (uint32_t i = 0; i < built.file_count; i++)
+		children[1 + i] = (struct page_child){ .hash = built.files[i].hash,
+						       .size = built.files[i].size };
 	buffer_init(&file, PAGE_BYTES_MAX);
 	page_encode(&file, &page);
 	for (int i = 0; i < ROOT_CHILD_COUNT; i++)
@@ -109,7 +115,8 @@ static inline void show_words(void)
 	information_view_open(visit.shown.view, (struct hash){ { 7 } }, &root);
 	CHECK(information_view_give(visit.shown.view, root_children[ROOT_CHILD_INFO].hash,
 				    buffer_bytes(&file)));
-	CHECK(information_view_give(visit.shown.view, child.hash, buffer_bytes(&built.database)));
+	CHECK(information_view_give(visit.shown.view, children[0].hash,
+				    buffer_bytes(&built.database)));
 	CHECK(words() != NULL);
 	buffer_finish(&file);
 	info_built_finish(&built);
@@ -159,14 +166,18 @@ static inline int begin_visit(void **state)
 	tour_player_init(&visit.tours, &(struct tour_player_env){ &visit.shown, &visit.eye,
 								  &visit.counting, &visit.redraw });
 	back_init(&visit.back, &(struct back_env){ &visit.shown, &visit.eye, &visit.tours });
-	visit.actions = (struct actions){ &visit.shown, &visit.eye,  &visit.viewport, &visit.tours,
-					  &visit.tools, &visit.back, &visit.counting };
+	CHECK(listening_init(&visit.listening,
+			     &(struct listening_env){ &visit.shown, &visit.redraw }, 50) == 0);
+	visit.actions =
+		(struct actions){ &visit.shown, &visit.eye,  &visit.viewport, &visit.tours,
+				  &visit.tools, &visit.back, &visit.counting, &visit.listening };
 	begin_visitor(NULL, false);
 	return 0;
 }
 
 static inline int end_visit(void **state)
 {
+	listening_finish(&visit.listening);
 	counting_finish(&visit.counting);
 	exhibit_close(&visit.shown);
 	return tear_down(state);
