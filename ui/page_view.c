@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "ui/icon.h"
+#include "ui/translate.h"
 
 #define MARGIN_MM 8.0f /* of the title in the head */
 #define FOOT_MM   8.0f
@@ -118,13 +119,12 @@ struct rect page_view_listen_button(const struct page_view *view, const struct s
 {
 	const struct rect close = page_view_close_button(view, screen),
 			  widen = page_view_widen_button(view, screen);
-	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px,
-		  side_px = screen_px(screen, THEME_TARGET_MM);
+	const int end_px = widen.width_px > 0 ? widen.x_px : close.x_px;
 
 	if (!view->is_spoken)
 		return (struct rect){ 0 };
-	return (struct rect){ end_px - screen_px(screen, THEME_GAP_MM) - side_px, close.y_px,
-			      side_px, side_px };
+	return (struct rect){ end_px - screen_px(screen, THEME_GAP_MM) - close.width_px, close.y_px,
+			      close.width_px, close.height_px };
 }
 
 void page_view_offer_spoken(struct page_view *view, bool offered)
@@ -285,6 +285,35 @@ struct overlay_action page_view_tap(const struct page_view *view, const struct s
 
 /* ---- drawing ---- */
 
+/* The control that begins the spoken text, or ends it: a line around words and a picture. */
+static void draw_listen(cairo_t *context, const struct page_view *view, const struct screen *screen,
+			struct rect listen)
+{
+	const struct theme *theme = screen->theme;
+	const bool speaks = view->spoken.fade.on;
+	/* Translators: buttons that begin and end a spoken text. */
+	const char *text =
+		speaks ? translate(theme->language, "Stop") : translate(theme->language, "Listen");
+	const int icon_px = screen_px(screen, speaks ? 3.0f : 3.6f);
+	PangoLayout *layout = theme_layout(theme, TEXT_BUTTON, text, -1);
+	int label_px, text_px;
+	double x;
+
+	theme_limit_lines(layout, listen.width_px - 3 * icon_px, 1);
+	pango_layout_get_pixel_size(layout, &label_px, &text_px);
+	x = (listen.width_px - label_px - 2 * icon_px) / 2.0;
+	theme_rounded(context, 0.5, 0.5, listen.width_px - 1, listen.height_px - 1,
+		      (listen.height_px - 1) / 2.0);
+	theme_set_source(context, theme_accent, 1);
+	cairo_set_line_width(context, 1);
+	cairo_stroke(context);
+	cairo_move_to(context, x, (listen.height_px - text_px) / 2.0);
+	pango_cairo_show_layout(context, layout);
+	icon_draw(context, speaks ? ICON_STOP : ICON_LISTEN, x + label_px + 1.5 * icon_px,
+		  listen.height_px / 2.0, icon_px);
+	g_object_unref(layout);
+}
+
 /* The head of a page: the part's name in small type, a line, and the controls. */
 static void draw_head(struct page_view *view, const struct screen *screen, const char *title)
 {
@@ -315,11 +344,12 @@ static void draw_head(struct page_view *view, const struct screen *screen, const
 		icon_draw(context, view->wide ? ICON_NARROW : ICON_WIDEN,
 			  widen.x_px - head.x_px + widen.width_px / 2.0,
 			  widen.y_px - head.y_px + widen.height_px / 2.0, screen_px(screen, 4.5f));
-	if (listen.width_px > 0)
-		icon_draw(context, view->spoken.fade.on ? ICON_STOP : ICON_LISTEN,
-			  listen.x_px - head.x_px + listen.width_px / 2.0,
-			  listen.y_px - head.y_px + listen.height_px / 2.0,
-			  screen_px(screen, view->spoken.fade.on ? 4 : 5));
+	if (listen.width_px > 0) {
+		cairo_save(context);
+		cairo_translate(context, listen.x_px - head.x_px, listen.y_px - head.y_px);
+		draw_listen(context, view, screen, listen);
+		cairo_restore(context);
+	}
 	sprite_end(&view->head, context);
 }
 
