@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "sound/mixer.h"
 
 enum {
 	RATE_HZ = 48000, /* of all Opus */
@@ -95,6 +96,7 @@ static int open_device(struct speech *speech)
 		speech->device = NULL;
 		return device_failed(code, "be opened");
 	}
+	mixer_open_up();
 	code = snd_pcm_set_params(speech->device, SND_PCM_FORMAT_S16, SND_PCM_ACCESS_RW_INTERLEAVED,
 				  CHANNELS, RATE_HZ, 1, LATENCY_US);
 	return code < 0 ? device_failed(code, "be set up") : 0;

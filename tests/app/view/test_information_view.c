@@ -155,7 +155,7 @@ static void finish_release(struct release *release)
 
 static struct information_view *begin(const struct release *release, const char *language)
 {
-	const struct information_view_options options = { 1920, 1080, 4, language };
+	const struct information_view_options options = { 1920, 1080, 4, language, false };
 	struct information_view *view;
 
 	CHECK(information_view_create(&view, &options) == 0);

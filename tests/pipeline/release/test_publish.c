@@ -89,7 +89,7 @@ static void what_is_published_verifies(void **state)
 	CHECK(verified.pages[PAGE_FACE].count == 10);
 	CHECK(verified.points == 5 && verified.faces == 10);
 	CHECK(verified.tiles.count == 15 && verified.groups.count == 2);
-	CHECK(verified.parts == 1 && verified.pictures.count == 1);
+	CHECK(verified.parts == 1 && verified.files.count == 1);
 	CHECK(verified.hierarchy_triangles == 4);
 }
 
