@@ -13,7 +13,6 @@
 #include "base/safe_open.h"
 #include "format/page.h"
 #include "format/picture.h"
-#include "pipeline/content/spoken_text.h"
 
 static void part_finish(struct draft_part *part)
 {
@@ -30,7 +29,7 @@ static void part_finish(struct draft_part *part)
 		free(part->pages[i].html);
 		buffer_finish(&part->pages[i].article);
 		free(part->pages[i].pictures);
-		spoken_text_finish(&part->pages[i].spoken);
+		cues_finish(&part->pages[i].spoken.cues);
 	}
 }
 

@@ -163,8 +163,3 @@ int spoken_text_read(struct draft *draft, struct draft_part *part, uint32_t lang
 		return rc;
 	return 0; /* missing, or told */
 }
-
-void spoken_text_finish(struct draft_spoken *spoken)
-{
-	cues_finish(&spoken->cues);
-}

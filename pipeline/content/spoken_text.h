@@ -8,6 +8,5 @@
 /* Reads and checks what is spoken on a part's page in a language (index into the release's). There
  * may be nothing; faults are added to the draft's diagnostics. -ENOMEM. */
 must_check int spoken_text_read(struct draft *draft, struct draft_part *part, uint32_t language);
-void spoken_text_finish(struct draft_spoken *spoken); /* zeroed is fine */
 
 #endif
