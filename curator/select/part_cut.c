@@ -25,7 +25,7 @@ enum {
 
 /* What a pixel of the part costs in the rest, if it looks like the part or is on its side of the
  * strong borders, and the other way round; beside 1 for a pixel of a border without contrast. */
-static const float colour_share = 0.03f, turn_share = 0.03f, way_share = 0.15f;
+static const float colour_share = 0.03f, turn_share = 0.03f, way_share = 0.03f;
 /* Differences below these tell nothing: colour in sRGB, normals by their distance, ways in strong
  * borders. */
 static const float colour_blur = 10, turn_blur = 0.2f, way_blur = 0.5f;
