@@ -1,5 +1,5 @@
-/* The documents of a content folder: parts.json, tours.json, and the files in pages/, pictures/,
- * regions/ and sounds/. Whatever gopura-curator changes of them goes through here, so that each
+/* The documents of a content folder: parts.json, tours.json, and the files in pages/, pictures/
+ * and regions/. Whatever gopura-curator changes of them goes through here, so that each
  * file is replaced whole or not at all, a change of several files is made whole or not at all even
  * by a program that is killed, and DIR/.curator/history.git knows who changed what, and when.
  *

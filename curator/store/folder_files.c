@@ -15,7 +15,7 @@
 enum { FILES_MAX = 1 << 20 };
 
 static const char *const roots[] = { "parts.json", "tours.json" };
-static const char *const folders[] = { "pages", "pictures", "regions", "sounds" };
+static const char *const folders[] = { "pages", "pictures", "regions" };
 
 void folder_files_finish(struct folder_files *files)
 {

@@ -8,12 +8,27 @@
 
 #include "storage/info.h"
 #include "storage/info_ask.h"
+#include "storage/info_spoken.h"
 #include "storage/info_tools.h"
 #include "storage/info_tour.h"
 
 enum { STEPS_PER_CALL = 1000, CALLS_MAX = 200, SQL_BYTES_MAX = 64 << 10 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void ask_of_speech(struct info *info, uint32_t part, const char *language)
+{
+	struct info_spoken spoken;
+
+	if (info_spoken(info, part, language, &spoken) < 0)
+		return;
+	if (spoken.duration_ms == 0 || spoken.bytes == 0)
+		abort();
+	for (uint32_t n = 0; n < spoken.cue_count; n++)
+		if (spoken.cues[n].end_ms <= spoken.cues[n].begin_ms ||
+		    strlen(spoken.cues[n].text) > INFO_CUE_BYTES_MAX)
+			abort();
+}
 
 static void ask_of_part(struct info *info, uint32_t part, const char *language)
 {
@@ -29,6 +44,7 @@ static void ask_of_part(struct info *info, uint32_t part, const char *language)
 		abort();
 	if (!info_credits(info, part, language))
 		abort();
+	ask_of_speech(info, part, language);
 	if (info_find(info, info_part(info, part)->id) < 0)
 		abort();
 }
