@@ -12,7 +12,8 @@ gopura=build/gopura-content
 "$gopura" annotations import "$work/out/demo.jsonld" --into "$work/copy"
 "$gopura" annotations export "$work/copy" --out "$work/again/demo.jsonld"
 cmp "$work/out/demo.jsonld" "$work/again/demo.jsonld" || fail "the round trip lost something"
-diff -r demo/content/pages "$work/copy/pages" || fail "pages came back changed"
+# Spoken texts are not exchanged.
+diff -r -x "*.opus" -x "*.vtt" demo/content/pages "$work/copy/pages" || fail "pages came back changed"
 diff -r "$work/out/pictures" "$work/again/pictures" || fail "pictures came back changed"
 python3 - "$work/out/demo.jsonld" <<'P'
 import json
