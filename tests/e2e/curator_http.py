@@ -27,8 +27,14 @@ class Client:
             headers.setdefault("Cookie", self.cookie)
         if self.token:
             headers.setdefault("X-Gopura-Token", self.token)
-        self.connection.request(method, path, body, headers)
-        response = self.connection.getresponse()
+        try:
+            self.connection.request(method, path, body, headers)
+            response = self.connection.getresponse()
+        except (http.client.RemoteDisconnected, BrokenPipeError, ConnectionResetError):
+            # The server closes a connection that was idle for 30 s, as any does; a browser opens another.
+            self.connection.close()
+            self.connection.request(method, path, body, headers)
+            response = self.connection.getresponse()
         data = response.read()
         if response.headers["content-type"] == "application/json":
             data = json.loads(data)
