@@ -56,7 +56,7 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
     send, evaluate, sleep,
     go: async url => { await send("Page.navigate", { url }); await sleep(300); },
     // Waits until an expression is true.
-    until: async (expression, what = expression, ms = 20000) => {
+    until: async (expression, what = expression, ms = 60000) => {
       for (const end = Date.now() + ms; !(await evaluate(`Boolean(${expression})`).catch(() => false)); await sleep(50))
         if (Date.now() > end) throw new Error(`not within ${ms} ms: ${what}`);
     },
