@@ -55,7 +55,9 @@ struct info {
 	uint32_t tour_count, tour_room;
 	unsigned tools;
 	bool has_tools, has_spoken;
-	struct info_cue *cues; /* of the last info_spoken; owned */
+	struct info_spoken spoken; /* what info_spoken found last, of spoken_of; bytes 0: nothing */
+	int64_t spoken_of;         /* a content_id */
+	struct info_cue *cues;     /* of spoken; owned */
 	uint32_t cue_count;
 	struct info_picture *pictures; /* names owned */
 	uint32_t picture_count, picture_room;

@@ -31,6 +31,7 @@ void info_drop_spoken(struct info *info)
 	free(info->cues);
 	info->cues = NULL;
 	info->cue_count = 0;
+	info->spoken = (struct info_spoken){ 0 };
 }
 
 static int read_spoken(sqlite3_stmt *row, struct info_spoken *out)
@@ -116,6 +117,27 @@ static int find_cues(struct info *info, int64_t content_id)
 	return rc;
 }
 
+static int load(struct info *info, int64_t content_id)
+{
+	struct info_spoken found = { 0 };
+	int rc;
+
+	info_drop_spoken(info);
+	info->calls = 0;
+	rc = find_spoken(info, content_id, &found);
+	if (rc == 0)
+		rc = find_cues(info, content_id);
+	if (rc < 0) {
+		info_drop_spoken(info);
+		return rc;
+	}
+	found.cues = info->cues;
+	found.cue_count = info->cue_count;
+	info->spoken = found;
+	info->spoken_of = content_id;
+	return 0;
+}
+
 int info_spoken(struct info *info, uint32_t part, const char *language, struct info_spoken *out)
 {
 	const struct part *its = &info->parts[part];
@@ -123,18 +145,14 @@ int info_spoken(struct info *info, uint32_t part, const char *language, struct i
 	int rc;
 
 	*out = (struct info_spoken){ 0 };
-	info_drop_spoken(info);
 	if (!info->has_spoken || found == info->language_count)
 		return -ENOENT;
-	info->calls = 0;
-	rc = find_spoken(info, its->texts[found].content_id, out);
-	if (rc == 0)
-		rc = find_cues(info, its->texts[found].content_id);
-	if (rc < 0) {
-		info_drop_spoken(info);
-		return rc;
+	/* Whoever follows what is spoken asks many times a second. */
+	if (info->spoken.bytes == 0 || info->spoken_of != its->texts[found].content_id) {
+		rc = load(info, its->texts[found].content_id);
+		if (rc < 0)
+			return rc;
 	}
-	out->cues = info->cues;
-	out->cue_count = info->cue_count;
+	*out = info->spoken;
 	return 0;
 }
