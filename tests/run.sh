@@ -17,18 +17,15 @@ export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:quarantine_size_mb=16 UBSAN_
 # The file lists third-party libraries that keep small one-time allocations, and none of our own code.
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 
-# cpu_s FILE: processor time in seconds of what this shell started and waited for; FILE is scratch, because `times` in a
-# pipe would tell of the pipe's own shell.
-cpu_s() {
-	times >"$1"
-	awk -F '[ms ]+' 'NR == 2 { printf "%d", $1 * 60 + $2 + $3 * 60 + $4 }' "$1"
-}
+# children_s FILE: seconds of processor time of what a shell started and waited for, by the output of its `times`.
+children_s() { awk -F '[ms ]+' 'NR == 2 { printf "%d", $1 * 60 + $2 + $3 * 60 + $4 }' "$1"; }
 
 # run_one NAME SECONDS COMMAND...: runs a test, prints its line, and writes its log and, beside that, its verdict.
 run_one() {
 	local name=$1 limit=$2 log=$logs/${1//\//-}.log start=$SECONDS cpu status
 	shift 2
-	cpu=$(cpu_s "$log.times")
+	times >"$log.times" # not in a subshell, which has times of its own
+	cpu=$(children_s "$log.times")
 	timeout --kill-after=10 "$limit" "$@" >"$log" 2>&1 </dev/null
 	status=$?
 	# The leak checker itself sometimes crashes while it stops the threads of Mesa's llvmpipe ("Tracer caught signal
@@ -37,7 +34,8 @@ run_one() {
 		timeout --kill-after=10 "$limit" "$@" >"$log" 2>&1 </dev/null
 		status=$?
 	fi
-	cpu=$(($(cpu_s "$log.times") - cpu))
+	times >"$log.times"
+	cpu=$(($(children_s "$log.times") - cpu))
 	case $status in
 	0) echo passed >"$log.verdict"; printf '  pass  %-44s %3d s, %d of processor\n' "$name" $((SECONDS - start)) "$cpu" ;;
 	77) echo skipped >"$log.verdict"; printf '  skip  %-44s %s\n' "$name" "$(tail -n 1 "$log")" ;;
@@ -124,7 +122,7 @@ if [ "$mode" = only ]; then
 	exit
 fi
 
-run_one check-style 120 tests/style/check.sh &
+run_one check-style 600 tests/style/check.sh &
 run_one build-sanitized 1500 make --no-print-directory -j"$jobs" SAN=1 BUILD=build/asan all tests
 wait
 run_one check-circles 120 tests/style/circles.py build/asan/obj

@@ -15,43 +15,43 @@ else
 fi
 
 # ---- the include table: FOLDER may include FOLDERS (itself always)
-may_include() {
+may_include() { # its answer is in $answer: a subshell for each of thousands of lines would take a minute
+	answer=
 	case $1 in
-	base) echo ;;
-	format | board | input | sound | health | system) echo base ;;
-	geometry | ui) echo base format ;;
-	render | storage) echo base format geometry ;;
-	net) echo base format storage ;;
-	app) echo base format geometry board system render ui input sound storage net ;;
-	pipeline) echo base format geometry render storage ;;
-	curator) echo base format geometry render ui storage pipeline ;;
-	tests) echo base format geometry board system render ui input sound storage net app pipeline curator health ;;
-	*) echo ;;
+	base) ;;
+	format | board | input | sound | health | system) answer="base" ;;
+	geometry | ui) answer="base format" ;;
+	render | storage) answer="base format geometry" ;;
+	net) answer="base format storage" ;;
+	app) answer="base format geometry board system render ui input sound storage net" ;;
+	pipeline) answer="base format geometry render storage" ;;
+	curator) answer="base format geometry render ui storage pipeline" ;;
+	tests) answer="base format geometry board system render ui input sound storage net app pipeline curator health" ;;
 	esac
 }
 # The same for the rooms of a folder: a room sees those that are named here; the folder's own files see every room.
 may_enter() {
+	answer=
 	case $1 in
-	render/lumigraph) echo display plan patches ;;
-	render/patches) echo display plan ;;
-	render/scene) echo display plan patches lumigraph ;;
-	pipeline/import) echo keys ;; # refuses to hand one to the reader of a scan
-	pipeline/content) echo import ;;
-	pipeline/hierarchy) echo import material ;;
-	pipeline/samples) echo import content material hierarchy ;;
-	pipeline/release) echo keys import content hierarchy samples ;;
-	pipeline/report) echo import content hierarchy samples release ;;
-	pipeline/temple) echo material ;;
-	curator/view | curator/region) echo select ;;
-	curator/api) echo accounts ;;
-	curator/publish) echo accounts api ;;
-	curator/session) echo accounts api select store view region ;;
-	curator/pages) echo accounts api session store ;;
-	curator/server) echo accounts api pages publish session ;;
-	app/modes) echo settings view ;;
-	app/settings) echo release visit ;; # what gopura.conf says is checked by those whom it is for
-	app/visit | app/release) echo view ;;
-	*) echo ;;
+	render/lumigraph) answer="display plan patches" ;;
+	render/patches) answer="display plan" ;;
+	render/scene) answer="display plan patches lumigraph" ;;
+	pipeline/import) answer="keys" ;; # refuses to hand one to the reader of a scan
+	pipeline/content) answer="import" ;;
+	pipeline/hierarchy) answer="import material" ;;
+	pipeline/samples) answer="import content material hierarchy" ;;
+	pipeline/release) answer="keys import content hierarchy samples" ;;
+	pipeline/report) answer="import content hierarchy samples release" ;;
+	pipeline/temple) answer="material" ;;
+	curator/view | curator/region) answer="select" ;;
+	curator/api) answer="accounts" ;;
+	curator/publish) answer="accounts api" ;;
+	curator/session) answer="accounts api select store view region" ;;
+	curator/pages) answer="accounts api session store" ;;
+	curator/server) answer="accounts api pages publish session" ;;
+	app/modes) answer="settings view" ;;
+	app/settings) answer="release visit" ;; # what gopura.conf says is checked by those whom it is for
+	app/visit | app/release) answer="view" ;;
 	esac
 }
 # What may be included of a room from outside it; a room that is not named here: all but what is private.
@@ -74,17 +74,26 @@ is_public() {
 	case " $names " in *" ${name%.h} "*) return 0 ;; *) return 1 ;; esac
 }
 # room PATH: folder/room of a file, or its folder
-room() { case $1 in */*/*) echo "${1%/*}" ;; *) echo "${1%%/*}" ;; esac }
+room() { case $1 in */*/*) answer=${1%/*} ;; *) answer=${1%%/*} ;; esac }
+declare -A included # FILE: what it includes of ours
+while IFS=: read -r file include; do
+	include=${include#*\"}
+	included[$file]+=" ${include%%\"*}"
+done < <(printf '%s\n' $files | xargs grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"')
 for file in $files; do
 	folder=${file%%/*}
-	allowed=" $folder $(may_include "$folder") "
-	room=$(room "$file")
-	entered=" ${room##*/} $(may_enter "$room") "
-	for include in $(sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*"([^"]+)".*/\1/p' "$file"); do
+	may_include "$folder"
+	allowed=" $folder $answer "
+	room "$file"
+	room=$answer
+	may_enter "$room"
+	entered=" ${room##*/} $answer "
+	for include in ${included[$file]:-}; do
 		[ -f "$include" ] || { complain "$file: include \"$include\": name it from the top of the tree"; continue; }
 		case $allowed in *" ${include%%/*} "*) ;; *) complain "$file: ${folder} may not include $include" ;; esac
 		if [ "${include%%/*}" = "$folder" ] && [ "$folder" != tests ] && [ "$room" != "$folder" ]; then
-			inner=$(room "$include")
+			room "$include"
+			inner=$answer
 			[ "$inner" != "$folder" ] || inner=.
 			case $entered in *" ${inner##*/} "*) ;; *) complain "$file: $room may not include $include" ;; esac
 		fi
@@ -99,13 +108,11 @@ for file in $files; do
 			complain "$file: of net, app may include only net/client.h"
 		fi
 	done
-	case $file in
-	*.h) grep -q '^#ifndef GOPURA_' "$file" || complain "$file: no include guard GOPURA_..." ;;
-	esac
-	case $file in
-	format/*.c) ! grep -nE '\blog_(error|warn|info|debug)\(' "$file" || complain "$file: format never logs" ;;
-	esac
 done
+out=$(printf '%s\n' $files | grep '\.h$' | xargs grep -L '^#ifndef GOPURA_')
+[ -z "$out" ] || complain "no include guard GOPURA_...:" "$out"
+out=$(grep -nE '\blog_(error|warn|info|debug)\(' format/*.c)
+[ -z "$out" ] || complain "format never logs:" "$out"
 
 # ---- a source has a header of its own: NAME.c has NAME.h beside it
 # Main programs, tests and the commands that pipeline/commands.h lists have none.
