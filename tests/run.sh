@@ -63,7 +63,7 @@ unit() {
 			program=${program%.c}
 			echo "$2/${program#tests/} 600 $1/$program tests/fuzz/corpus/${program#tests/fuzz/fuzz_}"
 		done
-	} | grep -E "${3:-.}" | xargs -r -P "${4:-$jobs}" -L 1 tests/run.sh one
+	} | grep -E "${3:-.}" | nice -n 5 xargs -r -P "${4:-$jobs}" -L 1 tests/run.sh one
 }
 
 if [ "${1:-}" = lane ]; then
