@@ -176,7 +176,7 @@ VECTORS := pipeline/material/material $(addprefix pipeline/samples/,pyramid rast
 $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
 # Kiosks decode patches all the time: with these loops unrolled, a fifth faster.
 ifeq ($(SAN)$(FUZZER),)
-$(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o: OPT := -O3 -g
+$(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o $(BUILD)/obj/format/precision.o: OPT := -O3 -g
 endif
 $(TEST_OBJECTS): | $(BUILD)/.test-deps
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'

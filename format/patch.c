@@ -7,25 +7,17 @@
 #include <string.h>
 
 #include "format/connectivity.h"
+#include "format/precision.h"
 #include "format/root_page.h"
 
 enum {
 	VERSION = 3,
 	FLAG_BASE = 1, /* a base follows the precision */
 	NARROW_BITS = 16,
-	WIDE_BITS = 24,
-	POSITION_ZEROS_MAX = 12,
-	BITS_MIN = 4 /* fewer bits cannot fill eight by one repetition */
+	WIDE_BITS = 24
 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'p', 'g' };
-
-/* The fewest bits that express every vertex of a group without loss. While vertices are coded, they
- * are without the bits that are omitted. */
-struct precision {
-	uint8_t position_zeros; /* low bits that are zero in all of them */
-	uint8_t normal_bits, colour_bits, open_bits;
-};
 
 /* The places of a group: positions count from base and have so many bits. */
 struct range {
@@ -39,7 +31,7 @@ static const struct range narrow = { .bits = NARROW_BITS };
 struct group {
 	struct symbol_encoder encoder;
 	struct symbol_coder coder;
-	struct precision precision;
+	struct vertex_precision precision;
 	struct range range;
 	struct connectivity mesh;
 	struct patch_vertex *vertices; /* owned; mesh.vertex_count of them */
@@ -47,96 +39,14 @@ struct group {
 	struct symbol_model greens[PREDICT_COLOUR_MODELS], tints[2], opens[PREDICT_OPEN_MODELS];
 };
 
-/* Maps small differences of either sign to small numbers (zigzag): 0, -1, 1, -2 ... */
-static uint32_t fold(int32_t difference)
-{
-	return (uint32_t)difference << 1 ^ (difference < 0 ? UINT32_MAX : 0);
-}
-
-static int32_t unfold(uint32_t folded)
-{
-	return (int32_t)(folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0));
-}
-
-/* Codes the difference of two numbers of bits bits, which wraps around. Returns it in that many
- * bits. */
-static force_inline int32_t code_difference(struct symbol_coder *coder, struct symbol_model *model,
-					    int32_t difference, int bits)
-{
-	int32_t mask = (1 << bits) - 1;
-
-	difference &= mask;
-	if (difference > mask / 2)
-		difference -= mask + 1;
-	return unfold(symbol_code_number(coder, model, fold(difference), (uint32_t)bits)) & mask;
-}
-
-/* Widens a value of bits bits to eight by repeating its bits, so that all zeros and all ones stay
- * so. */
-static uint8_t widen(uint8_t value, int bits)
-{
-	return bits == 8 ? value : (uint8_t)(value << (8 - bits) | value >> (2 * bits - 8));
-}
-
 uint8_t patch_round_colour(uint8_t value, int bits)
 {
-	int most = (1 << bits) - 1;
-
-	return widen((uint8_t)((value * most + 127) / 255), bits);
-}
-
-/* -127, 0 and 127 stay what they are. -128 is no normal, and needs 8 bits. */
-static int8_t shorten_normal(int8_t value, int bits)
-{
-	int most = (1 << (bits - 1)) - 1;
-
-	if (bits == 8)
-		return value;
-	return (int8_t)((value * most + (value < 0 ? -63 : 63)) / 127);
-}
-
-static int8_t widen_normal(int8_t value, int bits)
-{
-	int most = (1 << (bits - 1)) - 1;
-
-	if (bits == 8)
-		return value;
-	return (int8_t)((value * 127 + (value < 0 ? -most / 2 : most / 2)) / most);
+	return precision_round_colour(value, bits);
 }
 
 int8_t patch_round_normal(int8_t value, int bits)
 {
-	return widen_normal(shorten_normal(value, bits), bits);
-}
-
-static struct patch_vertex shorten(const struct group *group, const struct patch_vertex *vertex)
-{
-	const struct precision *precision = &group->precision;
-	struct patch_vertex out = *vertex;
-
-	for (int i = 0; i < 3; i++)
-		out.position[i] =
-			(out.position[i] - group->range.base[i]) >> precision->position_zeros;
-	for (int i = 0; i < 2; i++)
-		out.normal[i] = shorten_normal(out.normal[i], precision->normal_bits);
-	for (int i = 0; i < 4; i++)
-		out.colour[i] >>= 8 - (i < 3 ? precision->colour_bits : precision->open_bits);
-	return out;
-}
-
-/* In place: a copy that is read in one piece would wait for the bytes that were just written. */
-static void lengthen(const struct group *group, struct patch_vertex *vertex)
-{
-	const struct precision *precision = &group->precision;
-
-	for (int i = 0; i < 3; i++)
-		vertex->position[i] =
-			group->range.base[i] + (vertex->position[i] << precision->position_zeros);
-	for (int i = 0; i < 2; i++)
-		vertex->normal[i] = widen_normal(vertex->normal[i], precision->normal_bits);
-	for (int i = 0; i < 4; i++)
-		vertex->colour[i] = widen(vertex->colour[i],
-					  i < 3 ? precision->colour_bits : precision->open_bits);
+	return precision_round_normal(value, bits);
 }
 
 /* ---- vertices, in both directions: what is encoded is in group->vertices already */
@@ -170,9 +80,9 @@ static force_inline int code_positions_of(struct group *group, struct symbol_enc
 
 		predict_position(guess, models, &group->mesh.steps[v], group->vertices, most);
 		for (int i = 0; i < 3; i++) {
-			at = guess[i] +
-			     unfold(symbol_code_number(&coder, &group->positions[models[i]],
-						       fold(position[i] - guess[i]), bits));
+			at = guess[i] + symbol_unfold(symbol_code_number(
+						&coder, &group->positions[models[i]],
+						symbol_fold(position[i] - guess[i]), bits));
 			if (at < 0 || at > most[i])
 				return -EBADMSG;
 			position[i] = at;
@@ -193,10 +103,10 @@ static force_inline void code_normals_of(struct group *group, struct symbol_enco
 
 		predict_octahedral(guess, sums[v]);
 		for (int i = 0; i < 2; i++) {
-			int32_t value = shorten_normal(guess[i], bits);
+			int32_t value = precision_shorten_normal(guess[i], bits);
 
-			value += code_difference(&coder, &group->normals[i], normal[i] - value,
-						 bits);
+			value += symbol_code_difference(&coder, &group->normals[i],
+							normal[i] - value, bits);
 			/* The sign is the highest of the bits. */
 			normal[i] = (int8_t)((int8_t)(uint8_t)((uint32_t)value << (8 - bits)) >>
 					     (8 - bits));
@@ -221,14 +131,14 @@ static force_inline void code_colours_of(struct group *group, struct symbol_enco
 
 		predict_colour(guess, &colour_model, &open_model, &group->mesh.steps[v],
 			       group->vertices, unknown);
-		green = code_difference(&coder, &group->greens[colour_model], colour[1] - guess[1],
-					bits);
-		red = green +
-		      code_difference(&coder, &group->tints[0], colour[0] - guess[0] - green, bits);
-		blue = green + code_difference(&coder, &group->tints[1],
-					       colour[2] - guess[2] - green, bits);
-		open = code_difference(&coder, &group->opens[open_model], colour[3] - guess[3],
-				       open_bits);
+		green = symbol_code_difference(&coder, &group->greens[colour_model],
+					       colour[1] - guess[1], bits);
+		red = green + symbol_code_difference(&coder, &group->tints[0],
+						     colour[0] - guess[0] - green, bits);
+		blue = green + symbol_code_difference(&coder, &group->tints[1],
+						      colour[2] - guess[2] - green, bits);
+		open = symbol_code_difference(&coder, &group->opens[open_model],
+					      colour[3] - guess[3], open_bits);
 		colour[0] = (uint8_t)((guess[0] + red) & mask);
 		colour[1] = (uint8_t)((guess[1] + green) & mask);
 		colour[2] = (uint8_t)((guess[2] + blue) & mask);
@@ -311,42 +221,6 @@ static bool indices_fit(const struct patch_mesh *mesh)
 	return true;
 }
 
-static uint8_t bits_of_normal(int8_t value, uint8_t bits)
-{
-	while (bits < 8 && patch_round_normal(value, bits) != value)
-		bits++;
-	return bits;
-}
-
-static uint8_t bits_of(uint8_t value, uint8_t bits)
-{
-	while (widen((uint8_t)(value >> (8 - bits)), bits) != value)
-		bits++;
-	return bits;
-}
-
-static void allow_vertex(struct precision *precision, const struct patch_vertex *vertex)
-{
-	int digits = vertex->position[0] | vertex->position[1] | vertex->position[2];
-
-	while (digits & ((1 << precision->position_zeros) - 1))
-		precision->position_zeros--;
-	for (int i = 0; i < 2; i++)
-		precision->normal_bits = bits_of_normal(vertex->normal[i], precision->normal_bits);
-	for (int i = 0; i < 3; i++)
-		precision->colour_bits = bits_of(vertex->colour[i], precision->colour_bits);
-	precision->open_bits = bits_of(vertex->colour[3], precision->open_bits);
-}
-
-static struct precision precision_of(const struct patch_source *source)
-{
-	struct precision precision = { POSITION_ZEROS_MAX, BITS_MIN, BITS_MIN, BITS_MIN };
-
-	for (uint32_t v = 0; v < source->vertex_count; v++)
-		allow_vertex(&precision, &source->vertices[v]);
-	return precision;
-}
-
 /* A group near the lattice's origin needs no base, and so no group of a small site. Returns -EINVAL
  * if a place is none of a lattice. */
 static int find_range(struct range *out, const struct patch_source *source)
@@ -384,10 +258,7 @@ static void put_header(struct buffer *out, const struct group *group)
 	buffer_put_u8(out, VERSION);
 	buffer_put_u8(out, has_base(&group->range) ? FLAG_BASE : 0);
 	buffer_put_u8(out, (uint8_t)group->mesh.patch_count);
-	buffer_put_u8(out, group->precision.position_zeros);
-	buffer_put_u8(out, group->precision.normal_bits);
-	buffer_put_u8(out, group->precision.colour_bits);
-	buffer_put_u8(out, group->precision.open_bits);
+	precision_put(out, &group->precision);
 	if (has_base(&group->range)) {
 		buffer_put_u8(out, (uint8_t)(group->range.bits / 8));
 		for (int i = 0; i < 3; i++)
@@ -406,7 +277,8 @@ static int take_vertices(struct group *group, const struct patch_source *source)
 	if (!group->vertices)
 		return -ENOMEM;
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
-		group->vertices[v] = shorten(group, &source->vertices[group->mesh.sources[v]]);
+		group->vertices[v] = precision_shorten(&group->precision, group->range.base,
+						       &source->vertices[group->mesh.sources[v]]);
 	return 0;
 }
 
@@ -416,7 +288,7 @@ static int encode_source(struct buffer *out, struct group *group, struct patch_s
 
 	if (rc < 0)
 		return rc;
-	group->precision = precision_of(source);
+	group->precision = precision_of(source->vertices, source->vertex_count);
 	rc = connectivity_code(&group->mesh, &group->coder, source);
 	if (rc == 0)
 		rc = take_vertices(group, source);
@@ -460,21 +332,6 @@ int patch_group_encode(struct buffer *out, const struct patch_mesh *patches, uin
 
 /* ---- decoding */
 
-static bool bits_fit(uint8_t bits)
-{
-	return bits >= BITS_MIN && bits <= 8;
-}
-
-static bool get_precision(struct reader *reader, struct precision *out)
-{
-	out->position_zeros = reader_u8(reader);
-	out->normal_bits = reader_u8(reader);
-	out->colour_bits = reader_u8(reader);
-	out->open_bits = reader_u8(reader);
-	return out->position_zeros <= POSITION_ZEROS_MAX && bits_fit(out->normal_bits) &&
-	       bits_fit(out->colour_bits) && bits_fit(out->open_bits);
-}
-
 static bool get_range(struct reader *reader, struct range *out)
 {
 	uint8_t bytes = reader_u8(reader);
@@ -504,7 +361,7 @@ static int get_header(struct reader *reader, struct group *group)
 		return -EBADMSG;
 	mesh->patch_count = reader_u8(reader);
 	if (mesh->patch_count < 1 || mesh->patch_count > GROUP_PATCHES_MAX ||
-	    !get_precision(reader, &group->precision))
+	    !precision_get(reader, &group->precision))
 		return -EBADMSG;
 	group->range = narrow;
 	if (flags & FLAG_BASE && !get_range(reader, &group->range))
@@ -542,7 +399,7 @@ static int give_patches(struct patch_mesh *patches, const struct group *group)
 	const uint16_t *indices = group->mesh.indices;
 
 	for (uint32_t v = 0; v < group->mesh.vertex_count; v++)
-		lengthen(group, &group->vertices[v]);
+		precision_lengthen(&group->precision, group->range.base, &group->vertices[v]);
 	for (uint32_t p = 0; p < group->mesh.patch_count; p++) {
 		struct patch_mesh *mesh = &patches[p];
 		size_t index_count = 3 * (size_t)group->mesh.patch_triangles[p];

@@ -189,4 +189,31 @@ static force_inline uint32_t symbol_code_number(struct symbol_coder *coder,
 	return (2 | (symbol & 1)) << plain | symbol_decode_bits(&coder->decoder, plain);
 }
 
+/* Maps small differences of either sign to small numbers (zigzag): 0, -1, 1, -2 ... */
+static force_inline uint32_t symbol_fold(int32_t difference)
+{
+	return (uint32_t)difference << 1 ^ (difference < 0 ? UINT32_MAX : 0);
+}
+
+static force_inline int32_t symbol_unfold(uint32_t folded)
+{
+	return (int32_t)(folded >> 1 ^ (folded & 1 ? UINT32_MAX : 0));
+}
+
+/* Codes the difference of two numbers of bits bits, which wraps around. Returns it in that many
+ * bits. */
+static force_inline int32_t symbol_code_difference(struct symbol_coder *coder,
+						   struct symbol_model *model, int32_t difference,
+						   int bits)
+{
+	int32_t mask = (1 << bits) - 1;
+
+	difference &= mask;
+	if (difference > mask / 2)
+		difference -= mask + 1;
+	return symbol_unfold(
+		       symbol_code_number(coder, model, symbol_fold(difference), (uint32_t)bits)) &
+	       mask;
+}
+
 #endif
