@@ -49,6 +49,15 @@ void predict_octahedral(int8_t out[2], const int64_t sum[3])
 	out[1] = (int8_t)divide_rounded(127 * y, length);
 }
 
+void predict_add_cross(int64_t sum[3], const int32_t *a, const int32_t *b, const int32_t *c)
+{
+	int64_t cross[3];
+
+	triangle_cross(cross, a, b, c);
+	for (int i = 0; i < 3; i++)
+		sum[i] += cross[i];
+}
+
 void predict_add_normals(int64_t (*sums)[3], const struct patch_vertex *vertices,
 			 const uint32_t *members, const uint16_t *indices, uint32_t triangle_count)
 {

@@ -28,6 +28,8 @@ enum { PREDICT_POSITION_MODELS = 2 + 4 * 25, PREDICT_COLOUR_MODELS = 7, PREDICT_
  * each patch with sums that start at zero, then predict_octahedral for each vertex. */
 void predict_add_normals(int64_t (*sums)[3], const struct patch_vertex *vertices,
 			 const uint32_t *members, const uint16_t *indices, uint32_t triangle_count);
+/* Adds the normal of one triangle, as long as twice its area. */
+void predict_add_cross(int64_t sum[3], const int32_t *a, const int32_t *b, const int32_t *c);
 /* Encodes a sum of normals as normal_encode does, in integers. */
 void predict_octahedral(int8_t out[2], const int64_t sum[3]);
 
