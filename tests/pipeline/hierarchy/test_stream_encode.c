@@ -188,7 +188,8 @@ static void the_whole_stream_is_the_input_bit_for_bit(void **state)
 	make(&bytes, &stats, &soup);
 	CHECK(stats.piece_count >= PIECES / 2);
 	CHECK(stats.base_vertices <= 256);
-	CHECK(bytes.size < 10 * soup.vertex_count);
+	/* Normals are noise here: two bytes of each vertex. */
+	CHECK(bytes.size < 14 * soup.vertex_count);
 	CHECK(stream_decoder_create(&decoder) == 0);
 	CHECK(stream_decoder_advance(decoder, buffer_bytes(&bytes)) == 0);
 	CHECK(stream_decoder_complete(decoder));
