@@ -189,6 +189,20 @@ static uint32_t piece_of(uint32_t out[STREAM_PIECE_VERTICES], const struct work 
 	return count < 3 ? 0 : count;
 }
 
+/* Returns whether no triangle of a piece is there twice, which no record expresses. */
+static bool piece_is_plain(const struct work *work, const uint32_t *piece, uint32_t count)
+{
+	for (uint32_t i = 0; i < count; i++)
+		for (uint32_t at = work->first[piece[i]]; at != STREAM_NONE; at = work->next[at])
+			for (uint32_t to = work->next[at]; to != STREAM_NONE; to = work->next[to])
+				if (work->triangles[at / 3][(at % 3 + 1) % 3] ==
+					    work->triangles[to / 3][(to % 3 + 1) % 3] &&
+				    work->triangles[at / 3][(at % 3 + 2) % 3] ==
+					    work->triangles[to / 3][(to % 3 + 2) % 3])
+					return false;
+	return true;
+}
+
 static double piece_cost(const struct work *work, const uint32_t *piece, uint32_t count)
 {
 	double largest = 0.0;
@@ -221,6 +235,8 @@ static void choose(struct work *work, uint32_t vertex)
 		for (uint32_t i = 1; i < count; i++)
 			if (piece[i] < vertex)
 				return; /* the piece is its lowest vertex' */
+		if (!piece_is_plain(work, piece, count))
+			return;
 		work->choices[work->choice_count++] = best;
 		return;
 	}
