@@ -65,26 +65,6 @@ static void get_page(void *user, const struct api_request *request, struct api_r
 
 /* ---- saving */
 
-/* The base is If-Match: "TAG", or If-None-Match: * for a new page. */
-static int read_base(struct page_save *save)
-{
-	const struct api_request *request = save->request;
-	const size_t bytes = strlen(request->if_match);
-
-	save->base[0] = '\0';
-	if (strcmp(request->if_none_match, "*") == 0)
-		return 0;
-	if (bytes == DOCUMENT_TAG_BYTES + 1 && request->if_match[0] == '"' &&
-	    request->if_match[bytes - 1] == '"') {
-		memcpy(save->base, request->if_match + 1, DOCUMENT_TAG_BYTES - 1);
-		save->base[DOCUMENT_TAG_BYTES - 1] = '\0';
-		return 0;
-	}
-	api_fail(save->response, 428,
-		 "a page is saved with the version that it began from (If-Match)");
-	return -EINVAL;
-}
-
 /* Both texts where they overlap: the browser shows them, and somebody decides. */
 static void answer_overlap(struct page_save *save, const char *tag)
 {
@@ -256,7 +236,7 @@ static void change_page(struct site *site, const struct api_request *request,
 	if (html)
 		save.html = (struct bytes){ (const uint8_t *)html, strlen(html) };
 	name_page(request, save.name);
-	if (read_base(&save) < 0)
+	if (save_base_read(request, response, save.base) < 0)
 		return;
 	if (!is_language(site, api_parameter(request, "language"))) {
 		api_fail(response, 404, "the release has no such language: see temple.ini");

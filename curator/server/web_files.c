@@ -37,10 +37,15 @@
 	FILE(about, "/about.js", "about.js", SCRIPT, true)                                         \
 	FILE(clean, "/clean.js", "clean.js", SCRIPT, true)                                         \
 	FILE(editor, "/editor.js", "editor.js", SCRIPT, true)                                      \
+	FILE(eye, "/eye.js", "eye.js", SCRIPT, true)                                               \
 	FILE(history, "/history.js", "history.js", SCRIPT, true)                                   \
 	FILE(part_list, "/part_list.js", "part_list.js", SCRIPT, true)                             \
 	FILE(pictures, "/pictures.js", "pictures.js", SCRIPT, true)                                \
 	FILE(preview, "/preview.js", "preview.js", SCRIPT, true)                                   \
+	FILE(tours, "/tours", "tours.html", HTML, false)                                           \
+	FILE(tours_script, "/tours.js", "tours.js", SCRIPT, true)                                  \
+	FILE(stop_list, "/stop_list.js", "stop_list.js", SCRIPT, true)                             \
+	FILE(tours_style, "/tours.css", "tours.css", STYLE, true)                                  \
 	FILE(style, "/curator.css", "curator.css", STYLE, true)                                    \
 	FILE(sign_in, "/sign-in", "sign_in.html", HTML, true)                                      \
 	FILE(sign_in_script, "/sign_in.js", "sign_in.js", SCRIPT, true)                            \

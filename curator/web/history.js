@@ -1,7 +1,7 @@
 // The versions of a page or of parts.json: who, when, what was changed, and going back.
 import { ask, may } from "./api.js";
 
-const panel = document.getElementById("history");
+const panel = document.getElementById("history"); // of the page on which texts are written
 
 const when = seconds => new Date(seconds * 1000).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
 const words = text => text.split(/(\s+|<[^>]*>)/).filter(Boolean);
@@ -89,7 +89,7 @@ async function openVersion(item, button, document_, version, older, restored) {
   item.append(box);
 }
 
-async function versionsOf(document_, restored) {
+export async function versionsOf(document_, restored) {
   const { versions } = await ask("GET", `/api/versions?document=${encodeURIComponent(document_)}`);
   const list = document.createElement("ul");
   list.className = "versions";
