@@ -1,7 +1,7 @@
 /* Feature points of a range image at growing scales, after Cheng and Boulanger, "Scale-Space 3D
  * TexMesh Simplification" (paper P2), sections 2 and 3: the image is smoothed with Gaussians of
  * growing sigma, and zero crossings of the Laplacian of Gaussian are the feature points of a scale.
- * They tell where the relief is.
+ * docs/quality.md has figures.
  *
  * Texels hold one over the distance along the line of sight instead of the distance: across a plane
  * it changes linearly from texel to texel, so that a plane has no feature from any point of view.
