@@ -57,7 +57,8 @@ function onText(message) {
     parts = message.parts;
     if (message.saved) {
       openedId = message.saved;
-      tell(`Saved. The next build of the content takes it up.`, true);
+      tell("Saved. The next build of the content takes it up. ", true);
+      byId("message").append(Object.assign(document.createElement("a"), { href: `/information#${openedId}`, textContent: "Write about it" }));
     }
     showParts();
     break;
@@ -222,7 +223,9 @@ function showParts() {
       send({ type: "open", id: part.id });
       showParts();
     });
-    item.append(button);
+    const write = Object.assign(document.createElement("a"), { href: `/information#${part.id}`, textContent: "Write", title: `Write about ${part.title || part.id}` });
+    item.className = "part";
+    item.append(button, write);
     return item;
   }));
 }
