@@ -9,7 +9,7 @@ work=build/e2e/sound
 rm -rf "$work"
 mkdir -p "$work"
 small_release
-printf '%s\n' '10000 1-page' '13500 2-words' '17500 3-ended' >"$work/at.shots"
+printf '%s\n' '10000 1-page' '13500 2-words' '22500 3-ended' >"$work/at.shots"
 printf 'pcm.nothing { type null }\npcm.!default { type file slave.pcm "nothing" file "%s" format "raw" }\n' \
 	"$PWD/$work/heard.raw" >"$work/file.conf"
 printf 'pcm.!default { type hw card 31 }\n' >"$work/none.conf"
@@ -27,7 +27,8 @@ visit() {
 said() { grep -oE 'page of .*|listening .*|words [1-9] of .*' "$work/$1.log" | tr '\n' ' '; }
 
 visit heard file --conf "$work/gopura.conf"
-[ "$(said heard)" = "page of central-tower listening begins words 1 of 6 words 2 of 6 listening ends " ] ||
+# How many sentences it comes to in ten seconds depends on how busy the machine is.
+said heard | grep -qE '^page of central-tower listening begins words 1 of 6 words 2 of 6 (words [3-6] of 6 )*listening ends $' ||
 	fail "heard: $(said heard)"
 python3 - "$work/heard.raw" <<'P'
 import array
@@ -36,7 +37,7 @@ samples = array.array("h", open(sys.argv[1], "rb").read())
 seconds = len(samples) / 2 / 48000
 loud = sum(abs(s) for s in samples[::7]) / len(samples[::7])
 print(f"heard {seconds:.1f} s, mean amplitude {loud:.0f}")
-assert 3 < seconds < 8, "it is listened to for about five seconds"
+assert 3 < seconds < 13, "it is listened to for about ten seconds"
 assert loud > 100, "there is speech"
 P
 
