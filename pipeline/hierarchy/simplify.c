@@ -1,5 +1,4 @@
-/* Edge-collapse simplification with a priority queue, quadrics and checks for folds and
- * topology. */
+/* Edge-collapse simplification with a priority queue of quadric errors. */
 #include "pipeline/hierarchy/simplify.h"
 
 #include <errno.h>
@@ -9,33 +8,11 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "pipeline/hierarchy/quadric.h"
+#include "pipeline/hierarchy/collapse.h"
 
-#define NONE          UINT32_MAX
-#define BORDER_WEIGHT 20.0  /* of planes that hold open edges, times the edge's squared length */
 #define COLOUR_WEIGHT 0.005 /* of black to white, relative to moving the edge by its length */
 #define SHAPE_WEIGHT  1e-6  /* on flat surfaces, short edges go first */
 #define FOLD_COSINE   0.2   /* minimum cosine between a triangle's normals before and after */
-#define UNSEEN_WEIGHT 0.03  /* of invisible surface, relative to surface seen from all sides */
-
-/* What is asked of a vertex, in two lines of the cache. */
-struct node {
-	struct quadric quadric;
-	double at[3];      /* its position */
-	double area;       /* to average normals and colours */
-	double importance; /* of what is seen of it */
-	uint32_t first;    /* its first corner, or NONE */
-	uint32_t version;
-	uint32_t mark;
-	uint8_t locked, border;
-};
-
-/* Corner 4 t + i is corner i of triangle t. The corners at a vertex are a linked list. */
-struct face {
-	uint32_t corners[3];
-	uint32_t next[3];
-	bool dead;
-};
 
 struct candidate {
 	uint32_t a, b;
@@ -48,14 +25,10 @@ struct entry {
 };
 
 struct work {
-	struct simplify_surface *surface;
-	struct node *nodes; /* for each vertex */
-	struct face *faces; /* for each triangle */
-	uint32_t mark;
+	struct collapse_mesh mesh;
 	struct candidate *candidates; /* all that were ever in the heap */
 	struct entry *heap;
 	uint32_t candidate_count, candidate_room, heap_count, heap_room;
-	uint32_t alive_count;
 	double worst; /* squared error so far, lattice steps */
 	double most;  /* limit of worst */
 	double loss;  /* loss of the costliest collapse */
@@ -139,156 +112,18 @@ static struct candidate pop(struct work *work)
 	return work->candidates[least.candidate];
 }
 
-/* ---- the surface */
-
-static uint32_t *corners_of(const struct work *work, uint32_t corner)
-{
-	return work->faces[corner / 4].corners;
-}
-
-/* The corners of its triangle that follow a corner. */
-static uint32_t after(const struct work *work, uint32_t corner)
-{
-	static const uint8_t next[4] = { 1, 2, 0, 0 };
-
-	return corners_of(work, corner)[next[corner % 4]];
-}
-
-static uint32_t before(const struct work *work, uint32_t corner)
-{
-	static const uint8_t next[4] = { 2, 0, 1, 0 };
-
-	return corners_of(work, corner)[next[corner % 4]];
-}
-
-static uint32_t *next_of(const struct work *work, uint32_t corner)
-{
-	return &work->faces[corner / 4].next[corner % 4];
-}
-
-/* Returns the next living corner at a vertex, and unlinks dead ones on the way. */
-static uint32_t living(const struct work *work, uint32_t *link)
-{
-	while (*link != NONE && work->faces[*link / 4].dead)
-		*link = *next_of(work, *link);
-	return *link;
-}
-
-#define EACH_CORNER(work, vertex, corner)                                                          \
-	for (uint32_t *link_##corner = &(work)->nodes[vertex].first, corner;                       \
-	     (corner = living(work, link_##corner)) != NONE;                                       \
-	     link_##corner = next_of(work, corner))
-
-static void cross_of(double out[3], const double a[3], const double b[3], const double c[3])
-{
-	double u[3], v[3];
-
-	for (int i = 0; i < 3; i++) {
-		u[i] = b[i] - a[i];
-		v[i] = c[i] - a[i];
-	}
-	for (int i = 0; i < 3; i++)
-		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross_of_triangle(double out[3], const struct work *work, const uint32_t corners[3])
-{
-	cross_of(out, work->nodes[corners[0]].at, work->nodes[corners[1]].at,
-		 work->nodes[corners[2]].at);
-}
-
-/* Counts the triangles at an edge; *forth is how many of them run from a to b. */
-static uint32_t triangles_at_edge(struct work *work, uint32_t a, uint32_t b, uint32_t *forth)
-{
-	uint32_t count = 0;
-
-	*forth = 0;
-	EACH_CORNER(work, a, corner)
-	{
-		count += after(work, corner) == b || before(work, corner) == b;
-		*forth += after(work, corner) == b;
-	}
-	return count;
-}
-
-static bool edge_is_open(struct work *work, uint32_t a, uint32_t b)
-{
-	uint32_t forth, count = triangles_at_edge(work, a, b, &forth);
-
-	return 2 * forth != count;
-}
-
-/* ---- quadrics */
-
-/* Errors are weighted by visibility: "Visibility-guided simplification", Zhang and Turk 2002. */
-static double importance(const struct lattice_vertex *vertex)
-{
-	return UNSEEN_WEIGHT + (1.0 - UNSEEN_WEIGHT) * vertex->seen / 255.0;
-}
-
-static void add_open_edge(struct work *work, uint32_t a, uint32_t b, const double normal[3],
-			  double weight)
-{
-	const double *at = work->nodes[a].at;
-	double along[3], side[3], length;
-
-	for (int i = 0; i < 3; i++)
-		along[i] = work->nodes[b].at[i] - at[i];
-	for (int i = 0; i < 3; i++)
-		side[i] = along[(i + 1) % 3] * normal[(i + 2) % 3] -
-			  along[(i + 2) % 3] * normal[(i + 1) % 3];
-	length = sqrt(dot(side, side));
-	if (length <= 0.0)
-		return;
-	for (int i = 0; i < 3; i++)
-		side[i] /= length;
-	weight *= BORDER_WEIGHT * dot(along, along);
-	quadric_add_plane(&work->nodes[a].quadric, side, at, weight);
-	quadric_add_plane(&work->nodes[b].quadric, side, at, weight);
-}
-
-static void add_triangle(struct work *work, uint32_t t)
-{
-	const uint32_t *corners = work->faces[t].corners;
-	double normal[3], length, weight = 0.0;
-
-	cross_of_triangle(normal, work, corners);
-	length = sqrt(dot(normal, normal));
-	if (length <= 0.0)
-		return;
-	for (int i = 0; i < 3; i++)
-		normal[i] /= length;
-	for (int corner = 0; corner < 3; corner++)
-		weight += work->nodes[corners[corner]].importance / 3.0;
-	for (int corner = 0; corner < 3; corner++) {
-		uint32_t a = corners[corner], b = corners[(corner + 1) % 3];
-		struct node *node = &work->nodes[a];
-
-		quadric_add_plane(&node->quadric, normal, work->nodes[corners[0]].at,
-				  weight * length / 6.0);
-		node->area += length / 6.0;
-		if (node->border && work->nodes[b].border && edge_is_open(work, a, b))
-			add_open_edge(work, a, b, normal, weight);
-	}
-}
-
 /* ---- cost of a collapse */
 
-/* Returns true if gone may be removed while keep stays. Open edges are only shortened along
- * themselves. */
-static bool may_leave(const struct node *gone, const struct node *keep, bool open)
-{
-	return !gone->locked && (!gone->border || (keep->border && open));
-}
-
-static bool is_fixed(const struct node *node)
+static bool is_fixed(const struct collapse_node *node)
 {
 	return node->locked || node->border;
+}
+
+static double squared_distance(const double a[3], const double b[3])
+{
+	double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+
+	return collapse_dot(d, d);
 }
 
 static void round_to_lattice(double at[3], uint8_t fine_bits)
@@ -300,13 +135,6 @@ static void round_to_lattice(double at[3], uint8_t fine_bits)
 
 		at[i] = (int)(steps < last ? steps : last);
 	}
-}
-
-static double squared_distance(const double a[3], const double b[3])
-{
-	double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-
-	return dot(d, d);
 }
 
 /* Places the vertex of a collapse between two free vertices: at the best point, or in the middle if
@@ -330,9 +158,10 @@ static double free_place(double out[3], const struct quadric *sum, const double 
 static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, struct work *work,
 			     uint32_t a, uint32_t b)
 {
-	const struct node *node_a = &work->nodes[a], *node_b = &work->nodes[b];
-	bool open = node_a->border && node_b->border && edge_is_open(work, a, b);
-	bool a_may = may_leave(node_a, node_b, open), b_may = may_leave(node_b, node_a, open);
+	const struct collapse_node *node_a = &work->mesh.nodes[a], *node_b = &work->mesh.nodes[b];
+	bool open = node_a->border && node_b->border && collapse_edge_is_open(&work->mesh, a, b);
+	bool a_may = collapse_may_leave(node_a, node_b, open),
+	     b_may = collapse_may_leave(node_b, node_a, open);
 	bool a_fixed = is_fixed(node_a), b_fixed = is_fixed(node_b);
 	double value_a, value_b;
 	struct quadric sum;
@@ -344,7 +173,7 @@ static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, stru
 	sum = node_a->quadric;
 	quadric_add(&sum, &node_b->quadric);
 	if (!a_fixed && !b_fixed)
-		return free_place(out, &sum, node_a->at, node_b->at, work->surface->fine_bits);
+		return free_place(out, &sum, node_a->at, node_b->at, work->mesh.surface->fine_bits);
 	/* One end stays in its place: the one that may not leave, or the fixed one, or the better
 	 * one. */
 	value_a = b_may ? quadric_at(&sum, node_a->at) : INFINITY;
@@ -357,14 +186,14 @@ static double place_collapse(double out[3], uint32_t *keep, uint32_t *gone, stru
 		*keep = b;
 		*gone = a;
 	}
-	memcpy(out, work->nodes[*keep].at, sizeof(node_a->at));
+	memcpy(out, work->mesh.nodes[*keep].at, sizeof(node_a->at));
 	return value_b < value_a ? value_b : value_a;
 }
 
 static double colour_distance(const struct work *work, uint32_t a, uint32_t b)
 {
-	const uint8_t *from = work->surface->vertices[a].colour;
-	const uint8_t *to = work->surface->vertices[b].colour;
+	const uint8_t *from = work->mesh.surface->vertices[a].colour;
+	const uint8_t *to = work->mesh.surface->vertices[b].colour;
 	double sum = 0.0;
 
 	for (int i = 0; i < 3; i++)
@@ -374,7 +203,7 @@ static double colour_distance(const struct work *work, uint32_t a, uint32_t b)
 
 static int push_edge(struct work *work, uint32_t a, uint32_t b)
 {
-	const struct node *node_a = &work->nodes[a], *node_b = &work->nodes[b];
+	const struct collapse_node *node_a = &work->mesh.nodes[a], *node_b = &work->mesh.nodes[b];
 	double at[3], square, cost;
 	uint32_t keep, gone;
 
@@ -400,185 +229,54 @@ static int push_all_edges(struct work *work)
 	int rc = 0;
 
 	work->heap_count = work->candidate_count = 0;
-	for (uint32_t t = 0; rc == 0 && t < work->surface->triangle_count; t++)
-		for (int corner = 0; rc == 0 && !work->faces[t].dead && corner < 3; corner++) {
-			uint32_t a = work->faces[t].corners[corner];
-			uint32_t b = work->faces[t].corners[(corner + 1) % 3];
+	for (uint32_t t = 0; rc == 0 && t < work->mesh.surface->triangle_count; t++)
+		for (int corner = 0; rc == 0 && !work->mesh.faces[t].dead && corner < 3; corner++) {
+			uint32_t a = work->mesh.faces[t].corners[corner];
+			uint32_t b = work->mesh.faces[t].corners[(corner + 1) % 3];
 
-			if (a < b || (work->nodes[a].border && work->nodes[b].border &&
-				      edge_is_open(work, a, b)))
+			if (a < b || (work->mesh.nodes[a].border && work->mesh.nodes[b].border &&
+				      collapse_edge_is_open(&work->mesh, a, b)))
 				rc = push_edge(work, a, b);
 		}
 	return rc;
-}
-
-/* ---- validity of a collapse */
-
-static void mark_neighbours(struct work *work, uint32_t vertex)
-{
-	work->mark++;
-	EACH_CORNER(work, vertex, corner)
-	{
-		for (int i = 0; i < 3; i++)
-			work->nodes[corners_of(work, corner)[i]].mark = work->mark;
-	}
-}
-
-/* The link condition (Dey et al. 1999): the two ends have no common neighbours except those
- * opposite their edge. */
-static bool link_is_sound(struct work *work, uint32_t a, uint32_t b)
-{
-	uint32_t across = 0, common = 0;
-
-	mark_neighbours(work, a);
-	EACH_CORNER(work, b, corner)
-	{
-		const uint32_t others[2] = { after(work, corner), before(work, corner) };
-
-		across += others[0] == a || others[1] == a;
-		for (int i = 0; i < 2; i++) {
-			struct node *other = &work->nodes[others[i]];
-
-			if (others[i] == a || other->mark != work->mark)
-				continue;
-			common++;
-			other->mark = work->mark - 1; /* count it once */
-		}
-	}
-	return common <= across;
-}
-
-/* Returns true if after the collapse this triangle would coincide with one of the other end, facing
- * it. */
-static bool is_cancelled(struct work *work, uint32_t corner, uint32_t other_end)
-{
-	uint32_t p = after(work, corner), q = before(work, corner);
-
-	EACH_CORNER(work, other_end, facing)
-	{
-		if (after(work, facing) == q && before(work, facing) == p)
-			return true;
-	}
-	return false;
-}
-
-/* Returns true if a triangle faces the same way as the scan did there, by the normals of its
- * corners. Small rotations add up over many collapses; this test does not drift. */
-static bool faces_as_scan(const struct work *work, const uint32_t triangle[3],
-			  const double normal[3])
-{
-	double sum = 0.0;
-
-	for (int corner = 0; corner < 3; corner++)
-		for (int i = 0; i < 3; i++)
-			sum += normal[i] * work->surface->vertices[triangle[corner]].normal[i];
-	return sum > 0.0;
-}
-
-/* Returns true if a triangle at vertex would turn over when the vertex moves to at. */
-static bool folds(struct work *work, uint32_t vertex, uint32_t other_end, const double at[3])
-{
-	EACH_CORNER(work, vertex, corner)
-	{
-		const uint32_t *triangle = corners_of(work, corner);
-		uint32_t p = after(work, corner), q = before(work, corner);
-		double was[3], becomes[3], turned, square;
-
-		if (p == other_end || q == other_end)
-			continue;
-		cross_of_triangle(was, work, triangle);
-		cross_of(becomes, at, work->nodes[p].at, work->nodes[q].at);
-		turned = dot(was, becomes);
-		square = dot(was, was);
-		if (turned > 0.0 &&
-		    turned * turned > FOLD_COSINE * FOLD_COSINE * square * dot(becomes, becomes) &&
-		    (faces_as_scan(work, triangle, becomes) || !faces_as_scan(work, triangle, was)))
-			continue;
-		if (square > 0.0 && !is_cancelled(work, corner, other_end))
-			return true;
-	}
-	return false;
 }
 
 /* ---- the collapse */
 
 static void blend(struct work *work, uint32_t keep, uint32_t gone)
 {
-	struct lattice_vertex *to = &work->surface->vertices[keep];
-	const struct lattice_vertex *from = &work->surface->vertices[gone];
-	double sum = work->nodes[keep].area + work->nodes[gone].area;
-	double share = sum > 0.0 ? work->nodes[gone].area / sum : 0.5;
+	struct lattice_vertex *to = &work->mesh.surface->vertices[keep];
+	const struct lattice_vertex *from = &work->mesh.surface->vertices[gone];
+	double sum = work->mesh.nodes[keep].area + work->mesh.nodes[gone].area;
+	double share = sum > 0.0 ? work->mesh.nodes[gone].area / sum : 0.5;
 	double normal[3], length;
 
 	for (int i = 0; i < 4; i++)
 		to->colour[i] =
 			(uint8_t)(to->colour[i] + lrint(share * (from->colour[i] - to->colour[i])));
 	to->seen = (uint8_t)(to->seen + lrint(share * (from->seen - to->seen)));
-	work->nodes[keep].importance = importance(to);
+	work->mesh.nodes[keep].importance = collapse_importance(to);
 	for (int i = 0; i < 3; i++)
 		normal[i] = (1.0 - share) * to->normal[i] + share * from->normal[i];
-	length = sqrt(dot(normal, normal));
+	length = sqrt(collapse_dot(normal, normal));
 	for (int i = 0; i < 3 && length > 1e-6; i++)
 		to->normal[i] = (float)(normal[i] / length);
 }
 
-static void kill(struct work *work, uint32_t corner)
-{
-	work->faces[corner / 4].dead = true;
-	work->alive_count--;
-}
-
-/* Two triangles back to back enclose nothing: removes both. */
-static void cancel_pairs(struct work *work, uint32_t vertex)
-{
-	EACH_CORNER(work, vertex, corner)
-	{
-		uint32_t p = after(work, corner), q = before(work, corner);
-
-		for (uint32_t other = *next_of(work, corner); other != NONE;
-		     other = *next_of(work, other)) {
-			if (after(work, other) != q || before(work, other) != p ||
-			    work->faces[other / 4].dead)
-				continue;
-			if (work->alive_count <= 2)
-				return; /* at least one triangle must stay */
-			kill(work, corner);
-			kill(work, other);
-			break;
-		}
-	}
-}
-
-static void join_corners(struct work *work, uint32_t keep, uint32_t gone)
-{
-	uint32_t *end = &work->nodes[keep].first;
-
-	EACH_CORNER(work, gone, corner)
-	{
-		if (after(work, corner) == keep || before(work, corner) == keep)
-			kill(work, corner);
-		else
-			corners_of(work, corner)[corner % 4] = keep;
-	}
-	while (*end != NONE)
-		end = next_of(work, *end);
-	*end = work->nodes[gone].first;
-	work->nodes[gone].first = NONE;
-}
-
 static int push_edges_of(struct work *work, uint32_t vertex)
 {
-	work->mark++;
-	EACH_CORNER(work, vertex, corner)
+	work->mesh.mark++;
+	COLLAPSE_EACH_CORNER(&work->mesh, vertex, corner)
 	{
-		const uint32_t others[2] = { after(work, corner), before(work, corner) };
+		const uint32_t others[2] = { collapse_after(&work->mesh, corner),
+					     collapse_before(&work->mesh, corner) };
 
 		for (int i = 0; i < 2; i++) {
-			struct node *other = &work->nodes[others[i]];
+			struct collapse_node *other = &work->mesh.nodes[others[i]];
 
-			if (other->mark == work->mark)
+			if (other->mark == work->mesh.mark)
 				continue;
-			other->mark = work->mark;
+			other->mark = work->mesh.mark;
 			if (push_edge(work, vertex, others[i]) < 0)
 				return -ENOMEM;
 		}
@@ -586,28 +284,22 @@ static int push_edges_of(struct work *work, uint32_t vertex)
 	return 0;
 }
 
-/* Returns true if the collapse would leave no triangle. */
-static bool is_last(struct work *work, uint32_t a, uint32_t b)
-{
-	uint32_t forth;
-
-	return work->alive_count <= triangles_at_edge(work, a, b, &forth) + 2;
-}
-
 static int collapse(struct work *work, const struct candidate *candidate)
 {
-	struct lattice_vertex *vertices = work->surface->vertices;
-	struct node *kept, *left;
+	struct lattice_vertex *vertices = work->mesh.surface->vertices;
+	struct collapse_node *kept, *left;
 	uint32_t keep, gone;
 	double at[3], value, weight;
 
 	value = place_collapse(at, &keep, &gone, work, candidate->a, candidate->b);
-	kept = &work->nodes[keep];
-	left = &work->nodes[gone];
+	kept = &work->mesh.nodes[keep];
+	left = &work->mesh.nodes[gone];
 	weight = kept->quadric.weight + left->quadric.weight;
-	if (value < 0.0 || value > weight * work->most || is_last(work, keep, gone) ||
-	    (!work->loose && !link_is_sound(work, keep, gone)) || folds(work, gone, keep, at) ||
-	    (!is_fixed(kept) && folds(work, keep, gone, at)))
+	if (value < 0.0 || value > weight * work->most ||
+	    collapse_is_last(&work->mesh, keep, gone) ||
+	    (!work->loose && !collapse_link_is_sound(&work->mesh, keep, gone)) ||
+	    collapse_folds(&work->mesh, gone, keep, at, FOLD_COSINE) ||
+	    (!is_fixed(kept) && collapse_folds(&work->mesh, keep, gone, at, FOLD_COSINE)))
 		return 0;
 	if (weight > 0.0 && value / weight > work->worst)
 		work->worst = value / weight;
@@ -618,10 +310,7 @@ static int collapse(struct work *work, const struct candidate *candidate)
 		kept->at[i] = at[i];
 		vertices[keep].position[i] = (int32_t)at[i];
 	}
-	quadric_add(&kept->quadric, &left->quadric);
-	kept->area += left->area;
-	join_corners(work, keep, gone);
-	cancel_pairs(work, keep);
+	collapse_join(&work->mesh, keep, gone);
 	kept->version++;
 	left->version++;
 	work->collapse_count++;
@@ -632,68 +321,38 @@ static int collapse_until(struct work *work, uint32_t target)
 {
 	int rc = push_all_edges(work);
 
-	while (rc == 0 && work->alive_count > target && work->heap_count > 0) {
+	while (rc == 0 && work->mesh.alive_count > target && work->heap_count > 0) {
 		struct candidate least = pop(work);
-		const struct node *a = &work->nodes[least.a], *b = &work->nodes[least.b];
+		const struct collapse_node *a = &work->mesh.nodes[least.a],
+					   *b = &work->mesh.nodes[least.b];
 
-		if (a->first != NONE && b->first != NONE && least.stamp == a->version + b->version)
+		if (a->first != COLLAPSE_NONE && b->first != COLLAPSE_NONE &&
+		    least.stamp == a->version + b->version)
 			rc = collapse(work, &least);
 	}
 	return rc;
 }
 
-static void node_init(struct node *node, const struct lattice_vertex *vertex, uint8_t locked)
-{
-	*node = (struct node){
-		.importance = importance(vertex),
-		.first = NONE,
-		.locked = locked,
-		.border = vertex->border,
-	};
-	for (int i = 0; i < 3; i++)
-		node->at[i] = vertex->position[i];
-}
-
 static int work_init(struct work *work, struct simplify_surface *surface)
 {
-	size_t vertices = (size_t)surface->vertex_count + 1;
 	size_t triangles = (size_t)surface->triangle_count + 1;
+	int rc;
 
-	*work = (struct work){
-		.surface = surface,
-		.nodes = malloc(vertices * sizeof(*work->nodes)),
-		.faces = malloc(triangles * sizeof(*work->faces)),
-		.alive_count = surface->triangle_count,
-	};
-	if (!work->nodes || !work->faces ||
-	    ARRAY_RESERVE(work->heap, work->heap_room, 5 * triangles, UINT32_MAX) < 0 ||
-	    ARRAY_RESERVE(work->candidates, work->candidate_room, 5 * triangles, UINT32_MAX) < 0)
-		return -ENOMEM;
+	*work = (struct work){ 0 };
 	for (uint32_t i = 0; i < ARRAY_COUNT(work->colour_squares); i++)
 		work->colour_squares[i] = i / 255.0 * (i / 255.0) / 3.0;
-	for (uint32_t v = 0; v < surface->vertex_count; v++)
-		node_init(&work->nodes[v], &surface->vertices[v], surface->locked[v]);
-	for (uint32_t t = 0; t < surface->triangle_count; t++) {
-		struct face *face = &work->faces[t];
-
-		face->dead = false;
-		for (uint32_t i = 0; i < 3; i++) {
-			struct node *node = &work->nodes[surface->triangles[t][i]];
-
-			face->corners[i] = surface->triangles[t][i];
-			face->next[i] = node->first;
-			node->first = 4 * t + i;
-		}
-	}
-	for (uint32_t t = 0; t < surface->triangle_count; t++)
-		add_triangle(work, t);
-	return 0;
+	rc = collapse_mesh_init(&work->mesh, surface);
+	if (rc == 0)
+		rc = ARRAY_RESERVE(work->heap, work->heap_room, 5 * triangles, UINT32_MAX);
+	if (rc == 0)
+		rc = ARRAY_RESERVE(work->candidates, work->candidate_room, 5 * triangles,
+				   UINT32_MAX);
+	return rc;
 }
 
 static void work_finish(struct work *work)
 {
-	free(work->nodes);
-	free(work->faces);
+	collapse_mesh_finish(&work->mesh);
 	free(work->candidates);
 	free(work->heap);
 }
@@ -702,7 +361,7 @@ int simplify(struct simplify_surface *surface, uint32_t target_triangles, double
 	     struct simplify_result *result)
 {
 	struct work work;
-	uint32_t kept = 0, before;
+	uint32_t before;
 	int rc = work_init(&work, surface);
 
 	*result = (struct simplify_result){ 0 };
@@ -713,17 +372,13 @@ int simplify(struct simplify_surface *surface, uint32_t target_triangles, double
 	 * long as that helps. */
 	work.loose = true;
 	do {
-		before = work.alive_count;
+		before = work.mesh.alive_count;
 		if (rc == 0 && before > target_triangles)
 			rc = collapse_until(&work, target_triangles);
-	} while (rc == 0 && work.alive_count > target_triangles &&
-		 work.alive_count < before - before / 16);
-	for (uint32_t t = 0; rc == 0 && t < surface->triangle_count; t++)
-		if (!work.faces[t].dead)
-			memcpy(surface->triangles[kept++], work.faces[t].corners,
-			       sizeof(*surface->triangles));
+	} while (rc == 0 && work.mesh.alive_count > target_triangles &&
+		 work.mesh.alive_count < before - before / 16);
 	if (rc == 0) {
-		surface->triangle_count = kept;
+		collapse_mesh_give_back(&work.mesh);
 		result->error_steps = sqrt(work.worst);
 		result->loss_steps4 = work.loss;
 		result->collapse_count = work.collapse_count;

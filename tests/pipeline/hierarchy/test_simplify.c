@@ -4,78 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/check.h"
-#include "tests/pipeline/on_lattice.h"
-#include "tests/pipeline/shapes.h"
-
-struct subject {
-	struct lattice_mesh mesh;
-	struct simplify_surface surface;
-};
-
-/* The mesh is taken. */
-static void subject_init(struct subject *subject, struct mesh mesh)
-{
-	struct lattice_counts counts;
-
-	CHECK(on_lattice(&subject->mesh, &counts, &mesh) == 0);
-	mesh_finish(&mesh);
-	subject->surface = (struct simplify_surface){
-		.vertex_count = subject->mesh.vertex_count,
-		.triangle_count = subject->mesh.triangle_count,
-		.vertices = subject->mesh.vertices,
-		.locked = calloc(subject->mesh.vertex_count, 1),
-		.triangles = subject->mesh.triangles,
-	};
-}
-
-static void subject_finish(struct subject *subject)
-{
-	free(subject->surface.locked);
-	lattice_mesh_finish(&subject->mesh);
-}
-
-static void place(double out[3], const struct simplify_surface *surface, uint32_t t, int corner)
-{
-	for (int i = 0; i < 3; i++)
-		out[i] = surface->vertices[surface->triangles[t][corner]].position[i];
-}
-
-static void cross(double out[3], const struct simplify_surface *surface, uint32_t t)
-{
-	double at[3][3], u[3], v[3];
-
-	for (int corner = 0; corner < 3; corner++)
-		place(at[corner], surface, t, corner);
-	for (int i = 0; i < 3; i++) {
-		u[i] = at[1][i] - at[0][i];
-		v[i] = at[2][i] - at[0][i];
-	}
-	for (int i = 0; i < 3; i++)
-		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-}
-
-static double area(const struct simplify_surface *surface)
-{
-	double sum = 0.0, n[3];
-
-	for (uint32_t t = 0; t < surface->triangle_count; t++) {
-		cross(n, surface, t);
-		sum += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2.0;
-	}
-	return sum;
-}
-
-static struct mesh flat(uint32_t n)
-{
-	struct mesh mesh = shape_relief(n);
-
-	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
-		mesh.positions[v][2] = 0.0f;
-		memset(mesh.colours[v], 200, 4);
-	}
-	return mesh;
-}
+#include "tests/pipeline/hierarchy/subject.h"
 
 static void a_flat_sheet_needs_few_triangles(void **state)
 {
@@ -84,43 +13,15 @@ static void a_flat_sheet_needs_few_triangles(void **state)
 	double before;
 
 	(void)state;
-	subject_init(&subject, flat(32));
-	before = area(&subject.surface);
+	subject_init(&subject, subject_flat(32));
+	before = subject_area(&subject.surface);
 	CHECK(simplify(&subject.surface, 60, INFINITY, &result) == 0);
 	CHECK(subject.surface.triangle_count <= 60);
 	CHECK(result.error_steps < 3.0);
 	CHECK(result.collapse_count > 900);
 	/* Outline and hole are where they were. */
-	CHECK(fabs(area(&subject.surface) - before) < 1e-3 * before);
+	CHECK(fabs(subject_area(&subject.surface) - before) < 1e-3 * before);
 	subject_finish(&subject);
-}
-
-static int compare_keys(const void *left, const void *right)
-{
-	uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-
-	return a < b ? -1 : a > b;
-}
-
-/* The directed edges without another the other way, sorted; returns how many. */
-static uint32_t open_edges(uint64_t **out, const struct simplify_surface *surface)
-{
-	uint32_t count = 3 * surface->triangle_count, kept = 0;
-	uint64_t *edges = malloc(count * sizeof(*edges)), *open = malloc(count * sizeof(*open));
-
-	for (uint32_t c = 0; c < count; c++)
-		edges[c] = (uint64_t)surface->triangles[c / 3][c % 3] << 32 |
-			   surface->triangles[c / 3][(c % 3 + 1) % 3];
-	qsort(edges, count, sizeof(*edges), compare_keys);
-	for (uint32_t c = 0; c < count; c++) {
-		uint64_t back = edges[c] << 32 | edges[c] >> 32;
-
-		if (!bsearch(&back, edges, count, sizeof(*edges), compare_keys))
-			open[kept++] = edges[c];
-	}
-	free(edges);
-	*out = open;
-	return kept;
 }
 
 /* What a group promises to its neighbours: border edges as they were, ends and all. */
@@ -141,11 +42,11 @@ static void a_locked_border_stays_edge_by_edge(void **state)
 		/* As between two groups: locked, and no border of the scan. */
 		subject.surface.vertices[v].border = before[v].border = 0;
 	}
-	count = open_edges(&border, &subject.surface);
+	count = subject_open_edges(&border, &subject.surface);
 	CHECK(count > 160);
 	CHECK(simplify(&subject.surface, 1, INFINITY, &result) == 0);
 	CHECK(result.collapse_count > 1000);
-	CHECK(open_edges(&after, &subject.surface) == count);
+	CHECK(subject_open_edges(&after, &subject.surface) == count);
 	CHECK(memcmp(border, after, count * sizeof(*border)) == 0);
 	for (uint32_t v = 0; v < subject.surface.vertex_count; v++)
 		CHECK(!subject.surface.locked[v] ||
@@ -167,59 +68,10 @@ static void nothing_folds_over(void **state)
 	CHECK(simplify(&subject.surface, 300, INFINITY, &result) == 0);
 	CHECK(subject.surface.triangle_count <= 300);
 	for (uint32_t t = 0; t < subject.surface.triangle_count; t++) {
-		cross(n, &subject.surface, t);
+		subject_cross(n, &subject.surface, t);
 		CHECK(n[2] > 0.0);
 	}
 	subject_finish(&subject);
-}
-
-/* Vertices less edges plus triangles; every edge must have two triangles. */
-static int euler(const struct simplify_surface *surface)
-{
-	uint32_t corners = 3 * surface->triangle_count;
-	uint64_t *edges = malloc(corners * sizeof(*edges));
-	uint8_t *used = calloc(surface->vertex_count, 1);
-	int vertices = 0, distinct = 0;
-
-	for (uint32_t c = 0; c < corners; c++) {
-		uint64_t a = surface->triangles[c / 3][c % 3];
-		uint64_t b = surface->triangles[c / 3][(c % 3 + 1) % 3];
-
-		vertices += !used[a];
-		used[a] = 1;
-		edges[c] = a < b ? a << 32 | b : b << 32 | a;
-	}
-	qsort(edges, corners, sizeof(*edges), compare_keys);
-	for (uint32_t c = 0; c < corners; c += 2) {
-		CHECK(edges[c] == edges[c + 1]);
-		CHECK(c == 0 || edges[c] != edges[c - 1]);
-		distinct++;
-	}
-	free(edges);
-	free(used);
-	return vertices - distinct + (int)surface->triangle_count;
-}
-
-static struct mesh ring(uint32_t n)
-{
-	struct mesh mesh;
-
-	shape_room(&mesh, n * n, 2 * n * n);
-	for (uint32_t y = 0; y < n; y++)
-		for (uint32_t x = 0; x < n; x++) {
-			float u = 6.2831853f * (float)x / (float)n;
-			float v = 6.2831853f * (float)y / (float)n, r = 2.0f + 0.7f * cosf(v);
-
-			shape_vertex(&mesh, r * cosf(u), r * sinf(u), 0.7f * sinf(v));
-		}
-	for (uint32_t y = 0; y < n; y++)
-		for (uint32_t x = 0; x < n; x++) {
-			uint32_t right = (x + 1) % n, up = (y + 1) % n;
-
-			shape_triangle(&mesh, y * n + x, y * n + right, up * n + x);
-			shape_triangle(&mesh, up * n + x, y * n + right, up * n + right);
-		}
-	return mesh;
 }
 
 static void a_ring_stays_a_ring(void **state)
@@ -228,11 +80,11 @@ static void a_ring_stays_a_ring(void **state)
 	struct simplify_result result;
 
 	(void)state;
-	subject_init(&subject, ring(48));
-	CHECK(euler(&subject.surface) == 0);
+	subject_init(&subject, subject_ring(48));
+	CHECK(subject_euler(&subject.surface) == 0);
 	CHECK(simplify(&subject.surface, 120, INFINITY, &result) == 0);
 	CHECK(subject.surface.triangle_count <= 120);
-	CHECK(euler(&subject.surface) == 0);
+	CHECK(subject_euler(&subject.surface) == 0);
 	subject_finish(&subject);
 }
 
@@ -243,7 +95,7 @@ static double distance_to_triangle(const double p[3], const struct simplify_surf
 	double best = INFINITY, at[3][3], n[3], length;
 
 	for (int corner = 0; corner < 3; corner++)
-		place(at[corner], surface, t, corner);
+		subject_place(at[corner], surface, t, corner);
 	for (int e = 0; e < 3; e++) {
 		const double *a = at[e], *b = at[(e + 1) % 3];
 		double along = 0.0, square = 0.0, rest = 0.0, s;
@@ -260,7 +112,7 @@ static double distance_to_triangle(const double p[3], const struct simplify_surf
 		}
 		best = fmin(best, rest);
 	}
-	cross(n, surface, t);
+	subject_cross(n, surface, t);
 	length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 	if (length > 0.0) {
 		bool inside = true;
