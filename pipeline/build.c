@@ -152,6 +152,8 @@ static struct master_options master_options(const struct content *content,
 {
 	return (struct master_options){
 		.multires = { .kind = content->binary_tree ? MULTIRES_TREE : MULTIRES_GROUPS,
+			      .simplifier = content->simplify_features ? MULTIRES_FEATURES
+								       : MULTIRES_QUADRIC,
 			      .patch_triangles = content->patch_triangles,
 			      .block_triangles = content->block_triangles,
 			      .step_max_m = content->lattice_mm / 1000,

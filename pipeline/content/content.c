@@ -193,6 +193,15 @@ static bool set_kind(const struct setting *setting, void *target, const char *va
 	return content->binary_tree || strcasecmp(value, "groups") == 0;
 }
 
+static bool set_simplify(const struct setting *setting, void *target, const char *value)
+{
+	struct content *content = target;
+
+	(void)setting;
+	content->simplify_features = strcasecmp(value, "features") == 0;
+	return content->simplify_features || strcasecmp(value, "quadric") == 0;
+}
+
 static bool set_lattice_mm(const struct setting *setting, void *target, const char *value)
 {
 	return settings_numbers(setting, value, &((struct content *)target)->lattice_mm, 1);
@@ -268,6 +277,7 @@ static const struct setting settings[] = {
 	NUMBERS("grid", "quality", NULL, settings_whole, quality, 1, 100),
 	SETTING("grid", "effort", "thorough or quick", set_effort),
 	SETTING("hierarchy", "kind", "groups or tree", set_kind),
+	SETTING("hierarchy", "simplify", "quadric or features", set_simplify),
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),
 	NUMBERS("hierarchy", "block_triangles", NULL, settings_whole, block_triangles, 2000,
 		16000000),

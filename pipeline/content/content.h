@@ -50,6 +50,7 @@ struct content {
 	uint32_t quality;         /* 1..100 */
 	enum tile_effort effort;  /* of tiles */
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
+	bool simplify_features;   /* levels keep feature edges; else by quadrics */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */
 	uint32_t block_triangles; /* of the scan in one block, 2000..16000000; 0: the default */
 	double lattice_mm;        /* the largest step of the lattice, 0.05..100; 0: the default */

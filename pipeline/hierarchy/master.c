@@ -35,6 +35,8 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 	buffer_put_u32(&text, options->multires.block_triangles);
 	buffer_put_f64(&text, options->multires.step_max_m);
 	buffer_put_u8(&text, options->material_colours);
+	if (options->multires.simplifier != MULTIRES_QUADRIC)
+		buffer_put_u32(&text, options->multires.simplifier);
 	stamp = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
 	return stamp;

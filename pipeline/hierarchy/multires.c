@@ -603,6 +603,7 @@ static int site_init(struct builder *builder)
 		.pinned = builder->node->pinned,
 		.lows = malloc(bytes),
 		.highs = malloc(bytes),
+		.simplifier = builder->options.simplifier,
 		.patch_triangles = builder->options.patch_triangles,
 		.local_of = calloc(builder->options.jobs, sizeof(*site->local_of)),
 	};

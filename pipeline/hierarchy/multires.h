@@ -19,8 +19,14 @@ enum multires_kind {
 	MULTIRES_TREE    /* the paper's binary tree: borders stay until siblings join */
 };
 
+enum multires_simplifier {
+	MULTIRES_QUADRIC, /* simplify.h */
+	MULTIRES_FEATURES /* simplify_features.h */
+};
+
 struct multires_options {
 	enum multires_kind kind;
+	enum multires_simplifier simplifier;
 	uint32_t patch_triangles; /* maximum in a patch, 1..PATCH_TRIANGLES_MAX; 0: the default */
 	uint32_t group_patches;   /* about so many in a group, 2..32; else the default */
 	uint32_t top_triangles;   /* maximum in the coarsest cut; 0: the default */

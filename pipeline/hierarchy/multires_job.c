@@ -12,6 +12,7 @@
 #include "pipeline/hierarchy/multires_write.h"
 #include "pipeline/hierarchy/partition.h"
 #include "pipeline/hierarchy/simplify.h"
+#include "pipeline/hierarchy/simplify_features.h"
 
 /* The error that one level may add, as a multiple of the error so far. */
 #define ERROR_GROWTH 9.0
@@ -194,6 +195,17 @@ static double error_most(const struct job_site *site, const struct group_job *jo
 	return ERROR_GROWTH * error_m / site->mesh->lattice.step_m;
 }
 
+/* Of features, none is stronger than that a level must become coarser. */
+static int simplify_group(const struct job_site *site, const struct group_job *job, double error_m,
+			  struct simplify_surface *surface, struct simplify_result *result)
+{
+	const double most = error_most(site, job, error_m);
+
+	if (site->simplifier == MULTIRES_FEATURES)
+		return simplify_features(surface, job->target_triangles, most, -1.0, result);
+	return simplify(surface, job->target_triangles, most, result);
+}
+
 int group_job_run(const struct job_site *site, struct group_job *job, uint32_t worker)
 {
 	struct simplify_result result;
@@ -210,8 +222,7 @@ int group_job_run(const struct job_site *site, struct group_job *job, uint32_t w
 	if (rc == 0 && job->target_triangles > 0) {
 		rc = merge(&merged, site, job, site->local_of[worker]);
 		if (rc == 0)
-			rc = simplify(&merged.surface, job->target_triangles,
-				      error_most(site, job, error), &result);
+			rc = simplify_group(site, job, error, &merged.surface, &result);
 		if (rc == 0) {
 			/* The errors of the levels add up. */
 			error += result.error_steps * step_m;

@@ -26,6 +26,7 @@ struct job_site {
 	struct lattice_mesh *mesh;
 	const uint8_t *pinned;  /* for each vertex; NULL: none is */
 	uint32_t *lows, *highs; /* for each vertex: its smallest and largest user */
+	enum multires_simplifier simplifier;
 	uint32_t patch_triangles;
 	uint32_t **local_of; /* one map per worker; all NO_GROUP between jobs */
 };

@@ -22,9 +22,9 @@
 /* Sizes of the scans. Sanitized, which is ten times slower, the smaller ones go through the same
  * code. */
 #ifdef __SANITIZE_ADDRESS__
-enum { CUTS = 200, TEMPLE = 60, RELIEF = 80, TREE = 40, STONES = 1000 };
+enum { CUTS = 200, TEMPLE = 60, RELIEF = 80, FEATURES = 50, TREE = 40, STONES = 1000 };
 #else
-enum { CUTS = 1000, TEMPLE = 90, RELIEF = 120, TREE = 60, STONES = 2000 };
+enum { CUTS = 1000, TEMPLE = 90, RELIEF = 120, FEATURES = 80, TREE = 60, STONES = 2000 };
 #endif
 
 struct objects {
@@ -465,6 +465,17 @@ static const struct multires_options small_blocks = {
 	.jobs = 2,
 };
 
+/* The same, with levels that keep features. */
+static const struct multires_options small_features = {
+	.kind = MULTIRES_GROUPS,
+	.simplifier = MULTIRES_FEATURES,
+	.patch_triangles = 256,
+	.group_patches = 4,
+	.top_triangles = 600,
+	.block_triangles = 2000,
+	.jobs = 2,
+};
+
 /* ---- a large site */
 
 #define SITE_M 290.0f
@@ -672,6 +683,22 @@ static void no_cut_of_a_real_scan_has_a_crack(void **state)
 		skip();
 }
 
+static void no_cut_that_keeps_features_has_a_crack(void **state)
+{
+	(void)state;
+	for (int open = 0; open < 2; open++) {
+		struct model model;
+		struct verdict verdict;
+
+		model_build(&model, open ? shape_relief(FEATURES) : shape_temple(FEATURES),
+			    &small_features);
+		verdict = walk_cuts(&model, CUTS);
+		CHECK(verdict.shared > 100 * CUTS);
+		CHECK(verdict.cracks == 0);
+		model_finish(&model);
+	}
+}
+
 static void no_cut_of_the_binary_tree_has_a_crack(void **state)
 {
 	const struct multires_options options = { .kind = MULTIRES_TREE,
@@ -785,7 +812,7 @@ static void one_lattice_step_is_found(void **state)
 /* ---- the same bytes */
 
 static int build_objects(struct objects *objects, const struct folder *folder, uint32_t jobs,
-			 uint32_t block_triangles)
+			 uint32_t block_triangles, enum multires_simplifier simplifier)
 {
 	const struct multires_sink sink = { keep_object, objects };
 	struct multires_options options = small_blocks;
@@ -794,6 +821,7 @@ static int build_objects(struct objects *objects, const struct folder *folder, u
 	int rc;
 
 	options.jobs = jobs;
+	options.simplifier = simplifier;
 	options.block_triangles = block_triangles;
 	rc = block_build(&build, folder->path, &mesh, &options, true, &sink);
 	block_build_finish(&build);
@@ -814,13 +842,16 @@ static void any_number_of_jobs_makes_the_same_bytes(void **state)
 	static const uint32_t jobs[] = { 1, 2, 5 };
 
 	(void)state;
-	for (uint32_t blocks = 2000; blocks <= 200000; blocks *= 100) {
+	for (int round = 0; round < 3; round++) {
+		const uint32_t blocks = round == 1 ? 200000 : 2000;
 		struct objects objects[ARRAY_COUNT(jobs)] = { 0 };
 
 		for (size_t i = 0; i < ARRAY_COUNT(jobs); i++) {
 			struct folder folder = folder_make();
 
-			CHECK(build_objects(&objects[i], &folder, jobs[i], blocks) == 0);
+			CHECK(build_objects(&objects[i], &folder, jobs[i], blocks,
+					    round == 2 ? MULTIRES_FEATURES : MULTIRES_QUADRIC) ==
+			      0);
 			folder_remove(&folder);
 			check_equal(&objects[0], &objects[i]);
 		}
@@ -837,12 +868,12 @@ static void what_is_missing_is_made_again(void **state)
 	struct folder folder = folder_make();
 
 	(void)state;
-	CHECK(build_objects(&first, &folder, 2, 2000) == 0);
+	CHECK(build_objects(&first, &folder, 2, 2000, MULTIRES_QUADRIC) == 0);
 	for (size_t i = 0; i < ARRAY_COUNT(starts); i++) {
 		struct objects again = { 0 };
 
 		CHECK(remove_files(&folder, starts[i]) > 0);
-		CHECK(build_objects(&again, &folder, 2, 2000) == 0);
+		CHECK(build_objects(&again, &folder, 2, 2000, MULTIRES_QUADRIC) == 0);
 		check_equal(&first, &again);
 		objects_finish(&again);
 	}
@@ -884,7 +915,7 @@ static int build_with_a_murder(const struct folder *folder)
 	if (builder == 0) {
 		struct objects objects = { 0 };
 
-		_exit(-build_objects(&objects, folder, 2, 2000));
+		_exit(-build_objects(&objects, folder, 2, 2000, MULTIRES_QUADRIC));
 	}
 	while (waitpid(builder, &status, WNOHANG) == 0) {
 		worker = has_file(folder, "node-3") ? child_of(builder) : 0;
@@ -903,9 +934,9 @@ static void a_killed_worker_costs_only_its_piece(void **state)
 	(void)state;
 	CHECK(build_with_a_murder(&folder) == EIO);
 	CHECK(has_file(&folder, "node-3"));
-	CHECK(build_objects(&resumed, &folder, 2, 2000) == 0);
+	CHECK(build_objects(&resumed, &folder, 2, 2000, MULTIRES_QUADRIC) == 0);
 	remove_files(&folder, "");
-	CHECK(build_objects(&whole, &folder, 2, 2000) == 0);
+	CHECK(build_objects(&whole, &folder, 2, 2000, MULTIRES_QUADRIC) == 0);
 	check_equal(&whole, &resumed);
 	objects_finish(&whole);
 	objects_finish(&resumed);
@@ -947,6 +978,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(
 			no_cut_of_a_site_of_a_kilometre_has_a_crack_and_a_millimetre_stays_one),
 		cmocka_unit_test(no_cut_of_a_real_scan_has_a_crack),
+		cmocka_unit_test(no_cut_that_keeps_features_has_a_crack),
 		cmocka_unit_test(no_cut_of_the_binary_tree_has_a_crack),
 		cmocka_unit_test(loose_stones_become_few),
 		cmocka_unit_test(a_tetrahedron_stays_one),

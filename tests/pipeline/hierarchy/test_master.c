@@ -115,6 +115,9 @@ static void knows_what_it_was_made_from(void **state)
 	CHECK(master_open(&master, kept.folder, NULL) == -ENOENT);
 	other_options.multires.jobs = 7; /* makes the same bytes */
 	CHECK(hash_equal(kept.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
+	other_options.multires.simplifier = MULTIRES_FEATURES;
+	CHECK(!hash_equal(kept.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
+	other_options = options;
 	other_options.multires.kind = MULTIRES_TREE;
 	CHECK(!hash_equal(kept.stamp, master_stamp((struct hash){ { 7 } }, &other_options)));
 }
