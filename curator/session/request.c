@@ -250,12 +250,19 @@ static const struct {
 	const char *name;
 	int (*read)(const struct parse *parse, struct request *out);
 } kinds[] = {
-	[REQUEST_CAMERA] = { "camera", read_camera },  [REQUEST_GOT] = { "got", read_nothing },
-	[REQUEST_STROKE] = { "stroke", read_stroke },  [REQUEST_APPLY] = { "apply", read_apply },
-	[REQUEST_CLEAR] = { "clear", read_nothing },   [REQUEST_UNDO] = { "undo", read_nothing },
-	[REQUEST_REDO] = { "redo", read_nothing },     [REQUEST_GROW] = { "grow", read_nothing },
-	[REQUEST_SHRINK] = { "shrink", read_nothing }, [REQUEST_EMPTY] = { "empty", read_nothing },
-	[REQUEST_PICK] = { "pick", read_pick },        [REQUEST_SAVE] = { "save", read_save },
+	[REQUEST_CAMERA] = { "camera", read_camera },
+	[REQUEST_GOT] = { "got", read_nothing },
+	[REQUEST_STROKE] = { "stroke", read_stroke },
+	[REQUEST_APPLY] = { "apply", read_apply },
+	[REQUEST_CLEAR] = { "clear", read_nothing },
+	[REQUEST_UNDO] = { "undo", read_nothing },
+	[REQUEST_REDO] = { "redo", read_nothing },
+	[REQUEST_GROW] = { "grow", read_nothing },
+	[REQUEST_SHRINK] = { "shrink", read_nothing },
+	[REQUEST_SMOOTH] = { "smooth", read_nothing },
+	[REQUEST_EMPTY] = { "empty", read_nothing },
+	[REQUEST_PICK] = { "pick", read_pick },
+	[REQUEST_SAVE] = { "save", read_save },
 	[REQUEST_OPEN] = { "open", read_open },
 };
 

@@ -26,6 +26,7 @@ enum request_kind {
 	REQUEST_REDO,
 	REQUEST_GROW,
 	REQUEST_SHRINK,
+	REQUEST_SMOOTH, /* its border */
 	REQUEST_EMPTY,
 	REQUEST_PICK, /* where is the surface at a pixel? */
 	REQUEST_SAVE,

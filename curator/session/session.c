@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "curator/region/region_smooth.h"
 #include "curator/session/painter.h"
 #include "curator/session/part_store.h"
 #include "curator/session/request.h"
@@ -200,6 +201,8 @@ static int change_region(struct session *session, enum request_kind kind)
 		return region_set_grow(set, session->options.site->mesh);
 	case REQUEST_SHRINK:
 		return region_set_shrink(set, session->options.site->mesh);
+	case REQUEST_SMOOTH:
+		return region_set_smooth(set, session->options.site->mesh);
 	default:
 		region_set_begin(set);
 		region_set_put_all(set, false);

@@ -244,6 +244,9 @@ def check_tools(browser):
     grown = browser.ask("grow")
     assert grown["triangles"] > less["triangles"]
     assert browser.ask("shrink")["triangles"] < grown["triangles"]
+    smooth = browser.ask("smooth")  # a step of its own
+    assert abs(smooth["triangles"] - less["triangles"]) < less["triangles"] / 4, (less, smooth)
+    assert browser.ask("undo")["undo"] == smooth["undo"] - 1
     assert browser.ask("empty")["triangles"] == 0
     browser.stroke("heavy", circle(150))
     assert browser.text("region")["triangles"] > 100
